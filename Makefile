@@ -1,0 +1,103 @@
+# Burnish: `make help` lists the targets. Variables: BUILD (folder), ARCH (-march), CFLAGS, PETSC_DIR and PETSC_ARCH, PREFIX.
+.DEFAULT_GOAL := all
+.DELETE_ON_ERROR:
+
+BUILD  := build
+ARCH   := native
+CFLAGS := -O3 -g
+PREFIX := /usr/local
+VENV   := build/venv
+ifeq ($(origin CC),default)
+  CC := mpicc
+endif
+
+# PETSc is the one of PETSC_DIR and PETSC_ARCH, else the one that pkg-config knows; HDF5 is the one PETSc was built with.
+ifdef PETSC_DIR
+  ifeq ($(wildcard $(PETSC_DIR)/$(PETSC_ARCH)/lib/pkgconfig/PETSc.pc $(PETSC_DIR)/lib/pkgconfig/PETSc.pc),)
+    $(error PETSC_DIR=$(PETSC_DIR) PETSC_ARCH=$(PETSC_ARCH): no lib/pkgconfig/PETSc.pc there)
+  endif
+  export PKG_CONFIG_PATH := $(PETSC_DIR)/$(PETSC_ARCH)/lib/pkgconfig:$(PETSC_DIR)/lib/pkgconfig:$(PKG_CONFIG_PATH)
+endif
+# Asked for when used, not when read: `make deps all` installs first.
+PACKAGES      := PETSc yaml-0.1 libcjson
+pkgconfig      = $(shell pkg-config $(1) 2>/dev/null)
+petscvariable  = $(shell sed -n 's/^$(1) *= *//p' $(call pkgconfig,--variable=prefix PETSc)/lib/petsc/conf/petscvariables 2>/dev/null)
+
+ALL_CFLAGS := -std=gnu11 -march=$(ARCH) $(CFLAGS) -Wall -Wextra
+INCLUDES    = -Iinclude $(call pkgconfig,--cflags-only-I $(PACKAGES)) $(call petscvariable,HDF5_INCLUDE)
+LIBRARIES   = -lmetis $(call pkgconfig,--libs $(PACKAGES)) $(call petscvariable,HDF5_LIB) -Wl,-rpath,$(call pkgconfig,--variable=libdir PETSc) -ldl -lm
+CMOCKA      = $(call pkgconfig,--libs cmocka)
+COMPILE     = $(CC) $(ALL_CFLAGS) $(CPPFLAGS) $(INCLUDES)
+LINK        = $(LDFLAGS) $(LIBRARIES) $(LDLIBS)
+
+SOURCES   := $(filter-out src/main.c,$(wildcard src/*.c src/*/*.c))
+OBJECTS   := $(SOURCES:src/%.c=$(BUILD)/obj/%.o)
+LIBRARY   := $(BUILD)/libburnish.a
+BURNISH   := $(BUILD)/burnish
+TESTS     := $(patsubst %.c,$(BUILD)/tests/%,$(notdir $(wildcard tests/unit/test_*.c tests/mpi/test_*.c tests/oracle/*.c)))
+BENCHES   := $(patsubst tests/bench/%.c,$(BUILD)/bench/%,$(wildcard tests/bench/*.c))
+
+.PHONY: all tests deps demo check test study bench install help format clean FORCE
+all: $(BURNISH) ## builds build/burnish
+
+$(BURNISH): $(BUILD)/obj/main.o $(LIBRARY)
+	$(CC) $(ALL_CFLAGS) -o $@ $^ $(LINK)
+
+$(LIBRARY): $(OBJECTS)
+	@rm -f $@
+	$(AR) rcs $@ $^
+
+$(BUILD)/obj/%.o: src/%.c $(BUILD)/flags
+	@mkdir -p $(@D)
+	$(COMPILE) -MMD -MP -c -o $@ $<
+
+tests: $(TESTS) $(BENCHES)
+
+define program # $(1): source folder, $(2): folder of the program
+$(2)/%: $(1)/%.c $(LIBRARY) $(BUILD)/flags
+	@mkdir -p $$(@D)
+	$$(COMPILE) -MMD -MP -o $$@ $$< $(LIBRARY) $$(CMOCKA) $$(LINK)
+endef
+$(eval $(call program,tests/unit,$(BUILD)/tests))
+$(eval $(call program,tests/mpi,$(BUILD)/tests))
+$(eval $(call program,tests/oracle,$(BUILD)/tests))
+$(eval $(call program,tests/bench,$(BUILD)/bench))
+
+# Everything is compiled again when the compile or link line changes, with another PETSc for instance. What is asked for together with
+# deps or clean waits for them, under make -j too.
+$(BUILD)/flags: FORCE | $(filter deps clean,$(MAKECMDGOALS))
+	@pkg-config --exists $(PACKAGES) || { echo "PETSc, libyaml or cJSON is missing: run make deps" >&2; exit 1; }
+	@mkdir -p $(@D)
+	@echo '$(COMPILE) $(LINK)' | cmp -s - $@ || echo '$(COMPILE) $(LINK)' >$@
+
+deps: ## installs or checks everything needed
+	@scripts/deps.sh
+
+demo: all ## runs pipe_pinch on 2 ranks: comparison, pictures and a ParaView file in out/
+	@$(VENV)/bin/python scripts/demo.py --burnish $(BURNISH)
+
+check: all tests ## the quick tests
+	@scripts/check.sh $(BUILD) -L quick
+
+test: all tests ## all tests
+	@scripts/check.sh $(BUILD)
+
+study: all ## accuracy against time: tables and plots in out/study/
+	@echo "make study: not available yet" >&2; exit 1
+
+bench: all tests ## raw timing records and their table in out/bench/
+	@scripts/bench.sh $(BUILD)
+
+install: all ## installs into PREFIX (default /usr/local)
+	install -D -m 755 $(BURNISH) $(DESTDIR)$(PREFIX)/bin/burnish
+
+help: ## this list
+	@sed -n 's/^\([a-z]*\):.*## \(.*\)/make \1\t\2/p' Makefile | expand -t 16
+
+format: ## formats the C sources
+	clang-format -i $(wildcard include/*.h src/*.c src/*/*.c tests/*/*.c)
+
+clean: ## removes what was built (out/ and the Python environment stay)
+	rm -rf $(BUILD)/obj $(BUILD)/tests $(BUILD)/bench $(BUILD)/ctest $(BUILD)/flags $(LIBRARY) $(BURNISH)
+
+-include $(wildcard $(BUILD)/obj/*.d $(BUILD)/obj/*/*.d $(BUILD)/tests/*.d $(BUILD)/bench/*.d)

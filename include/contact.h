@@ -1,0 +1,75 @@
+/* Contact pairs: search, smoother and law behind residual, tangent and energy; the only holder of contact state.
+
+   A contact term belongs to a slave node (area, penalty, status, offset) and sums over its slave points (node to surface: the node itself).
+   A slave point is a map from nodes (fixed weights, offset); what it is measured against is a list of fit points and facets (search.h).
+   Lists are frozen inside one solve: ContactGather() makes them before it, ContactListsHold() says after it whether they were right. The
+   rank that owns a slave node computes its terms; masters come from any rank. */
+#pragma once
+#include "loads.h"
+#include "mesh.h"
+
+typedef enum { CONTACT_OPEN, CONTACT_CLOSED } ContactStatus;
+
+/* All state that a cutback saves and restores: per pair, per slave node of this rank that carries area. */
+typedef struct {
+  PetscInt       n;
+  PetscReal     *penalty;    /* force per length and area */
+  ContactStatus *status;
+  PetscReal     *gap;        /* weighted gap; NaN: no master near */
+  PetscReal     *offset;     /* g_0, subtracted from the gap */
+  PetscReal     *multiplier; /* pressure carried over; 0 for the penalty law */
+} ContactState;
+
+/* What the slave nodes of a pair show to probes and output; this rank's. */
+typedef struct {
+  PetscInt         n;
+  const PetscInt  *node;    /* local node */
+  const PetscReal *area;    /* reference tributary area (axisymmetric: 2 pi R) */
+  const PetscReal *gap, *penalty;
+  const PetscReal *force;   /* normal force */
+  const PetscReal *pressure;/* normal force over current tributary area */
+  const PetscReal *normal;  /* n*3, out of the master; 0 where no master is near */
+} ContactNodes;
+
+typedef struct {
+  PetscInt  nodes;                            /* closed slave nodes, all pairs */
+  PetscInt  in, out;                          /* against the accepted state */
+  PetscReal max_penetration, min_penetration; /* min: over nodes above 1e-3 of the largest nodal force */
+  PetscReal max_penetration_over_h;
+  PetscReal penalty_min, penalty_max;
+  PetscReal force;                            /* norm of the total force on the slaves */
+} ContactSummary;
+
+typedef struct _n_Contact *Contact;
+
+PetscErrorCode ContactCreate(Mesh, Scene, Elasticity, Loads, Contact *);
+PetscErrorCode ContactDestroy(Contact *);
+/* New lists for state u at load parameter t, good for a relative motion of `motion` (a length). Collective. */
+PetscErrorCode ContactGather(Contact, const PetscReal *u, PetscReal t, PetscReal motion);
+/* After ContactResidual() at (u, t): does a fresh search give the same gaps? If not, the fresh lists replace the old. Collective. */
+PetscErrorCode ContactListsHold(Contact, const PetscReal *u, PetscReal t, PetscReal motion, PetscBool *hold);
+/* Adds the contact forces to f (n_nodes*dim local, complete at owned nodes), this rank's energy and sum of squares of the terms' forces; each may
+   be NULL. With f it also becomes the present state (gap, status, forces). Collective. */
+PetscErrorCode ContactResidual(Contact, const PetscReal *u, PetscReal t, PetscReal *f, PetscReal *energy, PetscReal *force2);
+/* The contact matrix C over the global free dofs at (u, t), owned by the contact; *changed: its pattern is new. touching: nodes that just
+   touch take part with their stiffness. Collective. */
+PetscErrorCode ContactTangent(Contact, const PetscReal *u, PetscReal t, PetscBool touching, Mat *C, PetscBool *changed);
+/* y += C x with the last tangent, all dofs; rigid tools contribute their motion from t to t_next. x, y local, y complete at owned nodes. Collective. */
+PetscErrorCode ContactMultiply(Contact, const PetscReal *x, PetscReal t, PetscReal t_next, PetscReal *y);
+PetscErrorCode ContactAccept(Contact);  /* the present state is the one that ContactRestore() returns to. Not collective */
+PetscErrorCode ContactRestore(Contact);
+/* Refuses initial overlaps beyond what the facets' own shape explains (pair, node, amount). After ContactResidual(). Collective. */
+PetscErrorCode ContactCheckOverlap(Contact);
+PetscErrorCode ContactSummarise(Contact, ContactSummary *);
+int            ContactPairs(Contact);
+const char    *ContactPairName(Contact, int pair);
+int            ContactFindPair(Contact, const char *name); /* -1: none */
+/* Arrays belong to the contact and are valid until its next call. Collective. */
+PetscErrorCode ContactGetNodes(Contact, int pair, const PetscReal *u, ContactNodes *);
+/* Force of the pair on its master. Collective. */
+PetscErrorCode ContactMasterForce(Contact, int pair, PetscReal force[3]);
+/* Gap of the slave node with that rank-independent number, however far its master; NaN if it is no slave node. Collective. */
+PetscErrorCode ContactGapAt(Contact, int pair, const PetscReal *u, PetscReal t, PetscInt node_id, PetscReal *gap);
+/* Smallest and largest penalty of the pair. Collective. */
+PetscErrorCode ContactPairPenalty(Contact, int pair, PetscReal *least, PetscReal *most);
+PetscErrorCode ContactPairSurface(Contact, int pair, const MeshGroup **slave, PetscReal *mean_face_size);

@@ -1,0 +1,10 @@
+/* A piecewise linear factor over the load parameter t, constant beyond its ends. Plain C. */
+#pragma once
+
+typedef struct {
+  int     n;      /* breakpoints, at least 2, t strictly increasing */
+  double *t, *v;
+} History;
+
+double HistoryValue(const History *, double t);
+double HistorySlope(const History *, double t); /* right-sided: what the step that starts at t sees */

@@ -1,0 +1,49 @@
+/* The discrete problem: elasticity, loads and contact behind SNES callbacks, and the state that a step accepts or takes back.
+
+   ModelSetUp() once, then ModelSolve() finds equilibrium at a load parameter; ModelAccept() makes it the state that ModelRestore() returns
+   to. The model knows nothing of step sizes. */
+#pragma once
+#include "contact.h"
+#include "elasticity.h"
+#include "loads.h"
+#include "mesh.h"
+
+typedef enum { SOLVE_CONVERGED, SOLVE_ITERATIONS, SOLVE_LINE_SEARCH, SOLVE_DOMAIN, SOLVE_LINEAR, SOLVE_LISTS, SOLVE_NAN } SolveResult;
+extern const char *const SolveResults[]; /* in words, for messages */
+
+typedef struct {
+  SolveResult result;
+  PetscInt    newton;     /* Jacobian solves, prediction and re-gathered solves included */
+  PetscInt    krylov;
+  PetscInt    regathered; /* times lists were replaced */
+  PetscReal   residual;   /* |R|_2 / F_ref at the end */
+  char        detail[256];/* where it failed, in gmsh's tags */
+} SolveReport;
+
+typedef struct _n_Model {
+  Scene      scene;
+  Mesh       mesh;
+  Elasticity elasticity;
+  Loads      loads;
+  Contact    contact;     /* NULL: the scene has none */
+  SNES       snes;
+  Vec        x;           /* free displacements */
+  Mat        A;           /* K + C, or K itself without contact */
+  PetscReal *u;           /* n_nodes*dim local displacements, prescribed ones included, at load parameter t */
+  PetscReal  t;
+  PetscReal  force_scale; /* F_ref of the accepted states: the largest norm so far of the unassembled internal, contact and external forces */
+  struct _n_ModelWork *work;
+} *Model;
+
+PetscErrorCode ModelCreate(Scene, Mesh, Model *);
+PetscErrorCode ModelDestroy(Model *);
+/* First contact lists, refusal of initial overlaps, the state at t = 0 accepted. Collective. */
+PetscErrorCode ModelSetUp(Model);
+PetscErrorCode ModelSolve(Model, PetscReal t, SolveReport *);
+PetscErrorCode ModelAccept(Model);
+PetscErrorCode ModelRestore(Model);
+/* The force that supports and imposed displacements put on the nodes of a group, at the accepted state. Collective. */
+PetscErrorCode ModelReaction(Model, const MeshGroup *, PetscReal force[3]);
+PetscErrorCode ModelEffects(Model, char *text, size_t size); /* "finite strain, facet contact": what is on */
+PetscErrorCode ModelDofs(Model, PetscInt *free_dofs);
+PetscBool      ModelIsLinear(Model);                         /* one linear solve is the answer */

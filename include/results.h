@@ -1,0 +1,28 @@
+/* The result directory: results.h5 with results.xdmf, steps.csv, summary.json, progress on the terminal. Does not know how values were computed.
+
+   ResultsCheckDirectory() comes first, before anything is written or solved; ResultsStart() makes the directory. A record of the scene
+   (scene.yaml: the file's name, then its text after -set) tells the next run whose results lie there. */
+#pragma once
+#include "model.h"
+#include "probe.h"
+#include "stepper.h"
+
+typedef struct _n_Results *Results;
+
+/* The run as a whole, for summary.json */
+typedef struct {
+  const char *status;  /* "done", "not converged", "stopped" */
+  const char *message; /* cause, or NULL */
+  PetscInt    steps, steps_failed, newton_iterations, newton_accepted, krylov_iterations;
+  PetscReal   wall_s, cpu_s, mesh_s;
+} RunRecord;
+
+/* Refuses a directory that holds another scene's results unless overwrite. To be called before anything is written or solved. Collective. */
+PetscErrorCode ResultsCheckDirectory(MPI_Comm, Scene, const char *directory, PetscBool overwrite);
+PetscErrorCode ResultsCreate(Model, Probes, Scene, const char *directory, PetscBool quiet, Results *);
+PetscErrorCode ResultsDestroy(Results *);
+PetscErrorCode ResultsStart(Results);                     /* the first lines: version, ranks, BLAS, solver, bodies, effects */
+PetscErrorCode ResultsStep(Results, const StepRecord *);  /* an accepted step: CSV row, progress line, fields if due */
+PetscErrorCode ResultsFinish(Results, const RunRecord *); /* last fields, summary.json, last line on the terminal */
+/* Writes a text file of the directory under a temporary name, then renames it: it is there whole or not at all. Not collective. */
+PetscErrorCode ResultsReplaceFile(const char *directory, const char *name, const char *text);

@@ -1,0 +1,125 @@
+/* Every value a user can write, validated, with defaults; the only reader of YAML. Knows no PETSc objects but the communicator.
+
+   SceneRead() reads the file on rank 0, applies the -set overrides, validates every key against the one table of schema.c and refuses
+   the first mistake (file, line, key, what is wrong, what is allowed). Checks that need the mesh are made later by the part that owns
+   them; their messages start with SceneWhere(). */
+#pragma once
+#include <petscsys.h>
+#include "history.h"
+#include "material.h"
+
+typedef enum { GEOMETRY_SOLID, GEOMETRY_PLANE_STRAIN, GEOMETRY_AXISYMMETRIC } Geometry;
+typedef enum { KINEMATICS_SMALL, KINEMATICS_FINITE } Kinematics;
+typedef enum { STEP_FIXED, STEP_ITERATIONS, STEP_CONTACT } StepControlKind;
+typedef enum { SMOOTHER_FACET, SMOOTHER_DIFFUSE } SmootherKind;
+typedef enum { CONTACT_NODE_TO_SURFACE, CONTACT_SURFACE_TO_SURFACE } ContactFormulation;
+
+/* value times history, of one displacement or rotation component */
+typedef struct {
+  int     component; /* 0..2: ux uy uz; 3..5: rx ry rz (rigid motions only; degrees) */
+  double  value;
+  History history;
+} SceneMotion;
+
+typedef struct {
+  char         *path;   /* "bodies.0": for SceneWhere() */
+  char         *name;   /* physical group: a volume, or for a rigid tool a surface */
+  int           rigid;  /* a meshed rigid tool: no material */
+  Material      material;
+  double        point[3];
+  int           n_motions;
+  SceneMotion  *motions;
+} SceneBody;
+
+typedef struct {
+  char *path, *surface;
+  int   fixed[3]; /* component held at 0 */
+} SceneSupport;
+
+typedef enum { LOAD_DISPLACEMENT, LOAD_PRESSURE, LOAD_TRACTION, LOAD_BODY_FORCE } LoadKind;
+typedef struct {
+  char    *path, *region; /* region: physical surface, for a body force physical volume */
+  LoadKind kind;
+  int      has[3];   /* LOAD_DISPLACEMENT: which components are imposed */
+  double   value[3]; /* displacement, traction or body force; pressure in value[0] */
+  int      follower; /* pressure acts on the deformed face */
+  History  history;
+} SceneLoad;
+
+typedef struct {
+  char              *path, *name, *slave, *master; /* master: physical surface */
+  SmootherKind       smoother;
+  ContactFormulation formulation;
+  int                n_symmetry;
+  char             **symmetry;       /* planar surfaces beyond which the model continues as its mirror image */
+  double             feature_angle;  /* degrees */
+  int                penalty_auto;
+  double             penalty, penalty_scale; /* force per length and area; the automatic value is multiplied by penalty_scale */
+} SceneContact;
+
+typedef enum { PROBE_REACTION, PROBE_CONTACT_FORCE, PROBE_DISPLACEMENT, PROBE_DISTANCE, PROBE_GAP, PROBE_CONTACT_EDGE, PROBE_PRESSURE_MAX, PROBE_PRESSURE_MEAN, PROBE_PRESSURE_DEVIATION, PROBE_KINDS } ProbeKind;
+typedef struct {
+  char     *path, *name;
+  ProbeKind kind;
+  char     *target;       /* surface (reaction) or pair (contact kinds), else NULL */
+  char     *body;         /* volume, or NULL */
+  int       component;    /* 0..2 */
+  double    point[2][3];  /* reference coordinates: displacement, distance, gap */
+  int       axis;         /* contact_edge: 0..2 */
+  int       max_side;     /* contact_edge: 1 max, 0 min */
+  int       has_at;       /* contact_edge, pressure_max: restricted to nodes whose reference coordinate at_axis equals at_value */
+  int       at_axis;
+  double    at_value;
+  int       rms;          /* pressure_deviation: 1 rms, 0 max */
+  int       edge_filter;  /* pressure_deviation: 0 none, 1 excluding, 2 only, within edge_faces mean face sizes of a free edge */
+  double    edge_faces;
+  int       change;       /* distance: minus the reference distance */
+  int       absolute;
+  double    factor;
+} SceneProbe;
+
+typedef struct {
+  char *key, *value; /* key without the dash */
+} ScenePair;
+
+typedef struct {
+  char *file, *directory;      /* as given; the directory relative paths start at */
+  char *text;                  /* the document after -set, as one canonical YAML text: to recognise another scene's results */
+  char *name;
+  char *mesh_file;             /* path as the process can open it */
+  int   order;                 /* 1, 2; 0: take the .msh file's own */
+  int   n_parameters;
+  ScenePair *parameters;       /* of the .geo */
+  Geometry   geometry;
+  Kinematics kinematics;
+  int dim;                     /* 3 for solid, else 2 */
+  int n_bodies;   SceneBody    *bodies;
+  int n_supports; SceneSupport *supports;
+  int n_loads;    SceneLoad    *loads;
+  int n_contacts; SceneContact *contacts;
+  struct {
+    StepControlKind control;
+    double initial, dt_min, dt_max, growth;
+    int     n_at;
+    double *at;
+  } stepping;
+  struct {
+    double tolerance;
+    int    max_iterations;
+  } solver;
+  int n_probes;   SceneProbe   *probes;
+  struct {
+    int every;                             /* 0: only the last state */
+    int displacement, stress, contact;     /* fields */
+  } output;
+  int n_petsc;    ScenePair    *petsc;     /* PETSc options of the scene */
+  void *document;                          /* private: the document's tree with its marks (schema.h), for SceneWhere() */
+} *Scene;
+
+PetscErrorCode SceneRead(MPI_Comm, const char *file, int n_set, char *const *set, Scene *);
+PetscErrorCode SceneDestroy(Scene *);
+/* "runs/a.yaml:12: contact.0.slave": the place of a key (or of its nearest ancestor that the file has; "-set KEY" if it came from there).
+   Returned text belongs to the scene and is valid until the next call. */
+const char    *SceneWhere(Scene, const char *path, const char *key);
+/* the scene reference: every key with type, range, unit, default and help, generated from the table */
+PetscErrorCode SceneReference(FILE *);

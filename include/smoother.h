@@ -1,0 +1,37 @@
+/* What a contact surface looks like from one slave point: gap, first and second variation. Plain C, chosen by name; a new smoother is one
+   file with an evaluate function and one line in the table of smoother.c.
+
+   A smoother sees points, never elements or nodes: x is relative to the slave point, and what a point is made of (nodes with weights, an
+   offset, a mirror image) is the caller's business. Lists are frozen while a solve lasts. */
+#pragma once
+#include "facet.h"
+
+typedef struct {
+  int           dim, n_points, n_facets;
+  const double *x;      /* [n_points][dim], relative to the slave point */
+  const Facet  *facets; /* nodes index the points */
+  int           seed;   /* the facet of last time, or -1 */
+} SmootherInput;
+
+/* Arrays belong to the caller, sized for SmootherCapacity() points. */
+typedef struct {
+  double gap;       /* < 0: penetration */
+  double normal[3]; /* out of the master at the foot */
+  double beyond;    /* how far the foot lies past a free edge of the master (a length) */
+  int    seed;      /* for the next evaluation */
+  int    n, *points;/* the points that take part */
+  double *N;        /* [(1 + n)*dim], the slave point first */
+  double *M;        /* [((1 + n)*dim)^2] */
+} SmootherResult;
+
+typedef enum { SMOOTHER_GAP, SMOOTHER_FIRST_VARIATION, SMOOTHER_SECOND_VARIATION } SmootherWant;
+
+typedef struct {
+  const char *name;
+  int         capacity; /* the most points that can take part */
+  /* returns 0 when the list holds no surface for this slave point */
+  int (*evaluate)(const SmootherInput *, SmootherWant, SmootherResult *);
+} Smoother;
+
+extern const Smoother Smoothers[]; /* terminated by a NULL name */
+const Smoother *SmootherFind(const char *name);

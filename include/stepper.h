@@ -1,0 +1,35 @@
+/* The load stepper: takes a model from t = 0 to t = 1. An object in the manner of TS (Create, Set..., Solve, Monitor, View), with what a
+   quasi-static contact problem needs: a step is accepted or taken back whole, and steps land exactly on 1, on every `at` of the scene and on
+   every breakpoint of a history. How dt follows from what happened is a step control, chosen by name: a new one is one function in
+   stepper.c and one line in its table.
+
+     LoadStepperCreate(); LoadStepperSetModel(); LoadStepperSetFromScene(); LoadStepperSetFromOptions(); LoadStepperMonitorSet(); LoadStepperSolve() */
+#pragma once
+#include "model.h"
+
+/* One accepted step */
+typedef struct {
+  PetscInt       step, attempts, newton, krylov; /* newton and krylov: failed attempts before it included */
+  PetscReal      t, dt, residual;
+  ContactSummary contact;
+} StepRecord;
+
+/* The way so far */
+typedef struct {
+  PetscBool done;               /* t = 1 was reached */
+  PetscInt  steps, steps_failed, newton_iterations, newton_accepted, krylov_iterations;
+  PetscReal t;                  /* of the last good state */
+  char      message[1024];      /* why it ended early: cause, load parameter, nodes, what was tried */
+} StepperReport;
+
+typedef struct _n_LoadStepper *LoadStepper;
+typedef PetscErrorCode (*LoadStepperMonitorFn)(LoadStepper, const StepRecord *, void *);
+
+PetscErrorCode LoadStepperCreate(MPI_Comm, LoadStepper *);
+PetscErrorCode LoadStepperDestroy(LoadStepper *);
+PetscErrorCode LoadStepperSetModel(LoadStepper, Model);
+PetscErrorCode LoadStepperSetFromScene(LoadStepper, Scene);
+PetscErrorCode LoadStepperSetFromOptions(LoadStepper);
+PetscErrorCode LoadStepperMonitorSet(LoadStepper, LoadStepperMonitorFn, void *);
+PetscErrorCode LoadStepperSolve(LoadStepper, StepperReport *);
+PetscErrorCode LoadStepperView(LoadStepper, PetscViewer);

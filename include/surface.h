@@ -1,0 +1,38 @@
+/* One side of a contact pair in the reference configuration: its faces on this rank, their sizes, free edges, mirror planes, areas. Knows
+   nothing of gaps. Faces of a deformable body live with their cells; those of a rigid tool stand whole on every rank. */
+#pragma once
+#include "elasticity.h"
+#include "facet.h"
+
+/* Reflection through a coordinate plane or a product of such planes: x' = sign * x + shift, by component. Image 0 is the identity. */
+enum { SURFACE_MAX_IMAGES = 8 };
+typedef struct {
+  PetscReal sign[3], shift[3];
+  PetscBool reverses; /* turns the orientation of a face over */
+} SurfaceImage;
+
+typedef struct {
+  Mesh             mesh;
+  const MeshGroup *group;     /* deformable, else NULL */
+  const MeshRigid *rigid;     /* or a rigid tool, and which body of the scene it is */
+  int              body;
+  PetscInt         n_faces;   /* this rank's */
+  Facet           *faces;     /* nodes: local nodes of the mesh, or of the rigid tool */
+  PetscReal       *face_size; /* sqrt(area), a length in 2D */
+  PetscReal        mean_size, max_size; /* over all ranks */
+  PetscReal        stiffness; /* area-weighted mean of E over element height, all ranks; 0 for a rigid tool */
+} *ContactSurface;
+
+PetscErrorCode SurfaceCreate(Mesh, Scene, Elasticity, const char *path, const char *key, const char *name, ContactSurface *);
+PetscErrorCode SurfaceDestroy(ContactSurface *);
+/* Marks the edges at which a master surface ends (bits free_edges of its faces): held by one face only and on no plane of symmetry. Collective. */
+PetscErrorCode SurfaceFindFreeEdges(ContactSurface, const MeshGroup *const *symmetry, int n_symmetry);
+/* Tributary areas and normals (area-weighted sum of the faces', not normalised) of all local nodes at displacement u (NULL: reference),
+   complete on every copy. area n_nodes, normal n_nodes*3 (may be NULL). Deformable surfaces only. Collective. */
+PetscErrorCode SurfaceNodeAreas(ContactSurface, Geometry, const PetscReal *u, PetscReal *area, PetscReal *normal);
+/* Mean face size around each local node and how far the faces there turn from their mean normal (radians), reference configuration. Collective. */
+PetscErrorCode SurfaceNodeSizes(ContactSurface, PetscReal *size, PetscReal *turn);
+/* The planes of symmetry of a pair as images, checked: planar, normal to an axis, held by a support. Collective. */
+PetscErrorCode SurfaceImages(Mesh, Scene, const SceneContact *, int *n_images, SurfaceImage images[SURFACE_MAX_IMAGES]);
+/* The face as its mirror image sees it: node order turned over where the image reverses orientation. */
+Facet          SurfaceImageFacet(const Facet *, const SurfaceImage *);

@@ -1,0 +1,55 @@
+// A deformable block on a meshed rigid obstacle that it is pressed on and slides over. Lengths in mm.
+// The obstacle is a surface without volume; its normal points towards the block.
+DefineConstant[
+  cylinder = {0, Name "0: a flat, y = 0; 1: a cylinder along z that touches the block's lower face at x = 0"},
+  n_x = {4, Name "elements along the block"}, n_y = {2, Name "elements over its height"}, n_z = {2, Name "elements along z"},
+  n_facets = {44, Name "facets along the flat: 1 mm each by default"},
+  radius = {20, Name "radius of the cylinder"},
+  facet = {3, Name "angle of a cylinder facet in degrees"},
+  n_obstacle_z = {3, Name "facets along z"}
+];
+width = 4; height = 2; depth = 2;
+Point(1) = {-width / 2, 0, 0};
+Point(2) = {width / 2, 0, 0};
+Point(3) = {width / 2, height, 0};
+Point(4) = {-width / 2, height, 0};
+Line(1) = {1, 2};
+Line(2) = {2, 3};
+Line(3) = {3, 4};
+Line(4) = {4, 1};
+Curve Loop(1) = {1, 2, 3, 4};
+Plane Surface(1) = {1};
+Transfinite Curve{1, 3} = n_x + 1;
+Transfinite Curve{2, 4} = n_y + 1;
+Transfinite Surface{1};
+Recombine Surface{1};
+block[] = Extrude{0, 0, depth}{ Surface{1}; Layers{n_z}; Recombine; };
+
+// Half a unit beyond the block on both sides along z, so that no slave node meets the surface's free edge.
+If (cylinder)
+  Point(110) = {0, -radius, -0.5};
+  For i In {0 : 3}
+    Point(111 + i) = {radius * Cos(i * Pi / 2), radius * (Sin(i * Pi / 2) - 1), -0.5};
+  EndFor
+  For i In {0 : 3}
+    Circle(111 + i) = {111 + i, 110, 111 + (i + 1) % 4};
+    Transfinite Curve{111 + i} = Round(90 / facet) + 1;
+  EndFor
+  For i In {0 : 3}
+    out[] = Extrude{0, 0, depth + 1}{ Curve{111 + i}; Layers{n_obstacle_z}; Recombine; };
+    obstacle[i] = out[1];
+  EndFor
+Else
+  Point(111) = {-width, 0, -0.5};
+  Point(112) = {-width + 44, 0, -0.5};
+  Line(111) = {112, 111}; // this way round the surface looks upwards
+  Transfinite Curve{111} = n_facets + 1;
+  out[] = Extrude{0, 0, depth + 1}{ Curve{111}; Layers{n_obstacle_z}; Recombine; };
+  obstacle[] = {out[1]};
+EndIf
+
+Physical Volume("block") = {block[1]};
+Physical Surface("block_bottom") = {block[2]};
+Physical Surface("block_top") = {block[4]};
+Physical Surface("symmetry_z") = {1, block[0]};
+Physical Surface("obstacle") = {obstacle[]};

@@ -1,0 +1,11 @@
+#!/usr/bin/env bash
+# Runs the tests of a build folder with ctest and closes with the line `N passed, N failed`: scripts/check.sh BUILD [ctest options]
+set -uo pipefail
+build=$1 log=$1/ctest/tests.log
+shift
+mkdir -p "$build/ctest"
+cmake -S tests -B "$build/ctest" -DBURNISH_BUILD="$(realpath "$build")" >"$build/ctest/configure.log" 2>&1 || { cat "$build/ctest/configure.log" >&2; exit 1; }
+ctest --test-dir "$build/ctest" --output-on-failure -j "$(nproc)" "$@" | tee "$log"
+status=${PIPESTATUS[0]}
+awk '/ tests? failed out of / { failed = $4; total = $NF; counted = 1 } END { printf "%d passed, %d failed\n", total - failed, failed; exit !counted || !total }' "$log" && exit "$status"
+exit 1

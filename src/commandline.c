@@ -1,0 +1,163 @@
+#include "commandline.h"
+#include "schema.h"
+#include <stdlib.h>
+#include <string.h>
+
+static const char Usage[] = "usage: burnish [-check | -mesh] SCENE.yaml [-o DIR] [-set KEY=VALUE]... [-overwrite] [-quiet] [PETSc options]\n"
+                            "       burnish -help | -version";
+
+static void CommandLineComplain(CommandLine *line, const char *what, const char *about)
+{
+  if (!line->complaint[0]) snprintf(line->complaint, sizeof line->complaint, "%.300s: %s\n%s", about, what, Usage);
+}
+
+static int IsOption(const char *word)
+{
+  return word[0] == '-';
+}
+
+static int IsOneOf(const char *word, const char *a, const char *b, const char *c)
+{
+  return !strcmp(word, a) || !strcmp(word, b) || !strcmp(word, c);
+}
+
+static int IsSceneFile(const char *word)
+{
+  const char *dot = strrchr(word, '.');
+
+  return dot && (!strcmp(dot, ".yaml") || !strcmp(dot, ".yml"));
+}
+
+/* The value of option argv[*i]; NULL after a complaint. */
+static char *CommandLineValue(CommandLine *line, int argc, char **argv, int *i, const char *what)
+{
+  if (*i + 1 < argc && argv[*i + 1][0] && !IsOption(argv[*i + 1])) return argv[++*i];
+  CommandLineComplain(line, what, argv[*i]);
+  return NULL;
+}
+
+static void CommandLineSetScene(CommandLine *line, char *word)
+{
+  if (line->scene)
+    CommandLineComplain(line, "a second scene file; one run takes one", word);
+  else
+    line->scene = word;
+}
+
+static void CommandLineSetMode(CommandLine *line, CommandMode mode, const char *word)
+{
+  if (line->mode != COMMAND_RUN && line->mode != mode) CommandLineComplain(line, "only one of -check and -mesh", word);
+  line->mode = mode;
+}
+
+/* Takes argv[*i] if it is one of our options, with its value. Returns 0 if it is not. */
+static int CommandLineOption(CommandLine *line, int argc, char **argv, int *i)
+{
+  const char *word = argv[*i];
+  char       *value;
+
+  if (!strcmp(word, "-o")) {
+    if (line->directory) CommandLineComplain(line, "given twice", word);
+    line->directory = CommandLineValue(line, argc, argv, i, "needs a directory");
+  } else if (!strcmp(word, "-set")) {
+    value = CommandLineValue(line, argc, argv, i, "needs KEY=VALUE, such as contact.0.smoother=facet");
+    if (value && (value[0] == '=' || !strchr(value, '='))) CommandLineComplain(line, "-set needs KEY=VALUE, such as contact.0.smoother=facet", value);
+    line->set[line->n_set++] = value;
+  } else if (!strcmp(word, "-check") || !strcmp(word, "-mesh")) {
+    CommandLineSetMode(line, word[1] == 'c' ? COMMAND_CHECK : COMMAND_MESH, word);
+    if (*i + 1 < argc && !IsOption(argv[*i + 1])) CommandLineSetScene(line, argv[++*i]);
+  } else if (!strcmp(word, "-overwrite")) {
+    line->overwrite = 1;
+  } else if (!strcmp(word, "-quiet")) {
+    line->quiet = 1;
+  } else if (!strcmp(word, "-restart") || !strcmp(word, "-time_limit")) {
+    CommandLineComplain(line, "not available yet", word);
+  } else
+    return 0;
+  return 1;
+}
+
+/* CommandLineParse - sorts the arguments into ours and PETSc's.
+
+   Not collective, before MPI starts. A bare word that ends in .yaml or .yml and follows no PETSc option is the scene file; one that follows a
+   PETSc option is the scene only where there is no other, since it may be that option's value. Other bare words after a PETSc option are
+   its values and stay in line->argv. Never prints; a mistake is told in line->complaint. Free with CommandLineDestroy(). */
+void CommandLineParse(int argc, char **argv, CommandLine *line)
+{
+  int maybe = 0; /* place in line->argv of a word that is the scene or the value of the option before it */
+
+  memset(line, 0, sizeof *line);
+  line->set  = calloc((size_t)argc + 1, sizeof *line->set);
+  line->argv = calloc((size_t)argc + 1, sizeof *line->argv);
+  if (!line->set || !line->argv) {
+    CommandLineComplain(line, "out of memory", "command line");
+    return;
+  }
+  line->argv[line->argc++] = argv[0];
+  for (int i = 1; i < argc; i++) {
+    const int value = i > 1 && line->argc > 1 && line->argv[line->argc - 1] == argv[i - 1] && IsOption(argv[i - 1]);
+
+    if (IsOneOf(argv[i], "-help", "--help", "-h") || IsOneOf(argv[i], "-version", "--version", "-v")) {
+      line->mode         = strstr(argv[i], "-h") ? COMMAND_HELP : COMMAND_VERSION;
+      line->argc         = 1;
+      line->complaint[0] = 0;
+      line->argv[1]      = NULL;
+      return;
+    }
+    if (CommandLineOption(line, argc, argv, &i)) continue;
+    if (!IsOption(argv[i]) && !value) {
+      if (IsSceneFile(argv[i]))
+        CommandLineSetScene(line, argv[i]);
+      else
+        CommandLineComplain(line, "neither an option nor a scene file (.yaml or .yml)", argv[i]);
+      continue;
+    }
+    if (value && !maybe && IsSceneFile(argv[i])) maybe = line->argc;
+    line->argv[line->argc++] = argv[i];
+  }
+  if (!line->scene && maybe) {
+    line->scene = line->argv[maybe];
+    memmove(line->argv + maybe, line->argv + maybe + 1, (size_t)(line->argc - maybe) * sizeof *line->argv);
+    line->argc--;
+  }
+  if (!line->scene) CommandLineComplain(line, "no scene file", "command line");
+  if (line->complaint[0]) {
+    line->argc    = 1;
+    line->argv[1] = NULL;
+  }
+}
+
+/* CommandLineDestroy - frees what CommandLineParse() made. Not collective; after PetscFinalize(), which still looks at argv. */
+void CommandLineDestroy(CommandLine *line)
+{
+  free(line->set);
+  free(line->argv);
+  line->set = line->argv = NULL;
+}
+
+/* CommandLineHelp - prints commands, options and the scene reference. Not collective: for one rank. */
+void CommandLineHelp(FILE *file)
+{
+  fputs("Burnish: contact of deformable bodies, from a scene file to results, in parallel.\n\n"
+        "  [mpirun -n N] burnish SCENE.yaml   runs the scene\n"
+        "  burnish -check SCENE.yaml          reads, meshes, validates and reports; solves nothing\n"
+        "  burnish -mesh SCENE.yaml           only makes the mesh file\n"
+        "  burnish -help | -version\n\n"
+        "  -o DIR           where results go (default out/NAME)\n"
+        "  -set KEY=VALUE   overrides or adds one value of the scene by its path, such as contact.0.smoother=facet or\n"
+        "                   'loads.0={surface: top, uy: -1}'; repeatable, the last one wins\n"
+        "  -overwrite       lets DIR hold another scene's results\n"
+        "  -quiet           no progress on the terminal\n"
+        "  -restart DIR, -time_limit S   not available yet\n"
+        "All other options are PETSc's.\n\n"
+        "Exit status: 0 done, 1 wrong input, 2 did not converge, 3 stopped after a checkpoint, 4 machine or internal error.\n\n"
+        "Scene file (YAML; file names in it start at its own folder):\n\n",
+        file);
+  SchemaReference(file);
+}
+
+/* CommandLineVersion - prints name, version and PETSc's version. Not collective: for one rank. */
+void CommandLineVersion(FILE *file)
+{
+  fprintf(file, "burnish %s, PETSc %d.%d.%d\n", BURNISH_VERSION, PETSC_VERSION_MAJOR, PETSC_VERSION_MINOR, PETSC_VERSION_SUBMINOR);
+}

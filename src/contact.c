@@ -1,0 +1,875 @@
+#include "contact.h"
+#include "law.h"
+#include "penalty.h"
+#include "refusal.h"
+#include "search.h"
+#include "smoother.h"
+
+/* Slave nodes whose tributary area is below this fraction of the mean carry no force: corners of 6-node triangles, the axis node of
+   second-order axisymmetric edges. */
+#define CONTACT_AREA_FLOOR 1e-8
+/* A gap from fresh lists agrees with the solve's when it differs by less than this fraction of itself, or of the face size (round-off of a
+   closest-point projection). */
+#define CONTACT_GAP_AGREES     1e-6
+#define CONTACT_GAP_ROUND_OFF  1e-11
+/* The area factor past a free edge is frozen in a solve; a change above this makes the step solve again. */
+#define CONTACT_FACTOR_AGREES  1e-2
+/* Touching start: a gap within this fraction of the face size is no gap, whatever the curvature. */
+#define CONTACT_TOUCH          1e-6
+/* Nodes below this fraction of the largest nodal force do not count as loaded. */
+#define CONTACT_LOADED         1e-3
+
+typedef struct {
+  const SceneContact *scene;
+  ContactSurface      slave, master;
+  int                 n_images;
+  SurfaceImage        images[SURFACE_MAX_IMAGES];
+  const Smoother     *smoother;
+  const Law          *law;
+  ContactSearch       search;
+  PetscInt            n, *node;       /* terms: slave nodes of this rank that carry area */
+  PetscReal          *area, *size, *turn;
+  PetscInt           *term_ptr;       /* slave points of each term */
+  PetscReal          *term_weight;    /* their weights, sum 1 */
+  ContactState        now, accepted;
+  ContactLists        lists;
+  PetscReal          *factor;         /* per slave point, frozen with the lists: fades out past a free edge */
+  int                *seed;           /* per slave point: the facet of last time */
+  PetscReal          *force, *vector, *normal; /* of the last residual: normal force, its sum over the slave points (n*3), contact normal (n*3) */
+  PetscReal          *pressure;
+} Pair;
+
+/* A dense block of the tangent: one active term over the contact nodes it touches. */
+typedef struct {
+  int      pair, n;
+  PetscInt node, value; /* first entries in the arrays of Blocks */
+} Block;
+
+typedef struct {
+  PetscInt   n, room, n_nodes, nodes_room, n_values, values_room;
+  Block     *block;
+  PetscInt  *node;  /* contact nodes of the pair's lists */
+  PetscReal *value; /* (n*dim)^2, row-major */
+} Blocks;
+
+typedef struct {
+  SmootherResult result;
+  PetscReal     *x;        /* positions relative to the slave point */
+  PetscInt       x_room;
+  PetscInt      *node;     /* contact nodes of a term, one after another over its slave points */
+  PetscReal     *N, *M;    /* over these nodes; M holds one slave point's part at a time */
+  int           *from;     /* which row of the variations a contact node takes part in: 0 the slave point, 1 + i fit point i */
+  PetscReal     *scale;    /* and with what factor, by component */
+} Work;
+
+struct _n_Contact {
+  Mesh          mesh;
+  Scene         scene;
+  Loads         loads;
+  int           n_pairs;
+  Pair         *pairs;
+  Work          work;
+  Blocks        blocks;
+  Mat           C;
+  PetscInt      n_pattern, *pattern; /* block sizes and dofs of the present pattern */
+  PetscLogEvent event_search, event_residual, event_tangent;
+};
+
+/* ---------- set-up ---------- */
+
+static PetscErrorCode StateCreate(PetscInt n, PetscReal penalty, ContactState *state)
+{
+  PetscFunctionBeginUser;
+  state->n = n;
+  PetscCall(PetscCalloc5(n, &state->penalty, n, &state->status, n, &state->gap, n, &state->offset, n, &state->multiplier));
+  for (PetscInt c = 0; c < n; c++) {
+    state->penalty[c] = penalty;
+    state->gap[c]     = NAN;
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode StateCopy(const ContactState *from, ContactState *to)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscArraycpy(to->penalty, from->penalty, from->n));
+  PetscCall(PetscArraycpy(to->status, from->status, from->n));
+  PetscCall(PetscArraycpy(to->gap, from->gap, from->n));
+  PetscCall(PetscArraycpy(to->offset, from->offset, from->n));
+  PetscCall(PetscArraycpy(to->multiplier, from->multiplier, from->n));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode StateDestroy(ContactState *state)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscFree5(state->penalty, state->status, state->gap, state->offset, state->multiplier));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The terms: owned slave nodes with area. */
+static PetscErrorCode PairCreateTerms(Mesh mesh, Scene scene, Pair *pair)
+{
+  PetscReal  *area, *size, *turn, sum[2] = {0, 0};
+  PetscMPIInt rank;
+
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Comm_rank(mesh->comm, &rank));
+  PetscCall(PetscMalloc3(mesh->n_nodes, &area, mesh->n_nodes, &size, mesh->n_nodes, &turn));
+  PetscCall(SurfaceNodeAreas(pair->slave, scene->geometry, NULL, area, NULL));
+  PetscCall(SurfaceNodeSizes(pair->slave, size, turn));
+  for (PetscInt i = 0; i < pair->slave->group->n_nodes; i++) {
+    const PetscInt node = pair->slave->group->nodes[i];
+
+    if (mesh->node_owner[node] != rank) continue;
+    sum[0] += area[node];
+    sum[1] += 1;
+  }
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sum, 2, MPIU_REAL, MPI_SUM, mesh->comm));
+  PetscCall(PetscMalloc4(pair->slave->group->n_nodes, &pair->node, pair->slave->group->n_nodes, &pair->area, pair->slave->group->n_nodes, &pair->size, pair->slave->group->n_nodes, &pair->turn));
+  for (PetscInt i = 0; i < pair->slave->group->n_nodes; i++) {
+    const PetscInt node = pair->slave->group->nodes[i];
+
+    if (mesh->node_owner[node] != rank || area[node] <= CONTACT_AREA_FLOOR * sum[0] / sum[1]) continue;
+    pair->node[pair->n] = node;
+    pair->area[pair->n] = area[node];
+    pair->size[pair->n] = size[node];
+    pair->turn[pair->n] = turn[node];
+    pair->n++;
+  }
+  PetscCall(PetscMalloc2(pair->n + 1, &pair->term_ptr, pair->n, &pair->term_weight));
+  for (PetscInt c = 0; c < pair->n; c++) {
+    pair->term_ptr[c]    = c;
+    pair->term_weight[c] = 1;
+  }
+  pair->term_ptr[pair->n] = pair->n;
+  PetscCall(PetscCalloc4(pair->n, &pair->force, 3 * pair->n, &pair->vector, 3 * pair->n, &pair->normal, pair->n, &pair->pressure));
+  PetscCall(PetscFree3(area, size, turn));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode PairCreate(Mesh mesh, Scene scene, Elasticity elasticity, Loads loads, const SceneContact *contact, Pair *pair)
+{
+  const MeshGroup *symmetry[3];
+  PetscReal        penalty;
+
+  PetscFunctionBeginUser;
+  pair->scene    = contact;
+  pair->smoother = SmootherFind("facet");
+  pair->law      = LawFind("penalty");
+  if (!strcmp(contact->slave, contact->master)) PetscCall(RefuseInput(mesh->comm, "%s: slave and master are both '%s'; allowed: two different surfaces (a surface in contact with itself is not available yet)", SceneWhere(scene, contact->path, "master"), contact->master));
+  if (MeshFindRigid(mesh, contact->slave)) PetscCall(RefuseInput(mesh->comm, "%s: the slave '%s' is a rigid tool; allowed: a surface of a deformable body (make the tool the master)", SceneWhere(scene, contact->path, "slave"), contact->slave));
+  PetscCall(SurfaceCreate(mesh, scene, elasticity, contact->path, "slave", contact->slave, &pair->slave));
+  PetscCall(SurfaceCreate(mesh, scene, elasticity, contact->path, "master", contact->master, &pair->master));
+  PetscCall(SurfaceImages(mesh, scene, contact, &pair->n_images, pair->images));
+  for (int s = 0; s < contact->n_symmetry; s++) {
+    MeshGroup *group;
+
+    PetscCall(MeshGetGroup(mesh, scene, contact->path, "symmetry", contact->symmetry[s], mesh->dim - 1, &group));
+    symmetry[s] = group;
+  }
+  PetscCall(SurfaceFindFreeEdges(pair->master, symmetry, contact->n_symmetry));
+  PetscCall(PairCreateTerms(mesh, scene, pair));
+  penalty = contact->penalty_scale * (contact->penalty_auto ? PenaltyAutomatic(pair->slave->stiffness, pair->master->stiffness) : contact->penalty);
+  PetscCall(StateCreate(pair->n, penalty, &pair->now));
+  PetscCall(StateCreate(pair->n, penalty, &pair->accepted));
+  PetscCall(SearchCreate(mesh, scene, loads, pair->slave, pair->master, pair->n_images, pair->images, pair->n, pair->node, &pair->search));
+  PetscCall(PetscCalloc2(pair->n, &pair->factor, pair->n, &pair->seed));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* ContactCreate - all pairs of the scene, without lists yet.
+
+   Collective. Refuses what the mesh shows to be wrong: missing or empty surfaces, a rigid slave, planes of symmetry that are none. */
+PetscErrorCode ContactCreate(Mesh mesh, Scene scene, Elasticity elasticity, Loads loads, Contact *out)
+{
+  Contact contact;
+  int     capacity = 0, points = 1; /* most fit points of a smoother, most slave points of a term */
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscNew(&contact));
+  contact->mesh    = mesh;
+  contact->scene   = scene;
+  contact->loads   = loads;
+  contact->n_pairs = scene->n_contacts;
+  PetscCall(PetscLogEventRegister("ContactSearch", SNES_CLASSID, &contact->event_search));
+  PetscCall(PetscLogEventRegister("ContactResidual", SNES_CLASSID, &contact->event_residual));
+  PetscCall(PetscLogEventRegister("ContactTangent", SNES_CLASSID, &contact->event_tangent));
+  PetscCall(PetscCalloc1(contact->n_pairs, &contact->pairs));
+  for (int p = 0; p < contact->n_pairs; p++) {
+    PetscCall(PairCreate(mesh, scene, elasticity, loads, &scene->contacts[p], &contact->pairs[p]));
+    capacity = PetscMax(capacity, contact->pairs[p].smoother->capacity);
+  }
+  PetscCall(PetscMalloc4(capacity, &contact->work.result.points, 3 * (capacity + 1), &contact->work.result.N, capacity + 1, &contact->work.from, 3 * (capacity + 1), &contact->work.scale));
+  PetscCall(PetscMalloc4(PetscSqr(3 * (capacity + 1)), &contact->work.result.M, points * (capacity + 1), &contact->work.node, 3 * points * (capacity + 1), &contact->work.N, PetscSqr(3 * (capacity + 1)), &contact->work.M));
+  *out = contact;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode PairDestroy(Pair *pair)
+{
+  PetscFunctionBeginUser;
+  PetscCall(ListsDestroy(&pair->lists));
+  PetscCall(SearchDestroy(&pair->search));
+  PetscCall(SurfaceDestroy(&pair->slave));
+  PetscCall(SurfaceDestroy(&pair->master));
+  PetscCall(StateDestroy(&pair->now));
+  PetscCall(StateDestroy(&pair->accepted));
+  PetscCall(PetscFree4(pair->node, pair->area, pair->size, pair->turn));
+  PetscCall(PetscFree2(pair->term_ptr, pair->term_weight));
+  PetscCall(PetscFree4(pair->force, pair->vector, pair->normal, pair->pressure));
+  PetscCall(PetscFree2(pair->factor, pair->seed));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* ContactDestroy - Collective. */
+PetscErrorCode ContactDestroy(Contact *contact)
+{
+  Contact c = *contact;
+
+  PetscFunctionBeginUser;
+  if (!c) PetscFunctionReturn(PETSC_SUCCESS);
+  for (int p = 0; p < c->n_pairs; p++) PetscCall(PairDestroy(&c->pairs[p]));
+  PetscCall(PetscFree(c->pairs));
+  PetscCall(PetscFree4(c->work.result.points, c->work.result.N, c->work.from, c->work.scale));
+  PetscCall(PetscFree4(c->work.result.M, c->work.node, c->work.N, c->work.M));
+  PetscCall(PetscFree(c->work.x));
+  PetscCall(PetscFree(c->blocks.block));
+  PetscCall(PetscFree(c->blocks.node));
+  PetscCall(PetscFree(c->blocks.value));
+  PetscCall(PetscFree(c->pattern));
+  PetscCall(MatDestroy(&c->C));
+  PetscCall(PetscFree(*contact));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* ---------- one slave point ---------- */
+
+/* Gap (and variations over the fit points) of slave point q of the lists; *found is PETSC_FALSE where no master is near. */
+static PetscErrorCode PointEvaluate(Contact contact, const Pair *pair, ContactLists lists, PetscInt q, int seed, SmootherWant want, PetscBool *found)
+{
+  const int     dim   = lists->dim;
+  Work         *work  = &contact->work;
+  const PetscInt first = lists->list_ptr[q], n = lists->list_ptr[q + 1] - first;
+  SmootherInput in;
+
+  PetscFunctionBeginUser;
+  if (n * dim > work->x_room) {
+    work->x_room = 2 * n * dim;
+    PetscCall(PetscFree(work->x));
+    PetscCall(PetscMalloc1(work->x_room, &work->x));
+  }
+  for (PetscInt i = 0; i < n; i++) {
+    const PetscInt p = lists->list_point[first + i];
+
+    for (int d = 0; d < dim; d++) work->x[i * dim + d] = (lists->point_X[p * dim + d] - lists->slave_X[q * dim + d]) + (lists->point_u[p * dim + d] - lists->slave_u[q * dim + d]);
+  }
+  in     = (SmootherInput){dim, (int)n, (int)(lists->facet_ptr[q + 1] - lists->facet_ptr[q]), work->x, &lists->facet[lists->facet_ptr[q]], seed};
+  *found = in.n_facets && pair->smoother->evaluate(&in, want, &work->result) ? PETSC_TRUE : PETSC_FALSE;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Carries the variations of the last evaluation from fit points to contact nodes: N and M over nodes[*n] of the lists, in work. */
+static void PointToNodes(Contact contact, const Pair *pair, ContactLists lists, PetscInt q, PetscReal weight, PetscBool second, PetscInt *node, PetscReal *N, int *count)
+{
+  Work                 *work = &contact->work;
+  const SmootherResult *r    = &work->result;
+  const int             dim = lists->dim, m = (1 + r->n) * dim;
+  int                   n = 0, *from = work->from;
+  PetscReal            *scale = work->scale;
+
+  for (PetscInt k = lists->slave_ptr[q]; k < lists->slave_ptr[q + 1]; k++, n++) {
+    node[n] = lists->slave_node[k];
+    from[n] = 0;
+    for (int d = 0; d < dim; d++) scale[3 * n + d] = lists->slave_S[k];
+  }
+  for (int i = 0; i < r->n; i++) {
+    const PetscInt      p     = lists->list_point[lists->list_ptr[q] + r->points[i]];
+    const SurfaceImage *image = &pair->images[lists->point_image[p]];
+
+    for (PetscInt k = lists->point_ptr[p]; k < lists->point_ptr[p + 1]; k++, n++) {
+      node[n] = lists->point_node[k];
+      from[n] = 1 + i;
+      for (int d = 0; d < dim; d++) scale[3 * n + d] = image->sign[d] * lists->point_S[k];
+    }
+  }
+  for (int a = 0; a < n; a++)
+    for (int d = 0; d < dim; d++) N[a * dim + d] = weight * scale[3 * a + d] * r->N[from[a] * dim + d];
+  for (int a = 0; second && a < n; a++) {
+    for (int d = 0; d < dim; d++) {
+      for (int b = 0; b < n; b++)
+        for (int e = 0; e < dim; e++) work->M[(a * dim + d) * n * dim + b * dim + e] = scale[3 * a + d] * scale[3 * b + e] * r->M[(from[a] * dim + d) * m + from[b] * dim + e];
+    }
+  }
+  *count = n;
+}
+
+/* ---------- lists ---------- */
+
+static PetscReal SmoothStep(PetscReal x)
+{
+  x = PetscMax(0, PetscMin(1, x));
+  return x * x * (3 - 2 * x);
+}
+
+/* Area factors of the slave points for these lists: 1 inside, fading to 0 one face size past a free edge. */
+static PetscErrorCode PairFactors(Contact contact, const Pair *pair, ContactLists lists, PetscReal *factor)
+{
+  PetscFunctionBeginUser;
+  for (PetscInt q = 0; q < lists->n_slaves; q++) {
+    PetscBool found;
+
+    factor[q] = 0;
+    PetscCall(PointEvaluate(contact, pair, lists, q, -1, SMOOTHER_GAP, &found));
+    if (found) factor[q] = 1 - SmoothStep(contact->work.result.beyond / lists->facet_size[lists->facet_ptr[q] + contact->work.result.seed]);
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode PairTakeLists(Pair *pair, ContactLists lists, const PetscReal *factor)
+{
+  PetscFunctionBeginUser;
+  PetscCall(ListsDestroy(&pair->lists));
+  pair->lists = lists;
+  PetscCall(PetscArraycpy(pair->factor, factor, lists->n_slaves));
+  for (PetscInt q = 0; q < lists->n_slaves; q++) pair->seed[q] = -1;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode ContactGather(Contact contact, const PetscReal *u, PetscReal t, PetscReal motion)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscLogEventBegin(contact->event_search, 0, 0, 0, 0));
+  contact->blocks.n = 0; /* they spoke of the old lists */
+  for (int p = 0; p < contact->n_pairs; p++) {
+    Pair        *pair = &contact->pairs[p];
+    ContactLists lists;
+    PetscReal   *factor;
+
+    PetscCall(SearchLists(pair->search, u, t, motion, &lists));
+    PetscCall(PetscMalloc1(lists->n_slaves, &factor));
+    PetscCall(PairFactors(contact, pair, lists, factor));
+    PetscCall(PairTakeLists(pair, lists, factor));
+    PetscCall(PetscFree(factor));
+  }
+  PetscCall(PetscLogEventEnd(contact->event_search, 0, 0, 0, 0));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Weighted gap of a term: NaN where none of its points has a master near or all lie past its edge. */
+static PetscErrorCode TermGap(Contact contact, const Pair *pair, ContactLists lists, const PetscReal *factor, int *seed, PetscInt c, PetscReal *gap)
+{
+  PetscBool any = PETSC_FALSE;
+
+  PetscFunctionBeginUser;
+  *gap = 0;
+  for (PetscInt q = pair->term_ptr[c]; q < pair->term_ptr[c + 1]; q++) {
+    PetscBool found;
+
+    if (factor[q] == 0) continue;
+    PetscCall(PointEvaluate(contact, pair, lists, q, seed ? seed[q] : -1, SMOOTHER_GAP, &found));
+    if (!found) continue;
+    any = PETSC_TRUE;
+    *gap += pair->term_weight[q] * contact->work.result.gap;
+    if (seed) seed[q] = contact->work.result.seed;
+  }
+  if (!any) *gap = NAN;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Do fresh lists say the same of this term as the solve did? Open is open; a closed gap must agree, and so must its area factor. */
+static PetscBool TermAgrees(const Pair *pair, PetscInt c, PetscReal gap, const PetscReal *factor)
+{
+  const PetscReal old = pair->now.gap[c], tolerance = CONTACT_GAP_AGREES * PetscAbsReal(old) + CONTACT_GAP_ROUND_OFF * pair->size[c];
+
+  if (!(old - pair->now.offset[c] < 0) && !(gap - pair->now.offset[c] < 0)) return PETSC_TRUE;
+  if (!(PetscAbsReal(gap - old) <= tolerance)) return PETSC_FALSE;
+  for (PetscInt q = pair->term_ptr[c]; q < pair->term_ptr[c + 1]; q++)
+    if (PetscAbsReal(factor[q] - pair->factor[q]) > CONTACT_FACTOR_AGREES) return PETSC_FALSE;
+  return PETSC_TRUE;
+}
+
+PetscErrorCode ContactListsHold(Contact contact, const PetscReal *u, PetscReal t, PetscReal motion, PetscBool *hold)
+{
+  ContactLists *lists;
+  PetscReal   **factor;
+  int           agree = 1;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscLogEventBegin(contact->event_search, 0, 0, 0, 0));
+  PetscCall(PetscMalloc2(contact->n_pairs, &lists, contact->n_pairs, &factor));
+  for (int p = 0; p < contact->n_pairs; p++) {
+    Pair *pair = &contact->pairs[p];
+
+    PetscCall(SearchLists(pair->search, u, t, motion, &lists[p]));
+    PetscCall(PetscMalloc1(lists[p]->n_slaves, &factor[p]));
+    PetscCall(PairFactors(contact, pair, lists[p], factor[p]));
+    for (PetscInt c = 0; c < pair->n; c++) {
+      PetscReal gap;
+
+      PetscCall(TermGap(contact, pair, lists[p], factor[p], NULL, c, &gap));
+      agree = agree && TermAgrees(pair, c, gap, factor[p]);
+    }
+  }
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &agree, 1, MPI_INT, MPI_LAND, contact->mesh->comm));
+  *hold = agree ? PETSC_TRUE : PETSC_FALSE;
+  for (int p = 0; p < contact->n_pairs; p++) {
+    if (agree) PetscCall(ListsDestroy(&lists[p]));
+    else PetscCall(PairTakeLists(&contact->pairs[p], lists[p], factor[p]));
+    PetscCall(PetscFree(factor[p]));
+  }
+  if (!agree) contact->blocks.n = 0;
+  PetscCall(PetscFree2(lists, factor));
+  PetscCall(PetscLogEventEnd(contact->event_search, 0, 0, 0, 0));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* ---------- residual ---------- */
+
+static void TermLaw(const Pair *pair, PetscInt c, PetscReal gap, LawValue *value)
+{
+  const LawState state = {pair->now.penalty[c], pair->now.offset[c], pair->now.multiplier[c]};
+
+  *value = (LawValue){0, 0, 0};
+  if (!PetscIsNanReal(gap)) pair->law->evaluate(gap, &state, value);
+}
+
+/* Adds the forces of a loaded term to the contact nodes' values and keeps what probes show of it. */
+static PetscErrorCode TermForces(Contact contact, Pair *pair, PetscInt c, PetscReal pressure, PetscReal *values, PetscReal *force2)
+{
+  const int dim   = contact->mesh->dim;
+  Work     *work  = &contact->work;
+  PetscBool found;
+  int       n;
+
+  PetscFunctionBeginUser;
+  for (PetscInt q = pair->term_ptr[c]; q < pair->term_ptr[c + 1]; q++) {
+    const PetscReal force = pressure * pair->area[c] * pair->term_weight[q] * pair->factor[q];
+
+    if (pair->factor[q] == 0) continue;
+    PetscCall(PointEvaluate(contact, pair, pair->lists, q, pair->seed[q], SMOOTHER_FIRST_VARIATION, &found));
+    if (!found) continue;
+    PointToNodes(contact, pair, pair->lists, q, 1, PETSC_FALSE, work->node, work->N, &n);
+    for (int i = 0; i < n * dim; i++) {
+      values[work->node[i / dim] * dim + i % dim] -= force * work->N[i];
+      *force2 += PetscSqr(force * work->N[i]);
+    }
+    pair->force[c] += force;
+    for (int d = 0; d < dim; d++) pair->vector[3 * c + d] += force * work->result.N[d];
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode PairResidual(Contact contact, Pair *pair, const PetscReal *u, PetscReal t, PetscReal *f, PetscReal *energy, PetscReal *force2)
+{
+  const int  dim = contact->mesh->dim;
+  PetscReal *values, sum = 0;
+  LawValue   value;
+
+  PetscFunctionBeginUser;
+  PetscCall(ListsUpdate(pair->search, pair->lists, u, t));
+  PetscCall(PetscCalloc1(pair->lists->n_nodes * dim, &values));
+  for (PetscInt c = 0; c < pair->n; c++) {
+    PetscReal gap;
+
+    PetscCall(TermGap(contact, pair, pair->lists, pair->factor, pair->seed, c, &gap));
+    TermLaw(pair, c, gap, &value);
+    for (PetscInt q = pair->term_ptr[c]; energy && q < pair->term_ptr[c + 1]; q++) *energy += pair->area[c] * pair->term_weight[q] * pair->factor[q] * value.psi;
+    if (!f) continue;
+    pair->now.gap[c]    = gap;
+    pair->now.status[c] = value.stiffness > 0 ? CONTACT_CLOSED : CONTACT_OPEN;
+    pair->force[c]      = 0;
+    for (int d = 0; d < 3; d++) {
+      pair->vector[3 * c + d] = 0;
+      pair->normal[3 * c + d] = PetscIsNanReal(gap) || d >= dim ? 0 : contact->work.result.normal[d];
+    }
+    if (value.pressure != 0) PetscCall(TermForces(contact, pair, c, value.pressure, values, &sum));
+  }
+  if (f) PetscCall(ListsReduce(pair->lists, values, f));
+  if (force2) *force2 += sum;
+  PetscCall(PetscFree(values));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode ContactResidual(Contact contact, const PetscReal *u, PetscReal t, PetscReal *f, PetscReal *energy, PetscReal *force2)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscLogEventBegin(contact->event_residual, 0, 0, 0, 0));
+  for (int p = 0; p < contact->n_pairs; p++) PetscCall(PairResidual(contact, &contact->pairs[p], u, t, f, energy, force2));
+  PetscCall(PetscLogEventEnd(contact->event_residual, 0, 0, 0, 0));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* ---------- tangent ---------- */
+
+/* Opening up to which a node counts as touching: what round-off and the facets' own sagitta leave between surfaces that touch. */
+static PetscReal TouchTolerance(const Pair *pair, PetscInt c)
+{
+  const PetscReal h = pair->size[c], kappa = pair->lists->kappa[c] + 2 * pair->turn[c] / h;
+
+  return CONTACT_TOUCH * h + kappa * (PetscSqr(h) + PetscSqr(pair->master->mean_size)) / 8;
+}
+
+static PetscErrorCode BlocksReserve(Blocks *blocks, PetscInt nodes, PetscInt values)
+{
+  PetscFunctionBeginUser;
+  if (blocks->n == blocks->room) PetscCall(PetscRealloc((blocks->room = 2 * blocks->room + 64) * sizeof(Block), &blocks->block));
+  if (blocks->n_nodes + nodes > blocks->nodes_room) PetscCall(PetscRealloc((blocks->nodes_room = 2 * (blocks->nodes_room + nodes)) * sizeof(PetscInt), &blocks->node));
+  if (blocks->n_values + values > blocks->values_room) PetscCall(PetscRealloc((blocks->values_room = 2 * (blocks->values_room + values)) * sizeof(PetscReal), &blocks->value));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* How many contact nodes slave point q touches once evaluated. */
+static int PointNodes(ContactLists lists, PetscInt q, const SmootherResult *r)
+{
+  PetscInt n = lists->slave_ptr[q + 1] - lists->slave_ptr[q];
+
+  for (int i = 0; i < r->n; i++) {
+    const PetscInt p = lists->list_point[lists->list_ptr[q] + r->points[i]];
+    n += lists->point_ptr[p + 1] - lists->point_ptr[p];
+  }
+  return (int)n;
+}
+
+/* The block of one active term: sum_q w_q p M_q + A psi'' Nbar Nbar^T, over its points' nodes one after another (a node may occur twice). */
+static PetscErrorCode TermBlock(Contact contact, const Pair *pair, int p, PetscInt c, PetscReal pressure, PetscReal stiffness)
+{
+  const int dim    = contact->mesh->dim;
+  Work     *work   = &contact->work;
+  Blocks   *blocks = &contact->blocks;
+  Block     block  = {p, 0, blocks->n_nodes, blocks->n_values};
+  PetscReal area   = 0, *value;
+  int       total  = 0, m;
+
+  PetscFunctionBeginUser;
+  for (PetscInt q = pair->term_ptr[c]; q < pair->term_ptr[c + 1]; q++) {
+    PetscBool found;
+
+    if (pair->factor[q] == 0) continue;
+    PetscCall(PointEvaluate(contact, pair, pair->lists, q, pair->seed[q], SMOOTHER_FIRST_VARIATION, &found));
+    if (found) total += PointNodes(pair->lists, q, &work->result);
+  }
+  m = total * dim;
+  PetscCall(BlocksReserve(blocks, total, (PetscInt)m * m));
+  value = &blocks->value[block.value];
+  PetscCall(PetscArrayzero(value, (PetscInt)m * m));
+  for (PetscInt q = pair->term_ptr[c]; q < pair->term_ptr[c + 1]; q++) {
+    const int first = block.n * dim;
+    PetscBool found;
+    int       n;
+
+    if (pair->factor[q] == 0) continue;
+    PetscCall(PointEvaluate(contact, pair, pair->lists, q, pair->seed[q], SMOOTHER_SECOND_VARIATION, &found));
+    if (!found) continue;
+    PointToNodes(contact, pair, pair->lists, q, pair->term_weight[q], PETSC_TRUE, &blocks->node[block.node + block.n], &work->N[first], &n);
+    for (int i = 0; i < n * dim; i++)
+      for (int j = 0; j < n * dim; j++) value[(first + i) * m + first + j] = -pressure * pair->area[c] * pair->term_weight[q] * pair->factor[q] * work->M[i * n * dim + j];
+    area += pair->area[c] * pair->term_weight[q] * pair->factor[q];
+    block.n += n;
+  }
+  for (int i = 0; i < m; i++)
+    for (int j = 0; j < m; j++) value[i * m + j] += area * stiffness * work->N[i] * work->N[j];
+  blocks->n_nodes += block.n;
+  blocks->n_values += (PetscInt)m * m;
+  blocks->block[blocks->n++] = block;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode PairBlocks(Contact contact, Pair *pair, int p, const PetscReal *u, PetscReal t, PetscBool touching)
+{
+  PetscFunctionBeginUser;
+  PetscCall(ListsUpdate(pair->search, pair->lists, u, t));
+  for (PetscInt c = 0; c < pair->n; c++) {
+    PetscReal gap;
+    LawValue  value;
+
+    PetscCall(TermGap(contact, pair, pair->lists, pair->factor, pair->seed, c, &gap));
+    TermLaw(pair, c, gap, &value);
+    if (touching && gap >= 0 && gap <= TouchTolerance(pair, c)) value.stiffness = pair->now.penalty[c];
+    if (value.stiffness > 0) PetscCall(TermBlock(contact, pair, p, c, value.pressure, value.stiffness));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The present blocks as the pattern they need: sizes and global dofs, one after another. */
+static PetscErrorCode BlocksPattern(Contact contact, PetscInt *n, PetscInt **pattern)
+{
+  const Blocks *blocks = &contact->blocks;
+  const int     dim    = contact->mesh->dim;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(blocks->n + blocks->n_nodes * dim, pattern));
+  *n = 0;
+  for (PetscInt b = 0; b < blocks->n; b++) {
+    const Block    *block = &blocks->block[b];
+    const PetscInt *dof   = contact->pairs[block->pair].lists->dof;
+
+    (*pattern)[(*n)++] = (PetscInt)block->n * dim;
+    for (int i = 0; i < block->n * dim; i++) (*pattern)[(*n)++] = dof[blocks->node[block->node + i / dim] * dim + i % dim];
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode PreallocateMatrix(Contact contact)
+{
+  const PetscInt *pattern = contact->pattern;
+  PetscSection    section;
+  PetscInt        size, *rows, *columns;
+  PetscCount      n = 0;
+
+  PetscFunctionBeginUser;
+  PetscCall(MatDestroy(&contact->C));
+  PetscCall(DMGetGlobalSection(contact->mesh->dm, &section));
+  PetscCall(PetscSectionGetConstrainedStorageSize(section, &size));
+  PetscCall(MatCreate(contact->mesh->comm, &contact->C));
+  PetscCall(MatSetSizes(contact->C, size, size, PETSC_DETERMINE, PETSC_DETERMINE));
+  PetscCall(MatSetType(contact->C, MATAIJ));
+  PetscCall(PetscMalloc2(contact->blocks.n_values, &rows, contact->blocks.n_values, &columns));
+  for (PetscInt at = 0; at < contact->n_pattern; at += 1 + pattern[at]) {
+    const PetscInt m = pattern[at], *dof = &pattern[at + 1];
+
+    for (PetscInt i = 0; i < m; i++) {
+      for (PetscInt j = 0; j < m; j++, n++) {
+        rows[n]    = dof[i] < 0 || dof[j] < 0 ? -1 : dof[i];
+        columns[n] = dof[i] < 0 || dof[j] < 0 ? -1 : dof[j];
+      }
+    }
+  }
+  PetscCall(MatSetPreallocationCOO(contact->C, n, rows, columns));
+  PetscCall(PetscFree2(rows, columns));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode ContactTangent(Contact contact, const PetscReal *u, PetscReal t, PetscBool touching, Mat *C, PetscBool *changed)
+{
+  PetscInt n = 0, *pattern;
+  int      same;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscLogEventBegin(contact->event_tangent, 0, 0, 0, 0));
+  contact->blocks.n = contact->blocks.n_nodes = contact->blocks.n_values = 0;
+  for (int p = 0; p < contact->n_pairs; p++) PetscCall(PairBlocks(contact, &contact->pairs[p], p, u, t, touching));
+  PetscCall(BlocksPattern(contact, &n, &pattern));
+  same = contact->C && n == contact->n_pattern && (!n || !memcmp(pattern, contact->pattern, n * sizeof(PetscInt)));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &same, 1, MPI_INT, MPI_LAND, contact->mesh->comm));
+  PetscCall(PetscFree(contact->pattern));
+  contact->pattern   = pattern;
+  contact->n_pattern = n;
+  if (!same) PetscCall(PreallocateMatrix(contact));
+  PetscCall(MatSetValuesCOO(contact->C, contact->blocks.value, INSERT_VALUES));
+  *C       = contact->C;
+  *changed = same ? PETSC_FALSE : PETSC_TRUE;
+  PetscCall(PetscLogEventEnd(contact->event_tangent, 0, 0, 0, 0));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode ContactMultiply(Contact contact, const PetscReal *x, PetscReal t, PetscReal t_next, PetscReal *y)
+{
+  const int     dim    = contact->mesh->dim;
+  const Blocks *blocks = &contact->blocks;
+
+  PetscFunctionBeginUser;
+  for (int p = 0; p < contact->n_pairs; p++) {
+    Pair      *pair = &contact->pairs[p];
+    PetscReal *in, *out;
+
+    PetscCall(PetscMalloc2(pair->lists->n_nodes * dim, &in, pair->lists->n_nodes * dim, &out));
+    PetscCall(PetscArrayzero(out, pair->lists->n_nodes * dim));
+    PetscCall(ListsBroadcast(pair->search, pair->lists, x, t, t_next, in));
+    for (PetscInt b = 0; b < blocks->n; b++) {
+      const Block    *block = &blocks->block[b];
+      const PetscInt *node  = &blocks->node[block->node];
+      const int       m     = block->n * dim;
+
+      if (block->pair != p) continue;
+      for (int i = 0; i < m; i++)
+        for (int j = 0; j < m; j++) out[node[i / dim] * dim + i % dim] += blocks->value[block->value + i * m + j] * in[node[j / dim] * dim + j % dim];
+    }
+    PetscCall(ListsReduce(pair->lists, out, y));
+    PetscCall(PetscFree2(in, out));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* ---------- state ---------- */
+
+PetscErrorCode ContactAccept(Contact contact)
+{
+  PetscFunctionBeginUser;
+  for (int p = 0; p < contact->n_pairs; p++) PetscCall(StateCopy(&contact->pairs[p].now, &contact->pairs[p].accepted));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode ContactRestore(Contact contact)
+{
+  PetscFunctionBeginUser;
+  for (int p = 0; p < contact->n_pairs; p++) PetscCall(StateCopy(&contact->pairs[p].accepted, &contact->pairs[p].now));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode ContactCheckOverlap(Contact contact)
+{
+  Mesh mesh = contact->mesh;
+
+  PetscFunctionBeginUser;
+  for (int p = 0; p < contact->n_pairs; p++) {
+    const Pair *pair  = &contact->pairs[p];
+    PetscReal   worst = 0;
+    PetscInt    at    = -1;
+    struct {
+      double gap;
+      int    rank;
+    } mine = {0, 0}, least;
+    char complaint[512];
+
+    for (PetscInt c = 0; c < pair->n; c++) {
+      if (!(pair->now.gap[c] < -TouchTolerance(pair, c)) || pair->now.gap[c] >= worst) continue;
+      worst = pair->now.gap[c];
+      at    = c;
+    }
+    mine.gap = worst;
+    PetscCallMPI(MPI_Comm_rank(mesh->comm, &mine.rank));
+    PetscCallMPI(MPI_Allreduce(&mine, &least, 1, MPI_DOUBLE_INT, MPI_MINLOC, mesh->comm));
+    if (at >= 0) {
+      PetscCall(PetscSNPrintf(complaint, sizeof(complaint), "%s: contact '%s': slave node %" PetscInt_FMT " lies %g behind the master before any load; allowed: surfaces that touch or are apart",
+                              SceneWhere(contact->scene, pair->scene->path, "initial_overlap"), pair->scene->name, mesh->node_tag[pair->node[at]], (double)-worst));
+    }
+    PetscCall(RefuseInputAnywhere(mesh->comm, at >= 0 && least.rank == mine.rank ? complaint : NULL));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode ContactSummarise(Contact contact, ContactSummary *summary)
+{
+  PetscInt  count[3] = {0, 0, 0};
+  PetscReal most[5] = {0, 0, PETSC_MIN_REAL, PETSC_MIN_REAL, 0}, total[3] = {0, 0, 0}, least = PETSC_MAX_REAL; /* most: penetration, over h, -penalty_min, penalty_max, nodal force */
+
+  PetscFunctionBeginUser;
+  for (int p = 0; p < contact->n_pairs; p++) {
+    const Pair *pair = &contact->pairs[p];
+
+    for (PetscInt c = 0; c < pair->n; c++) {
+      const PetscReal penetration = pair->now.status[c] == CONTACT_CLOSED ? pair->now.offset[c] - pair->now.gap[c] : 0;
+
+      count[0] += pair->now.status[c] == CONTACT_CLOSED;
+      count[1] += pair->now.status[c] == CONTACT_CLOSED && pair->accepted.status[c] == CONTACT_OPEN;
+      count[2] += pair->now.status[c] == CONTACT_OPEN && pair->accepted.status[c] == CONTACT_CLOSED;
+      most[0] = PetscMax(most[0], penetration);
+      most[1] = PetscMax(most[1], penetration / pair->size[c]);
+      most[2] = PetscMax(most[2], -pair->now.penalty[c]);
+      most[3] = PetscMax(most[3], pair->now.penalty[c]);
+      most[4] = PetscMax(most[4], pair->force[c]);
+      for (int d = 0; d < 3; d++) total[d] += pair->vector[3 * c + d];
+    }
+  }
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, count, 3, MPIU_INT, MPI_SUM, contact->mesh->comm));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, most, 5, MPIU_REAL, MPI_MAX, contact->mesh->comm));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, total, 3, MPIU_REAL, MPI_SUM, contact->mesh->comm));
+  for (int p = 0; p < contact->n_pairs; p++) {
+    const Pair *pair = &contact->pairs[p];
+
+    for (PetscInt c = 0; c < pair->n; c++)
+      if (pair->now.status[c] == CONTACT_CLOSED && pair->force[c] > CONTACT_LOADED * most[4]) least = PetscMin(least, pair->now.offset[c] - pair->now.gap[c]);
+  }
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &least, 1, MPIU_REAL, MPI_MIN, contact->mesh->comm));
+  *summary = (ContactSummary){.nodes = count[0], .in = count[1], .out = count[2], .max_penetration = most[0], .max_penetration_over_h = most[1], .min_penetration = count[0] && least < PETSC_MAX_REAL ? least : 0,
+                              .penalty_min = -most[2], .penalty_max = most[3], .force = PetscSqrtReal(PetscSqr(total[0]) + PetscSqr(total[1]) + PetscSqr(total[2]))};
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* ---------- what probes and output ask ---------- */
+
+int ContactPairs(Contact contact)
+{
+  return contact ? contact->n_pairs : 0;
+}
+
+const char *ContactPairName(Contact contact, int pair)
+{
+  return contact->pairs[pair].scene->name;
+}
+
+int ContactFindPair(Contact contact, const char *name)
+{
+  for (int p = 0; p < ContactPairs(contact); p++)
+    if (!strcmp(contact->pairs[p].scene->name, name)) return p;
+  return -1;
+}
+
+PetscErrorCode ContactGetNodes(Contact contact, int p, const PetscReal *u, ContactNodes *nodes)
+{
+  Pair      *pair = &contact->pairs[p];
+  PetscReal *area;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(contact->mesh->n_nodes, &area));
+  PetscCall(SurfaceNodeAreas(pair->slave, contact->scene->geometry, contact->scene->kinematics == KINEMATICS_FINITE ? u : NULL, area, NULL));
+  for (PetscInt c = 0; c < pair->n; c++) pair->pressure[c] = pair->force[c] / area[pair->node[c]];
+  PetscCall(PetscFree(area));
+  *nodes = (ContactNodes){pair->n, pair->node, pair->area, pair->now.gap, pair->now.penalty, pair->force, pair->pressure, pair->normal};
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode ContactMasterForce(Contact contact, int p, PetscReal force[3])
+{
+  const Pair *pair = &contact->pairs[p];
+
+  PetscFunctionBeginUser;
+  force[0] = force[1] = force[2] = 0;
+  for (PetscInt c = 0; c < pair->n; c++)
+    for (int d = 0; d < 3; d++) force[d] -= pair->vector[3 * c + d];
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, force, 3, MPIU_REAL, MPI_SUM, contact->mesh->comm));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode ContactGapAt(Contact contact, int p, const PetscReal *u, PetscReal t, PetscInt node_id, PetscReal *gap)
+{
+  Mesh        mesh = contact->mesh;
+  const Pair *pair = &contact->pairs[p];
+  PetscReal   found[5] = {-1, 0, 0, 0, 0}; /* 1: a term, 2: with a finite gap; gap; position */
+
+  PetscFunctionBeginUser;
+  for (PetscInt c = 0; c < pair->n; c++) {
+    if (mesh->node_id[pair->node[c]] != node_id) continue;
+    found[0] = PetscIsNanReal(pair->now.gap[c]) ? 1 : 2;
+    found[1] = PetscIsNanReal(pair->now.gap[c]) ? 0 : pair->now.gap[c];
+    for (int d = 0; d < mesh->dim; d++) found[2 + d] = mesh->coords[pair->node[c] * mesh->dim + d] + u[pair->node[c] * mesh->dim + d];
+  }
+  {
+    struct {
+      double found;
+      int    rank;
+    } mine = {found[0], 0}, best;
+
+    PetscCallMPI(MPI_Comm_rank(mesh->comm, &mine.rank));
+    PetscCallMPI(MPI_Allreduce(&mine, &best, 1, MPI_DOUBLE_INT, MPI_MAXLOC, mesh->comm));
+    PetscCallMPI(MPI_Bcast(found, 5, MPIU_REAL, best.rank, mesh->comm));
+  }
+  *gap = found[0] < 0 ? NAN : found[1];
+  if (found[0] == 1) PetscCall(SearchDistance(pair->search, u, t, &found[2], gap));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode ContactPairPenalty(Contact contact, int p, PetscReal *least, PetscReal *most)
+{
+  const Pair *pair     = &contact->pairs[p];
+  PetscReal   range[2] = {PETSC_MIN_REAL, PETSC_MIN_REAL};
+
+  PetscFunctionBeginUser;
+  for (PetscInt c = 0; c < pair->n; c++) {
+    range[0] = PetscMax(range[0], -pair->now.penalty[c]);
+    range[1] = PetscMax(range[1], pair->now.penalty[c]);
+  }
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, range, 2, MPIU_REAL, MPI_MAX, contact->mesh->comm));
+  *least = -range[0];
+  *most  = range[1];
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode ContactPairSurface(Contact contact, int p, const MeshGroup **slave, PetscReal *mean_face_size)
+{
+  PetscFunctionBeginUser;
+  *slave          = contact->pairs[p].slave->group;
+  *mean_face_size = contact->pairs[p].slave->mean_size;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

@@ -1,0 +1,569 @@
+#include "model.h"
+#include "timing.h"
+
+/* Times that contact lists are replaced and the step solved on before it counts as unsettled. */
+#define MODEL_MAX_REGATHER 8
+/* Below this residual (relative to F_ref) the energies that the line search compares differ by round-off only (their differences go with the
+   square of the residual); from there on it compares residuals. */
+#define MODEL_ENERGY_ROUND_OFF 1e-6
+/* Residuals compared as if they were energies: times this, so that any decrease beats the slope the line search expects. */
+#define MODEL_RESIDUAL_WEIGHT 1e30
+/* Lists are made for this multiple of the motion that the last step's rate predicts. */
+#define MODEL_MOTION_SAFETY 1.5
+/* Newton is limited by its iterations, not by the line search's evaluations. */
+#define MODEL_MAX_FUNCTIONS 1000000
+
+const char *const SolveResults[] = {"converged", "Newton's method did not converge within solver.max_iterations", "the line search found no lower energy", "an element turned inside out", "the linear solver failed (a body free to move, or out of memory)", "the contact lists did not settle", "not-a-number in the residual"};
+
+typedef struct _n_ModelWork {
+  PetscReal *f;            /* local residual of the last evaluation, all dofs */
+  PetscReal *trial;        /* local displacements of the last evaluation */
+  PetscReal *accepted_u;
+  Vec        accepted_x;
+  PetscReal  accepted_t;
+  PetscReal  rate;         /* largest displacement per unit of t in the last accepted step */
+  PetscReal  scale;        /* force norm of the last evaluation */
+  PetscBool  started;      /* a first tangent has been made: the touching start is over */
+  PetscBool  test_jacobian;
+  PetscBool  near;         /* the iterate is so close that energies differ by round-off only */
+  Vec        residual;     /* of a trial point, while near */
+} ModelWork;
+
+/* ---------- residual, energy, tangent ---------- */
+
+/* Residual at local displacements u into work->f, contact at t_contact, loads at t; energy over all ranks on request. ok: every element is in order. */
+static PetscErrorCode ModelResidual(Model model, const PetscReal *u, PetscReal t, PetscReal t_contact, PetscBool *ok)
+{
+  ModelWork *work   = model->work;
+  PetscReal  sum[3] = {0, 0, 0};
+  PetscBool  mine;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscArrayzero(work->f, model->mesh->n_nodes * model->mesh->dim));
+  TimingBegin(TIMING_ASSEMBLY_ELASTIC);
+  PetscCall(ElasticityResidual(model->elasticity, u, work->f, NULL, &sum[0], &mine));
+  PetscCall(LoadsResidual(model->loads, t, u, work->f, NULL, &sum[1]));
+  TimingEnd(TIMING_ASSEMBLY_ELASTIC);
+  if (model->contact) {
+    TimingBegin(TIMING_ASSEMBLY_CONTACT);
+    PetscCall(ContactResidual(model->contact, u, t_contact, work->f, NULL, &sum[2]));
+    TimingEnd(TIMING_ASSEMBLY_CONTACT);
+  }
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sum, 3, MPIU_REAL, MPI_SUM, model->mesh->comm));
+  work->scale = PetscSqrtReal(PetscMax(sum[0], PetscMax(sum[1], sum[2])));
+  *ok         = mine;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode ModelTrial(Model model, Vec x)
+{
+  PetscFunctionBeginUser;
+  PetscCall(LoadsPrescribe(model->loads, model->t, model->work->trial));
+  PetscCall(MeshGlobalToLocal(model->mesh, x, model->work->trial));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode ModelFunction(SNES snes, Vec x, Vec F, void *context)
+{
+  Model     model = context;
+  PetscBool ok;
+
+  PetscFunctionBeginUser;
+  PetscCall(ModelTrial(model, x));
+  PetscCall(ModelResidual(model, model->work->trial, model->t, model->t, &ok));
+  PetscCall(MeshLocalToGlobal(model->mesh, model->work->f, F));
+  if (!ok) PetscCall(SNESSetFunctionDomainError(snes));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Potential energy at the trial displacements, all ranks; infinite where an element is inverted. */
+static PetscErrorCode ModelEnergy(Model model, PetscReal *energy)
+{
+  PetscReal sum[2] = {0, 0}; /* energy, ranks with an inverted element */
+  PetscBool ok;
+
+  PetscFunctionBeginUser;
+  TimingBegin(TIMING_ASSEMBLY_ELASTIC);
+  PetscCall(ElasticityResidual(model->elasticity, model->work->trial, NULL, &sum[0], NULL, &ok));
+  PetscCall(LoadsResidual(model->loads, model->t, model->work->trial, NULL, &sum[0], NULL));
+  TimingEnd(TIMING_ASSEMBLY_ELASTIC);
+  if (model->contact) {
+    TimingBegin(TIMING_ASSEMBLY_CONTACT);
+    PetscCall(ContactResidual(model->contact, model->work->trial, model->t, NULL, &sum[0], NULL));
+    TimingEnd(TIMING_ASSEMBLY_CONTACT);
+  }
+  sum[1] = ok ? 0 : 1;
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sum, 2, MPIU_REAL, MPI_SUM, model->mesh->comm));
+  *energy = sum[1] > 0 ? PETSC_INFINITY : sum[0];
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode ModelObjective(SNES snes, Vec x, PetscReal *objective, void *context)
+{
+  Model     model = context;
+  ModelWork *work = model->work;
+  PetscBool ok;
+
+  PetscFunctionBeginUser;
+  (void)snes;
+  PetscCall(ModelTrial(model, x));
+  if (!work->near) {
+    PetscCall(ModelEnergy(model, objective));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  PetscCall(ModelResidual(model, work->trial, model->t, model->t, &ok));
+  PetscCall(MeshLocalToGlobal(model->mesh, work->f, work->residual));
+  PetscCall(VecNorm(work->residual, NORM_2, objective));
+  *objective *= MODEL_RESIDUAL_WEIGHT;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* A = K + C. A new contact pattern makes a new matrix under the old handle, and the solver forgets its symbolic factorisation. */
+static PetscErrorCode ModelAddContact(Model model, Mat K, Mat C, PetscBool changed)
+{
+  KSP ksp;
+  Mat B;
+
+  PetscFunctionBeginUser;
+  if (changed) {
+    PetscCall(MatDuplicate(K, MAT_COPY_VALUES, &B));
+    PetscCall(MatAXPY(B, 1, C, DIFFERENT_NONZERO_PATTERN));
+    PetscCall(MatHeaderReplace(model->A, &B));
+    PetscCall(SNESGetKSP(model->snes, &ksp));
+    PetscCall(KSPReset(ksp));
+  } else {
+    PetscCall(MatZeroEntries(model->A));
+    PetscCall(MatAXPY(model->A, 1, K, SUBSET_NONZERO_PATTERN));
+    PetscCall(MatAXPY(model->A, 1, C, SUBSET_NONZERO_PATTERN));
+  }
+  PetscCall(MatSetOption(model->A, MAT_SYMMETRIC, LoadsConservative(model->loads)));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The tangent at (u, t) into model->A. */
+static PetscErrorCode ModelTangent(Model model, const PetscReal *u, PetscReal t)
+{
+  Mat       K, C;
+  PetscBool changed;
+
+  PetscFunctionBeginUser;
+  TimingBegin(TIMING_ASSEMBLY_ELASTIC);
+  PetscCall(ElasticityTangent(model->elasticity, u));
+  PetscCall(LoadsTangent(model->loads, t, u, model->elasticity));
+  PetscCall(ElasticityMatrix(model->elasticity, &K));
+  TimingEnd(TIMING_ASSEMBLY_ELASTIC);
+  if (model->contact) {
+    TimingBegin(TIMING_ASSEMBLY_CONTACT);
+    PetscCall(ContactTangent(model->contact, u, t, (PetscBool)(!model->work->started && !model->work->test_jacobian), &C, &changed));
+    PetscCall(ModelAddContact(model, K, C, changed));
+    TimingEnd(TIMING_ASSEMBLY_CONTACT);
+  }
+  model->work->started = PETSC_TRUE;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode ModelJacobian(SNES snes, Vec x, Mat J, Mat P, void *context)
+{
+  Model model = context;
+
+  PetscFunctionBeginUser;
+  (void)snes;
+  (void)J;
+  (void)P;
+  PetscCall(ModelTrial(model, x));
+  PetscCall(ModelTangent(model, model->work->trial, model->t));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Converged when the residual is small against the forces that balance in it, never against its own first value. */
+static PetscErrorCode ModelConverged(SNES snes, PetscInt it, PetscReal xnorm, PetscReal snorm, PetscReal fnorm, SNESConvergedReason *reason, void *context)
+{
+  Model           model = context;
+  const PetscReal scale = PetscMax(model->force_scale, model->work->scale);
+
+  PetscFunctionBeginUser;
+  (void)snes;
+  (void)it;
+  (void)xnorm;
+  (void)snorm;
+  *reason           = SNES_CONVERGED_ITERATING;
+  model->work->near = fnorm <= MODEL_ENERGY_ROUND_OFF * scale ? PETSC_TRUE : PETSC_FALSE;
+  if (PetscIsInfOrNanReal(fnorm)) *reason = SNES_DIVERGED_FNORM_NAN;
+  else if (fnorm <= model->scene->solver.tolerance * scale) *reason = SNES_CONVERGED_FNORM_ABS;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* ---------- set-up ---------- */
+
+static PetscErrorCode LinearSolveBegins(KSP ksp, Vec b, Vec x, void *context)
+{
+  PetscFunctionBeginUser;
+  (void)ksp;
+  (void)b;
+  (void)x;
+  (void)context;
+  TimingBegin(TIMING_SOLVE);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode LinearSolveEnds(KSP ksp, Vec b, Vec x, void *context)
+{
+  PetscFunctionBeginUser;
+  (void)ksp;
+  (void)b;
+  (void)x;
+  (void)context;
+  TimingEnd(TIMING_SOLVE);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode ModelCreateSNES(Model model)
+{
+  const PetscBool symmetric = LoadsConservative(model->loads);
+  SNESLineSearch  search;
+  KSP             ksp;
+  PC              pc;
+
+  PetscFunctionBeginUser;
+  PetscCall(SNESCreate(model->mesh->comm, &model->snes));
+  PetscCall(SNESSetType(model->snes, SNESNEWTONLS));
+  PetscCall(SNESSetFunction(model->snes, NULL, ModelFunction, model));
+  PetscCall(SNESSetJacobian(model->snes, model->A, model->A, ModelJacobian, model));
+  if (symmetric) PetscCall(SNESSetObjective(model->snes, ModelObjective, model));
+  PetscCall(SNESSetTolerances(model->snes, 0, 0, 0, model->scene->solver.max_iterations, MODEL_MAX_FUNCTIONS));
+  PetscCall(SNESSetConvergenceTest(model->snes, ModelConverged, model, NULL));
+  PetscCall(SNESSetErrorIfNotConverged(model->snes, PETSC_FALSE));
+  PetscCall(SNESGetLineSearch(model->snes, &search));
+  PetscCall(SNESLineSearchSetType(search, SNESLINESEARCHBT));
+  PetscCall(SNESGetKSP(model->snes, &ksp));
+  PetscCall(KSPSetType(ksp, KSPPREONLY));
+  PetscCall(KSPSetPreSolve(ksp, LinearSolveBegins, NULL));
+  PetscCall(KSPSetPostSolve(ksp, LinearSolveEnds, NULL));
+  PetscCall(KSPGetPC(ksp, &pc));
+  PetscCall(PCSetType(pc, symmetric ? PCCHOLESKY : PCLU));
+  PetscCall(PCFactorSetMatSolverType(pc, MATSOLVERMUMPS));
+  PetscCall(SNESSetFromOptions(model->snes));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* ModelCreate - joins elasticity, loads, contact and the nonlinear solver.
+
+   Collective. scene and mesh are borrowed. The loads come first: they settle which dofs are free. */
+PetscErrorCode ModelCreate(Scene scene, Mesh mesh, Model *out)
+{
+  Model           model;
+  const PetscInt  n = mesh->n_nodes * mesh->dim;
+  Mat             K;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscNew(&model));
+  PetscCall(PetscNew(&model->work));
+  model->scene = scene;
+  model->mesh  = mesh;
+  PetscCall(LoadsCreate(mesh, scene, &model->loads));
+  PetscCall(ElasticityCreate(mesh, scene, &model->elasticity));
+  PetscCall(ElasticitySetSymmetric(model->elasticity, LoadsConservative(model->loads)));
+  if (scene->n_contacts) PetscCall(ContactCreate(mesh, scene, model->elasticity, model->loads, &model->contact));
+  PetscCall(PetscCalloc4(n, &model->u, n, &model->work->f, n, &model->work->trial, n, &model->work->accepted_u));
+  PetscCall(ElasticityTangent(model->elasticity, model->u));
+  PetscCall(ElasticityMatrix(model->elasticity, &K));
+  if (model->contact) PetscCall(MatDuplicate(K, MAT_COPY_VALUES, &model->A));
+  else {
+    PetscCall(PetscObjectReference((PetscObject)K));
+    model->A = K;
+  }
+  PetscCall(MatCreateVecs(model->A, &model->x, NULL));
+  PetscCall(VecDuplicate(model->x, &model->work->accepted_x));
+  PetscCall(VecDuplicate(model->x, &model->work->residual));
+  PetscCall(ModelCreateSNES(model));
+  PetscCall(PetscOptionsHasName(NULL, NULL, "-snes_test_jacobian", &model->work->test_jacobian));
+  *out = model;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* ModelDestroy - Collective. The scene and the mesh remain. */
+PetscErrorCode ModelDestroy(Model *model)
+{
+  Model m = *model;
+
+  PetscFunctionBeginUser;
+  if (!m) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(SNESDestroy(&m->snes));
+  PetscCall(VecDestroy(&m->x));
+  PetscCall(VecDestroy(&m->work->accepted_x));
+  PetscCall(VecDestroy(&m->work->residual));
+  PetscCall(MatDestroy(&m->A));
+  PetscCall(ContactDestroy(&m->contact));
+  PetscCall(ElasticityDestroy(&m->elasticity));
+  PetscCall(LoadsDestroy(&m->loads));
+  PetscCall(PetscFree4(m->u, m->work->f, m->work->trial, m->work->accepted_u));
+  PetscCall(PetscFree(m->work));
+  PetscCall(PetscFree(*model));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode ModelSetUp(Model model)
+{
+  PetscBool ok;
+
+  PetscFunctionBeginUser;
+  PetscCall(LoadsPrescribe(model->loads, 0, model->u));
+  if (model->contact) {
+    PetscCall(ContactGather(model->contact, model->u, 0, 0));
+    PetscCall(ModelResidual(model, model->u, 0, 0, &ok));
+    PetscCall(ContactCheckOverlap(model->contact));
+  }
+  PetscCall(ModelAccept(model));
+  model->work->rate = 0;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* ---------- one equilibrium ---------- */
+
+/* Largest displacement of a node, or of a rigid tool, between the accepted state and (u, t). */
+static PetscErrorCode ModelMotion(Model model, const PetscReal *u, PetscReal t, PetscReal *motion)
+{
+  const int dim = model->mesh->dim;
+
+  PetscFunctionBeginUser;
+  *motion = 0;
+  for (PetscInt n = 0; n < model->mesh->n_nodes; n++) {
+    PetscReal square = 0;
+
+    for (int d = 0; d < dim; d++) square += PetscSqr(u[n * dim + d] - model->work->accepted_u[n * dim + d]);
+    *motion = PetscMax(*motion, PetscSqrtReal(square));
+  }
+  for (int b = 0; b < model->scene->n_bodies; b++)
+    if (model->scene->bodies[b].rigid) *motion = PetscMax(*motion, LoadsRigidTravel(model->loads, b, model->work->accepted_t, t));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, motion, 1, MPIU_REAL, MPI_MAX, model->mesh->comm));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Prediction: one linear solve with the tangent of the accepted state, for the loads, imposed displacements and tool motions of the new load
+   parameter. It is the first Newton iteration, written so that what is prescribed moves with the whole body and not through it. */
+static PetscErrorCode ModelPredict(Model model, SolveReport *report)
+{
+  ModelWork         *work = model->work;
+  const PetscInt     n    = model->mesh->n_nodes * model->mesh->dim;
+  PetscReal         *step;
+  PetscBool          ok;
+  Vec                b, dx;
+  KSP                ksp;
+  KSPConvergedReason reason;
+  PetscInt           its;
+
+  PetscFunctionBeginUser;
+  PetscCall(VecDuplicate(model->x, &b));
+  PetscCall(VecDuplicate(model->x, &dx));
+  PetscCall(PetscMalloc1(n, &step));
+  PetscCall(PetscArraycpy(step, work->accepted_u, n));
+  PetscCall(LoadsPrescribe(model->loads, model->t, step));
+  for (PetscInt i = 0; i < n; i++) step[i] -= work->accepted_u[i];
+  PetscCall(ModelTangent(model, work->accepted_u, work->accepted_t));
+  PetscCall(ModelResidual(model, work->accepted_u, model->t, work->accepted_t, &ok));
+  PetscCall(ElasticityMultiplyLocal(model->elasticity, step, work->f));
+  if (model->contact) PetscCall(ContactMultiply(model->contact, step, work->accepted_t, model->t, work->f));
+  PetscCall(MeshLocalToGlobal(model->mesh, work->f, b));
+  PetscCall(SNESGetKSP(model->snes, &ksp));
+  PetscCall(KSPSetOperators(ksp, model->A, model->A));
+  PetscCall(KSPSolve(ksp, b, dx));
+  PetscCall(KSPGetConvergedReason(ksp, &reason));
+  PetscCall(KSPGetIterationNumber(ksp, &its));
+  report->newton++;
+  report->krylov += its;
+  if (reason < 0) report->result = SOLVE_LINEAR;
+  else PetscCall(VecAXPY(model->x, -1, dx));
+  PetscCall(PetscFree(step));
+  PetscCall(VecDestroy(&b));
+  PetscCall(VecDestroy(&dx));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static SolveResult ResultFromReason(SNESConvergedReason reason)
+{
+  if (reason > 0) return SOLVE_CONVERGED;
+  switch (reason) {
+  case SNES_DIVERGED_MAX_IT: return SOLVE_ITERATIONS;
+  case SNES_DIVERGED_FUNCTION_DOMAIN: return SOLVE_DOMAIN;
+  case SNES_DIVERGED_LINEAR_SOLVE: return SOLVE_LINEAR;
+  case SNES_DIVERGED_FNORM_NAN: return SOLVE_NAN;
+  default: return SOLVE_LINE_SEARCH;
+  }
+}
+
+/* Runs SNES once from model->x and adds what it cost. */
+static PetscErrorCode ModelNewton(Model model, SolveReport *report)
+{
+  SNESConvergedReason reason;
+  PetscInt            its, krylov;
+  PetscReal           norm;
+  Vec                 F;
+
+  PetscFunctionBeginUser;
+  PetscCall(SNESSolve(model->snes, NULL, model->x));
+  PetscCall(SNESGetConvergedReason(model->snes, &reason));
+  PetscCall(SNESGetIterationNumber(model->snes, &its));
+  PetscCall(SNESGetLinearSolveIterations(model->snes, &krylov));
+  PetscCall(SNESGetFunction(model->snes, &F, NULL, NULL));
+  PetscCall(VecNorm(F, NORM_2, &norm));
+  report->newton += its;
+  report->krylov += krylov;
+  report->result   = ResultFromReason(reason);
+  report->residual = model->work->scale > 0 ? norm / PetscMax(model->force_scale, model->work->scale) : 0;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Names the node with the largest residual: where to look when a step fails. */
+static PetscErrorCode ModelLocateResidual(Model model, char *text, size_t size)
+{
+  Mesh      mesh = model->mesh;
+  const int dim  = mesh->dim;
+  PetscReal *f, place[4] = {0, 0, 0, 0};
+  struct {
+    double value;
+    int    rank;
+  } mine = {0, 0}, most;
+
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Comm_rank(mesh->comm, &mine.rank));
+  PetscCall(PetscMalloc1(mesh->n_nodes * dim, &f));
+  PetscCall(PetscArraycpy(f, model->work->f, mesh->n_nodes * dim));
+  PetscCall(MeshSumNodes(mesh, dim, f));
+  for (PetscInt n = 0; n < mesh->n_nodes; n++) {
+    double square = 0;
+
+    for (int d = 0; d < dim; d++)
+      if (!LoadsPrescribed(model->loads, n * dim + d)) square += PetscSqr(f[n * dim + d]);
+    if (square <= mine.value) continue;
+    mine.value = square;
+    place[0]   = mesh->node_tag[n];
+    for (int d = 0; d < dim; d++) place[1 + d] = mesh->coords[n * dim + d] + mesh->centre[d];
+  }
+  PetscCallMPI(MPI_Allreduce(&mine, &most, 1, MPI_DOUBLE_INT, MPI_MAXLOC, mesh->comm));
+  PetscCallMPI(MPI_Bcast(place, 4, MPIU_REAL, most.rank, mesh->comm));
+  PetscCall(PetscSNPrintf(text, size, "largest residual at node %.0f (%g, %g, %g)", (double)place[0], (double)place[1], (double)place[2], (double)place[3]));
+  PetscCall(PetscFree(f));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* ModelSolve - equilibrium at load parameter t, from the accepted state.
+
+   Collective. On success model->u, model->x and the contact state are the solution (not yet accepted); on failure call ModelRestore().
+   Contact lists are made before, frozen in each Newton solve, and made anew after it until they hold (at most MODEL_MAX_REGATHER times). */
+PetscErrorCode ModelSolve(Model model, PetscReal t, SolveReport *report)
+{
+  ModelWork *work = model->work;
+  PetscReal  motion;
+  PetscBool  hold = PETSC_TRUE;
+
+  PetscFunctionBeginUser;
+  *report  = (SolveReport){.result = SOLVE_CONVERGED};
+  model->t = t;
+  if (model->contact) {
+    PetscReal *u;
+
+    PetscCall(PetscMalloc1(model->mesh->n_nodes * model->mesh->dim, &u));
+    PetscCall(PetscArraycpy(u, work->accepted_u, model->mesh->n_nodes * model->mesh->dim));
+    PetscCall(LoadsPrescribe(model->loads, t, u));
+    PetscCall(ModelMotion(model, u, t, &motion));
+    PetscCall(PetscFree(u));
+    motion = PetscMax(motion, MODEL_MOTION_SAFETY * work->rate * (t - work->accepted_t));
+    TimingBegin(TIMING_SEARCH);
+    PetscCall(ContactGather(model->contact, work->accepted_u, work->accepted_t, motion));
+    TimingEnd(TIMING_SEARCH);
+  }
+  PetscCall(ModelPredict(model, report));
+  while (report->result == SOLVE_CONVERGED) {
+    PetscCall(ModelNewton(model, report));
+    if (report->result != SOLVE_CONVERGED || !model->contact) break;
+    PetscCall(ModelMotion(model, work->trial, t, &motion));
+    TimingBegin(TIMING_SEARCH);
+    PetscCall(ContactListsHold(model->contact, work->trial, t, motion, &hold));
+    TimingEnd(TIMING_SEARCH);
+    if (hold) break;
+    if (report->regathered++ == MODEL_MAX_REGATHER) report->result = SOLVE_LISTS;
+  }
+  if (report->result == SOLVE_CONVERGED) PetscCall(PetscArraycpy(model->u, work->trial, model->mesh->n_nodes * model->mesh->dim));
+  else PetscCall(ModelLocateResidual(model, report->detail, sizeof(report->detail)));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* ---------- state ---------- */
+
+/* ModelAccept - the present solution is the state to go on from and to return to. Collective. */
+PetscErrorCode ModelAccept(Model model)
+{
+  ModelWork *work = model->work;
+  PetscReal  motion;
+  PetscBool  ok;
+
+  PetscFunctionBeginUser;
+  PetscCall(ModelResidual(model, model->u, model->t, model->t, &ok)); /* reactions, gaps and forces of exactly this state */
+  PetscCall(ModelMotion(model, model->u, model->t, &motion));
+  if (model->t > work->accepted_t) work->rate = motion / (model->t - work->accepted_t);
+  model->force_scale = PetscMax(model->force_scale, work->scale);
+  PetscCall(PetscArraycpy(work->accepted_u, model->u, model->mesh->n_nodes * model->mesh->dim));
+  PetscCall(VecCopy(model->x, work->accepted_x));
+  work->accepted_t = model->t;
+  if (model->contact) PetscCall(ContactAccept(model->contact));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* ModelRestore - takes back everything since the last ModelAccept(). Collective. */
+PetscErrorCode ModelRestore(Model model)
+{
+  ModelWork *work = model->work;
+  PetscBool  ok;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscArraycpy(model->u, work->accepted_u, model->mesh->n_nodes * model->mesh->dim));
+  PetscCall(VecCopy(work->accepted_x, model->x));
+  model->t = work->accepted_t;
+  if (model->contact) {
+    PetscCall(ContactRestore(model->contact));
+    PetscCall(ContactGather(model->contact, model->u, model->t, 0));
+  }
+  PetscCall(ModelResidual(model, model->u, model->t, model->t, &ok));
+  if (model->contact) PetscCall(ContactRestore(model->contact));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode ModelReaction(Model model, const MeshGroup *group, PetscReal force[3])
+{
+  const int dim = model->mesh->dim;
+
+  PetscFunctionBeginUser;
+  force[0] = force[1] = force[2] = 0;
+  for (PetscInt i = 0; i < group->n_nodes; i++) {
+    for (int d = 0; d < dim; d++) {
+      const PetscInt dof = group->nodes[i] * dim + d;
+      if (LoadsPrescribed(model->loads, dof)) force[d] += model->work->f[dof];
+    }
+  }
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, force, 3, MPIU_REAL, MPI_SUM, model->mesh->comm));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode ModelEffects(Model model, char *text, size_t size)
+{
+  Scene     scene = model->scene;
+  PetscBool moving = PETSC_FALSE, body_force = PETSC_FALSE;
+
+  PetscFunctionBeginUser;
+  for (int b = 0; b < scene->n_bodies; b++) moving = (PetscBool)(moving || (scene->bodies[b].rigid && scene->bodies[b].n_motions));
+  for (int l = 0; l < scene->n_loads; l++) body_force = (PetscBool)(body_force || scene->loads[l].kind == LOAD_BODY_FORCE);
+  PetscCall(PetscSNPrintf(text, size, "%s%s%s%s%s", scene->kinematics == KINEMATICS_FINITE ? "finite strain" : "small strain", model->contact ? ", facet contact" : "", LoadsConservative(model->loads) ? "" : ", follower load", body_force ? ", body force" : "", moving ? ", rigid motion" : ""));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode ModelDofs(Model model, PetscInt *free_dofs)
+{
+  PetscFunctionBeginUser;
+  PetscCall(VecGetSize(model->x, free_dofs));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscBool ModelIsLinear(Model model)
+{
+  return model->scene->kinematics == KINEMATICS_SMALL && !model->contact ? PETSC_TRUE : PETSC_FALSE;
+}

@@ -1,0 +1,519 @@
+#define _GNU_SOURCE /* dladdr() */
+#include "results.h"
+#include "commandline.h"
+#include "fields.h"
+#include "refusal.h"
+#include "summary.h"
+#include "timing.h"
+#include <dlfcn.h>
+#include <errno.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+enum { MESSAGE_SIZE = 2 * PETSC_MAX_PATH_LEN, LINE_SIZE = 160, PATH_SIZE = PETSC_MAX_PATH_LEN + 32 /* a directory and one of our names */ };
+
+struct _n_Results {
+  Model       model;
+  Probes      probes;
+  Scene       scene;
+  char        directory[PETSC_MAX_PATH_LEN];
+  PetscBool   quiet, talks; /* talks: rank 0 of a run that is not quiet */
+  PetscMPIInt rank, size;
+  FILE       *csv; /* rank 0 */
+  Fields      fields;
+  PetscReal  *values; /* of the probes, at the last accepted step */
+  StepRecord  last;
+  PetscBool   stepped, written; /* there is an accepted step; results.h5 holds it */
+  double      started;
+  PetscReal   t_started;
+};
+
+/* The record of the scene in its directory: one line with the file's name, then the text */
+static const char record_name[] = "scene.yaml", record_head[] = "# scene: ";
+
+static void PathJoin(char path[PATH_SIZE], const char *directory, const char *name)
+{
+  snprintf(path, PATH_SIZE, "%s/%s", directory, name);
+}
+
+static PetscBool FileExists(const char *directory, const char *name)
+{
+  char path[PATH_SIZE];
+
+  PathJoin(path, directory, name);
+  return access(path, F_OK) ? PETSC_FALSE : PETSC_TRUE;
+}
+
+/* The whole of a text file, to be freed; NULL if there is none */
+static char *FileRead(const char *directory, const char *name)
+{
+  char   path[PATH_SIZE], *text = NULL;
+  size_t room = 0;
+  FILE  *file;
+
+  PathJoin(path, directory, name);
+  file = fopen(path, "r");
+  if (!file) return NULL;
+  if (getdelim(&text, &room, '\0', file) < 0) {
+    free(text);
+    text = NULL;
+  }
+  fclose(file);
+  return text;
+}
+
+/*
+  ResultsReplaceFile - Writes a text file under a temporary name and renames it, so that readers find it whole or not at all. Not collective.
+
+  Input: directory, name of the file in it, text. Errors: PETSC_ERR_FILE_WRITE.
+*/
+PetscErrorCode ResultsReplaceFile(const char *directory, const char *name, const char *text)
+{
+  char  path[PATH_SIZE], temporary[PATH_SIZE + 8];
+  FILE *file;
+  int   failed;
+
+  PetscFunctionBeginUser;
+  PathJoin(path, directory, name);
+  snprintf(temporary, sizeof(temporary), "%s.tmp", path);
+  file = fopen(temporary, "w");
+  PetscCheck(file, PETSC_COMM_SELF, PETSC_ERR_FILE_OPEN, "Cannot write %s: %s", temporary, strerror(errno));
+  failed = fputs(text, file) < 0;
+  failed = fclose(file) || failed;
+  PetscCheck(!failed && !rename(temporary, path), PETSC_COMM_SELF, PETSC_ERR_FILE_WRITE, "Cannot write %s: %s", path, strerror(errno));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The line at text, without its end */
+static const char *LineCopy(const char *text, char line[LINE_SIZE])
+{
+  size_t n = strcspn(text, "\n");
+
+  snprintf(line, LINE_SIZE, "%.*s", (int)n, text);
+  return line;
+}
+
+/* First lines in which two texts differ; an end is "(nothing)" */
+static void FirstDifference(const char *a, const char *b, char line_a[LINE_SIZE], char line_b[LINE_SIZE])
+{
+  const size_t end = strlen("\n");
+
+  while (*a && *b && strcspn(a, "\n") == strcspn(b, "\n") && !strncmp(a, b, strcspn(a, "\n"))) {
+    a += strcspn(a, "\n");
+    b += strcspn(b, "\n");
+    a += *a ? end : 0;
+    b += *b ? end : 0;
+  }
+  LineCopy(*a ? a : "(nothing)", line_a);
+  LineCopy(*b ? b : "(nothing)", line_b);
+}
+
+/* Rank 0: why the directory may not be used, or an empty message */
+static void DirectoryComplaint(Scene scene, const char *directory, PetscBool overwrite, char message[MESSAGE_SIZE])
+{
+  struct stat status;
+  char       *record, there[LINE_SIZE] = "unknown", line_there[LINE_SIZE], line_here[LINE_SIZE];
+
+  *message = '\0';
+  if (stat(directory, &status)) return;
+  if (!S_ISDIR(status.st_mode)) {
+    snprintf(message, MESSAGE_SIZE, "-o %s: a file of that name is in the way; allowed: a directory, or a name that is free", directory);
+    return;
+  }
+  if (overwrite) return;
+  record = FileRead(directory, record_name);
+  if (record && !strncmp(record, record_head, strlen(record_head))) {
+    const char *text = strchr(record, '\n');
+
+    LineCopy(record + strlen(record_head), there);
+    text = text ? text + 1 : "";
+    if (strcmp(text, scene->text)) {
+      FirstDifference(text, scene->text, line_there, line_here);
+      snprintf(message, MESSAGE_SIZE,
+               "%s holds the results of another scene: of %s, not of %s (first difference: \"%s\" there, \"%s\" here); allowed: another directory (-o DIR), or "
+               "-overwrite",
+               directory, there, scene->file, line_there, line_here);
+    }
+  } else if (record || FileExists(directory, "summary.json") || FileExists(directory, "steps.csv")) {
+    snprintf(message, MESSAGE_SIZE, "%s holds results of an unknown scene, not of %s: it has no %s of ours; allowed: another directory (-o DIR), or -overwrite",
+             directory, scene->file, record_name);
+  }
+  free(record);
+}
+
+/*
+  ResultsCheckDirectory - Refuses (exit 1) a directory that holds another scene's results, unless they may be overwritten. Collective.
+
+  Input: scene, directory (need not exist), overwrite. Nothing is written; the same scene's results are overwritten without a word.
+*/
+PetscErrorCode ResultsCheckDirectory(MPI_Comm comm, Scene scene, const char *directory, PetscBool overwrite)
+{
+  char        message[MESSAGE_SIZE] = "";
+  PetscMPIInt rank;
+
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Comm_rank(comm, &rank));
+  if (rank == 0) DirectoryComplaint(scene, directory, overwrite, message);
+  PetscCall(RefuseInputAnywhere(comm, *message ? message : NULL));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Rank 0: makes the directory and those above it; an empty message if it is there in the end */
+static void DirectoryMake(const char *directory, char message[MESSAGE_SIZE])
+{
+  char path[PETSC_MAX_PATH_LEN];
+
+  *message = '\0';
+  snprintf(path, sizeof(path), "%s", directory);
+  for (char *slash = strchr(path + 1, '/'); slash; slash = strchr(slash + 1, '/')) {
+    *slash = '\0';
+    mkdir(path, 0777);
+    *slash = '/';
+  }
+  if (mkdir(path, 0777) && errno != EEXIST)
+    snprintf(message, MESSAGE_SIZE, "-o %s: the directory cannot be made: %s; allowed: a place that can be written", directory, strerror(errno));
+  else if (access(path, W_OK | X_OK))
+    snprintf(message, MESSAGE_SIZE, "-o %s: %s; allowed: a directory that can be written", directory, strerror(errno));
+}
+
+/* Rank 0: takes away what an earlier run left, so that a killed run shows no file of another one */
+static void DirectoryClear(const char *directory)
+{
+  static const char *const names[] = {"summary.json", "results.xdmf", "results.h5"};
+  char                     path[PATH_SIZE];
+
+  for (size_t i = 0; i < sizeof(names) / sizeof(names[0]); i++) {
+    PathJoin(path, directory, names[i]);
+    unlink(path);
+  }
+}
+
+static PetscErrorCode ResultsWriteRecord(Results results)
+{
+  const size_t size = strlen(record_head) + strlen(results->scene->file) + strlen(results->scene->text) + sizeof("\n");
+  char        *text;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(size, &text));
+  snprintf(text, size, "%s%s\n%s", record_head, results->scene->file, results->scene->text);
+  PetscCall(ResultsReplaceFile(results->directory, record_name, text));
+  PetscCall(PetscFree(text));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* A name as a CSV field: quoted where it must be */
+static void CsvPrintText(FILE *csv, const char *text)
+{
+  if (!strpbrk(text, ",\"\n")) {
+    fputs(text, csv);
+    return;
+  }
+  fputc('"', csv);
+  for (; *text; text++) {
+    if (*text == '"') fputc('"', csv);
+    fputc(*text, csv);
+  }
+  fputc('"', csv);
+}
+
+/* ",value"; nothing after the comma where there is no value */
+static void CsvPrintReal(FILE *csv, PetscReal value)
+{
+  if (isfinite((double)value))
+    fprintf(csv, ",%.15g", (double)value);
+  else
+    fputc(',', csv);
+}
+
+static void CsvPrintInteger(FILE *csv, PetscInt value)
+{
+  fprintf(csv, ",%lld", (long long)value);
+}
+
+static PetscErrorCode ResultsOpenCsv(Results results)
+{
+  char path[PATH_SIZE];
+
+  PetscFunctionBeginUser;
+  PathJoin(path, results->directory, "steps.csv");
+  results->csv = fopen(path, "w");
+  PetscCheck(results->csv, PETSC_COMM_SELF, PETSC_ERR_FILE_OPEN, "Cannot write %s: %s", path, strerror(errno));
+  fputs("step,t,dt,beta,newton,krylov,attempts,residual,contact_nodes,nodes_in,nodes_out,max_penetration,min_penetration,outside_window,penalty_min,penalty_"
+        "max,contact_force,wall_s",
+        results->csv);
+  for (int i = 0; i < results->scene->n_probes; i++) {
+    fputc(',', results->csv);
+    CsvPrintText(results->csv, results->scene->probes[i].name);
+  }
+  fputc('\n', results->csv);
+  PetscCheck(!fflush(results->csv), PETSC_COMM_SELF, PETSC_ERR_FILE_WRITE, "Cannot write %s: %s", path, strerror(errno));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode ResultsPrintCsv(Results results, const StepRecord *step)
+{
+  const ContactSummary *contact     = &step->contact;
+  const PetscBool       none        = results->model->contact ? PETSC_FALSE : PETSC_TRUE;
+  const PetscReal       reals[]     = {contact->max_penetration, contact->min_penetration};
+  const PetscReal       penalties[] = {contact->penalty_min, contact->penalty_max};
+  FILE                 *csv         = results->csv;
+
+  PetscFunctionBeginUser;
+  fprintf(csv, "%lld", (long long)step->step);
+  CsvPrintReal(csv, step->t);
+  CsvPrintReal(csv, step->dt);
+  CsvPrintReal(csv, NAN); /* beta: only the control by contact has one */
+  CsvPrintInteger(csv, step->newton);
+  CsvPrintInteger(csv, step->krylov);
+  CsvPrintInteger(csv, step->attempts);
+  CsvPrintReal(csv, step->residual);
+  CsvPrintInteger(csv, none ? 0 : contact->nodes);
+  CsvPrintInteger(csv, none ? 0 : contact->in);
+  CsvPrintInteger(csv, none ? 0 : contact->out);
+  for (int i = 0; i < 2; i++) CsvPrintReal(csv, none ? NAN : reals[i]);
+  CsvPrintReal(csv, NAN); /* outside_window: only an adjusted penalty has a window */
+  for (int i = 0; i < 2; i++) CsvPrintReal(csv, none ? NAN : penalties[i]);
+  CsvPrintReal(csv, none ? NAN : contact->force);
+  CsvPrintReal(csv, MPI_Wtime() - results->started);
+  for (int i = 0; i < results->scene->n_probes; i++) CsvPrintReal(csv, results->values[i]);
+  fputc('\n', csv);
+  PetscCheck(!fflush(csv), PETSC_COMM_SELF, PETSC_ERR_FILE_WRITE, "Cannot write %s/steps.csv: %s", results->directory, strerror(errno));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The BLAS that the dynamic linker chose, by the file that holds dgemm; reference: the slow one that Debian installs by default */
+static void BlasFind(char file[PETSC_MAX_PATH_LEN], PetscBool *reference)
+{
+  static const char *const fast[] = {"openblas", "mkl", "blis", "atlas", "libsci", "essl", "armpl", "flexiblas", "nvpl", "accelerate"};
+  void                    *dgemm  = dlsym(RTLD_DEFAULT, "dgemm_");
+  char                    *real   = NULL;
+  Dl_info                  info;
+
+  *reference = PETSC_FALSE;
+  if (dgemm && dladdr(dgemm, &info) && info.dli_fname) real = realpath(info.dli_fname, NULL);
+  snprintf(file, PETSC_MAX_PATH_LEN, "%s", real ? real : "unknown");
+  if (real) *reference = strstr(real, "blas") ? PETSC_TRUE : PETSC_FALSE;
+  for (size_t i = 0; i < sizeof(fast) / sizeof(fast[0]); i++)
+    if (real && strcasestr(real, fast[i])) *reference = PETSC_FALSE;
+  free(real);
+}
+
+static PetscErrorCode ResultsPrintSolver(Results results)
+{
+  KSP           ksp;
+  PC            pc;
+  KSPType       method;
+  PCType        conditioner;
+  MatSolverType package = NULL;
+  PetscBool     factors = PETSC_FALSE;
+
+  PetscFunctionBeginUser;
+  PetscCall(SNESGetKSP(results->model->snes, &ksp));
+  PetscCall(KSPGetType(ksp, &method));
+  PetscCall(KSPGetPC(ksp, &pc));
+  PetscCall(PCGetType(pc, &conditioner));
+  if (conditioner) PetscCall(PetscObjectTypeCompareAny((PetscObject)pc, &factors, PCLU, PCCHOLESKY, PCILU, PCICC, ""));
+  if (factors) PetscCall(PCFactorGetMatSolverType(pc, &package));
+  if (results->talks)
+    printf("solver   %s, %s%s%s\n", method ? method : "PETSc's default", conditioner ? conditioner : "PETSc's default", package ? ", " : "",
+           package ? package : "");
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode ResultsPrintHead(Results results)
+{
+  char      blas[PETSC_MAX_PATH_LEN], effects[MESSAGE_SIZE];
+  PetscBool reference;
+  PetscInt  dofs;
+
+  PetscFunctionBeginUser;
+  PetscCall(ModelEffects(results->model, effects, sizeof(effects)));
+  PetscCall(ModelDofs(results->model, &dofs));
+  BlasFind(blas, &reference);
+  if (results->talks) {
+    printf("burnish %s: %s (%s)\n", BURNISH_VERSION, results->scene->name, results->scene->file);
+    printf("machine  %d rank%s, PETSc %d.%d.%d, %d-bit indices\n", results->size, results->size > 1 ? "s" : "", PETSC_VERSION_MAJOR, PETSC_VERSION_MINOR,
+           PETSC_VERSION_SUBMINOR, (int)(8 * sizeof(PetscInt)));
+    printf("BLAS     %s\n", blas);
+    if (reference)
+      printf("warning: this is the reference BLAS; the direct solver is 6 to 7 times faster with OpenBLAS (Debian: apt install libopenblas0-serial)\n");
+  }
+  PetscCall(ResultsPrintSolver(results));
+  if (!results->quiet) PetscCall(MeshReport(results->model->mesh, results->scene, stdout));
+  if (results->talks) {
+    printf("dofs     %lld free\neffects  %s\n", (long long)dofs, *effects ? effects : "none");
+    printf("\n%5s %9s %9s %10s %10s %12s %8s %8s\n", "step", "t", "dt", "iterations", "in contact", "penetration", "spent", "left");
+    fflush(stdout);
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* "12.3 s", "4 min 5 s", "2 h 7 min" */
+static const char *DurationText(double seconds, char text[32])
+{
+  const long s = (long)seconds;
+
+  if (s < 60)
+    snprintf(text, 32, "%.1f s", seconds);
+  else if (s < 3600)
+    snprintf(text, 32, "%ld:%02ld min", s / 60, s % 60);
+  else
+    snprintf(text, 32, "%ld:%02ld h", s / 3600, s / 60 % 60);
+  return text;
+}
+
+static void ResultsPrintStep(Results results, const StepRecord *step)
+{
+  const double spent = MPI_Wtime() - results->started, way = (double)(step->t - results->t_started);
+  char         spent_text[32], left_text[32];
+
+  printf("%5lld %9.5g %9.3g %10lld", (long long)step->step, (double)step->t, (double)step->dt, (long long)step->newton);
+  if (results->model->contact)
+    printf(" %10lld %12.3e", (long long)step->contact.nodes, (double)step->contact.max_penetration);
+  else
+    printf(" %10s %12s", "-", "-");
+  printf(" %8s %8s\n", DurationText(spent, spent_text), way > 0.0 ? DurationText(spent * (1.0 - (double)step->t) / way, left_text) : "-");
+  fflush(stdout);
+}
+
+/*
+  ResultsCreate - The results of one run; nothing is touched before ResultsStart(). Collective.
+
+  Input: model, probes (of that model), scene, directory, quiet (nothing on the terminal but errors).
+*/
+PetscErrorCode ResultsCreate(Model model, Probes probes, Scene scene, const char *directory, PetscBool quiet, Results *result)
+{
+  const MPI_Comm comm = model->mesh->comm;
+  Results        results;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscNew(&results));
+  results->model  = model;
+  results->probes = probes;
+  results->scene  = scene;
+  PetscCall(PetscStrncpy(results->directory, directory, sizeof(results->directory)));
+  PetscCallMPI(MPI_Comm_rank(comm, &results->rank));
+  PetscCallMPI(MPI_Comm_size(comm, &results->size));
+  results->quiet = quiet;
+  results->talks = results->rank == 0 && !quiet ? PETSC_TRUE : PETSC_FALSE;
+  PetscCall(PetscCalloc1(scene->n_probes, &results->values));
+  PetscCall(FieldsCreate(model, scene, directory, &results->fields));
+  *result = results;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* ResultsDestroy - Closes the files and frees the results. Collective. */
+PetscErrorCode ResultsDestroy(Results *results)
+{
+  PetscFunctionBeginUser;
+  if (!*results) PetscFunctionReturn(PETSC_SUCCESS);
+  if ((*results)->csv) fclose((*results)->csv);
+  PetscCall(FieldsDestroy(&(*results)->fields));
+  PetscCall(PetscFree((*results)->values));
+  PetscCall(PetscFree(*results));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*
+  ResultsStart - Makes the directory with the record of the scene and the head of steps.csv, and prints the run's first lines. The time
+  spent counts from here. Collective. Errors: refuses (exit 1) a directory that cannot be made or written.
+*/
+PetscErrorCode ResultsStart(Results results)
+{
+  char message[MESSAGE_SIZE] = "";
+
+  PetscFunctionBeginUser;
+  results->started   = MPI_Wtime();
+  results->t_started = results->model->t;
+  if (results->rank == 0) DirectoryMake(results->directory, message);
+  PetscCall(RefuseInputAnywhere(results->model->mesh->comm, *message ? message : NULL));
+  if (results->rank == 0) {
+    DirectoryClear(results->directory);
+    PetscCall(ResultsWriteRecord(results));
+    PetscCall(ResultsOpenCsv(results));
+  }
+  PetscCall(ResultsPrintHead(results));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The state of the last accepted step into results.h5 */
+static PetscErrorCode ResultsWriteFields(Results results)
+{
+  PetscFunctionBeginUser;
+  PetscCall(FieldsWrite(results->fields, results->last.step, results->last.t));
+  results->written = PETSC_TRUE;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*
+  ResultsStep - An accepted step, while the model is in its state: probes, a row of steps.csv, a line on the terminal, and fields at every
+  output.every-th step. Collective.
+*/
+PetscErrorCode ResultsStep(Results results, const StepRecord *step)
+{
+  const int every = results->scene->output.every;
+
+  PetscFunctionBeginUser;
+  PetscCall(ProbesEvaluate(results->probes, results->values));
+  TimingBegin(TIMING_OUTPUT);
+  results->last    = *step;
+  results->stepped = PETSC_TRUE;
+  results->written = PETSC_FALSE;
+  if (results->rank == 0) PetscCall(ResultsPrintCsv(results, step));
+  if (every > 0 && step->step % every == 0) PetscCall(ResultsWriteFields(results));
+  TimingEnd(TIMING_OUTPUT);
+  if (results->talks) ResultsPrintStep(results, step);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Final values of the probes; a contact edge with the node spacing that is its resolution */
+static PetscErrorCode ResultsPrintProbes(Results results)
+{
+  PetscFunctionBeginUser;
+  if (!results->talks || !results->stepped) PetscFunctionReturn(PETSC_SUCCESS);
+  printf("\n");
+  for (int i = 0; i < results->scene->n_probes; i++) {
+    PetscReal spacing;
+
+    PetscCall(ProbesGetSpacing(results->probes, i, &spacing));
+    printf("%-20s ", results->scene->probes[i].name);
+    if (isfinite((double)results->values[i]))
+      printf("%.9g", (double)results->values[i]);
+    else
+      printf("no value");
+    if (isfinite((double)spacing)) printf(" (node spacing %.3g)", (double)spacing);
+    printf("\n");
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static void ResultsPrintEnd(Results results, const RunRecord *run)
+{
+  char text[32];
+
+  if (results->rank == 0 && run->message) fprintf(stderr, "burnish: %s: %s\n", run->status, run->message);
+  if (!results->talks) return;
+  printf("%s: %lld steps (%lld failed), %lld iterations, %s; results in %s\n", run->status, (long long)run->steps, (long long)run->steps_failed,
+         (long long)run->newton_iterations, DurationText((double)run->wall_s, text), results->directory);
+  fflush(stdout);
+}
+
+/*
+  ResultsFinish - The last accepted state into results.h5 unless it is there, summary.json, and the last lines on the terminal. To be called
+  however the run ended, with the model in its last accepted state. A message in the record goes to stderr, also when quiet. Collective.
+*/
+PetscErrorCode ResultsFinish(Results results, const RunRecord *run)
+{
+  PetscFunctionBeginUser;
+  TimingBegin(TIMING_OUTPUT);
+  if (results->stepped && !results->written) PetscCall(ResultsWriteFields(results));
+  TimingEnd(TIMING_OUTPUT);
+  PetscCall(SummaryWrite(results->model, results->scene, results->directory, run, results->stepped ? &results->last : NULL, results->values));
+  PetscCall(ResultsPrintProbes(results));
+  ResultsPrintEnd(results, run);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

@@ -1,0 +1,245 @@
+#include "stepper.h"
+
+/* Load parameters closer than this are the same point of the way (t runs from 0 to 1). */
+#define STEPPER_SAME_T 1e-12
+/* A failed step is tried again with this part of its dt. */
+#define STEPPER_CUT 0.5
+/* Up to this many dt short of a landing point the step stretches to it, ... */
+#define STEPPER_STRETCH 1.2
+/* ... up to this many the rest is halved, so that no sliver of a step remains. */
+#define STEPPER_HALVE 2.0
+/* iterations: the Newton iterations that a step should take; fewer let dt grow, more let it shrink by the square root of the ratio. */
+#define STEPPER_TARGET_ITERATIONS 6.0
+/* iterations: the most an accepted step lets dt shrink. */
+#define STEPPER_SHRINK 0.5
+/* fixed: after a cut dt returns to the scene's value by this factor each step. */
+#define STEPPER_RECOVER 2.0
+
+typedef struct {
+  StepControlKind kind;
+  const char     *name;
+  /* dt of the next step after one of dt that took `newton` iterations */
+  PetscReal (*next)(LoadStepper, PetscReal dt, PetscInt newton);
+} StepControl;
+
+struct _n_LoadStepper {
+  MPI_Comm             comm;
+  Model                model;
+  const StepControl   *control;
+  PetscReal            dt, initial, dt_min, dt_max, growth;
+  PetscInt             n_landings, next_landing; /* load parameters to be met exactly, ascending, the last one 1 */
+  PetscReal           *landings;
+  LoadStepperMonitorFn monitor;
+  void                *monitor_context;
+  PetscBool            view;
+};
+
+static PetscReal StepControlNext_Fixed(LoadStepper stepper, PetscReal dt, PetscInt newton)
+{
+  (void)newton;
+  return PetscMin(stepper->initial, STEPPER_RECOVER * dt);
+}
+
+static PetscReal StepControlNext_Iterations(LoadStepper stepper, PetscReal dt, PetscInt newton)
+{
+  const PetscReal factor = PetscSqrtReal(STEPPER_TARGET_ITERATIONS / PetscMax(1, newton));
+
+  return dt * PetscMax(STEPPER_SHRINK, PetscMin(stepper->growth, factor));
+}
+
+static const StepControl StepControls[] = {
+  {STEP_FIXED,      "fixed",      StepControlNext_Fixed     },
+  {STEP_ITERATIONS, "iterations", StepControlNext_Iterations},
+};
+
+/* LoadStepperCreate - Collective. */
+PetscErrorCode LoadStepperCreate(MPI_Comm comm, LoadStepper *stepper)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscNew(stepper));
+  (*stepper)->comm = comm;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* LoadStepperDestroy - Collective. The model remains. */
+PetscErrorCode LoadStepperDestroy(LoadStepper *stepper)
+{
+  PetscFunctionBeginUser;
+  if (!*stepper) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscFree((*stepper)->landings));
+  PetscCall(PetscFree(*stepper));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* LoadStepperSetModel - the model to be stepped; borrowed, set up (ModelSetUp()) by the caller. Not collective. */
+PetscErrorCode LoadStepperSetModel(LoadStepper stepper, Model model)
+{
+  PetscFunctionBeginUser;
+  stepper->model = model;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode AddHistory(const History *history, PetscInt *n, PetscReal *landings)
+{
+  PetscFunctionBeginUser;
+  for (int i = 0; i < history->n; i++)
+    if (history->t[i] > STEPPER_SAME_T && history->t[i] < 1 - STEPPER_SAME_T) landings[(*n)++] = history->t[i];
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Every load parameter that a step must end on: `at`, the breakpoints of all histories, 1. */
+static PetscErrorCode LoadStepperSetLandings(LoadStepper stepper, Scene scene)
+{
+  PetscInt n = scene->stepping.n_at + 1, kept = 0;
+
+  PetscFunctionBeginUser;
+  for (int l = 0; l < scene->n_loads; l++) n += scene->loads[l].history.n;
+  for (int b = 0; b < scene->n_bodies; b++)
+    for (int m = 0; m < scene->bodies[b].n_motions; m++) n += scene->bodies[b].motions[m].history.n;
+  PetscCall(PetscFree(stepper->landings));
+  PetscCall(PetscMalloc1(n, &stepper->landings));
+  n = 0;
+  for (int i = 0; i < scene->stepping.n_at; i++) stepper->landings[n++] = scene->stepping.at[i];
+  for (int l = 0; l < scene->n_loads; l++) PetscCall(AddHistory(&scene->loads[l].history, &n, stepper->landings));
+  for (int b = 0; b < scene->n_bodies; b++)
+    for (int m = 0; m < scene->bodies[b].n_motions; m++) PetscCall(AddHistory(&scene->bodies[b].motions[m].history, &n, stepper->landings));
+  stepper->landings[n++] = 1;
+  PetscCall(PetscSortReal(n, stepper->landings));
+  for (PetscInt i = 0; i < n; i++) {
+    if (stepper->landings[i] <= STEPPER_SAME_T) continue;
+    if (!kept || stepper->landings[i] > stepper->landings[kept - 1] + STEPPER_SAME_T) stepper->landings[kept++] = stepper->landings[i];
+  }
+  stepper->n_landings = kept;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* LoadStepperSetFromScene - control, dt and its bounds, landing points. The only source of these values. Not collective. */
+PetscErrorCode LoadStepperSetFromScene(LoadStepper stepper, Scene scene)
+{
+  PetscFunctionBeginUser;
+  for (size_t c = 0; c < PETSC_STATIC_ARRAY_LENGTH(StepControls); c++)
+    if (StepControls[c].kind == scene->stepping.control) stepper->control = &StepControls[c];
+  stepper->initial = scene->stepping.initial;
+  stepper->dt_min  = scene->stepping.dt_min;
+  stepper->dt_max  = scene->stepping.dt_max;
+  stepper->growth  = scene->stepping.growth;
+  PetscCall(LoadStepperSetLandings(stepper, scene));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* LoadStepperSetFromOptions - what is no physics and no stepping value, and so may come from PETSc's options.
+
+   Options Database Key:
+   -load_stepper_view - print the stepper before it starts
+
+   Collective. */
+PetscErrorCode LoadStepperSetFromOptions(LoadStepper stepper)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscOptionsGetBool(NULL, NULL, "-load_stepper_view", &stepper->view, NULL));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* LoadStepperMonitorSet - a function called after each accepted step. Logically collective. */
+PetscErrorCode LoadStepperMonitorSet(LoadStepper stepper, LoadStepperMonitorFn monitor, void *context)
+{
+  PetscFunctionBeginUser;
+  stepper->monitor         = monitor;
+  stepper->monitor_context = context;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* LoadStepperView - prints control, dt, bounds and landing points. Collective on the viewer. */
+PetscErrorCode LoadStepperView(LoadStepper stepper, PetscViewer viewer)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscViewerASCIIPrintf(viewer, "LoadStepper: control %s, initial %g, dt_min %g, dt_max %g, growth %g\n", stepper->control->name, (double)stepper->initial, (double)stepper->dt_min, (double)stepper->dt_max, (double)stepper->growth));
+  PetscCall(PetscViewerASCIIPrintf(viewer, "  lands on"));
+  for (PetscInt i = 0; i < stepper->n_landings; i++) PetscCall(PetscViewerASCIIPrintf(viewer, " %g", (double)stepper->landings[i]));
+  PetscCall(PetscViewerASCIIPrintf(viewer, "\n"));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The end of a step of about dt from t: exactly the next landing point where it is near. *clipped: dt was shortened for it, so its size says nothing of what the model can take. */
+static PetscReal StepEnd(LoadStepper stepper, PetscReal t, PetscReal dt, PetscBool *clipped)
+{
+  PetscReal landing, rest;
+
+  while (stepper->landings[stepper->next_landing] <= t + STEPPER_SAME_T) stepper->next_landing++;
+  landing  = stepper->landings[stepper->next_landing];
+  rest     = landing - t;
+  *clipped = PETSC_FALSE;
+  if (rest <= STEPPER_STRETCH * dt) {
+    *clipped = rest < dt - STEPPER_SAME_T ? PETSC_TRUE : PETSC_FALSE;
+    return landing;
+  }
+  if (rest < STEPPER_HALVE * dt) {
+    *clipped = PETSC_TRUE;
+    return t + rest / 2;
+  }
+  return t + dt;
+}
+
+/* Tries one step, halving it until it converges or falls below the floor. */
+static PetscErrorCode LoadStepperAdvance(LoadStepper stepper, StepRecord *record, StepperReport *report, PetscBool *advanced)
+{
+  Model           model = stepper->model;
+  const PetscReal t = model->t, first = stepper->dt;
+  SolveReport     solve;
+  PetscBool       clipped;
+
+  PetscFunctionBeginUser;
+  *advanced = PETSC_FALSE;
+  *record   = (StepRecord){.step = report->steps + 1};
+  while (PETSC_TRUE) {
+    const PetscReal end = StepEnd(stepper, t, stepper->dt, &clipped), dt = end - t;
+
+    PetscCall(ModelSolve(model, end, &solve));
+    record->attempts++;
+    record->newton += solve.newton;
+    record->krylov += solve.krylov;
+    report->newton_iterations += solve.newton;
+    report->krylov_iterations += solve.krylov;
+    if (solve.result == SOLVE_CONVERGED) {
+      record->t        = end;
+      record->dt       = dt;
+      record->residual = solve.residual;
+      if (model->contact) PetscCall(ContactSummarise(model->contact, &record->contact));
+      PetscCall(ModelAccept(model));
+      report->steps++;
+      report->newton_accepted += solve.newton;
+      if (!clipped) stepper->dt = PetscMin(stepper->dt_max, stepper->control->next(stepper, dt, solve.newton));
+      *advanced = PETSC_TRUE;
+      PetscFunctionReturn(PETSC_SUCCESS);
+    }
+    PetscCall(ModelRestore(model));
+    report->steps_failed++;
+    stepper->dt = STEPPER_CUT * dt;
+    if (stepper->dt < stepper->dt_min) {
+      PetscCall(PetscSNPrintf(report->message, sizeof(report->message), "no equilibrium from t = %.6g to %.6g: %s; %s; tried %" PetscInt_FMT " steps, dt from %.3g down to %.3g (dt_min %.3g)", (double)t, (double)end, SolveResults[solve.result], solve.detail, record->attempts, (double)first, (double)dt, (double)stepper->dt_min));
+      PetscFunctionReturn(PETSC_SUCCESS);
+    }
+  }
+}
+
+/* LoadStepperSolve - steps the model from its t to 1, or until no step above dt_min converges; then the model stands at the last good state.
+
+   Collective. The monitor is called after each accepted step. */
+PetscErrorCode LoadStepperSolve(LoadStepper stepper, StepperReport *report)
+{
+  PetscBool  advanced = PETSC_TRUE;
+  StepRecord record;
+
+  PetscFunctionBeginUser;
+  *report               = (StepperReport){.t = stepper->model->t};
+  stepper->dt           = stepper->initial;
+  stepper->next_landing = 0;
+  if (stepper->view) PetscCall(LoadStepperView(stepper, PETSC_VIEWER_STDOUT_(stepper->comm)));
+  while (report->t < 1 - STEPPER_SAME_T && advanced) {
+    PetscCall(LoadStepperAdvance(stepper, &record, report, &advanced));
+    report->t = stepper->model->t;
+    if (advanced && stepper->monitor) PetscCall(stepper->monitor(stepper, &record, stepper->monitor_context));
+  }
+  report->done = advanced;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

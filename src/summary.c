@@ -1,0 +1,187 @@
+#include "summary.h"
+#include "commandline.h"
+#include "timing.h"
+#include <cJSON.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/resource.h>
+
+enum { TEXT_SIZE = 4096 };
+
+/* What all ranks together used */
+typedef struct {
+  PetscReal seconds[TIMING_KINDS]; /* wall, of the slowest rank for each purpose */
+  PetscReal cpu_s, peak_rss_mb;    /* sum, largest */
+} Usage;
+
+static PetscErrorCode UsageCollect(MPI_Comm comm, Usage *usage)
+{
+  struct rusage self;
+
+  PetscFunctionBeginUser;
+  PetscCheck(!getrusage(RUSAGE_SELF, &self), PETSC_COMM_SELF, PETSC_ERR_SYS, "getrusage failed");
+  for (int k = 0; k < TIMING_KINDS; k++) usage->seconds[k] = TimingSeconds((TimingKind)k);
+  usage->cpu_s       = (PetscReal)(self.ru_utime.tv_sec + self.ru_stime.tv_sec) + 1e-6 * (PetscReal)(self.ru_utime.tv_usec + self.ru_stime.tv_usec);
+  usage->peak_rss_mb = (PetscReal)self.ru_maxrss / 1024.0; /* Linux counts kilobytes */
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, usage->seconds, TIMING_KINDS, MPIU_REAL, MPI_MAX, comm));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &usage->cpu_s, 1, MPIU_REAL, MPI_SUM, comm));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &usage->peak_rss_mb, 1, MPIU_REAL, MPI_MAX, comm));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The parts of a text between commas, without the blanks around them */
+static void AddList(cJSON *json, const char *key, char *text)
+{
+  cJSON *list = cJSON_AddArrayToObject(json, key);
+  char  *rest = NULL;
+
+  for (char *part = strtok_r(text, ",", &rest); part; part = strtok_r(NULL, ",", &rest)) {
+    part += strspn(part, " ");
+    for (size_t n = strlen(part); n && part[n - 1] == ' '; n--) part[n - 1] = '\0';
+    if (*part) cJSON_AddItemToArray(list, cJSON_CreateString(part));
+  }
+}
+
+/* null where there is no value */
+static void AddReal(cJSON *json, const char *key, PetscReal value)
+{
+  if (isfinite((double)value))
+    cJSON_AddNumberToObject(json, key, (double)value);
+  else
+    cJSON_AddNullToObject(json, key);
+}
+
+/* PETSc's options as they are now, the scene's own, and those that nothing has asked for */
+static PetscErrorCode AddOptions(cJSON *json, Scene scene)
+{
+  cJSON   *options = cJSON_AddObjectToObject(json, "options"), *map, *unused;
+  char    *all, **names, **values;
+  PetscInt n;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscOptionsGetAll(NULL, &all));
+  cJSON_AddStringToObject(options, "petsc", all);
+  PetscCall(PetscFree(all));
+  map = cJSON_AddObjectToObject(options, "scene");
+  for (int i = 0; i < scene->n_petsc; i++) cJSON_AddStringToObject(map, scene->petsc[i].key, scene->petsc[i].value ? scene->petsc[i].value : "");
+  unused = cJSON_AddArrayToObject(options, "unused");
+  PetscCall(PetscOptionsLeftGet(NULL, &n, &names, &values));
+  for (PetscInt i = 0; i < n; i++) cJSON_AddItemToArray(unused, cJSON_CreateString(names[i]));
+  PetscCall(PetscOptionsLeftRestore(NULL, &n, &names, &values));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static void AddRun(cJSON *json, const RunRecord *run)
+{
+  cJSON_AddStringToObject(json, "status", run->status);
+  if (run->message)
+    cJSON_AddStringToObject(json, "message", run->message);
+  else
+    cJSON_AddNullToObject(json, "message");
+  cJSON_AddNumberToObject(json, "steps", (double)run->steps);
+  cJSON_AddNumberToObject(json, "steps_failed", (double)run->steps_failed);
+  cJSON_AddNumberToObject(json, "newton_iterations", (double)run->newton_iterations);
+  cJSON_AddNumberToObject(json, "newton_accepted", (double)run->newton_accepted);
+  cJSON_AddNumberToObject(json, "krylov_iterations", (double)run->krylov_iterations);
+}
+
+static void AddUsage(cJSON *json, const RunRecord *run, const Usage *usage)
+{
+  cJSON *seconds;
+
+  AddReal(json, "wall_s", run->wall_s);
+  AddReal(json, "cpu_s", usage->cpu_s);
+  AddReal(json, "mesh_s", run->mesh_s);
+  AddReal(json, "peak_rss_mb", usage->peak_rss_mb);
+  seconds = cJSON_AddObjectToObject(json, "seconds");
+  for (int k = 0; k < TIMING_KINDS; k++) AddReal(seconds, TimingNames[k], usage->seconds[k]);
+}
+
+/* The last accepted state */
+static void AddState(cJSON *json, Scene scene, PetscBool has_contact, const StepRecord *last, const PetscReal *probes)
+{
+  const PetscBool touches = has_contact && last ? PETSC_TRUE : PETSC_FALSE;
+  cJSON          *map;
+
+  AddReal(json, "t", last ? last->t : 0.0);
+  AddReal(json, "max_penetration", touches ? last->contact.max_penetration : NAN);
+  AddReal(json, "max_penetration_over_h", touches ? last->contact.max_penetration_over_h : NAN);
+  cJSON_AddNumberToObject(json, "contact_nodes", touches ? (double)last->contact.nodes : 0.0);
+  map = cJSON_AddObjectToObject(json, "probes");
+  for (int i = 0; i < scene->n_probes; i++) AddReal(map, scene->probes[i].name, last ? probes[i] : NAN);
+}
+
+static void AddPartition(cJSON *json, const Mesh mesh)
+{
+  cJSON *map = cJSON_AddObjectToObject(json, "partition");
+
+  cJSON_AddStringToObject(map, "tool", mesh->partition.tool);
+  cJSON_AddNumberToObject(map, "edge_cut", (double)mesh->partition.edge_cut);
+  AddReal(map, "imbalance_cells", mesh->partition.imbalance_cells);
+  AddReal(map, "imbalance_contact", mesh->partition.imbalance_contact);
+}
+
+static PetscErrorCode AddContact(cJSON *json, Contact contact)
+{
+  cJSON *list = cJSON_AddArrayToObject(json, "contact");
+
+  PetscFunctionBeginUser;
+  for (int p = 0; p < (contact ? ContactPairs(contact) : 0); p++) {
+    cJSON    *pair = cJSON_CreateObject(), *penalty;
+    PetscReal least, most;
+
+    PetscCall(ContactPairPenalty(contact, p, &least, &most));
+    cJSON_AddItemToArray(list, pair);
+    cJSON_AddStringToObject(pair, "name", ContactPairName(contact, p));
+    cJSON_AddNumberToObject(pair, "fall_backs", 0);
+    penalty = cJSON_AddObjectToObject(pair, "penalty");
+    AddReal(penalty, "min", least);
+    AddReal(penalty, "max", most);
+    cJSON_AddNumberToObject(penalty, "raised", 0);
+    cJSON_AddNumberToObject(penalty, "lowered", 0);
+    cJSON_AddNumberToObject(penalty, "clamped", 0);
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*
+  SummaryWrite - Writes summary.json under a temporary name and renames it. Collective.
+
+  Input: model, scene, directory (exists), run (counts and wall seconds), last (last accepted step, NULL: none), probes[scene->n_probes]
+  (final values, NaN: none). Errors: PETSC_ERR_FILE_OPEN, PETSC_ERR_FILE_WRITE, PETSC_ERR_MEM.
+*/
+PetscErrorCode SummaryWrite(Model model, Scene scene, const char *directory, const RunRecord *run, const StepRecord *last, const PetscReal *probes)
+{
+  const Mesh  mesh = model->mesh;
+  cJSON      *json = cJSON_CreateObject();
+  char        effects[TEXT_SIZE], *text;
+  PetscMPIInt rank, size;
+  PetscInt    dofs;
+  Usage       usage;
+
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Comm_rank(mesh->comm, &rank));
+  PetscCallMPI(MPI_Comm_size(mesh->comm, &size));
+  PetscCall(ModelEffects(model, effects, sizeof(effects)));
+  PetscCall(ModelDofs(model, &dofs));
+  PetscCall(UsageCollect(mesh->comm, &usage));
+  cJSON_AddStringToObject(json, "name", scene->name);
+  cJSON_AddStringToObject(json, "version", BURNISH_VERSION);
+  cJSON_AddNumberToObject(json, "ranks", size);
+  cJSON_AddNumberToObject(json, "dofs", (double)dofs);
+  cJSON_AddNumberToObject(json, "elements", (double)mesh->n_cells_global);
+  AddList(json, "effects", effects);
+  PetscCall(AddOptions(json, scene));
+  AddRun(json, run);
+  AddUsage(json, run, &usage);
+  AddState(json, scene, model->contact ? PETSC_TRUE : PETSC_FALSE, last, probes);
+  AddPartition(json, mesh);
+  PetscCall(AddContact(json, model->contact));
+  text = cJSON_Print(json);
+  PetscCheck(text, PETSC_COMM_SELF, PETSC_ERR_MEM, "No memory for summary.json");
+  if (rank == 0) PetscCall(ResultsReplaceFile(directory, "summary.json", text));
+  cJSON_free(text);
+  cJSON_Delete(json);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

@@ -1,0 +1,425 @@
+#include "elementkernel.h"
+#include "refusal.h"
+#include "surface.h"
+
+/* A plane of symmetry may deviate from flatness, and its normal from an axis, by this fraction of the model's size: round-off of a CAD kernel. */
+#define SURFACE_FLATNESS 1e-6
+
+static void FaceCoordinates(ContactSurface surface, const Facet *face, const PetscReal *u, double *X)
+{
+  Mesh             mesh   = surface->mesh;
+  const PetscReal *coords = surface->rigid ? surface->rigid->coords : mesh->coords;
+
+  for (int a = 0; a < ElementGet(face->type)->nodes; a++) {
+    for (int d = 0; d < mesh->dim; d++) {
+      X[a * mesh->dim + d] = coords[face->nodes[a] * mesh->dim + d] + (u ? u[face->nodes[a] * mesh->dim + d] : 0) + (d == 0 ? mesh->centre[0] : 0);
+    }
+  }
+}
+
+/* Plain area (length in 2D), also in axisymmetric scenes: sizes are lengths in the meridian. */
+static PetscReal FaceArea(ContactSurface surface, const Facet *face, const double *X)
+{
+  const int dim = surface->mesh->dim;
+  double    area[FACE_MAX_NODES] = {0}, sum = 0;
+
+  FaceAreaKernel(face->type, dim, dim == 3 ? GEOMETRY_SOLID : GEOMETRY_PLANE_STRAIN, X, area, NULL);
+  for (int a = 0; a < ElementGet(face->type)->nodes; a++) sum += area[a];
+  return sum;
+}
+
+static PetscErrorCode SurfaceFacesFromGroup(ContactSurface surface)
+{
+  const MeshGroup *group = surface->group;
+
+  PetscFunctionBeginUser;
+  surface->n_faces = group->n_faces;
+  PetscCall(PetscCalloc2(surface->n_faces, &surface->faces, surface->n_faces, &surface->face_size));
+  for (PetscInt f = 0; f < surface->n_faces; f++) {
+    Facet   *face = &surface->faces[f];
+    PetscInt nodes[FACE_MAX_NODES];
+
+    face->type = MeshFaceNodes(surface->mesh, group, f, nodes);
+    face->tag  = (long)group->face_tag[f];
+    for (int a = 0; a < ElementGet(face->type)->nodes; a++) face->nodes[a] = (int)nodes[a];
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode SurfaceFacesFromRigid(ContactSurface surface)
+{
+  const MeshRigid *rigid = surface->rigid;
+
+  PetscFunctionBeginUser;
+  surface->n_faces = rigid->n_faces;
+  PetscCall(PetscCalloc2(surface->n_faces, &surface->faces, surface->n_faces, &surface->face_size));
+  for (PetscInt f = 0; f < surface->n_faces; f++) {
+    Facet *face = &surface->faces[f];
+
+    face->type = rigid->face_type[f];
+    face->tag  = (long)rigid->face_tag[f];
+    for (int a = 0; a < ElementGet(face->type)->nodes; a++) face->nodes[a] = (int)rigid->face_nodes[rigid->face_ptr[f] + a];
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Stiffness of the layer of elements below a face: E over element height, height = volume over area (simplices: dim times that). */
+static PetscReal FaceStiffness(ContactSurface surface, Elasticity elasticity, PetscInt f, PetscReal area)
+{
+  Mesh           mesh = surface->mesh;
+  const PetscInt c    = surface->group->face_cell[f];
+  const Element *e    = ElementGet(mesh->cell_type[c]);
+  double         X[ELEMENT_MAX_NODES * 3], volume;
+
+  for (int a = 0; a < e->nodes; a++)
+    for (int d = 0; d < mesh->dim; d++) X[a * mesh->dim + d] = mesh->coords[mesh->cell_nodes[mesh->cell_ptr[c] + a] * mesh->dim + d];
+  volume = CellVolume(mesh->cell_type[c], mesh->dim, mesh->dim == 3 ? GEOMETRY_SOLID : GEOMETRY_PLANE_STRAIN, X);
+  return ElasticityCellModulus(elasticity, c) * area / (volume * (e->corners == e->dim + 1 ? e->dim : 1));
+}
+
+static PetscErrorCode SurfaceMeasure(ContactSurface surface, Elasticity elasticity)
+{
+  Mesh      mesh = surface->mesh;
+  PetscReal sum[4] = {0, 0, 0, 0}, most = 0; /* area, faces, size, stiffness * area */
+  double    X[FACE_MAX_NODES * 3];
+
+  PetscFunctionBeginUser;
+  for (PetscInt f = 0; f < surface->n_faces; f++) {
+    PetscReal area;
+
+    FaceCoordinates(surface, &surface->faces[f], NULL, X);
+    area                  = FaceArea(surface, &surface->faces[f], X);
+    surface->face_size[f] = mesh->dim == 3 ? PetscSqrtReal(area) : area;
+    most                  = PetscMax(most, surface->face_size[f]);
+    sum[0] += area;
+    sum[1] += 1;
+    sum[2] += surface->face_size[f];
+    if (surface->group) sum[3] += area * FaceStiffness(surface, elasticity, f, area);
+  }
+  if (surface->group) {
+    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sum, 4, MPIU_REAL, MPI_SUM, mesh->comm));
+    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &most, 1, MPIU_REAL, MPI_MAX, mesh->comm));
+  }
+  surface->mean_size = sum[2] / sum[1];
+  surface->max_size  = most;
+  surface->stiffness = sum[3] / sum[0];
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* SurfaceCreate - the contact surface of that name: a surface of a deformable body or of a meshed rigid tool.
+
+   path, key: the scene's key that names it, for messages. Refuses unknown and empty surfaces. Collective. */
+PetscErrorCode SurfaceCreate(Mesh mesh, Scene scene, Elasticity elasticity, const char *path, const char *key, const char *name, ContactSurface *out)
+{
+  ContactSurface surface;
+  PetscInt       faces;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscNew(&surface));
+  surface->mesh  = mesh;
+  surface->body  = -1;
+  surface->rigid = MeshFindRigid(mesh, name);
+  if (surface->rigid) {
+    for (int b = 0; b < scene->n_bodies; b++)
+      if (scene->bodies[b].rigid && !strcmp(scene->bodies[b].name, name)) surface->body = b;
+    PetscCall(SurfaceFacesFromRigid(surface));
+    faces = surface->n_faces;
+  } else {
+    MeshGroup *group;
+
+    PetscCall(MeshGetGroup(mesh, scene, path, key, name, mesh->dim - 1, &group));
+    surface->group = group;
+    PetscCall(SurfaceFacesFromGroup(surface));
+    PetscCallMPI(MPI_Allreduce(&surface->n_faces, &faces, 1, MPIU_INT, MPI_SUM, mesh->comm));
+  }
+  if (!faces) PetscCall(RefuseInput(mesh->comm, "%s: the contact surface '%s' has no faces; allowed: a physical surface with at least one face", SceneWhere(scene, path, key), name));
+  PetscCall(SurfaceMeasure(surface, elasticity));
+  *out = surface;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* SurfaceDestroy - Collective. */
+PetscErrorCode SurfaceDestroy(ContactSurface *surface)
+{
+  PetscFunctionBeginUser;
+  if (!*surface) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscFree2((*surface)->faces, (*surface)->face_size));
+  PetscCall(PetscFree(*surface));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* An edge of a face (an end in 2D) by the rank-independent numbers of its corners. */
+typedef struct {
+  PetscInt id[2], face;
+  int      edge;
+} FaceEdge;
+
+static int FaceEdgeCompare(const void *a, const void *b)
+{
+  const FaceEdge *p = a, *q = b;
+
+  if (p->id[0] != q->id[0]) return p->id[0] < q->id[0] ? -1 : 1;
+  if (p->id[1] != q->id[1]) return p->id[1] < q->id[1] ? -1 : 1;
+  return 0;
+}
+
+static int FaceEdges(const Facet *face)
+{
+  const Element *e = ElementGet(face->type);
+  return e->dim == 1 ? 2 : e->edges;
+}
+
+static int FaceEdgeNodes(const Facet *face, int edge, int corners[2])
+{
+  const Element *e = ElementGet(face->type);
+
+  corners[0] = e->dim == 1 ? edge : e->edge_corners[edge][0];
+  corners[1] = e->dim == 1 ? edge : e->edge_corners[edge][1];
+  return e->dim == 1 ? 1 : 2;
+}
+
+/* Drops from a sorted list every edge that occurs more than once. */
+static PetscInt KeepSingleEdges(PetscInt n, FaceEdge *edges)
+{
+  PetscInt kept = 0;
+
+  qsort(edges, n, sizeof(*edges), FaceEdgeCompare);
+  for (PetscInt i = 0; i < n;) {
+    PetscInt j = i + 1;
+
+    while (j < n && !FaceEdgeCompare(&edges[i], &edges[j])) j++;
+    if (j == i + 1) edges[kept++] = edges[i];
+    i = j;
+  }
+  return kept;
+}
+
+static PetscBool NodeInGroup(const MeshGroup *group, PetscInt node)
+{
+  PetscInt at;
+
+  if (PetscFindInt(node, group->n_nodes, group->nodes, &at)) return PETSC_FALSE;
+  return at >= 0 ? PETSC_TRUE : PETSC_FALSE;
+}
+
+static PetscBool EdgeOnSymmetry(ContactSurface surface, const FaceEdge *edge, const MeshGroup *const *symmetry, int n_symmetry)
+{
+  const Facet *face = &surface->faces[edge->face];
+  int          corners[2];
+  const int    n = FaceEdgeNodes(face, edge->edge, corners);
+
+  for (int s = 0; s < n_symmetry; s++) {
+    PetscBool on = PETSC_TRUE;
+
+    for (int i = 0; i < n; i++) on = (PetscBool)(on && NodeInGroup(symmetry[s], face->nodes[corners[i]]));
+    if (on) return PETSC_TRUE;
+  }
+  return PETSC_FALSE;
+}
+
+/* Of the edges that stand alone on this rank, those that another rank holds too are partition borders, not ends of the surface. */
+static PetscErrorCode DropPartitionBorders(MPI_Comm comm, PetscInt *n, FaceEdge *edges)
+{
+  PetscMPIInt size, mine, *counts, *starts;
+  PetscInt   *all, *send, total = 0, kept = 0;
+  FaceEdge   *every;
+
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Comm_size(comm, &size));
+  PetscCall(PetscMalloc3(size, &counts, size, &starts, 2 * *n, &send));
+  PetscCall(PetscMPIIntCast(2 * *n, &mine));
+  PetscCallMPI(MPI_Allgather(&mine, 1, MPI_INT, counts, 1, MPI_INT, comm));
+  for (PetscMPIInt r = 0; r < size; r++) {
+    PetscCall(PetscMPIIntCast(total, &starts[r]));
+    total += counts[r];
+  }
+  for (PetscInt i = 0; i < *n; i++)
+    for (int k = 0; k < 2; k++) send[2 * i + k] = edges[i].id[k];
+  PetscCall(PetscMalloc2(total, &all, total / 2, &every));
+  PetscCallMPI(MPI_Allgatherv(send, mine, MPIU_INT, all, counts, starts, MPIU_INT, comm));
+  for (PetscInt i = 0; i < total / 2; i++) every[i] = (FaceEdge){{all[2 * i], all[2 * i + 1]}, 0, 0};
+  total = KeepSingleEdges(total / 2, every);
+  for (PetscInt i = 0; i < *n; i++)
+    if (bsearch(&edges[i], every, total, sizeof(*every), FaceEdgeCompare)) edges[kept++] = edges[i];
+  *n = kept;
+  PetscCall(PetscFree2(all, every));
+  PetscCall(PetscFree3(counts, starts, send));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode SurfaceFindFreeEdges(ContactSurface surface, const MeshGroup *const *symmetry, int n_symmetry)
+{
+  Mesh      mesh = surface->mesh;
+  PetscInt  n    = 0;
+  FaceEdge *edges;
+
+  PetscFunctionBeginUser;
+  for (PetscInt f = 0; f < surface->n_faces; f++) n += FaceEdges(&surface->faces[f]);
+  PetscCall(PetscMalloc1(n, &edges));
+  n = 0;
+  for (PetscInt f = 0; f < surface->n_faces; f++) {
+    const Facet *face = &surface->faces[f];
+
+    for (int e = 0; e < FaceEdges(face); e++) {
+      int      corners[2];
+      PetscInt a, b;
+
+      FaceEdgeNodes(face, e, corners);
+      a          = surface->rigid ? face->nodes[corners[0]] : mesh->node_id[face->nodes[corners[0]]];
+      b          = surface->rigid ? face->nodes[corners[1]] : mesh->node_id[face->nodes[corners[1]]];
+      edges[n++] = (FaceEdge){{PetscMin(a, b), PetscMax(a, b)}, f, e};
+    }
+  }
+  n = KeepSingleEdges(n, edges);
+  if (surface->group) PetscCall(DropPartitionBorders(mesh->comm, &n, edges));
+  for (PetscInt i = 0; i < n; i++) {
+    if (surface->group && EdgeOnSymmetry(surface, &edges[i], symmetry, n_symmetry)) continue;
+    surface->faces[edges[i].face].free_edges |= 1 << edges[i].edge;
+  }
+  PetscCall(PetscFree(edges));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode SurfaceNodeAreas(ContactSurface surface, Geometry geometry, const PetscReal *u, PetscReal *area, PetscReal *normal)
+{
+  Mesh      mesh = surface->mesh;
+  const int dim  = mesh->dim;
+  double    X[FACE_MAX_NODES * 3];
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscArrayzero(area, mesh->n_nodes));
+  if (normal) PetscCall(PetscArrayzero(normal, 3 * mesh->n_nodes));
+  for (PetscInt f = 0; f < surface->n_faces; f++) {
+    const Facet *face = &surface->faces[f];
+    double       a[FACE_MAX_NODES] = {0}, n[FACE_MAX_NODES * 3] = {0};
+
+    FaceCoordinates(surface, face, u, X);
+    FaceAreaKernel(face->type, dim, geometry, X, a, n);
+    for (int i = 0; i < ElementGet(face->type)->nodes; i++) {
+      area[face->nodes[i]] += a[i];
+      for (int d = 0; normal && d < dim; d++) normal[3 * face->nodes[i] + d] += n[i * dim + d];
+    }
+  }
+  PetscCall(MeshSumNodes(mesh, 1, area));
+  if (normal) PetscCall(MeshSumNodes(mesh, 3, normal));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode SurfaceNodeSizes(ContactSurface surface, PetscReal *size, PetscReal *turn)
+{
+  Mesh       mesh = surface->mesh;
+  PetscReal *sum, *normal, *area;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc3(2 * mesh->n_nodes, &sum, 3 * mesh->n_nodes, &normal, mesh->n_nodes, &area));
+  PetscCall(SurfaceNodeAreas(surface, mesh->dim == 3 ? GEOMETRY_SOLID : GEOMETRY_PLANE_STRAIN, NULL, area, normal));
+  PetscCall(PetscArrayzero(sum, 2 * mesh->n_nodes));
+  for (PetscInt f = 0; f < surface->n_faces; f++) {
+    const Facet *face = &surface->faces[f];
+
+    for (int i = 0; i < ElementGet(face->type)->nodes; i++) {
+      sum[2 * face->nodes[i]] += surface->face_size[f];
+      sum[2 * face->nodes[i] + 1] += 1;
+    }
+  }
+  PetscCall(MeshSumNodes(mesh, 2, sum));
+  for (PetscInt n = 0; n < mesh->n_nodes; n++) {
+    const PetscReal *m = &normal[3 * n], length = PetscSqrtReal(m[0] * m[0] + m[1] * m[1] + m[2] * m[2]);
+
+    size[n] = sum[2 * n + 1] > 0 ? sum[2 * n] / sum[2 * n + 1] : 0;
+    turn[n] = area[n] > 0 ? PetscAcosReal(PetscMin(1, length / area[n])) : 0; /* the resultant of faces that turn by +-a is cos a of their area */
+  }
+  PetscCall(PetscFree3(sum, normal, area));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The axis a planar group is normal to and its position, or axis -1. */
+static PetscErrorCode GroupPlane(Mesh mesh, const MeshGroup *group, int *axis, PetscReal *position)
+{
+  PetscReal range[6]; /* -min, max of each component over all ranks */
+
+  PetscFunctionBeginUser;
+  for (int k = 0; k < 6; k++) range[k] = PETSC_MIN_REAL;
+  for (PetscInt i = 0; i < group->n_nodes; i++) {
+    for (int d = 0; d < mesh->dim; d++) {
+      const PetscReal x = mesh->coords[group->nodes[i] * mesh->dim + d];
+
+      range[2 * d]     = PetscMax(range[2 * d], -x);
+      range[2 * d + 1] = PetscMax(range[2 * d + 1], x);
+    }
+  }
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, range, 6, MPIU_REAL, MPI_MAX, mesh->comm));
+  *axis = -1;
+  for (int d = 0; d < mesh->dim; d++) {
+    if (range[2 * d] + range[2 * d + 1] > SURFACE_FLATNESS * mesh->size) continue;
+    *axis     = d;
+    *position = 0.5 * (range[2 * d + 1] - range[2 * d]);
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscBool SupportHolds(Scene scene, const char *surface, int component)
+{
+  for (int s = 0; s < scene->n_supports; s++)
+    if (!strcmp(scene->supports[s].surface, surface) && scene->supports[s].fixed[component]) return PETSC_TRUE;
+  return PETSC_FALSE;
+}
+
+/* Doubles the set of images by one more plane. */
+static void ImagesAddPlane(int axis, PetscReal position, int *n, SurfaceImage *images)
+{
+  for (int i = 0; i < *n; i++) {
+    SurfaceImage image = images[i];
+
+    image.sign[axis]   = -1;
+    image.shift[axis]  = 2 * position;
+    image.reverses     = (PetscBool)!image.reverses;
+    images[*n + i]     = image;
+  }
+  *n *= 2;
+}
+
+PetscErrorCode SurfaceImages(Mesh mesh, Scene scene, const SceneContact *contact, int *n_images, SurfaceImage images[SURFACE_MAX_IMAGES])
+{
+  int taken[3] = {0, 0, 0};
+
+  PetscFunctionBeginUser;
+  *n_images = 1;
+  images[0] = (SurfaceImage){{1, 1, 1}, {0, 0, 0}, PETSC_FALSE};
+  if (scene->geometry == GEOMETRY_AXISYMMETRIC) {
+    ImagesAddPlane(0, -mesh->centre[0], n_images, images);
+    taken[0] = 1;
+  }
+  for (int s = 0; s < contact->n_symmetry; s++) {
+    const char *name = contact->symmetry[s];
+    MeshGroup  *group;
+    PetscReal   position = 0;
+    int         axis;
+
+    PetscCall(MeshGetGroup(mesh, scene, contact->path, "symmetry", name, mesh->dim - 1, &group));
+    PetscCall(GroupPlane(mesh, group, &axis, &position));
+    if (axis < 0) PetscCall(RefuseInput(mesh->comm, "%s: '%s' is not a plane normal to a coordinate axis; allowed: planar surfaces x, y or z = constant", SceneWhere(scene, contact->path, "symmetry"), name));
+    if (!SupportHolds(scene, name, axis)) {
+      PetscCall(RefuseInput(mesh->comm, "%s: no support holds u%c on '%s', so it is no plane of symmetry; allowed: surfaces whose normal displacement a support fixes", SceneWhere(scene, contact->path, "symmetry"), "xyz"[axis], name));
+    }
+    if (taken[axis]) PetscCall(RefuseInput(mesh->comm, "%s: '%s' is a second plane normal to %c; allowed: one plane for each axis", SceneWhere(scene, contact->path, "symmetry"), name, "xyz"[axis]));
+    taken[axis] = 1;
+    ImagesAddPlane(axis, position, n_images, images);
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+Facet SurfaceImageFacet(const Facet *facet, const SurfaceImage *image)
+{
+  const Element *e     = ElementGet(facet->type);
+  const int      edges = FaceEdges(facet), middles = e->dim == 1 ? 1 : e->edges;
+  Facet          out   = *facet;
+
+  if (!image->reverses) return out;
+  for (int c = 0; c < e->corners; c++) out.nodes[c] = facet->nodes[e->dim == 1 ? 1 - c : (e->corners - c) % e->corners];
+  for (int m = 0; e->order == 2 && m < middles; m++) out.nodes[e->corners + m] = facet->nodes[e->corners + middles - 1 - m];
+  out.free_edges = 0;
+  for (int k = 0; k < edges; k++)
+    if (facet->free_edges >> k & 1) out.free_edges |= 1 << (edges - 1 - k);
+  return out;
+}

@@ -1,0 +1,209 @@
+/* CPU microseconds per element of elastic assembly on one rank (lines: name, value, unit), PetscFE beside it with the same quadrature on a
+   small mesh. kernel-*: one batch in cache; residual, tangent, insertion: a mesh of some ten thousand dofs; total: their sum. */
+#include "../box.h"
+#include <time.h>
+
+enum { ROUNDS = 3 }; /* the fastest round counts: others were disturbed */
+
+static const double shortest_round = 0.1; /* seconds: long against the clock's resolution */
+
+typedef struct {
+  Box              *box;
+  Elasticity        e;
+  PetscReal        *f;
+  const KernelCase *kernel;
+  PetscReal        *X, *u, *batch_f, *K;
+  DM                dm;
+  Vec               petsc_u, F;
+  Mat               J;
+} Work;
+
+static PetscErrorCode KernelForce(Work *w)
+{
+  const PetscReal E[KERNEL_LANES] = {1, 1, 1, 1, 1, 1, 1, 1}, nu[KERNEL_LANES] = {0};
+  PetscReal       J[KERNEL_LANES];
+
+  ElementKernel(w->kernel, w->X, w->u, E, nu, NULL, w->batch_f, NULL, J);
+  return PETSC_SUCCESS;
+}
+
+static PetscErrorCode KernelBoth(Work *w)
+{
+  const PetscReal E[KERNEL_LANES] = {1, 1, 1, 1, 1, 1, 1, 1}, nu[KERNEL_LANES] = {0};
+  PetscReal       J[KERNEL_LANES];
+
+  ElementKernel(w->kernel, w->X, w->u, E, nu, NULL, w->batch_f, w->K, J);
+  return PETSC_SUCCESS;
+}
+
+static PetscErrorCode Residual(Work *w)
+{
+  PetscBool ok;
+
+  return ElasticityResidual(w->e, w->box->u, w->f, NULL, NULL, &ok);
+}
+
+static PetscErrorCode Tangent(Work *w)
+{
+  return ElasticityTangent(w->e, w->box->u);
+}
+
+static PetscErrorCode Insert(Work *w)
+{
+  Mat K;
+
+  return ElasticityMatrix(w->e, &K);
+}
+
+static PetscErrorCode PetscResidual(Work *w)
+{
+  PetscFunctionBeginUser;
+  PetscCall(VecZeroEntries(w->F));
+  PetscCall(DMPlexSNESComputeResidualFEM(w->dm, w->petsc_u, w->F, NULL));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode PetscJacobian(Work *w)
+{
+  PetscFunctionBeginUser;
+  PetscCall(MatZeroEntries(w->J));
+  PetscCall(DMPlexSNESComputeJacobianFEM(w->dm, w->petsc_u, w->J, w->J, NULL));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static double Seconds(void)
+{
+  struct timespec t;
+
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
+  return t.tv_sec + 1e-9 * t.tv_nsec;
+}
+
+/* CPU microseconds of one call over the number of elements it does */
+static PetscErrorCode Time(PetscErrorCode (*call)(Work *), Work *w, PetscInt elements, double *microseconds)
+{
+  PetscFunctionBeginUser;
+  *microseconds = PETSC_MAX_REAL;
+  PetscCall(call(w)); /* first calls allocate and read memory for the first time */
+  for (int round = 0; round < ROUNDS; round++) {
+    double spent = 0;
+
+    for (PetscInt calls = 1; spent < shortest_round; calls *= 2) {
+      const double start = Seconds();
+
+      for (PetscInt k = 0; k < calls; k++) PetscCall(call(w));
+      spent = Seconds() - start;
+      if (spent >= shortest_round) *microseconds = PetscMin(*microseconds, 1e6 * spent / calls / elements);
+    }
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The first cells of the box as one batch */
+static PetscErrorCode CreateBatch(Work *w)
+{
+  const Element *e    = ElementGet(w->kernel->type);
+  const PetscInt dofs = e->nodes * 3;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc4(dofs * KERNEL_LANES, &w->X, dofs * KERNEL_LANES, &w->u, dofs * KERNEL_LANES, &w->batch_f, dofs * dofs * KERNEL_LANES, &w->K));
+  for (PetscInt lane = 0; lane < KERNEL_LANES; lane++) {
+    for (PetscInt k = 0; k < dofs; k++) {
+      const PetscInt dof = w->box->mesh->cell_nodes[lane * e->nodes + k / 3] * 3 + k % 3;
+
+      w->X[k * KERNEL_LANES + lane] = w->box->mesh->coords[dof];
+      w->u[k * KERNEL_LANES + lane] = w->box->u[dof];
+    }
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode Print(ElementType type, const char *what, double microseconds)
+{
+  return PetscPrintf(PETSC_COMM_SELF, "%s-%s %.3f us\n", ElementGet(type)->name, what, microseconds);
+}
+
+static PetscErrorCode TimeOurs(ElementType type, PetscInt n)
+{
+  const KernelCase kernel = {type, GEOMETRY_SOLID, KINEMATICS_FINITE, MATERIAL_SVK};
+  const struct {
+    const char *what;
+    PetscErrorCode (*call)(Work *);
+    PetscBool whole; /* mesh */
+  } parts[] = {
+    {"kernel-force",         KernelForce, PETSC_FALSE},
+    {"kernel-force-tangent", KernelBoth,  PETSC_FALSE},
+    {"residual",             Residual,    PETSC_TRUE },
+    {"tangent",              Tangent,     PETSC_TRUE },
+    {"insertion",            Insert,      PETSC_TRUE },
+  };
+  double total = 0;
+  Box  box;
+  Work w = {.box = &box, .kernel = &kernel};
+
+  PetscFunctionBeginUser;
+  PetscCall(BoxCreate(type, n, &box));
+  PetscCall(CreateBatch(&w));
+  PetscCall(ElasticityCreate(box.mesh, box.scene, &w.e));
+  PetscCall(PetscCalloc1(box.mesh->n_nodes * 3, &w.f));
+  for (size_t k = 0; k < PETSC_STATIC_ARRAY_LENGTH(parts); k++) {
+    double microseconds = 0;
+
+    PetscCall(Time(parts[k].call, &w, parts[k].whole ? box.mesh->n_cells : (PetscInt)KERNEL_LANES, &microseconds));
+    PetscCall(Print(type, parts[k].what, microseconds));
+    if (parts[k].whole) total += microseconds;
+  }
+  PetscCall(Print(type, "total", total));
+  PetscCall(PetscFree4(w.X, w.u, w.batch_f, w.K));
+  PetscCall(PetscFree(w.f));
+  PetscCall(ElasticityDestroy(&w.e));
+  PetscCall(BoxDestroy(&box));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode TimePetsc(ElementType type, PetscInt n)
+{
+  PetscErrorCode (*displacement[1])(PetscInt, PetscReal, const PetscReal[], PetscInt, PetscScalar[], void *) = {BoxDisplacement};
+  double microseconds = 0;
+  Box    box;
+  Work   w = {.box = &box};
+
+  PetscFunctionBeginUser;
+  PetscCall(BoxCreate(type, n, &box));
+  PetscCall(BoxCreatePetsc(&box, &w.dm));
+  PetscCall(DMCreateLocalVector(w.dm, &w.petsc_u));
+  PetscCall(DMProjectFunctionLocal(w.dm, 0, displacement, NULL, INSERT_ALL_VALUES, w.petsc_u));
+  PetscCall(VecDuplicate(w.petsc_u, &w.F));
+  PetscCall(DMCreateMatrix(w.dm, &w.J));
+  PetscCall(Time(PetscResidual, &w, box.mesh->n_cells, &microseconds));
+  PetscCall(Print(type, "petscfe-residual", microseconds));
+  PetscCall(Time(PetscJacobian, &w, box.mesh->n_cells, &microseconds));
+  PetscCall(Print(type, "petscfe-tangent", microseconds));
+  PetscCall(VecDestroy(&w.petsc_u));
+  PetscCall(VecDestroy(&w.F));
+  PetscCall(MatDestroy(&w.J));
+  PetscCall(DMDestroy(&w.dm));
+  PetscCall(BoxDestroy(&box));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+int main(int argc, char **argv)
+{
+  const struct {
+    ElementType type;
+    PetscInt    n, petsc_n; /* cubes per side */
+  } rows[] = {
+    {ELEMENT_TET4,  18, 4},
+    {ELEMENT_TET10, 10, 2},
+    {ELEMENT_HEX8,  32, 6},
+    {ELEMENT_HEX27, 14, 2},
+  };
+
+  PetscCall(PetscInitialize(&argc, &argv, NULL, NULL));
+  for (size_t k = 0; k < PETSC_STATIC_ARRAY_LENGTH(rows); k++) {
+    PetscCall(TimeOurs(rows[k].type, rows[k].n));
+    PetscCall(TimePetsc(rows[k].type, rows[k].petsc_n));
+  }
+  PetscCall(PetscFinalize());
+  return 0;
+}

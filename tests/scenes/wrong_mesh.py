@@ -1,0 +1,52 @@
+"""Wrong meshes and directories: each ends with exit status 1 and one message that says what is wrong."""
+import pathlib
+import re
+import subprocess
+
+from harness import Check, arguments, run, SCENES
+
+MESHES = SCENES.parent.parent / "meshes"
+
+
+def gmsh(name, *options):
+    """A mesh of square.geo with gmsh options."""
+    path = pathlib.Path(args.out).resolve() / name
+    path.parent.mkdir(parents=True, exist_ok=True)
+    subprocess.run(["gmsh", str(MESHES / "square.geo"), "-2", "-nt", "1", "-o", str(path), *options], check=True, stdout=subprocess.DEVNULL)
+    return path
+
+
+def refused(what, pattern, *overrides, options=(), out="run", keep=False, scene="wrong_mesh.yaml"):
+    finished = run(args, SCENES / scene, *options, out=out, overrides=overrides, keep=keep, must=None)
+    messages = [line for line in finished.text.splitlines() if line.startswith("burnish: ")]
+    said = len(messages) == 1 and re.search(pattern, finished.text)
+    check.holds(what, finished.status == 1 and said and "PETSC ERROR" not in finished.text, f"status {finished.status}: {finished.text.strip()[:300]}" if not said else messages[0])
+    check.holds(f"{what}: nothing solved", not (finished.directory / "steps.csv").exists() or keep)
+
+
+args = arguments()
+check = Check()
+good = gmsh("good.msh", "-format", "msh41")
+text = good.read_text()
+
+refused("missing mesh file", "nosuch.msh", "mesh.file=nosuch.msh")
+refused("missing .geo file", "nosuch.geo", "mesh.file=nosuch.geo")
+refused("missing surface", "nowhere.*x_min", "supports.0.surface=nowhere")
+refused("missing volume", "nothing.*block", "bodies.0.volume=nothing")
+refused("inverted element", "inverted", "mesh.parameters.invert=1")
+refused("serendipity mesh", "SecondOrderIncomplete", f"mesh.file={gmsh('serendipity.msh', '-format', 'msh41', '-order', '2', '-setnumber', 'Mesh.SecondOrderIncomplete', '1')}", "mesh.order=2")
+refused("msh 2.2", r"2\.2.*4\.1|4\.1.*2\.2", f"mesh.file={gmsh('old.msh', '-format', 'msh22')}")
+truncated = good.with_name("truncated.msh")
+truncated.write_text(text[: 2 * len(text) // 3])
+refused("truncated mesh", "truncated.msh", f"mesh.file={truncated}")
+empty = good.with_name("empty.msh")
+count = int(re.search(r"\$PhysicalNames\n(\d+)", text)[1])
+empty.write_text(text.replace(f"$PhysicalNames\n{count}\n", f'$PhysicalNames\n{count + 1}\n1 99 "hollow"\n'))
+refused("empty contact surface", "hollow", f"mesh.file={empty}", "contact=[{name: pair, slave: hollow, master: x_max}]")
+broken = good.with_name("broken.geo")
+broken.write_text("Point(1) = {0, 0, 0;\n")
+refused("a .geo that gmsh rejects", "broken.geo", f"mesh.file={broken}")
+run(args, SCENES / "wrong_mesh.yaml", out="taken")
+refused("another scene's results", "-overwrite", "bodies.0.material.E=2000", out="taken", keep=True)
+run(args, SCENES / "wrong_mesh.yaml", "-overwrite", out="taken", overrides=["bodies.0.material.E=2000"], keep=True)
+check.finish()

@@ -1,0 +1,455 @@
+/* Shows that every element's force and tangent are derivatives of its energy, and that uniform strains and rigid motions are exact. */
+#include <stdarg.h>
+#include <stddef.h>
+#include <setjmp.h>
+#include <cmocka.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include "elementkernel.h"
+
+#define assert_near(a, b, tolerance) assert_true(fabs((a) - (b)) <= (tolerance))
+
+enum { LANES = KERNEL_LANES, MAX_DOFS = ELEMENT_MAX_NODES * 3 };
+
+typedef struct {
+  KernelCase     kernel;
+  const Element *e;
+  int            dim, dofs;
+  double         X[MAX_DOFS * LANES], u[MAX_DOFS * LANES], E[LANES], nu[LANES]; /* of a batch of different elements */
+  double         W[LANES], f[MAX_DOFS * LANES], J[LANES], *K;
+} Batch;
+
+static double Random(void)
+{
+  static unsigned state = 12345;
+
+  state = state * 1664525u + 1013904223u;
+  return (double)(state >> 8) / (1 << 24) - 0.5;
+}
+
+/* Elements with random corners (radius about 3), middle nodes moved off their straight places by `curved`; random displacements */
+static void BatchCreate(Batch *b, KernelCase kernel, double curved)
+{
+  const Element *e = ElementGet(kernel.type);
+
+  memset(b, 0, sizeof(*b));
+  b->kernel = kernel;
+  b->e      = e;
+  b->dim    = e->dim;
+  b->dofs   = e->nodes * e->dim;
+  b->K      = calloc((size_t)b->dofs * b->dofs * LANES, sizeof(double));
+  for (int lane = 0; lane < LANES; lane++) {
+    double corner[8][3], linear[ELEMENT_MAX_NODES];
+
+    b->E[lane]  = 100 + 10 * lane;
+    b->nu[lane] = 0.2 + 0.02 * lane;
+    for (int a = 0; a < e->corners; a++) {
+      for (int i = 0; i < e->dim; i++) corner[a][i] = e->node[a][i] + 0.3 * Random() + (i == 0 ? 3 : 0);
+    }
+    for (int a = 0; a < e->nodes; a++) {
+      const ElementType first_order = e->order == 1 ? e->type : (ElementType)(e->type - 1);
+
+      ElementShape(first_order, e->node[a], linear, NULL, NULL);
+      for (int i = 0; i < e->dim; i++) {
+        const int k = (a * e->dim + i) * LANES + lane;
+
+        b->X[k] = a < e->corners ? 0 : curved * Random();
+        for (int c = 0; c < e->corners; c++) b->X[k] += linear[c] * corner[c][i];
+        b->u[k] = 0.1 * Random();
+      }
+    }
+  }
+}
+
+static void BatchDestroy(Batch *b)
+{
+  free(b->K);
+}
+
+static void Evaluate(Batch *b)
+{
+  ElementKernel(&b->kernel, b->X, b->u, b->E, b->nu, b->W, b->f, b->K, b->J);
+}
+
+/* u = H X (about the origin) in every lane */
+static void SetGradient(Batch *b, const double H[9])
+{
+  for (int a = 0; a < b->e->nodes; a++) {
+    for (int i = 0; i < b->dim; i++) {
+      for (int lane = 0; lane < LANES; lane++) {
+        b->u[(a * b->dim + i) * LANES + lane] = 0;
+        for (int m = 0; m < b->dim; m++) b->u[(a * b->dim + i) * LANES + lane] += H[3 * i + m] * b->X[(a * b->dim + m) * LANES + lane];
+      }
+    }
+  }
+}
+
+static void TakeLane(const Batch *b, int lane, double *X, double *u)
+{
+  for (int k = 0; k < b->dofs; k++) {
+    X[k] = b->X[k * LANES + lane];
+    u[k] = b->u[k * LANES + lane];
+  }
+}
+
+/* All elements x geometries x (small, each finite law) */
+static int NextCase(KernelCase *kernel)
+{
+  static const KernelCase first = {ELEMENT_TRI3, GEOMETRY_PLANE_STRAIN, KINEMATICS_SMALL, MATERIAL_LINEAR};
+
+  if (kernel->type == ELEMENT_TYPES) {
+    *kernel = first;
+    return 1;
+  }
+  kernel->kinematics = KINEMATICS_FINITE;
+  if (++kernel->law < MATERIAL_LAWS) return 1;
+  kernel->law        = MATERIAL_LINEAR;
+  kernel->kinematics = KINEMATICS_SMALL;
+  if (kernel->geometry == GEOMETRY_PLANE_STRAIN) {
+    kernel->geometry = GEOMETRY_AXISYMMETRIC;
+    return 1;
+  }
+  kernel->type++;
+  if (kernel->type < ELEMENT_TYPES) kernel->geometry = ElementGet(kernel->type)->dim == 3 ? GEOMETRY_SOLID : GEOMETRY_PLANE_STRAIN;
+  return kernel->type < ELEMENT_TYPES;
+}
+
+static const KernelCase before_first = {.type = ELEMENT_TYPES};
+
+static void ForceAndTangentAreDerivatives(void **state)
+{
+  const double h = 1e-5;
+
+  (void)state;
+  for (KernelCase kernel = before_first; NextCase(&kernel);) {
+    Batch  b;
+    double W_plus[LANES], W_minus[LANES], f_plus[MAX_DOFS * LANES], f_minus[MAX_DOFS * LANES], J[LANES], scale = 0;
+
+    BatchCreate(&b, kernel, 0.1);
+    Evaluate(&b);
+    for (int k = 0; k < b.dofs * b.dofs * LANES; k++) scale = fmax(scale, fabs(b.K[k]));
+    for (int j = 0; j < b.dofs; j++) {
+      for (int lane = 0; lane < LANES; lane++) b.u[j * LANES + lane] += h;
+      ElementKernel(&kernel, b.X, b.u, b.E, b.nu, W_plus, f_plus, NULL, J);
+      for (int lane = 0; lane < LANES; lane++) b.u[j * LANES + lane] -= 2 * h;
+      ElementKernel(&kernel, b.X, b.u, b.E, b.nu, W_minus, f_minus, NULL, J);
+      for (int lane = 0; lane < LANES; lane++) {
+        b.u[j * LANES + lane] += h;
+        assert_near(b.f[j * LANES + lane], (W_plus[lane] - W_minus[lane]) / (2 * h), 1e-8 * scale);
+        for (int i = 0; i < b.dofs; i++) assert_near(b.K[(i * b.dofs + j) * LANES + lane], (f_plus[i * LANES + lane] - f_minus[i * LANES + lane]) / (2 * h), 1e-8 * scale);
+      }
+    }
+    BatchDestroy(&b);
+  }
+}
+
+static void TangentIsSymmetric(void **state)
+{
+  (void)state;
+  for (KernelCase kernel = before_first; NextCase(&kernel);) {
+    Batch  b;
+    double scale = 0;
+
+    BatchCreate(&b, kernel, 0.1);
+    Evaluate(&b);
+    for (int k = 0; k < b.dofs * b.dofs * LANES; k++) scale = fmax(scale, fabs(b.K[k]));
+    for (int i = 0; i < b.dofs; i++) {
+      for (int j = 0; j < b.dofs; j++) {
+        for (int lane = 0; lane < LANES; lane++) assert_near(b.K[(i * b.dofs + j) * LANES + lane], b.K[(j * b.dofs + i) * LANES + lane], 1e-14 * scale);
+      }
+    }
+    BatchDestroy(&b);
+  }
+}
+
+static void EachResultMayBeLeftOut(void **state)
+{
+  (void)state;
+  for (KernelCase kernel = before_first; NextCase(&kernel);) {
+    Batch  b, c;
+    double scale = 0;
+
+    BatchCreate(&b, kernel, 0.1);
+    Evaluate(&b);
+    c   = b;
+    c.K = calloc((size_t)b.dofs * b.dofs * LANES, sizeof(double));
+    memset(c.f, 0, sizeof(c.f));
+    ElementKernel(&kernel, b.X, b.u, b.E, b.nu, NULL, c.f, NULL, c.J);
+    ElementKernel(&kernel, b.X, b.u, b.E, b.nu, NULL, NULL, c.K, c.J);
+    ElementKernel(&kernel, b.X, b.u, b.E, b.nu, c.W, NULL, NULL, c.J);
+    for (int k = 0; k < b.dofs * LANES; k++) scale = fmax(scale, fabs(b.f[k]));
+    for (int lane = 0; lane < LANES; lane++) assert_near(c.W[lane], b.W[lane], 1e-14 * b.W[lane]);
+    for (int k = 0; k < b.dofs * LANES; k++) assert_near(c.f[k], b.f[k], 1e-14 * scale);
+    assert_memory_equal(c.K, b.K, sizeof(double) * b.dofs * b.dofs * LANES);
+    BatchDestroy(&b);
+    BatchDestroy(&c);
+  }
+}
+
+static void LanesAreIndependentAndUnaligned(void **state)
+{
+  (void)state;
+  for (KernelCase kernel = before_first; NextCase(&kernel);) {
+    Batch  b;
+    double X[MAX_DOFS * LANES + 1], u[MAX_DOFS * LANES + 1], E[LANES], nu[LANES], f[MAX_DOFS * LANES + 1], J[LANES];
+
+    BatchCreate(&b, kernel, 0.1);
+    Evaluate(&b);
+    for (int k = 0; k < b.dofs; k++) {
+      for (int lane = 0; lane < LANES; lane++) {
+        X[1 + k * LANES + lane] = b.X[k * LANES + 5];
+        u[1 + k * LANES + lane] = b.u[k * LANES + 5];
+        E[lane]                 = b.E[5];
+        nu[lane]                = b.nu[5];
+      }
+    }
+    ElementKernel(&kernel, X + 1, u + 1, E, nu, NULL, f + 1, NULL, J);
+    for (int k = 0; k < b.dofs; k++) {
+      for (int lane = 0; lane < LANES; lane++) assert_true(f[1 + k * LANES + lane] == b.f[k * LANES + 5]);
+    }
+    BatchDestroy(&b);
+  }
+}
+
+static void RigidMotionCausesNoForce(void **state)
+{
+  const double c = cos(0.9), s = sin(0.9), finite[9] = {c - 1, -s, 0, s, c - 1, 0, 0, 0, 0}, small[9] = {0, -0.1, 0, 0.1, 0, 0, 0, 0, 0};
+
+  (void)state;
+  for (KernelCase kernel = before_first; NextCase(&kernel);) {
+    Batch b;
+
+    if (kernel.kinematics == KINEMATICS_FINITE && kernel.law == MATERIAL_LINEAR) continue; /* not objective, refused by the scene */
+    BatchCreate(&b, kernel, 0.1);
+    if (kernel.geometry == GEOMETRY_AXISYMMETRIC) SetGradient(&b, (double[9]){0});
+    else SetGradient(&b, kernel.kinematics == KINEMATICS_FINITE ? finite : small);
+    for (int a = 0; a < b.e->nodes; a++) {
+      for (int lane = 0; lane < LANES; lane++) b.u[(a * b.dim + 1) * LANES + lane] += 0.7;
+    }
+    Evaluate(&b);
+    for (int k = 0; k < b.dofs * LANES; k++) assert_near(b.f[k], 0, 1e-11 * b.E[0]);
+    for (int lane = 0; lane < LANES; lane++) {
+      assert_near(b.W[lane], 0, 1e-12 * b.E[0]);
+      assert_near(b.J[lane], 1, 1e-13);
+    }
+    BatchDestroy(&b);
+  }
+}
+
+/* int N_a n dA over the surface of lane's element, from the face kernels */
+static void SurfaceNormals(const Batch *b, int lane, double *normals)
+{
+  const Element *face = ElementGet(b->e->face_type);
+
+  memset(normals, 0, sizeof(double) * MAX_DOFS);
+  for (int f = 0; f < b->e->faces; f++) {
+    double X[FACE_MAX_NODES * 3], area[FACE_MAX_NODES] = {0}, normal[FACE_MAX_NODES * 3] = {0};
+
+    for (int a = 0; a < face->nodes; a++) {
+      for (int i = 0; i < b->dim; i++) X[a * b->dim + i] = b->X[(b->e->face_nodes[f][a] * b->dim + i) * LANES + lane];
+    }
+    FaceAreaKernel(face->type, b->dim, b->kernel.geometry, X, area, normal);
+    for (int a = 0; a < face->nodes; a++) {
+      for (int i = 0; i < b->dim; i++) normals[b->e->face_nodes[f][a] * b->dim + i] += normal[a * b->dim + i];
+    }
+  }
+}
+
+/* A uniform gradient: the force of a node is the stress on its share of the surface, f_a = P int N_a n dA, by Gauss's theorem */
+static void UniformStrainGivesExactForces(void **state)
+{
+  const double solid[9] = {0.05, -0.02, 0.03, 0.04, -0.06, 0.01, 0.02, 0.05, 0.08}, plane[9] = {0.05, -0.02, 0, 0.04, -0.06, 0, 0, 0, 0};
+
+  (void)state;
+  for (KernelCase kernel = before_first; NextCase(&kernel);) {
+    Batch         b;
+    const double *H = kernel.geometry == GEOMETRY_SOLID ? solid : plane;
+
+    if (kernel.geometry == GEOMETRY_AXISYMMETRIC) continue;
+    /* curved simplices are not integrated exactly by their rules */
+    BatchCreate(&b, kernel, kernel.type == ELEMENT_TET10 || kernel.type == ELEMENT_TRI6 ? 0 : 0.1);
+    SetGradient(&b, H);
+    Evaluate(&b);
+    for (int lane = 0; lane < LANES; lane++) {
+      const Material material = {kernel.law, b.E[lane], b.nu[lane]};
+      double         P[9], normals[MAX_DOFS];
+
+      MaterialPoint(&material, kernel.kinematics == KINEMATICS_FINITE, H, NULL, P, NULL);
+      SurfaceNormals(&b, lane, normals);
+      for (int a = 0; a < b.e->nodes; a++) {
+        for (int i = 0; i < b.dim; i++) {
+          double force = 0;
+
+          for (int m = 0; m < b.dim; m++) force += P[3 * i + m] * normals[a * b.dim + m];
+          assert_near(b.f[(a * b.dim + i) * LANES + lane], force, 1e-12 * b.E[0]);
+        }
+      }
+    }
+    BatchDestroy(&b);
+  }
+}
+
+/* u = 0.1 X is a uniform gradient in every geometry: energy = density times volume, J = det F, Cauchy stress = P F^T / J */
+static void UniformExpansionIsExact(void **state)
+{
+  const double solid[9] = {0.1, 0, 0, 0, 0.1, 0, 0, 0, 0.1}, plane[9] = {0.1, 0, 0, 0, 0.1, 0, 0, 0, 0};
+
+  (void)state;
+  for (KernelCase kernel = before_first; NextCase(&kernel);) {
+    const int     finite = kernel.kinematics == KINEMATICS_FINITE;
+    const double *H      = kernel.geometry == GEOMETRY_PLANE_STRAIN ? plane : solid;
+    const double  J      = kernel.geometry == GEOMETRY_PLANE_STRAIN ? 1.21 : 1.331;
+    Batch         b;
+
+    BatchCreate(&b, kernel, 0.1);
+    SetGradient(&b, solid);
+    Evaluate(&b);
+    for (int lane = 0; lane < LANES; lane++) {
+      const Material material = {kernel.law, b.E[lane], b.nu[lane]};
+      double         X[MAX_DOFS], u[MAX_DOFS], W, P[9], stress[6], volume;
+
+      TakeLane(&b, lane, X, u);
+      MaterialPoint(&material, finite, H, &W, P, NULL);
+      ElementStress(&kernel, X, u, b.E[lane], b.nu[lane], stress, &volume);
+      assert_near(volume, CellVolume(kernel.type, b.dim, kernel.geometry, X), 1e-13 * volume);
+      assert_near(b.W[lane], W * volume, 1e-12 * W * volume);
+      assert_near(b.J[lane], finite ? J : 1, 1e-13);
+      for (int i = 0; i < 3; i++) {
+        assert_near(stress[i], finite ? P[4 * i] * (1 + H[4 * i]) / J : P[4 * i], 1e-12 * b.E[0]);
+        assert_near(stress[3 + i], 0, 1e-12 * b.E[0]);
+      }
+    }
+    BatchDestroy(&b);
+  }
+}
+
+static void InvertedElementsAreReportedAndFinite(void **state)
+{
+  const double mirrored[9] = {-2, 0, 0, 0, 0.1, 0, 0, 0, 0};
+
+  (void)state;
+  for (KernelCase kernel = before_first; NextCase(&kernel);) {
+    Batch b;
+
+    if (kernel.kinematics == KINEMATICS_SMALL) continue;
+    BatchCreate(&b, kernel, 0.1);
+    SetGradient(&b, mirrored);
+    for (int k = 0; k < b.dofs; k++) b.u[k * LANES + 2] = 0;
+    b.u[7] = NAN;
+    Evaluate(&b);
+    for (int lane = 0; lane < LANES; lane++) {
+      if (lane == 7) assert_false(b.J[lane] > 0);
+      else if (lane == 2) assert_near(b.J[lane], 1, 0);
+      else if (kernel.geometry != GEOMETRY_AXISYMMETRIC) assert_near(b.J[lane], -1.1, 1e-12);
+    }
+    for (int k = 0; k < b.dofs * LANES; k++) assert_true(isfinite(b.f[k]) || k % LANES == 7);
+    for (int k = 0; k < b.dofs * b.dofs * LANES; k++) assert_true(isfinite(b.K[k]) || k % LANES == 7);
+    BatchDestroy(&b);
+  }
+}
+
+/* Volume = 1/dim int x . n dA */
+static void VolumesFollowFromTheSurface(void **state)
+{
+  (void)state;
+  for (KernelCase kernel = before_first; NextCase(&kernel);) {
+    Batch b;
+
+    if (kernel.geometry == GEOMETRY_AXISYMMETRIC || kernel.kinematics == KINEMATICS_FINITE) continue;
+    BatchCreate(&b, kernel, kernel.type == ELEMENT_TET10 || kernel.type == ELEMENT_TRI6 ? 0 : 0.1);
+    for (int lane = 0; lane < LANES; lane++) {
+      double X[MAX_DOFS], u[MAX_DOFS], normals[MAX_DOFS], volume = 0;
+
+      TakeLane(&b, lane, X, u);
+      SurfaceNormals(&b, lane, normals);
+      for (int k = 0; k < b.dofs; k++) volume += X[k] * normals[k] / b.dim;
+      assert_near(CellVolume(kernel.type, b.dim, kernel.geometry, X), volume, 1e-12);
+    }
+    BatchDestroy(&b);
+  }
+}
+
+static void AxisymmetricVolumeIsThatOfARing(void **state)
+{
+  double X[18];
+
+  (void)state;
+  for (int a = 0; a < 9; a++) {
+    X[2 * a]     = 5 + ElementGet(ELEMENT_QUAD9)->node[a][0];
+    X[2 * a + 1] = 2 * ElementGet(ELEMENT_QUAD9)->node[a][1];
+  }
+  assert_near(CellVolume(ELEMENT_QUAD4, 2, GEOMETRY_AXISYMMETRIC, X), M_PI * (36 - 16) * 4, 1e-11);
+  assert_near(CellVolume(ELEMENT_QUAD9, 2, GEOMETRY_AXISYMMETRIC, X), M_PI * (36 - 16) * 4, 1e-11);
+}
+
+/* The resultant is volume times value, and in straight cells its moment is that of the centre of volume of linear shapes */
+static void BodyForceHasItsResultant(void **state)
+{
+  const double value[3] = {0.3, -9.8, 1.7};
+
+  (void)state;
+  for (KernelCase kernel = before_first; NextCase(&kernel);) {
+    Batch b;
+
+    if (kernel.kinematics == KINEMATICS_FINITE) continue;
+    BatchCreate(&b, kernel, 0.1);
+    for (int lane = 0; lane < LANES; lane++) {
+      double       X[MAX_DOFS], u[MAX_DOFS], f[MAX_DOFS] = {0}, sum[3] = {0};
+
+      TakeLane(&b, lane, X, u);
+      BodyForceKernel(kernel.type, b.dim, kernel.geometry, X, value, f);
+      for (int k = 0; k < b.dofs; k++) sum[k % b.dim] += f[k];
+      for (int i = 0; i < b.dim; i++) assert_near(sum[i], value[i] * CellVolume(kernel.type, b.dim, kernel.geometry, X), 1e-11);
+    }
+    BatchDestroy(&b);
+  }
+}
+
+static void QualityOfParallelepipedsIsOne(void **state)
+{
+  (void)state;
+  for (int type = ELEMENT_TRI3; type < ELEMENT_TYPES; type++) {
+    const Element *e = ElementGet(type);
+    double         X[MAX_DOFS];
+
+    for (int a = 0; a < e->nodes; a++) {
+      for (int i = 0; i < e->dim; i++) X[a * e->dim + i] = 2 * e->node[a][i] + 0.7 * e->node[a][(i + 1) % e->dim];
+    }
+    assert_near(ElementQuality(type, e->dim, X), 1, 1e-13);
+    for (int a = 0; a < e->nodes; a++) X[a * e->dim] *= -1;
+    assert_true(ElementQuality(type, e->dim, X) <= 0);
+  }
+}
+
+/* A quadrilateral folded at one corner: positive volume, but the determinant there is negative */
+static void FoldedCornersAreFound(void **state)
+{
+  const double folded[8] = {-1, -1, 1, -1, -0.2, -0.2, -1, 1}, dented[8] = {-1, -1, 1, -1, 0.5, 0.5, -1, 1};
+
+  (void)state;
+  assert_true(CellVolume(ELEMENT_QUAD4, 2, GEOMETRY_PLANE_STRAIN, folded) > 0);
+  assert_true(ElementQuality(ELEMENT_QUAD4, 2, folded) < 0);
+  assert_true(ElementQuality(ELEMENT_QUAD4, 2, dented) > 0 && ElementQuality(ELEMENT_QUAD4, 2, dented) < 1);
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = {
+    cmocka_unit_test(ForceAndTangentAreDerivatives),
+    cmocka_unit_test(TangentIsSymmetric),
+    cmocka_unit_test(EachResultMayBeLeftOut),
+    cmocka_unit_test(LanesAreIndependentAndUnaligned),
+    cmocka_unit_test(RigidMotionCausesNoForce),
+    cmocka_unit_test(UniformStrainGivesExactForces),
+    cmocka_unit_test(UniformExpansionIsExact),
+    cmocka_unit_test(InvertedElementsAreReportedAndFinite),
+    cmocka_unit_test(VolumesFollowFromTheSurface),
+    cmocka_unit_test(AxisymmetricVolumeIsThatOfARing),
+    cmocka_unit_test(BodyForceHasItsResultant),
+    cmocka_unit_test(QualityOfParallelepipedsIsOne),
+    cmocka_unit_test(FoldedCornersAreFound),
+  };
+
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}

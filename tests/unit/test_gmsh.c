@@ -1,0 +1,249 @@
+/* A .geo is meshed once for each content, gmsh's complaints reach the user, text and binary files read the same, and a damaged file is refused. */
+#include "gmsh.h"
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <cmocka.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+static char folder[64];
+
+static const char *const geometry =
+  "Include \"size.geo\";\n"
+  "DefineConstant[ n = {2, Name \"n\"} ];\n"
+  "Point(1) = {0, 0, 0}; Point(2) = {length, 0, 0}; Point(3) = {length, 1, 0}; Point(4) = {0, 1, 0};\n"
+  "Line(1) = {1, 2}; Line(2) = {2, 3}; Line(3) = {3, 4}; Line(4) = {4, 1};\n"
+  "Curve Loop(1) = {1, 2, 3, 4}; Plane Surface(1) = {1};\n"
+  "Transfinite Curve{1, 2, 3, 4} = n + 1; Transfinite Surface{1}; Recombine Surface{1};\n"
+  "Physical Surface(\"block one\", 7) = {1}; Physical Curve(\"left\", 7) = {-4}; Physical Curve(3) = {2}; Physical Point(\"corner\") = {1};\n";
+
+static void WriteText(const char *name, const char *text, size_t size, char path[PETSC_MAX_PATH_LEN])
+{
+  FILE *stream;
+
+  snprintf(path, PETSC_MAX_PATH_LEN, "%s/%s", folder, name);
+  stream = fopen(path, "wb");
+  assert_non_null(stream);
+  assert_int_equal(fwrite(text, 1, size, stream), size);
+  fclose(stream);
+}
+
+static char *ReadText(const char *path, size_t *size)
+{
+  static char text[1 << 16];
+  FILE       *stream = fopen(path, "rb");
+
+  assert_non_null(stream);
+  *size = fread(text, 1, sizeof(text) - 1, stream);
+  fclose(stream);
+  text[*size] = '\0';
+  return text;
+}
+
+static Scene MakeScene(const char *parameters)
+{
+  char  path[PETSC_MAX_PATH_LEN], text[1024];
+  Scene scene;
+
+  WriteText("size.geo", "length = 2;\n", 12, path);
+  WriteText("block.geo", geometry, strlen(geometry), path);
+  snprintf(text, sizeof(text),
+           "mesh: {file: block.geo, order: 2, parameters: %s}\ngeometry: plane_strain\nbodies: [{volume: block one, material: {law: svk, E: 1, nu: 0.3}}]\n",
+           parameters);
+  WriteText("scene.yaml", text, strlen(text), path);
+  assert_int_equal(SceneRead(PETSC_COMM_SELF, path, 0, NULL, &scene), 0);
+  return scene;
+}
+
+/* Meshes in folder/out: the file, or the message if there is one */
+static PetscReal Generate(const char *parameters, char *file, GmshMessage *message)
+{
+  Scene     scene = MakeScene(parameters);
+  char      directory[PETSC_MAX_PATH_LEN];
+  PetscReal seconds;
+
+  message->text[0] = '\0';
+  snprintf(directory, sizeof(directory), "%s/out/meshes", folder);
+  assert_int_equal(GmshGenerate(scene, directory, file, &seconds, message), 0);
+  assert_int_equal(SceneDestroy(&scene), 0);
+  return seconds;
+}
+
+static void test_meshed_once(void **state)
+{
+  char        first[PETSC_MAX_PATH_LEN], again[PETSC_MAX_PATH_LEN], other[PETSC_MAX_PATH_LEN], path[PETSC_MAX_PATH_LEN];
+  GmshMessage message;
+  GmshMesh    mesh;
+  PetscReal   seconds;
+
+  (void)state;
+  seconds = Generate("{n: 3}", first, &message);
+  assert_string_equal(message.text, "");
+  assert_true(seconds > 0);
+  seconds = Generate("{n: 3}", again, &message);
+  assert_string_equal(first, again);
+  assert_true(seconds == 0);
+  Generate("{n: 4}", other, &message);
+  assert_string_not_equal(first, other);
+  assert_int_equal(GmshRead(first, &mesh, &message), 0);
+  assert_string_equal(message.text, "");
+  assert_int_equal(mesh.n_nodes, 7 * 7);
+  assert_int_equal(GmshReset(&mesh), 0);
+
+  /* an included file counts: change it behind the scene's back */
+  Scene scene = MakeScene("{n: 3}");
+
+  WriteText("size.geo", "length = 3;\n", 12, path);
+  snprintf(path, sizeof(path), "%s/out/meshes", folder);
+  assert_int_equal(GmshGenerate(scene, path, other, &seconds, &message), 0);
+  assert_string_equal(message.text, "");
+  assert_string_not_equal(first, other);
+  assert_int_equal(SceneDestroy(&scene), 0);
+}
+
+static void test_without_gmsh(void **state)
+{
+  char        made[PETSC_MAX_PATH_LEN], found[PETSC_MAX_PATH_LEN], *search = strdup(getenv("PATH"));
+  GmshMessage message, missing;
+
+  (void)state;
+  Generate("{n: 3}", made, &message);
+  setenv("PATH", "/nonexistent", 1);
+  Generate("{n: 3}", found, &message);
+  Generate("{n: 5}", found, &missing);
+  setenv("PATH", search, 1);
+  free(search);
+  assert_string_equal(message.text, "");
+  assert_non_null(strstr(missing.text, "gmsh is not installed here"));
+  assert_non_null(strstr(missing.text, "-mesh"));
+  Generate("{n: 3}", found, &message);
+  assert_string_equal(made, found);
+}
+
+static void test_mistakes_in_geo(void **state)
+{
+  char        file[PETSC_MAX_PATH_LEN], path[PETSC_MAX_PATH_LEN], directory[PETSC_MAX_PATH_LEN];
+  GmshMessage message;
+  PetscReal   seconds;
+  Scene       scene;
+
+  (void)state;
+  Generate("{nn: 3}", file, &message);
+  assert_non_null(strstr(message.text, "scene.yaml:1: mesh.parameters.nn: "));
+  assert_non_null(strstr(message.text, "no parameter of this name"));
+
+  scene = MakeScene("{n: 3}");
+  WriteText("block.geo", "n = 1;\nFoo(1);\n", 15, path);
+  snprintf(directory, sizeof(directory), "%s/out/meshes", folder);
+  message.text[0] = '\0';
+  assert_int_equal(GmshGenerate(scene, directory, file, &seconds, &message), 0);
+  assert_non_null(strstr(message.text, "gmsh failed on"));
+  assert_non_null(strstr(message.text, "line 2"));
+  assert_int_equal(access(file, F_OK), -1);
+
+  unlink(path);
+  message.text[0] = '\0';
+  assert_int_equal(GmshGenerate(scene, directory, file, &seconds, &message), 0);
+  assert_non_null(strstr(message.text, "there is no file"));
+  assert_int_equal(SceneDestroy(&scene), 0);
+}
+
+static void ConvertBinary(const char *text, char *binary)
+{
+  char command[3 * PETSC_MAX_PATH_LEN];
+
+  snprintf(binary, PETSC_MAX_PATH_LEN, "%s/binary.msh", folder);
+  snprintf(command, sizeof(command), "gmsh %s -save -bin -v 1 -format msh41 -o %s", text, binary);
+  assert_int_equal(system(command), 0);
+}
+
+static void test_binary_equals_text(void **state)
+{
+  char        file[PETSC_MAX_PATH_LEN], binary[PETSC_MAX_PATH_LEN];
+  GmshMessage message;
+  GmshMesh    a, b;
+
+  (void)state;
+  Generate("{n: 3}", file, &message);
+  ConvertBinary(file, binary);
+  assert_int_equal(GmshRead(file, &a, &message), 0);
+  assert_int_equal(GmshRead(binary, &b, &message), 0);
+  assert_string_equal(message.text, "");
+  assert_int_equal(a.n_nodes, b.n_nodes);
+  assert_memory_equal(a.node_tag, b.node_tag, (size_t)a.n_nodes * sizeof(PetscInt));
+  assert_memory_equal(a.coords, b.coords, (size_t)a.n_nodes * 3 * sizeof(PetscReal));
+  assert_int_equal(a.n_physicals, 4);
+  assert_int_equal(b.n_physicals, 4);
+  assert_string_equal(a.physicals[0].name, "block one");
+  assert_string_equal(a.physicals[1].name, "3"); /* a group without a name goes by its number */
+  assert_string_equal(a.physicals[2].name, "left");
+  assert_string_equal(a.physicals[3].name, "corner");
+  assert_int_equal(a.n_blocks, b.n_blocks);
+  for (int i = 0; i < a.n_blocks; i++) {
+    const GmshBlock *p = &a.blocks[i], *q = &b.blocks[i];
+
+    assert_int_equal(p->n, q->n);
+    assert_ptr_equal(p->element, q->element);
+    assert_memory_equal(p->tag, q->tag, (size_t)p->n * sizeof(PetscInt));
+    assert_memory_equal(p->connectivity, q->connectivity, (size_t)(p->n * p->nodes) * sizeof(PetscInt));
+    assert_int_equal(p->physical[0], q->physical[0]);
+    assert_int_equal(p->sign[0], strcmp(a.physicals[p->physical[0]].name, "left") ? 1 : -1);
+  }
+  assert_int_equal(GmshReset(&a), 0);
+  assert_int_equal(GmshReset(&b), 0);
+}
+
+/* Cut off anywhere before the end of the elements, a file is refused; with one byte changed anywhere it is read or refused, never worse. */
+static void test_damaged(void **state)
+{
+  static char copy[1 << 16];
+  char        file[PETSC_MAX_PATH_LEN], binary[PETSC_MAX_PATH_LEN], path[PETSC_MAX_PATH_LEN], *text;
+  size_t      size;
+  GmshMessage message;
+  GmshMesh    mesh;
+
+  (void)state;
+  Generate("{n: 2}", file, &message);
+  ConvertBinary(file, binary);
+  for (int kind = 0; kind < 2; kind++) {
+    text = ReadText(kind ? binary : file, &size);
+    memcpy(copy, text, size);
+    for (size_t cut = 0; cut + 2 < size; cut += 7) {
+      WriteText("cut.msh", copy, cut, path);
+      message.text[0] = '\0';
+      assert_int_equal(GmshRead(path, &mesh, &message), 0);
+      assert_non_null(strstr(message.text, "cut.msh"));
+      assert_int_equal(GmshReset(&mesh), 0);
+    }
+    for (size_t at = 0; at < size; at += 11) {
+      const char kept = copy[at];
+
+      copy[at] = (char)(kept ^ (1 << (at % 7)));
+      WriteText("cut.msh", copy, size, path);
+      copy[at]        = kept;
+      message.text[0] = '\0';
+      assert_int_equal(GmshRead(path, &mesh, &message), 0);
+      assert_int_equal(GmshReset(&mesh), 0);
+    }
+  }
+}
+
+int main(int argc, char **argv)
+{
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_meshed_once), cmocka_unit_test(test_without_gmsh), cmocka_unit_test(test_mistakes_in_geo),
+                                     cmocka_unit_test(test_binary_equals_text), cmocka_unit_test(test_damaged)};
+  char                    command[128];
+  int                     failed;
+
+  if (PetscInitialize(&argc, &argv, NULL, NULL)) return 1;
+  snprintf(folder, sizeof(folder), "/tmp/burnish_gmsh_XXXXXX");
+  if (!mkdtemp(folder)) return 1;
+  failed = cmocka_run_group_tests(tests, NULL, NULL);
+  snprintf(command, sizeof(command), "rm -r %s", folder);
+  if (system(command)) failed++;
+  if (PetscFinalize()) return 1;
+  return failed;
+}

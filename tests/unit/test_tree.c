@@ -1,0 +1,184 @@
+/* The tree of boxes finds what looking at every box finds, and the search for the closest visits few. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <cmocka.h>
+#include "tree.h"
+
+enum { MAX_BOXES = 3000 };
+
+static double lower[3 * MAX_BOXES], upper[3 * MAX_BOXES];
+
+static double Random(double low, double high)
+{
+  static uint64_t state = 88172645463325252u;
+
+  state ^= state << 13;
+  state ^= state >> 7;
+  state ^= state << 17;
+  return low + (high - low) * (double)(state >> 11) / 9007199254740992.0;
+}
+
+static double BoxDistance(int dim, int i, const double *point)
+{
+  double sum = 0;
+
+  for (int k = 0; k < dim; ++k) sum += pow(fmax(0, fmax(lower[i * dim + k] - point[k], point[k] - upper[i * dim + k])), 2);
+  return sqrt(sum);
+}
+
+static void RandomBoxes(int dim, int n, double size)
+{
+  for (int i = 0; i < n * dim; ++i) {
+    lower[i] = Random(0, 1);
+    upper[i] = lower[i] + Random(0, size);
+  }
+}
+
+static void CheckNear(int dim, int n, Tree tree, const double *point, double radius, int max)
+{
+  static int found[MAX_BOXES];
+  int        count = 0;
+  const int  there = TreeNear(tree, point, radius, max, found);
+
+  for (int i = 0; i < n; ++i) {
+    if (BoxDistance(dim, i, point) >= radius) continue;
+    if (count < max) assert_int_equal(found[count], i);
+    ++count;
+  }
+  assert_int_equal(there, count);
+}
+
+static void TestNear(void **state)
+{
+  static const int sizes[] = {0, 1, 2, 3, 7, 100, 1000};
+
+  (void)state;
+  for (int dim = 1; dim <= 3; ++dim) {
+    for (int s = 0; s < 7; ++s) {
+      Tree tree;
+
+      RandomBoxes(dim, sizes[s], 0.1);
+      assert_int_equal(TreeBuild(dim, sizes[s], lower, upper, &tree), 0);
+      for (int trial = 0; trial < 50; ++trial) {
+        const double point[3] = {Random(-0.5, 1.5), Random(-0.5, 1.5), Random(-0.5, 1.5)};
+
+        CheckNear(dim, sizes[s], tree, point, Random(0, 0.5), MAX_BOXES);
+        CheckNear(dim, sizes[s], tree, point, Random(0, 0.5), 5);
+        CheckNear(dim, sizes[s], tree, point, INFINITY, 3);
+        CheckNear(dim, sizes[s], tree, point, 0, 3);
+      }
+      TreeDestroy(&tree);
+      assert_null(tree);
+    }
+  }
+}
+
+typedef struct {
+  int           dim, visited, last, shrink, best;
+  const double *point;
+  double        distance, least;
+} Search;
+
+/* Checks the order of the visits; shrinks the bound to the least distance of a thing inside the box, here its centre. */
+static void Visit(void *context, int index, double *bound)
+{
+  Search      *search   = context;
+  const double distance = BoxDistance(search->dim, index, search->point);
+  double       centre   = 0;
+
+  assert_true(distance >= search->distance - 1e-15);
+  if (search->visited && distance == search->distance) assert_true(index > search->last);
+  assert_true(distance <= *bound + 1e-15);
+  search->distance = distance;
+  search->last     = index;
+  ++search->visited;
+  for (int k = 0; k < search->dim; ++k) centre += pow(0.5 * (lower[index * search->dim + k] + upper[index * search->dim + k]) - search->point[k], 2);
+  centre = sqrt(centre);
+  if (centre < search->least) {
+    search->least = centre;
+    search->best  = index;
+  }
+  if (search->shrink) *bound = fmin(*bound, centre);
+}
+
+static void TestClosest(void **state)
+{
+  (void)state;
+  for (int dim = 2; dim <= 3; ++dim) {
+    const int n       = 3000;
+    int       visited = 0;
+    Tree      tree;
+
+    RandomBoxes(dim, n, 0.02);
+    assert_int_equal(TreeBuild(dim, n, lower, upper, &tree), 0);
+    for (int trial = 0; trial < 100; ++trial) {
+      const double point[3] = {Random(0, 1), Random(0, 1), Random(0, 1)};
+      Search       all = {.dim = dim, .point = point, .least = INFINITY}, search = {.dim = dim, .point = point, .least = INFINITY, .shrink = 1};
+      double       bound = INFINITY;
+
+      TreeClosest(tree, point, &bound, Visit, &all);
+      assert_int_equal(all.visited, n);
+      TreeClosest(tree, point, &bound, Visit, &search);
+      assert_int_equal(search.best, all.best);
+      assert_true(bound == search.least);
+      visited += search.visited;
+      bound  = 0.1;
+      search = (Search){.dim = dim, .point = point, .least = INFINITY};
+      TreeClosest(tree, point, &bound, Visit, &search);
+      for (int i = 0; i < n; ++i) search.visited -= BoxDistance(dim, i, point) <= 0.1;
+      assert_int_equal(search.visited, 0);
+    }
+    print_message("%dD: %.1f of %d boxes visited for the closest\n", dim, visited / 100.0, n);
+    assert_true(visited <= 100 * 10);
+    TreeDestroy(&tree);
+  }
+}
+
+static void TestEqualBoxes(void **state)
+{
+  const int    n        = 1000;
+  const double point[2] = {2, 2};
+  double       bound    = INFINITY;
+  Search       search   = {.dim = 2, .point = point, .least = INFINITY};
+  Tree         tree;
+
+  (void)state;
+  for (int i = 0; i < 2 * n; ++i) {
+    lower[i] = 0;
+    upper[i] = 1;
+  }
+  assert_int_equal(TreeBuild(2, n, lower, upper, &tree), 0);
+  CheckNear(2, n, tree, point, 2, MAX_BOXES);
+  CheckNear(2, n, tree, point, 2, 10);
+  CheckNear(2, n, tree, point, 1, 10);
+  TreeClosest(tree, point, &bound, Visit, &search);
+  assert_int_equal(search.visited, n);
+  assert_int_equal(search.best, 0);
+  TreeDestroy(&tree);
+}
+
+static void TestEmpty(void **state)
+{
+  const double point[2] = {0, 0};
+  double       bound    = INFINITY;
+  Search       search   = {.dim = 2, .point = point, .least = INFINITY};
+  Tree         tree;
+
+  (void)state;
+  assert_int_equal(TreeBuild(2, 0, NULL, NULL, &tree), 0);
+  TreeClosest(tree, point, &bound, Visit, &search);
+  assert_int_equal(search.visited, 0);
+  TreeDestroy(&tree);
+  TreeDestroy(&tree);
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = {cmocka_unit_test(TestNear), cmocka_unit_test(TestClosest), cmocka_unit_test(TestEqualBoxes), cmocka_unit_test(TestEmpty)};
+
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
