@@ -2,7 +2,8 @@
 #include "elasticity.h"
 #include "elementkernel.h"
 
-enum { MAX_DOFS = ELEMENT_MAX_NODES * 3, BYTES_OF_CACHE_LINE = 64 };
+/* PREFETCH_PAIRS: how many pairs of nodes ahead blocks are asked for; the scattered blocks come from main memory, 4 hides most of the wait */
+enum { MAX_DOFS = ELEMENT_MAX_NODES * 3, BYTES_OF_CACHE_LINE = 64, PREFETCH_PAIRS = 4 };
 
 /* Cells of one type and law, KERNEL_LANES to a batch; the last batch repeats its last cell. Arrays are those of a batch, one batch after
    the other. */
@@ -12,7 +13,7 @@ typedef struct {
   PetscInt   n_cells, n_batches;
   PetscInt  *cell;                 /* [lanes] */
   PetscInt  *node;                 /* [nodes][lanes] */
-  PetscInt  *block;                /* [nodes][nodes][lanes]: where the pair of nodes stands in the block CSR */
+  PetscInt  *block;                /* [nodes][nodes][lanes]: where the pair of nodes stands in the block CSR; PREFETCH_PAIRS of zeros at the end */
   PetscReal *X;                    /* [nodes][dim][lanes] */
   PetscReal *E, *nu;               /* [lanes] */
 } CellGroup;
@@ -75,7 +76,7 @@ static PetscErrorCode AllocateGroup(CellGroup *g, int dim)
   PetscFunctionBeginUser;
   g->n_batches = (g->n_cells + KERNEL_LANES - 1) / KERNEL_LANES;
   lanes        = (size_t)g->n_batches * KERNEL_LANES;
-  PetscCall(PetscMalloc3(lanes, &g->cell, lanes * g->nodes, &g->node, lanes * g->nodes * g->nodes, &g->block));
+  PetscCall(PetscCalloc3(lanes, &g->cell, lanes * g->nodes, &g->node, lanes * g->nodes * g->nodes + PREFETCH_PAIRS * KERNEL_LANES, &g->block));
   PetscCall(PetscMalloc3(lanes * g->nodes * dim, &g->X, lanes, &g->E, lanes, &g->nu));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -358,6 +359,12 @@ static inline __attribute__((always_inline)) void ScatterTangent(Elasticity e, c
     for (int b = 0; b < n; b++, block += KERNEL_LANES) {
       const PetscReal *K = &e->K[((size_t)a * dim * n + b) * dim * KERNEL_LANES];
 
+      for (int lane = 0; lane < count; lane++) { /* a block of 3 x 3 doubles lies on two cache lines */
+        const PetscReal *ahead = &e->value[(size_t)block[PREFETCH_PAIRS * KERNEL_LANES + lane] * dim * dim];
+
+        __builtin_prefetch(ahead, 1);
+        __builtin_prefetch(ahead + dim * dim - 1, 1);
+      }
       for (int lane = 0; lane < count; lane++) {
         PetscReal *value = &e->value[(size_t)block[lane] * dim * dim];
 

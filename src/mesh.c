@@ -36,11 +36,12 @@ static const PetscInt *RootCellNodes(const Root *root, PetscInt c)
 
 /* ------------------------------------------------------------------------------------------------------------- names */
 
+/* In two dimensions a body is still called a volume, its boundary a surface. */
 static const char *DimensionName(int mesh_dim, int dim)
 {
-  static const char *const names[] = {"point", "curve", "surface", "volume"};
-
-  return names[dim + 3 - mesh_dim]; /* in two dimensions a body is still called a volume, its boundary a surface */
+  if (dim == mesh_dim) return "volume";
+  if (dim == mesh_dim - 1) return "surface";
+  return dim == 1 ? "curve" : "point";
 }
 
 /* Body of the scene with that name; rigid tools are bodies too. -1: none */
@@ -1581,12 +1582,13 @@ PetscErrorCode MeshSumNodes(Mesh mesh, PetscInt block, PetscReal *values)
   MPI_Datatype type;
 
   PetscFunctionBeginUser;
-  PetscCall(NodeTypeCreate(block, &type));
+  type = MPIU_REAL; /* a contiguous type of one is no type that PetscSF can sum */
+  if (block > 1) PetscCall(NodeTypeCreate(block, &type));
   PetscCall(PetscSFReduceBegin(mesh->node_sf, type, values, values, MPIU_SUM));
   PetscCall(PetscSFReduceEnd(mesh->node_sf, type, values, values, MPIU_SUM));
   PetscCall(PetscSFBcastBegin(mesh->node_sf, type, values, values, MPI_REPLACE));
   PetscCall(PetscSFBcastEnd(mesh->node_sf, type, values, values, MPI_REPLACE));
-  PetscCallMPI(MPI_Type_free(&type));
+  if (block > 1) PetscCallMPI(MPI_Type_free(&type));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

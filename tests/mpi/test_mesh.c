@@ -341,6 +341,22 @@ static void CheckDofs(Mesh mesh, Scene scene)
   assert_int_equal(PetscFree2(u, ones), 0);
 }
 
+static void CheckReport(Mesh mesh, Scene scene)
+{
+  char  text[2048] = "";
+  FILE *stream     = tmpfile();
+
+  assert_non_null(stream);
+  assert_int_equal(MeshReport(mesh, scene, stream), 0);
+  rewind(stream);
+  if (fread(text, 1, sizeof(text) - 1, stream) && rank) fail_msg("rank %d printed", rank);
+  fclose(stream);
+  if (rank) return;
+  assert_non_null(strstr(text, "body ring: "));
+  assert_non_null(strstr(text, "surface outer: "));
+  assert_true(!!strstr(text, "partition by metis") == (size > 1));
+}
+
 static void test_elements(void **state)
 {
   static const Case cases[] = {
@@ -377,6 +393,7 @@ static void test_elements(void **state)
     CheckGroupNodes(mesh);
     CheckDofs(mesh, scene);
     assert_int_equal(MeshCheckQuality(mesh, scene), 0);
+    CheckReport(mesh, scene);
     assert_string_equal(mesh->partition.tool, size > 1 ? "metis" : "none");
     assert_true(mesh->partition.imbalance_cells >= 1 && (size == 1 || mesh->partition.edge_cut > 0));
     assert_int_equal(MeshDestroy(&mesh), 0);
