@@ -29,4 +29,4 @@ PetscErrorCode ElasticityMatrix(Elasticity, Mat *);
    xz; axisymmetric rr zz hoop rz) and the weights n_nodes are set to this rank's share, to be summed over ranks and divided by the caller. */
 PetscErrorCode ElasticityNodalStress(Elasticity, const PetscReal *u, PetscReal *stress, PetscReal *weight);
 /* Largest material stiffness measure of a cell: E (for the automatic penalty) */
-PetscReal      ElasticityCellModulus(Elasticity, PetscInt cell);
+PetscReal ElasticityCellModulus(Elasticity, PetscInt cell);

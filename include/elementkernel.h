@@ -37,5 +37,5 @@ void FaceLoadKernel(ElementType face, int dim, Geometry, FaceLoad, const double 
 void BodyForceKernel(ElementType, int dim, Geometry, const double *X, const double *value, double *f);
 /* Tributary areas int N_a dA of one face (axisymmetric: 2 pi R dA), X: [nodes][dim] reference or current coordinates: adds to area[nodes];
    normal (may be NULL): adds int N_a n dA to normal[nodes*dim] */
-void FaceAreaKernel(ElementType face, int dim, Geometry, const double *X, double *area, double *normal);
+void   FaceAreaKernel(ElementType face, int dim, Geometry, const double *X, double *area, double *normal);
 double CellVolume(ElementType, int dim, Geometry, const double *X);

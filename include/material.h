@@ -21,7 +21,7 @@ enum { MATERIAL_LANES = 4 };
 enum { MATERIAL_LANES = 2 };
 #endif
 enum { MATERIAL_TANGENT_SIZE = 45 };
-#define MATERIAL_TANGENT_INDEX(r, s) ((r) * 9 - (r) * ((r) - 1) / 2 + (s) - (r))
+#define MATERIAL_TANGENT_INDEX(r, s) ((r)*9 - (r) * ((r)-1) / 2 + (s) - (r))
 typedef double Lane __attribute__((vector_size(MATERIAL_LANES * sizeof(double))));
 
 /* det(1 + H) - 1 */
@@ -38,5 +38,5 @@ typedef void MaterialLawFn(const Lane H[9], const Lane *dilatation, const Lane *
 
 MaterialLawFn *MaterialGetLaw(MaterialLaw, int finite); /* finite = 0: the linearisation, which is Hooke's for each law */
 /* One point: H[9], W (or NULL), P[9], A[45] (or NULL) as plain numbers */
-void           MaterialPoint(const Material *, int finite, const double H[9], double *W, double P[9], double A[MATERIAL_TANGENT_SIZE]);
-void           MaterialLame(double E, double nu, double *lambda, double *mu);
+void MaterialPoint(const Material *, int finite, const double H[9], double *W, double P[9], double A[MATERIAL_TANGENT_SIZE]);
+void MaterialLame(double E, double nu, double *lambda, double *mu);

@@ -15,7 +15,8 @@ static double Jacobian(int nodes, int dim, const double *dN, int stride, const d
     }
   }
   if (dim == 2) return J[0][0] * J[1][1] - J[0][1] * J[1][0];
-  return J[0][0] * (J[1][1] * J[2][2] - J[1][2] * J[2][1]) + J[0][1] * (J[1][2] * J[2][0] - J[1][0] * J[2][2]) + J[0][2] * (J[1][0] * J[2][1] - J[1][1] * J[2][0]);
+  return J[0][0] * (J[1][1] * J[2][2] - J[1][2] * J[2][1]) + J[0][1] * (J[1][2] * J[2][0] - J[1][0] * J[2][2]) +
+         J[0][2] * (J[1][0] * J[2][1] - J[1][1] * J[2][0]);
 }
 
 static double Radius(const Element *e, int p, int dim, const double *X)
@@ -61,8 +62,15 @@ static void DisplacementGradient(const Element *e, int p, int dim, Geometry geom
 /* Cauchy stress P F^T / det F; small strains: P itself */
 static void CauchyStress(const double H[9], const double P[9], int finite, double stress[6])
 {
-  static const int component[6][2] = {{0, 0}, {1, 1}, {2, 2}, {0, 1}, {1, 2}, {0, 2}};
-  double           F[9], determinant;
+  static const int component[6][2] = {
+    {0, 0},
+    {1, 1},
+    {2, 2},
+    {0, 1},
+    {1, 2},
+    {0, 2}
+  };
+  double F[9], determinant;
 
   for (int r = 0; r < 9; r++) F[r] = finite ? H[r] + (r % 4 == 0) : (r % 4 == 0);
   determinant = F[0] * (F[4] * F[8] - F[5] * F[7]) + F[1] * (F[5] * F[6] - F[3] * F[8]) + F[2] * (F[3] * F[7] - F[4] * F[6]);

@@ -9,13 +9,13 @@ enum { MAX_DOFS = ELEMENT_MAX_NODES * 3, BYTES_OF_CACHE_LINE = 64, PREFETCH_PAIR
    the other. */
 typedef struct {
   KernelCase kernel;
-  int        nodes;                /* of one cell */
+  int        nodes; /* of one cell */
   PetscInt   n_cells, n_batches;
-  PetscInt  *cell;                 /* [lanes] */
-  PetscInt  *node;                 /* [nodes][lanes] */
-  PetscInt  *block;                /* [nodes][nodes][lanes]: where the pair of nodes stands in the block CSR; PREFETCH_PAIRS of zeros at the end */
-  PetscReal *X;                    /* [nodes][dim][lanes] */
-  PetscReal *E, *nu;               /* [lanes] */
+  PetscInt  *cell;   /* [lanes] */
+  PetscInt  *node;   /* [nodes][lanes] */
+  PetscInt  *block;  /* [nodes][nodes][lanes]: where the pair of nodes stands in the block CSR; PREFETCH_PAIRS of zeros at the end */
+  PetscReal *X;      /* [nodes][dim][lanes] */
+  PetscReal *E, *nu; /* [lanes] */
 } CellGroup;
 
 struct _n_Elasticity {
@@ -24,10 +24,10 @@ struct _n_Elasticity {
   CellGroup *groups;
   PetscInt  *cell_group, *cell_slot; /* of every local cell: its group, and its number there */
   PetscReal *cell_modulus;
-  PetscInt  *row, *column;         /* block CSR over local nodes, columns ascending */
-  PetscReal *value;                /* dim x dim blocks, row-major, in the order of column */
-  PetscReal *u, *f, *K;            /* of one batch, aligned to cache lines */
-  void      *buffer;               /* what u, f and K are in */
+  PetscInt  *row, *column; /* block CSR over local nodes, columns ascending */
+  PetscReal *value;        /* dim x dim blocks, row-major, in the order of column */
+  PetscReal *u, *f, *K;    /* of one batch, aligned to cache lines */
+  void      *buffer;       /* what u, f and K are in */
   PetscBool  symmetric;
   Mat        matrix;
 };
@@ -57,8 +57,8 @@ static PetscErrorCode GroupCells(Elasticity e, Scene scene)
   PetscCall(PetscMalloc3(mesh->n_cells, &e->cell_group, mesh->n_cells, &e->cell_slot, mesh->n_cells, &e->cell_modulus));
   for (PetscInt c = 0; c < mesh->n_cells; c++) {
     const Material  *material = &scene->bodies[mesh->cell_body[c]].material;
-    const KernelCase kernel   = {mesh->cell_type[c], scene->geometry, scene->kinematics, scene->kinematics == KINEMATICS_SMALL ? MATERIAL_LINEAR : material->law};
-    int              g        = 0;
+    const KernelCase kernel = {mesh->cell_type[c], scene->geometry, scene->kinematics, scene->kinematics == KINEMATICS_SMALL ? MATERIAL_LINEAR : material->law};
+    int              g      = 0;
 
     while (g < e->n_groups && (e->groups[g].kernel.type != kernel.type || e->groups[g].kernel.law != kernel.law)) g++;
     if (g == e->n_groups) e->groups[e->n_groups++] = (CellGroup){.kernel = kernel, .nodes = ElementGet(kernel.type)->nodes};
@@ -128,7 +128,8 @@ static PetscErrorCode NodeCells(Mesh mesh, PetscInt **ptr, PetscInt **cells)
 }
 
 /* Nodes that share a cell with a node, ascending; mark[] holds the last node each one was counted for. */
-static PetscErrorCode NodeNeighbours(Mesh mesh, PetscInt node, const PetscInt *ptr, const PetscInt *cells, PetscInt *mark, PetscInt *neighbours, PetscInt *count)
+static PetscErrorCode NodeNeighbours(Mesh mesh, PetscInt node, const PetscInt *ptr, const PetscInt *cells, PetscInt *mark, PetscInt *neighbours,
+                                     PetscInt *count)
 {
   PetscFunctionBeginUser;
   *count = 0;
@@ -137,7 +138,7 @@ static PetscErrorCode NodeNeighbours(Mesh mesh, PetscInt node, const PetscInt *p
       const PetscInt n = mesh->cell_nodes[m];
 
       if (mark[n] == node) continue;
-      mark[n]                 = node;
+      mark[n]                = node;
       neighbours[(*count)++] = n;
     }
   }
@@ -152,12 +153,13 @@ static void SetBlocks(Elasticity e, PetscInt node, const PetscInt *ptr, const Pe
     const PetscInt  c     = cells[k];
     CellGroup      *g     = &e->groups[e->cell_group[c]];
     const PetscInt *nodes = &e->mesh->cell_nodes[e->mesh->cell_ptr[c]], slot = e->cell_slot[c];
-    const PetscInt  end   = slot == g->n_cells - 1 ? g->n_batches * KERNEL_LANES : slot + 1;
+    const PetscInt  end = slot == g->n_cells - 1 ? g->n_batches * KERNEL_LANES : slot + 1;
 
     for (int a = 0; a < g->nodes; a++) {
       if (nodes[a] != node) continue;
       for (PetscInt s = slot; s < end; s++) {
-        for (int b = 0; b < g->nodes; b++) g->block[(((size_t)(s / KERNEL_LANES) * g->nodes + a) * g->nodes + b) * KERNEL_LANES + s % KERNEL_LANES] = place[nodes[b]];
+        for (int b = 0; b < g->nodes; b++)
+          g->block[(((size_t)(s / KERNEL_LANES) * g->nodes + a) * g->nodes + b) * KERNEL_LANES + s % KERNEL_LANES] = place[nodes[b]];
       }
     }
   }
@@ -402,9 +404,12 @@ PetscErrorCode ElasticityTangent(Elasticity e, const PetscReal *u)
 
       GatherBatch(e, g, batch, u);
       ElementKernel(&g->kernel, &g->X[first * dofs], e->u, &g->E[first], &g->nu[first], NULL, NULL, e->K, J);
-      if (count < KERNEL_LANES) ScatterTangent(e, g, batch, e->dim, count);
-      else if (e->dim == 3) ScatterTangent(e, g, batch, 3, KERNEL_LANES);
-      else ScatterTangent(e, g, batch, 2, KERNEL_LANES);
+      if (count < KERNEL_LANES)
+        ScatterTangent(e, g, batch, e->dim, count);
+      else if (e->dim == 3)
+        ScatterTangent(e, g, batch, 3, KERNEL_LANES);
+      else
+        ScatterTangent(e, g, batch, 2, KERNEL_LANES);
     }
   }
   PetscCall(PetscLogEventEnd(event_tangent, 0, 0, 0, 0));
@@ -438,7 +443,8 @@ PetscErrorCode ElasticityAddBlock(Elasticity e, PetscInt n, const PetscInt nodes
       PetscReal *value;
 
       PetscCall(PetscFindInt(nodes[b], e->row[nodes[a] + 1] - row, &e->column[row], &place));
-      PetscCheck(place >= 0, PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE, "nodes %" PetscInt_FMT " and %" PetscInt_FMT " share no local cell", nodes[a], nodes[b]);
+      PetscCheck(place >= 0, PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE, "nodes %" PetscInt_FMT " and %" PetscInt_FMT " share no local cell", nodes[a],
+                 nodes[b]);
       value = &e->value[(size_t)(row + place) * dim * dim];
       for (int i = 0; i < dim; i++) {
         for (int j = 0; j < dim; j++) value[i * dim + j] += k[(a * dim + i) * n * dim + b * dim + j];
@@ -568,10 +574,10 @@ PetscErrorCode ElasticityMatrix(Elasticity e, Mat *matrix)
 /* Adds one cell's share to its nodes */
 static void AddCellStress(Elasticity e, const CellGroup *g, PetscInt slot, const PetscReal *u, PetscReal *stress, PetscReal *weight)
 {
-  const Element *element = ElementGet(g->kernel.type);
-  const size_t   batch = slot / KERNEL_LANES, lane = slot % KERNEL_LANES;
+  const Element  *element = ElementGet(g->kernel.type);
+  const size_t    batch = slot / KERNEL_LANES, lane = slot % KERNEL_LANES;
   const PetscInt *nodes = &e->mesh->cell_nodes[e->mesh->cell_ptr[g->cell[slot]]];
-  PetscReal      X[MAX_DOFS], cell_u[MAX_DOFS], point_stress[ELEMENT_MAX_POINTS * 6], point_volume[ELEMENT_MAX_POINTS], volume = 0;
+  PetscReal       X[MAX_DOFS], cell_u[MAX_DOFS], point_stress[ELEMENT_MAX_POINTS * 6], point_volume[ELEMENT_MAX_POINTS], volume = 0;
 
   for (int a = 0; a < g->nodes; a++) {
     for (int i = 0; i < e->dim; i++) {

@@ -6,6 +6,7 @@
 
 enum { MAX_CORNERS = 8 };
 
+/* clang-format off */
 #define CORNERS_EDGE {{-1, 0, 0}, {1, 0, 0}}
 #define CORNERS_TRI  {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}
 #define CORNERS_QUAD {{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}}
@@ -43,14 +44,21 @@ static Element element_table[ELEMENT_TYPES] = {
                      .face_nodes = FACES_HEX, .edges = 12, .edge_corners = EDGES_HEX,
                      .xdmf_order = {0, 1, 2, 3, 4, 5, 6, 7, 8, 11, 13, 9, 16, 18, 19, 17, 10, 12, 14, 15, 22, 23, 21, 24, 20, 25, 26}, .node = CORNERS_HEX},
 };
+/* clang-format on */
 static Element face_tri3; /* tri3 with the quadrature of a face */
 
 static const double gauss2_point = 0.57735026918962576451; /* 1/sqrt(3) */
 static const double gauss3_point = 0.77459666924148337704; /* sqrt(3/5) */
 
-static int IsSimplex(const Element *e) { return e->corners == e->dim + 1 && e->dim > 1; }
+static int IsSimplex(const Element *e)
+{
+  return e->corners == e->dim + 1 && e->dim > 1;
+}
 
-static int IsTensor(const Element *e) { return !IsSimplex(e); }
+static int IsTensor(const Element *e)
+{
+  return !IsSimplex(e);
+}
 
 /* Lagrange polynomial of a line through -1, (0,) 1 that is 1 at c, with its first and second derivative */
 static void ShapeLine(int order, double c, double x, double value[3])
@@ -75,7 +83,11 @@ static void ShapeTensor(const Element *e, const double *xi, double *N, double *d
   const int dim = e->dim;
 
   for (int a = 0; a < e->nodes; a++) {
-    double line[3][3] = {{1, 0, 0}, {1, 0, 0}, {1, 0, 0}};
+    double line[3][3] = {
+      {1, 0, 0},
+      {1, 0, 0},
+      {1, 0, 0}
+    };
 
     for (int k = 0; k < dim; k++) ShapeLine(e->order, e->node[a][k], xi[k], line[k]);
     if (N) N[a] = line[0][0] * line[1][0] * line[2][0];
@@ -90,7 +102,11 @@ static void ShapeTensor(const Element *e, const double *xi, double *N, double *d
 static void ShapeSimplex(const Element *e, const double *xi, double *N, double *dN, double *d2N)
 {
   const int dim = e->dim;
-  double    L[4] = {1, 0, 0, 0}, dL[4][3] = {{-1, -1, -1}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+  double    L[4] =
+    {
+      1, 0, 0, 0
+  },
+         dL[4][3] = {{-1, -1, -1}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
 
   for (int k = 0; k < dim; k++) {
     L[0] -= xi[k];
@@ -110,8 +126,10 @@ static void ShapeSimplex(const Element *e, const double *xi, double *N, double *
 
 static void Shape(const Element *e, const double *xi, double *N, double *dN, double *d2N)
 {
-  if (IsTensor(e)) ShapeTensor(e, xi, N, dN, d2N);
-  else ShapeSimplex(e, xi, N, dN, d2N);
+  if (IsTensor(e))
+    ShapeTensor(e, xi, N, dN, d2N);
+  else
+    ShapeSimplex(e, xi, N, dN, d2N);
 }
 
 /* Middles of edges and faces, and the centre, as means of the corners they lie between */
@@ -152,17 +170,17 @@ static void CompleteFaces(Element *e)
 
 static void SetPoint(Element *e, double x, double y, double z, double weight)
 {
-  e->point[e->points][0]  = x;
-  e->point[e->points][1]  = y;
-  e->point[e->points][2]  = z;
+  e->point[e->points][0] = x;
+  e->point[e->points][1] = y;
+  e->point[e->points][2] = z;
   e->weight[e->points++] = weight;
 }
 
 static void QuadratureTensor(Element *e)
 {
-  const int    n        = e->order + 1;
-  const double p2[]     = {-gauss2_point, gauss2_point}, w2[] = {1, 1}, p3[] = {-gauss3_point, 0, gauss3_point}, w3[] = {5. / 9, 8. / 9, 5. / 9};
-  const double *p       = n == 2 ? p2 : p3, *w = n == 2 ? w2 : w3;
+  const int     n    = e->order + 1;
+  const double  p2[] = {-gauss2_point, gauss2_point}, w2[] = {1, 1}, p3[] = {-gauss3_point, 0, gauss3_point}, w3[] = {5. / 9, 8. / 9, 5. / 9};
+  const double *p = n == 2 ? p2 : p3, *w = n == 2 ? w2 : w3;
 
   for (int k = 0; k < (e->dim > 2 ? n : 1); k++) {
     for (int j = 0; j < (e->dim > 1 ? n : 1); j++) {
@@ -177,7 +195,8 @@ static void QuadratureSimplex(Element *e, int points)
   const double volume = e->dim == 2 ? 1. / 2 : 1. / 6;
   const double inner = e->dim == 2 ? 1. / 6 : 0.13819660112501051518, outer = 1 - e->dim * inner; /* tet: (5 - sqrt 5) / 20 */
 
-  if (points == 1) SetPoint(e, 1. / (e->dim + 1), 1. / (e->dim + 1), e->dim == 3 ? 0.25 : 0, volume);
+  if (points == 1)
+    SetPoint(e, 1. / (e->dim + 1), 1. / (e->dim + 1), e->dim == 3 ? 0.25 : 0, volume);
   else {
     for (int a = 0; a <= e->dim; a++) SetPoint(e, a == 1 ? outer : inner, a == 2 ? outer : inner, e->dim < 3 ? 0 : a == 3 ? outer : inner, volume / points);
   }
@@ -255,8 +274,10 @@ static void CompleteTable(void)
 
     CompleteNodes(e);
     CompleteFaces(e);
-    if (IsTensor(e)) QuadratureTensor(e);
-    else QuadratureSimplex(e, e->order == 1 ? 1 : e->dim + 1);
+    if (IsTensor(e))
+      QuadratureTensor(e);
+    else
+      QuadratureSimplex(e, e->order == 1 ? 1 : e->dim + 1);
     Tabulate(e);
   }
   face_tri3        = element_table[ELEMENT_TRI3];

@@ -8,24 +8,24 @@
 
 /* Points treated together: A, T and g of a chunk stay in the first-level cache, while the blocks of K (which do not, for hex27) are
    loaded and stored once per chunk only. */
-enum { CHUNK = 9, TENSOR_HOOP = 8 };
+enum { CHUNK = 9, TENSOR_HOOP = 8, MAX_ROWS = 9 };
 
 _Static_assert(KERNEL_LANES % MATERIAL_LANES == 0, "a batch consists of whole vectors");
 
 /* A vector of the batch's arrays of doubles, which need not be aligned */
 typedef double LaneInArray __attribute__((vector_size(MATERIAL_LANES * sizeof(double)), aligned(sizeof(double)), may_alias));
-#define LANE(array, index) (*(LaneInArray *)((array) + (index) * KERNEL_LANES))
-#define CONST_LANE(array, index) (*(const LaneInArray *)((array) + (index) * KERNEL_LANES))
+#define LANE(array, index)       (*(LaneInArray *)((array) + (index)*KERNEL_LANES))
+#define CONST_LANE(array, index) (*(const LaneInArray *)((array) + (index)*KERNEL_LANES))
 
 /* Row r of the gradient operator as a component of a 3 x 3 tensor: 2D has 4 in-plane rows and, axisymmetric, the hoop */
 #define TENSOR_ROW(dim, r) ((dim) == 3 ? (r) : (r) == 4 ? TENSOR_HOOP : 3 * ((r) / 2) + (r) % 2)
-#define TANGENT(A, r, s) ((A)[(r) <= (s) ? MATERIAL_TANGENT_INDEX(r, s) : MATERIAL_TANGENT_INDEX(s, r)])
+#define TANGENT(A, r, s)   ((A)[(r) <= (s) ? MATERIAL_TANGENT_INDEX(r, s) : MATERIAL_TANGENT_INDEX(s, r)])
 
 static const double two_pi = 6.28318530717958647693;
 
 typedef struct {
-  Lane g[ELEMENT_MAX_NODES][CHUNK][3]; /* reference gradient; axisymmetric: [2] is N_a / R */
-  Lane A[CHUNK][MATERIAL_TANGENT_SIZE];/* times weight and volume */
+  Lane g[ELEMENT_MAX_NODES][CHUNK][3];  /* reference gradient; axisymmetric: [2] is N_a / R */
+  Lane A[CHUNK][MATERIAL_TANGENT_SIZE]; /* times weight and volume */
 } ChunkPoints;
 
 #define KERNEL_INLINE static inline __attribute__((always_inline))
@@ -104,7 +104,7 @@ KERNEL_INLINE void AddTangent(const int n, const int dim, const int hoop, const 
   const int rows = dim * dim + hoop;
 
   for (int b = 0; b < n; b++) {
-    Lane T[CHUNK][10][3];
+    Lane T[CHUNK][MAX_ROWS][3];
 
     for (int q = 0; q < count; q++) {
 #pragma GCC unroll 9
@@ -145,8 +145,8 @@ KERNEL_INLINE void AddTangent(const int n, const int dim, const int hoop, const 
 }
 
 /* Everything of the first MATERIAL_LANES elements that the arrays show; n, points, dim and hoop are constants of the instance */
-KERNEL_INLINE void Batch(const Element *e, const int n, const int points, const int dim, const int hoop, MaterialLawFn *law, int finite, const double *X, const double *u, const Lane *lambda,
-                         const Lane *mu, double *W, double *f, double *K, double *J)
+KERNEL_INLINE void Batch(const Element *e, const int n, const int points, const int dim, const int hoop, MaterialLawFn *law, int finite, const double *X,
+                         const double *u, const Lane *lambda, const Lane *mu, double *W, double *f, double *K, double *J)
 {
   ChunkPoints c;
   const Lane  zero = {0};
@@ -178,10 +178,11 @@ KERNEL_INLINE void Batch(const Element *e, const int n, const int points, const 
 
 typedef void BatchFn(const Element *, MaterialLawFn *, int, const double *, const double *, const Lane *, const Lane *, double *, double *, double *, double *);
 
-#define BATCH_INSTANCE(name, nodes, points, dim, hoop) \
-  static void name(const Element *e, MaterialLawFn *law, int finite, const double *X, const double *u, const Lane *lambda, const Lane *mu, double *W, double *f, double *K, double *J) \
-  { \
-    Batch(e, nodes, points, dim, hoop, law, finite, X, u, lambda, mu, W, f, K, J); \
+#define BATCH_INSTANCE(name, nodes, points, dim, hoop)                                                                                                \
+  static void name(const Element *e, MaterialLawFn *law, int finite, const double *X, const double *u, const Lane *lambda, const Lane *mu, double *W, \
+                   double *f, double *K, double *J)                                                                                                   \
+  {                                                                                                                                                   \
+    Batch(e, nodes, points, dim, hoop, law, finite, X, u, lambda, mu, W, f, K, J);                                                                    \
   }
 
 BATCH_INSTANCE(BatchTri3, 3, 1, 2, 0)

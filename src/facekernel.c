@@ -92,7 +92,8 @@ static void AddFollowerTangent(const Element *e, int p, int dim, int axisymmetri
 
   Source: Bonet and Wood, "Nonlinear Continuum Mechanics for Finite Element Analysis", section 8.5.2
 */
-void FaceLoadKernel(ElementType type, int dim, Geometry geometry, FaceLoad load, const double *X, const double *u, const double *value, double *f, double *K, double *energy)
+void FaceLoadKernel(ElementType type, int dim, Geometry geometry, FaceLoad load, const double *X, const double *u, const double *value, double *f, double *K,
+                    double *energy)
 {
   const Element *e            = ElementGetFace(type);
   const int      axisymmetric = geometry == GEOMETRY_AXISYMMETRIC, follows = load == FACE_FOLLOWER_PRESSURE;
@@ -104,8 +105,10 @@ void FaceLoadKernel(ElementType type, int dim, Geometry geometry, FaceLoad load,
     FacePointAt(e, p, dim, X, follows ? u : NULL, &point);
     if (axisymmetric) scale *= two_pi * point.radius;
     for (int i = 0; i < dim; i++) {
-      if (load == FACE_TRACTION) force[i] = scale * value[i] * sqrt(point.normal[0] * point.normal[0] + point.normal[1] * point.normal[1] + point.normal[2] * point.normal[2]);
-      else force[i] = -scale * value[0] * point.normal[i];
+      if (load == FACE_TRACTION)
+        force[i] = scale * value[i] * sqrt(point.normal[0] * point.normal[0] + point.normal[1] * point.normal[1] + point.normal[2] * point.normal[2]);
+      else
+        force[i] = -scale * value[0] * point.normal[i];
     }
     for (int a = 0; a < e->nodes; a++) {
       for (int i = 0; i < dim; i++) {

@@ -1,6 +1,7 @@
 /* burnish: scene -> mesh -> model -> load stepper -> results. */
 #include <petsctime.h>
 #include "commandline.h"
+#include "errorlog.h"
 #include "refusal.h"
 #include "results.h"
 #include "stepper.h"
@@ -73,6 +74,7 @@ static PetscErrorCode RunScene(const CommandLine *command, int *status)
   PetscCall(SceneRead(comm, command->scene, command->n_set, command->set, &scene));
   PetscCall(InsertSceneOptions(scene));
   PetscCall(PetscSNPrintf(directory, sizeof(directory), "%s%s", command->directory ? command->directory : "out/", command->directory ? "" : scene->name));
+  PetscCall(ErrorLogOpen(directory));
   if (command->mode == COMMAND_RUN) PetscCall(ResultsCheckDirectory(comm, scene, directory, command->overwrite ? PETSC_TRUE : PETSC_FALSE));
   PetscCall(MeshGenerate(comm, scene, "out", mesh_file, &mesh_s));
   if (command->mode != COMMAND_MESH) {

@@ -119,9 +119,9 @@ static void LawNeoHookean(const Lane H[9], const Lane *dilatation, const Lane *l
   }
 }
 
-#define LAW_TABLE(ROW) \
+#define LAW_TABLE(ROW)                      \
   ROW(MATERIAL_LINEAR, "linear", LawLinear) \
-  ROW(MATERIAL_SVK, "svk", LawSvk) \
+  ROW(MATERIAL_SVK, "svk", LawSvk)          \
   ROW(MATERIAL_NEO_HOOKEAN, "neo_hookean", LawNeoHookean)
 
 #define LAW_NAME(law, name, function)     [law] = name,

@@ -10,10 +10,12 @@
 #define MODEL_RESIDUAL_WEIGHT 1e30
 /* Lists are made for this multiple of the motion that the last step's rate predicts. */
 #define MODEL_MOTION_SAFETY 1.5
+/* A direct solve of a regular system leaves a relative residual of 1e-12 to 1e-7, stiff penalties included; above this the system is singular. */
+#define MODEL_SINGULAR 1e-3
 /* Newton is limited by its iterations, not by the line search's evaluations. */
 #define MODEL_MAX_FUNCTIONS 1000000
 
-const char *const SolveResults[] = {"converged", "Newton's method did not converge within solver.max_iterations", "the line search found no lower energy", "an element turned inside out", "the linear solver failed (a body free to move, or out of memory)", "the contact lists did not settle", "not-a-number in the residual"};
+const char *const SolveResults[] = {"converged", "Newton's method did not converge within solver.max_iterations", "the line search found no lower energy", "an element turned inside out", "the linear system is singular (is a body free to move?) or its solver failed", "the contact lists did not settle", "not-a-number in the residual"};
 
 typedef struct _n_ModelWork {
   PetscReal *f;            /* local residual of the last evaluation, all dofs */
@@ -188,7 +190,7 @@ static PetscErrorCode ModelConverged(SNES snes, PetscInt it, PetscReal xnorm, Pe
   (void)snorm;
   *reason           = SNES_CONVERGED_ITERATING;
   model->work->near = fnorm <= MODEL_ENERGY_ROUND_OFF * scale ? PETSC_TRUE : PETSC_FALSE;
-  if (PetscIsInfOrNanReal(fnorm)) *reason = SNES_DIVERGED_FNORM_NAN;
+  if (PetscIsInfOrNanReal(fnorm)) *reason = SNES_DIVERGED_FUNCTION_NANORINF;
   else if (fnorm <= model->scene->solver.tolerance * scale) *reason = SNES_CONVERGED_FNORM_ABS;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -351,6 +353,7 @@ static PetscErrorCode ModelPredict(Model model, SolveReport *report)
   KSP                ksp;
   KSPConvergedReason reason;
   PetscInt           its;
+  PetscReal          norm, left;
 
   PetscFunctionBeginUser;
   PetscCall(VecDuplicate(model->x, &b));
@@ -371,8 +374,12 @@ static PetscErrorCode ModelPredict(Model model, SolveReport *report)
   PetscCall(KSPGetIterationNumber(ksp, &its));
   report->newton++;
   report->krylov += its;
-  if (reason < 0) report->result = SOLVE_LINEAR;
-  else PetscCall(VecAXPY(model->x, -1, dx));
+  PetscCall(VecAXPY(model->x, -1, dx));
+  PetscCall(VecNorm(b, NORM_2, &norm));
+  PetscCall(VecScale(dx, -1));
+  PetscCall(MatMultAdd(model->A, dx, b, b));
+  PetscCall(VecNorm(b, NORM_2, &left));
+  if (reason < 0 || !(left <= MODEL_SINGULAR * norm)) report->result = SOLVE_LINEAR;
   PetscCall(PetscFree(step));
   PetscCall(VecDestroy(&b));
   PetscCall(VecDestroy(&dx));
@@ -386,7 +393,7 @@ static SolveResult ResultFromReason(SNESConvergedReason reason)
   case SNES_DIVERGED_MAX_IT: return SOLVE_ITERATIONS;
   case SNES_DIVERGED_FUNCTION_DOMAIN: return SOLVE_DOMAIN;
   case SNES_DIVERGED_LINEAR_SOLVE: return SOLVE_LINEAR;
-  case SNES_DIVERGED_FNORM_NAN: return SOLVE_NAN;
+  case SNES_DIVERGED_FUNCTION_NANORINF: return SOLVE_NAN;
   default: return SOLVE_LINE_SEARCH;
   }
 }

@@ -10,11 +10,11 @@ enum { BOX_TETS_PER_CUBE = 6 };
 
 typedef struct {
   ElementType type;
-  PetscInt    n;      /* cubes per side */
+  PetscInt    n; /* cubes per side */
   Mesh        mesh;
   Scene       scene;
-  PetscReal  *u;      /* a smooth displacement with finite strains */
-  PetscInt   *corners;/* of each cell, numbered over the corners alone, in DMPlex's order */
+  PetscReal  *u;       /* a smooth displacement with finite strains */
+  PetscInt   *corners; /* of each cell, numbered over the corners alone, in DMPlex's order */
 } Box;
 
 static const PetscReal box_E = 200, box_nu = 0.3;
@@ -60,7 +60,14 @@ static inline PetscErrorCode BoxIdentity(PetscInt dim, PetscReal time, const Pet
 /* Corner c of cell t of a cube, in {0, 1}^3: the only hexahedron, or the tetrahedron along one order of the axes */
 static inline void BoxCorner(const Element *e, int t, int c, int corner[3])
 {
-  static const int axes[BOX_TETS_PER_CUBE][3] = {{0, 1, 2}, {1, 2, 0}, {2, 0, 1}, {1, 0, 2}, {2, 1, 0}, {0, 2, 1}};
+  static const int axes[BOX_TETS_PER_CUBE][3] = {
+    {0, 1, 2},
+    {1, 2, 0},
+    {2, 0, 1},
+    {1, 0, 2},
+    {2, 1, 0},
+    {0, 2, 1}
+  };
 
   for (int k = 0; k < 3; k++) corner[k] = e->corners == 8 && e->node[c][k] > 0;
   if (e->corners == 8) return;
@@ -68,7 +75,10 @@ static inline void BoxCorner(const Element *e, int t, int c, int corner[3])
   for (int k = 0; k < c; k++) corner[axes[t][k]] = 1;
 }
 
-static inline PetscInt BoxGridIndex(PetscInt side, const PetscInt at[3]) { return (at[2] * side + at[1]) * side + at[0]; }
+static inline PetscInt BoxGridIndex(PetscInt side, const PetscInt at[3])
+{
+  return (at[2] * side + at[1]) * side + at[0];
+}
 
 /* Where DMPlex has gmsh's corner k: its tetrahedra have the first two swapped, its hexahedra the bottom face turned over */
 static inline int BoxPlexPlace(const Element *e, int k)
@@ -108,7 +118,7 @@ static inline void BoxCell(Box *box, const PetscInt cube[3], int t, PetscInt c)
       for (int k = 0; k < e->corners; k++) sum += N[k] * corner[k][i];
       at[i] = (PetscInt)lround(e->order * sum);
     }
-    node                                     = BoxGridIndex(e->order * box->n + 1, at);
+    node                                    = BoxGridIndex(e->order * box->n + 1, at);
     box->mesh->cell_nodes[c * e->nodes + a] = node;
     for (int i = 0; i < 3; i++) {
       box->mesh->coords[node * 3 + i] = 0;
@@ -128,12 +138,12 @@ static inline PetscErrorCode BoxCreate(ElementType type, PetscInt n, Box *box)
   *box = (Box){.type = type, .n = n};
   PetscCall(PetscCalloc1(1, &box->mesh));
   PetscCall(PetscCalloc1(1, &box->scene));
-  m             = box->mesh;
-  m->comm       = PETSC_COMM_SELF;
-  m->dim        = 3;
-  m->order      = e->order;
-  m->n_nodes    = m->n_owned = m->n_global = side * side * side;
-  m->n_cells    = m->n_cells_global = n * n * n * per_cube;
+  m          = box->mesh;
+  m->comm    = PETSC_COMM_SELF;
+  m->dim     = 3;
+  m->order   = e->order;
+  m->n_nodes = m->n_owned = m->n_global = side * side * side;
+  m->n_cells = m->n_cells_global = n * n * n * per_cube;
   PetscCall(PetscCalloc1(m->n_nodes, &m->node_owner));
   PetscCall(PetscCalloc1(m->n_nodes * 3, &m->coords));
   PetscCall(PetscMalloc1(m->n_cells, &m->cell_type));
@@ -182,12 +192,14 @@ static inline PetscErrorCode BoxDestroy(Box *box)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-#define BOX_POINTWISE_ARGUMENTS \
-  PetscInt dim, PetscInt Nf, PetscInt NfAux, const PetscInt uOff[], const PetscInt uOff_x[], const PetscScalar u[], const PetscScalar u_t[], const PetscScalar u_x[], const PetscInt aOff[], \
-    const PetscInt aOff_x[], const PetscScalar a[], const PetscScalar a_t[], const PetscScalar a_x[], PetscReal t
+#define BOX_POINTWISE_ARGUMENTS                                                                                                                       \
+  PetscInt dim, PetscInt Nf, PetscInt NfAux, const PetscInt uOff[], const PetscInt uOff_x[], const PetscScalar u[], const PetscScalar u_t[],          \
+    const PetscScalar u_x[], const PetscInt aOff[], const PetscInt aOff_x[], const PetscScalar a[], const PetscScalar a_t[], const PetscScalar a_x[], \
+    PetscReal t
 
-#define BOX_POINTWISE_UNUSED \
-  (void)dim, (void)Nf, (void)NfAux, (void)uOff, (void)uOff_x, (void)u, (void)u_t, (void)aOff, (void)aOff_x, (void)a, (void)a_t, (void)a_x, (void)t, (void)numConstants, (void)constants, (void)x
+#define BOX_POINTWISE_UNUSED                                                                                                                        \
+  (void)dim, (void)Nf, (void)NfAux, (void)uOff, (void)uOff_x, (void)u, (void)u_t, (void)aOff, (void)aOff_x, (void)a, (void)a_t, (void)a_x, (void)t, \
+    (void)numConstants, (void)constants, (void)x
 
 /* F and S of the law, written as in a textbook */
 static inline void BoxStress(const PetscScalar u_x[], PetscReal F[3][3], PetscReal S[3][3], PetscReal *lambda, PetscReal *mu)
@@ -219,7 +231,8 @@ static inline void BoxResidual(BOX_POINTWISE_ARGUMENTS, const PetscReal x[], Pet
   }
 }
 
-static inline void BoxJacobian(BOX_POINTWISE_ARGUMENTS, PetscReal shift, const PetscReal x[], PetscInt numConstants, const PetscScalar constants[], PetscScalar g3[])
+static inline void BoxJacobian(BOX_POINTWISE_ARGUMENTS, PetscReal shift, const PetscReal x[], PetscInt numConstants, const PetscScalar constants[],
+                               PetscScalar g3[])
 {
   PetscReal F[3][3], S[3][3], lambda, mu;
 
@@ -271,7 +284,9 @@ static inline PetscErrorCode BoxCreatePetsc(const Box *box, DM *dm)
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(vertices * 3, &coords));
   for (PetscInt c = 0; c < box->mesh->n_cells; c++) {
-    for (int k = 0; k < e->corners; k++) PetscCall(PetscArraycpy(&coords[box->corners[c * e->corners + BoxPlexPlace(e, k)] * 3], &box->mesh->coords[box->mesh->cell_nodes[c * e->nodes + k] * 3], 3));
+    for (int k = 0; k < e->corners; k++)
+      PetscCall(
+        PetscArraycpy(&coords[box->corners[c * e->corners + BoxPlexPlace(e, k)] * 3], &box->mesh->coords[box->mesh->cell_nodes[c * e->nodes + k] * 3], 3));
   }
   PetscCall(DMPlexCreateFromCellListPetsc(PETSC_COMM_SELF, 3, box->mesh->n_cells, vertices, e->corners, PETSC_TRUE, box->corners, 3, coords, dm));
   PetscCall(PetscFree(coords));

@@ -138,8 +138,8 @@ static PetscErrorCode TimeOurs(ElementType type, PetscInt n)
     {"insertion",            Insert,      PETSC_TRUE },
   };
   double total = 0;
-  Box  box;
-  Work w = {.box = &box, .kernel = &kernel};
+  Box    box;
+  Work   w = {.box = &box, .kernel = &kernel};
 
   PetscFunctionBeginUser;
   PetscCall(BoxCreate(type, n, &box));
@@ -164,7 +164,7 @@ static PetscErrorCode TimeOurs(ElementType type, PetscInt n)
 static PetscErrorCode TimePetsc(ElementType type, PetscInt n)
 {
   PetscErrorCode (*displacement[1])(PetscInt, PetscReal, const PetscReal[], PetscInt, PetscScalar[], void *) = {BoxDisplacement};
-  double microseconds = 0;
+  double microseconds                                                                                        = 0;
   Box    box;
   Work   w = {.box = &box};
 

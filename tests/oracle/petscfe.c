@@ -13,7 +13,7 @@ static const PetscReal agreement = 1e-10; /* relative to the largest entry */
 static PetscErrorCode MatchNodes(const Box *box, DM dm, PetscInt *place)
 {
   PetscErrorCode (*identity[1])(PetscInt, PetscReal, const PetscReal[], PetscInt, PetscScalar[], void *) = {BoxIdentity};
-  const PetscReal    tolerance = 1e-8; /* of a unit box: nodes are 0.1 apart */
+  const PetscReal    tolerance                                                                           = 1e-8; /* of a unit box: nodes are 0.1 apart */
   const PetscScalar *x;
   Vec                coords;
 
@@ -88,7 +88,8 @@ static PetscErrorCode CompareTangents(const Box *box, DM dm, Elasticity e, const
 
     PetscCall(MatGetRow(J, row, &count, &columns, &values));
     PetscCall(MatGetRow(K, our_row, &our_count, NULL, NULL));
-    PetscCheck(count == our_count, PETSC_COMM_SELF, PETSC_ERR_PLIB, "row %" PetscInt_FMT " has %" PetscInt_FMT " entries, PETSc's %" PetscInt_FMT, our_row, our_count, count);
+    PetscCheck(count == our_count, PETSC_COMM_SELF, PETSC_ERR_PLIB, "row %" PetscInt_FMT " has %" PetscInt_FMT " entries, PETSc's %" PetscInt_FMT, our_row,
+               our_count, count);
     PetscCall(MatRestoreRow(K, our_row, &our_count, NULL, NULL));
     for (PetscInt k = 0; k < count; k++) {
       PetscScalar ours;
@@ -123,7 +124,8 @@ static void Compare(ElementType type, PetscInt n)
   CHECK(DMProjectFunctionLocal(dm, 0, displacement, NULL, INSERT_ALL_VALUES, u));
   CHECK(CompareResiduals(&box, dm, e, place, u, &residual));
   CHECK(CompareTangents(&box, dm, e, place, u, &tangent));
-  print_message("%s, %d cells: largest relative difference of forces %.1e, of tangents %.1e\n", ElementGet(type)->name, (int)box.mesh->n_cells, residual, tangent);
+  print_message("%s, %d cells: largest relative difference of forces %.1e, of tangents %.1e\n", ElementGet(type)->name, (int)box.mesh->n_cells, residual,
+                tangent);
   assert_true(residual < agreement);
   assert_true(tangent < agreement);
   CHECK(DMRestoreLocalVector(dm, &u));

@@ -6,7 +6,8 @@ from harness import Check, arguments, run, SCENES
 E, NU, P, A, B, LENGTH = 1000, 0.3, 10, 1, 2, 0.5
 FORMS = {"plane_strain": 0, "solid": 1, "axisymmetric": 2}
 # (order, simplex) -> elements through the wall, largest displacement error over the largest displacement on them, least factor it falls by on
-# twice as many: h^2 = 4 and h^3 = 8 in theory, less on coarse meshes; simplices only have it on fine ones
+# twice as many: h^2 = 4 and h^3 = 8 in theory, less on coarse meshes; simplices are slow to reach it (axisymmetric tri3: 1.8 from 3 to 6
+# elements, 3.1 from 24 to 48). The bounds are what was measured, rounded: they guard against change.
 ALLOWED = {("1", "0"): (3, 0.03, 3.5), ("2", "0"): (3, 6e-4, 8), ("1", "1"): (6, 0.06, 2.2), ("2", "1"): (6, 8e-4, 6)}
 
 

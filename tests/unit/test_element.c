@@ -205,10 +205,37 @@ static void MiddleNodesLieOnTheirEdges(void **state)
 /* Positions of gmsh's and VTK's hex27 nodes as their manuals draw them: edges and faces by the corners around them */
 static void Hex27FollowsTheManuals(void **state)
 {
-  const int      gmsh_faces[6][3] = {{0, 0, -1}, {0, -1, 0}, {-1, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
-  const int      vtk_faces[6][3]  = {{-1, 0, 0}, {1, 0, 0}, {0, -1, 0}, {0, 1, 0}, {0, 0, -1}, {0, 0, 1}};
-  const int      vtk_edges[12][2] = {{0, 1}, {1, 2}, {2, 3}, {3, 0}, {4, 5}, {5, 6}, {6, 7}, {7, 4}, {0, 4}, {1, 5}, {2, 6}, {3, 7}};
-  const Element *e                = ElementGet(ELEMENT_HEX27);
+  const int gmsh_faces[6][3] = {
+    {0,  0,  -1},
+    {0,  -1, 0 },
+    {-1, 0,  0 },
+    {1,  0,  0 },
+    {0,  1,  0 },
+    {0,  0,  1 }
+  };
+  const int vtk_faces[6][3] = {
+    {-1, 0,  0 },
+    {1,  0,  0 },
+    {0,  -1, 0 },
+    {0,  1,  0 },
+    {0,  0,  -1},
+    {0,  0,  1 }
+  };
+  const int vtk_edges[12][2] = {
+    {0, 1},
+    {1, 2},
+    {2, 3},
+    {3, 0},
+    {4, 5},
+    {5, 6},
+    {6, 7},
+    {7, 4},
+    {0, 4},
+    {1, 5},
+    {2, 6},
+    {3, 7}
+  };
+  const Element *e = ElementGet(ELEMENT_HEX27);
 
   (void)state;
   for (int f = 0; f < 6; f++) {
@@ -226,7 +253,7 @@ static void XdmfOrdersArePermutations(void **state)
 {
   (void)state;
   for (int type = 0; type < ELEMENT_TYPES; type++) {
-    const Element *e = ElementGet(type);
+    const Element *e    = ElementGet(type);
     unsigned       seen = 0;
 
     for (int a = 0; a < e->nodes; a++) seen |= 1u << e->xdmf_order[a];

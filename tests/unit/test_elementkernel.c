@@ -137,7 +137,8 @@ static void ForceAndTangentAreDerivatives(void **state)
       for (int lane = 0; lane < LANES; lane++) {
         b.u[j * LANES + lane] += h;
         assert_near(b.f[j * LANES + lane], (W_plus[lane] - W_minus[lane]) / (2 * h), 1e-8 * scale);
-        for (int i = 0; i < b.dofs; i++) assert_near(b.K[(i * b.dofs + j) * LANES + lane], (f_plus[i * LANES + lane] - f_minus[i * LANES + lane]) / (2 * h), 1e-8 * scale);
+        for (int i = 0; i < b.dofs; i++)
+          assert_near(b.K[(i * b.dofs + j) * LANES + lane], (f_plus[i * LANES + lane] - f_minus[i * LANES + lane]) / (2 * h), 1e-8 * scale);
       }
     }
     BatchDestroy(&b);
@@ -222,8 +223,10 @@ static void RigidMotionCausesNoForce(void **state)
 
     if (kernel.kinematics == KINEMATICS_FINITE && kernel.law == MATERIAL_LINEAR) continue; /* not objective, refused by the scene */
     BatchCreate(&b, kernel, 0.1);
-    if (kernel.geometry == GEOMETRY_AXISYMMETRIC) SetGradient(&b, (double[9]){0});
-    else SetGradient(&b, kernel.kinematics == KINEMATICS_FINITE ? finite : small);
+    if (kernel.geometry == GEOMETRY_AXISYMMETRIC)
+      SetGradient(&b, (double[9]){0});
+    else
+      SetGradient(&b, kernel.kinematics == KINEMATICS_FINITE ? finite : small);
     for (int a = 0; a < b.e->nodes; a++) {
       for (int lane = 0; lane < LANES; lane++) b.u[(a * b.dim + 1) * LANES + lane] += 0.7;
     }
@@ -339,9 +342,12 @@ static void InvertedElementsAreReportedAndFinite(void **state)
     b.u[7] = NAN;
     Evaluate(&b);
     for (int lane = 0; lane < LANES; lane++) {
-      if (lane == 7) assert_false(b.J[lane] > 0);
-      else if (lane == 2) assert_near(b.J[lane], 1, 0);
-      else if (kernel.geometry != GEOMETRY_AXISYMMETRIC) assert_near(b.J[lane], -1.1, 1e-12);
+      if (lane == 7)
+        assert_false(b.J[lane] > 0);
+      else if (lane == 2)
+        assert_near(b.J[lane], 1, 0);
+      else if (kernel.geometry != GEOMETRY_AXISYMMETRIC)
+        assert_near(b.J[lane], -1.1, 1e-12);
     }
     for (int k = 0; k < b.dofs * LANES; k++) assert_true(isfinite(b.f[k]) || k % LANES == 7);
     for (int k = 0; k < b.dofs * b.dofs * LANES; k++) assert_true(isfinite(b.K[k]) || k % LANES == 7);
@@ -395,7 +401,7 @@ static void BodyForceHasItsResultant(void **state)
     if (kernel.kinematics == KINEMATICS_FINITE) continue;
     BatchCreate(&b, kernel, 0.1);
     for (int lane = 0; lane < LANES; lane++) {
-      double       X[MAX_DOFS], u[MAX_DOFS], f[MAX_DOFS] = {0}, sum[3] = {0};
+      double X[MAX_DOFS], u[MAX_DOFS], f[MAX_DOFS] = {0}, sum[3] = {0};
 
       TakeLane(&b, lane, X, u);
       BodyForceKernel(kernel.type, b.dim, kernel.geometry, X, value, f);
@@ -436,18 +442,12 @@ static void FoldedCornersAreFound(void **state)
 int main(void)
 {
   const struct CMUnitTest tests[] = {
-    cmocka_unit_test(ForceAndTangentAreDerivatives),
-    cmocka_unit_test(TangentIsSymmetric),
-    cmocka_unit_test(EachResultMayBeLeftOut),
-    cmocka_unit_test(LanesAreIndependentAndUnaligned),
-    cmocka_unit_test(RigidMotionCausesNoForce),
-    cmocka_unit_test(UniformStrainGivesExactForces),
-    cmocka_unit_test(UniformExpansionIsExact),
-    cmocka_unit_test(InvertedElementsAreReportedAndFinite),
-    cmocka_unit_test(VolumesFollowFromTheSurface),
-    cmocka_unit_test(AxisymmetricVolumeIsThatOfARing),
-    cmocka_unit_test(BodyForceHasItsResultant),
-    cmocka_unit_test(QualityOfParallelepipedsIsOne),
+    cmocka_unit_test(ForceAndTangentAreDerivatives), cmocka_unit_test(TangentIsSymmetric),
+    cmocka_unit_test(EachResultMayBeLeftOut),        cmocka_unit_test(LanesAreIndependentAndUnaligned),
+    cmocka_unit_test(RigidMotionCausesNoForce),      cmocka_unit_test(UniformStrainGivesExactForces),
+    cmocka_unit_test(UniformExpansionIsExact),       cmocka_unit_test(InvertedElementsAreReportedAndFinite),
+    cmocka_unit_test(VolumesFollowFromTheSurface),   cmocka_unit_test(AxisymmetricVolumeIsThatOfARing),
+    cmocka_unit_test(BodyForceHasItsResultant),      cmocka_unit_test(QualityOfParallelepipedsIsOne),
     cmocka_unit_test(FoldedCornersAreFound),
   };
 

@@ -18,8 +18,14 @@ typedef struct {
 } Case;
 
 static const Case cases[] = {
-  {ELEMENT_EDGE2, 2, GEOMETRY_PLANE_STRAIN}, {ELEMENT_EDGE3, 2, GEOMETRY_PLANE_STRAIN}, {ELEMENT_EDGE2, 2, GEOMETRY_AXISYMMETRIC}, {ELEMENT_EDGE3, 2, GEOMETRY_AXISYMMETRIC},
-  {ELEMENT_TRI3,  3, GEOMETRY_SOLID},        {ELEMENT_TRI6,  3, GEOMETRY_SOLID},        {ELEMENT_QUAD4, 3, GEOMETRY_SOLID},        {ELEMENT_QUAD9, 3, GEOMETRY_SOLID},
+  {ELEMENT_EDGE2, 2, GEOMETRY_PLANE_STRAIN},
+  {ELEMENT_EDGE3, 2, GEOMETRY_PLANE_STRAIN},
+  {ELEMENT_EDGE2, 2, GEOMETRY_AXISYMMETRIC},
+  {ELEMENT_EDGE3, 2, GEOMETRY_AXISYMMETRIC},
+  {ELEMENT_TRI3,  3, GEOMETRY_SOLID       },
+  {ELEMENT_TRI6,  3, GEOMETRY_SOLID       },
+  {ELEMENT_QUAD4, 3, GEOMETRY_SOLID       },
+  {ELEMENT_QUAD9, 3, GEOMETRY_SOLID       },
 };
 enum { CASES = sizeof(cases) / sizeof(*cases) };
 
@@ -105,7 +111,8 @@ static void PressureOnAClosedSurfaceHasNoResultant(void **state)
   for (int type = ELEMENT_TRI3; type < ELEMENT_TYPES; type++) {
     const Element *e = ElementGet(type), *face = ElementGet(e->face_type);
 
-    for (Geometry geometry = e->dim == 3 ? GEOMETRY_SOLID : GEOMETRY_PLANE_STRAIN; geometry <= (e->dim == 3 ? GEOMETRY_SOLID : GEOMETRY_AXISYMMETRIC); geometry++) {
+    for (Geometry geometry = e->dim == 3 ? GEOMETRY_SOLID : GEOMETRY_PLANE_STRAIN; geometry <= (e->dim == 3 ? GEOMETRY_SOLID : GEOMETRY_AXISYMMETRIC);
+         geometry++) {
       double X[ELEMENT_MAX_NODES][3], u[ELEMENT_MAX_NODES][3];
 
       for (int a = 0; a < e->nodes; a++) {
@@ -189,14 +196,14 @@ static void TributaryAreasAreKnownOnes(void **state)
     double        area;
     const double *share;
   } faces[] = {
-    {ELEMENT_EDGE3, 2, 4, edge3},
-    {ELEMENT_TRI6,  3, 3, tri6 },
+    {ELEMENT_EDGE3, 2, 4,  edge3},
+    {ELEMENT_TRI6,  3, 3,  tri6 },
     {ELEMENT_QUAD9, 3, 24, quad9},
   };
 
   (void)state;
   for (int k = 0; k < 3; k++) {
-    const Element *e = ElementGet(faces[k].type);
+    const Element *e           = ElementGet(faces[k].type);
     double         X[MAX_DOFS] = {0}, area[FACE_MAX_NODES] = {0}, normal[MAX_DOFS] = {0};
 
     for (int a = 0; a < e->nodes; a++) {

@@ -1,0 +1,35 @@
+"""Load steps land on every `at` and breakpoint, a failed step is taken back whole, and a run that cannot go on ends with status 2 and its last state on disk."""
+from harness import Check, arguments, run, SCENES
+
+args = arguments()
+check = Check()
+lame = SCENES / "lame.yaml"
+finite = ("kinematics=finite", "bodies.0.material.law=neo_hookean", "loads.0.pressure=200")
+
+# 1. Landing: 0.15 is a breakpoint of the history, 0.3 and 0.77 are asked for.
+landed = run(args, lame, out="landing", overrides=(*finite, "stepping={control: fixed, initial: 0.13, at: [0.3, 0.77]}", "loads.0.history=[[0, 0], [0.15, 0.5], [1, 1]]"))
+t = [row["t"] for row in landed.steps()]
+for point in (0.15, 0.3, 0.77, 1):
+    check.holds(f"lands on {point}", point in t)
+check.holds("no step beyond 1.2 dt", max(b - a for a, b in zip([0, *t], t)) <= 1.2 * 0.13 + 1e-12)
+
+# 2. Cutback: two iterations are too few for a step of a quarter turn; the cut steps reach the same end as steps that never failed.
+slide = SCENES.parent.parent / "runs" / "slide_cylinder.yaml"
+good = run(args, slide, out="uncut", overrides=("stepping.initial=0.1",))
+cut = run(args, slide, out="cut", overrides=("stepping.initial=0.1", "solver.max_iterations=3"))
+check.holds("uncut run never failed", good.summary()["steps_failed"] == 0)
+check.holds("cut run failed and went on", cut.summary()["steps_failed"] > 0, f"{cut.summary()['steps_failed']} failed steps")
+check.holds("failed attempts are counted", cut.summary()["newton_iterations"] > cut.summary()["newton_accepted"])
+for name, value in good.summary()["probes"].items():
+    check.near(f"{name} after cutbacks", cut.summary()["probes"][name], value, 1e-6 * abs(good.summary()["probes"]["force_y"]))
+
+# 3. No way on: one iteration is enough for the first half (no load yet), not for the second, and the floor is just below dt.
+stuck = run(args, lame, out="stuck", overrides=(*finite, "loads.0.pressure=5000", "loads.0.history=[[0, 0], [0.5, 0], [1, 1]]", "solver.max_iterations=1", "stepping={control: fixed, initial: 0.5, dt_min: 0.3}"), must=2)
+check.holds("message names load parameter, cause, node and what was tried", all(word in stuck.text for word in ("no equilibrium from t = 0.5 to 1", "inside out", "node", "dt_min 0.3")))
+check.holds("summary says so", stuck.summary()["status"] == "not converged" and "no equilibrium" in stuck.summary()["message"])
+check.holds("last good state is on disk", "displacement" in stuck.fields())
+
+# 4. A body that nothing holds: the cause is named, not a line search.
+loose = run(args, lame, out="loose", overrides=("supports=[{surface: symmetry_x, uy: 0}]",), must=2)
+check.holds("singular system is named", "singular" in loose.text)
+check.finish()
