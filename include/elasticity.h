@@ -30,3 +30,5 @@ PetscErrorCode ElasticityMatrix(Elasticity, Mat *);
 PetscErrorCode ElasticityNodalStress(Elasticity, const PetscReal *u, PetscReal *stress, PetscReal *weight);
 /* Largest material stiffness measure of a cell: E (for the automatic penalty) */
 PetscReal ElasticityCellModulus(Elasticity, PetscInt cell);
+/* A local cell that the last residual found with det F <= 0, or -1. Not collective. */
+PetscInt       ElasticityInvertedCell(Elasticity);

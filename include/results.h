@@ -14,7 +14,7 @@ typedef struct {
   const char *status;  /* "done", "not converged", "stopped" */
   const char *message; /* cause, or NULL */
   PetscInt    steps, steps_failed, newton_iterations, newton_accepted, krylov_iterations;
-  PetscReal   wall_s, cpu_s, mesh_s;
+  PetscReal   wall_s, mesh_s;
 } RunRecord;
 
 /* Refuses a directory that holds another scene's results unless overwrite. To be called before anything is written or solved. Collective. */

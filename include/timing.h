@@ -1,4 +1,5 @@
-/* Wall seconds by purpose, for summary.json; -log_view tells more. Begin and End do not nest. */
+/* Wall seconds by purpose, for summary.json; -log_view tells more. Pairs of Begin and End nest: while an inner purpose runs the outer one
+   stands still, so that no second counts twice (the search of the set-up is search, not set-up). */
 #pragma once
 
 typedef enum {
@@ -14,5 +15,5 @@ typedef enum {
 extern const char *const TimingNames[];
 
 void   TimingBegin(TimingKind);
-void   TimingEnd(TimingKind);
-double TimingSeconds(TimingKind);
+void   TimingEnd(TimingKind);      /* also ends what was begun after it and never ended */
+double TimingSeconds(TimingKind);  /* of what has ended or stood still so far */

@@ -1,3 +1,4 @@
+#include "blockmatrix.h"
 #include "contact.h"
 #include "law.h"
 #include "penalty.h"
@@ -36,21 +37,8 @@ typedef struct {
   PetscReal          *factor;         /* per slave point, frozen with the lists: fades out past a free edge */
   int                *seed;           /* per slave point: the facet of last time */
   PetscReal          *force, *vector, *normal; /* of the last residual: normal force, its sum over the slave points (n*3), contact normal (n*3) */
-  PetscReal          *pressure;
+  PetscReal          *pressure, *trial; /* trial: gaps of the last projection, of a residual or a tangent */
 } Pair;
-
-/* A dense block of the tangent: one active term over the contact nodes it touches. */
-typedef struct {
-  int      pair, n;
-  PetscInt node, value; /* first entries in the arrays of Blocks */
-} Block;
-
-typedef struct {
-  PetscInt   n, room, n_nodes, nodes_room, n_values, values_room;
-  Block     *block;
-  PetscInt  *node;  /* contact nodes of the pair's lists */
-  PetscReal *value; /* (n*dim)^2, row-major */
-} Blocks;
 
 typedef struct {
   SmootherResult result;
@@ -69,10 +57,8 @@ struct _n_Contact {
   int           n_pairs;
   Pair         *pairs;
   Work          work;
-  Blocks        blocks;
-  Mat           C;
-  PetscInt      n_pattern, *pattern; /* block sizes and dofs of the present pattern */
-  PetscLogEvent event_search, event_residual, event_tangent;
+  BlockMatrix   blocks;  /* the last tangent */
+  PetscLogEvent event_search, event_project, event_residual, event_tangent;
 };
 
 /* ---------- set-up ---------- */
@@ -143,7 +129,7 @@ static PetscErrorCode PairCreateTerms(Mesh mesh, Scene scene, Pair *pair)
     pair->term_weight[c] = 1;
   }
   pair->term_ptr[pair->n] = pair->n;
-  PetscCall(PetscCalloc4(pair->n, &pair->force, 3 * pair->n, &pair->vector, 3 * pair->n, &pair->normal, pair->n, &pair->pressure));
+  PetscCall(PetscCalloc5(pair->n, &pair->force, 3 * pair->n, &pair->vector, 3 * pair->n, &pair->normal, pair->n, &pair->pressure, pair->n, &pair->trial));
   PetscCall(PetscFree3(area, size, turn));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -193,8 +179,10 @@ PetscErrorCode ContactCreate(Mesh mesh, Scene scene, Elasticity elasticity, Load
   contact->loads   = loads;
   contact->n_pairs = scene->n_contacts;
   PetscCall(PetscLogEventRegister("ContactSearch", SNES_CLASSID, &contact->event_search));
+  PetscCall(PetscLogEventRegister("ContactProject", SNES_CLASSID, &contact->event_project));
   PetscCall(PetscLogEventRegister("ContactResidual", SNES_CLASSID, &contact->event_residual));
   PetscCall(PetscLogEventRegister("ContactTangent", SNES_CLASSID, &contact->event_tangent));
+  PetscCall(BlockMatrixCreate(mesh->comm, &contact->blocks));
   PetscCall(PetscCalloc1(contact->n_pairs, &contact->pairs));
   for (int p = 0; p < contact->n_pairs; p++) {
     PetscCall(PairCreate(mesh, scene, elasticity, loads, &scene->contacts[p], &contact->pairs[p]));
@@ -217,7 +205,7 @@ static PetscErrorCode PairDestroy(Pair *pair)
   PetscCall(StateDestroy(&pair->accepted));
   PetscCall(PetscFree4(pair->node, pair->area, pair->size, pair->turn));
   PetscCall(PetscFree2(pair->term_ptr, pair->term_weight));
-  PetscCall(PetscFree4(pair->force, pair->vector, pair->normal, pair->pressure));
+  PetscCall(PetscFree5(pair->force, pair->vector, pair->normal, pair->pressure, pair->trial));
   PetscCall(PetscFree2(pair->factor, pair->seed));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -234,11 +222,7 @@ PetscErrorCode ContactDestroy(Contact *contact)
   PetscCall(PetscFree4(c->work.result.points, c->work.result.N, c->work.from, c->work.scale));
   PetscCall(PetscFree4(c->work.result.M, c->work.node, c->work.N, c->work.M));
   PetscCall(PetscFree(c->work.x));
-  PetscCall(PetscFree(c->blocks.block));
-  PetscCall(PetscFree(c->blocks.node));
-  PetscCall(PetscFree(c->blocks.value));
-  PetscCall(PetscFree(c->pattern));
-  PetscCall(MatDestroy(&c->C));
+  PetscCall(BlockMatrixDestroy(&c->blocks));
   PetscCall(PetscFree(*contact));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -340,7 +324,7 @@ PetscErrorCode ContactGather(Contact contact, const PetscReal *u, PetscReal t, P
 {
   PetscFunctionBeginUser;
   PetscCall(PetscLogEventBegin(contact->event_search, 0, 0, 0, 0));
-  contact->blocks.n = 0; /* they spoke of the old lists */
+  PetscCall(BlockMatrixReset(contact->blocks)); /* its blocks speak of the old lists */
   for (int p = 0; p < contact->n_pairs; p++) {
     Pair        *pair = &contact->pairs[p];
     ContactLists lists;
@@ -418,13 +402,27 @@ PetscErrorCode ContactListsHold(Contact contact, const PetscReal *u, PetscReal t
     else PetscCall(PairTakeLists(&contact->pairs[p], lists[p], factor[p]));
     PetscCall(PetscFree(factor[p]));
   }
-  if (!agree) contact->blocks.n = 0;
+  if (!agree) PetscCall(BlockMatrixReset(contact->blocks));
   PetscCall(PetscFree2(lists, factor));
   PetscCall(PetscLogEventEnd(contact->event_search, 0, 0, 0, 0));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* ---------- residual ---------- */
+
+/* Moves the lists' points to (u, t) and projects every slave point: gaps into pair->trial, normals into pair->normal. */
+static PetscErrorCode PairProject(Contact contact, Pair *pair, const PetscReal *u, PetscReal t)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscLogEventBegin(contact->event_project, 0, 0, 0, 0));
+  PetscCall(ListsUpdate(pair->search, pair->lists, u, t));
+  for (PetscInt c = 0; c < pair->n; c++) {
+    PetscCall(TermGap(contact, pair, pair->lists, pair->factor, pair->seed, c, &pair->trial[c]));
+    for (int d = 0; d < 3; d++) pair->normal[3 * c + d] = PetscIsNanReal(pair->trial[c]) || d >= contact->mesh->dim ? 0 : contact->work.result.normal[d];
+  }
+  PetscCall(PetscLogEventEnd(contact->event_project, 0, 0, 0, 0));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
 
 static void TermLaw(const Pair *pair, PetscInt c, PetscReal gap, LawValue *value)
 {
@@ -462,27 +460,20 @@ static PetscErrorCode TermForces(Contact contact, Pair *pair, PetscInt c, PetscR
 
 static PetscErrorCode PairResidual(Contact contact, Pair *pair, const PetscReal *u, PetscReal t, PetscReal *f, PetscReal *energy, PetscReal *force2)
 {
-  const int  dim = contact->mesh->dim;
   PetscReal *values, sum = 0;
   LawValue   value;
 
   PetscFunctionBeginUser;
-  PetscCall(ListsUpdate(pair->search, pair->lists, u, t));
-  PetscCall(PetscCalloc1(pair->lists->n_nodes * dim, &values));
+  PetscCall(PairProject(contact, pair, u, t));
+  PetscCall(PetscCalloc1(pair->lists->n_nodes * contact->mesh->dim, &values));
   for (PetscInt c = 0; c < pair->n; c++) {
-    PetscReal gap;
-
-    PetscCall(TermGap(contact, pair, pair->lists, pair->factor, pair->seed, c, &gap));
-    TermLaw(pair, c, gap, &value);
+    TermLaw(pair, c, pair->trial[c], &value);
     for (PetscInt q = pair->term_ptr[c]; energy && q < pair->term_ptr[c + 1]; q++) *energy += pair->area[c] * pair->term_weight[q] * pair->factor[q] * value.psi;
     if (!f) continue;
-    pair->now.gap[c]    = gap;
+    pair->now.gap[c]    = pair->trial[c];
     pair->now.status[c] = value.stiffness > 0 ? CONTACT_CLOSED : CONTACT_OPEN;
     pair->force[c]      = 0;
-    for (int d = 0; d < 3; d++) {
-      pair->vector[3 * c + d] = 0;
-      pair->normal[3 * c + d] = PetscIsNanReal(gap) || d >= dim ? 0 : contact->work.result.normal[d];
-    }
+    PetscCall(PetscArrayzero(&pair->vector[3 * c], 3));
     if (value.pressure != 0) PetscCall(TermForces(contact, pair, c, value.pressure, values, &sum));
   }
   if (f) PetscCall(ListsReduce(pair->lists, values, f));
@@ -510,15 +501,6 @@ static PetscReal TouchTolerance(const Pair *pair, PetscInt c)
   return CONTACT_TOUCH * h + kappa * (PetscSqr(h) + PetscSqr(pair->master->mean_size)) / 8;
 }
 
-static PetscErrorCode BlocksReserve(Blocks *blocks, PetscInt nodes, PetscInt values)
-{
-  PetscFunctionBeginUser;
-  if (blocks->n == blocks->room) PetscCall(PetscRealloc((blocks->room = 2 * blocks->room + 64) * sizeof(Block), &blocks->block));
-  if (blocks->n_nodes + nodes > blocks->nodes_room) PetscCall(PetscRealloc((blocks->nodes_room = 2 * (blocks->nodes_room + nodes)) * sizeof(PetscInt), &blocks->node));
-  if (blocks->n_values + values > blocks->values_room) PetscCall(PetscRealloc((blocks->values_room = 2 * (blocks->values_room + values)) * sizeof(PetscReal), &blocks->value));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* How many contact nodes slave point q touches once evaluated. */
 static int PointNodes(ContactLists lists, PetscInt q, const SmootherResult *r)
 {
@@ -534,56 +516,47 @@ static int PointNodes(ContactLists lists, PetscInt q, const SmootherResult *r)
 /* The block of one active term: sum_q w_q p M_q + A psi'' Nbar Nbar^T, over its points' nodes one after another (a node may occur twice). */
 static PetscErrorCode TermBlock(Contact contact, const Pair *pair, int p, PetscInt c, PetscReal pressure, PetscReal stiffness)
 {
-  const int dim    = contact->mesh->dim;
-  Work     *work   = &contact->work;
-  Blocks   *blocks = &contact->blocks;
-  Block     block  = {p, 0, blocks->n_nodes, blocks->n_values};
-  PetscReal area   = 0, *value;
-  int       total  = 0, m;
+  const int  dim  = contact->mesh->dim;
+  Work      *work = &contact->work;
+  PetscReal  area = 0, *value;
+  PetscInt   m    = 0, first = 0, *entry;
+  PetscBool  found;
 
   PetscFunctionBeginUser;
   for (PetscInt q = pair->term_ptr[c]; q < pair->term_ptr[c + 1]; q++) {
-    PetscBool found;
-
     if (pair->factor[q] == 0) continue;
-    PetscCall(PointEvaluate(contact, pair, pair->lists, q, pair->seed[q], SMOOTHER_FIRST_VARIATION, &found));
-    if (found) total += PointNodes(pair->lists, q, &work->result);
+    PetscCall(PointEvaluate(contact, pair, pair->lists, q, pair->seed[q], SMOOTHER_GAP, &found));
+    if (found) m += PointNodes(pair->lists, q, &work->result) * dim;
   }
-  m = total * dim;
-  PetscCall(BlocksReserve(blocks, total, (PetscInt)m * m));
-  value = &blocks->value[block.value];
-  PetscCall(PetscArrayzero(value, (PetscInt)m * m));
+  PetscCall(BlockMatrixAdd(contact->blocks, p, m, &entry, &value));
   for (PetscInt q = pair->term_ptr[c]; q < pair->term_ptr[c + 1]; q++) {
-    const int first = block.n * dim;
-    PetscBool found;
-    int       n;
+    const PetscReal weight = pair->area[c] * pair->term_weight[q] * pair->factor[q];
+    int             n;
 
     if (pair->factor[q] == 0) continue;
     PetscCall(PointEvaluate(contact, pair, pair->lists, q, pair->seed[q], SMOOTHER_SECOND_VARIATION, &found));
     if (!found) continue;
-    PointToNodes(contact, pair, pair->lists, q, pair->term_weight[q], PETSC_TRUE, &blocks->node[block.node + block.n], &work->N[first], &n);
-    for (int i = 0; i < n * dim; i++)
-      for (int j = 0; j < n * dim; j++) value[(first + i) * m + first + j] = -pressure * pair->area[c] * pair->term_weight[q] * pair->factor[q] * work->M[i * n * dim + j];
-    area += pair->area[c] * pair->term_weight[q] * pair->factor[q];
-    block.n += n;
+    PointToNodes(contact, pair, pair->lists, q, pair->term_weight[q], PETSC_TRUE, work->node, &work->N[first], &n);
+    for (PetscInt i = 0; i < n * dim; i++) {
+      entry[first + i] = work->node[i / dim] * dim + i % dim;
+      for (PetscInt j = 0; j < n * dim; j++) value[(first + i) * m + first + j] = -pressure * weight * work->M[i * n * dim + j];
+    }
+    area += weight;
+    first += n * dim;
   }
-  for (int i = 0; i < m; i++)
-    for (int j = 0; j < m; j++) value[i * m + j] += area * stiffness * work->N[i] * work->N[j];
-  blocks->n_nodes += block.n;
-  blocks->n_values += (PetscInt)m * m;
-  blocks->block[blocks->n++] = block;
+  for (PetscInt i = 0; i < m; i++)
+    for (PetscInt j = 0; j < m; j++) value[i * m + j] += area * stiffness * work->N[i] * work->N[j];
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 static PetscErrorCode PairBlocks(Contact contact, Pair *pair, int p, const PetscReal *u, PetscReal t, PetscBool touching)
 {
   PetscFunctionBeginUser;
-  PetscCall(ListsUpdate(pair->search, pair->lists, u, t));
+  PetscCall(PairProject(contact, pair, u, t));
   for (PetscInt c = 0; c < pair->n; c++) {
-    PetscReal gap;
-    LawValue  value;
+    const PetscReal gap = pair->trial[c];
+    LawValue        value;
 
-    PetscCall(TermGap(contact, pair, pair->lists, pair->factor, pair->seed, c, &gap));
     TermLaw(pair, c, gap, &value);
     if (touching && gap >= 0 && gap <= TouchTolerance(pair, c)) value.stiffness = pair->now.penalty[c];
     if (value.stiffness > 0) PetscCall(TermBlock(contact, pair, p, c, value.pressure, value.stiffness));
@@ -591,100 +564,40 @@ static PetscErrorCode PairBlocks(Contact contact, Pair *pair, int p, const Petsc
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The present blocks as the pattern they need: sizes and global dofs, one after another. */
-static PetscErrorCode BlocksPattern(Contact contact, PetscInt *n, PetscInt **pattern)
-{
-  const Blocks *blocks = &contact->blocks;
-  const int     dim    = contact->mesh->dim;
-
-  PetscFunctionBeginUser;
-  PetscCall(PetscMalloc1(blocks->n + blocks->n_nodes * dim, pattern));
-  *n = 0;
-  for (PetscInt b = 0; b < blocks->n; b++) {
-    const Block    *block = &blocks->block[b];
-    const PetscInt *dof   = contact->pairs[block->pair].lists->dof;
-
-    (*pattern)[(*n)++] = (PetscInt)block->n * dim;
-    for (int i = 0; i < block->n * dim; i++) (*pattern)[(*n)++] = dof[blocks->node[block->node + i / dim] * dim + i % dim];
-  }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-static PetscErrorCode PreallocateMatrix(Contact contact)
-{
-  const PetscInt *pattern = contact->pattern;
-  PetscSection    section;
-  PetscInt        size, *rows, *columns;
-  PetscCount      n = 0;
-
-  PetscFunctionBeginUser;
-  PetscCall(MatDestroy(&contact->C));
-  PetscCall(DMGetGlobalSection(contact->mesh->dm, &section));
-  PetscCall(PetscSectionGetConstrainedStorageSize(section, &size));
-  PetscCall(MatCreate(contact->mesh->comm, &contact->C));
-  PetscCall(MatSetSizes(contact->C, size, size, PETSC_DETERMINE, PETSC_DETERMINE));
-  PetscCall(MatSetType(contact->C, MATAIJ));
-  PetscCall(PetscMalloc2(contact->blocks.n_values, &rows, contact->blocks.n_values, &columns));
-  for (PetscInt at = 0; at < contact->n_pattern; at += 1 + pattern[at]) {
-    const PetscInt m = pattern[at], *dof = &pattern[at + 1];
-
-    for (PetscInt i = 0; i < m; i++) {
-      for (PetscInt j = 0; j < m; j++, n++) {
-        rows[n]    = dof[i] < 0 || dof[j] < 0 ? -1 : dof[i];
-        columns[n] = dof[i] < 0 || dof[j] < 0 ? -1 : dof[j];
-      }
-    }
-  }
-  PetscCall(MatSetPreallocationCOO(contact->C, n, rows, columns));
-  PetscCall(PetscFree2(rows, columns));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 PetscErrorCode ContactTangent(Contact contact, const PetscReal *u, PetscReal t, PetscBool touching, Mat *C, PetscBool *changed)
 {
-  PetscInt n = 0, *pattern;
-  int      same;
+  const PetscInt **dof;
+  PetscSection     section;
+  PetscInt         size;
 
   PetscFunctionBeginUser;
   PetscCall(PetscLogEventBegin(contact->event_tangent, 0, 0, 0, 0));
-  contact->blocks.n = contact->blocks.n_nodes = contact->blocks.n_values = 0;
-  for (int p = 0; p < contact->n_pairs; p++) PetscCall(PairBlocks(contact, &contact->pairs[p], p, u, t, touching));
-  PetscCall(BlocksPattern(contact, &n, &pattern));
-  same = contact->C && n == contact->n_pattern && (!n || !memcmp(pattern, contact->pattern, n * sizeof(PetscInt)));
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &same, 1, MPI_INT, MPI_LAND, contact->mesh->comm));
-  PetscCall(PetscFree(contact->pattern));
-  contact->pattern   = pattern;
-  contact->n_pattern = n;
-  if (!same) PetscCall(PreallocateMatrix(contact));
-  PetscCall(MatSetValuesCOO(contact->C, contact->blocks.value, INSERT_VALUES));
-  *C       = contact->C;
-  *changed = same ? PETSC_FALSE : PETSC_TRUE;
+  PetscCall(BlockMatrixReset(contact->blocks));
+  PetscCall(PetscMalloc1(contact->n_pairs, &dof));
+  for (int p = 0; p < contact->n_pairs; p++) {
+    PetscCall(PairBlocks(contact, &contact->pairs[p], p, u, t, touching));
+    dof[p] = contact->pairs[p].lists->dof;
+  }
+  PetscCall(DMGetGlobalSection(contact->mesh->dm, &section));
+  PetscCall(PetscSectionGetConstrainedStorageSize(section, &size));
+  PetscCall(BlockMatrixAssemble(contact->blocks, size, dof, C, changed));
+  PetscCall(PetscFree(dof));
   PetscCall(PetscLogEventEnd(contact->event_tangent, 0, 0, 0, 0));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 PetscErrorCode ContactMultiply(Contact contact, const PetscReal *x, PetscReal t, PetscReal t_next, PetscReal *y)
 {
-  const int     dim    = contact->mesh->dim;
-  const Blocks *blocks = &contact->blocks;
-
   PetscFunctionBeginUser;
   for (int p = 0; p < contact->n_pairs; p++) {
-    Pair      *pair = &contact->pairs[p];
-    PetscReal *in, *out;
+    Pair          *pair = &contact->pairs[p];
+    const PetscInt n    = pair->lists->n_nodes * contact->mesh->dim;
+    PetscReal     *in, *out;
 
-    PetscCall(PetscMalloc2(pair->lists->n_nodes * dim, &in, pair->lists->n_nodes * dim, &out));
-    PetscCall(PetscArrayzero(out, pair->lists->n_nodes * dim));
+    PetscCall(PetscMalloc2(n, &in, n, &out));
+    PetscCall(PetscArrayzero(out, n));
     PetscCall(ListsBroadcast(pair->search, pair->lists, x, t, t_next, in));
-    for (PetscInt b = 0; b < blocks->n; b++) {
-      const Block    *block = &blocks->block[b];
-      const PetscInt *node  = &blocks->node[block->node];
-      const int       m     = block->n * dim;
-
-      if (block->pair != p) continue;
-      for (int i = 0; i < m; i++)
-        for (int j = 0; j < m; j++) out[node[i / dim] * dim + i % dim] += blocks->value[block->value + i * m + j] * in[node[j / dim] * dim + j % dim];
-    }
+    PetscCall(BlockMatrixMultiply(contact->blocks, p, in, out));
     PetscCall(ListsReduce(pair->lists, out, y));
     PetscCall(PetscFree2(in, out));
   }

@@ -28,6 +28,7 @@ struct _n_Elasticity {
   PetscReal *value;        /* dim x dim blocks, row-major, in the order of column */
   PetscReal *u, *f, *K;    /* of one batch, aligned to cache lines */
   void      *buffer;       /* what u, f and K are in */
+  PetscInt   inverted; /* a local cell that the last residual found inverted, or -1 */
   PetscBool  symmetric;
   Mat        matrix;
 };
@@ -329,7 +330,8 @@ PetscErrorCode ElasticityResidual(Elasticity e, const PetscReal *u, PetscReal *f
   PetscCall(PetscLogEventBegin(event_residual, 0, 0, 0, 0));
   if (energy) *energy = 0;
   if (force2) *force2 = 0;
-  *ok = PETSC_TRUE;
+  *ok         = PETSC_TRUE;
+  e->inverted = -1;
   for (int k = 0; k < e->n_groups; k++) {
     const CellGroup *g    = &e->groups[k];
     const size_t     dofs = (size_t)g->nodes * e->dim;
@@ -342,7 +344,9 @@ PetscErrorCode ElasticityResidual(Elasticity e, const PetscReal *u, PetscReal *f
       if (forces) ScatterForce(e, g, batch, f, force2);
       for (int lane = 0; lane < BatchCells(g, batch); lane++) {
         if (energy) *energy += W[lane];
-        if (!(J[lane] > 0)) *ok = PETSC_FALSE;
+        if (J[lane] > 0) continue;
+        *ok         = PETSC_FALSE;
+        e->inverted = g->cell[first + lane];
       }
     }
   }
@@ -631,4 +635,14 @@ PetscErrorCode ElasticityNodalStress(Elasticity e, const PetscReal *u, PetscReal
 PetscReal ElasticityCellModulus(Elasticity e, PetscInt cell)
 {
   return e->cell_modulus[cell];
+}
+
+/*
+  ElasticityInvertedCell - a local cell that the last ElasticityResidual() found with det F <= 0, or -1
+
+  Not collective
+*/
+PetscInt ElasticityInvertedCell(Elasticity e)
+{
+  return e->inverted;
 }

@@ -1,9 +1,7 @@
 #include "fields.h"
-#include "results.h"
+#include "xdmf.h"
 #include <hdf5.h>
 #include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
 
 #if !defined(H5_HAVE_PARALLEL)
   #error "results.h5 is written by all ranks: PETSc's HDF5 must be a parallel one"
@@ -20,11 +18,6 @@ typedef struct {
   PetscInt total, first, n;
 } Rows;
 
-/* Cells of one body and type: a contiguous part of /mesh/cells_TYPE */
-typedef struct {
-  PetscInt first, n;
-} CellBlock;
-
 struct _n_Fields {
   Model      model;
   Scene      scene;
@@ -33,34 +26,32 @@ struct _n_Fields {
   Rows       nodes;
   int        n_pairs;
   Rows      *pairs;  /* slave nodes, per contact pair */
-  CellBlock *blocks; /* [body * ELEMENT_TYPES + type] */
-  int        n_keys;
   PetscInt   cells[ELEMENT_TYPES]; /* rows of /mesh/cells_TYPE */
   PetscInt   n_written, room;
-  PetscReal *t; /* of the written steps */
+  PetscReal *t;    /* of the written steps */
+  Xdmf       xdmf; /* what they show */
 };
 
-/* What a step may hold, as ParaView sees it: columns of /steps/0000/NAME */
+/* What output.fields may ask for, and what ParaView sees of it. Stress goes there by components: readers do not agree on the order of a
+   symmetric tensor. */
 enum { SHOW_DISPLACEMENT, SHOW_STRESS, SHOW_CONTACT };
-typedef struct {
-  const char *title, *dataset;
-  int         kind, width, column; /* column -1: all of them, as a vector or a scalar */
-} Shown;
-/* Stress goes to ParaView by components: readers do not agree on the order of a symmetric tensor. */
-static const Shown shown[] = {
-  {"displacement", "displacement", SHOW_DISPLACEMENT, 3, -1},
-  {"von_mises",    "von_mises",    SHOW_STRESS,       1, -1},
-  {"stress_xx",    "stress",       SHOW_STRESS,       6, 0 },
-  {"stress_yy",    "stress",       SHOW_STRESS,       6, 1 },
-  {"stress_zz",    "stress",       SHOW_STRESS,       6, 2 },
-  {"stress_xy",    "stress",       SHOW_STRESS,       6, 3 },
-  {"stress_yz",    "stress",       SHOW_STRESS,       6, 4 },
-  {"stress_xz",    "stress",       SHOW_STRESS,       6, 5 },
-  {"gap",          "gap",          SHOW_CONTACT,      1, -1},
-  {"penetration",  "penetration",  SHOW_CONTACT,      1, -1},
-  {"penalty",      "penalty",      SHOW_CONTACT,      1, -1},
-  {"pressure",     "pressure",     SHOW_CONTACT,      1, -1},
-  {"normal",       "normal",       SHOW_CONTACT,      3, -1},
+static const struct {
+  int       kind;
+  XdmfArray array;
+} shown[] = {
+  {SHOW_DISPLACEMENT, {"displacement", "displacement", 3, -1}},
+  {SHOW_STRESS,       {"von_mises",    "von_mises",    1, -1}},
+  {SHOW_STRESS,       {"stress_xx",    "stress",       6, 0 }},
+  {SHOW_STRESS,       {"stress_yy",    "stress",       6, 1 }},
+  {SHOW_STRESS,       {"stress_zz",    "stress",       6, 2 }},
+  {SHOW_STRESS,       {"stress_xy",    "stress",       6, 3 }},
+  {SHOW_STRESS,       {"stress_yz",    "stress",       6, 4 }},
+  {SHOW_STRESS,       {"stress_xz",    "stress",       6, 5 }},
+  {SHOW_CONTACT,      {"gap",          "gap",          1, -1}},
+  {SHOW_CONTACT,      {"penetration",  "penetration",  1, -1}},
+  {SHOW_CONTACT,      {"penalty",      "penalty",      1, -1}},
+  {SHOW_CONTACT,      {"pressure",     "pressure",     1, -1}},
+  {SHOW_CONTACT,      {"normal",       "normal",       3, -1}},
 };
 
 /* Contact values of one node: columns of the nodal array that FieldsWriteContact() forms */
@@ -77,11 +68,6 @@ static const struct {
   {"normal",      COLUMN_NORMAL,      3, 0.0},
 };
 #define COUNT(array) ((int)(sizeof(array) / sizeof((array)[0])))
-
-static const char *const xdmf_topology[ELEMENT_TYPES] = {
-  [ELEMENT_TRI3] = "Triangle",    [ELEMENT_TRI6] = "Triangle_6",      [ELEMENT_QUAD4] = "Quadrilateral", [ELEMENT_QUAD9] = "Quadrilateral_9",
-  [ELEMENT_TET4] = "Tetrahedron", [ELEMENT_TET10] = "Tetrahedron_10", [ELEMENT_HEX8] = "Hexahedron",     [ELEMENT_HEX27] = "Hexahedron_27",
-};
 
 static PetscErrorCode RowsCreate(MPI_Comm comm, PetscInt total, PetscInt n, const PetscInt *row, Rows *rows)
 {
@@ -220,26 +206,31 @@ static PetscErrorCode FieldsWriteNodes(Fields fields, hid_t file)
 /* The row of every local cell in the table of its type, by body and then cell_id. All ranks count their part of the cell_ids by body and type. */
 static PetscErrorCode FieldsNumberCells(Fields fields, PetscInt *row)
 {
-  const Mesh mesh = fields->model->mesh;
+  const Mesh mesh   = fields->model->mesh;
+  const int  n_keys = fields->scene->n_bodies * ELEMENT_TYPES;
+  Xdmf      *xdmf   = &fields->xdmf;
   PetscInt  *key, *keys, *rows, *count, *before;
   Rows       by_id;
 
   PetscFunctionBeginUser;
   PetscCall(RowsCreate(mesh->comm, mesh->n_cells_global, mesh->n_cells, mesh->cell_id, &by_id));
   PetscCall(PetscMalloc3(mesh->n_cells, &key, by_id.n, &keys, by_id.n, &rows));
-  PetscCall(PetscCalloc2(fields->n_keys, &count, fields->n_keys, &before));
+  PetscCall(PetscCalloc2(n_keys, &count, n_keys, &before));
   for (PetscInt c = 0; c < mesh->n_cells; c++) key[c] = mesh->cell_body[c] * ELEMENT_TYPES + mesh->cell_type[c];
   PetscCall(RowsCollect(&by_id, 1, MPIU_INT, key, keys));
   for (PetscInt c = 0; c < by_id.n; c++) count[keys[c]]++;
-  PetscCallMPI(MPI_Exscan(count, before, fields->n_keys, MPIU_INT, MPI_SUM, mesh->comm));
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, count, fields->n_keys, MPIU_INT, MPI_SUM, mesh->comm));
-  for (int k = 0; k < fields->n_keys; k++) {
-    PetscInt *cells = &fields->cells[k % ELEMENT_TYPES];
+  PetscCallMPI(MPI_Exscan(count, before, n_keys, MPIU_INT, MPI_SUM, mesh->comm));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, count, n_keys, MPIU_INT, MPI_SUM, mesh->comm));
+  for (int k = 0; k < n_keys; k++) {
+    const ElementType type  = (ElementType)(k % ELEMENT_TYPES);
+    PetscInt         *cells = &fields->cells[type];
 
-    fields->blocks[k] = (CellBlock){.first = *cells, .n = count[k]};
+    if (count[k])
+      xdmf->blocks[xdmf->n_blocks++] = (XdmfBlock){.body = fields->scene->bodies[k / ELEMENT_TYPES].name, .type = type, .first = *cells, .n = count[k]};
+    before[k] += *cells;
     *cells += count[k];
-    before[k] += fields->blocks[k].first;
   }
+  for (int b = 0; b < xdmf->n_blocks; b++) xdmf->blocks[b].total = fields->cells[xdmf->blocks[b].type];
   for (PetscInt c = 0; c < by_id.n; c++) rows[c] = before[keys[c]]++;
   PetscCall(PetscSFBcastBegin(by_id.sf, MPIU_INT, rows, row, MPI_REPLACE));
   PetscCall(PetscSFBcastEnd(by_id.sf, MPIU_INT, rows, row, MPI_REPLACE));
@@ -480,93 +471,6 @@ static PetscErrorCode FieldsWriteContact(Fields fields, hid_t file)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static void XdmfPrintText(FILE *out, const char *text)
-{
-  for (; *text; text++) {
-    switch (*text) {
-    case '&': fputs("&amp;", out); break;
-    case '<': fputs("&lt;", out); break;
-    case '"': fputs("&quot;", out); break;
-    default: fputc(*text, out);
-    }
-  }
-}
-
-/* Rows first .. first+n-1 and columns column .. column+width-1 of a dataset of total x stride values */
-static void XdmfPrintSlab(FILE *out, const char *type, PetscInt first, PetscInt n, int column, int width, PetscInt total, int stride, const char *path)
-{
-  fprintf(out, "<DataItem ItemType=\"HyperSlab\" Dimensions=\"%lld %d\">", (long long)n, width);
-  fprintf(out, "<DataItem Dimensions=\"3 2\" Format=\"XML\">%lld %d 1 1 %lld %d</DataItem>", (long long)first, column, (long long)n, width);
-  fprintf(out, "<DataItem Format=\"HDF\" NumberType=\"%s\" Precision=\"8\" Dimensions=\"%lld %d\">results.h5:%s</DataItem></DataItem>", type, (long long)total,
-          stride, path);
-}
-
-static void XdmfPrintNodal(FILE *out, PetscInt n, int width, const char *path)
-{
-  fprintf(out, "<DataItem Format=\"HDF\" NumberType=\"Float\" Precision=\"8\" Dimensions=\"%lld", (long long)n);
-  if (width > 1) fprintf(out, " %d", width);
-  fprintf(out, "\">results.h5:%s</DataItem>", path);
-}
-
-static void XdmfPrintAttribute(FILE *out, const Shown *show, PetscInt n, PetscInt step)
-{
-  char path[PATH_SIZE];
-
-  snprintf(path, sizeof(path), "/steps/%04d/%s", (int)step, show->dataset);
-  fprintf(out, "    <Attribute Name=\"%s\" AttributeType=\"%s\" Center=\"Node\">", show->title, show->column < 0 && show->width == 3 ? "Vector" : "Scalar");
-  if (show->column < 0)
-    XdmfPrintNodal(out, n, show->width, path);
-  else
-    XdmfPrintSlab(out, "Float", 0, n, show->column, 1, n, show->width, path);
-  fprintf(out, "</Attribute>\n");
-}
-
-/* One body's cells of one type at one step */
-static void XdmfPrintGrid(Fields fields, FILE *out, int key, PetscInt step)
-{
-  const CellBlock *block   = &fields->blocks[key];
-  const int        type    = key % ELEMENT_TYPES;
-  const Element   *element = ElementGet((ElementType)type);
-  char             path[PATH_SIZE];
-
-  fprintf(out, "   <Grid Name=\"");
-  XdmfPrintText(out, fields->scene->bodies[key / ELEMENT_TYPES].name);
-  fprintf(out, " %s\">\n    <Topology TopologyType=\"%s\" NumberOfElements=\"%lld\">", element->name, xdmf_topology[type], (long long)block->n);
-  snprintf(path, sizeof(path), "/mesh/cells_%s", element->name);
-  XdmfPrintSlab(out, "Int", block->first, block->n, 0, element->nodes, fields->cells[type], element->nodes, path);
-  fprintf(out, "</Topology>\n    <Geometry GeometryType=\"XYZ\">");
-  XdmfPrintNodal(out, fields->nodes.total, 3, "/mesh/nodes");
-  fprintf(out, "</Geometry>\n");
-  for (int i = 0; i < COUNT(shown); i++)
-    if (FieldsShows(fields, shown[i].kind)) XdmfPrintAttribute(out, &shown[i], fields->nodes.total, step);
-  fprintf(out, "   </Grid>\n");
-}
-
-/* Rank 0 writes the text for all steps so far. Not collective. */
-static PetscErrorCode FieldsWriteXdmf(Fields fields)
-{
-  char  *text;
-  size_t size;
-  FILE  *out = open_memstream(&text, &size);
-
-  PetscFunctionBeginUser;
-  PetscCheck(out, PETSC_COMM_SELF, PETSC_ERR_MEM, "No memory for results.xdmf");
-  fprintf(out, "<?xml version=\"1.0\"?>\n<Xdmf Version=\"3.0\">\n<Domain>\n <Grid Name=\"");
-  XdmfPrintText(out, fields->scene->name);
-  fprintf(out, "\" GridType=\"Collection\" CollectionType=\"Temporal\">\n");
-  for (PetscInt s = 0; s < fields->n_written; s++) {
-    fprintf(out, "  <Grid Name=\"%04d\" GridType=\"Collection\" CollectionType=\"Spatial\">\n   <Time Value=\"%.15g\"/>\n", (int)s, (double)fields->t[s]);
-    for (int k = 0; k < fields->n_keys; k++)
-      if (fields->blocks[k].n) XdmfPrintGrid(fields, out, k, s);
-    fprintf(out, "  </Grid>\n");
-  }
-  fprintf(out, " </Grid>\n</Domain>\n</Xdmf>\n");
-  PetscCheck(!fclose(out), PETSC_COMM_SELF, PETSC_ERR_MEM, "No memory for results.xdmf");
-  PetscCall(ResultsReplaceFile(fields->directory, "results.xdmf", text));
-  free(text);
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 static PetscErrorCode FieldsRemember(Fields fields, PetscReal t)
 {
   PetscFunctionBeginUser;
@@ -575,6 +479,23 @@ static PetscErrorCode FieldsRemember(Fields fields, PetscReal t)
     PetscCall(PetscRealloc((size_t)fields->room * sizeof(PetscReal), &fields->t));
   }
   fields->t[fields->n_written++] = t;
+  fields->xdmf.t                 = fields->t;
+  fields->xdmf.n_steps           = fields->n_written;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* What the text will show; cells are numbered when the file is made. */
+static PetscErrorCode FieldsPrepareXdmf(Fields fields)
+{
+  Xdmf *xdmf = &fields->xdmf;
+
+  PetscFunctionBeginUser;
+  xdmf->name  = fields->scene->name;
+  xdmf->nodes = fields->model->mesh->n_global;
+  PetscCall(PetscCalloc1(fields->scene->n_bodies * ELEMENT_TYPES, &xdmf->blocks));
+  PetscCall(PetscCalloc1(COUNT(shown), &xdmf->arrays));
+  for (int i = 0; i < COUNT(shown); i++)
+    if (FieldsShows(fields, shown[i].kind)) xdmf->arrays[xdmf->n_arrays++] = shown[i].array;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -596,8 +517,6 @@ PetscErrorCode FieldsCreate(Model model, Scene scene, const char *directory, Fie
   fields->scene = scene;
   PetscCall(PetscStrncpy(fields->directory, directory, sizeof(fields->directory)));
   PetscCall(PetscSNPrintf(fields->file, sizeof(fields->file), "%s/results.h5", directory));
-  fields->n_keys = scene->n_bodies * ELEMENT_TYPES;
-  PetscCall(PetscCalloc1(fields->n_keys, &fields->blocks));
   fields->n_pairs = model->contact ? ContactPairs(model->contact) : 0;
   PetscCall(PetscCalloc1(fields->n_pairs, &fields->pairs));
   PetscCallMPI(MPI_Comm_rank(mesh->comm, &rank));
@@ -610,6 +529,7 @@ PetscErrorCode FieldsCreate(Model model, Scene scene, const char *directory, Fie
   }
   PetscCall(RowsCreate(mesh->comm, mesh->n_global, n, id, &fields->nodes));
   PetscCall(PetscFree(id));
+  PetscCall(FieldsPrepareXdmf(fields));
   *result = fields;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -623,7 +543,8 @@ PetscErrorCode FieldsDestroy(Fields *fields)
   PetscCall(PetscSFDestroy(&(*fields)->nodes.sf));
   PetscCall(PetscFree((*fields)->owned));
   PetscCall(PetscFree((*fields)->pairs));
-  PetscCall(PetscFree((*fields)->blocks));
+  PetscCall(PetscFree((*fields)->xdmf.blocks));
+  PetscCall(PetscFree((*fields)->xdmf.arrays));
   PetscCall(PetscFree((*fields)->t));
   PetscCall(PetscFree(*fields));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -659,6 +580,6 @@ PetscErrorCode FieldsWrite(Fields fields, PetscInt step, PetscReal t)
   CallHDF5(H5Fclose(file));
   PetscCall(FieldsRemember(fields, t));
   PetscCallMPI(MPI_Comm_rank(fields->model->mesh->comm, &rank));
-  if (rank == 0) PetscCall(FieldsWriteXdmf(fields));
+  if (rank == 0) PetscCall(XdmfWrite(&fields->xdmf, fields->directory));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -27,6 +27,7 @@ typedef struct _n_ModelWork {
   PetscReal  scale;        /* force norm of the last evaluation */
   PetscBool  started;      /* a first tangent has been made: the touching start is over */
   PetscBool  test_jacobian;
+  PetscInt   inverted;     /* gmsh's tag of a cell of this rank that was turned inside out in this solve, or -1 */
   PetscBool  near;         /* the iterate is so close that energies differ by round-off only */
   Vec        residual;     /* of a trial point, while near */
 } ModelWork;
@@ -46,6 +47,7 @@ static PetscErrorCode ModelResidual(Model model, const PetscReal *u, PetscReal t
   PetscCall(ElasticityResidual(model->elasticity, u, work->f, NULL, &sum[0], &mine));
   PetscCall(LoadsResidual(model->loads, t, u, work->f, NULL, &sum[1]));
   TimingEnd(TIMING_ASSEMBLY_ELASTIC);
+  if (!mine) work->inverted = model->mesh->cell_tag[ElasticityInvertedCell(model->elasticity)];
   if (model->contact) {
     TimingBegin(TIMING_ASSEMBLY_CONTACT);
     PetscCall(ContactResidual(model->contact, u, t_contact, work->f, NULL, &sum[2]));
@@ -420,12 +422,14 @@ static PetscErrorCode ModelNewton(Model model, SolveReport *report)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Names the node with the largest residual: where to look when a step fails. */
-static PetscErrorCode ModelLocateResidual(Model model, char *text, size_t size)
+/* Where to look when a step fails: an inverted element, the node with the largest residual. */
+static PetscErrorCode ModelLocateFailure(Model model, char *text, size_t size)
 {
   Mesh      mesh = model->mesh;
   const int dim  = mesh->dim;
   PetscReal *f, place[4] = {0, 0, 0, 0};
+  PetscInt   inverted = model->work->inverted;
+  char       element[64] = "";
   struct {
     double value;
     int    rank;
@@ -448,7 +452,9 @@ static PetscErrorCode ModelLocateResidual(Model model, char *text, size_t size)
   }
   PetscCallMPI(MPI_Allreduce(&mine, &most, 1, MPI_DOUBLE_INT, MPI_MAXLOC, mesh->comm));
   PetscCallMPI(MPI_Bcast(place, 4, MPIU_REAL, most.rank, mesh->comm));
-  PetscCall(PetscSNPrintf(text, size, "largest residual at node %.0f (%g, %g, %g)", (double)place[0], (double)place[1], (double)place[2], (double)place[3]));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &inverted, 1, MPIU_INT, MPI_MAX, mesh->comm));
+  if (inverted >= 0) PetscCall(PetscSNPrintf(element, sizeof(element), "element %" PetscInt_FMT " was inverted on the way; ", inverted));
+  PetscCall(PetscSNPrintf(text, size, "%slargest residual at node %.0f (%g, %g, %g)", element, (double)place[0], (double)place[1], (double)place[2], (double)place[3]));
   PetscCall(PetscFree(f));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -464,8 +470,9 @@ PetscErrorCode ModelSolve(Model model, PetscReal t, SolveReport *report)
   PetscBool  hold = PETSC_TRUE;
 
   PetscFunctionBeginUser;
-  *report  = (SolveReport){.result = SOLVE_CONVERGED};
-  model->t = t;
+  *report        = (SolveReport){.result = SOLVE_CONVERGED};
+  model->t       = t;
+  work->inverted = -1;
   if (model->contact) {
     PetscReal *u;
 
@@ -491,7 +498,7 @@ PetscErrorCode ModelSolve(Model model, PetscReal t, SolveReport *report)
     if (report->regathered++ == MODEL_MAX_REGATHER) report->result = SOLVE_LISTS;
   }
   if (report->result == SOLVE_CONVERGED) PetscCall(PetscArraycpy(model->u, work->trial, model->mesh->n_nodes * model->mesh->dim));
-  else PetscCall(ModelLocateResidual(model, report->detail, sizeof(report->detail)));
+  else PetscCall(ModelLocateFailure(model, report->detail, sizeof(report->detail)));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -1,5 +1,6 @@
 #define _GNU_SOURCE /* dladdr() */
 #include "results.h"
+#include "columns.h"
 #include "commandline.h"
 #include "fields.h"
 #include "refusal.h"
@@ -220,18 +221,10 @@ static void CsvPrintText(FILE *csv, const char *text)
   fputc('"', csv);
 }
 
-/* ",value"; nothing after the comma where there is no value */
+/* A number as a CSV field; nothing where there is no value */
 static void CsvPrintReal(FILE *csv, PetscReal value)
 {
-  if (isfinite((double)value))
-    fprintf(csv, ",%.15g", (double)value);
-  else
-    fputc(',', csv);
-}
-
-static void CsvPrintInteger(FILE *csv, PetscInt value)
-{
-  fprintf(csv, ",%lld", (long long)value);
+  if (isfinite((double)value)) fprintf(csv, "%.15g", (double)value);
 }
 
 static PetscErrorCode ResultsOpenCsv(Results results)
@@ -242,9 +235,7 @@ static PetscErrorCode ResultsOpenCsv(Results results)
   PathJoin(path, results->directory, "steps.csv");
   results->csv = fopen(path, "w");
   PetscCheck(results->csv, PETSC_COMM_SELF, PETSC_ERR_FILE_OPEN, "Cannot write %s: %s", path, strerror(errno));
-  fputs("step,t,dt,beta,newton,krylov,attempts,residual,contact_nodes,nodes_in,nodes_out,max_penetration,min_penetration,outside_window,penalty_min,penalty_"
-        "max,contact_force,wall_s",
-        results->csv);
+  for (int k = 0; k < STEP_COLUMNS; k++) fprintf(results->csv, "%s%s", k ? "," : "", StepColumnNames[k]);
   for (int i = 0; i < results->scene->n_probes; i++) {
     fputc(',', results->csv);
     CsvPrintText(results->csv, results->scene->probes[i].name);
@@ -254,32 +245,47 @@ static PetscErrorCode ResultsOpenCsv(Results results)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* The fixed columns of a row; NaN where there is no value */
+static void ResultsFillRow(Results results, const StepRecord *step, PetscReal row[STEP_COLUMNS])
+{
+  const ContactSummary *contact = &step->contact;
+
+  for (int k = 0; k < STEP_COLUMNS; k++) row[k] = NAN;
+  row[COLUMN_STEP]          = (PetscReal)step->step;
+  row[COLUMN_T]             = step->t;
+  row[COLUMN_DT]            = step->dt;
+  row[COLUMN_NEWTON]        = (PetscReal)step->newton;
+  row[COLUMN_KRYLOV]        = (PetscReal)step->krylov;
+  row[COLUMN_ATTEMPTS]      = (PetscReal)step->attempts;
+  row[COLUMN_RESIDUAL]      = step->residual;
+  row[COLUMN_WALL_S]        = MPI_Wtime() - results->started;
+  row[COLUMN_CONTACT_NODES] = row[COLUMN_NODES_IN] = row[COLUMN_NODES_OUT] = 0.0;
+  if (!results->model->contact) return;
+  row[COLUMN_CONTACT_NODES]   = (PetscReal)contact->nodes;
+  row[COLUMN_NODES_IN]        = (PetscReal)contact->in;
+  row[COLUMN_NODES_OUT]       = (PetscReal)contact->out;
+  row[COLUMN_MAX_PENETRATION] = contact->max_penetration;
+  row[COLUMN_MIN_PENETRATION] = contact->min_penetration;
+  row[COLUMN_PENALTY_MIN]     = contact->penalty_min;
+  row[COLUMN_PENALTY_MAX]     = contact->penalty_max;
+  row[COLUMN_CONTACT_FORCE]   = contact->force;
+}
+
 static PetscErrorCode ResultsPrintCsv(Results results, const StepRecord *step)
 {
-  const ContactSummary *contact     = &step->contact;
-  const PetscBool       none        = results->model->contact ? PETSC_FALSE : PETSC_TRUE;
-  const PetscReal       reals[]     = {contact->max_penetration, contact->min_penetration};
-  const PetscReal       penalties[] = {contact->penalty_min, contact->penalty_max};
-  FILE                 *csv         = results->csv;
+  FILE     *csv = results->csv;
+  PetscReal row[STEP_COLUMNS];
 
   PetscFunctionBeginUser;
-  fprintf(csv, "%lld", (long long)step->step);
-  CsvPrintReal(csv, step->t);
-  CsvPrintReal(csv, step->dt);
-  CsvPrintReal(csv, NAN); /* beta: only the control by contact has one */
-  CsvPrintInteger(csv, step->newton);
-  CsvPrintInteger(csv, step->krylov);
-  CsvPrintInteger(csv, step->attempts);
-  CsvPrintReal(csv, step->residual);
-  CsvPrintInteger(csv, none ? 0 : contact->nodes);
-  CsvPrintInteger(csv, none ? 0 : contact->in);
-  CsvPrintInteger(csv, none ? 0 : contact->out);
-  for (int i = 0; i < 2; i++) CsvPrintReal(csv, none ? NAN : reals[i]);
-  CsvPrintReal(csv, NAN); /* outside_window: only an adjusted penalty has a window */
-  for (int i = 0; i < 2; i++) CsvPrintReal(csv, none ? NAN : penalties[i]);
-  CsvPrintReal(csv, none ? NAN : contact->force);
-  CsvPrintReal(csv, MPI_Wtime() - results->started);
-  for (int i = 0; i < results->scene->n_probes; i++) CsvPrintReal(csv, results->values[i]);
+  ResultsFillRow(results, step, row);
+  for (int k = 0; k < STEP_COLUMNS; k++) {
+    if (k) fputc(',', csv);
+    CsvPrintReal(csv, row[k]);
+  }
+  for (int i = 0; i < results->scene->n_probes; i++) {
+    fputc(',', csv);
+    CsvPrintReal(csv, results->values[i]);
+  }
   fputc('\n', csv);
   PetscCheck(!fflush(csv), PETSC_COMM_SELF, PETSC_ERR_FILE_WRITE, "Cannot write %s/steps.csv: %s", results->directory, strerror(errno));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -1,18 +1,19 @@
-#include "scene.h"
-#include "schema.h"
+#include "sceneread.h"
 #include "refusal.h"
-#include <errno.h>
 #include <string.h>
-/* ---- tree to scene ---- */
 
-static const char *const Displacements[] = {"ux", "uy", "uz"}, *const Rotations[] = {"rx", "ry", "rz"}, *const Axes[] = {"x", "y", "z"};
+static const char *const Displacements[] = {"ux", "uy", "uz"}, *const Rotations[] = {"rx", "ry", "rz"};
 
-static Document *SceneDocument(Scene scene)
+/* ---- for all readers ---- */
+
+/* SceneDocument - the tree that the scene was read from. Not collective. */
+Document *SceneDocument(Scene scene)
 {
   return (Document *)scene->document;
 }
 
-static PetscErrorCode PathCreate(char **path, const char *list, int i)
+/* ScenePath - "list.i" as a text of its own. Not collective. */
+PetscErrorCode ScenePath(char **path, const char *list, int i)
 {
   char text[PATH_LENGTH];
 
@@ -22,7 +23,8 @@ static PetscErrorCode PathCreate(char **path, const char *list, int i)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static Node SceneNode(Scene scene, const char *path, const char *key)
+/* SceneNode - the document's value at path.key, NULL if there is none. Not collective. */
+Node SceneNode(Scene scene, const char *path, const char *key)
 {
   char text[PATH_LENGTH];
 
@@ -30,14 +32,48 @@ static Node SceneNode(Scene scene, const char *path, const char *key)
   return NodeFind(SceneDocument(scene)->root, text);
 }
 
-/* A list of numbers into v; absent: v stays as it is. Returns how many there are. */
-static int SceneReals(Scene scene, const char *path, const char *key, double *v)
+/* SceneReals - a list of numbers into v; absent: v stays as it is. Returns how many there are. Not collective. */
+int SceneReals(Scene scene, const char *path, const char *key, double *v)
 {
   Node list = SceneNode(scene, path, key);
 
   for (int i = 0; list && i < list->n; i++) (void)NodeReal(list->child[i], &v[i]);
   return list ? list->n : 0;
 }
+
+/* SceneReadText - a copy of the text at path.key, or its default; NULL if there is neither. Not collective. */
+PetscErrorCode SceneReadText(Scene scene, const char *path, const char *key, char **text)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscStrallocpy(SchemaText(SceneDocument(scene), "%s.%s", path, key), text));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* SceneHas - whether the document itself has a value at path.key. Not collective. */
+int SceneHas(Scene scene, const char *path, const char *key)
+{
+  return SceneNode(scene, path, key) != NULL;
+}
+
+/* SceneRefuse - refuses the value at path.key: "about what", about may be NULL. Collective, does not return. */
+void SceneRefuse(Scene scene, const char *path, const char *key, const char *what, const char *about)
+{
+  char text[PATH_LENGTH];
+
+  PathJoin(text, path, key);
+  DocumentRefuse(SceneDocument(scene), *key ? text : path, "%s%s%s", about ? about : "", about ? " " : "", what);
+}
+
+/* SceneFindBody - the body of that name, among the rigid tools or the deformable ones read so far; NULL if there is none. Not collective. */
+const SceneBody *SceneFindBody(Scene scene, const char *name, int rigid)
+{
+  for (int i = 0; i < scene->n_bodies; i++) {
+    if (scene->bodies[i].rigid == rigid && !strcmp(scene->bodies[i].name, name)) return &scene->bodies[i];
+  }
+  return NULL;
+}
+
+/* ---- the parts ---- */
 
 /* path's history, or the load parameter itself. */
 static PetscErrorCode SceneReadHistory(Scene scene, const char *path, History *history)
@@ -53,28 +89,6 @@ static PetscErrorCode SceneReadHistory(Scene scene, const char *path, History *h
     (void)NodeReal(list->child[i]->child[1], &history->v[i]);
   }
   PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Text at path.key, NULL if there is none; the scene keeps its own copy. */
-static PetscErrorCode SceneReadText(Scene scene, const char *path, const char *key, char **text)
-{
-  PetscFunctionBeginUser;
-  PetscCall(PetscStrallocpy(SchemaText(SceneDocument(scene), "%s.%s", path, key), text));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-static int SceneHas(Scene scene, const char *path, const char *key)
-{
-  return SceneNode(scene, path, key) != NULL;
-}
-
-static void SceneRefuse(Scene scene, const char *path, const char *key, const char *what, const char *about) __attribute__((noreturn));
-static void SceneRefuse(Scene scene, const char *path, const char *key, const char *what, const char *about)
-{
-  char text[PATH_LENGTH];
-
-  PathJoin(text, path, key);
-  DocumentRefuse(SceneDocument(scene), *key ? text : path, "%s%s%s", about ? about : "", about ? " " : "", what);
 }
 
 static PetscErrorCode SceneReadPairs(Scene scene, const char *key, int *n, ScenePair **pairs)
@@ -163,14 +177,6 @@ static PetscErrorCode SceneReadBody(Scene scene, SceneBody *body)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static const SceneBody *SceneFindBody(Scene scene, const char *name, int rigid)
-{
-  for (int i = 0; i < scene->n_bodies; i++) {
-    if (scene->bodies[i].rigid == rigid && !strcmp(scene->bodies[i].name, name)) return &scene->bodies[i];
-  }
-  return NULL;
-}
-
 static PetscErrorCode SceneReadBodies(Scene scene)
 {
   int deformable = 0;
@@ -180,7 +186,7 @@ static PetscErrorCode SceneReadBodies(Scene scene)
   for (int i = 0; i < SchemaCount(SceneDocument(scene), "bodies"); i++) {
     SceneBody *body = &scene->bodies[i];
 
-    PetscCall(PathCreate(&body->path, "bodies", i));
+    PetscCall(ScenePath(&body->path, "bodies", i));
     PetscCall(SceneReadBody(scene, body));
     if (SceneFindBody(scene, body->name, body->rigid))
       SceneRefuse(scene, body->path, body->rigid ? "surface" : "volume", "is a body already; allowed: once", body->name);
@@ -206,7 +212,7 @@ static PetscErrorCode SceneReadSupports(Scene scene)
     SceneSupport *support = &scene->supports[i];
     int           held    = 0;
 
-    PetscCall(PathCreate(&support->path, "supports", i));
+    PetscCall(ScenePath(&support->path, "supports", i));
     PetscCall(SceneReadText(scene, support->path, "surface", &support->surface));
     SceneRefuseRigid(scene, support->path, "surface", support->surface);
     for (int k = 0; k < 3; k++) {
@@ -265,7 +271,7 @@ static PetscErrorCode SceneReadLoads(Scene scene)
   scene->n_loads = SchemaCount(SceneDocument(scene), "loads");
   PetscCall(PetscCalloc1(scene->n_loads, &scene->loads));
   for (int i = 0; i < scene->n_loads; i++) {
-    PetscCall(PathCreate(&scene->loads[i].path, "loads", i));
+    PetscCall(ScenePath(&scene->loads[i].path, "loads", i));
     PetscCall(SceneReadLoad(scene, &scene->loads[i]));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -303,7 +309,7 @@ static PetscErrorCode SceneReadContacts(Scene scene)
   PetscFunctionBeginUser;
   PetscCall(PetscCalloc1(SchemaCount(SceneDocument(scene), "contact"), &scene->contacts));
   for (int i = 0; i < SchemaCount(SceneDocument(scene), "contact"); i++) {
-    PetscCall(PathCreate(&scene->contacts[i].path, "contact", i));
+    PetscCall(ScenePath(&scene->contacts[i].path, "contact", i));
     PetscCall(SceneReadContact(scene, &scene->contacts[i]));
     for (int j = 0; j < i; j++) {
       if (!strcmp(scene->contacts[i].name, scene->contacts[j].name))
@@ -374,7 +380,7 @@ static PetscErrorCode SceneReadNames(Scene scene, const char *file)
 /* SceneRead - reads, edits, validates and converts a scene file.
 
    Collective. file: as the process can open it on rank 0. set[n_set]: KEY=VALUE edits, in order, the last of a key wins. scene: free with
-   SceneDestroy(). Refuses (exit status 1) the first mistake; see schema.c for the keys. */
+   SceneDestroy(). Refuses (exit status 1) the first mistake; see schemakeys.c for the keys. */
 PetscErrorCode SceneRead(MPI_Comm comm, const char *file, int n_set, char *const *set, Scene *scene)
 {
   Document *document;

@@ -1,4 +1,8 @@
-/* ---- probes ---- */
+#include "sceneread.h"
+#include "columns.h"
+#include <string.h>
+
+static const char *const Axes[] = {"x", "y", "z"};
 
 /* What a probe of each kind needs and may have beside name, absolute and factor; in the order of ProbeKind. */
 static const struct {
@@ -88,6 +92,18 @@ static void SceneReadProbeAt(Scene scene, SceneProbe *probe)
     SceneRefuse(scene, probe->path, "at", "fixes the axis along which the edge is sought; allowed: another coordinate", NULL);
 }
 
+/* A probe's name is a column of steps.csv and a key of the summary: it stands there once. */
+static void SceneCheckProbeName(Scene scene, const SceneProbe *probe)
+{
+  for (int k = 0; k < STEP_COLUMNS; k++) {
+    if (!strcmp(probe->name, StepColumnNames[k]))
+      SceneRefuse(scene, probe->path, "name", "is a column of steps.csv already; allowed: another name", probe->name);
+  }
+  for (const SceneProbe *other = scene->probes; other < probe; other++) {
+    if (!strcmp(probe->name, other->name)) SceneRefuse(scene, probe->path, "name", "names another probe already; allowed: names used once", probe->name);
+  }
+}
+
 static PetscErrorCode SceneReadProbe(Scene scene, SceneProbe *probe)
 {
   Document   *document = SceneDocument(scene);
@@ -126,18 +142,16 @@ static PetscErrorCode SceneReadProbe(Scene scene, SceneProbe *probe)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode SceneReadProbes(Scene scene)
+/* SceneReadProbes - the probes into the scene. Collective, since it may refuse. */
+PetscErrorCode SceneReadProbes(Scene scene)
 {
   PetscFunctionBeginUser;
   scene->n_probes = SchemaCount(SceneDocument(scene), "probes");
   PetscCall(PetscCalloc1(scene->n_probes, &scene->probes));
   for (int i = 0; i < scene->n_probes; i++) {
-    PetscCall(PathCreate(&scene->probes[i].path, "probes", i));
+    PetscCall(ScenePath(&scene->probes[i].path, "probes", i));
     PetscCall(SceneReadProbe(scene, &scene->probes[i]));
-    for (int j = 0; j < i; j++) {
-      if (!strcmp(scene->probes[i].name, scene->probes[j].name))
-        SceneRefuse(scene, scene->probes[i].path, "name", "names another probe already; allowed: names used once", scene->probes[i].name);
-    }
+    SceneCheckProbeName(scene, &scene->probes[i]);
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

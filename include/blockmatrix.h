@@ -1,0 +1,21 @@
+/* A matrix that is a sum of small dense blocks over scattered dofs: what contact adds to the tangent. Blocks are gathered on each rank over
+   the entries of rank-local vectors (one per contact pair), multiplied as they stand, or assembled into a parallel matrix over the global
+   dofs, whose preallocation is kept as long as the blocks ask for the same pattern.
+
+     BlockMatrixReset(); BlockMatrixAdd() per block; then BlockMatrixAssemble(), BlockMatrixMultiply() */
+#pragma once
+#include "petsccompat.h"
+
+typedef struct _n_BlockMatrix *BlockMatrix;
+
+PetscErrorCode BlockMatrixCreate(MPI_Comm, BlockMatrix *);
+PetscErrorCode BlockMatrixDestroy(BlockMatrix *);
+PetscErrorCode BlockMatrixReset(BlockMatrix);
+/* A block of size m over entries of vector `list`: entry[m] to be written, value[m*m] (row-major) to be added to (it is zero). Both are valid
+   until the next call. Not collective. */
+PetscErrorCode BlockMatrixAdd(BlockMatrix, int list, PetscInt m, PetscInt **entry, PetscReal **value);
+/* The matrix over global dofs (n rows on this rank); dof[list][entry]: global dof, or -1 for an entry without one. It stays the block matrix's.
+   *changed: its pattern is new. Collective. */
+PetscErrorCode BlockMatrixAssemble(BlockMatrix, PetscInt n, const PetscInt *const dof[], Mat *, PetscBool *changed);
+/* y += (blocks of list) x for rank-local vectors. Not collective. */
+PetscErrorCode BlockMatrixMultiply(BlockMatrix, int list, const PetscReal *x, PetscReal *y);

@@ -1,0 +1,490 @@
+/* Shows that every element converges to an exact field at the rate of its order, p + 1 in the L2 norm, on curved and unstructured meshes: small strains for
+   all elements and geometries, finite strains for some; on more than one rank, that the error does not depend on the number of ranks.
+
+   The field is chosen, its stress and body force follow from the laws as a textbook writes them; the library only gets nodal values of the field on the
+   boundary and the nodal forces, and gives back the interior. Argument: the folder of the meshes (default: meshes). */
+#include "elasticity.h"
+#include <petscdt.h>
+#include <petscksp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <setjmp.h>
+#include <cmocka.h>
+#include <limits.h>
+#include <math.h>
+#include <stdlib.h>
+
+enum { LEVELS = 3, RULE_POINTS = 64, STENCIL = 3, MAX_NEWTON = 8 };
+
+static const PetscReal rate_margin    = 0.2;   /* the rate between the two finest meshes must exceed p + 1 less this */
+static const PetscReal rank_agreement = 1e-10; /* of errors on different numbers of ranks, relative */
+static const PetscReal newton_done    = 1e-12; /* residual over the norm of the unassembled internal forces: rounding is 1e-15 */
+static const PetscReal young = 200, poisson = 0.3;
+static const PetscReal offset_radius = 0.5; /* of an axisymmetric box away from the axis; box sides are 1 */
+
+#define CHECK(call) assert_int_equal((call), PETSC_SUCCESS)
+
+typedef struct {
+  ElementType type;
+  Geometry    geometry;
+  PetscBool   axis; /* axisymmetric: the box touches the axis r = 0 */
+  MaterialLaw law;  /* linear: small strains */
+  int         levels, n[LEVELS];
+} Case;
+
+static const Case cases[] = {
+  {ELEMENT_TRI3,  GEOMETRY_PLANE_STRAIN, PETSC_FALSE, MATERIAL_LINEAR,      3, {8, 16, 32}},
+  {ELEMENT_TRI3,  GEOMETRY_AXISYMMETRIC, PETSC_FALSE, MATERIAL_LINEAR,      3, {8, 16, 32}},
+  {ELEMENT_TRI3,  GEOMETRY_AXISYMMETRIC, PETSC_TRUE,  MATERIAL_LINEAR,      3, {8, 16, 32}},
+  {ELEMENT_TRI6,  GEOMETRY_PLANE_STRAIN, PETSC_FALSE, MATERIAL_LINEAR,      3, {4, 8, 16} },
+  {ELEMENT_TRI6,  GEOMETRY_AXISYMMETRIC, PETSC_FALSE, MATERIAL_LINEAR,      3, {4, 8, 16} },
+  {ELEMENT_TRI6,  GEOMETRY_AXISYMMETRIC, PETSC_TRUE,  MATERIAL_LINEAR,      3, {4, 8, 16} },
+  {ELEMENT_QUAD4, GEOMETRY_PLANE_STRAIN, PETSC_FALSE, MATERIAL_LINEAR,      3, {8, 16, 32}},
+  {ELEMENT_QUAD4, GEOMETRY_AXISYMMETRIC, PETSC_FALSE, MATERIAL_LINEAR,      3, {8, 16, 32}},
+  {ELEMENT_QUAD4, GEOMETRY_AXISYMMETRIC, PETSC_TRUE,  MATERIAL_LINEAR,      3, {8, 16, 32}},
+  {ELEMENT_QUAD9, GEOMETRY_PLANE_STRAIN, PETSC_FALSE, MATERIAL_LINEAR,      3, {4, 8, 16} },
+  {ELEMENT_QUAD9, GEOMETRY_AXISYMMETRIC, PETSC_FALSE, MATERIAL_LINEAR,      3, {4, 8, 16} },
+  {ELEMENT_QUAD9, GEOMETRY_AXISYMMETRIC, PETSC_TRUE,  MATERIAL_LINEAR,      3, {4, 8, 16} },
+  {ELEMENT_TET4,  GEOMETRY_SOLID,        PETSC_FALSE, MATERIAL_LINEAR,      3, {4, 8, 12} },
+  {ELEMENT_TET10, GEOMETRY_SOLID,        PETSC_FALSE, MATERIAL_LINEAR,      3, {2, 4, 6}  },
+  {ELEMENT_HEX8,  GEOMETRY_SOLID,        PETSC_FALSE, MATERIAL_LINEAR,      3, {4, 8, 12} },
+  {ELEMENT_HEX27, GEOMETRY_SOLID,        PETSC_FALSE, MATERIAL_LINEAR,      3, {2, 4, 6}  },
+  {ELEMENT_QUAD4, GEOMETRY_PLANE_STRAIN, PETSC_FALSE, MATERIAL_SVK,         2, {8, 16}    },
+  {ELEMENT_QUAD4, GEOMETRY_PLANE_STRAIN, PETSC_FALSE, MATERIAL_NEO_HOOKEAN, 2, {8, 16}    },
+  {ELEMENT_QUAD4, GEOMETRY_AXISYMMETRIC, PETSC_TRUE,  MATERIAL_SVK,         2, {8, 16}    },
+  {ELEMENT_QUAD4, GEOMETRY_AXISYMMETRIC, PETSC_TRUE,  MATERIAL_NEO_HOOKEAN, 2, {8, 16}    },
+  {ELEMENT_HEX8,  GEOMETRY_SOLID,        PETSC_FALSE, MATERIAL_SVK,         2, {4, 8}     },
+  {ELEMENT_HEX8,  GEOMETRY_SOLID,        PETSC_FALSE, MATERIAL_NEO_HOOKEAN, 2, {4, 8}     },
+  {ELEMENT_HEX27, GEOMETRY_SOLID,        PETSC_FALSE, MATERIAL_SVK,         2, {2, 4}     },
+  {ELEMENT_HEX27, GEOMETRY_SOLID,        PETSC_FALSE, MATERIAL_NEO_HOOKEAN, 2, {2, 4}     },
+};
+enum { CASES = sizeof(cases) / sizeof(*cases) };
+
+/* The same on any number of ranks */
+static const Case parallel_case = {ELEMENT_HEX27, GEOMETRY_SOLID, PETSC_FALSE, MATERIAL_NEO_HOOKEAN, 1, {2}};
+
+static PetscMPIInt rank;
+static char        folder[64], meshes[PATH_MAX];
+
+/* ------------------------------------------------------------------------------------------------------------- the exact field */
+
+/* u_i = a sin(k_i . s + p_i) with s = x; axisymmetric s = (r^2, z) and u_r times r, which makes the field smooth on the axis. H: its gradient, at 3 i + I,
+   x = r and y = z, with the hoop strain at 8 */
+static void Exact(Geometry geometry, const PetscReal x[3], PetscReal u[3], PetscReal H[9])
+{
+  static const PetscReal k[3][3] = {
+    {1.9,  1.1, -0.7},
+    {-1.3, 2.1, 0.9 },
+    {0.8,  1.2, 1.7 }
+  };
+  static const PetscReal phase[3] = {0.4, 1.1, -0.6}, amplitude = 0.1;
+  const int              dim = geometry == GEOMETRY_SOLID ? 3 : 2, axisymmetric = geometry == GEOMETRY_AXISYMMETRIC;
+
+  for (int r = 0; r < 9; r++) H[r] = 0;
+  for (int i = 0; i < dim; i++) {
+    PetscReal angle = phase[i];
+
+    for (int j = 0; j < dim; j++) angle += k[i][j] * (axisymmetric && j == 0 ? x[0] * x[0] : x[j]);
+    u[i] = amplitude * PetscSinReal(angle);
+    for (int j = 0; j < dim; j++) H[3 * i + j] = amplitude * PetscCosReal(angle) * k[i][j] * (axisymmetric && j == 0 ? 2 * x[0] : 1);
+  }
+  if (axisymmetric) {
+    H[8] = u[0];
+    H[0] = u[0] + x[0] * H[0];
+    H[1] *= x[0];
+    u[0] *= x[0];
+  }
+}
+
+/* First Piola-Kirchhoff stress: Hooke; P = F (lambda tr(E) 1 + 2 mu E); P = mu (F - F^-T) + lambda ln J F^-T */
+static void Stress(MaterialLaw law, const PetscReal H[9], PetscReal P[9])
+{
+  const PetscReal lambda = young * poisson / ((1 + poisson) * (1 - 2 * poisson)), mu = young / (2 * (1 + poisson));
+  PetscReal       F[9], S[9], C[9], trace = 0, J = 0;
+
+  for (int r = 0; r < 9; r++) F[r] = H[r] + (r % 4 == 0);
+  for (int i = 0; i < 3; i++) { /* S: strain; C: cofactors of F */
+    for (int j = 0; j < 3; j++) {
+      const int i1 = 3 * ((i + 1) % 3), i2 = 3 * ((i + 2) % 3), j1 = (j + 1) % 3, j2 = (j + 2) % 3;
+
+      C[3 * i + j] = F[i1 + j1] * F[i2 + j2] - F[i1 + j2] * F[i2 + j1];
+      S[3 * i + j] = (H[3 * i + j] + H[3 * j + i]) / 2;
+      for (int m = 0; m < 3 && law == MATERIAL_SVK; m++) S[3 * i + j] += H[3 * m + i] * H[3 * m + j] / 2;
+    }
+    trace += S[4 * i];
+    J += F[i] * C[i];
+  }
+  for (int r = 0; r < 9; r++) S[r] = 2 * mu * S[r] + (r % 4 == 0 ? lambda * trace : 0);
+  for (int r = 0; r < 9; r++) {
+    const int i = 3 * (r / 3), j = r % 3;
+
+    if (law == MATERIAL_LINEAR)
+      P[r] = S[r];
+    else if (law == MATERIAL_SVK)
+      P[r] = F[i] * S[j] + F[i + 1] * S[3 + j] + F[i + 2] * S[6 + j];
+    else
+      P[r] = mu * F[r] + (lambda * PetscLogReal(J) - mu) * C[r] / J;
+  }
+}
+
+static void ExactStress(const Case *test, const PetscReal x[3], PetscReal P[9])
+{
+  PetscReal u[3], H[9];
+
+  Exact(test->geometry, x, u, H);
+  Stress(test->law, H, P);
+}
+
+/* Body force -Div P by central differences of order 6; the field has wavelengths above 2, so that both their errors are below 1e-11 of the force */
+static void ExactForce(const Case *test, const PetscReal x[3], PetscReal b[3])
+{
+  static const PetscReal weight[STENCIL] = {3. / 4, -3. / 20, 1. / 60}, step = 0.01;
+  const int              dim = test->geometry == GEOMETRY_SOLID ? 3 : 2;
+  PetscReal              P[9];
+
+  for (int i = 0; i < 3; i++) b[i] = 0;
+  for (int j = 0; j < dim; j++) {
+    for (int m = -STENCIL; m <= STENCIL; m++) {
+      PetscReal y[3] = {x[0], x[1], x[2]};
+
+      if (!m) continue;
+      y[j] += m * step;
+      ExactStress(test, y, P);
+      for (int i = 0; i < dim; i++) b[i] -= (m > 0 ? 1 : -1) * weight[abs(m) - 1] / step * P[3 * i + j];
+    }
+  }
+  if (test->geometry == GEOMETRY_AXISYMMETRIC) {
+    ExactStress(test, x, P);
+    b[0] -= (P[0] - P[8]) / x[0];
+    b[1] -= P[3] / x[0];
+  }
+}
+
+/* ------------------------------------------------------------------------------------------------------------- the mesh */
+
+/* Bends the box, so that cells are no parallelepipeds and those of second order have curved sides. Keeps r = 0 where it is. */
+static void Bend(const Case *test, PetscReal x[3])
+{
+  const PetscReal s[3] = {x[0], x[1], x[2]};
+
+  x[0] = s[0] * (1 + 0.15 * PetscSinReal(2 * s[1] + 1));
+  x[1] = s[1] + 0.1 * PetscSinReal(2 * s[0]);
+  x[2] = s[2] + 0.12 * s[0] * s[1];
+  if (test->geometry == GEOMETRY_AXISYMMETRIC && !test->axis) x[0] += offset_radius;
+}
+
+static PetscErrorCode SceneCreate(MPI_Comm comm, const Case *test, int n, Scene *scene)
+{
+  static const char *const names[] = {[GEOMETRY_SOLID] = "solid", [GEOMETRY_PLANE_STRAIN] = "plane_strain", [GEOMETRY_AXISYMMETRIC] = "axisymmetric"};
+  const Element           *e       = ElementGet(test->type);
+  char                     file[PETSC_MAX_PATH_LEN];
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscSNPrintf(file, sizeof(file), "%s/scene.yaml", folder));
+  if (!rank) {
+    FILE *stream = fopen(file, "w");
+
+    PetscCheck(stream, PETSC_COMM_SELF, PETSC_ERR_FILE_OPEN, "cannot write %s", file);
+    fprintf(stream, "geometry: %s\nkinematics: %s\nbodies: [{volume: block, material: {law: %s, E: %g, nu: %g}}]\n", names[test->geometry],
+            test->law == MATERIAL_LINEAR ? "small" : "finite", MaterialLaws[test->law], young, poisson);
+    fprintf(stream, "mesh: {file: %s/%s.geo, order: %d, parameters: {nx: %d, ny: %d", meshes, e->dim == 3 ? "block" : "square", e->order, n, n);
+    if (e->dim == 3) fprintf(stream, ", nz: %d", n);
+    fprintf(stream, ", %s: %d}}\n", e->dim == 3 ? "tet" : "tri", e->corners == e->dim + 1);
+    fclose(stream);
+  }
+  PetscCallMPI(MPI_Barrier(PETSC_COMM_WORLD));
+  PetscCall(SceneRead(comm, file, 0, NULL, scene));
+  PetscCallMPI(MPI_Barrier(PETSC_COMM_WORLD));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Prescribes the displacement on the whole boundary; on the axis, which is none, only the radial one */
+static PetscErrorCode Constrain(const Case *test, Scene scene, Mesh mesh)
+{
+  static const char *const sides[] = {"x_min", "x_max", "y_min", "y_max", "z_min", "z_max"};
+  PetscBool               *constrained;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc1(mesh->n_nodes * mesh->dim, &constrained));
+  for (int side = 0; side < 2 * mesh->dim; side++) {
+    MeshGroup *group;
+
+    PetscCall(MeshGetGroup(mesh, scene, "supports.0", "surface", sides[side], mesh->dim - 1, &group));
+    for (PetscInt k = 0; k < group->n_nodes; k++) {
+      for (int i = 0; i < (test->axis && side == 0 ? 1 : mesh->dim); i++) constrained[group->nodes[k] * mesh->dim + i] = PETSC_TRUE;
+    }
+  }
+  PetscCall(MeshSetConstraints(mesh, constrained));
+  PetscCall(PetscFree(constrained));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Coordinates are taken as they stand in the mesh, relative to its centre: the field's origin is there. u: the nodal values of the field */
+static PetscErrorCode CreateMesh(MPI_Comm comm, const Case *test, int n, Scene *scene, Mesh *mesh, PetscReal **u)
+{
+  char      file[PETSC_MAX_PATH_LEN];
+  PetscReal seconds;
+
+  PetscFunctionBeginUser;
+  PetscCall(SceneCreate(comm, test, n, scene));
+  PetscCall(MeshGenerate(comm, *scene, folder, file, &seconds));
+  PetscCall(MeshCreate(comm, *scene, file, mesh));
+  PetscCall(PetscMalloc1((*mesh)->n_nodes * (*mesh)->dim, u));
+  for (PetscInt k = 0; k < (*mesh)->n_nodes; k++) {
+    const int  dim  = (*mesh)->dim;
+    PetscReal *node = &(*mesh)->coords[k * dim], x[3] = {0}, value[3], H[9];
+
+    PetscCall(PetscArraycpy(x, node, dim));
+    Bend(test, x);
+    Exact(test->geometry, x, value, H);
+    PetscCall(PetscArraycpy(node, x, dim));
+    PetscCall(PetscArraycpy(&(*u)[k * dim], value, dim));
+  }
+  PetscCall(MeshCheckQuality(*mesh, *scene));
+  PetscCall(Constrain(test, *scene, *mesh));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* ------------------------------------------------------------------------------------------------------------- integrals */
+
+/* Quadrature of order p + 2 per direction, more than the elements' own */
+typedef struct {
+  int       points;
+  PetscReal weight[RULE_POINTS], N[RULE_POINTS][ELEMENT_MAX_NODES], dN[RULE_POINTS][ELEMENT_MAX_NODES * 3];
+} Rule;
+
+static PetscErrorCode RuleCreate(ElementType type, Rule *rule)
+{
+  const Element   *e       = ElementGet(type);
+  const PetscBool  simplex = e->corners == e->dim + 1 ? PETSC_TRUE : PETSC_FALSE;
+  const PetscReal *points, *weights;
+  PetscQuadrature  quadrature;
+  PetscInt         n;
+
+  PetscFunctionBeginUser;
+  if (simplex) PetscCall(PetscDTStroudConicalQuadrature(e->dim, 1, e->order + 2, -1, 1, &quadrature));
+  else PetscCall(PetscDTGaussTensorQuadrature(e->dim, 1, e->order + 2, -1, 1, &quadrature));
+  PetscCall(PetscQuadratureGetData(quadrature, NULL, NULL, &n, &points, &weights));
+  PetscCheck(n <= RULE_POINTS, PETSC_COMM_SELF, PETSC_ERR_PLIB, "%" PetscInt_FMT " quadrature points", n);
+  rule->points = (int)n;
+  for (int q = 0; q < rule->points; q++) { /* PETSc's simplex is the half of [-1, 1]^dim */
+    PetscReal xi[3];
+
+    rule->weight[q] = weights[q] / (simplex ? 1 << e->dim : 1);
+    for (int k = 0; k < e->dim; k++) xi[k] = simplex ? (points[q * e->dim + k] + 1) / 2 : points[q * e->dim + k];
+    ElementShape(type, xi, rule->N[q], rule->dN[q], NULL);
+  }
+  PetscCall(PetscQuadratureDestroy(&quadrature));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Place of point q of a cell, and the volume it stands for (over 360 degrees) */
+static PetscReal RulePoint(const Rule *rule, int q, const Case *test, Mesh mesh, PetscInt c, PetscReal x[3])
+{
+  const int       dim   = mesh->dim;
+  const PetscInt *nodes = &mesh->cell_nodes[mesh->cell_ptr[c]], n = mesh->cell_ptr[c + 1] - mesh->cell_ptr[c];
+  PetscReal       J[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, volume = 0;
+
+  for (int i = 0; i < dim; i++) {
+    x[i] = J[i][i] = 0;
+    for (PetscInt a = 0; a < n; a++) {
+      x[i] += rule->N[q][a] * mesh->coords[nodes[a] * dim + i];
+    }
+    for (int k = 0; k < dim; k++) {
+      J[i][k] = 0;
+      for (PetscInt a = 0; a < n; a++) J[i][k] += rule->dN[q][a * dim + k] * mesh->coords[nodes[a] * dim + i];
+    }
+  }
+  for (int k = 0; k < 3; k++) volume += J[0][k] * (J[1][(k + 1) % 3] * J[2][(k + 2) % 3] - J[1][(k + 2) % 3] * J[2][(k + 1) % 3]);
+  return volume * rule->weight[q] * (test->geometry == GEOMETRY_AXISYMMETRIC ? 2 * PETSC_PI * x[0] : 1);
+}
+
+/* f -= nodal forces of the exact body force */
+static void SubtractForce(const Rule *rule, const Case *test, Mesh mesh, PetscReal *f)
+{
+  for (PetscInt c = 0; c < mesh->n_cells; c++) {
+    for (int q = 0; q < rule->points; q++) {
+      PetscReal       x[3], b[3];
+      const PetscReal volume = RulePoint(rule, q, test, mesh, c, x);
+
+      ExactForce(test, x, b);
+      for (PetscInt k = mesh->cell_ptr[c]; k < mesh->cell_ptr[c + 1]; k++) {
+        for (int i = 0; i < mesh->dim; i++) f[mesh->cell_nodes[k] * mesh->dim + i] -= volume * rule->N[q][k - mesh->cell_ptr[c]] * b[i];
+      }
+    }
+  }
+}
+
+/* L2 norm of u less the exact field, over the norm of the field. Collective. */
+static PetscErrorCode L2Error(const Rule *rule, const Case *test, Mesh mesh, const PetscReal *u, PetscReal *error)
+{
+  PetscReal sum[2] = {0, 0};
+
+  PetscFunctionBeginUser;
+  for (PetscInt c = 0; c < mesh->n_cells; c++) {
+    for (int q = 0; q < rule->points; q++) {
+      PetscReal       x[3], exact[3], H[9];
+      const PetscReal volume = RulePoint(rule, q, test, mesh, c, x);
+
+      Exact(test->geometry, x, exact, H);
+      for (int i = 0; i < mesh->dim; i++) {
+        PetscReal difference = -exact[i];
+
+        for (PetscInt k = mesh->cell_ptr[c]; k < mesh->cell_ptr[c + 1]; k++)
+          difference += rule->N[q][k - mesh->cell_ptr[c]] * u[mesh->cell_nodes[k] * mesh->dim + i];
+        sum[0] += volume * difference * difference;
+        sum[1] += volume * exact[i] * exact[i];
+      }
+    }
+  }
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sum, 2, MPIU_REAL, MPIU_SUM, mesh->comm));
+  *error = PetscSqrtReal(sum[0] / sum[1]);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* ------------------------------------------------------------------------------------------------------------- the solution */
+
+/* Newton from the nodal values of the exact field; load: minus the external forces. Small strains need one step. Collective. */
+static PetscErrorCode Newton(Mesh mesh, Elasticity e, const PetscReal *load, PetscReal *u, PetscInt *steps)
+{
+  const PetscInt n = mesh->n_nodes * mesh->dim;
+  PetscReal     *f, *du, norm, scale;
+  Vec            R, dx;
+  KSP            ksp;
+  PC             pc;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(n, &f));
+  PetscCall(PetscCalloc1(n, &du));
+  PetscCall(DMCreateGlobalVector(mesh->dm, &R));
+  PetscCall(VecDuplicate(R, &dx));
+  PetscCall(KSPCreate(mesh->comm, &ksp));
+  PetscCall(KSPSetType(ksp, KSPPREONLY));
+  PetscCall(KSPGetPC(ksp, &pc));
+  PetscCall(PCSetType(pc, PCCHOLESKY));
+  PetscCall(PCFactorSetMatSolverType(pc, MATSOLVERMUMPS));
+  for (*steps = 0;; ++*steps) {
+    PetscBool ok;
+    Mat       K;
+
+    PetscCall(PetscArraycpy(f, load, n));
+    PetscCall(ElasticityResidual(e, u, f, NULL, &scale, &ok));
+    PetscCheck(ok, PETSC_COMM_SELF, PETSC_ERR_PLIB, "the solution turns cells inside out");
+    PetscCall(MeshLocalToGlobal(mesh, f, R));
+    PetscCall(VecNorm(R, NORM_2, &norm));
+    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &scale, 1, MPIU_REAL, MPIU_SUM, mesh->comm));
+    if (norm <= newton_done * PetscSqrtReal(scale) || *steps == MAX_NEWTON) break;
+    PetscCall(ElasticityTangent(e, u));
+    PetscCall(ElasticityMatrix(e, &K));
+    PetscCall(KSPSetOperators(ksp, K, K));
+    PetscCall(KSPSolve(ksp, R, dx));
+    PetscCall(MeshGlobalToLocal(mesh, dx, du));
+    for (PetscInt k = 0; k < n; k++) u[k] -= du[k];
+  }
+  PetscCall(KSPDestroy(&ksp));
+  PetscCall(VecDestroy(&R));
+  PetscCall(VecDestroy(&dx));
+  PetscCall(PetscFree(f));
+  PetscCall(PetscFree(du));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* One mesh: h, the side of a cube of the mean size of a cell of a unit box, the error and the number of Newton steps. Collective. */
+static PetscErrorCode Solve(MPI_Comm comm, const Case *test, int n, PetscReal *h, PetscReal *error, PetscInt *steps)
+{
+  static Rule rule;
+  PetscReal  *u, *load;
+  Elasticity  e;
+  Scene       scene;
+  Mesh        mesh;
+
+  PetscFunctionBeginUser;
+  PetscCall(CreateMesh(comm, test, n, &scene, &mesh, &u));
+  PetscCall(ElasticityCreate(mesh, scene, &e));
+  PetscCall(RuleCreate(test->type, &rule));
+  PetscCall(PetscCalloc1(mesh->n_nodes * mesh->dim, &load));
+  SubtractForce(&rule, test, mesh, load);
+  PetscCall(Newton(mesh, e, load, u, steps));
+  PetscCall(L2Error(&rule, test, mesh, u, error));
+  *h = PetscPowReal(mesh->n_cells_global, -1. / mesh->dim);
+  PetscCall(PetscFree(load));
+  PetscCall(PetscFree(u));
+  PetscCall(ElasticityDestroy(&e));
+  PetscCall(MeshDestroy(&mesh));
+  PetscCall(SceneDestroy(&scene));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static const char *GeometryText(const Case *test)
+{
+  if (test->geometry == GEOMETRY_SOLID) return "solid";
+  if (test->geometry == GEOMETRY_PLANE_STRAIN) return "plane strain";
+  return test->axis ? "axisymmetric, axis" : "axisymmetric";
+}
+
+static void Converges(void **state)
+{
+  const Case     *test  = *state;
+  const Element  *e     = ElementGet(test->type);
+  const PetscReal bound = e->order + 1 - rate_margin;
+  PetscReal       h[LEVELS], error[LEVELS], rate = 0;
+
+  for (int level = 0; level < test->levels; level++) {
+    PetscInt steps;
+
+    CHECK(Solve(PETSC_COMM_WORLD, test, test->n[level], &h[level], &error[level], &steps));
+    print_message("%-6s %-19s %-12s %8.4f %12.4e %7d", e->name, GeometryText(test), MaterialLaws[test->law], h[level], error[level], (int)steps);
+    if (level) {
+      rate = PetscLogReal(error[level] / error[level - 1]) / PetscLogReal(h[level] / h[level - 1]);
+      print_message(" %6.2f", rate);
+    }
+    print_message(level == test->levels - 1 ? " > %.1f\n" : "\n", bound);
+    assert_true(steps < MAX_NEWTON && (test->law != MATERIAL_LINEAR || steps == 1));
+  }
+  assert_true(rate > bound);
+}
+
+static void SameOnAllRanks(void **state)
+{
+  PetscReal h, error, alone;
+  PetscInt  steps, steps_alone;
+
+  (void)state;
+  CHECK(Solve(PETSC_COMM_WORLD, &parallel_case, parallel_case.n[0], &h, &error, &steps));
+  CHECK(Solve(PETSC_COMM_SELF, &parallel_case, parallel_case.n[0], &h, &alone, &steps_alone));
+  if (!rank) print_message("relative L2 error %.4e, on one rank different by %.1e of it\n", error, PetscAbsReal(error - alone) / alone);
+  assert_true(PetscAbsReal(error - alone) < rank_agreement * alone);
+  assert_int_equal(steps, steps_alone);
+}
+
+int main(int argc, char **argv)
+{
+  const struct CMUnitTest parallel[] = {cmocka_unit_test(SameOnAllRanks)};
+  struct CMUnitTest       tests[CASES];
+  PetscMPIInt             size;
+  char                    command[128];
+  int                     failed;
+
+  PetscCall(PetscInitialize(&argc, &argv, NULL, NULL));
+  PetscCallMPI(MPI_Comm_rank(PETSC_COMM_WORLD, &rank));
+  PetscCallMPI(MPI_Comm_size(PETSC_COMM_WORLD, &size));
+  PetscCheck(realpath(argc > 1 ? argv[1] : "meshes", meshes), PETSC_COMM_WORLD, PETSC_ERR_FILE_OPEN, "there is no folder of meshes; name it as the argument");
+  PetscCall(PetscSNPrintf(folder, sizeof(folder), "/tmp/burnish_manufactured_XXXXXX"));
+  PetscCheck(rank || mkdtemp(folder), PETSC_COMM_SELF, PETSC_ERR_FILE_OPEN, "cannot make %s", folder);
+  PetscCallMPI(MPI_Bcast(folder, sizeof(folder), MPI_CHAR, 0, PETSC_COMM_WORLD));
+  for (int k = 0; k < CASES; k++) {
+    tests[k]               = (struct CMUnitTest)cmocka_unit_test(Converges);
+    tests[k].initial_state = (void *)&cases[k];
+  }
+  if (size > 1)
+    failed = cmocka_run_group_tests(parallel, NULL, NULL);
+  else {
+    print_message("%-6s %-19s %-12s %8s %12s %7s %6s\n", "element", "geometry", "law", "h", "L2 error", "Newton", "rate");
+    failed = cmocka_run_group_tests(tests, NULL, NULL);
+  }
+  PetscCall(PetscSNPrintf(command, sizeof(command), "rm -r %s", folder));
+  PetscCallMPI(MPI_Barrier(PETSC_COMM_WORLD));
+  if (!rank && system(command)) failed++;
+  PetscCall(PetscFinalize());
+  return failed;
+}
