@@ -18,9 +18,9 @@ ifdef PETSC_DIR
   endif
   export PKG_CONFIG_PATH := $(PETSC_DIR)/$(PETSC_ARCH)/lib/pkgconfig:$(PETSC_DIR)/lib/pkgconfig:$(PKG_CONFIG_PATH)
 endif
-# Asked for when used, not when read: `make deps all` installs first.
+# Asked for when used, not when read: `make deps all` installs first. Before GNU make 4.4 $(shell) does not see what is exported.
 PACKAGES      := PETSc yaml-0.1 libcjson
-pkgconfig      = $(shell pkg-config $(1) 2>/dev/null)
+pkgconfig      = $(shell PKG_CONFIG_PATH='$(PKG_CONFIG_PATH)' pkg-config $(1) 2>/dev/null)
 petscvariable  = $(shell sed -n 's/^$(1) *= *//p' $(call pkgconfig,--variable=prefix PETSc)/lib/petsc/conf/petscvariables 2>/dev/null)
 
 ALL_CFLAGS := -std=gnu11 -march=$(ARCH) $(CFLAGS) -Wall -Wextra

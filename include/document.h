@@ -18,7 +18,7 @@ typedef struct _n_Node {
   int              n;     /* list, map */
   struct _n_Node **child;
   char           **key; /* map */
-} *Node;
+} * Node;
 
 typedef struct {
   MPI_Comm comm;

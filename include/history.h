@@ -7,4 +7,3 @@ typedef struct {
 } History;
 
 double HistoryValue(const History *, double t);
-double HistorySlope(const History *, double t); /* right-sided: what the step that starts at t sees */

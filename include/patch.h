@@ -22,8 +22,8 @@ typedef struct {
 /* The facet as a polynomial: x = sum c[i][j] xi^i eta^j */
 typedef struct {
   const PatchDomain *domain;
-  int           flat; /* affine: one start is enough */
-  double        c[3][3][3], size;
+  int                flat; /* affine: one start is enough */
+  double             c[3][3][3], size;
 } Patch;
 
 typedef struct {

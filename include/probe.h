@@ -1,4 +1,5 @@
-/* Probes: the scalars a scene asks for, by a registry of kinds (two functions and one line each in probe.c). */
+/* Probes: the scalars a scene asks for, by a registry of kinds. A new kind is one function and one line of the table in probe.c, its name in
+   ProbeKind (scene.h), its keys in schemakeys.c and sceneprobe.c. */
 #pragma once
 #include "model.h"
 
@@ -11,10 +12,3 @@ PetscErrorCode ProbesDestroy(Probes *);
 PetscErrorCode ProbesEvaluate(Probes, PetscReal values[]);
 /* Spacing of the nodes around the contact edge that probe i found at the last evaluation; NaN for other kinds and without contact. Not collective. */
 PetscErrorCode ProbesGetSpacing(Probes, int i, PetscReal *spacing);
-
-/* The end of contact along a line of nodes. Plain C.
-   x[n] ascending coordinates and p[n] nodal pressures, loaded where p > 0; max_side: the end at large x, else at small x. The zero of p^2,
-   extrapolated linearly from the last two loaded nodes and bounded by the next open one (Hertz's pressure falls so at its edge); half way
-   to the open node where only one node is loaded; the last node of the line if that is loaded. NaN: no node is loaded. *spacing: distance
-   of the last loaded and the open node, 0 at the line's end. */
-double ContactEdge(int n, const double *x, const double *p, int max_side, double *spacing);

@@ -1,6 +1,6 @@
 /* Every value a user can write, validated, with defaults; the only reader of YAML. Knows no PETSc objects but the communicator.
 
-   SceneRead() reads the file on rank 0, applies the -set overrides, validates every key against the one table of schema.c and refuses
+   SceneRead() reads the file on rank 0, applies the -set overrides, validates every key against the one table of schemakeys.c and refuses
    the first mistake (file, line, key, what is wrong, what is allowed). Checks that need the mesh are made later by the part that owns
    them; their messages start with SceneWhere(). */
 #pragma once
@@ -113,7 +113,7 @@ typedef struct {
     int displacement, stress, contact;     /* fields */
   } output;
   int n_petsc;    ScenePair    *petsc;     /* PETSc options of the scene */
-  void *document;                          /* private: the document's tree with its marks (schema.h), for SceneWhere() */
+  void *document;                          /* private: the document's tree with its marks (document.h), for SceneWhere() */
 } *Scene;
 
 PetscErrorCode SceneRead(MPI_Comm, const char *file, int n_set, char *const *set, Scene *);

@@ -38,7 +38,7 @@ typedef struct {
 extern const SchemaKey SchemaKeys[];
 extern const int       SchemaKeysCount;
 
-const SchemaKey *SchemaKeyFind(const char *path);                     /* NULL: no key of ours */
+const SchemaKey *SchemaKeyFind(const char *path);                       /* NULL: no key of ours */
 int              SchemaKeyIsChild(const SchemaKey *, const char *path); /* belongs to the map at path */
-const char      *SchemaKeyName(const SchemaKey *);                    /* last component of its path, "a|b" where that stands for two */
+const char      *SchemaKeyName(const SchemaKey *);                      /* last component of its path, "a|b" where that stands for two */
 int              WordFind(const char *words, const char *apart, const char *text, size_t n);

@@ -15,5 +15,5 @@ typedef enum {
 extern const char *const TimingNames[];
 
 void   TimingBegin(TimingKind);
-void   TimingEnd(TimingKind);      /* also ends what was begun after it and never ended */
-double TimingSeconds(TimingKind);  /* of what has ended or stood still so far */
+void   TimingEnd(TimingKind);     /* also ends what was begun after it and never ended */
+double TimingSeconds(TimingKind); /* of what has ended or stood still so far */

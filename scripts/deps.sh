@@ -80,11 +80,12 @@ make_environment() {
 mkdir -p build
 : >"$log"
 lacking=$(missing)
-if [ -n "$lacking" ] && command -v apt-get >/dev/null; then
+for round in first second; do # the second: PETSc may have brought the reference BLAS along
+  [ -n "$lacking" ] && command -v apt-get >/dev/null || break
   install_missing $lacking || exit 1
   hash -r
   lacking=$(missing)
-fi
+done
 if [ -n "$lacking" ]; then
   echo "make deps: missing:" >&2
   for thing in $lacking; do echo "  ${meaning[$thing]}" >&2; done

@@ -27,7 +27,7 @@ typedef struct {
   int          index, feature;
   FootRegion   region;
   double       size, distance;
-  PatchPoint        point;
+  PatchPoint   point;
 } Candidate;
 
 static double Distance(const double a[3], const double b[3])
@@ -215,11 +215,11 @@ int FacetClosest(int dim, int n, const Facet *facets, const double *x, int seed,
   if (n <= 0) return 0;
   if (seed < 0 || seed >= n) seed = NearestCentre(dim, n, facets, x);
   for (int k = 0; k < n; ++k) {
-    const int i = k == 0 ? seed : k <= seed ? k - 1 : k;
-    double    X[FACE_MAX_NODES][3];
-    Candidate candidate = {.facet = &facets[i], .index = i};
-    PatchSphere    sphere;
-    Patch     patch;
+    const int   i = k == 0 ? seed : k <= seed ? k - 1 : k;
+    double      X[FACE_MAX_NODES][3];
+    Candidate   candidate = {.facet = &facets[i], .index = i};
+    PatchSphere sphere;
+    Patch       patch;
 
     PatchGather(dim, &facets[i], x, X);
     PatchBound(facets[i].type, X, &sphere);
@@ -245,7 +245,7 @@ void FacetProject(int dim, const Facet *facet, const double *x, Foot *foot)
    Not collective, plain C. Arguments as of FacetClosest(); returns a length. */
 double FacetSize(int dim, const Facet *facet, const double *x)
 {
-  double X[FACE_MAX_NODES][3];
+  double      X[FACE_MAX_NODES][3];
   PatchSphere sphere;
 
   PatchGather(dim, facet, x, X);
@@ -298,7 +298,7 @@ static void ChartCreate(int dim, const Facet *facet, const double *x, const Foot
         {0, 1}
   },
     metric[2][2], kappa[2][2], hessian[2][2], det, scale;
-  Patch patch;
+  Patch      patch;
   PatchLocal l;
 
   memset(chart, 0, sizeof(*chart));

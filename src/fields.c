@@ -25,7 +25,7 @@ struct _n_Fields {
   PetscInt  *owned; /* local nodes that this rank owns */
   Rows       nodes;
   int        n_pairs;
-  Rows      *pairs;  /* slave nodes, per contact pair */
+  Rows      *pairs;                /* slave nodes, per contact pair */
   PetscInt   cells[ELEMENT_TYPES]; /* rows of /mesh/cells_TYPE */
   PetscInt   n_written, room;
   PetscReal *t;    /* of the written steps */
@@ -40,18 +40,18 @@ static const struct {
   XdmfArray array;
 } shown[] = {
   {SHOW_DISPLACEMENT, {"displacement", "displacement", 3, -1}},
-  {SHOW_STRESS,       {"von_mises",    "von_mises",    1, -1}},
-  {SHOW_STRESS,       {"stress_xx",    "stress",       6, 0 }},
-  {SHOW_STRESS,       {"stress_yy",    "stress",       6, 1 }},
-  {SHOW_STRESS,       {"stress_zz",    "stress",       6, 2 }},
-  {SHOW_STRESS,       {"stress_xy",    "stress",       6, 3 }},
-  {SHOW_STRESS,       {"stress_yz",    "stress",       6, 4 }},
-  {SHOW_STRESS,       {"stress_xz",    "stress",       6, 5 }},
-  {SHOW_CONTACT,      {"gap",          "gap",          1, -1}},
-  {SHOW_CONTACT,      {"penetration",  "penetration",  1, -1}},
-  {SHOW_CONTACT,      {"penalty",      "penalty",      1, -1}},
-  {SHOW_CONTACT,      {"pressure",     "pressure",     1, -1}},
-  {SHOW_CONTACT,      {"normal",       "normal",       3, -1}},
+  {SHOW_STRESS,       {"von_mises", "von_mises", 1, -1}      },
+  {SHOW_STRESS,       {"stress_xx", "stress", 6, 0}          },
+  {SHOW_STRESS,       {"stress_yy", "stress", 6, 1}          },
+  {SHOW_STRESS,       {"stress_zz", "stress", 6, 2}          },
+  {SHOW_STRESS,       {"stress_xy", "stress", 6, 3}          },
+  {SHOW_STRESS,       {"stress_yz", "stress", 6, 4}          },
+  {SHOW_STRESS,       {"stress_xz", "stress", 6, 5}          },
+  {SHOW_CONTACT,      {"gap", "gap", 1, -1}                  },
+  {SHOW_CONTACT,      {"penetration", "penetration", 1, -1}  },
+  {SHOW_CONTACT,      {"penalty", "penalty", 1, -1}          },
+  {SHOW_CONTACT,      {"pressure", "pressure", 1, -1}        },
+  {SHOW_CONTACT,      {"normal", "normal", 3, -1}            },
 };
 
 /* Contact values of one node: columns of the nodal array that FieldsWriteContact() forms */

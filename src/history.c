@@ -9,11 +9,6 @@ static int HistoryInterval(const History *history, double t)
   return i;
 }
 
-static double HistoryIntervalSlope(const History *history, int i)
-{
-  return (history->v[i + 1] - history->v[i]) / (history->t[i + 1] - history->t[i]);
-}
-
 /* HistoryValue - the factor at load parameter t: linear between breakpoints, the end values beyond them. Exact at breakpoints.
 
    Not collective. t: load parameter. Returns the factor (no unit). */
@@ -23,16 +18,5 @@ double HistoryValue(const History *history, double t)
 
   if (i < 0) return history->v[0];
   if (i == history->n - 1) return history->v[i];
-  return history->v[i] + HistoryIntervalSlope(history, i) * (t - history->t[i]);
-}
-
-/* HistorySlope - the factor's derivative by the load parameter. At a breakpoint it is the slope of the interval that starts there, because a
-   step that starts at t sees that one; 0 before the first and from the last breakpoint on.
-
-   Not collective. t: load parameter. Returns d(factor)/dt. */
-double HistorySlope(const History *history, double t)
-{
-  const int i = HistoryInterval(history, t);
-
-  return i < 0 || i == history->n - 1 ? 0 : HistoryIntervalSlope(history, i);
+  return history->v[i] + (history->v[i + 1] - history->v[i]) / (history->t[i + 1] - history->t[i]) * (t - history->t[i]);
 }

@@ -116,18 +116,6 @@ static PetscErrorCode LoadsCreatePrescribed(Loads loads)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static void CellCoordinates(Mesh mesh, PetscInt n, const PetscInt *nodes, const PetscReal *u, double *X, double *v)
-{
-  const int dim = mesh->dim;
-
-  for (PetscInt a = 0; a < n; a++) {
-    for (int d = 0; d < dim; d++) {
-      X[a * dim + d] = mesh->coords[nodes[a] * dim + d] + (d == 0 ? mesh->centre[0] : 0); /* the axisymmetric kernels need the radius itself */
-      if (v) v[a * dim + d] = u[nodes[a] * dim + d];
-    }
-  }
-}
-
 /* Adds one face's or cell's nodal forces for factor 1 to the dense work vector. */
 static void DeadLoadAdd(Mesh mesh, PetscInt n, const PetscInt *nodes, const double *fe, PetscReal *dense, PetscReal *force2)
 {
@@ -150,7 +138,7 @@ static PetscErrorCode DeadLoadSurface(Loads loads, const SceneLoad *load, const 
     const ElementType type = MeshFaceNodes(mesh, group, f, nodes);
     const int         n    = ElementGet(type)->nodes;
 
-    CellCoordinates(mesh, n, nodes, NULL, X, NULL);
+    MeshGatherNodes(mesh, n, nodes, mesh->coords, X);
     PetscCall(PetscArrayzero(fe, n * mesh->dim));
     FaceLoadKernel(type, mesh->dim, loads->scene->geometry, load->kind == LOAD_TRACTION ? FACE_TRACTION : FACE_DEAD_PRESSURE, X, zero, load->value, fe, NULL, NULL);
     DeadLoadAdd(mesh, n, nodes, fe, dense, force2);
@@ -174,7 +162,7 @@ static PetscErrorCode DeadLoadVolume(Loads loads, const SceneLoad *load, PetscRe
     const int       n     = ElementGet(mesh->cell_type[c])->nodes;
 
     if (mesh->cell_body[c] != body) continue;
-    CellCoordinates(mesh, n, nodes, NULL, X, NULL);
+    MeshCellCoordinates(mesh, c, X);
     PetscCall(PetscArrayzero(fe, n * mesh->dim));
     BodyForceKernel(mesh->cell_type[c], mesh->dim, scene->geometry, X, load->value, fe);
     DeadLoadAdd(mesh, n, nodes, fe, dense, force2);
@@ -274,7 +262,8 @@ static PetscErrorCode FollowerFace(Loads loads, const FollowerLoad *load, PetscI
 
   PetscFunctionBeginUser;
   *n = ElementGet(type)->nodes;
-  CellCoordinates(mesh, *n, nodes, u, X, v);
+  MeshGatherNodes(mesh, *n, nodes, mesh->coords, X);
+  MeshGatherNodes(mesh, *n, nodes, u, v);
   PetscCall(PetscArrayzero(fe, *n * mesh->dim));
   if (ke) PetscCall(PetscArrayzero(ke, PetscSqr(*n * mesh->dim)));
   FaceLoadKernel(type, mesh->dim, loads->scene->geometry, FACE_FOLLOWER_PRESSURE, X, v, &pressure, fe, ke, NULL);

@@ -25,8 +25,7 @@ typedef struct _n_ModelWork {
   PetscReal  accepted_t;
   PetscReal  rate;         /* largest displacement per unit of t in the last accepted step */
   PetscReal  scale;        /* force norm of the last evaluation */
-  PetscBool  started;      /* a first tangent has been made: the touching start is over */
-  PetscBool  test_jacobian;
+  PetscBool  started;      /* a first tangent, the prediction's, has been made: the touching start is over */
   PetscInt   inverted;     /* gmsh's tag of a cell of this rank that was turned inside out in this solve, or -1 */
   PetscBool  near;         /* the iterate is so close that energies differ by round-off only */
   Vec        residual;     /* of a trial point, while near */
@@ -158,7 +157,7 @@ static PetscErrorCode ModelTangent(Model model, const PetscReal *u, PetscReal t)
   TimingEnd(TIMING_ASSEMBLY_ELASTIC);
   if (model->contact) {
     TimingBegin(TIMING_ASSEMBLY_CONTACT);
-    PetscCall(ContactTangent(model->contact, u, t, (PetscBool)(!model->work->started && !model->work->test_jacobian), &C, &changed));
+    PetscCall(ContactTangent(model->contact, u, t, (PetscBool)!model->work->started, &C, &changed));
     PetscCall(ModelAddContact(model, K, C, changed));
     TimingEnd(TIMING_ASSEMBLY_CONTACT);
   }
@@ -280,7 +279,6 @@ PetscErrorCode ModelCreate(Scene scene, Mesh mesh, Model *out)
   PetscCall(VecDuplicate(model->x, &model->work->accepted_x));
   PetscCall(VecDuplicate(model->x, &model->work->residual));
   PetscCall(ModelCreateSNES(model));
-  PetscCall(PetscOptionsHasName(NULL, NULL, "-snes_test_jacobian", &model->work->test_jacobian));
   *out = model;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -163,7 +163,7 @@ void PatchCreate(ElementType type, double (*X)[3], double size, Patch *patch)
 /* The polynomial of a facet of a list. Not collective, plain C. x[node][dim]: positions of the list's nodes (a length). */
 void PatchOfFacet(int dim, const Facet *facet, const double *x, Patch *patch)
 {
-  double X[FACE_MAX_NODES][3];
+  double      X[FACE_MAX_NODES][3];
   PatchSphere sphere;
 
   PatchGather(dim, facet, x, X);
@@ -244,8 +244,8 @@ void PatchNormal(const Patch *patch, const double xi[2], double normal[3])
   const double *at[2] = {xi, patch->domain->centre};
 
   for (int attempt = 0; attempt < 2; ++attempt) {
-    PatchLocal  l;
-    double length;
+    PatchLocal l;
+    double     length;
 
     PatchEvaluate(patch, at[attempt], &l);
     if (Degenerate(&l, patch->size, normal)) continue;
@@ -259,9 +259,9 @@ void PatchNormal(const Patch *patch, const double xi[2], double normal[3])
 /* Angle of the facet at a point (radians): of the corner, or half a turn. Not collective, plain C. */
 double PatchAngle(const Patch *patch, const PatchPoint *point)
 {
-  PatchLocal  l;
-  double t[2][3];
-  int    sides = 0;
+  PatchLocal l;
+  double     t[2][3];
+  int        sides = 0;
 
   if (!(point->active & (point->active - 1))) return M_PI;
   PatchEvaluate(patch, point->xi, &l);
@@ -452,7 +452,7 @@ static void Activate(const PatchDomain *domain, PatchPoint *point)
 void PatchClosest(const Patch *patch, PatchPoint *best)
 {
   static const double inside[PATCH_MAX_SIDES] = {0};
-  const PatchDomain       *domain            = patch->domain;
+  const PatchDomain  *domain                  = patch->domain;
   double              value[SAMPLES][SAMPLES], least = INFINITY;
 
   if (patch->flat) {
@@ -465,8 +465,8 @@ void PatchClosest(const Patch *patch, PatchPoint *best)
   Sample(patch, value);
   for (int i = 0; i < SAMPLES; ++i) {
     for (int j = 0; j < SampleColumns(domain, i); ++j) {
-      PatchPoint  point = {.active = 0};
-      double distance2;
+      PatchPoint point = {.active = 0};
+      double     distance2;
 
       if (!LocalMinimum(domain, value, i, j)) continue;
       SamplePoint(domain, i, j, point.xi);
@@ -486,11 +486,11 @@ void PatchClosest(const Patch *patch, PatchPoint *best)
 void PatchClassify(const Patch *patch, const PatchPoint *point, FootRegion *region, int *feature)
 {
   const PatchDomain *domain   = patch->domain;
-  const double  distance = sqrt(Dot(point->x, point->x)), tolerance = FACET_TIE * (patch->size + distance);
-  const int     apart = distance > FACET_TOUCHING * patch->size, last = domain->sides - 1;
-  const int     two_sides = (point->active & (point->active - 1)) != 0;
+  const double       distance = sqrt(Dot(point->x, point->x)), tolerance = FACET_TIE * (patch->size + distance);
+  const int          apart = distance > FACET_TOUCHING * patch->size, last = domain->sides - 1;
+  const int          two_sides = (point->active & (point->active - 1)) != 0;
   PatchLocal         l;
-  double        cross[3], G[2], tangential2, area2;
+  double             cross[3], G[2], tangential2, area2;
 
   PatchEvaluate(patch, point->xi, &l);
   *region  = FOOT_VERTEX;

@@ -1,5 +1,8 @@
 #include "probe.h"
+#include "contactedge.h"
+#include "freeedge.h"
 #include "refusal.h"
+#include "table.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -10,26 +13,17 @@ static const PetscReal POINT_TOLERANCE = 1e-6;
 static const PetscReal RING_TOLERANCE = 1e-6;
 enum { MESSAGE_SIZE = 2048 };
 
-/* A table that is the same on every rank: rows of reals, ascending by the first two columns */
-typedef struct {
-  PetscInt   n;
-  int        width;
-  PetscReal *row;
-} Table;
-
 /* Slave nodes of a pair, by node_id */
 enum { SLAVE_ID, SLAVE_REFERENCE, SLAVE_POSITION = SLAVE_REFERENCE + 3, SLAVE_AREA = SLAVE_POSITION + 3, SLAVE_PRESSURE, SLAVE_COLUMNS };
-/* Edges of slave faces, by the node_ids of their ends */
-enum { EDGE_LOW, EDGE_HIGH, EDGE_A, EDGE_B = EDGE_A + 3, EDGE_SYMMETRIC = EDGE_B + 3, EDGE_COLUMNS };
 
 typedef struct {
   const SceneProbe *scene;
   const MeshGroup  *group; /* reaction; slave surface of the pair */
   int               pair;
-  PetscInt          id[2];   /* node_id of the points */
-  PetscInt          node[2]; /* the local node on its owner, -1 elsewhere */
-  Table             free_edges;
-  PetscReal         face_size; /* mean, of the slave surface */
+  PetscInt          id[2];      /* node_id of the points */
+  PetscInt          node[2];    /* the local node on its owner, -1 elsewhere */
+  FreeEdges         free_edges; /* of the slave surface, NULL: not asked for */
+  PetscReal         face_size;  /* mean, of the slave surface */
   PetscReal         spacing;
 } Probe;
 
@@ -41,51 +35,15 @@ struct _n_Probes {
   Table *slaves; /* per pair, of the evaluation under way; row NULL: not asked for yet */
 };
 
+typedef enum { NAMES_NOTHING, NAMES_SURFACE, NAMES_PAIR } ProbeNames;
+
 typedef struct {
-  const char *key; /* that names the kind in the scene */
-  PetscErrorCode (*prepare)(Probes, Probe *, const char *key);
+  const char *key;   /* that names the kind in the scene */
+  ProbeNames  names; /* what the scene gives under that key */
+  int         points;
+  const char *points_key; /* what the scene gives them under */
   PetscErrorCode (*evaluate)(Probes, Probe *, PetscReal *);
 } ProbeType;
-
-/* Compares rows by their first two columns */
-static int RowCompare(const void *a, const void *b)
-{
-  const PetscReal *p = a, *q = b;
-
-  if (p[0] != q[0]) return p[0] < q[0] ? -1 : 1;
-  return (p[1] > q[1]) - (p[1] < q[1]);
-}
-
-/* Joins the ranks' rows; every rank gets the whole table. Collective. */
-static PetscErrorCode TableGather(MPI_Comm comm, int width, PetscInt n, const PetscReal *rows, Table *table)
-{
-  PetscMPIInt size, mine, total = 0, *count, *start;
-
-  PetscFunctionBeginUser;
-  PetscCallMPI(MPI_Comm_size(comm, &size));
-  PetscCall(PetscMPIIntCast(n * width, &mine));
-  PetscCall(PetscMalloc2(size, &count, size, &start));
-  PetscCallMPI(MPI_Allgather(&mine, 1, MPI_INT, count, 1, MPI_INT, comm));
-  for (PetscMPIInt r = 0; r < size; r++) {
-    start[r] = total;
-    total += count[r];
-  }
-  table->n     = total / width;
-  table->width = width;
-  PetscCall(PetscMalloc1(total + 1, &table->row)); /* never NULL, an empty table neither */
-  PetscCallMPI(MPI_Allgatherv(rows, mine, MPIU_REAL, table->row, count, start, MPIU_REAL, comm));
-  qsort(table->row, (size_t)table->n, (size_t)width * sizeof(PetscReal), RowCompare);
-  PetscCall(PetscFree2(count, start));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-static PetscErrorCode TableDestroy(Table *table)
-{
-  PetscFunctionBeginUser;
-  PetscCall(PetscFree(table->row));
-  table->n = 0;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
 
 /* "(1, 2, 3)" of dim coordinates; text belongs to the caller */
 static const char *PointText(int dim, const PetscReal *x, char text[128])
@@ -120,24 +78,12 @@ static PetscErrorCode ProbesLocalNode(Probes probes, PetscInt id, PetscInt *loca
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode ProbesFindBody(Probes probes, const Probe *probe, int *body)
+/* Index of the body that a probe names, -1 if it names none. The scene has made sure that there is one. */
+static int ProbesFindBody(Probes probes, const Probe *probe)
 {
-  const Scene scene               = probes->scene;
-  char        names[MESSAGE_SIZE] = "";
-
-  PetscFunctionBeginUser;
-  *body = -1;
-  if (!probe->scene->body) PetscFunctionReturn(PETSC_SUCCESS);
-  for (int b = 0; b < scene->n_bodies; b++) {
-    if (scene->bodies[b].rigid) continue;
-    if (!strcmp(scene->bodies[b].name, probe->scene->body)) *body = b;
-    PetscCall(PetscStrlcat(names, *names ? ", " : "", sizeof(names)));
-    PetscCall(PetscStrlcat(names, scene->bodies[b].name, sizeof(names)));
-  }
-  if (*body < 0)
-    PetscCall(RefuseInput(probes->model->mesh->comm, "%s: there is no volume \"%s\" among the bodies; allowed: %s",
-                          SceneWhere(scene, probe->scene->path, "body"), probe->scene->body, names));
-  PetscFunctionReturn(PETSC_SUCCESS);
+  for (int b = 0; probe->scene->body && b < probes->scene->n_bodies; b++)
+    if (!probes->scene->bodies[b].rigid && !strcmp(probes->scene->bodies[b].name, probe->scene->body)) return b;
+  return -1;
 }
 
 /* What this rank, then all ranks, know of the nodes around a point */
@@ -217,12 +163,10 @@ static PetscErrorCode ProbesFindNode(Probes probes, Probe *probe, const char *ke
   PetscInt        *at, bodies = 0;
   PetscReal        least;
   Nearby           nearby;
-  int              body;
 
   PetscFunctionBeginUser;
-  PetscCall(ProbesFindBody(probes, probe, &body));
   PetscCall(PetscCalloc1(probes->scene->n_bodies, &at));
-  ProbesLookAround(probes, point, within, body, &nearby, at);
+  ProbesLookAround(probes, point, within, ProbesFindBody(probes, probe), &nearby, at);
   PetscCallMPI(MPI_Allreduce(&nearby.distance, &least, 1, MPIU_REAL, MPI_MIN, comm));
   if (nearby.distance > least) nearby.nearest = PETSC_MAX_INT;
   nearby.distance = least;
@@ -238,27 +182,6 @@ static PetscErrorCode ProbesFindNode(Probes probes, Probe *probe, const char *ke
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The contact pair and its slave surface. Refuses an unknown name. Collective. */
-static PetscErrorCode ProbesFindPair(Probes probes, Probe *probe, const char *key)
-{
-  const Scene   scene               = probes->scene;
-  const Contact contact             = probes->model->contact;
-  char          names[MESSAGE_SIZE] = "";
-
-  PetscFunctionBeginUser;
-  probe->pair = contact ? ContactFindPair(contact, probe->scene->target) : -1;
-  if (probe->pair < 0) {
-    for (int p = 0; p < scene->n_contacts; p++) {
-      PetscCall(PetscStrlcat(names, p ? ", " : "", sizeof(names)));
-      PetscCall(PetscStrlcat(names, scene->contacts[p].name, sizeof(names)));
-    }
-    PetscCall(RefuseInput(probes->model->mesh->comm, "%s: there is no contact pair \"%s\"; allowed: %s", SceneWhere(scene, probe->scene->path, key),
-                          probe->scene->target, *names ? names : "none, the scene has no contact"));
-  }
-  PetscCall(ContactPairSurface(contact, probe->pair, &probe->group, &probe->face_size));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* Is a reference coordinate the one that `at` asks for? */
 static PetscBool ProbeIsAt(Probes probes, const Probe *probe, PetscReal coordinate)
 {
@@ -270,24 +193,25 @@ static PetscBool ProbeIsAt(Probes probes, const Probe *probe, PetscReal coordina
 /* Refuses a value of `at` that no slave node has: names the nearest one. Collective. */
 static PetscErrorCode ProbesCheckAt(Probes probes, const Probe *probe)
 {
-  const Mesh mesh     = probes->model->mesh;
-  const int  axis     = probe->scene->at_axis;
-  PetscReal  sides[2] = {PETSC_MAX_REAL, PETSC_MAX_REAL}; /* distance to the nearest node below, above */
+  const Mesh      mesh     = probes->model->mesh;
+  const int       axis     = probe->scene->at_axis;
+  const PetscReal asked    = probe->scene->at_value;
+  PetscReal       sides[2] = {PETSC_MAX_REAL, PETSC_MAX_REAL}; /* distance to the nearest node below, above */
 
   PetscFunctionBeginUser;
   if (!probe->scene->has_at) PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscInt k = 0; k < probe->group->n_nodes; k++) {
-    const PetscReal x = mesh->coords[probe->group->nodes[k] * mesh->dim + axis] + mesh->centre[axis] - probe->scene->at_value;
+    const PetscReal x = mesh->coords[probe->group->nodes[k] * mesh->dim + axis] + mesh->centre[axis] - asked;
 
     sides[x > 0.0] = PetscMin(sides[x > 0.0], PetscAbsReal(x));
   }
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sides, 2, MPIU_REAL, MPI_MIN, mesh->comm));
   if (PetscMin(sides[0], sides[1]) > POINT_TOLERANCE * mesh->size) {
-    const PetscReal nearest = probe->scene->at_value + (sides[0] < sides[1] ? -sides[0] : sides[1]);
+    const PetscReal nearest = asked + (sides[0] < sides[1] ? -sides[0] : sides[1]);
 
     PetscCall(RefuseInput(mesh->comm,
                           "%s: no node of the slave surface \"%s\" has the reference coordinate %c = %.9g; allowed: a node's coordinate, the nearest is %.9g",
-                          SceneWhere(probes->scene, probe->scene->path, "at"), probe->group->name, "xyz"[axis], probe -> scene -> at_value, (double)nearest));
+                          SceneWhere(probes->scene, probe->scene->path, "at"), probe->group->name, "xyz"[axis], (double)asked, (double)nearest));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -322,133 +246,15 @@ static PetscErrorCode ProbesGetSlaves(Probes probes, int pair, const Table **tab
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Are all the corners on one of the planes beyond which the pair continues as its mirror image (the axis of revolution is one)? */
-static PetscErrorCode ProbesOnSymmetry(Probes probes, const SceneContact *contact, int n, const PetscInt *nodes, PetscBool *on)
-{
-  const Mesh mesh = probes->model->mesh;
-  MeshGroup *plane;
-
-  PetscFunctionBeginUser;
-  *on = probes->scene->geometry == GEOMETRY_AXISYMMETRIC ? PETSC_TRUE : PETSC_FALSE;
-  for (int i = 0; i < n && *on; i++)
-    if (PetscAbsReal(mesh->coords[nodes[i] * mesh->dim] + mesh->centre[0]) > POINT_TOLERANCE * mesh->size) *on = PETSC_FALSE;
-  for (int s = 0; s < contact->n_symmetry && !*on; s++) {
-    PetscCall(MeshGetGroup(mesh, probes->scene, contact->path, "symmetry", contact->symmetry[s], mesh->dim - 1, &plane));
-    *on = PETSC_TRUE;
-    for (int i = 0; i < n && *on; i++) {
-      PetscInt place;
-
-      PetscCall(PetscFindInt(nodes[i], plane->n_nodes, plane->nodes, &place));
-      if (place < 0) *on = PETSC_FALSE;
-    }
-  }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* One row of the table of face edges: in 3D an edge by its two ends, in 2D an end of the face (twice the same node) */
-static PetscErrorCode ProbesFillEdge(Probes probes, const SceneContact *contact, PetscInt a, PetscInt b, PetscReal *row)
-{
-  const Mesh     mesh     = probes->model->mesh;
-  const PetscInt nodes[2] = {a, b};
-  PetscBool      symmetric;
-
-  PetscFunctionBeginUser;
-  PetscCall(ProbesOnSymmetry(probes, contact, 2, nodes, &symmetric));
-  row[EDGE_LOW]  = (PetscReal)PetscMin(mesh->node_id[a], mesh->node_id[b]);
-  row[EDGE_HIGH] = (PetscReal)PetscMax(mesh->node_id[a], mesh->node_id[b]);
-  for (int i = 0; i < mesh->dim; i++) {
-    row[EDGE_A + i] = mesh->coords[a * mesh->dim + i] + mesh->centre[i];
-    row[EDGE_B + i] = mesh->coords[b * mesh->dim + i] + mesh->centre[i];
-  }
-  row[EDGE_SYMMETRIC] = symmetric ? 1.0 : 0.0;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* All edges of the slave faces, once per face they belong to. Collective. */
-static PetscErrorCode ProbesGatherEdges(Probes probes, const Probe *probe, Table *edges)
-{
-  const Mesh          mesh    = probes->model->mesh;
-  const SceneContact *contact = &probes->scene->contacts[probe->pair];
-  const PetscInt      room    = probe->group->n_faces * 4; /* a quadrilateral's */
-  PetscInt            nodes[FACE_MAX_NODES], n = 0;
-  PetscReal          *rows;
-
-  PetscFunctionBeginUser;
-  PetscCall(PetscCalloc1(room * EDGE_COLUMNS, &rows));
-  for (PetscInt f = 0; f < probe->group->n_faces; f++) {
-    const Element *face = ElementGet(MeshFaceNodes(mesh, probe->group, f, nodes));
-
-    if (mesh->dim == 2) {
-      for (int end = 0; end < 2; end++) PetscCall(ProbesFillEdge(probes, contact, nodes[end], nodes[end], &rows[n++ * EDGE_COLUMNS]));
-    } else {
-      for (int e = 0; e < face->edges; e++) {
-        const int *ends = face->edge_corners[e];
-
-        PetscCall(ProbesFillEdge(probes, contact, nodes[ends[0]], nodes[ends[1]], &rows[n++ * EDGE_COLUMNS]));
-      }
-    }
-  }
-  PetscCall(TableGather(mesh->comm, EDGE_COLUMNS, n, rows, edges));
-  PetscCall(PetscFree(rows));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Free edges belong to one face of the surface only and are on no symmetry plane. Collective. */
-static PetscErrorCode ProbesFindFreeEdges(Probes probes, Probe *probe)
-{
-  Table   *edges = &probe->free_edges;
-  PetscInt kept  = 0;
-
-  PetscFunctionBeginUser;
-  PetscCall(ProbesGatherEdges(probes, probe, edges));
-  for (PetscInt i = 0, next; i < edges->n; i = next) {
-    const PetscReal *row = &edges->row[i * EDGE_COLUMNS];
-
-    for (next = i + 1; next < edges->n && !RowCompare(row, &edges->row[next * EDGE_COLUMNS]); next++) {}
-    if (next > i + 1 || row[EDGE_SYMMETRIC] > 0.0) continue;
-    PetscCall(PetscArraymove(&edges->row[kept++ * EDGE_COLUMNS], row, EDGE_COLUMNS));
-  }
-  edges->n = kept;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-static PetscReal DistanceToEdge(const PetscReal *x, const PetscReal *a, const PetscReal *b)
-{
-  PetscReal along = 0.0, length = 0.0, square = 0.0;
-
-  for (int i = 0; i < 3; i++) {
-    along += (x[i] - a[i]) * (b[i] - a[i]);
-    length += PetscSqr(b[i] - a[i]);
-  }
-  along = length > 0.0 ? PetscClipInterval(along / length, 0.0, 1.0) : 0.0;
-  for (int i = 0; i < 3; i++) square += PetscSqr(x[i] - a[i] - along * (b[i] - a[i]));
-  return PetscSqrtReal(square);
-}
-
-/* Does pressure_deviation keep this slave node? */
+/* Does the probe keep this slave node? */
 static PetscBool ProbeKeeps(const Probe *probe, const PetscReal *slave)
 {
-  PetscReal least = PETSC_MAX_REAL;
   PetscBool near;
 
-  if (!probe->scene->edge_filter) return PETSC_TRUE;
-  for (PetscInt e = 0; e < probe->free_edges.n; e++) {
-    const PetscReal *edge = &probe->free_edges.row[e * EDGE_COLUMNS];
-
-    least = PetscMin(least, DistanceToEdge(&slave[SLAVE_REFERENCE], &edge[EDGE_A], &edge[EDGE_B]));
-  }
-  near = least <= (probe->scene->edge_faces + RING_TOLERANCE) * probe->face_size ? PETSC_TRUE : PETSC_FALSE;
+  if (!probe->free_edges) return PETSC_TRUE;
+  near =
+    FreeEdgesDistance(probe->free_edges, &slave[SLAVE_REFERENCE]) <= (probe->scene->edge_faces + RING_TOLERANCE) * probe->face_size ? PETSC_TRUE : PETSC_FALSE;
   return (probe->scene->edge_filter == 2) == near ? PETSC_TRUE : PETSC_FALSE;
-}
-
-static PetscErrorCode PrepareReaction(Probes probes, Probe *probe, const char *key)
-{
-  MeshGroup *group;
-
-  PetscFunctionBeginUser;
-  PetscCall(MeshGetGroup(probes->model->mesh, probes->scene, probe->scene->path, key, probe->scene->target, probes->model->mesh->dim, &group));
-  probe->group = group;
-  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 static PetscErrorCode EvaluateReaction(Probes probes, Probe *probe, PetscReal *value)
@@ -458,13 +264,6 @@ static PetscErrorCode EvaluateReaction(Probes probes, Probe *probe, PetscReal *v
   PetscFunctionBeginUser;
   PetscCall(ModelReaction(probes->model, probe->group, force));
   *value = force[probe->scene->component];
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-static PetscErrorCode PrepareContactForce(Probes probes, Probe *probe, const char *key)
-{
-  PetscFunctionBeginUser;
-  PetscCall(ProbesFindPair(probes, probe, key));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -478,26 +277,12 @@ static PetscErrorCode EvaluateContactForce(Probes probes, Probe *probe, PetscRea
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode PrepareDisplacement(Probes probes, Probe *probe, const char *key)
-{
-  PetscFunctionBeginUser;
-  PetscCall(ProbesFindNode(probes, probe, key, 0, NULL));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 static PetscErrorCode EvaluateDisplacement(Probes probes, Probe *probe, PetscReal *value)
 {
   const Model model = probes->model;
 
   PetscFunctionBeginUser;
   PetscCall(ProbesShare(probes, probe->node[0], 1, &model->u[PetscMax(probe->node[0], 0) * model->mesh->dim + probe->scene->component], value));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-static PetscErrorCode PrepareDistance(Probes probes, Probe *probe, const char *key)
-{
-  PetscFunctionBeginUser;
-  for (int i = 0; i < 2; i++) PetscCall(ProbesFindNode(probes, probe, key, i, NULL));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -524,14 +309,6 @@ static PetscErrorCode EvaluateDistance(Probes probes, Probe *probe, PetscReal *v
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode PrepareGap(Probes probes, Probe *probe, const char *key)
-{
-  PetscFunctionBeginUser;
-  PetscCall(ProbesFindPair(probes, probe, key));
-  PetscCall(ProbesFindNode(probes, probe, "at", 0, probe->group));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 static PetscErrorCode EvaluateGap(Probes probes, Probe *probe, PetscReal *value)
 {
   const Model model = probes->model;
@@ -541,51 +318,66 @@ static PetscErrorCode EvaluateGap(Probes probes, Probe *probe, PetscReal *value)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode PrepareContactEdge(Probes probes, Probe *probe, const char *key)
+/* Where the slave surface ends along a contact edge's axis, min and max, on the line of nodes that `at` picks. Collective. */
+static PetscErrorCode ProbesLineEnds(Probes probes, const Probe *probe, PetscReal ends[2])
 {
+  const Mesh        mesh  = probes->model->mesh;
+  const SceneProbe *scene = probe->scene;
+
   PetscFunctionBeginUser;
-  PetscCall(ProbesFindPair(probes, probe, key));
-  if (probes->model->mesh->dim == 3 && !probe->scene->has_at)
-    PetscCall(RefuseInput(probes->model->mesh->comm,
-                          "%s: a contact edge in 3D needs a line of nodes: \"at\" is missing; allowed: at: {z: 0} or another coordinate",
-                          SceneWhere(probes->scene, probe->scene->path, key)));
-  PetscCall(ProbesCheckAt(probes, probe));
+  ends[0] = ends[1] = -PETSC_MAX_REAL; /* of -x and x */
+  for (PetscInt k = 0; k < probe->group->n_nodes; k++) {
+    const PetscInt  node = probe->group->nodes[k] * mesh->dim;
+    const PetscReal x    = mesh->coords[node + scene->axis] + mesh->centre[scene->axis] + probes->model->u[node + scene->axis];
+
+    if (scene->has_at && !ProbeIsAt(probes, probe, mesh->coords[node + scene->at_axis] + mesh->centre[scene->at_axis])) continue;
+    ends[0] = PetscMax(ends[0], -x);
+    ends[1] = PetscMax(ends[1], x);
+  }
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, ends, 2, MPIU_REAL, MPI_MAX, mesh->comm));
+  ends[0] = -ends[0];
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Second-order nodes at the end of the line may carry no area (corners of triangles, the node on the axis of revolution): they have no
+   pressure of their own and go with the last node that has one. */
 static PetscErrorCode EvaluateContactEdge(Probes probes, Probe *probe, PetscReal *value)
 {
   const Table *slaves;
-  PetscReal   *line; /* position and pressure of the nodes on the line */
+  PetscReal   *line, ends[2]; /* line: position and pressure of the nodes on it, from row 1 on */
   double      *x, *p;
-  int          n = 0;
+  int          n = 0, first = 1;
 
   PetscFunctionBeginUser;
   PetscCall(ProbesGetSlaves(probes, probe->pair, &slaves));
-  PetscCall(PetscMalloc3(slaves->n * 2, &line, slaves->n, &x, slaves->n, &p));
+  PetscCall(ProbesLineEnds(probes, probe, ends));
+  PetscCall(PetscMalloc3((slaves->n + 2) * 2, &line, slaves->n + 2, &x, slaves->n + 2, &p));
   for (PetscInt k = 0; k < slaves->n; k++) {
     const PetscReal *slave = &slaves->row[k * SLAVE_COLUMNS];
 
     if (probe->scene->has_at && !ProbeIsAt(probes, probe, slave[SLAVE_REFERENCE + probe->scene->at_axis])) continue;
+    n++;
     line[2 * n]     = slave[SLAVE_POSITION + probe->scene->axis];
     line[2 * n + 1] = slave[SLAVE_PRESSURE];
+  }
+  qsort(&line[2], (size_t)n, 2 * sizeof(PetscReal), TableCompare);
+  if (n && ends[1] > line[2 * n]) {
+    line[2 * n + 2] = ends[1];
+    line[2 * n + 3] = line[2 * n + 1];
     n++;
   }
-  qsort(line, (size_t)n, 2 * sizeof(PetscReal), RowCompare);
+  if (n && ends[0] < line[2]) {
+    line[0] = ends[0];
+    line[1] = line[3];
+    first   = 0;
+    n++;
+  }
   for (int k = 0; k < n; k++) {
-    x[k] = line[2 * k];
-    p[k] = line[2 * k + 1];
+    x[k] = line[2 * (first + k)];
+    p[k] = line[2 * (first + k) + 1];
   }
   *value = ContactEdge(n, x, p, probe->scene->max_side, &probe->spacing);
   PetscCall(PetscFree3(line, x, p));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-static PetscErrorCode PreparePressure(Probes probes, Probe *probe, const char *key)
-{
-  PetscFunctionBeginUser;
-  PetscCall(ProbesFindPair(probes, probe, key));
-  PetscCall(ProbesCheckAt(probes, probe));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -633,14 +425,6 @@ static PetscErrorCode EvaluatePressureMean(Probes probes, Probe *probe, PetscRea
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode PreparePressureDeviation(Probes probes, Probe *probe, const char *key)
-{
-  PetscFunctionBeginUser;
-  PetscCall(ProbesFindPair(probes, probe, key));
-  if (probe->scene->edge_filter) PetscCall(ProbesFindFreeEdges(probes, probe));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 static PetscErrorCode EvaluatePressureDeviation(Probes probes, Probe *probe, PetscReal *value)
 {
   const Table *slaves;
@@ -662,42 +446,37 @@ static PetscErrorCode EvaluatePressureDeviation(Probes probes, Probe *probe, Pet
 }
 
 static const ProbeType types[PROBE_KINDS] = {
-  [PROBE_REACTION]           = {"reaction",           PrepareReaction,          EvaluateReaction         },
-  [PROBE_CONTACT_FORCE]      = {"contact_force",      PrepareContactForce,      EvaluateContactForce     },
-  [PROBE_DISPLACEMENT]       = {"displacement",       PrepareDisplacement,      EvaluateDisplacement     },
-  [PROBE_DISTANCE]           = {"distance",           PrepareDistance,          EvaluateDistance         },
-  [PROBE_GAP]                = {"gap",                PrepareGap,               EvaluateGap              },
-  [PROBE_CONTACT_EDGE]       = {"contact_edge",       PrepareContactEdge,       EvaluateContactEdge      },
-  [PROBE_PRESSURE_MAX]       = {"pressure_max",       PreparePressure,          EvaluatePressureMax      },
-  [PROBE_PRESSURE_MEAN]      = {"pressure_mean",      PreparePressure,          EvaluatePressureMean     },
-  [PROBE_PRESSURE_DEVIATION] = {"pressure_deviation", PreparePressureDeviation, EvaluatePressureDeviation},
+  [PROBE_REACTION]           = {"reaction",           NAMES_SURFACE, 0, NULL,           EvaluateReaction         },
+  [PROBE_CONTACT_FORCE]      = {"contact_force",      NAMES_PAIR,    0, NULL,           EvaluateContactForce     },
+  [PROBE_DISPLACEMENT]       = {"displacement",       NAMES_NOTHING, 1, "displacement", EvaluateDisplacement     },
+  [PROBE_DISTANCE]           = {"distance",           NAMES_NOTHING, 2, "distance",     EvaluateDistance         },
+  [PROBE_GAP]                = {"gap",                NAMES_PAIR,    1, "at",           EvaluateGap              },
+  [PROBE_CONTACT_EDGE]       = {"contact_edge",       NAMES_PAIR,    0, NULL,           EvaluateContactEdge      },
+  [PROBE_PRESSURE_MAX]       = {"pressure_max",       NAMES_PAIR,    0, NULL,           EvaluatePressureMax      },
+  [PROBE_PRESSURE_MEAN]      = {"pressure_mean",      NAMES_PAIR,    0, NULL,           EvaluatePressureMean     },
+  [PROBE_PRESSURE_DEVIATION] = {"pressure_deviation", NAMES_PAIR,    0, NULL,           EvaluatePressureDeviation},
 };
 
-/*
-  ContactEdge - Coordinate at which contact ends along a line of nodes. Plain C, not collective.
-
-  Input: n nodes, x[n] ascending coordinates (length), p[n] nodal pressures (p > 0: loaded), max_side (1: the end at large x, 0: at small x).
-  Output: spacing (length) between the last loaded and the next open node: the resolution of the answer.
-  Source: Hertz's pressure is p_0 sqrt(1 - (x/a)^2) (Johnson, "Contact Mechanics", ch. 4), so p^2 has a simple zero at the edge.
-*/
-double ContactEdge(int n, const double *x, const double *p, int max_side, double *spacing)
+/* Resolves what a probe's kind refers to. Collective. */
+static PetscErrorCode ProbesPrepare(Probes probes, Probe *probe)
 {
-  const int outward = max_side ? 1 : -1, end = max_side ? n - 1 : 0;
-  int       last = end, inner, open;
-  double    fall;
+  const Mesh        mesh  = probes->model->mesh;
+  const SceneProbe *scene = probe->scene;
+  const ProbeType  *type  = &types[scene->kind];
+  MeshGroup        *surface;
 
-  *spacing = NAN;
-  while (last >= 0 && last < n && !(p[last] > 0.0)) last -= outward;
-  if (last < 0 || last >= n) return NAN;
-  *spacing = 0.0;
-  if (last == end) return x[last];
-  open     = last + outward;
-  inner    = last - outward;
-  *spacing = fabs(x[open] - x[last]);
-  if (inner < 0 || inner >= n || !(p[inner] > 0.0)) return 0.5 * (x[last] + x[open]);
-  fall = p[inner] * p[inner] - p[last] * p[last];
-  if (!(fall > 0.0)) return x[open];
-  return x[last] + outward * fmin(*spacing, p[last] * p[last] / fall * fabs(x[last] - x[inner]));
+  PetscFunctionBeginUser;
+  if (type->names == NAMES_SURFACE) {
+    PetscCall(MeshGetGroup(mesh, probes->scene, scene->path, type->key, scene->target, mesh->dim, &surface));
+    probe->group = surface;
+  } else if (type->names == NAMES_PAIR) {
+    probe->pair = ContactFindPair(probes->model->contact, scene->target); /* the scene has made sure that there is one */
+    PetscCall(ContactPairSurface(probes->model->contact, probe->pair, &probe->group, &probe->face_size));
+    PetscCall(ProbesCheckAt(probes, probe));
+    if (scene->edge_filter) PetscCall(FreeEdgesCreate(mesh, probes->scene, &probes->scene->contacts[probe->pair], probe->group, &probe->free_edges));
+  }
+  for (int i = 0; i < type->points; i++) PetscCall(ProbesFindNode(probes, probe, type->points_key, i, type->names == NAMES_PAIR ? probe->group : NULL));
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* The body of every local node, by its cells: bodies share no nodes */
@@ -731,12 +510,8 @@ PetscErrorCode ProbesCreate(Model model, Scene scene, Probes *result)
   PetscCall(PetscCalloc1(scene->n_contacts, &probes->slaves));
   PetscCall(ProbesFindNodeBodies(probes));
   for (int i = 0; i < scene->n_probes; i++) {
-    Probe           *probe = &probes->probe[i];
-    const ProbeType *type  = &types[scene->probes[i].kind];
-
-    probe->scene   = &scene->probes[i];
-    probe->spacing = NAN;
-    PetscCall(type->prepare(probes, probe, type->key));
+    probes->probe[i] = (Probe){.scene = &scene->probes[i], .spacing = NAN};
+    PetscCall(ProbesPrepare(probes, &probes->probe[i]));
   }
   PetscCall(PetscFree(probes->node_body));
   *result = probes;
@@ -748,7 +523,7 @@ PetscErrorCode ProbesDestroy(Probes *probes)
 {
   PetscFunctionBeginUser;
   if (!*probes) PetscFunctionReturn(PETSC_SUCCESS);
-  for (int i = 0; i < (*probes)->scene->n_probes; i++) PetscCall(TableDestroy(&(*probes)->probe[i].free_edges));
+  for (int i = 0; i < (*probes)->scene->n_probes; i++) PetscCall(FreeEdgesDestroy(&(*probes)->probe[i].free_edges));
   PetscCall(PetscFree((*probes)->probe));
   PetscCall(PetscFree((*probes)->slaves));
   PetscCall(PetscFree(*probes));

@@ -12,7 +12,7 @@ static void FaceCoordinates(ContactSurface surface, const Facet *face, const Pet
 
   for (int a = 0; a < ElementGet(face->type)->nodes; a++) {
     for (int d = 0; d < mesh->dim; d++) {
-      X[a * mesh->dim + d] = coords[face->nodes[a] * mesh->dim + d] + (u ? u[face->nodes[a] * mesh->dim + d] : 0) + (d == 0 ? mesh->centre[0] : 0);
+      X[a * mesh->dim + d] = coords[face->nodes[a] * mesh->dim + d] + (u ? u[face->nodes[a] * mesh->dim + d] : 0);
     }
   }
 }
@@ -71,8 +71,7 @@ static PetscReal FaceStiffness(ContactSurface surface, Elasticity elasticity, Pe
   const Element *e    = ElementGet(mesh->cell_type[c]);
   double         X[ELEMENT_MAX_NODES * 3], volume;
 
-  for (int a = 0; a < e->nodes; a++)
-    for (int d = 0; d < mesh->dim; d++) X[a * mesh->dim + d] = mesh->coords[mesh->cell_nodes[mesh->cell_ptr[c] + a] * mesh->dim + d];
+  MeshCellCoordinates(mesh, c, X);
   volume = CellVolume(mesh->cell_type[c], mesh->dim, mesh->dim == 3 ? GEOMETRY_SOLID : GEOMETRY_PLANE_STRAIN, X);
   return ElasticityCellModulus(elasticity, c) * area / (volume * (e->corners == e->dim + 1 ? e->dim : 1));
 }

@@ -2,7 +2,7 @@
  * refused in words. */
 #include "mesh.h"
 #include "elementkernel.h"
-#include "gmsh.h"
+#include "gmshfile.h"
 #include "refusal.h"
 #include <math.h>
 #include <setjmp.h>
@@ -141,11 +141,11 @@ static double Sum(double value)
 /* Nodes and cells carry the tags, places and node order of the file, ids go by tags, owners know their nodes. */
 static void CheckAgainstFile(Mesh mesh, const char *file)
 {
-  GmshMesh    gmsh;
-  GmshMessage message = {""};
-  PetscInt    ids     = 0;
+  GmshMesh  gmsh;
+  Complaint complaint = {""};
+  PetscInt  ids       = 0;
 
-  assert_int_equal(GmshRead(file, &gmsh, &message), 0);
+  assert_int_equal(GmshRead(file, &gmsh, &complaint), 0);
   for (PetscInt i = 0; i < mesh->n_nodes; i++) {
     PetscInt at;
 
@@ -206,7 +206,15 @@ static PetscBool OnGroup(const char *name, const double x[3])
   if (!strcmp(name, "top")) return fabs(x[2] - height) < near;
   if (!strcmp(name, "edge")) return fabs(r - 2) < near && fabs(x[2]) < near;
   if (!strcmp(name, "corner")) return fabs(x[0] - 1) < near && fabs(x[1]) < near && fabs(x[2]) < near;
-  return !strcmp(name, "ring");
+  if (!strcmp(name, "boundary")) return fabs(x[0] - 2) < near || fabs(x[1]) < near || fabs(x[1] - 1) < near;
+  if (!strcmp(name, "middle")) return fabs(x[0] - 1) < near;
+  if (!strcmp(name, "hexes")) return x[0] < 1.25;
+  if (!strcmp(name, "tets")) return x[0] > 1.25;
+  if (!strcmp(name, "outside")) {
+    return fabs(x[0] - 1) < near || fabs(x[0] - 1.5) < near || fabs(x[0] - 2.5) < near || fabs(x[1]) < near || fabs(x[1] - 1) < near || fabs(x[2]) < near ||
+           fabs(x[2] - 1) < near;
+  }
+  return !strcmp(name, "ring") || !strcmp(name, "both");
 }
 
 /* Every rank lists exactly the nodes that lie on the group, also those whose face of the group is another rank's; middle nodes lie on the arc. */
@@ -236,14 +244,13 @@ static double Volume(Mesh mesh)
   for (PetscInt c = 0; c < mesh->n_cells; c++) {
     double X[ELEMENT_MAX_NODES * 3];
 
-    for (PetscInt k = mesh->cell_ptr[c]; k < mesh->cell_ptr[c + 1]; k++)
-      for (int d = 0; d < mesh->dim; d++) X[(k - mesh->cell_ptr[c]) * mesh->dim + d] = mesh->coords[mesh->cell_nodes[k] * mesh->dim + d];
+    MeshCellCoordinates(mesh, c, X);
     volume += CellVolume(mesh->cell_type[c], mesh->dim, mesh->dim == 3 ? GEOMETRY_SOLID : GEOMETRY_PLANE_STRAIN, X);
   }
   return Sum(volume);
 }
 
-/* Divergence theorem: the flux of x through the boundary, normals outward, is dim times the volume; "cuts" repeats two surfaces. */
+/* Divergence theorem: the flux of x through the boundary, normals outward, is dim times the volume; "cuts" repeats two surfaces, "middle" is inside. */
 static double Flux(Mesh mesh, PetscInt *n_faces)
 {
   double flux = 0;
@@ -252,14 +259,13 @@ static double Flux(Mesh mesh, PetscInt *n_faces)
   for (int g = 0; g < mesh->n_groups; g++) {
     const MeshGroup *group = &mesh->groups[g];
 
-    if (group->dim != mesh->dim - 1 || !strcmp(group->name, "cuts")) continue;
+    if (group->dim != mesh->dim - 1 || !strcmp(group->name, "cuts") || !strcmp(group->name, "middle")) continue;
     for (PetscInt f = 0; f < group->n_faces; f++) {
       PetscInt          nodes[FACE_MAX_NODES];
       const ElementType type = MeshFaceNodes(mesh, group, f, nodes);
       double            X[FACE_MAX_NODES * 3], area[FACE_MAX_NODES] = {0}, normal[FACE_MAX_NODES * 3] = {0};
 
-      for (int k = 0; k < ElementGet(type)->nodes; k++)
-        for (int d = 0; d < mesh->dim; d++) X[k * mesh->dim + d] = mesh->coords[nodes[k] * mesh->dim + d];
+      MeshGatherNodes(mesh, ElementGet(type)->nodes, nodes, mesh->coords, X);
       FaceAreaKernel(type, mesh->dim, mesh->dim == 3 ? GEOMETRY_SOLID : GEOMETRY_PLANE_STRAIN, X, area, normal);
       for (int k = 0; k < ElementGet(type)->nodes * mesh->dim; k++) flux += X[k] * normal[k];
     }
@@ -341,7 +347,8 @@ static void CheckDofs(Mesh mesh, Scene scene)
   assert_int_equal(PetscFree2(u, ones), 0);
 }
 
-static void CheckReport(Mesh mesh, Scene scene)
+/* The report has these words, on rank 0 only, and its columns stand in line: every number of a column ends where the heading ends. */
+static void CheckReport(Mesh mesh, Scene scene, const char *body, const char *cells)
 {
   char  text[2048] = "";
   FILE *stream     = tmpfile();
@@ -352,9 +359,15 @@ static void CheckReport(Mesh mesh, Scene scene)
   if (fread(text, 1, sizeof(text) - 1, stream) && rank) fail_msg("rank %d printed", rank);
   fclose(stream);
   if (rank) return;
-  assert_non_null(strstr(text, "body ring: "));
-  assert_non_null(strstr(text, "surface outer: "));
-  assert_true(!!strstr(text, "partition by metis") == (size > 1));
+  const char *heading = strstr(text, "         body"), *line = strstr(text, body), *faces = strstr(text, "         surface");
+
+  assert_true(heading && line && faces && strstr(line, cells));
+  for (const char *start = line; line > text && line[-1] != '\n';) line = --start;
+  assert_int_equal(strstr(heading, "volume") + 6 - heading, strstr(faces, "area") + 4 - faces);
+  assert_int_equal(line[strstr(heading, "nodes") + 5 - heading], ' ');
+  assert_int_equal(line[strstr(heading, "in cell") + 7 - heading], ' ');
+  assert_int_equal(strstr(line, cells) - line, strstr(heading, "cells") - heading);
+  assert_true(!!strstr(text, "parts    metis: ") == (size > 1));
 }
 
 static void test_elements(void **state)
@@ -374,7 +387,7 @@ static void test_elements(void **state)
   for (size_t t = 0; t < sizeof(cases) / sizeof(*cases); t++) {
     const Case *test  = &cases[t];
     Scene       scene = RingScene(test);
-    char        file[PETSC_MAX_PATH_LEN];
+    char        file[PETSC_MAX_PATH_LEN], cells_text[64];
     Mesh        mesh = MakeMesh(scene, file);
     const int   n = ROUND * test->order + 1, m = ACROSS * test->order + 1, cells = ROUND * ACROSS * (test->blocks ? 1 : test->solid ? 6 : 2);
     const int   around = 2 * (ROUND + ACROSS) * (test->solid && !test->blocks ? 2 : 1), plane = test->solid ? 2 * ROUND * ACROSS * (test->blocks ? 1 : 2) : 0;
@@ -393,12 +406,170 @@ static void test_elements(void **state)
     CheckGroupNodes(mesh);
     CheckDofs(mesh, scene);
     assert_int_equal(MeshCheckQuality(mesh, scene), 0);
-    CheckReport(mesh, scene);
+    snprintf(cells_text, sizeof(cells_text), "%d %s\n", cells, test->element);
+    CheckReport(mesh, scene, "ring ", cells_text);
     assert_string_equal(mesh->partition.tool, size > 1 ? "metis" : "none");
     assert_true(mesh->partition.imbalance_cells >= 1 && (size == 1 || mesh->partition.edge_cut > 0));
     assert_int_equal(MeshDestroy(&mesh), 0);
     assert_int_equal(SceneDestroy(&scene), 0);
   }
+}
+
+/* ------------------------------------------------------------------------------------------- cell types in one mesh */
+
+/* Two squares of one body, quadrangles and triangles, that share their middle: 3 cells along each side */
+static const char *const quads_and_triangles =
+  "Point(1) = {0, 0, 0}; Point(2) = {1, 0, 0}; Point(3) = {2, 0, 0}; Point(4) = {2, 1, 0}; Point(5) = {1, 1, 0}; Point(6) = {0, 1, 0};\n"
+  "Line(1) = {1, 2}; Line(2) = {2, 3}; Line(3) = {3, 4}; Line(4) = {4, 5}; Line(5) = {5, 6}; Line(6) = {6, 1}; Line(7) = {2, 5};\n"
+  "Curve Loop(1) = {1, 7, 5, 6}; Plane Surface(1) = {1}; Curve Loop(2) = {2, 3, 4, -7}; Plane Surface(2) = {2};\n"
+  "Transfinite Curve{1:7} = 4; Transfinite Surface{1:2}; Recombine Surface{1};\n"
+  "Physical Surface(\"both\") = {1, 2};\n"
+  "Physical Curve(\"cut_x\") = {6}; Physical Curve(\"boundary\") = {1:5}; Physical Curve(\"middle\") = {7};\n";
+
+/* Two cubes, bodies that touch nowhere: hexahedra and tetrahedra, 2 layers of 2 x 2 */
+static const char *const hexes_and_tets =
+  "For k In {0:1}\n"
+  "  a = 10 * k; x = 1.5 * k;\n"
+  "  Point(a + 1) = {x, 0, 0}; Point(a + 2) = {x + 1, 0, 0}; Point(a + 3) = {x + 1, 1, 0}; Point(a + 4) = {x, 1, 0};\n"
+  "  Line(a + 1) = {a + 1, a + 2}; Line(a + 2) = {a + 2, a + 3}; Line(a + 3) = {a + 3, a + 4}; Line(a + 4) = {a + 4, a + 1};\n"
+  "  Curve Loop(a + 1) = {a + 1, a + 2, a + 3, a + 4}; Plane Surface(a + 1) = {a + 1};\n"
+  "  Transfinite Curve{a + 1, a + 2, a + 3, a + 4} = 3; Transfinite Surface{a + 1};\n"
+  "EndFor\n"
+  "Recombine Surface{1};\n"
+  "v[] = Extrude{0, 0, 1} { Surface{1}; Layers{2}; Recombine; };\n"
+  "w[] = Extrude{0, 0, 1} { Surface{11}; Layers{2}; };\n"
+  "Physical Volume(\"hexes\") = {v[1]}; Physical Volume(\"tets\") = {w[1]}; Physical Surface(\"cut_x\") = {v[5]};\n"
+  "Physical Surface(\"outside\") = {1, v[0], v[2], v[3], v[4], 11, w[0], w[2], w[3], w[4], w[5]};\n";
+
+typedef struct {
+  const char *name, *geometry, *geo, *bodies, *loaded;
+  int         order;
+  ElementType type[2];
+  int         body[2], cells[2], nodes, faces; /* body and number of cells of each type */
+  const char *row[2], *report[2];              /* line of the report, and its cells */
+} Mixed;
+
+static Scene MixedScene(const Mixed *test)
+{
+  char text[1024], path[PETSC_MAX_PATH_LEN];
+
+  WriteText(test->name, test->geo, path);
+  snprintf(text, sizeof(text),
+           "mesh: {file: %s, order: %d}\ngeometry: %s\nbodies: [%s]\nsupports: [{surface: cut_x, ux: 0}]\nloads: [{surface: %s, pressure: 1}]\n", test->name,
+           test->order, test->geometry, test->bodies, test->loaded);
+  return MakeScene(text);
+}
+
+static void CheckTypes(Mesh mesh, const Mixed *test)
+{
+  double count[2] = {0};
+
+  for (PetscInt c = 0; c < mesh->n_cells; c++) {
+    const int k = mesh->cell_type[c] == test->type[1];
+
+    assert_int_equal(mesh->cell_type[c], test->type[k]);
+    assert_int_equal(mesh->cell_body[c], test->body[k]);
+    assert_int_equal(mesh->cell_ptr[c + 1] - mesh->cell_ptr[c], ElementGet(test->type[k])->nodes);
+    count[k]++;
+  }
+  for (int k = 0; k < 2; k++) assert_true(Sum(count[k]) == test->cells[k]);
+}
+
+#define MATERIAL "material: {law: svk, E: 1, nu: 0.3}"
+static void test_mixed_types(void **state)
+{
+  static const char *const one = "{volume: both, " MATERIAL "}", *const two = "{volume: hexes, " MATERIAL "}, {volume: tets, " MATERIAL "}";
+  const Mixed cases[] = {
+    {"plane.geo",
+     "plane_strain", quads_and_triangles,
+     one, "boundary",
+     1, {ELEMENT_TRI3, ELEMENT_QUAD4},
+     {0, 0},
+     {18, 9},
+     28,  18,
+     {"both ", "both "},
+     {"18 tri3, 9 quad4\n", "18 tri3, 9 quad4\n"}},
+    {"plane.geo",
+     "plane_strain", quads_and_triangles,
+     one, "boundary",
+     2, {ELEMENT_TRI6, ELEMENT_QUAD9},
+     {0, 0},
+     {18, 9},
+     91,  18,
+     {"both ", "both "},
+     {"18 tri6, 9 quad9\n", "18 tri6, 9 quad9\n"}},
+    {"solid.geo",
+     "solid",        hexes_and_tets,
+     two, "outside",
+     1, {ELEMENT_HEX8, ELEMENT_TET4},
+     {0, 1},
+     {8, 48},
+     54,  72,
+     {"hexes ", "tets "},
+     {"8 hex8\n", "48 tet4\n"}                   },
+    {"solid.geo",
+     "solid",        hexes_and_tets,
+     two, "outside",
+     2, {ELEMENT_HEX27, ELEMENT_TET10},
+     {0, 1},
+     {8, 48},
+     250, 72,
+     {"hexes ", "tets "},
+     {"8 hex27\n", "48 tet10\n"}                 },
+  };
+
+  (void)state;
+  for (size_t t = 0; t < sizeof(cases) / sizeof(*cases); t++) {
+    Scene    scene = MixedScene(&cases[t]);
+    char     file[PETSC_MAX_PATH_LEN];
+    Mesh     mesh = MakeMesh(scene, file);
+    PetscInt n_faces;
+
+    CheckTypes(mesh, &cases[t]);
+    assert_int_equal(mesh->order, cases[t].order);
+    assert_int_equal(mesh->n_global, cases[t].nodes);
+    assert_true(fabs(Volume(mesh) - 2) < 1e-12);
+    assert_true(fabs(Flux(mesh, &n_faces) - 2) < 1e-12);
+    assert_int_equal(n_faces, cases[t].faces);
+    CheckAgainstFile(mesh, file);
+    CheckOwners(mesh);
+    CheckGroupNodes(mesh);
+    CheckDofs(mesh, scene);
+    assert_int_equal(MeshCheckQuality(mesh, scene), 0);
+    for (int k = 0; k < 2; k++) CheckReport(mesh, scene, cases[t].row[k], cases[t].report[k]);
+    assert_int_equal(MeshDestroy(&mesh), 0);
+    assert_int_equal(SceneDestroy(&scene), 0);
+  }
+}
+#undef MATERIAL
+
+/* Each rank gives 2^rank: a node's sum says on which ranks it is, whatever else a block holds; on one rank nothing is added. */
+static void test_sum_nodes(void **state)
+{
+  const Case ring_case = {"hex27", 1, 1, 2};
+  Scene      scene     = RingScene(&ring_case);
+  char       file[PETSC_MAX_PATH_LEN];
+  Mesh       mesh = MakeMesh(scene, file);
+  double    *ranks, shared = 0;
+
+  (void)state;
+  assert_int_equal(PetscCalloc1(mesh->n_global, &ranks), 0);
+  for (PetscInt i = 0; i < mesh->n_nodes; i++) ranks[mesh->node_id[i]] = 1 << rank;
+  assert_int_equal(MPI_Allreduce(MPI_IN_PLACE, ranks, (PetscMPIInt)mesh->n_global, MPI_DOUBLE, MPI_SUM, PETSC_COMM_WORLD), MPI_SUCCESS);
+  for (int block = 1; block <= 3; block++) {
+    PetscReal *values;
+
+    assert_int_equal(PetscMalloc1(mesh->n_nodes * block, &values), 0);
+    for (PetscInt i = 0; i < mesh->n_nodes * block; i++) values[i] = (1 << rank) * (double)(1 + i % block);
+    assert_int_equal(MeshSumNodes(mesh, block, values), 0);
+    for (PetscInt i = 0; i < mesh->n_nodes * block; i++) assert_true(values[i] == ranks[mesh->node_id[i / block]] * (double)(1 + i % block));
+    assert_int_equal(PetscFree(values), 0);
+  }
+  for (PetscInt i = 0; i < mesh->n_nodes; i++) shared += ranks[mesh->node_id[i]] != 1 << rank;
+  assert_true((Sum(shared) > 0) == (size > 1));
+  assert_int_equal(PetscFree(ranks), 0);
+  assert_int_equal(MeshDestroy(&mesh), 0);
+  assert_int_equal(SceneDestroy(&scene), 0);
 }
 
 /* ------------------------------------------------------------------------------------------------------- wrong meshes */
@@ -542,7 +713,8 @@ static void test_wrong_meshes(void **state)
 
 int main(int argc, char **argv)
 {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_elements), cmocka_unit_test(test_rigid_tool), cmocka_unit_test(test_wrong_meshes)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_elements), cmocka_unit_test(test_mixed_types), cmocka_unit_test(test_sum_nodes),
+                                     cmocka_unit_test(test_rigid_tool), cmocka_unit_test(test_wrong_meshes)};
   char                    command[128];
   int                     failed;
 

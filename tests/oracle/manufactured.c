@@ -14,9 +14,10 @@
 #include <math.h>
 #include <stdlib.h>
 
-enum { LEVELS = 3, RULE_POINTS = 64, STENCIL = 3, MAX_NEWTON = 8 };
+/* MAX_NEWTON: twice what quadratic convergence from the nodal values of the field needs */
+enum { LEVELS = 3, RULE_POINTS = 64, STENCIL = 3, MAX_NEWTON = 6 };
 
-static const PetscReal rate_margin    = 0.2;   /* the rate between the two finest meshes must exceed p + 1 less this */
+static const PetscReal rate_margin    = 0.2;   /* the rate over all meshes of a case (least squares: unstructured meshes scatter) must exceed p + 1 less this */
 static const PetscReal rank_agreement = 1e-10; /* of errors on different numbers of ranks, relative */
 static const PetscReal newton_done    = 1e-12; /* residual over the norm of the unassembled internal forces: rounding is 1e-15 */
 static const PetscReal young = 200, poisson = 0.3;
@@ -36,9 +37,9 @@ static const Case cases[] = {
   {ELEMENT_TRI3,  GEOMETRY_PLANE_STRAIN, PETSC_FALSE, MATERIAL_LINEAR,      3, {8, 16, 32}},
   {ELEMENT_TRI3,  GEOMETRY_AXISYMMETRIC, PETSC_FALSE, MATERIAL_LINEAR,      3, {8, 16, 32}},
   {ELEMENT_TRI3,  GEOMETRY_AXISYMMETRIC, PETSC_TRUE,  MATERIAL_LINEAR,      3, {8, 16, 32}},
-  {ELEMENT_TRI6,  GEOMETRY_PLANE_STRAIN, PETSC_FALSE, MATERIAL_LINEAR,      3, {4, 8, 16} },
-  {ELEMENT_TRI6,  GEOMETRY_AXISYMMETRIC, PETSC_FALSE, MATERIAL_LINEAR,      3, {4, 8, 16} },
-  {ELEMENT_TRI6,  GEOMETRY_AXISYMMETRIC, PETSC_TRUE,  MATERIAL_LINEAR,      3, {4, 8, 16} },
+  {ELEMENT_TRI6,  GEOMETRY_PLANE_STRAIN, PETSC_FALSE, MATERIAL_LINEAR,      3, {8, 16, 32}},
+  {ELEMENT_TRI6,  GEOMETRY_AXISYMMETRIC, PETSC_FALSE, MATERIAL_LINEAR,      3, {8, 16, 32}},
+  {ELEMENT_TRI6,  GEOMETRY_AXISYMMETRIC, PETSC_TRUE,  MATERIAL_LINEAR,      3, {8, 16, 32}},
   {ELEMENT_QUAD4, GEOMETRY_PLANE_STRAIN, PETSC_FALSE, MATERIAL_LINEAR,      3, {8, 16, 32}},
   {ELEMENT_QUAD4, GEOMETRY_AXISYMMETRIC, PETSC_FALSE, MATERIAL_LINEAR,      3, {8, 16, 32}},
   {ELEMENT_QUAD4, GEOMETRY_AXISYMMETRIC, PETSC_TRUE,  MATERIAL_LINEAR,      3, {8, 16, 32}},
@@ -46,7 +47,7 @@ static const Case cases[] = {
   {ELEMENT_QUAD9, GEOMETRY_AXISYMMETRIC, PETSC_FALSE, MATERIAL_LINEAR,      3, {4, 8, 16} },
   {ELEMENT_QUAD9, GEOMETRY_AXISYMMETRIC, PETSC_TRUE,  MATERIAL_LINEAR,      3, {4, 8, 16} },
   {ELEMENT_TET4,  GEOMETRY_SOLID,        PETSC_FALSE, MATERIAL_LINEAR,      3, {4, 8, 12} },
-  {ELEMENT_TET10, GEOMETRY_SOLID,        PETSC_FALSE, MATERIAL_LINEAR,      3, {2, 4, 6}  },
+  {ELEMENT_TET10, GEOMETRY_SOLID,        PETSC_FALSE, MATERIAL_LINEAR,      3, {4, 6, 8}  },
   {ELEMENT_HEX8,  GEOMETRY_SOLID,        PETSC_FALSE, MATERIAL_LINEAR,      3, {4, 8, 12} },
   {ELEMENT_HEX27, GEOMETRY_SOLID,        PETSC_FALSE, MATERIAL_LINEAR,      3, {2, 4, 6}  },
   {ELEMENT_QUAD4, GEOMETRY_PLANE_STRAIN, PETSC_FALSE, MATERIAL_SVK,         2, {8, 16}    },
@@ -61,7 +62,7 @@ static const Case cases[] = {
 enum { CASES = sizeof(cases) / sizeof(*cases) };
 
 /* The same on any number of ranks */
-static const Case parallel_case = {ELEMENT_HEX27, GEOMETRY_SOLID, PETSC_FALSE, MATERIAL_NEO_HOOKEAN, 1, {2}};
+static const Case parallel_case = {ELEMENT_TET10, GEOMETRY_SOLID, PETSC_FALSE, MATERIAL_NEO_HOOKEAN, 1, {4}};
 
 static PetscMPIInt rank;
 static char        folder[64], meshes[PATH_MAX];
@@ -77,7 +78,7 @@ static void Exact(Geometry geometry, const PetscReal x[3], PetscReal u[3], Petsc
     {-1.3, 2.1, 0.9 },
     {0.8,  1.2, 1.7 }
   };
-  static const PetscReal phase[3] = {0.4, 1.1, -0.6}, amplitude = 0.1;
+  static const PetscReal phase[3] = {0.4, 1.1, -0.6}, amplitude = 0.06; /* above 0.075 svk loses its ellipticity in compression */
   const int              dim = geometry == GEOMETRY_SOLID ? 3 : 2, axisymmetric = geometry == GEOMETRY_AXISYMMETRIC;
 
   for (int r = 0; r < 9; r++) H[r] = 0;
@@ -222,13 +223,16 @@ static PetscErrorCode Constrain(const Case *test, Scene scene, Mesh mesh)
 /* Coordinates are taken as they stand in the mesh, relative to its centre: the field's origin is there. u: the nodal values of the field */
 static PetscErrorCode CreateMesh(MPI_Comm comm, const Case *test, int n, Scene *scene, Mesh *mesh, PetscReal **u)
 {
-  char      file[PETSC_MAX_PATH_LEN];
-  PetscReal seconds;
+  char        file[PETSC_MAX_PATH_LEN];
+  PetscReal   seconds;
+  PetscMPIInt size;
 
   PetscFunctionBeginUser;
   PetscCall(SceneCreate(comm, test, n, scene));
   PetscCall(MeshGenerate(comm, *scene, folder, file, &seconds));
   PetscCall(MeshCreate(comm, *scene, file, mesh));
+  PetscCallMPI(MPI_Comm_size(comm, &size));
+  PetscCheck(size == 1 || (*mesh)->n_cells < (*mesh)->n_cells_global, PETSC_COMM_SELF, PETSC_ERR_PLIB, "one rank has all the cells");
   PetscCall(PetscMalloc1((*mesh)->n_nodes * (*mesh)->dim, u));
   for (PetscInt k = 0; k < (*mesh)->n_nodes; k++) {
     const int  dim  = (*mesh)->dim;
@@ -262,8 +266,10 @@ static PetscErrorCode RuleCreate(ElementType type, Rule *rule)
   PetscInt         n;
 
   PetscFunctionBeginUser;
-  if (simplex) PetscCall(PetscDTStroudConicalQuadrature(e->dim, 1, e->order + 2, -1, 1, &quadrature));
-  else PetscCall(PetscDTGaussTensorQuadrature(e->dim, 1, e->order + 2, -1, 1, &quadrature));
+  if (simplex)
+    PetscCall(PetscDTStroudConicalQuadrature(e->dim, 1, e->order + 2, -1, 1, &quadrature));
+  else
+    PetscCall(PetscDTGaussTensorQuadrature(e->dim, 1, e->order + 2, -1, 1, &quadrature));
   PetscCall(PetscQuadratureGetData(quadrature, NULL, NULL, &n, &points, &weights));
   PetscCheck(n <= RULE_POINTS, PETSC_COMM_SELF, PETSC_ERR_PLIB, "%" PetscInt_FMT " quadrature points", n);
   rule->points = (int)n;
@@ -283,13 +289,17 @@ static PetscReal RulePoint(const Rule *rule, int q, const Case *test, Mesh mesh,
 {
   const int       dim   = mesh->dim;
   const PetscInt *nodes = &mesh->cell_nodes[mesh->cell_ptr[c]], n = mesh->cell_ptr[c + 1] - mesh->cell_ptr[c];
-  PetscReal       J[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, volume = 0;
+  PetscReal       J[3][3] =
+    {
+      {1, 0, 0},
+      {0, 1, 0},
+      {0, 0, 1}
+  },
+            volume = 0;
 
   for (int i = 0; i < dim; i++) {
-    x[i] = J[i][i] = 0;
-    for (PetscInt a = 0; a < n; a++) {
-      x[i] += rule->N[q][a] * mesh->coords[nodes[a] * dim + i];
-    }
+    x[i] = 0;
+    for (PetscInt a = 0; a < n; a++) { x[i] += rule->N[q][a] * mesh->coords[nodes[a] * dim + i]; }
     for (int k = 0; k < dim; k++) {
       J[i][k] = 0;
       for (PetscInt a = 0; a < n; a++) J[i][k] += rule->dN[q][a * dim + k] * mesh->coords[nodes[a] * dim + i];
@@ -422,26 +432,42 @@ static const char *GeometryText(const Case *test)
   return test->axis ? "axisymmetric, axis" : "axisymmetric";
 }
 
+/* Slope of the least-squares line through log(error) over log(h) */
+static PetscReal Rate(int levels, const PetscReal h[], const PetscReal error[])
+{
+  PetscReal mean[2] = {0, 0}, sum[2] = {0, 0};
+
+  for (int k = 0; k < levels; k++) {
+    mean[0] += PetscLogReal(h[k]) / levels;
+    mean[1] += PetscLogReal(error[k]) / levels;
+  }
+  for (int k = 0; k < levels; k++) {
+    const PetscReal x = PetscLogReal(h[k]) - mean[0];
+
+    sum[0] += x * x;
+    sum[1] += x * (PetscLogReal(error[k]) - mean[1]);
+  }
+  return sum[1] / sum[0];
+}
+
 static void Converges(void **state)
 {
   const Case     *test  = *state;
   const Element  *e     = ElementGet(test->type);
   const PetscReal bound = e->order + 1 - rate_margin;
-  PetscReal       h[LEVELS], error[LEVELS], rate = 0;
+  PetscReal       h[LEVELS], error[LEVELS];
 
-  for (int level = 0; level < test->levels; level++) {
+  for (int k = 0; k < test->levels; k++) {
     PetscInt steps;
 
-    CHECK(Solve(PETSC_COMM_WORLD, test, test->n[level], &h[level], &error[level], &steps));
-    print_message("%-6s %-19s %-12s %8.4f %12.4e %7d", e->name, GeometryText(test), MaterialLaws[test->law], h[level], error[level], (int)steps);
-    if (level) {
-      rate = PetscLogReal(error[level] / error[level - 1]) / PetscLogReal(h[level] / h[level - 1]);
-      print_message(" %6.2f", rate);
-    }
-    print_message(level == test->levels - 1 ? " > %.1f\n" : "\n", bound);
+    CHECK(Solve(PETSC_COMM_WORLD, test, test->n[k], &h[k], &error[k], &steps));
+    print_message("%-6s %-19s %-12s %8.4f %12.4e %7d", e->name, GeometryText(test), MaterialLaws[test->law], h[k], error[k], (int)steps);
+    if (k) print_message(" %6.2f", Rate(2, &h[k - 1], &error[k - 1]));
+    if (k == test->levels - 1) print_message(" %6.2f > %.1f", Rate(test->levels, h, error), bound);
+    print_message("\n");
     assert_true(steps < MAX_NEWTON && (test->law != MATERIAL_LINEAR || steps == 1));
   }
-  assert_true(rate > bound);
+  assert_true(Rate(test->levels, h, error) > bound);
 }
 
 static void SameOnAllRanks(void **state)
@@ -479,7 +505,7 @@ int main(int argc, char **argv)
   if (size > 1)
     failed = cmocka_run_group_tests(parallel, NULL, NULL);
   else {
-    print_message("%-6s %-19s %-12s %8s %12s %7s %6s\n", "element", "geometry", "law", "h", "L2 error", "Newton", "rate");
+    print_message("%-6s %-19s %-12s %8s %12s %7s %6s %6s\n", "element", "geometry", "law", "h", "L2 error", "Newton", "rate", "all");
     failed = cmocka_run_group_tests(tests, NULL, NULL);
   }
   PetscCall(PetscSNPrintf(command, sizeof(command), "rm -r %s", folder));

@@ -1,5 +1,6 @@
 /* A .geo is meshed once for each content, gmsh's complaints reach the user, text and binary files read the same, and a damaged file is refused. */
 #include "gmsh.h"
+#include "gmshfile.h"
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -58,38 +59,38 @@ static Scene MakeScene(const char *parameters)
   return scene;
 }
 
-/* Meshes in folder/out: the file, or the message if there is one */
-static PetscReal Generate(const char *parameters, char *file, GmshMessage *message)
+/* Meshes in folder/out: the file, or the complaint if there is one */
+static PetscReal Generate(const char *parameters, char *file, Complaint *complaint)
 {
   Scene     scene = MakeScene(parameters);
   char      directory[PETSC_MAX_PATH_LEN];
   PetscReal seconds;
 
-  message->text[0] = '\0';
+  complaint->text[0] = '\0';
   snprintf(directory, sizeof(directory), "%s/out/meshes", folder);
-  assert_int_equal(GmshGenerate(scene, directory, file, &seconds, message), 0);
+  assert_int_equal(GmshGenerate(scene, directory, file, &seconds, complaint), 0);
   assert_int_equal(SceneDestroy(&scene), 0);
   return seconds;
 }
 
 static void test_meshed_once(void **state)
 {
-  char        first[PETSC_MAX_PATH_LEN], again[PETSC_MAX_PATH_LEN], other[PETSC_MAX_PATH_LEN], path[PETSC_MAX_PATH_LEN];
-  GmshMessage message;
-  GmshMesh    mesh;
-  PetscReal   seconds;
+  char      first[PETSC_MAX_PATH_LEN], again[PETSC_MAX_PATH_LEN], other[PETSC_MAX_PATH_LEN], path[PETSC_MAX_PATH_LEN];
+  Complaint complaint;
+  GmshMesh  mesh;
+  PetscReal seconds;
 
   (void)state;
-  seconds = Generate("{n: 3}", first, &message);
-  assert_string_equal(message.text, "");
+  seconds = Generate("{n: 3}", first, &complaint);
+  assert_string_equal(complaint.text, "");
   assert_true(seconds > 0);
-  seconds = Generate("{n: 3}", again, &message);
+  seconds = Generate("{n: 3}", again, &complaint);
   assert_string_equal(first, again);
   assert_true(seconds == 0);
-  Generate("{n: 4}", other, &message);
+  Generate("{n: 4}", other, &complaint);
   assert_string_not_equal(first, other);
-  assert_int_equal(GmshRead(first, &mesh, &message), 0);
-  assert_string_equal(message.text, "");
+  assert_int_equal(GmshRead(first, &mesh, &complaint), 0);
+  assert_string_equal(complaint.text, "");
   assert_int_equal(mesh.n_nodes, 7 * 7);
   assert_int_equal(GmshReset(&mesh), 0);
 
@@ -98,56 +99,56 @@ static void test_meshed_once(void **state)
 
   WriteText("size.geo", "length = 3;\n", 12, path);
   snprintf(path, sizeof(path), "%s/out/meshes", folder);
-  assert_int_equal(GmshGenerate(scene, path, other, &seconds, &message), 0);
-  assert_string_equal(message.text, "");
+  assert_int_equal(GmshGenerate(scene, path, other, &seconds, &complaint), 0);
+  assert_string_equal(complaint.text, "");
   assert_string_not_equal(first, other);
   assert_int_equal(SceneDestroy(&scene), 0);
 }
 
 static void test_without_gmsh(void **state)
 {
-  char        made[PETSC_MAX_PATH_LEN], found[PETSC_MAX_PATH_LEN], *search = strdup(getenv("PATH"));
-  GmshMessage message, missing;
+  char      made[PETSC_MAX_PATH_LEN], found[PETSC_MAX_PATH_LEN], *search = strdup(getenv("PATH"));
+  Complaint complaint, missing;
 
   (void)state;
-  Generate("{n: 3}", made, &message);
+  Generate("{n: 3}", made, &complaint);
   setenv("PATH", "/nonexistent", 1);
-  Generate("{n: 3}", found, &message);
+  Generate("{n: 3}", found, &complaint);
   Generate("{n: 5}", found, &missing);
   setenv("PATH", search, 1);
   free(search);
-  assert_string_equal(message.text, "");
+  assert_string_equal(complaint.text, "");
   assert_non_null(strstr(missing.text, "gmsh is not installed here"));
   assert_non_null(strstr(missing.text, "-mesh"));
-  Generate("{n: 3}", found, &message);
+  Generate("{n: 3}", found, &complaint);
   assert_string_equal(made, found);
 }
 
 static void test_mistakes_in_geo(void **state)
 {
-  char        file[PETSC_MAX_PATH_LEN], path[PETSC_MAX_PATH_LEN], directory[PETSC_MAX_PATH_LEN];
-  GmshMessage message;
-  PetscReal   seconds;
-  Scene       scene;
+  char      file[PETSC_MAX_PATH_LEN], path[PETSC_MAX_PATH_LEN], directory[PETSC_MAX_PATH_LEN];
+  Complaint complaint;
+  PetscReal seconds;
+  Scene     scene;
 
   (void)state;
-  Generate("{nn: 3}", file, &message);
-  assert_non_null(strstr(message.text, "scene.yaml:1: mesh.parameters.nn: "));
-  assert_non_null(strstr(message.text, "no parameter of this name"));
+  Generate("{nn: 3}", file, &complaint);
+  assert_non_null(strstr(complaint.text, "scene.yaml:1: mesh.parameters.nn: "));
+  assert_non_null(strstr(complaint.text, "no parameter of this name"));
 
   scene = MakeScene("{n: 3}");
   WriteText("block.geo", "n = 1;\nFoo(1);\n", 15, path);
   snprintf(directory, sizeof(directory), "%s/out/meshes", folder);
-  message.text[0] = '\0';
-  assert_int_equal(GmshGenerate(scene, directory, file, &seconds, &message), 0);
-  assert_non_null(strstr(message.text, "gmsh failed on"));
-  assert_non_null(strstr(message.text, "line 2"));
+  complaint.text[0] = '\0';
+  assert_int_equal(GmshGenerate(scene, directory, file, &seconds, &complaint), 0);
+  assert_non_null(strstr(complaint.text, "gmsh failed on"));
+  assert_non_null(strstr(complaint.text, "line 2"));
   assert_int_equal(access(file, F_OK), -1);
 
   unlink(path);
-  message.text[0] = '\0';
-  assert_int_equal(GmshGenerate(scene, directory, file, &seconds, &message), 0);
-  assert_non_null(strstr(message.text, "there is no file"));
+  complaint.text[0] = '\0';
+  assert_int_equal(GmshGenerate(scene, directory, file, &seconds, &complaint), 0);
+  assert_non_null(strstr(complaint.text, "there is no file"));
   assert_int_equal(SceneDestroy(&scene), 0);
 }
 
@@ -162,16 +163,16 @@ static void ConvertBinary(const char *text, char *binary)
 
 static void test_binary_equals_text(void **state)
 {
-  char        file[PETSC_MAX_PATH_LEN], binary[PETSC_MAX_PATH_LEN];
-  GmshMessage message;
-  GmshMesh    a, b;
+  char      file[PETSC_MAX_PATH_LEN], binary[PETSC_MAX_PATH_LEN];
+  Complaint complaint;
+  GmshMesh  a, b;
 
   (void)state;
-  Generate("{n: 3}", file, &message);
+  Generate("{n: 3}", file, &complaint);
   ConvertBinary(file, binary);
-  assert_int_equal(GmshRead(file, &a, &message), 0);
-  assert_int_equal(GmshRead(binary, &b, &message), 0);
-  assert_string_equal(message.text, "");
+  assert_int_equal(GmshRead(file, &a, &complaint), 0);
+  assert_int_equal(GmshRead(binary, &b, &complaint), 0);
+  assert_string_equal(complaint.text, "");
   assert_int_equal(a.n_nodes, b.n_nodes);
   assert_memory_equal(a.node_tag, b.node_tag, (size_t)a.n_nodes * sizeof(PetscInt));
   assert_memory_equal(a.coords, b.coords, (size_t)a.n_nodes * 3 * sizeof(PetscReal));
@@ -202,20 +203,20 @@ static void test_damaged(void **state)
   static char copy[1 << 16];
   char        file[PETSC_MAX_PATH_LEN], binary[PETSC_MAX_PATH_LEN], path[PETSC_MAX_PATH_LEN], *text;
   size_t      size;
-  GmshMessage message;
+  Complaint   complaint;
   GmshMesh    mesh;
 
   (void)state;
-  Generate("{n: 2}", file, &message);
+  Generate("{n: 2}", file, &complaint);
   ConvertBinary(file, binary);
   for (int kind = 0; kind < 2; kind++) {
     text = ReadText(kind ? binary : file, &size);
     memcpy(copy, text, size);
     for (size_t cut = 0; cut + 2 < size; cut += 7) {
       WriteText("cut.msh", copy, cut, path);
-      message.text[0] = '\0';
-      assert_int_equal(GmshRead(path, &mesh, &message), 0);
-      assert_non_null(strstr(message.text, "cut.msh"));
+      complaint.text[0] = '\0';
+      assert_int_equal(GmshRead(path, &mesh, &complaint), 0);
+      assert_non_null(strstr(complaint.text, "cut.msh"));
       assert_int_equal(GmshReset(&mesh), 0);
     }
     for (size_t at = 0; at < size; at += 11) {
@@ -223,9 +224,9 @@ static void test_damaged(void **state)
 
       copy[at] = (char)(kept ^ (1 << (at % 7)));
       WriteText("cut.msh", copy, size, path);
-      copy[at]        = kept;
-      message.text[0] = '\0';
-      assert_int_equal(GmshRead(path, &mesh, &message), 0);
+      copy[at]          = kept;
+      complaint.text[0] = '\0';
+      assert_int_equal(GmshRead(path, &mesh, &complaint), 0);
       assert_int_equal(GmshReset(&mesh), 0);
     }
   }

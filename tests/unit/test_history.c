@@ -1,4 +1,4 @@
-/* A history is linear between its breakpoints, exact at them, constant beyond them, and its slope is the one of the interval to come. */
+/* A history is linear between its breakpoints, exact at them, and constant beyond them. */
 #include "history.h"
 #include <stdarg.h>
 #include <stddef.h>
@@ -25,33 +25,11 @@ static void ValueIsLinearBetweenAndConstantBeyond(void **state)
   assert_true(HistoryValue(&Press, 2) == -0.5);
 }
 
-static void SlopeIsRightSided(void **state)
-{
-  (void)state;
-  assert_float_equal(HistorySlope(&Press, 0), 5, 1e-14);
-  assert_float_equal(HistorySlope(&Press, 0.1), 5, 1e-14);
-  assert_true(HistorySlope(&Press, 0.2) == 0);
-  assert_float_equal(HistorySlope(&Press, 0.7), -5, 1e-14);
-  assert_true(HistorySlope(&Press, 1) == 0);
-  assert_true(HistorySlope(&Press, -0.1) == 0);
-}
-
-static void SlopeIsTheDerivativeOfTheValue(void **state)
-{
-  const double h = 1e-6;
-
-  (void)state;
-  for (double t = 0.03; t < 1; t += 0.1)
-    assert_float_equal((HistoryValue(&Press, t + h) - HistoryValue(&Press, t - h)) / (2 * h), HistorySlope(&Press, t), 1e-8);
-}
-
 int main(void)
 {
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(ValueIsExactAtBreakpoints),
     cmocka_unit_test(ValueIsLinearBetweenAndConstantBeyond),
-    cmocka_unit_test(SlopeIsRightSided),
-    cmocka_unit_test(SlopeIsTheDerivativeOfTheValue),
   };
 
   return cmocka_run_group_tests(tests, NULL, NULL);

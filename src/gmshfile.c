@@ -1,0 +1,609 @@
+#define _GNU_SOURCE 1 /* memmem */
+#include "gmshfile.h"
+#include <ctype.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum {
+  GMSH_POINT   = 15, /* gmsh's type number of a point */
+  GMSH_QUAD8   = 16, /* serendipity elements */
+  GMSH_HEX20   = 17,
+  GMSH_POLYGON = 34 /* from here on gmsh's numbers are for elements without a fixed shape */
+};
+
+static const char *const RefusedElements[] = {[6]          = "6-node prism",
+                                              [7]          = "5-node pyramid",
+                                              [13]         = "18-node prism",
+                                              [14]         = "14-node pyramid",
+                                              [GMSH_QUAD8] = "8-node quadrangle",
+                                              [GMSH_HEX20] = "20-node hexahedron",
+                                              [18]         = "15-node prism",
+                                              [19]         = "13-node pyramid"};
+
+/* An entity of the geometry and the physical groups it is in (signed tags) */
+typedef struct {
+  int dim, tag, n, *physical;
+} Entity;
+
+/* A cursor over the file in memory. After the first mistake every read returns 0, so that loops come to their end. */
+typedef struct {
+  const char *file;
+  char       *data;
+  size_t      size, at;
+  PetscBool   binary;
+  char        section[64];
+  Complaint  *complaint;
+  GmshMesh   *mesh;
+  PetscInt    n_entities;
+  Entity     *entities;
+  PetscBool  *used; /* node -> some element has it */
+} Reader;
+
+/*
+  GmshFileLoad - a whole file of gmsh's in memory, .geo or .msh
+
+  Not Collective
+
+  Input Parameter:
+. file - path
+
+  Output Parameters:
++ data - its bytes and a zero behind them, to be freed by PetscFree(); NULL: there is no such file, or it cannot be read
+- size - bytes, without the zero
+*/
+PetscErrorCode GmshFileLoad(const char *file, char **data, size_t *size)
+{
+  FILE *stream = fopen(file, "rb");
+  long  length = -1;
+
+  PetscFunctionBeginUser;
+  *data = NULL;
+  *size = 0;
+  if (!stream) PetscFunctionReturn(PETSC_SUCCESS);
+  if (!fseek(stream, 0, SEEK_END)) length = ftell(stream);
+  if (length >= 0) {
+    rewind(stream);
+    PetscCall(PetscMalloc1((size_t)length + 1, data));
+    *size          = fread(*data, 1, (size_t)length, stream);
+    (*data)[*size] = '\0';
+  }
+  fclose(stream);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* ----------------------------------------------------------------------------------------------------- single values */
+
+static PetscBool ReaderFailed(const Reader *r)
+{
+  return r->complaint->text[0] ? PETSC_TRUE : PETSC_FALSE;
+}
+
+/* The file ends or makes no sense: says in which section and where. */
+static void ReaderDamaged(Reader *r)
+{
+  size_t line = 1;
+
+  if (ReaderFailed(r)) return;
+  for (size_t i = 0; i < r->at && i < r->size; i++) line += r->data[i] == '\n';
+  if (r->binary)
+    Complain(r->complaint, "%s: the file is truncated or damaged in section %s (byte %zu of %zu)", r->file, r->section, r->at, r->size);
+  else
+    Complain(r->complaint, "%s:%zu: the file is truncated or damaged in section %s", r->file, line, r->section);
+}
+
+static void ReadBytes(Reader *r, void *value, size_t size)
+{
+  memset(value, 0, size);
+  if (ReaderFailed(r)) return;
+  if (r->size - r->at < size)
+    ReaderDamaged(r);
+  else {
+    memcpy(value, r->data + r->at, size);
+    r->at += size;
+  }
+}
+
+static long long ReadTextInteger(Reader *r)
+{
+  char     *end;
+  long long value;
+
+  if (ReaderFailed(r)) return 0;
+  value = strtoll(r->data + r->at, &end, 10);
+  if (end == r->data + r->at || !isspace((unsigned char)*end))
+    ReaderDamaged(r);
+  else
+    r->at = (size_t)(end - r->data);
+  return value;
+}
+
+static int ReadInt(Reader *r)
+{
+  int value;
+
+  if (!r->binary) return (int)ReadTextInteger(r);
+  ReadBytes(r, &value, sizeof(value));
+  return value;
+}
+
+static long long ReadSize(Reader *r)
+{
+  int64_t value;
+
+  if (!r->binary) return ReadTextInteger(r);
+  ReadBytes(r, &value, sizeof(value));
+  return value;
+}
+
+/* A number of things that follow: each takes at least one byte, so that a damaged count cannot ask for more memory than the file has */
+static PetscInt ReadCount(Reader *r)
+{
+  long long value = ReadSize(r);
+
+  if (value < 0 || (size_t)value > r->size - r->at || value > PETSC_MAX_INT) {
+    ReaderDamaged(r);
+    return 0;
+  }
+  return (PetscInt)value;
+}
+
+static PetscInt ReadTag(Reader *r)
+{
+  long long value = ReadSize(r);
+
+  if (value < 0 || value > PETSC_MAX_INT) Complain(r->complaint, "%s: tag %lld does not fit into this build's index type", r->file, value);
+  return (PetscInt)value;
+}
+
+static double ReadDouble(Reader *r)
+{
+  double value = 0;
+  char  *end;
+
+  if (r->binary) {
+    ReadBytes(r, &value, sizeof(value));
+    return value;
+  }
+  if (ReaderFailed(r)) return 0;
+  value = strtod(r->data + r->at, &end);
+  if (end == r->data + r->at || !isspace((unsigned char)*end))
+    ReaderDamaged(r);
+  else
+    r->at = (size_t)(end - r->data);
+  return value;
+}
+
+static void SkipSpace(Reader *r)
+{
+  while (r->at < r->size && isspace((unsigned char)r->data[r->at])) r->at++;
+}
+
+/* The rest of the line, without the end of line */
+static void ReadLine(Reader *r, char *line, size_t size)
+{
+  size_t length = strcspn(r->data + r->at, "\r\n");
+
+  snprintf(line, size, "%.*s", (int)PetscMin(length, size - 1), r->data + r->at);
+  r->at += length;
+  while (r->at < r->size && (r->data[r->at] == '\r' || r->data[r->at] == '\n')) {
+    if (r->data[r->at++] == '\n') break;
+  }
+}
+
+/* ---------------------------------------------------------------------------------------------------------- sections */
+
+static PetscErrorCode ReadFormat(Reader *r)
+{
+  char line[256], version[16] = "";
+  int  binary = 0, size = 0, one = 1;
+
+  PetscFunctionBeginUser;
+  ReadLine(r, line, sizeof(line));
+  if (sscanf(line, "%15s %d %d", version, &binary, &size) != 3)
+    ReaderDamaged(r);
+  else if (strcmp(version, "4.1")) {
+    Complain(r->complaint, "%s: file format %s is not read, only gmsh's 4.1; convert it: gmsh %s -save -format msh41 -o NEW.msh", r->file, version, r->file);
+  } else if (size != 8)
+    Complain(r->complaint, "%s: written with data size %d, only 8 is read", r->file, size);
+  if (!ReaderFailed(r) && binary) {
+    r->binary = PETSC_TRUE;
+    ReadBytes(r, &one, sizeof(one));
+    if (one != 1)
+      Complain(r->complaint, "%s: binary file of a machine with another byte order; write it as text: gmsh FILE.geo -format msh41 without -bin", r->file);
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Names are text in binary files too. */
+static PetscErrorCode ReadPhysicalNames(Reader *r)
+{
+  PetscBool binary = r->binary;
+  PetscInt  n;
+
+  PetscFunctionBeginUser;
+  r->binary = PETSC_FALSE;
+  n         = ReadCount(r);
+  PetscCall(PetscCalloc1(n, &r->mesh->physicals));
+  for (PetscInt i = 0; i < n && !ReaderFailed(r); i++) {
+    GmshPhysical *physical = &r->mesh->physicals[i];
+    char          line[512];
+    size_t        length;
+
+    physical->dim = ReadInt(r);
+    physical->tag = (PetscInt)ReadTextInteger(r);
+    SkipSpace(r);
+    ReadLine(r, line, sizeof(line));
+    length = strlen(line);
+    if (length < 3 || line[0] != '"' || line[length - 1] != '"')
+      ReaderDamaged(r);
+    else
+      line[length - 1] = '\0';
+    PetscCall(PetscStrallocpy(line + 1, &physical->name));
+    r->mesh->n_physicals++;
+  }
+  r->binary = binary;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode ReadEntities(Reader *r)
+{
+  PetscInt n[4], total = 0;
+
+  PetscFunctionBeginUser;
+  for (int dim = 0; dim < 4; dim++) {
+    n[dim] = ReadCount(r);
+    total += n[dim];
+  }
+  if (ReaderFailed(r)) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscCalloc1(total, &r->entities));
+  for (int dim = 0; dim < 4; dim++) {
+    for (PetscInt i = 0; i < n[dim] && !ReaderFailed(r); i++) {
+      Entity *entity = &r->entities[r->n_entities++];
+
+      entity->dim = dim;
+      entity->tag = ReadInt(r);
+      for (int k = 0; k < (dim ? 6 : 3); k++) (void)ReadDouble(r); /* its point or bounding box */
+      entity->n = (int)ReadCount(r);
+      PetscCall(PetscMalloc1(entity->n, &entity->physical));
+      for (int k = 0; k < entity->n; k++) entity->physical[k] = ReadInt(r);
+      if (!dim) continue;
+      for (PetscInt k = ReadCount(r); k > 0; k--) (void)ReadInt(r); /* what bounds it */
+    }
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Nodes by ascending tag, whatever their order in the file */
+static PetscErrorCode SortNodes(Reader *r)
+{
+  GmshMesh  *mesh   = r->mesh;
+  PetscBool  sorted = PETSC_TRUE;
+  PetscInt  *order, *tags;
+  PetscReal *coords;
+
+  PetscFunctionBeginUser;
+  for (PetscInt i = 1; i < mesh->n_nodes; i++) sorted = sorted && mesh->node_tag[i] > mesh->node_tag[i - 1] ? PETSC_TRUE : PETSC_FALSE;
+  if (sorted) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscMalloc3(mesh->n_nodes, &order, mesh->n_nodes, &tags, 3 * mesh->n_nodes, &coords));
+  PetscCall(PetscArraycpy(tags, mesh->node_tag, mesh->n_nodes));
+  PetscCall(PetscArraycpy(coords, mesh->coords, 3 * mesh->n_nodes));
+  for (PetscInt i = 0; i < mesh->n_nodes; i++) order[i] = i;
+  PetscCall(PetscSortIntWithPermutation(mesh->n_nodes, tags, order));
+  for (PetscInt i = 0; i < mesh->n_nodes; i++) {
+    mesh->node_tag[i] = tags[order[i]];
+    for (int k = 0; k < 3; k++) mesh->coords[3 * i + k] = coords[3 * order[i] + k];
+    if (i && mesh->node_tag[i] == mesh->node_tag[i - 1]) Complain(r->complaint, "%s: node %" PetscInt_FMT " occurs twice", r->file, mesh->node_tag[i]);
+  }
+  PetscCall(PetscFree3(order, tags, coords));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode ReadNodes(Reader *r)
+{
+  GmshMesh *mesh   = r->mesh;
+  PetscInt  blocks = ReadCount(r), n = ReadCount(r), done = 0;
+
+  PetscFunctionBeginUser;
+  (void)ReadSize(r); /* smallest and largest tag */
+  (void)ReadSize(r);
+  PetscCall(PetscMalloc2(n, &mesh->node_tag, 3 * n, &mesh->coords));
+  for (PetscInt b = 0; b < blocks && !ReaderFailed(r); b++) {
+    int      dim        = ReadInt(r);
+    int      parametric = (ReadInt(r), ReadInt(r)); /* the entity's tag is not needed */
+    PetscInt in_block   = ReadCount(r);
+
+    if (in_block > n - done) ReaderDamaged(r);
+    for (PetscInt i = 0; i < in_block && !ReaderFailed(r); i++) mesh->node_tag[done + i] = ReadTag(r);
+    for (PetscInt i = 0; i < in_block && !ReaderFailed(r); i++) {
+      for (int k = 0; k < 3; k++) mesh->coords[3 * (done + i) + k] = ReadDouble(r);
+      for (int k = 0; parametric && k < dim; k++) (void)ReadDouble(r); /* position on the entity */
+    }
+    done += in_block;
+  }
+  if (done != n) ReaderDamaged(r);
+  if (ReaderFailed(r)) PetscFunctionReturn(PETSC_SUCCESS);
+  mesh->n_nodes = n;
+  PetscCall(SortNodes(r));
+  PetscCall(PetscCalloc1(n, &r->used));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static void RefuseElement(Reader *r, int type, int dim, int entity)
+{
+  const char *known = type >= 0 && type < (int)(sizeof(RefusedElements) / sizeof(*RefusedElements)) ? RefusedElements[type] : NULL;
+  char        name[64];
+
+  if (known)
+    snprintf(name, sizeof(name), "%s", known);
+  else
+    snprintf(name, sizeof(name), "gmsh's type %d%s", type, type > GMSH_POINT && type < GMSH_POLYGON ? ", of order 3 or higher" : "");
+  if (type == GMSH_QUAD8 || type == GMSH_HEX20) {
+    Complain(r->complaint, "%s: serendipity elements (%s) are not available; mesh with: gmsh FILE.geo -order 2 -setnumber Mesh.SecondOrderIncomplete 0",
+             r->file, name);
+  } else {
+    Complain(r->complaint, "%s: elements on entity %d of dimension %d are not available (%s); there are tri3, tri6, quad4, quad9, tet4, tet10, hex8, hex27",
+             r->file, entity, dim, name);
+  }
+}
+
+/* Index of a node's tag, -1: there is none. Tags are mostly without gaps, so the first guess is right. */
+static PetscInt NodeIndex(const GmshMesh *mesh, PetscInt tag)
+{
+  PetscInt guess = mesh->n_nodes ? tag - mesh->node_tag[0] : -1;
+
+  if (guess < 0 || (guess < mesh->n_nodes && mesh->node_tag[guess] == tag)) return guess < 0 ? -1 : guess;
+  if (PetscFindInt(tag, mesh->n_nodes, mesh->node_tag, &guess)) return -1;
+  return guess < 0 ? -1 : guess;
+}
+
+static int PhysicalIndex(const GmshMesh *mesh, int dim, PetscInt tag)
+{
+  for (int i = 0; i < mesh->n_physicals; i++)
+    if (mesh->physicals[i].dim == dim && mesh->physicals[i].tag == tag) return i;
+  return -1;
+}
+
+/* A group that has no name in the file goes by its number. */
+static PetscErrorCode AddPhysical(GmshMesh *mesh, int dim, PetscInt tag, int *index)
+{
+  char name[24];
+
+  PetscFunctionBeginUser;
+  snprintf(name, sizeof(name), "%" PetscInt_FMT, tag);
+  *index = mesh->n_physicals++;
+  PetscCall(PetscRealloc((size_t)mesh->n_physicals * sizeof(*mesh->physicals), &mesh->physicals));
+  mesh->physicals[*index] = (GmshPhysical){.dim = dim, .tag = tag};
+  PetscCall(PetscStrallocpy(name, &mesh->physicals[*index].name));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The groups of the entity a block lies on */
+static PetscErrorCode BlockPhysicals(Reader *r, int dim, int tag, GmshBlock *block)
+{
+  const Entity *entity = NULL;
+
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < r->n_entities && !entity; i++)
+    if (r->entities[i].dim == dim && r->entities[i].tag == tag) entity = &r->entities[i];
+  if (!entity || !entity->n) PetscFunctionReturn(PETSC_SUCCESS);
+  block->n_physicals = entity->n;
+  PetscCall(PetscMalloc2(entity->n, &block->physical, entity->n, &block->sign));
+  for (int i = 0; i < entity->n; i++) {
+    const PetscInt physical = PetscAbsInt(entity->physical[i]);
+
+    block->physical[i] = PhysicalIndex(r->mesh, dim, physical);
+    block->sign[i]     = entity->physical[i] < 0 ? -1 : 1;
+    if (block->physical[i] < 0) PetscCall(AddPhysical(r->mesh, dim, physical, &block->physical[i]));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode BlockFree(GmshBlock *block)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscFree(block->tag));
+  PetscCall(PetscFree(block->connectivity));
+  PetscCall(PetscFree2(block->physical, block->sign));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Tags and nodes of a block's elements */
+static PetscErrorCode ReadBlockElements(Reader *r, GmshBlock *block)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(block->n, &block->tag));
+  PetscCall(PetscMalloc1(block->n * block->nodes, &block->connectivity));
+  for (PetscInt i = 0; i < block->n && !ReaderFailed(r); i++) {
+    block->tag[i] = ReadTag(r);
+    for (int k = 0; k < block->nodes && !ReaderFailed(r); k++) {
+      PetscInt tag = ReadTag(r), node = NodeIndex(r->mesh, tag);
+
+      if (node < 0)
+        Complain(r->complaint, "%s: element %" PetscInt_FMT " has node %" PetscInt_FMT ", which is not in the file", r->file, block->tag[i], tag);
+      else
+        r->used[node] = PETSC_TRUE;
+      block->connectivity[i * block->nodes + k] = node;
+    }
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode ReadBlock(Reader *r)
+{
+  GmshMesh *mesh   = r->mesh;
+  GmshBlock block  = {.dim = ReadInt(r)};
+  int       entity = ReadInt(r), type = ReadInt(r);
+
+  PetscFunctionBeginUser;
+  block.n       = ReadCount(r);
+  block.element = ElementFromGmsh(type);
+  block.nodes   = block.element ? block.element->nodes : 1;
+  if (!block.element && type != GMSH_POINT) RefuseElement(r, type, block.dim, entity);
+  if (ReaderFailed(r)) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(ReadBlockElements(r, &block));
+  PetscCall(BlockPhysicals(r, block.dim, entity, &block));
+  if (block.n_physicals) {
+    PetscCall(PetscRealloc((size_t)(mesh->n_blocks + 1) * sizeof(*mesh->blocks), &mesh->blocks));
+    mesh->blocks[mesh->n_blocks++] = block;
+  } else
+    PetscCall(BlockFree(&block));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode ReadElements(Reader *r)
+{
+  PetscInt blocks = ReadCount(r);
+
+  PetscFunctionBeginUser;
+  if (!r->mesh->node_tag) ReaderDamaged(r);      /* nodes come first */
+  for (int i = 0; i < 3; i++) (void)ReadSize(r); /* number of elements, smallest and largest tag */
+  for (PetscInt b = 0; b < blocks && !ReaderFailed(r); b++) PetscCall(ReadBlock(r));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* ------------------------------------------------------------------------------------------------------ the whole file */
+
+/* Goes to what follows $EndSECTION. anywhere: after a section that is not read; else it must come next. */
+static void ReadClosing(Reader *r, PetscBool anywhere)
+{
+  char        closing[72];
+  const char *end;
+
+  snprintf(closing, sizeof(closing), "$End%s", r->section + 1);
+  SkipSpace(r);
+  end = memmem(r->data + r->at, anywhere ? r->size - r->at : PetscMin(r->size - r->at, strlen(closing)), closing, strlen(closing));
+  if (!end)
+    ReaderDamaged(r);
+  else
+    r->at = (size_t)(end - r->data) + strlen(closing);
+}
+
+static const struct {
+  const char *name;
+  PetscErrorCode (*read)(Reader *);
+} Sections[] = {
+  {"$MeshFormat",    ReadFormat       },
+  {"$PhysicalNames", ReadPhysicalNames},
+  {"$Entities",      ReadEntities     },
+  {"$Nodes",         ReadNodes        },
+  {"$Elements",      ReadElements     }
+};
+enum { SEEN_FORMAT = 1, SEEN_NAMES = 2, SEEN_NODES = 8, SEEN_ELEMENTS = 16 }; /* a bit for each of them */
+
+static PetscErrorCode ReadSection(Reader *r, unsigned *seen)
+{
+  int known = -1;
+
+  PetscFunctionBeginUser;
+  ReadLine(r, r->section, sizeof(r->section));
+  r->section[strcspn(r->section, " \t")] = '\0';
+  for (int i = 0; i < (int)(sizeof(Sections) / sizeof(*Sections)); i++)
+    if (!strcmp(r->section, Sections[i].name)) known = i;
+  if (!strcmp(r->section, "$PartitionedEntities"))
+    Complain(r->complaint, "%s: the mesh is partitioned already; write it without partitions, ranks are given out here", r->file);
+  if ((known != 0) != (*seen & SEEN_FORMAT)) Complain(r->complaint, "%s: this is no gmsh mesh file (.msh, format 4.1)", r->file);
+  if (ReaderFailed(r)) PetscFunctionReturn(PETSC_SUCCESS);
+  if (known >= 0) {
+    if (*seen & (1u << known)) ReaderDamaged(r); /* twice */
+    *seen |= 1u << known;
+    if (!ReaderFailed(r)) PetscCall(Sections[known].read(r));
+  }
+  if (!ReaderFailed(r)) ReadClosing(r, known < 0 ? PETSC_TRUE : PETSC_FALSE);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static int ComparePhysicals(const void *a, const void *b)
+{
+  const GmshPhysical *p = a, *q = b;
+
+  if (p->dim != q->dim) return p->dim > q->dim ? -1 : 1;
+  return p->tag < q->tag ? -1 : p->tag > q->tag;
+}
+
+/* Groups by descending dimension, then tag; blocks follow. */
+static PetscErrorCode SortPhysicals(GmshMesh *mesh)
+{
+  GmshPhysical *old;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(mesh->n_physicals, &old));
+  PetscCall(PetscArraycpy(old, mesh->physicals, mesh->n_physicals));
+  qsort(mesh->physicals, (size_t)mesh->n_physicals, sizeof(*mesh->physicals), ComparePhysicals);
+  for (int b = 0; b < mesh->n_blocks; b++) {
+    for (int i = 0; i < mesh->blocks[b].n_physicals; i++) {
+      const GmshPhysical *physical = &old[mesh->blocks[b].physical[i]];
+
+      mesh->blocks[b].physical[i] = PhysicalIndex(mesh, physical->dim, physical->tag);
+    }
+  }
+  PetscCall(PetscFree(old));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Is all there that a mesh needs? */
+static void CheckContents(Reader *r, unsigned seen)
+{
+  if (!(seen & SEEN_NODES)) Complain(r->complaint, "%s: the file has no nodes", r->file);
+  if (!(seen & SEEN_ELEMENTS)) Complain(r->complaint, "%s: the file has no elements", r->file);
+  if (!(seen & SEEN_NAMES))
+    Complain(r->complaint, "%s: the file has no physical names; name volumes and surfaces in gmsh: Physical Volume(\"NAME\") = {...};", r->file);
+  for (PetscInt i = 0; i < r->mesh->n_nodes && !ReaderFailed(r); i++)
+    if (!r->used[i]) Complain(r->complaint, "%s: node %" PetscInt_FMT " belongs to no element", r->file, r->mesh->node_tag[i]);
+}
+
+/*
+  GmshRead - reads a gmsh file of format 4.1, text or binary
+
+  Not Collective; meant for one rank
+
+  Input Parameter:
+. file - path
+
+  Output Parameters:
++ mesh      - nodes by ascending tag, elements of the physical groups, groups; to be freed with GmshReset(), also after a mistake
+- complaint - what is wrong with the file, if anything: missing, truncated, other format, no physical names, elements that are not
+              available, nodes without elements
+
+  Note:
+  Format: the gmsh reference manual, "MSH file format, version 4.1".
+*/
+PetscErrorCode GmshRead(const char *file, GmshMesh *mesh, Complaint *complaint)
+{
+  Reader   r    = {.file = file, .complaint = complaint, .mesh = mesh};
+  unsigned seen = 0;
+
+  PetscFunctionBeginUser;
+  *mesh = (GmshMesh){0};
+  PetscCall(GmshFileLoad(file, &r.data, &r.size));
+  if (!r.data)
+    Complain(complaint, "%s: there is no such file, or it cannot be read", file);
+  else if (!r.size)
+    Complain(complaint, "%s: the file is empty", file);
+  for (SkipSpace(&r); r.at < r.size && !ReaderFailed(&r); SkipSpace(&r)) PetscCall(ReadSection(&r, &seen));
+  CheckContents(&r, seen);
+  if (!ReaderFailed(&r)) PetscCall(SortPhysicals(mesh));
+  for (PetscInt i = 0; i < r.n_entities; i++) PetscCall(PetscFree(r.entities[i].physical));
+  PetscCall(PetscFree(r.entities));
+  PetscCall(PetscFree(r.used));
+  PetscCall(PetscFree(r.data));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*
+  GmshReset - frees what GmshRead() made
+
+  Not Collective
+*/
+PetscErrorCode GmshReset(GmshMesh *mesh)
+{
+  PetscFunctionBeginUser;
+  for (int b = 0; b < mesh->n_blocks; b++) PetscCall(BlockFree(&mesh->blocks[b]));
+  for (int i = 0; i < mesh->n_physicals; i++) PetscCall(PetscFree(mesh->physicals[i].name));
+  PetscCall(PetscFree(mesh->blocks));
+  PetscCall(PetscFree(mesh->physicals));
+  PetscCall(PetscFree2(mesh->node_tag, mesh->coords));
+  *mesh = (GmshMesh){0};
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

@@ -1,0 +1,86 @@
+/* Blocks assembled on any number of ranks give the same product as the blocks themselves; the pattern is kept while it serves. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <cmocka.h>
+#include "blockmatrix.h"
+
+enum { ROWS = 6 }; /* of each rank */
+
+/* Each rank adds one block over two of its own dofs, one of the next rank, and one entry without a dof. */
+static void AddBlock(BlockMatrix blocks, PetscReal scale)
+{
+  PetscInt  *entry;
+  PetscReal *value;
+
+  assert_int_equal(BlockMatrixReset(blocks), 0);
+  assert_int_equal(BlockMatrixAdd(blocks, 0, 4, &entry, &value), 0);
+  for (PetscInt i = 0; i < 4; i++) {
+    entry[i] = i;
+    for (PetscInt j = 0; j < 4; j++) value[4 * i + j] = scale * (1 + i + j + 2 * (i == j));
+  }
+}
+
+static void test_assembled_equals_blocks(void **state)
+{
+  PetscMPIInt     rank, size;
+  BlockMatrix     blocks;
+  Mat             matrix;
+  Vec             x, y;
+  PetscBool       changed;
+  PetscReal       in[4], out[4] = {0, 0, 0, 0}, sum = 0, norm;
+  const PetscInt *dof[1];
+
+  (void)state;
+  MPI_Comm_rank(PETSC_COMM_WORLD, &rank);
+  MPI_Comm_size(PETSC_COMM_WORLD, &size);
+  {
+    const PetscInt mine[4] = {ROWS * rank + 1, ROWS * rank + 4, ROWS * ((rank + 1) % size) + 2, -1};
+
+    dof[0] = mine;
+    assert_int_equal(BlockMatrixCreate(PETSC_COMM_WORLD, &blocks), 0);
+    for (int pass = 0; pass < 2; pass++) {
+      AddBlock(blocks, 1 + pass);
+      assert_int_equal(BlockMatrixAssemble(blocks, ROWS, dof, &matrix, &changed), 0);
+      assert_int_equal(changed, pass == 0);
+    }
+    assert_int_equal(MatCreateVecs(matrix, &x, &y), 0);
+    assert_int_equal(VecSet(x, 1), 0);
+    assert_int_equal(MatMult(matrix, x, y), 0);
+    assert_int_equal(VecSum(y, &norm), 0);
+    for (int i = 0; i < 4; i++) in[i] = mine[i] < 0 ? 0 : 1;
+    assert_int_equal(BlockMatrixMultiply(blocks, 0, in, out), 0);
+    for (int i = 0; i < 4; i++) sum += mine[i] < 0 ? 0 : out[i];
+    MPI_Allreduce(MPI_IN_PLACE, &sum, 1, MPIU_REAL, MPI_SUM, PETSC_COMM_WORLD);
+    assert_true(PetscAbsReal(sum - norm) <= 1e-12 * sum);
+  }
+  assert_int_equal(VecDestroy(&x), 0);
+  assert_int_equal(VecDestroy(&y), 0);
+  assert_int_equal(BlockMatrixDestroy(&blocks), 0);
+}
+
+static void test_no_blocks(void **state)
+{
+  BlockMatrix blocks;
+  Mat         matrix;
+  PetscBool   changed;
+  PetscReal   norm;
+
+  (void)state;
+  assert_int_equal(BlockMatrixCreate(PETSC_COMM_WORLD, &blocks), 0);
+  assert_int_equal(BlockMatrixAssemble(blocks, ROWS, NULL, &matrix, &changed), 0);
+  assert_int_equal(MatNorm(matrix, NORM_FROBENIUS, &norm), 0);
+  assert_true(norm == 0);
+  assert_int_equal(BlockMatrixDestroy(&blocks), 0);
+}
+
+int main(int argc, char **argv)
+{
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_assembled_equals_blocks), cmocka_unit_test(test_no_blocks)};
+  int                     failed;
+
+  if (PetscInitialize(&argc, &argv, NULL, NULL)) return 1;
+  failed = cmocka_run_group_tests(tests, NULL, NULL);
+  return PetscFinalize() || failed;
+}
