@@ -30,8 +30,9 @@ PetscErrorCode SurfaceFindFreeEdges(ContactSurface, const MeshGroup *const *symm
 /* Tributary areas and normals (area-weighted sum of the faces', not normalised) of all local nodes at displacement u (NULL: reference),
    complete on every copy. area n_nodes, normal n_nodes*3 (may be NULL). Deformable surfaces only. Collective. */
 PetscErrorCode SurfaceNodeAreas(ContactSurface, Geometry, const PetscReal *u, PetscReal *area, PetscReal *normal);
-/* Mean face size around each local node and how far the faces there turn from their mean normal (radians), reference configuration. Collective. */
-PetscErrorCode SurfaceNodeSizes(ContactSurface, PetscReal *size, PetscReal *turn);
+/* Around each local node, reference configuration: mean face size, how far the faces turn from their mean normal (radians), and the node's
+   tributary area as a share of the whole area of its faces (1/4 on 4-node faces; about 0 for corners of 6-node triangles). Collective. */
+PetscErrorCode SurfaceNodeSizes(ContactSurface, Geometry, PetscReal *size, PetscReal *turn, PetscReal *share);
 /* The planes of symmetry of a pair as images, checked: planar, normal to an axis, held by a support. Collective. */
 PetscErrorCode SurfaceImages(Mesh, Scene, const SceneContact *, int *n_images, SurfaceImage images[SURFACE_MAX_IMAGES]);
 /* The face as its mirror image sees it: node order turned over where the image reverses orientation. */

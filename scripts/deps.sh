@@ -13,7 +13,7 @@ reference_blas() { readlink -f "$(ldconfig -p 2>/dev/null | awk '$1 == "libblas.
 python_found() { # the first python3 that can make an environment for the pinned packages
   local python
   for python in python3 /usr/bin/python3; do
-    "$python" -c 'import ensurepip, sys, venv; sys.exit(not (3, 10) <= sys.version_info < (3, 14))' 2>/dev/null && echo "$python" && return
+    "$python" -c 'import ensurepip, ssl, sys, venv; sys.exit(not (3, 10) <= sys.version_info < (3, 14))' 2>/dev/null && echo "$python" && return
   done
   return 1
 }

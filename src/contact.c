@@ -6,9 +6,10 @@
 #include "search.h"
 #include "smoother.h"
 
-/* Slave nodes whose tributary area is below this fraction of the mean carry no force: corners of 6-node triangles, the axis node of
-   second-order axisymmetric edges. */
-#define CONTACT_AREA_FLOOR 1e-8
+/* Slave nodes whose tributary area is below this share of the faces around them carry no force: corners of 6-node triangles and the axis node
+   of second-order axisymmetric edges, whose areas are zero on flat faces and small, of either sign, on curved ones. Corners of 9-node faces
+   have 1/36, all others more. */
+#define CONTACT_SHARE_FLOOR 5e-3
 /* A gap from fresh lists agrees with the solve's when it differs by less than this fraction of itself, or of the face size (round-off of a
    closest-point projection). */
 #define CONTACT_GAP_AGREES     1e-6
@@ -96,27 +97,20 @@ static PetscErrorCode StateDestroy(ContactState *state)
 /* The terms: owned slave nodes with area. */
 static PetscErrorCode PairCreateTerms(Mesh mesh, Scene scene, Pair *pair)
 {
-  PetscReal  *area, *size, *turn, sum[2] = {0, 0};
-  PetscMPIInt rank;
+  const MeshGroup *group = pair->slave->group;
+  PetscReal       *area, *size, *turn, *share;
+  PetscMPIInt      rank;
 
   PetscFunctionBeginUser;
   PetscCallMPI(MPI_Comm_rank(mesh->comm, &rank));
-  PetscCall(PetscMalloc3(mesh->n_nodes, &area, mesh->n_nodes, &size, mesh->n_nodes, &turn));
+  PetscCall(PetscMalloc4(mesh->n_nodes, &area, mesh->n_nodes, &size, mesh->n_nodes, &turn, mesh->n_nodes, &share));
   PetscCall(SurfaceNodeAreas(pair->slave, scene->geometry, NULL, area, NULL));
-  PetscCall(SurfaceNodeSizes(pair->slave, size, turn));
-  for (PetscInt i = 0; i < pair->slave->group->n_nodes; i++) {
-    const PetscInt node = pair->slave->group->nodes[i];
+  PetscCall(SurfaceNodeSizes(pair->slave, scene->geometry, size, turn, share));
+  PetscCall(PetscMalloc4(group->n_nodes, &pair->node, group->n_nodes, &pair->area, group->n_nodes, &pair->size, group->n_nodes, &pair->turn));
+  for (PetscInt i = 0; i < group->n_nodes; i++) {
+    const PetscInt node = group->nodes[i];
 
-    if (mesh->node_owner[node] != rank) continue;
-    sum[0] += area[node];
-    sum[1] += 1;
-  }
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sum, 2, MPIU_REAL, MPI_SUM, mesh->comm));
-  PetscCall(PetscMalloc4(pair->slave->group->n_nodes, &pair->node, pair->slave->group->n_nodes, &pair->area, pair->slave->group->n_nodes, &pair->size, pair->slave->group->n_nodes, &pair->turn));
-  for (PetscInt i = 0; i < pair->slave->group->n_nodes; i++) {
-    const PetscInt node = pair->slave->group->nodes[i];
-
-    if (mesh->node_owner[node] != rank || area[node] <= CONTACT_AREA_FLOOR * sum[0] / sum[1]) continue;
+    if (mesh->node_owner[node] != rank || share[node] < CONTACT_SHARE_FLOOR) continue;
     pair->node[pair->n] = node;
     pair->area[pair->n] = area[node];
     pair->size[pair->n] = size[node];
@@ -130,7 +124,7 @@ static PetscErrorCode PairCreateTerms(Mesh mesh, Scene scene, Pair *pair)
   }
   pair->term_ptr[pair->n] = pair->n;
   PetscCall(PetscCalloc5(pair->n, &pair->force, 3 * pair->n, &pair->vector, 3 * pair->n, &pair->normal, pair->n, &pair->pressure, pair->n, &pair->trial));
-  PetscCall(PetscFree3(area, size, turn));
+  PetscCall(PetscFree4(area, size, turn, share));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -739,14 +733,20 @@ PetscErrorCode ContactGapAt(Contact contact, int p, const PetscReal *u, PetscRea
 {
   Mesh        mesh = contact->mesh;
   const Pair *pair = &contact->pairs[p];
-  PetscReal   found[5] = {-1, 0, 0, 0, 0}; /* 1: a term, 2: with a finite gap; gap; position */
+  PetscReal   found[5] = {-1, 0, 0, 0, 0}; /* 1: a node of the slave surface, 2: with a finite gap; gap; position */
 
   PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < pair->slave->group->n_nodes; i++) {
+    const PetscInt node = pair->slave->group->nodes[i];
+
+    if (mesh->node_id[node] != node_id) continue;
+    found[0] = 1;
+    for (int d = 0; d < mesh->dim; d++) found[2 + d] = mesh->coords[node * mesh->dim + d] + u[node * mesh->dim + d];
+  }
   for (PetscInt c = 0; c < pair->n; c++) {
-    if (mesh->node_id[pair->node[c]] != node_id) continue;
-    found[0] = PetscIsNanReal(pair->now.gap[c]) ? 1 : 2;
-    found[1] = PetscIsNanReal(pair->now.gap[c]) ? 0 : pair->now.gap[c];
-    for (int d = 0; d < mesh->dim; d++) found[2 + d] = mesh->coords[pair->node[c] * mesh->dim + d] + u[pair->node[c] * mesh->dim + d];
+    if (mesh->node_id[pair->node[c]] != node_id || PetscIsNanReal(pair->now.gap[c])) continue;
+    found[0] = 2;
+    found[1] = pair->now.gap[c];
   }
   {
     struct {

@@ -98,12 +98,7 @@ static void SetCell(Elasticity e, Scene scene, CellGroup *g, PetscInt slot, Pets
     g->nu[s]   = material->nu;
     for (int a = 0; a < g->nodes; a++) {
       g->node[(batch * g->nodes + a) * KERNEL_LANES + lane] = nodes[a];
-      for (int i = 0; i < e->dim; i++) {
-        PetscReal x = mesh->coords[nodes[a] * e->dim + i];
-
-        if (i == 0 && g->kernel.geometry == GEOMETRY_AXISYMMETRIC) x += mesh->centre[0];
-        g->X[((batch * g->nodes + a) * e->dim + i) * KERNEL_LANES + lane] = x;
-      }
+      for (int i = 0; i < e->dim; i++) g->X[((batch * g->nodes + a) * e->dim + i) * KERNEL_LANES + lane] = mesh->coords[nodes[a] * e->dim + i];
     }
   }
 }

@@ -32,6 +32,23 @@ static void ListPhysicals(const GmshMesh *gmsh, int dim, char list[MESH_TEXT])
     if (gmsh->physicals[i].dim == dim) used += (size_t)snprintf(list + used, MESH_TEXT - used, "%s%s", used ? ", " : "", gmsh->physicals[i].name);
 }
 
+/* Every deformable body is a volume group of the mesh: asked first, because a misspelt name also leaves a group without a body */
+static void CheckBodyNames(Scene scene, const char *file, const RootMesh *root, Complaint *complaint)
+{
+  char list[MESH_TEXT];
+
+  ListPhysicals(&root->gmsh, scene->dim, list);
+  for (int b = 0; b < scene->n_bodies; b++) {
+    PetscBool there = PETSC_FALSE;
+
+    for (int i = 0; i < root->gmsh.n_physicals; i++)
+      if (root->gmsh.physicals[i].dim == scene->dim && !strcmp(root->gmsh.physicals[i].name, scene->bodies[b].name)) there = PETSC_TRUE;
+    if (scene->bodies[b].rigid || there) continue;
+    Complain(complaint, "%s: the mesh '%s' has no volume group '%s'; its volume groups: %s", SceneWhere(scene, scene->bodies[b].path, "volume"), file,
+             scene->bodies[b].name, list);
+  }
+}
+
 /* The one body whose volume group a block is in; -1 after a mistake */
 static int BlockBody(Scene scene, const char *file, const RootMesh *root, const GmshBlock *block, Complaint *complaint)
 {
@@ -232,6 +249,7 @@ PetscErrorCode RootMeshRead(Scene scene, const char *file, PetscMPIInt ranks, Ro
   *root = (RootMesh){.n_cells = 0};
   PetscCall(GmshRead(file, &root->gmsh, complaint));
   if (complaint->text[0]) PetscFunctionReturn(PETSC_SUCCESS);
+  CheckBodyNames(scene, file, root, complaint);
   CheckOrder(scene, file, root, complaint);
   PetscCall(NumberCells(scene, file, root, complaint));
   if (complaint->text[0]) PetscFunctionReturn(PETSC_SUCCESS);

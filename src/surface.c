@@ -304,28 +304,43 @@ PetscErrorCode SurfaceNodeAreas(ContactSurface surface, Geometry geometry, const
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode SurfaceNodeSizes(ContactSurface surface, PetscReal *size, PetscReal *turn)
+PetscErrorCode SurfaceNodeSizes(ContactSurface surface, Geometry geometry, PetscReal *size, PetscReal *turn, PetscReal *share)
 {
-  Mesh       mesh = surface->mesh;
-  PetscReal *sum, *normal, *area;
+  enum { SIZE, FACES, AREA, SUMS };
+  Mesh           mesh  = surface->mesh;
+  const Geometry plane = mesh->dim == 3 ? GEOMETRY_SOLID : GEOMETRY_PLANE_STRAIN;
+  PetscReal     *sum, *normal, *area;
+  double         X[FACE_MAX_NODES * 3];
 
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc3(2 * mesh->n_nodes, &sum, 3 * mesh->n_nodes, &normal, mesh->n_nodes, &area));
-  PetscCall(SurfaceNodeAreas(surface, mesh->dim == 3 ? GEOMETRY_SOLID : GEOMETRY_PLANE_STRAIN, NULL, area, normal));
-  PetscCall(PetscArrayzero(sum, 2 * mesh->n_nodes));
+  PetscCall(PetscMalloc3(SUMS * mesh->n_nodes, &sum, 3 * mesh->n_nodes, &normal, mesh->n_nodes, &area));
+  PetscCall(PetscArrayzero(sum, SUMS * mesh->n_nodes));
   for (PetscInt f = 0; f < surface->n_faces; f++) {
-    const Facet *face = &surface->faces[f];
+    const Facet *face                  = &surface->faces[f];
+    const int    n                     = ElementGet(face->type)->nodes;
+    double       parts[FACE_MAX_NODES] = {0}, whole = 0;
 
-    for (int i = 0; i < ElementGet(face->type)->nodes; i++) {
-      sum[2 * face->nodes[i]] += surface->face_size[f];
-      sum[2 * face->nodes[i] + 1] += 1;
+    FaceCoordinates(surface, face, NULL, X);
+    FaceAreaKernel(face->type, mesh->dim, geometry, X, parts, NULL);
+    for (int i = 0; i < n; i++) whole += parts[i];
+    for (int i = 0; i < n; i++) {
+      PetscReal *at = &sum[SUMS * face->nodes[i]];
+
+      at[SIZE] += surface->face_size[f];
+      at[FACES] += 1;
+      at[AREA] += whole;
     }
   }
-  PetscCall(MeshSumNodes(mesh, 2, sum));
+  PetscCall(MeshSumNodes(mesh, SUMS, sum));
+  PetscCall(SurfaceNodeAreas(surface, geometry, NULL, area, NULL));
+  for (PetscInt n = 0; n < mesh->n_nodes; n++) {
+    size[n]  = sum[SUMS * n + FACES] > 0 ? sum[SUMS * n + SIZE] / sum[SUMS * n + FACES] : 0;
+    share[n] = sum[SUMS * n + AREA] > 0 ? area[n] / sum[SUMS * n + AREA] : 0;
+  }
+  PetscCall(SurfaceNodeAreas(surface, plane, NULL, area, normal));
   for (PetscInt n = 0; n < mesh->n_nodes; n++) {
     const PetscReal *m = &normal[3 * n], length = PetscSqrtReal(m[0] * m[0] + m[1] * m[1] + m[2] * m[2]);
 
-    size[n] = sum[2 * n + 1] > 0 ? sum[2 * n] / sum[2 * n + 1] : 0;
     turn[n] = area[n] > 0 ? PetscAcosReal(PetscMin(1, length / area[n])) : 0; /* the resultant of faces that turn by +-a is cos a of their area */
   }
   PetscCall(PetscFree3(sum, normal, area));

@@ -1,5 +1,5 @@
 /* Microseconds per slave point of the facet smoother, by facet type: closest point in a list of 9 and of 25, one projection, N and M; and of
-   the search tree. Prints a table. */
+   the search tree. Lines: row, column, value; # heads a table. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -84,11 +84,16 @@ static double Time(ElementType type, int n, int nodes, const Facet *facets, cons
   return best;
 }
 
+static void Print(const char *row, const char *column, double value)
+{
+  printf("%s %s %.2f\n", row, column, value);
+}
+
 static void BenchFacets(void)
 {
   static const ElementType types[] = {ELEMENT_EDGE2, ELEMENT_EDGE3, ELEMENT_TRI3, ELEMENT_TRI6, ELEMENT_QUAD4, ELEMENT_QUAD9};
 
-  printf("us per slave point  closest of 1  of 9  of 9 seeded  of 25  of 25 seeded      N      M\n");
+  puts("# facet smoother, microseconds per slave point: closest point in a list, again from the last one (seeded), first and second variation");
   for (int t = 0; t < 6; ++t) {
     double us[3][2], N = 0, M = 0;
 
@@ -106,7 +111,13 @@ static void BenchFacets(void)
       }
       us[s][0] -= base;
     }
-    printf("%-18s %13.2f %5.2f %12.2f %6.2f %13.2f %6.2f %6.2f\n", ElementGet(types[t])->name, us[0][0], us[1][0], us[1][1], us[2][0], us[2][1], N, M);
+    Print(ElementGet(types[t])->name, "closest-of-1", us[0][0]);
+    Print(ElementGet(types[t])->name, "closest-of-9", us[1][0]);
+    Print(ElementGet(types[t])->name, "seeded-of-9", us[1][1]);
+    Print(ElementGet(types[t])->name, "closest-of-25", us[2][0]);
+    Print(ElementGet(types[t])->name, "seeded-of-25", us[2][1]);
+    Print(ElementGet(types[t])->name, "N", N);
+    Print(ElementGet(types[t])->name, "M", M);
   }
 }
 
@@ -129,6 +140,7 @@ static int BenchTree(int n)
   const int side  = (int)sqrt(n);
   double   *lower = malloc(sizeof(double) * 3 * n), *upper = malloc(sizeof(double) * 3 * n), begin, build, near, closest;
   int       found[64], total                               = 0;
+  char      row[16];
   Tree      tree;
 
   if (!lower || !upper) return 1;
@@ -153,8 +165,11 @@ static int BenchTree(int n)
     TreeClosest(tree, point, &bound, VisitCentre, data);
   }
   closest = Seconds() - begin;
-  printf("tree of %6d: build %.2f us per box, near %.2f us per point (%.1f found), closest %.2f us per point\n", n, 1e6 * build / n, 1e6 * near / POINTS,
-         (double)total / POINTS, 1e6 * closest / POINTS);
+  snprintf(row, sizeof(row), "%d", n);
+  Print(row, "build", 1e6 * build / n);
+  Print(row, "near", 1e6 * near / POINTS);
+  Print(row, "found", (double)total / POINTS);
+  Print(row, "closest", 1e6 * closest / POINTS);
   TreeDestroy(&tree);
   free(lower);
   free(upper);
@@ -164,5 +179,6 @@ static int BenchTree(int n)
 int main(void)
 {
   BenchFacets();
+  puts("# search tree, by its number of boxes: microseconds per box (build) and per point (near, closest); boxes found near a point");
   return BenchTree(100) || BenchTree(10000) || BenchTree(250000);
 }
