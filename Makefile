@@ -74,6 +74,7 @@ deps: ## installs or checks everything needed
 	@scripts/deps.sh
 
 demo: all ## runs pipe_pinch on 2 ranks: comparison, pictures and a ParaView file in out/
+	@[ -x $(VENV)/bin/python ] || { echo "no Python environment in $(VENV): run make deps" >&2; exit 1; }
 	@$(VENV)/bin/python scripts/demo.py --burnish $(BURNISH)
 
 check: all tests ## the quick tests
@@ -95,7 +96,7 @@ help: ## this list
 	@sed -n 's/^\([a-z]*\):.*## \(.*\)/make \1\t\2/p' Makefile | expand -t 16
 
 format: ## formats the C sources
-	clang-format -i $(wildcard include/*.h src/*.c src/*/*.c tests/*/*.c)
+	clang-format -i $(wildcard include/*.h src/*.c src/*/*.c tests/*.h tests/*/*.c)
 
 clean: ## removes what was built (out/ and the Python environment stay)
 	rm -rf $(BUILD)/obj $(BUILD)/tests $(BUILD)/bench $(BUILD)/ctest $(BUILD)/flags $(LIBRARY) $(BURNISH)

@@ -5,11 +5,13 @@ set -euo pipefail
 build=$1 out=out/bench
 export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1
 mkdir -p "$out"
+records=()
 sed -n 's/^model name[[:space:]]*: /processor: /p; T; q' /proc/cpuinfo >"$out/machine.txt"
-echo "load: $(cut -d ' ' -f 1 /proc/loadavg) of $(nproc) cores when started" >>"$out/machine.txt"
+echo "load: $(cut -d ' ' -f 1 /proc/loadavg) of $(getconf _NPROCESSORS_ONLN) cores when started" >>"$out/machine.txt"
 for source in tests/bench/*.c; do
   name=$(basename "$source" .c)
   "$build/bench/$name" >"$out/$name.txt"
+  records+=("$out/$name.txt")
 done
 
 # One table for each heading: rows and columns in the order of their first line
@@ -36,7 +38,4 @@ tables() {
     }
     END { flush_table() }' "$@"
 }
-records=(tests/bench/*.c)
-records=("${records[@]##*/}")
-records=("${records[@]/#/$out/}")
-{ cat "$out/machine.txt"; tables "${records[@]/%.c/.txt}"; } | tee "$out/table.txt"
+{ cat "$out/machine.txt"; tables "${records[@]}"; } | tee "$out/table.txt"
