@@ -66,7 +66,7 @@ $(eval $(call program,tests/bench,$(BUILD)/bench))
 # Everything is compiled again when the compile or link line changes, with another PETSc for instance. What is asked for together with
 # deps or clean waits for them, under make -j too.
 $(BUILD)/flags: FORCE | $(filter deps clean,$(MAKECMDGOALS))
-	@pkg-config --exists $(PACKAGES) || { echo "PETSc, libyaml or cJSON is missing: run make deps" >&2; exit 1; }
+	@pkg-config --exists $(PACKAGES) 2>/dev/null || { echo "PETSc, libyaml or cJSON is missing: run make deps" >&2; exit 1; }
 	@mkdir -p $(@D)
 	@echo '$(COMPILE) $(LINK)' | cmp -s - $@ || echo '$(COMPILE) $(LINK)' >$@
 

@@ -8,7 +8,7 @@
 #include "loads.h"
 #include "mesh.h"
 
-typedef enum { SOLVE_CONVERGED, SOLVE_ITERATIONS, SOLVE_LINE_SEARCH, SOLVE_DOMAIN, SOLVE_LINEAR, SOLVE_LISTS, SOLVE_NAN } SolveResult;
+typedef enum { SOLVE_CONVERGED, SOLVE_ITERATIONS, SOLVE_LINE_SEARCH, SOLVE_DOMAIN, SOLVE_LINEAR, SOLVE_WORKSPACE, SOLVE_LISTS, SOLVE_NAN } SolveResult;
 extern const char *const SolveResults[]; /* in words, for messages */
 
 typedef struct {

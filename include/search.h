@@ -52,5 +52,5 @@ PetscErrorCode ListsUpdate(ContactSearch, ContactLists, const PetscReal *u, Pets
 PetscErrorCode ListsBroadcast(ContactSearch, ContactLists, const PetscReal *x, PetscReal t, PetscReal t_next, PetscReal *values);
 /* Adds values of the contact nodes (n_nodes*dim) to y (local), complete at owned nodes; rigid nodes are left out. Collective. */
 PetscErrorCode ListsReduce(ContactLists, const PetscReal *values, PetscReal *y);
-/* The signed distance of any point to the whole master, by every rank looking at its own facets. Collective. */
+/* The signed distance of any point to the whole master without its mirror images, by every rank looking at its own facets. Collective. */
 PetscErrorCode SearchDistance(ContactSearch, const PetscReal *u, PetscReal t, const PetscReal x[3], PetscReal *gap);

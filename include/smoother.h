@@ -13,7 +13,7 @@ typedef struct {
   int           seed;   /* the facet of last time, or -1 */
 } SmootherInput;
 
-/* Arrays belong to the caller, sized for SmootherCapacity() points. */
+/* Arrays belong to the caller, sized for the smoother's capacity of points. */
 typedef struct {
   double gap;       /* < 0: penetration */
   double normal[3]; /* out of the master at the foot */

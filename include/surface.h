@@ -4,7 +4,8 @@
 #include "elasticity.h"
 #include "facet.h"
 
-/* Reflection through a coordinate plane or a product of such planes: x' = sign * x + shift, by component. Image 0 is the identity. */
+/* Reflection through a coordinate plane or a product of such planes: x' = sign * x + shift, by component. Image 0 is the identity, image m the product of
+   the planes whose bits are set in m. */
 enum { SURFACE_MAX_IMAGES = 8 };
 typedef struct {
   PetscReal sign[3], shift[3];
@@ -26,7 +27,7 @@ typedef struct {
 PetscErrorCode SurfaceCreate(Mesh, Scene, Elasticity, const char *path, const char *key, const char *name, ContactSurface *);
 PetscErrorCode SurfaceDestroy(ContactSurface *);
 /* Marks the edges at which a master surface ends (bits free_edges of its faces): held by one face only and on no plane of symmetry. Collective. */
-PetscErrorCode SurfaceFindFreeEdges(ContactSurface, const MeshGroup *const *symmetry, int n_symmetry);
+PetscErrorCode SurfaceFindFreeEdges(ContactSurface, int n_images, const SurfaceImage *);
 /* Tributary areas and normals (area-weighted sum of the faces', not normalised) of all local nodes at displacement u (NULL: reference),
    complete on every copy. area n_nodes, normal n_nodes*3 (may be NULL). Deformable surfaces only. Collective. */
 PetscErrorCode SurfaceNodeAreas(ContactSurface, Geometry, const PetscReal *u, PetscReal *area, PetscReal *normal);

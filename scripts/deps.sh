@@ -39,9 +39,9 @@ has_cmake() { command -v cmake && command -v ctest; }
 has_h5dump() { command -v h5dump; }
 has_python() { python_found; }
 
-declare -A packages=([compiler]="gcc libc6-dev" [pkgconfig]=pkg-config [mpi]=libopenmpi-dev [mpirun]=openmpi-bin [petsc]=petsc-dev [blas]=libopenblas0-serial
-  [hdf5]=libhdf5-openmpi-dev [metis]=libmetis-dev [yaml]=libyaml-dev [cjson]=libcjson-dev [cmocka]=libcmocka-dev [gmsh]=gmsh [cmake]=cmake
-  [h5dump]=hdf5-tools [python]="python3 python3-venv")
+declare -A packages=([compiler]="gcc libc6-dev" [pkgconfig]=pkg-config [mpi]=libopenmpi-dev [mpirun]=openmpi-bin
+  [petsc]="petsc-dev libopenblas0-serial" [blas]=libopenblas0-serial [hdf5]=libhdf5-openmpi-dev [metis]=libmetis-dev [yaml]=libyaml-dev
+  [cjson]=libcjson-dev [cmocka]=libcmocka-dev [gmsh]=gmsh [cmake]=cmake [h5dump]=hdf5-tools [python]="python3 python3-venv")
 declare -A meaning=([compiler]="a C compiler" [pkgconfig]="pkg-config" [mpi]="MPI: mpicc" [mpirun]="MPI: mpirun"
   [petsc]="PETSc 3.18 or newer, real double precision, with MUMPS and HDF5${PETSC_DIR:+ (PETSC_DIR=$PETSC_DIR has none)}"
   [blas]="an optimised BLAS (libblas.so.3 is the reference BLAS: MUMPS 6 times slower)" [hdf5]="parallel HDF5, the one of PETSc, with headers" [metis]="METIS"
@@ -80,7 +80,7 @@ make_environment() {
 mkdir -p build
 : >"$log"
 lacking=$(missing)
-for round in first second; do # the second: PETSc may have brought the reference BLAS along
+for round in first second; do # the second: the first may have brought the reference BLAS along
   [ -n "$lacking" ] && command -v apt-get >/dev/null || break
   install_missing $lacking || exit 1
   hash -r

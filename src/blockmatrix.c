@@ -46,6 +46,10 @@ PetscErrorCode BlockMatrixReset(BlockMatrix blocks)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* BlockMatrixAdd - a new block over entries of rank-local vector `list` (contact: the pair's number).
+
+   Not collective. m: size of the block. entry[m]: to be written; value[m*m]: row-major (force per length), zero, to be added to. Both stand
+   until the next call: growing moves them. */
 PetscErrorCode BlockMatrixAdd(BlockMatrix blocks, int list, PetscInt m, PetscInt **entry, PetscReal **value)
 {
   PetscFunctionBeginUser;
@@ -103,6 +107,10 @@ static PetscErrorCode CreateMatrix(BlockMatrix blocks, PetscInt size)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* BlockMatrixAssemble - the sum of all ranks' blocks as a parallel AIJ matrix over the global dofs; it stays the block matrix's.
+
+   Collective. size: rows of this rank; dof[list][entry]: global dof of an entry, -1 without one (its rows and columns are left out).
+   *changed: some rank's blocks ask for another pattern than last time, so that the matrix is a new one; else only its values are. */
 PetscErrorCode BlockMatrixAssemble(BlockMatrix blocks, PetscInt size, const PetscInt *const dof[], Mat *matrix, PetscBool *changed)
 {
   PetscInt  n = 0, *pattern = NULL;
@@ -125,6 +133,9 @@ PetscErrorCode BlockMatrixAssemble(BlockMatrix blocks, PetscInt size, const Pets
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* BlockMatrixMultiply - y += (this rank's blocks of `list`) x, entries without a global dof included.
+
+   Not collective. x, y: over the entries of that rank-local vector. */
 PetscErrorCode BlockMatrixMultiply(BlockMatrix blocks, int list, const PetscReal *x, PetscReal *y)
 {
   PetscFunctionBeginUser;

@@ -130,8 +130,7 @@ static PetscErrorCode PairCreateTerms(Mesh mesh, Scene scene, Pair *pair)
 
 static PetscErrorCode PairCreate(Mesh mesh, Scene scene, Elasticity elasticity, Loads loads, const SceneContact *contact, Pair *pair)
 {
-  const MeshGroup *symmetry[3];
-  PetscReal        penalty;
+  PetscReal penalty;
 
   PetscFunctionBeginUser;
   pair->scene    = contact;
@@ -142,13 +141,7 @@ static PetscErrorCode PairCreate(Mesh mesh, Scene scene, Elasticity elasticity, 
   PetscCall(SurfaceCreate(mesh, scene, elasticity, contact->path, "slave", contact->slave, &pair->slave));
   PetscCall(SurfaceCreate(mesh, scene, elasticity, contact->path, "master", contact->master, &pair->master));
   PetscCall(SurfaceImages(mesh, scene, contact, &pair->n_images, pair->images));
-  for (int s = 0; s < contact->n_symmetry; s++) {
-    MeshGroup *group;
-
-    PetscCall(MeshGetGroup(mesh, scene, contact->path, "symmetry", contact->symmetry[s], mesh->dim - 1, &group));
-    symmetry[s] = group;
-  }
-  PetscCall(SurfaceFindFreeEdges(pair->master, symmetry, contact->n_symmetry));
+  PetscCall(SurfaceFindFreeEdges(pair->master, pair->n_images, pair->images));
   PetscCall(PairCreateTerms(mesh, scene, pair));
   penalty = contact->penalty_scale * (contact->penalty_auto ? PenaltyAutomatic(pair->slave->stiffness, pair->master->stiffness) : contact->penalty);
   PetscCall(StateCreate(pair->n, penalty, &pair->now));
@@ -314,6 +307,10 @@ static PetscErrorCode PairTakeLists(Pair *pair, ContactLists lists, const PetscR
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* ContactGather - new lists, and with them new area factors, for all pairs; the blocks of the last tangent are dropped.
+
+   Collective. u[n_nodes*dim]: local displacements (length), ghosts included; t: load parameter, for rigid tools; motion: relative motion
+   (length) that the lists must be good for. The contact state is not touched. */
 PetscErrorCode ContactGather(Contact contact, const PetscReal *u, PetscReal t, PetscReal motion)
 {
   PetscFunctionBeginUser;
@@ -367,6 +364,10 @@ static PetscBool TermAgrees(const Pair *pair, PetscInt c, PetscReal gap, const P
   return PETSC_TRUE;
 }
 
+/* ContactListsHold - whether lists made afresh at the solution say the same of every term as those it was found with.
+
+   Collective. u, t: of the last ContactResidual() with forces; motion: as of ContactGather(). *hold: the same on all ranks; if it is
+   PETSC_FALSE the fresh lists of all pairs have replaced the old, and the problem is to be solved again. */
 PetscErrorCode ContactListsHold(Contact contact, const PetscReal *u, PetscReal t, PetscReal motion, PetscBool *hold)
 {
   ContactLists *lists;
@@ -476,6 +477,13 @@ static PetscErrorCode PairResidual(Contact contact, Pair *pair, const PetscReal 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* ContactResidual - contact forces, energy and their unassembled norm at (u, t).
+
+   Collective, with the same arguments NULL on all ranks. u[n_nodes*dim]: local displacements (length). f[n_nodes*dim]: contact forces are
+   subtracted as external ones are, complete at owned nodes; with f gaps, status and nodal forces become the present state. energy, force2
+   (sum of the squared forces of the terms): this rank's, added to. Each of the three may be NULL.
+
+   Source: Chamoret et al. 2004, eq. 12 and 15. */
 PetscErrorCode ContactResidual(Contact contact, const PetscReal *u, PetscReal t, PetscReal *f, PetscReal *energy, PetscReal *force2)
 {
   PetscFunctionBeginUser;
@@ -507,7 +515,7 @@ static int PointNodes(ContactLists lists, PetscInt q, const SmootherResult *r)
   return (int)n;
 }
 
-/* The block of one active term: sum_q w_q p M_q + A psi'' Nbar Nbar^T, over its points' nodes one after another (a node may occur twice). */
+/* The block of one active term: A (psi'' Nbar Nbar^T - p sum_q w_q M_q), over its points' nodes one after another (a node may occur twice). */
 static PetscErrorCode TermBlock(Contact contact, const Pair *pair, int p, PetscInt c, PetscReal pressure, PetscReal stiffness)
 {
   const int  dim  = contact->mesh->dim;
@@ -558,6 +566,10 @@ static PetscErrorCode PairBlocks(Contact contact, Pair *pair, int p, const Petsc
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* ContactTangent - the derivative of ContactResidual()'s forces by the free displacements: A (psi'' N N^T - p M) for each closed term, p its pressure.
+
+   Collective. u, t: as of ContactResidual(); touching: open nodes within TouchTolerance() take part with their stiffness too. *C: over the
+   global free dofs, the contact's own; *changed: its pattern is new. Source: Chamoret et al. 2004, eq. 14. */
 PetscErrorCode ContactTangent(Contact contact, const PetscReal *u, PetscReal t, PetscBool touching, Mat *C, PetscBool *changed)
 {
   const PetscInt **dof;
@@ -580,6 +592,10 @@ PetscErrorCode ContactTangent(Contact contact, const PetscReal *u, PetscReal t, 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* ContactMultiply - y += C x with the blocks of the last ContactTangent(), prescribed dofs included.
+
+   Collective. x[n_nodes*dim]: local displacements (length), ghosts included, to which the rigid tools' motion from t to t_next is joined;
+   y[n_nodes*dim]: local forces, complete at owned nodes. */
 PetscErrorCode ContactMultiply(Contact contact, const PetscReal *x, PetscReal t, PetscReal t_next, PetscReal *y)
 {
   PetscFunctionBeginUser;
@@ -600,6 +616,7 @@ PetscErrorCode ContactMultiply(Contact contact, const PetscReal *x, PetscReal t,
 
 /* ---------- state ---------- */
 
+/* ContactAccept - the present state becomes the one that ContactRestore() returns to. Not collective. */
 PetscErrorCode ContactAccept(Contact contact)
 {
   PetscFunctionBeginUser;
@@ -607,6 +624,7 @@ PetscErrorCode ContactAccept(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* ContactRestore - takes the state back to the last ContactAccept(); the lists are not part of it: ContactGather(). Not collective. */
 PetscErrorCode ContactRestore(Contact contact)
 {
   PetscFunctionBeginUser;
@@ -614,6 +632,9 @@ PetscErrorCode ContactRestore(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* ContactCheckOverlap - refuses (exit 1) the deepest overlap of each pair that is more than the facets' own sagitta explains.
+
+   Collective; after ContactResidual() with forces, at the undeformed state. The message names pair, node and depth. */
 PetscErrorCode ContactCheckOverlap(Contact contact)
 {
   Mesh mesh = contact->mesh;
@@ -646,6 +667,9 @@ PetscErrorCode ContactCheckOverlap(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* ContactSummarise - counts, penetrations (lengths), penalties and total force of all pairs in the present state, the same on all ranks.
+
+   Collective. in and out count against the accepted state: to be called before ContactAccept(). */
 PetscErrorCode ContactSummarise(Contact contact, ContactSummary *summary)
 {
   PetscInt  count[3] = {0, 0, 0};
@@ -686,16 +710,19 @@ PetscErrorCode ContactSummarise(Contact contact, ContactSummary *summary)
 
 /* ---------- what probes and output ask ---------- */
 
+/* ContactPairs - how many pairs there are; 0 for NULL. Not collective. */
 int ContactPairs(Contact contact)
 {
   return contact ? contact->n_pairs : 0;
 }
 
+/* ContactPairName - the scene's name of a pair. Not collective. */
 const char *ContactPairName(Contact contact, int pair)
 {
   return contact->pairs[pair].scene->name;
 }
 
+/* ContactFindPair - number of the pair of that name, -1: none. Not collective. */
 int ContactFindPair(Contact contact, const char *name)
 {
   for (int p = 0; p < ContactPairs(contact); p++)
@@ -703,6 +730,10 @@ int ContactFindPair(Contact contact, const char *name)
   return -1;
 }
 
+/* ContactGetNodes - what this rank's slave nodes of pair p show: areas, gaps, forces, pressures, normals.
+
+   Collective. u[n_nodes*dim]: local displacements (length), for the current tributary areas (finite kinematics; else the reference's). The
+   arrays belong to the contact and stand until its next call. */
 PetscErrorCode ContactGetNodes(Contact contact, int p, const PetscReal *u, ContactNodes *nodes)
 {
   Pair      *pair = &contact->pairs[p];
@@ -717,6 +748,9 @@ PetscErrorCode ContactGetNodes(Contact contact, int p, const PetscReal *u, Conta
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* ContactMasterForce - total force of pair p on its master in the present state, the same on all ranks; axisymmetric: over 360 degrees.
+
+   Collective. */
 PetscErrorCode ContactMasterForce(Contact contact, int p, PetscReal force[3])
 {
   const Pair *pair = &contact->pairs[p];
@@ -729,6 +763,10 @@ PetscErrorCode ContactMasterForce(Contact contact, int p, PetscReal force[3])
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* ContactGapAt - gap (length) of pair p at a slave node, the same on all ranks.
+
+   Collective. u[n_nodes*dim], t: the present state; node_id: the mesh's rank-independent number. The state's own gap where there is one;
+   else the signed distance to the whole master without its mirror images (SearchDistance()). NaN: no node of the slave surface. */
 PetscErrorCode ContactGapAt(Contact contact, int p, const PetscReal *u, PetscReal t, PetscInt node_id, PetscReal *gap)
 {
   Mesh        mesh = contact->mesh;
@@ -763,6 +801,7 @@ PetscErrorCode ContactGapAt(Contact contact, int p, const PetscReal *u, PetscRea
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* ContactPairPenalty - smallest and largest penalty (force per length and area) of pair p over all ranks. Collective. */
 PetscErrorCode ContactPairPenalty(Contact contact, int p, PetscReal *least, PetscReal *most)
 {
   const Pair *pair     = &contact->pairs[p];
@@ -779,6 +818,7 @@ PetscErrorCode ContactPairPenalty(Contact contact, int p, PetscReal *least, Pets
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* ContactPairSurface - the group of the slave surface of pair p (the mesh's) and its mean face size (length). Not collective. */
 PetscErrorCode ContactPairSurface(Contact contact, int p, const MeshGroup **slave, PetscReal *mean_face_size)
 {
   PetscFunctionBeginUser;

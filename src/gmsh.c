@@ -247,12 +247,32 @@ static PetscBool IsNumber(const char *text)
   return *text && !*end ? PETSC_TRUE : PETSC_FALSE;
 }
 
+/* Does the file end as gmsh ends one? On a full disk gmsh leaves a part of it, or nothing, and reports success. */
+static PetscErrorCode MeshIsWhole(const char *file, PetscBool *whole)
+{
+  char  *text, *line;
+  size_t size;
+
+  PetscFunctionBeginUser;
+  *whole = PETSC_FALSE;
+  PetscCall(GmshFileLoad(file, &text, &size));
+  if (!text) PetscFunctionReturn(PETSC_SUCCESS);
+  while (size && isspace((unsigned char)text[size - 1])) size--;
+  text[size] = '\0';
+  line       = text + size;
+  while (line > text && line[-1] != '\n') line--;
+  *whole = strncmp(line, "$End", 4) ? PETSC_FALSE : PETSC_TRUE;
+  PetscCall(PetscFree(text));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 static PetscErrorCode MeshGeometry(Scene scene, const char *file, Complaint *complaint)
 {
   char         temporary[PETSC_MAX_PATH_LEN + TEXT_PARTS_IN_NAME], dim[16], order[16], errors[1024], *output;
   const char **arguments;
   int          n = 0, status;
   struct stat  made;
+  PetscBool    whole;
 
   PetscFunctionBeginUser;
   snprintf(temporary, sizeof(temporary), "%s.%d.tmp", file, (int)getpid());
@@ -272,10 +292,13 @@ static PetscErrorCode MeshGeometry(Scene scene, const char *file, Complaint *com
   arguments[n]   = NULL;
   PetscCall(GmshExecute((char *const *)arguments, &output, &status));
   ErrorLines(output, errors, sizeof(errors));
+  PetscCall(MeshIsWhole(temporary, &whole));
   if (status || errors[0])
     Complain(complaint, "%s: gmsh failed on '%s' (exit status %d)%s", SceneWhere(scene, "mesh", "file"), scene->mesh_file, status, errors);
   else if (stat(temporary, &made))
     Complain(complaint, "%s: gmsh wrote no mesh for '%s'", SceneWhere(scene, "mesh", "file"), scene->mesh_file);
+  else if (!whole)
+    Complain(complaint, "cannot write '%s': gmsh left a part of it; is the disk full?", file);
   else if (rename(temporary, file))
     Complain(complaint, "cannot write '%s': %s", file, strerror(errno));
   unlink(temporary);
@@ -332,6 +355,7 @@ PetscErrorCode GmshGenerate(Scene scene, const char *directory, char *file, Pets
   *seconds = 0;
   *file    = '\0';
   if (stat(scene->mesh_file, &there)) Complain(complaint, "%s: there is no file '%s'", SceneWhere(scene, "mesh", "file"), scene->mesh_file);
+  else if (!S_ISREG(there.st_mode)) Complain(complaint, "%s: '%s' is no file", SceneWhere(scene, "mesh", "file"), scene->mesh_file);
   if (strlen(directory) + TEXT_PARTS_IN_NAME > PETSC_MAX_PATH_LEN) Complain(complaint, "the path '%s' is too long", directory);
   if (complaint->text[0]) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(FingerprintScene(scene, &content, complaint));

@@ -5,6 +5,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 
 enum {
   GMSH_POINT   = 15, /* gmsh's type number of a point */
@@ -55,14 +56,15 @@ typedef struct {
 */
 PetscErrorCode GmshFileLoad(const char *file, char **data, size_t *size)
 {
-  FILE *stream = fopen(file, "rb");
-  long  length = -1;
+  FILE       *stream = fopen(file, "rb");
+  long        length = -1;
+  struct stat status;
 
   PetscFunctionBeginUser;
   *data = NULL;
   *size = 0;
   if (!stream) PetscFunctionReturn(PETSC_SUCCESS);
-  if (!fseek(stream, 0, SEEK_END)) length = ftell(stream);
+  if (!fstat(fileno(stream), &status) && S_ISREG(status.st_mode) && !fseek(stream, 0, SEEK_END)) length = ftell(stream);
   if (length >= 0) {
     rewind(stream);
     PetscCall(PetscMalloc1((size_t)length + 1, data));

@@ -150,12 +150,10 @@ static PetscErrorCode DeadLoadVolume(Loads loads, const SceneLoad *load, PetscRe
 {
   Mesh   mesh = loads->mesh;
   Scene  scene = loads->scene;
-  int    body = -1;
+  int    body  = MeshFindBody(scene, load->region, PETSC_FALSE);
   double X[ELEMENT_MAX_NODES * 3], fe[ELEMENT_MAX_NODES * 3];
 
   PetscFunctionBeginUser;
-  for (int b = 0; b < scene->n_bodies; b++)
-    if (!scene->bodies[b].rigid && !strcmp(scene->bodies[b].name, load->region)) body = b;
   if (body < 0) PetscCall(RefuseInput(mesh->comm, "%s: no deformable body named '%s'; allowed: a volume listed in bodies", SceneWhere(scene, load->path, "volume"), load->region));
   for (PetscInt c = 0; c < mesh->n_cells; c++) {
     const PetscInt *nodes = &mesh->cell_nodes[mesh->cell_ptr[c]];

@@ -12,10 +12,15 @@
 #define MODEL_MOTION_SAFETY 1.5
 /* A direct solve of a regular system leaves a relative residual of 1e-12 to 1e-7, stiff penalties included; above this the system is singular. */
 #define MODEL_SINGULAR 1e-3
+/* Round-off of the residual, in machine epsilons times stiffness times displacement: a body that is moved without any force has nothing else
+   to be measured against. Measured: 0.1 to 1.5. */
+#define MODEL_ROUND_OFF 16
+/* Workspace of MUMPS above its estimate, in per cent. Its own 20 is too little for symmetric systems of a few thousand dofs on four ranks. */
+#define MODEL_MUMPS_WORKSPACE "100"
 /* Newton is limited by its iterations, not by the line search's evaluations. */
 #define MODEL_MAX_FUNCTIONS 1000000
 
-const char *const SolveResults[] = {"converged", "Newton's method did not converge within solver.max_iterations", "the line search found no lower energy", "an element turned inside out", "the linear system is singular (is a body free to move?) or its solver failed", "the contact lists did not settle", "not-a-number in the residual"};
+const char *const SolveResults[] = {"converged", "Newton's method did not converge within solver.max_iterations", "the line search found no lower energy", "an element turned inside out", "the linear system is singular (is a body free to move?) or its solver failed", "the direct solver ran out of workspace (PETSc option mat_mumps_icntl_14 gives it more)", "the contact lists did not settle", "not-a-number in the residual"};
 
 typedef struct _n_ModelWork {
   PetscReal *f;            /* local residual of the last evaluation, all dofs */
@@ -25,10 +30,10 @@ typedef struct _n_ModelWork {
   PetscReal  accepted_t;
   PetscReal  rate;         /* largest displacement per unit of t in the last accepted step */
   PetscReal  scale;        /* force norm of the last evaluation */
-  PetscBool  started;      /* a first tangent, the prediction's, has been made: the touching start is over */
+  PetscReal  stiffness;    /* norm of the elastic tangent's diagonal */
   PetscInt   inverted;     /* gmsh's tag of a cell of this rank that was turned inside out in this solve, or -1 */
   PetscBool  near;         /* the iterate is so close that energies differ by round-off only */
-  Vec        residual;     /* of a trial point, while near */
+  Vec        residual;     /* of a trial point, while near; the tangent's diagonal for a moment */
 } ModelWork;
 
 /* ---------- residual, energy, tangent ---------- */
@@ -143,8 +148,8 @@ static PetscErrorCode ModelAddContact(Model model, Mat K, Mat C, PetscBool chang
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The tangent at (u, t) into model->A. */
-static PetscErrorCode ModelTangent(Model model, const PetscReal *u, PetscReal t)
+/* The tangent at (u, t) into model->A; touching: with the stiffness of slave nodes that just touch. */
+static PetscErrorCode ModelTangent(Model model, const PetscReal *u, PetscReal t, PetscBool touching)
 {
   Mat       K, C;
   PetscBool changed;
@@ -154,14 +159,15 @@ static PetscErrorCode ModelTangent(Model model, const PetscReal *u, PetscReal t)
   PetscCall(ElasticityTangent(model->elasticity, u));
   PetscCall(LoadsTangent(model->loads, t, u, model->elasticity));
   PetscCall(ElasticityMatrix(model->elasticity, &K));
+  PetscCall(MatGetDiagonal(K, model->work->residual));
+  PetscCall(VecNorm(model->work->residual, NORM_2, &model->work->stiffness));
   TimingEnd(TIMING_ASSEMBLY_ELASTIC);
   if (model->contact) {
     TimingBegin(TIMING_ASSEMBLY_CONTACT);
-    PetscCall(ContactTangent(model->contact, u, t, (PetscBool)!model->work->started, &C, &changed));
+    PetscCall(ContactTangent(model->contact, u, t, touching, &C, &changed));
     PetscCall(ModelAddContact(model, K, C, changed));
     TimingEnd(TIMING_ASSEMBLY_CONTACT);
   }
-  model->work->started = PETSC_TRUE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -174,25 +180,39 @@ static PetscErrorCode ModelJacobian(SNES snes, Vec x, Mat J, Mat P, void *contex
   (void)J;
   (void)P;
   PetscCall(ModelTrial(model, x));
-  PetscCall(ModelTangent(model, model->work->trial, model->t));
+  PetscCall(ModelTangent(model, model->work->trial, model->t, PETSC_FALSE));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Converged when the residual is small against the forces that balance in it, never against its own first value. */
+/* What round-off leaves of the residual at the trial displacements. */
+static PetscErrorCode ModelRoundOff(Model model, PetscReal *force)
+{
+  PetscReal most = 0;
+
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < model->mesh->n_nodes * model->mesh->dim; i++) most = PetscMax(most, PetscAbsReal(model->work->trial[i]));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &most, 1, MPIU_REAL, MPI_MAX, model->mesh->comm));
+  *force = MODEL_ROUND_OFF * PETSC_MACHINE_EPSILON * model->work->stiffness * most;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Converged when the residual is small against the forces that balance in it, never against its own first value; or is nothing but round-off. */
 static PetscErrorCode ModelConverged(SNES snes, PetscInt it, PetscReal xnorm, PetscReal snorm, PetscReal fnorm, SNESConvergedReason *reason, void *context)
 {
   Model           model = context;
   const PetscReal scale = PetscMax(model->force_scale, model->work->scale);
+  PetscReal       round_off;
 
   PetscFunctionBeginUser;
   (void)snes;
   (void)it;
   (void)xnorm;
   (void)snorm;
+  PetscCall(ModelRoundOff(model, &round_off));
   *reason           = SNES_CONVERGED_ITERATING;
   model->work->near = fnorm <= MODEL_ENERGY_ROUND_OFF * scale ? PETSC_TRUE : PETSC_FALSE;
   if (PetscIsInfOrNanReal(fnorm)) *reason = SNES_DIVERGED_FUNCTION_NANORINF;
-  else if (fnorm <= model->scene->solver.tolerance * scale) *reason = SNES_CONVERGED_FNORM_ABS;
+  else if (fnorm <= PetscMax(model->scene->solver.tolerance * scale, round_off)) *reason = SNES_CONVERGED_FNORM_ABS;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -226,6 +246,7 @@ static PetscErrorCode ModelCreateSNES(Model model)
   SNESLineSearch  search;
   KSP             ksp;
   PC              pc;
+  PetscBool       given;
 
   PetscFunctionBeginUser;
   PetscCall(SNESCreate(model->mesh->comm, &model->snes));
@@ -245,6 +266,11 @@ static PetscErrorCode ModelCreateSNES(Model model)
   PetscCall(KSPGetPC(ksp, &pc));
   PetscCall(PCSetType(pc, symmetric ? PCCHOLESKY : PCLU));
   PetscCall(PCFactorSetMatSolverType(pc, MATSOLVERMUMPS));
+  PetscCall(PetscOptionsHasName(NULL, NULL, "-mat_mumps_icntl_14", &given));
+  if (!given) { /* an option, as each new factor reads it; asked for, so that it never counts as one that nobody uses */
+    PetscCall(PetscOptionsSetValue(NULL, "-mat_mumps_icntl_14", MODEL_MUMPS_WORKSPACE));
+    PetscCall(PetscOptionsHasName(NULL, NULL, "-mat_mumps_icntl_14", &given));
+  }
   PetscCall(SNESSetFromOptions(model->snes));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -304,6 +330,9 @@ PetscErrorCode ModelDestroy(Model *model)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* ModelSetUp - contact lists at t = 0 and the state there as the first accepted one.
+
+   Collective. Refuses (exit 1) initial overlaps, ContactCheckOverlap(). */
 PetscErrorCode ModelSetUp(Model model)
 {
   PetscBool ok;
@@ -341,6 +370,21 @@ static PetscErrorCode ModelMotion(Model model, const PetscReal *u, PetscReal t, 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Why the linear solve failed */
+static PetscErrorCode ModelLinearFailure(Model model, SolveResult *result)
+{
+  KSP            ksp;
+  PC             pc;
+  PCFailedReason reason;
+
+  PetscFunctionBeginUser;
+  PetscCall(SNESGetKSP(model->snes, &ksp));
+  PetscCall(KSPGetPC(ksp, &pc));
+  PetscCall(PCGetFailedReason(pc, &reason));
+  *result = reason == PC_FACTOR_OUTMEMORY ? SOLVE_WORKSPACE : SOLVE_LINEAR;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Prediction: one linear solve with the tangent of the accepted state, for the loads, imposed displacements and tool motions of the new load
    parameter. It is the first Newton iteration, written so that what is prescribed moves with the whole body and not through it. */
 static PetscErrorCode ModelPredict(Model model, SolveReport *report)
@@ -362,7 +406,7 @@ static PetscErrorCode ModelPredict(Model model, SolveReport *report)
   PetscCall(PetscArraycpy(step, work->accepted_u, n));
   PetscCall(LoadsPrescribe(model->loads, model->t, step));
   for (PetscInt i = 0; i < n; i++) step[i] -= work->accepted_u[i];
-  PetscCall(ModelTangent(model, work->accepted_u, work->accepted_t));
+  PetscCall(ModelTangent(model, work->accepted_u, work->accepted_t, (PetscBool)(work->accepted_t == 0))); /* touching start: a body that only contact holds */
   PetscCall(ModelResidual(model, work->accepted_u, model->t, work->accepted_t, &ok));
   PetscCall(ElasticityMultiplyLocal(model->elasticity, step, work->f));
   if (model->contact) PetscCall(ContactMultiply(model->contact, step, work->accepted_t, model->t, work->f));
@@ -379,7 +423,7 @@ static PetscErrorCode ModelPredict(Model model, SolveReport *report)
   PetscCall(VecScale(dx, -1));
   PetscCall(MatMultAdd(model->A, dx, b, b));
   PetscCall(VecNorm(b, NORM_2, &left));
-  if (reason < 0 || !(left <= MODEL_SINGULAR * norm)) report->result = SOLVE_LINEAR;
+  if (reason < 0 || !(left <= MODEL_SINGULAR * norm)) PetscCall(ModelLinearFailure(model, &report->result));
   PetscCall(PetscFree(step));
   PetscCall(VecDestroy(&b));
   PetscCall(VecDestroy(&dx));
@@ -416,6 +460,8 @@ static PetscErrorCode ModelNewton(Model model, SolveReport *report)
   report->newton += its;
   report->krylov += krylov;
   report->result   = ResultFromReason(reason);
+  if (report->result == SOLVE_LINEAR) PetscCall(ModelLinearFailure(model, &report->result));
+  PetscCall(ModelTrial(model, model->x)); /* whatever SNES looked at last */
   report->residual = model->work->scale > 0 ? norm / PetscMax(model->force_scale, model->work->scale) : 0;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -443,7 +489,7 @@ static PetscErrorCode ModelLocateFailure(Model model, char *text, size_t size)
 
     for (int d = 0; d < dim; d++)
       if (!LoadsPrescribed(model->loads, n * dim + d)) square += PetscSqr(f[n * dim + d]);
-    if (square <= mine.value) continue;
+    if (!(square > mine.value) || PetscIsInfOrNanReal(square)) continue;
     mine.value = square;
     place[0]   = mesh->node_tag[n];
     for (int d = 0; d < dim; d++) place[1 + d] = mesh->coords[n * dim + d] + mesh->centre[d];
@@ -540,6 +586,10 @@ PetscErrorCode ModelRestore(Model model)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* ModelReaction - the force that supports and imposed displacements put on a group's nodes in the accepted state, the same on all ranks.
+
+   Collective. Sums the residual over the group's prescribed dofs, those of its edges that it shares with other prescribed surfaces too;
+   axisymmetric: over 360 degrees. force[dim..2] are 0. */
 PetscErrorCode ModelReaction(Model model, const MeshGroup *group, PetscReal force[3])
 {
   const int dim = model->mesh->dim;
@@ -556,6 +606,7 @@ PetscErrorCode ModelReaction(Model model, const MeshGroup *group, PetscReal forc
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* ModelEffects - what the scene calls for, in words with commas between, into text[size]. Not collective, same on all ranks. */
 PetscErrorCode ModelEffects(Model model, char *text, size_t size)
 {
   Scene     scene = model->scene;
@@ -568,6 +619,7 @@ PetscErrorCode ModelEffects(Model model, char *text, size_t size)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* ModelDofs - number of free dofs on all ranks. Not collective. */
 PetscErrorCode ModelDofs(Model model, PetscInt *free_dofs)
 {
   PetscFunctionBeginUser;
@@ -575,6 +627,7 @@ PetscErrorCode ModelDofs(Model model, PetscInt *free_dofs)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* ModelIsLinear - is one linear solve the answer at any t? Not collective, same on all ranks. */
 PetscBool ModelIsLinear(Model model)
 {
   return model->scene->kinematics == KINEMATICS_SMALL && !model->contact ? PETSC_TRUE : PETSC_FALSE;

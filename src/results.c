@@ -27,6 +27,7 @@ struct _n_Results {
   FILE       *csv; /* rank 0 */
   Fields      fields;
   PetscReal  *values; /* of the probes, at the last accepted step */
+  PetscBool  *met; /* per contact pair: some slave node has met its master */
   StepRecord  last;
   PetscBool   stepped, written; /* there is an accepted step; results.h5 holds it */
   double      started;
@@ -406,7 +407,7 @@ PetscErrorCode ResultsCreate(Model model, Probes probes, Scene scene, const char
   PetscCallMPI(MPI_Comm_size(comm, &results->size));
   results->quiet = quiet;
   results->talks = results->rank == 0 && !quiet ? PETSC_TRUE : PETSC_FALSE;
-  PetscCall(PetscCalloc1(scene->n_probes, &results->values));
+  PetscCall(PetscCalloc2(scene->n_probes, &results->values, scene->n_contacts, &results->met));
   PetscCall(FieldsCreate(model, scene, directory, &results->fields));
   *result = results;
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -419,7 +420,7 @@ PetscErrorCode ResultsDestroy(Results *results)
   if (!*results) PetscFunctionReturn(PETSC_SUCCESS);
   if ((*results)->csv) fclose((*results)->csv);
   PetscCall(FieldsDestroy(&(*results)->fields));
-  PetscCall(PetscFree((*results)->values));
+  PetscCall(PetscFree2((*results)->values, (*results)->met));
   PetscCall(PetscFree(*results));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -455,6 +456,23 @@ static PetscErrorCode ResultsWriteFields(Results results)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Which pairs have come into contact by now */
+static PetscErrorCode ResultsWatchContact(Results results)
+{
+  Model model = results->model;
+
+  PetscFunctionBeginUser;
+  for (int p = 0; p < results->scene->n_contacts; p++) {
+    ContactNodes nodes;
+
+    if (results->met[p]) continue;
+    PetscCall(ContactGetNodes(model->contact, p, model->u, &nodes));
+    for (PetscInt c = 0; c < nodes.n; c++) results->met[p] = results->met[p] || nodes.force[c] != 0 ? PETSC_TRUE : PETSC_FALSE;
+    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &results->met[p], 1, MPIU_BOOL, MPI_LOR, model->mesh->comm));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /*
   ResultsStep - An accepted step, while the model is in its state: probes, a row of steps.csv, a line on the terminal, and fields at every
   output.every-th step. Collective.
@@ -466,6 +484,7 @@ PetscErrorCode ResultsStep(Results results, const StepRecord *step)
   PetscFunctionBeginUser;
   PetscCall(ProbesEvaluate(results->probes, results->values));
   TimingBegin(TIMING_OUTPUT);
+  PetscCall(ResultsWatchContact(results));
   results->last    = *step;
   results->stepped = PETSC_TRUE;
   results->written = PETSC_FALSE;
@@ -497,6 +516,34 @@ static PetscErrorCode ResultsPrintProbes(Results results)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* A misspelt PETSc option would go unnoticed: PETSc asks for what it knows and never looks at the rest. */
+static PetscErrorCode ResultsPrintUnused(Results results)
+{
+  PetscInt n;
+  char   **names, **values;
+
+  PetscFunctionBeginUser;
+  if (results->rank) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscOptionsLeftGet(NULL, &n, &names, &values));
+  for (PetscInt i = 0; i < n; i++) fprintf(stderr, "burnish: warning: nothing used the PETSc option -%s; is it misspelt?\n", names[i]);
+  PetscCall(PetscOptionsLeftRestore(NULL, &n, &names, &values));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* A tool whose normals look the wrong way is never met: the run would end well, without contact. */
+static void ResultsPrintUnmet(Results results)
+{
+  const Scene scene = results->scene;
+
+  if (results->rank || !results->stepped) return;
+  for (int p = 0; p < scene->n_contacts; p++) {
+    const SceneContact *contact = &scene->contacts[p];
+
+    if (results->met[p]) continue;
+    fprintf(stderr, "burnish: warning: contact '%s': no node of '%s' met '%s' in this run; if it should have: do the master's normals point to the slave?\n", contact->name, contact->slave, contact->master);
+  }
+}
+
 static void ResultsPrintEnd(Results results, const RunRecord *run)
 {
   char text[32];
@@ -520,6 +567,8 @@ PetscErrorCode ResultsFinish(Results results, const RunRecord *run)
   TimingEnd(TIMING_OUTPUT);
   PetscCall(SummaryWrite(results->model, results->scene, results->directory, run, results->stepped ? &results->last : NULL, results->values));
   PetscCall(ResultsPrintProbes(results));
+  PetscCall(ResultsPrintUnused(results));
+  ResultsPrintUnmet(results);
   ResultsPrintEnd(results, run);
   PetscFunctionReturn(PETSC_SUCCESS);
 }

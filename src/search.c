@@ -247,7 +247,7 @@ static PetscInt UniqueNodes(PetscInt n, NodeKey *keys)
 {
   PetscInt kept = 0;
 
-  qsort(keys, n, sizeof(*keys), NodeKeyCompare);
+  if (n) qsort(keys, n, sizeof(*keys), NodeKeyCompare);
   for (PetscInt i = 0; i < n; i++)
     if (!kept || keys[i].id != keys[kept - 1].id) keys[kept++] = keys[i];
   return kept;
@@ -327,6 +327,10 @@ static PetscErrorCode ListsCreateNodes(ContactSearch s, PetscInt n_records, Face
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* ListsBroadcast - values of the contact nodes from those of the mesh's nodes.
+
+   Collective. x[mesh n_nodes*dim]: local, read at owned nodes; values[lists n_nodes*dim]: nodes of a rigid tool get their motion (length)
+   from load parameter t to t_next. */
 PetscErrorCode ListsBroadcast(ContactSearch s, ContactLists lists, const PetscReal *x, PetscReal t, PetscReal t_next, PetscReal *values)
 {
   PetscFunctionBeginUser;
@@ -342,6 +346,9 @@ PetscErrorCode ListsBroadcast(ContactSearch s, ContactLists lists, const PetscRe
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* ListsReduce - the transpose of ListsBroadcast(): adds values[lists n_nodes*dim] to y[mesh n_nodes*dim] at the owners of the nodes.
+
+   Collective. Values of nodes of a rigid tool go nowhere. */
 PetscErrorCode ListsReduce(ContactLists lists, const PetscReal *values, PetscReal *y)
 {
   PetscFunctionBeginUser;
@@ -383,6 +390,9 @@ static void SlaveMap(const ContactLists lists, PetscInt q, const PetscReal *x, P
   }
 }
 
+/* ListsUpdate - moves contact nodes, fit points and slave points to (u, t); what is listed stays.
+
+   Collective. u[mesh n_nodes*dim]: local displacements (length), read at owned nodes. */
 PetscErrorCode ListsUpdate(ContactSearch s, ContactLists lists, const PetscReal *u, PetscReal t)
 {
   PetscFunctionBeginUser;
@@ -689,6 +699,11 @@ static PetscErrorCode ListsFill(ContactSearch s, ContactLists lists, const Petsc
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* SearchLists - for every slave point of this rank the facets near it and the points these stand on, from whatever rank.
+
+   Collective. u[mesh n_nodes*dim]: local displacements (length), ghosts included; t: load parameter, for rigid tools; motion: relative
+   motion (length) the lists must be good for. Listed is what faces the slave within SEARCH_MARGIN of the nearest facet, if that is within
+   SEARCH_REACH; order and content do not depend on the ranks. The caller destroys the lists with ListsDestroy(). */
 PetscErrorCode SearchLists(ContactSearch s, const PetscReal *u, PetscReal t, PetscReal motion, ContactLists *out)
 {
   Mesh            mesh     = s->mesh;
@@ -711,7 +726,7 @@ PetscErrorCode SearchLists(ContactSearch s, const PetscReal *u, PetscReal t, Pet
     PetscCallMPI(MPI_Allgather(box, 6, MPIU_REAL, boxes, 6, MPIU_REAL, mesh->comm));
     PetscCall(ExchangeFaces(s, u, boxes, distance, &n_records, &records));
   }
-  qsort(records, n_records, sizeof(*records), RecordCompare);
+  if (n_records) qsort(records, n_records, sizeof(*records), RecordCompare);
   PetscCall(ListsCreateNodes(s, n_records, records, lists));
   PetscCall(UpdateNodes(s, lists, u, t));
   PetscCall(ListsCreateSlaves(s, lists));
@@ -727,6 +742,7 @@ PetscErrorCode SearchLists(ContactSearch s, const PetscReal *u, PetscReal t, Pet
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* ListsDestroy - Collective. */
 PetscErrorCode ListsDestroy(ContactLists *lists)
 {
   ContactLists l = *lists;
@@ -748,6 +764,9 @@ PetscErrorCode ListsDestroy(ContactLists *lists)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* SearchDistance - signed distance (length) of a point to the whole master, the same on all ranks; mirror images are left out.
+
+   Collective. u[mesh n_nodes*dim]: local displacements (length), ghosts included; x: the point's position relative to the mesh's centre. */
 PetscErrorCode SearchDistance(ContactSearch s, const PetscReal *u, PetscReal t, const PetscReal x[3], PetscReal *gap)
 {
   Mesh      mesh = s->mesh;

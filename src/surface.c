@@ -119,8 +119,7 @@ PetscErrorCode SurfaceCreate(Mesh mesh, Scene scene, Elasticity elasticity, cons
   surface->body  = -1;
   surface->rigid = MeshFindRigid(mesh, name);
   if (surface->rigid) {
-    for (int b = 0; b < scene->n_bodies; b++)
-      if (scene->bodies[b].rigid && !strcmp(scene->bodies[b].name, name)) surface->body = b;
+    surface->body = MeshFindBody(scene, name, PETSC_TRUE);
     PetscCall(SurfaceFacesFromRigid(surface));
     faces = surface->n_faces;
   } else {
@@ -193,25 +192,24 @@ static PetscInt KeepSingleEdges(PetscInt n, FaceEdge *edges)
   return kept;
 }
 
-static PetscBool NodeInGroup(const MeshGroup *group, PetscInt node)
+/* Does some plane of symmetry hold all nodes of the edge? */
+static PetscBool EdgeOnSymmetry(ContactSurface surface, const FaceEdge *edge, int n_images, const SurfaceImage *images)
 {
-  PetscInt at;
+  const int        dim    = surface->mesh->dim;
+  const PetscReal *coords = surface->rigid ? surface->rigid->coords : surface->mesh->coords;
+  const Facet     *face   = &surface->faces[edge->face];
+  int              corners[2];
+  const int        n = FaceEdgeNodes(face, edge->edge, corners);
 
-  if (PetscFindInt(node, group->n_nodes, group->nodes, &at)) return PETSC_FALSE;
-  return at >= 0 ? PETSC_TRUE : PETSC_FALSE;
-}
+  for (int plane = 1; plane < n_images; plane <<= 1) {
+    PetscReal distance = 0;
 
-static PetscBool EdgeOnSymmetry(ContactSurface surface, const FaceEdge *edge, const MeshGroup *const *symmetry, int n_symmetry)
-{
-  const Facet *face = &surface->faces[edge->face];
-  int          corners[2];
-  const int    n = FaceEdgeNodes(face, edge->edge, corners);
+    for (int i = 0; i < n; i++) {
+      const PetscReal *x = &coords[face->nodes[corners[i]] * dim];
 
-  for (int s = 0; s < n_symmetry; s++) {
-    PetscBool on = PETSC_TRUE;
-
-    for (int i = 0; i < n; i++) on = (PetscBool)(on && NodeInGroup(symmetry[s], face->nodes[corners[i]]));
-    if (on) return PETSC_TRUE;
+      for (int d = 0; d < dim; d++) distance = PetscMax(distance, PetscAbsReal(images[plane].sign[d] * x[d] + images[plane].shift[d] - x[d]));
+    }
+    if (distance <= SURFACE_FLATNESS * surface->mesh->size) return PETSC_TRUE;
   }
   return PETSC_FALSE;
 }
@@ -246,7 +244,11 @@ static PetscErrorCode DropPartitionBorders(MPI_Comm comm, PetscInt *n, FaceEdge 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode SurfaceFindFreeEdges(ContactSurface surface, const MeshGroup *const *symmetry, int n_symmetry)
+/* SurfaceFindFreeEdges - marks the edges (ends in 2D) that one face alone holds, over all ranks, unless they lie on a plane of symmetry.
+
+   Collective. images[n_images]: the pair's, SurfaceImages(); by their planes the test is the same for bodies, tools and the axis. Sets bits
+   of free_edges. */
+PetscErrorCode SurfaceFindFreeEdges(ContactSurface surface, int n_images, const SurfaceImage *images)
 {
   Mesh      mesh = surface->mesh;
   PetscInt  n    = 0;
@@ -272,13 +274,17 @@ PetscErrorCode SurfaceFindFreeEdges(ContactSurface surface, const MeshGroup *con
   n = KeepSingleEdges(n, edges);
   if (surface->group) PetscCall(DropPartitionBorders(mesh->comm, &n, edges));
   for (PetscInt i = 0; i < n; i++) {
-    if (surface->group && EdgeOnSymmetry(surface, &edges[i], symmetry, n_symmetry)) continue;
+    if (EdgeOnSymmetry(surface, &edges[i], n_images, images)) continue;
     surface->faces[edges[i].face].free_edges |= 1 << edges[i].edge;
   }
   PetscCall(PetscFree(edges));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* SurfaceNodeAreas - tributary areas int N_a dA and normals int N_a n dA of all local nodes, summed over the faces of all ranks.
+
+   Collective. Deformable surfaces only. geometry: axisymmetric areas are over 360 degrees; u[n_nodes*dim]: local displacements (length),
+   NULL: reference. area[n_nodes], normal[n_nodes*3] (NULL: not asked for; its length is an area): complete on every copy, 0 off the surface. */
 PetscErrorCode SurfaceNodeAreas(ContactSurface surface, Geometry geometry, const PetscReal *u, PetscReal *area, PetscReal *normal)
 {
   Mesh      mesh = surface->mesh;
@@ -304,6 +310,10 @@ PetscErrorCode SurfaceNodeAreas(ContactSurface surface, Geometry geometry, const
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* SurfaceNodeSizes - what the faces around each local node are like in the reference configuration.
+
+   Collective. Deformable surfaces only. size[n_nodes]: mean face size (length); turn[n_nodes]: how far the faces turn from their mean normal
+   (radians), from the resultant of their areas; share[n_nodes]: tributary area over the area of the faces. 0 off the surface. */
 PetscErrorCode SurfaceNodeSizes(ContactSurface surface, Geometry geometry, PetscReal *size, PetscReal *turn, PetscReal *share)
 {
   enum { SIZE, FACES, AREA, SUMS };
@@ -393,6 +403,10 @@ static void ImagesAddPlane(int axis, PetscReal position, int *n, SurfaceImage *i
   *n *= 2;
 }
 
+/* SurfaceImages - mirror images of a pair's master: identity, each plane of symmetry, all their products; the axis r = 0 is always one.
+
+   Collective. images[SURFACE_MAX_IMAGES]: in coordinates relative to the mesh's centre. Refuses (exit 1) surfaces that are not planar and
+   normal to an axis, that no support holds in that direction, and two planes normal to one axis. */
 PetscErrorCode SurfaceImages(Mesh mesh, Scene scene, const SceneContact *contact, int *n_images, SurfaceImage images[SURFACE_MAX_IMAGES])
 {
   int taken[3] = {0, 0, 0};
@@ -423,6 +437,8 @@ PetscErrorCode SurfaceImages(Mesh mesh, Scene scene, const SceneContact *contact
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* SurfaceImageFacet - a facet as one of its images sees it: turned over where the image reverses orientation, so that its normal points
+   out of the image again; free edges go along. Not collective. */
 Facet SurfaceImageFacet(const Facet *facet, const SurfaceImage *image)
 {
   const Element *e     = ElementGet(facet->type);

@@ -52,7 +52,7 @@ static void test_assembled_equals_blocks(void **state)
     for (int i = 0; i < 4; i++) in[i] = mine[i] < 0 ? 0 : 1;
     assert_int_equal(BlockMatrixMultiply(blocks, 0, in, out), 0);
     for (int i = 0; i < 4; i++) sum += mine[i] < 0 ? 0 : out[i];
-    MPI_Allreduce(MPI_IN_PLACE, &sum, 1, MPIU_REAL, MPI_SUM, PETSC_COMM_WORLD);
+    assert_int_equal(MPI_Allreduce(MPI_IN_PLACE, &sum, 1, MPIU_REAL, MPI_SUM, PETSC_COMM_WORLD), MPI_SUCCESS);
     assert_true(PetscAbsReal(sum - norm) <= 1e-12 * sum);
   }
   assert_int_equal(VecDestroy(&x), 0);

@@ -23,6 +23,11 @@ check.holds("failed attempts are counted", cut.summary()["newton_iterations"] > 
 for name, value in good.summary()["probes"].items():
     check.near(f"{name} after cutbacks", cut.summary()["probes"][name], value, 1e-6 * abs(good.summary()["probes"]["force_y"]))
 
+# 2b. A body that only contact holds from its first touch on: the first step fails (one iteration allowed) and is taken back with its touching start.
+touch = run(args, SCENES.parent.parent / "runs" / "slide_flat.yaml", out="touch", overrides=("stepping.initial=0.2", "solver.max_iterations=1"))
+check.holds("first step failed", touch.summary()["steps_failed"] > 0 and touch.steps()[0]["attempts"] > 1)
+check.near("force after it", touch.summary()["probes"]["force_y"], 160, 1e-6 * 160)
+
 # 3. No way on: one iteration is enough for the first half (no load yet), not for the second, and the floor is just below dt.
 stuck = run(args, lame, out="stuck", overrides=(*finite, "loads.0.pressure=5000", "loads.0.history=[[0, 0], [0.5, 0], [1, 1]]", "solver.max_iterations=1", "stepping={control: fixed, initial: 0.5, dt_min: 0.3}"), must=2)
 check.holds("message names load parameter, cause, node and what was tried", all(word in stuck.text for word in ("no equilibrium from t = 0.5 to 1", "inside out", "node", "dt_min 0.3")))
@@ -32,4 +37,17 @@ check.holds("last good state is on disk", "displacement" in stuck.fields())
 # 4. A body that nothing holds: the cause is named, not a line search.
 loose = run(args, lame, out="loose", overrides=("supports=[{surface: symmetry_x, uy: 0}]",), must=2)
 check.holds("singular system is named", "singular" in loose.text)
+
+# 5. Small strains and no contact: one linear solve, whatever the steps asked for.
+linear = run(args, lame, out="linear", overrides=("stepping.initial=0.1",))
+check.holds("one linear solve", linear.summary()["newton_iterations"] == 1 and linear.summary()["krylov_iterations"] == 1)
+
+# 6. Moved without any force until the tool comes back: only round-off is there to be measured against, on the way.
+approach = ("loads=[{surface: block_top, ux: 0, uy: -0.2}]", "stepping.initial=0.1")
+late = run(args, SCENES.parent.parent / "runs" / "slide_flat.yaml", out="late", overrides=(*approach, "bodies.1.rigid.motion=[{uy: -1, history: [[0, 0], [0.5, 1], [1, 0]]}]"))
+near = run(args, SCENES.parent.parent / "runs" / "slide_flat.yaml", out="near", overrides=approach)
+check.holds("no step failed on the way", late.summary()["steps_failed"] == 0)
+check.near("force after late contact", late.summary()["probes"]["force_y"], near.summary()["probes"]["force_y"], 1e-6 * near.summary()["probes"]["force_y"])
+never = run(args, SCENES.parent.parent / "runs" / "slide_flat.yaml", out="never", overrides=(*approach, "bodies.1.rigid.motion=[{uy: -1}]"))
+check.holds("contact that never came is warned of", "no node of 'block_bottom' met" in never.text and "warning" not in near.text.replace("warning: this is the reference BLAS", ""))
 check.finish()

@@ -46,6 +46,9 @@ refused("empty contact surface", "hollow", f"mesh.file={empty}", "contact=[{name
 broken = good.with_name("broken.geo")
 broken.write_text("Point(1) = {0, 0, 0;\n")
 refused("a .geo that gmsh rejects", "broken.geo", f"mesh.file={broken}")
+for name in ("folder.msh", "folder.geo"):
+    good.with_name(name).mkdir(exist_ok=True)
+    refused(f"a folder as mesh file: {name}", f"{name}.*no.* file", f"mesh.file={good.with_name(name)}")
 run(args, SCENES / "wrong_mesh.yaml", out="taken")
 refused("another scene's results", "-overwrite", "bodies.0.material.E=2000", out="taken", keep=True)
 run(args, SCENES / "wrong_mesh.yaml", "-overwrite", out="taken", overrides=["bodies.0.material.E=2000"], keep=True)
