@@ -38,3 +38,5 @@ PetscErrorCode SurfaceNodeSizes(ContactSurface, Geometry, PetscReal *size, Petsc
 PetscErrorCode SurfaceImages(Mesh, Scene, const SceneContact *, int *n_images, SurfaceImage images[SURFACE_MAX_IMAGES]);
 /* The face as its mirror image sees it: node order turned over where the image reverses orientation. */
 Facet          SurfaceImageFacet(const Facet *, const SurfaceImage *);
+/* Does any face of a master look towards any of the nodes (n of them, normals by local node, 3 each, any length)? Reference configuration. Collective. */
+PetscErrorCode SurfaceFaces(ContactSurface master, PetscInt n, const PetscInt nodes[], const PetscReal normals[], PetscBool *facing);

@@ -151,6 +151,21 @@ static PetscErrorCode PairCreate(Mesh mesh, Scene scene, Elasticity elasticity, 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Two pairs of the same surfaces would press twice. */
+static PetscErrorCode RefuseRepeatedPairs(Mesh mesh, Scene scene)
+{
+  PetscFunctionBeginUser;
+  for (int p = 0; p < scene->n_contacts; p++) {
+    for (int q = 0; q < p; q++) {
+      const SceneContact *a = &scene->contacts[p], *b = &scene->contacts[q];
+      const PetscBool     same = (PetscBool)(!strcmp(a->slave, b->slave) && !strcmp(a->master, b->master)), swapped = (PetscBool)(!strcmp(a->slave, b->master) && !strcmp(a->master, b->slave));
+
+      if (same || swapped) PetscCall(RefuseInput(mesh->comm, "%s: contact '%s' is '%s' once more%s: their forces would add up; allowed: one pair for each two surfaces", SceneWhere(scene, a->path, "slave"), a->name, b->name, swapped ? ", slave and master swapped" : ""));
+    }
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* ContactCreate - all pairs of the scene, without lists yet.
 
    Collective. Refuses what the mesh shows to be wrong: missing or empty surfaces, a rigid slave, planes of symmetry that are none. */
@@ -170,6 +185,7 @@ PetscErrorCode ContactCreate(Mesh mesh, Scene scene, Elasticity elasticity, Load
   PetscCall(PetscLogEventRegister("ContactResidual", SNES_CLASSID, &contact->event_residual));
   PetscCall(PetscLogEventRegister("ContactTangent", SNES_CLASSID, &contact->event_tangent));
   PetscCall(BlockMatrixCreate(mesh->comm, &contact->blocks));
+  PetscCall(RefuseRepeatedPairs(mesh, scene));
   PetscCall(PetscCalloc1(contact->n_pairs, &contact->pairs));
   for (int p = 0; p < contact->n_pairs; p++) {
     PetscCall(PairCreate(mesh, scene, elasticity, loads, &scene->contacts[p], &contact->pairs[p]));
@@ -632,6 +648,25 @@ PetscErrorCode ContactRestore(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Refuses a pair in which no master face looks towards any slave node: a surface turned inside out, or the wrong one. */
+static PetscErrorCode PairCheckFacing(Contact contact, const Pair *pair)
+{
+  Mesh       mesh = contact->mesh;
+  PetscReal *area, *normal;
+  PetscBool  facing;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc2(mesh->n_nodes, &area, 3 * mesh->n_nodes, &normal));
+  PetscCall(SurfaceNodeAreas(pair->slave, mesh->dim == 3 ? GEOMETRY_SOLID : GEOMETRY_PLANE_STRAIN, NULL, area, normal));
+  PetscCall(SurfaceFaces(pair->master, pair->n, pair->node, normal, &facing));
+  PetscCall(PetscFree2(area, normal));
+  if (!facing) {
+    PetscCall(RefuseInput(mesh->comm, "%s: contact '%s': no face of '%s' faces '%s', their outward normals point the same way; allowed: surfaces that look at each other (turn a rigid tool's surface round in gmsh, ReverseMesh, or name the other side)",
+                          SceneWhere(contact->scene, pair->scene->path, "master"), pair->scene->name, pair->scene->master, pair->scene->slave));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* ContactCheckOverlap - refuses (exit 1) the deepest overlap of each pair that is more than the facets' own sagitta explains.
 
    Collective; after ContactResidual() with forces, at the undeformed state. The message names pair, node and depth. */
@@ -650,6 +685,7 @@ PetscErrorCode ContactCheckOverlap(Contact contact)
     } mine = {0, 0}, least;
     char complaint[512];
 
+    PetscCall(PairCheckFacing(contact, pair));
     for (PetscInt c = 0; c < pair->n; c++) {
       if (!(pair->now.gap[c] < -TouchTolerance(pair, c)) || pair->now.gap[c] >= worst) continue;
       worst = pair->now.gap[c];

@@ -3,12 +3,17 @@
 #include "loads.h"
 #include "refusal.h"
 
+/* Who holds u_r on the axis of an axisymmetric scene: the geometry itself. */
+enum { LOADS_AXIS = 0x7fffffff };
+/* A node within this fraction of the model's size from r = 0 is on the axis. */
+#define LOADS_ON_AXIS 1e-9
+
 /* A dof that a support or an imposed displacement holds: u = value * history (a support's value is 0, its history NULL). */
 typedef struct {
   PetscInt       dof;
   PetscReal      value;
   const History *history;
-  int            load; /* index into scene->loads, or -1 - index into scene->supports: for messages */
+  int            load; /* index into scene->loads, or -1 - index into scene->supports, or LOADS_AXIS: for messages */
 } Prescribed;
 
 /* A dead load: nodal forces for factor 1, assembled once. */
@@ -52,31 +57,36 @@ static PetscBool PrescribedAgree(const Prescribed *a, const Prescribed *b)
 
 static const char *PrescribedPath(Scene scene, const Prescribed *p)
 {
+  if (p->load == LOADS_AXIS) return "the axisymmetric geometry (u_x = 0 on x = 0)";
   return p->load >= 0 ? scene->loads[p->load].path : scene->supports[-1 - p->load].path;
+}
+
+/* The rule for one dof; a second rule for it must say the same, else the complaint says who disagrees. */
+static PetscErrorCode LoadsAddDof(Loads loads, PetscInt dof, PetscReal value, const History *history, int load, PetscInt *owner, char *complaint, size_t size)
+{
+  const int        dim = loads->mesh->dim;
+  const Prescribed p   = {dof, value, history, load};
+
+  PetscFunctionBeginUser;
+  if (owner[dof] >= 0) {
+    const Prescribed *q = &loads->prescribed[owner[dof]];
+
+    if (!PrescribedAgree(&p, q) && !complaint[0]) {
+      PetscCall(PetscSNPrintf(complaint, size, "%s: u%c of node %" PetscInt_FMT " is prescribed differently by %s; allowed: one value for each component of a node (part the surfaces, or drop one of the two)",
+                              SceneWhere(loads->scene, PrescribedPath(loads->scene, &p), NULL), "xyz"[dof % dim], loads->mesh->node_tag[dof / dim], PrescribedPath(loads->scene, q)));
+    }
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  owner[dof]                               = loads->n_prescribed;
+  loads->constrained[dof]                  = PETSC_TRUE;
+  loads->prescribed[loads->n_prescribed++] = p;
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 static PetscErrorCode LoadsAddPrescribed(Loads loads, const MeshGroup *group, int component, PetscReal value, const History *history, int load, PetscInt *owner, char *complaint, size_t size)
 {
-  const int dim = loads->mesh->dim;
-
   PetscFunctionBeginUser;
-  for (PetscInt i = 0; i < group->n_nodes; i++) {
-    const PetscInt   dof = group->nodes[i] * dim + component;
-    const Prescribed p   = {dof, value, history, load};
-
-    if (owner[dof] >= 0) {
-      const Prescribed *q = &loads->prescribed[owner[dof]];
-
-      if (!PrescribedAgree(&p, q) && !complaint[0]) {
-        PetscCall(PetscSNPrintf(complaint, size, "%s: u%c of node %" PetscInt_FMT " is prescribed differently by %s; allowed: one value for each component of a node (part the surfaces, or drop one of the two)",
-                                SceneWhere(loads->scene, PrescribedPath(loads->scene, &p), NULL), "xyz"[component], loads->mesh->node_tag[group->nodes[i]], PrescribedPath(loads->scene, q)));
-      }
-      continue;
-    }
-    owner[dof]                              = loads->n_prescribed;
-    loads->constrained[dof]                 = PETSC_TRUE;
-    loads->prescribed[loads->n_prescribed++] = p;
-  }
+  for (PetscInt i = 0; i < group->n_nodes; i++) PetscCall(LoadsAddDof(loads, group->nodes[i] * loads->mesh->dim + component, value, history, load, owner, complaint, size));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -95,6 +105,8 @@ static PetscErrorCode LoadsCreatePrescribed(Loads loads)
     loads->constrained[i] = PETSC_FALSE;
     owner[i]              = -1;
   }
+  for (PetscInt node = 0; node < mesh->n_nodes && scene->geometry == GEOMETRY_AXISYMMETRIC; node++)
+    if (mesh->coords[node * mesh->dim] + mesh->centre[0] <= LOADS_ON_AXIS * mesh->size) PetscCall(LoadsAddDof(loads, node * mesh->dim, 0, NULL, LOADS_AXIS, owner, complaint, sizeof(complaint)));
   for (int s = 0; s < scene->n_supports; s++) {
     const SceneSupport *support = &scene->supports[s];
 

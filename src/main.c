@@ -35,6 +35,7 @@ static PetscErrorCode RunModel(Model model, Probes probes, Scene scene, const Co
 {
   Results       results;
   RunRecord     run;
+  PetscLogStage stage;
   PetscLogDouble now;
   LoadStepper   stepper;
   StepperReport report;
@@ -47,7 +48,10 @@ static PetscErrorCode RunModel(Model model, Probes probes, Scene scene, const Co
   PetscCall(LoadStepperSetFromScene(stepper, scene));
   PetscCall(LoadStepperSetFromOptions(stepper));
   PetscCall(LoadStepperMonitorSet(stepper, MonitorResults, results));
+  PetscCall(PetscLogStageRegister("Load steps", &stage));
+  PetscCall(PetscLogStagePush(stage));
   PetscCall(LoadStepperSolve(stepper, &report));
+  PetscCall(PetscLogStagePop());
   PetscCall(PetscTime(&now));
   run = (RunRecord){.status = report.done ? "done" : "not converged", .message = report.done ? NULL : report.message, .steps = report.steps, .steps_failed = report.steps_failed,
                     .newton_iterations = report.newton_iterations, .newton_accepted = report.newton_accepted, .krylov_iterations = report.krylov_iterations, .wall_s = now - start, .mesh_s = mesh_s};

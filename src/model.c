@@ -1,4 +1,5 @@
 #include "model.h"
+#include "refusal.h"
 #include "timing.h"
 
 /* Times that contact lists are replaced and the step solved on before it counts as unsettled. */
@@ -240,6 +241,34 @@ static PetscErrorCode LinearSolveEnds(KSP ksp, Vec b, Vec x, void *context)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Keeps the first message of an error instead of printing its trace; context: char[256]. */
+static PetscErrorCode KeepMessage(MPI_Comm comm, int line, const char *function, const char *file, PetscErrorCode code, PetscErrorType type, const char *message, void *context)
+{
+  char *kept = context;
+
+  (void)comm;
+  (void)line;
+  (void)function;
+  (void)file;
+  (void)type;
+  if (message && message[0] && !kept[0]) snprintf(kept, 256, "%.*s", (int)strcspn(message, "\n"), message);
+  return code;
+}
+
+/* PETSc's options for the solver; a value that PETSc refuses is the user's mistake. */
+static PetscErrorCode ModelSetFromOptions(Model model)
+{
+  char           message[256] = "";
+  PetscErrorCode code;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscPushErrorHandler(KeepMessage, message));
+  code = SNESSetFromOptions(model->snes);
+  PetscCall(PetscPopErrorHandler());
+  if (code) PetscCall(RefuseInput(model->mesh->comm, "a PETSc option (command line, environment or the scene's petsc) was refused: %s", message));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 static PetscErrorCode ModelCreateSNES(Model model)
 {
   const PetscBool symmetric = LoadsConservative(model->loads);
@@ -271,7 +300,7 @@ static PetscErrorCode ModelCreateSNES(Model model)
     PetscCall(PetscOptionsSetValue(NULL, "-mat_mumps_icntl_14", MODEL_MUMPS_WORKSPACE));
     PetscCall(PetscOptionsHasName(NULL, NULL, "-mat_mumps_icntl_14", &given));
   }
-  PetscCall(SNESSetFromOptions(model->snes));
+  PetscCall(ModelSetFromOptions(model));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

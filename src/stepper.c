@@ -215,7 +215,7 @@ static PetscErrorCode LoadStepperAdvance(LoadStepper stepper, StepRecord *record
     PetscCall(ModelRestore(model));
     report->steps_failed++;
     stepper->dt = STEPPER_CUT * dt;
-    if (stepper->dt < stepper->dt_min) {
+    if (stepper->dt < stepper->dt_min || (solve.result == SOLVE_LINEAR && solve.newton == 1)) { /* a tangent singular at the start is so for any dt */
       PetscCall(PetscSNPrintf(report->message, sizeof(report->message), "no equilibrium from t = %.6g to %.6g: %s; %s; tried %" PetscInt_FMT " steps, dt from %.3g down to %.3g (dt_min %.3g)", (double)t, (double)end, SolveResults[solve.result], solve.detail, record->attempts, (double)first, (double)dt, (double)stepper->dt_min));
       PetscFunctionReturn(PETSC_SUCCESS);
     }

@@ -4,6 +4,10 @@
 
 /* A plane of symmetry may deviate from flatness, and its normal from an axis, by this fraction of the model's size: round-off of a CAD kernel. */
 #define SURFACE_FLATNESS 1e-6
+/* Directions are told apart by the cells of a cube's faces, so many along an edge; a cell is some 20 degrees wide, so normals count as opposed
+   up to this cosine. */
+enum { SURFACE_CELLS = 4, SURFACE_DIRECTIONS = 6 * SURFACE_CELLS * SURFACE_CELLS };
+#define SURFACE_OPPOSED 0.25
 
 static void FaceCoordinates(ContactSurface surface, const Facet *face, const PetscReal *u, double *X)
 {
@@ -452,4 +456,67 @@ Facet SurfaceImageFacet(const Facet *facet, const SurfaceImage *image)
   for (int k = 0; k < edges; k++)
     if (facet->free_edges >> k & 1) out.free_edges |= 1 << (edges - 1 - k);
   return out;
+}
+
+/* The cell of the cube that a direction points into, and back to the cell's middle. */
+static int DirectionCell(const PetscReal v[3])
+{
+  int axis = 0, cell[2];
+
+  for (int d = 1; d < 3; d++)
+    if (PetscAbsReal(v[d]) > PetscAbsReal(v[axis])) axis = d;
+  for (int k = 0; k < 2; k++) cell[k] = PetscMin(SURFACE_CELLS - 1, (int)((v[(axis + 1 + k) % 3] / PetscAbsReal(v[axis]) + 1) / 2 * SURFACE_CELLS));
+  return ((2 * axis + (v[axis] < 0)) * SURFACE_CELLS + cell[0]) * SURFACE_CELLS + cell[1];
+}
+
+static void DirectionMiddle(int index, PetscReal v[3])
+{
+  const int cell[2] = {index / SURFACE_CELLS % SURFACE_CELLS, index % SURFACE_CELLS}, side = index / (SURFACE_CELLS * SURFACE_CELLS), axis = side / 2;
+
+  v[axis] = side % 2 ? -1 : 1;
+  for (int k = 0; k < 2; k++) v[(axis + 1 + k) % 3] = (2 * cell[k] + 1.0) / SURFACE_CELLS - 1;
+}
+
+/* SurfaceFaces - is there any face of the master whose normal is opposed to that of any of these nodes?
+
+   Collective. n, nodes: this rank's; normals[3*local node]. The faces' directions are gathered by cells of about 20 degrees, so that ranks
+   exchange a fixed, small table. *facing: the same on all ranks. */
+PetscErrorCode SurfaceFaces(ContactSurface master, PetscInt n, const PetscInt nodes[], const PetscReal normals[], PetscBool *facing)
+{
+  const int dim                   = master->mesh->dim;
+  int       there[SURFACE_DIRECTIONS] = {0}, found = 0;
+  double    X[FACE_MAX_NODES * 3];
+
+  PetscFunctionBeginUser;
+  for (PetscInt f = 0; f < master->n_faces; f++) {
+    double    area[FACE_MAX_NODES] = {0}, normal[FACE_MAX_NODES * 3] = {0};
+    PetscReal sum[3]               = {0, 0, 0};
+
+    FaceCoordinates(master, &master->faces[f], NULL, X);
+    FaceAreaKernel(master->faces[f].type, dim, dim == 3 ? GEOMETRY_SOLID : GEOMETRY_PLANE_STRAIN, X, area, normal);
+    for (int a = 0; a < ElementGet(master->faces[f].type)->nodes; a++)
+      for (int d = 0; d < dim; d++) sum[d] += normal[a * dim + d];
+    if (sum[0] != 0 || sum[1] != 0 || sum[2] != 0) there[DirectionCell(sum)] = 1;
+  }
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, there, SURFACE_DIRECTIONS, MPI_INT, MPI_MAX, master->mesh->comm));
+  for (int k = 0; k < SURFACE_DIRECTIONS && !found; k++) {
+    PetscReal m[3];
+
+    if (!there[k]) continue;
+    DirectionMiddle(k, m);
+    for (PetscInt i = 0; i < n && !found; i++) {
+      const PetscReal *v = &normals[3 * nodes[i]];
+      PetscReal        product = 0, lengths[2] = {0, 0};
+
+      for (int d = 0; d < 3; d++) {
+        product += v[d] * m[d];
+        lengths[0] += v[d] * v[d];
+        lengths[1] += m[d] * m[d];
+      }
+      found = product < SURFACE_OPPOSED * PetscSqrtReal(lengths[0] * lengths[1]);
+    }
+  }
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &found, 1, MPI_INT, MPI_MAX, master->mesh->comm));
+  *facing = found ? PETSC_TRUE : PETSC_FALSE;
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
