@@ -40,6 +40,17 @@ typedef struct {
   PetscReal force;                            /* norm of the total force on the slaves */
 } ContactSummary;
 
+/* How the fits of a smooth master stand, all slave points near it */
+typedef struct {
+  PetscInt  points;                                  /* slave points near the master */
+  PetscInt  plain, wider, degree_2, linear, facets;  /* by rung of the ladder of fall-backs */
+  PetscInt  neighbours_min, neighbours_max;
+  PetscReal neighbours_mean;
+  PetscReal pivot, amplified;                        /* worst guards */
+  PetscReal smoothing_error;                         /* largest distance of a master node near the foot to the fit (a length) */
+  PetscReal facet_error;                             /* largest distance between facets and fit at a slave point (a length) */
+} ContactFits;
+
 typedef struct _n_Contact *Contact;
 
 PetscErrorCode ContactCreate(Mesh, Scene, Elasticity, Loads, Contact *);
@@ -58,8 +69,9 @@ PetscErrorCode ContactTangent(Contact, const PetscReal *u, PetscReal t, PetscBoo
 PetscErrorCode ContactMultiply(Contact, const PetscReal *x, PetscReal t, PetscReal t_next, PetscReal *y);
 PetscErrorCode ContactAccept(Contact);  /* the present state is the one that ContactRestore() returns to. Not collective */
 PetscErrorCode ContactRestore(Contact);
-/* Refuses initial overlaps beyond what the facets' own shape explains (pair, node, amount). After ContactResidual(). Collective. */
-PetscErrorCode ContactCheckOverlap(Contact);
+/* What the scene says of overlaps before any load (initial_overlap): refuses those beyond what the facets' own shape explains (pair, node,
+   amount), or keeps them as g_0. After ContactResidual(). Collective. */
+PetscErrorCode ContactTakeOverlap(Contact);
 PetscErrorCode ContactSummarise(Contact, ContactSummary *);
 int            ContactPairs(Contact);
 const char    *ContactPairName(Contact, int pair);
@@ -73,3 +85,7 @@ PetscErrorCode ContactGapAt(Contact, int pair, const PetscReal *u, PetscReal t, 
 /* Smallest and largest penalty of the pair. Collective. */
 PetscErrorCode ContactPairPenalty(Contact, int pair, PetscReal *least, PetscReal *most);
 PetscErrorCode ContactPairSurface(Contact, int pair, const MeshGroup **slave, PetscReal *mean_face_size);
+PetscErrorCode ContactPairFits(Contact, int pair, ContactFits *);
+PetscErrorCode ContactPairGaps(Contact, int pair, PetscReal *least, PetscReal *most);
+const char    *ContactPairText(Contact, int pair); /* what touches what, and how; valid until the next call */
+MPI_Comm       ContactComm(Contact);

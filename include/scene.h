@@ -5,30 +5,23 @@
    them; their messages start with SceneWhere(). */
 #pragma once
 #include <petscsys.h>
-#include "history.h"
+#include "analytic.h"
 #include "material.h"
+#include "motion.h"
 
 typedef enum { GEOMETRY_SOLID, GEOMETRY_PLANE_STRAIN, GEOMETRY_AXISYMMETRIC } Geometry;
 typedef enum { KINEMATICS_SMALL, KINEMATICS_FINITE } Kinematics;
 typedef enum { STEP_FIXED, STEP_ITERATIONS, STEP_CONTACT } StepControlKind;
 typedef enum { SMOOTHER_FACET, SMOOTHER_DIFFUSE } SmootherKind;
+typedef enum { OVERLAP_REFUSE, OVERLAP_RESOLVE, OVERLAP_RAMP, OVERLAP_IGNORE } InitialOverlap;
 typedef enum { CONTACT_NODE_TO_SURFACE, CONTACT_SURFACE_TO_SURFACE } ContactFormulation;
-
-/* value times history, of one displacement or rotation component */
-typedef struct {
-  int     component; /* 0..2: ux uy uz; 3..5: rx ry rz (rigid motions only; degrees) */
-  double  value;
-  History history;
-} SceneMotion;
 
 typedef struct {
   char         *path;   /* "bodies.0": for SceneWhere() */
   char         *name;   /* physical group: a volume, or for a rigid tool a surface */
   int           rigid;  /* a meshed rigid tool: no material */
   Material      material;
-  double        point[3];
-  int           n_motions;
-  SceneMotion  *motions;
+  Motion        motion;
 } SceneBody;
 
 typedef struct {
@@ -47,12 +40,18 @@ typedef struct {
 } SceneLoad;
 
 typedef struct {
-  char              *path, *name, *slave, *master; /* master: physical surface */
+  char              *path, *name, *slave, *master; /* master: physical surface, or NULL: analytic */
+  AnalyticMaster     analytic;       /* with motion.point: on the plane, on the axis, the centre */
+  Motion             motion;
   SmootherKind       smoother;
   ContactFormulation formulation;
   int                n_symmetry;
   char             **symmetry;       /* planar surfaces beyond which the model continues as its mirror image */
+  int                degree;         /* of the fit: 4 or 2 */
+  double             support, weight;/* spacings, exponent; 0: the default of dimension and degree */
+  int                global_frame, diffuse_derivatives;
   double             feature_angle;  /* degrees */
+  InitialOverlap     initial_overlap;
   int                penalty_auto;
   double             penalty, penalty_scale; /* force per length and area; the automatic value is multiplied by penalty_scale */
 } SceneContact;

@@ -5,8 +5,22 @@
    Search goes in two stages: boxes of the ranks' slave nodes against boxes of facets to find the ranks, then a tree over the facets that
    arrived. There is no patch size to choose: the reach is two face sizes plus the largest motion asked for. */
 #pragma once
+#include "fit.h"
 #include "loads.h"
 #include "surface.h"
+
+/* How a master surface is fitted; degree 0: not at all, its facets serve. */
+typedef struct {
+  int            degree;       /* 0, 2 or 4 */
+  double         support;      /* in spacings of the master */
+  double         exponent;     /* of the weight */
+  FitDerivatives derivatives;
+  PetscBool      global_frame; /* one reference plane for all slave points */
+  PetscReal      feature_angle;/* radians: lists end at sharper edges */
+} FitSettings;
+
+/* Which rung of the ladder a slave point stands on: fits of falling quality, then the facets. */
+enum { RUNG_FACET = -1, RUNG_PLAIN = 0, RUNG_WIDER = 4, RUNG_DEGREE_2 = 6, RUNG_LINEAR = 7, RUNGS = 8 };
 
 /* Everything a rank needs of a pair while lists are frozen. Contact nodes are the nodes that its terms touch: first those with unknowns
    (leaves of sf; roots are the local nodes of their owners), then nodes of a rigid tool. Points are what a smoother sees: a fixed
@@ -16,6 +30,7 @@ typedef struct {
   PetscInt  n_nodes, n_deformable;
   PetscInt *node_id;       /* deformable: the mesh's rank-independent id; rigid: node of the tool */
   PetscReal *X, *u;        /* n_nodes*dim: reference coordinates, displacement at the last update */
+  PetscReal t;             /* of the last update */
   PetscInt *dof;           /* n_nodes*dim global dofs, -1 where constrained or rigid */
   PetscSF   sf;
   MPI_Datatype block;      /* dim reals */
@@ -32,7 +47,13 @@ typedef struct {
   PetscReal *slave_X, *slave_u; /* n_slaves*dim */
 
   PetscInt *list_ptr, *list_point;  /* fit points of each slave point */
-  PetscInt *facet_ptr;              /* facets of each slave point; their nodes count within the slave point's fit points */
+  PetscInt *fit_n;                  /* the first so many of them are fitted; 0: the facets serve */
+  int      *rung;                   /* RUNG_...: how the fit was found */
+  int      *degree;                 /* of the fit */
+  PetscReal *frame, *metric;        /* 9 and 4 for each slave point, as FitProblem wants them */
+  PetscReal *pivot, *amplified;     /* guards of the fit when the lists were made */
+  PetscReal *residual;              /* largest distance of a point in the inner half of the support to the fit */
+  PetscInt *facet_ptr;              /* facets of each slave point; their nodes count within the slave point's points */
   Facet    *facet;
   PetscReal *facet_size;
   PetscReal *kappa;                 /* curvature of the master near each slave point: turn of normals over distance; 0: flat or no facet */
@@ -40,8 +61,8 @@ typedef struct {
 
 typedef struct _n_ContactSearch *ContactSearch;
 
-/* slaves: local nodes of this rank that are slave points (node to surface: one node each). Surfaces and images are borrowed. Collective. */
-PetscErrorCode SearchCreate(Mesh, Scene, Loads, ContactSurface slave, ContactSurface master, int n_images, const SurfaceImage *, PetscInt n, const PetscInt *slaves, ContactSearch *);
+/* master NULL: an analytic one, which needs no lists. slaves: local nodes of this rank that are slave points (node to surface: one node each). Surfaces, images, settings are borrowed. Collective. */
+PetscErrorCode SearchCreate(Mesh, Scene, Loads, ContactSurface slave, ContactSurface master, int n_images, const SurfaceImage *, const FitSettings *, PetscInt n, const PetscInt *slaves, ContactSearch *);
 PetscErrorCode SearchDestroy(ContactSearch *);
 /* New lists for local displacements u at load parameter t, good for a relative motion of `motion`. Collective. */
 PetscErrorCode SearchLists(ContactSearch, const PetscReal *u, PetscReal t, PetscReal motion, ContactLists *);

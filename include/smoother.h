@@ -5,12 +5,20 @@
    offset, a mirror image) is the caller's business. Lists are frozen while a solve lasts. */
 #pragma once
 #include "facet.h"
+#include "fit.h"
 
 typedef struct {
   int           dim, n_points, n_facets;
   const double *x;      /* [n_points][dim], relative to the slave point */
   const Facet  *facets; /* nodes index the points */
   int           seed;   /* the facet of last time, or -1 */
+  /* smooth surfaces: the first n_fit points carry the fit; 0: the facets serve */
+  int            n_fit, degree;
+  double         exponent;
+  const double  *multiplier; /* of the fit points' weights */
+  const double  *frame, *metric; /* 9 and 4, held in a solve */
+  FitDerivatives derivatives;
+  double        *workspace;  /* FitWorkspace(dim, degree, n_fit) */
 } SmootherInput;
 
 /* Arrays belong to the caller, sized for the smoother's capacity of points. */
@@ -19,6 +27,7 @@ typedef struct {
   double normal[3]; /* out of the master at the foot */
   double beyond;    /* how far the foot lies past a free edge of the master (a length) */
   int    seed;      /* for the next evaluation */
+  int    facet_served; /* a smooth surface was asked for and had no foot here: the facets answered */
   int    n, *points;/* the points that take part */
   double *N;        /* [(1 + n)*dim], the slave point first */
   double *M;        /* [((1 + n)*dim)^2] */
@@ -29,6 +38,7 @@ typedef enum { SMOOTHER_GAP, SMOOTHER_FIRST_VARIATION, SMOOTHER_SECOND_VARIATION
 typedef struct {
   const char *name;
   int         capacity; /* the most points that can take part */
+  int         smooth;   /* works on fits: needs neighbourhoods */
   /* returns 0 when the list holds no surface for this slave point */
   int (*evaluate)(const SmootherInput *, SmootherWant, SmootherResult *);
 } Smoother;

@@ -17,6 +17,7 @@ typedef struct {
   const MeshGroup *group;     /* deformable, else NULL */
   const MeshRigid *rigid;     /* or a rigid tool, and which body of the scene it is */
   int              body;
+  int              order;     /* of the faces */
   PetscInt         n_faces;   /* this rank's */
   Facet           *faces;     /* nodes: local nodes of the mesh, or of the rigid tool */
   PetscReal       *face_size; /* sqrt(area), a length in 2D */

@@ -6,6 +6,7 @@ DefineConstant[
   n_facets = {44, Name "facets along the flat: 1 mm each by default"},
   radius = {20, Name "radius of the cylinder"},
   facet = {3, Name "angle of a cylinder facet in degrees"},
+  overlap = {0, Name "by how much the cylinder reaches into the block"},
   n_obstacle_z = {3, Name "facets along z"}
 ];
 width = 4; height = 2; depth = 2;
@@ -27,9 +28,9 @@ block[] = Extrude{0, 0, depth}{ Surface{1}; Layers{n_z}; Recombine; };
 
 // Half a unit beyond the block on both sides along z, so that no slave node meets the surface's free edge.
 If (cylinder)
-  Point(110) = {0, -radius, -0.5};
+  Point(110) = {0, overlap - radius, -0.5};
   For i In {0 : 3}
-    Point(111 + i) = {radius * Cos(i * Pi / 2), radius * (Sin(i * Pi / 2) - 1), -0.5};
+    Point(111 + i) = {radius * Cos(i * Pi / 2), overlap + radius * (Sin(i * Pi / 2) - 1), -0.5};
   EndFor
   For i In {0 : 3}
     Circle(111 + i) = {111 + i, 110, 111 + (i + 1) % 4};

@@ -1,6 +1,7 @@
 #include "blockmatrix.h"
 #include "contact.h"
 #include "law.h"
+#include "nodegeometry.h"
 #include "penalty.h"
 #include "refusal.h"
 #include "search.h"
@@ -14,8 +15,14 @@
    closest-point projection). */
 #define CONTACT_GAP_AGREES     1e-6
 #define CONTACT_GAP_ROUND_OFF  1e-11
+/* A fit's frame may turn by 5 degrees before the step is solved again with a new one. */
+#define CONTACT_FRAME_COSINE 0.9962
+/* An open node whose fresh fit finds it this much of the largest penetration behind the master was open by mistake. */
+#define CONTACT_FIT_AGREES 0.1
 /* The area factor past a free edge is frozen in a solve; a change above this makes the step solve again. */
 #define CONTACT_FACTOR_AGREES  1e-2
+/* A surface that turns more than this from its one reference plane cannot be written over it: cos 60 degrees. */
+#define CONTACT_GLOBAL_COSINE 0.5
 /* Touching start: a gap within this fraction of the face size is no gap, whatever the curvature. */
 #define CONTACT_TOUCH          1e-6
 /* Nodes below this fraction of the largest nodal force do not count as loaded. */
@@ -23,7 +30,8 @@
 
 typedef struct {
   const SceneContact *scene;
-  ContactSurface      slave, master;
+  FitSettings         fit;
+  ContactSurface      slave, master;  /* master NULL: analytic, in scene */
   int                 n_images;
   SurfaceImage        images[SURFACE_MAX_IMAGES];
   const Smoother     *smoother;
@@ -38,12 +46,14 @@ typedef struct {
   PetscReal          *factor;         /* per slave point, frozen with the lists: fades out past a free edge */
   int                *seed;           /* per slave point: the facet of last time */
   PetscReal          *force, *vector, *normal; /* of the last residual: normal force, its sum over the slave points (n*3), contact normal (n*3) */
+  PetscReal           t;              /* of the last residual */
   PetscReal          *pressure, *trial; /* trial: gaps of the last projection, of a residual or a tangent */
 } Pair;
 
 typedef struct {
   SmootherResult result;
   PetscReal     *x;        /* positions relative to the slave point */
+  PetscReal     *multiplier, *workspace;
   PetscInt       x_room;
   PetscInt      *node;     /* contact nodes of a term, one after another over its slave points */
   PetscReal     *N, *M;    /* over these nodes; M holds one slave point's part at a time */
@@ -128,25 +138,57 @@ static PetscErrorCode PairCreateTerms(Mesh mesh, Scene scene, Pair *pair)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Support in spacings and exponent of the weight where the scene leaves them open, by dimension and degree: the smoothest fits whose guards
+   hold on jittered meshes (3D: some 38 nodes; 2D: 9). */
+static FitSettings PairFitSettings(Scene scene, const SceneContact *contact, const Smoother *smoother)
+{
+  FitSettings fit = {.degree = smoother->smooth ? contact->degree : 0, .support = contact->support, .exponent = contact->weight};
+
+  if (fit.support == 0) fit.support = scene->dim == 2 && fit.degree == 4 ? 4.5 : 3.5;
+  if (fit.exponent == 0) fit.exponent = scene->dim == 3 && fit.degree == 4 ? 3 : 6;
+  fit.derivatives   = contact->diffuse_derivatives ? FIT_DIFFUSE : FIT_FULL;
+  fit.global_frame  = contact->global_frame ? PETSC_TRUE : PETSC_FALSE;
+  fit.feature_angle = contact->feature_angle * PETSC_PI / 180;
+  return fit;
+}
+
+static PetscErrorCode PairCheckGlobalFrame(Mesh mesh, Scene scene, Loads loads, const Pair *pair)
+{
+  PetscReal normal[3], cosine, *zero;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc1(mesh->n_nodes * mesh->dim, &zero));
+  PetscCall(SurfaceMeanNormal(pair->master, loads, zero, 0, normal, &cosine));
+  PetscCall(PetscFree(zero));
+  if (cosine < CONTACT_GLOBAL_COSINE) {
+    PetscCall(RefuseInput(mesh->comm, "%s: the surface '%s' turns by %.0f degrees from its one reference plane; allowed: up to 60 degrees (frame: local has one plane for each slave point)",
+                          SceneWhere(scene, pair->scene->path, "frame"), pair->scene->master, (double)(PetscAcosReal(PetscMax(-1, cosine)) * 180 / PETSC_PI)));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 static PetscErrorCode PairCreate(Mesh mesh, Scene scene, Elasticity elasticity, Loads loads, const SceneContact *contact, Pair *pair)
 {
   PetscReal penalty;
 
   PetscFunctionBeginUser;
   pair->scene    = contact;
-  pair->smoother = SmootherFind("facet");
+  pair->smoother = SmootherFind(contact->smoother == SMOOTHER_DIFFUSE ? "diffuse" : "facet");
+  pair->fit      = PairFitSettings(scene, contact, pair->smoother);
   pair->law      = LawFind("penalty");
-  if (!strcmp(contact->slave, contact->master)) PetscCall(RefuseInput(mesh->comm, "%s: slave and master are both '%s'; allowed: two different surfaces (a surface in contact with itself is not available yet)", SceneWhere(scene, contact->path, "master"), contact->master));
+  if (contact->master && !strcmp(contact->slave, contact->master)) PetscCall(RefuseInput(mesh->comm, "%s: slave and master are both '%s'; allowed: two different surfaces (a surface in contact with itself is not available yet)", SceneWhere(scene, contact->path, "master"), contact->master));
   if (MeshFindRigid(mesh, contact->slave)) PetscCall(RefuseInput(mesh->comm, "%s: the slave '%s' is a rigid tool; allowed: a surface of a deformable body (make the tool the master)", SceneWhere(scene, contact->path, "slave"), contact->slave));
   PetscCall(SurfaceCreate(mesh, scene, elasticity, contact->path, "slave", contact->slave, &pair->slave));
-  PetscCall(SurfaceCreate(mesh, scene, elasticity, contact->path, "master", contact->master, &pair->master));
+  if (contact->master) PetscCall(SurfaceCreate(mesh, scene, elasticity, contact->path, "master", contact->master, &pair->master));
+  else pair->fit.degree = 0;
   PetscCall(SurfaceImages(mesh, scene, contact, &pair->n_images, pair->images));
-  PetscCall(SurfaceFindFreeEdges(pair->master, pair->n_images, pair->images));
+  if (pair->master) PetscCall(SurfaceFindFreeEdges(pair->master, pair->n_images, pair->images));
+  if (pair->master && pair->fit.degree && pair->fit.global_frame) PetscCall(PairCheckGlobalFrame(mesh, scene, loads, pair));
   PetscCall(PairCreateTerms(mesh, scene, pair));
-  penalty = contact->penalty_scale * (contact->penalty_auto ? PenaltyAutomatic(pair->slave->stiffness, pair->master->stiffness) : contact->penalty);
+  penalty = contact->penalty_scale * (contact->penalty_auto ? PenaltyAutomatic(pair->slave->stiffness, pair->master ? pair->master->stiffness : 0) : contact->penalty);
   PetscCall(StateCreate(pair->n, penalty, &pair->now));
   PetscCall(StateCreate(pair->n, penalty, &pair->accepted));
-  PetscCall(SearchCreate(mesh, scene, loads, pair->slave, pair->master, pair->n_images, pair->images, pair->n, pair->node, &pair->search));
+  PetscCall(SearchCreate(mesh, scene, loads, pair->slave, pair->master, pair->n_images, pair->images, &pair->fit, pair->n, pair->node, &pair->search));
   PetscCall(PetscCalloc2(pair->n, &pair->factor, pair->n, &pair->seed));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -158,7 +200,8 @@ static PetscErrorCode RefuseRepeatedPairs(Mesh mesh, Scene scene)
   for (int p = 0; p < scene->n_contacts; p++) {
     for (int q = 0; q < p; q++) {
       const SceneContact *a = &scene->contacts[p], *b = &scene->contacts[q];
-      const PetscBool     same = (PetscBool)(!strcmp(a->slave, b->slave) && !strcmp(a->master, b->master)), swapped = (PetscBool)(!strcmp(a->slave, b->master) && !strcmp(a->master, b->slave));
+      const PetscBool     meshed = (PetscBool)(a->master && b->master), same = (PetscBool)(meshed && !strcmp(a->slave, b->slave) && !strcmp(a->master, b->master));
+      const PetscBool     swapped = (PetscBool)(meshed && !strcmp(a->slave, b->master) && !strcmp(a->master, b->slave));
 
       if (same || swapped) PetscCall(RefuseInput(mesh->comm, "%s: contact '%s' is '%s' once more%s: their forces would add up; allowed: one pair for each two surfaces", SceneWhere(scene, a->path, "slave"), a->name, b->name, swapped ? ", slave and master swapped" : ""));
     }
@@ -191,6 +234,7 @@ PetscErrorCode ContactCreate(Mesh mesh, Scene scene, Elasticity elasticity, Load
     PetscCall(PairCreate(mesh, scene, elasticity, loads, &scene->contacts[p], &contact->pairs[p]));
     capacity = PetscMax(capacity, contact->pairs[p].smoother->capacity);
   }
+  PetscCall(PetscMalloc1(FitWorkspace(mesh->dim, 4, FIT_MAX_POINTS), &contact->work.workspace));
   PetscCall(PetscMalloc4(capacity, &contact->work.result.points, 3 * (capacity + 1), &contact->work.result.N, capacity + 1, &contact->work.from, 3 * (capacity + 1), &contact->work.scale));
   PetscCall(PetscMalloc4(PetscSqr(3 * (capacity + 1)), &contact->work.result.M, points * (capacity + 1), &contact->work.node, 3 * points * (capacity + 1), &contact->work.N, PetscSqr(3 * (capacity + 1)), &contact->work.M));
   *out = contact;
@@ -203,7 +247,7 @@ static PetscErrorCode PairDestroy(Pair *pair)
   PetscCall(ListsDestroy(&pair->lists));
   PetscCall(SearchDestroy(&pair->search));
   PetscCall(SurfaceDestroy(&pair->slave));
-  PetscCall(SurfaceDestroy(&pair->master));
+  if (pair->master) PetscCall(SurfaceDestroy(&pair->master));
   PetscCall(StateDestroy(&pair->now));
   PetscCall(StateDestroy(&pair->accepted));
   PetscCall(PetscFree4(pair->node, pair->area, pair->size, pair->turn));
@@ -224,7 +268,8 @@ PetscErrorCode ContactDestroy(Contact *contact)
   PetscCall(PetscFree(c->pairs));
   PetscCall(PetscFree4(c->work.result.points, c->work.result.N, c->work.from, c->work.scale));
   PetscCall(PetscFree4(c->work.result.M, c->work.node, c->work.N, c->work.M));
-  PetscCall(PetscFree(c->work.x));
+  PetscCall(PetscFree2(c->work.x, c->work.multiplier));
+  PetscCall(PetscFree(c->work.workspace));
   PetscCall(BlockMatrixDestroy(&c->blocks));
   PetscCall(PetscFree(*contact));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -232,8 +277,33 @@ PetscErrorCode ContactDestroy(Contact *contact)
 
 /* ---------- one slave point ---------- */
 
+/* The same against an analytic master, which has no points. */
+static PetscBool PointEvaluateAnalytic(Contact contact, const Pair *pair, ContactLists lists, PetscInt q)
+{
+  const int        dim    = lists->dim;
+  const PetscReal *centre = contact->mesh->centre;
+  SmootherResult  *result = &contact->work.result;
+  AnalyticMaster   master = pair->scene->analytic;
+  AnalyticResult   found;
+  PetscReal        point[3], x[3];
+
+  MotionPlace(&pair->scene->motion, lists->t, pair->scene->motion.point, point);
+  MotionTurn(&pair->scene->motion, lists->t, pair->scene->analytic.axis, master.axis);
+  for (int d = 0; d < dim; d++) x[d] = (lists->slave_X[q * dim + d] - (point[d] - centre[d])) + lists->slave_u[q * dim + d];
+  if (!AnalyticEvaluate(&master, dim, x, &found)) return PETSC_FALSE;
+  result->gap          = found.gap;
+  result->beyond       = 0;
+  result->seed         = -1;
+  result->facet_served = 0;
+  result->n            = 0;
+  for (int d = 0; d < 3; d++) result->normal[d] = found.normal[d];
+  for (int d = 0; d < dim; d++) result->N[d] = found.N[d];
+  for (int d = 0; d < dim * dim; d++) result->M[d] = found.M[d];
+  return PETSC_TRUE;
+}
+
 /* Gap (and variations over the fit points) of slave point q of the lists; *found is PETSC_FALSE where no master is near. */
-static PetscErrorCode PointEvaluate(Contact contact, const Pair *pair, ContactLists lists, PetscInt q, int seed, SmootherWant want, PetscBool *found)
+static PetscErrorCode PointEvaluate(Contact contact, const Pair *pair, const Smoother *smoother, ContactLists lists, PetscInt q, int seed, SmootherWant want, PetscBool *found)
 {
   const int     dim   = lists->dim;
   Work         *work  = &contact->work;
@@ -241,18 +311,25 @@ static PetscErrorCode PointEvaluate(Contact contact, const Pair *pair, ContactLi
   SmootherInput in;
 
   PetscFunctionBeginUser;
-  if (n * dim > work->x_room) {
-    work->x_room = 2 * n * dim;
-    PetscCall(PetscFree(work->x));
-    PetscCall(PetscMalloc1(work->x_room, &work->x));
+  if (!pair->master) {
+    *found = PointEvaluateAnalytic(contact, pair, lists, q);
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  if (n > work->x_room) {
+    work->x_room = 2 * n;
+    PetscCall(PetscFree2(work->x, work->multiplier));
+    PetscCall(PetscMalloc2(work->x_room * dim, &work->x, work->x_room, &work->multiplier));
   }
   for (PetscInt i = 0; i < n; i++) {
     const PetscInt p = lists->list_point[first + i];
 
+    work->multiplier[i] = lists->point_weight[p];
     for (int d = 0; d < dim; d++) work->x[i * dim + d] = (lists->point_X[p * dim + d] - lists->slave_X[q * dim + d]) + (lists->point_u[p * dim + d] - lists->slave_u[q * dim + d]);
   }
-  in     = (SmootherInput){dim, (int)n, (int)(lists->facet_ptr[q + 1] - lists->facet_ptr[q]), work->x, &lists->facet[lists->facet_ptr[q]], seed};
-  *found = in.n_facets && pair->smoother->evaluate(&in, want, &work->result) ? PETSC_TRUE : PETSC_FALSE;
+  in     = (SmootherInput){.dim = dim, .n_points = (int)n, .n_facets = (int)(lists->facet_ptr[q + 1] - lists->facet_ptr[q]), .x = work->x, .facets = &lists->facet[lists->facet_ptr[q]], .seed = seed,
+                           .n_fit = (int)lists->fit_n[q], .degree = lists->degree[q], .exponent = pair->fit.exponent, .multiplier = work->multiplier, .frame = &lists->frame[9 * q],
+                           .metric = &lists->metric[4 * q], .derivatives = pair->fit.derivatives, .workspace = work->workspace};
+  *found = in.n_facets && smoother->evaluate(&in, want, &work->result) ? PETSC_TRUE : PETSC_FALSE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -307,8 +384,9 @@ static PetscErrorCode PairFactors(Contact contact, const Pair *pair, ContactList
     PetscBool found;
 
     factor[q] = 0;
-    PetscCall(PointEvaluate(contact, pair, lists, q, -1, SMOOTHER_GAP, &found));
-    if (found) factor[q] = 1 - SmoothStep(contact->work.result.beyond / lists->facet_size[lists->facet_ptr[q] + contact->work.result.seed]);
+    PetscCall(PointEvaluate(contact, pair, SmootherFind("facet"), lists, q, -1, SMOOTHER_GAP, &found));
+    if (found && !pair->master) factor[q] = 1;
+    else if (found) factor[q] = 1 - SmoothStep(contact->work.result.beyond / lists->facet_size[lists->facet_ptr[q] + contact->work.result.seed]);
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -358,7 +436,7 @@ static PetscErrorCode TermGap(Contact contact, const Pair *pair, ContactLists li
     PetscBool found;
 
     if (factor[q] == 0) continue;
-    PetscCall(PointEvaluate(contact, pair, lists, q, seed ? seed[q] : -1, SMOOTHER_GAP, &found));
+    PetscCall(PointEvaluate(contact, pair, pair->smoother, lists, q, seed ? seed[q] : -1, SMOOTHER_GAP, &found));
     if (!found) continue;
     any = PETSC_TRUE;
     *gap += pair->term_weight[q] * contact->work.result.gap;
@@ -368,16 +446,73 @@ static PetscErrorCode TermGap(Contact contact, const Pair *pair, ContactLists li
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Do fresh lists say the same of this term as the solve did? Open is open; a closed gap must agree, and so must its area factor. */
-static PetscBool TermAgrees(const Pair *pair, PetscInt c, PetscReal gap, const PetscReal *factor)
+/* What is left at t of the gap that the surfaces had before any load: all of an ignored overlap, a shrinking part of a ramped one. */
+static PetscReal TermOffset(const Pair *pair, PetscInt c, PetscReal t)
 {
-  const PetscReal old = pair->now.gap[c], tolerance = CONTACT_GAP_AGREES * PetscAbsReal(old) + CONTACT_GAP_ROUND_OFF * pair->size[c];
+  return pair->now.offset[c] * (pair->scene->initial_overlap == OVERLAP_RAMP ? 1 - t : 1);
+}
 
-  if (!(old - pair->now.offset[c] < 0) && !(gap - pair->now.offset[c] < 0)) return PETSC_TRUE;
-  if (!(PetscAbsReal(gap - old) <= tolerance)) return PETSC_FALSE;
-  for (PetscInt q = pair->term_ptr[c]; q < pair->term_ptr[c + 1]; q++)
-    if (PetscAbsReal(factor[q] - pair->factor[q]) > CONTACT_FACTOR_AGREES) return PETSC_FALSE;
+/* A fit point's rank-independent key: node, tool or body, mirror image. */
+static PetscInt PointKey(ContactLists lists, PetscInt p)
+{
+  const PetscInt node = lists->point_node[p];
+
+  return (2 * lists->node_id[node] + (node >= lists->n_deformable)) * SURFACE_MAX_IMAGES + lists->point_image[p];
+}
+
+/* Is every point that now lies inside the support of the old fit of slave point q in its list, and has the frame stayed? */
+static PetscBool FitHolds(ContactLists old, ContactLists fresh, PetscInt q)
+{
+  const int        dim   = old->dim;
+  const PetscReal *frame = &old->frame[9 * q], *turned = &fresh->frame[9 * q], *metric = &old->metric[4 * q];
+  PetscReal        cosine = 0;
+
+  for (int d = 0; d < dim; d++) cosine += frame[3 * (dim - 1) + d] * turned[3 * (dim - 1) + d];
+  if (cosine < CONTACT_FRAME_COSINE || old->degree[q] != fresh->degree[q]) return PETSC_FALSE;
+  for (PetscInt i = fresh->list_ptr[q]; i < fresh->list_ptr[q] + fresh->fit_n[q]; i++) {
+    const PetscInt p = fresh->list_point[i], key = PointKey(fresh, p);
+    PetscReal      y[2] = {0, 0}, rho2 = 0;
+    PetscBool      known = PETSC_FALSE;
+
+    for (int a = 0; a < dim - 1; a++)
+      for (int d = 0; d < dim; d++) y[a] += frame[3 * a + d] * ((fresh->point_X[p * dim + d] - fresh->slave_X[q * dim + d]) + (fresh->point_u[p * dim + d] - fresh->slave_u[q * dim + d]));
+    for (int a = 0; a < dim - 1; a++)
+      for (int b = 0; b < dim - 1; b++) rho2 += y[a] * metric[2 * a + b] * y[b];
+    if (rho2 >= 1) continue;
+    for (PetscInt k = old->list_ptr[q]; !known && k < old->list_ptr[q] + old->fit_n[q]; k++) known = PointKey(old, old->list_point[k]) == key ? PETSC_TRUE : PETSC_FALSE;
+    if (!known) return PETSC_FALSE;
+  }
   return PETSC_TRUE;
+}
+
+/* Do fresh lists say the same of this term as the solve did? Open is open. On facets a closed gap must agree; on a fit, whose gap changes a
+   little with its frame, frame and points must. The area factor must agree on both. depth: the largest penetration of the pair. */
+static PetscBool TermAgrees(const Pair *pair, ContactLists fresh, PetscInt c, PetscReal gap, const PetscReal *factor, PetscReal t, PetscReal depth)
+{
+  const PetscReal offset = TermOffset(pair, c, t), old = pair->now.gap[c];
+
+  for (PetscInt q = pair->term_ptr[c]; q < pair->term_ptr[c + 1]; q++) {
+    const PetscBool fitted = (PetscBool)(pair->lists->fit_n[q] && fresh->fit_n[q]);
+    const PetscReal tolerance = fitted ? CONTACT_FIT_AGREES * depth : CONTACT_GAP_AGREES * PetscAbsReal(old) + CONTACT_GAP_ROUND_OFF * pair->size[c];
+
+    if (!(old - offset < 0) && !(gap - offset < (fitted ? -tolerance : 0))) continue;
+    if (PetscAbsReal(factor[q] - pair->factor[q]) > CONTACT_FACTOR_AGREES) return PETSC_FALSE;
+    if (fitted && old - offset < 0) {
+      if (PetscIsNanReal(gap) || !FitHolds(pair->lists, fresh, q)) return PETSC_FALSE;
+    } else if (!(PetscAbsReal(gap - old) <= tolerance)) return PETSC_FALSE;
+  }
+  return PETSC_TRUE;
+}
+
+/* Largest penetration of the pair, all ranks, at the last residual. */
+static PetscErrorCode PairDepth(Contact contact, const Pair *pair, PetscReal t, PetscReal *depth)
+{
+  PetscFunctionBeginUser;
+  *depth = 0;
+  for (PetscInt c = 0; c < pair->n; c++)
+    if (!PetscIsNanReal(pair->now.gap[c])) *depth = PetscMax(*depth, TermOffset(pair, c, t) - pair->now.gap[c]);
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, depth, 1, MPIU_REAL, MPI_MAX, contact->mesh->comm));
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* ContactListsHold - whether lists made afresh at the solution say the same of every term as those it was found with.
@@ -394,8 +529,10 @@ PetscErrorCode ContactListsHold(Contact contact, const PetscReal *u, PetscReal t
   PetscCall(PetscLogEventBegin(contact->event_search, 0, 0, 0, 0));
   PetscCall(PetscMalloc2(contact->n_pairs, &lists, contact->n_pairs, &factor));
   for (int p = 0; p < contact->n_pairs; p++) {
-    Pair *pair = &contact->pairs[p];
+    Pair     *pair = &contact->pairs[p];
+    PetscReal depth;
 
+    PetscCall(PairDepth(contact, pair, t, &depth));
     PetscCall(SearchLists(pair->search, u, t, motion, &lists[p]));
     PetscCall(PetscMalloc1(lists[p]->n_slaves, &factor[p]));
     PetscCall(PairFactors(contact, pair, lists[p], factor[p]));
@@ -403,7 +540,7 @@ PetscErrorCode ContactListsHold(Contact contact, const PetscReal *u, PetscReal t
       PetscReal gap;
 
       PetscCall(TermGap(contact, pair, lists[p], factor[p], NULL, c, &gap));
-      agree = agree && TermAgrees(pair, c, gap, factor[p]);
+      agree = agree && TermAgrees(pair, lists[p], c, gap, factor[p], t, depth);
     }
   }
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &agree, 1, MPI_INT, MPI_LAND, contact->mesh->comm));
@@ -435,9 +572,9 @@ static PetscErrorCode PairProject(Contact contact, Pair *pair, const PetscReal *
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static void TermLaw(const Pair *pair, PetscInt c, PetscReal gap, LawValue *value)
+static void TermLaw(const Pair *pair, PetscInt c, PetscReal gap, PetscReal t, LawValue *value)
 {
-  const LawState state = {pair->now.penalty[c], pair->now.offset[c], pair->now.multiplier[c]};
+  const LawState state = {pair->now.penalty[c], TermOffset(pair, c, t), pair->now.multiplier[c]};
 
   *value = (LawValue){0, 0, 0};
   if (!PetscIsNanReal(gap)) pair->law->evaluate(gap, &state, value);
@@ -456,7 +593,7 @@ static PetscErrorCode TermForces(Contact contact, Pair *pair, PetscInt c, PetscR
     const PetscReal force = pressure * pair->area[c] * pair->term_weight[q] * pair->factor[q];
 
     if (pair->factor[q] == 0) continue;
-    PetscCall(PointEvaluate(contact, pair, pair->lists, q, pair->seed[q], SMOOTHER_FIRST_VARIATION, &found));
+    PetscCall(PointEvaluate(contact, pair, pair->smoother, pair->lists, q, pair->seed[q], SMOOTHER_FIRST_VARIATION, &found));
     if (!found) continue;
     PointToNodes(contact, pair, pair->lists, q, 1, PETSC_FALSE, work->node, work->N, &n);
     for (int i = 0; i < n * dim; i++) {
@@ -478,7 +615,7 @@ static PetscErrorCode PairResidual(Contact contact, Pair *pair, const PetscReal 
   PetscCall(PairProject(contact, pair, u, t));
   PetscCall(PetscCalloc1(pair->lists->n_nodes * contact->mesh->dim, &values));
   for (PetscInt c = 0; c < pair->n; c++) {
-    TermLaw(pair, c, pair->trial[c], &value);
+    TermLaw(pair, c, pair->trial[c], t, &value);
     for (PetscInt q = pair->term_ptr[c]; energy && q < pair->term_ptr[c + 1]; q++) *energy += pair->area[c] * pair->term_weight[q] * pair->factor[q] * value.psi;
     if (!f) continue;
     pair->now.gap[c]    = pair->trial[c];
@@ -487,7 +624,10 @@ static PetscErrorCode PairResidual(Contact contact, Pair *pair, const PetscReal 
     PetscCall(PetscArrayzero(&pair->vector[3 * c], 3));
     if (value.pressure != 0) PetscCall(TermForces(contact, pair, c, value.pressure, values, &sum));
   }
-  if (f) PetscCall(ListsReduce(pair->lists, values, f));
+  if (f) {
+    pair->t = t;
+    PetscCall(ListsReduce(pair->lists, values, f));
+  }
   if (force2) *force2 += sum;
   PetscCall(PetscFree(values));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -514,9 +654,10 @@ PetscErrorCode ContactResidual(Contact contact, const PetscReal *u, PetscReal t,
 /* Opening up to which a node counts as touching: what round-off and the facets' own sagitta leave between surfaces that touch. */
 static PetscReal TouchTolerance(const Pair *pair, PetscInt c)
 {
-  const PetscReal h = pair->size[c], kappa = pair->lists->kappa[c] + 2 * pair->turn[c] / h;
+  const PetscReal h = pair->size[c], master = pair->master ? pair->master->mean_size : 0, radius = pair->scene->analytic.radius;
+  const PetscReal kappa = pair->lists->kappa[c] + 2 * pair->turn[c] / h + (radius > 0 ? 1 / radius : 0);
 
-  return CONTACT_TOUCH * h + kappa * (PetscSqr(h) + PetscSqr(pair->master->mean_size)) / 8;
+  return CONTACT_TOUCH * h + kappa * (PetscSqr(h) + PetscSqr(master)) / 8;
 }
 
 /* How many contact nodes slave point q touches once evaluated. */
@@ -543,7 +684,7 @@ static PetscErrorCode TermBlock(Contact contact, const Pair *pair, int p, PetscI
   PetscFunctionBeginUser;
   for (PetscInt q = pair->term_ptr[c]; q < pair->term_ptr[c + 1]; q++) {
     if (pair->factor[q] == 0) continue;
-    PetscCall(PointEvaluate(contact, pair, pair->lists, q, pair->seed[q], SMOOTHER_GAP, &found));
+    PetscCall(PointEvaluate(contact, pair, pair->smoother, pair->lists, q, pair->seed[q], SMOOTHER_GAP, &found));
     if (found) m += PointNodes(pair->lists, q, &work->result) * dim;
   }
   PetscCall(BlockMatrixAdd(contact->blocks, p, m, &entry, &value));
@@ -552,7 +693,7 @@ static PetscErrorCode TermBlock(Contact contact, const Pair *pair, int p, PetscI
     int             n;
 
     if (pair->factor[q] == 0) continue;
-    PetscCall(PointEvaluate(contact, pair, pair->lists, q, pair->seed[q], SMOOTHER_SECOND_VARIATION, &found));
+    PetscCall(PointEvaluate(contact, pair, pair->smoother, pair->lists, q, pair->seed[q], SMOOTHER_SECOND_VARIATION, &found));
     if (!found) continue;
     PointToNodes(contact, pair, pair->lists, q, pair->term_weight[q], PETSC_TRUE, work->node, &work->N[first], &n);
     for (PetscInt i = 0; i < n * dim; i++) {
@@ -575,8 +716,8 @@ static PetscErrorCode PairBlocks(Contact contact, Pair *pair, int p, const Petsc
     const PetscReal gap = pair->trial[c];
     LawValue        value;
 
-    TermLaw(pair, c, gap, &value);
-    if (touching && gap >= 0 && gap <= TouchTolerance(pair, c)) value.stiffness = pair->now.penalty[c];
+    TermLaw(pair, c, gap, t, &value);
+    if (touching && gap - TermOffset(pair, c, t) >= 0 && gap - TermOffset(pair, c, t) <= TouchTolerance(pair, c)) value.stiffness = pair->now.penalty[c];
     if (value.stiffness > 0) PetscCall(TermBlock(contact, pair, p, c, value.pressure, value.stiffness));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -608,6 +749,17 @@ PetscErrorCode ContactTangent(Contact contact, const PetscReal *u, PetscReal t, 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* An analytic master that moves by d is to the slave nodes as if they had moved by -d. */
+static void AnalyticTravel(Contact contact, const Pair *pair, PetscReal t, PetscReal t_next, PetscReal *values)
+{
+  const int dim = contact->mesh->dim;
+  PetscReal from[3], to[3];
+
+  MotionPlace(&pair->scene->motion, t, pair->scene->motion.point, from);
+  MotionPlace(&pair->scene->motion, t_next, pair->scene->motion.point, to);
+  for (PetscInt i = 0; i < pair->lists->n_nodes * dim; i++) values[i] -= to[i % dim] - from[i % dim];
+}
+
 /* ContactMultiply - y += C x with the blocks of the last ContactTangent(), prescribed dofs included.
 
    Collective. x[n_nodes*dim]: local displacements (length), ghosts included, to which the rigid tools' motion from t to t_next is joined;
@@ -623,6 +775,7 @@ PetscErrorCode ContactMultiply(Contact contact, const PetscReal *x, PetscReal t,
     PetscCall(PetscMalloc2(n, &in, n, &out));
     PetscCall(PetscArrayzero(out, n));
     PetscCall(ListsBroadcast(pair->search, pair->lists, x, t, t_next, in));
+    if (!pair->master) AnalyticTravel(contact, pair, t, t_next, in);
     PetscCall(BlockMatrixMultiply(contact->blocks, p, in, out));
     PetscCall(ListsReduce(pair->lists, out, y));
     PetscCall(PetscFree2(in, out));
@@ -667,16 +820,17 @@ static PetscErrorCode PairCheckFacing(Contact contact, const Pair *pair)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ContactCheckOverlap - refuses (exit 1) the deepest overlap of each pair that is more than the facets' own sagitta explains.
+/* ContactTakeOverlap - what the scene says of surfaces that overlap before any load: refuses (exit 1) the deepest overlap of each pair that is
+   more than the facets' own sagitta explains, or keeps the overlaps as g_0.
 
    Collective; after ContactResidual() with forces, at the undeformed state. The message names pair, node and depth. */
-PetscErrorCode ContactCheckOverlap(Contact contact)
+PetscErrorCode ContactTakeOverlap(Contact contact)
 {
   Mesh mesh = contact->mesh;
 
   PetscFunctionBeginUser;
   for (int p = 0; p < contact->n_pairs; p++) {
-    const Pair *pair  = &contact->pairs[p];
+    Pair       *pair  = &contact->pairs[p];
     PetscReal   worst = 0;
     PetscInt    at    = -1;
     struct {
@@ -685,8 +839,10 @@ PetscErrorCode ContactCheckOverlap(Contact contact)
     } mine = {0, 0}, least;
     char complaint[512];
 
-    PetscCall(PairCheckFacing(contact, pair));
+    if (pair->master) PetscCall(PairCheckFacing(contact, pair));
     for (PetscInt c = 0; c < pair->n; c++) {
+      if (pair->scene->initial_overlap == OVERLAP_RAMP || pair->scene->initial_overlap == OVERLAP_IGNORE) pair->now.offset[c] = pair->now.gap[c] < 0 ? pair->now.gap[c] : 0;
+      if (pair->scene->initial_overlap != OVERLAP_REFUSE) continue;
       if (!(pair->now.gap[c] < -TouchTolerance(pair, c)) || pair->now.gap[c] >= worst) continue;
       worst = pair->now.gap[c];
       at    = c;
@@ -695,7 +851,7 @@ PetscErrorCode ContactCheckOverlap(Contact contact)
     PetscCallMPI(MPI_Comm_rank(mesh->comm, &mine.rank));
     PetscCallMPI(MPI_Allreduce(&mine, &least, 1, MPI_DOUBLE_INT, MPI_MINLOC, mesh->comm));
     if (at >= 0) {
-      PetscCall(PetscSNPrintf(complaint, sizeof(complaint), "%s: contact '%s': slave node %" PetscInt_FMT " lies %g behind the master before any load; allowed: surfaces that touch or are apart",
+      PetscCall(PetscSNPrintf(complaint, sizeof(complaint), "%s: contact '%s': slave node %" PetscInt_FMT " lies %g behind the master before any load; allowed: surfaces that touch or are apart, or initial_overlap: resolve, ramp or ignore",
                               SceneWhere(contact->scene, pair->scene->path, "initial_overlap"), pair->scene->name, mesh->node_tag[pair->node[at]], (double)-worst));
     }
     PetscCall(RefuseInputAnywhere(mesh->comm, at >= 0 && least.rank == mine.rank ? complaint : NULL));
@@ -716,7 +872,7 @@ PetscErrorCode ContactSummarise(Contact contact, ContactSummary *summary)
     const Pair *pair = &contact->pairs[p];
 
     for (PetscInt c = 0; c < pair->n; c++) {
-      const PetscReal penetration = pair->now.status[c] == CONTACT_CLOSED ? pair->now.offset[c] - pair->now.gap[c] : 0;
+      const PetscReal penetration = pair->now.status[c] == CONTACT_CLOSED ? TermOffset(pair, c, pair->t) - pair->now.gap[c] : 0;
 
       count[0] += pair->now.status[c] == CONTACT_CLOSED;
       count[1] += pair->now.status[c] == CONTACT_CLOSED && pair->accepted.status[c] == CONTACT_OPEN;
@@ -736,7 +892,7 @@ PetscErrorCode ContactSummarise(Contact contact, ContactSummary *summary)
     const Pair *pair = &contact->pairs[p];
 
     for (PetscInt c = 0; c < pair->n; c++)
-      if (pair->now.status[c] == CONTACT_CLOSED && pair->force[c] > CONTACT_LOADED * most[4]) least = PetscMin(least, pair->now.offset[c] - pair->now.gap[c]);
+      if (pair->now.status[c] == CONTACT_CLOSED && pair->force[c] > CONTACT_LOADED * most[4]) least = PetscMin(least, TermOffset(pair, c, pair->t) - pair->now.gap[c]);
   }
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &least, 1, MPIU_REAL, MPI_MIN, contact->mesh->comm));
   *summary = (ContactSummary){.nodes = count[0], .in = count[1], .out = count[2], .max_penetration = most[0], .max_penetration_over_h = most[1], .min_penetration = count[0] && least < PETSC_MAX_REAL ? least : 0,
@@ -860,5 +1016,85 @@ PetscErrorCode ContactPairSurface(Contact contact, int p, const MeshGroup **slav
   PetscFunctionBeginUser;
   *slave          = contact->pairs[p].slave->group;
   *mean_face_size = contact->pairs[p].slave->mean_size;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* ContactPairFits - how the fits of a pair stand: counts by rung, neighbours, guards, and the two errors of the surface. Collective. */
+PetscErrorCode ContactPairFits(Contact contact, int p, ContactFits *fits)
+{
+  Pair        *pair  = &contact->pairs[p];
+  ContactLists lists = pair->lists;
+  PetscInt     count[RUNGS + 3] = {0}; /* by rung, facets, points, neighbours */
+  PetscReal    most[6] = {PETSC_MIN_REAL, PETSC_MIN_REAL, PETSC_MIN_REAL, 0, 0, 0}; /* -fewest, most neighbours, -pivot, Lambda, smoothing, facets */
+
+  PetscFunctionBeginUser;
+  for (PetscInt q = 0; q < lists->n_slaves; q++) {
+    PetscReal gap;
+    PetscBool found;
+
+    if (!pair->fit.degree || lists->facet_ptr[q] == lists->facet_ptr[q + 1]) continue;
+    count[RUNGS + 1]++;
+    count[lists->fit_n[q] ? lists->rung[q] : RUNGS]++;
+    if (!lists->fit_n[q]) continue;
+    PetscCall(PointEvaluate(contact, pair, pair->smoother, lists, q, -1, SMOOTHER_GAP, &found));
+    if (!found || contact->work.result.facet_served) continue;
+    gap = contact->work.result.gap;
+    count[RUNGS + 2] += contact->work.result.n;
+    most[0] = PetscMax(most[0], -(PetscReal)contact->work.result.n);
+    most[1] = PetscMax(most[1], (PetscReal)contact->work.result.n);
+    most[2] = PetscMax(most[2], -lists->pivot[q]);
+    most[3] = PetscMax(most[3], lists->amplified[q]);
+    most[4] = PetscMax(most[4], lists->residual[q]);
+    PetscCall(PointEvaluate(contact, pair, SmootherFind("facet"), lists, q, -1, SMOOTHER_GAP, &found));
+    if (contact->work.result.beyond == 0) most[5] = PetscMax(most[5], PetscAbsReal(contact->work.result.gap - gap));
+  }
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, count, RUNGS + 3, MPIU_INT, MPI_SUM, contact->mesh->comm));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, most, 6, MPIU_REAL, MPI_MAX, contact->mesh->comm));
+  *fits = (ContactFits){.points = count[RUNGS + 1], .plain = count[0], .facets = count[RUNGS], .amplified = most[3], .smoothing_error = most[4], .facet_error = most[5]};
+  for (int r = 1; r < RUNGS; r++) *(r <= RUNG_WIDER ? &fits->wider : r <= RUNG_DEGREE_2 ? &fits->degree_2 : &fits->linear) += count[r];
+  if (fits->points > fits->facets) {
+    fits->neighbours_min  = (PetscInt)-most[0];
+    fits->neighbours_max  = (PetscInt)most[1];
+    fits->neighbours_mean = (PetscReal)count[RUNGS + 2] / (fits->points - fits->facets);
+    fits->pivot           = -most[2];
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* ContactComm - the communicator. Not collective. */
+MPI_Comm ContactComm(Contact contact)
+{
+  return contact ? contact->mesh->comm : MPI_COMM_NULL;
+}
+
+/* ContactPairText - "plate_bottom on pipe_outer, diffuse, degree 4"; valid until the next call. Not collective. */
+const char *ContactPairText(Contact contact, int p)
+{
+  static const char *const shapes[] = {"plane", "cylinder", "sphere"};
+  static char              text[512];
+  const Pair              *pair  = &contact->pairs[p];
+  const SceneContact      *scene = pair->scene;
+
+  if (!pair->master) snprintf(text, sizeof(text), "%s on an analytic %s", scene->slave, shapes[scene->analytic.shape]);
+  else if (!pair->fit.degree) snprintf(text, sizeof(text), "%s on %s, facets", scene->slave, scene->master);
+  else snprintf(text, sizeof(text), "%s on %s, diffuse, degree %d, support %g, weight %g", scene->slave, scene->master, pair->fit.degree, pair->fit.support, pair->fit.exponent);
+  return text;
+}
+
+/* ContactPairGaps - smallest and largest gap of the slave nodes near the master (lengths); 0, 0 where none is near. Collective. */
+PetscErrorCode ContactPairGaps(Contact contact, int p, PetscReal *least, PetscReal *most)
+{
+  const Pair *pair     = &contact->pairs[p];
+  PetscReal   range[2] = {PETSC_MIN_REAL, PETSC_MIN_REAL};
+
+  PetscFunctionBeginUser;
+  for (PetscInt c = 0; c < pair->n; c++) {
+    if (PetscIsNanReal(pair->now.gap[c])) continue;
+    range[0] = PetscMax(range[0], -pair->now.gap[c]);
+    range[1] = PetscMax(range[1], pair->now.gap[c]);
+  }
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, range, 2, MPIU_REAL, MPI_MAX, contact->mesh->comm));
+  *least = range[1] > PETSC_MIN_REAL ? -range[0] : 0;
+  *most  = range[1] > PETSC_MIN_REAL ? range[1] : 0;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -341,44 +341,18 @@ PetscBool LoadsPrescribed(Loads loads, PetscInt local_dof)
   return loads->constrained[local_dof];
 }
 
-static void RotationMatrix(const double w[3], double R[3][3])
-{
-  const double angle = sqrt(w[0] * w[0] + w[1] * w[1] + w[2] * w[2]), s = sin(angle), c = cos(angle);
-  double       a[3] = {0, 0, 0};
-
-  for (int i = 0; i < 3 && angle > 0; i++) a[i] = w[i] / angle;
-  for (int i = 0; i < 3; i++)
-    for (int j = 0; j < 3; j++) R[i][j] = (1 - c) * a[i] * a[j] + (i == j ? c : 0);
-  R[0][1] -= s * a[2];
-  R[1][0] += s * a[2];
-  R[0][2] += s * a[1];
-  R[2][0] -= s * a[1];
-  R[1][2] -= s * a[0];
-  R[2][1] += s * a[0];
-}
-
 /* LoadsRigidMotion - where a point of a rigid body is at load parameter t.
 
    The motion is a translation of the body's point and a rotation about it by the vector (rx, ry, rz), each component a value times its
    history. X, x: relative to the mesh's centre, 3 components (the third 0 in 2D). Not collective. */
 void LoadsRigidMotion(Loads loads, int body, PetscReal t, const PetscReal X[3], PetscReal x[3])
 {
-  const SceneBody *rigid = &loads->scene->bodies[body];
-  double           shift[3] = {0, 0, 0}, w[3] = {0, 0, 0}, R[3][3], arm[3];
+  const PetscReal *centre = loads->mesh->centre;
+  double           absolute[3], moved[3];
 
-  for (int m = 0; m < rigid->n_motions; m++) {
-    const SceneMotion *motion = &rigid->motions[m];
-    const double       value  = motion->value * HistoryValue(&motion->history, t);
-
-    if (motion->component < 3) shift[motion->component] += value;
-    else w[motion->component - 3] += value * PETSC_PI / 180;
-  }
-  RotationMatrix(w, R);
-  for (int i = 0; i < 3; i++) arm[i] = X[i] - (rigid->point[i] - loads->mesh->centre[i]);
-  for (int i = 0; i < 3; i++) {
-    x[i] = X[i] + shift[i] - arm[i];
-    for (int j = 0; j < 3; j++) x[i] += R[i][j] * arm[j];
-  }
+  for (int d = 0; d < 3; d++) absolute[d] = X[d] + centre[d];
+  MotionPlace(&loads->scene->bodies[body].motion, t, absolute, moved);
+  for (int d = 0; d < 3; d++) x[d] = X[d] + (moved[d] - absolute[d]);
 }
 
 /* LoadsRigidTravel - the largest distance between the positions of the body's nodes at t0 and t1. Not collective, same on all ranks. */

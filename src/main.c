@@ -1,6 +1,7 @@
 /* burnish: scene -> mesh -> model -> load stepper -> results. */
 #include <petsctime.h>
 #include "commandline.h"
+#include "contactreport.h"
 #include "errorlog.h"
 #include "refusal.h"
 #include "results.h"
@@ -90,6 +91,7 @@ static PetscErrorCode RunScene(const CommandLine *command, int *status)
     PetscCall(ProbesCreate(model, scene, &probes));
     PetscCall(ModelSetUp(model));
     TimingEnd(TIMING_SETUP);
+    if (command->mode == COMMAND_CHECK) PetscCall(ContactReport(model->contact, stdout));
     if (command->mode == COMMAND_RUN) PetscCall(RunModel(model, probes, scene, command, directory, start, mesh_s, status));
     PetscCall(ProbesDestroy(&probes));
     PetscCall(ModelDestroy(&model));

@@ -361,7 +361,7 @@ PetscErrorCode ModelDestroy(Model *model)
 
 /* ModelSetUp - contact lists at t = 0 and the state there as the first accepted one.
 
-   Collective. Refuses (exit 1) initial overlaps, ContactCheckOverlap(). */
+   Collective. Refuses (exit 1) initial overlaps, ContactTakeOverlap(). */
 PetscErrorCode ModelSetUp(Model model)
 {
   PetscBool ok;
@@ -371,7 +371,7 @@ PetscErrorCode ModelSetUp(Model model)
   if (model->contact) {
     PetscCall(ContactGather(model->contact, model->u, 0, 0));
     PetscCall(ModelResidual(model, model->u, 0, 0, &ok));
-    PetscCall(ContactCheckOverlap(model->contact));
+    PetscCall(ContactTakeOverlap(model->contact));
   }
   PetscCall(ModelAccept(model));
   model->work->rate = 0;
@@ -635,6 +635,15 @@ PetscErrorCode ModelReaction(Model model, const MeshGroup *group, PetscReal forc
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+static const char *ModelContactEffect(Scene scene)
+{
+  int diffuse = 0;
+
+  for (int c = 0; c < scene->n_contacts; c++) diffuse += scene->contacts[c].smoother == SMOOTHER_DIFFUSE;
+  if (!scene->n_contacts) return "";
+  return diffuse == scene->n_contacts ? ", diffuse contact" : diffuse ? ", facet contact, diffuse contact" : ", facet contact";
+}
+
 /* ModelEffects - what the scene calls for, in words with commas between, into text[size]. Not collective, same on all ranks. */
 PetscErrorCode ModelEffects(Model model, char *text, size_t size)
 {
@@ -642,9 +651,9 @@ PetscErrorCode ModelEffects(Model model, char *text, size_t size)
   PetscBool moving = PETSC_FALSE, body_force = PETSC_FALSE;
 
   PetscFunctionBeginUser;
-  for (int b = 0; b < scene->n_bodies; b++) moving = (PetscBool)(moving || (scene->bodies[b].rigid && scene->bodies[b].n_motions));
+  for (int b = 0; b < scene->n_bodies; b++) moving = (PetscBool)(moving || (scene->bodies[b].rigid && scene->bodies[b].motion.n));
   for (int l = 0; l < scene->n_loads; l++) body_force = (PetscBool)(body_force || scene->loads[l].kind == LOAD_BODY_FORCE);
-  PetscCall(PetscSNPrintf(text, size, "%s%s%s%s%s", scene->kinematics == KINEMATICS_FINITE ? "finite strain" : "small strain", model->contact ? ", facet contact" : "", LoadsConservative(model->loads) ? "" : ", follower load", body_force ? ", body force" : "", moving ? ", rigid motion" : ""));
+  PetscCall(PetscSNPrintf(text, size, "%s%s%s%s%s", scene->kinematics == KINEMATICS_FINITE ? "finite strain" : "small strain", ModelContactEffect(scene), LoadsConservative(model->loads) ? "" : ", follower load", body_force ? ", body force" : "", moving ? ", rigid motion" : ""));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

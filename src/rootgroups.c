@@ -286,7 +286,7 @@ void RootGroupsCheckUses(Scene scene, const RootMesh *root, Mesh mesh, Complaint
   }
   for (int i = 0; i < scene->n_contacts; i++) {
     CheckBoundary(scene, root, mesh, scene->contacts[i].path, "slave", scene->contacts[i].slave, complaint);
-    CheckBoundary(scene, root, mesh, scene->contacts[i].path, "master", scene->contacts[i].master, complaint);
+    if (scene->contacts[i].master) CheckBoundary(scene, root, mesh, scene->contacts[i].path, "master", scene->contacts[i].master, complaint);
   }
 }
 

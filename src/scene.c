@@ -126,27 +126,36 @@ static PetscErrorCode SceneReadMesh(Scene scene)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode SceneReadMotions(Scene scene, SceneBody *body)
+static PetscErrorCode MotionFree(Motion *motion)
 {
-  const int n = SchemaCount(SceneDocument(scene), "%s.rigid.motion", body->path);
+  PetscFunctionBeginUser;
+  for (int k = 0; k < motion->n; k++) PetscCall(PetscFree2(motion->components[k].history.t, motion->components[k].history.v));
+  PetscCall(PetscFree(motion->components));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The motion of a rigid tool or an analytic master; tool: its path. */
+static PetscErrorCode SceneReadMotion(Scene scene, const char *tool, Motion *motion)
+{
+  const int n = SchemaCount(SceneDocument(scene), "%s.motion", tool);
   char      path[PATH_LENGTH];
 
   PetscFunctionBeginUser;
-  PetscCall(PetscCalloc1(6 * n, &body->motions));
+  PetscCall(PetscCalloc1(6 * n, &motion->components));
   for (int i = 0; i < n; i++) {
-    const int before = body->n_motions;
+    const int before = motion->n;
 
-    snprintf(path, sizeof path, "%s.rigid.motion.%d", body->path, i);
+    snprintf(path, sizeof path, "%s.motion.%d", tool, i);
     for (int k = 0; k < 6; k++) {
       const char *key = k < 3 ? Displacements[k] : Rotations[k - 3];
 
       if (!SceneHas(scene, path, key)) continue;
       if (scene->geometry == GEOMETRY_AXISYMMETRIC && k != 1) SceneRefuse(scene, path, key, "would break the symmetry about the axis; allowed: uy", NULL);
-      body->motions[body->n_motions].component = k;
-      body->motions[body->n_motions].value     = SchemaReal(SceneDocument(scene), "%s.%s", path, key);
-      PetscCall(SceneReadHistory(scene, path, &body->motions[body->n_motions++].history));
+      motion->components[motion->n].component = k;
+      motion->components[motion->n].value     = SchemaReal(SceneDocument(scene), "%s.%s", path, key);
+      PetscCall(SceneReadHistory(scene, path, &motion->components[motion->n++].history));
     }
-    if (body->n_motions == before) SceneRefuse(scene, path, "", "moves nothing; allowed: at least one displacement (ux ...) or rotation (rz ...)", NULL);
+    if (motion->n == before) SceneRefuse(scene, path, "", "moves nothing; allowed: at least one displacement (ux ...) or rotation (rz ...)", NULL);
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -165,8 +174,11 @@ static PetscErrorCode SceneReadBody(Scene scene, SceneBody *body)
     SceneRefuse(scene, body->path, body->rigid ? "material" : "rigid", Needs, "has no place here; allowed:");
   PetscCall(SceneReadText(scene, body->path, body->rigid ? "surface" : "volume", &body->name));
   if (body->rigid) {
-    (void)SceneReals(scene, body->path, "rigid.point", body->point);
-    PetscCall(SceneReadMotions(scene, body));
+    char tool[PATH_LENGTH];
+
+    snprintf(tool, sizeof tool, "%s.rigid", body->path);
+    (void)SceneReals(scene, body->path, "rigid.point", body->motion.point);
+    PetscCall(SceneReadMotion(scene, tool, &body->motion));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   body->material.law = (MaterialLaw)SchemaChoice(SceneDocument(scene), "%s.material.law", body->path);
@@ -277,6 +289,43 @@ static PetscErrorCode SceneReadLoads(Scene scene)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* plane, cylinder or sphere: which of them the master's map names */
+static PetscErrorCode SceneReadAnalytic(Scene scene, SceneContact *contact)
+{
+  static const char *const shapes[] = {"plane", "cylinder", "sphere"};
+  char                     tool[PATH_LENGTH];
+  double                   length = 0;
+  int                      count  = 0;
+
+  PetscFunctionBeginUser;
+  for (int k = 0; k < 3; k++) {
+    snprintf(tool, sizeof tool, "master.%s", shapes[k]);
+    if (!SceneHas(scene, contact->path, tool)) continue;
+    contact->analytic.shape = (AnalyticShape)k;
+    count++;
+  }
+  if (count != 1) SceneRefuse(scene, contact->path, "master", count ? "names several shapes; allowed: a surface, or one of plane, cylinder, sphere" : "is empty; allowed: a surface, or one of plane, cylinder, sphere", NULL);
+  snprintf(tool, sizeof tool, "%s.master.%s", contact->path, shapes[contact->analytic.shape]);
+  (void)SceneReals(scene, tool, contact->analytic.shape == ANALYTIC_SPHERE ? "centre" : "point", contact->motion.point);
+  contact->analytic.axis[scene->geometry == GEOMETRY_AXISYMMETRIC ? 1 : 2] = 1; /* a cylinder in 2D: a circle; axisymmetric: about the axis */
+  if (contact->analytic.shape == ANALYTIC_PLANE || scene->dim == 3) {
+    contact->analytic.axis[1] = contact->analytic.axis[2] = 0;
+    (void)SceneReals(scene, tool, contact->analytic.shape == ANALYTIC_PLANE ? "normal" : "axis", contact->analytic.axis);
+  }
+  if (contact->analytic.shape != ANALYTIC_PLANE) {
+    contact->analytic.radius = SchemaReal(SceneDocument(scene), "%s.radius", tool);
+    contact->analytic.inside = SchemaChoice(SceneDocument(scene), "%s.side", tool);
+  }
+  for (int d = 0; d < 3; d++) length += contact->analytic.axis[d] * contact->analytic.axis[d];
+  if (contact->analytic.shape != ANALYTIC_SPHERE && length == 0) SceneRefuse(scene, tool, contact->analytic.shape == ANALYTIC_PLANE ? "normal" : "axis", "has no direction; allowed: any vector but zero", NULL);
+  if (scene->geometry == GEOMETRY_AXISYMMETRIC && contact->analytic.shape != ANALYTIC_PLANE && contact->motion.point[0] != 0)
+    SceneRefuse(scene, tool, contact->analytic.shape == ANALYTIC_SPHERE ? "centre" : "point", "is off the axis, where it would be no body of revolution of that name; allowed: x = 0", NULL);
+  if (scene->geometry == GEOMETRY_AXISYMMETRIC && contact->analytic.shape == ANALYTIC_PLANE && contact->analytic.axis[0] != 0)
+    SceneRefuse(scene, tool, "normal", "is oblique to the axis: that is a cone, not a plane; allowed: [0, y]", NULL);
+  PetscCall(SceneReadMotion(scene, tool, &contact->motion));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 static PetscErrorCode SceneReadContact(Scene scene, SceneContact *contact)
 {
   Node symmetry = SceneNode(scene, contact->path, "symmetry");
@@ -285,12 +334,18 @@ static PetscErrorCode SceneReadContact(Scene scene, SceneContact *contact)
   PetscCall(SceneReadText(scene, contact->path, "name", &contact->name));
   PetscCall(SceneReadText(scene, contact->path, "slave", &contact->slave));
   PetscCall(SceneReadText(scene, contact->path, "master", &contact->master));
-  if (!contact->master) SceneRefuse(scene, contact->path, "master", "is empty; allowed: a surface, or one of plane, cylinder, sphere", NULL);
+  if (!contact->master) PetscCall(SceneReadAnalytic(scene, contact));
   SceneRefuseRigid(scene, contact->path, "slave", contact->slave);
-  if (!strcmp(contact->slave, contact->master))
+  if (contact->master && !strcmp(contact->slave, contact->master))
     SceneRefuse(scene, contact->path, "master", "is the slave too; allowed: another surface (self contact is not available yet)", contact->master);
   contact->smoother      = (SmootherKind)SchemaChoice(SceneDocument(scene), "%s.smoother", contact->path);
   contact->formulation   = (ContactFormulation)SchemaChoice(SceneDocument(scene), "%s.formulation", contact->path);
+  contact->degree        = SchemaChoice(SceneDocument(scene), "%s.degree", contact->path) == 0 ? 4 : 2;
+  contact->support       = SceneHas(scene, contact->path, "support") ? SchemaReal(SceneDocument(scene), "%s.support", contact->path) : 0;
+  contact->weight        = SceneHas(scene, contact->path, "weight") ? SchemaReal(SceneDocument(scene), "%s.weight", contact->path) : 0;
+  contact->global_frame  = SchemaChoice(SceneDocument(scene), "%s.frame", contact->path);
+  contact->diffuse_derivatives = SchemaChoice(SceneDocument(scene), "%s.derivatives", contact->path);
+  contact->initial_overlap     = (InitialOverlap)SchemaChoice(SceneDocument(scene), "%s.initial_overlap", contact->path);
   contact->feature_angle = SchemaReal(SceneDocument(scene), "%s.feature_angle", contact->path);
   contact->penalty_auto  = SchemaChoice(SceneDocument(scene), "%s.penalty.initial", contact->path) == 0;
   contact->penalty       = contact->penalty_auto ? 0 : SchemaReal(SceneDocument(scene), "%s.penalty.initial", contact->path);
@@ -423,8 +478,7 @@ static PetscErrorCode SceneDestroyBodies(Scene scene)
   for (int i = 0; i < scene->n_bodies; i++) {
     SceneBody *body = &scene->bodies[i];
 
-    for (int k = 0; k < body->n_motions; k++) PetscCall(PetscFree2(body->motions[k].history.t, body->motions[k].history.v));
-    PetscCall(PetscFree(body->motions));
+    PetscCall(MotionFree(&body->motion));
     PetscCall(PetscFree(body->path));
     PetscCall(PetscFree(body->name));
   }
@@ -444,6 +498,7 @@ static PetscErrorCode SceneDestroyContacts(Scene scene)
     PetscCall(PetscFree(contact->name));
     PetscCall(PetscFree(contact->slave));
     PetscCall(PetscFree(contact->master));
+    PetscCall(MotionFree(&contact->motion));
   }
   PetscCall(PetscFree(scene->contacts));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -1,3 +1,5 @@
+#include "fitframe.h"
+#include "neighbourhood.h"
 #include "search.h"
 #include "tree.h"
 
@@ -10,6 +12,19 @@
 /* Boxes of curved facets are widened by this fraction of the face size: the bulge of a quadratic face beyond its nodes is at most 1/8 of its chord. */
 #define SEARCH_BULGE 0.15
 
+/* Points are gathered a little beyond the support (rho^2 up to this), so that those which enter while a solve lasts are in the list. */
+#define SEARCH_FIT_MARGIN 1.7
+/* On regular meshes points lie exactly on the border of the support; this much beyond still counts as inside, and round-off decides nothing. */
+#define SEARCH_FIT_TIE 1e-6
+/* A node this close to a plane of symmetry, as a fraction of the model's size, is on it and has no image. */
+#define SEARCH_ON_PLANE 1e-9
+
+/* The ladder: wider supports, then lower degrees, until every guard holds. Degree 0: the scene's. */
+static const struct {
+  int    degree;
+  double widen;
+} Ladder[RUNGS] = {{0, 1}, {0, 1.15}, {0, 1.32}, {0, 1.52}, {0, 1.75}, {2, 1}, {2, 1.32}, {1, 1}};
+
 struct _n_ContactSearch {
   Mesh            mesh;
   Scene           scene;
@@ -17,6 +32,7 @@ struct _n_ContactSearch {
   ContactSurface  slave, master;
   int             n_images;
   const SurfaceImage *images;
+  const FitSettings *fit;
   PetscInt        n_slaves;
   const PetscInt *slaves;
   PetscReal       reach, margin; /* lengths, without the motion */
@@ -28,13 +44,14 @@ typedef struct {
   PetscReal size;
   PetscInt  id[FACE_MAX_NODES], owner[FACE_MAX_NODES], local[FACE_MAX_NODES];
   PetscReal X[FACE_MAX_NODES * 3];
+  NodeGeometry geometry[FACE_MAX_NODES]; /* fits only */
 } FaceRecord;
 
 /* A face or a mirror image of it, in the current position. */
 typedef struct {
   PetscInt  record;
   int       image;
-  Facet     facet; /* nodes: contact nodes */
+  Facet     facet; /* nodes: contact nodes until the points are numbered, then points */
   PetscReal centre[3], normal[3], lower[3], upper[3];
 } Candidate;
 
@@ -44,10 +61,10 @@ typedef struct {
 } NodeKey;
 
 /* SearchCreate - what stands still for the run: surfaces, images, slave points. Collective. */
-PetscErrorCode SearchCreate(Mesh mesh, Scene scene, Loads loads, ContactSurface slave, ContactSurface master, int n_images, const SurfaceImage *images, PetscInt n, const PetscInt *slaves, ContactSearch *out)
+PetscErrorCode SearchCreate(Mesh mesh, Scene scene, Loads loads, ContactSurface slave, ContactSurface master, int n_images, const SurfaceImage *images, const FitSettings *fit, PetscInt n, const PetscInt *slaves, ContactSearch *out)
 {
   ContactSearch   s;
-  const PetscReal size = PetscMax(slave->max_size, master->max_size);
+  const PetscReal size = master ? PetscMax(slave->max_size, master->max_size) : slave->max_size;
 
   PetscFunctionBeginUser;
   PetscCall(PetscNew(&s));
@@ -58,6 +75,7 @@ PetscErrorCode SearchCreate(Mesh mesh, Scene scene, Loads loads, ContactSurface 
   s->master   = master;
   s->n_images = n_images;
   s->images   = images;
+  s->fit      = fit;
   s->n_slaves = n;
   s->slaves   = slaves;
   s->reach    = SEARCH_REACH * size;
@@ -133,7 +151,7 @@ static PetscBool SomeImageMeets(ContactSearch s, int n, const PetscReal *x, cons
   return PETSC_FALSE;
 }
 
-static void RecordFromMesh(ContactSearch s, PetscInt f, FaceRecord *record)
+static void RecordFromMesh(ContactSearch s, const NodeGeometry *geometry, PetscInt f, FaceRecord *record)
 {
   Mesh         mesh  = s->mesh;
   const Facet *facet = &s->master->faces[f];
@@ -145,12 +163,13 @@ static void RecordFromMesh(ContactSearch s, PetscInt f, FaceRecord *record)
     record->id[a]    = mesh->node_id[node];
     record->owner[a] = mesh->node_owner[node];
     record->local[a] = mesh->node_owner_local[node];
+    if (geometry) record->geometry[a] = geometry[node];
     for (int d = 0; d < mesh->dim; d++) record->X[a * 3 + d] = mesh->coords[node * mesh->dim + d];
   }
 }
 
 /* Sends this rank's faces of a deformable master to every rank whose slaves they may reach; returns what arrived (itself included). */
-static PetscErrorCode ExchangeFaces(ContactSearch s, const PetscReal *u, const PetscReal *boxes, PetscReal distance, PetscInt *n_records, FaceRecord **records)
+static PetscErrorCode ExchangeFaces(ContactSearch s, const NodeGeometry *geometry, const PetscReal *u, const PetscReal *boxes, PetscReal distance, PetscInt *n_records, FaceRecord **records)
 {
   Mesh         mesh = s->mesh;
   const int    dim  = mesh->dim;
@@ -175,7 +194,7 @@ static PetscErrorCode ExchangeFaces(ContactSearch s, const PetscReal *u, const P
         for (int d = 0; d < dim; d++) x[a * dim + d] = mesh->coords[facet->nodes[a] * dim + d] + u[facet->nodes[a] * dim + d];
       if (!SomeImageMeets(s, n, x, &boxes[6 * r], distance)) continue;
       if (total == room) PetscCall(PetscRealloc((room *= 2) * sizeof(FaceRecord), &send));
-      RecordFromMesh(s, f, &send[total++]);
+      RecordFromMesh(s, geometry, f, &send[total++]);
       count[r]++;
     }
     PetscCall(PetscMPIIntCast(count[r] * (PetscInt)sizeof(FaceRecord), &send_bytes[r]));
@@ -205,7 +224,7 @@ static void RigidPosition(ContactSearch s, PetscInt n, PetscReal t, PetscReal x[
 }
 
 /* The faces of a rigid tool that come near this rank's slaves; every rank has them all. */
-static PetscErrorCode PickRigidFaces(ContactSearch s, PetscReal t, const PetscReal box[6], PetscReal distance, PetscInt *n_records, FaceRecord **records)
+static PetscErrorCode PickRigidFaces(ContactSearch s, const NodeGeometry *geometry, PetscReal t, const PetscReal box[6], PetscReal distance, PetscInt *n_records, FaceRecord **records)
 {
   const int dim = s->mesh->dim;
 
@@ -225,7 +244,10 @@ static PetscErrorCode PickRigidFaces(ContactSearch s, PetscReal t, const PetscRe
     }
     if (!SomeImageMeets(s, n, x, box, distance)) continue;
     (*records)[*n_records] = (FaceRecord){.facet = *facet, .size = s->master->face_size[f]};
-    for (int a = 0; a < n; a++) (*records)[*n_records].id[a] = facet->nodes[a];
+    for (int a = 0; a < n; a++) {
+      (*records)[*n_records].id[a] = facet->nodes[a];
+      if (geometry) (*records)[*n_records].geometry[a] = geometry[facet->nodes[a]];
+    }
     (*n_records)++;
   }
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -267,7 +289,7 @@ static PetscErrorCode ListsCreateNodes(ContactSearch s, PetscInt n_records, Face
 {
   Mesh            mesh = s->mesh;
   const int       dim  = mesh->dim;
-  const PetscBool rigid = (PetscBool)(s->master->rigid != NULL);
+  const PetscBool rigid = (PetscBool)(s->master && s->master->rigid);
   PetscInt        n = 0, n_rigid = 0;
   NodeKey        *keys, *tool;
   PetscSFNode    *remote;
@@ -396,6 +418,7 @@ static void SlaveMap(const ContactLists lists, PetscInt q, const PetscReal *x, P
 PetscErrorCode ListsUpdate(ContactSearch s, ContactLists lists, const PetscReal *u, PetscReal t)
 {
   PetscFunctionBeginUser;
+  lists->t = t;
   PetscCall(UpdateNodes(s, lists, u, t));
   for (PetscInt p = 0; p < lists->n_points; p++) PointMap(lists, p, &s->images[lists->point_image[p]], lists->u, &lists->point_u[p * lists->dim]);
   for (PetscInt q = 0; q < lists->n_slaves; q++) SlaveMap(lists, q, lists->u, &lists->slave_u[q * lists->dim]);
@@ -439,7 +462,8 @@ static void CandidatePlace(int dim, const PetscReal *x, PetscReal size, Candidat
   }
 }
 
-static void CandidatePositions(ContactSearch s, ContactLists lists, const Candidate *c, PetscReal *x)
+/* Positions of a candidate's nodes while they are contact nodes still. */
+static void ImagePositions(ContactSearch s, ContactLists lists, const Candidate *c, PetscReal *x)
 {
   const int dim = lists->dim;
 
@@ -449,6 +473,15 @@ static void CandidatePositions(ContactSearch s, ContactLists lists, const Candid
     for (int d = 0; d < dim; d++) y[d] = lists->X[c->facet.nodes[a] * dim + d] + lists->u[c->facet.nodes[a] * dim + d];
     Reflect(&s->images[c->image], dim, y, &x[a * dim]);
   }
+}
+
+/* Positions of a candidate's nodes once they are points. */
+static void CandidatePositions(ContactLists lists, const Candidate *c, PetscReal *x)
+{
+  const int dim = lists->dim;
+
+  for (int a = 0; a < ElementGet(c->facet.type)->nodes; a++)
+    for (int d = 0; d < dim; d++) x[a * dim + d] = lists->point_X[c->facet.nodes[a] * dim + d] + lists->point_u[c->facet.nodes[a] * dim + d];
 }
 
 /* All faces and mirror images near this rank's slaves, in an order that does not depend on the ranks. */
@@ -467,7 +500,7 @@ static PetscErrorCode MakeCandidates(ContactSearch s, ContactLists lists, PetscI
 
       *c           = (Candidate){.record = r, .image = m, .facet = SurfaceImageFacet(&records[r].facet, &s->images[m])};
       c->facet.tag = records[r].facet.tag * SURFACE_MAX_IMAGES + m;
-      CandidatePositions(s, lists, c, x);
+      ImagePositions(s, lists, c, x);
       CandidatePlace(dim, x, records[r].size, c);
       for (int d = 0; d < 3; d++) {
         own[d]     = c->lower[d];
@@ -481,12 +514,12 @@ static PetscErrorCode MakeCandidates(ContactSearch s, ContactLists lists, PetscI
 
 /* One slave point looking for its nearest facet. */
 typedef struct {
-  ContactSearch    s;
   ContactLists     lists;
   const Candidate *candidates;
   PetscReal        x[3], normal[3];
   PetscInt         node; /* contact node of the slave point: it is not its own master */
   PetscInt         best;
+  Foot             foot; /* on the best */
 } Nearest;
 
 static PetscBool CandidateFaces(const Nearest *look, const Candidate *c)
@@ -496,7 +529,7 @@ static PetscBool CandidateFaces(const Nearest *look, const Candidate *c)
   for (int d = 0; d < look->lists->dim; d++) cosine += look->normal[d] * c->normal[d];
   if (cosine >= SEARCH_OPPOSED) return PETSC_FALSE;
   for (int a = 0; a < ElementGet(c->facet.type)->nodes; a++)
-    if (c->facet.nodes[a] == look->node) return PETSC_FALSE;
+    if (look->lists->point_node[c->facet.nodes[a]] == look->node) return PETSC_FALSE;
   return PETSC_TRUE;
 }
 
@@ -510,7 +543,7 @@ static void NearestVisit(void *context, int index, double *bound)
   Foot             foot;
 
   if (!CandidateFaces(look, c)) return;
-  CandidatePositions(look->s, look->lists, c, x);
+  CandidatePositions(look->lists, c, x);
   own.free_edges = 0;
   for (int a = 0; a < ElementGet(own.type)->nodes; a++) {
     own.nodes[a] = a;
@@ -521,6 +554,7 @@ static void NearestVisit(void *context, int index, double *bound)
   if (distance > *bound || (distance == *bound && look->best >= 0 && c->facet.tag > look->candidates[look->best].facet.tag)) return;
   *bound     = distance;
   look->best = index;
+  look->foot = foot;
 }
 
 /* Curvature of the master around its nearest facet: turn of the normals of the facets that touch it over the distance of their centres. */
@@ -545,21 +579,31 @@ static PetscReal ListCurvature(const Nearest *look, PetscInt n, const int *found
   return kappa;
 }
 
+/* Lists of all slave points, growing. */
 typedef struct {
-  PetscInt  n, room;
-  Facet    *facet;
+  PetscInt   n, room;
+  Facet     *facet;
   PetscReal *size;
-  PetscInt  n_entries, entries_room, *entry; /* fit points of the slave points, as image * n_nodes + node until they are numbered */
+  PetscInt   n_points, points_room, *point;
+  PetscInt  *position; /* of every point in the present slave point's list; older entries are below its start */
 } ListBuffer;
 
-/* Appends the found candidates to the slave point's list; facets' nodes become positions in the slave point's own list of points. */
-static PetscErrorCode ListAppend(const Nearest *look, PetscInt n, const int *found, const FaceRecord *records, PetscInt *position, ListBuffer *buffer)
+static PetscErrorCode ListAddPoint(ListBuffer *buffer, PetscInt first, PetscInt point)
 {
-  const PetscInt first = buffer->n_entries;
+  PetscFunctionBeginUser;
+  if (buffer->position[point] >= first) PetscFunctionReturn(PETSC_SUCCESS);
+  if (buffer->n_points == buffer->points_room) PetscCall(PetscRealloc((buffer->points_room = 2 * buffer->points_room + 1024) * sizeof(PetscInt), &buffer->point));
+  buffer->position[point]           = buffer->n_points;
+  buffer->point[buffer->n_points++] = point;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
 
+/* Appends the found candidates to the slave point's list, which starts at first; facets' nodes become positions in it. */
+static PetscErrorCode ListAddFacets(const Nearest *look, PetscInt n, const int *found, const FaceRecord *records, PetscInt first, ListBuffer *buffer)
+{
   PetscFunctionBeginUser;
   for (PetscInt i = 0; i < n; i++) {
-    const Candidate *c = &look->candidates[found[i]];
+    const Candidate *c     = &look->candidates[found[i]];
     Facet            facet = c->facet;
 
     if (buffer->n == buffer->room) {
@@ -567,18 +611,9 @@ static PetscErrorCode ListAppend(const Nearest *look, PetscInt n, const int *fou
       PetscCall(PetscRealloc(buffer->room * sizeof(Facet), &buffer->facet));
       PetscCall(PetscRealloc(buffer->room * sizeof(PetscReal), &buffer->size));
     }
-    if (buffer->n_entries + FACE_MAX_NODES > buffer->entries_room) {
-      buffer->entries_room = 2 * buffer->entries_room + 64 * FACE_MAX_NODES;
-      PetscCall(PetscRealloc(buffer->entries_room * sizeof(PetscInt), &buffer->entry));
-    }
     for (int a = 0; a < ElementGet(facet.type)->nodes; a++) {
-      const PetscInt key = c->image * look->lists->n_nodes + facet.nodes[a];
-
-      if (position[key] < first) { /* not in this slave point's list yet */
-        position[key]                      = buffer->n_entries;
-        buffer->entry[buffer->n_entries++] = key;
-      }
-      facet.nodes[a] = (int)(position[key] - first);
+      PetscCall(ListAddPoint(buffer, first, facet.nodes[a]));
+      facet.nodes[a] = (int)(buffer->position[facet.nodes[a]] - first);
     }
     buffer->size[buffer->n]    = records[c->record].size;
     buffer->facet[buffer->n++] = facet;
@@ -586,40 +621,98 @@ static PetscErrorCode ListAppend(const Nearest *look, PetscInt n, const int *fou
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Numbers the fit points that some list uses and writes their maps: one node each, weight 1, no offset. */
-static PetscErrorCode ListsCreatePoints(ContactSearch s, ContactLists lists, const ListBuffer *buffer, PetscInt *number)
+/* The image that a node really has: planes that it lies on do not move it. Image m is the product of the planes whose bits are set in m.
+   *planes: how many planes the node lies on. */
+static int CanonicalImage(ContactSearch s, const PetscReal *X, int image, int *planes)
+{
+  *planes = 0;
+  for (int bit = 1; bit < s->n_images; bit <<= 1) {
+    PetscReal distance = 0;
+
+    for (int d = 0; d < s->mesh->dim; d++) distance = PetscMax(distance, PetscAbsReal(s->images[bit].sign[d] * X[d] + s->images[bit].shift[d] - X[d]));
+    if (distance > SEARCH_ON_PLANE * s->mesh->size) continue;
+    image &= ~bit;
+    (*planes)++;
+  }
+  return image;
+}
+
+/* Numbers the points that the candidates use, writes their maps (one node each, S = 1, no offset), and rewrites the candidates in them. */
+static PetscErrorCode ListsCreatePoints(ContactSearch s, ContactLists lists, PetscInt n_candidates, Candidate *candidates)
 {
   const int dim = lists->dim;
-  PetscInt  n   = 0;
+  PetscInt  n   = 0, *number, room = s->n_images * lists->n_nodes;
 
   PetscFunctionBeginUser;
-  for (PetscInt k = 0; k < s->n_images * lists->n_nodes; k++) number[k] = -1;
-  for (PetscInt i = 0; i < buffer->n_entries; i++)
-    if (number[buffer->entry[i]] < 0) number[buffer->entry[i]] = n++;
-  lists->n_points = n;
-  PetscCall(PetscMalloc6(n + 1, &lists->point_ptr, n, &lists->point_node, n, &lists->point_S, n * dim, &lists->point_offset, n, &lists->point_weight, n, &lists->point_image));
-  PetscCall(PetscMalloc2(n * dim, &lists->point_X, n * dim, &lists->point_u));
-  for (PetscInt k = 0; k < s->n_images * lists->n_nodes; k++) {
-    const PetscInt p = number[k];
+  PetscCall(PetscMalloc1(room, &number));
+  for (PetscInt k = 0; k < room; k++) number[k] = -1;
+  PetscCall(PetscMalloc6(room + 1, &lists->point_ptr, room, &lists->point_node, room, &lists->point_S, room * dim, &lists->point_offset, room, &lists->point_weight, room, &lists->point_image));
+  for (PetscInt c = 0; c < n_candidates; c++) {
+    for (int a = 0; a < ElementGet(candidates[c].facet.type)->nodes; a++) {
+      const PetscInt node  = candidates[c].facet.nodes[a];
+      int            planes;
+      const int      image = CanonicalImage(s, &lists->X[node * dim], candidates[c].image, &planes);
+      PetscInt      *p     = &number[image * lists->n_nodes + node];
 
-    if (p < 0) continue;
-    lists->point_ptr[p]    = p;
-    lists->point_node[p]   = k % lists->n_nodes;
-    lists->point_S[p]      = 1;
-    lists->point_weight[p] = 1;
-    lists->point_image[p]  = (int)(k / lists->n_nodes);
-    PetscCall(PetscArrayzero(&lists->point_offset[p * dim], dim));
+      if (*p < 0) {
+        *p                      = n;
+        lists->point_ptr[n]     = n;
+        lists->point_node[n]    = node;
+        lists->point_S[n]       = 1;
+        lists->point_weight[n]  = 1 << planes; /* what the faces on this side give to a node on a plane is half of its whole */
+        lists->point_image[n++] = image;
+      }
+      candidates[c].facet.nodes[a] = (int)*p;
+    }
   }
   lists->point_ptr[n] = n;
+  lists->n_points     = n;
+  PetscCall(PetscArrayzero(lists->point_offset, n * dim));
+  PetscCall(PetscMalloc2(n * dim, &lists->point_X, n * dim, &lists->point_u));
   for (PetscInt p = 0; p < n; p++) {
     const SurfaceImage *image = &s->images[lists->point_image[p]];
 
     PointMap(lists, p, image, lists->X, &lists->point_X[p * dim]);
+    PointMap(lists, p, image, lists->u, &lists->point_u[p * dim]);
     for (int d = 0; d < dim; d++) lists->point_X[p * dim + d] += image->shift[d] + lists->point_offset[p * dim + d];
   }
-  PetscCall(PetscMalloc1(buffer->n_entries, &lists->list_point));
-  for (PetscInt i = 0; i < buffer->n_entries; i++) lists->list_point[i] = number[buffer->entry[i]];
+  PetscCall(PetscFree(number));
   PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Normal, spacing and weight of the points: those of their nodes, reflected with them. */
+static void PointGeometry(ContactSearch s, ContactLists lists, PetscInt n_records, const FaceRecord *records, NodeGeometry *node_geometry, NodeGeometry *geometry)
+{
+  for (PetscInt r = 0; r < n_records; r++)
+    for (int a = 0; a < ElementGet(records[r].facet.type)->nodes; a++) node_geometry[records[r].facet.nodes[a]] = records[r].geometry[a];
+  for (PetscInt p = 0; p < lists->n_points; p++) {
+    const PetscReal *sign   = s->images[lists->point_image[p]].sign;
+    NodeGeometry    *g      = &geometry[p];
+    PetscReal        length = 0;
+
+    *g = node_geometry[lists->point_node[p]];
+    for (int bit = 1; bit < s->n_images; bit <<= 1) { /* on a plane the other half cancels what is odd in its axis */
+      for (int d = 0; d < 3; d++) {
+        PetscReal distance;
+
+        if (d >= lists->dim || s->images[bit].sign[d] > 0) continue;
+        distance = PetscAbsReal(-lists->X[lists->point_node[p] * lists->dim + d] + s->images[bit].shift[d] - lists->X[lists->point_node[p] * lists->dim + d]);
+        if (distance > SEARCH_ON_PLANE * s->mesh->size) continue;
+        g->normal[d]                   = 0;
+        g->covariance[3 + d]           = 0; /* xy yz zx: the two products with axis d */
+        g->covariance[3 + (d + 2) % 3] = 0;
+      }
+    }
+    for (int d = 0; d < 3; d++) {
+      g->normal[d] *= sign[d];
+      g->covariance[3 + d] *= sign[d] * sign[(d + 1) % 3];
+      length += PetscSqr(g->normal[d]);
+    }
+    length = PetscSqrtReal(length);
+    for (int d = 0; d < 3 && length > 0; d++) g->normal[d] /= length;
+    if (g->weight != 1) g->weight *= lists->point_weight[p];
+    lists->point_weight[p] = g->weight;
+  }
 }
 
 static PetscErrorCode ListsCreateSlaves(ContactSearch s, ContactLists lists)
@@ -632,6 +725,8 @@ static PetscErrorCode ListsCreateSlaves(ContactSearch s, ContactLists lists)
   PetscCall(PetscMalloc4(n + 1, &lists->slave_ptr, n, &lists->slave_node, n, &lists->slave_S, n * dim, &lists->slave_offset));
   PetscCall(PetscMalloc2(n * dim, &lists->slave_X, n * dim, &lists->slave_u));
   PetscCall(PetscMalloc3(n + 1, &lists->list_ptr, n + 1, &lists->facet_ptr, n, &lists->kappa));
+  PetscCall(PetscCalloc5(n, &lists->fit_n, n, &lists->rung, n, &lists->degree, 9 * n, &lists->frame, 4 * n, &lists->metric));
+  PetscCall(PetscCalloc3(n, &lists->pivot, n, &lists->amplified, n, &lists->residual));
   PetscCall(PetscArrayzero(lists->slave_offset, n * dim));
   for (PetscInt q = 0; q < n; q++) {
     PetscInt at;
@@ -646,57 +741,260 @@ static PetscErrorCode ListsCreateSlaves(ContactSearch s, ContactLists lists)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Looks for the nearest facet of every slave point and lists it with what surrounds it. */
-static PetscErrorCode ListsFill(ContactSearch s, ContactLists lists, const PetscReal *normals, PetscInt n_candidates, const Candidate *candidates, const FaceRecord *records, PetscReal motion)
+/* The fits of a pair's slave points in the making. */
+typedef struct {
+  ContactSearch  s;
+  ContactLists   lists;
+  SurfaceView    view;
+  Neighbourhoods neighbourhoods;
+  PetscReal     *normals, *reference;
+  NodeGeometry  *geometry;
+  PetscInt      *points; /* of the slave point at hand, FIT_MAX_POINTS */
+  double        *x, *multiplier, *taper, *workspace; /* taper: weights of the frame, which fall to nothing where the list ends */
+  int           *used;
+  PetscReal      plane[3]; /* normal of the one reference plane of a global frame */
+} Fitting;
+
+/* Unit normal at the centre of a candidate in the reference position. */
+static void ReferenceNormal(ContactLists lists, const Candidate *c, PetscReal normal[3])
+{
+  Candidate at_rest = *c;
+  PetscReal x[FACE_MAX_NODES * 3];
+
+  for (int a = 0; a < ElementGet(c->facet.type)->nodes; a++)
+    for (int d = 0; d < lists->dim; d++) x[a * lists->dim + d] = lists->point_X[c->facet.nodes[a] * lists->dim + d];
+  CandidatePlace(lists->dim, x, 0, &at_rest);
+  for (int d = 0; d < 3; d++) normal[d] = at_rest.normal[d];
+}
+
+static PetscErrorCode FittingCreate(ContactSearch s, ContactLists lists, PetscInt n_records, const FaceRecord *records, PetscInt n, const Candidate *candidates, Fitting *fit)
+{
+  NodeGeometry *node_geometry;
+  Facet        *facets;
+  PetscReal    *x;
+
+  PetscFunctionBeginUser;
+  *fit = (Fitting){.s = s, .lists = lists};
+  PetscCall(PetscMalloc5(3 * n, &fit->normals, 3 * n, &fit->reference, lists->n_points, &fit->geometry, n, &facets, lists->n_points * lists->dim, &x));
+  PetscCall(PetscCalloc1(lists->n_nodes, &node_geometry));
+  PointGeometry(s, lists, n_records, records, node_geometry, fit->geometry);
+  PetscCall(PetscFree(node_geometry));
+  for (PetscInt i = 0; i < n; i++) {
+    facets[i] = candidates[i].facet;
+    ReferenceNormal(lists, &candidates[i], &fit->reference[3 * i]);
+    for (int d = 0; d < 3; d++) fit->normals[3 * i + d] = candidates[i].normal[d];
+  }
+  for (PetscInt i = 0; i < lists->n_points * lists->dim; i++) x[i] = lists->point_X[i] + lists->point_u[i];
+  fit->view = (SurfaceView){lists->dim, n, lists->n_points, facets, fit->normals, fit->reference, x, fit->geometry, PetscCosReal(s->fit->feature_angle)};
+  PetscCall(NeighbourhoodsCreate(&fit->view, &fit->neighbourhoods));
+  PetscCall(PetscMalloc6(FIT_MAX_POINTS, &fit->points, FIT_MAX_POINTS * 3, &fit->x, FIT_MAX_POINTS, &fit->multiplier, FIT_MAX_POINTS, &fit->taper, FitWorkspace(lists->dim, s->fit->degree, FIT_MAX_POINTS), &fit->workspace, FIT_MAX_POINTS, &fit->used));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode FittingDestroy(Fitting *fit)
+{
+  Facet     *facets = (Facet *)fit->view.facets;
+  PetscReal *x      = (PetscReal *)fit->view.x;
+
+  PetscFunctionBeginUser;
+  PetscCall(NeighbourhoodsDestroy(&fit->neighbourhoods));
+  PetscCall(PetscFree5(fit->normals, fit->reference, fit->geometry, facets, x));
+  PetscCall(PetscFree6(fit->points, fit->x, fit->multiplier, fit->taper, fit->workspace, fit->used));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The metric over a frame's tangents as a tensor in space: inverse squared lengths. */
+static void MetricInSpace(int dim, double (*frame)[3], double metric[2][2], PetscReal space[9])
+{
+  for (int i = 0; i < 3; i++) {
+    for (int j = 0; j < 3; j++) {
+      space[3 * i + j] = 0;
+      for (int a = 0; a < dim - 1; a++)
+        for (int b = 0; b < dim - 1; b++) space[3 * i + j] += frame[a][i] * metric[a][b] * frame[b][j];
+    }
+  }
+}
+
+/* Spacing of the points at a foot. Shape: the nodes' covariances, between the nodes by the shape functions, so that the support does not jump
+   from facet to facet and keeps the symmetry of a ring around a node. Size: the mean over the facet's nodes, as those on a cut see one side only. */
+static void FootSpacing(const Fitting *fit, PetscInt f, const double *xi, double covariance[3][3], double *area)
+{
+  const Facet *facet = &fit->view.facets[f];
+  const int    n     = ElementGet(facet->type)->nodes, dim = fit->lists->dim;
+  double       share[FACE_MAX_NODES], total = 0;
+
+  ElementShape(facet->type, xi, share, NULL, NULL);
+  for (int a = 0; a < n; a++) total += share[a] = PetscMax(share[a], 0); /* second-order ones are negative in places */
+  *area = 0;
+  for (int i = 0; i < 3; i++)
+    for (int j = 0; j < 3; j++) covariance[i][j] = 0;
+  for (int a = 0; a < n; a++) {
+    const NodeGeometry *g = &fit->geometry[facet->nodes[a]];
+    const double        w = share[a] / total;
+
+    *area += (dim == 3 ? PetscSqr(g->spacing) : g->spacing) / n;
+    for (int d = 0; d < 3; d++) {
+      covariance[d][d] += w * g->covariance[d];
+      covariance[d][(d + 1) % 3] += w * g->covariance[3 + d];
+      covariance[(d + 1) % 3][d] += w * g->covariance[3 + d];
+    }
+  }
+}
+
+static PetscReal PointRho2(const Fitting *fit, PetscInt p, const PetscReal foot[3], const PetscReal space[9])
+{
+  const int dim  = fit->lists->dim;
+  PetscReal rho2 = 0;
+
+  for (int i = 0; i < dim; i++)
+    for (int j = 0; j < dim; j++) rho2 += (fit->view.x[p * dim + i] - foot[i]) * space[3 * i + j] * (fit->view.x[p * dim + j] - foot[j]);
+  return rho2;
+}
+
+/* Tries one rung for the slave point that look found a facet for: points, frame, metric into fit and problem; true when every guard holds. */
+static PetscErrorCode FitRung(Fitting *fit, const Nearest *look, int rung, FitProblem *problem, FitResult *result, PetscBool *holds)
+{
+  const FitSettings *settings = fit->s->fit;
+  const PetscReal   *outward  = look->candidates[look->best].normal; /* the foot's own may lie along the surface when the foot is on an edge */
+  const int          dim      = fit->lists->dim, degree = Ladder[rung].degree ? PetscMin(Ladder[rung].degree, settings->degree) : settings->degree;
+  double             covariance[3][3], area;
+  PetscReal          foot[3] = {0, 0, 0}, space[9];
+  PetscInt           n, found, inside;
+
+  PetscFunctionBeginUser;
+  *holds   = PETSC_FALSE;
+  *result  = (FitResult){.points = fit->used};
+  *problem = (FitProblem){.dim = dim, .degree = degree, .exponent = settings->exponent, .x = fit->x, .multiplier = fit->multiplier};
+  for (int d = 0; d < dim; d++) foot[d] = look->x[d] - look->foot.gap * look->foot.normal[d];
+  FootSpacing(fit, look->best, look->foot.xi, covariance, &area);
+  FitFrameFromNormal(dim, settings->global_frame ? fit->plane : outward, problem->frame);
+  for (int pass = 0; pass < 2; pass++) { /* first seen along the facet's normal, then along the points' own */
+    FitMetricFromCovariance(dim, problem->frame, covariance, area, settings->support * Ladder[rung].widen, problem->metric);
+    MetricInSpace(dim, problem->frame, problem->metric, space);
+    PetscCall(NeighbourhoodGather(fit->neighbourhoods, look->best, foot, problem->frame[dim - 1], space, SEARCH_FIT_MARGIN, FIT_MAX_POINTS, fit->points, &n, &found));
+    inside = 0;
+    for (PetscInt i = 0; i < n; i++) {
+      const PetscReal rho2 = PointRho2(fit, fit->points[i], foot, space);
+
+      inside += rho2 <= 1 + SEARCH_FIT_TIE;
+      fit->multiplier[i] = fit->lists->point_weight[fit->points[i]];
+      fit->taper[i]      = fit->multiplier[i] * PetscMax(SEARCH_FIT_TIE, 1 - rho2 / SEARCH_FIT_MARGIN);
+      for (int d = 0; d < dim; d++) fit->x[i * dim + d] = fit->view.x[fit->points[i] * dim + d] - look->x[d];
+    }
+    problem->n = (int)n;
+    if (inside < FitPointsWanted(dim, degree)) PetscFunctionReturn(PETSC_SUCCESS);
+    if (settings->global_frame) break;
+    if (pass == 0 && !FitFrame(dim, problem->n, fit->x, fit->taper, outward, problem->frame)) PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  *holds = FitEvaluate(problem, FIT_GAP, fit->workspace, result) && (result->guards & ~FIT_FEW_POINTS) == FIT_HOLDS ? PETSC_TRUE : PETSC_FALSE;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* How far the points in the inner half of the support lie from the fit: what the smoothing itself costs. */
+static PetscReal FitResidual(const FitProblem *problem, const FitResult *result)
+{
+  const int dim  = problem->dim;
+  PetscReal most = 0;
+
+  for (int i = 0; i < problem->n; i++) {
+    double y[2] = {0, 0}, z = 0, rho2 = 0;
+
+    for (int d = 0; d < dim; d++) {
+      for (int a = 0; a < dim - 1; a++) y[a] += problem->frame[a][d] * problem->x[i * dim + d];
+      z += problem->frame[dim - 1][d] * problem->x[i * dim + d];
+    }
+    for (int a = 0; a < dim - 1; a++)
+      for (int b = 0; b < dim - 1; b++) rho2 += y[a] * problem->metric[a][b] * y[b];
+    if (rho2 <= 0.25) most = PetscMax(most, PetscAbsReal(z - FitSurfaceHeight(&result->surface, y, NULL)));
+  }
+  return most;
+}
+
+/* Climbs down the ladder for one slave point and writes what holds into its list, which starts at first. */
+static PetscErrorCode FitSlave(Fitting *fit, const Nearest *look, PetscInt q, PetscInt first, ListBuffer *buffer)
+{
+  ContactLists lists = fit->lists;
+  FitProblem   problem;
+  FitResult    result;
+  PetscBool    holds = PETSC_FALSE;
+  int          rung  = 0;
+
+  PetscFunctionBeginUser;
+  for (; rung < RUNGS && !holds; rung++) PetscCall(FitRung(fit, look, rung, &problem, &result, &holds));
+  lists->rung[q] = holds ? rung - 1 : RUNG_FACET;
+  if (!holds) PetscFunctionReturn(PETSC_SUCCESS);
+  lists->fit_n[q]  = problem.n;
+  lists->degree[q] = problem.degree;
+  lists->pivot[q]     = result.pivot;
+  lists->amplified[q] = result.amplified;
+  lists->residual[q]  = FitResidual(&problem, &result);
+  for (int i = 0; i < 9; i++) lists->frame[9 * q + i] = problem.frame[i / 3][i % 3];
+  for (int i = 0; i < 4; i++) lists->metric[4 * q + i] = problem.metric[i / 2][i % 2];
+  for (PetscInt i = 0; i < problem.n; i++) PetscCall(ListAddPoint(buffer, first, fit->points[i]));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Drops found candidates that do not face the slave point. */
+static int KeepFacing(const Nearest *look, int n, int *found)
+{
+  int kept = 0;
+
+  for (int i = 0; i < n; i++)
+    if (CandidateFaces(look, &look->candidates[found[i]])) found[kept++] = found[i];
+  return kept;
+}
+
+/* Looks for the nearest facet of every slave point, lists it with what surrounds it, and fits the surface there. */
+static PetscErrorCode ListsFill(ContactSearch s, ContactLists lists, const PetscReal *normals, PetscInt n_candidates, const Candidate *candidates, const FaceRecord *records, Fitting *fit, PetscReal motion)
 {
   const int  dim = lists->dim;
   Tree       tree;
   double    *lower, *upper;
   int       *found, count;
-  PetscInt  *position, n_keys = s->n_images * lists->n_nodes;
   ListBuffer buffer = {0};
 
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc4(n_candidates * dim, &lower, n_candidates * dim, &upper, n_candidates, &found, n_keys, &position));
+  PetscCall(PetscMalloc4(n_candidates * dim, &lower, n_candidates * dim, &upper, n_candidates, &found, lists->n_points, &buffer.position));
   for (PetscInt i = 0; i < n_candidates; i++) {
     for (int d = 0; d < dim; d++) {
       lower[i * dim + d] = candidates[i].lower[d];
       upper[i * dim + d] = candidates[i].upper[d];
     }
   }
-  for (PetscInt k = 0; k < n_keys; k++) position[k] = -1;
+  for (PetscInt p = 0; p < lists->n_points; p++) buffer.position[p] = -1;
   PetscCheck(!TreeBuild(dim, (int)n_candidates, lower, upper, &tree), PETSC_COMM_SELF, PETSC_ERR_MEM, "no memory for the search tree");
   for (PetscInt q = 0; q < lists->n_slaves; q++) {
-    Nearest   look  = {.s = s, .lists = lists, .candidates = candidates, .node = lists->slave_node[q], .best = -1};
-    double    bound = s->reach + motion;
+    const PetscInt first = buffer.n_points;
+    Nearest        look  = {.lists = lists, .candidates = candidates, .node = lists->slave_node[q], .best = -1};
+    double         bound = s->reach + motion;
 
     for (int d = 0; d < dim; d++) look.x[d] = lists->slave_X[q * dim + d] + lists->slave_u[q * dim + d];
     for (int d = 0; d < 3; d++) look.normal[d] = normals[3 * s->slaves[q] + d];
-    lists->list_ptr[q]  = buffer.n_entries;
+    lists->list_ptr[q]  = first;
     lists->facet_ptr[q] = buffer.n;
     lists->kappa[q]     = 0;
     TreeClosest(tree, look.x, &bound, NearestVisit, &look);
     if (look.best < 0) continue;
-    count = TreeNear(tree, look.x, bound + s->margin + motion, (int)n_candidates, found);
-    {
-      int kept = 0;
-
-      for (int i = 0; i < count; i++)
-        if (CandidateFaces(&look, &candidates[found[i]])) found[kept++] = found[i];
-      count = kept;
-    }
+    count           = TreeNear(tree, look.x, bound + s->margin + motion, (int)n_candidates, found);
+    count           = KeepFacing(&look, count, found);
     lists->kappa[q] = ListCurvature(&look, count, found);
-    PetscCall(ListAppend(&look, count, found, records, position, &buffer));
+    if (fit) PetscCall(FitSlave(fit, &look, q, first, &buffer));
+    PetscCall(ListAddFacets(&look, count, found, records, first, &buffer));
   }
-  lists->list_ptr[lists->n_slaves]  = buffer.n_entries;
+  lists->list_ptr[lists->n_slaves]  = buffer.n_points;
   lists->facet_ptr[lists->n_slaves] = buffer.n;
+  lists->list_point                 = buffer.point;
+  lists->facet                      = buffer.facet;
+  lists->facet_size                 = buffer.size;
   TreeDestroy(&tree);
-  PetscCall(ListsCreatePoints(s, lists, &buffer, position));
-  lists->facet      = buffer.facet;
-  lists->facet_size = buffer.size;
-  PetscCall(PetscFree(buffer.entry));
-  PetscCall(PetscFree4(lower, upper, found, position));
+  PetscCall(PetscFree4(lower, upper, found, buffer.position));
   PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* How far from a slave point the points of its fit may lie: the widest support with its margin, in spacings of the coarsest faces. */
+static PetscReal FitReach(ContactSearch s)
+{
+  return s->fit->degree ? PetscSqrtReal(SEARCH_FIT_MARGIN) * Ladder[RUNG_WIDER].widen * s->fit->support * s->master->max_size : 0;
 }
 
 /* SearchLists - for every slave point of this rank the facets near it and the points these stand on, from whatever rank.
@@ -707,24 +1005,33 @@ static PetscErrorCode ListsFill(ContactSearch s, ContactLists lists, const Petsc
 PetscErrorCode SearchLists(ContactSearch s, const PetscReal *u, PetscReal t, PetscReal motion, ContactLists *out)
 {
   Mesh            mesh     = s->mesh;
-  const PetscReal distance = s->reach + s->margin + 2 * motion;
+  const PetscReal distance = s->reach + PetscMax(s->margin, FitReach(s)) + 2 * motion;
   PetscMPIInt     size;
   PetscReal      *boxes, box[6], *area, *normals;
   PetscInt        n_records, n_candidates;
+  NodeGeometry   *geometry = NULL;
   FaceRecord     *records;
   Candidate      *candidates;
   ContactLists    lists;
+  Fitting         fit;
 
   PetscFunctionBeginUser;
   PetscCall(PetscNew(&lists));
   lists->dim = mesh->dim;
   PetscCallMPI(MPI_Comm_size(mesh->comm, &size));
   PetscCall(PetscMalloc3(6 * size, &boxes, mesh->n_nodes, &area, 3 * mesh->n_nodes, &normals));
+  if (s->fit->degree) {
+    PetscCall(PetscMalloc1(s->master->rigid ? s->master->rigid->n_nodes : mesh->n_nodes, &geometry));
+    PetscCall(SurfaceNodeGeometry(s->master, s->loads, u, t, geometry));
+  }
   SlaveBox(s, u, box);
-  if (s->master->rigid) PetscCall(PickRigidFaces(s, t, box, distance, &n_records, &records));
+  if (!s->master) {
+    n_records = 0;
+    PetscCall(PetscMalloc1(0, &records));
+  } else if (s->master->rigid) PetscCall(PickRigidFaces(s, geometry, t, box, distance, &n_records, &records));
   else {
     PetscCallMPI(MPI_Allgather(box, 6, MPIU_REAL, boxes, 6, MPIU_REAL, mesh->comm));
-    PetscCall(ExchangeFaces(s, u, boxes, distance, &n_records, &records));
+    PetscCall(ExchangeFaces(s, geometry, u, boxes, distance, &n_records, &records));
   }
   if (n_records) qsort(records, n_records, sizeof(*records), RecordCompare);
   PetscCall(ListsCreateNodes(s, n_records, records, lists));
@@ -733,8 +1040,13 @@ PetscErrorCode SearchLists(ContactSearch s, const PetscReal *u, PetscReal t, Pet
   for (PetscInt q = 0; q < lists->n_slaves; q++) SlaveMap(lists, q, lists->u, &lists->slave_u[q * lists->dim]);
   PetscCall(SurfaceNodeAreas(s->slave, mesh->dim == 3 ? GEOMETRY_SOLID : GEOMETRY_PLANE_STRAIN, u, area, normals));
   PetscCall(MakeCandidates(s, lists, n_records, records, box, distance, &n_candidates, &candidates));
-  PetscCall(ListsFill(s, lists, normals, n_candidates, candidates, records, motion));
+  PetscCall(ListsCreatePoints(s, lists, n_candidates, candidates));
+  if (s->fit->degree) PetscCall(FittingCreate(s, lists, n_records, records, n_candidates, candidates, &fit));
+  if (s->fit->global_frame) PetscCall(SurfaceMeanNormal(s->master, s->loads, u, t, fit.plane, NULL));
+  PetscCall(ListsFill(s, lists, normals, n_candidates, candidates, records, s->fit->degree ? &fit : NULL, motion));
+  if (s->fit->degree) PetscCall(FittingDestroy(&fit));
   PetscCall(ListsUpdate(s, lists, u, t));
+  PetscCall(PetscFree(geometry));
   PetscCall(PetscFree(candidates));
   PetscCall(PetscFree(records));
   PetscCall(PetscFree3(boxes, area, normals));
@@ -757,6 +1069,8 @@ PetscErrorCode ListsDestroy(ContactLists *lists)
   PetscCall(PetscFree4(l->slave_ptr, l->slave_node, l->slave_S, l->slave_offset));
   PetscCall(PetscFree2(l->slave_X, l->slave_u));
   PetscCall(PetscFree3(l->list_ptr, l->facet_ptr, l->kappa));
+  PetscCall(PetscFree5(l->fit_n, l->rung, l->degree, l->frame, l->metric));
+  PetscCall(PetscFree3(l->pivot, l->amplified, l->residual));
   PetscCall(PetscFree(l->list_point));
   PetscCall(PetscFree(l->facet));
   PetscCall(PetscFree(l->facet_size));

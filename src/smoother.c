@@ -19,9 +19,34 @@ static int SmootherEvaluate_Facet(const SmootherInput *in, SmootherWant want, Sm
   return 1;
 }
 
+/* The fit where there is one, the facets on the last rung of the ladder or where the fit has no foot. */
+static int SmootherEvaluate_Diffuse(const SmootherInput *in, SmootherWant want, SmootherResult *out)
+{
+  static const FitWant wants[] = {[SMOOTHER_GAP] = FIT_GAP, [SMOOTHER_FIRST_VARIATION] = FIT_FIRST_VARIATION, [SMOOTHER_SECOND_VARIATION] = FIT_SECOND_VARIATION};
+  FitProblem problem = {.dim = in->dim, .degree = in->degree, .exponent = in->exponent, .n = in->n_fit, .x = in->x, .multiplier = in->multiplier, .derivatives = in->derivatives};
+  FitResult  fit     = {.points = out->points, .N = out->N, .M = out->M};
+
+  out->facet_served = 0;
+  if (in->n_fit) {
+    memcpy(problem.frame, in->frame, sizeof(problem.frame));
+    memcpy(problem.metric, in->metric, sizeof(problem.metric));
+    if (FitEvaluate(&problem, wants[want], in->workspace, &fit) && !(fit.guards & FIT_FAR_FOOT)) {
+      out->gap    = fit.gap;
+      out->beyond = 0; /* faded by the facets' free edges when lists are made */
+      out->seed   = in->seed;
+      out->n      = fit.n;
+      memcpy(out->normal, fit.normal, sizeof(out->normal));
+      return 1;
+    }
+  }
+  out->facet_served = 1;
+  return SmootherEvaluate_Facet(in, want, out);
+}
+
 const Smoother Smoothers[] = {
-  {"facet", FACE_MAX_NODES, SmootherEvaluate_Facet},
-  {NULL,    0,              NULL                  }
+  {"facet",   FACE_MAX_NODES, 0, SmootherEvaluate_Facet  },
+  {"diffuse", FIT_MAX_POINTS, 1, SmootherEvaluate_Diffuse},
+  {NULL,      0,              0, NULL                    }
 };
 
 /* SmootherFind - the smoother of that name, or NULL. Not collective. */

@@ -87,6 +87,21 @@ static PetscErrorCode AddHistory(const History *history, PetscInt *n, PetscReal 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+static PetscErrorCode AddMotion(const Motion *motion, PetscInt *n, PetscReal *landings)
+{
+  PetscFunctionBeginUser;
+  for (int m = 0; m < motion->n; m++) PetscCall(AddHistory(&motion->components[m].history, n, landings));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscInt MotionBreakpoints(const Motion *motion)
+{
+  PetscInt n = 0;
+
+  for (int m = 0; m < motion->n; m++) n += motion->components[m].history.n;
+  return n;
+}
+
 /* Every load parameter that a step must end on: `at`, the breakpoints of all histories, 1. */
 static PetscErrorCode LoadStepperSetLandings(LoadStepper stepper, Scene scene)
 {
@@ -94,15 +109,15 @@ static PetscErrorCode LoadStepperSetLandings(LoadStepper stepper, Scene scene)
 
   PetscFunctionBeginUser;
   for (int l = 0; l < scene->n_loads; l++) n += scene->loads[l].history.n;
-  for (int b = 0; b < scene->n_bodies; b++)
-    for (int m = 0; m < scene->bodies[b].n_motions; m++) n += scene->bodies[b].motions[m].history.n;
+  for (int b = 0; b < scene->n_bodies; b++) n += MotionBreakpoints(&scene->bodies[b].motion);
+  for (int c = 0; c < scene->n_contacts; c++) n += MotionBreakpoints(&scene->contacts[c].motion);
   PetscCall(PetscFree(stepper->landings));
   PetscCall(PetscMalloc1(n, &stepper->landings));
   n = 0;
   for (int i = 0; i < scene->stepping.n_at; i++) stepper->landings[n++] = scene->stepping.at[i];
   for (int l = 0; l < scene->n_loads; l++) PetscCall(AddHistory(&scene->loads[l].history, &n, stepper->landings));
-  for (int b = 0; b < scene->n_bodies; b++)
-    for (int m = 0; m < scene->bodies[b].n_motions; m++) PetscCall(AddHistory(&scene->bodies[b].motions[m].history, &n, stepper->landings));
+  for (int b = 0; b < scene->n_bodies; b++) PetscCall(AddMotion(&scene->bodies[b].motion, &n, stepper->landings));
+  for (int c = 0; c < scene->n_contacts; c++) PetscCall(AddMotion(&scene->contacts[c].motion, &n, stepper->landings));
   stepper->landings[n++] = 1;
   PetscCall(PetscSortReal(n, stepper->landings));
   for (PetscInt i = 0; i < n; i++) {

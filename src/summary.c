@@ -128,13 +128,15 @@ static PetscErrorCode AddContact(cJSON *json, Contact contact)
 
   PetscFunctionBeginUser;
   for (int p = 0; p < (contact ? ContactPairs(contact) : 0); p++) {
-    cJSON    *pair = cJSON_CreateObject(), *penalty;
-    PetscReal least, most;
+    cJSON      *pair = cJSON_CreateObject(), *penalty;
+    PetscReal   least, most;
+    ContactFits fits;
 
+    PetscCall(ContactPairFits(contact, p, &fits));
     PetscCall(ContactPairPenalty(contact, p, &least, &most));
     cJSON_AddItemToArray(list, pair);
     cJSON_AddStringToObject(pair, "name", ContactPairName(contact, p));
-    cJSON_AddNumberToObject(pair, "fall_backs", 0);
+    cJSON_AddNumberToObject(pair, "fall_backs", (double)(fits.points - fits.plain));
     penalty = cJSON_AddObjectToObject(pair, "penalty");
     AddReal(penalty, "min", least);
     AddReal(penalty, "max", most);

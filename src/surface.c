@@ -104,6 +104,7 @@ static PetscErrorCode SurfaceMeasure(ContactSurface surface, Elasticity elastici
     PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &most, 1, MPIU_REAL, MPI_MAX, mesh->comm));
   }
   surface->mean_size = sum[2] / sum[1];
+  surface->order     = mesh->order;
   surface->max_size  = most;
   surface->stiffness = sum[3] / sum[0];
   PetscFunctionReturn(PETSC_SUCCESS);

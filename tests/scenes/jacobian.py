@@ -4,17 +4,24 @@ import re
 from harness import Check, arguments, run, SCENES
 
 BOUND = 1e-6
+RUNS = SCENES.parent.parent / "runs"
+COARSE_PIPE = ["mesh.parameters.n_arc=5", "mesh.parameters.n_len=2", "loads.0.uy=-10", "stepping={control: fixed, initial: 0.25}", "probes=[]"]
 FOLLOWER = ["kinematics=finite", "bodies.0.material.law=neo_hookean", "loads.0.pressure=200", "loads.0.follower=true", "stepping={control: fixed, initial: 0.5}", "mesh.parameters.n_arc=3", "mesh.parameters.n_wall=2"]
 HELD = "supports=[{surface: end_low, uy: 0}, {surface: end_high, uy: 0}]"
 CASES = {
     "flat blocks, first order": (SCENES / "contact_patch.yaml", ["kinematics=finite", "bodies.0.material.law=svk", "bodies.1.material.law=svk", "stepping.initial=1"]),
     "flat blocks, second order": (SCENES / "contact_patch.yaml", ["kinematics=finite", "bodies.0.material.law=svk", "bodies.1.material.law=svk", "stepping.initial=1", "mesh.order=2"]),
-    "coarse pinched pipe": (SCENES.parent.parent / "runs" / "pipe_pinch.yaml", ["mesh.parameters.n_arc=5", "mesh.parameters.n_len=2", "loads.0.uy=-10", "stepping={control: fixed, initial: 0.25}", "probes=[]"]),
-    "meshed rigid cylinder": (SCENES.parent.parent / "runs" / "slide_cylinder.yaml", ["stepping.initial=0.1"]),
+    "coarse pinched pipe": (RUNS / "pipe_pinch.yaml", COARSE_PIPE),
+    "meshed rigid cylinder": (RUNS / "slide_cylinder.yaml", ["stepping.initial=0.1"]),
     "follower pressure, plane strain": (SCENES / "lame.yaml", [*FOLLOWER]),
     "follower pressure, axisymmetric": (SCENES / "lame.yaml", [*FOLLOWER, "geometry=axisymmetric", "mesh.parameters.form=2", "mesh.order=2", HELD]),
     "follower pressure, solid": (SCENES / "lame.yaml", [*FOLLOWER, "geometry=solid", "mesh.parameters.form=1", "mesh.parameters.n_len=1", "mesh.parameters.len=0.5", "supports.2={surface: end_low, uz: 0}"]),
 }
+for degree in (4, 2):
+    diffuse = ["contact.0.smoother=diffuse", f"contact.0.degree={degree}"]
+    CASES[f"coarse pinched pipe, degree {degree}"] = (RUNS / "pipe_pinch.yaml", COARSE_PIPE + diffuse)
+    CASES[f"turning rigid cylinder, degree {degree}"] = (RUNS / "slide_facets.yaml", ["mesh.parameters.n_x=4", "stepping.initial=0.1"] + diffuse)
+    CASES[f"line contact, degree {degree}"] = (RUNS / "hertz_line.yaml", ["mesh.parameters={h: 1, growth: 0.5}", "stepping.initial=0.25"] + diffuse)
 
 args = arguments()
 check = Check()

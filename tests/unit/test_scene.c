@@ -142,15 +142,15 @@ static void BodiesArrive(void **state)
   assert_true(die->rigid);
   assert_string_equal(die->name, "die");
   assert_string_equal(die->path, "bodies.2");
-  AssertPoint(die->point, 1, 2, 3);
-  assert_int_equal(die->n_motions, 6);
+  AssertPoint(die->motion.point, 1, 2, 3);
+  assert_int_equal(die->motion.n, 6);
   for (int k = 0; k < 6; k++) {
-    assert_int_equal(die->motions[k].component, k);
-    assert_true(die->motions[k].value == k + 1);
-    assert_int_equal(die->motions[k].history.n, k < 3 ? 3 : 2);
+    assert_int_equal(die->motion.components[k].component, k);
+    assert_true(die->motion.components[k].value == k + 1);
+    assert_int_equal(die->motion.components[k].history.n, k < 3 ? 3 : 2);
   }
-  assert_true(HistoryValue(&die->motions[0].history, 0.1) == 0.5);
-  assert_true(HistoryValue(&die->motions[5].history, 0.25) == 0.25);
+  assert_true(HistoryValue(&die->motion.components[0].history, 0.1) == 0.5);
+  assert_true(HistoryValue(&die->motion.components[5].history, 0.25) == 0.25);
   Free(&scene);
 }
 
@@ -275,7 +275,7 @@ static void TwoDimensionalScenesHaveTwoCoordinates(void **state)
   assert_int_equal(scene->dim, 2);
   assert_int_equal(scene->geometry, GEOMETRY_AXISYMMETRIC);
   assert_int_equal(scene->order, 0);
-  AssertPoint(scene->bodies[1].point, 1, 2, 0);
+  AssertPoint(scene->bodies[1].motion.point, 1, 2, 0);
   assert_false(scene->probes[0].has_at);
   AssertPoint(scene->probes[1].point[1], 2, 3, 0);
   Free(&scene);
@@ -388,7 +388,7 @@ static void ReferenceNamesKeysRangesAndDefaults(void **state)
   assert_int_equal(SceneReference(file), PETSC_SUCCESS);
   fclose(file);
   assert_non_null(strstr(text, "  bodies.N.material.nu: a number in (-1, 0.5); required - Poisson's ratio\n"));
-  assert_non_null(strstr(text, "  contact.N.smoother: facet | diffuse; default facet; only facet available yet\n"));
+  assert_non_null(strstr(text, "  contact.N.formulation: node_to_surface | surface_to_surface; default node_to_surface; only node_to_surface available yet\n"));
   assert_non_null(strstr(text, "  probes.N.contact_edge: "));
   free(text);
 }

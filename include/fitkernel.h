@@ -1,0 +1,111 @@
+/* What the two halves of the diffuse fit share: fit.c makes surface and foot, fitvariation.c the variations N and M. Private to these two. */
+#pragma once
+#include "fit.h"
+#include "lanes.h"
+#include <string.h>
+
+enum {
+  MAX_TANGENTS = 2,
+  ROWS         = 1 + MAX_TANGENTS, /* of F */
+  BLOCK        = 4,                /* columns orthogonalised together, so that their sums do not wait for each other */
+  ALIGNMENT    = 64,               /* bytes: a cache line, and the widest vector */
+  ARRAYS       = 13                /* vectors per LANES points besides the basis: eta (2), multiplier, inside, power, weight, scratch, H (6) */
+};
+
+/* Arrays over the points inside the support, in vectors of LANES points; the last one is filled up with points of no weight. */
+typedef struct {
+  int    n, groups;                                                          /* points inside, vectors that hold them */
+  int    capacity;                                                           /* vectors that hold all points of the problem: length of an array */
+  int    stride;                                                             /* vectors per row of K and J */
+  Lanes *eta[MAX_TANGENTS], *multiplier, *inside, *power, *weight, *scratch; /* inside: 1 - rho^2, power: v inside^(exponent - 2) */
+  Lanes *H;                                                                  /* [6][capacity]: xx xy yy xz yz zz */
+  Lanes *basis; /* [terms + 1 + BLOCK][capacity]: orthonormal basis, residual e, columns of zeros */
+  Lanes *K, *J; /* [terms][stride]: entry (1 + i)*dim + c of a row */
+  int   *points;
+} FitArrays;
+
+/* The fit and its foot, broadcast to all lanes */
+typedef struct {
+  Lanes  R[FIT_MAX_TERMS][FIT_MAX_TERMS], inverse[FIT_MAX_TERMS]; /* inverse: of the diagonal */
+  Lanes  alpha[FIT_MAX_TERMS], lambda[FIT_MAX_TERMS];             /* of the monomials */
+  Lanes  foot[ROWS][FIT_MAX_TERMS];                               /* F = p^, Dp^ at the foot, D with respect to y */
+  double S[ROWS][ROWS];
+  double G[3][3], nu3; /* d = G x */
+} FitState;
+
+LANES_INLINE Lanes Broadcast(double a)
+{
+  return (Lanes){0} + a;
+}
+
+/* Place of s^(k-b) t^b among the monomials */
+LANES_INLINE int Term(const int tangents, const int k, const int b)
+{
+  return tangents == 1 ? k : k * (k + 1) / 2 + b;
+}
+
+#define FOR_MONOMIALS(tangents, degree, k, b) \
+  for (int k = 0; k <= (degree); k++)         \
+    for (int b = 0; b <= ((tangents) == 1 ? 0 : k); b++)
+
+LANES_INLINE void Monomials(const int m, const int degree, const Lanes *eta, Lanes *p)
+{
+  p[0] = Broadcast(1);
+  FOR_MONOMIALS(m, degree, k, b)
+  {
+    if (k > 0) p[Term(m, k, b)] = b < k ? eta[0] * p[Term(m, k - 1, b)] : eta[1] * p[Term(m, k - 1, b - 1)];
+  }
+}
+
+LANES_INLINE void MonomialGradients(const int m, const int degree, const Lanes *p, Lanes (*dp)[FIT_MAX_TERMS])
+{
+  FOR_MONOMIALS(m, degree, k, b)
+  {
+    dp[0][Term(m, k, b)] = b < k ? (k - b) * p[Term(m, k - 1, b)] : Broadcast(0);
+    if (m == 2) dp[1][Term(m, k, b)] = b > 0 ? b * p[Term(m, k - 1, b - 1)] : Broadcast(0);
+  }
+}
+
+/* Second derivatives (ss, st, tt) of the polynomial c where the monomials are p */
+LANES_INLINE void PolynomialHessian(const int m, const int degree, const Lanes *p, const Lanes *c, Lanes hessian[3])
+{
+  hessian[0] = hessian[1] = hessian[2] = Broadcast(0);
+  FOR_MONOMIALS(m, degree, k, b)
+  {
+    if (k - b > 1) hessian[0] += ((k - b) * (k - b - 1)) * (c[Term(m, k, b)] * p[Term(m, k - 2, b)]);
+    if (k - b > 0 && b > 0) hessian[1] += ((k - b) * b) * (c[Term(m, k, b)] * p[Term(m, k - 2, b - 1)]);
+    if (b > 1) hessian[2] += (b * (b - 1)) * (c[Term(m, k, b)] * p[Term(m, k - 2, b - 2)]);
+  }
+}
+
+LANES_INLINE Lanes DotTerms(const int terms, const Lanes *a, const Lanes *b)
+{
+  Lanes sum = a[0] * b[0];
+
+  for (int k = 1; k < terms; k++) sum += a[k] * b[k];
+  return sum;
+}
+
+/* p := R^-T p */
+LANES_INLINE void ToOrthonormal(const int terms, const FitState *s, Lanes *p)
+{
+  for (int k = 0; k < terms; k++) {
+    for (int l = 0; l < k; l++) p[k] -= s->R[l][k] * p[l];
+    p[k] *= s->inverse[k];
+  }
+}
+
+/* Calls body(dim, degree, terms) with constants for the problem's dimension and degree. */
+#define INSTANTIATE(in, body)              \
+  switch (10 * (in)->dim + (in)->degree) { \
+  case 21: body(2, 1, 2);                  \
+  case 22: body(2, 2, 3);                  \
+  case 24: body(2, 4, 5);                  \
+  case 31: body(3, 1, 3);                  \
+  case 32: body(3, 2, 6);                  \
+  case 34: body(3, 4, 15);                 \
+  }
+
+/* N[(1 + points inside)*dim] and M[its square] from fit and foot; workspace of the arrays is used up. */
+void FitVariationFirst(const FitProblem *, const FitArrays *, const FitState *, double *N);
+void FitVariationSecond(const FitProblem *, FitArrays *, const FitState *, double *M);

@@ -1,0 +1,24 @@
+/* Which points of the master surface a fit at a slave point may use: connected to its nearest facet without crossing a sharp edge, facing the
+   same way, within the support. Works on the facets that a rank holds (its own, ghosts, mirror images); plain arrays, no communication. */
+#pragma once
+#include "nodegeometry.h"
+
+/* Facets and points that a rank holds in the position of the moment. A point is a node or a mirror image of one. */
+typedef struct {
+  int                 dim;
+  PetscInt            n_facets, n_points;
+  const Facet        *facets;    /* nodes: points */
+  const PetscReal    *normals;   /* n_facets*3, unit, position of the moment */
+  const PetscReal    *reference; /* n_facets*3, unit, reference position: for feature edges */
+  const PetscReal    *x;         /* n_points*dim */
+  const NodeGeometry *geometry;  /* of each point, reflected with it */
+  PetscReal           feature_cosine;
+} SurfaceView;
+
+typedef struct _n_Neighbourhoods *Neighbourhoods;
+
+PetscErrorCode NeighbourhoodsCreate(const SurfaceView *, Neighbourhoods *);
+PetscErrorCode NeighbourhoodsDestroy(Neighbourhoods *);
+/* Points around the foot x0 with normal e3 on facet `start`, with rho^2 <= limit in the metric (inverse squared lengths, dim x dim, row-major 3x3): at most
+   max are written to points[], nearest first where there are more; returns how many there were in *found. */
+PetscErrorCode NeighbourhoodGather(Neighbourhoods, PetscInt start, const PetscReal x0[3], const PetscReal e3[3], const PetscReal metric[9], PetscReal limit, PetscInt max, PetscInt *points, PetscInt *n, PetscInt *found);

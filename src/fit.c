@@ -1,0 +1,466 @@
+/* The diffuse fit: surface, foot and gap. One always-inline function, instantiated with constant dimension and degree, so that its loops unroll; LANES points
+   at a time.
+
+   QR. Modified Gram-Schmidt of the scaled monomials in the product sum_i w_i a_i b_i, the QR of sqrt(W) P: row i of P becomes p^ = R^-T p, for
+   which A = 1; the heights as last column end as e_i = z_i - p_i.alpha, their projections are alpha^ = R alpha. Everything below is said in this
+   basis, where the formulas need no solve: dalpha/dd_i = dr_i/dd_i and lambda = G_a.
+
+   Foot. y* + q grad q = 0 and the envelope theorem: with G_a = dg/dalpha = -nu_3 p, J = I + grad q grad q^T + q Hess q,
+       dy* = -J^-1 (grad q p^T + q Dp),  dgrad q = Dp + Hess q dy*,  dnu_3 = -nu_3^3 grad q^T dgrad q,
+       G_aa = -(p dnu_3^T + nu_3 sum_k Dp_k dy*_k)        all at the foot; dy* and dgrad q are rows over the terms, combinations of F = [p; Dp]
+
+   Coordinates. d = (eta, z) = G (x_i - x_c), G = [B, 0; 0, 1] E^T with B = Q^(1/2): derivatives are taken by d and returned to space by G^T. */
+#include "fitkernel.h"
+#include "symmetricproduct.h"
+#include <math.h>
+#include <stdint.h>
+
+/* The surface at tangent coordinates y; without second tangent its components are 0. */
+typedef struct {
+  Lanes  p[FIT_MAX_TERMS], dp[MAX_TANGENTS][FIT_MAX_TERMS]; /* by the scaled coordinates */
+  double q, g[2], h[2][2];
+} FitLocal;
+
+/* c := R^-1 c^ */
+LANES_INLINE void ToMonomials(const int terms, const FitState *s, const Lanes *orthonormal, Lanes *c)
+{
+  for (int k = terms - 1; k >= 0; k--) {
+    c[k] = orthonormal[k];
+    for (int l = k + 1; l < terms; l++) c[k] -= s->R[k][l] * c[l];
+    c[k] *= s->inverse[k];
+  }
+}
+
+/* base^exponent: by products where the exponent is whole */
+LANES_INLINE Lanes Power(Lanes base, double exponent)
+{
+  Lanes power = Broadcast(1);
+
+  if (exponent == floor(exponent) && exponent < 32) {
+    for (int i = 0; i < (int)exponent; i++) power *= base;
+  } else {
+    for (int i = 0; i < LANES; i++) power[i] = pow(base[i], exponent);
+  }
+  return power;
+}
+
+/* The symmetric square root of the metric; returns 0 if it is not positive definite. */
+LANES_INLINE int ScaleFromMetric(const int m, const double Q[2][2], double B[2][2])
+{
+  const double determinant = m == 1 ? Q[0][0] * Q[0][0] : Q[0][0] * Q[1][1] - Q[0][1] * Q[0][1];
+  const double root = sqrt(determinant), size = sqrt(Q[0][0] + (m == 1 ? Q[0][0] : Q[1][1]) + 2 * root);
+
+  if (!(determinant > 0 && Q[0][0] > 0)) return 0;
+  B[0][0] = (Q[0][0] + root) / size;
+  B[0][1] = B[1][0] = m == 1 ? 0 : Q[0][1] / size;
+  B[1][1]           = m == 1 ? 0 : (Q[1][1] + root) / size;
+  return 1;
+}
+
+/* Lays the arrays out in the workspace. */
+LANES_INLINE void Layout(const int terms, int n, double *workspace, FitArrays *a)
+{
+  Lanes *at = (Lanes *)(((uintptr_t)workspace + ALIGNMENT - 1) / ALIGNMENT * ALIGNMENT);
+
+  a->capacity   = LanesGroups(n);
+  a->eta[0]     = at;
+  a->eta[1]     = at + a->capacity;
+  a->multiplier = at + 2 * a->capacity;
+  a->inside     = at + 3 * a->capacity;
+  a->power      = at + 4 * a->capacity;
+  a->weight     = at + 5 * a->capacity;
+  a->scratch    = at + 6 * a->capacity;
+  a->H          = at + 7 * a->capacity;
+  a->basis      = at + ARRAYS * a->capacity;
+  a->points     = (int *)(a->basis + (terms + 1 + BLOCK) * a->capacity);
+  a->K          = a->basis + (terms + 2 + BLOCK) * a->capacity;
+}
+
+/* Takes the points inside the support into the arrays, their heights into the basis's last column. */
+LANES_INLINE void Collect(const int dim, const int terms, const FitProblem *in, double (*G)[3], FitArrays *a)
+{
+  double *const z = (double *)(a->basis + terms * a->capacity);
+  int           n = 0;
+
+  for (int i = 0; i < in->n; i++) {
+    const double *x = in->x + i * dim;
+    double        d[3], rho2 = 0;
+
+    for (int k = 0; k < dim; k++) d[k] = G[k][0] * x[0] + G[k][1] * x[1] + (dim == 3 ? G[k][2] * x[2] : 0);
+    for (int k = 0; k < dim - 1; k++) rho2 += d[k] * d[k];
+    if (!(rho2 < 1)) continue;
+    for (int k = 0; k < dim - 1; k++) ((double *)a->eta[k])[n] = d[k];
+    ((double *)a->multiplier)[n] = in->multiplier[i];
+    ((double *)a->inside)[n]     = 1 - rho2;
+    z[n]                         = d[dim - 1];
+    a->points[n++]               = i;
+  }
+  a->n      = n;
+  a->groups = LanesGroups(n);
+  a->stride = SymmetricProductStride(dim * (1 + a->groups * LANES)) / LANES;
+  a->J      = a->K + terms * a->stride;
+  for (; n < a->groups * LANES; n++) {
+    for (int k = 0; k < dim - 1; k++) ((double *)a->eta[k])[n] = 0;
+    ((double *)a->multiplier)[n] = ((double *)a->inside)[n] = z[n] = 0;
+  }
+}
+
+/* Weights and monomials of the points inside; length[terms]: norms of the weighted columns. */
+LANES_INLINE void Assemble(const int m, const int degree, const int terms, double exponent, FitArrays *a, double *length)
+{
+  Lanes squares[FIT_MAX_TERMS] = {{0}};
+
+  for (int g = 0; g < a->groups; g++) {
+    const Lanes eta[MAX_TANGENTS] = {a->eta[0][g], a->eta[1][g]};
+    Lanes       p[FIT_MAX_TERMS];
+
+    a->power[g]  = a->multiplier[g] * Power(a->inside[g], exponent - 2);
+    a->weight[g] = a->power[g] * a->inside[g] * a->inside[g];
+    Monomials(m, degree, eta, p);
+    for (int k = 0; k < terms; k++) {
+      a->basis[k * a->capacity + g] = p[k];
+      squares[k] += a->weight[g] * p[k] * p[k];
+    }
+    for (int k = terms + 1; k < terms + 1 + BLOCK; k++) a->basis[k * a->capacity + g] = Broadcast(0);
+  }
+  for (int k = 0; k < terms; k++) length[k] = sqrt(LanesSum(squares[k]));
+}
+
+/* Takes the share along the unit column k out of BLOCK columns from j on; share[BLOCK]: how much it was. */
+LANES_INLINE void Project(FitArrays *a, const Lanes *unit, Lanes *column, double *share)
+{
+  Lanes sum[BLOCK] = {{0}};
+
+  for (int g = 0; g < a->groups; g++) {
+    for (int b = 0; b < BLOCK; b++) sum[b] += a->scratch[g] * column[b * a->capacity + g];
+  }
+  for (int b = 0; b < BLOCK; b++) share[b] = LanesSum(sum[b]);
+  for (int g = 0; g < a->groups; g++) {
+    for (int b = 0; b < BLOCK; b++) column[b * a->capacity + g] -= share[b] * unit[g];
+  }
+}
+
+/* Gram-Schmidt; returns the smallest |R_kk| of unit columns. Below FIT_SINGULAR it stops. height[terms]: the heights' coefficients. */
+LANES_INLINE double Orthonormalise(const int terms, const double *length, FitArrays *a, FitState *s, Lanes *height)
+{
+  double pivot = 1;
+
+  for (int k = 0; k < terms; k++) {
+    Lanes *const unit = a->basis + k * a->capacity;
+    Lanes        sum  = Broadcast(0);
+    double       norm, share[FIT_MAX_TERMS + 1 + BLOCK];
+
+    for (int g = 0; g < a->groups; g++) sum += a->weight[g] * unit[g] * unit[g];
+    norm  = sqrt(LanesSum(sum));
+    pivot = fmin(pivot, norm > 0 ? norm / length[k] : 0);
+    if (!(pivot > FIT_SINGULAR)) return pivot;
+    s->inverse[k] = Broadcast(1 / norm);
+    for (int g = 0; g < a->groups; g++) {
+      unit[g] *= s->inverse[k];
+      a->scratch[g] = a->weight[g] * unit[g];
+    }
+    for (int j = k + 1; j <= terms; j += BLOCK) Project(a, unit, a->basis + j * a->capacity, share + j);
+    for (int j = k + 1; j < terms; j++) s->R[k][j] = Broadcast(share[j]);
+    height[k] = Broadcast(share[terms]);
+  }
+  return pivot;
+}
+
+/* The polynomial through the points inside; returns 0 without one. */
+LANES_INLINE int MakeSurface(const int dim, const int degree, const int terms, const FitProblem *in, FitArrays *a, FitState *s, FitResult *out)
+{
+  FitSurface *const surface = &out->surface;
+  double            length[FIT_MAX_TERMS];
+  Lanes             height[FIT_MAX_TERMS];
+
+  surface->dim    = dim;
+  surface->degree = degree;
+  out->guards     = FIT_NO_SURFACE;
+  out->n          = 0;
+  out->pivot      = 0;
+  if (!ScaleFromMetric(dim - 1, in->metric, surface->scale)) return 0;
+  for (int k = 0; k < dim - 1; k++) {
+    for (int c = 0; c < dim; c++) { s->G[k][c] = surface->scale[k][0] * in->frame[0][c] + (dim == 3 ? surface->scale[k][1] * in->frame[1][c] : 0); }
+  }
+  memcpy(s->G[dim - 1], in->frame[dim - 1], sizeof(s->G[0]));
+  Collect(dim, terms, in, s->G, a);
+  out->n = a->n;
+  if (out->points) memcpy(out->points, a->points, a->n * sizeof(int));
+  if (a->n < terms) return 0;
+  Assemble(dim - 1, degree, terms, in->exponent, a, length);
+  out->pivot = Orthonormalise(terms, length, a, s, height);
+  if (!(out->pivot > FIT_SINGULAR)) return 0;
+  ToMonomials(terms, s, height, s->alpha);
+  for (int k = 0; k < terms; k++) surface->coefficient[k] = s->alpha[k][0];
+  out->guards = (a->n < FitPointsWanted(dim, degree) ? FIT_FEW_POINTS : 0) | (out->pivot < FIT_PIVOT ? FIT_LOW_PIVOT : 0);
+  return 1;
+}
+
+LANES_INLINE void SurfaceAt(const int m, const int degree, const int terms, const FitSurface *surface, const Lanes *alpha, const double *y, FitLocal *at)
+{
+  const double(*const B)[2] = surface->scale;
+  Lanes  eta[MAX_TANGENTS], hessian[3];
+  double gradient[2] = {0}, h[2][2] = {{0}};
+
+  for (int k = 0; k < m; k++) eta[k] = Broadcast(B[k][0] * y[0] + (m == 2 ? B[k][1] * y[1] : 0));
+  Monomials(m, degree, eta, at->p);
+  MonomialGradients(m, degree, at->p, at->dp);
+  PolynomialHessian(m, degree, at->p, alpha, hessian);
+  at->q = DotTerms(terms, at->p, alpha)[0];
+  for (int k = 0; k < m; k++) gradient[k] = DotTerms(terms, at->dp[k], alpha)[0];
+  h[0][0] = hessian[0][0];
+  h[0][1] = h[1][0] = hessian[1][0];
+  h[1][1]           = hessian[2][0];
+  for (int c = 0; c < 2; c++) {
+    at->g[c] = B[0][c] * gradient[0] + B[1][c] * gradient[1];
+    for (int d = 0; d < 2; d++) { at->h[c][d] = B[0][c] * (h[0][0] * B[0][d] + h[0][1] * B[1][d]) + B[1][c] * (h[1][0] * B[0][d] + h[1][1] * B[1][d]); }
+  }
+}
+
+static double SmallestEigenvalue(double (*a)[2])
+{
+  return 0.5 * (a[0][0] + a[1][1]) - hypot(0.5 * (a[0][0] - a[1][1]), a[0][1]);
+}
+
+static void Invert(double (*a)[2], double (*inverse)[2])
+{
+  const double determinant = a[0][0] * a[1][1] - a[0][1] * a[1][0];
+
+  inverse[0][0] = a[1][1] / determinant;
+  inverse[1][1] = a[0][0] / determinant;
+  inverse[0][1] = inverse[1][0] = -a[0][1] / determinant;
+}
+
+/* Newton from the slave point for y + q grad q = 0; returns 0 if it does not end or ends where the distance is no minimum. */
+LANES_INLINE int FindFoot(const int m, const int degree, const int terms, const FitState *s, FitLocal *at, FitResult *out)
+{
+  const double(*const B)[2] = out->surface.scale;
+  double *const y           = out->foot;
+  double        inverse[2][2], step[2], size = INFINITY;
+
+  y[0] = y[1] = 0;
+  for (int iteration = 0;; iteration++) {
+    SurfaceAt(m, degree, terms, &out->surface, s->alpha, y, at);
+    for (int c = 0; c < 2; c++) {
+      for (int d = 0; d < 2; d++) out->J[c][d] = (c == d) + at->g[c] * at->g[d] + at->q * at->h[c][d];
+    }
+    if (size <= FIT_FOOT) break;
+    if (iteration == FIT_ITERATIONS) return 0;
+    Invert(out->J, inverse);
+    for (int c = 0; c < 2; c++) step[c] = -inverse[c][0] * (y[0] + at->q * at->g[0]) - inverse[c][1] * (y[1] + at->q * at->g[1]);
+    for (int c = 0; c < m; c++) y[c] += step[c];
+    size = m == 1 ? fabs(B[0][0] * step[0]) : hypot(B[0][0] * step[0] + B[0][1] * step[1], B[1][0] * step[0] + B[1][1] * step[1]);
+  }
+  out->reach = m == 1 ? fabs(B[0][0] * y[0]) : hypot(B[0][0] * y[0] + B[0][1] * y[1], B[1][0] * y[0] + B[1][1] * y[1]);
+  return SmallestEigenvalue(out->J) > FIT_FOCAL;
+}
+
+/* Gap, normal, tangents and curvature from the surface at the foot */
+static void Describe(int dim, const FitProblem *in, const FitLocal *at, FitResult *out)
+{
+  const double l           = sqrt(1 + at->g[0] * at->g[0] + at->g[1] * at->g[1]);
+  const double determinant = (at->h[0][0] * at->h[1][1] - at->h[0][1] * at->h[0][1]) / (l * l * l * l);
+  const double mean =
+    ((1 + at->g[1] * at->g[1]) * at->h[0][0] - 2 * at->g[0] * at->g[1] * at->h[0][1] + (1 + at->g[0] * at->g[0]) * at->h[1][1]) / (2 * l * l * l);
+
+  memset(out->normal, 0, sizeof(out->normal));
+  memset(out->tangent, 0, sizeof(out->tangent));
+  for (int c = 0; c < dim; c++) {
+    out->normal[c] = in->frame[dim - 1][c] / l;
+    for (int k = 0; k < dim - 1; k++) {
+      out->normal[c] -= at->g[k] * in->frame[k][c] / l;
+      out->tangent[k][c] = in->frame[k][c] + at->g[k] * in->frame[dim - 1][c];
+    }
+  }
+  out->gap       = -at->q * l;
+  out->curvature = fabs(mean) + sqrt(fmax(mean * mean - determinant, 0));
+}
+
+/* F and S of G_aa = F^T S F, and lambda, from the surface at the foot. dy[c][r]: dy*_c by the rows of F. */
+LANES_INLINE void FootVariation(const int m, const int terms, const FitLocal *at, const FitResult *out, FitState *s)
+{
+  double dy[2][ROWS] = {{0}}, inverse[2][2], J[2][2];
+  Lanes  orthonormal[FIT_MAX_TERMS];
+
+  memcpy(J, out->J, sizeof(J));
+  Invert(J, inverse);
+  s->nu3 = 1 / sqrt(1 + at->g[0] * at->g[0] + at->g[1] * at->g[1]);
+  for (int c = 0; c < m; c++) {
+    dy[c][0] = -inverse[c][0] * at->g[0] - inverse[c][1] * at->g[1];
+    for (int d = 0; d < m; d++) dy[c][1 + d] = -at->q * inverse[c][d];
+  }
+  for (int r = 0; r < 1 + m; r++) {
+    double slope = 0; /* grad q . dgrad q */
+
+    for (int c = 0; c < m; c++) slope += at->g[c] * ((r == 1 + c) + at->h[c][0] * dy[0][r] + at->h[c][1] * dy[1][r]);
+    s->S[0][r] = s->nu3 * s->nu3 * s->nu3 * slope;
+    for (int c = 0; c < m; c++) s->S[1 + c][r] = -s->nu3 * dy[c][r];
+  }
+  for (int k = 0; k < terms; k++) {
+    s->foot[0][k] = at->p[k];
+    for (int c = 0; c < m; c++) {
+      s->foot[1 + c][k] = out->surface.scale[0][c] * at->dp[0][k];
+      if (m == 2) s->foot[1 + c][k] += out->surface.scale[1][c] * at->dp[1][k];
+    }
+  }
+  for (int r = 0; r < 1 + m; r++) ToOrthonormal(terms, s, s->foot[r]);
+  for (int k = 0; k < terms; k++) orthonormal[k] = -s->nu3 * s->foot[0][k];
+  ToMonomials(terms, s, orthonormal, s->lambda);
+}
+
+/* Shape values dq(y*)/dz_i = w_i p^_i.p^(y*) into scratch; returns the sum of their magnitudes. */
+LANES_INLINE double Shapes(const int terms, FitArrays *a, const Lanes *foot)
+{
+  double sum = 0;
+
+  for (int g = 0; g < a->groups; g++) {
+    Lanes shape = Broadcast(0);
+
+    for (int k = 0; k < terms; k++) shape += foot[k] * a->basis[k * a->capacity + g];
+    a->scratch[g] = a->weight[g] * shape;
+    for (int i = 0; i < LANES; i++) sum += fabs(a->scratch[g][i]);
+  }
+  return sum;
+}
+
+LANES_INLINE int Evaluate(const int dim, const int degree, const int terms, const FitProblem *in, FitWant want, double *workspace, FitResult *out)
+{
+  FitArrays a;
+  FitState  s;
+  FitLocal  at;
+
+  Layout(terms, in->n, workspace, &a);
+  if (!MakeSurface(dim, degree, terms, in, &a, &s, out)) return 0;
+  if (want < FIT_GAP) return 1;
+  if (!FindFoot(dim - 1, degree, terms, &s, &at, out)) {
+    out->guards |= FIT_NO_FOOT;
+    return 0;
+  }
+  Describe(dim, in, &at, out);
+  FootVariation(dim - 1, terms, &at, out, &s);
+  out->amplified = Shapes(terms, &a, s.foot[0]);
+  if (out->shape) memcpy(out->shape, a.scratch, a.n * sizeof(double));
+  out->guards |= (out->reach < FIT_REACH ? 0 : FIT_FAR_FOOT) | (out->amplified <= FIT_AMPLIFIED ? 0 : FIT_HIGH_SUM);
+  if (want >= FIT_FIRST_VARIATION && out->N) FitVariationFirst(in, &a, &s, out->N);
+  if (want >= FIT_SECOND_VARIATION && out->M) FitVariationSecond(in, &a, &s, out->M);
+  return 1;
+}
+
+/* FitTerms - number of monomials. Not collective.
+
+   Input: dim - 2 or 3; degree - of the polynomial over the dim - 1 tangents */
+int FitTerms(int dim, int degree)
+{
+  return dim == 2 ? degree + 1 : (degree + 1) * (degree + 2) / 2;
+}
+
+/* FitPointsWanted - least number of nodes inside the support, where nodes are the fit points: two per term in 3D; over a line the terms and
+   half of them more. Not collective.
+
+   Input: dim - 2 or 3; degree - of the polynomial */
+int FitPointsWanted(int dim, int degree)
+{
+  const int terms = FitTerms(dim, degree);
+
+  return dim == 3 ? 2 * terms : (3 * terms) / 2;
+}
+
+/* FitWorkspace - doubles of workspace for one evaluation. Not collective.
+
+   Input: dim, degree - as in the problem; n - its number of points */
+long FitWorkspace(int dim, int degree, int n)
+{
+  const long terms = FitTerms(dim, degree), points = (long)LanesGroups(n) * LANES;
+
+  return ALIGNMENT / (long)sizeof(double) + (ARRAYS + terms + 2 + BLOCK) * points + 2 * terms * SymmetricProductStride(dim * (int)(LANES + points));
+}
+
+/* FitEvaluate - gap, first and second variation of one slave point against the diffuse surface through its fit points. Not collective.
+
+   Input: in - the problem; want - surface only, gap, and N, and M; workspace - FitWorkspace() doubles of any contents
+   Output: out - see FitResult; arrays as its comment says
+
+   Returns 1 if all that was wanted is there, 0 if there is no surface (FIT_NO_SURFACE) or no foot (FIT_NO_FOOT). Never NaN for finite input.
+   Source: Chamoret et al. 2004, eqs 1 to 14; the closed forms of N and M are derived by the envelope theorem from g(alpha(x)). */
+int FitEvaluate(const FitProblem *in, FitWant want, double *workspace, FitResult *out)
+{
+#define EVALUATE(dim, degree, terms) return Evaluate(dim, degree, terms, in, want, workspace, out)
+  INSTANTIATE(in, EVALUATE)
+#undef EVALUATE
+  out->guards = FIT_NO_SURFACE;
+  return 0;
+}
+
+/* FitEvaluateBatch - FitEvaluate() for n slave points. Not collective.
+
+   Input: n - slave points; in[n], want - as there; workspace - FitWorkspace() doubles for the largest of them
+   Output: out[n] - as there; guards tell what is missing
+
+   Returns how many have all that was wanted. */
+int FitEvaluateBatch(int n, const FitProblem *in, FitWant want, double *workspace, FitResult *out)
+{
+  int whole = 0;
+
+  for (int i = 0; i < n; i++) whole += FitEvaluate(&in[i], want, workspace, &out[i]);
+  return whole;
+}
+
+LANES_INLINE double HeightAt(const int m, const int degree, const int terms, const FitSurface *surface, const double *y, double *gradient)
+{
+  Lanes    alpha[FIT_MAX_TERMS];
+  FitLocal at;
+
+  for (int k = 0; k < terms; k++) alpha[k] = Broadcast(surface->coefficient[k]);
+  SurfaceAt(m, degree, terms, surface, alpha, y, &at);
+  if (gradient) memcpy(gradient, at.g, m * sizeof(double));
+  return at.q;
+}
+
+/* FitSurfaceHeight - height of the fitted surface over the slave point's tangent plane. Not collective.
+
+   Input: surface - of an evaluation; y[dim - 1] - tangent coordinates, relative to the slave point
+   Output: gradient[dim - 1] - with respect to y; may be NULL */
+double FitSurfaceHeight(const FitSurface *surface, const double *y, double *gradient)
+{
+#define HEIGHT(dim, degree, terms) return HeightAt(dim - 1, degree, terms, surface, y, gradient)
+  INSTANTIATE(surface, HEIGHT)
+#undef HEIGHT
+  return 0;
+}
+
+LANES_INLINE int Shape(const int dim, const int degree, const int terms, const FitProblem *in, int n, const double *y, const double *factor, double *workspace,
+                       double *shape)
+{
+  FitArrays a;
+  FitState  s;
+  FitLocal  at;
+  FitResult out                = {.points = NULL};
+  Lanes     row[FIT_MAX_TERMS] = {{0}};
+
+  Layout(terms, in->n, workspace, &a);
+  memset(shape, 0, in->n * sizeof(double));
+  if (!MakeSurface(dim, degree, terms, in, &a, &s, &out)) return 0;
+  for (int i = 0; i < n; i++) {
+    SurfaceAt(dim - 1, degree, terms, &out.surface, s.alpha, y + i * (dim - 1), &at);
+    for (int k = 0; k < terms; k++) row[k] += factor[i] * at.p[k];
+  }
+  ToOrthonormal(terms, &s, row);
+  Shapes(terms, &a, row);
+  for (int i = 0; i < a.n; i++) shape[a.points[i]] = ((const double *)a.scratch)[i];
+  return 1;
+}
+
+/* FitShape - how a combination of heights, sum_a factor_a q(y_a), depends on the points' heights z_i: the coefficients of an offset that follows
+   the points. Not collective.
+
+   Input: in - the problem; n, y[n][dim - 1], factor[n] - the combination; workspace - FitWorkspace() doubles
+   Output: shape[number of points of the problem] - 0 outside the support
+
+   Returns 0, with all shape values 0, if there is no surface. */
+int FitShape(const FitProblem *in, int n, const double *y, const double *factor, double *workspace, double *shape)
+{
+#define SHAPE(dim, degree, terms) return Shape(dim, degree, terms, in, n, y, factor, workspace, shape)
+  INSTANTIATE(in, SHAPE)
+#undef SHAPE
+  return 0;
+}

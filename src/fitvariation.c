@@ -1,0 +1,228 @@
+/* First and second variation of the diffuse gap, in the orthonormal basis and the scaled coordinates of fit.c.
+
+Second variation. G_aa = F^T S F with the rows F = [p; Dp] at the foot and a symmetric S of their size, so that with J_i = dalpha/dd_i,
+   C_i = d2 phi_i/dd_i dalpha, H_i = d2 phi_i/dd_i dd_i, phi_i = w_i e_i (lambda.p_i)
+       M_ij = K_i J_j + J_i^T K_j^T + delta_ij H_i,   K_i = C_i + 1/2 (F J_i)^T S F
+   and the slave point's rows are those of one more point with J_c = -sum J_i, K_c = -sum K_i. */
+#include "fitkernel.h"
+#include "symmetricproduct.h"
+
+/* LANES points: what the variations are made of */
+typedef struct {
+  Lanes p[FIT_MAX_TERMS], dp[MAX_TANGENTS][FIT_MAX_TERMS]; /* monomials and their gradients */
+  Lanes eta[MAX_TANGENTS], w, w1, w2, e;                   /* w1, w2: derivatives of the weight by rho^2, times 2 and 4 */
+  Lanes q[MAX_TANGENTS], l, dl[MAX_TANGENTS];              /* gradient of q; l = lambda.p and its gradient */
+  Lanes c[MAX_TANGENTS], a[MAX_TANGENTS];                  /* gradients of w e and w l */
+} FitBundle;
+
+/* With derivatives == FIT_DIFFUSE the weights count as constants. */
+LANES_INLINE void Bundle(const int m, const int degree, const int terms, const FitArrays *a, const FitState *s, double exponent, FitDerivatives derivatives,
+                         int g, FitBundle *b)
+{
+  for (int k = 0; k < m; k++) b->eta[k] = a->eta[k][g];
+  Monomials(m, degree, b->eta, b->p);
+  MonomialGradients(m, degree, b->p, b->dp);
+  b->w  = a->weight[g];
+  b->w1 = Broadcast(0);
+  b->w2 = Broadcast(0);
+  if (derivatives == FIT_FULL) {
+    b->w1 = -2 * exponent * a->power[g] * a->inside[g];
+    b->w2 = 4 * exponent * (exponent - 1) * a->power[g];
+  }
+  b->e = a->basis[terms * a->capacity + g];
+  b->l = DotTerms(terms, s->lambda, b->p);
+  for (int k = 0; k < m; k++) {
+    b->q[k]  = DotTerms(terms, s->alpha, b->dp[k]);
+    b->dl[k] = DotTerms(terms, s->lambda, b->dp[k]);
+    b->c[k]  = b->w1 * b->eta[k] * b->e - b->w * b->q[k];
+    b->a[k]  = b->w1 * b->eta[k] * b->l + b->w * b->dl[k];
+  }
+}
+
+/* Writes the first `count` of LANES points' vectors one after the other. */
+LANES_INLINE void StoreVectors(const int dim, int count, const Lanes *v, double *out)
+{
+  for (int i = 0; i < count; i++) {
+    for (int c = 0; c < dim; c++) out[i * dim + c] = v[c][i];
+  }
+}
+
+/* N_i = G^T J_i^T G_a, N_c = -sum N_i */
+LANES_INLINE void FirstVariation(const int dim, const int degree, const int terms, const FitProblem *in, const FitArrays *a, const FitState *s, double *N)
+{
+  Lanes total[3] = {{0}};
+
+  for (int g = 0; g < a->groups; g++) {
+    const int count = a->n - g * LANES < LANES ? a->n - g * LANES : LANES;
+    FitBundle b;
+    Lanes     v[3];
+
+    Bundle(dim - 1, degree, terms, a, s, in->exponent, FIT_FULL, g, &b);
+    for (int c = 0; c < dim; c++) {
+      v[c] = s->G[dim - 1][c] * b.w * b.l;
+      for (int k = 0; k < dim - 1; k++) v[c] += s->G[k][c] * (b.c[k] * b.l + b.w * b.e * b.dl[k]);
+      total[c] += v[c];
+    }
+    StoreVectors(dim, count, v, N + dim * (1 + g * LANES));
+  }
+  for (int c = 0; c < dim; c++) N[c] = -LanesSum(total[c]);
+}
+
+/* H_i in the scaled frame: h[k][l] */
+LANES_INLINE void PointHessian(const int dim, const int degree, const FitState *s, const FitBundle *b, Lanes (*h)[3])
+{
+  const int m = dim - 1;
+  Lanes     q[3], l[3];
+
+  PolynomialHessian(m, degree, b->p, s->alpha, q);
+  PolynomialHessian(m, degree, b->p, s->lambda, l);
+  for (int k = 0; k < m; k++) {
+    for (int j = 0; j <= k; j++) {
+      const Lanes w2 = b->w2 * b->eta[k] * b->eta[j] + (j == k ? b->w1 : Broadcast(0));
+
+      h[k][j] = h[j][k] = w2 * b->e * b->l + b->w1 * b->eta[k] * (b->e * b->dl[j] - b->q[j] * b->l) + b->w1 * b->eta[j] * (b->e * b->dl[k] - b->q[k] * b->l) +
+                          b->w * (b->e * l[k + j] - b->q[k] * b->dl[j] - b->q[j] * b->dl[k] - b->l * q[k + j]);
+    }
+    h[m][k] = h[k][m] = b->a[k];
+  }
+  h[m][m] = Broadcast(0);
+}
+
+/* Rows of K and J for LANES points: J^ = A p^ + B Dp^ and C likewise, with coefficients already turned into space. */
+LANES_INLINE void PointFactors(const int dim, const int terms, const FitArrays *a, const FitState *s, FitBundle *b, int g, Lanes (*total)[FIT_MAX_TERMS][3])
+{
+  const int   m = dim - 1, at = dim * (1 + g * LANES);
+  const Lanes we = b->w * b->e, wl = b->w * b->l;
+  Lanes       p[FIT_MAX_TERMS], fp[ROWS], fd[ROWS][MAX_TANGENTS], A[3], C[3], T[3][ROWS];
+
+  for (int k = 0; k < terms; k++) p[k] = a->basis[k * a->capacity + g];
+  for (int k = 0; k < m; k++) ToOrthonormal(terms, s, b->dp[k]);
+  for (int r = 0; r < 1 + m; r++) {
+    fp[r] = DotTerms(terms, s->foot[r], p);
+    for (int k = 0; k < m; k++) fd[r][k] = DotTerms(terms, s->foot[r], b->dp[k]);
+  }
+  for (int c = 0; c < dim; c++) {
+    Lanes U[ROWS];
+
+    A[c] = s->G[m][c] * b->w;
+    C[c] = Broadcast(0);
+    for (int k = 0; k < m; k++) {
+      A[c] += s->G[k][c] * b->c[k];
+      C[c] -= s->G[k][c] * b->a[k];
+    }
+    for (int r = 0; r < 1 + m; r++) {
+      U[r] = A[c] * fp[r];
+      for (int k = 0; k < m; k++) U[r] += s->G[k][c] * we * fd[r][k];
+    }
+    for (int r = 0; r < 1 + m; r++) {
+      T[c][r] = Broadcast(0);
+      for (int t = 0; t < 1 + m; t++) T[c][r] += 0.5 * s->S[t][r] * U[t];
+    }
+  }
+  for (int k = 0; k < terms; k++) {
+    Lanes K[3], J[3];
+
+    for (int c = 0; c < dim; c++) {
+      J[c] = A[c] * p[k];
+      K[c] = C[c] * p[k];
+      for (int t = 0; t < m; t++) {
+        J[c] += s->G[t][c] * we * b->dp[t][k];
+        K[c] -= s->G[t][c] * wl * b->dp[t][k];
+      }
+      for (int r = 0; r < 1 + m; r++) K[c] += T[c][r] * s->foot[r][k];
+      total[0][k][c] += K[c];
+      total[1][k][c] += J[c];
+    }
+    StoreVectors(dim, LANES, K, (double *)(a->K + k * a->stride) + at);
+    StoreVectors(dim, LANES, J, (double *)(a->J + k * a->stride) + at);
+  }
+}
+
+/* Adds the points' own second variations H, turned into space, to point, slave point and both couplings. */
+LANES_INLINE void AddPointHessians(const int dim, const FitArrays *a, double *M)
+{
+  const int size = dim * (1 + a->n);
+
+  for (int c = 0; c < dim; c++) {
+    for (int d = 0; d < dim; d++) {
+      const double *const h     = (const double *)(a->H + (c > d ? c * (c + 1) / 2 + d : d * (d + 1) / 2 + c) * a->capacity);
+      double              total = 0;
+
+      for (int i = 0; i < a->n; i++) {
+        const long row = dim * (1 + i) + c, column = dim * (1 + i) + d;
+
+        M[row * size + column] += h[i];
+        M[row * size + d] -= h[i];
+        M[(long)c * size + column] -= h[i];
+        total += h[i];
+      }
+      M[c * size + d] += total;
+    }
+  }
+}
+
+LANES_INLINE void SecondVariation(const int dim, const int degree, const int terms, const FitProblem *in, FitArrays *a, const FitState *s, double *M)
+{
+  Lanes     total[2][FIT_MAX_TERMS][3] = {{{{0}}}};
+  const int used                       = dim * (1 + a->groups * LANES);
+
+  for (int g = 0; g < a->groups; g++) {
+    FitBundle b;
+    Lanes     h[3][3];
+
+    Bundle(dim - 1, degree, terms, a, s, in->exponent, in->derivatives, g, &b);
+    PointHessian(dim, degree, s, &b, h);
+    for (int c = 0, entry = 0; c < dim; c++) {
+      for (int d = 0; d <= c; d++, entry++) {
+        Lanes sum = Broadcast(0);
+
+        for (int k = 0; k < dim; k++) {
+          for (int l = 0; l < dim; l++) sum += s->G[k][c] * s->G[l][d] * h[k][l];
+        }
+        a->H[entry * a->capacity + g] = sum;
+      }
+    }
+    PointFactors(dim, terms, a, s, &b, g, total);
+  }
+  for (int k = 0; k < terms; k++) {
+    double *const K = (double *)(a->K + k * a->stride), *const J = (double *)(a->J + k * a->stride);
+
+    for (int c = 0; c < dim; c++) {
+      K[c] = -LanesSum(total[0][k][c]);
+      J[c] = -LanesSum(total[1][k][c]);
+    }
+    for (int i = used; i < a->stride * LANES; i++) K[i] = J[i] = 0;
+  }
+  SymmetricProduct(dim * (1 + a->n), terms, a->stride * LANES, (double *)a->K, (double *)a->J, M);
+  AddPointHessians(dim, a, M);
+}
+
+/* FitVariationFirst - N. Not collective.
+
+   Input: in, a, s - problem, arrays and state as the evaluation left them
+   Output: N - [(1 + points inside)*dim], the slave point first
+
+   Source: Chamoret et al. 2004, eqs 11 and 12. */
+void FitVariationFirst(const FitProblem *in, const FitArrays *a, const FitState *s, double *N)
+{
+#define FIRST(dim, degree, terms)                  \
+  FirstVariation(dim, degree, terms, in, a, s, N); \
+  return
+  INSTANTIATE(in, FIRST)
+#undef FIRST
+}
+
+/* FitVariationSecond - M. Not collective.
+
+   Input: in, a, s - problem, arrays and state as the evaluation left them; the arrays K, J and H are overwritten
+   Output: M - [((1 + points inside)*dim)^2], symmetric
+
+   Source: Chamoret et al. 2004, eqs 13 and 14. */
+void FitVariationSecond(const FitProblem *in, FitArrays *a, const FitState *s, double *M)
+{
+#define SECOND(dim, degree, terms)                  \
+  SecondVariation(dim, degree, terms, in, a, s, M); \
+  return
+  INSTANTIATE(in, SECOND)
+#undef SECOND
+}

@@ -1,0 +1,170 @@
+#include "neighbourhood.h"
+
+/* Facets and points whose normal is farther than this from the frame's belong to another flank: cos 60 degrees. */
+#define NEIGHBOURHOOD_COSINE 0.5
+
+typedef struct {
+  PetscInt a, b, facet; /* the edge's points, a < b (2D: the end twice) */
+} SharedEdge;
+
+struct _n_Neighbourhoods {
+  const SurfaceView *view;
+  PetscInt          *link_ptr, *link; /* facets across the edges that are not sharp, CSR */
+  PetscInt          *seen_facet, *seen_point, stamp;
+  PetscInt          *queue;
+  struct Reach {
+    PetscReal rho2;
+    PetscInt  point;
+  } *reach;
+};
+
+static int SharedEdgeCompare(const void *p, const void *q)
+{
+  const SharedEdge *e = p, *f = q;
+
+  if (e->a != f->a) return e->a < f->a ? -1 : 1;
+  if (e->b != f->b) return e->b < f->b ? -1 : 1;
+  return e->facet < f->facet ? -1 : e->facet > f->facet;
+}
+
+static int ReachCompare(const void *p, const void *q)
+{
+  const struct Reach *a = p, *b = q;
+
+  if (a->rho2 != b->rho2) return a->rho2 < b->rho2 ? -1 : 1;
+  return a->point < b->point ? -1 : a->point > b->point;
+}
+
+static PetscReal Dot(const PetscReal *a, const PetscReal *b)
+{
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+static PetscInt ListEdges(const SurfaceView *view, SharedEdge *edges)
+{
+  PetscInt n = 0;
+
+  for (PetscInt f = 0; f < view->n_facets; f++) {
+    const Facet   *facet = &view->facets[f];
+    const Element *e     = ElementGet(facet->type);
+
+    for (int k = 0; k < (e->dim == 1 ? 2 : e->edges); k++) {
+      const PetscInt a = facet->nodes[e->dim == 1 ? k : e->edge_corners[k][0]], b = facet->nodes[e->dim == 1 ? k : e->edge_corners[k][1]];
+
+      if (edges) edges[n] = (SharedEdge){PetscMin(a, b), PetscMax(a, b), f};
+      n++;
+    }
+  }
+  return n;
+}
+
+/* Calls back on every pair of facets that share an edge which is not sharp in the reference configuration. */
+static PetscInt LinkFacets(const SurfaceView *view, PetscInt n, const SharedEdge *edges, PetscInt *ptr, PetscInt *link)
+{
+  PetscInt count = 0;
+
+  for (PetscInt i = 0; i < n; i++) {
+    for (PetscInt j = i + 1; j < n && edges[j].a == edges[i].a && edges[j].b == edges[i].b; j++) {
+      const PetscInt f = edges[i].facet, g = edges[j].facet;
+
+      if (Dot(&view->reference[3 * f], &view->reference[3 * g]) < view->feature_cosine) continue;
+      if (link) {
+        link[ptr[f]++] = g;
+        link[ptr[g]++] = f;
+      } else {
+        ptr[f + 1]++;
+        ptr[g + 1]++;
+      }
+      count++;
+    }
+  }
+  return count;
+}
+
+/* NeighbourhoodsCreate - links the facets of a view across their edges. view is borrowed and must outlive the object. Not collective. */
+PetscErrorCode NeighbourhoodsCreate(const SurfaceView *view, Neighbourhoods *out)
+{
+  Neighbourhoods nb;
+  PetscInt       n = ListEdges(view, NULL);
+  SharedEdge    *edges;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscNew(&nb));
+  nb->view = view;
+  PetscCall(PetscMalloc1(n, &edges));
+  PetscCall(PetscCalloc1(view->n_facets + 1, &nb->link_ptr));
+  ListEdges(view, edges);
+  qsort(edges, n, sizeof(*edges), SharedEdgeCompare);
+  PetscCall(PetscMalloc1(2 * LinkFacets(view, n, edges, nb->link_ptr, NULL), &nb->link));
+  for (PetscInt f = 0; f < view->n_facets; f++) nb->link_ptr[f + 1] += nb->link_ptr[f];
+  LinkFacets(view, n, edges, nb->link_ptr, nb->link);
+  for (PetscInt f = view->n_facets; f > 0; f--) nb->link_ptr[f] = nb->link_ptr[f - 1]; /* filling moved every start to the next one's */
+  nb->link_ptr[0] = 0;
+  PetscCall(PetscFree(edges));
+  PetscCall(PetscCalloc2(view->n_facets, &nb->seen_facet, view->n_points, &nb->seen_point));
+  PetscCall(PetscMalloc2(view->n_facets, &nb->queue, view->n_points, &nb->reach));
+  *out = nb;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* NeighbourhoodsDestroy - Not collective. */
+PetscErrorCode NeighbourhoodsDestroy(Neighbourhoods *nb)
+{
+  PetscFunctionBeginUser;
+  if (!*nb) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscFree2((*nb)->seen_facet, (*nb)->seen_point));
+  PetscCall(PetscFree2((*nb)->queue, (*nb)->reach));
+  PetscCall(PetscFree((*nb)->link_ptr));
+  PetscCall(PetscFree((*nb)->link));
+  PetscCall(PetscFree(*nb));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscReal Rho2(const SurfaceView *view, PetscInt p, const PetscReal x0[3], const PetscReal metric[9])
+{
+  PetscReal r[3] = {0, 0, 0}, rho2 = 0;
+
+  for (int d = 0; d < view->dim; d++) r[d] = view->x[p * view->dim + d] - x0[d];
+  for (int i = 0; i < 3; i++)
+    for (int j = 0; j < 3; j++) rho2 += r[i] * metric[3 * i + j] * r[j];
+  return rho2;
+}
+
+PetscErrorCode NeighbourhoodGather(Neighbourhoods nb, PetscInt start, const PetscReal x0[3], const PetscReal e3[3], const PetscReal metric[9], PetscReal limit, PetscInt max, PetscInt *points, PetscInt *n, PetscInt *found)
+{
+  const SurfaceView *view = nb->view;
+  PetscInt           head = 0, tail = 0, count = 0;
+
+  PetscFunctionBeginUser;
+  nb->stamp++;
+  nb->queue[tail++]     = start;
+  nb->seen_facet[start] = nb->stamp;
+  while (head < tail) {
+    const PetscInt f     = nb->queue[head++];
+    const Facet   *facet = &view->facets[f];
+    PetscBool      inside = PETSC_FALSE;
+
+    for (int a = 0; a < ElementGet(facet->type)->nodes; a++) {
+      const PetscInt  p    = facet->nodes[a];
+      const PetscReal rho2 = Rho2(view, p, x0, metric);
+
+      inside = (PetscBool)(inside || rho2 <= limit);
+      if (nb->seen_point[p] == nb->stamp || rho2 > limit) continue;
+      nb->seen_point[p] = nb->stamp;
+      if (view->geometry[p].weight > 0 && Dot(view->geometry[p].normal, e3) >= NEIGHBOURHOOD_COSINE) nb->reach[count++] = (struct Reach){rho2, p};
+    }
+    if (!inside && f != start) continue;
+    for (PetscInt k = nb->link_ptr[f]; k < nb->link_ptr[f + 1]; k++) {
+      const PetscInt g = nb->link[k];
+
+      if (nb->seen_facet[g] == nb->stamp || Dot(&view->normals[3 * g], e3) < NEIGHBOURHOOD_COSINE) continue;
+      nb->seen_facet[g] = nb->stamp;
+      nb->queue[tail++] = g;
+    }
+  }
+  qsort(nb->reach, count, sizeof(*nb->reach), ReachCompare);
+  *found = count;
+  *n     = PetscMin(count, max);
+  for (PetscInt i = 0; i < *n; i++) points[i] = nb->reach[i].point;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

@@ -1,0 +1,132 @@
+/* M = K^T J + J^T K in tiles of LANES rows that stay in registers while the depth is summed; the mirror image of a tile is turned over in
+   registers too, since a scalar copy would cost as much as the product. */
+#include "symmetricproduct.h"
+
+enum { ROWS = LANES, COLUMNS = PRODUCT_VECTORS * LANES };
+
+/* SymmetricProductStride - least length of a row of the factors, a whole number of tiles. Not collective.
+
+   Input: n - rows of the product */
+int SymmetricProductStride(int n)
+{
+  return (n + COLUMNS - 1) / COLUMNS * COLUMNS;
+}
+
+LANES_INLINE void AddOuterProducts(const int vectors, int depth, int stride, const double *left, const double *right, Lanes (*tile)[PRODUCT_VECTORS])
+{
+  for (int k = 0; k < depth; k++, left += stride, right += stride) {
+    const Lanes *b = (const Lanes *)right;
+
+    for (int r = 0; r < ROWS; r++) {
+      for (int c = 0; c < vectors; c++) tile[r][c] += left[r] * b[c];
+    }
+  }
+}
+
+#if defined(__AVX512F__)
+  #define SWAP_STAGES 3
+static const LaneMask swap_low[SWAP_STAGES] = {
+  {0, 8, 2, 10, 4, 12, 6,  14},
+  {0, 1, 8, 9,  4, 5,  12, 13},
+  {0, 1, 2, 3,  8, 9,  10, 11}
+};
+static const LaneMask swap_high[SWAP_STAGES] = {
+  {1, 9, 3,  11, 5,  13, 7,  15},
+  {2, 3, 10, 11, 6,  7,  14, 15},
+  {4, 5, 6,  7,  12, 13, 14, 15}
+};
+#elif defined(__AVX__)
+  #define SWAP_STAGES 2
+static const LaneMask swap_low[SWAP_STAGES] = {
+  {0, 4, 2, 6},
+  {0, 1, 4, 5}
+};
+static const LaneMask swap_high[SWAP_STAGES] = {
+  {1, 5, 3, 7},
+  {2, 3, 6, 7}
+};
+#else
+  #define SWAP_STAGES 1
+static const LaneMask swap_low[SWAP_STAGES] = {
+  {0, 2}
+};
+static const LaneMask swap_high[SWAP_STAGES] = {
+  {1, 3}
+};
+#endif
+
+/* Turns a square of LANES vectors over, by swapping ever larger off-diagonal blocks. */
+LANES_INLINE void Transpose(Lanes a[LANES])
+{
+  for (int stage = 0; stage < SWAP_STAGES; stage++) {
+    const int half = 1 << stage;
+
+    for (int i = 0; i < LANES; i++) {
+      const int j = i + half;
+
+      if (!(i & half)) {
+        const Lanes low = __builtin_shuffle(a[i], a[j], swap_low[stage]);
+
+        a[j] = __builtin_shuffle(a[i], a[j], swap_high[stage]);
+        a[i] = low;
+      }
+    }
+  }
+}
+
+/* A square above the diagonal that lies wholly within M, and its image */
+LANES_INLINE void StoreInside(int n, int row, int column, Lanes square[LANES], double *M)
+{
+  for (int r = 0; r < LANES; r++) *(LanesInArray *)(M + (long)(row + r) * n + column) = square[r];
+  Transpose(square);
+  for (int r = 0; r < LANES; r++) *(LanesInArray *)(M + (long)(column + r) * n + row) = square[r];
+}
+
+/* A square on the diagonal or across the end of M */
+LANES_INLINE void StorePart(int n, int row, int column, Lanes square[LANES], double *M)
+{
+  for (int r = row; r < row + LANES && r < n; r++) {
+    for (int c = column < r ? r : column; c < column + LANES && c < n; c++) M[(long)r * n + c] = M[(long)c * n + r] = square[r - row][c - column];
+  }
+}
+
+/* The tile at (row, column), a whole number of vectors wide, and its image */
+LANES_INLINE void ProductTile(const int vectors, int n, int depth, int stride, const double *K, const double *J, int row, int column, double *M)
+{
+  Lanes tile[ROWS][PRODUCT_VECTORS] = {{{0}}};
+
+  AddOuterProducts(vectors, depth, stride, K + row, J + column, tile);
+  AddOuterProducts(vectors, depth, stride, J + row, K + column, tile);
+  for (int c = 0; c < vectors; c++) {
+    const int first = column + c * LANES;
+    Lanes     square[LANES];
+
+    for (int r = 0; r < LANES; r++) square[r] = tile[r][c];
+    if (first > row && first + LANES <= n)
+      StoreInside(n, row, first, square, M);
+    else
+      StorePart(n, row, first, square, M);
+  }
+}
+
+/* SymmetricProduct - K^T J + J^T K. Not collective.
+
+   Input: n - rows of the product; depth - rows of the factors; stride - length of a row, at least SymmetricProductStride(n) and a whole
+   number of vectors; K, J - [depth][stride], aligned to a vector
+   Output: M - [n][n], symmetric to the last bit */
+void SymmetricProduct(int n, int depth, int stride, const double *K, const double *J, double *M)
+{
+  for (int column = 0; column < n; column += COLUMNS) {
+    const int end = LanesGroups(n) * LANES < column + COLUMNS ? LanesGroups(n) * LANES : column + COLUMNS;
+
+    for (int row = 0; row < end; row += ROWS) {
+      const int first = row < column ? column : row;
+
+      switch ((end - first) / LANES) {
+      case 1: ProductTile(1, n, depth, stride, K, J, row, first, M); break;
+      case 2: ProductTile(2, n, depth, stride, K, J, row, first, M); break;
+      case 3: ProductTile(3, n, depth, stride, K, J, row, first, M); break;
+      }
+    }
+  }
+}

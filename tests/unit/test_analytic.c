@@ -1,0 +1,173 @@
+/* Gaps to planes, cylinders and spheres, outside and inside, have the right sign and size, and their N and M are the derivatives of the gap. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <string.h>
+#include <cmocka.h>
+#include "analytic.h"
+
+static double Random(double low, double high)
+{
+  static uint64_t state = 88172645463325252u;
+
+  state ^= state << 13;
+  state ^= state >> 7;
+  state ^= state << 17;
+  return low + (high - low) * (double)(state >> 11) / 9007199254740992.0;
+}
+
+/* assert_float_equal compares as float */
+static void AssertNear(double a, double b, double tolerance)
+{
+  if (!(fabs(a - b) <= tolerance)) {
+    print_error("%.17g and %.17g differ by more than %g\n", a, b, tolerance);
+    fail();
+  }
+}
+
+static void TestValues(void **state)
+{
+  const AnalyticMaster plane = {
+    .shape = ANALYTIC_PLANE,
+    .axis  = {0, 0, 2}
+  };
+  const AnalyticMaster cylinder = {
+    .shape  = ANALYTIC_CYLINDER,
+    .axis   = {0, 3, 0},
+    .radius = 2
+  };
+  const AnalyticMaster bore = {
+    .shape  = ANALYTIC_CYLINDER,
+    .inside = 1,
+    .axis   = {0, 3, 0},
+    .radius = 2
+  };
+  const AnalyticMaster sphere = {.shape = ANALYTIC_SPHERE, .radius = 5};
+  const AnalyticMaster socket = {.shape = ANALYTIC_SPHERE, .inside = 1, .radius = 5};
+  AnalyticResult       out;
+
+  (void)state;
+  assert_true(AnalyticEvaluate(&plane, 3, (double[3]){7, 8, -0.25}, &out));
+  AssertNear(out.gap, -0.25, 0);
+  AssertNear(out.curvature, 0, 0);
+  assert_true(AnalyticEvaluate(&cylinder, 3, (double[3]){1.8, 40, 2.4}, &out));
+  AssertNear(out.gap, 1, 1e-14);
+  AssertNear(out.normal[0], 0.6, 1e-14);
+  AssertNear(out.normal[1], 0, 1e-14);
+  AssertNear(out.curvature, 0.5, 1e-14);
+  assert_true(AnalyticEvaluate(&bore, 3, (double[3]){1.8, 40, 2.4}, &out));
+  AssertNear(out.gap, -1, 1e-14);
+  AssertNear(out.normal[2], -0.8, 1e-14);
+  assert_true(AnalyticEvaluate(&sphere, 3, (double[3]){0, 3, -4.5}, &out));
+  AssertNear(out.gap, sqrt(29.25) - 5, 1e-14);
+  assert_true(AnalyticEvaluate(&socket, 3, (double[3]){0, 3, -4.5}, &out));
+  AssertNear(out.gap, 5 - sqrt(29.25), 1e-14);
+}
+
+static void TestNoClosestPoint(void **state)
+{
+  const AnalyticMaster cylinder = {
+    .shape  = ANALYTIC_CYLINDER,
+    .inside = 1,
+    .axis   = {0, 0, 1},
+    .radius = 2
+  };
+  const AnalyticMaster sphere = {.shape = ANALYTIC_SPHERE, .radius = 2};
+  const AnalyticMaster plane  = {.shape = ANALYTIC_PLANE};
+  AnalyticResult       out;
+
+  (void)state;
+  assert_false(AnalyticEvaluate(&cylinder, 3, (double[3]){0, 0, 5}, &out));
+  assert_false(AnalyticEvaluate(&sphere, 3, (double[3]){0, 0, 1e-9}, &out));
+  assert_false(AnalyticEvaluate(&plane, 3, (double[3]){0, 0, 1}, &out));
+}
+
+/* Fourth-order central difference from the values at -2h, -h, h, 2h */
+static double Difference(const double value[4], double h)
+{
+  return (value[0] - 8 * value[1] + 8 * value[2] - value[3]) / (12 * h);
+}
+
+/* N and M against central differences of gap and N; M annihilates the normal. */
+static void CheckVariations(const AnalyticMaster *master, int dim)
+{
+  const double   h = 1e-4;
+  double         x[3];
+  AnalyticResult out, step;
+
+  for (int c = 0; c < 3; c++) x[c] = c < dim ? Random(0.5, 2) : 0;
+  assert_true(AnalyticEvaluate(master, dim, x, &out));
+  for (int c = 0; c < dim; c++) {
+    double product = 0, size = 1, gap[4], N[3][4];
+
+    for (int i = 0; i < 4; i++) {
+      double moved[3];
+
+      memcpy(moved, x, sizeof(x));
+      moved[c] += (i < 2 ? i - 2 : i - 1) * h;
+      assert_true(AnalyticEvaluate(master, dim, moved, &step));
+      gap[i] = step.gap;
+      for (int d = 0; d < dim; d++) N[d][i] = step.N[d];
+    }
+    AssertNear(out.N[c], Difference(gap, h), 1e-7);
+    for (int d = 0; d < dim; d++) {
+      AssertNear(out.M[d * dim + c], Difference(N[d], h), 1e-7 * (1 + fabs(out.M[d * dim + c])));
+      AssertNear(out.M[d * dim + c], out.M[c * dim + d], 0);
+      product += out.M[c * dim + d] * out.normal[d];
+      size += fabs(out.M[c * dim + d]);
+    }
+    AssertNear(product, 0, 1e-14 * size); /* rounding of M's entries */
+  }
+}
+
+static void TestVariations(void **state)
+{
+  (void)state;
+  for (int trial = 0; trial < 20; trial++) {
+    for (int inside = 0; inside < 2; inside++) {
+      for (AnalyticShape shape = ANALYTIC_PLANE; shape <= ANALYTIC_SPHERE; shape++) {
+        const AnalyticMaster solid = {
+          .shape  = shape,
+          .inside = inside,
+          .axis   = {Random(-1, 1), Random(-1, 1), Random(0.1, 1)},
+          .radius = Random(0.5, 3)
+        };
+        AnalyticMaster flat = solid;
+
+        CheckVariations(&solid, 3);
+        if (shape == ANALYTIC_CYLINDER)
+          flat.axis[0] = flat.axis[1] = 0;
+        else
+          flat.axis[2] = 0;
+        CheckVariations(&flat, 2);
+      }
+    }
+  }
+}
+
+/* In the meridian of an axisymmetric scene a cylinder about the axis is a straight wall. */
+static void TestAxisymmetricCylinder(void **state)
+{
+  const AnalyticMaster cylinder = {
+    .shape  = ANALYTIC_CYLINDER,
+    .axis   = {0, 1, 0},
+    .radius = 2
+  };
+  AnalyticResult out;
+
+  (void)state;
+  assert_true(AnalyticEvaluate(&cylinder, 2, (double[2]){2.5, 7}, &out));
+  AssertNear(out.gap, 0.5, 1e-15);
+  AssertNear(out.N[0], 1, 0);
+  for (int i = 0; i < 4; i++) AssertNear(out.M[i], 0, 0);
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = {cmocka_unit_test(TestValues), cmocka_unit_test(TestNoClosestPoint), cmocka_unit_test(TestVariations),
+                                     cmocka_unit_test(TestAxisymmetricCylinder)};
+
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
