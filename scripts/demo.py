@@ -16,7 +16,7 @@ import numpy
 from mpl_toolkits.mplot3d.art3d import Poly3DCollection
 
 SCENE, RANKS, OUT = "runs/pipe_pinch.yaml", 2, pathlib.Path("out")
-RUNS = {"facet": ["contact.0.smoother=facet"]}  # name -> overrides
+RUNS = {"facet": ["contact.0.smoother=facet"], "diffuse": ["contact.0.smoother=diffuse"]}  # name -> overrides
 
 # Probe, unit, reference at t = 1 and its estimated error: CalculiX 2.20, extrapolated over meshes, elements and penalties
 REFERENCE = [
@@ -78,6 +78,19 @@ def table(name):
           f"largest penetration {summary['max_penetration']:.2e} mm\n")
 
 
+def record(path):
+    """The runs side by side as CSV: what README quotes."""
+    summaries, steps = {name: json.loads((directory(name) / "summary.json").read_text()) for name in RUNS}, {name: read_steps(name) for name in RUNS}
+    rows = [("plate_force_halfway", "N", FORCE_HALFWAY, 52, *(steps[name]["plate_force"][numpy.argmin(numpy.abs(steps[name]["t"] - 0.5))] for name in RUNS))]
+    rows += [(probe, unit, reference, error, *(summaries[name]["probes"][probe] for name in RUNS)) for probe, unit, reference, error in REFERENCE]
+    rows += [(key, unit, "", "", *(summaries[name][key] for name in RUNS)) for key, unit in (("steps", ""), ("steps_failed", ""), ("newton_iterations", ""), ("max_penetration", "mm"))]
+    path.parent.mkdir(parents=True, exist_ok=True)
+    with open(path, "w", newline="") as file:
+        writer = csv.writer(file)
+        writer.writerow(("value", "unit", "reference", "error", *RUNS))
+        writer.writerows([f"{cell:.6g}" if isinstance(cell, float) else cell for cell in row] for row in rows)
+
+
 def skin(cells, body):
     """Outer faces of hexahedra by their corners, with the body of each."""
     faces = numpy.concatenate([cells[:, face] for face in HEX_FACES])
@@ -127,7 +140,9 @@ def curve():
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--burnish", default="build/burnish")
-    burnish = parser.parse_args().burnish
+    parser.add_argument("--record", type=pathlib.Path, default=OUT / "pipe_pinch.csv", help="where the table goes (README quotes runs/records/pipe_pinch.csv)")
+    arguments = parser.parse_args()
+    burnish = arguments.burnish
     OUT.mkdir(exist_ok=True)
     for name in RUNS:
         solve(burnish, name)
@@ -135,6 +150,7 @@ def main():
         table(name)
         picture(name)
     curve()
+    record(arguments.record)
     print("pictures: " + ", ".join(str(path) for path in sorted(OUT.glob("pipe_pinch*.png"))))
     print("ParaView: " + ", ".join(str(directory(name) / "results.xdmf") for name in RUNS))
 
