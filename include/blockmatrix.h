@@ -15,7 +15,7 @@ PetscErrorCode BlockMatrixReset(BlockMatrix);
    until the next call. Not collective. */
 PetscErrorCode BlockMatrixAdd(BlockMatrix, int list, PetscInt m, PetscInt **entry, PetscReal **value);
 /* The matrix over global dofs (n rows on this rank); dof[list][entry]: global dof, or -1 for an entry without one. It stays the block matrix's.
-   *changed: its pattern is new. Collective. */
+ *changed: its pattern is new. Collective. */
 PetscErrorCode BlockMatrixAssemble(BlockMatrix, PetscInt n, const PetscInt *const dof[], Mat *, PetscBool *changed);
 /* y += (blocks of list) x for rank-local vectors. Not collective. */
 PetscErrorCode BlockMatrixMultiply(BlockMatrix, int list, const PetscReal *x, PetscReal *y);

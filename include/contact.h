@@ -13,7 +13,7 @@ typedef enum { CONTACT_OPEN, CONTACT_CLOSED } ContactStatus;
 /* All state that a cutback saves and restores: per pair, per slave node of this rank that carries area. */
 typedef struct {
   PetscInt       n;
-  PetscReal     *penalty;    /* force per length and area */
+  PetscReal     *penalty; /* force per length and area */
   ContactStatus *status;
   PetscReal     *gap;        /* weighted gap; NaN: no master near */
   PetscReal     *offset;     /* g_0, subtracted from the gap */
@@ -23,12 +23,12 @@ typedef struct {
 /* What the slave nodes of a pair show to probes and output; this rank's. */
 typedef struct {
   PetscInt         n;
-  const PetscInt  *node;    /* local node */
-  const PetscReal *area;    /* reference tributary area (axisymmetric: 2 pi R) */
+  const PetscInt  *node; /* local node */
+  const PetscReal *area; /* reference tributary area (axisymmetric: 2 pi R) */
   const PetscReal *gap, *penalty;
-  const PetscReal *force;   /* normal force */
-  const PetscReal *pressure;/* normal force over current tributary area */
-  const PetscReal *normal;  /* n*3, out of the master; 0 where no master is near */
+  const PetscReal *force;    /* normal force */
+  const PetscReal *pressure; /* normal force over current tributary area */
+  const PetscReal *normal;   /* n*3, out of the master; 0 where no master is near */
 } ContactNodes;
 
 typedef struct {
@@ -37,18 +37,18 @@ typedef struct {
   PetscReal max_penetration, min_penetration; /* min: over nodes above 1e-3 of the largest nodal force */
   PetscReal max_penetration_over_h;
   PetscReal penalty_min, penalty_max;
-  PetscReal force;                            /* norm of the total force on the slaves */
+  PetscReal force; /* norm of the total force on the slaves */
 } ContactSummary;
 
 /* How the fits of a smooth master stand, all slave points near it */
 typedef struct {
-  PetscInt  points;                                  /* slave points near the master */
-  PetscInt  plain, wider, degree_2, linear, facets;  /* by rung of the ladder of fall-backs */
+  PetscInt  points;                                 /* slave points near the master */
+  PetscInt  plain, wider, degree_2, linear, facets; /* by rung of the ladder of fall-backs */
   PetscInt  neighbours_min, neighbours_max;
   PetscReal neighbours_mean;
-  PetscReal pivot, amplified;                        /* worst guards */
-  PetscReal smoothing_error;                         /* largest distance of a master node near the foot to the fit (a length) */
-  PetscReal facet_error;                             /* largest distance between facets and fit at a slave point (a length) */
+  PetscReal pivot, amplified; /* worst guards */
+  PetscReal smoothing_error;  /* largest distance of a master node near the foot to the fit (a length) */
+  PetscReal facet_error;      /* largest distance between facets and fit at a slave point (a length) */
 } ContactFits;
 
 typedef struct _n_Contact *Contact;
@@ -67,7 +67,7 @@ PetscErrorCode ContactResidual(Contact, const PetscReal *u, PetscReal t, PetscRe
 PetscErrorCode ContactTangent(Contact, const PetscReal *u, PetscReal t, PetscBool touching, Mat *C, PetscBool *changed);
 /* y += C x with the last tangent, all dofs; rigid tools contribute their motion from t to t_next. x, y local, y complete at owned nodes. Collective. */
 PetscErrorCode ContactMultiply(Contact, const PetscReal *x, PetscReal t, PetscReal t_next, PetscReal *y);
-PetscErrorCode ContactAccept(Contact);  /* the present state is the one that ContactRestore() returns to. Not collective */
+PetscErrorCode ContactAccept(Contact); /* the present state is the one that ContactRestore() returns to. Not collective */
 PetscErrorCode ContactRestore(Contact);
 /* What the scene says of overlaps before any load (initial_overlap): refuses those beyond what the facets' own shape explains (pair, node,
    amount), or keeps them as g_0. After ContactResidual(). Collective. */

@@ -31,4 +31,4 @@ PetscErrorCode ElasticityNodalStress(Elasticity, const PetscReal *u, PetscReal *
 /* Largest material stiffness measure of a cell: E (for the automatic penalty) */
 PetscReal ElasticityCellModulus(Elasticity, PetscInt cell);
 /* A local cell that the last residual found with det F <= 0, or -1. Not collective. */
-PetscInt       ElasticityInvertedCell(Elasticity);
+PetscInt ElasticityInvertedCell(Elasticity);

@@ -2,7 +2,7 @@
 #pragma once
 
 typedef struct {
-  int     n;      /* breakpoints, at least 2, t strictly increasing */
+  int     n; /* breakpoints, at least 2, t strictly increasing */
   double *t, *v;
 } History;
 

@@ -19,4 +19,4 @@ typedef struct {
 } Law;
 
 extern const Law Laws[]; /* terminated by a NULL name */
-const Law *LawFind(const char *name);
+const Law       *LawFind(const char *name);

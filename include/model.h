@@ -13,27 +13,27 @@ extern const char *const SolveResults[]; /* in words, for messages */
 
 typedef struct {
   SolveResult result;
-  PetscInt    newton;     /* Jacobian solves, prediction and re-gathered solves included */
+  PetscInt    newton; /* Jacobian solves, prediction and re-gathered solves included */
   PetscInt    krylov;
-  PetscInt    regathered; /* times lists were replaced */
-  PetscReal   residual;   /* |R|_2 / F_ref at the end */
-  char        detail[256];/* where it failed, in gmsh's tags */
+  PetscInt    regathered;  /* times lists were replaced */
+  PetscReal   residual;    /* |R|_2 / F_ref at the end */
+  char        detail[256]; /* where it failed, in gmsh's tags */
 } SolveReport;
 
 typedef struct _n_Model {
-  Scene      scene;
-  Mesh       mesh;
-  Elasticity elasticity;
-  Loads      loads;
-  Contact    contact;     /* NULL: the scene has none */
-  SNES       snes;
-  Vec        x;           /* free displacements */
-  Mat        A;           /* K + C, or K itself without contact */
-  PetscReal *u;           /* n_nodes*dim local displacements, prescribed ones included, at load parameter t */
-  PetscReal  t;
-  PetscReal  force_scale; /* F_ref of the accepted states: the largest norm so far of the unassembled internal, contact and external forces */
+  Scene                scene;
+  Mesh                 mesh;
+  Elasticity           elasticity;
+  Loads                loads;
+  Contact              contact; /* NULL: the scene has none */
+  SNES                 snes;
+  Vec                  x; /* free displacements */
+  Mat                  A; /* K + C, or K itself without contact */
+  PetscReal           *u; /* n_nodes*dim local displacements, prescribed ones included, at load parameter t */
+  PetscReal            t;
+  PetscReal            force_scale; /* F_ref of the accepted states: the largest norm so far of the unassembled internal, contact and external forces */
   struct _n_ModelWork *work;
-} *Model;
+} * Model;
 
 PetscErrorCode ModelCreate(Scene, Mesh, Model *);
 PetscErrorCode ModelDestroy(Model *);
@@ -46,4 +46,4 @@ PetscErrorCode ModelRestore(Model);
 PetscErrorCode ModelReaction(Model, const MeshGroup *, PetscReal force[3]);
 PetscErrorCode ModelEffects(Model, char *text, size_t size); /* "finite strain, facet contact": what is on */
 PetscErrorCode ModelDofs(Model, PetscInt *free_dofs);
-PetscBool      ModelIsLinear(Model);                         /* one linear solve is the answer */
+PetscBool      ModelIsLinear(Model); /* one linear solve is the answer */

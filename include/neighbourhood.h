@@ -21,4 +21,5 @@ PetscErrorCode NeighbourhoodsCreate(const SurfaceView *, Neighbourhoods *);
 PetscErrorCode NeighbourhoodsDestroy(Neighbourhoods *);
 /* Points around the foot x0 with normal e3 on facet `start`, with rho^2 <= limit in the metric (inverse squared lengths, dim x dim, row-major 3x3): at most
    max are written to points[], nearest first where there are more; returns how many there were in *found. */
-PetscErrorCode NeighbourhoodGather(Neighbourhoods, PetscInt start, const PetscReal x0[3], const PetscReal e3[3], const PetscReal metric[9], PetscReal limit, PetscInt max, PetscInt *points, PetscInt *n, PetscInt *found);
+PetscErrorCode NeighbourhoodGather(Neighbourhoods, PetscInt start, const PetscReal x0[3], const PetscReal e3[3], const PetscReal metric[9], PetscReal limit,
+                                   PetscInt max, PetscInt *points, PetscInt *n, PetscInt *found);

@@ -17,11 +17,11 @@ typedef enum { OVERLAP_REFUSE, OVERLAP_RESOLVE, OVERLAP_RAMP, OVERLAP_IGNORE } I
 typedef enum { CONTACT_NODE_TO_SURFACE, CONTACT_SURFACE_TO_SURFACE } ContactFormulation;
 
 typedef struct {
-  char         *path;   /* "bodies.0": for SceneWhere() */
-  char         *name;   /* physical group: a volume, or for a rigid tool a surface */
-  int           rigid;  /* a meshed rigid tool: no material */
-  Material      material;
-  Motion        motion;
+  char    *path;  /* "bodies.0": for SceneWhere() */
+  char    *name;  /* physical group: a volume, or for a rigid tool a surface */
+  int      rigid; /* a meshed rigid tool: no material */
+  Material material;
+  Motion   motion;
 } SceneBody;
 
 typedef struct {
@@ -41,38 +41,49 @@ typedef struct {
 
 typedef struct {
   char              *path, *name, *slave, *master; /* master: physical surface, or NULL: analytic */
-  AnalyticMaster     analytic;       /* with motion.point: on the plane, on the axis, the centre */
+  AnalyticMaster     analytic;                     /* with motion.point: on the plane, on the axis, the centre */
   Motion             motion;
   SmootherKind       smoother;
   ContactFormulation formulation;
   int                n_symmetry;
-  char             **symmetry;       /* planar surfaces beyond which the model continues as its mirror image */
-  int                degree;         /* of the fit: 4 or 2 */
-  double             support, weight;/* spacings, exponent; 0: the default of dimension and degree */
+  char             **symmetry;        /* planar surfaces beyond which the model continues as its mirror image */
+  int                degree;          /* of the fit: 4 or 2 */
+  double             support, weight; /* spacings, exponent; 0: the default of dimension and degree */
   int                global_frame, diffuse_derivatives;
-  double             feature_angle;  /* degrees */
+  double             feature_angle; /* degrees */
   InitialOverlap     initial_overlap;
   int                penalty_auto;
   double             penalty, penalty_scale; /* force per length and area; the automatic value is multiplied by penalty_scale */
 } SceneContact;
 
-typedef enum { PROBE_REACTION, PROBE_CONTACT_FORCE, PROBE_DISPLACEMENT, PROBE_DISTANCE, PROBE_GAP, PROBE_CONTACT_EDGE, PROBE_PRESSURE_MAX, PROBE_PRESSURE_MEAN, PROBE_PRESSURE_DEVIATION, PROBE_KINDS } ProbeKind;
+typedef enum {
+  PROBE_REACTION,
+  PROBE_CONTACT_FORCE,
+  PROBE_DISPLACEMENT,
+  PROBE_DISTANCE,
+  PROBE_GAP,
+  PROBE_CONTACT_EDGE,
+  PROBE_PRESSURE_MAX,
+  PROBE_PRESSURE_MEAN,
+  PROBE_PRESSURE_DEVIATION,
+  PROBE_KINDS
+} ProbeKind;
 typedef struct {
   char     *path, *name;
   ProbeKind kind;
-  char     *target;       /* surface (reaction) or pair (contact kinds), else NULL */
-  char     *body;         /* volume, or NULL */
-  int       component;    /* 0..2 */
-  double    point[2][3];  /* reference coordinates: displacement, distance, gap */
-  int       axis;         /* contact_edge: 0..2 */
-  int       max_side;     /* contact_edge: 1 max, 0 min */
-  int       has_at;       /* contact_edge, pressure_max: restricted to nodes whose reference coordinate at_axis equals at_value */
+  char     *target;      /* surface (reaction) or pair (contact kinds), else NULL */
+  char     *body;        /* volume, or NULL */
+  int       component;   /* 0..2 */
+  double    point[2][3]; /* reference coordinates: displacement, distance, gap */
+  int       axis;        /* contact_edge: 0..2 */
+  int       max_side;    /* contact_edge: 1 max, 0 min */
+  int       has_at;      /* contact_edge, pressure_max: restricted to nodes whose reference coordinate at_axis equals at_value */
   int       at_axis;
   double    at_value;
-  int       rms;          /* pressure_deviation: 1 rms, 0 max */
-  int       edge_filter;  /* pressure_deviation: 0 none, 1 excluding, 2 only, within edge_faces mean face sizes of a free edge */
+  int       rms;         /* pressure_deviation: 1 rms, 0 max */
+  int       edge_filter; /* pressure_deviation: 0 none, 1 excluding, 2 only, within edge_faces mean face sizes of a free edge */
   double    edge_faces;
-  int       change;       /* distance: minus the reference distance */
+  int       change; /* distance: minus the reference distance */
   int       absolute;
   double    factor;
 } SceneProbe;
@@ -82,43 +93,49 @@ typedef struct {
 } ScenePair;
 
 typedef struct {
-  char *file, *directory;      /* as given; the directory relative paths start at */
-  char *text;                  /* the document after -set, as one canonical YAML text: to recognise another scene's results */
-  char *name;
-  char *mesh_file;             /* path as the process can open it */
-  int   order;                 /* 1, 2; 0: take the .msh file's own */
-  int   n_parameters;
-  ScenePair *parameters;       /* of the .geo */
-  Geometry   geometry;
-  Kinematics kinematics;
-  int dim;                     /* 3 for solid, else 2 */
-  int n_bodies;   SceneBody    *bodies;
-  int n_supports; SceneSupport *supports;
-  int n_loads;    SceneLoad    *loads;
-  int n_contacts; SceneContact *contacts;
+  char         *file, *directory; /* as given; the directory relative paths start at */
+  char         *text;             /* the document after -set, as one canonical YAML text: to recognise another scene's results */
+  char         *name;
+  char         *mesh_file; /* path as the process can open it */
+  int           order;     /* 1, 2; 0: take the .msh file's own */
+  int           n_parameters;
+  ScenePair    *parameters; /* of the .geo */
+  Geometry      geometry;
+  Kinematics    kinematics;
+  int           dim; /* 3 for solid, else 2 */
+  int           n_bodies;
+  SceneBody    *bodies;
+  int           n_supports;
+  SceneSupport *supports;
+  int           n_loads;
+  SceneLoad    *loads;
+  int           n_contacts;
+  SceneContact *contacts;
   struct {
     StepControlKind control;
-    double initial, dt_min, dt_max, growth;
-    int     n_at;
-    double *at;
+    double          initial, dt_min, dt_max, growth;
+    int             n_at;
+    double         *at;
   } stepping;
   struct {
     double tolerance;
     int    max_iterations;
   } solver;
-  int n_probes;   SceneProbe   *probes;
+  int         n_probes;
+  SceneProbe *probes;
   struct {
-    int every;                             /* 0: only the last state */
-    int displacement, stress, contact;     /* fields */
+    int every;                         /* 0: only the last state */
+    int displacement, stress, contact; /* fields */
   } output;
-  int n_petsc;    ScenePair    *petsc;     /* PETSc options of the scene */
-  void *document;                          /* private: the document's tree with its marks (document.h), for SceneWhere() */
-} *Scene;
+  int        n_petsc;
+  ScenePair *petsc;    /* PETSc options of the scene */
+  void      *document; /* private: the document's tree with its marks (document.h), for SceneWhere() */
+} * Scene;
 
 PetscErrorCode SceneRead(MPI_Comm, const char *file, int n_set, char *const *set, Scene *);
 PetscErrorCode SceneDestroy(Scene *);
 /* "runs/a.yaml:12: contact.0.slave": the place of a key (or of its nearest ancestor that the file has; "-set KEY" if it came from there).
    Returned text belongs to the scene and is valid until the next call. */
-const char    *SceneWhere(Scene, const char *path, const char *key);
+const char *SceneWhere(Scene, const char *path, const char *key);
 /* the scene reference: every key with type, range, unit, default and help, generated from the table */
 PetscErrorCode SceneReference(FILE *);

@@ -11,12 +11,12 @@
 
 /* How a master surface is fitted; degree 0: not at all, its facets serve. */
 typedef struct {
-  int            degree;       /* 0, 2 or 4 */
-  double         support;      /* in spacings of the master */
-  double         exponent;     /* of the weight */
+  int            degree;   /* 0, 2 or 4 */
+  double         support;  /* in spacings of the master */
+  double         exponent; /* of the weight */
   FitDerivatives derivatives;
-  PetscBool      global_frame; /* one reference plane for all slave points */
-  PetscReal      feature_angle;/* radians: lists end at sharper edges */
+  PetscBool      global_frame;  /* one reference plane for all slave points */
+  PetscReal      feature_angle; /* radians: lists end at sharper edges */
 } FitSettings;
 
 /* Which rung of the ladder a slave point stands on: fits of falling quality, then the facets. */
@@ -26,43 +26,45 @@ enum { RUNG_FACET = -1, RUNG_PLAIN = 0, RUNG_WIDER = 4, RUNG_DEGREE_2 = 6, RUNG_
    (leaves of sf; roots are the local nodes of their owners), then nodes of a rigid tool. Points are what a smoother sees: a fixed
    combination of contact nodes, reflected, plus an offset: x = sign * (sum S x_node) + shift + offset. */
 typedef struct {
-  int       dim;
-  PetscInt  n_nodes, n_deformable;
-  PetscInt *node_id;       /* deformable: the mesh's rank-independent id; rigid: node of the tool */
-  PetscReal *X, *u;        /* n_nodes*dim: reference coordinates, displacement at the last update */
-  PetscReal t;             /* of the last update */
-  PetscInt *dof;           /* n_nodes*dim global dofs, -1 where constrained or rigid */
-  PetscSF   sf;
-  MPI_Datatype block;      /* dim reals */
+  int          dim;
+  PetscInt     n_nodes, n_deformable;
+  PetscInt    *node_id; /* deformable: the mesh's rank-independent id; rigid: node of the tool */
+  PetscReal   *X, *u;   /* n_nodes*dim: reference coordinates, displacement at the last update */
+  PetscReal    t;       /* of the last update */
+  PetscInt    *dof;     /* n_nodes*dim global dofs, -1 where constrained or rigid */
+  PetscSF      sf;
+  MPI_Datatype block; /* dim reals */
 
-  PetscInt  n_points;      /* fit points */
-  PetscInt *point_ptr, *point_node;
+  PetscInt   n_points; /* fit points */
+  PetscInt  *point_ptr, *point_node;
   PetscReal *point_S, *point_offset, *point_weight;
-  int      *point_image;
+  int       *point_image;
   PetscReal *point_X, *point_u; /* n_points*dim */
 
-  PetscInt  n_slaves;      /* slave points, in the order asked for */
-  PetscInt *slave_ptr, *slave_node;
+  PetscInt   n_slaves; /* slave points, in the order asked for */
+  PetscInt  *slave_ptr, *slave_node;
   PetscReal *slave_S, *slave_offset;
   PetscReal *slave_X, *slave_u; /* n_slaves*dim */
 
-  PetscInt *list_ptr, *list_point;  /* fit points of each slave point */
-  PetscInt *fit_n;                  /* the first so many of them are fitted; 0: the facets serve */
-  int      *rung;                   /* RUNG_...: how the fit was found */
-  int      *degree;                 /* of the fit */
+  PetscInt  *list_ptr, *list_point; /* fit points of each slave point */
+  PetscInt  *fit_n;                 /* the first so many of them are fitted; 0: the facets serve */
+  int       *rung;                  /* RUNG_...: how the fit was found */
+  int       *degree;                /* of the fit */
   PetscReal *frame, *metric;        /* 9 and 4 for each slave point, as FitProblem wants them */
   PetscReal *pivot, *amplified;     /* guards of the fit when the lists were made */
   PetscReal *residual;              /* largest distance of a point in the inner half of the support to the fit */
-  PetscInt *facet_ptr;              /* facets of each slave point; their nodes count within the slave point's points */
-  Facet    *facet;
+  PetscInt  *facet_ptr;             /* facets of each slave point; their nodes count within the slave point's points */
+  Facet     *facet;
   PetscReal *facet_size;
-  PetscReal *kappa;                 /* curvature of the master near each slave point: turn of normals over distance; 0: flat or no facet */
-} *ContactLists;
+  PetscReal *kappa; /* curvature of the master near each slave point: turn of normals over distance; 0: flat or no facet */
+} * ContactLists;
 
 typedef struct _n_ContactSearch *ContactSearch;
 
-/* master NULL: an analytic one, which needs no lists. slaves: local nodes of this rank that are slave points (node to surface: one node each). Surfaces, images, settings are borrowed. Collective. */
-PetscErrorCode SearchCreate(Mesh, Scene, Loads, ContactSurface slave, ContactSurface master, int n_images, const SurfaceImage *, const FitSettings *, PetscInt n, const PetscInt *slaves, ContactSearch *);
+/* master NULL: an analytic one, which needs no lists. slaves: local nodes of this rank that are slave points (node to surface: one node each). Surfaces,
+ * images, settings are borrowed. Collective. */
+PetscErrorCode SearchCreate(Mesh, Scene, Loads, ContactSurface slave, ContactSurface master, int n_images, const SurfaceImage *, const FitSettings *,
+                            PetscInt n, const PetscInt *slaves, ContactSearch *);
 PetscErrorCode SearchDestroy(ContactSearch *);
 /* New lists for local displacements u at load parameter t, good for a relative motion of `motion`. Collective. */
 PetscErrorCode SearchLists(ContactSearch, const PetscReal *u, PetscReal t, PetscReal motion, ContactLists *);

@@ -15,22 +15,22 @@ typedef struct {
   /* smooth surfaces: the first n_fit points carry the fit; 0: the facets serve */
   int            n_fit, degree;
   double         exponent;
-  const double  *multiplier; /* of the fit points' weights */
+  const double  *multiplier;     /* of the fit points' weights */
   const double  *frame, *metric; /* 9 and 4, held in a solve */
   FitDerivatives derivatives;
-  double        *workspace;  /* FitWorkspace(dim, degree, n_fit) */
+  double        *workspace; /* FitWorkspace(dim, degree, n_fit) */
 } SmootherInput;
 
 /* Arrays belong to the caller, sized for the smoother's capacity of points. */
 typedef struct {
-  double gap;       /* < 0: penetration */
-  double normal[3]; /* out of the master at the foot */
-  double beyond;    /* how far the foot lies past a free edge of the master (a length) */
-  int    seed;      /* for the next evaluation */
-  int    facet_served; /* a smooth surface was asked for and had no foot here: the facets answered */
-  int    n, *points;/* the points that take part */
-  double *N;        /* [(1 + n)*dim], the slave point first */
-  double *M;        /* [((1 + n)*dim)^2] */
+  double  gap;          /* < 0: penetration */
+  double  normal[3];    /* out of the master at the foot */
+  double  beyond;       /* how far the foot lies past a free edge of the master (a length) */
+  int     seed;         /* for the next evaluation */
+  int     facet_served; /* a smooth surface was asked for and had no foot here: the facets answered */
+  int     n, *points;   /* the points that take part */
+  double *N;            /* [(1 + n)*dim], the slave point first */
+  double *M;            /* [((1 + n)*dim)^2] */
 } SmootherResult;
 
 typedef enum { SMOOTHER_GAP, SMOOTHER_FIRST_VARIATION, SMOOTHER_SECOND_VARIATION } SmootherWant;
@@ -44,4 +44,4 @@ typedef struct {
 } Smoother;
 
 extern const Smoother Smoothers[]; /* terminated by a NULL name */
-const Smoother *SmootherFind(const char *name);
+const Smoother       *SmootherFind(const char *name);

@@ -16,10 +16,10 @@ typedef struct {
 
 /* The way so far */
 typedef struct {
-  PetscBool done;               /* t = 1 was reached */
+  PetscBool done; /* t = 1 was reached */
   PetscInt  steps, steps_failed, newton_iterations, newton_accepted, krylov_iterations;
-  PetscReal t;                  /* of the last good state */
-  char      message[1024];      /* why it ended early: cause, load parameter, nodes, what was tried */
+  PetscReal t;             /* of the last good state */
+  char      message[1024]; /* why it ended early: cause, load parameter, nodes, what was tried */
 } StepperReport;
 
 typedef struct _n_LoadStepper *LoadStepper;

@@ -14,16 +14,16 @@ typedef struct {
 
 typedef struct {
   Mesh             mesh;
-  const MeshGroup *group;     /* deformable, else NULL */
-  const MeshRigid *rigid;     /* or a rigid tool, and which body of the scene it is */
+  const MeshGroup *group; /* deformable, else NULL */
+  const MeshRigid *rigid; /* or a rigid tool, and which body of the scene it is */
   int              body;
-  int              order;     /* of the faces */
-  PetscInt         n_faces;   /* this rank's */
-  Facet           *faces;     /* nodes: local nodes of the mesh, or of the rigid tool */
-  PetscReal       *face_size; /* sqrt(area), a length in 2D */
+  int              order;               /* of the faces */
+  PetscInt         n_faces;             /* this rank's */
+  Facet           *faces;               /* nodes: local nodes of the mesh, or of the rigid tool */
+  PetscReal       *face_size;           /* sqrt(area), a length in 2D */
   PetscReal        mean_size, max_size; /* over all ranks */
-  PetscReal        stiffness; /* area-weighted mean of E over element height, all ranks; 0 for a rigid tool */
-} *ContactSurface;
+  PetscReal        stiffness;           /* area-weighted mean of E over element height, all ranks; 0 for a rigid tool */
+} * ContactSurface;
 
 PetscErrorCode SurfaceCreate(Mesh, Scene, Elasticity, const char *path, const char *key, const char *name, ContactSurface *);
 PetscErrorCode SurfaceDestroy(ContactSurface *);
@@ -38,6 +38,6 @@ PetscErrorCode SurfaceNodeSizes(ContactSurface, Geometry, PetscReal *size, Petsc
 /* The planes of symmetry of a pair as images, checked: planar, normal to an axis, held by a support. Collective. */
 PetscErrorCode SurfaceImages(Mesh, Scene, const SceneContact *, int *n_images, SurfaceImage images[SURFACE_MAX_IMAGES]);
 /* The face as its mirror image sees it: node order turned over where the image reverses orientation. */
-Facet          SurfaceImageFacet(const Facet *, const SurfaceImage *);
+Facet SurfaceImageFacet(const Facet *, const SurfaceImage *);
 /* Does any face of a master look towards any of the nodes (n of them, normals by local node, 3 each, any length)? Reference configuration. Collective. */
 PetscErrorCode SurfaceFaces(ContactSurface master, PetscInt n, const PetscInt nodes[], const PetscReal normals[], PetscBool *facing);

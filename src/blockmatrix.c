@@ -54,8 +54,10 @@ PetscErrorCode BlockMatrixAdd(BlockMatrix blocks, int list, PetscInt m, PetscInt
 {
   PetscFunctionBeginUser;
   if (blocks->n == blocks->room) PetscCall(PetscRealloc((blocks->room = 2 * blocks->room + 64) * sizeof(Block), &blocks->block));
-  if (blocks->n_entries + m > blocks->entries_room) PetscCall(PetscRealloc((blocks->entries_room = 2 * (blocks->entries_room + m)) * sizeof(PetscInt), &blocks->entry));
-  if (blocks->n_values + m * m > blocks->values_room) PetscCall(PetscRealloc((blocks->values_room = 2 * (blocks->values_room + m * m)) * sizeof(PetscReal), &blocks->value));
+  if (blocks->n_entries + m > blocks->entries_room)
+    PetscCall(PetscRealloc((blocks->entries_room = 2 * (blocks->entries_room + m)) * sizeof(PetscInt), &blocks->entry));
+  if (blocks->n_values + m * m > blocks->values_room)
+    PetscCall(PetscRealloc((blocks->values_room = 2 * (blocks->values_room + m * m)) * sizeof(PetscReal), &blocks->value));
   *entry = &blocks->entry[blocks->n_entries];
   *value = &blocks->value[blocks->n_values];
   PetscCall(PetscArrayzero(*value, m * m));

@@ -13,52 +13,52 @@
 #define CONTACT_SHARE_FLOOR 5e-3
 /* A gap from fresh lists agrees with the solve's when it differs by less than this fraction of itself, or of the face size (round-off of a
    closest-point projection). */
-#define CONTACT_GAP_AGREES     1e-6
-#define CONTACT_GAP_ROUND_OFF  1e-11
+#define CONTACT_GAP_AGREES    1e-6
+#define CONTACT_GAP_ROUND_OFF 1e-11
 /* A fit's frame may turn by 5 degrees before the step is solved again with a new one. */
 #define CONTACT_FRAME_COSINE 0.9962
 /* An open node whose fresh fit finds it this much of the largest penetration behind the master was open by mistake. */
 #define CONTACT_FIT_AGREES 0.1
 /* The area factor past a free edge is frozen in a solve; a change above this makes the step solve again. */
-#define CONTACT_FACTOR_AGREES  1e-2
+#define CONTACT_FACTOR_AGREES 1e-2
 /* A surface that turns more than this from its one reference plane cannot be written over it: cos 60 degrees. */
 #define CONTACT_GLOBAL_COSINE 0.5
 /* Touching start: a gap within this fraction of the face size is no gap, whatever the curvature. */
-#define CONTACT_TOUCH          1e-6
+#define CONTACT_TOUCH 1e-6
 /* Nodes below this fraction of the largest nodal force do not count as loaded. */
-#define CONTACT_LOADED         1e-3
+#define CONTACT_LOADED 1e-3
 
 typedef struct {
   const SceneContact *scene;
   FitSettings         fit;
-  ContactSurface      slave, master;  /* master NULL: analytic, in scene */
+  ContactSurface      slave, master; /* master NULL: analytic, in scene */
   int                 n_images;
   SurfaceImage        images[SURFACE_MAX_IMAGES];
   const Smoother     *smoother;
   const Law          *law;
   ContactSearch       search;
-  PetscInt            n, *node;       /* terms: slave nodes of this rank that carry area */
+  PetscInt            n, *node; /* terms: slave nodes of this rank that carry area */
   PetscReal          *area, *size, *turn;
-  PetscInt           *term_ptr;       /* slave points of each term */
-  PetscReal          *term_weight;    /* their weights, sum 1 */
+  PetscInt           *term_ptr;    /* slave points of each term */
+  PetscReal          *term_weight; /* their weights, sum 1 */
   ContactState        now, accepted;
   ContactLists        lists;
-  PetscReal          *factor;         /* per slave point, frozen with the lists: fades out past a free edge */
-  int                *seed;           /* per slave point: the facet of last time */
+  PetscReal          *factor;                  /* per slave point, frozen with the lists: fades out past a free edge */
+  int                *seed;                    /* per slave point: the facet of last time */
   PetscReal          *force, *vector, *normal; /* of the last residual: normal force, its sum over the slave points (n*3), contact normal (n*3) */
-  PetscReal           t;              /* of the last residual */
-  PetscReal          *pressure, *trial; /* trial: gaps of the last projection, of a residual or a tangent */
+  PetscReal           t;                       /* of the last residual */
+  PetscReal          *pressure, *trial;        /* trial: gaps of the last projection, of a residual or a tangent */
 } Pair;
 
 typedef struct {
   SmootherResult result;
-  PetscReal     *x;        /* positions relative to the slave point */
+  PetscReal     *x; /* positions relative to the slave point */
   PetscReal     *multiplier, *workspace;
   PetscInt       x_room;
-  PetscInt      *node;     /* contact nodes of a term, one after another over its slave points */
-  PetscReal     *N, *M;    /* over these nodes; M holds one slave point's part at a time */
-  int           *from;     /* which row of the variations a contact node takes part in: 0 the slave point, 1 + i fit point i */
-  PetscReal     *scale;    /* and with what factor, by component */
+  PetscInt      *node;  /* contact nodes of a term, one after another over its slave points */
+  PetscReal     *N, *M; /* over these nodes; M holds one slave point's part at a time */
+  int           *from;  /* which row of the variations a contact node takes part in: 0 the slave point, 1 + i fit point i */
+  PetscReal     *scale; /* and with what factor, by component */
 } Work;
 
 struct _n_Contact {
@@ -68,7 +68,7 @@ struct _n_Contact {
   int           n_pairs;
   Pair         *pairs;
   Work          work;
-  BlockMatrix   blocks;  /* the last tangent */
+  BlockMatrix   blocks; /* the last tangent */
   PetscLogEvent event_search, event_project, event_residual, event_tangent;
 };
 
@@ -161,8 +161,10 @@ static PetscErrorCode PairCheckGlobalFrame(Mesh mesh, Scene scene, Loads loads, 
   PetscCall(SurfaceMeanNormal(pair->master, loads, zero, 0, normal, &cosine));
   PetscCall(PetscFree(zero));
   if (cosine < CONTACT_GLOBAL_COSINE) {
-    PetscCall(RefuseInput(mesh->comm, "%s: the surface '%s' turns by %.0f degrees from its one reference plane; allowed: up to 60 degrees (frame: local has one plane for each slave point)",
-                          SceneWhere(scene, pair->scene->path, "frame"), pair->scene->master, (double)(PetscAcosReal(PetscMax(-1, cosine)) * 180 / PETSC_PI)));
+    PetscCall(RefuseInput(
+      mesh->comm,
+      "%s: the surface '%s' turns by %.0f degrees from its one reference plane; allowed: up to 60 degrees (frame: local has one plane for each slave point)",
+      SceneWhere(scene, pair->scene->path, "frame"), pair->scene->master, (double)(PetscAcosReal(PetscMax(-1, cosine)) * 180 / PETSC_PI)));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -176,16 +178,24 @@ static PetscErrorCode PairCreate(Mesh mesh, Scene scene, Elasticity elasticity, 
   pair->smoother = SmootherFind(contact->smoother == SMOOTHER_DIFFUSE ? "diffuse" : "facet");
   pair->fit      = PairFitSettings(scene, contact, pair->smoother);
   pair->law      = LawFind("penalty");
-  if (contact->master && !strcmp(contact->slave, contact->master)) PetscCall(RefuseInput(mesh->comm, "%s: slave and master are both '%s'; allowed: two different surfaces (a surface in contact with itself is not available yet)", SceneWhere(scene, contact->path, "master"), contact->master));
-  if (MeshFindRigid(mesh, contact->slave)) PetscCall(RefuseInput(mesh->comm, "%s: the slave '%s' is a rigid tool; allowed: a surface of a deformable body (make the tool the master)", SceneWhere(scene, contact->path, "slave"), contact->slave));
+  if (contact->master && !strcmp(contact->slave, contact->master))
+    PetscCall(RefuseInput(mesh->comm,
+                          "%s: slave and master are both '%s'; allowed: two different surfaces (a surface in contact with itself is not available yet)",
+                          SceneWhere(scene, contact->path, "master"), contact->master));
+  if (MeshFindRigid(mesh, contact->slave))
+    PetscCall(RefuseInput(mesh->comm, "%s: the slave '%s' is a rigid tool; allowed: a surface of a deformable body (make the tool the master)",
+                          SceneWhere(scene, contact->path, "slave"), contact->slave));
   PetscCall(SurfaceCreate(mesh, scene, elasticity, contact->path, "slave", contact->slave, &pair->slave));
-  if (contact->master) PetscCall(SurfaceCreate(mesh, scene, elasticity, contact->path, "master", contact->master, &pair->master));
-  else pair->fit.degree = 0;
+  if (contact->master)
+    PetscCall(SurfaceCreate(mesh, scene, elasticity, contact->path, "master", contact->master, &pair->master));
+  else
+    pair->fit.degree = 0;
   PetscCall(SurfaceImages(mesh, scene, contact, &pair->n_images, pair->images));
   if (pair->master) PetscCall(SurfaceFindFreeEdges(pair->master, pair->n_images, pair->images));
   if (pair->master && pair->fit.degree && pair->fit.global_frame) PetscCall(PairCheckGlobalFrame(mesh, scene, loads, pair));
   PetscCall(PairCreateTerms(mesh, scene, pair));
-  penalty = contact->penalty_scale * (contact->penalty_auto ? PenaltyAutomatic(pair->slave->stiffness, pair->master ? pair->master->stiffness : 0) : contact->penalty);
+  penalty =
+    contact->penalty_scale * (contact->penalty_auto ? PenaltyAutomatic(pair->slave->stiffness, pair->master ? pair->master->stiffness : 0) : contact->penalty);
   PetscCall(StateCreate(pair->n, penalty, &pair->now));
   PetscCall(StateCreate(pair->n, penalty, &pair->accepted));
   PetscCall(SearchCreate(mesh, scene, loads, pair->slave, pair->master, pair->n_images, pair->images, &pair->fit, pair->n, pair->node, &pair->search));
@@ -200,10 +210,12 @@ static PetscErrorCode RefuseRepeatedPairs(Mesh mesh, Scene scene)
   for (int p = 0; p < scene->n_contacts; p++) {
     for (int q = 0; q < p; q++) {
       const SceneContact *a = &scene->contacts[p], *b = &scene->contacts[q];
-      const PetscBool     meshed = (PetscBool)(a->master && b->master), same = (PetscBool)(meshed && !strcmp(a->slave, b->slave) && !strcmp(a->master, b->master));
-      const PetscBool     swapped = (PetscBool)(meshed && !strcmp(a->slave, b->master) && !strcmp(a->master, b->slave));
+      const PetscBool meshed = (PetscBool)(a->master && b->master), same = (PetscBool)(meshed && !strcmp(a->slave, b->slave) && !strcmp(a->master, b->master));
+      const PetscBool swapped = (PetscBool)(meshed && !strcmp(a->slave, b->master) && !strcmp(a->master, b->slave));
 
-      if (same || swapped) PetscCall(RefuseInput(mesh->comm, "%s: contact '%s' is '%s' once more%s: their forces would add up; allowed: one pair for each two surfaces", SceneWhere(scene, a->path, "slave"), a->name, b->name, swapped ? ", slave and master swapped" : ""));
+      if (same || swapped)
+        PetscCall(RefuseInput(mesh->comm, "%s: contact '%s' is '%s' once more%s: their forces would add up; allowed: one pair for each two surfaces",
+                              SceneWhere(scene, a->path, "slave"), a->name, b->name, swapped ? ", slave and master swapped" : ""));
     }
   }
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -235,8 +247,10 @@ PetscErrorCode ContactCreate(Mesh mesh, Scene scene, Elasticity elasticity, Load
     capacity = PetscMax(capacity, contact->pairs[p].smoother->capacity);
   }
   PetscCall(PetscMalloc1(FitWorkspace(mesh->dim, 4, FIT_MAX_POINTS), &contact->work.workspace));
-  PetscCall(PetscMalloc4(capacity, &contact->work.result.points, 3 * (capacity + 1), &contact->work.result.N, capacity + 1, &contact->work.from, 3 * (capacity + 1), &contact->work.scale));
-  PetscCall(PetscMalloc4(PetscSqr(3 * (capacity + 1)), &contact->work.result.M, points * (capacity + 1), &contact->work.node, 3 * points * (capacity + 1), &contact->work.N, PetscSqr(3 * (capacity + 1)), &contact->work.M));
+  PetscCall(PetscMalloc4(capacity, &contact->work.result.points, 3 * (capacity + 1), &contact->work.result.N, capacity + 1, &contact->work.from,
+                         3 * (capacity + 1), &contact->work.scale));
+  PetscCall(PetscMalloc4(PetscSqr(3 * (capacity + 1)), &contact->work.result.M, points * (capacity + 1), &contact->work.node, 3 * points * (capacity + 1),
+                         &contact->work.N, PetscSqr(3 * (capacity + 1)), &contact->work.M));
   *out = contact;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -303,12 +317,13 @@ static PetscBool PointEvaluateAnalytic(Contact contact, const Pair *pair, Contac
 }
 
 /* Gap (and variations over the fit points) of slave point q of the lists; *found is PETSC_FALSE where no master is near. */
-static PetscErrorCode PointEvaluate(Contact contact, const Pair *pair, const Smoother *smoother, ContactLists lists, PetscInt q, int seed, SmootherWant want, PetscBool *found)
+static PetscErrorCode PointEvaluate(Contact contact, const Pair *pair, const Smoother *smoother, ContactLists lists, PetscInt q, int seed, SmootherWant want,
+                                    PetscBool *found)
 {
-  const int     dim   = lists->dim;
-  Work         *work  = &contact->work;
+  const int      dim   = lists->dim;
+  Work          *work  = &contact->work;
   const PetscInt first = lists->list_ptr[q], n = lists->list_ptr[q + 1] - first;
-  SmootherInput in;
+  SmootherInput  in;
 
   PetscFunctionBeginUser;
   if (!pair->master) {
@@ -324,17 +339,30 @@ static PetscErrorCode PointEvaluate(Contact contact, const Pair *pair, const Smo
     const PetscInt p = lists->list_point[first + i];
 
     work->multiplier[i] = lists->point_weight[p];
-    for (int d = 0; d < dim; d++) work->x[i * dim + d] = (lists->point_X[p * dim + d] - lists->slave_X[q * dim + d]) + (lists->point_u[p * dim + d] - lists->slave_u[q * dim + d]);
+    for (int d = 0; d < dim; d++)
+      work->x[i * dim + d] = (lists->point_X[p * dim + d] - lists->slave_X[q * dim + d]) + (lists->point_u[p * dim + d] - lists->slave_u[q * dim + d]);
   }
-  in     = (SmootherInput){.dim = dim, .n_points = (int)n, .n_facets = (int)(lists->facet_ptr[q + 1] - lists->facet_ptr[q]), .x = work->x, .facets = &lists->facet[lists->facet_ptr[q]], .seed = seed,
-                           .n_fit = (int)lists->fit_n[q], .degree = lists->degree[q], .exponent = pair->fit.exponent, .multiplier = work->multiplier, .frame = &lists->frame[9 * q],
-                           .metric = &lists->metric[4 * q], .derivatives = pair->fit.derivatives, .workspace = work->workspace};
+  in     = (SmootherInput){.dim         = dim,
+                           .n_points    = (int)n,
+                           .n_facets    = (int)(lists->facet_ptr[q + 1] - lists->facet_ptr[q]),
+                           .x           = work->x,
+                           .facets      = &lists->facet[lists->facet_ptr[q]],
+                           .seed        = seed,
+                           .n_fit       = (int)lists->fit_n[q],
+                           .degree      = lists->degree[q],
+                           .exponent    = pair->fit.exponent,
+                           .multiplier  = work->multiplier,
+                           .frame       = &lists->frame[9 * q],
+                           .metric      = &lists->metric[4 * q],
+                           .derivatives = pair->fit.derivatives,
+                           .workspace   = work->workspace};
   *found = in.n_facets && smoother->evaluate(&in, want, &work->result) ? PETSC_TRUE : PETSC_FALSE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* Carries the variations of the last evaluation from fit points to contact nodes: N and M over nodes[*n] of the lists, in work. */
-static void PointToNodes(Contact contact, const Pair *pair, ContactLists lists, PetscInt q, PetscReal weight, PetscBool second, PetscInt *node, PetscReal *N, int *count)
+static void PointToNodes(Contact contact, const Pair *pair, ContactLists lists, PetscInt q, PetscReal weight, PetscBool second, PetscInt *node, PetscReal *N,
+                         int *count)
 {
   Work                 *work = &contact->work;
   const SmootherResult *r    = &work->result;
@@ -362,7 +390,8 @@ static void PointToNodes(Contact contact, const Pair *pair, ContactLists lists, 
   for (int a = 0; second && a < n; a++) {
     for (int d = 0; d < dim; d++) {
       for (int b = 0; b < n; b++)
-        for (int e = 0; e < dim; e++) work->M[(a * dim + d) * n * dim + b * dim + e] = scale[3 * a + d] * scale[3 * b + e] * r->M[(from[a] * dim + d) * m + from[b] * dim + e];
+        for (int e = 0; e < dim; e++)
+          work->M[(a * dim + d) * n * dim + b * dim + e] = scale[3 * a + d] * scale[3 * b + e] * r->M[(from[a] * dim + d) * m + from[b] * dim + e];
     }
   }
   *count = n;
@@ -385,8 +414,10 @@ static PetscErrorCode PairFactors(Contact contact, const Pair *pair, ContactList
 
     factor[q] = 0;
     PetscCall(PointEvaluate(contact, pair, SmootherFind("facet"), lists, q, -1, SMOOTHER_GAP, &found));
-    if (found && !pair->master) factor[q] = 1;
-    else if (found) factor[q] = 1 - SmoothStep(contact->work.result.beyond / lists->facet_size[lists->facet_ptr[q] + contact->work.result.seed]);
+    if (found && !pair->master)
+      factor[q] = 1;
+    else if (found)
+      factor[q] = 1 - SmoothStep(contact->work.result.beyond / lists->facet_size[lists->facet_ptr[q] + contact->work.result.seed]);
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -475,11 +506,13 @@ static PetscBool FitHolds(ContactLists old, ContactLists fresh, PetscInt q)
     PetscBool      known = PETSC_FALSE;
 
     for (int a = 0; a < dim - 1; a++)
-      for (int d = 0; d < dim; d++) y[a] += frame[3 * a + d] * ((fresh->point_X[p * dim + d] - fresh->slave_X[q * dim + d]) + (fresh->point_u[p * dim + d] - fresh->slave_u[q * dim + d]));
+      for (int d = 0; d < dim; d++)
+        y[a] += frame[3 * a + d] * ((fresh->point_X[p * dim + d] - fresh->slave_X[q * dim + d]) + (fresh->point_u[p * dim + d] - fresh->slave_u[q * dim + d]));
     for (int a = 0; a < dim - 1; a++)
       for (int b = 0; b < dim - 1; b++) rho2 += y[a] * metric[2 * a + b] * y[b];
     if (rho2 >= 1) continue;
-    for (PetscInt k = old->list_ptr[q]; !known && k < old->list_ptr[q] + old->fit_n[q]; k++) known = PointKey(old, old->list_point[k]) == key ? PETSC_TRUE : PETSC_FALSE;
+    for (PetscInt k = old->list_ptr[q]; !known && k < old->list_ptr[q] + old->fit_n[q]; k++)
+      known = PointKey(old, old->list_point[k]) == key ? PETSC_TRUE : PETSC_FALSE;
     if (!known) return PETSC_FALSE;
   }
   return PETSC_TRUE;
@@ -492,14 +525,15 @@ static PetscBool TermAgrees(const Pair *pair, ContactLists fresh, PetscInt c, Pe
   const PetscReal offset = TermOffset(pair, c, t), old = pair->now.gap[c];
 
   for (PetscInt q = pair->term_ptr[c]; q < pair->term_ptr[c + 1]; q++) {
-    const PetscBool fitted = (PetscBool)(pair->lists->fit_n[q] && fresh->fit_n[q]);
+    const PetscBool fitted    = (PetscBool)(pair->lists->fit_n[q] && fresh->fit_n[q]);
     const PetscReal tolerance = fitted ? CONTACT_FIT_AGREES * depth : CONTACT_GAP_AGREES * PetscAbsReal(old) + CONTACT_GAP_ROUND_OFF * pair->size[c];
 
     if (!(old - offset < 0) && !(gap - offset < (fitted ? -tolerance : 0))) continue;
     if (PetscAbsReal(factor[q] - pair->factor[q]) > CONTACT_FACTOR_AGREES) return PETSC_FALSE;
     if (fitted && old - offset < 0) {
       if (PetscIsNanReal(gap) || !FitHolds(pair->lists, fresh, q)) return PETSC_FALSE;
-    } else if (!(PetscAbsReal(gap - old) <= tolerance)) return PETSC_FALSE;
+    } else if (!(PetscAbsReal(gap - old) <= tolerance))
+      return PETSC_FALSE;
   }
   return PETSC_TRUE;
 }
@@ -546,8 +580,10 @@ PetscErrorCode ContactListsHold(Contact contact, const PetscReal *u, PetscReal t
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &agree, 1, MPI_INT, MPI_LAND, contact->mesh->comm));
   *hold = agree ? PETSC_TRUE : PETSC_FALSE;
   for (int p = 0; p < contact->n_pairs; p++) {
-    if (agree) PetscCall(ListsDestroy(&lists[p]));
-    else PetscCall(PairTakeLists(&contact->pairs[p], lists[p], factor[p]));
+    if (agree)
+      PetscCall(ListsDestroy(&lists[p]));
+    else
+      PetscCall(PairTakeLists(&contact->pairs[p], lists[p], factor[p]));
     PetscCall(PetscFree(factor[p]));
   }
   if (!agree) PetscCall(BlockMatrixReset(contact->blocks));
@@ -583,8 +619,8 @@ static void TermLaw(const Pair *pair, PetscInt c, PetscReal gap, PetscReal t, La
 /* Adds the forces of a loaded term to the contact nodes' values and keeps what probes show of it. */
 static PetscErrorCode TermForces(Contact contact, Pair *pair, PetscInt c, PetscReal pressure, PetscReal *values, PetscReal *force2)
 {
-  const int dim   = contact->mesh->dim;
-  Work     *work  = &contact->work;
+  const int dim  = contact->mesh->dim;
+  Work     *work = &contact->work;
   PetscBool found;
   int       n;
 
@@ -616,7 +652,8 @@ static PetscErrorCode PairResidual(Contact contact, Pair *pair, const PetscReal 
   PetscCall(PetscCalloc1(pair->lists->n_nodes * contact->mesh->dim, &values));
   for (PetscInt c = 0; c < pair->n; c++) {
     TermLaw(pair, c, pair->trial[c], t, &value);
-    for (PetscInt q = pair->term_ptr[c]; energy && q < pair->term_ptr[c + 1]; q++) *energy += pair->area[c] * pair->term_weight[q] * pair->factor[q] * value.psi;
+    for (PetscInt q = pair->term_ptr[c]; energy && q < pair->term_ptr[c + 1]; q++)
+      *energy += pair->area[c] * pair->term_weight[q] * pair->factor[q] * value.psi;
     if (!f) continue;
     pair->now.gap[c]    = pair->trial[c];
     pair->now.status[c] = value.stiffness > 0 ? CONTACT_CLOSED : CONTACT_OPEN;
@@ -675,11 +712,11 @@ static int PointNodes(ContactLists lists, PetscInt q, const SmootherResult *r)
 /* The block of one active term: A (psi'' Nbar Nbar^T - p sum_q w_q M_q), over its points' nodes one after another (a node may occur twice). */
 static PetscErrorCode TermBlock(Contact contact, const Pair *pair, int p, PetscInt c, PetscReal pressure, PetscReal stiffness)
 {
-  const int  dim  = contact->mesh->dim;
-  Work      *work = &contact->work;
-  PetscReal  area = 0, *value;
-  PetscInt   m    = 0, first = 0, *entry;
-  PetscBool  found;
+  const int dim  = contact->mesh->dim;
+  Work     *work = &contact->work;
+  PetscReal area = 0, *value;
+  PetscInt  m = 0, first = 0, *entry;
+  PetscBool found;
 
   PetscFunctionBeginUser;
   for (PetscInt q = pair->term_ptr[c]; q < pair->term_ptr[c + 1]; q++) {
@@ -814,7 +851,9 @@ static PetscErrorCode PairCheckFacing(Contact contact, const Pair *pair)
   PetscCall(SurfaceFaces(pair->master, pair->n, pair->node, normal, &facing));
   PetscCall(PetscFree2(area, normal));
   if (!facing) {
-    PetscCall(RefuseInput(mesh->comm, "%s: contact '%s': no face of '%s' faces '%s', their outward normals point the same way; allowed: surfaces that look at each other (turn a rigid tool's surface round in gmsh, ReverseMesh, or name the other side)",
+    PetscCall(RefuseInput(mesh->comm,
+                          "%s: contact '%s': no face of '%s' faces '%s', their outward normals point the same way; allowed: surfaces that look at each other "
+                          "(turn a rigid tool's surface round in gmsh, ReverseMesh, or name the other side)",
                           SceneWhere(contact->scene, pair->scene->path, "master"), pair->scene->name, pair->scene->master, pair->scene->slave));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -830,9 +869,9 @@ PetscErrorCode ContactTakeOverlap(Contact contact)
 
   PetscFunctionBeginUser;
   for (int p = 0; p < contact->n_pairs; p++) {
-    Pair       *pair  = &contact->pairs[p];
-    PetscReal   worst = 0;
-    PetscInt    at    = -1;
+    Pair     *pair  = &contact->pairs[p];
+    PetscReal worst = 0;
+    PetscInt  at    = -1;
     struct {
       double gap;
       int    rank;
@@ -841,7 +880,8 @@ PetscErrorCode ContactTakeOverlap(Contact contact)
 
     if (pair->master) PetscCall(PairCheckFacing(contact, pair));
     for (PetscInt c = 0; c < pair->n; c++) {
-      if (pair->scene->initial_overlap == OVERLAP_RAMP || pair->scene->initial_overlap == OVERLAP_IGNORE) pair->now.offset[c] = pair->now.gap[c] < 0 ? pair->now.gap[c] : 0;
+      if (pair->scene->initial_overlap == OVERLAP_RAMP || pair->scene->initial_overlap == OVERLAP_IGNORE)
+        pair->now.offset[c] = pair->now.gap[c] < 0 ? pair->now.gap[c] : 0;
       if (pair->scene->initial_overlap != OVERLAP_REFUSE) continue;
       if (!(pair->now.gap[c] < -TouchTolerance(pair, c)) || pair->now.gap[c] >= worst) continue;
       worst = pair->now.gap[c];
@@ -851,8 +891,11 @@ PetscErrorCode ContactTakeOverlap(Contact contact)
     PetscCallMPI(MPI_Comm_rank(mesh->comm, &mine.rank));
     PetscCallMPI(MPI_Allreduce(&mine, &least, 1, MPI_DOUBLE_INT, MPI_MINLOC, mesh->comm));
     if (at >= 0) {
-      PetscCall(PetscSNPrintf(complaint, sizeof(complaint), "%s: contact '%s': slave node %" PetscInt_FMT " lies %g behind the master before any load; allowed: surfaces that touch or are apart, or initial_overlap: resolve, ramp or ignore",
-                              SceneWhere(contact->scene, pair->scene->path, "initial_overlap"), pair->scene->name, mesh->node_tag[pair->node[at]], (double)-worst));
+      PetscCall(
+        PetscSNPrintf(complaint, sizeof(complaint),
+                      "%s: contact '%s': slave node %" PetscInt_FMT
+                      " lies %g behind the master before any load; allowed: surfaces that touch or are apart, or initial_overlap: resolve, ramp or ignore",
+                      SceneWhere(contact->scene, pair->scene->path, "initial_overlap"), pair->scene->name, mesh->node_tag[pair->node[at]], (double)-worst));
     }
     PetscCall(RefuseInputAnywhere(mesh->comm, at >= 0 && least.rank == mine.rank ? complaint : NULL));
   }
@@ -865,7 +908,8 @@ PetscErrorCode ContactTakeOverlap(Contact contact)
 PetscErrorCode ContactSummarise(Contact contact, ContactSummary *summary)
 {
   PetscInt  count[3] = {0, 0, 0};
-  PetscReal most[5] = {0, 0, PETSC_MIN_REAL, PETSC_MIN_REAL, 0}, total[3] = {0, 0, 0}, least = PETSC_MAX_REAL; /* most: penetration, over h, -penalty_min, penalty_max, nodal force */
+  PetscReal most[5] = {0, 0, PETSC_MIN_REAL, PETSC_MIN_REAL, 0}, total[3] = {0, 0, 0},
+            least = PETSC_MAX_REAL; /* most: penetration, over h, -penalty_min, penalty_max, nodal force */
 
   PetscFunctionBeginUser;
   for (int p = 0; p < contact->n_pairs; p++) {
@@ -892,11 +936,19 @@ PetscErrorCode ContactSummarise(Contact contact, ContactSummary *summary)
     const Pair *pair = &contact->pairs[p];
 
     for (PetscInt c = 0; c < pair->n; c++)
-      if (pair->now.status[c] == CONTACT_CLOSED && pair->force[c] > CONTACT_LOADED * most[4]) least = PetscMin(least, TermOffset(pair, c, pair->t) - pair->now.gap[c]);
+      if (pair->now.status[c] == CONTACT_CLOSED && pair->force[c] > CONTACT_LOADED * most[4])
+        least = PetscMin(least, TermOffset(pair, c, pair->t) - pair->now.gap[c]);
   }
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &least, 1, MPIU_REAL, MPI_MIN, contact->mesh->comm));
-  *summary = (ContactSummary){.nodes = count[0], .in = count[1], .out = count[2], .max_penetration = most[0], .max_penetration_over_h = most[1], .min_penetration = count[0] && least < PETSC_MAX_REAL ? least : 0,
-                              .penalty_min = -most[2], .penalty_max = most[3], .force = PetscSqrtReal(PetscSqr(total[0]) + PetscSqr(total[1]) + PetscSqr(total[2]))};
+  *summary = (ContactSummary){.nodes                  = count[0],
+                              .in                     = count[1],
+                              .out                    = count[2],
+                              .max_penetration        = most[0],
+                              .max_penetration_over_h = most[1],
+                              .min_penetration        = count[0] && least < PETSC_MAX_REAL ? least : 0,
+                              .penalty_min            = -most[2],
+                              .penalty_max            = most[3],
+                              .force                  = PetscSqrtReal(PetscSqr(total[0]) + PetscSqr(total[1]) + PetscSqr(total[2]))};
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -961,8 +1013,8 @@ PetscErrorCode ContactMasterForce(Contact contact, int p, PetscReal force[3])
    else the signed distance to the whole master without its mirror images (SearchDistance()). NaN: no node of the slave surface. */
 PetscErrorCode ContactGapAt(Contact contact, int p, const PetscReal *u, PetscReal t, PetscInt node_id, PetscReal *gap)
 {
-  Mesh        mesh = contact->mesh;
-  const Pair *pair = &contact->pairs[p];
+  Mesh        mesh     = contact->mesh;
+  const Pair *pair     = &contact->pairs[p];
   PetscReal   found[5] = {-1, 0, 0, 0, 0}; /* 1: a node of the slave surface, 2: with a finite gap; gap; position */
 
   PetscFunctionBeginUser;
@@ -1022,10 +1074,10 @@ PetscErrorCode ContactPairSurface(Contact contact, int p, const MeshGroup **slav
 /* ContactPairFits - how the fits of a pair stand: counts by rung, neighbours, guards, and the two errors of the surface. Collective. */
 PetscErrorCode ContactPairFits(Contact contact, int p, ContactFits *fits)
 {
-  Pair        *pair  = &contact->pairs[p];
-  ContactLists lists = pair->lists;
-  PetscInt     count[RUNGS + 3] = {0}; /* by rung, facets, points, neighbours */
-  PetscReal    most[6] = {PETSC_MIN_REAL, PETSC_MIN_REAL, PETSC_MIN_REAL, 0, 0, 0}; /* -fewest, most neighbours, -pivot, Lambda, smoothing, facets */
+  Pair        *pair             = &contact->pairs[p];
+  ContactLists lists            = pair->lists;
+  PetscInt     count[RUNGS + 3] = {0};                                                       /* by rung, facets, points, neighbours */
+  PetscReal    most[6]          = {PETSC_MIN_REAL, PETSC_MIN_REAL, PETSC_MIN_REAL, 0, 0, 0}; /* -fewest, most neighbours, -pivot, Lambda, smoothing, facets */
 
   PetscFunctionBeginUser;
   for (PetscInt q = 0; q < lists->n_slaves; q++) {
@@ -1050,7 +1102,12 @@ PetscErrorCode ContactPairFits(Contact contact, int p, ContactFits *fits)
   }
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, count, RUNGS + 3, MPIU_INT, MPI_SUM, contact->mesh->comm));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, most, 6, MPIU_REAL, MPI_MAX, contact->mesh->comm));
-  *fits = (ContactFits){.points = count[RUNGS + 1], .plain = count[0], .facets = count[RUNGS], .amplified = most[3], .smoothing_error = most[4], .facet_error = most[5]};
+  *fits = (ContactFits){.points          = count[RUNGS + 1],
+                        .plain           = count[0],
+                        .facets          = count[RUNGS],
+                        .amplified       = most[3],
+                        .smoothing_error = most[4],
+                        .facet_error     = most[5]};
   for (int r = 1; r < RUNGS; r++) *(r <= RUNG_WIDER ? &fits->wider : r <= RUNG_DEGREE_2 ? &fits->degree_2 : &fits->linear) += count[r];
   if (fits->points > fits->facets) {
     fits->neighbours_min  = (PetscInt)-most[0];
@@ -1075,9 +1132,13 @@ const char *ContactPairText(Contact contact, int p)
   const Pair              *pair  = &contact->pairs[p];
   const SceneContact      *scene = pair->scene;
 
-  if (!pair->master) snprintf(text, sizeof(text), "%s on an analytic %s", scene->slave, shapes[scene->analytic.shape]);
-  else if (!pair->fit.degree) snprintf(text, sizeof(text), "%s on %s, facets", scene->slave, scene->master);
-  else snprintf(text, sizeof(text), "%s on %s, diffuse, degree %d, support %g, weight %g", scene->slave, scene->master, pair->fit.degree, pair->fit.support, pair->fit.exponent);
+  if (!pair->master)
+    snprintf(text, sizeof(text), "%s on an analytic %s", scene->slave, shapes[scene->analytic.shape]);
+  else if (!pair->fit.degree)
+    snprintf(text, sizeof(text), "%s on %s, facets", scene->slave, scene->master);
+  else
+    snprintf(text, sizeof(text), "%s on %s, diffuse, degree %d, support %g, weight %g", scene->slave, scene->master, pair->fit.degree, pair->fit.support,
+             pair->fit.exponent);
   return text;
 }
 

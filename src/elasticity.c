@@ -28,7 +28,7 @@ struct _n_Elasticity {
   PetscReal *value;        /* dim x dim blocks, row-major, in the order of column */
   PetscReal *u, *f, *K;    /* of one batch, aligned to cache lines */
   void      *buffer;       /* what u, f and K are in */
-  PetscInt   inverted; /* a local cell that the last residual found inverted, or -1 */
+  PetscInt   inverted;     /* a local cell that the last residual found inverted, or -1 */
   PetscBool  symmetric;
   Mat        matrix;
 };

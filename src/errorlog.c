@@ -6,13 +6,15 @@ static struct {
   PetscBool open;
 } ErrorLog;
 
-static PetscErrorCode ErrorLogHandler(MPI_Comm comm, int line, const char *function, const char *file, PetscErrorCode code, PetscErrorType type, const char *message, void *context)
+static PetscErrorCode ErrorLogHandler(MPI_Comm comm, int line, const char *function, const char *file, PetscErrorCode code, PetscErrorType type,
+                                      const char *message, void *context)
 {
   if (!ErrorLog.open) {
     FILE *log = fopen(ErrorLog.file, "w");
 
     ErrorLog.open = PETSC_TRUE;
-    fprintf(stderr, "burnish: internal error or machine failure: %s; the trace is in %s\n", message ? message : "no message", log ? ErrorLog.file : "what follows");
+    fprintf(stderr, "burnish: internal error or machine failure: %s; the trace is in %s\n", message ? message : "no message",
+            log ? ErrorLog.file : "what follows");
     if (log) PETSC_STDERR = log;
   }
   PetscTraceBackErrorHandler(comm, line, function, file, code, type, message, context);

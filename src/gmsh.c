@@ -354,8 +354,10 @@ PetscErrorCode GmshGenerate(Scene scene, const char *directory, char *file, Pets
   PetscFunctionBeginUser;
   *seconds = 0;
   *file    = '\0';
-  if (stat(scene->mesh_file, &there)) Complain(complaint, "%s: there is no file '%s'", SceneWhere(scene, "mesh", "file"), scene->mesh_file);
-  else if (!S_ISREG(there.st_mode)) Complain(complaint, "%s: '%s' is no file", SceneWhere(scene, "mesh", "file"), scene->mesh_file);
+  if (stat(scene->mesh_file, &there))
+    Complain(complaint, "%s: there is no file '%s'", SceneWhere(scene, "mesh", "file"), scene->mesh_file);
+  else if (!S_ISREG(there.st_mode))
+    Complain(complaint, "%s: '%s' is no file", SceneWhere(scene, "mesh", "file"), scene->mesh_file);
   if (strlen(directory) + TEXT_PARTS_IN_NAME > PETSC_MAX_PATH_LEN) Complain(complaint, "the path '%s' is too long", directory);
   if (complaint->text[0]) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(FingerprintScene(scene, &content, complaint));

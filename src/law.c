@@ -6,8 +6,10 @@ static void LawPenalty(double gap, const LawState *state, LawValue *value)
 {
   const double g = gap - state->offset;
 
-  if (g < 0) *value = (LawValue){0.5 * state->penalty * g * g, -state->penalty * g, state->penalty};
-  else *value = (LawValue){0, 0, 0};
+  if (g < 0)
+    *value = (LawValue){0.5 * state->penalty * g * g, -state->penalty * g, state->penalty};
+  else
+    *value = (LawValue){0, 0, 0};
 }
 
 const Law Laws[] = {

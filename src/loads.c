@@ -72,8 +72,11 @@ static PetscErrorCode LoadsAddDof(Loads loads, PetscInt dof, PetscReal value, co
     const Prescribed *q = &loads->prescribed[owner[dof]];
 
     if (!PrescribedAgree(&p, q) && !complaint[0]) {
-      PetscCall(PetscSNPrintf(complaint, size, "%s: u%c of node %" PetscInt_FMT " is prescribed differently by %s; allowed: one value for each component of a node (part the surfaces, or drop one of the two)",
-                              SceneWhere(loads->scene, PrescribedPath(loads->scene, &p), NULL), "xyz"[dof % dim], loads->mesh->node_tag[dof / dim], PrescribedPath(loads->scene, q)));
+      PetscCall(PetscSNPrintf(complaint, size,
+                              "%s: u%c of node %" PetscInt_FMT
+                              " is prescribed differently by %s; allowed: one value for each component of a node (part the surfaces, or drop one of the two)",
+                              SceneWhere(loads->scene, PrescribedPath(loads->scene, &p), NULL), "xyz"[dof % dim], loads -> mesh -> node_tag[dof / dim],
+                              PrescribedPath(loads->scene, q)));
     }
     PetscFunctionReturn(PETSC_SUCCESS);
   }
@@ -83,10 +86,12 @@ static PetscErrorCode LoadsAddDof(Loads loads, PetscInt dof, PetscReal value, co
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode LoadsAddPrescribed(Loads loads, const MeshGroup *group, int component, PetscReal value, const History *history, int load, PetscInt *owner, char *complaint, size_t size)
+static PetscErrorCode LoadsAddPrescribed(Loads loads, const MeshGroup *group, int component, PetscReal value, const History *history, int load, PetscInt *owner,
+                                         char *complaint, size_t size)
 {
   PetscFunctionBeginUser;
-  for (PetscInt i = 0; i < group->n_nodes; i++) PetscCall(LoadsAddDof(loads, group->nodes[i] * loads->mesh->dim + component, value, history, load, owner, complaint, size));
+  for (PetscInt i = 0; i < group->n_nodes; i++)
+    PetscCall(LoadsAddDof(loads, group->nodes[i] * loads->mesh->dim + component, value, history, load, owner, complaint, size));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -106,7 +111,8 @@ static PetscErrorCode LoadsCreatePrescribed(Loads loads)
     owner[i]              = -1;
   }
   for (PetscInt node = 0; node < mesh->n_nodes && scene->geometry == GEOMETRY_AXISYMMETRIC; node++)
-    if (mesh->coords[node * mesh->dim] + mesh->centre[0] <= LOADS_ON_AXIS * mesh->size) PetscCall(LoadsAddDof(loads, node * mesh->dim, 0, NULL, LOADS_AXIS, owner, complaint, sizeof(complaint)));
+    if (mesh->coords[node * mesh->dim] + mesh->centre[0] <= LOADS_ON_AXIS * mesh->size)
+      PetscCall(LoadsAddDof(loads, node * mesh->dim, 0, NULL, LOADS_AXIS, owner, complaint, sizeof(complaint)));
   for (int s = 0; s < scene->n_supports; s++) {
     const SceneSupport *support = &scene->supports[s];
 
@@ -141,9 +147,9 @@ static void DeadLoadAdd(Mesh mesh, PetscInt n, const PetscInt *nodes, const doub
 
 static PetscErrorCode DeadLoadSurface(Loads loads, const SceneLoad *load, const MeshGroup *group, PetscReal *dense, PetscReal *force2)
 {
-  Mesh      mesh = loads->mesh;
-  PetscInt  nodes[FACE_MAX_NODES];
-  double    X[FACE_MAX_NODES * 3], zero[FACE_MAX_NODES * 3] = {0}, fe[FACE_MAX_NODES * 3];
+  Mesh     mesh = loads->mesh;
+  PetscInt nodes[FACE_MAX_NODES];
+  double   X[FACE_MAX_NODES * 3], zero[FACE_MAX_NODES * 3] = {0}, fe[FACE_MAX_NODES * 3];
 
   PetscFunctionBeginUser;
   for (PetscInt f = 0; f < group->n_faces; f++) {
@@ -152,7 +158,8 @@ static PetscErrorCode DeadLoadSurface(Loads loads, const SceneLoad *load, const 
 
     MeshGatherNodes(mesh, n, nodes, mesh->coords, X);
     PetscCall(PetscArrayzero(fe, n * mesh->dim));
-    FaceLoadKernel(type, mesh->dim, loads->scene->geometry, load->kind == LOAD_TRACTION ? FACE_TRACTION : FACE_DEAD_PRESSURE, X, zero, load->value, fe, NULL, NULL);
+    FaceLoadKernel(type, mesh->dim, loads->scene->geometry, load->kind == LOAD_TRACTION ? FACE_TRACTION : FACE_DEAD_PRESSURE, X, zero, load->value, fe, NULL,
+                   NULL);
     DeadLoadAdd(mesh, n, nodes, fe, dense, force2);
   }
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -160,13 +167,15 @@ static PetscErrorCode DeadLoadSurface(Loads loads, const SceneLoad *load, const 
 
 static PetscErrorCode DeadLoadVolume(Loads loads, const SceneLoad *load, PetscReal *dense, PetscReal *force2)
 {
-  Mesh   mesh = loads->mesh;
+  Mesh   mesh  = loads->mesh;
   Scene  scene = loads->scene;
   int    body  = MeshFindBody(scene, load->region, PETSC_FALSE);
   double X[ELEMENT_MAX_NODES * 3], fe[ELEMENT_MAX_NODES * 3];
 
   PetscFunctionBeginUser;
-  if (body < 0) PetscCall(RefuseInput(mesh->comm, "%s: no deformable body named '%s'; allowed: a volume listed in bodies", SceneWhere(scene, load->path, "volume"), load->region));
+  if (body < 0)
+    PetscCall(
+      RefuseInput(mesh->comm, "%s: no deformable body named '%s'; allowed: a volume listed in bodies", SceneWhere(scene, load->path, "volume"), load->region));
   for (PetscInt c = 0; c < mesh->n_cells; c++) {
     const PetscInt *nodes = &mesh->cell_nodes[mesh->cell_ptr[c]];
     const int       n     = ElementGet(mesh->cell_type[c])->nodes;
@@ -217,8 +226,10 @@ static PetscErrorCode LoadsCreateForces(Loads loads)
       continue;
     }
     PetscCall(PetscArrayzero(dense, n));
-    if (load->kind == LOAD_BODY_FORCE) PetscCall(DeadLoadVolume(loads, load, dense, &dead->force2));
-    else PetscCall(DeadLoadSurface(loads, load, group, dense, &dead->force2));
+    if (load->kind == LOAD_BODY_FORCE)
+      PetscCall(DeadLoadVolume(loads, load, dense, &dead->force2));
+    else
+      PetscCall(DeadLoadSurface(loads, load, group, dense, &dead->force2));
     PetscCall(DeadLoadPack(dense, n, dead));
     dead->history = &load->history;
     loads->n_dead++;
@@ -264,7 +275,8 @@ PetscErrorCode LoadsPrescribe(Loads loads, PetscReal t, PetscReal *u)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode FollowerFace(Loads loads, const FollowerLoad *load, PetscInt f, PetscReal t, const PetscReal *u, PetscInt *nodes, int *n, double *fe, double *ke)
+static PetscErrorCode FollowerFace(Loads loads, const FollowerLoad *load, PetscInt f, PetscReal t, const PetscReal *u, PetscInt *nodes, int *n, double *fe,
+                                   double *ke)
 {
   Mesh              mesh = loads->mesh;
   const ElementType type = MeshFaceNodes(mesh, load->group, f, nodes);

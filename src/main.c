@@ -32,14 +32,15 @@ static PetscErrorCode MonitorResults(LoadStepper stepper, const StepRecord *reco
 }
 
 /* Steps the model to t = 1 and writes what is to be written; the exit status says how it ended. */
-static PetscErrorCode RunModel(Model model, Probes probes, Scene scene, const CommandLine *command, const char *directory, PetscLogDouble start, PetscReal mesh_s, int *status)
+static PetscErrorCode RunModel(Model model, Probes probes, Scene scene, const CommandLine *command, const char *directory, PetscLogDouble start,
+                               PetscReal mesh_s, int *status)
 {
-  Results       results;
-  RunRecord     run;
-  PetscLogStage stage;
+  Results        results;
+  RunRecord      run;
+  PetscLogStage  stage;
   PetscLogDouble now;
-  LoadStepper   stepper;
-  StepperReport report;
+  LoadStepper    stepper;
+  StepperReport  report;
 
   PetscFunctionBeginUser;
   PetscCall(ResultsCreate(model, probes, scene, directory, command->quiet ? PETSC_TRUE : PETSC_FALSE, &results));
@@ -54,8 +55,15 @@ static PetscErrorCode RunModel(Model model, Probes probes, Scene scene, const Co
   PetscCall(LoadStepperSolve(stepper, &report));
   PetscCall(PetscLogStagePop());
   PetscCall(PetscTime(&now));
-  run = (RunRecord){.status = report.done ? "done" : "not converged", .message = report.done ? NULL : report.message, .steps = report.steps, .steps_failed = report.steps_failed,
-                    .newton_iterations = report.newton_iterations, .newton_accepted = report.newton_accepted, .krylov_iterations = report.krylov_iterations, .wall_s = now - start, .mesh_s = mesh_s};
+  run = (RunRecord){.status            = report.done ? "done" : "not converged",
+                    .message           = report.done ? NULL : report.message,
+                    .steps             = report.steps,
+                    .steps_failed      = report.steps_failed,
+                    .newton_iterations = report.newton_iterations,
+                    .newton_accepted   = report.newton_accepted,
+                    .krylov_iterations = report.krylov_iterations,
+                    .wall_s            = now - start,
+                    .mesh_s            = mesh_s};
   PetscCall(ResultsFinish(results, &run));
   PetscCall(LoadStepperDestroy(&stepper));
   PetscCall(ResultsDestroy(&results));
@@ -65,14 +73,14 @@ static PetscErrorCode RunModel(Model model, Probes probes, Scene scene, const Co
 
 static PetscErrorCode RunScene(const CommandLine *command, int *status)
 {
-  MPI_Comm  comm = PETSC_COMM_WORLD;
-  char      directory[PETSC_MAX_PATH_LEN], mesh_file[PETSC_MAX_PATH_LEN];
-  PetscReal mesh_s;
+  MPI_Comm       comm = PETSC_COMM_WORLD;
+  char           directory[PETSC_MAX_PATH_LEN], mesh_file[PETSC_MAX_PATH_LEN];
+  PetscReal      mesh_s;
   PetscLogDouble start;
-  Scene     scene;
-  Mesh      mesh;
-  Model     model;
-  Probes    probes;
+  Scene          scene;
+  Mesh           mesh;
+  Model          model;
+  Probes         probes;
 
   PetscFunctionBeginUser;
   PetscCall(PetscTime(&start));
@@ -96,7 +104,8 @@ static PetscErrorCode RunScene(const CommandLine *command, int *status)
     PetscCall(ProbesDestroy(&probes));
     PetscCall(ModelDestroy(&model));
     PetscCall(MeshDestroy(&mesh));
-  } else PetscCall(PetscPrintf(comm, "%s\n", mesh_file));
+  } else
+    PetscCall(PetscPrintf(comm, "%s\n", mesh_file));
   PetscCall(SceneDestroy(&scene));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -111,9 +120,12 @@ int main(int argc, char **argv)
   if (PetscInitialize(&command.argc, &command.argv, NULL, NULL)) return EXIT_MACHINE;
   if (command.complaint[0]) PetscCall(RefuseInput(PETSC_COMM_WORLD, "%s", command.complaint));
   PetscCallMPI(MPI_Comm_rank(PETSC_COMM_WORLD, &rank));
-  if (command.mode == COMMAND_HELP && !rank) CommandLineHelp(stdout);
-  else if (command.mode == COMMAND_VERSION && !rank) CommandLineVersion(stdout);
-  else if (command.mode != COMMAND_HELP && command.mode != COMMAND_VERSION && RunScene(&command, &status)) MPI_Abort(PETSC_COMM_WORLD, EXIT_MACHINE); /* the other ranks may wait for this one for ever */
+  if (command.mode == COMMAND_HELP && !rank)
+    CommandLineHelp(stdout);
+  else if (command.mode == COMMAND_VERSION && !rank)
+    CommandLineVersion(stdout);
+  else if (command.mode != COMMAND_HELP && command.mode != COMMAND_VERSION && RunScene(&command, &status))
+    MPI_Abort(PETSC_COMM_WORLD, EXIT_MACHINE); /* the other ranks may wait for this one for ever */
   if (PetscFinalize()) status = EXIT_MACHINE;
   CommandLineDestroy(&command); /* PETSc holds its argv until the end */
   return status;

@@ -21,20 +21,27 @@
 /* Newton is limited by its iterations, not by the line search's evaluations. */
 #define MODEL_MAX_FUNCTIONS 1000000
 
-const char *const SolveResults[] = {"converged", "Newton's method did not converge within solver.max_iterations", "the line search found no lower energy", "an element turned inside out", "the linear system is singular (is a body free to move?) or its solver failed", "the direct solver ran out of workspace (PETSc option mat_mumps_icntl_14 gives it more)", "the contact lists did not settle", "not-a-number in the residual"};
+const char *const SolveResults[] = {"converged",
+                                    "Newton's method did not converge within solver.max_iterations",
+                                    "the line search found no lower energy",
+                                    "an element turned inside out",
+                                    "the linear system is singular (is a body free to move?) or its solver failed",
+                                    "the direct solver ran out of workspace (PETSc option mat_mumps_icntl_14 gives it more)",
+                                    "the contact lists did not settle",
+                                    "not-a-number in the residual"};
 
 typedef struct _n_ModelWork {
-  PetscReal *f;            /* local residual of the last evaluation, all dofs */
-  PetscReal *trial;        /* local displacements of the last evaluation */
+  PetscReal *f;     /* local residual of the last evaluation, all dofs */
+  PetscReal *trial; /* local displacements of the last evaluation */
   PetscReal *accepted_u;
   Vec        accepted_x;
   PetscReal  accepted_t;
-  PetscReal  rate;         /* largest displacement per unit of t in the last accepted step */
-  PetscReal  scale;        /* force norm of the last evaluation */
-  PetscReal  stiffness;    /* norm of the elastic tangent's diagonal */
-  PetscInt   inverted;     /* gmsh's tag of a cell of this rank that was turned inside out in this solve, or -1 */
-  PetscBool  near;         /* the iterate is so close that energies differ by round-off only */
-  Vec        residual;     /* of a trial point, while near; the tangent's diagonal for a moment */
+  PetscReal  rate;      /* largest displacement per unit of t in the last accepted step */
+  PetscReal  scale;     /* force norm of the last evaluation */
+  PetscReal  stiffness; /* norm of the elastic tangent's diagonal */
+  PetscInt   inverted;  /* gmsh's tag of a cell of this rank that was turned inside out in this solve, or -1 */
+  PetscBool  near;      /* the iterate is so close that energies differ by round-off only */
+  Vec        residual;  /* of a trial point, while near; the tangent's diagonal for a moment */
 } ModelWork;
 
 /* ---------- residual, energy, tangent ---------- */
@@ -109,9 +116,9 @@ static PetscErrorCode ModelEnergy(Model model, PetscReal *energy)
 
 static PetscErrorCode ModelObjective(SNES snes, Vec x, PetscReal *objective, void *context)
 {
-  Model     model = context;
-  ModelWork *work = model->work;
-  PetscBool ok;
+  Model      model = context;
+  ModelWork *work  = model->work;
+  PetscBool  ok;
 
   PetscFunctionBeginUser;
   (void)snes;
@@ -212,8 +219,10 @@ static PetscErrorCode ModelConverged(SNES snes, PetscInt it, PetscReal xnorm, Pe
   PetscCall(ModelRoundOff(model, &round_off));
   *reason           = SNES_CONVERGED_ITERATING;
   model->work->near = fnorm <= MODEL_ENERGY_ROUND_OFF * scale ? PETSC_TRUE : PETSC_FALSE;
-  if (PetscIsInfOrNanReal(fnorm)) *reason = SNES_DIVERGED_FUNCTION_NANORINF;
-  else if (fnorm <= PetscMax(model->scene->solver.tolerance * scale, round_off)) *reason = SNES_CONVERGED_FNORM_ABS;
+  if (PetscIsInfOrNanReal(fnorm))
+    *reason = SNES_DIVERGED_FUNCTION_NANORINF;
+  else if (fnorm <= PetscMax(model->scene->solver.tolerance * scale, round_off))
+    *reason = SNES_CONVERGED_FNORM_ABS;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -242,7 +251,8 @@ static PetscErrorCode LinearSolveEnds(KSP ksp, Vec b, Vec x, void *context)
 }
 
 /* Keeps the first message of an error instead of printing its trace; context: char[256]. */
-static PetscErrorCode KeepMessage(MPI_Comm comm, int line, const char *function, const char *file, PetscErrorCode code, PetscErrorType type, const char *message, void *context)
+static PetscErrorCode KeepMessage(MPI_Comm comm, int line, const char *function, const char *file, PetscErrorCode code, PetscErrorType type,
+                                  const char *message, void *context)
 {
   char *kept = context;
 
@@ -309,9 +319,9 @@ static PetscErrorCode ModelCreateSNES(Model model)
    Collective. scene and mesh are borrowed. The loads come first: they settle which dofs are free. */
 PetscErrorCode ModelCreate(Scene scene, Mesh mesh, Model *out)
 {
-  Model           model;
-  const PetscInt  n = mesh->n_nodes * mesh->dim;
-  Mat             K;
+  Model          model;
+  const PetscInt n = mesh->n_nodes * mesh->dim;
+  Mat            K;
 
   PetscFunctionBeginUser;
   PetscCall(PetscNew(&model));
@@ -325,7 +335,8 @@ PetscErrorCode ModelCreate(Scene scene, Mesh mesh, Model *out)
   PetscCall(PetscCalloc4(n, &model->u, n, &model->work->f, n, &model->work->trial, n, &model->work->accepted_u));
   PetscCall(ElasticityTangent(model->elasticity, model->u));
   PetscCall(ElasticityMatrix(model->elasticity, &K));
-  if (model->contact) PetscCall(MatDuplicate(K, MAT_COPY_VALUES, &model->A));
+  if (model->contact)
+    PetscCall(MatDuplicate(K, MAT_COPY_VALUES, &model->A));
   else {
     PetscCall(PetscObjectReference((PetscObject)K));
     model->A = K;
@@ -488,7 +499,7 @@ static PetscErrorCode ModelNewton(Model model, SolveReport *report)
   PetscCall(VecNorm(F, NORM_2, &norm));
   report->newton += its;
   report->krylov += krylov;
-  report->result   = ResultFromReason(reason);
+  report->result = ResultFromReason(reason);
   if (report->result == SOLVE_LINEAR) PetscCall(ModelLinearFailure(model, &report->result));
   PetscCall(ModelTrial(model, model->x)); /* whatever SNES looked at last */
   report->residual = model->work->scale > 0 ? norm / PetscMax(model->force_scale, model->work->scale) : 0;
@@ -498,10 +509,10 @@ static PetscErrorCode ModelNewton(Model model, SolveReport *report)
 /* Where to look when a step fails: an inverted element, the node with the largest residual. */
 static PetscErrorCode ModelLocateFailure(Model model, char *text, size_t size)
 {
-  Mesh      mesh = model->mesh;
-  const int dim  = mesh->dim;
+  Mesh       mesh = model->mesh;
+  const int  dim  = mesh->dim;
   PetscReal *f, place[4] = {0, 0, 0, 0};
-  PetscInt   inverted = model->work->inverted;
+  PetscInt   inverted    = model->work->inverted;
   char       element[64] = "";
   struct {
     double value;
@@ -527,7 +538,8 @@ static PetscErrorCode ModelLocateFailure(Model model, char *text, size_t size)
   PetscCallMPI(MPI_Bcast(place, 4, MPIU_REAL, most.rank, mesh->comm));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &inverted, 1, MPIU_INT, MPI_MAX, mesh->comm));
   if (inverted >= 0) PetscCall(PetscSNPrintf(element, sizeof(element), "element %" PetscInt_FMT " was inverted on the way; ", inverted));
-  PetscCall(PetscSNPrintf(text, size, "%slargest residual at node %.0f (%g, %g, %g)", element, (double)place[0], (double)place[1], (double)place[2], (double)place[3]));
+  PetscCall(
+    PetscSNPrintf(text, size, "%slargest residual at node %.0f (%g, %g, %g)", element, (double)place[0], (double)place[1], (double)place[2], (double)place[3]));
   PetscCall(PetscFree(f));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -570,8 +582,10 @@ PetscErrorCode ModelSolve(Model model, PetscReal t, SolveReport *report)
     if (hold) break;
     if (report->regathered++ == MODEL_MAX_REGATHER) report->result = SOLVE_LISTS;
   }
-  if (report->result == SOLVE_CONVERGED) PetscCall(PetscArraycpy(model->u, work->trial, model->mesh->n_nodes * model->mesh->dim));
-  else PetscCall(ModelLocateFailure(model, report->detail, sizeof(report->detail)));
+  if (report->result == SOLVE_CONVERGED)
+    PetscCall(PetscArraycpy(model->u, work->trial, model->mesh->n_nodes * model->mesh->dim));
+  else
+    PetscCall(ModelLocateFailure(model, report->detail, sizeof(report->detail)));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -647,13 +661,14 @@ static const char *ModelContactEffect(Scene scene)
 /* ModelEffects - what the scene calls for, in words with commas between, into text[size]. Not collective, same on all ranks. */
 PetscErrorCode ModelEffects(Model model, char *text, size_t size)
 {
-  Scene     scene = model->scene;
+  Scene     scene  = model->scene;
   PetscBool moving = PETSC_FALSE, body_force = PETSC_FALSE;
 
   PetscFunctionBeginUser;
   for (int b = 0; b < scene->n_bodies; b++) moving = (PetscBool)(moving || (scene->bodies[b].rigid && scene->bodies[b].motion.n));
   for (int l = 0; l < scene->n_loads; l++) body_force = (PetscBool)(body_force || scene->loads[l].kind == LOAD_BODY_FORCE);
-  PetscCall(PetscSNPrintf(text, size, "%s%s%s%s%s", scene->kinematics == KINEMATICS_FINITE ? "finite strain" : "small strain", ModelContactEffect(scene), LoadsConservative(model->loads) ? "" : ", follower load", body_force ? ", body force" : "", moving ? ", rigid motion" : ""));
+  PetscCall(PetscSNPrintf(text, size, "%s%s%s%s%s", scene->kinematics == KINEMATICS_FINITE ? "finite strain" : "small strain", ModelContactEffect(scene),
+                          LoadsConservative(model->loads) ? "" : ", follower load", body_force ? ", body force" : "", moving ? ", rigid motion" : ""));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -9,8 +9,10 @@ static void MotionAt(const Motion *motion, double t, double shift[3], double tur
     const MotionComponent *c     = &motion->components[m];
     const double           value = c->value * HistoryValue(&c->history, t);
 
-    if (c->component < 3) shift[c->component] += value;
-    else turn[c->component - 3] += value * M_PI / 180;
+    if (c->component < 3)
+      shift[c->component] += value;
+    else
+      turn[c->component - 3] += value * M_PI / 180;
   }
 }
 

@@ -15,7 +15,7 @@ struct _n_Neighbourhoods {
   struct Reach {
     PetscReal rho2;
     PetscInt  point;
-  } *reach;
+  } * reach;
 };
 
 static int SharedEdgeCompare(const void *p, const void *q)
@@ -130,7 +130,8 @@ static PetscReal Rho2(const SurfaceView *view, PetscInt p, const PetscReal x0[3]
   return rho2;
 }
 
-PetscErrorCode NeighbourhoodGather(Neighbourhoods nb, PetscInt start, const PetscReal x0[3], const PetscReal e3[3], const PetscReal metric[9], PetscReal limit, PetscInt max, PetscInt *points, PetscInt *n, PetscInt *found)
+PetscErrorCode NeighbourhoodGather(Neighbourhoods nb, PetscInt start, const PetscReal x0[3], const PetscReal e3[3], const PetscReal metric[9], PetscReal limit,
+                                   PetscInt max, PetscInt *points, PetscInt *n, PetscInt *found)
 {
   const SurfaceView *view = nb->view;
   PetscInt           head = 0, tail = 0, count = 0;
@@ -140,8 +141,8 @@ PetscErrorCode NeighbourhoodGather(Neighbourhoods nb, PetscInt start, const Pets
   nb->queue[tail++]     = start;
   nb->seen_facet[start] = nb->stamp;
   while (head < tail) {
-    const PetscInt f     = nb->queue[head++];
-    const Facet   *facet = &view->facets[f];
+    const PetscInt f      = nb->queue[head++];
+    const Facet   *facet  = &view->facets[f];
     PetscBool      inside = PETSC_FALSE;
 
     for (int a = 0; a < ElementGet(facet->type)->nodes; a++) {

@@ -121,8 +121,8 @@ static PetscErrorCode Positions(ContactSurface surface, Loads loads, const Petsc
 */
 PetscErrorCode SurfaceNodeGeometry(ContactSurface surface, Loads loads, const PetscReal *u, PetscReal t, NodeGeometry *nodes)
 {
-  const int        dim = surface->mesh->dim;
-  const PetscInt   n   = surface->group ? surface->mesh->n_nodes : surface->rigid->n_nodes;
+  const int        dim       = surface->mesh->dim;
+  const PetscInt   n         = surface->group ? surface->mesh->n_nodes : surface->rigid->n_nodes;
   const PetscReal *reference = surface->group ? surface->mesh->coords : surface->rigid->coords;
   const PetscBool  weighted  = (PetscBool)(surface->order > 1);
   PetscReal       *x, *sums, *ring;
@@ -138,7 +138,8 @@ PetscErrorCode SurfaceNodeGeometry(ContactSurface surface, Loads loads, const Pe
     const PetscReal *sum  = &sums[i * SUMS];
     PetscReal        area = sum[SUM_FACES] > 0 ? sum[SUM_AREA] / sum[SUM_FACES] : 0, length = 0;
 
-    nodes[i] = (NodeGeometry){.spacing = dim == 3 ? PetscSqrtReal(area) : area, .weight = weighted ? sum[SUM_TRIBUTARY] / (dim == 3 ? PetscSqr(surface->mean_size) : surface->mean_size) : 1};
+    nodes[i] = (NodeGeometry){.spacing = dim == 3 ? PetscSqrtReal(area) : area,
+                              .weight  = weighted ? sum[SUM_TRIBUTARY] / (dim == 3 ? PetscSqr(surface->mean_size) : surface->mean_size) : 1};
     for (int d = 0; d < 3; d++) length += PetscSqr(sum[SUM_NORMAL + d]);
     length = PetscSqrtReal(length);
     for (int d = 0; d < 3 && length > 0; d++) nodes[i].normal[d] = sum[SUM_NORMAL + d] / length;

@@ -27,7 +27,7 @@ struct _n_Results {
   FILE       *csv; /* rank 0 */
   Fields      fields;
   PetscReal  *values; /* of the probes, at the last accepted step */
-  PetscBool  *met; /* per contact pair: some slave node has met its master */
+  PetscBool  *met;    /* per contact pair: some slave node has met its master */
   StepRecord  last;
   PetscBool   stepped, written; /* there is an accepted step; results.h5 holds it */
   double      started;
@@ -540,7 +540,8 @@ static void ResultsPrintUnmet(Results results)
     const SceneContact *contact = &scene->contacts[p];
 
     if (results->met[p]) continue;
-    fprintf(stderr, "burnish: warning: contact '%s': no node of '%s' met '%s' in this run; if it should have: do the master's normals point to the slave?\n", contact->name, contact->slave, contact->master);
+    fprintf(stderr, "burnish: warning: contact '%s': no node of '%s' met '%s' in this run; if it should have: do the master's normals point to the slave?\n",
+            contact->name, contact->slave, contact->master);
   }
 }
 

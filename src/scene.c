@@ -304,7 +304,11 @@ static PetscErrorCode SceneReadAnalytic(Scene scene, SceneContact *contact)
     contact->analytic.shape = (AnalyticShape)k;
     count++;
   }
-  if (count != 1) SceneRefuse(scene, contact->path, "master", count ? "names several shapes; allowed: a surface, or one of plane, cylinder, sphere" : "is empty; allowed: a surface, or one of plane, cylinder, sphere", NULL);
+  if (count != 1)
+    SceneRefuse(scene, contact->path, "master",
+                count ? "names several shapes; allowed: a surface, or one of plane, cylinder, sphere"
+                      : "is empty; allowed: a surface, or one of plane, cylinder, sphere",
+                NULL);
   snprintf(tool, sizeof tool, "%s.master.%s", contact->path, shapes[contact->analytic.shape]);
   (void)SceneReals(scene, tool, contact->analytic.shape == ANALYTIC_SPHERE ? "centre" : "point", contact->motion.point);
   contact->analytic.axis[scene->geometry == GEOMETRY_AXISYMMETRIC ? 1 : 2] = 1; /* a cylinder in 2D: a circle; axisymmetric: about the axis */
@@ -317,9 +321,11 @@ static PetscErrorCode SceneReadAnalytic(Scene scene, SceneContact *contact)
     contact->analytic.inside = SchemaChoice(SceneDocument(scene), "%s.side", tool);
   }
   for (int d = 0; d < 3; d++) length += contact->analytic.axis[d] * contact->analytic.axis[d];
-  if (contact->analytic.shape != ANALYTIC_SPHERE && length == 0) SceneRefuse(scene, tool, contact->analytic.shape == ANALYTIC_PLANE ? "normal" : "axis", "has no direction; allowed: any vector but zero", NULL);
+  if (contact->analytic.shape != ANALYTIC_SPHERE && length == 0)
+    SceneRefuse(scene, tool, contact->analytic.shape == ANALYTIC_PLANE ? "normal" : "axis", "has no direction; allowed: any vector but zero", NULL);
   if (scene->geometry == GEOMETRY_AXISYMMETRIC && contact->analytic.shape != ANALYTIC_PLANE && contact->motion.point[0] != 0)
-    SceneRefuse(scene, tool, contact->analytic.shape == ANALYTIC_SPHERE ? "centre" : "point", "is off the axis, where it would be no body of revolution of that name; allowed: x = 0", NULL);
+    SceneRefuse(scene, tool, contact->analytic.shape == ANALYTIC_SPHERE ? "centre" : "point",
+                "is off the axis, where it would be no body of revolution of that name; allowed: x = 0", NULL);
   if (scene->geometry == GEOMETRY_AXISYMMETRIC && contact->analytic.shape == ANALYTIC_PLANE && contact->analytic.axis[0] != 0)
     SceneRefuse(scene, tool, "normal", "is oblique to the axis: that is a cone, not a plane; allowed: [0, y]", NULL);
   PetscCall(SceneReadMotion(scene, tool, &contact->motion));
@@ -338,18 +344,18 @@ static PetscErrorCode SceneReadContact(Scene scene, SceneContact *contact)
   SceneRefuseRigid(scene, contact->path, "slave", contact->slave);
   if (contact->master && !strcmp(contact->slave, contact->master))
     SceneRefuse(scene, contact->path, "master", "is the slave too; allowed: another surface (self contact is not available yet)", contact->master);
-  contact->smoother      = (SmootherKind)SchemaChoice(SceneDocument(scene), "%s.smoother", contact->path);
-  contact->formulation   = (ContactFormulation)SchemaChoice(SceneDocument(scene), "%s.formulation", contact->path);
-  contact->degree        = SchemaChoice(SceneDocument(scene), "%s.degree", contact->path) == 0 ? 4 : 2;
-  contact->support       = SceneHas(scene, contact->path, "support") ? SchemaReal(SceneDocument(scene), "%s.support", contact->path) : 0;
-  contact->weight        = SceneHas(scene, contact->path, "weight") ? SchemaReal(SceneDocument(scene), "%s.weight", contact->path) : 0;
-  contact->global_frame  = SchemaChoice(SceneDocument(scene), "%s.frame", contact->path);
+  contact->smoother            = (SmootherKind)SchemaChoice(SceneDocument(scene), "%s.smoother", contact->path);
+  contact->formulation         = (ContactFormulation)SchemaChoice(SceneDocument(scene), "%s.formulation", contact->path);
+  contact->degree              = SchemaChoice(SceneDocument(scene), "%s.degree", contact->path) == 0 ? 4 : 2;
+  contact->support             = SceneHas(scene, contact->path, "support") ? SchemaReal(SceneDocument(scene), "%s.support", contact->path) : 0;
+  contact->weight              = SceneHas(scene, contact->path, "weight") ? SchemaReal(SceneDocument(scene), "%s.weight", contact->path) : 0;
+  contact->global_frame        = SchemaChoice(SceneDocument(scene), "%s.frame", contact->path);
   contact->diffuse_derivatives = SchemaChoice(SceneDocument(scene), "%s.derivatives", contact->path);
   contact->initial_overlap     = (InitialOverlap)SchemaChoice(SceneDocument(scene), "%s.initial_overlap", contact->path);
-  contact->feature_angle = SchemaReal(SceneDocument(scene), "%s.feature_angle", contact->path);
-  contact->penalty_auto  = SchemaChoice(SceneDocument(scene), "%s.penalty.initial", contact->path) == 0;
-  contact->penalty       = contact->penalty_auto ? 0 : SchemaReal(SceneDocument(scene), "%s.penalty.initial", contact->path);
-  contact->penalty_scale = SchemaReal(SceneDocument(scene), "%s.penalty.scale", contact->path);
+  contact->feature_angle       = SchemaReal(SceneDocument(scene), "%s.feature_angle", contact->path);
+  contact->penalty_auto        = SchemaChoice(SceneDocument(scene), "%s.penalty.initial", contact->path) == 0;
+  contact->penalty             = contact->penalty_auto ? 0 : SchemaReal(SceneDocument(scene), "%s.penalty.initial", contact->path);
+  contact->penalty_scale       = SchemaReal(SceneDocument(scene), "%s.penalty.scale", contact->path);
   if (SceneHas(scene, contact->path, "penalty.g_min") && SceneHas(scene, contact->path, "penalty.g_max") &&
       SchemaReal(SceneDocument(scene), "%s.penalty.g_min", contact->path) >= SchemaReal(SceneDocument(scene), "%s.penalty.g_max", contact->path))
     SceneRefuse(scene, contact->path, "penalty.g_min", "is not below g_max; allowed: g_min < g_max", NULL);

@@ -23,27 +23,36 @@
 static const struct {
   int    degree;
   double widen;
-} Ladder[RUNGS] = {{0, 1}, {0, 1.15}, {0, 1.32}, {0, 1.52}, {0, 1.75}, {2, 1}, {2, 1.32}, {1, 1}};
+} Ladder[RUNGS] = {
+  {0, 1   },
+  {0, 1.15},
+  {0, 1.32},
+  {0, 1.52},
+  {0, 1.75},
+  {2, 1   },
+  {2, 1.32},
+  {1, 1   }
+};
 
 struct _n_ContactSearch {
-  Mesh            mesh;
-  Scene           scene;
-  Loads           loads;
-  ContactSurface  slave, master;
-  int             n_images;
+  Mesh                mesh;
+  Scene               scene;
+  Loads               loads;
+  ContactSurface      slave, master;
+  int                 n_images;
   const SurfaceImage *images;
-  const FitSettings *fit;
-  PetscInt        n_slaves;
-  const PetscInt *slaves;
-  PetscReal       reach, margin; /* lengths, without the motion */
+  const FitSettings  *fit;
+  PetscInt            n_slaves;
+  const PetscInt     *slaves;
+  PetscReal           reach, margin; /* lengths, without the motion */
 };
 
 /* A master face on its way to a rank that may need it. Plain bytes: ranks of one run have one architecture. */
 typedef struct {
-  Facet     facet; /* nodes: numbers in id[] order on arrival, later contact nodes */
-  PetscReal size;
-  PetscInt  id[FACE_MAX_NODES], owner[FACE_MAX_NODES], local[FACE_MAX_NODES];
-  PetscReal X[FACE_MAX_NODES * 3];
+  Facet        facet; /* nodes: numbers in id[] order on arrival, later contact nodes */
+  PetscReal    size;
+  PetscInt     id[FACE_MAX_NODES], owner[FACE_MAX_NODES], local[FACE_MAX_NODES];
+  PetscReal    X[FACE_MAX_NODES * 3];
   NodeGeometry geometry[FACE_MAX_NODES]; /* fits only */
 } FaceRecord;
 
@@ -61,7 +70,8 @@ typedef struct {
 } NodeKey;
 
 /* SearchCreate - what stands still for the run: surfaces, images, slave points. Collective. */
-PetscErrorCode SearchCreate(Mesh mesh, Scene scene, Loads loads, ContactSurface slave, ContactSurface master, int n_images, const SurfaceImage *images, const FitSettings *fit, PetscInt n, const PetscInt *slaves, ContactSearch *out)
+PetscErrorCode SearchCreate(Mesh mesh, Scene scene, Loads loads, ContactSurface slave, ContactSurface master, int n_images, const SurfaceImage *images,
+                            const FitSettings *fit, PetscInt n, const PetscInt *slaves, ContactSearch *out)
 {
   ContactSearch   s;
   const PetscReal size = master ? PetscMax(slave->max_size, master->max_size) : slave->max_size;
@@ -169,13 +179,14 @@ static void RecordFromMesh(ContactSearch s, const NodeGeometry *geometry, PetscI
 }
 
 /* Sends this rank's faces of a deformable master to every rank whose slaves they may reach; returns what arrived (itself included). */
-static PetscErrorCode ExchangeFaces(ContactSearch s, const NodeGeometry *geometry, const PetscReal *u, const PetscReal *boxes, PetscReal distance, PetscInt *n_records, FaceRecord **records)
+static PetscErrorCode ExchangeFaces(ContactSearch s, const NodeGeometry *geometry, const PetscReal *u, const PetscReal *boxes, PetscReal distance,
+                                    PetscInt *n_records, FaceRecord **records)
 {
-  Mesh         mesh = s->mesh;
-  const int    dim  = mesh->dim;
-  PetscMPIInt  size, *send_bytes, *send_start, *receive_bytes, *receive_start;
-  PetscInt     total = 0, *count, room;
-  FaceRecord  *send;
+  Mesh        mesh = s->mesh;
+  const int   dim  = mesh->dim;
+  PetscMPIInt size, *send_bytes, *send_start, *receive_bytes, *receive_start;
+  PetscInt    total = 0, *count, room;
+  FaceRecord *send;
 
   PetscFunctionBeginUser;
   PetscCallMPI(MPI_Comm_size(mesh->comm, &size));
@@ -224,7 +235,8 @@ static void RigidPosition(ContactSearch s, PetscInt n, PetscReal t, PetscReal x[
 }
 
 /* The faces of a rigid tool that come near this rank's slaves; every rank has them all. */
-static PetscErrorCode PickRigidFaces(ContactSearch s, const NodeGeometry *geometry, PetscReal t, const PetscReal box[6], PetscReal distance, PetscInt *n_records, FaceRecord **records)
+static PetscErrorCode PickRigidFaces(ContactSearch s, const NodeGeometry *geometry, PetscReal t, const PetscReal box[6], PetscReal distance,
+                                     PetscInt *n_records, FaceRecord **records)
 {
   const int dim = s->mesh->dim;
 
@@ -287,8 +299,8 @@ static int FindNode(PetscInt n, const NodeKey *keys, PetscInt id)
    facets in these numbers. */
 static PetscErrorCode ListsCreateNodes(ContactSearch s, PetscInt n_records, FaceRecord *records, ContactLists lists)
 {
-  Mesh            mesh = s->mesh;
-  const int       dim  = mesh->dim;
+  Mesh            mesh  = s->mesh;
+  const int       dim   = mesh->dim;
   const PetscBool rigid = (PetscBool)(s->master && s->master->rigid);
   PetscInt        n = 0, n_rigid = 0;
   NodeKey        *keys, *tool;
@@ -318,7 +330,8 @@ static PetscErrorCode ListsCreateNodes(ContactSearch s, PetscInt n_records, Face
   lists->n_deformable = n;
   lists->n_nodes      = n + n_rigid;
   for (PetscInt r = 0; r < n_records; r++)
-    for (int a = 0; a < ElementGet(records[r].facet.type)->nodes; a++) records[r].facet.nodes[a] = rigid ? (int)n + FindNode(n_rigid, tool, records[r].id[a]) : FindNode(n, keys, records[r].id[a]);
+    for (int a = 0; a < ElementGet(records[r].facet.type)->nodes; a++)
+      records[r].facet.nodes[a] = rigid ? (int)n + FindNode(n_rigid, tool, records[r].id[a]) : FindNode(n, keys, records[r].id[a]);
 
   PetscCall(PetscMalloc4(lists->n_nodes, &lists->node_id, lists->n_nodes * dim, &lists->X, lists->n_nodes * dim, &lists->u, lists->n_nodes * dim, &lists->dof));
   PetscCall(PetscMalloc1(n, &remote));
@@ -428,7 +441,7 @@ PetscErrorCode ListsUpdate(ContactSearch s, ContactLists lists, const PetscReal 
 /* Centre and unit normal of a candidate from the current positions of its nodes. */
 static void CandidatePlace(int dim, const PetscReal *x, PetscReal size, Candidate *c)
 {
-  const Element *e = ElementGet(c->facet.type);
+  const Element *e     = ElementGet(c->facet.type);
   double         xi[2] = {0, 0}, N[FACE_MAX_NODES], dN[FACE_MAX_NODES * 2], t[2][3] = {{0}}, length = 0;
 
   if (e->corners == 3) xi[0] = xi[1] = 1.0 / 3;
@@ -485,7 +498,8 @@ static void CandidatePositions(ContactLists lists, const Candidate *c, PetscReal
 }
 
 /* All faces and mirror images near this rank's slaves, in an order that does not depend on the ranks. */
-static PetscErrorCode MakeCandidates(ContactSearch s, ContactLists lists, PetscInt n_records, const FaceRecord *records, const PetscReal box[6], PetscReal distance, PetscInt *n, Candidate **candidates)
+static PetscErrorCode MakeCandidates(ContactSearch s, ContactLists lists, PetscInt n_records, const FaceRecord *records, const PetscReal box[6],
+                                     PetscReal distance, PetscInt *n, Candidate **candidates)
 {
   const int dim = lists->dim;
   PetscReal x[FACE_MAX_NODES * 3];
@@ -564,7 +578,7 @@ static PetscReal ListCurvature(const Nearest *look, PetscInt n, const int *found
   PetscReal        kappa = 0;
 
   for (PetscInt i = 0; i < n; i++) {
-    const Candidate *o = &look->candidates[found[i]];
+    const Candidate *o      = &look->candidates[found[i]];
     PetscReal        cosine = 0, distance = 0;
     PetscBool        touch = PETSC_FALSE;
 
@@ -592,7 +606,8 @@ static PetscErrorCode ListAddPoint(ListBuffer *buffer, PetscInt first, PetscInt 
 {
   PetscFunctionBeginUser;
   if (buffer->position[point] >= first) PetscFunctionReturn(PETSC_SUCCESS);
-  if (buffer->n_points == buffer->points_room) PetscCall(PetscRealloc((buffer->points_room = 2 * buffer->points_room + 1024) * sizeof(PetscInt), &buffer->point));
+  if (buffer->n_points == buffer->points_room)
+    PetscCall(PetscRealloc((buffer->points_room = 2 * buffer->points_room + 1024) * sizeof(PetscInt), &buffer->point));
   buffer->position[point]           = buffer->n_points;
   buffer->point[buffer->n_points++] = point;
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -622,7 +637,7 @@ static PetscErrorCode ListAddFacets(const Nearest *look, PetscInt n, const int *
 }
 
 /* The image that a node really has: planes that it lies on do not move it. Image m is the product of the planes whose bits are set in m.
-   *planes: how many planes the node lies on. */
+ *planes: how many planes the node lies on. */
 static int CanonicalImage(ContactSearch s, const PetscReal *X, int image, int *planes)
 {
   *planes = 0;
@@ -641,15 +656,16 @@ static int CanonicalImage(ContactSearch s, const PetscReal *X, int image, int *p
 static PetscErrorCode ListsCreatePoints(ContactSearch s, ContactLists lists, PetscInt n_candidates, Candidate *candidates)
 {
   const int dim = lists->dim;
-  PetscInt  n   = 0, *number, room = s->n_images * lists->n_nodes;
+  PetscInt  n = 0, *number, room = s->n_images * lists->n_nodes;
 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(room, &number));
   for (PetscInt k = 0; k < room; k++) number[k] = -1;
-  PetscCall(PetscMalloc6(room + 1, &lists->point_ptr, room, &lists->point_node, room, &lists->point_S, room * dim, &lists->point_offset, room, &lists->point_weight, room, &lists->point_image));
+  PetscCall(PetscMalloc6(room + 1, &lists->point_ptr, room, &lists->point_node, room, &lists->point_S, room * dim, &lists->point_offset, room,
+                         &lists->point_weight, room, &lists->point_image));
   for (PetscInt c = 0; c < n_candidates; c++) {
     for (int a = 0; a < ElementGet(candidates[c].facet.type)->nodes; a++) {
-      const PetscInt node  = candidates[c].facet.nodes[a];
+      const PetscInt node = candidates[c].facet.nodes[a];
       int            planes;
       const int      image = CanonicalImage(s, &lists->X[node * dim], candidates[c].image, &planes);
       PetscInt      *p     = &number[image * lists->n_nodes + node];
@@ -681,7 +697,8 @@ static PetscErrorCode ListsCreatePoints(ContactSearch s, ContactLists lists, Pet
 }
 
 /* Normal, spacing and weight of the points: those of their nodes, reflected with them. */
-static void PointGeometry(ContactSearch s, ContactLists lists, PetscInt n_records, const FaceRecord *records, NodeGeometry *node_geometry, NodeGeometry *geometry)
+static void PointGeometry(ContactSearch s, ContactLists lists, PetscInt n_records, const FaceRecord *records, NodeGeometry *node_geometry,
+                          NodeGeometry *geometry)
 {
   for (PetscInt r = 0; r < n_records; r++)
     for (int a = 0; a < ElementGet(records[r].facet.type)->nodes; a++) node_geometry[records[r].facet.nodes[a]] = records[r].geometry[a];
@@ -749,7 +766,7 @@ typedef struct {
   Neighbourhoods neighbourhoods;
   PetscReal     *normals, *reference;
   NodeGeometry  *geometry;
-  PetscInt      *points; /* of the slave point at hand, FIT_MAX_POINTS */
+  PetscInt      *points;                             /* of the slave point at hand, FIT_MAX_POINTS */
   double        *x, *multiplier, *taper, *workspace; /* taper: weights of the frame, which fall to nothing where the list ends */
   int           *used;
   PetscReal      plane[3]; /* normal of the one reference plane of a global frame */
@@ -767,7 +784,8 @@ static void ReferenceNormal(ContactLists lists, const Candidate *c, PetscReal no
   for (int d = 0; d < 3; d++) normal[d] = at_rest.normal[d];
 }
 
-static PetscErrorCode FittingCreate(ContactSearch s, ContactLists lists, PetscInt n_records, const FaceRecord *records, PetscInt n, const Candidate *candidates, Fitting *fit)
+static PetscErrorCode FittingCreate(ContactSearch s, ContactLists lists, PetscInt n_records, const FaceRecord *records, PetscInt n, const Candidate *candidates,
+                                    Fitting *fit)
 {
   NodeGeometry *node_geometry;
   Facet        *facets;
@@ -787,7 +805,8 @@ static PetscErrorCode FittingCreate(ContactSearch s, ContactLists lists, PetscIn
   for (PetscInt i = 0; i < lists->n_points * lists->dim; i++) x[i] = lists->point_X[i] + lists->point_u[i];
   fit->view = (SurfaceView){lists->dim, n, lists->n_points, facets, fit->normals, fit->reference, x, fit->geometry, PetscCosReal(s->fit->feature_angle)};
   PetscCall(NeighbourhoodsCreate(&fit->view, &fit->neighbourhoods));
-  PetscCall(PetscMalloc6(FIT_MAX_POINTS, &fit->points, FIT_MAX_POINTS * 3, &fit->x, FIT_MAX_POINTS, &fit->multiplier, FIT_MAX_POINTS, &fit->taper, FitWorkspace(lists->dim, s->fit->degree, FIT_MAX_POINTS), &fit->workspace, FIT_MAX_POINTS, &fit->used));
+  PetscCall(PetscMalloc6(FIT_MAX_POINTS, &fit->points, FIT_MAX_POINTS * 3, &fit->x, FIT_MAX_POINTS, &fit->multiplier, FIT_MAX_POINTS, &fit->taper,
+                         FitWorkspace(lists->dim, s->fit->degree, FIT_MAX_POINTS), &fit->workspace, FIT_MAX_POINTS, &fit->used));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -820,8 +839,8 @@ static void MetricInSpace(int dim, double (*frame)[3], double metric[2][2], Pets
 static void FootSpacing(const Fitting *fit, PetscInt f, const double *xi, double covariance[3][3], double *area)
 {
   const Facet *facet = &fit->view.facets[f];
-  const int    n     = ElementGet(facet->type)->nodes, dim = fit->lists->dim;
-  double       share[FACE_MAX_NODES], total = 0;
+  const int    n = ElementGet(facet->type)->nodes, dim = fit->lists->dim;
+  double       share[FACE_MAX_NODES], total            = 0;
 
   ElementShape(facet->type, xi, share, NULL, NULL);
   for (int a = 0; a < n; a++) total += share[a] = PetscMax(share[a], 0); /* second-order ones are negative in places */
@@ -856,7 +875,7 @@ static PetscErrorCode FitRung(Fitting *fit, const Nearest *look, int rung, FitPr
 {
   const FitSettings *settings = fit->s->fit;
   const PetscReal   *outward  = look->candidates[look->best].normal; /* the foot's own may lie along the surface when the foot is on an edge */
-  const int          dim      = fit->lists->dim, degree = Ladder[rung].degree ? PetscMin(Ladder[rung].degree, settings->degree) : settings->degree;
+  const int          dim = fit->lists->dim, degree = Ladder[rung].degree ? PetscMin(Ladder[rung].degree, settings->degree) : settings->degree;
   double             covariance[3][3], area;
   PetscReal          foot[3] = {0, 0, 0}, space[9];
   PetscInt           n, found, inside;
@@ -871,7 +890,8 @@ static PetscErrorCode FitRung(Fitting *fit, const Nearest *look, int rung, FitPr
   for (int pass = 0; pass < 2; pass++) { /* first seen along the facet's normal, then along the points' own */
     FitMetricFromCovariance(dim, problem->frame, covariance, area, settings->support * Ladder[rung].widen, problem->metric);
     MetricInSpace(dim, problem->frame, problem->metric, space);
-    PetscCall(NeighbourhoodGather(fit->neighbourhoods, look->best, foot, problem->frame[dim - 1], space, SEARCH_FIT_MARGIN, FIT_MAX_POINTS, fit->points, &n, &found));
+    PetscCall(
+      NeighbourhoodGather(fit->neighbourhoods, look->best, foot, problem->frame[dim - 1], space, SEARCH_FIT_MARGIN, FIT_MAX_POINTS, fit->points, &n, &found));
     inside = 0;
     for (PetscInt i = 0; i < n; i++) {
       const PetscReal rho2 = PointRho2(fit, fit->points[i], foot, space);
@@ -923,8 +943,8 @@ static PetscErrorCode FitSlave(Fitting *fit, const Nearest *look, PetscInt q, Pe
   for (; rung < RUNGS && !holds; rung++) PetscCall(FitRung(fit, look, rung, &problem, &result, &holds));
   lists->rung[q] = holds ? rung - 1 : RUNG_FACET;
   if (!holds) PetscFunctionReturn(PETSC_SUCCESS);
-  lists->fit_n[q]  = problem.n;
-  lists->degree[q] = problem.degree;
+  lists->fit_n[q]     = problem.n;
+  lists->degree[q]    = problem.degree;
   lists->pivot[q]     = result.pivot;
   lists->amplified[q] = result.amplified;
   lists->residual[q]  = FitResidual(&problem, &result);
@@ -945,7 +965,8 @@ static int KeepFacing(const Nearest *look, int n, int *found)
 }
 
 /* Looks for the nearest facet of every slave point, lists it with what surrounds it, and fits the surface there. */
-static PetscErrorCode ListsFill(ContactSearch s, ContactLists lists, const PetscReal *normals, PetscInt n_candidates, const Candidate *candidates, const FaceRecord *records, Fitting *fit, PetscReal motion)
+static PetscErrorCode ListsFill(ContactSearch s, ContactLists lists, const PetscReal *normals, PetscInt n_candidates, const Candidate *candidates,
+                                const FaceRecord *records, Fitting *fit, PetscReal motion)
 {
   const int  dim = lists->dim;
   Tree       tree;
@@ -1028,7 +1049,8 @@ PetscErrorCode SearchLists(ContactSearch s, const PetscReal *u, PetscReal t, Pet
   if (!s->master) {
     n_records = 0;
     PetscCall(PetscMalloc1(0, &records));
-  } else if (s->master->rigid) PetscCall(PickRigidFaces(s, geometry, t, box, distance, &n_records, &records));
+  } else if (s->master->rigid)
+    PetscCall(PickRigidFaces(s, geometry, t, box, distance, &n_records, &records));
   else {
     PetscCallMPI(MPI_Allgather(box, 6, MPIU_REAL, boxes, 6, MPIU_REAL, mesh->comm));
     PetscCall(ExchangeFaces(s, geometry, u, boxes, distance, &n_records, &records));

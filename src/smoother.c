@@ -22,9 +22,11 @@ static int SmootherEvaluate_Facet(const SmootherInput *in, SmootherWant want, Sm
 /* The fit where there is one, the facets on the last rung of the ladder or where the fit has no foot. */
 static int SmootherEvaluate_Diffuse(const SmootherInput *in, SmootherWant want, SmootherResult *out)
 {
-  static const FitWant wants[] = {[SMOOTHER_GAP] = FIT_GAP, [SMOOTHER_FIRST_VARIATION] = FIT_FIRST_VARIATION, [SMOOTHER_SECOND_VARIATION] = FIT_SECOND_VARIATION};
-  FitProblem problem = {.dim = in->dim, .degree = in->degree, .exponent = in->exponent, .n = in->n_fit, .x = in->x, .multiplier = in->multiplier, .derivatives = in->derivatives};
-  FitResult  fit     = {.points = out->points, .N = out->N, .M = out->M};
+  static const FitWant wants[] =
+    {[SMOOTHER_GAP] = FIT_GAP, [SMOOTHER_FIRST_VARIATION] = FIT_FIRST_VARIATION, [SMOOTHER_SECOND_VARIATION] = FIT_SECOND_VARIATION};
+  FitProblem problem =
+    {.dim = in->dim, .degree = in->degree, .exponent = in->exponent, .n = in->n_fit, .x = in->x, .multiplier = in->multiplier, .derivatives = in->derivatives};
+  FitResult fit = {.points = out->points, .N = out->N, .M = out->M};
 
   out->facet_served = 0;
   if (in->n_fit) {

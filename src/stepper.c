@@ -168,14 +168,16 @@ PetscErrorCode LoadStepperMonitorSet(LoadStepper stepper, LoadStepperMonitorFn m
 PetscErrorCode LoadStepperView(LoadStepper stepper, PetscViewer viewer)
 {
   PetscFunctionBeginUser;
-  PetscCall(PetscViewerASCIIPrintf(viewer, "LoadStepper: control %s, initial %g, dt_min %g, dt_max %g, growth %g\n", stepper->control->name, (double)stepper->initial, (double)stepper->dt_min, (double)stepper->dt_max, (double)stepper->growth));
+  PetscCall(PetscViewerASCIIPrintf(viewer, "LoadStepper: control %s, initial %g, dt_min %g, dt_max %g, growth %g\n", stepper->control->name,
+                                   (double)stepper->initial, (double)stepper->dt_min, (double)stepper->dt_max, (double)stepper->growth));
   PetscCall(PetscViewerASCIIPrintf(viewer, "  lands on"));
   for (PetscInt i = 0; i < stepper->n_landings; i++) PetscCall(PetscViewerASCIIPrintf(viewer, " %g", (double)stepper->landings[i]));
   PetscCall(PetscViewerASCIIPrintf(viewer, "\n"));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The end of a step of about dt from t: exactly the next landing point where it is near. *clipped: dt was shortened for it, so its size says nothing of what the model can take. */
+/* The end of a step of about dt from t: exactly the next landing point where it is near. *clipped: dt was shortened for it, so its size says nothing of what
+ * the model can take. */
 static PetscReal StepEnd(LoadStepper stepper, PetscReal t, PetscReal dt, PetscBool *clipped)
 {
   PetscReal landing, rest;
@@ -231,7 +233,9 @@ static PetscErrorCode LoadStepperAdvance(LoadStepper stepper, StepRecord *record
     report->steps_failed++;
     stepper->dt = STEPPER_CUT * dt;
     if (stepper->dt < stepper->dt_min || (solve.result == SOLVE_LINEAR && solve.newton == 1)) { /* a tangent singular at the start is so for any dt */
-      PetscCall(PetscSNPrintf(report->message, sizeof(report->message), "no equilibrium from t = %.6g to %.6g: %s; %s; tried %" PetscInt_FMT " steps, dt from %.3g down to %.3g (dt_min %.3g)", (double)t, (double)end, SolveResults[solve.result], solve.detail, record->attempts, (double)first, (double)dt, (double)stepper->dt_min));
+      PetscCall(PetscSNPrintf(report->message, sizeof(report->message),
+                              "no equilibrium from t = %.6g to %.6g: %s; %s; tried %" PetscInt_FMT " steps, dt from %.3g down to %.3g (dt_min %.3g)", (double)t,
+                              (double)end, SolveResults[solve.result], solve.detail, record->attempts, (double)first, (double)dt, (double)stepper->dt_min));
       PetscFunctionReturn(PETSC_SUCCESS);
     }
   }
@@ -246,7 +250,7 @@ PetscErrorCode LoadStepperSolve(LoadStepper stepper, StepperReport *report)
   StepRecord record;
 
   PetscFunctionBeginUser;
-  *report               = (StepperReport){.t = stepper->model->t};
+  *report = (StepperReport){.t = stepper->model->t};
   if (ModelIsLinear(stepper->model)) stepper->initial = stepper->dt_max = 1; /* the answer at any t is one solve away */
   stepper->dt           = stepper->initial;
   stepper->next_landing = 0;

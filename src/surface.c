@@ -15,16 +15,14 @@ static void FaceCoordinates(ContactSurface surface, const Facet *face, const Pet
   const PetscReal *coords = surface->rigid ? surface->rigid->coords : mesh->coords;
 
   for (int a = 0; a < ElementGet(face->type)->nodes; a++) {
-    for (int d = 0; d < mesh->dim; d++) {
-      X[a * mesh->dim + d] = coords[face->nodes[a] * mesh->dim + d] + (u ? u[face->nodes[a] * mesh->dim + d] : 0);
-    }
+    for (int d = 0; d < mesh->dim; d++) { X[a * mesh->dim + d] = coords[face->nodes[a] * mesh->dim + d] + (u ? u[face->nodes[a] * mesh->dim + d] : 0); }
   }
 }
 
 /* Plain area (length in 2D), also in axisymmetric scenes: sizes are lengths in the meridian. */
 static PetscReal FaceArea(ContactSurface surface, const Facet *face, const double *X)
 {
-  const int dim = surface->mesh->dim;
+  const int dim                  = surface->mesh->dim;
   double    area[FACE_MAX_NODES] = {0}, sum = 0;
 
   FaceAreaKernel(face->type, dim, dim == 3 ? GEOMETRY_SOLID : GEOMETRY_PLANE_STRAIN, X, area, NULL);
@@ -82,7 +80,7 @@ static PetscReal FaceStiffness(ContactSurface surface, Elasticity elasticity, Pe
 
 static PetscErrorCode SurfaceMeasure(ContactSurface surface, Elasticity elasticity)
 {
-  Mesh      mesh = surface->mesh;
+  Mesh      mesh   = surface->mesh;
   PetscReal sum[4] = {0, 0, 0, 0}, most = 0; /* area, faces, size, stiffness * area */
   double    X[FACE_MAX_NODES * 3];
 
@@ -135,7 +133,9 @@ PetscErrorCode SurfaceCreate(Mesh mesh, Scene scene, Elasticity elasticity, cons
     PetscCall(SurfaceFacesFromGroup(surface));
     PetscCallMPI(MPI_Allreduce(&surface->n_faces, &faces, 1, MPIU_INT, MPI_SUM, mesh->comm));
   }
-  if (!faces) PetscCall(RefuseInput(mesh->comm, "%s: the contact surface '%s' has no faces; allowed: a physical surface with at least one face", SceneWhere(scene, path, key), name));
+  if (!faces)
+    PetscCall(RefuseInput(mesh->comm, "%s: the contact surface '%s' has no faces; allowed: a physical surface with at least one face",
+                          SceneWhere(scene, path, key), name));
   PetscCall(SurfaceMeasure(surface, elasticity));
   *out = surface;
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -239,7 +239,12 @@ static PetscErrorCode DropPartitionBorders(MPI_Comm comm, PetscInt *n, FaceEdge 
     for (int k = 0; k < 2; k++) send[2 * i + k] = edges[i].id[k];
   PetscCall(PetscMalloc2(total, &all, total / 2, &every));
   PetscCallMPI(MPI_Allgatherv(send, mine, MPIU_INT, all, counts, starts, MPIU_INT, comm));
-  for (PetscInt i = 0; i < total / 2; i++) every[i] = (FaceEdge){{all[2 * i], all[2 * i + 1]}, 0, 0};
+  for (PetscInt i = 0; i < total / 2; i++)
+    every[i] = (FaceEdge){
+      {all[2 * i], all[2 * i + 1]},
+      0,
+      0
+    };
   total = KeepSingleEdges(total / 2, every);
   for (PetscInt i = 0; i < *n; i++)
     if (bsearch(&edges[i], every, total, sizeof(*every), FaceEdgeCompare)) edges[kept++] = edges[i];
@@ -273,7 +278,11 @@ PetscErrorCode SurfaceFindFreeEdges(ContactSurface surface, int n_images, const 
       FaceEdgeNodes(face, e, corners);
       a          = surface->rigid ? face->nodes[corners[0]] : mesh->node_id[face->nodes[corners[0]]];
       b          = surface->rigid ? face->nodes[corners[1]] : mesh->node_id[face->nodes[corners[1]]];
-      edges[n++] = (FaceEdge){{PetscMin(a, b), PetscMax(a, b)}, f, e};
+      edges[n++] = (FaceEdge){
+        {PetscMin(a, b), PetscMax(a, b)},
+        f,
+        e
+      };
     }
   }
   n = KeepSingleEdges(n, edges);
@@ -300,7 +309,7 @@ PetscErrorCode SurfaceNodeAreas(ContactSurface surface, Geometry geometry, const
   PetscCall(PetscArrayzero(area, mesh->n_nodes));
   if (normal) PetscCall(PetscArrayzero(normal, 3 * mesh->n_nodes));
   for (PetscInt f = 0; f < surface->n_faces; f++) {
-    const Facet *face = &surface->faces[f];
+    const Facet *face              = &surface->faces[f];
     double       a[FACE_MAX_NODES] = {0}, n[FACE_MAX_NODES * 3] = {0};
 
     FaceCoordinates(surface, face, u, X);
@@ -400,10 +409,10 @@ static void ImagesAddPlane(int axis, PetscReal position, int *n, SurfaceImage *i
   for (int i = 0; i < *n; i++) {
     SurfaceImage image = images[i];
 
-    image.sign[axis]   = -1;
-    image.shift[axis]  = 2 * position;
-    image.reverses     = (PetscBool)!image.reverses;
-    images[*n + i]     = image;
+    image.sign[axis]  = -1;
+    image.shift[axis] = 2 * position;
+    image.reverses    = (PetscBool)!image.reverses;
+    images[*n + i]    = image;
   }
   *n *= 2;
 }
@@ -418,7 +427,11 @@ PetscErrorCode SurfaceImages(Mesh mesh, Scene scene, const SceneContact *contact
 
   PetscFunctionBeginUser;
   *n_images = 1;
-  images[0] = (SurfaceImage){{1, 1, 1}, {0, 0, 0}, PETSC_FALSE};
+  images[0] = (SurfaceImage){
+    {1, 1, 1},
+    {0, 0, 0},
+    PETSC_FALSE
+  };
   if (scene->geometry == GEOMETRY_AXISYMMETRIC) {
     ImagesAddPlane(0, -mesh->centre[0], n_images, images);
     taken[0] = 1;
@@ -431,11 +444,17 @@ PetscErrorCode SurfaceImages(Mesh mesh, Scene scene, const SceneContact *contact
 
     PetscCall(MeshGetGroup(mesh, scene, contact->path, "symmetry", name, mesh->dim - 1, &group));
     PetscCall(GroupPlane(mesh, group, &axis, &position));
-    if (axis < 0) PetscCall(RefuseInput(mesh->comm, "%s: '%s' is not a plane normal to a coordinate axis; allowed: planar surfaces x, y or z = constant", SceneWhere(scene, contact->path, "symmetry"), name));
+    if (axis < 0)
+      PetscCall(RefuseInput(mesh->comm, "%s: '%s' is not a plane normal to a coordinate axis; allowed: planar surfaces x, y or z = constant",
+                            SceneWhere(scene, contact->path, "symmetry"), name));
     if (!SupportHolds(scene, name, axis)) {
-      PetscCall(RefuseInput(mesh->comm, "%s: no support holds u%c on '%s', so it is no plane of symmetry; allowed: surfaces whose normal displacement a support fixes", SceneWhere(scene, contact->path, "symmetry"), "xyz"[axis], name));
+      PetscCall(RefuseInput(mesh->comm,
+                            "%s: no support holds u%c on '%s', so it is no plane of symmetry; allowed: surfaces whose normal displacement a support fixes",
+                            SceneWhere(scene, contact->path, "symmetry"), "xyz"[axis], name));
     }
-    if (taken[axis]) PetscCall(RefuseInput(mesh->comm, "%s: '%s' is a second plane normal to %c; allowed: one plane for each axis", SceneWhere(scene, contact->path, "symmetry"), name, "xyz"[axis]));
+    if (taken[axis])
+      PetscCall(RefuseInput(mesh->comm, "%s: '%s' is a second plane normal to %c; allowed: one plane for each axis",
+                            SceneWhere(scene, contact->path, "symmetry"), name, "xyz"[axis]));
     taken[axis] = 1;
     ImagesAddPlane(axis, position, n_images, images);
   }
@@ -448,7 +467,7 @@ Facet SurfaceImageFacet(const Facet *facet, const SurfaceImage *image)
 {
   const Element *e     = ElementGet(facet->type);
   const int      edges = FaceEdges(facet), middles = e->dim == 1 ? 1 : e->edges;
-  Facet          out   = *facet;
+  Facet          out = *facet;
 
   if (!image->reverses) return out;
   for (int c = 0; c < e->corners; c++) out.nodes[c] = facet->nodes[e->dim == 1 ? 1 - c : (e->corners - c) % e->corners];
@@ -484,14 +503,14 @@ static void DirectionMiddle(int index, PetscReal v[3])
    exchange a fixed, small table. *facing: the same on all ranks. */
 PetscErrorCode SurfaceFaces(ContactSurface master, PetscInt n, const PetscInt nodes[], const PetscReal normals[], PetscBool *facing)
 {
-  const int dim                   = master->mesh->dim;
+  const int dim                       = master->mesh->dim;
   int       there[SURFACE_DIRECTIONS] = {0}, found = 0;
   double    X[FACE_MAX_NODES * 3];
 
   PetscFunctionBeginUser;
   for (PetscInt f = 0; f < master->n_faces; f++) {
     double    area[FACE_MAX_NODES] = {0}, normal[FACE_MAX_NODES * 3] = {0};
-    PetscReal sum[3]               = {0, 0, 0};
+    PetscReal sum[3] = {0, 0, 0};
 
     FaceCoordinates(master, &master->faces[f], NULL, X);
     FaceAreaKernel(master->faces[f].type, dim, dim == 3 ? GEOMETRY_SOLID : GEOMETRY_PLANE_STRAIN, X, area, normal);
@@ -506,7 +525,7 @@ PetscErrorCode SurfaceFaces(ContactSurface master, PetscInt n, const PetscInt no
     if (!there[k]) continue;
     DirectionMiddle(k, m);
     for (PetscInt i = 0; i < n && !found; i++) {
-      const PetscReal *v = &normals[3 * nodes[i]];
+      const PetscReal *v       = &normals[3 * nodes[i]];
       PetscReal        product = 0, lengths[2] = {0, 0};
 
       for (int d = 0; d < 3; d++) {
