@@ -13,6 +13,8 @@ struct _n_BlockMatrix {
   PetscReal *value;
   Mat        matrix;
   PetscInt   n_pattern, *pattern; /* of the matrix: size and dofs of block after block */
+  PetscInt   n_sums, *place;      /* blocks overlap: every pair of dofs once, and where each value of the blocks goes, or -1 */
+  PetscReal *sum;
 };
 
 /* BlockMatrixCreate - an empty one. Collective. */
@@ -33,6 +35,8 @@ PetscErrorCode BlockMatrixDestroy(BlockMatrix *blocks)
   PetscCall(PetscFree((*blocks)->entry));
   PetscCall(PetscFree((*blocks)->value));
   PetscCall(PetscFree((*blocks)->pattern));
+  PetscCall(PetscFree((*blocks)->place));
+  PetscCall(PetscFree((*blocks)->sum));
   PetscCall(MatDestroy(&(*blocks)->matrix));
   PetscCall(PetscFree(*blocks));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -82,29 +86,102 @@ static PetscErrorCode BlocksPattern(BlockMatrix blocks, const PetscInt *const do
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode CreateMatrix(BlockMatrix blocks, PetscInt size)
+/* One row of a block in the pattern */
+typedef struct {
+  PetscInt row, at, i; /* its global dof; the block's place in the pattern; which row of the block */
+  PetscInt value;      /* the row's first value */
+} BlockRow;
+
+static int BlockRowCompare(const void *a, const void *b)
+{
+  const BlockRow *p = a, *q = b;
+
+  if (p->row != q->row) return p->row < q->row ? -1 : 1;
+  return p->value < q->value ? -1 : p->value > q->value;
+}
+
+/* The rows of all blocks that have a dof, those of one dof together. */
+static PetscErrorCode ListRows(BlockMatrix blocks, PetscInt *n, BlockRow **rows)
 {
   const PetscInt *pattern = blocks->pattern;
-  PetscInt       *rows, *columns;
-  PetscCount      n = 0;
+  PetscInt        value   = 0;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(blocks->n_pattern, rows));
+  *n = 0;
+  for (PetscInt at = 0; at < blocks->n_pattern; at += 1 + pattern[at]) {
+    for (PetscInt i = 0; i < pattern[at]; i++, value += pattern[at])
+      if (pattern[at + 1 + i] >= 0) (*rows)[(*n)++] = (BlockRow){pattern[at + 1 + i], at, i, value};
+  }
+  if (*n) qsort(*rows, *n, sizeof(BlockRow), BlockRowCompare);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Numbers the dofs that occur in the pattern: dofs[n] ascending; number[k] of every place k of the pattern that holds one. */
+static PetscErrorCode NumberDofs(BlockMatrix blocks, PetscInt n_rows, const BlockRow *rows, PetscInt *n, PetscInt *dofs, PetscInt *number)
+{
+  PetscFunctionBeginUser;
+  *n = 0;
+  for (PetscInt k = 0; k < blocks->n_pattern; k++) number[k] = -1;
+  for (PetscInt r = 0; r < n_rows; r++) {
+    if (!r || rows[r].row != rows[r - 1].row) dofs[(*n)++] = rows[r].row;
+    number[rows[r].at + 1 + rows[r].i] = *n - 1;
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Gives every pair of dofs that some block couples one place, row by row, and every value of the blocks the place it is summed in. Blocks overlap
+   several times over, so this spares the parallel matrix most of the entries. */
+static PetscErrorCode NumberSums(BlockMatrix blocks, PetscInt *n_pairs, PetscInt **rows_out, PetscInt **columns_out)
+{
+  const PetscInt *pattern = blocks->pattern;
+  PetscInt        n_rows = 0, n_dofs, n = 0, first = 0, *dofs, *number, *seen, *rows, *columns;
+  BlockRow       *row;
+
+  PetscFunctionBeginUser;
+  PetscCall(ListRows(blocks, &n_rows, &row));
+  PetscCall(PetscMalloc3(n_rows, &dofs, blocks->n_pattern, &number, n_rows, &seen));
+  PetscCall(NumberDofs(blocks, n_rows, row, &n_dofs, dofs, number));
+  PetscCall(PetscMalloc2(blocks->n_values, &rows, blocks->n_values, &columns));
+  PetscCall(PetscFree(blocks->place));
+  PetscCall(PetscMalloc1(blocks->n_values, &blocks->place));
+  for (PetscInt k = 0; k < blocks->n_values; k++) blocks->place[k] = -1;
+  for (PetscInt k = 0; k < n_dofs; k++) seen[k] = -1;
+  for (PetscInt r = 0; r < n_rows; r++) {
+    if (r && row[r].row != row[r - 1].row) first = n; /* places before are other rows' */
+    for (PetscInt j = 0; j < pattern[row[r].at]; j++) {
+      const PetscInt column = number[row[r].at + 1 + j];
+
+      if (column < 0) continue;
+      if (seen[column] < first) {
+        seen[column] = n;
+        rows[n]      = row[r].row;
+        columns[n++] = dofs[column];
+      }
+      blocks->place[row[r].value + j] = seen[column];
+    }
+  }
+  *n_pairs     = n;
+  *rows_out    = rows;
+  *columns_out = columns;
+  PetscCall(PetscFree3(dofs, number, seen));
+  PetscCall(PetscFree(row));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode CreateMatrix(BlockMatrix blocks, PetscInt size)
+{
+  PetscInt *rows, *columns;
 
   PetscFunctionBeginUser;
   PetscCall(MatDestroy(&blocks->matrix));
   PetscCall(MatCreate(blocks->comm, &blocks->matrix));
   PetscCall(MatSetSizes(blocks->matrix, size, size, PETSC_DETERMINE, PETSC_DETERMINE));
   PetscCall(MatSetType(blocks->matrix, MATAIJ));
-  PetscCall(PetscMalloc2(blocks->n_values, &rows, blocks->n_values, &columns));
-  for (PetscInt at = 0; at < blocks->n_pattern; at += 1 + pattern[at]) {
-    const PetscInt m = pattern[at], *dof = &pattern[at + 1];
-
-    for (PetscInt i = 0; i < m; i++) {
-      for (PetscInt j = 0; j < m; j++, n++) {
-        rows[n]    = dof[i] < 0 || dof[j] < 0 ? -1 : dof[i]; /* negative entries are left out of the matrix */
-        columns[n] = dof[i] < 0 || dof[j] < 0 ? -1 : dof[j];
-      }
-    }
-  }
-  PetscCall(MatSetPreallocationCOO(blocks->matrix, n, rows, columns));
+  PetscCall(NumberSums(blocks, &blocks->n_sums, &rows, &columns));
+  PetscCall(PetscFree(blocks->sum));
+  PetscCall(PetscMalloc1(blocks->n_sums, &blocks->sum));
+  PetscCall(MatSetPreallocationCOO(blocks->matrix, blocks->n_sums, rows, columns));
   PetscCall(PetscFree2(rows, columns));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -129,7 +206,10 @@ PetscErrorCode BlockMatrixAssemble(BlockMatrix blocks, PetscInt size, const Pets
   blocks->pattern   = pattern;
   blocks->n_pattern = n;
   if (!all) PetscCall(CreateMatrix(blocks, size));
-  PetscCall(MatSetValuesCOO(blocks->matrix, blocks->value, INSERT_VALUES));
+  PetscCall(PetscArrayzero(blocks->sum, blocks->n_sums));
+  for (PetscInt k = 0; k < blocks->n_values; k++)
+    if (blocks->place[k] >= 0) blocks->sum[blocks->place[k]] += blocks->value[k];
+  PetscCall(MatSetValuesCOO(blocks->matrix, blocks->sum, INSERT_VALUES));
   *matrix  = blocks->matrix;
   *changed = all ? PETSC_FALSE : PETSC_TRUE;
   PetscFunctionReturn(PETSC_SUCCESS);
