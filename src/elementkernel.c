@@ -1,5 +1,5 @@
 /* Batched element kernels. One always-inline function, instantiated with constant sizes for each element, so that its inner loops unroll;
-   every arithmetic operation acts on MATERIAL_LANES elements, all of a batch or part of it.
+   every arithmetic operation acts on LANES elements, all of a batch or part of it.
 
    The tangent of a pair of nodes is g_a . A . g_b with the law's 9 x 9 tangent A (symmetric) and reference gradients g: as cheap as the
    closed forms of special laws, and the same for all. T = A . g_b is formed once per node b and point. */
@@ -10,12 +10,11 @@
    loaded and stored once per chunk only. */
 enum { CHUNK = 9, TENSOR_HOOP = 8, MAX_ROWS = 9 };
 
-_Static_assert(KERNEL_LANES % MATERIAL_LANES == 0, "a batch consists of whole vectors");
+_Static_assert(KERNEL_LANES % LANES == 0, "a batch consists of whole vectors");
 
 /* A vector of the batch's arrays of doubles, which need not be aligned */
-typedef double LaneInArray __attribute__((vector_size(MATERIAL_LANES * sizeof(double)), aligned(sizeof(double)), may_alias));
-#define LANE(array, index)       (*(LaneInArray *)((array) + (index)*KERNEL_LANES))
-#define CONST_LANE(array, index) (*(const LaneInArray *)((array) + (index)*KERNEL_LANES))
+#define LANE(array, index)       (*(LanesInArray *)((array) + (index)*KERNEL_LANES))
+#define CONST_LANE(array, index) (*(const LanesInArray *)((array) + (index)*KERNEL_LANES))
 
 /* Row r of the gradient operator as a component of a 3 x 3 tensor: 2D has 4 in-plane rows and, axisymmetric, the hoop */
 #define TENSOR_ROW(dim, r) ((dim) == 3 ? (r) : (r) == 4 ? TENSOR_HOOP : 3 * ((r) / 2) + (r) % 2)
@@ -24,16 +23,16 @@ typedef double LaneInArray __attribute__((vector_size(MATERIAL_LANES * sizeof(do
 static const double two_pi = 6.28318530717958647693;
 
 typedef struct {
-  Lane g[ELEMENT_MAX_NODES][CHUNK][3];  /* reference gradient; axisymmetric: [2] is N_a / R */
-  Lane A[CHUNK][MATERIAL_TANGENT_SIZE]; /* times weight and volume */
+  Lanes g[ELEMENT_MAX_NODES][CHUNK][3];  /* reference gradient; axisymmetric: [2] is N_a / R */
+  Lanes A[CHUNK][MATERIAL_TANGENT_SIZE]; /* times weight and volume */
 } ChunkPoints;
 
 #define KERNEL_INLINE static inline __attribute__((always_inline))
 
 /* Reference gradients of all nodes at point p as number q of the chunk; returns the reference volume of the point */
-KERNEL_INLINE void PointGradients(const Element *e, const int n, const int dim, const int hoop, int p, int q, const double *X, ChunkPoints *c, Lane *volume)
+KERNEL_INLINE void PointGradients(const Element *e, const int n, const int dim, const int hoop, int p, int q, const double *X, ChunkPoints *c, Lanes *volume)
 {
-  Lane G[3][3] = {{{0}}}, B[3][3], inverse;
+  Lanes G[3][3] = {{{0}}}, B[3][3], inverse;
 
   for (int a = 0; a < n; a++) {
     for (int k = 0; k < dim; k++) {
@@ -66,7 +65,7 @@ KERNEL_INLINE void PointGradients(const Element *e, const int n, const int dim, 
   }
   *volume *= e->weight[p];
   if (hoop) {
-    Lane radius = {0};
+    Lanes radius = {0};
 
     for (int a = 0; a < n; a++) radius += e->N[p][a] * CONST_LANE(X, a * dim);
     *volume *= two_pi * radius;
@@ -74,9 +73,9 @@ KERNEL_INLINE void PointGradients(const Element *e, const int n, const int dim, 
   }
 }
 
-KERNEL_INLINE void PointDisplacementGradient(const int n, const int dim, const int hoop, int q, const double *u, const ChunkPoints *c, Lane H[9])
+KERNEL_INLINE void PointDisplacementGradient(const int n, const int dim, const int hoop, int q, const double *u, const ChunkPoints *c, Lanes H[9])
 {
-  for (int r = 0; r < 9; r++) H[r] = (Lane){0};
+  for (int r = 0; r < 9; r++) H[r] = (Lanes){0};
   for (int a = 0; a < n; a++) {
     for (int i = 0; i < dim; i++) {
       for (int m = 0; m < dim; m++) H[3 * i + m] += CONST_LANE(u, a * dim + i) * c->g[a][q][m];
@@ -85,11 +84,11 @@ KERNEL_INLINE void PointDisplacementGradient(const int n, const int dim, const i
   }
 }
 
-KERNEL_INLINE void AddForce(const int n, const int dim, const int hoop, int q, const ChunkPoints *c, const Lane P[9], double *f)
+KERNEL_INLINE void AddForce(const int n, const int dim, const int hoop, int q, const ChunkPoints *c, const Lanes P[9], double *f)
 {
   for (int a = 0; a < n; a++) {
     for (int i = 0; i < dim; i++) {
-      Lane force = P[3 * i] * c->g[a][q][0];
+      Lanes force = P[3 * i] * c->g[a][q][0];
 
       for (int m = 1; m < dim; m++) force += P[3 * i + m] * c->g[a][q][m];
       if (hoop && i == 0) force += P[TENSOR_HOOP] * c->g[a][q][2];
@@ -104,7 +103,7 @@ KERNEL_INLINE void AddTangent(const int n, const int dim, const int hoop, const 
   const int rows = dim * dim + hoop;
 
   for (int b = 0; b < n; b++) {
-    Lane T[CHUNK][MAX_ROWS][3];
+    Lanes T[CHUNK][MAX_ROWS][3];
 
     for (int q = 0; q < count; q++) {
 #pragma GCC unroll 9
@@ -118,7 +117,7 @@ KERNEL_INLINE void AddTangent(const int n, const int dim, const int hoop, const 
       }
     }
     for (int a = 0; a <= b; a++) {
-      Lane block[3][3] = {{{0}}};
+      Lanes block[3][3] = {{{0}}};
 
       for (int q = 0; q < count; q++) {
 #pragma GCC unroll 3
@@ -144,26 +143,26 @@ KERNEL_INLINE void AddTangent(const int n, const int dim, const int hoop, const 
   }
 }
 
-/* Everything of the first MATERIAL_LANES elements that the arrays show; n, points, dim and hoop are constants of the instance */
+/* Everything of the first LANES elements that the arrays show; n, points, dim and hoop are constants of the instance */
 KERNEL_INLINE void Batch(const Element *e, const int n, const int points, const int dim, const int hoop, MaterialLawFn *law, int finite, const double *X,
-                         const double *u, const Lane *lambda, const Lane *mu, double *W, double *f, double *K, double *J)
+                         const double *u, const Lanes *lambda, const Lanes *mu, double *W, double *f, double *K, double *J)
 {
   ChunkPoints c;
-  const Lane  zero = {0};
+  const Lanes zero = {0};
 
   if (W) LANE(W, 0) = zero;
   for (int i = 0; i < n * dim && f; i++) LANE(f, i) = zero;
-  for (int lane = 0; lane < MATERIAL_LANES; lane++) J[lane] = finite ? __DBL_MAX__ : 1;
+  for (int lane = 0; lane < LANES; lane++) J[lane] = finite ? __DBL_MAX__ : 1;
   for (int first = 0; first < points; first += CHUNK) {
     const int count = points - first < CHUNK ? points - first : CHUNK;
 
     for (int q = 0; q < count; q++) {
-      Lane H[9], P[9], energy, volume, dilatation;
+      Lanes H[9], P[9], energy, volume, dilatation;
 
       PointGradients(e, n, dim, hoop, first + q, q, X, &c, &volume);
       PointDisplacementGradient(n, dim, hoop, q, u, &c, H);
       MaterialDilatation(H, &dilatation);
-      for (int lane = 0; lane < MATERIAL_LANES && finite; lane++) {
+      for (int lane = 0; lane < LANES && finite; lane++) {
         if (!(1 + dilatation[lane] >= J[lane])) J[lane] = 1 + dilatation[lane]; /* written so that NaN gets through */
       }
       law(H, &dilatation, lambda, mu, W ? &energy : NULL, P, K ? c.A[q] : NULL);
@@ -176,13 +175,14 @@ KERNEL_INLINE void Batch(const Element *e, const int n, const int points, const 
   }
 }
 
-typedef void BatchFn(const Element *, MaterialLawFn *, int, const double *, const double *, const Lane *, const Lane *, double *, double *, double *, double *);
+typedef void BatchFn(const Element *, MaterialLawFn *, int, const double *, const double *, const Lanes *, const Lanes *, double *, double *, double *,
+                     double *);
 
-#define BATCH_INSTANCE(name, nodes, points, dim, hoop)                                                                                                \
-  static void name(const Element *e, MaterialLawFn *law, int finite, const double *X, const double *u, const Lane *lambda, const Lane *mu, double *W, \
-                   double *f, double *K, double *J)                                                                                                   \
-  {                                                                                                                                                   \
-    Batch(e, nodes, points, dim, hoop, law, finite, X, u, lambda, mu, W, f, K, J);                                                                    \
+#define BATCH_INSTANCE(name, nodes, points, dim, hoop)                                                                                                  \
+  static void name(const Element *e, MaterialLawFn *law, int finite, const double *X, const double *u, const Lanes *lambda, const Lanes *mu, double *W, \
+                   double *f, double *K, double *J)                                                                                                     \
+  {                                                                                                                                                     \
+    Batch(e, nodes, points, dim, hoop, law, finite, X, u, lambda, mu, W, f, K, J);                                                                      \
   }
 
 BATCH_INSTANCE(BatchTri3, 3, 1, 2, 0)
@@ -239,10 +239,10 @@ void ElementKernel(const KernelCase *kernel, const double *X, const double *u, c
   MaterialLawFn *law    = MaterialGetLaw(kernel->law, finite);
   BatchFn       *batch  = batch_functions[kernel->type][kernel->geometry == GEOMETRY_AXISYMMETRIC];
 
-  for (int part = 0; part < KERNEL_LANES; part += MATERIAL_LANES) {
-    Lane lambda, mu;
+  for (int part = 0; part < KERNEL_LANES; part += LANES) {
+    Lanes lambda, mu;
 
-    for (int lane = 0; lane < MATERIAL_LANES; lane++) {
+    for (int lane = 0; lane < LANES; lane++) {
       double l, m;
 
       MaterialLame(E[part + lane], nu[part + lane], &l, &m);

@@ -1,4 +1,4 @@
-/* Elastic laws in terms of the displacement gradient H = F - 1, MATERIAL_LANES points at a time. */
+/* Elastic laws in terms of the displacement gradient H = F - 1, LANES points at a time. */
 #include "material.h"
 #include <math.h>
 #include <stddef.h>
@@ -8,9 +8,9 @@
 static const double jacobian_floor = 1e-8;
 
 /* Hooke: P = lambda tr(e) 1 + 2 mu e with e = sym H */
-static void LawLinear(const Lane H[9], const Lane *dilatation, const Lane *lambda, const Lane *mu, Lane *W, Lane P[9], Lane A[MATERIAL_TANGENT_SIZE])
+static void LawLinear(const Lanes H[9], const Lanes *dilatation, const Lanes *lambda, const Lanes *mu, Lanes *W, Lanes P[9], Lanes A[MATERIAL_TANGENT_SIZE])
 {
-  const Lane trace = H[0] + H[4] + H[8];
+  const Lanes trace = H[0] + H[4] + H[8];
 
   (void)dilatation;
   for (int i = 0; i < 3; i++) {
@@ -32,9 +32,9 @@ static void LawLinear(const Lane H[9], const Lane *dilatation, const Lane *lambd
 }
 
 /* St. Venant-Kirchhoff: S = lambda tr(E) 1 + 2 mu E with Green's strain E, P = F S (Bonet and Wood, section 6.4) */
-static void LawSvk(const Lane H[9], const Lane *dilatation, const Lane *lambda, const Lane *mu, Lane *W, Lane P[9], Lane A[MATERIAL_TANGENT_SIZE])
+static void LawSvk(const Lanes H[9], const Lanes *dilatation, const Lanes *lambda, const Lanes *mu, Lanes *W, Lanes P[9], Lanes A[MATERIAL_TANGENT_SIZE])
 {
-  Lane F[9], E[9], S[9], trace;
+  Lanes F[9], E[9], S[9], trace;
 
   (void)dilatation;
   for (int r = 0; r < 9; r++) F[r] = H[r] + (double)(r % 4 == 0);
@@ -52,13 +52,13 @@ static void LawSvk(const Lane H[9], const Lane *dilatation, const Lane *lambda, 
     *W *= 0.5;
   }
   if (A) { /* A_iIjJ = delta_ij S_IJ + lambda F_iI F_jJ + mu (F_iJ F_jI + b_ij delta_IJ), b = F F^T */
-    Lane b[9];
+    Lanes b[9];
 
     for (int i = 0; i < 3; i++) {
       for (int j = i; j < 3; j++) b[3 * i + j] = b[3 * j + i] = *mu * (F[3 * i] * F[3 * j] + F[3 * i + 1] * F[3 * j + 1] + F[3 * i + 2] * F[3 * j + 2]);
     }
     for (int r = 0, k = 0; r < 9; r++) {
-      const Lane lambda_F = *lambda * F[r];
+      const Lanes lambda_F = *lambda * F[r];
 
       for (int s = r; s < 9; s++, k++) {
         const int i = r / 3, I = r % 3, j = s / 3, J = s % 3;
@@ -72,12 +72,12 @@ static void LawSvk(const Lane H[9], const Lane *dilatation, const Lane *lambda, 
 }
 
 /* Compressible neo-Hooke: W = mu/2 (I1 - 3) - mu ln J + lambda/2 (ln J)^2 (Bonet and Wood, section 6.4.3) */
-static void LawNeoHookean(const Lane H[9], const Lane *dilatation, const Lane *lambda, const Lane *mu, Lane *W, Lane P[9], Lane A[MATERIAL_TANGENT_SIZE])
+static void LawNeoHookean(const Lanes H[9], const Lanes *dilatation, const Lanes *lambda, const Lanes *mu, Lanes *W, Lanes P[9], Lanes A[MATERIAL_TANGENT_SIZE])
 {
-  Lane F[9], G[9], logJ, inverseJ, pressure; /* G = F^-T */
+  Lanes F[9], G[9], logJ, inverseJ, pressure; /* G = F^-T */
 
   for (int r = 0; r < 9; r++) F[r] = H[r] + (double)(r % 4 == 0);
-  for (int lane = 0; lane < MATERIAL_LANES; lane++) {
+  for (int lane = 0; lane < LANES; lane++) {
     const double J = 1 + (*dilatation)[lane];
 
     inverseJ[lane] = 1 / (J > jacobian_floor ? J : jacobian_floor);
@@ -92,22 +92,22 @@ static void LawNeoHookean(const Lane H[9], const Lane *dilatation, const Lane *l
   }
   pressure = *lambda * logJ;
   for (int i = 0; i < 3; i++) { /* P = mu (F - F^-T) + lambda ln J F^-T with F - F^-T = (F F^T - 1) F^-T */
-    Lane e[3];
+    Lanes e[3];
 
     for (int j = 0; j < 3; j++) e[j] = *mu * (H[3 * i + j] + H[3 * j + i] + H[3 * i] * H[3 * j] + H[3 * i + 1] * H[3 * j + 1] + H[3 * i + 2] * H[3 * j + 2]);
     for (int j = 0; j < 3; j++) P[3 * i + j] = e[0] * G[j] + e[1] * G[3 + j] + e[2] * G[6 + j] + pressure * G[3 * i + j];
   }
   if (W) {
-    Lane stretch = 2 * (H[0] + H[4] + H[8]); /* I1 - 3 */
+    Lanes stretch = 2 * (H[0] + H[4] + H[8]); /* I1 - 3 */
 
     for (int r = 0; r < 9; r++) stretch += H[r] * H[r];
     *W = 0.5 * *mu * stretch - *mu * logJ + 0.5 * pressure * logJ;
   }
   if (A) { /* A_iIjJ = mu delta_ij delta_IJ + lambda G_iI G_jJ + (mu - lambda ln J) G_iJ G_jI */
-    const Lane shear = *mu - pressure;
+    const Lanes shear = *mu - pressure;
 
     for (int r = 0, k = 0; r < 9; r++) {
-      const Lane lambda_G = *lambda * G[r];
+      const Lanes lambda_G = *lambda * G[r];
 
       for (int s = r; s < 9; s++, k++) {
         const int i = r / 3, I = r % 3, j = s / 3, J = s % 3;
@@ -139,7 +139,7 @@ static MaterialLawFn *const law_functions[MATERIAL_LAWS]    = {LAW_TABLE(LAW_FUN
 - finite - 0: its linearisation (small strains), else the law itself
 
   Output:
-. function - energy, stress and tangent of MATERIAL_LANES points
+. function - energy, stress and tangent of LANES points
 
   Note:
   Every law must linearise to Hooke's with E and nu, so that small kinematics needs no second function.
@@ -185,11 +185,11 @@ void MaterialLame(double E, double nu, double *lambda, double *mu)
 */
 void MaterialPoint(const Material *material, int finite, const double H[9], double *W, double P[9], double A[MATERIAL_TANGENT_SIZE])
 {
-  Lane   lanes_H[9], lanes_P[9], lanes_A[MATERIAL_TANGENT_SIZE], lanes_W, dilatation, lambda, mu;
+  Lanes  lanes_H[9], lanes_P[9], lanes_A[MATERIAL_TANGENT_SIZE], lanes_W, dilatation, lambda, mu;
   double l, m;
 
   MaterialLame(material->E, material->nu, &l, &m);
-  for (int lane = 0; lane < MATERIAL_LANES; lane++) {
+  for (int lane = 0; lane < LANES; lane++) {
     for (int r = 0; r < 9; r++) lanes_H[r][lane] = H[r];
     lambda[lane] = l;
     mu[lane]     = m;

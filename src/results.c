@@ -464,11 +464,13 @@ static PetscErrorCode ResultsWatchContact(Results results)
   PetscFunctionBeginUser;
   for (int p = 0; p < results->scene->n_contacts; p++) {
     ContactNodes nodes;
+    int          met = 0;
 
     if (results->met[p]) continue;
     PetscCall(ContactGetNodes(model->contact, p, model->u, &nodes));
-    for (PetscInt c = 0; c < nodes.n; c++) results->met[p] = results->met[p] || nodes.force[c] != 0 ? PETSC_TRUE : PETSC_FALSE;
-    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &results->met[p], 1, MPIU_BOOL, MPI_LOR, model->mesh->comm));
+    for (PetscInt c = 0; c < nodes.n; c++) met = met || nodes.force[c] != 0;
+    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &met, 1, MPI_INT, MPI_LOR, model->mesh->comm));
+    results->met[p] = met ? PETSC_TRUE : PETSC_FALSE;
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -10,14 +10,14 @@
 
 #define assert_near(a, b, tolerance) assert_true(fabs((a) - (b)) <= (tolerance))
 
-enum { LANES = KERNEL_LANES, MAX_DOFS = ELEMENT_MAX_NODES * 3 };
+enum { MAX_DOFS = ELEMENT_MAX_NODES * 3 };
 
 typedef struct {
   KernelCase     kernel;
   const Element *e;
   int            dim, dofs;
-  double         X[MAX_DOFS * LANES], u[MAX_DOFS * LANES], E[LANES], nu[LANES]; /* of a batch of different elements */
-  double         W[LANES], f[MAX_DOFS * LANES], J[LANES], *K;
+  double         X[MAX_DOFS * KERNEL_LANES], u[MAX_DOFS * KERNEL_LANES], E[KERNEL_LANES], nu[KERNEL_LANES]; /* of a batch of different elements */
+  double         W[KERNEL_LANES], f[MAX_DOFS * KERNEL_LANES], J[KERNEL_LANES], *K;
 } Batch;
 
 static double Random(void)
@@ -38,8 +38,8 @@ static void BatchCreate(Batch *b, KernelCase kernel, double curved)
   b->e      = e;
   b->dim    = e->dim;
   b->dofs   = e->nodes * e->dim;
-  b->K      = calloc((size_t)b->dofs * b->dofs * LANES, sizeof(double));
-  for (int lane = 0; lane < LANES; lane++) {
+  b->K      = calloc((size_t)b->dofs * b->dofs * KERNEL_LANES, sizeof(double));
+  for (int lane = 0; lane < KERNEL_LANES; lane++) {
     double corner[8][3], linear[ELEMENT_MAX_NODES];
 
     b->E[lane]  = 100 + 10 * lane;
@@ -52,7 +52,7 @@ static void BatchCreate(Batch *b, KernelCase kernel, double curved)
 
       ElementShape(first_order, e->node[a], linear, NULL, NULL);
       for (int i = 0; i < e->dim; i++) {
-        const int k = (a * e->dim + i) * LANES + lane;
+        const int k = (a * e->dim + i) * KERNEL_LANES + lane;
 
         b->X[k] = a < e->corners ? 0 : curved * Random();
         for (int c = 0; c < e->corners; c++) b->X[k] += linear[c] * corner[c][i];
@@ -77,9 +77,9 @@ static void SetGradient(Batch *b, const double H[9])
 {
   for (int a = 0; a < b->e->nodes; a++) {
     for (int i = 0; i < b->dim; i++) {
-      for (int lane = 0; lane < LANES; lane++) {
-        b->u[(a * b->dim + i) * LANES + lane] = 0;
-        for (int m = 0; m < b->dim; m++) b->u[(a * b->dim + i) * LANES + lane] += H[3 * i + m] * b->X[(a * b->dim + m) * LANES + lane];
+      for (int lane = 0; lane < KERNEL_LANES; lane++) {
+        b->u[(a * b->dim + i) * KERNEL_LANES + lane] = 0;
+        for (int m = 0; m < b->dim; m++) b->u[(a * b->dim + i) * KERNEL_LANES + lane] += H[3 * i + m] * b->X[(a * b->dim + m) * KERNEL_LANES + lane];
       }
     }
   }
@@ -88,8 +88,8 @@ static void SetGradient(Batch *b, const double H[9])
 static void TakeLane(const Batch *b, int lane, double *X, double *u)
 {
   for (int k = 0; k < b->dofs; k++) {
-    X[k] = b->X[k * LANES + lane];
-    u[k] = b->u[k * LANES + lane];
+    X[k] = b->X[k * KERNEL_LANES + lane];
+    u[k] = b->u[k * KERNEL_LANES + lane];
   }
 }
 
@@ -124,21 +124,22 @@ static void ForceAndTangentAreDerivatives(void **state)
   (void)state;
   for (KernelCase kernel = before_first; NextCase(&kernel);) {
     Batch  b;
-    double W_plus[LANES], W_minus[LANES], f_plus[MAX_DOFS * LANES], f_minus[MAX_DOFS * LANES], J[LANES], scale = 0;
+    double W_plus[KERNEL_LANES], W_minus[KERNEL_LANES], f_plus[MAX_DOFS * KERNEL_LANES], f_minus[MAX_DOFS * KERNEL_LANES], J[KERNEL_LANES], scale = 0;
 
     BatchCreate(&b, kernel, 0.1);
     Evaluate(&b);
-    for (int k = 0; k < b.dofs * b.dofs * LANES; k++) scale = fmax(scale, fabs(b.K[k]));
+    for (int k = 0; k < b.dofs * b.dofs * KERNEL_LANES; k++) scale = fmax(scale, fabs(b.K[k]));
     for (int j = 0; j < b.dofs; j++) {
-      for (int lane = 0; lane < LANES; lane++) b.u[j * LANES + lane] += h;
+      for (int lane = 0; lane < KERNEL_LANES; lane++) b.u[j * KERNEL_LANES + lane] += h;
       ElementKernel(&kernel, b.X, b.u, b.E, b.nu, W_plus, f_plus, NULL, J);
-      for (int lane = 0; lane < LANES; lane++) b.u[j * LANES + lane] -= 2 * h;
+      for (int lane = 0; lane < KERNEL_LANES; lane++) b.u[j * KERNEL_LANES + lane] -= 2 * h;
       ElementKernel(&kernel, b.X, b.u, b.E, b.nu, W_minus, f_minus, NULL, J);
-      for (int lane = 0; lane < LANES; lane++) {
-        b.u[j * LANES + lane] += h;
-        assert_near(b.f[j * LANES + lane], (W_plus[lane] - W_minus[lane]) / (2 * h), 1e-8 * scale);
+      for (int lane = 0; lane < KERNEL_LANES; lane++) {
+        b.u[j * KERNEL_LANES + lane] += h;
+        assert_near(b.f[j * KERNEL_LANES + lane], (W_plus[lane] - W_minus[lane]) / (2 * h), 1e-8 * scale);
         for (int i = 0; i < b.dofs; i++)
-          assert_near(b.K[(i * b.dofs + j) * LANES + lane], (f_plus[i * LANES + lane] - f_minus[i * LANES + lane]) / (2 * h), 1e-8 * scale);
+          assert_near(b.K[(i * b.dofs + j) * KERNEL_LANES + lane], (f_plus[i * KERNEL_LANES + lane] - f_minus[i * KERNEL_LANES + lane]) / (2 * h),
+                      1e-8 * scale);
       }
     }
     BatchDestroy(&b);
@@ -154,10 +155,11 @@ static void TangentIsSymmetric(void **state)
 
     BatchCreate(&b, kernel, 0.1);
     Evaluate(&b);
-    for (int k = 0; k < b.dofs * b.dofs * LANES; k++) scale = fmax(scale, fabs(b.K[k]));
+    for (int k = 0; k < b.dofs * b.dofs * KERNEL_LANES; k++) scale = fmax(scale, fabs(b.K[k]));
     for (int i = 0; i < b.dofs; i++) {
       for (int j = 0; j < b.dofs; j++) {
-        for (int lane = 0; lane < LANES; lane++) assert_near(b.K[(i * b.dofs + j) * LANES + lane], b.K[(j * b.dofs + i) * LANES + lane], 1e-14 * scale);
+        for (int lane = 0; lane < KERNEL_LANES; lane++)
+          assert_near(b.K[(i * b.dofs + j) * KERNEL_LANES + lane], b.K[(j * b.dofs + i) * KERNEL_LANES + lane], 1e-14 * scale);
       }
     }
     BatchDestroy(&b);
@@ -174,15 +176,15 @@ static void EachResultMayBeLeftOut(void **state)
     BatchCreate(&b, kernel, 0.1);
     Evaluate(&b);
     c   = b;
-    c.K = calloc((size_t)b.dofs * b.dofs * LANES, sizeof(double));
+    c.K = calloc((size_t)b.dofs * b.dofs * KERNEL_LANES, sizeof(double));
     memset(c.f, 0, sizeof(c.f));
     ElementKernel(&kernel, b.X, b.u, b.E, b.nu, NULL, c.f, NULL, c.J);
     ElementKernel(&kernel, b.X, b.u, b.E, b.nu, NULL, NULL, c.K, c.J);
     ElementKernel(&kernel, b.X, b.u, b.E, b.nu, c.W, NULL, NULL, c.J);
-    for (int k = 0; k < b.dofs * LANES; k++) scale = fmax(scale, fabs(b.f[k]));
-    for (int lane = 0; lane < LANES; lane++) assert_near(c.W[lane], b.W[lane], 1e-14 * b.W[lane]);
-    for (int k = 0; k < b.dofs * LANES; k++) assert_near(c.f[k], b.f[k], 1e-14 * scale);
-    assert_memory_equal(c.K, b.K, sizeof(double) * b.dofs * b.dofs * LANES);
+    for (int k = 0; k < b.dofs * KERNEL_LANES; k++) scale = fmax(scale, fabs(b.f[k]));
+    for (int lane = 0; lane < KERNEL_LANES; lane++) assert_near(c.W[lane], b.W[lane], 1e-14 * b.W[lane]);
+    for (int k = 0; k < b.dofs * KERNEL_LANES; k++) assert_near(c.f[k], b.f[k], 1e-14 * scale);
+    assert_memory_equal(c.K, b.K, sizeof(double) * b.dofs * b.dofs * KERNEL_LANES);
     BatchDestroy(&b);
     BatchDestroy(&c);
   }
@@ -193,21 +195,21 @@ static void LanesAreIndependentAndUnaligned(void **state)
   (void)state;
   for (KernelCase kernel = before_first; NextCase(&kernel);) {
     Batch  b;
-    double X[MAX_DOFS * LANES + 1], u[MAX_DOFS * LANES + 1], E[LANES], nu[LANES], f[MAX_DOFS * LANES + 1], J[LANES];
+    double X[MAX_DOFS * KERNEL_LANES + 1], u[MAX_DOFS * KERNEL_LANES + 1], E[KERNEL_LANES], nu[KERNEL_LANES], f[MAX_DOFS * KERNEL_LANES + 1], J[KERNEL_LANES];
 
     BatchCreate(&b, kernel, 0.1);
     Evaluate(&b);
     for (int k = 0; k < b.dofs; k++) {
-      for (int lane = 0; lane < LANES; lane++) {
-        X[1 + k * LANES + lane] = b.X[k * LANES + 5];
-        u[1 + k * LANES + lane] = b.u[k * LANES + 5];
-        E[lane]                 = b.E[5];
-        nu[lane]                = b.nu[5];
+      for (int lane = 0; lane < KERNEL_LANES; lane++) {
+        X[1 + k * KERNEL_LANES + lane] = b.X[k * KERNEL_LANES + 5];
+        u[1 + k * KERNEL_LANES + lane] = b.u[k * KERNEL_LANES + 5];
+        E[lane]                        = b.E[5];
+        nu[lane]                       = b.nu[5];
       }
     }
     ElementKernel(&kernel, X + 1, u + 1, E, nu, NULL, f + 1, NULL, J);
     for (int k = 0; k < b.dofs; k++) {
-      for (int lane = 0; lane < LANES; lane++) assert_true(f[1 + k * LANES + lane] == b.f[k * LANES + 5]);
+      for (int lane = 0; lane < KERNEL_LANES; lane++) assert_true(f[1 + k * KERNEL_LANES + lane] == b.f[k * KERNEL_LANES + 5]);
     }
     BatchDestroy(&b);
   }
@@ -228,11 +230,11 @@ static void RigidMotionCausesNoForce(void **state)
     else
       SetGradient(&b, kernel.kinematics == KINEMATICS_FINITE ? finite : small);
     for (int a = 0; a < b.e->nodes; a++) {
-      for (int lane = 0; lane < LANES; lane++) b.u[(a * b.dim + 1) * LANES + lane] += 0.7;
+      for (int lane = 0; lane < KERNEL_LANES; lane++) b.u[(a * b.dim + 1) * KERNEL_LANES + lane] += 0.7;
     }
     Evaluate(&b);
-    for (int k = 0; k < b.dofs * LANES; k++) assert_near(b.f[k], 0, 1e-11 * b.E[0]);
-    for (int lane = 0; lane < LANES; lane++) {
+    for (int k = 0; k < b.dofs * KERNEL_LANES; k++) assert_near(b.f[k], 0, 1e-11 * b.E[0]);
+    for (int lane = 0; lane < KERNEL_LANES; lane++) {
       assert_near(b.W[lane], 0, 1e-12 * b.E[0]);
       assert_near(b.J[lane], 1, 1e-13);
     }
@@ -250,7 +252,7 @@ static void SurfaceNormals(const Batch *b, int lane, double *normals)
     double X[FACE_MAX_NODES * 3], area[FACE_MAX_NODES] = {0}, normal[FACE_MAX_NODES * 3] = {0};
 
     for (int a = 0; a < face->nodes; a++) {
-      for (int i = 0; i < b->dim; i++) X[a * b->dim + i] = b->X[(b->e->face_nodes[f][a] * b->dim + i) * LANES + lane];
+      for (int i = 0; i < b->dim; i++) X[a * b->dim + i] = b->X[(b->e->face_nodes[f][a] * b->dim + i) * KERNEL_LANES + lane];
     }
     FaceAreaKernel(face->type, b->dim, b->kernel.geometry, X, area, normal);
     for (int a = 0; a < face->nodes; a++) {
@@ -274,7 +276,7 @@ static void UniformStrainGivesExactForces(void **state)
     BatchCreate(&b, kernel, kernel.type == ELEMENT_TET10 || kernel.type == ELEMENT_TRI6 ? 0 : 0.1);
     SetGradient(&b, H);
     Evaluate(&b);
-    for (int lane = 0; lane < LANES; lane++) {
+    for (int lane = 0; lane < KERNEL_LANES; lane++) {
       const Material material = {kernel.law, b.E[lane], b.nu[lane]};
       double         P[9], normals[MAX_DOFS];
 
@@ -285,7 +287,7 @@ static void UniformStrainGivesExactForces(void **state)
           double force = 0;
 
           for (int m = 0; m < b.dim; m++) force += P[3 * i + m] * normals[a * b.dim + m];
-          assert_near(b.f[(a * b.dim + i) * LANES + lane], force, 1e-12 * b.E[0]);
+          assert_near(b.f[(a * b.dim + i) * KERNEL_LANES + lane], force, 1e-12 * b.E[0]);
         }
       }
     }
@@ -308,7 +310,7 @@ static void UniformExpansionIsExact(void **state)
     BatchCreate(&b, kernel, 0.1);
     SetGradient(&b, solid);
     Evaluate(&b);
-    for (int lane = 0; lane < LANES; lane++) {
+    for (int lane = 0; lane < KERNEL_LANES; lane++) {
       const Material material = {kernel.law, b.E[lane], b.nu[lane]};
       double         X[MAX_DOFS], u[MAX_DOFS], W, P[9], stress[6], volume;
 
@@ -338,10 +340,10 @@ static void InvertedElementsAreReportedAndFinite(void **state)
     if (kernel.kinematics == KINEMATICS_SMALL) continue;
     BatchCreate(&b, kernel, 0.1);
     SetGradient(&b, mirrored);
-    for (int k = 0; k < b.dofs; k++) b.u[k * LANES + 2] = 0;
+    for (int k = 0; k < b.dofs; k++) b.u[k * KERNEL_LANES + 2] = 0;
     b.u[7] = NAN;
     Evaluate(&b);
-    for (int lane = 0; lane < LANES; lane++) {
+    for (int lane = 0; lane < KERNEL_LANES; lane++) {
       if (lane == 7)
         assert_false(b.J[lane] > 0);
       else if (lane == 2)
@@ -349,8 +351,8 @@ static void InvertedElementsAreReportedAndFinite(void **state)
       else if (kernel.geometry != GEOMETRY_AXISYMMETRIC)
         assert_near(b.J[lane], -1.1, 1e-12);
     }
-    for (int k = 0; k < b.dofs * LANES; k++) assert_true(isfinite(b.f[k]) || k % LANES == 7);
-    for (int k = 0; k < b.dofs * b.dofs * LANES; k++) assert_true(isfinite(b.K[k]) || k % LANES == 7);
+    for (int k = 0; k < b.dofs * KERNEL_LANES; k++) assert_true(isfinite(b.f[k]) || k % KERNEL_LANES == 7);
+    for (int k = 0; k < b.dofs * b.dofs * KERNEL_LANES; k++) assert_true(isfinite(b.K[k]) || k % KERNEL_LANES == 7);
     BatchDestroy(&b);
   }
 }
@@ -364,7 +366,7 @@ static void VolumesFollowFromTheSurface(void **state)
 
     if (kernel.geometry == GEOMETRY_AXISYMMETRIC || kernel.kinematics == KINEMATICS_FINITE) continue;
     BatchCreate(&b, kernel, kernel.type == ELEMENT_TET10 || kernel.type == ELEMENT_TRI6 ? 0 : 0.1);
-    for (int lane = 0; lane < LANES; lane++) {
+    for (int lane = 0; lane < KERNEL_LANES; lane++) {
       double X[MAX_DOFS], u[MAX_DOFS], normals[MAX_DOFS], volume = 0;
 
       TakeLane(&b, lane, X, u);
@@ -400,7 +402,7 @@ static void BodyForceHasItsResultant(void **state)
 
     if (kernel.kinematics == KINEMATICS_FINITE) continue;
     BatchCreate(&b, kernel, 0.1);
-    for (int lane = 0; lane < LANES; lane++) {
+    for (int lane = 0; lane < KERNEL_LANES; lane++) {
       double X[MAX_DOFS], u[MAX_DOFS], f[MAX_DOFS] = {0}, sum[3] = {0};
 
       TakeLane(&b, lane, X, u);
