@@ -44,8 +44,8 @@ typedef struct _n_Contact *Contact;
 
 PetscErrorCode ContactCreate(Mesh, Scene, Elasticity, Loads, Contact *);
 PetscErrorCode ContactDestroy(Contact *);
-/* New lists for state u at load parameter t, good for a relative motion of `motion` (a length). Collective. */
-PetscErrorCode ContactGather(Contact, const PetscReal *u, PetscReal t, PetscReal motion);
+/* New lists for the accepted state u at load parameter t, for a step to t_next, good for a relative motion of `motion` (a length). Collective. */
+PetscErrorCode ContactGather(Contact, const PetscReal *u, PetscReal t, PetscReal t_next, PetscReal motion);
 /* After ContactResidual() at (u, t): does a fresh search give the same gaps? If not, the fresh lists replace the old. Collective. */
 PetscErrorCode ContactListsHold(Contact, const PetscReal *u, PetscReal t, PetscReal motion, PetscBool *hold);
 /* Adds the contact forces to f (n_nodes*dim local, complete at owned nodes), this rank's energy and sum of squares of the terms' forces; each may

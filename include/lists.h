@@ -26,6 +26,7 @@ typedef struct {
   PetscInt  *point_ptr, *point_node;
   PetscReal *point_S, *point_offset, *point_weight;
   int       *point_image;
+  long      *point_key;         /* rank-independent: which node or quadrature point, and which image */
   PetscReal *point_X, *point_u; /* n_points*dim */
 
   PetscInt   n_slaves; /* slave points, in the order asked for */

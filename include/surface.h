@@ -22,6 +22,7 @@ typedef struct {
   Facet           *faces;               /* nodes: local nodes of the mesh, or of the rigid tool */
   PetscReal       *face_size;           /* sqrt(area), a length in 2D */
   PetscReal        mean_size, max_size; /* over all ranks */
+  PetscReal        max_extent;          /* longest face, corner to corner */
   PetscReal        stiffness;           /* area-weighted mean of E over element height, all ranks; 0 for a rigid tool */
 } * ContactSurface;
 

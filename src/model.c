@@ -380,7 +380,7 @@ PetscErrorCode ModelSetUp(Model model)
   PetscFunctionBeginUser;
   PetscCall(LoadsPrescribe(model->loads, 0, model->u));
   if (model->contact) {
-    PetscCall(ContactGather(model->contact, model->u, 0, 0));
+    PetscCall(ContactGather(model->contact, model->u, 0, 0, 0));
     PetscCall(ModelResidual(model, model->u, 0, 0, &ok));
     PetscCall(ContactTakeOverlap(model->contact));
   }
@@ -568,7 +568,7 @@ PetscErrorCode ModelSolve(Model model, PetscReal t, SolveReport *report)
     PetscCall(PetscFree(u));
     motion = PetscMax(motion, MODEL_MOTION_SAFETY * work->rate * (t - work->accepted_t));
     TimingBegin(TIMING_SEARCH);
-    PetscCall(ContactGather(model->contact, work->accepted_u, work->accepted_t, motion));
+    PetscCall(ContactGather(model->contact, work->accepted_u, work->accepted_t, t, motion));
     TimingEnd(TIMING_SEARCH);
   }
   PetscCall(ModelPredict(model, report));
@@ -622,7 +622,7 @@ PetscErrorCode ModelRestore(Model model)
   model->t = work->accepted_t;
   if (model->contact) {
     PetscCall(ContactRestore(model->contact));
-    PetscCall(ContactGather(model->contact, model->u, model->t, 0));
+    PetscCall(ContactGather(model->contact, model->u, model->t, model->t, 0));
   }
   PetscCall(ModelResidual(model, model->u, model->t, model->t, &ok));
   if (model->contact) PetscCall(ContactRestore(model->contact));

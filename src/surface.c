@@ -78,10 +78,26 @@ static PetscReal FaceStiffness(ContactSurface surface, Elasticity elasticity, Pe
   return ElasticityCellModulus(elasticity, c) * area / (volume * (e->corners == e->dim + 1 ? e->dim : 1));
 }
 
+/* Longest distance between two corners. */
+static PetscReal FaceExtent(int dim, const Facet *face, const double *X)
+{
+  PetscReal most = 0;
+
+  for (int a = 0; a < ElementGet(face->type)->corners; a++) {
+    for (int b = 0; b < a; b++) {
+      PetscReal r2 = 0;
+
+      for (int d = 0; d < dim; d++) r2 += PetscSqr(X[a * dim + d] - X[b * dim + d]);
+      most = PetscMax(most, PetscSqrtReal(r2));
+    }
+  }
+  return most;
+}
+
 static PetscErrorCode SurfaceMeasure(ContactSurface surface, Elasticity elasticity)
 {
   Mesh      mesh   = surface->mesh;
-  PetscReal sum[4] = {0, 0, 0, 0}, most = 0; /* area, faces, size, stiffness * area */
+  PetscReal sum[4] = {0, 0, 0, 0}, most[2] = {0, 0}; /* area, faces, size, stiffness * area; size, extent */
   double    X[FACE_MAX_NODES * 3];
 
   PetscFunctionBeginUser;
@@ -91,7 +107,8 @@ static PetscErrorCode SurfaceMeasure(ContactSurface surface, Elasticity elastici
     FaceCoordinates(surface, &surface->faces[f], NULL, X);
     area                  = FaceArea(surface, &surface->faces[f], X);
     surface->face_size[f] = mesh->dim == 3 ? PetscSqrtReal(area) : area;
-    most                  = PetscMax(most, surface->face_size[f]);
+    most[0]               = PetscMax(most[0], surface->face_size[f]);
+    most[1]               = PetscMax(most[1], FaceExtent(mesh->dim, &surface->faces[f], X));
     sum[0] += area;
     sum[1] += 1;
     sum[2] += surface->face_size[f];
@@ -99,12 +116,13 @@ static PetscErrorCode SurfaceMeasure(ContactSurface surface, Elasticity elastici
   }
   if (surface->group) {
     PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sum, 4, MPIU_REAL, MPI_SUM, mesh->comm));
-    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &most, 1, MPIU_REAL, MPI_MAX, mesh->comm));
+    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, most, 2, MPIU_REAL, MPI_MAX, mesh->comm));
   }
-  surface->mean_size = sum[2] / sum[1];
-  surface->order     = mesh->order;
-  surface->max_size  = most;
-  surface->stiffness = sum[3] / sum[0];
+  surface->mean_size  = sum[2] / sum[1];
+  surface->order      = mesh->order;
+  surface->max_size   = most[0];
+  surface->max_extent = most[1];
+  surface->stiffness  = sum[3] / sum[0];
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
