@@ -49,6 +49,7 @@ typedef struct {
   PetscInt           *term_ptr, *term_point; /* slave points of each term */
   PetscReal          *term_weight;           /* their areas in it: sum is the term's area */
   PetscReal           penalty_automatic;
+  PetscBool           predicting, touching; /* what was accepted as closed stays so; what touches is closed */
   ContactState        now, accepted;
   ContactLists        lists;
   /* per slave point; factor: frozen with the lists, fades out past a free edge; seed: the facet of last time; gap, normal: of the last projection */
@@ -78,6 +79,7 @@ PetscErrorCode ContactPairCreate(Mesh, Scene, Elasticity, Loads, const SceneCont
 PetscErrorCode ContactPairDestroy(ContactPair *);
 PetscReal      ContactTermOffset(const ContactPair *, PetscInt term, PetscReal t);
 PetscReal      ContactTouchTolerance(const ContactPair *, PetscInt term);
+PetscReal      ContactMeanOpening(const ContactPair *, PetscInt term);
 /* contactpoint.c */
 PetscErrorCode ContactPointEvaluate(const ContactPair *, const Smoother *, ContactLists, PetscInt q, int seed, SmootherWant, PetscBool *found);
 /* The variations of the last evaluation over contact nodes, into the work's number, N and M. */

@@ -83,6 +83,17 @@ static PetscErrorCode PairProject(Contact contact, ContactPair *pair, const Pets
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* What a linear step counts on of an open term: what was closed stays so, pressed or pulled; what touches at the start of a run resists, for a
+   body that only contact holds. Surface contact pulls that too: the mean over the faces around a node that touches is open by their curvature. */
+static void TermPredict(const ContactPair *pair, PetscInt c, PetscReal opening, LawValue *value)
+{
+  const PetscBool closed = (PetscBool)(pair->accepted.status[c] == CONTACT_CLOSED);
+
+  if (!closed && !(pair->touching && opening <= ContactTouchTolerance(pair, c))) return;
+  value->stiffness = pair->now.penalty[c];
+  if (closed || (pair->slave_offsets && opening <= ContactMeanOpening(pair, c))) value->pressure = -value->stiffness * opening;
+}
+
 /* Law and area of a term in the state of the last projection. */
 static void TermLaw(const ContactPair *pair, PetscInt c, PetscReal t, LawValue *value, PetscReal *area)
 {
@@ -90,7 +101,9 @@ static void TermLaw(const ContactPair *pair, PetscInt c, PetscReal t, LawValue *
   const PetscReal gap   = ContactTermGap(pair, pair->factor, pair->point_gap, c, area);
 
   *value = (LawValue){0, 0, 0};
-  if (!PetscIsNanReal(gap)) pair->law->evaluate(gap, &state, value);
+  if (PetscIsNanReal(gap)) return;
+  pair->law->evaluate(gap, &state, value);
+  if (pair->predicting && value->stiffness == 0) TermPredict(pair, c, gap - state.offset, value);
 }
 
 /* Direction of a term's contact: the mean of its points'. */
@@ -172,6 +185,20 @@ static PetscErrorCode PairResidual(Contact contact, ContactPair *pair, const Pet
   PetscCall(ListsReduce(pair->lists, values, f));
   PetscCall(PairNodalForces(pair));
   PetscCall(PetscFree(values));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* ContactPredict - between the two calls what the accepted state holds in contact stays so, pressed or pulled, in residual and tangent.
+
+   Not collective. For a linear step from the accepted state: fresh offsets move the surfaces a little, which is a load of the step, not an
+   opening. touching: what is open within ContactTouchTolerance() is closed too (Chamoret et al. start from surfaces that touch). */
+PetscErrorCode ContactPredict(Contact contact, PetscBool predicting, PetscBool touching)
+{
+  PetscFunctionBeginUser;
+  for (int p = 0; p < contact->n_pairs; p++) {
+    contact->pairs[p].predicting = predicting;
+    contact->pairs[p].touching   = touching;
+  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -332,7 +359,7 @@ static PetscErrorCode TermBlock(Contact contact, const ContactPair *pair, int p,
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode PairBlocks(Contact contact, ContactPair *pair, int p, const PetscReal *u, PetscReal t, PetscBool touching)
+static PetscErrorCode PairBlocks(Contact contact, ContactPair *pair, int p, const PetscReal *u, PetscReal t)
 {
   TermState      *terms;
   PointVariations all;
@@ -342,11 +369,9 @@ static PetscErrorCode PairBlocks(Contact contact, ContactPair *pair, int p, cons
   PetscCall(PetscMalloc1(pair->n, &terms));
   PetscCall(PetscArrayzero(pair->point_force, pair->lists->n_slaves));
   for (PetscInt c = 0; c < pair->n; c++) {
-    const PetscReal opening = pair->trial[c] - ContactTermOffset(pair, c, t);
-    LawValue        value;
+    LawValue value;
 
     TermLaw(pair, c, t, &value, &terms[c].area);
-    if (touching && opening >= 0 && opening <= ContactTouchTolerance(pair, c)) value.stiffness = pair->now.penalty[c];
     terms[c].stiffness = value.stiffness;
     for (PetscInt k = pair->term_ptr[c]; k < pair->term_ptr[c + 1] && value.pressure != 0; k++)
       pair->point_force[pair->term_point[k]] += value.pressure * pair->term_weight[k] * pair->factor[pair->term_point[k]];
@@ -361,9 +386,9 @@ static PetscErrorCode PairBlocks(Contact contact, ContactPair *pair, int p, cons
 
 /* ContactTangent - the derivative of ContactResidual()'s forces by the free displacements: A (psi'' N N^T - p M) for each closed term, p its pressure.
 
-   Collective. u, t: as of ContactResidual(); touching: open nodes within ContactTouchTolerance() take part with their stiffness too. *C: over the
+   Collective. u, t: as of ContactResidual(). *C: over the
    global free dofs, the contact's own; *changed: its pattern is new. Source: Chamoret et al. 2004, eq. 14. */
-PetscErrorCode ContactTangent(Contact contact, const PetscReal *u, PetscReal t, PetscBool touching, Mat *C, PetscBool *changed)
+PetscErrorCode ContactTangent(Contact contact, const PetscReal *u, PetscReal t, Mat *C, PetscBool *changed)
 {
   const PetscInt **dof;
   PetscSection     section;
@@ -374,7 +399,7 @@ PetscErrorCode ContactTangent(Contact contact, const PetscReal *u, PetscReal t, 
   PetscCall(BlockMatrixReset(contact->blocks));
   PetscCall(PetscMalloc1(contact->n_pairs, &dof));
   for (int p = 0; p < contact->n_pairs; p++) {
-    PetscCall(PairBlocks(contact, &contact->pairs[p], p, u, t, touching));
+    PetscCall(PairBlocks(contact, &contact->pairs[p], p, u, t));
     dof[p] = contact->pairs[p].lists->dof;
   }
   PetscCall(DMGetGlobalSection(contact->mesh->dm, &section));

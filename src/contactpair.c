@@ -213,13 +213,26 @@ PetscReal ContactTermOffset(const ContactPair *pair, PetscInt c, PetscReal t)
   return pair->now.offset[c] * (pair->scene->initial_overlap == OVERLAP_RAMP ? 1 - t : 1);
 }
 
+/* Relative curvature of slave and master at a term. */
+static PetscReal TermCurvature(const ContactPair *pair, PetscInt c)
+{
+  const PetscReal radius = pair->scene->analytic.radius;
+  PetscReal       kappa  = 0;
+
+  for (PetscInt k = pair->term_ptr[c]; k < pair->term_ptr[c + 1]; k++) kappa = PetscMax(kappa, pair->lists->kappa[pair->term_point[k]]);
+  return kappa + 2 * pair->turn[c] / pair->size[c] + (radius > 0 ? 1 / radius : 0);
+}
+
 /* Opening up to which a node counts as touching: what round-off and the facets' own sagitta leave between surfaces that touch. */
 PetscReal ContactTouchTolerance(const ContactPair *pair, PetscInt c)
 {
-  const PetscReal h = pair->size[c], master = pair->master ? pair->master->mean_size : 0, radius = pair->scene->analytic.radius;
-  PetscReal       kappa = 0;
+  const PetscReal h = pair->size[c], master = pair->master ? pair->master->mean_size : 0;
 
-  for (PetscInt k = pair->term_ptr[c]; k < pair->term_ptr[c + 1]; k++) kappa = PetscMax(kappa, pair->lists->kappa[pair->term_point[k]]);
-  kappa += 2 * pair->turn[c] / h + (radius > 0 ? 1 / radius : 0);
-  return CONTACT_TOUCH * h + kappa * (PetscSqr(h) + PetscSqr(master)) / 8;
+  return CONTACT_TOUCH * h + TermCurvature(pair, c) * (PetscSqr(h) + PetscSqr(master)) / 8;
+}
+
+/* Opening of a term of surface contact whose node touches: the mean over the faces around it, where the surfaces bend away from each other. */
+PetscReal ContactMeanOpening(const ContactPair *pair, PetscInt c)
+{
+  return CONTACT_TOUCH * pair->size[c] + TermCurvature(pair, c) * PetscSqr(pair->size[c]) / 8;
 }

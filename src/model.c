@@ -156,8 +156,8 @@ static PetscErrorCode ModelAddContact(Model model, Mat K, Mat C, PetscBool chang
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The tangent at (u, t) into model->A; touching: with the stiffness of slave nodes that just touch. */
-static PetscErrorCode ModelTangent(Model model, const PetscReal *u, PetscReal t, PetscBool touching)
+/* The tangent at (u, t) into model->A. */
+static PetscErrorCode ModelTangent(Model model, const PetscReal *u, PetscReal t)
 {
   Mat       K, C;
   PetscBool changed;
@@ -172,7 +172,7 @@ static PetscErrorCode ModelTangent(Model model, const PetscReal *u, PetscReal t,
   TimingEnd(TIMING_ASSEMBLY_ELASTIC);
   if (model->contact) {
     TimingBegin(TIMING_ASSEMBLY_CONTACT);
-    PetscCall(ContactTangent(model->contact, u, t, touching, &C, &changed));
+    PetscCall(ContactTangent(model->contact, u, t, &C, &changed));
     PetscCall(ModelAddContact(model, K, C, changed));
     TimingEnd(TIMING_ASSEMBLY_CONTACT);
   }
@@ -188,7 +188,7 @@ static PetscErrorCode ModelJacobian(SNES snes, Vec x, Mat J, Mat P, void *contex
   (void)J;
   (void)P;
   PetscCall(ModelTrial(model, x));
-  PetscCall(ModelTangent(model, model->work->trial, model->t, PETSC_FALSE));
+  PetscCall(ModelTangent(model, model->work->trial, model->t));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -446,8 +446,10 @@ static PetscErrorCode ModelPredict(Model model, SolveReport *report)
   PetscCall(PetscArraycpy(step, work->accepted_u, n));
   PetscCall(LoadsPrescribe(model->loads, model->t, step));
   for (PetscInt i = 0; i < n; i++) step[i] -= work->accepted_u[i];
-  PetscCall(ModelTangent(model, work->accepted_u, work->accepted_t, (PetscBool)(work->accepted_t == 0))); /* touching start: a body that only contact holds */
+  if (model->contact) PetscCall(ContactPredict(model->contact, PETSC_TRUE, (PetscBool)(work->accepted_t == 0))); /* touching: a body that only contact holds */
+  PetscCall(ModelTangent(model, work->accepted_u, work->accepted_t));
   PetscCall(ModelResidual(model, work->accepted_u, model->t, work->accepted_t, &ok));
+  if (model->contact) PetscCall(ContactPredict(model->contact, PETSC_FALSE, PETSC_FALSE));
   PetscCall(ElasticityMultiplyLocal(model->elasticity, step, work->f));
   if (model->contact) PetscCall(ContactMultiply(model->contact, step, work->accepted_t, model->t, work->f));
   PetscCall(MeshLocalToGlobal(model->mesh, work->f, b));
