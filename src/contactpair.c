@@ -119,7 +119,7 @@ static FitSettings PairFitSettings(Scene scene, const SceneContact *contact, con
 
   fit.integral = (PetscBool)(fit.degree && contact->formulation == CONTACT_SURFACE_TO_SURFACE);
   if (fit.integral) {
-    if (fit.support == 0) fit.support = order == 2 ? 2.25 : 3;
+    if (fit.support == 0) fit.support = order == 2 ? (scene->dim == 2 ? 1.75 : 2.25) : 3;
     if (fit.exponent == 0) fit.exponent = 3;
     fit.support *= order; /* spacings in a face size */
   }
