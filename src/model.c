@@ -1,4 +1,5 @@
 #include "model.h"
+#include "matrixsum.h"
 #include "refusal.h"
 #include "timing.h"
 
@@ -142,16 +143,12 @@ static PetscErrorCode ModelAddContact(Model model, Mat K, Mat C, PetscBool chang
 
   PetscFunctionBeginUser;
   if (changed) {
-    PetscCall(MatDuplicate(K, MAT_COPY_VALUES, &B));
-    PetscCall(MatAXPY(B, 1, C, DIFFERENT_NONZERO_PATTERN));
+    PetscCall(MatrixSumCreate(K, C, &B));
     PetscCall(MatHeaderReplace(model->A, &B));
     PetscCall(SNESGetKSP(model->snes, &ksp));
     PetscCall(KSPReset(ksp));
-  } else {
-    PetscCall(MatZeroEntries(model->A));
-    PetscCall(MatAXPY(model->A, 1, K, SUBSET_NONZERO_PATTERN));
-    PetscCall(MatAXPY(model->A, 1, C, SUBSET_NONZERO_PATTERN));
-  }
+  } else
+    PetscCall(MatrixSumUpdate(K, C, model->A));
   PetscCall(MatSetOption(model->A, MAT_SYMMETRIC, LoadsConservative(model->loads)));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
