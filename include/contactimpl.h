@@ -39,6 +39,7 @@ typedef struct {
   PetscReal          *force, *vector, *normal; /* of the last residual: normal force, its sum over the slave points (n*3), contact normal (n*3) */
   PetscReal           t;                       /* of the last residual */
   PetscReal          *pressure, *trial;        /* trial: gaps of the last projection, of a residual or a tangent */
+  PetscBool           projected;               /* there was one with these lists */
   ContactWork        *work;                    /* shared by all pairs */
 } ContactPair;
 

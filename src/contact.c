@@ -1,5 +1,6 @@
 #include "contactimpl.h"
 #include "refusal.h"
+#include "timing.h"
 
 /* Two pairs of the same surfaces would press twice. */
 static PetscErrorCode RefuseRepeatedPairs(Mesh mesh, Scene scene)
@@ -74,16 +75,23 @@ PetscErrorCode ContactDestroy(Contact *contact)
 
 /* ---------- residual ---------- */
 
-/* Moves the lists' points to (u, t) and projects every slave point: gaps into pair->trial, normals into pair->normal. */
+/* Moves the lists' points to (u, t) and projects every slave point: gaps into pair->trial, normals into pair->normal. These stand already where
+   the last evaluation was at the same place: three in four, as the solver asks for residual, energy and tangent of each iterate one by one. */
 static PetscErrorCode PairProject(Contact contact, ContactPair *pair, const PetscReal *u, PetscReal t)
 {
+  PetscBool moved;
+
   PetscFunctionBeginUser;
+  PetscCall(ListsUpdate(pair->search, pair->lists, u, t, &moved));
+  if (pair->projected && !moved) PetscFunctionReturn(PETSC_SUCCESS);
+  pair->projected = PETSC_TRUE;
   PetscCall(PetscLogEventBegin(contact->event_project, 0, 0, 0, 0));
-  PetscCall(ListsUpdate(pair->search, pair->lists, u, t));
+  if (pair->fit.degree) TimingBegin(TIMING_FIT);
   for (PetscInt c = 0; c < pair->n; c++) {
     PetscCall(ContactTermGap(pair, pair->lists, pair->factor, pair->seed, c, &pair->trial[c]));
     for (int d = 0; d < 3; d++) pair->normal[3 * c + d] = PetscIsNanReal(pair->trial[c]) || d >= contact->mesh->dim ? 0 : contact->work.result.normal[d];
   }
+  if (pair->fit.degree) TimingEnd(TIMING_FIT);
   PetscCall(PetscLogEventEnd(contact->event_project, 0, 0, 0, 0));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -38,7 +38,8 @@ static PetscErrorCode PairTakeLists(ContactPair *pair, ContactLists lists, const
 {
   PetscFunctionBeginUser;
   PetscCall(ListsDestroy(&pair->lists));
-  pair->lists = lists;
+  pair->lists     = lists;
+  pair->projected = PETSC_FALSE;
   PetscCall(PetscArraycpy(pair->factor, factor, lists->n_slaves));
   for (PetscInt q = 0; q < lists->n_slaves; q++) pair->seed[q] = -1;
   PetscFunctionReturn(PETSC_SUCCESS);
