@@ -12,7 +12,7 @@ typedef struct {
   PetscReal     *multiplier, *workspace;
   PetscInt       x_room;
   PetscInt      *node;  /* contact nodes of a term, one after another over its slave points */
-  PetscReal     *N, *M; /* over these nodes; M holds one slave point's part at a time */
+  PetscReal     *N;     /* over these nodes */
   int           *from;  /* which row of the variations a contact node takes part in: 0 the slave point, 1 + i fit point i */
   PetscReal     *scale; /* and with what factor, by component */
 } ContactWork;
@@ -62,5 +62,6 @@ PetscReal      ContactTouchTolerance(const ContactPair *, PetscInt term);
 /* contactpoint.c */
 PetscErrorCode ContactPointEvaluate(const ContactPair *, const Smoother *, ContactLists, PetscInt q, int seed, SmootherWant, PetscBool *found);
 int            ContactPointNodes(ContactLists, PetscInt q, const SmootherResult *);
-void           ContactPointToNodes(const ContactPair *, ContactLists, PetscInt q, PetscReal weight, PetscBool second, PetscInt *node, PetscReal *N, int *count);
+void ContactPointToNodes(const ContactPair *, ContactLists, PetscInt q, PetscReal weight, PetscReal factor, PetscInt *node, PetscReal *N, PetscReal *M,
+                         int *count);
 PetscErrorCode ContactTermGap(const ContactPair *, ContactLists, const PetscReal *factor, int *seed, PetscInt term, PetscReal *gap);

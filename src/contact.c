@@ -49,8 +49,8 @@ PetscErrorCode ContactCreate(Mesh mesh, Scene scene, Elasticity elasticity, Load
   PetscCall(PetscMalloc1(FitWorkspace(mesh->dim, 4, FIT_MAX_POINTS), &contact->work.workspace));
   PetscCall(PetscMalloc4(capacity, &contact->work.result.points, 3 * (capacity + 1), &contact->work.result.N, capacity + 1, &contact->work.from,
                          3 * (capacity + 1), &contact->work.scale));
-  PetscCall(PetscMalloc4(PetscSqr(3 * (capacity + 1)), &contact->work.result.M, points * (capacity + 1), &contact->work.node, 3 * points * (capacity + 1),
-                         &contact->work.N, PetscSqr(3 * (capacity + 1)), &contact->work.M));
+  PetscCall(PetscMalloc3(PetscSqr(3 * (capacity + 1)), &contact->work.result.M, points * (capacity + 1), &contact->work.node, 3 * points * (capacity + 1),
+                         &contact->work.N));
   *out = contact;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -65,7 +65,7 @@ PetscErrorCode ContactDestroy(Contact *contact)
   for (int p = 0; p < c->n_pairs; p++) PetscCall(ContactPairDestroy(&c->pairs[p]));
   PetscCall(PetscFree(c->pairs));
   PetscCall(PetscFree4(c->work.result.points, c->work.result.N, c->work.from, c->work.scale));
-  PetscCall(PetscFree4(c->work.result.M, c->work.node, c->work.N, c->work.M));
+  PetscCall(PetscFree3(c->work.result.M, c->work.node, c->work.N));
   PetscCall(PetscFree2(c->work.x, c->work.multiplier));
   PetscCall(PetscFree(c->work.workspace));
   PetscCall(BlockMatrixDestroy(&c->blocks));
@@ -117,9 +117,11 @@ static PetscErrorCode TermForces(Contact contact, ContactPair *pair, PetscInt c,
     const PetscReal force = pressure * pair->area[c] * pair->term_weight[q] * pair->factor[q];
 
     if (pair->factor[q] == 0) continue;
+    if (pair->fit.degree) TimingBegin(TIMING_FIT);
     PetscCall(ContactPointEvaluate(pair, pair->smoother, pair->lists, q, pair->seed[q], SMOOTHER_FIRST_VARIATION, &found));
+    if (pair->fit.degree) TimingEnd(TIMING_FIT);
     if (!found) continue;
-    ContactPointToNodes(pair, pair->lists, q, 1, PETSC_FALSE, work->node, work->N, &n);
+    ContactPointToNodes(pair, pair->lists, q, 1, 0, work->node, work->N, NULL, &n);
     for (int i = 0; i < n * dim; i++) {
       values[work->node[i / dim] * dim + i % dim] -= force * work->N[i];
       *force2 += PetscSqr(force * work->N[i]);
@@ -176,39 +178,45 @@ PetscErrorCode ContactResidual(Contact contact, const PetscReal *u, PetscReal t,
 
 /* ---------- tangent ---------- */
 
-/* The block of one active term: A (psi'' Nbar Nbar^T - p sum_q w_q M_q), over its points' nodes one after another (a node may occur twice). */
-static PetscErrorCode TermBlock(Contact contact, const ContactPair *pair, int p, PetscInt c, PetscReal pressure, PetscReal stiffness)
+/* Adds the rank-one part A psi'' Nbar Nbar^T of a term to a block of size m. */
+static void TermAddRankOne(PetscInt m, const PetscReal *N, PetscReal factor, PetscReal *value)
+{
+  for (PetscInt i = 0; i < m; i++)
+    for (PetscInt j = 0; j < m; j++) value[i * m + j] += factor * N[i] * N[j];
+}
+
+/* The blocks of one active term, A (psi'' Nbar Nbar^T - p sum_q w_q M_q): one for each of its points and, where there are several, one over all
+   of their nodes (a node may occur twice). A point is evaluated once: how large its block is, the evaluation tells. */
+static PetscErrorCode TermBlocks(Contact contact, const ContactPair *pair, int p, PetscInt c, PetscReal pressure, PetscReal stiffness)
 {
   const int    dim  = contact->mesh->dim;
   ContactWork *work = &contact->work;
-  PetscReal    area = 0, *value;
-  PetscInt     m = 0, first = 0, *entry;
+  PetscReal    area = 0, *value = NULL;
+  PetscInt     m = 0, last = 0, *entry; /* sizes: of all points so far, of the last one */
   PetscBool    found;
 
   PetscFunctionBeginUser;
-  for (PetscInt q = pair->term_ptr[c]; q < pair->term_ptr[c + 1]; q++) {
-    if (pair->factor[q] == 0) continue;
-    PetscCall(ContactPointEvaluate(pair, pair->smoother, pair->lists, q, pair->seed[q], SMOOTHER_GAP, &found));
-    if (found) m += ContactPointNodes(pair->lists, q, &work->result) * dim;
-  }
-  PetscCall(BlockMatrixAdd(contact->blocks, p, m, &entry, &value));
   for (PetscInt q = pair->term_ptr[c]; q < pair->term_ptr[c + 1]; q++) {
     const PetscReal weight = pair->area[c] * pair->term_weight[q] * pair->factor[q];
     int             n;
 
     if (pair->factor[q] == 0) continue;
+    if (pair->fit.degree) TimingBegin(TIMING_FIT);
     PetscCall(ContactPointEvaluate(pair, pair->smoother, pair->lists, q, pair->seed[q], SMOOTHER_SECOND_VARIATION, &found));
+    if (pair->fit.degree) TimingEnd(TIMING_FIT);
     if (!found) continue;
-    ContactPointToNodes(pair, pair->lists, q, pair->term_weight[q], PETSC_TRUE, work->node, &work->N[first], &n);
-    for (PetscInt i = 0; i < n * dim; i++) {
-      entry[first + i] = work->node[i / dim] * dim + i % dim;
-      for (PetscInt j = 0; j < n * dim; j++) value[(first + i) * m + first + j] = -pressure * weight * work->M[i * n * dim + j];
-    }
+    last = ContactPointNodes(pair->lists, q, &work->result) * dim;
+    PetscCall(BlockMatrixAdd(contact->blocks, p, last, &entry, &value));
+    ContactPointToNodes(pair, pair->lists, q, pair->term_weight[q], -pressure * weight, &work->node[m / dim], &work->N[m], value, &n);
+    for (PetscInt i = 0; i < last; i++) entry[i] = work->node[(m + i) / dim] * dim + i % dim;
     area += weight;
-    first += n * dim;
+    m += last;
   }
-  for (PetscInt i = 0; i < m; i++)
-    for (PetscInt j = 0; j < m; j++) value[i * m + j] += area * stiffness * work->N[i] * work->N[j];
+  if (m > last) {
+    PetscCall(BlockMatrixAdd(contact->blocks, p, m, &entry, &value));
+    for (PetscInt i = 0; i < m; i++) entry[i] = work->node[i / dim] * dim + i % dim;
+  }
+  TermAddRankOne(m, work->N, area * stiffness, value);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -223,7 +231,7 @@ static PetscErrorCode PairBlocks(Contact contact, ContactPair *pair, int p, cons
     TermLaw(pair, c, gap, t, &value);
     if (touching && gap - ContactTermOffset(pair, c, t) >= 0 && gap - ContactTermOffset(pair, c, t) <= ContactTouchTolerance(pair, c))
       value.stiffness = pair->now.penalty[c];
-    if (value.stiffness > 0) PetscCall(TermBlock(contact, pair, p, c, value.pressure, value.stiffness));
+    if (value.stiffness > 0) PetscCall(TermBlocks(contact, pair, p, c, value.pressure, value.stiffness));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

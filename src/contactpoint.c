@@ -81,8 +81,10 @@ int ContactPointNodes(ContactLists lists, PetscInt q, const SmootherResult *r)
   return (int)n;
 }
 
-/* Carries the variations of the last evaluation from fit points to contact nodes: N and M over nodes[*n] of the lists, in work. */
-void ContactPointToNodes(const ContactPair *pair, ContactLists lists, PetscInt q, PetscReal weight, PetscBool second, PetscInt *node, PetscReal *N, int *count)
+/* Carries the variations of the last evaluation from fit points to contact nodes, node[*count] of the lists: N times weight and, unless M is NULL,
+   M times factor, both over ContactPointNodes() nodes. */
+void ContactPointToNodes(const ContactPair *pair, ContactLists lists, PetscInt q, PetscReal weight, PetscReal factor, PetscInt *node, PetscReal *N,
+                         PetscReal *M, int *count)
 {
   ContactWork          *work = pair->work;
   const SmootherResult *r    = &work->result;
@@ -93,7 +95,7 @@ void ContactPointToNodes(const ContactPair *pair, ContactLists lists, PetscInt q
   for (PetscInt k = lists->slave_ptr[q]; k < lists->slave_ptr[q + 1]; k++, n++) {
     node[n] = lists->slave_node[k];
     from[n] = 0;
-    for (int d = 0; d < dim; d++) scale[3 * n + d] = lists->slave_S[k];
+    for (int d = 0; d < dim; d++) scale[n * dim + d] = lists->slave_S[k];
   }
   for (int i = 0; i < r->n; i++) {
     const PetscInt      p     = lists->list_point[lists->list_ptr[q] + r->points[i]];
@@ -102,17 +104,15 @@ void ContactPointToNodes(const ContactPair *pair, ContactLists lists, PetscInt q
     for (PetscInt k = lists->point_ptr[p]; k < lists->point_ptr[p + 1]; k++, n++) {
       node[n] = lists->point_node[k];
       from[n] = 1 + i;
-      for (int d = 0; d < dim; d++) scale[3 * n + d] = image->sign[d] * lists->point_S[k];
+      for (int d = 0; d < dim; d++) scale[n * dim + d] = image->sign[d] * lists->point_S[k];
     }
   }
-  for (int a = 0; a < n; a++)
-    for (int d = 0; d < dim; d++) N[a * dim + d] = weight * scale[3 * a + d] * r->N[from[a] * dim + d];
-  for (int a = 0; second && a < n; a++) {
-    for (int d = 0; d < dim; d++) {
-      for (int b = 0; b < n; b++)
-        for (int e = 0; e < dim; e++)
-          work->M[(a * dim + d) * n * dim + b * dim + e] = scale[3 * a + d] * scale[3 * b + e] * r->M[(from[a] * dim + d) * m + from[b] * dim + e];
-    }
+  for (int i = 0; i < n * dim; i++) N[i] = weight * scale[i] * r->N[from[i / dim] * dim + i % dim];
+  for (int i = 0; M && i < n * dim; i++) {
+    const PetscReal *row = &r->M[(from[i / dim] * dim + i % dim) * m];
+
+    for (int b = 0; b < n; b++)
+      for (int d = 0; d < dim; d++) M[i * n * dim + b * dim + d] = factor * scale[i] * scale[b * dim + d] * row[from[b] * dim + d];
   }
   *count = n;
 }
