@@ -33,14 +33,15 @@ typedef struct {
   PetscInt           *term_ptr;    /* slave points of each term */
   PetscReal          *term_weight; /* their weights, sum 1 */
   ContactState        now, accepted;
-  ContactLists        lists;
-  PetscReal          *factor;                  /* per slave point, frozen with the lists: fades out past a free edge */
-  int                *seed;                    /* per slave point: the facet of last time */
-  PetscReal          *force, *vector, *normal; /* of the last residual: normal force, its sum over the slave points (n*3), contact normal (n*3) */
-  PetscReal           t;                       /* of the last residual */
-  PetscReal          *pressure, *trial;        /* trial: gaps of the last projection, of a residual or a tangent */
-  PetscBool           projected;               /* there was one with these lists */
-  ContactWork        *work;                    /* shared by all pairs */
+  ContactLists        lists, next;              /* next: fresh ones, NULL: none */
+  PetscReal          *next_factor, next_motion; /* of the next ones: area factors, and the motion they were made for */
+  PetscReal          *factor;                   /* per slave point, frozen with the lists: fades out past a free edge */
+  int                *seed;                     /* per slave point: the facet of last time */
+  PetscReal          *force, *vector, *normal;  /* of the last residual: normal force, its sum over the slave points (n*3), contact normal (n*3) */
+  PetscReal           t;                        /* of the last residual */
+  PetscReal          *pressure, *trial;         /* trial: gaps of the last projection, of a residual or a tangent */
+  PetscBool           projected;                /* there was one with these lists */
+  ContactWork        *work;                     /* shared by all pairs */
 } ContactPair;
 
 struct _n_Contact {

@@ -1,4 +1,5 @@
 #include "contactimpl.h"
+#include "timing.h"
 
 /* A gap from fresh lists agrees with the solve's when it differs by less than this fraction of itself, or of the face size (round-off of a
    closest-point projection). */
@@ -10,6 +11,8 @@
 #define CONTACT_FIT_AGREES 0.1
 /* The area factor past a free edge is frozen in a solve; a change above this makes the step solve again. */
 #define CONTACT_FACTOR_AGREES 1e-2
+/* Motions that differ by less than this fraction differ by round-off. */
+#define CONTACT_SAME_MOTION 1e-9
 
 static PetscReal SmoothStep(PetscReal x)
 {
@@ -34,21 +37,49 @@ static PetscErrorCode PairFactors(const ContactPair *pair, ContactLists lists, P
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode PairTakeLists(ContactPair *pair, ContactLists lists, const PetscReal *factor)
+/* Fresh lists and area factors become the pair's next ones. */
+static PetscErrorCode PairSearch(ContactPair *pair, const PetscReal *u, PetscReal t, PetscReal motion)
+{
+  PetscFunctionBeginUser;
+  PetscCall(ListsDestroy(&pair->next));
+  PetscCall(SearchLists(pair->search, u, t, motion, &pair->next));
+  PetscCall(PairFactors(pair, pair->next, pair->next_factor));
+  pair->next_motion = motion;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Are there next lists that were made for these positions and for that much motion? The same on all ranks. */
+static PetscErrorCode PairNextServes(ContactPair *pair, const PetscReal *u, PetscReal t, PetscReal motion, PetscBool *serves)
+{
+  PetscBool moved = PETSC_TRUE;
+  int       all;
+
+  PetscFunctionBeginUser;
+  if (pair->next && motion <= pair->next_motion * (1 + CONTACT_SAME_MOTION)) PetscCall(ListsUpdate(pair->search, pair->next, u, t, &moved));
+  all = !moved;
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &all, 1, MPI_INT, MPI_LAND, pair->mesh->comm));
+  *serves = all ? PETSC_TRUE : PETSC_FALSE;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The next lists replace those that serve. */
+static PetscErrorCode PairTakeNext(ContactPair *pair)
 {
   PetscFunctionBeginUser;
   PetscCall(ListsDestroy(&pair->lists));
-  pair->lists     = lists;
+  pair->lists     = pair->next;
+  pair->next      = NULL;
   pair->projected = PETSC_FALSE;
-  PetscCall(PetscArraycpy(pair->factor, factor, lists->n_slaves));
-  for (PetscInt q = 0; q < lists->n_slaves; q++) pair->seed[q] = -1;
+  PetscCall(PetscArraycpy(pair->factor, pair->next_factor, pair->lists->n_slaves));
+  for (PetscInt q = 0; q < pair->lists->n_slaves; q++) pair->seed[q] = -1;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* ContactGather - new lists, and with them new area factors, for all pairs; the blocks of the last tangent are dropped.
 
    Collective. u[n_nodes*dim]: local displacements (length), ghosts included; t: load parameter, for rigid tools; motion: relative motion
-   (length) that the lists must be good for. The contact state is not touched. */
+   (length) that the lists must be good for. Those that ContactListsHold() made at the same place for as much motion are taken as they are. The
+   contact state is not touched. */
 PetscErrorCode ContactGather(Contact contact, const PetscReal *u, PetscReal t, PetscReal motion)
 {
   PetscFunctionBeginUser;
@@ -56,14 +87,11 @@ PetscErrorCode ContactGather(Contact contact, const PetscReal *u, PetscReal t, P
   PetscCall(BlockMatrixReset(contact->blocks)); /* its blocks speak of the old lists */
   for (int p = 0; p < contact->n_pairs; p++) {
     ContactPair *pair = &contact->pairs[p];
-    ContactLists lists;
-    PetscReal   *factor;
+    PetscBool    serves;
 
-    PetscCall(SearchLists(pair->search, u, t, motion, &lists));
-    PetscCall(PetscMalloc1(lists->n_slaves, &factor));
-    PetscCall(PairFactors(pair, lists, factor));
-    PetscCall(PairTakeLists(pair, lists, factor));
-    PetscCall(PetscFree(factor));
+    PetscCall(PairNextServes(pair, u, t, motion, &serves));
+    if (!serves) PetscCall(PairSearch(pair, u, t, motion));
+    PetscCall(PairTakeNext(pair));
   }
   PetscCall(PetscLogEventEnd(contact->event_search, 0, 0, 0, 0));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -135,45 +163,46 @@ static PetscErrorCode PairDepth(Contact contact, const ContactPair *pair, PetscR
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Do the pair's next lists say the same of each of this rank's terms as the last residual? */
+static PetscErrorCode PairNextAgrees(ContactPair *pair, PetscReal t, PetscReal depth, PetscBool *agrees)
+{
+  PetscFunctionBeginUser;
+  *agrees = PETSC_TRUE;
+  if (pair->fit.degree) TimingBegin(TIMING_FIT);
+  for (PetscInt c = 0; c < pair->n && *agrees; c++) {
+    PetscReal gap;
+
+    PetscCall(ContactTermGap(pair, pair->next, pair->next_factor, NULL, c, &gap));
+    *agrees = TermAgrees(pair, pair->next, c, gap, pair->next_factor, t, depth);
+  }
+  if (pair->fit.degree) TimingEnd(TIMING_FIT);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* ContactListsHold - whether lists made afresh at the solution say the same of every term as those it was found with.
 
-   Collective. u, t: of the last ContactResidual() with forces; motion: as of ContactGather(). *hold: the same on all ranks; if it is
-   PETSC_FALSE the fresh lists of all pairs have replaced the old, and the problem is to be solved again. */
+   Collective. u, t: of the last ContactResidual() with forces; motion: as of ContactGather(), which may take the fresh lists. *hold: the same on
+   all ranks; if it is PETSC_FALSE the fresh lists of all pairs have replaced the old, and the problem is to be solved again. */
 PetscErrorCode ContactListsHold(Contact contact, const PetscReal *u, PetscReal t, PetscReal motion, PetscBool *hold)
 {
-  ContactLists *lists;
-  PetscReal   **factor;
-  int           agree = 1;
+  int agree = 1;
 
   PetscFunctionBeginUser;
   PetscCall(PetscLogEventBegin(contact->event_search, 0, 0, 0, 0));
-  PetscCall(PetscMalloc2(contact->n_pairs, &lists, contact->n_pairs, &factor));
   for (int p = 0; p < contact->n_pairs; p++) {
     ContactPair *pair = &contact->pairs[p];
     PetscReal    depth;
+    PetscBool    agrees;
 
     PetscCall(PairDepth(contact, pair, t, &depth));
-    PetscCall(SearchLists(pair->search, u, t, motion, &lists[p]));
-    PetscCall(PetscMalloc1(lists[p]->n_slaves, &factor[p]));
-    PetscCall(PairFactors(pair, lists[p], factor[p]));
-    for (PetscInt c = 0; c < pair->n; c++) {
-      PetscReal gap;
-
-      PetscCall(ContactTermGap(pair, lists[p], factor[p], NULL, c, &gap));
-      agree = agree && TermAgrees(pair, lists[p], c, gap, factor[p], t, depth);
-    }
+    PetscCall(PairSearch(pair, u, t, motion));
+    PetscCall(PairNextAgrees(pair, t, depth, &agrees));
+    agree = agree && agrees;
   }
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &agree, 1, MPI_INT, MPI_LAND, contact->mesh->comm));
   *hold = agree ? PETSC_TRUE : PETSC_FALSE;
-  for (int p = 0; p < contact->n_pairs; p++) {
-    if (agree)
-      PetscCall(ListsDestroy(&lists[p]));
-    else
-      PetscCall(PairTakeLists(&contact->pairs[p], lists[p], factor[p]));
-    PetscCall(PetscFree(factor[p]));
-  }
+  for (int p = 0; p < contact->n_pairs && !agree; p++) PetscCall(PairTakeNext(&contact->pairs[p]));
   if (!agree) PetscCall(BlockMatrixReset(contact->blocks));
-  PetscCall(PetscFree2(lists, factor));
   PetscCall(PetscLogEventEnd(contact->event_search, 0, 0, 0, 0));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -110,7 +110,7 @@ PetscErrorCode ContactPairCreate(Mesh mesh, Scene scene, Elasticity elasticity, 
   PetscCall(ContactStateCreate(pair->n, penalty, &pair->now));
   PetscCall(ContactStateCreate(pair->n, penalty, &pair->accepted));
   PetscCall(SearchCreate(mesh, scene, loads, pair->slave, pair->master, pair->n_images, pair->images, &pair->fit, pair->n, pair->node, &pair->search));
-  PetscCall(PetscCalloc2(pair->n, &pair->factor, pair->n, &pair->seed));
+  PetscCall(PetscCalloc3(pair->n, &pair->factor, pair->n, &pair->next_factor, pair->n, &pair->seed));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -119,6 +119,7 @@ PetscErrorCode ContactPairDestroy(ContactPair *pair)
 {
   PetscFunctionBeginUser;
   PetscCall(ListsDestroy(&pair->lists));
+  PetscCall(ListsDestroy(&pair->next));
   PetscCall(SearchDestroy(&pair->search));
   PetscCall(SurfaceDestroy(&pair->slave));
   if (pair->master) PetscCall(SurfaceDestroy(&pair->master));
@@ -127,7 +128,7 @@ PetscErrorCode ContactPairDestroy(ContactPair *pair)
   PetscCall(PetscFree4(pair->node, pair->area, pair->size, pair->turn));
   PetscCall(PetscFree2(pair->term_ptr, pair->term_weight));
   PetscCall(PetscFree5(pair->force, pair->vector, pair->normal, pair->pressure, pair->trial));
-  PetscCall(PetscFree2(pair->factor, pair->seed));
+  PetscCall(PetscFree3(pair->factor, pair->next_factor, pair->seed));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

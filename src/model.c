@@ -10,7 +10,7 @@
 #define MODEL_ENERGY_ROUND_OFF 1e-6
 /* Residuals compared as if they were energies: times this, so that any decrease beats the slope the line search expects. */
 #define MODEL_RESIDUAL_WEIGHT 1e30
-/* Lists are made for this multiple of the motion that the last step's rate predicts. */
+/* Lists are made for this multiple of the motion that the last step's rate predicts; those that check a step too, so that an equal step takes them. */
 #define MODEL_MOTION_SAFETY 1.5
 /* A direct solve of a regular system leaves a relative residual of 1e-12 to 1e-7, stiff penalties included; above this the system is singular. */
 #define MODEL_SINGULAR 1e-3
@@ -574,7 +574,7 @@ PetscErrorCode ModelSolve(Model model, PetscReal t, SolveReport *report)
     if (report->result != SOLVE_CONVERGED || !model->contact) break;
     PetscCall(ModelMotion(model, work->trial, t, &motion));
     TimingBegin(TIMING_SEARCH);
-    PetscCall(ContactListsHold(model->contact, work->trial, t, motion, &hold));
+    PetscCall(ContactListsHold(model->contact, work->trial, t, MODEL_MOTION_SAFETY * motion, &hold));
     TimingEnd(TIMING_SEARCH);
     if (hold) break;
     if (report->regathered++ == MODEL_MAX_REGATHER) report->result = SOLVE_LISTS;
