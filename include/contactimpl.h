@@ -51,7 +51,8 @@ typedef struct {
   PetscReal           penalty_automatic;
   PetscBool           predicting, touching; /* what was accepted as closed stays so; what touches is closed */
   ContactState        now, accepted;
-  ContactLists        lists;
+  ContactLists        lists, next;              /* next: fresh ones, NULL: none */
+  PetscReal          *next_factor, next_motion; /* of the next ones: area factors, and the motion they were made for */
   /* per slave point; factor: frozen with the lists, fades out past a free edge; seed: the facet of last time; gap, normal: of the last projection */
   PetscReal   *factor;
   int         *seed;
@@ -60,6 +61,7 @@ typedef struct {
   PetscReal    total[3];         /* and the force on this rank's terms */
   PetscReal    t;                /* of the last residual */
   PetscReal   *pressure, *trial; /* trial: gaps of the last projection, of a residual or a tangent */
+  PetscBool    projected;        /* there was one with these lists */
   ContactWork *work;             /* shared by all pairs */
 } ContactPair;
 

@@ -1,4 +1,5 @@
 #include "model.h"
+#include "matrixsum.h"
 #include "refusal.h"
 #include "timing.h"
 
@@ -9,7 +10,7 @@
 #define MODEL_ENERGY_ROUND_OFF 1e-6
 /* Residuals compared as if they were energies: times this, so that any decrease beats the slope the line search expects. */
 #define MODEL_RESIDUAL_WEIGHT 1e30
-/* Lists are made for this multiple of the motion that the last step's rate predicts. */
+/* Lists are made for this multiple of the motion that the last step's rate predicts; those that check a step too, so that an equal step takes them. */
 #define MODEL_MOTION_SAFETY 1.5
 /* A direct solve of a regular system leaves a relative residual of 1e-12 to 1e-7, stiff penalties included; above this the system is singular. */
 #define MODEL_SINGULAR 1e-3
@@ -142,16 +143,12 @@ static PetscErrorCode ModelAddContact(Model model, Mat K, Mat C, PetscBool chang
 
   PetscFunctionBeginUser;
   if (changed) {
-    PetscCall(MatDuplicate(K, MAT_COPY_VALUES, &B));
-    PetscCall(MatAXPY(B, 1, C, DIFFERENT_NONZERO_PATTERN));
+    PetscCall(MatrixSumCreate(K, C, &B));
     PetscCall(MatHeaderReplace(model->A, &B));
     PetscCall(SNESGetKSP(model->snes, &ksp));
     PetscCall(KSPReset(ksp));
-  } else {
-    PetscCall(MatZeroEntries(model->A));
-    PetscCall(MatAXPY(model->A, 1, K, SUBSET_NONZERO_PATTERN));
-    PetscCall(MatAXPY(model->A, 1, C, SUBSET_NONZERO_PATTERN));
-  }
+  } else
+    PetscCall(MatrixSumUpdate(K, C, model->A));
   PetscCall(MatSetOption(model->A, MAT_SYMMETRIC, LoadsConservative(model->loads)));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -579,7 +576,7 @@ PetscErrorCode ModelSolve(Model model, PetscReal t, SolveReport *report)
     if (report->result != SOLVE_CONVERGED || !model->contact) break;
     PetscCall(ModelMotion(model, work->trial, t, &motion));
     TimingBegin(TIMING_SEARCH);
-    PetscCall(ContactListsHold(model->contact, work->trial, t, motion, &hold));
+    PetscCall(ContactListsHold(model->contact, work->trial, t, MODEL_MOTION_SAFETY * motion, &hold));
     TimingEnd(TIMING_SEARCH);
     if (hold) break;
     if (report->regathered++ == MODEL_MAX_REGATHER) report->result = SOLVE_LISTS;
