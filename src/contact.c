@@ -410,6 +410,13 @@ static PetscErrorCode SharedBlocks(Contact contact, ContactPair *pair, int p, co
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Pressure whose turning with the surface counts in a tangent: in a linear step that of the accepted state, not what pulls a term to its place. */
+static PetscReal TermTurningPressure(const ContactPair *pair, PetscInt c, PetscReal t, const LawValue *value)
+{
+  if (!pair->predicting) return value->pressure;
+  return pair->accepted.status[c] == CONTACT_CLOSED ? pair->accepted.penalty[c] * (ContactTermOffset(pair, c, t) - pair->accepted.gap[c]) : 0;
+}
+
 static PetscErrorCode PairBlocks(Contact contact, ContactPair *pair, int p, const PetscReal *u, PetscReal t)
 {
   TermState *terms;
@@ -419,12 +426,14 @@ static PetscErrorCode PairBlocks(Contact contact, ContactPair *pair, int p, cons
   PetscCall(PetscMalloc1(pair->n, &terms));
   PetscCall(PetscArrayzero(pair->point_force, pair->lists->n_slaves));
   for (PetscInt c = 0; c < pair->n; c++) {
-    LawValue value;
+    LawValue  value;
+    PetscReal pressure;
 
     TermLaw(pair, c, t, &value, &terms[c].area);
     terms[c].stiffness = value.stiffness;
-    for (PetscInt k = pair->term_ptr[c]; k < pair->term_ptr[c + 1] && value.pressure != 0; k++)
-      pair->point_force[pair->term_point[k]] += value.pressure * pair->term_weight[k] * pair->factor[pair->term_point[k]];
+    pressure           = TermTurningPressure(pair, c, t, &value);
+    for (PetscInt k = pair->term_ptr[c]; k < pair->term_ptr[c + 1] && pressure != 0; k++)
+      pair->point_force[pair->term_point[k]] += pressure * pair->term_weight[k] * pair->factor[pair->term_point[k]];
   }
   if (pair->slaves->face_sf) PetscCall(SharedBlocks(contact, pair, p, terms));
   for (PetscInt c = 0; c < pair->n && !pair->slaves->face_sf; c++)

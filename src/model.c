@@ -3,6 +3,8 @@
 #include "refusal.h"
 #include "timing.h"
 
+/* Energy of a state with an inverted element: above any other, yet its square is a number, which the line search takes. */
+#define MODEL_INVERTED 1e100
 /* Times that contact lists are replaced and the step solved on before it counts as unsettled. */
 #define MODEL_MAX_REGATHER 8
 /* Below this residual (relative to F_ref) the energies that the line search compares differ by round-off only (their differences go with the
@@ -93,7 +95,7 @@ static PetscErrorCode ModelFunction(SNES snes, Vec x, Vec F, void *context)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Potential energy at the trial displacements, all ranks; infinite where an element is inverted. */
+/* Potential energy at the trial displacements, all ranks; out of reach where an element is inverted. */
 static PetscErrorCode ModelEnergy(Model model, PetscReal *energy)
 {
   PetscReal sum[2] = {0, 0}; /* energy, ranks with an inverted element */
@@ -111,7 +113,7 @@ static PetscErrorCode ModelEnergy(Model model, PetscReal *energy)
   }
   sum[1] = ok ? 0 : 1;
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sum, 2, MPIU_REAL, MPI_SUM, model->mesh->comm));
-  *energy = sum[1] > 0 ? PETSC_INFINITY : sum[0];
+  *energy = sum[1] > 0 ? MODEL_INVERTED : sum[0];
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
