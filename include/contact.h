@@ -5,20 +5,9 @@
    Lists are frozen inside one solve: ContactGather() makes them before it, ContactListsHold() says after it whether they were right. The
    rank that owns a slave node computes its terms; masters come from any rank. */
 #pragma once
+#include "contactstate.h"
 #include "loads.h"
 #include "mesh.h"
-
-typedef enum { CONTACT_OPEN, CONTACT_CLOSED } ContactStatus;
-
-/* All state that a cutback saves and restores: per pair, per slave node of this rank that carries area. */
-typedef struct {
-  PetscInt       n;
-  PetscReal     *penalty; /* force per length and area */
-  ContactStatus *status;
-  PetscReal     *gap;        /* weighted gap; NaN: no master near */
-  PetscReal     *offset;     /* g_0, subtracted from the gap */
-  PetscReal     *multiplier; /* pressure carried over; 0 for the penalty law */
-} ContactState;
 
 /* What the slave nodes of a pair show to probes and output; this rank's. */
 typedef struct {
