@@ -30,9 +30,11 @@ typedef struct {
   ContactSearch       search;
   PetscInt            n, *node; /* terms: slave nodes of this rank that carry area */
   PetscReal          *area, *size, *turn;
+  PetscReal           automatic;   /* penalty: force per length and area */
   PetscInt           *term_ptr;    /* slave points of each term */
   PetscReal          *term_weight; /* their weights, sum 1 */
   ContactState        now, accepted;
+  PetscReal          *before; /* gaps of the iterate before, where the penalty is adjusted */
   ContactLists        lists;
   PetscReal          *factor;                  /* per slave point, frozen with the lists: fades out past a free edge */
   int                *seed;                    /* per slave point: the facet of last time */

@@ -105,12 +105,13 @@ PetscErrorCode ContactPairCreate(Mesh mesh, Scene scene, Elasticity elasticity, 
   if (pair->master) PetscCall(SurfaceFindFreeEdges(pair->master, pair->n_images, pair->images));
   if (pair->master && pair->fit.degree && pair->fit.global_frame) PetscCall(PairCheckGlobalFrame(mesh, scene, loads, pair));
   PetscCall(PairCreateTerms(mesh, scene, pair));
-  penalty =
-    contact->penalty_scale * (contact->penalty_auto ? PenaltyAutomatic(pair->slave->stiffness, pair->master ? pair->master->stiffness : 0) : contact->penalty);
+  pair->automatic = PenaltyAutomatic(pair->slave->stiffness, pair->master ? pair->master->stiffness : 0);
+  penalty         = contact->penalty_scale * (contact->penalty_auto ? pair->automatic : contact->penalty);
   PetscCall(ContactStateCreate(pair->n, penalty, &pair->now));
   PetscCall(ContactStateCreate(pair->n, penalty, &pair->accepted));
   PetscCall(SearchCreate(mesh, scene, loads, pair->slave, pair->master, pair->n_images, pair->images, &pair->fit, pair->n, pair->node, &pair->search));
   PetscCall(PetscCalloc2(pair->n, &pair->factor, pair->n, &pair->seed));
+  if (contact->adjust) PetscCall(PetscMalloc1(pair->n, &pair->before));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -128,6 +129,7 @@ PetscErrorCode ContactPairDestroy(ContactPair *pair)
   PetscCall(PetscFree2(pair->term_ptr, pair->term_weight));
   PetscCall(PetscFree5(pair->force, pair->vector, pair->normal, pair->pressure, pair->trial));
   PetscCall(PetscFree2(pair->factor, pair->seed));
+  PetscCall(PetscFree(pair->before));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
