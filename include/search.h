@@ -5,9 +5,8 @@
    Search goes in two stages: boxes of the ranks' slave nodes against boxes of facets to find the ranks, then a tree over the facets that
    arrived. There is no patch size to choose: the reach is two face sizes plus the largest motion asked for. */
 #pragma once
-#include "fit.h"
+#include "lists.h"
 #include "loads.h"
-#include "surface.h"
 
 /* How a master surface is fitted; degree 0: not at all, its facets serve. */
 typedef struct {
@@ -19,48 +18,6 @@ typedef struct {
   PetscReal      feature_angle; /* radians: lists end at sharper edges */
 } FitSettings;
 
-/* Which rung of the ladder a slave point stands on: fits of falling quality, then the facets. */
-enum { RUNG_FACET = -1, RUNG_PLAIN = 0, RUNG_WIDER = 4, RUNG_DEGREE_2 = 6, RUNG_LINEAR = 7, RUNGS = 8 };
-
-/* Everything a rank needs of a pair while lists are frozen. Contact nodes are the nodes that its terms touch: first those with unknowns
-   (leaves of sf; roots are the local nodes of their owners), then nodes of a rigid tool. Points are what a smoother sees: a fixed
-   combination of contact nodes, reflected, plus an offset: x = sign * (sum S x_node) + shift + offset. */
-typedef struct {
-  int          dim;
-  PetscInt     n_nodes, n_deformable;
-  PetscInt    *node_id; /* deformable: the mesh's rank-independent id; rigid: node of the tool */
-  PetscReal   *X, *u;   /* n_nodes*dim: reference coordinates, displacement at the last update */
-  PetscReal    t;       /* of the last update */
-  PetscInt    *dof;     /* n_nodes*dim global dofs, -1 where constrained or rigid */
-  PetscSF      sf;
-  MPI_Datatype block; /* dim reals */
-
-  PetscInt   n_points; /* fit points */
-  PetscInt  *point_ptr, *point_node;
-  PetscReal *point_S, *point_offset, *point_weight;
-  int       *point_image;
-  PetscReal *point_X, *point_u; /* n_points*dim */
-
-  PetscInt   n_slaves; /* slave points, in the order asked for */
-  PetscInt  *slave_ptr, *slave_node;
-  PetscReal *slave_S, *slave_offset;
-  PetscReal *slave_X, *slave_u; /* n_slaves*dim */
-
-  PetscInt  *list_ptr, *list_point; /* fit points of each slave point */
-  PetscInt  *fit_n;                 /* the first so many of them are fitted; 0: the facets serve */
-  int       *rung;                  /* RUNG_...: how the fit was found */
-  int       *degree;                /* of the fit */
-  PetscReal *frame, *metric;        /* 9 and 4 for each slave point, as FitProblem wants them */
-  PetscReal *pivot, *amplified;     /* guards of the fit when the lists were made */
-  PetscReal *residual;              /* largest distance of a point in the inner half of the support to the fit */
-  PetscInt  *facet_ptr;             /* facets of each slave point; their nodes count within the slave point's points */
-  Facet     *facet;
-  PetscReal *facet_size;
-  PetscReal *kappa; /* curvature of the master near each slave point: turn of normals over distance; 0: flat or no facet */
-} * ContactLists;
-
-typedef struct _n_ContactSearch *ContactSearch;
-
 /* master NULL: an analytic one, which needs no lists. slaves: local nodes of this rank that are slave points (node to surface: one node each). Surfaces,
  * images, settings are borrowed. Collective. */
 PetscErrorCode SearchCreate(Mesh, Scene, Loads, ContactSurface slave, ContactSurface master, int n_images, const SurfaceImage *, const FitSettings *,
@@ -68,12 +25,5 @@ PetscErrorCode SearchCreate(Mesh, Scene, Loads, ContactSurface slave, ContactSur
 PetscErrorCode SearchDestroy(ContactSearch *);
 /* New lists for local displacements u at load parameter t, good for a relative motion of `motion`. Collective. */
 PetscErrorCode SearchLists(ContactSearch, const PetscReal *u, PetscReal t, PetscReal motion, ContactLists *);
-PetscErrorCode ListsDestroy(ContactLists *);
-/* Positions of contact nodes, fit points and slave points for local displacements u at t. Collective. */
-PetscErrorCode ListsUpdate(ContactSearch, ContactLists, const PetscReal *u, PetscReal t);
-/* Values of the contact nodes (n_nodes*dim) from local values x (n_nodes of the mesh * dim); rigid nodes get their motion from t to t_next. Collective. */
-PetscErrorCode ListsBroadcast(ContactSearch, ContactLists, const PetscReal *x, PetscReal t, PetscReal t_next, PetscReal *values);
-/* Adds values of the contact nodes (n_nodes*dim) to y (local), complete at owned nodes; rigid nodes are left out. Collective. */
-PetscErrorCode ListsReduce(ContactLists, const PetscReal *values, PetscReal *y);
 /* The signed distance of any point to the whole master without its mirror images, by every rank looking at its own facets. Collective. */
 PetscErrorCode SearchDistance(ContactSearch, const PetscReal *u, PetscReal t, const PetscReal x[3], PetscReal *gap);

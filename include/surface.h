@@ -37,6 +37,8 @@ PetscErrorCode SurfaceNodeAreas(ContactSurface, Geometry, const PetscReal *u, Pe
 PetscErrorCode SurfaceNodeSizes(ContactSurface, Geometry, PetscReal *size, PetscReal *turn, PetscReal *share);
 /* The planes of symmetry of a pair as images, checked: planar, normal to an axis, held by a support. Collective. */
 PetscErrorCode SurfaceImages(Mesh, Scene, const SceneContact *, int *n_images, SurfaceImage images[SURFACE_MAX_IMAGES]);
+/* y = the image of x, dim components. */
+void SurfaceReflect(const SurfaceImage *, int dim, const PetscReal *x, PetscReal *y);
 /* The face as its mirror image sees it: node order turned over where the image reverses orientation. */
 Facet SurfaceImageFacet(const Facet *, const SurfaceImage *);
 /* Does any face of a master look towards any of the nodes (n of them, normals by local node, 3 each, any length)? Reference configuration. Collective. */

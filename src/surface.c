@@ -461,6 +461,12 @@ PetscErrorCode SurfaceImages(Mesh mesh, Scene scene, const SceneContact *contact
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* SurfaceReflect - the mirror image of a position. Not collective. x[dim], y[dim] (length) may be the same array. */
+void SurfaceReflect(const SurfaceImage *image, int dim, const PetscReal *x, PetscReal *y)
+{
+  for (int d = 0; d < dim; d++) y[d] = image->sign[d] * x[d] + image->shift[d];
+}
+
 /* SurfaceImageFacet - a facet as one of its images sees it: turned over where the image reverses orientation, so that its normal points
    out of the image again; free edges go along. Not collective. */
 Facet SurfaceImageFacet(const Facet *facet, const SurfaceImage *image)

@@ -1,0 +1,210 @@
+#include "fitframe.h"
+#include "searchimpl.h"
+
+/* Points are gathered a little beyond the support (rho^2 up to this), so that those which enter while a solve lasts are in the list. */
+#define SEARCH_FIT_MARGIN 1.7
+/* On regular meshes points lie exactly on the border of the support; this much beyond still counts as inside, and round-off decides nothing. */
+#define SEARCH_FIT_TIE 1e-6
+
+/* The ladder: wider supports, then lower degrees, until every guard holds. Degree 0: the scene's. */
+static const struct {
+  int    degree;
+  double widen;
+} Ladder[RUNGS] = {
+  {0, 1   },
+  {0, 1.15},
+  {0, 1.32},
+  {0, 1.52},
+  {0, 1.75},
+  {2, 1   },
+  {2, 1.32},
+  {1, 1   }
+};
+
+/* Unit normal at the centre of a candidate in the reference position. */
+static void ReferenceNormal(ContactLists lists, const Candidate *c, PetscReal normal[3])
+{
+  Candidate at_rest = *c;
+  PetscReal x[FACE_MAX_NODES * 3];
+
+  for (int a = 0; a < ElementGet(c->facet.type)->nodes; a++)
+    for (int d = 0; d < lists->dim; d++) x[a * lists->dim + d] = lists->point_X[c->facet.nodes[a] * lists->dim + d];
+  SearchCandidatePlace(lists->dim, x, 0, &at_rest);
+  for (int d = 0; d < 3; d++) normal[d] = at_rest.normal[d];
+}
+
+PetscErrorCode FittingCreate(ContactSearch s, ContactLists lists, PetscInt n_records, const FaceRecord *records, PetscInt n, const Candidate *candidates,
+                             Fitting *fit)
+{
+  NodeGeometry *node_geometry;
+  Facet        *facets;
+  PetscReal    *x;
+
+  PetscFunctionBeginUser;
+  *fit = (Fitting){.s = s, .lists = lists};
+  PetscCall(PetscMalloc5(3 * n, &fit->normals, 3 * n, &fit->reference, lists->n_points, &fit->geometry, n, &facets, lists->n_points * lists->dim, &x));
+  PetscCall(PetscCalloc1(lists->n_nodes, &node_geometry));
+  ListsPointGeometry(s, lists, n_records, records, node_geometry, fit->geometry);
+  PetscCall(PetscFree(node_geometry));
+  for (PetscInt i = 0; i < n; i++) {
+    facets[i] = candidates[i].facet;
+    ReferenceNormal(lists, &candidates[i], &fit->reference[3 * i]);
+    for (int d = 0; d < 3; d++) fit->normals[3 * i + d] = candidates[i].normal[d];
+  }
+  for (PetscInt i = 0; i < lists->n_points * lists->dim; i++) x[i] = lists->point_X[i] + lists->point_u[i];
+  fit->view = (SurfaceView){lists->dim, n, lists->n_points, facets, fit->normals, fit->reference, x, fit->geometry, PetscCosReal(s->fit->feature_angle)};
+  PetscCall(NeighbourhoodsCreate(&fit->view, &fit->neighbourhoods));
+  PetscCall(PetscMalloc6(FIT_MAX_POINTS, &fit->points, FIT_MAX_POINTS * 3, &fit->x, FIT_MAX_POINTS, &fit->multiplier, FIT_MAX_POINTS, &fit->taper,
+                         FitWorkspace(lists->dim, s->fit->degree, FIT_MAX_POINTS), &fit->workspace, FIT_MAX_POINTS, &fit->used));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode FittingDestroy(Fitting *fit)
+{
+  Facet     *facets = (Facet *)fit->view.facets;
+  PetscReal *x      = (PetscReal *)fit->view.x;
+
+  PetscFunctionBeginUser;
+  PetscCall(NeighbourhoodsDestroy(&fit->neighbourhoods));
+  PetscCall(PetscFree5(fit->normals, fit->reference, fit->geometry, facets, x));
+  PetscCall(PetscFree6(fit->points, fit->x, fit->multiplier, fit->taper, fit->workspace, fit->used));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The metric over a frame's tangents as a tensor in space: inverse squared lengths. */
+static void MetricInSpace(int dim, double (*frame)[3], double metric[2][2], PetscReal space[9])
+{
+  for (int i = 0; i < 3; i++) {
+    for (int j = 0; j < 3; j++) {
+      space[3 * i + j] = 0;
+      for (int a = 0; a < dim - 1; a++)
+        for (int b = 0; b < dim - 1; b++) space[3 * i + j] += frame[a][i] * metric[a][b] * frame[b][j];
+    }
+  }
+}
+
+/* Spacing of the points at a foot. Shape: the nodes' covariances, between the nodes by the shape functions, so that the support does not jump
+   from facet to facet and keeps the symmetry of a ring around a node. Size: the mean over the facet's nodes, as those on a cut see one side only. */
+static void FootSpacing(const Fitting *fit, PetscInt f, const double *xi, double covariance[3][3], double *area)
+{
+  const Facet *facet = &fit->view.facets[f];
+  const int    n = ElementGet(facet->type)->nodes, dim = fit->lists->dim;
+  double       share[FACE_MAX_NODES], total            = 0;
+
+  ElementShape(facet->type, xi, share, NULL, NULL);
+  for (int a = 0; a < n; a++) total += share[a] = PetscMax(share[a], 0); /* second-order ones are negative in places */
+  *area = 0;
+  for (int i = 0; i < 3; i++)
+    for (int j = 0; j < 3; j++) covariance[i][j] = 0;
+  for (int a = 0; a < n; a++) {
+    const NodeGeometry *g = &fit->geometry[facet->nodes[a]];
+    const double        w = share[a] / total;
+
+    *area += (dim == 3 ? PetscSqr(g->spacing) : g->spacing) / n;
+    for (int d = 0; d < 3; d++) {
+      covariance[d][d] += w * g->covariance[d];
+      covariance[d][(d + 1) % 3] += w * g->covariance[3 + d];
+      covariance[(d + 1) % 3][d] += w * g->covariance[3 + d];
+    }
+  }
+}
+
+static PetscReal PointRho2(const Fitting *fit, PetscInt p, const PetscReal foot[3], const PetscReal space[9])
+{
+  const int dim  = fit->lists->dim;
+  PetscReal rho2 = 0;
+
+  for (int i = 0; i < dim; i++)
+    for (int j = 0; j < dim; j++) rho2 += (fit->view.x[p * dim + i] - foot[i]) * space[3 * i + j] * (fit->view.x[p * dim + j] - foot[j]);
+  return rho2;
+}
+
+/* Tries one rung for the slave point that look found a facet for: points, frame, metric into fit and problem; true when every guard holds. */
+static PetscErrorCode FitRung(Fitting *fit, const Nearest *look, int rung, FitProblem *problem, FitResult *result, PetscBool *holds)
+{
+  const FitSettings *settings = fit->s->fit;
+  const PetscReal   *outward  = look->candidates[look->best].normal; /* the foot's own may lie along the surface when the foot is on an edge */
+  const int          dim = fit->lists->dim, degree = Ladder[rung].degree ? PetscMin(Ladder[rung].degree, settings->degree) : settings->degree;
+  double             covariance[3][3], area;
+  PetscReal          foot[3] = {0, 0, 0}, space[9];
+  PetscInt           n, found, inside;
+
+  PetscFunctionBeginUser;
+  *holds   = PETSC_FALSE;
+  *result  = (FitResult){.points = fit->used};
+  *problem = (FitProblem){.dim = dim, .degree = degree, .exponent = settings->exponent, .x = fit->x, .multiplier = fit->multiplier};
+  for (int d = 0; d < dim; d++) foot[d] = look->x[d] - look->foot.gap * look->foot.normal[d];
+  FootSpacing(fit, look->best, look->foot.xi, covariance, &area);
+  FitFrameFromNormal(dim, settings->global_frame ? fit->plane : outward, problem->frame);
+  for (int pass = 0; pass < 2; pass++) { /* first seen along the facet's normal, then along the points' own */
+    FitMetricFromCovariance(dim, problem->frame, covariance, area, settings->support * Ladder[rung].widen, problem->metric);
+    MetricInSpace(dim, problem->frame, problem->metric, space);
+    PetscCall(
+      NeighbourhoodGather(fit->neighbourhoods, look->best, foot, problem->frame[dim - 1], space, SEARCH_FIT_MARGIN, FIT_MAX_POINTS, fit->points, &n, &found));
+    inside = 0;
+    for (PetscInt i = 0; i < n; i++) {
+      const PetscReal rho2 = PointRho2(fit, fit->points[i], foot, space);
+
+      inside += rho2 <= 1 + SEARCH_FIT_TIE;
+      fit->multiplier[i] = fit->lists->point_weight[fit->points[i]];
+      fit->taper[i]      = fit->multiplier[i] * PetscMax(SEARCH_FIT_TIE, 1 - rho2 / SEARCH_FIT_MARGIN);
+      for (int d = 0; d < dim; d++) fit->x[i * dim + d] = fit->view.x[fit->points[i] * dim + d] - look->x[d];
+    }
+    problem->n = (int)n;
+    if (inside < FitPointsWanted(dim, degree)) PetscFunctionReturn(PETSC_SUCCESS);
+    if (settings->global_frame) break;
+    if (pass == 0 && !FitFrame(dim, problem->n, fit->x, fit->taper, outward, problem->frame)) PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  *holds = FitEvaluate(problem, FIT_GAP, fit->workspace, result) && (result->guards & ~FIT_FEW_POINTS) == FIT_HOLDS ? PETSC_TRUE : PETSC_FALSE;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* How far the points in the inner half of the support lie from the fit: what the smoothing itself costs. */
+static PetscReal FitResidual(const FitProblem *problem, const FitResult *result)
+{
+  const int dim  = problem->dim;
+  PetscReal most = 0;
+
+  for (int i = 0; i < problem->n; i++) {
+    double y[2] = {0, 0}, z = 0, rho2 = 0;
+
+    for (int d = 0; d < dim; d++) {
+      for (int a = 0; a < dim - 1; a++) y[a] += problem->frame[a][d] * problem->x[i * dim + d];
+      z += problem->frame[dim - 1][d] * problem->x[i * dim + d];
+    }
+    for (int a = 0; a < dim - 1; a++)
+      for (int b = 0; b < dim - 1; b++) rho2 += y[a] * problem->metric[a][b] * y[b];
+    if (rho2 <= 0.25) most = PetscMax(most, PetscAbsReal(z - FitSurfaceHeight(&result->surface, y, NULL)));
+  }
+  return most;
+}
+
+/* Climbs down the ladder for one slave point and writes what holds into its list, which starts at first. */
+PetscErrorCode FittingSlave(Fitting *fit, const Nearest *look, PetscInt q, PetscInt first, ListBuffer *buffer)
+{
+  ContactLists lists = fit->lists;
+  FitProblem   problem;
+  FitResult    result;
+  PetscBool    holds = PETSC_FALSE;
+  int          rung  = 0;
+
+  PetscFunctionBeginUser;
+  for (; rung < RUNGS && !holds; rung++) PetscCall(FitRung(fit, look, rung, &problem, &result, &holds));
+  lists->rung[q] = holds ? rung - 1 : RUNG_FACET;
+  if (!holds) PetscFunctionReturn(PETSC_SUCCESS);
+  lists->fit_n[q]     = problem.n;
+  lists->degree[q]    = problem.degree;
+  lists->pivot[q]     = result.pivot;
+  lists->amplified[q] = result.amplified;
+  lists->residual[q]  = FitResidual(&problem, &result);
+  for (int i = 0; i < 9; i++) lists->frame[9 * q + i] = problem.frame[i / 3][i % 3];
+  for (int i = 0; i < 4; i++) lists->metric[4 * q + i] = problem.metric[i / 2][i % 2];
+  for (PetscInt i = 0; i < problem.n; i++) PetscCall(ListBufferAddPoint(buffer, first, fit->points[i]));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* How far from a slave point the points of its fit may lie: the widest support with its margin, in spacings of the coarsest faces. */
+PetscReal SearchFitReach(ContactSearch s)
+{
+  return s->fit->degree ? PetscSqrtReal(SEARCH_FIT_MARGIN) * Ladder[RUNG_WIDER].widen * s->fit->support * s->master->max_size : 0;
+}
