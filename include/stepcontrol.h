@@ -12,6 +12,8 @@ typedef struct {
   PetscReal dt;                              /* of the next step, before it lands anywhere */
   PetscReal beta;                            /* contact: beta_{N_c} of the last choice, NaN: no node approached */
   PetscReal together;                        /* contact: nodes (area) that the last choice found to touch at one time, 0: no more than wanted */
+  PetscReal shortfall;                       /* contact: how many times more nodes the last linear forecasts promised than came; 1 to begin with */
+  PetscReal planned;                         /* contact: dt of the last linear forecast, 0: none */
   PetscInt  tied;                            /* contact: nodes of this step that touch together beyond those wanted */
 } StepSize;
 

@@ -40,13 +40,16 @@ typedef struct _n_ModelWork {
   PetscReal *accepted_u;
   Vec        accepted_x;
   PetscReal  accepted_t;
-  PetscReal  rate;      /* largest displacement per unit of t in the last accepted step */
-  PetscReal  scale;     /* force norm of the last evaluation */
-  PetscReal  stiffness; /* norm of the elastic tangent's diagonal */
-  PetscInt   inverted;  /* gmsh's tag of a cell of this rank that was turned inside out in this solve, or -1 */
-  PetscBool  near;      /* the iterate is so close that energies differ by round-off only */
-  PetscBool  balanced;  /* the residual of the iterate is within the tolerance */
-  Vec        residual;  /* of a trial point, while near; the tangent's diagonal for a moment */
+  Vec        forecast; /* x at forecast_t by ModelForecast() */
+  PetscReal  forecast_t;
+  PetscBool  forecasted; /* forecast starts from the accepted state */
+  PetscReal  rate;       /* largest displacement per unit of t in the last accepted step */
+  PetscReal  scale;      /* force norm of the last evaluation */
+  PetscReal  stiffness;  /* norm of the elastic tangent's diagonal */
+  PetscInt   inverted;   /* gmsh's tag of a cell of this rank that was turned inside out in this solve, or -1 */
+  PetscBool  near;       /* the iterate is so close that energies differ by round-off only */
+  PetscBool  balanced;   /* the residual of the iterate is within the tolerance */
+  Vec        residual;   /* of a trial point, while near; the tangent's diagonal for a moment */
 } ModelWork;
 
 /* ---------- residual, energy, tangent ---------- */
@@ -352,6 +355,7 @@ PetscErrorCode ModelCreate(Scene scene, Mesh mesh, Model *out)
   }
   PetscCall(MatCreateVecs(model->A, &model->x, NULL));
   PetscCall(VecDuplicate(model->x, &model->work->accepted_x));
+  PetscCall(VecDuplicate(model->x, &model->work->forecast));
   PetscCall(VecDuplicate(model->x, &model->work->residual));
   PetscCall(ModelCreateSNES(model));
   *out = model;
@@ -368,6 +372,7 @@ PetscErrorCode ModelDestroy(Model *model)
   PetscCall(SNESDestroy(&m->snes));
   PetscCall(VecDestroy(&m->x));
   PetscCall(VecDestroy(&m->work->accepted_x));
+  PetscCall(VecDestroy(&m->work->forecast));
   PetscCall(VecDestroy(&m->work->residual));
   PetscCall(MatDestroy(&m->A));
   PetscCall(ContactDestroy(&m->contact));
@@ -577,6 +582,22 @@ static PetscErrorCode ModelDepart(Model model, PetscReal t)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Where Newton's method starts: at a forecast that has been made, in proportion to the way; else it is made now. */
+static PetscErrorCode ModelStart(Model model, SolveReport *report)
+{
+  ModelWork *work = model->work;
+  PetscReal  part;
+
+  PetscFunctionBeginUser;
+  if (!work->forecasted) {
+    PetscCall(ModelPredict(model, report));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  part = (model->t - work->accepted_t) / (work->forecast_t - work->accepted_t);
+  PetscCall(VecAXPBYPCZ(model->x, 1 - part, part, 0, work->accepted_x, work->forecast));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Solves with frozen lists until they hold. */
 static PetscErrorCode ModelSolveLists(Model model, SolveReport *report)
 {
@@ -612,7 +633,7 @@ PetscErrorCode ModelSolve(Model model, PetscReal t, SolveReport *report)
   PetscFunctionBeginUser;
   *report = (SolveReport){.result = SOLVE_CONVERGED};
   PetscCall(ModelDepart(model, t));
-  PetscCall(ModelPredict(model, report));
+  PetscCall(ModelStart(model, report));
   while (window == WINDOW_MISSED && report->result == SOLVE_CONVERGED) {
     PetscCall(ModelSolveLists(model, report));
     if (report->result != SOLVE_CONVERGED || !model->contact) break;
@@ -631,7 +652,8 @@ PetscErrorCode ModelSolve(Model model, PetscReal t, SolveReport *report)
 /* ModelForecast - displacements at t by one linear solve from the accepted state with its contact set, as a guess of what will touch.
 
    Collective. u[n_nodes*dim]: local displacements (length), prescribed ones included. Costs and failures are added to the report; the state is
-   the accepted one afterwards, the contact lists are made for the way to t. */
+   the accepted one afterwards, the contact lists are made for the way to t. The next ModelSolve() starts from the forecast instead of a
+   prediction of its own, so that the solve is paid once. */
 PetscErrorCode ModelForecast(Model model, PetscReal t, PetscReal *u, SolveReport *report)
 {
   PetscFunctionBeginUser;
@@ -639,8 +661,11 @@ PetscErrorCode ModelForecast(Model model, PetscReal t, PetscReal *u, SolveReport
   PetscCall(ModelPredict(model, report));
   PetscCall(ModelTrial(model, model->x));
   PetscCall(PetscArraycpy(u, model->work->trial, model->mesh->n_nodes * model->mesh->dim));
+  PetscCall(VecCopy(model->x, model->work->forecast));
   PetscCall(VecCopy(model->work->accepted_x, model->x));
-  model->t = model->work->accepted_t;
+  model->work->forecast_t = t;
+  model->work->forecasted = report->result == SOLVE_CONVERGED ? PETSC_TRUE : PETSC_FALSE;
+  model->t                = model->work->accepted_t;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -671,6 +696,7 @@ PetscErrorCode ModelAccept(Model model)
   PetscCall(PetscArraycpy(work->accepted_u, model->u, model->mesh->n_nodes * model->mesh->dim));
   PetscCall(VecCopy(model->x, work->accepted_x));
   work->accepted_t = model->t;
+  work->forecasted = PETSC_FALSE;
   if (model->contact) {
     PetscCall(ContactAccept(model->contact));
     if (stepped) PetscCall(ContactAdjustNextPenalty(model->contact));

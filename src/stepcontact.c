@@ -7,6 +7,13 @@
 #define STEP_LEAST_PART 0.1
 /* A linear forecast goes this far past the touch, so that the node is in. */
 #define STEP_PAST_TOUCH 1.02
+/* A linear forecast holds the contact set, so that nodes behind the edge of contact come nearer than they do once those before them have
+   touched: fewer come than it promises. What the last step brought corrects the next forecast, by no more than the first factor at a time, and
+   the second in all. */
+#define STEP_CORRECTION 2.0
+#define STEP_SHORTFALL  8.0
+/* A step is as long as planned if it differs by less than this part: the end of a step, less its start, is not exactly dt. */
+#define STEP_AS_PLANNED 1e-6
 /* Factors on dt keep so many binary digits: the last ones differ with the number of ranks, steps must not. */
 #define STEP_DIGITS 10
 
@@ -34,7 +41,7 @@ static PetscErrorCode Wanted(Model model, const StepSize *size, PetscReal *wante
 }
 
 /* beta_{N_c} from the accepted state to (u, t), dt apart. Source: Chamoret et al. 2004, eqs 17 to 20. */
-static PetscErrorCode Choose(Model model, const PetscReal *u, PetscReal t, PetscBool still_open, StepSize *size, TouchChoice *choice)
+static PetscErrorCode Choose(Model model, const PetscReal *u, PetscReal t, PetscBool still_open, PetscReal factor, StepSize *size, TouchChoice *choice)
 {
   const PetscReal *u_0;
   PetscReal        t_0, wanted;
@@ -45,7 +52,7 @@ static PetscErrorCode Choose(Model model, const PetscReal *u, PetscReal t, Petsc
   PetscCall(ModelGetAccepted(model, &u_0, &t_0));
   PetscCall(Wanted(model, size, &wanted));
   PetscCall(ContactTouches(model->contact, u_0, t_0, u, t, size->by_area, still_open, &n, &touch));
-  TouchChoose(n, touch, wanted, size->dt_min / (t - t_0), choice);
+  TouchChoose(n, touch, factor * wanted, size->dt_min / (t - t_0), choice);
   PetscCall(PetscFree(touch));
   size->beta     = choice->beta;
   size->together = choice->tied ? choice->met : 0;
@@ -65,10 +72,11 @@ PetscErrorCode StepControlPredict_Contact(Model model, PetscReal rest, StepSize 
   PetscCall(PetscMalloc1(model->mesh->n_nodes * model->mesh->dim, &u));
   PetscCall(ModelForecast(model, model->t + dt, u, report));
   if (report->result == SOLVE_CONVERGED) {
-    PetscCall(Choose(model, u, model->t + dt, PETSC_FALSE, size, &choice));
-    size->tied = choice.tied;
-    size->dt   = isnan(choice.beta) ? size->growth * size->dt : PetscMin(size->growth * size->dt, Round(STEP_PAST_TOUCH * choice.beta) * dt);
-    size->dt   = PetscMax(size->dt_min, PetscMin(size->dt_max, size->dt));
+    PetscCall(Choose(model, u, model->t + dt, PETSC_FALSE, size->shortfall, size, &choice));
+    size->tied    = choice.tied;
+    size->dt      = isnan(choice.beta) ? size->growth * size->dt : PetscMin(size->growth * size->dt, Round(STEP_PAST_TOUCH * choice.beta) * dt);
+    size->dt      = PetscMax(size->dt_min, PetscMin(size->dt_max, size->dt));
+    size->planned = isnan(choice.beta) ? 0 : Round(STEP_PAST_TOUCH * choice.beta) * dt;
   }
   PetscCall(PetscFree(u));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -99,6 +107,22 @@ PetscErrorCode StepControlJudge_Contact(Model model, PetscReal dt, StepSize *siz
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Compares what a step of its planned length brought with what the forecast promised. */
+static PetscErrorCode Learn(Model model, PetscReal dt, StepSize *size)
+{
+  const PetscReal *u;
+  PetscReal        t, changed, all, wanted;
+
+  PetscFunctionBeginUser;
+  if (PetscAbsReal(dt - size->planned) > STEP_AS_PLANNED * dt) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(ModelGetAccepted(model, &u, &t));
+  PetscCall(ContactChanges(model->contact, t, size->by_area, &changed, &all));
+  wanted = size->wanted * (size->by_area ? all : 1);
+  size->shortfall *= Round(PetscMin(STEP_CORRECTION, PetscMax(1 / STEP_CORRECTION, wanted / PetscMax(changed, wanted / STEP_CORRECTION))));
+  size->shortfall = PetscMax(1, PetscMin(STEP_SHORTFALL, size->shortfall));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* StepControlNext_Contact - dt by the nodes that are still open and approach. `prediction: tangent` decides before the next step. Collective. */
 PetscErrorCode StepControlNext_Contact(Model model, PetscReal dt, PetscInt newton, StepSize *size)
 {
@@ -108,8 +132,9 @@ PetscErrorCode StepControlNext_Contact(Model model, PetscReal dt, PetscInt newto
   (void)newton;
   size->dt = dt;
   if (!model->contact) size->dt *= size->growth;
+  if (size->linearly && model->contact) PetscCall(Learn(model, dt, size));
   if (size->linearly || !model->contact) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(Choose(model, model->u, model->t, PETSC_TRUE, size, &choice));
+  PetscCall(Choose(model, model->u, model->t, PETSC_TRUE, 1, size, &choice));
   size->dt *= isnan(choice.beta) ? size->growth : PetscMax(1, PetscMin(size->growth, Round(choice.beta)));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -103,14 +103,15 @@ PetscErrorCode LoadStepperSetFromScene(LoadStepper stepper, Scene scene)
 {
   PetscFunctionBeginUser;
   stepper->control = StepControlFind(scene->stepping.control);
-  stepper->size    = (StepSize){.initial  = scene->stepping.initial,
-                                .dt_min   = scene->stepping.dt_min,
-                                .dt_max   = scene->stepping.dt_max,
-                                .growth   = scene->stepping.growth,
-                                .wanted   = scene->stepping.N_c ? scene->stepping.N_c : scene->stepping.N_c_fraction,
-                                .by_area  = (PetscBool)!scene->stepping.N_c,
-                                .linearly = (PetscBool)scene->stepping.predict_linearly,
-                                .beta     = NAN};
+  stepper->size    = (StepSize){.initial   = scene->stepping.initial,
+                                .dt_min    = scene->stepping.dt_min,
+                                .dt_max    = scene->stepping.dt_max,
+                                .growth    = scene->stepping.growth,
+                                .wanted    = scene->stepping.N_c ? scene->stepping.N_c : scene->stepping.N_c_fraction,
+                                .by_area   = (PetscBool)!scene->stepping.N_c,
+                                .linearly  = (PetscBool)scene->stepping.predict_linearly,
+                                .shortfall = 1,
+                                .beta      = NAN};
   PetscCall(LoadStepperSetLandings(stepper, scene));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
