@@ -48,9 +48,10 @@ typedef struct {
   PetscReal          *area, *size, *turn;
   PetscInt           *term_ptr, *term_point; /* slave points of each term */
   PetscReal          *term_weight;           /* their areas in it: sum is the term's area */
-  PetscReal           penalty_automatic;
-  PetscBool           predicting, touching; /* what was accepted as closed stays so; what touches is closed */
+  PetscReal           automatic;             /* penalty: force per length and area */
+  PetscBool           predicting, touching;  /* what was accepted as closed stays so; what touches is closed */
   ContactState        now, accepted;
+  PetscReal          *before;                   /* gaps of the iterate before, where the penalty is adjusted */
   ContactLists        lists, next;              /* next: fresh ones, NULL: none */
   PetscReal          *next_factor, next_motion; /* of the next ones: area factors, and the motion they were made for */
   /* per slave point; factor: frozen with the lists, fades out past a free edge; seed: the facet of last time; gap, normal: of the last projection */

@@ -516,6 +516,11 @@ PetscErrorCode ContactAccept(Contact contact)
 PetscErrorCode ContactRestore(Contact contact)
 {
   PetscFunctionBeginUser;
-  for (int p = 0; p < contact->n_pairs; p++) PetscCall(ContactStateCopy(&contact->pairs[p].accepted, &contact->pairs[p].now));
+  for (int p = 0; p < contact->n_pairs; p++) {
+    ContactPair *pair = &contact->pairs[p];
+
+    PetscCall(ContactStateCopy(&pair->accepted, &pair->now));
+    if (pair->before) PetscCall(PetscArraycpy(pair->before, pair->accepted.gap, pair->n));
+  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

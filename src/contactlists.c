@@ -183,7 +183,7 @@ static PetscErrorCode PairNextAgrees(Contact contact, ContactPair *pair, PetscRe
 
   PetscFunctionBeginUser;
   PetscCall(PairDepth(contact, pair, t, &depth, &pressure));
-  drift   = pair->slave_offsets ? CONTACT_OFFSET_AGREES * pressure / pair->penalty_automatic : 0;
+  drift   = pair->slave_offsets ? CONTACT_OFFSET_AGREES * pressure / pair->automatic : 0;
   *agrees = PETSC_TRUE;
   PetscCall(PetscMalloc1(pair->next->n_slaves, &gaps));
   if (pair->fit.degree) TimingBegin(TIMING_FIT);
