@@ -2,6 +2,7 @@
 #pragma once
 #include "blockmatrix.h"
 #include "contact.h"
+#include "fitmap.h"
 #include "law.h"
 #include "offset.h"
 #include "search.h"
@@ -22,7 +23,7 @@ typedef struct {
   PetscInt       x_room;
   ContactMap     map;
   PetscInt       count, *number;
-  PetscReal     *N, *M, *half; /* half: the points' M summed over rows */
+  PetscReal     *N, *M, *half; /* half: on the way from the points' M to M */
   PetscInt       room, half_room;
   int           *slot; /* of every contact node: its place in number[], -1 between evaluations */
   PetscInt       slot_room;
