@@ -8,6 +8,7 @@
 #include "contactstate.h"
 #include "loads.h"
 #include "mesh.h"
+#include "touch.h"
 
 /* What the slave nodes of a pair show to probes and output; this rank's. */
 typedef struct {
@@ -26,8 +27,19 @@ typedef struct {
   PetscReal max_penetration, min_penetration; /* min: over nodes above 1e-3 of the largest nodal force */
   PetscReal max_penetration_over_h;
   PetscReal penalty_min, penalty_max;
-  PetscReal force; /* norm of the total force on the slaves */
+  PetscReal force;          /* norm of the total force on the slaves */
+  PetscInt  outside_window; /* nodes whose penalty is to be adjusted; -1: no pair adjusts */
 } ContactSummary;
+
+/* How the penetrations of a pair stand to the window of its penalty, and what was done for it */
+typedef struct {
+  PetscInt  loaded;                          /* nodes that the window binds: above 1e-3 of the largest nodal force */
+  PetscInt  outside;                         /* of these, and of lighter ones beyond g_max, those outside */
+  PetscReal excess;                          /* largest penetration over g_max */
+  PetscInt  raised, lowered, clamped, light; /* updates in accepted steps so far; light: spared as they are not loaded */
+} ContactWindow;
+
+typedef enum { WINDOW_HOLDS, WINDOW_MISSED, WINDOW_AT_BOUND } ContactWindowState;
 
 /* How the fits of a smooth master stand, all slave points near it */
 typedef struct {
@@ -63,6 +75,20 @@ PetscErrorCode ContactRestore(Contact);
    amount), or keeps them as g_0. After ContactResidual(). Collective. */
 PetscErrorCode ContactTakeOverlap(Contact);
 PetscErrorCode ContactSummarise(Contact, ContactSummary *);
+/* Adjustment of the penalty (contactpenalty.c), after a converged ContactResidual(): within the step, until the window holds, ... */
+PetscErrorCode ContactAdjustPenalty(Contact, ContactWindowState *);
+/* ... or, after ContactAccept(), for the next step. Each sees only the pairs whose scene asks for it. */
+PetscErrorCode ContactAdjustNextPenalty(Contact);
+/* Did the last iterate move the penetrations by so little that the window can be judged? Once for each iterate. Collective. */
+PetscErrorCode ContactGapsSettled(Contact, PetscBool *settled);
+PetscErrorCode ContactPairWindow(Contact, int pair, ContactWindow *);
+PetscErrorCode ContactLocateOutside(Contact, char *text, size_t size); /* which node misses its window most. Collective. */
+/* Control of the load step (contacttouch.c): when open slave nodes touch if all goes on as from (u_0, t_0) to (u, t); sorted, the same on all
+   ranks; still_open: only those that are open at (u, t). The caller frees the list. Collective. */
+PetscErrorCode ContactTouches(Contact, const PetscReal *u_0, PetscReal t_0, const PetscReal *u, PetscReal t, PetscBool by_area, PetscBool still_open, int *n,
+                              Touch **);
+/* Slave nodes, or their area, whose status is another one than in the accepted state; *all: of all slave nodes. Collective. */
+PetscErrorCode ContactChanges(Contact, PetscReal t_0, PetscBool by_area, PetscReal *changed, PetscReal *all);
 int            ContactPairs(Contact);
 const char    *ContactPairName(Contact, int pair);
 int            ContactFindPair(Contact, const char *name); /* -1: none */

@@ -2,6 +2,7 @@
 #pragma once
 #include "blockmatrix.h"
 #include "contact.h"
+#include "fitmap.h"
 #include "law.h"
 #include "offset.h"
 #include "search.h"
@@ -22,7 +23,7 @@ typedef struct {
   PetscInt       x_room;
   ContactMap     map;
   PetscInt       count, *number;
-  PetscReal     *N, *M, *half; /* half: the points' M summed over rows */
+  PetscReal     *N, *M, *half; /* half: on the way from the points' M to M */
   PetscInt       room, half_room;
   int           *slot; /* of every contact node: its place in number[], -1 between evaluations */
   PetscInt       slot_room;
@@ -48,10 +49,12 @@ typedef struct {
   PetscReal          *area, *size, *turn;
   PetscInt           *term_ptr, *term_point; /* slave points of each term */
   PetscReal          *term_weight;           /* their areas in it: sum is the term's area */
-  PetscReal           penalty_automatic;
-  PetscBool           predicting, touching; /* what was accepted as closed stays so; what touches is closed */
+  PetscReal           automatic;             /* penalty: force per length and area */
+  PetscBool           predicting, touching;  /* what was accepted as closed stays so; what touches is closed */
   ContactState        now, accepted;
-  ContactLists        lists;
+  PetscReal          *before;                   /* gaps of the iterate before, where the penalty is adjusted */
+  ContactLists        lists, next;              /* next: fresh ones, NULL: none */
+  PetscReal          *next_factor, next_motion; /* of the next ones: area factors, and the motion they were made for */
   /* per slave point; factor: frozen with the lists, fades out past a free edge; seed: the facet of last time; gap, normal: of the last projection */
   PetscReal   *factor;
   int         *seed;
@@ -60,6 +63,7 @@ typedef struct {
   PetscReal    total[3];         /* and the force on this rank's terms */
   PetscReal    t;                /* of the last residual */
   PetscReal   *pressure, *trial; /* trial: gaps of the last projection, of a residual or a tangent */
+  PetscBool    projected;        /* there was one with these lists */
   ContactWork *work;             /* shared by all pairs */
 } ContactPair;
 

@@ -9,9 +9,10 @@ typedef struct {
   PetscInt       n;
   PetscReal     *penalty; /* force per length and area */
   ContactStatus *status;
-  PetscReal     *gap;        /* weighted gap; NaN: no master near */
-  PetscReal     *offset;     /* g_0, subtracted from the gap */
-  PetscReal     *multiplier; /* pressure carried over; 0 for the penalty law */
+  PetscReal     *gap;                             /* weighted gap; NaN: no master near */
+  PetscReal     *offset;                          /* g_0, subtracted from the gap */
+  PetscReal     *multiplier;                      /* pressure carried over; 0 for the penalty law */
+  PetscInt       raised, lowered, clamped, light; /* what the adjustment of the penalty did so far, on this rank */
 } ContactState;
 
 PetscErrorCode ContactStateCreate(PetscInt n, PetscReal penalty, ContactState *);

@@ -48,8 +48,8 @@ typedef struct {
 } * ContactLists;
 
 PetscErrorCode ListsDestroy(ContactLists *);
-/* Positions of contact nodes, fit points and slave points for local displacements u at t. Collective. */
-PetscErrorCode ListsUpdate(ContactSearch, ContactLists, const PetscReal *u, PetscReal t);
+/* Positions of contact nodes, fit points and slave points for local displacements u at t; *moved (may be NULL): not where they were. Collective. */
+PetscErrorCode ListsUpdate(ContactSearch, ContactLists, const PetscReal *u, PetscReal t, PetscBool *moved);
 /* Values of the contact nodes (n_nodes*dim) from local values x (n_nodes of the mesh * dim); rigid nodes get their motion from t to t_next. Collective. */
 PetscErrorCode ListsBroadcast(ContactSearch, ContactLists, const PetscReal *x, PetscReal t, PetscReal t_next, PetscReal *values);
 /* Adds values of the contact nodes (n_nodes*dim) to y (local), complete at owned nodes; rigid nodes are left out. Collective. */

@@ -8,7 +8,17 @@
 #include "loads.h"
 #include "mesh.h"
 
-typedef enum { SOLVE_CONVERGED, SOLVE_ITERATIONS, SOLVE_LINE_SEARCH, SOLVE_DOMAIN, SOLVE_LINEAR, SOLVE_WORKSPACE, SOLVE_LISTS, SOLVE_NAN } SolveResult;
+typedef enum {
+  SOLVE_CONVERGED,
+  SOLVE_ITERATIONS,
+  SOLVE_LINE_SEARCH,
+  SOLVE_DOMAIN,
+  SOLVE_LINEAR,
+  SOLVE_WORKSPACE,
+  SOLVE_LISTS,
+  SOLVE_WINDOW,
+  SOLVE_NAN
+} SolveResult;
 extern const char *const SolveResults[]; /* in words, for messages */
 
 typedef struct {
@@ -16,6 +26,7 @@ typedef struct {
   PetscInt    newton; /* Jacobian solves, prediction and re-gathered solves included */
   PetscInt    krylov;
   PetscInt    regathered;  /* times lists were replaced */
+  PetscInt    adjusted;    /* times penalties were changed and the step solved on */
   PetscReal   residual;    /* |R|_2 / F_ref at the end */
   char        detail[256]; /* where it failed, in gmsh's tags */
 } SolveReport;
@@ -40,6 +51,10 @@ PetscErrorCode ModelDestroy(Model *);
 /* First contact lists, refusal of initial overlaps, the state at t = 0 accepted. Collective. */
 PetscErrorCode ModelSetUp(Model);
 PetscErrorCode ModelSolve(Model, PetscReal t, SolveReport *);
+/* Where one linear solve with the tangent of the accepted state, whose contact stays as it is, leads at t: u[n_nodes*dim], the state is not changed.
+   Its solve is added to the report. The contact lists are those of the way to t. */
+PetscErrorCode ModelForecast(Model, PetscReal t, PetscReal *u, SolveReport *);
+PetscErrorCode ModelGetAccepted(Model, const PetscReal **u, PetscReal *t);
 PetscErrorCode ModelAccept(Model);
 PetscErrorCode ModelRestore(Model);
 /* The force that supports and imposed displacements put on the nodes of a group, at the accepted state. Collective. */

@@ -13,7 +13,7 @@ typedef struct _n_Results *Results;
 typedef struct {
   const char *status;  /* "done", "not converged", "stopped" */
   const char *message; /* cause, or NULL */
-  PetscInt    steps, steps_failed, newton_iterations, newton_accepted, krylov_iterations;
+  PetscInt    steps, steps_failed, steps_repeated, newton_iterations, newton_accepted, krylov_iterations;
   PetscReal   wall_s, mesh_s;
 } RunRecord;
 

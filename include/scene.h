@@ -54,6 +54,10 @@ typedef struct {
   InitialOverlap     initial_overlap;
   int                penalty_auto;
   double             penalty, penalty_scale; /* force per length and area; the automatic value is multiplied by penalty_scale */
+  int                adjust;                 /* the penalty follows the penetration */
+  int                adjust_converged;       /* within the step, until the window holds; 0: from one step to the next */
+  int                window_in_spacings;     /* g_min and g_max are multiples of the slave node's face size, not lengths */
+  double             g_min, g_max, clamp, range;
 } SceneContact;
 
 typedef enum {
@@ -114,6 +118,9 @@ typedef struct {
   struct {
     StepControlKind control;
     double          initial, dt_min, dt_max, growth;
+    int             N_c;              /* contact: nodes per step; 0: N_c_fraction serves */
+    double          N_c_fraction;     /* contact: part of the slave area per step */
+    int             predict_linearly; /* contact: by one linear solve, not by the step's own solution */
     int             n_at;
     double         *at;
   } stepping;

@@ -30,7 +30,9 @@ typedef struct {
   int     facet_served; /* a smooth surface was asked for and had no foot here: the facets answered */
   int     n, *points;   /* the points that take part */
   double *N;            /* [(1 + n)*dim], the slave point first */
-  double *M;            /* [((1 + n)*dim)^2] */
+  double *M;            /* [((1 + n)*dim)^2], or ... */
+  int     factored;     /* ... its factors instead, in the workspace until that is used again (fitmap.h) */
+  FitFactors factors;
 } SmootherResult;
 
 typedef enum { SMOOTHER_GAP, SMOOTHER_FIRST_VARIATION, SMOOTHER_SECOND_VARIATION } SmootherWant;

@@ -1,7 +1,6 @@
 /* The load stepper: takes a model from t = 0 to t = 1. An object in the manner of TS (Create, Set..., Solve, Monitor, View), with what a
    quasi-static contact problem needs: a step is accepted or taken back whole, and steps land exactly on 1, on every `at` of the scene and on
-   every breakpoint of a history. How dt follows from what happened is a step control, chosen by name: a new one is one function in
-   stepper.c and one line in its table.
+   every breakpoint of a history. How dt follows from what happened is a step control, chosen by name (stepcontrol.h).
 
      LoadStepperCreate(); LoadStepperSetModel(); LoadStepperSetFromScene(); LoadStepperSetFromOptions(); LoadStepperMonitorSet(); LoadStepperSolve() */
 #pragma once
@@ -11,13 +10,16 @@
 typedef struct {
   PetscInt       step, attempts, newton, krylov; /* newton and krylov: failed attempts before it included */
   PetscReal      t, dt, residual;
+  PetscReal      beta; /* beta_{N_c}; NaN: not the control by contact, or no node approached */
+  PetscInt       tied; /* nodes that touched together beyond those wanted, as no step separates them */
   ContactSummary contact;
 } StepRecord;
 
 /* The way so far */
 typedef struct {
-  PetscBool done; /* t = 1 was reached */
-  PetscInt  steps, steps_failed, newton_iterations, newton_accepted, krylov_iterations;
+  PetscBool done;                                /* t = 1 was reached */
+  PetscInt  steps, steps_failed, steps_repeated; /* repeated: converged, but taken back by the control */
+  PetscInt  newton_iterations, newton_accepted, krylov_iterations;
   PetscReal t;             /* of the last good state */
   char      message[1024]; /* why it ended early: cause, load parameter, nodes, what was tried */
 } StepperReport;

@@ -7,6 +7,7 @@ DefineConstant[
   n_width = {10, Name "elements along z"},
   cylinder = {0, Name "1: the cylinder's upper half as a rigid surface"},
   facet = {1, Name "angle of a cylinder facet in degrees"},
+  n_cylinder_z = {6, Name "facets along z; a diffuse fit of degree 4 needs five rows of nodes within its support"},
   turn = {0, Name "the facets turned, in facets: 0 a vertex, 0.5 the middle of a facet under x = 50"}
 ];
 thick = 4; width = 20;
@@ -61,7 +62,7 @@ If (cylinder)
   Circle(101) = {101, 100, 102};
   Circle(102) = {102, 100, 103};
   Transfinite Curve{101, 102} = n_cylinder / 2 + 1;
-  half[] = Extrude{0, 0, width + 2}{ Curve{101, 102}; Layers{1}; Recombine; };
+  half[] = Extrude{0, 0, width + 2}{ Curve{101, 102}; Layers{n_cylinder_z}; Recombine; };
   Physical Surface("cylinder") = {half[1], half[5]};
 EndIf
 

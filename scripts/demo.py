@@ -1,19 +1,19 @@
 """make demo: runs pipe_pinch on 2 ranks, prints its probes beside the reference and leaves pictures in out/."""
 import argparse
 import csv
-import json
-import os
 import pathlib
 import subprocess
 import sys
 
-import h5py
 import matplotlib
 
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import numpy
 from mpl_toolkits.mplot3d.art3d import Poly3DCollection
+
+from launch import command, environment, read_steps, read_summary
+from meshview import read_mesh, read_states
 
 SCENE, RANKS, OUT = "runs/pipe_pinch.yaml", 2, pathlib.Path("out")
 RUNS = {"facet": ["contact.0.smoother=facet"], "diffuse": ["contact.0.smoother=diffuse"]}  # name -> overrides
@@ -30,16 +30,6 @@ REFERENCE = [
 ]
 FORCE_HALFWAY = 52390  # plate_force at t = 0.5, N
 STROKE = 50  # of the plate at t = 1, mm
-MPI = {
-    "OMPI_ALLOW_RUN_AS_ROOT": "1",
-    "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1",
-    "OMPI_MCA_rmaps_base_oversubscribe": "1",
-    "PRTE_MCA_rmaps_default_mapping_policy": ":oversubscribe",  # Open MPI 5
-    "OMPI_MCA_mpi_yield_when_idle": "1",
-    "OMP_NUM_THREADS": "1",
-    "OPENBLAS_NUM_THREADS": "1",
-}
-HEX_FACES = [(0, 3, 2, 1), (4, 5, 6, 7), (0, 1, 5, 4), (1, 2, 6, 5), (2, 3, 7, 6), (3, 0, 4, 7)]
 
 
 def directory(name):
@@ -47,25 +37,16 @@ def directory(name):
 
 
 def solve(burnish, name):
-    command = ["mpirun", "-n", str(RANKS), burnish, SCENE, "-o", str(directory(name)), "-overwrite"]
-    for override in RUNS[name]:
-        command += ["-set", override]
-    print(" ".join(command), flush=True)
-    status = subprocess.run(command, env={**MPI, **os.environ}).returncode
+    line = command(burnish, RANKS, SCENE, directory(name), RUNS[name], "-overwrite")
+    print(" ".join(line), flush=True)
+    status = subprocess.run(line, env=environment()).returncode
     if status:
         sys.exit(status)
 
 
-def read_steps(name):
-    """Columns of steps.csv, NaN where empty."""
-    with open(directory(name) / "steps.csv", newline="") as file:
-        rows = list(csv.DictReader(file, skipinitialspace=True))
-    return {key: numpy.array([float(row[key] or "nan") for row in rows]) for key in rows[0]}
-
-
 def table(name):
     """The probes at the end against the reference, the force halfway, and what it took."""
-    summary, steps = json.loads((directory(name) / "summary.json").read_text()), read_steps(name)
+    summary, steps = read_summary(directory(name)), read_steps(directory(name))
     halfway = steps["plate_force"][numpy.argmin(numpy.abs(steps["t"] - 0.5))]
     rows = [("plate_force, t=0.5", "N", halfway, FORCE_HALFWAY, 52)]
     rows += [(probe, unit, summary["probes"][probe], reference, error) for probe, unit, reference, error in REFERENCE]
@@ -80,7 +61,7 @@ def table(name):
 
 def record(path):
     """The runs side by side as CSV: what README quotes."""
-    summaries, steps = {name: json.loads((directory(name) / "summary.json").read_text()) for name in RUNS}, {name: read_steps(name) for name in RUNS}
+    summaries, steps = {name: read_summary(directory(name)) for name in RUNS}, {name: read_steps(directory(name)) for name in RUNS}
     rows = [("plate_force_halfway", "N", FORCE_HALFWAY, 52, *(steps[name]["plate_force"][numpy.argmin(numpy.abs(steps[name]["t"] - 0.5))] for name in RUNS))]
     rows += [(probe, unit, reference, error, *(summaries[name]["probes"][probe] for name in RUNS)) for probe, unit, reference, error in REFERENCE]
     rows += [(key, unit, "", "", *(summaries[name][key] for name in RUNS)) for key, unit in (("steps", ""), ("steps_failed", ""), ("newton_iterations", ""), ("max_penetration", "mm"))]
@@ -91,22 +72,11 @@ def record(path):
         writer.writerows([f"{cell:.6g}" if isinstance(cell, float) else cell for cell in row] for row in rows)
 
 
-def skin(cells, body):
-    """Outer faces of hexahedra by their corners, with the body of each."""
-    faces = numpy.concatenate([cells[:, face] for face in HEX_FACES])
-    bodies = numpy.tile(body, len(HEX_FACES))
-    _, first, count = numpy.unique(numpy.sort(faces, axis=1), axis=0, return_index=True, return_counts=True)
-    return faces[first[count == 1]], bodies[first[count == 1]]
-
-
 def picture(name):
     """The deformed mesh with von Mises stress, its mirror image in x beside it, halfway and at the end."""
-    with h5py.File(directory(name) / "results.h5", "r") as file:
-        nodes, steps = file["mesh/nodes"][()], file["steps"]
-        faces, _ = skin(file["mesh/cells_hex27"][()], file["mesh/cells_hex27_body"][()])
-        keys = sorted(steps)
-        chosen = [min(keys, key=lambda key: abs(steps[key].attrs["t"] - t)) for t in (0.5, 1)]
-        states = [(float(steps[key].attrs["t"]), nodes + steps[key]["displacement"][()], steps[key]["von_mises"][()]) for key in chosen]
+    nodes, faces = read_mesh(directory(name) / "results.h5")
+    written = read_states(directory(name) / "results.h5", "displacement", "von_mises")
+    states = [(t, nodes + u, stress) for t, u, stress in (min(written, key=lambda state: abs(state[0] - wanted)) for wanted in (0.5, 1))]
     largest = max(stress.max() for _, _, stress in states)
     figure = plt.figure(figsize=(14, 5))
     for place, (t, x, stress) in enumerate(states):
@@ -128,7 +98,7 @@ def curve():
     """Plate force over the plate's stroke, every run, with the reference."""
     figure, axes = plt.subplots(figsize=(7, 5))
     for name in RUNS:
-        steps = read_steps(name)
+        steps = read_steps(directory(name))
         axes.plot(STROKE * steps["t"], steps["plate_force"] / 1000, marker=".", label=name)
     axes.plot([STROKE / 2, STROKE], [FORCE_HALFWAY / 1000, REFERENCE[0][2] / 1000], "k+", markersize=12, label="reference")
     axes.set(xlabel="stroke of the plate (mm)", ylabel="plate force (kN)", title="pipe_pinch")

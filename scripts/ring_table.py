@@ -10,6 +10,8 @@ import shutil
 import statistics
 import subprocess
 
+from launch import command, environment, read_summary
+
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 LAME = {"ring_in_ring": 6.439, "ring_in_ring_3d": 5.859, "spheres": 15.224}
 SMOOTHERS = {
@@ -22,8 +24,6 @@ SIDES = ("inner", "outer")
 PLANE_PAIRS = ((16, 20), (32, 40), (40, 32), (24, 48), (48, 24), (24, 30), (30, 24), (36, 25))
 PROBES = ("mean_pressure", "noise_max", "noise_rms", "noise_end_max", "noise_end_rms")
 COLUMNS = ("table", "scene", "n_inner", "n_outer", "slave", "smoother", "jitter", "seed", "status", "newton", "contact_nodes", "slave_nodes", "wall_s", "fall_backs", *PROBES)
-ENVIRONMENT = {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1", "OMPI_MCA_rmaps_base_oversubscribe": "1",
-               "OMPI_MCA_mpi_yield_when_idle": "1", "OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
 
 
 def cases(table):
@@ -45,13 +45,11 @@ def solve(table, case, burnish, ranks, out):
     master = SIDES[1 - SIDES.index(slave)]
     overrides = [f"mesh.parameters.n_inner={n_inner}", f"mesh.parameters.n_outer={n_outer}", f"mesh.parameters.jitter={jitter}", f"mesh.parameters.seed={seed}",
                  f"contact.0.slave={slave}_contact", f"contact.0.master={master}_contact", *SMOOTHERS[smoother]]
-    command = ["mpirun", "-n", str(ranks), burnish, str(ROOT / "runs" / f"{scene}.yaml"), "-o", str(directory), "-quiet"]
-    for override in overrides:
-        command += ["-set", override]
-    finished = subprocess.run(command, env={**ENVIRONMENT, **os.environ}, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+    line = command(burnish, ranks, ROOT / "runs" / f"{scene}.yaml", directory, overrides, "-quiet")
+    finished = subprocess.run(line, env=environment(), stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
     record = dict(zip(COLUMNS, (table, scene, n_inner, n_outer, slave, smoother, jitter, seed, finished.returncode)))
     if finished.returncode == 0:
-        summary = json.loads((directory / "summary.json").read_text())
+        summary = read_summary(directory)
         n = n_inner if slave == "inner" else n_outer
         rows = round(8 * n / min(n_inner, n_outer)) + 1
         slave_nodes = {"ring_in_ring": n + 1, "ring_in_ring_3d": (n + 1) * rows, "spheres": 3 * n * n + 3 * n + 1}[scene]

@@ -1,5 +1,6 @@
 #include "contactimpl.h"
 #include "refusal.h"
+#include "timing.h"
 
 /* Two pairs of the same surfaces would press twice. */
 static PetscErrorCode RefuseRepeatedPairs(Mesh mesh, Scene scene)
@@ -71,13 +72,20 @@ PetscErrorCode ContactDestroy(Contact *contact)
 
 /* ---------- residual ---------- */
 
-/* Moves the lists' points to (u, t) and projects every slave point; gaps of the terms into pair->trial. */
+/* Moves the lists' points to (u, t) and projects every slave point; gaps of the terms into pair->trial. These stand already where the last
+   evaluation was at the same place: three in four, as the solver asks for residual, energy and tangent of each iterate one by one. */
 static PetscErrorCode PairProject(Contact contact, ContactPair *pair, const PetscReal *u, PetscReal t)
 {
+  PetscBool moved;
+
   PetscFunctionBeginUser;
+  PetscCall(ListsUpdate(pair->search, pair->lists, u, t, &moved));
+  if (pair->projected && !moved) PetscFunctionReturn(PETSC_SUCCESS);
+  pair->projected = PETSC_TRUE;
   PetscCall(PetscLogEventBegin(contact->event_project, 0, 0, 0, 0));
-  PetscCall(ListsUpdate(pair->search, pair->lists, u, t));
+  if (pair->fit.degree) TimingBegin(TIMING_FIT);
   PetscCall(ContactPointGaps(pair, pair->lists, pair->factor, pair->seed, pair->point_gap, pair->point_normal));
+  if (pair->fit.degree) TimingEnd(TIMING_FIT);
   for (PetscInt c = 0; c < pair->n; c++) pair->trial[c] = ContactTermGap(pair, pair->factor, pair->point_gap, c, NULL);
   PetscCall(PetscLogEventEnd(contact->event_project, 0, 0, 0, 0));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -130,7 +138,9 @@ static PetscErrorCode PairForces(ContactPair *pair, PetscReal *values)
     const PetscReal force = pair->point_force[q];
 
     if (force == 0) continue;
+    if (pair->fit.degree) TimingBegin(TIMING_FIT);
     PetscCall(ContactPointEvaluate(pair, pair->smoother, pair->lists, q, pair->seed[q], SMOOTHER_FIRST_VARIATION, &found));
+    if (pair->fit.degree) TimingEnd(TIMING_FIT);
     if (!found) continue;
     PetscCall(ContactPointToNodes(pair, pair->lists, q, PETSC_FALSE));
     for (PetscInt i = 0; i < work->count * dim; i++) values[work->number[i / dim] * dim + i % dim] -= force * work->N[i];
@@ -265,7 +275,9 @@ static PetscErrorCode VariationsCreate(const ContactPair *pair, const TermState 
       const PetscInt q = pair->term_point[k];
 
       if (all->first[q] >= 0 || pair->factor[q] == 0) continue;
+      if (pair->fit.degree) TimingBegin(TIMING_FIT);
       PetscCall(ContactPointEvaluate(pair, pair->smoother, pair->lists, q, pair->seed[q], SMOOTHER_FIRST_VARIATION, &found));
+      if (pair->fit.degree) TimingEnd(TIMING_FIT);
       if (!found) continue;
       PetscCall(ContactPointToNodes(pair, pair->lists, q, PETSC_FALSE));
       PetscCall(VariationsAdd(all, pair->work, dim, q));
@@ -311,7 +323,9 @@ static PetscErrorCode TermAddSecond(const ContactPair *pair, PetscInt q, const P
   PetscBool          found;
 
   PetscFunctionBeginUser;
+  if (pair->fit.degree) TimingBegin(TIMING_FIT);
   PetscCall(ContactPointEvaluate(pair, pair->smoother, pair->lists, q, pair->seed[q], SMOOTHER_SECOND_VARIATION, &found));
+  if (pair->fit.degree) TimingEnd(TIMING_FIT);
   if (!found) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(ContactPointToNodes(pair, pair->lists, q, PETSC_TRUE));
   for (PetscInt i = 0; i < work->count * dim; i++) {
@@ -359,27 +373,71 @@ static PetscErrorCode TermBlock(Contact contact, const ContactPair *pair, int p,
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* The block of a term with one point, which is evaluated once. */
+static PetscErrorCode PointBlock(Contact contact, const ContactPair *pair, int p, PetscInt q, const TermState *term)
+{
+  const int          dim  = contact->mesh->dim;
+  const ContactWork *work = pair->work;
+  PetscInt           m, *entry;
+  PetscReal         *value;
+  PetscBool          found;
+
+  PetscFunctionBeginUser;
+  if (pair->fit.degree) TimingBegin(TIMING_FIT);
+  PetscCall(ContactPointEvaluate(pair, pair->smoother, pair->lists, q, pair->seed[q], SMOOTHER_SECOND_VARIATION, &found));
+  if (pair->fit.degree) TimingEnd(TIMING_FIT);
+  if (!found) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(ContactPointToNodes(pair, pair->lists, q, PETSC_TRUE));
+  m = work->count * dim;
+  PetscCall(BlockMatrixAdd(contact->blocks, p, m, &entry, &value));
+  for (PetscInt i = 0; i < m; i++) {
+    entry[i] = work->number[i / dim] * dim + i % dim;
+    for (PetscInt j = 0; j < m; j++) value[i * m + j] = term->area * term->stiffness * work->N[i] * work->N[j] - pair->point_force[q] * work->M[i * m + j];
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The blocks of terms that share their points. */
+static PetscErrorCode SharedBlocks(Contact contact, ContactPair *pair, int p, const TermState *terms)
+{
+  PointVariations all;
+
+  PetscFunctionBeginUser;
+  PetscCall(VariationsCreate(pair, terms, &all));
+  for (PetscInt c = 0; c < pair->n; c++)
+    if (terms[c].stiffness > 0) PetscCall(TermBlock(contact, pair, p, c, &terms[c], &all));
+  PetscCall(VariationsDestroy(&all));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Pressure whose turning with the surface counts in a tangent: in a linear step that of the accepted state, not what pulls a term to its place. */
+static PetscReal TermTurningPressure(const ContactPair *pair, PetscInt c, PetscReal t, const LawValue *value)
+{
+  if (!pair->predicting) return value->pressure;
+  return pair->accepted.status[c] == CONTACT_CLOSED ? pair->accepted.penalty[c] * (ContactTermOffset(pair, c, t) - pair->accepted.gap[c]) : 0;
+}
+
 static PetscErrorCode PairBlocks(Contact contact, ContactPair *pair, int p, const PetscReal *u, PetscReal t)
 {
-  TermState      *terms;
-  PointVariations all;
+  TermState *terms;
 
   PetscFunctionBeginUser;
   PetscCall(PairProject(contact, pair, u, t));
   PetscCall(PetscMalloc1(pair->n, &terms));
   PetscCall(PetscArrayzero(pair->point_force, pair->lists->n_slaves));
   for (PetscInt c = 0; c < pair->n; c++) {
-    LawValue value;
+    LawValue  value;
+    PetscReal pressure;
 
     TermLaw(pair, c, t, &value, &terms[c].area);
     terms[c].stiffness = value.stiffness;
-    for (PetscInt k = pair->term_ptr[c]; k < pair->term_ptr[c + 1] && value.pressure != 0; k++)
-      pair->point_force[pair->term_point[k]] += value.pressure * pair->term_weight[k] * pair->factor[pair->term_point[k]];
+    pressure           = TermTurningPressure(pair, c, t, &value);
+    for (PetscInt k = pair->term_ptr[c]; k < pair->term_ptr[c + 1] && pressure != 0; k++)
+      pair->point_force[pair->term_point[k]] += pressure * pair->term_weight[k] * pair->factor[pair->term_point[k]];
   }
-  PetscCall(VariationsCreate(pair, terms, &all));
-  for (PetscInt c = 0; c < pair->n; c++)
-    if (terms[c].stiffness > 0) PetscCall(TermBlock(contact, pair, p, c, &terms[c], &all));
-  PetscCall(VariationsDestroy(&all));
+  if (pair->slaves->face_sf) PetscCall(SharedBlocks(contact, pair, p, terms));
+  for (PetscInt c = 0; c < pair->n && !pair->slaves->face_sf; c++)
+    if (terms[c].stiffness > 0) PetscCall(PointBlock(contact, pair, p, pair->term_point[pair->term_ptr[c]], &terms[c]));
   PetscCall(PetscFree(terms));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -458,6 +516,11 @@ PetscErrorCode ContactAccept(Contact contact)
 PetscErrorCode ContactRestore(Contact contact)
 {
   PetscFunctionBeginUser;
-  for (int p = 0; p < contact->n_pairs; p++) PetscCall(ContactStateCopy(&contact->pairs[p].accepted, &contact->pairs[p].now));
+  for (int p = 0; p < contact->n_pairs; p++) {
+    ContactPair *pair = &contact->pairs[p];
+
+    PetscCall(ContactStateCopy(&pair->accepted, &pair->now));
+    if (pair->before) PetscCall(PetscArraycpy(pair->before, pair->accepted.gap, pair->n));
+  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

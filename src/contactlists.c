@@ -1,4 +1,5 @@
 #include "contactimpl.h"
+#include "timing.h"
 
 /* A gap from fresh lists agrees with the solve's when it differs by less than this fraction of itself, or of the face size (round-off of a
    closest-point projection). */
@@ -12,6 +13,8 @@
 #define CONTACT_OFFSET_AGREES 0.1
 /* The area factor past a free edge is frozen in a solve; a change above this makes the step solve again. */
 #define CONTACT_FACTOR_AGREES 1e-2
+/* Motions that differ by less than this fraction differ by round-off. */
+#define CONTACT_SAME_MOTION 1e-9
 
 static PetscReal SmoothStep(PetscReal x)
 {
@@ -36,31 +39,52 @@ static PetscErrorCode PairFactors(const ContactPair *pair, ContactLists lists, P
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode PairTakeLists(ContactPair *pair, ContactLists lists, const PetscReal *factor)
+/* Fresh lists and area factors become the pair's next ones. */
+static PetscErrorCode PairSearch(ContactPair *pair, const PetscReal *u, PetscReal t, PetscReal motion)
 {
   PetscFunctionBeginUser;
-  PetscCall(ListsDestroy(&pair->lists));
-  pair->lists = lists;
-  PetscCall(PetscArraycpy(pair->factor, factor, lists->n_slaves));
-  for (PetscInt q = 0; q < lists->n_slaves; q++) pair->seed[q] = -1;
+  PetscCall(ListsDestroy(&pair->next));
+  if (pair->slave_offsets) PetscCall(SlavePointsSetOffsets(pair->slaves, OffsetsGet(pair->slave_offsets)));
+  PetscCall(SearchLists(pair->search, u, t, motion, &pair->next));
+  PetscCall(PairFactors(pair, pair->next, pair->next_factor));
+  pair->next_motion = motion;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* New lists of a pair with their factors, the offsets being taken. */
-static PetscErrorCode PairSearch(const ContactPair *pair, const PetscReal *u, PetscReal t, PetscReal motion, ContactLists *lists, PetscReal **factor)
+/* Are there next lists that were made for these positions and offsets and for that much motion? The same on all ranks. */
+static PetscErrorCode PairNextServes(ContactPair *pair, const PetscReal *u, PetscReal t, PetscReal motion, PetscBool *serves)
+{
+  PetscBool moved = PETSC_TRUE;
+  int       all;
+
+  PetscFunctionBeginUser;
+  *serves = PETSC_FALSE;
+  if (pair->slave_offsets) PetscFunctionReturn(PETSC_SUCCESS);
+  if (pair->next && motion <= pair->next_motion * (1 + CONTACT_SAME_MOTION)) PetscCall(ListsUpdate(pair->search, pair->next, u, t, &moved));
+  all = !moved;
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &all, 1, MPI_INT, MPI_LAND, pair->mesh->comm));
+  *serves = all ? PETSC_TRUE : PETSC_FALSE;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The next lists replace those that serve. */
+static PetscErrorCode PairTakeNext(ContactPair *pair)
 {
   PetscFunctionBeginUser;
-  if (pair->slave_offsets) PetscCall(SlavePointsSetOffsets(pair->slaves, OffsetsGet(pair->slave_offsets)));
-  PetscCall(SearchLists(pair->search, u, t, motion, lists));
-  PetscCall(PetscMalloc1((*lists)->n_slaves, factor));
-  PetscCall(PairFactors(pair, *lists, *factor));
+  PetscCall(ListsDestroy(&pair->lists));
+  pair->lists     = pair->next;
+  pair->next      = NULL;
+  pair->projected = PETSC_FALSE;
+  PetscCall(PetscArraycpy(pair->factor, pair->next_factor, pair->lists->n_slaves));
+  for (PetscInt q = 0; q < pair->lists->n_slaves; q++) pair->seed[q] = -1;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* ContactGather - new lists, and with them new offsets and area factors, for all pairs; the blocks of the last tangent are dropped.
 
    Collective. u[n_nodes*dim]: local displacements (length) of the accepted state, ghosts included; t: its load parameter; t_next: where the
-   step goes; motion: relative motion (length) that the lists must be good for. The contact state is not touched. */
+   step goes; motion: relative motion (length) that the lists must be good for. Those that ContactListsHold() made at
+   the same place for as much motion are taken as they are. The contact state is not touched. */
 PetscErrorCode ContactGather(Contact contact, const PetscReal *u, PetscReal t, PetscReal t_next, PetscReal motion)
 {
   PetscFunctionBeginUser;
@@ -68,14 +92,13 @@ PetscErrorCode ContactGather(Contact contact, const PetscReal *u, PetscReal t, P
   PetscCall(BlockMatrixReset(contact->blocks)); /* its blocks speak of the old lists */
   for (int p = 0; p < contact->n_pairs; p++) {
     ContactPair *pair = &contact->pairs[p];
-    ContactLists lists;
-    PetscReal   *factor;
+    PetscBool    serves;
 
     if (pair->slave_offsets) PetscCall(OffsetsExtrapolate(pair->slave_offsets, u, t, t_next));
     if (pair->master_offsets) PetscCall(OffsetsExtrapolate(pair->master_offsets, u, t, t_next));
-    PetscCall(PairSearch(pair, u, t, motion, &lists, &factor));
-    PetscCall(PairTakeLists(pair, lists, factor));
-    PetscCall(PetscFree(factor));
+    PetscCall(PairNextServes(pair, u, t, motion, &serves));
+    if (!serves) PetscCall(PairSearch(pair, u, t, motion));
+    PetscCall(PairTakeNext(pair));
   }
   PetscCall(PetscLogEventEnd(contact->event_search, 0, 0, 0, 0));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -153,60 +176,49 @@ static PetscErrorCode PairDepth(Contact contact, const ContactPair *pair, PetscR
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Do the fresh lists of a pair say of every term what those say that the solve was made with? This rank's terms. */
-static PetscErrorCode PairAgrees(Contact contact, const ContactPair *pair, ContactLists fresh, const PetscReal *factor, PetscReal t, PetscBool *agrees)
+/* Do the pair's next lists say the same of each of this rank's terms as the last residual? */
+static PetscErrorCode PairNextAgrees(Contact contact, ContactPair *pair, PetscReal t, PetscBool *agrees)
 {
-  PetscReal depth = 0, pressure = 0, *gaps;
+  PetscReal depth = 0, pressure = 0, drift, *gaps;
 
   PetscFunctionBeginUser;
   PetscCall(PairDepth(contact, pair, t, &depth, &pressure));
-  PetscCall(PetscMalloc1(fresh->n_slaves, &gaps));
-  PetscCall(ContactPointGaps(pair, fresh, factor, NULL, gaps, NULL));
+  drift   = pair->slave_offsets ? CONTACT_OFFSET_AGREES * pressure / pair->automatic : 0;
   *agrees = PETSC_TRUE;
-  for (PetscInt c = 0; c < pair->n && *agrees; c++) {
-    const PetscReal gap   = ContactTermGap(pair, factor, gaps, c, NULL),
-                    drift = pair->slave_offsets ? CONTACT_OFFSET_AGREES * pressure / pair->penalty_automatic : 0;
-
-    *agrees = TermAgrees(pair, fresh, c, gap, factor, t, depth, drift);
-  }
+  PetscCall(PetscMalloc1(pair->next->n_slaves, &gaps));
+  if (pair->fit.degree) TimingBegin(TIMING_FIT);
+  PetscCall(ContactPointGaps(pair, pair->next, pair->next_factor, NULL, gaps, NULL));
+  if (pair->fit.degree) TimingEnd(TIMING_FIT);
+  for (PetscInt c = 0; c < pair->n && *agrees; c++)
+    *agrees = TermAgrees(pair, pair->next, c, ContactTermGap(pair, pair->next_factor, gaps, c, NULL), pair->next_factor, t, depth, drift);
   PetscCall(PetscFree(gaps));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* ContactListsHold - whether lists made afresh at the solution say the same of every term as those it was found with.
 
-   Collective. u, t: of the last ContactResidual() with forces; motion: as of ContactGather(). *hold: the same on all ranks; if it is
-   PETSC_FALSE the fresh lists of all pairs, and fresh offsets, have replaced the old, and the problem is to be solved again. */
+   Collective. u, t: of the last ContactResidual() with forces; motion: as of ContactGather(), which may take the fresh lists. *hold: the same on
+   all ranks; if it is PETSC_FALSE the fresh lists of all pairs, and fresh offsets, have replaced the old, and the problem is to be solved again. */
 PetscErrorCode ContactListsHold(Contact contact, const PetscReal *u, PetscReal t, PetscReal motion, PetscBool *hold)
 {
-  ContactLists *lists;
-  PetscReal   **factor;
-  int           agree = 1;
+  int agree = 1;
 
   PetscFunctionBeginUser;
   PetscCall(PetscLogEventBegin(contact->event_search, 0, 0, 0, 0));
-  PetscCall(PetscMalloc2(contact->n_pairs, &lists, contact->n_pairs, &factor));
   for (int p = 0; p < contact->n_pairs; p++) {
     ContactPair *pair   = &contact->pairs[p];
     PetscBool    agrees = PETSC_TRUE;
 
     if (pair->slave_offsets) PetscCall(OffsetsTake(pair->slave_offsets, u, t));
     if (pair->master_offsets) PetscCall(OffsetsTake(pair->master_offsets, u, t));
-    PetscCall(PairSearch(pair, u, t, motion, &lists[p], &factor[p]));
-    PetscCall(PairAgrees(contact, pair, lists[p], factor[p], t, &agrees));
+    PetscCall(PairSearch(pair, u, t, motion));
+    PetscCall(PairNextAgrees(contact, pair, t, &agrees));
     agree = agree && agrees;
   }
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &agree, 1, MPI_INT, MPI_LAND, contact->mesh->comm));
   *hold = agree ? PETSC_TRUE : PETSC_FALSE;
-  for (int p = 0; p < contact->n_pairs; p++) {
-    if (agree)
-      PetscCall(ListsDestroy(&lists[p]));
-    else
-      PetscCall(PairTakeLists(&contact->pairs[p], lists[p], factor[p]));
-    PetscCall(PetscFree(factor[p]));
-  }
+  for (int p = 0; p < contact->n_pairs && !agree; p++) PetscCall(PairTakeNext(&contact->pairs[p]));
   if (!agree) PetscCall(BlockMatrixReset(contact->blocks));
-  PetscCall(PetscFree2(lists, factor));
   PetscCall(PetscLogEventEnd(contact->event_search, 0, 0, 0, 0));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

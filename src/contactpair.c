@@ -85,8 +85,8 @@ static PetscErrorCode PairCreateTerms(Mesh mesh, ContactPair *pair)
   }
   PetscCall(PetscFree(term));
   PetscCall(PetscCalloc4(pair->n, &pair->force, 3 * pair->n, &pair->normal, pair->n, &pair->pressure, pair->n, &pair->trial));
-  PetscCall(PetscCalloc5(slaves->n, &pair->factor, slaves->n, &pair->seed, slaves->n, &pair->point_gap, 3 * slaves->n, &pair->point_normal, slaves->n,
-                         &pair->point_force));
+  PetscCall(PetscCalloc6(slaves->n, &pair->factor, slaves->n, &pair->next_factor, slaves->n, &pair->seed, slaves->n, &pair->point_gap, 3 * slaves->n,
+                         &pair->point_normal, slaves->n, &pair->point_force));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -177,12 +177,13 @@ PetscErrorCode ContactPairCreate(Mesh mesh, Scene scene, Elasticity elasticity, 
   if (pair->master) PetscCall(SurfaceFindFreeEdges(pair->master, pair->n_images, pair->images));
   if (pair->master && pair->fit.degree && pair->fit.global_frame) PetscCall(PairCheckGlobalFrame(mesh, scene, loads, pair));
   PetscCall(PairCreatePoints(mesh, scene, loads, pair));
-  pair->penalty_automatic = PenaltyAutomatic(pair->slave->stiffness, pair->master ? pair->master->stiffness : 0);
-  penalty                 = contact->penalty_scale * (contact->penalty_auto ? pair->penalty_automatic : contact->penalty);
+  pair->automatic = PenaltyAutomatic(pair->slave->stiffness, pair->master ? pair->master->stiffness : 0);
+  penalty         = contact->penalty_scale * (contact->penalty_auto ? pair->automatic : contact->penalty);
   PetscCall(ContactStateCreate(pair->n, penalty, &pair->now));
   PetscCall(ContactStateCreate(pair->n, penalty, &pair->accepted));
   PetscCall(SearchCreate(mesh, scene, loads, pair->master, pair->slave->max_size, pair->n_images, pair->images, &pair->fit, pair->slaves,
                          pair->master_offsets ? OffsetsGet(pair->master_offsets) : NULL, &pair->search));
+  if (contact->adjust) PetscCall(PetscMalloc1(pair->n, &pair->before));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -191,6 +192,7 @@ PetscErrorCode ContactPairDestroy(ContactPair *pair)
 {
   PetscFunctionBeginUser;
   PetscCall(ListsDestroy(&pair->lists));
+  PetscCall(ListsDestroy(&pair->next));
   PetscCall(SearchDestroy(&pair->search));
   PetscCall(OffsetsDestroy(&pair->slave_offsets));
   PetscCall(OffsetsDestroy(&pair->master_offsets));
@@ -203,7 +205,8 @@ PetscErrorCode ContactPairDestroy(ContactPair *pair)
   PetscCall(PetscFree(pair->term_ptr));
   PetscCall(PetscFree2(pair->term_point, pair->term_weight));
   PetscCall(PetscFree4(pair->force, pair->normal, pair->pressure, pair->trial));
-  PetscCall(PetscFree5(pair->factor, pair->seed, pair->point_gap, pair->point_normal, pair->point_force));
+  PetscCall(PetscFree6(pair->factor, pair->next_factor, pair->seed, pair->point_gap, pair->point_normal, pair->point_force));
+  PetscCall(PetscFree(pair->before));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -18,6 +18,7 @@ static PetscBool PointEvaluateAnalytic(const ContactPair *pair, ContactLists lis
   result->beyond       = 0;
   result->seed         = -1;
   result->facet_served = 0;
+  result->factored     = 0;
   result->n            = 0;
   for (int d = 0; d < 3; d++) result->normal[d] = found.normal[d];
   for (int d = 0; d < dim; d++) result->N[d] = found.N[d];
@@ -98,7 +99,8 @@ static PetscErrorCode WorkReserveMap(ContactWork *work, ContactLists lists, Pets
 
 static PetscErrorCode WorkReserveNodes(ContactWork *work, int dim, PetscBool second)
 {
-  const PetscInt half = second ? work->count * dim * (1 + work->result.n) * dim : 0;
+  const SmootherResult *r    = &work->result;
+  const PetscInt        half = !second ? 0 : r->factored ? FitMapWorkspace(dim, r->factors.degree, (int)work->count) : work->count * dim * (1 + r->n) * dim;
 
   PetscFunctionBeginUser;
   if (work->count > work->room) {
@@ -161,7 +163,7 @@ static void MapFill(const ContactPair *pair, ContactLists lists, PetscInt q)
   for (PetscInt i = 0; i < work->count; i++) work->slot[work->number[i]] = -1;
 }
 
-/* M over nodes = S^T M S: rows first, then columns. */
+/* M over nodes = S^T M S for the few points of a facet: rows first, then columns. */
 static void MapSecond(ContactWork *work, int dim)
 {
   const ContactMap     *map  = &work->map;
@@ -200,16 +202,18 @@ PetscErrorCode ContactPointToNodes(const ContactPair *pair, ContactLists lists, 
   ContactWork          *work = pair->work;
   const SmootherResult *r    = &work->result;
   const int             dim  = lists->dim;
+  FitMap                map;
 
   PetscFunctionBeginUser;
   PetscCall(WorkReserveMap(work, lists, q));
   MapFill(pair, lists, q);
   PetscCall(WorkReserveNodes(work, dim, second));
-  PetscCall(PetscArrayzero(work->N, work->count * dim));
-  for (int i = 0; i <= r->n; i++)
-    for (int k = work->map.ptr[i]; k < work->map.ptr[i + 1]; k++)
-      for (int d = 0; d < dim; d++) work->N[work->map.node[k] * dim + d] += work->map.S[k] * work->map.sign[3 * i + d] * r->N[i * dim + d];
-  if (second) MapSecond(work, dim);
+  map = (FitMap){(int)work->count, work->map.ptr, work->map.node, work->map.S, work->map.sign};
+  FitMapFirst(dim, r->n, r->N, &map, work->N);
+  if (second && r->factored)
+    FitMapSecond(&r->factors, &map, work->half, work->M);
+  else if (second)
+    MapSecond(work, dim);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

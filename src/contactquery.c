@@ -1,7 +1,20 @@
 #include "contactimpl.h"
+#include "penalty.h"
 
-/* Nodes below this fraction of the largest nodal force do not count as loaded. */
-#define CONTACT_LOADED 1e-3
+/* Nodes outside the window of their penalty, all pairs; -1: no pair adjusts. */
+static PetscErrorCode CountOutside(Contact contact, PetscInt *outside)
+{
+  PetscFunctionBeginUser;
+  *outside = -1;
+  for (int p = 0; p < contact->n_pairs; p++) {
+    ContactWindow window;
+
+    if (!contact->pairs[p].scene->adjust) continue;
+    PetscCall(ContactPairWindow(contact, p, &window));
+    *outside = PetscMax(0, *outside) + window.outside;
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
 
 /* ContactSummarise - counts, penetrations (lengths), penalties and total force of all pairs in the present state, the same on all ranks.
 
@@ -11,6 +24,7 @@ PetscErrorCode ContactSummarise(Contact contact, ContactSummary *summary)
   PetscInt  count[3] = {0, 0, 0};
   PetscReal most[5] = {0, 0, PETSC_MIN_REAL, PETSC_MIN_REAL, 0}, total[3] = {0, 0, 0},
             least = PETSC_MAX_REAL; /* most: penetration, over h, -penalty_min, penalty_max, nodal force */
+  PetscInt outside;
 
   PetscFunctionBeginUser;
   for (int p = 0; p < contact->n_pairs; p++) {
@@ -37,10 +51,11 @@ PetscErrorCode ContactSummarise(Contact contact, ContactSummary *summary)
     const ContactPair *pair = &contact->pairs[p];
 
     for (PetscInt c = 0; c < pair->n; c++)
-      if (pair->now.status[c] == CONTACT_CLOSED && pair->force[c] > CONTACT_LOADED * most[4])
+      if (pair->now.status[c] == CONTACT_CLOSED && pair->force[c] > PENALTY_LOADED * most[4])
         least = PetscMin(least, ContactTermOffset(pair, c, pair->t) - pair->now.gap[c]);
   }
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &least, 1, MPIU_REAL, MPI_MIN, contact->mesh->comm));
+  PetscCall(CountOutside(contact, &outside));
   *summary = (ContactSummary){.nodes                  = count[0],
                               .in                     = count[1],
                               .out                    = count[2],
@@ -49,6 +64,7 @@ PetscErrorCode ContactSummarise(Contact contact, ContactSummary *summary)
                               .min_penetration        = count[0] && least < PETSC_MAX_REAL ? least : 0,
                               .penalty_min            = -most[2],
                               .penalty_max            = most[3],
+                              .outside_window         = outside,
                               .force                  = PetscSqrtReal(PetscSqr(total[0]) + PetscSqr(total[1]) + PetscSqr(total[2]))};
   PetscFunctionReturn(PETSC_SUCCESS);
 }

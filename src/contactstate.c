@@ -22,6 +22,10 @@ PetscErrorCode ContactStateCopy(const ContactState *from, ContactState *to)
   PetscCall(PetscArraycpy(to->gap, from->gap, from->n));
   PetscCall(PetscArraycpy(to->offset, from->offset, from->n));
   PetscCall(PetscArraycpy(to->multiplier, from->multiplier, from->n));
+  to->raised  = from->raised;
+  to->lowered = from->lowered;
+  to->clamped = from->clamped;
+  to->light   = from->light;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -342,7 +342,10 @@ LANES_INLINE int Evaluate(const int dim, const int degree, const int terms, cons
   if (out->shape) memcpy(out->shape, a.scratch, a.n * sizeof(double));
   out->guards |= (out->reach < FIT_REACH ? 0 : FIT_FAR_FOOT) | (out->amplified <= FIT_AMPLIFIED ? 0 : FIT_HIGH_SUM);
   if (want >= FIT_FIRST_VARIATION && out->N) FitVariationFirst(in, &a, &s, out->N);
-  if (want >= FIT_SECOND_VARIATION && out->M) FitVariationSecond(in, &a, &s, out->M);
+  if (want >= FIT_SECOND_VARIATION && out->M)
+    FitVariationSecond(in, &a, &s, out->M);
+  else if (want >= FIT_SECOND_VARIATION && out->factors)
+    FitVariationFactors(in, &a, &s, out->factors);
   return 1;
 }
 
@@ -371,8 +374,10 @@ int FitPointsWanted(int dim, int degree)
 long FitWorkspace(int dim, int degree, int n)
 {
   const long terms = FitTerms(dim, degree), points = (long)LanesGroups(n) * LANES;
+  const long product = 2 * terms * SymmetricProductStride(dim * (int)(LANES + points)),
+             factors = (1 + points) * (dim * FactorStride((int)terms) + HessianStride(dim));
 
-  return ALIGNMENT / (long)sizeof(double) + (ARRAYS + terms + 2 + BLOCK) * points + 2 * terms * SymmetricProductStride(dim * (int)(LANES + points));
+  return ALIGNMENT / (long)sizeof(double) + (ARRAYS + terms + 2 + BLOCK) * points + (product > factors ? product : factors);
 }
 
 /* FitEvaluate - gap, first and second variation of one slave point against the diffuse surface through its fit points. Not collective.

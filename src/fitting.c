@@ -1,5 +1,6 @@
 #include "fitframe.h"
 #include "searchimpl.h"
+#include "timing.h"
 
 /* Points are gathered a little beyond the support (rho^2 up to this), so that those which enter while a solve lasts are in the list. */
 #define SEARCH_FIT_MARGIN 1.7
@@ -216,7 +217,9 @@ PetscErrorCode FittingSlave(Fitting *fit, const Nearest *look, PetscInt q, Petsc
     at.x[d]    = look->x[d];
     at.foot[d] = look->x[d] - look->foot.gap * look->foot.normal[d];
   }
+  TimingBegin(TIMING_FIT); /* two looks at the clock, 0.1 % of a ladder */
   PetscCall(FittingClimb(fit, &at, &problem, &result, &lists->rung[q]));
+  TimingEnd(TIMING_FIT);
   if (lists->rung[q] == RUNG_FACET) PetscFunctionReturn(PETSC_SUCCESS);
   lists->fit_n[q]     = problem.n;
   lists->degree[q]    = problem.degree;

@@ -143,12 +143,22 @@ static void TurnOffsets(ContactSearch s, ContactLists lists, PetscReal t)
 
 /* ListsUpdate - moves contact nodes, fit points and slave points to (u, t); what is listed stays.
 
-   Collective. u[mesh n_nodes*dim]: local displacements (length), read at owned nodes. */
-PetscErrorCode ListsUpdate(ContactSearch s, ContactLists lists, const PetscReal *u, PetscReal t)
+   Collective. u[mesh n_nodes*dim]: local displacements (length), read at owned nodes. *moved: this rank's are not where they were, or t is another;
+   may be NULL. */
+PetscErrorCode ListsUpdate(ContactSearch s, ContactLists lists, const PetscReal *u, PetscReal t, PetscBool *moved)
 {
+  const PetscInt n = lists->n_nodes * lists->dim;
+  PetscReal     *before;
+  PetscBool      same;
+
   PetscFunctionBeginUser;
-  lists->t = t;
+  PetscCall(PetscMalloc1(n, &before));
+  PetscCall(PetscArraycpy(before, lists->u, n));
   PetscCall(ListsUpdateNodes(s, lists, u, t));
+  PetscCall(PetscArraycmp(before, lists->u, n, &same));
+  PetscCall(PetscFree(before));
+  if (moved) *moved = same && lists->t == t ? PETSC_FALSE : PETSC_TRUE;
+  lists->t = t;
   for (PetscInt p = 0; p < lists->n_points; p++) PointMap(lists, p, &s->images[lists->point_image[p]], lists->u, &lists->point_u[p * lists->dim]);
   if (s->fit->integral && s->master->rigid) TurnOffsets(s, lists, t);
   for (PetscInt q = 0; q < lists->n_slaves; q++) ListsSlaveMap(lists, q, lists->u, &lists->slave_u[q * lists->dim]);

@@ -59,6 +59,7 @@ static PetscErrorCode RunModel(Model model, Probes probes, Scene scene, const Co
                     .message           = report.done ? NULL : report.message,
                     .steps             = report.steps,
                     .steps_failed      = report.steps_failed,
+                    .steps_repeated    = report.steps_repeated,
                     .newton_iterations = report.newton_iterations,
                     .newton_accepted   = report.newton_accepted,
                     .krylov_iterations = report.krylov_iterations,

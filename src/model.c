@@ -1,15 +1,21 @@
 #include "model.h"
+#include "matrixsum.h"
 #include "refusal.h"
 #include "timing.h"
 
+/* Energy of a state with an inverted element: above any other, yet its square is a number, which the line search takes. */
+#define MODEL_INVERTED 1e100
 /* Times that contact lists are replaced and the step solved on before it counts as unsettled. */
 #define MODEL_MAX_REGATHER 8
+/* Times that penalties are adjusted and the step solved on until their window holds. A penalty that starts 1e8 times too small needs four with
+   the default clamp, neighbours that share the load two or three more. */
+#define MODEL_MAX_ADJUST 12
 /* Below this residual (relative to F_ref) the energies that the line search compares differ by round-off only (their differences go with the
    square of the residual); from there on it compares residuals. */
 #define MODEL_ENERGY_ROUND_OFF 1e-6
 /* Residuals compared as if they were energies: times this, so that any decrease beats the slope the line search expects. */
 #define MODEL_RESIDUAL_WEIGHT 1e30
-/* Lists are made for this multiple of the motion that the last step's rate predicts. */
+/* Lists are made for this multiple of the motion that the last step's rate predicts; those that check a step too, so that an equal step takes them. */
 #define MODEL_MOTION_SAFETY 1.5
 /* A direct solve of a regular system leaves a relative residual of 1e-12 to 1e-7, stiff penalties included; above this the system is singular. */
 #define MODEL_SINGULAR 1e-3
@@ -28,6 +34,7 @@ const char *const SolveResults[] = {"converged",
                                     "the linear system is singular (is a body free to move?) or its solver failed",
                                     "the direct solver ran out of workspace (PETSc option mat_mumps_icntl_14 gives it more)",
                                     "the contact lists did not settle",
+                                    "the penetrations did not come into the window of the adjusted penalty",
                                     "not-a-number in the residual"};
 
 typedef struct _n_ModelWork {
@@ -36,12 +43,16 @@ typedef struct _n_ModelWork {
   PetscReal *accepted_u;
   Vec        accepted_x;
   PetscReal  accepted_t;
-  PetscReal  rate;      /* largest displacement per unit of t in the last accepted step */
-  PetscReal  scale;     /* force norm of the last evaluation */
-  PetscReal  stiffness; /* norm of the elastic tangent's diagonal */
-  PetscInt   inverted;  /* gmsh's tag of a cell of this rank that was turned inside out in this solve, or -1 */
-  PetscBool  near;      /* the iterate is so close that energies differ by round-off only */
-  Vec        residual;  /* of a trial point, while near; the tangent's diagonal for a moment */
+  Vec        forecast; /* x at forecast_t by ModelForecast() */
+  PetscReal  forecast_t;
+  PetscBool  forecasted; /* forecast starts from the accepted state */
+  PetscReal  rate;       /* largest displacement per unit of t in the last accepted step */
+  PetscReal  scale;      /* force norm of the last evaluation */
+  PetscReal  stiffness;  /* norm of the elastic tangent's diagonal */
+  PetscInt   inverted;   /* gmsh's tag of a cell of this rank that was turned inside out in this solve, or -1 */
+  PetscBool  near;       /* the iterate is so close that energies differ by round-off only */
+  PetscBool  balanced;   /* the residual of the iterate is within the tolerance */
+  Vec        residual;   /* of a trial point, while near; the tangent's diagonal for a moment */
 } ModelWork;
 
 /* ---------- residual, energy, tangent ---------- */
@@ -92,7 +103,7 @@ static PetscErrorCode ModelFunction(SNES snes, Vec x, Vec F, void *context)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Potential energy at the trial displacements, all ranks; infinite where an element is inverted. */
+/* Potential energy at the trial displacements, all ranks; out of reach where an element is inverted. */
 static PetscErrorCode ModelEnergy(Model model, PetscReal *energy)
 {
   PetscReal sum[2] = {0, 0}; /* energy, ranks with an inverted element */
@@ -110,7 +121,7 @@ static PetscErrorCode ModelEnergy(Model model, PetscReal *energy)
   }
   sum[1] = ok ? 0 : 1;
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sum, 2, MPIU_REAL, MPI_SUM, model->mesh->comm));
-  *energy = sum[1] > 0 ? PETSC_INFINITY : sum[0];
+  *energy = sum[1] > 0 ? MODEL_INVERTED : sum[0];
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -142,16 +153,12 @@ static PetscErrorCode ModelAddContact(Model model, Mat K, Mat C, PetscBool chang
 
   PetscFunctionBeginUser;
   if (changed) {
-    PetscCall(MatDuplicate(K, MAT_COPY_VALUES, &B));
-    PetscCall(MatAXPY(B, 1, C, DIFFERENT_NONZERO_PATTERN));
+    PetscCall(MatrixSumCreate(K, C, &B));
     PetscCall(MatHeaderReplace(model->A, &B));
     PetscCall(SNESGetKSP(model->snes, &ksp));
     PetscCall(KSPReset(ksp));
-  } else {
-    PetscCall(MatZeroEntries(model->A));
-    PetscCall(MatAXPY(model->A, 1, K, SUBSET_NONZERO_PATTERN));
-    PetscCall(MatAXPY(model->A, 1, C, SUBSET_NONZERO_PATTERN));
-  }
+  } else
+    PetscCall(MatrixSumUpdate(K, C, model->A));
   PetscCall(MatSetOption(model->A, MAT_SYMMETRIC, LoadsConservative(model->loads)));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -204,12 +211,14 @@ static PetscErrorCode ModelRoundOff(Model model, PetscReal *force)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Converged when the residual is small against the forces that balance in it, never against its own first value; or is nothing but round-off. */
+/* Converged when the residual is small against the forces that balance in it, never against its own first value; or is nothing but round-off.
+   Where penalties follow the penetrations, these must have settled too. */
 static PetscErrorCode ModelConverged(SNES snes, PetscInt it, PetscReal xnorm, PetscReal snorm, PetscReal fnorm, SNESConvergedReason *reason, void *context)
 {
   Model           model = context;
   const PetscReal scale = PetscMax(model->force_scale, model->work->scale);
   PetscReal       round_off;
+  PetscBool       settled = PETSC_TRUE;
 
   PetscFunctionBeginUser;
   (void)snes;
@@ -217,11 +226,13 @@ static PetscErrorCode ModelConverged(SNES snes, PetscInt it, PetscReal xnorm, Pe
   (void)xnorm;
   (void)snorm;
   PetscCall(ModelRoundOff(model, &round_off));
-  *reason           = SNES_CONVERGED_ITERATING;
-  model->work->near = fnorm <= MODEL_ENERGY_ROUND_OFF * scale ? PETSC_TRUE : PETSC_FALSE;
+  if (model->contact) PetscCall(ContactGapsSettled(model->contact, &settled));
+  *reason               = SNES_CONVERGED_ITERATING;
+  model->work->near     = fnorm <= MODEL_ENERGY_ROUND_OFF * scale ? PETSC_TRUE : PETSC_FALSE;
+  model->work->balanced = fnorm <= PetscMax(model->scene->solver.tolerance * scale, round_off) ? PETSC_TRUE : PETSC_FALSE;
   if (PetscIsInfOrNanReal(fnorm))
     *reason = SNES_DIVERGED_FUNCTION_NANORINF;
-  else if (fnorm <= PetscMax(model->scene->solver.tolerance * scale, round_off))
+  else if (fnorm <= round_off || (model->work->balanced && settled))
     *reason = SNES_CONVERGED_FNORM_ABS;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -343,6 +354,7 @@ PetscErrorCode ModelCreate(Scene scene, Mesh mesh, Model *out)
   }
   PetscCall(MatCreateVecs(model->A, &model->x, NULL));
   PetscCall(VecDuplicate(model->x, &model->work->accepted_x));
+  PetscCall(VecDuplicate(model->x, &model->work->forecast));
   PetscCall(VecDuplicate(model->x, &model->work->residual));
   PetscCall(ModelCreateSNES(model));
   *out = model;
@@ -359,6 +371,7 @@ PetscErrorCode ModelDestroy(Model *model)
   PetscCall(SNESDestroy(&m->snes));
   PetscCall(VecDestroy(&m->x));
   PetscCall(VecDestroy(&m->work->accepted_x));
+  PetscCall(VecDestroy(&m->work->forecast));
   PetscCall(VecDestroy(&m->work->residual));
   PetscCall(MatDestroy(&m->A));
   PetscCall(ContactDestroy(&m->contact));
@@ -502,6 +515,7 @@ static PetscErrorCode ModelNewton(Model model, SolveReport *report)
   report->newton += its;
   report->krylov += krylov;
   report->result = ResultFromReason(reason);
+  if (report->result == SOLVE_LINE_SEARCH && model->work->balanced) report->result = SOLVE_CONVERGED; /* gaps as settled as round-off lets them be */
   if (report->result == SOLVE_LINEAR) PetscCall(ModelLinearFailure(model, &report->result));
   PetscCall(ModelTrial(model, model->x)); /* whatever SNES looked at last */
   report->residual = model->work->scale > 0 ? norm / PetscMax(model->force_scale, model->work->scale) : 0;
@@ -546,48 +560,122 @@ static PetscErrorCode ModelLocateFailure(Model model, char *text, size_t size)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* From the accepted state on the way to t: its contact state, and lists for the motion to be expected. */
+static PetscErrorCode ModelDepart(Model model, PetscReal t)
+{
+  ModelWork *work = model->work;
+  PetscReal  motion, *u;
+
+  PetscFunctionBeginUser;
+  model->t       = t;
+  work->inverted = -1;
+  if (!model->contact) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscMalloc1(model->mesh->n_nodes * model->mesh->dim, &u));
+  PetscCall(PetscArraycpy(u, work->accepted_u, model->mesh->n_nodes * model->mesh->dim));
+  PetscCall(LoadsPrescribe(model->loads, t, u));
+  PetscCall(ModelMotion(model, u, t, &motion));
+  PetscCall(PetscFree(u));
+  motion = PetscMax(motion, MODEL_MOTION_SAFETY * work->rate * (t - work->accepted_t));
+  PetscCall(ContactRestore(model->contact));
+  TimingBegin(TIMING_SEARCH);
+  PetscCall(ContactGather(model->contact, work->accepted_u, work->accepted_t, t, motion));
+  TimingEnd(TIMING_SEARCH);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Where Newton's method starts: at a forecast that has been made, in proportion to the way; else it is made now. */
+static PetscErrorCode ModelStart(Model model, SolveReport *report)
+{
+  ModelWork *work = model->work;
+  PetscReal  part;
+
+  PetscFunctionBeginUser;
+  if (!work->forecasted) {
+    PetscCall(ModelPredict(model, report));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  part = (model->t - work->accepted_t) / (work->forecast_t - work->accepted_t);
+  PetscCall(VecAXPBYPCZ(model->x, 1 - part, part, 0, work->accepted_x, work->forecast));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Solves with frozen lists until they hold. */
+static PetscErrorCode ModelSolveLists(Model model, SolveReport *report)
+{
+  PetscReal motion;
+  PetscBool hold  = PETSC_FALSE;
+  PetscInt  times = 0;
+
+  PetscFunctionBeginUser;
+  while (!hold && report->result == SOLVE_CONVERGED) {
+    PetscCall(ModelNewton(model, report));
+    if (report->result != SOLVE_CONVERGED || !model->contact) break;
+    PetscCall(ModelMotion(model, model->work->trial, model->t, &motion));
+    TimingBegin(TIMING_SEARCH);
+    PetscCall(ContactListsHold(model->contact, model->work->trial, model->t, motion, &hold));
+    TimingEnd(TIMING_SEARCH);
+    if (hold) break;
+    report->regathered++;
+    if (times++ == MODEL_MAX_REGATHER) report->result = SOLVE_LISTS;
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* ModelSolve - equilibrium at load parameter t, from the accepted state.
 
    Collective. On success model->u, model->x and the contact state are the solution (not yet accepted); on failure call ModelRestore().
-   Contact lists are made before, frozen in each Newton solve, and made anew after it until they hold (at most MODEL_MAX_REGATHER times). */
+   Contact lists are made before, frozen in each Newton solve, and made anew after it until they hold (at most MODEL_MAX_REGATHER times); then
+   penalties that are adjusted within the step, and all is solved on from there, until their window holds (at most MODEL_MAX_ADJUST times). */
 PetscErrorCode ModelSolve(Model model, PetscReal t, SolveReport *report)
 {
-  ModelWork *work = model->work;
-  PetscReal  motion;
-  PetscBool  hold = PETSC_TRUE;
+  ModelWork         *work   = model->work;
+  ContactWindowState window = WINDOW_MISSED;
 
   PetscFunctionBeginUser;
-  *report        = (SolveReport){.result = SOLVE_CONVERGED};
-  model->t       = t;
-  work->inverted = -1;
-  if (model->contact) {
-    PetscReal *u;
-
-    PetscCall(PetscMalloc1(model->mesh->n_nodes * model->mesh->dim, &u));
-    PetscCall(PetscArraycpy(u, work->accepted_u, model->mesh->n_nodes * model->mesh->dim));
-    PetscCall(LoadsPrescribe(model->loads, t, u));
-    PetscCall(ModelMotion(model, u, t, &motion));
-    PetscCall(PetscFree(u));
-    motion = PetscMax(motion, MODEL_MOTION_SAFETY * work->rate * (t - work->accepted_t));
-    TimingBegin(TIMING_SEARCH);
-    PetscCall(ContactGather(model->contact, work->accepted_u, work->accepted_t, t, motion));
-    TimingEnd(TIMING_SEARCH);
-  }
-  PetscCall(ModelPredict(model, report));
-  while (report->result == SOLVE_CONVERGED) {
-    PetscCall(ModelNewton(model, report));
+  *report = (SolveReport){.result = SOLVE_CONVERGED};
+  PetscCall(ModelDepart(model, t));
+  PetscCall(ModelStart(model, report));
+  while (window == WINDOW_MISSED && report->result == SOLVE_CONVERGED) {
+    PetscCall(ModelSolveLists(model, report));
     if (report->result != SOLVE_CONVERGED || !model->contact) break;
-    PetscCall(ModelMotion(model, work->trial, t, &motion));
-    TimingBegin(TIMING_SEARCH);
-    PetscCall(ContactListsHold(model->contact, work->trial, t, motion, &hold));
-    TimingEnd(TIMING_SEARCH);
-    if (hold) break;
-    if (report->regathered++ == MODEL_MAX_REGATHER) report->result = SOLVE_LISTS;
+    if (report->adjusted == MODEL_MAX_ADJUST) PetscCall(ContactLocateOutside(model->contact, report->detail, sizeof(report->detail)));
+    PetscCall(ContactAdjustPenalty(model->contact, &window));
+    if (window == WINDOW_AT_BOUND) PetscCall(ContactLocateOutside(model->contact, report->detail, sizeof(report->detail)));
+    if (window == WINDOW_AT_BOUND || (window == WINDOW_MISSED && report->adjusted++ == MODEL_MAX_ADJUST)) report->result = SOLVE_WINDOW;
   }
   if (report->result == SOLVE_CONVERGED)
     PetscCall(PetscArraycpy(model->u, work->trial, model->mesh->n_nodes * model->mesh->dim));
-  else
+  else if (report->result != SOLVE_WINDOW)
     PetscCall(ModelLocateFailure(model, report->detail, sizeof(report->detail)));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* ModelForecast - displacements at t by one linear solve from the accepted state with its contact set, as a guess of what will touch.
+
+   Collective. u[n_nodes*dim]: local displacements (length), prescribed ones included. Costs and failures are added to the report; the state is
+   the accepted one afterwards, the contact lists are made for the way to t. The next ModelSolve() starts from the forecast instead of a
+   prediction of its own, so that the solve is paid once. */
+PetscErrorCode ModelForecast(Model model, PetscReal t, PetscReal *u, SolveReport *report)
+{
+  PetscFunctionBeginUser;
+  PetscCall(ModelDepart(model, t));
+  PetscCall(ModelPredict(model, report));
+  PetscCall(ModelTrial(model, model->x));
+  PetscCall(PetscArraycpy(u, model->work->trial, model->mesh->n_nodes * model->mesh->dim));
+  PetscCall(VecCopy(model->x, model->work->forecast));
+  PetscCall(VecCopy(model->work->accepted_x, model->x));
+  model->work->forecast_t = t;
+  model->work->forecasted = report->result == SOLVE_CONVERGED ? PETSC_TRUE : PETSC_FALSE;
+  model->t                = model->work->accepted_t;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* ModelGetAccepted - local displacements (length, n_nodes*dim, the model's) and load parameter of the accepted state. Not collective. */
+PetscErrorCode ModelGetAccepted(Model model, const PetscReal **u, PetscReal *t)
+{
+  PetscFunctionBeginUser;
+  *u = model->work->accepted_u;
+  *t = model->work->accepted_t;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -596,19 +684,24 @@ PetscErrorCode ModelSolve(Model model, PetscReal t, SolveReport *report)
 /* ModelAccept - the present solution is the state to go on from and to return to. Collective. */
 PetscErrorCode ModelAccept(Model model)
 {
-  ModelWork *work = model->work;
-  PetscReal  motion;
-  PetscBool  ok;
+  ModelWork      *work    = model->work;
+  const PetscBool stepped = model->t > work->accepted_t ? PETSC_TRUE : PETSC_FALSE;
+  PetscReal       motion;
+  PetscBool       ok;
 
   PetscFunctionBeginUser;
   PetscCall(ModelResidual(model, model->u, model->t, model->t, &ok)); /* reactions, gaps and forces of exactly this state */
   PetscCall(ModelMotion(model, model->u, model->t, &motion));
-  if (model->t > work->accepted_t) work->rate = motion / (model->t - work->accepted_t);
+  if (stepped) work->rate = motion / (model->t - work->accepted_t);
   model->force_scale = PetscMax(model->force_scale, work->scale);
   PetscCall(PetscArraycpy(work->accepted_u, model->u, model->mesh->n_nodes * model->mesh->dim));
   PetscCall(VecCopy(model->x, work->accepted_x));
   work->accepted_t = model->t;
-  if (model->contact) PetscCall(ContactAccept(model->contact));
+  work->forecasted = PETSC_FALSE;
+  if (model->contact) {
+    PetscCall(ContactAccept(model->contact));
+    if (stepped) PetscCall(ContactAdjustNextPenalty(model->contact));
+  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

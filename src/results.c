@@ -270,6 +270,8 @@ static void ResultsFillRow(Results results, const StepRecord *step, PetscReal ro
   row[COLUMN_PENALTY_MIN]     = contact->penalty_min;
   row[COLUMN_PENALTY_MAX]     = contact->penalty_max;
   row[COLUMN_CONTACT_FORCE]   = contact->force;
+  row[COLUMN_BETA]            = step->beta;
+  if (contact->outside_window >= 0) row[COLUMN_OUTSIDE_WINDOW] = (PetscReal)contact->outside_window;
 }
 
 static PetscErrorCode ResultsPrintCsv(Results results, const StepRecord *step)
@@ -353,7 +355,8 @@ static PetscErrorCode ResultsPrintHead(Results results)
   if (!results->quiet) PetscCall(MeshReport(results->model->mesh, results->scene, stdout));
   if (results->talks) {
     printf("dofs     %lld free\neffects  %s\n", (long long)dofs, *effects ? effects : "none");
-    printf("\n%5s %9s %9s %10s %10s %12s %8s %8s\n", "step", "t", "dt", "iterations", "in contact", "penetration", "spent", "left");
+    printf("\n%5s %9s %9s %10s %10s %5s %5s %8s %12s %8s %8s\n", "step", "t", "dt", "iterations", "in contact", "in", "out", "beta", "penetration", "spent",
+           "left");
     fflush(stdout);
   }
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -379,11 +382,17 @@ static void ResultsPrintStep(Results results, const StepRecord *step)
   char         spent_text[32], left_text[32];
 
   printf("%5lld %9.5g %9.3g %10lld", (long long)step->step, (double)step->t, (double)step->dt, (long long)step->newton);
-  if (results->model->contact)
-    printf(" %10lld %12.3e", (long long)step->contact.nodes, (double)step->contact.max_penetration);
-  else
-    printf(" %10s %12s", "-", "-");
+  if (results->model->contact) {
+    printf(" %10lld %5lld %5lld", (long long)step->contact.nodes, (long long)step->contact.in, (long long)step->contact.out);
+    if (isfinite((double)step->beta))
+      printf(" %8.3g", (double)step->beta);
+    else
+      printf(" %8s", "-");
+    printf(" %12.3e", (double)step->contact.max_penetration);
+  } else
+    printf(" %10s %5s %5s %8s %12s", "-", "-", "-", "-", "-");
   printf(" %8s %8s\n", DurationText(spent, spent_text), way > 0.0 ? DurationText(spent * (1.0 - (double)step->t) / way, left_text) : "-");
+  if (step->tied) printf("      %lld nodes come into contact together: no step above dt_min separates them\n", (long long)step->tied);
   fflush(stdout);
 }
 
@@ -532,6 +541,26 @@ static PetscErrorCode ResultsPrintUnused(Results results)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* What the adjustment of the penalties came to; the window: at the last accepted step */
+static PetscErrorCode ResultsPrintWindows(Results results)
+{
+  Contact contact = results->model->contact;
+
+  PetscFunctionBeginUser;
+  for (int p = 0; p < results->scene->n_contacts; p++) {
+    ContactWindow window;
+
+    if (!results->scene->contacts[p].adjust) continue;
+    PetscCall(ContactPairWindow(contact, p, &window));
+    if (results->talks)
+      printf("penalty of %s: raised %lld times, lowered %lld, cut short %lld, light nodes spared %lld; at the end %lld of %lld loaded nodes outside the "
+             "window, largest penetration %.3g g_max\n",
+             ContactPairName(contact, p), (long long)window.raised, (long long)window.lowered, (long long)window.clamped, (long long)window.light,
+             (long long)window.outside, (long long)window.loaded, (double)window.excess);
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* A tool whose normals look the wrong way is never met: the run would end well, without contact. */
 static void ResultsPrintUnmet(Results results)
 {
@@ -553,8 +582,8 @@ static void ResultsPrintEnd(Results results, const RunRecord *run)
 
   if (results->rank == 0 && run->message) fprintf(stderr, "burnish: %s: %s\n", run->status, run->message);
   if (!results->talks) return;
-  printf("%s: %lld steps (%lld failed), %lld iterations, %s; results in %s\n", run->status, (long long)run->steps, (long long)run->steps_failed,
-         (long long)run->newton_iterations, DurationText((double)run->wall_s, text), results->directory);
+  printf("%s: %lld steps (%lld failed, %lld repeated), %lld iterations, %s; results in %s\n", run->status, (long long)run->steps, (long long)run->steps_failed,
+         (long long)run->steps_repeated, (long long)run->newton_iterations, DurationText((double)run->wall_s, text), results->directory);
   fflush(stdout);
 }
 
@@ -570,6 +599,7 @@ PetscErrorCode ResultsFinish(Results results, const RunRecord *run)
   TimingEnd(TIMING_OUTPUT);
   PetscCall(SummaryWrite(results->model, results->scene, results->directory, run, results->stepped ? &results->last : NULL, results->values));
   PetscCall(ResultsPrintProbes(results));
+  PetscCall(ResultsPrintWindows(results));
   PetscCall(ResultsPrintUnused(results));
   ResultsPrintUnmet(results);
   ResultsPrintEnd(results, run);

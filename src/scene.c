@@ -332,6 +332,24 @@ static PetscErrorCode SceneReadAnalytic(Scene scene, SceneContact *contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* How the penalty follows the penetration */
+static void SceneReadAdjustment(Scene scene, SceneContact *contact)
+{
+  static const char *const needs[] = {"penalty.g_min", "penalty.g_max", "penalty.unit"};
+
+  contact->adjust = SchemaBoolean(SceneDocument(scene), "%s.penalty.adjust", contact->path);
+  for (size_t k = 0; contact->adjust && k < PETSC_STATIC_ARRAY_LENGTH(needs); k++)
+    if (!SceneHas(scene, contact->path, needs[k])) SceneRefuse(scene, contact->path, needs[k], "is missing; allowed with adjust: g_min, g_max and unit", NULL);
+  contact->adjust_converged = SchemaChoice(SceneDocument(scene), "%s.penalty.when", contact->path);
+  contact->clamp            = SchemaReal(SceneDocument(scene), "%s.penalty.clamp", contact->path);
+  contact->range            = SchemaReal(SceneDocument(scene), "%s.penalty.range", contact->path);
+  if (SceneHas(scene, contact->path, "penalty.unit")) contact->window_in_spacings = SchemaChoice(SceneDocument(scene), "%s.penalty.unit", contact->path);
+  if (SceneHas(scene, contact->path, "penalty.g_min")) contact->g_min = SchemaReal(SceneDocument(scene), "%s.penalty.g_min", contact->path);
+  if (SceneHas(scene, contact->path, "penalty.g_max")) contact->g_max = SchemaReal(SceneDocument(scene), "%s.penalty.g_max", contact->path);
+  if (contact->g_min > 0 && contact->g_max > 0 && contact->g_min >= contact->g_max)
+    SceneRefuse(scene, contact->path, "penalty.g_min", "is not below g_max; allowed: g_min < g_max", NULL);
+}
+
 static PetscErrorCode SceneReadContact(Scene scene, SceneContact *contact)
 {
   Node symmetry = SceneNode(scene, contact->path, "symmetry");
@@ -356,9 +374,7 @@ static PetscErrorCode SceneReadContact(Scene scene, SceneContact *contact)
   contact->penalty_auto        = SchemaChoice(SceneDocument(scene), "%s.penalty.initial", contact->path) == 0;
   contact->penalty             = contact->penalty_auto ? 0 : SchemaReal(SceneDocument(scene), "%s.penalty.initial", contact->path);
   contact->penalty_scale       = SchemaReal(SceneDocument(scene), "%s.penalty.scale", contact->path);
-  if (SceneHas(scene, contact->path, "penalty.g_min") && SceneHas(scene, contact->path, "penalty.g_max") &&
-      SchemaReal(SceneDocument(scene), "%s.penalty.g_min", contact->path) >= SchemaReal(SceneDocument(scene), "%s.penalty.g_max", contact->path))
-    SceneRefuse(scene, contact->path, "penalty.g_min", "is not below g_max; allowed: g_min < g_max", NULL);
+  SceneReadAdjustment(scene, contact);
   contact->n_symmetry = symmetry ? symmetry->n : 0;
   PetscCall(PetscCalloc1(contact->n_symmetry, &contact->symmetry));
   for (int i = 0; i < contact->n_symmetry; i++) PetscCall(PetscStrallocpy(symmetry->child[i]->text, &contact->symmetry[i]));
@@ -389,10 +405,15 @@ static PetscErrorCode SceneReadStepping(Scene scene)
   if (SchemaHas(document, "stepping.N_c") && SchemaHas(document, "stepping.N_c_fraction"))
     SceneRefuse(scene, "stepping", "N_c_fraction", "stands beside N_c; allowed: one of them", NULL);
   scene->stepping.control = (StepControlKind)SchemaChoice(document, "stepping.control");
-  scene->stepping.initial = SchemaReal(document, "stepping.initial");
-  scene->stepping.dt_min  = SchemaReal(document, "stepping.dt_min");
-  scene->stepping.dt_max  = SchemaReal(document, "stepping.dt_max");
-  scene->stepping.growth  = SchemaReal(document, "stepping.growth");
+  if (SchemaHas(document, "stepping.N_c")) scene->stepping.N_c = SchemaInteger(document, "stepping.N_c");
+  if (SchemaHas(document, "stepping.N_c_fraction")) scene->stepping.N_c_fraction = SchemaReal(document, "stepping.N_c_fraction");
+  if (scene->stepping.control == STEP_CONTACT && !scene->stepping.N_c && !(scene->stepping.N_c_fraction > 0))
+    SceneRefuse(scene, "stepping", "control", "contact needs N_c (nodes) or N_c_fraction (of the slave area); allowed: one of them", NULL);
+  scene->stepping.predict_linearly = SchemaChoice(document, "stepping.prediction");
+  scene->stepping.initial          = SchemaReal(document, "stepping.initial");
+  scene->stepping.dt_min           = SchemaReal(document, "stepping.dt_min");
+  scene->stepping.dt_max           = SchemaReal(document, "stepping.dt_max");
+  scene->stepping.growth           = SchemaReal(document, "stepping.growth");
   if (scene->stepping.dt_min > scene->stepping.dt_max) SceneRefuse(scene, "stepping", "dt_min", "is above dt_max; allowed: dt_min <= initial <= dt_max", NULL);
   if (SchemaHas(document, "stepping.initial") && (scene->stepping.initial < scene->stepping.dt_min || scene->stepping.initial > scene->stepping.dt_max))
     SceneRefuse(scene, "stepping", "initial", "is not between dt_min and dt_max; allowed: dt_min <= initial <= dt_max", NULL);

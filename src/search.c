@@ -357,7 +357,7 @@ PetscErrorCode SearchLists(ContactSearch s, const PetscReal *u, PetscReal t, Pet
   if (s->fit->global_frame) PetscCall(SurfaceMeanNormal(s->master, s->loads, u, t, fit.plane, NULL));
   PetscCall(ListsFill(s, lists, normals, &field, s->fit->degree ? &fit : NULL, motion));
   if (s->fit->degree) PetscCall(FittingDestroy(&fit));
-  PetscCall(ListsUpdate(s, lists, u, t));
+  PetscCall(ListsUpdate(s, lists, u, t, NULL));
   PetscCall(PetscFree(normals));
   PetscCall(SearchFieldDestroy(&field));
   *out = lists;

@@ -1,4 +1,5 @@
 #include "stepper.h"
+#include "stepcontrol.h"
 
 /* Load parameters closer than this are the same point of the way (t runs from 0 to 1). */
 #define STEPPER_SAME_T 1e-12
@@ -8,48 +9,17 @@
 #define STEPPER_STRETCH 1.2
 /* ... up to this many the rest is halved, so that no sliver of a step remains. */
 #define STEPPER_HALVE 2.0
-/* iterations: the Newton iterations that a step should take; fewer let dt grow, more let it shrink by the square root of the ratio. */
-#define STEPPER_TARGET_ITERATIONS 6.0
-/* iterations: the most an accepted step lets dt shrink. */
-#define STEPPER_SHRINK 0.5
-/* fixed: after a cut dt returns to the scene's value by this factor each step. */
-#define STEPPER_RECOVER 2.0
-
-typedef struct {
-  StepControlKind kind;
-  const char     *name;
-  /* dt of the next step after one of dt that took `newton` iterations */
-  PetscReal (*next)(LoadStepper, PetscReal dt, PetscInt newton);
-} StepControl;
 
 struct _n_LoadStepper {
   MPI_Comm             comm;
   Model                model;
   const StepControl   *control;
-  PetscReal            dt, initial, dt_min, dt_max, growth;
+  StepSize             size;
   PetscInt             n_landings, next_landing; /* load parameters to be met exactly, ascending, the last one 1 */
   PetscReal           *landings;
   LoadStepperMonitorFn monitor;
   void                *monitor_context;
   PetscBool            view;
-};
-
-static PetscReal StepControlNext_Fixed(LoadStepper stepper, PetscReal dt, PetscInt newton)
-{
-  (void)newton;
-  return PetscMin(stepper->initial, STEPPER_RECOVER * dt);
-}
-
-static PetscReal StepControlNext_Iterations(LoadStepper stepper, PetscReal dt, PetscInt newton)
-{
-  const PetscReal factor = PetscSqrtReal(STEPPER_TARGET_ITERATIONS / PetscMax(1, newton));
-
-  return dt * PetscMax(STEPPER_SHRINK, PetscMin(stepper->growth, factor));
-}
-
-static const StepControl StepControls[] = {
-  {STEP_FIXED,      "fixed",      StepControlNext_Fixed     },
-  {STEP_ITERATIONS, "iterations", StepControlNext_Iterations},
 };
 
 /* LoadStepperCreate - Collective. */
@@ -132,12 +102,16 @@ static PetscErrorCode LoadStepperSetLandings(LoadStepper stepper, Scene scene)
 PetscErrorCode LoadStepperSetFromScene(LoadStepper stepper, Scene scene)
 {
   PetscFunctionBeginUser;
-  for (size_t c = 0; c < PETSC_STATIC_ARRAY_LENGTH(StepControls); c++)
-    if (StepControls[c].kind == scene->stepping.control) stepper->control = &StepControls[c];
-  stepper->initial = scene->stepping.initial;
-  stepper->dt_min  = scene->stepping.dt_min;
-  stepper->dt_max  = scene->stepping.dt_max;
-  stepper->growth  = scene->stepping.growth;
+  stepper->control = StepControlFind(scene->stepping.control);
+  stepper->size    = (StepSize){.initial   = scene->stepping.initial,
+                                .dt_min    = scene->stepping.dt_min,
+                                .dt_max    = scene->stepping.dt_max,
+                                .growth    = scene->stepping.growth,
+                                .wanted    = scene->stepping.N_c ? scene->stepping.N_c : scene->stepping.N_c_fraction,
+                                .by_area   = (PetscBool)!scene->stepping.N_c,
+                                .linearly  = (PetscBool)scene->stepping.predict_linearly,
+                                .shortfall = 1,
+                                .beta      = NAN};
   PetscCall(LoadStepperSetLandings(stepper, scene));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -169,7 +143,7 @@ PetscErrorCode LoadStepperView(LoadStepper stepper, PetscViewer viewer)
 {
   PetscFunctionBeginUser;
   PetscCall(PetscViewerASCIIPrintf(viewer, "LoadStepper: control %s, initial %g, dt_min %g, dt_max %g, growth %g\n", stepper->control->name,
-                                   (double)stepper->initial, (double)stepper->dt_min, (double)stepper->dt_max, (double)stepper->growth));
+                                   (double)stepper->size.initial, (double)stepper->size.dt_min, (double)stepper->size.dt_max, (double)stepper->size.growth));
   PetscCall(PetscViewerASCIIPrintf(viewer, "  lands on"));
   for (PetscInt i = 0; i < stepper->n_landings; i++) PetscCall(PetscViewerASCIIPrintf(viewer, " %g", (double)stepper->landings[i]));
   PetscCall(PetscViewerASCIIPrintf(viewer, "\n"));
@@ -197,45 +171,87 @@ static PetscReal StepEnd(LoadStepper stepper, PetscReal t, PetscReal dt, PetscBo
   return t + dt;
 }
 
-/* Tries one step, halving it until it converges or falls below the floor. */
+static void CountSolve(const SolveReport *solve, StepRecord *record, StepperReport *report)
+{
+  record->newton += solve->newton;
+  record->krylov += solve->krylov;
+  report->newton_iterations += solve->newton;
+  report->krylov_iterations += solve->krylov;
+}
+
+/* The control's prediction, once for each step */
+static PetscErrorCode LoadStepperPredict(LoadStepper stepper, StepRecord *record, StepperReport *report)
+{
+  SolveReport solve = {.result = SOLVE_CONVERGED};
+  PetscBool   clipped;
+
+  PetscFunctionBeginUser;
+  if (!stepper->control->predict) PetscFunctionReturn(PETSC_SUCCESS);
+  (void)StepEnd(stepper, stepper->model->t, stepper->size.dt, &clipped); /* finds the landing point ahead */
+  PetscCall(stepper->control->predict(stepper->model, stepper->landings[stepper->next_landing] - stepper->model->t, &stepper->size, &solve));
+  CountSolve(&solve, record, report);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* A converged step of dt that is to stay: the record, the accepted state, the next dt. */
+static PetscErrorCode LoadStepperAccept(LoadStepper stepper, PetscReal dt, PetscBool clipped, const SolveReport *solve, StepRecord *record,
+                                        StepperReport *report)
+{
+  Model model = stepper->model;
+
+  PetscFunctionBeginUser;
+  record->t        = model->t;
+  record->dt       = dt;
+  record->residual = solve->residual;
+  if (model->contact) PetscCall(ContactSummarise(model->contact, &record->contact));
+  PetscCall(stepper->control->next(model, dt, clipped, solve->newton, &stepper->size));
+  stepper->size.dt = PetscMin(stepper->size.dt_max, stepper->size.dt);
+  record->beta     = stepper->size.beta;
+  record->tied     = stepper->size.tied;
+  PetscCall(ModelAccept(model));
+  report->steps++;
+  report->newton_accepted += solve->newton;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Tries one step, smaller and smaller until it converges and the control is content, or it falls below the floor. */
 static PetscErrorCode LoadStepperAdvance(LoadStepper stepper, StepRecord *record, StepperReport *report, PetscBool *advanced)
 {
   Model           model = stepper->model;
-  const PetscReal t = model->t, first = stepper->dt;
+  const PetscReal t = model->t, first = stepper->size.dt;
   SolveReport     solve;
   PetscBool       clipped;
 
   PetscFunctionBeginUser;
   *advanced = PETSC_FALSE;
   *record   = (StepRecord){.step = report->steps + 1};
+  PetscCall(LoadStepperPredict(stepper, record, report));
   while (PETSC_TRUE) {
-    const PetscReal end = StepEnd(stepper, t, stepper->dt, &clipped), dt = end - t;
+    const PetscReal end = StepEnd(stepper, t, stepper->size.dt, &clipped), dt = end - t;
 
     PetscCall(ModelSolve(model, end, &solve));
     record->attempts++;
-    record->newton += solve.newton;
-    record->krylov += solve.krylov;
-    report->newton_iterations += solve.newton;
-    report->krylov_iterations += solve.krylov;
+    CountSolve(&solve, record, report);
     if (solve.result == SOLVE_CONVERGED) {
-      record->t        = end;
-      record->dt       = dt;
-      record->residual = solve.residual;
-      if (model->contact) PetscCall(ContactSummarise(model->contact, &record->contact));
-      PetscCall(ModelAccept(model));
-      report->steps++;
-      report->newton_accepted += solve.newton;
-      if (!clipped) stepper->dt = PetscMin(stepper->dt_max, stepper->control->next(stepper, dt, solve.newton));
       *advanced = PETSC_TRUE;
-      PetscFunctionReturn(PETSC_SUCCESS);
+      if (stepper->control->judge) PetscCall(stepper->control->judge(model, dt, &stepper->size, advanced));
+      if (*advanced) {
+        PetscCall(LoadStepperAccept(stepper, dt, clipped, &solve, record, report));
+        PetscFunctionReturn(PETSC_SUCCESS);
+      }
+      PetscCall(ModelRestore(model));
+      report->steps_repeated++;
+      continue;
     }
+    PetscCall(PetscInfo(model->snes, "step to t = %g failed: %s; %s\n", (double)end, SolveResults[solve.result], solve.detail));
     PetscCall(ModelRestore(model));
     report->steps_failed++;
-    stepper->dt = STEPPER_CUT * dt;
-    if (stepper->dt < stepper->dt_min || (solve.result == SOLVE_LINEAR && solve.newton == 1)) { /* a tangent singular at the start is so for any dt */
+    stepper->size.dt = STEPPER_CUT * dt;
+    if (stepper->size.dt < stepper->size.dt_min || (solve.result == SOLVE_LINEAR && solve.newton == 1)) { /* a tangent singular at the start is so for any dt */
       PetscCall(PetscSNPrintf(report->message, sizeof(report->message),
                               "no equilibrium from t = %.6g to %.6g: %s; %s; tried %" PetscInt_FMT " steps, dt from %.3g down to %.3g (dt_min %.3g)", (double)t,
-                              (double)end, SolveResults[solve.result], solve.detail, record->attempts, (double)first, (double)dt, (double)stepper->dt_min));
+                              (double)end, SolveResults[solve.result], solve.detail, record->attempts, (double)first, (double)dt,
+                              (double)stepper->size.dt_min));
       PetscFunctionReturn(PETSC_SUCCESS);
     }
   }
@@ -251,8 +267,8 @@ PetscErrorCode LoadStepperSolve(LoadStepper stepper, StepperReport *report)
 
   PetscFunctionBeginUser;
   *report = (StepperReport){.t = stepper->model->t};
-  if (ModelIsLinear(stepper->model)) stepper->initial = stepper->dt_max = 1; /* the answer at any t is one solve away */
-  stepper->dt           = stepper->initial;
+  if (ModelIsLinear(stepper->model)) stepper->size.initial = stepper->size.dt_max = 1; /* the answer at any t is one solve away */
+  stepper->size.dt      = stepper->size.initial;
   stepper->next_landing = 0;
   if (stepper->view) PetscCall(LoadStepperView(stepper, PETSC_VIEWER_STDOUT_(stepper->comm)));
   while (report->t < 1 - STEPPER_SAME_T && advanced) {

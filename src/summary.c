@@ -81,6 +81,7 @@ static void AddRun(cJSON *json, const RunRecord *run)
     cJSON_AddNullToObject(json, "message");
   cJSON_AddNumberToObject(json, "steps", (double)run->steps);
   cJSON_AddNumberToObject(json, "steps_failed", (double)run->steps_failed);
+  cJSON_AddNumberToObject(json, "steps_repeated", (double)run->steps_repeated);
   cJSON_AddNumberToObject(json, "newton_iterations", (double)run->newton_iterations);
   cJSON_AddNumberToObject(json, "newton_accepted", (double)run->newton_accepted);
   cJSON_AddNumberToObject(json, "krylov_iterations", (double)run->krylov_iterations);
@@ -128,21 +129,26 @@ static PetscErrorCode AddContact(cJSON *json, Contact contact)
 
   PetscFunctionBeginUser;
   for (int p = 0; p < (contact ? ContactPairs(contact) : 0); p++) {
-    cJSON      *pair = cJSON_CreateObject(), *penalty;
-    PetscReal   least, most;
-    ContactFits fits;
+    cJSON        *pair = cJSON_CreateObject(), *penalty;
+    PetscReal     least, most;
+    ContactFits   fits;
+    ContactWindow window;
 
     PetscCall(ContactPairFits(contact, p, &fits));
     PetscCall(ContactPairPenalty(contact, p, &least, &most));
+    PetscCall(ContactPairWindow(contact, p, &window));
     cJSON_AddItemToArray(list, pair);
     cJSON_AddStringToObject(pair, "name", ContactPairName(contact, p));
     cJSON_AddNumberToObject(pair, "fall_backs", (double)(fits.points - fits.plain));
     penalty = cJSON_AddObjectToObject(pair, "penalty");
     AddReal(penalty, "min", least);
     AddReal(penalty, "max", most);
-    cJSON_AddNumberToObject(penalty, "raised", 0);
-    cJSON_AddNumberToObject(penalty, "lowered", 0);
-    cJSON_AddNumberToObject(penalty, "clamped", 0);
+    cJSON_AddNumberToObject(penalty, "raised", (double)window.raised);
+    cJSON_AddNumberToObject(penalty, "lowered", (double)window.lowered);
+    cJSON_AddNumberToObject(penalty, "clamped", (double)window.clamped);
+    cJSON_AddNumberToObject(penalty, "light", (double)window.light);
+    cJSON_AddNumberToObject(penalty, "outside_window", (double)window.outside);
+    cJSON_AddNumberToObject(penalty, "largest_excess", (double)window.excess);
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -105,6 +105,19 @@ static void test_meshed_once(void **state)
   assert_int_equal(SceneDestroy(&scene), 0);
 }
 
+/* Two parameters that change by one digit each: a sum of their plain FNV hashes would be the same. */
+static void test_names_differ(void **state)
+{
+  const char *const parameters[] = {"{n: 3, length: 2}", "{n: 2, length: 3}", "{length: 3, n: 2}"};
+  char              file[3][PETSC_MAX_PATH_LEN];
+  Complaint         complaint;
+
+  (void)state;
+  for (int i = 0; i < 3; i++) Generate(parameters[i], file[i], &complaint);
+  assert_string_not_equal(file[0], file[1]);
+  assert_string_equal(file[1], file[2]);
+}
+
 static void test_without_gmsh(void **state)
 {
   char      made[PETSC_MAX_PATH_LEN], found[PETSC_MAX_PATH_LEN], *search = strdup(getenv("PATH"));
@@ -234,8 +247,8 @@ static void test_damaged(void **state)
 
 int main(int argc, char **argv)
 {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_meshed_once), cmocka_unit_test(test_without_gmsh), cmocka_unit_test(test_mistakes_in_geo),
-                                     cmocka_unit_test(test_binary_equals_text), cmocka_unit_test(test_damaged)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_meshed_once),     cmocka_unit_test(test_names_differ),       cmocka_unit_test(test_without_gmsh),
+                                     cmocka_unit_test(test_mistakes_in_geo), cmocka_unit_test(test_binary_equals_text), cmocka_unit_test(test_damaged)};
   char                    command[128];
   int                     failed;
 

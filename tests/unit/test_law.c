@@ -1,4 +1,4 @@
-/* The penalty law is the derivative of its potential, is zero when open, and the automatic penalty is that of the softer side. */
+/* The penalty law is the derivative of its potential and is zero when open. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -6,7 +6,6 @@
 #include <cmocka.h>
 #include <math.h>
 #include "law.h"
-#include "penalty.h"
 
 static void test_derivatives(void **state)
 {
@@ -38,17 +37,9 @@ static void test_open_is_nothing(void **state)
   assert_null(LawFind("no such law"));
 }
 
-static void test_automatic(void **state)
-{
-  (void)state;
-  assert_true(PenaltyAutomatic(200, 50) == 50);
-  assert_true(PenaltyAutomatic(50, 200) == 50);
-  assert_true(PenaltyAutomatic(50, 0) == 50); /* rigid master */
-}
-
 int main(void)
 {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_derivatives), cmocka_unit_test(test_open_is_nothing), cmocka_unit_test(test_automatic)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_derivatives), cmocka_unit_test(test_open_is_nothing)};
 
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -51,9 +51,9 @@ static const char Everything[] =
   "    symmetry: [symmetry_x, symmetry_z]\n"
   "    initial_overlap: refuse\n"
   "    stabilise: false\n"
-  "    penalty: {initial: 1e5, scale: 10, adjust: false, when: step, g_min: 1e-6, g_max: 5e-6, unit: spacing, clamp: 10, range: 100}\n"
+  "    penalty: {initial: 1e5, scale: 10, adjust: true, when: step, g_min: 1e-6, g_max: 5e-6, unit: spacing, clamp: 10, range: 100}\n"
   "  - {name: other, slave: block_top, master: plate_top}\n"
-  "stepping: {control: fixed, initial: 0.04, N_c_fraction: 0.05, prediction: tangent, dt_min: 1e-4, dt_max: 0.5, growth: 2, at: [0.25, 0.5]}\n"
+  "stepping: {control: contact, initial: 0.04, N_c_fraction: 0.05, prediction: tangent, dt_min: 1e-4, dt_max: 0.5, growth: 2, at: [0.25, 0.5]}\n"
   "solver: {type: direct, tolerance: 1e-9, max_iterations: 12}\n"
   "probes:\n"
   "  - {name: p0, reaction: top, component: y, absolute: true}\n"
@@ -198,7 +198,10 @@ static void ContactsArrive(void **state)
   assert_int_equal(contact->n_symmetry, 2);
   assert_string_equal(contact->symmetry[1], "symmetry_z");
   assert_true(contact->feature_angle == 30 && !contact->penalty_auto && contact->penalty == 1e5 && contact->penalty_scale == 10);
+  assert_true(contact->adjust && !contact->adjust_converged && contact->window_in_spacings && contact->g_min == 1e-6 && contact->g_max == 5e-6);
+  assert_true(contact->clamp == 10 && contact->range == 100);
   contact = &scene->contacts[1];
+  assert_true(!contact->adjust && contact->adjust_converged && contact->clamp == 100 && contact->range == 1e4);
   assert_int_equal(contact->smoother, SMOOTHER_FACET);
   assert_int_equal(contact->formulation, CONTACT_NODE_TO_SURFACE);
   assert_true(contact->n_symmetry == 0 && contact->feature_angle == 45 && contact->penalty_auto && contact->penalty_scale == 1);
@@ -248,7 +251,8 @@ static void TheRestArrives(void **state)
   assert_string_equal(scene->parameters[0].key, "n");
   assert_string_equal(scene->parameters[1].value, "fine");
   assert_int_equal(scene->kinematics, KINEMATICS_SMALL);
-  assert_int_equal(scene->stepping.control, STEP_FIXED);
+  assert_int_equal(scene->stepping.control, STEP_CONTACT);
+  assert_true(scene->stepping.N_c == 0 && scene->stepping.N_c_fraction == 0.05 && scene->stepping.predict_linearly);
   assert_true(scene->stepping.initial == 0.04 && scene->stepping.dt_min == 1e-4 && scene->stepping.dt_max == 0.5 && scene->stepping.growth == 2);
   assert_true(scene->stepping.n_at == 2 && scene->stepping.at[1] == 0.5);
   assert_true(scene->solver.tolerance == 1e-9 && scene->solver.max_iterations == 12);

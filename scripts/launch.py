@@ -1,0 +1,41 @@
+"""Runs of Burnish for the scripts here: the environment in which mpirun starts, and what a run leaves as Python values."""
+import csv
+import json
+import os
+import pathlib
+
+import numpy
+
+MPI = {
+    "OMPI_ALLOW_RUN_AS_ROOT": "1",
+    "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1",
+    "OMPI_MCA_rmaps_base_oversubscribe": "1",
+    "PRTE_MCA_rmaps_default_mapping_policy": ":oversubscribe",  # Open MPI 5
+    "OMPI_MCA_mpi_yield_when_idle": "1",
+    "OMP_NUM_THREADS": "1",
+    "OPENBLAS_NUM_THREADS": "1",
+}
+
+
+def environment():
+    """The caller's, with what several ranks on few cores need where it says nothing."""
+    return {**MPI, **os.environ}
+
+
+def command(burnish, ranks, scene, directory, overrides, *options):
+    """Command line of a run, for subprocess."""
+    line = ["mpirun", "-n", str(ranks), str(burnish), str(scene), "-o", str(directory), *options]
+    for override in overrides:
+        line += ["-set", override]
+    return line
+
+
+def read_summary(directory):
+    return json.loads((pathlib.Path(directory) / "summary.json").read_text())
+
+
+def read_steps(directory):
+    """Columns of steps.csv, NaN where empty; {} without an accepted step."""
+    with open(pathlib.Path(directory) / "steps.csv", newline="") as file:
+        rows = list(csv.DictReader(file, skipinitialspace=True))
+    return {key: numpy.array([float(row[key] or "nan") for row in rows]) for key in rows[0]} if rows else {}

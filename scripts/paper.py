@@ -1,0 +1,334 @@
+"""The three examples of the paper (section 5): runs their scenes, leaves tables (CSV, and all of them in paper.md beside the paper's own
+statements) and pictures that correspond to its figures 1 to 5 in out/paper/. A run that is there already with the same input is not repeated.
+    paper.py [pipe_pinch] [plate_cylinder] [cup_flattening] [-j RANKS] [--quick] [--again] [--record DIR]"""
+import argparse
+import csv
+import hashlib
+import json
+import pathlib
+import shutil
+import subprocess
+import sys
+import time
+
+import numpy
+
+import paperpictures
+from launch import command, environment, read_steps, read_summary
+from meshview import read_mesh, read_slave, read_states
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+NAMES = ("pipe_pinch", "plate_cylinder", "cup_flattening")
+TIME_LIMIT = 1800  # seconds for one run; the longest takes a tenth of it on two ranks
+
+STATEMENTS = {
+    "pipe_pinch": """Figure 1 and section 5.1: a pipe pinched between two plates, both deformable. "We observe that the number of iterations can be reduced
+when the surface smoothing procedure is used. [...] The CPU time is not increased." No figures are given.""",
+    "plate_cylinder": """Figures 2 and 3 and section 5.2: a plate under pressure on a rigid cylinder. "With a traditional contact algorithm, the
+computations have not been performed. The required precision was not reached for P = 120 MPa. [...] the penalty parameter strongly decreases [...]
+In this case [with the adjustment], the penalty parameter is increased to obtain the penetration between g_min and g_max" = 1e-6 and 5e-6 mm.""",
+    "cup_flattening": """Figures 4 and 5 and section 5.3: a spherical cup flattened on a rigid plane. "Our initial choice has led to 40 steps. It can be reduced to 9 steps by
+using our approach. Figure 5 [...] emphasizes a non-linear evolution of load step." Iterations are not given.""",
+}
+
+SMOOTHERS = {
+    "facet": ["contact.0.smoother=facet"],
+    "diffuse 2 (the paper's)": ["contact.0.smoother=diffuse", "contact.0.degree=2"],
+    "diffuse 4": ["contact.0.smoother=diffuse", "contact.0.degree=4"],
+}
+PAPERS, OURS = "diffuse 2 (the paper's)", "diffuse 4"
+
+
+class Study:
+    """Where runs go and how they are made; collects the tables."""
+
+    def __init__(self, args):
+        self.args, self.text = args, ["# The paper's results\n"]
+
+    def run(self, name, scene, overrides, *options):
+        """A finished run's directory; made anew only when its input has changed."""
+        directory = self.args.out / "runs" / name
+        source = ROOT / "runs" / f"{scene}.yaml"
+        geometry = b"".join(path.read_bytes() for path in sorted((ROOT / "meshes").glob(f"{scene.removesuffix('_meshed')}.geo")))
+        stamp = {"scene": hashlib.sha256(source.read_bytes() + geometry).hexdigest(), "overrides": [*overrides, *options], "ranks": self.args.ranks}
+        mark = directory / "paper.json"
+        if not self.args.again and mark.exists() and json.loads(mark.read_text())["input"] == stamp:
+            return directory
+        shutil.rmtree(directory, ignore_errors=True)
+        directory.parent.mkdir(parents=True, exist_ok=True)
+        line = command(self.args.burnish, self.args.ranks, source, directory, overrides, "-quiet", *options)
+        print(f"{name}: {' '.join(line)}", flush=True)
+        start = time.monotonic()
+        try:
+            finished = subprocess.run(line, env=environment(), stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, timeout=TIME_LIMIT)
+        except subprocess.TimeoutExpired:
+            sys.exit(f"{' '.join(line)}\nnot done after {TIME_LIMIT} s")
+        if finished.returncode not in (0, 2):  # 2: did not converge, which is a result here
+            sys.exit(f"{' '.join(line)}\n{finished.stdout}\nexit status {finished.returncode}")
+        mark.write_text(json.dumps({"input": stamp, "status": finished.returncode, "seconds": round(time.monotonic() - start, 1)}))
+        return directory
+
+    def heading(self, name):
+        self.text += [f"## {name}\n", STATEMENTS[name] + "\n"]
+
+    def table(self, name, title, header, rows, note="", shown=True):
+        """One table as CSV, and in paper.md unless it is a long one that a picture shows."""
+        rows = [[f"{cell:.6g}" if isinstance(cell, float) else "" if cell is None else str(cell) for cell in row] for row in rows]
+        for folder in filter(None, (self.args.out, self.args.record)):
+            folder.mkdir(parents=True, exist_ok=True)
+            with open(folder / f"{name}.csv", "w", newline="") as file:
+                csv.writer(file).writerows([header, *rows])
+        lines = [f"| {' | '.join(row)} |" for row in (header, ["---"] * len(header), *rows)] if shown else [f"{len(rows)} rows."]
+        self.text.append(f"### {title} ({name}.csv)\n\n" + "\n".join(lines) + ("\n\n" + note if note else "") + "\n")
+
+    def picture(self, name, draw, *arguments):
+        self.args.out.mkdir(parents=True, exist_ok=True)
+        figure = draw(*arguments)
+        for folder in filter(None, (self.args.out, self.args.record)):
+            figure.savefig(folder / f"{name}.png", dpi=110 if folder is self.args.record else 150, bbox_inches="tight")
+        self.text.append(f"![{name}]({name}.png)\n")
+
+
+def stepping(**values):
+    return "stepping={" + ", ".join(f"{key}: {value}" for key, value in values.items()) + "}"
+
+
+def penalty(**values):
+    return "contact.0.penalty={" + ", ".join(f"{key}: {value}" for key, value in {"initial": "auto", **values}.items()) + "}"
+
+
+def outcome(directory):
+    """What a run took and how it ended, for a table; status: done, or the load parameter at which it stopped."""
+    summary = read_summary(directory)
+    return {"status": "done" if summary["status"] == "done" else f"stopped at t = {summary['t']:.3g}", "steps": summary["steps"], "failed": summary["steps_failed"],
+            "iterations": summary["newton_iterations"], "cpu_s": round(summary["cpu_s"], 1), "max_penetration": summary["max_penetration"],
+            "fall_backs": summary["contact"][0]["fall_backs"], **summary["probes"]}
+
+
+OUTCOME = ("status", "steps", "failed", "iterations", "cpu_s")
+
+
+def features(study, scene, common, window, traditional, control):
+    """Each of the paper's procedures alone and all together: (label, directory) of its runs."""
+    fixed, adjusted = penalty(**window), penalty(**window, adjust="true")
+    cases = [("traditional", "facet", fixed, traditional), *((f"{smoother} alone", smoother, fixed, traditional) for smoother in (PAPERS, OURS)), ("adjusted penalty alone", "facet", adjusted, traditional),
+             ("controlled steps alone", "facet", fixed, control), *((f"all together, {smoother}", smoother, adjusted, control) for smoother in (PAPERS, OURS))]
+    runs = []
+    for label, smoother, penalties, steps in cases:
+        name = f"{scene}-{label}".replace(" (the paper's)", "").replace(",", "").replace(" ", "_")
+        runs.append((label, study.run(name, scene, [*common, *SMOOTHERS[smoother], penalties, steps])))
+    return runs
+
+
+# pipe_pinch: surface smoothing, and the rules on its mesh
+
+PIPE_REFERENCE = {"plate_force": 123920, "diameter_h_mid": 61.05, "crown_gap": 0.0125}
+PIPE_STEPS = (0.01, 0.02, 0.04, 0.1, 0.25, 1)
+
+
+def pipe_pinch(study):
+    scene = "pipe_pinch"
+    study.heading(scene)
+    quick = ["mesh.parameters={n_arc: 12, n_wall: 1, n_len: 5}"] if study.args.quick else []
+    runs = features(study, scene, quick, {"scale": 100, "g_min": 2e-4, "g_max": 1e-3, "unit": "length"}, stepping(control="fixed", initial=0.05, at="[0.5]"),
+                    stepping(control="contact", initial=0.05, N_c_fraction=0.05, at="[0.5]"))
+    header = ["procedure", *OUTCOME, "max_penetration", "fall_backs", *PIPE_REFERENCE]
+    rows = [[label, *(outcome(directory)[key] for key in header[1:])] for label, directory in runs]
+    study.table("pipe_pinch_procedures", "The procedures alone and together", header, rows + [["reference, another code"] + [""] * 7 + list(PIPE_REFERENCE.values())],
+                "Master: the pipe's meshed surface. Fixed steps: 20 of t = 0.05; controlled: a twentieth of the slave area comes into contact per step.")
+    uniform = {dt: study.run(f"{scene}-diffuse-dt_{dt:g}", scene, [*quick, *SMOOTHERS[OURS], penalty(scale=100), stepping(control="fixed", initial=dt), "stepping.at=[]", "output.every=0"]) for dt in PIPE_STEPS}
+    controlled = study.run(f"{scene}-diffuse-control", scene, [*quick, *SMOOTHERS[OURS], penalty(scale=100), stepping(control="contact", initial=0.05, N_c_fraction=0.05), "stepping.at=[]", "output.every=0"])
+    exact = read_summary(uniform[PIPE_STEPS[0]])["probes"]["plate_force"]
+    rows = []
+    for label, directory in [*((f"uniform, {dt:g}", directory) for dt, directory in uniform.items()), ("control, N_c_fraction 0.05 from 0.05", controlled)]:
+        result = outcome(directory)
+        error = 100 * (result["plate_force"] / exact - 1) if result["status"] == "done" else None
+        rows.append([label, *(result[key] for key in OUTCOME), result["plate_force"], error])
+    study.table("pipe_pinch_steps", "Controlled steps against uniform ones, diffuse 4", ["steps of t", *OUTCOME, "plate_force", "error of it in %, to the smallest steps"], rows)
+    mesh, states = read_mesh(runs[2][1] / "results.h5"), read_states(runs[2][1] / "results.h5", "displacement", "von_mises")
+    study.picture("fig1a", paperpictures.pipe, mesh, None)
+    study.picture("fig1b", paperpictures.pipe, mesh, states[-1])
+
+
+# plate_cylinder: the penalty
+
+WINDOW = (1e-6, 5e-6)  # mm, the paper's
+LIGHT = 1e-3  # of the largest nodal force: nodes below it are not held to the lower bound
+SCALES = (1e-4, 1, 1e4)  # of the automatic penalty
+PLATE_REFERENCE = {"tip_uy": -0.845, "cylinder_fx": 1326, "cylinder_fy": 79234, "contact_x_min": 49.59, "contact_x_max": 51.06, "peak_pressure": 3590}
+PRESSURE = 200  # MPa at t = 1
+
+
+SHARE = {1: (1, 1), 2: (1, 4, 1)}  # of an element's length that its nodes get, by the order of the elements
+
+
+def tributary(x, order):
+    """Reference areas of the nodes of a grid of rectangles, x: n x 2."""
+    area, share = numpy.ones(len(x)), numpy.array(SHARE[order]) / sum(SHARE[order])
+    for axis in range(2):
+        grid, place = numpy.unique(numpy.round(x[:, axis], 9), return_inverse=True)
+        weight = numpy.zeros(len(grid))
+        for first in range(0, len(grid) - order, order):
+            weight[first:first + order + 1] += (grid[first + order] - grid[first]) * share
+        area *= weight[place]
+    return area
+
+
+HISTORY = ("P", "x", "z", "penalty", "penetration", "largest_penetration", "in_contact", "inside", "excess")
+
+
+def history(directory, order):
+    """Per written step: P; place, penalty and penetration of the node that carries the largest force; over all nodes in contact: the largest
+    penetration, how many they are, how many of them are inside the window, and the largest factor by which one is outside."""
+    path = directory / "results.h5"
+    if not path.exists():
+        return []
+    x = read_mesh(path)[0][read_slave(path, "ridge")]
+    area, rows = tributary(x[:, [0, 2]], order), []
+    for t, eps, penetration in read_states(path, "contact/ridge/penalty", "contact/ridge/penetration"):
+        force, closed = eps * area * penetration, penetration > 0
+        top = numpy.argmax(force)
+        below = numpy.where(force[closed] < LIGHT * force[top], 0, WINDOW[0] / penetration[closed])
+        excess = numpy.maximum(below, penetration[closed] / WINDOW[1])
+        rows.append(dict(zip(HISTORY, (PRESSURE * t, float(x[top, 0]), float(x[top, 2]), float(eps[top]), float(penetration[top]), float(penetration.max()), int(closed.sum()),
+                                       int((excess <= 1).sum()), float(excess.max())))))
+    return rows
+
+
+def classical(study, scene, common, *options):
+    """The classical approach of the paper's figure 3(a), emulated: the penalty starts stiff enough for the window and is divided by ten whenever a step
+    fails. The problem does not depend on its path, so that each penalty is run from the start, without smaller steps. Returns the accepted steps, each with
+    its factor on the automatic penalty (scale) and those that failed at it (tried), and the outcome, iterations of all runs together."""
+    accepted, tried, total, iterations, scale = [], [], 0, 0, max(SCALES)
+    while True:
+        name = f"{scene}-classical{'-plain' if options else ''}-{scale:g}"
+        directory = study.run(name, scene, [*common, penalty(scale=scale), stepping(control="fixed", initial=0.1, dt_min=0.1)], *options)
+        for row in history(directory, 1)[len(accepted):]:
+            accepted.append({**row, "scale": scale, "tried": tried})
+            tried = []
+        result = outcome(directory)
+        iterations += result["iterations"]
+        if result["status"] == "done" or scale <= min(SCALES):
+            return accepted, {**result, "iterations": iterations, "failed": total}
+        tried, total, scale = [*tried, scale], total + 1, scale / 10
+
+
+def plate_cylinder(study):
+    scene, args = "plate_cylinder", study.args
+    study.heading(scene)
+    fixed, control = stepping(control="fixed", initial=0.1), stepping(control="contact", initial=0.1, N_c=5)
+    quick = ["mesh.parameters={h_contact: 0.5, h_far: 5, n_thick: 1, n_width: 4}"] if args.quick else []
+
+    # The surface: the same plate of first-order elements on the exact cylinder and on plane facets
+    size = "h_contact: 0.25, h_far: 3, n_thick: 4, n_width: 6" if not args.quick else "h_contact: 0.5, h_far: 5, n_thick: 2, n_width: 4"
+    plane = {turn: ["mesh.order=1", f"mesh.parameters={{{size}, cylinder: 1, turn: {turn}}}"] for turn in (0, 0.5)}
+    plate = ["mesh.order=1", f"mesh.parameters={{{size}}}"]
+    exact = study.run(f"{scene}-exact-order_1", scene, [*plate, penalty(scale=100), fixed])
+    runs = [("exact cylinder", exact)]
+    for turn, overrides in plane.items():
+        for smoother, choice in SMOOTHERS.items():
+            name = f"{scene}-{smoother.split(' (')[0].replace(' ', '_')}-turn_{turn}"
+            runs.append((f"{smoother}, {'a vertex' if turn == 0 else 'the middle of a facet'} at x = 50", study.run(name, f"{scene}_meshed", [*overrides, *choice, penalty(scale=100), fixed])))
+    tip, peak = (outcome(exact)[name] for name in ("tip_uy", "peak_pressure"))
+    rows = []
+    for label, directory in runs:
+        result = outcome(directory)
+        rows.append([label, *(result[key] for key in OUTCOME), *(result[key] for key in PLATE_REFERENCE), result["tip_uy"] - tip, 100 * (result["peak_pressure"] / peak - 1)])
+    study.table("plate_cylinder_surface", "The surface: facets of one degree against the exact cylinder, first-order elements", ["master", *OUTCOME, *PLATE_REFERENCE, "tip to exact, mm", "peak pressure to exact, %"],
+                rows, "The same plate mesh, penalty and steps in every row: differences are the surface's.")
+
+    second = {smoother: study.run(f"{scene}-order_2-{smoother.split(' (')[0].replace(' ', '_')}", f"{scene}_meshed", [*([quick[0].replace("}", ", cylinder: 1}")] if quick else []), *choice, penalty(scale=100), fixed])
+              for smoother, choice in SMOOTHERS.items()}
+    reference = study.run(f"{scene}-order_2-exact", scene, [*quick, penalty(scale=100), fixed])
+    rows = [[label, *(outcome(directory)[key] for key in (*OUTCOME, *PLATE_REFERENCE))] for label, directory in (("exact cylinder", reference), *second.items())]
+    study.table("plate_cylinder_order_2", "The scenes as they stand, second-order elements: facets are curved", ["master", *OUTCOME, *PLATE_REFERENCE],
+                rows + [["reference, another code"] + [""] * len(OUTCOME) + list(PLATE_REFERENCE.values())])
+
+    window = {"g_min": WINDOW[0], "g_max": WINDOW[1], "unit": "length"}
+    runs = features(study, f"{scene}_meshed", plane[0], {"scale": 100, **window}, fixed, control)
+    header = ["procedure", *OUTCOME, "max_penetration", "fall_backs", *PLATE_REFERENCE]
+    study.table("plate_cylinder_procedures", "The procedures alone and together, meshed cylinder", header, [[label, *(outcome(directory)[key] for key in header[1:])] for label, directory in runs],
+                "First-order elements, plane facets of one degree, a vertex at x = 50.")
+
+    # The penalty: the exact cylinder, second-order elements
+    laws = {"fixed": {}, "adjusted, converged": {"adjust": "true", "when": "converged"}, "adjusted, step (eq. 16)": {"adjust": "true", "when": "step"}}
+    cases, rows = {}, []
+    for law, keys in laws.items():
+        for scale in SCALES:
+            directory = study.run(f"{scene}-{law.split(' (')[0].replace(', ', '_')}-scale_{scale:g}", scene, [*quick, penalty(scale=scale, **window, **keys), fixed])
+            cases[law, scale] = history(directory, 2)
+            rows.append(summarise_penalty(law, f"{scale:g}", outcome(directory), cases[law, scale]))
+    for label, options in (("classical, plain Newton", ("-snes_linesearch_type", "basic")), ("classical, with line search", ())):
+        accepted, result = classical(study, f"{scene}_meshed", plane[0], *options)
+        cases[label, max(SCALES)] = accepted
+        rows.append(summarise_penalty(f"emulated: {label}", f"{max(SCALES):g}", result, accepted))
+    study.table("plate_cylinder_penalty", "Fixed and adjusted penalty", ["penalty", "start, times automatic", *OUTCOME[:4], "inside the window at the end, %", "smallest share of a step, %", "largest excess of a step",
+                "largest excess at the end", "largest penetration at the end", "tip_uy", "peak_pressure"], rows,
+                f"Window {WINDOW[0]:g} to {WINDOW[1]:g} mm. Shares count nodes in contact; excess is the factor by which the worst node is outside; nodes with less than {LIGHT:g} of the largest nodal force are not "
+                "held to the lower bound. Emulated: see figure 3(a).")
+    rows = [[law, f"{scale:g}", *(row[key] for key in HISTORY), " ".join(f"{factor:g}" for factor in row.get("tried", ()))] for (law, scale), taken in cases.items() for row in taken]
+    study.table("plate_cylinder_history", "Per step: the node that carries the largest force (figure 3)", ["penalty", "start, times automatic", *HISTORY, "failed with (times automatic)"], rows, shown=False)
+
+    mesh, states = read_mesh(reference / "results.h5"), read_states(reference / "results.h5", "displacement", "von_mises")
+    study.picture("fig2a", paperpictures.plate_geometry)
+    study.picture("fig2b", paperpictures.plate, mesh, states[-1])
+    study.picture("fig3a", paperpictures.penalties, {f"fixed, {scale:g}": cases["fixed", scale] for scale in SCALES} | {"emulated " + law: rows for (law, _), rows in cases.items() if law.startswith("classical")},
+                  WINDOW, "fixed, and classical emulated: eps/10 at each failed step")
+    study.picture("fig3b", paperpictures.penalties, {f"{law}, {scale:g}": cases[law, scale] for law in laws if law != "fixed" for scale in SCALES}, WINDOW, "automatic adjustment")
+
+
+def summarise_penalty(law, scale, result, rows):
+    """A row of the table of penalties."""
+    shares, last = [100 * row["inside"] / row["in_contact"] for row in rows], rows[-1] if rows else None
+    return [law, scale, *(result[key] for key in OUTCOME[:4]), shares[-1] if rows else None, min(shares, default=None), max((row["excess"] for row in rows), default=None),
+            last and last["excess"], last and last["largest_penetration"], result["tip_uy"], result["peak_pressure"]]
+
+
+# cup_flattening: the load step
+
+CUP_REFERENCE = {"plane_force": 434500, "contact_radius": 25.10, "apex_thickness": 1.9246}
+ELEMENTS = {1: 120, 2: 60}  # along the arc, by order: the same number of nodes
+
+
+def cup_flattening(study):
+    scene = "cup_flattening"
+    study.heading(scene)
+    choices = {"uniform": stepping(control="fixed", initial=0.025), "control, converged": stepping(control="contact", initial=0.025, N_c=5, prediction="converged"),
+               "control, tangent": stepping(control="contact", initial=0.025, N_c=5, prediction="tangent"), "single step": stepping(control="fixed", initial=1)}
+    rows, steps = [], []
+    for order, n_arc in ELEMENTS.items():
+        mesh = [f"mesh.order={order}", f"mesh.parameters={{n_arc: {n_arc // 2 if study.args.quick else n_arc}, n_wall: 2}}"]
+        for label, choice in choices.items():
+            directory = study.run(f"{scene}-order_{order}-{label.replace(', ', '_').replace(' ', '_')}", scene, [*mesh, penalty(scale=100), choice])
+            rows.append([order, label, *(outcome(directory)[key] for key in (*OUTCOME, *CUP_REFERENCE))])
+            taken = read_steps(directory)
+            steps += [[order, label, PRESSURE * taken["t"][k], PRESSURE * taken["dt"][k], *(int(taken[key][k]) for key in ("newton", "attempts", "contact_nodes", "nodes_in", "nodes_out"))] for k in range(len(taken["t"]))]
+    study.table("cup_flattening", "Load steps", ["order", "steps of the load", *OUTCOME, *CUP_REFERENCE], rows + [["", "reference, another code"] + [""] * len(OUTCOME) + list(CUP_REFERENCE.values())],
+                "N_c = 5 slave nodes, first step 5 MPa. The plane is analytic: there is no surface to smooth, and facet and diffuse are the same run. Iterations are all Newton iterations of the run, failed attempts and "
+                "predictions included; status, steps and failed steps as in summary.json.")
+    study.table("cup_flattening_steps", "Per step (figure 5)", ["order", "steps of the load", "P", "dP", "iterations", "attempts", "in_contact", "nodes_in", "nodes_out"], steps, shown=False)
+    path = study.args.out / "runs" / f"{scene}-order_2-uniform" / "results.h5"
+    mesh, states = read_mesh(path), read_states(path, "displacement", "von_mises")
+    study.picture("fig4a", paperpictures.cup, mesh, None)
+    study.picture("fig4b", paperpictures.cup, mesh, states[-1])
+    study.picture("fig5", paperpictures.load_steps, steps)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("examples", nargs="*", choices=[[], *NAMES], help="which; default: all")
+    parser.add_argument("-j", "--ranks", type=int, default=2)
+    parser.add_argument("--burnish", type=pathlib.Path, default=ROOT / "build/burnish")
+    parser.add_argument("--out", type=pathlib.Path, default=ROOT / "out/paper")
+    parser.add_argument("--record", type=pathlib.Path, help="a second place for tables and pictures (README quotes runs/records/paper)")
+    parser.add_argument("--quick", action="store_true", help="coarse meshes: shows that everything runs, its figures mean nothing")
+    parser.add_argument("--again", action="store_true", help="repeats runs that are there")
+    args = parser.parse_args()
+    study = Study(args)
+    for name in args.examples or NAMES:
+        {"pipe_pinch": pipe_pinch, "plate_cylinder": plate_cylinder, "cup_flattening": cup_flattening}[name](study)
+    (args.out / "paper.md").write_text("\n".join(study.text))
+    print(f"{args.out / 'paper.md'}, with the tables as CSV and the pictures beside it")
+
+
+main()

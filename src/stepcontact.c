@@ -1,0 +1,174 @@
+#include "stepcontrol.h"
+#include <math.h>
+
+/* A converged step that brings up to this many times the nodes wanted in or out is kept: to repeat it costs more than it saves (on a pipe between
+   plates, whose nodes come in rows: 96 iterations with 2, 148 with 1.5). */
+#define STEP_CHANGES_KEPT 2.0
+/* The next step is no longer than would bring this many times the nodes wanted, if as many change their status per dt as in the last step, ... */
+#define STEP_CHANGES_AIM 1.25
+/* ... nor longer than this many times the way after which the wanted nodes touch if all goes on in a straight line. They come later, as those
+   before them are held once they have touched: on a cup that is flattened four times as late. */
+#define STEP_REACH 6.0
+/* ... but never shorter than this part of the last step, as nodes may lie as close as they please. */
+#define STEP_LEAST_REACH 0.25
+/* A step taken back is tried again with at least this part of its dt: the change of status is not proportional to dt. */
+#define STEP_LEAST_PART 0.1
+/* A linear forecast goes this far past the touch, so that the node is in. */
+#define STEP_PAST_TOUCH 1.02
+/* A linear forecast holds the contact set, so that nodes behind the edge of contact come nearer than they do once those before them have
+   touched: fewer come than it promises. What the last step brought corrects the next forecast, by no more than the first factor at a time, and
+   the second in all. */
+#define STEP_CORRECTION 2.0
+#define STEP_SHORTFALL  8.0
+/* A step is as long as planned if it differs by less than this part: the end of a step, less its start, is not exactly dt. */
+#define STEP_AS_PLANNED 1e-6
+/* Factors on dt keep so many binary digits: the last ones differ with the number of ranks, steps must not. */
+#define STEP_DIGITS 10
+
+static PetscReal Round(PetscReal factor)
+{
+  int       exponent;
+  PetscReal digits = frexp(factor, &exponent);
+
+  return ldexp(rint(ldexp(digits, STEP_DIGITS)), exponent - STEP_DIGITS);
+}
+
+/* How many nodes, or how much area, may touch in a step */
+static PetscErrorCode Wanted(Model model, const StepSize *size, PetscReal *wanted)
+{
+  const PetscReal *u;
+  PetscReal        t, changed, all;
+
+  PetscFunctionBeginUser;
+  *wanted = size->wanted;
+  if (!size->by_area) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(ModelGetAccepted(model, &u, &t));
+  PetscCall(ContactChanges(model->contact, t, PETSC_TRUE, &changed, &all));
+  *wanted *= all;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* beta_{N_c} from the accepted state to (u, t), dt apart. Source: Chamoret et al. 2004, eqs 17 to 20. */
+static PetscErrorCode Choose(Model model, const PetscReal *u, PetscReal t, PetscBool still_open, PetscReal factor, StepSize *size, TouchChoice *choice)
+{
+  const PetscReal *u_0;
+  PetscReal        t_0, wanted;
+  Touch           *touch;
+  int              n;
+
+  PetscFunctionBeginUser;
+  PetscCall(ModelGetAccepted(model, &u_0, &t_0));
+  PetscCall(Wanted(model, size, &wanted));
+  PetscCall(ContactTouches(model->contact, u_0, t_0, u, t, size->by_area, still_open, &n, &touch));
+  TouchChoose(n, touch, factor * wanted, size->dt_min / (t - t_0), choice);
+  PetscCall(PetscFree(touch));
+  size->beta     = choice->beta;
+  size->together = choice->tied ? choice->met : 0;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* StepControlPredict_Contact - the paper's order, for `prediction: tangent`: one linear solve over the present dt says when nodes touch, and dt
+   is made so that the wanted ones do. Collective. */
+PetscErrorCode StepControlPredict_Contact(Model model, PetscReal rest, StepSize *size, SolveReport *report)
+{
+  const PetscReal dt = PetscMin(size->dt, rest);
+  PetscReal      *u;
+  TouchChoice     choice;
+
+  PetscFunctionBeginUser;
+  if (!size->linearly || !model->contact) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscMalloc1(model->mesh->n_nodes * model->mesh->dim, &u));
+  PetscCall(ModelForecast(model, model->t + dt, u, report));
+  if (report->result == SOLVE_CONVERGED) {
+    PetscCall(Choose(model, u, model->t + dt, PETSC_FALSE, size->shortfall, size, &choice));
+    size->tied    = choice.tied ? choice.nodes : 0;
+    size->dt      = isnan(choice.beta) ? size->growth * size->dt : PetscMin(size->growth * size->dt, Round(STEP_PAST_TOUCH * choice.beta) * dt);
+    size->dt      = PetscMax(size->dt_min, PetscMin(size->dt_max, size->dt));
+    size->planned = isnan(choice.beta) ? 0 : Round(STEP_PAST_TOUCH * choice.beta) * dt;
+  }
+  PetscCall(PetscFree(u));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* StepControlJudge_Contact - for `prediction: converged`: a step in which too many nodes came into contact or left it is taken back, unless they
+   tie. Collective. */
+PetscErrorCode StepControlJudge_Contact(Model model, PetscReal dt, StepSize *size, PetscBool *accepted)
+{
+  const PetscReal *u;
+  PetscReal        t, changed, all, wanted;
+
+  PetscFunctionBeginUser;
+  *accepted = PETSC_TRUE;
+  if (size->linearly || !model->contact) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(ModelGetAccepted(model, &u, &t));
+  PetscCall(ContactChanges(model->contact, t, size->by_area, &changed, &all));
+  wanted     = size->wanted * (size->by_area ? all : 1);
+  size->tied = 0;
+  if (changed <= STEP_CHANGES_KEPT * wanted) PetscFunctionReturn(PETSC_SUCCESS);
+  if (dt > size->dt_min && changed > STEP_CHANGES_KEPT * size->together) {
+    *accepted = PETSC_FALSE;
+    size->dt  = PetscMax(size->dt_min, dt * Round(PetscMax(wanted / changed, STEP_LEAST_PART)));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  PetscCall(ContactChanges(model->contact, t, PETSC_FALSE, &changed, &all));
+  size->tied = (PetscInt)changed;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Compares what a step of its planned length brought with what the forecast promised. */
+static PetscErrorCode Learn(Model model, PetscReal dt, StepSize *size)
+{
+  const PetscReal *u;
+  PetscReal        t, changed, all, wanted;
+
+  PetscFunctionBeginUser;
+  if (PetscAbsReal(dt - size->planned) > STEP_AS_PLANNED * dt) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(ModelGetAccepted(model, &u, &t));
+  PetscCall(ContactChanges(model->contact, t, size->by_area, &changed, &all));
+  wanted = size->wanted * (size->by_area ? all : 1);
+  size->shortfall *= Round(PetscMin(STEP_CORRECTION, PetscMax(1 / STEP_CORRECTION, wanted / PetscMax(changed, wanted / STEP_CORRECTION))));
+  size->shortfall = PetscMax(1, PetscMin(STEP_SHORTFALL, size->shortfall));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The longest dt that the last step, of dt, lets hope to bring no more nodes than wanted. */
+static PetscErrorCode Longest(Model model, PetscReal dt, PetscReal beta, const StepSize *size, PetscReal *longest)
+{
+  const PetscReal *u;
+  PetscReal        t, changed, all, wanted;
+
+  PetscFunctionBeginUser;
+  PetscCall(ModelGetAccepted(model, &u, &t));
+  PetscCall(ContactChanges(model->contact, t, size->by_area, &changed, &all));
+  wanted   = size->wanted * (size->by_area ? all : 1);
+  *longest = size->growth;
+  if (changed > 0 && !size->tied) *longest = PetscMin(*longest, STEP_CHANGES_AIM * wanted / changed);
+  if (!isnan(beta)) *longest = PetscMin(*longest, PetscMax(STEP_LEAST_REACH, STEP_REACH * (beta - 1)));
+  *longest = Round(*longest) * dt;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* StepControlNext_Contact - dt by the nodes that are still open and approach, and by how many came or left. `prediction: tangent` decides before
+   the next step. Collective. */
+PetscErrorCode StepControlNext_Contact(Model model, PetscReal dt, PetscBool clipped, PetscInt newton, StepSize *size)
+{
+  TouchChoice choice;
+  PetscReal   longest = dt;
+
+  PetscFunctionBeginUser;
+  (void)newton;
+  if (!model->contact) {
+    if (!clipped) size->dt = size->growth * dt;
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  if (size->linearly) {
+    PetscCall(Learn(model, dt, size));
+    if (!clipped) size->dt = dt;
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  PetscCall(Choose(model, model->u, model->t, PETSC_TRUE, 1, size, &choice));
+  PetscCall(Longest(model, dt, choice.beta, size, &longest));
+  if (!clipped) size->dt = dt * (isnan(choice.beta) ? size->growth : PetscMin(size->growth, Round(choice.beta)));
+  size->dt = PetscMax(size->dt_min, PetscMin(size->dt, longest));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
