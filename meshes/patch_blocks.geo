@@ -54,7 +54,7 @@ For b In {0 : 1}
         x = s + (1 + level) * count;
         z = s + (3 + level) * count;
         Curve Loop(x) = {x, z + step, -(x + step * (n + 1)), -z};
-        Plane Surface(s + level * count) = {x}; // kinds 0, 1: of the interface and the far side
+        Surface(s + level * count) = {x}; // kinds 0, 1: of the interface and the far side
         If (level == 0)
           contact~{b}[] += {s};
         Else
@@ -68,10 +68,10 @@ For b In {0 : 1}
       For i In {0 : n - 1}
         s = o + k * (n + 1) + i;
         Curve Loop(s + 5 * count) = {s, s + 2 * count, -(s + 1), -(s + count)};
-        Plane Surface(s + 2 * count) = {s + 5 * count}; // kind 2: standing, along x
+        Surface(s + 2 * count) = {s + 5 * count}; // kind 2: standing, along x; twisted where nodes are moved
         r = o + i * (n + 1) + k;
         Curve Loop(r + 6 * count) = {r, r + 4 * count, -(r + n + 1), -(r + 3 * count)};
-        Plane Surface(r + 3 * count) = {r + 6 * count}; // kind 3: standing, along z
+        Surface(r + 3 * count) = {r + 6 * count}; // kind 3: standing, along z
         If (k == 0)
           wall_2[] += {s + 2 * count};
           wall_0[] += {r + 3 * count};
