@@ -14,7 +14,7 @@ typedef struct {
   PetscReal together;                        /* contact: nodes (area) that the last choice found to touch at one time, 0: no more than wanted */
   PetscReal shortfall;                       /* contact: how many times more nodes the last linear forecasts promised than came; 1 to begin with */
   PetscReal planned;                         /* contact: dt of the last linear forecast, 0: none */
-  PetscInt  tied;                            /* contact: nodes of this step that touch together beyond those wanted */
+  PetscInt  tied;                            /* contact: nodes of this step that come together, more than wanted, as no step separates them; 0: none */
 } StepSize;
 
 typedef struct {
@@ -24,8 +24,9 @@ typedef struct {
   PetscErrorCode (*predict)(Model, PetscReal rest, StepSize *, SolveReport *);
   /* after a converged step of dt: is it to be accepted? If not it is taken back and tried with the new size->dt. NULL: always */
   PetscErrorCode (*judge)(Model, PetscReal dt, StepSize *, PetscBool *accepted);
-  /* after a step of dt that took `newton` iterations, before it is accepted: the next dt */
-  PetscErrorCode (*next)(Model, PetscReal dt, PetscInt newton, StepSize *);
+  /* after a step of dt that took `newton` iterations, before it is accepted: the next dt, from size->dt. clipped: dt was shortened to land on a
+     load parameter and says nothing of what the model can take */
+  PetscErrorCode (*next)(Model, PetscReal dt, PetscBool clipped, PetscInt newton, StepSize *);
 } StepControl;
 
 const StepControl *StepControlFind(StepControlKind);
@@ -33,4 +34,4 @@ const StepControl *StepControlFind(StepControlKind);
 /* stepcontact.c */
 PetscErrorCode StepControlPredict_Contact(Model, PetscReal rest, StepSize *, SolveReport *);
 PetscErrorCode StepControlJudge_Contact(Model, PetscReal dt, StepSize *, PetscBool *accepted);
-PetscErrorCode StepControlNext_Contact(Model, PetscReal dt, PetscInt newton, StepSize *);
+PetscErrorCode StepControlNext_Contact(Model, PetscReal dt, PetscBool clipped, PetscInt newton, StepSize *);

@@ -392,7 +392,7 @@ static void ResultsPrintStep(Results results, const StepRecord *step)
   } else
     printf(" %10s %5s %5s %8s %12s", "-", "-", "-", "-", "-");
   printf(" %8s %8s\n", DurationText(spent, spent_text), way > 0.0 ? DurationText(spent * (1.0 - (double)step->t) / way, left_text) : "-");
-  if (step->tied) printf("      %lld nodes more than wanted touch together: no step separates them\n", (long long)step->tied);
+  if (step->tied) printf("      %lld nodes come into contact together: no step above dt_min separates them\n", (long long)step->tied);
   fflush(stdout);
 }
 

@@ -7,22 +7,22 @@
 /* fixed: after a cut dt returns to the scene's value by this factor each step. */
 #define STEP_RECOVER 2.0
 
-static PetscErrorCode StepControlNext_Fixed(Model model, PetscReal dt, PetscInt newton, StepSize *size)
+static PetscErrorCode StepControlNext_Fixed(Model model, PetscReal dt, PetscBool clipped, PetscInt newton, StepSize *size)
 {
   PetscFunctionBeginUser;
   (void)model;
   (void)newton;
-  size->dt = PetscMin(size->initial, STEP_RECOVER * dt);
+  if (!clipped) size->dt = PetscMin(size->initial, STEP_RECOVER * dt);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode StepControlNext_Iterations(Model model, PetscReal dt, PetscInt newton, StepSize *size)
+static PetscErrorCode StepControlNext_Iterations(Model model, PetscReal dt, PetscBool clipped, PetscInt newton, StepSize *size)
 {
   const PetscReal factor = PetscSqrtReal(STEP_TARGET_ITERATIONS / PetscMax(1, newton));
 
   PetscFunctionBeginUser;
   (void)model;
-  size->dt = dt * PetscMax(STEP_SHRINK, PetscMin(size->growth, factor));
+  if (!clipped) size->dt = dt * PetscMax(STEP_SHRINK, PetscMin(size->growth, factor));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -197,16 +197,15 @@ static PetscErrorCode LoadStepperPredict(LoadStepper stepper, StepRecord *record
 static PetscErrorCode LoadStepperAccept(LoadStepper stepper, PetscReal dt, PetscBool clipped, const SolveReport *solve, StepRecord *record,
                                         StepperReport *report)
 {
-  const PetscReal before = stepper->size.dt;
-  Model           model  = stepper->model;
+  Model model = stepper->model;
 
   PetscFunctionBeginUser;
   record->t        = model->t;
   record->dt       = dt;
   record->residual = solve->residual;
   if (model->contact) PetscCall(ContactSummarise(model->contact, &record->contact));
-  PetscCall(stepper->control->next(model, dt, solve->newton, &stepper->size));
-  stepper->size.dt = clipped ? before : PetscMin(stepper->size.dt_max, stepper->size.dt);
+  PetscCall(stepper->control->next(model, dt, clipped, solve->newton, &stepper->size));
+  stepper->size.dt = PetscMin(stepper->size.dt_max, stepper->size.dt);
   record->beta     = stepper->size.beta;
   record->tied     = stepper->size.tied;
   PetscCall(ModelAccept(model));
@@ -244,6 +243,7 @@ static PetscErrorCode LoadStepperAdvance(LoadStepper stepper, StepRecord *record
       report->steps_repeated++;
       continue;
     }
+    PetscCall(PetscInfo(model->snes, "step to t = %g failed: %s; %s\n", (double)end, SolveResults[solve.result], solve.detail));
     PetscCall(ModelRestore(model));
     report->steps_failed++;
     stepper->size.dt = STEPPER_CUT * dt;
