@@ -217,7 +217,7 @@ def plate_cylinder(study):
     scene, args = "plate_cylinder", study.args
     study.heading(scene)
     fixed, control = stepping(control="fixed", initial=0.1), stepping(control="contact", initial=0.1, N_c=5)
-    quick = ["mesh.parameters={h_contact: 0.5, h_far: 5, n_thick: 1, n_width: 4}"] if args.quick else []
+    quick = ["mesh.parameters={h_contact: 0.5, h_far: 5, n_thick: 2, n_width: 3}"] if args.quick else []
 
     # The surface: the same plate of first-order elements on the exact cylinder and on plane facets
     size = "h_contact: 0.25, h_far: 3, n_thick: 4, n_width: 6" if not args.quick else "h_contact: 0.5, h_far: 5, n_thick: 2, n_width: 4"
