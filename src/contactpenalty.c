@@ -28,6 +28,13 @@ static PenaltyUpdate TermUpdate(const ContactPair *pair, PetscInt c, PetscReal l
   return update;
 }
 
+static PetscBool AnyAdjusts(Contact contact, int converged)
+{
+  for (int p = 0; p < contact->n_pairs; p++)
+    if (contact->pairs[p].scene->adjust && contact->pairs[p].scene->adjust_converged == converged) return PETSC_TRUE;
+  return PETSC_FALSE;
+}
+
 /* Largest force of a slave node of all pairs in the present state. */
 static PetscErrorCode LargestForce(Contact contact, PetscReal *largest)
 {
@@ -67,6 +74,8 @@ PetscErrorCode ContactAdjustPenalty(Contact contact, ContactWindowState *state)
   PetscReal largest;
 
   PetscFunctionBeginUser;
+  *state = WINDOW_HOLDS;
+  if (!AnyAdjusts(contact, 1)) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(LargestForce(contact, &largest));
   for (int p = 0; p < contact->n_pairs; p++) {
     ContactPair *pair = &contact->pairs[p];
@@ -88,6 +97,7 @@ PetscErrorCode ContactAdjustNextPenalty(Contact contact)
   PetscReal largest;
 
   PetscFunctionBeginUser;
+  if (!AnyAdjusts(contact, 0)) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(LargestForce(contact, &largest));
   for (int p = 0; p < contact->n_pairs; p++) {
     ContactPair *pair = &contact->pairs[p];
