@@ -82,6 +82,7 @@ static PetscBool SomeImageMeets(ContactSearch s, int n, const PetscReal *x, cons
   for (int m = 0; m < s->n_images; m++) {
     PetscReal face[6], y[3];
 
+    if (s->images[m].left_out) continue;
     BoxEmpty(face);
     for (int a = 0; a < n; a++) {
       SurfaceReflect(&s->images[m], dim, &x[a * dim], y);

@@ -224,7 +224,7 @@ static void ListsAddNodePoints(ContactSearch s, ContactLists lists, SearchField 
 
       if (*p < 0) {
         *p = lists->n_points; /* what the faces on this side give to a node on a plane is half of its whole */
-        ListsAddPoint(lists, 1, &node, NULL, image, 1 << planes, (2 * lists->node_id[node] + (node >= lists->n_deformable)) * SURFACE_MAX_IMAGES + image);
+        ListsAddPoint(lists, 1, &node, NULL, image, 1 << planes, (2L * lists->node_id[node] + (node >= lists->n_deformable)) * SURFACE_MAX_IMAGES + image);
       }
     }
   }

@@ -123,6 +123,7 @@ static PetscErrorCode MakeCandidates(ContactSearch s, ContactLists lists, const 
       Candidate *c = &field->candidates[field->n_candidates];
       PetscReal  own[6];
 
+      if (s->images[m].left_out) continue;
       *c           = (Candidate){.record = r, .image = m, .facet = SurfaceImageFacet(&record->facet, &s->images[m])};
       c->facet.tag = record->facet.tag * SURFACE_MAX_IMAGES + m;
       ImagePositions(s, lists, c, x);
