@@ -88,10 +88,11 @@ PetscErrorCode ContactLocateOutside(Contact, char *text, size_t size); /* which 
 PetscErrorCode ContactTouches(Contact, const PetscReal *u_0, PetscReal t_0, const PetscReal *u, PetscReal t, PetscBool by_area, PetscBool still_open, int *n,
                               Touch **);
 /* Slave nodes, or their area, whose status is another one than in the accepted state; *all: of all slave nodes. Collective. */
-PetscErrorCode ContactChanges(Contact, PetscReal t_0, PetscBool by_area, PetscReal *changed, PetscReal *all);
-int            ContactPairs(Contact);
-const char    *ContactPairName(Contact, int pair);
-int            ContactFindPair(Contact, const char *name); /* -1: none */
+PetscErrorCode      ContactChanges(Contact, PetscReal t_0, PetscBool by_area, PetscReal *changed, PetscReal *all);
+int                 ContactPairs(Contact);
+const char         *ContactPairName(Contact, int pair);
+const SceneContact *ContactPairScene(Contact, int pair);
+int                 ContactFindPair(Contact, const char *name); /* -1: none */
 /* Arrays belong to the contact and are valid until its next call. Collective. */
 PetscErrorCode ContactGetNodes(Contact, int pair, const PetscReal *u, ContactNodes *);
 /* Force of the pair on its master. Collective. */

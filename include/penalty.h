@@ -11,6 +11,8 @@
    update that aims at the edge approaches it from outside. Parts of g_max and multiples of g_min. */
 #define PENALTY_AIM_HIGH 0.6
 #define PENALTY_AIM_LOW  1.6
+/* An update that aims at the edge lands there but for round-off, which is not outside. */
+#define PENALTY_EDGE 1e-9
 
 typedef struct {
   double g_min, g_max; /* window of the penetration (length) */

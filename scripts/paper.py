@@ -101,11 +101,11 @@ def outcome(directory):
     """What a run took and how it ended, for a table; status: done, or the load parameter at which it stopped."""
     summary = read_summary(directory)
     return {"status": "done" if summary["status"] == "done" else f"stopped at t = {summary['t']:.3g}", "steps": summary["steps"], "failed": summary["steps_failed"],
-            "iterations": summary["newton_iterations"], "cpu_s": round(summary["cpu_s"], 1), "max_penetration": summary["max_penetration"],
+            "repeated": summary["steps_repeated"], "iterations": summary["newton_iterations"], "cpu_s": round(summary["cpu_s"], 1), "max_penetration": summary["max_penetration"],
             "fall_backs": summary["contact"][0]["fall_backs"], **summary["probes"]}
 
 
-OUTCOME = ("status", "steps", "failed", "iterations", "cpu_s")
+OUTCOME = ("status", "steps", "failed", "repeated", "iterations", "cpu_s")
 
 
 def features(study, scene, common, window, traditional, control):
@@ -134,7 +134,7 @@ def pipe_pinch(study):
                     stepping(control="contact", initial=0.05, N_c_fraction=0.05, at="[0.5]"))
     header = ["procedure", *OUTCOME, "max_penetration", "fall_backs", *PIPE_REFERENCE]
     rows = [[label, *(outcome(directory)[key] for key in header[1:])] for label, directory in runs]
-    study.table("pipe_pinch_procedures", "The procedures alone and together", header, rows + [["reference, another code"] + [""] * 7 + list(PIPE_REFERENCE.values())],
+    study.table("pipe_pinch_procedures", "The procedures alone and together", header, rows + [["reference, another code"] + [""] * (len(OUTCOME) + 2) + list(PIPE_REFERENCE.values())],
                 "Master: the pipe's meshed surface. Fixed steps: 20 of t = 0.05; controlled: a twentieth of the slave area comes into contact per step.")
     uniform = {dt: study.run(f"{scene}-diffuse-dt_{dt:g}", scene, [*quick, *SMOOTHERS[OURS], penalty(scale=100), stepping(control="fixed", initial=dt), "stepping.at=[]", "output.every=0"]) for dt in PIPE_STEPS}
     controlled = study.run(f"{scene}-diffuse-control", scene, [*quick, *SMOOTHERS[OURS], penalty(scale=100), stepping(control="contact", initial=0.05, N_c_fraction=0.05), "stepping.at=[]", "output.every=0"])
@@ -217,7 +217,7 @@ def plate_cylinder(study):
     scene, args = "plate_cylinder", study.args
     study.heading(scene)
     fixed, control = stepping(control="fixed", initial=0.1), stepping(control="contact", initial=0.1, N_c=5)
-    quick = ["mesh.parameters={h_contact: 0.5, h_far: 5, n_thick: 1, n_width: 4}"] if args.quick else []
+    quick = ["mesh.parameters={h_contact: 0.5, h_far: 5, n_thick: 2, n_width: 3}"] if args.quick else []
 
     # The surface: the same plate of first-order elements on the exact cylinder and on plane facets
     size = "h_contact: 0.25, h_far: 3, n_thick: 4, n_width: 6" if not args.quick else "h_contact: 0.5, h_far: 5, n_thick: 2, n_width: 4"
@@ -262,7 +262,7 @@ def plate_cylinder(study):
         accepted, result = classical(study, f"{scene}_meshed", plane[0], *options)
         cases[label, max(SCALES)] = accepted
         rows.append(summarise_penalty(f"emulated: {label}", f"{max(SCALES):g}", result, accepted))
-    study.table("plate_cylinder_penalty", "Fixed and adjusted penalty", ["penalty", "start, times automatic", *OUTCOME[:4], "inside the window at the end, %", "smallest share of a step, %", "largest excess of a step",
+    study.table("plate_cylinder_penalty", "Fixed and adjusted penalty", ["penalty", "start, times automatic", *OUTCOME[:-1], "inside the window at the end, %", "smallest share of a step, %", "largest excess of a step",
                 "largest excess at the end", "largest penetration at the end", "tip_uy", "peak_pressure"], rows,
                 f"Window {WINDOW[0]:g} to {WINDOW[1]:g} mm. Shares count nodes in contact; excess is the factor by which the worst node is outside; nodes with less than {LIGHT:g} of the largest nodal force are not "
                 "held to the lower bound. Emulated: see figure 3(a).")
@@ -280,7 +280,7 @@ def plate_cylinder(study):
 def summarise_penalty(law, scale, result, rows):
     """A row of the table of penalties."""
     shares, last = [100 * row["inside"] / row["in_contact"] for row in rows], rows[-1] if rows else None
-    return [law, scale, *(result[key] for key in OUTCOME[:4]), shares[-1] if rows else None, min(shares, default=None), max((row["excess"] for row in rows), default=None),
+    return [law, scale, *(result[key] for key in OUTCOME[:-1]), shares[-1] if rows else None, min(shares, default=None), max((row["excess"] for row in rows), default=None),
             last and last["excess"], last and last["largest_penetration"], result["tip_uy"], result["peak_pressure"]]
 
 

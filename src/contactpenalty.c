@@ -28,6 +28,13 @@ static PenaltyUpdate TermUpdate(const ContactPair *pair, PetscInt c, PetscReal l
   return update;
 }
 
+static PetscBool AnyAdjusts(Contact contact, int converged)
+{
+  for (int p = 0; p < contact->n_pairs; p++)
+    if (contact->pairs[p].scene->adjust && contact->pairs[p].scene->adjust_converged == converged) return PETSC_TRUE;
+  return PETSC_FALSE;
+}
+
 /* Largest force of a slave node of all pairs in the present state. */
 static PetscErrorCode LargestForce(Contact contact, PetscReal *largest)
 {
@@ -67,6 +74,8 @@ PetscErrorCode ContactAdjustPenalty(Contact contact, ContactWindowState *state)
   PetscReal largest;
 
   PetscFunctionBeginUser;
+  *state = WINDOW_HOLDS;
+  if (!AnyAdjusts(contact, 1)) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(LargestForce(contact, &largest));
   for (int p = 0; p < contact->n_pairs; p++) {
     ContactPair *pair = &contact->pairs[p];
@@ -88,6 +97,7 @@ PetscErrorCode ContactAdjustNextPenalty(Contact contact)
   PetscReal largest;
 
   PetscFunctionBeginUser;
+  if (!AnyAdjusts(contact, 0)) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(LargestForce(contact, &largest));
   for (int p = 0; p < contact->n_pairs; p++) {
     ContactPair *pair = &contact->pairs[p];
@@ -147,7 +157,7 @@ PetscErrorCode ContactPairWindow(Contact contact, int p, ContactWindow *window)
    text[size]. Collective. */
 PetscErrorCode ContactLocateOutside(Contact contact, char *text, size_t size)
 {
-  PetscReal largest, worst[4] = {-1, 0, 0, 0}; /* tag, penetration, penalty, pair */
+  PetscReal largest, worst[5] = {-1, 0, 0, 0, 0}; /* tag, penetration, penalty, pair, whether the penalty is at its bound */
   struct {
     double factor;
     int    rank;
@@ -171,11 +181,12 @@ PetscErrorCode ContactLocateOutside(Contact contact, char *text, size_t size)
       worst[1]    = penetration;
       worst[2]    = pair->now.penalty[c];
       worst[3]    = p;
+      worst[4]    = outside > 0 && pair->now.penalty[c] >= rule.most;
     }
   }
   PetscCallMPI(MPI_Allreduce(&mine, &most, 1, MPI_DOUBLE_INT, MPI_MAXLOC, contact->mesh->comm));
-  PetscCallMPI(MPI_Bcast(worst, 4, MPIU_REAL, most.rank, contact->mesh->comm));
-  PetscCall(PetscSNPrintf(text, size, "contact '%s': node %.0f is the farthest outside, penetration %g, penalty %g", ContactPairName(contact, (int)worst[3]),
-                          (double)worst[0], (double)worst[1], (double)worst[2]));
+  PetscCallMPI(MPI_Bcast(worst, 5, MPIU_REAL, most.rank, contact->mesh->comm));
+  PetscCall(PetscSNPrintf(text, size, "contact '%s': node %.0f is the farthest outside, penetration %g, penalty %g%s", ContactPairName(contact, (int)worst[3]),
+                          (double)worst[0], (double)worst[1], (double)worst[2], worst[4] > 0 ? " (penalty.range allows no more)" : ""));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -81,6 +81,12 @@ const char *ContactPairName(Contact contact, int pair)
   return contact->pairs[pair].scene->name;
 }
 
+/* ContactPairScene - what the scene says of a pair. Not collective. */
+const SceneContact *ContactPairScene(Contact contact, int pair)
+{
+  return contact->pairs[pair].scene;
+}
+
 /* ContactFindPair - number of the pair of that name, -1: none. Not collective. */
 int ContactFindPair(Contact contact, const char *name)
 {

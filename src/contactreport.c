@@ -15,6 +15,15 @@ static PetscErrorCode ReportFits(MPI_Comm comm, const ContactFits *fits, FILE *f
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+static PetscErrorCode ReportWindow(MPI_Comm comm, const SceneContact *scene, FILE *file)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscFPrintf(comm, file, "           adjusted %s to penetrations of %.3g to %.3g %s\n",
+                         scene->adjust_converged ? "within the step" : "from step to step", scene->g_min, scene->g_max,
+                         scene->window_in_spacings ? "face sizes of the slave node" : "(lengths)"));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 PetscErrorCode ContactReport(Contact contact, FILE *file)
 {
   const MPI_Comm comm = ContactComm(contact);
@@ -30,6 +39,7 @@ PetscErrorCode ContactReport(Contact contact, FILE *file)
     PetscCall(PetscFPrintf(comm, file, "contact  %s: %s\n", ContactPairName(contact, p), ContactPairText(contact, p)));
     PetscCall(PetscFPrintf(comm, file, "           penalty %.6g (force per length and area); gaps before any load %.3g to %.3g\n", (double)most, (double)gap[0],
                            (double)gap[1]));
+    if (ContactPairScene(contact, p)->adjust) PetscCall(ReportWindow(comm, ContactPairScene(contact, p), file));
     if (fits.points) PetscCall(ReportFits(comm, &fits, file));
   }
   PetscFunctionReturn(PETSC_SUCCESS);

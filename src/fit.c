@@ -36,7 +36,9 @@ LANES_INLINE Lanes Power(Lanes base, double exponent)
 {
   Lanes power = Broadcast(1);
 
-  if (exponent == floor(exponent) && exponent < 32) {
+  if (2 * exponent == floor(2 * exponent) && exponent < 32) {
+    if (exponent != floor(exponent))
+      for (int i = 0; i < LANES; i++) power[i] = sqrt(base[i]);
     for (int i = 0; i < (int)exponent; i++) power *= base;
   } else {
     for (int i = 0; i < LANES; i++) power[i] = pow(base[i], exponent);

@@ -19,9 +19,10 @@ double PenaltyAutomatic(double slave, double master)
 PenaltyRule PenaltyMakeRule(double g_min, double g_max, int inside, double clamp, double automatic, double range)
 {
   const double middle = sqrt(g_min * g_max); /* a narrow window has no room for two aims */
+  const double edge   = inside ? 0 : PENALTY_EDGE;
 
-  return (PenaltyRule){.g_min = g_min,
-                       .g_max = g_max,
+  return (PenaltyRule){.g_min = g_min * (1 - edge),
+                       .g_max = g_max * (1 + edge),
                        .low   = inside ? fmin(PENALTY_AIM_LOW * g_min, middle) : g_min,
                        .high  = inside ? fmax(PENALTY_AIM_HIGH * g_max, middle) : g_max,
                        .clamp = clamp,

@@ -7,11 +7,11 @@ static int SmootherEvaluate_Facet(const SmootherInput *in, SmootherWant want, Sm
   Foot         foot;
 
   if (!FacetClosest(in->dim, in->n_facets, in->facets, in->x, in->seed, &foot)) return 0;
-  facet       = &in->facets[foot.facet];
-  out->gap    = foot.gap;
-  out->beyond = foot.beyond;
+  facet         = &in->facets[foot.facet];
+  out->gap      = foot.gap;
+  out->beyond   = foot.beyond;
   out->factored = 0;
-  out->seed   = foot.facet;
+  out->seed     = foot.facet;
   memcpy(out->normal, foot.normal, sizeof(out->normal));
   out->n = ElementGet(facet->type)->nodes;
   memcpy(out->points, facet->nodes, out->n * sizeof(int));
@@ -34,11 +34,11 @@ static int SmootherEvaluate_Diffuse(const SmootherInput *in, SmootherWant want, 
     memcpy(problem.frame, in->frame, sizeof(problem.frame));
     memcpy(problem.metric, in->metric, sizeof(problem.metric));
     if (FitEvaluate(&problem, wants[want], in->workspace, &fit) && !(fit.guards & FIT_FAR_FOOT)) {
-      out->gap    = fit.gap;
+      out->gap      = fit.gap;
       out->factored = 1;
-      out->beyond = 0; /* faded by the facets' free edges when lists are made */
-      out->seed   = in->seed;
-      out->n      = fit.n;
+      out->beyond   = 0; /* faded by the facets' free edges when lists are made */
+      out->seed     = in->seed;
+      out->n        = fit.n;
       memcpy(out->normal, fit.normal, sizeof(out->normal));
       return 1;
     }

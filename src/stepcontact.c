@@ -148,8 +148,8 @@ static PetscErrorCode Longest(Model model, PetscReal dt, PetscReal beta, const S
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* StepControlNext_Contact - dt by the nodes that are still open and approach, and by how many came or left. `prediction: tangent` decides before
-   the next step. Collective. */
+/* StepControlNext_Contact - dt by the nodes that are still open and approach, and by how many came or left. A beta above 1 enlarges the next step;
+   the paper repeats the present one, whose solution is good as it is. `prediction: tangent` decides before the next step. Collective. */
 PetscErrorCode StepControlNext_Contact(Model model, PetscReal dt, PetscBool clipped, PetscInt newton, StepSize *size)
 {
   TouchChoice choice;

@@ -61,7 +61,10 @@ static void test_constant_force_lands_on_the_edge(void **state)
     for (int i = 0; i < 2; i++) {
       const double force = Automatic * start[i];
 
-      assert_near(force / Adjust(inside, start[i], 1, Automatic).penalty, edge[inside][i]);
+      const double found = force / Adjust(inside, start[i], 1, Automatic).penalty;
+
+      assert_near(found, edge[inside][i]);
+      for (int round = -1; round <= 1; round++) assert_true(Adjust(inside, found * (1 + 1e-14 * round), 1, Automatic).change == PENALTY_KEPT);
     }
   }
 }
