@@ -13,7 +13,7 @@ typedef struct {
   double hat[FACE_RULE_POINTS][FACE_MAX_NODES];                                        /* FaceHat() */
 } FaceRule;
 
-/* The rule of a face type; finer: one order more. EDGE2 2 | 3 points, EDGE3 3 | 4, TRI3 3 | 6, TRI6 6 | 12, QUAD4 4 | 9, QUAD9 9 | 16. */
+/* The rule of a face type; finer: one order more. EDGE2 3 | 4 points, EDGE3 4 | 5, TRI3 3 | 6, TRI6 6 | 12, QUAD4 4 | 9, QUAD9 9 | 16. */
 const FaceRule *FaceRuleGet(ElementType, int finer);
 /* Positive functions of sum 1: first order the shape functions, second order linear on the face split at its mid-side nodes. psi[nodes] */
 void FaceHat(ElementType, const double *xi, double *psi);

@@ -12,8 +12,9 @@
 /* Touching start: a gap within this fraction of the face size is no gap, whatever the curvature. */
 #define CONTACT_TOUCH 1e-6
 
-/* Surface contact on faces at least this much coarser than the master's takes a finer quadrature: its points would skip facets. */
-#define CONTACT_COARSE 2.0
+/* Surface contact on faces at least this much coarser than the master's takes a finer quadrature: its points would skip facets. Below 2, so that round-off
+   does not decide on a mesh of half the size. */
+#define CONTACT_COARSE 1.9
 /* Surface contact: a node with less of this share of the mean hat area has none: an axis node where R vanishes. */
 #define CONTACT_HAT_FLOOR 1e-8
 
