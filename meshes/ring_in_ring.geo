@@ -5,6 +5,7 @@ DefineConstant[
   n_inner = {32, Name "elements around the inner ring"}, n_outer = {40, Name "elements around the outer ring"},
   n_len = {0, Name "elements along z, coarser ring; 0: cross-section only"},
   jitter = {0, Name "largest move of an interface node, in face sizes along each direction"}, seed = {1, Name "of the moves"},
+  matching = {0, Name "1: nodes of both rings are moved alike; with n_inner = n_outer they face each other"},
   interference = {0.0025, Name "by which the inner ring is too large"}
 ];
 r_bore = 10; r = 20; r_rim = 30;
@@ -24,8 +25,9 @@ For b In {0 : 1}
     Point(o - 1 - k) = {0, 0, len * k / Max(m, 1)}; // centre of the arcs
     For i In {0 : n}
       s = o + k * (n + 1) + i;
-      x = 43758.5453 * Sin(12.9898 * (s + 7 * seed)); // the digits behind the point serve as random numbers
-      y = 43758.5453 * Sin(78.233 * (s + 7 * seed));
+      draw = (matching ? s - 100000 * b : s) + 7 * seed;
+      x = 43758.5453 * Sin(12.9898 * draw); // the digits behind the point serve as random numbers
+      y = 43758.5453 * Sin(78.233 * draw);
       a = Pi / 2 * i / n;
       moved = (i == 0 || i == n) ? a : Pi / 2 * (i + jitter * (2 * (x - Floor(x)) - 1)) / n;
       z = len * k / Max(m, 1); // 0 in the plane
