@@ -58,6 +58,10 @@ PetscErrorCode ContactCreate(Mesh, Scene, Elasticity, Loads, Contact *);
 PetscErrorCode ContactDestroy(Contact *);
 /* New lists for the accepted state u at load parameter t, for a step to t_next, good for a relative motion of `motion` (a length). Collective. */
 PetscErrorCode ContactGather(Contact, const PetscReal *u, PetscReal t, PetscReal t_next, PetscReal motion);
+/* Are all slave points that may touch within the margin of their lists, at the last residual? Collective. */
+PetscErrorCode ContactListsReach(Contact, PetscBool *within);
+/* New lists at (u, t) in the middle of a step; offsets stay. Collective. */
+PetscErrorCode ContactListsRenew(Contact, const PetscReal *u, PetscReal t, PetscReal motion);
 /* After ContactResidual() at (u, t): does a fresh search give the same gaps? If not, the fresh lists replace the old. Collective. */
 PetscErrorCode ContactListsHold(Contact, const PetscReal *u, PetscReal t, PetscReal motion, PetscBool *hold);
 /* A linear step from the accepted state begins or ends: what is closed there stays so, and what touches if that is asked for. Not collective. */

@@ -90,6 +90,7 @@ PetscErrorCode ListsCreatePoints(ContactSearch, ContactLists, SearchField *);
 PetscErrorCode ListsCreateSlaves(ContactSearch, ContactLists);
 void           ListsPointGeometry(ContactSearch, ContactLists, const SearchField *, NodeGeometry *of_nodes, NodeGeometry *of_points);
 PetscErrorCode ListsUpdateNodes(ContactSearch, ContactLists, const PetscReal *u, PetscReal t);
+void           ListsCentre(ContactLists, PetscInt q, PetscReal centre[2]);
 void           ListsSlaveMap(const ContactLists, PetscInt q, const PetscReal *x, PetscReal *y);
 /* fitting.c */
 PetscReal      SearchFitReach(ContactSearch);

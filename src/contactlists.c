@@ -195,6 +195,42 @@ static PetscErrorCode PairNextAgrees(Contact contact, ContactPair *pair, PetscRe
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* ContactListsReach - whether lists still hold every point that the fits of slave points near contact may ask for: a point that slides further
+   than the lists' margin would be fitted by a part of its neighbours, and nothing would show it.
+
+   Collective. To be called after ContactResidual(). *within: the same on all ranks. */
+PetscErrorCode ContactListsReach(Contact contact, PetscBool *within)
+{
+  int all = 1;
+
+  PetscFunctionBeginUser;
+  for (int p = 0; p < contact->n_pairs; p++) {
+    const ContactPair *pair = &contact->pairs[p];
+
+    for (PetscInt q = 0; q < pair->lists->n_slaves && pair->fit.degree; q++)
+      if (pair->point_gap[q] <= pair->slave->max_size && ListsSlip(pair->lists, q) > LISTS_MARGIN) all = 0;
+  }
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &all, 1, MPI_INT, MPI_LAND, contact->mesh->comm));
+  *within = all ? PETSC_TRUE : PETSC_FALSE;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* ContactListsRenew - new lists and area factors for all pairs in the middle of a step; offsets are those of the step.
+
+   Collective. u, t, motion: as of ContactGather(). */
+PetscErrorCode ContactListsRenew(Contact contact, const PetscReal *u, PetscReal t, PetscReal motion)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscLogEventBegin(contact->event_search, 0, 0, 0, 0));
+  for (int p = 0; p < contact->n_pairs; p++) {
+    PetscCall(PairSearch(&contact->pairs[p], u, t, motion));
+    PetscCall(PairTakeNext(&contact->pairs[p]));
+  }
+  PetscCall(BlockMatrixReset(contact->blocks));
+  PetscCall(PetscLogEventEnd(contact->event_search, 0, 0, 0, 0));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* ContactListsHold - whether lists made afresh at the solution say the same of every term as those it was found with.
 
    Collective. u, t: of the last ContactResidual() with forces; motion: as of ContactGather(), which may take the fresh lists. *hold: the same on

@@ -3,7 +3,7 @@
 #include "timing.h"
 
 /* Points are gathered a little beyond the support (rho^2 up to this), so that those which enter while a solve lasts are in the list. */
-#define SEARCH_FIT_MARGIN 1.7
+#define SEARCH_FIT_MARGIN PetscSqr(1 + LISTS_MARGIN)
 /* On regular meshes points lie exactly on the border of the support; this much beyond still counts as inside, and round-off decides nothing. */
 #define SEARCH_FIT_TIE 1e-6
 

@@ -345,7 +345,7 @@ PetscErrorCode ListsCreateSlaves(ContactSearch s, ContactLists lists)
   PetscCall(PetscMalloc2(n * dim, &lists->slave_X, n * dim, &lists->slave_u));
   PetscCall(PetscMalloc3(n + 1, &lists->list_ptr, n + 1, &lists->facet_ptr, n, &lists->kappa));
   PetscCall(PetscCalloc5(n, &lists->fit_n, n, &lists->rung, n, &lists->degree, 9 * n, &lists->frame, 4 * n, &lists->metric));
-  PetscCall(PetscCalloc3(n, &lists->pivot, n, &lists->amplified, n, &lists->residual));
+  PetscCall(PetscCalloc4(n, &lists->pivot, n, &lists->amplified, n, &lists->residual, 2 * n, &lists->centre));
   PetscCall(PetscArraycpy(lists->slave_ptr, slaves->ptr, n + 1));
   PetscCall(PetscArraycpy(lists->slave_S, slaves->S, entries));
   PetscCall(PetscArraycpy(lists->slave_offset, slaves->offset, n * dim));
@@ -359,6 +359,40 @@ PetscErrorCode ListsCreateSlaves(ContactSearch s, ContactLists lists)
     for (int d = 0; d < dim; d++) lists->slave_X[q * dim + d] += lists->slave_offset[q * dim + d];
   }
   PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* ListsCentre - mean of the fit points of slave point q in the tangents of its frame, relative to it, in the present position (lengths).
+
+   Not collective. centre[2]: dim - 1 entries are used. */
+void ListsCentre(ContactLists lists, PetscInt q, PetscReal centre[2])
+{
+  const int        dim   = lists->dim;
+  const PetscReal *frame = &lists->frame[9 * q];
+
+  centre[0] = centre[1] = 0;
+  for (PetscInt i = lists->list_ptr[q]; i < lists->list_ptr[q] + lists->fit_n[q]; i++) {
+    const PetscInt p = lists->list_point[i];
+
+    for (int d = 0; d < dim; d++) {
+      const PetscReal x = (lists->point_X[p * dim + d] - lists->slave_X[q * dim + d]) + (lists->point_u[p * dim + d] - lists->slave_u[q * dim + d]);
+
+      for (int a = 0; a < dim - 1; a++) centre[a] += frame[3 * a + d] * x / lists->fit_n[q];
+    }
+  }
+}
+
+/* ListsSlip - Not collective. */
+PetscReal ListsSlip(ContactLists lists, PetscInt q)
+{
+  const PetscReal *metric = &lists->metric[4 * q];
+  PetscReal        slip[2], square = 0;
+
+  if (!lists->fit_n[q]) return 0;
+  ListsCentre(lists, q, slip);
+  for (int a = 0; a < 2; a++) slip[a] -= lists->centre[2 * q + a];
+  for (int a = 0; a < lists->dim - 1; a++)
+    for (int b = 0; b < lists->dim - 1; b++) square += slip[a] * metric[2 * a + b] * slip[b];
+  return PetscSqrtReal(square);
 }
 
 /* ListsDestroy - Collective. */
@@ -377,7 +411,7 @@ PetscErrorCode ListsDestroy(ContactLists *lists)
   PetscCall(PetscFree2(l->slave_X, l->slave_u));
   PetscCall(PetscFree3(l->list_ptr, l->facet_ptr, l->kappa));
   PetscCall(PetscFree5(l->fit_n, l->rung, l->degree, l->frame, l->metric));
-  PetscCall(PetscFree3(l->pivot, l->amplified, l->residual));
+  PetscCall(PetscFree4(l->pivot, l->amplified, l->residual, l->centre));
   PetscCall(PetscFree(l->list_point));
   PetscCall(PetscFree(l->facet));
   PetscCall(PetscFree(l->facet_size));

@@ -52,6 +52,8 @@ typedef struct _n_ModelWork {
   PetscInt   inverted;   /* gmsh's tag of a cell of this rank that was turned inside out in this solve, or -1 */
   PetscBool  near;       /* the iterate is so close that energies differ by round-off only */
   PetscBool  balanced;   /* the residual of the iterate is within the tolerance */
+  PetscInt   renewed;    /* how often that happened in this step */
+  PetscBool  left;       /* a slave point slid out of its lists: the solve ended for new ones */
   Vec        residual;   /* of a trial point, while near; the tangent's diagonal for a moment */
 } ModelWork;
 
@@ -211,6 +213,19 @@ static PetscErrorCode ModelRoundOff(Model model, PetscReal *force)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Ends the solve, without being a failure, when a slave point has left its lists, if new ones may still be made in this step. */
+static PetscErrorCode ModelLeaveLists(Model model, SNESConvergedReason *reason)
+{
+  PetscBool within;
+
+  PetscFunctionBeginUser;
+  PetscCall(ContactListsReach(model->contact, &within));
+  if (within || model->work->renewed >= MODEL_MAX_REGATHER) PetscFunctionReturn(PETSC_SUCCESS);
+  model->work->left = PETSC_TRUE;
+  *reason           = SNES_CONVERGED_ITS;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Converged when the residual is small against the forces that balance in it, never against its own first value; or is nothing but round-off.
    Where penalties follow the penetrations, these must have settled too. */
 static PetscErrorCode ModelConverged(SNES snes, PetscInt it, PetscReal xnorm, PetscReal snorm, PetscReal fnorm, SNESConvergedReason *reason, void *context)
@@ -234,6 +249,8 @@ static PetscErrorCode ModelConverged(SNES snes, PetscInt it, PetscReal xnorm, Pe
     *reason = SNES_DIVERGED_FUNCTION_NANORINF;
   else if (fnorm <= round_off || (model->work->balanced && settled))
     *reason = SNES_CONVERGED_FNORM_ABS;
+  else if (model->contact)
+    PetscCall(ModelLeaveLists(model, reason));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -599,24 +616,41 @@ static PetscErrorCode ModelStart(Model model, SolveReport *report)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* New lists after a solve, for the next one: in the middle of the way where it left the old ones, or because they do not hold. */
+static PetscErrorCode ModelRenewLists(Model model, PetscBool *hold)
+{
+  ModelWork *work = model->work;
+  PetscReal  motion;
+
+  PetscFunctionBeginUser;
+  PetscCall(ModelMotion(model, work->trial, model->t, &motion));
+  TimingBegin(TIMING_SEARCH);
+  *hold = PETSC_FALSE;
+  if (work->left) {
+    work->renewed++;
+    PetscCall(ContactListsRenew(model->contact, work->trial, model->t, motion));
+  } else
+    PetscCall(ContactListsHold(model->contact, work->trial, model->t, motion, hold));
+  TimingEnd(TIMING_SEARCH);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Solves with frozen lists until they hold. */
 static PetscErrorCode ModelSolveLists(Model model, SolveReport *report)
 {
-  PetscReal motion;
   PetscBool hold  = PETSC_FALSE;
   PetscInt  times = 0;
 
   PetscFunctionBeginUser;
+  model->work->renewed = 0;
   while (!hold && report->result == SOLVE_CONVERGED) {
+    model->work->left = PETSC_FALSE;
     PetscCall(ModelNewton(model, report));
     if (report->result != SOLVE_CONVERGED || !model->contact) break;
-    PetscCall(ModelMotion(model, model->work->trial, model->t, &motion));
-    TimingBegin(TIMING_SEARCH);
-    PetscCall(ContactListsHold(model->contact, model->work->trial, model->t, motion, &hold));
-    TimingEnd(TIMING_SEARCH);
+    PetscCall(ModelRenewLists(model, &hold));
     if (hold) break;
     report->regathered++;
-    if (times++ == MODEL_MAX_REGATHER) report->result = SOLVE_LISTS;
+    if (!model->work->left && times++ == MODEL_MAX_REGATHER) report->result = SOLVE_LISTS;
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -358,6 +358,7 @@ PetscErrorCode SearchLists(ContactSearch s, const PetscReal *u, PetscReal t, Pet
   PetscCall(ListsFill(s, lists, normals, &field, s->fit->degree ? &fit : NULL, motion));
   if (s->fit->degree) PetscCall(FittingDestroy(&fit));
   PetscCall(ListsUpdate(s, lists, u, t, NULL));
+  for (PetscInt q = 0; q < lists->n_slaves; q++) ListsCentre(lists, q, &lists->centre[2 * q]);
   PetscCall(PetscFree(normals));
   PetscCall(SearchFieldDestroy(&field));
   *out = lists;
