@@ -54,7 +54,7 @@ For b In {0 : 1}
         x = s + (1 + level) * count;
         z = s + (3 + level) * count;
         Curve Loop(x) = {x, z + step, -(x + step * (n + 1)), -z};
-        Surface(s + level * count) = {x}; // kinds 0, 1: of the interface and the far side
+        Plane Surface(s + level * count) = {x}; // kinds 0, 1: of the interface and the far side
         If (level == 0)
           contact~{b}[] += {s};
         Else

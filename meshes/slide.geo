@@ -7,7 +7,8 @@ DefineConstant[
   radius = {20, Name "radius of the cylinder"},
   facet = {3, Name "angle of a cylinder facet in degrees"},
   overlap = {0, Name "by how much the cylinder reaches into the block"},
-  n_obstacle_z = {3, Name "facets along z"}
+  n_obstacle_z = {3, Name "facets along z"},
+  jitter = {0, Name "largest move of a node of the cylinder, in facets along each direction"}
 ];
 width = 4; height = 2; depth = 2;
 Point(1) = {-width / 2, 0, 0};
@@ -27,7 +28,42 @@ Recombine Surface{1};
 block[] = Extrude{0, 0, depth}{ Surface{1}; Layers{n_z}; Recombine; };
 
 // Half a unit beyond the block on both sides along z, so that no slave node meets the surface's free edge.
-If (cylinder)
+If (cylinder && jitter) // every node is a point of its own
+  n = Round(360 / facet);
+  obstacle[] = {};
+  For k In {0 : n_obstacle_z}
+    For i In {0 : n - 1}
+      s = 1000 + k * n + i;
+      x = 43758.5453 * Sin(12.9898 * s); // the digits behind the point serve as random numbers
+      y = 43758.5453 * Sin(78.233 * s);
+      a = 2 * Pi * (i + jitter * (2 * (x - Floor(x)) - 1)) / n;
+      move = (k == 0 || k == n_obstacle_z) ? 0 : jitter * (2 * (y - Floor(y)) - 1);
+      Point(s) = {radius * Cos(a), overlap + radius * (Sin(a) - 1), -0.5 + (depth + 1) * (k + move) / n_obstacle_z};
+    EndFor
+  EndFor
+  count = n * (n_obstacle_z + 1);
+  For k In {0 : n_obstacle_z}
+    For i In {0 : n - 1}
+      s = 1000 + k * n + i;
+      Line(s) = {s, 1000 + k * n + (i + 1) % n};
+      Transfinite Curve{s} = 2;
+      If (k < n_obstacle_z)
+        Line(s + count) = {s, s + n};
+        Transfinite Curve{s + count} = 2;
+      EndIf
+    EndFor
+  EndFor
+  For k In {0 : n_obstacle_z - 1}
+    For i In {0 : n - 1}
+      s = 1000 + k * n + i;
+      Curve Loop(s) = {s, 1000 + k * n + (i + 1) % n + count, -(s + n), -(s + count)};
+      Surface(s) = {s};
+      Transfinite Surface{s};
+      Recombine Surface{s};
+      obstacle[] += {s};
+    EndFor
+  EndFor
+ElseIf (cylinder)
   Point(110) = {0, overlap - radius, -0.5};
   For i In {0 : 3}
     Point(111 + i) = {radius * Cos(i * Pi / 2), overlap + radius * (Sin(i * Pi / 2) - 1), -0.5};
