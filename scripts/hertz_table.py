@@ -19,7 +19,7 @@ INNER = 0.8  # the part of the contact zone that the ellipse is fitted to
 ENVIRONMENT = {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1", "OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
 SCENES = {  # pair, exact width and pressure, mesh parameter and its values by order, its probe of the width
     "line": ("line", 6.215, 3585.4, "h", {1: (1.6, 0.8, 0.4, 0.2), 2: (3.2, 1.6, 0.8, 0.4)}, "half_width"),
-    "sphere": ("point", 1.0, 734.6, "n", {1: (3, 4, 6, 8), 2: (2, 3, 4)}, "radius"),
+    "sphere": ("point", 1.0, 734.6, "n", {1: (3, 4, 6, 8)}, "radius"),
 }
 FORMULATIONS = ("node_to_surface", "surface_to_surface")
 COLUMNS = ("scene", "order", "mesh", "formulation", "status", "elements", "iterations", "wall_s", "edge", "width", "peak", "fitted_peak")
