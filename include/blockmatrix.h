@@ -1,6 +1,6 @@
 /* A matrix that is a sum of small dense blocks over scattered dofs: what contact adds to the tangent. Blocks are gathered on each rank over
    the entries of rank-local vectors (one per contact pair), multiplied as they stand, or assembled into a parallel matrix over the global
-   dofs, whose preallocation is kept as long as the blocks ask for the same pattern.
+   dofs, whose pattern is kept as long as it holds the blocks, with zeros where none asks for an entry.
 
      BlockMatrixReset(); BlockMatrixAdd() per block; then BlockMatrixAssemble(), BlockMatrixMultiply() */
 #pragma once

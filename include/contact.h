@@ -56,16 +56,21 @@ typedef struct _n_Contact *Contact;
 
 PetscErrorCode ContactCreate(Mesh, Scene, Elasticity, Loads, Contact *);
 PetscErrorCode ContactDestroy(Contact *);
-/* New lists for state u at load parameter t, good for a relative motion of `motion` (a length). Collective. */
-PetscErrorCode ContactGather(Contact, const PetscReal *u, PetscReal t, PetscReal motion);
+/* New lists for the accepted state u at load parameter t, for a step to t_next, good for a relative motion of `motion` (a length). Collective. */
+PetscErrorCode ContactGather(Contact, const PetscReal *u, PetscReal t, PetscReal t_next, PetscReal motion);
+/* Are all slave points that may touch within the margin of their lists, at the last residual? Collective. */
+PetscErrorCode ContactListsReach(Contact, PetscBool *within);
+/* New lists at (u, t) in the middle of a step; offsets stay. Collective. */
+PetscErrorCode ContactListsRenew(Contact, const PetscReal *u, PetscReal t, PetscReal motion);
 /* After ContactResidual() at (u, t): does a fresh search give the same gaps? If not, the fresh lists replace the old. Collective. */
 PetscErrorCode ContactListsHold(Contact, const PetscReal *u, PetscReal t, PetscReal motion, PetscBool *hold);
+/* A linear step from the accepted state begins or ends: what is closed there stays so, and what touches if that is asked for. Not collective. */
+PetscErrorCode ContactPredict(Contact, PetscBool predicting, PetscBool touching);
 /* Adds the contact forces to f (n_nodes*dim local, complete at owned nodes), this rank's energy and sum of squares of the terms' forces; each may
    be NULL. With f it also becomes the present state (gap, status, forces). Collective. */
 PetscErrorCode ContactResidual(Contact, const PetscReal *u, PetscReal t, PetscReal *f, PetscReal *energy, PetscReal *force2);
-/* The contact matrix C over the global free dofs at (u, t), owned by the contact; *changed: its pattern is new. touching: nodes that just
-   touch take part with their stiffness. Collective. */
-PetscErrorCode ContactTangent(Contact, const PetscReal *u, PetscReal t, PetscBool touching, Mat *C, PetscBool *changed);
+/* The contact matrix C over the global free dofs at (u, t), owned by the contact; *changed: its pattern is new. Collective. */
+PetscErrorCode ContactTangent(Contact, const PetscReal *u, PetscReal t, Mat *C, PetscBool *changed);
 /* y += C x with the last tangent, all dofs; rigid tools contribute their motion from t to t_next. x, y local, y complete at owned nodes. Collective. */
 PetscErrorCode ContactMultiply(Contact, const PetscReal *x, PetscReal t, PetscReal t_next, PetscReal *y);
 PetscErrorCode ContactAccept(Contact); /* the present state is the one that ContactRestore() returns to. Not collective */

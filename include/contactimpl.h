@@ -2,24 +2,39 @@
 #pragma once
 #include "blockmatrix.h"
 #include "contact.h"
+#include "fitmap.h"
 #include "law.h"
+#include "offset.h"
 #include "search.h"
 #include "smoother.h"
 
+/* What the points of one evaluation are made of: row 0 the slave point, 1 + i the i-th point that takes part; entries ptr[r] to ptr[r + 1] are nodes
+   (places in the work's number[]) with weights S, reflected by sign (3 for each row). */
+typedef struct {
+  int    *ptr, *node;
+  double *S, *sign;
+  int     rows_room, entries_room;
+} ContactMap;
+
+/* Room to evaluate one slave point in, and its variations carried to the contact nodes: number[count] are these, N and M run over them */
 typedef struct {
   SmootherResult result;
-  PetscReal     *x; /* positions relative to the slave point */
-  PetscReal     *multiplier, *workspace;
+  PetscReal     *x, *multiplier, *workspace; /* positions relative to the slave point */
   PetscInt       x_room;
-  PetscInt      *node;  /* contact nodes of a term, one after another over its slave points */
-  PetscReal     *N, *M; /* over these nodes; M holds one slave point's part at a time */
-  int           *from;  /* which row of the variations a contact node takes part in: 0 the slave point, 1 + i fit point i */
-  PetscReal     *scale; /* and with what factor, by component */
+  ContactMap     map;
+  PetscInt       count, *number;
+  PetscReal     *N, *M, *half; /* half: on the way from the points' M to M */
+  PetscInt       room, half_room;
+  int           *slot; /* of every contact node: its place in number[], -1 between evaluations */
+  PetscInt       slot_room;
 } ContactWork;
 
+/* A term is a slave node with area: its gap is the weighted mean over its slave points, its pressure acts on all of them. Node to surface: one
+   point, the node itself. Surface to surface: the quadrature points of the faces around, shared with its neighbours. */
 typedef struct {
   Mesh                mesh;
   const SceneContact *scene;
+  Geometry            geometry;
   FitSettings         fit;
   ContactSurface      slave, master; /* master NULL: analytic, in scene */
   int                 n_images;
@@ -27,21 +42,29 @@ typedef struct {
   const Smoother     *smoother;
   const Smoother     *facets; /* what serves where there is no fit, and tells where the master ends */
   const Law          *law;
+  SlavePoints         slaves;
+  Offsets             slave_offsets, master_offsets; /* surface to surface; NULL: none */
   ContactSearch       search;
-  PetscInt            n, *node; /* terms: slave nodes of this rank that carry area */
+  PetscInt            n, *node; /* terms: local nodes */
   PetscReal          *area, *size, *turn;
-  PetscReal           automatic;   /* penalty: force per length and area */
-  PetscInt           *term_ptr;    /* slave points of each term */
-  PetscReal          *term_weight; /* their weights, sum 1 */
+  PetscInt           *term_ptr, *term_point; /* slave points of each term */
+  PetscReal          *term_weight;           /* their areas in it: sum is the term's area */
+  PetscReal           automatic;             /* penalty: force per length and area */
+  PetscBool           predicting, touching;  /* what was accepted as closed stays so; what touches is closed */
   ContactState        now, accepted;
-  PetscReal          *before; /* gaps of the iterate before, where the penalty is adjusted */
-  ContactLists        lists;
-  PetscReal          *factor;                  /* per slave point, frozen with the lists: fades out past a free edge */
-  int                *seed;                    /* per slave point: the facet of last time */
-  PetscReal          *force, *vector, *normal; /* of the last residual: normal force, its sum over the slave points (n*3), contact normal (n*3) */
-  PetscReal           t;                       /* of the last residual */
-  PetscReal          *pressure, *trial;        /* trial: gaps of the last projection, of a residual or a tangent */
-  ContactWork        *work;                    /* shared by all pairs */
+  PetscReal          *before;                   /* gaps of the iterate before, where the penalty is adjusted */
+  ContactLists        lists, next;              /* next: fresh ones, NULL: none */
+  PetscReal          *next_factor, next_motion; /* of the next ones: area factors, and the motion they were made for */
+  /* per slave point; factor: frozen with the lists, fades out past a free edge; seed: the facet of last time; gap, normal: of the last projection */
+  PetscReal   *factor;
+  int         *seed;
+  PetscReal   *point_gap, *point_normal, *point_force;
+  PetscReal   *force, *normal;   /* of the last residual: normal nodal force, contact normal (n*3) */
+  PetscReal    total[3];         /* and the force on this rank's terms */
+  PetscReal    t;                /* of the last residual */
+  PetscReal   *pressure, *trial; /* trial: gaps of the last projection, of a residual or a tangent */
+  PetscBool    projected;        /* there was one with these lists */
+  ContactWork *work;             /* shared by all pairs */
 } ContactPair;
 
 struct _n_Contact {
@@ -60,8 +83,13 @@ PetscErrorCode ContactPairCreate(Mesh, Scene, Elasticity, Loads, const SceneCont
 PetscErrorCode ContactPairDestroy(ContactPair *);
 PetscReal      ContactTermOffset(const ContactPair *, PetscInt term, PetscReal t);
 PetscReal      ContactTouchTolerance(const ContactPair *, PetscInt term);
+PetscReal      ContactMeanOpening(const ContactPair *, PetscInt term);
 /* contactpoint.c */
 PetscErrorCode ContactPointEvaluate(const ContactPair *, const Smoother *, ContactLists, PetscInt q, int seed, SmootherWant, PetscBool *found);
-int            ContactPointNodes(ContactLists, PetscInt q, const SmootherResult *);
-void           ContactPointToNodes(const ContactPair *, ContactLists, PetscInt q, PetscReal weight, PetscBool second, PetscInt *node, PetscReal *N, int *count);
-PetscErrorCode ContactTermGap(const ContactPair *, ContactLists, const PetscReal *factor, int *seed, PetscInt term, PetscReal *gap);
+/* The variations of the last evaluation over contact nodes, into the work's number, N and M. */
+PetscErrorCode ContactPointToNodes(const ContactPair *, ContactLists, PetscInt q, PetscBool second);
+PetscErrorCode ContactWorkDestroy(ContactWork *);
+/* Gaps of all slave points that have a factor, NaN of the others; seed, normals: may be NULL. */
+PetscErrorCode ContactPointGaps(const ContactPair *, ContactLists, const PetscReal *factor, int *seed, PetscReal *gap, PetscReal *normals);
+/* Weighted mean of its points' gaps, NaN without any; *area: of those that count. */
+PetscReal ContactTermGap(const ContactPair *, const PetscReal *factor, const PetscReal *point_gap, PetscInt term, PetscReal *area);

@@ -57,23 +57,34 @@ typedef struct {
   double coefficient[FIT_MAX_TERMS]; /* along the normal, a length */
 } FitSurface;
 
-/* Arrays belong to the caller, sized for the problem's n points; N, M and shape may be NULL (not wanted). */
+/* What M is made of: M_ij = K_i^T J_j + J_i^T K_j^T + the points' own H, for those who need it over fewer unknowns (fitmap.h). Lies in the workspace, until
+   that is used again. A row belongs to one component of the slave point (first) or of a point inside: terms of K, terms of J, zeros. The slave point's rows are
+   minus the sum over the points, its H is the sum. */
 typedef struct {
-  unsigned   guards; /* of FitGuard: what did not hold */
-  FitSurface surface;
-  double     gap;           /* < 0: penetration */
-  double     foot[2];       /* y*, in the frame's tangents */
-  double     normal[3];     /* unit, out of the master at the foot; foot = slave point - gap normal */
-  double     tangent[2][3]; /* dx/dy at the foot, covariant (2D: [0]) */
-  double     J[2][2];       /* I + grad q grad q^T + q Hess q at the foot */
-  double     curvature;     /* largest absolute principal curvature at the foot */
-  double     reach;         /* rho of the foot */
-  double     pivot;         /* smallest |R_kk| of the QR with unit columns */
-  double     amplified;     /* Lambda */
-  int        n, *points;    /* the points inside the support, in the problem's order */
-  double    *shape;         /* [n] dq(y*)/dz_i, sum 1 */
-  double    *N;             /* [(1 + n)*dim], the slave point first */
-  double    *M;             /* [((1 + n)*dim)^2], symmetric */
+  int           dim, degree, n;        /* n: points inside */
+  int           stride, hessianstride; /* lengths of a row and of an H */
+  const double *rows;                  /* [(1 + n)*dim][stride] */
+  const double *hessians;              /* [1 + n][hessianstride]: xx xy yy xz yz zz (2D: the first three) */
+} FitFactors;
+
+/* Arrays belong to the caller, sized for the problem's n points; N, M, factors and shape may be NULL (not wanted). */
+typedef struct {
+  unsigned    guards; /* of FitGuard: what did not hold */
+  FitSurface  surface;
+  double      gap;           /* < 0: penetration */
+  double      foot[2];       /* y*, in the frame's tangents */
+  double      normal[3];     /* unit, out of the master at the foot; foot = slave point - gap normal */
+  double      tangent[2][3]; /* dx/dy at the foot, covariant (2D: [0]) */
+  double      J[2][2];       /* I + grad q grad q^T + q Hess q at the foot */
+  double      curvature;     /* largest absolute principal curvature at the foot */
+  double      reach;         /* rho of the foot */
+  double      pivot;         /* smallest |R_kk| of the QR with unit columns */
+  double      amplified;     /* Lambda */
+  int         n, *points;    /* the points inside the support, in the problem's order */
+  double     *shape;         /* [n] dq(y*)/dz_i, sum 1 */
+  double     *N;             /* [(1 + n)*dim], the slave point first */
+  double     *M;             /* [((1 + n)*dim)^2], symmetric */
+  FitFactors *factors;       /* instead of M: where M is NULL only */
 } FitResult;
 
 int FitTerms(int dim, int degree);

@@ -1,4 +1,5 @@
-/* What the two halves of the diffuse fit share: fit.c makes surface and foot, fitvariation.c the variations N and M. Private to these two. */
+/* What the files of the diffuse fit share: fit.c makes surface and foot, fitvariation.c the variations N and M over points, fitmap.c those over
+   nodes. Private to these; symmetricproduct.c turns its squares over by Transpose(). */
 #pragma once
 #include "fit.h"
 #include "lanes.h"
@@ -6,10 +7,12 @@
 
 enum {
   MAX_TANGENTS = 2,
-  ROWS         = 1 + MAX_TANGENTS, /* of F */
-  BLOCK        = 4,                /* columns orthogonalised together, so that their sums do not wait for each other */
-  ALIGNMENT    = 64,               /* bytes: a cache line, and the widest vector */
-  ARRAYS       = 13                /* vectors per LANES points besides the basis: eta (2), multiplier, inside, power, weight, scratch, H (6) */
+  ROWS         = 1 + MAX_TANGENTS,                                  /* of F */
+  BLOCK        = 4,                                                 /* columns orthogonalised together, so that their sums do not wait for each other */
+  ALIGNMENT    = 64,                                                /* bytes: a cache line, and the widest vector */
+  FACTORS      = LANES * ((2 * FIT_MAX_TERMS + LANES - 1) / LANES), /* most entries of a row of factors */
+  FIT_HESSIAN  = 8,                                                 /* most entries of a point's H, filled up to whole vectors */
+  ARRAYS       = 13 /* vectors per LANES points besides the basis: eta (2), multiplier, inside, power, weight, scratch, H (6) */
 };
 
 /* Arrays over the points inside the support, in vectors of LANES points; the last one is filled up with points of no weight. */
@@ -32,6 +35,57 @@ typedef struct {
   double S[ROWS][ROWS];
   double G[3][3], nu3; /* d = G x */
 } FitState;
+
+#if defined(__AVX512F__)
+  #define SWAP_STAGES 3
+static const LaneMask swap_low[SWAP_STAGES] = {
+  {0, 8, 2, 10, 4, 12, 6,  14},
+  {0, 1, 8, 9,  4, 5,  12, 13},
+  {0, 1, 2, 3,  8, 9,  10, 11}
+};
+static const LaneMask swap_high[SWAP_STAGES] = {
+  {1, 9, 3,  11, 5,  13, 7,  15},
+  {2, 3, 10, 11, 6,  7,  14, 15},
+  {4, 5, 6,  7,  12, 13, 14, 15}
+};
+#elif defined(__AVX__)
+  #define SWAP_STAGES 2
+static const LaneMask swap_low[SWAP_STAGES] = {
+  {0, 4, 2, 6},
+  {0, 1, 4, 5}
+};
+static const LaneMask swap_high[SWAP_STAGES] = {
+  {1, 5, 3, 7},
+  {2, 3, 6, 7}
+};
+#else
+  #define SWAP_STAGES 1
+static const LaneMask swap_low[SWAP_STAGES] = {
+  {0, 2}
+};
+static const LaneMask swap_high[SWAP_STAGES] = {
+  {1, 3}
+};
+#endif
+
+/* Turns a square of LANES vectors over, by swapping ever larger off-diagonal blocks. */
+LANES_INLINE void Transpose(Lanes a[LANES])
+{
+  for (int stage = 0; stage < SWAP_STAGES; stage++) {
+    const int half = 1 << stage;
+
+    for (int i = 0; i < LANES; i++) {
+      const int j = i + half;
+
+      if (!(i & half)) {
+        const Lanes low = __builtin_shuffle(a[i], a[j], swap_low[stage]);
+
+        a[j] = __builtin_shuffle(a[i], a[j], swap_high[stage]);
+        a[i] = low;
+      }
+    }
+  }
+}
 
 LANES_INLINE Lanes Broadcast(double a)
 {
@@ -86,12 +140,12 @@ LANES_INLINE Lanes DotTerms(const int terms, const Lanes *a, const Lanes *b)
   return sum;
 }
 
-/* p := R^-T p */
+/* p := R^-T p, column by column: row by row each operation would wait for the one before */
 LANES_INLINE void ToOrthonormal(const int terms, const FitState *s, Lanes *p)
 {
-  for (int k = 0; k < terms; k++) {
-    for (int l = 0; l < k; l++) p[k] -= s->R[l][k] * p[l];
-    p[k] *= s->inverse[k];
+  for (int l = 0; l < terms; l++) {
+    p[l] *= s->inverse[l];
+    for (int k = l + 1; k < terms; k++) p[k] -= s->R[l][k] * p[l];
   }
 }
 
@@ -106,6 +160,20 @@ LANES_INLINE void ToOrthonormal(const int terms, const FitState *s, Lanes *p)
   case 34: body(3, 4, 15);                 \
   }
 
+/* Length of a row of FitFactors: terms of K, terms of J, filled up with zeros */
+LANES_INLINE int FactorStride(const int terms)
+{
+  return LanesGroups(2 * terms) * LANES;
+}
+
+/* Length of a point's H in FitFactors: xx xy yy | xz yz zz, filled up with zeros */
+LANES_INLINE int HessianStride(const int dim)
+{
+  return LanesGroups(dim * (dim + 1) / 2) * LANES;
+}
+
 /* N[(1 + points inside)*dim] and M[its square] from fit and foot; workspace of the arrays is used up. */
 void FitVariationFirst(const FitProblem *, const FitArrays *, const FitState *, double *N);
 void FitVariationSecond(const FitProblem *, FitArrays *, const FitState *, double *M);
+/* What M is made of, in the place of the arrays K and J */
+void FitVariationFactors(const FitProblem *, const FitArrays *, const FitState *, FitFactors *);

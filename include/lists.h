@@ -6,6 +6,9 @@
 
 typedef struct _n_ContactSearch *ContactSearch; /* search.h */
 
+/* Lists reach this much beyond the support of a fit, in supports: so far a slave point may slide while they stand still. */
+#define LISTS_MARGIN 0.3
+
 /* Which rung of the ladder a slave point stands on: fits of falling quality, then the facets. */
 enum { RUNG_FACET = -1, RUNG_PLAIN = 0, RUNG_WIDER = 4, RUNG_DEGREE_2 = 6, RUNG_LINEAR = 7, RUNGS = 8 };
 
@@ -26,6 +29,7 @@ typedef struct {
   PetscInt  *point_ptr, *point_node;
   PetscReal *point_S, *point_offset, *point_weight;
   int       *point_image;
+  long      *point_key;         /* rank-independent: which node or quadrature point, and which image */
   PetscReal *point_X, *point_u; /* n_points*dim */
 
   PetscInt   n_slaves; /* slave points, in the order asked for */
@@ -38,6 +42,7 @@ typedef struct {
   int       *rung;                  /* RUNG_...: how the fit was found */
   int       *degree;                /* of the fit */
   PetscReal *frame, *metric;        /* 9 and 4 for each slave point, as FitProblem wants them */
+  PetscReal *centre;                /* 2 for each slave point: mean of its fit points in the frame's tangents, seen from it, when the lists were made */
   PetscReal *pivot, *amplified;     /* guards of the fit when the lists were made */
   PetscReal *residual;              /* largest distance of a point in the inner half of the support to the fit */
   PetscInt  *facet_ptr;             /* facets of each slave point; their nodes count within the slave point's points */
@@ -47,8 +52,10 @@ typedef struct {
 } * ContactLists;
 
 PetscErrorCode ListsDestroy(ContactLists *);
-/* Positions of contact nodes, fit points and slave points for local displacements u at t. Collective. */
-PetscErrorCode ListsUpdate(ContactSearch, ContactLists, const PetscReal *u, PetscReal t);
+/* Positions of contact nodes, fit points and slave points for local displacements u at t; *moved (may be NULL): not where they were. Collective. */
+PetscErrorCode ListsUpdate(ContactSearch, ContactLists, const PetscReal *u, PetscReal t, PetscBool *moved);
+/* How far slave point q has slid over its fit points since the lists were made, in supports; 0 without a fit. Not collective. */
+PetscReal ListsSlip(ContactLists, PetscInt q);
 /* Values of the contact nodes (n_nodes*dim) from local values x (n_nodes of the mesh * dim); rigid nodes get their motion from t to t_next. Collective. */
 PetscErrorCode ListsBroadcast(ContactSearch, ContactLists, const PetscReal *x, PetscReal t, PetscReal t_next, PetscReal *values);
 /* Adds values of the contact nodes (n_nodes*dim) to y (local), complete at owned nodes; rigid nodes are left out. Collective. */

@@ -1,6 +1,7 @@
 /* Which points of the master surface a fit at a slave point may use: connected to its nearest facet without crossing a sharp edge, facing the
    same way, within the support. Works on the facets that a rank holds (its own, ghosts, mirror images); plain arrays, no communication. */
 #pragma once
+#include "facequadrature.h"
 #include "nodegeometry.h"
 
 /* Facets and points that a rank holds in the position of the moment. A point is a node or a mirror image of one. */
@@ -13,6 +14,7 @@ typedef struct {
   const PetscReal    *x;         /* n_points*dim */
   const NodeGeometry *geometry;  /* of each point, reflected with it */
   PetscReal           feature_cosine;
+  const PetscInt     *first; /* integral fits: the fit points of facet f are first[f] and what its quadrature rule has; NULL: the nodes are the fit points */
 } SurfaceView;
 
 typedef struct _n_Neighbourhoods *Neighbourhoods;

@@ -10,6 +10,8 @@ typedef struct {
   PetscReal weight;        /* multiplier of the node's weight in a fit: 1 on first-order faces, else its reference tributary area over the mean */
 } NodeGeometry;
 
+/* Nodes that a face of this type brings to the surface when many tile it: area per node = area of the face over this. */
+PetscReal SurfaceNodesPerFace(ElementType);
 /* Complete on every copy of a node; rigid tools: nodes of the tool at t. Collective. */
 PetscErrorCode SurfaceNodeGeometry(ContactSurface, Loads, const PetscReal *u, PetscReal t, NodeGeometry *nodes);
 /* Unit mean normal of the whole surface (area-weighted) and, unless NULL, the smallest cosine of a face's normal with it. Collective. */

@@ -7,21 +7,23 @@
 #pragma once
 #include "lists.h"
 #include "loads.h"
+#include "slavepoints.h"
 
 /* How a master surface is fitted; degree 0: not at all, its facets serve. */
 typedef struct {
   int            degree;   /* 0, 2 or 4 */
-  double         support;  /* in spacings of the master */
+  PetscBool      integral; /* through the quadrature points of the faces, weighted by area, instead of the nodes */
+  double         support;  /* in spacings of the master's nodes */
   double         exponent; /* of the weight */
   FitDerivatives derivatives;
   PetscBool      global_frame;  /* one reference plane for all slave points */
   PetscReal      feature_angle; /* radians: lists end at sharper edges */
 } FitSettings;
 
-/* master NULL: an analytic one, which needs no lists. slaves: local nodes of this rank that are slave points (node to surface: one node each). Surfaces,
- * images, settings are borrowed. Collective. */
-PetscErrorCode SearchCreate(Mesh, Scene, Loads, ContactSurface slave, ContactSurface master, int n_images, const SurfaceImage *, const FitSettings *,
-                            PetscInt n, const PetscInt *slaves, ContactSearch *);
+/* master NULL: an analytic one, which needs no lists. slaves NULL: the surface is to be looked at by itself (offset.h). offset: of the master's quadrature
+ * points (integral fits), [faces][FACE_RULE_POINTS*dim], or NULL; what stands there when lists are made is taken. All are borrowed. Collective. */
+PetscErrorCode SearchCreate(Mesh, Scene, Loads, ContactSurface master, PetscReal slave_size, int n_images, const SurfaceImage *, const FitSettings *,
+                            SlavePoints slaves, const PetscReal *offset, ContactSearch *);
 PetscErrorCode SearchDestroy(ContactSearch *);
 /* New lists for local displacements u at load parameter t, good for a relative motion of `motion`. Collective. */
 PetscErrorCode SearchLists(ContactSearch, const PetscReal *u, PetscReal t, PetscReal motion, ContactLists *);

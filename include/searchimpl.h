@@ -14,34 +14,33 @@ struct _n_ContactSearch {
   int                 n_images;
   const SurfaceImage *images;
   const FitSettings  *fit;
-  PetscInt            n_slaves;
-  const PetscInt     *slaves;
+  SlavePoints         slaves;
+  const PetscReal    *offset;        /* of the quadrature points of this rank's master faces, where fits go through these */
   PetscReal           reach, margin; /* lengths, without the motion */
 };
-
-/* A master face on its way to a rank that may need it. Plain bytes: ranks of one run have one architecture. */
-typedef struct {
-  Facet        facet; /* nodes: numbers in id[] order on arrival, later contact nodes */
-  PetscReal    size;
-  PetscInt     id[FACE_MAX_NODES], owner[FACE_MAX_NODES], local[FACE_MAX_NODES];
-  PetscReal    X[FACE_MAX_NODES * 3];
-  NodeGeometry geometry[FACE_MAX_NODES]; /* fits only */
-} FaceRecord;
 
 /* A face or a mirror image of it, in the current position. */
 typedef struct {
   PetscInt  record;
   int       image;
   Facet     facet; /* nodes: contact nodes until the points are numbered, then points */
+  PetscInt  first; /* fit point of its quadrature rule */
   PetscReal centre[3], normal[3], lower[3], upper[3];
 } Candidate;
+
+/* The master's faces that a rank holds for a while, with their mirror images */
+typedef struct {
+  PetscInt    n_records, n_candidates;
+  FaceRecord *records;
+  Candidate  *candidates;
+} SearchField;
 
 /* One slave point looking for its nearest facet. */
 typedef struct {
   ContactLists     lists;
   const Candidate *candidates;
   PetscReal        x[3], normal[3];
-  PetscInt         node; /* contact node of the slave point: it is not its own master */
+  PetscInt         q; /* the slave point: a face with one of its nodes is not its master */
   PetscInt         best;
   Foot             foot; /* on the best */
 } Nearest;
@@ -54,6 +53,14 @@ typedef struct {
   PetscInt   n_points, points_room, *point;
   PetscInt  *position; /* of every point in the present slave point's list; older entries are below its start */
 } ListBuffer;
+
+/* Where a fit is wanted: at the slave point's foot on the facets, or at a point of the surface itself */
+typedef struct {
+  PetscInt  facet; /* candidate */
+  double    xi[2];
+  PetscReal x[3], foot[3], outward[3]; /* origin of the fit; centre of the support; direction */
+  PetscBool upright;                   /* the frame's normal is `outward`, not that of the points' plane */
+} FitFoot;
 
 /* The fits of a pair's slave points in the making. */
 typedef struct {
@@ -70,24 +77,30 @@ typedef struct {
 } Fitting;
 
 /* faceexchange.c */
-void           SearchSlaveBox(ContactSearch, const PetscReal *u, PetscReal box[6]);
+void           SearchSlaveBox(ContactSearch, PetscReal box[6]);
+void           SearchMasterBox(ContactSearch, const PetscReal *u, PetscReal t, PetscReal box[6]);
 PetscBool      SearchBoxesMeet(const PetscReal *a, const PetscReal *b, int dim, PetscReal distance);
 void           SearchRigidPosition(ContactSearch, PetscInt n, PetscReal t, PetscReal x[3]);
 PetscErrorCode SearchExchangeFaces(ContactSearch, const NodeGeometry *, const PetscReal *u, const PetscReal *boxes, PetscReal distance, PetscInt *n,
                                    FaceRecord **);
 PetscErrorCode SearchPickRigidFaces(ContactSearch, const NodeGeometry *, PetscReal t, const PetscReal box[6], PetscReal distance, PetscInt *n, FaceRecord **);
 /* lists.c */
-PetscErrorCode ListsCreateNodes(ContactSearch, PetscInt n_records, FaceRecord *, ContactLists);
-PetscErrorCode ListsCreatePoints(ContactSearch, ContactLists, PetscInt n_candidates, Candidate *);
+PetscErrorCode ListsCreateNodes(ContactSearch, SearchField *, ContactLists);
+PetscErrorCode ListsCreatePoints(ContactSearch, ContactLists, SearchField *);
 PetscErrorCode ListsCreateSlaves(ContactSearch, ContactLists);
-void           ListsPointGeometry(ContactSearch, ContactLists, PetscInt n_records, const FaceRecord *, NodeGeometry *of_nodes, NodeGeometry *of_points);
+void           ListsPointGeometry(ContactSearch, ContactLists, const SearchField *, NodeGeometry *of_nodes, NodeGeometry *of_points);
 PetscErrorCode ListsUpdateNodes(ContactSearch, ContactLists, const PetscReal *u, PetscReal t);
+void           ListsCentre(ContactLists, PetscInt q, PetscReal centre[2]);
 void           ListsSlaveMap(const ContactLists, PetscInt q, const PetscReal *x, PetscReal *y);
 /* fitting.c */
 PetscReal      SearchFitReach(ContactSearch);
-PetscErrorCode FittingCreate(ContactSearch, ContactLists, PetscInt n_records, const FaceRecord *, PetscInt n, const Candidate *, Fitting *);
+PetscErrorCode FittingCreate(ContactSearch, ContactLists, const SearchField *, Fitting *);
 PetscErrorCode FittingDestroy(Fitting *);
 PetscErrorCode FittingSlave(Fitting *, const Nearest *, PetscInt q, PetscInt first, ListBuffer *);
+PetscErrorCode FittingClimb(Fitting *, const FitFoot *, FitProblem *, FitResult *, int *rung);
 /* search.c */
+/* The faces around a box with nodes, images and points in lists, whose slave points are not yet there. Collective. */
+PetscErrorCode SearchFieldCreate(ContactSearch, const PetscReal *u, PetscReal t, const PetscReal box[6], PetscReal distance, ContactLists, SearchField *);
+PetscErrorCode SearchFieldDestroy(SearchField *);
 void           SearchCandidatePlace(int dim, const PetscReal *x, PetscReal size, Candidate *);
 PetscErrorCode ListBufferAddPoint(ListBuffer *, PetscInt first, PetscInt point);

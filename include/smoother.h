@@ -23,14 +23,16 @@ typedef struct {
 
 /* Arrays belong to the caller, sized for the smoother's capacity of points. */
 typedef struct {
-  double  gap;          /* < 0: penetration */
-  double  normal[3];    /* out of the master at the foot */
-  double  beyond;       /* how far the foot lies past a free edge of the master (a length) */
-  int     seed;         /* for the next evaluation */
-  int     facet_served; /* a smooth surface was asked for and had no foot here: the facets answered */
-  int     n, *points;   /* the points that take part */
-  double *N;            /* [(1 + n)*dim], the slave point first */
-  double *M;            /* [((1 + n)*dim)^2] */
+  double     gap;          /* < 0: penetration */
+  double     normal[3];    /* out of the master at the foot */
+  double     beyond;       /* how far the foot lies past a free edge of the master (a length) */
+  int        seed;         /* for the next evaluation */
+  int        facet_served; /* a smooth surface was asked for and had no foot here: the facets answered */
+  int        n, *points;   /* the points that take part */
+  double    *N;            /* [(1 + n)*dim], the slave point first */
+  double    *M;            /* [((1 + n)*dim)^2], or ... */
+  int        factored;     /* ... its factors instead, in the workspace until that is used again (fitmap.h) */
+  FitFactors factors;
 } SmootherResult;
 
 typedef enum { SMOOTHER_GAP, SMOOTHER_FIRST_VARIATION, SMOOTHER_SECOND_VARIATION } SmootherWant;

@@ -5,11 +5,11 @@
 #include "facet.h"
 
 /* Reflection through a coordinate plane or a product of such planes: x' = sign * x + shift, by component. Image 0 is the identity, image m the product of
-   the planes whose bits are set in m. */
-enum { SURFACE_MAX_IMAGES = 8 };
+   the planes whose bits are set in m; of two planes normal to one axis each mirrors once, their product is left out. */
+enum { SURFACE_AXIS_PLANES = 2, SURFACE_MAX_IMAGES = 1 << 3 * SURFACE_AXIS_PLANES };
 typedef struct {
   PetscReal sign[3], shift[3];
-  PetscBool reverses; /* turns the orientation of a face over */
+  PetscBool reverses, left_out; /* reverses: turns the orientation of a face over */
 } SurfaceImage;
 
 typedef struct {
@@ -22,6 +22,7 @@ typedef struct {
   Facet           *faces;               /* nodes: local nodes of the mesh, or of the rigid tool */
   PetscReal       *face_size;           /* sqrt(area), a length in 2D */
   PetscReal        mean_size, max_size; /* over all ranks */
+  PetscReal        max_extent;          /* longest face, corner to corner */
   PetscReal        stiffness;           /* area-weighted mean of E over element height, all ranks; 0 for a rigid tool */
 } * ContactSurface;
 

@@ -1,6 +1,11 @@
-"""Shrink-fitted rings and spheres: how far the contact pressure is from its mean, by smoother, mesh pair, slave side and jitter.
-Runs the scenes, leaves one record per run in out/rings.csv and prints the tables; --print tables an existing file.
-    python scripts/ring_table.py [plane] [jitter] [solid] [spheres]"""
+"""Shrink-fitted rings and spheres: how far the contact pressure is from its mean, by smoother, formulation, order, mesh pair, slave side and jitter.
+Runs the scenes, leaves one record per run and prints the tables; --print tables an existing record.
+    python scripts/ring_table.py [--record FILE] [--jobs N] [--print] [TABLE ...]
+plane      smoothers, node to surface, structured meshes in the plane        (runs/records/rings.csv)
+plane12    the three formulations, both orders, jittered meshes in the plane (this and the rest: runs/records/formulations.csv)
+matching   meshes whose nodes face each other, beside the rings tied         (what the elements themselves leave)
+solid      rings in 3D, 14 elements long, away from the free end and near it
+spheres    concentric spheres"""
 import argparse
 import csv
 import json
@@ -9,57 +14,94 @@ import pathlib
 import shutil
 import statistics
 import subprocess
+from concurrent.futures import ThreadPoolExecutor
 
-from launch import command, environment, read_summary
+import ring_floor
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 LAME = {"ring_in_ring": 6.439, "ring_in_ring_3d": 5.859, "spheres": 15.224}
-SMOOTHERS = {
-    "facets": ["contact.0.smoother=facet"],
-    "degree 2, 2.6, 3": ["contact.0.degree=2", "contact.0.support=2.6", "contact.0.weight=3"],
-    "degree 2": ["contact.0.degree=2"],
-    "degree 4": ["contact.0.degree=4"],
+METHODS = {
+    "facets": ["contact.0.smoother=facet", "contact.0.formulation=node_to_surface"],
+    "degree 2, 2.6, 3": ["contact.0.formulation=node_to_surface", "contact.0.degree=2", "contact.0.support=2.6", "contact.0.weight=3"],
+    "degree 2": ["contact.0.formulation=node_to_surface", "contact.0.degree=2"],
+    "degree 4": ["contact.0.formulation=node_to_surface", "contact.0.degree=4"],
+    "surface to surface": ["contact.0.formulation=surface_to_surface"],
 }
+SMOOTHERS = ("facets", "degree 2, 2.6, 3", "degree 2", "degree 4")
+FORMULATIONS = ("facets", "degree 4", "surface to surface")
+HEADS = {"facets": "facets", "degree 4": "node to surface", "surface to surface": "surface to surface", "tied": "tied"}
 SIDES = ("inner", "outer")
 PLANE_PAIRS = ((16, 20), (32, 40), (40, 32), (24, 48), (48, 24), (24, 30), (30, 24), (36, 25))
+ORDER_PAIRS = {1: ((24, 30), (30, 24), (24, 48)), 2: ((12, 15), (15, 12), (12, 24))}
+LENGTH, END = 14, 6  # face sizes: of the rings in 3D, and how far the free end counts
 PROBES = ("mean_pressure", "noise_max", "noise_rms", "noise_end_max", "noise_end_rms")
-COLUMNS = ("table", "scene", "n_inner", "n_outer", "slave", "smoother", "jitter", "seed", "status", "newton", "contact_nodes", "slave_nodes", "wall_s", "fall_backs", *PROBES)
+COLUMNS = ("table", "scene", "n_inner", "n_outer", "slave", "smoother", "jitter", "seed", "status", "newton", "contact_nodes", "slave_nodes", "wall_s", "fall_backs", *PROBES, "order")
+TABLES = ("plane", "plane12", "matching", "solid", "spheres")
+ENVIRONMENT = {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1", "OMPI_MCA_rmaps_base_oversubscribe": "1",
+               "OMPI_MCA_mpi_yield_when_idle": "1", "OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
+
+
+def seeds(jitter):
+    return (1, 2) if jitter else (1,)
 
 
 def cases(table):
-    """Every (scene, pair, slave, smoother, jitter, seed) of a table."""
+    """Every (scene, order, pair, slave, method, jitter, seed) of a table."""
+    jitters = (0, 0.125, 0.25)
     if table == "plane":
-        return [("ring_in_ring", pair, slave, smoother, 0, 1) for pair in PLANE_PAIRS for slave in SIDES for smoother in SMOOTHERS]
-    if table == "jitter":
-        return [("ring_in_ring", pair, slave, smoother, jitter, seed) for pair in ((24, 30), (24, 48)) for slave in SIDES
-                for smoother in ("facets", "degree 2", "degree 4") for jitter in (0.125, 0.25) for seed in (1, 2, 3)]
-    scene, pairs = ("ring_in_ring_3d", ((24, 30), (30, 24))) if table == "solid" else ("spheres", ((10, 12),))
-    return [(scene, pair, slave, smoother, jitter, seed) for smoother in ("degree 4", "degree 2", "facets") for jitter in (0, 0.125, 0.25)
-            for seed in ((1, 2) if jitter and smoother == "degree 4" else (1,)) for pair in pairs for slave in SIDES]
+        return [("ring_in_ring", 1, pair, slave, smoother, 0, 1) for pair in PLANE_PAIRS for slave in SIDES for smoother in SMOOTHERS]
+    if table == "plane12":
+        return [("ring_in_ring", order, pair, slave, method, jitter, seed) for order in (1, 2) for pair in ORDER_PAIRS[order] for slave in SIDES for method in FORMULATIONS
+                for jitter in jitters for seed in seeds(jitter)]
+    if table == "matching":
+        return [("ring_in_ring", order, (n, n), "inner", method, jitter, seed) for order, n in ((1, 24), (2, 12)) for method in FORMULATIONS for jitter in jitters for seed in seeds(jitter)]
+    if table == "solid":
+        return [("ring_in_ring_3d", 1, pair, slave, method, jitter, 1) for pair in ((24, 30), (30, 24)) for slave in SIDES for method in FORMULATIONS for jitter in (0, 0.25)] + \
+            [("ring_in_ring_3d", 2, pair, slave, method, 0, 1) for pair in ((12, 15), (15, 12)) for slave in SIDES for method in FORMULATIONS]
+    return [("spheres", 1, (10, 12), slave, method, jitter, 1) for slave in SIDES for method in FORMULATIONS for jitter in jitters]
 
 
-def solve(table, case, burnish, ranks, out):
-    scene, (n_inner, n_outer), slave, smoother, jitter, seed = case
-    directory = out / f"rings-{table}-{os.getpid()}"
-    shutil.rmtree(directory, ignore_errors=True)
+def overrides(table, scene, order, pair, slave, method, jitter, seed):
     master = SIDES[1 - SIDES.index(slave)]
-    overrides = [f"mesh.parameters.n_inner={n_inner}", f"mesh.parameters.n_outer={n_outer}", f"mesh.parameters.jitter={jitter}", f"mesh.parameters.seed={seed}",
-                 f"contact.0.slave={slave}_contact", f"contact.0.master={master}_contact", *SMOOTHERS[smoother]]
-    line = command(burnish, ranks, ROOT / "runs" / f"{scene}.yaml", directory, overrides, "-quiet")
-    finished = subprocess.run(line, env=environment(), stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
-    record = dict(zip(COLUMNS, (table, scene, n_inner, n_outer, slave, smoother, jitter, seed, finished.returncode)))
-    if finished.returncode == 0:
-        summary = read_summary(directory)
-        n = n_inner if slave == "inner" else n_outer
-        rows = round(8 * n / min(n_inner, n_outer)) + 1
-        slave_nodes = {"ring_in_ring": n + 1, "ring_in_ring_3d": (n + 1) * rows, "spheres": 3 * n * n + 3 * n + 1}[scene]
-        record.update(newton=summary["newton_iterations"], contact_nodes=summary["contact_nodes"], slave_nodes=slave_nodes, wall_s=round(summary["wall_s"], 2),
-                      fall_backs=json.dumps(summary["contact"][0].get("fall_backs")))
-        record.update({name: value for name, value in summary["probes"].items() if name in PROBES})
-    else:
-        print(finished.stdout)
+    values = [f"mesh.order={order}", f"mesh.parameters.n_inner={pair[0]}", f"mesh.parameters.n_outer={pair[1]}", f"mesh.parameters.jitter={jitter}", f"mesh.parameters.seed={seed}",
+              f"contact.0.slave={slave}_contact", f"contact.0.master={master}_contact", *METHODS[method]]
+    if table == "matching":
+        values.append("mesh.parameters.matching=1")
+    if scene == "ring_in_ring_3d":
+        values += [f"mesh.parameters.n_len={LENGTH // order}", *(f"probes.{probe}.{key}={END // order}" for probe, key in ((1, "excluding"), (2, "excluding"), (3, "only"), (4, "only")))]
+    return values
+
+
+def nodes_of_slave(scene, order, pair, slave):
+    n = order * pair[SIDES.index(slave)]
+    rows = order * round(LENGTH // order * n / order / min(pair)) + 1
+    return {"ring_in_ring": n + 1, "ring_in_ring_3d": (n + 1) * rows, "spheres": 3 * n * n + 3 * n + 1}[scene]
+
+
+def solve(table, case, args):
+    """One run as a record; matching: a second record with the rings tied."""
+    scene, order, pair, slave, method, jitter, seed = case
+    directory = args.out / "-".join(str(v) for v in (table, scene, order, *pair, slave, method.replace(" ", "_"), jitter, seed))
     shutil.rmtree(directory, ignore_errors=True)
-    return record
+    command = ["mpirun", "-n", str(args.ranks)] if args.ranks > 1 else []
+    command += [args.burnish, str(ROOT / "runs" / f"{scene}.yaml"), "-o", str(directory), "-quiet"]
+    for override in overrides(table, *case):
+        command += ["-set", override]
+    finished = subprocess.run(command, env={**ENVIRONMENT, **os.environ}, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+    record = dict(zip(COLUMNS, (table, scene, *pair, slave, method, jitter, seed, finished.returncode)), order=order)
+    records = [record]
+    if finished.returncode == 0:
+        summary = json.loads((directory / "summary.json").read_text())
+        record.update(newton=summary["newton_iterations"], contact_nodes=summary["contact_nodes"], slave_nodes=nodes_of_slave(scene, order, pair, slave), wall_s=round(summary["wall_s"], 2),
+                      fall_backs=json.dumps(summary["contact"][0].get("fall_backs")))
+        record.update({name: f"{value:.6g}" for name, value in summary["probes"].items() if name in PROBES and value is not None})
+        if table == "matching" and method == "surface to surface":
+            tied = {name: f"{value:.6g}" for name, value in ring_floor.floor(directory).items()}
+            records.append({**{name: record[name] for name in ("table", "scene", "n_inner", "n_outer", "slave", "jitter", "seed", "order")}, "smoother": "tied", "status": 0, **tied})
+    else:
+        print(case, finished.stdout)
+    shutil.rmtree(directory, ignore_errors=True)
+    return records
 
 
 def number(record, name):
@@ -71,17 +113,21 @@ def worst(records, name):
 
 
 def figure(value):
-    return "-" if value != value else f"{value:.2g}" if value < 10 else f"{value:.0f}"
+    return "-" if value != value else "0.00" if value < 0.005 else f"{value:.2g}" if value < 10 else f"{value:.0f}"
+
+
+def ended(records):
+    return [r for r in records if r["status"] == "0"]
 
 
 def print_plane(records):
-    print("\nPlane strain, structured: largest deviation from the mean, per cent (share of slave nodes in contact where not all)\n")
+    print("\nPlane strain, structured, node to surface: largest deviation from the mean, per cent (share of slave nodes in contact where not all)\n")
     print("| inner/outer | slave | " + " | ".join(SMOOTHERS) + " | mean, degree 4 |\n|" + " --- |" * (len(SMOOTHERS) + 3))
     for pair in PLANE_PAIRS:
         for slave in SIDES:
             cells, mean = [], "-"
             for smoother in SMOOTHERS:
-                found = [r for r in records if (int(r["n_inner"]), int(r["n_outer"])) == pair and r["slave"] == slave and r["smoother"] == smoother and r["newton"] not in (None, "")]
+                found = [r for r in ended(records) if (int(r["n_inner"]), int(r["n_outer"])) == pair and r["slave"] == slave and r["smoother"] == smoother]
                 if not found:
                     cells.append("-")
                     continue
@@ -91,53 +137,62 @@ def print_plane(records):
             print(f"| {pair[0]}/{pair[1]} | {slave} | " + " | ".join(cells) + f" | {mean} |")
 
 
-def print_worst(title, records, ends):
-    """Largest (rms) over all seeds, pairs and slave sides of one kind, by smoother and jitter."""
-    print(f"\n{title}: largest (rms) deviation, per cent, worst of all runs of the row\n")
-    print("| smoother | slave | jitter | runs | all | " + ("free end | " if ends else "") + "mean pressure | iterations |\n|" + " --- |" * (8 if ends else 7))
-    for smoother in SMOOTHERS:
-        kinds = sorted({"coarser" if (int(r["n_inner"]) < int(r["n_outer"])) == (r["slave"] == "inner") else "finer" for r in records if r["smoother"] == smoother})
-        for kind in kinds:
-            for jitter in sorted({float(r["jitter"]) for r in records}):
-                found = [r for r in records if r["smoother"] == smoother and float(r["jitter"]) == jitter and r["newton"] not in (None, "")
-                         and ("coarser" if (int(r["n_inner"]) < int(r["n_outer"])) == (r["slave"] == "inner") else "finer") == kind]
-                if not found:
-                    continue
-                means = [number(r, "mean_pressure") for r in found]
-                end = f"{figure(worst(found, 'noise_end_max'))} ({figure(worst(found, 'noise_end_rms'))}) | " if ends else ""
-                print(f"| {smoother} | {kind} | {jitter:g} | {len(found)} | {figure(worst(found, 'noise_max'))} ({figure(worst(found, 'noise_rms'))}) | {end}"
-                      f"{min(means):.4f} to {max(means):.4f} (Lame {LAME[found[0]['scene']]}) | {statistics.median(int(r['newton']) for r in found):.0f} |")
+def print_worst(title, records, methods):
+    """Largest (rms) over all seeds, pairs and slave sides, by order and jitter; how many runs failed, where some did."""
+    ends = any(number(r, "noise_end_rms") == number(r, "noise_end_rms") for r in records)
+    print(f"\n{title}: largest (rms) deviation from the mean, per cent, worst of the runs of the row" + ("; free end, rms" if ends else "") + f"; Lame {LAME[records[0]['scene']]}\n")
+    print("| order | jitter | runs | " + " | ".join(HEADS[m] for m in methods) + " | mean pressure, surface to surface |\n|" + " --- |" * (len(methods) + 4))
+    for order in sorted({r["order"] for r in records}):
+        for jitter in sorted({float(r["jitter"]) for r in records if r["order"] == order}):
+            row = [r for r in records if r["order"] == order and float(r["jitter"]) == jitter]
+            cells = []
+            for method in methods:
+                runs = [r for r in row if r["smoother"] == method]
+                found = ended(runs)
+                cell = f"{figure(worst(found, 'noise_max'))} ({figure(worst(found, 'noise_rms'))})" + (f"; {figure(worst(found, 'noise_end_rms'))}" if ends else "")
+                cells.append(cell + (f", {len(runs) - len(found)} failed" if len(found) < len(runs) else ""))
+            means = [number(r, "mean_pressure") for r in ended(row) if r["smoother"] == "surface to surface"]
+            print(f"| {order} | {100 * jitter:g} % | {len([r for r in row if r['smoother'] == methods[-1]])} | " + " | ".join(cells) + f" | {min(means):.4f} to {max(means):.4f} |")
+    iterations = {HEADS[m]: statistics.median(int(r["newton"]) for r in ended(records) if r["smoother"] == m) for m in FORMULATIONS}
+    print("\nmedian Newton iterations: " + ", ".join(f"{name} {value:.0f}" for name, value in iterations.items()))
 
 
 def print_tables(records):
-    by_table = {name: [r for r in records if r["table"] == name] for name in ("plane", "jitter", "solid", "spheres")}
-    if by_table["plane"]:
-        print_plane(by_table["plane"])
-    for name, title in (("jitter", "Plane strain, jittered"), ("solid", "Rings, eight elements long (all: farther than two faces from the free end)"), ("spheres", "Spheres")):
-        if by_table[name]:
-            print_worst(title, by_table[name], name == "solid")
+    titles = {"plane12": "Plane strain", "matching": "Plane strain, nodes facing each other", "solid": f"Rings, {LENGTH} faces long, farther than {END} faces from the free end", "spheres": "Spheres"}
+    plane = [r for r in records if r["table"] == "plane"]
+    if plane:
+        print_plane(plane)
+    for name, title in titles.items():
+        found = [r for r in records if r["table"] == name]
+        if found:
+            print_worst(title, found, (*FORMULATIONS, "tied") if name == "matching" else FORMULATIONS)
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("tables", nargs="*", choices=[[], "plane", "jitter", "solid", "spheres"], help="which; default: all")
+    parser.add_argument("tables", nargs="*", metavar="TABLE", help=f"of {', '.join(TABLES)}; default: all")
     parser.add_argument("--burnish", default=str(ROOT / "build/burnish"))
     parser.add_argument("--ranks", type=int, default=1)
-    parser.add_argument("--out", type=pathlib.Path, default=ROOT / "out")
-    parser.add_argument("--print", dest="only_print", action="store_true", help="of the file that is there; runs nothing")
+    parser.add_argument("--jobs", type=int, default=1, help="runs at the same time")
+    parser.add_argument("--out", type=pathlib.Path, default=ROOT / "out/rings")
+    parser.add_argument("--record", type=pathlib.Path, default=ROOT / "out/rings.csv")
+    parser.add_argument("--print", dest="only_print", action="store_true", help="of the record that is there; runs nothing")
     args = parser.parse_args()
-    args.out.mkdir(exist_ok=True)
-    path = args.out / "rings.csv"
+    unknown = [name for name in args.tables if name not in TABLES]
+    if unknown:
+        parser.error(f"no table {unknown[0]}; there are {', '.join(TABLES)}")
     if not args.only_print:
-        with open(path, "w", newline="") as file:
+        args.out.mkdir(parents=True, exist_ok=True)
+        with open(args.record, "w", newline="") as file, ThreadPoolExecutor(args.jobs) as pool:
             writer = csv.DictWriter(file, COLUMNS)
             writer.writeheader()
-            for table in args.tables or ("plane", "jitter", "solid", "spheres"):
-                for case in cases(table):
-                    writer.writerow(solve(table, case, args.burnish, args.ranks, args.out))
+            for table in args.tables or TABLES:
+                for records in pool.map(lambda case: solve(table, case, args), cases(table)):
+                    writer.writerows(records)
                     file.flush()
-    with open(path, newline="") as file:
+    with open(args.record, newline="") as file:
         print_tables(list(csv.DictReader(file)))
 
 
-main()
+if __name__ == "__main__":
+    main()

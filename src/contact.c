@@ -1,5 +1,6 @@
 #include "contactimpl.h"
 #include "refusal.h"
+#include "timing.h"
 
 /* Two pairs of the same surfaces would press twice. */
 static PetscErrorCode RefuseRepeatedPairs(Mesh mesh, Scene scene)
@@ -25,7 +26,7 @@ static PetscErrorCode RefuseRepeatedPairs(Mesh mesh, Scene scene)
 PetscErrorCode ContactCreate(Mesh mesh, Scene scene, Elasticity elasticity, Loads loads, Contact *out)
 {
   Contact contact;
-  int     capacity = 0, points = 1; /* most fit points of a smoother, most slave points of a term */
+  int     capacity = 0; /* most fit points of a smoother */
 
   PetscFunctionBeginUser;
   PetscCall(PetscNew(&contact));
@@ -46,10 +47,8 @@ PetscErrorCode ContactCreate(Mesh mesh, Scene scene, Elasticity elasticity, Load
     capacity               = PetscMax(capacity, contact->pairs[p].smoother->capacity);
   }
   PetscCall(PetscMalloc1(FitWorkspace(mesh->dim, 4, FIT_MAX_POINTS), &contact->work.workspace));
-  PetscCall(PetscMalloc4(capacity, &contact->work.result.points, 3 * (capacity + 1), &contact->work.result.N, capacity + 1, &contact->work.from,
-                         3 * (capacity + 1), &contact->work.scale));
-  PetscCall(PetscMalloc4(PetscSqr(3 * (capacity + 1)), &contact->work.result.M, points * (capacity + 1), &contact->work.node, 3 * points * (capacity + 1),
-                         &contact->work.N, PetscSqr(3 * (capacity + 1)), &contact->work.M));
+  PetscCall(
+    PetscMalloc3(capacity, &contact->work.result.points, 3 * (capacity + 1), &contact->work.result.N, PetscSqr(3 * (capacity + 1)), &contact->work.result.M));
   *out = contact;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -63,9 +62,8 @@ PetscErrorCode ContactDestroy(Contact *contact)
   if (!c) PetscFunctionReturn(PETSC_SUCCESS);
   for (int p = 0; p < c->n_pairs; p++) PetscCall(ContactPairDestroy(&c->pairs[p]));
   PetscCall(PetscFree(c->pairs));
-  PetscCall(PetscFree4(c->work.result.points, c->work.result.N, c->work.from, c->work.scale));
-  PetscCall(PetscFree4(c->work.result.M, c->work.node, c->work.N, c->work.M));
-  PetscCall(PetscFree2(c->work.x, c->work.multiplier));
+  PetscCall(PetscFree3(c->work.result.points, c->work.result.N, c->work.result.M));
+  PetscCall(ContactWorkDestroy(&c->work));
   PetscCall(PetscFree(c->work.workspace));
   PetscCall(BlockMatrixDestroy(&c->blocks));
   PetscCall(PetscFree(*contact));
@@ -74,79 +72,143 @@ PetscErrorCode ContactDestroy(Contact *contact)
 
 /* ---------- residual ---------- */
 
-/* Moves the lists' points to (u, t) and projects every slave point: gaps into pair->trial, normals into pair->normal. */
+/* Moves the lists' points to (u, t) and projects every slave point; gaps of the terms into pair->trial. These stand already where the last
+   evaluation was at the same place: three in four, as the solver asks for residual, energy and tangent of each iterate one by one. */
 static PetscErrorCode PairProject(Contact contact, ContactPair *pair, const PetscReal *u, PetscReal t)
 {
+  PetscBool moved;
+
   PetscFunctionBeginUser;
+  PetscCall(ListsUpdate(pair->search, pair->lists, u, t, &moved));
+  if (pair->projected && !moved) PetscFunctionReturn(PETSC_SUCCESS);
+  pair->projected = PETSC_TRUE;
   PetscCall(PetscLogEventBegin(contact->event_project, 0, 0, 0, 0));
-  PetscCall(ListsUpdate(pair->search, pair->lists, u, t));
-  for (PetscInt c = 0; c < pair->n; c++) {
-    PetscCall(ContactTermGap(pair, pair->lists, pair->factor, pair->seed, c, &pair->trial[c]));
-    for (int d = 0; d < 3; d++) pair->normal[3 * c + d] = PetscIsNanReal(pair->trial[c]) || d >= contact->mesh->dim ? 0 : contact->work.result.normal[d];
-  }
+  if (pair->fit.degree) TimingBegin(TIMING_FIT);
+  PetscCall(ContactPointGaps(pair, pair->lists, pair->factor, pair->seed, pair->point_gap, pair->point_normal));
+  if (pair->fit.degree) TimingEnd(TIMING_FIT);
+  for (PetscInt c = 0; c < pair->n; c++) pair->trial[c] = ContactTermGap(pair, pair->factor, pair->point_gap, c, NULL);
   PetscCall(PetscLogEventEnd(contact->event_project, 0, 0, 0, 0));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static void TermLaw(const ContactPair *pair, PetscInt c, PetscReal gap, PetscReal t, LawValue *value)
+/* What a linear step counts on of an open term: what was closed stays so, pressed or pulled; what touches at the start of a run resists, for a
+   body that only contact holds. Surface contact pulls that too: the mean over the faces around a node that touches is open by their curvature. */
+static void TermPredict(const ContactPair *pair, PetscInt c, PetscReal opening, LawValue *value)
 {
-  const LawState state = {pair->now.penalty[c], ContactTermOffset(pair, c, t), pair->now.multiplier[c]};
+  const PetscBool closed = (PetscBool)(pair->accepted.status[c] == CONTACT_CLOSED);
 
-  *value = (LawValue){0, 0, 0};
-  if (!PetscIsNanReal(gap)) pair->law->evaluate(gap, &state, value);
+  if (!closed && !(pair->touching && opening <= ContactTouchTolerance(pair, c))) return;
+  value->stiffness = pair->now.penalty[c];
+  if (closed || (pair->slave_offsets && opening <= ContactMeanOpening(pair, c))) value->pressure = -value->stiffness * opening;
 }
 
-/* Adds the forces of a loaded term to the contact nodes' values and keeps what probes show of it. */
-static PetscErrorCode TermForces(Contact contact, ContactPair *pair, PetscInt c, PetscReal pressure, PetscReal *values, PetscReal *force2)
+/* Law and area of a term in the state of the last projection. */
+static void TermLaw(const ContactPair *pair, PetscInt c, PetscReal t, LawValue *value, PetscReal *area)
 {
-  const int    dim  = contact->mesh->dim;
-  ContactWork *work = &contact->work;
+  const LawState  state = {pair->now.penalty[c], ContactTermOffset(pair, c, t), pair->now.multiplier[c]};
+  const PetscReal gap   = ContactTermGap(pair, pair->factor, pair->point_gap, c, area);
+
+  *value = (LawValue){0, 0, 0};
+  if (PetscIsNanReal(gap)) return;
+  pair->law->evaluate(gap, &state, value);
+  if (pair->predicting && value->stiffness == 0) TermPredict(pair, c, gap - state.offset, value);
+}
+
+/* Direction of a term's contact: the mean of its points'. */
+static void TermNormal(ContactPair *pair, PetscInt c)
+{
+  PetscReal *normal = &pair->normal[3 * c], length = 0;
+
+  for (int d = 0; d < 3; d++) normal[d] = 0;
+  for (PetscInt k = pair->term_ptr[c]; k < pair->term_ptr[c + 1]; k++)
+    for (int d = 0; d < 3; d++) normal[d] += pair->term_weight[k] * pair->factor[pair->term_point[k]] * pair->point_normal[3 * pair->term_point[k] + d];
+  for (int d = 0; d < 3; d++) length += PetscSqr(normal[d]);
+  for (int d = 0; d < 3 && length > 0; d++) normal[d] /= PetscSqrtReal(length);
+}
+
+/* Adds the forces of the loaded slave points to the contact nodes' values. */
+static PetscErrorCode PairForces(ContactPair *pair, PetscReal *values)
+{
+  const int    dim  = pair->mesh->dim;
+  ContactWork *work = pair->work;
   PetscBool    found;
-  int          n;
 
   PetscFunctionBeginUser;
-  for (PetscInt q = pair->term_ptr[c]; q < pair->term_ptr[c + 1]; q++) {
-    const PetscReal force = pressure * pair->area[c] * pair->term_weight[q] * pair->factor[q];
+  for (PetscInt q = 0; q < pair->lists->n_slaves; q++) {
+    const PetscReal force = pair->point_force[q];
 
-    if (pair->factor[q] == 0) continue;
+    if (force == 0) continue;
+    if (pair->fit.degree) TimingBegin(TIMING_FIT);
     PetscCall(ContactPointEvaluate(pair, pair->smoother, pair->lists, q, pair->seed[q], SMOOTHER_FIRST_VARIATION, &found));
+    if (pair->fit.degree) TimingEnd(TIMING_FIT);
     if (!found) continue;
-    ContactPointToNodes(pair, pair->lists, q, 1, PETSC_FALSE, work->node, work->N, &n);
-    for (int i = 0; i < n * dim; i++) {
-      values[work->node[i / dim] * dim + i % dim] -= force * work->N[i];
-      *force2 += PetscSqr(force * work->N[i]);
-    }
-    pair->force[c] += force;
-    for (int d = 0; d < dim; d++) pair->vector[3 * c + d] += force * work->result.N[d];
+    PetscCall(ContactPointToNodes(pair, pair->lists, q, PETSC_FALSE));
+    for (PetscInt i = 0; i < work->count * dim; i++) values[work->number[i / dim] * dim + i % dim] -= force * work->N[i];
+    for (int d = 0; d < dim; d++) pair->total[d] += force * work->result.N[d];
   }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Normal nodal forces: the points' forces by the hat functions, those of terms on other ranks too. */
+static PetscErrorCode PairNodalForces(ContactPair *pair)
+{
+  const int    dim   = pair->mesh->dim;
+  ContactLists lists = pair->lists;
+  PetscReal   *values, *nodal;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc2(lists->n_nodes * dim, &values, pair->mesh->n_nodes * dim, &nodal));
+  for (PetscInt q = 0; q < lists->n_slaves; q++)
+    for (PetscInt k = lists->slave_ptr[q]; k < lists->slave_ptr[q + 1]; k++) values[lists->slave_node[k] * dim] += pair->slaves->hat[k] * pair->point_force[q];
+  PetscCall(ListsReduce(lists, values, nodal));
+  for (PetscInt c = 0; c < pair->n; c++) pair->force[c] = nodal[pair->node[c] * dim];
+  PetscCall(PetscFree2(values, nodal));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 static PetscErrorCode PairResidual(Contact contact, ContactPair *pair, const PetscReal *u, PetscReal t, PetscReal *f, PetscReal *energy, PetscReal *force2)
 {
-  PetscReal *values, sum = 0;
-  LawValue   value;
+  PetscReal *values;
 
   PetscFunctionBeginUser;
   PetscCall(PairProject(contact, pair, u, t));
-  PetscCall(PetscCalloc1(pair->lists->n_nodes * contact->mesh->dim, &values));
+  if (f) PetscCall(PetscArrayzero(pair->point_force, pair->lists->n_slaves));
   for (PetscInt c = 0; c < pair->n; c++) {
-    TermLaw(pair, c, pair->trial[c], t, &value);
-    for (PetscInt q = pair->term_ptr[c]; energy && q < pair->term_ptr[c + 1]; q++)
-      *energy += pair->area[c] * pair->term_weight[q] * pair->factor[q] * value.psi;
+    LawValue  value;
+    PetscReal area;
+
+    TermLaw(pair, c, t, &value, &area);
+    if (energy) *energy += area * value.psi;
+    if (force2) *force2 += 2 * PetscSqr(area * value.pressure); /* on the slave and on the master */
     if (!f) continue;
     pair->now.gap[c]    = pair->trial[c];
     pair->now.status[c] = value.stiffness > 0 ? CONTACT_CLOSED : CONTACT_OPEN;
-    pair->force[c]      = 0;
-    PetscCall(PetscArrayzero(&pair->vector[3 * c], 3));
-    if (value.pressure != 0) PetscCall(TermForces(contact, pair, c, value.pressure, values, &sum));
+    for (PetscInt k = pair->term_ptr[c]; k < pair->term_ptr[c + 1] && value.pressure != 0; k++)
+      pair->point_force[pair->term_point[k]] += value.pressure * pair->term_weight[k] * pair->factor[pair->term_point[k]];
+    TermNormal(pair, c);
   }
-  if (f) {
-    pair->t = t;
-    PetscCall(ListsReduce(pair->lists, values, f));
-  }
-  if (force2) *force2 += sum;
+  if (!f) PetscFunctionReturn(PETSC_SUCCESS);
+  pair->t = t;
+  PetscCall(PetscArrayzero(pair->total, 3));
+  PetscCall(PetscCalloc1(pair->lists->n_nodes * contact->mesh->dim, &values));
+  PetscCall(PairForces(pair, values));
+  PetscCall(ListsReduce(pair->lists, values, f));
+  PetscCall(PairNodalForces(pair));
   PetscCall(PetscFree(values));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* ContactPredict - between the two calls what the accepted state holds in contact stays so, pressed or pulled, in residual and tangent.
+
+   Not collective. For a linear step from the accepted state: fresh offsets move the surfaces a little, which is a load of the step, not an
+   opening. touching: what is open within ContactTouchTolerance() is closed too (Chamoret et al. start from surfaces that touch). */
+PetscErrorCode ContactPredict(Contact contact, PetscBool predicting, PetscBool touching)
+{
+  PetscFunctionBeginUser;
+  for (int p = 0; p < contact->n_pairs; p++) {
+    contact->pairs[p].predicting = predicting;
+    contact->pairs[p].touching   = touching;
+  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -154,7 +216,7 @@ static PetscErrorCode PairResidual(Contact contact, ContactPair *pair, const Pet
 
    Collective, with the same arguments NULL on all ranks. u[n_nodes*dim]: local displacements (length). f[n_nodes*dim]: contact forces are
    subtracted as external ones are, complete at owned nodes; with f gaps, status and nodal forces become the present state. energy, force2
-   (sum of the squared forces of the terms): this rank's, added to. Each of the three may be NULL.
+   (sum of the squared forces of the terms on either side): this rank's, added to. Each of the three may be NULL.
 
    Source: Chamoret et al. 2004, eq. 12 and 15. */
 PetscErrorCode ContactResidual(Contact contact, const PetscReal *u, PetscReal t, PetscReal *f, PetscReal *energy, PetscReal *force2)
@@ -168,63 +230,223 @@ PetscErrorCode ContactResidual(Contact contact, const PetscReal *u, PetscReal t,
 
 /* ---------- tangent ---------- */
 
-/* The block of one active term: A (psi'' Nbar Nbar^T - p sum_q w_q M_q), over its points' nodes one after another (a node may occur twice). */
-static PetscErrorCode TermBlock(Contact contact, const ContactPair *pair, int p, PetscInt c, PetscReal pressure, PetscReal stiffness)
+/* What the law says of each term at a tangent: stiffness 0 where it takes no part */
+typedef struct {
+  PetscReal stiffness, area;
+} TermState;
+
+/* The first variations of the points of active terms over contact nodes, one after another */
+typedef struct {
+  PetscInt  *first, *last; /* of each point */
+  PetscInt  *number, n, room;
+  PetscReal *N;
+  PetscInt  *place; /* of each contact node in the block at hand, -1: none */
+} PointVariations;
+
+static PetscErrorCode VariationsAdd(PointVariations *all, const ContactWork *work, int dim, PetscInt q)
 {
-  const int    dim  = contact->mesh->dim;
-  ContactWork *work = &contact->work;
-  PetscReal    area = 0, *value;
-  PetscInt     m = 0, first = 0, *entry;
-  PetscBool    found;
-
   PetscFunctionBeginUser;
-  for (PetscInt q = pair->term_ptr[c]; q < pair->term_ptr[c + 1]; q++) {
-    if (pair->factor[q] == 0) continue;
-    PetscCall(ContactPointEvaluate(pair, pair->smoother, pair->lists, q, pair->seed[q], SMOOTHER_GAP, &found));
-    if (found) m += ContactPointNodes(pair->lists, q, &work->result) * dim;
+  if (all->n + work->count > all->room) {
+    all->room = 2 * (all->n + work->count);
+    PetscCall(PetscRealloc(all->room * sizeof(PetscInt), &all->number));
+    PetscCall(PetscRealloc(all->room * dim * sizeof(PetscReal), &all->N));
   }
-  PetscCall(BlockMatrixAdd(contact->blocks, p, m, &entry, &value));
-  for (PetscInt q = pair->term_ptr[c]; q < pair->term_ptr[c + 1]; q++) {
-    const PetscReal weight = pair->area[c] * pair->term_weight[q] * pair->factor[q];
-    int             n;
-
-    if (pair->factor[q] == 0) continue;
-    PetscCall(ContactPointEvaluate(pair, pair->smoother, pair->lists, q, pair->seed[q], SMOOTHER_SECOND_VARIATION, &found));
-    if (!found) continue;
-    ContactPointToNodes(pair, pair->lists, q, pair->term_weight[q], PETSC_TRUE, work->node, &work->N[first], &n);
-    for (PetscInt i = 0; i < n * dim; i++) {
-      entry[first + i] = work->node[i / dim] * dim + i % dim;
-      for (PetscInt j = 0; j < n * dim; j++) value[(first + i) * m + first + j] = -pressure * weight * work->M[i * n * dim + j];
-    }
-    area += weight;
-    first += n * dim;
-  }
-  for (PetscInt i = 0; i < m; i++)
-    for (PetscInt j = 0; j < m; j++) value[i * m + j] += area * stiffness * work->N[i] * work->N[j];
+  all->first[q] = all->n;
+  PetscCall(PetscArraycpy(&all->number[all->n], work->number, work->count));
+  PetscCall(PetscArraycpy(&all->N[all->n * dim], work->N, work->count * dim));
+  all->n += work->count;
+  all->last[q] = all->n;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode PairBlocks(Contact contact, ContactPair *pair, int p, const PetscReal *u, PetscReal t, PetscBool touching)
+static PetscErrorCode VariationsCreate(const ContactPair *pair, const TermState *terms, PointVariations *all)
+{
+  const int dim = pair->mesh->dim;
+  PetscInt  n   = pair->lists->n_slaves;
+  PetscBool found;
+
+  PetscFunctionBeginUser;
+  *all = (PointVariations){0};
+  PetscCall(PetscMalloc3(n, &all->first, n, &all->last, pair->lists->n_nodes, &all->place));
+  for (PetscInt q = 0; q < n; q++) all->first[q] = all->last[q] = -1;
+  for (PetscInt i = 0; i < pair->lists->n_nodes; i++) all->place[i] = -1;
+  for (PetscInt c = 0; c < pair->n; c++) {
+    for (PetscInt k = pair->term_ptr[c]; k < pair->term_ptr[c + 1] && terms[c].stiffness > 0; k++) {
+      const PetscInt q = pair->term_point[k];
+
+      if (all->first[q] >= 0 || pair->factor[q] == 0) continue;
+      if (pair->fit.degree) TimingBegin(TIMING_FIT);
+      PetscCall(ContactPointEvaluate(pair, pair->smoother, pair->lists, q, pair->seed[q], SMOOTHER_FIRST_VARIATION, &found));
+      if (pair->fit.degree) TimingEnd(TIMING_FIT);
+      if (!found) continue;
+      PetscCall(ContactPointToNodes(pair, pair->lists, q, PETSC_FALSE));
+      PetscCall(VariationsAdd(all, pair->work, dim, q));
+    }
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode VariationsDestroy(PointVariations *all)
 {
   PetscFunctionBeginUser;
-  PetscCall(PairProject(contact, pair, u, t));
-  for (PetscInt c = 0; c < pair->n; c++) {
-    const PetscReal gap = pair->trial[c];
-    LawValue        value;
+  PetscCall(PetscFree3(all->first, all->last, all->place));
+  PetscCall(PetscFree(all->number));
+  PetscCall(PetscFree(all->N));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
 
-    TermLaw(pair, c, gap, t, &value);
-    if (touching && gap - ContactTermOffset(pair, c, t) >= 0 && gap - ContactTermOffset(pair, c, t) <= ContactTouchTolerance(pair, c))
-      value.stiffness = pair->now.penalty[c];
-    if (value.stiffness > 0) PetscCall(TermBlock(contact, pair, p, c, value.pressure, value.stiffness));
+/* Numbers the nodes of a term's points in its block. */
+static PetscInt TermNumberNodes(const ContactPair *pair, PetscInt c, PointVariations *all)
+{
+  PetscInt m = 0;
+
+  for (PetscInt k = pair->term_ptr[c]; k < pair->term_ptr[c + 1]; k++) {
+    const PetscInt q = pair->term_point[k];
+
+    for (PetscInt i = all->first[q]; i < all->last[q]; i++)
+      if (all->place[all->number[i]] < 0) all->place[all->number[i]] = m++;
   }
+  return m;
+}
+
+static void TermForgetNodes(const ContactPair *pair, PetscInt c, PointVariations *all)
+{
+  for (PetscInt k = pair->term_ptr[c]; k < pair->term_ptr[c + 1]; k++)
+    for (PetscInt i = all->first[pair->term_point[k]]; i < all->last[pair->term_point[k]]; i++) all->place[all->number[i]] = -1;
+}
+
+/* Adds -force M of a point to the block of a term. */
+static PetscErrorCode TermAddSecond(const ContactPair *pair, PetscInt q, const PointVariations *all, PetscInt m, PetscReal *value)
+{
+  const int          dim  = pair->mesh->dim;
+  const ContactWork *work = pair->work;
+  PetscBool          found;
+
+  PetscFunctionBeginUser;
+  if (pair->fit.degree) TimingBegin(TIMING_FIT);
+  PetscCall(ContactPointEvaluate(pair, pair->smoother, pair->lists, q, pair->seed[q], SMOOTHER_SECOND_VARIATION, &found));
+  if (pair->fit.degree) TimingEnd(TIMING_FIT);
+  if (!found) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(ContactPointToNodes(pair, pair->lists, q, PETSC_TRUE));
+  for (PetscInt i = 0; i < work->count * dim; i++) {
+    PetscReal       *row  = &value[(all->place[work->number[i / dim]] * dim + i % dim) * m];
+    const PetscReal *from = &work->M[i * work->count * dim];
+
+    for (PetscInt b = 0; b < work->count; b++)
+      for (int d = 0; d < dim; d++) row[all->place[work->number[b]] * dim + d] -= pair->point_force[q] * from[b * dim + d];
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The block of one active term: A psi'' Nbar Nbar^T, and -p M of its points that no term before it took. */
+static PetscErrorCode TermBlock(Contact contact, const ContactPair *pair, int p, PetscInt c, const TermState *term, PointVariations *all)
+{
+  const int  dim = contact->mesh->dim;
+  PetscInt   m   = TermNumberNodes(pair, c, all) * dim, *entry;
+  PetscReal *value, *N;
+
+  PetscFunctionBeginUser;
+  PetscCall(BlockMatrixAdd(contact->blocks, p, m, &entry, &value));
+  PetscCall(PetscCalloc1(m, &N));
+  for (PetscInt k = pair->term_ptr[c]; k < pair->term_ptr[c + 1]; k++) {
+    const PetscInt  q      = pair->term_point[k];
+    const PetscReal weight = pair->term_weight[k] * pair->factor[q] / term->area;
+
+    for (PetscInt i = all->first[q]; i < all->last[q]; i++) {
+      for (int d = 0; d < dim; d++) {
+        entry[all->place[all->number[i]] * dim + d] = all->number[i] * dim + d;
+        N[all->place[all->number[i]] * dim + d] += weight * all->N[i * dim + d];
+      }
+    }
+  }
+  for (PetscInt i = 0; i < m; i++)
+    for (PetscInt j = 0; j < m; j++) value[i * m + j] = term->area * term->stiffness * N[i] * N[j];
+  for (PetscInt k = pair->term_ptr[c]; k < pair->term_ptr[c + 1]; k++) {
+    const PetscInt q = pair->term_point[k];
+
+    if (pair->point_force[q] == 0 || all->first[q] < 0) continue;
+    PetscCall(TermAddSecond(pair, q, all, m, value));
+    pair->point_force[q] = 0;
+  }
+  TermForgetNodes(pair, c, all);
+  PetscCall(PetscFree(N));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The block of a term with one point, which is evaluated once. */
+static PetscErrorCode PointBlock(Contact contact, const ContactPair *pair, int p, PetscInt q, const TermState *term)
+{
+  const int          dim  = contact->mesh->dim;
+  const ContactWork *work = pair->work;
+  PetscInt           m, *entry;
+  PetscReal         *value;
+  PetscBool          found;
+
+  PetscFunctionBeginUser;
+  if (pair->fit.degree) TimingBegin(TIMING_FIT);
+  PetscCall(ContactPointEvaluate(pair, pair->smoother, pair->lists, q, pair->seed[q], SMOOTHER_SECOND_VARIATION, &found));
+  if (pair->fit.degree) TimingEnd(TIMING_FIT);
+  if (!found) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(ContactPointToNodes(pair, pair->lists, q, PETSC_TRUE));
+  m = work->count * dim;
+  PetscCall(BlockMatrixAdd(contact->blocks, p, m, &entry, &value));
+  for (PetscInt i = 0; i < m; i++) {
+    entry[i] = work->number[i / dim] * dim + i % dim;
+    for (PetscInt j = 0; j < m; j++) value[i * m + j] = term->area * term->stiffness * work->N[i] * work->N[j] - pair->point_force[q] * work->M[i * m + j];
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The blocks of terms that share their points. */
+static PetscErrorCode SharedBlocks(Contact contact, ContactPair *pair, int p, const TermState *terms)
+{
+  PointVariations all;
+
+  PetscFunctionBeginUser;
+  PetscCall(VariationsCreate(pair, terms, &all));
+  for (PetscInt c = 0; c < pair->n; c++)
+    if (terms[c].stiffness > 0) PetscCall(TermBlock(contact, pair, p, c, &terms[c], &all));
+  PetscCall(VariationsDestroy(&all));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Pressure whose turning with the surface counts in a tangent: in a linear step that of the accepted state, not what pulls a term to its place. */
+static PetscReal TermTurningPressure(const ContactPair *pair, PetscInt c, PetscReal t, const LawValue *value)
+{
+  if (!pair->predicting) return value->pressure;
+  return pair->accepted.status[c] == CONTACT_CLOSED ? pair->accepted.penalty[c] * (ContactTermOffset(pair, c, t) - pair->accepted.gap[c]) : 0;
+}
+
+static PetscErrorCode PairBlocks(Contact contact, ContactPair *pair, int p, const PetscReal *u, PetscReal t)
+{
+  TermState *terms;
+
+  PetscFunctionBeginUser;
+  PetscCall(PairProject(contact, pair, u, t));
+  PetscCall(PetscMalloc1(pair->n, &terms));
+  PetscCall(PetscArrayzero(pair->point_force, pair->lists->n_slaves));
+  for (PetscInt c = 0; c < pair->n; c++) {
+    LawValue  value;
+    PetscReal pressure;
+
+    TermLaw(pair, c, t, &value, &terms[c].area);
+    terms[c].stiffness = value.stiffness;
+    pressure           = TermTurningPressure(pair, c, t, &value);
+    for (PetscInt k = pair->term_ptr[c]; k < pair->term_ptr[c + 1] && pressure != 0; k++)
+      pair->point_force[pair->term_point[k]] += pressure * pair->term_weight[k] * pair->factor[pair->term_point[k]];
+  }
+  if (pair->slaves->face_sf) PetscCall(SharedBlocks(contact, pair, p, terms));
+  for (PetscInt c = 0; c < pair->n && !pair->slaves->face_sf; c++)
+    if (terms[c].stiffness > 0) PetscCall(PointBlock(contact, pair, p, pair->term_point[pair->term_ptr[c]], &terms[c]));
+  PetscCall(PetscFree(terms));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* ContactTangent - the derivative of ContactResidual()'s forces by the free displacements: A (psi'' N N^T - p M) for each closed term, p its pressure.
 
-   Collective. u, t: as of ContactResidual(); touching: open nodes within ContactTouchTolerance() take part with their stiffness too. *C: over the
+   Collective. u, t: as of ContactResidual(). *C: over the
    global free dofs, the contact's own; *changed: its pattern is new. Source: Chamoret et al. 2004, eq. 14. */
-PetscErrorCode ContactTangent(Contact contact, const PetscReal *u, PetscReal t, PetscBool touching, Mat *C, PetscBool *changed)
+PetscErrorCode ContactTangent(Contact contact, const PetscReal *u, PetscReal t, Mat *C, PetscBool *changed)
 {
   const PetscInt **dof;
   PetscSection     section;
@@ -235,7 +457,7 @@ PetscErrorCode ContactTangent(Contact contact, const PetscReal *u, PetscReal t, 
   PetscCall(BlockMatrixReset(contact->blocks));
   PetscCall(PetscMalloc1(contact->n_pairs, &dof));
   for (int p = 0; p < contact->n_pairs; p++) {
-    PetscCall(PairBlocks(contact, &contact->pairs[p], p, u, t, touching));
+    PetscCall(PairBlocks(contact, &contact->pairs[p], p, u, t));
     dof[p] = contact->pairs[p].lists->dof;
   }
   PetscCall(DMGetGlobalSection(contact->mesh->dm, &section));

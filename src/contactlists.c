@@ -1,4 +1,5 @@
 #include "contactimpl.h"
+#include "timing.h"
 
 /* A gap from fresh lists agrees with the solve's when it differs by less than this fraction of itself, or of the face size (round-off of a
    closest-point projection). */
@@ -8,8 +9,12 @@
 #define CONTACT_FRAME_COSINE 0.9962
 /* An open node whose fresh fit finds it this much of the largest penetration behind the master was open by mistake. */
 #define CONTACT_FIT_AGREES 0.1
+/* Offsets of surface contact are frozen in a solve; gaps may drift with them by this part of what the largest pressure presses the automatic penalty in. */
+#define CONTACT_OFFSET_AGREES 0.1
 /* The area factor past a free edge is frozen in a solve; a change above this makes the step solve again. */
 #define CONTACT_FACTOR_AGREES 1e-2
+/* Motions that differ by less than this fraction differ by round-off. */
+#define CONTACT_SAME_MOTION 1e-9
 
 static PetscReal SmoothStep(PetscReal x)
 {
@@ -34,46 +39,69 @@ static PetscErrorCode PairFactors(const ContactPair *pair, ContactLists lists, P
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode PairTakeLists(ContactPair *pair, ContactLists lists, const PetscReal *factor)
+/* Fresh lists and area factors become the pair's next ones. */
+static PetscErrorCode PairSearch(ContactPair *pair, const PetscReal *u, PetscReal t, PetscReal motion)
 {
   PetscFunctionBeginUser;
-  PetscCall(ListsDestroy(&pair->lists));
-  pair->lists = lists;
-  PetscCall(PetscArraycpy(pair->factor, factor, lists->n_slaves));
-  for (PetscInt q = 0; q < lists->n_slaves; q++) pair->seed[q] = -1;
+  PetscCall(ListsDestroy(&pair->next));
+  if (pair->slave_offsets) PetscCall(SlavePointsSetOffsets(pair->slaves, OffsetsGet(pair->slave_offsets)));
+  PetscCall(SearchLists(pair->search, u, t, motion, &pair->next));
+  PetscCall(PairFactors(pair, pair->next, pair->next_factor));
+  pair->next_motion = motion;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ContactGather - new lists, and with them new area factors, for all pairs; the blocks of the last tangent are dropped.
+/* Are there next lists that were made for these positions and offsets and for that much motion? The same on all ranks. */
+static PetscErrorCode PairNextServes(ContactPair *pair, const PetscReal *u, PetscReal t, PetscReal motion, PetscBool *serves)
+{
+  PetscBool moved = PETSC_TRUE;
+  int       all;
 
-   Collective. u[n_nodes*dim]: local displacements (length), ghosts included; t: load parameter, for rigid tools; motion: relative motion
-   (length) that the lists must be good for. The contact state is not touched. */
-PetscErrorCode ContactGather(Contact contact, const PetscReal *u, PetscReal t, PetscReal motion)
+  PetscFunctionBeginUser;
+  *serves = PETSC_FALSE;
+  if (pair->slave_offsets) PetscFunctionReturn(PETSC_SUCCESS);
+  if (pair->next && motion <= pair->next_motion * (1 + CONTACT_SAME_MOTION)) PetscCall(ListsUpdate(pair->search, pair->next, u, t, &moved));
+  all = !moved;
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &all, 1, MPI_INT, MPI_LAND, pair->mesh->comm));
+  *serves = all ? PETSC_TRUE : PETSC_FALSE;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The next lists replace those that serve. */
+static PetscErrorCode PairTakeNext(ContactPair *pair)
+{
+  PetscFunctionBeginUser;
+  PetscCall(ListsDestroy(&pair->lists));
+  pair->lists     = pair->next;
+  pair->next      = NULL;
+  pair->projected = PETSC_FALSE;
+  PetscCall(PetscArraycpy(pair->factor, pair->next_factor, pair->lists->n_slaves));
+  for (PetscInt q = 0; q < pair->lists->n_slaves; q++) pair->seed[q] = -1;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* ContactGather - new lists, and with them new offsets and area factors, for all pairs; the blocks of the last tangent are dropped.
+
+   Collective. u[n_nodes*dim]: local displacements (length) of the accepted state, ghosts included; t: its load parameter; t_next: where the
+   step goes; motion: relative motion (length) that the lists must be good for. Those that ContactListsHold() made at
+   the same place for as much motion are taken as they are. The contact state is not touched. */
+PetscErrorCode ContactGather(Contact contact, const PetscReal *u, PetscReal t, PetscReal t_next, PetscReal motion)
 {
   PetscFunctionBeginUser;
   PetscCall(PetscLogEventBegin(contact->event_search, 0, 0, 0, 0));
   PetscCall(BlockMatrixReset(contact->blocks)); /* its blocks speak of the old lists */
   for (int p = 0; p < contact->n_pairs; p++) {
     ContactPair *pair = &contact->pairs[p];
-    ContactLists lists;
-    PetscReal   *factor;
+    PetscBool    serves;
 
-    PetscCall(SearchLists(pair->search, u, t, motion, &lists));
-    PetscCall(PetscMalloc1(lists->n_slaves, &factor));
-    PetscCall(PairFactors(pair, lists, factor));
-    PetscCall(PairTakeLists(pair, lists, factor));
-    PetscCall(PetscFree(factor));
+    if (pair->slave_offsets) PetscCall(OffsetsExtrapolate(pair->slave_offsets, u, t, t_next));
+    if (pair->master_offsets) PetscCall(OffsetsExtrapolate(pair->master_offsets, u, t, t_next));
+    PetscCall(PairNextServes(pair, u, t, motion, &serves));
+    if (!serves) PetscCall(PairSearch(pair, u, t, motion));
+    PetscCall(PairTakeNext(pair));
   }
   PetscCall(PetscLogEventEnd(contact->event_search, 0, 0, 0, 0));
   PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* A fit point's rank-independent key: node, tool or body, mirror image. */
-static PetscInt PointKey(ContactLists lists, PetscInt p)
-{
-  const PetscInt node = lists->point_node[p];
-
-  return (2 * lists->node_id[node] + (node >= lists->n_deformable)) * SURFACE_MAX_IMAGES + lists->point_image[p];
 }
 
 /* Is every point that now lies inside the support of the old fit of slave point q in its list, and has the frame stayed? */
@@ -86,7 +114,8 @@ static PetscBool FitHolds(ContactLists old, ContactLists fresh, PetscInt q)
   for (int d = 0; d < dim; d++) cosine += frame[3 * (dim - 1) + d] * turned[3 * (dim - 1) + d];
   if (cosine < CONTACT_FRAME_COSINE || old->degree[q] != fresh->degree[q]) return PETSC_FALSE;
   for (PetscInt i = fresh->list_ptr[q]; i < fresh->list_ptr[q] + fresh->fit_n[q]; i++) {
-    const PetscInt p = fresh->list_point[i], key = PointKey(fresh, p);
+    const PetscInt p    = fresh->list_point[i];
+    const long     key  = fresh->point_key[p];
     PetscReal      y[2] = {0, 0}, rho2 = 0;
     PetscBool      known = PETSC_FALSE;
 
@@ -97,82 +126,135 @@ static PetscBool FitHolds(ContactLists old, ContactLists fresh, PetscInt q)
       for (int b = 0; b < dim - 1; b++) rho2 += y[a] * metric[2 * a + b] * y[b];
     if (rho2 >= 1) continue;
     for (PetscInt k = old->list_ptr[q]; !known && k < old->list_ptr[q] + old->fit_n[q]; k++)
-      known = PointKey(old, old->list_point[k]) == key ? PETSC_TRUE : PETSC_FALSE;
+      known = old->point_key[old->list_point[k]] == key ? PETSC_TRUE : PETSC_FALSE;
     if (!known) return PETSC_FALSE;
   }
   return PETSC_TRUE;
 }
 
-/* Do fresh lists say the same of this term as the solve did? Open is open. On facets a closed gap must agree; on a fit, whose gap changes a
-   little with its frame, frame and points must. The area factor must agree on both. depth: the largest penetration of the pair. */
-static PetscBool TermAgrees(const ContactPair *pair, ContactLists fresh, PetscInt c, PetscReal gap, const PetscReal *factor, PetscReal t, PetscReal depth)
+/* Do fresh lists say the same of this term as the solve did? Open is open. On facets a closed gap must agree; on fits, whose gap changes a
+   little with their frames, frames and points must, and with offsets the gap within `drift`. The area factors must agree on both. depth: the
+   largest penetration of the pair. */
+static PetscBool TermAgrees(const ContactPair *pair, ContactLists fresh, PetscInt c, PetscReal gap, const PetscReal *factor, PetscReal t, PetscReal depth,
+                            PetscReal drift)
 {
   const PetscReal offset = ContactTermOffset(pair, c, t), old = pair->now.gap[c];
+  PetscBool       fitted = PETSC_TRUE;
+  PetscReal       tolerance;
 
-  for (PetscInt q = pair->term_ptr[c]; q < pair->term_ptr[c + 1]; q++) {
-    const PetscBool fitted    = (PetscBool)(pair->lists->fit_n[q] && fresh->fit_n[q]);
-    const PetscReal tolerance = fitted ? CONTACT_FIT_AGREES * depth : CONTACT_GAP_AGREES * PetscAbsReal(old) + CONTACT_GAP_ROUND_OFF * pair->size[c];
+  for (PetscInt k = pair->term_ptr[c]; k < pair->term_ptr[c + 1]; k++)
+    fitted = (PetscBool)(fitted && pair->lists->fit_n[pair->term_point[k]] && fresh->fit_n[pair->term_point[k]]);
+  tolerance = fitted ? PetscMax(CONTACT_FIT_AGREES * depth, drift) : CONTACT_GAP_AGREES * PetscAbsReal(old) + CONTACT_GAP_ROUND_OFF * pair->size[c] + drift;
+  if (!(old - offset < 0) && !(gap - offset < (fitted ? -tolerance : 0))) return PETSC_TRUE;
+  for (PetscInt k = pair->term_ptr[c]; k < pair->term_ptr[c + 1]; k++) {
+    const PetscInt q = pair->term_point[k];
 
-    if (!(old - offset < 0) && !(gap - offset < (fitted ? -tolerance : 0))) continue;
     if (PetscAbsReal(factor[q] - pair->factor[q]) > CONTACT_FACTOR_AGREES) return PETSC_FALSE;
-    if (fitted && old - offset < 0) {
-      if (PetscIsNanReal(gap) || !FitHolds(pair->lists, fresh, q)) return PETSC_FALSE;
-    } else if (!(PetscAbsReal(gap - old) <= tolerance))
-      return PETSC_FALSE;
+    if (fitted && old - offset < 0 && !FitHolds(pair->lists, fresh, q)) return PETSC_FALSE;
   }
-  return PETSC_TRUE;
+  if (!fitted || old - offset >= 0) return (PetscBool)(PetscAbsReal(gap - old) <= tolerance);
+  return (PetscBool)(!PetscIsNanReal(gap) && (!pair->slave_offsets || PetscAbsReal(gap - old) <= drift));
 }
 
-/* Largest penetration of the pair, all ranks, at the last residual. */
-static PetscErrorCode PairDepth(Contact contact, const ContactPair *pair, PetscReal t, PetscReal *depth)
+/* Largest penetration of the pair and largest pressure, all ranks, at the last residual. */
+static PetscErrorCode PairDepth(Contact contact, const ContactPair *pair, PetscReal t, PetscReal *depth, PetscReal *pressure)
+{
+  PetscReal most[2] = {0, 0};
+
+  PetscFunctionBeginUser;
+  for (PetscInt c = 0; c < pair->n; c++) {
+    PetscReal penetration;
+
+    if (PetscIsNanReal(pair->now.gap[c])) continue;
+    penetration = ContactTermOffset(pair, c, t) - pair->now.gap[c];
+    most[0]     = PetscMax(most[0], penetration);
+    most[1]     = PetscMax(most[1], penetration * pair->now.penalty[c]);
+  }
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, most, 2, MPIU_REAL, MPI_MAX, contact->mesh->comm));
+  *depth    = most[0];
+  *pressure = most[1];
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Do the pair's next lists say the same of each of this rank's terms as the last residual? */
+static PetscErrorCode PairNextAgrees(Contact contact, ContactPair *pair, PetscReal t, PetscBool *agrees)
+{
+  PetscReal depth = 0, pressure = 0, drift, *gaps;
+
+  PetscFunctionBeginUser;
+  PetscCall(PairDepth(contact, pair, t, &depth, &pressure));
+  drift   = pair->slave_offsets ? CONTACT_OFFSET_AGREES * pressure / pair->automatic : 0;
+  *agrees = PETSC_TRUE;
+  PetscCall(PetscMalloc1(pair->next->n_slaves, &gaps));
+  if (pair->fit.degree) TimingBegin(TIMING_FIT);
+  PetscCall(ContactPointGaps(pair, pair->next, pair->next_factor, NULL, gaps, NULL));
+  if (pair->fit.degree) TimingEnd(TIMING_FIT);
+  for (PetscInt c = 0; c < pair->n && *agrees; c++)
+    *agrees = TermAgrees(pair, pair->next, c, ContactTermGap(pair, pair->next_factor, gaps, c, NULL), pair->next_factor, t, depth, drift);
+  PetscCall(PetscFree(gaps));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* ContactListsReach - whether lists still hold every point that the fits of slave points near contact may ask for: a point that slides further
+   than the lists' margin would be fitted by a part of its neighbours, and nothing would show it.
+
+   Collective. To be called after ContactResidual(). *within: the same on all ranks. */
+PetscErrorCode ContactListsReach(Contact contact, PetscBool *within)
+{
+  int all = 1;
+
+  PetscFunctionBeginUser;
+  for (int p = 0; p < contact->n_pairs; p++) {
+    const ContactPair *pair = &contact->pairs[p];
+
+    for (PetscInt q = 0; q < pair->lists->n_slaves && pair->fit.degree; q++)
+      if (pair->point_gap[q] <= pair->slave->max_size && ListsSlip(pair->lists, q) > LISTS_MARGIN) all = 0;
+  }
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &all, 1, MPI_INT, MPI_LAND, contact->mesh->comm));
+  *within = all ? PETSC_TRUE : PETSC_FALSE;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* ContactListsRenew - new lists and area factors for all pairs in the middle of a step; offsets are those of the step.
+
+   Collective. u, t, motion: as of ContactGather(). */
+PetscErrorCode ContactListsRenew(Contact contact, const PetscReal *u, PetscReal t, PetscReal motion)
 {
   PetscFunctionBeginUser;
-  *depth = 0;
-  for (PetscInt c = 0; c < pair->n; c++)
-    if (!PetscIsNanReal(pair->now.gap[c])) *depth = PetscMax(*depth, ContactTermOffset(pair, c, t) - pair->now.gap[c]);
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, depth, 1, MPIU_REAL, MPI_MAX, contact->mesh->comm));
+  PetscCall(PetscLogEventBegin(contact->event_search, 0, 0, 0, 0));
+  for (int p = 0; p < contact->n_pairs; p++) {
+    PetscCall(PairSearch(&contact->pairs[p], u, t, motion));
+    PetscCall(PairTakeNext(&contact->pairs[p]));
+  }
+  PetscCall(BlockMatrixReset(contact->blocks));
+  PetscCall(PetscLogEventEnd(contact->event_search, 0, 0, 0, 0));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* ContactListsHold - whether lists made afresh at the solution say the same of every term as those it was found with.
 
-   Collective. u, t: of the last ContactResidual() with forces; motion: as of ContactGather(). *hold: the same on all ranks; if it is
-   PETSC_FALSE the fresh lists of all pairs have replaced the old, and the problem is to be solved again. */
+   Collective. u, t: of the last ContactResidual() with forces; motion: as of ContactGather(), which may take the fresh lists. *hold: the same on
+   all ranks; if it is PETSC_FALSE the fresh lists of all pairs, and fresh offsets, have replaced the old, and the problem is to be solved again. */
 PetscErrorCode ContactListsHold(Contact contact, const PetscReal *u, PetscReal t, PetscReal motion, PetscBool *hold)
 {
-  ContactLists *lists;
-  PetscReal   **factor;
-  int           agree = 1;
+  int agree = 1;
 
   PetscFunctionBeginUser;
   PetscCall(PetscLogEventBegin(contact->event_search, 0, 0, 0, 0));
-  PetscCall(PetscMalloc2(contact->n_pairs, &lists, contact->n_pairs, &factor));
   for (int p = 0; p < contact->n_pairs; p++) {
-    ContactPair *pair = &contact->pairs[p];
-    PetscReal    depth;
+    ContactPair *pair   = &contact->pairs[p];
+    PetscBool    agrees = PETSC_TRUE;
 
-    PetscCall(PairDepth(contact, pair, t, &depth));
-    PetscCall(SearchLists(pair->search, u, t, motion, &lists[p]));
-    PetscCall(PetscMalloc1(lists[p]->n_slaves, &factor[p]));
-    PetscCall(PairFactors(pair, lists[p], factor[p]));
-    for (PetscInt c = 0; c < pair->n; c++) {
-      PetscReal gap;
-
-      PetscCall(ContactTermGap(pair, lists[p], factor[p], NULL, c, &gap));
-      agree = agree && TermAgrees(pair, lists[p], c, gap, factor[p], t, depth);
-    }
+    if (pair->slave_offsets) PetscCall(OffsetsTake(pair->slave_offsets, u, t));
+    if (pair->master_offsets) PetscCall(OffsetsTake(pair->master_offsets, u, t));
+    PetscCall(PairSearch(pair, u, t, motion));
+    PetscCall(PairNextAgrees(contact, pair, t, &agrees));
+    agree = agree && agrees;
   }
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &agree, 1, MPI_INT, MPI_LAND, contact->mesh->comm));
   *hold = agree ? PETSC_TRUE : PETSC_FALSE;
-  for (int p = 0; p < contact->n_pairs; p++) {
-    if (agree)
-      PetscCall(ListsDestroy(&lists[p]));
-    else
-      PetscCall(PairTakeLists(&contact->pairs[p], lists[p], factor[p]));
-    PetscCall(PetscFree(factor[p]));
-  }
+  for (int p = 0; p < contact->n_pairs && !agree; p++) PetscCall(PairTakeNext(&contact->pairs[p]));
   if (!agree) PetscCall(BlockMatrixReset(contact->blocks));
-  PetscCall(PetscFree2(lists, factor));
   PetscCall(PetscLogEventEnd(contact->event_search, 0, 0, 0, 0));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -12,48 +12,121 @@
 /* Touching start: a gap within this fraction of the face size is no gap, whatever the curvature. */
 #define CONTACT_TOUCH 1e-6
 
-/* The terms: owned slave nodes with area. */
-static PetscErrorCode PairCreateTerms(Mesh mesh, Scene scene, ContactPair *pair)
+/* Surface contact on faces at least this much coarser than the master's takes a finer quadrature: its points would skip facets. Below 2, so that round-off
+   does not decide on a mesh of half the size. */
+#define CONTACT_COARSE 1.9
+/* Surface contact: a node with less of this share of the mean hat area has none: an axis node where R vanishes. */
+#define CONTACT_HAT_FLOOR 1e-8
+
+/* Which of the slave's nodes carry a term: owned ones with area. */
+static PetscErrorCode PairChooseNodes(Mesh mesh, Scene scene, ContactPair *pair)
 {
   const MeshGroup *group = pair->slave->group;
-  PetscReal       *area, *size, *turn, *share;
+  const PetscBool  hats  = (PetscBool)(pair->scene->formulation == CONTACT_SURFACE_TO_SURFACE);
+  PetscReal       *area, *size, *turn, *share, sum[2] = {0, 0};
   PetscMPIInt      rank;
 
   PetscFunctionBeginUser;
   PetscCallMPI(MPI_Comm_rank(mesh->comm, &rank));
   PetscCall(PetscMalloc4(mesh->n_nodes, &area, mesh->n_nodes, &size, mesh->n_nodes, &turn, mesh->n_nodes, &share));
-  PetscCall(SurfaceNodeAreas(pair->slave, scene->geometry, NULL, area, NULL));
   PetscCall(SurfaceNodeSizes(pair->slave, scene->geometry, size, turn, share));
+  if (hats)
+    PetscCall(SlavePointsHatAreas(pair->slaves, scene->geometry, NULL, area));
+  else
+    PetscCall(SurfaceNodeAreas(pair->slave, scene->geometry, NULL, area, NULL));
   PetscCall(PetscMalloc4(group->n_nodes, &pair->node, group->n_nodes, &pair->area, group->n_nodes, &pair->size, group->n_nodes, &pair->turn));
+  for (PetscInt i = 0; i < group->n_nodes; i++) {
+    if (mesh->node_owner[group->nodes[i]] != rank) continue;
+    sum[0] += area[group->nodes[i]];
+    sum[1] += 1;
+  }
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sum, 2, MPIU_REAL, MPI_SUM, mesh->comm));
   for (PetscInt i = 0; i < group->n_nodes; i++) {
     const PetscInt node = group->nodes[i];
 
-    if (mesh->node_owner[node] != rank || share[node] < CONTACT_SHARE_FLOOR) continue;
+    if (mesh->node_owner[node] != rank || (hats ? area[node] < CONTACT_HAT_FLOOR * sum[0] / sum[1] : share[node] < CONTACT_SHARE_FLOOR)) continue;
     pair->node[pair->n] = node;
     pair->area[pair->n] = area[node];
     pair->size[pair->n] = size[node];
     pair->turn[pair->n] = turn[node];
     pair->n++;
   }
-  PetscCall(PetscMalloc2(pair->n + 1, &pair->term_ptr, pair->n, &pair->term_weight));
-  for (PetscInt c = 0; c < pair->n; c++) {
-    pair->term_ptr[c]    = c;
-    pair->term_weight[c] = 1;
-  }
-  pair->term_ptr[pair->n] = pair->n;
-  PetscCall(PetscCalloc5(pair->n, &pair->force, 3 * pair->n, &pair->vector, 3 * pair->n, &pair->normal, pair->n, &pair->pressure, pair->n, &pair->trial));
   PetscCall(PetscFree4(area, size, turn, share));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Support in spacings and exponent of the weight where the scene leaves them open, by dimension and degree: the smoothest fits whose guards
-   hold on jittered meshes (3D: some 38 nodes; 2D: 9). */
-static FitSettings PairFitSettings(Scene scene, const SceneContact *contact, const Smoother *smoother)
+/* Which slave points a term weighs, and with what area: w_q psi_c(xi_q). */
+static PetscErrorCode PairCreateTerms(Mesh mesh, ContactPair *pair)
+{
+  SlavePoints slaves = pair->slaves;
+  PetscInt   *term, n = 0;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(slaves->n_nodes, &term)); /* of each node of the points */
+  for (PetscInt i = 0; i < slaves->n_nodes; i++) term[i] = -1;
+  for (PetscInt c = 0; c < pair->n; c++) term[NodeKeysFind(slaves->n_nodes, slaves->nodes, mesh->node_id[pair->node[c]])] = c;
+  PetscCall(PetscCalloc1(pair->n + 2, &pair->term_ptr));
+  for (PetscInt k = 0; k < slaves->ptr[slaves->n]; k++) {
+    if (term[slaves->node[k]] < 0 || slaves->hat[k] == 0) continue;
+    pair->term_ptr[term[slaves->node[k]] + 2]++;
+    n++;
+  }
+  PetscCall(PetscMalloc2(n, &pair->term_point, n, &pair->term_weight));
+  for (PetscInt c = 0; c <= pair->n; c++) pair->term_ptr[c + 1] += pair->term_ptr[c];
+  for (PetscInt q = 0; q < slaves->n; q++) {
+    for (PetscInt k = slaves->ptr[q]; k < slaves->ptr[q + 1]; k++) {
+      const PetscInt c = term[slaves->node[k]];
+      PetscInt       at;
+
+      if (c < 0 || slaves->hat[k] == 0) continue;
+      at                    = pair->term_ptr[c + 1]++; /* ends as the start of the next */
+      pair->term_point[at]  = q;
+      pair->term_weight[at] = slaves->face_sf ? slaves->weight[q] * slaves->hat[k] : pair->area[c];
+    }
+  }
+  PetscCall(PetscFree(term));
+  PetscCall(PetscCalloc4(pair->n, &pair->force, 3 * pair->n, &pair->normal, pair->n, &pair->pressure, pair->n, &pair->trial));
+  PetscCall(PetscCalloc6(slaves->n, &pair->factor, slaves->n, &pair->next_factor, slaves->n, &pair->seed, slaves->n, &pair->point_gap, 3 * slaves->n,
+                         &pair->point_normal, slaves->n, &pair->point_force));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Slave points, terms and offsets, by formulation. */
+static PetscErrorCode PairCreatePoints(Mesh mesh, Scene scene, Loads loads, ContactPair *pair)
+{
+  const PetscBool smooth = (PetscBool)(pair->scene->smoother == SMOOTHER_DIFFUSE);
+  const int       finer  = pair->master && pair->slave->mean_size >= CONTACT_COARSE * pair->master->mean_size;
+
+  PetscFunctionBeginUser;
+  if (pair->scene->formulation == CONTACT_SURFACE_TO_SURFACE) {
+    PetscCall(SlavePointsCreateQuadrature(pair->slave, scene->geometry, finer, &pair->slaves));
+    PetscCall(PairChooseNodes(mesh, scene, pair));
+    PetscCall(OffsetsCreate(mesh, scene, loads, pair->slave, pair->n_images, pair->images, pair->fit.feature_angle, finer, smooth, &pair->slave_offsets));
+    if (pair->master)
+      PetscCall(OffsetsCreate(mesh, scene, loads, pair->master, pair->n_images, pair->images, pair->fit.feature_angle, 0, smooth, &pair->master_offsets));
+  } else {
+    PetscCall(PairChooseNodes(mesh, scene, pair));
+    PetscCall(SlavePointsCreateNodes(pair->slave, pair->n, pair->node, &pair->slaves));
+  }
+  PetscCall(PairCreateTerms(mesh, pair));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Support and exponent of the weight where the scene leaves them open, by dimension and degree. Nodes as fit points: in spacings, the smoothest fits
+   whose guards hold on jittered meshes (3D: some 40 nodes; 2D: 9); in 3D between 3.5 and 3.65, 3 and 4 rings, spheres and their three-valent nodes
+   are quiet at once. Quadrature points: in face sizes, some 113 of them in 3D. */
+static FitSettings PairFitSettings(Scene scene, const SceneContact *contact, const Smoother *smoother, int order)
 {
   FitSettings fit = {.degree = smoother->smooth ? contact->degree : 0, .support = contact->support, .exponent = contact->weight};
 
-  if (fit.support == 0) fit.support = scene->dim == 2 && fit.degree == 4 ? 4.5 : 3.5;
-  if (fit.exponent == 0) fit.exponent = scene->dim == 3 && fit.degree == 4 ? 3 : 6;
+  fit.integral = (PetscBool)(fit.degree && contact->formulation == CONTACT_SURFACE_TO_SURFACE);
+  if (fit.integral) {
+    if (fit.support == 0) fit.support = order == 2 ? (scene->dim == 2 ? 1.75 : 2.25) : 3;
+    if (fit.exponent == 0) fit.exponent = 3;
+    fit.support *= order; /* spacings in a face size */
+  }
+  if (fit.support == 0) fit.support = fit.degree < 4 ? 3.5 : scene->dim == 2 ? 4.5 : 3.6;
+  if (fit.exponent == 0) fit.exponent = scene->dim == 3 && fit.degree == 4 ? 3.5 : 6;
   fit.derivatives   = contact->diffuse_derivatives ? FIT_DIFFUSE : FIT_FULL;
   fit.global_frame  = contact->global_frame ? PETSC_TRUE : PETSC_FALSE;
   fit.feature_angle = contact->feature_angle * PETSC_PI / 180;
@@ -87,7 +160,8 @@ PetscErrorCode ContactPairCreate(Mesh mesh, Scene scene, Elasticity elasticity, 
   pair->scene    = contact;
   pair->facets   = SmootherFind("facet");
   pair->smoother = SmootherFind(contact->smoother == SMOOTHER_DIFFUSE ? "diffuse" : "facet");
-  pair->fit      = PairFitSettings(scene, contact, pair->smoother);
+  pair->geometry = scene->geometry;
+  pair->fit      = PairFitSettings(scene, contact, pair->smoother, mesh->order);
   pair->law      = LawFind("penalty");
   if (contact->master && !strcmp(contact->slave, contact->master))
     PetscCall(RefuseInput(mesh->comm,
@@ -104,13 +178,13 @@ PetscErrorCode ContactPairCreate(Mesh mesh, Scene scene, Elasticity elasticity, 
   PetscCall(SurfaceImages(mesh, scene, contact, &pair->n_images, pair->images));
   if (pair->master) PetscCall(SurfaceFindFreeEdges(pair->master, pair->n_images, pair->images));
   if (pair->master && pair->fit.degree && pair->fit.global_frame) PetscCall(PairCheckGlobalFrame(mesh, scene, loads, pair));
-  PetscCall(PairCreateTerms(mesh, scene, pair));
+  PetscCall(PairCreatePoints(mesh, scene, loads, pair));
   pair->automatic = PenaltyAutomatic(pair->slave->stiffness, pair->master ? pair->master->stiffness : 0);
   penalty         = contact->penalty_scale * (contact->penalty_auto ? pair->automatic : contact->penalty);
   PetscCall(ContactStateCreate(pair->n, penalty, &pair->now));
   PetscCall(ContactStateCreate(pair->n, penalty, &pair->accepted));
-  PetscCall(SearchCreate(mesh, scene, loads, pair->slave, pair->master, pair->n_images, pair->images, &pair->fit, pair->n, pair->node, &pair->search));
-  PetscCall(PetscCalloc2(pair->n, &pair->factor, pair->n, &pair->seed));
+  PetscCall(SearchCreate(mesh, scene, loads, pair->master, pair->slave->max_size, pair->n_images, pair->images, &pair->fit, pair->slaves,
+                         pair->master_offsets ? OffsetsGet(pair->master_offsets) : NULL, &pair->search));
   if (contact->adjust) PetscCall(PetscMalloc1(pair->n, &pair->before));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -120,15 +194,20 @@ PetscErrorCode ContactPairDestroy(ContactPair *pair)
 {
   PetscFunctionBeginUser;
   PetscCall(ListsDestroy(&pair->lists));
+  PetscCall(ListsDestroy(&pair->next));
   PetscCall(SearchDestroy(&pair->search));
+  PetscCall(OffsetsDestroy(&pair->slave_offsets));
+  PetscCall(OffsetsDestroy(&pair->master_offsets));
+  PetscCall(SlavePointsDestroy(&pair->slaves));
   PetscCall(SurfaceDestroy(&pair->slave));
   if (pair->master) PetscCall(SurfaceDestroy(&pair->master));
   PetscCall(ContactStateDestroy(&pair->now));
   PetscCall(ContactStateDestroy(&pair->accepted));
   PetscCall(PetscFree4(pair->node, pair->area, pair->size, pair->turn));
-  PetscCall(PetscFree2(pair->term_ptr, pair->term_weight));
-  PetscCall(PetscFree5(pair->force, pair->vector, pair->normal, pair->pressure, pair->trial));
-  PetscCall(PetscFree2(pair->factor, pair->seed));
+  PetscCall(PetscFree(pair->term_ptr));
+  PetscCall(PetscFree2(pair->term_point, pair->term_weight));
+  PetscCall(PetscFree4(pair->force, pair->normal, pair->pressure, pair->trial));
+  PetscCall(PetscFree6(pair->factor, pair->next_factor, pair->seed, pair->point_gap, pair->point_normal, pair->point_force));
   PetscCall(PetscFree(pair->before));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -139,11 +218,26 @@ PetscReal ContactTermOffset(const ContactPair *pair, PetscInt c, PetscReal t)
   return pair->now.offset[c] * (pair->scene->initial_overlap == OVERLAP_RAMP ? 1 - t : 1);
 }
 
+/* Relative curvature of slave and master at a term. */
+static PetscReal TermCurvature(const ContactPair *pair, PetscInt c)
+{
+  const PetscReal radius = pair->scene->analytic.radius;
+  PetscReal       kappa  = 0;
+
+  for (PetscInt k = pair->term_ptr[c]; k < pair->term_ptr[c + 1]; k++) kappa = PetscMax(kappa, pair->lists->kappa[pair->term_point[k]]);
+  return kappa + 2 * pair->turn[c] / pair->size[c] + (radius > 0 ? 1 / radius : 0);
+}
+
 /* Opening up to which a node counts as touching: what round-off and the facets' own sagitta leave between surfaces that touch. */
 PetscReal ContactTouchTolerance(const ContactPair *pair, PetscInt c)
 {
-  const PetscReal h = pair->size[c], master = pair->master ? pair->master->mean_size : 0, radius = pair->scene->analytic.radius;
-  const PetscReal kappa = pair->lists->kappa[c] + 2 * pair->turn[c] / h + (radius > 0 ? 1 / radius : 0);
+  const PetscReal h = pair->size[c], master = pair->master ? pair->master->mean_size : 0;
 
-  return CONTACT_TOUCH * h + kappa * (PetscSqr(h) + PetscSqr(master)) / 8;
+  return CONTACT_TOUCH * h + TermCurvature(pair, c) * (PetscSqr(h) + PetscSqr(master)) / 8;
+}
+
+/* Opening of a term of surface contact whose node touches: the mean over the faces around it, where the surfaces bend away from each other. */
+PetscReal ContactMeanOpening(const ContactPair *pair, PetscInt c)
+{
+  return CONTACT_TOUCH * pair->size[c] + TermCurvature(pair, c) * PetscSqr(pair->size[c]) / 8;
 }

@@ -18,6 +18,7 @@ static PetscBool PointEvaluateAnalytic(const ContactPair *pair, ContactLists lis
   result->beyond       = 0;
   result->seed         = -1;
   result->facet_served = 0;
+  result->factored     = 0;
   result->n            = 0;
   for (int d = 0; d < 3; d++) result->normal[d] = found.normal[d];
   for (int d = 0; d < dim; d++) result->N[d] = found.N[d];
@@ -69,71 +70,179 @@ PetscErrorCode ContactPointEvaluate(const ContactPair *pair, const Smoother *smo
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* How many contact nodes slave point q touches once evaluated. */
-int ContactPointNodes(ContactLists lists, PetscInt q, const SmootherResult *r)
+static PetscErrorCode WorkReserveMap(ContactWork *work, ContactLists lists, PetscInt q)
 {
-  PetscInt n = lists->slave_ptr[q + 1] - lists->slave_ptr[q];
+  const int rows    = 1 + work->result.n;
+  PetscInt  entries = lists->slave_ptr[q + 1] - lists->slave_ptr[q];
 
-  for (int i = 0; i < r->n; i++) {
-    const PetscInt p = lists->list_point[lists->list_ptr[q] + r->points[i]];
-    n += lists->point_ptr[p + 1] - lists->point_ptr[p];
+  PetscFunctionBeginUser;
+  for (int i = 0; i < work->result.n; i++) {
+    const PetscInt p = lists->list_point[lists->list_ptr[q] + work->result.points[i]];
+
+    entries += lists->point_ptr[p + 1] - lists->point_ptr[p];
   }
-  return (int)n;
+  if (rows > work->map.rows_room || entries > work->map.entries_room) {
+    work->map.rows_room    = 2 * rows;
+    work->map.entries_room = 2 * (int)entries;
+    PetscCall(PetscFree5(work->map.ptr, work->map.node, work->map.S, work->map.sign, work->number));
+    PetscCall(PetscMalloc5(work->map.rows_room + 1, &work->map.ptr, work->map.entries_room, &work->map.node, work->map.entries_room, &work->map.S,
+                           3 * work->map.rows_room, &work->map.sign, work->map.entries_room, &work->number));
+  }
+  if (lists->n_nodes > work->slot_room) {
+    work->slot_room = 2 * lists->n_nodes;
+    PetscCall(PetscFree(work->slot));
+    PetscCall(PetscMalloc1(work->slot_room, &work->slot));
+    for (PetscInt i = 0; i < work->slot_room; i++) work->slot[i] = -1;
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Carries the variations of the last evaluation from fit points to contact nodes: N and M over nodes[*n] of the lists, in work. */
-void ContactPointToNodes(const ContactPair *pair, ContactLists lists, PetscInt q, PetscReal weight, PetscBool second, PetscInt *node, PetscReal *N, int *count)
+static PetscErrorCode WorkReserveNodes(ContactWork *work, int dim, PetscBool second)
+{
+  const SmootherResult *r    = &work->result;
+  const PetscInt        half = !second ? 0 : r->factored ? FitMapWorkspace(dim, r->factors.degree, (int)work->count) : work->count * dim * (1 + r->n) * dim;
+
+  PetscFunctionBeginUser;
+  if (work->count > work->room) {
+    work->room = 2 * work->count;
+    PetscCall(PetscFree2(work->N, work->M));
+    PetscCall(PetscMalloc2(work->room * dim, &work->N, PetscSqr(work->room * dim), &work->M));
+  }
+  if (half > work->half_room) {
+    work->half_room = 2 * half;
+    PetscCall(PetscFree(work->half));
+    PetscCall(PetscMalloc1(work->half_room, &work->half));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* ContactWorkDestroy - Not collective. */
+PetscErrorCode ContactWorkDestroy(ContactWork *work)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscFree2(work->x, work->multiplier));
+  PetscCall(PetscFree5(work->map.ptr, work->map.node, work->map.S, work->map.sign, work->number));
+  PetscCall(PetscFree2(work->N, work->M));
+  PetscCall(PetscFree(work->half));
+  PetscCall(PetscFree(work->slot));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static void MapAddRow(ContactWork *work, int row, PetscInt n, const PetscInt *nodes, const PetscReal *S, const PetscReal *sign)
+{
+  ContactMap *map = &work->map;
+  int         k   = map->ptr[row];
+
+  for (PetscInt a = 0; a < n; a++, k++) {
+    int *slot = &work->slot[nodes[a]];
+
+    if (*slot < 0) {
+      *slot                       = (int)work->count;
+      work->number[work->count++] = nodes[a];
+    }
+    map->node[k] = *slot;
+    map->S[k]    = S[a];
+  }
+  for (int d = 0; d < 3; d++) map->sign[3 * row + d] = sign ? sign[d] : 1;
+  map->ptr[row + 1] = k;
+}
+
+/* The map of the last evaluation. */
+static void MapFill(const ContactPair *pair, ContactLists lists, PetscInt q)
+{
+  ContactWork *work = pair->work;
+
+  work->count      = 0;
+  work->map.ptr[0] = 0;
+  MapAddRow(work, 0, lists->slave_ptr[q + 1] - lists->slave_ptr[q], &lists->slave_node[lists->slave_ptr[q]], &lists->slave_S[lists->slave_ptr[q]], NULL);
+  for (int i = 0; i < work->result.n; i++) {
+    const PetscInt p = lists->list_point[lists->list_ptr[q] + work->result.points[i]], first = lists->point_ptr[p];
+
+    MapAddRow(work, 1 + i, lists->point_ptr[p + 1] - first, &lists->point_node[first], &lists->point_S[first], pair->images[lists->point_image[p]].sign);
+  }
+  for (PetscInt i = 0; i < work->count; i++) work->slot[work->number[i]] = -1;
+}
+
+/* M over nodes = S^T M S for the few points of a facet: rows first, then columns. */
+static void MapSecond(ContactWork *work, int dim)
+{
+  const ContactMap     *map  = &work->map;
+  const SmootherResult *r    = &work->result;
+  const int             rows = 1 + r->n, m = rows * dim, n = (int)work->count * dim;
+
+  memset(work->half, 0, n * m * sizeof(PetscReal));
+  memset(work->M, 0, n * n * sizeof(PetscReal));
+  for (int i = 0; i < rows; i++) {
+    for (int k = map->ptr[i]; k < map->ptr[i + 1]; k++) {
+      for (int d = 0; d < dim; d++) {
+        const PetscReal  scale = map->S[k] * map->sign[3 * i + d];
+        const PetscReal *from  = &r->M[(i * dim + d) * m];
+        PetscReal       *to    = &work->half[(map->node[k] * dim + d) * m];
+
+        for (int j = 0; j < m; j++) to[j] += scale * from[j];
+      }
+    }
+  }
+  for (int i = 0; i < rows; i++) {
+    for (int k = map->ptr[i]; k < map->ptr[i + 1]; k++) {
+      for (int d = 0; d < dim; d++) {
+        const PetscReal scale = map->S[k] * map->sign[3 * i + d];
+
+        for (int j = 0; j < n; j++) work->M[j * n + map->node[k] * dim + d] += scale * work->half[j * m + i * dim + d];
+      }
+    }
+  }
+}
+
+/* ContactPointToNodes - carries N, and M if `second`, of the last evaluation from points to contact nodes, each of which occurs once.
+
+   Not collective. q: the slave point that was evaluated. */
+PetscErrorCode ContactPointToNodes(const ContactPair *pair, ContactLists lists, PetscInt q, PetscBool second)
 {
   ContactWork          *work = pair->work;
   const SmootherResult *r    = &work->result;
-  const int             dim = lists->dim, m = (1 + r->n) * dim;
-  int                   n = 0, *from = work->from;
-  PetscReal            *scale = work->scale;
-
-  for (PetscInt k = lists->slave_ptr[q]; k < lists->slave_ptr[q + 1]; k++, n++) {
-    node[n] = lists->slave_node[k];
-    from[n] = 0;
-    for (int d = 0; d < dim; d++) scale[3 * n + d] = lists->slave_S[k];
-  }
-  for (int i = 0; i < r->n; i++) {
-    const PetscInt      p     = lists->list_point[lists->list_ptr[q] + r->points[i]];
-    const SurfaceImage *image = &pair->images[lists->point_image[p]];
-
-    for (PetscInt k = lists->point_ptr[p]; k < lists->point_ptr[p + 1]; k++, n++) {
-      node[n] = lists->point_node[k];
-      from[n] = 1 + i;
-      for (int d = 0; d < dim; d++) scale[3 * n + d] = image->sign[d] * lists->point_S[k];
-    }
-  }
-  for (int a = 0; a < n; a++)
-    for (int d = 0; d < dim; d++) N[a * dim + d] = weight * scale[3 * a + d] * r->N[from[a] * dim + d];
-  for (int a = 0; second && a < n; a++) {
-    for (int d = 0; d < dim; d++) {
-      for (int b = 0; b < n; b++)
-        for (int e = 0; e < dim; e++)
-          work->M[(a * dim + d) * n * dim + b * dim + e] = scale[3 * a + d] * scale[3 * b + e] * r->M[(from[a] * dim + d) * m + from[b] * dim + e];
-    }
-  }
-  *count = n;
-}
-
-/* Weighted gap of a term: NaN where none of its points has a master near or all lie past its edge. */
-PetscErrorCode ContactTermGap(const ContactPair *pair, ContactLists lists, const PetscReal *factor, int *seed, PetscInt c, PetscReal *gap)
-{
-  PetscBool any = PETSC_FALSE;
+  const int             dim  = lists->dim;
+  FitMap                map;
 
   PetscFunctionBeginUser;
-  *gap = 0;
-  for (PetscInt q = pair->term_ptr[c]; q < pair->term_ptr[c + 1]; q++) {
-    PetscBool found;
-
-    if (factor[q] == 0) continue;
-    PetscCall(ContactPointEvaluate(pair, pair->smoother, lists, q, seed ? seed[q] : -1, SMOOTHER_GAP, &found));
-    if (!found) continue;
-    any = PETSC_TRUE;
-    *gap += pair->term_weight[q] * pair->work->result.gap;
-    if (seed) seed[q] = pair->work->result.seed;
-  }
-  if (!any) *gap = NAN;
+  PetscCall(WorkReserveMap(work, lists, q));
+  MapFill(pair, lists, q);
+  PetscCall(WorkReserveNodes(work, dim, second));
+  map = (FitMap){(int)work->count, work->map.ptr, work->map.node, work->map.S, work->map.sign};
+  FitMapFirst(dim, r->n, r->N, &map, work->N);
+  if (second && r->factored)
+    FitMapSecond(&r->factors, &map, work->half, work->M);
+  else if (second)
+    MapSecond(work, dim);
   PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode ContactPointGaps(const ContactPair *pair, ContactLists lists, const PetscReal *factor, int *seed, PetscReal *gap, PetscReal *normals)
+{
+  PetscFunctionBeginUser;
+  for (PetscInt q = 0; q < lists->n_slaves; q++) {
+    PetscBool found = PETSC_FALSE;
+
+    if (factor[q] > 0) PetscCall(ContactPointEvaluate(pair, pair->smoother, lists, q, seed ? seed[q] : -1, SMOOTHER_GAP, &found));
+    gap[q] = found ? pair->work->result.gap : NAN;
+    if (found && seed) seed[q] = pair->work->result.seed;
+    for (int d = 0; normals && d < 3; d++) normals[3 * q + d] = found && d < lists->dim ? pair->work->result.normal[d] : 0;
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscReal ContactTermGap(const ContactPair *pair, const PetscReal *factor, const PetscReal *point_gap, PetscInt c, PetscReal *area)
+{
+  PetscReal sum = 0, total = 0;
+
+  for (PetscInt k = pair->term_ptr[c]; k < pair->term_ptr[c + 1]; k++) {
+    const PetscInt  q      = pair->term_point[k];
+    const PetscReal weight = pair->term_weight[k] * factor[q];
+
+    if (PetscIsNanReal(point_gap[q]) || weight == 0) continue;
+    sum += weight * point_gap[q];
+    total += weight;
+  }
+  if (area) *area = total;
+  return total > 0 ? sum / total : NAN;
 }

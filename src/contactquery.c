@@ -41,8 +41,8 @@ PetscErrorCode ContactSummarise(Contact contact, ContactSummary *summary)
       most[2] = PetscMax(most[2], -pair->now.penalty[c]);
       most[3] = PetscMax(most[3], pair->now.penalty[c]);
       most[4] = PetscMax(most[4], pair->force[c]);
-      for (int d = 0; d < 3; d++) total[d] += pair->vector[3 * c + d];
     }
+    for (int d = 0; d < 3; d++) total[d] += pair->total[d];
   }
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, count, 3, MPIU_INT, MPI_SUM, contact->mesh->comm));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, most, 5, MPIU_REAL, MPI_MAX, contact->mesh->comm));
@@ -106,7 +106,11 @@ PetscErrorCode ContactGetNodes(Contact contact, int p, const PetscReal *u, Conta
 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(contact->mesh->n_nodes, &area));
-  PetscCall(SurfaceNodeAreas(pair->slave, contact->scene->geometry, contact->scene->kinematics == KINEMATICS_FINITE ? u : NULL, area, NULL));
+  if (contact->scene->kinematics == KINEMATICS_SMALL) u = NULL;
+  if (pair->slave_offsets)
+    PetscCall(SlavePointsHatAreas(pair->slaves, pair->geometry, u, area));
+  else
+    PetscCall(SurfaceNodeAreas(pair->slave, pair->geometry, u, area, NULL));
   for (PetscInt c = 0; c < pair->n; c++) pair->pressure[c] = pair->force[c] / area[pair->node[c]];
   PetscCall(PetscFree(area));
   *nodes = (ContactNodes){pair->n, pair->node, pair->area, pair->now.gap, pair->now.penalty, pair->force, pair->pressure, pair->normal};
@@ -121,9 +125,7 @@ PetscErrorCode ContactMasterForce(Contact contact, int p, PetscReal force[3])
   const ContactPair *pair = &contact->pairs[p];
 
   PetscFunctionBeginUser;
-  force[0] = force[1] = force[2] = 0;
-  for (PetscInt c = 0; c < pair->n; c++)
-    for (int d = 0; d < 3; d++) force[d] -= pair->vector[3 * c + d];
+  for (int d = 0; d < 3; d++) force[d] = -pair->total[d];
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, force, 3, MPIU_REAL, MPI_SUM, contact->mesh->comm));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -10,13 +10,14 @@ typedef struct {
   PetscBool *fitted;
 } Distances;
 
-static PetscErrorCode PairMeasure(const ContactPair *pair, const PetscReal *u, PetscReal t, Distances *out)
+static PetscErrorCode PairMeasure(ContactPair *pair, const PetscReal *u, PetscReal t, Distances *out)
 {
   const PetscInt n = pair->lists->n_slaves;
 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc3(n, &out->gap, n, &out->facet, n, &out->fitted));
-  PetscCall(ListsUpdate(pair->search, pair->lists, u, t));
+  PetscCall(ListsUpdate(pair->search, pair->lists, u, t, NULL));
+  pair->projected = PETSC_FALSE; /* the last projection was elsewhere */
   for (PetscInt q = 0; q < n; q++) {
     PetscBool found;
 
@@ -45,18 +46,19 @@ static PetscErrorCode DistancesDestroy(Distances *d)
    at both: fit and facets lie apart, and their difference is no approach. NaN: no point. */
 static void TermGaps(const ContactPair *pair, PetscInt c, const Distances *before, const Distances *after, PetscReal gap[2])
 {
-  PetscBool any = PETSC_FALSE;
+  PetscReal area = 0;
 
   gap[0] = gap[1] = 0;
-  for (PetscInt q = pair->term_ptr[c]; q < pair->term_ptr[c + 1]; q++) {
+  for (PetscInt i = pair->term_ptr[c]; i < pair->term_ptr[c + 1]; i++) {
+    const PetscInt  q    = pair->term_point[i];
     const PetscBool same = (PetscBool)(before->fitted[q] == after->fitted[q]);
     const PetscReal g[2] = {same ? before->gap[q] : before->facet[q], same ? after->gap[q] : after->facet[q]};
 
     if (PetscIsNanReal(g[0]) || PetscIsNanReal(g[1])) continue;
-    any = PETSC_TRUE;
-    for (int k = 0; k < 2; k++) gap[k] += pair->term_weight[q] * g[k];
+    area += pair->term_weight[i] * pair->factor[q];
+    for (int k = 0; k < 2; k++) gap[k] += pair->term_weight[i] * pair->factor[q] * g[k];
   }
-  if (!any) gap[0] = gap[1] = NAN;
+  for (int k = 0; k < 2; k++) gap[k] = area > 0 ? gap[k] / area : NAN;
 }
 
 /* Room for the touches of all pairs on this rank, three columns each */
@@ -84,8 +86,8 @@ PetscErrorCode ContactTouches(Contact contact, const PetscReal *u_0, PetscReal t
   PetscFunctionBeginUser;
   PetscCall(TouchRows(contact, &rows));
   for (int p = 0; p < contact->n_pairs; p++) {
-    const ContactPair *pair = &contact->pairs[p];
-    Distances          before, after;
+    ContactPair *pair = &contact->pairs[p];
+    Distances    before, after;
 
     PetscCall(PairMeasure(pair, u_0, t_0, &before));
     PetscCall(PairMeasure(pair, u, t, &after));

@@ -36,7 +36,9 @@ LANES_INLINE Lanes Power(Lanes base, double exponent)
 {
   Lanes power = Broadcast(1);
 
-  if (exponent == floor(exponent) && exponent < 32) {
+  if (2 * exponent == floor(2 * exponent) && exponent < 32) {
+    if (exponent != floor(exponent))
+      for (int i = 0; i < LANES; i++) power[i] = sqrt(base[i]);
     for (int i = 0; i < (int)exponent; i++) power *= base;
   } else {
     for (int i = 0; i < LANES; i++) power[i] = pow(base[i], exponent);
@@ -342,7 +344,10 @@ LANES_INLINE int Evaluate(const int dim, const int degree, const int terms, cons
   if (out->shape) memcpy(out->shape, a.scratch, a.n * sizeof(double));
   out->guards |= (out->reach < FIT_REACH ? 0 : FIT_FAR_FOOT) | (out->amplified <= FIT_AMPLIFIED ? 0 : FIT_HIGH_SUM);
   if (want >= FIT_FIRST_VARIATION && out->N) FitVariationFirst(in, &a, &s, out->N);
-  if (want >= FIT_SECOND_VARIATION && out->M) FitVariationSecond(in, &a, &s, out->M);
+  if (want >= FIT_SECOND_VARIATION && out->M)
+    FitVariationSecond(in, &a, &s, out->M);
+  else if (want >= FIT_SECOND_VARIATION && out->factors)
+    FitVariationFactors(in, &a, &s, out->factors);
   return 1;
 }
 
@@ -371,8 +376,10 @@ int FitPointsWanted(int dim, int degree)
 long FitWorkspace(int dim, int degree, int n)
 {
   const long terms = FitTerms(dim, degree), points = (long)LanesGroups(n) * LANES;
+  const long product = 2 * terms * SymmetricProductStride(dim * (int)(LANES + points)),
+             factors = (1 + points) * (dim * FactorStride((int)terms) + HessianStride(dim));
 
-  return ALIGNMENT / (long)sizeof(double) + (ARRAYS + terms + 2 + BLOCK) * points + 2 * terms * SymmetricProductStride(dim * (int)(LANES + points));
+  return ALIGNMENT / (long)sizeof(double) + (ARRAYS + terms + 2 + BLOCK) * points + (product > factors ? product : factors);
 }
 
 /* FitEvaluate - gap, first and second variation of one slave point against the diffuse surface through its fit points. Not collective.

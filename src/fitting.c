@@ -1,8 +1,9 @@
 #include "fitframe.h"
 #include "searchimpl.h"
+#include "timing.h"
 
 /* Points are gathered a little beyond the support (rho^2 up to this), so that those which enter while a solve lasts are in the list. */
-#define SEARCH_FIT_MARGIN 1.7
+#define SEARCH_FIT_MARGIN PetscSqr(1 + LISTS_MARGIN)
 /* On regular meshes points lie exactly on the border of the support; this much beyond still counts as inside, and round-off decides nothing. */
 #define SEARCH_FIT_TIE 1e-6
 
@@ -33,26 +34,61 @@ static void ReferenceNormal(ContactLists lists, const Candidate *c, PetscReal no
   for (int d = 0; d < 3; d++) normal[d] = at_rest.normal[d];
 }
 
-PetscErrorCode FittingCreate(ContactSearch s, ContactLists lists, PetscInt n_records, const FaceRecord *records, PetscInt n, const Candidate *candidates,
-                             Fitting *fit)
+/* What the quadrature points of a candidate know of the spacing: area and second moments of their face. */
+static void FaceSpacing(Fitting *fit, PetscInt candidate)
 {
-  NodeGeometry *node_geometry;
-  Facet        *facets;
-  PetscReal    *x;
+  const Facet    *facet = &fit->view.facets[candidate];
+  const FaceRule *rule  = FaceRuleGet(facet->type, 0);
+  const int       dim   = fit->lists->dim;
+  NodeGeometry   *first = &fit->geometry[fit->view.first[candidate]], of_face = {.spacing = 0};
+  double          x[FACE_MAX_NODES * 3], area[FACE_RULE_POINTS], centre[3] = {0}, total = 0;
+
+  for (int a = 0; a < ElementGet(facet->type)->nodes; a++)
+    for (int d = 0; d < dim; d++) x[a * dim + d] = fit->view.x[facet->nodes[a] * dim + d];
+  FaceRuleAreas(rule, facet->type, dim, GEOMETRY_SOLID, x, area, NULL);
+  for (int q = 0; q < rule->n; q++) {
+    total += area[q];
+    for (int d = 0; d < dim; d++) centre[d] += area[q] * fit->view.x[(fit->view.first[candidate] + q) * dim + d];
+  }
+  for (int q = 0; q < rule->n; q++) {
+    double r[3] = {0};
+
+    for (int d = 0; d < dim; d++) r[d] = fit->view.x[(fit->view.first[candidate] + q) * dim + d] - centre[d] / total;
+    for (int k = 0; k < 3; k++) {
+      of_face.covariance[k] += area[q] / total * r[k] * r[k];
+      of_face.covariance[3 + k] += area[q] / total * r[k] * r[(k + 1) % 3]; /* xy yz zx */
+    }
+  }
+  of_face.spacing = total / SurfaceNodesPerFace(facet->type);
+  if (dim == 3) of_face.spacing = PetscSqrtReal(of_face.spacing);
+  for (int q = 0; q < rule->n; q++) first[q] = of_face;
+}
+
+PetscErrorCode FittingCreate(ContactSearch s, ContactLists lists, const SearchField *field, Fitting *fit)
+{
+  const PetscInt   n          = field->n_candidates;
+  const Candidate *candidates = field->candidates;
+  NodeGeometry    *node_geometry;
+  Facet           *facets;
+  PetscReal       *x;
+  PetscInt        *first = NULL;
 
   PetscFunctionBeginUser;
   *fit = (Fitting){.s = s, .lists = lists};
   PetscCall(PetscMalloc5(3 * n, &fit->normals, 3 * n, &fit->reference, lists->n_points, &fit->geometry, n, &facets, lists->n_points * lists->dim, &x));
   PetscCall(PetscCalloc1(lists->n_nodes, &node_geometry));
-  ListsPointGeometry(s, lists, n_records, records, node_geometry, fit->geometry);
+  ListsPointGeometry(s, lists, field, node_geometry, fit->geometry);
   PetscCall(PetscFree(node_geometry));
+  if (s->fit->integral) PetscCall(PetscMalloc1(n, &first));
   for (PetscInt i = 0; i < n; i++) {
     facets[i] = candidates[i].facet;
     ReferenceNormal(lists, &candidates[i], &fit->reference[3 * i]);
     for (int d = 0; d < 3; d++) fit->normals[3 * i + d] = candidates[i].normal[d];
+    if (first) first[i] = candidates[i].first;
   }
   for (PetscInt i = 0; i < lists->n_points * lists->dim; i++) x[i] = lists->point_X[i] + lists->point_u[i];
-  fit->view = (SurfaceView){lists->dim, n, lists->n_points, facets, fit->normals, fit->reference, x, fit->geometry, PetscCosReal(s->fit->feature_angle)};
+  fit->view = (SurfaceView){lists->dim, n, lists->n_points, facets, fit->normals, fit->reference, x, fit->geometry, PetscCosReal(s->fit->feature_angle), first};
+  for (PetscInt i = 0; i < n && first; i++) FaceSpacing(fit, i);
   PetscCall(NeighbourhoodsCreate(&fit->view, &fit->neighbourhoods));
   PetscCall(PetscMalloc6(FIT_MAX_POINTS, &fit->points, FIT_MAX_POINTS * 3, &fit->x, FIT_MAX_POINTS, &fit->multiplier, FIT_MAX_POINTS, &fit->taper,
                          FitWorkspace(lists->dim, s->fit->degree, FIT_MAX_POINTS), &fit->workspace, FIT_MAX_POINTS, &fit->used));
@@ -66,6 +102,7 @@ PetscErrorCode FittingDestroy(Fitting *fit)
 
   PetscFunctionBeginUser;
   PetscCall(NeighbourhoodsDestroy(&fit->neighbourhoods));
+  PetscCall(PetscFree(fit->view.first));
   PetscCall(PetscFree5(fit->normals, fit->reference, fit->geometry, facets, x));
   PetscCall(PetscFree6(fit->points, fit->x, fit->multiplier, fit->taper, fit->workspace, fit->used));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -109,6 +146,29 @@ static void FootSpacing(const Fitting *fit, PetscInt f, const double *xi, double
   }
 }
 
+/* Spacing for a fit through quadrature points: the mean over the faces that it sees. Forces spread by the fit are consistent nodal loads as far as
+   neighbouring slave points share one support; its change from face to face by the local spacing costs 2 to 10 times the error of the patch test. */
+static void WindowSpacing(const Fitting *fit, PetscInt n, double covariance[3][3], double *area)
+{
+  double sum = 0, faces = 0;
+
+  for (int i = 0; i < 3; i++)
+    for (int j = 0; j < 3; j++) covariance[i][j] = 0;
+  for (PetscInt i = 0; i < n; i++) {
+    const NodeGeometry *g     = &fit->geometry[fit->points[i]];
+    const double        share = fit->taper[i] / (fit->lists->dim == 3 ? PetscSqr(g->spacing) : g->spacing);
+
+    sum += fit->taper[i];
+    faces += share;
+    for (int d = 0; d < 3; d++) {
+      covariance[d][d] += share * g->covariance[d];
+      covariance[d][(d + 1) % 3] += share * g->covariance[3 + d];
+      covariance[(d + 1) % 3][d] += share * g->covariance[3 + d];
+    }
+  }
+  *area = sum / faces;
+}
+
 static PetscReal PointRho2(const Fitting *fit, PetscInt p, const PetscReal foot[3], const PetscReal space[9])
 {
   const int dim  = fit->lists->dim;
@@ -119,43 +179,61 @@ static PetscReal PointRho2(const Fitting *fit, PetscInt p, const PetscReal foot[
   return rho2;
 }
 
-/* Tries one rung for the slave point that look found a facet for: points, frame, metric into fit and problem; true when every guard holds. */
-static PetscErrorCode FitRung(Fitting *fit, const Nearest *look, int rung, FitProblem *problem, FitResult *result, PetscBool *holds)
+/* Tries one rung at a foot: points, frame, metric into fit and problem; true when every guard holds. Quadrature points come in clusters, whose
+   number says nothing: the pivot does. */
+static PetscErrorCode FitRung(Fitting *fit, const FitFoot *at, int rung, FitProblem *problem, FitResult *result, PetscBool *holds)
 {
   const FitSettings *settings = fit->s->fit;
-  const PetscReal   *outward  = look->candidates[look->best].normal; /* the foot's own may lie along the surface when the foot is on an edge */
   const int          dim = fit->lists->dim, degree = Ladder[rung].degree ? PetscMin(Ladder[rung].degree, settings->degree) : settings->degree;
+  const int          wanted = settings->integral ? FitTerms(dim, degree) : FitPointsWanted(dim, degree);
   double             covariance[3][3], area;
-  PetscReal          foot[3] = {0, 0, 0}, space[9];
+  PetscReal          space[9];
   PetscInt           n, found, inside;
 
   PetscFunctionBeginUser;
   *holds   = PETSC_FALSE;
   *result  = (FitResult){.points = fit->used};
   *problem = (FitProblem){.dim = dim, .degree = degree, .exponent = settings->exponent, .x = fit->x, .multiplier = fit->multiplier};
-  for (int d = 0; d < dim; d++) foot[d] = look->x[d] - look->foot.gap * look->foot.normal[d];
-  FootSpacing(fit, look->best, look->foot.xi, covariance, &area);
-  FitFrameFromNormal(dim, settings->global_frame ? fit->plane : outward, problem->frame);
+  FootSpacing(fit, at->facet, at->xi, covariance, &area);
+  FitFrameFromNormal(dim, settings->global_frame ? fit->plane : at->outward, problem->frame);
   for (int pass = 0; pass < 2; pass++) { /* first seen along the facet's normal, then along the points' own */
     FitMetricFromCovariance(dim, problem->frame, covariance, area, settings->support * Ladder[rung].widen, problem->metric);
     MetricInSpace(dim, problem->frame, problem->metric, space);
-    PetscCall(
-      NeighbourhoodGather(fit->neighbourhoods, look->best, foot, problem->frame[dim - 1], space, SEARCH_FIT_MARGIN, FIT_MAX_POINTS, fit->points, &n, &found));
+    PetscCall(NeighbourhoodGather(fit->neighbourhoods, at->facet, at->foot, problem->frame[dim - 1], space, SEARCH_FIT_MARGIN, FIT_MAX_POINTS, fit->points, &n,
+                                  &found));
     inside = 0;
     for (PetscInt i = 0; i < n; i++) {
-      const PetscReal rho2 = PointRho2(fit, fit->points[i], foot, space);
+      const PetscReal rho2 = PointRho2(fit, fit->points[i], at->foot, space);
 
       inside += rho2 <= 1 + SEARCH_FIT_TIE;
       fit->multiplier[i] = fit->lists->point_weight[fit->points[i]];
       fit->taper[i]      = fit->multiplier[i] * PetscMax(SEARCH_FIT_TIE, 1 - rho2 / SEARCH_FIT_MARGIN);
-      for (int d = 0; d < dim; d++) fit->x[i * dim + d] = fit->view.x[fit->points[i] * dim + d] - look->x[d];
+      for (int d = 0; d < dim; d++) fit->x[i * dim + d] = fit->view.x[fit->points[i] * dim + d] - at->x[d];
     }
     problem->n = (int)n;
-    if (inside < FitPointsWanted(dim, degree)) PetscFunctionReturn(PETSC_SUCCESS);
-    if (settings->global_frame) break;
-    if (pass == 0 && !FitFrame(dim, problem->n, fit->x, fit->taper, outward, problem->frame)) PetscFunctionReturn(PETSC_SUCCESS);
+    if (inside < wanted) PetscFunctionReturn(PETSC_SUCCESS);
+    if (settings->integral && pass == 0) WindowSpacing(fit, n, covariance, &area);
+    if (settings->global_frame || at->upright) {
+      if (settings->integral) continue;
+      break;
+    }
+    if (pass == 0 && !FitFrame(dim, problem->n, fit->x, fit->taper, at->outward, problem->frame)) PetscFunctionReturn(PETSC_SUCCESS);
   }
   *holds = FitEvaluate(problem, FIT_GAP, fit->workspace, result) && (result->guards & ~FIT_FEW_POINTS) == FIT_HOLDS ? PETSC_TRUE : PETSC_FALSE;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Climbs down the ladder until a fit holds; *rung is where it stands, RUNG_FACET: nowhere. problem and result speak of fit's arrays. */
+PetscErrorCode FittingClimb(Fitting *fit, const FitFoot *at, FitProblem *problem, FitResult *result, int *rung)
+{
+  PetscBool holds = PETSC_FALSE;
+
+  PetscFunctionBeginUser;
+  *rung = RUNG_FACET;
+  for (int r = 0; r < RUNGS && !holds; r++) {
+    PetscCall(FitRung(fit, at, r, problem, result, &holds));
+    if (holds) *rung = r;
+  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -179,19 +257,28 @@ static PetscReal FitResidual(const FitProblem *problem, const FitResult *result)
   return most;
 }
 
-/* Climbs down the ladder for one slave point and writes what holds into its list, which starts at first. */
+/* Fits the surface for one slave point and writes what holds into its list, which starts at first. */
 PetscErrorCode FittingSlave(Fitting *fit, const Nearest *look, PetscInt q, PetscInt first, ListBuffer *buffer)
 {
-  ContactLists lists = fit->lists;
-  FitProblem   problem;
-  FitResult    result;
-  PetscBool    holds = PETSC_FALSE;
-  int          rung  = 0;
+  ContactLists     lists = fit->lists;
+  const Candidate *best  = &look->candidates[look->best];
+  FitFoot          at    = {
+                .facet = look->best,
+                .xi    = {look->foot.xi[0], look->foot.xi[1]}
+  };
+  FitProblem problem;
+  FitResult  result;
 
   PetscFunctionBeginUser;
-  for (; rung < RUNGS && !holds; rung++) PetscCall(FitRung(fit, look, rung, &problem, &result, &holds));
-  lists->rung[q] = holds ? rung - 1 : RUNG_FACET;
-  if (!holds) PetscFunctionReturn(PETSC_SUCCESS);
+  for (int d = 0; d < 3; d++) at.outward[d] = best->normal[d]; /* the foot's own may lie along the surface when the foot is on an edge */
+  for (int d = 0; d < lists->dim; d++) {
+    at.x[d]    = look->x[d];
+    at.foot[d] = look->x[d] - look->foot.gap * look->foot.normal[d];
+  }
+  TimingBegin(TIMING_FIT); /* two looks at the clock, 0.1 % of a ladder */
+  PetscCall(FittingClimb(fit, &at, &problem, &result, &lists->rung[q]));
+  TimingEnd(TIMING_FIT);
+  if (lists->rung[q] == RUNG_FACET) PetscFunctionReturn(PETSC_SUCCESS);
   lists->fit_n[q]     = problem.n;
   lists->degree[q]    = problem.degree;
   lists->pivot[q]     = result.pivot;
@@ -203,8 +290,8 @@ PetscErrorCode FittingSlave(Fitting *fit, const Nearest *look, PetscInt q, Petsc
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* How far from a slave point the points of its fit may lie: the widest support with its margin, in spacings of the coarsest faces. */
+/* How far from a slave point the points of its fit may lie: the widest support with its margin, along the longest face where it is drawn out. */
 PetscReal SearchFitReach(ContactSearch s)
 {
-  return s->fit->degree ? PetscSqrtReal(SEARCH_FIT_MARGIN) * Ladder[RUNG_WIDER].widen * s->fit->support * s->master->max_size : 0;
+  return s->fit->degree ? PetscSqrtReal(SEARCH_FIT_MARGIN) * Ladder[RUNG_WIDER].widen * s->fit->support * s->master->max_extent / s->master->order : 0;
 }

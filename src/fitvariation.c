@@ -88,10 +88,16 @@ LANES_INLINE void PointHessian(const int dim, const int degree, const FitState *
   h[m][m] = Broadcast(0);
 }
 
-/* Rows of K and J for LANES points: J^ = A p^ + B Dp^ and C likewise, with coefficients already turned into space. */
-LANES_INLINE void PointFactors(const int dim, const int terms, const FitArrays *a, const FitState *s, FitBundle *b, int g, Lanes (*total)[FIT_MAX_TERMS][3])
+/* What LANES points give to K, J and H, turned into space */
+typedef struct {
+  Lanes factor[3][FACTORS]; /* [component]: terms of K, terms of J, zeros */
+  Lanes hessian[FIT_HESSIAN];
+} FitBlock;
+
+/* J^ = A p^ + B Dp^ and C likewise, with coefficients already turned into space. */
+LANES_INLINE void PointFactors(const int dim, const int terms, const FitArrays *a, const FitState *s, FitBundle *b, int g, FitBlock *out)
 {
-  const int   m = dim - 1, at = dim * (1 + g * LANES);
+  const int   m  = dim - 1;
   const Lanes we = b->w * b->e, wl = b->w * b->l;
   Lanes       p[FIT_MAX_TERMS], fp[ROWS], fd[ROWS][MAX_TANGENTS], A[3], C[3], T[3][ROWS];
 
@@ -119,23 +125,45 @@ LANES_INLINE void PointFactors(const int dim, const int terms, const FitArrays *
       for (int t = 0; t < 1 + m; t++) T[c][r] += 0.5 * s->S[t][r] * U[t];
     }
   }
-  for (int k = 0; k < terms; k++) {
-    Lanes K[3], J[3];
+  for (int c = 0; c < dim; c++) {
+    Lanes *const K = out->factor[c], *const J = K + terms;
 
-    for (int c = 0; c < dim; c++) {
-      J[c] = A[c] * p[k];
-      K[c] = C[c] * p[k];
+    for (int k = 0; k < terms; k++) {
+      J[k] = A[c] * p[k];
+      K[k] = C[c] * p[k];
       for (int t = 0; t < m; t++) {
-        J[c] += s->G[t][c] * we * b->dp[t][k];
-        K[c] -= s->G[t][c] * wl * b->dp[t][k];
+        J[k] += s->G[t][c] * we * b->dp[t][k];
+        K[k] -= s->G[t][c] * wl * b->dp[t][k];
       }
-      for (int r = 0; r < 1 + m; r++) K[c] += T[c][r] * s->foot[r][k];
-      total[0][k][c] += K[c];
-      total[1][k][c] += J[c];
+      for (int r = 0; r < 1 + m; r++) K[k] += T[c][r] * s->foot[r][k];
     }
-    StoreVectors(dim, LANES, K, (double *)(a->K + k * a->stride) + at);
-    StoreVectors(dim, LANES, J, (double *)(a->J + k * a->stride) + at);
+    for (int k = 2 * terms; k < FactorStride(terms); k++) out->factor[c][k] = Broadcast(0);
   }
+}
+
+/* H of LANES points in space */
+LANES_INLINE void TurnHessian(const int dim, const FitState *s, Lanes (*h)[3], Lanes *out)
+{
+  for (int c = 0, entry = 0; c < dim; c++) {
+    for (int d = 0; d <= c; d++, entry++) {
+      out[entry] = Broadcast(0);
+      for (int k = 0; k < dim; k++) {
+        for (int l = 0; l < dim; l++) out[entry] += s->G[k][c] * s->G[l][d] * h[k][l];
+      }
+    }
+  }
+  for (int entry = dim * (dim + 1) / 2; entry < HessianStride(dim); entry++) out[entry] = Broadcast(0);
+}
+
+LANES_INLINE void Block(const int dim, const int degree, const int terms, const FitProblem *in, const FitArrays *a, const FitState *s, int g, FitBlock *out)
+{
+  FitBundle b;
+  Lanes     h[3][3];
+
+  Bundle(dim - 1, degree, terms, a, s, in->exponent, in->derivatives, g, &b);
+  PointHessian(dim, degree, s, &b, h);
+  TurnHessian(dim, s, h, out->hessian);
+  PointFactors(dim, terms, a, s, &b, g, out);
 }
 
 /* Adds the points' own second variations H, turned into space, to point, slave point and both couplings. */
@@ -163,38 +191,74 @@ LANES_INLINE void AddPointHessians(const int dim, const FitArrays *a, double *M)
 
 LANES_INLINE void SecondVariation(const int dim, const int degree, const int terms, const FitProblem *in, FitArrays *a, const FitState *s, double *M)
 {
-  Lanes     total[2][FIT_MAX_TERMS][3] = {{{{0}}}};
-  const int used                       = dim * (1 + a->groups * LANES);
+  Lanes     total[3][2 * FIT_MAX_TERMS] = {{{0}}};
+  const int used                        = dim * (1 + a->groups * LANES);
 
   for (int g = 0; g < a->groups; g++) {
-    FitBundle b;
-    Lanes     h[3][3];
+    FitBlock block;
 
-    Bundle(dim - 1, degree, terms, a, s, in->exponent, in->derivatives, g, &b);
-    PointHessian(dim, degree, s, &b, h);
-    for (int c = 0, entry = 0; c < dim; c++) {
-      for (int d = 0; d <= c; d++, entry++) {
-        Lanes sum = Broadcast(0);
+    Block(dim, degree, terms, in, a, s, g, &block);
+    for (int entry = 0; entry < dim * (dim + 1) / 2; entry++) a->H[entry * a->capacity + g] = block.hessian[entry];
+    for (int k = 0; k < 2 * terms; k++) {
+      Lanes v[3];
 
-        for (int k = 0; k < dim; k++) {
-          for (int l = 0; l < dim; l++) sum += s->G[k][c] * s->G[l][d] * h[k][l];
-        }
-        a->H[entry * a->capacity + g] = sum;
+      for (int c = 0; c < dim; c++) {
+        v[c] = block.factor[c][k];
+        total[c][k] += v[c];
       }
+      StoreVectors(dim, LANES, v, (double *)(a->K + k * a->stride) + dim * (1 + g * LANES)); /* J follows K */
     }
-    PointFactors(dim, terms, a, s, &b, g, total);
   }
-  for (int k = 0; k < terms; k++) {
-    double *const K = (double *)(a->K + k * a->stride), *const J = (double *)(a->J + k * a->stride);
+  for (int k = 0; k < 2 * terms; k++) {
+    double *const row = (double *)(a->K + k * a->stride);
 
-    for (int c = 0; c < dim; c++) {
-      K[c] = -LanesSum(total[0][k][c]);
-      J[c] = -LanesSum(total[1][k][c]);
-    }
-    for (int i = used; i < a->stride * LANES; i++) K[i] = J[i] = 0;
+    for (int c = 0; c < dim; c++) row[c] = -LanesSum(total[c][k]);
+    for (int i = used; i < a->stride * LANES; i++) row[i] = 0;
   }
   SymmetricProduct(dim * (1 + a->n), terms, a->stride * LANES, (double *)a->K, (double *)a->J, M);
   AddPointHessians(dim, a, M);
+}
+
+/* Writes `count` vectors of LANES points as a row for each point, `distance` vectors from one point's to the next; adds the rows to `total`. */
+LANES_INLINE void StoreRows(const int count, const int distance, const Lanes *v, Lanes *rows, Lanes *total)
+{
+  for (int k = 0; k < count; k += LANES) {
+    Lanes square[LANES];
+
+    for (int i = 0; i < LANES; i++) square[i] = v[k + i];
+    Transpose(square);
+    for (int i = 0; i < LANES; i++) {
+      rows[i * distance + k / LANES] = square[i];
+      total[k / LANES] += square[i];
+    }
+  }
+}
+
+LANES_INLINE void Factors(const int dim, const int degree, const int terms, const FitProblem *in, const FitArrays *a, const FitState *s, FitFactors *out)
+{
+  const int stride = FactorStride(terms) / LANES, hessianstride = HessianStride(dim) / LANES;
+  Lanes     total[3][FACTORS / LANES] = {{{0}}}, hessian[FIT_HESSIAN] = {{0}};
+  Lanes *rows = a->K, *const hessians = rows + (1 + a->groups * LANES) * dim * stride;
+
+  for (int g = 0; g < a->groups; g++) {
+    const int first = 1 + g * LANES;
+    FitBlock  block;
+
+    Block(dim, degree, terms, in, a, s, g, &block);
+    for (int c = 0; c < dim; c++) StoreRows(stride * LANES, dim * stride, block.factor[c], rows + (first * dim + c) * stride, total[c]);
+    StoreRows(hessianstride * LANES, hessianstride, block.hessian, hessians + first * hessianstride, hessian);
+  }
+  for (int c = 0; c < dim; c++) {
+    for (int k = 0; k < stride; k++) rows[c * stride + k] = -total[c][k];
+  }
+  for (int k = 0; k < hessianstride; k++) hessians[k] = hessian[k];
+  *out = (FitFactors){.dim           = dim,
+                      .degree        = degree,
+                      .n             = a->n,
+                      .stride        = stride * LANES,
+                      .hessianstride = hessianstride * LANES,
+                      .rows          = (const double *)rows,
+                      .hessians      = (const double *)hessians};
 }
 
 /* FitVariationFirst - N. Not collective.
@@ -225,4 +289,17 @@ void FitVariationSecond(const FitProblem *in, FitArrays *a, const FitState *s, d
   return
   INSTANTIATE(in, SECOND)
 #undef SECOND
+}
+
+/* FitVariationFactors - what M is made of, without M. Not collective.
+
+   Input: in, a, s - problem, arrays and state as the evaluation left them; the place of the arrays K and J is overwritten
+   Output: factors - see FitFactors */
+void FitVariationFactors(const FitProblem *in, const FitArrays *a, const FitState *s, FitFactors *factors)
+{
+#define FACTORISE(dim, degree, terms)             \
+  Factors(dim, degree, terms, in, a, s, factors); \
+  return
+  INSTANTIATE(in, FACTORISE)
+#undef FACTORISE
 }

@@ -1,71 +1,36 @@
 #include "searchimpl.h"
 
-typedef struct {
-  PetscInt  id, owner, local;
-  PetscReal X[3];
-} NodeKey;
-
-static int NodeKeyCompare(const void *a, const void *b)
-{
-  const NodeKey *p = a, *q = b;
-  return p->id < q->id ? -1 : p->id > q->id;
-}
-
-static PetscInt UniqueNodes(PetscInt n, NodeKey *keys)
-{
-  PetscInt kept = 0;
-
-  if (n) qsort(keys, n, sizeof(*keys), NodeKeyCompare);
-  for (PetscInt i = 0; i < n; i++)
-    if (!kept || keys[i].id != keys[kept - 1].id) keys[kept++] = keys[i];
-  return kept;
-}
-
-static int FindNode(PetscInt n, const NodeKey *keys, PetscInt id)
-{
-  const NodeKey  wanted = {.id = id};
-  const NodeKey *found  = bsearch(&wanted, keys, n, sizeof(*keys), NodeKeyCompare);
-
-  return (int)(found - keys);
-}
-
 /* Numbers the contact nodes (slave nodes and nodes of the listed faces), makes the star forest to their owners, and rewrites the records'
    facets in these numbers. */
-PetscErrorCode ListsCreateNodes(ContactSearch s, PetscInt n_records, FaceRecord *records, ContactLists lists)
+PetscErrorCode ListsCreateNodes(ContactSearch s, SearchField *field, ContactLists lists)
 {
-  Mesh            mesh  = s->mesh;
-  const int       dim   = mesh->dim;
-  const PetscBool rigid = (PetscBool)(s->master && s->master->rigid);
-  PetscInt        n = 0, n_rigid = 0;
+  Mesh            mesh      = s->mesh;
+  const int       dim       = mesh->dim;
+  const PetscBool rigid     = (PetscBool)(s->master && s->master->rigid);
+  const PetscInt  n_records = field->n_records, n_slaves = s->slaves ? s->slaves->n_nodes : 0;
+  FaceRecord     *records = field->records;
+  PetscInt        n = n_slaves, n_rigid = 0;
   NodeKey        *keys, *tool;
   PetscSFNode    *remote;
   const PetscInt *dofs;
   MPI_Datatype    integers;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc2(s->n_slaves + FACE_MAX_NODES * n_records, &keys, FACE_MAX_NODES * n_records, &tool));
-  for (PetscInt i = 0; i < s->n_slaves; i++) {
-    const PetscInt node = s->slaves[i];
-
-    keys[n] = (NodeKey){.id = mesh->node_id[node], .owner = mesh->node_owner[node], .local = mesh->node_owner_local[node]};
-    for (int d = 0; d < dim; d++) keys[n].X[d] = mesh->coords[node * dim + d];
-    n++;
-  }
+  PetscCall(PetscMalloc2(n_slaves + FACE_MAX_NODES * n_records, &keys, FACE_MAX_NODES * n_records, &tool));
+  for (PetscInt i = 0; i < n_slaves; i++) keys[i] = s->slaves->nodes[i];
   for (PetscInt r = 0; r < n_records; r++) {
-    for (int a = 0; a < ElementGet(records[r].facet.type)->nodes; a++) {
-      NodeKey *key = rigid ? &tool[n_rigid++] : &keys[n++];
+    PetscInt *count = rigid ? &n_rigid : &n;
 
-      *key = (NodeKey){.id = records[r].id[a], .owner = records[r].owner[a], .local = records[r].local[a]};
-      for (int d = 0; d < 3; d++) key->X[d] = records[r].X[a * 3 + d];
-    }
+    FaceRecordKeys(&records[r], rigid ? &tool[n_rigid] : &keys[n]);
+    *count += ElementGet(records[r].facet.type)->nodes;
   }
-  n                   = UniqueNodes(n, keys);
-  n_rigid             = UniqueNodes(n_rigid, tool);
+  n                   = NodeKeysUnique(n, keys);
+  n_rigid             = NodeKeysUnique(n_rigid, tool);
   lists->n_deformable = n;
   lists->n_nodes      = n + n_rigid;
   for (PetscInt r = 0; r < n_records; r++)
     for (int a = 0; a < ElementGet(records[r].facet.type)->nodes; a++)
-      records[r].facet.nodes[a] = rigid ? (int)n + FindNode(n_rigid, tool, records[r].id[a]) : FindNode(n, keys, records[r].id[a]);
+      records[r].facet.nodes[a] = rigid ? (int)n + NodeKeysFind(n_rigid, tool, records[r].id[a]) : NodeKeysFind(n, keys, records[r].id[a]);
 
   PetscCall(PetscMalloc4(lists->n_nodes, &lists->node_id, lists->n_nodes * dim, &lists->X, lists->n_nodes * dim, &lists->u, lists->n_nodes * dim, &lists->dof));
   PetscCall(PetscMalloc1(n, &remote));
@@ -159,15 +124,43 @@ void ListsSlaveMap(const ContactLists lists, PetscInt q, const PetscReal *x, Pet
   }
 }
 
+/* On a rigid tool the offsets, which are those of its first position, turn with it. */
+static void TurnOffsets(ContactSearch s, ContactLists lists, PetscReal t)
+{
+  const int dim = lists->dim;
+
+  for (PetscInt p = 0; p < lists->n_points; p++) {
+    const SurfaceImage *image = &s->images[lists->point_image[p]];
+    PetscReal           X[3]  = {0, 0, 0}, x[3], moved[3];
+
+    if (lists->point_ptr[p + 1] == lists->point_ptr[p] + 1) continue; /* a node has no offset */
+    for (int d = 0; d < dim; d++) X[d] = image->sign[d] * (lists->point_X[p * dim + d] - image->shift[d]);
+    LoadsRigidMotion(s->loads, s->master->body, t, X, x);
+    SurfaceReflect(image, dim, x, moved);
+    for (int d = 0; d < dim; d++) lists->point_u[p * dim + d] = moved[d] - lists->point_X[p * dim + d];
+  }
+}
+
 /* ListsUpdate - moves contact nodes, fit points and slave points to (u, t); what is listed stays.
 
-   Collective. u[mesh n_nodes*dim]: local displacements (length), read at owned nodes. */
-PetscErrorCode ListsUpdate(ContactSearch s, ContactLists lists, const PetscReal *u, PetscReal t)
+   Collective. u[mesh n_nodes*dim]: local displacements (length), read at owned nodes. *moved: this rank's are not where they were, or t is another;
+   may be NULL. */
+PetscErrorCode ListsUpdate(ContactSearch s, ContactLists lists, const PetscReal *u, PetscReal t, PetscBool *moved)
 {
+  const PetscInt n = lists->n_nodes * lists->dim;
+  PetscReal     *before;
+  PetscBool      same;
+
   PetscFunctionBeginUser;
-  lists->t = t;
+  PetscCall(PetscMalloc1(n, &before));
+  PetscCall(PetscArraycpy(before, lists->u, n));
   PetscCall(ListsUpdateNodes(s, lists, u, t));
+  PetscCall(PetscArraycmp(before, lists->u, n, &same));
+  PetscCall(PetscFree(before));
+  if (moved) *moved = same && lists->t == t ? PETSC_FALSE : PETSC_TRUE;
+  lists->t = t;
   for (PetscInt p = 0; p < lists->n_points; p++) PointMap(lists, p, &s->images[lists->point_image[p]], lists->u, &lists->point_u[p * lists->dim]);
+  if (s->fit->integral && s->master->rigid) TurnOffsets(s, lists, t);
   for (PetscInt q = 0; q < lists->n_slaves; q++) ListsSlaveMap(lists, q, lists->u, &lists->slave_u[q * lists->dim]);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -188,40 +181,109 @@ static int CanonicalImage(ContactSearch s, const PetscReal *X, int image, int *p
   return image;
 }
 
-/* Numbers the points that the candidates use, writes their maps (one node each, S = 1, no offset), and rewrites the candidates in them. */
-PetscErrorCode ListsCreatePoints(ContactSearch s, ContactLists lists, PetscInt n_candidates, Candidate *candidates)
+static PetscErrorCode ListsAllocatePoints(ContactLists lists, PetscInt room, PetscInt entries)
 {
   const int dim = lists->dim;
-  PetscInt  n = 0, *number, room = s->n_images * lists->n_nodes;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc1(room, &number));
-  for (PetscInt k = 0; k < room; k++) number[k] = -1;
-  PetscCall(PetscMalloc6(room + 1, &lists->point_ptr, room, &lists->point_node, room, &lists->point_S, room * dim, &lists->point_offset, room,
-                         &lists->point_weight, room, &lists->point_image));
-  for (PetscInt c = 0; c < n_candidates; c++) {
-    for (int a = 0; a < ElementGet(candidates[c].facet.type)->nodes; a++) {
-      const PetscInt node = candidates[c].facet.nodes[a];
-      int            planes;
-      const int      image = CanonicalImage(s, &lists->X[node * dim], candidates[c].image, &planes);
-      PetscInt      *p     = &number[image * lists->n_nodes + node];
+  PetscCall(PetscMalloc7(room + 1, &lists->point_ptr, entries, &lists->point_node, entries, &lists->point_S, room * dim, &lists->point_offset, room,
+                         &lists->point_weight, room, &lists->point_image, room, &lists->point_key));
+  PetscCall(PetscArrayzero(lists->point_offset, room * dim));
+  lists->n_points     = 0;
+  lists->point_ptr[0] = 0;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static void ListsAddPoint(ContactLists lists, int n, const int *nodes, const double *S, int image, PetscReal weight, long key)
+{
+  const PetscInt p = lists->n_points++;
+  PetscInt       k = lists->point_ptr[p];
+
+  for (int a = 0; a < n; a++, k++) {
+    lists->point_node[k] = nodes[a];
+    lists->point_S[k]    = S ? S[a] : 1;
+  }
+  lists->point_ptr[p + 1] = k;
+  lists->point_image[p]   = image;
+  lists->point_weight[p]  = weight;
+  lists->point_key[p]     = key;
+}
+
+/* The points that are nodes or images of nodes: those that the facets stand on. Candidates are left in numbers of contact nodes; number[]: point of
+   an image of a node, or -1. */
+static void ListsAddNodePoints(ContactSearch s, ContactLists lists, SearchField *field, PetscInt *number)
+{
+  for (PetscInt c = 0; c < field->n_candidates; c++) {
+    Candidate *candidate = &field->candidates[c];
+
+    for (int a = 0; a < ElementGet(candidate->facet.type)->nodes; a++) {
+      const int node = candidate->facet.nodes[a];
+      int       planes;
+      const int image = CanonicalImage(s, &lists->X[node * lists->dim], candidate->image, &planes);
+      PetscInt *p     = &number[image * lists->n_nodes + node];
 
       if (*p < 0) {
-        *p                      = n;
-        lists->point_ptr[n]     = n;
-        lists->point_node[n]    = node;
-        lists->point_S[n]       = 1;
-        lists->point_weight[n]  = 1 << planes; /* what the faces on this side give to a node on a plane is half of its whole */
-        lists->point_image[n++] = image;
+        *p = lists->n_points; /* what the faces on this side give to a node on a plane is half of its whole */
+        ListsAddPoint(lists, 1, &node, NULL, image, 1 << planes, (2L * lists->node_id[node] + (node >= lists->n_deformable)) * SURFACE_MAX_IMAGES + image);
       }
-      candidates[c].facet.nodes[a] = (int)*p;
     }
   }
-  lists->point_ptr[n] = n;
-  lists->n_points     = n;
-  PetscCall(PetscArrayzero(lists->point_offset, n * dim));
-  PetscCall(PetscMalloc2(n * dim, &lists->point_X, n * dim, &lists->point_u));
-  for (PetscInt p = 0; p < n; p++) {
+}
+
+/* The quadrature points of the candidates, weighted by their reference area, with their offsets. */
+static void ListsAddQuadraturePoints(ContactSearch s, ContactLists lists, SearchField *field)
+{
+  const int dim = lists->dim;
+
+  for (PetscInt c = 0; c < field->n_candidates; c++) {
+    Candidate        *candidate = &field->candidates[c];
+    const FaceRecord *record    = &field->records[candidate->record];
+    const Facet      *facet     = &record->facet; /* as its body sees it: the rule's points are the same on every image */
+    const FaceRule   *rule      = FaceRuleGet(facet->type, 0);
+    double            X[FACE_MAX_NODES * 3], area[FACE_RULE_POINTS];
+
+    candidate->first = lists->n_points;
+    for (int a = 0; a < ElementGet(facet->type)->nodes; a++)
+      for (int d = 0; d < dim; d++) X[a * dim + d] = lists->X[facet->nodes[a] * dim + d];
+    FaceRuleAreas(rule, facet->type, dim, GEOMETRY_SOLID, X, area, NULL);
+    for (int q = 0; q < rule->n; q++) {
+      for (int d = 0; d < dim; d++) lists->point_offset[lists->n_points * dim + d] = s->images[candidate->image].sign[d] * record->offset[q * dim + d];
+      ListsAddPoint(lists, ElementGet(facet->type)->nodes, facet->nodes, rule->N[q], candidate->image, area[q] / PetscPowRealInt(s->master->mean_size, dim - 1),
+                    candidate->facet.tag * FACE_RULE_POINTS + q);
+    }
+  }
+}
+
+/* Numbers the points that the candidates use, writes their maps, and rewrites the candidates' nodes in them. */
+PetscErrorCode ListsCreatePoints(ContactSearch s, ContactLists lists, SearchField *field)
+{
+  const int dim = lists->dim;
+  PetscInt *number, nodes = s->n_images * lists->n_nodes, points = nodes, entries = nodes;
+
+  PetscFunctionBeginUser;
+  for (PetscInt c = 0; s->fit->integral && c < field->n_candidates; c++) {
+    const ElementType type = field->candidates[c].facet.type;
+
+    points += FaceRuleGet(type, 0)->n;
+    entries += FaceRuleGet(type, 0)->n * ElementGet(type)->nodes;
+  }
+  PetscCall(PetscMalloc1(nodes, &number));
+  for (PetscInt k = 0; k < nodes; k++) number[k] = -1;
+  PetscCall(ListsAllocatePoints(lists, points, entries));
+  ListsAddNodePoints(s, lists, field, number);
+  if (s->fit->integral) ListsAddQuadraturePoints(s, lists, field);
+  for (PetscInt c = 0; c < field->n_candidates; c++) {
+    Candidate *candidate = &field->candidates[c];
+
+    for (int a = 0; a < ElementGet(candidate->facet.type)->nodes; a++) {
+      const PetscInt node = candidate->facet.nodes[a];
+      int            planes;
+
+      candidate->facet.nodes[a] = (int)number[CanonicalImage(s, &lists->X[node * dim], candidate->image, &planes) * lists->n_nodes + node];
+    }
+  }
+  PetscCall(PetscMalloc2(lists->n_points * dim, &lists->point_X, lists->n_points * dim, &lists->point_u));
+  for (PetscInt p = 0; p < lists->n_points; p++) {
     const SurfaceImage *image = &s->images[lists->point_image[p]];
 
     PointMap(lists, p, image, lists->X, &lists->point_X[p * dim]);
@@ -233,15 +295,19 @@ PetscErrorCode ListsCreatePoints(ContactSearch s, ContactLists lists, PetscInt n
 }
 
 /* Normal, spacing and weight of the points: those of their nodes, reflected with them. */
-void ListsPointGeometry(ContactSearch s, ContactLists lists, PetscInt n_records, const FaceRecord *records, NodeGeometry *node_geometry, NodeGeometry *geometry)
+void ListsPointGeometry(ContactSearch s, ContactLists lists, const SearchField *field, NodeGeometry *node_geometry, NodeGeometry *geometry)
 {
-  for (PetscInt r = 0; r < n_records; r++)
-    for (int a = 0; a < ElementGet(records[r].facet.type)->nodes; a++) node_geometry[records[r].facet.nodes[a]] = records[r].geometry[a];
+  for (PetscInt r = 0; r < field->n_records; r++) {
+    const FaceRecord *record = &field->records[r];
+
+    for (int a = 0; a < ElementGet(record->facet.type)->nodes; a++) node_geometry[record->facet.nodes[a]] = record->geometry[a];
+  }
   for (PetscInt p = 0; p < lists->n_points; p++) {
     const PetscReal *sign   = s->images[lists->point_image[p]].sign;
     NodeGeometry    *g      = &geometry[p];
     PetscReal        length = 0;
 
+    if (lists->point_ptr[p + 1] > lists->point_ptr[p] + 1) continue; /* a quadrature point: its facet's nodes tell */
     *g = node_geometry[lists->point_node[p]];
     for (int bit = 1; bit < s->n_images; bit <<= 1) { /* on a plane the other half cancels what is odd in its axis */
       for (int d = 0; d < 3; d++) {
@@ -269,28 +335,64 @@ void ListsPointGeometry(ContactSearch s, ContactLists lists, PetscInt n_records,
 
 PetscErrorCode ListsCreateSlaves(ContactSearch s, ContactLists lists)
 {
-  const int dim = lists->dim;
-  PetscInt  n   = s->n_slaves;
+  const int   dim    = lists->dim;
+  SlavePoints slaves = s->slaves;
+  PetscInt    n = slaves->n, entries = slaves->ptr[n], *number;
 
   PetscFunctionBeginUser;
   lists->n_slaves = n;
-  PetscCall(PetscMalloc4(n + 1, &lists->slave_ptr, n, &lists->slave_node, n, &lists->slave_S, n * dim, &lists->slave_offset));
+  PetscCall(PetscMalloc4(n + 1, &lists->slave_ptr, entries, &lists->slave_node, entries, &lists->slave_S, n * dim, &lists->slave_offset));
   PetscCall(PetscMalloc2(n * dim, &lists->slave_X, n * dim, &lists->slave_u));
   PetscCall(PetscMalloc3(n + 1, &lists->list_ptr, n + 1, &lists->facet_ptr, n, &lists->kappa));
   PetscCall(PetscCalloc5(n, &lists->fit_n, n, &lists->rung, n, &lists->degree, 9 * n, &lists->frame, 4 * n, &lists->metric));
-  PetscCall(PetscCalloc3(n, &lists->pivot, n, &lists->amplified, n, &lists->residual));
-  PetscCall(PetscArrayzero(lists->slave_offset, n * dim));
+  PetscCall(PetscCalloc4(n, &lists->pivot, n, &lists->amplified, n, &lists->residual, 2 * n, &lists->centre));
+  PetscCall(PetscArraycpy(lists->slave_ptr, slaves->ptr, n + 1));
+  PetscCall(PetscArraycpy(lists->slave_S, slaves->S, entries));
+  PetscCall(PetscArraycpy(lists->slave_offset, slaves->offset, n * dim));
+  PetscCall(PetscMalloc1(slaves->n_nodes, &number));
+  for (PetscInt i = 0; i < slaves->n_nodes; i++) PetscCall(PetscFindInt(slaves->nodes[i].id, lists->n_deformable, lists->node_id, &number[i]));
+  for (PetscInt k = 0; k < entries; k++) lists->slave_node[k] = number[slaves->node[k]];
+  PetscCall(PetscFree(number));
   for (PetscInt q = 0; q < n; q++) {
-    PetscInt at;
-
-    PetscCall(PetscFindInt(s->mesh->node_id[s->slaves[q]], lists->n_deformable, lists->node_id, &at));
-    lists->slave_ptr[q]  = q;
-    lists->slave_node[q] = at;
-    lists->slave_S[q]    = 1;
+    ListsSlaveMap(lists, q, lists->X, &lists->slave_X[q * dim]);
+    ListsSlaveMap(lists, q, lists->u, &lists->slave_u[q * dim]);
+    for (int d = 0; d < dim; d++) lists->slave_X[q * dim + d] += lists->slave_offset[q * dim + d];
   }
-  lists->slave_ptr[n] = n;
-  for (PetscInt q = 0; q < n; q++) ListsSlaveMap(lists, q, lists->X, &lists->slave_X[q * dim]);
   PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* ListsCentre - mean of the fit points of slave point q in the tangents of its frame, relative to it, in the present position (lengths).
+
+   Not collective. centre[2]: dim - 1 entries are used. */
+void ListsCentre(ContactLists lists, PetscInt q, PetscReal centre[2])
+{
+  const int        dim   = lists->dim;
+  const PetscReal *frame = &lists->frame[9 * q];
+
+  centre[0] = centre[1] = 0;
+  for (PetscInt i = lists->list_ptr[q]; i < lists->list_ptr[q] + lists->fit_n[q]; i++) {
+    const PetscInt p = lists->list_point[i];
+
+    for (int d = 0; d < dim; d++) {
+      const PetscReal x = (lists->point_X[p * dim + d] - lists->slave_X[q * dim + d]) + (lists->point_u[p * dim + d] - lists->slave_u[q * dim + d]);
+
+      for (int a = 0; a < dim - 1; a++) centre[a] += frame[3 * a + d] * x / lists->fit_n[q];
+    }
+  }
+}
+
+/* ListsSlip - Not collective. */
+PetscReal ListsSlip(ContactLists lists, PetscInt q)
+{
+  const PetscReal *metric = &lists->metric[4 * q];
+  PetscReal        slip[2], square = 0;
+
+  if (!lists->fit_n[q]) return 0;
+  ListsCentre(lists, q, slip);
+  for (int a = 0; a < 2; a++) slip[a] -= lists->centre[2 * q + a];
+  for (int a = 0; a < lists->dim - 1; a++)
+    for (int b = 0; b < lists->dim - 1; b++) square += slip[a] * metric[2 * a + b] * slip[b];
+  return PetscSqrtReal(square);
 }
 
 /* ListsDestroy - Collective. */
@@ -303,13 +405,13 @@ PetscErrorCode ListsDestroy(ContactLists *lists)
   PetscCall(PetscFree4(l->node_id, l->X, l->u, l->dof));
   PetscCall(PetscSFDestroy(&l->sf));
   PetscCallMPI(MPI_Type_free(&l->block));
-  PetscCall(PetscFree6(l->point_ptr, l->point_node, l->point_S, l->point_offset, l->point_weight, l->point_image));
+  PetscCall(PetscFree7(l->point_ptr, l->point_node, l->point_S, l->point_offset, l->point_weight, l->point_image, l->point_key));
   PetscCall(PetscFree2(l->point_X, l->point_u));
   PetscCall(PetscFree4(l->slave_ptr, l->slave_node, l->slave_S, l->slave_offset));
   PetscCall(PetscFree2(l->slave_X, l->slave_u));
   PetscCall(PetscFree3(l->list_ptr, l->facet_ptr, l->kappa));
   PetscCall(PetscFree5(l->fit_n, l->rung, l->degree, l->frame, l->metric));
-  PetscCall(PetscFree3(l->pivot, l->amplified, l->residual));
+  PetscCall(PetscFree4(l->pivot, l->amplified, l->residual, l->centre));
   PetscCall(PetscFree(l->list_point));
   PetscCall(PetscFree(l->facet));
   PetscCall(PetscFree(l->facet_size));

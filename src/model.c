@@ -1,7 +1,10 @@
 #include "model.h"
+#include "matrixsum.h"
 #include "refusal.h"
 #include "timing.h"
 
+/* Energy of a state with an inverted element: above any other, yet its square is a number, which the line search takes. */
+#define MODEL_INVERTED 1e100
 /* Times that contact lists are replaced and the step solved on before it counts as unsettled. */
 #define MODEL_MAX_REGATHER 8
 /* Times that penalties are adjusted and the step solved on until their window holds. A penalty that starts 1e8 times too small needs four with
@@ -12,7 +15,7 @@
 #define MODEL_ENERGY_ROUND_OFF 1e-6
 /* Residuals compared as if they were energies: times this, so that any decrease beats the slope the line search expects. */
 #define MODEL_RESIDUAL_WEIGHT 1e30
-/* Lists are made for this multiple of the motion that the last step's rate predicts. */
+/* Lists are made for this multiple of the motion that the last step's rate predicts; those that check a step too, so that an equal step takes them. */
 #define MODEL_MOTION_SAFETY 1.5
 /* A direct solve of a regular system leaves a relative residual of 1e-12 to 1e-7, stiff penalties included; above this the system is singular. */
 #define MODEL_SINGULAR 1e-3
@@ -49,6 +52,8 @@ typedef struct _n_ModelWork {
   PetscInt   inverted;   /* gmsh's tag of a cell of this rank that was turned inside out in this solve, or -1 */
   PetscBool  near;       /* the iterate is so close that energies differ by round-off only */
   PetscBool  balanced;   /* the residual of the iterate is within the tolerance */
+  PetscInt   renewed;    /* how often that happened in this step */
+  PetscBool  left;       /* a slave point slid out of its lists: the solve ended for new ones */
   Vec        residual;   /* of a trial point, while near; the tangent's diagonal for a moment */
 } ModelWork;
 
@@ -100,7 +105,7 @@ static PetscErrorCode ModelFunction(SNES snes, Vec x, Vec F, void *context)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Potential energy at the trial displacements, all ranks; infinite where an element is inverted. */
+/* Potential energy at the trial displacements, all ranks; out of reach where an element is inverted. */
 static PetscErrorCode ModelEnergy(Model model, PetscReal *energy)
 {
   PetscReal sum[2] = {0, 0}; /* energy, ranks with an inverted element */
@@ -118,7 +123,7 @@ static PetscErrorCode ModelEnergy(Model model, PetscReal *energy)
   }
   sum[1] = ok ? 0 : 1;
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sum, 2, MPIU_REAL, MPI_SUM, model->mesh->comm));
-  *energy = sum[1] > 0 ? PETSC_INFINITY : sum[0];
+  *energy = sum[1] > 0 ? MODEL_INVERTED : sum[0];
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -150,22 +155,18 @@ static PetscErrorCode ModelAddContact(Model model, Mat K, Mat C, PetscBool chang
 
   PetscFunctionBeginUser;
   if (changed) {
-    PetscCall(MatDuplicate(K, MAT_COPY_VALUES, &B));
-    PetscCall(MatAXPY(B, 1, C, DIFFERENT_NONZERO_PATTERN));
+    PetscCall(MatrixSumCreate(K, C, &B));
     PetscCall(MatHeaderReplace(model->A, &B));
     PetscCall(SNESGetKSP(model->snes, &ksp));
     PetscCall(KSPReset(ksp));
-  } else {
-    PetscCall(MatZeroEntries(model->A));
-    PetscCall(MatAXPY(model->A, 1, K, SUBSET_NONZERO_PATTERN));
-    PetscCall(MatAXPY(model->A, 1, C, SUBSET_NONZERO_PATTERN));
-  }
+  } else
+    PetscCall(MatrixSumUpdate(K, C, model->A));
   PetscCall(MatSetOption(model->A, MAT_SYMMETRIC, LoadsConservative(model->loads)));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The tangent at (u, t) into model->A; touching: with the stiffness of slave nodes that just touch. */
-static PetscErrorCode ModelTangent(Model model, const PetscReal *u, PetscReal t, PetscBool touching)
+/* The tangent at (u, t) into model->A. */
+static PetscErrorCode ModelTangent(Model model, const PetscReal *u, PetscReal t)
 {
   Mat       K, C;
   PetscBool changed;
@@ -180,7 +181,7 @@ static PetscErrorCode ModelTangent(Model model, const PetscReal *u, PetscReal t,
   TimingEnd(TIMING_ASSEMBLY_ELASTIC);
   if (model->contact) {
     TimingBegin(TIMING_ASSEMBLY_CONTACT);
-    PetscCall(ContactTangent(model->contact, u, t, touching, &C, &changed));
+    PetscCall(ContactTangent(model->contact, u, t, &C, &changed));
     PetscCall(ModelAddContact(model, K, C, changed));
     TimingEnd(TIMING_ASSEMBLY_CONTACT);
   }
@@ -196,7 +197,7 @@ static PetscErrorCode ModelJacobian(SNES snes, Vec x, Mat J, Mat P, void *contex
   (void)J;
   (void)P;
   PetscCall(ModelTrial(model, x));
-  PetscCall(ModelTangent(model, model->work->trial, model->t, PETSC_FALSE));
+  PetscCall(ModelTangent(model, model->work->trial, model->t));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -209,6 +210,19 @@ static PetscErrorCode ModelRoundOff(Model model, PetscReal *force)
   for (PetscInt i = 0; i < model->mesh->n_nodes * model->mesh->dim; i++) most = PetscMax(most, PetscAbsReal(model->work->trial[i]));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &most, 1, MPIU_REAL, MPI_MAX, model->mesh->comm));
   *force = MODEL_ROUND_OFF * PETSC_MACHINE_EPSILON * model->work->stiffness * most;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Ends the solve, without being a failure, when a slave point has left its lists, if new ones may still be made in this step. */
+static PetscErrorCode ModelLeaveLists(Model model, SNESConvergedReason *reason)
+{
+  PetscBool within;
+
+  PetscFunctionBeginUser;
+  PetscCall(ContactListsReach(model->contact, &within));
+  if (within || model->work->renewed >= MODEL_MAX_REGATHER) PetscFunctionReturn(PETSC_SUCCESS);
+  model->work->left = PETSC_TRUE;
+  *reason           = SNES_CONVERGED_ITS;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -235,6 +249,8 @@ static PetscErrorCode ModelConverged(SNES snes, PetscInt it, PetscReal xnorm, Pe
     *reason = SNES_DIVERGED_FUNCTION_NANORINF;
   else if (fnorm <= round_off || (model->work->balanced && settled))
     *reason = SNES_CONVERGED_FNORM_ABS;
+  else if (model->contact)
+    PetscCall(ModelLeaveLists(model, reason));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -394,7 +410,7 @@ PetscErrorCode ModelSetUp(Model model)
   PetscFunctionBeginUser;
   PetscCall(LoadsPrescribe(model->loads, 0, model->u));
   if (model->contact) {
-    PetscCall(ContactGather(model->contact, model->u, 0, 0));
+    PetscCall(ContactGather(model->contact, model->u, 0, 0, 0));
     PetscCall(ModelResidual(model, model->u, 0, 0, &ok));
     PetscCall(ContactTakeOverlap(model->contact));
   }
@@ -460,8 +476,10 @@ static PetscErrorCode ModelPredict(Model model, SolveReport *report)
   PetscCall(PetscArraycpy(step, work->accepted_u, n));
   PetscCall(LoadsPrescribe(model->loads, model->t, step));
   for (PetscInt i = 0; i < n; i++) step[i] -= work->accepted_u[i];
-  PetscCall(ModelTangent(model, work->accepted_u, work->accepted_t, (PetscBool)(work->accepted_t == 0))); /* touching start: a body that only contact holds */
+  if (model->contact) PetscCall(ContactPredict(model->contact, PETSC_TRUE, (PetscBool)(work->accepted_t == 0))); /* touching: a body that only contact holds */
+  PetscCall(ModelTangent(model, work->accepted_u, work->accepted_t));
   PetscCall(ModelResidual(model, work->accepted_u, model->t, work->accepted_t, &ok));
+  if (model->contact) PetscCall(ContactPredict(model->contact, PETSC_FALSE, PETSC_FALSE));
   PetscCall(ElasticityMultiplyLocal(model->elasticity, step, work->f));
   if (model->contact) PetscCall(ContactMultiply(model->contact, step, work->accepted_t, model->t, work->f));
   PetscCall(MeshLocalToGlobal(model->mesh, work->f, b));
@@ -577,7 +595,7 @@ static PetscErrorCode ModelDepart(Model model, PetscReal t)
   motion = PetscMax(motion, MODEL_MOTION_SAFETY * work->rate * (t - work->accepted_t));
   PetscCall(ContactRestore(model->contact));
   TimingBegin(TIMING_SEARCH);
-  PetscCall(ContactGather(model->contact, work->accepted_u, work->accepted_t, motion));
+  PetscCall(ContactGather(model->contact, work->accepted_u, work->accepted_t, t, motion));
   TimingEnd(TIMING_SEARCH);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -598,24 +616,41 @@ static PetscErrorCode ModelStart(Model model, SolveReport *report)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* New lists after a solve, for the next one: in the middle of the way where it left the old ones, or because they do not hold. */
+static PetscErrorCode ModelRenewLists(Model model, PetscBool *hold)
+{
+  ModelWork *work = model->work;
+  PetscReal  motion;
+
+  PetscFunctionBeginUser;
+  PetscCall(ModelMotion(model, work->trial, model->t, &motion));
+  TimingBegin(TIMING_SEARCH);
+  *hold = PETSC_FALSE;
+  if (work->left) {
+    work->renewed++;
+    PetscCall(ContactListsRenew(model->contact, work->trial, model->t, motion));
+  } else
+    PetscCall(ContactListsHold(model->contact, work->trial, model->t, motion, hold));
+  TimingEnd(TIMING_SEARCH);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Solves with frozen lists until they hold. */
 static PetscErrorCode ModelSolveLists(Model model, SolveReport *report)
 {
-  PetscReal motion;
   PetscBool hold  = PETSC_FALSE;
   PetscInt  times = 0;
 
   PetscFunctionBeginUser;
+  model->work->renewed = 0;
   while (!hold && report->result == SOLVE_CONVERGED) {
+    model->work->left = PETSC_FALSE;
     PetscCall(ModelNewton(model, report));
     if (report->result != SOLVE_CONVERGED || !model->contact) break;
-    PetscCall(ModelMotion(model, model->work->trial, model->t, &motion));
-    TimingBegin(TIMING_SEARCH);
-    PetscCall(ContactListsHold(model->contact, model->work->trial, model->t, motion, &hold));
-    TimingEnd(TIMING_SEARCH);
+    PetscCall(ModelRenewLists(model, &hold));
     if (hold) break;
     report->regathered++;
-    if (times++ == MODEL_MAX_REGATHER) report->result = SOLVE_LISTS;
+    if (!model->work->left && times++ == MODEL_MAX_REGATHER) report->result = SOLVE_LISTS;
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -716,7 +751,7 @@ PetscErrorCode ModelRestore(Model model)
   model->t = work->accepted_t;
   if (model->contact) {
     PetscCall(ContactRestore(model->contact));
-    PetscCall(ContactGather(model->contact, model->u, model->t, 0));
+    PetscCall(ContactGather(model->contact, model->u, model->t, model->t, 0));
   }
   PetscCall(ModelResidual(model, model->u, model->t, model->t, &ok));
   if (model->contact) PetscCall(ContactRestore(model->contact));

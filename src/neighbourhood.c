@@ -150,9 +150,15 @@ PetscErrorCode NeighbourhoodGather(Neighbourhoods nb, PetscInt start, const Pets
       const PetscReal rho2 = Rho2(view, p, x0, metric);
 
       inside = (PetscBool)(inside || rho2 <= limit);
-      if (nb->seen_point[p] == nb->stamp || rho2 > limit) continue;
+      if (view->first || nb->seen_point[p] == nb->stamp || rho2 > limit) continue;
       nb->seen_point[p] = nb->stamp;
       if (view->geometry[p].weight > 0 && Dot(view->geometry[p].normal, e3) >= NEIGHBOURHOOD_COSINE) nb->reach[count++] = (struct Reach){rho2, p};
+    }
+    for (int q = 0; view->first && q < FaceRuleGet(facet->type, 0)->n; q++) {
+      const PetscReal rho2 = Rho2(view, view->first[f] + q, x0, metric);
+
+      inside = (PetscBool)(inside || rho2 <= limit);
+      if (rho2 <= limit) nb->reach[count++] = (struct Reach){rho2, view->first[f] + q};
     }
     if (!inside && f != start) continue;
     for (PetscInt k = nb->link_ptr[f]; k < nb->link_ptr[f + 1]; k++) {

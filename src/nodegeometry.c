@@ -4,8 +4,8 @@
 /* Entries of a node's sums, in the order they are summed over ranks */
 enum { SUM_NORMAL = 0, SUM_COVARIANCE = 3, SUM_PAIRS = 9, SUM_AREA = 10, SUM_FACES = 11, SUM_TRIBUTARY = 12, SUMS = 13 };
 
-/* Nodes that a face of this type brings to the surface when many tile it: area per node = area of the face over this. */
-static PetscReal NodesPerFace(ElementType type)
+/* SurfaceNodesPerFace - how many nodes a face of this type brings to the surface when many tile it. Not collective. */
+PetscReal SurfaceNodesPerFace(ElementType type)
 {
   switch (type) {
   case ELEMENT_TRI3: return 0.5;
@@ -58,7 +58,7 @@ static void AddFace(ContactSurface surface, const Facet *face, const PetscReal *
       }
       sum[SUM_PAIRS] += 1;
     }
-    sum[SUM_AREA] += total / NodesPerFace(face->type);
+    sum[SUM_AREA] += total / SurfaceNodesPerFace(face->type);
     sum[SUM_FACES] += 1;
     sum[SUM_TRIBUTARY] += tributary[a];
   }

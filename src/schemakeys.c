@@ -65,7 +65,7 @@ const SchemaKey SchemaKeys[] = {
   {"contact.*.master.cylinder|sphere.side", CHOICE, .values = "outside | inside", .preset = "outside"},
   MOTION_KEYS("contact.*.master.plane|cylinder|sphere"),
   {"contact.*.smoother", CHOICE, .values = "facet | diffuse", .preset = "facet"},
-  {"contact.*.formulation", CHOICE, .values = "node_to_surface | surface_to_surface", .preset = "node_to_surface", .now = "node_to_surface"},
+  {"contact.*.formulation", CHOICE, .values = "node_to_surface | surface_to_surface", .preset = "node_to_surface"},
   {"contact.*.offset", CHOICE, .values = "held | live", .preset = "held", .help = "of surface_to_surface"},
   {"contact.*.degree", CHOICE, .values = "4 | 2", .preset = "4", .help = "of the diffuse fit"},
   {"contact.*.support", REAL, .range = "(0, inf)", .unit = "spacings", .help = "radius of the diffuse fit; default by dimension and degree"},

@@ -10,28 +10,27 @@
 /* Boxes of curved facets are widened by this fraction of the face size: the bulge of a quadratic face beyond its nodes is at most 1/8 of its chord. */
 #define SEARCH_BULGE 0.15
 
-/* SearchCreate - what stands still for the run: surfaces, images, slave points. Collective. */
-PetscErrorCode SearchCreate(Mesh mesh, Scene scene, Loads loads, ContactSurface slave, ContactSurface master, int n_images, const SurfaceImage *images,
-                            const FitSettings *fit, PetscInt n, const PetscInt *slaves, ContactSearch *out)
+/* SearchCreate - what stands still for the run: surfaces, images, slave points. Collective. slave_size: largest face of the slave (length). */
+PetscErrorCode SearchCreate(Mesh mesh, Scene scene, Loads loads, ContactSurface master, PetscReal slave_size, int n_images, const SurfaceImage *images,
+                            const FitSettings *fit, SlavePoints slaves, const PetscReal *offset, ContactSearch *out)
 {
   ContactSearch   s;
-  const PetscReal size = master ? PetscMax(slave->max_size, master->max_size) : slave->max_size;
+  const PetscReal size = master ? PetscMax(slave_size, master->max_size) : slave_size;
 
   PetscFunctionBeginUser;
   PetscCall(PetscNew(&s));
-  s->mesh     = mesh;
-  s->scene    = scene;
-  s->loads    = loads;
-  s->slave    = slave;
-  s->master   = master;
-  s->n_images = n_images;
-  s->images   = images;
-  s->fit      = fit;
-  s->n_slaves = n;
-  s->slaves   = slaves;
-  s->reach    = SEARCH_REACH * size;
-  s->margin   = SEARCH_MARGIN * size;
-  *out        = s;
+  *s   = (struct _n_ContactSearch){.mesh     = mesh,
+                                   .scene    = scene,
+                                   .loads    = loads,
+                                   .master   = master,
+                                   .n_images = n_images,
+                                   .images   = images,
+                                   .fit      = fit,
+                                   .slaves   = slaves,
+                                   .offset   = offset,
+                                   .reach    = SEARCH_REACH * size,
+                                   .margin   = SEARCH_MARGIN * size};
+  *out = s;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -108,32 +107,77 @@ static void CandidatePositions(ContactLists lists, const Candidate *c, PetscReal
     for (int d = 0; d < dim; d++) x[a * dim + d] = lists->point_X[c->facet.nodes[a] * dim + d] + lists->point_u[c->facet.nodes[a] * dim + d];
 }
 
-/* All faces and mirror images near this rank's slaves, in an order that does not depend on the ranks. */
-static PetscErrorCode MakeCandidates(ContactSearch s, ContactLists lists, PetscInt n_records, const FaceRecord *records, const PetscReal box[6],
-                                     PetscReal distance, PetscInt *n, Candidate **candidates)
+/* All faces and mirror images near a box, in an order that does not depend on the ranks. */
+static PetscErrorCode MakeCandidates(ContactSearch s, ContactLists lists, const PetscReal box[6], PetscReal distance, SearchField *field)
 {
   const int dim = lists->dim;
   PetscReal x[FACE_MAX_NODES * 3];
 
   PetscFunctionBeginUser;
-  *n = 0;
-  PetscCall(PetscMalloc1(n_records * s->n_images, candidates));
-  for (PetscInt r = 0; r < n_records; r++) {
+  field->n_candidates = 0;
+  PetscCall(PetscMalloc1(field->n_records * s->n_images, &field->candidates));
+  for (PetscInt r = 0; r < field->n_records; r++) {
+    const FaceRecord *record = &field->records[r];
+
     for (int m = 0; m < s->n_images; m++) {
-      Candidate *c = &(*candidates)[*n];
+      Candidate *c = &field->candidates[field->n_candidates];
       PetscReal  own[6];
 
-      *c           = (Candidate){.record = r, .image = m, .facet = SurfaceImageFacet(&records[r].facet, &s->images[m])};
-      c->facet.tag = records[r].facet.tag * SURFACE_MAX_IMAGES + m;
+      if (s->images[m].left_out) continue;
+      *c           = (Candidate){.record = r, .image = m, .facet = SurfaceImageFacet(&record->facet, &s->images[m])};
+      c->facet.tag = record->facet.tag * SURFACE_MAX_IMAGES + m;
       ImagePositions(s, lists, c, x);
-      SearchCandidatePlace(dim, x, records[r].size, c);
+      SearchCandidatePlace(dim, x, record->size, c);
       for (int d = 0; d < 3; d++) {
         own[d]     = c->lower[d];
         own[3 + d] = c->upper[d];
       }
-      if (SearchBoxesMeet(own, box, dim, distance)) (*n)++;
+      if (SearchBoxesMeet(own, box, dim, distance)) field->n_candidates++;
     }
   }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode SearchFieldCreate(ContactSearch s, const PetscReal *u, PetscReal t, const PetscReal box[6], PetscReal distance, ContactLists lists,
+                                 SearchField *field)
+{
+  Mesh          mesh = s->mesh;
+  PetscMPIInt   size;
+  PetscReal    *boxes;
+  NodeGeometry *geometry = NULL;
+
+  PetscFunctionBeginUser;
+  *field     = (SearchField){0};
+  lists->dim = mesh->dim;
+  if (s->fit->degree) {
+    PetscCall(PetscMalloc1(s->master->rigid ? s->master->rigid->n_nodes : mesh->n_nodes, &geometry));
+    PetscCall(SurfaceNodeGeometry(s->master, s->loads, u, t, geometry));
+  }
+  if (!s->master)
+    PetscCall(PetscMalloc1(0, &field->records));
+  else if (s->master->rigid)
+    PetscCall(SearchPickRigidFaces(s, geometry, t, box, distance, &field->n_records, &field->records));
+  else {
+    PetscCallMPI(MPI_Comm_size(mesh->comm, &size));
+    PetscCall(PetscMalloc1(6 * size, &boxes));
+    PetscCallMPI(MPI_Allgather(box, 6, MPIU_REAL, boxes, 6, MPIU_REAL, mesh->comm));
+    PetscCall(SearchExchangeFaces(s, geometry, u, boxes, distance, &field->n_records, &field->records));
+    PetscCall(PetscFree(boxes));
+  }
+  if (field->n_records) qsort(field->records, field->n_records, sizeof(FaceRecord), RecordCompare);
+  PetscCall(PetscFree(geometry));
+  PetscCall(ListsCreateNodes(s, field, lists));
+  PetscCall(ListsUpdateNodes(s, lists, u, t));
+  PetscCall(MakeCandidates(s, lists, box, distance, field));
+  PetscCall(ListsCreatePoints(s, lists, field));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode SearchFieldDestroy(SearchField *field)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscFree(field->candidates));
+  PetscCall(PetscFree(field->records));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -144,7 +188,8 @@ static PetscBool CandidateFaces(const Nearest *look, const Candidate *c)
   for (int d = 0; d < look->lists->dim; d++) cosine += look->normal[d] * c->normal[d];
   if (cosine >= SEARCH_OPPOSED) return PETSC_FALSE;
   for (int a = 0; a < ElementGet(c->facet.type)->nodes; a++)
-    if (look->lists->point_node[c->facet.nodes[a]] == look->node) return PETSC_FALSE;
+    for (PetscInt k = look->lists->slave_ptr[look->q]; k < look->lists->slave_ptr[look->q + 1]; k++)
+      if (look->lists->point_node[look->lists->point_ptr[c->facet.nodes[a]]] == look->lists->slave_node[k]) return PETSC_FALSE;
   return PETSC_TRUE;
 }
 
@@ -239,14 +284,15 @@ static int KeepFacing(const Nearest *look, int n, int *found)
 }
 
 /* Looks for the nearest facet of every slave point, lists it with what surrounds it, and fits the surface there. */
-static PetscErrorCode ListsFill(ContactSearch s, ContactLists lists, const PetscReal *normals, PetscInt n_candidates, const Candidate *candidates,
-                                const FaceRecord *records, Fitting *fit, PetscReal motion)
+static PetscErrorCode ListsFill(ContactSearch s, ContactLists lists, const PetscReal *normals, const SearchField *field, Fitting *fit, PetscReal motion)
 {
-  const int  dim = lists->dim;
-  Tree       tree;
-  double    *lower, *upper;
-  int       *found, count;
-  ListBuffer buffer = {0};
+  const int        dim          = lists->dim;
+  const PetscInt   n_candidates = field->n_candidates;
+  const Candidate *candidates   = field->candidates;
+  Tree             tree;
+  double          *lower, *upper;
+  int             *found, count;
+  ListBuffer       buffer = {0};
 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc4(n_candidates * dim, &lower, n_candidates * dim, &upper, n_candidates, &found, lists->n_points, &buffer.position));
@@ -260,11 +306,11 @@ static PetscErrorCode ListsFill(ContactSearch s, ContactLists lists, const Petsc
   PetscCheck(!TreeBuild(dim, (int)n_candidates, lower, upper, &tree), PETSC_COMM_SELF, PETSC_ERR_MEM, "no memory for the search tree");
   for (PetscInt q = 0; q < lists->n_slaves; q++) {
     const PetscInt first = buffer.n_points;
-    Nearest        look  = {.lists = lists, .candidates = candidates, .node = lists->slave_node[q], .best = -1};
+    Nearest        look  = {.lists = lists, .candidates = candidates, .q = q, .best = -1};
     double         bound = s->reach + motion;
 
     for (int d = 0; d < dim; d++) look.x[d] = lists->slave_X[q * dim + d] + lists->slave_u[q * dim + d];
-    for (int d = 0; d < 3; d++) look.normal[d] = normals[3 * s->slaves[q] + d];
+    for (int d = 0; d < 3; d++) look.normal[d] = normals[3 * q + d];
     lists->list_ptr[q]  = first;
     lists->facet_ptr[q] = buffer.n;
     lists->kappa[q]     = 0;
@@ -274,7 +320,7 @@ static PetscErrorCode ListsFill(ContactSearch s, ContactLists lists, const Petsc
     count           = KeepFacing(&look, count, found);
     lists->kappa[q] = ListCurvature(&look, count, found);
     if (fit) PetscCall(FittingSlave(fit, &look, q, first, &buffer));
-    PetscCall(ListAddFacets(&look, count, found, records, first, &buffer));
+    PetscCall(ListAddFacets(&look, count, found, field->records, first, &buffer));
   }
   lists->list_ptr[lists->n_slaves]  = buffer.n_points;
   lists->facet_ptr[lists->n_slaves] = buffer.n;
@@ -293,53 +339,28 @@ static PetscErrorCode ListsFill(ContactSearch s, ContactLists lists, const Petsc
    SEARCH_REACH; order and content do not depend on the ranks. The caller destroys the lists with ListsDestroy(). */
 PetscErrorCode SearchLists(ContactSearch s, const PetscReal *u, PetscReal t, PetscReal motion, ContactLists *out)
 {
-  Mesh            mesh     = s->mesh;
   const PetscReal distance = s->reach + PetscMax(s->margin, SearchFitReach(s)) + 2 * motion;
-  PetscMPIInt     size;
-  PetscReal      *boxes, box[6], *area, *normals;
-  PetscInt        n_records, n_candidates;
-  NodeGeometry   *geometry = NULL;
-  FaceRecord     *records;
-  Candidate      *candidates;
+  PetscReal       box[6], *normals;
+  SearchField     field;
   ContactLists    lists;
   Fitting         fit;
 
   PetscFunctionBeginUser;
   PetscCall(PetscNew(&lists));
-  lists->dim = mesh->dim;
-  PetscCallMPI(MPI_Comm_size(mesh->comm, &size));
-  PetscCall(PetscMalloc3(6 * size, &boxes, mesh->n_nodes, &area, 3 * mesh->n_nodes, &normals));
-  if (s->fit->degree) {
-    PetscCall(PetscMalloc1(s->master->rigid ? s->master->rigid->n_nodes : mesh->n_nodes, &geometry));
-    PetscCall(SurfaceNodeGeometry(s->master, s->loads, u, t, geometry));
-  }
-  SearchSlaveBox(s, u, box);
-  if (!s->master) {
-    n_records = 0;
-    PetscCall(PetscMalloc1(0, &records));
-  } else if (s->master->rigid)
-    PetscCall(SearchPickRigidFaces(s, geometry, t, box, distance, &n_records, &records));
-  else {
-    PetscCallMPI(MPI_Allgather(box, 6, MPIU_REAL, boxes, 6, MPIU_REAL, mesh->comm));
-    PetscCall(SearchExchangeFaces(s, geometry, u, boxes, distance, &n_records, &records));
-  }
-  if (n_records) qsort(records, n_records, sizeof(*records), RecordCompare);
-  PetscCall(ListsCreateNodes(s, n_records, records, lists));
-  PetscCall(ListsUpdateNodes(s, lists, u, t));
+  PetscCall(SlavePointsMove(s->slaves, u));
+  SearchSlaveBox(s, box);
+  PetscCall(SearchFieldCreate(s, u, t, box, distance, lists, &field));
   PetscCall(ListsCreateSlaves(s, lists));
-  for (PetscInt q = 0; q < lists->n_slaves; q++) ListsSlaveMap(lists, q, lists->u, &lists->slave_u[q * lists->dim]);
-  PetscCall(SurfaceNodeAreas(s->slave, mesh->dim == 3 ? GEOMETRY_SOLID : GEOMETRY_PLANE_STRAIN, u, area, normals));
-  PetscCall(MakeCandidates(s, lists, n_records, records, box, distance, &n_candidates, &candidates));
-  PetscCall(ListsCreatePoints(s, lists, n_candidates, candidates));
-  if (s->fit->degree) PetscCall(FittingCreate(s, lists, n_records, records, n_candidates, candidates, &fit));
+  PetscCall(PetscMalloc1(3 * lists->n_slaves, &normals));
+  PetscCall(SlavePointsNormals(s->slaves, u, normals));
+  if (s->fit->degree) PetscCall(FittingCreate(s, lists, &field, &fit));
   if (s->fit->global_frame) PetscCall(SurfaceMeanNormal(s->master, s->loads, u, t, fit.plane, NULL));
-  PetscCall(ListsFill(s, lists, normals, n_candidates, candidates, records, s->fit->degree ? &fit : NULL, motion));
+  PetscCall(ListsFill(s, lists, normals, &field, s->fit->degree ? &fit : NULL, motion));
   if (s->fit->degree) PetscCall(FittingDestroy(&fit));
-  PetscCall(ListsUpdate(s, lists, u, t));
-  PetscCall(PetscFree(geometry));
-  PetscCall(PetscFree(candidates));
-  PetscCall(PetscFree(records));
-  PetscCall(PetscFree3(boxes, area, normals));
+  PetscCall(ListsUpdate(s, lists, u, t, NULL));
+  for (PetscInt q = 0; q < lists->n_slaves; q++) ListsCentre(lists, q, &lists->centre[2 * q]);
+  PetscCall(PetscFree(normals));
+  PetscCall(SearchFieldDestroy(&field));
   *out = lists;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

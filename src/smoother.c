@@ -7,10 +7,11 @@ static int SmootherEvaluate_Facet(const SmootherInput *in, SmootherWant want, Sm
   Foot         foot;
 
   if (!FacetClosest(in->dim, in->n_facets, in->facets, in->x, in->seed, &foot)) return 0;
-  facet       = &in->facets[foot.facet];
-  out->gap    = foot.gap;
-  out->beyond = foot.beyond;
-  out->seed   = foot.facet;
+  facet         = &in->facets[foot.facet];
+  out->gap      = foot.gap;
+  out->beyond   = foot.beyond;
+  out->factored = 0;
+  out->seed     = foot.facet;
   memcpy(out->normal, foot.normal, sizeof(out->normal));
   out->n = ElementGet(facet->type)->nodes;
   memcpy(out->points, facet->nodes, out->n * sizeof(int));
@@ -26,17 +27,18 @@ static int SmootherEvaluate_Diffuse(const SmootherInput *in, SmootherWant want, 
     {[SMOOTHER_GAP] = FIT_GAP, [SMOOTHER_FIRST_VARIATION] = FIT_FIRST_VARIATION, [SMOOTHER_SECOND_VARIATION] = FIT_SECOND_VARIATION};
   FitProblem problem =
     {.dim = in->dim, .degree = in->degree, .exponent = in->exponent, .n = in->n_fit, .x = in->x, .multiplier = in->multiplier, .derivatives = in->derivatives};
-  FitResult fit = {.points = out->points, .N = out->N, .M = out->M};
+  FitResult fit = {.points = out->points, .N = out->N, .factors = &out->factors};
 
   out->facet_served = 0;
   if (in->n_fit) {
     memcpy(problem.frame, in->frame, sizeof(problem.frame));
     memcpy(problem.metric, in->metric, sizeof(problem.metric));
     if (FitEvaluate(&problem, wants[want], in->workspace, &fit) && !(fit.guards & FIT_FAR_FOOT)) {
-      out->gap    = fit.gap;
-      out->beyond = 0; /* faded by the facets' free edges when lists are made */
-      out->seed   = in->seed;
-      out->n      = fit.n;
+      out->gap      = fit.gap;
+      out->factored = 1;
+      out->beyond   = 0; /* faded by the facets' free edges when lists are made */
+      out->seed     = in->seed;
+      out->n        = fit.n;
       memcpy(out->normal, fit.normal, sizeof(out->normal));
       return 1;
     }

@@ -78,10 +78,26 @@ static PetscReal FaceStiffness(ContactSurface surface, Elasticity elasticity, Pe
   return ElasticityCellModulus(elasticity, c) * area / (volume * (e->corners == e->dim + 1 ? e->dim : 1));
 }
 
+/* Longest distance between two corners. */
+static PetscReal FaceExtent(int dim, const Facet *face, const double *X)
+{
+  PetscReal most = 0;
+
+  for (int a = 0; a < ElementGet(face->type)->corners; a++) {
+    for (int b = 0; b < a; b++) {
+      PetscReal r2 = 0;
+
+      for (int d = 0; d < dim; d++) r2 += PetscSqr(X[a * dim + d] - X[b * dim + d]);
+      most = PetscMax(most, PetscSqrtReal(r2));
+    }
+  }
+  return most;
+}
+
 static PetscErrorCode SurfaceMeasure(ContactSurface surface, Elasticity elasticity)
 {
   Mesh      mesh   = surface->mesh;
-  PetscReal sum[4] = {0, 0, 0, 0}, most = 0; /* area, faces, size, stiffness * area */
+  PetscReal sum[4] = {0, 0, 0, 0}, most[2] = {0, 0}; /* area, faces, size, stiffness * area; size, extent */
   double    X[FACE_MAX_NODES * 3];
 
   PetscFunctionBeginUser;
@@ -91,7 +107,8 @@ static PetscErrorCode SurfaceMeasure(ContactSurface surface, Elasticity elastici
     FaceCoordinates(surface, &surface->faces[f], NULL, X);
     area                  = FaceArea(surface, &surface->faces[f], X);
     surface->face_size[f] = mesh->dim == 3 ? PetscSqrtReal(area) : area;
-    most                  = PetscMax(most, surface->face_size[f]);
+    most[0]               = PetscMax(most[0], surface->face_size[f]);
+    most[1]               = PetscMax(most[1], FaceExtent(mesh->dim, &surface->faces[f], X));
     sum[0] += area;
     sum[1] += 1;
     sum[2] += surface->face_size[f];
@@ -99,12 +116,13 @@ static PetscErrorCode SurfaceMeasure(ContactSurface surface, Elasticity elastici
   }
   if (surface->group) {
     PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sum, 4, MPIU_REAL, MPI_SUM, mesh->comm));
-    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &most, 1, MPIU_REAL, MPI_MAX, mesh->comm));
+    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, most, 2, MPIU_REAL, MPI_MAX, mesh->comm));
   }
-  surface->mean_size = sum[2] / sum[1];
-  surface->order     = mesh->order;
-  surface->max_size  = most;
-  surface->stiffness = sum[3] / sum[0];
+  surface->mean_size  = sum[2] / sum[1];
+  surface->order      = mesh->order;
+  surface->max_size   = most[0];
+  surface->max_extent = most[1];
+  surface->stiffness  = sum[3] / sum[0];
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -403,12 +421,21 @@ static PetscBool SupportHolds(Scene scene, const char *surface, int component)
   return PETSC_FALSE;
 }
 
+/* Is the plane there already? Two surfaces may lie on one plane, and the axis r = 0 is always there. */
+static PetscBool ImagesHavePlane(int axis, PetscReal position, PetscReal size, int n, const SurfaceImage *images)
+{
+  for (int bit = 1; bit < n; bit <<= 1)
+    if (images[bit].sign[axis] < 0 && PetscAbsReal(images[bit].shift[axis] - 2 * position) <= SURFACE_FLATNESS * size) return PETSC_TRUE;
+  return PETSC_FALSE;
+}
+
 /* Doubles the set of images by one more plane. */
 static void ImagesAddPlane(int axis, PetscReal position, int *n, SurfaceImage *images)
 {
   for (int i = 0; i < *n; i++) {
     SurfaceImage image = images[i];
 
+    image.left_out    = (PetscBool)(image.left_out || image.sign[axis] < 0);
     image.sign[axis]  = -1;
     image.shift[axis] = 2 * position;
     image.reverses    = (PetscBool)!image.reverses;
@@ -420,7 +447,7 @@ static void ImagesAddPlane(int axis, PetscReal position, int *n, SurfaceImage *i
 /* SurfaceImages - mirror images of a pair's master: identity, each plane of symmetry, all their products; the axis r = 0 is always one.
 
    Collective. images[SURFACE_MAX_IMAGES]: in coordinates relative to the mesh's centre. Refuses (exit 1) surfaces that are not planar and
-   normal to an axis, that no support holds in that direction, and two planes normal to one axis. */
+   normal to an axis, that no support holds in that direction, and a third plane normal to one axis. */
 PetscErrorCode SurfaceImages(Mesh mesh, Scene scene, const SceneContact *contact, int *n_images, SurfaceImage images[SURFACE_MAX_IMAGES])
 {
   int taken[3] = {0, 0, 0};
@@ -428,9 +455,7 @@ PetscErrorCode SurfaceImages(Mesh mesh, Scene scene, const SceneContact *contact
   PetscFunctionBeginUser;
   *n_images = 1;
   images[0] = (SurfaceImage){
-    {1, 1, 1},
-    {0, 0, 0},
-    PETSC_FALSE
+    .sign = {1, 1, 1}
   };
   if (scene->geometry == GEOMETRY_AXISYMMETRIC) {
     ImagesAddPlane(0, -mesh->centre[0], n_images, images);
@@ -452,10 +477,11 @@ PetscErrorCode SurfaceImages(Mesh mesh, Scene scene, const SceneContact *contact
                             "%s: no support holds u%c on '%s', so it is no plane of symmetry; allowed: surfaces whose normal displacement a support fixes",
                             SceneWhere(scene, contact->path, "symmetry"), "xyz"[axis], name));
     }
-    if (taken[axis])
-      PetscCall(RefuseInput(mesh->comm, "%s: '%s' is a second plane normal to %c; allowed: one plane for each axis",
+    if (ImagesHavePlane(axis, position, mesh->size, *n_images, images)) continue;
+    if (taken[axis] == SURFACE_AXIS_PLANES)
+      PetscCall(RefuseInput(mesh->comm, "%s: '%s' is a third plane normal to %c; allowed: two planes for each axis (the axis r = 0 is one)",
                             SceneWhere(scene, contact->path, "symmetry"), name, "xyz"[axis]));
-    taken[axis] = 1;
+    taken[axis]++;
     ImagesAddPlane(axis, position, n_images, images);
   }
   PetscFunctionReturn(PETSC_SUCCESS);

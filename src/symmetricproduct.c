@@ -1,15 +1,16 @@
 /* M = K^T J + J^T K in tiles of LANES rows that stay in registers while the depth is summed; the mirror image of a tile is turned over in
    registers too, since a scalar copy would cost as much as the product. */
 #include "symmetricproduct.h"
+#include "fitkernel.h"
 
-enum { ROWS = LANES, COLUMNS = PRODUCT_VECTORS * LANES };
+enum { TILE_ROWS = LANES, TILE_COLUMNS = PRODUCT_VECTORS * LANES };
 
 /* SymmetricProductStride - least length of a row of the factors, a whole number of tiles. Not collective.
 
    Input: n - rows of the product */
 int SymmetricProductStride(int n)
 {
-  return (n + COLUMNS - 1) / COLUMNS * COLUMNS;
+  return (n + TILE_COLUMNS - 1) / TILE_COLUMNS * TILE_COLUMNS;
 }
 
 LANES_INLINE void AddOuterProducts(const int vectors, int depth, int stride, const double *left, const double *right, Lanes (*tile)[PRODUCT_VECTORS])
@@ -17,59 +18,8 @@ LANES_INLINE void AddOuterProducts(const int vectors, int depth, int stride, con
   for (int k = 0; k < depth; k++, left += stride, right += stride) {
     const Lanes *b = (const Lanes *)right;
 
-    for (int r = 0; r < ROWS; r++) {
+    for (int r = 0; r < TILE_ROWS; r++) {
       for (int c = 0; c < vectors; c++) tile[r][c] += left[r] * b[c];
-    }
-  }
-}
-
-#if defined(__AVX512F__)
-  #define SWAP_STAGES 3
-static const LaneMask swap_low[SWAP_STAGES] = {
-  {0, 8, 2, 10, 4, 12, 6,  14},
-  {0, 1, 8, 9,  4, 5,  12, 13},
-  {0, 1, 2, 3,  8, 9,  10, 11}
-};
-static const LaneMask swap_high[SWAP_STAGES] = {
-  {1, 9, 3,  11, 5,  13, 7,  15},
-  {2, 3, 10, 11, 6,  7,  14, 15},
-  {4, 5, 6,  7,  12, 13, 14, 15}
-};
-#elif defined(__AVX__)
-  #define SWAP_STAGES 2
-static const LaneMask swap_low[SWAP_STAGES] = {
-  {0, 4, 2, 6},
-  {0, 1, 4, 5}
-};
-static const LaneMask swap_high[SWAP_STAGES] = {
-  {1, 5, 3, 7},
-  {2, 3, 6, 7}
-};
-#else
-  #define SWAP_STAGES 1
-static const LaneMask swap_low[SWAP_STAGES] = {
-  {0, 2}
-};
-static const LaneMask swap_high[SWAP_STAGES] = {
-  {1, 3}
-};
-#endif
-
-/* Turns a square of LANES vectors over, by swapping ever larger off-diagonal blocks. */
-LANES_INLINE void Transpose(Lanes a[LANES])
-{
-  for (int stage = 0; stage < SWAP_STAGES; stage++) {
-    const int half = 1 << stage;
-
-    for (int i = 0; i < LANES; i++) {
-      const int j = i + half;
-
-      if (!(i & half)) {
-        const Lanes low = __builtin_shuffle(a[i], a[j], swap_low[stage]);
-
-        a[j] = __builtin_shuffle(a[i], a[j], swap_high[stage]);
-        a[i] = low;
-      }
     }
   }
 }
@@ -93,7 +43,7 @@ LANES_INLINE void StorePart(int n, int row, int column, Lanes square[LANES], dou
 /* The tile at (row, column), a whole number of vectors wide, and its image */
 LANES_INLINE void ProductTile(const int vectors, int n, int depth, int stride, const double *K, const double *J, int row, int column, double *M)
 {
-  Lanes tile[ROWS][PRODUCT_VECTORS] = {{{0}}};
+  Lanes tile[TILE_ROWS][PRODUCT_VECTORS] = {{{0}}};
 
   AddOuterProducts(vectors, depth, stride, K + row, J + column, tile);
   AddOuterProducts(vectors, depth, stride, J + row, K + column, tile);
@@ -116,10 +66,10 @@ LANES_INLINE void ProductTile(const int vectors, int n, int depth, int stride, c
    Output: M - [n][n], symmetric to the last bit */
 void SymmetricProduct(int n, int depth, int stride, const double *K, const double *J, double *M)
 {
-  for (int column = 0; column < n; column += COLUMNS) {
-    const int end = LanesGroups(n) * LANES < column + COLUMNS ? LanesGroups(n) * LANES : column + COLUMNS;
+  for (int column = 0; column < n; column += TILE_COLUMNS) {
+    const int end = LanesGroups(n) * LANES < column + TILE_COLUMNS ? LanesGroups(n) * LANES : column + TILE_COLUMNS;
 
-    for (int row = 0; row < end; row += ROWS) {
+    for (int row = 0; row < end; row += TILE_ROWS) {
       const int first = row < column ? column : row;
 
       switch ((end - first) / LANES) {

@@ -60,6 +60,62 @@ static void test_assembled_equals_blocks(void **state)
   assert_int_equal(BlockMatrixDestroy(&blocks), 0);
 }
 
+/* One block of this rank over its own dofs from `first` on. */
+static void AddOwn(BlockMatrix blocks, PetscInt first, PetscInt m)
+{
+  PetscInt  *entry;
+  PetscReal *value;
+
+  assert_int_equal(BlockMatrixAdd(blocks, 0, m, &entry, &value), 0);
+  for (PetscInt i = 0; i < m; i++) entry[i] = first + i;
+  for (PetscInt i = 0; i < m * m; i++) value[i] = 1;
+}
+
+/* Assembles blocks of the given sizes, one after the other on every rank's dofs; returns whether the matrix is new, and checks the sum of its values. */
+static PetscBool AssembleOwn(BlockMatrix blocks, PetscInt n, const PetscInt first[], const PetscInt m[], const PetscInt *const dof[])
+{
+  Mat         matrix;
+  Vec         x, y;
+  PetscBool   changed;
+  PetscReal   sum, expected = 0;
+  PetscMPIInt size;
+
+  MPI_Comm_size(PETSC_COMM_WORLD, &size);
+  assert_int_equal(BlockMatrixReset(blocks), 0);
+  for (PetscInt b = 0; b < n; b++) {
+    AddOwn(blocks, first[b], m[b]);
+    expected += size * m[b] * m[b];
+  }
+  assert_int_equal(BlockMatrixAssemble(blocks, ROWS, dof, &matrix, &changed), 0);
+  assert_int_equal(MatCreateVecs(matrix, &x, &y), 0);
+  assert_int_equal(VecSet(x, 1), 0);
+  assert_int_equal(MatMult(matrix, x, y), 0);
+  assert_int_equal(VecSum(y, &sum), 0);
+  assert_true(PetscAbsReal(sum - expected) <= 1e-12 * expected);
+  assert_int_equal(VecDestroy(&x), 0);
+  assert_int_equal(VecDestroy(&y), 0);
+  return changed;
+}
+
+static void test_pattern_is_kept_while_it_holds(void **state)
+{
+  PetscMPIInt     rank;
+  BlockMatrix     blocks;
+  PetscInt        mine[ROWS];
+  const PetscInt *dof[1] = {mine};
+
+  (void)state;
+  MPI_Comm_rank(PETSC_COMM_WORLD, &rank);
+  for (PetscInt i = 0; i < ROWS; i++) mine[i] = ROWS * rank + i;
+  assert_int_equal(BlockMatrixCreate(PETSC_COMM_WORLD, &blocks), 0);
+  assert_true(AssembleOwn(blocks, 2, (const PetscInt[]){0, 3}, (const PetscInt[]){4, 3}, dof));
+  assert_false(AssembleOwn(blocks, 2, (const PetscInt[]){3, 0}, (const PetscInt[]){3, 4}, dof)); /* another order */
+  assert_false(AssembleOwn(blocks, 1, (const PetscInt[]){0}, (const PetscInt[]){4}, dof));       /* a part */
+  assert_true(AssembleOwn(blocks, 1, (const PetscInt[]){0}, (const PetscInt[]){2}, dof));        /* a small part: too many zeros */
+  assert_true(AssembleOwn(blocks, 1, (const PetscInt[]){1}, (const PetscInt[]){2}, dof));        /* the same dofs, and one more */
+  assert_int_equal(BlockMatrixDestroy(&blocks), 0);
+}
+
 static void test_no_blocks(void **state)
 {
   BlockMatrix blocks;
@@ -77,7 +133,8 @@ static void test_no_blocks(void **state)
 
 int main(int argc, char **argv)
 {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_assembled_equals_blocks), cmocka_unit_test(test_no_blocks)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_assembled_equals_blocks), cmocka_unit_test(test_pattern_is_kept_while_it_holds),
+                                     cmocka_unit_test(test_no_blocks)};
   int                     failed;
 
   if (PetscInitialize(&argc, &argv, NULL, NULL)) return 1;

@@ -1,4 +1,4 @@
-"""The same scene on 1, 2 and 3 ranks: same steps, same iterations, same contact, probes and fields equal to 1e-9 of the largest, 1e-7 where penalties follow the penetration."""
+"""The same scene on 1, 2 and 3 ranks, and on 4 and 7 where --ranks says so: same steps, same iterations, same contact, probes and fields equal to 1e-9 of the largest, 1e-7 where penalties follow the penetration."""
 import re
 
 import numpy
@@ -9,7 +9,8 @@ COUNTS = ("step", "contact_nodes", "nodes_in", "nodes_out", "newton", "attempts"
 
 args = arguments(("scene", "scene file, from tests/scenes"), ("set", "overrides, ' + ' between them, or none"))
 overrides = [] if args.set == "none" else args.set.split(" + ")
-runs = {n: run(args, SCENES / args.scene, out=f"on_{n}", ranks=n, overrides=overrides) for n in (1, 2, 3)}
+numbers = [n for n in (1, 2, 3, 4, 7) if n <= args.ranks]
+runs = {n: run(args, SCENES / args.scene, out=f"on_{n}", ranks=n, overrides=overrides) for n in numbers}
 TOLERANCE = 1e-7 if "adjust: true" in (SCENES / args.scene).read_text() + args.set else 1e-9
 check = Check()
 one = runs[1].steps()
@@ -17,7 +18,7 @@ probes = list(runs[1].summary()["probes"])
 # A pressure deviation is a pressure in per cent of the mean one: 100 is the scale to compare it on, however small it is.
 scales = {name: 100 for name in re.findall(r"name: (\w+), pressure_deviation:", (SCENES / args.scene).read_text())}
 fields = runs[1].fields()
-for n in (2, 3):
+for n in numbers[1:]:
     other = runs[n].steps()
     check.holds(f"{n} ranks: number of steps", len(one) == len(other), f"{len(one)} and {len(other)}")
     for name in COUNTS:

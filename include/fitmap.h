@@ -1,0 +1,24 @@
+/* Variations of the diffuse gap over nodes, where fit points and slave point are combinations of nodes: x = sign * (sum S x_node) by component,
+   as quadrature points of faces are. Plain C: no PETSc, no MPI, no allocation.
+
+   A support has more points than nodes behind them, and M grows with the square: FitMapSecond() therefore takes the factors of M to the nodes
+   (FitResult.factors instead of FitResult.M), not M. */
+#pragma once
+#include "fit.h"
+
+/* Row 0 is the slave point, row 1 + i the i-th point inside, as FitResult.points lists them; row r has the entries ptr[r] to ptr[r + 1] - 1. A
+   node may occur in many rows, the slave point's among them. Fast where rows with the same nodes and signs follow each other: the points of a face. */
+typedef struct {
+  int           n_nodes;
+  const int    *ptr;  /* [1 + points inside + 1] */
+  const int    *node; /* of each entry, below n_nodes; negative: left out, a rigid tool's node without unknowns */
+  const double *S;    /* of each entry */
+  const double *sign; /* [1 + points inside][3], each +1 or -1, whatever the dimension */
+} FitMap;
+
+/* Doubles of workspace for FitMapSecond(). */
+long FitMapWorkspace(int dim, int degree, int n_nodes);
+/* nodal[n_nodes*dim] = S^T N, for N[(1 + n)*dim] of n points inside. */
+void FitMapFirst(int dim, int n, const double *N, const FitMap *, double *nodal);
+/* M[(n_nodes*dim)^2] = S^T M S, symmetric to the last bit. The workspace is another one than that where the factors lie. */
+void FitMapSecond(const FitFactors *, const FitMap *, double *workspace, double *M);

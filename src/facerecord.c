@@ -1,0 +1,82 @@
+#include "facerecord.h"
+
+void FaceRecordFromSurface(ContactSurface surface, const NodeGeometry *geometry, const PetscReal *offset, PetscInt f, FaceRecord *record)
+{
+  Mesh         mesh  = surface->mesh;
+  const int    dim   = mesh->dim;
+  const Facet *facet = &surface->faces[f];
+
+  *record = (FaceRecord){.facet = *facet, .size = surface->face_size[f], .home_face = f};
+  for (int a = 0; a < ElementGet(facet->type)->nodes; a++) {
+    const PetscInt node = facet->nodes[a];
+
+    record->id[a] = surface->rigid ? node : mesh->node_id[node];
+    if (geometry) record->geometry[a] = geometry[node];
+    if (surface->rigid) continue;
+    record->owner[a] = mesh->node_owner[node];
+    record->local[a] = mesh->node_owner_local[node];
+    for (int d = 0; d < dim; d++) record->X[a * 3 + d] = mesh->coords[node * dim + d];
+  }
+  for (int i = 0; offset && i < FACE_RULE_POINTS * dim; i++) record->offset[i] = offset[f * FACE_RULE_POINTS * dim + i];
+}
+
+PetscErrorCode FaceRecordsExchange(MPI_Comm comm, const PetscInt count[], const FaceRecord *send, PetscInt *n, FaceRecord **received)
+{
+  PetscMPIInt  size, *send_count, *send_start, *receive_count, *receive_start;
+  PetscInt     total = 0;
+  MPI_Datatype type;
+
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Comm_size(comm, &size));
+  PetscCall(PetscMalloc4(size, &send_count, size, &send_start, size, &receive_count, size, &receive_start));
+  for (PetscMPIInt r = 0; r < size; r++) {
+    PetscCall(PetscMPIIntCast(total, &send_start[r]));
+    PetscCall(PetscMPIIntCast(count[r], &send_count[r]));
+    total += count[r];
+  }
+  PetscCallMPI(MPI_Alltoall(send_count, 1, MPI_INT, receive_count, 1, MPI_INT, comm));
+  *n = 0;
+  for (PetscMPIInt r = 0; r < size; r++) {
+    PetscCall(PetscMPIIntCast(*n, &receive_start[r]));
+    *n += receive_count[r];
+  }
+  PetscCall(PetscMalloc1(*n, received));
+  PetscCallMPI(MPI_Type_contiguous((int)sizeof(FaceRecord), MPI_BYTE, &type));
+  PetscCallMPI(MPI_Type_commit(&type));
+  PetscCallMPI(MPI_Alltoallv(send, send_count, send_start, type, *received, receive_count, receive_start, type, comm));
+  PetscCallMPI(MPI_Type_free(&type));
+  PetscCall(PetscFree4(send_count, send_start, receive_count, receive_start));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+void FaceRecordKeys(const FaceRecord *record, NodeKey *keys)
+{
+  for (int a = 0; a < ElementGet(record->facet.type)->nodes; a++) {
+    keys[a] = (NodeKey){.id = record->id[a], .owner = record->owner[a], .local = record->local[a]};
+    for (int d = 0; d < 3; d++) keys[a].X[d] = record->X[a * 3 + d];
+  }
+}
+
+static int NodeKeyCompare(const void *a, const void *b)
+{
+  const NodeKey *p = a, *q = b;
+  return p->id < q->id ? -1 : p->id > q->id;
+}
+
+PetscInt NodeKeysUnique(PetscInt n, NodeKey *keys)
+{
+  PetscInt kept = 0;
+
+  if (n) qsort(keys, n, sizeof(*keys), NodeKeyCompare);
+  for (PetscInt i = 0; i < n; i++)
+    if (!kept || keys[i].id != keys[kept - 1].id) keys[kept++] = keys[i];
+  return kept;
+}
+
+int NodeKeysFind(PetscInt n, const NodeKey *keys, PetscInt id)
+{
+  const NodeKey  wanted = {.id = id};
+  const NodeKey *found  = bsearch(&wanted, keys, n, sizeof(*keys), NodeKeyCompare);
+
+  return (int)(found - keys);
+}

@@ -1,0 +1,266 @@
+/* First and second variation of the diffuse gap over nodes. With rows K_i, J_i, H_i of the points and x_i = S_i x,
+       S^T M S = Kbar^T Jbar + Jbar^T Kbar + sum_i (S_i - S_c)^T H_i (S_i - S_c),   Kbar = sum_i K_i S_i,  Jbar likewise.
+   In the last sum the points' own part goes to pairs of nodes that share a face. What couples them to the slave point is again such a product,
+       sum_i -S_i^T H_i S_c - S_c^T H_i S_i + S_c^T H_c S_c = B^T S_c + S_c^T B,   B = 1/2 H_c S_c - sum_i H_i S_i,  H_c = sum H_i,
+   so B and S_c are dim more rows of the factors. */
+#include "fitmap.h"
+#include "fitkernel.h"
+#include "symmetricproduct.h"
+#include <stdint.h>
+
+/* What is summed in registers at a time: vectors of a row, for that many entries of a run */
+enum { ROW_VECTORS = 4, ROW_ENTRIES = LANES == 8 ? 4 : 2 };
+
+/* Rows first to end - 1 of the map, which have the same nodes and signs: entry k of row r is S[(r - first)*entries + k]. */
+typedef struct {
+  int           first, end, entries;
+  const int    *node;
+  const double *S, *sign;
+} FitRun;
+
+/* The factors over nodes */
+typedef struct {
+  Lanes  *rows;  /* [stride + dim][vectors of a row of FitFactors]: by node and component; the last dim are those of left out nodes */
+  double *K, *J; /* [terms + dim][stride] */
+  int     stride;
+} FitNodal;
+
+static int SameNodes(const FitMap *map, int a, int b)
+{
+  const int *const ptr = map->ptr, entries = ptr[a + 1] - ptr[a];
+
+  if (ptr[b + 1] - ptr[b] != entries) return 0;
+  for (int k = 0; k < entries; k++)
+    if (map->node[ptr[a] + k] != map->node[ptr[b] + k]) return 0;
+  for (int c = 0; c < 3; c++)
+    if (map->sign[3 * a + c] != map->sign[3 * b + c]) return 0;
+  return 1;
+}
+
+/* The rows that belong together from `first` on; the slave point, row 0, is always alone. */
+static FitRun NextRun(const FitMap *map, int rows, int first)
+{
+  const int start = map->ptr[first];
+  int       end   = first + 1;
+
+  while (first > 0 && end < rows && SameNodes(map, first, end)) end++;
+  return (FitRun){first, end, map->ptr[first + 1] - start, map->node + start, map->S + start, map->sign + 3 * first};
+}
+
+/* Adds some vectors of a run's rows of K and J, of component c, to those of some of its nodes. A node may be among them twice. */
+LANES_INLINE void AddTile(const int dim, const int vectors, const int entries, const int count, const FitFactors *factors, const FitRun *run, int c, int k,
+                          int v, FitNodal *nodal)
+{
+  const double *S                             = run->S + k;
+  const Lanes  *row                           = (const Lanes *)factors->rows + (run->first * dim + c) * vectors + v;
+  Lanes         sum[ROW_ENTRIES][ROW_VECTORS] = {{{0}}};
+
+  for (int r = run->first; r < run->end; r++, S += run->entries, row += dim * vectors) {
+    for (int a = 0; a < entries; a++) {
+      for (int b = 0; b < count; b++) sum[a][b] += S[a] * row[b];
+    }
+  }
+  for (int a = 0; a < entries; a++) {
+    const int    node = run->node[k + a];
+    Lanes *const at   = nodal->rows + ((node < 0 ? nodal->stride : node * dim) + c) * vectors + v;
+
+    for (int b = 0; b < count; b++) at[b] += run->sign[c] * sum[a][b];
+  }
+}
+
+LANES_INLINE void AddTiles(const int dim, const int vectors, const int entries, const FitFactors *factors, const FitRun *run, int k, FitNodal *nodal)
+{
+  for (int c = 0; c < dim; c++) {
+    for (int v = 0; v + ROW_VECTORS <= vectors; v += ROW_VECTORS) AddTile(dim, vectors, entries, ROW_VECTORS, factors, run, c, k, v, nodal);
+    if (vectors % ROW_VECTORS) AddTile(dim, vectors, entries, vectors % ROW_VECTORS, factors, run, c, k, vectors - vectors % ROW_VECTORS, nodal);
+  }
+}
+
+/* Adds a run's rows of K and J to those of its nodes. */
+LANES_INLINE void AddRows(const int dim, const int vectors, const FitFactors *factors, const FitRun *run, FitNodal *nodal)
+{
+  int k = 0;
+
+  for (; k + ROW_ENTRIES <= run->entries; k += ROW_ENTRIES) AddTiles(dim, vectors, ROW_ENTRIES, factors, run, k, nodal);
+  for (; k < run->entries; k++) AddTiles(dim, vectors, 1, factors, run, k, nodal);
+}
+
+/* Turns the nodes' rows into columns of K and J. */
+LANES_INLINE void TurnBack(const int terms, const int vectors, FitNodal *nodal)
+{
+  for (int i = 0; i < nodal->stride; i += LANES) {
+    for (int v = 0; v < vectors; v++) {
+      Lanes square[LANES];
+
+      for (int k = 0; k < LANES; k++) square[k] = nodal->rows[(i + k) * vectors + v];
+      Transpose(square);
+      for (int k = 0; k < LANES; k++) {
+        const int term = v * LANES + k;
+
+        if (term < terms) *(Lanes *)(nodal->K + term * nodal->stride + i) = square[k];
+        if (term >= terms && term < 2 * terms) *(Lanes *)(nodal->J + (term - terms) * nodal->stride + i) = square[k];
+      }
+    }
+  }
+}
+
+/* sum_r S_rk S_rl H_r over a run's rows; l < 0: sum_r S_rk H_r */
+LANES_INLINE void SumHessians(const int vectors, const FitFactors *factors, const FitRun *run, int k, int l, Lanes *sum)
+{
+  const double *S = run->S;
+  const Lanes  *h = (const Lanes *)factors->hessians + run->first * vectors;
+
+  for (int v = 0; v < vectors; v++) sum[v] = Broadcast(0);
+  for (int r = run->first; r < run->end; r++, S += run->entries, h += vectors) {
+    const double weight = l < 0 ? S[k] : S[k] * S[l];
+
+    for (int v = 0; v < vectors; v++) sum[v] += weight * h[v];
+  }
+}
+
+/* Place of component (c, d) in an H */
+LANES_INLINE int HessianEntry(const int c, const int d)
+{
+  return c > d ? c * (c + 1) / 2 + d : d * (d + 1) / 2 + c;
+}
+
+/* Adds factor times the run's share of H_i S_i to B, the last dim rows of K. */
+LANES_INLINE void AddCoupling(const int dim, const int terms, const FitFactors *factors, const FitRun *run, double factor, FitNodal *nodal)
+{
+  const int vectors = HessianStride(dim) / LANES;
+  double    sign[3];
+
+  for (int c = 0; c < dim; c++) sign[c] = factor * run->sign[c];
+  for (int k = 0; k < run->entries; k++) {
+    Lanes               sum[FIT_HESSIAN];
+    const double *const h = (const double *)sum;
+
+    if (run->node[k] < 0) continue;
+    SumHessians(vectors, factors, run, k, -1, sum);
+    for (int d = 0; d < dim; d++) {
+      double *const B = nodal->K + (terms + d) * nodal->stride + run->node[k] * dim;
+
+      for (int c = 0; c < dim; c++) B[c] += sign[c] * h[HessianEntry(c, d)];
+    }
+  }
+}
+
+/* S_c, the last dim rows of J */
+LANES_INLINE void AddSlave(const int dim, const int terms, const FitRun *slave, FitNodal *nodal)
+{
+  for (int k = 0; k < slave->entries; k++) {
+    if (slave->node[k] < 0) continue;
+    for (int c = 0; c < dim; c++) nodal->J[(terms + c) * nodal->stride + slave->node[k] * dim + c] += slave->sign[c] * slave->S[k];
+  }
+}
+
+/* Adds an H to a block of M. */
+LANES_INLINE void AddBlock(const int dim, const double *h, long size, double *block)
+{
+  for (int c = 0; c < dim; c++) {
+    for (int d = 0; d < dim; d++) block[c * size + d] += h[HessianEntry(c, d)];
+  }
+}
+
+/* Adds the points' own H of a run to each pair of its nodes, and to its mirror image in the same order: M stays symmetric to the last bit. */
+LANES_INLINE void AddPairs(const int dim, const FitFactors *factors, const FitRun *run, long size, double *M)
+{
+  const int vectors           = HessianStride(dim) / LANES;
+  double    sign[FIT_HESSIAN] = {0};
+
+  for (int c = 0; c < dim; c++) {
+    for (int d = 0; d <= c; d++) sign[HessianEntry(c, d)] = run->sign[c] * run->sign[d];
+  }
+  for (int k = 0; k < run->entries; k++) {
+    const long i = (long)run->node[k] * dim;
+
+    for (int l = 0; i >= 0 && l <= k; l++) {
+      const long j = (long)run->node[l] * dim;
+      Lanes      sum[FIT_HESSIAN];
+
+      if (j < 0) continue;
+      SumHessians(vectors, factors, run, k, l, sum);
+      for (int v = 0; v < vectors; v++) sum[v] *= *(const LanesInArray *)(sign + v * LANES);
+      AddBlock(dim, (const double *)sum, size, M + i * size + j);
+      if (l < k) AddBlock(dim, (const double *)sum, size, M + j * size + i);
+    }
+  }
+}
+
+LANES_INLINE void Second(const int dim, const int terms, const FitFactors *factors, const FitMap *map, double *workspace, double *M)
+{
+  const int    vectors = FactorStride(terms) / LANES, size = map->n_nodes * dim, rows = 1 + factors->n;
+  const FitRun slave = NextRun(map, rows, 0);
+  FitNodal     nodal = {.rows = (Lanes *)(((uintptr_t)workspace + ALIGNMENT - 1) / ALIGNMENT * ALIGNMENT), .stride = SymmetricProductStride(size)};
+
+  nodal.K = (double *)(nodal.rows + (nodal.stride + dim) * vectors);
+  nodal.J = nodal.K + (terms + dim) * nodal.stride;
+  memset(nodal.rows, 0, (size_t)(nodal.stride + dim) * vectors * sizeof(Lanes));
+  memset(nodal.K + terms * nodal.stride, 0, (size_t)dim * nodal.stride * sizeof(double));
+  memset(nodal.J + terms * nodal.stride, 0, (size_t)dim * nodal.stride * sizeof(double));
+  AddRows(dim, vectors, factors, &slave, &nodal);
+  AddCoupling(dim, terms, factors, &slave, 0.5, &nodal);
+  AddSlave(dim, terms, &slave, &nodal);
+  for (FitRun run = slave; run.end < rows;) {
+    run = NextRun(map, rows, run.end);
+    AddRows(dim, vectors, factors, &run, &nodal);
+    AddCoupling(dim, terms, factors, &run, -1, &nodal);
+  }
+  TurnBack(terms, vectors, &nodal);
+  SymmetricProduct(size, terms + dim, nodal.stride, nodal.K, nodal.J, M);
+  for (FitRun run = slave; run.end < rows;) {
+    run = NextRun(map, rows, run.end);
+    AddPairs(dim, factors, &run, size, M);
+  }
+}
+
+LANES_INLINE void First(const int dim, int n, const double *N, const FitMap *map, double *nodal)
+{
+  for (int r = 0; r < 1 + n; r++) {
+    double turned[3];
+
+    for (int c = 0; c < dim; c++) turned[c] = map->sign[3 * r + c] * N[r * dim + c];
+    for (int e = map->ptr[r]; e < map->ptr[r + 1]; e++) {
+      if (map->node[e] < 0) continue;
+      for (int c = 0; c < dim; c++) nodal[map->node[e] * dim + c] += map->S[e] * turned[c];
+    }
+  }
+}
+
+/* FitMapWorkspace - doubles of workspace for FitMapSecond(). Not collective.
+
+   Input: dim, degree - of the fit; n_nodes - of the map */
+long FitMapWorkspace(int dim, int degree, int n_nodes)
+{
+  const int terms = FitTerms(dim, degree);
+
+  return ALIGNMENT / (long)sizeof(double) + (long)SymmetricProductStride(n_nodes * dim) * (FactorStride(terms) + 2 * (terms + dim)) + dim * FactorStride(terms);
+}
+
+/* FitMapFirst - the first variation over nodes, S^T N. Not collective.
+
+   Input: dim; n - points inside; N[(1 + n)*dim] - over slave point and points, as FitEvaluate() makes it; map
+   Output: nodal[n_nodes*dim] */
+void FitMapFirst(int dim, int n, const double *N, const FitMap *map, double *nodal)
+{
+  memset(nodal, 0, (size_t)map->n_nodes * dim * sizeof(double));
+  if (dim == 3)
+    First(3, n, N, map, nodal);
+  else
+    First(2, n, N, map, nodal);
+}
+
+/* FitMapSecond - the second variation over nodes, S^T M S, without M. Not collective.
+
+   Input: factors - of M, as FitEvaluate() leaves them in its workspace; map; workspace - FitMapWorkspace() doubles of any contents
+   Output: M[n_nodes*dim][n_nodes*dim] - symmetric to the last bit
+
+   Source: Chamoret et al. 2004, eqs 13 and 14, for points that are combinations of nodes. */
+void FitMapSecond(const FitFactors *factors, const FitMap *map, double *workspace, double *M)
+{
+#define SECOND(dim, degree, terms)                \
+  Second(dim, terms, factors, map, workspace, M); \
+  return
+  INSTANTIATE(factors, SECOND)
+#undef SECOND
+}

@@ -1,0 +1,219 @@
+/* Microseconds per slave quadrature point of the diffuse fit over nodes, surface to surface: fit points are quadrature points of master faces, the
+   slave point is one of a slave face. Lines: row, column, value; # heads a table. */
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <time.h>
+#include "fitframe.h"
+#include "fitmap.h"
+#include "symmetricproduct.h"
+
+enum { SLAVES = 48, REPEATS = 60, SIDE = 7, MAX_ORDER = 2, MAX_LINE = SIDE * MAX_ORDER + 1, MAX_FACE = 9, MAX_POINTS = SIDE * SIDE * MAX_FACE };
+enum { MAX_NODES = MAX_LINE * MAX_LINE + MAX_FACE, MAX_SIZE = 3 * MAX_NODES };
+static const double radius = 15; /* of the master's sphere, in face sizes */
+
+typedef struct {
+  int    dim, degree, order;
+  double support, exponent;
+} Kind;
+
+/* One slave point: its list, and for every point of it the nodes */
+typedef struct {
+  int    n, entries; /* points in the list; nodes of a face */
+  int    node[MAX_POINTS * MAX_FACE];
+  double x[3 * MAX_POINTS], multiplier[MAX_POINTS], S[MAX_POINTS * MAX_FACE];
+} List;
+
+/* Points inside with the nodes behind them */
+typedef struct {
+  FitMap map;
+  int    ptr[MAX_POINTS + 2], node[(MAX_POINTS + 1) * MAX_FACE];
+  double S[(MAX_POINTS + 1) * MAX_FACE], sign[3 * (MAX_POINTS + 1)];
+} Map;
+
+static double Seconds(void)
+{
+  struct timespec now;
+
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
+  return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+}
+
+static double Random(double low, double high)
+{
+  return low + (high - low) * rand() / RAND_MAX;
+}
+
+static double LineShape(int order, int a, double s)
+{
+  if (order == 1) return a == 0 ? 1 - s : s;
+  return a == 0 ? (1 - s) * (1 - 2 * s) : a == 1 ? 4 * s * (1 - s) : s * (2 * s - 1);
+}
+
+/* Jittered faces of a patch around the slave point, with order + 1 quadrature points in each direction */
+static void Fill(const Kind *kind, List *list)
+{
+  static const double gauss[2][3] = {
+    {0.211324865405187, 0.788675134594813, 0                },
+    {0.112701665379258, 0.5,               0.887298334620742}
+  };
+  const int    order = kind->order, q = order + 1, line = SIDE * order + 1, rows = kind->dim == 3 ? SIDE : 1;
+  const double shift[2] = {Random(-0.5, 0.5), Random(-0.5, 0.5)};
+  double       x[3 * MAX_LINE * MAX_LINE];
+
+  for (int i = 0; i < line; i++) {
+    for (int j = 0; j < (kind->dim == 3 ? line : 1); j++) {
+      double      *at = x + 3 * (i * line + j);
+      const double s  = (double)i / order - 0.5 * SIDE + shift[0] + Random(-0.15, 0.15) / order;
+      const double t  = kind->dim == 3 ? (double)j / order - 0.5 * SIDE + shift[1] + Random(-0.15, 0.15) / order : 0;
+
+      at[0]             = s;
+      at[1]             = t;
+      at[kind->dim - 1] = sqrt(radius * radius - s * s - t * t) - radius - 0.01;
+    }
+  }
+  list->n       = 0;
+  list->entries = kind->dim == 3 ? q * q : q;
+  for (int face = 0; face < SIDE * rows; face++) {
+    const int origin = kind->dim == 3 ? face / SIDE * order * line + face % SIDE * order : face * order * line;
+
+    for (int p = 0; p < list->entries; p++, list->n++) {
+      double *const at = list->x + list->n * kind->dim;
+
+      for (int c = 0; c < kind->dim; c++) at[c] = 0;
+      for (int a = 0; a < list->entries; a++) {
+        const int    entry = list->n * list->entries + a, i = a % q, j = a / q;
+        const double S = LineShape(order, i, gauss[order - 1][p % q]) * (kind->dim == 3 ? LineShape(order, j, gauss[order - 1][p / q]) : 1);
+
+        list->node[entry] = origin + i * line + j;
+        list->S[entry]    = S;
+        for (int c = 0; c < kind->dim; c++) at[c] += S * x[3 * list->node[entry] + c];
+      }
+      list->multiplier[list->n] = 1;
+    }
+  }
+}
+
+/* Numbers the nodes behind the points inside, after the slave point's own. */
+static void MakeMap(const List *list, int n, const int *points, Map *map)
+{
+  int number[MAX_LINE * MAX_LINE], entries = list->entries;
+
+  map->map = (FitMap){.n_nodes = list->entries, .ptr = map->ptr, .node = map->node, .S = map->S, .sign = map->sign};
+  for (int i = 0; i < MAX_LINE * MAX_LINE; i++) number[i] = -1;
+  for (int i = 0; i < 3 * (1 + n); i++) map->sign[i] = 1;
+  for (int k = 0; k < entries; k++) {
+    map->node[k] = k;
+    map->S[k]    = 1.0 / entries;
+  }
+  map->ptr[0] = 0;
+  map->ptr[1] = entries;
+  for (int i = 0; i < n; i++) {
+    for (int k = 0; k < list->entries; k++, entries++) {
+      const int from = points[i] * list->entries + k, node = list->node[from];
+
+      if (number[node] < 0) number[node] = map->map.n_nodes++;
+      map->node[entries] = number[node];
+      map->S[entries]    = list->S[from];
+    }
+    map->ptr[2 + i] = entries;
+  }
+}
+
+typedef enum { GAP, GAP_N, FACTORS, NODAL_N, NODAL_M, PRODUCT, ALL, PARTS } Part;
+static const char *const names[] = {"gap", "gap,N", "..,K,J,H", "N_nodes", "M_nodes", "(product)", "all"};
+
+typedef struct {
+  FitProblem problem;
+  FitResult  result;
+  FitFactors factors;
+  List       list;
+  Map        map;
+  int        points[MAX_POINTS];
+  double     N[3 * (1 + MAX_POINTS)], *workspace;
+} Slave;
+
+static double nodal[MAX_SIZE], M[(long)MAX_SIZE * MAX_SIZE], *scratch;
+
+static void Do(Part part, Slave *s)
+{
+  const int terms = FitTerms(s->problem.dim, s->problem.degree), size = s->map.map.n_nodes * s->problem.dim, stride = SymmetricProductStride(size);
+
+  s->result.factors = part == FACTORS || part == ALL ? &s->factors : NULL;
+  if (part <= FACTORS || part == ALL) {
+    if (!FitEvaluate(&s->problem, part == GAP ? FIT_GAP : part == GAP_N ? FIT_FIRST_VARIATION : FIT_SECOND_VARIATION, s->workspace, &s->result)) exit(1);
+  }
+  if (part == NODAL_N || part == ALL) FitMapFirst(s->problem.dim, s->result.n, s->N, &s->map.map, nodal);
+  if (part == NODAL_M || part == ALL) FitMapSecond(&s->factors, &s->map.map, scratch, M);
+  if (part == PRODUCT) SymmetricProduct(size, terms, stride, scratch, scratch + terms * stride, M);
+}
+
+static void Setup(const Kind *kind, Slave *s)
+{
+  double round[3][3] =
+    {
+      {1, 0, 0},
+      {0, 1, 0},
+      {0, 0, 1}
+  },
+         up[3] = {0};
+
+  up[kind->dim - 1] = 1;
+  Fill(kind, &s->list);
+  s->problem =
+    (FitProblem){.dim = kind->dim, .degree = kind->degree, .exponent = kind->exponent, .n = s->list.n, .x = s->list.x, .multiplier = s->list.multiplier};
+  s->result = (FitResult){.points = s->points, .N = s->N};
+  FitFrameFromNormal(kind->dim, up, s->problem.frame);
+  FitMetricFromCovariance(kind->dim, s->problem.frame, round, 1, kind->support, s->problem.metric);
+  s->workspace = malloc(FitWorkspace(kind->dim, kind->degree, s->list.n) * sizeof(double));
+  if (!s->workspace) exit(1);
+  Do(FACTORS, s);
+  MakeMap(&s->list, s->result.n, s->points, &s->map);
+}
+
+/* Best of some repetitions */
+static void Bench(const char *row, const Kind *kind)
+{
+  static Slave slaves[SLAVES];
+  double       points = 0, nodes = 0;
+
+  for (int i = 0; i < SLAVES; i++) {
+    Setup(kind, &slaves[i]);
+    points += (double)slaves[i].result.n / SLAVES;
+    nodes += (double)slaves[i].map.map.n_nodes / SLAVES;
+  }
+  printf("%s points %.0f\n%s nodes %.0f\n", row, points, row, nodes);
+  for (Part part = GAP; part < PARTS; part++) {
+    double best = INFINITY;
+
+    for (int repeat = 0; repeat < REPEATS; repeat++) {
+      const double begin = Seconds();
+
+      for (int i = 0; i < SLAVES; i++) Do(part, &slaves[i]);
+      best = fmin(best, 1e6 * (Seconds() - begin) / SLAVES);
+    }
+    printf("%s %s %.2f\n", row, names[part], best);
+  }
+  for (int i = 0; i < SLAVES; i++) free(slaves[i].workspace);
+}
+
+int main(void)
+{
+  static const struct {
+    const char *row;
+    Kind        kind;
+  } cases[] = {
+    {"hex8,4",  {3, 4, 1, 3.0, 3} },
+    {"hex8,2",  {3, 2, 1, 2.5, 3} },
+    {"hex27,4", {3, 4, 2, 2.25, 3}},
+    {"quad4,4", {2, 4, 1, 3.0, 3} },
+    {"quad9,4", {2, 4, 2, 2.25, 3}}
+  };
+
+  scratch = aligned_alloc(64, (FitMapWorkspace(3, 4, MAX_NODES) + 7) / 8 * 64);
+  if (!scratch) return 1;
+  puts("# diffuse fit over nodes, by element and degree: microseconds per slave quadrature point");
+  for (int i = 0; i < (int)(sizeof(cases) / sizeof(cases[0])); i++) Bench(cases[i].row, &cases[i].kind);
+  free(scratch);
+  return 0;
+}

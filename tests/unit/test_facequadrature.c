@@ -1,0 +1,108 @@
+/* The face rules integrate what they should, the hat functions are positive and sum to one, and every node of a face gets area. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <cmocka.h>
+#include <math.h>
+#include "facequadrature.h"
+
+static const ElementType types[] = {ELEMENT_EDGE2, ELEMENT_EDGE3, ELEMENT_TRI3, ELEMENT_TRI6, ELEMENT_QUAD4, ELEMENT_QUAD9};
+enum { TYPES = sizeof(types) / sizeof(types[0]) };
+
+static double Factorial(int n)
+{
+  return n > 1 ? n * Factorial(n - 1) : 1;
+}
+
+/* Integral of x^i y^j over the reference face. */
+static double Exact(const Element *e, int i, int j)
+{
+  if (e->dim == 2 && e->corners == 3) return Factorial(i) * Factorial(j) / Factorial(i + j + 2);
+  return (i % 2 ? 0 : 2. / (i + 1)) * (e->dim == 1 ? 1 : j % 2 ? 0 : 2. / (j + 1));
+}
+
+static void test_degree(void **state)
+{
+  static const int triangle[2][2] = {
+    {2, 4},
+    {4, 6}
+  }; /* by order, finer */
+
+  (void)state;
+  for (int t = 0; t < TYPES; t++) {
+    const Element *e = ElementGet(types[t]);
+
+    for (int finer = 0; finer < 2; finer++) {
+      const FaceRule *rule   = FaceRuleGet(types[t], finer);
+      const int       tensor = 2 * (e->order + 1 + finer) - 1, degree = e->corners == 3 ? triangle[e->order - 1][finer] : tensor;
+
+      for (int i = 0; i <= degree; i++) {
+        for (int j = 0; j <= (e->dim == 1 ? 0 : e->corners == 3 ? degree - i : degree); j++) {
+          double sum = 0;
+
+          for (int q = 0; q < rule->n; q++) sum += rule->weight[q] * pow(rule->xi[q][0], i) * pow(rule->xi[q][1], j);
+          assert_true(fabs(sum - Exact(e, i, j)) < 1e-14);
+        }
+      }
+    }
+  }
+}
+
+static void test_hats(void **state)
+{
+  (void)state;
+  for (int t = 0; t < TYPES; t++) {
+    const Element *e = ElementGet(types[t]);
+
+    for (int a = 0; a < e->nodes; a++) { /* one at its node, nothing at the others */
+      double psi[FACE_MAX_NODES];
+
+      FaceHat(types[t], e->node[a], psi);
+      for (int b = 0; b < e->nodes; b++) assert_true(fabs(psi[b] - (a == b)) < 1e-15);
+    }
+    for (int finer = 0; finer < 2; finer++) {
+      const FaceRule *rule                 = FaceRuleGet(types[t], finer);
+      double          area[FACE_MAX_NODES] = {0};
+
+      for (int q = 0; q < rule->n; q++) {
+        double sum = 0;
+
+        for (int a = 0; a < e->nodes; a++) {
+          assert_true(rule->hat[q][a] >= 0);
+          sum += rule->hat[q][a];
+          area[a] += rule->weight[q] * rule->hat[q][a];
+        }
+        assert_true(fabs(sum - 1) < 1e-15);
+      }
+      for (int a = 0; a < e->nodes; a++) assert_true(area[a] > 0);
+    }
+  }
+}
+
+/* A tilted square, and an edge about the axis: areas and normals. */
+static void test_areas(void **state)
+{
+  const double    square[12] = {0, 0, 0, 2, 0, 1, 2, 2, 1, 0, 2, 0}, edge[4] = {1, 0, 3, 2};
+  double          area[FACE_RULE_POINTS], normal[FACE_RULE_POINTS * 3], sum = 0;
+  const FaceRule *rule = FaceRuleGet(ELEMENT_QUAD4, 1);
+
+  (void)state;
+  FaceRuleAreas(rule, ELEMENT_QUAD4, 3, GEOMETRY_SOLID, square, area, normal);
+  for (int q = 0; q < rule->n; q++) {
+    sum += area[q];
+    assert_true(fabs(normal[3 * q] + 1 / sqrt(5)) < 1e-14 && fabs(normal[3 * q + 1]) < 1e-14 && fabs(normal[3 * q + 2] - 2 / sqrt(5)) < 1e-14);
+  }
+  assert_true(fabs(sum - 2 * sqrt(5)) < 1e-13);
+  rule = FaceRuleGet(ELEMENT_EDGE2, 0);
+  sum  = 0;
+  FaceRuleAreas(rule, ELEMENT_EDGE2, 2, GEOMETRY_AXISYMMETRIC, edge, area, normal);
+  for (int q = 0; q < rule->n; q++) sum += area[q];
+  assert_true(fabs(sum - 8 * acos(-1) * sqrt(2)) < 1e-12 * sum); /* 2 pi 2 times the length 2 sqrt 2 */
+  assert_true(fabs(normal[0] - sqrt(0.5)) < 1e-14 && fabs(normal[1] + sqrt(0.5)) < 1e-14);
+}
+
+int main(void)
+{
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_degree), cmocka_unit_test(test_hats), cmocka_unit_test(test_areas)};
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
