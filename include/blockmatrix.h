@@ -8,7 +8,8 @@
 
 typedef struct _n_BlockMatrix *BlockMatrix;
 
-PetscErrorCode BlockMatrixCreate(MPI_Comm, BlockMatrix *);
+/* size: the dofs of a node, which stand next to each other in every block. Collective. */
+PetscErrorCode BlockMatrixCreate(MPI_Comm, int size, BlockMatrix *);
 PetscErrorCode BlockMatrixDestroy(BlockMatrix *);
 PetscErrorCode BlockMatrixReset(BlockMatrix);
 /* A block of size m over entries of vector `list`: entry[m] to be written, value[m*m] (row-major) to be added to (it is zero). Both are valid

@@ -24,6 +24,8 @@ typedef struct {
 void FaceRecordFromSurface(ContactSurface, const NodeGeometry *geometry, const PetscReal *offset, PetscInt f, FaceRecord *);
 /* Sends count[r] records to each rank r, in the order of the ranks; what arrives is the caller's to free. Collective. */
 PetscErrorCode FaceRecordsExchange(MPI_Comm, const PetscInt count[], const FaceRecord *send, PetscInt *n, FaceRecord **received);
+/* Sorts by the faces' tags. */
+void FaceRecordsSort(PetscInt n, FaceRecord *);
 /* The keys of a record's nodes, [nodes] */
 void FaceRecordKeys(const FaceRecord *, NodeKey *);
 /* Sorts keys by id and drops repeated ones; returns how many remain. */

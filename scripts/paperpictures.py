@@ -85,7 +85,7 @@ def penalties(cases, window, title):
         tried = [(row["P"], row["penalty"] * factor / row["scale"]) for row in rows for factor in row.get("tried", ())]
         above.semilogy([P for P, _ in tried], [eps for _, eps in tried], "kx", markersize=8)
     below.axhspan(*window, color="0.85", label="window")
-    above.set(ylabel="penalty (N/mm per mm$^2$)", title="Fig. 3: " + title)
+    above.set(ylabel="penalty (N/mm per mm$^2$)", title="Fig. 3" + title)
     below.set(xlabel="P (MPa)", ylabel="penetration (mm)")
     below.legend(fontsize=8, loc="upper left", bbox_to_anchor=(1.01, 1))
     for axes in (above, below):
@@ -100,7 +100,8 @@ def cup(mesh, state):
     axes.add_collection(PolyCollection(x[faces][:, :, :2], facecolors=colours, **EDGES))
     axes.axhline(-101.2, color="k")
     axes.axvline(0, color="k", linestyle="-.", linewidth=0.6)
-    axes.set(xlim=(-2, 76), ylim=(-104, -66), aspect="equal", xlabel="r (mm)", ylabel="z (mm)", title="Fig. 4(a) finite element model" if state is None else f"Fig. 4(b) deformed configuration, P = {200 * state[0]:g} MPa")
+    title = "Fig. 4(a) finite element model" if state is None else f"Fig. 4(b) deformed configuration, P = {200 * state[0]:g} MPa"
+    axes.set(xlim=(-2, 76), ylim=(-104, -66), aspect="equal", xlabel="r (mm)", ylabel="z (mm)", title=title)
     stress_bar(figure, axes, bar, shrink=0.7)
     return figure
 

@@ -11,23 +11,28 @@ typedef struct {
 
 struct _n_BlockMatrix {
   MPI_Comm   comm;
+  int        size; /* of a node: its dofs */
   PetscInt   n, room, n_entries, entries_room, n_values, values_room;
   Block     *block;
   PetscInt  *entry;
   PetscReal *value;
   Mat        matrix;
-  PetscInt   n_pattern, *pattern;     /* of the blocks: size and dofs of block after block */
-  PetscInt   n_dofs, *dof;            /* of the matrix, ascending */
-  PetscInt  *pair_ptr, *pair, *place; /* blocks overlap: every pair of dofs once, row by row; which pair each value of the blocks goes to, or -1 */
-  PetscReal *sum;                     /* over the pairs */
+  PetscInt   n_pattern, *pattern; /* of the blocks: number of nodes and nodes' keys of block after block; key: the first dof, -1 without any */
+  PetscInt   n_nodes, *key, *dof; /* of the matrix: keys ascending, dofs (n_nodes*size) */
+  PetscInt  *pair_ptr, *pair;     /* blocks overlap: every pair of nodes once, row by row */
+  PetscInt  *place, *stride;      /* of the blocks' pairs: the place of the first value in the sums, or -1; of the blocks' rows: to the next row of dofs */
+  PetscReal *sum;                 /* over the pairs, row of dofs by row of dofs */
 };
 
-/* BlockMatrixCreate - an empty one. Collective. */
-PetscErrorCode BlockMatrixCreate(MPI_Comm comm, BlockMatrix *blocks)
+/* BlockMatrixCreate - an empty one.
+
+   Collective. size: entries come in runs of so many, the dofs of a node, in an order of their own; 1: one by one. */
+PetscErrorCode BlockMatrixCreate(MPI_Comm comm, int size, BlockMatrix *blocks)
 {
   PetscFunctionBeginUser;
   PetscCall(PetscNew(blocks));
   (*blocks)->comm = comm;
+  (*blocks)->size = size;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -40,10 +45,12 @@ PetscErrorCode BlockMatrixDestroy(BlockMatrix *blocks)
   PetscCall(PetscFree((*blocks)->entry));
   PetscCall(PetscFree((*blocks)->value));
   PetscCall(PetscFree((*blocks)->pattern));
+  PetscCall(PetscFree((*blocks)->key));
   PetscCall(PetscFree((*blocks)->dof));
   PetscCall(PetscFree((*blocks)->pair_ptr));
   PetscCall(PetscFree((*blocks)->pair));
   PetscCall(PetscFree((*blocks)->place));
+  PetscCall(PetscFree((*blocks)->stride));
   PetscCall(PetscFree((*blocks)->sum));
   PetscCall(MatDestroy(&(*blocks)->matrix));
   PetscCall(PetscFree(*blocks));
@@ -60,8 +67,8 @@ PetscErrorCode BlockMatrixReset(BlockMatrix blocks)
 
 /* BlockMatrixAdd - a new block over entries of rank-local vector `list` (contact: the pair's number).
 
-   Not collective. m: size of the block. entry[m]: to be written; value[m*m]: row-major (force per length), zero, to be added to. Both stand
-   until the next call: growing moves them. */
+   Not collective. m: size of the block, whole nodes. entry[m]: to be written, node by node; value[m*m]: row-major (force per length), zero, to be added to.
+   Both stand until the next call: growing moves them. */
 PetscErrorCode BlockMatrixAdd(BlockMatrix blocks, int list, PetscInt m, PetscInt **entry, PetscReal **value)
 {
   PetscFunctionBeginUser;
@@ -82,43 +89,63 @@ PetscErrorCode BlockMatrixAdd(BlockMatrix blocks, int list, PetscInt m, PetscInt
 /* The pattern that the present blocks need. */
 static PetscErrorCode BlocksPattern(BlockMatrix blocks, const PetscInt *const dof[], PetscInt *n, PetscInt **pattern)
 {
+  const int size = blocks->size;
+
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc1(blocks->n + blocks->n_entries, pattern));
+  PetscCall(PetscMalloc1(blocks->n + blocks->n_entries / size, pattern));
   *n = 0;
   for (PetscInt b = 0; b < blocks->n; b++) {
     const Block *block = &blocks->block[b];
 
-    (*pattern)[(*n)++] = block->m;
-    for (PetscInt i = 0; i < block->m; i++) (*pattern)[(*n)++] = dof[block->list][blocks->entry[block->entry + i]];
+    (*pattern)[(*n)++] = block->m / size;
+    for (PetscInt i = 0; i < block->m; i += size) {
+      PetscInt key = -1;
+
+      for (int d = 0; d < size && key < 0; d++) key = dof[block->list][blocks->entry[block->entry + i + d]];
+      (*pattern)[(*n)++] = PetscMax(key, -1);
+    }
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* One row of a block in the pattern */
+/* One row of nodes of a block in the pattern */
 typedef struct {
-  PetscInt at;    /* the block's place in the pattern */
-  PetscInt value; /* the row's first value */
+  PetscInt at;            /* the block's place in the pattern */
+  PetscInt number, first; /* of the row and of its first pair, over all blocks */
 } BlockRow;
 
-/* The dofs that occur in the pattern, ascending, each once. */
-static PetscErrorCode ListDofs(BlockMatrix blocks)
+/* The nodes that occur in the pattern, ascending, each once, with their dofs. */
+static PetscErrorCode ListNodes(BlockMatrix blocks, const PetscInt *const dof[])
 {
-  PetscInt n = 0;
+  const int size = blocks->size;
+  PetscInt  n = 0, at = 0, number;
 
   PetscFunctionBeginUser;
+  PetscCall(PetscFree(blocks->key));
   PetscCall(PetscFree(blocks->dof));
-  PetscCall(PetscMalloc1(blocks->n_pattern, &blocks->dof));
-  for (PetscInt at = 0; at < blocks->n_pattern; at += 1 + blocks->pattern[at]) {
+  PetscCall(PetscMalloc1(blocks->n_pattern, &blocks->key));
+  for (at = 0; at < blocks->n_pattern; at += 1 + blocks->pattern[at]) {
     for (PetscInt i = 1; i <= blocks->pattern[at]; i++)
-      if (blocks->pattern[at + i] >= 0) blocks->dof[n++] = blocks->pattern[at + i];
+      if (blocks->pattern[at + i] >= 0) blocks->key[n++] = blocks->pattern[at + i];
   }
-  PetscCall(PetscSortRemoveDupsInt(&n, blocks->dof));
-  blocks->n_dofs = n;
+  PetscCall(PetscSortRemoveDupsInt(&n, blocks->key));
+  blocks->n_nodes = n;
+  PetscCall(PetscMalloc1(n * size, &blocks->dof));
+  at = 0;
+  for (PetscInt b = 0; b < blocks->n; b++, at++) {
+    const Block *block = &blocks->block[b];
+
+    for (PetscInt i = 0; i < block->m; i += size) {
+      if (blocks->pattern[++at] < 0) continue;
+      PetscCall(PetscFindInt(blocks->pattern[at], n, blocks->key, &number));
+      for (int d = 0; d < size; d++) blocks->dof[number * size + d] = dof[block->list][blocks->entry[block->entry + i + d]];
+    }
+  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Which of the listed dofs stands at each place of the pattern, -1: none; *known: all that stand there are listed. */
-static PetscErrorCode NumberDofs(BlockMatrix blocks, PetscInt *number, PetscBool *known)
+/* Which of the listed nodes stands at each place of the pattern, -1: none; *known: all that stand there are listed. */
+static PetscErrorCode NumberNodes(BlockMatrix blocks, PetscInt *number, PetscBool *known)
 {
   PetscFunctionBeginUser;
   *known = PETSC_TRUE;
@@ -126,7 +153,7 @@ static PetscErrorCode NumberDofs(BlockMatrix blocks, PetscInt *number, PetscBool
   for (PetscInt at = 0; at < blocks->n_pattern; at += 1 + blocks->pattern[at]) {
     for (PetscInt i = 1; i <= blocks->pattern[at]; i++) {
       if (blocks->pattern[at + i] < 0) continue;
-      PetscCall(PetscFindInt(blocks->pattern[at + i], blocks->n_dofs, blocks->dof, &number[at + i]));
+      PetscCall(PetscFindInt(blocks->pattern[at + i], blocks->n_nodes, blocks->key, &number[at + i]));
       if (number[at + i] >= 0) continue;
       number[at + i] = -1;
       *known         = PETSC_FALSE;
@@ -135,25 +162,25 @@ static PetscErrorCode NumberDofs(BlockMatrix blocks, PetscInt *number, PetscBool
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The rows of all blocks, those of one dof together: row[ptr[d]] to row[ptr[d + 1]], in the blocks' order. */
+/* The rows of all blocks, those of one node together: row[ptr[r]] to row[ptr[r + 1]], in the blocks' order. */
 static PetscErrorCode GroupRows(BlockMatrix blocks, const PetscInt *number, PetscInt *ptr, BlockRow *row)
 {
-  PetscInt value = 0;
+  PetscInt rows = 0, pairs = 0;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscArrayzero(ptr, blocks->n_dofs + 2));
+  PetscCall(PetscArrayzero(ptr, blocks->n_nodes + 2));
   for (PetscInt k = 0; k < blocks->n_pattern; k++)
     if (number[k] >= 0) ptr[number[k] + 2]++;
-  for (PetscInt d = 0; d < blocks->n_dofs; d++) ptr[d + 2] += ptr[d + 1];
+  for (PetscInt r = 0; r < blocks->n_nodes; r++) ptr[r + 2] += ptr[r + 1];
   for (PetscInt at = 0; at < blocks->n_pattern; at += 1 + blocks->pattern[at]) {
-    for (PetscInt i = 1; i <= blocks->pattern[at]; i++, value += blocks->pattern[at])
-      if (number[at + i] >= 0) row[ptr[number[at + i] + 1]++] = (BlockRow){at, value}; /* ends with ptr[d + 1] at the end of d's */
+    for (PetscInt i = 1; i <= blocks->pattern[at]; i++, rows++, pairs += blocks->pattern[at])
+      if (number[at + i] >= 0) row[ptr[number[at + i] + 1]++] = (BlockRow){at, rows, pairs}; /* moves ptr[r + 1] from the start of r's to their end */
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The pairs of dofs that some block couples, each once, row by row. Blocks overlap several times over, so this spares the parallel matrix most of
-   the entries. seen[n_dofs]: scratch. */
+/* The pairs of nodes that some block couples, each once, row by row. Blocks overlap several times over, so this spares the parallel matrix most of
+   the entries. seen[n_nodes]: scratch. */
 static PetscErrorCode ListPairs(BlockMatrix blocks, const PetscInt *number, const PetscInt *ptr, const BlockRow *row, PetscInt *seen)
 {
   PetscInt n = 0, *pair;
@@ -161,111 +188,155 @@ static PetscErrorCode ListPairs(BlockMatrix blocks, const PetscInt *number, cons
   PetscFunctionBeginUser;
   PetscCall(PetscFree(blocks->pair_ptr));
   PetscCall(PetscFree(blocks->pair));
-  PetscCall(PetscMalloc1(blocks->n_values, &pair));
-  PetscCall(PetscMalloc1(blocks->n_dofs + 1, &blocks->pair_ptr));
-  for (PetscInt d = 0; d < blocks->n_dofs; d++) seen[d] = -1;
-  for (PetscInt d = 0; d < blocks->n_dofs; d++) {
-    blocks->pair_ptr[d] = n;
-    for (PetscInt r = ptr[d]; r < ptr[d + 1]; r++) {
-      for (PetscInt j = 1; j <= blocks->pattern[row[r].at]; j++) {
-        const PetscInt column = number[row[r].at + j];
+  PetscCall(PetscMalloc1(blocks->n_values / PetscSqr(blocks->size), &pair));
+  PetscCall(PetscMalloc1(blocks->n_nodes + 1, &blocks->pair_ptr));
+  for (PetscInt r = 0; r < blocks->n_nodes; r++) seen[r] = -1;
+  for (PetscInt r = 0; r < blocks->n_nodes; r++) {
+    blocks->pair_ptr[r] = n;
+    for (PetscInt k = ptr[r]; k < ptr[r + 1]; k++) {
+      for (PetscInt j = 1; j <= blocks->pattern[row[k].at]; j++) {
+        const PetscInt column = number[row[k].at + j];
 
-        if (column < 0 || seen[column] >= blocks->pair_ptr[d]) continue;
+        if (column < 0 || seen[column] >= blocks->pair_ptr[r]) continue;
         seen[column] = n;
         pair[n++]    = column;
       }
     }
   }
-  blocks->pair_ptr[blocks->n_dofs] = n;
+  blocks->pair_ptr[blocks->n_nodes] = n;
   PetscCall(PetscMalloc1(n, &blocks->pair));
   PetscCall(PetscArraycpy(blocks->pair, pair, n));
   PetscCall(PetscFree(pair));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Gives every value of the blocks the pair it is summed in; *used: how many pairs get one, -1: a value has no pair. seen[2*n_dofs]: scratch. */
-static PetscErrorCode PlaceValues(BlockMatrix blocks, const PetscInt *number, const PetscInt *ptr, const BlockRow *row, PetscInt *seen, PetscInt *used)
+/* Gives every pair in the blocks its place in the sums; *used: how many get one, -1: one is missing. seen[2*n_nodes]: scratch. */
+static PetscErrorCode PlacePairs(BlockMatrix blocks, const PetscInt *number, const PetscInt *ptr, const BlockRow *row, PetscInt *seen, PetscInt *used)
 {
-  PetscInt *met = seen + blocks->n_dofs; /* the last row in which a column was asked for */
+  const int      size = blocks->size;
+  const PetscInt n    = blocks->n_values / PetscSqr(size);
+  PetscInt      *met  = seen + blocks->n_nodes; /* the last row in which a column was asked for */
 
   PetscFunctionBeginUser;
   *used = 0;
   PetscCall(PetscFree(blocks->place));
-  PetscCall(PetscMalloc1(blocks->n_values, &blocks->place));
-  for (PetscInt k = 0; k < blocks->n_values; k++) blocks->place[k] = -1;
-  for (PetscInt d = 0; d < blocks->n_dofs; d++) seen[d] = met[d] = -1;
-  for (PetscInt d = 0; d < blocks->n_dofs; d++) {
-    for (PetscInt k = blocks->pair_ptr[d]; k < blocks->pair_ptr[d + 1]; k++) seen[blocks->pair[k]] = k;
-    for (PetscInt r = ptr[d]; r < ptr[d + 1]; r++) {
-      for (PetscInt j = 1; j <= blocks->pattern[row[r].at]; j++) {
-        const PetscInt column = number[row[r].at + j];
+  PetscCall(PetscFree(blocks->stride));
+  PetscCall(PetscMalloc1(n, &blocks->place));
+  PetscCall(PetscMalloc1(blocks->n_entries / size, &blocks->stride));
+  for (PetscInt k = 0; k < n; k++) blocks->place[k] = -1;
+  for (PetscInt r = 0; r < blocks->n_nodes; r++) seen[r] = met[r] = -1;
+  for (PetscInt r = 0; r < blocks->n_nodes; r++) {
+    const PetscInt first = blocks->pair_ptr[r], end = blocks->pair_ptr[r + 1];
+
+    for (PetscInt k = first; k < end; k++) seen[blocks->pair[k]] = k;
+    for (PetscInt k = ptr[r]; k < ptr[r + 1]; k++) {
+      blocks->stride[row[k].number] = (end - first) * size;
+      for (PetscInt j = 1; j <= blocks->pattern[row[k].at]; j++) {
+        const PetscInt column = number[row[k].at + j];
 
         if (column < 0) continue;
-        if (seen[column] < blocks->pair_ptr[d]) {
+        if (seen[column] < first) {
           *used = -1;
           PetscFunctionReturn(PETSC_SUCCESS);
         }
-        blocks->place[row[r].value + j - 1] = seen[column];
-        *used += met[column] != d;
-        met[column] = d;
+        blocks->place[row[k].first + j - 1] = first * PetscSqr(size) + (seen[column] - first) * size;
+        *used += met[column] != r;
+        met[column] = r;
       }
     }
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Finds a place for every value. fresh: in pairs of its own; else in those that are there, if these hold all and are not far too many: *placed. */
-static PetscErrorCode PlacePattern(BlockMatrix blocks, PetscBool fresh, PetscBool *placed)
+/* Finds a place for every pair. fresh: among pairs listed anew; else among those that are there, if these hold all and are not far too many: *placed. */
+static PetscErrorCode PlacePattern(BlockMatrix blocks, const PetscInt *const dof[], PetscBool fresh, PetscBool *placed)
 {
   PetscInt *number, *ptr, *seen, used = -1;
   BlockRow *row;
 
   PetscFunctionBeginUser;
-  if (fresh) PetscCall(ListDofs(blocks));
-  PetscCall(PetscMalloc4(blocks->n_pattern, &number, blocks->n_dofs + 2, &ptr, 2 * blocks->n_dofs, &seen, blocks->n_pattern, &row));
-  PetscCall(NumberDofs(blocks, number, placed));
+  if (fresh) PetscCall(ListNodes(blocks, dof));
+  PetscCall(PetscMalloc4(blocks->n_pattern, &number, blocks->n_nodes + 2, &ptr, 2 * blocks->n_nodes, &seen, blocks->n_pattern, &row));
+  PetscCall(NumberNodes(blocks, number, placed));
   if (*placed) {
     PetscCall(GroupRows(blocks, number, ptr, row));
     if (fresh) PetscCall(ListPairs(blocks, number, ptr, row, seen));
-    PetscCall(PlaceValues(blocks, number, ptr, row, seen, &used));
-    *placed = used >= 0 && blocks->pair_ptr[blocks->n_dofs] <= BLOCK_SLACK * used ? PETSC_TRUE : PETSC_FALSE;
+    PetscCall(PlacePairs(blocks, number, ptr, row, seen, &used));
+    *placed = used >= 0 && blocks->pair_ptr[blocks->n_nodes] <= BLOCK_SLACK * used ? PETSC_TRUE : PETSC_FALSE;
   }
   PetscCall(PetscFree4(number, ptr, seen, row));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode CreateMatrix(BlockMatrix blocks, PetscInt size)
+/* A matrix of `rows` rows on this rank with the pattern of the present blocks; entries without a dof are left out by PETSc. */
+static PetscErrorCode CreateMatrix(BlockMatrix blocks, PetscInt rows, const PetscInt *const dof[])
 {
+  const int size = blocks->size;
   PetscBool placed;
-  PetscInt *rows, *columns, n;
+  PetscInt *i, *j, n, at = 0;
 
   PetscFunctionBeginUser;
   PetscCall(MatDestroy(&blocks->matrix));
   PetscCall(MatCreate(blocks->comm, &blocks->matrix));
-  PetscCall(MatSetSizes(blocks->matrix, size, size, PETSC_DETERMINE, PETSC_DETERMINE));
+  PetscCall(MatSetSizes(blocks->matrix, rows, rows, PETSC_DETERMINE, PETSC_DETERMINE));
   PetscCall(MatSetType(blocks->matrix, MATAIJ));
-  PetscCall(PlacePattern(blocks, PETSC_TRUE, &placed));
-  n = blocks->pair_ptr[blocks->n_dofs];
+  PetscCall(PlacePattern(blocks, dof, PETSC_TRUE, &placed));
+  n = blocks->pair_ptr[blocks->n_nodes] * PetscSqr(size);
   PetscCall(PetscFree(blocks->sum));
   PetscCall(PetscMalloc1(n, &blocks->sum));
-  PetscCall(PetscMalloc2(n, &rows, n, &columns));
-  for (PetscInt d = 0; d < blocks->n_dofs; d++) {
-    for (PetscInt k = blocks->pair_ptr[d]; k < blocks->pair_ptr[d + 1]; k++) {
-      rows[k]    = blocks->dof[d];
-      columns[k] = blocks->dof[blocks->pair[k]];
+  PetscCall(PetscMalloc2(n, &i, n, &j));
+  for (PetscInt row = 0; row < blocks->n_nodes * size; row++) {
+    for (PetscInt k = blocks->pair_ptr[row / size] * size; k < blocks->pair_ptr[row / size + 1] * size; k++, at++) {
+      i[at] = blocks->dof[row];
+      j[at] = blocks->dof[blocks->pair[k / size] * size + k % size];
     }
   }
-  PetscCall(MatSetPreallocationCOO(blocks->matrix, n, rows, columns));
-  PetscCall(PetscFree2(rows, columns));
+  PetscCall(MatSetPreallocationCOO(blocks->matrix, n, i, j));
+  PetscCall(PetscFree2(i, j));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Adds one block to the sums; size a constant where this is called, so that the loops over a node's dofs unroll. */
+static inline void SumBlock(const int size, PetscInt m, const PetscReal *value, const PetscInt *place, const PetscInt *stride, PetscReal *sum)
+{
+  for (PetscInt i = 0; i < m; i += size, stride++) {
+    for (PetscInt j = 0; j < m; j += size, place++) {
+      if (*place < 0) continue;
+      for (int d = 0; d < size; d++)
+        for (int e = 0; e < size; e++) sum[*place + d * *stride + e] += value[(i + d) * m + j + e];
+    }
+  }
+}
+
+static PetscErrorCode SumBlocks(BlockMatrix blocks)
+{
+  const int       size  = blocks->size;
+  const PetscInt *place = blocks->place, *stride = blocks->stride;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscArrayzero(blocks->sum, blocks->pair_ptr[blocks->n_nodes] * PetscSqr(size)));
+  for (PetscInt b = 0; b < blocks->n; b++) {
+    const PetscInt   m     = blocks->block[b].m;
+    const PetscReal *value = &blocks->value[blocks->block[b].value];
+
+    if (size == 3)
+      SumBlock(3, m, value, place, stride, blocks->sum);
+    else if (size == 2)
+      SumBlock(2, m, value, place, stride, blocks->sum);
+    else
+      SumBlock(size, m, value, place, stride, blocks->sum);
+    place += PetscSqr(m / size);
+    stride += m / size;
+  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* BlockMatrixAssemble - the sum of all ranks' blocks as a parallel AIJ matrix over the global dofs; it stays the block matrix's.
 
-   Collective. size: rows of this rank; dof[list][entry]: global dof of an entry, -1 without one (its rows and columns are left out).
+   Collective. rows: of this rank; dof[list][entry]: global dof of an entry, -1 without one (its rows and columns are left out).
    *changed: the matrix is a new one, as the last one's pattern did not hold some rank's blocks or was far larger; else only its values are,
    with zeros where no block asks for an entry. */
-PetscErrorCode BlockMatrixAssemble(BlockMatrix blocks, PetscInt size, const PetscInt *const dof[], Mat *matrix, PetscBool *changed)
+PetscErrorCode BlockMatrixAssemble(BlockMatrix blocks, PetscInt rows, const PetscInt *const dof[], Mat *matrix, PetscBool *changed)
 {
   PetscInt  n = 0, *pattern = NULL;
   PetscBool placed;
@@ -278,13 +349,11 @@ PetscErrorCode BlockMatrixAssemble(BlockMatrix blocks, PetscInt size, const Pets
   PetscCall(PetscFree(blocks->pattern));
   blocks->pattern   = pattern;
   blocks->n_pattern = n;
-  if (!placed && blocks->matrix) PetscCall(PlacePattern(blocks, PETSC_FALSE, &placed));
+  if (!placed && blocks->matrix) PetscCall(PlacePattern(blocks, dof, PETSC_FALSE, &placed));
   all = placed;
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &all, 1, MPI_INT, MPI_LAND, blocks->comm));
-  if (!all) PetscCall(CreateMatrix(blocks, size));
-  PetscCall(PetscArrayzero(blocks->sum, blocks->pair_ptr[blocks->n_dofs]));
-  for (PetscInt k = 0; k < blocks->n_values; k++)
-    if (blocks->place[k] >= 0) blocks->sum[blocks->place[k]] += blocks->value[k];
+  if (!all) PetscCall(CreateMatrix(blocks, rows, dof));
+  PetscCall(SumBlocks(blocks));
   PetscCall(MatSetValuesCOO(blocks->matrix, blocks->sum, INSERT_VALUES));
   *matrix  = blocks->matrix;
   *changed = all ? PETSC_FALSE : PETSC_TRUE;

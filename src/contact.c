@@ -38,7 +38,7 @@ PetscErrorCode ContactCreate(Mesh mesh, Scene scene, Elasticity elasticity, Load
   PetscCall(PetscLogEventRegister("ContactProject", SNES_CLASSID, &contact->event_project));
   PetscCall(PetscLogEventRegister("ContactResidual", SNES_CLASSID, &contact->event_residual));
   PetscCall(PetscLogEventRegister("ContactTangent", SNES_CLASSID, &contact->event_tangent));
-  PetscCall(BlockMatrixCreate(mesh->comm, &contact->blocks));
+  PetscCall(BlockMatrixCreate(mesh->comm, mesh->dim, &contact->blocks));
   PetscCall(RefuseRepeatedPairs(mesh, scene));
   PetscCall(PetscCalloc1(contact->n_pairs, &contact->pairs));
   for (int p = 0; p < contact->n_pairs; p++) {

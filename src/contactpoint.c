@@ -26,7 +26,7 @@ static PetscBool PointEvaluateAnalytic(const ContactPair *pair, ContactLists lis
   return PETSC_TRUE;
 }
 
-/* Gap (and variations over the fit points) of slave point q of the lists; *found is PETSC_FALSE where no master is near. */
+/* ContactPointEvaluate - gap (and variations over the fit points) of slave point q of the lists; *found is PETSC_FALSE where no master is near. */
 PetscErrorCode ContactPointEvaluate(const ContactPair *pair, const Smoother *smoother, ContactLists lists, PetscInt q, int seed, SmootherWant want,
                                     PetscBool *found)
 {
@@ -217,6 +217,10 @@ PetscErrorCode ContactPointToNodes(const ContactPair *pair, ContactLists lists, 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* ContactPointGaps - gaps (lengths) of the slave points of this rank, positions as the lists were last updated.
+
+   Not collective. factor[n_slaves]: points of factor 0 are not asked for; seed[n_slaves]: the facets of last time, rewritten, or NULL;
+   gap[n_slaves]: NaN where there is none; normals[3*n_slaves]: out of the master at the feet, or NULL. */
 PetscErrorCode ContactPointGaps(const ContactPair *pair, ContactLists lists, const PetscReal *factor, int *seed, PetscReal *gap, PetscReal *normals)
 {
   PetscFunctionBeginUser;
@@ -231,6 +235,9 @@ PetscErrorCode ContactPointGaps(const ContactPair *pair, ContactLists lists, con
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* ContactTermGap - the weighted gap sum W f g / sum W f (length) of a term over its points with a gap; NaN without any.
+
+   Not collective. factor, point_gap[n_slaves]: of ContactPointGaps(). *area: sum W f, or NULL. */
 PetscReal ContactTermGap(const ContactPair *pair, const PetscReal *factor, const PetscReal *point_gap, PetscInt c, PetscReal *area)
 {
   PetscReal sum = 0, total = 0;

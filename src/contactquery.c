@@ -254,14 +254,15 @@ const char *ContactPairText(Contact contact, int p)
   static char              text[512];
   const ContactPair       *pair  = &contact->pairs[p];
   const SceneContact      *scene = pair->scene;
+  const char              *how   = scene->formulation == CONTACT_SURFACE_TO_SURFACE ? ", surface to surface" : "";
 
   if (!pair->master)
-    snprintf(text, sizeof(text), "%s on an analytic %s", scene->slave, shapes[scene->analytic.shape]);
+    snprintf(text, sizeof(text), "%s on an analytic %s%s", scene->slave, shapes[scene->analytic.shape], how);
   else if (!pair->fit.degree)
-    snprintf(text, sizeof(text), "%s on %s, facets", scene->slave, scene->master);
+    snprintf(text, sizeof(text), "%s on %s, facets%s", scene->slave, scene->master, how);
   else
-    snprintf(text, sizeof(text), "%s on %s, diffuse, degree %d, support %g, weight %g", scene->slave, scene->master, pair->fit.degree, pair->fit.support,
-             pair->fit.exponent);
+    snprintf(text, sizeof(text), "%s on %s, diffuse%s, degree %d, support %g, weight %g", scene->slave, scene->master, how, pair->fit.degree,
+             pair->fit.integral ? pair->fit.support / pair->master->order : pair->fit.support, pair->fit.exponent);
   return text;
 }
 

@@ -1,5 +1,9 @@
 #include "facerecord.h"
 
+/* FaceRecordFromSurface - face f of a surface with its nodes' keys and reference positions. Not collective.
+
+   geometry: by local node of the mesh or the tool, or NULL; offset[faces][FACE_RULE_POINTS*dim]: lengths, or NULL. The home rank is the
+   caller's to set. */
 void FaceRecordFromSurface(ContactSurface surface, const NodeGeometry *geometry, const PetscReal *offset, PetscInt f, FaceRecord *record)
 {
   Mesh         mesh  = surface->mesh;
@@ -20,6 +24,10 @@ void FaceRecordFromSurface(ContactSurface surface, const NodeGeometry *geometry,
   for (int i = 0; offset && i < FACE_RULE_POINTS * dim; i++) record->offset[i] = offset[f * FACE_RULE_POINTS * dim + i];
 }
 
+/* FaceRecordsExchange - sends records to the ranks that need them.
+
+   Collective. count[size]: how many go to each rank, one rank after the other in send. received[*n]: in the order of the ranks they come from;
+   to be freed with PetscFree(). */
 PetscErrorCode FaceRecordsExchange(MPI_Comm comm, const PetscInt count[], const FaceRecord *send, PetscInt *n, FaceRecord **received)
 {
   PetscMPIInt  size, *send_count, *send_start, *receive_count, *receive_start;
@@ -49,6 +57,7 @@ PetscErrorCode FaceRecordsExchange(MPI_Comm comm, const PetscInt count[], const 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* FaceRecordKeys - keys[nodes of the face], in its order. Not collective. */
 void FaceRecordKeys(const FaceRecord *record, NodeKey *keys)
 {
   for (int a = 0; a < ElementGet(record->facet.type)->nodes; a++) {
@@ -57,12 +66,19 @@ void FaceRecordKeys(const FaceRecord *record, NodeKey *keys)
   }
 }
 
+static int FaceRecordCompare(const void *a, const void *b)
+{
+  const FaceRecord *p = a, *q = b;
+  return p->facet.tag < q->facet.tag ? -1 : p->facet.tag > q->facet.tag;
+}
+
 static int NodeKeyCompare(const void *a, const void *b)
 {
   const NodeKey *p = a, *q = b;
   return p->id < q->id ? -1 : p->id > q->id;
 }
 
+/* NodeKeysUnique - Not collective. keys[n] is sorted in place by id; returns how many are left once each id stands once. */
 PetscInt NodeKeysUnique(PetscInt n, NodeKey *keys)
 {
   PetscInt kept = 0;
@@ -73,6 +89,13 @@ PetscInt NodeKeysUnique(PetscInt n, NodeKey *keys)
   return kept;
 }
 
+/* FaceRecordsSort - by the faces' tags: an order that does not depend on the ranks. Not collective. */
+void FaceRecordsSort(PetscInt n, FaceRecord *records)
+{
+  if (n) qsort(records, n, sizeof(*records), FaceRecordCompare);
+}
+
+/* NodeKeysFind - Not collective. keys[n]: of NodeKeysUnique(); id is among them. */
 int NodeKeysFind(PetscInt n, const NodeKey *keys, PetscInt id)
 {
   const NodeKey  wanted = {.id = id};

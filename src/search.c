@@ -42,12 +42,6 @@ PetscErrorCode SearchDestroy(ContactSearch *s)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static int RecordCompare(const void *a, const void *b)
-{
-  const FaceRecord *p = a, *q = b;
-  return p->facet.tag < q->facet.tag ? -1 : p->facet.tag > q->facet.tag;
-}
-
 /* Centre and unit normal of a candidate from the current positions of its nodes. */
 void SearchCandidatePlace(int dim, const PetscReal *x, PetscReal size, Candidate *c)
 {
@@ -164,7 +158,7 @@ PetscErrorCode SearchFieldCreate(ContactSearch s, const PetscReal *u, PetscReal 
     PetscCall(SearchExchangeFaces(s, geometry, u, boxes, distance, &field->n_records, &field->records));
     PetscCall(PetscFree(boxes));
   }
-  if (field->n_records) qsort(field->records, field->n_records, sizeof(FaceRecord), RecordCompare);
+  FaceRecordsSort(field->n_records, field->records);
   PetscCall(PetscFree(geometry));
   PetscCall(ListsCreateNodes(s, field, lists));
   PetscCall(ListsUpdateNodes(s, lists, u, t));

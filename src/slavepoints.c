@@ -51,12 +51,13 @@ PetscErrorCode SlavePointsCreateNodes(ContactSurface surface, PetscInt n, const 
 /* Every face goes to each rank that owns one of its nodes. */
 static PetscErrorCode ExchangeAround(ContactSurface surface, PetscInt *n, FaceRecord **records)
 {
-  PetscMPIInt size;
+  PetscMPIInt size, rank;
   PetscInt   *count, total = 0, room = PetscMax(1, surface->n_faces);
   FaceRecord *send;
 
   PetscFunctionBeginUser;
   PetscCallMPI(MPI_Comm_size(surface->mesh->comm, &size));
+  PetscCallMPI(MPI_Comm_rank(surface->mesh->comm, &rank));
   PetscCall(PetscCalloc1(size, &count));
   PetscCall(PetscMalloc1(room, &send));
   for (PetscMPIInt r = 0; r < size; r++) {
@@ -71,22 +72,11 @@ static PetscErrorCode ExchangeAround(ContactSurface surface, PetscInt *n, FaceRe
       count[r]++;
     }
   }
-  {
-    PetscMPIInt rank;
-
-    PetscCallMPI(MPI_Comm_rank(surface->mesh->comm, &rank));
-    for (PetscInt i = 0; i < total; i++) send[i].home = rank;
-  }
+  for (PetscInt i = 0; i < total; i++) send[i].home = rank;
   PetscCall(FaceRecordsExchange(surface->mesh->comm, count, send, n, records));
   PetscCall(PetscFree(send));
   PetscCall(PetscFree(count));
   PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-static int RecordCompare(const void *a, const void *b)
-{
-  const FaceRecord *p = a, *q = b;
-  return p->facet.tag < q->facet.tag ? -1 : p->facet.tag > q->facet.tag;
 }
 
 /* Nodes and faces of the points from the faces that arrived. */
@@ -134,7 +124,7 @@ PetscErrorCode SlavePointsCreateQuadrature(ContactSurface surface, Geometry geom
   points->surface = surface;
   points->finer   = finer;
   PetscCall(ExchangeAround(surface, &n_records, &records));
-  if (n_records) qsort(records, n_records, sizeof(*records), RecordCompare);
+  FaceRecordsSort(n_records, records);
   PetscCall(TakeRecords(points, n_records, records));
   for (PetscInt f = 0; f < n_records; f++) {
     points->first[f] = n;

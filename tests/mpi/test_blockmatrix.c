@@ -22,7 +22,7 @@ static void AddBlock(BlockMatrix blocks, PetscReal scale)
   }
 }
 
-static void test_assembled_equals_blocks(void **state)
+static void AssembledEqualsBlocks(int node)
 {
   PetscMPIInt     rank, size;
   BlockMatrix     blocks;
@@ -32,14 +32,13 @@ static void test_assembled_equals_blocks(void **state)
   PetscReal       in[4], out[4] = {0, 0, 0, 0}, sum = 0, norm;
   const PetscInt *dof[1];
 
-  (void)state;
   MPI_Comm_rank(PETSC_COMM_WORLD, &rank);
   MPI_Comm_size(PETSC_COMM_WORLD, &size);
   {
     const PetscInt mine[4] = {ROWS * rank + 1, ROWS * rank + 4, ROWS * ((rank + 1) % size) + 2, -1};
 
     dof[0] = mine;
-    assert_int_equal(BlockMatrixCreate(PETSC_COMM_WORLD, &blocks), 0);
+    assert_int_equal(BlockMatrixCreate(PETSC_COMM_WORLD, node, &blocks), 0);
     for (int pass = 0; pass < 2; pass++) {
       AddBlock(blocks, 1 + pass);
       assert_int_equal(BlockMatrixAssemble(blocks, ROWS, dof, &matrix, &changed), 0);
@@ -58,6 +57,14 @@ static void test_assembled_equals_blocks(void **state)
   assert_int_equal(VecDestroy(&x), 0);
   assert_int_equal(VecDestroy(&y), 0);
   assert_int_equal(BlockMatrixDestroy(&blocks), 0);
+}
+
+/* A node's dofs one by one or together, the last one without a dof */
+static void test_assembled_equals_blocks(void **state)
+{
+  (void)state;
+  AssembledEqualsBlocks(1);
+  AssembledEqualsBlocks(2);
 }
 
 /* One block of this rank over its own dofs from `first` on. */
@@ -107,7 +114,7 @@ static void test_pattern_is_kept_while_it_holds(void **state)
   (void)state;
   MPI_Comm_rank(PETSC_COMM_WORLD, &rank);
   for (PetscInt i = 0; i < ROWS; i++) mine[i] = ROWS * rank + i;
-  assert_int_equal(BlockMatrixCreate(PETSC_COMM_WORLD, &blocks), 0);
+  assert_int_equal(BlockMatrixCreate(PETSC_COMM_WORLD, 1, &blocks), 0);
   assert_true(AssembleOwn(blocks, 2, (const PetscInt[]){0, 3}, (const PetscInt[]){4, 3}, dof));
   assert_false(AssembleOwn(blocks, 2, (const PetscInt[]){3, 0}, (const PetscInt[]){3, 4}, dof)); /* another order */
   assert_false(AssembleOwn(blocks, 1, (const PetscInt[]){0}, (const PetscInt[]){4}, dof));       /* a part */
@@ -124,7 +131,7 @@ static void test_no_blocks(void **state)
   PetscReal   norm;
 
   (void)state;
-  assert_int_equal(BlockMatrixCreate(PETSC_COMM_WORLD, &blocks), 0);
+  assert_int_equal(BlockMatrixCreate(PETSC_COMM_WORLD, 1, &blocks), 0);
   assert_int_equal(BlockMatrixAssemble(blocks, ROWS, NULL, &matrix, &changed), 0);
   assert_int_equal(MatNorm(matrix, NORM_FROBENIUS, &norm), 0);
   assert_true(norm == 0);
