@@ -7,3 +7,4 @@ typedef struct {
 } History;
 
 double HistoryValue(const History *, double t);
+int    HistoryBreaks(const History *, double t); /* does its slope change at t? */

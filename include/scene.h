@@ -144,5 +144,7 @@ PetscErrorCode SceneDestroy(Scene *);
 /* "runs/a.yaml:12: contact.0.slave": the place of a key (or of its nearest ancestor that the file has; "-set KEY" if it came from there).
    Returned text belongs to the scene and is valid until the next call. */
 const char *SceneWhere(Scene, const char *path, const char *key);
+/* Does some history have a breakpoint at t? */
+PetscBool SceneBreaks(Scene, PetscReal t);
 /* the scene reference: every key with type, range, unit, default and help, generated from the table */
 PetscErrorCode SceneReference(FILE *);

@@ -9,6 +9,14 @@ static int HistoryInterval(const History *history, double t)
   return i;
 }
 
+/* HistoryBreaks - whether t is one of its breakpoints. Not collective. */
+int HistoryBreaks(const History *history, double t)
+{
+  const int i = HistoryInterval(history, t);
+
+  return i >= 0 && t == history->t[i];
+}
+
 /* HistoryValue - the factor at load parameter t: linear between breakpoints, the end values beyond them. Exact at breakpoints.
 
    Not collective. t: load parameter. Returns the factor (no unit). */

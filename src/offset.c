@@ -142,6 +142,7 @@ static PetscErrorCode TakeOnce(Offsets o, PetscBool *done)
    is tried again starts from the same t and finds the same offsets. */
 PetscErrorCode OffsetsExtrapolate(Offsets o, const PetscReal *u, PetscReal t, PetscReal t_next)
 {
+  PetscReal ahead = 0;
   PetscBool done;
 
   PetscFunctionBeginUser;
@@ -156,7 +157,8 @@ PetscErrorCode OffsetsExtrapolate(Offsets o, const PetscReal *u, PetscReal t, Pe
     o->t_now    = t;
   }
   PetscCall(OffsetsCompute(o, u, t, o->now));
-  for (PetscInt i = 0; i < o->n; i++) o->used[i] = o->now[i] + (o->t_before >= 0 ? (o->now[i] - o->before[i]) * (t_next - t) / (t - o->t_before) : 0);
+  if (o->t_before >= 0 && !SceneBreaks(o->search->scene, t)) ahead = (t_next - t) / (t - o->t_before); /* past a breakpoint things go another way */
+  for (PetscInt i = 0; i < o->n; i++) o->used[i] = o->now[i] + ahead * (o->now[i] - o->before[i]);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -593,3 +593,23 @@ PetscErrorCode SceneReference(FILE *file)
   SchemaReference(file);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
+
+static PetscBool MotionBreaks(const Motion *motion, PetscReal t)
+{
+  for (int m = 0; m < motion->n; m++)
+    if (HistoryBreaks(&motion->components[m].history, t)) return PETSC_TRUE;
+  return PETSC_FALSE;
+}
+
+/* SceneBreaks - whether some load, imposed displacement or motion changes its rate at load parameter t: what went before says nothing of what comes.
+   Not collective. */
+PetscBool SceneBreaks(Scene scene, PetscReal t)
+{
+  for (int l = 0; l < scene->n_loads; l++)
+    if (HistoryBreaks(&scene->loads[l].history, t)) return PETSC_TRUE;
+  for (int b = 0; b < scene->n_bodies; b++)
+    if (MotionBreaks(&scene->bodies[b].motion, t)) return PETSC_TRUE;
+  for (int c = 0; c < scene->n_contacts; c++)
+    if (MotionBreaks(&scene->contacts[c].motion, t)) return PETSC_TRUE;
+  return PETSC_FALSE;
+}
