@@ -59,13 +59,12 @@ typedef struct {
   PetscReal   *factor;
   int         *seed;
   PetscReal   *point_gap, *point_normal, *point_force;
-  PetscReal   *force, *normal; /* of the last residual: normal nodal force, contact normal (n*3) */
-  PetscReal    total[3];       /* and the force on this rank's terms */
-  PetscReal    t;              /* of the last residual */
-  PetscReal   *law_pressure;
-  PetscReal   *pressure, *trial; /* trial: gaps of the last projection, of a residual or a tangent */
-  PetscBool    projected;        /* there was one with these lists */
-  ContactWork *work;             /* shared by all pairs */
+  PetscReal   *force, *normal;          /* of the last residual: normal nodal force, contact normal (n*3) */
+  PetscReal    total[3];                /* and the force on this rank's terms */
+  PetscReal    t;                       /* of the last residual */
+  PetscReal   *pressure, *law_pressure; /* what ContactGetNodes() shows: force over area; of the law */
+  PetscBool    projected;               /* there was one with these lists */
+  ContactWork *work;                    /* shared by all pairs */
 } ContactPair;
 
 struct _n_Contact {

@@ -22,8 +22,11 @@ typedef struct {
 
 /* Face f of the surface as a record. geometry: by local node, or NULL; offset: [faces][FACE_RULE_POINTS*dim], or NULL. Not collective. */
 void FaceRecordFromSurface(ContactSurface, const NodeGeometry *geometry, const PetscReal *offset, PetscInt f, FaceRecord *);
-/* Sends count[r] records to each rank r, in the order of the ranks; what arrives is the caller's to free. Collective. */
-PetscErrorCode FaceRecordsExchange(MPI_Comm, const PetscInt count[], const FaceRecord *send, PetscInt *n, FaceRecord **received);
+/* Does rank r want face f of this rank? */
+typedef PetscBool (*FaceWantedFn)(const void *context, PetscInt f, PetscMPIInt r);
+/* Sends this rank's faces to the ranks that want them; what arrives is the caller's to free. Collective. */
+PetscErrorCode FaceRecordsShare(ContactSurface, const NodeGeometry *, const PetscReal *offset, FaceWantedFn, const void *context, PetscInt *n,
+                                FaceRecord **received);
 /* Sorts by the faces' tags. */
 void FaceRecordsSort(PetscInt n, FaceRecord *);
 /* The keys of a record's nodes, [nodes] */

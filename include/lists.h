@@ -20,7 +20,7 @@ typedef struct {
   PetscInt     n_nodes, n_deformable;
   PetscInt    *node_id; /* deformable: the mesh's rank-independent id; rigid: node of the tool */
   PetscReal   *X, *u;   /* n_nodes*dim: reference coordinates, displacement at the last update */
-  PetscReal    t;       /* of the last update */
+  PetscReal    t;       /* of the last update, NaN before */
   PetscInt    *dof;     /* n_nodes*dim global dofs, -1 where constrained or rigid */
   PetscSF      sf;
   MPI_Datatype block; /* dim reals */
@@ -54,6 +54,8 @@ typedef struct {
 PetscErrorCode ListsDestroy(ContactLists *);
 /* Positions of contact nodes, fit points and slave points for local displacements u at t; *moved (may be NULL): not where they were. Collective. */
 PetscErrorCode ListsUpdate(ContactSearch, ContactLists, const PetscReal *u, PetscReal t, PetscBool *moved);
+/* x[dim]: point p seen from slave point q at the last update. Not collective. */
+void ListsRelative(ContactLists, PetscInt q, PetscInt p, PetscReal *x);
 /* How far slave point q has slid over its fit points since the lists were made, in supports; 0 without a fit. Not collective. */
 PetscReal ListsSlip(ContactLists, PetscInt q);
 /* Values of the contact nodes (n_nodes*dim) from local values x (n_nodes of the mesh * dim); rigid nodes get their motion from t to t_next. Collective. */

@@ -72,8 +72,8 @@ PetscErrorCode ContactDestroy(Contact *contact)
 
 /* ---------- residual ---------- */
 
-/* Moves the lists' points to (u, t) and projects every slave point; gaps of the terms into pair->trial. These stand already where the last
-   evaluation was at the same place: three in four, as the solver asks for residual, energy and tangent of each iterate one by one. */
+/* Moves the lists' points to (u, t) and projects every slave point. The gaps stand already where the last evaluation was at the same place:
+   three in four, as the solver asks for residual, energy and tangent of each iterate one by one. */
 static PetscErrorCode PairProject(Contact contact, ContactPair *pair, const PetscReal *u, PetscReal t)
 {
   PetscBool moved;
@@ -86,7 +86,6 @@ static PetscErrorCode PairProject(Contact contact, ContactPair *pair, const Pets
   if (pair->fit.degree) TimingBegin(TIMING_FIT);
   PetscCall(ContactPointGaps(pair, pair->lists, pair->factor, pair->seed, pair->point_gap, pair->point_normal));
   if (pair->fit.degree) TimingEnd(TIMING_FIT);
-  for (PetscInt c = 0; c < pair->n; c++) pair->trial[c] = ContactTermGap(pair, pair->factor, pair->point_gap, c, NULL);
   PetscCall(PetscLogEventEnd(contact->event_project, 0, 0, 0, 0));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -102,16 +101,17 @@ static void TermPredict(const ContactPair *pair, PetscInt c, PetscReal opening, 
   if (closed || (pair->slave_offsets && opening <= ContactMeanOpening(pair, c))) value->pressure = -value->stiffness * opening;
 }
 
-/* Law and area of a term in the state of the last projection. */
-static void TermLaw(const ContactPair *pair, PetscInt c, PetscReal t, LawValue *value, PetscReal *area)
+/* Law, gap (may be NULL) and area of a term in the state of the last projection. */
+static void TermLaw(const ContactPair *pair, PetscInt c, PetscReal t, LawValue *value, PetscReal *gap, PetscReal *area)
 {
   const LawState  state = {pair->now.penalty[c], ContactTermOffset(pair, c, t), pair->now.multiplier[c]};
-  const PetscReal gap   = ContactTermGap(pair, pair->factor, pair->point_gap, c, area);
+  const PetscReal found = ContactTermGap(pair, pair->factor, pair->point_gap, c, area);
 
   *value = (LawValue){0, 0, 0};
-  if (PetscIsNanReal(gap)) return;
-  pair->law->evaluate(gap, &state, value);
-  if (pair->predicting && value->stiffness == 0) TermPredict(pair, c, gap - state.offset, value);
+  if (gap) *gap = found;
+  if (PetscIsNanReal(found)) return;
+  pair->law->evaluate(found, &state, value);
+  if (pair->predicting && value->stiffness == 0) TermPredict(pair, c, found - state.offset, value);
 }
 
 /* Direction of a term's contact: the mean of its points'. */
@@ -126,6 +126,25 @@ static void TermNormal(ContactPair *pair, PetscInt c)
   for (int d = 0; d < 3 && length > 0; d++) normal[d] /= PetscSqrtReal(length);
 }
 
+/* A pressure of a term presses on all of its points. */
+static void TermPress(ContactPair *pair, PetscInt c, PetscReal pressure)
+{
+  if (pressure == 0) return;
+  for (PetscInt k = pair->term_ptr[c]; k < pair->term_ptr[c + 1]; k++)
+    pair->point_force[pair->term_point[k]] += pressure * pair->term_weight[k] * pair->factor[pair->term_point[k]];
+}
+
+/* First variation, and second if asked for, of a slave point over contact nodes, in the pair's work. */
+static PetscErrorCode PointVary(const ContactPair *pair, PetscInt q, PetscBool second, PetscBool *found)
+{
+  PetscFunctionBeginUser;
+  if (pair->fit.degree) TimingBegin(TIMING_FIT);
+  PetscCall(ContactPointEvaluate(pair, pair->smoother, pair->lists, q, pair->seed[q], second ? SMOOTHER_SECOND_VARIATION : SMOOTHER_FIRST_VARIATION, found));
+  if (pair->fit.degree) TimingEnd(TIMING_FIT);
+  if (*found) PetscCall(ContactPointToNodes(pair, pair->lists, q, second));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Adds the forces of the loaded slave points to the contact nodes' values. */
 static PetscErrorCode PairForces(ContactPair *pair, PetscReal *values)
 {
@@ -138,19 +157,16 @@ static PetscErrorCode PairForces(ContactPair *pair, PetscReal *values)
     const PetscReal force = pair->point_force[q];
 
     if (force == 0) continue;
-    if (pair->fit.degree) TimingBegin(TIMING_FIT);
-    PetscCall(ContactPointEvaluate(pair, pair->smoother, pair->lists, q, pair->seed[q], SMOOTHER_FIRST_VARIATION, &found));
-    if (pair->fit.degree) TimingEnd(TIMING_FIT);
+    PetscCall(PointVary(pair, q, PETSC_FALSE, &found));
     if (!found) continue;
-    PetscCall(ContactPointToNodes(pair, pair->lists, q, PETSC_FALSE));
     for (PetscInt i = 0; i < work->count * dim; i++) values[work->number[i / dim] * dim + i % dim] -= force * work->N[i];
     for (int d = 0; d < dim; d++) pair->total[d] += force * work->result.N[d];
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Normal nodal forces: the points' forces by the hat functions, those of terms on other ranks too. */
-static PetscErrorCode PairNodalForces(ContactPair *pair)
+/* Normal nodal forces of terms that share their points: the points' forces by the hat functions, those of terms on other ranks too. */
+static PetscErrorCode PairSharedForces(ContactPair *pair)
 {
   const int    dim   = pair->mesh->dim;
   ContactLists lists = pair->lists;
@@ -175,16 +191,15 @@ static PetscErrorCode PairResidual(Contact contact, ContactPair *pair, const Pet
   if (f) PetscCall(PetscArrayzero(pair->point_force, pair->lists->n_slaves));
   for (PetscInt c = 0; c < pair->n; c++) {
     LawValue  value;
-    PetscReal area;
+    PetscReal gap, area;
 
-    TermLaw(pair, c, t, &value, &area);
+    TermLaw(pair, c, t, &value, &gap, &area);
     if (energy) *energy += area * value.psi;
     if (force2) *force2 += 2 * PetscSqr(area * value.pressure); /* on the slave and on the master */
     if (!f) continue;
-    pair->now.gap[c]    = pair->trial[c];
+    pair->now.gap[c]    = gap;
     pair->now.status[c] = value.stiffness > 0 ? CONTACT_CLOSED : CONTACT_OPEN;
-    for (PetscInt k = pair->term_ptr[c]; k < pair->term_ptr[c + 1] && value.pressure != 0; k++)
-      pair->point_force[pair->term_point[k]] += value.pressure * pair->term_weight[k] * pair->factor[pair->term_point[k]];
+    TermPress(pair, c, value.pressure);
     TermNormal(pair, c);
   }
   if (!f) PetscFunctionReturn(PETSC_SUCCESS);
@@ -193,7 +208,8 @@ static PetscErrorCode PairResidual(Contact contact, ContactPair *pair, const Pet
   PetscCall(PetscCalloc1(pair->lists->n_nodes * contact->mesh->dim, &values));
   PetscCall(PairForces(pair, values));
   PetscCall(ListsReduce(pair->lists, values, f));
-  PetscCall(PairNodalForces(pair));
+  if (pair->slaves->face_sf) PetscCall(PairSharedForces(pair));
+  for (PetscInt c = 0; c < pair->n && !pair->slaves->face_sf; c++) pair->force[c] = pair->point_force[pair->term_point[pair->term_ptr[c]]];
   PetscCall(PetscFree(values));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -275,12 +291,8 @@ static PetscErrorCode VariationsCreate(const ContactPair *pair, const TermState 
       const PetscInt q = pair->term_point[k];
 
       if (all->first[q] >= 0 || pair->factor[q] == 0) continue;
-      if (pair->fit.degree) TimingBegin(TIMING_FIT);
-      PetscCall(ContactPointEvaluate(pair, pair->smoother, pair->lists, q, pair->seed[q], SMOOTHER_FIRST_VARIATION, &found));
-      if (pair->fit.degree) TimingEnd(TIMING_FIT);
-      if (!found) continue;
-      PetscCall(ContactPointToNodes(pair, pair->lists, q, PETSC_FALSE));
-      PetscCall(VariationsAdd(all, pair->work, dim, q));
+      PetscCall(PointVary(pair, q, PETSC_FALSE, &found));
+      if (found) PetscCall(VariationsAdd(all, pair->work, dim, q));
     }
   }
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -323,11 +335,8 @@ static PetscErrorCode TermAddSecond(const ContactPair *pair, PetscInt q, const P
   PetscBool          found;
 
   PetscFunctionBeginUser;
-  if (pair->fit.degree) TimingBegin(TIMING_FIT);
-  PetscCall(ContactPointEvaluate(pair, pair->smoother, pair->lists, q, pair->seed[q], SMOOTHER_SECOND_VARIATION, &found));
-  if (pair->fit.degree) TimingEnd(TIMING_FIT);
+  PetscCall(PointVary(pair, q, PETSC_TRUE, &found));
   if (!found) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(ContactPointToNodes(pair, pair->lists, q, PETSC_TRUE));
   for (PetscInt i = 0; i < work->count * dim; i++) {
     PetscReal       *row  = &value[(all->place[work->number[i / dim]] * dim + i % dim) * m];
     const PetscReal *from = &work->M[i * work->count * dim];
@@ -383,11 +392,8 @@ static PetscErrorCode PointBlock(Contact contact, const ContactPair *pair, int p
   PetscBool          found;
 
   PetscFunctionBeginUser;
-  if (pair->fit.degree) TimingBegin(TIMING_FIT);
-  PetscCall(ContactPointEvaluate(pair, pair->smoother, pair->lists, q, pair->seed[q], SMOOTHER_SECOND_VARIATION, &found));
-  if (pair->fit.degree) TimingEnd(TIMING_FIT);
+  PetscCall(PointVary(pair, q, PETSC_TRUE, &found));
   if (!found) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(ContactPointToNodes(pair, pair->lists, q, PETSC_TRUE));
   m = work->count * dim;
   PetscCall(BlockMatrixAdd(contact->blocks, p, m, &entry, &value));
   for (PetscInt i = 0; i < m; i++) {
@@ -426,14 +432,11 @@ static PetscErrorCode PairBlocks(Contact contact, ContactPair *pair, int p, cons
   PetscCall(PetscMalloc1(pair->n, &terms));
   PetscCall(PetscArrayzero(pair->point_force, pair->lists->n_slaves));
   for (PetscInt c = 0; c < pair->n; c++) {
-    LawValue  value;
-    PetscReal pressure;
+    LawValue value;
 
-    TermLaw(pair, c, t, &value, &terms[c].area);
+    TermLaw(pair, c, t, &value, NULL, &terms[c].area);
     terms[c].stiffness = value.stiffness;
-    pressure           = TermTurningPressure(pair, c, t, &value);
-    for (PetscInt k = pair->term_ptr[c]; k < pair->term_ptr[c + 1] && pressure != 0; k++)
-      pair->point_force[pair->term_point[k]] += pressure * pair->term_weight[k] * pair->factor[pair->term_point[k]];
+    TermPress(pair, c, TermTurningPressure(pair, c, t, &value));
   }
   if (pair->slaves->face_sf) PetscCall(SharedBlocks(contact, pair, p, terms));
   for (PetscInt c = 0; c < pair->n && !pair->slaves->face_sf; c++)
@@ -444,8 +447,8 @@ static PetscErrorCode PairBlocks(Contact contact, ContactPair *pair, int p, cons
 
 /* ContactTangent - the derivative of ContactResidual()'s forces by the free displacements: A (psi'' N N^T - p M) for each closed term, p its pressure.
 
-   Collective. u, t: as of ContactResidual(). *C: over the
-   global free dofs, the contact's own; *changed: its pattern is new. Source: Chamoret et al. 2004, eq. 14. */
+   Collective. u, t: as of ContactResidual(). *C: over the global free dofs, the contact's own; *changed: its pattern is new.
+   Source: Chamoret et al. 2004, eq. 14. */
 PetscErrorCode ContactTangent(Contact contact, const PetscReal *u, PetscReal t, Mat *C, PetscBool *changed)
 {
   const PetscInt **dof;

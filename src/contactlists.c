@@ -114,14 +114,14 @@ static PetscBool FitHolds(ContactLists old, ContactLists fresh, PetscInt q)
   for (int d = 0; d < dim; d++) cosine += frame[3 * (dim - 1) + d] * turned[3 * (dim - 1) + d];
   if (cosine < CONTACT_FRAME_COSINE || old->degree[q] != fresh->degree[q]) return PETSC_FALSE;
   for (PetscInt i = fresh->list_ptr[q]; i < fresh->list_ptr[q] + fresh->fit_n[q]; i++) {
-    const PetscInt p    = fresh->list_point[i];
-    const long     key  = fresh->point_key[p];
-    PetscReal      y[2] = {0, 0}, rho2 = 0;
+    const PetscInt p   = fresh->list_point[i];
+    const long     key = fresh->point_key[p];
+    PetscReal      x[3], y[2] = {0, 0}, rho2 = 0;
     PetscBool      known = PETSC_FALSE;
 
+    ListsRelative(fresh, q, p, x);
     for (int a = 0; a < dim - 1; a++)
-      for (int d = 0; d < dim; d++)
-        y[a] += frame[3 * a + d] * ((fresh->point_X[p * dim + d] - fresh->slave_X[q * dim + d]) + (fresh->point_u[p * dim + d] - fresh->slave_u[q * dim + d]));
+      for (int d = 0; d < dim; d++) y[a] += frame[3 * a + d] * x[d];
     for (int a = 0; a < dim - 1; a++)
       for (int b = 0; b < dim - 1; b++) rho2 += y[a] * metric[2 * a + b] * y[b];
     if (rho2 >= 1) continue;

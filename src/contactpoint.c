@@ -49,8 +49,7 @@ PetscErrorCode ContactPointEvaluate(const ContactPair *pair, const Smoother *smo
     const PetscInt p = lists->list_point[first + i];
 
     work->multiplier[i] = lists->point_weight[p];
-    for (int d = 0; d < dim; d++)
-      work->x[i * dim + d] = (lists->point_X[p * dim + d] - lists->slave_X[q * dim + d]) + (lists->point_u[p * dim + d] - lists->slave_u[q * dim + d]);
+    ListsRelative(lists, q, p, &work->x[i * dim]);
   }
   in     = (SmootherInput){.dim         = dim,
                            .n_points    = (int)n,

@@ -93,32 +93,31 @@ static PetscBool SomeImageMeets(ContactSearch s, int n, const PetscReal *x, cons
   return PETSC_FALSE;
 }
 
+/* Which boxes of the ranks the faces are held against */
+typedef struct {
+  ContactSearch    s;
+  const PetscReal *u, *boxes;
+  PetscReal        distance;
+} Reach;
+
+/* A face goes to each rank whose box it may reach. */
+static PetscBool ReachesBox(const void *context, PetscInt f, PetscMPIInt r)
+{
+  const Reach *reach = context;
+  PetscReal    x[FACE_MAX_NODES * 3];
+
+  FacePositions(reach->s, f, reach->u, 0, x);
+  return SomeImageMeets(reach->s, ElementGet(reach->s->master->faces[f].type)->nodes, x, &reach->boxes[6 * r], reach->distance);
+}
+
 /* Sends this rank's faces of a deformable master to every rank whose box they may reach; returns what arrived (itself included). */
 PetscErrorCode SearchExchangeFaces(ContactSearch s, const NodeGeometry *geometry, const PetscReal *u, const PetscReal *boxes, PetscReal distance,
                                    PetscInt *n_records, FaceRecord **records)
 {
-  PetscMPIInt size;
-  PetscInt    total = 0, *count, room = PetscMax(1, s->master->n_faces);
-  FaceRecord *send;
+  const Reach reach = {s, u, boxes, distance};
 
   PetscFunctionBeginUser;
-  PetscCallMPI(MPI_Comm_size(s->mesh->comm, &size));
-  PetscCall(PetscCalloc1(size, &count));
-  PetscCall(PetscMalloc1(room, &send));
-  for (PetscMPIInt r = 0; r < size; r++) {
-    for (PetscInt f = 0; f < s->master->n_faces; f++) {
-      PetscReal x[FACE_MAX_NODES * 3];
-
-      FacePositions(s, f, u, 0, x);
-      if (!SomeImageMeets(s, ElementGet(s->master->faces[f].type)->nodes, x, &boxes[6 * r], distance)) continue;
-      if (total == room) PetscCall(PetscRealloc((room *= 2) * sizeof(FaceRecord), &send));
-      FaceRecordFromSurface(s->master, geometry, s->offset, f, &send[total++]);
-      count[r]++;
-    }
-  }
-  PetscCall(FaceRecordsExchange(s->mesh->comm, count, send, n_records, records));
-  PetscCall(PetscFree(send));
-  PetscCall(PetscFree(count));
+  PetscCall(FaceRecordsShare(s->master, geometry, s->offset, ReachesBox, &reach, n_records, records));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

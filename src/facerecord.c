@@ -2,8 +2,7 @@
 
 /* FaceRecordFromSurface - face f of a surface with its nodes' keys and reference positions. Not collective.
 
-   geometry: by local node of the mesh or the tool, or NULL; offset[faces][FACE_RULE_POINTS*dim]: lengths, or NULL. The home rank is the
-   caller's to set. */
+   geometry: by local node of the mesh or the tool, or NULL; offset[faces][FACE_RULE_POINTS*dim]: lengths, or NULL. home is left 0. */
 void FaceRecordFromSurface(ContactSurface surface, const NodeGeometry *geometry, const PetscReal *offset, PetscInt f, FaceRecord *record)
 {
   Mesh         mesh  = surface->mesh;
@@ -24,11 +23,8 @@ void FaceRecordFromSurface(ContactSurface surface, const NodeGeometry *geometry,
   for (int i = 0; offset && i < FACE_RULE_POINTS * dim; i++) record->offset[i] = offset[f * FACE_RULE_POINTS * dim + i];
 }
 
-/* FaceRecordsExchange - sends records to the ranks that need them.
-
-   Collective. count[size]: how many go to each rank, one rank after the other in send. received[*n]: in the order of the ranks they come from;
-   to be freed with PetscFree(). */
-PetscErrorCode FaceRecordsExchange(MPI_Comm comm, const PetscInt count[], const FaceRecord *send, PetscInt *n, FaceRecord **received)
+/* Sends count[r] records to each rank r, one rank after the other in send; what arrives is in the order of the ranks it comes from. */
+static PetscErrorCode ExchangeRecords(MPI_Comm comm, const PetscInt count[], const FaceRecord *send, PetscInt *n, FaceRecord **received)
 {
   PetscMPIInt  size, *send_count, *send_start, *receive_count, *receive_start;
   PetscInt     total = 0;
@@ -54,6 +50,38 @@ PetscErrorCode FaceRecordsExchange(MPI_Comm comm, const PetscInt count[], const 
   PetscCallMPI(MPI_Alltoallv(send, send_count, send_start, type, *received, receive_count, receive_start, type, comm));
   PetscCallMPI(MPI_Type_free(&type));
   PetscCall(PetscFree4(send_count, send_start, receive_count, receive_start));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* FaceRecordsShare - sends the faces of a surface, whose home is this rank, to every rank that wants them, itself included.
+
+   Collective. geometry, offset: as of FaceRecordFromSurface(); wanted(context, f, r): does rank r want face f of this rank? received[*n]: in the
+   order of the ranks they come from; to be freed with PetscFree(). */
+PetscErrorCode FaceRecordsShare(ContactSurface surface, const NodeGeometry *geometry, const PetscReal *offset, FaceWantedFn wanted, const void *context,
+                                PetscInt *n, FaceRecord **received)
+{
+  const MPI_Comm comm = surface->mesh->comm;
+  PetscMPIInt    size, rank;
+  PetscInt      *count, total = 0, room = PetscMax(1, surface->n_faces);
+  FaceRecord    *send;
+
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Comm_size(comm, &size));
+  PetscCallMPI(MPI_Comm_rank(comm, &rank));
+  PetscCall(PetscCalloc1(size, &count));
+  PetscCall(PetscMalloc1(room, &send));
+  for (PetscMPIInt r = 0; r < size; r++) {
+    for (PetscInt f = 0; f < surface->n_faces; f++) {
+      if (!wanted(context, f, r)) continue;
+      if (total == room) PetscCall(PetscRealloc((room *= 2) * sizeof(FaceRecord), &send));
+      FaceRecordFromSurface(surface, geometry, offset, f, &send[total]);
+      send[total++].home = rank;
+      count[r]++;
+    }
+  }
+  PetscCall(ExchangeRecords(comm, count, send, n, received));
+  PetscCall(PetscFree(send));
+  PetscCall(PetscFree(count));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

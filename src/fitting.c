@@ -120,6 +120,15 @@ static void MetricInSpace(int dim, double (*frame)[3], double metric[2][2], Pets
   }
 }
 
+static void AddCovariance(double factor, const NodeGeometry *g, double covariance[3][3])
+{
+  for (int d = 0; d < 3; d++) {
+    covariance[d][d] += factor * g->covariance[d];
+    covariance[d][(d + 1) % 3] += factor * g->covariance[3 + d];
+    covariance[(d + 1) % 3][d] += factor * g->covariance[3 + d];
+  }
+}
+
 /* Spacing of the points at a foot. Shape: the nodes' covariances, between the nodes by the shape functions, so that the support does not jump
    from facet to facet and keeps the symmetry of a ring around a node. Size: the mean over the facet's nodes, as those on a cut see one side only. */
 static void FootSpacing(const Fitting *fit, PetscInt f, const double *xi, double covariance[3][3], double *area)
@@ -138,11 +147,7 @@ static void FootSpacing(const Fitting *fit, PetscInt f, const double *xi, double
     const double        w = share[a] / total;
 
     *area += (dim == 3 ? PetscSqr(g->spacing) : g->spacing) / n;
-    for (int d = 0; d < 3; d++) {
-      covariance[d][d] += w * g->covariance[d];
-      covariance[d][(d + 1) % 3] += w * g->covariance[3 + d];
-      covariance[(d + 1) % 3][d] += w * g->covariance[3 + d];
-    }
+    AddCovariance(w, g, covariance);
   }
 }
 
@@ -160,11 +165,7 @@ static void WindowSpacing(const Fitting *fit, PetscInt n, double covariance[3][3
 
     sum += fit->taper[i];
     faces += share;
-    for (int d = 0; d < 3; d++) {
-      covariance[d][d] += share * g->covariance[d];
-      covariance[d][(d + 1) % 3] += share * g->covariance[3 + d];
-      covariance[(d + 1) % 3][d] += share * g->covariance[3 + d];
-    }
+    AddCovariance(share, g, covariance);
   }
   *area = sum / faces;
 }

@@ -158,6 +158,7 @@ PetscErrorCode ListsUpdate(ContactSearch s, ContactLists lists, const PetscReal 
   PetscCall(PetscArraycmp(before, lists->u, n, &same));
   PetscCall(PetscFree(before));
   if (moved) *moved = same && lists->t == t ? PETSC_FALSE : PETSC_TRUE;
+  if (same && lists->t == t) PetscFunctionReturn(PETSC_SUCCESS);
   lists->t = t;
   for (PetscInt p = 0; p < lists->n_points; p++) PointMap(lists, p, &s->images[lists->point_image[p]], lists->u, &lists->point_u[p * lists->dim]);
   if (s->fit->integral && s->master->rigid) TurnOffsets(s, lists, t);
@@ -361,6 +362,16 @@ PetscErrorCode ListsCreateSlaves(ContactSearch s, ContactLists lists)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* ListsRelative - position x[dim] (length) of point p seen from slave point q: a difference of differences, so that a gap keeps its digits far from
+   the origin. Not collective. */
+void ListsRelative(ContactLists lists, PetscInt q, PetscInt p, PetscReal *x)
+{
+  const int dim = lists->dim;
+
+  for (int d = 0; d < dim; d++)
+    x[d] = (lists->point_X[p * dim + d] - lists->slave_X[q * dim + d]) + (lists->point_u[p * dim + d] - lists->slave_u[q * dim + d]);
+}
+
 /* ListsCentre - mean of the fit points of slave point q in the tangents of its frame, relative to it, in the present position (lengths).
 
    Not collective. centre[2]: dim - 1 entries are used. */
@@ -371,13 +382,11 @@ void ListsCentre(ContactLists lists, PetscInt q, PetscReal centre[2])
 
   centre[0] = centre[1] = 0;
   for (PetscInt i = lists->list_ptr[q]; i < lists->list_ptr[q] + lists->fit_n[q]; i++) {
-    const PetscInt p = lists->list_point[i];
+    PetscReal x[3];
 
-    for (int d = 0; d < dim; d++) {
-      const PetscReal x = (lists->point_X[p * dim + d] - lists->slave_X[q * dim + d]) + (lists->point_u[p * dim + d] - lists->slave_u[q * dim + d]);
-
-      for (int a = 0; a < dim - 1; a++) centre[a] += frame[3 * a + d] * x / lists->fit_n[q];
-    }
+    ListsRelative(lists, q, lists->list_point[i], x);
+    for (int d = 0; d < dim; d++)
+      for (int a = 0; a < dim - 1; a++) centre[a] += frame[3 * a + d] * x[d] / lists->fit_n[q];
   }
 }
 

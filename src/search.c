@@ -341,6 +341,7 @@ PetscErrorCode SearchLists(ContactSearch s, const PetscReal *u, PetscReal t, Pet
 
   PetscFunctionBeginUser;
   PetscCall(PetscNew(&lists));
+  lists->t = NAN; /* not updated yet */
   PetscCall(SlavePointsMove(s->slaves, u));
   SearchSlaveBox(s, box);
   PetscCall(SearchFieldCreate(s, u, t, box, distance, lists, &field));

@@ -48,35 +48,15 @@ PetscErrorCode SlavePointsCreateNodes(ContactSurface surface, PetscInt n, const 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Every face goes to each rank that owns one of its nodes. */
-static PetscErrorCode ExchangeAround(ContactSurface surface, PetscInt *n, FaceRecord **records)
+/* A face goes to each rank that owns one of its nodes. */
+static PetscBool OwnsNode(const void *context, PetscInt f, PetscMPIInt r)
 {
-  PetscMPIInt size, rank;
-  PetscInt   *count, total = 0, room = PetscMax(1, surface->n_faces);
-  FaceRecord *send;
+  const ContactSurface surface = (const ContactSurface)context;
+  const Facet         *facet   = &surface->faces[f];
 
-  PetscFunctionBeginUser;
-  PetscCallMPI(MPI_Comm_size(surface->mesh->comm, &size));
-  PetscCallMPI(MPI_Comm_rank(surface->mesh->comm, &rank));
-  PetscCall(PetscCalloc1(size, &count));
-  PetscCall(PetscMalloc1(room, &send));
-  for (PetscMPIInt r = 0; r < size; r++) {
-    for (PetscInt f = 0; f < surface->n_faces; f++) {
-      PetscBool wanted = PETSC_FALSE;
-
-      for (int a = 0; a < ElementGet(surface->faces[f].type)->nodes; a++)
-        wanted = (PetscBool)(wanted || surface->mesh->node_owner[surface->faces[f].nodes[a]] == r);
-      if (!wanted) continue;
-      if (total == room) PetscCall(PetscRealloc((room *= 2) * sizeof(FaceRecord), &send));
-      FaceRecordFromSurface(surface, NULL, NULL, f, &send[total++]);
-      count[r]++;
-    }
-  }
-  for (PetscInt i = 0; i < total; i++) send[i].home = rank;
-  PetscCall(FaceRecordsExchange(surface->mesh->comm, count, send, n, records));
-  PetscCall(PetscFree(send));
-  PetscCall(PetscFree(count));
-  PetscFunctionReturn(PETSC_SUCCESS);
+  for (int a = 0; a < ElementGet(facet->type)->nodes; a++)
+    if (surface->mesh->node_owner[facet->nodes[a]] == r) return PETSC_TRUE;
+  return PETSC_FALSE;
 }
 
 /* Nodes and faces of the points from the faces that arrived. */
@@ -123,7 +103,7 @@ PetscErrorCode SlavePointsCreateQuadrature(ContactSurface surface, Geometry geom
   points->mesh    = surface->mesh;
   points->surface = surface;
   points->finer   = finer;
-  PetscCall(ExchangeAround(surface, &n_records, &records));
+  PetscCall(FaceRecordsShare(surface, NULL, NULL, OwnsNode, surface, &n_records, &records));
   FaceRecordsSort(n_records, records);
   PetscCall(TakeRecords(points, n_records, records));
   for (PetscInt f = 0; f < n_records; f++) {

@@ -33,18 +33,16 @@ static PetscReal Round(PetscReal factor)
   return ldexp(rint(ldexp(digits, STEP_DIGITS)), exponent - STEP_DIGITS);
 }
 
-/* How many nodes, or how much area, may touch in a step */
-static PetscErrorCode Wanted(Model model, const StepSize *size, PetscReal *wanted)
+/* How many nodes, or how much area, changed their status against the accepted state, and how many are wanted to. */
+static PetscErrorCode Changes(Model model, const StepSize *size, PetscReal *changed, PetscReal *wanted)
 {
   const PetscReal *u;
-  PetscReal        t, changed, all;
+  PetscReal        t, all;
 
   PetscFunctionBeginUser;
-  *wanted = size->wanted;
-  if (!size->by_area) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(ModelGetAccepted(model, &u, &t));
-  PetscCall(ContactChanges(model->contact, t, PETSC_TRUE, &changed, &all));
-  *wanted *= all;
+  PetscCall(ContactChanges(model->contact, t, size->by_area, changed, &all));
+  *wanted = size->wanted * (size->by_area ? all : 1);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -52,13 +50,13 @@ static PetscErrorCode Wanted(Model model, const StepSize *size, PetscReal *wante
 static PetscErrorCode Choose(Model model, const PetscReal *u, PetscReal t, PetscBool still_open, PetscReal factor, StepSize *size, TouchChoice *choice)
 {
   const PetscReal *u_0;
-  PetscReal        t_0, wanted;
+  PetscReal        t_0, changed, wanted;
   Touch           *touch;
   int              n;
 
   PetscFunctionBeginUser;
   PetscCall(ModelGetAccepted(model, &u_0, &t_0));
-  PetscCall(Wanted(model, size, &wanted));
+  PetscCall(Changes(model, size, &changed, &wanted));
   PetscCall(ContactTouches(model->contact, u_0, t_0, u, t, size->by_area, still_open, &n, &touch));
   TouchChoose(n, touch, factor * wanted, size->dt_min / (t - t_0), choice);
   PetscCall(PetscFree(touch));
@@ -95,14 +93,12 @@ PetscErrorCode StepControlPredict_Contact(Model model, PetscReal rest, StepSize 
 PetscErrorCode StepControlJudge_Contact(Model model, PetscReal dt, StepSize *size, PetscBool *accepted)
 {
   const PetscReal *u;
-  PetscReal        t, changed, all, wanted;
+  PetscReal        t, changed = 0, all, wanted = 0;
 
   PetscFunctionBeginUser;
   *accepted = PETSC_TRUE;
   if (size->linearly || !model->contact) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(ModelGetAccepted(model, &u, &t));
-  PetscCall(ContactChanges(model->contact, t, size->by_area, &changed, &all));
-  wanted     = size->wanted * (size->by_area ? all : 1);
+  PetscCall(Changes(model, size, &changed, &wanted));
   size->tied = 0;
   if (changed <= STEP_CHANGES_KEPT * wanted) PetscFunctionReturn(PETSC_SUCCESS);
   if (dt > size->dt_min && changed > STEP_CHANGES_KEPT * size->together) {
@@ -110,6 +106,7 @@ PetscErrorCode StepControlJudge_Contact(Model model, PetscReal dt, StepSize *siz
     size->dt  = PetscMax(size->dt_min, dt * Round(PetscMax(wanted / changed, STEP_LEAST_PART)));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
+  PetscCall(ModelGetAccepted(model, &u, &t));
   PetscCall(ContactChanges(model->contact, t, PETSC_FALSE, &changed, &all));
   size->tied = (PetscInt)changed;
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -118,14 +115,11 @@ PetscErrorCode StepControlJudge_Contact(Model model, PetscReal dt, StepSize *siz
 /* Compares what a step of its planned length brought with what the forecast promised. */
 static PetscErrorCode Learn(Model model, PetscReal dt, StepSize *size)
 {
-  const PetscReal *u;
-  PetscReal        t, changed, all, wanted;
+  PetscReal changed, wanted;
 
   PetscFunctionBeginUser;
   if (PetscAbsReal(dt - size->planned) > STEP_AS_PLANNED * dt) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(ModelGetAccepted(model, &u, &t));
-  PetscCall(ContactChanges(model->contact, t, size->by_area, &changed, &all));
-  wanted = size->wanted * (size->by_area ? all : 1);
+  PetscCall(Changes(model, size, &changed, &wanted));
   size->shortfall *= Round(PetscMin(STEP_CORRECTION, PetscMax(1 / STEP_CORRECTION, wanted / PetscMax(changed, wanted / STEP_CORRECTION))));
   size->shortfall = PetscMax(1, PetscMin(STEP_SHORTFALL, size->shortfall));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -134,13 +128,10 @@ static PetscErrorCode Learn(Model model, PetscReal dt, StepSize *size)
 /* The longest dt that the last step, of dt, lets hope to bring no more nodes than wanted. */
 static PetscErrorCode Longest(Model model, PetscReal dt, PetscReal beta, const StepSize *size, PetscReal *longest)
 {
-  const PetscReal *u;
-  PetscReal        t, changed, all, wanted;
+  PetscReal changed, wanted;
 
   PetscFunctionBeginUser;
-  PetscCall(ModelGetAccepted(model, &u, &t));
-  PetscCall(ContactChanges(model->contact, t, size->by_area, &changed, &all));
-  wanted   = size->wanted * (size->by_area ? all : 1);
+  PetscCall(Changes(model, size, &changed, &wanted));
   *longest = size->growth;
   if (changed > 0 && !size->tied) *longest = PetscMin(*longest, STEP_CHANGES_AIM * wanted / changed);
   if (!isnan(beta)) *longest = PetscMin(*longest, PetscMax(STEP_LEAST_REACH, STEP_REACH * (beta - 1)));

@@ -3,24 +3,11 @@
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
-#include <time.h>
+#include "bench.h"
 #include "facet.h"
 #include "tree.h"
 
 enum { POINTS = 2000, REPEATS = 20, MAX_DOFS = 3 * (1 + FACE_MAX_NODES), MAX_SIDE = 5, MAX_POSITIONS = 25 * FACE_MAX_NODES };
-
-static double Seconds(void)
-{
-  struct timespec now;
-
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
-  return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
-}
-
-static double Random(double low, double high)
-{
-  return low + (high - low) * rand() / RAND_MAX;
-}
 
 /* side by side facets (strips of them in 2D, pairs for triangles) of width 1 on a sphere or circle of radius 8, each with its own nodes */
 static int Patchwork(ElementType type, int side, Facet *facets, double *x)

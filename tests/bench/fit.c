@@ -3,7 +3,7 @@
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
-#include <time.h>
+#include "bench.h"
 #include "fit.h"
 #include "fitframe.h"
 #include "symmetricproduct.h"
@@ -15,19 +15,6 @@ typedef struct {
   int    dim, degree, n[SLAVES];
   double support, exponent, x[SLAVES][3 * MAX_LIST], multiplier[MAX_LIST];
 } Neighbourhoods;
-
-static double Seconds(void)
-{
-  struct timespec now;
-
-  clock_gettime(CLOCK_MONOTONIC, &now);
-  return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
-}
-
-static double Random(double low, double high)
-{
-  return low + (high - low) * rand() / RAND_MAX;
-}
 
 /* Slave points over the jittered nodes, one spacing apart, of a sphere or circle */
 static void Fill(Neighbourhoods *all)

@@ -3,7 +3,7 @@
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
-#include <time.h>
+#include "bench.h"
 #include "fitframe.h"
 #include "fitmap.h"
 #include "symmetricproduct.h"
@@ -30,19 +30,6 @@ typedef struct {
   int    ptr[MAX_POINTS + 2], node[(MAX_POINTS + 1) * MAX_FACE];
   double S[(MAX_POINTS + 1) * MAX_FACE], sign[3 * (MAX_POINTS + 1)];
 } Map;
-
-static double Seconds(void)
-{
-  struct timespec now;
-
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
-  return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
-}
-
-static double Random(double low, double high)
-{
-  return low + (high - low) * rand() / RAND_MAX;
-}
 
 static double LineShape(int order, int a, double s)
 {

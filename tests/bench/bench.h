@@ -1,0 +1,17 @@
+/* What the kernels' benches share: CPU seconds, which other work on the machine does not lengthen, and random numbers. */
+#pragma once
+#include <stdlib.h>
+#include <time.h>
+
+static inline double Seconds(void)
+{
+  struct timespec now;
+
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
+  return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+}
+
+static inline double Random(double low, double high)
+{
+  return low + (high - low) * rand() / RAND_MAX;
+}
