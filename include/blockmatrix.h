@@ -4,7 +4,7 @@
 
      BlockMatrixReset(); BlockMatrixAdd() per block; then BlockMatrixAssemble(), BlockMatrixMultiply() */
 #pragma once
-#include "petsccompat.h"
+#include "archive.h"
 
 typedef struct _n_BlockMatrix *BlockMatrix;
 
@@ -20,3 +20,6 @@ PetscErrorCode BlockMatrixAdd(BlockMatrix, int list, PetscInt m, PetscInt **entr
 PetscErrorCode BlockMatrixAssemble(BlockMatrix, PetscInt n, const PetscInt *const dof[], Mat *, PetscBool *changed);
 /* y += (blocks of list) x for rank-local vectors. Not collective. */
 PetscErrorCode BlockMatrixMultiply(BlockMatrix, int list, const PetscReal *x, PetscReal *y);
+
+/* The pattern that is kept, on one rank: another one orders the solver's sums in another way. On several it is found anew. Collective. */
+PetscErrorCode BlockMatrixArchive(BlockMatrix, Archive, const char *name, PetscInt n);

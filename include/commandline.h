@@ -11,6 +11,8 @@ typedef struct {
   CommandMode mode;
   char       *scene;     /* scene file */
   char       *directory; /* -o, or NULL */
+  char       *restart;   /* -restart, or NULL */
+  double      time_limit; /* seconds; 0: none */
   int         n_set;
   char      **set; /* KEY=VALUE */
   int         overwrite, quiet;

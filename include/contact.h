@@ -76,6 +76,8 @@ PetscErrorCode ContactTangent(Contact, const PetscReal *u, PetscReal t, Mat *C, 
 PetscErrorCode ContactMultiply(Contact, const PetscReal *x, PetscReal t, PetscReal t_next, PetscReal *y);
 PetscErrorCode ContactAccept(Contact); /* the present state is the one that ContactRestore() returns to. Not collective */
 PetscErrorCode ContactRestore(Contact);
+/* The accepted state, at (u, t), and all else that the next steps depend on. Loading it also makes it the present one, with lists. Collective. */
+PetscErrorCode ContactArchive(Contact, Archive, const PetscReal *u, PetscReal t);
 /* What the scene says of overlaps before any load (initial_overlap): refuses those beyond what the facets' own shape explains (pair, node,
    amount), or keeps them as g_0. After ContactResidual(). Collective. */
 PetscErrorCode ContactTakeOverlap(Contact);

@@ -84,6 +84,8 @@ PetscErrorCode ContactPairDestroy(ContactPair *);
 PetscReal      ContactTermOffset(const ContactPair *, PetscInt term, PetscReal t);
 PetscReal      ContactTouchTolerance(const ContactPair *, PetscInt term);
 PetscReal      ContactMeanOpening(const ContactPair *, PetscInt term);
+/* contactlists.c */
+PetscErrorCode ContactListsArchive(Contact, Archive, const PetscReal *u, PetscReal t);
 /* contactpoint.c */
 PetscErrorCode ContactPointEvaluate(const ContactPair *, const Smoother *, ContactLists, PetscInt q, int seed, SmootherWant, PetscBool *found);
 /* The variations of the last evaluation over contact nodes, into the work's number, N and M. */

@@ -1,6 +1,7 @@
-/* What a contact pair remembers from step to step, of each slave node that carries area: all that a cutback saves and restores. */
+/* What a contact pair remembers from step to step, of each slave node that carries area: all that a cutback or a
+   checkpoint saves and restores. */
 #pragma once
-#include "petsccompat.h"
+#include "archive.h"
 
 typedef enum { CONTACT_OPEN, CONTACT_CLOSED } ContactStatus;
 
@@ -18,3 +19,4 @@ typedef struct {
 PetscErrorCode ContactStateCreate(PetscInt n, PetscReal penalty, ContactState *);
 PetscErrorCode ContactStateCopy(const ContactState *from, ContactState *to);
 PetscErrorCode ContactStateDestroy(ContactState *);
+PetscErrorCode ContactStateArchive(ContactState *, Archive, const char *name, const Rows *nodes); /* nodes: of its n slave nodes */

@@ -31,6 +31,7 @@ typedef struct {
 } Document;
 
 PetscErrorCode DocumentRead(MPI_Comm, const char *file, int n_set, char *const *set, Document **);
+PetscErrorCode DocumentReadText(MPI_Comm, const char *name, const char *text, int n_set, char *const *set, Document **); /* name: for messages */
 PetscErrorCode DocumentDestroy(Document *);
 PetscErrorCode DocumentText(Document *, char **text); /* one canonical YAML text: the same for the same keys and values */
 const char    *DocumentWhere(Document *, const char *path);

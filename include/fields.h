@@ -14,6 +14,7 @@
        gap, penetration, penalty, pressure, normal
                              the same for all pairs over the whole mesh, for ParaView: off the slave surfaces gap and penalty are NaN, the others 0 */
 #pragma once
+#include "archive.h"
 #include "model.h"
 
 typedef struct _n_Fields *Fields;
@@ -22,3 +23,8 @@ PetscErrorCode FieldsCreate(Model, Scene, const char *directory, Fields *);
 PetscErrorCode FieldsDestroy(Fields *);
 /* The model's present state as accepted step `step` at load parameter t. Collective. */
 PetscErrorCode FieldsWrite(Fields, PetscInt step, PetscReal t);
+
+/* Which states are written, and what brings results.h5 back to them. Loading touches no file: FieldsResume() does. Collective. */
+PetscErrorCode FieldsArchive(Fields, Archive);
+/* Takes back what was written after the loaded checkpoint, whole or in part; *lost: the file is gone, a new one begins with the next state. Collective. */
+PetscErrorCode FieldsResume(Fields, PetscBool *lost);

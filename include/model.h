@@ -57,6 +57,8 @@ PetscErrorCode ModelForecast(Model, PetscReal t, PetscReal *u, SolveReport *);
 PetscErrorCode ModelGetAccepted(Model, const PetscReal **u, PetscReal *t);
 PetscErrorCode ModelAccept(Model);
 PetscErrorCode ModelRestore(Model);
+/* The accepted state and all else that the next steps depend on; loading takes the place of ModelSetUp(). Collective. */
+PetscErrorCode ModelArchive(Model, Archive);
 /* The force that supports and imposed displacements put on the nodes of a group, at the accepted state. Collective. */
 PetscErrorCode ModelReaction(Model, const MeshGroup *, PetscReal force[3]);
 PetscErrorCode ModelEffects(Model, char *text, size_t size); /* "finite strain, facet contact": what is on */

@@ -2,6 +2,7 @@
    sagitta of the surface's own nodal fit over its interpolant on the face. Held in a solve, extrapolated over the step, taken again when
    lists are made. Rigid tools and small kinematics: once, in the reference position. */
 #pragma once
+#include "archive.h"
 #include "search.h"
 
 typedef struct _n_Offsets *Offsets;
@@ -14,5 +15,7 @@ PetscErrorCode OffsetsDestroy(Offsets *);
 PetscErrorCode OffsetsExtrapolate(Offsets, const PetscReal *u, PetscReal t, PetscReal t_next);
 /* Takes the offsets at u as they are. Collective. */
 PetscErrorCode OffsetsTake(Offsets, const PetscReal *u, PetscReal t);
+/* What the next extrapolation starts from; nothing where they are taken once. Collective. */
+PetscErrorCode OffsetsArchive(Offsets, Archive, const char *name);
 /* [faces of the surface on this rank][FACE_RULE_POINTS*dim]; the array stays the same. Not collective. */
 const PetscReal *OffsetsGet(Offsets);

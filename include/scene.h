@@ -132,6 +132,7 @@ typedef struct {
   SceneProbe *probes;
   struct {
     int every;                         /* 0: only the last state */
+    int checkpoint;                    /* 0: only when the run ends early */
     int displacement, stress, contact; /* fields */
   } output;
   int        n_petsc;
@@ -140,7 +141,11 @@ typedef struct {
 } * Scene;
 
 PetscErrorCode SceneRead(MPI_Comm, const char *file, int n_set, char *const *set, Scene *);
+/* The scene of a checkpoint: file: its name then; where: stands for it in messages; text: Scene.text of then. Only solver, output and stepping may be set. */
+PetscErrorCode SceneReadAgain(MPI_Comm, const char *file, const char *where, const char *text, int n_set, char *const *set, Scene *);
 PetscErrorCode SceneDestroy(Scene *);
+/* Do two texts (Scene.text) differ in nothing but what a restart may change? */
+PetscBool SceneSameProblem(const char *a, const char *b);
 /* "runs/a.yaml:12: contact.0.slave": the place of a key (or of its nearest ancestor that the file has; "-set KEY" if it came from there).
    Returned text belongs to the scene and is valid until the next call. */
 const char *SceneWhere(Scene, const char *path, const char *key);

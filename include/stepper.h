@@ -2,7 +2,9 @@
    quasi-static contact problem needs: a step is accepted or taken back whole, and steps land exactly on 1, on every `at` of the scene and on
    every breakpoint of a history. How dt follows from what happened is a step control, chosen by name (stepcontrol.h).
 
-     LoadStepperCreate(); LoadStepperSetModel(); LoadStepperSetFromScene(); LoadStepperSetFromOptions(); LoadStepperMonitorSet(); LoadStepperSolve() */
+     LoadStepperCreate(); LoadStepperSetModel(); LoadStepperSetFromScene(); LoadStepperSetFromOptions(); LoadStepperMonitorSet(); LoadStepperSolve()
+
+   A stepper that has loaded its state goes on from there. */
 #pragma once
 #include "model.h"
 
@@ -17,7 +19,7 @@ typedef struct {
 
 /* The way so far */
 typedef struct {
-  PetscBool done;                                /* t = 1 was reached */
+  PetscBool done, stopped;                       /* t = 1 was reached; LoadStepperStop() ended it before */
   PetscInt  steps, steps_failed, steps_repeated; /* repeated: converged, but taken back by the control */
   PetscInt  newton_iterations, newton_accepted, krylov_iterations;
   PetscReal t;             /* of the last good state */
@@ -33,5 +35,8 @@ PetscErrorCode LoadStepperSetModel(LoadStepper, Model);
 PetscErrorCode LoadStepperSetFromScene(LoadStepper, Scene);
 PetscErrorCode LoadStepperSetFromOptions(LoadStepper);
 PetscErrorCode LoadStepperMonitorSet(LoadStepper, LoadStepperMonitorFn, void *);
+PetscErrorCode LoadStepperStop(LoadStepper); /* from the monitor: no step after this one. Logically collective */
 PetscErrorCode LoadStepperSolve(LoadStepper, StepperReport *);
+/* Step size and counts, as they were at the last accepted step: from the monitor, after LoadStepperSolve(), or loading before it. Collective. */
+PetscErrorCode LoadStepperArchive(LoadStepper, Archive);
 PetscErrorCode LoadStepperView(LoadStepper, PetscViewer);

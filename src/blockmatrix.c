@@ -20,6 +20,7 @@ struct _n_BlockMatrix {
   PetscInt   n_pattern, *pattern; /* of the blocks: number of nodes and nodes' keys of block after block; key: the first dof, -1 without any */
   PetscInt   n_nodes, *key, *dof; /* of the matrix: keys ascending, dofs (n_nodes*size) */
   PetscInt  *pair_ptr, *pair;     /* blocks overlap: every pair of nodes once, row by row */
+  PetscBool  restored;             /* the matrix is not the one that its user knows */
   PetscInt  *place, *stride;      /* of the blocks' pairs: the place of the first value in the sums, or -1; of the blocks' rows: to the next row of dofs */
   PetscReal *sum;                 /* over the pairs, row of dofs by row of dofs */
 };
@@ -268,11 +269,10 @@ static PetscErrorCode PlacePattern(BlockMatrix blocks, const PetscInt *const dof
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* A matrix of `rows` rows on this rank with the pattern of the present blocks; entries without a dof are left out by PETSc. */
-static PetscErrorCode CreateMatrix(BlockMatrix blocks, PetscInt rows, const PetscInt *const dof[])
+/* A matrix of `rows` rows on this rank with the pairs that are listed; entries without a dof are left out by PETSc. */
+static PetscErrorCode CreateMatrix(BlockMatrix blocks, PetscInt rows)
 {
   const int size = blocks->size;
-  PetscBool placed;
   PetscInt *i, *j, n, at = 0;
 
   PetscFunctionBeginUser;
@@ -280,7 +280,6 @@ static PetscErrorCode CreateMatrix(BlockMatrix blocks, PetscInt rows, const Pets
   PetscCall(MatCreate(blocks->comm, &blocks->matrix));
   PetscCall(MatSetSizes(blocks->matrix, rows, rows, PETSC_DETERMINE, PETSC_DETERMINE));
   PetscCall(MatSetType(blocks->matrix, MATAIJ));
-  PetscCall(PlacePattern(blocks, dof, PETSC_TRUE, &placed));
   n = blocks->pair_ptr[blocks->n_nodes] * PetscSqr(size);
   PetscCall(PetscFree(blocks->sum));
   PetscCall(PetscMalloc1(n, &blocks->sum));
@@ -352,11 +351,15 @@ PetscErrorCode BlockMatrixAssemble(BlockMatrix blocks, PetscInt rows, const Pets
   if (!placed && blocks->matrix) PetscCall(PlacePattern(blocks, dof, PETSC_FALSE, &placed));
   all = placed;
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &all, 1, MPI_INT, MPI_LAND, blocks->comm));
-  if (!all) PetscCall(CreateMatrix(blocks, rows, dof));
+  if (!all) {
+    PetscCall(PlacePattern(blocks, dof, PETSC_TRUE, &placed));
+    PetscCall(CreateMatrix(blocks, rows));
+  }
   PetscCall(SumBlocks(blocks));
   PetscCall(MatSetValuesCOO(blocks->matrix, blocks->sum, INSERT_VALUES));
   *matrix  = blocks->matrix;
-  *changed = all ? PETSC_FALSE : PETSC_TRUE;
+  *changed = all && !blocks->restored ? PETSC_FALSE : PETSC_TRUE;
+  blocks->restored = PETSC_FALSE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -375,5 +378,42 @@ PetscErrorCode BlockMatrixMultiply(BlockMatrix blocks, int list, const PetscReal
     for (PetscInt i = 0; i < block->m; i++)
       for (PetscInt j = 0; j < block->m; j++) y[entry[i]] += value[i * block->m + j] * x[entry[j]];
   }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* BlockMatrixArchive - saves or takes over the pattern of the last assembled matrix.
+
+   Collective. name: where it stands in the archive; rows: of this rank, as for BlockMatrixAssemble(). A pattern that is kept depends on what was
+   assembled before. Dofs are numbered by rank, so that it serves on one rank only, where runs repeat to the last bit. */
+PetscErrorCode BlockMatrixArchive(BlockMatrix blocks, Archive archive, const char *name, PetscInt rows)
+{
+  static const char *names[] = {"key", "dof", "pair_ptr", "pair"};
+  PetscInt         **list[]  = {&blocks->key, &blocks->dof, &blocks->pair_ptr, &blocks->pair};
+  PetscInt           n[4] = {0, 0, 0, 0};
+  PetscMPIInt        size;
+  PetscBool          there = blocks->matrix ? PETSC_TRUE : PETSC_FALSE;
+  char               path[PETSC_MAX_PATH_LEN];
+
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Comm_size(blocks->comm, &size));
+  PetscCall(PetscSNPrintf(path, sizeof(path), "%s/key", name));
+  if (ArchiveLoads(archive)) PetscCall(ArchiveHas(archive, path, &there));
+  if (size > 1 || !there) PetscFunctionReturn(PETSC_SUCCESS);
+  if (!ArchiveLoads(archive)) {
+    n[0] = blocks->n_nodes;
+    n[1] = blocks->n_nodes * blocks->size;
+    n[2] = blocks->n_nodes + 1;
+    n[3] = blocks->pair_ptr[blocks->n_nodes];
+  }
+  for (int k = 0; k < 4; k++) {
+    if (ArchiveLoads(archive)) PetscCall(PetscFree(*list[k]));
+    PetscCall(PetscSNPrintf(path, sizeof(path), "%s/%s", name, names[k]));
+    PetscCall(ArchiveIntegerList(archive, path, &n[k], list[k]));
+  }
+  if (!ArchiveLoads(archive)) PetscFunctionReturn(PETSC_SUCCESS);
+  blocks->n_nodes   = n[0];
+  blocks->n_pattern = 0; /* where the next blocks stand in it is found then */
+  PetscCall(CreateMatrix(blocks, rows));
+  blocks->restored = PETSC_TRUE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

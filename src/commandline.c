@@ -4,6 +4,7 @@
 #include <string.h>
 
 static const char Usage[] = "usage: burnish [-check | -mesh] SCENE.yaml [-o DIR] [-set KEY=VALUE]... [-overwrite] [-quiet] [PETSc options]\n"
+                            "       burnish -restart DIR [-set KEY=VALUE]... [-quiet] [PETSc options]\n"
                             "       burnish -help | -version";
 
 static void CommandLineComplain(CommandLine *line, const char *what, const char *about)
@@ -50,6 +51,25 @@ static void CommandLineSetMode(CommandLine *line, CommandMode mode, const char *
   line->mode = mode;
 }
 
+static void CommandLineSetLimit(CommandLine *line, const char *value)
+{
+  char *end;
+
+  if (!value) return;
+  line->time_limit = strtod(value, &end);
+  if (*end || !(line->time_limit > 0)) CommandLineComplain(line, "-time_limit needs seconds, more than 0", value);
+}
+
+/* What goes with what */
+static void CommandLineCheck(CommandLine *line)
+{
+  if (line->restart && line->scene) CommandLineComplain(line, "-restart goes on with the scene of its checkpoint; leave the scene file out", line->scene);
+  if (line->restart && line->directory) CommandLineComplain(line, "-restart goes on in its own directory; leave -o out", line->directory);
+  if (line->restart && line->overwrite) CommandLineComplain(line, "goes without -restart, which overwrites nothing", "-overwrite");
+  if (line->restart && line->mode != COMMAND_RUN) CommandLineComplain(line, "goes without -check and -mesh", "-restart");
+  if (!line->restart && !line->scene) CommandLineComplain(line, "no scene file", "command line");
+}
+
 /* Takes argv[*i] if it is one of our options, with its value. Returns 0 if it is not. */
 static int CommandLineOption(CommandLine *line, int argc, char **argv, int *i)
 {
@@ -70,8 +90,10 @@ static int CommandLineOption(CommandLine *line, int argc, char **argv, int *i)
     line->overwrite = 1;
   } else if (!strcmp(word, "-quiet")) {
     line->quiet = 1;
-  } else if (!strcmp(word, "-restart") || !strcmp(word, "-time_limit")) {
-    CommandLineComplain(line, "not available yet", word);
+  } else if (!strcmp(word, "-restart")) {
+    line->restart = CommandLineValue(line, argc, argv, i, "needs the directory of a run");
+  } else if (!strcmp(word, "-time_limit")) {
+    CommandLineSetLimit(line, CommandLineValue(line, argc, argv, i, "needs seconds"));
   } else
     return 0;
   return 1;
@@ -115,12 +137,12 @@ void CommandLineParse(int argc, char **argv, CommandLine *line)
     if (value && !maybe && IsSceneFile(argv[i])) maybe = line->argc;
     line->argv[line->argc++] = argv[i];
   }
-  if (!line->scene && maybe) {
+  if (!line->scene && !line->restart && maybe) {
     line->scene = line->argv[maybe];
     memmove(line->argv + maybe, line->argv + maybe + 1, (size_t)(line->argc - maybe) * sizeof *line->argv);
     line->argc--;
   }
-  if (!line->scene) CommandLineComplain(line, "no scene file", "command line");
+  CommandLineCheck(line);
   if (line->complaint[0]) {
     line->argc    = 1;
     line->argv[1] = NULL;
@@ -140,16 +162,20 @@ void CommandLineHelp(FILE *file)
 {
   fputs("Burnish: contact of deformable bodies, from a scene file to results, in parallel.\n\n"
         "  [mpirun -n N] burnish SCENE.yaml   runs the scene\n"
+        "  [mpirun -n N] burnish -restart DIR goes on from the checkpoint in DIR, on any number of ranks\n"
         "  burnish -check SCENE.yaml          reads, meshes, validates and reports; solves nothing\n"
         "  burnish -mesh SCENE.yaml           only makes the mesh file\n"
         "  burnish -help | -version\n\n"
         "  -o DIR           where results go (default out/NAME)\n"
         "  -set KEY=VALUE   overrides or adds one value of the scene by its path, such as contact.0.smoother=facet or\n"
-        "                   'loads.0={surface: top, uy: -1}'; repeatable, the last one wins\n"
+        "                   'loads.0={surface: top, uy: -1}'; repeatable, the last one wins; with -restart only keys of output,\n"
+        "                   solver and stepping\n"
         "  -overwrite       lets DIR hold another scene's results\n"
         "  -quiet           no progress on the terminal\n"
-        "  -restart DIR, -time_limit S   not available yet\n"
+        "  -time_limit S    ends the run after the step that leaves just the time to write a checkpoint, S seconds from its start\n"
         "All other options are PETSc's.\n\n"
+        "A run writes DIR/checkpoint.h5 every output.checkpoint steps, when it fails, and when SIGUSR1 (to mpirun, which passes it\n"
+        "on, or to any rank), SIGTERM (to any rank) or -time_limit ends it after the current step.\n\n"
         "Exit status: 0 done, 1 wrong input, 2 did not converge, 3 stopped after a checkpoint, 4 machine or internal error.\n\n"
         "Scene file (YAML; file names in it start at its own folder):\n\n",
         file);

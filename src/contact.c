@@ -445,6 +445,17 @@ static PetscErrorCode PairBlocks(Contact contact, ContactPair *pair, int p, cons
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Rows of the contact matrix on this rank: the free dofs that it owns */
+static PetscErrorCode ContactMatrixRows(Contact contact, PetscInt *rows)
+{
+  PetscSection section;
+
+  PetscFunctionBeginUser;
+  PetscCall(DMGetGlobalSection(contact->mesh->dm, &section));
+  PetscCall(PetscSectionGetConstrainedStorageSize(section, rows));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* ContactTangent - the derivative of ContactResidual()'s forces by the free displacements: A (psi'' N N^T - p M) for each closed term, p its pressure.
 
    Collective. u, t: as of ContactResidual(). *C: over the global free dofs, the contact's own; *changed: its pattern is new.
@@ -452,7 +463,6 @@ static PetscErrorCode PairBlocks(Contact contact, ContactPair *pair, int p, cons
 PetscErrorCode ContactTangent(Contact contact, const PetscReal *u, PetscReal t, Mat *C, PetscBool *changed)
 {
   const PetscInt **dof;
-  PetscSection     section;
   PetscInt         size;
 
   PetscFunctionBeginUser;
@@ -463,8 +473,7 @@ PetscErrorCode ContactTangent(Contact contact, const PetscReal *u, PetscReal t, 
     PetscCall(PairBlocks(contact, &contact->pairs[p], p, u, t));
     dof[p] = contact->pairs[p].lists->dof;
   }
-  PetscCall(DMGetGlobalSection(contact->mesh->dm, &section));
-  PetscCall(PetscSectionGetConstrainedStorageSize(section, &size));
+  PetscCall(ContactMatrixRows(contact, &size));
   PetscCall(BlockMatrixAssemble(contact->blocks, size, dof, C, changed));
   PetscCall(PetscFree(dof));
   PetscCall(PetscLogEventEnd(contact->event_tangent, 0, 0, 0, 0));
@@ -525,5 +534,43 @@ PetscErrorCode ContactRestore(Contact contact)
     PetscCall(ContactStateCopy(&pair->accepted, &pair->now));
     if (pair->before) PetscCall(PetscArraycpy(pair->before, pair->accepted.gap, pair->n));
   }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode PairArchive(ContactPair *pair, int p, Archive archive)
+{
+  PetscInt *id;
+  char      name[PETSC_MAX_PATH_LEN];
+  Rows      nodes;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(pair->n, &id));
+  for (PetscInt c = 0; c < pair->n; c++) id[c] = pair->mesh->node_id[pair->node[c]];
+  PetscCall(RowsCreateByKey(pair->mesh->comm, pair->n, id, &nodes));
+  PetscCall(PetscFree(id));
+  PetscCall(PetscSNPrintf(name, sizeof(name), "contact/%d/state", p));
+  PetscCall(ContactStateArchive(&pair->accepted, archive, name, &nodes));
+  PetscCall(RowsDestroy(&nodes));
+  PetscCall(PetscSNPrintf(name, sizeof(name), "contact/%d/slave_offsets", p));
+  if (pair->slave_offsets) PetscCall(OffsetsArchive(pair->slave_offsets, archive, name));
+  PetscCall(PetscSNPrintf(name, sizeof(name), "contact/%d/master_offsets", p));
+  if (pair->master_offsets) PetscCall(OffsetsArchive(pair->master_offsets, archive, name));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* ContactArchive - saves or takes over the accepted state by node and face, with what else the next steps depend on to the last bit: offsets to
+   extrapolate from, lists that stand ready, the kept pattern of the matrix.
+
+   Collective. u[n_nodes*dim], t: the accepted state of the model. Loaded, it is the present state too; ContactResidual() gives its forces. */
+PetscErrorCode ContactArchive(Contact contact, Archive archive, const PetscReal *u, PetscReal t)
+{
+  PetscInt rows;
+
+  PetscFunctionBeginUser;
+  for (int p = 0; p < contact->n_pairs; p++) PetscCall(PairArchive(&contact->pairs[p], p, archive));
+  PetscCall(ContactMatrixRows(contact, &rows));
+  PetscCall(BlockMatrixArchive(contact->blocks, archive, "contact/pattern", rows));
+  if (ArchiveLoads(archive)) PetscCall(ContactRestore(contact));
+  PetscCall(ContactListsArchive(contact, archive, u, t));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -258,3 +258,22 @@ PetscErrorCode ContactListsHold(Contact contact, const PetscReal *u, PetscReal t
   PetscCall(PetscLogEventEnd(contact->event_search, 0, 0, 0, 0));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
+
+/* ContactListsArchive - the fresh lists that stand ready for the next step, by the motion they were made for; loading: lists at the accepted state
+   (u, t), and the same fresh ones. Other lists would list as much, in another order of sums.
+
+   Collective. u, t: as of ContactGather(). */
+PetscErrorCode ContactListsArchive(Contact contact, Archive archive, const PetscReal *u, PetscReal t)
+{
+  PetscReal *motion;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(contact->n_pairs, &motion));
+  for (int p = 0; p < contact->n_pairs; p++) motion[p] = contact->pairs[p].next ? contact->pairs[p].next_motion : -1;
+  PetscCall(ArchiveReals(archive, "contact/next_motion", contact->n_pairs, motion));
+  if (ArchiveLoads(archive)) PetscCall(ContactGather(contact, u, t, t, 0));
+  for (int p = 0; p < contact->n_pairs && ArchiveLoads(archive); p++)
+    if (motion[p] >= 0) PetscCall(PairSearch(&contact->pairs[p], u, t, motion[p]));
+  PetscCall(PetscFree(motion));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

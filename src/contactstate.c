@@ -36,3 +36,35 @@ PetscErrorCode ContactStateDestroy(ContactState *state)
   PetscCall(PetscFree5(state->penalty, state->status, state->gap, state->offset, state->multiplier));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
+
+/* ContactStateArchive - Collective. name: where it stands in the archive; nodes: the rows of the state's n slave nodes. */
+PetscErrorCode ContactStateArchive(ContactState *state, Archive archive, const char *name, const Rows *nodes)
+{
+  PetscReal *const   values[]  = {state->penalty, NULL, state->gap, state->offset, state->multiplier};
+  static const char *names[]   = {"penalty", "status", "gap", "offset", "multiplier"};
+  PetscInt           updates[] = {state->raised, state->lowered, state->clamped, state->light};
+  PetscReal         *status;
+  PetscMPIInt        rank;
+  char               path[PETSC_MAX_PATH_LEN];
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(state->n, &status));
+  for (PetscInt c = 0; c < state->n; c++) status[c] = state->status[c];
+  for (size_t k = 0; k < PETSC_STATIC_ARRAY_LENGTH(values); k++) {
+    PetscCall(PetscSNPrintf(path, sizeof(path), "%s/%s", name, names[k]));
+    PetscCall(ArchiveRows(archive, path, nodes, 1, values[k] ? values[k] : status));
+  }
+  for (PetscInt c = 0; c < state->n; c++) state->status[c] = (ContactStatus)status[c];
+  PetscCall(PetscFree(status));
+  PetscCallMPI(MPI_Comm_rank(PetscObjectComm((PetscObject)nodes->sf), &rank));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, updates, 4, MPIU_INT, MPI_SUM, PetscObjectComm((PetscObject)nodes->sf)));
+  PetscCall(PetscSNPrintf(path, sizeof(path), "%s/updates", name));
+  PetscCall(ArchiveIntegers(archive, path, 4, updates));
+  if (ArchiveLoads(archive)) { /* counts of all ranks together: where they stand does not matter */
+    state->raised  = rank ? 0 : updates[0];
+    state->lowered = rank ? 0 : updates[1];
+    state->clamped = rank ? 0 : updates[2];
+    state->light   = rank ? 0 : updates[3];
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

@@ -488,6 +488,35 @@ PetscErrorCode DocumentText(Document *document, char **text)
 
 /* ---- the whole ---- */
 
+static PetscErrorCode DocumentEdit(Document *document, int n_set, char *const *set)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc1(n_set, &document->set_key));
+  for (int i = 0; i < n_set; i++) {
+    const char *equals = strchr(set[i], '=');
+    char       *key;
+
+    if (!equals) PetscCall(RefuseInput(document->comm, "-set %s: has no value; allowed: KEY=VALUE", set[i]));
+    PetscCall(PetscStrallocpy(set[i], &key));
+    key[equals - set[i]]                 = 0;
+    document->set_key[document->n_set++] = key;
+    PetscCall(DocumentSet(document, key, equals + 1));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* DocumentReadText - a document whose text stands in memory, the same on all ranks; name: stands for the file in messages. As DocumentRead() else. */
+PetscErrorCode DocumentReadText(MPI_Comm comm, const char *name, const char *text, int n_set, char *const *set, Document **document)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscNew(document));
+  (*document)->comm = comm;
+  PetscCall(PetscStrallocpy(name, &(*document)->file));
+  PetscCall(DocumentParse(*document, text, strlen(text), "", NULL, &(*document)->root));
+  PetscCall(DocumentEdit(*document, n_set, set));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* DocumentRead - reads a file and applies edits to it.
 
    Collective. file: as the process can open it on rank 0. set[n_set]: KEY=VALUE, in order. Refuses (exit status 1) what cannot be read or is no
@@ -504,17 +533,7 @@ PetscErrorCode DocumentRead(MPI_Comm comm, const char *file, int n_set, char *co
   PetscCall(FileBroadcast(comm, file, &text, &length));
   PetscCall(DocumentParse(*document, text, length, "", NULL, &(*document)->root));
   PetscCall(PetscFree(text));
-  PetscCall(PetscCalloc1(n_set, &(*document)->set_key));
-  for (int i = 0; i < n_set; i++) {
-    const char *equals = strchr(set[i], '=');
-    char       *key;
-
-    if (!equals) PetscCall(RefuseInput(comm, "-set %s: has no value; allowed: KEY=VALUE", set[i]));
-    PetscCall(PetscStrallocpy(set[i], &key));
-    key[equals - set[i]]                       = 0;
-    (*document)->set_key[(*document)->n_set++] = key;
-    PetscCall(DocumentSet(*document, key, equals + 1));
-  }
+  PetscCall(DocumentEdit(*document, n_set, set));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -1,22 +1,10 @@
 #include "fields.h"
+#include "fileimage.h"
+#include "rows.h"
 #include "xdmf.h"
-#include <hdf5.h>
 #include <math.h>
 
-#if !defined(H5_HAVE_PARALLEL)
-  #error "results.h5 is written by all ranks: PETSc's HDF5 must be a parallel one"
-#endif
-_Static_assert(sizeof(PetscReal) == sizeof(double), "results.h5 holds doubles");
-
-#define CallHDF5(call) PetscCheck((call) >= 0, PETSC_COMM_SELF, PETSC_ERR_FILE_WRITE, "HDF5 could not do %s", #call)
-
 enum { PATH_SIZE = 512 };
-
-/* The rows of one table: this rank's items go to the rows that this rank writes, a contiguous part of the table. */
-typedef struct {
-  PetscSF  sf; /* leaves: items; roots: rows */
-  PetscInt total, first, n;
-} Rows;
 
 struct _n_Fields {
   Model      model;
@@ -29,7 +17,8 @@ struct _n_Fields {
   PetscInt   cells[ELEMENT_TYPES]; /* rows of /mesh/cells_TYPE */
   PetscInt   n_written, room;
   PetscReal *t;    /* of the written steps */
-  Xdmf       xdmf; /* what they show */
+  Xdmf       xdmf;  /* what they show */
+  char      *image; /* rank 0: of the file, between loading and FieldsResume() */
 };
 
 /* What output.fields may ask for, and what ParaView sees of it. Stress goes there by components: readers do not agree on the order of a
@@ -69,90 +58,6 @@ static const struct {
 };
 #define COUNT(array) ((int)(sizeof(array) / sizeof((array)[0])))
 
-static PetscErrorCode RowsCreate(MPI_Comm comm, PetscInt total, PetscInt n, const PetscInt *row, Rows *rows)
-{
-  PetscLayout layout;
-
-  PetscFunctionBeginUser;
-  PetscCall(PetscLayoutCreate(comm, &layout));
-  PetscCall(PetscLayoutSetSize(layout, total));
-  PetscCall(PetscLayoutSetUp(layout));
-  PetscCall(PetscLayoutGetLocalSize(layout, &rows->n));
-  PetscCall(PetscLayoutGetRange(layout, &rows->first, NULL));
-  rows->total = total;
-  PetscCall(PetscSFCreate(comm, &rows->sf));
-  PetscCall(PetscSFSetGraphLayout(rows->sf, layout, n, NULL, PETSC_COPY_VALUES, row));
-  PetscCall(PetscLayoutDestroy(&layout));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Brings items (width values of a type each) to the ranks that write their rows. */
-static PetscErrorCode RowsCollect(const Rows *rows, int width, MPI_Datatype type, const void *items, void *values)
-{
-  MPI_Datatype unit;
-
-  PetscFunctionBeginUser;
-  PetscCallMPI(MPI_Type_contiguous(width, type, &unit));
-  PetscCallMPI(MPI_Type_commit(&unit));
-  PetscCall(PetscSFReduceBegin(rows->sf, unit, items, values, MPI_REPLACE));
-  PetscCall(PetscSFReduceEnd(rows->sf, unit, items, values, MPI_REPLACE));
-  PetscCallMPI(MPI_Type_free(&unit));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Makes the dataset `path` with the groups above it; every rank writes its part. values: [rows->n * width] */
-static PetscErrorCode FileWriteRows(hid_t file, const char *path, const Rows *rows, int width, hid_t type, const void *values)
-{
-  const hsize_t size[2] = {(hsize_t)rows->total, (hsize_t)width}, first[2] = {(hsize_t)rows->first, 0}, n[2] = {(hsize_t)rows->n, (hsize_t)width};
-  const int     rank = width > 1 ? 2 : 1;
-  hid_t         space, memory, links, transfer, data;
-
-  PetscFunctionBeginUser;
-  CallHDF5(space = H5Screate_simple(rank, size, NULL));
-  CallHDF5(memory = H5Screate_simple(rank, n, NULL));
-  CallHDF5(H5Sselect_hyperslab(space, H5S_SELECT_SET, first, NULL, n, NULL));
-  if (!rows->n) {
-    CallHDF5(H5Sselect_none(space));
-    CallHDF5(H5Sselect_none(memory));
-  }
-  CallHDF5(links = H5Pcreate(H5P_LINK_CREATE));
-  CallHDF5(H5Pset_create_intermediate_group(links, 1));
-  CallHDF5(data = H5Dcreate2(file, path, type, space, links, H5P_DEFAULT, H5P_DEFAULT));
-  CallHDF5(transfer = H5Pcreate(H5P_DATASET_XFER));
-  CallHDF5(H5Pset_dxpl_mpio(transfer, H5FD_MPIO_COLLECTIVE));
-  CallHDF5(H5Dwrite(data, type, memory, space, transfer, values));
-  CallHDF5(H5Dclose(data));
-  CallHDF5(H5Pclose(transfer));
-  CallHDF5(H5Pclose(links));
-  CallHDF5(H5Sclose(memory));
-  CallHDF5(H5Sclose(space));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-static PetscErrorCode FileWriteReals(hid_t file, const char *path, const Rows *rows, int width, const PetscReal *items)
-{
-  PetscReal *values;
-
-  PetscFunctionBeginUser;
-  PetscCall(PetscMalloc1(rows->n * width, &values));
-  PetscCall(RowsCollect(rows, width, MPIU_REAL, items, values));
-  PetscCall(FileWriteRows(file, path, rows, width, H5T_NATIVE_DOUBLE, values));
-  PetscCall(PetscFree(values));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-static PetscErrorCode FileWriteIntegers(hid_t file, const char *path, const Rows *rows, int width, const int64_t *items)
-{
-  int64_t *values;
-
-  PetscFunctionBeginUser;
-  PetscCall(PetscMalloc1(rows->n * width, &values));
-  PetscCall(RowsCollect(rows, width, MPI_INT64_T, items, values));
-  PetscCall(FileWriteRows(file, path, rows, width, H5T_NATIVE_INT64, values));
-  PetscCall(PetscFree(values));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 static PetscErrorCode FileWriteAttribute(hid_t object, const char *name, hid_t type, const void *value)
 {
   hid_t space, attribute;
@@ -178,14 +83,11 @@ static PetscBool FieldsShows(Fields fields, int kind)
 /* The file is opened for one step at a time: a run that is killed between two steps leaves a closed file. */
 static PetscErrorCode FieldsOpenFile(Fields fields, hid_t *file)
 {
-  hid_t access;
-
   PetscFunctionBeginUser;
-  CallHDF5(access = H5Pcreate(H5P_FILE_ACCESS));
-  CallHDF5(H5Pset_fapl_mpio(access, fields->model->mesh->comm, MPI_INFO_NULL));
-  *file = fields->n_written ? H5Fopen(fields->file, H5F_ACC_RDWR, access) : H5Fcreate(fields->file, H5F_ACC_TRUNC, H5P_DEFAULT, access);
-  PetscCheck(*file >= 0, PETSC_COMM_SELF, PETSC_ERR_FILE_OPEN, "HDF5 could not open %s for writing", fields->file);
-  CallHDF5(H5Pclose(access));
+  if (fields->n_written)
+    PetscCall(RowsOpenFile(fields->model->mesh->comm, fields->file, H5F_ACC_RDWR, file));
+  else
+    PetscCall(RowsCreateFile(fields->model->mesh->comm, fields->file, file));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -198,7 +100,7 @@ static PetscErrorCode FieldsWriteNodes(Fields fields, hid_t file)
   PetscCall(PetscCalloc1(mesh->n_owned * 3, &items));
   for (PetscInt k = 0; k < mesh->n_owned; k++)
     for (int i = 0; i < mesh->dim; i++) items[k * 3 + i] = mesh->coords[fields->owned[k] * mesh->dim + i] + mesh->centre[i];
-  PetscCall(FileWriteReals(file, "/mesh/nodes", &fields->nodes, 3, items));
+  PetscCall(RowsWriteReals(file, "/mesh/nodes", &fields->nodes, 3, items));
   PetscCall(PetscFree(items));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -236,7 +138,7 @@ static PetscErrorCode FieldsNumberCells(Fields fields, PetscInt *row)
   PetscCall(PetscSFBcastEnd(by_id.sf, MPIU_INT, rows, row, MPI_REPLACE));
   PetscCall(PetscFree2(count, before));
   PetscCall(PetscFree3(key, keys, rows));
-  PetscCall(PetscSFDestroy(&by_id.sf));
+  PetscCall(RowsDestroy(&by_id));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -260,10 +162,10 @@ static PetscErrorCode FieldsWriteCellsOfType(Fields fields, hid_t file, ElementT
   }
   PetscCall(RowsCreate(mesh->comm, fields->cells[type], n, row, &rows));
   PetscCall(PetscSNPrintf(path, sizeof(path), "/mesh/cells_%s", element->name));
-  PetscCall(FileWriteIntegers(file, path, &rows, nodes, ids));
+  PetscCall(RowsWriteIntegers(file, path, &rows, nodes, ids));
   PetscCall(PetscSNPrintf(path, sizeof(path), "/mesh/cells_%s_body", element->name));
-  PetscCall(FileWriteIntegers(file, path, &rows, 1, body));
-  PetscCall(PetscSFDestroy(&rows.sf));
+  PetscCall(RowsWriteIntegers(file, path, &rows, 1, body));
+  PetscCall(RowsDestroy(&rows));
   PetscCall(PetscFree3(ids, body, row));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -281,36 +183,37 @@ static PetscErrorCode FieldsWriteCells(Fields fields, hid_t file)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The rows of a pair's slave nodes, ascending by id. Every rank sees all ids: slave surfaces are small beside the mesh. */
-static PetscErrorCode FieldsWriteSlaveNodes(Fields fields, hid_t file, int pair)
+/* The rows of the pairs' slave nodes, ascending by id. */
+static PetscErrorCode FieldsListSlaveNodes(Fields fields)
 {
   const Mesh   mesh = fields->model->mesh;
   ContactNodes slaves;
-  PetscInt    *row, *all;
+  PetscInt    *ids;
+
+  PetscFunctionBeginUser;
+  for (int p = 0; p < (FieldsShows(fields, SHOW_CONTACT) ? fields->n_pairs : 0); p++) {
+    PetscCall(ContactGetNodes(fields->model->contact, p, fields->model->u, &slaves));
+    PetscCall(PetscMalloc1(slaves.n, &ids));
+    for (PetscInt k = 0; k < slaves.n; k++) ids[k] = mesh->node_id[slaves.node[k]];
+    PetscCall(RowsCreateByKey(mesh->comm, slaves.n, ids, &fields->pairs[p]));
+    PetscCall(PetscFree(ids));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode FieldsWriteSlaveNodes(Fields fields, hid_t file, int pair)
+{
+  ContactNodes slaves;
   int64_t     *ids;
-  PetscMPIInt  size, n, total = 0, *counts, *starts;
   char         path[PATH_SIZE];
 
   PetscFunctionBeginUser;
   PetscCall(ContactGetNodes(fields->model->contact, pair, fields->model->u, &slaves));
-  PetscCallMPI(MPI_Comm_size(mesh->comm, &size));
-  PetscCall(PetscMPIIntCast(slaves.n, &n));
-  PetscCall(PetscMalloc4(slaves.n, &row, slaves.n, &ids, size, &counts, size, &starts));
-  for (PetscInt k = 0; k < slaves.n; k++) ids[k] = row[k] = mesh->node_id[slaves.node[k]];
-  PetscCallMPI(MPI_Allgather(&n, 1, MPI_INT, counts, 1, MPI_INT, mesh->comm));
-  for (PetscMPIInt r = 0; r < size; r++) {
-    starts[r] = total;
-    total += counts[r];
-  }
-  PetscCall(PetscMalloc1(total, &all));
-  PetscCallMPI(MPI_Allgatherv(row, n, MPIU_INT, all, counts, starts, MPIU_INT, mesh->comm));
-  PetscCall(PetscSortInt(total, all));
-  for (PetscInt k = 0; k < slaves.n; k++) PetscCall(PetscFindInt(row[k], total, all, &row[k]));
-  PetscCall(RowsCreate(mesh->comm, total, slaves.n, row, &fields->pairs[pair]));
+  PetscCall(PetscMalloc1(slaves.n, &ids));
+  for (PetscInt k = 0; k < slaves.n; k++) ids[k] = fields->model->mesh->node_id[slaves.node[k]];
   PetscCall(PetscSNPrintf(path, sizeof(path), "/contact/%s/nodes", ContactPairName(fields->model->contact, pair)));
-  PetscCall(FileWriteIntegers(file, path, &fields->pairs[pair], 1, ids));
-  PetscCall(PetscFree(all));
-  PetscCall(PetscFree4(row, ids, counts, starts));
+  PetscCall(RowsWriteIntegers(file, path, &fields->pairs[pair], 1, ids));
+  PetscCall(PetscFree(ids));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -320,6 +223,7 @@ static PetscErrorCode FieldsWriteMesh(Fields fields, hid_t file)
   PetscFunctionBeginUser;
   PetscCall(FieldsWriteNodes(fields, file));
   PetscCall(FieldsWriteCells(fields, file));
+  PetscCall(FieldsListSlaveNodes(fields));
   if (FieldsShows(fields, SHOW_CONTACT))
     for (int p = 0; p < fields->n_pairs; p++) PetscCall(FieldsWriteSlaveNodes(fields, file, p));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -337,7 +241,7 @@ static PetscErrorCode FieldsWriteNodal(Fields fields, hid_t file, const char *na
   for (PetscInt k = 0; k < n; k++)
     for (int i = 0; i < width; i++) items[k * width + i] = values[fields->owned[k] * stride + first + i];
   PetscCall(PetscSNPrintf(path, sizeof(path), "/steps/%04d/%s", (int)fields->n_written, name));
-  PetscCall(FileWriteReals(file, path, &fields->nodes, width, items));
+  PetscCall(RowsWriteReals(file, path, &fields->nodes, width, items));
   PetscCall(PetscFree(items));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -411,7 +315,7 @@ static PetscErrorCode FieldsWritePair(Fields fields, hid_t file, int pair, Petsc
       for (int i = 0; i < width; i++) items[k * width + i] = values[k * COLUMNS + contact_fields[f].column + i];
     PetscCall(PetscSNPrintf(path, sizeof(path), "/steps/%04d/contact/%s/%s", (int)fields->n_written, ContactPairName(fields->model->contact, pair),
                             contact_fields[f].name));
-    PetscCall(FileWriteReals(file, path, &fields->pairs[pair], width, items));
+    PetscCall(RowsWriteReals(file, path, &fields->pairs[pair], width, items));
   }
   PetscCall(PetscFree2(values, items));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -539,8 +443,9 @@ PetscErrorCode FieldsDestroy(Fields *fields)
 {
   PetscFunctionBeginUser;
   if (!*fields) PetscFunctionReturn(PETSC_SUCCESS);
-  for (int p = 0; p < (*fields)->n_pairs; p++) PetscCall(PetscSFDestroy(&(*fields)->pairs[p].sf));
-  PetscCall(PetscSFDestroy(&(*fields)->nodes.sf));
+  for (int p = 0; p < (*fields)->n_pairs; p++) PetscCall(RowsDestroy(&(*fields)->pairs[p]));
+  PetscCall(RowsDestroy(&(*fields)->nodes));
+  PetscCall(PetscFree((*fields)->image));
   PetscCall(PetscFree((*fields)->owned));
   PetscCall(PetscFree((*fields)->pairs));
   PetscCall(PetscFree((*fields)->xdmf.blocks));
@@ -580,6 +485,69 @@ PetscErrorCode FieldsWrite(Fields fields, PetscInt step, PetscReal t)
   CallHDF5(H5Fclose(file));
   PetscCall(FieldsRemember(fields, t));
   PetscCallMPI(MPI_Comm_rank(fields->model->mesh->comm, &rank));
+  if (rank == 0) PetscCall(XdmfWrite(&fields->xdmf, fields->directory));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*
+  FieldsArchive - Saves or takes over which states are written, with an image of the file that holds them. Collective.
+*/
+PetscErrorCode FieldsArchive(Fields fields, Archive archive)
+{
+  PetscInt    n     = fields->n_written;
+  PetscInt64  size  = 0;
+  char       *image = NULL;
+  FILE       *stream;
+  size_t      length;
+  PetscMPIInt rank;
+
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Comm_rank(fields->model->mesh->comm, &rank));
+  PetscCall(ArchiveIntegers(archive, "results/written", 1, &n));
+  for (PetscInt s = fields->n_written; s < n; s++) PetscCall(FieldsRemember(fields, 0));
+  PetscCall(ArchiveReals(archive, "results/t", n, fields->t));
+  if (!n) PetscFunctionReturn(PETSC_SUCCESS);
+  if (!ArchiveLoads(archive)) {
+    if (rank == 0) PetscCall(FileImageTake(fields->file, &image, &size));
+    PetscCall(ArchiveBytes(archive, "results/image", &size, &image));
+    PetscCall(PetscFree(image));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  stream = open_memstream(&image, &length);
+  PetscCheck(stream, PETSC_COMM_SELF, PETSC_ERR_MEM, "No memory for a part of results.h5");
+  PetscCall(ArchiveExtract(archive, "results/image", stream));
+  PetscCheck(!fclose(stream), PETSC_COMM_SELF, PETSC_ERR_MEM, "No memory for a part of results.h5");
+  PetscCall(PetscMalloc1(length, &fields->image));
+  PetscCall(PetscArraycpy(fields->image, image, length));
+  free(image);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*
+  FieldsResume - Brings results.h5 and results.xdmf back to the states of the loaded checkpoint. Collective. Errors: PETSC_ERR_FILE_WRITE.
+*/
+PetscErrorCode FieldsResume(Fields fields, PetscBool *lost)
+{
+  const Mesh  mesh = fields->model->mesh;
+  PetscBool   back = PETSC_TRUE;
+  PetscInt   *row;
+  PetscMPIInt rank;
+
+  PetscFunctionBeginUser;
+  *lost = PETSC_FALSE;
+  if (!fields->n_written) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCallMPI(MPI_Comm_rank(mesh->comm, &rank));
+  if (rank == 0) PetscCall(FileImagePutBack(fields->file, fields->image, &back));
+  PetscCallMPI(MPI_Bcast(&back, 1, MPIU_BOOL, 0, mesh->comm));
+  if (!back) {
+    *lost             = PETSC_TRUE;
+    fields->n_written = 0;
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  PetscCall(PetscMalloc1(mesh->n_cells, &row));
+  PetscCall(FieldsNumberCells(fields, row)); /* the blocks that the text shows */
+  PetscCall(PetscFree(row));
+  PetscCall(FieldsListSlaveNodes(fields));
   if (rank == 0) PetscCall(XdmfWrite(&fields->xdmf, fields->directory));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -1,8 +1,10 @@
 /* burnish: scene -> mesh -> model -> load stepper -> results. */
 #include <petsctime.h>
+#include "checkpoint.h"
 #include "commandline.h"
 #include "contactreport.h"
 #include "errorlog.h"
+#include "interruption.h"
 #include "refusal.h"
 #include "results.h"
 #include "stepper.h"
@@ -23,19 +25,39 @@ static PetscErrorCode InsertSceneOptions(Scene scene)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode MonitorResults(LoadStepper stepper, const StepRecord *record, void *context)
+/* What happens between two steps */
+typedef struct {
+  Scene      scene;
+  Results    results;
+  Checkpoint checkpoint;
+  PetscInt   kept;         /* step of the last checkpoint, -1: none */
+  char       message[256]; /* why the run was stopped */
+} Watch;
+
+static PetscErrorCode WatchStep(LoadStepper stepper, const StepRecord *record, void *context)
 {
+  Watch      *watch = context;
+  const int   every = watch->scene->output.checkpoint;
+  const char *why;
+
   PetscFunctionBeginUser;
-  (void)stepper;
-  PetscCall(ResultsStep(context, record));
+  PetscCall(ResultsStep(watch->results, record));
+  PetscCall(InterruptionAsked(PETSC_COMM_WORLD, &why));
+  if (why || (every && record->step % every == 0)) {
+    PetscCall(CheckpointWrite(watch->checkpoint));
+    watch->kept = record->step;
+  }
+  if (!why) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscSNPrintf(watch->message, sizeof(watch->message), "%s: ended after step %" PetscInt_FMT ", t = %g", why, record->step, (double)record->t));
+  PetscCall(LoadStepperStop(stepper));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* Steps the model to t = 1 and writes what is to be written; the exit status says how it ended. */
-static PetscErrorCode RunModel(Model model, Probes probes, Scene scene, const CommandLine *command, const char *directory, PetscLogDouble start,
-                               PetscReal mesh_s, int *status)
+static PetscErrorCode RunModel(Model model, Probes probes, Scene scene, Checkpoint checkpoint, const CommandLine *command, const char *directory,
+                               PetscLogDouble start, PetscReal mesh_s, int *status)
 {
-  Results        results;
+  Watch          watch = {.scene = scene, .checkpoint = checkpoint, .kept = -1};
   RunRecord      run;
   PetscLogStage  stage;
   PetscLogDouble now;
@@ -43,20 +65,24 @@ static PetscErrorCode RunModel(Model model, Probes probes, Scene scene, const Co
   StepperReport  report;
 
   PetscFunctionBeginUser;
-  PetscCall(ResultsCreate(model, probes, scene, directory, command->quiet ? PETSC_TRUE : PETSC_FALSE, &results));
-  PetscCall(ResultsStart(results));
+  PetscCall(ResultsCreate(model, probes, scene, directory, command->quiet ? PETSC_TRUE : PETSC_FALSE, &watch.results));
   PetscCall(LoadStepperCreate(PETSC_COMM_WORLD, &stepper));
   PetscCall(LoadStepperSetModel(stepper, model));
   PetscCall(LoadStepperSetFromScene(stepper, scene));
   PetscCall(LoadStepperSetFromOptions(stepper));
-  PetscCall(LoadStepperMonitorSet(stepper, MonitorResults, results));
+  PetscCall(LoadStepperMonitorSet(stepper, WatchStep, &watch));
+  PetscCall(CheckpointSetRun(checkpoint, scene, model, stepper, watch.results));
+  if (command->restart) PetscCall(CheckpointRead(checkpoint));
+  PetscCall(ResultsStart(watch.results));
   PetscCall(PetscLogStageRegister("Load steps", &stage));
   PetscCall(PetscLogStagePush(stage));
+  InterruptionBegin();
   PetscCall(LoadStepperSolve(stepper, &report));
   PetscCall(PetscLogStagePop());
+  if (!report.done && watch.kept != report.steps) PetscCall(CheckpointWrite(checkpoint));
   PetscCall(PetscTime(&now));
-  run = (RunRecord){.status            = report.done ? "done" : "not converged",
-                    .message           = report.done ? NULL : report.message,
+  run = (RunRecord){.status            = report.done ? "done" : report.stopped ? "stopped" : "not converged",
+                    .message           = report.done ? NULL : report.stopped ? watch.message : report.message,
                     .steps             = report.steps,
                     .steps_failed      = report.steps_failed,
                     .steps_repeated    = report.steps_repeated,
@@ -65,10 +91,41 @@ static PetscErrorCode RunModel(Model model, Probes probes, Scene scene, const Co
                     .krylov_iterations = report.krylov_iterations,
                     .wall_s            = now - start,
                     .mesh_s            = mesh_s};
-  PetscCall(ResultsFinish(results, &run));
+  PetscCall(ResultsFinish(watch.results, &run));
   PetscCall(LoadStepperDestroy(&stepper));
-  PetscCall(ResultsDestroy(&results));
-  *status = report.done ? EXIT_DONE : EXIT_NOT_CONVERGED;
+  PetscCall(ResultsDestroy(&watch.results));
+  *status = report.done ? EXIT_DONE : report.stopped ? EXIT_STOPPED : EXIT_NOT_CONVERGED;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* A scene and its mesh file, from the scene's own files. */
+static PetscErrorCode OpenScene(MPI_Comm comm, const CommandLine *command, char *directory, Scene *scene, char *mesh_file, PetscReal *mesh_s,
+                                Checkpoint *checkpoint)
+{
+  PetscFunctionBeginUser;
+  PetscCall(SceneRead(comm, command->scene, command->n_set, command->set, scene));
+  PetscCall(InsertSceneOptions(*scene));
+  PetscCall(PetscSNPrintf(directory, PETSC_MAX_PATH_LEN, "%s%s", command->directory ? command->directory : "out/", command->directory ? "" : (*scene)->name));
+  PetscCall(ErrorLogOpen(directory));
+  if (command->mode == COMMAND_RUN) PetscCall(ResultsCheckDirectory(comm, *scene, directory, command->overwrite ? PETSC_TRUE : PETSC_FALSE));
+  PetscCall(MeshGenerate(comm, *scene, "out", mesh_file, mesh_s));
+  if (command->mode == COMMAND_RUN) PetscCall(CheckpointCreate(comm, directory, mesh_file, checkpoint));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The same from a run's checkpoint. */
+static PetscErrorCode ReopenScene(MPI_Comm comm, const CommandLine *command, char *directory, Scene *scene, char *mesh_file, PetscReal *mesh_s,
+                                  Checkpoint *checkpoint)
+{
+  PetscFunctionBeginUser;
+  *mesh_s = 0;
+  PetscCall(PetscStrncpy(directory, command->restart, PETSC_MAX_PATH_LEN));
+  PetscCall(ErrorLogOpen(directory));
+  PetscCall(CheckpointOpen(comm, directory, checkpoint));
+  PetscCall(CheckpointReadScene(*checkpoint, command->n_set, command->set, scene));
+  PetscCall(InsertSceneOptions(*scene));
+  PetscCall(ResultsCheckRestart(comm, *scene, directory));
+  PetscCall(CheckpointMeshFile(*checkpoint, mesh_file));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -82,15 +139,11 @@ static PetscErrorCode RunScene(const CommandLine *command, int *status)
   Mesh           mesh;
   Model          model;
   Probes         probes;
+  Checkpoint     checkpoint = NULL;
 
   PetscFunctionBeginUser;
   PetscCall(PetscTime(&start));
-  PetscCall(SceneRead(comm, command->scene, command->n_set, command->set, &scene));
-  PetscCall(InsertSceneOptions(scene));
-  PetscCall(PetscSNPrintf(directory, sizeof(directory), "%s%s", command->directory ? command->directory : "out/", command->directory ? "" : scene->name));
-  PetscCall(ErrorLogOpen(directory));
-  if (command->mode == COMMAND_RUN) PetscCall(ResultsCheckDirectory(comm, scene, directory, command->overwrite ? PETSC_TRUE : PETSC_FALSE));
-  PetscCall(MeshGenerate(comm, scene, "out", mesh_file, &mesh_s));
+  PetscCall((command->restart ? ReopenScene : OpenScene)(comm, command, directory, &scene, mesh_file, &mesh_s, &checkpoint));
   if (command->mode != COMMAND_MESH) {
     TimingBegin(TIMING_SETUP);
     PetscCall(MeshCreate(comm, scene, mesh_file, &mesh));
@@ -98,15 +151,16 @@ static PetscErrorCode RunScene(const CommandLine *command, int *status)
     PetscCall(MeshCheckQuality(mesh, scene));
     PetscCall(ModelCreate(scene, mesh, &model));
     PetscCall(ProbesCreate(model, scene, &probes));
-    PetscCall(ModelSetUp(model));
+    if (!command->restart) PetscCall(ModelSetUp(model));
     TimingEnd(TIMING_SETUP);
     if (command->mode == COMMAND_CHECK) PetscCall(ContactReport(model->contact, stdout));
-    if (command->mode == COMMAND_RUN) PetscCall(RunModel(model, probes, scene, command, directory, start, mesh_s, status));
+    if (command->mode == COMMAND_RUN) PetscCall(RunModel(model, probes, scene, checkpoint, command, directory, start, mesh_s, status));
     PetscCall(ProbesDestroy(&probes));
     PetscCall(ModelDestroy(&model));
     PetscCall(MeshDestroy(&mesh));
   } else
     PetscCall(PetscPrintf(comm, "%s\n", mesh_file));
+  PetscCall(CheckpointDestroy(&checkpoint));
   PetscCall(SceneDestroy(&scene));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -118,7 +172,9 @@ int main(int argc, char **argv)
   int         status = EXIT_DONE;
 
   CommandLineParse(argc, argv, &command);
+  if (command.mode == COMMAND_RUN) InterruptionInstall(command.time_limit);
   if (PetscInitialize(&command.argc, &command.argv, NULL, NULL)) return EXIT_MACHINE;
+  if (command.mode == COMMAND_RUN) InterruptionInstall(command.time_limit); /* PETSc has taken SIGTERM */
   if (command.complaint[0]) PetscCall(RefuseInput(PETSC_COMM_WORLD, "%s", command.complaint));
   PetscCallMPI(MPI_Comm_rank(PETSC_COMM_WORLD, &rank));
   if (command.mode == COMMAND_HELP && !rank)

@@ -770,6 +770,54 @@ PetscErrorCode ModelRestore(Model model)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* The free displacements among the local ones. */
+static PetscErrorCode ModelCollectFree(Model model, const PetscReal *u, Vec x)
+{
+  const PetscInt  n = model->mesh->n_nodes * model->mesh->dim;
+  const PetscInt *dof;
+  PetscInt        first, end;
+
+  PetscFunctionBeginUser;
+  PetscCall(MeshGetGlobalDofs(model->mesh, &dof));
+  PetscCall(VecGetOwnershipRange(x, &first, &end));
+  for (PetscInt i = 0; i < n; i++)
+    if (dof[i] >= first && dof[i] < end) PetscCall(VecSetValue(x, dof[i], u[i], INSERT_VALUES));
+  PetscCall(VecAssemblyBegin(x));
+  PetscCall(VecAssemblyEnd(x));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* ModelArchive - saves or takes over the accepted state: displacements, load parameter, scales, contact.
+
+   Collective. To be saved between steps; to be loaded into a model fresh from ModelCreate(), in the place of ModelSetUp(). The model then stands as
+   after the ModelAccept() of that step, forces and gaps included. */
+PetscErrorCode ModelArchive(Model model, Archive archive)
+{
+  const Mesh mesh = model->mesh;
+  ModelWork *work = model->work;
+  Rows       nodes;
+  PetscBool  ok;
+
+  PetscFunctionBeginUser;
+  PetscCall(RowsCreate(mesh->comm, mesh->n_global, mesh->n_nodes, mesh->node_id, &nodes));
+  PetscCall(ArchiveRows(archive, "model/displacement", &nodes, mesh->dim, work->accepted_u));
+  PetscCall(RowsDestroy(&nodes));
+  PetscCall(ArchiveReals(archive, "model/t", 1, &work->accepted_t));
+  PetscCall(ArchiveReals(archive, "model/rate", 1, &work->rate));
+  PetscCall(ArchiveReals(archive, "model/force_scale", 1, &model->force_scale));
+  if (ArchiveLoads(archive)) {
+    PetscCall(PetscArraycpy(model->u, work->accepted_u, mesh->n_nodes * mesh->dim));
+    PetscCall(ModelCollectFree(model, model->u, model->x));
+    PetscCall(VecCopy(model->x, work->accepted_x));
+    model->t = work->accepted_t;
+  }
+  if (model->contact) PetscCall(ContactArchive(model->contact, archive, model->u, model->t));
+  if (!ArchiveLoads(archive)) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(ModelResidual(model, model->u, model->t, model->t, &ok));
+  if (model->contact) PetscCall(ContactRestore(model->contact));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* ModelReaction - the force that supports and imposed displacements put on a group's nodes in the accepted state, the same on all ranks.
 
    Collective. Sums the residual over the group's prescribed dofs, those of its edges that it shares with other prescribed surfaces too;

@@ -178,3 +178,30 @@ const PetscReal *OffsetsGet(Offsets o)
 {
   return o->used;
 }
+
+/* OffsetsArchive - Collective. name: where they stand in the archive. */
+PetscErrorCode OffsetsArchive(Offsets o, Archive archive, const char *name)
+{
+  PetscReal  time[] = {o->t_now, o->t_before}, *values[] = {o->now, o->before};
+  const char *names[] = {"now", "before"};
+  PetscInt  *tag;
+  char       path[PETSC_MAX_PATH_LEN];
+  Rows       faces;
+
+  PetscFunctionBeginUser;
+  if (o->once || !o->smooth) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscMalloc1(o->surface->n_faces, &tag));
+  for (PetscInt f = 0; f < o->surface->n_faces; f++) tag[f] = o->surface->faces[f].tag;
+  PetscCall(RowsCreateByKey(o->search->mesh->comm, o->surface->n_faces, tag, &faces));
+  PetscCall(PetscFree(tag));
+  for (int k = 0; k < 2; k++) {
+    PetscCall(PetscSNPrintf(path, sizeof(path), "%s/%s", name, names[k]));
+    PetscCall(ArchiveRows(archive, path, &faces, FACE_RULE_POINTS * o->search->mesh->dim, values[k]));
+  }
+  PetscCall(PetscSNPrintf(path, sizeof(path), "%s/t", name));
+  PetscCall(ArchiveReals(archive, path, 2, time));
+  o->t_now    = time[0];
+  o->t_before = time[1];
+  PetscCall(RowsDestroy(&faces));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

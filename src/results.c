@@ -32,6 +32,9 @@ struct _n_Results {
   PetscBool   stepped, written; /* there is an accepted step; results.h5 holds it */
   double      started;
   PetscReal   t_started;
+  RunUsage    before;         /* of the parts of the run before this one */
+  PetscInt    restarts;       /* how many they are */
+  PetscInt    csv_length[2];  /* of steps.csv at the loaded checkpoint: bytes, in two parts as integers may have 32 bits */
 };
 
 /* The record of the scene in its directory: one line with the file's name, then the text */
@@ -164,6 +167,28 @@ PetscErrorCode ResultsCheckDirectory(MPI_Comm comm, Scene scene, const char *dir
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/*
+  ResultsCheckRestart - Refuses (exit 1) to go on in a directory that holds the results of another scene than its checkpoint's. Collective.
+
+  Input: scene (of the checkpoint), directory. One without a record is fine: a checkpoint may be taken elsewhere.
+*/
+PetscErrorCode ResultsCheckRestart(MPI_Comm comm, Scene scene, const char *directory)
+{
+  char        message[MESSAGE_SIZE] = "", *record = NULL, *text;
+  PetscMPIInt rank;
+
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Comm_rank(comm, &rank));
+  if (rank == 0) record = FileRead(directory, record_name);
+  text = record ? strchr(record, '\n') : NULL;
+  if (text && !SceneSameProblem(text + 1, scene->text))
+    snprintf(message, MESSAGE_SIZE, "%s holds the results of another scene than checkpoint.h5 there, which is of %s; allowed: the checkpoint of these results",
+             directory, scene->file);
+  free(record);
+  PetscCall(RefuseInputAnywhere(comm, *message ? message : NULL));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Rank 0: makes the directory and those above it; an empty message if it is there in the end */
 static void DirectoryMake(const char *directory, char message[MESSAGE_SIZE])
 {
@@ -185,7 +210,7 @@ static void DirectoryMake(const char *directory, char message[MESSAGE_SIZE])
 /* Rank 0: takes away what an earlier run left, so that a killed run shows no file of another one */
 static void DirectoryClear(const char *directory)
 {
-  static const char *const names[] = {"summary.json", "results.xdmf", "results.h5"};
+  static const char *const names[] = {"summary.json", "results.xdmf", "results.h5", "checkpoint.h5", "checkpoint.h5.tmp"};
   char                     path[PATH_SIZE];
 
   for (size_t i = 0; i < sizeof(names) / sizeof(names[0]); i++) {
@@ -228,6 +253,29 @@ static void CsvPrintReal(FILE *csv, PetscReal value)
   if (isfinite((double)value)) fprintf(csv, "%.15g", (double)value);
 }
 
+/* Bytes in two numbers of 31 bits: an index may have no more */
+enum { LENGTH_BITS = 31 };
+
+static off_t CsvLength(const PetscInt length[2])
+{
+  return (off_t)length[0] << LENGTH_BITS | (off_t)length[1];
+}
+
+/* Cuts the rows after the loaded checkpoint off and goes on behind the others; *lost: they are gone. */
+static PetscErrorCode ResultsReopenCsv(Results results, PetscBool *lost)
+{
+  const off_t length = CsvLength(results->csv_length);
+  char        path[PATH_SIZE];
+  struct stat status;
+
+  PetscFunctionBeginUser;
+  PathJoin(path, results->directory, "steps.csv");
+  *lost = stat(path, &status) || status.st_size < length ? PETSC_TRUE : PETSC_FALSE;
+  if (*lost) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCheck(!truncate(path, length) && (results->csv = fopen(path, "a")), PETSC_COMM_SELF, PETSC_ERR_FILE_OPEN, "Cannot write %s: %s", path, strerror(errno));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 static PetscErrorCode ResultsOpenCsv(Results results)
 {
   char path[PATH_SIZE];
@@ -259,7 +307,7 @@ static void ResultsFillRow(Results results, const StepRecord *step, PetscReal ro
   row[COLUMN_KRYLOV]        = (PetscReal)step->krylov;
   row[COLUMN_ATTEMPTS]      = (PetscReal)step->attempts;
   row[COLUMN_RESIDUAL]      = step->residual;
-  row[COLUMN_WALL_S]        = MPI_Wtime() - results->started;
+  row[COLUMN_WALL_S]        = results->before.wall_s + MPI_Wtime() - results->started;
   row[COLUMN_CONTACT_NODES] = row[COLUMN_NODES_IN] = row[COLUMN_NODES_OUT] = 0.0;
   if (!results->model->contact) return;
   row[COLUMN_CONTACT_NODES]   = (PetscReal)contact->nodes;
@@ -434,6 +482,35 @@ PetscErrorCode ResultsDestroy(Results *results)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Rank 0 tells of a file that was there when the loaded checkpoint was written. */
+static void ResultsPrintLost(Results results, const char *name)
+{
+  if (results->rank == 0)
+    fprintf(stderr, "burnish: warning: %s/%s is not what the checkpoint left: it begins anew after step %lld\n", results->directory, name,
+            (long long)results->last.step);
+}
+
+/* The directory as it was at the loaded checkpoint. */
+static PetscErrorCode ResultsResume(Results results)
+{
+  char      path[PATH_SIZE];
+  PetscBool lost = PETSC_FALSE;
+
+  PetscFunctionBeginUser;
+  PetscCall(FieldsResume(results->fields, &lost));
+  if (lost) ResultsPrintLost(results, "results.h5");
+  if (results->rank) PetscFunctionReturn(PETSC_SUCCESS);
+  PathJoin(path, results->directory, "summary.json");
+  unlink(path);
+  PetscCall(ResultsWriteRecord(results));
+  PetscCall(ResultsReopenCsv(results, &lost));
+  if (lost) {
+    ResultsPrintLost(results, "steps.csv");
+    PetscCall(ResultsOpenCsv(results));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /*
   ResultsStart - Makes the directory with the record of the scene and the head of steps.csv, and prints the run's first lines. The time
   spent counts from here. Collective. Errors: refuses (exit 1) a directory that cannot be made or written.
@@ -447,7 +524,9 @@ PetscErrorCode ResultsStart(Results results)
   results->t_started = results->model->t;
   if (results->rank == 0) DirectoryMake(results->directory, message);
   PetscCall(RefuseInputAnywhere(results->model->mesh->comm, *message ? message : NULL));
-  if (results->rank == 0) {
+  if (results->restarts)
+    PetscCall(ResultsResume(results));
+  else if (results->rank == 0) {
     DirectoryClear(results->directory);
     PetscCall(ResultsWriteRecord(results));
     PetscCall(ResultsOpenCsv(results));
@@ -503,6 +582,111 @@ PetscErrorCode ResultsStep(Results results, const StepRecord *step)
   if (every > 0 && step->step % every == 0) PetscCall(ResultsWriteFields(results));
   TimingEnd(TIMING_OUTPUT);
   if (results->talks) ResultsPrintStep(results, step);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* What all parts of the run have used until now */
+static PetscErrorCode ResultsUsage(Results results, RunUsage *usage)
+{
+  const RunUsage *before = &results->before;
+
+  PetscFunctionBeginUser;
+  PetscCall(SummaryCollectUsage(results->model->mesh->comm, usage));
+  usage->wall_s = before->wall_s + MPI_Wtime() - results->started;
+  usage->cpu_s += before->cpu_s;
+  usage->peak_rss_mb = PetscMax(usage->peak_rss_mb, before->peak_rss_mb);
+  for (int k = 0; k < TIMING_KINDS; k++) usage->seconds[k] += before->seconds[k];
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The last accepted step, and whether there is one. */
+static PetscErrorCode ResultsArchiveStep(Results results, Archive archive)
+{
+  StepRecord     *last      = &results->last;
+  ContactSummary *contact   = &last->contact;
+  PetscReal       reals[]   = {last->t,
+                               last->dt,
+                               last->residual,
+                               last->beta,
+                               contact->max_penetration,
+                               contact->min_penetration,
+                               contact->max_penetration_over_h,
+                               contact->penalty_min,
+                               contact->penalty_max,
+                               contact->force};
+  PetscInt        numbers[] = {last->step, last->attempts, last->newton, last->krylov, last->tied, contact->nodes, contact->in, contact->out,
+                               contact->outside_window};
+
+  PetscFunctionBeginUser;
+  PetscCall(ArchiveBoolean(archive, "results/stepped", &results->stepped));
+  PetscCall(ArchiveBoolean(archive, "results/last_written", &results->written));
+  PetscCall(ArchiveReals(archive, "results/step_reals", PETSC_STATIC_ARRAY_LENGTH(reals), reals));
+  PetscCall(ArchiveIntegers(archive, "results/step_numbers", PETSC_STATIC_ARRAY_LENGTH(numbers), numbers));
+  *last = (StepRecord){.step     = numbers[0],
+                       .attempts = numbers[1],
+                       .newton   = numbers[2],
+                       .krylov   = numbers[3],
+                       .tied     = numbers[4],
+                       .t        = reals[0],
+                       .dt       = reals[1],
+                       .residual = reals[2],
+                       .beta     = reals[3],
+                       .contact  = {.nodes                  = numbers[5],
+                                    .in                     = numbers[6],
+                                    .out                    = numbers[7],
+                                    .outside_window         = numbers[8],
+                                    .max_penetration        = reals[4],
+                                    .min_penetration        = reals[5],
+                                    .max_penetration_over_h = reals[6],
+                                    .penalty_min            = reals[7],
+                                    .penalty_max            = reals[8],
+                                    .force                  = reals[9]}};
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*
+  ResultsArchive - Saves or takes over what the directory holds up to the last accepted step. Collective.
+
+  Saving also sends steps.csv to the disk. Loading comes between ResultsCreate() and ResultsStart(), which then takes the directory's files back to this
+  step; nothing is touched before.
+*/
+PetscErrorCode ResultsArchive(Results results, Archive archive)
+{
+  RunUsage  usage    = {0};
+  PetscReal used[3]  = {0, 0, 0};
+  PetscInt  restarts = results->restarts;
+
+  PetscFunctionBeginUser;
+  if (!ArchiveLoads(archive)) PetscCall(ResultsUsage(results, &usage));
+  if (!ArchiveLoads(archive) && results->rank == 0) {
+    const off_t length = ftello(results->csv);
+
+    fsync(fileno(results->csv));
+    results->csv_length[0] = (PetscInt)(length >> LENGTH_BITS);
+    results->csv_length[1] = (PetscInt)(length & ((1LL << LENGTH_BITS) - 1));
+  }
+  used[0] = usage.wall_s;
+  used[1] = usage.cpu_s;
+  used[2] = usage.peak_rss_mb;
+  PetscCall(ResultsArchiveStep(results, archive));
+  PetscCall(ArchiveReals(archive, "results/probes", results->scene->n_probes, results->values));
+  for (int p = 0; p < results->scene->n_contacts; p++) {
+    char name[LINE_SIZE];
+
+    PetscCall(PetscSNPrintf(name, sizeof(name), "results/met/%d", p));
+    PetscCall(ArchiveBoolean(archive, name, &results->met[p]));
+  }
+  PetscCall(ArchiveIntegers(archive, "results/csv_length", 2, results->csv_length));
+  PetscCall(ArchiveReals(archive, "results/used", 3, used));
+  PetscCall(ArchiveReals(archive, "results/seconds", TIMING_KINDS, usage.seconds));
+  PetscCall(ArchiveIntegers(archive, "results/restarts", 1, &restarts));
+  PetscCall(FieldsArchive(results->fields, archive));
+  if (!ArchiveLoads(archive)) PetscFunctionReturn(PETSC_SUCCESS);
+  usage.wall_s      = used[0];
+  usage.cpu_s       = used[1];
+  usage.peak_rss_mb = used[2];
+  results->before   = usage;
+  results->restarts = restarts + 1;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -593,11 +777,16 @@ static void ResultsPrintEnd(Results results, const RunRecord *run)
 */
 PetscErrorCode ResultsFinish(Results results, const RunRecord *run)
 {
+  RunUsage usage;
+
   PetscFunctionBeginUser;
   TimingBegin(TIMING_OUTPUT);
   if (results->stepped && !results->written) PetscCall(ResultsWriteFields(results));
   TimingEnd(TIMING_OUTPUT);
-  PetscCall(SummaryWrite(results->model, results->scene, results->directory, run, results->stepped ? &results->last : NULL, results->values));
+  PetscCall(ResultsUsage(results, &usage));
+  usage.wall_s = results->before.wall_s + run->wall_s;
+  PetscCall(SummaryWrite(results->model, results->scene, results->directory, run, &usage, results->restarts, results->stepped ? &results->last : NULL,
+                         results->values));
   PetscCall(ResultsPrintProbes(results));
   PetscCall(ResultsPrintWindows(results));
   PetscCall(ResultsPrintUnused(results));

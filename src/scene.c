@@ -435,7 +435,8 @@ static PetscErrorCode SceneReadOutput(Scene scene)
   Node              fields  = NodeFind(SceneDocument(scene)->root, "output.fields");
 
   PetscFunctionBeginUser;
-  scene->output.every = SchemaInteger(SceneDocument(scene), "output.every");
+  scene->output.every      = SchemaInteger(SceneDocument(scene), "output.every");
+  scene->output.checkpoint = SchemaInteger(SceneDocument(scene), "output.checkpoint");
   for (int k = 0; k < 3; k++) {
     *flags[k] = !fields;
     for (int i = 0; fields && i < fields->n; i++) *flags[k] |= !strcmp(fields->child[i]->text, names[k]);
@@ -461,16 +462,10 @@ static PetscErrorCode SceneReadNames(Scene scene, const char *file)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* SceneRead - reads, edits, validates and converts a scene file.
-
-   Collective. file: as the process can open it on rank 0. set[n_set]: KEY=VALUE edits, in order, the last of a key wins. scene: free with
-   SceneDestroy(). Refuses (exit status 1) the first mistake; see schemakeys.c for the keys. */
-PetscErrorCode SceneRead(MPI_Comm comm, const char *file, int n_set, char *const *set, Scene *scene)
+/* The scene of a document, which is its own from now on. */
+static PetscErrorCode SceneCreate(Document *document, const char *file, Scene *scene)
 {
-  Document *document;
-
   PetscFunctionBeginUser;
-  PetscCall(DocumentRead(comm, file, n_set, set, &document));
   SchemaCheck(document);
   PetscCall(PetscNew(scene));
   (*scene)->document = document;
@@ -488,6 +483,76 @@ PetscErrorCode SceneRead(MPI_Comm comm, const char *file, int n_set, char *const
   PetscCall(SceneReadProbes(*scene));
   PetscCall(SceneReadOutput(*scene));
   PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* SceneRead - reads, edits, validates and converts a scene file.
+
+   Collective. file: as the process can open it on rank 0. set[n_set]: KEY=VALUE edits, in order, the last of a key wins. scene: free with
+   SceneDestroy(). Refuses (exit status 1) the first mistake; see schemakeys.c for the keys. */
+PetscErrorCode SceneRead(MPI_Comm comm, const char *file, int n_set, char *const *set, Scene *scene)
+{
+  Document *document;
+
+  PetscFunctionBeginUser;
+  PetscCall(DocumentRead(comm, file, n_set, set, &document));
+  PetscCall(SceneCreate(document, file, scene));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* What may be another in the rest of a run: parts of a scene that its state does not depend on. */
+static const char *const changeable[] = {"output", "solver", "stepping"};
+
+/* Is the first component of a path, which `end` follows, one of those? */
+static PetscBool IsChangeable(const char *path, const char *end)
+{
+  for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(changeable); i++) {
+    const size_t n = strlen(changeable[i]);
+
+    if (!strncmp(path, changeable[i], n) && path[n] && strchr(end, path[n])) return PETSC_TRUE;
+  }
+  return PETSC_FALSE;
+}
+
+/* SceneReadAgain - as SceneRead(), from the text that a run has kept. Collective. Refuses (exit status 1) edits that would make it another problem. */
+PetscErrorCode SceneReadAgain(MPI_Comm comm, const char *file, const char *where, const char *text, int n_set, char *const *set, Scene *scene)
+{
+  Document *document;
+
+  PetscFunctionBeginUser;
+  for (int i = 0; i < n_set; i++) {
+    if (IsChangeable(set[i], ".=")) continue;
+    PetscCall(RefuseInput(comm, "-set %s: a restart goes on with the scene as it is; allowed: keys of output, solver and stepping", set[i]));
+  }
+  PetscCall(DocumentReadText(comm, where, text, n_set, set, &document));
+  PetscCall(SceneCreate(document, file, scene));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The next line of a text that belongs to the problem: the others are parts that may change, a key and what stands below it. */
+static const char *ProblemLine(const char *text)
+{
+  PetscBool skips = PETSC_FALSE;
+
+  while (*text) {
+    if (*text != ' ' && *text != '-') skips = IsChangeable(text, ":");
+    if (!skips) return text;
+    text += strcspn(text, "\n");
+    text += *text == '\n';
+  }
+  return text;
+}
+
+/* SceneSameProblem - Not collective. */
+PetscBool SceneSameProblem(const char *a, const char *b)
+{
+  for (a = ProblemLine(a), b = ProblemLine(b); *a && *b; a = ProblemLine(a), b = ProblemLine(b)) {
+    const size_t n = strcspn(a, "\n"), m = strcspn(b, "\n");
+
+    if (n != m || strncmp(a, b, n)) return PETSC_FALSE;
+    a += n + (a[n] == '\n');
+    b += m + (b[m] == '\n');
+  }
+  return !*a && !*b ? PETSC_TRUE : PETSC_FALSE;
 }
 
 static PetscErrorCode PairsDestroy(int n, ScenePair **pairs)

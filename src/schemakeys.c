@@ -128,7 +128,7 @@ const SchemaKey SchemaKeys[] = {
   {"output", MAP, .help = "what is written"},
   {"output.every",INTEGER, .range = "[0, inf)", .unit = "steps", .preset = "1", .help = "0: only the last state"},
   {"output.fields", CHOICES, .values = "displacement | stress | contact", .help = "default: all"},
-  {"output.checkpoint", INTEGER, .range = "[0, inf)", .unit = "steps", .preset = "0", .now = "0"},
+  {"output.checkpoint", INTEGER, .range = "[0, inf)", .unit = "steps", .preset = "0"},
   {"petsc", FREE, .help = "PETSc options without the dash, such as snes_monitor"},
 };
 // clang-format on

@@ -14,7 +14,8 @@ struct _n_LoadStepper {
   MPI_Comm             comm;
   Model                model;
   const StepControl   *control;
-  StepSize             size;
+  StepSize             size, start; /* start: at the last accepted step */
+  StepperReport        report;
   PetscInt             n_landings, next_landing; /* load parameters to be met exactly, ascending, the last one 1 */
   PetscReal           *landings;
   LoadStepperMonitorFn monitor;
@@ -111,7 +112,8 @@ PetscErrorCode LoadStepperSetFromScene(LoadStepper stepper, Scene scene)
                                 .by_area   = (PetscBool)!scene->stepping.N_c,
                                 .linearly  = (PetscBool)scene->stepping.predict_linearly,
                                 .shortfall = 1,
-                                .beta      = NAN};
+                                .beta      = NAN,
+                                .dt        = scene->stepping.initial};
   PetscCall(LoadStepperSetLandings(stepper, scene));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -180,7 +182,7 @@ static void CountSolve(const SolveReport *solve, StepRecord *record, StepperRepo
 }
 
 /* The control's prediction, once for each step */
-static PetscErrorCode LoadStepperPredict(LoadStepper stepper, StepRecord *record, StepperReport *report)
+static PetscErrorCode LoadStepperPredict(LoadStepper stepper, StepRecord *record)
 {
   SolveReport solve = {.result = SOLVE_CONVERGED};
   PetscBool   clipped;
@@ -189,13 +191,12 @@ static PetscErrorCode LoadStepperPredict(LoadStepper stepper, StepRecord *record
   if (!stepper->control->predict) PetscFunctionReturn(PETSC_SUCCESS);
   (void)StepEnd(stepper, stepper->model->t, stepper->size.dt, &clipped); /* finds the landing point ahead */
   PetscCall(stepper->control->predict(stepper->model, stepper->landings[stepper->next_landing] - stepper->model->t, &stepper->size, &solve));
-  CountSolve(&solve, record, report);
+  CountSolve(&solve, record, &stepper->report);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* A converged step of dt that is to stay: the record, the accepted state, the next dt. */
-static PetscErrorCode LoadStepperAccept(LoadStepper stepper, PetscReal dt, PetscBool clipped, const SolveReport *solve, StepRecord *record,
-                                        StepperReport *report)
+static PetscErrorCode LoadStepperAccept(LoadStepper stepper, PetscReal dt, PetscBool clipped, const SolveReport *solve, StepRecord *record)
 {
   Model model = stepper->model;
 
@@ -209,15 +210,18 @@ static PetscErrorCode LoadStepperAccept(LoadStepper stepper, PetscReal dt, Petsc
   record->beta     = stepper->size.beta;
   record->tied     = stepper->size.tied;
   PetscCall(ModelAccept(model));
-  report->steps++;
-  report->newton_accepted += solve->newton;
+  stepper->start = stepper->size;
+  stepper->report.t = model->t;
+  stepper->report.steps++;
+  stepper->report.newton_accepted += solve->newton;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* Tries one step, smaller and smaller until it converges and the control is content, or it falls below the floor. */
-static PetscErrorCode LoadStepperAdvance(LoadStepper stepper, StepRecord *record, StepperReport *report, PetscBool *advanced)
+static PetscErrorCode LoadStepperAdvance(LoadStepper stepper, StepRecord *record, PetscBool *advanced)
 {
-  Model           model = stepper->model;
+  Model           model  = stepper->model;
+  StepperReport  *report = &stepper->report;
   const PetscReal t = model->t, first = stepper->size.dt;
   SolveReport     solve;
   PetscBool       clipped;
@@ -225,18 +229,18 @@ static PetscErrorCode LoadStepperAdvance(LoadStepper stepper, StepRecord *record
   PetscFunctionBeginUser;
   *advanced = PETSC_FALSE;
   *record   = (StepRecord){.step = report->steps + 1};
-  PetscCall(LoadStepperPredict(stepper, record, report));
+  PetscCall(LoadStepperPredict(stepper, record));
   while (PETSC_TRUE) {
     const PetscReal end = StepEnd(stepper, t, stepper->size.dt, &clipped), dt = end - t;
 
     PetscCall(ModelSolve(model, end, &solve));
     record->attempts++;
-    CountSolve(&solve, record, report);
+    CountSolve(&solve, record, &stepper->report);
     if (solve.result == SOLVE_CONVERGED) {
       *advanced = PETSC_TRUE;
       if (stepper->control->judge) PetscCall(stepper->control->judge(model, dt, &stepper->size, advanced));
       if (*advanced) {
-        PetscCall(LoadStepperAccept(stepper, dt, clipped, &solve, record, report));
+        PetscCall(LoadStepperAccept(stepper, dt, clipped, &solve, record));
         PetscFunctionReturn(PETSC_SUCCESS);
       }
       PetscCall(ModelRestore(model));
@@ -257,6 +261,14 @@ static PetscErrorCode LoadStepperAdvance(LoadStepper stepper, StepRecord *record
   }
 }
 
+/* LoadStepperStop - ends LoadStepperSolve() before its next step. Logically collective; for the monitor. */
+PetscErrorCode LoadStepperStop(LoadStepper stepper)
+{
+  PetscFunctionBeginUser;
+  stepper->report.stopped = PETSC_TRUE;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* LoadStepperSolve - steps the model from its t to 1, or until no step above dt_min converges; then the model stands at the last good state.
 
    Collective. The monitor is called after each accepted step. */
@@ -266,16 +278,48 @@ PetscErrorCode LoadStepperSolve(LoadStepper stepper, StepperReport *report)
   StepRecord record;
 
   PetscFunctionBeginUser;
-  *report = (StepperReport){.t = stepper->model->t};
-  if (ModelIsLinear(stepper->model)) stepper->size.initial = stepper->size.dt_max = 1; /* the answer at any t is one solve away */
-  stepper->size.dt      = stepper->size.initial;
+  if (ModelIsLinear(stepper->model)) stepper->size.dt = stepper->size.initial = stepper->size.dt_max = 1; /* the answer at any t is one solve away */
+  stepper->start        = stepper->size;
+  stepper->report.t     = stepper->model->t;
   stepper->next_landing = 0;
   if (stepper->view) PetscCall(LoadStepperView(stepper, PETSC_VIEWER_STDOUT_(stepper->comm)));
-  while (report->t < 1 - STEPPER_SAME_T && advanced) {
-    PetscCall(LoadStepperAdvance(stepper, &record, report, &advanced));
-    report->t = stepper->model->t;
+  while (stepper->report.t < 1 - STEPPER_SAME_T && advanced && !stepper->report.stopped) {
+    PetscCall(LoadStepperAdvance(stepper, &record, &advanced));
     if (advanced && stepper->monitor) PetscCall(stepper->monitor(stepper, &record, stepper->monitor_context));
   }
-  report->done = advanced;
+  stepper->report.done    = stepper->report.t < 1 - STEPPER_SAME_T ? PETSC_FALSE : PETSC_TRUE;
+  stepper->report.stopped = (PetscBool)(stepper->report.stopped && !stepper->report.done);
+  *report                 = stepper->report;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* LoadStepperArchive - saves or takes over the size of the next step and the counts.
+
+   Collective. A failed step is not part of it: it is tried again from its first dt, with the solver or stepping that has been changed. Loading comes after
+   LoadStepperSetFromScene(), whose dt_max holds; so does its `initial` if that is another one than the run had. */
+PetscErrorCode LoadStepperArchive(LoadStepper stepper, Archive archive)
+{
+  StepperReport *report   = &stepper->report;
+  StepSize       size     = stepper->start;
+  PetscReal      values[] = {size.initial, size.dt, size.beta, size.together, size.shortfall, size.planned};
+  PetscInt       counts[] = {report->steps,           report->steps_failed,    report->steps_repeated, report->newton_iterations,
+                             report->newton_accepted, report->krylov_iterations, size.tied};
+
+  PetscFunctionBeginUser;
+  PetscCall(ArchiveReals(archive, "stepper/size", PETSC_STATIC_ARRAY_LENGTH(values), values));
+  PetscCall(ArchiveIntegers(archive, "stepper/counts", PETSC_STATIC_ARRAY_LENGTH(counts), counts));
+  if (!ArchiveLoads(archive)) PetscFunctionReturn(PETSC_SUCCESS);
+  if (values[0] == stepper->size.initial) stepper->size.dt = PetscMin(stepper->size.dt_max, values[1]);
+  stepper->size.beta        = values[2];
+  stepper->size.together    = values[3];
+  stepper->size.shortfall   = values[4];
+  stepper->size.planned     = values[5];
+  stepper->size.tied        = counts[6];
+  report->steps             = counts[0];
+  report->steps_failed      = counts[1];
+  report->steps_repeated    = counts[2];
+  report->newton_iterations = counts[3];
+  report->newton_accepted   = counts[4];
+  report->krylov_iterations = counts[5];
   PetscFunctionReturn(PETSC_SUCCESS);
 }

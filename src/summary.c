@@ -9,13 +9,10 @@
 
 enum { TEXT_SIZE = 4096 };
 
-/* What all ranks together used */
-typedef struct {
-  PetscReal seconds[TIMING_KINDS]; /* wall, of the slowest rank for each purpose */
-  PetscReal cpu_s, peak_rss_mb;    /* sum, largest */
-} Usage;
-
-static PetscErrorCode UsageCollect(MPI_Comm comm, Usage *usage)
+/*
+  SummaryCollectUsage - What this program has used since it started, over all ranks; wall_s is left alone. Collective.
+*/
+PetscErrorCode SummaryCollectUsage(MPI_Comm comm, RunUsage *usage)
 {
   struct rusage self;
 
@@ -87,11 +84,11 @@ static void AddRun(cJSON *json, const RunRecord *run)
   cJSON_AddNumberToObject(json, "krylov_iterations", (double)run->krylov_iterations);
 }
 
-static void AddUsage(cJSON *json, const RunRecord *run, const Usage *usage)
+static void AddUsage(cJSON *json, const RunRecord *run, const RunUsage *usage)
 {
   cJSON *seconds;
 
-  AddReal(json, "wall_s", run->wall_s);
+  AddReal(json, "wall_s", usage->wall_s);
   AddReal(json, "cpu_s", usage->cpu_s);
   AddReal(json, "mesh_s", run->mesh_s);
   AddReal(json, "peak_rss_mb", usage->peak_rss_mb);
@@ -156,24 +153,23 @@ static PetscErrorCode AddContact(cJSON *json, Contact contact)
 /*
   SummaryWrite - Writes summary.json under a temporary name and renames it. Collective.
 
-  Input: model, scene, directory (exists), run (counts and wall seconds), last (last accepted step, NULL: none), probes[scene->n_probes]
+  Input: model, scene, directory (exists), run (counts), usage (of all parts of the run), restarts (number of the parts less one), last (last accepted step, NULL: none), probes[scene->n_probes]
   (final values, NaN: none). Errors: PETSC_ERR_FILE_OPEN, PETSC_ERR_FILE_WRITE, PETSC_ERR_MEM.
 */
-PetscErrorCode SummaryWrite(Model model, Scene scene, const char *directory, const RunRecord *run, const StepRecord *last, const PetscReal *probes)
+PetscErrorCode SummaryWrite(Model model, Scene scene, const char *directory, const RunRecord *run, const RunUsage *usage, PetscInt restarts,
+                            const StepRecord *last, const PetscReal *probes)
 {
   const Mesh  mesh = model->mesh;
   cJSON      *json = cJSON_CreateObject();
   char        effects[TEXT_SIZE], *text;
   PetscMPIInt rank, size;
   PetscInt    dofs;
-  Usage       usage;
 
   PetscFunctionBeginUser;
   PetscCallMPI(MPI_Comm_rank(mesh->comm, &rank));
   PetscCallMPI(MPI_Comm_size(mesh->comm, &size));
   PetscCall(ModelEffects(model, effects, sizeof(effects)));
   PetscCall(ModelDofs(model, &dofs));
-  PetscCall(UsageCollect(mesh->comm, &usage));
   cJSON_AddStringToObject(json, "name", scene->name);
   cJSON_AddStringToObject(json, "version", BURNISH_VERSION);
   cJSON_AddNumberToObject(json, "ranks", size);
@@ -182,7 +178,8 @@ PetscErrorCode SummaryWrite(Model model, Scene scene, const char *directory, con
   AddList(json, "effects", effects);
   PetscCall(AddOptions(json, scene));
   AddRun(json, run);
-  AddUsage(json, run, &usage);
+  cJSON_AddNumberToObject(json, "restarts", (double)restarts);
+  AddUsage(json, run, usage);
   AddState(json, scene, model->contact ? PETSC_TRUE : PETSC_FALSE, last, probes);
   AddPartition(json, mesh);
   PetscCall(AddContact(json, model->contact));
