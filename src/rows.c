@@ -108,7 +108,7 @@ PetscErrorCode RowsWrite(hid_t file, const char *path, hsize_t total, hsize_t fi
   CallHDF5(data = H5Dcreate2(file, path, type, space, links, H5P_DEFAULT, H5P_DEFAULT));
   CallHDF5(transfer = H5Pcreate(H5P_DATASET_XFER));
   CallHDF5(H5Pset_dxpl_mpio(transfer, H5FD_MPIO_COLLECTIVE));
-  CallHDF5(H5Dwrite(data, type, memory, space, transfer, values));
+  if (total) CallHDF5(H5Dwrite(data, type, memory, space, transfer, values)); /* HDF5 has no place for nothing */
   CallHDF5(H5Dclose(data));
   CallHDF5(H5Pclose(transfer));
   CallHDF5(H5Pclose(links));

@@ -1,0 +1,282 @@
+"""A run that is killed, stopped or out of disk goes on from its checkpoint, on any number of ranks, and ends as if nothing had happened; what is no checkpoint of it is refused and nothing is touched."""
+import os
+import pathlib
+import random
+import shutil
+import signal
+import subprocess
+import time
+
+import h5py
+import numpy
+
+from harness import Check, Run, arguments, run, SCENES
+
+SCENE = SCENES / "../../runs/slide_cylinder.yaml"
+BATCH = pathlib.Path(__file__).resolve().parents[2] / "runs/batch"
+COUNTS = ("step", "newton", "attempts", "contact_nodes", "nodes_in", "nodes_out")
+OWN = ("wall_s", "cpu_s", "seconds", "peak_rss_mb", "restarts", "options", "mesh_s", "ranks", "partition")  # of a part of a run
+
+args = arguments(("part", "what is shown", ("kills", "signals", "refusals")), ("kills", "how many"))
+out = pathlib.Path(args.out)
+check = Check()
+
+
+def start(directory, *options, ranks=1, restart=False, overrides=(), **more):
+    """Starts a run or its next part and leaves it running."""
+    what = ["-restart", str(directory)] if restart else [str(SCENE), "-o", str(directory)]
+    command = ["mpirun", "-n", str(ranks), args.burnish, *what, *options]
+    for override in overrides:
+        command += ["-set", override]
+    return subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, **more)
+
+
+def finish(process, directory):
+    text = process.communicate()[0]
+    return Run(process.returncode, text, directory)
+
+
+def go_on(directory, *options, ranks=1, overrides=(), **more):
+    return finish(start(directory, *options, ranks=ranks, restart=True, overrides=overrides, **more), directory)
+
+
+def rank_ids(launcher):
+    """Process ids of the ranks: the launcher's children."""
+    children = pathlib.Path(f"/proc/{launcher}/task/{launcher}/children")
+    return [int(child) for child in children.read_text().split()] if children.exists() else []
+
+
+def rows(directory):
+    """steps.csv as its own text without the wall clock."""
+    lines = [line.split(",") for line in (directory / "steps.csv").read_text().splitlines()]
+    clock = lines[0].index("wall_s")
+    return [line[:clock] + line[clock + 1:] for line in lines]
+
+
+def written(directory):
+    """Every dataset of results.h5, and the step numbers of the written states."""
+    sets = {}
+    with h5py.File(directory / "results.h5", "r") as file:
+        file.visititems(lambda name, item: sets.update({name: item[()]}) if isinstance(item, h5py.Dataset) else None)
+        return sets, [int(file["steps"][group].attrs["step"]) for group in sorted(file["steps"])]
+
+
+def same_files(what, directory, reference):
+    """To the last bit: what one rank leaves."""
+    check.holds(f"{what}: steps.csv is that of the whole run", rows(directory) == rows(reference))
+    ours, steps = written(directory)
+    theirs, reference_steps = written(reference)
+    check.holds(f"{what}: results.h5 has its steps", steps == reference_steps, f"{len(steps)}")
+    equal = ours.keys() == theirs.keys() and all(numpy.array_equal(ours[name], theirs[name], equal_nan=ours[name].dtype.kind == "f") for name in ours)
+    check.holds(f"{what}: results.h5 has its values, to the last bit", equal)
+
+
+def same_results(what, directory, reference):
+    """On any ranks: the same steps, values to 1e-9 of the largest."""
+    one, other = Run(0, "", reference).steps(), Run(0, "", directory).steps()
+    for name in COUNTS:
+        check.holds(f"{what}: {name}", [row[name] for row in one] == [row[name] for row in other])
+    if len(one) != len(other):
+        return
+    for name in ("t", "max_penetration", "contact_force", *Run(0, "", reference).summary()["probes"]):
+        a, b = (numpy.array([row[name] for row in part], dtype=float) for part in (one, other))
+        check.near(f"{what}: {name}", b, a, 1e-9 * numpy.max(numpy.abs(a)))
+    (ours, steps), (theirs, reference_steps) = written(directory), written(reference)
+    check.holds(f"{what}: results.h5 has its steps", steps == reference_steps and ours.keys() == theirs.keys(), f"{len(steps)}")
+    worst = max(numpy.max(numpy.abs(ours[name] - theirs[name])) / max(numpy.max(numpy.abs(theirs[name])), 1e-300) for name in theirs if name.endswith("displacement"))
+    check.near(f"{what}: displacements", worst, 0, 1e-9)
+
+
+def same_summary(what, directory, reference):
+    ours, theirs = Run(0, "", directory).summary(), Run(0, "", reference).summary()
+    counts = ("status", "steps", "steps_failed", "newton_iterations", "newton_accepted", "dofs", "elements")
+    check.holds(f"{what}: summary", all(ours[key] == theirs[key] for key in counts) and ours.keys() == theirs.keys())
+
+
+def kills():
+    """kill -9 of all ranks, or of one, at a random moment; most of such a run is spent in writing."""
+    overrides = ["stepping.initial=0.016", "output={every: 1, checkpoint: 1}"]
+    generator = random.Random(4)
+    reference = run(args, SCENE, out="reference", ranks=1, overrides=overrides).directory
+    begun, wall = 0, {}
+    for kill in range(int(args.kills)):
+        ranks, others = (1, 1) if kill == 0 else (1 + kill % 3, 1 + (kill + 1) % 3)
+        directory = out / f"killed_{kill}"
+        shutil.rmtree(directory, ignore_errors=True)
+        if ranks not in wall:
+            began = time.monotonic()
+            finish(start(directory, ranks=ranks, overrides=overrides), directory)
+            wall[ranks] = time.monotonic() - began
+            shutil.rmtree(directory)
+        process = start(directory, ranks=ranks, overrides=overrides)
+        while not (directory / "steps.csv").exists():
+            time.sleep(0.01)
+        time.sleep(generator.uniform(0, 0.7 * wall[ranks]))
+        victims = rank_ids(process.pid)
+        for victim in victims if kill % 2 else victims[-1:]:
+            os.kill(victim, signal.SIGKILL)
+        killed = finish(process, directory)
+        steps = len((directory / "steps.csv").read_text().splitlines()) - 1
+        left = (directory / "checkpoint.h5").exists()
+        part = (directory / "checkpoint.h5.tmp").exists()
+        what = f"kill {kill}, on {ranks} in step {steps}{', while writing' if part else ''}, again on {others}"
+        check.holds(f"{what}: the launcher tells", killed.status != 0 or steps == len(rows(reference)) - 1, f"status {killed.status}")
+        begun += not left
+        again = go_on(directory, ranks=others) if left else finish(start(directory, ranks=others, overrides=overrides), directory)
+        check.holds(f"{what}: goes on to the end", again.status == 0, again.text if again.status else "")
+        if again.status == 0 and (ranks, others) == (1, 1):
+            same_files(what, directory, reference)
+        if again.status == 0:
+            same_results(what, directory, reference)
+            same_summary(what, directory, reference)
+    check.holds("most were killed after their first checkpoint", begun <= int(args.kills) / 3, f"{begun} before")
+
+
+def wait_for_rows(process, directory, n):
+    while process.poll() is None and not ((directory / "steps.csv").exists() and len((directory / "steps.csv").read_text().splitlines()) > n):
+        time.sleep(0.005)
+
+
+def stopped(what, ended, reference, status=3):
+    """Ended early with a checkpoint; goes on to the same end on two ranks, or on one."""
+    check.holds(f"{what}: exit status 3", ended.status == status, f"{ended.status}\n{ended.text if ended.status != status else ''}")
+    if ended.status != status:
+        return
+    summary = ended.summary()
+    check.holds(f"{what}: status stopped, with its cause", summary["status"] == "stopped" and summary["steps"] < len(rows(reference)) - 1, summary["message"])
+    again = go_on(ended.directory, ranks=2)
+    check.holds(f"{what}: goes on to the end", again.status == 0, again.text if again.status else "")
+    if again.status == 0:
+        same_results(what, ended.directory, reference)
+        same_summary(what, ended.directory, reference)
+
+
+def signals():
+    overrides = ["stepping.initial=0.004", "output.every=50"]
+    reference = run(args, SCENE, out="reference", ranks=1, overrides=overrides).directory
+
+    def begin(name, *options, ranks=2):
+        directory = out / name
+        shutil.rmtree(directory, ignore_errors=True)
+        process = start(directory, *options, ranks=ranks, overrides=overrides)
+        wait_for_rows(process, directory, 3)
+        return process, directory
+
+    process, directory = begin("usr1")
+    process.send_signal(signal.SIGUSR1)
+    stopped("USR1 to mpirun", finish(process, directory), reference)
+    process, directory = begin("term")
+    os.kill(rank_ids(process.pid)[-1], signal.SIGTERM)
+    stopped("TERM to the last rank", finish(process, directory), reference)
+    limit = f"{0.5 * Run(0, '', reference).summary()['wall_s']:.3g}"
+    process, directory = begin("limit", "-time_limit", limit, ranks=1)
+    stopped(f"-time_limit {limit}", finish(process, directory), reference)
+
+    process, directory = begin("one", ranks=1)
+    process.send_signal(signal.SIGUSR1)
+    ended = finish(process, directory)
+    again = go_on(directory)
+    check.holds("one rank: stopped and done", (ended.status, again.status) == (3, 0))
+    same_files("one rank", directory, reference)
+    batch(reference, overrides)
+
+
+def batch(reference, overrides):
+    """The job script with no queue around it: its resubmission is a program that only notes that it was called."""
+    directory, scratch = out / "batch", out / "queue"
+    for each in (directory, scratch):
+        shutil.rmtree(each, ignore_errors=True)
+    scratch.mkdir(parents=True)
+    for name in ("build", "runs", "meshes"):
+        (scratch / name).symlink_to(BATCH.parents[1] / name if name != "build" else pathlib.Path(args.burnish).resolve().parent)
+    (scratch / "sbatch").write_text(f'#!/bin/sh\necho "$@" >>{scratch}/queue\n')
+    (scratch / "sbatch").chmod(0o755)
+    options = [word for override in overrides for word in ("-set", override)]
+    environment = dict(os.environ, SLURM_SUBMIT_DIR=str(scratch), SLURM_JOB_ID="7", SLURM_NTASKS="2", PATH=f"{scratch}:{os.environ['PATH']}", LAUNCH="mpirun -n 2")
+    command = [str(scratch / "runs/batch/slurm.sh"), "runs/slide_cylinder.yaml", str(directory.resolve()), *options]
+    process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, env=environment)
+    wait_for_rows(process, directory, 3)
+    process.send_signal(signal.SIGTERM)
+    ended = finish(process, directory)
+    check.holds("job script: TERM ends it, the next is queued", ended.status == 0 and "afterany:7" in (scratch / "queue").read_text(), ended.text)
+    check.holds("job script: stopped", ended.summary()["status"] == "stopped", ended.summary()["message"] or "")
+    again = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, env=environment, check=False)
+    check.holds("job script: the next one ends the run", again.returncode == 0, again.stdout if again.returncode else "")
+    same_results("job script", directory, reference)
+
+
+def refused(what, directory, expected, *options, overrides=(), ranks=1, **more):
+    """Exit status 1, one message that says so, and every file as it was."""
+    before = {file.name: file.read_bytes() for file in directory.iterdir()}
+    again = go_on(directory, *options, ranks=ranks, overrides=overrides, **more)
+    told = [line for line in again.text.splitlines() if line.startswith("burnish: ")]
+    check.holds(f"{what}: refused", again.status == 1 and len(told) == 1 and expected in told[0], told[0] if told else again.text)
+    check.holds(f"{what}: nothing is touched", before == {file.name: file.read_bytes() for file in directory.iterdir()})
+
+
+def refusals():
+    overrides = ["stepping.initial=0.08", "output={every: 1, checkpoint: 4}"]
+    reference = run(args, SCENE, out="reference", ranks=1, overrides=overrides).directory
+    kept = reference / "checkpoint.h5"
+
+    def copy(name, content):
+        shutil.rmtree(out / name, ignore_errors=True)
+        shutil.copytree(reference, out / name)
+        (out / name / "checkpoint.h5").write_bytes(content)
+        return out / name
+
+    whole = kept.read_bytes()
+    for part in (0.999, 0.5, 0.01):
+        refused(f"{100 * part:g} % of the file", copy("truncated", whole[: int(part * len(whole))]), "a part of it is missing")
+    refused("on two ranks", copy("truncated", whole[: len(whole) // 2]), "a part of it is missing", ranks=2)
+    refused("another file", copy("foreign", b"name: a scene\n"), "no HDF5 file")
+    refused("another HDF5 file", copy("foreign", (reference / "results.h5").read_bytes()), "not written by burnish")
+    other = run(args, SCENE, out="other", ranks=1, overrides=[*overrides, "loads.0.uy=-0.1"]).directory
+    refused("another scene's", copy("foreign", (other / "checkpoint.h5").read_bytes()), "another scene")
+    with h5py.File(copy("version", whole) / "checkpoint.h5", "a") as file:
+        file.attrs["burnish_checkpoint"] = 99
+    refused("another version", out / "version", "version 99")
+    with h5py.File(copy("damaged", whole) / "checkpoint.h5", "a") as file:
+        del file["stepper/size"]
+    refused("a value is gone", out / "damaged", "/stepper/size")
+    (copy("none", whole) / "checkpoint.h5").unlink()
+    refused("no checkpoint", out / "none", "No such file")
+    for override in ("mesh.order=2", "contact.0.smoother=diffuse", "loads=[]", "petsc={snes_monitor: ''}"):
+        refused(f"-set {override}", copy("set", whole), "output, solver and stepping", overrides=[override])
+    refused("-o", reference, "leave -o out", "-o", "elsewhere")
+
+    changed = go_on(copy("changed", whole), overrides=["stepping.initial=0.02", "solver.tolerance=1e-9", "output.checkpoint=0"])
+    check.holds("-set stepping, solver, output: goes on", changed.status == 0, changed.text if changed.status else "")
+    check.near("-set stepping.initial: the next step's dt", changed.steps()[12]["dt"], 0.02, 1e-12)
+
+    no_room(whole, reference)
+
+
+def no_room(whole, reference):
+    """A disk with room for one checkpoint and no second one beside it, where such a disk can be made: as root, seen by this run only."""
+    disk = out / "disk"
+    shutil.rmtree(disk, ignore_errors=True)
+    disk.mkdir()
+    size = sum(file.stat().st_size for file in reference.iterdir()) + len(whole) // 2
+    script = """mount -t tmpfs -o size=$1 none "$2" || exit 77
+        cp "$3"/* "$2"
+        mpirun -n 2 "$4" -restart "$2" -set output.every=0 -set output.checkpoint=1 -quiet
+        echo "status $?"
+        mpirun -n 1 "$4" -restart "$2" -set output.checkpoint=0 -quiet && rm -f "$2"/checkpoint.h5.tmp && cp "$2"/* "$3" """
+    full = out / "full"
+    shutil.rmtree(full, ignore_errors=True)
+    shutil.copytree(reference, full)
+    command = ["unshare", "-m", "sh", "-c", script, "sh", str(size), str(disk), str(full), args.burnish]
+    ended = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, check=False)
+    if ended.returncode in (1, 77) and "status" not in ended.stdout:
+        print(f"no disk of its own can be made here, so a full one is not tried: {ended.stdout.strip()}")
+        return
+    told = [line for line in ended.stdout.splitlines() if "No space left on device" in line]
+    check.holds("full disk: exit status 4, told once", "status 4" in ended.stdout and len(told) == 1 and "is intact" in told[0], told[0] if told else ended.stdout)
+    check.holds("full disk: goes on from the old checkpoint once there is room", ended.returncode == 0, ended.stdout if ended.returncode else "")
+    check.holds("full disk: the old checkpoint is intact", (full / "checkpoint.h5").read_bytes() == whole)
+    same_files("full disk", full, reference)
+
+
+{"kills": kills, "signals": signals, "refusals": refusals}[args.part]()
+check.finish()
