@@ -5,6 +5,7 @@
 #pragma once
 #include "contact.h"
 #include "elasticity.h"
+#include "linearcheck.h"
 #include "loads.h"
 #include "mesh.h"
 
@@ -38,6 +39,7 @@ typedef struct _n_Model {
   Loads                loads;
   Contact              contact; /* NULL: the scene has none */
   SNES                 snes;
+  LinearCheck          linear; /* of the solver's KSP */
   Vec                  x; /* free displacements */
   Mat                  A; /* K + C, or K itself without contact */
   PetscReal           *u; /* n_nodes*dim local displacements, prescribed ones included, at load parameter t */

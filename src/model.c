@@ -17,8 +17,6 @@
 #define MODEL_RESIDUAL_WEIGHT 1e30
 /* Lists are made for this multiple of the motion that the last step's rate predicts; those that check a step too, so that an equal step takes them. */
 #define MODEL_MOTION_SAFETY 1.5
-/* A direct solve of a regular system leaves a relative residual of 1e-12 to 1e-7, stiff penalties included; above this the system is singular. */
-#define MODEL_SINGULAR 1e-3
 /* Round-off of the residual, in machine epsilons times stiffness times displacement: a body that is moved without any force has nothing else
    to be measured against. Measured: 0.1 to 1.5. */
 #define MODEL_ROUND_OFF 16
@@ -240,7 +238,6 @@ static PetscErrorCode ModelConverged(SNES snes, PetscInt it, PetscReal xnorm, Pe
 
   PetscFunctionBeginUser;
   (void)snes;
-  (void)it;
   (void)xnorm;
   (void)snorm;
   PetscCall(ModelRoundOff(model, &round_off));
@@ -248,7 +245,9 @@ static PetscErrorCode ModelConverged(SNES snes, PetscInt it, PetscReal xnorm, Pe
   *reason               = SNES_CONVERGED_ITERATING;
   model->work->near     = fnorm <= MODEL_ENERGY_ROUND_OFF * scale ? PETSC_TRUE : PETSC_FALSE;
   model->work->balanced = fnorm <= PetscMax(model->scene->solver.tolerance * scale, round_off) ? PETSC_TRUE : PETSC_FALSE;
-  if (PetscIsInfOrNanReal(fnorm))
+  if (it > 0 && LinearCheckLost(model->linear))
+    *reason = SNES_DIVERGED_LINEAR_SOLVE;
+  else if (PetscIsInfOrNanReal(fnorm))
     *reason = SNES_DIVERGED_FUNCTION_NANORINF;
   else if (fnorm <= round_off || (model->work->balanced && settled))
     *reason = SNES_CONVERGED_FNORM_ABS;
@@ -258,28 +257,6 @@ static PetscErrorCode ModelConverged(SNES snes, PetscInt it, PetscReal xnorm, Pe
 }
 
 /* ---------- set-up ---------- */
-
-static PetscErrorCode LinearSolveBegins(KSP ksp, Vec b, Vec x, void *context)
-{
-  PetscFunctionBeginUser;
-  (void)ksp;
-  (void)b;
-  (void)x;
-  (void)context;
-  TimingBegin(TIMING_SOLVE);
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-static PetscErrorCode LinearSolveEnds(KSP ksp, Vec b, Vec x, void *context)
-{
-  PetscFunctionBeginUser;
-  (void)ksp;
-  (void)b;
-  (void)x;
-  (void)context;
-  TimingEnd(TIMING_SOLVE);
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
 
 /* Keeps the first message of an error instead of printing its trace; context: char[256]. */
 static PetscErrorCode KeepMessage(MPI_Comm comm, int line, const char *function, const char *file, PetscErrorCode code, PetscErrorType type,
@@ -343,8 +320,7 @@ static PetscErrorCode ModelCreateSNES(Model model)
   PetscCall(SNESLineSearchSetType(search, SNESLINESEARCHBT));
   PetscCall(SNESGetKSP(model->snes, &ksp));
   PetscCall(KSPSetType(ksp, KSPPREONLY));
-  PetscCall(KSPSetPreSolve(ksp, LinearSolveBegins, NULL));
-  PetscCall(KSPSetPostSolve(ksp, LinearSolveEnds, NULL));
+  PetscCall(LinearCheckCreate(ksp, model->scene->solver.tolerance, &model->linear));
   PetscCall(KSPGetPC(ksp, &pc));
   PetscCall(PCSetType(pc, symmetric ? PCCHOLESKY : PCLU));
   PetscCall(PCFactorSetMatSolverType(pc, MATSOLVERMUMPS));
@@ -398,6 +374,7 @@ PetscErrorCode ModelDestroy(Model *model)
   PetscFunctionBeginUser;
   if (!m) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(SNESDestroy(&m->snes));
+  PetscCall(LinearCheckDestroy(&m->linear));
   PetscCall(VecDestroy(&m->x));
   PetscCall(VecDestroy(&m->work->accepted_x));
   PetscCall(VecDestroy(&m->work->forecast));
@@ -477,9 +454,7 @@ static PetscErrorCode ModelPredict(Model model, SolveReport *report)
   PetscBool          ok;
   Vec                b, dx;
   KSP                ksp;
-  KSPConvergedReason reason;
   PetscInt           its;
-  PetscReal          norm, left;
 
   PetscFunctionBeginUser;
   PetscCall(VecDuplicate(model->x, &b));
@@ -498,16 +473,11 @@ static PetscErrorCode ModelPredict(Model model, SolveReport *report)
   PetscCall(SNESGetKSP(model->snes, &ksp));
   PetscCall(KSPSetOperators(ksp, model->A, model->A));
   PetscCall(KSPSolve(ksp, b, dx));
-  PetscCall(KSPGetConvergedReason(ksp, &reason));
   PetscCall(KSPGetIterationNumber(ksp, &its));
   report->newton++;
   report->krylov += its;
   PetscCall(VecAXPY(model->x, -1, dx));
-  PetscCall(VecNorm(b, NORM_2, &norm));
-  PetscCall(VecScale(dx, -1));
-  PetscCall(MatMultAdd(model->A, dx, b, b));
-  PetscCall(VecNorm(b, NORM_2, &left));
-  if (reason < 0 || !(left <= MODEL_SINGULAR * norm)) PetscCall(ModelLinearFailure(model, &report->result));
+  if (LinearCheckLost(model->linear)) PetscCall(ModelLinearFailure(model, &report->result));
   PetscCall(PetscFree(step));
   PetscCall(VecDestroy(&b));
   PetscCall(VecDestroy(&dx));
@@ -545,7 +515,8 @@ static PetscErrorCode ModelNewton(Model model, SolveReport *report)
   report->krylov += krylov;
   report->result = ResultFromReason(reason);
   if (report->result == SOLVE_LINE_SEARCH && model->work->balanced) report->result = SOLVE_CONVERGED; /* gaps as settled as round-off lets them be */
-  if (report->result == SOLVE_LINEAR) PetscCall(ModelLinearFailure(model, &report->result));
+  if (report->result == SOLVE_LINEAR || (report->result != SOLVE_CONVERGED && its > 0 && LinearCheckLost(model->linear)))
+    PetscCall(ModelLinearFailure(model, &report->result));
   PetscCall(ModelTrial(model, model->x)); /* whatever SNES looked at last */
   report->residual = model->work->scale > 0 ? norm / PetscMax(model->force_scale, model->work->scale) : 0;
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -576,6 +576,21 @@ static void ResultsPrintUnmet(Results results)
   }
 }
 
+/* Linear solves that needed help, or did not become as accurate as they should be */
+static void ResultsPrintLinear(Results results)
+{
+  LinearCounts counts;
+
+  LinearCheckGetCounts(results->model->linear, &counts);
+  if (results->talks && counts.refined)
+    printf("linear solves: %lld of %lld refined, in %lld steps\n", (long long)counts.refined, (long long)counts.solves, (long long)counts.steps);
+  if (results->rank || !counts.inaccurate) return;
+  fprintf(stderr,
+          "burnish: warning: %lld of %lld linear solves left a relative residual of up to %.2g, more than 100 times the tolerance, and refinement could not lower "
+          "it; Newton's method converged all the same, but the system is badly conditioned: is a penalty too large?\n",
+          (long long)counts.inaccurate, (long long)counts.solves, (double)counts.worst);
+}
+
 static void ResultsPrintEnd(Results results, const RunRecord *run)
 {
   char text[32];
@@ -602,6 +617,7 @@ PetscErrorCode ResultsFinish(Results results, const RunRecord *run)
   PetscCall(ResultsPrintWindows(results));
   PetscCall(ResultsPrintUnused(results));
   ResultsPrintUnmet(results);
+  ResultsPrintLinear(results);
   ResultsPrintEnd(results, run);
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -99,6 +99,20 @@ static void AddUsage(cJSON *json, const RunRecord *run, const Usage *usage)
   for (int k = 0; k < TIMING_KINDS; k++) AddReal(seconds, TimingNames[k], usage->seconds[k]);
 }
 
+/* How the linear solves went */
+static void AddLinear(cJSON *json, LinearCheck check)
+{
+  cJSON       *map = cJSON_AddObjectToObject(json, "linear");
+  LinearCounts counts;
+
+  LinearCheckGetCounts(check, &counts);
+  cJSON_AddNumberToObject(map, "solves", (double)counts.solves);
+  cJSON_AddNumberToObject(map, "refined", (double)counts.refined);
+  cJSON_AddNumberToObject(map, "refinement_steps", (double)counts.steps);
+  cJSON_AddNumberToObject(map, "inaccurate", (double)counts.inaccurate);
+  AddReal(map, "largest_residual", counts.worst);
+}
+
 /* The last accepted state */
 static void AddState(cJSON *json, Scene scene, PetscBool has_contact, const StepRecord *last, const PetscReal *probes)
 {
@@ -182,6 +196,7 @@ PetscErrorCode SummaryWrite(Model model, Scene scene, const char *directory, con
   AddList(json, "effects", effects);
   PetscCall(AddOptions(json, scene));
   AddRun(json, run);
+  AddLinear(json, model->linear);
   AddUsage(json, run, &usage);
   AddState(json, scene, model->contact ? PETSC_TRUE : PETSC_FALSE, last, probes);
   AddPartition(json, mesh);
