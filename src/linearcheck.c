@@ -48,7 +48,7 @@ static PetscErrorCode Refine(KSP ksp, Mat A, Vec b, Vec x, Vec r, PetscReal enou
   PetscFunctionBeginUser;
   PetscCall(KSPGetPC(ksp, &pc));
   PetscCall(VecDuplicate(x, &d));
-  for (PetscInt i = 0; i < LINEAR_MAX_REFINE && *norm > enough && *norm <= LINEAR_HELPS * before; i++) {
+  for (PetscInt i = 0; i<LINEAR_MAX_REFINE && * norm> enough && *norm <= LINEAR_HELPS * before; i++) {
     before = *norm;
     PetscCall(PCApply(pc, r, d));
     PetscCall(VecAXPY(x, 1, d));

@@ -63,6 +63,9 @@ static PetscErrorCode RunModel(Model model, Probes probes, Scene scene, const Co
                     .newton_iterations = report.newton_iterations,
                     .newton_accepted   = report.newton_accepted,
                     .krylov_iterations = report.krylov_iterations,
+                    .cycles            = report.cycles,
+                    .cycles_cut        = report.cycles_cut,
+                    .cycle             = report.cycle,
                     .wall_s            = now - start,
                     .mesh_s            = mesh_s};
   PetscCall(ResultsFinish(results, &run));

@@ -585,10 +585,11 @@ static void ResultsPrintLinear(Results results)
   if (results->talks && counts.refined)
     printf("linear solves: %lld of %lld refined, in %lld steps\n", (long long)counts.refined, (long long)counts.solves, (long long)counts.steps);
   if (results->rank || !counts.inaccurate) return;
-  fprintf(stderr,
-          "burnish: warning: %lld of %lld linear solves left a relative residual of up to %.2g, more than 100 times the tolerance, and refinement could not lower "
-          "it; Newton's method converged all the same, but the system is badly conditioned: is a penalty too large?\n",
-          (long long)counts.inaccurate, (long long)counts.solves, (double)counts.worst);
+  fprintf(
+    stderr,
+    "burnish: warning: %lld of %lld linear solves left a relative residual of up to %.2g, more than 100 times the tolerance, and refinement could not lower "
+    "it; Newton's method converged all the same, but the system is badly conditioned: is a penalty too large?\n",
+    (long long)counts.inaccurate, (long long)counts.solves, (double)counts.worst);
 }
 
 static void ResultsPrintEnd(Results results, const RunRecord *run)
@@ -597,6 +598,9 @@ static void ResultsPrintEnd(Results results, const RunRecord *run)
 
   if (results->rank == 0 && run->message) fprintf(stderr, "burnish: %s: %s\n", run->status, run->message);
   if (!results->talks) return;
+  if (run->cycles)
+    printf("contact sets that repeated themselves: %lld, steps cut for it %lld; the last time %s\n", (long long)run->cycles, (long long)run->cycles_cut,
+           run->cycle);
   printf("%s: %lld steps (%lld failed, %lld repeated), %lld iterations, %s; results in %s\n", run->status, (long long)run->steps, (long long)run->steps_failed,
          (long long)run->steps_repeated, (long long)run->newton_iterations, DurationText((double)run->wall_s, text), results->directory);
   fflush(stdout);

@@ -99,6 +99,19 @@ static void AddUsage(cJSON *json, const RunRecord *run, const Usage *usage)
   for (int k = 0; k < TIMING_KINDS; k++) AddReal(seconds, TimingNames[k], usage->seconds[k]);
 }
 
+/* Contact sets that repeated themselves */
+static void AddCycles(cJSON *json, const RunRecord *run)
+{
+  cJSON *map = cJSON_AddObjectToObject(json, "cycles");
+
+  cJSON_AddNumberToObject(map, "found", (double)run->cycles);
+  cJSON_AddNumberToObject(map, "steps_cut", (double)run->cycles_cut);
+  if (run->cycles)
+    cJSON_AddStringToObject(map, "last", run->cycle);
+  else
+    cJSON_AddNullToObject(map, "last");
+}
+
 /* How the linear solves went */
 static void AddLinear(cJSON *json, LinearCheck check)
 {
@@ -196,6 +209,7 @@ PetscErrorCode SummaryWrite(Model model, Scene scene, const char *directory, con
   AddList(json, "effects", effects);
   PetscCall(AddOptions(json, scene));
   AddRun(json, run);
+  AddCycles(json, run);
   AddLinear(json, model->linear);
   AddUsage(json, run, &usage);
   AddState(json, scene, model->contact ? PETSC_TRUE : PETSC_FALSE, last, probes);
