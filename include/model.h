@@ -18,6 +18,7 @@ typedef enum {
   SOLVE_WORKSPACE,
   SOLVE_LISTS,
   SOLVE_CYCLE,
+  SOLVE_LOST,
   SOLVE_WINDOW,
   SOLVE_NAN
 } SolveResult;

@@ -43,6 +43,7 @@ const char *const SolveResults[] = {"converged",
                                     "the direct solver ran out of workspace (PETSc option mat_mumps_icntl_14 gives it more)",
                                     "the contact lists did not settle",
                                     "the contact set repeats itself",
+                                    "contact was lost behind a master",
                                     "the penetrations did not come into the window of the adjusted penalty",
                                     "not-a-number in the residual"};
 
@@ -55,6 +56,7 @@ typedef struct _n_ModelWork {
   Vec          forecast; /* x at forecast_t by ModelForecast() */
   PetscReal    forecast_t;
   PetscBool    forecasted; /* forecast starts from the accepted state */
+  PetscReal    expected;   /* motion that the lists of this step were made for */
   PetscReal    rate;       /* largest displacement per unit of t in the last accepted step */
   PetscReal    scale;      /* force norm of the last evaluation */
   PetscReal    stiffness;  /* norm of the elastic tangent's diagonal */
@@ -624,6 +626,7 @@ static PetscErrorCode ModelDepart(Model model, PetscReal t)
   PetscCall(PetscFree(u));
   motion = PetscMax(motion, MODEL_MOTION_SAFETY * work->rate * (t - work->accepted_t));
   PetscCall(ContactRestore(model->contact));
+  work->expected = motion;
   TimingBegin(TIMING_SEARCH);
   PetscCall(ContactGather(model->contact, work->accepted_u, work->accepted_t, t, motion));
   TimingEnd(TIMING_SEARCH);
@@ -654,6 +657,7 @@ static PetscErrorCode ModelRenewLists(Model model, PetscBool *hold)
 
   PetscFunctionBeginUser;
   PetscCall(ModelMotion(model, work->trial, model->t, &motion));
+  if (motion > work->expected) motion *= 2; /* two bodies that the lists at the start did not let meet may have passed through each other */
   TimingBegin(TIMING_SEARCH);
   *hold = PETSC_FALSE;
   if (work->left) {
@@ -668,7 +672,7 @@ static PetscErrorCode ModelRenewLists(Model model, PetscBool *hold)
 /* Solves with frozen lists until they hold. */
 static PetscErrorCode ModelSolveLists(Model model, SolveReport *report)
 {
-  PetscBool hold  = PETSC_FALSE;
+  PetscBool hold = PETSC_FALSE, lost = PETSC_FALSE;
   PetscInt  times = 0;
 
   PetscFunctionBeginUser;
@@ -678,7 +682,9 @@ static PetscErrorCode ModelSolveLists(Model model, SolveReport *report)
     PetscCall(ModelNewton(model, report));
     if (report->result != SOLVE_CONVERGED || !model->contact) break;
     PetscCall(ModelRenewLists(model, &hold));
-    if (hold) break;
+    PetscCall(ContactLocateLost(model->contact, &lost, report->detail, sizeof(report->detail)));
+    if (lost) report->result = SOLVE_LOST;
+    if (hold || lost) break;
     report->regathered++;
     if (!model->work->left && times++ == MODEL_MAX_REGATHER) report->result = SOLVE_LISTS;
   }
@@ -713,7 +719,7 @@ PetscErrorCode ModelSolve(Model model, PetscReal t, SolveReport *report)
     PetscCall(PetscStrncpy(report->detail, work->cycle, sizeof(report->detail)));
   else if (report->result == SOLVE_CONVERGED)
     PetscCall(PetscArraycpy(model->u, work->trial, model->mesh->n_nodes * model->mesh->dim));
-  else if (report->result != SOLVE_WINDOW)
+  else if (report->result != SOLVE_WINDOW && report->result != SOLVE_LOST)
     PetscCall(ModelLocateFailure(model, report->detail, sizeof(report->detail)));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -29,6 +29,7 @@ struct _n_Results {
   PetscReal  *values; /* of the probes, at the last accepted step */
   PetscBool  *met;    /* per contact pair: some slave node has met its master */
   StepRecord  last;
+  PetscReal   deepest;          /* largest penetration so far, in face sizes */
   PetscBool   stepped, written; /* there is an accepted step; results.h5 holds it */
   double      started;
   PetscReal   t_started;
@@ -499,6 +500,7 @@ PetscErrorCode ResultsStep(Results results, const StepRecord *step)
   results->last    = *step;
   results->stepped = PETSC_TRUE;
   results->written = PETSC_FALSE;
+  results->deepest = PetscMax(results->deepest, step->contact.max_penetration_over_h);
   if (results->rank == 0) PetscCall(ResultsPrintCsv(results, step));
   if (every > 0 && step->step % every == 0) PetscCall(ResultsWriteFields(results));
   TimingEnd(TIMING_OUTPUT);
@@ -576,6 +578,14 @@ static void ResultsPrintUnmet(Results results)
   }
 }
 
+/* Bodies that lie in each other by more than their elements are no contact, whatever the law says. */
+static void ResultsPrintDeep(Results results)
+{
+  if (results->rank || !(results->deepest > 1)) return;
+  fprintf(stderr, "burnish: warning: a slave node was up to %.3g face sizes behind its master: the penalty is too soft for what presses\n",
+          (double)results->deepest);
+}
+
 /* Linear solves that needed help, or did not become as accurate as they should be */
 static void ResultsPrintLinear(Results results)
 {
@@ -621,6 +631,7 @@ PetscErrorCode ResultsFinish(Results results, const RunRecord *run)
   PetscCall(ResultsPrintWindows(results));
   PetscCall(ResultsPrintUnused(results));
   ResultsPrintUnmet(results);
+  ResultsPrintDeep(results);
   ResultsPrintLinear(results);
   ResultsPrintEnd(results, run);
   PetscFunctionReturn(PETSC_SUCCESS);
