@@ -29,10 +29,11 @@ typedef struct {
   PetscInt       slot_room;
 } ContactWork;
 
-/* The slave point that the search has lost the deepest behind its master; depth 0: none */
+/* The slave point that was lost the deepest behind its master; depth 0: none */
 typedef struct {
-  PetscReal depth, size; /* size: of the slave's faces there */
-  PetscInt  node;        /* local */
+  PetscReal depth, gap; /* depth: behind the master; gap: in front of it, where it is found now (NaN: no master is near) */
+  PetscReal size;       /* of the slave's faces there */
+  PetscInt  node;       /* local */
 } ContactLost;
 
 /* A term is a slave node with area: its gap is the weighted mean over its slave points, its pressure acts on all of them. Node to surface: one
@@ -101,5 +102,8 @@ PetscErrorCode ContactPointGaps(const ContactPair *, ContactLists, const PetscRe
 /* Weighted mean of its points' gaps, NaN without any; *area: of those that count. */
 PetscReal ContactTermGap(const ContactPair *, const PetscReal *factor, const PetscReal *point_gap, PetscInt term, PetscReal *area);
 /* contactlost.c */
-/* Remembers the slave points behind their masters that the next lists have lost. */
+/* Remember the slave points behind their masters that the next lists have lost; those that passed through it; those that jumped out since the accepted state.
+ */
 PetscErrorCode ContactNoteLost(ContactPair *, PetscReal t);
+void           ContactNoteTunnelled(ContactPair *, PetscReal t);
+void           ContactNoteJumps(ContactPair *, PetscReal motion);

@@ -132,7 +132,7 @@ PetscErrorCode ContactGather(Contact contact, const PetscReal *u, PetscReal t, P
     PetscCall(PairNextServes(pair, u, t, needed, &serves));
     if (!serves) PetscCall(PairSearch(pair, u, t, needed));
     PetscCall(PairTakeNext(pair));
-    pair->lost = (ContactLost){0, 0, -1};
+    pair->lost = (ContactLost){0, NAN, 0, -1};
   }
   PetscCall(PetscLogEventEnd(contact->event_search, 0, 0, 0, 0));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -270,6 +270,8 @@ PetscErrorCode ContactListsHold(Contact contact, const PetscReal *u, PetscReal t
     if (pair->master_offsets) PetscCall(OffsetsTake(pair->master_offsets, u, t));
     PetscCall(PairSearch(pair, u, t, needed));
     PetscCall(ContactNoteLost(pair, t));
+    ContactNoteTunnelled(pair, t);
+    ContactNoteJumps(pair, motion);
     PetscCall(PairNextAgrees(contact, pair, t, &agrees));
     agree = agree && agrees;
   }
