@@ -29,6 +29,13 @@ typedef struct {
   PetscInt       slot_room;
 } ContactWork;
 
+/* The slave point that was lost the deepest behind its master; depth 0: none */
+typedef struct {
+  PetscReal depth, gap; /* depth: behind the master; gap: in front of it, where it is found now (NaN: no master is near) */
+  PetscReal size;       /* of the slave's faces there */
+  PetscInt  node;       /* local */
+} ContactLost;
+
 /* A term is a slave node with area: its gap is the weighted mean over its slave points, its pressure acts on all of them. Node to surface: one
    point, the node itself. Surface to surface: the quadrature points of the faces around, shared with its neighbours. */
 typedef struct {
@@ -64,6 +71,7 @@ typedef struct {
   PetscReal    t;                       /* of the last residual */
   PetscReal   *pressure, *law_pressure; /* what ContactGetNodes() shows: force over area; of the law */
   PetscBool    projected;               /* there was one with these lists */
+  ContactLost  lost;                    /* since the step began */
   ContactWork *work;                    /* shared by all pairs */
 } ContactPair;
 
@@ -95,3 +103,9 @@ PetscErrorCode ContactWorkDestroy(ContactWork *);
 PetscErrorCode ContactPointGaps(const ContactPair *, ContactLists, const PetscReal *factor, int *seed, PetscReal *gap, PetscReal *normals);
 /* Weighted mean of its points' gaps, NaN without any; *area: of those that count. */
 PetscReal ContactTermGap(const ContactPair *, const PetscReal *factor, const PetscReal *point_gap, PetscInt term, PetscReal *area);
+/* contactlost.c */
+/* Remember the slave points behind their masters that the next lists have lost; those that passed through it; those that jumped out since the accepted state.
+ */
+PetscErrorCode ContactNoteLost(ContactPair *, PetscReal t);
+void           ContactNoteTunnelled(ContactPair *, PetscReal t);
+void           ContactNoteJumps(ContactPair *, PetscReal motion);

@@ -48,7 +48,8 @@ typedef struct {
   PetscInt  *facet_ptr;             /* facets of each slave point; their nodes count within the slave point's points */
   Facet     *facet;
   PetscReal *facet_size;
-  PetscReal *kappa; /* curvature of the master near each slave point: turn of normals over distance; 0: flat or no facet */
+  int       *nearest; /* of each slave point's facets the nearest when the lists were made; -1: it has none */
+  PetscReal *kappa;   /* curvature of the master near each slave point: turn of normals over distance; 0: flat or no facet */
 } * ContactLists;
 
 PetscErrorCode ListsDestroy(ContactLists *);

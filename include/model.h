@@ -5,6 +5,7 @@
 #pragma once
 #include "contact.h"
 #include "elasticity.h"
+#include "linearcheck.h"
 #include "loads.h"
 #include "mesh.h"
 
@@ -16,6 +17,8 @@ typedef enum {
   SOLVE_LINEAR,
   SOLVE_WORKSPACE,
   SOLVE_LISTS,
+  SOLVE_CYCLE,
+  SOLVE_LOST,
   SOLVE_WINDOW,
   SOLVE_NAN
 } SolveResult;
@@ -28,6 +31,8 @@ typedef struct {
   PetscInt    regathered;  /* times lists were replaced */
   PetscInt    adjusted;    /* times penalties were changed and the step solved on */
   PetscReal   residual;    /* |R|_2 / F_ref at the end */
+  PetscInt    cycles;      /* times the contact set repeated itself and Newton's steps were shortened */
+  char        cycle[256];  /* the last of these: its period and nodes, in gmsh's tags */
   char        detail[256]; /* where it failed, in gmsh's tags */
 } SolveReport;
 
@@ -38,9 +43,10 @@ typedef struct _n_Model {
   Loads                loads;
   Contact              contact; /* NULL: the scene has none */
   SNES                 snes;
-  Vec                  x; /* free displacements */
-  Mat                  A; /* K + C, or K itself without contact */
-  PetscReal           *u; /* n_nodes*dim local displacements, prescribed ones included, at load parameter t */
+  LinearCheck          linear; /* of the solver's KSP */
+  Vec                  x;      /* free displacements */
+  Mat                  A;      /* K + C, or K itself without contact */
+  PetscReal           *u;      /* n_nodes*dim local displacements, prescribed ones included, at load parameter t */
   PetscReal            t;
   PetscReal            force_scale; /* F_ref of the accepted states: the largest norm so far of the unassembled internal, contact and external forces */
   struct _n_ModelWork *work;

@@ -22,8 +22,10 @@ typedef struct {
   PetscBool done, stopped;                       /* t = 1 was reached; LoadStepperStop() ended it before */
   PetscInt  steps, steps_failed, steps_repeated; /* repeated: converged, but taken back by the control */
   PetscInt  newton_iterations, newton_accepted, krylov_iterations;
-  PetscReal t;             /* of the last good state */
-  char      message[1024]; /* why it ended early: cause, load parameter, nodes, what was tried */
+  PetscInt  cycles, cycles_cut; /* times a contact set repeated itself; steps that failed for it */
+  char      cycle[512];         /* the last time: load parameter, period, nodes */
+  PetscReal t;                  /* of the last good state */
+  char      message[1024];      /* why it ended early: cause, load parameter, nodes, what was tried */
 } StepperReport;
 
 typedef struct _n_LoadStepper *LoadStepper;

@@ -80,6 +80,37 @@ static PetscErrorCode PairTakeNext(ContactPair *pair)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Largest penetration of the pair and largest pressure, all ranks, at the last residual. */
+static PetscErrorCode PairDepth(Contact contact, const ContactPair *pair, PetscReal t, PetscReal *depth, PetscReal *pressure)
+{
+  PetscReal most[2] = {0, 0};
+
+  PetscFunctionBeginUser;
+  for (PetscInt c = 0; c < pair->n; c++) {
+    PetscReal penetration;
+
+    if (PetscIsNanReal(pair->now.gap[c])) continue;
+    penetration = ContactTermOffset(pair, c, t) - pair->now.gap[c];
+    most[0]     = PetscMax(most[0], penetration);
+    most[1]     = PetscMax(most[1], penetration * pair->now.penalty[c]);
+  }
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, most, 2, MPIU_REAL, MPI_MAX, contact->mesh->comm));
+  *depth    = most[0];
+  *pressure = most[1];
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* A soft penalty's contact may lie deeper than the search reaches: then lists are made for as much motion as leads back out. */
+static PetscErrorCode PairMotion(Contact contact, const ContactPair *pair, PetscReal t, PetscReal *motion)
+{
+  PetscReal depth, pressure;
+
+  PetscFunctionBeginUser;
+  PetscCall(PairDepth(contact, pair, t, &depth, &pressure));
+  if (depth > pair->slave->max_size) *motion = PetscMax(*motion, depth);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* ContactGather - new lists, and with them new offsets and area factors, for all pairs; the blocks of the last tangent are dropped.
 
    Collective. u[n_nodes*dim]: local displacements (length) of the accepted state, ghosts included; t: its load parameter; t_next: where the
@@ -91,14 +122,17 @@ PetscErrorCode ContactGather(Contact contact, const PetscReal *u, PetscReal t, P
   PetscCall(PetscLogEventBegin(contact->event_search, 0, 0, 0, 0));
   PetscCall(BlockMatrixReset(contact->blocks)); /* its blocks speak of the old lists */
   for (int p = 0; p < contact->n_pairs; p++) {
-    ContactPair *pair = &contact->pairs[p];
+    ContactPair *pair   = &contact->pairs[p];
+    PetscReal    needed = motion;
     PetscBool    serves;
 
+    PetscCall(PairMotion(contact, pair, t, &needed));
     if (pair->slave_offsets) PetscCall(OffsetsExtrapolate(pair->slave_offsets, u, t, t_next));
     if (pair->master_offsets) PetscCall(OffsetsExtrapolate(pair->master_offsets, u, t, t_next));
-    PetscCall(PairNextServes(pair, u, t, motion, &serves));
-    if (!serves) PetscCall(PairSearch(pair, u, t, motion));
+    PetscCall(PairNextServes(pair, u, t, needed, &serves));
+    if (!serves) PetscCall(PairSearch(pair, u, t, needed));
     PetscCall(PairTakeNext(pair));
+    pair->lost = (ContactLost){0, NAN, 0, -1};
   }
   PetscCall(PetscLogEventEnd(contact->event_search, 0, 0, 0, 0));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -156,26 +190,6 @@ static PetscBool TermAgrees(const ContactPair *pair, ContactLists fresh, PetscIn
   return (PetscBool)(!PetscIsNanReal(gap) && (!pair->slave_offsets || PetscAbsReal(gap - old) <= drift));
 }
 
-/* Largest penetration of the pair and largest pressure, all ranks, at the last residual. */
-static PetscErrorCode PairDepth(Contact contact, const ContactPair *pair, PetscReal t, PetscReal *depth, PetscReal *pressure)
-{
-  PetscReal most[2] = {0, 0};
-
-  PetscFunctionBeginUser;
-  for (PetscInt c = 0; c < pair->n; c++) {
-    PetscReal penetration;
-
-    if (PetscIsNanReal(pair->now.gap[c])) continue;
-    penetration = ContactTermOffset(pair, c, t) - pair->now.gap[c];
-    most[0]     = PetscMax(most[0], penetration);
-    most[1]     = PetscMax(most[1], penetration * pair->now.penalty[c]);
-  }
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, most, 2, MPIU_REAL, MPI_MAX, contact->mesh->comm));
-  *depth    = most[0];
-  *pressure = most[1];
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* Do the pair's next lists say the same of each of this rank's terms as the last residual? */
 static PetscErrorCode PairNextAgrees(Contact contact, ContactPair *pair, PetscReal t, PetscBool *agrees)
 {
@@ -223,8 +237,13 @@ PetscErrorCode ContactListsRenew(Contact contact, const PetscReal *u, PetscReal 
   PetscFunctionBeginUser;
   PetscCall(PetscLogEventBegin(contact->event_search, 0, 0, 0, 0));
   for (int p = 0; p < contact->n_pairs; p++) {
-    PetscCall(PairSearch(&contact->pairs[p], u, t, motion));
-    PetscCall(PairTakeNext(&contact->pairs[p]));
+    ContactPair *pair   = &contact->pairs[p];
+    PetscReal    needed = motion;
+
+    PetscCall(PairMotion(contact, pair, t, &needed));
+    PetscCall(PairSearch(pair, u, t, needed));
+    PetscCall(ContactNoteLost(pair, t));
+    PetscCall(PairTakeNext(pair));
   }
   PetscCall(BlockMatrixReset(contact->blocks));
   PetscCall(PetscLogEventEnd(contact->event_search, 0, 0, 0, 0));
@@ -243,11 +262,16 @@ PetscErrorCode ContactListsHold(Contact contact, const PetscReal *u, PetscReal t
   PetscCall(PetscLogEventBegin(contact->event_search, 0, 0, 0, 0));
   for (int p = 0; p < contact->n_pairs; p++) {
     ContactPair *pair   = &contact->pairs[p];
+    PetscReal    needed = motion;
     PetscBool    agrees = PETSC_TRUE;
 
+    PetscCall(PairMotion(contact, pair, t, &needed));
     if (pair->slave_offsets) PetscCall(OffsetsTake(pair->slave_offsets, u, t));
     if (pair->master_offsets) PetscCall(OffsetsTake(pair->master_offsets, u, t));
-    PetscCall(PairSearch(pair, u, t, motion));
+    PetscCall(PairSearch(pair, u, t, needed));
+    PetscCall(ContactNoteLost(pair, t));
+    ContactNoteTunnelled(pair, t);
+    ContactNoteJumps(pair, motion);
     PetscCall(PairNextAgrees(contact, pair, t, &agrees));
     agree = agree && agrees;
   }

@@ -89,6 +89,9 @@ static PetscErrorCode RunModel(Model model, Probes probes, Scene scene, Checkpoi
                     .newton_iterations = report.newton_iterations,
                     .newton_accepted   = report.newton_accepted,
                     .krylov_iterations = report.krylov_iterations,
+                    .cycles            = report.cycles,
+                    .cycles_cut        = report.cycles_cut,
+                    .cycle             = report.cycle,
                     .wall_s            = now - start,
                     .mesh_s            = mesh_s};
   PetscCall(ResultsFinish(watch.results, &run));

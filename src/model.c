@@ -1,4 +1,5 @@
 #include "model.h"
+#include "contactcycle.h"
 #include "matrixsum.h"
 #include "refusal.h"
 #include "timing.h"
@@ -17,8 +18,12 @@
 #define MODEL_RESIDUAL_WEIGHT 1e30
 /* Lists are made for this multiple of the motion that the last step's rate predicts; those that check a step too, so that an equal step takes them. */
 #define MODEL_MOTION_SAFETY 1.5
-/* A direct solve of a regular system leaves a relative residual of 1e-12 to 1e-7, stiff penalties included; above this the system is singular. */
-#define MODEL_SINGULAR 1e-3
+/* Each time the contact set repeats itself Newton's steps become this much shorter, ... */
+#define MODEL_DAMPING 0.5
+/* ... so often in one load step; a set that repeats itself once more ends it. */
+#define MODEL_MAX_DAMPED 3
+/* Iterations without any change of the set after which steps have their full length again. */
+#define MODEL_STEADY 2
 /* Round-off of the residual, in machine epsilons times stiffness times displacement: a body that is moved without any force has nothing else
    to be measured against. Measured: 0.1 to 1.5. */
 #define MODEL_ROUND_OFF 16
@@ -37,27 +42,35 @@ const char *const SolveResults[] = {"converged",
                                     "the linear system is singular (is a body free to move?) or its solver failed",
                                     "the direct solver ran out of workspace (PETSc option mat_mumps_icntl_14 gives it more)",
                                     "the contact lists did not settle",
+                                    "the contact set repeats itself",
+                                    "contact was lost behind a master",
                                     "the penetrations did not come into the window of the adjusted penalty",
                                     "not-a-number in the residual"};
 
 typedef struct _n_ModelWork {
-  PetscReal *f;     /* local residual of the last evaluation, all dofs */
-  PetscReal *trial; /* local displacements of the last evaluation */
-  PetscReal *accepted_u;
-  Vec        accepted_x;
-  PetscReal  accepted_t;
-  Vec        forecast; /* x at forecast_t by ModelForecast() */
-  PetscReal  forecast_t;
-  PetscBool  forecasted; /* forecast starts from the accepted state */
-  PetscReal  rate;       /* largest displacement per unit of t in the last accepted step */
-  PetscReal  scale;      /* force norm of the last evaluation */
-  PetscReal  stiffness;  /* norm of the elastic tangent's diagonal */
-  PetscInt   inverted;   /* gmsh's tag of a cell of this rank that was turned inside out in this solve, or -1 */
-  PetscBool  near;       /* the iterate is so close that energies differ by round-off only */
-  PetscBool  balanced;   /* the residual of the iterate is within the tolerance */
-  PetscInt   renewed;    /* how often that happened in this step */
-  PetscBool  left;       /* a slave point slid out of its lists: the solve ended for new ones */
-  Vec        residual;   /* of a trial point, while near; the tangent's diagonal for a moment */
+  PetscReal   *f;     /* local residual of the last evaluation, all dofs */
+  PetscReal   *trial; /* local displacements of the last evaluation */
+  PetscReal   *accepted_u;
+  Vec          accepted_x;
+  PetscReal    accepted_t;
+  Vec          forecast; /* x at forecast_t by ModelForecast() */
+  PetscReal    forecast_t;
+  PetscBool    forecasted; /* forecast starts from the accepted state */
+  PetscReal    expected;   /* motion that the lists of this step were made for */
+  PetscReal    rate;       /* largest displacement per unit of t in the last accepted step */
+  PetscReal    scale;      /* force norm of the last evaluation */
+  PetscReal    stiffness;  /* norm of the elastic tangent's diagonal */
+  PetscInt     inverted;   /* gmsh's tag of a cell of this rank that was turned inside out in this solve, or -1 */
+  PetscBool    near;       /* the iterate is so close that energies differ by round-off only */
+  PetscBool    balanced;   /* the residual of the iterate is within the tolerance */
+  PetscInt     renewed;    /* how often that happened in this step */
+  PetscBool    cycling;    /* the contact set repeats itself whatever the steps: the solve ended */
+  PetscInt     cycles;     /* times it repeated itself in this load step */
+  char         cycle[256]; /* the last one in words */
+  PetscReal    damping;    /* of the line search when nothing repeats */
+  PetscBool    left;       /* a slave point slid out of its lists: the solve ended for new ones */
+  Vec          residual;   /* of a trial point, while near; the tangent's diagonal for a moment */
+  ContactCycle watch;      /* of the contact set; NULL: no contact */
 } ModelWork;
 
 /* ---------- residual, energy, tangent ---------- */
@@ -229,6 +242,28 @@ static PetscErrorCode ModelLeaveLists(Model model, SNESConvergedReason *reason)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* A contact set that repeats itself: shorter steps leave the cycle, as the iterates then stop between its states; if not, the solve ends. */
+static PetscErrorCode ModelBreakCycle(Model model, PetscReal fnorm, SNESConvergedReason *reason)
+{
+  ModelWork     *work = model->work;
+  PetscInt       period, steady;
+  SNESLineSearch search;
+
+  PetscFunctionBeginUser;
+  PetscCall(ContactCycleLook(work->watch, fnorm, &period, &steady));
+  PetscCall(SNESGetLineSearch(model->snes, &search));
+  if (steady >= MODEL_STEADY) PetscCall(SNESLineSearchSetDamping(search, work->damping));
+  if (!period) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(ContactCycleLocate(work->watch, period, work->cycle, sizeof(work->cycle)));
+  PetscCall(PetscInfo(model->snes, "%s\n", work->cycle));
+  PetscCall(ContactCycleStart(work->watch));
+  PetscCall(SNESLineSearchSetDamping(search, work->damping * PetscPowRealInt(MODEL_DAMPING, ++work->cycles)));
+  if (work->cycles <= MODEL_MAX_DAMPED) PetscFunctionReturn(PETSC_SUCCESS);
+  work->cycling = PETSC_TRUE;
+  *reason       = SNES_DIVERGED_LINE_SEARCH;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Converged when the residual is small against the forces that balance in it, never against its own first value; or is nothing but round-off.
    Where penalties follow the penetrations, these must have settled too. */
 static PetscErrorCode ModelConverged(SNES snes, PetscInt it, PetscReal xnorm, PetscReal snorm, PetscReal fnorm, SNESConvergedReason *reason, void *context)
@@ -240,7 +275,6 @@ static PetscErrorCode ModelConverged(SNES snes, PetscInt it, PetscReal xnorm, Pe
 
   PetscFunctionBeginUser;
   (void)snes;
-  (void)it;
   (void)xnorm;
   (void)snorm;
   PetscCall(ModelRoundOff(model, &round_off));
@@ -248,38 +282,19 @@ static PetscErrorCode ModelConverged(SNES snes, PetscInt it, PetscReal xnorm, Pe
   *reason               = SNES_CONVERGED_ITERATING;
   model->work->near     = fnorm <= MODEL_ENERGY_ROUND_OFF * scale ? PETSC_TRUE : PETSC_FALSE;
   model->work->balanced = fnorm <= PetscMax(model->scene->solver.tolerance * scale, round_off) ? PETSC_TRUE : PETSC_FALSE;
-  if (PetscIsInfOrNanReal(fnorm))
+  if (it > 0 && LinearCheckLost(model->linear))
+    *reason = SNES_DIVERGED_LINEAR_SOLVE;
+  else if (PetscIsInfOrNanReal(fnorm))
     *reason = SNES_DIVERGED_FUNCTION_NANORINF;
   else if (fnorm <= round_off || (model->work->balanced && settled))
     *reason = SNES_CONVERGED_FNORM_ABS;
   else if (model->contact)
     PetscCall(ModelLeaveLists(model, reason));
+  if (model->contact && !*reason) PetscCall(ModelBreakCycle(model, fnorm, reason));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* ---------- set-up ---------- */
-
-static PetscErrorCode LinearSolveBegins(KSP ksp, Vec b, Vec x, void *context)
-{
-  PetscFunctionBeginUser;
-  (void)ksp;
-  (void)b;
-  (void)x;
-  (void)context;
-  TimingBegin(TIMING_SOLVE);
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-static PetscErrorCode LinearSolveEnds(KSP ksp, Vec b, Vec x, void *context)
-{
-  PetscFunctionBeginUser;
-  (void)ksp;
-  (void)b;
-  (void)x;
-  (void)context;
-  TimingEnd(TIMING_SOLVE);
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
 
 /* Keeps the first message of an error instead of printing its trace; context: char[256]. */
 static PetscErrorCode KeepMessage(MPI_Comm comm, int line, const char *function, const char *file, PetscErrorCode code, PetscErrorType type,
@@ -343,14 +358,14 @@ static PetscErrorCode ModelCreateSNES(Model model)
   PetscCall(SNESLineSearchSetType(search, SNESLINESEARCHBT));
   PetscCall(SNESGetKSP(model->snes, &ksp));
   PetscCall(KSPSetType(ksp, KSPPREONLY));
-  PetscCall(KSPSetPreSolve(ksp, LinearSolveBegins, NULL));
-  PetscCall(KSPSetPostSolve(ksp, LinearSolveEnds, NULL));
+  PetscCall(LinearCheckCreate(ksp, model->scene->solver.tolerance, &model->linear));
   PetscCall(KSPGetPC(ksp, &pc));
   PetscCall(PCSetType(pc, symmetric ? PCCHOLESKY : PCLU));
   PetscCall(PCFactorSetMatSolverType(pc, MATSOLVERMUMPS));
   PetscCall(SetDefaultOption("-mat_mumps_icntl_14", MODEL_MUMPS_WORKSPACE));
   if (symmetric) PetscCall(SetDefaultOption("-mat_mumps_icntl_8", MODEL_MUMPS_SCALING));
   PetscCall(ModelSetFromOptions(model));
+  PetscCall(SNESLineSearchGetDamping(search, &model->work->damping));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -386,6 +401,7 @@ PetscErrorCode ModelCreate(Scene scene, Mesh mesh, Model *out)
   PetscCall(VecDuplicate(model->x, &model->work->forecast));
   PetscCall(VecDuplicate(model->x, &model->work->residual));
   PetscCall(ModelCreateSNES(model));
+  if (model->contact) PetscCall(ContactCycleCreate(model->contact, &model->work->watch));
   *out = model;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -398,6 +414,8 @@ PetscErrorCode ModelDestroy(Model *model)
   PetscFunctionBeginUser;
   if (!m) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(SNESDestroy(&m->snes));
+  PetscCall(LinearCheckDestroy(&m->linear));
+  PetscCall(ContactCycleDestroy(&m->work->watch));
   PetscCall(VecDestroy(&m->x));
   PetscCall(VecDestroy(&m->work->accepted_x));
   PetscCall(VecDestroy(&m->work->forecast));
@@ -471,15 +489,13 @@ static PetscErrorCode ModelLinearFailure(Model model, SolveResult *result)
    parameter. It is the first Newton iteration, written so that what is prescribed moves with the whole body and not through it. */
 static PetscErrorCode ModelPredict(Model model, SolveReport *report)
 {
-  ModelWork         *work = model->work;
-  const PetscInt     n    = model->mesh->n_nodes * model->mesh->dim;
-  PetscReal         *step;
-  PetscBool          ok;
-  Vec                b, dx;
-  KSP                ksp;
-  KSPConvergedReason reason;
-  PetscInt           its;
-  PetscReal          norm, left;
+  ModelWork     *work = model->work;
+  const PetscInt n    = model->mesh->n_nodes * model->mesh->dim;
+  PetscReal     *step;
+  PetscBool      ok;
+  Vec            b, dx;
+  KSP            ksp;
+  PetscInt       its;
 
   PetscFunctionBeginUser;
   PetscCall(VecDuplicate(model->x, &b));
@@ -498,16 +514,11 @@ static PetscErrorCode ModelPredict(Model model, SolveReport *report)
   PetscCall(SNESGetKSP(model->snes, &ksp));
   PetscCall(KSPSetOperators(ksp, model->A, model->A));
   PetscCall(KSPSolve(ksp, b, dx));
-  PetscCall(KSPGetConvergedReason(ksp, &reason));
   PetscCall(KSPGetIterationNumber(ksp, &its));
   report->newton++;
   report->krylov += its;
   PetscCall(VecAXPY(model->x, -1, dx));
-  PetscCall(VecNorm(b, NORM_2, &norm));
-  PetscCall(VecScale(dx, -1));
-  PetscCall(MatMultAdd(model->A, dx, b, b));
-  PetscCall(VecNorm(b, NORM_2, &left));
-  if (reason < 0 || !(left <= MODEL_SINGULAR * norm)) PetscCall(ModelLinearFailure(model, &report->result));
+  if (LinearCheckLost(model->linear)) PetscCall(ModelLinearFailure(model, &report->result));
   PetscCall(PetscFree(step));
   PetscCall(VecDestroy(&b));
   PetscCall(VecDestroy(&dx));
@@ -533,8 +544,12 @@ static PetscErrorCode ModelNewton(Model model, SolveReport *report)
   PetscInt            its, krylov;
   PetscReal           norm;
   Vec                 F;
+  SNESLineSearch      search;
 
   PetscFunctionBeginUser;
+  PetscCall(SNESGetLineSearch(model->snes, &search));
+  PetscCall(SNESLineSearchSetDamping(search, model->work->damping));
+  if (model->contact) PetscCall(ContactCycleStart(model->work->watch));
   PetscCall(SNESSolve(model->snes, NULL, model->x));
   PetscCall(SNESGetConvergedReason(model->snes, &reason));
   PetscCall(SNESGetIterationNumber(model->snes, &its));
@@ -544,8 +559,10 @@ static PetscErrorCode ModelNewton(Model model, SolveReport *report)
   report->newton += its;
   report->krylov += krylov;
   report->result = ResultFromReason(reason);
+  if (model->work->cycling) report->result = SOLVE_CYCLE;
   if (report->result == SOLVE_LINE_SEARCH && model->work->balanced) report->result = SOLVE_CONVERGED; /* gaps as settled as round-off lets them be */
-  if (report->result == SOLVE_LINEAR) PetscCall(ModelLinearFailure(model, &report->result));
+  if (report->result == SOLVE_LINEAR || (report->result != SOLVE_CONVERGED && its > 0 && LinearCheckLost(model->linear)))
+    PetscCall(ModelLinearFailure(model, &report->result));
   PetscCall(ModelTrial(model, model->x)); /* whatever SNES looked at last */
   report->residual = model->work->scale > 0 ? norm / PetscMax(model->force_scale, model->work->scale) : 0;
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -598,6 +615,9 @@ static PetscErrorCode ModelDepart(Model model, PetscReal t)
   PetscFunctionBeginUser;
   model->t       = t;
   work->inverted = -1;
+  work->cycling  = PETSC_FALSE;
+  work->cycles   = 0;
+  work->cycle[0] = '\0';
   if (!model->contact) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscMalloc1(model->mesh->n_nodes * model->mesh->dim, &u));
   PetscCall(PetscArraycpy(u, work->accepted_u, model->mesh->n_nodes * model->mesh->dim));
@@ -606,6 +626,7 @@ static PetscErrorCode ModelDepart(Model model, PetscReal t)
   PetscCall(PetscFree(u));
   motion = PetscMax(motion, MODEL_MOTION_SAFETY * work->rate * (t - work->accepted_t));
   PetscCall(ContactRestore(model->contact));
+  work->expected = motion;
   TimingBegin(TIMING_SEARCH);
   PetscCall(ContactGather(model->contact, work->accepted_u, work->accepted_t, t, motion));
   TimingEnd(TIMING_SEARCH);
@@ -636,6 +657,7 @@ static PetscErrorCode ModelRenewLists(Model model, PetscBool *hold)
 
   PetscFunctionBeginUser;
   PetscCall(ModelMotion(model, work->trial, model->t, &motion));
+  if (motion > work->expected) motion *= 2; /* two bodies that the lists at the start did not let meet may have passed through each other */
   TimingBegin(TIMING_SEARCH);
   *hold = PETSC_FALSE;
   if (work->left) {
@@ -650,7 +672,7 @@ static PetscErrorCode ModelRenewLists(Model model, PetscBool *hold)
 /* Solves with frozen lists until they hold. */
 static PetscErrorCode ModelSolveLists(Model model, SolveReport *report)
 {
-  PetscBool hold  = PETSC_FALSE;
+  PetscBool hold = PETSC_FALSE, lost = PETSC_FALSE;
   PetscInt  times = 0;
 
   PetscFunctionBeginUser;
@@ -660,7 +682,9 @@ static PetscErrorCode ModelSolveLists(Model model, SolveReport *report)
     PetscCall(ModelNewton(model, report));
     if (report->result != SOLVE_CONVERGED || !model->contact) break;
     PetscCall(ModelRenewLists(model, &hold));
-    if (hold) break;
+    PetscCall(ContactLocateLost(model->contact, &lost, report->detail, sizeof(report->detail)));
+    if (lost) report->result = SOLVE_LOST;
+    if (hold || lost) break;
     report->regathered++;
     if (!model->work->left && times++ == MODEL_MAX_REGATHER) report->result = SOLVE_LISTS;
   }
@@ -689,9 +713,13 @@ PetscErrorCode ModelSolve(Model model, PetscReal t, SolveReport *report)
     if (window == WINDOW_AT_BOUND) PetscCall(ContactLocateOutside(model->contact, report->detail, sizeof(report->detail)));
     if (window == WINDOW_AT_BOUND || (window == WINDOW_MISSED && report->adjusted++ == MODEL_MAX_ADJUST)) report->result = SOLVE_WINDOW;
   }
-  if (report->result == SOLVE_CONVERGED)
+  report->cycles = work->cycles;
+  PetscCall(PetscStrncpy(report->cycle, work->cycle, sizeof(report->cycle)));
+  if (report->result == SOLVE_CYCLE)
+    PetscCall(PetscStrncpy(report->detail, work->cycle, sizeof(report->detail)));
+  else if (report->result == SOLVE_CONVERGED)
     PetscCall(PetscArraycpy(model->u, work->trial, model->mesh->n_nodes * model->mesh->dim));
-  else if (report->result != SOLVE_WINDOW)
+  else if (report->result != SOLVE_WINDOW && report->result != SOLVE_LOST)
     PetscCall(ModelLocateFailure(model, report->detail, sizeof(report->detail)));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

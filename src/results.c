@@ -29,6 +29,7 @@ struct _n_Results {
   PetscReal  *values; /* of the probes, at the last accepted step */
   PetscBool  *met;    /* per contact pair: some slave node has met its master */
   StepRecord  last;
+  PetscReal   deepest;          /* largest penetration so far, in face sizes */
   PetscBool   stepped, written; /* there is an accepted step; results.h5 holds it */
   double      started;
   PetscReal   t_started;
@@ -578,6 +579,7 @@ PetscErrorCode ResultsStep(Results results, const StepRecord *step)
   results->last    = *step;
   results->stepped = PETSC_TRUE;
   results->written = PETSC_FALSE;
+  results->deepest = PetscMax(results->deepest, step->contact.max_penetration_over_h);
   if (results->rank == 0) PetscCall(ResultsPrintCsv(results, step));
   if (every > 0 && step->step % every == 0) PetscCall(ResultsWriteFields(results));
   TimingEnd(TIMING_OUTPUT);
@@ -760,12 +762,39 @@ static void ResultsPrintUnmet(Results results)
   }
 }
 
+/* Bodies that lie in each other by more than their elements are no contact, whatever the law says. */
+static void ResultsPrintDeep(Results results)
+{
+  if (results->rank || !(results->deepest > 1)) return;
+  fprintf(stderr, "burnish: warning: a slave node was up to %.3g face sizes behind its master: the penalty is too soft for what presses\n",
+          (double)results->deepest);
+}
+
+/* Linear solves that needed help, or did not become as accurate as they should be */
+static void ResultsPrintLinear(Results results)
+{
+  LinearCounts counts;
+
+  LinearCheckGetCounts(results->model->linear, &counts);
+  if (results->talks && counts.refined)
+    printf("linear solves: %lld of %lld refined, in %lld steps\n", (long long)counts.refined, (long long)counts.solves, (long long)counts.steps);
+  if (results->rank || !counts.inaccurate) return;
+  fprintf(
+    stderr,
+    "burnish: warning: %lld of %lld linear solves left a relative residual of up to %.2g, more than 100 times the tolerance, and refinement could not lower "
+    "it; Newton's method converged all the same, but the system is badly conditioned: is a penalty too large?\n",
+    (long long)counts.inaccurate, (long long)counts.solves, (double)counts.worst);
+}
+
 static void ResultsPrintEnd(Results results, const RunRecord *run)
 {
   char text[32];
 
   if (results->rank == 0 && run->message) fprintf(stderr, "burnish: %s: %s\n", run->status, run->message);
   if (!results->talks) return;
+  if (run->cycles)
+    printf("contact sets that repeated themselves: %lld, steps cut for it %lld; the last time %s\n", (long long)run->cycles, (long long)run->cycles_cut,
+           run->cycle);
   printf("%s: %lld steps (%lld failed, %lld repeated), %lld iterations, %s; results in %s\n", run->status, (long long)run->steps, (long long)run->steps_failed,
          (long long)run->steps_repeated, (long long)run->newton_iterations, DurationText((double)run->wall_s, text), results->directory);
   fflush(stdout);
@@ -791,6 +820,8 @@ PetscErrorCode ResultsFinish(Results results, const RunRecord *run)
   PetscCall(ResultsPrintWindows(results));
   PetscCall(ResultsPrintUnused(results));
   ResultsPrintUnmet(results);
+  ResultsPrintDeep(results);
+  ResultsPrintLinear(results);
   ResultsPrintEnd(results, run);
   PetscFunctionReturn(PETSC_SUCCESS);
 }

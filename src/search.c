@@ -308,11 +308,14 @@ static PetscErrorCode ListsFill(ContactSearch s, ContactLists lists, const Petsc
     lists->list_ptr[q]  = first;
     lists->facet_ptr[q] = buffer.n;
     lists->kappa[q]     = 0;
+    lists->nearest[q]   = -1;
     TreeClosest(tree, look.x, &bound, NearestVisit, &look);
     if (look.best < 0) continue;
     count           = TreeNear(tree, look.x, bound + s->margin + motion, (int)n_candidates, found);
     count           = KeepFacing(&look, count, found);
     lists->kappa[q] = ListCurvature(&look, count, found);
+    for (int i = 0; i < count; i++)
+      if (found[i] == look.best) lists->nearest[q] = i;
     if (fit) PetscCall(FittingSlave(fit, &look, q, first, &buffer));
     PetscCall(ListAddFacets(&look, count, found, field->records, first, &buffer));
   }

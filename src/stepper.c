@@ -173,8 +173,11 @@ static PetscReal StepEnd(LoadStepper stepper, PetscReal t, PetscReal dt, PetscBo
   return t + dt;
 }
 
-static void CountSolve(const SolveReport *solve, StepRecord *record, StepperReport *report)
+static void CountSolve(PetscReal t, const SolveReport *solve, StepRecord *record, StepperReport *report)
 {
+  report->cycles += solve->cycles;
+  report->cycles_cut += solve->result == SOLVE_CYCLE;
+  if (solve->cycles) snprintf(report->cycle, sizeof(report->cycle), "on the way to t = %.6g %s", (double)t, solve->cycle);
   record->newton += solve->newton;
   record->krylov += solve->krylov;
   report->newton_iterations += solve->newton;
@@ -191,7 +194,7 @@ static PetscErrorCode LoadStepperPredict(LoadStepper stepper, StepRecord *record
   if (!stepper->control->predict) PetscFunctionReturn(PETSC_SUCCESS);
   (void)StepEnd(stepper, stepper->model->t, stepper->size.dt, &clipped); /* finds the landing point ahead */
   PetscCall(stepper->control->predict(stepper->model, stepper->landings[stepper->next_landing] - stepper->model->t, &stepper->size, &solve));
-  CountSolve(&solve, record, &stepper->report);
+  CountSolve(stepper->model->t, &solve, record, &stepper->report);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -235,7 +238,7 @@ static PetscErrorCode LoadStepperAdvance(LoadStepper stepper, StepRecord *record
 
     PetscCall(ModelSolve(model, end, &solve));
     record->attempts++;
-    CountSolve(&solve, record, &stepper->report);
+    CountSolve(end, &solve, record, &stepper->report);
     if (solve.result == SOLVE_CONVERGED) {
       *advanced = PETSC_TRUE;
       if (stepper->control->judge) PetscCall(stepper->control->judge(model, dt, &stepper->size, advanced));

@@ -96,6 +96,33 @@ static void AddUsage(cJSON *json, const RunRecord *run, const RunUsage *usage)
   for (int k = 0; k < TIMING_KINDS; k++) AddReal(seconds, TimingNames[k], usage->seconds[k]);
 }
 
+/* Contact sets that repeated themselves */
+static void AddCycles(cJSON *json, const RunRecord *run)
+{
+  cJSON *map = cJSON_AddObjectToObject(json, "cycles");
+
+  cJSON_AddNumberToObject(map, "found", (double)run->cycles);
+  cJSON_AddNumberToObject(map, "steps_cut", (double)run->cycles_cut);
+  if (run->cycles)
+    cJSON_AddStringToObject(map, "last", run->cycle);
+  else
+    cJSON_AddNullToObject(map, "last");
+}
+
+/* How the linear solves went */
+static void AddLinear(cJSON *json, LinearCheck check)
+{
+  cJSON       *map = cJSON_AddObjectToObject(json, "linear");
+  LinearCounts counts;
+
+  LinearCheckGetCounts(check, &counts);
+  cJSON_AddNumberToObject(map, "solves", (double)counts.solves);
+  cJSON_AddNumberToObject(map, "refined", (double)counts.refined);
+  cJSON_AddNumberToObject(map, "refinement_steps", (double)counts.steps);
+  cJSON_AddNumberToObject(map, "inaccurate", (double)counts.inaccurate);
+  AddReal(map, "largest_residual", counts.worst);
+}
+
 /* The last accepted state */
 static void AddState(cJSON *json, Scene scene, PetscBool has_contact, const StepRecord *last, const PetscReal *probes)
 {
@@ -179,6 +206,8 @@ PetscErrorCode SummaryWrite(Model model, Scene scene, const char *directory, con
   PetscCall(AddOptions(json, scene));
   AddRun(json, run);
   cJSON_AddNumberToObject(json, "restarts", (double)restarts);
+  AddCycles(json, run);
+  AddLinear(json, model->linear);
   AddUsage(json, run, usage);
   AddState(json, scene, model->contact ? PETSC_TRUE : PETSC_FALSE, last, probes);
   AddPartition(json, mesh);
