@@ -15,4 +15,5 @@ PetscReal SurfaceNodesPerFace(ElementType);
 /* Complete on every copy of a node; rigid tools: nodes of the tool at t. Collective. */
 PetscErrorCode SurfaceNodeGeometry(ContactSurface, Loads, const PetscReal *u, PetscReal t, NodeGeometry *nodes);
 /* Unit mean normal of the whole surface (area-weighted) and, unless NULL, the smallest cosine of a face's normal with it. Collective. */
-PetscErrorCode SurfaceMeanNormal(ContactSurface, Loads, const PetscReal *u, PetscReal t, PetscReal normal[3], PetscReal *cosine);
+PetscErrorCode SurfaceMeanNormal(ContactSurface, Loads, int n_images, const SurfaceImage *, const PetscReal *u, PetscReal t, PetscReal normal[3],
+                                 PetscReal *cosine);

@@ -139,7 +139,7 @@ static PetscErrorCode PairCheckGlobalFrame(Mesh mesh, Scene scene, Loads loads, 
 
   PetscFunctionBeginUser;
   PetscCall(PetscCalloc1(mesh->n_nodes * mesh->dim, &zero));
-  PetscCall(SurfaceMeanNormal(pair->master, loads, zero, 0, normal, &cosine));
+  PetscCall(SurfaceMeanNormal(pair->master, loads, pair->n_images, pair->images, zero, 0, normal, &cosine));
   PetscCall(PetscFree(zero));
   if (cosine < CONTACT_GLOBAL_COSINE) {
     PetscCall(RefuseInput(

@@ -161,7 +161,7 @@ PetscErrorCode ListsUpdate(ContactSearch s, ContactLists lists, const PetscReal 
   if (same && lists->t == t) PetscFunctionReturn(PETSC_SUCCESS);
   lists->t = t;
   for (PetscInt p = 0; p < lists->n_points; p++) PointMap(lists, p, &s->images[lists->point_image[p]], lists->u, &lists->point_u[p * lists->dim]);
-  if (s->fit->integral && s->master->rigid) TurnOffsets(s, lists, t);
+  if (s->fit->integral && s->master && s->master->rigid) TurnOffsets(s, lists, t);
   for (PetscInt q = 0; q < lists->n_slaves; q++) ListsSlaveMap(lists, q, lists->u, &lists->slave_u[q * lists->dim]);
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -168,16 +168,18 @@ static PetscReal Length(const PetscReal v[3])
 }
 
 /*
-  SurfaceMeanNormal - the normal of a surface's one reference plane, and how far its faces turn from it
+  SurfaceMeanNormal - the normal of the one reference plane of a surface and its mirror images, and how far its faces turn from it
 
   Collective
 
   Input Parameters:
 + surface, loads, u, t - the surface and where it is
+. n_images, images - what mirrors it: along such an axis the normals of the whole cancel
 . normal - unit; for a surface that closes upon itself (0, 0, 0)
 - cosine - smallest cosine of a face's normal with it, all ranks; may be NULL
 */
-PetscErrorCode SurfaceMeanNormal(ContactSurface surface, Loads loads, const PetscReal *u, PetscReal t, PetscReal normal[3], PetscReal *cosine)
+PetscErrorCode SurfaceMeanNormal(ContactSurface surface, Loads loads, int n_images, const SurfaceImage *images, const PetscReal *u, PetscReal t,
+                                 PetscReal normal[3], PetscReal *cosine)
 {
   const PetscInt n = surface->group ? surface->mesh->n_nodes : surface->rigid->n_nodes;
   PetscReal     *x, vector[3], length;
@@ -191,6 +193,9 @@ PetscErrorCode SurfaceMeanNormal(ContactSurface surface, Loads loads, const Pets
     for (int d = 0; d < 3; d++) normal[d] += vector[d];
   }
   if (surface->group) PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, normal, 3, MPIU_REAL, MPI_SUM, surface->mesh->comm));
+  for (int m = 0; m < n_images; m++) {
+    for (int d = 0; d < 3; d++) normal[d] = images[m].sign[d] < 0 ? 0 : normal[d];
+  }
   length = Length(normal);
   for (int d = 0; d < 3 && length > 0; d++) normal[d] /= length;
   if (cosine) {

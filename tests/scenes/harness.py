@@ -72,8 +72,8 @@ def arguments(*own):
     return parser.parse_args()
 
 
-def run(args, scene, *options, out="run", ranks=None, overrides=(), keep=False, must=0):
-    """Runs a scene on the ranks asked for. must: the exit status without which the script ends at once, None: any."""
+def run(args, scene, *options, out="run", ranks=None, overrides=(), keep=False, must=0, limit=None):
+    """Runs a scene on the ranks asked for. must: the exit status without which the script ends at once, None: any. limit: seconds, then status 124."""
     directory = pathlib.Path(args.out) / out
     if not keep:
         shutil.rmtree(directory, ignore_errors=True)
@@ -81,6 +81,8 @@ def run(args, scene, *options, out="run", ranks=None, overrides=(), keep=False, 
     command = ["mpirun", "-n", str(ranks or args.ranks), args.burnish, str(scene), "-o", str(directory), *options]
     for override in overrides:
         command += ["-set", override]
+    if limit:
+        command = ["timeout", str(limit), *command]
     finished = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
     if must is not None and finished.returncode != must:
         sys.exit(f"{' '.join(command)}\n{finished.stdout}\nexit status {finished.returncode} instead of {must}")
