@@ -48,7 +48,8 @@ typedef struct {
   PetscInt  *facet_ptr;             /* facets of each slave point; their nodes count within the slave point's points */
   Facet     *facet;
   PetscReal *facet_size;
-  PetscReal *kappa; /* curvature of the master near each slave point: turn of normals over distance; 0: flat or no facet */
+  PetscReal *kappa;        /* curvature of the master near each slave point: turn of normals over distance; 0: flat or no facet */
+  PetscReal *nearest_size; /* of the facet nearest to each slave point; 0: none */
 } * ContactLists;
 
 PetscErrorCode ListsDestroy(ContactLists *);

@@ -344,7 +344,7 @@ PetscErrorCode ListsCreateSlaves(ContactSearch s, ContactLists lists)
   lists->n_slaves = n;
   PetscCall(PetscMalloc4(n + 1, &lists->slave_ptr, entries, &lists->slave_node, entries, &lists->slave_S, n * dim, &lists->slave_offset));
   PetscCall(PetscMalloc2(n * dim, &lists->slave_X, n * dim, &lists->slave_u));
-  PetscCall(PetscMalloc3(n + 1, &lists->list_ptr, n + 1, &lists->facet_ptr, n, &lists->kappa));
+  PetscCall(PetscMalloc4(n + 1, &lists->list_ptr, n + 1, &lists->facet_ptr, n, &lists->kappa, n, &lists->nearest_size));
   PetscCall(PetscCalloc5(n, &lists->fit_n, n, &lists->rung, n, &lists->degree, 9 * n, &lists->frame, 4 * n, &lists->metric));
   PetscCall(PetscCalloc4(n, &lists->pivot, n, &lists->amplified, n, &lists->residual, 2 * n, &lists->centre));
   PetscCall(PetscArraycpy(lists->slave_ptr, slaves->ptr, n + 1));
@@ -418,7 +418,7 @@ PetscErrorCode ListsDestroy(ContactLists *lists)
   PetscCall(PetscFree2(l->point_X, l->point_u));
   PetscCall(PetscFree4(l->slave_ptr, l->slave_node, l->slave_S, l->slave_offset));
   PetscCall(PetscFree2(l->slave_X, l->slave_u));
-  PetscCall(PetscFree3(l->list_ptr, l->facet_ptr, l->kappa));
+  PetscCall(PetscFree4(l->list_ptr, l->facet_ptr, l->kappa, l->nearest_size));
   PetscCall(PetscFree5(l->fit_n, l->rung, l->degree, l->frame, l->metric));
   PetscCall(PetscFree4(l->pivot, l->amplified, l->residual, l->centre));
   PetscCall(PetscFree(l->list_point));

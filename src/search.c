@@ -307,12 +307,13 @@ static PetscErrorCode ListsFill(ContactSearch s, ContactLists lists, const Petsc
     for (int d = 0; d < 3; d++) look.normal[d] = normals[3 * q + d];
     lists->list_ptr[q]  = first;
     lists->facet_ptr[q] = buffer.n;
-    lists->kappa[q]     = 0;
+    lists->kappa[q] = lists->nearest_size[q] = 0;
     TreeClosest(tree, look.x, &bound, NearestVisit, &look);
     if (look.best < 0) continue;
-    count           = TreeNear(tree, look.x, bound + s->margin + motion, (int)n_candidates, found);
-    count           = KeepFacing(&look, count, found);
-    lists->kappa[q] = ListCurvature(&look, count, found);
+    count                  = TreeNear(tree, look.x, bound + s->margin + motion, (int)n_candidates, found);
+    count                  = KeepFacing(&look, count, found);
+    lists->kappa[q]        = ListCurvature(&look, count, found);
+    lists->nearest_size[q] = field->records[candidates[look.best].record].size;
     if (fit) PetscCall(FittingSlave(fit, &look, q, first, &buffer));
     PetscCall(ListAddFacets(&look, count, found, field->records, first, &buffer));
   }
