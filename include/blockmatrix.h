@@ -12,9 +12,11 @@ typedef struct _n_BlockMatrix *BlockMatrix;
 PetscErrorCode BlockMatrixCreate(MPI_Comm, int size, BlockMatrix *);
 PetscErrorCode BlockMatrixDestroy(BlockMatrix *);
 PetscErrorCode BlockMatrixReset(BlockMatrix);
-/* A block of size m over entries of vector `list`: entry[m] to be written, value[m*m] (row-major) to be added to (it is zero). Both are valid
+/* A block of size m over entries of vector `list`: entry[m] to be written, value[m*m] (row-major, symmetric) to be added to (it is zero). Both are valid
    until the next call. Not collective. */
 PetscErrorCode BlockMatrixAdd(BlockMatrix, int list, PetscInt m, PetscInt **entry, PetscReal **value);
+/* A block v v^T over such entries: value[m] is v. Not collective. */
+PetscErrorCode BlockMatrixAddOuter(BlockMatrix, int list, PetscInt m, PetscInt **entry, PetscReal **value);
 /* The matrix over global dofs (n rows on this rank); dof[list][entry]: global dof, or -1 for an entry without one. It stays the block matrix's.
  *changed: its pattern is new. Collective. */
 PetscErrorCode BlockMatrixAssemble(BlockMatrix, PetscInt n, const PetscInt *const dof[], Mat *, PetscBool *changed);

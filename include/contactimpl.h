@@ -16,15 +16,19 @@ typedef struct {
   int     rows_room, entries_room;
 } ContactMap;
 
-/* Room to evaluate one slave point in, and its variations carried to the contact nodes: number[count] are these, N and M run over them */
+/* Room to evaluate one slave point in, and its variations carried to the contact nodes: number[count] are these, N runs over them. Second variations of
+   some slave points are summed over the nodes of a block. */
 typedef struct {
   SmootherResult result;
   PetscReal     *x, *multiplier, *workspace; /* positions relative to the slave point */
   PetscInt       x_room;
   ContactMap     map;
   PetscInt       count, *number;
-  PetscReal     *N, *M, *half; /* half: on the way from the points' M to M */
+  PetscReal     *N, *half; /* half: on the way from a facet's M to the sum */
   PetscInt       room, half_room;
+  FitMapSum      sum;
+  PetscReal     *sum_workspace;
+  PetscInt       sum_room;
   int           *slot; /* of every contact node: its place in number[], -1 between evaluations */
   PetscInt       slot_room;
 } ContactWork;
@@ -96,8 +100,13 @@ PetscReal      ContactMeanOpening(const ContactPair *, PetscInt term);
 PetscErrorCode ContactListsArchive(Contact, Archive, const PetscReal *u, PetscReal t);
 /* contactpoint.c */
 PetscErrorCode ContactPointEvaluate(const ContactPair *, const Smoother *, ContactLists, PetscInt q, int seed, SmootherWant, PetscBool *found);
-/* The variations of the last evaluation over contact nodes, into the work's number, N and M. */
-PetscErrorCode ContactPointToNodes(const ContactPair *, ContactLists, PetscInt q, PetscBool second);
+/* The first variation of the last evaluation over contact nodes, into the work's number and N. */
+PetscErrorCode ContactPointToNodes(const ContactPair *, ContactLists, PetscInt q);
+/* M[(nodes*dim)^2] += factor times the second variation, for some slave points: each evaluated, taken to nodes, added. place: of contact nodes in M;
+   NULL: the point's own numbers. */
+PetscErrorCode ContactSecondBegin(const ContactPair *, PetscInt nodes, PetscInt points, PetscReal *M);
+PetscErrorCode ContactSecondAdd(const ContactPair *, PetscReal factor, const PetscInt *place);
+void           ContactSecondEnd(const ContactPair *);
 PetscErrorCode ContactWorkDestroy(ContactWork *);
 /* Gaps of all slave points that have a factor, NaN of the others; seed, normals: may be NULL. */
 PetscErrorCode ContactPointGaps(const ContactPair *, ContactLists, const PetscReal *factor, int *seed, PetscReal *gap, PetscReal *normals);

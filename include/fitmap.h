@@ -1,7 +1,7 @@
 /* Variations of the diffuse gap over nodes, where fit points and slave point are combinations of nodes: x = sign * (sum S x_node) by component,
    as quadrature points of faces are. Plain C: no PETSc, no MPI, no allocation.
 
-   A support has more points than nodes behind them, and M grows with the square: FitMapSecond() therefore takes the factors of M to the nodes
+   A support has more points than nodes behind them, and M grows with the square: FitMapAdd() therefore takes the factors of M to the nodes
    (FitResult.factors instead of FitResult.M), not M. */
 #pragma once
 #include "fit.h"
@@ -16,9 +16,18 @@ typedef struct {
   const double *sign; /* [1 + points inside][3], each +1 or -1, whatever the dimension */
 } FitMap;
 
-/* Doubles of workspace for FitMapSecond(). */
-long FitMapWorkspace(int dim, int degree, int n_nodes);
+/* A sum of second variations in the making: FitMapBegin(), FitMapAdd() for each slave point, FitMapEnd() */
+typedef struct {
+  int     dim, n_nodes, stride, depth;
+  double *rows, *K, *J; /* rows: of the slave point at hand; K, J: [depth][stride], of all so far */
+  double *M;
+} FitMapSum;
+
 /* nodal[n_nodes*dim] = S^T N, for N[(1 + n)*dim] of n points inside. */
 void FitMapFirst(int dim, int n, const double *N, const FitMap *, double *nodal);
-/* M[(n_nodes*dim)^2] = S^T M S, symmetric to the last bit. The workspace is another one than that where the factors lie. */
-void FitMapSecond(const FitFactors *, const FitMap *, double *workspace, double *M);
+/* M[(n_nodes*dim)^2] += sum factor S^T M S over slave points with maps to the same nodes, symmetric to the last bit. degree: the highest; workspace:
+   FitMapWorkspace() doubles, another one than that where the factors lie. */
+long FitMapWorkspace(int dim, int degree, int n_nodes, int points);
+void FitMapBegin(FitMapSum *, int dim, int degree, int n_nodes, int points, double *workspace, double *M);
+void FitMapAdd(FitMapSum *, double factor, const FitFactors *, const FitMap *);
+void FitMapEnd(FitMapSum *);

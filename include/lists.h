@@ -57,6 +57,8 @@ PetscErrorCode ListsDestroy(ContactLists *);
 PetscErrorCode ListsUpdate(ContactSearch, ContactLists, const PetscReal *u, PetscReal t, PetscBool *moved);
 /* x[dim]: point p seen from slave point q at the last update. Not collective. */
 void ListsRelative(ContactLists, PetscInt q, PetscInt p, PetscReal *x);
+/* Size (length) of the facet nearest to slave point q, 0 without any. Not collective. */
+PetscReal ListsNearestSize(ContactLists, PetscInt q);
 /* How far slave point q has slid over its fit points since the lists were made, in supports; 0 without a fit. Not collective. */
 PetscReal ListsSlip(ContactLists, PetscInt q);
 /* Values of the contact nodes (n_nodes*dim) from local values x (n_nodes of the mesh * dim); rigid nodes get their motion from t to t_next. Collective. */

@@ -8,5 +8,6 @@ enum { PRODUCT_VECTORS = 3 };
 
 /* Least length of a row of K and J for a product of n rows: the entries past n must be finite, they are read and not used. */
 int SymmetricProductStride(int n);
-/* K, J: [depth][stride], stride >= SymmetricProductStride(n), aligned to a vector. M: [n][n]. */
+/* K, J: [depth][stride], stride >= SymmetricProductStride(n), aligned to a vector. M: [n][n], written or, symmetric before, added to. */
 void SymmetricProduct(int n, int depth, int stride, const double *K, const double *J, double *M);
+void SymmetricProductAdd(int n, int depth, int stride, const double *K, const double *J, double *M);

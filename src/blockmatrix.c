@@ -5,24 +5,33 @@
 #define BLOCK_SLACK 1.5
 
 typedef struct {
-  int      list;
-  PetscInt m, entry, value; /* size; first places in the arrays */
+  int       list;
+  PetscInt  m, entry, value; /* size; first places in the arrays */
+  PetscBool outer;           /* the values are a vector v, the block is v v^T */
 } Block;
+
+/* One row of nodes of a block. Targets: a column of nodes in the block, and the pair of the row, counted from its first, that it is added to. */
+typedef struct {
+  PetscInt at, block, node;       /* the block's place in the pattern, its number, which of its rows */
+  PetscInt first_target, targets; /* pairs up to the diagonal: all blocks are symmetric */
+} BlockRow;
 
 struct _n_BlockMatrix {
   MPI_Comm   comm;
-  int        size; /* of a node: its dofs */
-  PetscInt   n, room, n_entries, entries_room, n_values, values_room;
+  int        size;                                                             /* of a node: its dofs */
+  PetscInt   n, room, n_entries, entries_room, n_values, values_room, n_pairs; /* n_pairs: of nodes, over all blocks */
   Block     *block;
   PetscInt  *entry;
   PetscReal *value;
   Mat        matrix;
   PetscInt   n_pattern, *pattern; /* of the blocks: number of nodes and nodes' keys of block after block; key: the first dof, -1 without any */
   PetscInt   n_nodes, *key, *dof; /* of the matrix: keys ascending, dofs (n_nodes*size) */
-  PetscInt  *pair_ptr, *pair;     /* blocks overlap: every pair of nodes once, row by row */
-  PetscBool  restored;             /* the matrix is not the one that its user knows */
-  PetscInt  *place, *stride;      /* of the blocks' pairs: the place of the first value in the sums, or -1; of the blocks' rows: to the next row of dofs */
-  PetscReal *sum;                 /* over the pairs, row of dofs by row of dofs */
+  PetscInt  *pair_ptr, *pair;     /* blocks overlap: every pair of nodes once, row by row, ascending */
+  PetscInt  *mirror;              /* of the pairs below the diagonal: the pair with row and column swapped */
+  PetscInt  *row_ptr, *target;    /* of each node, its rows in the blocks; where these are added */
+  BlockRow  *row;
+  PetscReal *sum;      /* over the pairs, row of dofs by row of dofs */
+  PetscBool  restored; /* the matrix is not the one that its user knows */
 };
 
 /* BlockMatrixCreate - an empty one.
@@ -50,8 +59,10 @@ PetscErrorCode BlockMatrixDestroy(BlockMatrix *blocks)
   PetscCall(PetscFree((*blocks)->dof));
   PetscCall(PetscFree((*blocks)->pair_ptr));
   PetscCall(PetscFree((*blocks)->pair));
-  PetscCall(PetscFree((*blocks)->place));
-  PetscCall(PetscFree((*blocks)->stride));
+  PetscCall(PetscFree((*blocks)->mirror));
+  PetscCall(PetscFree((*blocks)->row_ptr));
+  PetscCall(PetscFree((*blocks)->target));
+  PetscCall(PetscFree((*blocks)->row));
   PetscCall(PetscFree((*blocks)->sum));
   PetscCall(MatDestroy(&(*blocks)->matrix));
   PetscCall(PetscFree(*blocks));
@@ -62,7 +73,26 @@ PetscErrorCode BlockMatrixDestroy(BlockMatrix *blocks)
 PetscErrorCode BlockMatrixReset(BlockMatrix blocks)
 {
   PetscFunctionBeginUser;
-  blocks->n = blocks->n_entries = blocks->n_values = 0;
+  blocks->n = blocks->n_entries = blocks->n_values = blocks->n_pairs = 0;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Makes room for a block of size m with n values, which are zero. */
+static PetscErrorCode AddBlock(BlockMatrix blocks, int list, PetscInt m, PetscInt n, PetscInt **entry, PetscReal **value)
+{
+  PetscFunctionBeginUser;
+  if (blocks->n == blocks->room) PetscCall(PetscRealloc((blocks->room = 2 * blocks->room + 64) * sizeof(Block), &blocks->block));
+  if (blocks->n_entries + m > blocks->entries_room)
+    PetscCall(PetscRealloc((blocks->entries_room = 2 * (blocks->entries_room + m)) * sizeof(PetscInt), &blocks->entry));
+  if (blocks->n_values + n > blocks->values_room)
+    PetscCall(PetscRealloc((blocks->values_room = 2 * (blocks->values_room + n)) * sizeof(PetscReal), &blocks->value));
+  *entry = &blocks->entry[blocks->n_entries];
+  *value = &blocks->value[blocks->n_values];
+  PetscCall(PetscArrayzero(*value, n));
+  blocks->block[blocks->n++] = (Block){.list = list, .m = m, .entry = blocks->n_entries, .value = blocks->n_values};
+  blocks->n_entries += m;
+  blocks->n_values += n;
+  blocks->n_pairs += PetscSqr(m / blocks->size);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -73,17 +103,16 @@ PetscErrorCode BlockMatrixReset(BlockMatrix blocks)
 PetscErrorCode BlockMatrixAdd(BlockMatrix blocks, int list, PetscInt m, PetscInt **entry, PetscReal **value)
 {
   PetscFunctionBeginUser;
-  if (blocks->n == blocks->room) PetscCall(PetscRealloc((blocks->room = 2 * blocks->room + 64) * sizeof(Block), &blocks->block));
-  if (blocks->n_entries + m > blocks->entries_room)
-    PetscCall(PetscRealloc((blocks->entries_room = 2 * (blocks->entries_room + m)) * sizeof(PetscInt), &blocks->entry));
-  if (blocks->n_values + m * m > blocks->values_room)
-    PetscCall(PetscRealloc((blocks->values_room = 2 * (blocks->values_room + m * m)) * sizeof(PetscReal), &blocks->value));
-  *entry = &blocks->entry[blocks->n_entries];
-  *value = &blocks->value[blocks->n_values];
-  PetscCall(PetscArrayzero(*value, m * m));
-  blocks->block[blocks->n++] = (Block){list, m, blocks->n_entries, blocks->n_values};
-  blocks->n_entries += m;
-  blocks->n_values += m * m;
+  PetscCall(AddBlock(blocks, list, m, m * m, entry, value));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* BlockMatrixAddOuter - as BlockMatrixAdd() for a block v v^T, which is never written out: value[m] is v. Not collective. */
+PetscErrorCode BlockMatrixAddOuter(BlockMatrix blocks, int list, PetscInt m, PetscInt **entry, PetscReal **value)
+{
+  PetscFunctionBeginUser;
+  PetscCall(AddBlock(blocks, list, m, m, entry, value));
+  blocks->block[blocks->n - 1].outer = PETSC_TRUE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -108,12 +137,6 @@ static PetscErrorCode BlocksPattern(BlockMatrix blocks, const PetscInt *const do
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
-
-/* One row of nodes of a block in the pattern */
-typedef struct {
-  PetscInt at;            /* the block's place in the pattern */
-  PetscInt number, first; /* of the row and of its first pair, over all blocks */
-} BlockRow;
 
 /* The nodes that occur in the pattern, ascending, each once, with their dofs. */
 static PetscErrorCode ListNodes(BlockMatrix blocks, const PetscInt *const dof[])
@@ -163,38 +186,43 @@ static PetscErrorCode NumberNodes(BlockMatrix blocks, PetscInt *number, PetscBoo
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The rows of all blocks, those of one node together: row[ptr[r]] to row[ptr[r + 1]], in the blocks' order. */
-static PetscErrorCode GroupRows(BlockMatrix blocks, const PetscInt *number, PetscInt *ptr, BlockRow *row)
+/* The rows of all blocks, those of one node together, in the blocks' order. */
+static PetscErrorCode GroupRows(BlockMatrix blocks, const PetscInt *number)
 {
-  PetscInt rows = 0, pairs = 0;
+  PetscInt *ptr, block = 0;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscArrayzero(ptr, blocks->n_nodes + 2));
+  PetscCall(PetscFree(blocks->row_ptr));
+  PetscCall(PetscFree(blocks->row));
+  PetscCall(PetscCalloc1(blocks->n_nodes + 2, &ptr));
+  PetscCall(PetscMalloc1(blocks->n_pattern, &blocks->row));
   for (PetscInt k = 0; k < blocks->n_pattern; k++)
     if (number[k] >= 0) ptr[number[k] + 2]++;
   for (PetscInt r = 0; r < blocks->n_nodes; r++) ptr[r + 2] += ptr[r + 1];
-  for (PetscInt at = 0; at < blocks->n_pattern; at += 1 + blocks->pattern[at]) {
-    for (PetscInt i = 1; i <= blocks->pattern[at]; i++, rows++, pairs += blocks->pattern[at])
-      if (number[at + i] >= 0) row[ptr[number[at + i] + 1]++] = (BlockRow){at, rows, pairs}; /* moves ptr[r + 1] from the start of r's to their end */
+  for (PetscInt at = 0; at < blocks->n_pattern; at += 1 + blocks->pattern[at], block++) {
+    for (PetscInt i = 1; i <= blocks->pattern[at]; i++) /* moves ptr[r + 1] from the start of r's to their end */
+      if (number[at + i] >= 0) blocks->row[ptr[number[at + i] + 1]++] = (BlockRow){.at = at, .block = block, .node = i - 1};
   }
+  blocks->row_ptr = ptr;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* The pairs of nodes that some block couples, each once, row by row. Blocks overlap several times over, so this spares the parallel matrix most of
    the entries. seen[n_nodes]: scratch. */
-static PetscErrorCode ListPairs(BlockMatrix blocks, const PetscInt *number, const PetscInt *ptr, const BlockRow *row, PetscInt *seen)
+static PetscErrorCode ListPairs(BlockMatrix blocks, const PetscInt *number, PetscInt *seen)
 {
-  PetscInt n = 0, *pair;
+  const BlockRow *row = blocks->row;
+  PetscInt        n   = 0, *pair;
 
   PetscFunctionBeginUser;
   PetscCall(PetscFree(blocks->pair_ptr));
   PetscCall(PetscFree(blocks->pair));
-  PetscCall(PetscMalloc1(blocks->n_values / PetscSqr(blocks->size), &pair));
+  PetscCall(PetscMalloc1(blocks->n_pairs, &pair));
   PetscCall(PetscMalloc1(blocks->n_nodes + 1, &blocks->pair_ptr));
   for (PetscInt r = 0; r < blocks->n_nodes; r++) seen[r] = -1;
   for (PetscInt r = 0; r < blocks->n_nodes; r++) {
     blocks->pair_ptr[r] = n;
-    for (PetscInt k = ptr[r]; k < ptr[r + 1]; k++) {
+    for (PetscInt k = blocks->row_ptr[r]; k < blocks->row_ptr[r + 1]; k++) {
       for (PetscInt j = 1; j <= blocks->pattern[row[k].at]; j++) {
         const PetscInt column = number[row[k].at + j];
 
@@ -203,6 +231,7 @@ static PetscErrorCode ListPairs(BlockMatrix blocks, const PetscInt *number, cons
         pair[n++]    = column;
       }
     }
+    PetscCall(PetscSortInt(n - blocks->pair_ptr[r], &pair[blocks->pair_ptr[r]])); /* the parallel matrix sorts them sooner when they are sorted */
   }
   blocks->pair_ptr[blocks->n_nodes] = n;
   PetscCall(PetscMalloc1(n, &blocks->pair));
@@ -211,39 +240,57 @@ static PetscErrorCode ListPairs(BlockMatrix blocks, const PetscInt *number, cons
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Gives every pair in the blocks its place in the sums; *used: how many get one, -1: one is missing. seen[2*n_nodes]: scratch. */
-static PetscErrorCode PlacePairs(BlockMatrix blocks, const PetscInt *number, const PetscInt *ptr, const BlockRow *row, PetscInt *seen, PetscInt *used)
+/* Finds the image of each pair below the diagonal. */
+static PetscErrorCode ListMirrors(BlockMatrix blocks)
 {
-  const int      size = blocks->size;
-  const PetscInt n    = blocks->n_values / PetscSqr(size);
-  PetscInt      *met  = seen + blocks->n_nodes; /* the last row in which a column was asked for */
+  PetscFunctionBeginUser;
+  PetscCall(PetscFree(blocks->mirror));
+  PetscCall(PetscMalloc1(blocks->pair_ptr[blocks->n_nodes], &blocks->mirror));
+  for (PetscInt r = 0; r < blocks->n_nodes; r++) {
+    for (PetscInt k = blocks->pair_ptr[r]; k < blocks->pair_ptr[r + 1] && blocks->pair[k] < r; k++) {
+      const PetscInt first = blocks->pair_ptr[blocks->pair[k]], n = blocks->pair_ptr[blocks->pair[k] + 1] - first;
+
+      PetscCall(PetscFindInt(r, n, &blocks->pair[first], &blocks->mirror[k]));
+      blocks->mirror[k] += first;
+    }
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Gives every pair in the blocks its place in the sums; *used: how many get one, -1: one is missing. seen[2*n_nodes]: scratch. */
+static PetscErrorCode PlacePairs(BlockMatrix blocks, const PetscInt *number, PetscInt *seen, PetscInt *used)
+{
+  PetscInt *met = seen + blocks->n_nodes, n = 0; /* met: the last row in which a column was asked for */
 
   PetscFunctionBeginUser;
   *used = 0;
-  PetscCall(PetscFree(blocks->place));
-  PetscCall(PetscFree(blocks->stride));
-  PetscCall(PetscMalloc1(n, &blocks->place));
-  PetscCall(PetscMalloc1(blocks->n_entries / size, &blocks->stride));
-  for (PetscInt k = 0; k < n; k++) blocks->place[k] = -1;
+  PetscCall(PetscFree(blocks->target));
+  PetscCall(PetscMalloc1(2 * blocks->n_pairs, &blocks->target));
   for (PetscInt r = 0; r < blocks->n_nodes; r++) seen[r] = met[r] = -1;
   for (PetscInt r = 0; r < blocks->n_nodes; r++) {
-    const PetscInt first = blocks->pair_ptr[r], end = blocks->pair_ptr[r + 1];
+    const PetscInt first = blocks->pair_ptr[r];
 
-    for (PetscInt k = first; k < end; k++) seen[blocks->pair[k]] = k;
-    for (PetscInt k = ptr[r]; k < ptr[r + 1]; k++) {
-      blocks->stride[row[k].number] = (end - first) * size;
-      for (PetscInt j = 1; j <= blocks->pattern[row[k].at]; j++) {
-        const PetscInt column = number[row[k].at + j];
+    for (PetscInt k = first; k < blocks->pair_ptr[r + 1]; k++) seen[blocks->pair[k]] = k;
+    for (PetscInt k = blocks->row_ptr[r]; k < blocks->row_ptr[r + 1]; k++) {
+      BlockRow *row = &blocks->row[k];
+
+      row->first_target = n;
+      for (PetscInt j = 0; j < blocks->pattern[row->at]; j++) {
+        const PetscInt column = number[row->at + 1 + j];
 
         if (column < 0) continue;
         if (seen[column] < first) {
           *used = -1;
           PetscFunctionReturn(PETSC_SUCCESS);
         }
-        blocks->place[row[k].first + j - 1] = first * PetscSqr(size) + (seen[column] - first) * size;
         *used += met[column] != r;
         met[column] = r;
+        if (column > r) continue;
+        blocks->target[2 * n]     = j;
+        blocks->target[2 * n + 1] = seen[column] - first;
+        n++;
       }
+      row->targets = n - row->first_target;
     }
   }
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -252,20 +299,20 @@ static PetscErrorCode PlacePairs(BlockMatrix blocks, const PetscInt *number, con
 /* Finds a place for every pair. fresh: among pairs listed anew; else among those that are there, if these hold all and are not far too many: *placed. */
 static PetscErrorCode PlacePattern(BlockMatrix blocks, const PetscInt *const dof[], PetscBool fresh, PetscBool *placed)
 {
-  PetscInt *number, *ptr, *seen, used = -1;
-  BlockRow *row;
+  PetscInt *number, *seen, used = -1;
 
   PetscFunctionBeginUser;
   if (fresh) PetscCall(ListNodes(blocks, dof));
-  PetscCall(PetscMalloc4(blocks->n_pattern, &number, blocks->n_nodes + 2, &ptr, 2 * blocks->n_nodes, &seen, blocks->n_pattern, &row));
+  PetscCall(PetscMalloc2(blocks->n_pattern, &number, 2 * blocks->n_nodes, &seen));
   PetscCall(NumberNodes(blocks, number, placed));
   if (*placed) {
-    PetscCall(GroupRows(blocks, number, ptr, row));
-    if (fresh) PetscCall(ListPairs(blocks, number, ptr, row, seen));
-    PetscCall(PlacePairs(blocks, number, ptr, row, seen, &used));
+    PetscCall(GroupRows(blocks, number));
+    if (fresh) PetscCall(ListPairs(blocks, number, seen));
+    if (fresh) PetscCall(ListMirrors(blocks));
+    PetscCall(PlacePairs(blocks, number, seen, &used));
     *placed = used >= 0 && blocks->pair_ptr[blocks->n_nodes] <= BLOCK_SLACK * used ? PETSC_TRUE : PETSC_FALSE;
   }
-  PetscCall(PetscFree4(number, ptr, seen, row));
+  PetscCall(PetscFree2(number, seen));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -295,38 +342,66 @@ static PetscErrorCode CreateMatrix(BlockMatrix blocks, PetscInt rows)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Adds one block to the sums; size a constant where this is called, so that the loops over a node's dofs unroll. */
-static inline void SumBlock(const int size, PetscInt m, const PetscReal *value, const PetscInt *place, const PetscInt *stride, PetscReal *sum)
+/* Adds one row of nodes of a block to the sums of its node; size and outer constants where this is called, so that the loops over a node's dofs unroll. */
+static inline void SumRow(const int size, const PetscBool outer, PetscInt m, PetscInt node, const PetscReal *value, PetscInt n, const PetscInt *target,
+                          PetscInt stride, PetscReal *sum)
 {
-  for (PetscInt i = 0; i < m; i += size, stride++) {
-    for (PetscInt j = 0; j < m; j += size, place++) {
-      if (*place < 0) continue;
+  const PetscReal *row = outer ? value : value + node * size * m;
+
+  for (PetscInt k = 0; k < n; k++) {
+    const PetscReal *from = row + target[2 * k] * size;
+    PetscReal       *to   = sum + target[2 * k + 1] * size;
+
+    for (int d = 0; d < size; d++)
+      for (int e = 0; e < size; e++) to[d * stride + e] += outer ? value[node * size + d] * from[e] : from[d * m + e];
+  }
+}
+
+/* The upper triangle from the lower one. */
+static void Mirror(BlockMatrix blocks)
+{
+  const int size = blocks->size;
+
+  for (PetscInt r = 0; r < blocks->n_nodes; r++) {
+    const PetscInt first = blocks->pair_ptr[r], stride = (blocks->pair_ptr[r + 1] - first) * size;
+
+    for (PetscInt k = first; k < blocks->pair_ptr[r + 1] && blocks->pair[k] < r; k++) {
+      const PetscInt   c = blocks->pair[k], start = blocks->pair_ptr[c], width = (blocks->pair_ptr[c + 1] - start) * size;
+      const PetscReal *from = &blocks->sum[first * PetscSqr(size) + (k - first) * size];
+      PetscReal       *to   = &blocks->sum[start * PetscSqr(size) + (blocks->mirror[k] - start) * size];
+
       for (int d = 0; d < size; d++)
-        for (int e = 0; e < size; e++) sum[*place + d * *stride + e] += value[(i + d) * m + j + e];
+        for (int e = 0; e < size; e++) to[e * width + d] = from[d * stride + e];
     }
   }
 }
 
+/* Row of nodes by row of nodes, so that what is added to stays at hand. */
 static PetscErrorCode SumBlocks(BlockMatrix blocks)
 {
-  const int       size  = blocks->size;
-  const PetscInt *place = blocks->place, *stride = blocks->stride;
+  const int size = blocks->size;
 
   PetscFunctionBeginUser;
   PetscCall(PetscArrayzero(blocks->sum, blocks->pair_ptr[blocks->n_nodes] * PetscSqr(size)));
-  for (PetscInt b = 0; b < blocks->n; b++) {
-    const PetscInt   m     = blocks->block[b].m;
-    const PetscReal *value = &blocks->value[blocks->block[b].value];
+  for (PetscInt r = 0; r < blocks->n_nodes; r++) {
+    const PetscInt   first = blocks->pair_ptr[r], stride = (blocks->pair_ptr[r + 1] - first) * size;
+    PetscReal *const sum = &blocks->sum[first * PetscSqr(size)];
 
-    if (size == 3)
-      SumBlock(3, m, value, place, stride, blocks->sum);
-    else if (size == 2)
-      SumBlock(2, m, value, place, stride, blocks->sum);
-    else
-      SumBlock(size, m, value, place, stride, blocks->sum);
-    place += PetscSqr(m / size);
-    stride += m / size;
+    for (PetscInt k = blocks->row_ptr[r]; k < blocks->row_ptr[r + 1]; k++) {
+      const BlockRow  *row    = &blocks->row[k];
+      const Block     *block  = &blocks->block[row->block];
+      const PetscReal *value  = &blocks->value[block->value];
+      const PetscInt  *target = &blocks->target[2 * row->first_target];
+
+      if (size == 3 && block->outer)
+        SumRow(3, PETSC_TRUE, block->m, row->node, value, row->targets, target, stride, sum);
+      else if (size == 3)
+        SumRow(3, PETSC_FALSE, block->m, row->node, value, row->targets, target, stride, sum);
+      else
+        SumRow(size, block->outer, block->m, row->node, value, row->targets, target, stride, sum);
+    }
   }
+  Mirror(blocks);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -357,8 +432,8 @@ PetscErrorCode BlockMatrixAssemble(BlockMatrix blocks, PetscInt rows, const Pets
   }
   PetscCall(SumBlocks(blocks));
   PetscCall(MatSetValuesCOO(blocks->matrix, blocks->sum, INSERT_VALUES));
-  *matrix  = blocks->matrix;
-  *changed = all && !blocks->restored ? PETSC_FALSE : PETSC_TRUE;
+  *matrix          = blocks->matrix;
+  *changed         = all && !blocks->restored ? PETSC_FALSE : PETSC_TRUE;
   blocks->restored = PETSC_FALSE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -373,9 +448,12 @@ PetscErrorCode BlockMatrixMultiply(BlockMatrix blocks, int list, const PetscReal
     const Block     *block = &blocks->block[b];
     const PetscInt  *entry = &blocks->entry[block->entry];
     const PetscReal *value = &blocks->value[block->value];
+    PetscReal        along = 0;
 
     if (block->list != list) continue;
-    for (PetscInt i = 0; i < block->m; i++)
+    for (PetscInt i = 0; i < block->m && block->outer; i++) along += value[i] * x[entry[i]];
+    for (PetscInt i = 0; i < block->m && block->outer; i++) y[entry[i]] += value[i] * along;
+    for (PetscInt i = 0; i < block->m && !block->outer; i++)
       for (PetscInt j = 0; j < block->m; j++) y[entry[i]] += value[i * block->m + j] * x[entry[j]];
   }
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -389,7 +467,7 @@ PetscErrorCode BlockMatrixArchive(BlockMatrix blocks, Archive archive, const cha
 {
   static const char *names[] = {"key", "dof", "pair_ptr", "pair"};
   PetscInt         **list[]  = {&blocks->key, &blocks->dof, &blocks->pair_ptr, &blocks->pair};
-  PetscInt           n[4] = {0, 0, 0, 0};
+  PetscInt           n[4]    = {0, 0, 0, 0};
   PetscMPIInt        size;
   PetscBool          there = blocks->matrix ? PETSC_TRUE : PETSC_FALSE;
   char               path[PETSC_MAX_PATH_LEN];
@@ -411,7 +489,8 @@ PetscErrorCode BlockMatrixArchive(BlockMatrix blocks, Archive archive, const cha
     PetscCall(ArchiveIntegerList(archive, path, &n[k], list[k]));
   }
   if (!ArchiveLoads(archive)) PetscFunctionReturn(PETSC_SUCCESS);
-  blocks->n_nodes   = n[0];
+  blocks->n_nodes = n[0];
+  PetscCall(ListMirrors(blocks));
   blocks->n_pattern = 0; /* where the next blocks stand in it is found then */
   PetscCall(CreateMatrix(blocks, rows));
   blocks->restored = PETSC_TRUE;

@@ -134,14 +134,14 @@ static void TermPress(ContactPair *pair, PetscInt c, PetscReal pressure)
     pair->point_force[pair->term_point[k]] += pressure * pair->term_weight[k] * pair->factor[pair->term_point[k]];
 }
 
-/* First variation, and second if asked for, of a slave point over contact nodes, in the pair's work. */
+/* First variation of a slave point over contact nodes, in the pair's work; second: what ContactSecondAdd() needs too. */
 static PetscErrorCode PointVary(const ContactPair *pair, PetscInt q, PetscBool second, PetscBool *found)
 {
   PetscFunctionBeginUser;
   if (pair->fit.degree) TimingBegin(TIMING_FIT);
   PetscCall(ContactPointEvaluate(pair, pair->smoother, pair->lists, q, pair->seed[q], second ? SMOOTHER_SECOND_VARIATION : SMOOTHER_FIRST_VARIATION, found));
   if (pair->fit.degree) TimingEnd(TIMING_FIT);
-  if (*found) PetscCall(ContactPointToNodes(pair, pair->lists, q, second));
+  if (*found) PetscCall(ContactPointToNodes(pair, pair->lists, q));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -307,82 +307,79 @@ static PetscErrorCode VariationsDestroy(PointVariations *all)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Numbers the nodes of a term's points in its block. */
-static PetscInt TermNumberNodes(const ContactPair *pair, PetscInt c, PointVariations *all)
+/* Numbers the nodes of some points in a block. */
+static PetscInt NumberNodes(PetscInt n, const PetscInt *points, PointVariations *all)
 {
   PetscInt m = 0;
 
-  for (PetscInt k = pair->term_ptr[c]; k < pair->term_ptr[c + 1]; k++) {
-    const PetscInt q = pair->term_point[k];
-
-    for (PetscInt i = all->first[q]; i < all->last[q]; i++)
+  for (PetscInt k = 0; k < n; k++)
+    for (PetscInt i = all->first[points[k]]; i < all->last[points[k]]; i++)
       if (all->place[all->number[i]] < 0) all->place[all->number[i]] = m++;
-  }
   return m;
 }
 
-static void TermForgetNodes(const ContactPair *pair, PetscInt c, PointVariations *all)
+/* Writes the dofs of the numbered nodes into the block's entries. */
+static void NameEntries(int dim, PetscInt n, const PetscInt *points, const PointVariations *all, PetscInt *entry)
 {
-  for (PetscInt k = pair->term_ptr[c]; k < pair->term_ptr[c + 1]; k++)
-    for (PetscInt i = all->first[pair->term_point[k]]; i < all->last[pair->term_point[k]]; i++) all->place[all->number[i]] = -1;
+  for (PetscInt k = 0; k < n; k++)
+    for (PetscInt i = all->first[points[k]]; i < all->last[points[k]]; i++)
+      for (int d = 0; d < dim; d++) entry[all->place[all->number[i]] * dim + d] = all->number[i] * dim + d;
 }
 
-/* Adds -force M of a point to the block of a term. */
-static PetscErrorCode TermAddSecond(const ContactPair *pair, PetscInt q, const PointVariations *all, PetscInt m, PetscReal *value)
+static void ForgetNodes(PetscInt n, const PetscInt *points, PointVariations *all)
 {
-  const int          dim  = pair->mesh->dim;
-  const ContactWork *work = pair->work;
-  PetscBool          found;
-
-  PetscFunctionBeginUser;
-  PetscCall(PointVary(pair, q, PETSC_TRUE, &found));
-  if (!found) PetscFunctionReturn(PETSC_SUCCESS);
-  for (PetscInt i = 0; i < work->count * dim; i++) {
-    PetscReal       *row  = &value[(all->place[work->number[i / dim]] * dim + i % dim) * m];
-    const PetscReal *from = &work->M[i * work->count * dim];
-
-    for (PetscInt b = 0; b < work->count; b++)
-      for (int d = 0; d < dim; d++) row[all->place[work->number[b]] * dim + d] -= pair->point_force[q] * from[b * dim + d];
-  }
-  PetscFunctionReturn(PETSC_SUCCESS);
+  for (PetscInt k = 0; k < n; k++)
+    for (PetscInt i = all->first[points[k]]; i < all->last[points[k]]; i++) all->place[all->number[i]] = -1;
 }
 
-/* The block of one active term: A psi'' Nbar Nbar^T, and -p M of its points that no term before it took. */
+/* The block A psi'' Nbar Nbar^T of one active term. */
 static PetscErrorCode TermBlock(Contact contact, const ContactPair *pair, int p, PetscInt c, const TermState *term, PointVariations *all)
 {
-  const int  dim = contact->mesh->dim;
-  PetscInt   m   = TermNumberNodes(pair, c, all) * dim, *entry;
-  PetscReal *value, *N;
+  const int       dim    = contact->mesh->dim;
+  const PetscInt *points = &pair->term_point[pair->term_ptr[c]], n = pair->term_ptr[c + 1] - pair->term_ptr[c];
+  PetscInt        m     = NumberNodes(n, points, all), *entry;
+  const PetscReal scale = PetscSqrtReal(term->stiffness / term->area);
+  PetscReal      *N;
 
   PetscFunctionBeginUser;
-  PetscCall(BlockMatrixAdd(contact->blocks, p, m, &entry, &value));
-  PetscCall(PetscCalloc1(m, &N));
-  for (PetscInt k = pair->term_ptr[c]; k < pair->term_ptr[c + 1]; k++) {
-    const PetscInt  q      = pair->term_point[k];
-    const PetscReal weight = pair->term_weight[k] * pair->factor[q] / term->area;
+  PetscCall(BlockMatrixAddOuter(contact->blocks, p, m * dim, &entry, &N));
+  NameEntries(dim, n, points, all, entry);
+  for (PetscInt k = 0; k < n; k++) {
+    const PetscReal weight = scale * pair->term_weight[pair->term_ptr[c] + k] * pair->factor[points[k]];
 
-    for (PetscInt i = all->first[q]; i < all->last[q]; i++) {
-      for (int d = 0; d < dim; d++) {
-        entry[all->place[all->number[i]] * dim + d] = all->number[i] * dim + d;
-        N[all->place[all->number[i]] * dim + d] += weight * all->N[i * dim + d];
-      }
-    }
+    for (PetscInt i = all->first[points[k]]; i < all->last[points[k]]; i++)
+      for (int d = 0; d < dim; d++) N[all->place[all->number[i]] * dim + d] += weight * all->N[i * dim + d];
   }
-  for (PetscInt i = 0; i < m; i++)
-    for (PetscInt j = 0; j < m; j++) value[i * m + j] = term->area * term->stiffness * N[i] * N[j];
-  for (PetscInt k = pair->term_ptr[c]; k < pair->term_ptr[c + 1]; k++) {
-    const PetscInt q = pair->term_point[k];
-
-    if (pair->point_force[q] == 0 || all->first[q] < 0) continue;
-    PetscCall(TermAddSecond(pair, q, all, m, value));
-    pair->point_force[q] = 0;
-  }
-  TermForgetNodes(pair, c, all);
-  PetscCall(PetscFree(N));
+  ForgetNodes(n, points, all);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The block of a term with one point, which is evaluated once. */
+/* The block -sum p M of the points of one face, which share most of their nodes: their second variations are summed before they are written. */
+static PetscErrorCode FaceBlock(Contact contact, const ContactPair *pair, int p, PetscInt face, PointVariations *all)
+{
+  const int  dim = contact->mesh->dim;
+  PetscInt   points[FACE_RULE_POINTS], n = 0, m, *entry;
+  PetscReal *value;
+  PetscBool  found;
+
+  PetscFunctionBeginUser;
+  for (PetscInt q = pair->slaves->first[face]; q < pair->slaves->first[face + 1]; q++)
+    if (pair->point_force[q] != 0 && all->first[q] >= 0) points[n++] = q;
+  if (!n) PetscFunctionReturn(PETSC_SUCCESS);
+  m = NumberNodes(n, points, all);
+  PetscCall(BlockMatrixAdd(contact->blocks, p, m * dim, &entry, &value));
+  NameEntries(dim, n, points, all, entry);
+  PetscCall(ContactSecondBegin(pair, m, n, value));
+  for (PetscInt k = 0; k < n; k++) {
+    PetscCall(PointVary(pair, points[k], PETSC_TRUE, &found));
+    PetscCall(ContactSecondAdd(pair, -pair->point_force[points[k]], all->place));
+  }
+  ContactSecondEnd(pair);
+  ForgetNodes(n, points, all);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The block of a term with one point: A psi'' N N^T - p M. */
 static PetscErrorCode PointBlock(Contact contact, const ContactPair *pair, int p, PetscInt q, const TermState *term)
 {
   const int          dim  = contact->mesh->dim;
@@ -396,10 +393,12 @@ static PetscErrorCode PointBlock(Contact contact, const ContactPair *pair, int p
   if (!found) PetscFunctionReturn(PETSC_SUCCESS);
   m = work->count * dim;
   PetscCall(BlockMatrixAdd(contact->blocks, p, m, &entry, &value));
-  for (PetscInt i = 0; i < m; i++) {
-    entry[i] = work->number[i / dim] * dim + i % dim;
-    for (PetscInt j = 0; j < m; j++) value[i * m + j] = term->area * term->stiffness * work->N[i] * work->N[j] - pair->point_force[q] * work->M[i * m + j];
-  }
+  for (PetscInt i = 0; i < m; i++) entry[i] = work->number[i / dim] * dim + i % dim;
+  for (PetscInt i = 0; i < m; i++)
+    for (PetscInt j = 0; j < m; j++) value[i * m + j] = term->area * term->stiffness * work->N[i] * work->N[j];
+  PetscCall(ContactSecondBegin(pair, work->count, 1, value));
+  PetscCall(ContactSecondAdd(pair, -pair->point_force[q], NULL));
+  ContactSecondEnd(pair);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -412,6 +411,7 @@ static PetscErrorCode SharedBlocks(Contact contact, ContactPair *pair, int p, co
   PetscCall(VariationsCreate(pair, terms, &all));
   for (PetscInt c = 0; c < pair->n; c++)
     if (terms[c].stiffness > 0) PetscCall(TermBlock(contact, pair, p, c, &terms[c], &all));
+  for (PetscInt face = 0; face < pair->slaves->n_faces; face++) PetscCall(FaceBlock(contact, pair, p, face, &all));
   PetscCall(VariationsDestroy(&all));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

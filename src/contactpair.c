@@ -228,12 +228,21 @@ static PetscReal TermCurvature(const ContactPair *pair, PetscInt c)
   return kappa + 2 * pair->turn[c] / pair->size[c] + (radius > 0 ? 1 / radius : 0);
 }
 
+/* Size of the master's faces at a term. */
+static PetscReal TermMasterSize(const ContactPair *pair, PetscInt c)
+{
+  PetscReal size = 0;
+
+  for (PetscInt k = pair->term_ptr[c]; k < pair->term_ptr[c + 1]; k++) size = PetscMax(size, ListsNearestSize(pair->lists, pair->term_point[k]));
+  return size;
+}
+
 /* Opening up to which a node counts as touching: what round-off and the facets' own sagitta leave between surfaces that touch. */
 PetscReal ContactTouchTolerance(const ContactPair *pair, PetscInt c)
 {
-  const PetscReal h = pair->size[c], master = pair->master ? pair->master->mean_size : 0;
+  const PetscReal h = pair->size[c];
 
-  return CONTACT_TOUCH * h + TermCurvature(pair, c) * (PetscSqr(h) + PetscSqr(master)) / 8;
+  return CONTACT_TOUCH * h + TermCurvature(pair, c) * (PetscSqr(h) + PetscSqr(TermMasterSize(pair, c))) / 8;
 }
 
 /* Opening of a term of surface contact whose node touches: the mean over the faces around it, where the surfaces bend away from each other. */

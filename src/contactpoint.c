@@ -96,33 +96,15 @@ static PetscErrorCode WorkReserveMap(ContactWork *work, ContactLists lists, Pets
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode WorkReserveNodes(ContactWork *work, int dim, PetscBool second)
-{
-  const SmootherResult *r    = &work->result;
-  const PetscInt        half = !second ? 0 : r->factored ? FitMapWorkspace(dim, r->factors.degree, (int)work->count) : work->count * dim * (1 + r->n) * dim;
-
-  PetscFunctionBeginUser;
-  if (work->count > work->room) {
-    work->room = 2 * work->count;
-    PetscCall(PetscFree2(work->N, work->M));
-    PetscCall(PetscMalloc2(work->room * dim, &work->N, PetscSqr(work->room * dim), &work->M));
-  }
-  if (half > work->half_room) {
-    work->half_room = 2 * half;
-    PetscCall(PetscFree(work->half));
-    PetscCall(PetscMalloc1(work->half_room, &work->half));
-  }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* ContactWorkDestroy - Not collective. */
 PetscErrorCode ContactWorkDestroy(ContactWork *work)
 {
   PetscFunctionBeginUser;
   PetscCall(PetscFree2(work->x, work->multiplier));
   PetscCall(PetscFree5(work->map.ptr, work->map.node, work->map.S, work->map.sign, work->number));
-  PetscCall(PetscFree2(work->N, work->M));
+  PetscCall(PetscFree(work->N));
   PetscCall(PetscFree(work->half));
+  PetscCall(PetscFree(work->sum_workspace));
   PetscCall(PetscFree(work->slot));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -162,19 +144,64 @@ static void MapFill(const ContactPair *pair, ContactLists lists, PetscInt q)
   for (PetscInt i = 0; i < work->count; i++) work->slot[work->number[i]] = -1;
 }
 
-/* M over nodes = S^T M S for the few points of a facet: rows first, then columns. */
-static void MapSecond(ContactWork *work, int dim)
+/* ContactPointToNodes - carries N of the last evaluation from points to contact nodes, each of which occurs once.
+
+   Not collective. q: the slave point that was evaluated. */
+PetscErrorCode ContactPointToNodes(const ContactPair *pair, ContactLists lists, PetscInt q)
+{
+  ContactWork *work = pair->work;
+  FitMap       map;
+
+  PetscFunctionBeginUser;
+  PetscCall(WorkReserveMap(work, lists, q));
+  MapFill(pair, lists, q);
+  if (work->count > work->room) {
+    work->room = 2 * work->count;
+    PetscCall(PetscFree(work->N));
+    PetscCall(PetscMalloc1(work->room * lists->dim, &work->N));
+  }
+  map = (FitMap){(int)work->count, work->map.ptr, work->map.node, work->map.S, work->map.sign};
+  FitMapFirst(lists->dim, work->result.n, work->result.N, &map, work->N);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* ContactSecondBegin - begins a sum of second variations over the nodes of a block. Not collective.
+
+   nodes: of the block; points: how many slave points are added at most; M[nodes*dim][nodes*dim]: symmetric, to be added to. */
+PetscErrorCode ContactSecondBegin(const ContactPair *pair, PetscInt nodes, PetscInt points, PetscReal *M)
+{
+  ContactWork   *work   = pair->work;
+  const int      degree = PetscMax(pair->fit.degree, 1); /* facets need no more than the sum's head */
+  const PetscInt room   = FitMapWorkspace(pair->mesh->dim, degree, (int)nodes, (int)points);
+
+  PetscFunctionBeginUser;
+  if (room > work->sum_room) {
+    work->sum_room = 2 * room;
+    PetscCall(PetscFree(work->sum_workspace));
+    PetscCall(PetscMalloc1(work->sum_room, &work->sum_workspace));
+  }
+  FitMapBegin(&work->sum, pair->mesh->dim, degree, (int)nodes, (int)points, work->sum_workspace, M);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Adds factor S^T M S for the few points of a facet: rows first, then columns. */
+static PetscErrorCode AddFacetSecond(ContactWork *work, int dim, PetscReal factor)
 {
   const ContactMap     *map  = &work->map;
   const SmootherResult *r    = &work->result;
-  const int             rows = 1 + r->n, m = rows * dim, n = (int)work->count * dim;
+  const int             rows = 1 + r->n, m = rows * dim, n = work->sum.n_nodes * dim;
 
-  memset(work->half, 0, n * m * sizeof(PetscReal));
-  memset(work->M, 0, n * n * sizeof(PetscReal));
+  PetscFunctionBeginUser;
+  if (n * m > work->half_room) {
+    work->half_room = 2 * n * m;
+    PetscCall(PetscFree(work->half));
+    PetscCall(PetscMalloc1(work->half_room, &work->half));
+  }
+  PetscCall(PetscArrayzero(work->half, n * m));
   for (int i = 0; i < rows; i++) {
     for (int k = map->ptr[i]; k < map->ptr[i + 1]; k++) {
       for (int d = 0; d < dim; d++) {
-        const PetscReal  scale = map->S[k] * map->sign[3 * i + d];
+        const PetscReal  scale = factor * map->S[k] * map->sign[3 * i + d];
         const PetscReal *from  = &r->M[(i * dim + d) * m];
         PetscReal       *to    = &work->half[(map->node[k] * dim + d) * m];
 
@@ -187,33 +214,36 @@ static void MapSecond(ContactWork *work, int dim)
       for (int d = 0; d < dim; d++) {
         const PetscReal scale = map->S[k] * map->sign[3 * i + d];
 
-        for (int j = 0; j < n; j++) work->M[j * n + map->node[k] * dim + d] += scale * work->half[j * m + i * dim + d];
+        for (int j = 0; j < n; j++) work->sum.M[j * n + map->node[k] * dim + d] += scale * work->half[j * m + i * dim + d];
       }
     }
   }
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ContactPointToNodes - carries N, and M if `second`, of the last evaluation from points to contact nodes, each of which occurs once.
+/* ContactSecondAdd - adds factor times the second variation of the last evaluation, after ContactPointToNodes(). Not collective.
 
-   Not collective. q: the slave point that was evaluated. */
-PetscErrorCode ContactPointToNodes(const ContactPair *pair, ContactLists lists, PetscInt q, PetscBool second)
+   place: of each contact node in the block, or NULL for the numbers of the point's own nodes. */
+PetscErrorCode ContactSecondAdd(const ContactPair *pair, PetscReal factor, const PetscInt *place)
 {
-  ContactWork          *work = pair->work;
-  const SmootherResult *r    = &work->result;
-  const int             dim  = lists->dim;
-  FitMap                map;
+  ContactWork *work = pair->work;
+  ContactMap  *map  = &work->map;
+  FitMap       fit;
 
   PetscFunctionBeginUser;
-  PetscCall(WorkReserveMap(work, lists, q));
-  MapFill(pair, lists, q);
-  PetscCall(WorkReserveNodes(work, dim, second));
-  map = (FitMap){(int)work->count, work->map.ptr, work->map.node, work->map.S, work->map.sign};
-  FitMapFirst(dim, r->n, r->N, &map, work->N);
-  if (second && r->factored)
-    FitMapSecond(&r->factors, &map, work->half, work->M);
-  else if (second)
-    MapSecond(work, dim);
+  for (int k = 0; place && k < map->ptr[1 + work->result.n]; k++) map->node[k] = (int)place[work->number[map->node[k]]];
+  fit = (FitMap){work->sum.n_nodes, map->ptr, map->node, map->S, map->sign};
+  if (work->result.factored)
+    FitMapAdd(&work->sum, factor, &work->result.factors, &fit);
+  else
+    PetscCall(AddFacetSecond(work, pair->mesh->dim, factor));
   PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* ContactSecondEnd - the sum is complete. Not collective. */
+void ContactSecondEnd(const ContactPair *pair)
+{
+  FitMapEnd(&pair->work->sum);
 }
 
 /* ContactPointGaps - gaps (lengths) of the slave points of this rank, positions as the lists were last updated.

@@ -2,7 +2,8 @@
        S^T M S = Kbar^T Jbar + Jbar^T Kbar + sum_i (S_i - S_c)^T H_i (S_i - S_c),   Kbar = sum_i K_i S_i,  Jbar likewise.
    In the last sum the points' own part goes to pairs of nodes that share a face. What couples them to the slave point is again such a product,
        sum_i -S_i^T H_i S_c - S_c^T H_i S_i + S_c^T H_c S_c = B^T S_c + S_c^T B,   B = 1/2 H_c S_c - sum_i H_i S_i,  H_c = sum H_i,
-   so B and S_c are dim more rows of the factors. */
+   so B and S_c are dim more rows of the factors. The rows of many slave points over the same nodes stand below each other: one product, which writes the
+   large M once, serves them all. */
 #include "fitmap.h"
 #include "fitkernel.h"
 #include "symmetricproduct.h"
@@ -18,11 +19,12 @@ typedef struct {
   const double *S, *sign;
 } FitRun;
 
-/* The factors over nodes */
+/* The factors of one slave point over nodes */
 typedef struct {
   Lanes  *rows;  /* [stride + dim][vectors of a row of FitFactors]: by node and component; the last dim are those of left out nodes */
   double *K, *J; /* [terms + dim][stride] */
   int     stride;
+  double  factor; /* of this slave point in the sum; K carries it */
 } FitNodal;
 
 static int SameNodes(const FitMap *map, int a, int b)
@@ -97,7 +99,7 @@ LANES_INLINE void TurnBack(const int terms, const int vectors, FitNodal *nodal)
       for (int k = 0; k < LANES; k++) {
         const int term = v * LANES + k;
 
-        if (term < terms) *(Lanes *)(nodal->K + term * nodal->stride + i) = square[k];
+        if (term < terms) *(Lanes *)(nodal->K + term * nodal->stride + i) = nodal->factor * square[k];
         if (term >= terms && term < 2 * terms) *(Lanes *)(nodal->J + (term - terms) * nodal->stride + i) = square[k];
       }
     }
@@ -124,13 +126,13 @@ LANES_INLINE int HessianEntry(const int c, const int d)
   return c > d ? c * (c + 1) / 2 + d : d * (d + 1) / 2 + c;
 }
 
-/* Adds factor times the run's share of H_i S_i to B, the last dim rows of K. */
-LANES_INLINE void AddCoupling(const int dim, const int terms, const FitFactors *factors, const FitRun *run, double factor, FitNodal *nodal)
+/* Adds `share` times the run's part of H_i S_i to B, the last dim rows of K. */
+LANES_INLINE void AddCoupling(const int dim, const int terms, const FitFactors *factors, const FitRun *run, double share, FitNodal *nodal)
 {
   const int vectors = HessianStride(dim) / LANES;
   double    sign[3];
 
-  for (int c = 0; c < dim; c++) sign[c] = factor * run->sign[c];
+  for (int c = 0; c < dim; c++) sign[c] = nodal->factor * share * run->sign[c];
   for (int k = 0; k < run->entries; k++) {
     Lanes               sum[FIT_HESSIAN];
     const double *const h = (const double *)sum;
@@ -163,13 +165,13 @@ LANES_INLINE void AddBlock(const int dim, const double *h, long size, double *bl
 }
 
 /* Adds the points' own H of a run to each pair of its nodes, and to its mirror image in the same order: M stays symmetric to the last bit. */
-LANES_INLINE void AddPairs(const int dim, const FitFactors *factors, const FitRun *run, long size, double *M)
+LANES_INLINE void AddPairs(const int dim, const FitFactors *factors, const FitRun *run, double factor, long size, double *M)
 {
   const int vectors           = HessianStride(dim) / LANES;
   double    sign[FIT_HESSIAN] = {0};
 
   for (int c = 0; c < dim; c++) {
-    for (int d = 0; d <= c; d++) sign[HessianEntry(c, d)] = run->sign[c] * run->sign[d];
+    for (int d = 0; d <= c; d++) sign[HessianEntry(c, d)] = factor * run->sign[c] * run->sign[d];
   }
   for (int k = 0; k < run->entries; k++) {
     const long i = (long)run->node[k] * dim;
@@ -187,14 +189,13 @@ LANES_INLINE void AddPairs(const int dim, const FitFactors *factors, const FitRu
   }
 }
 
-LANES_INLINE void Second(const int dim, const int terms, const FitFactors *factors, const FitMap *map, double *workspace, double *M)
+LANES_INLINE void Second(const int dim, const int terms, double factor, const FitFactors *factors, const FitMap *map, FitMapSum *sum)
 {
-  const int    vectors = FactorStride(terms) / LANES, size = map->n_nodes * dim, rows = 1 + factors->n;
+  const int    vectors = FactorStride(terms) / LANES, size = sum->n_nodes * dim, rows = 1 + factors->n;
   const FitRun slave = NextRun(map, rows, 0);
-  FitNodal     nodal = {.rows = (Lanes *)(((uintptr_t)workspace + ALIGNMENT - 1) / ALIGNMENT * ALIGNMENT), .stride = SymmetricProductStride(size)};
+  const long   first = (long)sum->depth * sum->stride;
+  FitNodal     nodal = {.rows = (Lanes *)sum->rows, .K = sum->K + first, .J = sum->J + first, .stride = sum->stride, .factor = factor};
 
-  nodal.K = (double *)(nodal.rows + (nodal.stride + dim) * vectors);
-  nodal.J = nodal.K + (terms + dim) * nodal.stride;
   memset(nodal.rows, 0, (size_t)(nodal.stride + dim) * vectors * sizeof(Lanes));
   memset(nodal.K + terms * nodal.stride, 0, (size_t)dim * nodal.stride * sizeof(double));
   memset(nodal.J + terms * nodal.stride, 0, (size_t)dim * nodal.stride * sizeof(double));
@@ -205,13 +206,10 @@ LANES_INLINE void Second(const int dim, const int terms, const FitFactors *facto
     run = NextRun(map, rows, run.end);
     AddRows(dim, vectors, factors, &run, &nodal);
     AddCoupling(dim, terms, factors, &run, -1, &nodal);
+    AddPairs(dim, factors, &run, factor, size, sum->M);
   }
   TurnBack(terms, vectors, &nodal);
-  SymmetricProduct(size, terms + dim, nodal.stride, nodal.K, nodal.J, M);
-  for (FitRun run = slave; run.end < rows;) {
-    run = NextRun(map, rows, run.end);
-    AddPairs(dim, factors, &run, size, M);
-  }
+  sum->depth += terms + dim;
 }
 
 LANES_INLINE void First(const int dim, int n, const double *N, const FitMap *map, double *nodal)
@@ -227,14 +225,14 @@ LANES_INLINE void First(const int dim, int n, const double *N, const FitMap *map
   }
 }
 
-/* FitMapWorkspace - doubles of workspace for FitMapSecond(). Not collective.
+/* FitMapWorkspace - doubles of workspace for a sum of second variations. Not collective.
 
-   Input: dim, degree - of the fit; n_nodes - of the map */
-long FitMapWorkspace(int dim, int degree, int n_nodes)
+   Input: dim, degree - the highest of the fits; n_nodes - of the maps; points - how many are added at most */
+long FitMapWorkspace(int dim, int degree, int n_nodes, int points)
 {
-  const int terms = FitTerms(dim, degree);
+  const int terms = FitTerms(dim, degree), stride = SymmetricProductStride(n_nodes * dim);
 
-  return ALIGNMENT / (long)sizeof(double) + (long)SymmetricProductStride(n_nodes * dim) * (FactorStride(terms) + 2 * (terms + dim)) + dim * FactorStride(terms);
+  return ALIGNMENT / (long)sizeof(double) + (long)(stride + dim) * FactorStride(terms) + 2L * points * (terms + dim) * stride;
 }
 
 /* FitMapFirst - the first variation over nodes, S^T N. Not collective.
@@ -250,17 +248,36 @@ void FitMapFirst(int dim, int n, const double *N, const FitMap *map, double *nod
     First(2, n, N, map, nodal);
 }
 
-/* FitMapSecond - the second variation over nodes, S^T M S, without M. Not collective.
+/* FitMapBegin - begins a sum of second variations over the same nodes. Not collective.
 
-   Input: factors - of M, as FitEvaluate() leaves them in its workspace; map; workspace - FitMapWorkspace() doubles of any contents
-   Output: M[n_nodes*dim][n_nodes*dim] - symmetric to the last bit
+   Input: dim, degree, n_nodes, points - as of FitMapWorkspace(); workspace - that many doubles of any contents, to be left alone until FitMapEnd();
+   M[n_nodes*dim][n_nodes*dim] - symmetric, to be added to */
+void FitMapBegin(FitMapSum *sum, int dim, int degree, int n_nodes, int points, double *workspace, double *M)
+{
+  const int terms = FitTerms(dim, degree), stride = SymmetricProductStride(n_nodes * dim);
+
+  *sum      = (FitMapSum){.dim = dim, .n_nodes = n_nodes, .stride = stride, .M = M};
+  sum->rows = (double *)(((uintptr_t)workspace + ALIGNMENT - 1) / ALIGNMENT * ALIGNMENT);
+  sum->K    = sum->rows + (stride + dim) * FactorStride(terms);
+  sum->J    = sum->K + (long)points * (terms + dim) * stride;
+}
+
+/* FitMapAdd - adds factor times the second variation over nodes, S^T M S, of one slave point, without M. Not collective.
+
+   Input: factors - of M, as FitEvaluate() leaves them in its workspace; map - nodes below the sum's n_nodes
 
    Source: Chamoret et al. 2004, eqs 13 and 14, for points that are combinations of nodes. */
-void FitMapSecond(const FitFactors *factors, const FitMap *map, double *workspace, double *M)
+void FitMapAdd(FitMapSum *sum, double factor, const FitFactors *factors, const FitMap *map)
 {
-#define SECOND(dim, degree, terms)                \
-  Second(dim, terms, factors, map, workspace, M); \
+#define SECOND(dim, degree, terms)               \
+  Second(dim, terms, factor, factors, map, sum); \
   return
   INSTANTIATE(factors, SECOND)
 #undef SECOND
+}
+
+/* FitMapEnd - M holds the sum, symmetric to the last bit. Not collective. */
+void FitMapEnd(FitMapSum *sum)
+{
+  SymmetricProductAdd(sum->n_nodes * sum->dim, sum->depth, sum->stride, sum->K, sum->J, sum->M);
 }

@@ -372,6 +372,12 @@ void ListsRelative(ContactLists lists, PetscInt q, PetscInt p, PetscReal *x)
     x[d] = (lists->point_X[p * dim + d] - lists->slave_X[q * dim + d]) + (lists->point_u[p * dim + d] - lists->slave_u[q * dim + d]);
 }
 
+/* ListsNearestSize - size (length) of the facet nearest to slave point q when the lists were made, 0 without any. Not collective. */
+PetscReal ListsNearestSize(ContactLists lists, PetscInt q)
+{
+  return lists->nearest[q] < 0 ? 0 : lists->facet_size[lists->facet_ptr[q] + lists->nearest[q]];
+}
+
 /* ListsCentre - mean of the fit points of slave point q in the tangents of its frame, relative to it, in the present position (lengths).
 
    Not collective. centre[2]: dim - 1 entries are used. */

@@ -25,23 +25,25 @@ LANES_INLINE void AddOuterProducts(const int vectors, int depth, int stride, con
 }
 
 /* A square above the diagonal that lies wholly within M, and its image */
-LANES_INLINE void StoreInside(int n, int row, int column, Lanes square[LANES], double *M)
+LANES_INLINE void StoreInside(const int add, int n, int row, int column, Lanes square[LANES], double *M)
 {
+  for (int r = 0; add && r < LANES; r++) square[r] += *(LanesInArray *)(M + (long)(row + r) * n + column);
   for (int r = 0; r < LANES; r++) *(LanesInArray *)(M + (long)(row + r) * n + column) = square[r];
   Transpose(square);
   for (int r = 0; r < LANES; r++) *(LanesInArray *)(M + (long)(column + r) * n + row) = square[r];
 }
 
 /* A square on the diagonal or across the end of M */
-LANES_INLINE void StorePart(int n, int row, int column, Lanes square[LANES], double *M)
+LANES_INLINE void StorePart(const int add, int n, int row, int column, Lanes square[LANES], double *M)
 {
   for (int r = row; r < row + LANES && r < n; r++) {
-    for (int c = column < r ? r : column; c < column + LANES && c < n; c++) M[(long)r * n + c] = M[(long)c * n + r] = square[r - row][c - column];
+    for (int c = column < r ? r : column; c < column + LANES && c < n; c++)
+      M[(long)r * n + c] = M[(long)c * n + r] = (add ? M[(long)r * n + c] : 0) + square[r - row][c - column];
   }
 }
 
 /* The tile at (row, column), a whole number of vectors wide, and its image */
-LANES_INLINE void ProductTile(const int vectors, int n, int depth, int stride, const double *K, const double *J, int row, int column, double *M)
+LANES_INLINE void ProductTile(const int add, const int vectors, int n, int depth, int stride, const double *K, const double *J, int row, int column, double *M)
 {
   Lanes tile[TILE_ROWS][PRODUCT_VECTORS] = {{{0}}};
 
@@ -53,18 +55,13 @@ LANES_INLINE void ProductTile(const int vectors, int n, int depth, int stride, c
 
     for (int r = 0; r < LANES; r++) square[r] = tile[r][c];
     if (first > row && first + LANES <= n)
-      StoreInside(n, row, first, square, M);
+      StoreInside(add, n, row, first, square, M);
     else
-      StorePart(n, row, first, square, M);
+      StorePart(add, n, row, first, square, M);
   }
 }
 
-/* SymmetricProduct - K^T J + J^T K. Not collective.
-
-   Input: n - rows of the product; depth - rows of the factors; stride - length of a row, at least SymmetricProductStride(n) and a whole
-   number of vectors; K, J - [depth][stride], aligned to a vector
-   Output: M - [n][n], symmetric to the last bit */
-void SymmetricProduct(int n, int depth, int stride, const double *K, const double *J, double *M)
+LANES_INLINE void Product(const int add, int n, int depth, int stride, const double *K, const double *J, double *M)
 {
   for (int column = 0; column < n; column += TILE_COLUMNS) {
     const int end = LanesGroups(n) * LANES < column + TILE_COLUMNS ? LanesGroups(n) * LANES : column + TILE_COLUMNS;
@@ -73,10 +70,26 @@ void SymmetricProduct(int n, int depth, int stride, const double *K, const doubl
       const int first = row < column ? column : row;
 
       switch ((end - first) / LANES) {
-      case 1: ProductTile(1, n, depth, stride, K, J, row, first, M); break;
-      case 2: ProductTile(2, n, depth, stride, K, J, row, first, M); break;
-      case 3: ProductTile(3, n, depth, stride, K, J, row, first, M); break;
+      case 1: ProductTile(add, 1, n, depth, stride, K, J, row, first, M); break;
+      case 2: ProductTile(add, 2, n, depth, stride, K, J, row, first, M); break;
+      case 3: ProductTile(add, 3, n, depth, stride, K, J, row, first, M); break;
       }
     }
   }
+}
+
+/* SymmetricProduct - M = K^T J + J^T K. Not collective.
+
+   Input: n - rows of the product; depth - rows of the factors; stride - length of a row, at least SymmetricProductStride(n) and a whole
+   number of vectors; K, J - [depth][stride], aligned to a vector
+   Output: M - [n][n], symmetric to the last bit */
+void SymmetricProduct(int n, int depth, int stride, const double *K, const double *J, double *M)
+{
+  Product(0, n, depth, stride, K, J, M);
+}
+
+/* SymmetricProductAdd - M += K^T J + J^T K. Not collective. As SymmetricProduct(), of an M that is symmetric before. */
+void SymmetricProductAdd(int n, int depth, int stride, const double *K, const double *J, double *M)
+{
+  Product(1, n, depth, stride, K, J, M);
 }

@@ -125,13 +125,18 @@ static double nodal[MAX_SIZE], M[(long)MAX_SIZE * MAX_SIZE], *scratch;
 static void Do(Part part, Slave *s)
 {
   const int terms = FitTerms(s->problem.dim, s->problem.degree), size = s->map.map.n_nodes * s->problem.dim, stride = SymmetricProductStride(size);
+  FitMapSum sum;
 
   s->result.factors = part == FACTORS || part == ALL ? &s->factors : NULL;
   if (part <= FACTORS || part == ALL) {
     if (!FitEvaluate(&s->problem, part == GAP ? FIT_GAP : part == GAP_N ? FIT_FIRST_VARIATION : FIT_SECOND_VARIATION, s->workspace, &s->result)) exit(1);
   }
   if (part == NODAL_N || part == ALL) FitMapFirst(s->problem.dim, s->result.n, s->N, &s->map.map, nodal);
-  if (part == NODAL_M || part == ALL) FitMapSecond(&s->factors, &s->map.map, scratch, M);
+  if (part == NODAL_M || part == ALL) {
+    FitMapBegin(&sum, s->problem.dim, s->problem.degree, s->map.map.n_nodes, 1, scratch, M);
+    FitMapAdd(&sum, 1, &s->factors, &s->map.map);
+    FitMapEnd(&sum);
+  }
   if (part == PRODUCT) SymmetricProduct(size, terms, stride, scratch, scratch + terms * stride, M);
 }
 
@@ -197,7 +202,7 @@ int main(void)
     {"quad9,4", {2, 4, 2, 2.25, 3}}
   };
 
-  scratch = aligned_alloc(64, (FitMapWorkspace(3, 4, MAX_NODES) + 7) / 8 * 64);
+  scratch = aligned_alloc(64, (FitMapWorkspace(3, 4, MAX_NODES, 1) + 7) / 8 * 64);
   if (!scratch) return 1;
   puts("# diffuse fit over nodes, by element and degree: microseconds per slave quadrature point");
   for (int i = 0; i < (int)(sizeof(cases) / sizeof(cases[0])); i++) Bench(cases[i].row, &cases[i].kind);

@@ -8,7 +8,7 @@
 
 enum { ROWS = 6 }; /* of each rank */
 
-/* Each rank adds one block over two of its own dofs, one of the next rank, and one entry without a dof. */
+/* Each rank adds two blocks, one a vector's product with itself, over two of its own dofs, one of the next rank, and one entry without a dof. */
 static void AddBlock(BlockMatrix blocks, PetscReal scale)
 {
   PetscInt  *entry;
@@ -19,6 +19,11 @@ static void AddBlock(BlockMatrix blocks, PetscReal scale)
   for (PetscInt i = 0; i < 4; i++) {
     entry[i] = i;
     for (PetscInt j = 0; j < 4; j++) value[4 * i + j] = scale * (1 + i + j + 2 * (i == j));
+  }
+  assert_int_equal(BlockMatrixAddOuter(blocks, 0, 4, &entry, &value), 0);
+  for (PetscInt i = 0; i < 4; i++) {
+    entry[i] = i;
+    value[i] = scale + i;
   }
 }
 

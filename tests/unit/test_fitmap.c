@@ -84,13 +84,14 @@ static void Reference(const Case *c, const FitMap *map, double *N, double *M)
   }
 }
 
-/* N and M over nodes by the kernel; M symmetric to the last bit, nothing written past the ends */
+/* N and M over nodes by the kernel, M as a sum of shares; M symmetric to the last bit, nothing written past the ends */
 static void Mapped(Case *c, const FitMap *map, double *N, double *M)
 {
   static double scratch[MAP_WORK];
-  const long    length = FitWorkspace(c->in.dim, c->in.degree, c->in.n), need = FitMapWorkspace(c->in.dim, c->in.degree, map->n_nodes);
+  const long    length = FitWorkspace(c->in.dim, c->in.degree, c->in.n), need = FitMapWorkspace(c->in.dim, c->in.degree, map->n_nodes, 2);
   const int     size = c->in.dim * map->n_nodes;
   FitFactors    factors;
+  FitMapSum     sum;
   FitResult     out = {.points = c->points, .N = c->N, .factors = &factors};
 
   assert_true(1 + need < MAP_WORK && 1 + length < WORK);
@@ -100,7 +101,11 @@ static void Mapped(Case *c, const FitMap *map, double *N, double *M)
   assert_true(FitEvaluate(&c->in, FIT_SECOND_VARIATION, work + 1, &out));
   assert_int_equal(factors.n, out.n);
   FitMapFirst(c->in.dim, out.n, c->N, map, N);
-  FitMapSecond(&factors, map, scratch + 1, M);
+  memset(M, 0, (size_t)size * size * sizeof(double));
+  FitMapBegin(&sum, c->in.dim, c->in.degree, map->n_nodes, 2, scratch + 1, M);
+  FitMapAdd(&sum, -2, &factors, map);
+  FitMapAdd(&sum, 3, &factors, map);
+  FitMapEnd(&sum);
   assert_true(work[1 + length] == 7 && scratch[1 + need] == 7 && N[size] == 7 && M[(long)size * size] == 7);
   for (int i = 0; i < size; i++) {
     for (int j = 0; j < i; j++) assert_true(M[i * size + j] == M[j * size + i]);
