@@ -1,8 +1,8 @@
 /* burnish: scene -> mesh -> model -> load stepper -> results. */
 #include <petsctime.h>
 #include "commandline.h"
-#include "contactreport.h"
 #include "errorlog.h"
+#include "precheck.h"
 #include "refusal.h"
 #include "results.h"
 #include "stepper.h"
@@ -98,9 +98,12 @@ static PetscErrorCode RunScene(const CommandLine *command, int *status)
     PetscCall(MeshCheckQuality(mesh, scene));
     PetscCall(ModelCreate(scene, mesh, &model));
     PetscCall(ProbesCreate(model, scene, &probes));
+    PetscCall(ModelPlace(model));
+    TimingEnd(TIMING_SETUP);
+    PetscCall(PrecheckModel(model, command->mode == COMMAND_CHECK ? PETSC_TRUE : PETSC_FALSE, stdout));
+    TimingBegin(TIMING_SETUP);
     PetscCall(ModelSetUp(model));
     TimingEnd(TIMING_SETUP);
-    if (command->mode == COMMAND_CHECK) PetscCall(ContactReport(model->contact, stdout));
     if (command->mode == COMMAND_RUN) PetscCall(RunModel(model, probes, scene, command, directory, start, mesh_s, status));
     PetscCall(ProbesDestroy(&probes));
     PetscCall(ModelDestroy(&model));
