@@ -53,6 +53,29 @@ typedef struct {
   PetscReal facet_error;      /* largest distance between facets and fit at a slave point (a length) */
 } ContactFits;
 
+/* A slave node in a message: gmsh's tag and reference coordinates */
+typedef struct {
+  PetscInt  tag;
+  PetscReal X[3];
+} ContactPlace;
+
+/* How the surfaces of a pair lie before any load; lengths and areas, what is below round-off is 0 */
+typedef struct {
+  PetscInt     nodes, near;          /* slave nodes, those with a master near */
+  PetscInt     overlapping, refused; /* of the near ones; refused: deeper than the facets' own shape explains */
+  PetscReal    least, most;          /* gaps */
+  PetscReal    area;                 /* of the overlapping nodes */
+  ContactPlace deepest;
+} ContactGaps;
+
+/* How well the surfaces of a pair are kept apart; lengths */
+typedef struct {
+  PetscInt     nodes; /* in contact */
+  PetscReal    max_penetration, max_penetration_over_h;
+  PetscReal    sagitta; /* of first-order facets of the master over the curved surface that they stand for, mean over the slave points near it */
+  ContactPlace deepest; /* where the largest penetration is */
+} ContactQuality;
+
 typedef struct _n_Contact *Contact;
 
 PetscErrorCode ContactCreate(Mesh, Scene, Elasticity, Loads, Contact *);
@@ -112,6 +135,8 @@ PetscErrorCode ContactGapAt(Contact, int pair, const PetscReal *u, PetscReal t, 
 PetscErrorCode ContactPairPenalty(Contact, int pair, PetscReal *least, PetscReal *most);
 PetscErrorCode ContactPairSurface(Contact, int pair, const MeshGroup **slave, PetscReal *mean_face_size);
 PetscErrorCode ContactPairFits(Contact, int pair, ContactFits *);
-PetscErrorCode ContactPairGaps(Contact, int pair, PetscReal *least, PetscReal *most);
+/* contactquality.c: the present state of a pair, for reports. Collective. */
+PetscErrorCode ContactPairGaps(Contact, int pair, ContactGaps *);
+PetscErrorCode ContactPairQuality(Contact, int pair, ContactQuality *);
 const char    *ContactPairText(Contact, int pair); /* what touches what, and how; valid until the next call */
 MPI_Comm       ContactComm(Contact);

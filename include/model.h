@@ -1,6 +1,6 @@
 /* The discrete problem: elasticity, loads and contact behind SNES callbacks, and the state that a step accepts or takes back.
 
-   ModelSetUp() once, then ModelSolve() finds equilibrium at a load parameter; ModelAccept() makes it the state that ModelRestore() returns
+   ModelPlace() and ModelSetUp() once, then ModelSolve() finds equilibrium at a load parameter; ModelAccept() makes it the state that ModelRestore() returns
    to. The model knows nothing of step sizes. */
 #pragma once
 #include "contact.h"
@@ -54,7 +54,11 @@ typedef struct _n_Model {
 
 PetscErrorCode ModelCreate(Scene, Mesh, Model *);
 PetscErrorCode ModelDestroy(Model *);
-/* First contact lists, refusal of initial overlaps, the state at t = 0 accepted. Collective. */
+/* First contact lists and gaps, the state at t = 0. Collective. */
+PetscErrorCode ModelPlace(Model);
+/* The tangent of the present state into A. Collective. */
+PetscErrorCode ModelAssemble(Model);
+/* Refusal of initial overlaps, the state at t = 0 accepted. Collective. */
 PetscErrorCode ModelSetUp(Model);
 PetscErrorCode ModelSolve(Model, PetscReal t, SolveReport *);
 /* Where one linear solve with the tangent of the accepted state, whose contact stays as it is, leads at t: u[n_nodes*dim], the state is not changed.

@@ -270,21 +270,3 @@ const char *ContactPairText(Contact contact, int p)
              pair->fit.integral ? pair->fit.support / pair->master->order : pair->fit.support, pair->fit.exponent);
   return text;
 }
-
-/* ContactPairGaps - smallest and largest gap of the slave nodes near the master (lengths); 0, 0 where none is near. Collective. */
-PetscErrorCode ContactPairGaps(Contact contact, int p, PetscReal *least, PetscReal *most)
-{
-  const ContactPair *pair     = &contact->pairs[p];
-  PetscReal          range[2] = {PETSC_MIN_REAL, PETSC_MIN_REAL};
-
-  PetscFunctionBeginUser;
-  for (PetscInt c = 0; c < pair->n; c++) {
-    if (PetscIsNanReal(pair->now.gap[c])) continue;
-    range[0] = PetscMax(range[0], -pair->now.gap[c]);
-    range[1] = PetscMax(range[1], pair->now.gap[c]);
-  }
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, range, 2, MPIU_REAL, MPI_MAX, contact->mesh->comm));
-  *least = range[1] > PETSC_MIN_REAL ? -range[0] : 0;
-  *most  = range[1] > PETSC_MIN_REAL ? range[1] : 0;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}

@@ -1,46 +1,78 @@
 #include "contactreport.h"
 
-static PetscErrorCode ReportFits(MPI_Comm comm, const ContactFits *fits, FILE *file)
+/* Errors below this part of a face size are round-off. */
+#define REPORT_ROUND_OFF 1e-9
+
+static double Clean(PetscReal value, PetscReal size)
 {
-  PetscFunctionBeginUser;
-  PetscCall(
-    PetscFPrintf(comm, file, "           facet error %.3g, smoothing error %.3g (lengths)\n", (double)fits->facet_error, (double)fits->smoothing_error));
-  PetscCall(PetscFPrintf(comm, file,
-                         "           neighbours %" PetscInt_FMT " to %" PetscInt_FMT ", mean %.1f; smallest pivot %.3g, largest amplification %.3g\n",
-                         fits->neighbours_min, fits->neighbours_max, (double)fits->neighbours_mean, (double)fits->pivot, (double)fits->amplified));
-  PetscCall(PetscFPrintf(comm, file,
-                         "           fits of %" PetscInt_FMT " slave points: plain %" PetscInt_FMT ", wider %" PetscInt_FMT ", degree 2 %" PetscInt_FMT
-                         ", linear %" PetscInt_FMT ", facets %" PetscInt_FMT "\n",
-                         fits->points, fits->plain, fits->wider, fits->degree_2, fits->linear, fits->facets));
-  PetscFunctionReturn(PETSC_SUCCESS);
+  return PetscAbsReal(value) <= REPORT_ROUND_OFF * size ? 0 : (double)value;
 }
 
-static PetscErrorCode ReportWindow(MPI_Comm comm, const SceneContact *scene, FILE *file)
+static void PrintFits(const ContactFits *fits, PetscReal size, FILE *file)
 {
-  PetscFunctionBeginUser;
-  PetscCall(PetscFPrintf(comm, file, "           adjusted %s to penetrations of %.3g to %.3g %s\n",
-                         scene->adjust_converged ? "within the step" : "from step to step", scene->g_min, scene->g_max,
-                         scene->window_in_spacings ? "face sizes of the slave node" : "(lengths)"));
-  PetscFunctionReturn(PETSC_SUCCESS);
+  fprintf(file, "           facet error %.3g, smoothing error %.3g (lengths)\n", Clean(fits->facet_error, size), Clean(fits->smoothing_error, size));
+  fprintf(file, "           neighbours %" PetscInt_FMT " to %" PetscInt_FMT ", mean %.1f; smallest pivot %.3g, largest amplification %.3g\n",
+          fits->neighbours_min, fits->neighbours_max, (double)fits->neighbours_mean, (double)fits->pivot, (double)fits->amplified);
+  fprintf(file,
+          "           fits of %" PetscInt_FMT " slave points: plain %" PetscInt_FMT ", wider %" PetscInt_FMT ", degree 2 %" PetscInt_FMT
+          ", linear %" PetscInt_FMT ", facets %" PetscInt_FMT "\n",
+          fits->points, fits->plain, fits->wider, fits->degree_2, fits->linear, fits->facets);
 }
 
+static void PrintGaps(const ContactGaps *gaps, FILE *file)
+{
+  fprintf(file, "           before any load: %" PetscInt_FMT " of %" PetscInt_FMT " slave nodes near the master", gaps->near, gaps->nodes);
+  if (!gaps->near) {
+    fprintf(file, " (contact must come by motion)\n");
+    return;
+  }
+  fprintf(file, ", gaps %.3g to %.3g, nearest node %" PetscInt_FMT " (%.6g, %.6g, %.6g)\n", (double)gaps->least, (double)gaps->most, gaps->deepest.tag,
+          (double)gaps->deepest.X[0], (double)gaps->deepest.X[1], (double)gaps->deepest.X[2]);
+  if (gaps->overlapping)
+    fprintf(file, "           overlap: %" PetscInt_FMT " nodes, area %.4g; deeper than the facets' own shape explains: %" PetscInt_FMT " nodes\n",
+            gaps->overlapping, (double)gaps->area, gaps->refused);
+}
+
+static void PrintPenalty(const SceneContact *scene, PetscReal penalty, FILE *file)
+{
+  if (scene->penalty_auto)
+    fprintf(file, "           penalty %.6g (force per length and area), automatic times %g\n", (double)penalty, scene->penalty_scale);
+  else
+    fprintf(file, "           penalty %.6g (force per length and area), as given\n", (double)penalty);
+  if (scene->adjust)
+    fprintf(file, "           adjusted %s to penetrations of %.3g to %.3g %s\n", scene->adjust_converged ? "within the step" : "from step to step",
+            scene->g_min, scene->g_max, scene->window_in_spacings ? "face sizes of the slave node" : "(lengths)");
+}
+
+/* ContactReport - one block of lines for each pair: surfaces, penalty, gaps and overlaps, errors of the master's surface, fits.
+
+   Collective; rank 0 prints. In the state before any load. */
 PetscErrorCode ContactReport(Contact contact, FILE *file)
 {
-  const MPI_Comm comm = ContactComm(contact);
-
   PetscFunctionBeginUser;
   for (int p = 0; p < ContactPairs(contact); p++) {
-    PetscReal   least, most, gap[2];
-    ContactFits fits;
+    PetscReal        least, most, size;
+    const MeshGroup *slave;
+    PetscMPIInt      rank;
+    ContactFits      fits;
+    ContactGaps      gaps;
+    ContactQuality   quality;
 
+    PetscCallMPI(MPI_Comm_rank(ContactComm(contact), &rank));
     PetscCall(ContactPairPenalty(contact, p, &least, &most));
-    PetscCall(ContactPairGaps(contact, p, &gap[0], &gap[1]));
+    PetscCall(ContactPairGaps(contact, p, &gaps));
+    PetscCall(ContactPairQuality(contact, p, &quality));
     PetscCall(ContactPairFits(contact, p, &fits));
-    PetscCall(PetscFPrintf(comm, file, "contact  %s: %s\n", ContactPairName(contact, p), ContactPairText(contact, p)));
-    PetscCall(PetscFPrintf(comm, file, "           penalty %.6g (force per length and area); gaps before any load %.3g to %.3g\n", (double)most, (double)gap[0],
-                           (double)gap[1]));
-    if (ContactPairScene(contact, p)->adjust) PetscCall(ReportWindow(comm, ContactPairScene(contact, p), file));
-    if (fits.points) PetscCall(ReportFits(comm, &fits, file));
+    PetscCall(ContactPairSurface(contact, p, &slave, &size));
+    if (rank) continue;
+    fprintf(file, "contact  %s: %s\n", ContactPairName(contact, p), ContactPairText(contact, p));
+    PrintPenalty(ContactPairScene(contact, p), most, file);
+    PrintGaps(&gaps, file);
+    if (fits.points)
+      PrintFits(&fits, size, file);
+    else if (quality.sagitta > 0)
+      fprintf(file, "           facet error about %.3g (length; sagitta of the master's facets over the curve that their normals turn along)\n",
+              (double)quality.sagitta);
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

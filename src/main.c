@@ -2,9 +2,9 @@
 #include <petsctime.h>
 #include "checkpoint.h"
 #include "commandline.h"
-#include "contactreport.h"
 #include "errorlog.h"
 #include "interruption.h"
+#include "precheck.h"
 #include "refusal.h"
 #include "results.h"
 #include "stepper.h"
@@ -154,9 +154,14 @@ static PetscErrorCode RunScene(const CommandLine *command, int *status)
     PetscCall(MeshCheckQuality(mesh, scene));
     PetscCall(ModelCreate(scene, mesh, &model));
     PetscCall(ProbesCreate(model, scene, &probes));
-    if (!command->restart) PetscCall(ModelSetUp(model));
+    if (!command->restart) {
+      PetscCall(ModelPlace(model));
+      TimingEnd(TIMING_SETUP);
+      PetscCall(PrecheckModel(model, command->mode == COMMAND_CHECK ? PETSC_TRUE : PETSC_FALSE, stdout));
+      TimingBegin(TIMING_SETUP);
+      PetscCall(ModelSetUp(model));
+    }
     TimingEnd(TIMING_SETUP);
-    if (command->mode == COMMAND_CHECK) PetscCall(ContactReport(model->contact, stdout));
     if (command->mode == COMMAND_RUN) PetscCall(RunModel(model, probes, scene, checkpoint, command, directory, start, mesh_s, status));
     PetscCall(ProbesDestroy(&probes));
     PetscCall(ModelDestroy(&model));

@@ -430,20 +430,34 @@ PetscErrorCode ModelDestroy(Model *model)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ModelSetUp - contact lists at t = 0 and the state there as the first accepted one.
-
-   Collective. Refuses (exit 1) initial overlaps, ContactTakeOverlap(). */
-PetscErrorCode ModelSetUp(Model model)
+/* ModelPlace - displacements, contact lists and gaps at t = 0, as they are: to be looked at before ModelSetUp() judges them. Collective. */
+PetscErrorCode ModelPlace(Model model)
 {
   PetscBool ok;
 
   PetscFunctionBeginUser;
   PetscCall(LoadsPrescribe(model->loads, 0, model->u));
-  if (model->contact) {
-    PetscCall(ContactGather(model->contact, model->u, 0, 0, 0));
-    PetscCall(ModelResidual(model, model->u, 0, 0, &ok));
-    PetscCall(ContactTakeOverlap(model->contact));
-  }
+  if (!model->contact) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(ContactGather(model->contact, model->u, 0, 0, 0));
+  PetscCall(ModelResidual(model, model->u, 0, 0, &ok));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* ModelAssemble - the tangent of the present state into model->A: to see its pattern and its cost without a solve. Collective. */
+PetscErrorCode ModelAssemble(Model model)
+{
+  PetscFunctionBeginUser;
+  PetscCall(ModelTangent(model, model->u, model->t));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* ModelSetUp - the state that ModelPlace() made as the first accepted one.
+
+   Collective. Refuses (exit 1) initial overlaps, ContactTakeOverlap(). */
+PetscErrorCode ModelSetUp(Model model)
+{
+  PetscFunctionBeginUser;
+  if (model->contact) PetscCall(ContactTakeOverlap(model->contact));
   PetscCall(ModelAccept(model));
   model->work->rate = 0;
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -3,6 +3,7 @@
 #include "columns.h"
 #include "commandline.h"
 #include "fields.h"
+#include "precheck.h"
 #include "refusal.h"
 #include "summary.h"
 #include "timing.h"
@@ -402,8 +403,9 @@ static PetscErrorCode ResultsPrintHead(Results results)
   }
   PetscCall(ResultsPrintSolver(results));
   if (!results->quiet) PetscCall(MeshReport(results->model->mesh, results->scene, stdout));
+  if (results->talks) { printf("dofs     %lld free\neffects  %s\n", (long long)dofs, *effects ? effects : "none"); }
+  if (!results->quiet) PetscCall(PrecheckMotions(results->model, stdout));
   if (results->talks) {
-    printf("dofs     %lld free\neffects  %s\n", (long long)dofs, *effects ? effects : "none");
     printf("\n%5s %9s %9s %10s %10s %5s %5s %8s %12s %8s %8s\n", "step", "t", "dt", "iterations", "in contact", "in", "out", "beta", "penetration", "spent",
            "left");
     fflush(stdout);
