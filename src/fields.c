@@ -32,26 +32,20 @@ struct _n_Fields {
   Xdmf       xdmf; /* what they show */
 };
 
-/* What output.fields may ask for, and what ParaView sees of it. Stress goes there by components: readers do not agree on the order of a
-   symmetric tensor. */
+/* What output.fields may ask for, and what ParaView sees of it */
 enum { SHOW_DISPLACEMENT, SHOW_STRESS, SHOW_CONTACT };
 static const struct {
   int       kind;
   XdmfArray array;
 } shown[] = {
-  {SHOW_DISPLACEMENT, {"displacement", "displacement", 3, -1}},
-  {SHOW_STRESS,       {"von_mises", "von_mises", 1, -1}      },
-  {SHOW_STRESS,       {"stress_xx", "stress", 6, 0}          },
-  {SHOW_STRESS,       {"stress_yy", "stress", 6, 1}          },
-  {SHOW_STRESS,       {"stress_zz", "stress", 6, 2}          },
-  {SHOW_STRESS,       {"stress_xy", "stress", 6, 3}          },
-  {SHOW_STRESS,       {"stress_yz", "stress", 6, 4}          },
-  {SHOW_STRESS,       {"stress_xz", "stress", 6, 5}          },
-  {SHOW_CONTACT,      {"gap", "gap", 1, -1}                  },
-  {SHOW_CONTACT,      {"penetration", "penetration", 1, -1}  },
-  {SHOW_CONTACT,      {"penalty", "penalty", 1, -1}          },
-  {SHOW_CONTACT,      {"pressure", "pressure", 1, -1}        },
-  {SHOW_CONTACT,      {"normal", "normal", 3, -1}            },
+  {SHOW_DISPLACEMENT, {"displacement", 3}},
+  {SHOW_STRESS,       {"von_mises", 1}   },
+  {SHOW_STRESS,       {"stress", 6}      },
+  {SHOW_CONTACT,      {"gap", 1}         },
+  {SHOW_CONTACT,      {"penetration", 1} },
+  {SHOW_CONTACT,      {"penalty", 1}     },
+  {SHOW_CONTACT,      {"pressure", 1}    },
+  {SHOW_CONTACT,      {"normal", 3}      },
 };
 
 /* Contact values of one node: columns of the nodal array that FieldsWriteContact() forms */
@@ -230,7 +224,6 @@ static PetscErrorCode FieldsNumberCells(Fields fields, PetscInt *row)
     before[k] += *cells;
     *cells += count[k];
   }
-  for (int b = 0; b < xdmf->n_blocks; b++) xdmf->blocks[b].total = fields->cells[xdmf->blocks[b].type];
   for (PetscInt c = 0; c < by_id.n; c++) rows[c] = before[keys[c]]++;
   PetscCall(PetscSFBcastBegin(by_id.sf, MPIU_INT, rows, row, MPI_REPLACE));
   PetscCall(PetscSFBcastEnd(by_id.sf, MPIU_INT, rows, row, MPI_REPLACE));
@@ -240,29 +233,28 @@ static PetscErrorCode FieldsNumberCells(Fields fields, PetscInt *row)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode FieldsWriteCellsOfType(Fields fields, hid_t file, ElementType type, const PetscInt *cell_row)
+/* Rows first .. first+total-1 of the cells of a type as a table of their nodes at `path` and, where asked for, one of their bodies at `body_path` */
+static PetscErrorCode FieldsWriteCellTable(Fields fields, hid_t file, ElementType type, const PetscInt *cell_row, PetscInt first, PetscInt total,
+                                           const char *path, const char *body_path)
 {
   const Mesh     mesh    = fields->model->mesh;
   const Element *element = ElementGet(type);
   const int      nodes   = element->nodes;
   int64_t       *ids, *body;
   PetscInt      *row, n = 0;
-  char           path[PATH_SIZE];
   Rows           rows;
 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc3(mesh->n_cells * nodes, &ids, mesh->n_cells, &body, mesh->n_cells, &row));
   for (PetscInt c = 0; c < mesh->n_cells; c++) {
-    if (mesh->cell_type[c] != type) continue;
+    if (mesh->cell_type[c] != type || cell_row[c] < first || cell_row[c] >= first + total) continue;
     for (int i = 0; i < nodes; i++) ids[n * nodes + i] = mesh->node_id[mesh->cell_nodes[mesh->cell_ptr[c] + element->xdmf_order[i]]];
     body[n]  = mesh->cell_body[c];
-    row[n++] = cell_row[c];
+    row[n++] = cell_row[c] - first;
   }
-  PetscCall(RowsCreate(mesh->comm, fields->cells[type], n, row, &rows));
-  PetscCall(PetscSNPrintf(path, sizeof(path), "/mesh/cells_%s", element->name));
+  PetscCall(RowsCreate(mesh->comm, total, n, row, &rows));
   PetscCall(FileWriteIntegers(file, path, &rows, nodes, ids));
-  PetscCall(PetscSNPrintf(path, sizeof(path), "/mesh/cells_%s_body", element->name));
-  PetscCall(FileWriteIntegers(file, path, &rows, 1, body));
+  if (body_path) PetscCall(FileWriteIntegers(file, body_path, &rows, 1, body));
   PetscCall(PetscSFDestroy(&rows.sf));
   PetscCall(PetscFree3(ids, body, row));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -270,13 +262,23 @@ static PetscErrorCode FieldsWriteCellsOfType(Fields fields, hid_t file, ElementT
 
 static PetscErrorCode FieldsWriteCells(Fields fields, hid_t file)
 {
-  PetscInt *row;
+  const Xdmf *xdmf = &fields->xdmf;
+  PetscInt   *row;
+  char        path[PATH_SIZE], body_path[PATH_SIZE];
 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(fields->model->mesh->n_cells, &row));
   PetscCall(FieldsNumberCells(fields, row));
-  for (int type = 0; type < ELEMENT_TYPES; type++)
-    if (fields->cells[type]) PetscCall(FieldsWriteCellsOfType(fields, file, (ElementType)type, row));
+  for (int type = 0; type < ELEMENT_TYPES; type++) {
+    if (!fields->cells[type]) continue;
+    PetscCall(PetscSNPrintf(path, sizeof(path), "/mesh/cells_%s", ElementGet((ElementType)type)->name));
+    PetscCall(PetscSNPrintf(body_path, sizeof(body_path), "%s_body", path));
+    PetscCall(FieldsWriteCellTable(fields, file, (ElementType)type, row, 0, fields->cells[type], path, body_path));
+  }
+  for (int b = 0; b < xdmf->n_blocks; b++) {
+    PetscCall(PetscSNPrintf(path, sizeof(path), "/mesh/block_%d", b));
+    PetscCall(FieldsWriteCellTable(fields, file, xdmf->blocks[b].type, row, xdmf->blocks[b].first, xdmf->blocks[b].n, path, NULL));
+  }
   PetscCall(PetscFree(row));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
