@@ -11,7 +11,8 @@
      /steps/0000             one group per written step, attributes t and step
        displacement          N x 3 (third component 0 in 2D)
        stress, von_mises     N x 6 (xx yy zz xy yz xz, Cauchy), N
-       contact/PAIR/         gap, penetration, penalty, pressure: n; normal: n x 3; rows as /contact/PAIR/nodes
+       contact/PAIR/         gap, penetration, penalty, pressure: n; normal: n x 3; rows as /contact/PAIR/nodes;
+                             attribute plane (point, normal), cylinder (point, axis, radius) or sphere (centre, radius) where the master is one
        gap, penetration, penalty, pressure, normal
                              the same for all pairs over the whole mesh, for ParaView: off the slave surfaces gap and penalty are NaN, the others 0 */
 #pragma once

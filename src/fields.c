@@ -147,12 +147,14 @@ static PetscErrorCode FileWriteIntegers(hid_t file, const char *path, const Rows
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode FileWriteAttribute(hid_t object, const char *name, hid_t type, const void *value)
+/* A scalar, or n > 1 values */
+static PetscErrorCode FileWriteAttribute(hid_t object, const char *name, hid_t type, int n, const void *value)
 {
-  hid_t space, attribute;
+  const hsize_t size = (hsize_t)n;
+  hid_t         space, attribute;
 
   PetscFunctionBeginUser;
-  CallHDF5(space = H5Screate(H5S_SCALAR));
+  CallHDF5(space = n > 1 ? H5Screate_simple(1, &size, NULL) : H5Screate(H5S_SCALAR));
   CallHDF5(attribute = H5Acreate2(object, name, type, space, H5P_DEFAULT, H5P_DEFAULT));
   CallHDF5(H5Awrite(attribute, type, value));
   CallHDF5(H5Aclose(attribute));
@@ -384,6 +386,33 @@ static PetscErrorCode FieldsWriteStress(Fields fields, hid_t file)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Where an analytic master is at this step: no mesh shows it */
+static PetscErrorCode FieldsWriteMaster(Fields fields, hid_t file, int pair)
+{
+  static const char *const names[] = {[ANALYTIC_PLANE] = "plane", [ANALYTIC_CYLINDER] = "cylinder", [ANALYTIC_SPHERE] = "sphere"};
+  const SceneContact      *contact = &fields->scene->contacts[pair];
+  const AnalyticMaster    *master  = &contact->analytic;
+  const double             t       = (double)fields->model->t;
+  double                   values[7]; /* point, then axis or normal, then radius */
+  int                      n = 3;
+  char                     path[PATH_SIZE];
+  hid_t                    group;
+
+  PetscFunctionBeginUser;
+  if (contact->master) PetscFunctionReturn(PETSC_SUCCESS);
+  MotionPlace(&contact->motion, t, contact->motion.point, values);
+  if (master->shape != ANALYTIC_SPHERE) {
+    MotionTurn(&contact->motion, t, master->axis, &values[n]);
+    n += 3;
+  }
+  if (master->shape != ANALYTIC_PLANE) values[n++] = master->radius;
+  PetscCall(PetscSNPrintf(path, sizeof(path), "/steps/%04d/contact/%s", (int)fields->n_written, contact->name));
+  CallHDF5(group = H5Gopen2(file, path, H5P_DEFAULT));
+  PetscCall(FileWriteAttribute(group, names[master->shape], H5T_NATIVE_DOUBLE, n, values));
+  CallHDF5(H5Gclose(group));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* One pair's tables; its values also go to the nodal array (COLUMNS per local node, owned nodes only). Where pairs share a slave node
    the larger pressure counts. */
 static PetscErrorCode FieldsWritePair(Fields fields, hid_t file, int pair, PetscReal *nodal)
@@ -454,7 +483,10 @@ static PetscErrorCode FieldsWriteContact(Fields fields, hid_t file)
 
   PetscFunctionBeginUser;
   PetscCall(PetscCalloc2(mesh->n_nodes * COLUMNS, &nodal, mesh->n_nodes * COLUMNS, &fill));
-  for (int p = 0; p < fields->n_pairs; p++) PetscCall(FieldsWritePair(fields, file, p, nodal));
+  for (int p = 0; p < fields->n_pairs; p++) {
+    PetscCall(FieldsWritePair(fields, file, p, nodal));
+    PetscCall(FieldsWriteMaster(fields, file, p));
+  }
   PetscCall(MeshSumNodes(mesh, COLUMNS, nodal));
   for (int p = 0; p < fields->n_pairs; p++) PetscCall(FieldsFillCorners(fields, p, nodal, fill));
   PetscCall(MeshSumNodes(mesh, COLUMNS, fill));
@@ -573,8 +605,8 @@ PetscErrorCode FieldsWrite(Fields fields, PetscInt step, PetscReal t)
   }
   PetscCall(PetscSNPrintf(path, sizeof(path), "/steps/%04d", (int)fields->n_written));
   CallHDF5(group = H5Gcreate2(file, path, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT));
-  PetscCall(FileWriteAttribute(group, "t", H5T_NATIVE_DOUBLE, &t));
-  PetscCall(FileWriteAttribute(group, "step", H5T_NATIVE_INT64, &number));
+  PetscCall(FileWriteAttribute(group, "t", H5T_NATIVE_DOUBLE, 1, &t));
+  PetscCall(FileWriteAttribute(group, "step", H5T_NATIVE_INT64, 1, &number));
   CallHDF5(H5Gclose(group));
   if (FieldsShows(fields, SHOW_DISPLACEMENT)) PetscCall(FieldsWriteDisplacement(fields, file));
   if (FieldsShows(fields, SHOW_STRESS)) PetscCall(FieldsWriteStress(fields, file));
