@@ -29,6 +29,7 @@ TOOL = numpy.array([0.62, 0.64, 0.68])
 ISOMETRIC = (-35, 22)  # azimuth, elevation in degrees
 ROUND = 96  # sides of a circle
 MARGIN = 0.04  # around the bodies, of their extent
+TRIAD = 85  # pixels across
 RIDGE = 0.12  # height of the largest pressure in the plane, of the bodies' extent
 
 
@@ -197,21 +198,23 @@ class Picture:
         state = self.run.state(step, self.field)
         frame = (self.lower[0], self.upper[0], self.lower[1], self.upper[1])
         figure.clear()
-        axes = figure.add_axes((0.09, 0.08, 0.74, 0.84) if self.run.skin.plane else (0.01, 0.02, 0.84, 0.90))
+        axes = figure.add_axes((0.13, 0.14, 0.70, 0.78) if self.run.skin.plane else (0.01, 0.02, 0.84, 0.90))
         axes.imshow(self.canvas(state, width), origin="lower", extent=frame, interpolation="antialiased")
         axes.set_title(f"{label(self.field)}, t = {state[0]:.4g}", fontsize=11)
         if self.run.skin.plane:
             for kind, where in state[5]:
-                axes.plot(*tool_outline(kind, where, state[1])[:, :2].T, color="k", linewidth=1.5)
+                for line in mirrored(tool_outline(kind, where, state[1]), self.options.mirror):
+                    axes.plot(*line[:, :2].T, color="k", linewidth=1.5)
             if self.contact:
                 self.ridge(axes, state)
             axes.set(xlim=frame[:2], ylim=frame[2:], xlabel="x", ylabel="y")
         else:
             axes.set_axis_off()
-            triad(axes, self.view)
+            triad(figure, self.view)
         figure.canvas.draw()  # settles where the axes are
         place = axes.get_position()
-        bar = figure.add_axes((place.x1 + 0.02, place.y0 + 0.1 * place.height, 0.02, 0.8 * place.height))
+        low = place.y0 + 0.05 * place.height if self.run.skin.plane else 0.02 + TRIAD / figure.dpi / figure.get_size_inches()[1]
+        bar = figure.add_axes((place.x1 + 0.02, low, 0.02, place.y1 - 0.05 * place.height - low))
         figure.colorbar(plt.cm.ScalarMappable(self.norm, self.map), cax=bar)
 
     def figure(self, width):
@@ -224,13 +227,16 @@ def label(field):
     return words.get(field, field.replace("_", " "))
 
 
-def triad(axes, view):
-    """The directions of the coordinates, in the lower left corner."""
+def triad(figure, view):
+    """The directions of the coordinates, in the lower right corner."""
+    side = TRIAD / figure.dpi / figure.get_size_inches()
+    axes = figure.add_axes((0.99 - side[0], 0.01, *side))
+    axes.set(xlim=(-1.5, 1.5), ylim=(-1.5, 1.5))
+    axes.set_axis_off()
     for i, name in enumerate("xyz"):
-        along = 0.06 * view.project(numpy.eye(3)[i])[:2]
-        style = {"arrowstyle": "->", "linewidth": 1}
-        axes.annotate("", 0.09 + along, (0.09, 0.09), xycoords="axes fraction", textcoords="axes fraction", arrowprops=style)
-        axes.text(*(0.09 + 1.35 * along), name, transform=axes.transAxes, ha="center", va="center", fontsize=9)
+        along = view.project(numpy.eye(3)[i])[:2]
+        axes.annotate("", along, (0, 0), arrowprops={"arrowstyle": "->", "linewidth": 1})
+        axes.text(*(1.35 * along), name, ha="center", va="center", fontsize=9)
 
 
 def options():
