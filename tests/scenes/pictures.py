@@ -52,7 +52,7 @@ def drawn(check, what, finished, files, colours):
         check.holds(f"{what}: colours in {file.name}", found >= colours, f"{found}")
 
 
-args = arguments(("runs", "names of RUNS apart by -"), ("extent", "brief: without animation", ["brief", "whole"]))
+args = arguments(("runs", "names of RUNS apart by -"))
 check = Check()
 depth(check)
 for name in args.runs.split("-"):
@@ -66,9 +66,8 @@ for name in args.runs.split("-"):
     small = ("--width", 300)
     drawn(check, name, script("render.py", folder, *small), [folder / "von_mises.png"] + [folder / "pressure.png"] * contact, 100)
     drawn(check, name, script("plot.py", folder), [folder / "steps.png"], 20)
-    if args.extent == "whole":
-        gif = folder / "uy.gif"
-        drawn(check, name, script("render.py", folder, "--field", "uy", "--mirror", "xz", "--animate", "-o", gif, *small), [gif], 50)
-        refused = script("render.py", folder, "--step", 2)
-        check.holds(f"{name}: a step that is not there", refused.returncode == 1 and "steps 0 to 1" in refused.stdout, refused.stdout[-200:])
+    gif = folder / "uy.gif"
+    drawn(check, name, script("render.py", folder, "--field", "uy", "--mirror", "xz", "--animate", "-o", gif, *small), [gif], 50)
+    refused = script("render.py", folder, "--step", 2)
+    check.holds(f"{name}: a step that is not there", refused.returncode == 1 and "steps 0 to 1" in refused.stdout, refused.stdout[-200:])
 check.finish()
