@@ -13,7 +13,8 @@
 struct _n_LoadStepper {
   MPI_Comm             comm;
   Model                model;
-  const StepControl   *control;
+  StepControlKind      kind;
+  const StepControl   *control; /* that of the kind */
   StepSize             size;
   PetscInt             n_landings, next_landing; /* load parameters to be met exactly, ascending, the last one 1 */
   PetscReal           *landings;
@@ -102,7 +103,8 @@ static PetscErrorCode LoadStepperSetLandings(LoadStepper stepper, Scene scene)
 PetscErrorCode LoadStepperSetFromScene(LoadStepper stepper, Scene scene)
 {
   PetscFunctionBeginUser;
-  stepper->control = StepControlFind(scene->stepping.control);
+  stepper->kind    = scene->stepping.control;
+  stepper->control = StepControls[stepper->kind];
   stepper->size    = (StepSize){.initial   = scene->stepping.initial,
                                 .dt_min    = scene->stepping.dt_min,
                                 .dt_max    = scene->stepping.dt_max,
@@ -142,7 +144,7 @@ PetscErrorCode LoadStepperMonitorSet(LoadStepper stepper, LoadStepperMonitorFn m
 PetscErrorCode LoadStepperView(LoadStepper stepper, PetscViewer viewer)
 {
   PetscFunctionBeginUser;
-  PetscCall(PetscViewerASCIIPrintf(viewer, "LoadStepper: control %s, initial %g, dt_min %g, dt_max %g, growth %g\n", stepper->control->name,
+  PetscCall(PetscViewerASCIIPrintf(viewer, "LoadStepper: control %s, initial %g, dt_min %g, dt_max %g, growth %g\n", StepControlNames[stepper->kind],
                                    (double)stepper->size.initial, (double)stepper->size.dt_min, (double)stepper->size.dt_max, (double)stepper->size.growth));
   PetscCall(PetscViewerASCIIPrintf(viewer, "  lands on"));
   for (PetscInt i = 0; i < stepper->n_landings; i++) PetscCall(PetscViewerASCIIPrintf(viewer, " %g", (double)stepper->landings[i]));
