@@ -89,8 +89,13 @@ study: all ## accuracy against time: tables and plots in out/study/
 bench: all tests ## raw timing records and their table in out/bench/
 	@scripts/bench.sh $(BUILD)
 
-install: all ## installs into PREFIX (default /usr/local)
+install: all ## installs program, man page and examples into PREFIX (default /usr/local)
 	install -D -m 755 $(BURNISH) $(DESTDIR)$(PREFIX)/bin/burnish
+	install -D -m 644 doc/burnish.1 $(DESTDIR)$(PREFIX)/share/man/man1/burnish.1
+	install -D -m 644 doc/burnish.bash $(DESTDIR)$(PREFIX)/share/bash-completion/completions/burnish
+	install -D -m 644 -t $(DESTDIR)$(PREFIX)/share/doc/burnish README.md REFERENCE.md
+	install -D -m 644 -t $(DESTDIR)$(PREFIX)/share/burnish/runs $(wildcard runs/*.yaml)
+	install -D -m 644 -t $(DESTDIR)$(PREFIX)/share/burnish/meshes $(wildcard meshes/*.geo)
 
 help: ## this list
 	@sed -n 's/^\([a-z]*\):.*## \(.*\)/make \1\t\2/p' Makefile | expand -t 16

@@ -1,10 +1,11 @@
 /* Point-wise elastic laws: stress and tangent from the deformation gradient. Plain C, no PETSc, no allocation, batched by lanes.
-   A new law is a name in MaterialLaw, one function in material.c and one line in its table. */
+   A new law is a file with its
+   function and a line in choices.h. */
 #pragma once
+#include "choices.h"
 #include "lanes.h"
 
-typedef enum { MATERIAL_LINEAR, MATERIAL_SVK, MATERIAL_NEO_HOOKEAN, MATERIAL_LAWS } MaterialLaw;
-extern const char *const MaterialLaws[]; /* "linear", "svk", "neo_hookean", NULL-terminated */
+extern const char *const MaterialLaws[]; /* their words, NULL-terminated */
 
 typedef struct {
   MaterialLaw law;
@@ -29,6 +30,9 @@ static inline void MaterialDilatation(const Lanes H[9], Lanes *dilatation)
    Energy W, first Piola-Kirchhoff stress P[9] and tangent A[45] per reference volume; W and A may be NULL. Finite for every finite H. */
 typedef void MaterialLawFn(const Lanes H[9], const Lanes *dilatation, const Lanes *lambda, const Lanes *mu, Lanes *W, Lanes P[9],
                            Lanes A[MATERIAL_TANGENT_SIZE]);
+#define MATERIAL_DECLARE(law, word, function) MaterialLawFn function;
+ELASTIC_LAWS(MATERIAL_DECLARE)
+#undef MATERIAL_DECLARE
 
 MaterialLawFn *MaterialGetLaw(MaterialLaw, int finite); /* finite = 0: the linearisation, which is Hooke's for each law */
 /* One point: H[9], W (or NULL), P[9], A[45] (or NULL) as plain numbers */

@@ -6,13 +6,12 @@
 #pragma once
 #include <petscsys.h>
 #include "analytic.h"
+#include "choices.h"
 #include "material.h"
 #include "motion.h"
 
 typedef enum { GEOMETRY_SOLID, GEOMETRY_PLANE_STRAIN, GEOMETRY_AXISYMMETRIC } Geometry;
 typedef enum { KINEMATICS_SMALL, KINEMATICS_FINITE } Kinematics;
-typedef enum { STEP_FIXED, STEP_ITERATIONS, STEP_CONTACT } StepControlKind;
-typedef enum { SMOOTHER_FACET, SMOOTHER_DIFFUSE } SmootherKind;
 typedef enum { OVERLAP_REFUSE, OVERLAP_RESOLVE, OVERLAP_RAMP, OVERLAP_IGNORE } InitialOverlap;
 typedef enum { CONTACT_NODE_TO_SURFACE, CONTACT_SURFACE_TO_SURFACE } ContactFormulation;
 

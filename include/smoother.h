@@ -1,9 +1,10 @@
-/* What a contact surface looks like from one slave point: gap, first and second variation. Plain C, chosen by name; a new smoother is one
-   file with an evaluate function and one line in the table of smoother.c.
+/* What a contact surface looks like from one slave point: gap, first and second variation. Plain C, chosen by name; a new smoother is a
+   file that defines a Smoother and a line in choices.h.
 
    A smoother sees points, never elements or nodes: x is relative to the slave point, and what a point is made of (nodes with weights, an
    offset, a mirror image) is the caller's business. Lists are frozen while a solve lasts. */
 #pragma once
+#include "choices.h"
 #include "facet.h"
 #include "fit.h"
 
@@ -38,12 +39,15 @@ typedef struct {
 typedef enum { SMOOTHER_GAP, SMOOTHER_FIRST_VARIATION, SMOOTHER_SECOND_VARIATION } SmootherWant;
 
 typedef struct {
-  const char *name;
-  int         capacity; /* the most points that can take part */
-  int         smooth;   /* works on fits: needs neighbourhoods */
+  int capacity; /* the most points that can take part */
+  int smooth;   /* works on fits: needs neighbourhoods */
   /* returns 0 when the list holds no surface for this slave point */
   int (*evaluate)(const SmootherInput *, SmootherWant, SmootherResult *);
 } Smoother;
 
-extern const Smoother Smoothers[]; /* terminated by a NULL name */
-const Smoother       *SmootherFind(const char *name);
+#define SMOOTHER_DECLARE(kind, word, object) extern const Smoother object;
+SMOOTHERS(SMOOTHER_DECLARE)
+#undef SMOOTHER_DECLARE
+extern const Smoother *const Smoothers[]; /* by SmootherKind */
+extern const char *const     SmootherNames[];
+int                          SmootherEvaluate_Facet(const SmootherInput *, SmootherWant, SmootherResult *); /* what a smooth surface falls back on */

@@ -1,6 +1,6 @@
 /* How large the next load step is: the step controls, chosen by name. For stepper.c, which tries the steps and lets them land.
 
-   A new control is one file with its functions and one line in the table of stepcontrol.c. */
+   A new control is a file that defines a StepControl and a line in choices.h. */
 #pragma once
 #include "model.h"
 
@@ -18,8 +18,6 @@ typedef struct {
 } StepSize;
 
 typedef struct {
-  StepControlKind kind;
-  const char     *name;
   /* before a step that may be as long as `rest`: may change dt; its solves are added to the report. NULL: nothing to be done */
   PetscErrorCode (*predict)(Model, PetscReal rest, StepSize *, SolveReport *);
   /* after a converged step of dt: is it to be accepted? If not it is taken back and tried with the new size->dt. NULL: always */
@@ -29,9 +27,8 @@ typedef struct {
   PetscErrorCode (*next)(Model, PetscReal dt, PetscBool clipped, PetscInt newton, StepSize *);
 } StepControl;
 
-const StepControl *StepControlFind(StepControlKind);
-
-/* stepcontact.c */
-PetscErrorCode StepControlPredict_Contact(Model, PetscReal rest, StepSize *, SolveReport *);
-PetscErrorCode StepControlJudge_Contact(Model, PetscReal dt, StepSize *, PetscBool *accepted);
-PetscErrorCode StepControlNext_Contact(Model, PetscReal dt, PetscBool clipped, PetscInt newton, StepSize *);
+#define STEP_CONTROL_DECLARE(kind, word, object) extern const StepControl object;
+STEP_CONTROLS(STEP_CONTROL_DECLARE)
+#undef STEP_CONTROL_DECLARE
+extern const StepControl *const StepControls[]; /* by StepControlKind */
+extern const char *const        StepControlNames[];

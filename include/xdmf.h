@@ -3,17 +3,17 @@
 #include "petsccompat.h"
 #include "element.h"
 
-/* Cells of one body and type: rows first .. first+n-1 of the total of /mesh/cells_TYPE */
+/* Cells of one body and type: rows first .. first+n-1 of /mesh/cells_TYPE; block b is also a table of its own, /mesh/block_b */
 typedef struct {
   const char *body;
   ElementType type;
-  PetscInt    first, n, total;
+  PetscInt    first, n;
 } XdmfBlock;
 
-/* A nodal array that ParaView shows: from /steps/0000/DATASET, of `width` columns */
+/* A nodal array that ParaView shows: from /steps/0000/NAME, of 1, 3 or 6 columns */
 typedef struct {
-  const char *title, *dataset;
-  int         width, column; /* column -1: all of them, as a vector or a scalar */
+  const char *name;
+  int         width;
 } XdmfArray;
 
 typedef struct {

@@ -94,7 +94,7 @@ static PetscErrorCode PairCreateTerms(Mesh mesh, ContactPair *pair)
 /* Slave points, terms and offsets, by formulation. */
 static PetscErrorCode PairCreatePoints(Mesh mesh, Scene scene, Loads loads, ContactPair *pair)
 {
-  const PetscBool smooth = (PetscBool)(pair->scene->smoother == SMOOTHER_DIFFUSE);
+  const PetscBool smooth = pair->smoother->smooth ? PETSC_TRUE : PETSC_FALSE;
   const int       finer  = pair->master && pair->slave->mean_size >= CONTACT_COARSE * pair->master->mean_size;
 
   PetscFunctionBeginUser;
@@ -158,8 +158,8 @@ PetscErrorCode ContactPairCreate(Mesh mesh, Scene scene, Elasticity elasticity, 
   PetscFunctionBeginUser;
   pair->mesh     = mesh;
   pair->scene    = contact;
-  pair->facets   = SmootherFind("facet");
-  pair->smoother = SmootherFind(contact->smoother == SMOOTHER_DIFFUSE ? "diffuse" : "facet");
+  pair->facets   = Smoothers[SMOOTHER_FACET];
+  pair->smoother = Smoothers[contact->smoother];
   pair->geometry = scene->geometry;
   pair->fit      = PairFitSettings(scene, contact, pair->smoother, mesh->order);
   pair->law      = LawFind("penalty");

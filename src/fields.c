@@ -16,31 +16,25 @@ struct _n_Fields {
   Rows      *pairs;                /* slave nodes, per contact pair */
   PetscInt   cells[ELEMENT_TYPES]; /* rows of /mesh/cells_TYPE */
   PetscInt   n_written, room;
-  PetscReal *t;    /* of the written steps */
+  PetscReal *t;     /* of the written steps */
   Xdmf       xdmf;  /* what they show */
   char      *image; /* rank 0: of the file, between loading and FieldsResume() */
 };
 
-/* What output.fields may ask for, and what ParaView sees of it. Stress goes there by components: readers do not agree on the order of a
-   symmetric tensor. */
+/* What output.fields may ask for, and what ParaView sees of it */
 enum { SHOW_DISPLACEMENT, SHOW_STRESS, SHOW_CONTACT };
 static const struct {
   int       kind;
   XdmfArray array;
 } shown[] = {
-  {SHOW_DISPLACEMENT, {"displacement", "displacement", 3, -1}},
-  {SHOW_STRESS,       {"von_mises", "von_mises", 1, -1}      },
-  {SHOW_STRESS,       {"stress_xx", "stress", 6, 0}          },
-  {SHOW_STRESS,       {"stress_yy", "stress", 6, 1}          },
-  {SHOW_STRESS,       {"stress_zz", "stress", 6, 2}          },
-  {SHOW_STRESS,       {"stress_xy", "stress", 6, 3}          },
-  {SHOW_STRESS,       {"stress_yz", "stress", 6, 4}          },
-  {SHOW_STRESS,       {"stress_xz", "stress", 6, 5}          },
-  {SHOW_CONTACT,      {"gap", "gap", 1, -1}                  },
-  {SHOW_CONTACT,      {"penetration", "penetration", 1, -1}  },
-  {SHOW_CONTACT,      {"penalty", "penalty", 1, -1}          },
-  {SHOW_CONTACT,      {"pressure", "pressure", 1, -1}        },
-  {SHOW_CONTACT,      {"normal", "normal", 3, -1}            },
+  {SHOW_DISPLACEMENT, {"displacement", 3}},
+  {SHOW_STRESS,       {"von_mises", 1}   },
+  {SHOW_STRESS,       {"stress", 6}      },
+  {SHOW_CONTACT,      {"gap", 1}         },
+  {SHOW_CONTACT,      {"penetration", 1} },
+  {SHOW_CONTACT,      {"penalty", 1}     },
+  {SHOW_CONTACT,      {"pressure", 1}    },
+  {SHOW_CONTACT,      {"normal", 3}      },
 };
 
 /* Contact values of one node: columns of the nodal array that FieldsWriteContact() forms */
@@ -58,12 +52,14 @@ static const struct {
 };
 #define COUNT(array) ((int)(sizeof(array) / sizeof((array)[0])))
 
-static PetscErrorCode FileWriteAttribute(hid_t object, const char *name, hid_t type, const void *value)
+/* A scalar, or n > 1 values */
+static PetscErrorCode FileWriteAttribute(hid_t object, const char *name, hid_t type, int n, const void *value)
 {
-  hid_t space, attribute;
+  const hsize_t size = (hsize_t)n;
+  hid_t         space, attribute;
 
   PetscFunctionBeginUser;
-  CallHDF5(space = H5Screate(H5S_SCALAR));
+  CallHDF5(space = n > 1 ? H5Screate_simple(1, &size, NULL) : H5Screate(H5S_SCALAR));
   CallHDF5(attribute = H5Acreate2(object, name, type, space, H5P_DEFAULT, H5P_DEFAULT));
   CallHDF5(H5Awrite(attribute, type, value));
   CallHDF5(H5Aclose(attribute));
@@ -132,7 +128,6 @@ static PetscErrorCode FieldsNumberCells(Fields fields, PetscInt *row)
     before[k] += *cells;
     *cells += count[k];
   }
-  for (int b = 0; b < xdmf->n_blocks; b++) xdmf->blocks[b].total = fields->cells[xdmf->blocks[b].type];
   for (PetscInt c = 0; c < by_id.n; c++) rows[c] = before[keys[c]]++;
   PetscCall(PetscSFBcastBegin(by_id.sf, MPIU_INT, rows, row, MPI_REPLACE));
   PetscCall(PetscSFBcastEnd(by_id.sf, MPIU_INT, rows, row, MPI_REPLACE));
@@ -142,29 +137,28 @@ static PetscErrorCode FieldsNumberCells(Fields fields, PetscInt *row)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode FieldsWriteCellsOfType(Fields fields, hid_t file, ElementType type, const PetscInt *cell_row)
+/* Rows first .. first+total-1 of the cells of a type as a table of their nodes at `path` and, where asked for, one of their bodies at `body_path` */
+static PetscErrorCode FieldsWriteCellTable(Fields fields, hid_t file, ElementType type, const PetscInt *cell_row, PetscInt first, PetscInt total,
+                                           const char *path, const char *body_path)
 {
   const Mesh     mesh    = fields->model->mesh;
   const Element *element = ElementGet(type);
   const int      nodes   = element->nodes;
   int64_t       *ids, *body;
   PetscInt      *row, n = 0;
-  char           path[PATH_SIZE];
   Rows           rows;
 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc3(mesh->n_cells * nodes, &ids, mesh->n_cells, &body, mesh->n_cells, &row));
   for (PetscInt c = 0; c < mesh->n_cells; c++) {
-    if (mesh->cell_type[c] != type) continue;
+    if (mesh->cell_type[c] != type || cell_row[c] < first || cell_row[c] >= first + total) continue;
     for (int i = 0; i < nodes; i++) ids[n * nodes + i] = mesh->node_id[mesh->cell_nodes[mesh->cell_ptr[c] + element->xdmf_order[i]]];
     body[n]  = mesh->cell_body[c];
-    row[n++] = cell_row[c];
+    row[n++] = cell_row[c] - first;
   }
-  PetscCall(RowsCreate(mesh->comm, fields->cells[type], n, row, &rows));
-  PetscCall(PetscSNPrintf(path, sizeof(path), "/mesh/cells_%s", element->name));
+  PetscCall(RowsCreate(mesh->comm, total, n, row, &rows));
   PetscCall(RowsWriteIntegers(file, path, &rows, nodes, ids));
-  PetscCall(PetscSNPrintf(path, sizeof(path), "/mesh/cells_%s_body", element->name));
-  PetscCall(RowsWriteIntegers(file, path, &rows, 1, body));
+  if (body_path) PetscCall(RowsWriteIntegers(file, body_path, &rows, 1, body));
   PetscCall(RowsDestroy(&rows));
   PetscCall(PetscFree3(ids, body, row));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -172,13 +166,23 @@ static PetscErrorCode FieldsWriteCellsOfType(Fields fields, hid_t file, ElementT
 
 static PetscErrorCode FieldsWriteCells(Fields fields, hid_t file)
 {
-  PetscInt *row;
+  const Xdmf *xdmf = &fields->xdmf;
+  PetscInt   *row;
+  char        path[PATH_SIZE], body_path[PATH_SIZE];
 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(fields->model->mesh->n_cells, &row));
   PetscCall(FieldsNumberCells(fields, row));
-  for (int type = 0; type < ELEMENT_TYPES; type++)
-    if (fields->cells[type]) PetscCall(FieldsWriteCellsOfType(fields, file, (ElementType)type, row));
+  for (int type = 0; type < ELEMENT_TYPES; type++) {
+    if (!fields->cells[type]) continue;
+    PetscCall(PetscSNPrintf(path, sizeof(path), "/mesh/cells_%s", ElementGet((ElementType)type)->name));
+    PetscCall(PetscSNPrintf(body_path, sizeof(body_path), "%s_body", path));
+    PetscCall(FieldsWriteCellTable(fields, file, (ElementType)type, row, 0, fields->cells[type], path, body_path));
+  }
+  for (int b = 0; b < xdmf->n_blocks; b++) {
+    PetscCall(PetscSNPrintf(path, sizeof(path), "/mesh/block_%d", b));
+    PetscCall(FieldsWriteCellTable(fields, file, xdmf->blocks[b].type, row, xdmf->blocks[b].first, xdmf->blocks[b].n, path, NULL));
+  }
   PetscCall(PetscFree(row));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -286,6 +290,33 @@ static PetscErrorCode FieldsWriteStress(Fields fields, hid_t file)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Where an analytic master is at this step: no mesh shows it */
+static PetscErrorCode FieldsWriteMaster(Fields fields, hid_t file, int pair)
+{
+  static const char *const names[] = {[ANALYTIC_PLANE] = "plane", [ANALYTIC_CYLINDER] = "cylinder", [ANALYTIC_SPHERE] = "sphere"};
+  const SceneContact      *contact = &fields->scene->contacts[pair];
+  const AnalyticMaster    *master  = &contact->analytic;
+  const double             t       = (double)fields->model->t;
+  double                   values[7]; /* point, then axis or normal, then radius */
+  int                      n = 3;
+  char                     path[PATH_SIZE];
+  hid_t                    group;
+
+  PetscFunctionBeginUser;
+  if (contact->master) PetscFunctionReturn(PETSC_SUCCESS);
+  MotionPlace(&contact->motion, t, contact->motion.point, values);
+  if (master->shape != ANALYTIC_SPHERE) {
+    MotionTurn(&contact->motion, t, master->axis, &values[n]);
+    n += 3;
+  }
+  if (master->shape != ANALYTIC_PLANE) values[n++] = master->radius;
+  PetscCall(PetscSNPrintf(path, sizeof(path), "/steps/%04d/contact/%s", (int)fields->n_written, contact->name));
+  CallHDF5(group = H5Gopen2(file, path, H5P_DEFAULT));
+  PetscCall(FileWriteAttribute(group, names[master->shape], H5T_NATIVE_DOUBLE, n, values));
+  CallHDF5(H5Gclose(group));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* One pair's tables; its values also go to the nodal array (COLUMNS per local node, owned nodes only). Where pairs share a slave node
    the larger pressure counts. */
 static PetscErrorCode FieldsWritePair(Fields fields, hid_t file, int pair, PetscReal *nodal)
@@ -356,7 +387,10 @@ static PetscErrorCode FieldsWriteContact(Fields fields, hid_t file)
 
   PetscFunctionBeginUser;
   PetscCall(PetscCalloc2(mesh->n_nodes * COLUMNS, &nodal, mesh->n_nodes * COLUMNS, &fill));
-  for (int p = 0; p < fields->n_pairs; p++) PetscCall(FieldsWritePair(fields, file, p, nodal));
+  for (int p = 0; p < fields->n_pairs; p++) {
+    PetscCall(FieldsWritePair(fields, file, p, nodal));
+    PetscCall(FieldsWriteMaster(fields, file, p));
+  }
   PetscCall(MeshSumNodes(mesh, COLUMNS, nodal));
   for (int p = 0; p < fields->n_pairs; p++) PetscCall(FieldsFillCorners(fields, p, nodal, fill));
   PetscCall(MeshSumNodes(mesh, COLUMNS, fill));
@@ -476,8 +510,8 @@ PetscErrorCode FieldsWrite(Fields fields, PetscInt step, PetscReal t)
   }
   PetscCall(PetscSNPrintf(path, sizeof(path), "/steps/%04d", (int)fields->n_written));
   CallHDF5(group = H5Gcreate2(file, path, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT));
-  PetscCall(FileWriteAttribute(group, "t", H5T_NATIVE_DOUBLE, &t));
-  PetscCall(FileWriteAttribute(group, "step", H5T_NATIVE_INT64, &number));
+  PetscCall(FileWriteAttribute(group, "t", H5T_NATIVE_DOUBLE, 1, &t));
+  PetscCall(FileWriteAttribute(group, "step", H5T_NATIVE_INT64, 1, &number));
   CallHDF5(H5Gclose(group));
   if (FieldsShows(fields, SHOW_DISPLACEMENT)) PetscCall(FieldsWriteDisplacement(fields, file));
   if (FieldsShows(fields, SHOW_STRESS)) PetscCall(FieldsWriteStress(fields, file));

@@ -8,7 +8,7 @@
 static const double jacobian_floor = 1e-8;
 
 /* Hooke: P = lambda tr(e) 1 + 2 mu e with e = sym H */
-static void LawLinear(const Lanes H[9], const Lanes *dilatation, const Lanes *lambda, const Lanes *mu, Lanes *W, Lanes P[9], Lanes A[MATERIAL_TANGENT_SIZE])
+void MaterialLaw_Linear(const Lanes H[9], const Lanes *dilatation, const Lanes *lambda, const Lanes *mu, Lanes *W, Lanes P[9], Lanes A[MATERIAL_TANGENT_SIZE])
 {
   const Lanes trace = H[0] + H[4] + H[8];
 
@@ -32,7 +32,7 @@ static void LawLinear(const Lanes H[9], const Lanes *dilatation, const Lanes *la
 }
 
 /* St. Venant-Kirchhoff: S = lambda tr(E) 1 + 2 mu E with Green's strain E, P = F S (Bonet and Wood, section 6.4) */
-static void LawSvk(const Lanes H[9], const Lanes *dilatation, const Lanes *lambda, const Lanes *mu, Lanes *W, Lanes P[9], Lanes A[MATERIAL_TANGENT_SIZE])
+void MaterialLaw_Svk(const Lanes H[9], const Lanes *dilatation, const Lanes *lambda, const Lanes *mu, Lanes *W, Lanes P[9], Lanes A[MATERIAL_TANGENT_SIZE])
 {
   Lanes F[9], E[9], S[9], trace;
 
@@ -72,7 +72,8 @@ static void LawSvk(const Lanes H[9], const Lanes *dilatation, const Lanes *lambd
 }
 
 /* Compressible neo-Hooke: W = mu/2 (I1 - 3) - mu ln J + lambda/2 (ln J)^2 (Bonet and Wood, section 6.4.3) */
-static void LawNeoHookean(const Lanes H[9], const Lanes *dilatation, const Lanes *lambda, const Lanes *mu, Lanes *W, Lanes P[9], Lanes A[MATERIAL_TANGENT_SIZE])
+void MaterialLaw_NeoHookean(const Lanes H[9], const Lanes *dilatation, const Lanes *lambda, const Lanes *mu, Lanes *W, Lanes P[9],
+                            Lanes A[MATERIAL_TANGENT_SIZE])
 {
   Lanes F[9], G[9], logJ, inverseJ, pressure; /* G = F^-T */
 
@@ -119,15 +120,9 @@ static void LawNeoHookean(const Lanes H[9], const Lanes *dilatation, const Lanes
   }
 }
 
-#define LAW_TABLE(ROW)                      \
-  ROW(MATERIAL_LINEAR, "linear", LawLinear) \
-  ROW(MATERIAL_SVK, "svk", LawSvk)          \
-  ROW(MATERIAL_NEO_HOOKEAN, "neo_hookean", LawNeoHookean)
-
-#define LAW_NAME(law, name, function)     [law] = name,
-#define LAW_FUNCTION(law, name, function) [law] = function,
-const char *const           MaterialLaws[MATERIAL_LAWS + 1] = {LAW_TABLE(LAW_NAME) NULL};
-static MaterialLawFn *const law_functions[MATERIAL_LAWS]    = {LAW_TABLE(LAW_FUNCTION)};
+#define LAW_FUNCTION(law, word, function) [law] = function,
+const char *const           MaterialLaws[MATERIAL_LAWS + 1] = {ELASTIC_LAWS(CHOICE_NAME) NULL};
+static MaterialLawFn *const law_functions[MATERIAL_LAWS]    = {ELASTIC_LAWS(LAW_FUNCTION)};
 
 /*
   MaterialGetLaw - The batched function of a law
@@ -146,7 +141,7 @@ static MaterialLawFn *const law_functions[MATERIAL_LAWS]    = {LAW_TABLE(LAW_FUN
 */
 MaterialLawFn *MaterialGetLaw(MaterialLaw law, int finite)
 {
-  return finite ? law_functions[law] : LawLinear;
+  return finite ? law_functions[law] : MaterialLaw_Linear;
 }
 
 /*

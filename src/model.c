@@ -2,6 +2,7 @@
 #include "contactcycle.h"
 #include "matrixsum.h"
 #include "refusal.h"
+#include "smoother.h"
 #include "timing.h"
 
 /* Energy of a state with an inverted element: above any other, yet its square is a number, which the line search takes. */
@@ -880,13 +881,20 @@ PetscErrorCode ModelReaction(Model model, const MeshGroup *group, PetscReal forc
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static const char *ModelContactEffect(Scene scene)
+/* ", NAME contact" for each smoother that some pair has */
+static PetscErrorCode ModelContactEffects(Scene scene, char *text, size_t size)
 {
-  int diffuse = 0;
+  PetscFunctionBeginUser;
+  for (int kind = 0; kind < SMOOTHER_KINDS; kind++) {
+    PetscBool used = PETSC_FALSE;
 
-  for (int c = 0; c < scene->n_contacts; c++) diffuse += scene->contacts[c].smoother == SMOOTHER_DIFFUSE;
-  if (!scene->n_contacts) return "";
-  return diffuse == scene->n_contacts ? ", diffuse contact" : diffuse ? ", facet contact, diffuse contact" : ", facet contact";
+    for (int c = 0; c < scene->n_contacts; c++) used = (PetscBool)(used || (int)scene->contacts[c].smoother == kind);
+    if (!used) continue;
+    PetscCall(PetscStrlcat(text, ", ", size));
+    PetscCall(PetscStrlcat(text, SmootherNames[kind], size));
+    PetscCall(PetscStrlcat(text, " contact", size));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* ModelEffects - what the scene calls for, in words with commas between, into text[size]. Not collective, same on all ranks. */
@@ -894,15 +902,18 @@ PetscErrorCode ModelEffects(Model model, char *text, size_t size)
 {
   Scene     scene  = model->scene;
   PetscBool moving = PETSC_FALSE, body_force = PETSC_FALSE, adjusted = PETSC_FALSE, surface = PETSC_FALSE;
+  size_t    start;
 
   PetscFunctionBeginUser;
   for (int b = 0; b < scene->n_bodies; b++) moving = (PetscBool)(moving || (scene->bodies[b].rigid && scene->bodies[b].motion.n));
   for (int c = 0; c < scene->n_contacts; c++) adjusted = (PetscBool)(adjusted || scene->contacts[c].adjust);
   for (int l = 0; l < scene->n_loads; l++) body_force = (PetscBool)(body_force || scene->loads[l].kind == LOAD_BODY_FORCE);
   for (int c = 0; c < scene->n_contacts; c++) surface = (PetscBool)(surface || scene->contacts[c].formulation == CONTACT_SURFACE_TO_SURFACE);
-  PetscCall(PetscSNPrintf(text, size, "%s%s%s%s%s%s%s", scene->kinematics == KINEMATICS_FINITE ? "finite strain" : "small strain", ModelContactEffect(scene),
-                          surface ? ", surface to surface" : "", adjusted ? ", adjusted penalty" : "", LoadsConservative(model->loads) ? "" : ", follower load",
-                          body_force ? ", body force" : "", moving ? ", rigid motion" : ""));
+  PetscCall(PetscSNPrintf(text, size, "%s", scene->kinematics == KINEMATICS_FINITE ? "finite strain" : "small strain"));
+  PetscCall(ModelContactEffects(scene, text, size));
+  PetscCall(PetscStrlen(text, &start));
+  PetscCall(PetscSNPrintf(text + start, size - start, "%s%s%s%s%s", surface ? ", surface to surface" : "", adjusted ? ", adjusted penalty" : "",
+                          LoadsConservative(model->loads) ? "" : ", follower load", body_force ? ", body force" : "", moving ? ", rigid motion" : ""));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

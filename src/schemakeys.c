@@ -1,4 +1,5 @@
 #include "schemakeys.h"
+#include "choices.h"
 #include "document.h"
 #include <stdio.h>
 #include <string.h>
@@ -26,7 +27,7 @@ const SchemaKey SchemaKeys[] = {
   {"bodies.*", MAP, .help = "a deformable body or a rigid tool"},
   {"bodies.*.volume", TEXT, .help = "physical volume (2D: surface) of a deformable body; needs material"},
   {"bodies.*.material", MAP, .help = "elastic law"},
-  {"bodies.*.material.law", CHOICE, REQUIRED, .values = "linear | svk | neo_hookean", .help = "linear only with kinematics small"},
+  {"bodies.*.material.law", CHOICE, REQUIRED, .values = CHOICE_WORDS(ELASTIC_LAWS), .help = "linear only with kinematics small"},
   {"bodies.*.material.E", REAL, REQUIRED, .range = "(0, inf)", .unit = "stress", .help = "Young's modulus"},
   {"bodies.*.material.nu", REAL, REQUIRED, .range = "(-1, 0.5)", .help = "Poisson's ratio"},
   {"bodies.*.formulation", CHOICE, .values = "full | enhanced | fbar", .preset = "full", .now = "full"},
@@ -64,7 +65,7 @@ const SchemaKey SchemaKeys[] = {
   {"contact.*.master.cylinder|sphere.radius", REAL, REQUIRED, .range = "(0, inf)", .unit = "length"},
   {"contact.*.master.cylinder|sphere.side", CHOICE, .values = "outside | inside", .preset = "outside"},
   MOTION_KEYS("contact.*.master.plane|cylinder|sphere"),
-  {"contact.*.smoother", CHOICE, .values = "facet | diffuse", .preset = "facet"},
+  {"contact.*.smoother", CHOICE, .values = CHOICE_WORDS(SMOOTHERS), .preset = "facet"},
   {"contact.*.formulation", CHOICE, .values = "node_to_surface | surface_to_surface", .preset = "node_to_surface"},
   {"contact.*.offset", CHOICE, .values = "held | live", .preset = "held", .help = "of surface_to_surface"},
   {"contact.*.degree", CHOICE, .values = "4 | 2", .preset = "4", .help = "of the diffuse fit"},
@@ -87,7 +88,7 @@ const SchemaKey SchemaKeys[] = {
   {"contact.*.penalty.clamp", REAL, .range = "(1, inf)", .preset = "100", .help = "largest factor of one adjustment"},
   {"contact.*.penalty.range", REAL, .range = "(1, inf)", .preset = "1e4", .help = "largest factor away from the automatic penalty"},
   {"stepping", MAP, .help = "load steps"},
-  {"stepping.control", CHOICE, .values = "fixed | iterations | contact", .preset = "iterations", .help = "contact needs N_c or N_c_fraction"},
+  {"stepping.control", CHOICE, .values = CHOICE_WORDS(STEP_CONTROLS), .preset = "iterations", .help = "contact needs N_c or N_c_fraction"},
   {"stepping.initial", REAL, .range = "(0, 1]", .preset = "0.1", .help = "first step of the load parameter"},
   {"stepping.N_c", INTEGER, .range = "[1, inf)", .unit = "nodes", .help = "new contact per step; not with N_c_fraction"},
   {"stepping.N_c_fraction", REAL, .range = "(0, 1]", .help = "new contact per step, of the slave area"},

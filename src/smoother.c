@@ -1,7 +1,8 @@
 #include <string.h>
 #include "smoother.h"
 
-static int SmootherEvaluate_Facet(const SmootherInput *in, SmootherWant want, SmootherResult *out)
+/* SmootherEvaluate_Facet - gap and variations against the closest facet of the list. Returns 0 when the list holds none. Not collective. */
+int SmootherEvaluate_Facet(const SmootherInput *in, SmootherWant want, SmootherResult *out)
 {
   const Facet *facet;
   Foot         foot;
@@ -47,16 +48,8 @@ static int SmootherEvaluate_Diffuse(const SmootherInput *in, SmootherWant want, 
   return SmootherEvaluate_Facet(in, want, out);
 }
 
-const Smoother Smoothers[] = {
-  {"facet",   FACE_MAX_NODES, 0, SmootherEvaluate_Facet  },
-  {"diffuse", FIT_MAX_POINTS, 1, SmootherEvaluate_Diffuse},
-  {NULL,      0,              0, NULL                    }
-};
+const Smoother Smoother_Facet   = {FACE_MAX_NODES, 0, SmootherEvaluate_Facet};
+const Smoother Smoother_Diffuse = {FIT_MAX_POINTS, 1, SmootherEvaluate_Diffuse};
 
-/* SmootherFind - the smoother of that name, or NULL. Not collective. */
-const Smoother *SmootherFind(const char *name)
-{
-  for (const Smoother *smoother = Smoothers; smoother->name; smoother++)
-    if (!strcmp(smoother->name, name)) return smoother;
-  return NULL;
-}
+const Smoother *const Smoothers[]     = {SMOOTHERS(CHOICE_POINTER)};
+const char *const     SmootherNames[] = {SMOOTHERS(CHOICE_NAME)};

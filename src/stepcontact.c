@@ -67,7 +67,7 @@ static PetscErrorCode Choose(Model model, const PetscReal *u, PetscReal t, Petsc
 
 /* StepControlPredict_Contact - the paper's order, for `prediction: tangent`: one linear solve over the present dt says when nodes touch, and dt
    is made so that the wanted ones do. Collective. */
-PetscErrorCode StepControlPredict_Contact(Model model, PetscReal rest, StepSize *size, SolveReport *report)
+static PetscErrorCode StepControlPredict_Contact(Model model, PetscReal rest, StepSize *size, SolveReport *report)
 {
   const PetscReal dt = PetscMin(size->dt, rest);
   PetscReal      *u;
@@ -90,7 +90,7 @@ PetscErrorCode StepControlPredict_Contact(Model model, PetscReal rest, StepSize 
 
 /* StepControlJudge_Contact - for `prediction: converged`: a step in which too many nodes came into contact or left it is taken back, unless they
    tie. Collective. */
-PetscErrorCode StepControlJudge_Contact(Model model, PetscReal dt, StepSize *size, PetscBool *accepted)
+static PetscErrorCode StepControlJudge_Contact(Model model, PetscReal dt, StepSize *size, PetscBool *accepted)
 {
   const PetscReal *u;
   PetscReal        t, changed = 0, all, wanted = 0;
@@ -141,7 +141,7 @@ static PetscErrorCode Longest(Model model, PetscReal dt, PetscReal beta, const S
 
 /* StepControlNext_Contact - dt by the nodes that are still open and approach, and by how many came or left. A beta above 1 enlarges the next step;
    the paper repeats the present one, whose solution is good as it is. `prediction: tangent` decides before the next step. Collective. */
-PetscErrorCode StepControlNext_Contact(Model model, PetscReal dt, PetscBool clipped, PetscInt newton, StepSize *size)
+static PetscErrorCode StepControlNext_Contact(Model model, PetscReal dt, PetscBool clipped, PetscInt newton, StepSize *size)
 {
   TouchChoice choice;
   PetscReal   longest = dt;
@@ -163,3 +163,5 @@ PetscErrorCode StepControlNext_Contact(Model model, PetscReal dt, PetscBool clip
   size->dt = PetscMax(size->dt_min, PetscMin(size->dt, longest));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
+
+const StepControl StepControl_Contact = {StepControlPredict_Contact, StepControlJudge_Contact, StepControlNext_Contact};

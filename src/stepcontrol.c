@@ -26,16 +26,8 @@ static PetscErrorCode StepControlNext_Iterations(Model model, PetscReal dt, Pets
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static const StepControl StepControls[] = {
-  {STEP_FIXED,      "fixed",      NULL,                       NULL,                     StepControlNext_Fixed     },
-  {STEP_ITERATIONS, "iterations", NULL,                       NULL,                     StepControlNext_Iterations},
-  {STEP_CONTACT,    "contact",    StepControlPredict_Contact, StepControlJudge_Contact, StepControlNext_Contact   },
-};
+const StepControl StepControl_Fixed      = {.next = StepControlNext_Fixed};
+const StepControl StepControl_Iterations = {.next = StepControlNext_Iterations};
 
-/* StepControlFind - the control of that kind. Not collective. */
-const StepControl *StepControlFind(StepControlKind kind)
-{
-  for (size_t c = 0; c < PETSC_STATIC_ARRAY_LENGTH(StepControls); c++)
-    if (StepControls[c].kind == kind) return &StepControls[c];
-  return NULL;
-}
+const StepControl *const StepControls[]     = {STEP_CONTROLS(CHOICE_POINTER)};
+const char *const        StepControlNames[] = {STEP_CONTROLS(CHOICE_NAME)};

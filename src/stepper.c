@@ -13,7 +13,8 @@
 struct _n_LoadStepper {
   MPI_Comm             comm;
   Model                model;
-  const StepControl   *control;
+  StepControlKind      kind;
+  const StepControl   *control;     /* that of the kind */
   StepSize             size, start; /* start: at the last accepted step */
   StepperReport        report;
   PetscInt             n_landings, next_landing; /* load parameters to be met exactly, ascending, the last one 1 */
@@ -103,7 +104,8 @@ static PetscErrorCode LoadStepperSetLandings(LoadStepper stepper, Scene scene)
 PetscErrorCode LoadStepperSetFromScene(LoadStepper stepper, Scene scene)
 {
   PetscFunctionBeginUser;
-  stepper->control = StepControlFind(scene->stepping.control);
+  stepper->kind    = scene->stepping.control;
+  stepper->control = StepControls[stepper->kind];
   stepper->size    = (StepSize){.initial   = scene->stepping.initial,
                                 .dt_min    = scene->stepping.dt_min,
                                 .dt_max    = scene->stepping.dt_max,
@@ -144,7 +146,7 @@ PetscErrorCode LoadStepperMonitorSet(LoadStepper stepper, LoadStepperMonitorFn m
 PetscErrorCode LoadStepperView(LoadStepper stepper, PetscViewer viewer)
 {
   PetscFunctionBeginUser;
-  PetscCall(PetscViewerASCIIPrintf(viewer, "LoadStepper: control %s, initial %g, dt_min %g, dt_max %g, growth %g\n", stepper->control->name,
+  PetscCall(PetscViewerASCIIPrintf(viewer, "LoadStepper: control %s, initial %g, dt_min %g, dt_max %g, growth %g\n", StepControlNames[stepper->kind],
                                    (double)stepper->size.initial, (double)stepper->size.dt_min, (double)stepper->size.dt_max, (double)stepper->size.growth));
   PetscCall(PetscViewerASCIIPrintf(viewer, "  lands on"));
   for (PetscInt i = 0; i < stepper->n_landings; i++) PetscCall(PetscViewerASCIIPrintf(viewer, " %g", (double)stepper->landings[i]));
@@ -213,7 +215,7 @@ static PetscErrorCode LoadStepperAccept(LoadStepper stepper, PetscReal dt, Petsc
   record->beta     = stepper->size.beta;
   record->tied     = stepper->size.tied;
   PetscCall(ModelAccept(model));
-  stepper->start = stepper->size;
+  stepper->start    = stepper->size;
   stepper->report.t = model->t;
   stepper->report.steps++;
   stepper->report.newton_accepted += solve->newton;
@@ -305,8 +307,8 @@ PetscErrorCode LoadStepperArchive(LoadStepper stepper, Archive archive)
   StepperReport *report   = &stepper->report;
   StepSize       size     = stepper->start;
   PetscReal      values[] = {size.initial, size.dt, size.beta, size.together, size.shortfall, size.planned};
-  PetscInt       counts[] = {report->steps,           report->steps_failed,    report->steps_repeated, report->newton_iterations,
-                             report->newton_accepted, report->krylov_iterations, size.tied};
+  PetscInt       counts[] = {
+          report->steps, report->steps_failed, report->steps_repeated, report->newton_iterations, report->newton_accepted, report->krylov_iterations, size.tied};
 
   PetscFunctionBeginUser;
   PetscCall(ArchiveReals(archive, "stepper/size", PETSC_STATIC_ARRAY_LENGTH(values), values));

@@ -10,6 +10,8 @@ static const char *const topology[ELEMENT_TYPES] = {
   [ELEMENT_TET4] = "Tetrahedron", [ELEMENT_TET10] = "Tetrahedron_10", [ELEMENT_HEX8] = "Hexahedron",     [ELEMENT_HEX27] = "Hexahedron_27",
 };
 
+static const char *const attribute_type[] = {[1] = "Scalar", [3] = "Vector", [6] = "Matrix"}; /* by width */
+
 static void XdmfPrintText(FILE *out, const char *text)
 {
   for (; *text; text++) {
@@ -22,48 +24,40 @@ static void XdmfPrintText(FILE *out, const char *text)
   }
 }
 
-/* Rows first .. first+n-1 and columns column .. column+width-1 of a dataset of total x stride values */
-static void XdmfPrintSlab(FILE *out, const char *type, PetscInt first, PetscInt n, int column, int width, PetscInt total, int stride, const char *path)
+/* A whole dataset, n x width; ParaView's readers agree on no part of one. */
+static void XdmfPrintDataset(FILE *out, const char *type, PetscInt n, int width, const char *path)
 {
-  fprintf(out, "<DataItem ItemType=\"HyperSlab\" Dimensions=\"%lld %d\">", (long long)n, width);
-  fprintf(out, "<DataItem Dimensions=\"3 2\" Format=\"XML\">%lld %d 1 1 %lld %d</DataItem>", (long long)first, column, (long long)n, width);
-  fprintf(out, "<DataItem Format=\"HDF\" NumberType=\"%s\" Precision=\"8\" Dimensions=\"%lld %d\">results.h5:%s</DataItem></DataItem>", type, (long long)total,
-          stride, path);
-}
-
-static void XdmfPrintNodal(FILE *out, PetscInt n, int width, const char *path)
-{
-  fprintf(out, "<DataItem Format=\"HDF\" NumberType=\"Float\" Precision=\"8\" Dimensions=\"%lld", (long long)n);
+  fprintf(out, "<DataItem Format=\"HDF\" NumberType=\"%s\" Precision=\"8\" Dimensions=\"%lld", type, (long long)n);
   if (width > 1) fprintf(out, " %d", width);
   fprintf(out, "\">results.h5:%s</DataItem>", path);
 }
 
+/* Six components go as a matrix: ParaView's readers do not agree on the order of a symmetric tensor. It names the columns of such a
+   matrix XX YY ZZ XY YZ XZ, which is our order. */
 static void XdmfPrintAttribute(FILE *out, const XdmfArray *array, PetscInt n, PetscInt step)
 {
   char path[PATH_SIZE];
 
-  snprintf(path, sizeof(path), "/steps/%04d/%s", (int)step, array->dataset);
-  fprintf(out, "    <Attribute Name=\"%s\" AttributeType=\"%s\" Center=\"Node\">", array->title, array->column < 0 && array->width == 3 ? "Vector" : "Scalar");
-  if (array->column < 0)
-    XdmfPrintNodal(out, n, array->width, path);
-  else
-    XdmfPrintSlab(out, "Float", 0, n, array->column, 1, n, array->width, path);
+  snprintf(path, sizeof(path), "/steps/%04d/%s", (int)step, array->name);
+  fprintf(out, "    <Attribute Name=\"%s\" AttributeType=\"%s\" Center=\"Node\">", array->name, attribute_type[array->width]);
+  XdmfPrintDataset(out, "Float", n, array->width, path);
   fprintf(out, "</Attribute>\n");
 }
 
 /* One block of cells at one step */
-static void XdmfPrintGrid(const Xdmf *xdmf, FILE *out, const XdmfBlock *block, PetscInt step)
+static void XdmfPrintGrid(const Xdmf *xdmf, FILE *out, int b, PetscInt step)
 {
-  const Element *element = ElementGet(block->type);
-  char           path[PATH_SIZE];
+  const XdmfBlock *block   = &xdmf->blocks[b];
+  const Element   *element = ElementGet(block->type);
+  char             path[PATH_SIZE];
 
   fprintf(out, "   <Grid Name=\"");
   XdmfPrintText(out, block->body);
   fprintf(out, " %s\">\n    <Topology TopologyType=\"%s\" NumberOfElements=\"%lld\">", element->name, topology[block->type], (long long)block->n);
-  snprintf(path, sizeof(path), "/mesh/cells_%s", element->name);
-  XdmfPrintSlab(out, "Int", block->first, block->n, 0, element->nodes, block->total, element->nodes, path);
+  snprintf(path, sizeof(path), "/mesh/block_%d", b);
+  XdmfPrintDataset(out, "Int", block->n, element->nodes, path);
   fprintf(out, "</Topology>\n    <Geometry GeometryType=\"XYZ\">");
-  XdmfPrintNodal(out, xdmf->nodes, 3, "/mesh/nodes");
+  XdmfPrintDataset(out, "Float", xdmf->nodes, 3, "/mesh/nodes");
   fprintf(out, "</Geometry>\n");
   for (int i = 0; i < xdmf->n_arrays; i++) XdmfPrintAttribute(out, &xdmf->arrays[i], xdmf->nodes, step);
   fprintf(out, "   </Grid>\n");
@@ -87,7 +81,7 @@ PetscErrorCode XdmfWrite(const Xdmf *xdmf, const char *directory)
   fprintf(out, "\" GridType=\"Collection\" CollectionType=\"Temporal\">\n");
   for (PetscInt s = 0; s < xdmf->n_steps; s++) {
     fprintf(out, "  <Grid Name=\"%04d\" GridType=\"Collection\" CollectionType=\"Spatial\">\n   <Time Value=\"%.15g\"/>\n", (int)s, (double)xdmf->t[s]);
-    for (int b = 0; b < xdmf->n_blocks; b++) XdmfPrintGrid(xdmf, out, &xdmf->blocks[b], s);
+    for (int b = 0; b < xdmf->n_blocks; b++) XdmfPrintGrid(xdmf, out, b, s);
     fprintf(out, "  </Grid>\n");
   }
   fprintf(out, " </Grid>\n</Domain>\n</Xdmf>\n");

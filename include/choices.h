@@ -1,0 +1,33 @@
+/* What a scene chooses by name and the program grows by: elastic laws, smoothers, step controls. Plain C.
+
+   A new one is a file of its own that defines the object, and a line here. Enumerations, tables, the scene's key and its reference follow from the
+   lists; what the object is, material.h, smoother.h and stepcontrol.h tell.
+
+     LINE(enumerator, word of the scene, object) */
+#pragma once
+
+#define ELASTIC_LAWS(LINE)                            \
+  LINE(MATERIAL_LINEAR, "linear", MaterialLaw_Linear) \
+  LINE(MATERIAL_SVK, "svk", MaterialLaw_Svk)          \
+  LINE(MATERIAL_NEO_HOOKEAN, "neo_hookean", MaterialLaw_NeoHookean)
+
+#define SMOOTHERS(LINE)                         \
+  LINE(SMOOTHER_FACET, "facet", Smoother_Facet) \
+  LINE(SMOOTHER_DIFFUSE, "diffuse", Smoother_Diffuse)
+
+#define STEP_CONTROLS(LINE)                                   \
+  LINE(STEP_FIXED, "fixed", StepControl_Fixed)                \
+  LINE(STEP_ITERATIONS, "iterations", StepControl_Iterations) \
+  LINE(STEP_CONTACT, "contact", StepControl_Contact)
+
+#define CHOICE_ENUMERATOR(kind, word, object) kind,
+typedef enum { ELASTIC_LAWS(CHOICE_ENUMERATOR) MATERIAL_LAWS } MaterialLaw;
+typedef enum { SMOOTHERS(CHOICE_ENUMERATOR) SMOOTHER_KINDS } SmootherKind;
+typedef enum { STEP_CONTROLS(CHOICE_ENUMERATOR) STEP_CONTROL_KINDS } StepControlKind;
+
+/* For tables by kind */
+#define CHOICE_NAME(kind, word, object)    [kind] = word,
+#define CHOICE_POINTER(kind, word, object) [kind] = &object,
+#define CHOICE_BAR(kind, word, object)     " | " word
+/* "word | word": as schemakeys.h wants them */
+#define CHOICE_WORDS(LIST) (&LIST(CHOICE_BAR)[sizeof " | " - 1])

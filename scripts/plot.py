@@ -1,0 +1,98 @@
+"""Curves of a run from its steps.csv, without a display: what the probes say, iterations, penetration and penalty, the load step.
+
+    build/venv/bin/python scripts/plot.py out/pipe_pinch              # steps.png in that folder
+    build/venv/bin/python scripts/plot.py out/pipe_pinch out/other    # several runs in one picture, steps.png in the first folder
+"""
+import argparse
+import pathlib
+import sys
+
+import matplotlib
+
+matplotlib.use("Agg")
+import matplotlib.pyplot as plt
+import numpy
+
+from launch import read_steps, read_summary
+
+MARKERS = "os^Dv<>*"
+
+
+def curve(axes, run, column, label=None, place=0, **style):
+    """A column over the load parameter, where it has values."""
+    steps = run["steps"]
+    values = steps.get(column, numpy.full(len(steps["t"]), numpy.nan))
+    if numpy.isfinite(values).any():
+        axes.plot(steps["t"], values, marker=MARKERS[place % len(MARKERS)], markersize=3.5, linewidth=1.2, label=label or column.replace("_", " "), **style)
+
+
+def finish(axes, title, log=False):
+    """An empty panel says so instead of showing axes without meaning."""
+    if not axes.lines:
+        axes.text(0.5, 0.5, "no values", ha="center", va="center", transform=axes.transAxes, color="0.5")
+    elif len(axes.lines) > 1:
+        axes.legend(fontsize=7)
+    if log and any(numpy.nanmax(line.get_ydata()) > 0 for line in axes.lines):
+        axes.set_yscale("log", nonpositive="mask")
+    axes.set_title(title, fontsize=10)
+    axes.set_xlabel("load parameter t", fontsize=8)
+    axes.tick_params(labelsize=8)
+    axes.grid(alpha=0.3)
+
+
+def contact_panels(panels, run, name, place):
+    """Nodes, force, penetration and penalty; the columns are empty without contact."""
+    nodes, force, penetration, penalty = panels
+    curve(nodes, run, "contact_nodes", name("in contact"), place)
+    curve(force, run, "contact_force", name("contact force"), place)
+    for column in ("max_penetration", "min_penetration"):
+        curve(penetration, run, column, name(column.replace("_penetration", "imum" if column.startswith("max") else "imum, loaded nodes")), place)
+    for column in ("penalty_min", "penalty_max"):
+        curve(penalty, run, column, name(column.replace("penalty_", "") + "imum"), place)
+
+
+def read(directory):
+    """Steps, probes and name of a run, which need not have ended."""
+    path = pathlib.Path(directory)
+    if not (path / "steps.csv").exists():
+        sys.exit(f"plot.py: {path}/steps.csv is not there; allowed: the folder of a run")
+    steps = read_steps(path)
+    if not steps:
+        sys.exit(f"plot.py: {path}/steps.csv has no accepted step")
+    columns = list(steps)
+    title = read_summary(path)["name"] if (path / "summary.json").exists() else path.name
+    return {"steps": steps, "probes": columns[columns.index("wall_s") + 1 :], "name": path.name, "title": title}
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("directories", nargs="+", help="results of runs")
+    parser.add_argument("-o", dest="file", type=pathlib.Path, help="file to write; default: steps.png in the first folder")
+    options = parser.parse_args()
+    runs = [read(directory) for directory in options.directories]
+    probes = list(dict.fromkeys(probe for run in runs for probe in run["probes"]))
+    columns = 3
+    rows = -(-(6 + len(probes)) // columns)
+    figure, grid = plt.subplots(rows, columns, figsize=(4 * columns, 2.7 * rows), layout="constrained", squeeze=False)
+    panels = list(grid.flat)
+    for place, run in enumerate(runs):
+        name = (lambda text, run=run: f"{run['name']}: {text}") if len(runs) > 1 else (lambda text: text)
+        for axes, probe in zip(panels, probes):
+            curve(axes, run, probe, run["name"] if len(runs) > 1 else None, place)
+        newton, step, *contact = panels[len(probes) : len(probes) + 6]
+        curve(newton, run, "newton", name("iterations"), place)
+        curve(step, run, "dt", name("step"), place)
+        contact_panels(contact, run, name, place)
+    titles = [(probe, False) for probe in probes]
+    titles += [("Newton iterations of the step", False), ("load step", True), ("nodes in contact", False), ("contact force", False), ("penetration", True), ("penalty", True)]
+    for axes, (title, log) in zip(panels, titles):
+        finish(axes, title, log)
+    for axes in panels[len(titles) :]:
+        axes.remove()
+    figure.suptitle(", ".join(dict.fromkeys(run["title"] for run in runs)))
+    file = options.file or pathlib.Path(options.directories[0]) / "steps.png"
+    figure.savefig(file, dpi=100)
+    print(file)
+
+
+main()

@@ -1,0 +1,73 @@
+"""scripts/render.py and scripts/plot.py draw every kind of run without a display: what is nearer hides what is behind, fields have their colours."""
+import os
+import subprocess
+import sys
+
+import matplotlib.image
+import numpy
+
+from harness import Check, arguments, run, SCENES
+
+SCRIPTS = SCENES.parent.parent / "scripts"
+sys.path.insert(0, str(SCRIPTS))
+from meshview import read_skin  # noqa: E402
+from raster import Canvas, View  # noqa: E402
+
+PLANE = ["geometry=plane_strain", "mesh.parameters.solid=0", "supports=[{surface: lower_bottom, uy: 0}, {surface: symmetry_x, ux: 0}]"]
+BENT = ["supports=[{surface: x_min, ux: 0}, {surface: y_min, uy: 0}, {surface: z_min, uz: 0}]", "loads=[{surface: y_max, uy: -0.1}]"]
+STEPS = "stepping={control: fixed, initial: 0.5}"
+# Runs: scene, overrides, area of the outer faces' triangles before it deforms
+RUNS = {
+    "solid": ("contact_patch.yaml", ["mesh.order=2"], None),
+    "plane": ("contact_patch.yaml", PLANE, None),
+    "tet10": ("patch.yaml", ["mesh.order=2", "mesh.parameters.tet=1", *BENT], 2 * (2 * 1 + 1 * 1.5 + 1.5 * 2)),
+    "hex8": ("patch.yaml", BENT, 2 * (2 * 1 + 1 * 1.5 + 1.5 * 2)),
+}
+
+
+def depth(check):
+    """Two squares: the nearer one, half as wide, hides the other one behind it from either side."""
+    far = numpy.array([[-1, -1, 0], [1, -1, 0], [1, 1, 0], [-1, 1, 0]], dtype=float)
+    near, faces = far * 0.5 + [0, 0, 1], numpy.array([[0, 1, 2], [0, 2, 3]])
+    for azimuth, share in ((0, 0.25), (180, 0)):
+        view = View(azimuth, 0)
+        canvas = Canvas(view, [-1, -1, -1], [1, 1, 1], 200)
+        for corners, colour in ((near, [1, 0, 0]), (far, [0, 0, 1])):
+            canvas.triangles(corners, faces, lambda v, colour=colour: numpy.broadcast_to(numpy.array(colour, dtype=float), (len(v), 3)), numpy.zeros(4))
+        image = canvas.image()
+        check.near(f"share of the smaller square from {azimuth} degrees", numpy.mean(image[:, :, 0] > image[:, :, 2]), share, 0.01)
+
+
+def script(name, *words):
+    environment = {key: value for key, value in os.environ.items() if key != "DISPLAY"}
+    return subprocess.run([sys.executable, "-W", "error::RuntimeWarning", str(SCRIPTS / name), *map(str, words)], env=environment, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+
+
+def drawn(check, what, finished, files, colours):
+    """The script names its files; each picture has that many different colours at least."""
+    check.holds(f"{what}: {', '.join(file.name for file in files)}", finished.returncode == 0 and finished.stdout.split() == [str(file) for file in files], finished.stdout[-500:])
+    for file in files if finished.returncode == 0 else []:
+        image = matplotlib.image.imread(file)
+        found = len(numpy.unique((255 * image[:, :, :3]).astype(int).reshape(-1, 3), axis=0))
+        check.holds(f"{what}: colours in {file.name}", found >= colours, f"{found}")
+
+
+args = arguments(("runs", "names of RUNS apart by -"))
+check = Check()
+depth(check)
+for name in args.runs.split("-"):
+    scene, overrides, area = RUNS[name]
+    folder = run(args, SCENES / scene, "-quiet", out=name, overrides=[*overrides, STEPS]).directory
+    contact = "contact" in scene
+    skin = read_skin(folder / "results.h5")
+    a, b, c = (skin.nodes[skin.triangles[:, i]] for i in range(3))
+    if area:
+        check.near(f"{name}: area of the skin", numpy.linalg.norm(numpy.cross(b - a, c - a), axis=1).sum() / 2, area, 1e-9 * area)
+    small = ("--width", 300)
+    drawn(check, name, script("render.py", folder, *small), [folder / "von_mises.png"] + [folder / "pressure.png"] * contact, 100)
+    drawn(check, name, script("plot.py", folder), [folder / "steps.png"], 20)
+    gif = folder / "uy.gif"
+    drawn(check, name, script("render.py", folder, "--field", "uy", "--mirror", "xz", "--animate", "-o", gif, *small), [gif], 50)
+    refused = script("render.py", folder, "--step", 2)
+    check.holds(f"{name}: a step that is not there", refused.returncode == 1 and "steps 0 to 1" in refused.stdout, refused.stdout[-200:])
+check.finish()
