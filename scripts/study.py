@@ -318,11 +318,9 @@ def target_table(study, rows, measure):
     return header, cells
 
 
-def write_tables(study, rows):
-    """NAME.csv and NAME.md; returns the latter's text."""
+def tell(study, rows):
+    """NAME.md: the tables, and what follows from them."""
     header, cells = point_table(study, rows)
-    with open(study.options.out / f"{study.name}.csv", "w", newline="") as file:
-        csv.writer(file).writerows([header, *[["" if cell is None else f"{cell:.8g}" if isinstance(cell, float) else cell for cell in row] for row in cells]])
     parts = [f"# {study.options.title or study.name}\n", markdown(header, [[text(cell) for cell in row] for row in cells])]
     for measure in study.measures if study.options.targets else []:
         parts.append(f"{measure.name}: CPU seconds from which on a line stays below an error\n\n" + markdown(*target_table(study, rows, measure.name)))
@@ -331,7 +329,15 @@ def write_tables(study, rows):
             row, error = enough(series, measure.name), series[-1]["errors"].get(measure.name)
             parts.append(f"{measure.name}, {', '.join(filter(None, (line, panel)))}: "
                          + (f"beyond {row['case'][study.along]} the error of {text(error)} % stays\n" if row else "every value changes the answer\n"))
-    told = "\n".join(parts)
+    return "\n".join(parts)
+
+
+def write_tables(study, rows):
+    """NAME.csv and NAME.md; returns the latter's text."""
+    header, cells = point_table(study, rows)
+    with open(study.options.out / f"{study.name}.csv", "w", newline="") as file:
+        csv.writer(file).writerows([header, *[["" if cell is None else f"{cell:.8g}" if isinstance(cell, float) else cell for cell in row] for row in cells]])
+    told = tell(study, rows)
     (study.options.out / f"{study.name}.md").write_text(told)
     return told
 
