@@ -27,7 +27,8 @@ from launch import command, environment, read_summary
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 STATUS = {0: "done", 1: "refused", 2: "not converged", 3: "stopped", 4: "failed"}
 KEPT = ("dofs", "steps", "steps_failed", "newton_iterations", "cpu_s", "wall_s", "peak_rss_mb", "probes")  # of summary.json
-FALLING = -0.2  # slope of log error over log CPU seconds; flatter lines are not extrapolated
+COST = {"": "{}", "<=": "at most {}", ">": "not reached at {}", "~": "not reached; extrapolated {}", None: "{}"}  # how cost() found it
+FAR = 100  # times the CPU seconds of a line's last point: nothing is extrapolated further
 QUICK = 2  # values of the last --vary with --quick
 DOMINATES = 10  # the error that stays over the part that a value adds, from which on that value buys nothing
 
@@ -255,17 +256,17 @@ def front(rows, measure):
 
 def cost(series, measure, target):
     """CPU seconds from which on a line stays below an error: (seconds, how), how being "" (interpolated in log-log), "<=" (its first point is below), ">"
-    (not reached at its last point), "~" (beyond its last point, by the slope of its last two)."""
+    (not reached at its last point), "~" (beyond its last point, by the slope of its last two), None where no run has an error."""
     points = [(row["cpu_s"], row["errors"][measure]) for row in series if row["errors"].get(measure)]
     above = [k for k, (_, error) in enumerate(points) if error > target]
-    if not points or not above:
-        return (points[0][0], "<=") if points else (None, "")
-    last = above[-1]
-    (x0, e0), (x1, e1) = points[max(last - (last == len(points) - 1), 0) :][:2] if len(points) > 1 else points * 2
-    slope = math.log(e1 / e0) / math.log(x1 / x0) if x1 != x0 else 0
-    if last < len(points) - 1:
-        return x0 * (target / e0) ** (1 / slope) if slope else x1, ""
-    return (x1 * (target / e1) ** (1 / slope), "~") if slope < FALLING else (x1, ">")
+    if not above or len(points) == 1:
+        return (points[0][0], ">" if above else "<=") if points else (None, None)
+    first = min(above[-1], len(points) - 2)
+    (x0, e0), (x1, e1) = points[first : first + 2]
+    beyond = math.log(e1 / e0) and math.log(x1 / x0) * math.log(target / e1) / math.log(e1 / e0)  # from x1 on, in natural logarithms
+    if above[-1] == first < len(points) - 1 and e1 <= target:
+        return x1 * math.exp(beyond), ""
+    return (x1 * math.exp(beyond), "~") if e1 < e0 and x1 > x0 and beyond < math.log(FAR) else (x1, ">")
 
 
 def enough(series, measure):
@@ -297,14 +298,16 @@ def markdown(header, rows):
 def point_table(study, rows):
     names = [name for name in study.axes if name not in study.options.worst]
     header = [*names, "status", "runs", "dofs", "steps", "failed", "iterations", "CPU s", "CPU s a step", "memory MB"]
-    header += [part for measure in study.measures for part in (measure.probe, f"error, {measure.name}, %")]
+    probes = list(dict.fromkeys(measure.probe for measure in study.measures))
+    header += [*probes, *(f"error, {measure.name}, %" for measure in study.measures)]
     cells = []
     for row in rows:
         status = row["status"] if row["status"] == "done" else f"{row['status']}: {row['cause']}"
         step = row["cpu_s"] / row["steps"] if row["steps"] else None
         counts = [row[name] for name in ("dofs", "steps", "steps_failed", "newton_iterations", "cpu_s")]
-        measured = [part for measure in study.measures for part in (row["values"].get(measure.name), row["errors"].get(measure.name))]
-        cells.append([*(row["case"][name] for name in names), status, row["runs"], *counts, step, row["peak_rss_mb"], *measured])
+        values = {measure.probe: row["values"].get(measure.name) for measure in study.measures}
+        errors = [row["errors"].get(measure.name) for measure in study.measures]
+        cells.append([*(row["case"][name] for name in names), status, row["runs"], *counts, step, row["peak_rss_mb"], *values.values(), *errors])
     return header, cells
 
 
@@ -313,9 +316,29 @@ def target_table(study, rows, measure):
     header, cells = ["", *(f"{target:g} %" for target in study.options.targets)], []
     for (panel, line), series in study.series(rows).items():
         found = [cost(series, measure, target) for target in study.options.targets]
-        shown = [{"<=": "at most {}", ">": "not reached at {}", "~": "not reached; extrapolated {}", "": "{}"}[how].format(text(seconds, 2)) for seconds, how in found]
+        shown = [COST[how].format(text(seconds, 2)) for seconds, how in found]
         cells.append([", ".join(filter(None, (line, panel))), *shown])
     return header, cells
+
+
+def best_table(study, rows, measure):
+    """By label of the first axis: the cheapest of its lines at the errors asked for, and from which of the last axis's values on."""
+    first, *others = study.lines
+    panels, cells = list(study.axes.get(study.options.panels, {"": None})), []
+    for label in study.axes[first]:
+        shown = []
+        for panel, target in itertools.product(panels, study.options.targets):
+            own = [series for (p, _), series in study.series(rows).items() if p == panel and series[0]["case"][first] == label]
+            reached = [(*cost(series, measure, target), series) for series in own]
+            seconds, _, series = min((entry for entry in reached if entry[1] in ("", "<=") and entry[0]), key=lambda entry: entry[0], default=(None, None, None))
+            if series:
+                start = next(k for k in range(len(series)) if all((row["errors"].get(measure) or 0) <= target for row in series[k:]))
+                shown.append(f"{text(seconds, 2)} ({', '.join(series[start]['case'][name] for name in (*others, study.along))})")
+            else:
+                error, seconds = min(((row["errors"][measure], row["cpu_s"]) for series in own for row in series if row["errors"].get(measure)), default=(None, None))
+                shown.append(f"not reached, {text(error, 2)} % at {text(seconds, 2)}")
+        cells.append([label, *shown])
+    return ["", *(", ".join(filter(None, (f"{target:g} %", panel))) for panel, target in itertools.product(panels, study.options.targets))], cells
 
 
 def tell(study, rows):
@@ -324,6 +347,7 @@ def tell(study, rows):
     parts = [f"# {study.options.title or study.name}\n", markdown(header, [[text(cell) for cell in row] for row in cells])]
     for measure in study.measures if study.options.targets else []:
         parts.append(f"{measure.name}: CPU seconds from which on a line stays below an error\n\n" + markdown(*target_table(study, rows, measure.name)))
+        parts.append(f"{measure.name}: the cheapest of each, CPU seconds\n\n" + markdown(*best_table(study, rows, measure.name)))
     for measure in study.measures if study.options.against else []:
         for (panel, line), series in study.series(rows).items():
             row, error = enough(series, measure.name), series[-1]["errors"].get(measure.name)
