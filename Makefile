@@ -1,4 +1,4 @@
-# Burnish: `make help` lists the targets. Variables: BUILD (folder), ARCH (-march), CFLAGS, PETSC_DIR and PETSC_ARCH, PREFIX.
+# Burnish: `make help` lists the targets. Variables: BUILD (folder), ARCH (-march), CFLAGS, PETSC_DIR and PETSC_ARCH, PREFIX, JOBS (runs of a study at a time).
 .DEFAULT_GOAL := all
 .DELETE_ON_ERROR:
 
@@ -6,6 +6,7 @@ BUILD  := build
 ARCH   := native
 CFLAGS := -O3 -g
 PREFIX := /usr/local
+JOBS   := 2
 VENV   := build/venv
 ifeq ($(origin CC),default)
   CC := mpicc
@@ -83,8 +84,10 @@ check: all tests ## the quick tests
 test: all tests ## all tests
 	@scripts/check.sh $(BUILD)
 
-study: all ## accuracy against time: tables and plots in out/study/
-	@echo "make study: not available yet" >&2; exit 1
+study: all ## accuracy against time: tables and plots in out/study/ (QUICK=1: shows that it runs)
+	@[ -x $(VENV)/bin/python ] || { echo "no Python environment in $(VENV): run make deps" >&2; exit 1; }
+	@for study in runs/studies/*.args; do $(VENV)/bin/python scripts/study.py @$$study --burnish $(BURNISH) --jobs $(JOBS) \
+	  $(if $(QUICK),--quick --out out/study/quick,--out out/study) || exit 1; done
 
 bench: all tests ## raw timing records and their table in out/bench/
 	@scripts/bench.sh $(BUILD)

@@ -88,6 +88,7 @@ struct _n_Contact {
   ContactWork   work;
   BlockMatrix   blocks; /* the last tangent */
   PetscLogEvent event_search, event_project, event_residual, event_tangent;
+  PetscLogEvent event_fit, event_offset, event_adjust, event_touch; /* of effects: none where the scene does not call for them */
 };
 
 /* contactpair.c */

@@ -5,18 +5,17 @@ Width from the pressure itself: where the half-ellipse through the nodes of the 
 import argparse
 import csv
 import json
-import os
 import shutil
 import subprocess
-from concurrent.futures import ThreadPoolExecutor
 import pathlib
 
 import h5py
 import numpy
 
+from launch import environment, write_records
+
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 INNER = 0.8  # the part of the contact zone that the ellipse is fitted to
-ENVIRONMENT = {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1", "OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
 SCENES = {  # pair, exact width and pressure, mesh parameter and its values by order, its probe of the width
     "line": ("line", 6.215, 3585.4, "h", {1: (1.6, 0.8, 0.4, 0.2), 2: (3.2, 1.6, 0.8, 0.4)}, "half_width"),
     "sphere": ("point", 1.0, 734.6, "n", {1: (3, 4, 6, 8)}, "radius"),
@@ -44,7 +43,7 @@ def solve(case, args):
     command = [args.burnish, str(ROOT / "runs" / f"hertz_{scene}.yaml"), "-o", str(directory), "-quiet"]
     for override in (f"mesh.order={order}", f"mesh.parameters.{parameter}={mesh}", f"contact.0.formulation={formulation}"):
         command += ["-set", override]
-    finished = subprocess.run(command, env={**ENVIRONMENT, **os.environ}, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+    finished = subprocess.run(command, env=environment(), stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
     record = dict(zip(COLUMNS, (*case, finished.returncode)))
     if finished.returncode == 0:
         summary = json.loads((directory / "summary.json").read_text())
@@ -84,12 +83,7 @@ def main():
     cases = [(scene, order, mesh, formulation) for scene in args.scenes or SCENES for order, meshes in SCENES[scene][4].items() for mesh in meshes for formulation in FORMULATIONS]
     if not args.only_print:
         args.out.mkdir(parents=True, exist_ok=True)
-        with open(args.record, "w", newline="") as file, ThreadPoolExecutor(args.jobs) as pool:
-            writer = csv.DictWriter(file, COLUMNS)
-            writer.writeheader()
-            for record in pool.map(lambda case: solve(case, args), cases):
-                writer.writerow(record)
-                file.flush()
+        write_records(args.record, COLUMNS, lambda case: [solve(case, args)], cases, args.jobs)
     with open(args.record, newline="") as file:
         print_table(list(csv.DictReader(file)))
 

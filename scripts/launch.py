@@ -3,6 +3,7 @@ import csv
 import json
 import os
 import pathlib
+from concurrent.futures import ThreadPoolExecutor
 
 import numpy
 
@@ -12,6 +13,8 @@ MPI = {
     "OMPI_MCA_rmaps_base_oversubscribe": "1",
     "PRTE_MCA_rmaps_default_mapping_policy": ":oversubscribe",  # Open MPI 5
     "OMPI_MCA_mpi_yield_when_idle": "1",
+    "OMPI_MCA_hwloc_base_binding_policy": "none",  # two runs at a time would be bound to the same cores
+    "PRTE_MCA_hwloc_default_binding_policy": "none",
     "OMP_NUM_THREADS": "1",
     "OPENBLAS_NUM_THREADS": "1",
 }
@@ -39,3 +42,13 @@ def read_steps(directory):
     with open(pathlib.Path(directory) / "steps.csv", newline="") as file:
         rows = list(csv.DictReader(file, skipinitialspace=True))
     return {key: numpy.array([float(row[key] or "nan") for row in rows]) for key in rows[0]} if rows else {}
+
+
+def write_records(path, columns, solve, cases, jobs):
+    """Solves cases, `jobs` at a time, into a CSV file that grows as they end; solve gives a list of records."""
+    with open(path, "w", newline="") as file, ThreadPoolExecutor(jobs) as pool:
+        writer = csv.DictWriter(file, columns)
+        writer.writeheader()
+        for records in pool.map(solve, cases):
+            writer.writerows(records)
+            file.flush()

@@ -9,15 +9,15 @@ import csv
 import functools
 import itertools
 import json
-import os
 import pathlib
 import re
 import shutil
 import subprocess
-from concurrent.futures import ThreadPoolExecutor
 
 import h5py
 import numpy
+
+from launch import environment, write_records
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 SCENE = ROOT / "runs/patch_blocks.yaml"
@@ -33,7 +33,6 @@ CORNERS = {"tet": [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]],
 EDGES = {"tet": [(0, 1), (1, 2), (2, 0), (0, 3), (1, 3), (2, 3)],  # XDMF's order
          "hex": [(0, 1), (1, 2), (2, 3), (3, 0), (4, 5), (5, 6), (6, 7), (7, 4), (0, 4), (1, 5), (2, 6), (3, 7)]}
 FACES = [(0, 3, 4, 7), (1, 2, 5, 6), (0, 1, 4, 5), (2, 3, 6, 7), (0, 1, 2, 3), (4, 5, 6, 7)]
-ENVIRONMENT = {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1", "OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
 
 
 @functools.cache
@@ -133,7 +132,7 @@ def solve(case, args):
     command = [args.burnish, str(SCENE), "-o", str(directory), "-quiet"]
     for override in overrides(*case):
         command += ["-set", override]
-    finished = subprocess.run(command, env={**ENVIRONMENT, **os.environ}, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+    finished = subprocess.run(command, env=environment(), stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
     record = dict(zip(COLUMNS, (strain, elements, order, *pair, jitter, formulation, finished.returncode)))
     if finished.returncode == 0:
         summary = json.loads((directory / "summary.json").read_text())
@@ -170,12 +169,7 @@ def main():
     args = parser.parse_args()
     if not args.only_print:
         args.out.mkdir(parents=True, exist_ok=True)
-        with open(args.record, "w", newline="") as file, ThreadPoolExecutor(args.jobs) as pool:
-            writer = csv.DictWriter(file, COLUMNS)
-            writer.writeheader()
-            for record in pool.map(lambda case: solve(case, args), cases()):
-                writer.writerow(record)
-                file.flush()
+        write_records(args.record, COLUMNS, lambda case: [solve(case, args)], cases(), args.jobs)
     with open(args.record, newline="") as file:
         print_tables(list(csv.DictReader(file)))
 

@@ -9,14 +9,13 @@ spheres    concentric spheres"""
 import argparse
 import csv
 import json
-import os
 import pathlib
 import shutil
 import statistics
 import subprocess
-from concurrent.futures import ThreadPoolExecutor
 
 import ring_floor
+from launch import environment, write_records
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 LAME = {"ring_in_ring": 6.439, "ring_in_ring_3d": 5.859, "spheres": 15.224}
@@ -37,8 +36,6 @@ LENGTH, END = 14, 6  # face sizes: of the rings in 3D, and how far the free end 
 PROBES = ("mean_pressure", "noise_max", "noise_rms", "noise_end_max", "noise_end_rms")
 COLUMNS = ("table", "scene", "n_inner", "n_outer", "slave", "smoother", "jitter", "seed", "status", "newton", "contact_nodes", "slave_nodes", "wall_s", "fall_backs", *PROBES, "order")
 TABLES = ("plane", "plane12", "matching", "solid", "spheres")
-ENVIRONMENT = {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1", "OMPI_MCA_rmaps_base_oversubscribe": "1",
-               "OMPI_MCA_mpi_yield_when_idle": "1", "OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
 
 
 def seeds(jitter):
@@ -89,7 +86,7 @@ def solve(table, case, args):
     command += [args.burnish, str(ROOT / "runs" / f"{scene}.yaml"), "-o", str(directory), "-quiet"]
     for override in overrides(table, *case):
         command += ["-set", override]
-    finished = subprocess.run(command, env={**ENVIRONMENT, **os.environ}, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+    finished = subprocess.run(command, env=environment(), stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
     record = dict(zip(COLUMNS, (table, scene, *pair, slave, method, jitter, seed, finished.returncode)), order=order)
     records = [record]
     if finished.returncode == 0:
@@ -185,13 +182,8 @@ def main():
         parser.error(f"no table {unknown[0]}; there are {', '.join(TABLES)}")
     if not args.only_print:
         args.out.mkdir(parents=True, exist_ok=True)
-        with open(args.record, "w", newline="") as file, ThreadPoolExecutor(args.jobs) as pool:
-            writer = csv.DictWriter(file, COLUMNS)
-            writer.writeheader()
-            for table in args.tables or TABLES:
-                for records in pool.map(lambda case: solve(table, case, args), cases(table)):
-                    writer.writerows(records)
-                    file.flush()
+        work = [(table, case) for table in args.tables or TABLES for case in cases(table)]
+        write_records(args.record, COLUMNS, lambda entry: solve(*entry, args), work, args.jobs)
     with open(args.record, newline="") as file:
         print_tables(list(csv.DictReader(file)))
 

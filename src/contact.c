@@ -26,7 +26,7 @@ static PetscErrorCode RefuseRepeatedPairs(Mesh mesh, Scene scene)
 PetscErrorCode ContactCreate(Mesh mesh, Scene scene, Elasticity elasticity, Loads loads, Contact *out)
 {
   Contact contact;
-  int     capacity = 0; /* most fit points of a smoother */
+  int     capacity = 0, fits = 0; /* most fit points of a smoother; pairs with fits */
 
   PetscFunctionBeginUser;
   PetscCall(PetscNew(&contact));
@@ -38,6 +38,10 @@ PetscErrorCode ContactCreate(Mesh mesh, Scene scene, Elasticity elasticity, Load
   PetscCall(PetscLogEventRegister("ContactProject", SNES_CLASSID, &contact->event_project));
   PetscCall(PetscLogEventRegister("ContactResidual", SNES_CLASSID, &contact->event_residual));
   PetscCall(PetscLogEventRegister("ContactTangent", SNES_CLASSID, &contact->event_tangent));
+  PetscCall(PetscLogEventRegister("ContactFit", SNES_CLASSID, &contact->event_fit));
+  PetscCall(PetscLogEventRegister("ContactOffset", SNES_CLASSID, &contact->event_offset));
+  PetscCall(PetscLogEventRegister("ContactAdjust", SNES_CLASSID, &contact->event_adjust));
+  PetscCall(PetscLogEventRegister("ContactTouch", SNES_CLASSID, &contact->event_touch));
   PetscCall(BlockMatrixCreate(mesh->comm, mesh->dim, &contact->blocks));
   PetscCall(RefuseRepeatedPairs(mesh, scene));
   PetscCall(PetscCalloc1(contact->n_pairs, &contact->pairs));
@@ -45,8 +49,9 @@ PetscErrorCode ContactCreate(Mesh mesh, Scene scene, Elasticity elasticity, Load
     PetscCall(ContactPairCreate(mesh, scene, elasticity, loads, &scene->contacts[p], &contact->pairs[p]));
     contact->pairs[p].work = &contact->work;
     capacity               = PetscMax(capacity, contact->pairs[p].smoother->capacity);
+    fits += contact->pairs[p].fit.degree > 0;
   }
-  PetscCall(PetscMalloc1(FitWorkspace(mesh->dim, 4, FIT_MAX_POINTS), &contact->work.workspace));
+  if (fits) PetscCall(PetscMalloc1(FitWorkspace(mesh->dim, 4, FIT_MAX_POINTS), &contact->work.workspace));
   PetscCall(
     PetscMalloc3(capacity, &contact->work.result.points, 3 * (capacity + 1), &contact->work.result.N, PetscSqr(3 * (capacity + 1)), &contact->work.result.M));
   *out = contact;
@@ -84,7 +89,9 @@ static PetscErrorCode PairProject(Contact contact, ContactPair *pair, const Pets
   pair->projected = PETSC_TRUE;
   PetscCall(PetscLogEventBegin(contact->event_project, 0, 0, 0, 0));
   if (pair->fit.degree) TimingBegin(TIMING_FIT);
+  if (pair->fit.degree) PetscCall(PetscLogEventBegin(contact->event_fit, 0, 0, 0, 0));
   PetscCall(ContactPointGaps(pair, pair->lists, pair->factor, pair->seed, pair->point_gap, pair->point_normal));
+  if (pair->fit.degree) PetscCall(PetscLogEventEnd(contact->event_fit, 0, 0, 0, 0));
   if (pair->fit.degree) TimingEnd(TIMING_FIT);
   PetscCall(PetscLogEventEnd(contact->event_project, 0, 0, 0, 0));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -127,8 +127,10 @@ PetscErrorCode ContactGather(Contact contact, const PetscReal *u, PetscReal t, P
     PetscBool    serves;
 
     PetscCall(PairMotion(contact, pair, t, &needed));
+    if (pair->slave_offsets) PetscCall(PetscLogEventBegin(contact->event_offset, 0, 0, 0, 0));
     if (pair->slave_offsets) PetscCall(OffsetsExtrapolate(pair->slave_offsets, u, t, t_next));
     if (pair->master_offsets) PetscCall(OffsetsExtrapolate(pair->master_offsets, u, t, t_next));
+    if (pair->slave_offsets) PetscCall(PetscLogEventEnd(contact->event_offset, 0, 0, 0, 0));
     PetscCall(PairNextServes(pair, u, t, needed, &serves));
     if (!serves) PetscCall(PairSearch(pair, u, t, needed));
     PetscCall(PairTakeNext(pair));
@@ -215,16 +217,17 @@ static PetscErrorCode PairNextAgrees(Contact contact, ContactPair *pair, PetscRe
    Collective. To be called after ContactResidual(). *within: the same on all ranks. */
 PetscErrorCode ContactListsReach(Contact contact, PetscBool *within)
 {
-  int all = 1;
+  int all = 1, fits = 0;
 
   PetscFunctionBeginUser;
   for (int p = 0; p < contact->n_pairs; p++) {
     const ContactPair *pair = &contact->pairs[p];
 
+    fits += pair->fit.degree > 0;
     for (PetscInt q = 0; q < pair->lists->n_slaves && pair->fit.degree; q++)
       if (pair->point_gap[q] <= pair->slave->max_size && ListsSlip(pair->lists, q) > LISTS_MARGIN) all = 0;
   }
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &all, 1, MPI_INT, MPI_LAND, contact->mesh->comm));
+  if (fits) PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &all, 1, MPI_INT, MPI_LAND, contact->mesh->comm));
   *within = all ? PETSC_TRUE : PETSC_FALSE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -76,6 +76,7 @@ PetscErrorCode ContactAdjustPenalty(Contact contact, ContactWindowState *state)
   PetscFunctionBeginUser;
   *state = WINDOW_HOLDS;
   if (!AnyAdjusts(contact, 1)) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscLogEventBegin(contact->event_adjust, 0, 0, 0, 0));
   PetscCall(LargestForce(contact, &largest));
   for (int p = 0; p < contact->n_pairs; p++) {
     ContactPair *pair = &contact->pairs[p];
@@ -84,6 +85,7 @@ PetscErrorCode ContactAdjustPenalty(Contact contact, ContactWindowState *state)
   }
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, count, 2, MPIU_INT, MPI_SUM, contact->mesh->comm));
   *state = !count[0] ? WINDOW_HOLDS : count[1] ? WINDOW_MISSED : WINDOW_AT_BOUND;
+  PetscCall(PetscLogEventEnd(contact->event_adjust, 0, 0, 0, 0));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -98,12 +100,14 @@ PetscErrorCode ContactAdjustNextPenalty(Contact contact)
 
   PetscFunctionBeginUser;
   if (!AnyAdjusts(contact, 0)) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscLogEventBegin(contact->event_adjust, 0, 0, 0, 0));
   PetscCall(LargestForce(contact, &largest));
   for (int p = 0; p < contact->n_pairs; p++) {
     ContactPair *pair = &contact->pairs[p];
 
     if (pair->scene->adjust && !pair->scene->adjust_converged) PairAdjust(pair, largest, &pair->accepted, count);
   }
+  PetscCall(PetscLogEventEnd(contact->event_adjust, 0, 0, 0, 0));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -84,6 +84,7 @@ PetscErrorCode ContactTouches(Contact contact, const PetscReal *u_0, PetscReal t
   Table      table;
 
   PetscFunctionBeginUser;
+  PetscCall(PetscLogEventBegin(contact->event_touch, 0, 0, 0, 0));
   PetscCall(TouchRows(contact, &rows));
   for (int p = 0; p < contact->n_pairs; p++) {
     ContactPair *pair = &contact->pairs[p];
@@ -113,6 +114,7 @@ PetscErrorCode ContactTouches(Contact contact, const PetscReal *u_0, PetscReal t
   *n = (int)table.n;
   PetscCall(TableDestroy(&table));
   PetscCall(PetscFree(rows));
+  PetscCall(PetscLogEventEnd(contact->event_touch, 0, 0, 0, 0));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -38,6 +38,7 @@ struct _n_Loads {
   PetscInt      n_dead, n_follower;
   DeadLoad     *dead;
   FollowerLoad *follower;
+  PetscLogEvent event_follower; /* where there is a follower load */
 };
 
 static PetscReal HistoryFactor(const History *history, PetscReal t)
@@ -204,16 +205,23 @@ static PetscErrorCode DeadLoadPack(const PetscReal *dense, PetscInt n, DeadLoad 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+static PetscBool LoadFollows(Scene scene, const SceneLoad *load)
+{
+  return (PetscBool)(load->kind == LOAD_PRESSURE && load->follower && scene->kinematics == KINEMATICS_FINITE);
+}
+
 static PetscErrorCode LoadsCreateForces(Loads loads)
 {
   Mesh       mesh  = loads->mesh;
   Scene      scene = loads->scene;
-  PetscInt   n     = mesh->n_nodes * mesh->dim;
+  PetscInt   n = mesh->n_nodes * mesh->dim, followers = 0;
   PetscReal *dense;
   MeshGroup *group;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscCalloc2(scene->n_loads, &loads->dead, scene->n_loads, &loads->follower));
+  for (int l = 0; l < scene->n_loads; l++) followers += LoadFollows(scene, &scene->loads[l]);
+  if (followers) PetscCall(PetscLogEventRegister("LoadsFollower", SNES_CLASSID, &loads->event_follower));
+  PetscCall(PetscCalloc2(scene->n_loads, &loads->dead, followers, &loads->follower));
   PetscCall(PetscMalloc1(n, &dense));
   for (int l = 0; l < scene->n_loads; l++) {
     const SceneLoad *load = &scene->loads[l];
@@ -221,7 +229,7 @@ static PetscErrorCode LoadsCreateForces(Loads loads)
 
     if (load->kind == LOAD_DISPLACEMENT) continue;
     if (load->kind != LOAD_BODY_FORCE) PetscCall(MeshGetGroup(mesh, scene, load->path, "surface", load->region, mesh->dim - 1, &group));
-    if (load->kind == LOAD_PRESSURE && load->follower && scene->kinematics == KINEMATICS_FINITE) {
+    if (LoadFollows(scene, load)) {
       loads->follower[loads->n_follower++] = (FollowerLoad){group, load->value[0], &load->history};
       continue;
     }
@@ -312,7 +320,9 @@ PetscErrorCode LoadsResidual(Loads loads, PetscReal t, const PetscReal *u, Petsc
     }
     if (force2) *force2 += PetscSqr(factor) * dead->force2;
   }
-  for (PetscInt l = 0; l < loads->n_follower && (f || force2); l++) {
+  if (!loads->n_follower || !(f || force2)) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscLogEventBegin(loads->event_follower, 0, 0, 0, 0));
+  for (PetscInt l = 0; l < loads->n_follower; l++) {
     for (PetscInt face = 0; face < loads->follower[l].group->n_faces; face++) {
       PetscCall(FollowerFace(loads, &loads->follower[l], face, t, u, nodes, &n, fe, NULL));
       for (int i = 0; i < n * dim; i++) {
@@ -321,6 +331,7 @@ PetscErrorCode LoadsResidual(Loads loads, PetscReal t, const PetscReal *u, Petsc
       }
     }
   }
+  PetscCall(PetscLogEventEnd(loads->event_follower, 0, 0, 0, 0));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -332,12 +343,15 @@ PetscErrorCode LoadsTangent(Loads loads, PetscReal t, const PetscReal *u, Elasti
   int      n;
 
   PetscFunctionBeginUser;
+  if (!loads->n_follower) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscLogEventBegin(loads->event_follower, 0, 0, 0, 0));
   for (PetscInt l = 0; l < loads->n_follower; l++) {
     for (PetscInt face = 0; face < loads->follower[l].group->n_faces; face++) {
       PetscCall(FollowerFace(loads, &loads->follower[l], face, t, u, nodes, &n, fe, ke));
       PetscCall(ElasticityAddBlock(elasticity, n, nodes, ke));
     }
   }
+  PetscCall(PetscLogEventEnd(loads->event_follower, 0, 0, 0, 0));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -352,7 +352,7 @@ PetscErrorCode SearchLists(ContactSearch s, const PetscReal *u, PetscReal t, Pet
   PetscCall(PetscMalloc1(3 * lists->n_slaves, &normals));
   PetscCall(SlavePointsNormals(s->slaves, u, normals));
   if (s->fit->degree) PetscCall(FittingCreate(s, lists, &field, &fit));
-  if (s->fit->global_frame) PetscCall(SurfaceMeanNormal(s->master, s->loads, s->n_images, s->images, u, t, fit.plane, NULL));
+  if (s->fit->degree && s->fit->global_frame) PetscCall(SurfaceMeanNormal(s->master, s->loads, s->n_images, s->images, u, t, fit.plane, NULL));
   PetscCall(ListsFill(s, lists, normals, &field, s->fit->degree ? &fit : NULL, motion));
   if (s->fit->degree) PetscCall(FittingDestroy(&fit));
   PetscCall(ListsUpdate(s, lists, u, t, NULL));
