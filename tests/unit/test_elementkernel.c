@@ -93,10 +93,10 @@ static void TakeLane(const Batch *b, int lane, double *X, double *u)
   }
 }
 
-/* All elements x geometries x (small, each finite law) */
+/* All elements x geometries x formulations x (small, each finite law) */
 static int NextCase(KernelCase *kernel)
 {
-  static const KernelCase first = {ELEMENT_TRI3, GEOMETRY_PLANE_STRAIN, KINEMATICS_SMALL, MATERIAL_LINEAR};
+  static const KernelCase first = {ELEMENT_TRI3, GEOMETRY_PLANE_STRAIN, KINEMATICS_SMALL, MATERIAL_LINEAR, FORMULATION_FULL};
 
   if (kernel->type == ELEMENT_TYPES) {
     *kernel = first;
@@ -106,6 +106,10 @@ static int NextCase(KernelCase *kernel)
   if (++kernel->law < MATERIAL_LAWS) return 1;
   kernel->law        = MATERIAL_LINEAR;
   kernel->kinematics = KINEMATICS_SMALL;
+  while (++kernel->formulation < FORMULATIONS) {
+    if (ElementKernelExists(kernel)) return 1;
+  }
+  kernel->formulation = FORMULATION_FULL;
   if (kernel->geometry == GEOMETRY_PLANE_STRAIN) {
     kernel->geometry = GEOMETRY_AXISYMMETRIC;
     return 1;
