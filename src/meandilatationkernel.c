@@ -1,7 +1,9 @@
 /* Mean dilatation, the formulation `fbar`: the law sees F' = (J'/J)^(1/3) F, J' being the element's mean of J = det F, so that nearly incompressible
    solids do not lock. Energy, force and tangent are those of the energy W(F'): with a law that splits volume and shape they are the mean dilatation
    method (Nagtegaal, Parks and Rice 1974; Bonet and Wood, "Nonlinear Continuum Mechanics for Finite Element Analysis", section 8.6.5), in small strains
-   the B-bar element (Hughes 1980). The F-bar element of de Souza Neto et al. (1996) uses the same F' but not its variation, and has no energy. */
+   the B-bar element (Hughes 1980). The F-bar element of de Souza Neto et al. (1996) uses the same F' but not its variation, and has no energy.
+   St. Venant-Kirchhoff's law is nearly incompressible for small strains only: it resists the trace of Green's strain, not J, and locks a little at large ones.
+ */
 #include "elementbatch.h"
 #include <math.h>
 #include <stddef.h>
