@@ -1,5 +1,5 @@
 /* Batched element kernels, total Lagrangian, plain C: no PETSc, no MPI, no allocation. A batch is KERNEL_LANES elements of one type,
-   law, geometry and kinematics; arrays are [node][dim][lane], so that the inner loops vectorise. A short batch repeats its last element.
+   law, geometry, kinematics and formulation; arrays are [node][dim][lane], so that the inner loops vectorise. A short batch repeats its last element.
    Sources of the forms: Bonet and Wood, "Nonlinear Continuum Mechanics for Finite Element Analysis". */
 #pragma once
 #include "element.h"
@@ -13,6 +13,7 @@ typedef struct {
   Geometry    geometry;
   Kinematics  kinematics;
   MaterialLaw law;
+  Formulation formulation;
 } KernelCase;
 
 /* X: reference coordinates, u: displacements, [nodes][dim][lanes]; material per lane E[], nu[]. Axisymmetric X[.][0] is the radius itself.
@@ -20,6 +21,9 @@ typedef struct {
    NULL. Axisymmetric quantities are over 360 degrees. Returns in J[lanes] the smallest determinant of F over the points (small kinematics: 1);
    finite kinematics with J <= 0 still fills the arrays with finite numbers. */
 void ElementKernel(const KernelCase *, const double *X, const double *u, const double *E, const double *nu, double *W, double *f, double *K, double *J);
+int  ElementKernelExists(const KernelCase *);
+/* One element: the displacement gradient that the law is evaluated at, at its quadrature points [points][9]. X, u: [nodes][dim]. */
+void ElementPointGradient(const KernelCase *, const double *X, const double *u, double E, double nu, double *H);
 /* One element: Cauchy stress (xx yy zz xy yz xz; axisymmetric: x = r, y = z, z = hoop) at its quadrature points [points][6] and their
    reference volumes [points]. X, u: [nodes][dim]. */
 void ElementPointStress(const KernelCase *, const double *X, const double *u, double E, double nu, double *stress, double *volume);

@@ -1,4 +1,4 @@
-/* What a mesh looks like: the report on bodies, surfaces and partition, and the refusal of inverted cells. */
+/* What a mesh looks like: the report on bodies, surfaces and partition, and the refusal of inverted cells and of those that a formulation is not for. */
 #pragma once
 #include "meshdata.h"
 #include <stdio.h>
@@ -7,3 +7,5 @@
 PetscErrorCode MeshReport(Mesh, Scene, FILE *);
 /* Refuses inverted elements (cell tag, body, smallest determinant). Collective. */
 PetscErrorCode MeshCheckQuality(Mesh, Scene);
+/* Refuses elements that their body's formulation has no kernel for (cell tag, body, element). Collective. */
+PetscErrorCode MeshCheckFormulations(Mesh, Scene);

@@ -12,15 +12,18 @@
 
 typedef enum { GEOMETRY_SOLID, GEOMETRY_PLANE_STRAIN, GEOMETRY_AXISYMMETRIC } Geometry;
 typedef enum { KINEMATICS_SMALL, KINEMATICS_FINITE } Kinematics;
+typedef enum { FORMULATION_FULL, FORMULATION_ENHANCED, FORMULATION_FBAR, FORMULATIONS } Formulation;
+extern const char *const Formulations[]; /* "full", "enhanced", "fbar", NULL-terminated */
 typedef enum { OVERLAP_REFUSE, OVERLAP_RESOLVE, OVERLAP_RAMP, OVERLAP_IGNORE } InitialOverlap;
 typedef enum { CONTACT_NODE_TO_SURFACE, CONTACT_SURFACE_TO_SURFACE } ContactFormulation;
 
 typedef struct {
-  char    *path;  /* "bodies.0": for SceneWhere() */
-  char    *name;  /* physical group: a volume, or for a rigid tool a surface */
-  int      rigid; /* a meshed rigid tool: no material */
-  Material material;
-  Motion   motion;
+  char       *path;  /* "bodies.0": for SceneWhere() */
+  char       *name;  /* physical group: a volume, or for a rigid tool a surface */
+  int         rigid; /* a meshed rigid tool: no material */
+  Material    material;
+  Formulation formulation; /* other than full: quad4 and hex8 only */
+  Motion      motion;
 } SceneBody;
 
 typedef struct {

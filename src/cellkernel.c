@@ -35,30 +35,6 @@ static double PointVolume(const Element *e, int p, int dim, Geometry geometry, c
   return geometry == GEOMETRY_AXISYMMETRIC ? volume * two_pi * Radius(e, p, dim, X) : volume;
 }
 
-/* H at quadrature point p by solving J g = dN for the reference gradients (Cramer's rule) */
-static void DisplacementGradient(const Element *e, int p, int dim, Geometry geometry, const double *X, const double *u, double J[3][3], double H[9])
-{
-  double B[3][3] = {{0}}, determinant = 0;
-
-  if (dim == 2) J[2][0] = J[2][1] = J[0][2] = J[1][2] = 0, J[2][2] = 1;
-  for (int k = 0; k < 3; k++) {
-    const int k1 = (k + 1) % 3, k2 = (k + 2) % 3;
-
-    for (int m = 0; m < 3; m++) B[k][m] = J[k1][(m + 1) % 3] * J[k2][(m + 2) % 3] - J[k1][(m + 2) % 3] * J[k2][(m + 1) % 3];
-  }
-  for (int m = 0; m < 3; m++) determinant += J[0][m] * B[0][m];
-  for (int r = 0; r < 9; r++) H[r] = 0;
-  for (int a = 0; a < e->nodes; a++) {
-    for (int m = 0; m < dim; m++) {
-      double g = 0;
-
-      for (int k = 0; k < dim; k++) g += e->dN[p][a][k] * B[k][m] / determinant;
-      for (int i = 0; i < dim; i++) H[3 * i + m] += u[a * dim + i] * g;
-    }
-    if (geometry == GEOMETRY_AXISYMMETRIC) H[8] += u[a * dim] * e->N[p][a] / Radius(e, p, dim, X);
-  }
-}
-
 /* Cauchy stress P F^T / det F; small strains: P itself */
 static void CauchyStress(const double H[9], const double P[9], int finite, double stress[6])
 {
@@ -101,14 +77,15 @@ void ElementPointStress(const KernelCase *kernel, const double *X, const double 
   const Element *e        = ElementGet(kernel->type);
   const int      finite   = kernel->kinematics == KINEMATICS_FINITE;
   const Material material = {kernel->law, E, nu};
+  double         H[ELEMENT_MAX_POINTS * 9];
 
+  ElementPointGradient(kernel, X, u, E, nu, H);
   for (int p = 0; p < e->points; p++) {
-    double J[3][3], H[9], P[9];
+    double J[3][3], P[9];
 
     volume[p] = PointVolume(e, p, e->dim, kernel->geometry, X, J);
-    DisplacementGradient(e, p, e->dim, kernel->geometry, X, u, J, H);
-    MaterialPoint(&material, finite, H, NULL, P, NULL);
-    CauchyStress(H, P, finite, &stress[6 * p]);
+    MaterialPoint(&material, finite, &H[9 * p], NULL, P, NULL);
+    CauchyStress(&H[9 * p], P, finite, &stress[6 * p]);
   }
 }
 

@@ -48,20 +48,33 @@ static PetscErrorCode RegisterEvents(void)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+static KernelCase BodyKernel(Scene scene, PetscInt body, ElementType type)
+{
+  const SceneBody *b = &scene->bodies[body];
+
+  return (KernelCase){type, scene->geometry, scene->kinematics, scene->kinematics == KINEMATICS_SMALL ? MATERIAL_LINEAR : b->material.law, b->formulation};
+}
+
+/* Of one scene: geometry and kinematics are the same */
+static PetscBool SameKernel(const KernelCase *a, const KernelCase *b)
+{
+  return a->type == b->type && a->law == b->law && a->formulation == b->formulation ? PETSC_TRUE : PETSC_FALSE;
+}
+
 /* Sorts the cells into groups in the order in which new kinds appear: cell_group and cell_slot */
 static PetscErrorCode GroupCells(Elasticity e, Scene scene)
 {
   const Mesh mesh = e->mesh;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscCalloc1(ELEMENT_TYPES * MATERIAL_LAWS, &e->groups));
+  PetscCall(PetscCalloc1(ELEMENT_TYPES * MATERIAL_LAWS * FORMULATIONS, &e->groups));
   PetscCall(PetscMalloc3(mesh->n_cells, &e->cell_group, mesh->n_cells, &e->cell_slot, mesh->n_cells, &e->cell_modulus));
   for (PetscInt c = 0; c < mesh->n_cells; c++) {
     const Material  *material = &scene->bodies[mesh->cell_body[c]].material;
-    const KernelCase kernel = {mesh->cell_type[c], scene->geometry, scene->kinematics, scene->kinematics == KINEMATICS_SMALL ? MATERIAL_LINEAR : material->law};
-    int              g      = 0;
+    const KernelCase kernel   = BodyKernel(scene, mesh->cell_body[c], mesh->cell_type[c]);
+    int              g        = 0;
 
-    while (g < e->n_groups && (e->groups[g].kernel.type != kernel.type || e->groups[g].kernel.law != kernel.law)) g++;
+    while (g < e->n_groups && !SameKernel(&e->groups[g].kernel, &kernel)) g++;
     if (g == e->n_groups) e->groups[e->n_groups++] = (CellGroup){.kernel = kernel, .nodes = ElementGet(kernel.type)->nodes};
     e->cell_group[c]   = g;
     e->cell_slot[c]    = e->groups[g].n_cells++;

@@ -152,6 +152,7 @@ static PetscErrorCode RunScene(const CommandLine *command, int *status)
     PetscCall(MeshCreate(comm, scene, mesh_file, &mesh));
     if (command->mode == COMMAND_CHECK) PetscCall(MeshReport(mesh, scene, stdout));
     PetscCall(MeshCheckQuality(mesh, scene));
+    PetscCall(MeshCheckFormulations(mesh, scene));
     PetscCall(ModelCreate(scene, mesh, &model));
     PetscCall(ProbesCreate(model, scene, &probes));
     if (!command->restart) {

@@ -52,6 +52,32 @@ PetscErrorCode MeshCheckQuality(Mesh mesh, Scene scene)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/*
+  MeshCheckFormulations - refuses cells that their body's formulation has no kernel for
+
+  Collective
+
+  Input Parameters:
++ mesh  - the mesh
+- scene - its bodies
+*/
+PetscErrorCode MeshCheckFormulations(Mesh mesh, Scene scene)
+{
+  Complaint complaint = {""};
+
+  PetscFunctionBeginUser;
+  for (PetscInt c = 0; c < mesh->n_cells; c++) {
+    const SceneBody *body = &scene->bodies[mesh->cell_body[c]];
+
+    if (ElementKernelExists(&(KernelCase){.type = mesh->cell_type[c], .geometry = scene->geometry, .formulation = body->formulation})) continue;
+    Complain(&complaint, "%s: %s is for quad4 and hex8 only; cell %" PetscInt_FMT " of body '%s' is %s, which needs formulation: full",
+             SceneWhere(scene, body->path, "formulation"), Formulations[body->formulation], mesh->cell_tag[c], body->name,
+             ElementGet(mesh->cell_type[c])->name);
+  }
+  PetscCall(ComplaintRefuse(mesh->comm, &complaint));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* --------------------------------------------------------------------------------------------------------------- report */
 
 /* A line of the report: a body, a surface, or a rigid tool; all ranks' */

@@ -2,6 +2,8 @@
 #include "refusal.h"
 #include <string.h>
 
+const char *const Formulations[] = {"full", "enhanced", "fbar", NULL};
+
 static const char *const Displacements[] = {"ux", "uy", "uz"}, *const Rotations[] = {"rx", "ry", "rz"};
 
 /* ---- for all readers ---- */
@@ -186,6 +188,9 @@ static PetscErrorCode SceneReadBody(Scene scene, SceneBody *body)
   body->material.nu  = SchemaReal(SceneDocument(scene), "%s.material.nu", body->path);
   if (body->material.law == MATERIAL_LINEAR && scene->kinematics == KINEMATICS_FINITE)
     SceneRefuse(scene, body->path, "material.law", "linear needs kinematics: small; allowed with finite: svk | neo_hookean", NULL);
+  body->formulation = (Formulation)SchemaChoice(SceneDocument(scene), "%s.formulation", body->path);
+  if (body->formulation != FORMULATION_FULL && scene->order == 2)
+    SceneRefuse(scene, body->path, "formulation", "is for first-order elements; allowed with mesh.order: 2: full", Formulations[body->formulation]);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -30,7 +30,7 @@ const SchemaKey SchemaKeys[] = {
   {"bodies.*.material.law", CHOICE, REQUIRED, .values = CHOICE_WORDS(ELASTIC_LAWS), .help = "linear only with kinematics small"},
   {"bodies.*.material.E", REAL, REQUIRED, .range = "(0, inf)", .unit = "stress", .help = "Young's modulus"},
   {"bodies.*.material.nu", REAL, REQUIRED, .range = "(-1, 0.5)", .help = "Poisson's ratio"},
-  {"bodies.*.formulation", CHOICE, .values = "full | enhanced | fbar", .preset = "full", .now = "full"},
+  {"bodies.*.formulation", CHOICE, .values = "full | enhanced | fbar", .preset = "full", .help = "of first-order quadrilaterals and bricks: enhanced bends without locking, fbar is for nearly incompressible laws"},
   {"bodies.*.surface", TEXT, .help = "physical surface of a rigid tool; needs rigid"},
   {"bodies.*.rigid", MAP, .help = "makes the surface a meshed rigid tool"},
   {"bodies.*.rigid.point", POINT, .unit = "length", .help = "that rotations turn about; default: the origin"},

@@ -30,39 +30,56 @@ typedef struct {
   Geometry    geometry;
   PetscBool   axis; /* axisymmetric: the box touches the axis r = 0 */
   MaterialLaw law;  /* linear: small strains */
+  Formulation formulation;
   int         levels, n[LEVELS];
 } Case;
 
 static const Case cases[] = {
-  {ELEMENT_TRI3,  GEOMETRY_PLANE_STRAIN, PETSC_FALSE, MATERIAL_LINEAR,      3, {8, 16, 32}},
-  {ELEMENT_TRI3,  GEOMETRY_AXISYMMETRIC, PETSC_FALSE, MATERIAL_LINEAR,      3, {8, 16, 32}},
-  {ELEMENT_TRI3,  GEOMETRY_AXISYMMETRIC, PETSC_TRUE,  MATERIAL_LINEAR,      3, {8, 16, 32}},
-  {ELEMENT_TRI6,  GEOMETRY_PLANE_STRAIN, PETSC_FALSE, MATERIAL_LINEAR,      3, {8, 16, 32}},
-  {ELEMENT_TRI6,  GEOMETRY_AXISYMMETRIC, PETSC_FALSE, MATERIAL_LINEAR,      3, {8, 16, 32}},
-  {ELEMENT_TRI6,  GEOMETRY_AXISYMMETRIC, PETSC_TRUE,  MATERIAL_LINEAR,      3, {8, 16, 32}},
-  {ELEMENT_QUAD4, GEOMETRY_PLANE_STRAIN, PETSC_FALSE, MATERIAL_LINEAR,      3, {8, 16, 32}},
-  {ELEMENT_QUAD4, GEOMETRY_AXISYMMETRIC, PETSC_FALSE, MATERIAL_LINEAR,      3, {8, 16, 32}},
-  {ELEMENT_QUAD4, GEOMETRY_AXISYMMETRIC, PETSC_TRUE,  MATERIAL_LINEAR,      3, {8, 16, 32}},
-  {ELEMENT_QUAD9, GEOMETRY_PLANE_STRAIN, PETSC_FALSE, MATERIAL_LINEAR,      3, {4, 8, 16} },
-  {ELEMENT_QUAD9, GEOMETRY_AXISYMMETRIC, PETSC_FALSE, MATERIAL_LINEAR,      3, {4, 8, 16} },
-  {ELEMENT_QUAD9, GEOMETRY_AXISYMMETRIC, PETSC_TRUE,  MATERIAL_LINEAR,      3, {4, 8, 16} },
-  {ELEMENT_TET4,  GEOMETRY_SOLID,        PETSC_FALSE, MATERIAL_LINEAR,      3, {4, 8, 12} },
-  {ELEMENT_TET10, GEOMETRY_SOLID,        PETSC_FALSE, MATERIAL_LINEAR,      3, {4, 6, 8}  },
-  {ELEMENT_HEX8,  GEOMETRY_SOLID,        PETSC_FALSE, MATERIAL_LINEAR,      3, {4, 8, 12} },
-  {ELEMENT_HEX27, GEOMETRY_SOLID,        PETSC_FALSE, MATERIAL_LINEAR,      3, {2, 4, 6}  },
-  {ELEMENT_QUAD4, GEOMETRY_PLANE_STRAIN, PETSC_FALSE, MATERIAL_SVK,         2, {8, 16}    },
-  {ELEMENT_QUAD4, GEOMETRY_PLANE_STRAIN, PETSC_FALSE, MATERIAL_NEO_HOOKEAN, 2, {8, 16}    },
-  {ELEMENT_QUAD4, GEOMETRY_AXISYMMETRIC, PETSC_TRUE,  MATERIAL_SVK,         2, {8, 16}    },
-  {ELEMENT_QUAD4, GEOMETRY_AXISYMMETRIC, PETSC_TRUE,  MATERIAL_NEO_HOOKEAN, 2, {8, 16}    },
-  {ELEMENT_HEX8,  GEOMETRY_SOLID,        PETSC_FALSE, MATERIAL_SVK,         2, {4, 8}     },
-  {ELEMENT_HEX8,  GEOMETRY_SOLID,        PETSC_FALSE, MATERIAL_NEO_HOOKEAN, 2, {4, 8}     },
-  {ELEMENT_HEX27, GEOMETRY_SOLID,        PETSC_FALSE, MATERIAL_SVK,         2, {2, 4}     },
-  {ELEMENT_HEX27, GEOMETRY_SOLID,        PETSC_FALSE, MATERIAL_NEO_HOOKEAN, 2, {2, 4}     },
+  {ELEMENT_TRI3,  GEOMETRY_PLANE_STRAIN, PETSC_FALSE, MATERIAL_LINEAR,      FORMULATION_FULL,     3, {8, 16, 32}},
+  {ELEMENT_TRI3,  GEOMETRY_AXISYMMETRIC, PETSC_FALSE, MATERIAL_LINEAR,      FORMULATION_FULL,     3, {8, 16, 32}},
+  {ELEMENT_TRI3,  GEOMETRY_AXISYMMETRIC, PETSC_TRUE,  MATERIAL_LINEAR,      FORMULATION_FULL,     3, {8, 16, 32}},
+  {ELEMENT_TRI6,  GEOMETRY_PLANE_STRAIN, PETSC_FALSE, MATERIAL_LINEAR,      FORMULATION_FULL,     3, {8, 16, 32}},
+  {ELEMENT_TRI6,  GEOMETRY_AXISYMMETRIC, PETSC_FALSE, MATERIAL_LINEAR,      FORMULATION_FULL,     3, {8, 16, 32}},
+  {ELEMENT_TRI6,  GEOMETRY_AXISYMMETRIC, PETSC_TRUE,  MATERIAL_LINEAR,      FORMULATION_FULL,     3, {8, 16, 32}},
+  {ELEMENT_QUAD4, GEOMETRY_PLANE_STRAIN, PETSC_FALSE, MATERIAL_LINEAR,      FORMULATION_FULL,     3, {8, 16, 32}},
+  {ELEMENT_QUAD4, GEOMETRY_AXISYMMETRIC, PETSC_FALSE, MATERIAL_LINEAR,      FORMULATION_FULL,     3, {8, 16, 32}},
+  {ELEMENT_QUAD4, GEOMETRY_AXISYMMETRIC, PETSC_TRUE,  MATERIAL_LINEAR,      FORMULATION_FULL,     3, {8, 16, 32}},
+  {ELEMENT_QUAD9, GEOMETRY_PLANE_STRAIN, PETSC_FALSE, MATERIAL_LINEAR,      FORMULATION_FULL,     3, {4, 8, 16} },
+  {ELEMENT_QUAD9, GEOMETRY_AXISYMMETRIC, PETSC_FALSE, MATERIAL_LINEAR,      FORMULATION_FULL,     3, {4, 8, 16} },
+  {ELEMENT_QUAD9, GEOMETRY_AXISYMMETRIC, PETSC_TRUE,  MATERIAL_LINEAR,      FORMULATION_FULL,     3, {4, 8, 16} },
+  {ELEMENT_TET4,  GEOMETRY_SOLID,        PETSC_FALSE, MATERIAL_LINEAR,      FORMULATION_FULL,     3, {4, 8, 12} },
+  {ELEMENT_TET10, GEOMETRY_SOLID,        PETSC_FALSE, MATERIAL_LINEAR,      FORMULATION_FULL,     3, {4, 6, 8}  },
+  {ELEMENT_HEX8,  GEOMETRY_SOLID,        PETSC_FALSE, MATERIAL_LINEAR,      FORMULATION_FULL,     3, {4, 8, 12} },
+  {ELEMENT_HEX27, GEOMETRY_SOLID,        PETSC_FALSE, MATERIAL_LINEAR,      FORMULATION_FULL,     3, {2, 4, 6}  },
+  {ELEMENT_QUAD4, GEOMETRY_PLANE_STRAIN, PETSC_FALSE, MATERIAL_SVK,         FORMULATION_FULL,     2, {8, 16}    },
+  {ELEMENT_QUAD4, GEOMETRY_PLANE_STRAIN, PETSC_FALSE, MATERIAL_NEO_HOOKEAN, FORMULATION_FULL,     2, {8, 16}    },
+  {ELEMENT_QUAD4, GEOMETRY_AXISYMMETRIC, PETSC_TRUE,  MATERIAL_SVK,         FORMULATION_FULL,     2, {8, 16}    },
+  {ELEMENT_QUAD4, GEOMETRY_AXISYMMETRIC, PETSC_TRUE,  MATERIAL_NEO_HOOKEAN, FORMULATION_FULL,     2, {8, 16}    },
+  {ELEMENT_HEX8,  GEOMETRY_SOLID,        PETSC_FALSE, MATERIAL_SVK,         FORMULATION_FULL,     2, {4, 8}     },
+  {ELEMENT_HEX8,  GEOMETRY_SOLID,        PETSC_FALSE, MATERIAL_NEO_HOOKEAN, FORMULATION_FULL,     2, {4, 8}     },
+  {ELEMENT_HEX27, GEOMETRY_SOLID,        PETSC_FALSE, MATERIAL_SVK,         FORMULATION_FULL,     2, {2, 4}     },
+  {ELEMENT_HEX27, GEOMETRY_SOLID,        PETSC_FALSE, MATERIAL_NEO_HOOKEAN, FORMULATION_FULL,     2, {2, 4}     },
+  {ELEMENT_QUAD4, GEOMETRY_PLANE_STRAIN, PETSC_FALSE, MATERIAL_LINEAR,      FORMULATION_ENHANCED, 3, {8, 16, 32}},
+  {ELEMENT_QUAD4, GEOMETRY_AXISYMMETRIC, PETSC_FALSE, MATERIAL_LINEAR,      FORMULATION_ENHANCED, 3, {8, 16, 32}},
+  {ELEMENT_QUAD4, GEOMETRY_AXISYMMETRIC, PETSC_TRUE,  MATERIAL_LINEAR,      FORMULATION_ENHANCED, 3, {8, 16, 32}},
+  {ELEMENT_HEX8,  GEOMETRY_SOLID,        PETSC_FALSE, MATERIAL_LINEAR,      FORMULATION_ENHANCED, 3, {4, 8, 12} },
+  {ELEMENT_QUAD4, GEOMETRY_PLANE_STRAIN, PETSC_FALSE, MATERIAL_SVK,         FORMULATION_ENHANCED, 2, {8, 16}    },
+  {ELEMENT_QUAD4, GEOMETRY_AXISYMMETRIC, PETSC_TRUE,  MATERIAL_NEO_HOOKEAN, FORMULATION_ENHANCED, 2, {8, 16}    },
+  {ELEMENT_HEX8,  GEOMETRY_SOLID,        PETSC_FALSE, MATERIAL_SVK,         FORMULATION_ENHANCED, 2, {4, 8}     },
+  {ELEMENT_HEX8,  GEOMETRY_SOLID,        PETSC_FALSE, MATERIAL_NEO_HOOKEAN, FORMULATION_ENHANCED, 2, {4, 8}     },
+  {ELEMENT_QUAD4, GEOMETRY_PLANE_STRAIN, PETSC_FALSE, MATERIAL_LINEAR,      FORMULATION_FBAR,     3, {8, 16, 32}},
+  {ELEMENT_QUAD4, GEOMETRY_AXISYMMETRIC, PETSC_FALSE, MATERIAL_LINEAR,      FORMULATION_FBAR,     3, {8, 16, 32}},
+  {ELEMENT_QUAD4, GEOMETRY_AXISYMMETRIC, PETSC_TRUE,  MATERIAL_LINEAR,      FORMULATION_FBAR,     3, {8, 16, 32}},
+  {ELEMENT_HEX8,  GEOMETRY_SOLID,        PETSC_FALSE, MATERIAL_LINEAR,      FORMULATION_FBAR,     3, {4, 8, 12} },
+  {ELEMENT_QUAD4, GEOMETRY_PLANE_STRAIN, PETSC_FALSE, MATERIAL_SVK,         FORMULATION_FBAR,     2, {8, 16}    },
+  {ELEMENT_QUAD4, GEOMETRY_AXISYMMETRIC, PETSC_TRUE,  MATERIAL_NEO_HOOKEAN, FORMULATION_FBAR,     2, {8, 16}    },
+  {ELEMENT_HEX8,  GEOMETRY_SOLID,        PETSC_FALSE, MATERIAL_SVK,         FORMULATION_FBAR,     2, {4, 8}     },
+  {ELEMENT_HEX8,  GEOMETRY_SOLID,        PETSC_FALSE, MATERIAL_NEO_HOOKEAN, FORMULATION_FBAR,     2, {4, 8}     },
 };
 enum { CASES = sizeof(cases) / sizeof(*cases) };
 
 /* The same on any number of ranks */
-static const Case parallel_case = {ELEMENT_TET10, GEOMETRY_SOLID, PETSC_FALSE, MATERIAL_NEO_HOOKEAN, 1, {4}};
+static const Case parallel_case = {ELEMENT_TET10, GEOMETRY_SOLID, PETSC_FALSE, MATERIAL_NEO_HOOKEAN, FORMULATION_FULL, 1, {4}};
 
 static PetscMPIInt rank;
 static char        folder[64], meshes[PATH_MAX];
@@ -186,8 +203,8 @@ static PetscErrorCode SceneCreate(MPI_Comm comm, const Case *test, int n, Scene 
     FILE *stream = fopen(file, "w");
 
     PetscCheck(stream, PETSC_COMM_SELF, PETSC_ERR_FILE_OPEN, "cannot write %s", file);
-    fprintf(stream, "geometry: %s\nkinematics: %s\nbodies: [{volume: block, material: {law: %s, E: %g, nu: %g}}]\n", names[test->geometry],
-            test->law == MATERIAL_LINEAR ? "small" : "finite", MaterialLaws[test->law], young, poisson);
+    fprintf(stream, "geometry: %s\nkinematics: %s\nbodies: [{volume: block, formulation: %s, material: {law: %s, E: %g, nu: %g}}]\n", names[test->geometry],
+            test->law == MATERIAL_LINEAR ? "small" : "finite", Formulations[test->formulation], MaterialLaws[test->law], young, poisson);
     fprintf(stream, "mesh: {file: %s/%s.geo, order: %d, parameters: {nx: %d, ny: %d", meshes, e->dim == 3 ? "block" : "square", e->order, n, n);
     if (e->dim == 3) fprintf(stream, ", nz: %d", n);
     fprintf(stream, ", %s: %d}}\n", e->dim == 3 ? "tet" : "tri", e->corners == e->dim + 1);
@@ -461,7 +478,8 @@ static void Converges(void **state)
     PetscInt steps;
 
     CHECK(Solve(PETSC_COMM_WORLD, test, test->n[k], &h[k], &error[k], &steps));
-    print_message("%-6s %-19s %-12s %8.4f %12.4e %7d", e->name, GeometryText(test), MaterialLaws[test->law], h[k], error[k], (int)steps);
+    print_message("%-6s %-19s %-12s %-9s %8.4f %12.4e %7d", e->name, GeometryText(test), MaterialLaws[test->law], Formulations[test->formulation], h[k],
+                  error[k], (int)steps);
     if (k) print_message(" %6.2f", Rate(2, &h[k - 1], &error[k - 1]));
     if (k == test->levels - 1) print_message(" %6.2f > %.1f", Rate(test->levels, h, error), bound);
     print_message("\n");
@@ -505,7 +523,7 @@ int main(int argc, char **argv)
   if (size > 1)
     failed = cmocka_run_group_tests(parallel, NULL, NULL);
   else {
-    print_message("%-6s %-19s %-12s %8s %12s %7s %6s %6s\n", "element", "geometry", "law", "h", "L2 error", "Newton", "rate", "all");
+    print_message("%-6s %-19s %-12s %-9s %8s %12s %7s %6s %6s\n", "element", "geometry", "law", "strains", "h", "L2 error", "Newton", "rate", "all");
     failed = cmocka_run_group_tests(tests, NULL, NULL);
   }
   PetscCall(PetscSNPrintf(command, sizeof(command), "rm -r %s", folder));

@@ -6,6 +6,7 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+#include "eigenvalues.h"
 #include "elementkernel.h"
 
 #define assert_near(a, b, tolerance) assert_true(fabs((a) - (b)) <= (tolerance))
@@ -93,10 +94,10 @@ static void TakeLane(const Batch *b, int lane, double *X, double *u)
   }
 }
 
-/* All elements x geometries x (small, each finite law) */
+/* All elements x geometries x formulations x (small, each finite law) */
 static int NextCase(KernelCase *kernel)
 {
-  static const KernelCase first = {ELEMENT_TRI3, GEOMETRY_PLANE_STRAIN, KINEMATICS_SMALL, MATERIAL_LINEAR};
+  static const KernelCase first = {ELEMENT_TRI3, GEOMETRY_PLANE_STRAIN, KINEMATICS_SMALL, MATERIAL_LINEAR, FORMULATION_FULL};
 
   if (kernel->type == ELEMENT_TYPES) {
     *kernel = first;
@@ -106,6 +107,10 @@ static int NextCase(KernelCase *kernel)
   if (++kernel->law < MATERIAL_LAWS) return 1;
   kernel->law        = MATERIAL_LINEAR;
   kernel->kinematics = KINEMATICS_SMALL;
+  while (++kernel->formulation < FORMULATIONS) {
+    if (ElementKernelExists(kernel)) return 1;
+  }
+  kernel->formulation = FORMULATION_FULL;
   if (kernel->geometry == GEOMETRY_PLANE_STRAIN) {
     kernel->geometry = GEOMETRY_AXISYMMETRIC;
     return 1;
@@ -238,6 +243,69 @@ static void RigidMotionCausesNoForce(void **state)
       assert_near(b.W[lane], 0, 1e-12 * b.E[0]);
       assert_near(b.J[lane], 1, 1e-13);
     }
+    BatchDestroy(&b);
+  }
+}
+
+/* A rotation after any deformation leaves the energy and turns the forces */
+static void RotationTurnsForces(void **state)
+{
+  const double c = cos(0.9), s = sin(0.9), plane[9] = {c, -s, 0, s, c, 0, 0, 0, 1}, space[9] = {c, -s, 0, 0.6 * s, 0.6 * c, -0.8, 0.8 * s, 0.8 * c, 0.6};
+
+  (void)state;
+  for (KernelCase kernel = before_first; NextCase(&kernel);) {
+    const double *Q = kernel.geometry == GEOMETRY_SOLID ? space : plane;
+    Batch         b, turned;
+
+    if (kernel.kinematics == KINEMATICS_SMALL || kernel.law == MATERIAL_LINEAR || kernel.geometry == GEOMETRY_AXISYMMETRIC) continue;
+    BatchCreate(&b, kernel, 0.1);
+    Evaluate(&b);
+    turned = b;
+    for (int a = 0; a < b.e->nodes; a++) {
+      for (int i = 0; i < b.dim; i++) {
+        for (int lane = 0; lane < KERNEL_LANES; lane++) {
+          double *u = &turned.u[(a * b.dim + i) * KERNEL_LANES + lane];
+
+          *u = -b.X[(a * b.dim + i) * KERNEL_LANES + lane];
+          for (int m = 0; m < b.dim; m++) *u += Q[3 * i + m] * (b.X[(a * b.dim + m) * KERNEL_LANES + lane] + b.u[(a * b.dim + m) * KERNEL_LANES + lane]);
+        }
+      }
+    }
+    Evaluate(&turned);
+    for (int k = 0; k < b.dofs * KERNEL_LANES; k++) {
+      const int a = k / KERNEL_LANES / b.dim, i = k / KERNEL_LANES % b.dim;
+      double    force = 0;
+
+      for (int m = 0; m < b.dim; m++) force += Q[3 * i + m] * b.f[(a * b.dim + m) * KERNEL_LANES + k % KERNEL_LANES];
+      assert_near(turned.f[k], force, 1e-11 * b.E[0]);
+    }
+    for (int lane = 0; lane < KERNEL_LANES; lane++) assert_near(turned.W[lane], b.W[lane], 1e-12 * b.E[0]);
+    BatchDestroy(&b);
+  }
+}
+
+/* The undeformed element resists everything but its rigid motions: no hourglass is without energy. The one point of an axisymmetric tri3 does not see a
+   rotation about itself. */
+static void OnlyRigidMotionsAreFree(void **state)
+{
+  const int rigid[] = {[GEOMETRY_SOLID] = 6, [GEOMETRY_PLANE_STRAIN] = 3, [GEOMETRY_AXISYMMETRIC] = 1};
+
+  (void)state;
+  for (KernelCase kernel = before_first; NextCase(&kernel);) {
+    Batch  b;
+    double A[MAX_DOFS * MAX_DOFS], value[MAX_DOFS];
+    int    free_motions = 0;
+
+    BatchCreate(&b, kernel, 0);
+    memset(b.u, 0, sizeof(b.u));
+    Evaluate(&b);
+    for (int k = 0; k < b.dofs * b.dofs; k++) A[k] = b.K[k * KERNEL_LANES];
+    Eigenvalues(b.dofs, A, value);
+    for (int k = 0; k < b.dofs; k++) {
+      assert_true(value[k] > -1e-12 * value[b.dofs - 1]);
+      free_motions += value[k] < 1e-8 * value[b.dofs - 1];
+    }
+    assert_int_equal(free_motions, rigid[kernel.geometry] + (kernel.type == ELEMENT_TRI3 && kernel.geometry == GEOMETRY_AXISYMMETRIC));
     BatchDestroy(&b);
   }
 }
@@ -450,7 +518,8 @@ int main(void)
     cmocka_unit_test(UniformExpansionIsExact),       cmocka_unit_test(InvertedElementsAreReportedAndFinite),
     cmocka_unit_test(VolumesFollowFromTheSurface),   cmocka_unit_test(AxisymmetricVolumeIsThatOfARing),
     cmocka_unit_test(BodyForceHasItsResultant),      cmocka_unit_test(QualityOfParallelepipedsIsOne),
-    cmocka_unit_test(FoldedCornersAreFound),
+    cmocka_unit_test(FoldedCornersAreFound),         cmocka_unit_test(RotationTurnsForces),
+    cmocka_unit_test(OnlyRigidMotionsAreFree),
   };
 
   return cmocka_run_group_tests(tests, NULL, NULL);

@@ -1,0 +1,348 @@
+/* Enhanced assumed strains: F = F(u) + F_0 sum_I w_I G_I (x) b_I with free vectors b_I in every element. G_I is the gradient of reference coordinate I
+   at the element's centre, F_0 = F(u) there, w_I = xi_I times the ratio of the volume elements at the centre and at the point: orthogonal to constants,
+   so that the patch test holds. These are Wilson's incompatible modes transposed: in small strains the element of Taylor, Beresford and Wilson (QM6)
+   and its brick, in large ones without the hourglasses that Wilson's own modes have under compression (Glaser and Armero, "On the formulation of
+   enhanced strain finite elements in finite deformations", Engineering Computations 14, 1997; F_0 and the constant gradients: Pfefferkorn and Betsch,
+   "On transformations and shape functions for enhanced assumed strain elements", International Journal for Numerical Methods in Engineering 120, 2019).
+   Axisymmetric elements have a mode of the hoop strain besides, w = xi eta (Simo and Rifai 1990).
+
+   The b_I are solved for at every call, by Newton's method in the element from b = 0, and condensed: energy, force and tangent are functions of u alone,
+   and a state that is returned to is returned to exactly. */
+#include "elementbatch.h"
+#include <math.h>
+#include <stddef.h>
+
+enum { MAX_NODES = 8, MAX_POINTS = 8, MAX_MODES = 9 };
+_Static_assert((int)MAX_POINTS < (int)CHUNK, "the centre stands behind the points in a chunk");
+
+/* Newton's method in an element takes 3 to 6 iterations in bending; where it takes more than this it is lost */
+enum { MAX_ITERATIONS = 20 };
+/* The next correction would be the square of one whose energy is this part of the element's: too small to matter */
+static const double settled_energy = 1e-10;
+/* The same for elements that have no energy: square of a strain, far above rounding of displacements and far below what its square could spoil */
+static const double settled_strain2 = 1e-20;
+
+/* Mode k is component J of vector I; the hoop mode stands alone in the third direction. It acts on the space components from FIRST to END. */
+#define MODE_IS_HOOP(dim, k)   ((dim) == 2 && (k) == 4)
+#define MODE_VECTOR(dim, k)    (MODE_IS_HOOP(dim, k) ? 2 : (k) / (dim))
+#define MODE_COMPONENT(dim, k) (MODE_IS_HOOP(dim, k) ? 2 : (k) % (dim))
+#define MODE_FIRST(dim, k)     (MODE_IS_HOOP(dim, k) ? 2 : 0)
+#define MODE_END(dim, k)       (MODE_IS_HOOP(dim, k) ? 3 : (dim))
+/* Row of the gradient operator that tensor component (i, J) is */
+#define OPERATOR_ROW(dim, i, J) ((dim) == 2 && (i) == 2 ? 4 : (dim) * (i) + (J))
+
+typedef struct {
+  ChunkPoints c; /* the centre stands behind the points */
+  Lanes       volume[MAX_POINTS];
+  Lanes       H[MAX_POINTS][9]; /* of the displacements alone */
+  Lanes       w[MAX_POINTS][3];
+  Lanes       L[3][3];         /* F_0 G_I; axisymmetric: [2][2] is the hoop stretch at the centre */
+  Lanes       C[MAX_NODES][3]; /* gradient of node a at the centre times G_I; axisymmetric: [2] is N_a / R there */
+  Lanes       b[MAX_MODES];
+} Enhanced;
+
+/* Gradients at points and centre, modes, displacement gradients without modes */
+LANES_INLINE void Prepare(const BatchCall *call, const int n, const int points, const int dim, const int hoop, Enhanced *x)
+{
+  const Element *e = call->e;
+  double         N[MAX_NODES], dN[MAX_NODES][3];
+  Lanes          centre, H[9];
+
+  for (int a = 0; a < n; a++) {
+    N[a] = 1. / n;
+    for (int k = 0; k < dim; k++) dN[a][k] = e->node[a][k] / n;
+  }
+  PointGradients(n, dim, hoop, N, dN, 1, points, call->X, &x->c, &centre);
+  PointDisplacementGradient(n, dim, hoop, points, call->u, &x->c, H);
+  for (int q = 0; q < points; q++) {
+    Lanes ratio;
+
+    PointGradients(n, dim, hoop, e->N[q], e->dN[q], e->weight[q], q, call->X, &x->c, &x->volume[q]);
+    PointDisplacementGradient(n, dim, hoop, q, call->u, &x->c, x->H[q]);
+    ratio = e->weight[q] * centre / x->volume[q];
+    for (int k = 0; k < dim; k++) x->w[q][k] = e->point[q][k] * ratio;
+    if (hoop) x->w[q][2] = e->point[q][0] * e->point[q][1] * ratio;
+  }
+  for (int k = 0; k < dim; k++) {
+    Lanes G[3] = {{0}};
+
+    for (int a = 0; a < n; a++) {
+      for (int m = 0; m < dim; m++) G[m] += e->node[a][k] * x->c.g[a][points][m];
+    }
+    for (int i = 0; i < dim; i++) {
+      x->L[k][i] = G[i];
+      for (int m = 0; m < dim && call->finite; m++) x->L[k][i] += H[3 * i + m] * G[m];
+    }
+    for (int a = 0; a < n; a++) {
+      x->C[a][k] = x->c.g[a][points][0] * G[0];
+      for (int m = 1; m < dim; m++) x->C[a][k] += x->c.g[a][points][m] * G[m];
+    }
+  }
+  if (hoop) x->L[2][2] = 1 + H[TENSOR_HOOP] * (double)call->finite;
+  for (int a = 0; a < n && hoop; a++) x->C[a][2] = x->c.g[a][points][2];
+  for (int k = 0; k < MAX_MODES; k++) x->b[k] = (Lanes){0};
+}
+
+LANES_INLINE void PointGradient(const int dim, const int hoop, const Enhanced *x, int q, Lanes H[9])
+{
+  for (int r = 0; r < 9; r++) H[r] = x->H[q][r];
+#pragma GCC unroll 9
+  for (int k = 0; k < dim * dim + hoop; k++) {
+    const int   vector = MODE_VECTOR(dim, k);
+    const Lanes b      = x->w[q][vector] * x->b[k];
+
+    for (int i = MODE_FIRST(dim, k); i < MODE_END(dim, k); i++) H[3 * i + MODE_COMPONENT(dim, k)] += x->L[vector][i] * b;
+  }
+}
+
+/* The law's tangent (times volume) applied to the modes without their w: T[row of the operator][mode]; adds the modes' own tangent to K, upper triangle */
+LANES_INLINE void AddModeTangent(const int dim, const int hoop, const Enhanced *x, int q, Lanes T[MAX_ROWS][MAX_MODES], Lanes K[MAX_MODES][MAX_MODES])
+{
+  const int modes = dim * dim + hoop;
+
+#pragma GCC unroll 9
+  for (int r = 0; r < modes; r++) {
+#pragma GCC unroll 9
+    for (int k = 0; k < modes; k++) {
+      const int first = MODE_FIRST(dim, k), J = MODE_COMPONENT(dim, k), vector = MODE_VECTOR(dim, k);
+
+      T[r][k] = TANGENT(x->c.A[q], TENSOR_ROW(dim, r), 3 * first + J) * x->L[vector][first];
+      for (int i = first + 1; i < MODE_END(dim, k); i++) T[r][k] += TANGENT(x->c.A[q], TENSOR_ROW(dim, r), 3 * i + J) * x->L[vector][i];
+    }
+  }
+#pragma GCC unroll 9
+  for (int k = 0; k < modes; k++) {
+    const int first = MODE_FIRST(dim, k), J = MODE_COMPONENT(dim, k), vector = MODE_VECTOR(dim, k);
+
+#pragma GCC unroll 9
+    for (int l = k; l < modes; l++) {
+      Lanes sum = x->L[vector][first] * T[OPERATOR_ROW(dim, first, J)][l];
+
+      for (int i = first + 1; i < MODE_END(dim, k); i++) sum += x->L[vector][i] * T[OPERATOR_ROW(dim, i, J)][l];
+      K[k][l] += x->w[q][vector] * x->w[q][MODE_VECTOR(dim, l)] * sum;
+    }
+  }
+}
+
+LANES_INLINE void AddModeForce(const int dim, const int hoop, const Enhanced *x, int q, const Lanes P[9], Lanes f[MAX_MODES])
+{
+#pragma GCC unroll 9
+  for (int k = 0; k < dim * dim + hoop; k++) {
+    const int vector = MODE_VECTOR(dim, k);
+    Lanes     sum    = {0};
+
+    for (int i = MODE_FIRST(dim, k); i < MODE_END(dim, k); i++) sum += x->L[vector][i] * P[3 * i + MODE_COMPONENT(dim, k)];
+    f[k] += x->w[q][vector] * sum;
+  }
+}
+
+/* K = U^T D U from its upper triangle: U above the diagonal, 1 / D on it */
+LANES_INLINE void Factor(const int modes, Lanes K[MAX_MODES][MAX_MODES])
+{
+#pragma GCC unroll 9
+  for (int k = 0; k < modes; k++) {
+    K[k][k] = 1 / K[k][k];
+#pragma GCC unroll 9
+    for (int i = k + 1; i < modes; i++) {
+      const Lanes u = K[k][i] * K[k][k];
+
+#pragma GCC unroll 9
+      for (int j = i; j < modes; j++) K[i][j] -= u * K[k][j];
+    }
+    for (int i = k + 1; i < modes; i++) K[k][i] *= K[k][k];
+  }
+}
+
+/* y = U^-T y */
+LANES_INLINE void SolveLower(const int modes, Lanes K[MAX_MODES][MAX_MODES], Lanes y[MAX_MODES])
+{
+#pragma GCC unroll 9
+  for (int k = 0; k < modes; k++) {
+#pragma GCC unroll 9
+    for (int i = k + 1; i < modes; i++) y[i] -= K[k][i] * y[k];
+  }
+}
+
+/* y = K^-1 y */
+LANES_INLINE void Solve(const int modes, Lanes K[MAX_MODES][MAX_MODES], Lanes y[MAX_MODES])
+{
+  SolveLower(modes, K, y);
+  for (int k = modes - 1; k >= 0; k--) {
+    y[k] *= K[k][k];
+    for (int i = k + 1; i < modes; i++) y[k] -= K[k][i] * y[i];
+  }
+}
+
+/* Energy of the element, force of the modes and their tangent, factorised */
+LANES_INLINE void ModeSystem(const BatchCall *call, const int points, const int dim, const int hoop, Enhanced *x, Lanes *W, Lanes f[MAX_MODES],
+                             Lanes K[MAX_MODES][MAX_MODES])
+{
+  const int modes = dim * dim + hoop;
+
+  *W = (Lanes){0};
+  for (int k = 0; k < modes; k++) {
+    f[k] = (Lanes){0};
+    for (int l = k; l < modes; l++) K[k][l] = (Lanes){0};
+  }
+  for (int q = 0; q < points; q++) {
+    Lanes H[9], P[9], T[MAX_ROWS][MAX_MODES], dilatation, energy;
+
+    PointGradient(dim, hoop, x, q, H);
+    MaterialDilatation(H, &dilatation);
+    call->law(H, &dilatation, &call->lambda, &call->mu, &energy, P, x->c.A[q]);
+    *W += energy * x->volume[q];
+    for (int r = 0; r < 9; r++) P[r] *= x->volume[q];
+    for (int k = 0; k < MATERIAL_TANGENT_SIZE; k++) x->c.A[q][k] *= x->volume[q];
+    AddModeForce(dim, hoop, x, q, P, f);
+    AddModeTangent(dim, hoop, x, q, T, K);
+  }
+  Factor(modes, K);
+}
+
+/* Marks the lanes whose last correction d, with force f, was small enough as no longer active; returns how many are left */
+LANES_INLINE int LeaveSettled(const BatchCall *call, const int points, const int modes, const Enhanced *x, const Lanes *W, const Lanes *f, const Lanes *d,
+                              Lanes *active)
+{
+  Lanes volume = {0};
+  int   left   = 0;
+
+  for (int q = 0; q < points; q++) volume += x->volume[q];
+  for (int lane = 0; lane < LANES; lane++) {
+    double work = 0; /* twice the energy that the correction set free */
+
+    for (int k = 0; k < modes; k++) work += fabs(f[k][lane] * d[k][lane]);
+    if (work <= settled_energy * (*W)[lane] + settled_strain2 * call->mu[lane] * volume[lane]) (*active)[lane] = 0;
+    left += (*active)[lane] != 0;
+  }
+  return left;
+}
+
+/* The modes of each lane at rest. A lane that does not get there is given J = NaN, and no modes; small strains are there after one step. */
+LANES_INLINE void Settle(const BatchCall *call, const int points, const int dim, const int hoop, Enhanced *x)
+{
+  const int modes  = dim * dim + hoop;
+  Lanes     active = (Lanes){0} + 1;
+  int       left   = LANES;
+
+  for (int iteration = 0; left && iteration < (call->finite ? MAX_ITERATIONS : 1); iteration++) {
+    Lanes W, f[MAX_MODES], d[MAX_MODES], K[MAX_MODES][MAX_MODES];
+
+    ModeSystem(call, points, dim, hoop, x, &W, f, K);
+    for (int k = 0; k < modes; k++) d[k] = f[k];
+    Solve(modes, K, d);
+    for (int k = 0; k < modes; k++) x->b[k] -= active * d[k]; /* a lane at rest stays as it is, whatever the others do */
+    left = LeaveSettled(call, points, modes, x, &W, f, d, &active);
+  }
+  for (int lane = 0; lane < LANES && call->finite; lane++) {
+    for (int k = 0; k < modes && active[lane] != 0; k++) x->b[k][lane] = 0;
+    if (active[lane] != 0) call->J[lane] = NAN;
+  }
+}
+
+/* dF / du at a point is du (x) (g + C w b): the modes turn and stretch with F_0 */
+LANES_INLINE void CarryModes(const int n, const int dim, const int hoop, int q, Enhanced *x)
+{
+  for (int k = 0; k < dim * dim + hoop; k++) {
+    const int   vector = MODE_VECTOR(dim, k);
+    const Lanes b      = x->w[q][vector] * x->b[k];
+
+    for (int a = 0; a < n; a++) x->c.g[a][q][MODE_COMPONENT(dim, k)] += x->C[a][vector] * b;
+  }
+}
+
+/* Adds a point to the tangent between displacements and modes, K[n*dim][modes]; P times volume */
+LANES_INLINE void AddCoupling(const int n, const int dim, const int hoop, int finite, int q, const Enhanced *x, const Lanes P[9], Lanes T[MAX_ROWS][MAX_MODES],
+                              Lanes K[MAX_NODES * 3][MAX_MODES])
+{
+  for (int a = 0; a < n; a++) {
+#pragma GCC unroll 3
+    for (int i = 0; i < dim; i++) {
+#pragma GCC unroll 9
+      for (int k = 0; k < dim * dim + hoop; k++) {
+        const int vector = MODE_VECTOR(dim, k), J = MODE_COMPONENT(dim, k);
+        Lanes     sum = x->c.g[a][q][0] * T[dim * i][k];
+
+        for (int m = 1; m < dim; m++) sum += x->c.g[a][q][m] * T[dim * i + m][k];
+        if (hoop && i == 0) sum += x->c.g[a][q][2] * T[4][k];
+        if (finite && !MODE_IS_HOOP(dim, k)) sum += P[3 * i + J] * x->C[a][vector];
+        if (finite && MODE_IS_HOOP(dim, k) && i == 0) sum += P[TENSOR_HOOP] * x->C[a][2];
+        K[a * dim + i][k] += x->w[q][vector] * sum;
+      }
+    }
+  }
+}
+
+/* K -= K_ub K_bb^-1 K_bu */
+LANES_INLINE void Condense(const int dofs, const int modes, Lanes Kbb[MAX_MODES][MAX_MODES], Lanes Kub[MAX_NODES * 3][MAX_MODES], double *K)
+{
+  Factor(modes, Kbb);
+  for (int r = 0; r < dofs; r++) SolveLower(modes, Kbb, Kub[r]);
+  for (int r = 0; r < dofs; r++) {
+    Lanes row[MAX_MODES];
+
+    for (int k = 0; k < modes; k++) row[k] = Kub[r][k] * Kbb[k][k];
+    for (int s = r; s < dofs; s++) {
+      Lanes sum = LANE(K, r * dofs + s);
+
+#pragma GCC unroll 9
+      for (int k = 0; k < modes; k++) sum -= row[k] * Kub[s][k];
+      LANE(K, r * dofs + s) = sum;
+      LANE(K, s * dofs + r) = sum;
+    }
+  }
+}
+
+/* Energy, force, tangent before condensation; n, points, dim and hoop are constants of the instance */
+LANES_INLINE void Batch(const BatchCall *call, const int n, const int points, const int dim, const int hoop)
+{
+  double *const W = call->W, *const f = call->f, *const K = call->K;
+  const Lanes zero                      = {0};
+  Lanes       Kbb[MAX_MODES][MAX_MODES] = {{{0}}}, Kub[MAX_NODES * 3][MAX_MODES] = {{{0}}};
+  Enhanced    x;
+
+  if (W) LANE(W, 0) = zero;
+  for (int i = 0; i < n * dim && f; i++) LANE(f, i) = zero;
+  StartLeastJ(call);
+  Prepare(call, n, points, dim, hoop, &x);
+  Settle(call, points, dim, hoop, &x);
+  for (int q = 0; q < points; q++) {
+    Lanes H[9], P[9], T[MAX_ROWS][MAX_MODES], dilatation, energy;
+
+    PointGradient(dim, hoop, &x, q, H);
+    MaterialDilatation(H, &dilatation);
+    KeepLeastJ(call, &dilatation);
+    call->law(H, &dilatation, &call->lambda, &call->mu, W ? &energy : NULL, P, K ? x.c.A[q] : NULL);
+    if (W) LANE(W, 0) += energy * x.volume[q];
+    if (call->H) StorePoint(call, q, H);
+    for (int r = 0; r < 9; r++) P[r] *= x.volume[q];
+    if (call->finite) CarryModes(n, dim, hoop, q, &x);
+    if (f) AddForce(n, dim, hoop, q, &x.c, P, f);
+    if (!K) continue;
+    for (int k = 0; k < MATERIAL_TANGENT_SIZE; k++) x.c.A[q][k] *= x.volume[q];
+    AddModeTangent(dim, hoop, &x, q, T, Kbb);
+    AddCoupling(n, dim, hoop, call->finite, q, &x, P, T, Kub);
+  }
+  if (!K) return;
+  AddTangent(n, dim, hoop, points, 1, 1, &x.c, K);
+  Condense(n * dim, dim * dim + hoop, Kbb, Kub, K);
+}
+
+static void BatchQuad4(const BatchCall *call)
+{
+  Batch(call, 4, 4, 2, 0);
+}
+
+static void BatchQuad4Axisymmetric(const BatchCall *call)
+{
+  Batch(call, 4, 4, 2, 1);
+}
+
+static void BatchHex8(const BatchCall *call)
+{
+  Batch(call, 8, 8, 3, 0);
+}
+
+BatchFn *const enhanced_batches[ELEMENT_TYPES][2] = {
+  [ELEMENT_QUAD4] = {BatchQuad4, BatchQuad4Axisymmetric},
+  [ELEMENT_HEX8]  = {BatchHex8,  NULL                  },
+};
