@@ -27,6 +27,9 @@
 /* How MUMPS scales symmetric systems: by the diagonal. Its own choice iterates over rows and columns, which costs a seventh of a factorisation at 10,000
    dofs; stiff penalties stand on the diagonal. */
 #define MODEL_MUMPS_SCALING "1"
+/* The last tangent serves once more where it should end the solve: the next residual is then about twice this one times the last contraction
+   (Deuflhard, Newton Methods for Nonlinear Problems, 2004, sec. 2.2, simplified Newton), with a factor two for what that does not know. */
+#define MODEL_TANGENT_REUSE 4
 /* Newton is limited by its iterations, not by the line search's evaluations. */
 #define MODEL_MAX_FUNCTIONS 1000000
 
@@ -54,6 +57,7 @@ typedef struct _n_ModelWork {
   PetscReal  stiffness;  /* norm of the elastic tangent's diagonal */
   PetscInt   inverted;   /* gmsh's tag of a cell of this rank that was turned inside out in this solve, or -1 */
   PetscBool  near;       /* the iterate is so close that energies differ by round-off only */
+  PetscReal  norm;       /* residual of the iterate before */
   PetscBool  balanced;   /* the residual of the iterate is within the tolerance */
   PetscInt   renewed;    /* how often that happened in this step */
   PetscBool  left;       /* a slave point slid out of its lists: the solve ended for new ones */
@@ -229,25 +233,37 @@ static PetscErrorCode ModelLeaveLists(Model model, SNESConvergedReason *reason)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Keeps the tangent and its factors for the next iteration where that will be the last one anyway. norm: of this iterate, allowed: of the last. */
+static PetscErrorCode ModelReuseTangent(Model model, PetscInt it, PetscReal norm, PetscReal allowed)
+{
+  const PetscBool reuse = it > 0 && MODEL_TANGENT_REUSE * norm * norm <= allowed * model->work->norm ? PETSC_TRUE : PETSC_FALSE;
+
+  PetscFunctionBeginUser;
+  PetscCall(SNESSetLagJacobian(model->snes, reuse ? -1 : 1));
+  model->work->norm = reuse ? 0 : norm; /* 0: never twice */
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Converged when the residual is small against the forces that balance in it, never against its own first value; or is nothing but round-off.
    Where penalties follow the penetrations, these must have settled too. */
 static PetscErrorCode ModelConverged(SNES snes, PetscInt it, PetscReal xnorm, PetscReal snorm, PetscReal fnorm, SNESConvergedReason *reason, void *context)
 {
   Model           model = context;
   const PetscReal scale = PetscMax(model->force_scale, model->work->scale);
-  PetscReal       round_off;
+  PetscReal       round_off, allowed;
   PetscBool       settled = PETSC_TRUE;
 
   PetscFunctionBeginUser;
   (void)snes;
-  (void)it;
   (void)xnorm;
   (void)snorm;
   PetscCall(ModelRoundOff(model, &round_off));
   if (model->contact) PetscCall(ContactGapsSettled(model->contact, &settled));
   *reason               = SNES_CONVERGED_ITERATING;
   model->work->near     = fnorm <= MODEL_ENERGY_ROUND_OFF * scale ? PETSC_TRUE : PETSC_FALSE;
-  model->work->balanced = fnorm <= PetscMax(model->scene->solver.tolerance * scale, round_off) ? PETSC_TRUE : PETSC_FALSE;
+  allowed               = PetscMax(model->scene->solver.tolerance * scale, round_off);
+  model->work->balanced = fnorm <= allowed ? PETSC_TRUE : PETSC_FALSE;
+  PetscCall(ModelReuseTangent(model, it, fnorm, allowed));
   if (PetscIsInfOrNanReal(fnorm))
     *reason = SNES_DIVERGED_FUNCTION_NANORINF;
   else if (fnorm <= round_off || (model->work->balanced && settled))
