@@ -14,6 +14,7 @@ typedef enum { KINEMATICS_SMALL, KINEMATICS_FINITE } Kinematics;
 typedef enum { STEP_FIXED, STEP_ITERATIONS, STEP_CONTACT } StepControlKind;
 typedef enum { SMOOTHER_FACET, SMOOTHER_DIFFUSE } SmootherKind;
 typedef enum { OVERLAP_REFUSE, OVERLAP_RESOLVE, OVERLAP_RAMP, OVERLAP_IGNORE } InitialOverlap;
+typedef enum { SOLVER_DIRECT, SOLVER_ITERATIVE, SOLVER_AUTO } SolverType;
 typedef enum { CONTACT_NODE_TO_SURFACE, CONTACT_SURFACE_TO_SURFACE } ContactFormulation;
 
 typedef struct {
@@ -125,8 +126,9 @@ typedef struct {
     double         *at;
   } stepping;
   struct {
-    double tolerance;
-    int    max_iterations;
+    SolverType type;
+    double     tolerance;
+    int        max_iterations;
   } solver;
   int         n_probes;
   SceneProbe *probes;

@@ -1,5 +1,6 @@
 #include "model.h"
 #include "matrixsum.h"
+#include "multigrid.h"
 #include "refusal.h"
 #include "timing.h"
 
@@ -30,6 +31,14 @@
 /* The last tangent serves once more where it should end the solve: the next residual is then about twice this one times the last contraction
    (Deuflhard, Newton Methods for Nonlinear Problems, 2004, sec. 2.2, simplified Newton), with a factor two for what that does not know. */
 #define MODEL_TANGENT_REUSE 4
+/* solver.type auto: direct up to this many unknowns in space */
+#define MODEL_DIRECT_DOFS 200000
+/* The iterative solver's residual: this part of the right-hand side, but not below a tenth of what Newton's method is content with. */
+#define MODEL_LINEAR_TOLERANCE 1e-4
+#define MODEL_LINEAR_SHARE 0.1
+/* Its iterations, and how many directions it keeps */
+#define MODEL_LINEAR_ITERATIONS 1000
+#define MODEL_LINEAR_RESTART 100
 /* Newton is limited by its iterations, not by the line search's evaluations. */
 #define MODEL_MAX_FUNCTIONS 1000000
 
@@ -44,6 +53,7 @@ const char *const SolveResults[] = {"converged",
                                     "not-a-number in the residual"};
 
 typedef struct _n_ModelWork {
+  Multigrid  multigrid; /* NULL: direct solver */
   PetscReal *f;     /* local residual of the last evaluation, all dofs */
   PetscReal *trial; /* local displacements of the last evaluation */
   PetscReal *accepted_u;
@@ -190,6 +200,7 @@ static PetscErrorCode ModelTangent(Model model, const PetscReal *u, PetscReal t)
     TimingBegin(TIMING_ASSEMBLY_CONTACT);
     PetscCall(ContactTangent(model->contact, u, t, &C, &changed));
     PetscCall(ModelAddContact(model, K, C, changed));
+    if (model->work->multigrid) PetscCall(MultigridSetContact(model->work->multigrid, C, changed));
     TimingEnd(TIMING_ASSEMBLY_CONTACT);
   }
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -244,6 +255,18 @@ static PetscErrorCode ModelReuseTangent(Model model, PetscInt it, PetscReal norm
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* How well the iterative solver has to solve the next system. */
+static PetscErrorCode ModelSetLinearTolerance(Model model, PetscReal allowed)
+{
+  KSP ksp;
+
+  PetscFunctionBeginUser;
+  if (!model->work->multigrid) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(SNESGetKSP(model->snes, &ksp));
+  PetscCall(KSPSetTolerances(ksp, PETSC_DEFAULT, MODEL_LINEAR_SHARE * allowed, PETSC_DEFAULT, PETSC_DEFAULT));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Converged when the residual is small against the forces that balance in it, never against its own first value; or is nothing but round-off.
    Where penalties follow the penetrations, these must have settled too. */
 static PetscErrorCode ModelConverged(SNES snes, PetscInt it, PetscReal xnorm, PetscReal snorm, PetscReal fnorm, SNESConvergedReason *reason, void *context)
@@ -264,6 +287,7 @@ static PetscErrorCode ModelConverged(SNES snes, PetscInt it, PetscReal xnorm, Pe
   allowed               = PetscMax(model->scene->solver.tolerance * scale, round_off);
   model->work->balanced = fnorm <= allowed ? PETSC_TRUE : PETSC_FALSE;
   PetscCall(ModelReuseTangent(model, it, fnorm, allowed));
+  PetscCall(ModelSetLinearTolerance(model, allowed));
   if (PetscIsInfOrNanReal(fnorm))
     *reason = SNES_DIVERGED_FUNCTION_NANORINF;
   else if (fnorm <= round_off || (model->work->balanced && settled))
@@ -339,12 +363,55 @@ static PetscErrorCode SetDefaultOption(const char *name, const char *value)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* MUMPS */
+static PetscErrorCode SetDirectSolver(KSP ksp, PetscBool symmetric)
+{
+  PC pc;
+
+  PetscFunctionBeginUser;
+  PetscCall(KSPSetType(ksp, KSPPREONLY));
+  PetscCall(KSPGetPC(ksp, &pc));
+  PetscCall(PCSetType(pc, symmetric ? PCCHOLESKY : PCLU));
+  PetscCall(PCFactorSetMatSolverType(pc, MATSOLVERMUMPS));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* GMRES, as a tangent may be indefinite far from equilibrium; preconditioned from the right, so that its residual is the true one. */
+static PetscErrorCode SetIterativeSolver(Model model, KSP ksp, PetscBool symmetric)
+{
+  PC pc;
+
+  PetscFunctionBeginUser;
+  PetscCall(KSPSetType(ksp, KSPGMRES));
+  PetscCall(KSPSetPCSide(ksp, PC_RIGHT));
+  PetscCall(KSPGMRESSetRestart(ksp, MODEL_LINEAR_RESTART));
+  PetscCall(KSPSetTolerances(ksp, MODEL_LINEAR_TOLERANCE, 0, PETSC_DEFAULT, MODEL_LINEAR_ITERATIONS));
+  PetscCall(KSPGetPC(ksp, &pc));
+  PetscCall(MultigridCreate(model->mesh, (PetscBool)(model->scene->geometry == GEOMETRY_AXISYMMETRIC), symmetric, pc, &model->work->multigrid));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The scene's choice of the linear solver */
+static PetscErrorCode SetLinearSolver(Model model, KSP ksp, PetscBool symmetric)
+{
+  SolverType type = model->scene->solver.type;
+  PetscInt   dofs;
+
+  PetscFunctionBeginUser;
+  PetscCall(ModelDofs(model, &dofs));
+  if (type == SOLVER_AUTO) type = model->mesh->dim == 3 && dofs > MODEL_DIRECT_DOFS ? SOLVER_ITERATIVE : SOLVER_DIRECT;
+  if (type == SOLVER_DIRECT)
+    PetscCall(SetDirectSolver(ksp, symmetric));
+  else
+    PetscCall(SetIterativeSolver(model, ksp, symmetric));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 static PetscErrorCode ModelCreateSNES(Model model)
 {
   const PetscBool symmetric = LoadsConservative(model->loads);
   SNESLineSearch  search;
   KSP             ksp;
-  PC              pc;
 
   PetscFunctionBeginUser;
   PetscCall(SNESCreate(model->mesh->comm, &model->snes));
@@ -358,12 +425,9 @@ static PetscErrorCode ModelCreateSNES(Model model)
   PetscCall(SNESGetLineSearch(model->snes, &search));
   PetscCall(SNESLineSearchSetType(search, SNESLINESEARCHBT));
   PetscCall(SNESGetKSP(model->snes, &ksp));
-  PetscCall(KSPSetType(ksp, KSPPREONLY));
   PetscCall(KSPSetPreSolve(ksp, LinearSolveBegins, NULL));
   PetscCall(KSPSetPostSolve(ksp, LinearSolveEnds, NULL));
-  PetscCall(KSPGetPC(ksp, &pc));
-  PetscCall(PCSetType(pc, symmetric ? PCCHOLESKY : PCLU));
-  PetscCall(PCFactorSetMatSolverType(pc, MATSOLVERMUMPS));
+  PetscCall(SetLinearSolver(model, ksp, symmetric));
   PetscCall(SetDefaultOption("-mat_mumps_icntl_14", MODEL_MUMPS_WORKSPACE));
   if (symmetric) PetscCall(SetDefaultOption("-mat_mumps_icntl_8", MODEL_MUMPS_SCALING));
   PetscCall(ModelSetFromOptions(model));
@@ -414,6 +478,7 @@ PetscErrorCode ModelDestroy(Model *model)
   PetscFunctionBeginUser;
   if (!m) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(SNESDestroy(&m->snes));
+  PetscCall(MultigridDestroy(&m->work->multigrid));
   PetscCall(VecDestroy(&m->x));
   PetscCall(VecDestroy(&m->work->accepted_x));
   PetscCall(VecDestroy(&m->work->forecast));
@@ -505,6 +570,7 @@ static PetscErrorCode ModelPredict(Model model, SolveReport *report)
   PetscCall(LoadsPrescribe(model->loads, model->t, step));
   for (PetscInt i = 0; i < n; i++) step[i] -= work->accepted_u[i];
   if (model->contact) PetscCall(ContactPredict(model->contact, PETSC_TRUE, (PetscBool)(work->accepted_t == 0))); /* touching: a body that only contact holds */
+  if (work->multigrid) PetscCall(MultigridRenew(work->multigrid));
   PetscCall(ModelTangent(model, work->accepted_u, work->accepted_t));
   PetscCall(ModelResidual(model, work->accepted_u, model->t, work->accepted_t, &ok));
   if (model->contact) PetscCall(ContactPredict(model->contact, PETSC_FALSE, PETSC_FALSE));
