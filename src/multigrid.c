@@ -3,8 +3,8 @@
 /* The parts have option names of their own: -bodies_... for multigrid, -interface_... for the direct solve */
 #define MULTIGRID_BODIES "bodies_"
 #define MULTIGRID_INTERFACE "interface_"
-/* Multigrid made for an older operator serves until it takes this many times the iterations it took at first: its coarse matrices cost as much
-   as some ten iterations. */
+/* Multigrid made for an older operator with the same interface serves until it takes this many times the iterations it took at first: its coarse
+   matrices cost as much as some ten iterations. */
 #define MULTIGRID_AGE 1.5
 /* Most rigid-body modes there are */
 #define MULTIGRID_MODES 6
@@ -294,10 +294,14 @@ static PetscErrorCode ForgetInterface(Multigrid m)
    Collective. changed: the operator has another pattern than the last one. */
 PetscErrorCode MultigridSetContact(Multigrid m, Mat C, PetscBool changed)
 {
-  PetscInt begin, end, n = 0, all, *rows;
+  PetscInt  begin, end, n = 0, all, *rows;
+  PetscBool same = PETSC_FALSE;
+  IS        before;
 
   PetscFunctionBeginUser;
   m->changed = (PetscBool)(m->changed || changed);
+  before       = m->interface;
+  m->interface = NULL;
   PetscCall(ForgetInterface(m));
   PetscCall(MatGetOwnershipRange(C, &begin, &end));
   PetscCall(PetscMalloc1(end - begin, &rows));
@@ -314,6 +318,9 @@ PetscErrorCode MultigridSetContact(Multigrid m, Mat C, PetscBool changed)
   PetscCallMPI(MPIU_Allreduce(&n, &all, 1, MPIU_INT, MPI_SUM, m->mesh->comm));
   if (all) PetscCall(ISCreateGeneral(m->mesh->comm, n, rows, PETSC_COPY_VALUES, &m->interface));
   PetscCall(PetscFree(rows));
+  if (m->interface && before) PetscCall(ISEqual(m->interface, before, &same));
+  if (!same) m->renew = PETSC_TRUE;
+  PetscCall(ISDestroy(&before));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
