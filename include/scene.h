@@ -15,6 +15,7 @@ typedef enum { KINEMATICS_SMALL, KINEMATICS_FINITE } Kinematics;
 typedef enum { FORMULATION_FULL, FORMULATION_ENHANCED, FORMULATION_FBAR, FORMULATIONS } Formulation;
 extern const char *const Formulations[]; /* "full", "enhanced", "fbar", NULL-terminated */
 typedef enum { OVERLAP_REFUSE, OVERLAP_RESOLVE, OVERLAP_RAMP, OVERLAP_IGNORE } InitialOverlap;
+typedef enum { SOLVER_DIRECT, SOLVER_ITERATIVE, SOLVER_AUTO } SolverType;
 typedef enum { CONTACT_NODE_TO_SURFACE, CONTACT_SURFACE_TO_SURFACE } ContactFormulation;
 
 typedef struct {
@@ -127,8 +128,9 @@ typedef struct {
     double         *at;
   } stepping;
   struct {
-    double tolerance;
-    int    max_iterations;
+    SolverType type;
+    double     tolerance;
+    int        max_iterations;
   } solver;
   int         n_probes;
   SceneProbe *probes;

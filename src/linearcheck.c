@@ -62,15 +62,18 @@ static PetscErrorCode Refine(KSP ksp, Mat A, Vec b, Vec x, Vec r, PetscReal enou
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The residual that the solver was asked for: its own where it iterates. */
-static PetscErrorCode AskedFor(LinearCheck check, KSP ksp, PetscReal *tolerance)
+/* The relative residual that the solver was asked for: its own where it iterates. right: norm of the right-hand side */
+static PetscErrorCode AskedFor(LinearCheck check, KSP ksp, PetscReal right, PetscReal *tolerance)
 {
+  PetscReal least;
   PetscBool direct;
 
   PetscFunctionBeginUser;
   *tolerance = check->tolerance;
   PetscCall(PetscObjectTypeCompare((PetscObject)ksp, KSPPREONLY, &direct));
-  if (!direct) PetscCall(KSPGetTolerances(ksp, tolerance, NULL, NULL, NULL));
+  if (direct) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(KSPGetTolerances(ksp, tolerance, &least, NULL, NULL));
+  if (right > 0) *tolerance = PetscMax(*tolerance, least / right);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -82,14 +85,14 @@ static PetscErrorCode CheckSolution(LinearCheck check, KSP ksp, Vec b, Vec x)
   Vec       r;
 
   PetscFunctionBeginUser;
-  PetscCall(AskedFor(check, ksp, &tolerance));
   PetscCall(KSPGetOperators(ksp, &A, NULL));
   PetscCall(VecDuplicate(b, &r));
   PetscCall(VecNorm(b, NORM_2, &right));
+  PetscCall(AskedFor(check, ksp, right, &tolerance));
   PetscCall(TrueResidual(A, b, x, r, &norm));
   if (norm > LINEAR_SLACK * tolerance * right) PetscCall(Refine(ksp, A, b, x, r, LINEAR_SLACK * tolerance * right, &norm, &steps));
   PetscCall(VecDestroy(&r));
-  check->lost = norm <= LINEAR_SINGULAR * right ? PETSC_FALSE : PETSC_TRUE; /* so is not-a-number */
+  check->lost = norm <= PetscMax(LINEAR_SINGULAR, tolerance) * right ? PETSC_FALSE : PETSC_TRUE; /* so is not-a-number */
   check->counts.refined += steps > 0;
   check->counts.steps += steps;
   if (check->lost || right == 0) PetscFunctionReturn(PETSC_SUCCESS);

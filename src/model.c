@@ -1,5 +1,6 @@
 #include "model.h"
 #include "contactcycle.h"
+#include "linearsolver.h"
 #include "matrixsum.h"
 #include "refusal.h"
 #include "smoother.h"
@@ -33,6 +34,9 @@
 /* How MUMPS scales symmetric systems: by the diagonal. Its own choice iterates over rows and columns, which costs a seventh of a factorisation at 10,000
    dofs; stiff penalties stand on the diagonal. */
 #define MODEL_MUMPS_SCALING "1"
+/* The last tangent serves once more where it should end the solve: the next residual is then about twice this one times the last contraction
+   (Deuflhard, Newton Methods for Nonlinear Problems, 2004, sec. 2.2, simplified Newton), with a factor two for what that does not know. */
+#define MODEL_TANGENT_REUSE 4
 /* Newton is limited by its iterations, not by the line search's evaluations. */
 #define MODEL_MAX_FUNCTIONS 1000000
 
@@ -49,6 +53,7 @@ const char *const SolveResults[] = {"converged",
                                     "not-a-number in the residual"};
 
 typedef struct _n_ModelWork {
+  LinearSolver solver;
   PetscReal   *f;     /* local residual of the last evaluation, all dofs */
   PetscReal   *trial; /* local displacements of the last evaluation */
   PetscReal   *accepted_u;
@@ -63,6 +68,7 @@ typedef struct _n_ModelWork {
   PetscReal    stiffness;  /* norm of the elastic tangent's diagonal */
   PetscInt     inverted;   /* gmsh's tag of a cell of this rank that was turned inside out in this solve, or -1 */
   PetscBool    near;       /* the iterate is so close that energies differ by round-off only */
+  PetscReal    norm;       /* residual of the iterate before */
   PetscBool    balanced;   /* the residual of the iterate is within the tolerance */
   PetscInt     renewed;    /* how often that happened in this step */
   PetscBool    cycling;    /* the contact set repeats itself whatever the steps: the solve ended */
@@ -200,6 +206,7 @@ static PetscErrorCode ModelTangent(Model model, const PetscReal *u, PetscReal t)
     TimingBegin(TIMING_ASSEMBLY_CONTACT);
     PetscCall(ContactTangent(model->contact, u, t, &C, &changed));
     PetscCall(ModelAddContact(model, K, C, changed));
+    PetscCall(LinearSolverSetContact(model->work->solver, C, changed));
     TimingEnd(TIMING_ASSEMBLY_CONTACT);
   }
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -265,13 +272,24 @@ static PetscErrorCode ModelBreakCycle(Model model, PetscReal fnorm, SNESConverge
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Keeps the tangent and its factors for the next iteration where that will be the last one anyway. norm: of this iterate, allowed: of the last. */
+static PetscErrorCode ModelReuseTangent(Model model, PetscInt it, PetscReal norm, PetscReal allowed)
+{
+  const PetscBool reuse = it > 0 && MODEL_TANGENT_REUSE * norm * norm <= allowed * model->work->norm ? PETSC_TRUE : PETSC_FALSE;
+
+  PetscFunctionBeginUser;
+  PetscCall(SNESSetLagJacobian(model->snes, reuse ? -1 : 1));
+  model->work->norm = reuse ? 0 : norm; /* 0: never twice */
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Converged when the residual is small against the forces that balance in it, never against its own first value; or is nothing but round-off.
    Where penalties follow the penetrations, these must have settled too. */
 static PetscErrorCode ModelConverged(SNES snes, PetscInt it, PetscReal xnorm, PetscReal snorm, PetscReal fnorm, SNESConvergedReason *reason, void *context)
 {
   Model           model = context;
   const PetscReal scale = PetscMax(model->force_scale, model->work->scale);
-  PetscReal       round_off;
+  PetscReal       round_off, allowed;
   PetscBool       settled = PETSC_TRUE;
 
   PetscFunctionBeginUser;
@@ -282,7 +300,10 @@ static PetscErrorCode ModelConverged(SNES snes, PetscInt it, PetscReal xnorm, Pe
   if (model->contact) PetscCall(ContactGapsSettled(model->contact, &settled));
   *reason               = SNES_CONVERGED_ITERATING;
   model->work->near     = fnorm <= MODEL_ENERGY_ROUND_OFF * scale ? PETSC_TRUE : PETSC_FALSE;
-  model->work->balanced = fnorm <= PetscMax(model->scene->solver.tolerance * scale, round_off) ? PETSC_TRUE : PETSC_FALSE;
+  allowed               = PetscMax(model->scene->solver.tolerance * scale, round_off);
+  model->work->balanced = fnorm <= allowed ? PETSC_TRUE : PETSC_FALSE;
+  PetscCall(ModelReuseTangent(model, it, fnorm, allowed));
+  PetscCall(LinearSolverSetEnough(model->work->solver, allowed));
   if (it > 0 && LinearCheckLost(model->linear))
     *reason = SNES_DIVERGED_LINEAR_SOLVE;
   else if (PetscIsInfOrNanReal(fnorm))
@@ -344,7 +365,6 @@ static PetscErrorCode ModelCreateSNES(Model model)
   const PetscBool symmetric = LoadsConservative(model->loads);
   SNESLineSearch  search;
   KSP             ksp;
-  PC              pc;
 
   PetscFunctionBeginUser;
   PetscCall(SNESCreate(model->mesh->comm, &model->snes));
@@ -358,11 +378,8 @@ static PetscErrorCode ModelCreateSNES(Model model)
   PetscCall(SNESGetLineSearch(model->snes, &search));
   PetscCall(SNESLineSearchSetType(search, SNESLINESEARCHBT));
   PetscCall(SNESGetKSP(model->snes, &ksp));
-  PetscCall(KSPSetType(ksp, KSPPREONLY));
+  PetscCall(LinearSolverCreate(ksp, model->mesh, model->scene, symmetric, &model->work->solver));
   PetscCall(LinearCheckCreate(ksp, model->scene->solver.tolerance, &model->linear));
-  PetscCall(KSPGetPC(ksp, &pc));
-  PetscCall(PCSetType(pc, symmetric ? PCCHOLESKY : PCLU));
-  PetscCall(PCFactorSetMatSolverType(pc, MATSOLVERMUMPS));
   PetscCall(SetDefaultOption("-mat_mumps_icntl_14", MODEL_MUMPS_WORKSPACE));
   if (symmetric) PetscCall(SetDefaultOption("-mat_mumps_icntl_8", MODEL_MUMPS_SCALING));
   PetscCall(ModelSetFromOptions(model));
@@ -415,6 +432,7 @@ PetscErrorCode ModelDestroy(Model *model)
   PetscFunctionBeginUser;
   if (!m) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(SNESDestroy(&m->snes));
+  PetscCall(LinearSolverDestroy(&m->work->solver));
   PetscCall(LinearCheckDestroy(&m->linear));
   PetscCall(ContactCycleDestroy(&m->work->watch));
   PetscCall(VecDestroy(&m->x));
@@ -520,6 +538,7 @@ static PetscErrorCode ModelPredict(Model model, SolveReport *report)
   PetscCall(LoadsPrescribe(model->loads, model->t, step));
   for (PetscInt i = 0; i < n; i++) step[i] -= work->accepted_u[i];
   if (model->contact) PetscCall(ContactPredict(model->contact, PETSC_TRUE, (PetscBool)(work->accepted_t == 0))); /* touching: a body that only contact holds */
+  PetscCall(LinearSolverRenew(work->solver));
   PetscCall(ModelTangent(model, work->accepted_u, work->accepted_t));
   PetscCall(ModelResidual(model, work->accepted_u, model->t, work->accepted_t, &ok));
   if (model->contact) PetscCall(ContactPredict(model->contact, PETSC_FALSE, PETSC_FALSE));

@@ -428,6 +428,7 @@ static PetscErrorCode SceneReadStepping(Scene scene)
   scene->stepping.n_at    = SchemaCount(document, "stepping.at");
   PetscCall(PetscCalloc1(scene->stepping.n_at, &scene->stepping.at));
   (void)SceneReals(scene, "stepping", "at", scene->stepping.at);
+  scene->solver.type           = (SolverType)SchemaChoice(document, "solver.type");
   scene->solver.tolerance      = SchemaReal(document, "solver.tolerance");
   scene->solver.max_iterations = SchemaInteger(document, "solver.max_iterations");
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -99,7 +99,7 @@ const SchemaKey SchemaKeys[] = {
   {"stepping.growth", REAL, .range = "[1, inf)", .preset = "4", .help = "largest factor from one step to the next"},
   {"stepping.at", REALS, .range = "(0, 1]", .help = "load parameters that steps must land on"},
   {"solver", MAP, .help = "linear and nonlinear solver"},
-  {"solver.type", CHOICE, .values = "direct | iterative | auto", .preset = "auto", .now = "direct | auto"},
+  {"solver.type", CHOICE, .values = "direct | iterative | auto", .preset = "auto", .help = "auto: by the number of unknowns"},
   {"solver.tolerance", REAL, .range = "(0, 1)", .preset = "1e-8", .help = "residual over reference force"},
   {"solver.max_iterations", INTEGER, .range = "[1, 10000]", .preset = "30", .help = "of Newton's method in one solve"},
   {"probes", LIST, .help = "scalars for steps.csv and summary.json"},
