@@ -106,13 +106,13 @@ static PetscErrorCode OpenScene(MPI_Comm comm, const CommandLine *command, char 
                                 Checkpoint *checkpoint)
 {
   PetscFunctionBeginUser;
+  *checkpoint = NULL;
   PetscCall(SceneRead(comm, command->scene, command->n_set, command->set, scene));
   PetscCall(InsertSceneOptions(*scene));
   PetscCall(PetscSNPrintf(directory, PETSC_MAX_PATH_LEN, "%s%s", command->directory ? command->directory : "out/", command->directory ? "" : (*scene)->name));
   PetscCall(ErrorLogOpen(directory));
   if (command->mode == COMMAND_RUN) PetscCall(ResultsCheckDirectory(comm, *scene, directory, command->overwrite ? PETSC_TRUE : PETSC_FALSE));
   PetscCall(MeshGenerate(comm, *scene, "out", mesh_file, mesh_s));
-  if (command->mode == COMMAND_RUN) PetscCall(CheckpointCreate(comm, directory, mesh_file, checkpoint));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -152,6 +152,7 @@ static PetscErrorCode RunScene(const CommandLine *command, int *status)
     PetscCall(MeshCreate(comm, scene, mesh_file, &mesh));
     if (command->mode == COMMAND_CHECK) PetscCall(MeshReport(mesh, scene, stdout));
     PetscCall(MeshCheckQuality(mesh, scene));
+    if (command->mode == COMMAND_RUN && !checkpoint) PetscCall(CheckpointCreate(comm, directory, mesh_file, &checkpoint));
     PetscCall(MeshCheckFormulations(mesh, scene));
     PetscCall(ModelCreate(scene, mesh, &model));
     PetscCall(ProbesCreate(model, scene, &probes));
