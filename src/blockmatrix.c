@@ -20,7 +20,7 @@ struct _n_BlockMatrix {
   PetscInt   n_pattern, *pattern; /* of the blocks: number of nodes and nodes' keys of block after block; key: the first dof, -1 without any */
   PetscInt   n_nodes, *key, *dof; /* of the matrix: keys ascending, dofs (n_nodes*size) */
   PetscInt  *pair_ptr, *pair;     /* blocks overlap: every pair of nodes once, row by row */
-  PetscBool  restored;             /* the matrix is not the one that its user knows */
+  PetscBool  restored;            /* the matrix is not the one that its user knows */
   PetscInt  *place, *stride;      /* of the blocks' pairs: the place of the first value in the sums, or -1; of the blocks' rows: to the next row of dofs */
   PetscReal *sum;                 /* over the pairs, row of dofs by row of dofs */
 };
@@ -357,8 +357,8 @@ PetscErrorCode BlockMatrixAssemble(BlockMatrix blocks, PetscInt rows, const Pets
   }
   PetscCall(SumBlocks(blocks));
   PetscCall(MatSetValuesCOO(blocks->matrix, blocks->sum, INSERT_VALUES));
-  *matrix  = blocks->matrix;
-  *changed = all && !blocks->restored ? PETSC_FALSE : PETSC_TRUE;
+  *matrix          = blocks->matrix;
+  *changed         = all && !blocks->restored ? PETSC_FALSE : PETSC_TRUE;
   blocks->restored = PETSC_FALSE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -389,7 +389,7 @@ PetscErrorCode BlockMatrixArchive(BlockMatrix blocks, Archive archive, const cha
 {
   static const char *names[] = {"key", "dof", "pair_ptr", "pair"};
   PetscInt         **list[]  = {&blocks->key, &blocks->dof, &blocks->pair_ptr, &blocks->pair};
-  PetscInt           n[4] = {0, 0, 0, 0};
+  PetscInt           n[4]    = {0, 0, 0, 0};
   PetscMPIInt        size;
   PetscBool          there = blocks->matrix ? PETSC_TRUE : PETSC_FALSE;
   char               path[PETSC_MAX_PATH_LEN];

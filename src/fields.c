@@ -16,7 +16,7 @@ struct _n_Fields {
   Rows      *pairs;                /* slave nodes, per contact pair */
   PetscInt   cells[ELEMENT_TYPES]; /* rows of /mesh/cells_TYPE */
   PetscInt   n_written, room;
-  PetscReal *t;    /* of the written steps */
+  PetscReal *t;     /* of the written steps */
   Xdmf       xdmf;  /* what they show */
   char      *image; /* rank 0: of the file, between loading and FieldsResume() */
 };

@@ -91,9 +91,9 @@ PetscErrorCode FileImageTake(const char *name, char **data, PetscInt64 *size)
   *size = sizeof(Run);
   for (size_t k = 0; k < runs.n; k++) *size += (PetscInt64)sizeof(Run) + runs.run[k].n;
   PetscCall(PetscMalloc1(*size, data));
-  at          = *data;
-  *(Run *)at  = (Run){(int64_t)status.st_size, (int64_t)runs.n};
-  at         += sizeof(Run);
+  at         = *data;
+  *(Run *)at = (Run){(int64_t)status.st_size, (int64_t)runs.n};
+  at += sizeof(Run);
   for (size_t k = 0; k < runs.n; k++) {
     const size_t n = (size_t)runs.run[k].n;
 

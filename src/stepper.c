@@ -210,7 +210,7 @@ static PetscErrorCode LoadStepperAccept(LoadStepper stepper, PetscReal dt, Petsc
   record->beta     = stepper->size.beta;
   record->tied     = stepper->size.tied;
   PetscCall(ModelAccept(model));
-  stepper->start = stepper->size;
+  stepper->start    = stepper->size;
   stepper->report.t = model->t;
   stepper->report.steps++;
   stepper->report.newton_accepted += solve->newton;
@@ -302,8 +302,8 @@ PetscErrorCode LoadStepperArchive(LoadStepper stepper, Archive archive)
   StepperReport *report   = &stepper->report;
   StepSize       size     = stepper->start;
   PetscReal      values[] = {size.initial, size.dt, size.beta, size.together, size.shortfall, size.planned};
-  PetscInt       counts[] = {report->steps,           report->steps_failed,    report->steps_repeated, report->newton_iterations,
-                             report->newton_accepted, report->krylov_iterations, size.tied};
+  PetscInt       counts[] = {
+          report->steps, report->steps_failed, report->steps_repeated, report->newton_iterations, report->newton_accepted, report->krylov_iterations, size.tied};
 
   PetscFunctionBeginUser;
   PetscCall(ArchiveReals(archive, "stepper/size", PETSC_STATIC_ARRAY_LENGTH(values), values));

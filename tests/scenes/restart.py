@@ -95,7 +95,7 @@ def same_summary(what, directory, reference):
 
 def kills():
     """kill -9 of all ranks, or of one, at a random moment; most of such a run is spent in writing."""
-    overrides = ["stepping.initial=0.016", "output={every: 1, checkpoint: 1}"]
+    overrides = ["stepping.initial=0.04", "output={every: 1, checkpoint: 1}"]
     generator = random.Random(4)
     reference = run(args, SCENE, out="reference", ranks=1, overrides=overrides).directory
     begun, wall = 0, {}
