@@ -249,6 +249,13 @@ def refusals():
     check.holds("-set stepping, solver, output, and what the scene has: goes on", changed.status == 0, changed.text if changed.status else "")
     check.near("-set stepping.initial: the next step's dt", changed.steps()[12]["dt"], 0.02, 1e-12)
 
+    fields = copy("fields", whole)
+    less = go_on(fields, overrides=["output={every: 1, fields: [displacement]}"])
+    with h5py.File(fields / "results.h5", "r") as file:
+        held = [sorted(file["steps"][group]) for group in sorted(file["steps"])]
+    check.holds("-set output.fields: from here on", less.status == 0 and held[-1] == ["displacement"] and "stress" in held[0] and len(held) == 13)
+    text = (fields / "results.xdmf").read_text()
+    check.holds("-set output.fields: results.xdmf knows", text.count("Name=\"displacement\"") == 13 and text.count("Name=\"von_mises\"") == 12)
     no_room(whole, reference)
 
 
