@@ -17,7 +17,7 @@ BATCH = pathlib.Path(__file__).resolve().parents[2] / "runs/batch"
 COUNTS = ("step", "newton", "attempts", "contact_nodes", "nodes_in", "nodes_out")
 OWN = ("wall_s", "cpu_s", "seconds", "peak_rss_mb", "restarts", "options", "mesh_s", "ranks", "partition")  # of a part of a run
 
-args = arguments(("part", "what is shown", ("kills", "signals", "refusals")), ("kills", "how many"))
+args = arguments(("part", "what is shown", ("kills", "signals", "refusals", "states")), ("kills", "how many"))
 out = pathlib.Path(args.out)
 check = Check()
 
@@ -285,5 +285,31 @@ def no_room(whole, reference):
     same_files("full disk", full, reference)
 
 
-{"kills": kills, "signals": signals, "refusals": refusals}[args.part]()
+STATES = {  # scene and what makes it short; a checkpoint lies before the last steps
+    "forecast": ("cup_flattening", 3, ["stepping={control: contact, initial: 0.025, N_c: 5, prediction: tangent}"]),
+    "steps by contact": ("cup_flattening", 4, ["stepping={control: contact, initial: 0.025, N_c: 5, prediction: converged}"]),
+    "penalties": ("plate_cylinder", 4, ["mesh.parameters={h_contact: 0.5, h_far: 8, n_thick: 3, n_width: 1}"]),
+    "penalties by step": ("plate_cylinder", 4, ["mesh.parameters={h_contact: 0.5, h_far: 8, n_thick: 3, n_width: 1}", "contact.0.penalty.when=step"]),
+    "offsets": ("slide_facets", 4, ["stepping.initial=0.1", "contact.0.smoother=diffuse", "contact.0.formulation=surface_to_surface",
+                                    "probes=[{name: force, contact_force: sole, component: y}]"]),
+    "kept pattern": ("slide_flat", 7, ["contact.0.smoother=diffuse", "probes=[{name: force, contact_force: sole, component: y}]"]),
+}
+
+
+def states():
+    """All that the next steps depend on is in the checkpoint: what is remembered differs from scene to scene."""
+    for what, (scene, every, overrides) in STATES.items():
+        path = SCENES / f"../../runs/{scene}.yaml"
+        reference = run(args, path, out=f"whole {what}", ranks=1, overrides=overrides).directory
+        for ranks in (1, 2):
+            directory = run(args, path, out=f"part {what}", ranks=1, overrides=[*overrides, f"output.checkpoint={every}"]).directory
+            again = go_on(directory, ranks=ranks)
+            check.holds(f"{what}, on {ranks}: goes on", again.status == 0 and "restart  after step" in again.text, again.text if again.status else "")
+            if ranks == 1:
+                same_files(what, directory, reference)
+            same_results(f"{what}, on {ranks}", directory, reference)
+            same_summary(f"{what}, on {ranks}", directory, reference)
+
+
+{"kills": kills, "signals": signals, "refusals": refusals, "states": states}[args.part]()
 check.finish()
