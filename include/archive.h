@@ -10,12 +10,12 @@
 
 typedef struct _n_Archive *Archive;
 
-PetscErrorCode ArchiveMeasure(MPI_Comm, Archive *);                                   /* saves nowhere, counts bytes */
-PetscErrorCode ArchiveSize(Archive, PetscInt64 *bytes);                               /* all ranks together */
+PetscErrorCode ArchiveMeasure(MPI_Comm, Archive *);     /* saves nowhere, counts bytes */
+PetscErrorCode ArchiveSize(Archive, PetscInt64 *bytes); /* all ranks together */
 PetscErrorCode ArchiveCreate(MPI_Comm, const char *file, PetscInt64 bytes, Archive *);
-PetscErrorCode ArchiveOpen(MPI_Comm, const char *file, Archive *);                    /* refuses what is no whole archive of this version */
+PetscErrorCode ArchiveOpen(MPI_Comm, const char *file, Archive *); /* refuses what is no whole archive of this version */
 PetscErrorCode ArchiveClose(Archive *);
-PetscBool      ArchiveLoads(Archive);                                                 /* values come from the file */
+PetscBool      ArchiveLoads(Archive); /* values come from the file */
 PetscErrorCode ArchiveHas(Archive, const char *name, PetscBool *);
 /* Values that all ranks share: rank 0's are saved. Collective. */
 PetscErrorCode ArchiveReals(Archive, const char *name, PetscInt n, PetscReal *values);

@@ -9,9 +9,9 @@ typedef enum { COMMAND_RUN, COMMAND_CHECK, COMMAND_MESH, COMMAND_HELP, COMMAND_V
 
 typedef struct {
   CommandMode mode;
-  char       *scene;     /* scene file */
-  char       *directory; /* -o, or NULL */
-  char       *restart;   /* -restart, or NULL */
+  char       *scene;      /* scene file */
+  char       *directory;  /* -o, or NULL */
+  char       *restart;    /* -restart, or NULL */
   double      time_limit; /* seconds; 0: none */
   int         n_set;
   char      **set; /* KEY=VALUE */

@@ -32,7 +32,7 @@ PetscErrorCode ResultsCheckDirectory(MPI_Comm, Scene, const char *directory, Pet
 PetscErrorCode ResultsCheckRestart(MPI_Comm, Scene, const char *directory);
 PetscErrorCode ResultsCreate(Model, Probes, Scene, const char *directory, PetscBool quiet, Results *);
 PetscErrorCode ResultsDestroy(Results *);
-PetscErrorCode ResultsStart(Results);                     /* the first lines: version, ranks, BLAS, solver, bodies, effects */
+PetscErrorCode ResultsStart(Results); /* the first lines: version, ranks, BLAS, solver, bodies, effects */
 /* Results up to the last accepted step. Loaded, ResultsStart() takes the directory back to them instead of clearing it. Collective. */
 PetscErrorCode ResultsArchive(Results, Archive);
 PetscErrorCode ResultsStep(Results, const StepRecord *);  /* an accepted step: CSV row, progress line, fields if due */

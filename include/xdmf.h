@@ -14,15 +14,17 @@ typedef struct {
 typedef struct {
   const char *name;
   int         width;
+  int         kind; /* a step shows it where the bit of that number is set */
 } XdmfArray;
 
 typedef struct {
   const char      *name;
   PetscInt         nodes, n_steps;
-  const PetscReal *t; /* of the steps */
+  const PetscReal *t;     /* of the steps */
+  const PetscInt  *shows; /* of the steps: bits by kind */
   int              n_blocks, n_arrays;
   XdmfBlock       *blocks;
-  XdmfArray       *arrays;
+  const XdmfArray *arrays;
 } Xdmf;
 
 /* Writes the text for all steps so far into a directory, whole or not at all. Not collective: for one rank. */

@@ -108,10 +108,10 @@ static herr_t QuietAttribute(hid_t file, int64_t *version)
 /* Rank 0: why the file is no archive of ours, or an empty message */
 static void FileComplaint(const char *name, char *message, size_t size)
 {
-  int64_t    version = -1;
+  int64_t     version = -1;
   H5E_auto2_t report;
-  void      *context;
-  hid_t      file;
+  void       *context;
+  hid_t       file;
 
   *message = '\0';
   if (access(name, R_OK)) {
@@ -200,16 +200,18 @@ PetscBool ArchiveLoads(Archive archive)
   return archive->loads;
 }
 
-/* Opens a dataset to be read and refuses one of another size; n < 0: any, n rows of `width` values. */
+/* Opens a dataset to be read and refuses one that is missing or has another number of values than wanted; < 0: any number. */
 static PetscErrorCode OpenDataset(Archive a, const char *name, hssize_t values, hid_t *data, hsize_t *size)
 {
-  hid_t    space;
-  hssize_t found = -1;
+  hid_t     space;
+  hssize_t  found = -1;
   PetscBool there;
 
   PetscFunctionBeginUser;
+  *size = 0;
+  *data = -1;
   PetscCall(ArchiveHas(a, name, &there));
-  *data = there ? H5Dopen2(a->file, name, H5P_DEFAULT) : -1;
+  if (there) *data = H5Dopen2(a->file, name, H5P_DEFAULT);
   if (*data >= 0) {
     CallHDF5(space = H5Dget_space(*data));
     found = H5Sget_simple_extent_npoints(space);

@@ -110,7 +110,8 @@ PetscErrorCode CheckpointDestroy(Checkpoint *checkpoint)
 }
 
 /*
-  CheckpointReadScene - The scene of the run, with edits. Collective. After CheckpointOpen(). Refuses (exit 1) edits of anything but solver, output and stepping.
+  CheckpointReadScene - The scene of the run, with edits. Collective. After CheckpointOpen(). Refuses (exit 1) edits of anything but solver, output and
+  stepping.
 */
 PetscErrorCode CheckpointReadScene(Checkpoint checkpoint, int n_set, char *const *set, Scene *scene)
 {

@@ -168,7 +168,7 @@ void CommandLineHelp(FILE *file)
         "  burnish -help | -version\n\n"
         "  -o DIR           where results go (default out/NAME)\n"
         "  -set KEY=VALUE   overrides or adds one value of the scene by its path, such as contact.0.smoother=facet or\n"
-        "                   'loads.0={surface: top, uy: -1}'; repeatable, the last one wins; with -restart only keys of output,\n"
+        "                   'loads.0={surface: top, uy: -1}'; repeatable, the last one wins; with -restart only of output,\n"
         "                   solver and stepping\n"
         "  -overwrite       lets DIR hold another scene's results\n"
         "  -quiet           no progress on the terminal\n"

@@ -17,24 +17,22 @@ struct _n_Fields {
   PetscInt   cells[ELEMENT_TYPES]; /* rows of /mesh/cells_TYPE */
   PetscInt   n_written, room;
   PetscReal *t;     /* of the written steps */
+  PetscInt  *shows; /* what they hold: bits by kind; a restart may change it */
   Xdmf       xdmf;  /* what they show */
   char      *image; /* rank 0: of the file, between loading and FieldsResume() */
 };
 
 /* What output.fields may ask for, and what ParaView sees of it */
-enum { SHOW_DISPLACEMENT, SHOW_STRESS, SHOW_CONTACT };
-static const struct {
-  int       kind;
-  XdmfArray array;
-} shown[] = {
-  {SHOW_DISPLACEMENT, {"displacement", 3}},
-  {SHOW_STRESS,       {"von_mises", 1}   },
-  {SHOW_STRESS,       {"stress", 6}      },
-  {SHOW_CONTACT,      {"gap", 1}         },
-  {SHOW_CONTACT,      {"penetration", 1} },
-  {SHOW_CONTACT,      {"penalty", 1}     },
-  {SHOW_CONTACT,      {"pressure", 1}    },
-  {SHOW_CONTACT,      {"normal", 3}      },
+enum { SHOW_DISPLACEMENT, SHOW_STRESS, SHOW_CONTACT, SHOW_KINDS };
+static const XdmfArray shown[] = {
+  {"displacement", 3, SHOW_DISPLACEMENT},
+  {"von_mises",    1, SHOW_STRESS      },
+  {"stress",       6, SHOW_STRESS      },
+  {"gap",          1, SHOW_CONTACT     },
+  {"penetration",  1, SHOW_CONTACT     },
+  {"penalty",      1, SHOW_CONTACT     },
+  {"pressure",     1, SHOW_CONTACT     },
+  {"normal",       3, SHOW_CONTACT     },
 };
 
 /* Contact values of one node: columns of the nodal array that FieldsWriteContact() forms */
@@ -195,7 +193,8 @@ static PetscErrorCode FieldsListSlaveNodes(Fields fields)
   PetscInt    *ids;
 
   PetscFunctionBeginUser;
-  for (int p = 0; p < (FieldsShows(fields, SHOW_CONTACT) ? fields->n_pairs : 0); p++) {
+  for (int p = 0; p < fields->n_pairs; p++) {
+    if (fields->pairs[p].sf) continue;
     PetscCall(ContactGetNodes(fields->model->contact, p, fields->model->u, &slaves));
     PetscCall(PetscMalloc1(slaves.n, &ids));
     for (PetscInt k = 0; k < slaves.n; k++) ids[k] = mesh->node_id[slaves.node[k]];
@@ -205,19 +204,22 @@ static PetscErrorCode FieldsListSlaveNodes(Fields fields)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode FieldsWriteSlaveNodes(Fields fields, hid_t file, int pair)
+static PetscErrorCode FieldsWriteSlaveNodes(Fields fields, hid_t file)
 {
   ContactNodes slaves;
   int64_t     *ids;
   char         path[PATH_SIZE];
 
   PetscFunctionBeginUser;
-  PetscCall(ContactGetNodes(fields->model->contact, pair, fields->model->u, &slaves));
-  PetscCall(PetscMalloc1(slaves.n, &ids));
-  for (PetscInt k = 0; k < slaves.n; k++) ids[k] = fields->model->mesh->node_id[slaves.node[k]];
-  PetscCall(PetscSNPrintf(path, sizeof(path), "/contact/%s/nodes", ContactPairName(fields->model->contact, pair)));
-  PetscCall(RowsWriteIntegers(file, path, &fields->pairs[pair], 1, ids));
-  PetscCall(PetscFree(ids));
+  PetscCall(FieldsListSlaveNodes(fields));
+  for (int p = 0; p < fields->n_pairs; p++) {
+    PetscCall(ContactGetNodes(fields->model->contact, p, fields->model->u, &slaves));
+    PetscCall(PetscMalloc1(slaves.n, &ids));
+    for (PetscInt k = 0; k < slaves.n; k++) ids[k] = fields->model->mesh->node_id[slaves.node[k]];
+    PetscCall(PetscSNPrintf(path, sizeof(path), "/contact/%s/nodes", ContactPairName(fields->model->contact, p)));
+    PetscCall(RowsWriteIntegers(file, path, &fields->pairs[p], 1, ids));
+    PetscCall(PetscFree(ids));
+  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -227,9 +229,6 @@ static PetscErrorCode FieldsWriteMesh(Fields fields, hid_t file)
   PetscFunctionBeginUser;
   PetscCall(FieldsWriteNodes(fields, file));
   PetscCall(FieldsWriteCells(fields, file));
-  PetscCall(FieldsListSlaveNodes(fields));
-  if (FieldsShows(fields, SHOW_CONTACT))
-    for (int p = 0; p < fields->n_pairs; p++) PetscCall(FieldsWriteSlaveNodes(fields, file, p));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -409,16 +408,36 @@ static PetscErrorCode FieldsWriteContact(Fields fields, hid_t file)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* The kinds that a step written now holds, as bits */
+static PetscInt FieldsShown(Fields fields)
+{
+  PetscInt shows = 0;
+
+  for (int kind = 0; kind < SHOW_KINDS; kind++) shows |= FieldsShows(fields, kind) ? 1 << kind : 0;
+  return shows;
+}
+
+/* Does some written step hold contact fields? */
+static PetscBool FieldsHoldContact(Fields fields)
+{
+  for (PetscInt s = 0; s < fields->n_written; s++)
+    if (fields->shows[s] & 1 << SHOW_CONTACT) return PETSC_TRUE;
+  return PETSC_FALSE;
+}
+
 static PetscErrorCode FieldsRemember(Fields fields, PetscReal t)
 {
   PetscFunctionBeginUser;
   if (fields->n_written == fields->room) {
     fields->room = 2 * fields->room + 16;
     PetscCall(PetscRealloc((size_t)fields->room * sizeof(PetscReal), &fields->t));
+    PetscCall(PetscRealloc((size_t)fields->room * sizeof(PetscInt), &fields->shows));
   }
-  fields->t[fields->n_written++] = t;
-  fields->xdmf.t                 = fields->t;
-  fields->xdmf.n_steps           = fields->n_written;
+  fields->shows[fields->n_written] = FieldsShown(fields);
+  fields->t[fields->n_written++]   = t;
+  fields->xdmf.t                   = fields->t;
+  fields->xdmf.shows               = fields->shows;
+  fields->xdmf.n_steps             = fields->n_written;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -431,9 +450,8 @@ static PetscErrorCode FieldsPrepareXdmf(Fields fields)
   xdmf->name  = fields->scene->name;
   xdmf->nodes = fields->model->mesh->n_global;
   PetscCall(PetscCalloc1(fields->scene->n_bodies * ELEMENT_TYPES, &xdmf->blocks));
-  PetscCall(PetscCalloc1(COUNT(shown), &xdmf->arrays));
-  for (int i = 0; i < COUNT(shown); i++)
-    if (FieldsShows(fields, shown[i].kind)) xdmf->arrays[xdmf->n_arrays++] = shown[i].array;
+  xdmf->n_arrays = COUNT(shown);
+  xdmf->arrays   = shown;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -483,8 +501,8 @@ PetscErrorCode FieldsDestroy(Fields *fields)
   PetscCall(PetscFree((*fields)->owned));
   PetscCall(PetscFree((*fields)->pairs));
   PetscCall(PetscFree((*fields)->xdmf.blocks));
-  PetscCall(PetscFree((*fields)->xdmf.arrays));
   PetscCall(PetscFree((*fields)->t));
+  PetscCall(PetscFree((*fields)->shows));
   PetscCall(PetscFree(*fields));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -508,6 +526,7 @@ PetscErrorCode FieldsWrite(Fields fields, PetscInt step, PetscReal t)
     CallHDF5(group = H5Gcreate2(file, "/steps", H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT));
     CallHDF5(H5Gclose(group));
   }
+  if (FieldsShows(fields, SHOW_CONTACT) && !FieldsHoldContact(fields)) PetscCall(FieldsWriteSlaveNodes(fields, file));
   PetscCall(PetscSNPrintf(path, sizeof(path), "/steps/%04d", (int)fields->n_written));
   CallHDF5(group = H5Gcreate2(file, path, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT));
   PetscCall(FileWriteAttribute(group, "t", H5T_NATIVE_DOUBLE, 1, &t));
@@ -540,6 +559,7 @@ PetscErrorCode FieldsArchive(Fields fields, Archive archive)
   PetscCall(ArchiveIntegers(archive, "results/written", 1, &n));
   for (PetscInt s = fields->n_written; s < n; s++) PetscCall(FieldsRemember(fields, 0));
   PetscCall(ArchiveReals(archive, "results/t", n, fields->t));
+  PetscCall(ArchiveIntegers(archive, "results/shows", n, fields->shows));
   if (!n) PetscFunctionReturn(PETSC_SUCCESS);
   if (!ArchiveLoads(archive)) {
     if (rank == 0) PetscCall(FileImageTake(fields->file, &image, &size));

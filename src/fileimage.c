@@ -37,20 +37,12 @@ static PetscErrorCode RunsAdd(Runs *runs, int64_t first, int64_t n)
 
 static herr_t VisitLink(hid_t file, const char *name, const H5L_info_t *info, void *runs)
 {
-  hid_t      data;
-  H5O_info_t object;
-  haddr_t    first;
-  hsize_t    n;
+  hid_t   object = H5Oopen(file, name, H5P_DEFAULT);
+  haddr_t first  = H5Iget_type(object) == H5I_DATASET ? H5Dget_offset(object) : HADDR_UNDEF;
 
   (void)info;
-  if (H5Oget_info_by_name(file, name, &object, H5P_DEFAULT) < 0) return -1;
-  if (object.type != H5O_TYPE_DATASET) return 0;
-  data = H5Dopen2(file, name, H5P_DEFAULT);
-  if (data < 0) return -1;
-  first = H5Dget_offset(data);
-  n     = H5Dget_storage_size(data);
-  if (first != HADDR_UNDEF && RunsAdd(runs, (int64_t)first, (int64_t)n)) return -1;
-  return H5Dclose(data);
+  if (object < 0 || (first != HADDR_UNDEF && RunsAdd(runs, (int64_t)first, (int64_t)H5Dget_storage_size(object)))) return -1;
+  return H5Oclose(object);
 }
 
 /* Everything between the runs. */
@@ -91,9 +83,9 @@ PetscErrorCode FileImageTake(const char *name, char **data, PetscInt64 *size)
   *size = sizeof(Run);
   for (size_t k = 0; k < runs.n; k++) *size += (PetscInt64)sizeof(Run) + runs.run[k].n;
   PetscCall(PetscMalloc1(*size, data));
-  at          = *data;
-  *(Run *)at  = (Run){(int64_t)status.st_size, (int64_t)runs.n};
-  at         += sizeof(Run);
+  at         = *data;
+  *(Run *)at = (Run){(int64_t)status.st_size, (int64_t)runs.n};
+  at += sizeof(Run);
   for (size_t k = 0; k < runs.n; k++) {
     const size_t n = (size_t)runs.run[k].n;
 

@@ -81,8 +81,12 @@ static PetscErrorCode RunModel(Model model, Probes probes, Scene scene, Checkpoi
   PetscCall(PetscLogStagePop());
   if (!report.done && watch.kept != report.steps) PetscCall(CheckpointWrite(checkpoint));
   PetscCall(PetscTime(&now));
-  run = (RunRecord){.status            = report.done ? "done" : report.stopped ? "stopped" : "not converged",
-                    .message           = report.done ? NULL : report.stopped ? watch.message : report.message,
+  run = (RunRecord){.status            = report.done      ? "done"
+                                         : report.stopped ? "stopped"
+                                                          : "not converged",
+                    .message           = report.done      ? NULL
+                                         : report.stopped ? watch.message
+                                                          : report.message,
                     .steps             = report.steps,
                     .steps_failed      = report.steps_failed,
                     .steps_repeated    = report.steps_repeated,

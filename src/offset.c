@@ -182,11 +182,11 @@ const PetscReal *OffsetsGet(Offsets o)
 /* OffsetsArchive - Collective. name: where they stand in the archive. */
 PetscErrorCode OffsetsArchive(Offsets o, Archive archive, const char *name)
 {
-  PetscReal  time[] = {o->t_now, o->t_before}, *values[] = {o->now, o->before};
+  PetscReal   time[] = {o->t_now, o->t_before}, *values[] = {o->now, o->before};
   const char *names[] = {"now", "before"};
-  PetscInt  *tag;
-  char       path[PETSC_MAX_PATH_LEN];
-  Rows       faces;
+  PetscInt   *tag;
+  char        path[PETSC_MAX_PATH_LEN];
+  Rows        faces;
 
   PetscFunctionBeginUser;
   if (o->once || !o->smooth) PetscFunctionReturn(PETSC_SUCCESS);

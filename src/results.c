@@ -34,9 +34,9 @@ struct _n_Results {
   PetscBool   stepped, written; /* there is an accepted step; results.h5 holds it */
   double      started;
   PetscReal   t_started;
-  RunUsage    before;         /* of the parts of the run before this one */
-  PetscInt    restarts;       /* how many they are */
-  PetscInt    csv_length[2];  /* of steps.csv at the loaded checkpoint: bytes, in two parts as integers may have 32 bits */
+  RunUsage    before;        /* of the parts of the run before this one */
+  PetscInt    restarts;      /* how many they are */
+  PetscInt    csv_length[2]; /* of steps.csv at the loaded checkpoint: bytes, in two parts as integers may have 32 bits */
 };
 
 /* The record of the scene in its directory: one line with the file's name, then the text */
@@ -401,6 +401,7 @@ static PetscErrorCode ResultsPrintHead(Results results)
     if (reference)
       printf("warning: this is the reference BLAS; the direct solver is 6 to 7 times faster with OpenBLAS (Debian: apt install libopenblas0-serial)\n");
   }
+  if (results->talks && results->restarts) printf("restart  after step %lld, t = %g\n", (long long)results->last.step, (double)results->model->t);
   PetscCall(ResultsPrintSolver(results));
   if (!results->quiet) PetscCall(MeshReport(results->model->mesh, results->scene, stdout));
   if (results->talks) { printf("dofs     %lld free\neffects  %s\n", (long long)dofs, *effects ? effects : "none"); }
@@ -606,45 +607,46 @@ static PetscErrorCode ResultsUsage(Results results, RunUsage *usage)
 /* The last accepted step, and whether there is one. */
 static PetscErrorCode ResultsArchiveStep(Results results, Archive archive)
 {
-  StepRecord     *last      = &results->last;
-  ContactSummary *contact   = &last->contact;
-  PetscReal       reals[]   = {last->t,
-                               last->dt,
-                               last->residual,
-                               last->beta,
-                               contact->max_penetration,
-                               contact->min_penetration,
-                               contact->max_penetration_over_h,
-                               contact->penalty_min,
-                               contact->penalty_max,
-                               contact->force};
-  PetscInt        numbers[] = {last->step, last->attempts, last->newton, last->krylov, last->tied, contact->nodes, contact->in, contact->out,
-                               contact->outside_window};
+  StepRecord     *last    = &results->last;
+  ContactSummary *contact = &last->contact;
+  PetscReal       reals[] = {last->t,
+                             last->dt,
+                             last->residual,
+                             last->beta,
+                             contact->max_penetration,
+                             contact->min_penetration,
+                             contact->max_penetration_over_h,
+                             contact->penalty_min,
+                             contact->penalty_max,
+                             contact->force};
+  PetscInt numbers[] = {last->step, last->attempts, last->newton, last->krylov, last->tied, contact->nodes, contact->in, contact->out, contact->outside_window};
 
   PetscFunctionBeginUser;
   PetscCall(ArchiveBoolean(archive, "results/stepped", &results->stepped));
   PetscCall(ArchiveBoolean(archive, "results/last_written", &results->written));
   PetscCall(ArchiveReals(archive, "results/step_reals", PETSC_STATIC_ARRAY_LENGTH(reals), reals));
   PetscCall(ArchiveIntegers(archive, "results/step_numbers", PETSC_STATIC_ARRAY_LENGTH(numbers), numbers));
-  *last = (StepRecord){.step     = numbers[0],
-                       .attempts = numbers[1],
-                       .newton   = numbers[2],
-                       .krylov   = numbers[3],
-                       .tied     = numbers[4],
-                       .t        = reals[0],
-                       .dt       = reals[1],
-                       .residual = reals[2],
-                       .beta     = reals[3],
-                       .contact  = {.nodes                  = numbers[5],
-                                    .in                     = numbers[6],
-                                    .out                    = numbers[7],
-                                    .outside_window         = numbers[8],
-                                    .max_penetration        = reals[4],
-                                    .min_penetration        = reals[5],
-                                    .max_penetration_over_h = reals[6],
-                                    .penalty_min            = reals[7],
-                                    .penalty_max            = reals[8],
-                                    .force                  = reals[9]}};
+  *last = (StepRecord){
+    .step     = numbers[0],
+    .attempts = numbers[1],
+    .newton   = numbers[2],
+    .krylov   = numbers[3],
+    .tied     = numbers[4],
+    .t        = reals[0],
+    .dt       = reals[1],
+    .residual = reals[2],
+    .beta     = reals[3],
+    .contact  = {.nodes                  = numbers[5],
+                 .in                     = numbers[6],
+                 .out                    = numbers[7],
+                 .outside_window         = numbers[8],
+                 .max_penetration        = reals[4],
+                 .min_penetration        = reals[5],
+                 .max_penetration_over_h = reals[6],
+                 .penalty_min            = reals[7],
+                 .penalty_max            = reals[8],
+                 .force                  = reals[9]}
+  };
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -519,21 +519,6 @@ static PetscBool IsChangeable(const char *path, const char *end)
   return PETSC_FALSE;
 }
 
-/* SceneReadAgain - as SceneRead(), from the text that a run has kept. Collective. Refuses (exit status 1) edits that would make it another problem. */
-PetscErrorCode SceneReadAgain(MPI_Comm comm, const char *file, const char *where, const char *text, int n_set, char *const *set, Scene *scene)
-{
-  Document *document;
-
-  PetscFunctionBeginUser;
-  for (int i = 0; i < n_set; i++) {
-    if (IsChangeable(set[i], ".=")) continue;
-    PetscCall(RefuseInput(comm, "-set %s: a restart goes on with the scene as it is; allowed: keys of output, solver and stepping", set[i]));
-  }
-  PetscCall(DocumentReadText(comm, where, text, n_set, set, &document));
-  PetscCall(SceneCreate(document, file, scene));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* The next line of a text that belongs to the problem: the others are parts that may change, a key and what stands below it. */
 static const char *ProblemLine(const char *text)
 {
@@ -559,6 +544,25 @@ PetscBool SceneSameProblem(const char *a, const char *b)
     b += m + (b[m] == '\n');
   }
   return !*a && !*b ? PETSC_TRUE : PETSC_FALSE;
+}
+
+/* SceneReadAgain - as SceneRead(), from the text that a run has kept. Collective. Refuses (exit status 1) edits that make it another problem; those that
+   change nothing are fine, so that a command may be given again with the edits it began with. */
+PetscErrorCode SceneReadAgain(MPI_Comm comm, const char *file, const char *where, const char *text, int n_set, char *const *set, Scene *scene)
+{
+  Document *document;
+  char     *edited;
+
+  PetscFunctionBeginUser;
+  PetscCall(DocumentReadText(comm, where, text, n_set, set, &document));
+  PetscCall(DocumentText(document, &edited));
+  for (int i = 0; i < n_set && !SceneSameProblem(text, edited); i++) {
+    if (!IsChangeable(set[i], ".="))
+      PetscCall(RefuseInput(comm, "-set %s: a restart goes on with the scene as it is; allowed: keys of output, solver and stepping", set[i]));
+  }
+  PetscCall(PetscFree(edited));
+  PetscCall(SceneCreate(document, file, scene));
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 static PetscErrorCode PairsDestroy(int n, ScenePair **pairs)

@@ -180,8 +180,8 @@ static PetscErrorCode AddContact(cJSON *json, Contact contact)
 /*
   SummaryWrite - Writes summary.json under a temporary name and renames it. Collective.
 
-  Input: model, scene, directory (exists), run (counts), usage (of all parts of the run), restarts (number of the parts less one), last (last accepted step, NULL: none), probes[scene->n_probes]
-  (final values, NaN: none). Errors: PETSC_ERR_FILE_OPEN, PETSC_ERR_FILE_WRITE, PETSC_ERR_MEM.
+  Input: model, scene, directory (exists), run (counts), usage (of all parts of the run), restarts (number of the parts less one), last (last accepted step,
+  NULL: none), probes[scene->n_probes] (final values, NaN: none). Errors: PETSC_ERR_FILE_OPEN, PETSC_ERR_FILE_WRITE, PETSC_ERR_MEM.
 */
 PetscErrorCode SummaryWrite(Model model, Scene scene, const char *directory, const RunRecord *run, const RunUsage *usage, PetscInt restarts,
                             const StepRecord *last, const PetscReal *probes)

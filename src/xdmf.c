@@ -59,7 +59,8 @@ static void XdmfPrintGrid(const Xdmf *xdmf, FILE *out, int b, PetscInt step)
   fprintf(out, "</Topology>\n    <Geometry GeometryType=\"XYZ\">");
   XdmfPrintDataset(out, "Float", xdmf->nodes, 3, "/mesh/nodes");
   fprintf(out, "</Geometry>\n");
-  for (int i = 0; i < xdmf->n_arrays; i++) XdmfPrintAttribute(out, &xdmf->arrays[i], xdmf->nodes, step);
+  for (int i = 0; i < xdmf->n_arrays; i++)
+    if (xdmf->shows[step] & 1 << xdmf->arrays[i].kind) XdmfPrintAttribute(out, &xdmf->arrays[i], xdmf->nodes, step);
   fprintf(out, "   </Grid>\n");
 }
 

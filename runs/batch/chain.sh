@@ -2,7 +2,7 @@
 #   SCENE, DIR       scene file, directory of the results
 #   BURNISH          the program and its own options, an array
 #   LAUNCH           what starts it on all ranks, an array
-#   resubmit         a command that puts the next link into the queue
+#   resubmit         a command that puts the next link, or this job again, into the queue
 # shellcheck shell=bash
 
 # run_link: goes on from DIR's checkpoint, or begins; ends with burnish's exit status. TERM and USR1 to the job script end the run after the current step,

@@ -1,7 +1,7 @@
 #!/bin/bash
 # A run as a chain of PBS jobs: each goes on from the checkpoint of the one before, until the run has ended.
 #   qsub -v SCENE=runs/pipe_pinch.yaml,DIR=out/pipe_pinch runs/batch/pbs.sh
-# from the root of Burnish. To be adapted: nodes, ranks, time, queue. Meshes first where compute nodes have no gmsh: burnish -mesh SCENE.yaml
+# from the root of Burnish. To be adapted here, as the next job knows no options of qsub: nodes, ranks, time, queue. Meshes first where compute nodes have no gmsh: burnish -mesh SCENE.yaml
 #PBS -N burnish
 #PBS -l select=1:ncpus=2:mpiprocs=2:ompthreads=1
 #PBS -l walltime=12:00:00
@@ -16,6 +16,6 @@ export OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1
 BURNISH=(build/burnish -time_limit "$LIMIT")
 # shellcheck disable=SC2034,SC2206 # a command of several words
 LAUNCH=(${LAUNCH:-mpirun -n ${PBS_NP:-2} --bind-to core})
-# shellcheck disable=SC2329 # called by run_chain
+# shellcheck disable=SC2317,SC2329 # called by run_chain
 resubmit() { qsub -W depend=afterany:"${PBS_JOBID:-}" -v "SCENE=$SCENE,DIR=$DIR,LIMIT=$LIMIT" runs/batch/pbs.sh; }
 run_chain

@@ -1,5 +1,5 @@
 #!/bin/bash
-# A study as a PBS job array, several runs in each job; the table is made from the results at the end.
+# A study as a PBS job array, several runs in each job; scripts/study.py with the same words then makes the table.
 #   qsub -J 0-3 -v "COUNT=4,STUDY=runs/pipe_pinch.yaml --vary contact.0.degree=2;4" runs/batch/pbs_study.sh
 # from the root of Burnish. A semicolon stands for a comma, which ends a value of qsub's -v.
 #PBS -N burnish-study

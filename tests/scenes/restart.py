@@ -17,7 +17,7 @@ BATCH = pathlib.Path(__file__).resolve().parents[2] / "runs/batch"
 COUNTS = ("step", "newton", "attempts", "contact_nodes", "nodes_in", "nodes_out")
 OWN = ("wall_s", "cpu_s", "seconds", "peak_rss_mb", "restarts", "options", "mesh_s", "ranks", "partition")  # of a part of a run
 
-args = arguments(("part", "what is shown", ("kills", "signals", "refusals")), ("kills", "how many"))
+args = arguments(("part", "what is shown", ("kills", "signals", "refusals", "states")), ("kills", "how many"))
 out = pathlib.Path(args.out)
 check = Check()
 
@@ -93,34 +93,34 @@ def same_summary(what, directory, reference):
     check.holds(f"{what}: summary", all(ours[key] == theirs[key] for key in counts) and ours.keys() == theirs.keys())
 
 
+def wait_for_rows(process, directory, n):
+    while process.poll() is None and not ((directory / "steps.csv").exists() and len((directory / "steps.csv").read_text().splitlines()) > n):
+        time.sleep(0.005)
+
+
 def kills():
     """kill -9 of all ranks, or of one, at a random moment; most of such a run is spent in writing."""
-    overrides = ["stepping.initial=0.016", "output={every: 1, checkpoint: 1}"]
+    overrides = ["stepping.initial=0.06", "output={every: 1, checkpoint: 1}"]
     generator = random.Random(4)
     reference = run(args, SCENE, out="reference", ranks=1, overrides=overrides).directory
-    begun, wall = 0, {}
+    steps = len(rows(reference)) - 1
+    begun, pace = 0, Run(0, "", reference).summary()["wall_s"] / steps
     for kill in range(int(args.kills)):
         ranks, others = (1, 1) if kill == 0 else (1 + kill % 3, 1 + (kill + 1) % 3)
         directory = out / f"killed_{kill}"
         shutil.rmtree(directory, ignore_errors=True)
-        if ranks not in wall:
-            began = time.monotonic()
-            finish(start(directory, ranks=ranks, overrides=overrides), directory)
-            wall[ranks] = time.monotonic() - began
-            shutil.rmtree(directory)
         process = start(directory, ranks=ranks, overrides=overrides)
-        while not (directory / "steps.csv").exists():
-            time.sleep(0.01)
-        time.sleep(generator.uniform(0, 0.7 * wall[ranks]))
+        wait_for_rows(process, directory, generator.randrange(1, steps - 4))
+        time.sleep(generator.uniform(0, 2 * pace))
         victims = rank_ids(process.pid)
         for victim in victims if kill % 2 else victims[-1:]:
             os.kill(victim, signal.SIGKILL)
         killed = finish(process, directory)
-        steps = len((directory / "steps.csv").read_text().splitlines()) - 1
+        reached = len((directory / "steps.csv").read_text().splitlines()) - 1
         left = (directory / "checkpoint.h5").exists()
         part = (directory / "checkpoint.h5.tmp").exists()
-        what = f"kill {kill}, on {ranks} in step {steps}{', while writing' if part else ''}, again on {others}"
-        check.holds(f"{what}: the launcher tells", killed.status != 0 or steps == len(rows(reference)) - 1, f"status {killed.status}")
+        what = f"kill {kill}, on {ranks} after step {reached}{', while writing' if part else ''}, again on {others}"
+        check.holds(f"{what}: the launcher tells", killed.status != 0, f"status {killed.status}")
         begun += not left
         again = go_on(directory, ranks=others) if left else finish(start(directory, ranks=others, overrides=overrides), directory)
         check.holds(f"{what}: goes on to the end", again.status == 0, again.text if again.status else "")
@@ -129,12 +129,7 @@ def kills():
         if again.status == 0:
             same_results(what, directory, reference)
             same_summary(what, directory, reference)
-    check.holds("most were killed after their first checkpoint", begun <= int(args.kills) / 3, f"{begun} before")
-
-
-def wait_for_rows(process, directory, n):
-    while process.poll() is None and not ((directory / "steps.csv").exists() and len((directory / "steps.csv").read_text().splitlines()) > n):
-        time.sleep(0.005)
+    check.holds("most were killed after their first checkpoint", begun <= max(1, int(args.kills) / 3), f"{begun} before")
 
 
 def stopped(what, ended, reference, status=3):
@@ -182,15 +177,15 @@ def signals():
 
 
 def batch(reference, overrides):
-    """The job script with no queue around it: its resubmission is a program that only notes that it was called."""
+    """The job script with no queue around it: its way back into it is a program that only notes that it was called."""
     directory, scratch = out / "batch", out / "queue"
     for each in (directory, scratch):
         shutil.rmtree(each, ignore_errors=True)
     scratch.mkdir(parents=True)
     for name in ("build", "runs", "meshes"):
         (scratch / name).symlink_to(BATCH.parents[1] / name if name != "build" else pathlib.Path(args.burnish).resolve().parent)
-    (scratch / "sbatch").write_text(f'#!/bin/sh\necho "$@" >>{scratch}/queue\n')
-    (scratch / "sbatch").chmod(0o755)
+    (scratch / "scontrol").write_text(f'#!/bin/sh\necho "$@" >>{scratch}/queue\n')
+    (scratch / "scontrol").chmod(0o755)
     options = [word for override in overrides for word in ("-set", override)]
     environment = dict(os.environ, SLURM_SUBMIT_DIR=str(scratch), SLURM_JOB_ID="7", SLURM_NTASKS="2", PATH=f"{scratch}:{os.environ['PATH']}", LAUNCH="mpirun -n 2")
     command = [str(scratch / "runs/batch/slurm.sh"), "runs/slide_cylinder.yaml", str(directory.resolve()), *options]
@@ -198,10 +193,10 @@ def batch(reference, overrides):
     wait_for_rows(process, directory, 3)
     process.send_signal(signal.SIGTERM)
     ended = finish(process, directory)
-    check.holds("job script: TERM ends it, the next is queued", ended.status == 0 and "afterany:7" in (scratch / "queue").read_text(), ended.text)
+    check.holds("job script: TERM ends it, and it is queued again", ended.status == 0 and (scratch / "queue").read_text() == "requeue 7\n", ended.text)
     check.holds("job script: stopped", ended.summary()["status"] == "stopped", ended.summary()["message"] or "")
     again = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, env=environment, check=False)
-    check.holds("job script: the next one ends the run", again.returncode == 0, again.stdout if again.returncode else "")
+    check.holds("job script: the second time it ends the run", again.returncode == 0, again.stdout if again.returncode else "")
     same_results("job script", directory, reference)
 
 
@@ -245,10 +240,17 @@ def refusals():
         refused(f"-set {override}", copy("set", whole), "output, solver and stepping", overrides=[override])
     refused("-o", reference, "leave -o out", "-o", "elsewhere")
 
-    changed = go_on(copy("changed", whole), overrides=["stepping.initial=0.02", "solver.tolerance=1e-9", "output.checkpoint=0"])
-    check.holds("-set stepping, solver, output: goes on", changed.status == 0, changed.text if changed.status else "")
+    changed = go_on(copy("changed", whole), overrides=["stepping.initial=0.02", "mesh.order=1", "solver.tolerance=1e-9", "output.checkpoint=0"])
+    check.holds("-set stepping, solver, output, and what the scene has: goes on", changed.status == 0, changed.text if changed.status else "")
     check.near("-set stepping.initial: the next step's dt", changed.steps()[12]["dt"], 0.02, 1e-12)
 
+    fields = copy("fields", whole)
+    less = go_on(fields, overrides=["output={every: 1, fields: [displacement]}"])
+    with h5py.File(fields / "results.h5", "r") as file:
+        held = [sorted(file["steps"][group]) for group in sorted(file["steps"])]
+    check.holds("-set output.fields: from here on", less.status == 0 and held[-1] == ["displacement"] and "stress" in held[0] and len(held) == 13)
+    text = (fields / "results.xdmf").read_text()
+    check.holds("-set output.fields: results.xdmf knows", text.count("Name=\"displacement\"") == 13 and text.count("Name=\"von_mises\"") == 12)
     no_room(whole, reference)
 
 
@@ -278,5 +280,31 @@ def no_room(whole, reference):
     same_files("full disk", full, reference)
 
 
-{"kills": kills, "signals": signals, "refusals": refusals}[args.part]()
+STATES = {  # scene and what makes it short; a checkpoint lies before the last steps
+    "forecast": ("cup_flattening", 3, ["stepping={control: contact, initial: 0.025, N_c: 5, prediction: tangent}"]),
+    "steps by contact": ("cup_flattening", 4, ["stepping={control: contact, initial: 0.025, N_c: 5, prediction: converged}"]),
+    "penalties": ("plate_cylinder", 4, ["mesh.parameters={h_contact: 0.5, h_far: 8, n_thick: 3, n_width: 1}"]),
+    "penalties by step": ("plate_cylinder", 4, ["mesh.parameters={h_contact: 0.5, h_far: 8, n_thick: 3, n_width: 1}", "contact.0.penalty.when=step"]),
+    "offsets": ("slide_facets", 4, ["stepping.initial=0.1", "contact.0.smoother=diffuse", "contact.0.formulation=surface_to_surface",
+                                    "probes=[{name: force, contact_force: sole, component: y}]"]),
+    "kept pattern": ("slide_flat", 7, ["contact.0.smoother=diffuse", "probes=[{name: force, contact_force: sole, component: y}]"]),
+}
+
+
+def states():
+    """All that the next steps depend on is in the checkpoint: what is remembered differs from scene to scene."""
+    for what, (scene, every, overrides) in STATES.items():
+        path = SCENES / f"../../runs/{scene}.yaml"
+        reference = run(args, path, out=f"whole {what}", ranks=1, overrides=overrides).directory
+        for ranks in (1, 2):
+            directory = run(args, path, out=f"part {what}", ranks=1, overrides=[*overrides, f"output.checkpoint={every}"]).directory
+            again = go_on(directory, ranks=ranks)
+            check.holds(f"{what}, on {ranks}: goes on", again.status == 0 and "restart  after step" in again.text, again.text if again.status else "")
+            if ranks == 1:
+                same_files(what, directory, reference)
+            same_results(f"{what}, on {ranks}", directory, reference)
+            same_summary(f"{what}, on {ranks}", directory, reference)
+
+
+{"kills": kills, "signals": signals, "refusals": refusals, "states": states}[args.part]()
 check.finish()
