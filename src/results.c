@@ -608,6 +608,9 @@ static void ResultsPrintEnd(Results results, const RunRecord *run)
 
   if (results->rank == 0 && run->message) fprintf(stderr, "burnish: %s: %s\n", run->status, run->message);
   if (!results->talks) return;
+  if (run->relaxed)
+    printf("stabilised pairs: springs relaxed %lld times, took out an energy of %.3g, hold at most %.2g of an accepted state's\n", (long long)run->relaxed,
+           (double)run->taken, (double)run->left);
   if (run->cycles)
     printf("contact sets that repeated themselves: %lld, steps cut for it %lld; the last time %s\n", (long long)run->cycles, (long long)run->cycles_cut,
            run->cycle);

@@ -173,6 +173,7 @@ static PetscReal StepEnd(LoadStepper stepper, PetscReal t, PetscReal dt, PetscBo
 
 static void CountSolve(PetscReal t, const SolveReport *solve, StepRecord *record, StepperReport *report)
 {
+  report->relaxed += solve->relaxed;
   report->cycles += solve->cycles;
   report->cycles_cut += solve->result == SOLVE_CYCLE;
   if (solve->cycles) snprintf(report->cycle, sizeof(report->cycle), "on the way to t = %.6g %s", (double)t, solve->cycle);
@@ -214,6 +215,8 @@ static PetscErrorCode LoadStepperAccept(LoadStepper stepper, PetscReal dt, Petsc
   PetscCall(ModelAccept(model));
   report->steps++;
   report->newton_accepted += solve->newton;
+  report->taken += solve->taken;
+  report->left = PetscMax(report->left, solve->left);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
