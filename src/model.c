@@ -86,7 +86,7 @@ typedef struct _n_ModelWork {
 static PetscErrorCode ModelResidual(Model model, const PetscReal *u, PetscReal t, PetscReal t_contact, PetscBool *ok)
 {
   ModelWork *work   = model->work;
-  PetscReal  sum[3] = {0, 0, 0};
+  PetscReal  sum[4] = {0, 0, 0, 0}; /* squares of forces in elements, loads, contact; ranks with an inverted element */
   PetscBool  mine;
 
   PetscFunctionBeginUser;
@@ -101,9 +101,10 @@ static PetscErrorCode ModelResidual(Model model, const PetscReal *u, PetscReal t
     PetscCall(ContactResidual(model->contact, u, t_contact, work->f, NULL, &sum[2]));
     TimingEnd(TIMING_ASSEMBLY_CONTACT);
   }
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sum, 3, MPIU_REAL, MPI_SUM, model->mesh->comm));
+  sum[3] = mine ? 0 : 1;
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sum, 4, MPIU_REAL, MPI_SUM, model->mesh->comm));
   work->scale = PetscSqrtReal(PetscMax(sum[0], PetscMax(sum[1], sum[2])));
-  *ok         = mine;
+  *ok         = sum[3] > 0 ? PETSC_FALSE : PETSC_TRUE; /* on all ranks: line searches act on it without asking the others */
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
