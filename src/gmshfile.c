@@ -317,7 +317,7 @@ static PetscErrorCode ReadNodes(Reader *r)
     int      parametric = (ReadInt(r), ReadInt(r)); /* the entity's tag is not needed */
     PetscInt in_block   = ReadCount(r);
 
-    if (in_block > n - done) ReaderDamaged(r);
+    if (in_block > n - done || dim < 0 || dim > 3) ReaderDamaged(r);
     for (PetscInt i = 0; i < in_block && !ReaderFailed(r); i++) mesh->node_tag[done + i] = ReadTag(r);
     for (PetscInt i = 0; i < in_block && !ReaderFailed(r); i++) {
       for (int k = 0; k < 3; k++) mesh->coords[3 * (done + i) + k] = ReadDouble(r);

@@ -622,6 +622,23 @@ static PetscErrorCode ModelLocateFailure(Model model, char *text, size_t size)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Adds that the penalty is so stiff that rounding alone may keep the residual above the tolerance, where it is. */
+static PetscErrorCode ModelBlamePenalty(Model model, char *text, size_t size)
+{
+  const PetscReal allowed = model->scene->solver.tolerance * PetscMax(model->force_scale, model->work->scale);
+  PetscReal       force;
+  size_t          used;
+
+  PetscFunctionBeginUser;
+  if (!model->contact) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(ContactRoundOff(model->contact, &force));
+  PetscCall(PetscStrlen(text, &used));
+  if (force > MODEL_ROUND_OFF * allowed)
+    PetscCall(PetscSNPrintf(text + used, size - used, "; the penalty is too stiff: rounding of positions alone is a force of %.2g, the tolerance is %.2g",
+                            (double)force, (double)allowed));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* What is known of a failed solve: the bodies that nothing holds where the system is singular, else where to look. */
 static PetscErrorCode ModelExplainFailure(Model model, SolveReport *report)
 {
@@ -638,8 +655,10 @@ static PetscErrorCode ModelExplainFailure(Model model, SolveReport *report)
   if (adrift && loose[0])
     PetscCall(PetscSNPrintf(report->detail, sizeof(report->detail), "no support and no imposed displacement holds %s%s", loose,
                             !model->contact || report->result == SOLVE_ADRIFT ? "" : " (contact may, from the start or with stabilise: true)"));
-  else
+  else {
     PetscCall(ModelLocateFailure(model, report->detail, sizeof(report->detail)));
+    PetscCall(ModelBlamePenalty(model, report->detail, sizeof(report->detail)));
+  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

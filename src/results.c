@@ -35,6 +35,9 @@ struct _n_Results {
   PetscReal   t_started;
 };
 
+/* From this on elements of first order lock: at 0.49 the bulk modulus is fifty times the shear modulus. */
+#define LOCKING_NU 0.49
+
 /* The record of the scene in its directory: one line with the file's name, then the text */
 static const char record_name[] = "scene.yaml", record_head[] = "# scene: ";
 
@@ -435,6 +438,18 @@ PetscErrorCode ResultsDestroy(Results *results)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Elements of first order with full integration keep their volume at every quadrature point where nu is near a half, and so hardly deform. */
+static void ResultsPrintLocking(Results results)
+{
+  const Scene scene = results->scene;
+
+  for (int b = 0; b < scene->n_bodies && !results->rank && results->model->mesh->order == 1; b++) {
+    if (scene->bodies[b].rigid || scene->bodies[b].material.nu < LOCKING_NU) continue;
+    fprintf(stderr, "burnish: warning: %s: nu = %g with elements of first order and full integration: they lock (too stiff); mesh.order: 2 does not\n",
+            SceneWhere(scene, scene->bodies[b].path, "material.nu"), scene->bodies[b].material.nu);
+  }
+}
+
 /*
   ResultsStart - Makes the directory with the record of the scene and the head of steps.csv, and prints the run's first lines. The time
   spent counts from here. Collective. Errors: refuses (exit 1) a directory that cannot be made or written.
@@ -454,6 +469,7 @@ PetscErrorCode ResultsStart(Results results)
     PetscCall(ResultsOpenCsv(results));
   }
   PetscCall(ResultsPrintHead(results));
+  ResultsPrintLocking(results);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
