@@ -1,4 +1,5 @@
-# Burnish: `make help` lists the targets. Variables: BUILD (folder), ARCH (-march), CFLAGS, PETSC_DIR and PETSC_ARCH, PREFIX, JOBS (runs of a study at a time).
+# Burnish: `make help` lists the targets. Variables: BUILD (folder), ARCH (-march), CFLAGS, PETSC_DIR and PETSC_ARCH, PREFIX, SANITIZE, JOBS (runs of a
+# study at a time).
 .DEFAULT_GOAL := all
 .DELETE_ON_ERROR:
 
@@ -10,6 +11,12 @@ JOBS   := 2
 VENV   := build/venv
 ifeq ($(origin CC),default)
   CC := mpicc
+endif
+# SANITIZE=1: a build beside the other that stops at the first bad address, leak or undefined behaviour; `make SANITIZE=1 check` runs the tests with it.
+ifdef SANITIZE
+  BUILD  := build/sanitize
+  CFLAGS := -O1 -g -fno-omit-frame-pointer -fsanitize=address,undefined -fno-sanitize-recover=undefined
+  LDLIBS := tests/keepplugins.c -rdynamic
 endif
 
 # PETSc is the one of PETSC_DIR and PETSC_ARCH, else the one that pkg-config knows; HDF5 is the one PETSc was built with.
@@ -35,10 +42,10 @@ SOURCES   := $(filter-out src/main.c,$(wildcard src/*.c src/*/*.c))
 OBJECTS   := $(SOURCES:src/%.c=$(BUILD)/obj/%.o)
 LIBRARY   := $(BUILD)/libburnish.a
 BURNISH   := $(BUILD)/burnish
-TESTS     := $(patsubst %.c,$(BUILD)/tests/%,$(notdir $(wildcard tests/unit/test_*.c tests/mpi/test_*.c tests/oracle/*.c)))
+TESTS     := $(patsubst %.c,$(BUILD)/tests/%,$(notdir $(wildcard tests/unit/test_*.c tests/mpi/test_*.c tests/oracle/*.c tests/fuzz/*.c)))
 BENCHES   := $(patsubst tests/bench/%.c,$(BUILD)/bench/%,$(wildcard tests/bench/*.c))
 
-.PHONY: all tests deps demo check test study bench install help format clean FORCE
+.PHONY: all tests deps demo check test study bench fuzz valgrind install help format clean FORCE
 all: $(BURNISH) ## builds build/burnish
 
 $(BURNISH): $(BUILD)/obj/main.o $(LIBRARY)
@@ -62,6 +69,7 @@ endef
 $(eval $(call program,tests/unit,$(BUILD)/tests))
 $(eval $(call program,tests/mpi,$(BUILD)/tests))
 $(eval $(call program,tests/oracle,$(BUILD)/tests))
+$(eval $(call program,tests/fuzz,$(BUILD)/tests))
 $(eval $(call program,tests/bench,$(BUILD)/bench))
 
 # Everything is compiled again when the compile or link line changes, with another PETSc for instance. What is asked for together with
@@ -91,6 +99,12 @@ study: all ## accuracy against time: tables and plots in out/study/ (QUICK=1: sh
 
 bench: all tests ## raw timing records and their table in out/bench/
 	@scripts/bench.sh $(BUILD)
+
+fuzz: ## looks for files that break the readers, SECONDS=600 for each, with clang
+	@scripts/fuzz.sh $(or $(SECONDS),600)
+
+valgrind: ## runs the unit tests of the plain C kernels under valgrind
+	@scripts/valgrind.sh
 
 install: all ## installs program, man page and examples into PREFIX (default /usr/local)
 	install -D -m 755 $(BURNISH) $(DESTDIR)$(PREFIX)/bin/burnish

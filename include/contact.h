@@ -88,6 +88,8 @@ PetscErrorCode ContactListsReach(Contact, PetscBool *within);
 PetscErrorCode ContactListsRenew(Contact, const PetscReal *u, PetscReal t, PetscReal motion);
 /* After ContactResidual() at (u, t): does a fresh search give the same gaps? If not, the fresh lists replace the old. Collective. */
 PetscErrorCode ContactListsHold(Contact, const PetscReal *u, PetscReal t, PetscReal motion, PetscBool *hold);
+/* The force that rounding of positions stands for at the largest penalty. Collective. */
+PetscErrorCode ContactRoundOff(Contact, PetscReal *force);
 /* Has new lists' search lost a slave point that was behind its master by more than the face size, since the step began? Its place into text. Collective. */
 PetscErrorCode ContactLocateLost(Contact, PetscBool *lost, char *text, size_t size);
 /* A linear step from the accepted state begins or ends: what is closed there stays so, and what touches if that is asked for. Not collective. */

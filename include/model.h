@@ -19,6 +19,7 @@ typedef enum {
   SOLVE_LISTS,
   SOLVE_CYCLE,
   SOLVE_LOST,
+  SOLVE_ADRIFT,
   SOLVE_WINDOW,
   SOLVE_NAN
 } SolveResult;
@@ -31,6 +32,8 @@ typedef struct {
   PetscInt    regathered;  /* times lists were replaced */
   PetscInt    adjusted;    /* times penalties were changed and the step solved on */
   PetscReal   residual;    /* |R|_2 / F_ref at the end */
+  PetscInt    relaxed;     /* times the springs of stabilised pairs were relaxed and the step solved on */
+  PetscReal   taken, left; /* energy that the springs took out on the way; what is left in them at the end, as a part of that in elements and contact */
   PetscInt    cycles;      /* times the contact set repeated itself and Newton's steps were shortened */
   char        cycle[256];  /* the last of these: its period and nodes, in gmsh's tags */
   char        detail[256]; /* where it failed, in gmsh's tags */

@@ -21,6 +21,8 @@ typedef struct {
   const char *status;  /* "done", "not converged", "stopped" */
   const char *message; /* cause, or NULL */
   PetscInt    steps, steps_failed, steps_repeated, newton_iterations, newton_accepted, krylov_iterations;
+  PetscInt    relaxed;            /* times that the springs of stabilised pairs were relaxed */
+  PetscReal   taken, left;        /* energy that they took out; largest part of an accepted state's energy in them */
   PetscInt    cycles, cycles_cut; /* times a contact set repeated itself; steps that failed for it */
   const char *cycle;              /* the last time, or empty */
   PetscReal   wall_s, mesh_s; /* of the program, since it started */

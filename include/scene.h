@@ -55,6 +55,7 @@ typedef struct {
   int                global_frame, diffuse_derivatives;
   double             feature_angle; /* degrees */
   InitialOverlap     initial_overlap;
+  int                stabilise; /* springs hold its bodies until contact does */
   int                penalty_auto;
   double             penalty, penalty_scale; /* force per length and area; the automatic value is multiplied by penalty_scale */
   int                adjust;                 /* the penalty follows the penetration */

@@ -69,6 +69,20 @@ PetscErrorCode ContactSummarise(Contact contact, ContactSummary *summary)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* ContactRoundOff - what rounding of positions leaves of the residual where the penalty is largest: penalty times area times machine epsilon times model size.
+
+   Collective. *force: the same on all ranks. */
+PetscErrorCode ContactRoundOff(Contact contact, PetscReal *force)
+{
+  PetscFunctionBeginUser;
+  *force = 0;
+  for (int p = 0; p < contact->n_pairs; p++)
+    for (PetscInt c = 0; c < contact->pairs[p].n; c++) *force = PetscMax(*force, contact->pairs[p].now.penalty[c] * contact->pairs[p].area[c]);
+  *force *= PETSC_MACHINE_EPSILON * contact->mesh->size;
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, force, 1, MPIU_REAL, MPI_MAX, contact->mesh->comm));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* ContactPairs - how many pairs there are; 0 for NULL. Not collective. */
 int ContactPairs(Contact contact)
 {

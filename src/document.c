@@ -8,7 +8,7 @@
 #include <yaml.h>
 
 /* A scene is a few kB of text. The bound keeps a wrong file (a mesh, a device) from being read whole by every rank. */
-enum { SCENE_MAX_BYTES = 16 << 20 };
+enum { SCENE_FIRST_BYTES = 64 << 10, SCENE_MAX_BYTES = 16 << 20 };
 /* The schema is 6 levels deep. The bound keeps the recursions over the tree from exhausting the stack. */
 enum { SCENE_MAX_DEPTH = 32 };
 
@@ -336,12 +336,17 @@ static PetscErrorCode FileBroadcast(MPI_Comm comm, const char *name, char **text
 
   PetscFunctionBeginUser;
   PetscCallMPI(MPI_Comm_rank(comm, &rank));
-  PetscCall(PetscMalloc1(rank ? 1 : SCENE_MAX_BYTES + 1, text));
+  PetscCall(PetscMalloc1(SCENE_FIRST_BYTES, text));
   if (!rank) {
     errno = 0;
     file  = fopen(name, "rb");
     if (file) {
-      size[0] = (int)fread(*text, 1, SCENE_MAX_BYTES + 1, file);
+      for (int room = SCENE_FIRST_BYTES; size[0] < room && !feof(file) && !ferror(file);) {
+        size[0] += (int)fread(*text + size[0], 1, (size_t)(room - size[0]), file);
+        if (size[0] < room || room > SCENE_MAX_BYTES) continue;
+        room *= 2;
+        PetscCall(PetscRealloc((size_t)room, text));
+      }
       size[1] = ferror(file) ? errno : 0;
       fclose(file);
     } else

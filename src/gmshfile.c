@@ -155,8 +155,9 @@ static PetscInt ReadTag(Reader *r)
 {
   long long value = ReadSize(r);
 
-  if (value < 0 || value > PETSC_MAX_INT) Complain(r->complaint, "%s: tag %lld does not fit into this build's index type", r->file, value);
-  return (PetscInt)value;
+  if (value >= 0 && value <= PETSC_MAX_INT) return (PetscInt)value;
+  Complain(r->complaint, "%s: tag %lld does not fit into this build's index type", r->file, value);
+  return 0; /* differences of tags stay numbers */
 }
 
 static double ReadDouble(Reader *r)
@@ -316,7 +317,7 @@ static PetscErrorCode ReadNodes(Reader *r)
     int      parametric = (ReadInt(r), ReadInt(r)); /* the entity's tag is not needed */
     PetscInt in_block   = ReadCount(r);
 
-    if (in_block > n - done) ReaderDamaged(r);
+    if (in_block > n - done || dim < 0 || dim > 3) ReaderDamaged(r);
     for (PetscInt i = 0; i < in_block && !ReaderFailed(r); i++) mesh->node_tag[done + i] = ReadTag(r);
     for (PetscInt i = 0; i < in_block && !ReaderFailed(r); i++) {
       for (int k = 0; k < 3; k++) mesh->coords[3 * (done + i) + k] = ReadDouble(r);

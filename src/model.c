@@ -1,9 +1,11 @@
 #include "model.h"
 #include "contactcycle.h"
 #include "linearsolver.h"
+#include "loosebody.h"
 #include "matrixsum.h"
 #include "refusal.h"
 #include "smoother.h"
+#include "stabiliser.h"
 #include "timing.h"
 
 /* Energy of a state with an inverted element: above any other, yet its square is a number, which the line search takes. */
@@ -26,6 +28,9 @@
 #define MODEL_MAX_DAMPED 3
 /* Iterations without any change of the set after which steps have their full length again. */
 #define MODEL_STEADY 2
+/* Times that the springs of stabilised pairs are relaxed. A body at rest needs two or three; one that flies covers its penetration at rest, times a
+   thousand, in each. */
+#define MODEL_MAX_RELAX 30
 /* Round-off of the residual, in machine epsilons times stiffness times displacement: a body that is moved without any force has nothing else
    to be measured against. Measured: 0.1 to 1.5. */
 #define MODEL_ROUND_OFF 16
@@ -49,6 +54,7 @@ const char *const SolveResults[] = {"converged",
                                     "the contact lists did not settle",
                                     "the contact set repeats itself",
                                     "contact was lost behind a master",
+                                    "a body that is held by springs only (stabilise) does not come to rest",
                                     "the penetrations did not come into the window of the adjusted penalty",
                                     "not-a-number in the residual"};
 
@@ -77,6 +83,7 @@ typedef struct _n_ModelWork {
   PetscReal    damping;    /* of the line search when nothing repeats */
   PetscBool    left;       /* a slave point slid out of its lists: the solve ended for new ones */
   Vec          residual;   /* of a trial point, while near; the tangent's diagonal for a moment */
+  Stabiliser   stabiliser; /* NULL: no pair asks for it */
   ContactCycle watch;      /* of the contact set; NULL: no contact */
 } ModelWork;
 
@@ -86,7 +93,7 @@ typedef struct _n_ModelWork {
 static PetscErrorCode ModelResidual(Model model, const PetscReal *u, PetscReal t, PetscReal t_contact, PetscBool *ok)
 {
   ModelWork *work   = model->work;
-  PetscReal  sum[3] = {0, 0, 0};
+  PetscReal  sum[4] = {0, 0, 0, 0}; /* squares of forces in elements, loads, contact; ranks with an inverted element */
   PetscBool  mine;
 
   PetscFunctionBeginUser;
@@ -101,9 +108,10 @@ static PetscErrorCode ModelResidual(Model model, const PetscReal *u, PetscReal t
     PetscCall(ContactResidual(model->contact, u, t_contact, work->f, NULL, &sum[2]));
     TimingEnd(TIMING_ASSEMBLY_CONTACT);
   }
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sum, 3, MPIU_REAL, MPI_SUM, model->mesh->comm));
+  sum[3] = mine ? 0 : 1;
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sum, 4, MPIU_REAL, MPI_SUM, model->mesh->comm));
   work->scale = PetscSqrtReal(PetscMax(sum[0], PetscMax(sum[1], sum[2])));
-  *ok         = mine;
+  *ok         = sum[3] > 0 ? PETSC_FALSE : PETSC_TRUE; /* on all ranks: line searches act on it without asking the others */
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -124,6 +132,7 @@ static PetscErrorCode ModelFunction(SNES snes, Vec x, Vec F, void *context)
   PetscCall(ModelTrial(model, x));
   PetscCall(ModelResidual(model, model->work->trial, model->t, model->t, &ok));
   PetscCall(MeshLocalToGlobal(model->mesh, model->work->f, F));
+  PetscCall(StabiliserResidual(model->work->stabiliser, x, F));
   if (!ok) PetscCall(SNESSetFunctionDomainError(snes));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -161,10 +170,12 @@ static PetscErrorCode ModelObjective(SNES snes, Vec x, PetscReal *objective, voi
   PetscCall(ModelTrial(model, x));
   if (!work->near) {
     PetscCall(ModelEnergy(model, objective));
+    PetscCall(StabiliserEnergy(work->stabiliser, x, objective));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   PetscCall(ModelResidual(model, work->trial, model->t, model->t, &ok));
   PetscCall(MeshLocalToGlobal(model->mesh, work->f, work->residual));
+  PetscCall(StabiliserResidual(work->stabiliser, x, work->residual));
   PetscCall(VecNorm(work->residual, NORM_2, objective));
   *objective *= MODEL_RESIDUAL_WEIGHT;
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -207,6 +218,7 @@ static PetscErrorCode ModelTangent(Model model, const PetscReal *u, PetscReal t)
     PetscCall(ContactTangent(model->contact, u, t, &C, &changed));
     PetscCall(ModelAddContact(model, K, C, changed));
     PetscCall(LinearSolverSetContact(model->work->solver, C, changed));
+    PetscCall(StabiliserTangent(model->work->stabiliser, model->A));
     TimingEnd(TIMING_ASSEMBLY_CONTACT);
   }
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -419,7 +431,10 @@ PetscErrorCode ModelCreate(Scene scene, Mesh mesh, Model *out)
   PetscCall(VecDuplicate(model->x, &model->work->forecast));
   PetscCall(VecDuplicate(model->x, &model->work->residual));
   PetscCall(ModelCreateSNES(model));
-  if (model->contact) PetscCall(ContactCycleCreate(model->contact, &model->work->watch));
+  if (model->contact) {
+    PetscCall(ContactCycleCreate(model->contact, &model->work->watch));
+    PetscCall(StabiliserCreate(model->contact, model->x, &model->work->stabiliser));
+  }
   *out = model;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -435,6 +450,7 @@ PetscErrorCode ModelDestroy(Model *model)
   PetscCall(LinearSolverDestroy(&m->work->solver));
   PetscCall(LinearCheckDestroy(&m->linear));
   PetscCall(ContactCycleDestroy(&m->work->watch));
+  PetscCall(StabiliserDestroy(&m->work->stabiliser));
   PetscCall(VecDestroy(&m->x));
   PetscCall(VecDestroy(&m->work->accepted_x));
   PetscCall(VecDestroy(&m->work->forecast));
@@ -640,6 +656,46 @@ static PetscErrorCode ModelLocateFailure(Model model, char *text, size_t size)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Adds that the penalty is so stiff that rounding alone may keep the residual above the tolerance, where it is. */
+static PetscErrorCode ModelBlamePenalty(Model model, char *text, size_t size)
+{
+  const PetscReal allowed = model->scene->solver.tolerance * PetscMax(model->force_scale, model->work->scale);
+  PetscReal       force;
+  size_t          used;
+
+  PetscFunctionBeginUser;
+  if (!model->contact) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(ContactRoundOff(model->contact, &force));
+  PetscCall(PetscStrlen(text, &used));
+  if (force > MODEL_ROUND_OFF * allowed)
+    PetscCall(PetscSNPrintf(text + used, size - used, "; the penalty is too stiff: rounding of positions alone is a force of %.2g, the tolerance is %.2g",
+                            (double)force, (double)allowed));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* What is known of a failed solve: the bodies that nothing holds where the system is singular, else where to look. */
+static PetscErrorCode ModelExplainFailure(Model model, SolveReport *report)
+{
+  const PetscBool adrift = (PetscBool)(report->result == SOLVE_LINEAR || report->result == SOLVE_ADRIFT);
+  char            loose[128];
+
+  PetscFunctionBeginUser;
+  if (report->result == SOLVE_WINDOW || report->result == SOLVE_LOST) PetscFunctionReturn(PETSC_SUCCESS); /* known already */
+  if (report->result == SOLVE_CYCLE) {
+    PetscCall(PetscStrncpy(report->detail, report->cycle, sizeof(report->detail)));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  if (adrift) PetscCall(LooseBodies(model->mesh, model->scene, model->loads, loose, sizeof(loose)));
+  if (adrift && loose[0])
+    PetscCall(PetscSNPrintf(report->detail, sizeof(report->detail), "no support and no imposed displacement holds %s%s", loose,
+                            !model->contact || report->result == SOLVE_ADRIFT ? "" : " (contact may, from the start or with stabilise: true)"));
+  else {
+    PetscCall(ModelLocateFailure(model, report->detail, sizeof(report->detail)));
+    PetscCall(ModelBlamePenalty(model, report->detail, sizeof(report->detail)));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* From the accepted state on the way to t: its contact state, and lists for the motion to be expected. */
 static PetscErrorCode ModelDepart(Model model, PetscReal t)
 {
@@ -647,6 +703,7 @@ static PetscErrorCode ModelDepart(Model model, PetscReal t)
   PetscReal  motion, *u;
 
   PetscFunctionBeginUser;
+  PetscCall(StabiliserRelax(work->stabiliser, work->accepted_x));
   model->t       = t;
   work->inverted = -1;
   work->cycling  = PETSC_FALSE;
@@ -725,6 +782,47 @@ static PetscErrorCode ModelSolveLists(Model model, SolveReport *report)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Energy in elements and contact at the trial displacements, all ranks */
+static PetscErrorCode ModelStoredEnergy(Model model, PetscReal *energy)
+{
+  PetscBool ok;
+
+  PetscFunctionBeginUser;
+  *energy = 0;
+  PetscCall(ElasticityResidual(model->elasticity, model->work->trial, NULL, energy, NULL, &ok));
+  PetscCall(ContactResidual(model->contact, model->work->trial, model->t, NULL, energy, NULL));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, energy, 1, MPIU_REAL, MPI_SUM, model->mesh->comm));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Solves, with springs where pairs are stabilised; these are relaxed and all is solved on until they carry nothing. */
+static PetscErrorCode ModelSolveHeld(Model model, SolveReport *report)
+{
+  ModelWork *work = model->work;
+  PetscReal  force, energy, stored, allowed;
+  PetscInt   times = 0;
+
+  PetscFunctionBeginUser;
+  PetscCall(ModelSolveLists(model, report));
+  while (work->stabiliser && report->result == SOLVE_CONVERGED) {
+    PetscCall(StabiliserLoad(work->stabiliser, model->x, &force, &energy));
+    PetscCall(ModelStoredEnergy(model, &stored));
+    report->taken += energy;
+    report->left = stored > 0 ? energy / stored : 0;
+    PetscCall(ModelRoundOff(model, &allowed));
+    allowed = PetscMax(allowed, model->scene->solver.tolerance * PetscMax(model->force_scale, work->scale));
+    if (force <= allowed) break;
+    if (times++ == MODEL_MAX_RELAX) {
+      report->result = SOLVE_ADRIFT;
+      break;
+    }
+    report->relaxed++;
+    PetscCall(StabiliserRelax(work->stabiliser, model->x));
+    PetscCall(ModelSolveLists(model, report));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* ModelSolve - equilibrium at load parameter t, from the accepted state.
 
    Collective. On success model->u, model->x and the contact state are the solution (not yet accepted); on failure call ModelRestore().
@@ -740,7 +838,7 @@ PetscErrorCode ModelSolve(Model model, PetscReal t, SolveReport *report)
   PetscCall(ModelDepart(model, t));
   PetscCall(ModelStart(model, report));
   while (window == WINDOW_MISSED && report->result == SOLVE_CONVERGED) {
-    PetscCall(ModelSolveLists(model, report));
+    PetscCall(ModelSolveHeld(model, report));
     if (report->result != SOLVE_CONVERGED || !model->contact) break;
     if (report->adjusted == MODEL_MAX_ADJUST) PetscCall(ContactLocateOutside(model->contact, report->detail, sizeof(report->detail)));
     PetscCall(ContactAdjustPenalty(model->contact, &window));
@@ -749,12 +847,10 @@ PetscErrorCode ModelSolve(Model model, PetscReal t, SolveReport *report)
   }
   report->cycles = work->cycles;
   PetscCall(PetscStrncpy(report->cycle, work->cycle, sizeof(report->cycle)));
-  if (report->result == SOLVE_CYCLE)
-    PetscCall(PetscStrncpy(report->detail, work->cycle, sizeof(report->detail)));
-  else if (report->result == SOLVE_CONVERGED)
+  if (report->result == SOLVE_CONVERGED)
     PetscCall(PetscArraycpy(model->u, work->trial, model->mesh->n_nodes * model->mesh->dim));
-  else if (report->result != SOLVE_WINDOW && report->result != SOLVE_LOST)
-    PetscCall(ModelLocateFailure(model, report->detail, sizeof(report->detail)));
+  else
+    PetscCall(ModelExplainFailure(model, report));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

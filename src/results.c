@@ -39,6 +39,9 @@ struct _n_Results {
   PetscInt    csv_length[2]; /* of steps.csv at the loaded checkpoint: bytes, in two parts as integers may have 32 bits */
 };
 
+/* From this on elements of first order lock: at 0.49 the bulk modulus is fifty times the shear modulus. */
+#define LOCKING_NU 0.49
+
 /* The record of the scene in its directory: one line with the file's name, then the text */
 static const char record_name[] = "scene.yaml", record_head[] = "# scene: ";
 
@@ -515,6 +518,18 @@ static PetscErrorCode ResultsResume(Results results)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Elements of first order with full integration keep their volume at every quadrature point where nu is near a half, and so hardly deform. */
+static void ResultsPrintLocking(Results results)
+{
+  const Scene scene = results->scene;
+
+  for (int b = 0; b < scene->n_bodies && !results->rank && results->model->mesh->order == 1; b++) {
+    if (scene->bodies[b].rigid || scene->bodies[b].formulation != FORMULATION_FULL || scene->bodies[b].material.nu < LOCKING_NU) continue;
+    fprintf(stderr, "burnish: warning: %s: nu = %g with elements of first order and full integration: they lock (too stiff); mesh.order: 2 does not\n",
+            SceneWhere(scene, scene->bodies[b].path, "material.nu"), scene->bodies[b].material.nu);
+  }
+}
+
 /*
   ResultsStart - Makes the directory with the record of the scene and the head of steps.csv, and prints the run's first lines. The time
   spent counts from here. Collective. Errors: refuses (exit 1) a directory that cannot be made or written.
@@ -536,6 +551,7 @@ PetscErrorCode ResultsStart(Results results)
     PetscCall(ResultsOpenCsv(results));
   }
   PetscCall(ResultsPrintHead(results));
+  ResultsPrintLocking(results);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -796,6 +812,9 @@ static void ResultsPrintEnd(Results results, const RunRecord *run)
 
   if (results->rank == 0 && run->message) fprintf(stderr, "burnish: %s: %s\n", run->status, run->message);
   if (!results->talks) return;
+  if (run->relaxed)
+    printf("stabilised pairs: springs relaxed %lld times, took out an energy of %.3g, hold at most %.2g of an accepted state's\n", (long long)run->relaxed,
+           (double)run->taken, (double)run->left);
   if (run->cycles)
     printf("contact sets that repeated themselves: %lld, steps cut for it %lld; the last time %s\n", (long long)run->cycles, (long long)run->cycles_cut,
            run->cycle);

@@ -76,7 +76,7 @@ const SchemaKey SchemaKeys[] = {
   {"contact.*.feature_angle", REAL, .range = "(0, 180]", .unit = "degrees", .preset = "45", .help = "lists end at sharper edges"},
   {"contact.*.symmetry", TEXTS, .help = "planar surfaces beyond which the model goes on as its mirror image"},
   {"contact.*.initial_overlap", CHOICE, .values = "refuse | resolve | ramp | ignore", .preset = "refuse"},
-  {"contact.*.stabilise", BOOLEAN, .preset = "false", .now = "false"},
+  {"contact.*.stabilise", BOOLEAN, .preset = "false", .help = "springs that vanish hold bodies that only contact holds, until it does"},
   {"contact.*.penalty", MAP, .help = "force per penetration and area, and its adjustment"},
   {"contact.*.penalty.initial", REAL | CHOICE, .values = "auto", .range = "(0, inf)", .unit = "force per length and area", .preset = "auto"},
   {"contact.*.penalty.scale", REAL, .range = "(0, inf)", .preset = "1", .help = "factor on the automatic penalty"},

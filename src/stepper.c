@@ -177,6 +177,7 @@ static PetscReal StepEnd(LoadStepper stepper, PetscReal t, PetscReal dt, PetscBo
 
 static void CountSolve(PetscReal t, const SolveReport *solve, StepRecord *record, StepperReport *report)
 {
+  report->relaxed += solve->relaxed;
   report->cycles += solve->cycles;
   report->cycles_cut += solve->result == SOLVE_CYCLE;
   if (solve->cycles) snprintf(report->cycle, sizeof(report->cycle), "on the way to t = %.6g %s", (double)t, solve->cycle);
@@ -219,6 +220,8 @@ static PetscErrorCode LoadStepperAccept(LoadStepper stepper, PetscReal dt, Petsc
   stepper->report.t = model->t;
   stepper->report.steps++;
   stepper->report.newton_accepted += solve->newton;
+  stepper->report.taken += solve->taken;
+  stepper->report.left = PetscMax(stepper->report.left, solve->left);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -109,6 +109,20 @@ static void AddCycles(cJSON *json, const RunRecord *run)
     cJSON_AddNullToObject(map, "last");
 }
 
+/* What the springs of stabilised pairs did, where there are any */
+static void AddSprings(cJSON *json, Scene scene, const RunRecord *run)
+{
+  cJSON *map;
+  int    any = 0;
+
+  for (int c = 0; c < scene->n_contacts; c++) any = any || scene->contacts[c].stabilise;
+  if (!any) return;
+  map = cJSON_AddObjectToObject(json, "stabilisation");
+  cJSON_AddNumberToObject(map, "relaxed", (double)run->relaxed);
+  AddReal(map, "energy_taken", run->taken);
+  AddReal(map, "largest_energy_share", run->left);
+}
+
 /* How the linear solves went */
 static void AddLinear(cJSON *json, LinearCheck check)
 {
@@ -207,6 +221,7 @@ PetscErrorCode SummaryWrite(Model model, Scene scene, const char *directory, con
   AddRun(json, run);
   cJSON_AddNumberToObject(json, "restarts", (double)restarts);
   AddCycles(json, run);
+  AddSprings(json, scene, run);
   AddLinear(json, model->linear);
   AddUsage(json, run, usage);
   AddState(json, scene, model->contact ? PETSC_TRUE : PETSC_FALSE, last, probes);

@@ -50,7 +50,7 @@ static const char Everything[] =
   "    feature_angle: 30\n"
   "    symmetry: [symmetry_x, symmetry_z]\n"
   "    initial_overlap: refuse\n"
-  "    stabilise: false\n"
+  "    stabilise: true\n"
   "    penalty: {initial: 1e5, scale: 10, adjust: true, when: step, g_min: 1e-6, g_max: 5e-6, unit: spacing, clamp: 10, range: 100}\n"
   "  - {name: other, slave: block_top, master: plate_top}\n"
   "stepping: {control: contact, initial: 0.04, N_c_fraction: 0.05, prediction: tangent, dt_min: 1e-4, dt_max: 0.5, growth: 2, at: [0.25, 0.5]}\n"
@@ -197,14 +197,14 @@ static void ContactsArrive(void **state)
   assert_string_equal(contact->master, "die");
   assert_int_equal(contact->n_symmetry, 2);
   assert_string_equal(contact->symmetry[1], "symmetry_z");
-  assert_true(contact->feature_angle == 30 && !contact->penalty_auto && contact->penalty == 1e5 && contact->penalty_scale == 10);
+  assert_true(contact->feature_angle == 30 && contact->stabilise && !contact->penalty_auto && contact->penalty == 1e5 && contact->penalty_scale == 10);
   assert_true(contact->adjust && !contact->adjust_converged && contact->window_in_spacings && contact->g_min == 1e-6 && contact->g_max == 5e-6);
   assert_true(contact->clamp == 10 && contact->range == 100);
   contact = &scene->contacts[1];
   assert_true(!contact->adjust && contact->adjust_converged && contact->clamp == 100 && contact->range == 1e4);
   assert_int_equal(contact->smoother, SMOOTHER_FACET);
   assert_int_equal(contact->formulation, CONTACT_NODE_TO_SURFACE);
-  assert_true(contact->n_symmetry == 0 && contact->feature_angle == 45 && contact->penalty_auto && contact->penalty_scale == 1);
+  assert_true(contact->n_symmetry == 0 && contact->feature_angle == 45 && !contact->stabilise && contact->penalty_auto && contact->penalty_scale == 1);
   Free(&scene);
 }
 
