@@ -62,11 +62,12 @@ typedef struct _n_ModelWork {
 
 /* ---------- residual, energy, tangent ---------- */
 
-/* Residual at local displacements u into work->f, contact at t_contact, loads at t; energy over all ranks on request. ok: every element is in order. */
+/* Residual at local displacements u into work->f, contact at t_contact, loads at t. ok: every element is in order, on all ranks: a line search that
+   hears of a domain error on one rank alone leaves the others waiting. */
 static PetscErrorCode ModelResidual(Model model, const PetscReal *u, PetscReal t, PetscReal t_contact, PetscBool *ok)
 {
   ModelWork *work   = model->work;
-  PetscReal  sum[3] = {0, 0, 0};
+  PetscReal  sum[4] = {0, 0, 0, 0}; /* squares of forces: elastic, loads, contact; ranks with an inverted element */
   PetscBool  mine;
 
   PetscFunctionBeginUser;
@@ -81,9 +82,10 @@ static PetscErrorCode ModelResidual(Model model, const PetscReal *u, PetscReal t
     PetscCall(ContactResidual(model->contact, u, t_contact, work->f, NULL, &sum[2]));
     TimingEnd(TIMING_ASSEMBLY_CONTACT);
   }
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sum, 3, MPIU_REAL, MPI_SUM, model->mesh->comm));
+  sum[3] = mine ? 0 : 1;
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sum, 4, MPIU_REAL, MPI_SUM, model->mesh->comm));
   work->scale = PetscSqrtReal(PetscMax(sum[0], PetscMax(sum[1], sum[2])));
-  *ok         = mine;
+  *ok         = (PetscBool)(sum[3] == 0);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
