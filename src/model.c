@@ -89,7 +89,8 @@ typedef struct _n_ModelWork {
 
 /* ---------- residual, energy, tangent ---------- */
 
-/* Residual at local displacements u into work->f, contact at t_contact, loads at t; energy over all ranks on request. ok: every element is in order. */
+/* Residual at local displacements u into work->f, contact at t_contact, loads at t. ok: every element is in order, on all ranks: a line search that
+   hears of a domain error on one rank alone leaves the others waiting. */
 static PetscErrorCode ModelResidual(Model model, const PetscReal *u, PetscReal t, PetscReal t_contact, PetscBool *ok)
 {
   ModelWork *work   = model->work;

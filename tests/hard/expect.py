@@ -73,7 +73,7 @@ class Balance(Done):
 
 
 class Same(Done):
-    """Probes are those of the same case made easy: with other overrides. bound: relative to the largest of them; scale: by which a probe of this run differs."""
+    """Probes are those of the same case made easy: with other overrides. bound: relative to the largest of them; scale: of a probe, over the other's."""
 
     def __init__(self, *overrides, probes, bound, scale=None):
         self.overrides, self.probes, self.bound, self.scale = list(overrides), probes, bound, scale or {}
