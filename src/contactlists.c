@@ -11,6 +11,8 @@
 #define CONTACT_FIT_AGREES 0.1
 /* Offsets of surface contact are frozen in a solve; gaps may drift with them by this part of what the largest pressure presses the automatic penalty in. */
 #define CONTACT_OFFSET_AGREES 0.1
+/* Where histories break offsets are not carried on to the next step: what they lag behind would come as a jump in it, so they have to agree so much better. */
+#define CONTACT_OFFSET_SETTLED 1e-3
 /* The area factor past a free edge is frozen in a solve; a change above this makes the step solve again. */
 #define CONTACT_FACTOR_AGREES 1e-2
 /* Motions that differ by less than this fraction differ by round-off. */
@@ -183,7 +185,8 @@ static PetscErrorCode PairNextAgrees(Contact contact, ContactPair *pair, PetscRe
 
   PetscFunctionBeginUser;
   PetscCall(PairDepth(contact, pair, t, &depth, &pressure));
-  drift   = pair->slave_offsets ? CONTACT_OFFSET_AGREES * pressure / pair->automatic : 0;
+  drift = pair->slave_offsets ? CONTACT_OFFSET_AGREES * pressure / pair->automatic : 0;
+  if (SceneBreaks(contact->scene, t)) drift *= CONTACT_OFFSET_SETTLED;
   *agrees = PETSC_TRUE;
   PetscCall(PetscMalloc1(pair->next->n_slaves, &gaps));
   if (pair->fit.degree) TimingBegin(TIMING_FIT);
