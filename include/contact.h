@@ -63,8 +63,9 @@ PetscErrorCode ContactGather(Contact, const PetscReal *u, PetscReal t, PetscReal
 PetscErrorCode ContactListsReach(Contact, PetscBool *within);
 /* New lists at (u, t) in the middle of a step; offsets stay. Collective. */
 PetscErrorCode ContactListsRenew(Contact, const PetscReal *u, PetscReal t, PetscReal motion);
-/* After ContactResidual() at (u, t): does a fresh search give the same gaps? If not, the fresh lists replace the old. Collective. */
-PetscErrorCode ContactListsHold(Contact, const PetscReal *u, PetscReal t, PetscReal motion, PetscBool *hold);
+/* After ContactResidual() at (u, t): does a fresh search give the same gaps? If not, the fresh lists replace the old. settle: offsets must not lag. Collective.
+ */
+PetscErrorCode ContactListsHold(Contact, const PetscReal *u, PetscReal t, PetscReal motion, PetscBool settle, PetscBool *hold);
 /* A linear step from the accepted state begins or ends: what is closed there stays so, and what touches if that is asked for. Not collective. */
 PetscErrorCode ContactPredict(Contact, PetscBool predicting, PetscBool touching);
 /* Adds the contact forces to f (n_nodes*dim local, complete at owned nodes), this rank's energy and sum of squares of the terms' forces; each may
