@@ -70,7 +70,7 @@ def overrides(table, scene, order, pair, slave, method, jitter, seed):
     if table == "matching":
         values.append("mesh.parameters.matching=1")
     if scene == "ring_in_ring_3d":
-        values += [f"mesh.parameters.n_len={LENGTH // order}", *(f"probes.{probe}.{key}={END // order}" for probe, key in ((1, "excluding"), (2, "excluding"), (3, "only"), (4, "only")))]
+        values += [f"mesh.parameters.n_len={LENGTH // order}", f"mesh.parameters.rows={order - 1}", *(f"probes.{probe}.{key}={END // order}" for probe, key in ((1, "excluding"), (2, "excluding"), (3, "only"), (4, "only")))]
     return values
 
 
