@@ -7,54 +7,67 @@ DefineConstant[
   h = {0.2, Name "element size at the contact, cylinder"},
   ratio = {0.8, Name "the block's element size at the contact over the cylinder's: the two meshes do not match"},
   zone = {8, Name "length of the surface that is meshed with that size, from the plane of symmetry on"},
-  growth = {0.15, Name "by how much the size grows per distance from that zone"}
+  growth = {0.15, Name "by how much the size grows per distance from that zone"},
+  jitter = {0, Name "largest move of a node of that length, in elements"}, seed = {1, Name "of the moves"}
 ];
 angle = zone / radius;
-Point(1) = {0, 0, 0};
-Point(2) = {radius * Sin(angle), radius * (1 - Cos(angle)), 0};
 Point(3) = {radius, radius, 0};
 Point(4) = {0, radius, 0};
-Circle(1) = {1, 4, 2};
-Circle(2) = {2, 4, 3};
+n_0 = Ceil(zone / h);
+Point(100) = {0, 0, 0};
+sole[] = {};
+For i In {1 : n_0}
+  x = 43758.5453 * Sin(12.9898 * (i + 7 * seed)); // the digits behind the point serve as random numbers
+  moved = angle * (i == n_0 ? i : i + jitter * (2 * (x - Floor(x)) - 1)) / n_0;
+  Point(100 + i) = {radius * Sin(moved), radius * (1 - Cos(moved)), 0};
+  Circle(100 + i) = {99 + i, 4, 100 + i};
+  sole[] += {100 + i};
+EndFor
+Circle(2) = {100 + n_0, 4, 3};
 Line(3) = {3, 4};
-Line(4) = {4, 1};
-Curve Loop(1) = {1, 2, 3, 4};
+Line(4) = {4, 100};
+Curve Loop(1) = {sole[], 2, 3, 4};
 Plane Surface(1) = {1};
 
-Point(11) = {0, 0, 0};
 Point(12) = {0, -size, 0};
 Point(13) = {size / 2, -size, 0};
 Point(14) = {size / 2, 0, 0};
-Point(15) = {zone, 0, 0};
-Line(11) = {11, 12};
+n_1 = Ceil(zone / (ratio * h));
+Point(10000) = {0, 0, 0};
+top[] = {};
+For i In {1 : n_1}
+  x = 43758.5453 * Sin(78.233 * (i + 7 * seed));
+  Point(10000 + i) = {zone * (i == n_1 ? i : i + jitter * (2 * (x - Floor(x)) - 1)) / n_1, 0, 0};
+  Line(10000 + i) = {10000 + i, 9999 + i};
+  top[] = {10000 + i, top[]};
+EndFor
+Line(11) = {10000, 12};
 Line(12) = {12, 13};
 Line(13) = {13, 14};
-Line(14) = {14, 15};
-Line(15) = {15, 11};
-Curve Loop(11) = {11, 12, 13, 14, 15};
+Line(14) = {14, 10000 + n_1};
+Curve Loop(11) = {11, 12, 13, 14, top[]};
 Plane Surface(11) = {11};
 
 // The size follows the distance from the contact zone of each body.
 Mesh.CharacteristicLengthExtendFromBoundary = 0;
 Mesh.CharacteristicLengthFromPoints = 0;
-Field[1] = Distance; Field[1].EdgesList = {1}; Field[1].NNodesByEdge = 200;
+Field[1] = Distance; Field[1].EdgesList = {sole[]}; Field[1].NNodesByEdge = 20;
 Field[2] = MathEval; Field[2].F = Sprintf("%g + %g * F1", h, growth);
-Field[3] = Restrict; Field[3].IField = 2; Field[3].EdgesList = {1 : 4}; Field[3].FacesList = {1};
-Field[11] = Distance; Field[11].EdgesList = {15}; Field[11].NNodesByEdge = 200;
+Field[3] = Restrict; Field[3].IField = 2; Field[3].EdgesList = {sole[], 2, 3, 4}; Field[3].FacesList = {1};
+Field[11] = Distance; Field[11].EdgesList = {top[]}; Field[11].NNodesByEdge = 20;
 Field[12] = MathEval; Field[12].F = Sprintf("%g + %g * F11", ratio * h, growth);
-Field[13] = Restrict; Field[13].IField = 12; Field[13].EdgesList = {11 : 15}; Field[13].FacesList = {11};
+Field[13] = Restrict; Field[13].IField = 12; Field[13].EdgesList = {11 : 14, top[]}; Field[13].FacesList = {11};
 Field[100] = Min;
 Field[100].FieldsList = {3, 13};
 Background Field = 100;
-Transfinite Curve{1} = Ceil(zone / h) + 1;
-Transfinite Curve{15} = Ceil(zone / (ratio * h)) + 1;
+Transfinite Curve{sole[], top[]} = 2; // each of these is one face
 Mesh.Algorithm = 6;
 Recombine Surface{1, 11};
 
 Physical Surface("cylinder") = {1};
 Physical Surface("block") = {11};
-Physical Curve("cylinder_sole") = {1, 2};
+Physical Curve("cylinder_sole") = {sole[], 2};
 Physical Curve("cylinder_cut") = {3};
-Physical Curve("block_top") = {14, 15};
+Physical Curve("block_top") = {14, top[]};
 Physical Curve("block_bottom") = {12};
 Physical Curve("symmetry_x") = {4, 11};

@@ -1,10 +1,11 @@
 // Two rings of 10-20 and 20-30 mm with an interference, a quarter of them: their cross-section (plane strain), or half their length.
 // The interface's nodes are points of their own, so that they can be moved within the surface: one block of elements through the wall stands
-// on each face. Edges around are arcs, so that second-order nodes lie on the rings too; in 3D with moved nodes they are straight: first order.
+// on each face. Edges around are arcs, so that second-order nodes lie on the rings too; in 3D with nodes moved one by one they are straight: first order.
 DefineConstant[
   n_inner = {32, Name "elements around the inner ring"}, n_outer = {40, Name "elements around the outer ring"},
   n_len = {0, Name "elements along z, coarser ring; 0: cross-section only"},
   jitter = {0, Name "largest move of an interface node, in face sizes along each direction"}, seed = {1, Name "of the moves"},
+  rows = {0, Name "1: in 3D the nodes of a row move together, around and along: faces of second order stay on the rings"},
   matching = {0, Name "1: nodes of both rings are moved alike; with n_inner = n_outer they face each other"},
   interference = {0.0025, Name "by which the inner ring is too large"}
 ];
@@ -22,16 +23,18 @@ For b In {0 : 1}
   count = (n + 1) * (m + 1);
   o = 100000 * (b + 1); // a tag is o + kind * count + place
   For k In {0 : m}
-    Point(o - 1 - k) = {0, 0, len * k / Max(m, 1)}; // centre of the arcs
+    y = 43758.5453 * Sin(78.233 * (o + k * (n + 1) + 7 * seed));
+    z_row = len * ((rows && k > 0 && k < m) ? k + jitter * (2 * (y - Floor(y)) - 1) : k) / Max(m, 1);
+    Point(o - 1 - k) = {0, 0, z_row}; // centre of the arcs
     For i In {0 : n}
       s = o + k * (n + 1) + i;
-      draw = (matching ? s - 100000 * b : s) + 7 * seed;
+      draw = (matching ? s - 100000 * b : rows ? o + i : s) + 7 * seed;
       x = 43758.5453 * Sin(12.9898 * draw); // the digits behind the point serve as random numbers
       y = 43758.5453 * Sin(78.233 * draw);
       a = Pi / 2 * i / n;
       moved = (i == 0 || i == n) ? a : Pi / 2 * (i + jitter * (2 * (x - Floor(x)) - 1)) / n;
-      z = len * k / Max(m, 1); // 0 in the plane
-      moved_z = (k == 0 || k == m) ? z : len * (k + jitter * (2 * (y - Floor(y)) - 1)) / Max(m, 1);
+      z = rows ? z_row : len * k / Max(m, 1); // 0 in the plane
+      moved_z = (rows || k == 0 || k == m) ? z : len * (k + jitter * (2 * (y - Floor(y)) - 1)) / Max(m, 1);
       If (b == 0)
         Point(s) = {r_bore * Cos(a), r_bore * Sin(a), z};
         Point(s + count) = {(r + interference) * Cos(moved), (r + interference) * Sin(moved), moved_z};
@@ -49,7 +52,7 @@ For b In {0 : 1}
     For i In {0 : n - 1}
       s = o + k * (n + 1) + i;
       For side In {0 : 1} // kinds 1, 2: around, on the inside and the outside
-        If (n_len && jitter)
+        If (n_len && jitter && !rows)
           Line(s + (1 + side) * count) = {s + side * count, s + 1 + side * count};
         Else
           Circle(s + (1 + side) * count) = {s + side * count, o - 1 - k, s + 1 + side * count};

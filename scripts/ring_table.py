@@ -54,7 +54,7 @@ def cases(table):
         return [("ring_in_ring", order, (n, n), "inner", method, jitter, seed) for order, n in ((1, 24), (2, 12)) for method in FORMULATIONS for jitter in jitters for seed in seeds(jitter)]
     if table == "solid":
         solid = [("ring_in_ring_3d", 1, pair, slave, method, jitter, 1) for pair in ((24, 30), (30, 24)) for slave in SIDES for method in FORMULATIONS for jitter in (0, 0.25)]
-        solid += [("ring_in_ring_3d", 2, (12, 15), slave, method, 0, 1) for slave in SIDES for method in FORMULATIONS]
+        solid += [("ring_in_ring_3d", 2, (12, 15), slave, method, jitter, 1) for slave in SIDES for method in FORMULATIONS for jitter in (0, 0.25)]
     else:
         solid = [("spheres", 1, (10, 12), slave, method, jitter, 1) for slave in SIDES for method in FORMULATIONS for jitter in jitters]
     return [case for case in solid if case[4] != "facets" or case[1] == 1 and not case[5]]  # facets: hundreds of per cent, in many iterations
@@ -67,7 +67,7 @@ def overrides(table, scene, order, pair, slave, method, jitter, seed):
     if table == "matching":
         values.append("mesh.parameters.matching=1")
     if scene == "ring_in_ring_3d":
-        values += [f"mesh.parameters.n_len={LENGTH // order}", *(f"probes.{probe}.{key}={END // order}" for probe, key in ((1, "excluding"), (2, "excluding"), (3, "only"), (4, "only")))]
+        values += [f"mesh.parameters.n_len={LENGTH // order}", f"mesh.parameters.rows={order - 1}", *(f"probes.{probe}.{key}={END // order}" for probe, key in ((1, "excluding"), (2, "excluding"), (3, "only"), (4, "only")))]
     return values
 
 

@@ -98,14 +98,15 @@ static PetscErrorCode PairProject(Contact contact, ContactPair *pair, const Pets
 }
 
 /* What a linear step counts on of an open term: what was closed stays so, pressed or pulled; what touches at the start of a run resists, for a
-   body that only contact holds. Surface contact pulls that too: the mean over the faces around a node that touches is open by their curvature. */
+   body that only contact holds. In surface contact the mean over the faces around a node that touches is open by their curvature: such terms are pulled, all
+   of them, as those that only resist would hold the others open. */
 static void TermPredict(const ContactPair *pair, PetscInt c, PetscReal opening, LawValue *value)
 {
-  const PetscBool closed = (PetscBool)(pair->accepted.status[c] == CONTACT_CLOSED);
+  const PetscBool closed = (PetscBool)(pair->accepted.status[c] == CONTACT_CLOSED), means = (PetscBool)(pair->slave_offsets && pair->fit.degree);
 
-  if (!closed && !(pair->touching && opening <= ContactTouchTolerance(pair, c))) return;
+  if (!closed && !(pair->touching && opening <= (means ? ContactMeanOpening(pair, c) : ContactTouchTolerance(pair, c)))) return;
   value->stiffness = pair->now.penalty[c];
-  if (closed || (pair->slave_offsets && opening <= ContactMeanOpening(pair, c))) value->pressure = -value->stiffness * opening;
+  if (closed || pair->slave_offsets) value->pressure = -value->stiffness * opening;
 }
 
 /* Law, gap (may be NULL) and area of a term in the state of the last projection. */

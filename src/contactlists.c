@@ -11,6 +11,8 @@
 #define CONTACT_FIT_AGREES 0.1
 /* Offsets of surface contact are frozen in a solve; gaps may drift with them by this part of what the largest pressure presses the automatic penalty in. */
 #define CONTACT_OFFSET_AGREES 0.1
+/* Where histories break offsets are not carried on to the next step: what they lag behind would come as a jump in it, so they have to agree so much better. */
+#define CONTACT_OFFSET_SETTLED 1e-5
 /* The area factor past a free edge is frozen in a solve; a change above this makes the step solve again. */
 #define CONTACT_FACTOR_AGREES 1e-2
 /* Motions that differ by less than this fraction differ by round-off. */
@@ -193,13 +195,14 @@ static PetscBool TermAgrees(const ContactPair *pair, ContactLists fresh, PetscIn
 }
 
 /* Do the pair's next lists say the same of each of this rank's terms as the last residual? */
-static PetscErrorCode PairNextAgrees(Contact contact, ContactPair *pair, PetscReal t, PetscBool *agrees)
+static PetscErrorCode PairNextAgrees(Contact contact, ContactPair *pair, PetscReal t, PetscBool settle, PetscBool *agrees)
 {
   PetscReal depth = 0, pressure = 0, drift, *gaps;
 
   PetscFunctionBeginUser;
   PetscCall(PairDepth(contact, pair, t, &depth, &pressure));
-  drift   = pair->slave_offsets ? CONTACT_OFFSET_AGREES * pressure / pair->automatic : 0;
+  drift = pair->slave_offsets ? CONTACT_OFFSET_AGREES * pressure / pair->automatic : 0;
+  if (settle) drift *= CONTACT_OFFSET_SETTLED;
   *agrees = PETSC_TRUE;
   PetscCall(PetscMalloc1(pair->next->n_slaves, &gaps));
   if (pair->fit.degree) TimingBegin(TIMING_FIT);
@@ -257,7 +260,7 @@ PetscErrorCode ContactListsRenew(Contact contact, const PetscReal *u, PetscReal 
 
    Collective. u, t: of the last ContactResidual() with forces; motion: as of ContactGather(), which may take the fresh lists. *hold: the same on
    all ranks; if it is PETSC_FALSE the fresh lists of all pairs, and fresh offsets, have replaced the old, and the problem is to be solved again. */
-PetscErrorCode ContactListsHold(Contact contact, const PetscReal *u, PetscReal t, PetscReal motion, PetscBool *hold)
+PetscErrorCode ContactListsHold(Contact contact, const PetscReal *u, PetscReal t, PetscReal motion, PetscBool settle, PetscBool *hold)
 {
   int agree = 1;
 
@@ -275,7 +278,7 @@ PetscErrorCode ContactListsHold(Contact contact, const PetscReal *u, PetscReal t
     PetscCall(ContactNoteLost(pair, t));
     ContactNoteTunnelled(pair, t);
     ContactNoteJumps(pair, motion);
-    PetscCall(PairNextAgrees(contact, pair, t, &agrees));
+    PetscCall(PairNextAgrees(contact, pair, t, settle, &agrees));
     agree = agree && agrees;
   }
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &agree, 1, MPI_INT, MPI_LAND, contact->mesh->comm));

@@ -12,6 +12,9 @@
 #define MODEL_INVERTED 1e100
 /* Times that contact lists are replaced and the step solved on before it counts as unsettled. */
 #define MODEL_MAX_REGATHER 8
+/* Of these, so many may be spent at a breakpoint of the scene's histories on offsets of surface contact that lag behind by little: each takes a lag to a
+   twentieth, and from the next step on it would show as a jump. */
+#define MODEL_MAX_SETTLE 4
 /* Times that penalties are adjusted and the step solved on until their window holds. A penalty that starts 1e8 times too small needs four with
    the default clamp, neighbours that share the load two or three more. */
 #define MODEL_MAX_ADJUST 12
@@ -742,7 +745,7 @@ static PetscErrorCode ModelStart(Model model, SolveReport *report)
 }
 
 /* New lists after a solve, for the next one: in the middle of the way where it left the old ones, or because they do not hold. */
-static PetscErrorCode ModelRenewLists(Model model, PetscBool *hold)
+static PetscErrorCode ModelRenewLists(Model model, PetscBool settle, PetscBool *hold)
 {
   ModelWork *work = model->work;
   PetscReal  motion;
@@ -756,7 +759,7 @@ static PetscErrorCode ModelRenewLists(Model model, PetscBool *hold)
     work->renewed++;
     PetscCall(ContactListsRenew(model->contact, work->trial, model->t, motion));
   } else
-    PetscCall(ContactListsHold(model->contact, work->trial, model->t, motion, hold));
+    PetscCall(ContactListsHold(model->contact, work->trial, model->t, motion, settle, hold));
   TimingEnd(TIMING_SEARCH);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -773,7 +776,7 @@ static PetscErrorCode ModelSolveLists(Model model, SolveReport *report)
     model->work->left = PETSC_FALSE;
     PetscCall(ModelNewton(model, report));
     if (report->result != SOLVE_CONVERGED || !model->contact) break;
-    PetscCall(ModelRenewLists(model, &hold));
+    PetscCall(ModelRenewLists(model, (PetscBool)(times < MODEL_MAX_SETTLE && model->t < 1 && SceneBreaks(model->scene, model->t)), &hold));
     PetscCall(ContactLocateLost(model->contact, &lost, report->detail, sizeof(report->detail)));
     if (lost) report->result = SOLVE_LOST;
     if (hold || lost) break;

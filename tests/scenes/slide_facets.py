@@ -1,6 +1,6 @@
 """A rigid cylinder turns by 20 of its facets under a block, so that nothing should change: under a constant load the force along x and the block's
 height, at a fixed height the normal force move at least 20 times less with the diffuse smoother than with facets on the same mesh, in both
-formulations, on a jittered cylinder too."""
+formulations, on a jittered cylinder too; surface to surface no more than node to surface."""
 from harness import Check, arguments, run, SCENES
 
 PRESSED = 0.2  # load parameter from which the cylinder turns
@@ -25,4 +25,6 @@ for load, (how, probes) in LOADS.items():
         for smoother in list(SMOOTHERS)[1:]:
             smooth = amplitude[smoother][probe]
             check.holds(f"{load}, {smoother}: {probe}", FACTOR * smooth <= facets, f"amplitude {smooth:.3g}, facets {facets:.3g}: {facets / smooth:.0f} times smaller, asked for {FACTOR}")
+        node, surface = amplitude["degree 4"][probe], amplitude["surface to surface"][probe]
+        check.holds(f"{load}: {probe}, surface to surface", surface <= node, f"amplitude {surface:.3g}, node to surface {node:.3g}")
 check.finish()
