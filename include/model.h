@@ -5,6 +5,7 @@
 #pragma once
 #include "contact.h"
 #include "elasticity.h"
+#include "failure.h"
 #include "loads.h"
 #include "mesh.h"
 
@@ -27,8 +28,10 @@ typedef struct {
   PetscInt    krylov;
   PetscInt    regathered;  /* times lists were replaced */
   PetscInt    adjusted;    /* times penalties were changed and the step solved on */
+  PetscInt    cuts;        /* iterations that the line search shortened */
   PetscReal   residual;    /* |R|_2 / F_ref at the end */
   char        detail[256]; /* where it failed, in gmsh's tags */
+  Failure     failure;     /* and more of that, if it did */
 } SolveReport;
 
 typedef struct _n_Model {

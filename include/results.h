@@ -11,10 +11,11 @@ typedef struct _n_Results *Results;
 
 /* The run as a whole, for summary.json */
 typedef struct {
-  const char *status;  /* "done", "not converged", "stopped" */
-  const char *message; /* cause, or NULL */
-  PetscInt    steps, steps_failed, steps_repeated, newton_iterations, newton_accepted, krylov_iterations;
-  PetscReal   wall_s, mesh_s;
+  const char          *status;  /* "done", "not converged", "stopped" */
+  const char          *message; /* cause, or NULL */
+  PetscInt             steps, steps_failed, steps_repeated, newton_iterations, newton_accepted, krylov_iterations;
+  PetscReal            wall_s, mesh_s;
+  const StepperReport *way; /* guards that acted, and where it failed */
 } RunRecord;
 
 /* Refuses a directory that holds another scene's results unless overwrite. To be called before anything is written or solved. Collective. */

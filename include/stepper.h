@@ -20,8 +20,14 @@ typedef struct {
   PetscBool done;                                /* t = 1 was reached */
   PetscInt  steps, steps_failed, steps_repeated; /* repeated: converged, but taken back by the control */
   PetscInt  newton_iterations, newton_accepted, krylov_iterations;
-  PetscReal t;             /* of the last good state */
-  char      message[1024]; /* why it ended early: cause, load parameter, nodes, what was tried */
+  PetscInt  regathered, adjusted, cuts; /* of SolveReport, all solves */
+  PetscReal t;                          /* of the last good state */
+  char      message[1024];              /* why it ended early: cause, load parameter, nodes, what was tried */
+  struct {
+    SolveReport solve;          /* the last attempt */
+    PetscInt    attempts;       /* of that step */
+    PetscReal   t, first, last; /* load parameter that was not reached; dt tried */
+  } failed;                     /* if it is not done */
 } StepperReport;
 
 typedef struct _n_LoadStepper *LoadStepper;

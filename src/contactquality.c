@@ -17,10 +17,10 @@ static PetscErrorCode FindPlace(Mesh mesh, const ContactPair *pair, const PetscR
     tag  = mesh->node_tag[node];
   }
   PetscCallMPI(MPI_Allreduce(&tag, &place->tag, 1, MPIU_INT, MPI_MIN, mesh->comm));
-  for (int d = 0; d < mesh->dim && tag == place->tag && node >= 0; d++) X[d] = mesh->coords[node * mesh->dim + d] + mesh->centre[d];
+  if (tag == place->tag && node >= 0) MeshNodePlace(mesh, node, X);
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, X, 3, MPIU_REAL, MPIU_MAX, mesh->comm));
   if (place->tag == PETSC_MAX_INT) place->tag = -1;
-  for (int d = 0; d < 3; d++) place->X[d] = d < mesh->dim && place->tag >= 0 ? X[d] : 0;
+  for (int d = 0; d < 3; d++) place->X[d] = place->tag >= 0 ? X[d] : 0;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -103,4 +103,16 @@ PetscErrorCode ContactPairQuality(Contact contact, int p, ContactQuality *qualit
   quality->sagitta                = sum[1] > 0 ? sum[0] / sum[1] : 0;
   if (quality->sagitta <= QUALITY_ROUND_OFF * pair->slave->mean_size) quality->sagitta = 0;
   PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* ContactNodeGap - smallest gap of a local node among all pairs that it is a slave of, in the present state; NaN: of none, no master near, or another
+   rank's node. Not collective. */
+PetscReal ContactNodeGap(Contact contact, PetscInt node)
+{
+  PetscReal gap = NAN;
+
+  for (int p = 0; p < contact->n_pairs; p++)
+    for (PetscInt c = 0; c < contact->pairs[p].n; c++)
+      if (contact->pairs[p].node[c] == node) gap = fmin(gap, contact->pairs[p].now.gap[c]);
+  return gap;
 }

@@ -177,8 +177,8 @@ PetscErrorCode EstimatePrint(Model model, FILE *stream)
   }
   fprintf(stream, "cost     tangent of %.3g nonzeros at the start, its factor %.3g entries in %.3g operations\n", (double)estimate.nonzeros,
           (double)estimate.entries, (double)estimate.flops);
-  fprintf(stream, "         on %d rank%s up to about %.0f MB in all, %.0f MB the largest rank\n", size, size > 1 ? "s" : "", (double)estimate.memory_mb[1],
-          (double)estimate.memory_mb[0]);
+  fprintf(stream, "         on %d rank%s about %.0f MB in all, %.0f MB the largest rank; contact that grows adds to it\n", size, size > 1 ? "s" : "",
+          (double)estimate.memory_mb[1], (double)estimate.memory_mb[0]);
   fprintf(stream, "         about %.2g s an iteration (tangent %.2g, factor and solve %.2g), %.2g s a step of %d\n", (double)estimate.iteration_s,
           (double)estimate.assembly_s, (double)estimate.factor_s, (double)estimate.analysis_s + ESTIMATE_ITERATIONS * (double)estimate.iteration_s,
           ESTIMATE_ITERATIONS);

@@ -64,7 +64,8 @@ static PetscErrorCode RunModel(Model model, Probes probes, Scene scene, const Co
                     .newton_accepted   = report.newton_accepted,
                     .krylov_iterations = report.krylov_iterations,
                     .wall_s            = now - start,
-                    .mesh_s            = mesh_s};
+                    .mesh_s            = mesh_s,
+                    .way               = &report};
   PetscCall(ResultsFinish(results, &run));
   PetscCall(LoadStepperDestroy(&stepper));
   PetscCall(ResultsDestroy(&results));

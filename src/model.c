@@ -57,6 +57,7 @@ typedef struct _n_ModelWork {
   PetscBool  balanced;   /* the residual of the iterate is within the tolerance */
   PetscInt   renewed;    /* how often that happened in this step */
   PetscBool  left;       /* a slave point slid out of its lists: the solve ended for new ones */
+  PetscInt   cuts;       /* iterations of the last Newton solve that the line search shortened */
   Vec        residual;   /* of a trial point, while near; the tangent's diagonal for a moment */
 } ModelWork;
 
@@ -229,6 +230,20 @@ static PetscErrorCode ModelLeaveLists(Model model, SNESConvergedReason *reason)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Counts an iteration that the line search shortened. */
+static PetscErrorCode ModelCountCut(Model model, PetscInt it)
+{
+  SNESLineSearch search;
+  PetscReal      lambda;
+
+  PetscFunctionBeginUser;
+  if (!it) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(SNESGetLineSearch(model->snes, &search));
+  PetscCall(SNESLineSearchGetLambda(search, &lambda));
+  if (lambda < 1) model->work->cuts++;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Converged when the residual is small against the forces that balance in it, never against its own first value; or is nothing but round-off.
    Where penalties follow the penetrations, these must have settled too. */
 static PetscErrorCode ModelConverged(SNES snes, PetscInt it, PetscReal xnorm, PetscReal snorm, PetscReal fnorm, SNESConvergedReason *reason, void *context)
@@ -240,9 +255,9 @@ static PetscErrorCode ModelConverged(SNES snes, PetscInt it, PetscReal xnorm, Pe
 
   PetscFunctionBeginUser;
   (void)snes;
-  (void)it;
   (void)xnorm;
   (void)snorm;
+  PetscCall(ModelCountCut(model, it));
   PetscCall(ModelRoundOff(model, &round_off));
   if (model->contact) PetscCall(ContactGapsSettled(model->contact, &settled));
   *reason               = SNES_CONVERGED_ITERATING;
@@ -549,6 +564,7 @@ static PetscErrorCode ModelNewton(Model model, SolveReport *report)
   Vec                 F;
 
   PetscFunctionBeginUser;
+  model->work->cuts = 0;
   PetscCall(SNESSolve(model->snes, NULL, model->x));
   PetscCall(SNESGetConvergedReason(model->snes, &reason));
   PetscCall(SNESGetIterationNumber(model->snes, &its));
@@ -557,6 +573,7 @@ static PetscErrorCode ModelNewton(Model model, SolveReport *report)
   PetscCall(VecNorm(F, NORM_2, &norm));
   report->newton += its;
   report->krylov += krylov;
+  report->cuts += model->work->cuts;
   report->result = ResultFromReason(reason);
   if (report->result == SOLVE_LINE_SEARCH && model->work->balanced) report->result = SOLVE_CONVERGED; /* gaps as settled as round-off lets them be */
   if (report->result == SOLVE_LINEAR) PetscCall(ModelLinearFailure(model, &report->result));
@@ -565,41 +582,12 @@ static PetscErrorCode ModelNewton(Model model, SolveReport *report)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Where to look when a step fails: an inverted element, the node with the largest residual. */
-static PetscErrorCode ModelLocateFailure(Model model, char *text, size_t size)
+/* Where to look when a step fails: an inverted element, the nodes with the largest residuals. */
+static PetscErrorCode ModelLocateFailure(Model model, SolveReport *report)
 {
-  Mesh       mesh = model->mesh;
-  const int  dim  = mesh->dim;
-  PetscReal *f, place[4] = {0, 0, 0, 0};
-  PetscInt   inverted    = model->work->inverted;
-  char       element[64] = "";
-  struct {
-    double value;
-    int    rank;
-  } mine = {0, 0}, most;
-
   PetscFunctionBeginUser;
-  PetscCallMPI(MPI_Comm_rank(mesh->comm, &mine.rank));
-  PetscCall(PetscMalloc1(mesh->n_nodes * dim, &f));
-  PetscCall(PetscArraycpy(f, model->work->f, mesh->n_nodes * dim));
-  PetscCall(MeshSumNodes(mesh, dim, f));
-  for (PetscInt n = 0; n < mesh->n_nodes; n++) {
-    double square = 0;
-
-    for (int d = 0; d < dim; d++)
-      if (!LoadsPrescribed(model->loads, n * dim + d)) square += PetscSqr(f[n * dim + d]);
-    if (!(square > mine.value) || PetscIsInfOrNanReal(square)) continue;
-    mine.value = square;
-    place[0]   = mesh->node_tag[n];
-    for (int d = 0; d < dim; d++) place[1 + d] = mesh->coords[n * dim + d] + mesh->centre[d];
-  }
-  PetscCallMPI(MPI_Allreduce(&mine, &most, 1, MPI_DOUBLE_INT, MPI_MAXLOC, mesh->comm));
-  PetscCallMPI(MPI_Bcast(place, 4, MPIU_REAL, most.rank, mesh->comm));
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &inverted, 1, MPIU_INT, MPI_MAX, mesh->comm));
-  if (inverted >= 0) PetscCall(PetscSNPrintf(element, sizeof(element), "element %" PetscInt_FMT " was inverted on the way; ", inverted));
-  PetscCall(
-    PetscSNPrintf(text, size, "%slargest residual at node %.0f (%g, %g, %g)", element, (double)place[0], (double)place[1], (double)place[2], (double)place[3]));
-  PetscCall(PetscFree(f));
+  PetscCall(FailureLocate(model->mesh, model->loads, model->contact, model->work->f, model->work->inverted, &report->failure));
+  if (report->result != SOLVE_WINDOW) FailureText(&report->failure, report->detail, sizeof(report->detail));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -705,8 +693,8 @@ PetscErrorCode ModelSolve(Model model, PetscReal t, SolveReport *report)
   }
   if (report->result == SOLVE_CONVERGED)
     PetscCall(PetscArraycpy(model->u, work->trial, model->mesh->n_nodes * model->mesh->dim));
-  else if (report->result != SOLVE_WINDOW)
-    PetscCall(ModelLocateFailure(model, report->detail, sizeof(report->detail)));
+  else
+    PetscCall(ModelLocateFailure(model, report));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -2,6 +2,7 @@
 #include "results.h"
 #include "columns.h"
 #include "commandline.h"
+#include "endreport.h"
 #include "fields.h"
 #include "precheck.h"
 #include "refusal.h"
@@ -595,13 +596,18 @@ static void ResultsPrintEnd(Results results, const RunRecord *run)
 */
 PetscErrorCode ResultsFinish(Results results, const RunRecord *run)
 {
+  RunFigures figures;
+
   PetscFunctionBeginUser;
   TimingBegin(TIMING_OUTPUT);
   if (results->stepped && !results->written) PetscCall(ResultsWriteFields(results));
   TimingEnd(TIMING_OUTPUT);
-  PetscCall(SummaryWrite(results->model, results->scene, results->directory, run, results->stepped ? &results->last : NULL, results->values));
+  PetscCall(RunFiguresCollect(results->model, results->scene, run, results->stepped ? &results->last : NULL, &figures));
+  if (!results->rank) PetscCall(SummaryWrite(results->model->mesh, &figures, results->directory, results->values));
   PetscCall(ResultsPrintProbes(results));
   PetscCall(ResultsPrintWindows(results));
+  if (results->talks) EndReportPrint(&figures, stdout);
+  PetscCall(RunFiguresDestroy(&figures));
   PetscCall(ResultsPrintUnused(results));
   ResultsPrintUnmet(results);
   ResultsPrintEnd(results, run);

@@ -177,6 +177,9 @@ static void CountSolve(const SolveReport *solve, StepRecord *record, StepperRepo
   record->krylov += solve->krylov;
   report->newton_iterations += solve->newton;
   report->krylov_iterations += solve->krylov;
+  report->regathered += solve->regathered;
+  report->adjusted += solve->adjusted;
+  report->cuts += solve->cuts;
 }
 
 /* The control's prediction, once for each step */
@@ -252,6 +255,11 @@ static PetscErrorCode LoadStepperAdvance(LoadStepper stepper, StepRecord *record
                               "no equilibrium from t = %.6g to %.6g: %s; %s; tried %" PetscInt_FMT " steps, dt from %.3g down to %.3g (dt_min %.3g)", (double)t,
                               (double)end, SolveResults[solve.result], solve.detail, record->attempts, (double)first, (double)dt,
                               (double)stepper->size.dt_min));
+      report->failed.solve    = solve;
+      report->failed.attempts = record->attempts;
+      report->failed.t        = end;
+      report->failed.first    = first;
+      report->failed.last     = dt;
       PetscFunctionReturn(PETSC_SUCCESS);
     }
   }
