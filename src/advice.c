@@ -27,12 +27,14 @@ static int PenetrationIsDeep(const RunFigures *figures, const PairFigures *pair,
   const PetscReal size   = pair->quality.max_penetration_over_h > 0 ? pair->quality.max_penetration / pair->quality.max_penetration_over_h : 0;
   const PetscReal target = PetscMax(PairSurfaceError(pair), ADVICE_SMALL * size), over = target > 0 ? pair->quality.max_penetration / target : 0;
 
+  const double    scale  = pair->scene->penalty_auto ? pair->scene->penalty_scale : 1;
+
   (void)figures;
   if (pair->scene->adjust || over <= 1) return 0;
   snprintf(text, ADVICE_TEXT,
-           "%s: the penetration is %.2g times what the surface is known to: penalty.scale %.2g instead of %g, or penalty: {adjust: true, g_min, g_max, unit}",
-           pair->name, (double)over, pair->scene->penalty_auto ? pair->scene->penalty_scale * (double)over : (double)over,
-           pair->scene->penalty_auto ? pair->scene->penalty_scale : 1);
+           "%s: the penetration is %.3g times the surface's own error (or a thousandth of a face): penalty.scale %.3g instead of %g, or penalty: {adjust: true, "
+           "g_min, g_max, unit}",
+           pair->name, (double)over, scale * (double)over, scale);
   return 1;
 }
 

@@ -6,9 +6,10 @@
 enum { ESTIMATE_ORDER = 128 };
 #define ESTIMATE_PRODUCT_S 0.01
 /* MUMPS's speed in large fronts, as a part of that; what each entry of a factor costs however large the fronts (assembly of fronts, the two triangular
-   solves); and what a factorisation costs at least, sharing out the matrix. Measured on pipe_pinch, cup_flattening and ring_in_ring_3d. */
+   solves); and what a factorisation costs at least, sharing out the matrix. Chosen on pipe_pinch, cup_flattening and ring_in_ring_3d, whose CPU time an
+   iteration they give to a quarter, their memory to 30 %. */
 #define ESTIMATE_EFFICIENCY 0.6
-#define ESTIMATE_ENTRY_S    1e-8
+#define ESTIMATE_ENTRY_S    2.5e-8
 #define ESTIMATE_CALL_S     3e-3
 /* What evaluating residuals and energies adds to an iteration, in assemblies of the tangent. */
 #define ESTIMATE_RESIDUALS 1
