@@ -36,10 +36,10 @@ static PetscErrorCode MeasureProduct(MPI_Comm comm, PetscReal *rate)
   PetscFunctionBeginUser;
   PetscCall(MatCreateSeqDense(PETSC_COMM_SELF, n, n, NULL, &a));
   PetscCall(MatShift(a, 1));
-  PetscCall(MatMatMult(a, a, MAT_INITIAL_MATRIX, PETSC_DEFAULT, &c)); /* wakes the library up */
+  PetscCall(MatMatMult(a, a, MAT_INITIAL_MATRIX, 1, &c)); /* wakes the library up */
   start = CpuSeconds();
   do {
-    PetscCall(MatMatMult(a, a, MAT_REUSE_MATRIX, PETSC_DEFAULT, &c));
+    PetscCall(MatMatMult(a, a, MAT_REUSE_MATRIX, 1, &c));
     done += 2.0 * n * n * n;
     now = CpuSeconds();
   } while (now - start < ESTIMATE_PRODUCT_S);
