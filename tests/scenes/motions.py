@@ -1,4 +1,5 @@
 """Rigid motions that supports leave are found before solving and named by body and direction: in the plane, axisymmetric and solid, held by contact only or by nothing."""
+import pathlib
 import re
 
 from harness import Check, arguments, run, SCENES
@@ -32,6 +33,21 @@ for name, (scene, overrides, expected, status) in CASES.items():
     finished = run(args, scene, "-check", out=re.sub(r"\W+", "_", name), overrides=overrides, must=status)
     lines = re.findall(r"^motion   (.*)$", finished.text, re.MULTILINE)
     check.holds(name, len(lines) == len(expected) and all(re.match(pattern, line) for pattern, line in zip(expected, lines)), " | ".join(lines))
+
+# A body of two parts that hang together by nothing: each is a body of its own to the supports.
+parts = pathlib.Path(args.out).resolve() / "parts.geo"
+parts.parent.mkdir(parents=True, exist_ok=True)
+parts.write_text("""SetFactory("OpenCASCADE");
+Rectangle(1) = {0, 0, 0, 1, 1};
+Rectangle(2) = {3, 0, 0, 1, 1};
+MeshSize{:} = 0.5;
+Physical Surface("block") = {1, 2};
+Physical Curve("held") = {4};
+""")
+text = run(args, PLANE, "-check", out="parts", overrides=[f"mesh={{file: {parts}}}", "supports=[{surface: held, ux: 0, uy: 0}]"], must=1).text
+lines = re.findall(r"^motion   (.*)$", text, re.MULTILINE)
+check.holds("a body of two parts", len(lines) == 4 and re.match(r"held by .*: block \(its part with node 1\)", lines[0]) and all(re.match(r"block \(its part with node 5\): (rotation|translation)", line) for line in lines[1:]), " | ".join(lines))
+
 refused = run(args, PLANE, out="refused", overrides=["supports=[{surface: y_min, uy: 0}]"], must=1)
 check.holds("a run is refused", re.search(r"patch_plane.yaml:\d+: bodies.0.volume: body 'block' is free to move: translation along x, \(1, 0\); no support", refused.text) is not None, refused.text.strip())
 check.holds("nothing solved", not (refused.directory / "steps.csv").exists())
