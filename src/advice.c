@@ -24,17 +24,18 @@ typedef int (*PairRuleFn)(const RunFigures *, const PairFigures *, char *text); 
 
 static int PenetrationIsDeep(const RunFigures *figures, const PairFigures *pair, char *text)
 {
-  const PetscReal size   = pair->quality.max_penetration_over_h > 0 ? pair->quality.max_penetration / pair->quality.max_penetration_over_h : 0;
-  const PetscReal target = PetscMax(PairSurfaceError(pair), ADVICE_SMALL * size), over = target > 0 ? pair->quality.max_penetration / target : 0;
-
-  const double    scale  = pair->scene->penalty_auto ? pair->scene->penalty_scale : 1;
+  const SceneContact   *scene   = pair->scene;
+  const ContactQuality *quality = &pair->quality;
+  const PetscReal       size    = quality->max_penetration_over_h > 0 ? quality->max_penetration / quality->max_penetration_over_h : 0;
+  const PetscReal       target = PetscMax(PairSurfaceError(pair), ADVICE_SMALL * size), over = target > 0 ? quality->max_penetration / target : 0;
+  const double          now = scene->penalty_auto ? scene->penalty_scale : scene->penalty;
 
   (void)figures;
-  if (pair->scene->adjust || over <= 1) return 0;
+  if (scene->adjust || over <= 1) return 0;
   snprintf(text, ADVICE_TEXT,
-           "%s: the penetration is %.3g times the surface's own error (or a thousandth of a face): penalty.scale %.3g instead of %g, or penalty: {adjust: true, "
+           "%s: the penetration is %.3g times the surface's own error (or a thousandth of a face): penalty.%s %.3g instead of %g, or penalty: {adjust: true, "
            "g_min, g_max, unit}",
-           pair->name, (double)over, scale * (double)over, scale);
+           pair->name, (double)over, scene->penalty_auto ? "scale" : "initial", now * (double)over, now);
   return 1;
 }
 

@@ -355,7 +355,7 @@ static PetscErrorCode ResultsPrintHead(Results results)
   }
   PetscCall(ResultsPrintSolver(results));
   if (!results->quiet) PetscCall(MeshReport(results->model->mesh, results->scene, stdout));
-  if (results->talks) { printf("dofs     %lld free\neffects  %s\n", (long long)dofs, *effects ? effects : "none"); }
+  if (results->talks) printf("dofs     %lld free\neffects  %s\n", (long long)dofs, *effects ? effects : "none");
   if (!results->quiet) PetscCall(PrecheckMotions(results->model, stdout));
   if (results->talks) {
     printf("\n%5s %9s %9s %10s %10s %5s %5s %8s %12s %8s %8s\n", "step", "t", "dt", "iterations", "in contact", "in", "out", "beta", "penetration", "spent",
