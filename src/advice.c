@@ -28,14 +28,14 @@ static int PenetrationIsDeep(const RunFigures *figures, const PairFigures *pair,
   const ContactQuality *quality = &pair->quality;
   const PetscReal       size    = quality->max_penetration_over_h > 0 ? quality->max_penetration / quality->max_penetration_over_h : 0;
   const PetscReal       target = PetscMax(PairSurfaceError(pair), ADVICE_SMALL * size), over = target > 0 ? quality->max_penetration / target : 0;
-  const double          now = scene->penalty_auto ? scene->penalty_scale : scene->penalty;
 
   (void)figures;
   if (scene->adjust || over <= 1) return 0;
-  snprintf(text, ADVICE_TEXT,
-           "%s: the penetration is %.3g times the surface's own error (or a thousandth of a face): penalty.%s %.3g instead of %g, or penalty: {adjust: true, "
-           "g_min, g_max, unit}",
-           pair->name, (double)over, scene->penalty_auto ? "scale" : "initial", now * (double)over, now);
+  snprintf(
+    text, ADVICE_TEXT,
+    "%s: the penetration is %.3g times the surface's own error (or a thousandth of a face): penalty.scale %.3g instead of %g, or penalty: {adjust: true, "
+    "g_min, g_max, unit}",
+    pair->name, (double)over, scene->penalty_scale * (double)over, scene->penalty_scale);
   return 1;
 }
 
