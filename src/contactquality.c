@@ -63,11 +63,11 @@ PetscErrorCode ContactPairGaps(Contact contact, int p, ContactGaps *gaps)
 }
 
 /* How far first-order facets lie off the curved surface whose normals turn as theirs do; this rank's sum and number of slave points */
-static void SumSagitta(const ContactPair *pair, PetscReal sum[2])
+static void SumSagitta(const ContactPair *pair, PetscMPIInt rank, PetscReal sum[2])
 {
   if (!pair->master || pair->master->order > 1) return;
   for (PetscInt q = 0; q < pair->lists->n_slaves; q++) {
-    if (pair->lists->facet_ptr[q] == pair->lists->facet_ptr[q + 1]) continue;
+    if (pair->lists->facet_ptr[q] == pair->lists->facet_ptr[q + 1] || !SlavePointIsOwn(pair->slaves, q, rank)) continue;
     sum[0] += pair->lists->kappa[q] * PetscSqr(pair->master->mean_size) / 8;
     sum[1]++;
   }
@@ -76,8 +76,9 @@ static void SumSagitta(const ContactPair *pair, PetscReal sum[2])
 /* ContactPairQuality - penetrations of pair p in the present state, against the size of its faces and of what facets leave out. Collective. */
 PetscErrorCode ContactPairQuality(Contact contact, int p, ContactQuality *quality)
 {
-  const ContactPair *pair    = &contact->pairs[p];
-  PetscInt           nodes   = 0;
+  const ContactPair *pair  = &contact->pairs[p];
+  PetscInt           nodes = 0;
+  PetscMPIInt        rank;
   PetscReal          most[2] = {0, 0}, sum[2] = {0, 0}, *depth;
 
   PetscFunctionBeginUser;
@@ -91,7 +92,8 @@ PetscErrorCode ContactPairQuality(Contact contact, int p, ContactQuality *qualit
     most[0] = PetscMax(most[0], penetration);
     most[1] = PetscMax(most[1], penetration / pair->size[c]);
   }
-  SumSagitta(pair, sum);
+  PetscCallMPI(MPI_Comm_rank(contact->mesh->comm, &rank));
+  SumSagitta(pair, rank, sum);
   *quality = (ContactQuality){.nodes = 0};
   PetscCallMPI(MPI_Allreduce(&nodes, &quality->nodes, 1, MPIU_INT, MPI_SUM, contact->mesh->comm));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, most, 2, MPIU_REAL, MPIU_MAX, contact->mesh->comm));

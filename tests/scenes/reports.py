@@ -23,7 +23,8 @@ def numbers(text):
 
 
 # 1. Before: the same text on any number of ranks, and a cost on each.
-for scene, overrides in (("ring_in_ring", ["mesh.parameters={n_inner: 12, n_outer: 15}"]), ("slide_cylinder", []), ("cup_flattening", [])):
+for scene, overrides in (("ring_in_ring", ["mesh.parameters={n_inner: 12, n_outer: 15}"]), ("slide_cylinder", []), ("cup_flattening", []),
+                         ("ring_in_ring_3d", ["mesh.parameters={n_inner: 8, n_outer: 10, n_len: 3, jitter: 0.25}", "contact.0.formulation=surface_to_surface"])):
     if not EVERY and scene != "ring_in_ring":
         continue
     texts = [run(args, RUNS / f"{scene}.yaml", "-check", out=scene, overrides=overrides, ranks=ranks).text for ranks in (1, 2, 3)]
