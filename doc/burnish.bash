@@ -2,14 +2,14 @@
 _burnish() {
   local word=${COMP_WORDS[COMP_CWORD]} last=${COMP_WORDS[COMP_CWORD - 1]}
   case $last in
-  -o) COMPREPLY=($(compgen -d -- "$word")) ;;
+  -o | -restart) COMPREPLY=($(compgen -d -- "$word")) ;;
   -set)
     compopt -o nospace 2>/dev/null
     COMPREPLY=($(compgen -S = -W "$("${COMP_WORDS[0]}" -help 2>/dev/null | sed -n 's/^  \([A-Za-z_][A-Za-z0-9_.|]*\): .*/\1/p')" -- "$word"))
     ;;
   *)
     if [[ $word == -* ]]; then
-      COMPREPLY=($(compgen -W "-check -mesh -help -version -o -set -overwrite -quiet" -- "$word"))
+      COMPREPLY=($(compgen -W "$("${COMP_WORDS[0]}" -help 2>/dev/null | sed '/^Scene file/,$d' | grep -oE '(^| )-[a-z_]+' | sort -u)" -- "$word"))
     else
       COMPREPLY=($(compgen -f -X '!*.y*ml' -- "$word") $(compgen -d -S / -- "$word"))
     fi
