@@ -5,6 +5,7 @@ import sys
 
 import matplotlib.image
 import numpy
+import PIL.Image
 
 from harness import Check, arguments, run, SCENES
 
@@ -70,6 +71,8 @@ for name in args.runs.split("-"):
     drawn(check, name, script("plot.py", folder), [folder / "steps.png"], 20)
     gif = folder / "uy.gif"
     drawn(check, name, script("render.py", folder, "--field", "uy", "--mirror", "xz", "--animate", "-o", gif, *small), [gif], 50)
+    with PIL.Image.open(gif) as animation:
+        check.holds(f"{name}: frames of uy.gif", animation.n_frames == 2, f"{animation.n_frames}")
     refused = script("render.py", folder, "--step", 2)
     check.holds(f"{name}: a step that is not there", refused.returncode == 1 and "steps 0 to 1" in refused.stdout, refused.stdout[-200:])
 check.finish()
