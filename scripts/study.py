@@ -321,24 +321,31 @@ def target_table(study, rows, measure):
     return header, cells
 
 
+def cheapest(study, own, measure, target):
+    """Of some lines: (seconds, words) at an error, the words saying from which of the last axis's values on; not reached: (seconds spent, None)."""
+    reached = [(*cost(series, measure, target), series) for series in own]
+    seconds, _, series = min((entry for entry in reached if entry[1] in ("", "<=")), key=lambda entry: entry[0], default=(None, None, None))
+    if series is None:
+        return max((row["cpu_s"] for series in own for row in series if row["errors"].get(measure)), default=None), None
+    start = next(k for k in range(len(series)) if all((row["errors"].get(measure) or 0) <= target for row in series[k:]))
+    return seconds, ", ".join(series[start]["case"][name] for name in (*study.lines[1:], study.along))
+
+
 def best_table(study, rows, measure):
-    """By label of the first axis: the cheapest of its lines at the errors asked for, and from which of the last axis's values on."""
-    first, *others = study.lines
-    panels, cells = list(study.axes.get(study.options.panels, {"": None})), []
-    for label in study.axes[first]:
-        shown = []
-        for panel, target in itertools.product(panels, study.options.targets):
-            own = [series for (p, _), series in study.series(rows).items() if p == panel and series[0]["case"][first] == label]
-            reached = [(*cost(series, measure, target), series) for series in own]
-            seconds, _, series = min((entry for entry in reached if entry[1] in ("", "<=") and entry[0]), key=lambda entry: entry[0], default=(None, None, None))
-            if series:
-                start = next(k for k in range(len(series)) if all((row["errors"].get(measure) or 0) <= target for row in series[k:]))
-                shown.append(f"{text(seconds, 2)} ({', '.join(series[start]['case'][name] for name in (*others, study.along))})")
-            else:
-                error, seconds = min(((row["errors"][measure], row["cpu_s"]) for series in own for row in series if row["errors"].get(measure)), default=(None, None))
-                shown.append(f"not reached, {text(error, 2)} % at {text(seconds, 2)}")
-        cells.append([label, *shown])
-    return ["", *(", ".join(filter(None, (f"{target:g} %", panel))) for panel, target in itertools.product(panels, study.options.targets))], cells
+    """By label of the first axis: the cheapest of its lines at the errors asked for; and how often the first label's cost is the cheapest one's."""
+    labels, columns = study.axes[study.lines[0]], list(itertools.product(study.axes.get(study.options.panels, [""]), study.options.targets))
+    cells, ratios = {label: [] for label in labels}, []
+    for panel, target in columns:
+        found = {}
+        for label in labels:
+            own = [series for (p, _), series in study.series(rows).items() if p == panel and series[0]["case"][study.lines[0]] == label]
+            seconds, words = found[label] = cheapest(study, own, measure, target)
+            least = min((row["errors"][measure] for series in own for row in series if row["errors"].get(measure)), default=None)
+            cells[label].append(f"{text(seconds, 2)} ({words})" if words else f"not reached in {text(seconds, 2)}, at best {text(least, 2)} %")
+        (seconds, words), others = next(iter(found.values())), [cpu for cpu, reached in list(found.values())[1:] if reached]
+        ratios.append(f"{'' if words else 'more than '}{text(seconds / min(others), 2)} times" if others and seconds else "-")
+    header = ["", *(", ".join(filter(None, (f"{target:g} %", panel))) for panel, target in columns)]
+    return header, [*([label, *row] for label, row in cells.items()), [f"{next(iter(labels))} over the cheapest", *ratios]]
 
 
 def tell(study, rows):

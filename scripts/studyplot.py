@@ -12,7 +12,7 @@ from study import enough, front, number
 COLOURS = ("#0072b2", "#d55e00", "#009e73", "#aa4499", "#b8860b", "#555555")  # told apart by the colour-blind too; by the first axis
 STYLES = ((0, ()), (0, (5, 2)), (0, (1, 1.5)), (0, (5, 1.5, 1, 1.5)))  # by the second
 MARKERS = "osD^v"  # by the third
-WIDTH, HEIGHT, DPI = 5.6, 4.4, 80  # of a panel
+WIDTH, HEIGHT, DPI = 5.6, 4.4, 72  # of a panel
 FEW = 100  # largest value over the smallest of an axis whose ticks between decades are labelled
 LABEL_HEIGHT = 0.043  # of a direct label, in heights of a panel
 
