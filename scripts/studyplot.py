@@ -75,6 +75,8 @@ def draw_lines(axes, study, rows, abscissa, ordinate):
     for axis in (axes.xaxis, axes.yaxis):
         axis.set_major_formatter(FuncFormatter(plain))
         axis.set_minor_formatter(FuncFormatter(between(axis)))
+    if ends and len(points) > 1 and points[0][0] > points[-1][0] and study.options.against:
+        axes.invert_xaxis()  # lines run to the right, where their names are
     label_ends(axes, ends)
 
 
@@ -99,13 +101,13 @@ def draw_against(study, rows, grid):
 
     for measure, axes in zip(study.measures, grid[0]):
         for series in study.series(rows).values():
-            row = enough(series, measure.name)
+            row, _ = enough(series, measure.name)
             if row:
                 axes.plot(abscissa(row), row["errors"][measure.name], "o", ms=12, mfc="none", mec="black", mew=1.2, zorder=4)
         draw_lines(axes, study, rows, abscissa, lambda row: row["errors"].get(measure.name))
         axes.set_ylabel(f"error in {measure.name}, %")
     for axes, name, text in zip(grid.flat[-2:], ("newton_iterations", "cpu_s"), ("Newton iterations", "CPU seconds")):
-        draw_lines(axes, study, rows, abscissa, lambda row: row[name])
+        draw_lines(axes, study, [row for row in rows if row["status"] == "done"], abscissa, lambda row: row[name])
         axes.set_ylabel(text)
     for axes in grid.flat:
         axes.set_xlabel(study.along)
