@@ -120,8 +120,9 @@ def digest(*parts):
 def stamp(study):
     """What the runs of a study have in common: scene, geometry and program. No run is taken from a record that has others."""
     scene = study.options.scene.read_text()
-    meshes = [path.read_text() for path in sorted(study.options.scene.parent.glob("../meshes/*.geo")) if path.name in scene]
-    return digest(scene, meshes, hashlib.sha256(study.options.burnish.read_bytes()).hexdigest(), study.options.ranks)
+    meshes = [study.options.scene.parent / name for name in re.findall(r"[\w./-]+\.(?:geo|msh)\b", scene)]
+    contents = [hashlib.sha256(path.read_bytes()).hexdigest() for path in (*meshes, study.options.burnish) if path.exists()]
+    return digest(scene, contents, study.options.ranks)
 
 
 def outcome(status, directory, text):
