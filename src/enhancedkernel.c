@@ -16,9 +16,11 @@ enum { MAX_NODES = 8, MAX_POINTS = 8, MAX_MODES = 9 };
 _Static_assert((int)MAX_POINTS < (int)CHUNK, "the centre stands behind the points in a chunk");
 
 /* Newton's method in an element takes 3 to 6 iterations in bending; where it takes more than this it is lost */
-enum { MAX_ITERATIONS = 20 };
+enum { MAX_ITERATIONS = 40 };
 /* The next correction would be the square of one whose energy is this part of the element's: too small to matter */
-static const double settled_energy = 1e-10;
+static const double settled_energy = 1e-16;
+/* Relative error of an energy that is a sum over the points: a lower one is not told from a higher one below it */
+static const double energy_round_off = 1e-13;
 /* The same for elements that have no energy: square of a strain, far above rounding of displacements and far below what its square could spoil */
 static const double settled_strain2 = 1e-20;
 
@@ -199,20 +201,40 @@ LANES_INLINE void ModeSystem(const BatchCall *call, const int points, const int 
   Factor(modes, K);
 }
 
-/* Marks the lanes whose last correction d, with force f, was small enough as no longer active; returns how many are left */
-LANES_INLINE int LeaveSettled(const BatchCall *call, const int points, const int modes, const Enhanced *x, const Lanes *W, const Lanes *f, const Lanes *d,
-                              Lanes *active)
+/* What Newton's method knows of each lane's modes */
+typedef struct {
+  Lanes W;               /* energy at the last point that was better than the one before */
+  Lanes gone[MAX_MODES]; /* from there to b */
+  Lanes active;          /* 1: not at rest yet, else 0 */
+  Lanes scale;           /* energy of a strain too small to matter */
+} Rest;
+
+/* The correction d, from the force f, that lanes at a lower energy than before make; the others go half of their way back. A lane at rest stays as it is,
+   whatever the others do. Returns how many are not at rest. */
+LANES_INLINE int Advance(const int modes, const Lanes *W, const Lanes *f, const Lanes *d, Rest *rest, Enhanced *x)
 {
-  Lanes volume = {0};
-  int   left   = 0;
+  int left = 0;
 
-  for (int q = 0; q < points; q++) volume += x->volume[q];
   for (int lane = 0; lane < LANES; lane++) {
-    double work = 0; /* twice the energy that the correction set free */
+    double work = 0; /* twice the energy that the correction sets free */
 
-    for (int k = 0; k < modes; k++) work += fabs(f[k][lane] * d[k][lane]);
-    if (work <= settled_energy * (*W)[lane] + settled_strain2 * call->mu[lane] * volume[lane]) (*active)[lane] = 0;
-    left += (*active)[lane] != 0;
+    if (rest->active[lane] == 0) continue;
+    if ((*W)[lane] > rest->W[lane] * (1 + energy_round_off) + rest->scale[lane]) {
+      for (int k = 0; k < modes; k++) {
+        rest->gone[k][lane] /= 2;
+        x->b[k][lane] -= rest->gone[k][lane];
+      }
+      left++;
+      continue;
+    }
+    rest->W[lane] = (*W)[lane];
+    for (int k = 0; k < modes; k++) {
+      rest->gone[k][lane] = -d[k][lane];
+      x->b[k][lane] -= d[k][lane];
+      work += fabs(f[k][lane] * d[k][lane]);
+    }
+    rest->active[lane] = !(work <= settled_energy * (*W)[lane] + rest->scale[lane]);
+    left += rest->active[lane] != 0;
   }
   return left;
 }
@@ -220,22 +242,22 @@ LANES_INLINE int LeaveSettled(const BatchCall *call, const int points, const int
 /* The modes of each lane at rest. A lane that does not get there is given J = NaN, and no modes; small strains are there after one step. */
 LANES_INLINE void Settle(const BatchCall *call, const int points, const int dim, const int hoop, Enhanced *x)
 {
-  const int modes  = dim * dim + hoop;
-  Lanes     active = (Lanes){0} + 1;
-  int       left   = LANES;
+  const int modes = dim * dim + hoop;
+  Rest      rest  = {.W = (Lanes){0} + __DBL_MAX__, .active = (Lanes){0} + 1};
+  int       left  = LANES;
 
+  for (int q = 0; q < points; q++) rest.scale += settled_strain2 * call->mu * x->volume[q];
   for (int iteration = 0; left && iteration < (call->finite ? MAX_ITERATIONS : 1); iteration++) {
     Lanes W, f[MAX_MODES], d[MAX_MODES], K[MAX_MODES][MAX_MODES];
 
     ModeSystem(call, points, dim, hoop, x, &W, f, K);
     for (int k = 0; k < modes; k++) d[k] = f[k];
     Solve(modes, K, d);
-    for (int k = 0; k < modes; k++) x->b[k] -= active * d[k]; /* a lane at rest stays as it is, whatever the others do */
-    left = LeaveSettled(call, points, modes, x, &W, f, d, &active);
+    left = Advance(modes, &W, f, d, &rest, x);
   }
   for (int lane = 0; lane < LANES && call->finite; lane++) {
-    for (int k = 0; k < modes && active[lane] != 0; k++) x->b[k][lane] = 0;
-    if (active[lane] != 0) call->J[lane] = NAN;
+    for (int k = 0; k < modes && rest.active[lane] != 0; k++) x->b[k][lane] = 0;
+    if (rest.active[lane] != 0) call->J[lane] = NAN;
   }
 }
 
