@@ -21,11 +21,11 @@ def cantilever(probes):
 
 
 # What is compared (a function of the probes), its reference, node spacings (elements of first order along the wall, the edge), elements.
-# References: the elastica (Mattiasson 1981); second order with 256 elements around the ring; second order with 64 x 64 elements of Cook's membrane;
+# References: the elastica (Mattiasson 1981); second order with 256 x 2 elements in the ring (enhanced with 256 x 4 agrees to 0.02 %); second order with 64 x 64 elements of Cook's membrane;
 # another code on several meshes for the pipe (0.1 %).
 SCENES = {
     "cantilever": (cantilever, 66.996, (8, 16, 32, 64), ORDER_1, "nx"),
-    "ring_pinch": (lambda probes: probes["force"], 3.1830, (8, 16, 32, 64), ORDER_1, "n_arc"),
+    "ring_pinch": (lambda probes: probes["force"], 3.185, (8, 16, 32, 64), ORDER_1, "n_arc"),
     "cook": (lambda probes: probes["tip_uy"], 6.8931, (4, 8, 16, 32), {"first order": "full", "fbar": "fbar"}, "n"),
 }
 PIPES = [("first order", "24x2x20"), ("second order", "12x1x10"), ("second order", "24x1x10"), ("enhanced", "12x1x10"), ("enhanced", "24x2x20"), ("enhanced", "24x1x10"), ("enhanced", "36x1x6"),
@@ -82,7 +82,7 @@ def table(path):
 
 
 parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-parser.add_argument("scene", nargs="*", choices=[*SCENES, "pipe_pinch", []], help="default: all")
+parser.add_argument("scene", nargs="*", help="cantilever, ring_pinch, cook, pipe_pinch; default: all")
 parser.add_argument("--burnish", type=pathlib.Path, default=pathlib.Path("build/burnish"))
 parser.add_argument("--out", type=pathlib.Path, default=pathlib.Path("out/thin_walls"))
 parser.add_argument("--record", type=pathlib.Path, default=pathlib.Path("out/thin_walls.csv"))

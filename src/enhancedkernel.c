@@ -17,7 +17,10 @@ _Static_assert((int)MAX_POINTS < (int)CHUNK, "the centre stands behind the point
 
 /* Newton's method in an element takes 3 to 6 iterations in bending; where it takes more than this it is lost */
 enum { MAX_ITERATIONS = 40 };
-/* The next correction would be the square of one whose energy is this part of the element's: too small to matter */
+/* Their tangent is renewed in the first iterations, serves in the next, and is renewed again in what has not found rest by then: always the same ones,
+   so that no element sees the others of its batch */
+enum { RENEWED_FIRST = 2, RENEWED_AGAIN = 5 };
+/* What follows a correction whose energy is this part of the element's is a small part of it: too small to matter */
 static const double settled_energy = 1e-16;
 /* Relative error of an energy that is a sum over the points: a lower one is not told from a higher one below it */
 static const double energy_round_off = 1e-13;
@@ -175,8 +178,8 @@ LANES_INLINE void Solve(const int modes, Lanes K[MAX_MODES][MAX_MODES], Lanes y[
   }
 }
 
-/* Energy of the element, force of the modes and their tangent, factorised */
-LANES_INLINE void ModeSystem(const BatchCall *call, const int points, const int dim, const int hoop, Enhanced *x, Lanes *W, Lanes f[MAX_MODES],
+/* Energy of the element, force of the modes and, if it is to be renewed, their tangent, factorised */
+LANES_INLINE void ModeSystem(const BatchCall *call, const int points, const int dim, const int hoop, const int renew, Enhanced *x, Lanes *W, Lanes f[MAX_MODES],
                              Lanes K[MAX_MODES][MAX_MODES])
 {
   const int modes = dim * dim + hoop;
@@ -184,21 +187,22 @@ LANES_INLINE void ModeSystem(const BatchCall *call, const int points, const int 
   *W = (Lanes){0};
   for (int k = 0; k < modes; k++) {
     f[k] = (Lanes){0};
-    for (int l = k; l < modes; l++) K[k][l] = (Lanes){0};
+    for (int l = k; l < modes && renew; l++) K[k][l] = (Lanes){0};
   }
   for (int q = 0; q < points; q++) {
     Lanes H[9], P[9], T[MAX_ROWS][MAX_MODES], dilatation, energy;
 
     PointGradient(dim, hoop, x, q, H);
     MaterialDilatation(H, &dilatation);
-    call->law(H, &dilatation, &call->lambda, &call->mu, &energy, P, x->c.A[q]);
+    call->law(H, &dilatation, &call->lambda, &call->mu, &energy, P, renew ? x->c.A[q] : NULL);
     *W += energy * x->volume[q];
     for (int r = 0; r < 9; r++) P[r] *= x->volume[q];
-    for (int k = 0; k < MATERIAL_TANGENT_SIZE; k++) x->c.A[q][k] *= x->volume[q];
     AddModeForce(dim, hoop, x, q, P, f);
+    if (!renew) continue;
+    for (int k = 0; k < MATERIAL_TANGENT_SIZE; k++) x->c.A[q][k] *= x->volume[q];
     AddModeTangent(dim, hoop, x, q, T, K);
   }
-  Factor(modes, K);
+  if (renew) Factor(modes, K);
 }
 
 /* What Newton's method knows of each lane's modes */
@@ -245,12 +249,13 @@ LANES_INLINE void Settle(const BatchCall *call, const int points, const int dim,
   const int modes = dim * dim + hoop;
   Rest      rest  = {.W = (Lanes){0} + __DBL_MAX__, .active = (Lanes){0} + 1};
   int       left  = LANES;
+  Lanes     K[MAX_MODES][MAX_MODES];
 
   for (int q = 0; q < points; q++) rest.scale += settled_strain2 * call->mu * x->volume[q];
   for (int iteration = 0; left && iteration < (call->finite ? MAX_ITERATIONS : 1); iteration++) {
-    Lanes W, f[MAX_MODES], d[MAX_MODES], K[MAX_MODES][MAX_MODES];
+    Lanes W, f[MAX_MODES], d[MAX_MODES];
 
-    ModeSystem(call, points, dim, hoop, x, &W, f, K);
+    ModeSystem(call, points, dim, hoop, iteration < RENEWED_FIRST || iteration >= RENEWED_AGAIN, x, &W, f, K);
     for (int k = 0; k < modes; k++) d[k] = f[k];
     Solve(modes, K, d);
     left = Advance(modes, &W, f, d, &rest, x);

@@ -551,14 +551,23 @@ static PetscErrorCode ModelNewton(Model model, SolveReport *report)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Has some body elements of that formulation? Rigid tools have none. */
+static PetscBool ModelHasFormulation(Scene scene, Formulation formulation)
+{
+  PetscBool has = PETSC_FALSE;
+
+  for (int b = 0; b < scene->n_bodies; b++) has = (PetscBool)(has || (!scene->bodies[b].rigid && scene->bodies[b].formulation == formulation));
+  return has;
+}
+
 /* Where to look when a step fails: an inverted element, the node with the largest residual. */
 static PetscErrorCode ModelLocateFailure(Model model, char *text, size_t size)
 {
   Mesh       mesh = model->mesh;
   const int  dim  = mesh->dim;
   PetscReal *f, place[4] = {0, 0, 0, 0};
-  PetscInt   inverted    = model->work->inverted;
-  char       element[64] = "";
+  PetscInt   inverted     = model->work->inverted;
+  char       element[128] = "";
   struct {
     double value;
     int    rank;
@@ -582,7 +591,9 @@ static PetscErrorCode ModelLocateFailure(Model model, char *text, size_t size)
   PetscCallMPI(MPI_Allreduce(&mine, &most, 1, MPI_DOUBLE_INT, MPI_MAXLOC, mesh->comm));
   PetscCallMPI(MPI_Bcast(place, 4, MPIU_REAL, most.rank, mesh->comm));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &inverted, 1, MPIU_INT, MPI_MAX, mesh->comm));
-  if (inverted >= 0) PetscCall(PetscSNPrintf(element, sizeof(element), "element %" PetscInt_FMT " was inverted on the way; ", inverted));
+  if (inverted >= 0)
+    PetscCall(PetscSNPrintf(element, sizeof(element), "element %" PetscInt_FMT " was inverted%s on the way; ", inverted,
+                            ModelHasFormulation(model->scene, FORMULATION_ENHANCED) ? ", or its enhanced strains found no equilibrium," : ""));
   PetscCall(
     PetscSNPrintf(text, size, "%slargest residual at node %.0f (%g, %g, %g)", element, (double)place[0], (double)place[1], (double)place[2], (double)place[3]));
   PetscCall(PetscFree(f));
@@ -810,7 +821,9 @@ PetscErrorCode ModelEffects(Model model, char *text, size_t size)
   for (int c = 0; c < scene->n_contacts; c++) adjusted = (PetscBool)(adjusted || scene->contacts[c].adjust);
   for (int l = 0; l < scene->n_loads; l++) body_force = (PetscBool)(body_force || scene->loads[l].kind == LOAD_BODY_FORCE);
   for (int c = 0; c < scene->n_contacts; c++) surface = (PetscBool)(surface || scene->contacts[c].formulation == CONTACT_SURFACE_TO_SURFACE);
-  PetscCall(PetscSNPrintf(text, size, "%s%s%s%s%s%s%s", scene->kinematics == KINEMATICS_FINITE ? "finite strain" : "small strain", ModelContactEffect(scene),
+  PetscCall(PetscSNPrintf(text, size, "%s%s%s%s%s%s%s%s%s", scene->kinematics == KINEMATICS_FINITE ? "finite strain" : "small strain",
+                          ModelHasFormulation(scene, FORMULATION_ENHANCED) ? ", enhanced strains" : "",
+                          ModelHasFormulation(scene, FORMULATION_FBAR) ? ", mean dilatation" : "", ModelContactEffect(scene),
                           surface ? ", surface to surface" : "", adjusted ? ", adjusted penalty" : "", LoadsConservative(model->loads) ? "" : ", follower load",
                           body_force ? ", body force" : "", moving ? ", rigid motion" : ""));
   PetscFunctionReturn(PETSC_SUCCESS);
