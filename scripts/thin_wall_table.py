@@ -11,7 +11,7 @@ import subprocess
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 ENVIRONMENT = {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1", "OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
-COLUMNS = ("scene", "element", "mesh", "smoother", "slave", "dofs", "status", "steps", "steps_failed", "newton_iterations", "cpu_s", "value", "error")
+COLUMNS = ("scene", "element", "mesh", "dt", "smoother", "slave", "dofs", "status", "steps", "steps_failed", "newton_iterations", "cpu_s", "value", "error")
 ORDER_1 = {"first order": "full", "enhanced": "enhanced"}
 SWAPPED = ("contact.0.slave=pipe_outer", "contact.0.master=plate_bottom")
 
@@ -28,7 +28,8 @@ SCENES = {
     "ring_pinch": (lambda probes: probes["force"], 3.185, (8, 16, 32, 64), ORDER_1, "n_arc"),
     "cook": (lambda probes: probes["tip_uy"], 6.8931, (4, 8, 16, 32), {"first order": "full", "fbar": "fbar"}, "n"),
 }
-PIPES = [("enhanced", "36x1x6"), ("enhanced", "24x1x10"), ("second order", "12x1x10"), ("enhanced", "24x2x20"), ("first order", "24x2x20")]
+# elements around, through and along the wall; load step
+PIPES = [("enhanced", "36x1x6", 0.05), ("enhanced", "36x1x6", 0.25), ("enhanced", "24x1x10", 0.05), ("second order", "12x1x10", 0.05)]
 PIPE_FORCE = 123920
 
 
@@ -59,24 +60,24 @@ def walls(args, scene):
 
 
 def pipes(args):
-    for element, mesh in PIPES:
+    for element, mesh, dt in PIPES:
         for smoother in ("facet", "diffuse"):
             for slave, roles in (("plate", ()), ("pipe", SWAPPED)):
                 around, wall, along = mesh.split("x")
                 formulation = "enhanced" if element == "enhanced" else "full"
                 overrides = [f"mesh.order={2 if element == 'second order' else 1}", f"mesh.parameters={{n_arc: {around}, n_wall: {wall}, n_len: {along}}}",
-                             f"bodies.0.formulation={formulation}", f"bodies.1.formulation={formulation}", f"contact.0.smoother={smoother}", *roles]
+                             f"bodies.0.formulation={formulation}", f"bodies.1.formulation={formulation}", f"contact.0.smoother={smoother}", f"stepping.initial={dt}", *roles]
                 summary = run(args, "pipe_pinch", overrides)
-                yield record(summary, summary["probes"]["plate_force"], PIPE_FORCE, scene="pipe_pinch", element=element, mesh=mesh, smoother=smoother, slave=slave)
+                yield record(summary, summary["probes"]["plate_force"], PIPE_FORCE, scene="pipe_pinch", element=element, mesh=mesh, dt=dt, smoother=smoother, slave=slave)
 
 
 def table(path):
     with open(path, newline="") as file:
         rows = list(csv.DictReader(file))
     for scene in dict.fromkeys(row["scene"] for row in rows):
-        print(f"\n{scene}\n{'element':<13}{'mesh':>8} {'smoother':<8} {'slave':<6}{'dofs':>7}{'status':>8}{'steps':>6}{'failed':>7}{'iterations':>11}{'CPU s':>8}{'value':>13}{'error %':>9}")
+        print(f"\n{scene}\n{'element':<13}{'mesh':>8}{'dt':>6} {'smoother':<8} {'slave':<6}{'dofs':>7}{'status':>8}{'steps':>6}{'failed':>7}{'iterations':>11}{'CPU s':>8}{'value':>13}{'error %':>9}")
         for row in (row for row in rows if row["scene"] == scene):
-            print(f"{row['element']:<13}{row['mesh']:>8} {row['smoother']:<8} {row['slave']:<6}{row['dofs']:>7}{row['status']:>8}{row['steps']:>6}{row['steps_failed']:>7}"
+            print(f"{row['element']:<13}{row['mesh']:>8}{row['dt']:>6} {row['smoother']:<8} {row['slave']:<6}{row['dofs']:>7}{row['status']:>8}{row['steps']:>6}{row['steps_failed']:>7}"
                   f"{row['newton_iterations']:>11}{float(row['cpu_s']):8.2f}{float(row['value']):13.4f}{float(row['error']):9.2f}")
 
 
