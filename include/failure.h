@@ -15,6 +15,7 @@ typedef struct {
   int         n;
   FailureNode node[FAILURE_NODES]; /* largest residual first */
   PetscInt    inverted;            /* element, or -1 */
+  PetscBool   enhanced;            /* it may be that its enhanced strains found no equilibrium */
 } Failure;
 
 /* f: n_nodes*dim local residuals of the failed iterate; inverted: an element of this rank, or -1; contact may be NULL. Collective. */

@@ -92,11 +92,12 @@ PetscErrorCode FailureLocate(Mesh mesh, Loads loads, Contact contact, const Pets
 /* FailureText - element and first node in one phrase, into text[size]. Not collective. */
 void FailureText(const Failure *failure, char *text, size_t size)
 {
-  const ContactPlace *place       = &failure->node[0].place;
-  char                element[64] = "";
+  const ContactPlace *place        = &failure->node[0].place;
+  char                element[128] = "";
 
   if (failure->inverted >= 0)
-    snprintf(element, sizeof(element), "element %lld was inverted on the way%s", (long long)failure->inverted, failure->n ? "; " : "");
+    snprintf(element, sizeof(element), "element %lld was inverted%s on the way%s", (long long)failure->inverted,
+             failure->enhanced ? ", or its enhanced strains found no equilibrium," : "", failure->n ? "; " : "");
   if (failure->n)
     snprintf(text, size, "%slargest residual at node %lld (%g, %g, %g)", element, (long long)place->tag, (double)place->X[0], (double)place->X[1],
              (double)place->X[2]);

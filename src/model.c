@@ -640,6 +640,15 @@ static PetscErrorCode ModelNewton(Model model, SolveReport *report)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Has some body elements of that formulation? Rigid tools have none. */
+static PetscBool ModelHasFormulation(Scene scene, Formulation formulation)
+{
+  PetscBool has = PETSC_FALSE;
+
+  for (int b = 0; b < scene->n_bodies; b++) has = (PetscBool)(has || (!scene->bodies[b].rigid && scene->bodies[b].formulation == formulation));
+  return has;
+}
+
 /* Adds that the penalty is so stiff that rounding alone may keep the residual above the tolerance, where it is. */
 static PetscErrorCode ModelBlamePenalty(Model model, char *text, size_t size)
 {
@@ -665,6 +674,7 @@ static PetscErrorCode ModelExplainFailure(Model model, SolveReport *report)
 
   PetscFunctionBeginUser;
   PetscCall(FailureLocate(model->mesh, model->loads, model->contact, model->work->f, model->work->inverted, &report->failure));
+  report->failure.enhanced = ModelHasFormulation(model->scene, FORMULATION_ENHANCED);
   if (report->result == SOLVE_WINDOW || report->result == SOLVE_LOST) PetscFunctionReturn(PETSC_SUCCESS); /* known already */
   if (report->result == SOLVE_CYCLE) {
     PetscCall(PetscStrncpy(report->detail, report->cycle, sizeof(report->detail)));
@@ -1009,7 +1019,9 @@ PetscErrorCode ModelEffects(Model model, char *text, size_t size)
   for (int c = 0; c < scene->n_contacts; c++) adjusted = (PetscBool)(adjusted || scene->contacts[c].adjust);
   for (int l = 0; l < scene->n_loads; l++) body_force = (PetscBool)(body_force || scene->loads[l].kind == LOAD_BODY_FORCE);
   for (int c = 0; c < scene->n_contacts; c++) surface = (PetscBool)(surface || scene->contacts[c].formulation == CONTACT_SURFACE_TO_SURFACE);
-  PetscCall(PetscSNPrintf(text, size, "%s", scene->kinematics == KINEMATICS_FINITE ? "finite strain" : "small strain"));
+  PetscCall(PetscSNPrintf(text, size, "%s%s%s", scene->kinematics == KINEMATICS_FINITE ? "finite strain" : "small strain",
+                          ModelHasFormulation(scene, FORMULATION_ENHANCED) ? ", enhanced strains" : "",
+                          ModelHasFormulation(scene, FORMULATION_FBAR) ? ", mean dilatation" : ""));
   PetscCall(ModelContactEffects(scene, text, size));
   PetscCall(PetscStrlen(text, &start));
   PetscCall(PetscSNPrintf(text + start, size - start, "%s%s%s%s%s", surface ? ", surface to surface" : "", adjusted ? ", adjusted penalty" : "",
