@@ -409,6 +409,8 @@ def arguments(line=None):
     options = parser.parse_args(line)
     if not options.axes:
         parser.error("nothing to vary: give --vary or --case")
+    if not options.scene.exists() and (ROOT / options.scene).exists():
+        options.scene = ROOT / options.scene  # a study's file names it from here, wherever one stands
     if not options.scene.exists():
         parser.error(f"no scene {options.scene}")
     if len(options.reference) not in {min(1, len(options.measure)), len(options.measure)} or any(math.isnan(number(r)) and r not in ("finest", "richardson") for r in options.reference):
