@@ -18,4 +18,6 @@ for n, allowed in ALLOWED.items():
     check.holds(f"{n} elements", fbar <= allowed, f"error {fbar:.2e}, allowed {allowed}")
     check.holds(f"{n} elements: nearer than second order", fbar < second, f"error {second:.2e} of second order")
 check.holds("plain elements lock", error(16, "full", 1) > 0.6)
+enhanced = run(args, SCENE, out="enhanced", overrides=["bodies.0.formulation=enhanced", "bodies.0.material.nu=0.49"]).summary()
+check.holds("enhanced strains at nu = 0.49", enhanced["steps_failed"] == 0)
 check.finish()
