@@ -1,0 +1,56 @@
+/* What the files of the model share and nobody else sees: model.c holds the state, newton.c finds equilibrium with the lists that are there, equilibrium.c
+   is the way from an accepted state to the next one. */
+#pragma once
+#include "contactcycle.h"
+#include "linearsolver.h"
+#include "model.h"
+#include "stabiliser.h"
+
+/* Times that contact lists are replaced and the step solved on before it counts as unsettled. */
+#define MODEL_MAX_REGATHER 8
+/* Round-off of the residual, in machine epsilons times stiffness times displacement: a body that is moved without any force has nothing else
+   to be measured against. Measured: 0.1 to 1.5. */
+#define MODEL_ROUND_OFF 16
+
+typedef struct _n_ModelWork {
+  LinearSolver solver;
+  PetscReal   *f;     /* local residual of the last evaluation, all dofs */
+  PetscReal   *trial; /* local displacements of the last evaluation */
+  PetscReal   *accepted_u;
+  Vec          accepted_x;
+  PetscReal    accepted_t;
+  Vec          forecast; /* x at forecast_t by ModelForecast() */
+  PetscReal    forecast_t;
+  PetscBool    forecasted; /* forecast starts from the accepted state */
+  PetscReal    expected;   /* motion that the lists of this step were made for */
+  PetscReal    rate;       /* largest displacement per unit of t in the last accepted step */
+  PetscReal    scale;      /* force norm of the last evaluation */
+  PetscReal    stiffness;  /* norm of the elastic tangent's diagonal */
+  PetscInt     inverted;   /* gmsh's tag of a cell of this rank that was turned inside out in this solve, or -1 */
+  PetscBool    near;       /* the iterate is so close that energies differ by round-off only */
+  PetscReal    norm;       /* residual of the iterate before */
+  PetscBool    balanced;   /* the residual of the iterate is within the tolerance */
+  PetscInt     renewed;    /* how often that happened in this step */
+  PetscBool    cycling;    /* the contact set repeats itself whatever the steps: the solve ended */
+  PetscInt     cycles;     /* times it repeated itself in this load step */
+  char         cycle[256]; /* the last one in words */
+  PetscReal    damping;    /* of the line search when nothing repeats */
+  PetscBool    left;       /* a slave point slid out of its lists: the solve ended for new ones */
+  PetscInt     cuts;       /* iterations of the last Newton solve that the line search shortened */
+  Vec          residual;   /* of a trial point, while near; the tangent's diagonal for a moment */
+  Stabiliser   stabiliser; /* NULL: no pair asks for it */
+  ContactCycle watch;      /* of the contact set; NULL: no contact */
+} ModelWork;
+
+/* model.c */
+PetscBool ModelHasFormulation(Scene, Formulation); /* has some deformable body elements of that kind? */
+/* newton.c */
+PetscErrorCode ModelResidual(Model, const PetscReal *u, PetscReal t, PetscReal t_contact, PetscBool *ok);
+PetscErrorCode ModelTrial(Model, Vec x); /* free displacements x and the prescribed ones into work->trial */
+PetscErrorCode ModelTangent(Model, const PetscReal *u, PetscReal t);
+PetscErrorCode ModelRoundOff(Model, PetscReal *force); /* what round-off leaves of the residual at the trial displacements */
+PetscErrorCode ModelCreateSNES(Model);
+PetscErrorCode ModelLinearFailure(Model, SolveResult *); /* why the last linear solve failed */
+PetscErrorCode ModelNewton(Model, SolveReport *);        /* SNES once, from model->x; adds what it cost */
+/* equilibrium.c */
+PetscErrorCode ModelMotion(Model, const PetscReal *u, PetscReal t, PetscReal *motion); /* largest one between the accepted state and (u, t) */
