@@ -70,13 +70,20 @@ class Driver:
                        failed=summary.get("steps_failed"), iterations=summary.get("newton_iterations"))
 
 
-def cell(rows):
-    """What a smoother did, node to surface then surface to surface: once if alike."""
-    texts = [row["outcome"] + ("" if row["as_expected"] == "yes" else " (not as expected)") for row in rows]
-    first = texts[0].split(" ")[0]
-    if len(set(texts)) == 1:
+def pair(texts):
+    """Two figures as one text: what comes before them once, and the figure once if alike."""
+    if texts[0] == texts[1]:
         return texts[0]
-    return " / ".join([texts[0]] + [text.removeprefix(first + " ") for text in texts[1:]])
+    name = os.path.commonprefix([text.split(" ") for text in texts])
+    figures = [" ".join(text.split(" ")[len(name):]) for text in texts]
+    return " ".join([*name, " / ".join(figures)]).strip()
+
+
+def cell(rows):
+    """What a smoother did, node to surface then surface to surface."""
+    texts = [row["outcome"] + ("" if row["as_expected"] == "yes" else " (not as expected)") for row in rows]
+    parts = [text.split(", ") for text in texts]
+    return texts[0] if len(set(texts)) == 1 else ", ".join(map(pair, zip(*parts))) if len(parts[0]) == len(parts[1]) else " / ".join(texts)
 
 
 def table(rows):
