@@ -5,7 +5,7 @@ set -uo pipefail
 build=build/valgrind failed=0 tests=()
 command -v valgrind >/dev/null || { echo "make valgrind: valgrind is missing (Debian: apt install valgrind)" >&2; exit 1; }
 for source in tests/unit/test_*.c; do
-  grep -q PetscInitialize "$source" || tests+=("$build/tests/$(basename "$source" .c)")
+  grep -qE 'PetscInitialize|MPI_Init' "$source" || tests+=("$build/tests/$(basename "$source" .c)")
 done
 make -s BUILD="$build" ARCH=x86-64-v3 CFLAGS='-O1 -g' "${tests[@]}" || exit 1
 for test in "${tests[@]}"; do
