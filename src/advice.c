@@ -160,6 +160,9 @@ const char *AdviceForFailure(SolveResult result)
     [SOLVE_LINEAR]    = "supports for what -check says that contact only or nothing holds, or an imposed displacement instead of a force until contact is made",
     [SOLVE_WORKSPACE] = "-mat_mumps_icntl_14 200, or more ranks",
     [SOLVE_LISTS]     = "a smaller stepping.dt_min and dt_max, a finer or smoother master where the node is",
+    [SOLVE_CYCLE]     = "PETSc's default line search (bt) if another one was chosen, smaller steps, `symmetry` in the pair where it ends at such a plane",
+    [SOLVE_LOST]      = "smaller steps (stepping.initial, dt_max), a stiffer penalty (penalty.scale), a finer master where the node is",
+    [SOLVE_ADRIFT]    = "an imposed displacement instead of a force until contact is made, or a smaller gap at the start",
     [SOLVE_WINDOW]    = "a wider window (penalty.g_min, g_max), more penalty.range, or when: step",
     [SOLVE_NAN]       = "-check for cells of low quality, smaller steps; if it stays, a report to the authors"};
 

@@ -372,7 +372,7 @@ static PetscErrorCode ResultsPrintSolver(Results results)
   KSPType       method;
   PCType        conditioner;
   MatSolverType package = NULL;
-  PetscBool     factors = PETSC_FALSE;
+  PetscBool     factors = PETSC_FALSE, own = PETSC_FALSE;
 
   PetscFunctionBeginUser;
   PetscCall(SNESGetKSP(results->model->snes, &ksp));
@@ -381,6 +381,8 @@ static PetscErrorCode ResultsPrintSolver(Results results)
   PetscCall(PCGetType(pc, &conditioner));
   if (conditioner) PetscCall(PetscObjectTypeCompareAny((PetscObject)pc, &factors, PCLU, PCCHOLESKY, PCILU, PCICC, ""));
   if (factors) PetscCall(PCFactorGetMatSolverType(pc, &package));
+  if (conditioner) PetscCall(PetscObjectTypeCompare((PetscObject)pc, PCSHELL, &own));
+  if (own) PetscCall(PCShellGetName(pc, &conditioner));
   if (results->talks)
     printf("solver   %s, %s%s%s\n", method ? method : "PETSc's default", conditioner ? conditioner : "PETSc's default", package ? ", " : "",
            package ? package : "");
