@@ -67,8 +67,11 @@ def ccx_pipe(element, n_arc, n_wall, n_len, n_plate_y, increment, swapped=False)
 
 
 def ccx_cup(increment, scale=100.0, contact="SURFACE TO SURFACE"):
-    name = f"CAX4, {round(1 / increment)} steps{', node to surface' if contact[0] == 'N' else ''}{f', scale {scale:g}' if scale != 100 else ''}, 120x3"
-    return Setting("cup_flattening", "calculix", name, 1, {"n_arc": 120, "n_wall": 3}, element="CAX4", slave="outer", increment=increment, contact=contact, scale=scale)
+    """CalculiX on the cup; the penalty's scale is named where it is not the scene's."""
+    words = [f"CAX4, {round(1 / increment)} steps"]
+    words += (["node to surface"] if contact == "NODE TO SURFACE" else []) + ([f"scale {scale:g}"] if scale != 100 else [])
+    return Setting("cup_flattening", "calculix", f"{', '.join(words)}, 120x3", 1, {"n_arc": 120, "n_wall": 3}, element="CAX4", slave="outer", increment=increment,
+                   contact=contact, scale=scale)
 
 
 REFERENCES = {"pipe_pinch": 123920.0, "cup_flattening": 434500.0}  # N; several meshes, elements and penalties, 0.1 %
@@ -81,11 +84,13 @@ SETTINGS = [
     pipe("enhanced, 20 steps, diffuse", 24, 2, 20, 2, "stepping.initial=0.05", "contact.0.smoother=diffuse"),
     pipe("enhanced, 20 steps, swapped", 24, 2, 20, 2, "stepping.initial=0.05", *SWAPPED),
     pipe("enhanced, 20 steps, swapped, diffuse", 24, 2, 20, 2, "stepping.initial=0.05", "contact.0.smoother=diffuse", *SWAPPED),
+    pipe("enhanced, 20 steps, surface to surface", 24, 2, 20, 2, "stepping.initial=0.05", "contact.0.formulation=surface_to_surface"),
     pipe("enhanced, 4 steps", 24, 2, 20, 2, "stepping.initial=0.25"),
     pipe("enhanced, 4 steps", 36, 1, 6, 1, "stepping.initial=0.25"),
     pipe("enhanced, 4 steps, diffuse", 36, 1, 6, 1, "stepping.initial=0.25", "contact.0.smoother=diffuse"),
     pipe("enhanced, 4 steps, swapped", 36, 1, 6, 1, "stepping.initial=0.25", *SWAPPED),
     pipe("enhanced, 4 steps, swapped, diffuse", 36, 1, 6, 1, "stepping.initial=0.25", "contact.0.smoother=diffuse", *SWAPPED),
+    pipe("enhanced, steps by iterations", 36, 1, 6, 1, "stepping.control=iterations", "stepping.initial=0.25", "stepping.at=[]"),
     pipe("enhanced, one step", 36, 1, 6, 1, "stepping.initial=1", "stepping.at=[]"),
     pipe("second order, 20 steps", 24, 1, 10, 1, "stepping.initial=0.05", order=2),
     pipe("second order, 10 steps", 16, 1, 5, 1, "stepping.initial=0.1", order=2),
@@ -139,18 +144,18 @@ class AbaqusMesh:
         """(cell, side) of the faces in group; a face's first nodes are its corners."""
         corners = len(shapes[0])
         faces = {frozenset(self.elements[number][1][:corners]) for number in self.groups[group]}
-        return [(number, side + 1) for number, nodes in cells.items() for side, shape in enumerate(shapes) if frozenset(nodes[i] for i in shape) in faces]
+        sides = ((number, side + 1, frozenset(nodes[i] for i in shape)) for number, nodes in cells.items() for side, shape in enumerate(shapes))
+        return [(number, side) for number, side, nodes in sides if nodes in faces]
 
 
 def make_mesh(setting, directory):
-    """The gmsh file that both codes read, without the nodes inside faces and cells for CalculiX's second order."""
-    path = directory / f"{setting.scene}-{setting.order}-{'x'.join(str(n) for n in setting.parameters.values())}-{setting.code}.msh"
+    """The gmsh file that both codes read."""
+    path = directory / f"{setting.scene}-{setting.order}-{'x'.join(str(n) for n in setting.parameters.values())}.msh"
     if not path.exists():
         numbers = [part for key, value in setting.parameters.items() for part in ("-setnumber", key, str(value))]
-        incomplete = str(int(setting.code == "calculix"))
         geometry = ROOT / "meshes" / f"{setting.scene}.geo"
         dimension = "-2" if setting.scene == "cup_flattening" else "-3"
-        call("gmsh", geometry, dimension, "-order", str(setting.order), "-setnumber", "Mesh.SecondOrderIncomplete", incomplete, *numbers, "-format", "msh41", "-o", path)
+        call("gmsh", geometry, dimension, "-order", setting.order, *numbers, "-format", "msh41", "-o", path)
     return path
 
 
@@ -183,7 +188,7 @@ def surface(name, sides):
 
 def contact(setting, young, height):
     """The penalty, a force per length and area, is what the scenes' `scale` makes of the modulus over the height of a slave element; for node to surface
-    the manual's area of a node at a small clearance stays the default."""
+    CalculiX's default clearance stays."""
     return ["*SURFACE INTERACTION, NAME=LAW", "*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=LINEAR", f"{setting.scale * young / height}",
             f"*CONTACT PAIR, INTERACTION=LAW, TYPE={setting.contact}", "SLAVE, MASTER"]
 
@@ -258,10 +263,12 @@ def read_calculix(directory, setting):
     iterations = [line.split() for line in (directory / "case.cvg").read_text().splitlines() if line.split() and line.split()[0].isdigit()]
     attempts = {tuple(row[:3]) for row in iterations}
     accepted = len({row[1] for row in increments})
+    unknowns = int(output.split("number of equations")[1].split()[0])
     reached = bool(increments) and abs(float(increments[-1][4]) - 1) < 1e-9
     totals = [line.split() for line in (directory / "case.dat").read_text().splitlines() if len(line.split()) == 3]
     force = WHOLE[setting.scene] * abs(float(totals[-1][1])) if reached else None
-    return {"dofs": int(output.split("number of equations")[1].split()[0]), "status": "done" if reached else "not converged", "steps": accepted, "steps_failed": len(attempts) - accepted, "iterations": len(iterations), "force": force}
+    return {"dofs": unknowns, "status": "done" if reached else "not converged", "steps": accepted,
+            "steps_failed": len(attempts) - accepted, "iterations": len(iterations), "force": force}
 
 
 def run_burnish(args, setting, directory):
@@ -283,7 +290,7 @@ def record(args, setting, repeat):
     shutil.rmtree(directory, ignore_errors=True)
     directory.mkdir(parents=True)
     row = (run_burnish if setting.code == "burnish" else run_calculix)(args, setting, directory)
-    error = 100 * (row["force"] / REFERENCES[setting.scene] - 1) if row["force"] else None
+    error = 100 * (row["force"] / REFERENCES[setting.scene] - 1) if row["force"] is not None else None
     row.update(scene=setting.scene, code=setting.code, setting=setting.name, repeat=repeat, error=error)
     return row
 
@@ -313,7 +320,8 @@ def table(path):
     """In Markdown; CPU seconds only as ratios to CalculiX's first row of the scene, whose own are printed below."""
     with open(path, newline="") as file:
         rows = list(csv.DictReader(file))
-    print("| scene | code | elements, mesh, steps | dofs | steps, failed | iterations | CPU time | force, kN | error, % |\n| --- | --- | --- | --- | --- | --- | --- | --- | --- |")
+    names = ("scene", "code", "elements, steps, mesh", "dofs", "steps, failed", "iterations", "CPU time", "force, kN", "error, %")
+    print(f"| {' | '.join(names)} |\n|{' --- |' * len(names)}")
     notes = []
     for scene in dict.fromkeys(row["scene"] for row in rows):
         unit = None
@@ -324,8 +332,8 @@ def table(path):
                 unit = cpu
                 notes.append(f"{scene}: 1 is {cpu:.1f} s ({code}, {name}), {len(runs)} runs")
             ratio = f"{cpu / unit:.2g}" if cpu < unit else f"{cpu / unit:.1f}"
-            end = f"{force / 1000:.2f} | {median(runs, 'error'):+.2f}" if force else f"{first['status']} | "
-            print(f"| {scene} | {code} | {name} | {first['dofs']} | {first['steps']}, {first['steps_failed']} | {first['iterations']} | {ratio} | {end} |")
+            end = f"| {force / 1000:.2f} | {median(runs, 'error'):+.2f} |" if force is not None else f"| {first['status']} | |"
+            print(f"| {scene} | {code} | {name} | {first['dofs']} | {first['steps']}, {first['steps_failed']} | {first['iterations']} | {ratio}", end)
     print("\n".join(notes))
 
 
