@@ -70,8 +70,8 @@ def ccx_cup(increment, scale=100.0, contact="SURFACE TO SURFACE"):
     """CalculiX on the cup; the penalty's scale is named where it is not the scene's."""
     words = [f"CAX4, {round(1 / increment)} steps"]
     words += (["node to surface"] if contact == "NODE TO SURFACE" else []) + ([f"scale {scale:g}"] if scale != 100 else [])
-    return Setting("cup_flattening", "calculix", f"{', '.join(words)}, 120x3", 1, {"n_arc": 120, "n_wall": 3}, element="CAX4", slave="outer", increment=increment,
-                   contact=contact, scale=scale)
+    return Setting("cup_flattening", "calculix", f"{', '.join(words)}, 120x3", 1, {"n_arc": 120, "n_wall": 3}, element="CAX4", slave="outer",
+                   increment=increment, contact=contact, scale=scale)
 
 
 REFERENCES = {"pipe_pinch": 123920.0, "cup_flattening": 434500.0}  # N; several meshes, elements and penalties, 0.1 %
@@ -211,7 +211,8 @@ def pipe_input(setting, mesh):
     cells = mesh.cells(("pipe", "plate"))
     return ["*NODE", *mesh.nodes.values(), *element_lines(setting.element, "SOLID", cells), *material("SOLID", 20000),
             *surface("SLAVE", mesh.sides(setting.slave, cells, BRICK_SIDES)), *surface("MASTER", mesh.sides(setting.master, cells, BRICK_SIDES)),
-            *contact(setting, 20000, 20 / setting.parameters["n_plate_y"]), *fixed(mesh, {"symmetry_x": "1", "symmetry_z": "3", "pipe_cut": "2", "plate_top": ""}),
+            *contact(setting, 20000, 20 / setting.parameters["n_plate_y"]),
+            *fixed(mesh, {"symmetry_x": "1", "symmetry_z": "3", "pipe_cut": "2", "plate_top": ""}),
             *step(setting, ["*BOUNDARY", "plate_top, 2, 2, -50"], "plate_top")]
 
 

@@ -131,7 +131,8 @@ def runs_table(lines):
             share = 100 * seconds(row, *CONTACT) / row["cpu_s"]
             krylov = row["krylov_iterations"] / row["newton_iterations"]
             print_row(scene, solver, ranks, f"{row['dofs']:.0f}", f"{row['newton_iterations']:.0f}", f"{krylov:.1f}", f"{row['cpu_s']:.1f}",
-                      f"{row['wall_s']:.1f}", f"{share:.1f}", f"{row['peak_rss_mb']:.0f}", f"{row['imbalance_cells']:.2f}, {row['imbalance_contact']:.2f}", speed)
+                      f"{row['wall_s']:.1f}", f"{share:.1f}", f"{row['peak_rss_mb']:.0f}",
+                      f"{row['imbalance_cells']:.2f}, {row['imbalance_contact']:.2f}", speed)
 
 
 
