@@ -9,7 +9,7 @@ _burnish() {
     ;;
   *)
     if [[ $word == -* ]]; then
-      COMPREPLY=($(compgen -W "-check -mesh -restart -help -version -o -set -overwrite -quiet -time_limit" -- "$word"))
+      COMPREPLY=($(compgen -W "$("${COMP_WORDS[0]}" -help 2>/dev/null | sed '/^Scene file/,$d' | grep -oE '(^| )-[a-z_]+' | sort -u)" -- "$word"))
     else
       COMPREPLY=($(compgen -f -X '!*.y*ml' -- "$word") $(compgen -d -S / -- "$word"))
     fi

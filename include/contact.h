@@ -141,5 +141,6 @@ PetscErrorCode ContactPairFits(Contact, int pair, ContactFits *);
 /* contactquality.c: the present state of a pair, for reports. Collective. */
 PetscErrorCode ContactPairGaps(Contact, int pair, ContactGaps *);
 PetscErrorCode ContactPairQuality(Contact, int pair, ContactQuality *);
-const char    *ContactPairText(Contact, int pair); /* what touches what, and how; valid until the next call */
+PetscReal      ContactNodeGap(Contact, PetscInt node); /* smallest gap of a local node of this rank, NaN: none. Not collective */
+const char    *ContactPairText(Contact, int pair);     /* what touches what, and how; valid until the next call */
 MPI_Comm       ContactComm(Contact);

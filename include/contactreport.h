@@ -1,7 +1,7 @@
-/* What -check and a run's first lines say of the contact pairs. */
+/* What -check says of the contact pairs. */
 #pragma once
 #include <stdio.h>
 #include "contact.h"
 
-/* One block for each pair: surfaces, penalty, gaps before any load; for smooth masters errors, neighbours, guards and fall-backs. Collective. */
+/* One block for each pair: surfaces, penalty, gaps and overlaps before any load; for smooth masters errors, neighbours, guards and fall-backs. Collective. */
 PetscErrorCode ContactReport(Contact, FILE *);

@@ -20,3 +20,5 @@ PetscErrorCode MeshDestroy(Mesh *);
 void MeshGatherNodes(Mesh, PetscInt n, const PetscInt nodes[], const PetscReal *values, PetscReal *gathered);
 /* Reference coordinates X[nodes*dim] of a local cell's nodes, as the element kernels want them */
 void MeshCellCoordinates(Mesh, PetscInt cell, PetscReal *X);
+/* Reference coordinates of a local node as the user knows them, for messages: 3 of them, what is round-off is 0 */
+void MeshNodePlace(Mesh, PetscInt node, PetscReal X[3]);

@@ -5,6 +5,7 @@
 #pragma once
 #include "contact.h"
 #include "elasticity.h"
+#include "failure.h"
 #include "linearcheck.h"
 #include "loads.h"
 #include "mesh.h"
@@ -31,12 +32,14 @@ typedef struct {
   PetscInt    krylov;
   PetscInt    regathered;  /* times lists were replaced */
   PetscInt    adjusted;    /* times penalties were changed and the step solved on */
+  PetscInt    cuts;        /* iterations that the line search shortened */
   PetscReal   residual;    /* |R|_2 / F_ref at the end */
   PetscInt    relaxed;     /* times the springs of stabilised pairs were relaxed and the step solved on */
   PetscReal   taken, left; /* energy that the springs took out on the way; what is left in them at the end, as a part of that in elements and contact */
   PetscInt    cycles;      /* times the contact set repeated itself and Newton's steps were shortened */
   char        cycle[256];  /* the last of these: its period and nodes, in gmsh's tags */
   char        detail[256]; /* where it failed, in gmsh's tags */
+  Failure     failure;     /* and more of that, if it did */
 } SolveReport;
 
 typedef struct _n_Model {

@@ -18,14 +18,11 @@ typedef struct {
 
 /* The run as a whole, for summary.json */
 typedef struct {
-  const char *status;  /* "done", "not converged", "stopped" */
-  const char *message; /* cause, or NULL */
-  PetscInt    steps, steps_failed, steps_repeated, newton_iterations, newton_accepted, krylov_iterations;
-  PetscInt    relaxed;            /* times that the springs of stabilised pairs were relaxed */
-  PetscReal   taken, left;        /* energy that they took out; largest part of an accepted state's energy in them */
-  PetscInt    cycles, cycles_cut; /* times a contact set repeated itself; steps that failed for it */
-  const char *cycle;              /* the last time, or empty */
-  PetscReal   wall_s, mesh_s; /* of the program, since it started */
+  const char          *status;  /* "done", "not converged", "stopped" */
+  const char          *message; /* cause, or NULL */
+  PetscInt             steps, steps_failed, steps_repeated, newton_iterations, newton_accepted, krylov_iterations;
+  PetscReal            wall_s, mesh_s;
+  const StepperReport *way; /* guards that acted, contact sets that repeated themselves, where it failed */
 } RunRecord;
 
 /* Refuses a directory that holds another scene's results unless overwrite. To be called before anything is written or solved. Collective. */

@@ -31,6 +31,8 @@ PetscErrorCode SlavePointsCreateQuadrature(ContactSurface, Geometry, int finer, 
 PetscErrorCode SlavePointsDestroy(SlavePoints *);
 /* Fetches the displacements of the nodes; u: n_nodes*dim of the mesh. Collective. */
 PetscErrorCode SlavePointsMove(SlavePoints, const PetscReal *u);
+/* Does point q count for that rank? One rank of those that hold it. Not collective. */
+PetscBool SlavePointIsOwn(SlavePoints, PetscInt q, PetscMPIInt rank);
 /* Position of point q after the last move, without its offset. */
 void SlavePointsPosition(SlavePoints, PetscInt q, PetscReal *x);
 /* Normals out of the slave at the points (n*3, any length) after the last move to u. Collective. */

@@ -22,12 +22,18 @@ typedef struct {
   PetscBool done, stopped;                       /* t = 1 was reached; LoadStepperStop() ended it before */
   PetscInt  steps, steps_failed, steps_repeated; /* repeated: converged, but taken back by the control */
   PetscInt  newton_iterations, newton_accepted, krylov_iterations;
-  PetscInt  relaxed;            /* times that the springs of stabilised pairs were relaxed */
-  PetscReal taken, left;        /* energy that they took out; the largest part of an accepted state's energy that was left in them */
-  PetscInt  cycles, cycles_cut; /* times a contact set repeated itself; steps that failed for it */
-  char      cycle[512];         /* the last time: load parameter, period, nodes */
-  PetscReal t;                  /* of the last good state */
-  char      message[1024];      /* why it ended early: cause, load parameter, nodes, what was tried */
+  PetscInt  relaxed;                    /* times that the springs of stabilised pairs were relaxed */
+  PetscReal taken, left;                /* energy that they took out; the largest part of an accepted state's energy that was left in them */
+  PetscInt  cycles, cycles_cut;         /* times a contact set repeated itself; steps that failed for it */
+  char      cycle[512];                 /* the last time: load parameter, period, nodes */
+  PetscInt  regathered, adjusted, cuts; /* of SolveReport, all solves */
+  PetscReal t;                          /* of the last good state */
+  char      message[1024];              /* why it ended early: cause, load parameter, nodes, what was tried */
+  struct {
+    SolveReport solve;          /* the last attempt */
+    PetscInt    attempts;       /* of that step */
+    PetscReal   t, first, last; /* load parameter that was not reached; dt tried */
+  } failed;                     /* if it is not done */
 } StepperReport;
 
 typedef struct _n_LoadStepper *LoadStepper;

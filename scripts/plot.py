@@ -84,7 +84,8 @@ def main():
         curve(step, run, "dt", name("step"), place)
         contact_panels(contact, run, name, place)
     titles = [(probe, False) for probe in probes]
-    titles += [("Newton iterations of the step", False), ("load step", True), ("nodes in contact", False), ("contact force", False), ("penetration", True), ("penalty", True)]
+    titles += [("Newton iterations of the step", False), ("load step", True), ("nodes in contact", False), ("contact force", False)]
+    titles += [("penetration", True), ("penalty", True)]
     for axes, (title, log) in zip(panels, titles):
         finish(axes, title, log)
     for axes in panels[len(titles) :]:

@@ -24,6 +24,7 @@ DISPLACEMENT = {"ux": 0, "uy": 1, "uz": 2}
 STRESS = {"stress_" + name: i for i, name in enumerate(("xx", "yy", "zz", "xy", "yz", "xz"))}
 CONTACT = ("gap", "penetration", "penalty", "pressure")  # on the slave surfaces only
 FIELDS = ("von_mises", *STRESS, "displacement", *DISPLACEMENT, *CONTACT)
+TOOLS = ("plane", "cylinder", "sphere")  # rigid masters, by their attribute in results.h5
 GREY = numpy.array([0.80, 0.82, 0.85])
 TOOL = numpy.array([0.62, 0.64, 0.68])
 ISOMETRIC = (-35, 22)  # azimuth, elevation in degrees
@@ -61,7 +62,7 @@ class Run:
             else:
                 values = group[field][()]
             slave, normal = (numpy.isfinite(group["gap"][()]), group["normal"][()]) if "gap" in group else (numpy.zeros(len(u), dtype=bool), None)
-            tools = [(kind, numpy.asarray(pair.attrs[kind])) for pair in group.get("contact", {}).values() for kind in ("plane", "cylinder", "sphere") if kind in pair.attrs]
+            tools = [(kind, numpy.asarray(pair.attrs[kind])) for pair in group.get("contact", {}).values() for kind in TOOLS if kind in pair.attrs]
             return float(group.attrs["t"]), self.skin.nodes + u, values, slave, normal, tools
 
 
@@ -244,7 +245,8 @@ def options():
     parser.add_argument("directory", help="results of a run")
     parser.add_argument("--field", choices=FIELDS, help="default: von_mises, and pressure where there is contact")
     parser.add_argument("--step", type=int, help="written step, from 0; negative: from the end; default: the last one")
-    parser.add_argument("--view", type=lambda text: tuple(float(word) for word in text.split(",")), metavar="AZIMUTH,ELEVATION", help="degrees; write --view=-35,20 if the first is negative")
+    parser.add_argument("--view", type=lambda text: tuple(float(word) for word in text.split(",")), metavar="AZIMUTH,ELEVATION",
+                        help="degrees; write --view=-35,20 if the first is negative")
     parser.add_argument("--up", choices=("y", "z"), default="y", help="axis that points upwards")
     parser.add_argument("--mirror", default="", metavar="AXES", help="adds the mirror images across these axes, such as xz")
     parser.add_argument("--animate", action="store_true", help="all written steps as a GIF")

@@ -12,6 +12,7 @@ import hashlib
 import itertools
 import json
 import math
+import os
 import pathlib
 import re
 import shlex
@@ -28,6 +29,7 @@ ROOT = pathlib.Path(__file__).resolve().parent.parent
 STATUS = {0: "done", 1: "refused", 2: "not converged", 3: "stopped", 4: "failed"}
 KEPT = ("dofs", "steps", "steps_failed", "newton_iterations", "cpu_s", "wall_s", "peak_rss_mb", "probes")  # of summary.json
 COST = {"": "{}", "<=": "at most {}", ">": "not reached at {}", "~": "not reached; extrapolated {}", None: "{}"}  # how cost() found it
+VALUE_DIGITS = 6  # of a measured value in the tables
 FAR = 100  # times the CPU seconds of a line's last point: nothing is extrapolated further
 QUICK = 2  # values of the last --vary with --quick
 DOMINATES = 10  # the error that stays over the part that a value adds, from which on that value buys nothing
@@ -118,24 +120,27 @@ def digest(*parts):
 def stamp(study):
     """What the runs of a study have in common: scene, geometry and program. No run is taken from a record that has others."""
     scene = study.options.scene.read_text()
-    meshes = [path.read_text() for path in sorted(study.options.scene.parent.glob("../meshes/*.geo")) if path.name in scene]
-    return digest(scene, meshes, hashlib.sha256(study.options.burnish.read_bytes()).hexdigest(), study.options.ranks)
+    meshes = [study.options.scene.parent / name for name in re.findall(r"[\w./-]+\.(?:geo|msh)\b", scene)]
+    contents = [hashlib.sha256(path.read_bytes()).hexdigest() for path in (*meshes, study.options.burnish) if path.exists()]
+    return digest(scene, contents, study.options.ranks)
 
 
 def outcome(status, directory, text):
     """What a run left, for its record."""
-    log, told = directory / "error.log", [line for line in text.splitlines() if line.strip()]
     if status in (0, 2, 3) and (directory / "summary.json").exists():
         summary = read_summary(directory)
         return {"status": STATUS[status], "cause": summary["message"], **{name: summary[name] for name in KEPT}}
-    cause = log.read_text().strip().splitlines()[-1:] if log.exists() else []
-    return {"status": STATUS.get(status, f"ended by signal {-status}"), "cause": (cause or told[-1:] or ["no message"])[0]}
+    log = directory / "error.log"
+    told = [line.strip() for line in (log.read_text() if log.exists() else text).splitlines() if re.search(r"\w", line)]
+    own = [line for line in told if line.startswith("burnish: ")]  # among the banners of mpirun
+    ended = "failed" if status == 0 else STATUS.get(status, f"ended by signal {-status}")
+    return {"status": ended, "cause": (own or told or ["no message, no summary.json"])[-1]}
 
 
 def solve(study, case, repeat, key):
     """One run as a record; whatever happens to it."""
     options, start = study.options, time.monotonic()
-    directory = options.out / "runs" / f"{study.name}-{key}"
+    directory = options.out / "runs" / f"{study.name}-{key}-{os.getpid()}"
     shutil.rmtree(directory, ignore_errors=True)
     line = command(options.burnish, options.ranks, options.scene, directory, study.overrides(case), "-quiet")
     line = line[3:] if options.ranks == 1 else line  # without mpirun: two at a time are then not bound to one core
@@ -270,17 +275,17 @@ def cost(series, measure, target):
 
 
 def enough(series, measure):
-    """The first row of a line from which on going on changes the value by less than a DOMINATES-th of the error that stays; None if there is none."""
-    last = series[-1]["values"].get(measure)
-    if last is None or not series[-1]["errors"].get(measure):
-        return None
-    allowed = series[-1]["errors"][measure] / DOMINATES
-    near = [row["values"][measure] is not None and 100 * abs(row["values"][measure] / last - 1) <= allowed for row in series]
-    return next((row for k, row in enumerate(series[:-1]) if all(near[k:])), None)
+    """(row, error): the first row of a line from which on going on changes the value by less than a DOMINATES-th of the error that stays; row None: none."""
+    there = [row for row in series if row["errors"].get(measure)]
+    if not there:
+        return None, None
+    last, error = there[-1]["values"][measure], there[-1]["errors"][measure]
+    near = [100 * abs(row["values"][measure] / last - 1) <= error / DOMINATES for row in there]
+    return next((row for k, row in enumerate(there[:-1]) if all(near[k:])), None), error
 
 
 def text(value, digits=3):
-    """A cell: integers as they are, reals with three digits, no exponent where it can be avoided."""
+    """A cell: integers as they are, reals with some digits, no exponent where it can be avoided."""
     if value is None or value == "":
         return "-"
     if isinstance(value, str):
@@ -321,36 +326,45 @@ def target_table(study, rows, measure):
     return header, cells
 
 
+def cheapest(study, own, measure, target):
+    """Of some lines: (seconds, words) at an error, the words saying from which of the last axis's values on; not reached: (seconds spent, None)."""
+    reached = [(*cost(series, measure, target), series) for series in own]
+    seconds, _, series = min((entry for entry in reached if entry[1] in ("", "<=")), key=lambda entry: entry[0], default=(None, None, None))
+    if series is None:
+        return max((row["cpu_s"] for series in own for row in series if row["errors"].get(measure)), default=None), None
+    start = next(k for k in range(len(series)) if all((row["errors"].get(measure) or 0) <= target for row in series[k:]))
+    return seconds, ", ".join(series[start]["case"][name] for name in (*study.lines[1:], study.along))
+
+
 def best_table(study, rows, measure):
-    """By label of the first axis: the cheapest of its lines at the errors asked for, and from which of the last axis's values on."""
-    first, *others = study.lines
-    panels, cells = list(study.axes.get(study.options.panels, {"": None})), []
-    for label in study.axes[first]:
-        shown = []
-        for panel, target in itertools.product(panels, study.options.targets):
-            own = [series for (p, _), series in study.series(rows).items() if p == panel and series[0]["case"][first] == label]
-            reached = [(*cost(series, measure, target), series) for series in own]
-            seconds, _, series = min((entry for entry in reached if entry[1] in ("", "<=") and entry[0]), key=lambda entry: entry[0], default=(None, None, None))
-            if series:
-                start = next(k for k in range(len(series)) if all((row["errors"].get(measure) or 0) <= target for row in series[k:]))
-                shown.append(f"{text(seconds, 2)} ({', '.join(series[start]['case'][name] for name in (*others, study.along))})")
-            else:
-                error, seconds = min(((row["errors"][measure], row["cpu_s"]) for series in own for row in series if row["errors"].get(measure)), default=(None, None))
-                shown.append(f"not reached, {text(error, 2)} % at {text(seconds, 2)}")
-        cells.append([label, *shown])
-    return ["", *(", ".join(filter(None, (f"{target:g} %", panel))) for panel, target in itertools.product(panels, study.options.targets))], cells
+    """By label of the first axis: the cheapest of its lines at the errors asked for; and how often the first label's cost is the cheapest one's."""
+    labels, columns = study.axes[study.lines[0]], list(itertools.product(study.axes.get(study.options.panels, [""]), study.options.targets))
+    cells, ratios = {label: [] for label in labels}, []
+    for panel, target in columns:
+        found = {}
+        for label in labels:
+            own = [series for (p, _), series in study.series(rows).items() if p == panel and series[0]["case"][study.lines[0]] == label]
+            seconds, words = found[label] = cheapest(study, own, measure, target)
+            least = min((row["errors"][measure] for series in own for row in series if row["errors"].get(measure)), default=None)
+            cells[label].append(f"{text(seconds, 2)} ({words})" if words else f"not reached in {text(seconds, 2)}, at best {text(least, 2)} %")
+        (seconds, words), others = next(iter(found.values())), [cpu for cpu, reached in list(found.values())[1:] if reached]
+        ratios.append(f"{'' if words else 'more than '}{text(seconds / min(others), 2)} times" if others and seconds else "-")
+    header = ["", *(", ".join(filter(None, (f"{target:g} %", panel))) for panel, target in columns)]
+    told = [[label, *row] for label, row in cells.items()]
+    return header, told if set(ratios) == {"-"} else [*told, [f"{next(iter(labels))} over the cheapest", *ratios]]
 
 
 def tell(study, rows):
     """NAME.md: the tables, and what follows from them."""
     header, cells = point_table(study, rows)
-    parts = [f"# {study.options.title or study.name}\n", markdown(header, [[text(cell) for cell in row] for row in cells])]
+    digits = [VALUE_DIGITS if name in {measure.probe for measure in study.measures} else 3 for name in header]
+    parts = [f"# {study.options.title or study.name}\n", markdown(header, [[text(*cell) for cell in zip(row, digits)] for row in cells])]
     for measure in study.measures if study.options.targets else []:
         parts.append(f"{measure.name}: CPU seconds from which on a line stays below an error\n\n" + markdown(*target_table(study, rows, measure.name)))
         parts.append(f"{measure.name}: the cheapest of each, CPU seconds\n\n" + markdown(*best_table(study, rows, measure.name)))
     for measure in study.measures if study.options.against else []:
         for (panel, line), series in study.series(rows).items():
-            row, error = enough(series, measure.name), series[-1]["errors"].get(measure.name)
+            row, error = enough(series, measure.name)
             parts.append(f"{measure.name}, {', '.join(filter(None, (line, panel)))}: "
                          + (f"beyond {row['case'][study.along]} the error of {text(error)} % stays\n" if row else "every value changes the answer\n"))
     return "\n".join(parts)
@@ -395,6 +409,8 @@ def arguments(line=None):
     options = parser.parse_args(line)
     if not options.axes:
         parser.error("nothing to vary: give --vary or --case")
+    if not options.scene.exists() and (ROOT / options.scene).exists():
+        options.scene = ROOT / options.scene  # a study's file names it from here, wherever one stands
     if not options.scene.exists():
         parser.error(f"no scene {options.scene}")
     if len(options.reference) not in {min(1, len(options.measure)), len(options.measure)} or any(math.isnan(number(r)) and r not in ("finest", "richardson") for r in options.reference):

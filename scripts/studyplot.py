@@ -12,7 +12,7 @@ from study import enough, front, number
 COLOURS = ("#0072b2", "#d55e00", "#009e73", "#aa4499", "#b8860b", "#555555")  # told apart by the colour-blind too; by the first axis
 STYLES = ((0, ()), (0, (5, 2)), (0, (1, 1.5)), (0, (5, 1.5, 1, 1.5)))  # by the second
 MARKERS = "osD^v"  # by the third
-WIDTH, HEIGHT, DPI = 5.6, 4.4, 80  # of a panel
+WIDTH, HEIGHT, DPI = 5.6, 4.4, 72  # of a panel
 FEW = 100  # largest value over the smallest of an axis whose ticks between decades are labelled
 LABEL_HEIGHT = 0.043  # of a direct label, in heights of a panel
 
@@ -59,7 +59,7 @@ def draw_front(axes, rows, measure):
 
 
 def draw_lines(axes, study, rows, abscissa, ordinate):
-    """Lines of one panel, named at their ends."""
+    """Lines of one panel; returns their ends, with names: to be labelled once the panels' limits are settled."""
     ends = []
     for (_, line), series in study.series(rows).items():
         points = [(abscissa(row), ordinate(row), row) for row in series if ordinate(row) and abscissa(row)]
@@ -75,7 +75,9 @@ def draw_lines(axes, study, rows, abscissa, ordinate):
     for axis in (axes.xaxis, axes.yaxis):
         axis.set_major_formatter(FuncFormatter(plain))
         axis.set_minor_formatter(FuncFormatter(between(axis)))
-    label_ends(axes, ends)
+    if ends and len(points) > 1 and points[0][0] > points[-1][0] and study.options.against:
+        axes.invert_xaxis()  # lines run to the right, where their names are
+    return axes, ends
 
 
 def draw_cost(study, rows, grid):
@@ -86,9 +88,8 @@ def draw_cost(study, rows, grid):
             for target in study.options.targets:
                 axes.axhline(target, color="#999999", lw=0.8, ls=":", zorder=0)
             draw_front(axes, own, measure.name)
-            draw_lines(axes, study, own, lambda row: row["cpu_s"], lambda row: row["errors"].get(measure.name))
-            axes.set_xlabel("CPU seconds")
-            axes.set_ylabel(f"error in {measure.name}, %")
+            yield draw_lines(axes, study, own, lambda row: row["cpu_s"], lambda row: row["errors"].get(measure.name))
+            axes.set(xlabel="CPU seconds", ylabel=f"error in {measure.name}, %")
             axes.set_title(panel, fontsize=10)
 
 
@@ -99,13 +100,13 @@ def draw_against(study, rows, grid):
 
     for measure, axes in zip(study.measures, grid[0]):
         for series in study.series(rows).values():
-            row = enough(series, measure.name)
+            row, _ = enough(series, measure.name)
             if row:
                 axes.plot(abscissa(row), row["errors"][measure.name], "o", ms=12, mfc="none", mec="black", mew=1.2, zorder=4)
-        draw_lines(axes, study, rows, abscissa, lambda row: row["errors"].get(measure.name))
+        yield draw_lines(axes, study, rows, abscissa, lambda row: row["errors"].get(measure.name))
         axes.set_ylabel(f"error in {measure.name}, %")
     for axes, name, text in zip(grid.flat[-2:], ("newton_iterations", "cpu_s"), ("Newton iterations", "CPU seconds")):
-        draw_lines(axes, study, rows, abscissa, lambda row: row[name])
+        yield draw_lines(axes, study, [row for row in rows if row["status"] == "done"], abscissa, lambda row: row[name])
         axes.set_ylabel(text)
     for axes in grid.flat:
         axes.set_xlabel(study.along)
@@ -118,7 +119,8 @@ def draw(study, rows, path):
     down, across = (2, max(2, measures)) if against else (measures, len(study.axes.get(study.options.panels, [0])))
     figure, grid = plt.subplots(down, across, figsize=(WIDTH * 1.35 * across, HEIGHT * down), squeeze=False, sharey="none" if against else "row")
     figure.subplots_adjust(wspace=0.62, hspace=0.32)
-    (draw_against if against else draw_cost)(study, rows, grid)
+    for ends in list((draw_against if against else draw_cost)(study, rows, grid)):
+        label_ends(*ends)
     note = "ringed: beyond it the error that stays dominates" if against else "ringed on grey: cheapest for its error (Pareto front)"
     figure.suptitle(f"{study.options.title or study.name}  ({note})", fontsize=11, y=0.97 if down > 1 else 1.02)
     figure.savefig(path, dpi=DPI, bbox_inches="tight")

@@ -17,10 +17,10 @@ static PetscErrorCode FindPlace(Mesh mesh, const ContactPair *pair, const PetscR
     tag  = mesh->node_tag[node];
   }
   PetscCallMPI(MPI_Allreduce(&tag, &place->tag, 1, MPIU_INT, MPI_MIN, mesh->comm));
-  for (int d = 0; d < mesh->dim && tag == place->tag && node >= 0; d++) X[d] = mesh->coords[node * mesh->dim + d] + mesh->centre[d];
+  if (tag == place->tag && node >= 0) MeshNodePlace(mesh, node, X);
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, X, 3, MPIU_REAL, MPIU_MAX, mesh->comm));
   if (place->tag == PETSC_MAX_INT) place->tag = -1;
-  for (int d = 0; d < 3; d++) place->X[d] = d < mesh->dim && place->tag >= 0 ? X[d] : 0;
+  for (int d = 0; d < 3; d++) place->X[d] = place->tag >= 0 ? X[d] : 0;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -63,11 +63,11 @@ PetscErrorCode ContactPairGaps(Contact contact, int p, ContactGaps *gaps)
 }
 
 /* How far first-order facets lie off the curved surface whose normals turn as theirs do; this rank's sum and number of slave points */
-static void SumSagitta(const ContactPair *pair, PetscReal sum[2])
+static void SumSagitta(const ContactPair *pair, PetscMPIInt rank, PetscReal sum[2])
 {
   if (!pair->master || pair->master->order > 1) return;
   for (PetscInt q = 0; q < pair->lists->n_slaves; q++) {
-    if (pair->lists->facet_ptr[q] == pair->lists->facet_ptr[q + 1]) continue;
+    if (pair->lists->facet_ptr[q] == pair->lists->facet_ptr[q + 1] || !SlavePointIsOwn(pair->slaves, q, rank)) continue;
     sum[0] += pair->lists->kappa[q] * PetscSqr(pair->master->mean_size) / 8;
     sum[1]++;
   }
@@ -76,8 +76,9 @@ static void SumSagitta(const ContactPair *pair, PetscReal sum[2])
 /* ContactPairQuality - penetrations of pair p in the present state, against the size of its faces and of what facets leave out. Collective. */
 PetscErrorCode ContactPairQuality(Contact contact, int p, ContactQuality *quality)
 {
-  const ContactPair *pair    = &contact->pairs[p];
-  PetscInt           nodes   = 0;
+  const ContactPair *pair  = &contact->pairs[p];
+  PetscInt           nodes = 0;
+  PetscMPIInt        rank;
   PetscReal          most[2] = {0, 0}, sum[2] = {0, 0}, *depth;
 
   PetscFunctionBeginUser;
@@ -91,7 +92,8 @@ PetscErrorCode ContactPairQuality(Contact contact, int p, ContactQuality *qualit
     most[0] = PetscMax(most[0], penetration);
     most[1] = PetscMax(most[1], penetration / pair->size[c]);
   }
-  SumSagitta(pair, sum);
+  PetscCallMPI(MPI_Comm_rank(contact->mesh->comm, &rank));
+  SumSagitta(pair, rank, sum);
   *quality = (ContactQuality){.nodes = 0};
   PetscCallMPI(MPI_Allreduce(&nodes, &quality->nodes, 1, MPIU_INT, MPI_SUM, contact->mesh->comm));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, most, 2, MPIU_REAL, MPIU_MAX, contact->mesh->comm));
@@ -103,4 +105,16 @@ PetscErrorCode ContactPairQuality(Contact contact, int p, ContactQuality *qualit
   quality->sagitta                = sum[1] > 0 ? sum[0] / sum[1] : 0;
   if (quality->sagitta <= QUALITY_ROUND_OFF * pair->slave->mean_size) quality->sagitta = 0;
   PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* ContactNodeGap - smallest gap of a local node among all pairs that it is a slave of, in the present state; NaN: of none, no master near, or another
+   rank's node. Not collective. */
+PetscReal ContactNodeGap(Contact contact, PetscInt node)
+{
+  PetscReal gap = NAN;
+
+  for (int p = 0; p < contact->n_pairs; p++)
+    for (PetscInt c = 0; c < contact->pairs[p].n; c++)
+      if (contact->pairs[p].node[c] == node) gap = fmin(gap, contact->pairs[p].now.gap[c]);
+  return gap;
 }

@@ -220,13 +220,15 @@ PetscErrorCode ContactPairFits(Contact contact, int p, ContactFits *fits)
   ContactLists lists            = pair->lists;
   PetscInt     count[RUNGS + 3] = {0};                                                       /* by rung, facets, points, neighbours */
   PetscReal    most[6]          = {PETSC_MIN_REAL, PETSC_MIN_REAL, PETSC_MIN_REAL, 0, 0, 0}; /* -fewest, most neighbours, -pivot, Lambda, smoothing, facets */
+  PetscMPIInt  rank;
 
   PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Comm_rank(contact->mesh->comm, &rank));
   for (PetscInt q = 0; q < lists->n_slaves; q++) {
     PetscReal gap;
     PetscBool found;
 
-    if (!pair->fit.degree || lists->facet_ptr[q] == lists->facet_ptr[q + 1]) continue;
+    if (!pair->fit.degree || lists->facet_ptr[q] == lists->facet_ptr[q + 1] || !SlavePointIsOwn(pair->slaves, q, rank)) continue;
     count[RUNGS + 1]++;
     count[lists->fit_n[q] ? lists->rung[q] : RUNGS]++;
     if (!lists->fit_n[q]) continue;

@@ -35,10 +35,8 @@ static void PrintGaps(const ContactGaps *gaps, FILE *file)
 
 static void PrintPenalty(const SceneContact *scene, PetscReal penalty, FILE *file)
 {
-  if (scene->penalty_auto)
-    fprintf(file, "           penalty %.6g (force per length and area), automatic times %g\n", (double)penalty, scene->penalty_scale);
-  else
-    fprintf(file, "           penalty %.6g (force per length and area), as given\n", (double)penalty);
+  fprintf(file, "           penalty %.6g (force per length and area), %s times %g\n", (double)penalty, scene->penalty_auto ? "automatic" : "as given",
+          scene->penalty_scale);
   if (scene->adjust)
     fprintf(file, "           adjusted %s to penetrations of %.3g to %.3g %s\n", scene->adjust_converged ? "within the step" : "from step to step",
             scene->g_min, scene->g_max, scene->window_in_spacings ? "face sizes of the slave node" : "(lengths)");

@@ -16,9 +16,14 @@ enum { MAX_NODES = 8, MAX_POINTS = 8, MAX_MODES = 9 };
 _Static_assert((int)MAX_POINTS < (int)CHUNK, "the centre stands behind the points in a chunk");
 
 /* Newton's method in an element takes 3 to 6 iterations in bending; where it takes more than this it is lost */
-enum { MAX_ITERATIONS = 20 };
-/* The next correction would be the square of one whose energy is this part of the element's: too small to matter */
-static const double settled_energy = 1e-10;
+enum { MAX_ITERATIONS = 40 };
+/* Their tangent is renewed in the first iterations, serves in the next, and is renewed again in what has not found rest by then: always the same ones,
+   so that no element sees the others of its batch */
+enum { RENEWED_FIRST = 2, RENEWED_AGAIN = 5 };
+/* What follows a correction whose energy is this part of the element's is a small part of it: too small to matter */
+static const double settled_energy = 1e-16;
+/* Relative error of an energy that is a sum over the points: a lower one is not told from a higher one below it */
+static const double energy_round_off = 1e-13;
 /* The same for elements that have no energy: square of a strain, far above rounding of displacements and far below what its square could spoil */
 static const double settled_strain2 = 1e-20;
 
@@ -173,8 +178,8 @@ LANES_INLINE void Solve(const int modes, Lanes K[MAX_MODES][MAX_MODES], Lanes y[
   }
 }
 
-/* Energy of the element, force of the modes and their tangent, factorised */
-LANES_INLINE void ModeSystem(const BatchCall *call, const int points, const int dim, const int hoop, Enhanced *x, Lanes *W, Lanes f[MAX_MODES],
+/* Energy of the element, force of the modes and, if it is to be renewed, their tangent, factorised */
+LANES_INLINE void ModeSystem(const BatchCall *call, const int points, const int dim, const int hoop, const int renew, Enhanced *x, Lanes *W, Lanes f[MAX_MODES],
                              Lanes K[MAX_MODES][MAX_MODES])
 {
   const int modes = dim * dim + hoop;
@@ -182,37 +187,58 @@ LANES_INLINE void ModeSystem(const BatchCall *call, const int points, const int 
   *W = (Lanes){0};
   for (int k = 0; k < modes; k++) {
     f[k] = (Lanes){0};
-    for (int l = k; l < modes; l++) K[k][l] = (Lanes){0};
+    for (int l = k; l < modes && renew; l++) K[k][l] = (Lanes){0};
   }
   for (int q = 0; q < points; q++) {
     Lanes H[9], P[9], T[MAX_ROWS][MAX_MODES], dilatation, energy;
 
     PointGradient(dim, hoop, x, q, H);
     MaterialDilatation(H, &dilatation);
-    call->law(H, &dilatation, &call->lambda, &call->mu, &energy, P, x->c.A[q]);
+    call->law(H, &dilatation, &call->lambda, &call->mu, &energy, P, renew ? x->c.A[q] : NULL);
     *W += energy * x->volume[q];
     for (int r = 0; r < 9; r++) P[r] *= x->volume[q];
-    for (int k = 0; k < MATERIAL_TANGENT_SIZE; k++) x->c.A[q][k] *= x->volume[q];
     AddModeForce(dim, hoop, x, q, P, f);
+    if (!renew) continue;
+    for (int k = 0; k < MATERIAL_TANGENT_SIZE; k++) x->c.A[q][k] *= x->volume[q];
     AddModeTangent(dim, hoop, x, q, T, K);
   }
-  Factor(modes, K);
+  if (renew) Factor(modes, K);
 }
 
-/* Marks the lanes whose last correction d, with force f, was small enough as no longer active; returns how many are left */
-LANES_INLINE int LeaveSettled(const BatchCall *call, const int points, const int modes, const Enhanced *x, const Lanes *W, const Lanes *f, const Lanes *d,
-                              Lanes *active)
+/* What Newton's method knows of each lane's modes */
+typedef struct {
+  Lanes W;               /* energy at the last point that was better than the one before */
+  Lanes gone[MAX_MODES]; /* from there to b */
+  Lanes active;          /* 1: not at rest yet, else 0 */
+  Lanes scale;           /* energy of a strain too small to matter */
+} Rest;
+
+/* The correction d, from the force f, that lanes at a lower energy than before make; the others go half of their way back. A lane at rest stays as it is,
+   whatever the others do. Returns how many are not at rest. */
+LANES_INLINE int Advance(const int modes, const Lanes *W, const Lanes *f, const Lanes *d, Rest *rest, Enhanced *x)
 {
-  Lanes volume = {0};
-  int   left   = 0;
+  int left = 0;
 
-  for (int q = 0; q < points; q++) volume += x->volume[q];
   for (int lane = 0; lane < LANES; lane++) {
-    double work = 0; /* twice the energy that the correction set free */
+    double work = 0; /* twice the energy that the correction sets free */
 
-    for (int k = 0; k < modes; k++) work += fabs(f[k][lane] * d[k][lane]);
-    if (work <= settled_energy * (*W)[lane] + settled_strain2 * call->mu[lane] * volume[lane]) (*active)[lane] = 0;
-    left += (*active)[lane] != 0;
+    if (rest->active[lane] == 0) continue;
+    if ((*W)[lane] > rest->W[lane] * (1 + energy_round_off) + rest->scale[lane]) {
+      for (int k = 0; k < modes; k++) {
+        rest->gone[k][lane] /= 2;
+        x->b[k][lane] -= rest->gone[k][lane];
+      }
+      left++;
+      continue;
+    }
+    rest->W[lane] = (*W)[lane];
+    for (int k = 0; k < modes; k++) {
+      rest->gone[k][lane] = -d[k][lane];
+      x->b[k][lane] -= d[k][lane];
+      work += fabs(f[k][lane] * d[k][lane]);
+    }
+    rest->active[lane] = !(work <= settled_energy * (*W)[lane] + rest->scale[lane]);
+    left += rest->active[lane] != 0;
   }
   return left;
 }
@@ -220,22 +246,23 @@ LANES_INLINE int LeaveSettled(const BatchCall *call, const int points, const int
 /* The modes of each lane at rest. A lane that does not get there is given J = NaN, and no modes; small strains are there after one step. */
 LANES_INLINE void Settle(const BatchCall *call, const int points, const int dim, const int hoop, Enhanced *x)
 {
-  const int modes  = dim * dim + hoop;
-  Lanes     active = (Lanes){0} + 1;
-  int       left   = LANES;
+  const int modes = dim * dim + hoop;
+  Rest      rest  = {.W = (Lanes){0} + __DBL_MAX__, .active = (Lanes){0} + 1};
+  int       left  = LANES;
+  Lanes     K[MAX_MODES][MAX_MODES];
 
+  for (int q = 0; q < points; q++) rest.scale += settled_strain2 * call->mu * x->volume[q];
   for (int iteration = 0; left && iteration < (call->finite ? MAX_ITERATIONS : 1); iteration++) {
-    Lanes W, f[MAX_MODES], d[MAX_MODES], K[MAX_MODES][MAX_MODES];
+    Lanes W, f[MAX_MODES], d[MAX_MODES];
 
-    ModeSystem(call, points, dim, hoop, x, &W, f, K);
+    ModeSystem(call, points, dim, hoop, iteration < RENEWED_FIRST || iteration >= RENEWED_AGAIN, x, &W, f, K);
     for (int k = 0; k < modes; k++) d[k] = f[k];
     Solve(modes, K, d);
-    for (int k = 0; k < modes; k++) x->b[k] -= active * d[k]; /* a lane at rest stays as it is, whatever the others do */
-    left = LeaveSettled(call, points, modes, x, &W, f, d, &active);
+    left = Advance(modes, &W, f, d, &rest, x);
   }
   for (int lane = 0; lane < LANES && call->finite; lane++) {
-    for (int k = 0; k < modes && active[lane] != 0; k++) x->b[k][lane] = 0;
-    if (active[lane] != 0) call->J[lane] = NAN;
+    for (int k = 0; k < modes && rest.active[lane] != 0; k++) x->b[k][lane] = 0;
+    if (rest.active[lane] != 0) call->J[lane] = NAN;
   }
 }
 

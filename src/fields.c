@@ -584,6 +584,7 @@ PetscErrorCode FieldsResume(Fields fields, PetscBool *lost)
 {
   const Mesh  mesh = fields->model->mesh;
   PetscBool   back = PETSC_TRUE;
+  int         all;
   PetscInt   *row;
   PetscMPIInt rank;
 
@@ -592,8 +593,9 @@ PetscErrorCode FieldsResume(Fields fields, PetscBool *lost)
   if (!fields->n_written) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCallMPI(MPI_Comm_rank(mesh->comm, &rank));
   if (rank == 0) PetscCall(FileImagePutBack(fields->file, fields->image, &back));
-  PetscCallMPI(MPI_Bcast(&back, 1, MPIU_BOOL, 0, mesh->comm));
-  if (!back) {
+  all = back;
+  PetscCallMPI(MPI_Bcast(&all, 1, MPI_INT, 0, mesh->comm));
+  if (!all) {
     *lost             = PETSC_TRUE;
     fields->n_written = 0;
     PetscFunctionReturn(PETSC_SUCCESS);

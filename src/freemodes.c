@@ -12,6 +12,9 @@
 /* Directions nearer than this to a coordinate axis are called by its name, screw motions of less pitch rotations: what FREE_CONTACT leaves uncertain. */
 #define FREE_ALIGNED 1e-2
 
+/* Above so many connected pieces their joint motions are not looked for: elimination of 6 times as many unknowns, and no screen that could tell of them. */
+enum { FREE_PIECES = 100 };
+
 enum { FREE_TEXT = 320, FREE_MESSAGE = 1400 };
 
 /* A connected piece of the mesh. Its motions are measured at its own centre, in units of its size (rigidkernel.h). */
@@ -186,6 +189,24 @@ static PetscErrorCode PiecesOfSurface(FreeModes modes, const char *name, int on[
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Which pieces some contact pair knows */
+static PetscErrorCode MarkPaired(FreeModes modes)
+{
+  int *on;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(modes->n_pieces, &on));
+  for (int side = 0; side < 2 * modes->scene->n_contacts; side++) {
+    const SceneContact *contact = &modes->scene->contacts[side / 2];
+
+    PetscCall(PiecesOfSurface(modes, side % 2 ? contact->master : contact->slave, on));
+    for (PetscInt p = 0; p < modes->n_pieces; p++)
+      if (on[p]) modes->pieces[p].paired = PETSC_TRUE;
+  }
+  PetscCall(PetscFree(on));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Centre, unit normal and area of a face in the reference configuration */
 static double FacePlace(Mesh mesh, const MeshGroup *group, PetscInt f, PetscReal centre[3], double normal[3], PetscInt *node)
 {
@@ -221,10 +242,7 @@ static PetscErrorCode MeasurePair(FreeModes modes, const SceneContact *contact, 
   PetscCall(PetscMalloc3(n, &row, modes->n_pieces, &on_slave, modes->n_pieces, &on_master));
   PetscCall(PiecesOfSurface(modes, contact->slave, on_slave));
   PetscCall(PiecesOfSurface(modes, contact->master, on_master));
-  for (PetscInt p = 0; p < modes->n_pieces; p++) {
-    deformable += on_master[p];
-    if (on_slave[p] || on_master[p]) modes->pieces[p].paired = PETSC_TRUE;
-  }
+  for (PetscInt p = 0; p < modes->n_pieces; p++) deformable += on_master[p];
   for (PetscInt f = 0; f < slave->n_faces; f++) {
     PetscReal    centre[3];
     double       normal[3], x[3];
@@ -313,6 +331,7 @@ static PetscErrorCode FindLoose(FreeModes modes)
 
   Note:
   A rigid motion is free if no prescribed component of any node sees it: null space of the constraints on 6 motions (3 in plane strain, 1 axisymmetric).
+  With more than FREE_PIECES pieces contact is not looked at.
 */
 PetscErrorCode FreeModesCreate(Mesh mesh, Scene scene, Loads loads, FreeModes *out)
 {
@@ -329,11 +348,13 @@ PetscErrorCode FreeModesCreate(Mesh mesh, Scene scene, Loads loads, FreeModes *o
   PetscCall(MeasurePieces(modes));
   PetscCall(NamePieces(modes));
   PetscCall(FindSupported(modes, loads));
+  PetscCall(MarkPaired(modes));
+  *out = modes;
+  if (modes->n_pieces > FREE_PIECES) PetscFunctionReturn(PETSC_SUCCESS);
   square = (size_t)PetscSqr(RIGID_MODES * modes->n_pieces);
   PetscCall(PetscCalloc1(scene->n_contacts * square, &modes->gram));
   for (int c = 0; c < scene->n_contacts; c++) PetscCall(MeasurePair(modes, &scene->contacts[c], &modes->gram[c * square]));
   PetscCall(FindLoose(modes));
-  *out = modes;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -478,6 +499,10 @@ PetscErrorCode FreeModesReport(FreeModes modes, PetscBool held, FILE *stream)
   PetscFunctionBeginUser;
   PetscCallMPI(MPI_Comm_rank(modes->mesh->comm, &rank));
   if (rank) PetscFunctionReturn(PETSC_SUCCESS);
+  if (modes->n_pieces > FREE_PIECES) {
+    fprintf(stream, "motion   %" PetscInt_FMT " connected pieces, too many to say what holds each\n", modes->n_pieces);
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
   if (held) PrintHeld(modes, stream);
   for (PetscInt p = 0; p < modes->n_pieces; p++) {
     for (int i = 0; i < modes->pieces[p].n_free; i++) {

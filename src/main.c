@@ -93,14 +93,9 @@ static PetscErrorCode RunModel(Model model, Probes probes, Scene scene, Checkpoi
                     .newton_iterations = report.newton_iterations,
                     .newton_accepted   = report.newton_accepted,
                     .krylov_iterations = report.krylov_iterations,
-                    .relaxed           = report.relaxed,
-                    .taken             = report.taken,
-                    .left              = report.left,
-                    .cycles            = report.cycles,
-                    .cycles_cut        = report.cycles_cut,
-                    .cycle             = report.cycle,
                     .wall_s            = now - start,
-                    .mesh_s            = mesh_s};
+                    .mesh_s            = mesh_s,
+                    .way               = &report};
   PetscCall(ResultsFinish(watch.results, &run));
   PetscCall(LoadStepperDestroy(&stepper));
   PetscCall(ResultsDestroy(&watch.results));

@@ -231,3 +231,15 @@ void MeshCellCoordinates(Mesh mesh, PetscInt cell, PetscReal *X)
 
   MeshGatherNodes(mesh, mesh->cell_ptr[cell + 1] - first, &mesh->cell_nodes[first], mesh->coords, X);
 }
+
+/* Coordinates below this part of the model's size are round-off of the mesh generator. */
+#define PLACE_ROUND_OFF 1e-9
+
+/* MeshNodePlace - where a local node lies, for messages. Not collective. */
+void MeshNodePlace(Mesh mesh, PetscInt node, PetscReal X[3])
+{
+  for (int d = 0; d < 3; d++) {
+    X[d] = d < mesh->dim ? mesh->coords[node * mesh->dim + d] + mesh->centre[d] : 0;
+    if (PetscAbsReal(X[d]) <= PLACE_ROUND_OFF * mesh->size) X[d] = 0;
+  }
+}

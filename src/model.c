@@ -85,6 +85,7 @@ typedef struct _n_ModelWork {
   char         cycle[256]; /* the last one in words */
   PetscReal    damping;    /* of the line search when nothing repeats */
   PetscBool    left;       /* a slave point slid out of its lists: the solve ended for new ones */
+  PetscInt     cuts;       /* iterations of the last Newton solve that the line search shortened */
   Vec          residual;   /* of a trial point, while near; the tangent's diagonal for a moment */
   Stabiliser   stabiliser; /* NULL: no pair asks for it */
   ContactCycle watch;      /* of the contact set; NULL: no contact */
@@ -299,6 +300,20 @@ static PetscErrorCode ModelReuseTangent(Model model, PetscInt it, PetscReal norm
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Counts an iteration that the line search shortened. */
+static PetscErrorCode ModelCountCut(Model model, PetscInt it)
+{
+  SNESLineSearch search;
+  PetscReal      lambda;
+
+  PetscFunctionBeginUser;
+  if (!it) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(SNESGetLineSearch(model->snes, &search));
+  PetscCall(SNESLineSearchGetLambda(search, &lambda));
+  if (lambda < 1) model->work->cuts++;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Converged when the residual is small against the forces that balance in it, never against its own first value; or is nothing but round-off.
    Where penalties follow the penetrations, these must have settled too. */
 static PetscErrorCode ModelConverged(SNES snes, PetscInt it, PetscReal xnorm, PetscReal snorm, PetscReal fnorm, SNESConvergedReason *reason, void *context)
@@ -312,6 +327,7 @@ static PetscErrorCode ModelConverged(SNES snes, PetscInt it, PetscReal xnorm, Pe
   (void)snes;
   (void)xnorm;
   (void)snorm;
+  PetscCall(ModelCountCut(model, it));
   PetscCall(ModelRoundOff(model, &round_off));
   if (model->contact) PetscCall(ContactGapsSettled(model->contact, &settled));
   *reason               = SNES_CONVERGED_ITERATING;
@@ -604,6 +620,7 @@ static PetscErrorCode ModelNewton(Model model, SolveReport *report)
   PetscCall(SNESGetLineSearch(model->snes, &search));
   PetscCall(SNESLineSearchSetDamping(search, model->work->damping));
   if (model->contact) PetscCall(ContactCycleStart(model->work->watch));
+  model->work->cuts = 0;
   PetscCall(SNESSolve(model->snes, NULL, model->x));
   PetscCall(SNESGetConvergedReason(model->snes, &reason));
   PetscCall(SNESGetIterationNumber(model->snes, &its));
@@ -612,6 +629,7 @@ static PetscErrorCode ModelNewton(Model model, SolveReport *report)
   PetscCall(VecNorm(F, NORM_2, &norm));
   report->newton += its;
   report->krylov += krylov;
+  report->cuts += model->work->cuts;
   report->result = ResultFromReason(reason);
   if (model->work->cycling) report->result = SOLVE_CYCLE;
   if (report->result == SOLVE_LINE_SEARCH && model->work->balanced) report->result = SOLVE_CONVERGED; /* gaps as settled as round-off lets them be */
@@ -622,42 +640,13 @@ static PetscErrorCode ModelNewton(Model model, SolveReport *report)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Where to look when a step fails: an inverted element, the node with the largest residual. */
-static PetscErrorCode ModelLocateFailure(Model model, char *text, size_t size)
+/* Has some body elements of that formulation? Rigid tools have none. */
+static PetscBool ModelHasFormulation(Scene scene, Formulation formulation)
 {
-  Mesh       mesh = model->mesh;
-  const int  dim  = mesh->dim;
-  PetscReal *f, place[4] = {0, 0, 0, 0};
-  PetscInt   inverted    = model->work->inverted;
-  char       element[64] = "";
-  struct {
-    double value;
-    int    rank;
-  } mine = {0, 0}, most;
+  PetscBool has = PETSC_FALSE;
 
-  PetscFunctionBeginUser;
-  PetscCallMPI(MPI_Comm_rank(mesh->comm, &mine.rank));
-  PetscCall(PetscMalloc1(mesh->n_nodes * dim, &f));
-  PetscCall(PetscArraycpy(f, model->work->f, mesh->n_nodes * dim));
-  PetscCall(MeshSumNodes(mesh, dim, f));
-  for (PetscInt n = 0; n < mesh->n_nodes; n++) {
-    double square = 0;
-
-    for (int d = 0; d < dim; d++)
-      if (!LoadsPrescribed(model->loads, n * dim + d)) square += PetscSqr(f[n * dim + d]);
-    if (!(square > mine.value) || PetscIsInfOrNanReal(square)) continue;
-    mine.value = square;
-    place[0]   = mesh->node_tag[n];
-    for (int d = 0; d < dim; d++) place[1 + d] = mesh->coords[n * dim + d] + mesh->centre[d];
-  }
-  PetscCallMPI(MPI_Allreduce(&mine, &most, 1, MPI_DOUBLE_INT, MPI_MAXLOC, mesh->comm));
-  PetscCallMPI(MPI_Bcast(place, 4, MPIU_REAL, most.rank, mesh->comm));
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &inverted, 1, MPIU_INT, MPI_MAX, mesh->comm));
-  if (inverted >= 0) PetscCall(PetscSNPrintf(element, sizeof(element), "element %" PetscInt_FMT " was inverted on the way; ", inverted));
-  PetscCall(
-    PetscSNPrintf(text, size, "%slargest residual at node %.0f (%g, %g, %g)", element, (double)place[0], (double)place[1], (double)place[2], (double)place[3]));
-  PetscCall(PetscFree(f));
-  PetscFunctionReturn(PETSC_SUCCESS);
+  for (int b = 0; b < scene->n_bodies; b++) has = (PetscBool)(has || (!scene->bodies[b].rigid && scene->bodies[b].formulation == formulation));
+  return has;
 }
 
 /* Adds that the penalty is so stiff that rounding alone may keep the residual above the tolerance, where it is. */
@@ -684,6 +673,8 @@ static PetscErrorCode ModelExplainFailure(Model model, SolveReport *report)
   char            loose[128];
 
   PetscFunctionBeginUser;
+  PetscCall(FailureLocate(model->mesh, model->loads, model->contact, model->work->f, model->work->inverted, &report->failure));
+  report->failure.enhanced = ModelHasFormulation(model->scene, FORMULATION_ENHANCED);
   if (report->result == SOLVE_WINDOW || report->result == SOLVE_LOST) PetscFunctionReturn(PETSC_SUCCESS); /* known already */
   if (report->result == SOLVE_CYCLE) {
     PetscCall(PetscStrncpy(report->detail, report->cycle, sizeof(report->detail)));
@@ -694,7 +685,7 @@ static PetscErrorCode ModelExplainFailure(Model model, SolveReport *report)
     PetscCall(PetscSNPrintf(report->detail, sizeof(report->detail), "no support and no imposed displacement holds %s%s", loose,
                             !model->contact || report->result == SOLVE_ADRIFT ? "" : " (contact may, from the start or with stabilise: true)"));
   else {
-    PetscCall(ModelLocateFailure(model, report->detail, sizeof(report->detail)));
+    FailureText(&report->failure, report->detail, sizeof(report->detail));
     PetscCall(ModelBlamePenalty(model, report->detail, sizeof(report->detail)));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -1028,7 +1019,9 @@ PetscErrorCode ModelEffects(Model model, char *text, size_t size)
   for (int c = 0; c < scene->n_contacts; c++) adjusted = (PetscBool)(adjusted || scene->contacts[c].adjust);
   for (int l = 0; l < scene->n_loads; l++) body_force = (PetscBool)(body_force || scene->loads[l].kind == LOAD_BODY_FORCE);
   for (int c = 0; c < scene->n_contacts; c++) surface = (PetscBool)(surface || scene->contacts[c].formulation == CONTACT_SURFACE_TO_SURFACE);
-  PetscCall(PetscSNPrintf(text, size, "%s", scene->kinematics == KINEMATICS_FINITE ? "finite strain" : "small strain"));
+  PetscCall(PetscSNPrintf(text, size, "%s%s%s", scene->kinematics == KINEMATICS_FINITE ? "finite strain" : "small strain",
+                          ModelHasFormulation(scene, FORMULATION_ENHANCED) ? ", enhanced strains" : "",
+                          ModelHasFormulation(scene, FORMULATION_FBAR) ? ", mean dilatation" : ""));
   PetscCall(ModelContactEffects(scene, text, size));
   PetscCall(PetscStrlen(text, &start));
   PetscCall(PetscSNPrintf(text + start, size - start, "%s%s%s%s%s", surface ? ", surface to surface" : "", adjusted ? ", adjusted penalty" : "",

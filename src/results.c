@@ -2,6 +2,7 @@
 #include "results.h"
 #include "columns.h"
 #include "commandline.h"
+#include "endreport.h"
 #include "fields.h"
 #include "precheck.h"
 #include "refusal.h"
@@ -407,7 +408,7 @@ static PetscErrorCode ResultsPrintHead(Results results)
   if (results->talks && results->restarts) printf("restart  after step %lld, t = %g\n", (long long)results->last.step, (double)results->model->t);
   PetscCall(ResultsPrintSolver(results));
   if (!results->quiet) PetscCall(MeshReport(results->model->mesh, results->scene, stdout));
-  if (results->talks) { printf("dofs     %lld free\neffects  %s\n", (long long)dofs, *effects ? effects : "none"); }
+  if (results->talks) printf("dofs     %lld free\neffects  %s\n", (long long)dofs, *effects ? effects : "none");
   if (!results->quiet) PetscCall(PrecheckMotions(results->model, stdout));
   if (results->talks) {
     printf("\n%5s %9s %9s %10s %10s %5s %5s %8s %12s %8s %8s\n", "step", "t", "dt", "iterations", "in contact", "in", "out", "beta", "penetration", "spent",
@@ -612,7 +613,7 @@ static PetscErrorCode ResultsUsage(Results results, RunUsage *usage)
   const RunUsage *before = &results->before;
 
   PetscFunctionBeginUser;
-  PetscCall(SummaryCollectUsage(results->model->mesh->comm, usage));
+  PetscCall(RunUsageCollect(results->model->mesh->comm, usage));
   usage->wall_s = before->wall_s + MPI_Wtime() - results->started;
   usage->cpu_s += before->cpu_s;
   usage->peak_rss_mb = PetscMax(usage->peak_rss_mb, before->peak_rss_mb);
@@ -812,12 +813,12 @@ static void ResultsPrintEnd(Results results, const RunRecord *run)
 
   if (results->rank == 0 && run->message) fprintf(stderr, "burnish: %s: %s\n", run->status, run->message);
   if (!results->talks) return;
-  if (run->relaxed)
-    printf("stabilised pairs: springs relaxed %lld times, took out an energy of %.3g, hold at most %.2g of an accepted state's\n", (long long)run->relaxed,
-           (double)run->taken, (double)run->left);
-  if (run->cycles)
-    printf("contact sets that repeated themselves: %lld, steps cut for it %lld; the last time %s\n", (long long)run->cycles, (long long)run->cycles_cut,
-           run->cycle);
+  if (run->way->relaxed)
+    printf("stabilised pairs: springs relaxed %lld times, took out an energy of %.3g, hold at most %.2g of an accepted state's\n", (long long)run->way->relaxed,
+           (double)run->way->taken, (double)run->way->left);
+  if (run->way->cycles)
+    printf("contact sets that repeated themselves: %lld, steps cut for it %lld; the last time %s\n", (long long)run->way->cycles,
+           (long long)run->way->cycles_cut, run->way->cycle);
   printf("%s: %lld steps (%lld failed, %lld repeated), %lld iterations, %s; results in %s\n", run->status, (long long)run->steps, (long long)run->steps_failed,
          (long long)run->steps_repeated, (long long)run->newton_iterations, DurationText((double)run->wall_s, text), results->directory);
   fflush(stdout);
@@ -829,7 +830,8 @@ static void ResultsPrintEnd(Results results, const RunRecord *run)
 */
 PetscErrorCode ResultsFinish(Results results, const RunRecord *run)
 {
-  RunUsage usage;
+  RunUsage   usage;
+  RunFigures figures;
 
   PetscFunctionBeginUser;
   TimingBegin(TIMING_OUTPUT);
@@ -837,10 +839,12 @@ PetscErrorCode ResultsFinish(Results results, const RunRecord *run)
   TimingEnd(TIMING_OUTPUT);
   PetscCall(ResultsUsage(results, &usage));
   usage.wall_s = results->before.wall_s + run->wall_s;
-  PetscCall(SummaryWrite(results->model, results->scene, results->directory, run, &usage, results->restarts, results->stepped ? &results->last : NULL,
-                         results->values));
+  PetscCall(RunFiguresCollect(results->model, results->scene, run, &usage, results->restarts, results->stepped ? &results->last : NULL, &figures));
+  if (!results->rank) PetscCall(SummaryWrite(results->model->mesh, &figures, results->directory, results->values));
   PetscCall(ResultsPrintProbes(results));
   PetscCall(ResultsPrintWindows(results));
+  if (results->talks) EndReportPrint(&figures, stdout);
+  PetscCall(RunFiguresDestroy(&figures));
   PetscCall(ResultsPrintUnused(results));
   ResultsPrintUnmet(results);
   ResultsPrintDeep(results);

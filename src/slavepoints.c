@@ -141,6 +141,12 @@ PetscErrorCode SlavePointsCreateQuadrature(ContactSurface surface, Geometry geom
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* SlavePointIsOwn - of the ranks that hold point q, the owner of its first node is the one to count it. Not collective. */
+PetscBool SlavePointIsOwn(SlavePoints points, PetscInt q, PetscMPIInt rank)
+{
+  return points->nodes[points->node[points->ptr[q]]].owner == rank ? PETSC_TRUE : PETSC_FALSE;
+}
+
 /* SlavePointsDestroy - Collective. */
 PetscErrorCode SlavePointsDestroy(SlavePoints *points)
 {

@@ -185,6 +185,9 @@ static void CountSolve(PetscReal t, const SolveReport *solve, StepRecord *record
   record->krylov += solve->krylov;
   report->newton_iterations += solve->newton;
   report->krylov_iterations += solve->krylov;
+  report->regathered += solve->regathered;
+  report->adjusted += solve->adjusted;
+  report->cuts += solve->cuts;
 }
 
 /* The control's prediction, once for each step */
@@ -264,6 +267,11 @@ static PetscErrorCode LoadStepperAdvance(LoadStepper stepper, StepRecord *record
                               "no equilibrium from t = %.6g to %.6g: %s; %s; tried %" PetscInt_FMT " steps, dt from %.3g down to %.3g (dt_min %.3g)", (double)t,
                               (double)end, SolveResults[solve.result], solve.detail, record->attempts, (double)first, (double)dt,
                               (double)stepper->size.dt_min));
+      report->failed.solve    = solve;
+      report->failed.attempts = record->attempts;
+      report->failed.t        = end;
+      report->failed.first    = first;
+      report->failed.last     = dt;
       PetscFunctionReturn(PETSC_SUCCESS);
     }
   }
@@ -307,27 +315,27 @@ PetscErrorCode LoadStepperSolve(LoadStepper stepper, StepperReport *report)
    LoadStepperSetFromScene(), whose dt_max holds; so does its `initial` if that is another one than the run had. */
 PetscErrorCode LoadStepperArchive(LoadStepper stepper, Archive archive)
 {
-  StepperReport *report   = &stepper->report;
-  StepSize       size     = stepper->start;
-  PetscReal      values[] = {size.initial, size.dt, size.beta, size.together, size.shortfall, size.planned};
-  PetscInt       counts[] = {
-          report->steps, report->steps_failed, report->steps_repeated, report->newton_iterations, report->newton_accepted, report->krylov_iterations, size.tied};
+  StepperReport *report  = &stepper->report;
+  StepSize       size    = stepper->start;
+  PetscReal      initial = size.initial, dt = size.dt;
+  PetscReal     *real[]    = {&initial, &dt, &size.beta, &size.together, &size.shortfall, &size.planned, &report->taken, &report->left};
+  PetscInt      *integer[] = {
+         &report->steps,      &report->steps_failed, &report->steps_repeated, &report->newton_iterations, &report->newton_accepted, &report->krylov_iterations,
+         &report->regathered, &report->adjusted,     &report->cuts,           &report->relaxed,           &report->cycles,          &report->cycles_cut,
+         &size.tied};
+  PetscReal values[PETSC_STATIC_ARRAY_LENGTH(real)];
+  PetscInt  counts[PETSC_STATIC_ARRAY_LENGTH(integer)];
 
   PetscFunctionBeginUser;
+  for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(real); i++) values[i] = *real[i];
+  for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(integer); i++) counts[i] = *integer[i];
   PetscCall(ArchiveReals(archive, "stepper/size", PETSC_STATIC_ARRAY_LENGTH(values), values));
   PetscCall(ArchiveIntegers(archive, "stepper/counts", PETSC_STATIC_ARRAY_LENGTH(counts), counts));
   if (!ArchiveLoads(archive)) PetscFunctionReturn(PETSC_SUCCESS);
-  if (values[0] == stepper->size.initial) stepper->size.dt = PetscMin(stepper->size.dt_max, values[1]);
-  stepper->size.beta        = values[2];
-  stepper->size.together    = values[3];
-  stepper->size.shortfall   = values[4];
-  stepper->size.planned     = values[5];
-  stepper->size.tied        = counts[6];
-  report->steps             = counts[0];
-  report->steps_failed      = counts[1];
-  report->steps_repeated    = counts[2];
-  report->newton_iterations = counts[3];
-  report->newton_accepted   = counts[4];
-  report->krylov_iterations = counts[5];
+  size = stepper->size;
+  for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(real); i++) *real[i] = values[i];
+  for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(integer); i++) *integer[i] = counts[i];
+  if (initial == stepper->size.initial) size.dt = PetscMin(size.dt_max, dt);
+  stepper->size = size;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -1,31 +1,9 @@
 #include "summary.h"
 #include "commandline.h"
-#include "timing.h"
 #include <cJSON.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/resource.h>
-
-enum { TEXT_SIZE = 4096 };
-
-/*
-  SummaryCollectUsage - What this program has used since it started, over all ranks; wall_s is left alone. Collective.
-*/
-PetscErrorCode SummaryCollectUsage(MPI_Comm comm, RunUsage *usage)
-{
-  struct rusage self;
-
-  PetscFunctionBeginUser;
-  PetscCheck(!getrusage(RUSAGE_SELF, &self), PETSC_COMM_SELF, PETSC_ERR_SYS, "getrusage failed");
-  for (int k = 0; k < TIMING_KINDS; k++) usage->seconds[k] = TimingSeconds((TimingKind)k);
-  usage->cpu_s       = (PetscReal)(self.ru_utime.tv_sec + self.ru_stime.tv_sec) + 1e-6 * (PetscReal)(self.ru_utime.tv_usec + self.ru_stime.tv_usec);
-  usage->peak_rss_mb = (PetscReal)self.ru_maxrss / 1024.0; /* Linux counts kilobytes */
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, usage->seconds, TIMING_KINDS, MPIU_REAL, MPI_MAX, comm));
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &usage->cpu_s, 1, MPIU_REAL, MPI_SUM, comm));
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &usage->peak_rss_mb, 1, MPIU_REAL, MPI_MAX, comm));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
 
 /* The parts of a text between commas, without the blanks around them */
 static void AddList(cJSON *json, const char *key, char *text)
@@ -84,33 +62,42 @@ static void AddRun(cJSON *json, const RunRecord *run)
   cJSON_AddNumberToObject(json, "krylov_iterations", (double)run->krylov_iterations);
 }
 
-static void AddUsage(cJSON *json, const RunRecord *run, const RunUsage *usage)
+static void AddUsage(cJSON *json, const RunFigures *figures)
 {
   cJSON *seconds;
 
-  AddReal(json, "wall_s", usage->wall_s);
-  AddReal(json, "cpu_s", usage->cpu_s);
-  AddReal(json, "mesh_s", run->mesh_s);
-  AddReal(json, "peak_rss_mb", usage->peak_rss_mb);
+  AddReal(json, "wall_s", figures->usage.wall_s);
+  AddReal(json, "cpu_s", figures->usage.cpu_s);
+  AddReal(json, "mesh_s", figures->run->mesh_s);
+  AddReal(json, "peak_rss_mb", figures->usage.peak_rss_mb);
   seconds = cJSON_AddObjectToObject(json, "seconds");
-  for (int k = 0; k < TIMING_KINDS; k++) AddReal(seconds, TimingNames[k], usage->seconds[k]);
+  for (int k = 0; k < TIMING_KINDS; k++) AddReal(seconds, TimingNames[k], figures->usage.seconds[k]);
+}
+
+static void AddGuards(cJSON *json, const StepperReport *way)
+{
+  cJSON *map = cJSON_AddObjectToObject(json, "guards");
+
+  cJSON_AddNumberToObject(map, "line_search_cuts", (double)way->cuts);
+  cJSON_AddNumberToObject(map, "lists_made_anew", (double)way->regathered);
+  cJSON_AddNumberToObject(map, "penalty_solves", (double)way->adjusted);
 }
 
 /* Contact sets that repeated themselves */
-static void AddCycles(cJSON *json, const RunRecord *run)
+static void AddCycles(cJSON *json, const StepperReport *way)
 {
   cJSON *map = cJSON_AddObjectToObject(json, "cycles");
 
-  cJSON_AddNumberToObject(map, "found", (double)run->cycles);
-  cJSON_AddNumberToObject(map, "steps_cut", (double)run->cycles_cut);
-  if (run->cycles)
-    cJSON_AddStringToObject(map, "last", run->cycle);
+  cJSON_AddNumberToObject(map, "found", (double)way->cycles);
+  cJSON_AddNumberToObject(map, "steps_cut", (double)way->cycles_cut);
+  if (way->cycles)
+    cJSON_AddStringToObject(map, "last", way->cycle);
   else
     cJSON_AddNullToObject(map, "last");
 }
 
 /* What the springs of stabilised pairs did, where there are any */
-static void AddSprings(cJSON *json, Scene scene, const RunRecord *run)
+static void AddSprings(cJSON *json, Scene scene, const StepperReport *way)
 {
   cJSON *map;
   int    any = 0;
@@ -118,23 +105,21 @@ static void AddSprings(cJSON *json, Scene scene, const RunRecord *run)
   for (int c = 0; c < scene->n_contacts; c++) any = any || scene->contacts[c].stabilise;
   if (!any) return;
   map = cJSON_AddObjectToObject(json, "stabilisation");
-  cJSON_AddNumberToObject(map, "relaxed", (double)run->relaxed);
-  AddReal(map, "energy_taken", run->taken);
-  AddReal(map, "largest_energy_share", run->left);
+  cJSON_AddNumberToObject(map, "relaxed", (double)way->relaxed);
+  AddReal(map, "energy_taken", way->taken);
+  AddReal(map, "largest_energy_share", way->left);
 }
 
 /* How the linear solves went */
-static void AddLinear(cJSON *json, LinearCheck check)
+static void AddLinear(cJSON *json, const LinearCounts *counts)
 {
-  cJSON       *map = cJSON_AddObjectToObject(json, "linear");
-  LinearCounts counts;
+  cJSON *map = cJSON_AddObjectToObject(json, "linear");
 
-  LinearCheckGetCounts(check, &counts);
-  cJSON_AddNumberToObject(map, "solves", (double)counts.solves);
-  cJSON_AddNumberToObject(map, "refined", (double)counts.refined);
-  cJSON_AddNumberToObject(map, "refinement_steps", (double)counts.steps);
-  cJSON_AddNumberToObject(map, "inaccurate", (double)counts.inaccurate);
-  AddReal(map, "largest_residual", counts.worst);
+  cJSON_AddNumberToObject(map, "solves", (double)counts->solves);
+  cJSON_AddNumberToObject(map, "refined", (double)counts->refined);
+  cJSON_AddNumberToObject(map, "refinement_steps", (double)counts->steps);
+  cJSON_AddNumberToObject(map, "inaccurate", (double)counts->inaccurate);
+  AddReal(map, "largest_residual", counts->worst);
 }
 
 /* The last accepted state */
@@ -161,75 +146,69 @@ static void AddPartition(cJSON *json, const Mesh mesh)
   AddReal(map, "imbalance_contact", mesh->partition.imbalance_contact);
 }
 
-static PetscErrorCode AddContact(cJSON *json, Contact contact)
+static void AddContact(cJSON *json, const RunFigures *figures)
 {
   cJSON *list = cJSON_AddArrayToObject(json, "contact");
 
-  PetscFunctionBeginUser;
-  for (int p = 0; p < (contact ? ContactPairs(contact) : 0); p++) {
-    cJSON        *pair = cJSON_CreateObject(), *penalty;
-    PetscReal     least, most;
-    ContactFits   fits;
-    ContactWindow window;
+  for (int p = 0; p < figures->n_pairs; p++) {
+    const PairFigures   *figure = &figures->pairs[p];
+    const ContactWindow *window = &figure->window;
+    cJSON               *pair   = cJSON_CreateObject(), *penalty;
 
-    PetscCall(ContactPairFits(contact, p, &fits));
-    PetscCall(ContactPairPenalty(contact, p, &least, &most));
-    PetscCall(ContactPairWindow(contact, p, &window));
     cJSON_AddItemToArray(list, pair);
-    cJSON_AddStringToObject(pair, "name", ContactPairName(contact, p));
-    cJSON_AddNumberToObject(pair, "fall_backs", (double)(fits.points - fits.plain));
+    cJSON_AddStringToObject(pair, "name", figure->name);
+    cJSON_AddNumberToObject(pair, "nodes", (double)figure->quality.nodes);
+    AddReal(pair, "max_penetration", figure->quality.max_penetration);
+    AddReal(pair, "max_penetration_over_h", figure->quality.max_penetration_over_h);
+    AddReal(pair, "facet_error", figure->fits.points ? figure->fits.facet_error : figure->quality.sagitta);
+    AddReal(pair, "smoothing_error", figure->fits.points ? figure->fits.smoothing_error : NAN);
+    cJSON_AddNumberToObject(pair, "fall_backs", (double)(figure->fits.points - figure->fits.plain));
     penalty = cJSON_AddObjectToObject(pair, "penalty");
-    AddReal(penalty, "min", least);
-    AddReal(penalty, "max", most);
-    cJSON_AddNumberToObject(penalty, "raised", (double)window.raised);
-    cJSON_AddNumberToObject(penalty, "lowered", (double)window.lowered);
-    cJSON_AddNumberToObject(penalty, "clamped", (double)window.clamped);
-    cJSON_AddNumberToObject(penalty, "light", (double)window.light);
-    cJSON_AddNumberToObject(penalty, "outside_window", (double)window.outside);
-    cJSON_AddNumberToObject(penalty, "largest_excess", (double)window.excess);
+    AddReal(penalty, "min", figure->penalty_min);
+    AddReal(penalty, "max", figure->penalty_max);
+    cJSON_AddNumberToObject(penalty, "raised", (double)window->raised);
+    cJSON_AddNumberToObject(penalty, "lowered", (double)window->lowered);
+    cJSON_AddNumberToObject(penalty, "clamped", (double)window->clamped);
+    cJSON_AddNumberToObject(penalty, "light", (double)window->light);
+    cJSON_AddNumberToObject(penalty, "outside_window", (double)window->outside);
+    cJSON_AddNumberToObject(penalty, "largest_excess", (double)window->excess);
   }
-  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /*
-  SummaryWrite - Writes summary.json under a temporary name and renames it. Collective.
+  SummaryWrite - Writes summary.json under a temporary name and renames it. Not collective; for one rank.
 
-  Input: model, scene, directory (exists), run (counts), usage (of all parts of the run), restarts (number of the parts less one), last (last accepted step,
-  NULL: none), probes[scene->n_probes] (final values, NaN: none). Errors: PETSC_ERR_FILE_OPEN, PETSC_ERR_FILE_WRITE, PETSC_ERR_MEM.
+  Input: mesh, figures, directory (exists), probes[n_probes of the scene] (final values, NaN: none). Errors: PETSC_ERR_FILE_OPEN,
+  PETSC_ERR_FILE_WRITE, PETSC_ERR_MEM.
 */
-PetscErrorCode SummaryWrite(Model model, Scene scene, const char *directory, const RunRecord *run, const RunUsage *usage, PetscInt restarts,
-                            const StepRecord *last, const PetscReal *probes)
+PetscErrorCode SummaryWrite(const Mesh mesh, const RunFigures *figures, const char *directory, const PetscReal *probes)
 {
-  const Mesh  mesh = model->mesh;
-  cJSON      *json = cJSON_CreateObject();
-  char        effects[TEXT_SIZE], *text;
-  PetscMPIInt rank, size;
-  PetscInt    dofs;
+  const RunRecord *run  = figures->run;
+  cJSON           *json = cJSON_CreateObject();
+  char             effects[sizeof(figures->effects)], *text;
 
   PetscFunctionBeginUser;
-  PetscCallMPI(MPI_Comm_rank(mesh->comm, &rank));
-  PetscCallMPI(MPI_Comm_size(mesh->comm, &size));
-  PetscCall(ModelEffects(model, effects, sizeof(effects)));
-  PetscCall(ModelDofs(model, &dofs));
-  cJSON_AddStringToObject(json, "name", scene->name);
+  PetscCall(PetscStrncpy(effects, figures->effects, sizeof(effects)));
+  cJSON_AddStringToObject(json, "name", figures->scene->name);
   cJSON_AddStringToObject(json, "version", BURNISH_VERSION);
-  cJSON_AddNumberToObject(json, "ranks", size);
-  cJSON_AddNumberToObject(json, "dofs", (double)dofs);
+  cJSON_AddNumberToObject(json, "ranks", figures->ranks);
+  cJSON_AddNumberToObject(json, "dofs", (double)figures->dofs);
   cJSON_AddNumberToObject(json, "elements", (double)mesh->n_cells_global);
   AddList(json, "effects", effects);
-  PetscCall(AddOptions(json, scene));
+  PetscCall(AddOptions(json, figures->scene));
   AddRun(json, run);
-  cJSON_AddNumberToObject(json, "restarts", (double)restarts);
-  AddCycles(json, run);
-  AddSprings(json, scene, run);
-  AddLinear(json, model->linear);
-  AddUsage(json, run, usage);
-  AddState(json, scene, model->contact ? PETSC_TRUE : PETSC_FALSE, last, probes);
+  cJSON_AddNumberToObject(json, "restarts", (double)figures->restarts);
+  AddCycles(json, run->way);
+  AddSprings(json, figures->scene, run->way);
+  AddLinear(json, &figures->linear);
+  AddUsage(json, figures);
+  AddGuards(json, run->way);
+  AddState(json, figures->scene, figures->n_pairs ? PETSC_TRUE : PETSC_FALSE, figures->last, probes);
   AddPartition(json, mesh);
-  PetscCall(AddContact(json, model->contact));
+  AddContact(json, figures);
   text = cJSON_Print(json);
   PetscCheck(text, PETSC_COMM_SELF, PETSC_ERR_MEM, "No memory for summary.json");
-  if (rank == 0) PetscCall(ResultsReplaceFile(directory, "summary.json", text));
+  PetscCall(ResultsReplaceFile(directory, "summary.json", text));
   cJSON_free(text);
   cJSON_Delete(json);
   PetscFunctionReturn(PETSC_SUCCESS);

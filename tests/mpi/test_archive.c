@@ -100,8 +100,8 @@ static void test_round_trip(void **unused)
   assert_int_equal(loaded.n, 3);
   assert_memory_equal(loaded.list, list, sizeof(list));
   assert_string_equal(loaded.text, text);
-  MPI_Allreduce(MPI_IN_PLACE, &all, 1, MPIU_INT64, MPI_SUM, PETSC_COMM_WORLD);
-  MPI_Allreduce(MPI_IN_PLACE, &loaded.n_bytes, 1, MPIU_INT64, MPI_SUM, PETSC_COMM_WORLD);
+  assert_int_equal(MPI_Allreduce(MPI_IN_PLACE, &all, 1, MPIU_INT64, MPI_SUM, PETSC_COMM_WORLD), 0);
+  assert_int_equal(MPI_Allreduce(MPI_IN_PLACE, &loaded.n_bytes, 1, MPIU_INT64, MPI_SUM, PETSC_COMM_WORLD), 0);
   assert_true(all == loaded.n_bytes);
   assert_int_equal(ArchiveHas(archive, "group/items", &there), 0);
   assert_true(there);

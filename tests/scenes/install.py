@@ -24,8 +24,10 @@ work.mkdir(parents=True)
 # -o: what the tests run is installed, not built anew with other flags
 finished = run("make", "-C", ROOT, "-o", burnish, f"BUILD={burnish.parent}", f"PREFIX={prefix}", "install")
 check.holds("make install", finished.returncode == 0, finished.stdout if finished.returncode else "")
-finished = run("mpirun", "-n", args.ranks, prefix / "bin/burnish", prefix / "share/burnish/runs/cup_flattening.yaml", "-set", "mesh.parameters.n_arc=30", "-set", "loads.0.pressure=20", cwd=work)
-check.holds("an example runs from there", finished.returncode == 0 and (work / "out/cup_flattening/summary.json").exists(), finished.stdout[-1000:] if finished.returncode else "")
+example = prefix / "share/burnish/runs/cup_flattening.yaml"
+finished = run("mpirun", "-n", args.ranks, prefix / "bin/burnish", example, "-set", "mesh.parameters.n_arc=30", "-set", "loads.0.pressure=20", cwd=work)
+good = finished.returncode == 0 and (work / "out/cup_flattening/summary.json").exists()
+check.holds("an example runs from there", good, "" if good else finished.stdout[-1000:])
 
 page = prefix / "share/man/man1/burnish.1"
 text = page.read_text()
@@ -41,7 +43,8 @@ for line in (("mandoc", "-Tlint", "-Wwarning", page), ("man", "--warnings", "-l"
     else:
         print(f"     {line[0]} is not here")
 
-complete = f"cd {work}; source {prefix}/share/bash-completion/completions/burnish; COMP_WORDS=({prefix}/bin/burnish %s); COMP_CWORD=%d; _burnish 2>/dev/null; printf '%%s\\n' \"${{COMPREPLY[@]}}\""
+complete = (f"cd {work}; source {prefix}/share/bash-completion/completions/burnish; COMP_WORDS=({prefix}/bin/burnish %s); COMP_CWORD=%d; "
+            '_burnish 2>/dev/null; echo "${COMPREPLY[@]}"')
 for words, place, expected in (("-set stepping.in", 2, "stepping.initial="), ("-ov", 1, "-overwrite")):
     check.holds(f"completion of {words}", run("bash", "-c", complete % (words, place)).stdout.split() == [expected])
 check.finish()

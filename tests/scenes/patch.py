@@ -9,6 +9,7 @@ SIDES = {"x": 2, "y": 1, "z": 1.5}
 STRETCH = {"x": 0.1, "y": -0.06, "z": 0.04}  # strains of the imposed displacement
 SHEAR = 3.0  # shear stress of the traction test
 ELEMENTS = {"tri3": (1, 1), "tri6": (1, 2), "quad4": (0, 1), "quad9": (0, 2), "tet4": (1, 1), "tet10": (1, 2), "hex8": (0, 1), "hex27": (0, 2)}
+FORMULATIONS = ["enhanced", "fbar"]
 
 
 def stretched(geometry, kinematics):
@@ -49,13 +50,15 @@ def shear(args, check):
     check.near("shear: stress", fields["stress"], numpy.array([0, 0, 0, SHEAR, 0, 0]), 1e-8 * E)
 
 
-args = arguments(("element", "element type", ELEMENTS), ("geometry", "of the scene", ["solid", "plane_strain", "axisymmetric"]))
-simplex, order = ELEMENTS[args.element]
+args = arguments(("element", "element type, hex8_enhanced: with that formulation", [*ELEMENTS, *(f"{e}_{f}" for e in ("quad4", "hex8") for f in FORMULATIONS)]),
+                 ("geometry", "of the scene", ["solid", "plane_strain", "axisymmetric"]))
+element, _, formulation = args.element.partition("_")
+simplex, order = ELEMENTS[element]
 if args.geometry == "solid":
     scene, overrides = SCENES / "patch.yaml", [f"mesh.parameters.tet={simplex}"]
 else:
     scene, overrides = SCENES / "patch_plane.yaml", [f"mesh.parameters.tri={simplex}"]
-overrides += [f"mesh.order={order}", f"geometry={args.geometry}"]
+overrides += [f"mesh.order={order}", f"geometry={args.geometry}", f"bodies.0.formulation={formulation or 'full'}"]
 check = Check()
 stretch(args, check, "finite")
 if args.geometry == "axisymmetric":

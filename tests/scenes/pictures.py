@@ -5,6 +5,7 @@ import sys
 
 import matplotlib.image
 import numpy
+import PIL.Image
 
 from harness import Check, arguments, run, SCENES
 
@@ -40,12 +41,14 @@ def depth(check):
 
 def script(name, *words):
     environment = {key: value for key, value in os.environ.items() if key != "DISPLAY"}
-    return subprocess.run([sys.executable, "-W", "error::RuntimeWarning", str(SCRIPTS / name), *map(str, words)], env=environment, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+    line = [sys.executable, "-W", "error::RuntimeWarning", str(SCRIPTS / name), *map(str, words)]
+    return subprocess.run(line, env=environment, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
 
 
 def drawn(check, what, finished, files, colours):
     """The script names its files; each picture has that many different colours at least."""
-    check.holds(f"{what}: {', '.join(file.name for file in files)}", finished.returncode == 0 and finished.stdout.split() == [str(file) for file in files], finished.stdout[-500:])
+    good = finished.returncode == 0 and finished.stdout.split() == [str(file) for file in files]
+    check.holds(f"{what}: {', '.join(file.name for file in files)}", good, finished.stdout[-500:])
     for file in files if finished.returncode == 0 else []:
         image = matplotlib.image.imread(file)
         found = len(numpy.unique((255 * image[:, :, :3]).astype(int).reshape(-1, 3), axis=0))
@@ -68,6 +71,8 @@ for name in args.runs.split("-"):
     drawn(check, name, script("plot.py", folder), [folder / "steps.png"], 20)
     gif = folder / "uy.gif"
     drawn(check, name, script("render.py", folder, "--field", "uy", "--mirror", "xz", "--animate", "-o", gif, *small), [gif], 50)
+    with PIL.Image.open(gif) as animation:
+        check.holds(f"{name}: frames of uy.gif", animation.n_frames == 2, f"{animation.n_frames}")
     refused = script("render.py", folder, "--step", 2)
     check.holds(f"{name}: a step that is not there", refused.returncode == 1 and "steps 0 to 1" in refused.stdout, refused.stdout[-200:])
 check.finish()

@@ -18,6 +18,7 @@ ROUNDING = 1e-12  # nothing shown is that small and means something
 # What differs from machine to machine and run to run
 MACHINE = [
     (r"(?m)^(BLAS|machine) .*$", r"\1"),
+    (r"tangent [\d.e+-]+, factor and solve [\d.e+-]+", "TIMES"),
     (r"\d+:\d\d (min|h)|\d+(\.\d+)? (ms|s|min|h|kB|MB|GB)\b", "TIME"),
     (r"\d+(\.\d+)? (per cent|%)", "SHARE"),
 ]

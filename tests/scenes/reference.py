@@ -13,12 +13,14 @@ PARTS = ("/steps/0000/contact/joint/", "/steps/0000/", "/contact/joint/")  # wha
 
 args = arguments()
 check = Check()
-finished = subprocess.run([sys.executable, str(ROOT / "scripts" / "reference.py"), "--check", "--burnish", args.burnish], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+line = [sys.executable, str(ROOT / "scripts" / "reference.py"), "--check", "--burnish", args.burnish]
+finished = subprocess.run(line, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
 check.holds("scene keys", finished.returncode == 0, finished.stdout)
 
 text = (ROOT / "REFERENCE.md").read_text()
 told = [set(re.findall(r"`([^`]+)`", text.split(f"### {name}")[1].split("\n### ")[0])) for name in ("summary.json", "steps.csv", "results.h5")]
-plane = ["geometry=plane_strain", "mesh.parameters.solid=0", "supports=[{surface: lower_bottom, uy: 0}, {surface: symmetry_x, ux: 0}]", "contact.0.penalty={adjust: true, g_min: 1e-4, g_max: 1e-2, unit: length}"]
+plane = ["geometry=plane_strain", "mesh.parameters.solid=0", "supports=[{surface: lower_bottom, uy: 0}, {surface: symmetry_x, ux: 0}]",
+         "contact.0.penalty={adjust: true, g_min: 1e-4, g_max: 1e-2, unit: length}"]
 finished = run(args, SCENES / "contact_patch.yaml", "-quiet", overrides=plane)
 
 

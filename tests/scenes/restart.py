@@ -173,7 +173,18 @@ def signals():
     again = go_on(directory)
     check.holds("one rank: stopped and done", (ended.status, again.status) == (3, 0))
     same_files("one rank", directory, reference)
+    failed(reference, overrides)
     batch(reference, overrides)
+
+
+def failed(reference, overrides):
+    """A run that did not converge goes on from its last good step once the solver may try harder."""
+    ended = run(args, SCENE, out="failed", ranks=1, overrides=[*overrides, "stepping.dt_min=0.003", "solver.max_iterations=2"], must=2)
+    steps = ended.summary()["steps"]
+    again = go_on(ended.directory, overrides=["solver.max_iterations=30"])
+    check.holds("not converged, then with more iterations: goes on to the end", again.status == 0, f"from step {steps}")
+    last, whole = Run(0, "", ended.directory).steps()[-1], Run(0, "", reference).steps()[-1]
+    check.near("not converged, then with more iterations: force at the end", last["contact_force"], whole["contact_force"], 1e-6 * whole["contact_force"])
 
 
 def batch(reference, overrides):

@@ -1,8 +1,9 @@
-"""results.xdmf shows what results.h5 holds, for every element and dimension: checked as text, and in the full set by ParaView's three readers where pvpython is installed."""
+"""results.xdmf shows what results.h5 holds, for every element: read as text, and in the full set by ParaView's three readers where pvpython is installed."""
 import json
 import pathlib
 import shutil
 import subprocess
+import sys
 import xml.etree.ElementTree
 
 import h5py
@@ -12,13 +13,14 @@ from harness import Check, arguments, run, SCENES
 
 PLANE = ["geometry=plane_strain", "supports=[{surface: x_min, ux: 0}, {surface: y_min, uy: 0}]", "loads=[{surface: y_max, uy: -0.1}]"]
 SOLID = ["supports=[{surface: x_min, ux: 0}, {surface: y_min, uy: 0}, {surface: z_min, uz: 0}]", "loads=[{surface: y_max, uy: -0.1}]"]
+FLAT = ["geometry=plane_strain", "mesh.parameters.solid=0", "supports=[{surface: lower_bottom, uy: 0}, {surface: symmetry_x, ux: 0}]"]
 STEPS = "stepping={control: fixed, initial: 0.5}"
 # Runs: scene, overrides. Two bodies in contact of each order and dimension, then one of simplices.
 RUNS = {
     "hex27": ("contact_patch.yaml", ["mesh.order=2"]),
-    "quad4": ("contact_patch.yaml", ["geometry=plane_strain", "mesh.parameters.solid=0", "supports=[{surface: lower_bottom, uy: 0}, {surface: symmetry_x, ux: 0}]"]),
+    "quad4": ("contact_patch.yaml", FLAT),
     "hex8": ("contact_patch.yaml", []),
-    "quad9": ("contact_patch.yaml", ["mesh.order=2", "geometry=plane_strain", "mesh.parameters.solid=0", "supports=[{surface: lower_bottom, uy: 0}, {surface: symmetry_x, ux: 0}]"]),
+    "quad9": ("contact_patch.yaml", ["mesh.order=2", *FLAT]),
     "tri3": ("patch_plane.yaml", ["mesh.parameters.tri=1", *PLANE]),
     "tri6": ("patch_plane.yaml", ["mesh.parameters.tri=1", "mesh.order=2", *PLANE, "geometry=axisymmetric"]),
     "tet4": ("patch.yaml", ["mesh.parameters.tet=1", *SOLID]),
@@ -43,7 +45,8 @@ def as_text(directory, element, check):
     grids = xml.etree.ElementTree.parse(directory / "results.xdmf").getroot().find("Domain/Grid").findall("Grid")
     blocks = []
     with h5py.File(directory / "results.h5", "r") as file:
-        check.holds(f"{element}: times", [float(grid.find("Time").get("Value")) for grid in grids] == [float(step.attrs["t"]) for _, step in sorted(file["steps"].items())])
+        times = [float(grid.find("Time").get("Value")) for grid in grids]
+        check.holds(f"{element}: times", times == [float(step.attrs["t"]) for _, step in sorted(file["steps"].items())])
         cells = len(file[f"mesh/cells_{element}"])
         points = len(file["mesh/nodes"])
     for grid in grids:
@@ -52,17 +55,20 @@ def as_text(directory, element, check):
             topology = block.find("Topology")
             ids = item(topology[0], directory)
             count += len(ids)
-            good = ids.shape == (int(topology.get("NumberOfElements")), NODES[topology.get("TopologyType")]) and ids.min() >= 0 and ids.max() < points
-            check.holds(f"{element}: {block.get('Name')}", good and item(block.find("Geometry")[0], directory).shape == (points, 3)) if grid is grids[0] else None
-            blocks.append((len(ids), {attribute.get("Name"): float(numpy.nansum(item(attribute[0], directory))) for attribute in block.findall("Attribute")}))
+            shape = (int(topology.get("NumberOfElements")), NODES[topology.get("TopologyType")])
+            good = ids.shape == shape and ids.min() >= 0 and ids.max() < points
+            check.holds(f"{element}: {block.get('Name')}", good and item(block.find("Geometry")[0], directory).shape == (points, 3))
+            sums = {attribute.get("Name"): float(numpy.nansum(item(attribute[0], directory))) for attribute in block.findall("Attribute")}
+            blocks.append((len(ids), sums))
         check.holds(f"{element}: all cells at t = {grid.find('Time').get('Value')}", count == cells)
-    return [float(grid.find("Time").get("Value")) for grid in grids], blocks
+    return times, blocks
 
 
 def as_paraview(files, expected, check):
-    """The same times, blocks, cell types and sums of arrays; the node order is VTK's: middle nodes lie in the middle of VTK's edges and faces, volumes are positive."""
+    """The same times, blocks, cell types and sums of arrays; nodes in VTK's order: middle nodes in the middle of VTK's edges and faces, positive volumes."""
     reader = pathlib.Path(__file__).with_name("xdmf_paraview.py")
-    finished = subprocess.run(["pvpython", "--force-offscreen-rendering", str(reader), *map(str, files.values())], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+    line = ["pvpython", "--force-offscreen-rendering", str(reader), *map(str, files.values())]
+    finished = subprocess.run(line, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
     lines = [json.loads(line) for line in finished.stdout.splitlines() if line.startswith("{")]
     check.holds("pvpython", finished.returncode == 0 and len(lines) == 3 * len(files), "" if finished.returncode == 0 else finished.stderr[-1000:])
     names = {str(file): element for element, file in files.items()}
@@ -91,6 +97,7 @@ for element in chosen:
     expected[element] = as_text(directory, element, check)
 if args.by == "paraview" and shutil.which("pvpython"):
     as_paraview(files, expected, check)
-elif args.by == "paraview":
-    print("     ParaView was not asked: there is no pvpython here (Debian: apt install python3-paraview)")
+elif args.by == "paraview" and not check.failed:
+    print("     skipped: there is no pvpython here to ask (Debian: apt install python3-paraview); as text results.xdmf is right")
+    sys.exit(77)
 check.finish()

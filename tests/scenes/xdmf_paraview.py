@@ -41,8 +41,10 @@ def least_volume(grid):
     """Of the cells as VTK measures them, signed by their corners: area in the plane, counted positive anticlockwise."""
     quality = vtkMeshQuality()
     quality.SetInputData(corners_only(grid))
-    for choose in (quality.SetTriangleQualityMeasureToArea, quality.SetQuadQualityMeasureToArea, quality.SetTetQualityMeasureToVolume, quality.SetHexQualityMeasureToVolume):
-        choose()
+    quality.SetTriangleQualityMeasureToArea()
+    quality.SetQuadQualityMeasureToArea()
+    quality.SetTetQualityMeasureToVolume()
+    quality.SetHexQualityMeasureToVolume()
     quality.Update()
     return quality.GetOutput().GetCellData().GetArray("Quality").GetRange()[0]
 
@@ -80,6 +82,7 @@ for name, reader in READERS.items():
             source.UpdatePipeline(t)
             for grid in leaves(servermanager.Fetch(source)):
                 types = sorted({grid.GetCellType(c) for c in range(grid.GetNumberOfCells())})
-                blocks.append({"cells": grid.GetNumberOfCells(), "types": types, "off_middle": off_middle(grid), "least_volume": least_volume(grid), "sums": sums(grid)})
+                measures = {"off_middle": off_middle(grid), "least_volume": least_volume(grid)}
+                blocks.append({"cells": grid.GetNumberOfCells(), "types": types, "sums": sums(grid), **measures})
         print(json.dumps({"reader": name, "file": file, "times": times, "blocks": blocks}), flush=True)
         simple.Delete(source)

@@ -1,0 +1,167 @@
+#include "advice.h"
+
+/* Penetrations and surface errors below this part of a face size are small whatever they are compared with. */
+#define ADVICE_SMALL 1e-3
+/* The facets' own error hides what contact resolves when it is this many penetrations. */
+#define ADVICE_FACETS 10
+/* Part of the slave points that may stand on the lower rungs: free ends and corners of a surface put some there. */
+#define ADVICE_FALL_BACKS 0.1
+/* Parts of the steps that may fail or be taken back, and re-gathered lists for each step, before another step size is cheaper. */
+#define ADVICE_FAILED     0.25
+#define ADVICE_REPEATED   0.5
+#define ADVICE_REGATHERED 1
+/* Iterations of an accepted step above which it is too long, part of them that the line search may shorten: Newton's method far from its end. */
+#define ADVICE_ITERATIONS 12
+#define ADVICE_CUTS       0.34
+/* Part of the time that writing may take, in a run long enough to care (s). */
+#define ADVICE_OUTPUT   0.3
+#define ADVICE_OUTPUT_S 10
+
+typedef int (*RunRuleFn)(const RunFigures *, char *text);                       /* 1: applies, text[ADVICE_TEXT] says what to do */
+typedef int (*PairRuleFn)(const RunFigures *, const PairFigures *, char *text); /* the same for a pair */
+
+/* ---------- pairs ---------- */
+
+static int PenetrationIsDeep(const RunFigures *figures, const PairFigures *pair, char *text)
+{
+  const SceneContact   *scene   = pair->scene;
+  const ContactQuality *quality = &pair->quality;
+  const PetscReal       size    = quality->max_penetration_over_h > 0 ? quality->max_penetration / quality->max_penetration_over_h : 0;
+  const PetscReal       target = PetscMax(PairSurfaceError(pair), ADVICE_SMALL * size), over = target > 0 ? quality->max_penetration / target : 0;
+
+  (void)figures;
+  if (scene->adjust || over <= 1) return 0;
+  snprintf(
+    text, ADVICE_TEXT,
+    "%s: the penetration is %.3g times the surface's own error (or a thousandth of a face): penalty.scale %.3g instead of %g, or penalty: {adjust: true, "
+    "g_min, g_max, unit}",
+    pair->name, (double)over, scene->penalty_scale * (double)over, scene->penalty_scale);
+  return 1;
+}
+
+static int FacetsAreCoarse(const RunFigures *figures, const PairFigures *pair, char *text)
+{
+  const PetscReal error = pair->quality.sagitta, small = PetscMax(pair->quality.max_penetration, 0);
+
+  (void)figures;
+  if (pair->fits.points || !pair->quality.nodes || error <= ADVICE_FACETS * small) return 0;
+  snprintf(text, ADVICE_TEXT, "%s: the facets' own error, about %.2g, is %.2g times the penetration: smoother: diffuse, or a finer master", pair->name,
+           (double)error, (double)(error / small));
+  return 1;
+}
+
+static int FitsFallBack(const RunFigures *figures, const PairFigures *pair, char *text)
+{
+  const PetscInt low = pair->fits.degree_2 + pair->fits.linear + pair->fits.facets;
+
+  (void)figures;
+  if (low <= ADVICE_FALL_BACKS * pair->fits.points) return 0;
+  snprintf(text, ADVICE_TEXT,
+           "%s: %lld of %lld slave points have no fit of their degree: a finer or more even master there, its symmetry planes named, or degree: 2", pair->name,
+           (long long)low, (long long)pair->fits.points);
+  return 1;
+}
+
+static int WindowIsMissed(const RunFigures *figures, const PairFigures *pair, char *text)
+{
+  (void)figures;
+  if (!pair->window.outside) return 0;
+  snprintf(text, ADVICE_TEXT, "%s: %lld of %lld loaded nodes are outside the window: when: converged, a wider window, or more penalty.range", pair->name,
+           (long long)pair->window.outside, (long long)pair->window.loaded);
+  return 1;
+}
+
+static const PairRuleFn pair_rules[] = {PenetrationIsDeep, FacetsAreCoarse, FitsFallBack, WindowIsMissed};
+
+/* ---------- the run ---------- */
+
+static int StepsFail(const RunFigures *figures, char *text)
+{
+  const RunRecord *run = figures->run;
+
+  if (!run->way->done || run->steps_failed <= ADVICE_FAILED * PetscMax(run->steps, 1)) return 0;
+  snprintf(text, ADVICE_TEXT, "%lld steps failed on the way to %lld: a smaller stepping.initial or dt_max, or stepping.control: contact",
+           (long long)run->steps_failed, (long long)run->steps);
+  return 1;
+}
+
+static int StepsRepeat(const RunFigures *figures, char *text)
+{
+  const RunRecord *run = figures->run;
+
+  if (run->steps_repeated <= ADVICE_REPEATED * PetscMax(run->steps, 1)) return 0;
+  snprintf(text, ADVICE_TEXT, "%lld steps were taken back by the control: stepping.prediction: tangent, or more nodes a step (N_c, N_c_fraction)",
+           (long long)run->steps_repeated);
+  return 1;
+}
+
+static int ListsAreRemade(const RunFigures *figures, char *text)
+{
+  const PetscInt times = figures->run->way->regathered;
+
+  if (times <= ADVICE_REGATHERED * PetscMax(figures->run->steps, 1)) return 0;
+  snprintf(text, ADVICE_TEXT, "contact lists were made anew %lld times within steps: contact slides far in one; smaller steps (stepping.dt_max) are cheaper",
+           (long long)times);
+  return 1;
+}
+
+static int StepsAreLong(const RunFigures *figures, char *text)
+{
+  const RunRecord *run  = figures->run;
+  const PetscReal  each = (PetscReal)run->newton_accepted / PetscMax(run->steps, 1);
+
+  if (each <= ADVICE_ITERATIONS) return 0;
+  snprintf(text, ADVICE_TEXT, "%.1f iterations a step: smaller steps (stepping.initial, dt_max) may need fewer in all", (double)each);
+  return 1;
+}
+
+static int LineSearchCuts(const RunFigures *figures, char *text)
+{
+  const RunRecord *run = figures->run;
+
+  if (run->way->cuts <= ADVICE_CUTS * run->newton_iterations) return 0;
+  snprintf(text, ADVICE_TEXT, "the line search shortened %lld of %lld iterations: smaller steps, or a softer penalty at first (adjust)",
+           (long long)run->way->cuts, (long long)run->newton_iterations);
+  return 1;
+}
+
+static int OutputIsSlow(const RunFigures *figures, char *text)
+{
+  const PetscReal seconds = figures->usage.seconds[TIMING_OUTPUT];
+
+  if (seconds <= ADVICE_OUTPUT_S || seconds <= ADVICE_OUTPUT * figures->usage.wall_s) return 0;
+  snprintf(text, ADVICE_TEXT, "writing took %.0f %% of the time: output.every, or fewer output.fields", (double)(100 * seconds / figures->usage.wall_s));
+  return 1;
+}
+
+static const RunRuleFn run_rules[] = {StepsFail, StepsRepeat, ListsAreRemade, StepsAreLong, LineSearchCuts, OutputIsSlow};
+
+/* AdviceGive - one line for each figure that is bad and can be helped. Not collective. */
+void AdviceGive(const RunFigures *figures, AdvicePrintFn print, void *context)
+{
+  char text[ADVICE_TEXT];
+
+  for (int p = 0; p < figures->n_pairs && figures->last; p++)
+    for (size_t r = 0; r < sizeof(pair_rules) / sizeof(pair_rules[0]); r++)
+      if (pair_rules[r](figures, &figures->pairs[p], text)) print(text, context);
+  for (size_t r = 0; r < sizeof(run_rules) / sizeof(run_rules[0]); r++)
+    if (run_rules[r](figures, text)) print(text, context);
+}
+
+/* AdviceForFailure - what helps most often after each kind of failed solve; "" where there is nothing to try. Not collective. */
+const char *AdviceForFailure(SolveResult result)
+{
+  static const char *const tries[] = {
+    [SOLVE_CONVERGED]  = "",
+    [SOLVE_ITERATIONS] = "a smaller stepping.initial and dt_min, more solver.max_iterations, a smaller penalty.scale",
+    [SOLVE_LINE_SEARCH] =
+      "a smaller stepping.dt_min, a smaller penalty.scale; a load beyond what the structure carries has no equilibrium: displacements instead",
+    [SOLVE_DOMAIN]    = "smaller steps (stepping.initial, dt_min), a finer mesh around the element, law: neo_hookean, which resists being crushed",
+    [SOLVE_LINEAR]    = "supports for what -check says that contact only or nothing holds, or an imposed displacement instead of a force until contact is made",
+    [SOLVE_WORKSPACE] = "-mat_mumps_icntl_14 200, or more ranks",
+    [SOLVE_LISTS]     = "a smaller stepping.dt_min and dt_max, a finer or smoother master where the node is",
+    [SOLVE_WINDOW]    = "a wider window (penalty.g_min, g_max), more penalty.range, or when: step",
+    [SOLVE_NAN]       = "-check for cells of low quality, smaller steps; if it stays, a report to the authors"};
+
+  return tries[result];
+}
