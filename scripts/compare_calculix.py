@@ -333,7 +333,7 @@ def table(path):
                 unit = cpu
                 notes.append(f"{scene}: 1 is {cpu:.1f} s ({code}, {name}), {len(runs)} runs")
             ratio = f"{cpu / unit:.2g}" if cpu < unit else f"{cpu / unit:.1f}"
-            end = f"| {force / 1000:.2f} | {median(runs, 'error'):+.2f} |" if force is not None else f"| {first['status']} | |"
+            end = f"| {force / 1000:.2f} | {round(median(runs, 'error'), 2) + 0:+.2f} |" if force is not None else f"| {first['status']} | |"
             print(f"| {scene} | {code} | {name} | {first['dofs']} | {first['steps']}, {first['steps_failed']} | {first['iterations']} | {ratio}", end)
     print("\n".join(notes))
 
