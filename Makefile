@@ -97,8 +97,10 @@ study: all ## accuracy against time: tables and plots in out/study/ (QUICK=1: sh
 	@for study in runs/studies/*.args; do $(VENV)/bin/python scripts/study.py @$$study --burnish $(BURNISH) --jobs $(JOBS) \
 	  $(if $(QUICK),--quick --out out/study/quick,--out out/study) || exit 1; done
 
-bench: all tests ## raw timing records and their table in out/bench/
+bench: all tests ## raw timing records, their tables and a plot in out/bench/ (LARGE=1: up to 1e6 unknowns)
+	@[ -x $(VENV)/bin/python ] || { echo "no Python environment in $(VENV): run make deps" >&2; exit 1; }
 	@scripts/bench.sh $(BUILD)
+	@$(VENV)/bin/python scripts/scaling.py --burnish $(BURNISH) $(if $(LARGE),--large) --out out/bench | tee out/bench/scaling.txt
 
 fuzz: ## looks for files that break the readers, SECONDS=600 for each, with clang
 	@scripts/fuzz.sh $(or $(SECONDS),600)

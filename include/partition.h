@@ -10,3 +10,8 @@ typedef struct {
 
 /* Gives the DM, whose cells all are on rank 0, a partitioner that holds the partition. contact: per cell, on rank 0. Collective. */
 PetscErrorCode PartitionCells(DM, const PetscBool contact[], Partition *);
+/* A graph of cells in parts: part[n]. contact: per cell, or NULL: cells alone are balanced. Not collective. */
+PetscErrorCode PartitionGraph(PetscInt n, const PetscInt offsets[], const PetscInt adjacency[], const PetscBool contact[], PetscInt parts, PetscInt part[],
+                              PetscInt *edge_cut);
+/* Largest part over the mean, of the cells counted (NULL: all); count[parts]: how many each has */
+PetscReal PartitionImbalance(PetscInt n, const PetscInt part[], const PetscBool counted[], PetscInt parts, PetscInt count[]);

@@ -23,12 +23,25 @@ static PetscErrorCode IndexArrayCast(PetscInt n, const PetscInt values[], idx_t 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Largest part over the mean; total 0: nothing to balance */
-static PetscReal Imbalance(PetscInt n, const idx_t part[], const PetscBool counted[], PetscMPIInt parts, PetscInt count[])
+/*
+  PartitionImbalance - the largest part over the mean; 1 where there is nothing to share out
+
+  Not Collective
+
+  Input Parameters:
++ n       - number of cells
+. part    - per cell
+. counted - per cell, or NULL: all of them
+- parts   - number of parts
+
+  Output Parameter:
+. count - cells counted, per part
+*/
+PetscReal PartitionImbalance(PetscInt n, const PetscInt part[], const PetscBool counted[], PetscInt parts, PetscInt count[])
 {
   PetscInt total = 0, largest = 0;
 
-  for (PetscMPIInt p = 0; p < parts; p++) count[p] = 0;
+  for (PetscInt p = 0; p < parts; p++) count[p] = 0;
   for (PetscInt c = 0; c < n; c++) {
     if (counted && !counted[c]) continue;
     total++;
@@ -38,21 +51,37 @@ static PetscReal Imbalance(PetscInt n, const idx_t part[], const PetscBool count
   return total ? (PetscReal)largest * parts / (PetscReal)total : 1;
 }
 
-/* METIS on rank 0's graph: part[n] */
-static PetscErrorCode PartitionGraph(PetscInt n, const PetscInt offsets[], const PetscInt adjacency[], const PetscBool contact[], PetscMPIInt parts,
-                                     idx_t part[], PetscInt *edge_cut)
+/*
+  PartitionGraph - METIS' k-way partition of a graph of cells
+
+  Not Collective
+
+  Input Parameters:
++ n         - number of cells
+. offsets   - where each cell's neighbours start in adjacency, n + 1
+. adjacency - neighbours
+. contact   - per cell, whether it has a face in contact (a second weight), or NULL: cells alone are balanced
+- parts     - number of parts, at least 2
+
+  Output Parameters:
++ part     - per cell
+- edge_cut - pairs of neighbours in different parts
+*/
+PetscErrorCode PartitionGraph(PetscInt n, const PetscInt offsets[], const PetscInt adjacency[], const PetscBool contact[], PetscInt parts, PetscInt part[],
+                              PetscInt *edge_cut)
 {
-  idx_t *xadj, *adjncy, *weights, options[METIS_NOPTIONS], n_vertices, n_constraints = 1, n_parts = parts, cut = 0;
+  idx_t *xadj, *adjncy, *weights, *found, options[METIS_NOPTIONS], n_vertices, n_constraints = 1, n_parts, cut = 0;
   real_t tolerance[2] = {CELL_TOLERANCE, CONTACT_TOLERANCE};
   int    status;
 
   PetscFunctionBeginUser;
-  for (PetscInt c = 0; c < n; c++)
+  for (PetscInt c = 0; contact && c < n; c++)
     if (contact[c]) n_constraints = 2; /* a constraint whose weights are all zero cannot be balanced */
   PetscCall(IndexCast(n, &n_vertices));
+  PetscCall(IndexCast(parts, &n_parts));
   PetscCall(IndexArrayCast(n + 1, offsets, &xadj));
   PetscCall(IndexArrayCast(offsets[n], adjacency, &adjncy));
-  PetscCall(PetscMalloc1(n * n_constraints, &weights));
+  PetscCall(PetscMalloc2(n * n_constraints, &weights, n, &found));
   for (PetscInt c = 0; c < n; c++) {
     weights[c * n_constraints] = 1;
     if (n_constraints == 2) weights[c * n_constraints + 1] = contact[c] ? 1 : 0;
@@ -60,17 +89,18 @@ static PetscErrorCode PartitionGraph(PetscInt n, const PetscInt offsets[], const
   METIS_SetDefaultOptions(options);
   options[METIS_OPTION_SEED]      = METIS_SEED;
   options[METIS_OPTION_NUMBERING] = 0;
-  status = METIS_PartGraphKway(&n_vertices, &n_constraints, xadj, adjncy, weights, NULL, NULL, &n_parts, NULL, tolerance, options, &cut, part);
+  status = METIS_PartGraphKway(&n_vertices, &n_constraints, xadj, adjncy, weights, NULL, NULL, &n_parts, NULL, tolerance, options, &cut, found);
   PetscCheck(status == METIS_OK, PETSC_COMM_SELF, PETSC_ERR_LIB, "METIS failed with status %d", status);
   *edge_cut = (PetscInt)cut;
+  for (PetscInt c = 0; c < n; c++) part[c] = (PetscInt)found[c];
   PetscCall(PetscFree(xadj));
   PetscCall(PetscFree(adjncy));
-  PetscCall(PetscFree(weights));
+  PetscCall(PetscFree2(weights, found));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* Cells by part, as PETSCPARTITIONERSHELL wants them */
-static PetscErrorCode PartitionSort(PetscInt n, const idx_t part[], PetscMPIInt parts, const PetscInt sizes[], PetscInt cells[])
+static PetscErrorCode PartitionSort(PetscInt n, const PetscInt part[], PetscMPIInt parts, const PetscInt sizes[], PetscInt cells[])
 {
   PetscInt *next;
 
@@ -102,9 +132,8 @@ PetscErrorCode PartitionCells(DM dm, const PetscBool contact[], Partition *parti
   MPI_Comm         comm = PetscObjectComm((PetscObject)dm);
   PetscPartitioner partitioner;
   PetscMPIInt      rank, size;
-  PetscInt         n, *offsets, *adjacency, *sizes, *contact_sizes, *cells;
+  PetscInt         n, *offsets, *adjacency, *sizes, *contact_sizes, *cells, *part;
   PetscReal        imbalances[2] = {1, 1};
-  idx_t           *part;
 
   PetscFunctionBeginUser;
   PetscCallMPI(MPI_Comm_rank(comm, &rank));
@@ -116,8 +145,8 @@ PetscErrorCode PartitionCells(DM dm, const PetscBool contact[], Partition *parti
   PetscCall(PetscCalloc4(size, &sizes, size, &contact_sizes, n, &cells, n, &part));
   if (!rank) {
     PetscCall(PartitionGraph(n, offsets, adjacency, contact, size, part, &partition->edge_cut));
-    imbalances[0] = Imbalance(n, part, NULL, size, sizes);
-    imbalances[1] = Imbalance(n, part, contact, size, contact_sizes);
+    imbalances[0] = PartitionImbalance(n, part, NULL, size, sizes);
+    imbalances[1] = PartitionImbalance(n, part, contact, size, contact_sizes);
     PetscCall(PartitionSort(n, part, size, sizes, cells));
   }
   PetscCall(DMPlexGetPartitioner(dm, &partitioner));

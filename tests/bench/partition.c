@@ -1,0 +1,220 @@
+/* What partitions of a scene's mesh would cost on 2 to 4096 ranks, from the partition alone (lines: row, column, value; # heads a table): cells and contact
+   cells balanced as in a run, and cells alone. Arguments: SCENE.yaml KEY=VALUE ...; without, two rings with 1e5 unknowns. */
+#include <float.h>
+#include "mesh.h"
+#include "tree.h"
+
+enum { MOST_PARTS = 4096, LEAST_CELLS = 16 /* in a part: fewer than a rank would ever have */ };
+
+typedef struct {
+  Mesh       mesh;
+  PetscInt  *offsets, *adjacency;         /* of cells */
+  PetscBool *contact;                     /* per cell */
+  PetscInt   n_slaves, *slave, *opposite; /* cells of the slave faces, and of the master face whose centre is nearest to each one's */
+  PetscInt   parts, *part, *count;        /* per cell; per part */
+} Study;
+
+/* ----------------------------------------------------------------------------------------------------------- the mesh */
+
+static PetscErrorCode FaceCentres(Mesh mesh, const MeshGroup *group, PetscReal **centres)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc1(group->n_faces * mesh->dim, centres));
+  for (PetscInt f = 0; f < group->n_faces; f++) {
+    PetscInt  nodes[FACE_MAX_NODES];
+    const int n = ElementGet(MeshFaceNodes(mesh, group, f, nodes))->nodes;
+
+    for (int a = 0; a < n; a++)
+      for (int k = 0; k < mesh->dim; k++) (*centres)[f * mesh->dim + k] += mesh->coords[nodes[a] * mesh->dim + k] / n;
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+typedef struct {
+  int              dim, closest;
+  const PetscReal *centres, *point;
+} Nearest;
+
+static void VisitCentre(void *context, int index, double *bound)
+{
+  Nearest  *nearest = context;
+  PetscReal square  = 0;
+
+  for (int k = 0; k < nearest->dim; k++) square += PetscSqr(nearest->centres[index * nearest->dim + k] - nearest->point[k]);
+  if (PetscSqrtReal(square) > *bound) return;
+  *bound           = PetscSqrtReal(square);
+  nearest->closest = index;
+}
+
+/* Appends the pair's slave cells and what lies opposite */
+static PetscErrorCode AddPair(Study *study, const MeshGroup *slave, const MeshGroup *master)
+{
+  const int  dim = study->mesh->dim;
+  PetscReal *slaves, *masters;
+  Tree       tree;
+
+  PetscFunctionBeginUser;
+  PetscCall(FaceCentres(study->mesh, slave, &slaves));
+  PetscCall(FaceCentres(study->mesh, master, &masters));
+  PetscCheck(!TreeBuild(dim, (int)master->n_faces, masters, masters, &tree), PETSC_COMM_SELF, PETSC_ERR_MEM, "no memory for the tree");
+  for (PetscInt f = 0; f < slave->n_faces; f++) {
+    Nearest nearest = {.dim = dim, .centres = masters, .point = slaves + f * dim};
+    double  bound   = DBL_MAX;
+
+    TreeClosest(tree, nearest.point, &bound, VisitCentre, &nearest);
+    study->slave[study->n_slaves]      = slave->face_cell[f];
+    study->opposite[study->n_slaves++] = master->face_cell[nearest.closest];
+  }
+  for (PetscInt f = 0; f < slave->n_faces; f++) study->contact[slave->face_cell[f]] = PETSC_TRUE;
+  for (PetscInt f = 0; f < master->n_faces; f++) study->contact[master->face_cell[f]] = PETSC_TRUE;
+  TreeDestroy(&tree);
+  PetscCall(PetscFree(slaves));
+  PetscCall(PetscFree(masters));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Pairs of meshed bodies; others have nothing on another rank */
+static PetscErrorCode AddPairs(Scene scene, Study *study)
+{
+  PetscInt n = 0;
+
+  PetscFunctionBeginUser;
+  for (int g = 0; g < study->mesh->n_groups; g++) n += study->mesh->groups[g].n_faces;
+  PetscCall(PetscMalloc2(n * scene->n_contacts, &study->slave, n * scene->n_contacts, &study->opposite));
+  PetscCall(PetscCalloc1(study->mesh->n_cells, &study->contact));
+  for (int i = 0; i < scene->n_contacts; i++) {
+    const SceneContact *pair   = &scene->contacts[i];
+    const int           slave  = MeshFindGroup(study->mesh, scene->dim - 1, pair->slave);
+    const int           master = pair->master ? MeshFindGroup(study->mesh, scene->dim - 1, pair->master) : -1;
+
+    if (slave >= 0 && master >= 0 && study->mesh->groups[master].n_faces) PetscCall(AddPair(study, &study->mesh->groups[slave], &study->mesh->groups[master]));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* ------------------------------------------------------------------------------------------------------ what parts cost */
+
+/* The distinct ones of n pairs (a, b), packed into numbers: how many, and the largest number of them with the same a */
+static PetscErrorCode CountPairs(PetscInt n, PetscInt64 pairs[], PetscInt *distinct, PetscInt *most)
+{
+  PetscInt of_one = 0;
+
+  PetscFunctionBeginUser;
+  *distinct = *most = 0;
+  PetscCall(PetscSortInt64(n, pairs));
+  for (PetscInt k = 0; k < n; k++) {
+    if (k && pairs[k] == pairs[k - 1]) continue;
+    of_one = k && pairs[k] / MOST_PARTS == pairs[k - 1] / MOST_PARTS ? of_one + 1 : 1;
+    *most  = PetscMax(*most, of_one);
+    (*distinct)++;
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode Print(const Study *study, const char *what, PetscReal value)
+{
+  return PetscPrintf(PETSC_COMM_SELF, "%" PetscInt_FMT " %s %.4g\n", study->parts, what, (double)value);
+}
+
+/* Nodes that a part needs and another (the lowest that touches them) owns; parts with which a part exchanges them */
+static PetscErrorCode PrintGhosts(const Study *study)
+{
+  const Mesh  mesh = study->mesh;
+  PetscInt    n = mesh->cell_ptr[mesh->n_cells], n_shared = 0, distinct, most;
+  PetscInt64 *touched, *shared;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(n, &touched));
+  for (PetscInt c = 0; c < mesh->n_cells; c++)
+    for (PetscInt k = mesh->cell_ptr[c]; k < mesh->cell_ptr[c + 1]; k++) touched[k] = (PetscInt64)mesh->cell_nodes[k] * MOST_PARTS + study->part[c];
+  PetscCall(PetscSortInt64(n, touched));
+  PetscCall(PetscMalloc1(n, &shared)); /* a node of k cells has at most k parts, one of which owns it */
+  distinct = 0;
+  for (PetscInt k = 0, owner = 0; k < n; k++) {
+    if (k && touched[k] == touched[k - 1]) continue;
+    distinct++;
+    if (!k || touched[k] / MOST_PARTS != touched[k - 1] / MOST_PARTS)
+      owner = (PetscInt)(touched[k] % MOST_PARTS);
+    else
+      shared[n_shared++] = (touched[k] % MOST_PARTS) * MOST_PARTS + owner;
+  }
+  PetscCall(Print(study, "ghosts,%", 100. * (distinct - mesh->n_nodes) / mesh->n_nodes));
+  PetscCall(CountPairs(n_shared, shared, &distinct, &most));
+  PetscCall(Print(study, "owners", (PetscReal)distinct / study->parts));
+  PetscCall(Print(study, "most-owners", most));
+  PetscCall(PetscFree(touched));
+  PetscCall(PetscFree(shared));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Slave faces whose master is another part's; parts from which one that has slave faces needs master faces */
+static PetscErrorCode PrintContact(const Study *study)
+{
+  PetscInt    n_pairs = 0, distinct, most;
+  PetscInt64 *pairs;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(study->n_slaves, &pairs));
+  for (PetscInt s = 0; s < study->n_slaves; s++) {
+    const PetscInt mine = study->part[study->slave[s]], other = study->part[study->opposite[s]];
+
+    if (mine != other) pairs[n_pairs++] = (PetscInt64)mine * MOST_PARTS + other;
+  }
+  PetscCall(Print(study, "foreign-masters,%", study->n_slaves ? 100. * n_pairs / study->n_slaves : 0));
+  PetscCall(CountPairs(n_pairs, pairs, &distinct, &most));
+  PetscCall(Print(study, "most-master-parts", most));
+  PetscCall(PetscFree(pairs));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode PrintPartitions(Study *study, PetscBool two_weights)
+{
+  const PetscInt n = study->mesh->n_cells;
+  PetscInt       edge_cut;
+
+  PetscFunctionBeginUser;
+  for (study->parts = 2; study->parts <= MOST_PARTS && n / study->parts >= LEAST_CELLS; study->parts *= 2) {
+    PetscCall(PartitionGraph(n, study->offsets, study->adjacency, two_weights ? study->contact : NULL, study->parts, study->part, &edge_cut));
+    PetscCall(Print(study, "cells", PartitionImbalance(n, study->part, NULL, study->parts, study->count)));
+    PetscCall(Print(study, "contact", PartitionImbalance(n, study->part, study->contact, study->parts, study->count)));
+    PetscCall(PrintGhosts(study));
+    PetscCall(PrintContact(study));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+int main(int argc, char **argv)
+{
+  static char *rings[] = {"kinematics=small", "mesh.parameters={n_inner: 48, n_outer: 60, n_len: 16}"};
+  const char  *file    = argc > 1 ? argv[1] : "runs/ring_in_ring_3d.yaml";
+  const int    n_set   = argc > 1 ? argc - 2 : 2;
+  char *const *set     = argc > 1 ? argv + 2 : rings;
+  char         mesh_file[PETSC_MAX_PATH_LEN];
+  PetscReal    seconds;
+  PetscInt     n;
+  Scene        scene;
+  Study        study = {0};
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscInitialize(NULL, NULL, NULL, NULL));
+  PetscCall(SceneRead(PETSC_COMM_WORLD, file, n_set, set, &scene));
+  PetscCall(MeshGenerate(PETSC_COMM_WORLD, scene, "out/bench", mesh_file, &seconds));
+  PetscCall(MeshCreate(PETSC_COMM_WORLD, scene, mesh_file, &study.mesh));
+  PetscCall(AddPairs(scene, &study));
+  PetscCall(DMPlexCreatePartitionerGraph(study.mesh->dm, 0, &n, &study.offsets, &study.adjacency, NULL));
+  PetscCall(PetscMalloc2(n, &study.part, MOST_PARTS, &study.count));
+  for (int two = 1; two >= 0; two--) {
+    PetscCall(PetscPrintf(PETSC_COMM_SELF, "# parts of %s, %" PetscInt_FMT " cells, %s: imbalances (largest over mean), ghosts, messages\n", scene->name, n,
+                          two ? "cells and contact cells balanced" : "cells alone balanced"));
+    PetscCall(PrintPartitions(&study, two ? PETSC_TRUE : PETSC_FALSE));
+  }
+  PetscCall(PetscFree2(study.part, study.count));
+  PetscCall(PetscFree2(study.slave, study.opposite));
+  PetscCall(PetscFree(study.contact));
+  PetscCall(PetscFree(study.offsets));
+  PetscCall(PetscFree(study.adjacency));
+  PetscCall(MeshDestroy(&study.mesh));
+  PetscCall(SceneDestroy(&scene));
+  PetscCall(PetscFinalize());
+  return 0;
+}
