@@ -80,6 +80,7 @@ PetscErrorCode ArchiveCreate(MPI_Comm comm, const char *name, PetscInt64 bytes, 
   PetscFunctionBeginUser;
   PetscCall(ArchiveNew(comm, name, archive));
   if (!(*archive)->rank) cause = ReserveRoom((*archive)->temporary, bytes);
+  if (cause) PetscCall(PetscFree(*archive));
   PetscCheck(!cause, PETSC_COMM_SELF, PETSC_ERR_FILE_WRITE, "cannot write %s (%.3g MB): %s; what stood there before is intact", name, 1e-6 * (double)bytes,
              strerror(cause));
   PetscCallMPI(MPI_Barrier(comm));
