@@ -31,8 +31,8 @@ PETSC_TEXT = ("PetscStrallocpy", "PetscStrreplace", "PetscFunctionListCreateNode
 
 
 def definitions():
-    """{function: file} of the sources."""
-    return {name: path.stem for path in SOURCE.rglob("*.c") for name in re.findall(r"^(?:static )?(?:inline )?\w[\w ]*[ *](\w+)\([^;]*?\)\s*\{", path.read_text(), re.M)}
+    """{function: file} of the functions that may allocate; kernels, which cannot, have some names in common with them."""
+    return {name: path.stem for path in SOURCE.rglob("*.c") for name in re.findall(r"^(?:static )?PetscErrorCode (\w+)\([^;]*?\)\s*\{", path.read_text(), re.M)}
 
 
 def trace(name, overrides):
