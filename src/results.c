@@ -794,7 +794,7 @@ static void ResultsPrintDeep(Results results)
 }
 
 /* Linear solves that needed help, or did not become as accurate as they should be */
-static void ResultsPrintLinear(Results results)
+static void ResultsPrintLinear(Results results, const RunRecord *run)
 {
   LinearCounts counts;
 
@@ -805,8 +805,8 @@ static void ResultsPrintLinear(Results results)
   fprintf(
     stderr,
     "burnish: warning: %lld of %lld linear solves left a relative residual of up to %.2g, more than 100 times the tolerance, and refinement could not lower "
-    "it; Newton's method converged all the same, but the system is badly conditioned: is a penalty too large?\n",
-    (long long)counts.inaccurate, (long long)counts.solves, (double)counts.worst);
+    "it; %sthe system is badly conditioned: is a penalty too large?\n",
+    (long long)counts.inaccurate, (long long)counts.solves, (double)counts.worst, run->message ? "" : "Newton's method converged all the same, but ");
 }
 
 static void ResultsPrintEnd(Results results, const RunRecord *run)
@@ -850,7 +850,7 @@ PetscErrorCode ResultsFinish(Results results, const RunRecord *run)
   PetscCall(ResultsPrintUnused(results));
   ResultsPrintUnmet(results);
   ResultsPrintDeep(results);
-  ResultsPrintLinear(results);
+  ResultsPrintLinear(results, run);
   ResultsPrintEnd(results, run);
   PetscFunctionReturn(PETSC_SUCCESS);
 }

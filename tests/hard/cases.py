@@ -5,11 +5,11 @@ import pathlib
 from dataclasses import dataclass, field
 from math import inf, radians
 
-from expect import All, Balance, Done, Most, Near, Refused, Same, Stops, Turned, Uniform
+from expect import All, Balance, Done, Most, Near, Refused, Same, Stops, Told, Turned, Uniform
 
 HERE = pathlib.Path(__file__).resolve().parent
-RUNS = HERE.parent.parent / "runs"
-GROUPS = ("geometry", "contact", "steps", "numbers")
+RUNS, SCENES = HERE.parent.parent / "runs", HERE.parent / "scenes"
+GROUPS = ("geometry", "contact", "guards", "steps", "numbers")
 
 
 @dataclass
@@ -30,7 +30,7 @@ def mesh(**parameters):
 
 
 SQUEEZE, SOLID, PUNCH, ARCH = HERE / "squeeze.yaml", HERE / "squeeze_solid.yaml", HERE / "punch.yaml", HERE / "arch.yaml"
-SPHERES, PIPE, SLIDE = RUNS / "spheres.yaml", RUNS / "pipe_pinch.yaml", RUNS / "slide_flat.yaml"
+SPHERES, PIPE, SLIDE, STACK = RUNS / "spheres.yaml", RUNS / "pipe_pinch.yaml", RUNS / "slide_flat.yaml", SCENES / "stack.yaml"
 FORCES = ("force", "top", "bottom")  # of the punch: one force
 ANSWER = ("force", "sideways")
 VECTOR = ("sideways", "down")
@@ -54,6 +54,16 @@ WALLS = ["contact=[{name: joint, slave: upper_contact, master: {plane: {point: [
          "{name: wall, slave: upper_x_low, master: {plane: {point: [0, 0], normal: [1, 0]}}, penalty: {initial: auto, scale: 100}}]",
          "supports=[{surface: lower_far, ux: 0, uy: 0}]", "loads=[{surface: upper_far, pressure: 1}, {surface: upper_x_high, pressure: 1}]",
          "probes.2={name: wall, contact_force: wall, component: x, absolute: true}"]
+# Nothing but contact holds the upper block.
+HELD = mesh(n_lower=13, gap=0.01) + ["supports=[{surface: lower_far, ux: 0, uy: 0}]", "loads=[{surface: upper_far, pressure: 1}]"]
+# A block over a thin plate over a floor: the master is both their upper sides, 1.5 apart, and the penalty so soft that the block goes right into the plate.
+SVK = "material: {law: svk, E: 1000, nu: 0.3}"
+PLATE = mesh(floor=1.5, thickness=0.1) + [
+    f"bodies=[{{volume: lower, {SVK}}}, {{volume: floor, {SVK}}}, {{volume: upper, {SVK}}}]", "contact.0.master=tops", "contact.0.penalty.scale=1e-4",
+    "supports=[{surface: lower_bottom, ux: 0, uy: 0}, {surface: floor_bottom, ux: 0, uy: 0}]", "loads.0.uy=-1.5"]
+# A coarse pipe whose symmetry the contact does not know, by Newton steps that no line search shortens.
+PLAIN = ["mesh.order=1", "contact.0.symmetry=[]", "petsc={snes_linesearch_type: basic}",
+         "probes=[{name: plate_force, reaction: plate_top, component: y, absolute: true}]"]
 PINCHED = mesh(n_arc=6, n_len=2)
 STROKE = ("plate_force",)
 PSI = 0.45359237 * 9.80665 / 0.0254**2 / 1e6  # MPa
@@ -110,13 +120,6 @@ CASES = [
     Case("contact", "initial overlap, ramp", "no load but the overlap, brought in with t", SQUEEZE,
          mesh(n_lower=13, gap=-OVERLAP) + CLOSED + ["contact.0.initial_overlap=ramp", "contact.0.penalty={initial: 1e6}"],
          All(Near("force", closed(1e6), 0.005), Same("contact.0.initial_overlap=resolve", probes=("force",), bound=1e-5))),
-    Case("contact", "held by contact only", "nothing holds a loaded body until it touches", SQUEEZE,
-         mesh(n_lower=13, gap=0.01) + ["supports=[{surface: lower_far, ux: 0, uy: 0}]", "loads=[{surface: upper_far, pressure: 1}]"],
-         Stops("singular", "free to move")),
-    Case("contact", "chatter", "a pinched pipe without mirrored neighbours, plain Newton steps: the active set repeats", PIPE,
-         mesh(n_arc=16, n_wall=2, n_len=4) + ["mesh.order=1", "contact.0.symmetry=[]", "stepping.initial=0.04", "petsc={snes_linesearch_type: basic}",
-                                              "probes=[{name: plate_force, reaction: plate_top, component: y, absolute: true}]"],
-         Same("petsc={}", probes=STROKE, bound=0.001)),
     Case("contact", "lost and regained", "pressed, lifted off, pressed again", PUNCH, ["loads.0.history=[[0, 0], [0.3, 1], [0.5, -0.2], [1, 1]]"],
          All(Most("contact_nodes", 0, t=0.5), Same("loads.0.history=[[0, 0], [1, 1]]", probes=ANSWER, bound=(1e-8, 1e-8, 1e-5, 0.005)))),
     Case("contact", "large slip", "20 facets in 8 steps", SLIDE, ["stepping.initial=0.1"], All(Near("force_y", 160, 1e-9), Most("force_x", 160e-9))),
@@ -143,6 +146,25 @@ CASES = [
                  "probes.1={name: other, contact_force: other, component: y, absolute: true}"], All(Near("force", 0.5, 0.1), Near("other", 0.5, 0.1)), pairs=2),
     Case("contact", "corner of two walls", "the corner node is in two pairs, which alone hold the body", SQUEEZE, WALLS,
          All(Uniform(1, 1e-6), Near("wall", 0.5, 1e-6)), pairs=2),
+    Case("guards", "held by contact only", "nothing holds a loaded body until it touches", SQUEEZE, HELD,
+         Stops("singular", "holds 'upper'", "stabilise: true")),
+    Case("guards", "the same, stabilised", "springs hold it until it touches, and must leave no force behind", SQUEEZE, [*HELD, "contact.0.stabilise=true"],
+         All(Near("force", 1, 1e-9), Told("stabilisation.largest_energy_share", most=1e-15))),
+    Case("guards", "chatter", "a pinched pipe without mirrored neighbours, plain Newton steps: nodes come and go", PIPE,
+         [*mesh(n_arc=16, n_wall=2, n_len=4), *PLAIN, "stepping.initial=0.04"], Same("petsc={}", probes=STROKE, bound=0.001)),
+    Case("guards", "cycle", "the same, coarser: the contact set repeats itself every 2 to 6 iterations", PIPE,
+         [*mesh(n_arc=10, n_len=4), *PLAIN, "stepping.initial=0.1"],
+         All(Same("petsc={}", probes=STROKE, bound=(1e-8, 1e-8, 1e-5, 5e-4)), Told("cycles.found", least=1, last=r"repeats every \d .*: node \d+ of 'crown'"))),
+    Case("guards", "through a thin plate", "the floor below belongs to the master, and is nearer from t = 0.7 on", STACK, [*PLATE, "stepping.initial=0.1"],
+         Stops("lost behind a master", r"'joint': node \d+ was 0\.8 behind its master", "in front of another part of it", t=0.7, within=0.001)),
+    Case("guards", "over a thin plate at a leap", "in one step from above the plate to near the floor", STACK,
+         [*PLATE, "stepping={control: fixed, initial: 1, dt_min: 0.6}"],
+         Stops("lost behind a master", r"'joint': node \d+ was 1\.25 behind its master", "0.35 in front of another part of it", t=0)),
+    Case("guards", "penalty 1e10", "rounding of positions alone is a force above any tolerance", SQUEEZE, mesh(n_lower=13) + ["contact.0.penalty.scale=1e10"],
+         All(Stops("penalty is too stiff: rounding of positions", r"node \d+"), Told("linear.inaccurate", least=1))),
+    Case("guards", "stiffness 1:1e9", "one body is as good as rigid: rounding in it hides the load, no refinement helps", SQUEEZE,
+         mesh(n_lower=13) + ["bodies.1.material.E=1e12"],
+         All(Same("bodies.1.material.E=1e9", probes=("force", "deviation"), bound=1e-4), Told("linear.refined", least=1), Told("linear.inaccurate", least=1))),
     Case("steps", "dt 10 times too large", "half of the pipe's stroke at once", PIPE, PINCHED + ["stepping.initial=0.5"],
          Same("stepping.initial=0.05", probes=STROKE, bound=(1e-8, 1e-8, 2e-4, 5e-4))),
     Case("steps", "whole load in one step", "every node of the contact zone at once", PUNCH, ["stepping.initial=1"],

@@ -100,6 +100,19 @@ class Turned(Done):
         return error <= of_variant(self.bound, variant), f"differs {figure(error)}"
 
 
+class Told(Done):
+    """A figure of summary.json, by its path there, lies between bounds; words: what another entry of the same map says, by its name."""
+
+    def __init__(self, path, least=-numpy.inf, most=numpy.inf, **words):
+        self.path, self.least, self.most, self.words = path.split("."), least, most, words
+
+    def judge(self, finished, variant, again):
+        figures = finished.summary()[self.path[0]]
+        value = figures[self.path[1]]
+        says = all(re.search(words, figures[name] or "") for name, words in self.words.items())
+        return says and self.least <= value <= self.most, f"{' '.join(self.path).replace('_', ' ')} {value:.2g}"
+
+
 class Refused:
     """Wrong input: exit status 1 and a message with these words."""
 
@@ -131,10 +144,10 @@ class Stops(Refused):
 
 
 class All(Done):
-    """Several at once; the figures of all."""
+    """Several at once; the figures of all. The first says how the run ends."""
 
     def __init__(self, *parts):
-        self.parts = parts
+        self.parts, self.status = parts, parts[0].status
 
     def judge(self, finished, variant, again):
         judged = [part.judge(finished, variant, again) for part in self.parts]
