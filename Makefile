@@ -100,7 +100,8 @@ study: all ## accuracy against time: tables and plots in out/study/ (QUICK=1: sh
 bench: all tests ## raw timing records, their tables and a plot in out/bench/ (LARGE=1: up to 1e6 unknowns)
 	@[ -x $(VENV)/bin/python ] || { echo "no Python environment in $(VENV): run make deps" >&2; exit 1; }
 	@scripts/bench.sh $(BUILD)
-	@$(VENV)/bin/python scripts/scaling.py --burnish $(BURNISH) $(if $(LARGE),--large) --out out/bench | tee out/bench/scaling.txt
+	@$(VENV)/bin/python scripts/scaling.py --burnish $(BURNISH) $(if $(LARGE),--large) --out out/bench >out/bench/scaling.txt
+	@cat out/bench/scaling.txt
 
 fuzz: ## looks for files that break the readers, SECONDS=600 for each, with clang
 	@scripts/fuzz.sh $(or $(SECONDS),600)

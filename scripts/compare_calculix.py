@@ -68,7 +68,7 @@ def ccx_pipe(element, n_arc, n_wall, n_len, n_plate_y, increment, swapped=False)
 
 def ccx_cup(increment, scale=100.0, contact="SURFACE TO SURFACE"):
     """CalculiX on the cup; the penalty's scale is named where it is not the scene's."""
-    words = [f"CAX4, {round(1 / increment)} steps"]
+    words = [f"CAX4, {round(1 / increment)} steps" if increment < 1 else "CAX4, one step"]
     words += (["node to surface"] if contact == "NODE TO SURFACE" else []) + ([f"scale {scale:g}"] if scale != 100 else [])
     return Setting("cup_flattening", "calculix", f"{', '.join(words)}, 120x3", 1, {"n_arc": 120, "n_wall": 3}, element="CAX4", slave="outer",
                    increment=increment, contact=contact, scale=scale)
