@@ -42,6 +42,8 @@ struct _n_Results {
 
 /* From this on elements of first order lock: at 0.49 the bulk modulus is fifty times the shear modulus. */
 #define LOCKING_NU 0.49
+/* Open MPI 4 ends with a buffer overflow where the path of a file that all ranks write has some 240 characters. */
+#define LONGEST_DIRECTORY 220
 
 /* The record of the scene in its directory: one line with the file's name, then the text */
 static const char record_name[] = "scene.yaml", record_head[] = "# scene: ";
@@ -123,6 +125,14 @@ static void FirstDifference(const char *a, const char *b, char line_a[LINE_SIZE]
   LineCopy(*b ? b : "(nothing)", line_b);
 }
 
+/* Characters in the path of a directory from the root */
+static size_t PathLength(const char *directory)
+{
+  char here[PETSC_MAX_PATH_LEN];
+
+  return strlen(directory) + (directory[0] != '/' && getcwd(here, sizeof(here)) ? strlen(here) + 1 : 0);
+}
+
 /* Rank 0: why the directory may not be used, or an empty message */
 static void DirectoryComplaint(Scene scene, const char *directory, PetscBool overwrite, char message[MESSAGE_SIZE])
 {
@@ -130,6 +140,11 @@ static void DirectoryComplaint(Scene scene, const char *directory, PetscBool ove
   char       *record, there[LINE_SIZE] = "unknown", line_there[LINE_SIZE], line_here[LINE_SIZE];
 
   *message = '\0';
+  if (PathLength(directory) > LONGEST_DIRECTORY) {
+    snprintf(message, MESSAGE_SIZE, "-o %s: the path has %zu characters from the root; allowed: at most %d, as MPI's files take no longer ones", directory,
+             PathLength(directory), LONGEST_DIRECTORY);
+    return;
+  }
   if (stat(directory, &status)) return;
   if (!S_ISDIR(status.st_mode)) {
     snprintf(message, MESSAGE_SIZE, "-o %s: a file of that name is in the way; allowed: a directory, or a name that is free", directory);
