@@ -68,6 +68,18 @@ static const LaneMask swap_high[SWAP_STAGES] = {
 };
 #endif
 
+#ifdef __clang__ /* has no __builtin_shuffle() */
+LANES_INLINE Lanes Shuffle(Lanes a, Lanes b, LaneMask from)
+{
+  Lanes mixed = a;
+
+  for (int i = 0; i < LANES; i++) mixed[i] = from[i] < LANES ? a[from[i]] : b[from[i] - LANES];
+  return mixed;
+}
+#else
+  #define Shuffle __builtin_shuffle
+#endif
+
 /* Turns a square of LANES vectors over, by swapping ever larger off-diagonal blocks. */
 LANES_INLINE void Transpose(Lanes a[LANES])
 {
@@ -78,9 +90,9 @@ LANES_INLINE void Transpose(Lanes a[LANES])
       const int j = i + half;
 
       if (!(i & half)) {
-        const Lanes low = __builtin_shuffle(a[i], a[j], swap_low[stage]);
+        const Lanes low = Shuffle(a[i], a[j], swap_low[stage]);
 
-        a[j] = __builtin_shuffle(a[i], a[j], swap_high[stage]);
+        a[j] = Shuffle(a[i], a[j], swap_high[stage]);
         a[i] = low;
       }
     }

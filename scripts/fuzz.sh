@@ -5,7 +5,7 @@ set -euo pipefail
 seconds=$1 build=build/fuzz status=0
 command -v clang >/dev/null || { echo "make fuzz: clang is missing (Debian: apt install clang)" >&2; exit 1; }
 export OMPI_CC=clang MPICH_CC=clang ASAN_OPTIONS=detect_leaks=0:allocator_may_return_null=1 # what a refusal leaves behind is not freed: it ends the program
-make -s BUILD="$build" CPPFLAGS=-DFUZZER CFLAGS='-O1 -g -fno-omit-frame-pointer -fsanitize=fuzzer-no-link,address,undefined -fno-sanitize-recover=undefined' \
+make -s -j "$(env -u OMP_NUM_THREADS nproc)" BUILD="$build" CPPFLAGS=-DFUZZER CFLAGS='-O1 -g -fno-omit-frame-pointer -fsanitize=fuzzer-no-link,address,undefined -fno-sanitize-recover=undefined' \
   LDLIBS=-fsanitize=fuzzer "$build"/tests/fuzz_scene "$build"/tests/fuzz_mesh
 for reader in scene mesh; do
   mkdir -p out/fuzz/"$reader"

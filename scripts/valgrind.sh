@@ -7,7 +7,7 @@ command -v valgrind >/dev/null || { echo "make valgrind: valgrind is missing (De
 for source in tests/unit/test_*.c; do
   grep -qE 'PetscInitialize|MPI_Init' "$source" || tests+=("$build/tests/$(basename "$source" .c)")
 done
-make -s BUILD="$build" ARCH=x86-64-v3 CFLAGS='-O1 -g' "${tests[@]}" || exit 1
+make -s -j "$(env -u OMP_NUM_THREADS nproc)" BUILD="$build" ARCH=x86-64-v3 CFLAGS='-O1 -g' "${tests[@]}" || exit 1
 for test in "${tests[@]}"; do
   if valgrind -q --leak-check=full --error-exitcode=66 "$test" >"$build/log" 2>&1; then
     echo "clean $(basename "$test")"
