@@ -17,7 +17,7 @@ TOLERANCE = 5e-3  # of numbers: steps land where iterations say, which depend on
 ROUNDING = 1e-12  # nothing shown is that small and means something
 # What differs from machine to machine and run to run
 MACHINE = [
-    (r"(?m)^(BLAS|machine) .*$", r"\1"),
+    (r"(?m)^(BLAS|machine|time) .*$", r"\1"),
     (r"tangent [\d.e+-]+, factor and solve [\d.e+-]+", "TIMES"),
     (r"\d+:\d\d (min|h)|\d+(\.\d+)? (ms|s|min|h|kB|MB|GB)\b", "TIME"),
     (r"\d+(\.\d+)? (per cent|%)", "SHARE"),
@@ -35,7 +35,8 @@ def commands(block):
 def neutral(text):
     for pattern, word in MACHINE:
         text = re.sub(pattern, word, text)
-    return re.sub(r"[ \t]+", " ", text).strip()
+    lines = re.sub(r"[ \t]+", " ", text).strip().splitlines()
+    return "\n".join(sorted(lines, key=lambda line: "warning:" in line))  # mpirun passes the two streams on in either order
 
 
 def same(shown, came):
