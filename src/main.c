@@ -187,7 +187,7 @@ int main(int argc, char **argv)
   CommandLineParse(argc, argv, &command);
   if (command.mode == COMMAND_RUN) InterruptionInstall(command.time_limit);
   if (PetscInitialize(&command.argc, &command.argv, NULL, NULL)) return EXIT_MACHINE;
-  signal(SIGPIPE, SIG_IGN); /* who reads the terminal's text may leave before its end */
+  signal(SIGPIPE, SIG_IGN);                                                 /* who reads the terminal's text may leave before its end */
   if (command.mode == COMMAND_RUN) InterruptionInstall(command.time_limit); /* PETSc has taken SIGTERM */
   if (command.complaint[0]) PetscCall(RefuseInput(PETSC_COMM_WORLD, "%s", command.complaint));
   PetscCallMPI(MPI_Comm_rank(PETSC_COMM_WORLD, &rank));
