@@ -315,7 +315,7 @@ PetscErrorCode MultigridSetContact(Multigrid m, Mat C, PetscBool changed)
     PetscCall(MatRestoreRow(C, row, &entries, NULL, &value));
     if (coupled) rows[n++] = row;
   }
-  PetscCallMPI(MPIU_Allreduce(&n, &all, 1, MPIU_INT, MPI_SUM, m->mesh->comm));
+  PetscCallMPI(MPI_Allreduce(&n, &all, 1, MPIU_INT, MPI_SUM, m->mesh->comm));
   if (all) PetscCall(ISCreateGeneral(m->mesh->comm, n, rows, PETSC_COPY_VALUES, &m->interface));
   PetscCall(PetscFree(rows));
   if (m->interface && before) PetscCall(ISEqual(m->interface, before, &same));
