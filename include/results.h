@@ -20,9 +20,8 @@ typedef struct {
 typedef struct {
   const char          *status;  /* "done", "not converged", "stopped" */
   const char          *message; /* cause, or NULL */
-  PetscInt             steps, steps_failed, steps_repeated, newton_iterations, newton_accepted, krylov_iterations;
   PetscReal            wall_s, mesh_s;
-  const StepperReport *way; /* guards that acted, contact sets that repeated themselves, where it failed */
+  const StepperReport *way; /* counts, guards that acted, where it failed */
 } RunRecord;
 
 /* Refuses a directory that holds another scene's results unless overwrite. To be called before anything is written or solved. Collective. */

@@ -77,21 +77,21 @@ static const PairRuleFn pair_rules[] = {PenetrationIsDeep, FacetsAreCoarse, Fits
 
 static int StepsFail(const RunFigures *figures, char *text)
 {
-  const RunRecord *run = figures->run;
+  const StepperReport *way = figures->run->way;
 
-  if (!run->way->done || run->steps_failed <= ADVICE_FAILED * PetscMax(run->steps, 1)) return 0;
+  if (!way->done || way->steps_failed <= ADVICE_FAILED * PetscMax(way->steps, 1)) return 0;
   snprintf(text, ADVICE_TEXT, "%lld steps failed on the way to %lld: a smaller stepping.initial or dt_max, or stepping.control: contact",
-           (long long)run->steps_failed, (long long)run->steps);
+           (long long)way->steps_failed, (long long)way->steps);
   return 1;
 }
 
 static int StepsRepeat(const RunFigures *figures, char *text)
 {
-  const RunRecord *run = figures->run;
+  const StepperReport *way = figures->run->way;
 
-  if (run->steps_repeated <= ADVICE_REPEATED * PetscMax(run->steps, 1)) return 0;
+  if (way->steps_repeated <= ADVICE_REPEATED * PetscMax(way->steps, 1)) return 0;
   snprintf(text, ADVICE_TEXT, "%lld steps were taken back by the control: stepping.prediction: tangent, or more nodes a step (N_c, N_c_fraction)",
-           (long long)run->steps_repeated);
+           (long long)way->steps_repeated);
   return 1;
 }
 
@@ -99,7 +99,7 @@ static int ListsAreRemade(const RunFigures *figures, char *text)
 {
   const PetscInt times = figures->run->way->regathered;
 
-  if (times <= ADVICE_REGATHERED * PetscMax(figures->run->steps, 1)) return 0;
+  if (times <= ADVICE_REGATHERED * PetscMax(figures->run->way->steps, 1)) return 0;
   snprintf(text, ADVICE_TEXT, "contact lists were made anew %lld times within steps: contact slides far in one; smaller steps (stepping.dt_max) are cheaper",
            (long long)times);
   return 1;
@@ -107,8 +107,8 @@ static int ListsAreRemade(const RunFigures *figures, char *text)
 
 static int StepsAreLong(const RunFigures *figures, char *text)
 {
-  const RunRecord *run  = figures->run;
-  const PetscReal  each = (PetscReal)run->newton_accepted / PetscMax(run->steps, 1);
+  const StepperReport *way  = figures->run->way;
+  const PetscReal      each = (PetscReal)way->newton_accepted / PetscMax(way->steps, 1);
 
   if (each <= ADVICE_ITERATIONS) return 0;
   snprintf(text, ADVICE_TEXT, "%.1f iterations a step: smaller steps (stepping.initial, dt_max) may need fewer in all", (double)each);
@@ -117,11 +117,11 @@ static int StepsAreLong(const RunFigures *figures, char *text)
 
 static int LineSearchCuts(const RunFigures *figures, char *text)
 {
-  const RunRecord *run = figures->run;
+  const StepperReport *way = figures->run->way;
 
-  if (run->way->cuts <= ADVICE_CUTS * run->newton_iterations) return 0;
-  snprintf(text, ADVICE_TEXT, "the line search shortened %lld of %lld iterations: smaller steps, or a softer penalty at first (adjust)",
-           (long long)run->way->cuts, (long long)run->newton_iterations);
+  if (way->cuts <= ADVICE_CUTS * way->newton_iterations) return 0;
+  snprintf(text, ADVICE_TEXT, "the line search shortened %lld of %lld iterations: smaller steps, or a softer penalty at first (adjust)", (long long)way->cuts,
+           (long long)way->newton_iterations);
   return 1;
 }
 

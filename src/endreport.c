@@ -101,14 +101,14 @@ static void PrintAdvice(const char *line, void *stream)
 /* EndReportPrint - the last screen but for probes and the closing line. Contact: of the last accepted state. Not collective. */
 void EndReportPrint(const RunFigures *figures, FILE *stream)
 {
-  const RunRecord *run = figures->run;
+  const StepperReport *way = figures->run->way;
 
   fprintf(stream, "\neffects  %s; %lld dofs on %d rank%s\n", figures->effects, (long long)figures->dofs, figures->ranks, figures->ranks > 1 ? "s" : "");
-  fprintf(stream, "steps    %lld, failed %lld, repeated %lld; iterations %lld, of these %lld in accepted steps\n", (long long)run->steps,
-          (long long)run->steps_failed, (long long)run->steps_repeated, (long long)run->newton_iterations, (long long)run->newton_accepted);
+  fprintf(stream, "steps    %lld, failed %lld, repeated %lld; iterations %lld, of these %lld in accepted steps\n", (long long)way->steps,
+          (long long)way->steps_failed, (long long)way->steps_repeated, (long long)way->newton_iterations, (long long)way->newton_accepted);
   PrintTime(figures, stream);
   for (int p = 0; p < figures->n_pairs && figures->last; p++) PrintPair(&figures->pairs[p], stream);
   PrintGuards(figures, stream);
-  if (run->way->failed.attempts) PrintFailure(figures, stream);
+  if (way->failed.attempts) PrintFailure(figures, stream);
   AdviceGive(figures, PrintAdvice, stream);
 }

@@ -82,21 +82,15 @@ static PetscErrorCode RunModel(Model model, Probes probes, Scene scene, Checkpoi
   PetscCall(PetscLogStagePop());
   if (!report.done && watch.kept != report.steps) PetscCall(CheckpointWrite(checkpoint));
   PetscCall(PetscTime(&now));
-  run = (RunRecord){.status            = report.done      ? "done"
-                                         : report.stopped ? "stopped"
-                                                          : "not converged",
-                    .message           = report.done      ? NULL
-                                         : report.stopped ? watch.message
-                                                          : report.message,
-                    .steps             = report.steps,
-                    .steps_failed      = report.steps_failed,
-                    .steps_repeated    = report.steps_repeated,
-                    .newton_iterations = report.newton_iterations,
-                    .newton_accepted   = report.newton_accepted,
-                    .krylov_iterations = report.krylov_iterations,
-                    .wall_s            = now - start,
-                    .mesh_s            = mesh_s,
-                    .way               = &report};
+  run = (RunRecord){.status  = report.done      ? "done"
+                               : report.stopped ? "stopped"
+                                                : "not converged",
+                    .message = report.done      ? NULL
+                               : report.stopped ? watch.message
+                                                : report.message,
+                    .wall_s  = now - start,
+                    .mesh_s  = mesh_s,
+                    .way     = &report};
   PetscCall(ResultsFinish(watch.results, &run));
   PetscCall(LoadStepperDestroy(&stepper));
   PetscCall(ResultsDestroy(&watch.results));

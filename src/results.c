@@ -836,8 +836,9 @@ static void ResultsPrintEnd(Results results, const RunRecord *run)
   if (run->way->cycles)
     printf("contact sets that repeated themselves: %lld, steps cut for it %lld; the last time %s\n", (long long)run->way->cycles,
            (long long)run->way->cycles_cut, run->way->cycle);
-  printf("%s: %lld steps (%lld failed, %lld repeated), %lld iterations, %s; results in %s\n", run->status, (long long)run->steps, (long long)run->steps_failed,
-         (long long)run->steps_repeated, (long long)run->newton_iterations, DurationText((double)run->wall_s, text), results->directory);
+  printf("%s: %lld steps (%lld failed, %lld repeated), %lld iterations, %s; results in %s\n", run->status, (long long)run->way->steps,
+         (long long)run->way->steps_failed, (long long)run->way->steps_repeated, (long long)run->way->newton_iterations,
+         DurationText((double)run->wall_s, text), results->directory);
   fflush(stdout);
 }
 

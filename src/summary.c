@@ -54,12 +54,12 @@ static void AddRun(cJSON *json, const RunRecord *run)
     cJSON_AddStringToObject(json, "message", run->message);
   else
     cJSON_AddNullToObject(json, "message");
-  cJSON_AddNumberToObject(json, "steps", (double)run->steps);
-  cJSON_AddNumberToObject(json, "steps_failed", (double)run->steps_failed);
-  cJSON_AddNumberToObject(json, "steps_repeated", (double)run->steps_repeated);
-  cJSON_AddNumberToObject(json, "newton_iterations", (double)run->newton_iterations);
-  cJSON_AddNumberToObject(json, "newton_accepted", (double)run->newton_accepted);
-  cJSON_AddNumberToObject(json, "krylov_iterations", (double)run->krylov_iterations);
+  cJSON_AddNumberToObject(json, "steps", (double)run->way->steps);
+  cJSON_AddNumberToObject(json, "steps_failed", (double)run->way->steps_failed);
+  cJSON_AddNumberToObject(json, "steps_repeated", (double)run->way->steps_repeated);
+  cJSON_AddNumberToObject(json, "newton_iterations", (double)run->way->newton_iterations);
+  cJSON_AddNumberToObject(json, "newton_accepted", (double)run->way->newton_accepted);
+  cJSON_AddNumberToObject(json, "krylov_iterations", (double)run->way->krylov_iterations);
 }
 
 static void AddUsage(cJSON *json, const RunFigures *figures)

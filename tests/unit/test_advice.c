@@ -26,8 +26,8 @@ static void Good(Case *c)
      .scene   = &c->scene,
      .quality = {.nodes = 5, .max_penetration = 1e-4, .max_penetration_over_h = 1e-4}
   };
-  c->way     = (StepperReport){.done = PETSC_TRUE};
-  c->run     = (RunRecord){.steps = 10, .newton_iterations = 50, .newton_accepted = 50, .way = &c->way};
+  c->way     = (StepperReport){.done = PETSC_TRUE, .steps = 10, .newton_iterations = 50, .newton_accepted = 50};
+  c->run     = (RunRecord){.way = &c->way};
   c->figures = (RunFigures){.run = &c->run, .usage = {.wall_s = 1}, .last = &c->last, .n_pairs = 1, .pairs = &c->pair};
 }
 
@@ -83,14 +83,14 @@ static void test_steps(void **state)
 
   (void)state;
   Good(&c);
-  c.run.steps_failed = 2;
+  c.way.steps_failed = 2;
   Expect(&c, NULL);
-  c.run.steps_failed = 3;
+  c.way.steps_failed = 3;
   Expect(&c, "3 steps failed");
   c.way.done = PETSC_FALSE; /* the failure says more */
   Expect(&c, NULL);
   Good(&c);
-  c.run.steps_repeated = 6;
+  c.way.steps_repeated = 6;
   Expect(&c, "taken back");
   Good(&c);
   c.way.regathered = 11;
@@ -99,7 +99,7 @@ static void test_steps(void **state)
   c.way.cuts = 20;
   Expect(&c, "line search");
   Good(&c);
-  c.run.newton_iterations = c.run.newton_accepted = 130;
+  c.way.newton_iterations = c.way.newton_accepted = 130;
   Expect(&c, "13.0 iterations a step");
   Good(&c);
   c.figures.usage.wall_s                 = 40;
