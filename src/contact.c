@@ -424,10 +424,12 @@ static PetscErrorCode SharedBlocks(Contact contact, ContactPair *pair, int p, co
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Pressure whose turning with the surface counts in a tangent: in a linear step that of the accepted state, not what pulls a term to its place. */
+/* Pressure whose turning with the surface counts in a tangent: in a linear step that of the accepted state, not what pulls a term to its place. The
+   state before any load is in no equilibrium: its overlaps pull, and their pressure grows with the penalty until the tangent is indefinite. */
 static PetscReal TermTurningPressure(const ContactPair *pair, PetscInt c, PetscReal t, const LawValue *value)
 {
   if (!pair->predicting) return value->pressure;
+  if (pair->touching) return 0;
   return pair->accepted.status[c] == CONTACT_CLOSED ? pair->accepted.penalty[c] * (ContactTermOffset(pair, c, t) - pair->accepted.gap[c]) : 0;
 }
 
