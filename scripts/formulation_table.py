@@ -2,15 +2,14 @@
 failed steps, CPU seconds, results) is printed from there:
     formulation_table.py [--burnish BINARY] [--record FILE] [CASE...]     runs (these cases are added to the record, or replaced there) and prints
     formulation_table.py --print [--record FILE]                          prints only"""
-import argparse
 import csv
 import json
-import pathlib
 import shutil
 import subprocess
 import sys
 
-ROOT = pathlib.Path(__file__).resolve().parent.parent
+from launch import ROOT, table_parser
+
 FORMULATIONS = ("node_to_surface", "surface_to_surface")
 FINE = "h_contact: 0.25, h_far: 3, n_thick: 4, n_width: 6"  # first-order plate: as many nodes over the patch
 FREE = "contact.0.penalty.adjust=false"
@@ -78,12 +77,8 @@ def table(rows):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = table_parser(__doc__, "formulations", "paper_formulations")
     parser.add_argument("cases", nargs="*", metavar="CASE", help=f"beginnings of: {'; '.join(CASES)}. Default: all")
-    parser.add_argument("--burnish", type=pathlib.Path, default=ROOT / "build/burnish")
-    parser.add_argument("--out", type=pathlib.Path, default=ROOT / "out/formulations")
-    parser.add_argument("--record", type=pathlib.Path, default=ROOT / "out/paper_formulations.csv")
-    parser.add_argument("--print", dest="only_print", action="store_true", help="of the record that is there; runs nothing")
     args = parser.parse_args()
     rows = []
     if args.record.exists():
