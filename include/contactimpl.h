@@ -9,7 +9,7 @@
 #include "smoother.h"
 
 /* What the points of one evaluation are made of: row 0 the slave point, 1 + i the i-th point that takes part; entries ptr[r] to ptr[r + 1] are nodes
-   (places in the work's number[]) with weights S, reflected by sign (3 for each row). */
+   (places in the work's number[]) with weights S, reflected by sign (3 for each entry). */
 typedef struct {
   int    *ptr, *node;
   double *S, *sign;
@@ -55,6 +55,7 @@ typedef struct {
   const Law          *law;
   SlavePoints         slaves;
   Offsets             slave_offsets, master_offsets; /* surface to surface; NULL: none */
+  PetscBool           lags;                          /* offsets are held in a solve: it may find them old */
   ContactSearch       search;
   PetscInt            n, *node; /* terms: local nodes */
   PetscReal          *area, *size, *turn;

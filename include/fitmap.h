@@ -1,5 +1,5 @@
-/* Variations of the diffuse gap over nodes, where fit points and slave point are combinations of nodes: x = sign * (sum S x_node) by component,
-   as quadrature points of faces are. Plain C: no PETSc, no MPI, no allocation.
+/* Variations of the diffuse gap over nodes, where fit points and slave point are combinations of nodes: x = sum S sign * x_node by component,
+   as quadrature points of faces are, those on mirror images and those with an offset that follows the nodes around. Plain C: no PETSc, no MPI, no allocation.
 
    A support has more points than nodes behind them, and M grows with the square: FitMapAdd() therefore takes the factors of M to the nodes
    (FitResult.factors instead of FitResult.M), not M. */
@@ -13,7 +13,7 @@ typedef struct {
   const int    *ptr;  /* [1 + points inside + 1] */
   const int    *node; /* of each entry, below n_nodes; negative: left out, a rigid tool's node without unknowns */
   const double *S;    /* of each entry */
-  const double *sign; /* [1 + points inside][3], each +1 or -1, whatever the dimension */
+  const double *sign; /* of each entry 3, each +1 or -1, whatever the dimension */
 } FitMap;
 
 /* A sum of second variations in the making: FitMapBegin(), FitMapAdd() for each slave point, FitMapEnd() */

@@ -183,7 +183,8 @@ static PetscErrorCode PairSharedForces(ContactPair *pair)
   PetscFunctionBeginUser;
   PetscCall(PetscCalloc2(lists->n_nodes * dim, &values, pair->mesh->n_nodes * dim, &nodal));
   for (PetscInt q = 0; q < lists->n_slaves; q++)
-    for (PetscInt k = lists->slave_ptr[q]; k < lists->slave_ptr[q + 1]; k++) values[lists->slave_node[k] * dim] += pair->slaves->hat[k] * pair->point_force[q];
+    for (PetscInt k = pair->slaves->ptr[q], node = lists->slave_ptr[q]; k < pair->slaves->ptr[q + 1]; k++, node++)
+      values[lists->slave_node[node] * dim] += pair->slaves->hat[k] * pair->point_force[q];
   PetscCall(ListsReduce(lists, values, nodal));
   for (PetscInt c = 0; c < pair->n; c++) pair->force[c] = nodal[pair->node[c] * dim];
   PetscCall(PetscFree2(values, nodal));

@@ -85,7 +85,7 @@ static PetscErrorCode WorkReserveMap(ContactWork *work, ContactLists lists, Pets
     work->map.entries_room = 2 * (int)entries;
     PetscCall(PetscFree5(work->map.ptr, work->map.node, work->map.S, work->map.sign, work->number));
     PetscCall(PetscMalloc5(work->map.rows_room + 1, &work->map.ptr, work->map.entries_room, &work->map.node, work->map.entries_room, &work->map.S,
-                           3 * work->map.rows_room, &work->map.sign, work->map.entries_room, &work->number));
+                           3 * work->map.entries_room, &work->map.sign, work->map.entries_room, &work->number));
   }
   if (lists->n_nodes > work->slot_room) {
     work->slot_room = 2 * lists->n_nodes;
@@ -109,10 +109,13 @@ PetscErrorCode ContactWorkDestroy(ContactWork *work)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static void MapAddRow(ContactWork *work, int row, PetscInt n, const PetscInt *nodes, const PetscReal *S, const PetscReal *sign)
+/* A row of n images of nodes, side[n], on image `image`. */
+static void MapAddRow(const ContactPair *pair, int row, int image, PetscInt n, const PetscInt *nodes, const int *side, const PetscReal *S)
 {
-  ContactMap *map = &work->map;
-  int         k   = map->ptr[row];
+  ContactWork     *work = pair->work;
+  ContactMap      *map  = &work->map;
+  const PetscReal *sign = pair->images[image].sign;
+  int              k    = map->ptr[row];
 
   for (PetscInt a = 0; a < n; a++, k++) {
     int *slot = &work->slot[nodes[a]];
@@ -123,23 +126,25 @@ static void MapAddRow(ContactWork *work, int row, PetscInt n, const PetscInt *no
     }
     map->node[k] = *slot;
     map->S[k]    = S[a];
+    for (int d = 0; d < 3; d++) map->sign[3 * k + d] = sign[d] * pair->images[side[a]].sign[d];
   }
-  for (int d = 0; d < 3; d++) map->sign[3 * row + d] = sign ? sign[d] : 1;
   map->ptr[row + 1] = k;
 }
 
 /* The map of the last evaluation. */
 static void MapFill(const ContactPair *pair, ContactLists lists, PetscInt q)
 {
-  ContactWork *work = pair->work;
+  ContactWork   *work = pair->work;
+  const PetscInt own  = lists->slave_ptr[q];
 
   work->count      = 0;
   work->map.ptr[0] = 0;
-  MapAddRow(work, 0, lists->slave_ptr[q + 1] - lists->slave_ptr[q], &lists->slave_node[lists->slave_ptr[q]], &lists->slave_S[lists->slave_ptr[q]], NULL);
+  MapAddRow(pair, 0, 0, lists->slave_ptr[q + 1] - own, &lists->slave_node[own], &lists->slave_side[own], &lists->slave_S[own]);
   for (int i = 0; i < work->result.n; i++) {
     const PetscInt p = lists->list_point[lists->list_ptr[q] + work->result.points[i]], first = lists->point_ptr[p];
 
-    MapAddRow(work, 1 + i, lists->point_ptr[p + 1] - first, &lists->point_node[first], &lists->point_S[first], pair->images[lists->point_image[p]].sign);
+    MapAddRow(pair, 1 + i, lists->point_image[p], lists->point_ptr[p + 1] - first, &lists->point_node[first], &lists->point_side[first],
+              &lists->point_S[first]);
   }
   for (PetscInt i = 0; i < work->count; i++) work->slot[work->number[i]] = -1;
 }
@@ -201,7 +206,7 @@ static PetscErrorCode AddFacetSecond(ContactWork *work, int dim, PetscReal facto
   for (int i = 0; i < rows; i++) {
     for (int k = map->ptr[i]; k < map->ptr[i + 1]; k++) {
       for (int d = 0; d < dim; d++) {
-        const PetscReal  scale = factor * map->S[k] * map->sign[3 * i + d];
+        const PetscReal  scale = factor * map->S[k] * map->sign[3 * k + d];
         const PetscReal *from  = &r->M[(i * dim + d) * m];
         PetscReal       *to    = &work->half[(map->node[k] * dim + d) * m];
 
@@ -212,7 +217,7 @@ static PetscErrorCode AddFacetSecond(ContactWork *work, int dim, PetscReal facto
   for (int i = 0; i < rows; i++) {
     for (int k = map->ptr[i]; k < map->ptr[i + 1]; k++) {
       for (int d = 0; d < dim; d++) {
-        const PetscReal scale = map->S[k] * map->sign[3 * i + d];
+        const PetscReal scale = map->S[k] * map->sign[3 * k + d];
 
         for (int j = 0; j < n; j++) work->sum.M[j * n + map->node[k] * dim + d] += scale * work->half[j * m + i * dim + d];
       }

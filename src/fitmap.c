@@ -12,7 +12,7 @@
 /* What is summed in registers at a time: vectors of a row, for that many entries of a run */
 enum { ROW_VECTORS = 4, ROW_ENTRIES = LANES == 8 ? 4 : 2 };
 
-/* Rows first to end - 1 of the map, which have the same nodes and signs: entry k of row r is S[(r - first)*entries + k]. */
+/* Rows first to end - 1 of the map, which have the same nodes and signs: entry k of row r is S[(r - first)*entries + k], its signs are sign[3*k]. */
 typedef struct {
   int           first, end, entries;
   const int    *node;
@@ -34,8 +34,8 @@ static int SameNodes(const FitMap *map, int a, int b)
   if (ptr[b + 1] - ptr[b] != entries) return 0;
   for (int k = 0; k < entries; k++)
     if (map->node[ptr[a] + k] != map->node[ptr[b] + k]) return 0;
-  for (int c = 0; c < 3; c++)
-    if (map->sign[3 * a + c] != map->sign[3 * b + c]) return 0;
+  for (int k = 0; k < 3 * entries; k++)
+    if (map->sign[3 * ptr[a] + k] != map->sign[3 * ptr[b] + k]) return 0;
   return 1;
 }
 
@@ -46,7 +46,7 @@ static FitRun NextRun(const FitMap *map, int rows, int first)
   int       end   = first + 1;
 
   while (first > 0 && end < rows && SameNodes(map, first, end)) end++;
-  return (FitRun){first, end, map->ptr[first + 1] - start, map->node + start, map->S + start, map->sign + 3 * first};
+  return (FitRun){first, end, map->ptr[first + 1] - start, map->node + start, map->S + start, map->sign + 3 * start};
 }
 
 /* Adds some vectors of a run's rows of K and J, of component c, to those of some of its nodes. A node may be among them twice. */
@@ -64,9 +64,10 @@ LANES_INLINE void AddTile(const int dim, const int vectors, const int entries, c
   }
   for (int a = 0; a < entries; a++) {
     const int    node = run->node[k + a];
+    const double sign = run->sign[3 * (k + a) + c];
     Lanes *const at   = nodal->rows + ((node < 0 ? nodal->stride : node * dim) + c) * vectors + v;
 
-    for (int b = 0; b < count; b++) at[b] += run->sign[c] * sum[a][b];
+    for (int b = 0; b < count; b++) at[b] += sign * sum[a][b];
   }
 }
 
@@ -130,14 +131,14 @@ LANES_INLINE int HessianEntry(const int c, const int d)
 LANES_INLINE void AddCoupling(const int dim, const int terms, const FitFactors *factors, const FitRun *run, double share, FitNodal *nodal)
 {
   const int vectors = HessianStride(dim) / LANES;
-  double    sign[3];
 
-  for (int c = 0; c < dim; c++) sign[c] = nodal->factor * share * run->sign[c];
   for (int k = 0; k < run->entries; k++) {
     Lanes               sum[FIT_HESSIAN];
     const double *const h = (const double *)sum;
+    double              sign[3];
 
     if (run->node[k] < 0) continue;
+    for (int c = 0; c < dim; c++) sign[c] = nodal->factor * share * run->sign[3 * k + c];
     SumHessians(vectors, factors, run, k, -1, sum);
     for (int d = 0; d < dim; d++) {
       double *const B = nodal->K + (terms + d) * nodal->stride + run->node[k] * dim;
@@ -152,39 +153,48 @@ LANES_INLINE void AddSlave(const int dim, const int terms, const FitRun *slave, 
 {
   for (int k = 0; k < slave->entries; k++) {
     if (slave->node[k] < 0) continue;
-    for (int c = 0; c < dim; c++) nodal->J[(terms + c) * nodal->stride + slave->node[k] * dim + c] += slave->sign[c] * slave->S[k];
+    for (int c = 0; c < dim; c++) nodal->J[(terms + c) * nodal->stride + slave->node[k] * dim + c] += slave->sign[3 * k + c] * slave->S[k];
   }
 }
 
-/* Adds an H to a block of M. */
-LANES_INLINE void AddBlock(const int dim, const double *h, long size, double *block)
+/* Adds an H between entries of these signs to a block of M. */
+LANES_INLINE void AddBlock(const int dim, const double *h, double factor, const double *row_sign, const double *column_sign, long size, double *block)
 {
   for (int c = 0; c < dim; c++) {
-    for (int d = 0; d < dim; d++) block[c * size + d] += h[HessianEntry(c, d)];
+    for (int d = 0; d < dim; d++) block[c * size + d] += factor * row_sign[c] * column_sign[d] * h[HessianEntry(c, d)];
+  }
+}
+
+/* Adds an H and its mirror image between two entries of one node to the node's block, at once: the order of the two would show in the last bit. */
+LANES_INLINE void AddBothBlocks(const int dim, const double *h, double factor, const double *a, const double *b, long size, double *block)
+{
+  for (int c = 0; c < dim; c++) {
+    for (int d = 0; d < dim; d++) block[c * size + d] += factor * (a[c] * b[d] + b[c] * a[d]) * h[HessianEntry(c, d)];
   }
 }
 
 /* Adds the points' own H of a run to each pair of its nodes, and to its mirror image in the same order: M stays symmetric to the last bit. */
 LANES_INLINE void AddPairs(const int dim, const FitFactors *factors, const FitRun *run, double factor, long size, double *M)
 {
-  const int vectors           = HessianStride(dim) / LANES;
-  double    sign[FIT_HESSIAN] = {0};
+  const int vectors = HessianStride(dim) / LANES;
 
-  for (int c = 0; c < dim; c++) {
-    for (int d = 0; d <= c; d++) sign[HessianEntry(c, d)] = factor * run->sign[c] * run->sign[d];
-  }
   for (int k = 0; k < run->entries; k++) {
-    const long i = (long)run->node[k] * dim;
+    const long          i        = (long)run->node[k] * dim;
+    const double *const row_sign = run->sign + 3 * k;
 
     for (int l = 0; i >= 0 && l <= k; l++) {
-      const long j = (long)run->node[l] * dim;
-      Lanes      sum[FIT_HESSIAN];
+      const long          j           = (long)run->node[l] * dim;
+      const double *const column_sign = run->sign + 3 * l;
+      Lanes               sum[FIT_HESSIAN];
 
       if (j < 0) continue;
       SumHessians(vectors, factors, run, k, l, sum);
-      for (int v = 0; v < vectors; v++) sum[v] *= *(const LanesInArray *)(sign + v * LANES);
-      AddBlock(dim, (const double *)sum, size, M + i * size + j);
-      if (l < k) AddBlock(dim, (const double *)sum, size, M + j * size + i);
+      if (l < k && i == j) {
+        AddBothBlocks(dim, (const double *)sum, factor, row_sign, column_sign, size, M + i * size + i);
+        continue;
+      }
+      AddBlock(dim, (const double *)sum, factor, row_sign, column_sign, size, M + i * size + j);
+      if (l < k) AddBlock(dim, (const double *)sum, factor, column_sign, row_sign, size, M + j * size + i);
     }
   }
 }
@@ -215,12 +225,9 @@ LANES_INLINE void Second(const int dim, const int terms, double factor, const Fi
 LANES_INLINE void First(const int dim, int n, const double *N, const FitMap *map, double *nodal)
 {
   for (int r = 0; r < 1 + n; r++) {
-    double turned[3];
-
-    for (int c = 0; c < dim; c++) turned[c] = map->sign[3 * r + c] * N[r * dim + c];
     for (int e = map->ptr[r]; e < map->ptr[r + 1]; e++) {
       if (map->node[e] < 0) continue;
-      for (int c = 0; c < dim; c++) nodal[map->node[e] * dim + c] += map->S[e] * turned[c];
+      for (int c = 0; c < dim; c++) nodal[map->node[e] * dim + c] += map->S[e] * map->sign[3 * e + c] * N[r * dim + c];
     }
   }
 }

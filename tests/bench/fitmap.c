@@ -28,7 +28,7 @@ typedef struct {
 typedef struct {
   FitMap map;
   int    ptr[MAX_POINTS + 2], node[(MAX_POINTS + 1) * MAX_FACE];
-  double S[(MAX_POINTS + 1) * MAX_FACE], sign[3 * (MAX_POINTS + 1)];
+  double S[(MAX_POINTS + 1) * MAX_FACE], sign[3 * (MAX_POINTS + 1) * MAX_FACE];
 } Map;
 
 static double LineShape(int order, int a, double s)
@@ -88,7 +88,7 @@ static void MakeMap(const List *list, int n, const int *points, Map *map)
 
   map->map = (FitMap){.n_nodes = list->entries, .ptr = map->ptr, .node = map->node, .S = map->S, .sign = map->sign};
   for (int i = 0; i < MAX_LINE * MAX_LINE; i++) number[i] = -1;
-  for (int i = 0; i < 3 * (1 + n); i++) map->sign[i] = 1;
+  for (int i = 0; i < 3 * (1 + n) * list->entries; i++) map->sign[i] = 1;
   for (int k = 0; k < entries; k++) {
     map->node[k] = k;
     map->S[k]    = 1.0 / entries;
