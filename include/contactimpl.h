@@ -107,8 +107,11 @@ PetscErrorCode ContactPointToNodes(const ContactPair *, ContactLists, PetscInt q
 /* M[(nodes*dim)^2] += factor times the second variation, for some slave points: each evaluated, taken to nodes, added. place: of contact nodes in M;
    NULL: the point's own numbers. */
 PetscErrorCode ContactSecondBegin(const ContactPair *, PetscInt nodes, PetscInt points, PetscReal *M);
-PetscErrorCode ContactSecondAdd(const ContactPair *, PetscReal factor, const PetscInt *place);
+PetscErrorCode ContactSecondAdd(const ContactPair *, ContactLists, PetscInt q, PetscReal factor, const PetscInt *place, double (*own)[FITMAP_OWN]);
 void           ContactSecondEnd(const ContactPair *);
+/* What belongs to fit points one by one, own[n_points] of all slave points: some points' nodes, then the sum over these. */
+PetscErrorCode ContactPointsToNodes(const ContactPair *, ContactLists, PetscInt first, PetscInt end);
+void           ContactOwnToNodes(const ContactPair *, PetscInt points, const double (*own)[FITMAP_OWN], PetscReal *M);
 PetscErrorCode ContactWorkDestroy(ContactWork *);
 /* Gaps of all slave points that have a factor, NaN of the others; seed, normals: may be NULL. */
 PetscErrorCode ContactPointGaps(const ContactPair *, ContactLists, const PetscReal *factor, int *seed, PetscReal *gap, PetscReal *normals);

@@ -16,7 +16,9 @@ typedef struct {
   const double *sign; /* of each entry 3, each +1 or -1, whatever the dimension */
 } FitMap;
 
-/* A sum of second variations in the making: FitMapBegin(), FitMapAdd() for each slave point, FitMapEnd() */
+enum { FITMAP_OWN = 6 }; /* entries of a point's own H: xx xy yy xz yz zz (2D: the first three) */
+
+/* A sum of second variations in the making: FitMapBegin(), FitMapAdd() for each slave point, FitMapEnd(); the points' own H are added apart, FitMapAddOwn() */
 typedef struct {
   int     dim, n_nodes, stride, depth;
   double *rows, *K, *J; /* rows: of the slave point at hand; K, J: [depth][stride], of all so far */
@@ -31,3 +33,6 @@ long FitMapWorkspace(int dim, int degree, int n_nodes, int points);
 void FitMapBegin(FitMapSum *, int dim, int degree, int n_nodes, int points, double *workspace, double *M);
 void FitMapAdd(FitMapSum *, double factor, const FitFactors *, const FitMap *);
 void FitMapEnd(FitMapSum *);
+/* The points' own H: own += factor H_i; M += sum of S^T own S over rows first to end - 1 of a map, which may belong to points of many slave points. */
+void FitMapOwn(double factor, const FitFactors *, int i, double own[FITMAP_OWN]);
+void FitMapAddOwn(int dim, int first, int end, const double (*own)[FITMAP_OWN], const FitMap *, double *M);

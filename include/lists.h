@@ -59,6 +59,8 @@ PetscErrorCode ListsDestroy(ContactLists *);
 PetscErrorCode ListsUpdate(ContactSearch, ContactLists, const PetscReal *u, PetscReal t, PetscBool *moved);
 /* x[dim]: point p seen from slave point q at the last update. Not collective. */
 void ListsRelative(ContactLists, PetscInt q, PetscInt p, PetscReal *x);
+/* Where the run of points ends that are made of the same images of nodes as point p: those of a face. Not collective. */
+PetscInt ListsAlikeEnd(ContactLists, PetscInt p);
 /* Size (length) of the facet nearest to slave point q, 0 without any. Not collective. */
 PetscReal ListsNearestSize(ContactLists, PetscInt q);
 /* How far slave point q has slid over its fit points since the lists were made, in supports; 0 without a fit. Not collective. */

@@ -1,6 +1,7 @@
 /* First and second variation of the diffuse gap over nodes. With rows K_i, J_i, H_i of the points and x_i = S_i x,
        S^T M S = Kbar^T Jbar + Jbar^T Kbar + sum_i (S_i - S_c)^T H_i (S_i - S_c),   Kbar = sum_i K_i S_i,  Jbar likewise.
-   In the last sum the points' own part goes to pairs of nodes that share a face. What couples them to the slave point is again such a product,
+   In the last sum the points' own part goes to pairs of nodes of one row: it is summed by FitMapAddOwn(), for a single slave point or, as slave points near
+   each other see the same points, over many of them before it goes to the nodes. What couples them to the slave point is again such a product,
        sum_i -S_i^T H_i S_c - S_c^T H_i S_i + S_c^T H_c S_c = B^T S_c + S_c^T B,   B = 1/2 H_c S_c - sum_i H_i S_i,  H_c = sum H_i,
    so B and S_c are dim more rows of the factors. The rows of many slave points over the same nodes stand below each other: one product, which writes the
    large M once, serves them all. */
@@ -39,13 +40,13 @@ static int SameNodes(const FitMap *map, int a, int b)
   return 1;
 }
 
-/* The rows that belong together from `first` on; the slave point, row 0, is always alone. */
+/* The rows that belong together from `first` on. */
 static FitRun NextRun(const FitMap *map, int rows, int first)
 {
   const int start = map->ptr[first];
   int       end   = first + 1;
 
-  while (first > 0 && end < rows && SameNodes(map, first, end)) end++;
+  while (end < rows && SameNodes(map, first, end)) end++;
   return (FitRun){first, end, map->ptr[first + 1] - start, map->node + start, map->S + start, map->sign + 3 * start};
 }
 
@@ -107,17 +108,15 @@ LANES_INLINE void TurnBack(const int terms, const int vectors, FitNodal *nodal)
   }
 }
 
-/* sum_r S_rk S_rl H_r over a run's rows; l < 0: sum_r S_rk H_r */
-LANES_INLINE void SumHessians(const int vectors, const FitFactors *factors, const FitRun *run, int k, int l, Lanes *sum)
+/* sum_r S_rk H_r over a run's rows */
+LANES_INLINE void SumHessians(const int vectors, const FitFactors *factors, const FitRun *run, int k, Lanes *sum)
 {
   const double *S = run->S;
   const Lanes  *h = (const Lanes *)factors->hessians + run->first * vectors;
 
   for (int v = 0; v < vectors; v++) sum[v] = Broadcast(0);
   for (int r = run->first; r < run->end; r++, S += run->entries, h += vectors) {
-    const double weight = l < 0 ? S[k] : S[k] * S[l];
-
-    for (int v = 0; v < vectors; v++) sum[v] += weight * h[v];
+    for (int v = 0; v < vectors; v++) sum[v] += S[k] * h[v];
   }
 }
 
@@ -139,7 +138,7 @@ LANES_INLINE void AddCoupling(const int dim, const int terms, const FitFactors *
 
     if (run->node[k] < 0) continue;
     for (int c = 0; c < dim; c++) sign[c] = nodal->factor * share * run->sign[3 * k + c];
-    SumHessians(vectors, factors, run, k, -1, sum);
+    SumHessians(vectors, factors, run, k, sum);
     for (int d = 0; d < dim; d++) {
       double *const B = nodal->K + (terms + d) * nodal->stride + run->node[k] * dim;
 
@@ -158,51 +157,60 @@ LANES_INLINE void AddSlave(const int dim, const int terms, const FitRun *slave, 
 }
 
 /* Adds an H between entries of these signs to a block of M. */
-LANES_INLINE void AddBlock(const int dim, const double *h, double factor, const double *row_sign, const double *column_sign, long size, double *block)
+LANES_INLINE void AddBlock(const int dim, const double *h, const double *row_sign, const double *column_sign, long size, double *block)
 {
   for (int c = 0; c < dim; c++) {
-    for (int d = 0; d < dim; d++) block[c * size + d] += factor * row_sign[c] * column_sign[d] * h[HessianEntry(c, d)];
+    for (int d = 0; d < dim; d++) block[c * size + d] += row_sign[c] * column_sign[d] * h[HessianEntry(c, d)];
   }
 }
 
 /* Adds an H and its mirror image between two entries of one node to the node's block, at once: the order of the two would show in the last bit. */
-LANES_INLINE void AddBothBlocks(const int dim, const double *h, double factor, const double *a, const double *b, long size, double *block)
+LANES_INLINE void AddBothBlocks(const int dim, const double *h, const double *a, const double *b, long size, double *block)
 {
   for (int c = 0; c < dim; c++) {
-    for (int d = 0; d < dim; d++) block[c * size + d] += factor * (a[c] * b[d] + b[c] * a[d]) * h[HessianEntry(c, d)];
+    for (int d = 0; d < dim; d++) block[c * size + d] += (a[c] * b[d] + b[c] * a[d]) * h[HessianEntry(c, d)];
   }
 }
 
-/* Adds the points' own H of a run to each pair of its nodes, and to its mirror image in the same order: M stays symmetric to the last bit. */
-LANES_INLINE void AddPairs(const int dim, const FitFactors *factors, const FitRun *run, double factor, long size, double *M)
+/* Adds sum_r S_r^T H_r S_r over a run's rows: to each pair of its nodes, and to its mirror image in the same order, so that M stays symmetric to the last
+   bit. own: of row `first`. */
+LANES_INLINE void AddPairs(const int dim, int first, const double (*own)[FITMAP_OWN], const FitRun *run, long size, double *M)
 {
-  const int vectors = HessianStride(dim) / LANES;
-
   for (int k = 0; k < run->entries; k++) {
     const long          i        = (long)run->node[k] * dim;
     const double *const row_sign = run->sign + 3 * k;
 
     for (int l = 0; i >= 0 && l <= k; l++) {
       const long          j           = (long)run->node[l] * dim;
-      const double *const column_sign = run->sign + 3 * l;
-      Lanes               sum[FIT_HESSIAN];
+      const double *const column_sign = run->sign + 3 * l, *S = run->S;
+      double              sum[FITMAP_OWN] = {0};
 
       if (j < 0) continue;
-      SumHessians(vectors, factors, run, k, l, sum);
+      for (int r = run->first; r < run->end; r++, S += run->entries) {
+        for (int e = 0; e < FITMAP_OWN; e++) sum[e] += S[k] * S[l] * own[r - first][e];
+      }
       if (l < k && i == j) {
-        AddBothBlocks(dim, (const double *)sum, factor, row_sign, column_sign, size, M + i * size + i);
+        AddBothBlocks(dim, sum, row_sign, column_sign, size, M + i * size + i);
         continue;
       }
-      AddBlock(dim, (const double *)sum, factor, row_sign, column_sign, size, M + i * size + j);
-      if (l < k) AddBlock(dim, (const double *)sum, factor, column_sign, row_sign, size, M + j * size + i);
+      AddBlock(dim, sum, row_sign, column_sign, size, M + i * size + j);
+      if (l < k) AddBlock(dim, sum, column_sign, row_sign, size, M + j * size + i);
     }
+  }
+}
+
+LANES_INLINE void Own(const int dim, int first, int end, const double (*own)[FITMAP_OWN], const FitMap *map, double *M)
+{
+  for (FitRun run = {.end = first}; run.end < end;) {
+    run = NextRun(map, end, run.end);
+    AddPairs(dim, first, own, &run, (long)map->n_nodes * dim, M);
   }
 }
 
 LANES_INLINE void Second(const int dim, const int terms, double factor, const FitFactors *factors, const FitMap *map, FitMapSum *sum)
 {
-  const int    vectors = FactorStride(terms) / LANES, size = sum->n_nodes * dim, rows = 1 + factors->n;
-  const FitRun slave = NextRun(map, rows, 0);
+  const int    vectors = FactorStride(terms) / LANES, rows = 1 + factors->n;
+  const FitRun slave = NextRun(map, 1, 0);
   const long   first = (long)sum->depth * sum->stride;
   FitNodal     nodal = {.rows = (Lanes *)sum->rows, .K = sum->K + first, .J = sum->J + first, .stride = sum->stride, .factor = factor};
 
@@ -216,7 +224,6 @@ LANES_INLINE void Second(const int dim, const int terms, double factor, const Fi
     run = NextRun(map, rows, run.end);
     AddRows(dim, vectors, factors, &run, &nodal);
     AddCoupling(dim, terms, factors, &run, -1, &nodal);
-    AddPairs(dim, factors, &run, factor, size, sum->M);
   }
   TurnBack(terms, vectors, &nodal);
   sum->depth += terms + dim;
@@ -269,7 +276,8 @@ void FitMapBegin(FitMapSum *sum, int dim, int degree, int n_nodes, int points, d
   sum->J    = sum->K + (long)points * (terms + dim) * stride;
 }
 
-/* FitMapAdd - adds factor times the second variation over nodes, S^T M S, of one slave point, without M. Not collective.
+/* FitMapAdd - adds factor times the second variation over nodes, S^T M S, of one slave point, without M; the points' own H are left to FitMapAddOwn().
+   Not collective.
 
    Input: factors - of M, as FitEvaluate() leaves them in its workspace; map - nodes below the sum's n_nodes
 
@@ -281,6 +289,26 @@ void FitMapAdd(FitMapSum *sum, double factor, const FitFactors *factors, const F
   return
   INSTANTIATE(factors, SECOND)
 #undef SECOND
+}
+
+/* FitMapOwn - own += factor H, for point i of those inside. Not collective. */
+void FitMapOwn(double factor, const FitFactors *factors, int i, double own[FITMAP_OWN])
+{
+  const double *const h = factors->hessians + (1 + i) * factors->hessianstride;
+
+  for (int e = 0; e < factors->dim * (factors->dim + 1) / 2; e++) own[e] += factor * h[e];
+}
+
+/* FitMapAddOwn - M += sum_r S_r^T own_r S_r, the points' own part of second variations. Not collective.
+
+   Input: dim; rows first to end - 1 of the map; own[end - first] - of these rows' points, from FitMapOwn(). M[n_nodes*dim][n_nodes*dim] - symmetric to the
+   last bit if it was */
+void FitMapAddOwn(int dim, int first, int end, const double (*own)[FITMAP_OWN], const FitMap *map, double *M)
+{
+  if (dim == 3)
+    Own(3, first, end, own, map, M);
+  else
+    Own(2, first, end, own, map, M);
 }
 
 /* FitMapEnd - M holds the sum, symmetric to the last bit. Not collective. */

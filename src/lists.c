@@ -456,6 +456,22 @@ void ListsRelative(ContactLists lists, PetscInt q, PetscInt p, PetscReal *x)
     x[d] = (lists->point_X[p * dim + d] - lists->slave_X[q * dim + d]) + (lists->point_u[p * dim + d] - lists->slave_u[q * dim + d]);
 }
 
+/* ListsAlikeEnd - Not collective. */
+PetscInt ListsAlikeEnd(ContactLists lists, PetscInt p)
+{
+  const PetscInt first = lists->point_ptr[p], n = lists->point_ptr[p + 1] - first;
+  PetscInt       end = p + 1;
+
+  for (; end < lists->n_points && lists->point_ptr[end + 1] - lists->point_ptr[end] == n && lists->point_image[end] == lists->point_image[p]; end++) {
+    for (PetscInt k = 0; k < n; k++) {
+      const PetscInt other = lists->point_ptr[end] + k;
+
+      if (lists->point_node[other] != lists->point_node[first + k] || lists->point_side[other] != lists->point_side[first + k]) return end;
+    }
+  }
+  return end;
+}
+
 /* ListsNearestSize - size (length) of the facet nearest to slave point q when the lists were made, 0 without any. Not collective. */
 PetscReal ListsNearestSize(ContactLists lists, PetscInt q)
 {

@@ -120,7 +120,7 @@ typedef struct {
   double     N[3 * (1 + MAX_POINTS)], *workspace;
 } Slave;
 
-static double nodal[MAX_SIZE], M[(long)MAX_SIZE * MAX_SIZE], *scratch;
+static double nodal[MAX_SIZE], own[MAX_POINTS][FITMAP_OWN], M[(long)MAX_SIZE * MAX_SIZE], *scratch;
 
 static void Do(Part part, Slave *s)
 {
@@ -136,6 +136,9 @@ static void Do(Part part, Slave *s)
     FitMapBegin(&sum, s->problem.dim, s->problem.degree, s->map.map.n_nodes, 1, scratch, M);
     FitMapAdd(&sum, 1, &s->factors, &s->map.map);
     FitMapEnd(&sum);
+    memset(own, 0, s->result.n * sizeof(own[0]));
+    for (int i = 0; i < s->result.n; i++) FitMapOwn(1, &s->factors, i, own[i]);
+    FitMapAddOwn(s->problem.dim, 1, 1 + s->result.n, own, &s->map.map, M);
   }
   if (part == PRODUCT) SymmetricProduct(size, terms, stride, scratch, scratch + terms * stride, M);
 }

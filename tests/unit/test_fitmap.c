@@ -89,7 +89,7 @@ static void Reference(const Case *c, const FitMap *map, double *N, double *M)
 /* N and M over nodes by the kernel, M as a sum of shares; M symmetric to the last bit, nothing written past the ends */
 static void Mapped(Case *c, const FitMap *map, double *N, double *M)
 {
-  static double scratch[MAP_WORK];
+  static double scratch[MAP_WORK], own[FEW][FITMAP_OWN];
   const long    length = FitWorkspace(c->in.dim, c->in.degree, c->in.n), need = FitMapWorkspace(c->in.dim, c->in.degree, map->n_nodes, 2);
   const int     size = c->in.dim * map->n_nodes;
   FitFactors    factors;
@@ -108,6 +108,12 @@ static void Mapped(Case *c, const FitMap *map, double *N, double *M)
   FitMapAdd(&sum, -2, &factors, map);
   FitMapAdd(&sum, 3, &factors, map);
   FitMapEnd(&sum);
+  memset(own, 0, sizeof(own));
+  for (int i = 0; i < out.n; i++) {
+    FitMapOwn(-2, &factors, i, own[i]);
+    FitMapOwn(3, &factors, i, own[i]);
+  }
+  FitMapAddOwn(c->in.dim, 1, 1 + out.n, own, map, M);
   assert_true(work[1 + length] == 7 && scratch[1 + need] == 7 && N[size] == 7 && M[(long)size * size] == 7);
   for (int i = 0; i < size; i++) {
     for (int j = 0; j < i; j++) assert_true(M[i * size + j] == M[j * size + i]);
