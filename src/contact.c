@@ -459,12 +459,12 @@ static PetscReal TermTurningPressure(const ContactPair *pair, PetscInt c, PetscR
 static PetscErrorCode PairBlocks(Contact contact, ContactPair *pair, int p, const PetscReal *u, PetscReal t)
 {
   TermState *terms;
-  double(*own)[FITMAP_OWN];
+  double(*own)[FITMAP_OWN] = NULL;
 
   PetscFunctionBeginUser;
   PetscCall(PairProject(contact, pair, u, t));
   PetscCall(PetscMalloc1(pair->n, &terms));
-  PetscCall(PetscCalloc1(pair->lists->n_points, &own));
+  if (pair->fit.degree) PetscCall(PetscCalloc1(pair->lists->n_points, &own));
   PetscCall(PetscArrayzero(pair->point_force, pair->lists->n_slaves));
   for (PetscInt c = 0; c < pair->n; c++) {
     LawValue value;
@@ -476,7 +476,7 @@ static PetscErrorCode PairBlocks(Contact contact, ContactPair *pair, int p, cons
   if (pair->slaves->face_sf) PetscCall(SharedBlocks(contact, pair, p, terms, own));
   for (PetscInt c = 0; c < pair->n && !pair->slaves->face_sf; c++)
     if (terms[c].stiffness > 0) PetscCall(PointBlock(contact, pair, p, pair->term_point[pair->term_ptr[c]], &terms[c], own));
-  PetscCall(OwnBlocks(contact, pair, p, own));
+  if (pair->fit.degree) PetscCall(OwnBlocks(contact, pair, p, own));
   PetscCall(PetscFree(own));
   PetscCall(PetscFree(terms));
   PetscFunctionReturn(PETSC_SUCCESS);
