@@ -9,7 +9,7 @@
 #include "smoother.h"
 
 /* What the points of one evaluation are made of: row 0 the slave point, 1 + i the i-th point that takes part; entries ptr[r] to ptr[r + 1] are nodes
-   (places in the work's number[]) with weights S, reflected by sign (3 for each row). */
+   (places in the work's number[]) with weights S, reflected by sign (3 for each entry). */
 typedef struct {
   int    *ptr, *node;
   double *S, *sign;
@@ -55,6 +55,7 @@ typedef struct {
   const Law          *law;
   SlavePoints         slaves;
   Offsets             slave_offsets, master_offsets; /* surface to surface; NULL: none */
+  PetscBool           lags;                          /* offsets are held in a solve: it may find them old */
   ContactSearch       search;
   PetscInt            n, *node; /* terms: local nodes */
   PetscReal          *area, *size, *turn;
@@ -106,8 +107,11 @@ PetscErrorCode ContactPointToNodes(const ContactPair *, ContactLists, PetscInt q
 /* M[(nodes*dim)^2] += factor times the second variation, for some slave points: each evaluated, taken to nodes, added. place: of contact nodes in M;
    NULL: the point's own numbers. */
 PetscErrorCode ContactSecondBegin(const ContactPair *, PetscInt nodes, PetscInt points, PetscReal *M);
-PetscErrorCode ContactSecondAdd(const ContactPair *, PetscReal factor, const PetscInt *place);
+PetscErrorCode ContactSecondAdd(const ContactPair *, ContactLists, PetscInt q, PetscReal factor, const PetscInt *place, double (*own)[FITMAP_OWN]);
 void           ContactSecondEnd(const ContactPair *);
+/* What belongs to fit points one by one, own[n_points] of all slave points: some points' nodes, then the sum over these. */
+PetscErrorCode ContactPointsToNodes(const ContactPair *, ContactLists, PetscInt first, PetscInt end);
+void           ContactOwnToNodes(const ContactPair *, PetscInt points, const double (*own)[FITMAP_OWN], PetscReal *M);
 PetscErrorCode ContactWorkDestroy(ContactWork *);
 /* Gaps of all slave points that have a factor, NaN of the others; seed, normals: may be NULL. */
 PetscErrorCode ContactPointGaps(const ContactPair *, ContactLists, const PetscReal *factor, int *seed, PetscReal *gap, PetscReal *normals);

@@ -1,5 +1,5 @@
-/* Variations of the diffuse gap over nodes, where fit points and slave point are combinations of nodes: x = sign * (sum S x_node) by component,
-   as quadrature points of faces are. Plain C: no PETSc, no MPI, no allocation.
+/* Variations of the diffuse gap over nodes, where fit points and slave point are combinations of nodes: x = sum S sign * x_node by component,
+   as quadrature points of faces are, those on mirror images and those with an offset that follows the nodes around. Plain C: no PETSc, no MPI, no allocation.
 
    A support has more points than nodes behind them, and M grows with the square: FitMapAdd() therefore takes the factors of M to the nodes
    (FitResult.factors instead of FitResult.M), not M. */
@@ -13,10 +13,12 @@ typedef struct {
   const int    *ptr;  /* [1 + points inside + 1] */
   const int    *node; /* of each entry, below n_nodes; negative: left out, a rigid tool's node without unknowns */
   const double *S;    /* of each entry */
-  const double *sign; /* [1 + points inside][3], each +1 or -1, whatever the dimension */
+  const double *sign; /* of each entry 3, each +1 or -1, whatever the dimension */
 } FitMap;
 
-/* A sum of second variations in the making: FitMapBegin(), FitMapAdd() for each slave point, FitMapEnd() */
+enum { FITMAP_OWN = 6 }; /* entries of a point's own H: xx xy yy xz yz zz (2D: the first three) */
+
+/* A sum of second variations in the making: FitMapBegin(), FitMapAdd() for each slave point, FitMapEnd(); the points' own H are added apart, FitMapAddOwn() */
 typedef struct {
   int     dim, n_nodes, stride, depth;
   double *rows, *K, *J; /* rows: of the slave point at hand; K, J: [depth][stride], of all so far */
@@ -31,3 +33,6 @@ long FitMapWorkspace(int dim, int degree, int n_nodes, int points);
 void FitMapBegin(FitMapSum *, int dim, int degree, int n_nodes, int points, double *workspace, double *M);
 void FitMapAdd(FitMapSum *, double factor, const FitFactors *, const FitMap *);
 void FitMapEnd(FitMapSum *);
+/* The points' own H: own += factor H_i; M += sum of S^T own S over rows first to end - 1 of a map, which may belong to points of many slave points. */
+void FitMapOwn(double factor, const FitFactors *, int i, double own[FITMAP_OWN]);
+void FitMapAddOwn(int dim, int first, int end, const double (*own)[FITMAP_OWN], const FitMap *, double *M);

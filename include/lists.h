@@ -14,7 +14,7 @@ enum { RUNG_FACET = -1, RUNG_PLAIN = 0, RUNG_WIDER = 4, RUNG_DEGREE_2 = 6, RUNG_
 
 /* Everything a rank needs of a pair while lists are frozen. Contact nodes are the nodes that its terms touch: first those with unknowns
    (leaves of sf; roots are the local nodes of their owners), then nodes of a rigid tool. Points are what a smoother sees: a fixed
-   combination of contact nodes, reflected, plus an offset: x = sign * (sum S x_node) + shift + offset. */
+   combination of images of contact nodes, reflected, plus an offset: x = sign * (sum S (image of x_node)) + shift + offset. */
 typedef struct {
   int          dim;
   PetscInt     n_nodes, n_deformable;
@@ -27,13 +27,15 @@ typedef struct {
 
   PetscInt   n_points; /* fit points */
   PetscInt  *point_ptr, *point_node;
+  int       *point_side; /* of each entry: which image of the node; not 0 with live offsets only */
   PetscReal *point_S, *point_offset, *point_weight;
   int       *point_image;
   long      *point_key;         /* rank-independent: which node or quadrature point, and which image */
   PetscReal *point_X, *point_u; /* n_points*dim */
 
-  PetscInt   n_slaves; /* slave points, in the order asked for */
-  PetscInt  *slave_ptr, *slave_node;
+  PetscInt   n_slaves;               /* slave points, in the order asked for */
+  PetscInt  *slave_ptr, *slave_node; /* the nodes of a slave point's own face come first, as in SlavePoints */
+  int       *slave_side;
   PetscReal *slave_S, *slave_offset;
   PetscReal *slave_X, *slave_u; /* n_slaves*dim */
 
@@ -57,6 +59,8 @@ PetscErrorCode ListsDestroy(ContactLists *);
 PetscErrorCode ListsUpdate(ContactSearch, ContactLists, const PetscReal *u, PetscReal t, PetscBool *moved);
 /* x[dim]: point p seen from slave point q at the last update. Not collective. */
 void ListsRelative(ContactLists, PetscInt q, PetscInt p, PetscReal *x);
+/* Where the run of points ends that are made of the same images of nodes as point p: those of a face. Not collective. */
+PetscInt ListsAlikeEnd(ContactLists, PetscInt p);
 /* Size (length) of the facet nearest to slave point q, 0 without any. Not collective. */
 PetscReal ListsNearestSize(ContactLists, PetscInt q);
 /* How far slave point q has slid over its fit points since the lists were made, in supports; 0 without a fit. Not collective. */

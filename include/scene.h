@@ -48,6 +48,7 @@ typedef struct {
   Motion             motion;
   SmootherKind       smoother;
   ContactFormulation formulation;
+  int                live_offset; /* of surface_to_surface: offsets follow the nodes within a solve */
   int                n_symmetry;
   char             **symmetry;        /* planar surfaces beyond which the model continues as its mirror image */
   int                degree;          /* of the fit: 4 or 2 */

@@ -21,9 +21,10 @@ typedef struct {
 } FitSettings;
 
 /* master NULL: an analytic one, which needs no lists. slaves NULL: the surface is to be looked at by itself (offset.h). offset: of the master's quadrature
- * points (integral fits), [faces][FACE_RULE_POINTS*dim], or NULL; what stands there when lists are made is taken. All are borrowed. Collective. */
+ * points (integral fits), [faces][FACE_RULE_POINTS*dim], or NULL; maps: these points as combinations of nodes instead, or NULL; what stands there when lists
+ * are made is taken. All are borrowed. Collective. */
 PetscErrorCode SearchCreate(Mesh, Scene, Loads, ContactSurface master, PetscReal slave_size, int n_images, const SurfaceImage *, const FitSettings *,
-                            SlavePoints slaves, const PetscReal *offset, ContactSearch *);
+                            SlavePoints slaves, const PetscReal *offset, const FaceMaps *maps, ContactSearch *);
 PetscErrorCode SearchDestroy(ContactSearch *);
 /* New lists for local displacements u at load parameter t, good for a relative motion of `motion`. Collective. */
 PetscErrorCode SearchLists(ContactSearch, const PetscReal *u, PetscReal t, PetscReal motion, ContactLists *);

@@ -16,6 +16,7 @@ struct _n_ContactSearch {
   const FitSettings  *fit;
   SlavePoints         slaves;
   const PetscReal    *offset;        /* of the quadrature points of this rank's master faces, where fits go through these */
+  const FaceMaps     *maps;          /* or what these are made of */
   PetscReal           reach, margin; /* lengths, without the motion */
 };
 
@@ -32,6 +33,7 @@ typedef struct {
 typedef struct {
   PetscInt    n_records, n_candidates;
   FaceRecord *records;
+  FaceMaps    maps; /* of the records' quadrature points, or empty */
   Candidate  *candidates;
 } SearchField;
 
@@ -40,7 +42,7 @@ typedef struct {
   ContactLists     lists;
   const Candidate *candidates;
   PetscReal        x[3], normal[3];
-  PetscInt         q; /* the slave point: a face with one of its nodes is not its master */
+  PetscInt         q, own; /* the slave point, and of how many nodes its own face is: a face with one of these is not its master */
   PetscInt         best;
   Foot             foot; /* on the best */
 } Nearest;
@@ -91,7 +93,6 @@ PetscErrorCode ListsCreateSlaves(ContactSearch, ContactLists);
 void           ListsPointGeometry(ContactSearch, ContactLists, const SearchField *, NodeGeometry *of_nodes, NodeGeometry *of_points);
 PetscErrorCode ListsUpdateNodes(ContactSearch, ContactLists, const PetscReal *u, PetscReal t);
 void           ListsCentre(ContactLists, PetscInt q, PetscReal centre[2]);
-void           ListsSlaveMap(const ContactLists, PetscInt q, const PetscReal *x, PetscReal *y);
 /* fitting.c */
 PetscReal      SearchFitReach(ContactSearch);
 PetscErrorCode FittingCreate(ContactSearch, ContactLists, const SearchField *, Fitting *);

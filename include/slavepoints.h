@@ -2,7 +2,7 @@
    Surface to surface: the quadrature points of the faces around this rank's nodes, whichever rank the faces live on, with area weights and the
    hat functions by which a slave node weighs them. Knows no master. */
 #pragma once
-#include "facerecord.h"
+#include "facemap.h"
 
 typedef struct {
   Mesh           mesh;
@@ -22,6 +22,7 @@ typedef struct {
   int          finer;      /* quadrature of one order more */
   PetscSF      face_sf;    /* roots: faces where they live */
   MPI_Datatype face_block; /* FACE_RULE_POINTS*dim reals */
+  FaceMaps     maps;       /* of the faces, where offsets are live: the points instead of shape functions */
 } * SlavePoints;
 
 /* n local nodes as slave points. Collective. */
@@ -39,5 +40,7 @@ void SlavePointsPosition(SlavePoints, PetscInt q, PetscReal *x);
 PetscErrorCode SlavePointsNormals(SlavePoints, const PetscReal *u, PetscReal *normals);
 /* Takes the offsets of this rank's own faces [faces of the surface][FACE_RULE_POINTS*dim] to the points of whatever rank. Collective. */
 PetscErrorCode SlavePointsSetOffsets(SlavePoints, const PetscReal *offset);
+/* Takes maps of this rank's own faces to the points of whatever rank, once. Collective. */
+PetscErrorCode SlavePointsSetMaps(SlavePoints, const FaceMaps *);
 /* int psi dA of all local nodes of the mesh, positions X + u (NULL: reference), complete on every copy. Collective. */
 PetscErrorCode SlavePointsHatAreas(SlavePoints, Geometry, const PetscReal *u, PetscReal *area);

@@ -1,7 +1,13 @@
 """The paper's scenes with node to surface and with surface to surface: same mesh, same steps. Raw records of every run go to a CSV file, the table (iterations,
 failed steps, CPU seconds, results) is printed from there:
     formulation_table.py [--burnish BINARY] [--record FILE] [CASE...]     runs (these cases are added to the record, or replaced there) and prints
+<<<<<<< HEAD
     formulation_table.py --print [--record FILE]                          prints only"""
+=======
+    formulation_table.py --print [--record FILE]                          prints only
+With --offsets it is surface to surface with held and with live offsets, on the pipes."""
+import argparse
+>>>>>>> live
 import csv
 import json
 import shutil
@@ -11,6 +17,7 @@ import sys
 from launch import ROOT, table_parser
 
 FORMULATIONS = ("node_to_surface", "surface_to_surface")
+OFFSETS = ("held", "live")
 FINE = "h_contact: 0.25, h_far: 3, n_thick: 4, n_width: 6"  # first-order plate: as many nodes over the patch
 FREE = "contact.0.penalty.adjust=false"
 SMOOTH = "contact.0.smoother=diffuse"
@@ -45,12 +52,13 @@ COLUMNS = ("case", "formulation", "status", "steps", "steps_failed", "newton_ite
 
 
 def record(args, case, formulation):
-    """One run, as a row of the CSV file."""
+    """One run, as a row of the CSV file. formulation: of FORMULATIONS or OFFSETS."""
     scene, overrides = CASES[case]
     directory = args.out / formulation
     shutil.rmtree(directory, ignore_errors=True)
     command = [str(args.burnish), str(ROOT / "runs" / f"{scene}.yaml"), "-quiet", "-o", str(directory)]
-    for override in (*overrides, "output.every=0", f"contact.0.formulation={formulation}"):
+    chosen = [f"contact.0.formulation={formulation}"] if formulation in FORMULATIONS else ["contact.0.formulation=surface_to_surface", f"contact.0.offset={formulation}"]
+    for override in (*overrides, "output.every=0", *chosen):
         command += ["-set", override]
     finished = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
     if finished.returncode not in (0, 2):  # 2: did not converge; the summary says how far it came
@@ -64,10 +72,10 @@ def record(args, case, formulation):
     return row | {name: summary[name] for name in ("status", "steps", "steps_failed", "newton_iterations")}
 
 
-def table(rows):
-    print("| scene | iterations (steps, failed) | CPU s | outside the window | results: node to surface | surface to surface |\n|" + " --- |" * 6)
+def table(rows, formulations):
+    print(f"| scene | iterations (steps, failed) | CPU s | outside the window | results: {' | '.join(name.replace('_', ' ') for name in formulations)} |\n|" + " --- |" * 6)
     for case in dict.fromkeys(row["case"] for row in rows):
-        pair = [next((row for row in rows if (row["case"], row["formulation"]) == (case, formulation)), None) for formulation in FORMULATIONS]
+        pair = [next((row for row in rows if (row["case"], row["formulation"]) == (case, formulation)), None) for formulation in formulations]
         if None in pair:
             continue
         counts = " / ".join(f"{row['newton_iterations']} ({row['steps']}, {row['steps_failed']})" + ("" if row["status"] == "done" else " stopped") for row in pair)
@@ -79,21 +87,30 @@ def table(rows):
 def main():
     parser = table_parser(__doc__, "formulations", "paper_formulations")
     parser.add_argument("cases", nargs="*", metavar="CASE", help=f"beginnings of: {'; '.join(CASES)}. Default: all")
+<<<<<<< HEAD
+=======
+    parser.add_argument("--burnish", type=pathlib.Path, default=ROOT / "build/burnish")
+    parser.add_argument("--out", type=pathlib.Path, default=ROOT / "out/formulations")
+    parser.add_argument("--record", type=pathlib.Path, default=ROOT / "out/paper_formulations.csv")
+    parser.add_argument("--offsets", action="store_true", help="held against live offsets instead")
+    parser.add_argument("--print", dest="only_print", action="store_true", help="of the record that is there; runs nothing")
+>>>>>>> live
     args = parser.parse_args()
+    formulations = OFFSETS if args.offsets else FORMULATIONS
     rows = []
     if args.record.exists():
         with open(args.record, newline="") as file:
             rows = list(csv.DictReader(file))
-    wanted = [case for case in CASES if not args.only_print and (not args.cases or case.startswith(tuple(args.cases)))]
+    wanted = [case for case in CASES if not args.only_print and (not args.offsets or case.startswith("pipe")) and (not args.cases or case.startswith(tuple(args.cases)))]
     for case in wanted:
-        rows = [row for row in rows if row["case"] != case] + [record(args, case, formulation) for formulation in FORMULATIONS]
+        rows = [row for row in rows if row["case"] != case] + [record(args, case, formulation) for formulation in formulations]
         with open(args.record, "w", newline="") as file:
             writer = csv.DictWriter(file, COLUMNS)
             writer.writeheader()
             writer.writerows(rows)
     if args.record.exists():
         with open(args.record, newline="") as file:
-            table(list(csv.DictReader(file)))
+            table(list(csv.DictReader(file)), formulations)
 
 
 if __name__ == "__main__":

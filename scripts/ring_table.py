@@ -5,7 +5,13 @@ plane      smoothers, node to surface, structured meshes in the plane        (ru
 plane12    the three formulations, both orders, jittered meshes in the plane (this and the rest: runs/records/formulations.csv)
 matching   meshes whose nodes face each other, beside the rings tied         (what the elements themselves leave)
 solid      rings in 3D, 14 elements long, away from the free end and near it
+<<<<<<< HEAD
 spheres    concentric spheres"""
+=======
+spheres    concentric spheres
+offsets    surface to surface, offsets held and live, in the plane and in 3D       (runs/records/offsets.csv)"""
+import argparse
+>>>>>>> live
 import csv
 import json
 import shutil
@@ -22,17 +28,19 @@ METHODS = {
     "degree 2": ["contact.0.formulation=node_to_surface", "contact.0.degree=2"],
     "degree 4": ["contact.0.formulation=node_to_surface", "contact.0.degree=4"],
     "surface to surface": ["contact.0.formulation=surface_to_surface"],
+    "live": ["contact.0.formulation=surface_to_surface", "contact.0.offset=live"],
 }
 SMOOTHERS = ("facets", "degree 2, 2.6, 3", "degree 2", "degree 4")
 FORMULATIONS = ("facets", "degree 4", "surface to surface")
-HEADS = {"facets": "facets", "degree 4": "node to surface", "surface to surface": "surface to surface", "tied": "tied"}
+OFFSETS = ("surface to surface", "live")
+HEADS = {"facets": "facets", "degree 4": "node to surface", "surface to surface": "surface to surface", "tied": "tied", "live": "with live offsets"}
 SIDES = ("inner", "outer")
 PLANE_PAIRS = ((16, 20), (32, 40), (40, 32), (24, 48), (48, 24), (24, 30), (30, 24), (36, 25))
 ORDER_PAIRS = {1: ((24, 30), (30, 24), (24, 48)), 2: ((12, 15), (15, 12), (12, 24))}
 LENGTH, END = 14, 6  # face sizes: of the rings in 3D, and how far the free end counts
 PROBES = ("mean_pressure", "noise_max", "noise_rms", "noise_end_max", "noise_end_rms")
-COLUMNS = ("table", "scene", "n_inner", "n_outer", "slave", "smoother", "jitter", "seed", "status", "newton", "contact_nodes", "slave_nodes", "wall_s", "fall_backs", *PROBES, "order")
-TABLES = ("plane", "plane12", "matching", "solid", "spheres")
+COLUMNS = ("table", "scene", "n_inner", "n_outer", "slave", "smoother", "jitter", "seed", "status", "newton", "contact_nodes", "slave_nodes", "wall_s", "fall_backs", *PROBES, "order", "cpu_s")
+TABLES = ("plane", "plane12", "matching", "solid", "spheres", "offsets")
 
 
 def seeds(jitter):
@@ -47,6 +55,9 @@ def cases(table):
     if table == "plane12":
         return [("ring_in_ring", order, pair, slave, method, jitter, seed) for order in (1, 2) for pair in ORDER_PAIRS[order] for slave in SIDES for method in FORMULATIONS
                 for jitter in jitters for seed in seeds(jitter)]
+    if table == "offsets":
+        plane = [case[:4] + (method,) + case[5:] for case in cases("plane12") if case[4] == "surface to surface" for method in OFFSETS]
+        return plane + [("ring_in_ring_3d", 1, (24, 30), slave, method, jitter, 1) for slave in SIDES for method in OFFSETS for jitter in (0, 0.25)]
     if table == "matching":
         return [("ring_in_ring", order, (n, n), "inner", method, jitter, seed) for order, n in ((1, 24), (2, 12)) for method in FORMULATIONS for jitter in jitters for seed in seeds(jitter)]
     if table == "solid":
@@ -88,7 +99,7 @@ def solve(table, case, args):
     records = [record]
     if finished.returncode == 0:
         summary = json.loads((directory / "summary.json").read_text())
-        record.update(newton=summary["newton_iterations"], contact_nodes=summary["contact_nodes"], slave_nodes=nodes_of_slave(scene, order, pair, slave), wall_s=round(summary["wall_s"], 2),
+        record.update(newton=summary["newton_iterations"], contact_nodes=summary["contact_nodes"], slave_nodes=nodes_of_slave(scene, order, pair, slave), wall_s=round(summary["wall_s"], 2), cpu_s=round(summary["cpu_s"], 2),
                       fall_backs=json.dumps(summary["contact"][0].get("fall_backs")))
         record.update({name: f"{value:.6g}" for name, value in summary["probes"].items() if name in PROBES and value is not None})
         if table == "matching" and method == "surface to surface":
@@ -149,8 +160,10 @@ def print_worst(title, records, methods):
                 cells.append(cell + (f", {len(runs) - len(found)} failed" if len(found) < len(runs) else ""))
             means = [number(r, "mean_pressure") for r in ended(row) if r["smoother"] == "surface to surface"]
             print(f"| {order} | {100 * jitter:g} % | {len([r for r in row if r['smoother'] == methods[-1]])} | " + " | ".join(cells) + f" | {min(means):.4f} to {max(means):.4f} |")
-    iterations = {HEADS[m]: statistics.median(int(r["newton"]) for r in ended(records) if r["smoother"] == m) for m in FORMULATIONS}
-    print("\nmedian Newton iterations: " + ", ".join(f"{name} {value:.0f}" for name, value in iterations.items()))
+    for name, text, places in (("newton", "Newton iterations", 0), ("cpu_s", "CPU seconds", 2)):
+        medians = {HEADS[m]: statistics.median(number(r, name) for r in ended(records) if r["smoother"] == m) for m in methods if m != "tied"}
+        if not any(value != value for value in medians.values()):
+            print(f"\nmedian {text}: " + ", ".join(f"{head} {value:.{places}f}" for head, value in medians.items()))
 
 
 def print_tables(records):
@@ -162,6 +175,10 @@ def print_tables(records):
         found = [r for r in records if r["table"] == name]
         if found:
             print_worst(title, found, (*FORMULATIONS, "tied") if name == "matching" else FORMULATIONS)
+    for scene in ("ring_in_ring", "ring_in_ring_3d"):
+        found = [r for r in records if r["table"] == "offsets" and r["scene"] == scene]
+        if found:
+            print_worst(titles["plane12" if scene == "ring_in_ring" else "solid"] + ", offsets", found, OFFSETS)
 
 
 def main():

@@ -183,7 +183,8 @@ static PetscErrorCode PairSharedForces(ContactPair *pair)
   PetscFunctionBeginUser;
   PetscCall(PetscCalloc2(lists->n_nodes * dim, &values, pair->mesh->n_nodes * dim, &nodal));
   for (PetscInt q = 0; q < lists->n_slaves; q++)
-    for (PetscInt k = lists->slave_ptr[q]; k < lists->slave_ptr[q + 1]; k++) values[lists->slave_node[k] * dim] += pair->slaves->hat[k] * pair->point_force[q];
+    for (PetscInt k = pair->slaves->ptr[q], node = lists->slave_ptr[q]; k < pair->slaves->ptr[q + 1]; k++, node++)
+      values[lists->slave_node[node] * dim] += pair->slaves->hat[k] * pair->point_force[q];
   PetscCall(ListsReduce(lists, values, nodal));
   for (PetscInt c = 0; c < pair->n; c++) pair->force[c] = nodal[pair->node[c] * dim];
   PetscCall(PetscFree2(values, nodal));
@@ -363,7 +364,7 @@ static PetscErrorCode TermBlock(Contact contact, const ContactPair *pair, int p,
 }
 
 /* The block -sum p M of the points of one face, which share most of their nodes: their second variations are summed before they are written. */
-static PetscErrorCode FaceBlock(Contact contact, const ContactPair *pair, int p, PetscInt face, PointVariations *all)
+static PetscErrorCode FaceBlock(Contact contact, const ContactPair *pair, int p, PetscInt face, PointVariations *all, double (*own)[FITMAP_OWN])
 {
   const int  dim = contact->mesh->dim;
   PetscInt   points[FACE_RULE_POINTS], n = 0, m, *entry;
@@ -380,7 +381,7 @@ static PetscErrorCode FaceBlock(Contact contact, const ContactPair *pair, int p,
   PetscCall(ContactSecondBegin(pair, m, n, value));
   for (PetscInt k = 0; k < n; k++) {
     PetscCall(PointVary(pair, points[k], PETSC_TRUE, &found));
-    PetscCall(ContactSecondAdd(pair, -pair->point_force[points[k]], all->place));
+    PetscCall(ContactSecondAdd(pair, pair->lists, points[k], -pair->point_force[points[k]], all->place, own));
   }
   ContactSecondEnd(pair);
   ForgetNodes(n, points, all);
@@ -388,7 +389,7 @@ static PetscErrorCode FaceBlock(Contact contact, const ContactPair *pair, int p,
 }
 
 /* The block of a term with one point: A psi'' N N^T - p M. */
-static PetscErrorCode PointBlock(Contact contact, const ContactPair *pair, int p, PetscInt q, const TermState *term)
+static PetscErrorCode PointBlock(Contact contact, const ContactPair *pair, int p, PetscInt q, const TermState *term, double (*own)[FITMAP_OWN])
 {
   const int          dim  = contact->mesh->dim;
   const ContactWork *work = pair->work;
@@ -405,13 +406,13 @@ static PetscErrorCode PointBlock(Contact contact, const ContactPair *pair, int p
   for (PetscInt i = 0; i < m; i++)
     for (PetscInt j = 0; j < m; j++) value[i * m + j] = term->area * term->stiffness * work->N[i] * work->N[j];
   PetscCall(ContactSecondBegin(pair, work->count, 1, value));
-  PetscCall(ContactSecondAdd(pair, -pair->point_force[q], NULL));
+  PetscCall(ContactSecondAdd(pair, pair->lists, q, -pair->point_force[q], NULL, own));
   ContactSecondEnd(pair);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* The blocks of terms that share their points. */
-static PetscErrorCode SharedBlocks(Contact contact, ContactPair *pair, int p, const TermState *terms)
+static PetscErrorCode SharedBlocks(Contact contact, ContactPair *pair, int p, const TermState *terms, double (*own)[FITMAP_OWN])
 {
   PointVariations all;
 
@@ -419,8 +420,32 @@ static PetscErrorCode SharedBlocks(Contact contact, ContactPair *pair, int p, co
   PetscCall(VariationsCreate(pair, terms, &all));
   for (PetscInt c = 0; c < pair->n; c++)
     if (terms[c].stiffness > 0) PetscCall(TermBlock(contact, pair, p, c, &terms[c], &all));
-  for (PetscInt face = 0; face < pair->slaves->n_faces; face++) PetscCall(FaceBlock(contact, pair, p, face, &all));
+  for (PetscInt face = 0; face < pair->slaves->n_faces; face++) PetscCall(FaceBlock(contact, pair, p, face, &all, own));
   PetscCall(VariationsDestroy(&all));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Blocks of what belongs to the fit points one by one, for all slave points at once: one for the points of a face, which are made of the same nodes. */
+static PetscErrorCode OwnBlocks(Contact contact, const ContactPair *pair, int p, const double (*own)[FITMAP_OWN])
+{
+  const int    dim   = contact->mesh->dim;
+  ContactLists lists = pair->lists;
+
+  PetscFunctionBeginUser;
+  for (PetscInt first = 0, end; first < lists->n_points; first = end) {
+    PetscInt   m, *entry;
+    PetscReal *value, most = 0;
+
+    end = ListsAlikeEnd(lists, first);
+    for (PetscInt k = first; k < end; k++)
+      for (int e = 0; e < FITMAP_OWN; e++) most = PetscMax(most, PetscAbsReal(own[k][e]));
+    if (most == 0) continue;
+    PetscCall(ContactPointsToNodes(pair, lists, first, end));
+    m = pair->work->count * dim;
+    PetscCall(BlockMatrixAdd(contact->blocks, p, m, &entry, &value));
+    for (PetscInt i = 0; i < m; i++) entry[i] = pair->work->number[i / dim] * dim + i % dim;
+    ContactOwnToNodes(pair, end - first, &own[first], value);
+  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -436,10 +461,12 @@ static PetscReal TermTurningPressure(const ContactPair *pair, PetscInt c, PetscR
 static PetscErrorCode PairBlocks(Contact contact, ContactPair *pair, int p, const PetscReal *u, PetscReal t)
 {
   TermState *terms;
+  double(*own)[FITMAP_OWN] = NULL;
 
   PetscFunctionBeginUser;
   PetscCall(PairProject(contact, pair, u, t));
   PetscCall(PetscMalloc1(pair->n, &terms));
+  if (pair->fit.degree) PetscCall(PetscCalloc1(pair->lists->n_points, &own));
   PetscCall(PetscArrayzero(pair->point_force, pair->lists->n_slaves));
   for (PetscInt c = 0; c < pair->n; c++) {
     LawValue value;
@@ -448,9 +475,11 @@ static PetscErrorCode PairBlocks(Contact contact, ContactPair *pair, int p, cons
     terms[c].stiffness = value.stiffness;
     TermPress(pair, c, TermTurningPressure(pair, c, t, &value));
   }
-  if (pair->slaves->face_sf) PetscCall(SharedBlocks(contact, pair, p, terms));
+  if (pair->slaves->face_sf) PetscCall(SharedBlocks(contact, pair, p, terms, own));
   for (PetscInt c = 0; c < pair->n && !pair->slaves->face_sf; c++)
-    if (terms[c].stiffness > 0) PetscCall(PointBlock(contact, pair, p, pair->term_point[pair->term_ptr[c]], &terms[c]));
+    if (terms[c].stiffness > 0) PetscCall(PointBlock(contact, pair, p, pair->term_point[pair->term_ptr[c]], &terms[c], own));
+  if (pair->fit.degree) PetscCall(OwnBlocks(contact, pair, p, own));
+  PetscCall(PetscFree(own));
   PetscCall(PetscFree(terms));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -46,7 +46,10 @@ static PetscErrorCode PairSearch(ContactPair *pair, const PetscReal *u, PetscRea
 {
   PetscFunctionBeginUser;
   PetscCall(ListsDestroy(&pair->next));
-  if (pair->slave_offsets) PetscCall(SlavePointsSetOffsets(pair->slaves, OffsetsGet(pair->slave_offsets)));
+  if (pair->slave_offsets && OffsetsMaps(pair->slave_offsets))
+    PetscCall(SlavePointsSetMaps(pair->slaves, OffsetsMaps(pair->slave_offsets)));
+  else if (pair->slave_offsets)
+    PetscCall(SlavePointsSetOffsets(pair->slaves, OffsetsGet(pair->slave_offsets)));
   PetscCall(SearchLists(pair->search, u, t, motion, &pair->next));
   PetscCall(PairFactors(pair, pair->next, pair->next_factor));
   pair->next_motion = motion;
@@ -61,7 +64,7 @@ static PetscErrorCode PairNextServes(ContactPair *pair, const PetscReal *u, Pets
 
   PetscFunctionBeginUser;
   *serves = PETSC_FALSE;
-  if (pair->slave_offsets) PetscFunctionReturn(PETSC_SUCCESS);
+  if (pair->lags) PetscFunctionReturn(PETSC_SUCCESS);
   if (pair->next && motion <= pair->next_motion * (1 + CONTACT_SAME_MOTION)) PetscCall(ListsUpdate(pair->search, pair->next, u, t, &moved));
   all = !moved;
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &all, 1, MPI_INT, MPI_LAND, pair->mesh->comm));
@@ -191,7 +194,7 @@ static PetscBool TermAgrees(const ContactPair *pair, ContactLists fresh, PetscIn
     if (fitted && old - offset < 0 && !FitHolds(pair->lists, fresh, q)) return PETSC_FALSE;
   }
   if (!fitted || old - offset >= 0) return (PetscBool)(PetscAbsReal(gap - old) <= tolerance);
-  return (PetscBool)(!PetscIsNanReal(gap) && (!pair->slave_offsets || PetscAbsReal(gap - old) <= drift));
+  return (PetscBool)(!PetscIsNanReal(gap) && (!pair->lags || PetscAbsReal(gap - old) <= drift));
 }
 
 /* Do the pair's next lists say the same of each of this rank's terms as the last residual? */
@@ -201,7 +204,7 @@ static PetscErrorCode PairNextAgrees(Contact contact, ContactPair *pair, PetscRe
 
   PetscFunctionBeginUser;
   PetscCall(PairDepth(contact, pair, t, &depth, &pressure));
-  drift = pair->slave_offsets ? CONTACT_OFFSET_AGREES * pressure / pair->automatic : 0;
+  drift = pair->lags ? CONTACT_OFFSET_AGREES * pressure / pair->automatic : 0;
   if (settle) drift *= CONTACT_OFFSET_SETTLED;
   *agrees = PETSC_TRUE;
   PetscCall(PetscMalloc1(pair->next->n_slaves, &gaps));

@@ -94,16 +94,17 @@ static PetscErrorCode PairCreateTerms(Mesh mesh, ContactPair *pair)
 /* Slave points, terms and offsets, by formulation. */
 static PetscErrorCode PairCreatePoints(Mesh mesh, Scene scene, Loads loads, ContactPair *pair)
 {
-  const PetscBool smooth = pair->smoother->smooth ? PETSC_TRUE : PETSC_FALSE;
-  const int       finer  = pair->master && pair->slave->mean_size >= CONTACT_COARSE * pair->master->mean_size;
+  const OffsetsKind kind  = !pair->smoother->smooth ? OFFSETS_NONE : pair->scene->live_offset ? OFFSETS_LIVE : OFFSETS_HELD;
+  const int         finer = pair->master && pair->slave->mean_size >= CONTACT_COARSE * pair->master->mean_size;
 
   PetscFunctionBeginUser;
   if (pair->scene->formulation == CONTACT_SURFACE_TO_SURFACE) {
     PetscCall(SlavePointsCreateQuadrature(pair->slave, scene->geometry, finer, &pair->slaves));
     PetscCall(PairChooseNodes(mesh, scene, pair));
-    PetscCall(OffsetsCreate(mesh, scene, loads, pair->slave, pair->n_images, pair->images, pair->fit.feature_angle, finer, smooth, &pair->slave_offsets));
+    PetscCall(OffsetsCreate(mesh, scene, loads, pair->slave, pair->n_images, pair->images, pair->fit.feature_angle, finer, kind, &pair->slave_offsets));
     if (pair->master)
-      PetscCall(OffsetsCreate(mesh, scene, loads, pair->master, pair->n_images, pair->images, pair->fit.feature_angle, 0, smooth, &pair->master_offsets));
+      PetscCall(OffsetsCreate(mesh, scene, loads, pair->master, pair->n_images, pair->images, pair->fit.feature_angle, 0, kind, &pair->master_offsets));
+    pair->lags = kind != OFFSETS_LIVE ? PETSC_TRUE : PETSC_FALSE;
   } else {
     PetscCall(PairChooseNodes(mesh, scene, pair));
     PetscCall(SlavePointsCreateNodes(pair->slave, pair->n, pair->node, &pair->slaves));
@@ -184,7 +185,8 @@ PetscErrorCode ContactPairCreate(Mesh mesh, Scene scene, Elasticity elasticity, 
   PetscCall(ContactStateCreate(pair->n, penalty, &pair->now));
   PetscCall(ContactStateCreate(pair->n, penalty, &pair->accepted));
   PetscCall(SearchCreate(mesh, scene, loads, pair->master, pair->slave->max_size, pair->n_images, pair->images, &pair->fit, pair->slaves,
-                         pair->master_offsets ? OffsetsGet(pair->master_offsets) : NULL, &pair->search));
+                         pair->master_offsets ? OffsetsGet(pair->master_offsets) : NULL, pair->master_offsets ? OffsetsMaps(pair->master_offsets) : NULL,
+                         &pair->search));
   if (contact->adjust) PetscCall(PetscMalloc1(pair->n, &pair->before));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -69,23 +69,15 @@ PetscErrorCode ContactPointEvaluate(const ContactPair *pair, const Smoother *smo
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode WorkReserveMap(ContactWork *work, ContactLists lists, PetscInt q)
+static PetscErrorCode WorkReserveMap(ContactWork *work, ContactLists lists, int rows, PetscInt entries)
 {
-  const int rows    = 1 + work->result.n;
-  PetscInt  entries = lists->slave_ptr[q + 1] - lists->slave_ptr[q];
-
   PetscFunctionBeginUser;
-  for (int i = 0; i < work->result.n; i++) {
-    const PetscInt p = lists->list_point[lists->list_ptr[q] + work->result.points[i]];
-
-    entries += lists->point_ptr[p + 1] - lists->point_ptr[p];
-  }
   if (rows > work->map.rows_room || entries > work->map.entries_room) {
     work->map.rows_room    = 2 * rows;
     work->map.entries_room = 2 * (int)entries;
     PetscCall(PetscFree5(work->map.ptr, work->map.node, work->map.S, work->map.sign, work->number));
     PetscCall(PetscMalloc5(work->map.rows_room + 1, &work->map.ptr, work->map.entries_room, &work->map.node, work->map.entries_room, &work->map.S,
-                           3 * work->map.rows_room, &work->map.sign, work->map.entries_room, &work->number));
+                           3 * work->map.entries_room, &work->map.sign, work->map.entries_room, &work->number));
   }
   if (lists->n_nodes > work->slot_room) {
     work->slot_room = 2 * lists->n_nodes;
@@ -109,10 +101,13 @@ PetscErrorCode ContactWorkDestroy(ContactWork *work)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static void MapAddRow(ContactWork *work, int row, PetscInt n, const PetscInt *nodes, const PetscReal *S, const PetscReal *sign)
+/* A row of n images of nodes, side[n], on image `image`. */
+static void MapAddRow(const ContactPair *pair, int row, int image, PetscInt n, const PetscInt *nodes, const int *side, const PetscReal *S)
 {
-  ContactMap *map = &work->map;
-  int         k   = map->ptr[row];
+  ContactWork     *work = pair->work;
+  ContactMap      *map  = &work->map;
+  const PetscReal *sign = pair->images[image].sign;
+  int              k    = map->ptr[row];
 
   for (PetscInt a = 0; a < n; a++, k++) {
     int *slot = &work->slot[nodes[a]];
@@ -123,25 +118,40 @@ static void MapAddRow(ContactWork *work, int row, PetscInt n, const PetscInt *no
     }
     map->node[k] = *slot;
     map->S[k]    = S[a];
+    for (int d = 0; d < 3; d++) map->sign[3 * k + d] = sign[d] * pair->images[side[a]].sign[d];
   }
-  for (int d = 0; d < 3; d++) map->sign[3 * row + d] = sign ? sign[d] : 1;
   map->ptr[row + 1] = k;
+}
+
+static void MapBegin(ContactWork *work)
+{
+  work->count      = 0;
+  work->map.ptr[0] = 0;
+}
+
+static void MapEnd(ContactWork *work)
+{
+  for (PetscInt i = 0; i < work->count; i++) work->slot[work->number[i]] = -1;
+}
+
+/* A row for fit point p. */
+static void MapAddPoint(const ContactPair *pair, ContactLists lists, int row, PetscInt p)
+{
+  const PetscInt first = lists->point_ptr[p];
+
+  MapAddRow(pair, row, lists->point_image[p], lists->point_ptr[p + 1] - first, &lists->point_node[first], &lists->point_side[first], &lists->point_S[first]);
 }
 
 /* The map of the last evaluation. */
 static void MapFill(const ContactPair *pair, ContactLists lists, PetscInt q)
 {
-  ContactWork *work = pair->work;
+  ContactWork   *work = pair->work;
+  const PetscInt own  = lists->slave_ptr[q];
 
-  work->count      = 0;
-  work->map.ptr[0] = 0;
-  MapAddRow(work, 0, lists->slave_ptr[q + 1] - lists->slave_ptr[q], &lists->slave_node[lists->slave_ptr[q]], &lists->slave_S[lists->slave_ptr[q]], NULL);
-  for (int i = 0; i < work->result.n; i++) {
-    const PetscInt p = lists->list_point[lists->list_ptr[q] + work->result.points[i]], first = lists->point_ptr[p];
-
-    MapAddRow(work, 1 + i, lists->point_ptr[p + 1] - first, &lists->point_node[first], &lists->point_S[first], pair->images[lists->point_image[p]].sign);
-  }
-  for (PetscInt i = 0; i < work->count; i++) work->slot[work->number[i]] = -1;
+  MapBegin(work);
+  MapAddRow(pair, 0, 0, lists->slave_ptr[q + 1] - own, &lists->slave_node[own], &lists->slave_side[own], &lists->slave_S[own]);
+  for (int i = 0; i < work->result.n; i++) MapAddPoint(pair, lists, 1 + i, lists->list_point[lists->list_ptr[q] + work->result.points[i]]);
+  MapEnd(work);
 }
 
 /* ContactPointToNodes - carries N of the last evaluation from points to contact nodes, each of which occurs once.
@@ -149,11 +159,17 @@ static void MapFill(const ContactPair *pair, ContactLists lists, PetscInt q)
    Not collective. q: the slave point that was evaluated. */
 PetscErrorCode ContactPointToNodes(const ContactPair *pair, ContactLists lists, PetscInt q)
 {
-  ContactWork *work = pair->work;
+  ContactWork *work    = pair->work;
+  PetscInt     entries = lists->slave_ptr[q + 1] - lists->slave_ptr[q];
   FitMap       map;
 
   PetscFunctionBeginUser;
-  PetscCall(WorkReserveMap(work, lists, q));
+  for (int i = 0; i < work->result.n; i++) {
+    const PetscInt p = lists->list_point[lists->list_ptr[q] + work->result.points[i]];
+
+    entries += lists->point_ptr[p + 1] - lists->point_ptr[p];
+  }
+  PetscCall(WorkReserveMap(work, lists, 1 + work->result.n, entries));
   MapFill(pair, lists, q);
   if (work->count > work->room) {
     work->room = 2 * work->count;
@@ -201,7 +217,7 @@ static PetscErrorCode AddFacetSecond(ContactWork *work, int dim, PetscReal facto
   for (int i = 0; i < rows; i++) {
     for (int k = map->ptr[i]; k < map->ptr[i + 1]; k++) {
       for (int d = 0; d < dim; d++) {
-        const PetscReal  scale = factor * map->S[k] * map->sign[3 * i + d];
+        const PetscReal  scale = factor * map->S[k] * map->sign[3 * k + d];
         const PetscReal *from  = &r->M[(i * dim + d) * m];
         PetscReal       *to    = &work->half[(map->node[k] * dim + d) * m];
 
@@ -212,7 +228,7 @@ static PetscErrorCode AddFacetSecond(ContactWork *work, int dim, PetscReal facto
   for (int i = 0; i < rows; i++) {
     for (int k = map->ptr[i]; k < map->ptr[i + 1]; k++) {
       for (int d = 0; d < dim; d++) {
-        const PetscReal scale = map->S[k] * map->sign[3 * i + d];
+        const PetscReal scale = map->S[k] * map->sign[3 * k + d];
 
         for (int j = 0; j < n; j++) work->sum.M[j * n + map->node[k] * dim + d] += scale * work->half[j * m + i * dim + d];
       }
@@ -223,8 +239,9 @@ static PetscErrorCode AddFacetSecond(ContactWork *work, int dim, PetscReal facto
 
 /* ContactSecondAdd - adds factor times the second variation of the last evaluation, after ContactPointToNodes(). Not collective.
 
-   place: of each contact node in the block, or NULL for the numbers of the point's own nodes. */
-PetscErrorCode ContactSecondAdd(const ContactPair *pair, PetscReal factor, const PetscInt *place)
+   place: of each contact node in the block, or NULL for the numbers of the point's own nodes; own[n_points]: takes what belongs to the fit points one by one,
+   for ContactOwnToNodes(). */
+PetscErrorCode ContactSecondAdd(const ContactPair *pair, ContactLists lists, PetscInt q, PetscReal factor, const PetscInt *place, double (*own)[FITMAP_OWN])
 {
   ContactWork *work = pair->work;
   ContactMap  *map  = &work->map;
@@ -233,9 +250,10 @@ PetscErrorCode ContactSecondAdd(const ContactPair *pair, PetscReal factor, const
   PetscFunctionBeginUser;
   for (int k = 0; place && k < map->ptr[1 + work->result.n]; k++) map->node[k] = (int)place[work->number[map->node[k]]];
   fit = (FitMap){work->sum.n_nodes, map->ptr, map->node, map->S, map->sign};
-  if (work->result.factored)
+  if (work->result.factored) {
     FitMapAdd(&work->sum, factor, &work->result.factors, &fit);
-  else
+    for (int i = 0; i < work->result.n; i++) FitMapOwn(factor, &work->result.factors, i, own[lists->list_point[lists->list_ptr[q] + work->result.points[i]]]);
+  } else
     PetscCall(AddFacetSecond(work, pair->mesh->dim, factor));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -244,6 +262,30 @@ PetscErrorCode ContactSecondAdd(const ContactPair *pair, PetscReal factor, const
 void ContactSecondEnd(const ContactPair *pair)
 {
   FitMapEnd(&pair->work->sum);
+}
+
+/* ContactPointsToNodes - the contact nodes of fit points first to end - 1, into the work's number. Not collective. */
+PetscErrorCode ContactPointsToNodes(const ContactPair *pair, ContactLists lists, PetscInt first, PetscInt end)
+{
+  ContactWork *work = pair->work;
+
+  PetscFunctionBeginUser;
+  PetscCall(WorkReserveMap(work, lists, (int)(end - first), lists->point_ptr[end] - lists->point_ptr[first]));
+  MapBegin(work);
+  for (PetscInt p = first; p < end; p++) MapAddPoint(pair, lists, (int)(p - first), p);
+  MapEnd(work);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* ContactOwnToNodes - adds the fit points' own second variations, summed over slave points, over the nodes of the last ContactPointsToNodes(). Not collective.
+
+   own: of the first of the points; M[count*dim][count*dim]: symmetric, to be added to. */
+void ContactOwnToNodes(const ContactPair *pair, PetscInt points, const double (*own)[FITMAP_OWN], PetscReal *M)
+{
+  const ContactMap *map = &pair->work->map;
+  const FitMap      fit = {(int)pair->work->count, map->ptr, map->node, map->S, map->sign};
+
+  FitMapAddOwn(pair->mesh->dim, 0, (int)points, own, &fit, M);
 }
 
 /* ContactPointGaps - gaps (lengths) of the slave points of this rank, positions as the lists were last updated.

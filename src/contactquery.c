@@ -275,7 +275,8 @@ const char *ContactPairText(Contact contact, int p)
   static char              text[512];
   const ContactPair       *pair  = &contact->pairs[p];
   const SceneContact      *scene = pair->scene;
-  const char              *how   = scene->formulation == CONTACT_SURFACE_TO_SURFACE ? ", surface to surface" : "";
+  const PetscBool          live  = (PetscBool)(pair->slave_offsets && OffsetsMaps(pair->slave_offsets));
+  const char              *how   = live ? ", surface to surface with live offsets" : pair->slave_offsets ? ", surface to surface" : "";
 
   if (!pair->master)
     snprintf(text, sizeof(text), "%s on an analytic %s%s", scene->slave, shapes[scene->analytic.shape], how);

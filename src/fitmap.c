@@ -1,6 +1,7 @@
 /* First and second variation of the diffuse gap over nodes. With rows K_i, J_i, H_i of the points and x_i = S_i x,
        S^T M S = Kbar^T Jbar + Jbar^T Kbar + sum_i (S_i - S_c)^T H_i (S_i - S_c),   Kbar = sum_i K_i S_i,  Jbar likewise.
-   In the last sum the points' own part goes to pairs of nodes that share a face. What couples them to the slave point is again such a product,
+   In the last sum the points' own part goes to pairs of nodes of one row: it is summed by FitMapAddOwn(), for a single slave point or, as slave points near
+   each other see the same points, over many of them before it goes to the nodes. What couples them to the slave point is again such a product,
        sum_i -S_i^T H_i S_c - S_c^T H_i S_i + S_c^T H_c S_c = B^T S_c + S_c^T B,   B = 1/2 H_c S_c - sum_i H_i S_i,  H_c = sum H_i,
    so B and S_c are dim more rows of the factors. The rows of many slave points over the same nodes stand below each other: one product, which writes the
    large M once, serves them all. */
@@ -12,7 +13,7 @@
 /* What is summed in registers at a time: vectors of a row, for that many entries of a run */
 enum { ROW_VECTORS = 4, ROW_ENTRIES = LANES == 8 ? 4 : 2 };
 
-/* Rows first to end - 1 of the map, which have the same nodes and signs: entry k of row r is S[(r - first)*entries + k]. */
+/* Rows first to end - 1 of the map, which have the same nodes and signs: entry k of row r is S[(r - first)*entries + k], its signs are sign[3*k]. */
 typedef struct {
   int           first, end, entries;
   const int    *node;
@@ -34,19 +35,19 @@ static int SameNodes(const FitMap *map, int a, int b)
   if (ptr[b + 1] - ptr[b] != entries) return 0;
   for (int k = 0; k < entries; k++)
     if (map->node[ptr[a] + k] != map->node[ptr[b] + k]) return 0;
-  for (int c = 0; c < 3; c++)
-    if (map->sign[3 * a + c] != map->sign[3 * b + c]) return 0;
+  for (int k = 0; k < 3 * entries; k++)
+    if (map->sign[3 * ptr[a] + k] != map->sign[3 * ptr[b] + k]) return 0;
   return 1;
 }
 
-/* The rows that belong together from `first` on; the slave point, row 0, is always alone. */
+/* The rows that belong together from `first` on. */
 static FitRun NextRun(const FitMap *map, int rows, int first)
 {
   const int start = map->ptr[first];
   int       end   = first + 1;
 
-  while (first > 0 && end < rows && SameNodes(map, first, end)) end++;
-  return (FitRun){first, end, map->ptr[first + 1] - start, map->node + start, map->S + start, map->sign + 3 * first};
+  while (end < rows && SameNodes(map, first, end)) end++;
+  return (FitRun){first, end, map->ptr[first + 1] - start, map->node + start, map->S + start, map->sign + 3 * start};
 }
 
 /* Adds some vectors of a run's rows of K and J, of component c, to those of some of its nodes. A node may be among them twice. */
@@ -64,9 +65,10 @@ LANES_INLINE void AddTile(const int dim, const int vectors, const int entries, c
   }
   for (int a = 0; a < entries; a++) {
     const int    node = run->node[k + a];
+    const double sign = run->sign[3 * (k + a) + c];
     Lanes *const at   = nodal->rows + ((node < 0 ? nodal->stride : node * dim) + c) * vectors + v;
 
-    for (int b = 0; b < count; b++) at[b] += run->sign[c] * sum[a][b];
+    for (int b = 0; b < count; b++) at[b] += sign * sum[a][b];
   }
 }
 
@@ -106,17 +108,15 @@ LANES_INLINE void TurnBack(const int terms, const int vectors, FitNodal *nodal)
   }
 }
 
-/* sum_r S_rk S_rl H_r over a run's rows; l < 0: sum_r S_rk H_r */
-LANES_INLINE void SumHessians(const int vectors, const FitFactors *factors, const FitRun *run, int k, int l, Lanes *sum)
+/* sum_r S_rk H_r over a run's rows */
+LANES_INLINE void SumHessians(const int vectors, const FitFactors *factors, const FitRun *run, int k, Lanes *sum)
 {
   const double *S = run->S;
   const Lanes  *h = (const Lanes *)factors->hessians + run->first * vectors;
 
   for (int v = 0; v < vectors; v++) sum[v] = Broadcast(0);
   for (int r = run->first; r < run->end; r++, S += run->entries, h += vectors) {
-    const double weight = l < 0 ? S[k] : S[k] * S[l];
-
-    for (int v = 0; v < vectors; v++) sum[v] += weight * h[v];
+    for (int v = 0; v < vectors; v++) sum[v] += S[k] * h[v];
   }
 }
 
@@ -130,15 +130,15 @@ LANES_INLINE int HessianEntry(const int c, const int d)
 LANES_INLINE void AddCoupling(const int dim, const int terms, const FitFactors *factors, const FitRun *run, double share, FitNodal *nodal)
 {
   const int vectors = HessianStride(dim) / LANES;
-  double    sign[3];
 
-  for (int c = 0; c < dim; c++) sign[c] = nodal->factor * share * run->sign[c];
   for (int k = 0; k < run->entries; k++) {
     Lanes               sum[FIT_HESSIAN];
     const double *const h = (const double *)sum;
+    double              sign[3];
 
     if (run->node[k] < 0) continue;
-    SumHessians(vectors, factors, run, k, -1, sum);
+    for (int c = 0; c < dim; c++) sign[c] = nodal->factor * share * run->sign[3 * k + c];
+    SumHessians(vectors, factors, run, k, sum);
     for (int d = 0; d < dim; d++) {
       double *const B = nodal->K + (terms + d) * nodal->stride + run->node[k] * dim;
 
@@ -152,47 +152,65 @@ LANES_INLINE void AddSlave(const int dim, const int terms, const FitRun *slave, 
 {
   for (int k = 0; k < slave->entries; k++) {
     if (slave->node[k] < 0) continue;
-    for (int c = 0; c < dim; c++) nodal->J[(terms + c) * nodal->stride + slave->node[k] * dim + c] += slave->sign[c] * slave->S[k];
+    for (int c = 0; c < dim; c++) nodal->J[(terms + c) * nodal->stride + slave->node[k] * dim + c] += slave->sign[3 * k + c] * slave->S[k];
   }
 }
 
-/* Adds an H to a block of M. */
-LANES_INLINE void AddBlock(const int dim, const double *h, long size, double *block)
+/* Adds an H between entries of these signs to a block of M. */
+LANES_INLINE void AddBlock(const int dim, const double *h, const double *row_sign, const double *column_sign, long size, double *block)
 {
   for (int c = 0; c < dim; c++) {
-    for (int d = 0; d < dim; d++) block[c * size + d] += h[HessianEntry(c, d)];
+    for (int d = 0; d < dim; d++) block[c * size + d] += row_sign[c] * column_sign[d] * h[HessianEntry(c, d)];
   }
 }
 
-/* Adds the points' own H of a run to each pair of its nodes, and to its mirror image in the same order: M stays symmetric to the last bit. */
-LANES_INLINE void AddPairs(const int dim, const FitFactors *factors, const FitRun *run, double factor, long size, double *M)
+/* Adds an H and its mirror image between two entries of one node to the node's block, at once: the order of the two would show in the last bit. */
+LANES_INLINE void AddBothBlocks(const int dim, const double *h, const double *a, const double *b, long size, double *block)
 {
-  const int vectors           = HessianStride(dim) / LANES;
-  double    sign[FIT_HESSIAN] = {0};
-
   for (int c = 0; c < dim; c++) {
-    for (int d = 0; d <= c; d++) sign[HessianEntry(c, d)] = factor * run->sign[c] * run->sign[d];
+    for (int d = 0; d < dim; d++) block[c * size + d] += (a[c] * b[d] + b[c] * a[d]) * h[HessianEntry(c, d)];
   }
+}
+
+/* Adds sum_r S_r^T H_r S_r over a run's rows: to each pair of its nodes, and to its mirror image in the same order, so that M stays symmetric to the last
+   bit. own: of row `first`. */
+LANES_INLINE void AddPairs(const int dim, int first, const double (*own)[FITMAP_OWN], const FitRun *run, long size, double *M)
+{
   for (int k = 0; k < run->entries; k++) {
-    const long i = (long)run->node[k] * dim;
+    const long          i        = (long)run->node[k] * dim;
+    const double *const row_sign = run->sign + 3 * k;
 
     for (int l = 0; i >= 0 && l <= k; l++) {
-      const long j = (long)run->node[l] * dim;
-      Lanes      sum[FIT_HESSIAN];
+      const long          j           = (long)run->node[l] * dim;
+      const double *const column_sign = run->sign + 3 * l, *S = run->S;
+      double              sum[FITMAP_OWN] = {0};
 
       if (j < 0) continue;
-      SumHessians(vectors, factors, run, k, l, sum);
-      for (int v = 0; v < vectors; v++) sum[v] *= *(const LanesInArray *)(sign + v * LANES);
-      AddBlock(dim, (const double *)sum, size, M + i * size + j);
-      if (l < k) AddBlock(dim, (const double *)sum, size, M + j * size + i);
+      for (int r = run->first; r < run->end; r++, S += run->entries) {
+        for (int e = 0; e < FITMAP_OWN; e++) sum[e] += S[k] * S[l] * own[r - first][e];
+      }
+      if (l < k && i == j) {
+        AddBothBlocks(dim, sum, row_sign, column_sign, size, M + i * size + i);
+        continue;
+      }
+      AddBlock(dim, sum, row_sign, column_sign, size, M + i * size + j);
+      if (l < k) AddBlock(dim, sum, column_sign, row_sign, size, M + j * size + i);
     }
+  }
+}
+
+LANES_INLINE void Own(const int dim, int first, int end, const double (*own)[FITMAP_OWN], const FitMap *map, double *M)
+{
+  for (FitRun run = {.end = first}; run.end < end;) {
+    run = NextRun(map, end, run.end);
+    AddPairs(dim, first, own, &run, (long)map->n_nodes * dim, M);
   }
 }
 
 LANES_INLINE void Second(const int dim, const int terms, double factor, const FitFactors *factors, const FitMap *map, FitMapSum *sum)
 {
-  const int    vectors = FactorStride(terms) / LANES, size = sum->n_nodes * dim, rows = 1 + factors->n;
-  const FitRun slave = NextRun(map, rows, 0);
+  const int    vectors = FactorStride(terms) / LANES, rows = 1 + factors->n;
+  const FitRun slave = NextRun(map, 1, 0);
   const long   first = (long)sum->depth * sum->stride;
   FitNodal     nodal = {.rows = (Lanes *)sum->rows, .K = sum->K + first, .J = sum->J + first, .stride = sum->stride, .factor = factor};
 
@@ -206,7 +224,6 @@ LANES_INLINE void Second(const int dim, const int terms, double factor, const Fi
     run = NextRun(map, rows, run.end);
     AddRows(dim, vectors, factors, &run, &nodal);
     AddCoupling(dim, terms, factors, &run, -1, &nodal);
-    AddPairs(dim, factors, &run, factor, size, sum->M);
   }
   TurnBack(terms, vectors, &nodal);
   sum->depth += terms + dim;
@@ -215,12 +232,9 @@ LANES_INLINE void Second(const int dim, const int terms, double factor, const Fi
 LANES_INLINE void First(const int dim, int n, const double *N, const FitMap *map, double *nodal)
 {
   for (int r = 0; r < 1 + n; r++) {
-    double turned[3];
-
-    for (int c = 0; c < dim; c++) turned[c] = map->sign[3 * r + c] * N[r * dim + c];
     for (int e = map->ptr[r]; e < map->ptr[r + 1]; e++) {
       if (map->node[e] < 0) continue;
-      for (int c = 0; c < dim; c++) nodal[map->node[e] * dim + c] += map->S[e] * turned[c];
+      for (int c = 0; c < dim; c++) nodal[map->node[e] * dim + c] += map->S[e] * map->sign[3 * e + c] * N[r * dim + c];
     }
   }
 }
@@ -262,7 +276,8 @@ void FitMapBegin(FitMapSum *sum, int dim, int degree, int n_nodes, int points, d
   sum->J    = sum->K + (long)points * (terms + dim) * stride;
 }
 
-/* FitMapAdd - adds factor times the second variation over nodes, S^T M S, of one slave point, without M. Not collective.
+/* FitMapAdd - adds factor times the second variation over nodes, S^T M S, of one slave point, without M; the points' own H are left to FitMapAddOwn().
+   Not collective.
 
    Input: factors - of M, as FitEvaluate() leaves them in its workspace; map - nodes below the sum's n_nodes
 
@@ -274,6 +289,26 @@ void FitMapAdd(FitMapSum *sum, double factor, const FitFactors *factors, const F
   return
   INSTANTIATE(factors, SECOND)
 #undef SECOND
+}
+
+/* FitMapOwn - own += factor H, for point i of those inside. Not collective. */
+void FitMapOwn(double factor, const FitFactors *factors, int i, double own[FITMAP_OWN])
+{
+  const double *const h = factors->hessians + (1 + i) * factors->hessianstride;
+
+  for (int e = 0; e < factors->dim * (factors->dim + 1) / 2; e++) own[e] += factor * h[e];
+}
+
+/* FitMapAddOwn - M += sum_r S_r^T own_r S_r, the points' own part of second variations. Not collective.
+
+   Input: dim; rows first to end - 1 of the map; own[end - first] - of these rows' points, from FitMapOwn(). M[n_nodes*dim][n_nodes*dim] - symmetric to the
+   last bit if it was */
+void FitMapAddOwn(int dim, int first, int end, const double (*own)[FITMAP_OWN], const FitMap *map, double *M)
+{
+  if (dim == 3)
+    Own(3, first, end, own, map, M);
+  else
+    Own(2, first, end, own, map, M);
 }
 
 /* FitMapEnd - M holds the sum, symmetric to the last bit. Not collective. */

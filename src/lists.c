@@ -9,14 +9,16 @@ PetscErrorCode ListsCreateNodes(ContactSearch s, SearchField *field, ContactList
   const PetscBool rigid     = (PetscBool)(s->master && s->master->rigid);
   const PetscInt  n_records = field->n_records, n_slaves = s->slaves ? s->slaves->n_nodes : 0;
   FaceRecord     *records = field->records;
-  PetscInt        n = n_slaves, n_rigid = 0;
+  const FaceMaps  none = {0}, *maps[] = {&field->maps, s->slaves ? &s->slaves->maps : &none};
+  PetscInt        n = n_slaves, n_rigid = 0, n_mapped = 0;
   NodeKey        *keys, *tool;
   PetscSFNode    *remote;
   const PetscInt *dofs;
   MPI_Datatype    integers;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc2(n_slaves + FACE_MAX_NODES * n_records, &keys, FACE_MAX_NODES * n_records, &tool));
+  for (int m = 0; m < 2; m++) n_mapped += maps[m]->n ? maps[m]->ptr[maps[m]->n] : 0;
+  PetscCall(PetscMalloc2(n_slaves + n_mapped + FACE_MAX_NODES * n_records, &keys, FACE_MAX_NODES * n_records, &tool));
   for (PetscInt i = 0; i < n_slaves; i++) keys[i] = s->slaves->nodes[i];
   for (PetscInt r = 0; r < n_records; r++) {
     PetscInt *count = rigid ? &n_rigid : &n;
@@ -24,6 +26,8 @@ PetscErrorCode ListsCreateNodes(ContactSearch s, SearchField *field, ContactList
     FaceRecordKeys(&records[r], rigid ? &tool[n_rigid] : &keys[n]);
     *count += ElementGet(records[r].facet.type)->nodes;
   }
+  for (int m = 0; m < 2; m++)
+    for (PetscInt k = 0; maps[m]->n && k < maps[m]->ptr[maps[m]->n]; k++) keys[n++] = maps[m]->entry[k].node;
   n                   = NodeKeysUnique(n, keys);
   n_rigid             = NodeKeysUnique(n_rigid, tool);
   lists->n_deformable = n;
@@ -105,23 +109,30 @@ PetscErrorCode ListsUpdateNodes(ContactSearch s, ContactLists lists, const Petsc
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* y = sign * (sum S x), the linear part of a point's map. */
-static void PointMap(const ContactLists lists, PetscInt p, const SurfaceImage *image, const PetscReal *x, PetscReal *y)
+/* y = sum S sign x, the linear part of a map. */
+static void Map(ContactSearch s, int dim, PetscInt n, const PetscInt *node, const int *side, const PetscReal *S, const PetscReal *x, PetscReal *y)
 {
-  for (int d = 0; d < lists->dim; d++) {
-    PetscReal sum = 0;
+  for (int d = 0; d < dim; d++) y[d] = 0;
+  for (PetscInt k = 0; k < n; k++) {
+    const PetscReal *sign = s->images[side[k]].sign;
 
-    for (PetscInt k = lists->point_ptr[p]; k < lists->point_ptr[p + 1]; k++) sum += lists->point_S[k] * x[lists->point_node[k] * lists->dim + d];
-    y[d] = image->sign[d] * sum;
+    for (int d = 0; d < dim; d++) y[d] += S[k] * sign[d] * x[node[k] * dim + d];
   }
 }
 
-void ListsSlaveMap(const ContactLists lists, PetscInt q, const PetscReal *x, PetscReal *y)
+static void PointMap(ContactSearch s, ContactLists lists, PetscInt p, const PetscReal *x, PetscReal *y)
 {
-  for (int d = 0; d < lists->dim; d++) {
-    y[d] = 0;
-    for (PetscInt k = lists->slave_ptr[q]; k < lists->slave_ptr[q + 1]; k++) y[d] += lists->slave_S[k] * x[lists->slave_node[k] * lists->dim + d];
-  }
+  const PetscInt first = lists->point_ptr[p];
+
+  Map(s, lists->dim, lists->point_ptr[p + 1] - first, &lists->point_node[first], &lists->point_side[first], &lists->point_S[first], x, y);
+  for (int d = 0; d < lists->dim; d++) y[d] *= s->images[lists->point_image[p]].sign[d];
+}
+
+static void SlaveMap(ContactSearch s, ContactLists lists, PetscInt q, const PetscReal *x, PetscReal *y)
+{
+  const PetscInt first = lists->slave_ptr[q];
+
+  Map(s, lists->dim, lists->slave_ptr[q + 1] - first, &lists->slave_node[first], &lists->slave_side[first], &lists->slave_S[first], x, y);
 }
 
 /* On a rigid tool the offsets, which are those of its first position, turn with it. */
@@ -160,9 +171,9 @@ PetscErrorCode ListsUpdate(ContactSearch s, ContactLists lists, const PetscReal 
   if (moved) *moved = same && lists->t == t ? PETSC_FALSE : PETSC_TRUE;
   if (same && lists->t == t) PetscFunctionReturn(PETSC_SUCCESS);
   lists->t = t;
-  for (PetscInt p = 0; p < lists->n_points; p++) PointMap(lists, p, &s->images[lists->point_image[p]], lists->u, &lists->point_u[p * lists->dim]);
+  for (PetscInt p = 0; p < lists->n_points; p++) PointMap(s, lists, p, lists->u, &lists->point_u[p * lists->dim]);
   if (s->fit->integral && s->master && s->master->rigid) TurnOffsets(s, lists, t);
-  for (PetscInt q = 0; q < lists->n_slaves; q++) ListsSlaveMap(lists, q, lists->u, &lists->slave_u[q * lists->dim]);
+  for (PetscInt q = 0; q < lists->n_slaves; q++) SlaveMap(s, lists, q, lists->u, &lists->slave_u[q * lists->dim]);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -189,6 +200,7 @@ static PetscErrorCode ListsAllocatePoints(ContactLists lists, PetscInt room, Pet
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc7(room + 1, &lists->point_ptr, entries, &lists->point_node, entries, &lists->point_S, room * dim, &lists->point_offset, room,
                          &lists->point_weight, room, &lists->point_image, room, &lists->point_key));
+  PetscCall(PetscMalloc1(entries, &lists->point_side));
   PetscCall(PetscArrayzero(lists->point_offset, room * dim));
   lists->n_points     = 0;
   lists->point_ptr[0] = 0;
@@ -202,6 +214,7 @@ static void ListsAddPoint(ContactLists lists, int n, const int *nodes, const dou
 
   for (int a = 0; a < n; a++, k++) {
     lists->point_node[k] = nodes[a];
+    lists->point_side[k] = 0;
     lists->point_S[k]    = S ? S[a] : 1;
   }
   lists->point_ptr[p + 1] = k;
@@ -231,11 +244,40 @@ static void ListsAddNodePoints(ContactSearch s, ContactLists lists, SearchField 
   }
 }
 
+/* Writes the entries of a face's map for one of its points: number of the node in the lists, image, share. */
+static PetscErrorCode TakeMap(ContactLists lists, const FaceMaps *maps, PetscInt face, int point, PetscInt *node, int *side, PetscReal *S)
+{
+  PetscFunctionBeginUser;
+  for (PetscInt k = maps->ptr[face]; k < maps->ptr[face + 1]; k++) {
+    const FaceMapEntry *entry = &maps->entry[k];
+
+    PetscCall(PetscFindInt(entry->node.id, lists->n_deformable, lists->node_id, node++));
+    *side++ = entry->image;
+    *S++    = entry->S[point];
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The point added last gets a map instead of shape functions, and the part of it that stands still instead of an offset. */
+static PetscErrorCode ListsMapPoint(ContactSearch s, ContactLists lists, const SearchField *field, const Candidate *candidate, int q)
+{
+  const PetscInt p = lists->n_points - 1, first = lists->point_ptr[p], r = candidate->record;
+  PetscReal     *shift = &lists->point_offset[p * lists->dim];
+
+  PetscFunctionBeginUser;
+  PetscCall(TakeMap(lists, &field->maps, r, q, &lists->point_node[first], &lists->point_side[first], &lists->point_S[first]));
+  lists->point_ptr[p + 1] = first + field->maps.ptr[r + 1] - field->maps.ptr[r];
+  FaceMapShift(&field->maps, r, q, lists->dim, s->images, shift);
+  for (int d = 0; d < lists->dim; d++) shift[d] *= s->images[candidate->image].sign[d];
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* The quadrature points of the candidates, weighted by their reference area, with their offsets. */
-static void ListsAddQuadraturePoints(ContactSearch s, ContactLists lists, SearchField *field)
+static PetscErrorCode ListsAddQuadraturePoints(ContactSearch s, ContactLists lists, SearchField *field)
 {
   const int dim = lists->dim;
 
+  PetscFunctionBeginUser;
   for (PetscInt c = 0; c < field->n_candidates; c++) {
     Candidate        *candidate = &field->candidates[c];
     const FaceRecord *record    = &field->records[candidate->record];
@@ -251,8 +293,10 @@ static void ListsAddQuadraturePoints(ContactSearch s, ContactLists lists, Search
       for (int d = 0; d < dim; d++) lists->point_offset[lists->n_points * dim + d] = s->images[candidate->image].sign[d] * record->offset[q * dim + d];
       ListsAddPoint(lists, ElementGet(facet->type)->nodes, facet->nodes, rule->N[q], candidate->image, area[q] / PetscPowRealInt(s->master->mean_size, dim - 1),
                     candidate->facet.tag * FACE_RULE_POINTS + q);
+      if (field->maps.n) PetscCall(ListsMapPoint(s, lists, field, candidate, q));
     }
   }
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* Numbers the points that the candidates use, writes their maps, and rewrites the candidates' nodes in them. */
@@ -264,15 +308,16 @@ PetscErrorCode ListsCreatePoints(ContactSearch s, ContactLists lists, SearchFiel
   PetscFunctionBeginUser;
   for (PetscInt c = 0; s->fit->integral && c < field->n_candidates; c++) {
     const ElementType type = field->candidates[c].facet.type;
+    const PetscInt    r    = field->candidates[c].record;
 
     points += FaceRuleGet(type, 0)->n;
-    entries += FaceRuleGet(type, 0)->n * ElementGet(type)->nodes;
+    entries += FaceRuleGet(type, 0)->n * (field->maps.n ? field->maps.ptr[r + 1] - field->maps.ptr[r] : ElementGet(type)->nodes);
   }
   PetscCall(PetscMalloc1(nodes, &number));
   for (PetscInt k = 0; k < nodes; k++) number[k] = -1;
   PetscCall(ListsAllocatePoints(lists, points, entries));
   ListsAddNodePoints(s, lists, field, number);
-  if (s->fit->integral) ListsAddQuadraturePoints(s, lists, field);
+  if (s->fit->integral) PetscCall(ListsAddQuadraturePoints(s, lists, field));
   for (PetscInt c = 0; c < field->n_candidates; c++) {
     Candidate *candidate = &field->candidates[c];
 
@@ -287,8 +332,8 @@ PetscErrorCode ListsCreatePoints(ContactSearch s, ContactLists lists, SearchFiel
   for (PetscInt p = 0; p < lists->n_points; p++) {
     const SurfaceImage *image = &s->images[lists->point_image[p]];
 
-    PointMap(lists, p, image, lists->X, &lists->point_X[p * dim]);
-    PointMap(lists, p, image, lists->u, &lists->point_u[p * dim]);
+    PointMap(s, lists, p, lists->X, &lists->point_X[p * dim]);
+    PointMap(s, lists, p, lists->u, &lists->point_u[p * dim]);
     for (int d = 0; d < dim; d++) lists->point_X[p * dim + d] += image->shift[d] + lists->point_offset[p * dim + d];
   }
   PetscCall(PetscFree(number));
@@ -334,29 +379,68 @@ void ListsPointGeometry(ContactSearch s, ContactLists lists, const SearchField *
   }
 }
 
-PetscErrorCode ListsCreateSlaves(ContactSearch s, ContactLists lists)
+/* What the slave points are made of: nodes of their faces, with fixed offsets. */
+static PetscErrorCode TakeSlaveShapes(ContactLists lists, SlavePoints slaves)
 {
-  const int   dim    = lists->dim;
-  SlavePoints slaves = s->slaves;
-  PetscInt    n = slaves->n, entries = slaves->ptr[n], *number;
+  const PetscInt n = slaves->n, entries = slaves->ptr[n];
+  PetscInt      *number;
 
   PetscFunctionBeginUser;
-  lists->n_slaves = n;
-  PetscCall(PetscMalloc4(n + 1, &lists->slave_ptr, entries, &lists->slave_node, entries, &lists->slave_S, n * dim, &lists->slave_offset));
-  PetscCall(PetscMalloc2(n * dim, &lists->slave_X, n * dim, &lists->slave_u));
-  PetscCall(PetscMalloc4(n + 1, &lists->list_ptr, n + 1, &lists->facet_ptr, n, &lists->kappa, n, &lists->nearest));
-  PetscCall(PetscCalloc5(n, &lists->fit_n, n, &lists->rung, n, &lists->degree, 9 * n, &lists->frame, 4 * n, &lists->metric));
-  PetscCall(PetscCalloc4(n, &lists->pivot, n, &lists->amplified, n, &lists->residual, 2 * n, &lists->centre));
   PetscCall(PetscArraycpy(lists->slave_ptr, slaves->ptr, n + 1));
   PetscCall(PetscArraycpy(lists->slave_S, slaves->S, entries));
-  PetscCall(PetscArraycpy(lists->slave_offset, slaves->offset, n * dim));
+  PetscCall(PetscArrayzero(lists->slave_side, entries));
+  PetscCall(PetscArraycpy(lists->slave_offset, slaves->offset, n * lists->dim));
   PetscCall(PetscMalloc1(slaves->n_nodes, &number));
   for (PetscInt i = 0; i < slaves->n_nodes; i++) PetscCall(PetscFindInt(slaves->nodes[i].id, lists->n_deformable, lists->node_id, &number[i]));
   for (PetscInt k = 0; k < entries; k++) lists->slave_node[k] = number[slaves->node[k]];
   PetscCall(PetscFree(number));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Or of the nodes of their faces' maps. */
+static PetscErrorCode TakeSlaveMaps(ContactSearch s, ContactLists lists)
+{
+  SlavePoints slaves = s->slaves;
+  PetscInt    end    = 0;
+
+  PetscFunctionBeginUser;
+  for (PetscInt f = 0; f < slaves->n_faces; f++) {
+    for (PetscInt q = slaves->first[f]; q < slaves->first[f + 1]; q++) {
+      const int point = (int)(q - slaves->first[f]);
+
+      lists->slave_ptr[q] = end;
+      PetscCall(TakeMap(lists, &slaves->maps, f, point, &lists->slave_node[end], &lists->slave_side[end], &lists->slave_S[end]));
+      FaceMapShift(&slaves->maps, f, point, lists->dim, s->images, &lists->slave_offset[q * lists->dim]);
+      end += slaves->maps.ptr[f + 1] - slaves->maps.ptr[f];
+    }
+  }
+  lists->slave_ptr[slaves->n] = end;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode ListsCreateSlaves(ContactSearch s, ContactLists lists)
+{
+  const int   dim    = lists->dim;
+  SlavePoints slaves = s->slaves;
+  PetscInt    n = slaves->n, entries = slaves->maps.ptr ? 0 : slaves->ptr[n];
+
+  PetscFunctionBeginUser;
+  lists->n_slaves = n;
+  for (PetscInt f = 0; slaves->maps.ptr && f < slaves->n_faces; f++)
+    entries += (slaves->first[f + 1] - slaves->first[f]) * (slaves->maps.ptr[f + 1] - slaves->maps.ptr[f]);
+  PetscCall(
+    PetscMalloc5(n + 1, &lists->slave_ptr, entries, &lists->slave_node, entries, &lists->slave_side, entries, &lists->slave_S, n * dim, &lists->slave_offset));
+  PetscCall(PetscMalloc2(n * dim, &lists->slave_X, n * dim, &lists->slave_u));
+  PetscCall(PetscMalloc4(n + 1, &lists->list_ptr, n + 1, &lists->facet_ptr, n, &lists->kappa, n, &lists->nearest));
+  PetscCall(PetscCalloc5(n, &lists->fit_n, n, &lists->rung, n, &lists->degree, 9 * n, &lists->frame, 4 * n, &lists->metric));
+  PetscCall(PetscCalloc4(n, &lists->pivot, n, &lists->amplified, n, &lists->residual, 2 * n, &lists->centre));
+  if (slaves->maps.ptr)
+    PetscCall(TakeSlaveMaps(s, lists));
+  else
+    PetscCall(TakeSlaveShapes(lists, slaves));
   for (PetscInt q = 0; q < n; q++) {
-    ListsSlaveMap(lists, q, lists->X, &lists->slave_X[q * dim]);
-    ListsSlaveMap(lists, q, lists->u, &lists->slave_u[q * dim]);
+    SlaveMap(s, lists, q, lists->X, &lists->slave_X[q * dim]);
+    SlaveMap(s, lists, q, lists->u, &lists->slave_u[q * dim]);
     for (int d = 0; d < dim; d++) lists->slave_X[q * dim + d] += lists->slave_offset[q * dim + d];
   }
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -370,6 +454,22 @@ void ListsRelative(ContactLists lists, PetscInt q, PetscInt p, PetscReal *x)
 
   for (int d = 0; d < dim; d++)
     x[d] = (lists->point_X[p * dim + d] - lists->slave_X[q * dim + d]) + (lists->point_u[p * dim + d] - lists->slave_u[q * dim + d]);
+}
+
+/* ListsAlikeEnd - Not collective. */
+PetscInt ListsAlikeEnd(ContactLists lists, PetscInt p)
+{
+  const PetscInt first = lists->point_ptr[p], n = lists->point_ptr[p + 1] - first;
+  PetscInt       end = p + 1;
+
+  for (; end < lists->n_points && lists->point_ptr[end + 1] - lists->point_ptr[end] == n && lists->point_image[end] == lists->point_image[p]; end++) {
+    for (PetscInt k = 0; k < n; k++) {
+      const PetscInt other = lists->point_ptr[end] + k;
+
+      if (lists->point_node[other] != lists->point_node[first + k] || lists->point_side[other] != lists->point_side[first + k]) return end;
+    }
+  }
+  return end;
 }
 
 /* ListsNearestSize - size (length) of the facet nearest to slave point q when the lists were made, 0 without any. Not collective. */
@@ -421,8 +521,9 @@ PetscErrorCode ListsDestroy(ContactLists *lists)
   PetscCall(PetscSFDestroy(&l->sf));
   PetscCallMPI(MPI_Type_free(&l->block));
   PetscCall(PetscFree7(l->point_ptr, l->point_node, l->point_S, l->point_offset, l->point_weight, l->point_image, l->point_key));
+  PetscCall(PetscFree(l->point_side));
   PetscCall(PetscFree2(l->point_X, l->point_u));
-  PetscCall(PetscFree4(l->slave_ptr, l->slave_node, l->slave_S, l->slave_offset));
+  PetscCall(PetscFree5(l->slave_ptr, l->slave_node, l->slave_side, l->slave_S, l->slave_offset));
   PetscCall(PetscFree2(l->slave_X, l->slave_u));
   PetscCall(PetscFree4(l->list_ptr, l->facet_ptr, l->kappa, l->nearest));
   PetscCall(PetscFree5(l->fit_n, l->rung, l->degree, l->frame, l->metric));

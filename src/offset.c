@@ -6,7 +6,9 @@ struct _n_Offsets {
   ContactSearch  search; /* the surface looking at itself */
   FitSettings    fit;
   int            finer;
-  PetscBool      smooth, once, taken;
+  OffsetsKind    kind;
+  PetscBool      once, taken; /* once: held, but never taken again */
+  FaceMaps       maps;        /* live */
   PetscInt       n;
   PetscReal     *used, *now, *before; /* now, before: of the last two accepted states */
   PetscReal      t_now, t_before;
@@ -14,7 +16,7 @@ struct _n_Offsets {
 
 /* OffsetsCreate - offsets of a surface, 0 until they are taken. Collective. feature_angle: radians. */
 PetscErrorCode OffsetsCreate(Mesh mesh, Scene scene, Loads loads, ContactSurface surface, int n_images, const SurfaceImage *images, PetscReal feature_angle,
-                             int finer, PetscBool smooth, Offsets *out)
+                             int finer, OffsetsKind kind, Offsets *out)
 {
   Offsets o;
 
@@ -22,14 +24,14 @@ PetscErrorCode OffsetsCreate(Mesh mesh, Scene scene, Loads loads, ContactSurface
   PetscCall(PetscNew(&o));
   o->surface = surface;
   o->finer   = finer;
-  o->smooth  = smooth;
+  o->kind    = kind == OFFSETS_LIVE && surface->rigid ? OFFSETS_HELD : kind;
   o->once    = (PetscBool)(surface->rigid || scene->kinematics == KINEMATICS_SMALL);
   o->t_now = o->t_before = -1;
   /* the nodal fit's own defaults: the smoothest whose guards hold on jittered meshes */
   o->fit = (FitSettings){.degree = 4, .support = mesh->dim == 2 ? 4.5 : 3.5, .exponent = mesh->dim == 2 ? 6 : 3, .feature_angle = feature_angle};
   o->n   = surface->n_faces * FACE_RULE_POINTS * mesh->dim;
   PetscCall(PetscCalloc3(o->n, &o->used, o->n, &o->now, o->n, &o->before));
-  PetscCall(SearchCreate(mesh, scene, loads, surface, surface->max_size, n_images, images, &o->fit, NULL, NULL, &o->search));
+  PetscCall(SearchCreate(mesh, scene, loads, surface, surface->max_size, n_images, images, &o->fit, NULL, NULL, NULL, &o->search));
   *out = o;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -40,45 +42,86 @@ PetscErrorCode OffsetsDestroy(Offsets *offsets)
   PetscFunctionBeginUser;
   if (!*offsets) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(SearchDestroy(&(*offsets)->search));
+  PetscCall(FaceMapsDestroy(&(*offsets)->maps));
   PetscCall(PetscFree3((*offsets)->used, (*offsets)->now, (*offsets)->before));
   PetscCall(PetscFree(*offsets));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* b = (f(0) - sum_a N_a f(s_a)) n at one quadrature point: f the fit about it in the face's frame, s_a the face's nodes there. */
-static PetscErrorCode OffsetAt(Fitting *fit, PetscInt candidate, const Facet *facet, const double *xi, const double *N, const PetscReal *x,
-                               const PetscReal *normal, PetscReal *b)
+/* A face of the surface with its place among the candidates, its rule and its nodes' positions */
+typedef struct {
+  PetscInt        candidate;
+  const Facet    *facet;
+  const FaceRule *rule;
+  double          x[FACE_MAX_NODES * 3], normal[FACE_RULE_POINTS * 3];
+} OffsetFace;
+
+/* The surface's own nodal fit about point q of a face, in the face's frame; nodes[a]: the face's nodes there. *rung: RUNG_FACET without one. */
+static PetscErrorCode FitAt(Fitting *fit, const OffsetFace *face, int q, FitProblem *problem, FitResult *result, int *rung, double (*nodes)[2])
 {
-  const int dim = fit->lists->dim;
-  FitFoot   at  = {
-       .facet   = candidate,
-       .xi      = {xi[0], xi[1]},
-       .upright = PETSC_TRUE
+  const int dim = fit->lists->dim, n = ElementGet(face->facet->type)->nodes;
+  FitFoot   at = {
+      .facet   = face->candidate,
+      .xi      = {face->rule->xi[q][0], face->rule->xi[q][1]},
+      .upright = PETSC_TRUE
   };
+
+  PetscFunctionBeginUser;
+  for (int a = 0; a < n; a++)
+    for (int d = 0; d < dim; d++) at.x[d] += face->rule->N[q][a] * face->x[a * dim + d];
+  for (int d = 0; d < 3; d++) {
+    at.foot[d]    = at.x[d];
+    at.outward[d] = face->normal[3 * q + d];
+  }
+  PetscCall(FittingClimb(fit, &at, problem, result, rung));
+  for (int a = 0; a < n && *rung != RUNG_FACET; a++) {
+    for (int k = 0; k < dim - 1; k++) {
+      nodes[a][k] = 0;
+      for (int d = 0; d < dim; d++) nodes[a][k] += problem->frame[k][d] * (face->x[a * dim + d] - at.x[d]);
+    }
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* b = (f(0) - sum_a N_a f(s_a)) n at one quadrature point: f the fit about it in the face's frame, s_a the face's nodes there. */
+static PetscErrorCode OffsetAt(Fitting *fit, const OffsetFace *face, int q, PetscReal *b)
+{
+  const int  dim = fit->lists->dim;
   FitProblem problem;
   FitResult  result;
-  double     zero[2] = {0, 0}, sagitta;
+  double     zero[2] = {0, 0}, nodes[FACE_MAX_NODES][2], sagitta;
   int        rung;
 
   PetscFunctionBeginUser;
-  for (int a = 0; a < ElementGet(facet->type)->nodes; a++)
-    for (int d = 0; d < dim; d++) at.x[d] += N[a] * x[a * dim + d];
-  for (int d = 0; d < 3; d++) {
-    at.foot[d]    = at.x[d];
-    at.outward[d] = normal[d];
-  }
   for (int d = 0; d < dim; d++) b[d] = 0;
-  PetscCall(FittingClimb(fit, &at, &problem, &result, &rung));
+  PetscCall(FitAt(fit, face, q, &problem, &result, &rung, nodes));
   if (rung == RUNG_FACET) PetscFunctionReturn(PETSC_SUCCESS);
   sagitta = FitSurfaceHeight(&result.surface, zero, NULL);
-  for (int a = 0; a < ElementGet(facet->type)->nodes; a++) {
-    double y[2] = {0, 0};
+  for (int a = 0; a < ElementGet(face->facet->type)->nodes; a++) sagitta -= face->rule->N[q][a] * FitSurfaceHeight(&result.surface, nodes[a], NULL);
+  for (int d = 0; d < dim; d++) b[d] = sagitta * face->normal[3 * q + d];
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
 
-    for (int k = 0; k < dim - 1; k++)
-      for (int d = 0; d < dim; d++) y[k] += problem.frame[k][d] * (x[a * dim + d] - at.x[d]);
-    sagitta -= N[a] * FitSurfaceHeight(&result.surface, y, NULL);
+/* The same sagitta as a combination of the fit's points, *n of them, in fit->points: shape[*n]. It vanishes where these lie on a plane, so that taken of their
+   whole positions it is along the normal and turns with the surface. */
+static PetscErrorCode SagittaShape(Fitting *fit, const OffsetFace *face, int q, double *shape, PetscInt *n)
+{
+  const int  dim = fit->lists->dim, corners = ElementGet(face->facet->type)->nodes;
+  FitProblem problem;
+  FitResult  result;
+  double     nodes[FACE_MAX_NODES][2], y[(1 + FACE_MAX_NODES) * 2] = {0}, factor[1 + FACE_MAX_NODES] = {1};
+  int        rung;
+
+  PetscFunctionBeginUser;
+  *n = 0;
+  PetscCall(FitAt(fit, face, q, &problem, &result, &rung, nodes));
+  if (rung == RUNG_FACET) PetscFunctionReturn(PETSC_SUCCESS);
+  for (int a = 0; a < corners; a++) {
+    factor[1 + a] = -face->rule->N[q][a];
+    for (int k = 0; k < dim - 1; k++) y[(1 + a) * (dim - 1) + k] = nodes[a][k];
   }
-  for (int d = 0; d < dim; d++) b[d] = sagitta * normal[d];
+  FitShape(&problem, 1 + corners, y, factor, fit->workspace, shape);
+  *n = problem.n;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -88,8 +131,11 @@ static int CandidateCompare(const void *a, const void *b)
   return p->facet.tag < q->facet.tag ? -1 : p->facet.tag > q->facet.tag;
 }
 
-/* The offsets of all own faces at (u, t). */
-static PetscErrorCode OffsetsCompute(Offsets o, const PetscReal *u, PetscReal t, PetscReal *offset)
+/* What is done with a face while the fits about it can be made */
+typedef PetscErrorCode (*OffsetFaceFn)(Offsets, Fitting *, const OffsetFace *, PetscInt f, void *context);
+
+/* Visits all own faces with the surface at (u, t). */
+static PetscErrorCode OffsetsVisit(Offsets o, const PetscReal *u, PetscReal t, OffsetFaceFn visit, void *context)
 {
   ContactSearch s   = o->search;
   const int     dim = s->mesh->dim;
@@ -105,16 +151,15 @@ static PetscErrorCode OffsetsCompute(Offsets o, const PetscReal *u, PetscReal t,
   PetscCall(FittingCreate(s, lists, &field, &fit));
   for (PetscInt f = 0; f < o->surface->n_faces; f++) {
     const Facet    *facet  = &o->surface->faces[f];
-    const FaceRule *rule   = FaceRuleGet(facet->type, o->finer);
     const Candidate wanted = {.facet = {.tag = facet->tag * SURFACE_MAX_IMAGES}},
                     *own   = bsearch(&wanted, field.candidates, field.n_candidates, sizeof(Candidate), CandidateCompare);
-    double x[FACE_MAX_NODES * 3], area[FACE_RULE_POINTS], normal[FACE_RULE_POINTS * 3];
+    OffsetFace face        = {.candidate = own - field.candidates, .facet = facet, .rule = FaceRuleGet(facet->type, o->finer)};
+    double     area[FACE_RULE_POINTS];
 
     for (int a = 0; a < ElementGet(facet->type)->nodes; a++)
-      for (int d = 0; d < dim; d++) x[a * dim + d] = fit.view.x[own->facet.nodes[a] * dim + d];
-    FaceRuleAreas(rule, facet->type, dim, GEOMETRY_SOLID, x, area, normal);
-    for (int q = 0; q < rule->n; q++)
-      PetscCall(OffsetAt(&fit, own - field.candidates, facet, rule->xi[q], rule->N[q], x, &normal[3 * q], &offset[(f * FACE_RULE_POINTS + q) * dim]));
+      for (int d = 0; d < dim; d++) face.x[a * dim + d] = fit.view.x[own->facet.nodes[a] * dim + d];
+    FaceRuleAreas(face.rule, facet->type, dim, GEOMETRY_SOLID, face.x, area, face.normal);
+    PetscCall(visit(o, &fit, &face, f, context));
   }
   PetscCall(FittingDestroy(&fit));
   PetscCall(SearchFieldDestroy(&field));
@@ -122,16 +167,95 @@ static PetscErrorCode OffsetsCompute(Offsets o, const PetscReal *u, PetscReal t,
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+static PetscErrorCode TakeFace(Offsets o, Fitting *fit, const OffsetFace *face, PetscInt f, void *context)
+{
+  PetscReal *offset = context;
+
+  PetscFunctionBeginUser;
+  for (int q = 0; q < face->rule->n; q++) PetscCall(OffsetAt(fit, face, q, &offset[(f * FACE_RULE_POINTS + q) * o->search->mesh->dim]));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Maps growing face by face */
+typedef struct {
+  PetscInt  room;
+  PetscInt *place; /* of each point of the fitting's lists among the entries; those of other faces are below the face's first */
+} MapsInMaking;
+
+/* Adds S of point q of the face at hand at a point of the lists, which is an image of a node. */
+static PetscErrorCode AddEntry(FaceMaps *maps, MapsInMaking *making, ContactLists lists, PetscInt point, int q, double S)
+{
+  PetscInt          *end  = &maps->ptr[maps->n + 1];
+  const PetscInt     node = lists->point_node[lists->point_ptr[point]];
+  const PetscSFNode *owner;
+
+  PetscFunctionBeginUser;
+  if (making->place[point] < maps->ptr[maps->n]) {
+    if (*end == making->room) PetscCall(PetscRealloc((making->room = 2 * making->room + 1024) * sizeof(FaceMapEntry), &maps->entry));
+    PetscCall(PetscSFGetGraph(lists->sf, NULL, NULL, NULL, &owner));
+    maps->entry[*end] = (FaceMapEntry){
+      .node  = {.id = lists->node_id[node], .owner = owner[node].rank, .local = owner[node].index},
+      .image = lists->point_image[point]
+    };
+    for (int d = 0; d < lists->dim; d++) maps->entry[*end].node.X[d] = lists->X[node * lists->dim + d];
+    making->place[point] = (*end)++;
+  }
+  maps->entry[making->place[point]].S[q] += S;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The map of a face: its shape functions and the coefficients of the sagittas. Nodes: first its own. */
+static PetscErrorCode MapFace(Offsets o, Fitting *fit, const OffsetFace *face, PetscInt f, void *context)
+{
+  FaceMaps     *maps   = &o->maps;
+  MapsInMaking *making = context;
+  ContactLists  lists  = fit->lists;
+  double        shape[FIT_MAX_POINTS];
+  PetscInt      n;
+
+  PetscFunctionBeginUser;
+  if (!making->place) {
+    PetscCall(PetscMalloc1(lists->n_points, &making->place));
+    for (PetscInt p = 0; p < lists->n_points; p++) making->place[p] = -1;
+  }
+  maps->n          = f;
+  maps->ptr[f + 1] = maps->ptr[f];
+  for (int a = 0; a < ElementGet(face->facet->type)->nodes; a++)
+    for (int q = 0; q < face->rule->n; q++) PetscCall(AddEntry(maps, making, lists, fit->view.facets[face->candidate].nodes[a], q, face->rule->N[q][a]));
+  for (int q = 0; q < face->rule->n; q++) {
+    PetscCall(SagittaShape(fit, face, q, shape, &n));
+    for (PetscInt i = 0; i < n; i++)
+      if (shape[i] != 0) PetscCall(AddEntry(maps, making, lists, fit->points[i], q, shape[i]));
+  }
+  maps->n = f + 1;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The maps of all own faces in the reference position. */
+static PetscErrorCode OffsetsMap(Offsets o, const PetscReal *zero)
+{
+  MapsInMaking making = {0};
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc1(o->surface->n_faces + 1, &o->maps.ptr));
+  PetscCall(OffsetsVisit(o, zero, 0, MapFace, &making));
+  PetscCall(PetscFree(making.place));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Offsets that are taken once. *done: they are there. */
 static PetscErrorCode TakeOnce(Offsets o, PetscBool *done)
 {
   PetscFunctionBeginUser;
-  *done = (PetscBool)(o->once || !o->smooth);
-  if (o->smooth && o->once && !o->taken) {
+  *done = (PetscBool)(o->once || o->kind != OFFSETS_HELD);
+  if (*done && o->kind != OFFSETS_NONE && !o->taken) {
     PetscReal *zero;
 
     PetscCall(PetscCalloc1(o->search->mesh->n_nodes * o->search->mesh->dim, &zero));
-    PetscCall(OffsetsCompute(o, zero, 0, o->used));
+    if (o->kind == OFFSETS_LIVE)
+      PetscCall(OffsetsMap(o, zero));
+    else
+      PetscCall(OffsetsVisit(o, zero, 0, TakeFace, o->used));
     PetscCall(PetscFree(zero));
     o->taken = PETSC_TRUE;
   }
@@ -156,7 +280,7 @@ PetscErrorCode OffsetsExtrapolate(Offsets o, const PetscReal *u, PetscReal t, Pe
     o->t_before = o->t_now;
     o->t_now    = t;
   }
-  PetscCall(OffsetsCompute(o, u, t, o->now));
+  PetscCall(OffsetsVisit(o, u, t, TakeFace, o->now));
   if (o->t_before >= 0 && !SceneBreaks(o->search->scene, t)) ahead = (t_next - t) / (t - o->t_before); /* past a breakpoint things go another way */
   for (PetscInt i = 0; i < o->n; i++) o->used[i] = o->now[i] + ahead * (o->now[i] - o->before[i]);
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -169,7 +293,7 @@ PetscErrorCode OffsetsTake(Offsets o, const PetscReal *u, PetscReal t)
 
   PetscFunctionBeginUser;
   PetscCall(TakeOnce(o, &done));
-  if (!done) PetscCall(OffsetsCompute(o, u, t, o->used));
+  if (!done) PetscCall(OffsetsVisit(o, u, t, TakeFace, o->used));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -177,6 +301,12 @@ PetscErrorCode OffsetsTake(Offsets o, const PetscReal *u, PetscReal t)
 const PetscReal *OffsetsGet(Offsets o)
 {
   return o->used;
+}
+
+/* OffsetsMaps - the maps of live offsets, NULL for others. Not collective. */
+const FaceMaps *OffsetsMaps(Offsets o)
+{
+  return o->kind == OFFSETS_LIVE ? &o->maps : NULL;
 }
 
 /* OffsetsArchive - Collective. name: where they stand in the archive. */
@@ -189,7 +319,7 @@ PetscErrorCode OffsetsArchive(Offsets o, Archive archive, const char *name)
   Rows        faces;
 
   PetscFunctionBeginUser;
-  if (o->once || !o->smooth) PetscFunctionReturn(PETSC_SUCCESS);
+  if (o->once || o->kind != OFFSETS_HELD) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscMalloc1(o->surface->n_faces, &tag));
   for (PetscInt f = 0; f < o->surface->n_faces; f++) tag[f] = o->surface->faces[f].tag;
   PetscCall(RowsCreateByKey(o->search->mesh->comm, o->surface->n_faces, tag, &faces));

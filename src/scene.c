@@ -367,10 +367,9 @@ static PetscErrorCode SceneReadContact(Scene scene, SceneContact *contact)
   SceneRefuseRigid(scene, contact->path, "slave", contact->slave);
   if (contact->master && !strcmp(contact->slave, contact->master))
     SceneRefuse(scene, contact->path, "master", "is the slave too; allowed: another surface (self contact is not available yet)", contact->master);
-  contact->smoother    = (SmootherKind)SchemaChoice(SceneDocument(scene), "%s.smoother", contact->path);
-  contact->formulation = (ContactFormulation)SchemaChoice(SceneDocument(scene), "%s.formulation", contact->path);
-  if (contact->formulation == CONTACT_SURFACE_TO_SURFACE && SchemaChoice(SceneDocument(scene), "%s.offset", contact->path))
-    SceneRefuse(scene, contact->path, "offset", "live is not available yet; available: held", NULL);
+  contact->smoother            = (SmootherKind)SchemaChoice(SceneDocument(scene), "%s.smoother", contact->path);
+  contact->formulation         = (ContactFormulation)SchemaChoice(SceneDocument(scene), "%s.formulation", contact->path);
+  contact->live_offset         = SchemaChoice(SceneDocument(scene), "%s.offset", contact->path);
   contact->degree              = SchemaChoice(SceneDocument(scene), "%s.degree", contact->path) == 0 ? 4 : 2;
   contact->support             = SceneHas(scene, contact->path, "support") ? SchemaReal(SceneDocument(scene), "%s.support", contact->path) : 0;
   contact->weight              = SceneHas(scene, contact->path, "weight") ? SchemaReal(SceneDocument(scene), "%s.weight", contact->path) : 0;

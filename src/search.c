@@ -12,7 +12,7 @@
 
 /* SearchCreate - what stands still for the run: surfaces, images, slave points. Collective. slave_size: largest face of the slave (length). */
 PetscErrorCode SearchCreate(Mesh mesh, Scene scene, Loads loads, ContactSurface master, PetscReal slave_size, int n_images, const SurfaceImage *images,
-                            const FitSettings *fit, SlavePoints slaves, const PetscReal *offset, ContactSearch *out)
+                            const FitSettings *fit, SlavePoints slaves, const PetscReal *offset, const FaceMaps *maps, ContactSearch *out)
 {
   ContactSearch   s;
   const PetscReal size = master ? PetscMax(slave_size, master->max_size) : slave_size;
@@ -28,6 +28,7 @@ PetscErrorCode SearchCreate(Mesh mesh, Scene scene, Loads loads, ContactSurface 
                                    .fit      = fit,
                                    .slaves   = slaves,
                                    .offset   = offset,
+                                   .maps     = maps,
                                    .reach    = SEARCH_REACH * size,
                                    .margin   = SEARCH_MARGIN * size};
   *out = s;
@@ -132,6 +133,23 @@ static PetscErrorCode MakeCandidates(ContactSearch s, ContactLists lists, const 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* The maps of the faces that arrived. */
+static PetscErrorCode FetchMaps(ContactSearch s, SearchField *field)
+{
+  PetscSFNode *remote;
+  PetscSF      faces;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(field->n_records, &remote));
+  for (PetscInt r = 0; r < field->n_records; r++) remote[r] = (PetscSFNode){field->records[r].home, field->records[r].home_face};
+  PetscCall(PetscSFCreate(s->mesh->comm, &faces));
+  PetscCall(PetscSFSetGraph(faces, s->master->n_faces, field->n_records, NULL, PETSC_OWN_POINTER, remote, PETSC_OWN_POINTER));
+  PetscCall(PetscSFSetUp(faces));
+  PetscCall(FaceMapsFetch(faces, s->maps, &field->maps));
+  PetscCall(PetscSFDestroy(&faces));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 PetscErrorCode SearchFieldCreate(ContactSearch s, const PetscReal *u, PetscReal t, const PetscReal box[6], PetscReal distance, ContactLists lists,
                                  SearchField *field)
 {
@@ -160,6 +178,7 @@ PetscErrorCode SearchFieldCreate(ContactSearch s, const PetscReal *u, PetscReal 
   }
   FaceRecordsSort(field->n_records, field->records);
   PetscCall(PetscFree(geometry));
+  if (s->maps) PetscCall(FetchMaps(s, field));
   PetscCall(ListsCreateNodes(s, field, lists));
   PetscCall(ListsUpdateNodes(s, lists, u, t));
   PetscCall(MakeCandidates(s, lists, box, distance, field));
@@ -170,6 +189,7 @@ PetscErrorCode SearchFieldCreate(ContactSearch s, const PetscReal *u, PetscReal 
 PetscErrorCode SearchFieldDestroy(SearchField *field)
 {
   PetscFunctionBeginUser;
+  PetscCall(FaceMapsDestroy(&field->maps));
   PetscCall(PetscFree(field->candidates));
   PetscCall(PetscFree(field->records));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -182,8 +202,9 @@ static PetscBool CandidateFaces(const Nearest *look, const Candidate *c)
   for (int d = 0; d < look->lists->dim; d++) cosine += look->normal[d] * c->normal[d];
   if (cosine >= SEARCH_OPPOSED) return PETSC_FALSE;
   for (int a = 0; a < ElementGet(c->facet.type)->nodes; a++)
-    for (PetscInt k = look->lists->slave_ptr[look->q]; k < look->lists->slave_ptr[look->q + 1]; k++)
-      if (look->lists->point_node[look->lists->point_ptr[c->facet.nodes[a]]] == look->lists->slave_node[k]) return PETSC_FALSE;
+    for (PetscInt k = 0; k < look->own; k++)
+      if (look->lists->point_node[look->lists->point_ptr[c->facet.nodes[a]]] == look->lists->slave_node[look->lists->slave_ptr[look->q] + k])
+        return PETSC_FALSE;
   return PETSC_TRUE;
 }
 
@@ -300,7 +321,7 @@ static PetscErrorCode ListsFill(ContactSearch s, ContactLists lists, const Petsc
   PetscCheck(!TreeBuild(dim, (int)n_candidates, lower, upper, &tree), PETSC_COMM_SELF, PETSC_ERR_MEM, "no memory for the search tree");
   for (PetscInt q = 0; q < lists->n_slaves; q++) {
     const PetscInt first = buffer.n_points;
-    Nearest        look  = {.lists = lists, .candidates = candidates, .q = q, .best = -1};
+    Nearest        look  = {.lists = lists, .candidates = candidates, .q = q, .own = s->slaves->ptr[q + 1] - s->slaves->ptr[q], .best = -1};
     double         bound = s->reach + motion;
 
     for (int d = 0; d < dim; d++) look.x[d] = lists->slave_X[q * dim + d] + lists->slave_u[q * dim + d];

@@ -160,6 +160,7 @@ PetscErrorCode SlavePointsDestroy(SlavePoints *points)
     PetscCall(PetscSFDestroy(&p->face_sf));
     PetscCallMPI(MPI_Type_free(&p->face_block));
     PetscCall(PetscFree2(p->faces, p->first));
+    PetscCall(FaceMapsDestroy(&p->maps));
   }
   PetscCall(PetscFree6(p->ptr, p->node, p->S, p->hat, p->weight, p->offset));
   PetscCall(PetscFree(p->nodes));
@@ -235,6 +236,14 @@ PetscErrorCode SlavePointsSetOffsets(SlavePoints points, const PetscReal *offset
   for (PetscInt f = 0; f < points->n_faces; f++)
     PetscCall(PetscArraycpy(&points->offset[points->first[f] * dim], &arrived[f * FACE_RULE_POINTS * dim], (points->first[f + 1] - points->first[f]) * dim));
   PetscCall(PetscFree(arrived));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* SlavePointsSetMaps - Collective. maps: of this rank's faces. Once they are there nothing is done. */
+PetscErrorCode SlavePointsSetMaps(SlavePoints points, const FaceMaps *maps)
+{
+  PetscFunctionBeginUser;
+  if (!points->maps.ptr) PetscCall(FaceMapsFetch(points->face_sf, maps, &points->maps));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

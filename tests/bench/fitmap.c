@@ -3,6 +3,7 @@
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 #include "bench.h"
 #include "fitframe.h"
 #include "fitmap.h"
@@ -28,7 +29,7 @@ typedef struct {
 typedef struct {
   FitMap map;
   int    ptr[MAX_POINTS + 2], node[(MAX_POINTS + 1) * MAX_FACE];
-  double S[(MAX_POINTS + 1) * MAX_FACE], sign[3 * (MAX_POINTS + 1)];
+  double S[(MAX_POINTS + 1) * MAX_FACE], sign[3 * (MAX_POINTS + 1) * MAX_FACE];
 } Map;
 
 static double LineShape(int order, int a, double s)
@@ -88,7 +89,7 @@ static void MakeMap(const List *list, int n, const int *points, Map *map)
 
   map->map = (FitMap){.n_nodes = list->entries, .ptr = map->ptr, .node = map->node, .S = map->S, .sign = map->sign};
   for (int i = 0; i < MAX_LINE * MAX_LINE; i++) number[i] = -1;
-  for (int i = 0; i < 3 * (1 + n); i++) map->sign[i] = 1;
+  for (int i = 0; i < 3 * (1 + n) * list->entries; i++) map->sign[i] = 1;
   for (int k = 0; k < entries; k++) {
     map->node[k] = k;
     map->S[k]    = 1.0 / entries;
@@ -120,7 +121,7 @@ typedef struct {
   double     N[3 * (1 + MAX_POINTS)], *workspace;
 } Slave;
 
-static double nodal[MAX_SIZE], M[(long)MAX_SIZE * MAX_SIZE], *scratch;
+static double nodal[MAX_SIZE], own[MAX_POINTS][FITMAP_OWN], M[(long)MAX_SIZE * MAX_SIZE], *scratch;
 
 static void Do(Part part, Slave *s)
 {
@@ -136,6 +137,9 @@ static void Do(Part part, Slave *s)
     FitMapBegin(&sum, s->problem.dim, s->problem.degree, s->map.map.n_nodes, 1, scratch, M);
     FitMapAdd(&sum, 1, &s->factors, &s->map.map);
     FitMapEnd(&sum);
+    memset(own, 0, s->result.n * sizeof(own[0]));
+    for (int i = 0; i < s->result.n; i++) FitMapOwn(1, &s->factors, i, own[i]);
+    FitMapAddOwn(s->problem.dim, 1, 1 + s->result.n, own, &s->map.map, M);
   }
   if (part == PRODUCT) SymmetricProduct(size, terms, stride, scratch, scratch + terms * stride, M);
 }

@@ -309,6 +309,8 @@ STATES = {  # scene and what makes it short; a checkpoint lies before the last s
     "penalties by step": ("plate_cylinder", 4, ["mesh.parameters={h_contact: 0.5, h_far: 8, n_thick: 3, n_width: 1}", "contact.0.penalty.when=step"]),
     "offsets": ("slide_facets", 4, ["stepping.initial=0.1", "contact.0.smoother=diffuse", "contact.0.formulation=surface_to_surface",
                                     "probes=[{name: force, contact_force: sole, component: y}]"]),
+    "live offsets": ("pipe_pinch", 2, ["mesh.order=1", "mesh.parameters={n_arc: 8, n_wall: 1, n_len: 3}", "contact.0.smoother=diffuse", "contact.0.formulation=surface_to_surface",
+                                       "contact.0.offset=live", "loads.0.uy=-20", "stepping={control: fixed, initial: 0.25}", "probes=[{name: force, reaction: plate_top, component: y}]"]),
     "kept pattern": ("slide_flat", 7, ["contact.0.smoother=diffuse", "probes=[{name: force, contact_force: sole, component: y}]"]),
 }
 

@@ -8,7 +8,7 @@ enum { MAX_ENTRIES = 12, NODES = 1 + FEW, SIZE = 3 * NODES, MAP_WORK = 100000 };
 typedef struct {
   FitMap map;
   int    ptr[2 + FEW], node[(1 + FEW) * MAX_ENTRIES];
-  double S[(1 + FEW) * MAX_ENTRIES], sign[3 * (1 + FEW)];
+  double S[(1 + FEW) * MAX_ENTRIES], sign[3 * (1 + FEW) * MAX_ENTRIES];
 } Map;
 
 static int Whole(int low, int high)
@@ -22,26 +22,28 @@ static void Empty(Map *m, int n_nodes)
   m->ptr[0] = 0;
 }
 
-/* Runs of rows with the same 1 to 9 nodes and signs, as faces give them, and rows that differ in signs only; nodes are shared with other runs and the slave
-   point, occur twice in a row, or are left out. */
+/* Runs of rows with the same 1 to 9 nodes and signs, as faces give them, and rows that differ in signs only; the signs are the row's or, as where an offset's
+   nodes lie on both sides of a mirror, those of each entry; nodes are shared with other runs and the slave point, occur twice in a row, or are left out. */
 static void RandomMap(Map *m, int n, int n_nodes)
 {
-  int entries = 0, node[9];
+  int    entries = 0, node[9];
+  double sign[27];
 
   Empty(m, n_nodes);
   for (int r = 0, left = 0; r <= n; r++, left--) {
-    const int at = m->ptr[r];
+    const int at = m->ptr[r], same = left > 0 && left % 3;
 
     if (left <= 0) {
       left    = Whole(1, 9);
       entries = Whole(1, 9);
       for (int k = 0; k < entries; k++) node[k] = Whole(-1, n_nodes - 1);
     }
+    for (int k = 0, mixed = Whole(0, 1); k < 3 * entries && !same; k++) sign[k] = k >= 3 && !mixed ? sign[k - 3] : Whole(0, 1) ? -1 : 1;
     for (int k = 0; k < entries; k++) {
       m->node[at + k] = node[k];
       m->S[at + k]    = Random(-0.5, 1);
     }
-    for (int c = 0; c < 3; c++) m->sign[3 * r + c] = r > 0 && left % 3 ? m->sign[3 * (r - 1) + c] : Whole(0, 1) ? -1 : 1;
+    memcpy(m->sign + 3 * at, sign, 3 * entries * sizeof(double));
     m->ptr[r + 1] = at + entries;
   }
 }
@@ -54,7 +56,7 @@ static void Dense(int dim, int n, const FitMap *map, double *S)
   memset(S, 0, (size_t)map->n_nodes * dim * own * sizeof(double));
   for (int r = 0; r <= n; r++) {
     for (int e = map->ptr[r]; e < map->ptr[r + 1]; e++) {
-      for (int c = 0; c < dim && map->node[e] >= 0; c++) S[(map->node[e] * dim + c) * own + r * dim + c] += map->sign[3 * r + c] * map->S[e];
+      for (int c = 0; c < dim && map->node[e] >= 0; c++) S[(map->node[e] * dim + c) * own + r * dim + c] += map->sign[3 * e + c] * map->S[e];
     }
   }
 }
@@ -87,7 +89,7 @@ static void Reference(const Case *c, const FitMap *map, double *N, double *M)
 /* N and M over nodes by the kernel, M as a sum of shares; M symmetric to the last bit, nothing written past the ends */
 static void Mapped(Case *c, const FitMap *map, double *N, double *M)
 {
-  static double scratch[MAP_WORK];
+  static double scratch[MAP_WORK], own[FEW][FITMAP_OWN];
   const long    length = FitWorkspace(c->in.dim, c->in.degree, c->in.n), need = FitMapWorkspace(c->in.dim, c->in.degree, map->n_nodes, 2);
   const int     size = c->in.dim * map->n_nodes;
   FitFactors    factors;
@@ -106,6 +108,12 @@ static void Mapped(Case *c, const FitMap *map, double *N, double *M)
   FitMapAdd(&sum, -2, &factors, map);
   FitMapAdd(&sum, 3, &factors, map);
   FitMapEnd(&sum);
+  memset(own, 0, sizeof(own));
+  for (int i = 0; i < out.n; i++) {
+    FitMapOwn(-2, &factors, i, own[i]);
+    FitMapOwn(3, &factors, i, own[i]);
+  }
+  FitMapAddOwn(c->in.dim, 1, 1 + out.n, own, map, M);
   assert_true(work[1 + length] == 7 && scratch[1 + need] == 7 && N[size] == 7 && M[(long)size * size] == 7);
   for (int i = 0; i < size; i++) {
     for (int j = 0; j < i; j++) assert_true(M[i * size + j] == M[j * size + i]);
@@ -177,7 +185,7 @@ static void Move(Case *c, const FitMap *map, int column, double step)
   double    by[1 + FEW] = {0};
 
   for (int r = 0; r <= c->out.n; r++) {
-    for (int e = map->ptr[r]; e < map->ptr[r + 1]; e++) by[r] += map->node[e] == column / dim ? step * map->sign[3 * r + k] * map->S[e] : 0;
+    for (int e = map->ptr[r]; e < map->ptr[r + 1]; e++) by[r] += map->node[e] == column / dim ? step * map->sign[3 * e + k] * map->S[e] : 0;
   }
   for (int i = 0; i < c->in.n; i++) c->x[i * dim + k] -= by[0];
   for (int i = 0; i < c->out.n; i++) c->x[c->points[i] * dim + k] += by[1 + i];
