@@ -1,13 +1,8 @@
 """The paper's scenes with node to surface and with surface to surface: same mesh, same steps. Raw records of every run go to a CSV file, the table (iterations,
 failed steps, CPU seconds, results) is printed from there:
     formulation_table.py [--burnish BINARY] [--record FILE] [CASE...]     runs (these cases are added to the record, or replaced there) and prints
-<<<<<<< HEAD
-    formulation_table.py --print [--record FILE]                          prints only"""
-=======
     formulation_table.py --print [--record FILE]                          prints only
 With --offsets it is surface to surface with held and with live offsets, on the pipes."""
-import argparse
->>>>>>> live
 import csv
 import json
 import shutil
@@ -87,14 +82,7 @@ def table(rows, formulations):
 def main():
     parser = table_parser(__doc__, "formulations", "paper_formulations")
     parser.add_argument("cases", nargs="*", metavar="CASE", help=f"beginnings of: {'; '.join(CASES)}. Default: all")
-<<<<<<< HEAD
-=======
-    parser.add_argument("--burnish", type=pathlib.Path, default=ROOT / "build/burnish")
-    parser.add_argument("--out", type=pathlib.Path, default=ROOT / "out/formulations")
-    parser.add_argument("--record", type=pathlib.Path, default=ROOT / "out/paper_formulations.csv")
     parser.add_argument("--offsets", action="store_true", help="held against live offsets instead")
-    parser.add_argument("--print", dest="only_print", action="store_true", help="of the record that is there; runs nothing")
->>>>>>> live
     args = parser.parse_args()
     formulations = OFFSETS if args.offsets else FORMULATIONS
     rows = []

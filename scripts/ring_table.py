@@ -5,13 +5,8 @@ plane      smoothers, node to surface, structured meshes in the plane        (ru
 plane12    the three formulations, both orders, jittered meshes in the plane (this and the rest: runs/records/formulations.csv)
 matching   meshes whose nodes face each other, beside the rings tied         (what the elements themselves leave)
 solid      rings in 3D, 14 elements long, away from the free end and near it
-<<<<<<< HEAD
-spheres    concentric spheres"""
-=======
 spheres    concentric spheres
 offsets    surface to surface, offsets held and live, in the plane and in 3D       (runs/records/offsets.csv)"""
-import argparse
->>>>>>> live
 import csv
 import json
 import shutil
