@@ -95,6 +95,7 @@ struct _n_Contact {
 PetscErrorCode ContactPairCreate(Mesh, Scene, Elasticity, Loads, const SceneContact *, ContactPair *);
 PetscErrorCode ContactPairDestroy(ContactPair *);
 PetscReal      ContactTermOffset(const ContactPair *, PetscInt term, PetscReal t);
+PetscReal      ContactTermRest(const ContactPair *, PetscInt term, PetscReal t); /* gap below which the term presses */
 PetscReal      ContactTouchTolerance(const ContactPair *, PetscInt term);
 PetscReal      ContactMeanOpening(const ContactPair *, PetscInt term);
 /* contactlists.c */

@@ -119,7 +119,7 @@ static void TermLaw(const ContactPair *pair, PetscInt c, PetscReal t, LawValue *
   if (gap) *gap = found;
   if (PetscIsNanReal(found)) return;
   pair->law->evaluate(found, &state, value);
-  if (pair->predicting && value->stiffness == 0) TermPredict(pair, c, found - state.offset, value);
+  if (pair->predicting && value->stiffness == 0) TermPredict(pair, c, found - LawRest(&state), value);
 }
 
 /* Direction of a term's contact: the mean of its points'. */
@@ -427,8 +427,10 @@ static PetscErrorCode SharedBlocks(Contact contact, ContactPair *pair, int p, co
 /* Pressure whose turning with the surface counts in a tangent: in a linear step that of the accepted state, not what pulls a term to its place. */
 static PetscReal TermTurningPressure(const ContactPair *pair, PetscInt c, PetscReal t, const LawValue *value)
 {
+  const ContactState *accepted = &pair->accepted;
+
   if (!pair->predicting) return value->pressure;
-  return pair->accepted.status[c] == CONTACT_CLOSED ? pair->accepted.penalty[c] * (ContactTermOffset(pair, c, t) - pair->accepted.gap[c]) : 0;
+  return accepted->status[c] == CONTACT_CLOSED ? accepted->multiplier[c] + accepted->penalty[c] * (ContactTermOffset(pair, c, t) - accepted->gap[c]) : 0;
 }
 
 static PetscErrorCode PairBlocks(Contact contact, ContactPair *pair, int p, const PetscReal *u, PetscReal t)

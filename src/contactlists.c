@@ -94,7 +94,7 @@ static PetscErrorCode PairDepth(Contact contact, const ContactPair *pair, PetscR
     if (PetscIsNanReal(pair->now.gap[c])) continue;
     penetration = ContactTermOffset(pair, c, t) - pair->now.gap[c];
     most[0]     = PetscMax(most[0], penetration);
-    most[1]     = PetscMax(most[1], penetration * pair->now.penalty[c]);
+    most[1]     = PetscMax(most[1], pair->now.multiplier[c] + penetration * pair->now.penalty[c]);
   }
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, most, 2, MPIU_REAL, MPI_MAX, contact->mesh->comm));
   *depth    = most[0];
@@ -176,21 +176,21 @@ static PetscBool FitHolds(ContactLists old, ContactLists fresh, PetscInt q)
 static PetscBool TermAgrees(const ContactPair *pair, ContactLists fresh, PetscInt c, PetscReal gap, const PetscReal *factor, PetscReal t, PetscReal depth,
                             PetscReal drift)
 {
-  const PetscReal offset = ContactTermOffset(pair, c, t), old = pair->now.gap[c];
+  const PetscReal rest = ContactTermRest(pair, c, t), old = pair->now.gap[c];
   PetscBool       fitted = PETSC_TRUE;
   PetscReal       tolerance;
 
   for (PetscInt k = pair->term_ptr[c]; k < pair->term_ptr[c + 1]; k++)
     fitted = (PetscBool)(fitted && pair->lists->fit_n[pair->term_point[k]] && fresh->fit_n[pair->term_point[k]]);
   tolerance = fitted ? PetscMax(CONTACT_FIT_AGREES * depth, drift) : CONTACT_GAP_AGREES * PetscAbsReal(old) + CONTACT_GAP_ROUND_OFF * pair->size[c] + drift;
-  if (!(old - offset < 0) && !(gap - offset < (fitted ? -tolerance : 0))) return PETSC_TRUE;
+  if (!(old - rest < 0) && !(gap - rest < (fitted ? -tolerance : 0))) return PETSC_TRUE;
   for (PetscInt k = pair->term_ptr[c]; k < pair->term_ptr[c + 1]; k++) {
     const PetscInt q = pair->term_point[k];
 
     if (PetscAbsReal(factor[q] - pair->factor[q]) > CONTACT_FACTOR_AGREES) return PETSC_FALSE;
-    if (fitted && old - offset < 0 && !FitHolds(pair->lists, fresh, q)) return PETSC_FALSE;
+    if (fitted && old - rest < 0 && !FitHolds(pair->lists, fresh, q)) return PETSC_FALSE;
   }
-  if (!fitted || old - offset >= 0) return (PetscBool)(PetscAbsReal(gap - old) <= tolerance);
+  if (!fitted || old - rest >= 0) return (PetscBool)(PetscAbsReal(gap - old) <= tolerance);
   return (PetscBool)(!PetscIsNanReal(gap) && (!pair->slave_offsets || PetscAbsReal(gap - old) <= drift));
 }
 

@@ -218,6 +218,12 @@ PetscReal ContactTermOffset(const ContactPair *pair, PetscInt c, PetscReal t)
   return pair->now.offset[c] * (pair->scene->initial_overlap == OVERLAP_RAMP ? 1 - t : 1);
 }
 
+/* The gap below which a term presses: where it would have its multiplier's pressure, the surfaces meet at its offset. */
+PetscReal ContactTermRest(const ContactPair *pair, PetscInt c, PetscReal t)
+{
+  return LawRest(&(LawState){pair->now.penalty[c], ContactTermOffset(pair, c, t), pair->now.multiplier[c]});
+}
+
 /* Relative curvature of slave and master at a term. */
 static PetscReal TermCurvature(const ContactPair *pair, PetscInt c)
 {

@@ -126,10 +126,10 @@ PetscErrorCode ContactGetNodes(Contact contact, int p, const PetscReal *u, Conta
   else
     PetscCall(SurfaceNodeAreas(pair->slave, pair->geometry, u, area, NULL));
   for (PetscInt c = 0; c < pair->n; c++) {
-    const PetscReal penetration = ContactTermOffset(pair, c, pair->t) - pair->now.gap[c];
+    const PetscReal pressure = pair->now.multiplier[c] + pair->now.penalty[c] * (ContactTermOffset(pair, c, pair->t) - pair->now.gap[c]);
 
     pair->pressure[c]     = pair->force[c] / area[pair->node[c]];
-    pair->law_pressure[c] = !pair->slave_offsets ? pair->pressure[c] : pair->now.status[c] == CONTACT_CLOSED ? pair->now.penalty[c] * penetration : 0;
+    pair->law_pressure[c] = !pair->slave_offsets ? pair->pressure[c] : pair->now.status[c] == CONTACT_CLOSED ? pressure : 0;
   }
   PetscCall(PetscFree(area));
   *nodes = (ContactNodes){pair->n, pair->node, pair->area, pair->now.gap, pair->now.penalty, pair->force, pair->pressure, pair->law_pressure, pair->normal};
