@@ -76,6 +76,7 @@ typedef struct {
   PetscReal   *pressure, *law_pressure; /* what ContactGetNodes() shows: force over area; of the law */
   PetscBool    projected;               /* there was one with these lists */
   ContactLost  lost;                    /* since the step began */
+  PetscInt     updates;                 /* times in this step that penalties were adjusted */
   ContactWork *work;                    /* shared by all pairs */
 } ContactPair;
 

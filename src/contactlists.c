@@ -136,7 +136,8 @@ PetscErrorCode ContactGather(Contact contact, const PetscReal *u, PetscReal t, P
     PetscCall(PairNextServes(pair, u, t, needed, &serves));
     if (!serves) PetscCall(PairSearch(pair, u, t, needed));
     PetscCall(PairTakeNext(pair));
-    pair->lost = (ContactLost){0, NAN, 0, -1};
+    pair->lost    = (ContactLost){0, NAN, 0, -1};
+    pair->updates = 0;
   }
   PetscCall(PetscLogEventEnd(contact->event_search, 0, 0, 0, 0));
   PetscFunctionReturn(PETSC_SUCCESS);
