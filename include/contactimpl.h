@@ -76,7 +76,7 @@ typedef struct {
   PetscReal   *pressure, *law_pressure; /* what ContactGetNodes() shows: force over area; of the law */
   PetscBool    projected;               /* there was one with these lists */
   ContactLost  lost;                    /* since the step began */
-  PetscInt     updates;                 /* times in this step that penalties were adjusted */
+  PetscInt     updates;                 /* times in this step that penalties were adjusted, or pressures became multipliers */
   ContactWork *work;                    /* shared by all pairs */
 } ContactPair;
 
@@ -99,6 +99,10 @@ PetscReal      ContactTermOffset(const ContactPair *, PetscInt term, PetscReal t
 PetscReal      ContactTermRest(const ContactPair *, PetscInt term, PetscReal t); /* gap below which the term presses */
 PetscReal      ContactTouchTolerance(const ContactPair *, PetscInt term);
 PetscReal      ContactMeanOpening(const ContactPair *, PetscInt term);
+/* contactaugment.c */
+PetscReal      ContactTermBound(const ContactPair *, PetscInt term); /* of the penetration; 0: not augmented */
+PetscErrorCode ContactPairBeyond(const ContactPair *, ContactWindow *);
+PetscErrorCode ContactPairAugment(ContactPair *, ContactWindowState *);
 /* contactlists.c */
 PetscErrorCode ContactListsArchive(Contact, Archive, const PetscReal *u, PetscReal t);
 /* contactpoint.c */

@@ -173,7 +173,7 @@ static PetscBool FitHolds(ContactLists old, ContactLists fresh, PetscInt q)
 
 /* Do fresh lists say the same of this term as the solve did? Open is open. On facets a closed gap must agree; on fits, whose gap changes a
    little with their frames, frames and points must, and with offsets the gap within `drift`. The area factors must agree on both. depth: the
-   largest penetration of the pair. */
+   largest penetration of the pair; where it is augmented down to nothing, what it may be counts. */
 static PetscBool TermAgrees(const ContactPair *pair, ContactLists fresh, PetscInt c, PetscReal gap, const PetscReal *factor, PetscReal t, PetscReal depth,
                             PetscReal drift)
 {
@@ -183,7 +183,8 @@ static PetscBool TermAgrees(const ContactPair *pair, ContactLists fresh, PetscIn
 
   for (PetscInt k = pair->term_ptr[c]; k < pair->term_ptr[c + 1]; k++)
     fitted = (PetscBool)(fitted && pair->lists->fit_n[pair->term_point[k]] && fresh->fit_n[pair->term_point[k]]);
-  tolerance = fitted ? PetscMax(CONTACT_FIT_AGREES * depth, drift) : CONTACT_GAP_AGREES * PetscAbsReal(old) + CONTACT_GAP_ROUND_OFF * pair->size[c] + drift;
+  tolerance = fitted ? PetscMax(CONTACT_FIT_AGREES * PetscMax(depth, ContactTermBound(pair, c)), drift)
+                     : CONTACT_GAP_AGREES * PetscAbsReal(old) + CONTACT_GAP_ROUND_OFF * pair->size[c] + drift;
   if (!(old - rest < 0) && !(gap - rest < (fitted ? -tolerance : 0))) return PETSC_TRUE;
   for (PetscInt k = pair->term_ptr[c]; k < pair->term_ptr[c + 1]; k++) {
     const PetscInt q = pair->term_point[k];

@@ -38,6 +38,13 @@ static PetscBool AnyAdjusts(Contact contact, int converged)
   return PETSC_FALSE;
 }
 
+static PetscBool AnyAugments(Contact contact)
+{
+  for (int p = 0; p < contact->n_pairs; p++)
+    if (contact->pairs[p].scene->augment) return PETSC_TRUE;
+  return PETSC_FALSE;
+}
+
 /* Largest force of a slave node of all pairs in the present state. */
 static PetscErrorCode LargestForce(Contact contact, PetscReal *largest)
 {
@@ -76,7 +83,7 @@ static PetscErrorCode PairAdjust(ContactPair *pair, PetscReal largest, ContactSt
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ContactAdjustPenalty - new penalties for the nodes outside the window, of the pairs that are solved until it holds.
+/* ContactAdjustPenalty - new penalties for the nodes outside the window, or multipliers, of the pairs that are solved until it holds.
 
    Collective. To be called after a converged solve, in the state of its last ContactResidual(). WINDOW_HOLDS: nothing was changed; WINDOW_MISSED:
    the step is to be solved again; WINDOW_AT_BOUND: nodes are outside, and no penalty could be changed, or they were too often. Source: Chamoret et al. 2004,
@@ -87,7 +94,7 @@ PetscErrorCode ContactAdjustPenalty(Contact contact, ContactWindowState *state)
 
   PetscFunctionBeginUser;
   *state = WINDOW_HOLDS;
-  if (!AnyAdjusts(contact, 1)) PetscFunctionReturn(PETSC_SUCCESS);
+  if (!AnyAdjusts(contact, 1) && !AnyAugments(contact)) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscLogEventBegin(contact->event_adjust, 0, 0, 0, 0));
   PetscCall(LargestForce(contact, &largest));
   for (int p = 0; p < contact->n_pairs; p++) {
@@ -95,6 +102,7 @@ PetscErrorCode ContactAdjustPenalty(Contact contact, ContactWindowState *state)
     ContactWindowState one  = WINDOW_HOLDS;
 
     if (pair->scene->adjust && pair->scene->adjust_converged) PetscCall(PairAdjust(pair, largest, &pair->now, &one));
+    if (pair->scene->augment) PetscCall(ContactPairAugment(pair, &one));
     if (one == WINDOW_MISSED || *state == WINDOW_HOLDS) *state = one; /* what changes for one pair may bring the others inside */
   }
   PetscCall(PetscLogEventEnd(contact->event_adjust, 0, 0, 0, 0));
@@ -156,6 +164,10 @@ PetscErrorCode ContactPairWindow(Contact contact, int p, ContactWindow *window)
   PetscReal          largest, excess = 0;
 
   PetscFunctionBeginUser;
+  if (pair->scene->augment) {
+    PetscCall(ContactPairBeyond(pair, window));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
   PetscCall(LargestForce(contact, &largest));
   for (PetscInt c = 0; c < pair->n && pair->scene->adjust; c++) {
     count[0] += pair->force[c] >= PENALTY_LOADED * largest && pair->force[c] > 0;

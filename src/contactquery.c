@@ -1,7 +1,7 @@
 #include "contactimpl.h"
 #include "penalty.h"
 
-/* Nodes outside the window of their penalty, all pairs; -1: no pair adjusts. */
+/* Nodes outside the window of their penalty, all pairs; -1: no pair has one. */
 static PetscErrorCode CountOutside(Contact contact, PetscInt *outside)
 {
   PetscFunctionBeginUser;
@@ -9,7 +9,7 @@ static PetscErrorCode CountOutside(Contact contact, PetscInt *outside)
   for (int p = 0; p < contact->n_pairs; p++) {
     ContactWindow window;
 
-    if (!contact->pairs[p].scene->adjust) continue;
+    if (!contact->pairs[p].scene->adjust && !contact->pairs[p].scene->augment) continue;
     PetscCall(ContactPairWindow(contact, p, &window));
     *outside = PetscMax(0, *outside) + window.outside;
   }
