@@ -4,6 +4,7 @@
 #include "contact.h"
 #include "fitmap.h"
 #include "law.h"
+#include "mixing.h"
 #include "offset.h"
 #include "search.h"
 #include "smoother.h"
@@ -74,6 +75,7 @@ typedef struct {
   PetscReal    total[3];                /* and the force on this rank's terms */
   PetscReal    t;                       /* of the last residual */
   PetscReal   *pressure, *law_pressure; /* what ContactGetNodes() shows: force over area; of the law */
+  Mixing       mixing;                  /* of the multipliers of one step; NULL: not augmented */
   PetscBool    projected;               /* there was one with these lists */
   ContactLost  lost;                    /* since the step began */
   PetscInt     updates;                 /* times in this step that penalties were adjusted, or pressures became multipliers */

@@ -42,24 +42,35 @@ static PetscReal TermPressure(const ContactPair *pair, PetscInt c)
 /* ContactPairAugment - the pressures of a pair become its multipliers, if one of its terms is beyond the bound and they may once more in this step.
 
    Collective, after a converged solve, in the state of its last ContactResidual(). WINDOW_MISSED: the step is to be solved again; WINDOW_HOLDS: the state is
-   as it was: only terms that do not press lose their multipliers. Steps that end beyond the bound are counted. Source: Simo and Laursen 1992, Computers &
-   Structures 42, 97-116, Uzawa's update. */
+   as it was: only terms that do not press lose their multipliers. A stiff body changes its forces little in a solve with a soft penalty; from the second
+   update of a step on, the pressures are mixed with those of the updates before. Steps that end beyond the bound are counted.
+
+   Source: Simo and Laursen 1992, Computers & Structures 42, 97-116, Uzawa's update. */
 PetscErrorCode ContactPairAugment(ContactPair *pair, ContactWindowState *state)
 {
   ContactWindow window;
+  PetscReal    *pressure;
   PetscMPIInt   rank;
 
   PetscFunctionBeginUser;
   PetscCall(ContactPairBeyond(pair, &window));
+  PetscCall(PetscInfo(NULL, "contact '%s' after %" PetscInt_FMT " updates: %" PetscInt_FMT " of %" PetscInt_FMT " nodes beyond g_max, up to %g times\n",
+                      pair->scene->name, pair->updates, window.outside, window.loaded, (double)window.excess));
   PetscCallMPI(MPI_Comm_rank(pair->mesh->comm, &rank));
   *state = window.outside && pair->updates < pair->scene->max_updates ? WINDOW_MISSED : WINDOW_HOLDS;
   if (!rank) pair->now.augmented += *state == WINDOW_MISSED; /* counts of all ranks are added up */
   if (!rank) pair->now.missed += window.outside && pair->updates == pair->scene->max_updates;
+  if (!pair->updates) MixingStart(pair->mixing);
   pair->updates += window.outside > 0;
+  PetscCall(PetscMalloc1(pair->n, &pressure));
+  for (PetscInt c = 0; c < pair->n; c++) pressure[c] = TermPressure(pair, c);
+  if (*state == WINDOW_MISSED) PetscCall(MixingNext(pair->mixing, pair->now.multiplier, pressure));
   for (PetscInt c = 0; c < pair->n; c++) {
-    const PetscReal pressure = TermPressure(pair, c);
-
-    if (*state == WINDOW_MISSED || pressure == 0) pair->now.multiplier[c] = pressure;
+    if (pair->now.status[c] == CONTACT_OPEN)
+      pair->now.multiplier[c] = 0;
+    else if (*state == WINDOW_MISSED)
+      pair->now.multiplier[c] = PetscMax(0, pressure[c]);
   }
+  PetscCall(PetscFree(pressure));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

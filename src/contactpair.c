@@ -186,6 +186,7 @@ PetscErrorCode ContactPairCreate(Mesh mesh, Scene scene, Elasticity elasticity, 
   PetscCall(SearchCreate(mesh, scene, loads, pair->master, pair->slave->max_size, pair->n_images, pair->images, &pair->fit, pair->slaves,
                          pair->master_offsets ? OffsetsGet(pair->master_offsets) : NULL, &pair->search));
   if (contact->adjust) PetscCall(PetscMalloc1(pair->n, &pair->before));
+  if (contact->augment) PetscCall(MixingCreate(mesh->comm, pair->n, pair->area, &pair->mixing));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -209,6 +210,7 @@ PetscErrorCode ContactPairDestroy(ContactPair *pair)
   PetscCall(PetscFree4(pair->force, pair->normal, pair->pressure, pair->law_pressure));
   PetscCall(PetscFree6(pair->factor, pair->next_factor, pair->seed, pair->point_gap, pair->point_normal, pair->point_force));
   PetscCall(PetscFree(pair->before));
+  PetscCall(MixingDestroy(&pair->mixing));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
