@@ -16,7 +16,7 @@ typedef enum {
   COLUMN_NODES_OUT,
   COLUMN_MAX_PENETRATION,
   COLUMN_MIN_PENETRATION,
-  COLUMN_OUTSIDE_WINDOW, /* only an adjusted penalty has a window */
+  COLUMN_OUTSIDE_WINDOW, /* only an adjusted or augmented penalty has a window */
   COLUMN_PENALTY_MIN,
   COLUMN_PENALTY_MAX,
   COLUMN_CONTACT_FORCE,

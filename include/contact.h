@@ -29,15 +29,17 @@ typedef struct {
   PetscReal max_penetration_over_h;
   PetscReal penalty_min, penalty_max;
   PetscReal force;          /* norm of the total force on the slaves */
-  PetscInt  outside_window; /* nodes whose penalty is to be adjusted; -1: no pair adjusts */
+  PetscInt  outside_window; /* nodes outside the window of their penalty; -1: no pair has one */
 } ContactSummary;
 
-/* How the penetrations of a pair stand to the window of its penalty, and what was done for it */
+/* How the penetrations of a pair stand to the window of its penalty, and what was done for it. Augmented: the window is g_max on either side of the master,
+   and binds every node in contact */
 typedef struct {
   PetscInt  loaded;                          /* nodes that the window binds: above 1e-3 of the largest nodal force */
   PetscInt  outside;                         /* of these, and of lighter ones beyond g_max, those outside */
   PetscReal excess;                          /* largest penetration over g_max */
   PetscInt  raised, lowered, clamped, light; /* updates in accepted steps so far; light: spared as they are not loaded */
+  PetscInt  augmented, missed;               /* times that pressures became multipliers; steps that ended beyond g_max after all updates */
 } ContactWindow;
 
 typedef enum { WINDOW_HOLDS, WINDOW_MISSED, WINDOW_AT_BOUND } ContactWindowState;
@@ -110,7 +112,8 @@ PetscErrorCode ContactArchive(Contact, Archive, const PetscReal *u, PetscReal t)
    amount), or keeps them as g_0. After ContactResidual(). Collective. */
 PetscErrorCode ContactTakeOverlap(Contact);
 PetscErrorCode ContactSummarise(Contact, ContactSummary *);
-/* Adjustment of the penalty (contactpenalty.c), after a converged ContactResidual(): within the step, until the window holds, ... */
+/* Adjustment and augmentation of the penalty (contactpenalty.c, contactaugment.c), after a converged ContactResidual(): within the step, until the window
+   holds, ... */
 PetscErrorCode ContactAdjustPenalty(Contact, ContactWindowState *);
 /* ... or, after ContactAccept(), for the next step. Each sees only the pairs whose scene asks for it. */
 PetscErrorCode ContactAdjustNextPenalty(Contact);

@@ -4,6 +4,7 @@
 #include "contact.h"
 #include "fitmap.h"
 #include "law.h"
+#include "mixing.h"
 #include "offset.h"
 #include "search.h"
 #include "smoother.h"
@@ -75,8 +76,10 @@ typedef struct {
   PetscReal    total[3];                /* and the force on this rank's terms */
   PetscReal    t;                       /* of the last residual */
   PetscReal   *pressure, *law_pressure; /* what ContactGetNodes() shows: force over area; of the law */
+  Mixing       mixing;                  /* of the multipliers of one step; NULL: not augmented */
   PetscBool    projected;               /* there was one with these lists */
   ContactLost  lost;                    /* since the step began */
+  PetscInt     updates;                 /* times in this step that penalties were adjusted, or pressures became multipliers */
   ContactWork *work;                    /* shared by all pairs */
 } ContactPair;
 
@@ -96,8 +99,13 @@ struct _n_Contact {
 PetscErrorCode ContactPairCreate(Mesh, Scene, Elasticity, Loads, const SceneContact *, ContactPair *);
 PetscErrorCode ContactPairDestroy(ContactPair *);
 PetscReal      ContactTermOffset(const ContactPair *, PetscInt term, PetscReal t);
+PetscReal      ContactTermRest(const ContactPair *, PetscInt term, PetscReal t); /* gap below which the term presses */
 PetscReal      ContactTouchTolerance(const ContactPair *, PetscInt term);
 PetscReal      ContactMeanOpening(const ContactPair *, PetscInt term);
+/* contactaugment.c */
+PetscReal      ContactTermBound(const ContactPair *, PetscInt term); /* of the penetration; 0: not augmented */
+PetscErrorCode ContactPairBeyond(const ContactPair *, ContactWindow *);
+PetscErrorCode ContactPairAugment(ContactPair *, ContactWindowState *);
 /* contactlists.c */
 PetscErrorCode ContactListsArchive(Contact, Archive, const PetscReal *u, PetscReal t);
 /* contactpoint.c */

@@ -12,8 +12,9 @@ typedef struct {
   ContactStatus *status;
   PetscReal     *gap;                             /* weighted gap; NaN: no master near */
   PetscReal     *offset;                          /* g_0, subtracted from the gap */
-  PetscReal     *multiplier;                      /* pressure carried over; 0 for the penalty law */
+  PetscReal     *multiplier;                      /* pressure at no penetration; 0 without augmentation */
   PetscInt       raised, lowered, clamped, light; /* what the adjustment of the penalty did so far, on this rank */
+  PetscInt       augmented, missed;               /* times pressures became multipliers; steps that ended beyond the bound all the same; on rank 0 */
 } ContactState;
 
 PetscErrorCode ContactStateCreate(PetscInt n, PetscReal penalty, ContactState *);

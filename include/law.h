@@ -5,7 +5,7 @@
 typedef struct {
   double penalty;    /* force per length and area */
   double offset;     /* g_0, subtracted from the gap */
-  double multiplier; /* pressure carried over, 0 for the penalty law */
+  double multiplier; /* pressure at no penetration, 0 without augmentation */
 } LawState;
 
 typedef struct {
@@ -20,3 +20,4 @@ typedef struct {
 
 extern const Law Laws[]; /* terminated by a NULL name */
 const Law       *LawFind(const char *name);
+double           LawRest(const LawState *); /* gap below which there is pressure: the offset, plus what the multiplier presses before the surfaces meet */

@@ -31,7 +31,7 @@ typedef struct {
   PetscInt    newton; /* Jacobian solves, prediction and re-gathered solves included */
   PetscInt    krylov;
   PetscInt    regathered;  /* times lists were replaced */
-  PetscInt    adjusted;    /* times penalties were changed and the step solved on */
+  PetscInt    adjusted;    /* times penalties or multipliers were changed and the step solved on */
   PetscInt    cuts;        /* iterations that the line search shortened */
   PetscReal   residual;    /* |R|_2 / F_ref at the end */
   PetscInt    relaxed;     /* times the springs of stabilised pairs were relaxed and the step solved on */

@@ -63,6 +63,7 @@ typedef struct {
   int                adjust_converged;       /* within the step, until the window holds; 0: from one step to the next */
   int                window_in_spacings;     /* g_min and g_max are multiples of the slave node's face size, not lengths */
   double             g_min, g_max, clamp, range;
+  int                augment, max_updates; /* pressures become multipliers, up to so often in a step, until penetrations are within g_max */
 } SceneContact;
 
 typedef enum {

@@ -30,7 +30,7 @@ static int PenetrationIsDeep(const RunFigures *figures, const PairFigures *pair,
   const PetscReal       target = PetscMax(PairSurfaceError(pair), ADVICE_SMALL * size), over = target > 0 ? quality->max_penetration / target : 0;
 
   (void)figures;
-  if (scene->adjust || over <= 1) return 0;
+  if (scene->adjust || scene->augment || over <= 1) return 0;
   snprintf(
     text, ADVICE_TEXT,
     "%s: the penetration is %.3g times the surface's own error (or a thousandth of a face): penalty.scale %.3g instead of %g, or penalty: {adjust: true, "
@@ -65,13 +65,25 @@ static int FitsFallBack(const RunFigures *figures, const PairFigures *pair, char
 static int WindowIsMissed(const RunFigures *figures, const PairFigures *pair, char *text)
 {
   (void)figures;
-  if (!pair->window.outside) return 0;
+  if (pair->scene->augment || !pair->window.outside) return 0;
   snprintf(text, ADVICE_TEXT, "%s: %lld of %lld loaded nodes are outside the window: when: converged, a wider window, or more penalty.range", pair->name,
            (long long)pair->window.outside, (long long)pair->window.loaded);
   return 1;
 }
 
-static const PairRuleFn pair_rules[] = {PenetrationIsDeep, FacetsAreCoarse, FitsFallBack, WindowIsMissed};
+static int UpdatesAreFew(const RunFigures *figures, const PairFigures *pair, char *text)
+{
+  if (!pair->window.missed) return 0;
+  snprintf(
+    text, ADVICE_TEXT,
+    "%s: %lld of %lld steps ended with nodes beyond g_max after max_updates, the last with %lld of %lld nodes up to %.3g g_max: a stiffer penalty.scale, "
+    "more max_updates, or a larger g_max",
+    pair->name, (long long)pair->window.missed, (long long)figures->run->way->steps, (long long)pair->window.outside, (long long)pair->window.loaded,
+    (double)pair->window.excess);
+  return 1;
+}
+
+static const PairRuleFn pair_rules[] = {PenetrationIsDeep, FacetsAreCoarse, FitsFallBack, WindowIsMissed, UpdatesAreFew};
 
 /* ---------- the run ---------- */
 

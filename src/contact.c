@@ -119,7 +119,7 @@ static void TermLaw(const ContactPair *pair, PetscInt c, PetscReal t, LawValue *
   if (gap) *gap = found;
   if (PetscIsNanReal(found)) return;
   pair->law->evaluate(found, &state, value);
-  if (pair->predicting && value->stiffness == 0) TermPredict(pair, c, found - state.offset, value);
+  if (pair->predicting && value->stiffness == 0) TermPredict(pair, c, found - LawRest(&state), value);
 }
 
 /* Direction of a term's contact: the mean of its points'. */
@@ -453,9 +453,11 @@ static PetscErrorCode OwnBlocks(Contact contact, const ContactPair *pair, int p,
    state before any load is in no equilibrium: its overlaps pull, and their pressure grows with the penalty until the tangent is indefinite. */
 static PetscReal TermTurningPressure(const ContactPair *pair, PetscInt c, PetscReal t, const LawValue *value)
 {
+  const ContactState *accepted = &pair->accepted;
+
   if (!pair->predicting) return value->pressure;
   if (pair->touching) return 0;
-  return pair->accepted.status[c] == CONTACT_CLOSED ? pair->accepted.penalty[c] * (ContactTermOffset(pair, c, t) - pair->accepted.gap[c]) : 0;
+  return accepted->status[c] == CONTACT_CLOSED ? accepted->multiplier[c] + accepted->penalty[c] * (ContactTermOffset(pair, c, t) - accepted->gap[c]) : 0;
 }
 
 static PetscErrorCode PairBlocks(Contact contact, ContactPair *pair, int p, const PetscReal *u, PetscReal t)

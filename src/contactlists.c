@@ -97,7 +97,7 @@ static PetscErrorCode PairDepth(Contact contact, const ContactPair *pair, PetscR
     if (PetscIsNanReal(pair->now.gap[c])) continue;
     penetration = ContactTermOffset(pair, c, t) - pair->now.gap[c];
     most[0]     = PetscMax(most[0], penetration);
-    most[1]     = PetscMax(most[1], penetration * pair->now.penalty[c]);
+    most[1]     = PetscMax(most[1], pair->now.multiplier[c] + penetration * pair->now.penalty[c]);
   }
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, most, 2, MPIU_REAL, MPI_MAX, contact->mesh->comm));
   *depth    = most[0];
@@ -139,7 +139,8 @@ PetscErrorCode ContactGather(Contact contact, const PetscReal *u, PetscReal t, P
     PetscCall(PairNextServes(pair, u, t, needed, &serves));
     if (!serves) PetscCall(PairSearch(pair, u, t, needed));
     PetscCall(PairTakeNext(pair));
-    pair->lost = (ContactLost){0, NAN, 0, -1};
+    pair->lost    = (ContactLost){0, NAN, 0, -1};
+    pair->updates = 0;
   }
   PetscCall(PetscLogEventEnd(contact->event_search, 0, 0, 0, 0));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -175,25 +176,26 @@ static PetscBool FitHolds(ContactLists old, ContactLists fresh, PetscInt q)
 
 /* Do fresh lists say the same of this term as the solve did? Open is open. On facets a closed gap must agree; on fits, whose gap changes a
    little with their frames, frames and points must, and with offsets the gap within `drift`. The area factors must agree on both. depth: the
-   largest penetration of the pair. */
+   largest penetration of the pair; where it is augmented down to nothing, what it may be counts. */
 static PetscBool TermAgrees(const ContactPair *pair, ContactLists fresh, PetscInt c, PetscReal gap, const PetscReal *factor, PetscReal t, PetscReal depth,
                             PetscReal drift)
 {
-  const PetscReal offset = ContactTermOffset(pair, c, t), old = pair->now.gap[c];
+  const PetscReal rest = ContactTermRest(pair, c, t), old = pair->now.gap[c];
   PetscBool       fitted = PETSC_TRUE;
   PetscReal       tolerance;
 
   for (PetscInt k = pair->term_ptr[c]; k < pair->term_ptr[c + 1]; k++)
     fitted = (PetscBool)(fitted && pair->lists->fit_n[pair->term_point[k]] && fresh->fit_n[pair->term_point[k]]);
-  tolerance = fitted ? PetscMax(CONTACT_FIT_AGREES * depth, drift) : CONTACT_GAP_AGREES * PetscAbsReal(old) + CONTACT_GAP_ROUND_OFF * pair->size[c] + drift;
-  if (!(old - offset < 0) && !(gap - offset < (fitted ? -tolerance : 0))) return PETSC_TRUE;
+  tolerance = fitted ? PetscMax(CONTACT_FIT_AGREES * PetscMax(depth, ContactTermBound(pair, c)), drift)
+                     : CONTACT_GAP_AGREES * PetscAbsReal(old) + CONTACT_GAP_ROUND_OFF * pair->size[c] + drift;
+  if (!(old - rest < 0) && !(gap - rest < (fitted ? -tolerance : 0))) return PETSC_TRUE;
   for (PetscInt k = pair->term_ptr[c]; k < pair->term_ptr[c + 1]; k++) {
     const PetscInt q = pair->term_point[k];
 
     if (PetscAbsReal(factor[q] - pair->factor[q]) > CONTACT_FACTOR_AGREES) return PETSC_FALSE;
-    if (fitted && old - offset < 0 && !FitHolds(pair->lists, fresh, q)) return PETSC_FALSE;
+    if (fitted && old - rest < 0 && !FitHolds(pair->lists, fresh, q)) return PETSC_FALSE;
   }
-  if (!fitted || old - offset >= 0) return (PetscBool)(PetscAbsReal(gap - old) <= tolerance);
+  if (!fitted || old - rest >= 0) return (PetscBool)(PetscAbsReal(gap - old) <= tolerance);
   return (PetscBool)(!PetscIsNanReal(gap) && (!pair->lags || PetscAbsReal(gap - old) <= drift));
 }
 

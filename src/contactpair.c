@@ -188,6 +188,7 @@ PetscErrorCode ContactPairCreate(Mesh mesh, Scene scene, Elasticity elasticity, 
                          pair->master_offsets ? OffsetsGet(pair->master_offsets) : NULL, pair->master_offsets ? OffsetsMaps(pair->master_offsets) : NULL,
                          &pair->search));
   if (contact->adjust) PetscCall(PetscMalloc1(pair->n, &pair->before));
+  if (contact->augment) PetscCall(MixingCreate(mesh->comm, pair->n, pair->area, &pair->mixing));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -211,6 +212,7 @@ PetscErrorCode ContactPairDestroy(ContactPair *pair)
   PetscCall(PetscFree4(pair->force, pair->normal, pair->pressure, pair->law_pressure));
   PetscCall(PetscFree6(pair->factor, pair->next_factor, pair->seed, pair->point_gap, pair->point_normal, pair->point_force));
   PetscCall(PetscFree(pair->before));
+  PetscCall(MixingDestroy(&pair->mixing));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -218,6 +220,12 @@ PetscErrorCode ContactPairDestroy(ContactPair *pair)
 PetscReal ContactTermOffset(const ContactPair *pair, PetscInt c, PetscReal t)
 {
   return pair->now.offset[c] * (pair->scene->initial_overlap == OVERLAP_RAMP ? 1 - t : 1);
+}
+
+/* The gap below which a term presses: where it would have its multiplier's pressure, the surfaces meet at its offset. */
+PetscReal ContactTermRest(const ContactPair *pair, PetscInt c, PetscReal t)
+{
+  return LawRest(&(LawState){pair->now.penalty[c], ContactTermOffset(pair, c, t), pair->now.multiplier[c]});
 }
 
 /* Relative curvature of slave and master at a term. */

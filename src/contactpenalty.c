@@ -3,6 +3,9 @@
 
 /* A penetration is known well enough to be judged when the last iterate moved it by no more than this part of g_min. */
 #define CONTACT_SETTLED 0.1
+/* Times in one step that the penalties of a pair are adjusted until their window holds. A penalty that starts 1e8 times too small needs four with
+   the default clamp, neighbours that share the load two or three more. */
+#define CONTACT_MAX_ADJUST 12
 
 static PenaltyRule TermRule(const ContactPair *pair, PetscInt c)
 {
@@ -35,6 +38,13 @@ static PetscBool AnyAdjusts(Contact contact, int converged)
   return PETSC_FALSE;
 }
 
+static PetscBool AnyAugments(Contact contact)
+{
+  for (int p = 0; p < contact->n_pairs; p++)
+    if (contact->pairs[p].scene->augment) return PETSC_TRUE;
+  return PETSC_FALSE;
+}
+
 /* Largest force of a slave node of all pairs in the present state. */
 static PetscErrorCode LargestForce(Contact contact, PetscReal *largest)
 {
@@ -46,45 +56,55 @@ static PetscErrorCode LargestForce(Contact contact, PetscReal *largest)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Penalties and counts of `to` follow the present penetrations. count[0]: terms that miss the window, but for those whose penalty would have to
-   fall below its bound (a penetration that is too small is no error); count[1]: penalties that changed. */
-static void PairAdjust(ContactPair *pair, PetscReal largest, ContactState *to, PetscInt count[2])
+/* Penalties and counts of `to` follow the present penetrations, if they may once more. count[0]: terms that miss the window, but for those whose penalty
+   would have to fall below its bound (a penetration that is too small is no error); count[1]: penalties that changed. */
+static PetscErrorCode PairAdjust(ContactPair *pair, PetscReal largest, ContactState *to, ContactWindowState *state)
 {
+  const PetscBool may      = (PetscBool)(pair->updates < CONTACT_MAX_ADJUST);
+  PetscInt        count[2] = {0, 0};
+
+  PetscFunctionBeginUser;
   for (PetscInt c = 0; c < pair->n; c++) {
     const PenaltyUpdate update = TermUpdate(pair, c, largest);
 
+    count[0] += update.outside > 0 || (update.outside < 0 && update.change != PENALTY_KEPT);
+    count[1] += may && update.change != PENALTY_KEPT;
+    if (!may) continue;
     to->penalty[c] = update.penalty;
     to->raised += update.change == PENALTY_RAISED;
     to->lowered += update.change == PENALTY_LOWERED;
     to->clamped += update.clamped;
     to->light += update.light;
-    count[0] += update.outside > 0 || (update.outside < 0 && update.change != PENALTY_KEPT);
-    count[1] += update.change != PENALTY_KEPT;
     if (update.change != PENALTY_KEPT) pair->before[c] = NAN; /* its gap is to be found anew */
   }
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, count, 2, MPIU_INT, MPI_SUM, pair->mesh->comm));
+  *state = !count[0] ? WINDOW_HOLDS : count[1] ? WINDOW_MISSED : WINDOW_AT_BOUND;
+  pair->updates += *state == WINDOW_MISSED;
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ContactAdjustPenalty - new penalties for the nodes outside the window, of the pairs that are solved until it holds.
+/* ContactAdjustPenalty - new penalties for the nodes outside the window, or multipliers, of the pairs that are solved until it holds.
 
    Collective. To be called after a converged solve, in the state of its last ContactResidual(). WINDOW_HOLDS: nothing was changed; WINDOW_MISSED:
-   the step is to be solved again; WINDOW_AT_BOUND: nodes are outside, and no penalty could be changed. Source: Chamoret et al. 2004, eq. 16. */
+   the step is to be solved again; WINDOW_AT_BOUND: nodes are outside, and no penalty could be changed, or they were too often. Source: Chamoret et al. 2004,
+   eq. 16. */
 PetscErrorCode ContactAdjustPenalty(Contact contact, ContactWindowState *state)
 {
-  PetscInt  count[2] = {0, 0};
   PetscReal largest;
 
   PetscFunctionBeginUser;
   *state = WINDOW_HOLDS;
-  if (!AnyAdjusts(contact, 1)) PetscFunctionReturn(PETSC_SUCCESS);
+  if (!AnyAdjusts(contact, 1) && !AnyAugments(contact)) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscLogEventBegin(contact->event_adjust, 0, 0, 0, 0));
   PetscCall(LargestForce(contact, &largest));
   for (int p = 0; p < contact->n_pairs; p++) {
-    ContactPair *pair = &contact->pairs[p];
+    ContactPair       *pair = &contact->pairs[p];
+    ContactWindowState one  = WINDOW_HOLDS;
 
-    if (pair->scene->adjust && pair->scene->adjust_converged) PairAdjust(pair, largest, &pair->now, count);
+    if (pair->scene->adjust && pair->scene->adjust_converged) PetscCall(PairAdjust(pair, largest, &pair->now, &one));
+    if (pair->scene->augment) PetscCall(ContactPairAugment(pair, &one));
+    if (one == WINDOW_MISSED || *state == WINDOW_HOLDS) *state = one; /* what changes for one pair may bring the others inside */
   }
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, count, 2, MPIU_INT, MPI_SUM, contact->mesh->comm));
-  *state = !count[0] ? WINDOW_HOLDS : count[1] ? WINDOW_MISSED : WINDOW_AT_BOUND;
   PetscCall(PetscLogEventEnd(contact->event_adjust, 0, 0, 0, 0));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -95,8 +115,8 @@ PetscErrorCode ContactAdjustPenalty(Contact contact, ContactWindowState *state)
    Source: Chamoret et al. 2004, eq. 16. */
 PetscErrorCode ContactAdjustNextPenalty(Contact contact)
 {
-  PetscInt  count[2] = {0, 0};
-  PetscReal largest;
+  ContactWindowState ignored;
+  PetscReal          largest;
 
   PetscFunctionBeginUser;
   if (!AnyAdjusts(contact, 0)) PetscFunctionReturn(PETSC_SUCCESS);
@@ -105,7 +125,7 @@ PetscErrorCode ContactAdjustNextPenalty(Contact contact)
   for (int p = 0; p < contact->n_pairs; p++) {
     ContactPair *pair = &contact->pairs[p];
 
-    if (pair->scene->adjust && !pair->scene->adjust_converged) PairAdjust(pair, largest, &pair->accepted, count);
+    if (pair->scene->adjust && !pair->scene->adjust_converged) PetscCall(PairAdjust(pair, largest, &pair->accepted, &ignored));
   }
   PetscCall(PetscLogEventEnd(contact->event_adjust, 0, 0, 0, 0));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -144,6 +164,10 @@ PetscErrorCode ContactPairWindow(Contact contact, int p, ContactWindow *window)
   PetscReal          largest, excess = 0;
 
   PetscFunctionBeginUser;
+  if (pair->scene->augment) {
+    PetscCall(ContactPairBeyond(pair, window));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
   PetscCall(LargestForce(contact, &largest));
   for (PetscInt c = 0; c < pair->n && pair->scene->adjust; c++) {
     count[0] += pair->force[c] >= PENALTY_LOADED * largest && pair->force[c] > 0;

@@ -1,7 +1,7 @@
 #include "contactimpl.h"
 #include "penalty.h"
 
-/* Nodes outside the window of their penalty, all pairs; -1: no pair adjusts. */
+/* Nodes outside the window of their penalty, all pairs; -1: no pair has one. */
 static PetscErrorCode CountOutside(Contact contact, PetscInt *outside)
 {
   PetscFunctionBeginUser;
@@ -9,7 +9,7 @@ static PetscErrorCode CountOutside(Contact contact, PetscInt *outside)
   for (int p = 0; p < contact->n_pairs; p++) {
     ContactWindow window;
 
-    if (!contact->pairs[p].scene->adjust) continue;
+    if (!contact->pairs[p].scene->adjust && !contact->pairs[p].scene->augment) continue;
     PetscCall(ContactPairWindow(contact, p, &window));
     *outside = PetscMax(0, *outside) + window.outside;
   }
@@ -126,10 +126,10 @@ PetscErrorCode ContactGetNodes(Contact contact, int p, const PetscReal *u, Conta
   else
     PetscCall(SurfaceNodeAreas(pair->slave, pair->geometry, u, area, NULL));
   for (PetscInt c = 0; c < pair->n; c++) {
-    const PetscReal penetration = ContactTermOffset(pair, c, pair->t) - pair->now.gap[c];
+    const PetscReal pressure = pair->now.multiplier[c] + pair->now.penalty[c] * (ContactTermOffset(pair, c, pair->t) - pair->now.gap[c]);
 
     pair->pressure[c]     = pair->force[c] / area[pair->node[c]];
-    pair->law_pressure[c] = !pair->slave_offsets ? pair->pressure[c] : pair->now.status[c] == CONTACT_CLOSED ? pair->now.penalty[c] * penetration : 0;
+    pair->law_pressure[c] = !pair->slave_offsets ? pair->pressure[c] : pair->now.status[c] == CONTACT_CLOSED ? pressure : 0;
   }
   PetscCall(PetscFree(area));
   *nodes = (ContactNodes){pair->n, pair->node, pair->area, pair->now.gap, pair->now.penalty, pair->force, pair->pressure, pair->law_pressure, pair->normal};

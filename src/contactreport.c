@@ -40,6 +40,9 @@ static void PrintPenalty(const SceneContact *scene, PetscReal penalty, FILE *fil
   if (scene->adjust)
     fprintf(file, "           adjusted %s to penetrations of %.3g to %.3g %s\n", scene->adjust_converged ? "within the step" : "from step to step",
             scene->g_min, scene->g_max, scene->window_in_spacings ? "face sizes of the slave node" : "(lengths)");
+  if (scene->augment)
+    fprintf(file, "           augmented to penetrations of %.3g %s, up to %d times in a step\n", scene->g_max,
+            scene->window_in_spacings ? "face sizes of the slave node" : "(lengths)", scene->max_updates);
 }
 
 /* ContactReport - one block of lines for each pair: surfaces, penalty, gaps and overlaps, errors of the master's surface, fits.

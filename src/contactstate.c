@@ -22,10 +22,12 @@ PetscErrorCode ContactStateCopy(const ContactState *from, ContactState *to)
   PetscCall(PetscArraycpy(to->gap, from->gap, from->n));
   PetscCall(PetscArraycpy(to->offset, from->offset, from->n));
   PetscCall(PetscArraycpy(to->multiplier, from->multiplier, from->n));
-  to->raised  = from->raised;
-  to->lowered = from->lowered;
-  to->clamped = from->clamped;
-  to->light   = from->light;
+  to->raised    = from->raised;
+  to->lowered   = from->lowered;
+  to->clamped   = from->clamped;
+  to->light     = from->light;
+  to->augmented = from->augmented;
+  to->missed    = from->missed;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -42,7 +44,8 @@ PetscErrorCode ContactStateArchive(ContactState *state, Archive archive, const c
 {
   PetscReal *const   values[]  = {state->penalty, NULL, state->gap, state->offset, state->multiplier};
   static const char *names[]   = {"penalty", "status", "gap", "offset", "multiplier"};
-  PetscInt           updates[] = {state->raised, state->lowered, state->clamped, state->light};
+  PetscInt          *updates[] = {&state->raised, &state->lowered, &state->clamped, &state->light, &state->augmented, &state->missed};
+  PetscInt           all[PETSC_STATIC_ARRAY_LENGTH(updates)];
   PetscReal         *status;
   PetscMPIInt        rank;
   char               path[PETSC_MAX_PATH_LEN];
@@ -57,14 +60,11 @@ PetscErrorCode ContactStateArchive(ContactState *state, Archive archive, const c
   for (PetscInt c = 0; c < state->n; c++) state->status[c] = (ContactStatus)status[c];
   PetscCall(PetscFree(status));
   PetscCallMPI(MPI_Comm_rank(PetscObjectComm((PetscObject)nodes->sf), &rank));
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, updates, 4, MPIU_INT, MPI_SUM, PetscObjectComm((PetscObject)nodes->sf)));
+  for (size_t k = 0; k < PETSC_STATIC_ARRAY_LENGTH(updates); k++) all[k] = *updates[k];
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, all, PETSC_STATIC_ARRAY_LENGTH(updates), MPIU_INT, MPI_SUM, PetscObjectComm((PetscObject)nodes->sf)));
   PetscCall(PetscSNPrintf(path, sizeof(path), "%s/updates", name));
-  PetscCall(ArchiveIntegers(archive, path, 4, updates));
-  if (ArchiveLoads(archive)) { /* counts of all ranks together: where they stand does not matter */
-    state->raised  = rank ? 0 : updates[0];
-    state->lowered = rank ? 0 : updates[1];
-    state->clamped = rank ? 0 : updates[2];
-    state->light   = rank ? 0 : updates[3];
-  }
+  PetscCall(ArchiveIntegers(archive, path, PETSC_STATIC_ARRAY_LENGTH(updates), all));
+  for (size_t k = 0; k < PETSC_STATIC_ARRAY_LENGTH(updates) && ArchiveLoads(archive); k++)
+    *updates[k] = rank ? 0 : all[k]; /* counts of all ranks together: where they stand does not matter */
   PetscFunctionReturn(PETSC_SUCCESS);
 }

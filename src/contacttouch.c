@@ -96,8 +96,8 @@ PetscErrorCode ContactTouches(Contact contact, const PetscReal *u_0, PetscReal t
       PetscReal gap[2], beta;
 
       TermGaps(pair, c, &before, &after, gap);
-      gap[0] -= ContactTermOffset(pair, c, t_0);
-      gap[1] -= ContactTermOffset(pair, c, t);
+      gap[0] -= ContactTermRest(pair, c, t_0);
+      gap[1] -= ContactTermRest(pair, c, t);
       beta = TouchBeta(gap[0], gap[1], CONTACT_RESTING * pair->size[c]);
       if (PetscIsNanReal(beta) || (still_open && !(gap[1] > 0))) continue;
       rows[3 * count]     = beta;

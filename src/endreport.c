@@ -55,16 +55,18 @@ static void PrintGuards(const RunFigures *figures, FILE *stream)
 {
   const StepperReport *way = figures->run->way;
   int                  n   = 0;
-  long long            low = 0, clamped = 0, light = 0;
+  long long            low = 0, clamped = 0, light = 0, missed = 0;
 
   for (int p = 0; p < figures->n_pairs; p++) {
     low += figures->pairs[p].fits.points - figures->pairs[p].fits.plain;
     clamped += figures->pairs[p].window.clamped;
     light += figures->pairs[p].window.light;
+    missed += figures->pairs[p].window.missed;
   }
   PrintGuard(stream, &n, way->cuts, "iterations cut by the line search:");
   PrintGuard(stream, &n, way->regathered, "lists made anew within steps:");
-  PrintGuard(stream, &n, way->adjusted, "steps solved on with new penalties:");
+  PrintGuard(stream, &n, way->adjusted, "steps solved on with new penalties or multipliers:");
+  PrintGuard(stream, &n, missed, "steps beyond g_max after all updates:");
   PrintGuard(stream, &n, clamped, "penalties cut short:");
   PrintGuard(stream, &n, light, "light nodes spared:");
   PrintGuard(stream, &n, low, "fits off the plain rung:");

@@ -5,9 +5,6 @@
 /* Of these, so many may be spent at a breakpoint of the scene's histories on offsets of surface contact that lag behind by little: each takes a lag to a
    twentieth, and from the next step on it would show as a jump. */
 #define MODEL_MAX_SETTLE 4
-/* Times that penalties are adjusted and the step solved on until their window holds. A penalty that starts 1e8 times too small needs four with
-   the default clamp, neighbours that share the load two or three more. */
-#define MODEL_MAX_ADJUST 12
 /* Lists are made for this multiple of the motion that the last step's rate predicts; those that check a step too, so that an equal step takes them. */
 #define MODEL_MOTION_SAFETY 1.5
 /* Times that the springs of stabilised pairs are relaxed. A body at rest needs two or three; one that flies covers its penetration at rest, times a
@@ -247,7 +244,7 @@ static PetscErrorCode ModelSolveHeld(Model model, SolveReport *report)
 
    Collective. On success model->u, model->x and the contact state are the solution (not yet accepted); on failure call ModelRestore().
    Contact lists are made before, frozen in each Newton solve, and made anew after it until they hold (at most MODEL_MAX_REGATHER times); then
-   penalties that are adjusted within the step, and all is solved on from there, until their window holds (at most MODEL_MAX_ADJUST times). */
+   penalties that are adjusted within the step, and all is solved on from there, until their window holds or no more can be done for it. */
 PetscErrorCode ModelSolve(Model model, PetscReal t, SolveReport *report)
 {
   ModelWork         *work   = model->work;
@@ -260,10 +257,12 @@ PetscErrorCode ModelSolve(Model model, PetscReal t, SolveReport *report)
   while (window == WINDOW_MISSED && report->result == SOLVE_CONVERGED) {
     PetscCall(ModelSolveHeld(model, report));
     if (report->result != SOLVE_CONVERGED || !model->contact) break;
-    if (report->adjusted == MODEL_MAX_ADJUST) PetscCall(ContactLocateOutside(model->contact, report->detail, sizeof(report->detail)));
     PetscCall(ContactAdjustPenalty(model->contact, &window));
-    if (window == WINDOW_AT_BOUND) PetscCall(ContactLocateOutside(model->contact, report->detail, sizeof(report->detail)));
-    if (window == WINDOW_AT_BOUND || (window == WINDOW_MISSED && report->adjusted++ == MODEL_MAX_ADJUST)) report->result = SOLVE_WINDOW;
+    report->adjusted += window == WINDOW_MISSED;
+    if (window == WINDOW_AT_BOUND) {
+      PetscCall(ContactLocateOutside(model->contact, report->detail, sizeof(report->detail)));
+      report->result = SOLVE_WINDOW;
+    }
   }
   report->cycles = work->cycles;
   PetscCall(PetscStrncpy(report->cycle, work->cycle, sizeof(report->cycle)));

@@ -1,10 +1,18 @@
 #include <string.h>
 #include "law.h"
 
-/* Chamoret et al. 2004, eq. 15, written as the derivative of psi = eps/2 min(g, 0)^2 so that the tangent (eq. 14) is symmetric. */
+/* LawRest - the gap below which there is pressure (length). Not collective. */
+double LawRest(const LawState *state)
+{
+  return state->offset + state->multiplier / state->penalty;
+}
+
+/* Chamoret et al. 2004, eq. 15, written as the derivative of psi = eps/2 min(g, 0)^2 so that the tangent (eq. 14) is symmetric. With a multiplier lambda the
+   pressure is max(0, lambda - eps g): the same law over the gap less lambda/eps (Simo and Laursen 1992, Computers & Structures 42, 97-116; its
+   potential but for a constant). */
 static void LawPenalty(double gap, const LawState *state, LawValue *value)
 {
-  const double g = gap - state->offset;
+  const double g = gap - LawRest(state);
 
   if (g < 0)
     *value = (LawValue){0.5 * state->penalty * g * g, -state->penalty * g, state->penalty};

@@ -263,12 +263,13 @@ static PetscErrorCode ModelContactEffects(Scene scene, char *text, size_t size)
 PetscErrorCode ModelEffects(Model model, char *text, size_t size)
 {
   Scene     scene  = model->scene;
-  PetscBool moving = PETSC_FALSE, body_force = PETSC_FALSE, adjusted = PETSC_FALSE, surface = PETSC_FALSE;
+  PetscBool moving = PETSC_FALSE, body_force = PETSC_FALSE, adjusted = PETSC_FALSE, augmented = PETSC_FALSE, surface = PETSC_FALSE;
   size_t    start;
 
   PetscFunctionBeginUser;
   for (int b = 0; b < scene->n_bodies; b++) moving = (PetscBool)(moving || (scene->bodies[b].rigid && scene->bodies[b].motion.n));
   for (int c = 0; c < scene->n_contacts; c++) adjusted = (PetscBool)(adjusted || scene->contacts[c].adjust);
+  for (int c = 0; c < scene->n_contacts; c++) augmented = (PetscBool)(augmented || scene->contacts[c].augment);
   for (int l = 0; l < scene->n_loads; l++) body_force = (PetscBool)(body_force || scene->loads[l].kind == LOAD_BODY_FORCE);
   for (int c = 0; c < scene->n_contacts; c++) surface = (PetscBool)(surface || scene->contacts[c].formulation == CONTACT_SURFACE_TO_SURFACE);
   PetscCall(PetscSNPrintf(text, size, "%s%s%s", scene->kinematics == KINEMATICS_FINITE ? "finite strain" : "small strain",
@@ -276,8 +277,9 @@ PetscErrorCode ModelEffects(Model model, char *text, size_t size)
                           ModelHasFormulation(scene, FORMULATION_FBAR) ? ", mean dilatation" : ""));
   PetscCall(ModelContactEffects(scene, text, size));
   PetscCall(PetscStrlen(text, &start));
-  PetscCall(PetscSNPrintf(text + start, size - start, "%s%s%s%s%s", surface ? ", surface to surface" : "", adjusted ? ", adjusted penalty" : "",
-                          LoadsConservative(model->loads) ? "" : ", follower load", body_force ? ", body force" : "", moving ? ", rigid motion" : ""));
+  PetscCall(PetscSNPrintf(text + start, size - start, "%s%s%s%s%s%s", surface ? ", surface to surface" : "", adjusted ? ", adjusted penalty" : "",
+                          augmented ? ", augmented penalty" : "", LoadsConservative(model->loads) ? "" : ", follower load", body_force ? ", body force" : "",
+                          moving ? ", rigid motion" : ""));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

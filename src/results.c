@@ -748,9 +748,14 @@ static PetscErrorCode ResultsPrintWindows(Results results)
   for (int p = 0; p < results->scene->n_contacts; p++) {
     ContactWindow window;
 
-    if (!results->scene->contacts[p].adjust) continue;
+    if (!results->scene->contacts[p].adjust && !results->scene->contacts[p].augment) continue;
     PetscCall(ContactPairWindow(contact, p, &window));
-    if (results->talks)
+    if (results->talks && results->scene->contacts[p].augment)
+      printf("penalty of %s: augmented %lld times, %lld steps beyond g_max all the same; at the end %lld of %lld nodes in contact, largest penetration or "
+             "opening %.3g g_max\n",
+             ContactPairName(contact, p), (long long)window.augmented, (long long)window.missed, (long long)window.outside, (long long)window.loaded,
+             (double)window.excess);
+    else if (results->talks)
       printf("penalty of %s: raised %lld times, lowered %lld, cut short %lld, light nodes spared %lld; at the end %lld of %lld loaded nodes outside the "
              "window, largest penetration %.3g g_max\n",
              ContactPairName(contact, p), (long long)window.raised, (long long)window.lowered, (long long)window.clamped, (long long)window.light,

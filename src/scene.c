@@ -337,6 +337,20 @@ static PetscErrorCode SceneReadAnalytic(Scene scene, SceneContact *contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* How pressures carry over as multipliers; g_max and its unit are those of the adjustment. */
+static void SceneReadAugmentation(Scene scene, SceneContact *contact)
+{
+  static const char *const needs[] = {"penalty.g_max", "penalty.unit"};
+
+  contact->augment     = SchemaBoolean(SceneDocument(scene), "%s.penalty.augment", contact->path);
+  contact->max_updates = SchemaInteger(SceneDocument(scene), "%s.penalty.max_updates", contact->path);
+  if (contact->augment && contact->adjust)
+    SceneRefuse(scene, contact->path, "penalty.augment", "is true beside adjust: true; allowed: one of them (augment keeps the penalty, adjust changes it)",
+                NULL);
+  for (size_t k = 0; contact->augment && k < PETSC_STATIC_ARRAY_LENGTH(needs); k++)
+    if (!SceneHas(scene, contact->path, needs[k])) SceneRefuse(scene, contact->path, needs[k], "is missing; allowed with augment: g_max and unit", NULL);
+}
+
 /* How the penalty follows the penetration */
 static void SceneReadAdjustment(Scene scene, SceneContact *contact)
 {
@@ -382,6 +396,7 @@ static PetscErrorCode SceneReadContact(Scene scene, SceneContact *contact)
   contact->penalty             = contact->penalty_auto ? 0 : SchemaReal(SceneDocument(scene), "%s.penalty.initial", contact->path);
   contact->penalty_scale       = SchemaReal(SceneDocument(scene), "%s.penalty.scale", contact->path);
   SceneReadAdjustment(scene, contact);
+  SceneReadAugmentation(scene, contact);
   contact->n_symmetry = symmetry ? symmetry->n : 0;
   PetscCall(PetscCalloc1(contact->n_symmetry, &contact->symmetry));
   for (int i = 0; i < contact->n_symmetry; i++) PetscCall(PetscStrallocpy(symmetry->child[i]->text, &contact->symmetry[i]));

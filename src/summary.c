@@ -170,6 +170,8 @@ static void AddContact(cJSON *json, const RunFigures *figures)
     cJSON_AddNumberToObject(penalty, "lowered", (double)window->lowered);
     cJSON_AddNumberToObject(penalty, "clamped", (double)window->clamped);
     cJSON_AddNumberToObject(penalty, "light", (double)window->light);
+    cJSON_AddNumberToObject(penalty, "augmented", (double)window->augmented);
+    cJSON_AddNumberToObject(penalty, "missed", (double)window->missed);
     cJSON_AddNumberToObject(penalty, "outside_window", (double)window->outside);
     cJSON_AddNumberToObject(penalty, "largest_excess", (double)window->excess);
   }

@@ -21,12 +21,13 @@ EFFECTS = {
     "surface to surface": (["contact.0.smoother=diffuse", "contact.0.formulation=surface_to_surface"], "ContactOffset", "offset|facequadrature"),
     "live offsets": (["contact.0.smoother=diffuse", "contact.0.formulation=surface_to_surface", "contact.0.offset=live"], "ContactOffset", "facemap"),
     "adjusted penalty": (["contact.0.penalty.adjust=true", *WINDOW], "ContactAdjust", ""),
+    "augmented penalty": (["contact.0.penalty.augment=true", *WINDOW], "ContactAdjust", "contactaugment|mixing"),
     "control by contact": (["stepping={control: contact, initial: 0.5, N_c: 5}"], "ContactTouch", "contacttouch|touch"),
     "follower load": (["loads.0.follower=true"], "LoadsFollower", ""),
 }
 # Keys that are there and off
 OFF = ["contact.0.degree=2", "contact.0.support=3", "contact.0.weight=4", "contact.0.frame=global", "contact.0.derivatives=diffuse", "contact.0.offset=live", "contact.0.penalty.adjust=false",
-       "contact.0.penalty.when=step", "contact.0.penalty.clamp=10", *WINDOW, "loads.0.follower=false", "stepping.N_c=5", "stepping.prediction=tangent", "output.checkpoint=0"]
+       "contact.0.penalty.when=step", "contact.0.penalty.clamp=10", "contact.0.penalty.augment=false", "contact.0.penalty.max_updates=5", *WINDOW, "loads.0.follower=false", "stepping.N_c=5", "stepping.prediction=tangent", "output.checkpoint=0"]
 READERS = "document|schema|schemakeys|scene|sceneprobe|commandline|gmsh|results"  # the scene's text and its record are as long as they are
 PETSC_TEXT = ("PetscStrallocpy", "PetscStrreplace", "PetscFunctionListCreateNode_Private", "PetscOptions", "PetscLogView", "PetscViewer")
 

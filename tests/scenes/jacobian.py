@@ -27,6 +27,8 @@ SURFACE = ["contact.0.formulation=surface_to_surface"]
 DIFFUSE = SURFACE + ["contact.0.smoother=diffuse"]
 CASES["flat blocks, surface to surface, facets"] = (SCENES / "contact_patch.yaml", ["kinematics=finite", "bodies.0.material.law=svk", "bodies.1.material.law=svk", "stepping.initial=1"] + SURFACE)
 CASES["line contact, surface to surface"] = (RUNS / "hertz_line.yaml", ["mesh.parameters={h: 1, growth: 0.5}", "stepping.initial=0.5"] + DIFFUSE)
+CASES["line contact, surface to surface, multipliers"] = (RUNS / "hertz_line.yaml", ["mesh.parameters={h: 1, growth: 0.5}", "stepping.initial=0.5",
+                                                          "contact.0.penalty={scale: 1, augment: true, g_max: 1e-3, unit: length}"] + DIFFUSE)
 CASES["coarse pinched pipe, surface to surface"] = (RUNS / "pipe_pinch.yaml", COARSE_PIPE + ["loads.0.uy=-2", "stepping.initial=0.5"] + DIFFUSE)
 CASES["turning rigid cylinder, surface to surface"] = (RUNS / "slide_facets.yaml", ["mesh.parameters.n_x=4", "stepping.initial=0.1"] + DIFFUSE)
 

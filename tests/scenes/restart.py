@@ -307,6 +307,7 @@ STATES = {  # scene and what makes it short; a checkpoint lies before the last s
     "steps by contact": ("cup_flattening", 4, ["stepping={control: contact, initial: 0.025, N_c: 5, prediction: converged}"]),
     "penalties": ("plate_cylinder", 4, ["mesh.parameters={h_contact: 0.5, h_far: 8, n_thick: 3, n_width: 1}"]),
     "penalties by step": ("plate_cylinder", 4, ["mesh.parameters={h_contact: 0.5, h_far: 8, n_thick: 3, n_width: 1}", "contact.0.penalty.when=step"]),
+    "multipliers": ("cup_flattening", 3, ["stepping={control: fixed, initial: 0.125}", "contact.0.penalty={scale: 1, augment: true, g_max: 1e-4, unit: length}"]),
     "offsets": ("slide_facets", 4, ["stepping.initial=0.1", "contact.0.smoother=diffuse", "contact.0.formulation=surface_to_surface",
                                     "probes=[{name: force, contact_force: sole, component: y}]"]),
     "live offsets": ("pipe_pinch", 2, ["mesh.order=1", "mesh.parameters={n_arc: 8, n_wall: 1, n_len: 3}", "contact.0.smoother=diffuse", "contact.0.formulation=surface_to_surface",

@@ -75,6 +75,10 @@ static void test_pairs(void **state)
   Good(&c);
   c.pair.window = (ContactWindow){.outside = 2, .loaded = 5};
   Expect(&c, "2 of 5 loaded nodes");
+  c.scene.augment = 1;
+  Expect(&c, NULL); /* steps that miss the bound count, not the state that is left */
+  c.pair.window.missed = 3;
+  Expect(&c, "3 of 10 steps ended with nodes beyond g_max after max_updates");
 }
 
 static void test_steps(void **state)
