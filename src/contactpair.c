@@ -255,8 +255,9 @@ PetscReal ContactTouchTolerance(const ContactPair *pair, PetscInt c)
   return CONTACT_TOUCH * h + TermCurvature(pair, c) * (PetscSqr(h) + PetscSqr(TermMasterSize(pair, c))) / 8;
 }
 
-/* Opening of a term of surface contact whose node touches: the mean over the faces around it, where the surfaces bend away from each other. */
+/* Opening of a term of surface contact whose node touches: the mean over the faces around it, where the surfaces bend away from each other. Hat functions
+   of width h weigh x^2 by h^2/6, so the mean of kappa x^2/2 is kappa h^2/12 for each direction; half as much again for faces of unlike size. */
 PetscReal ContactMeanOpening(const ContactPair *pair, PetscInt c)
 {
-  return CONTACT_TOUCH * pair->size[c] + TermCurvature(pair, c) * PetscSqr(pair->size[c]) / 8;
+  return CONTACT_TOUCH * pair->size[c] + (pair->mesh->dim - 1) * TermCurvature(pair, c) * PetscSqr(pair->size[c]) / 8;
 }

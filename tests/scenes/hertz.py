@@ -1,6 +1,7 @@
 """Line contact of a cylinder and a block: force exact, half-width and peak pressure within 1 % of Hertz's with the diffuse smoother of either degree
 and either body as slave; the noise of the pressure about its ellipse, with facets beside it. Surface to surface with a small load: the run starts from the
-one node that touches, on graded and on coarse second-order meshes, and gives the peak to 1.5 % and the edge to a fifth of a face."""
+one node that touches, on graded and on coarse second-order meshes, and gives the peak to 1.5 % and the edge to a fifth of a face; so does the point contact of a
+sphere that nothing else holds."""
 import numpy
 
 from harness import Check, arguments, run, SCENES
@@ -42,4 +43,8 @@ for order, faces in ((1, 12), (2, 3)):  # elements of the block along the half-w
     check.near(f"{name}: force", probes["force"], FORCE / scale, 1e-6 * FORCE / scale)
     check.near(f"{name}: half-width", probes["half_width"], 1, 0.2 / faces)
     check.near(f"{name}: peak pressure", probes["peak_pressure"] / PEAK * HALF_WIDTH, 1, COARSE)
+force, faces = 1.50240 * 16 * 16, 2  # a quarter of the sphere; along the radius, which is 1
+probes = run(args, SCENES.parent.parent / "runs" / "hertz_sphere.yaml", out="sphere", overrides=[f"mesh.parameters.n={faces}"]).summary()["probes"]
+check.near("sphere: force", probes["force"], force, 1e-6 * force)
+check.near("sphere: radius", probes["radius"], 1, 0.2 / faces)
 check.finish()
