@@ -21,15 +21,12 @@ struct _n_LinearSolver {
 /* GMRES, as a tangent may be indefinite far from equilibrium; preconditioned from the right, so that its residual is the true one. */
 static PetscErrorCode SetIterative(LinearSolver solver, Mesh mesh, PetscBool axisymmetric, PetscBool symmetric)
 {
-  PC pc;
-
   PetscFunctionBeginUser;
   PetscCall(KSPSetType(solver->ksp, KSPGMRES));
   PetscCall(KSPSetPCSide(solver->ksp, PC_RIGHT));
   PetscCall(KSPGMRESSetRestart(solver->ksp, LINEAR_RESTART));
   PetscCall(KSPSetTolerances(solver->ksp, LINEAR_TOLERANCE, 0, PETSC_DEFAULT, LINEAR_ITERATIONS));
-  PetscCall(KSPGetPC(solver->ksp, &pc));
-  PetscCall(MultigridCreate(mesh, axisymmetric, symmetric, pc, &solver->multigrid));
+  PetscCall(MultigridCreate(mesh, axisymmetric, symmetric, solver->ksp, &solver->multigrid));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -1,12 +1,17 @@
 #include "matrixsum.h"
 #include "matrixrows.h"
 
-/* Merges a row of K and one of C, both ascending: columns and values of the sum; returns how many. */
+/* Merges a row of K and one of C, both ascending: columns and values of the sum; returns how many. Most rows of C are empty: contact is on surfaces. */
 static PetscInt MergeRow(PetscInt m, const PetscInt *i, const PetscScalar *a, PetscInt n, const PetscInt *j, const PetscScalar *b, PetscInt *column,
                          PetscScalar *value)
 {
   PetscInt count = 0, k = 0, l = 0;
 
+  if (!n) {
+    memcpy(column, i, (size_t)m * sizeof(*column));
+    memcpy(value, a, (size_t)m * sizeof(*value));
+    return m;
+  }
   while (k < m || l < n) {
     const PetscBool left = (PetscBool)(l == n || (k < m && i[k] <= j[l])), right = (PetscBool)(k == m || (l < n && j[l] <= i[k]));
 
@@ -83,13 +88,18 @@ static inline PetscInt Column(const MatrixRows *rows, PetscInt k)
   return rows->global ? rows->global[rows->column[k]] : rows->column[k];
 }
 
-/* y += x row by row, both ascending; every entry of x is in y. */
+/* y += x row by row, both ascending; every entry of x is in y, so that rows of one length have the same columns. */
 static PetscErrorCode RowsAdd(const MatrixRows *x, const PetscScalar *from, const MatrixRows *y, PetscScalar *to)
 {
   PetscFunctionBeginUser;
   for (PetscInt row = 0; row < x->n; row++) {
-    PetscInt at = y->ptr[row];
+    const PetscInt n  = x->ptr[row + 1] - x->ptr[row];
+    PetscInt       at = y->ptr[row];
 
+    if (n == y->ptr[row + 1] - at) {
+      for (PetscInt k = 0; k < n; k++) to[at + k] += from[x->ptr[row] + k];
+      continue;
+    }
     for (PetscInt k = x->ptr[row]; k < x->ptr[row + 1]; k++, at++) {
       while (at < y->ptr[row + 1] && Column(y, at) < Column(x, k)) at++;
       PetscCheck(at < y->ptr[row + 1] && Column(y, at) == Column(x, k), PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE,
