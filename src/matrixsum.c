@@ -89,50 +89,52 @@ PetscErrorCode MatrixSumCreate(Mat K, Mat C, Mat *sum)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* y += x row by row, both ascending; every entry of x is in y, so that rows of one length have the same columns. */
-static PetscErrorCode RowsAdd(const MatrixRows *x, const PetscScalar *from, const MatrixRows *y, PetscScalar *to)
+/* y += x in one row, both ascending; every entry of x is in y. */
+static PetscErrorCode RowAdd(PetscInt row, const MatrixRows *x, const PetscScalar *from, const MatrixRows *y, PetscScalar *to)
 {
-  PetscFunctionBeginUser;
-  for (PetscInt row = 0; row < x->n; row++) {
-    const PetscInt n  = x->ptr[row + 1] - x->ptr[row];
-    PetscInt       at = y->ptr[row];
+  PetscInt at = y->ptr[row];
 
-    if (n == y->ptr[row + 1] - at) {
-      for (PetscInt k = 0; k < n; k++) to[at + k] += from[x->ptr[row] + k];
-      continue;
-    }
-    for (PetscInt k = x->ptr[row]; k < x->ptr[row + 1]; k++, at++) {
-      while (at < y->ptr[row + 1] && Column(y, at) < Column(x, k)) at++;
-      PetscCheck(at < y->ptr[row + 1] && Column(y, at) == Column(x, k), PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE,
-                 "row %" PetscInt_FMT " of the sum lacks an entry", row);
-      to[at] += from[k];
-    }
+  PetscFunctionBeginUser;
+  for (PetscInt k = x->ptr[row]; k < x->ptr[row + 1]; k++, at++) {
+    while (at < y->ptr[row + 1] && Column(y, at) < Column(x, k)) at++;
+    PetscCheck(at < y->ptr[row + 1] && Column(y, at) == Column(x, k), PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE,
+               "row %" PetscInt_FMT " of the sum lacks an entry", row);
+    to[at] += from[k];
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* One block of sum := K + C. */
+/* One block of sum := K + C. A row of the sum that is as long as K's is K's: most rows, as contact is on surfaces. */
 static PetscErrorCode BlockUpdate(Mat K, Mat C, Mat sum, int block)
 {
-  const Mat    terms[2] = {K, C};
-  MatrixRows   y, x;
-  PetscScalar *to;
+  MatrixRows         y, x, z;
+  PetscScalar       *to;
+  const PetscScalar *a, *b;
 
   PetscFunctionBeginUser;
   PetscCall(MatrixRowsGet(sum, block, &y));
   if (!y.mat) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(MatrixRowsGet(K, block, &x));
+  PetscCall(MatrixRowsGet(C, block, &z));
   PetscCall(MatSeqAIJGetArray(y.mat, &to));
-  PetscCall(PetscArrayzero(to, y.ptr[y.n]));
-  for (int i = 0; i < 2; i++) {
-    const PetscScalar *from;
+  PetscCall(MatSeqAIJGetArrayRead(x.mat, &a));
+  PetscCall(MatSeqAIJGetArrayRead(z.mat, &b));
+  for (PetscInt row = 0; row < y.n; row++) {
+    const PetscInt n = y.ptr[row + 1] - y.ptr[row];
 
-    PetscCall(MatrixRowsGet(terms[i], block, &x));
-    PetscCall(MatSeqAIJGetArrayRead(x.mat, &from));
-    PetscCall(RowsAdd(&x, from, &y, to));
-    PetscCall(MatSeqAIJRestoreArrayRead(x.mat, &from));
-    PetscCall(MatrixRowsRestore(&x));
+    if (n == x.ptr[row + 1] - x.ptr[row])
+      PetscCall(PetscArraycpy(&to[y.ptr[row]], &a[x.ptr[row]], n));
+    else {
+      PetscCall(PetscArrayzero(&to[y.ptr[row]], n));
+      PetscCall(RowAdd(row, &x, a, &y, to));
+    }
+    PetscCall(RowAdd(row, &z, b, &y, to));
   }
+  PetscCall(MatSeqAIJRestoreArrayRead(z.mat, &b));
+  PetscCall(MatSeqAIJRestoreArrayRead(x.mat, &a));
   PetscCall(MatSeqAIJRestoreArray(y.mat, &to));
+  PetscCall(MatrixRowsRestore(&z));
+  PetscCall(MatrixRowsRestore(&x));
   PetscCall(MatrixRowsRestore(&y));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
