@@ -8,10 +8,11 @@
 
 typedef struct _n_Multigrid *Multigrid;
 
-/* Makes pc such a preconditioner of matrices over the mesh's free dofs. Collective. */
-PetscErrorCode MultigridCreate(Mesh, PetscBool axisymmetric, PetscBool symmetric, PC, Multigrid *);
+/* Makes such a preconditioner for a KSP of matrices over the mesh's free dofs. Collective. */
+PetscErrorCode MultigridCreate(Mesh, PetscBool axisymmetric, PetscBool symmetric, KSP, Multigrid *);
 PetscErrorCode MultigridDestroy(Multigrid *);
-/* The contact part of the operator that pc is set up for next: its non-zero rows are the interface. changed: the operator has a new pattern. Collective. */
+/* The contact part of the operator that the KSP is set up for next: its non-zero rows are the interface. changed: the operator has a new pattern. Collective.
+ */
 PetscErrorCode MultigridSetContact(Multigrid, Mat C, PetscBool changed);
 /* The next operator is a new beginning: multigrid is made for it, so that what follows does not depend on what was before. Not collective. */
 PetscErrorCode MultigridRenew(Multigrid);

@@ -4,11 +4,20 @@
    other matrices and the solver's analysis (half of a factorisation at 10,000 dofs), a zero costs fill. Contact that moves on seldom reaches it. */
 #define BLOCK_SLACK 1.5
 
+/* Values are kept in pieces of this many or more, which never move: as one array that grows they are copied, and need twice the memory. */
+#define BLOCK_PIECE (1 << 20)
+
 typedef struct {
-  int       list;
-  PetscInt  m, entry, value; /* size; first places in the arrays */
-  PetscBool outer;           /* the values are a vector v, the block is v v^T */
+  int        list;
+  PetscInt   m, entry; /* size; first place in the array */
+  PetscReal *value;
+  PetscBool  outer; /* the values are a vector v, the block is v v^T */
 } Block;
+
+typedef struct {
+  PetscInt   n, room;
+  PetscReal *value;
+} BlockPiece;
 
 /* One row of nodes of a block. Targets: a column of nodes in the block, and the pair of the row, counted from its first, that it is added to. */
 typedef struct {
@@ -17,21 +26,21 @@ typedef struct {
 } BlockRow;
 
 struct _n_BlockMatrix {
-  MPI_Comm   comm;
-  int        size;                                                             /* of a node: its dofs */
-  PetscInt   n, room, n_entries, entries_room, n_values, values_room, n_pairs; /* n_pairs: of nodes, over all blocks */
-  Block     *block;
-  PetscInt  *entry;
-  PetscReal *value;
-  Mat        matrix;
-  PetscInt   n_pattern, *pattern; /* of the blocks: number of nodes and nodes' keys of block after block; key: the first dof, -1 without any */
-  PetscInt   n_nodes, *key, *dof; /* of the matrix: keys ascending, dofs (n_nodes*size) */
-  PetscInt  *pair_ptr, *pair;     /* blocks overlap: every pair of nodes once, row by row, ascending */
-  PetscInt  *mirror;              /* of the pairs below the diagonal: the pair with row and column swapped */
-  PetscInt  *row_ptr, *target;    /* of each node, its rows in the blocks; where these are added */
-  BlockRow  *row;
-  PetscReal *sum;      /* over the pairs, row of dofs by row of dofs */
-  PetscBool  restored; /* the matrix is not the one that its user knows */
+  MPI_Comm    comm;
+  int         size;                                                       /* of a node: its dofs */
+  PetscInt    n, room, n_entries, entries_room, n_pieces, piece, n_pairs; /* piece: that is being filled; n_pairs: of nodes, over all blocks */
+  Block      *block;
+  PetscInt   *entry;
+  BlockPiece *pieces;
+  Mat         matrix;
+  PetscInt    n_pattern, *pattern; /* of the blocks: number of nodes and nodes' keys of block after block; key: the first dof, -1 without any */
+  PetscInt    n_nodes, *key, *dof; /* of the matrix: keys ascending, dofs (n_nodes*size) */
+  PetscInt   *pair_ptr, *pair;     /* blocks overlap: every pair of nodes once, row by row, ascending */
+  PetscInt   *mirror;              /* of the pairs below the diagonal: the pair with row and column swapped */
+  PetscInt   *row_ptr, *target;    /* of each node, its rows in the blocks; where these are added */
+  BlockRow   *row;
+  PetscReal  *sum;      /* over the pairs, row of dofs by row of dofs */
+  PetscBool   restored; /* the matrix is not the one that its user knows */
 };
 
 /* BlockMatrixCreate - an empty one.
@@ -53,7 +62,8 @@ PetscErrorCode BlockMatrixDestroy(BlockMatrix *blocks)
   if (!*blocks) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscFree((*blocks)->block));
   PetscCall(PetscFree((*blocks)->entry));
-  PetscCall(PetscFree((*blocks)->value));
+  for (PetscInt k = 0; k < (*blocks)->n_pieces; k++) PetscCall(PetscFree((*blocks)->pieces[k].value));
+  PetscCall(PetscFree((*blocks)->pieces));
   PetscCall(PetscFree((*blocks)->pattern));
   PetscCall(PetscFree((*blocks)->key));
   PetscCall(PetscFree((*blocks)->dof));
@@ -73,7 +83,26 @@ PetscErrorCode BlockMatrixDestroy(BlockMatrix *blocks)
 PetscErrorCode BlockMatrixReset(BlockMatrix blocks)
 {
   PetscFunctionBeginUser;
-  blocks->n = blocks->n_entries = blocks->n_values = blocks->n_pairs = 0;
+  blocks->n = blocks->n_entries = blocks->piece = blocks->n_pairs = 0;
+  for (PetscInt k = 0; k < blocks->n_pieces; k++) blocks->pieces[k].n = 0;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Room for n values, which are zero, until the next reset. */
+static PetscErrorCode TakeValues(BlockMatrix blocks, PetscInt n, PetscReal **value)
+{
+  PetscFunctionBeginUser;
+  while (blocks->piece < blocks->n_pieces && blocks->pieces[blocks->piece].n + n > blocks->pieces[blocks->piece].room) blocks->piece++;
+  if (blocks->piece == blocks->n_pieces) {
+    const PetscInt room = PetscMax(n, BLOCK_PIECE);
+
+    PetscCall(PetscRealloc((blocks->n_pieces + 1) * sizeof(BlockPiece), &blocks->pieces));
+    blocks->pieces[blocks->n_pieces] = (BlockPiece){.room = room};
+    PetscCall(PetscMalloc1(room, &blocks->pieces[blocks->n_pieces++].value));
+  }
+  *value = &blocks->pieces[blocks->piece].value[blocks->pieces[blocks->piece].n];
+  blocks->pieces[blocks->piece].n += n;
+  PetscCall(PetscArrayzero(*value, n));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -84,14 +113,10 @@ static PetscErrorCode AddBlock(BlockMatrix blocks, int list, PetscInt m, PetscIn
   if (blocks->n == blocks->room) PetscCall(PetscRealloc((blocks->room = 2 * blocks->room + 64) * sizeof(Block), &blocks->block));
   if (blocks->n_entries + m > blocks->entries_room)
     PetscCall(PetscRealloc((blocks->entries_room = 2 * (blocks->entries_room + m)) * sizeof(PetscInt), &blocks->entry));
-  if (blocks->n_values + n > blocks->values_room)
-    PetscCall(PetscRealloc((blocks->values_room = 2 * (blocks->values_room + n)) * sizeof(PetscReal), &blocks->value));
   *entry = &blocks->entry[blocks->n_entries];
-  *value = &blocks->value[blocks->n_values];
-  PetscCall(PetscArrayzero(*value, n));
-  blocks->block[blocks->n++] = (Block){.list = list, .m = m, .entry = blocks->n_entries, .value = blocks->n_values};
+  PetscCall(TakeValues(blocks, n, value));
+  blocks->block[blocks->n++] = (Block){.list = list, .m = m, .entry = blocks->n_entries, .value = *value};
   blocks->n_entries += m;
-  blocks->n_values += n;
   blocks->n_pairs += PetscSqr(m / blocks->size);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -390,7 +415,7 @@ static PetscErrorCode SumBlocks(BlockMatrix blocks)
     for (PetscInt k = blocks->row_ptr[r]; k < blocks->row_ptr[r + 1]; k++) {
       const BlockRow  *row    = &blocks->row[k];
       const Block     *block  = &blocks->block[row->block];
-      const PetscReal *value  = &blocks->value[block->value];
+      const PetscReal *value  = block->value;
       const PetscInt  *target = &blocks->target[2 * row->first_target];
 
       if (size == 3 && block->outer)
@@ -447,7 +472,7 @@ PetscErrorCode BlockMatrixMultiply(BlockMatrix blocks, int list, const PetscReal
   for (PetscInt b = 0; b < blocks->n; b++) {
     const Block     *block = &blocks->block[b];
     const PetscInt  *entry = &blocks->entry[block->entry];
-    const PetscReal *value = &blocks->value[block->value];
+    const PetscReal *value = block->value;
     PetscReal        along = 0;
 
     if (block->list != list) continue;

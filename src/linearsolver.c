@@ -18,18 +18,16 @@ struct _n_LinearSolver {
   Multigrid multigrid; /* NULL: direct */
 };
 
-/* GMRES, as a tangent may be indefinite far from equilibrium; preconditioned from the right, so that its residual is the true one. */
+/* GMRES, as a tangent may be indefinite far from equilibrium; preconditioned from the right, so that its residual is the true one. The flexible kind keeps the
+   preconditioned directions, so that the solution needs no iteration more. */
 static PetscErrorCode SetIterative(LinearSolver solver, Mesh mesh, PetscBool axisymmetric, PetscBool symmetric)
 {
-  PC pc;
-
   PetscFunctionBeginUser;
-  PetscCall(KSPSetType(solver->ksp, KSPGMRES));
+  PetscCall(KSPSetType(solver->ksp, KSPFGMRES));
   PetscCall(KSPSetPCSide(solver->ksp, PC_RIGHT));
   PetscCall(KSPGMRESSetRestart(solver->ksp, LINEAR_RESTART));
   PetscCall(KSPSetTolerances(solver->ksp, LINEAR_TOLERANCE, 0, PETSC_DEFAULT, LINEAR_ITERATIONS));
-  PetscCall(KSPGetPC(solver->ksp, &pc));
-  PetscCall(MultigridCreate(mesh, axisymmetric, symmetric, pc, &solver->multigrid));
+  PetscCall(MultigridCreate(mesh, axisymmetric, symmetric, solver->ksp, &solver->multigrid));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -1,56 +1,67 @@
 #include "matrixsum.h"
 #include "matrixrows.h"
 
-/* Merges a row of K and one of C, both ascending: columns and values of the sum; returns how many. */
-static PetscInt MergeRow(PetscInt m, const PetscInt *i, const PetscScalar *a, PetscInt n, const PetscInt *j, const PetscScalar *b, PetscInt *column,
+static inline PetscInt Column(const MatrixRows *rows, PetscInt k)
+{
+  return rows->global ? rows->global[rows->column[k]] : rows->column[k];
+}
+
+/* Merges one row of a block of K and of C, both ascending: columns, counted on from `first`, and values of the sum (NULL: not wanted); returns how many.
+   Most rows of C are empty: contact is on surfaces. */
+static PetscInt MergeRow(PetscInt row, const MatrixRows *K, const PetscScalar *a, const MatrixRows *C, const PetscScalar *b, PetscInt first, PetscInt *column,
                          PetscScalar *value)
 {
-  PetscInt count = 0, k = 0, l = 0;
+  const PetscInt k_end = K->ptr[row + 1], l_end = C->ptr[row + 1];
+  PetscInt       count = 0, k = K->ptr[row], l = C->ptr[row];
 
-  while (k < m || l < n) {
-    const PetscBool left = (PetscBool)(l == n || (k < m && i[k] <= j[l])), right = (PetscBool)(k == m || (l < n && j[l] <= i[k]));
+  while (l < l_end) {
+    const PetscInt  of_K = k < k_end ? Column(K, k) : PETSC_MAX_INT, of_C = Column(C, l);
+    const PetscBool left = (PetscBool)(of_K <= of_C), right = (PetscBool)(of_C <= of_K);
 
-    column[count]  = left ? i[k] : j[l];
-    value[count++] = (left ? a[k] : 0) + (right ? b[l] : 0);
+    if (column) {
+      column[count] = first + (left ? of_K : of_C);
+      value[count]  = (left ? a[k] : 0) + (right ? b[l] : 0);
+    }
+    count++;
     k += left;
     l += right;
   }
-  return count;
+  if (column) memcpy(&value[count], &a[k], (size_t)(k_end - k) * sizeof(*value));
+  for (PetscInt i = 0; column && i < k_end - k; i++) column[count + i] = first + Column(K, k + i);
+  return count + k_end - k;
 }
 
-/* Calls for every row of this rank the merged row of K and C: fills in how many entries it has on this rank and on others, or sets them in the sum. */
-static PetscErrorCode SumRows(Mat K, Mat C, PetscInt *own, PetscInt *others, Mat sum)
+/* Goes through one block's rows of K + C: fills in how many entries each has, or sets them in the sum. */
+static PetscErrorCode SumBlock(Mat K, Mat C, int block, PetscInt *count, Mat sum)
 {
-  PetscInt     first, end, left, right, room = 0, *column = NULL;
-  PetscScalar *value = NULL;
+  MatrixRows         x, y;
+  PetscInt           row_first, first = 0, room = 0, *column = NULL;
+  PetscScalar       *value = NULL;
+  const PetscScalar *a, *b;
 
   PetscFunctionBeginUser;
-  PetscCall(MatGetOwnershipRange(K, &first, &end));
-  PetscCall(MatGetOwnershipRangeColumn(K, &left, &right));
-  for (PetscInt row = first; row < end; row++) {
-    PetscInt           m, n, count;
-    const PetscInt    *i, *j;
-    const PetscScalar *a, *b;
+  PetscCall(MatrixRowsGet(K, block, &x));
+  if (!x.mat) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(MatrixRowsGet(C, block, &y));
+  PetscCall(MatGetOwnershipRange(K, &row_first, NULL));
+  if (block == MATRIX_OWN) PetscCall(MatGetOwnershipRangeColumn(K, &first, NULL));
+  PetscCall(MatSeqAIJGetArrayRead(x.mat, &a));
+  PetscCall(MatSeqAIJGetArrayRead(y.mat, &b));
+  for (PetscInt row = 0; row < x.n; row++) room = PetscMax(room, x.ptr[row + 1] - x.ptr[row] + y.ptr[row + 1] - y.ptr[row]);
+  if (sum) PetscCall(PetscMalloc2(room, &column, room, &value));
+  for (PetscInt row = 0; row < x.n; row++) {
+    const PetscInt n = MergeRow(row, &x, a, &y, b, first, column, value), global = row_first + row;
 
-    PetscCall(MatGetRow(K, row, &m, &i, &a));
-    PetscCall(MatGetRow(C, row, &n, &j, &b));
-    if (m + n > room) {
-      room = 2 * (m + n);
-      PetscCall(PetscFree2(column, value));
-      PetscCall(PetscMalloc2(room, &column, room, &value));
-    }
-    count = MergeRow(m, i, a, n, j, b, column, value);
-    PetscCall(MatRestoreRow(C, row, &n, &j, &b));
-    PetscCall(MatRestoreRow(K, row, &m, &i, &a));
-    if (sum) {
-      PetscCall(MatSetValues(sum, 1, &row, count, column, value, INSERT_VALUES));
-      continue;
-    }
-    own[row - first] = 0;
-    for (PetscInt k = 0; k < count; k++) own[row - first] += column[k] >= left && column[k] < right;
-    others[row - first] = count - own[row - first];
+    if (sum)
+      PetscCall(MatSetValues(sum, 1, &global, n, column, value, INSERT_VALUES));
+    else
+      count[row] = n;
   }
   PetscCall(PetscFree2(column, value));
+  PetscCall(MatSeqAIJRestoreArrayRead(y.mat, &b));
+  PetscCall(MatSeqAIJRestoreArrayRead(x.mat, &a));
+  PetscCall(MatrixRowsRestore(&y));
+  PetscCall(MatrixRowsRestore(&x));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -59,69 +70,71 @@ static PetscErrorCode SumRows(Mat K, Mat C, PetscInt *own, PetscInt *others, Mat
    Collective. K, C: assembled AIJ matrices of the same rows on every rank. */
 PetscErrorCode MatrixSumCreate(Mat K, Mat C, Mat *sum)
 {
-  PetscInt m, n, *own, *others;
+  PetscInt m, n, *count[MATRIX_BLOCKS];
 
   PetscFunctionBeginUser;
   PetscCall(MatGetLocalSize(K, &m, &n));
-  PetscCall(PetscMalloc2(m, &own, m, &others));
-  PetscCall(SumRows(K, C, own, others, NULL));
+  PetscCall(PetscCalloc2(m, &count[MATRIX_OWN], m, &count[MATRIX_OTHERS]));
+  for (int block = 0; block < MATRIX_BLOCKS; block++) PetscCall(SumBlock(K, C, block, count[block], NULL));
   PetscCall(MatCreate(PetscObjectComm((PetscObject)K), sum));
   PetscCall(MatSetSizes(*sum, m, n, PETSC_DETERMINE, PETSC_DETERMINE));
   PetscCall(MatSetType(*sum, MATAIJ));
-  PetscCall(MatXAIJSetPreallocation(*sum, 1, own, others, NULL, NULL));
+  PetscCall(MatXAIJSetPreallocation(*sum, 1, count[MATRIX_OWN], count[MATRIX_OTHERS], NULL, NULL));
   PetscCall(MatSetOption(*sum, MAT_NO_OFF_PROC_ENTRIES, PETSC_TRUE));
   PetscCall(MatSetOption(*sum, MAT_SORTED_FULL, PETSC_TRUE));
-  PetscCall(SumRows(K, C, NULL, NULL, *sum));
+  for (int block = 0; block < MATRIX_BLOCKS; block++) PetscCall(SumBlock(K, C, block, NULL, *sum));
   PetscCall(MatAssemblyBegin(*sum, MAT_FINAL_ASSEMBLY));
   PetscCall(MatAssemblyEnd(*sum, MAT_FINAL_ASSEMBLY));
-  PetscCall(PetscFree2(own, others));
+  PetscCall(PetscFree2(count[MATRIX_OWN], count[MATRIX_OTHERS]));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static inline PetscInt Column(const MatrixRows *rows, PetscInt k)
+/* y += x in one row, both ascending; every entry of x is in y. */
+static PetscErrorCode RowAdd(PetscInt row, const MatrixRows *x, const PetscScalar *from, const MatrixRows *y, PetscScalar *to)
 {
-  return rows->global ? rows->global[rows->column[k]] : rows->column[k];
-}
+  PetscInt at = y->ptr[row];
 
-/* y += x row by row, both ascending; every entry of x is in y. */
-static PetscErrorCode RowsAdd(const MatrixRows *x, const PetscScalar *from, const MatrixRows *y, PetscScalar *to)
-{
   PetscFunctionBeginUser;
-  for (PetscInt row = 0; row < x->n; row++) {
-    PetscInt at = y->ptr[row];
-
-    for (PetscInt k = x->ptr[row]; k < x->ptr[row + 1]; k++, at++) {
-      while (at < y->ptr[row + 1] && Column(y, at) < Column(x, k)) at++;
-      PetscCheck(at < y->ptr[row + 1] && Column(y, at) == Column(x, k), PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE,
-                 "row %" PetscInt_FMT " of the sum lacks an entry", row);
-      to[at] += from[k];
-    }
+  for (PetscInt k = x->ptr[row]; k < x->ptr[row + 1]; k++, at++) {
+    while (at < y->ptr[row + 1] && Column(y, at) < Column(x, k)) at++;
+    PetscCheck(at < y->ptr[row + 1] && Column(y, at) == Column(x, k), PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE,
+               "row %" PetscInt_FMT " of the sum lacks an entry", row);
+    to[at] += from[k];
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* One block of sum := K + C. */
+/* One block of sum := K + C. A row of the sum that is as long as K's is K's: most rows, as contact is on surfaces. */
 static PetscErrorCode BlockUpdate(Mat K, Mat C, Mat sum, int block)
 {
-  const Mat    terms[2] = {K, C};
-  MatrixRows   y, x;
-  PetscScalar *to;
+  MatrixRows         y, x, z;
+  PetscScalar       *to;
+  const PetscScalar *a, *b;
 
   PetscFunctionBeginUser;
   PetscCall(MatrixRowsGet(sum, block, &y));
   if (!y.mat) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(MatrixRowsGet(K, block, &x));
+  PetscCall(MatrixRowsGet(C, block, &z));
   PetscCall(MatSeqAIJGetArray(y.mat, &to));
-  PetscCall(PetscArrayzero(to, y.ptr[y.n]));
-  for (int i = 0; i < 2; i++) {
-    const PetscScalar *from;
+  PetscCall(MatSeqAIJGetArrayRead(x.mat, &a));
+  PetscCall(MatSeqAIJGetArrayRead(z.mat, &b));
+  for (PetscInt row = 0; row < y.n; row++) {
+    const PetscInt n = y.ptr[row + 1] - y.ptr[row];
 
-    PetscCall(MatrixRowsGet(terms[i], block, &x));
-    PetscCall(MatSeqAIJGetArrayRead(x.mat, &from));
-    PetscCall(RowsAdd(&x, from, &y, to));
-    PetscCall(MatSeqAIJRestoreArrayRead(x.mat, &from));
-    PetscCall(MatrixRowsRestore(&x));
+    if (n == x.ptr[row + 1] - x.ptr[row])
+      PetscCall(PetscArraycpy(&to[y.ptr[row]], &a[x.ptr[row]], n));
+    else {
+      PetscCall(PetscArrayzero(&to[y.ptr[row]], n));
+      PetscCall(RowAdd(row, &x, a, &y, to));
+    }
+    PetscCall(RowAdd(row, &z, b, &y, to));
   }
+  PetscCall(MatSeqAIJRestoreArrayRead(z.mat, &b));
+  PetscCall(MatSeqAIJRestoreArrayRead(x.mat, &a));
   PetscCall(MatSeqAIJRestoreArray(y.mat, &to));
+  PetscCall(MatrixRowsRestore(&z));
+  PetscCall(MatrixRowsRestore(&x));
   PetscCall(MatrixRowsRestore(&y));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

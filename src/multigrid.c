@@ -5,13 +5,20 @@
 /* The parts have option names of their own: -bodies_... for multigrid, -interface_... for the direct solve */
 #define MULTIGRID_BODIES    "bodies_"
 #define MULTIGRID_INTERFACE "interface_"
-/* Multigrid made for an older operator with the same interface serves until it takes this many times the iterations it took at first: its coarse
-   matrices cost as much as some ten iterations. */
+/* Multigrid is made anew when the interface has become this many times as large, or as small. Contact that only moves does without: how stiff it is on the
+   coarse levels hardly matters (a hundredth costs one iteration more in 26), that it is there does. */
+#define MULTIGRID_CHANGE 1.5
+/* Multigrid made for an older operator serves until its effort, iterations for a power of ten in the residual, is this many times
+   the effort at first: its coarse matrices cost as much as some ten iterations. */
 #define MULTIGRID_AGE 1.5
-/* What the finest level's smoother damps: eigenvalues of the operator after symmetric Gauss-Seidel sweeps, none of which is above 1. Estimates, as for
-   Jacobi's method, come out too large: half as many iterations more. */
+/* What the finest level's smoother damps on one rank: eigenvalues of the operator after symmetric Gauss-Seidel sweeps, none of which is above 1. On several
+   ranks the largest is estimated. */
 #define MULTIGRID_LARGEST 1.1
 #define MULTIGRID_LEAST   0.1
+/* Powers of ten in the residual that a solve must show for its effort to be told: the first iterations of any solve are the fastest. */
+#define MULTIGRID_SHOWN 2
+/* Whatever its effort was at first, multigrid of an older operator is made anew after a solve of so many iterations. */
+#define MULTIGRID_MOST 60
 /* Most rigid-body modes there are */
 #define MULTIGRID_MODES 6
 
@@ -21,13 +28,16 @@ struct _n_Multigrid {
   PetscInt   n_free, n_all, first; /* rows of this rank: free dofs, all dofs of nodes that have one; the latter's first number of all ranks */
   PetscInt  *row;                  /* of each free dof of this rank: its row among all dofs, counted from first */
   Vec        number;               /* of each free dof: its number among all dofs of all ranks */
-  PetscInt  *ghost;                /* the same for the operator's columns of other ranks */
   Mat        nodes;                /* the operator with all dofs of a node */
   PetscBool  changed, renew;       /* the operator has another pattern than that; its values are wanted */
-  PetscInt   applied, usual;       /* iterations since the last operator; of the first one after multigrid was made, 0: not over yet */
+  PetscInt   solves, applied;      /* operators since multigrid was made; iterations for the last of them */
+  PetscReal  usual;                /* effort of the first one long enough to tell, 0: none yet */
+  KSP        outer;                /* whose preconditioner this is */
   PC         bodies;
   Vec        nodes_right, nodes_left, rest;
+  Mat        contact;   /* borrowed: that part of the operator */
   IS         interface; /* rows of this rank that contact couples; NULL: no rank has any */
+  PetscInt   coupled;   /* how many there were, on all ranks, when multigrid was made */
   KSP        direct;
   Vec        interface_right, interface_left;
   VecScatter to_interface;
@@ -108,8 +118,8 @@ static PetscErrorCode ModesCreate(Multigrid m, MatNullSpace *modes)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Numbers of the operator's columns of other ranks among all dofs. */
-static PetscErrorCode NumberGhosts(Multigrid m, Mat A)
+/* Numbers among all dofs of a matrix's columns of other ranks, in *ghost, which the caller frees. */
+static PetscErrorCode NumberGhosts(Multigrid m, Mat A, PetscInt **ghost)
 {
   MatrixRows         rows;
   PetscInt           n;
@@ -119,6 +129,7 @@ static PetscErrorCode NumberGhosts(Multigrid m, Mat A)
   VecScatter         scatter;
 
   PetscFunctionBeginUser;
+  *ghost = NULL;
   PetscCall(MatrixRowsGet(A, MATRIX_OTHERS, &rows));
   if (!rows.mat) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(MatGetSize(rows.mat, NULL, &n));
@@ -127,10 +138,9 @@ static PetscErrorCode NumberGhosts(Multigrid m, Mat A)
   PetscCall(VecScatterCreate(m->number, from, ghosts, NULL, &scatter));
   PetscCall(VecScatterBegin(scatter, m->number, ghosts, INSERT_VALUES, SCATTER_FORWARD));
   PetscCall(VecScatterEnd(scatter, m->number, ghosts, INSERT_VALUES, SCATTER_FORWARD));
-  PetscCall(PetscFree(m->ghost));
-  PetscCall(PetscMalloc1(n, &m->ghost));
+  PetscCall(PetscMalloc1(n, ghost));
   PetscCall(VecGetArrayRead(ghosts, &value));
-  for (PetscInt i = 0; i < n; i++) m->ghost[i] = (PetscInt)PetscRealPart(value[i]);
+  for (PetscInt i = 0; i < n; i++) (*ghost)[i] = (PetscInt)PetscRealPart(value[i]);
   PetscCall(VecRestoreArrayRead(ghosts, &value));
   PetscCall(VecScatterDestroy(&scatter));
   PetscCall(ISDestroy(&from));
@@ -139,32 +149,93 @@ static PetscErrorCode NumberGhosts(Multigrid m, Mat A)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* One block of the operator's rows: counts its entries per row of all dofs, or sets their values in m->nodes. */
-static PetscErrorCode CopyRows(Multigrid m, Mat A, int block, PetscInt *count)
+/* How many entries one block of the operator has in each row of all dofs. */
+static PetscErrorCode CountRows(Multigrid m, Mat A, int block, PetscInt *count)
+{
+  MatrixRows rows;
+
+  PetscFunctionBeginUser;
+  PetscCall(MatrixRowsGet(A, block, &rows));
+  for (PetscInt i = 0; i < rows.n; i++) count[m->row[i]] = rows.ptr[i + 1] - rows.ptr[i];
+  PetscCall(MatrixRowsRestore(&rows));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Sets the values of one block of the operator in m->nodes, or adds them, times a factor. */
+static PetscErrorCode CopyBlock(Multigrid m, Mat A, int block, const PetscInt *ghost, PetscReal factor, InsertMode mode)
 {
   MatrixRows         rows;
   PetscInt           room = 0, *column = NULL;
   const PetscScalar *value;
+  PetscScalar       *scaled = NULL;
 
   PetscFunctionBeginUser;
   PetscCall(MatrixRowsGet(A, block, &rows));
   if (!rows.mat) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(MatSeqAIJGetArrayRead(rows.mat, &value));
   for (PetscInt i = 0; i < rows.n; i++) room = PetscMax(room, rows.ptr[i + 1] - rows.ptr[i]);
-  PetscCall(PetscMalloc1(room, &column));
+  PetscCall(PetscMalloc2(room, &column, room, &scaled));
   for (PetscInt i = 0; i < rows.n; i++) {
     const PetscInt row = m->first + m->row[i], first = rows.ptr[i], entries = rows.ptr[i + 1] - first;
 
-    if (count) {
-      count[m->row[i]] = entries;
-      continue;
+    for (PetscInt k = 0; k < entries; k++) {
+      column[k] = block == MATRIX_OWN ? m->first + m->row[rows.column[first + k]] : ghost[rows.column[first + k]];
+      scaled[k] = factor * value[first + k];
     }
-    for (PetscInt k = 0; k < entries; k++) column[k] = block == MATRIX_OWN ? m->first + m->row[rows.column[first + k]] : m->ghost[rows.column[first + k]];
-    PetscCall(MatSetValues(m->nodes, 1, &row, entries, column, &value[first], INSERT_VALUES));
+    if (entries) PetscCall(MatSetValues(m->nodes, 1, &row, entries, column, scaled, mode));
   }
-  PetscCall(PetscFree(column));
+  PetscCall(PetscFree2(column, scaled));
   PetscCall(MatSeqAIJRestoreArrayRead(rows.mat, &value));
   PetscCall(MatrixRowsRestore(&rows));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode CopyRows(Multigrid m, Mat A, PetscReal factor, InsertMode mode)
+{
+  PetscInt *ghost;
+
+  PetscFunctionBeginUser;
+  PetscCall(NumberGhosts(m, A, &ghost));
+  for (int block = 0; block < MATRIX_BLOCKS; block++) PetscCall(CopyBlock(m, A, block, ghost, factor, mode));
+  PetscCall(PetscFree(ghost));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* How stiff contact is to be for multigrid, of its full stiffness: at most as the bodies are where it is. *mean: diagonal entry of the operator, so softened.
+
+   Stiffer contact makes smoothers diverge that work on each rank for itself; the interface's solve does the rest, and a hundredth costs no iteration. */
+static PetscErrorCode SoftenContact(Multigrid m, Mat A, PetscReal *softness, PetscScalar *mean)
+{
+  PetscScalar sum[2] = {0, 0}, *contact;
+  Vec         diagonal, of_contact;
+  PetscInt    n;
+
+  PetscFunctionBeginUser;
+  *softness = 1;
+  PetscCall(VecDuplicate(m->number, &diagonal));
+  PetscCall(VecDuplicate(m->number, &of_contact));
+  PetscCall(MatGetDiagonal(A, diagonal));
+  if (m->interface) {
+    const PetscScalar *whole;
+
+    PetscCall(MatGetDiagonal(m->contact, of_contact));
+    PetscCall(VecGetArray(of_contact, &contact));
+    PetscCall(VecGetArrayRead(diagonal, &whole));
+    for (PetscInt i = 0; i < m->n_free; i++) {
+      sum[0] += contact[i] != 0 ? whole[i] - contact[i] : 0;
+      sum[1] += contact[i];
+    }
+    PetscCall(VecRestoreArrayRead(diagonal, &whole));
+    PetscCall(VecRestoreArray(of_contact, &contact));
+    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sum, 2, MPIU_SCALAR, MPIU_SUM, m->mesh->comm));
+    if (PetscRealPart(sum[0]) > 0 && PetscRealPart(sum[1]) > PetscRealPart(sum[0])) *softness = PetscRealPart(sum[0]) / PetscRealPart(sum[1]);
+    PetscCall(VecAXPY(diagonal, *softness - 1, of_contact));
+  }
+  PetscCall(VecSum(diagonal, mean));
+  PetscCall(VecGetSize(diagonal, &n));
+  *mean /= n;
+  PetscCall(VecDestroy(&diagonal));
+  PetscCall(VecDestroy(&of_contact));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -175,10 +246,9 @@ static PetscErrorCode CreateNodesMatrix(Multigrid m, Mat A)
   MatNullSpace modes;
 
   PetscFunctionBeginUser;
-  PetscCall(NumberGhosts(m, A));
   PetscCall(PetscCalloc2(m->n_all, &own, m->n_all, &others));
-  PetscCall(CopyRows(m, A, MATRIX_OWN, own));
-  PetscCall(CopyRows(m, A, MATRIX_OTHERS, others));
+  PetscCall(CountRows(m, A, MATRIX_OWN, own));
+  PetscCall(CountRows(m, A, MATRIX_OTHERS, others));
   for (PetscInt i = 0; i < m->n_all; i++) own[i] = PetscMax(own[i], 1);
   PetscCall(MatDestroy(&m->nodes));
   PetscCall(MatCreate(m->mesh->comm, &m->nodes));
@@ -197,20 +267,11 @@ static PetscErrorCode CreateNodesMatrix(Multigrid m, Mat A)
 }
 
 /* Constrained dofs get the mean of the others on the diagonal, so that no coarse row mixes scales. */
-static PetscErrorCode SetConstrainedRows(Multigrid m, Mat A)
+static PetscErrorCode SetConstrainedRows(Multigrid m, PetscScalar mean)
 {
-  PetscBool  *free;
-  PetscScalar mean;
-  PetscInt    n;
-  Vec         diagonal;
+  PetscBool *free;
 
   PetscFunctionBeginUser;
-  PetscCall(VecDuplicate(m->number, &diagonal));
-  PetscCall(MatGetDiagonal(A, diagonal));
-  PetscCall(VecSum(diagonal, &mean));
-  PetscCall(VecGetSize(diagonal, &n));
-  mean /= n;
-  PetscCall(VecDestroy(&diagonal));
   PetscCall(PetscCalloc1(m->n_all, &free));
   for (PetscInt i = 0; i < m->n_free; i++) free[m->row[i]] = PETSC_TRUE;
   for (PetscInt i = 0; i < m->n_all; i++) {
@@ -238,17 +299,24 @@ static PetscErrorCode CreateBodies(Multigrid m)
    finer meshes. The coarse levels keep Jacobi's: aggregates of few nodes leave rotations without stiffness, which Gauss-Seidel's method would divide by. */
 static PetscErrorCode SmoothFinest(Multigrid m)
 {
-  KSP      ksp;
-  PC       pc;
-  PetscInt levels;
+  KSP         ksp;
+  PC          pc;
+  PetscInt    levels;
+  PetscMPIInt ranks;
 
   PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Comm_size(m->mesh->comm, &ranks));
   PetscCall(PCMGGetLevels(m->bodies, &levels));
   if (levels == 1) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PCMGGetSmoother(m->bodies, levels - 1, &ksp));
   PetscCall(KSPGetPC(ksp, &pc));
   PetscCall(PCSetType(pc, PCSOR));
-  PetscCall(KSPChebyshevSetEigenvalues(ksp, MULTIGRID_LARGEST, MULTIGRID_LEAST));
+  PetscCall(KSPSetType(ksp, KSPRICHARDSON)); /* forgets the eigenvalues for Jacobi's method, which would count as given */
+  PetscCall(KSPSetType(ksp, KSPCHEBYSHEV));
+  if (ranks == 1)
+    PetscCall(KSPChebyshevSetEigenvalues(ksp, MULTIGRID_LARGEST, MULTIGRID_LEAST));
+  else
+    PetscCall(KSPChebyshevEstEigSet(ksp, 0, MULTIGRID_LEAST, 0, MULTIGRID_LARGEST));
   PetscCall(KSPSetFromOptions(ksp));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -257,6 +325,8 @@ static PetscErrorCode SmoothFinest(Multigrid m)
 static PetscErrorCode SetUpBodies(Multigrid m, Mat A)
 {
   const PetscBool fresh = m->changed;
+  PetscReal       softness;
+  PetscScalar     mean;
 
   PetscFunctionBeginUser;
   if (fresh) {
@@ -264,17 +334,22 @@ static PetscErrorCode SetUpBodies(Multigrid m, Mat A)
     PetscCall(CreateBodies(m));
     m->changed = PETSC_FALSE;
   }
-  PetscCall(CopyRows(m, A, MATRIX_OWN, NULL));
-  PetscCall(CopyRows(m, A, MATRIX_OTHERS, NULL));
-  PetscCall(SetConstrainedRows(m, A));
+  PetscCall(SoftenContact(m, A, &softness, &mean));
+  PetscCall(CopyRows(m, A, 1, INSERT_VALUES));
+  PetscCall(SetConstrainedRows(m, mean));
+  PetscCall(MatAssemblyBegin(m->nodes, MAT_FLUSH_ASSEMBLY));
+  PetscCall(MatAssemblyEnd(m->nodes, MAT_FLUSH_ASSEMBLY));
+  if (softness < 1) PetscCall(CopyRows(m, m->contact, softness - 1, ADD_VALUES));
   PetscCall(MatAssemblyBegin(m->nodes, MAT_FINAL_ASSEMBLY));
   PetscCall(MatAssemblyEnd(m->nodes, MAT_FINAL_ASSEMBLY));
   PetscCall(MatSetOption(m->nodes, MAT_SYMMETRIC, m->symmetric));
   PetscCall(PCSetOperators(m->bodies, m->nodes, m->nodes));
   PetscCall(PCSetUp(m->bodies));
   if (fresh) PetscCall(SmoothFinest(m));
-  m->renew = PETSC_FALSE;
-  m->usual = 0;
+  m->renew  = PETSC_FALSE;
+  m->usual  = 0;
+  m->solves = m->coupled = 0;
+  if (m->interface) PetscCall(ISGetSize(m->interface, &m->coupled));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -316,14 +391,11 @@ static PetscErrorCode ForgetInterface(Multigrid m)
    Collective. changed: the operator has another pattern than the last one. */
 PetscErrorCode MultigridSetContact(Multigrid m, Mat C, PetscBool changed)
 {
-  PetscInt  begin, end, n = 0, all, *rows;
-  PetscBool same = PETSC_FALSE;
-  IS        before;
+  PetscInt begin, end, n = 0, all, *rows;
 
   PetscFunctionBeginUser;
-  m->changed   = (PetscBool)(m->changed || changed);
-  before       = m->interface;
-  m->interface = NULL;
+  m->changed = (PetscBool)(m->changed || changed);
+  m->contact = C;
   PetscCall(ForgetInterface(m));
   PetscCall(MatGetOwnershipRange(C, &begin, &end));
   PetscCall(PetscMalloc1(end - begin, &rows));
@@ -340,9 +412,7 @@ PetscErrorCode MultigridSetContact(Multigrid m, Mat C, PetscBool changed)
   PetscCallMPI(MPI_Allreduce(&n, &all, 1, MPIU_INT, MPI_SUM, m->mesh->comm));
   if (all) PetscCall(ISCreateGeneral(m->mesh->comm, n, rows, PETSC_COPY_VALUES, &m->interface));
   PetscCall(PetscFree(rows));
-  if (m->interface && before) PetscCall(ISEqual(m->interface, before, &same));
-  if (!same) m->renew = PETSC_TRUE;
-  PetscCall(ISDestroy(&before));
+  if (all > MULTIGRID_CHANGE * m->coupled || m->coupled > MULTIGRID_CHANGE * all) m->renew = PETSC_TRUE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -388,18 +458,50 @@ static PetscErrorCode AddInterface(Multigrid m, Vec right, Vec left)
 
 /* ---------- the preconditioner ---------- */
 
+/* Iterations of the last solve for each power of ten in the residual, 0: it was too short to tell. The first iteration does not count: it is the
+   interface's, whose stiff forces may be all there is at first. */
+static PetscErrorCode LastEffort(Multigrid m, PetscReal *effort)
+{
+  const PetscReal *residual;
+  PetscInt         n;
+  PetscReal        shown;
+
+  PetscFunctionBeginUser;
+  *effort = 0;
+  PetscCall(KSPGetResidualHistory(m->outer, &residual, &n));
+  if (n < 3 || !(residual[n - 1] > 0)) PetscFunctionReturn(PETSC_SUCCESS);
+  shown = PetscLog10Real(residual[1] / residual[n - 1]);
+  if (shown >= MULTIGRID_SHOWN) *effort = (n - 2) / shown;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Has multigrid become too old for the operators of now? */
+static PetscErrorCode IsAged(Multigrid m, PetscBool *aged)
+{
+  PetscReal effort = 0;
+
+  PetscFunctionBeginUser;
+  *aged = PETSC_FALSE;
+  PetscCall(LastEffort(m, &effort));
+  if (!(m->usual > 0)) m->usual = effort;
+  *aged = (PetscBool)((m->solves > 1 && m->applied > MULTIGRID_MOST) || effort > MULTIGRID_AGE * m->usual);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 static PetscErrorCode SetUp(PC pc)
 {
   Multigrid m;
   Mat       A;
+  PetscBool aged;
 
   PetscFunctionBeginUser;
   PetscCall(PCShellGetContext(pc, &m));
   PetscCall(PCGetOperators(pc, NULL, &A));
-  if (!m->usual) m->usual = m->applied;
-  if (m->renew || m->applied > MULTIGRID_AGE * m->usual) PetscCall(SetUpBodies(m, A));
+  PetscCall(IsAged(m, &aged));
+  if (m->renew || aged) PetscCall(SetUpBodies(m, A));
   PetscCall(SetUpInterface(m, A));
   m->applied = 0;
+  m->solves++;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -432,22 +534,26 @@ static PetscErrorCode CreateDirect(Multigrid m)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* MultigridCreate - makes pc the preconditioner; the caller destroys *out after pc.
+/* MultigridCreate - makes itself the preconditioner of a KSP, which keeps its residuals for it; the caller destroys *out after the KSP.
 
    Collective. mesh: borrowed, its constraints set. axisymmetric: the only rigid-body mode is the one along the axis. symmetric: of the operators.
    Options Database Keys: -bodies_pc_..., -bodies_mg_... of multigrid; -interface_ksp_..., -interface_pc_... of the direct solve. */
-PetscErrorCode MultigridCreate(Mesh mesh, PetscBool axisymmetric, PetscBool symmetric, PC pc, Multigrid *out)
+PetscErrorCode MultigridCreate(Mesh mesh, PetscBool axisymmetric, PetscBool symmetric, KSP ksp, Multigrid *out)
 {
   Multigrid m;
+  PC        pc;
 
   PetscFunctionBeginUser;
   PetscCall(PetscNew(&m));
+  m->outer        = ksp;
   m->mesh         = mesh;
   m->axisymmetric = axisymmetric;
   m->symmetric    = symmetric;
   m->changed = m->renew = PETSC_TRUE;
   PetscCall(NumberNodes(m));
   PetscCall(CreateDirect(m));
+  PetscCall(KSPSetResidualHistory(ksp, NULL, PETSC_DECIDE, PETSC_TRUE));
+  PetscCall(KSPGetPC(ksp, &pc));
   PetscCall(PCSetType(pc, PCSHELL));
   PetscCall(PCShellSetContext(pc, m));
   PetscCall(PCShellSetName(pc, "multigrid for the bodies, direct solve for the contact interface"));
@@ -473,7 +579,6 @@ PetscErrorCode MultigridDestroy(Multigrid *multigrid)
   PetscCall(VecDestroy(&m->rest));
   PetscCall(VecDestroy(&m->number));
   PetscCall(PetscFree(m->row));
-  PetscCall(PetscFree(m->ghost));
   PetscCall(PetscFree(*multigrid));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

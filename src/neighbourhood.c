@@ -12,10 +12,8 @@ struct _n_Neighbourhoods {
   PetscInt          *link_ptr, *link; /* facets across the edges that are not sharp, CSR */
   PetscInt          *seen_facet, *seen_point, stamp;
   PetscInt          *queue;
-  struct Reach {
-    PetscReal rho2;
-    PetscInt  point;
-  } * reach;
+  PetscReal         *rho2; /* of the points found */
+  PetscInt          *reach;
 };
 
 static int SharedEdgeCompare(const void *p, const void *q)
@@ -25,14 +23,6 @@ static int SharedEdgeCompare(const void *p, const void *q)
   if (e->a != f->a) return e->a < f->a ? -1 : 1;
   if (e->b != f->b) return e->b < f->b ? -1 : 1;
   return e->facet < f->facet ? -1 : e->facet > f->facet;
-}
-
-static int ReachCompare(const void *p, const void *q)
-{
-  const struct Reach *a = p, *b = q;
-
-  if (a->rho2 != b->rho2) return a->rho2 < b->rho2 ? -1 : 1;
-  return a->point < b->point ? -1 : a->point > b->point;
 }
 
 static PetscReal Dot(const PetscReal *a, const PetscReal *b)
@@ -102,7 +92,7 @@ PetscErrorCode NeighbourhoodsCreate(const SurfaceView *view, Neighbourhoods *out
   nb->link_ptr[0] = 0;
   PetscCall(PetscFree(edges));
   PetscCall(PetscCalloc2(view->n_facets, &nb->seen_facet, view->n_points, &nb->seen_point));
-  PetscCall(PetscMalloc2(view->n_facets, &nb->queue, view->n_points, &nb->reach));
+  PetscCall(PetscMalloc3(view->n_facets, &nb->queue, view->n_points, &nb->reach, view->n_points, &nb->rho2));
   *out = nb;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -113,7 +103,7 @@ PetscErrorCode NeighbourhoodsDestroy(Neighbourhoods *nb)
   PetscFunctionBeginUser;
   if (!*nb) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscFree2((*nb)->seen_facet, (*nb)->seen_point));
-  PetscCall(PetscFree2((*nb)->queue, (*nb)->reach));
+  PetscCall(PetscFree3((*nb)->queue, (*nb)->reach, (*nb)->rho2));
   PetscCall(PetscFree((*nb)->link_ptr));
   PetscCall(PetscFree((*nb)->link));
   PetscCall(PetscFree(*nb));
@@ -128,6 +118,25 @@ static PetscReal Rho2(const SurfaceView *view, PetscInt p, const PetscReal x0[3]
   for (int i = 0; i < 3; i++)
     for (int j = 0; j < 3; j++) rho2 += r[i] * metric[3 * i + j] * r[j];
   return rho2;
+}
+
+/* Nearest first; of those equally near, by number. */
+static PetscErrorCode SortReach(Neighbourhoods nb, PetscInt n)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscSortRealWithArrayInt(n, nb->rho2, nb->reach));
+  for (PetscInt i = 0, j; i < n; i = j) {
+    for (j = i + 1; j < n && nb->rho2[j] == nb->rho2[i]; j++) {}
+    if (j > i + 1) PetscCall(PetscSortInt(j - i, &nb->reach[i]));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Notes a point. */
+static void ReachAdd(Neighbourhoods nb, PetscInt *count, PetscReal rho2, PetscInt point)
+{
+  nb->rho2[*count]      = rho2;
+  nb->reach[(*count)++] = point;
 }
 
 PetscErrorCode NeighbourhoodGather(Neighbourhoods nb, PetscInt start, const PetscReal x0[3], const PetscReal e3[3], const PetscReal metric[9], PetscReal limit,
@@ -152,13 +161,13 @@ PetscErrorCode NeighbourhoodGather(Neighbourhoods nb, PetscInt start, const Pets
       inside = (PetscBool)(inside || rho2 <= limit);
       if (view->first || nb->seen_point[p] == nb->stamp || rho2 > limit) continue;
       nb->seen_point[p] = nb->stamp;
-      if (view->geometry[p].weight > 0 && Dot(view->geometry[p].normal, e3) >= NEIGHBOURHOOD_COSINE) nb->reach[count++] = (struct Reach){rho2, p};
+      if (view->geometry[p].weight > 0 && Dot(view->geometry[p].normal, e3) >= NEIGHBOURHOOD_COSINE) ReachAdd(nb, &count, rho2, p);
     }
     for (int q = 0; view->first && q < FaceRuleGet(facet->type, 0)->n; q++) {
       const PetscReal rho2 = Rho2(view, view->first[f] + q, x0, metric);
 
       inside = (PetscBool)(inside || rho2 <= limit);
-      if (rho2 <= limit) nb->reach[count++] = (struct Reach){rho2, view->first[f] + q};
+      if (rho2 <= limit) ReachAdd(nb, &count, rho2, view->first[f] + q);
     }
     if (!inside && f != start) continue;
     for (PetscInt k = nb->link_ptr[f]; k < nb->link_ptr[f + 1]; k++) {
@@ -169,9 +178,9 @@ PetscErrorCode NeighbourhoodGather(Neighbourhoods nb, PetscInt start, const Pets
       nb->queue[tail++] = g;
     }
   }
-  if (count) qsort(nb->reach, count, sizeof(*nb->reach), ReachCompare);
+  PetscCall(SortReach(nb, count));
   *found = count;
   *n     = PetscMin(count, max);
-  for (PetscInt i = 0; i < *n; i++) points[i] = nb->reach[i].point;
+  for (PetscInt i = 0; i < *n; i++) points[i] = nb->reach[i];
   PetscFunctionReturn(PETSC_SUCCESS);
 }
