@@ -13,17 +13,20 @@
 
 struct _n_LinearCheck {
   PetscReal    tolerance;
+  KeptFactor   kept;
   PetscBool    lost;
   LinearCounts counts;
 };
 
 static PetscErrorCode SolveBegins(KSP ksp, Vec b, Vec x, void *context)
 {
+  const LinearCheck check = context;
+
   PetscFunctionBeginUser;
   (void)ksp;
   (void)b;
   (void)x;
-  (void)context;
+  if (check->kept) PetscCall(KeptFactorBefore(check->kept));
   TimingBegin(TIMING_SOLVE);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -80,15 +83,18 @@ static PetscErrorCode AskedFor(LinearCheck check, KSP ksp, PetscReal right, Pets
 static PetscErrorCode CheckSolution(LinearCheck check, KSP ksp, Vec b, Vec x)
 {
   PetscReal right, norm, tolerance;
-  PetscInt  steps = 0;
+  PetscBool failed = PETSC_FALSE;
+  PetscInt  steps  = 0;
   Mat       A;
   Vec       r;
 
   PetscFunctionBeginUser;
   PetscCall(KSPGetOperators(ksp, &A, NULL));
-  PetscCall(VecDuplicate(b, &r));
   PetscCall(VecNorm(b, NORM_2, &right));
   PetscCall(AskedFor(check, ksp, right, &tolerance));
+  if (check->kept) PetscCall(KeptFactorSolve(check->kept, A, b, x, &tolerance, &failed));
+  if (failed) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(VecDuplicate(b, &r));
   PetscCall(TrueResidual(A, b, x, r, &norm));
   if (norm > LINEAR_SLACK * tolerance * right) PetscCall(Refine(ksp, A, b, x, r, LINEAR_SLACK * tolerance * right, &norm, &steps));
   PetscCall(VecDestroy(&r));
@@ -121,12 +127,13 @@ static PetscErrorCode SolveEnds(KSP ksp, Vec b, Vec x, void *context)
    LINEAR_SLACK is refined. Destroy the check after the KSP.
 
    Source: Higham, Accuracy and Stability of Numerical Algorithms, chapter 12 (refinement in fixed precision). */
-PetscErrorCode LinearCheckCreate(KSP ksp, PetscReal tolerance, LinearCheck *check)
+PetscErrorCode LinearCheckCreate(KSP ksp, PetscReal tolerance, KeptFactor kept, LinearCheck *check)
 {
   PetscFunctionBeginUser;
   PetscCall(PetscNew(check));
   (*check)->tolerance = tolerance;
-  PetscCall(KSPSetPreSolve(ksp, SolveBegins, NULL));
+  (*check)->kept      = kept;
+  PetscCall(KSPSetPreSolve(ksp, SolveBegins, *check));
   PetscCall(KSPSetPostSolve(ksp, SolveEnds, *check));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -149,4 +156,5 @@ PetscBool LinearCheckLost(LinearCheck check)
 void LinearCheckGetCounts(LinearCheck check, LinearCounts *counts)
 {
   *counts = check->counts;
+  if (check->kept) KeptFactorGetCounts(check->kept, &counts->kept);
 }

@@ -1,5 +1,6 @@
 #include "linearsolver.h"
 #include "directsolver.h"
+#include "keptfactor.h"
 #include "multigrid.h"
 
 /* solver.type auto: iterative above this many unknowns in space. Two thick rings of first-order bricks: equal CPU time at 16,000, at 120,000 a fifth of it
@@ -14,8 +15,10 @@
 #define LINEAR_RESTART    100
 
 struct _n_LinearSolver {
-  KSP       ksp;
-  Multigrid multigrid; /* NULL: direct */
+  KSP        ksp;
+  Multigrid  multigrid; /* NULL: direct */
+  KeptFactor kept;      /* NULL: iterative */
+  PetscBool  ordered;
 };
 
 /* GMRES, as a tangent may be indefinite far from equilibrium; preconditioned from the right, so that its residual is the true one. */
@@ -46,9 +49,10 @@ PetscErrorCode LinearSolverCreate(KSP ksp, Mesh mesh, Scene scene, PetscBool sym
   PetscCall(PetscNew(solver));
   (*solver)->ksp = ksp;
   if (type == SOLVER_AUTO) type = mesh->dim == 3 && mesh->dim * mesh->n_global > LINEAR_DIRECT_DOFS ? SOLVER_ITERATIVE : SOLVER_DIRECT;
-  if (type == SOLVER_DIRECT)
+  if (type == SOLVER_DIRECT) {
     PetscCall(DirectSolverSet(ksp, symmetric));
-  else
+    PetscCall(KeptFactorCreate(ksp, &(*solver)->kept));
+  } else
     PetscCall(SetIterative(*solver, mesh, axisymmetric, symmetric));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -59,15 +63,32 @@ PetscErrorCode LinearSolverDestroy(LinearSolver *solver)
   PetscFunctionBeginUser;
   if (!*solver) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(MultigridDestroy(&(*solver)->multigrid));
+  PetscCall(KeptFactorDestroy(&(*solver)->kept));
   PetscCall(PetscFree(*solver));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* LinearSolverSetContact - the contact part C of the next operator K + C; changed: the operator has a new pattern. Collective. */
-PetscErrorCode LinearSolverSetContact(LinearSolver solver, Mat C, PetscBool changed)
+/* LinearSolverOrder - a direct solver's ordering for operators that are much like K. Collective; at the first call, the others do nothing. */
+PetscErrorCode LinearSolverOrder(LinearSolver solver, Mat K)
+{
+  PetscBool mumps = PETSC_FALSE, cholesky;
+
+  PetscFunctionBeginUser;
+  if (solver->kept && !solver->ordered) PetscCall(DirectSolverFind(solver->ksp, &mumps, &cholesky));
+  if (mumps) PetscCall(DirectSolverOrder(K, cholesky));
+  solver->ordered = PETSC_TRUE;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* LinearSolverNext - what is known of the next operator K + C before it is solved with.
+
+   Collective. C: its contact part, NULL: none; pattern: the operator has a new one; changes: see KeptFactorNext(). */
+PetscErrorCode LinearSolverNext(LinearSolver solver, Mat C, PetscBool pattern, PetscInt changes)
 {
   PetscFunctionBeginUser;
-  if (solver->multigrid) PetscCall(MultigridSetContact(solver->multigrid, C, changed));
+  if (solver->kept) PetscCall(KeptFactorNext(solver->kept, changes, pattern));
+  if (solver->multigrid && pattern) PetscCall(KSPReset(solver->ksp));
+  if (solver->multigrid && C) PetscCall(MultigridSetContact(solver->multigrid, C, pattern));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -76,6 +97,7 @@ PetscErrorCode LinearSolverRenew(LinearSolver solver)
 {
   PetscFunctionBeginUser;
   if (solver->multigrid) PetscCall(MultigridRenew(solver->multigrid));
+  if (solver->kept) PetscCall(KeptFactorRenew(solver->kept));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -84,5 +106,12 @@ PetscErrorCode LinearSolverSetEnough(LinearSolver solver, PetscReal residual)
 {
   PetscFunctionBeginUser;
   if (solver->multigrid) PetscCall(KSPSetTolerances(solver->ksp, PETSC_DEFAULT, LINEAR_SHARE * residual, PETSC_DEFAULT, PETSC_DEFAULT));
+  if (solver->kept) PetscCall(KeptFactorSetEnough(solver->kept, residual));
   PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* LinearSolverKept - the factor that may serve more than one operator; NULL: iterative. Not collective; borrowed. */
+KeptFactor LinearSolverKept(LinearSolver solver)
+{
+  return solver->kept;
 }
