@@ -1,5 +1,4 @@
 /* burnish: scene -> mesh -> model -> load stepper -> results. */
-#include <malloc.h>
 #include <signal.h>
 #include <petsctime.h>
 #include "checkpoint.h"
@@ -173,21 +172,12 @@ static PetscErrorCode RunScene(const CommandLine *command, int *status)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Each factorisation takes tens of megabytes and more, and gives them back. The C library would return them to the system, which clears every page before it
-   gives it out again: 4 % of the CPU time of pipe_pinch. */
-static void KeepMemory(void)
-{
-  mallopt(M_MMAP_MAX, 0);
-  mallopt(M_TRIM_THRESHOLD, -1);
-}
-
 int main(int argc, char **argv)
 {
   CommandLine command;
   PetscMPIInt rank;
   int         status = EXIT_DONE;
 
-  KeepMemory();
   CommandLineParse(argc, argv, &command);
   if (command.mode == COMMAND_RUN) InterruptionInstall(command.time_limit);
   if (PetscInitialize(&command.argc, &command.argv, NULL, NULL)) return EXIT_MACHINE;
