@@ -102,6 +102,8 @@ PetscErrorCode ContactPredict(Contact, PetscBool predicting, PetscBool touching)
 PetscErrorCode ContactResidual(Contact, const PetscReal *u, PetscReal t, PetscReal *f, PetscReal *energy, PetscReal *force2);
 /* The contact matrix C over the global free dofs at (u, t), owned by the contact; *changed: its pattern is new. Collective. */
 PetscErrorCode ContactTangent(Contact, const PetscReal *u, PetscReal t, Mat *C, PetscBool *changed);
+/* Terms that came, went or changed their stiffness from the tangent before to the last one. Collective. */
+PetscErrorCode ContactTangentChanges(Contact, PetscInt *terms);
 /* y += C x with the last tangent, all dofs; rigid tools contribute their motion from t to t_next. x, y local, y complete at owned nodes. Collective. */
 PetscErrorCode ContactMultiply(Contact, const PetscReal *x, PetscReal t, PetscReal t_next, PetscReal *y);
 PetscErrorCode ContactAccept(Contact); /* the present state is the one that ContactRestore() returns to. Not collective */

@@ -72,6 +72,8 @@ typedef struct {
   PetscReal   *factor;
   int         *seed;
   PetscReal   *point_gap, *point_normal, *point_force;
+  PetscReal   *stiffness;               /* of the terms in the last tangent */
+  PetscInt     changes;                 /* terms of this rank whose stiffness was another one in the tangent before */
   PetscReal   *force, *normal;          /* of the last residual: normal nodal force, contact normal (n*3) */
   PetscReal    total[3];                /* and the force on this rank's terms */
   PetscReal    t;                       /* of the last residual */

@@ -1,5 +1,6 @@
 /* How the tangent systems are solved, behind SNES's KSP: directly (MUMPS), or by GMRES with a preconditioner of its own (multigrid.h). */
 #pragma once
+#include "keptfactor.h"
 #include "mesh.h"
 
 typedef struct _n_LinearSolver *LinearSolver;
@@ -8,9 +9,14 @@ typedef struct _n_LinearSolver *LinearSolver;
 PetscErrorCode LinearSolverCreate(KSP, Mesh, Scene, PetscBool symmetric, LinearSolver *);
 /* After the KSP is destroyed. Collective. */
 PetscErrorCode LinearSolverDestroy(LinearSolver *);
-/* The contact part of the next operator; changed: that has a new pattern. Collective. */
-PetscErrorCode LinearSolverSetContact(LinearSolver, Mat C, PetscBool changed);
+/* With the first operator's elastic part, before it is solved with, where many are to come. Collective. */
+PetscErrorCode LinearSolverOrder(LinearSolver, Mat K);
+/* Before each solve with a new operator. C: its contact part, NULL: none; pattern: it has a new one; changes: contact terms that came, went or changed their
+   stiffness since the operator before. Collective. */
+PetscErrorCode LinearSolverNext(LinearSolver, Mat C, PetscBool pattern, PetscInt changes);
 /* What follows must not depend on what was solved before. Not collective. */
 PetscErrorCode LinearSolverRenew(LinearSolver);
 /* The residual (2-norm) with which the nonlinear solver will be content: much smaller ones are not worth iterations. Logically collective. */
 PetscErrorCode LinearSolverSetEnough(LinearSolver, PetscReal residual);
+/* The factor that may serve more than one operator, for those who watch the solves; NULL: there is none. Not collective. */
+KeptFactor LinearSolverKept(LinearSolver);

@@ -1,4 +1,5 @@
 #include "estimate.h"
+#include "directsolver.h"
 #include <sys/resource.h>
 #include <time.h>
 
@@ -65,25 +66,6 @@ static PetscErrorCode MeasureAssembly(Model model, PetscReal *seconds)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Is the linear solver MUMPS, and by which factorisation? */
-static PetscErrorCode FindFactor(Model model, PetscBool *mumps, PetscBool *cholesky)
-{
-  KSP           ksp;
-  PC            pc;
-  PetscBool     lu;
-  MatSolverType type = NULL;
-
-  PetscFunctionBeginUser;
-  PetscCall(SNESGetKSP(model->snes, &ksp));
-  PetscCall(KSPGetPC(ksp, &pc));
-  PetscCall(PetscObjectTypeCompare((PetscObject)pc, PCCHOLESKY, cholesky));
-  PetscCall(PetscObjectTypeCompare((PetscObject)pc, PCLU, &lu));
-  *mumps = PETSC_FALSE;
-  if (*cholesky || lu) PetscCall(PCFactorGetMatSolverType(pc, &type));
-  if (type) PetscCall(PetscStrcmp(type, MATSOLVERMUMPS, mumps));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* MUMPS's analysis of the tangent: INFOG(16), INFOG(17) memory of the largest and of all ranks in MB, INFOG(20) entries of the factor (negative: in
    millions), RINFOG(1) operations of the elimination */
 static PetscErrorCode AnalyseFactor(Model model, PetscBool cholesky, Estimate *estimate)
@@ -141,6 +123,7 @@ PetscErrorCode EstimateModel(Model model, Estimate *estimate)
   PetscMPIInt    size;
   PetscBool      cholesky;
   MatInfo        info;
+  KSP            ksp;
 
   PetscFunctionBeginUser;
   *estimate = (Estimate){.known = PETSC_FALSE};
@@ -150,7 +133,8 @@ PetscErrorCode EstimateModel(Model model, Estimate *estimate)
   PetscCall(MeasureAssembly(model, &estimate->assembly_s));
   PetscCall(MatGetInfo(model->A, MAT_GLOBAL_SUM, &info));
   estimate->nonzeros = info.nz_used;
-  PetscCall(FindFactor(model, &estimate->known, &cholesky));
+  PetscCall(SNESGetKSP(model->snes, &ksp));
+  PetscCall(DirectSolverFind(ksp, &estimate->known, &cholesky));
   if (!estimate->known) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(AnalyseFactor(model, cholesky, estimate));
   PetscCall(MeasureProduct(comm, &rate));

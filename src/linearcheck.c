@@ -13,17 +13,20 @@
 
 struct _n_LinearCheck {
   PetscReal    tolerance;
+  KeptFactor   kept;
   PetscBool    lost;
   LinearCounts counts;
 };
 
 static PetscErrorCode SolveBegins(KSP ksp, Vec b, Vec x, void *context)
 {
+  const LinearCheck check = context;
+
   PetscFunctionBeginUser;
   (void)ksp;
   (void)b;
   (void)x;
-  (void)context;
+  if (check->kept) PetscCall(KeptFactorBefore(check->kept));
   TimingBegin(TIMING_SOLVE);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -79,16 +82,20 @@ static PetscErrorCode AskedFor(LinearCheck check, KSP ksp, PetscReal right, Pets
 
 static PetscErrorCode CheckSolution(LinearCheck check, KSP ksp, Vec b, Vec x)
 {
-  PetscReal right, norm, tolerance;
-  PetscInt  steps = 0;
+  PetscReal right, norm, tolerance, own;
+  PetscBool failed = PETSC_FALSE;
+  PetscInt  steps  = 0;
   Mat       A;
   Vec       r;
 
   PetscFunctionBeginUser;
   PetscCall(KSPGetOperators(ksp, &A, NULL));
-  PetscCall(VecDuplicate(b, &r));
   PetscCall(VecNorm(b, NORM_2, &right));
   PetscCall(AskedFor(check, ksp, right, &tolerance));
+  own = tolerance;
+  if (check->kept) PetscCall(KeptFactorSolve(check->kept, A, b, x, &tolerance, &failed));
+  if (failed) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(VecDuplicate(b, &r));
   PetscCall(TrueResidual(A, b, x, r, &norm));
   if (norm > LINEAR_SLACK * tolerance * right) PetscCall(Refine(ksp, A, b, x, r, LINEAR_SLACK * tolerance * right, &norm, &steps));
   PetscCall(VecDestroy(&r));
@@ -97,7 +104,7 @@ static PetscErrorCode CheckSolution(LinearCheck check, KSP ksp, Vec b, Vec x)
   check->counts.steps += steps;
   if (check->lost || right == 0) PetscFunctionReturn(PETSC_SUCCESS);
   check->counts.inaccurate += norm > LINEAR_SLACK * tolerance * right;
-  check->counts.worst = PetscMax(check->counts.worst, norm / right);
+  if (tolerance == own) check->counts.worst = PetscMax(check->counts.worst, norm / right); /* not of solves that ended where it is enough for Newton's method */
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -121,12 +128,13 @@ static PetscErrorCode SolveEnds(KSP ksp, Vec b, Vec x, void *context)
    LINEAR_SLACK is refined. Destroy the check after the KSP.
 
    Source: Higham, Accuracy and Stability of Numerical Algorithms, chapter 12 (refinement in fixed precision). */
-PetscErrorCode LinearCheckCreate(KSP ksp, PetscReal tolerance, LinearCheck *check)
+PetscErrorCode LinearCheckCreate(KSP ksp, PetscReal tolerance, KeptFactor kept, LinearCheck *check)
 {
   PetscFunctionBeginUser;
   PetscCall(PetscNew(check));
   (*check)->tolerance = tolerance;
-  PetscCall(KSPSetPreSolve(ksp, SolveBegins, NULL));
+  (*check)->kept      = kept;
+  PetscCall(KSPSetPreSolve(ksp, SolveBegins, *check));
   PetscCall(KSPSetPostSolve(ksp, SolveEnds, *check));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -149,4 +157,5 @@ PetscBool LinearCheckLost(LinearCheck check)
 void LinearCheckGetCounts(LinearCheck check, LinearCounts *counts)
 {
   *counts = check->counts;
+  if (check->kept) KeptFactorGetCounts(check->kept, &counts->kept);
 }

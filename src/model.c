@@ -165,6 +165,7 @@ PetscErrorCode ModelRestore(Model model)
   PetscFunctionBeginUser;
   PetscCall(PetscArraycpy(model->u, work->accepted_u, model->mesh->n_nodes * model->mesh->dim));
   PetscCall(VecCopy(work->accepted_x, model->x));
+  PetscCall(LinearSolverRenew(work->solver)); /* a forecast may stand ready, and its solve is not repeated */
   model->t = work->accepted_t;
   if (model->contact) {
     PetscCall(ContactRestore(model->contact));

@@ -115,18 +115,15 @@ static PetscErrorCode ModelObjective(SNES snes, Vec x, PetscReal *objective, voi
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* A = K + C. A new contact pattern makes a new matrix under the old handle, and the solver forgets its symbolic factorisation. */
+/* A = K + C. A new contact pattern makes a new matrix under the old handle. */
 static PetscErrorCode ModelAddContact(Model model, Mat K, Mat C, PetscBool changed)
 {
-  KSP ksp;
   Mat B;
 
   PetscFunctionBeginUser;
   if (changed) {
     PetscCall(MatrixSumCreate(K, C, &B));
     PetscCall(MatHeaderReplace(model->A, &B));
-    PetscCall(SNESGetKSP(model->snes, &ksp));
-    PetscCall(KSPReset(ksp));
   } else
     PetscCall(MatrixSumUpdate(K, C, model->A));
   PetscCall(MatSetOption(model->A, MAT_SYMMETRIC, LoadsConservative(model->loads)));
@@ -136,8 +133,9 @@ static PetscErrorCode ModelAddContact(Model model, Mat K, Mat C, PetscBool chang
 /* The tangent at (u, t) into model->A. */
 PetscErrorCode ModelTangent(Model model, const PetscReal *u, PetscReal t)
 {
-  Mat       K, C;
-  PetscBool changed;
+  Mat       K, C = NULL;
+  PetscBool changed = PETSC_FALSE;
+  PetscInt  terms   = 0;
 
   PetscFunctionBeginUser;
   TimingBegin(TIMING_ASSEMBLY_ELASTIC);
@@ -147,14 +145,16 @@ PetscErrorCode ModelTangent(Model model, const PetscReal *u, PetscReal t)
   PetscCall(MatGetDiagonal(K, model->work->residual));
   PetscCall(VecNorm(model->work->residual, NORM_2, &model->work->stiffness));
   TimingEnd(TIMING_ASSEMBLY_ELASTIC);
+  if (!ModelIsLinear(model)) PetscCall(LinearSolverOrder(model->work->solver, K)); /* a single solve is done sooner with any */
   if (model->contact) {
     TimingBegin(TIMING_ASSEMBLY_CONTACT);
     PetscCall(ContactTangent(model->contact, u, t, &C, &changed));
     PetscCall(ModelAddContact(model, K, C, changed));
-    PetscCall(LinearSolverSetContact(model->work->solver, C, changed));
+    PetscCall(ContactTangentChanges(model->contact, &terms));
     PetscCall(StabiliserTangent(model->work->stabiliser, model->A));
     TimingEnd(TIMING_ASSEMBLY_CONTACT);
   }
+  PetscCall(LinearSolverNext(model->work->solver, C, changed, terms));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -325,7 +325,7 @@ PetscErrorCode ModelCreateSNES(Model model)
   PetscCall(SNESLineSearchSetType(search, SNESLINESEARCHBT));
   PetscCall(SNESGetKSP(model->snes, &ksp));
   PetscCall(LinearSolverCreate(ksp, model->mesh, model->scene, symmetric, &model->work->solver));
-  PetscCall(LinearCheckCreate(ksp, model->scene->solver.tolerance, &model->linear));
+  PetscCall(LinearCheckCreate(ksp, model->scene->solver.tolerance, LinearSolverKept(model->work->solver), &model->linear));
   PetscCall(ModelSetFromOptions(model));
   PetscCall(SNESLineSearchGetDamping(search, &model->work->damping));
   PetscFunctionReturn(PETSC_SUCCESS);

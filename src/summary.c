@@ -120,6 +120,10 @@ static void AddLinear(cJSON *json, const LinearCounts *counts)
   cJSON_AddNumberToObject(map, "refinement_steps", (double)counts->steps);
   cJSON_AddNumberToObject(map, "inaccurate", (double)counts->inaccurate);
   AddReal(map, "largest_residual", counts->worst);
+  if (!counts->kept.made) return;
+  cJSON_AddNumberToObject(map, "factors", (double)counts->kept.made);
+  cJSON_AddNumberToObject(map, "older_factors", (double)counts->kept.served);
+  cJSON_AddNumberToObject(map, "older_factor_iterations", (double)counts->kept.iterations);
 }
 
 /* The last accepted state */

@@ -44,7 +44,7 @@ static PetscErrorCode Solve(PetscReal wrong, LinearCounts *counts, PetscBool *lo
   PetscCall(KSPGetPC(ksp, &pc));
   PetscCall(PCSetType(pc, PCJACOBI));
   PetscCall(KSPSetOperators(ksp, A, P));
-  PetscCall(LinearCheckCreate(ksp, 1e-8, &check));
+  PetscCall(LinearCheckCreate(ksp, 1e-8, NULL, &check));
   PetscCall(KSPSolve(ksp, b, x));
   LinearCheckGetCounts(check, counts);
   *lost = LinearCheckLost(check);

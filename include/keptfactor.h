@@ -1,0 +1,28 @@
+/* A factor that serves more than one tangent: where little has changed since it was made, a few iterations of GMRES with it cost less than a new one, and give
+   the same solution. Only of what was solved since the last KeptFactorRenew(), so that a step repeats itself to the last bit. */
+#pragma once
+#include "petsccompat.h"
+
+typedef struct _n_KeptFactor *KeptFactor;
+
+typedef struct {
+  PetscInt made;               /* factors */
+  PetscInt served, iterations; /* solves with the factor of an older tangent, iterations of these */
+} KeptCounts;
+
+/* For a KSP that factors (preonly); one that options have made another is left alone. Collective. */
+PetscErrorCode KeptFactorCreate(KSP, KeptFactor *);
+PetscErrorCode KeptFactorDestroy(KeptFactor *);
+/* The next tangent is factored, whatever has changed. Not collective. */
+PetscErrorCode KeptFactorRenew(KeptFactor);
+/* Before each solve with a new operator. changes: contact terms that came, went or changed their stiffness since the operator before; pattern: it has a new
+   one. Collective. */
+PetscErrorCode KeptFactorNext(KeptFactor, PetscInt changes, PetscBool pattern);
+/* The residual (2-norm) with which the nonlinear solver will be content. Logically collective. */
+PetscErrorCode KeptFactorSetEnough(KeptFactor, PetscReal residual);
+/* Before the KSP sets up for a solve. Logically collective. */
+PetscErrorCode KeptFactorBefore(KeptFactor);
+/* After the KSP's own solve of A x = b: goes on from x where the factor is an older one. *tolerance: relative residual that was asked for, left alone where
+   the factor is A's; *failed: a factor had to be made and could not. Collective. */
+PetscErrorCode KeptFactorSolve(KeptFactor, Mat A, Vec b, Vec x, PetscReal *tolerance, PetscBool *failed);
+void           KeptFactorGetCounts(KeptFactor, KeptCounts *);

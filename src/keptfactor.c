@@ -1,0 +1,184 @@
+#include "keptfactor.h"
+
+/* A factor is kept while at most so many contact terms have come, gone or changed their stiffness since it was made. Each is a change of rank one, which GMRES
+   takes about one iteration for; up to three, 2 to 7 iterations do on pipe_pinch (facets and fits alike), from four on 9 to 60. */
+#define KEPT_CHANGES 3
+/* A new factor costs as much as 8 (plane problems of some thousand unknowns) to 20 (blocks of 100,000) solves with one: more iterations than these are given
+ * up. */
+#define KEPT_ITERATIONS 8
+/* The residual asked for: this part of the right-hand side, which Newton's method does not notice as it contracts less in an iteration that is not the last,
+ * ... */
+#define KEPT_TOLERANCE 1e-5
+/* ... but not below this part of what ends Newton's method. */
+#define KEPT_SHARE 0.1
+
+struct _n_KeptFactor {
+  KSP        ksp, gmres;
+  PetscBool  exists;  /* a factor of this step */
+  PetscBool  serves;  /* it is of an older operator than the present one */
+  PetscBool  stale;   /* and that one had another pattern */
+  PetscInt   changes; /* of contact terms since it was made */
+  PetscReal  enough, target;
+  KeptCounts counts;
+};
+
+/* Ends GMRES; its own test would take the first residual for the right-hand side. */
+static PetscErrorCode Converged(KSP gmres, PetscInt it, PetscReal norm, KSPConvergedReason *reason, void *context)
+{
+  const KeptFactor kept = context;
+
+  PetscFunctionBeginUser;
+  (void)gmres;
+  *reason = KSP_CONVERGED_ITERATING;
+  if (PetscIsInfOrNanReal(norm))
+    *reason = KSP_DIVERGED_NANORINF;
+  else if (norm <= kept->target)
+    *reason = KSP_CONVERGED_RTOL;
+  else if (it >= KEPT_ITERATIONS)
+    *reason = KSP_DIVERGED_ITS;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* KeptFactorCreate - Collective. The KSP is borrowed; destroy what is kept after it. */
+PetscErrorCode KeptFactorCreate(KSP ksp, KeptFactor *out)
+{
+  KeptFactor kept;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscNew(&kept));
+  kept->ksp = ksp;
+  PetscCall(KSPCreate(PetscObjectComm((PetscObject)ksp), &kept->gmres));
+  PetscCall(KSPSetType(kept->gmres, KSPFGMRES)); /* keeps what the factor has made of its directions: one solve less than GMRES */
+  PetscCall(KSPGMRESSetRestart(kept->gmres, KEPT_ITERATIONS));
+  PetscCall(KSPSetTolerances(kept->gmres, PETSC_DEFAULT, PETSC_DEFAULT, PETSC_DEFAULT, KEPT_ITERATIONS));
+  PetscCall(KSPSetConvergenceTest(kept->gmres, Converged, kept, NULL));
+  PetscCall(KSPSetInitialGuessNonzero(kept->gmres, PETSC_TRUE));
+  *out = kept;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* KeptFactorDestroy - Collective. */
+PetscErrorCode KeptFactorDestroy(KeptFactor *kept)
+{
+  PetscFunctionBeginUser;
+  if (!*kept) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(KSPDestroy(&(*kept)->gmres));
+  PetscCall(PetscFree(*kept));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* KeptFactorRenew - Not collective. */
+PetscErrorCode KeptFactorRenew(KeptFactor kept)
+{
+  PetscFunctionBeginUser;
+  kept->exists = PETSC_FALSE;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* KeptFactorSetEnough - Logically collective. */
+PetscErrorCode KeptFactorSetEnough(KeptFactor kept, PetscReal residual)
+{
+  PetscFunctionBeginUser;
+  kept->enough = residual;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Does the KSP still factor and solve once, whatever options have said? */
+static PetscErrorCode IsDirect(KSP ksp, PetscBool *direct)
+{
+  PC pc;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscObjectTypeCompare((PetscObject)ksp, KSPPREONLY, direct));
+  if (!*direct) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(KSPGetPC(ksp, &pc));
+  PetscCall(PetscObjectTypeCompareAny((PetscObject)pc, direct, PCCHOLESKY, PCLU, ""));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The factor is, or will be, the present operator's. */
+static void Begin(KeptFactor kept)
+{
+  kept->exists  = PETSC_TRUE;
+  kept->serves  = PETSC_FALSE;
+  kept->stale   = PETSC_FALSE;
+  kept->changes = 0;
+  kept->counts.made++;
+}
+
+/* KeptFactorNext - decides whether the factor at hand serves the next operator.
+
+   Collective. changes: the same on all ranks, since the operator before. A pattern that is new makes the solver forget its symbolic factorisation, once there
+   is a new factor to be made. */
+PetscErrorCode KeptFactorNext(KeptFactor kept, PetscInt changes, PetscBool pattern)
+{
+  PetscBool direct;
+
+  PetscFunctionBeginUser;
+  PetscCall(IsDirect(kept->ksp, &direct));
+  kept->changes += changes;
+  kept->stale  = (PetscBool)(kept->stale || pattern);
+  kept->serves = (PetscBool)(direct && kept->exists && kept->changes <= KEPT_CHANGES);
+  if (!kept->serves && kept->stale) PetscCall(KSPReset(kept->ksp));
+  if (!kept->serves) Begin(kept);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* KeptFactorBefore - Logically collective. */
+PetscErrorCode KeptFactorBefore(KeptFactor kept)
+{
+  PetscFunctionBeginUser;
+  PetscCall(KSPSetReusePreconditioner(kept->ksp, kept->serves)); /* not sooner: SNES says so too after each tangent */
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* A new factor after all, and the solution by it. */
+static PetscErrorCode SolveAnew(KeptFactor kept, PC pc, Mat A, Vec b, Vec x, PetscBool *failed)
+{
+  PCFailedReason reason;
+
+  PetscFunctionBeginUser;
+  if (kept->stale) PetscCall(PCReset(pc));
+  PetscCall(PCSetOperators(pc, A, A));
+  PetscCall(PCSetReusePreconditioner(pc, PETSC_FALSE));
+  PetscCall(PCSetUp(pc));
+  Begin(kept);
+  PetscCall(PCGetFailedReason(pc, &reason));
+  *failed = reason ? PETSC_TRUE : PETSC_FALSE;
+  if (!reason) PetscCall(PCApply(pc, b, x));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* KeptFactorSolve - Collective. x: what the factor at hand makes of b. */
+PetscErrorCode KeptFactorSolve(KeptFactor kept, Mat A, Vec b, Vec x, PetscReal *tolerance, PetscBool *failed)
+{
+  KSPConvergedReason reason;
+  PetscInt           iterations;
+  PetscReal          right;
+  PC                 pc;
+
+  PetscFunctionBeginUser;
+  *failed = PETSC_FALSE;
+  PetscCall(VecNorm(b, NORM_2, &right));
+  if (!kept->serves || right == 0) PetscFunctionReturn(PETSC_SUCCESS);
+  kept->target = PetscMax(KEPT_TOLERANCE * right, KEPT_SHARE * kept->enough);
+  PetscCall(KSPGetPC(kept->ksp, &pc));
+  PetscCall(KSPSetPC(kept->gmres, pc));
+  PetscCall(KSPSetOperators(kept->gmres, A, A));
+  PetscCall(KSPSolve(kept->gmres, b, x));
+  PetscCall(KSPGetConvergedReason(kept->gmres, &reason));
+  PetscCall(KSPGetIterationNumber(kept->gmres, &iterations));
+  kept->counts.served++;
+  kept->counts.iterations += iterations;
+  if (reason > 0)
+    *tolerance = kept->target / right;
+  else
+    PetscCall(SolveAnew(kept, pc, A, b, x, failed));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* KeptFactorGetCounts - what was done so far. Not collective, the same on all ranks. */
+void KeptFactorGetCounts(KeptFactor kept, KeptCounts *counts)
+{
+  *counts = kept->counts;
+}
