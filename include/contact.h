@@ -95,6 +95,10 @@ PetscErrorCode ContactRoundOff(Contact, PetscReal *force);
 PetscErrorCode ContactLocateLost(Contact, PetscBool *lost, char *text, size_t size);
 /* A linear step from the accepted state begins or ends: what is closed there stays so, and what touches if that is asked for. Not collective. */
 PetscErrorCode ContactPredict(Contact, PetscBool predicting, PetscBool touching);
+/* Penalties count for no more than that many automatic ones; PETSC_MAX_REAL: as they are. The largest there is, so measured. */
+PetscErrorCode ContactSoften(Contact, PetscReal most);
+PetscErrorCode ContactStiffest(Contact, PetscReal *most);
+PetscErrorCode ContactUnforeseen(Contact, const PetscReal *u, PetscReal t, PetscReal *energy); /* of terms that the last prediction took for open */
 /* Adds the contact forces to f (n_nodes*dim local, complete at owned nodes), this rank's energy and sum of squares of the terms' forces; each may
    be NULL. With f it also becomes the present state (gap, status, forces). Collective. */
 PetscErrorCode ContactResidual(Contact, const PetscReal *u, PetscReal t, PetscReal *f, PetscReal *energy, PetscReal *force2);

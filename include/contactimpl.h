@@ -62,6 +62,8 @@ typedef struct {
   PetscReal          *term_weight;           /* their areas in it: sum is the term's area */
   PetscReal           automatic;             /* penalty: force per length and area */
   PetscBool           predicting, touching;  /* what was accepted as closed stays so; what touches is closed */
+  PetscBool          *foreseen;              /* the last prediction counted on the term */
+  PetscReal           most;                  /* that a penalty counts for (force per length and area) */
   ContactState        now, accepted;
   PetscReal          *before;                   /* gaps of the iterate before, where the penalty is adjusted */
   ContactLists        lists, next;              /* next: fresh ones, NULL: none */

@@ -105,14 +105,14 @@ static void TermPredict(const ContactPair *pair, PetscInt c, PetscReal opening, 
   const PetscBool closed = (PetscBool)(pair->accepted.status[c] == CONTACT_CLOSED), means = (PetscBool)(pair->slave_offsets && pair->fit.degree);
 
   if (!closed && !(pair->touching && opening <= (means ? ContactMeanOpening(pair, c) : ContactTouchTolerance(pair, c)))) return;
-  value->stiffness = pair->now.penalty[c];
+  value->stiffness = PetscMin(pair->most, pair->now.penalty[c]);
   if (closed || pair->slave_offsets) value->pressure = -value->stiffness * opening;
 }
 
 /* Law, gap (may be NULL) and area of a term in the state of the last projection. */
 static void TermLaw(const ContactPair *pair, PetscInt c, PetscReal t, LawValue *value, PetscReal *gap, PetscReal *area)
 {
-  const LawState  state = {pair->now.penalty[c], ContactTermOffset(pair, c, t), pair->now.multiplier[c]};
+  const LawState  state = {PetscMin(pair->most, pair->now.penalty[c]), ContactTermOffset(pair, c, t), pair->now.multiplier[c]};
   const PetscReal found = ContactTermGap(pair, pair->factor, pair->point_gap, c, area);
 
   *value = (LawValue){0, 0, 0};
@@ -207,6 +207,7 @@ static PetscErrorCode PairResidual(Contact contact, ContactPair *pair, const Pet
     if (!f) continue;
     pair->now.gap[c]    = gap;
     pair->now.status[c] = value.stiffness > 0 ? CONTACT_CLOSED : CONTACT_OPEN;
+    if (pair->predicting) pair->foreseen[c] = (PetscBool)(value.stiffness > 0);
     TermPress(pair, c, value.pressure);
     TermNormal(pair, c);
   }
@@ -249,6 +250,27 @@ PetscErrorCode ContactResidual(Contact contact, const PetscReal *u, PetscReal t,
   PetscCall(PetscLogEventBegin(contact->event_residual, 0, 0, 0, 0));
   for (int p = 0; p < contact->n_pairs; p++) PetscCall(PairResidual(contact, &contact->pairs[p], u, t, f, energy, force2));
   PetscCall(PetscLogEventEnd(contact->event_residual, 0, 0, 0, 0));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* ContactUnforeseen - energy of the terms in contact at (u, t) that the last prediction took for open, of this rank, added to.
+
+   Collective. u[n_nodes*dim]: local displacements (length). */
+PetscErrorCode ContactUnforeseen(Contact contact, const PetscReal *u, PetscReal t, PetscReal *energy)
+{
+  PetscFunctionBeginUser;
+  for (int p = 0; p < contact->n_pairs; p++) {
+    ContactPair *pair = &contact->pairs[p];
+
+    PetscCall(PairProject(contact, pair, u, t));
+    for (PetscInt c = 0; c < pair->n; c++) {
+      LawValue  value;
+      PetscReal area;
+
+      TermLaw(pair, c, t, &value, NULL, &area);
+      if (!pair->foreseen[c]) *energy += area * value.psi;
+    }
+  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

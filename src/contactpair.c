@@ -180,11 +180,13 @@ PetscErrorCode ContactPairCreate(Mesh mesh, Scene scene, Elasticity elasticity, 
   if (pair->master && pair->fit.degree && pair->fit.global_frame) PetscCall(PairCheckGlobalFrame(mesh, scene, loads, pair));
   PetscCall(PairCreatePoints(mesh, scene, loads, pair));
   pair->automatic = PenaltyAutomatic(pair->slave->stiffness, pair->master ? pair->master->stiffness : 0);
+  pair->most      = PETSC_MAX_REAL;
   penalty         = contact->penalty_scale * (contact->penalty_auto ? pair->automatic : contact->penalty);
   PetscCall(ContactStateCreate(pair->n, penalty, &pair->now));
   PetscCall(ContactStateCreate(pair->n, penalty, &pair->accepted));
   PetscCall(SearchCreate(mesh, scene, loads, pair->master, pair->slave->max_size, pair->n_images, pair->images, &pair->fit, pair->slaves,
                          pair->master_offsets ? OffsetsGet(pair->master_offsets) : NULL, &pair->search));
+  PetscCall(PetscCalloc1(pair->n, &pair->foreseen));
   if (contact->adjust) PetscCall(PetscMalloc1(pair->n, &pair->before));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -209,6 +211,7 @@ PetscErrorCode ContactPairDestroy(ContactPair *pair)
   PetscCall(PetscFree4(pair->force, pair->normal, pair->pressure, pair->law_pressure));
   PetscCall(PetscFree6(pair->factor, pair->next_factor, pair->seed, pair->point_gap, pair->point_normal, pair->point_force));
   PetscCall(PetscFree(pair->before));
+  PetscCall(PetscFree(pair->foreseen));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -161,7 +161,7 @@ static PetscErrorCode ModelStart(Model model, SolveReport *report)
 }
 
 /* New lists after a solve, for the next one: in the middle of the way where it left the old ones, or because they do not hold. */
-static PetscErrorCode ModelRenewLists(Model model, PetscBool settle, PetscBool *hold)
+PetscErrorCode ModelRenewLists(Model model, PetscBool settle, PetscBool *hold)
 {
   ModelWork *work = model->work;
   PetscReal  motion;
@@ -257,6 +257,7 @@ PetscErrorCode ModelSolve(Model model, PetscReal t, SolveReport *report)
   *report = (SolveReport){.result = SOLVE_CONVERGED};
   PetscCall(ModelDepart(model, t));
   PetscCall(ModelStart(model, report));
+  PetscCall(ModelSoftStart(model, report));
   while (window == WINDOW_MISSED && report->result == SOLVE_CONVERGED) {
     PetscCall(ModelSolveHeld(model, report));
     if (report->result != SOLVE_CONVERGED || !model->contact) break;
