@@ -102,7 +102,7 @@ static PetscErrorCode PairProject(Contact contact, ContactPair *pair, const Pets
    of them, as those that only resist would hold the others open. */
 static void TermPredict(const ContactPair *pair, PetscInt c, PetscReal opening, LawValue *value)
 {
-  const PetscBool closed = (PetscBool)(pair->accepted.status[c] == CONTACT_CLOSED), means = (PetscBool)(pair->slave_offsets && pair->fit.degree);
+  const PetscBool closed = pair->held[c], means = (PetscBool)(pair->slave_offsets && pair->fit.degree);
 
   if (!closed && !(pair->touching && opening <= (means ? ContactMeanOpening(pair, c) : ContactTouchTolerance(pair, c)))) return;
   value->stiffness = PetscMin(pair->most, pair->now.penalty[c]);
@@ -207,7 +207,6 @@ static PetscErrorCode PairResidual(Contact contact, ContactPair *pair, const Pet
     if (!f) continue;
     pair->now.gap[c]    = gap;
     pair->now.status[c] = value.stiffness > 0 ? CONTACT_CLOSED : CONTACT_OPEN;
-    if (pair->predicting) pair->foreseen[c] = (PetscBool)(value.stiffness > 0);
     TermPress(pair, c, value.pressure);
     TermNormal(pair, c);
   }
@@ -223,16 +222,19 @@ static PetscErrorCode PairResidual(Contact contact, ContactPair *pair, const Pet
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ContactPredict - between the two calls what the accepted state holds in contact stays so, pressed or pulled, in residual and tangent.
+/* ContactPredict - between the two calls what is in contact at the first one stays so, pressed or pulled, in residual and tangent.
 
-   Not collective. For a linear step from the accepted state: fresh offsets move the surfaces a little, which is a load of the step, not an
+   Not collective. For a linear step from a solution: fresh lists and offsets move the surfaces a little, which is a load of the step, not an
    opening. touching: what is open within ContactTouchTolerance() is closed too (Chamoret et al. start from surfaces that touch). */
 PetscErrorCode ContactPredict(Contact contact, PetscBool predicting, PetscBool touching)
 {
   PetscFunctionBeginUser;
   for (int p = 0; p < contact->n_pairs; p++) {
-    contact->pairs[p].predicting = predicting;
-    contact->pairs[p].touching   = touching;
+    ContactPair *pair = &contact->pairs[p];
+
+    pair->predicting = predicting;
+    pair->touching   = touching;
+    for (PetscInt c = 0; c < pair->n && predicting; c++) pair->held[c] = (PetscBool)(pair->now.status[c] == CONTACT_CLOSED);
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -253,7 +255,19 @@ PetscErrorCode ContactResidual(Contact contact, const PetscReal *u, PetscReal t,
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ContactUnforeseen - energy of the terms in contact at (u, t) that the last prediction took for open, of this rank, added to.
+/* ContactForesee - what is in contact now is what ContactUnforeseen() takes for foreseen. Not collective. */
+PetscErrorCode ContactForesee(Contact contact)
+{
+  PetscFunctionBeginUser;
+  for (int p = 0; p < contact->n_pairs; p++) {
+    ContactPair *pair = &contact->pairs[p];
+
+    for (PetscInt c = 0; c < pair->n; c++) pair->foreseen[c] = (PetscBool)(pair->now.status[c] == CONTACT_CLOSED);
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* ContactUnforeseen - energy of the terms in contact at (u, t) that ContactForesee() found open, of this rank, added to.
 
    Collective. u[n_nodes*dim]: local displacements (length). */
 PetscErrorCode ContactUnforeseen(Contact contact, const PetscReal *u, PetscReal t, PetscReal *energy)

@@ -186,7 +186,7 @@ PetscErrorCode ContactPairCreate(Mesh mesh, Scene scene, Elasticity elasticity, 
   PetscCall(ContactStateCreate(pair->n, penalty, &pair->accepted));
   PetscCall(SearchCreate(mesh, scene, loads, pair->master, pair->slave->max_size, pair->n_images, pair->images, &pair->fit, pair->slaves,
                          pair->master_offsets ? OffsetsGet(pair->master_offsets) : NULL, &pair->search));
-  PetscCall(PetscCalloc1(pair->n, &pair->foreseen));
+  PetscCall(PetscCalloc2(pair->n, &pair->held, pair->n, &pair->foreseen));
   if (contact->adjust) PetscCall(PetscMalloc1(pair->n, &pair->before));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -211,7 +211,7 @@ PetscErrorCode ContactPairDestroy(ContactPair *pair)
   PetscCall(PetscFree4(pair->force, pair->normal, pair->pressure, pair->law_pressure));
   PetscCall(PetscFree6(pair->factor, pair->next_factor, pair->seed, pair->point_gap, pair->point_normal, pair->point_force));
   PetscCall(PetscFree(pair->before));
-  PetscCall(PetscFree(pair->foreseen));
+  PetscCall(PetscFree2(pair->held, pair->foreseen));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -33,33 +33,18 @@ PetscErrorCode ModelMotion(Model model, const PetscReal *u, PetscReal t, PetscRe
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Prediction: one linear solve with the tangent of the accepted state, for the loads, imposed displacements and tool motions of the new load
-   parameter. It is the first Newton iteration, written so that what is prescribed moves with the whole body and not through it. */
-static PetscErrorCode ModelPredict(Model model, SolveReport *report)
+/* One linear solve with the present tangent and the forces in work->f moves model->x. */
+static PetscErrorCode ModelStepLinear(Model model, SolveReport *report)
 {
-  ModelWork     *work = model->work;
-  const PetscInt n    = model->mesh->n_nodes * model->mesh->dim;
-  PetscReal     *step;
-  PetscBool      ok;
-  Vec            b, dx;
-  KSP            ksp;
-  PetscInt       its;
+  Vec      b, dx;
+  KSP      ksp;
+  PetscInt its;
 
   PetscFunctionBeginUser;
   PetscCall(VecDuplicate(model->x, &b));
   PetscCall(VecDuplicate(model->x, &dx));
-  PetscCall(PetscMalloc1(n, &step));
-  PetscCall(PetscArraycpy(step, work->accepted_u, n));
-  PetscCall(LoadsPrescribe(model->loads, model->t, step));
-  for (PetscInt i = 0; i < n; i++) step[i] -= work->accepted_u[i];
-  if (model->contact) PetscCall(ContactPredict(model->contact, PETSC_TRUE, (PetscBool)(work->accepted_t == 0))); /* touching: a body that only contact holds */
-  PetscCall(LinearSolverRenew(work->solver));
-  PetscCall(ModelTangent(model, work->accepted_u, work->accepted_t));
-  PetscCall(ModelResidual(model, work->accepted_u, model->t, work->accepted_t, &ok));
-  if (model->contact) PetscCall(ContactPredict(model->contact, PETSC_FALSE, PETSC_FALSE));
-  PetscCall(ElasticityMultiplyLocal(model->elasticity, step, work->f));
-  if (model->contact) PetscCall(ContactMultiply(model->contact, step, work->accepted_t, model->t, work->f));
-  PetscCall(MeshLocalToGlobal(model->mesh, work->f, b));
+  PetscCall(MeshLocalToGlobal(model->mesh, model->work->f, b));
+  PetscCall(StabiliserResidual(model->work->stabiliser, model->x, b));
   PetscCall(SNESGetKSP(model->snes, &ksp));
   PetscCall(KSPSetOperators(ksp, model->A, model->A));
   PetscCall(KSPSolve(ksp, b, dx));
@@ -68,9 +53,35 @@ static PetscErrorCode ModelPredict(Model model, SolveReport *report)
   report->krylov += its;
   PetscCall(VecAXPY(model->x, -1, dx));
   if (LinearCheckLost(model->linear)) PetscCall(ModelLinearFailure(model, &report->result));
-  PetscCall(PetscFree(step));
   PetscCall(VecDestroy(&b));
   PetscCall(VecDestroy(&dx));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Prediction: one linear solve with the tangent of the accepted state, for the loads, imposed displacements and tool motions of the new load
+   parameter. It is the first Newton iteration, written so that what is prescribed moves with the whole body and not through it. */
+static PetscErrorCode ModelPredict(Model model, SolveReport *report)
+{
+  ModelWork     *work = model->work;
+  const PetscInt n    = model->mesh->n_nodes * model->mesh->dim;
+  PetscReal     *step;
+  PetscBool      ok;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(n, &step));
+  PetscCall(PetscArraycpy(step, work->accepted_u, n));
+  PetscCall(LoadsPrescribe(model->loads, model->t, step));
+  for (PetscInt i = 0; i < n; i++) step[i] -= work->accepted_u[i];
+  if (model->contact) PetscCall(ContactPredict(model->contact, PETSC_TRUE, (PetscBool)(work->accepted_t == 0))); /* touching: a body that only contact holds */
+  PetscCall(LinearSolverRenew(work->solver));
+  PetscCall(ModelTangent(model, work->accepted_u, work->accepted_t));
+  PetscCall(ModelResidual(model, work->accepted_u, model->t, work->accepted_t, &ok));
+  if (model->contact) PetscCall(ContactForesee(model->contact));
+  if (model->contact) PetscCall(ContactPredict(model->contact, PETSC_FALSE, PETSC_FALSE));
+  PetscCall(ElasticityMultiplyLocal(model->elasticity, step, work->f));
+  if (model->contact) PetscCall(ContactMultiply(model->contact, step, work->accepted_t, model->t, work->f));
+  PetscCall(ModelStepLinear(model, report));
+  PetscCall(PetscFree(step));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -180,6 +191,21 @@ PetscErrorCode ModelRenewLists(Model model, PetscBool settle, PetscBool *hold)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* The first iteration after lists have been replaced at a solution: what is in contact stays so. Other lists, and the offsets that come with them, move the
+   surfaces by more than a stiff penalty lets them overlap; nodes that this would open let go of the bodies, which then fly apart. */
+static PetscErrorCode ModelFollowLists(Model model, SolveReport *report)
+{
+  PetscBool ok;
+
+  PetscFunctionBeginUser;
+  PetscCall(ContactPredict(model->contact, PETSC_TRUE, PETSC_FALSE));
+  PetscCall(ModelTangent(model, model->work->trial, model->t));
+  PetscCall(ModelResidual(model, model->work->trial, model->t, model->t, &ok));
+  PetscCall(ContactPredict(model->contact, PETSC_FALSE, PETSC_FALSE));
+  PetscCall(ModelStepLinear(model, report));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Solves with frozen lists until they hold. */
 static PetscErrorCode ModelSolveLists(Model model, SolveReport *report)
 {
@@ -198,6 +224,7 @@ static PetscErrorCode ModelSolveLists(Model model, SolveReport *report)
     if (hold || lost) break;
     report->regathered++;
     if (!model->work->left && times++ == MODEL_MAX_REGATHER) report->result = SOLVE_LISTS;
+    if (!model->work->left && report->result == SOLVE_CONVERGED) PetscCall(ModelFollowLists(model, report));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
