@@ -1,5 +1,5 @@
 /* What the files of the model share and nobody else sees: model.c holds the state, newton.c finds equilibrium with the lists that are there, equilibrium.c
-   is the way from an accepted state to the next one, softstart.c a part of it. */
+   is the way from an accepted state to the next one, prediction.c and softstart.c parts of it. */
 #pragma once
 #include "contactcycle.h"
 #include "linearsolver.h"
@@ -53,6 +53,10 @@ PetscErrorCode ModelRoundOff(Model, PetscReal *force); /* what round-off leaves 
 PetscErrorCode ModelCreateSNES(Model);
 PetscErrorCode ModelLinearFailure(Model, SolveResult *); /* why the last linear solve failed */
 PetscErrorCode ModelNewton(Model, SolveReport *);        /* SNES once, from model->x; adds what it cost */
+/* prediction.c */
+PetscErrorCode ModelPredict(Model, SolveReport *);     /* model->x at model->t by one linear solve from the accepted state */
+PetscErrorCode ModelPredictFar(Model, SolveReport *);  /* in pieces, where that is too far */
+PetscErrorCode ModelFollowLists(Model, SolveReport *); /* a linear step that holds contact while its lists are other ones */
 /* softstart.c */
 PetscErrorCode ModelSoftStart(Model, SolveReport *); /* from the prediction to where what touches is known, on softened penalties */
 /* equilibrium.c */

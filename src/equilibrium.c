@@ -33,58 +33,6 @@ PetscErrorCode ModelMotion(Model model, const PetscReal *u, PetscReal t, PetscRe
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* One linear solve with the present tangent and the forces in work->f moves model->x. */
-static PetscErrorCode ModelStepLinear(Model model, SolveReport *report)
-{
-  Vec      b, dx;
-  KSP      ksp;
-  PetscInt its;
-
-  PetscFunctionBeginUser;
-  PetscCall(VecDuplicate(model->x, &b));
-  PetscCall(VecDuplicate(model->x, &dx));
-  PetscCall(MeshLocalToGlobal(model->mesh, model->work->f, b));
-  PetscCall(StabiliserResidual(model->work->stabiliser, model->x, b));
-  PetscCall(SNESGetKSP(model->snes, &ksp));
-  PetscCall(KSPSetOperators(ksp, model->A, model->A));
-  PetscCall(KSPSolve(ksp, b, dx));
-  PetscCall(KSPGetIterationNumber(ksp, &its));
-  report->newton++;
-  report->krylov += its;
-  PetscCall(VecAXPY(model->x, -1, dx));
-  if (LinearCheckLost(model->linear)) PetscCall(ModelLinearFailure(model, &report->result));
-  PetscCall(VecDestroy(&b));
-  PetscCall(VecDestroy(&dx));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Prediction: one linear solve with the tangent of the accepted state, for the loads, imposed displacements and tool motions of the new load
-   parameter. It is the first Newton iteration, written so that what is prescribed moves with the whole body and not through it. */
-static PetscErrorCode ModelPredict(Model model, SolveReport *report)
-{
-  ModelWork     *work = model->work;
-  const PetscInt n    = model->mesh->n_nodes * model->mesh->dim;
-  PetscReal     *step;
-  PetscBool      ok;
-
-  PetscFunctionBeginUser;
-  PetscCall(PetscMalloc1(n, &step));
-  PetscCall(PetscArraycpy(step, work->accepted_u, n));
-  PetscCall(LoadsPrescribe(model->loads, model->t, step));
-  for (PetscInt i = 0; i < n; i++) step[i] -= work->accepted_u[i];
-  if (model->contact) PetscCall(ContactPredict(model->contact, PETSC_TRUE, (PetscBool)(work->accepted_t == 0))); /* touching: a body that only contact holds */
-  PetscCall(LinearSolverRenew(work->solver));
-  PetscCall(ModelTangent(model, work->accepted_u, work->accepted_t));
-  PetscCall(ModelResidual(model, work->accepted_u, model->t, work->accepted_t, &ok));
-  if (model->contact) PetscCall(ContactForesee(model->contact));
-  if (model->contact) PetscCall(ContactPredict(model->contact, PETSC_FALSE, PETSC_FALSE));
-  PetscCall(ElasticityMultiplyLocal(model->elasticity, step, work->f));
-  if (model->contact) PetscCall(ContactMultiply(model->contact, step, work->accepted_t, model->t, work->f));
-  PetscCall(ModelStepLinear(model, report));
-  PetscCall(PetscFree(step));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* Adds that the penalty is so stiff that rounding alone may keep the residual above the tolerance, where it is. */
 static PetscErrorCode ModelBlamePenalty(Model model, char *text, size_t size)
 {
@@ -164,10 +112,12 @@ static PetscErrorCode ModelStart(Model model, SolveReport *report)
   PetscFunctionBeginUser;
   if (!work->forecasted) {
     PetscCall(ModelPredict(model, report));
+    PetscCall(ModelPredictFar(model, report));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   part = (model->t - work->accepted_t) / (work->forecast_t - work->accepted_t);
   PetscCall(VecAXPBYPCZ(model->x, 1 - part, part, 0, work->accepted_x, work->forecast));
+  PetscCall(ModelPredictFar(model, report));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -188,21 +138,6 @@ PetscErrorCode ModelRenewLists(Model model, PetscBool settle, PetscBool *hold)
   } else
     PetscCall(ContactListsHold(model->contact, work->trial, model->t, motion, settle, hold));
   TimingEnd(TIMING_SEARCH);
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* The first iteration after lists have been replaced at a solution: what is in contact stays so. Other lists, and the offsets that come with them, move the
-   surfaces by more than a stiff penalty lets them overlap; nodes that this would open let go of the bodies, which then fly apart. */
-static PetscErrorCode ModelFollowLists(Model model, SolveReport *report)
-{
-  PetscBool ok;
-
-  PetscFunctionBeginUser;
-  PetscCall(ContactPredict(model->contact, PETSC_TRUE, PETSC_FALSE));
-  PetscCall(ModelTangent(model, model->work->trial, model->t));
-  PetscCall(ModelResidual(model, model->work->trial, model->t, model->t, &ok));
-  PetscCall(ContactPredict(model->contact, PETSC_FALSE, PETSC_FALSE));
-  PetscCall(ModelStepLinear(model, report));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
