@@ -2,8 +2,8 @@
 #include "timing.h"
 
 /* A linear step that moves the ends of a cell's edge against each other by more than this part of its length is taken in pieces: a rotation by as much comes
-   out as a stretch by an eighth, and as a contact that lies elsewhere. Steps that bring what is in contact there one by one are three to ten times shorter. */
-#define PREDICTION_FARTHEST 0.5
+   out as a stretch by a sixth. On a pipe between plates 0.5 to 0.75 serve; shorter pieces, each of which may leave the contact, cost more than they save. */
+#define PREDICTION_FARTHEST 0.6
 /* Pieces of one prediction; what is left is then taken at once. */
 #define PREDICTION_PIECES 8
 /* Contact that is met on the way is to turn the bodies back, not to hold them exactly: automatic penalties, as in softstart.c. */
