@@ -95,8 +95,14 @@ PetscErrorCode ContactListsHold(Contact, const PetscReal *u, PetscReal t, PetscR
 PetscErrorCode ContactRoundOff(Contact, PetscReal *force);
 /* Has new lists' search lost a slave point that was behind its master by more than the face size, since the step began? Its place into text. Collective. */
 PetscErrorCode ContactLocateLost(Contact, PetscBool *lost, char *text, size_t size);
-/* A linear step from the accepted state begins or ends: what is closed there stays so, and what touches if that is asked for. Not collective. */
+/* A linear step begins or ends: what is closed stays so, and what touches if that is asked for. Not collective. */
 PetscErrorCode ContactPredict(Contact, PetscBool predicting, PetscBool touching);
+/* Penalties count for no more than that many automatic ones; PETSC_MAX_REAL: as they are. The largest there is, so measured. */
+PetscErrorCode ContactSoften(Contact, PetscReal most);
+PetscErrorCode ContactStiffest(Contact, PetscReal *most);
+/* What is in contact now is what a prediction counts on; the energy of other terms at (u, t). */
+PetscErrorCode ContactForesee(Contact);
+PetscErrorCode ContactUnforeseen(Contact, const PetscReal *u, PetscReal t, PetscReal *energy);
 /* Adds the contact forces to f (n_nodes*dim local, complete at owned nodes), this rank's energy and sum of squares of the terms' forces; each may
    be NULL. With f it also becomes the present state (gap, status, forces). Collective. */
 PetscErrorCode ContactResidual(Contact, const PetscReal *u, PetscReal t, PetscReal *f, PetscReal *energy, PetscReal *force2);

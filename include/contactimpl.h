@@ -63,7 +63,9 @@ typedef struct {
   PetscInt           *term_ptr, *term_point; /* slave points of each term */
   PetscReal          *term_weight;           /* their areas in it: sum is the term's area */
   PetscReal           automatic;             /* penalty: force per length and area */
-  PetscBool           predicting, touching;  /* what was accepted as closed stays so; what touches is closed */
+  PetscBool           predicting, touching;  /* what is held stays closed; what touches is closed */
+  PetscBool          *held, *foreseen;       /* terms closed where the linear step began; those that the last prediction counted on */
+  PetscReal           most;                  /* that a penalty counts for (force per length and area) */
   ContactState        now, accepted;
   PetscReal          *before;                   /* gaps of the iterate before, where the penalty is adjusted */
   ContactLists        lists, next;              /* next: fresh ones, NULL: none */

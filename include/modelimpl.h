@@ -1,5 +1,5 @@
 /* What the files of the model share and nobody else sees: model.c holds the state, newton.c finds equilibrium with the lists that are there, equilibrium.c
-   is the way from an accepted state to the next one. */
+   is the way from an accepted state to the next one, prediction.c and softstart.c parts of it. */
 #pragma once
 #include "contactcycle.h"
 #include "linearsolver.h"
@@ -28,6 +28,7 @@ typedef struct _n_ModelWork {
   PetscReal    stiffness;  /* norm of the elastic tangent's diagonal */
   PetscInt     inverted;   /* gmsh's tag of a cell of this rank that was turned inside out in this solve, or -1 */
   PetscBool    near;       /* the iterate is so close that energies differ by round-off only */
+  PetscBool    soft;       /* penalties are softened: a residual within MODEL_SOFT_ENOUGH will do */
   PetscReal    norm;       /* residual of the iterate before */
   PetscBool    balanced;   /* the residual of the iterate is within the tolerance */
   PetscInt     renewed;    /* how often that happened in this step */
@@ -52,5 +53,12 @@ PetscErrorCode ModelRoundOff(Model, PetscReal *force); /* what round-off leaves 
 PetscErrorCode ModelCreateSNES(Model);
 PetscErrorCode ModelLinearFailure(Model, SolveResult *); /* why the last linear solve failed */
 PetscErrorCode ModelNewton(Model, SolveReport *);        /* SNES once, from model->x; adds what it cost */
+/* prediction.c */
+PetscErrorCode ModelPredict(Model, SolveReport *);     /* model->x at model->t by one linear solve from the accepted state */
+PetscErrorCode ModelPredictFar(Model, SolveReport *);  /* in pieces, where that is too far */
+PetscErrorCode ModelFollowLists(Model, SolveReport *); /* a linear step that holds contact while its lists are other ones */
+/* softstart.c */
+PetscErrorCode ModelSoftStart(Model, SolveReport *); /* from the prediction to where what touches is known, on softened penalties */
 /* equilibrium.c */
+PetscErrorCode ModelRenewLists(Model, PetscBool settle, PetscBool *hold);              /* new lists after a solve, for the next one */
 PetscErrorCode ModelMotion(Model, const PetscReal *u, PetscReal t, PetscReal *motion); /* largest one between the accepted state and (u, t) */

@@ -102,17 +102,17 @@ static PetscErrorCode PairProject(Contact contact, ContactPair *pair, const Pets
    of them, as those that only resist would hold the others open. */
 static void TermPredict(const ContactPair *pair, PetscInt c, PetscReal opening, LawValue *value)
 {
-  const PetscBool closed = (PetscBool)(pair->accepted.status[c] == CONTACT_CLOSED), means = (PetscBool)(pair->slave_offsets && pair->fit.degree);
+  const PetscBool closed = pair->held[c], means = (PetscBool)(pair->slave_offsets && pair->fit.degree);
 
   if (!closed && !(pair->touching && opening <= (means ? ContactMeanOpening(pair, c) : ContactTouchTolerance(pair, c)))) return;
-  value->stiffness = pair->now.penalty[c];
+  value->stiffness = PetscMin(pair->most, pair->now.penalty[c]);
   if (closed || pair->slave_offsets) value->pressure = -value->stiffness * opening;
 }
 
 /* Law, gap (may be NULL) and area of a term in the state of the last projection. */
 static void TermLaw(const ContactPair *pair, PetscInt c, PetscReal t, LawValue *value, PetscReal *gap, PetscReal *area)
 {
-  const LawState  state = {pair->now.penalty[c], ContactTermOffset(pair, c, t), pair->now.multiplier[c]};
+  const LawState  state = {PetscMin(pair->most, pair->now.penalty[c]), ContactTermOffset(pair, c, t), pair->now.multiplier[c]};
   const PetscReal found = ContactTermGap(pair, pair->factor, pair->point_gap, c, area);
 
   *value = (LawValue){0, 0, 0};
@@ -223,16 +223,19 @@ static PetscErrorCode PairResidual(Contact contact, ContactPair *pair, const Pet
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ContactPredict - between the two calls what the accepted state holds in contact stays so, pressed or pulled, in residual and tangent.
+/* ContactPredict - between the two calls what is in contact at the first one stays so, pressed or pulled, in residual and tangent.
 
-   Not collective. For a linear step from the accepted state: fresh offsets move the surfaces a little, which is a load of the step, not an
+   Not collective. For a linear step from a solution: fresh lists and offsets move the surfaces a little, which is a load of the step, not an
    opening. touching: what is open within ContactTouchTolerance() is closed too (Chamoret et al. start from surfaces that touch). */
 PetscErrorCode ContactPredict(Contact contact, PetscBool predicting, PetscBool touching)
 {
   PetscFunctionBeginUser;
   for (int p = 0; p < contact->n_pairs; p++) {
-    contact->pairs[p].predicting = predicting;
-    contact->pairs[p].touching   = touching;
+    ContactPair *pair = &contact->pairs[p];
+
+    pair->predicting = predicting;
+    pair->touching   = touching;
+    for (PetscInt c = 0; c < pair->n && predicting; c++) pair->held[c] = (PetscBool)(pair->now.status[c] == CONTACT_CLOSED);
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -250,6 +253,39 @@ PetscErrorCode ContactResidual(Contact contact, const PetscReal *u, PetscReal t,
   PetscCall(PetscLogEventBegin(contact->event_residual, 0, 0, 0, 0));
   for (int p = 0; p < contact->n_pairs; p++) PetscCall(PairResidual(contact, &contact->pairs[p], u, t, f, energy, force2));
   PetscCall(PetscLogEventEnd(contact->event_residual, 0, 0, 0, 0));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* ContactForesee - what is in contact now is what ContactUnforeseen() takes for foreseen. Not collective. */
+PetscErrorCode ContactForesee(Contact contact)
+{
+  PetscFunctionBeginUser;
+  for (int p = 0; p < contact->n_pairs; p++) {
+    ContactPair *pair = &contact->pairs[p];
+
+    for (PetscInt c = 0; c < pair->n; c++) pair->foreseen[c] = (PetscBool)(pair->now.status[c] == CONTACT_CLOSED);
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* ContactUnforeseen - energy of the terms in contact at (u, t) that ContactForesee() found open, of this rank, added to.
+
+   Collective. u[n_nodes*dim]: local displacements (length). */
+PetscErrorCode ContactUnforeseen(Contact contact, const PetscReal *u, PetscReal t, PetscReal *energy)
+{
+  PetscFunctionBeginUser;
+  for (int p = 0; p < contact->n_pairs; p++) {
+    ContactPair *pair = &contact->pairs[p];
+
+    PetscCall(PairProject(contact, pair, u, t));
+    for (PetscInt c = 0; c < pair->n; c++) {
+      LawValue  value;
+      PetscReal area;
+
+      TermLaw(pair, c, t, &value, NULL, &area);
+      if (!pair->foreseen[c]) *energy += area * value.psi;
+    }
+  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

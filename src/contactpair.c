@@ -181,12 +181,14 @@ PetscErrorCode ContactPairCreate(Mesh mesh, Scene scene, Elasticity elasticity, 
   if (pair->master && pair->fit.degree && pair->fit.global_frame) PetscCall(PairCheckGlobalFrame(mesh, scene, loads, pair));
   PetscCall(PairCreatePoints(mesh, scene, loads, pair));
   pair->automatic = PenaltyAutomatic(pair->slave->stiffness, pair->master ? pair->master->stiffness : 0);
+  pair->most      = PETSC_MAX_REAL;
   penalty         = contact->penalty_scale * (contact->penalty_auto ? pair->automatic : contact->penalty);
   PetscCall(ContactStateCreate(pair->n, penalty, &pair->now));
   PetscCall(ContactStateCreate(pair->n, penalty, &pair->accepted));
   PetscCall(SearchCreate(mesh, scene, loads, pair->master, pair->slave->max_size, pair->n_images, pair->images, &pair->fit, pair->slaves,
                          pair->master_offsets ? OffsetsGet(pair->master_offsets) : NULL, pair->master_offsets ? OffsetsMaps(pair->master_offsets) : NULL,
                          &pair->search));
+  PetscCall(PetscCalloc2(pair->n, &pair->held, pair->n, &pair->foreseen));
   if (contact->adjust) PetscCall(PetscMalloc1(pair->n, &pair->before));
   if (contact->augment) PetscCall(MixingCreate(mesh->comm, pair->n, pair->area, &pair->mixing));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -213,6 +215,7 @@ PetscErrorCode ContactPairDestroy(ContactPair *pair)
   PetscCall(PetscFree6(pair->factor, pair->next_factor, pair->seed, pair->point_gap, pair->point_normal, pair->point_force));
   PetscCall(PetscFree(pair->before));
   PetscCall(MixingDestroy(&pair->mixing));
+  PetscCall(PetscFree2(pair->held, pair->foreseen));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -218,3 +218,24 @@ PetscErrorCode ContactLocateOutside(Contact contact, char *text, size_t size)
                           (double)worst[0], (double)worst[1], (double)worst[2], worst[4] > 0 ? " (penalty.range allows no more)" : ""));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
+
+/* ContactSoften - until the next call no penalty counts for more than `most` times its pair's automatic one, in energy, force and tangent.
+
+   Not collective, the same on all ranks. PETSC_MAX_REAL: all count for what they are. The penalties themselves stay. */
+PetscErrorCode ContactSoften(Contact contact, PetscReal most)
+{
+  PetscFunctionBeginUser;
+  for (int p = 0; p < contact->n_pairs; p++) contact->pairs[p].most = most < PETSC_MAX_REAL ? most * contact->pairs[p].automatic : PETSC_MAX_REAL;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* ContactStiffest - the largest penalty, in automatic ones of its pair. Collective, the same on all ranks. */
+PetscErrorCode ContactStiffest(Contact contact, PetscReal *most)
+{
+  PetscFunctionBeginUser;
+  *most = 0;
+  for (int p = 0; p < contact->n_pairs; p++)
+    for (PetscInt c = 0; c < contact->pairs[p].n; c++) *most = PetscMax(*most, contact->pairs[p].now.penalty[c] / contact->pairs[p].automatic);
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, most, 1, MPIU_REAL, MPI_MAX, contact->mesh->comm));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

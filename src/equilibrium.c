@@ -30,47 +30,6 @@ PetscErrorCode ModelMotion(Model model, const PetscReal *u, PetscReal t, PetscRe
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Prediction: one linear solve with the tangent of the accepted state, for the loads, imposed displacements and tool motions of the new load
-   parameter. It is the first Newton iteration, written so that what is prescribed moves with the whole body and not through it. */
-static PetscErrorCode ModelPredict(Model model, SolveReport *report)
-{
-  ModelWork     *work = model->work;
-  const PetscInt n    = model->mesh->n_nodes * model->mesh->dim;
-  PetscReal     *step;
-  PetscBool      ok;
-  Vec            b, dx;
-  KSP            ksp;
-  PetscInt       its;
-
-  PetscFunctionBeginUser;
-  PetscCall(VecDuplicate(model->x, &b));
-  PetscCall(VecDuplicate(model->x, &dx));
-  PetscCall(PetscMalloc1(n, &step));
-  PetscCall(PetscArraycpy(step, work->accepted_u, n));
-  PetscCall(LoadsPrescribe(model->loads, model->t, step));
-  for (PetscInt i = 0; i < n; i++) step[i] -= work->accepted_u[i];
-  if (model->contact) PetscCall(ContactPredict(model->contact, PETSC_TRUE, (PetscBool)(work->accepted_t == 0))); /* touching: a body that only contact holds */
-  PetscCall(LinearSolverRenew(work->solver));
-  PetscCall(ModelTangent(model, work->accepted_u, work->accepted_t));
-  PetscCall(ModelResidual(model, work->accepted_u, model->t, work->accepted_t, &ok));
-  if (model->contact) PetscCall(ContactPredict(model->contact, PETSC_FALSE, PETSC_FALSE));
-  PetscCall(ElasticityMultiplyLocal(model->elasticity, step, work->f));
-  if (model->contact) PetscCall(ContactMultiply(model->contact, step, work->accepted_t, model->t, work->f));
-  PetscCall(MeshLocalToGlobal(model->mesh, work->f, b));
-  PetscCall(SNESGetKSP(model->snes, &ksp));
-  PetscCall(KSPSetOperators(ksp, model->A, model->A));
-  PetscCall(KSPSolve(ksp, b, dx));
-  PetscCall(KSPGetIterationNumber(ksp, &its));
-  report->newton++;
-  report->krylov += its;
-  PetscCall(VecAXPY(model->x, -1, dx));
-  if (LinearCheckLost(model->linear)) PetscCall(ModelLinearFailure(model, &report->result));
-  PetscCall(PetscFree(step));
-  PetscCall(VecDestroy(&b));
-  PetscCall(VecDestroy(&dx));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* Adds that the penalty is so stiff that rounding alone may keep the residual above the tolerance, where it is. */
 static PetscErrorCode ModelBlamePenalty(Model model, char *text, size_t size)
 {
@@ -150,15 +109,17 @@ static PetscErrorCode ModelStart(Model model, SolveReport *report)
   PetscFunctionBeginUser;
   if (!work->forecasted) {
     PetscCall(ModelPredict(model, report));
+    PetscCall(ModelPredictFar(model, report));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   part = (model->t - work->accepted_t) / (work->forecast_t - work->accepted_t);
   PetscCall(VecAXPBYPCZ(model->x, 1 - part, part, 0, work->accepted_x, work->forecast));
+  PetscCall(ModelPredictFar(model, report));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* New lists after a solve, for the next one: in the middle of the way where it left the old ones, or because they do not hold. */
-static PetscErrorCode ModelRenewLists(Model model, PetscBool settle, PetscBool *hold)
+PetscErrorCode ModelRenewLists(Model model, PetscBool settle, PetscBool *hold)
 {
   ModelWork *work = model->work;
   PetscReal  motion;
@@ -195,6 +156,7 @@ static PetscErrorCode ModelSolveLists(Model model, SolveReport *report)
     if (hold || lost) break;
     report->regathered++;
     if (!model->work->left && times++ == MODEL_MAX_REGATHER) report->result = SOLVE_LISTS;
+    if (!model->work->left && report->result == SOLVE_CONVERGED) PetscCall(ModelFollowLists(model, report));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -254,6 +216,7 @@ PetscErrorCode ModelSolve(Model model, PetscReal t, SolveReport *report)
   *report = (SolveReport){.result = SOLVE_CONVERGED};
   PetscCall(ModelDepart(model, t));
   PetscCall(ModelStart(model, report));
+  PetscCall(ModelSoftStart(model, report));
   while (window == WINDOW_MISSED && report->result == SOLVE_CONVERGED) {
     PetscCall(ModelSolveHeld(model, report));
     if (report->result != SOLVE_CONVERGED || !model->contact) break;

@@ -19,6 +19,9 @@
 /* The last tangent serves once more where it should end the solve: the next residual is then about twice this one times the last contraction
    (Deuflhard, Newton Methods for Nonlinear Problems, 2004, sec. 2.2, simplified Newton), with a factor two for what that does not know. */
 #define MODEL_TANGENT_REUSE 4
+/* With softened penalties a solve is to find what touches, not more: this residual (relative to F_ref) is enough. Ten times less or three times more cost a
+   pipe between plates more iterations. */
+#define MODEL_SOFT_ENOUGH 0.1
 /* Newton is limited by its iterations, not by the line search's evaluations. */
 #define MODEL_MAX_FUNCTIONS 1000000
 
@@ -261,7 +264,7 @@ static PetscErrorCode ModelConverged(SNES snes, PetscInt it, PetscReal xnorm, Pe
   if (model->contact) PetscCall(ContactGapsSettled(model->contact, &settled));
   *reason               = SNES_CONVERGED_ITERATING;
   model->work->near     = fnorm <= MODEL_ENERGY_ROUND_OFF * scale ? PETSC_TRUE : PETSC_FALSE;
-  allowed               = PetscMax(model->scene->solver.tolerance * scale, round_off);
+  allowed               = PetscMax((model->work->soft ? MODEL_SOFT_ENOUGH : model->scene->solver.tolerance) * scale, round_off);
   model->work->balanced = fnorm <= allowed ? PETSC_TRUE : PETSC_FALSE;
   PetscCall(ModelReuseTangent(model, it, fnorm, allowed));
   PetscCall(LinearSolverSetEnough(model->work->solver, allowed));
@@ -269,7 +272,7 @@ static PetscErrorCode ModelConverged(SNES snes, PetscInt it, PetscReal xnorm, Pe
     *reason = SNES_DIVERGED_LINEAR_SOLVE;
   else if (PetscIsInfOrNanReal(fnorm))
     *reason = SNES_DIVERGED_FUNCTION_NANORINF;
-  else if (fnorm <= round_off || (model->work->balanced && settled))
+  else if (fnorm <= round_off || (model->work->balanced && (settled || model->work->soft)))
     *reason = SNES_CONVERGED_FNORM_ABS;
   else if (model->contact)
     PetscCall(ModelLeaveLists(model, reason));

@@ -1,0 +1,175 @@
+#include "modelimpl.h"
+#include "timing.h"
+
+/* A linear step that moves the ends of a cell's edge against each other by more than this part of its length is taken in pieces: a rotation by as much comes
+   out as a stretch by a sixth. On a pipe between plates 0.5 to 0.75 serve; shorter pieces, each of which may leave the contact, cost more than they save. */
+#define PREDICTION_FARTHEST 0.6
+/* Pieces of one prediction; what is left is then taken at once. */
+#define PREDICTION_PIECES 8
+/* Contact that is met on the way is to turn the bodies back, not to hold them exactly: automatic penalties, as in softstart.c. */
+#define PREDICTION_SOFT 0.1
+
+/* One linear solve with the present tangent and the forces in work->f moves model->x. */
+static PetscErrorCode ModelStepLinear(Model model, SolveReport *report)
+{
+  Vec      b, dx;
+  KSP      ksp;
+  PetscInt its;
+
+  PetscFunctionBeginUser;
+  PetscCall(VecDuplicate(model->x, &b));
+  PetscCall(VecDuplicate(model->x, &dx));
+  PetscCall(MeshLocalToGlobal(model->mesh, model->work->f, b));
+  PetscCall(StabiliserResidual(model->work->stabiliser, model->x, b));
+  PetscCall(SNESGetKSP(model->snes, &ksp));
+  PetscCall(KSPSetOperators(ksp, model->A, model->A));
+  PetscCall(KSPSolve(ksp, b, dx));
+  PetscCall(KSPGetIterationNumber(ksp, &its));
+  report->newton++;
+  report->krylov += its;
+  PetscCall(VecAXPY(model->x, -1, dx));
+  if (LinearCheckLost(model->linear)) PetscCall(ModelLinearFailure(model, &report->result));
+  PetscCall(VecDestroy(&b));
+  PetscCall(VecDestroy(&dx));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* One linear solve with the tangent at (u, t) for the loads, imposed displacements and tool motions at model->t moves model->x, which stands there. It is a
+   Newton iteration, written so that what is prescribed moves with the whole body and not through it. holding: contact that is there stays. */
+static PetscErrorCode ModelStepLoads(Model model, const PetscReal *u, PetscReal t, PetscBool holding, SolveReport *report)
+{
+  ModelWork     *work = model->work;
+  const PetscInt n    = model->mesh->n_nodes * model->mesh->dim;
+  PetscReal     *step;
+  PetscBool      ok;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(n, &step));
+  PetscCall(PetscArraycpy(step, u, n));
+  PetscCall(LoadsPrescribe(model->loads, model->t, step));
+  for (PetscInt i = 0; i < n; i++) step[i] -= u[i];
+  if (holding) PetscCall(ContactPredict(model->contact, PETSC_TRUE, (PetscBool)(t == 0))); /* touching: a body that only contact holds */
+  PetscCall(LinearSolverRenew(work->solver));
+  PetscCall(ModelTangent(model, u, t));
+  PetscCall(ModelResidual(model, u, model->t, t, &ok));
+  if (holding) PetscCall(ContactForesee(model->contact));
+  if (holding) PetscCall(ContactPredict(model->contact, PETSC_FALSE, PETSC_FALSE));
+  PetscCall(ElasticityMultiplyLocal(model->elasticity, step, work->f));
+  if (model->contact) PetscCall(ContactMultiply(model->contact, step, t, model->t, work->f));
+  PetscCall(ModelStepLinear(model, report));
+  PetscCall(PetscFree(step));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* ModelPredict - displacements at model->t by one linear solve from the accepted state, into model->x. Collective. Costs and failures are added to the report.
+ */
+PetscErrorCode ModelPredict(Model model, SolveReport *report)
+{
+  PetscFunctionBeginUser;
+  PetscCall(ModelStepLoads(model, model->work->accepted_u, model->work->accepted_t, (PetscBool)(model->contact != NULL), report));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Largest motion of the ends of a cell's edge against each other from displacements u to v, by its length, all ranks */
+static PetscErrorCode ModelLargestTurn(Model model, const PetscReal *u, const PetscReal *v, PetscReal *turn)
+{
+  const Mesh mesh = model->mesh;
+
+  PetscFunctionBeginUser;
+  *turn = 0;
+  for (PetscInt c = 0; c < mesh->n_cells; c++) {
+    const Element  *element = ElementGet(mesh->cell_type[c]);
+    const PetscInt *nodes   = &mesh->cell_nodes[mesh->cell_ptr[c]];
+
+    for (int e = 0; e < element->edges; e++) {
+      const PetscInt a = nodes[element->edge_corners[e][0]] * mesh->dim, b = nodes[element->edge_corners[e][1]] * mesh->dim;
+      PetscReal      motion = 0, length = 0;
+
+      for (int d = 0; d < mesh->dim; d++) {
+        motion += PetscSqr((v[b + d] - v[a + d]) - (u[b + d] - u[a + d]));
+        length += PetscSqr(mesh->coords[b + d] - mesh->coords[a + d]);
+      }
+      *turn = PetscMax(*turn, PetscSqrtReal(motion / length));
+    }
+  }
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, turn, 1, MPIU_REAL, MPI_MAX, mesh->comm));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Local displacements at (x, t) into u. */
+static PetscErrorCode ModelLocal(Model model, Vec x, PetscReal t, PetscReal *u)
+{
+  PetscFunctionBeginUser;
+  PetscCall(LoadsPrescribe(model->loads, t, u));
+  PetscCall(MeshGlobalToLocal(model->mesh, x, u));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* New lists at (u, t) on the way, if these do not reach so far. */
+static PetscErrorCode ModelReachOn(Model model, const PetscReal *u, PetscReal t, SolveReport *report)
+{
+  PetscReal motion;
+  PetscBool ok, within;
+
+  PetscFunctionBeginUser;
+  PetscCall(ModelResidual(model, u, t, t, &ok));
+  PetscCall(ContactListsReach(model->contact, &within));
+  if (within) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(ModelMotion(model, u, t, &motion));
+  TimingBegin(TIMING_SEARCH);
+  PetscCall(ContactListsRenew(model->contact, u, t, PetscMax(motion, model->work->expected)));
+  TimingEnd(TIMING_SEARCH);
+  report->regathered++;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* ModelPredictFar - where the prediction in model->x is too far for one linear step, goes a part of the way and on from there.
+
+   Collective. Costs and failures are added to the report; none of the states on the way is in equilibrium. */
+PetscErrorCode ModelPredictFar(Model model, SolveReport *report)
+{
+  const PetscInt n = model->mesh->n_nodes * model->mesh->dim;
+  PetscReal      t = model->work->accepted_t, turn, part, *u, *v;
+  Vec            from;
+
+  PetscFunctionBeginUser;
+  if (model->scene->kinematics == KINEMATICS_SMALL) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(VecDuplicate(model->x, &from));
+  PetscCall(VecCopy(model->work->accepted_x, from));
+  PetscCall(PetscCalloc2(n, &u, n, &v));
+  PetscCall(PetscArraycpy(u, model->work->accepted_u, n));
+  if (model->contact) PetscCall(ContactSoften(model->contact, PREDICTION_SOFT));
+  for (PetscInt piece = 0; piece < PREDICTION_PIECES && report->result == SOLVE_CONVERGED; piece++) {
+    PetscCall(ModelLocal(model, model->x, model->t, v));
+    PetscCall(ModelLargestTurn(model, u, v, &turn));
+    if (turn <= PREDICTION_FARTHEST) break;
+    part = PREDICTION_FARTHEST / turn;
+    t += part * (model->t - t);
+    PetscCall(VecAXPBY(model->x, 1 - part, part, from));
+    PetscCall(VecCopy(model->x, from));
+    PetscCall(ModelLocal(model, from, t, u));
+    if (model->contact) PetscCall(ModelReachOn(model, u, t, report));
+    PetscCall(ModelStepLoads(model, u, t, PETSC_FALSE, report));
+  }
+  if (model->contact) PetscCall(ContactSoften(model->contact, PETSC_MAX_REAL));
+  PetscCall(PetscFree2(u, v));
+  PetscCall(VecDestroy(&from));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* ModelFollowLists - the first iteration after lists have been replaced at a solution: what is in contact stays so.
+
+   Collective. Other lists, and the offsets that come with them, move the
+   surfaces by more than a stiff penalty lets them overlap; nodes that this would open let go of the bodies, which then fly apart. */
+PetscErrorCode ModelFollowLists(Model model, SolveReport *report)
+{
+  PetscBool ok;
+
+  PetscFunctionBeginUser;
+  PetscCall(ContactPredict(model->contact, PETSC_TRUE, PETSC_FALSE));
+  PetscCall(ModelTangent(model, model->work->trial, model->t));
+  PetscCall(ModelResidual(model, model->work->trial, model->t, model->t, &ok));
+  PetscCall(ContactPredict(model->contact, PETSC_FALSE, PETSC_FALSE));
+  PetscCall(ModelStepLinear(model, report));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
