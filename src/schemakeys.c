@@ -68,7 +68,7 @@ const SchemaKey SchemaKeys[] = {
   {"contact.*.smoother", CHOICE, .values = CHOICE_WORDS(SMOOTHERS), .preset = "facet", .help = "the master's surface: its faces, or a smooth one near them"},
   {"contact.*.formulation", CHOICE, .values = "node_to_surface | surface_to_surface", .preset = "node_to_surface",
    .help = "where the gap is measured: at the slave's nodes, or all over its faces"},
-  {"contact.*.offset", CHOICE, .values = "held | live", .preset = "held", .help = "of surface_to_surface"},
+  {"contact.*.offset", CHOICE, .values = "held | live", .preset = "held", .help = "of surface_to_surface: taken before each solve; or moving with the nodes in it"},
   {"contact.*.degree", CHOICE, .values = "4 | 2", .preset = "4", .help = "of the diffuse fit"},
   {"contact.*.support", REAL, .range = "(0, inf)", .unit = "spacings", .help = "radius of the diffuse fit; default by dimension and degree"},
   {"contact.*.weight", REAL, .range = "[3, inf)", .help = "exponent of the diffuse fit; default by dimension and degree"},

@@ -32,6 +32,11 @@ CASES["line contact, surface to surface, multipliers"] = (RUNS / "hertz_line.yam
 CASES["coarse pinched pipe, surface to surface"] = (RUNS / "pipe_pinch.yaml", COARSE_PIPE + ["loads.0.uy=-2", "stepping.initial=0.5"] + DIFFUSE)
 CASES["turning rigid cylinder, surface to surface"] = (RUNS / "slide_facets.yaml", ["mesh.parameters.n_x=4", "stepping.initial=0.1"] + DIFFUSE)
 
+LIVE = DIFFUSE + ["contact.0.offset=live"]
+CASES["rings, live offsets, order 1"] = (RUNS / "ring_in_ring.yaml", ["mesh.parameters={n_inner: 6, n_outer: 8, jitter: 0.2}"] + LIVE)
+CASES["rings, live offsets, order 2"] = (RUNS / "ring_in_ring.yaml", ["kinematics=finite", "mesh.order=2", "mesh.parameters={n_inner: 4, n_outer: 5, jitter: 0.2}"] + LIVE)
+CASES["coarse pinched pipe, live offsets"] = (RUNS / "pipe_pinch.yaml", COARSE_PIPE + ["mesh.order=1", "loads.0.uy=-2", "stepping.initial=0.5"] + LIVE)
+
 args = arguments()
 check = Check()
 for name, (scene, overrides) in CASES.items():
