@@ -12,7 +12,7 @@ CASES = {
     f"penalties, {when}": ("cup_flattening", [f"contact.0.penalty={{adjust: true, when: {when}, g_min: 1e-6, g_max: 5e-6, unit: length}}", "solver.max_iterations=5"],
                            ("plane_force", "contact_radius", "apex_thickness"), 5) for when in ("step", "converged")}
 PIPE = ["mesh.order=1", "mesh.parameters={n_arc: 6, n_wall: 1, n_len: 2}", "loads.0.uy=-50", "probes=[{name: force, reaction: plate_top, component: y}]", "contact.0.smoother=diffuse",
-        "contact.0.formulation=surface_to_surface", "contact.0.offset=live", "solver.max_iterations=4"]
+        "contact.0.formulation=surface_to_surface", "contact.0.offset=live", "solver.max_iterations=6"]
 CASES["live offsets"] = ("pipe_pinch", PIPE, ("force",), 1)
 for name, (scene, common, shown, failures) in CASES.items():
     path, folder = SCENES.parent.parent / "runs" / f"{scene}.yaml", name.replace(", ", "_").replace(" ", "_")
