@@ -20,6 +20,9 @@ PetscErrorCode ArchiveHas(Archive, const char *name, PetscBool *);
 /* Values that all ranks share: rank 0's are saved. Collective. */
 PetscErrorCode ArchiveReals(Archive, const char *name, PetscInt n, PetscReal *values);
 PetscErrorCode ArchiveIntegers(Archive, const char *name, PetscInt n, PetscInt *values);
+/* The same, value i at *place[i] */
+PetscErrorCode ArchiveRealsAt(Archive, const char *name, PetscInt n, PetscReal *const *place);
+PetscErrorCode ArchiveIntegersAt(Archive, const char *name, PetscInt n, PetscInt *const *place);
 PetscErrorCode ArchiveBoolean(Archive, const char *name, PetscBool *value);
 /* The same of any length; loaded, they are new and the caller's. Collective. */
 PetscErrorCode ArchiveIntegerList(Archive, const char *name, PetscInt *n, PetscInt **list);

@@ -3,15 +3,14 @@ failed steps, CPU seconds, results) is printed from there:
     formulation_table.py [--burnish BINARY] [--record FILE] [CASE...]     runs (these cases are added to the record, or replaced there) and prints
     formulation_table.py --print [--record FILE]                          prints only
 With --offsets it is surface to surface with held and with live offsets, on the pipes."""
-import argparse
 import csv
 import json
-import pathlib
 import shutil
 import subprocess
 import sys
 
-ROOT = pathlib.Path(__file__).resolve().parent.parent
+from launch import ROOT, table_parser
+
 FORMULATIONS = ("node_to_surface", "surface_to_surface")
 OFFSETS = ("held", "live")
 FINE = "h_contact: 0.25, h_far: 3, n_thick: 4, n_width: 6"  # first-order plate: as many nodes over the patch
@@ -81,13 +80,9 @@ def table(rows, formulations):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = table_parser(__doc__, "formulations", "paper_formulations")
     parser.add_argument("cases", nargs="*", metavar="CASE", help=f"beginnings of: {'; '.join(CASES)}. Default: all")
-    parser.add_argument("--burnish", type=pathlib.Path, default=ROOT / "build/burnish")
-    parser.add_argument("--out", type=pathlib.Path, default=ROOT / "out/formulations")
-    parser.add_argument("--record", type=pathlib.Path, default=ROOT / "out/paper_formulations.csv")
     parser.add_argument("--offsets", action="store_true", help="held against live offsets instead")
-    parser.add_argument("--print", dest="only_print", action="store_true", help="of the record that is there; runs nothing")
     args = parser.parse_args()
     formulations = OFFSETS if args.offsets else FORMULATIONS
     rows = []

@@ -4,19 +4,16 @@ Runs the scenes, leaves one record per run and prints the table; --print tables 
 The line's load is a fortieth of its scene's: half-width 1 on a radius of 50, where Hertz's parabola and half-spaces hold to 0.1 %. An edge falls somewhere in
 an element; so each figure is the largest error over the last loads, in which the edge runs over one of them. Width: of the half-ellipse with the centre of
 force that the nodal pressures have, which sees the whole zone and no single node; beside it the probe's edge, along a line of nodes."""
-import argparse
 import csv
 import json
 import shutil
 import subprocess
-import pathlib
 
 import h5py
 import numpy
 
-from launch import environment, write_records
+from launch import ROOT, environment, table_parser, write_records
 
-ROOT = pathlib.Path(__file__).resolve().parent.parent
 WITHIN = 1.0  # per cent: what an engineer asks of a width and a peak
 RATIO = 0.8  # of the two bodies' elements, as in the meshes
 LINE_LOAD, LINE_ZONE = 350 / 6.215**2, 1.3  # half-width 1
@@ -116,13 +113,9 @@ def print_table(records):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = table_parser(__doc__, "hertz")
     parser.add_argument("scenes", nargs="*", metavar="SCENE", help=f"of {', '.join(SCENES)}; default: both")
-    parser.add_argument("--burnish", default=str(ROOT / "build/burnish"))
     parser.add_argument("--jobs", type=int, default=1, help="runs at the same time")
-    parser.add_argument("--out", type=pathlib.Path, default=ROOT / "out/hertz")
-    parser.add_argument("--record", type=pathlib.Path, default=ROOT / "out/hertz.csv")
-    parser.add_argument("--print", dest="only_print", action="store_true", help="of the record that is there; runs nothing")
     args = parser.parse_args()
     cases = [(scene, order, faces, *moves, formulation) for scene in args.scenes or SCENES for order, (meshes, moved) in SCENES[scene][7].items() for moves in moved
              for faces in meshes for formulation in FORMULATIONS]

@@ -1,4 +1,5 @@
 """Runs of Burnish for the scripts here: the environment in which mpirun starts, and what a run leaves as Python values."""
+import argparse
 import csv
 import json
 import os
@@ -7,6 +8,7 @@ from concurrent.futures import ThreadPoolExecutor
 
 import numpy
 
+ROOT = pathlib.Path(__file__).resolve().parent.parent
 MPI = {
     "OMPI_ALLOW_RUN_AS_ROOT": "1",
     "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1",
@@ -42,6 +44,16 @@ def read_steps(directory):
     with open(pathlib.Path(directory) / "steps.csv", newline="") as file:
         rows = list(csv.DictReader(file, skipinitialspace=True))
     return {key: numpy.array([float(row[key] or "nan") for row in rows]) for key in rows[0]} if rows else {}
+
+
+def table_parser(description, name, record=None):
+    """Options of a script that runs cases into a record and prints a table of it; its runs go to out/NAME."""
+    parser = argparse.ArgumentParser(description=description, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--burnish", type=pathlib.Path, default=ROOT / "build/burnish")
+    parser.add_argument("--out", type=pathlib.Path, default=ROOT / "out" / name)
+    parser.add_argument("--record", type=pathlib.Path, default=ROOT / "out" / f"{record or name}.csv")
+    parser.add_argument("--print", dest="only_print", action="store_true", help="of the record that is there; runs nothing")
+    return parser
 
 
 def write_records(path, columns, solve, cases, jobs):

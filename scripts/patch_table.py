@@ -4,12 +4,10 @@ the tables; --print tables an existing record.
     python scripts/patch_table.py [--burnish BINARY] [--jobs N] [--record FILE]
 Stress is the one along y in the elements that have a face on the interface, from the displacements in results.h5: the mean over an element's
 quadrature points, and in the record also the largest over the points themselves."""
-import argparse
 import csv
 import functools
 import itertools
 import json
-import pathlib
 import re
 import shutil
 import subprocess
@@ -17,9 +15,8 @@ import subprocess
 import h5py
 import numpy
 
-from launch import environment, write_records
+from launch import ROOT, environment, table_parser, write_records
 
-ROOT = pathlib.Path(__file__).resolve().parent.parent
 SCENE = ROOT / "runs/patch_blocks.yaml"
 E, NU = 1000, 0.3
 STRAINS = {"small": (1.0, ["kinematics=small", "stepping.initial=1"]), "finite": (193.846153846, [])}  # load, how
@@ -160,12 +157,8 @@ def print_tables(records):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--burnish", default=str(ROOT / "build/burnish"))
+    parser = table_parser(__doc__, "patch")
     parser.add_argument("--jobs", type=int, default=1, help="runs at the same time")
-    parser.add_argument("--out", type=pathlib.Path, default=ROOT / "out/patch")
-    parser.add_argument("--record", type=pathlib.Path, default=ROOT / "out/patch.csv")
-    parser.add_argument("--print", dest="only_print", action="store_true", help="of the record that is there; runs nothing")
     args = parser.parse_args()
     if not args.only_print:
         args.out.mkdir(parents=True, exist_ok=True)

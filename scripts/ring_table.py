@@ -7,18 +7,15 @@ matching   meshes whose nodes face each other, beside the rings tied         (wh
 solid      rings in 3D, 14 elements long, away from the free end and near it
 spheres    concentric spheres
 offsets    surface to surface, offsets held and live, in the plane and in 3D       (runs/records/offsets.csv)"""
-import argparse
 import csv
 import json
-import pathlib
 import shutil
 import statistics
 import subprocess
 
 import ring_floor
-from launch import environment, write_records
+from launch import ROOT, environment, table_parser, write_records
 
-ROOT = pathlib.Path(__file__).resolve().parent.parent
 LAME = {"ring_in_ring": 6.439, "ring_in_ring_3d": 5.859, "spheres": 15.224}
 METHODS = {
     "facets": ["contact.0.smoother=facet", "contact.0.formulation=node_to_surface"],
@@ -180,14 +177,10 @@ def print_tables(records):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = table_parser(__doc__, "rings")
     parser.add_argument("tables", nargs="*", metavar="TABLE", help=f"of {', '.join(TABLES)}; default: all")
-    parser.add_argument("--burnish", default=str(ROOT / "build/burnish"))
     parser.add_argument("--ranks", type=int, default=1)
     parser.add_argument("--jobs", type=int, default=1, help="runs at the same time")
-    parser.add_argument("--out", type=pathlib.Path, default=ROOT / "out/rings")
-    parser.add_argument("--record", type=pathlib.Path, default=ROOT / "out/rings.csv")
-    parser.add_argument("--print", dest="only_print", action="store_true", help="of the record that is there; runs nothing")
     args = parser.parse_args()
     unknown = [name for name in args.tables if name not in TABLES]
     if unknown:

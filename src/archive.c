@@ -297,6 +297,34 @@ PetscErrorCode ArchiveIntegers(Archive a, const char *name, PetscInt n, PetscInt
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* ArchiveRealsAt - n numbers that all ranks share, each in its own place. Collective. */
+PetscErrorCode ArchiveRealsAt(Archive a, const char *name, PetscInt n, PetscReal *const *place)
+{
+  PetscReal *values;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(n, &values));
+  for (PetscInt i = 0; i < n; i++) values[i] = *place[i];
+  PetscCall(ArchiveReals(a, name, n, values));
+  for (PetscInt i = 0; i < n; i++) *place[i] = values[i];
+  PetscCall(PetscFree(values));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* ArchiveIntegersAt - n whole numbers that all ranks share, each in its own place. Collective. */
+PetscErrorCode ArchiveIntegersAt(Archive a, const char *name, PetscInt n, PetscInt *const *place)
+{
+  PetscInt *values;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(n, &values));
+  for (PetscInt i = 0; i < n; i++) values[i] = *place[i];
+  PetscCall(ArchiveIntegers(a, name, n, values));
+  for (PetscInt i = 0; i < n; i++) *place[i] = values[i];
+  PetscCall(PetscFree(values));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* ArchiveBoolean - Collective. */
 PetscErrorCode ArchiveBoolean(Archive a, const char *name, PetscBool *value)
 {

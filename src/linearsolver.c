@@ -1,4 +1,5 @@
 #include "linearsolver.h"
+#include "directsolver.h"
 #include "multigrid.h"
 
 /* solver.type auto: iterative above this many unknowns in space. Two thick rings of first-order bricks: equal CPU time at 16,000, at 120,000 a fifth of it
@@ -16,18 +17,6 @@ struct _n_LinearSolver {
   KSP       ksp;
   Multigrid multigrid; /* NULL: direct */
 };
-
-static PetscErrorCode SetDirect(KSP ksp, PetscBool symmetric)
-{
-  PC pc;
-
-  PetscFunctionBeginUser;
-  PetscCall(KSPSetType(ksp, KSPPREONLY));
-  PetscCall(KSPGetPC(ksp, &pc));
-  PetscCall(PCSetType(pc, symmetric ? PCCHOLESKY : PCLU));
-  PetscCall(PCFactorSetMatSolverType(pc, MATSOLVERMUMPS));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
 
 /* GMRES, as a tangent may be indefinite far from equilibrium; preconditioned from the right, so that its residual is the true one. */
 static PetscErrorCode SetIterative(LinearSolver solver, Mesh mesh, PetscBool axisymmetric, PetscBool symmetric)
@@ -58,7 +47,7 @@ PetscErrorCode LinearSolverCreate(KSP ksp, Mesh mesh, Scene scene, PetscBool sym
   (*solver)->ksp = ksp;
   if (type == SOLVER_AUTO) type = mesh->dim == 3 && mesh->dim * mesh->n_global > LINEAR_DIRECT_DOFS ? SOLVER_ITERATIVE : SOLVER_DIRECT;
   if (type == SOLVER_DIRECT)
-    PetscCall(SetDirect(ksp, symmetric));
+    PetscCall(DirectSolverSet(ksp, symmetric));
   else
     PetscCall(SetIterative(*solver, mesh, axisymmetric, symmetric));
   PetscFunctionReturn(PETSC_SUCCESS);

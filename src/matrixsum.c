@@ -1,39 +1,5 @@
 #include "matrixsum.h"
-
-/* One sequential block of an AIJ matrix: its rows ascending in columns */
-typedef struct {
-  Mat             mat;
-  PetscInt        n;                     /* rows */
-  const PetscInt *ptr, *column, *global; /* global: numbers of the columns, NULL: they are their own */
-} Rows;
-
-/* The rows of block `off` of a matrix: 0 the columns of this rank, 1 the others'. *there: PETSC_FALSE where there is no such block. */
-static PetscErrorCode RowsGet(Mat mat, int off, Rows *rows, PetscBool *there)
-{
-  PetscBool parallel, done;
-  Mat       own = mat, others = NULL;
-
-  PetscFunctionBeginUser;
-  *rows = (Rows){.mat = mat};
-  PetscCall(PetscObjectTypeCompare((PetscObject)mat, MATMPIAIJ, &parallel));
-  if (parallel) PetscCall(MatMPIAIJGetSeqAIJ(mat, &own, &others, &rows->global));
-  rows->mat = off ? others : own;
-  if (!off) rows->global = NULL;
-  *there = rows->mat ? PETSC_TRUE : PETSC_FALSE;
-  if (!*there) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(MatGetRowIJ(rows->mat, 0, PETSC_FALSE, PETSC_FALSE, &rows->n, &rows->ptr, &rows->column, &done));
-  PetscCheck(done, PetscObjectComm((PetscObject)mat), PETSC_ERR_SUP, "the matrix shows no rows");
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-static PetscErrorCode RowsRestore(Rows *rows)
-{
-  PetscBool done;
-
-  PetscFunctionBeginUser;
-  PetscCall(MatRestoreRowIJ(rows->mat, 0, PETSC_FALSE, PETSC_FALSE, &rows->n, &rows->ptr, &rows->column, &done));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
+#include "matrixrows.h"
 
 /* Merges a row of K and one of C, both ascending: columns and values of the sum; returns how many. */
 static PetscInt MergeRow(PetscInt m, const PetscInt *i, const PetscScalar *a, PetscInt n, const PetscInt *j, const PetscScalar *b, PetscInt *column,
@@ -112,13 +78,13 @@ PetscErrorCode MatrixSumCreate(Mat K, Mat C, Mat *sum)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static inline PetscInt Column(const Rows *rows, PetscInt k)
+static inline PetscInt Column(const MatrixRows *rows, PetscInt k)
 {
   return rows->global ? rows->global[rows->column[k]] : rows->column[k];
 }
 
 /* y += x row by row, both ascending; every entry of x is in y. */
-static PetscErrorCode RowsAdd(const Rows *x, const PetscScalar *from, const Rows *y, PetscScalar *to)
+static PetscErrorCode RowsAdd(const MatrixRows *x, const PetscScalar *from, const MatrixRows *y, PetscScalar *to)
 {
   PetscFunctionBeginUser;
   for (PetscInt row = 0; row < x->n; row++) {
@@ -135,29 +101,28 @@ static PetscErrorCode RowsAdd(const Rows *x, const PetscScalar *from, const Rows
 }
 
 /* One block of sum := K + C. */
-static PetscErrorCode BlockUpdate(Mat K, Mat C, Mat sum, int off)
+static PetscErrorCode BlockUpdate(Mat K, Mat C, Mat sum, int block)
 {
   const Mat    terms[2] = {K, C};
-  Rows         y, x;
-  PetscBool    there;
+  MatrixRows   y, x;
   PetscScalar *to;
 
   PetscFunctionBeginUser;
-  PetscCall(RowsGet(sum, off, &y, &there));
-  if (!there) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(MatrixRowsGet(sum, block, &y));
+  if (!y.mat) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(MatSeqAIJGetArray(y.mat, &to));
   PetscCall(PetscArrayzero(to, y.ptr[y.n]));
   for (int i = 0; i < 2; i++) {
     const PetscScalar *from;
 
-    PetscCall(RowsGet(terms[i], off, &x, &there));
+    PetscCall(MatrixRowsGet(terms[i], block, &x));
     PetscCall(MatSeqAIJGetArrayRead(x.mat, &from));
     PetscCall(RowsAdd(&x, from, &y, to));
     PetscCall(MatSeqAIJRestoreArrayRead(x.mat, &from));
-    PetscCall(RowsRestore(&x));
+    PetscCall(MatrixRowsRestore(&x));
   }
   PetscCall(MatSeqAIJRestoreArray(y.mat, &to));
-  PetscCall(RowsRestore(&y));
+  PetscCall(MatrixRowsRestore(&y));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -167,7 +132,7 @@ static PetscErrorCode BlockUpdate(Mat K, Mat C, Mat sum, int off)
 PetscErrorCode MatrixSumUpdate(Mat K, Mat C, Mat sum)
 {
   PetscFunctionBeginUser;
-  for (int off = 0; off < 2; off++) PetscCall(BlockUpdate(K, C, sum, off));
+  for (int block = 0; block < MATRIX_BLOCKS; block++) PetscCall(BlockUpdate(K, C, sum, block));
   PetscCall(MatAssemblyBegin(sum, MAT_FINAL_ASSEMBLY)); /* nothing moves: it tells the solver that values are new */
   PetscCall(MatAssemblyEnd(sum, MAT_FINAL_ASSEMBLY));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -1,4 +1,6 @@
 #include "multigrid.h"
+#include "directsolver.h"
+#include "matrixrows.h"
 
 /* The parts have option names of their own: -bodies_... for multigrid, -interface_... for the direct solve */
 #define MULTIGRID_BODIES    "bodies_"
@@ -15,7 +17,7 @@ struct _n_Multigrid {
   PetscInt   n_free, n_all, first; /* rows of this rank: free dofs, all dofs of nodes that have one; the latter's first number of all ranks */
   PetscInt  *row;                  /* of each free dof of this rank: its row among all dofs, counted from first */
   Vec        number;               /* of each free dof: its number among all dofs of all ranks */
-  PetscInt   n_ghosts, *ghost;     /* the same for the operator's columns of other ranks */
+  PetscInt  *ghost;                /* the same for the operator's columns of other ranks */
   Mat        nodes;                /* the operator with all dofs of a node */
   PetscBool  changed, renew;       /* the operator has another pattern than that; its values are wanted */
   PetscInt   applied, usual;       /* iterations since the last operator; of the first one after multigrid was made, 0: not over yet */
@@ -29,7 +31,7 @@ struct _n_Multigrid {
 
 /* ---------- whole nodes ---------- */
 
-/* Numbers all dofs of the nodes of this rank that have a free one; values of the rigid-body modes there. */
+/* Numbers all dofs of the nodes of this rank that have a free one. */
 static PetscErrorCode NumberNodes(Multigrid m)
 {
   const int       dim = m->mesh->dim;
@@ -105,66 +107,60 @@ static PetscErrorCode ModesCreate(Multigrid m, MatNullSpace *modes)
 /* Numbers of the operator's columns of other ranks among all dofs. */
 static PetscErrorCode NumberGhosts(Multigrid m, Mat A)
 {
-  PetscBool          parallel;
-  Mat                others = NULL;
-  const PetscInt    *global = NULL;
+  MatrixRows         rows;
+  PetscInt           n;
   const PetscScalar *value;
   Vec                ghosts;
   IS                 from;
   VecScatter         scatter;
 
   PetscFunctionBeginUser;
-  m->n_ghosts = 0;
-  PetscCall(PetscObjectTypeCompare((PetscObject)A, MATMPIAIJ, &parallel));
-  if (!parallel) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(MatMPIAIJGetSeqAIJ(A, NULL, &others, &global));
-  PetscCall(MatGetSize(others, NULL, &m->n_ghosts));
-  PetscCall(VecCreateSeq(PETSC_COMM_SELF, m->n_ghosts, &ghosts));
-  PetscCall(ISCreateGeneral(PETSC_COMM_SELF, m->n_ghosts, global, PETSC_USE_POINTER, &from));
+  PetscCall(MatrixRowsGet(A, MATRIX_OTHERS, &rows));
+  if (!rows.mat) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(MatGetSize(rows.mat, NULL, &n));
+  PetscCall(VecCreateSeq(PETSC_COMM_SELF, n, &ghosts));
+  PetscCall(ISCreateGeneral(PETSC_COMM_SELF, n, rows.global, PETSC_USE_POINTER, &from));
   PetscCall(VecScatterCreate(m->number, from, ghosts, NULL, &scatter));
   PetscCall(VecScatterBegin(scatter, m->number, ghosts, INSERT_VALUES, SCATTER_FORWARD));
   PetscCall(VecScatterEnd(scatter, m->number, ghosts, INSERT_VALUES, SCATTER_FORWARD));
   PetscCall(PetscFree(m->ghost));
-  PetscCall(PetscMalloc1(m->n_ghosts, &m->ghost));
+  PetscCall(PetscMalloc1(n, &m->ghost));
   PetscCall(VecGetArrayRead(ghosts, &value));
-  for (PetscInt i = 0; i < m->n_ghosts; i++) m->ghost[i] = (PetscInt)PetscRealPart(value[i]);
+  for (PetscInt i = 0; i < n; i++) m->ghost[i] = (PetscInt)PetscRealPart(value[i]);
   PetscCall(VecRestoreArrayRead(ghosts, &value));
   PetscCall(VecScatterDestroy(&scatter));
   PetscCall(ISDestroy(&from));
   PetscCall(VecDestroy(&ghosts));
+  PetscCall(MatrixRowsRestore(&rows));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The columns of this rank (off 0) or of others (1) of the operator: counts its entries per row of all dofs, or sets their values in m->nodes. */
-static PetscErrorCode CopyRows(Multigrid m, Mat A, int off, PetscInt *count)
+/* One block of the operator's rows: counts its entries per row of all dofs, or sets their values in m->nodes. */
+static PetscErrorCode CopyRows(Multigrid m, Mat A, int block, PetscInt *count)
 {
-  Mat                part[2] = {A, NULL};
-  PetscInt           n, room = 0, *column = NULL;
-  const PetscInt    *ptr, *index;
+  MatrixRows         rows;
+  PetscInt           room = 0, *column = NULL;
   const PetscScalar *value;
-  PetscBool          parallel, done;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscObjectTypeCompare((PetscObject)A, MATMPIAIJ, &parallel));
-  if (parallel) PetscCall(MatMPIAIJGetSeqAIJ(A, &part[0], &part[1], NULL));
-  if (!part[off]) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(MatGetRowIJ(part[off], 0, PETSC_FALSE, PETSC_FALSE, &n, &ptr, &index, &done));
-  PetscCall(MatSeqAIJGetArrayRead(part[off], &value));
-  for (PetscInt i = 0; i < n; i++) room = PetscMax(room, ptr[i + 1] - ptr[i]);
+  PetscCall(MatrixRowsGet(A, block, &rows));
+  if (!rows.mat) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(MatSeqAIJGetArrayRead(rows.mat, &value));
+  for (PetscInt i = 0; i < rows.n; i++) room = PetscMax(room, rows.ptr[i + 1] - rows.ptr[i]);
   PetscCall(PetscMalloc1(room, &column));
-  for (PetscInt i = 0; i < n; i++) {
-    const PetscInt row = m->first + m->row[i], entries = ptr[i + 1] - ptr[i];
+  for (PetscInt i = 0; i < rows.n; i++) {
+    const PetscInt row = m->first + m->row[i], first = rows.ptr[i], entries = rows.ptr[i + 1] - first;
 
     if (count) {
       count[m->row[i]] = entries;
       continue;
     }
-    for (PetscInt k = 0; k < entries; k++) column[k] = off ? m->ghost[index[ptr[i] + k]] : m->first + m->row[index[ptr[i] + k]];
-    PetscCall(MatSetValues(m->nodes, 1, &row, entries, column, &value[ptr[i]], INSERT_VALUES));
+    for (PetscInt k = 0; k < entries; k++) column[k] = block == MATRIX_OWN ? m->first + m->row[rows.column[first + k]] : m->ghost[rows.column[first + k]];
+    PetscCall(MatSetValues(m->nodes, 1, &row, entries, column, &value[first], INSERT_VALUES));
   }
   PetscCall(PetscFree(column));
-  PetscCall(MatSeqAIJRestoreArrayRead(part[off], &value));
-  PetscCall(MatRestoreRowIJ(part[off], 0, PETSC_FALSE, PETSC_FALSE, &n, &ptr, &index, &done));
+  PetscCall(MatSeqAIJRestoreArrayRead(rows.mat, &value));
+  PetscCall(MatrixRowsRestore(&rows));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -177,8 +173,8 @@ static PetscErrorCode CreateNodesMatrix(Multigrid m, Mat A)
   PetscFunctionBeginUser;
   PetscCall(NumberGhosts(m, A));
   PetscCall(PetscCalloc2(m->n_all, &own, m->n_all, &others));
-  PetscCall(CopyRows(m, A, 0, own));
-  PetscCall(CopyRows(m, A, 1, others));
+  PetscCall(CopyRows(m, A, MATRIX_OWN, own));
+  PetscCall(CopyRows(m, A, MATRIX_OTHERS, others));
   for (PetscInt i = 0; i < m->n_all; i++) own[i] = PetscMax(own[i], 1);
   PetscCall(MatDestroy(&m->nodes));
   PetscCall(MatCreate(m->mesh->comm, &m->nodes));
@@ -243,8 +239,8 @@ static PetscErrorCode SetUpBodies(Multigrid m, Mat A)
     PetscCall(CreateBodies(m));
     m->changed = PETSC_FALSE;
   }
-  PetscCall(CopyRows(m, A, 0, NULL));
-  PetscCall(CopyRows(m, A, 1, NULL));
+  PetscCall(CopyRows(m, A, MATRIX_OWN, NULL));
+  PetscCall(CopyRows(m, A, MATRIX_OTHERS, NULL));
   PetscCall(SetConstrainedRows(m, A));
   PetscCall(MatAssemblyBegin(m->nodes, MAT_FINAL_ASSEMBLY));
   PetscCall(MatAssemblyEnd(m->nodes, MAT_FINAL_ASSEMBLY));
@@ -344,11 +340,10 @@ static PetscErrorCode SetUpInterface(Multigrid m, Mat A)
   PetscCall(KSPReset(m->direct));
   PetscCall(KSPSetOperators(m->direct, block, block));
   PetscCall(KSPSetUp(m->direct));
-  PetscCall(VecDestroy(&m->interface_right));
-  PetscCall(VecDestroy(&m->interface_left));
-  PetscCall(VecScatterDestroy(&m->to_interface));
-  PetscCall(MatCreateVecs(block, &m->interface_left, &m->interface_right));
-  PetscCall(VecScatterCreate(m->number, m->interface, m->interface_right, NULL, &m->to_interface));
+  if (!m->to_interface) {
+    PetscCall(MatCreateVecs(block, &m->interface_left, &m->interface_right));
+    PetscCall(VecScatterCreate(m->number, m->interface, m->interface_right, NULL, &m->to_interface));
+  }
   PetscCall(MatDestroy(&block));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -403,15 +398,10 @@ static PetscErrorCode Apply(PC pc, Vec right, Vec left)
 
 static PetscErrorCode CreateDirect(Multigrid m)
 {
-  PC pc;
-
   PetscFunctionBeginUser;
   PetscCall(KSPCreate(m->mesh->comm, &m->direct));
   PetscCall(KSPSetOptionsPrefix(m->direct, MULTIGRID_INTERFACE));
-  PetscCall(KSPSetType(m->direct, KSPPREONLY));
-  PetscCall(KSPGetPC(m->direct, &pc));
-  PetscCall(PCSetType(pc, m->symmetric ? PCCHOLESKY : PCLU));
-  PetscCall(PCFactorSetMatSolverType(pc, MATSOLVERMUMPS));
+  PetscCall(DirectSolverSet(m->direct, m->symmetric));
   PetscCall(KSPSetFromOptions(m->direct));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

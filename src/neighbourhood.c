@@ -94,7 +94,7 @@ PetscErrorCode NeighbourhoodsCreate(const SurfaceView *view, Neighbourhoods *out
   PetscCall(PetscMalloc1(n, &edges));
   PetscCall(PetscCalloc1(view->n_facets + 1, &nb->link_ptr));
   ListEdges(view, edges);
-  qsort(edges, n, sizeof(*edges), SharedEdgeCompare);
+  if (n) qsort(edges, n, sizeof(*edges), SharedEdgeCompare);
   PetscCall(PetscMalloc1(2 * LinkFacets(view, n, edges, nb->link_ptr, NULL), &nb->link));
   for (PetscInt f = 0; f < view->n_facets; f++) nb->link_ptr[f + 1] += nb->link_ptr[f];
   LinkFacets(view, n, edges, nb->link_ptr, nb->link);
@@ -169,7 +169,7 @@ PetscErrorCode NeighbourhoodGather(Neighbourhoods nb, PetscInt start, const Pets
       nb->queue[tail++] = g;
     }
   }
-  qsort(nb->reach, count, sizeof(*nb->reach), ReachCompare);
+  if (count) qsort(nb->reach, count, sizeof(*nb->reach), ReachCompare);
   *found = count;
   *n     = PetscMin(count, max);
   for (PetscInt i = 0; i < *n; i++) points[i] = nb->reach[i].point;

@@ -16,11 +16,6 @@
 #define MODEL_MAX_DAMPED 3
 /* Iterations without any change of the set after which steps have their full length again. */
 #define MODEL_STEADY 2
-/* Workspace of MUMPS above its estimate, in per cent. Its own 20 is too little for symmetric systems of a few thousand dofs on four ranks. */
-#define MODEL_MUMPS_WORKSPACE "100"
-/* How MUMPS scales symmetric systems: by the diagonal. Its own choice iterates over rows and columns, which costs a seventh of a factorisation at 10,000
-   dofs; stiff penalties stand on the diagonal. */
-#define MODEL_MUMPS_SCALING "1"
 /* The last tangent serves once more where it should end the solve: the next residual is then about twice this one times the last contraction
    (Deuflhard, Newton Methods for Nonlinear Problems, 2004, sec. 2.2, simplified Newton), with a factor two for what that does not know. */
 #define MODEL_TANGENT_REUSE 4
@@ -311,19 +306,6 @@ static PetscErrorCode ModelSetFromOptions(Model model)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* A value for one of PETSc's options that the user has not given: MUMPS reads them as each new factor is made. */
-static PetscErrorCode SetDefaultOption(const char *name, const char *value)
-{
-  PetscBool given;
-
-  PetscFunctionBeginUser;
-  PetscCall(PetscOptionsHasName(NULL, NULL, name, &given));
-  if (given) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PetscOptionsSetValue(NULL, name, value));
-  PetscCall(PetscOptionsHasName(NULL, NULL, name, &given)); /* asked for, so that it never counts as one that nobody uses */
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 PetscErrorCode ModelCreateSNES(Model model)
 {
   const PetscBool symmetric = LoadsConservative(model->loads);
@@ -344,8 +326,6 @@ PetscErrorCode ModelCreateSNES(Model model)
   PetscCall(SNESGetKSP(model->snes, &ksp));
   PetscCall(LinearSolverCreate(ksp, model->mesh, model->scene, symmetric, &model->work->solver));
   PetscCall(LinearCheckCreate(ksp, model->scene->solver.tolerance, &model->linear));
-  PetscCall(SetDefaultOption("-mat_mumps_icntl_14", MODEL_MUMPS_WORKSPACE));
-  if (symmetric) PetscCall(SetDefaultOption("-mat_mumps_icntl_8", MODEL_MUMPS_SCALING));
   PetscCall(ModelSetFromOptions(model));
   PetscCall(SNESLineSearchGetDamping(search, &model->work->damping));
   PetscFunctionReturn(PETSC_SUCCESS);

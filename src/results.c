@@ -641,46 +641,26 @@ static PetscErrorCode ResultsUsage(Results results, RunUsage *usage)
 /* The last accepted step, and whether there is one. */
 static PetscErrorCode ResultsArchiveStep(Results results, Archive archive)
 {
-  StepRecord     *last    = &results->last;
-  ContactSummary *contact = &last->contact;
-  PetscReal       reals[] = {last->t,
-                             last->dt,
-                             last->residual,
-                             last->beta,
-                             contact->max_penetration,
-                             contact->min_penetration,
-                             contact->max_penetration_over_h,
-                             contact->penalty_min,
-                             contact->penalty_max,
-                             contact->force};
-  PetscInt numbers[] = {last->step, last->attempts, last->newton, last->krylov, last->tied, contact->nodes, contact->in, contact->out, contact->outside_window};
+  StepRecord     *last      = &results->last;
+  ContactSummary *contact   = &last->contact;
+  PetscReal      *real[]    = {&last->t,
+                               &last->dt,
+                               &last->residual,
+                               &last->beta,
+                               &contact->max_penetration,
+                               &contact->min_penetration,
+                               &contact->max_penetration_over_h,
+                               &contact->penalty_min,
+                               &contact->penalty_max,
+                               &contact->force};
+  PetscInt       *integer[] = {&last->step,     &last->attempts, &last->newton, &last->krylov,           &last->tied,
+                               &contact->nodes, &contact->in,    &contact->out, &contact->outside_window};
 
   PetscFunctionBeginUser;
   PetscCall(ArchiveBoolean(archive, "results/stepped", &results->stepped));
   PetscCall(ArchiveBoolean(archive, "results/last_written", &results->written));
-  PetscCall(ArchiveReals(archive, "results/step_reals", PETSC_STATIC_ARRAY_LENGTH(reals), reals));
-  PetscCall(ArchiveIntegers(archive, "results/step_numbers", PETSC_STATIC_ARRAY_LENGTH(numbers), numbers));
-  *last = (StepRecord){
-    .step     = numbers[0],
-    .attempts = numbers[1],
-    .newton   = numbers[2],
-    .krylov   = numbers[3],
-    .tied     = numbers[4],
-    .t        = reals[0],
-    .dt       = reals[1],
-    .residual = reals[2],
-    .beta     = reals[3],
-    .contact  = {.nodes                  = numbers[5],
-                 .in                     = numbers[6],
-                 .out                    = numbers[7],
-                 .outside_window         = numbers[8],
-                 .max_penetration        = reals[4],
-                 .min_penetration        = reals[5],
-                 .max_penetration_over_h = reals[6],
-                 .penalty_min            = reals[7],
-                 .penalty_max            = reals[8],
-                 .force                  = reals[9]}
-  };
+  PetscCall(ArchiveRealsAt(archive, "results/step_reals", PETSC_STATIC_ARRAY_LENGTH(real), real));
+  PetscCall(ArchiveIntegersAt(archive, "results/step_numbers", PETSC_STATIC_ARRAY_LENGTH(integer), integer));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -692,9 +672,9 @@ static PetscErrorCode ResultsArchiveStep(Results results, Archive archive)
 */
 PetscErrorCode ResultsArchive(Results results, Archive archive)
 {
-  RunUsage  usage    = {0};
-  PetscReal used[3]  = {0, 0, 0};
-  PetscInt  restarts = results->restarts;
+  RunUsage   usage    = {0};
+  PetscReal *used[]   = {&usage.wall_s, &usage.cpu_s, &usage.peak_rss_mb};
+  PetscInt   restarts = results->restarts;
 
   PetscFunctionBeginUser;
   if (!ArchiveLoads(archive)) PetscCall(ResultsUsage(results, &usage));
@@ -705,9 +685,6 @@ PetscErrorCode ResultsArchive(Results results, Archive archive)
     results->csv_length[0] = (PetscInt)(length >> LENGTH_BITS);
     results->csv_length[1] = (PetscInt)(length & ((1LL << LENGTH_BITS) - 1));
   }
-  used[0] = usage.wall_s;
-  used[1] = usage.cpu_s;
-  used[2] = usage.peak_rss_mb;
   PetscCall(ResultsArchiveStep(results, archive));
   PetscCall(ArchiveReals(archive, "results/probes", results->scene->n_probes, results->values));
   for (int p = 0; p < results->scene->n_contacts; p++) {
@@ -717,14 +694,11 @@ PetscErrorCode ResultsArchive(Results results, Archive archive)
     PetscCall(ArchiveBoolean(archive, name, &results->met[p]));
   }
   PetscCall(ArchiveIntegers(archive, "results/csv_length", 2, results->csv_length));
-  PetscCall(ArchiveReals(archive, "results/used", 3, used));
+  PetscCall(ArchiveRealsAt(archive, "results/used", PETSC_STATIC_ARRAY_LENGTH(used), used));
   PetscCall(ArchiveReals(archive, "results/seconds", TIMING_KINDS, usage.seconds));
   PetscCall(ArchiveIntegers(archive, "results/restarts", 1, &restarts));
   PetscCall(FieldsArchive(results->fields, archive));
   if (!ArchiveLoads(archive)) PetscFunctionReturn(PETSC_SUCCESS);
-  usage.wall_s      = used[0];
-  usage.cpu_s       = used[1];
-  usage.peak_rss_mb = used[2];
   results->before   = usage;
   results->restarts = restarts + 1;
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -117,29 +117,32 @@ PetscErrorCode RowsWrite(hid_t file, const char *path, hsize_t total, hsize_t fi
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Items of a type as a dataset, `size` bytes a value. */
+static PetscErrorCode WriteItems(hid_t file, const char *path, const Rows *rows, int width, MPI_Datatype unit, hid_t type, size_t size, const void *items)
+{
+  char *values;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1((size_t)rows->n * width * size, &values));
+  PetscCall(RowsCollect(rows, width, unit, items, values));
+  PetscCall(RowsWrite(file, path, (hsize_t)rows->total, (hsize_t)rows->first, (hsize_t)rows->n, width, type, values));
+  PetscCall(PetscFree(values));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* RowsWriteReals - items[rows->items * width] as a dataset of doubles. Collective. */
 PetscErrorCode RowsWriteReals(hid_t file, const char *path, const Rows *rows, int width, const PetscReal *items)
 {
-  PetscReal *values;
-
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc1(rows->n * width, &values));
-  PetscCall(RowsCollect(rows, width, MPIU_REAL, items, values));
-  PetscCall(RowsWrite(file, path, (hsize_t)rows->total, (hsize_t)rows->first, (hsize_t)rows->n, width, H5T_NATIVE_DOUBLE, values));
-  PetscCall(PetscFree(values));
+  PetscCall(WriteItems(file, path, rows, width, MPIU_REAL, H5T_NATIVE_DOUBLE, sizeof(PetscReal), items));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* RowsWriteIntegers - items[rows->items * width] as a dataset of 64-bit integers. Collective. */
 PetscErrorCode RowsWriteIntegers(hid_t file, const char *path, const Rows *rows, int width, const int64_t *items)
 {
-  int64_t *values;
-
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc1(rows->n * width, &values));
-  PetscCall(RowsCollect(rows, width, MPI_INT64_T, items, values));
-  PetscCall(RowsWrite(file, path, (hsize_t)rows->total, (hsize_t)rows->first, (hsize_t)rows->n, width, H5T_NATIVE_INT64, values));
-  PetscCall(PetscFree(values));
+  PetscCall(WriteItems(file, path, rows, width, MPI_INT64_T, H5T_NATIVE_INT64, sizeof(int64_t), items));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -316,25 +316,18 @@ PetscErrorCode LoadStepperSolve(LoadStepper stepper, StepperReport *report)
 PetscErrorCode LoadStepperArchive(LoadStepper stepper, Archive archive)
 {
   StepperReport *report  = &stepper->report;
-  StepSize       size    = stepper->start;
+  StepSize       size    = ArchiveLoads(archive) ? stepper->size : stepper->start;
   PetscReal      initial = size.initial, dt = size.dt;
   PetscReal     *real[]    = {&initial, &dt, &size.beta, &size.together, &size.shortfall, &size.planned, &report->taken, &report->left};
   PetscInt      *integer[] = {
          &report->steps,      &report->steps_failed, &report->steps_repeated, &report->newton_iterations, &report->newton_accepted, &report->krylov_iterations,
          &report->regathered, &report->adjusted,     &report->cuts,           &report->relaxed,           &report->cycles,          &report->cycles_cut,
          &size.tied};
-  PetscReal values[PETSC_STATIC_ARRAY_LENGTH(real)];
-  PetscInt  counts[PETSC_STATIC_ARRAY_LENGTH(integer)];
 
   PetscFunctionBeginUser;
-  for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(real); i++) values[i] = *real[i];
-  for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(integer); i++) counts[i] = *integer[i];
-  PetscCall(ArchiveReals(archive, "stepper/size", PETSC_STATIC_ARRAY_LENGTH(values), values));
-  PetscCall(ArchiveIntegers(archive, "stepper/counts", PETSC_STATIC_ARRAY_LENGTH(counts), counts));
+  PetscCall(ArchiveRealsAt(archive, "stepper/size", PETSC_STATIC_ARRAY_LENGTH(real), real));
+  PetscCall(ArchiveIntegersAt(archive, "stepper/counts", PETSC_STATIC_ARRAY_LENGTH(integer), integer));
   if (!ArchiveLoads(archive)) PetscFunctionReturn(PETSC_SUCCESS);
-  size = stepper->size;
-  for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(real); i++) *real[i] = values[i];
-  for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(integer); i++) *integer[i] = counts[i];
   if (initial == stepper->size.initial) size.dt = PetscMin(size.dt_max, dt);
   stepper->size = size;
   PetscFunctionReturn(PETSC_SUCCESS);

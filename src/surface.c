@@ -204,7 +204,7 @@ static PetscInt KeepSingleEdges(PetscInt n, FaceEdge *edges)
 {
   PetscInt kept = 0;
 
-  qsort(edges, n, sizeof(*edges), FaceEdgeCompare);
+  if (n) qsort(edges, n, sizeof(*edges), FaceEdgeCompare);
   for (PetscInt i = 0; i < n;) {
     PetscInt j = i + 1;
 

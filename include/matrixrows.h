@@ -1,0 +1,15 @@
+/* The rows of an AIJ matrix as it stores them, without a copy: on one rank in one block, on several in two, columns of the rank itself and of others. */
+#pragma once
+#include "petsccompat.h"
+
+typedef struct {
+  Mat             mat;                   /* the block, sequential; NULL: there is none */
+  PetscInt        n;                     /* rows */
+  const PetscInt *ptr, *column, *global; /* columns ascending in every row; global: their numbers, NULL: they are their own */
+} MatrixRows;
+
+enum { MATRIX_OWN, MATRIX_OTHERS, MATRIX_BLOCKS };
+
+/* The rows of one block. Not collective. */
+PetscErrorCode MatrixRowsGet(Mat, int block, MatrixRows *);
+PetscErrorCode MatrixRowsRestore(MatrixRows *);
