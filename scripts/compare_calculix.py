@@ -24,6 +24,8 @@ BRICK_SIDES = ((0, 1, 2, 3), (4, 5, 6, 7), (0, 1, 5, 4), (1, 2, 6, 5), (2, 3, 7,
 PLANE_WIDTH, PLANE_ELEMENTS = 40, 20  # mm; the contact ends at 25
 QUAD_SIDES = ((0, 1), (1, 2), (2, 3), (3, 0))
 SWAPPED = ("contact.0.slave=pipe_outer", "contact.0.master=plate_bottom")
+BY_ITERATIONS = ("stepping.control=iterations", "stepping.initial=0.25", "stepping.at=[]")
+AT_ONCE = ("stepping.initial=1", "stepping.at=[]")
 ENHANCED = ("mesh.order=1", "bodies.0.formulation=enhanced")
 
 
@@ -86,12 +88,19 @@ SETTINGS = [
     pipe("enhanced, 20 steps, swapped, diffuse", 24, 2, 20, 2, "stepping.initial=0.05", "contact.0.smoother=diffuse", *SWAPPED),
     pipe("enhanced, 20 steps, surface to surface", 24, 2, 20, 2, "stepping.initial=0.05", "contact.0.formulation=surface_to_surface"),
     pipe("enhanced, 4 steps", 24, 2, 20, 2, "stepping.initial=0.25"),
+    pipe("enhanced, steps by iterations", 24, 2, 20, 2, *BY_ITERATIONS),
+    pipe("enhanced, steps by iterations, swapped", 24, 2, 20, 2, *BY_ITERATIONS, *SWAPPED),
+    pipe("enhanced, steps by contact", 24, 2, 20, 2, "stepping.control=contact"),
+    pipe("enhanced, steps by contact, swapped", 24, 2, 20, 2, "stepping.control=contact", *SWAPPED),
+    pipe("enhanced, one step", 24, 2, 20, 2, *AT_ONCE),
+    pipe("enhanced, one step, swapped", 24, 2, 20, 2, *AT_ONCE, *SWAPPED),
+    pipe("enhanced, one step, diffuse", 24, 2, 20, 2, *AT_ONCE, "contact.0.smoother=diffuse"),
     pipe("enhanced, 4 steps", 36, 1, 6, 1, "stepping.initial=0.25"),
     pipe("enhanced, 4 steps, diffuse", 36, 1, 6, 1, "stepping.initial=0.25", "contact.0.smoother=diffuse"),
     pipe("enhanced, 4 steps, swapped", 36, 1, 6, 1, "stepping.initial=0.25", *SWAPPED),
     pipe("enhanced, 4 steps, swapped, diffuse", 36, 1, 6, 1, "stepping.initial=0.25", "contact.0.smoother=diffuse", *SWAPPED),
-    pipe("enhanced, steps by iterations", 36, 1, 6, 1, "stepping.control=iterations", "stepping.initial=0.25", "stepping.at=[]"),
-    pipe("enhanced, one step", 36, 1, 6, 1, "stepping.initial=1", "stepping.at=[]"),
+    pipe("enhanced, steps by iterations", 36, 1, 6, 1, *BY_ITERATIONS),
+    pipe("enhanced, one step", 36, 1, 6, 1, *AT_ONCE),
     pipe("second order, 20 steps", 24, 1, 10, 1, "stepping.initial=0.05", order=2),
     pipe("second order, 10 steps", 16, 1, 5, 1, "stepping.initial=0.1", order=2),
     pipe("second order, 4 steps", 16, 1, 5, 1, "stepping.initial=0.25", order=2),
