@@ -2,12 +2,11 @@
 printed from there:
     augment_table.py [--burnish BINARY] [--record FILE] [CASE...]     runs (these cases are added to the record, or replaced there) and prints
     augment_table.py --print [--record FILE]                          prints only"""
-import csv
 import shutil
 import subprocess
 import sys
 
-from launch import ROOT, read_summary, table_parser
+from launch import ROOT, read_records, read_summary, replace_records, table_parser
 
 ITERATIVE = "solver.type=iterative"
 CASES = {  # scene, overrides, bound of the penetration (length), times the automatic penalty: as it is, augmented, probes shown
@@ -51,20 +50,10 @@ def main():
     parser = table_parser(__doc__, "augment")
     parser.add_argument("cases", nargs="*", metavar="CASE", help=f"beginnings of: {'; '.join(CASES)}. Default: all")
     args = parser.parse_args()
-    rows = []
-    if args.record.exists():
-        with open(args.record, newline="") as file:
-            rows = list(csv.DictReader(file))
     for case in [case for case in CASES if not args.only_print and (not args.cases or case.startswith(tuple(args.cases)))]:
         _, _, bound, plain, augmented, _ = CASES[case]
-        rows = [row for row in rows if row["case"] != case] + [record(args, case, *run) for run in [*((scale, "") for scale in plain), *((scale, bound) for scale in augmented)]]
-        with open(args.record, "w", newline="") as file:
-            writer = csv.DictWriter(file, COLUMNS)
-            writer.writeheader()
-            writer.writerows(rows)
-    if args.record.exists():
-        with open(args.record, newline="") as file:
-            table(list(csv.DictReader(file)))
+        replace_records(args.record, COLUMNS, case, [record(args, case, *run) for run in [*((scale, "") for scale in plain), *((scale, bound) for scale in augmented)]])
+    table(read_records(args.record))
 
 
 if __name__ == "__main__":

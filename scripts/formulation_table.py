@@ -3,13 +3,12 @@ failed steps, CPU seconds, results) is printed from there:
     formulation_table.py [--burnish BINARY] [--record FILE] [CASE...]     runs (these cases are added to the record, or replaced there) and prints
     formulation_table.py --print [--record FILE]                          prints only
 With --offsets it is surface to surface with held and with live offsets, on the pipes."""
-import csv
 import json
 import shutil
 import subprocess
 import sys
 
-from launch import ROOT, table_parser
+from launch import ROOT, read_records, replace_records, table_parser
 
 FORMULATIONS = ("node_to_surface", "surface_to_surface")
 OFFSETS = ("held", "live")
@@ -85,20 +84,10 @@ def main():
     parser.add_argument("--offsets", action="store_true", help="held against live offsets instead")
     args = parser.parse_args()
     formulations = OFFSETS if args.offsets else FORMULATIONS
-    rows = []
-    if args.record.exists():
-        with open(args.record, newline="") as file:
-            rows = list(csv.DictReader(file))
     wanted = [case for case in CASES if not args.only_print and (not args.offsets or case.startswith("pipe")) and (not args.cases or case.startswith(tuple(args.cases)))]
     for case in wanted:
-        rows = [row for row in rows if row["case"] != case] + [record(args, case, formulation) for formulation in formulations]
-        with open(args.record, "w", newline="") as file:
-            writer = csv.DictWriter(file, COLUMNS)
-            writer.writeheader()
-            writer.writerows(rows)
-    if args.record.exists():
-        with open(args.record, newline="") as file:
-            table(list(csv.DictReader(file)), formulations)
+        replace_records(args.record, COLUMNS, case, [record(args, case, formulation) for formulation in formulations])
+    table(read_records(args.record), formulations)
 
 
 if __name__ == "__main__":

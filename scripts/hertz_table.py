@@ -12,7 +12,7 @@ import subprocess
 import h5py
 import numpy
 
-from launch import ROOT, environment, table_parser, write_records
+from launch import ROOT, environment, read_records, table_parser, write_records
 
 WITHIN = 1.0  # per cent: what an engineer asks of a width and a peak
 RATIO = 0.8  # of the two bodies' elements, as in the meshes
@@ -122,8 +122,7 @@ def main():
     if not args.only_print:
         args.out.mkdir(parents=True, exist_ok=True)
         write_records(args.record, COLUMNS, lambda case: [solve(case, args)], cases, args.jobs)
-    with open(args.record, newline="") as file:
-        print_table(list(csv.DictReader(file)))
+    print_table(read_records(args.record))
 
 
 if __name__ == "__main__":

@@ -64,3 +64,20 @@ def write_records(path, columns, solve, cases, jobs):
         for records in pool.map(solve, cases):
             writer.writerows(records)
             file.flush()
+
+
+def read_records(path):
+    """The records of a CSV file; none where there is no file yet."""
+    if not pathlib.Path(path).exists():
+        return []
+    with open(path, newline="") as file:
+        return list(csv.DictReader(file))
+
+
+def replace_records(path, columns, case, records):
+    """Puts the records of a case (column `case`) in the place of those a CSV file has of it."""
+    rows = [row for row in read_records(path) if row["case"] != case] + records
+    with open(path, "w", newline="") as file:
+        writer = csv.DictWriter(file, columns)
+        writer.writeheader()
+        writer.writerows(rows)

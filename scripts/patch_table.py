@@ -4,7 +4,6 @@ the tables; --print tables an existing record.
     python scripts/patch_table.py [--burnish BINARY] [--jobs N] [--record FILE]
 Stress is the one along y in the elements that have a face on the interface, from the displacements in results.h5: the mean over an element's
 quadrature points, and in the record also the largest over the points themselves."""
-import csv
 import functools
 import itertools
 import json
@@ -15,7 +14,7 @@ import subprocess
 import h5py
 import numpy
 
-from launch import ROOT, environment, table_parser, write_records
+from launch import ROOT, environment, read_records, table_parser, write_records
 
 SCENE = ROOT / "runs/patch_blocks.yaml"
 E, NU = 1000, 0.3
@@ -163,8 +162,7 @@ def main():
     if not args.only_print:
         args.out.mkdir(parents=True, exist_ok=True)
         write_records(args.record, COLUMNS, lambda case: [solve(case, args)], cases(), args.jobs)
-    with open(args.record, newline="") as file:
-        print_tables(list(csv.DictReader(file)))
+    print_tables(read_records(args.record))
 
 
 if __name__ == "__main__":

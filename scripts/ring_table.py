@@ -7,14 +7,13 @@ matching   meshes whose nodes face each other, beside the rings tied         (wh
 solid      rings in 3D, 14 elements long, away from the free end and near it
 spheres    concentric spheres
 offsets    surface to surface, offsets held and live, in the plane and in 3D       (runs/records/offsets.csv)"""
-import csv
 import json
 import shutil
 import statistics
 import subprocess
 
 import ring_floor
-from launch import ROOT, environment, table_parser, write_records
+from launch import ROOT, environment, read_records, table_parser, write_records
 
 LAME = {"ring_in_ring": 6.439, "ring_in_ring_3d": 5.859, "spheres": 15.224}
 METHODS = {
@@ -189,8 +188,7 @@ def main():
         args.out.mkdir(parents=True, exist_ok=True)
         work = [(table, case) for table in args.tables or TABLES for case in cases(table)]
         write_records(args.record, COLUMNS, lambda entry: solve(*entry, args), work, args.jobs)
-    with open(args.record, newline="") as file:
-        print_tables(list(csv.DictReader(file)))
+    print_tables(read_records(args.record))
 
 
 if __name__ == "__main__":
