@@ -26,8 +26,10 @@ static PetscInt MergeRow(PetscInt row, const MatrixRows *K, const PetscScalar *a
     k += left;
     l += right;
   }
-  if (column) memcpy(&value[count], &a[k], (size_t)(k_end - k) * sizeof(*value));
-  for (PetscInt i = 0; column && i < k_end - k; i++) column[count + i] = first + Column(K, k + i);
+  for (PetscInt i = 0; column && i < k_end - k; i++) {
+    column[count + i] = first + Column(K, k + i);
+    value[count + i]  = a[k + i];
+  }
   return count + k_end - k;
 }
 
