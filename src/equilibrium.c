@@ -107,13 +107,11 @@ static PetscErrorCode ModelStart(Model model, SolveReport *report)
   PetscReal  part;
 
   PetscFunctionBeginUser;
-  if (!work->forecasted) {
+  if (work->forecasted) {
+    part = (model->t - work->accepted_t) / (work->forecast_t - work->accepted_t);
+    PetscCall(VecAXPBYPCZ(model->x, 1 - part, part, 0, work->accepted_x, work->forecast));
+  } else
     PetscCall(ModelPredict(model, report));
-    PetscCall(ModelPredictFar(model, report));
-    PetscFunctionReturn(PETSC_SUCCESS);
-  }
-  part = (model->t - work->accepted_t) / (work->forecast_t - work->accepted_t);
-  PetscCall(VecAXPBYPCZ(model->x, 1 - part, part, 0, work->accepted_x, work->forecast));
   PetscCall(ModelPredictFar(model, report));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
