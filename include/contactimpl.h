@@ -99,6 +99,9 @@ struct _n_Contact {
   PetscLogEvent event_fit, event_offset, event_adjust, event_touch; /* of effects: none where the scene does not call for them */
 };
 
+/* contact.c */
+PetscErrorCode ContactPairProject(Contact, ContactPair *, const PetscReal *u, PetscReal t); /* gaps of all slave points there */
+LawState       ContactTermState(const ContactPair *, PetscInt term, PetscReal t);
 /* contactpair.c */
 PetscErrorCode ContactPairCreate(Mesh, Scene, Elasticity, Loads, const SceneContact *, ContactPair *);
 PetscErrorCode ContactPairDestroy(ContactPair *);

@@ -2,6 +2,7 @@
    is the way from an accepted state to the next one, prediction.c and softstart.c parts of it. */
 #pragma once
 #include "contactcycle.h"
+#include "contactline.h"
 #include "linearsolver.h"
 #include "model.h"
 #include "stabiliser.h"
@@ -29,6 +30,8 @@ typedef struct _n_ModelWork {
   PetscInt     inverted;   /* gmsh's tag of a cell of this rank that was turned inside out in this solve, or -1 */
   PetscBool    near;       /* the iterate is so close that energies differ by round-off only */
   PetscBool    soft;       /* penalties are softened: a residual within MODEL_SOFT_ENOUGH will do */
+  PetscReal    energy;     /* the last one that was evaluated, 0: none was */
+  PetscReal    step;       /* norm of Newton's last step, before the line search */
   PetscReal    norm;       /* residual of the iterate before */
   PetscBool    balanced;   /* the residual of the iterate is within the tolerance */
   PetscInt     renewed;    /* how often that happened in this step */
@@ -41,6 +44,7 @@ typedef struct _n_ModelWork {
   Vec          residual;   /* of a trial point, while near; the tangent's diagonal for a moment */
   Stabiliser   stabiliser; /* NULL: no pair asks for it */
   ContactCycle watch;      /* of the contact set; NULL: no contact */
+  ContactLine  line;       /* contact along a Newton step; NULL: no contact */
 } ModelWork;
 
 /* model.c */
@@ -53,6 +57,9 @@ PetscErrorCode ModelRoundOff(Model, PetscReal *force); /* what round-off leaves 
 PetscErrorCode ModelCreateSNES(Model);
 PetscErrorCode ModelLinearFailure(Model, SolveResult *); /* why the last linear solve failed */
 PetscErrorCode ModelNewton(Model, SolveReport *);        /* SNES once, from model->x; adds what it cost */
+/* linesearch.c */
+PetscErrorCode ModelCreateLineSearch(Model);                             /* what the SNES's line search does where contact cuts a step */
+PetscErrorCode ModelLocateEdge(Model, PetscBool *found, ContactPlace *); /* does a failed iterate rest on an edge between facets? */
 /* prediction.c */
 PetscErrorCode ModelPredict(Model, SolveReport *);     /* model->x at model->t by one linear solve from the accepted state */
 PetscErrorCode ModelPredictFar(Model, SolveReport *);  /* in pieces, where that is too far */

@@ -79,7 +79,7 @@ PetscErrorCode ContactDestroy(Contact *contact)
 
 /* Moves the lists' points to (u, t) and projects every slave point. The gaps stand already where the last evaluation was at the same place:
    three in four, as the solver asks for residual, energy and tangent of each iterate one by one. */
-static PetscErrorCode PairProject(Contact contact, ContactPair *pair, const PetscReal *u, PetscReal t)
+PetscErrorCode ContactPairProject(Contact contact, ContactPair *pair, const PetscReal *u, PetscReal t)
 {
   PetscBool moved;
 
@@ -109,10 +109,16 @@ static void TermPredict(const ContactPair *pair, PetscInt c, PetscReal opening, 
   if (closed || pair->slave_offsets) value->pressure = -value->stiffness * opening;
 }
 
+/* What the law is to know of a term. */
+LawState ContactTermState(const ContactPair *pair, PetscInt c, PetscReal t)
+{
+  return (LawState){PetscMin(pair->most, pair->now.penalty[c]), ContactTermOffset(pair, c, t), pair->now.multiplier[c]};
+}
+
 /* Law, gap (may be NULL) and area of a term in the state of the last projection. */
 static void TermLaw(const ContactPair *pair, PetscInt c, PetscReal t, LawValue *value, PetscReal *gap, PetscReal *area)
 {
-  const LawState  state = {PetscMin(pair->most, pair->now.penalty[c]), ContactTermOffset(pair, c, t), pair->now.multiplier[c]};
+  const LawState  state = ContactTermState(pair, c, t);
   const PetscReal found = ContactTermGap(pair, pair->factor, pair->point_gap, c, area);
 
   *value = (LawValue){0, 0, 0};
@@ -196,7 +202,7 @@ static PetscErrorCode PairResidual(Contact contact, ContactPair *pair, const Pet
   PetscReal *values;
 
   PetscFunctionBeginUser;
-  PetscCall(PairProject(contact, pair, u, t));
+  PetscCall(ContactPairProject(contact, pair, u, t));
   if (f) PetscCall(PetscArrayzero(pair->point_force, pair->lists->n_slaves));
   for (PetscInt c = 0; c < pair->n; c++) {
     LawValue  value;
@@ -277,7 +283,7 @@ PetscErrorCode ContactUnforeseen(Contact contact, const PetscReal *u, PetscReal 
   for (int p = 0; p < contact->n_pairs; p++) {
     ContactPair *pair = &contact->pairs[p];
 
-    PetscCall(PairProject(contact, pair, u, t));
+    PetscCall(ContactPairProject(contact, pair, u, t));
     for (PetscInt c = 0; c < pair->n; c++) {
       LawValue  value;
       PetscReal area;
@@ -502,7 +508,7 @@ static PetscErrorCode PairBlocks(Contact contact, ContactPair *pair, int p, cons
   double(*own)[FITMAP_OWN] = NULL;
 
   PetscFunctionBeginUser;
-  PetscCall(PairProject(contact, pair, u, t));
+  PetscCall(ContactPairProject(contact, pair, u, t));
   PetscCall(PetscMalloc1(pair->n, &terms));
   pair->changes = 0;
   if (pair->fit.degree) PetscCall(PetscCalloc1(pair->lists->n_points, &own));

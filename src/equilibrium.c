@@ -30,6 +30,22 @@ PetscErrorCode ModelMotion(Model model, const PetscReal *u, PetscReal t, PetscRe
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Adds that a slave node rests on an edge between facets, where it does. */
+static PetscErrorCode ModelBlameFacets(Model model, char *text, size_t size, PetscBool *found)
+{
+  ContactPlace place;
+  size_t       used;
+
+  PetscFunctionBeginUser;
+  PetscCall(ModelLocateEdge(model, found, &place));
+  PetscCall(PetscStrlen(text, &used));
+  if (*found)
+    PetscCall(PetscSNPrintf(text + used, size - used,
+                            "; node %" PetscInt_FMT " rests on an edge between two facets, which push it there from either side: no equilibrium is near",
+                            place.tag));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Adds that the penalty is so stiff that rounding alone may keep the residual above the tolerance, where it is. */
 static PetscErrorCode ModelBlamePenalty(Model model, char *text, size_t size)
 {
@@ -52,6 +68,7 @@ static PetscErrorCode ModelExplainFailure(Model model, SolveReport *report)
 {
   const PetscBool adrift = (PetscBool)(report->result == SOLVE_LINEAR || report->result == SOLVE_ADRIFT);
   char            loose[128];
+  PetscBool       edge = PETSC_FALSE;
 
   PetscFunctionBeginUser;
   PetscCall(FailureLocate(model->mesh, model->loads, model->contact, model->work->f, model->work->inverted, &report->failure));
@@ -67,7 +84,8 @@ static PetscErrorCode ModelExplainFailure(Model model, SolveReport *report)
                             !model->contact || report->result == SOLVE_ADRIFT ? "" : " (contact may, from the start or with stabilise: true)"));
   else {
     FailureText(&report->failure, report->detail, sizeof(report->detail));
-    PetscCall(ModelBlamePenalty(model, report->detail, sizeof(report->detail)));
+    PetscCall(ModelBlameFacets(model, report->detail, sizeof(report->detail), &edge));
+    if (!edge) PetscCall(ModelBlamePenalty(model, report->detail, sizeof(report->detail)));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -66,6 +66,7 @@ PetscErrorCode ModelDestroy(Model *model)
   PetscCall(LinearSolverDestroy(&m->work->solver));
   PetscCall(LinearCheckDestroy(&m->linear));
   PetscCall(ContactCycleDestroy(&m->work->watch));
+  PetscCall(ContactLineDestroy(&m->work->line));
   PetscCall(StabiliserDestroy(&m->work->stabiliser));
   PetscCall(VecDestroy(&m->x));
   PetscCall(VecDestroy(&m->work->accepted_x));

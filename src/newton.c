@@ -93,6 +93,7 @@ static PetscErrorCode ModelEnergy(Model model, PetscReal *energy)
   sum[1] = ok ? 0 : 1;
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sum, 2, MPIU_REAL, MPI_SUM, model->mesh->comm));
   *energy = sum[1] > 0 ? MODEL_INVERTED : sum[0];
+  if (!(sum[1] > 0)) model->work->energy = sum[0];
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -326,6 +327,7 @@ PetscErrorCode ModelCreateSNES(Model model)
   PetscCall(SNESSetErrorIfNotConverged(model->snes, PETSC_FALSE));
   PetscCall(SNESGetLineSearch(model->snes, &search));
   PetscCall(SNESLineSearchSetType(search, SNESLINESEARCHBT));
+  PetscCall(ModelCreateLineSearch(model));
   PetscCall(SNESGetKSP(model->snes, &ksp));
   PetscCall(LinearSolverCreate(ksp, model->mesh, model->scene, symmetric, &model->work->solver));
   PetscCall(LinearCheckCreate(ksp, model->scene->solver.tolerance, LinearSolverKept(model->work->solver), &model->linear));
