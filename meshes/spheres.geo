@@ -1,12 +1,13 @@
 // Two concentric hollow spheres of 10-20 and 20-30 mm with an interference, an octant of them. Each is the surface of a cube's corner, n x n x n
 // squares of which three sides count, blown up; the point where they meet has three neighbours. The interface's nodes are points of their
-// own, so that they can be moved within the surface. Lines between points are straight: first order.
+// own, so that they can be moved within the surface; between them run arcs of great circles, on which second-order nodes lie.
 DefineConstant[
   n_inner = {10, Name "elements along a side, inner sphere"}, n_outer = {12, Name "elements along a side, outer sphere"},
   jitter = {0, Name "largest move of an interface node, in face sizes along each direction"}, seed = {1, Name "of the moves"},
   interference = {0.0025, Name "by which the inner sphere is too large"}
 ];
 r_bore = 10; r = 20; r_rim = 30;
+Point(1) = {0, 0, 0};
 n_side[] = {n_inner, n_outer};
 For d In {0 : 2}
   cut~{d}[] = {};
@@ -46,7 +47,7 @@ For b In {0 : 1}
       f = (d + 2) % 3;
       If (c[d] < n && (c[e] == n || c[f] == n))
         For shell In {0 : 1} // kinds 1 to 6: along x, y, z on the inside, then on the outside
-          Line(s + (1 + 3 * shell + d) * count) = {s + shell * count, s + step[d] + shell * count};
+          Circle(s + (1 + 3 * shell + d) * count) = {s + shell * count, 1, s + step[d] + shell * count};
           Transfinite Curve{s + (1 + 3 * shell + d) * count} = 2;
         EndFor
         Curve Loop(s + d * count) = {s, s + (4 + d) * count, -(s + step[d]), -(s + (1 + d) * count)};
@@ -70,7 +71,7 @@ For b In {0 : 1}
         For shell In {0 : 1} // kinds 3, 4: faces of the inside and the outside
           k = 1 + 3 * shell;
           Curve Loop(s + (3 + shell) * count) = {s + (k + e) * count, s + step[e] + (k + f) * count, -(s + step[f] + (k + e) * count), -(s + (k + f) * count)};
-          Surface(s + (3 + shell) * count) = {s + (3 + shell) * count};
+          Surface(s + (3 + shell) * count) = {s + (3 + shell) * count} In Sphere{1};
         EndFor
         Surface Loop(s) = {s + e * count, s + step[f] + e * count, s + f * count, s + step[e] + f * count, s + 3 * count, s + 4 * count};
         Volume(s) = {s};

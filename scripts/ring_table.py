@@ -31,6 +31,7 @@ HEADS = {"facets": "facets", "degree 4": "node to surface", "surface to surface"
 SIDES = ("inner", "outer")
 PLANE_PAIRS = ((16, 20), (32, 40), (40, 32), (24, 48), (48, 24), (24, 30), (30, 24), (36, 25))
 ORDER_PAIRS = {1: ((24, 30), (30, 24), (24, 48)), 2: ((12, 15), (15, 12), (12, 24))}
+SPHERE_PAIRS = ((1, (10, 12)), (2, (5, 6)), (2, (8, 10)))  # the first two with as many nodes
 LENGTH, END = 14, 6  # face sizes: of the rings in 3D, and how far the free end counts
 PROBES = ("mean_pressure", "noise_max", "noise_rms", "noise_end_max", "noise_end_rms")
 COLUMNS = ("table", "scene", "n_inner", "n_outer", "slave", "smoother", "jitter", "seed", "status", "newton", "contact_nodes", "slave_nodes", "wall_s", "fall_backs", *PROBES, "order", "cpu_s")
@@ -58,7 +59,7 @@ def cases(table):
         solid = [("ring_in_ring_3d", 1, pair, slave, method, jitter, 1) for pair in ((24, 30), (30, 24)) for slave in SIDES for method in FORMULATIONS for jitter in (0, 0.25)]
         solid += [("ring_in_ring_3d", 2, (12, 15), slave, method, jitter, 1) for slave in SIDES for method in FORMULATIONS for jitter in (0, 0.25)]
     else:
-        solid = [("spheres", 1, (10, 12), slave, method, jitter, 1) for slave in SIDES for method in FORMULATIONS for jitter in jitters]
+        solid = [("spheres", order, pair, slave, method, jitter, 1) for order, pair in SPHERE_PAIRS for slave in SIDES for method in FORMULATIONS for jitter in jitters]
     return [case for case in solid if case[4] != "facets" or case[1] == 1 and not case[5]]  # facets: hundreds of per cent, in many iterations
 
 
@@ -161,7 +162,7 @@ def print_worst(title, records, methods):
 
 
 def print_tables(records):
-    titles = {"plane12": "Plane strain", "matching": "Plane strain, nodes facing each other", "solid": f"Rings, {LENGTH} faces long, farther than {END} faces from the free end", "spheres": "Spheres"}
+    titles = {"plane12": "Plane strain", "matching": "Plane strain, nodes facing each other", "solid": f"Rings, {LENGTH} faces long, farther than {END} faces from the free end"}
     plane = [r for r in records if r["table"] == "plane"]
     if plane:
         print_plane(plane)
@@ -169,6 +170,10 @@ def print_tables(records):
         found = [r for r in records if r["table"] == name]
         if found:
             print_worst(title, found, (*FORMULATIONS, "tied") if name == "matching" else FORMULATIONS)
+    for _, pair in SPHERE_PAIRS:
+        found = [r for r in records if r["table"] == "spheres" and (int(r["n_inner"]), int(r["n_outer"])) == pair]
+        if found:
+            print_worst(f"Spheres, {pair[0]}/{pair[1]}", found, [m for m in FORMULATIONS if any(r["smoother"] == m for r in found)])
     for scene in ("ring_in_ring", "ring_in_ring_3d"):
         found = [r for r in records if r["table"] == "offsets" and r["scene"] == scene]
         if found:

@@ -17,7 +17,7 @@ ALLOWED = {
         "ring_in_ring_3d": {"0": (2, 0.7, 3), "0.25": (3.5, 1, 3)},
     },
 }
-SECOND_ORDER = {"ring_in_ring": {"0": (4, 2), "0.125": (6, 2), "0.25": (8, 3)}, "ring_in_ring_3d": {"0": (4, 2, 5)}}
+SECOND_ORDER = {"ring_in_ring": {"0": (4, 2), "0.125": (6, 2), "0.25": (8, 3)}, "ring_in_ring_3d": {"0": (4, 2, 5)}, "spheres": {"0": (2, 0.6), "0.25": (2, 0.6)}}
 LONG = {"ring_in_ring_3d": ["mesh.parameters.n_len=14", *(f"probes.{probe}.{key}=6" for probe, key in ((1, "excluding"), (2, "excluding"), (3, "only"), (4, "only")))]}
 SIDES = ["inner", "outer"]
 
