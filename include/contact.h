@@ -88,9 +88,9 @@ PetscErrorCode ContactGather(Contact, const PetscReal *u, PetscReal t, PetscReal
 PetscErrorCode ContactListsReach(Contact, PetscBool *within);
 /* New lists at (u, t) in the middle of a step; offsets stay. Collective. */
 PetscErrorCode ContactListsRenew(Contact, const PetscReal *u, PetscReal t, PetscReal motion);
-/* After ContactResidual() at (u, t): does a fresh search give the same gaps? If not, the fresh lists replace the old. settle: offsets must not lag. Collective.
- */
-PetscErrorCode ContactListsHold(Contact, const PetscReal *u, PetscReal t, PetscReal motion, PetscBool settle, PetscBool *hold);
+/* After ContactResidual() at (u, t): does a fresh search, for `next` motion, give the same gaps? If not, the fresh lists replace the old. motion: since the
+   accepted state; settle: offsets must not lag. Collective. */
+PetscErrorCode ContactListsHold(Contact, const PetscReal *u, PetscReal t, PetscReal motion, PetscReal next, PetscBool settle, PetscBool *hold);
 /* The force that rounding of positions stands for at the largest penalty. Collective. */
 PetscErrorCode ContactRoundOff(Contact, PetscReal *force);
 /* Has new lists' search lost a slave point that was behind its master by more than the face size, since the step began? Its place into text. Collective. */
