@@ -110,6 +110,8 @@ PetscErrorCode ContactResidual(Contact, const PetscReal *u, PetscReal t, PetscRe
 PetscErrorCode ContactTangent(Contact, const PetscReal *u, PetscReal t, Mat *C, PetscBool *changed);
 /* Terms that came, went or changed their stiffness from the tangent before to the last one. Collective. */
 PetscErrorCode ContactTangentChanges(Contact, PetscInt *terms);
+/* What these add to the tangent, N diag(s) N^T: s[terms] and a dense N of so many columns, the caller's. rows: the matrix's on this rank. Collective. */
+PetscErrorCode ContactChangeVectors(Contact, PetscInt rows, PetscInt terms, PetscReal *s, Mat *N);
 /* y += C x with the last tangent, all dofs; rigid tools contribute their motion from t to t_next. x, y local, y complete at owned nodes. Collective. */
 PetscErrorCode ContactMultiply(Contact, const PetscReal *x, PetscReal t, PetscReal t_next, PetscReal *y);
 PetscErrorCode ContactAccept(Contact); /* the present state is the one that ContactRestore() returns to. Not collective */
