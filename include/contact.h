@@ -88,9 +88,9 @@ PetscErrorCode ContactGather(Contact, const PetscReal *u, PetscReal t, PetscReal
 PetscErrorCode ContactListsReach(Contact, PetscBool *within);
 /* New lists at (u, t) in the middle of a step; offsets stay. Collective. */
 PetscErrorCode ContactListsRenew(Contact, const PetscReal *u, PetscReal t, PetscReal motion);
-/* After ContactResidual() at (u, t): does a fresh search give the same gaps? If not, the fresh lists replace the old. settle: offsets must not lag. Collective.
- */
-PetscErrorCode ContactListsHold(Contact, const PetscReal *u, PetscReal t, PetscReal motion, PetscBool settle, PetscBool *hold);
+/* After ContactResidual() at (u, t): does a fresh search, for `next` motion, give the same gaps? If not, the fresh lists replace the old. motion: since the
+   accepted state; settle: offsets must not lag. Collective. */
+PetscErrorCode ContactListsHold(Contact, const PetscReal *u, PetscReal t, PetscReal motion, PetscReal next, PetscBool settle, PetscBool *hold);
 /* The force that rounding of positions stands for at the largest penalty. Collective. */
 PetscErrorCode ContactRoundOff(Contact, PetscReal *force);
 /* Has new lists' search lost a slave point that was behind its master by more than the face size, since the step began? Its place into text. Collective. */
@@ -110,6 +110,8 @@ PetscErrorCode ContactResidual(Contact, const PetscReal *u, PetscReal t, PetscRe
 PetscErrorCode ContactTangent(Contact, const PetscReal *u, PetscReal t, Mat *C, PetscBool *changed);
 /* Terms that came, went or changed their stiffness from the tangent before to the last one. Collective. */
 PetscErrorCode ContactTangentChanges(Contact, PetscInt *terms);
+/* What these add to the tangent, N diag(s) N^T: s[terms] and a dense N of so many columns, the caller's. rows: the matrix's on this rank. Collective. */
+PetscErrorCode ContactChangeVectors(Contact, PetscInt rows, PetscInt terms, PetscReal *s, Mat *N);
 /* y += C x with the last tangent, all dofs; rigid tools contribute their motion from t to t_next. x, y local, y complete at owned nodes. Collective. */
 PetscErrorCode ContactMultiply(Contact, const PetscReal *x, PetscReal t, PetscReal t_next, PetscReal *y);
 PetscErrorCode ContactAccept(Contact); /* the present state is the one that ContactRestore() returns to. Not collective */

@@ -74,17 +74,16 @@ typedef struct {
   PetscReal   *factor;
   int         *seed;
   PetscReal   *point_gap, *point_normal, *point_force;
-  PetscReal   *stiffness;               /* of the terms in the last tangent */
-  PetscInt     changes;                 /* terms of this rank whose stiffness was another one in the tangent before */
-  PetscReal   *force, *normal;          /* of the last residual: normal nodal force, contact normal (n*3) */
-  PetscReal    total[3];                /* and the force on this rank's terms */
-  PetscReal    t;                       /* of the last residual */
-  PetscReal   *pressure, *law_pressure; /* what ContactGetNodes() shows: force over area; of the law */
-  Mixing       mixing;                  /* of the multipliers of one step; NULL: not augmented */
-  PetscBool    projected;               /* there was one with these lists */
-  ContactLost  lost;                    /* since the step began */
-  PetscInt     updates;                 /* times in this step that penalties were adjusted, or pressures became multipliers */
-  ContactWork *work;                    /* shared by all pairs */
+  PetscReal   *stiffness, *stiffness_before; /* of the terms in the last tangent, in the one before */
+  PetscReal   *force, *normal;               /* of the last residual: normal nodal force, contact normal (n*3) */
+  PetscReal    total[3];                     /* and the force on this rank's terms */
+  PetscReal    t;                            /* of the last residual */
+  PetscReal   *pressure, *law_pressure;      /* what ContactGetNodes() shows: force over area; of the law */
+  Mixing       mixing;                       /* of the multipliers of one step; NULL: not augmented */
+  PetscBool    projected;                    /* there was one with these lists */
+  ContactLost  lost;                         /* since the step began */
+  PetscInt     updates;                      /* times in this step that penalties were adjusted, or pressures became multipliers */
+  ContactWork *work;                         /* shared by all pairs */
 } ContactPair;
 
 struct _n_Contact {

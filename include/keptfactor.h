@@ -1,5 +1,6 @@
 /* A factor that serves more than one tangent: where little has changed since it was made, a few iterations of GMRES with it cost less than a new one, and give
-   the same solution. Only of what was solved since the last KeptFactorRenew(), so that a step repeats itself to the last bit. */
+   the same solution; of contact terms that came or went it is told. Only of what was solved since the last KeptFactorRenew(), so that a step repeats itself to
+   the last bit. */
 #pragma once
 #include "petsccompat.h"
 
@@ -16,8 +17,10 @@ PetscErrorCode KeptFactorDestroy(KeptFactor *);
 /* The next tangent is factored, whatever has changed. Not collective. */
 PetscErrorCode KeptFactorRenew(KeptFactor);
 /* Before each solve with a new operator. changes: contact terms that came, went or changed their stiffness since the operator before; pattern: it has a new
-   one. Collective. */
-PetscErrorCode KeptFactorNext(KeptFactor, PetscInt changes, PetscBool pattern);
+   one. *serves: the factor does, and wants to be told of the changes, if there are. Collective. */
+PetscErrorCode KeptFactorNext(KeptFactor, PetscInt changes, PetscBool pattern, PetscBool *serves);
+/* After that: the changes are N diag(s) N^T, N dense. Collective. */
+PetscErrorCode KeptFactorUpdate(KeptFactor, Mat N, const PetscReal *s);
 /* The residual (2-norm) with which the nonlinear solver will be content. Logically collective. */
 PetscErrorCode KeptFactorSetEnough(KeptFactor, PetscReal residual);
 /* Before the KSP sets up for a solve. Logically collective. */

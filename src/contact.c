@@ -510,16 +510,15 @@ static PetscErrorCode PairBlocks(Contact contact, ContactPair *pair, int p, cons
   PetscFunctionBeginUser;
   PetscCall(ContactPairProject(contact, pair, u, t));
   PetscCall(PetscMalloc1(pair->n, &terms));
-  pair->changes = 0;
   if (pair->fit.degree) PetscCall(PetscCalloc1(pair->lists->n_points, &own));
   PetscCall(PetscArrayzero(pair->point_force, pair->lists->n_slaves));
   for (PetscInt c = 0; c < pair->n; c++) {
     LawValue value;
 
     TermLaw(pair, c, t, &value, NULL, &terms[c].area);
-    terms[c].stiffness = value.stiffness;
-    pair->changes += value.stiffness != pair->stiffness[c];
-    pair->stiffness[c] = value.stiffness;
+    terms[c].stiffness        = value.stiffness;
+    pair->stiffness_before[c] = pair->stiffness[c];
+    pair->stiffness[c]        = value.stiffness;
     TermPress(pair, c, TermTurningPressure(pair, c, t, &value));
   }
   if (pair->slaves->face_sf) PetscCall(SharedBlocks(contact, pair, p, terms, own));
@@ -563,16 +562,6 @@ PetscErrorCode ContactTangent(Contact contact, const PetscReal *u, PetscReal t, 
   PetscCall(BlockMatrixAssemble(contact->blocks, size, dof, C, changed));
   PetscCall(PetscFree(dof));
   PetscCall(PetscLogEventEnd(contact->event_tangent, 0, 0, 0, 0));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* ContactTangentChanges - terms of all ranks that came, went or changed their stiffness between the last two calls of ContactTangent(). Collective. */
-PetscErrorCode ContactTangentChanges(Contact contact, PetscInt *terms)
-{
-  PetscFunctionBeginUser;
-  *terms = 0;
-  for (int p = 0; p < contact->n_pairs; p++) *terms += contact->pairs[p].changes;
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, terms, 1, MPIU_INT, MPI_SUM, contact->mesh->comm));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -263,9 +263,10 @@ PetscErrorCode ContactListsRenew(Contact contact, const PetscReal *u, PetscReal 
 
 /* ContactListsHold - whether lists made afresh at the solution say the same of every term as those it was found with.
 
-   Collective. u, t: of the last ContactResidual() with forces; motion: as of ContactGather(), which may take the fresh lists. *hold: the same on
-   all ranks; if it is PETSC_FALSE the fresh lists of all pairs, and fresh offsets, have replaced the old, and the problem is to be solved again. */
-PetscErrorCode ContactListsHold(Contact contact, const PetscReal *u, PetscReal t, PetscReal motion, PetscBool settle, PetscBool *hold)
+   Collective. u, t: of the last ContactResidual() with forces; motion: since the accepted state (length); next: that the fresh lists must be good for, as
+   ContactGather() may take them for the next step. *hold: the same on all ranks; if it is PETSC_FALSE the fresh lists of all pairs, and fresh offsets, have
+   replaced the old, and the problem is to be solved again. */
+PetscErrorCode ContactListsHold(Contact contact, const PetscReal *u, PetscReal t, PetscReal motion, PetscReal next, PetscBool settle, PetscBool *hold)
 {
   int agree = 1;
 
@@ -273,7 +274,7 @@ PetscErrorCode ContactListsHold(Contact contact, const PetscReal *u, PetscReal t
   PetscCall(PetscLogEventBegin(contact->event_search, 0, 0, 0, 0));
   for (int p = 0; p < contact->n_pairs; p++) {
     ContactPair *pair   = &contact->pairs[p];
-    PetscReal    needed = motion;
+    PetscReal    needed = next;
     PetscBool    agrees = PETSC_TRUE;
 
     PetscCall(PairMotion(contact, pair, t, &needed));

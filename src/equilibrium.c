@@ -138,10 +138,11 @@ static PetscErrorCode ModelStart(Model model, SolveReport *report)
 PetscErrorCode ModelRenewLists(Model model, PetscBool settle, PetscBool *hold)
 {
   ModelWork *work = model->work;
-  PetscReal  motion;
+  PetscReal  motion, next;
 
   PetscFunctionBeginUser;
   PetscCall(ModelMotion(model, work->trial, model->t, &motion));
+  next = MODEL_MOTION_SAFETY * motion;
   if (motion > work->expected) motion *= 2; /* two bodies that the lists at the start did not let meet may have passed through each other */
   TimingBegin(TIMING_SEARCH);
   *hold = PETSC_FALSE;
@@ -149,7 +150,7 @@ PetscErrorCode ModelRenewLists(Model model, PetscBool settle, PetscBool *hold)
     work->renewed++;
     PetscCall(ContactListsRenew(model->contact, work->trial, model->t, motion));
   } else
-    PetscCall(ContactListsHold(model->contact, work->trial, model->t, motion, settle, hold));
+    PetscCall(ContactListsHold(model->contact, work->trial, model->t, motion, PetscMax(motion, next), settle, hold));
   TimingEnd(TIMING_SEARCH);
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -1,8 +1,9 @@
 #include "keptfactor.h"
+#include "rankupdate.h"
 
-/* A factor is kept while at most so many contact terms have come, gone or changed their stiffness since it was made. Each is a change of rank one, which GMRES
-   takes about one iteration for; up to three, 2 to 7 iterations do on pipe_pinch (facets and fits alike), from four on 9 to 60. */
-#define KEPT_CHANGES 3
+/* A factor is kept while at most so many contact terms have come, gone or changed their stiffness since it was made. Each is a change of rank one, for which
+   its update takes a fifth of a solve. */
+#define KEPT_CHANGES 24
 /* A new factor costs as much as 8 (plane problems of some thousand unknowns) to 20 (blocks of 100,000) solves with one: more iterations than these are given
  * up. */
 #define KEPT_ITERATIONS 8
@@ -14,6 +15,7 @@
 
 struct _n_KeptFactor {
   KSP        ksp, gmres;
+  RankUpdate update;  /* of the factor to the present contact terms; NULL: none */
   PetscBool  exists;  /* a factor of this step */
   PetscBool  serves;  /* it is of an older operator than the present one */
   PetscBool  stale;   /* and that one had another pattern */
@@ -39,10 +41,25 @@ static PetscErrorCode Converged(KSP gmres, PetscInt it, PetscReal norm, KSPConve
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* The factor, and its update. */
+static PetscErrorCode Precondition(PC shell, Vec b, Vec x)
+{
+  KeptFactor kept;
+  PC         pc;
+
+  PetscFunctionBeginUser;
+  PetscCall(PCShellGetContext(shell, &kept));
+  PetscCall(KSPGetPC(kept->ksp, &pc));
+  PetscCall(PCApply(pc, b, x));
+  if (kept->update) PetscCall(RankUpdateApply(kept->update, x));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* KeptFactorCreate - Collective. The KSP is borrowed; destroy what is kept after it. */
 PetscErrorCode KeptFactorCreate(KSP ksp, KeptFactor *out)
 {
   KeptFactor kept;
+  PC         shell;
 
   PetscFunctionBeginUser;
   PetscCall(PetscNew(&kept));
@@ -53,6 +70,10 @@ PetscErrorCode KeptFactorCreate(KSP ksp, KeptFactor *out)
   PetscCall(KSPSetTolerances(kept->gmres, PETSC_DEFAULT, PETSC_DEFAULT, PETSC_DEFAULT, KEPT_ITERATIONS));
   PetscCall(KSPSetConvergenceTest(kept->gmres, Converged, kept, NULL));
   PetscCall(KSPSetInitialGuessNonzero(kept->gmres, PETSC_TRUE));
+  PetscCall(KSPGetPC(kept->gmres, &shell));
+  PetscCall(PCSetType(shell, PCSHELL));
+  PetscCall(PCShellSetContext(shell, kept));
+  PetscCall(PCShellSetApply(shell, Precondition));
   *out = kept;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -63,6 +84,7 @@ PetscErrorCode KeptFactorDestroy(KeptFactor *kept)
   PetscFunctionBeginUser;
   if (!*kept) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(KSPDestroy(&(*kept)->gmres));
+  PetscCall(RankUpdateDestroy(&(*kept)->update));
   PetscCall(PetscFree(*kept));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -97,20 +119,23 @@ static PetscErrorCode IsDirect(KSP ksp, PetscBool *direct)
 }
 
 /* The factor is, or will be, the present operator's. */
-static void Begin(KeptFactor kept)
+static PetscErrorCode Begin(KeptFactor kept)
 {
+  PetscFunctionBeginUser;
   kept->exists  = PETSC_TRUE;
   kept->serves  = PETSC_FALSE;
   kept->stale   = PETSC_FALSE;
   kept->changes = 0;
   kept->counts.made++;
+  PetscCall(RankUpdateDestroy(&kept->update));
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* KeptFactorNext - decides whether the factor at hand serves the next operator.
 
-   Collective. changes: the same on all ranks, since the operator before. A pattern that is new makes the solver forget its symbolic factorisation, once there
-   is a new factor to be made. */
-PetscErrorCode KeptFactorNext(KeptFactor kept, PetscInt changes, PetscBool pattern)
+   Collective. changes: the same on all ranks, since the operator before. A pattern that is new makes the solver forget its symbolic factorisation,
+   once there is a new factor to be made. */
+PetscErrorCode KeptFactorNext(KeptFactor kept, PetscInt changes, PetscBool pattern, PetscBool *serves)
 {
   PetscBool direct;
 
@@ -120,7 +145,21 @@ PetscErrorCode KeptFactorNext(KeptFactor kept, PetscInt changes, PetscBool patte
   kept->stale  = (PetscBool)(kept->stale || pattern);
   kept->serves = (PetscBool)(direct && kept->exists && kept->changes <= KEPT_CHANGES);
   if (!kept->serves && kept->stale) PetscCall(KSPReset(kept->ksp));
-  if (!kept->serves) Begin(kept);
+  if (!kept->serves) PetscCall(Begin(kept));
+  *serves = kept->serves;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* KeptFactorUpdate - Collective. N and s as of RankUpdateAdd(). */
+PetscErrorCode KeptFactorUpdate(KeptFactor kept, Mat N, const PetscReal *s)
+{
+  PC  pc;
+  Mat factored;
+
+  PetscFunctionBeginUser;
+  PetscCall(KSPGetPC(kept->ksp, &pc));
+  PetscCall(PCFactorGetMatrix(pc, &factored));
+  PetscCall(RankUpdateAdd(&kept->update, factored, N, s));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -142,7 +181,7 @@ static PetscErrorCode SolveAnew(KeptFactor kept, PC pc, Mat A, Vec b, Vec x, Pet
   PetscCall(PCSetOperators(pc, A, A));
   PetscCall(PCSetReusePreconditioner(pc, PETSC_FALSE));
   PetscCall(PCSetUp(pc));
-  Begin(kept);
+  PetscCall(Begin(kept));
   PetscCall(PCGetFailedReason(pc, &reason));
   *failed = reason ? PETSC_TRUE : PETSC_FALSE;
   if (!reason) PetscCall(PCApply(pc, b, x));
@@ -163,7 +202,7 @@ PetscErrorCode KeptFactorSolve(KeptFactor kept, Mat A, Vec b, Vec x, PetscReal *
   if (!kept->serves || right == 0) PetscFunctionReturn(PETSC_SUCCESS);
   kept->target = PetscMax(KEPT_TOLERANCE * right, KEPT_SHARE * kept->enough);
   PetscCall(KSPGetPC(kept->ksp, &pc));
-  PetscCall(KSPSetPC(kept->gmres, pc));
+  if (kept->update) PetscCall(RankUpdateApply(kept->update, x));
   PetscCall(KSPSetOperators(kept->gmres, A, A));
   PetscCall(KSPSolve(kept->gmres, b, x));
   PetscCall(KSPGetConvergedReason(kept->gmres, &reason));

@@ -83,11 +83,12 @@ PetscErrorCode LinearSolverOrder(LinearSolver solver, Mat K)
 
 /* LinearSolverNext - what is known of the next operator K + C before it is solved with.
 
-   Collective. C: its contact part, NULL: none; pattern: the operator has a new one; changes: see KeptFactorNext(). */
-PetscErrorCode LinearSolverNext(LinearSolver solver, Mat C, PetscBool pattern, PetscInt changes)
+   Collective. C: its contact part, NULL: none; pattern: the operator has a new one; changes, *older: see KeptFactorNext(). */
+PetscErrorCode LinearSolverNext(LinearSolver solver, Mat C, PetscBool pattern, PetscInt changes, PetscBool *older)
 {
   PetscFunctionBeginUser;
-  if (solver->kept) PetscCall(KeptFactorNext(solver->kept, changes, pattern));
+  *older = PETSC_FALSE;
+  if (solver->kept) PetscCall(KeptFactorNext(solver->kept, changes, pattern, older));
   if (!solver->kept && pattern) PetscCall(KSPReset(solver->ksp));
   if (solver->multigrid && C) PetscCall(MultigridSetContact(solver->multigrid, C, pattern));
   PetscFunctionReturn(PETSC_SUCCESS);

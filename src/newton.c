@@ -134,11 +134,28 @@ static PetscErrorCode ModelAddContact(Model model, Mat K, Mat C, PetscBool chang
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Tells an older factor which contact terms have come and gone. */
+static PetscErrorCode ModelUpdateFactor(Model model, PetscInt terms)
+{
+  PetscInt   rows;
+  PetscReal *s;
+  Mat        N;
+
+  PetscFunctionBeginUser;
+  PetscCall(VecGetLocalSize(model->x, &rows));
+  PetscCall(PetscMalloc1(terms, &s));
+  PetscCall(ContactChangeVectors(model->contact, rows, terms, s, &N));
+  PetscCall(KeptFactorUpdate(LinearSolverKept(model->work->solver), N, s));
+  PetscCall(MatDestroy(&N));
+  PetscCall(PetscFree(s));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* The tangent at (u, t) into model->A. */
 PetscErrorCode ModelTangent(Model model, const PetscReal *u, PetscReal t)
 {
   Mat       K, C = NULL;
-  PetscBool changed = PETSC_FALSE;
+  PetscBool changed = PETSC_FALSE, older;
   PetscInt  terms   = 0;
 
   PetscFunctionBeginUser;
@@ -158,7 +175,8 @@ PetscErrorCode ModelTangent(Model model, const PetscReal *u, PetscReal t)
     PetscCall(StabiliserTangent(model->work->stabiliser, model->A));
     TimingEnd(TIMING_ASSEMBLY_CONTACT);
   }
-  PetscCall(LinearSolverNext(model->work->solver, C, changed, terms));
+  PetscCall(LinearSolverNext(model->work->solver, C, changed, terms, &older));
+  if (older && terms > 0) PetscCall(ModelUpdateFactor(model, terms));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
