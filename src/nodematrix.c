@@ -9,16 +9,15 @@
 /* Matrices that the pattern is joined with: of other ranks' blocks, and what NodeMatrixJoin() is given */
 enum { TERM_FOREIGN, TERM_OTHER, TERMS };
 
-/* The arrays of one block of the matrix: columns of the rank itself, or of others */
+/* The arrays of one block of the matrix: columns of the rank itself, or of others; alone: entries that the pairs take without other terms */
 typedef struct {
-  PetscInt    *ptr, *column, room;
+  PetscInt    *ptr, *column, room, alone;
   PetscScalar *value;
 } NodeBlock;
 
 /* Columns of one row, ascending: those of ranks before, of this one, of ranks after */
 typedef struct {
   PetscInt *column, n, before, own;
-  PetscBool plain; /* they are the pairs', in their order */
 } NodeRow;
 
 struct _n_NodeMatrix {
@@ -26,12 +25,20 @@ struct _n_NodeMatrix {
   NodePairs    pairs;
   PetscInt     rows, first; /* of this rank */
   PetscInt    *node;        /* of each row, -1: this rank has no pairs for it */
+  PetscBool   *inner;       /* of each node: its pairs' columns are all of this rank, in ascending order */
+  PetscBool   *placed;      /* and its places are those of a row without other terms */
+  PetscInt     longest;     /* entries of a row without other terms */
   PetscInt    *place;       /* of each pair and dof of its column in the row: k: in the rank's own block, -1 - k: in the other ranks' */
   NodeBlock    block[MATRIX_BLOCKS];
   Mat          matrix, foreign; /* foreign: sum of what ranks have for rows of others; NULL: there is one rank */
   PetscInt     n_foreign, *foreign_node, foreign_pairs;
   PetscScalar *foreign_value;
 };
+
+static PetscBool IsMine(NodeMatrix m, PetscInt dof)
+{
+  return (PetscBool)(dof >= m->first && dof < m->first + m->rows);
+}
 
 /* ---------- rows of other ranks ---------- */
 
@@ -96,7 +103,7 @@ static PetscErrorCode FindNodes(NodeMatrix m)
     for (int d = 0; d < p->size; d++) {
       const PetscInt dof = p->dof[node * p->size + d];
 
-      if (dof >= m->first && dof < m->first + m->rows)
+      if (IsMine(m, dof))
         m->node[dof - m->first] = node;
       else
         foreign = (PetscBool)(foreign || dof >= 0);
@@ -106,6 +113,32 @@ static PetscErrorCode FindNodes(NodeMatrix m)
     m->foreign_pairs += p->ptr[node + 1] - p->ptr[node];
   }
   PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* What the pairs of each node of this rank are alone, without other terms. */
+static void LookAtPairs(NodeMatrix m)
+{
+  const NodePairs *p = &m->pairs;
+
+  for (PetscInt r = 0; r < m->rows; r++) {
+    const PetscInt node = m->node[r];
+    PetscInt       last = m->first - 1, own = 0, others = 0;
+    PetscBool      rising = PETSC_TRUE;
+
+    for (PetscInt k = node < 0 ? 0 : p->ptr[node] * p->size; node >= 0 && k < p->ptr[node + 1] * p->size; k++) {
+      const PetscInt dof = p->dof[p->column[k / p->size] * p->size + k % p->size];
+
+      if (dof < 0) continue;
+      own += IsMine(m, dof);
+      others += !IsMine(m, dof);
+      rising = (PetscBool)(rising && dof > last);
+      last   = dof;
+    }
+    m->block[MATRIX_OWN].alone += own;
+    m->block[MATRIX_OTHERS].alone += others;
+    m->longest = PetscMax(m->longest, own + others);
+    if (node >= 0) m->inner[node] = (PetscBool)(rising && !others);
+  }
 }
 
 /* NodeMatrixCreate - what the ranks' pairs need; the matrix itself is made by NodeMatrixJoin().
@@ -124,6 +157,8 @@ PetscErrorCode NodeMatrixCreate(MPI_Comm comm, PetscInt rows, const NodePairs *p
   PetscCallMPI(MPI_Scan(&rows, &m->first, 1, MPIU_INT, MPI_SUM, comm));
   m->first -= rows;
   PetscCall(FindNodes(m));
+  PetscCall(PetscCalloc2(pairs->n, &m->inner, pairs->n, &m->placed));
+  LookAtPairs(m);
   PetscCall(PetscMalloc1(pairs->ptr[pairs->n] * pairs->size, &m->place));
   PetscCallMPI(MPI_Comm_size(comm, &size));
   if (size > 1) PetscCall(CreateForeign(m));
@@ -143,48 +178,28 @@ PetscErrorCode NodeMatrixDestroy(NodeMatrix *matrix)
   for (int b = 0; b < MATRIX_BLOCKS; b++) PetscCall(PetscFree(m->block[b].ptr));
   for (int b = 0; b < MATRIX_BLOCKS; b++) PetscCall(PetscFree2(m->block[b].column, m->block[b].value));
   PetscCall(PetscFree2(m->node, m->foreign_node));
+  PetscCall(PetscFree2(m->inner, m->placed));
   PetscCall(PetscFree(m->foreign_value));
   PetscCall(PetscFree(m->place));
   PetscCall(PetscFree(*matrix));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* How many columns of its own and of other ranks a node's pairs have. */
-static void CountColumns(NodeMatrix m, PetscInt node, PetscInt count[MATRIX_BLOCKS])
-{
-  const NodePairs *p = &m->pairs;
-
-  count[MATRIX_OWN] = count[MATRIX_OTHERS] = 0;
-  for (PetscInt k = node < 0 ? 0 : p->ptr[node]; node >= 0 && k < p->ptr[node + 1]; k++) {
-    for (int c = 0; c < p->size; c++) {
-      const PetscInt dof = p->dof[p->column[k] * p->size + c];
-
-      count[MATRIX_OWN] += dof >= m->first && dof < m->first + m->rows;
-      count[MATRIX_OTHERS] += dof >= m->first + m->rows || (dof >= 0 && dof < m->first);
-    }
-  }
-}
-
 /* Makes room for the pattern; *longest: room that a row needs. */
 static PetscErrorCode TakeRoom(NodeMatrix m, MatrixRows terms[TERMS][MATRIX_BLOCKS], PetscInt *longest)
 {
-  PetscInt count[MATRIX_BLOCKS] = {0, 0}, need[MATRIX_BLOCKS] = {0, 0};
+  PetscInt need[MATRIX_BLOCKS] = {m->block[MATRIX_OWN].alone, m->block[MATRIX_OTHERS].alone}, most = 0;
 
   PetscFunctionBeginUser;
-  *longest = 0;
-  for (PetscInt r = 0; r < m->rows; r++) {
-    PetscInt length = 0;
-
-    if (!r || m->node[r] != m->node[r - 1]) CountColumns(m, m->node[r], count);
+  for (int t = 0; t < TERMS; t++) {
     for (int b = 0; b < MATRIX_BLOCKS; b++) {
-      PetscInt n = count[b];
+      const MatrixRows *term = &terms[t][b];
 
-      for (int t = 0; t < TERMS; t++) n += terms[t][b].mat ? terms[t][b].ptr[r + 1] - terms[t][b].ptr[r] : 0;
-      need[b] += n;
-      length += n;
+      for (PetscInt r = 0; term->mat && r < m->rows; r++) most = PetscMax(most, term->ptr[r + 1] - term->ptr[r]);
+      need[b] += term->mat ? term->ptr[m->rows] : 0;
     }
-    *longest = PetscMax(*longest, length);
   }
+  *longest = m->longest + TERMS * MATRIX_BLOCKS * most;
   for (int b = 0; b < MATRIX_BLOCKS; b++) {
     NodeBlock *block = &m->block[b];
 
@@ -201,14 +216,13 @@ static PetscErrorCode TakeRoom(NodeMatrix m, MatrixRows terms[TERMS][MATRIX_BLOC
 static PetscErrorCode GatherRow(NodeMatrix m, PetscInt r, MatrixRows terms[TERMS][MATRIX_BLOCKS], NodeRow *row)
 {
   const NodePairs *p    = &m->pairs;
-  const PetscInt   node = m->node[r], end = m->first + m->rows;
-  PetscInt         n = 0, of_pairs;
+  const PetscInt   node = m->node[r];
+  PetscInt         n    = 0;
 
   PetscFunctionBeginUser;
   for (PetscInt k = node < 0 ? 0 : p->ptr[node]; node >= 0 && k < p->ptr[node + 1]; k++)
     for (int c = 0; c < p->size; c++)
       if (p->dof[p->column[k] * p->size + c] >= 0) row->column[n++] = p->dof[p->column[k] * p->size + c];
-  of_pairs = n;
   for (int t = 0; t < TERMS; t++) {
     for (int b = 0; b < MATRIX_BLOCKS; b++) {
       const MatrixRows *term = &terms[t][b];
@@ -217,51 +231,92 @@ static PetscErrorCode GatherRow(NodeMatrix m, PetscInt r, MatrixRows terms[TERMS
         row->column[n++] = term->global ? term->global[term->column[l]] : m->first + term->column[l];
     }
   }
-  PetscCall(PetscSortedInt(n, row->column, &row->plain));
-  row->plain = (PetscBool)(row->plain && n == of_pairs);
-  if (!row->plain) PetscCall(PetscSortRemoveDupsInt(&n, row->column));
+  PetscCall(PetscSortRemoveDupsInt(&n, row->column));
   row->n = n;
   for (row->before = 0; row->before < n && row->column[row->before] < m->first;) row->before++;
-  for (row->own = 0; row->before + row->own < n && row->column[row->before + row->own] < end;) row->own++;
+  for (row->own = 0; row->before + row->own < n && IsMine(m, row->column[row->before + row->own]);) row->own++;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* Tells the pairs of a row their places in it. */
 static PetscErrorCode PlacePairs(NodeMatrix m, PetscInt node, const NodeRow *row)
 {
-  const NodePairs *p  = &m->pairs;
-  PetscInt         at = -1;
+  const NodePairs *p = &m->pairs;
 
   PetscFunctionBeginUser;
-  for (PetscInt k = p->ptr[node]; k < p->ptr[node + 1]; k++) {
-    for (int c = 0; c < p->size; c++) {
-      const PetscInt dof   = p->dof[p->column[k] * p->size + c];
-      PetscInt      *place = &m->place[k * p->size + c];
+  for (PetscInt k = p->ptr[node] * p->size; k < p->ptr[node + 1] * p->size; k++) {
+    const PetscInt dof = p->dof[p->column[k / p->size] * p->size + k % p->size];
+    PetscInt       at;
 
-      *place = NODE_MATRIX_NONE;
-      if (dof < 0) continue;
-      at++;
-      if (!row->plain) PetscCall(PetscFindInt(dof, row->n, row->column, &at));
-      *place = at < row->before ? -1 - at : at < row->before + row->own ? at - row->before : -1 - (at - row->own);
-    }
+    m->place[k] = NODE_MATRIX_NONE;
+    if (dof < 0) continue;
+    PetscCall(PetscFindInt(dof, row->n, row->column, &at));
+    m->place[k] = at < row->before ? -1 - at : at < row->before + row->own ? at - row->before : -1 - (at - row->own);
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Writes the columns of a row into the arrays of the blocks, in the numbering that PETSc wants: its own from 0. */
-static PetscErrorCode AppendRow(NodeMatrix m, PetscInt r, const NodeRow *row)
+/* A row of any kind, after those before it; the columns in the numbering that PETSc wants, its own from 0. */
+static PetscErrorCode AppendRow(NodeMatrix m, PetscInt r, MatrixRows terms[TERMS][MATRIX_BLOCKS], NodeRow *row)
 {
-  NodeBlock     *own = &m->block[MATRIX_OWN], *others = &m->block[MATRIX_OTHERS];
-  PetscInt      *column = &own->column[own->ptr[r]];
-  const PetscInt after  = row->before + row->own;
+  NodeBlock *own = &m->block[MATRIX_OWN], *others = &m->block[MATRIX_OTHERS];
+  PetscInt  *mine = &own->column[own->ptr[r]], *column = &others->column[others->ptr[r]], after;
 
   PetscFunctionBeginUser;
-  for (PetscInt k = 0; k < row->own; k++) column[k] = row->column[row->before + k] - m->first;
-  PetscCall(PetscArraycpy(&others->column[others->ptr[r]], row->column, row->before));
-  PetscCall(PetscArraycpy(&others->column[others->ptr[r] + row->before], &row->column[after], row->n - after));
+  PetscCall(GatherRow(m, r, terms, row));
+  if (m->node[r] >= 0) PetscCall(PlacePairs(m, m->node[r], row));
+  if (m->node[r] >= 0) m->placed[m->node[r]] = PETSC_FALSE;
+  after = row->before + row->own;
+  for (PetscInt k = 0; k < row->own; k++) mine[k] = row->column[row->before + k] - m->first;
+  PetscCall(PetscArraycpy(column, row->column, row->before));
+  PetscCall(PetscArraycpy(&column[row->before], &row->column[after], row->n - after));
   own->ptr[r + 1]    = own->ptr[r] + row->own;
   others->ptr[r + 1] = others->ptr[r] + row->n - row->own;
   PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* A row of an inner node that no term shares, most rows of a large matrix: nothing to be sorted or looked for. */
+static void AppendInner(NodeMatrix m, PetscInt r)
+{
+  const NodePairs *p   = &m->pairs;
+  NodeBlock       *own = &m->block[MATRIX_OWN], *others = &m->block[MATRIX_OTHERS];
+  const PetscInt   node   = m->node[r];
+  PetscInt        *column = &own->column[own->ptr[r]], n = 0;
+
+  for (PetscInt k = p->ptr[node]; k < p->ptr[node + 1]; k++) {
+    const PetscInt *dof = &p->dof[p->column[k] * p->size];
+
+    for (int c = 0; c < p->size; c++) {
+      if (!m->placed[node]) m->place[k * p->size + c] = dof[c] < 0 ? NODE_MATRIX_NONE : n;
+      if (dof[c] >= 0) column[n++] = dof[c] - m->first;
+    }
+  }
+  m->placed[node]    = PETSC_TRUE;
+  own->ptr[r + 1]    = own->ptr[r] + n;
+  others->ptr[r + 1] = others->ptr[r];
+}
+
+/* A row as the one before it, of the same node. */
+static PetscErrorCode AppendSame(NodeMatrix m, PetscInt r)
+{
+  PetscFunctionBeginUser;
+  for (int b = 0; b < MATRIX_BLOCKS; b++) {
+    NodeBlock     *block = &m->block[b];
+    const PetscInt from = block->ptr[r - 1], to = block->ptr[r];
+
+    PetscCall(PetscArraycpy(&block->column[to], &block->column[from], to - from));
+    block->ptr[r + 1] = to + to - from;
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Does some term have entries in this row? */
+static PetscBool IsShared(PetscInt r, MatrixRows terms[TERMS][MATRIX_BLOCKS])
+{
+  for (int t = 0; t < TERMS; t++)
+    for (int b = 0; b < MATRIX_BLOCKS; b++)
+      if (terms[t][b].mat && terms[t][b].ptr[r + 1] > terms[t][b].ptr[r]) return PETSC_TRUE;
+  return PETSC_FALSE;
 }
 
 /* The arrays become the matrix, under the handle that is known. */
@@ -304,11 +359,12 @@ PetscErrorCode NodeMatrixJoin(NodeMatrix m, Mat other)
   PetscCall(PetscMalloc1(longest, &row.column));
   for (int b = 0; b < MATRIX_BLOCKS; b++) m->block[b].ptr[0] = 0;
   for (PetscInt r = 0; r < m->rows; r++) {
-    if (!r || m->node[r] < 0 || m->node[r] != m->node[r - 1]) {
-      PetscCall(GatherRow(m, r, terms, &row));
-      if (m->node[r] >= 0) PetscCall(PlacePairs(m, m->node[r], &row));
-    }
-    PetscCall(AppendRow(m, r, &row));
+    if (r && m->node[r] >= 0 && m->node[r] == m->node[r - 1])
+      PetscCall(AppendSame(m, r));
+    else if (m->node[r] >= 0 && m->inner[m->node[r]] && !IsShared(r, terms))
+      AppendInner(m, r);
+    else
+      PetscCall(AppendRow(m, r, terms, &row));
   }
   PetscCall(PetscFree(row.column));
   for (int t = 0; t < TERMS; t++)
