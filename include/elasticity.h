@@ -1,7 +1,7 @@
 /* The elastic problem: element kernels over the local cells, their residual, energy and tangent. Knows no contact.
 
    The tangent is summed into one rank-local block CSR over local nodes (ghost rows included, every dof, supports too) and handed on:
-   ElasticityMatrix() to a parallel AIJ matrix over the free dofs by COO, ElasticityMultiplyLocal() to the prescribed dofs. */
+   ElasticityMatrix() to a parallel AIJ matrix over the free dofs, ElasticityMultiplyLocal() to the prescribed dofs. */
 #pragma once
 #include "mesh.h"
 
@@ -21,9 +21,11 @@ PetscErrorCode ElasticityAddBlock(Elasticity, PetscInt n, const PetscInt nodes[]
 PetscErrorCode ElasticityMultiplyLocal(Elasticity, const PetscReal *x, PetscReal *y);
 /* Whether the tangent is symmetric (default: yes); no as soon as somebody adds unsymmetric blocks. Before the first ElasticityMatrix(). */
 PetscErrorCode ElasticitySetSymmetric(Elasticity, PetscBool);
-/* The matrix over the global free dofs, pattern fixed for the run: created by the first call, filled from the local block CSR. The
-   elasticity keeps ownership. Collective. */
+/* The matrix over the global free dofs: created by the first call, filled from the local block CSR. The elasticity keeps ownership. Collective. */
 PetscErrorCode ElasticityMatrix(Elasticity, Mat *);
+/* Room in it for the entries of another matrix, before the next ElasticityMatrix(); and these added, after it. Collective. */
+PetscErrorCode ElasticityMatrixJoin(Elasticity, Mat);
+PetscErrorCode ElasticityMatrixAdd(Elasticity, Mat);
 /* Cauchy stress at the nodes: in each cell the least-squares fit by the corner shape functions to the quadrature points' stress, averaged
    over the cells around a node by their volume (of each body apart is not needed: bodies share no nodes). stress n_nodes*6 (xx yy zz xy yz
    xz; axisymmetric rr zz hoop rz) and the weights n_nodes are set to this rank's share, to be summed over ranks and divided by the caller. */

@@ -1,4 +1,5 @@
 #include "blockmatrix.h"
+#include "nodematrix.h"
 
 /* A pattern is kept while it holds what the blocks need, with zeros elsewhere, and is at most this many times as large: a new one costs the sum with
    other matrices and the solver's analysis (half of a factorisation at 10,000 dofs), a zero costs fill. Contact that moves on seldom reaches it. */
@@ -32,14 +33,14 @@ struct _n_BlockMatrix {
   Block      *block;
   PetscInt   *entry;
   BlockPiece *pieces;
-  Mat         matrix;
+  NodeMatrix  matrix;
   PetscInt    n_pattern, *pattern; /* of the blocks: number of nodes and nodes' keys of block after block; key: the first dof, -1 without any */
   PetscInt    n_nodes, *key, *dof; /* of the matrix: keys ascending, dofs (n_nodes*size) */
   PetscInt   *pair_ptr, *pair;     /* blocks overlap: every pair of nodes once, row by row, ascending */
   PetscInt   *mirror;              /* of the pairs below the diagonal: the pair with row and column swapped */
   PetscInt   *row_ptr, *target;    /* of each node, its rows in the blocks; where these are added */
   BlockRow   *row;
-  PetscReal  *sum;      /* over the pairs, row of dofs by row of dofs */
+  PetscReal  *sum;      /* over the pairs, block by block */
   PetscBool   restored; /* the matrix is not the one that its user knows */
 };
 
@@ -74,7 +75,7 @@ PetscErrorCode BlockMatrixDestroy(BlockMatrix *blocks)
   PetscCall(PetscFree((*blocks)->target));
   PetscCall(PetscFree((*blocks)->row));
   PetscCall(PetscFree((*blocks)->sum));
-  PetscCall(MatDestroy(&(*blocks)->matrix));
+  PetscCall(NodeMatrixDestroy(&(*blocks)->matrix));
   PetscCall(PetscFree(*blocks));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -256,7 +257,7 @@ static PetscErrorCode ListPairs(BlockMatrix blocks, const PetscInt *number, Pets
         pair[n++]    = column;
       }
     }
-    PetscCall(PetscSortInt(n - blocks->pair_ptr[r], &pair[blocks->pair_ptr[r]])); /* the parallel matrix sorts them sooner when they are sorted */
+    PetscCall(PetscSortInt(n - blocks->pair_ptr[r], &pair[blocks->pair_ptr[r]])); /* so the matrix need not sort its rows */
   }
   blocks->pair_ptr[blocks->n_nodes] = n;
   PetscCall(PetscMalloc1(n, &blocks->pair));
@@ -341,44 +342,32 @@ static PetscErrorCode PlacePattern(BlockMatrix blocks, const PetscInt *const dof
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* A matrix of `rows` rows on this rank with the pairs that are listed; entries without a dof are left out by PETSc. */
+/* A matrix of `rows` rows on this rank with the pairs that are listed. */
 static PetscErrorCode CreateMatrix(BlockMatrix blocks, PetscInt rows)
 {
-  const int size = blocks->size;
-  PetscInt *i, *j, n, at = 0;
+  const NodePairs pairs = {blocks->size, blocks->n_nodes, blocks->dof, blocks->pair_ptr, blocks->pair};
 
   PetscFunctionBeginUser;
-  PetscCall(MatDestroy(&blocks->matrix));
-  PetscCall(MatCreate(blocks->comm, &blocks->matrix));
-  PetscCall(MatSetSizes(blocks->matrix, rows, rows, PETSC_DETERMINE, PETSC_DETERMINE));
-  PetscCall(MatSetType(blocks->matrix, MATAIJ));
-  n = blocks->pair_ptr[blocks->n_nodes] * PetscSqr(size);
+  PetscCall(NodeMatrixDestroy(&blocks->matrix));
+  PetscCall(NodeMatrixCreate(blocks->comm, rows, &pairs, &blocks->matrix));
+  PetscCall(NodeMatrixJoin(blocks->matrix, NULL));
   PetscCall(PetscFree(blocks->sum));
-  PetscCall(PetscMalloc1(n, &blocks->sum));
-  PetscCall(PetscMalloc2(n, &i, n, &j));
-  for (PetscInt row = 0; row < blocks->n_nodes * size; row++) {
-    for (PetscInt k = blocks->pair_ptr[row / size] * size; k < blocks->pair_ptr[row / size + 1] * size; k++, at++) {
-      i[at] = blocks->dof[row];
-      j[at] = blocks->dof[blocks->pair[k / size] * size + k % size];
-    }
-  }
-  PetscCall(MatSetPreallocationCOO(blocks->matrix, n, i, j));
-  PetscCall(PetscFree2(i, j));
+  PetscCall(PetscMalloc1(blocks->pair_ptr[blocks->n_nodes] * PetscSqr(blocks->size), &blocks->sum));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* Adds one row of nodes of a block to the sums of its node; size and outer constants where this is called, so that the loops over a node's dofs unroll. */
 static inline void SumRow(const int size, const PetscBool outer, PetscInt m, PetscInt node, const PetscReal *value, PetscInt n, const PetscInt *target,
-                          PetscInt stride, PetscReal *sum)
+                          PetscReal *sum)
 {
   const PetscReal *row = outer ? value : value + node * size * m;
 
   for (PetscInt k = 0; k < n; k++) {
     const PetscReal *from = row + target[2 * k] * size;
-    PetscReal       *to   = sum + target[2 * k + 1] * size;
+    PetscReal       *to   = sum + target[2 * k + 1] * size * size;
 
     for (int d = 0; d < size; d++)
-      for (int e = 0; e < size; e++) to[d * stride + e] += outer ? value[node * size + d] * from[e] : from[d * m + e];
+      for (int e = 0; e < size; e++) to[d * size + e] += outer ? value[node * size + d] * from[e] : from[d * m + e];
   }
 }
 
@@ -388,15 +377,12 @@ static void Mirror(BlockMatrix blocks)
   const int size = blocks->size;
 
   for (PetscInt r = 0; r < blocks->n_nodes; r++) {
-    const PetscInt first = blocks->pair_ptr[r], stride = (blocks->pair_ptr[r + 1] - first) * size;
-
-    for (PetscInt k = first; k < blocks->pair_ptr[r + 1] && blocks->pair[k] < r; k++) {
-      const PetscInt   c = blocks->pair[k], start = blocks->pair_ptr[c], width = (blocks->pair_ptr[c + 1] - start) * size;
-      const PetscReal *from = &blocks->sum[first * PetscSqr(size) + (k - first) * size];
-      PetscReal       *to   = &blocks->sum[start * PetscSqr(size) + (blocks->mirror[k] - start) * size];
+    for (PetscInt k = blocks->pair_ptr[r]; k < blocks->pair_ptr[r + 1] && blocks->pair[k] < r; k++) {
+      const PetscReal *from = &blocks->sum[k * PetscSqr(size)];
+      PetscReal       *to   = &blocks->sum[blocks->mirror[k] * PetscSqr(size)];
 
       for (int d = 0; d < size; d++)
-        for (int e = 0; e < size; e++) to[e * width + d] = from[d * stride + e];
+        for (int e = 0; e < size; e++) to[e * size + d] = from[d * size + e];
     }
   }
 }
@@ -409,8 +395,7 @@ static PetscErrorCode SumBlocks(BlockMatrix blocks)
   PetscFunctionBeginUser;
   PetscCall(PetscArrayzero(blocks->sum, blocks->pair_ptr[blocks->n_nodes] * PetscSqr(size)));
   for (PetscInt r = 0; r < blocks->n_nodes; r++) {
-    const PetscInt   first = blocks->pair_ptr[r], stride = (blocks->pair_ptr[r + 1] - first) * size;
-    PetscReal *const sum = &blocks->sum[first * PetscSqr(size)];
+    PetscReal *const sum = &blocks->sum[blocks->pair_ptr[r] * PetscSqr(size)];
 
     for (PetscInt k = blocks->row_ptr[r]; k < blocks->row_ptr[r + 1]; k++) {
       const BlockRow  *row    = &blocks->row[k];
@@ -419,11 +404,11 @@ static PetscErrorCode SumBlocks(BlockMatrix blocks)
       const PetscInt  *target = &blocks->target[2 * row->first_target];
 
       if (size == 3 && block->outer)
-        SumRow(3, PETSC_TRUE, block->m, row->node, value, row->targets, target, stride, sum);
+        SumRow(3, PETSC_TRUE, block->m, row->node, value, row->targets, target, sum);
       else if (size == 3)
-        SumRow(3, PETSC_FALSE, block->m, row->node, value, row->targets, target, stride, sum);
+        SumRow(3, PETSC_FALSE, block->m, row->node, value, row->targets, target, sum);
       else
-        SumRow(size, block->outer, block->m, row->node, value, row->targets, target, stride, sum);
+        SumRow(size, block->outer, block->m, row->node, value, row->targets, target, sum);
     }
   }
   Mirror(blocks);
@@ -456,8 +441,8 @@ PetscErrorCode BlockMatrixAssemble(BlockMatrix blocks, PetscInt rows, const Pets
     PetscCall(CreateMatrix(blocks, rows));
   }
   PetscCall(SumBlocks(blocks));
-  PetscCall(MatSetValuesCOO(blocks->matrix, blocks->sum, INSERT_VALUES));
-  *matrix          = blocks->matrix;
+  PetscCall(NodeMatrixSet(blocks->matrix, blocks->sum));
+  *matrix          = NodeMatrixGet(blocks->matrix);
   *changed         = all && !blocks->restored ? PETSC_FALSE : PETSC_TRUE;
   blocks->restored = PETSC_FALSE;
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -1,6 +1,7 @@
 /* Assembly of the elastic problem from batched element kernels. */
 #include "elasticity.h"
 #include "elementkernel.h"
+#include "nodematrix.h"
 
 /* PREFETCH_PAIRS: how many pairs of nodes ahead blocks are asked for; the scattered blocks come from main memory, 4 hides most of the wait */
 enum { MAX_DOFS = ELEMENT_MAX_NODES * 3, BYTES_OF_CACHE_LINE = 64, PREFETCH_PAIRS = 4 };
@@ -30,7 +31,7 @@ struct _n_Elasticity {
   void      *buffer;       /* what u, f and K are in */
   PetscInt   inverted;     /* a local cell that the last residual found inverted, or -1 */
   PetscBool  symmetric;
-  Mat        matrix;
+  NodeMatrix matrix;
 };
 
 static PetscLogEvent event_residual, event_tangent, event_insert;
@@ -273,7 +274,7 @@ PetscErrorCode ElasticityDestroy(Elasticity *elasticity)
   PetscCall(PetscFree(e->column));
   PetscCall(PetscFree(e->value));
   PetscCall(PetscFree(e->buffer));
-  PetscCall(MatDestroy(&e->matrix));
+  PetscCall(NodeMatrixDestroy(&e->matrix));
   PetscCall(PetscFree(*elasticity));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -526,38 +527,28 @@ static PetscErrorCode CountOwnedDofs(Mesh mesh, const PetscInt *dofs, PetscInt *
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Entry k of the block CSR's values becomes entry k of the COO format; constrained dofs have negative numbers and are left out by PETSc */
+/* A pattern joined with that of another matrix (NULL: none). */
+static PetscErrorCode JoinPattern(Elasticity e, Mat other)
+{
+  PetscFunctionBeginUser;
+  PetscCall(NodeMatrixJoin(e->matrix, other));
+  if (e->symmetric) {
+    PetscCall(MatSetOption(NodeMatrixGet(e->matrix), MAT_SYMMETRIC, PETSC_TRUE));
+    PetscCall(MatSetOption(NodeMatrixGet(e->matrix), MAT_SYMMETRY_ETERNAL, PETSC_TRUE));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 static PetscErrorCode CreateMatrix(Elasticity e)
 {
-  const int        dim     = e->dim;
-  const PetscCount entries = (PetscCount)e->row[e->mesh->n_nodes] * dim * dim;
-  const PetscInt  *dofs;
-  PetscInt        *i, *j, owned;
-  PetscCount       k = 0;
+  NodePairs pairs = {e->dim, e->mesh->n_nodes, NULL, e->row, e->column};
+  PetscInt  owned;
 
   PetscFunctionBeginUser;
-  PetscCall(MeshGetGlobalDofs(e->mesh, &dofs));
-  PetscCall(CountOwnedDofs(e->mesh, dofs, &owned));
-  PetscCall(PetscMalloc2(entries, &i, entries, &j));
-  for (PetscInt n = 0; n < e->mesh->n_nodes; n++) {
-    for (PetscInt m = e->row[n]; m < e->row[n + 1]; m++) {
-      for (int r = 0; r < dim; r++) {
-        for (int c = 0; c < dim; c++, k++) {
-          i[k] = dofs[n * dim + r];
-          j[k] = dofs[e->column[m] * dim + c];
-        }
-      }
-    }
-  }
-  PetscCall(MatCreate(e->mesh->comm, &e->matrix));
-  PetscCall(MatSetSizes(e->matrix, owned, owned, PETSC_DETERMINE, PETSC_DETERMINE));
-  PetscCall(MatSetType(e->matrix, MATAIJ));
-  PetscCall(MatSetPreallocationCOO(e->matrix, entries, i, j));
-  PetscCall(PetscFree2(i, j));
-  if (e->symmetric) {
-    PetscCall(MatSetOption(e->matrix, MAT_SYMMETRIC, PETSC_TRUE));
-    PetscCall(MatSetOption(e->matrix, MAT_SYMMETRY_ETERNAL, PETSC_TRUE));
-  }
+  PetscCall(MeshGetGlobalDofs(e->mesh, &pairs.dof));
+  PetscCall(CountOwnedDofs(e->mesh, pairs.dof, &owned));
+  PetscCall(NodeMatrixCreate(e->mesh->comm, owned, &pairs, &e->matrix));
+  PetscCall(JoinPattern(e, NULL));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -570,16 +561,48 @@ static PetscErrorCode CreateMatrix(Elasticity e)
 . e - the elasticity
 
   Output:
-. matrix - a parallel AIJ matrix with a fixed pattern; belongs to the elasticity
+. matrix - a parallel AIJ matrix, always the same one; belongs to the elasticity
 */
 PetscErrorCode ElasticityMatrix(Elasticity e, Mat *matrix)
 {
   PetscFunctionBeginUser;
   if (!e->matrix) PetscCall(CreateMatrix(e));
   PetscCall(PetscLogEventBegin(event_insert, 0, 0, 0, 0));
-  PetscCall(MatSetValuesCOO(e->matrix, e->value, INSERT_VALUES));
+  PetscCall(NodeMatrixSet(e->matrix, e->value));
   PetscCall(PetscLogEventEnd(event_insert, 0, 0, 0, 0));
-  *matrix = e->matrix;
+  *matrix = NodeMatrixGet(e->matrix);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*
+  ElasticityMatrixJoin - Makes room in the matrix for what another one adds to it
+
+  Collective; after the first ElasticityMatrix(). Values are undefined until the next one
+
+  Input:
++ e - the elasticity
+- C - an AIJ matrix over the global free dofs, in which all dofs of a node are coupled to the same ones
+*/
+PetscErrorCode ElasticityMatrixJoin(Elasticity e, Mat C)
+{
+  PetscFunctionBeginUser;
+  PetscCall(JoinPattern(e, C));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*
+  ElasticityMatrixAdd - Adds a matrix to what ElasticityMatrix() has made
+
+  Collective
+
+  Input:
++ e - the elasticity
+- C - its entries have their places in the pattern
+*/
+PetscErrorCode ElasticityMatrixAdd(Elasticity e, Mat C)
+{
+  PetscFunctionBeginUser;
+  PetscCall(NodeMatrixAdd(e->matrix, C));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -22,7 +22,6 @@ PetscErrorCode ModelCreate(Scene scene, Mesh mesh, Model *out)
 {
   Model          model;
   const PetscInt n = mesh->n_nodes * mesh->dim;
-  Mat            K;
 
   PetscFunctionBeginUser;
   PetscCall(PetscNew(&model));
@@ -35,13 +34,7 @@ PetscErrorCode ModelCreate(Scene scene, Mesh mesh, Model *out)
   if (scene->n_contacts) PetscCall(ContactCreate(mesh, scene, model->elasticity, model->loads, &model->contact));
   PetscCall(PetscCalloc4(n, &model->u, n, &model->work->f, n, &model->work->trial, n, &model->work->accepted_u));
   PetscCall(ElasticityTangent(model->elasticity, model->u));
-  PetscCall(ElasticityMatrix(model->elasticity, &K));
-  if (model->contact)
-    PetscCall(MatDuplicate(K, MAT_COPY_VALUES, &model->A));
-  else {
-    PetscCall(PetscObjectReference((PetscObject)K));
-    model->A = K;
-  }
+  PetscCall(ElasticityMatrix(model->elasticity, &model->A));
   PetscCall(MatCreateVecs(model->A, &model->x, NULL));
   PetscCall(VecDuplicate(model->x, &model->work->accepted_x));
   PetscCall(VecDuplicate(model->x, &model->work->forecast));
@@ -72,7 +65,6 @@ PetscErrorCode ModelDestroy(Model *model)
   PetscCall(VecDestroy(&m->work->accepted_x));
   PetscCall(VecDestroy(&m->work->forecast));
   PetscCall(VecDestroy(&m->work->residual));
-  PetscCall(MatDestroy(&m->A));
   PetscCall(ContactDestroy(&m->contact));
   PetscCall(ElasticityDestroy(&m->elasticity));
   PetscCall(LoadsDestroy(&m->loads));

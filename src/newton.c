@@ -1,5 +1,4 @@
 #include "modelimpl.h"
-#include "matrixsum.h"
 #include "refusal.h"
 #include "timing.h"
 
@@ -119,18 +118,15 @@ static PetscErrorCode ModelObjective(SNES snes, Vec x, PetscReal *objective, voi
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* A = K + C. A new contact pattern makes a new matrix under the old handle. */
-static PetscErrorCode ModelAddContact(Model model, Mat K, Mat C, PetscBool changed)
+/* The contact part C of the tangent at (u, t), with its place in the matrix; how many of its terms are other ones. */
+static PetscErrorCode ModelContactTangent(Model model, const PetscReal *u, PetscReal t, Mat *C, PetscBool *changed, PetscInt *terms)
 {
-  Mat B;
-
   PetscFunctionBeginUser;
-  if (changed) {
-    PetscCall(MatrixSumCreate(K, C, &B));
-    PetscCall(MatHeaderReplace(model->A, &B));
-  } else
-    PetscCall(MatrixSumUpdate(K, C, model->A));
-  PetscCall(MatSetOption(model->A, MAT_SYMMETRIC, LoadsConservative(model->loads)));
+  TimingBegin(TIMING_ASSEMBLY_CONTACT);
+  PetscCall(ContactTangent(model->contact, u, t, C, changed));
+  if (*changed) PetscCall(ElasticityMatrixJoin(model->elasticity, *C));
+  PetscCall(ContactTangentChanges(model->contact, terms));
+  TimingEnd(TIMING_ASSEMBLY_CONTACT);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -154,27 +150,26 @@ static PetscErrorCode ModelUpdateFactor(Model model, PetscInt terms)
 /* The tangent at (u, t) into model->A. */
 PetscErrorCode ModelTangent(Model model, const PetscReal *u, PetscReal t)
 {
-  Mat       K, C = NULL;
+  Mat       C       = NULL;
   PetscBool changed = PETSC_FALSE, older;
   PetscInt  terms   = 0;
 
   PetscFunctionBeginUser;
+  if (model->contact) PetscCall(ModelContactTangent(model, u, t, &C, &changed, &terms));
   TimingBegin(TIMING_ASSEMBLY_ELASTIC);
   PetscCall(ElasticityTangent(model->elasticity, u));
   PetscCall(LoadsTangent(model->loads, t, u, model->elasticity));
-  PetscCall(ElasticityMatrix(model->elasticity, &K));
-  PetscCall(MatGetDiagonal(K, model->work->residual));
+  PetscCall(ElasticityMatrix(model->elasticity, &model->A));
+  PetscCall(MatGetDiagonal(model->A, model->work->residual));
   PetscCall(VecNorm(model->work->residual, NORM_2, &model->work->stiffness));
   TimingEnd(TIMING_ASSEMBLY_ELASTIC);
-  if (!ModelIsLinear(model)) PetscCall(LinearSolverOrder(model->work->solver, K)); /* a single solve is done sooner with any */
   if (model->contact) {
     TimingBegin(TIMING_ASSEMBLY_CONTACT);
-    PetscCall(ContactTangent(model->contact, u, t, &C, &changed));
-    PetscCall(ModelAddContact(model, K, C, changed));
-    PetscCall(ContactTangentChanges(model->contact, &terms));
+    PetscCall(ElasticityMatrixAdd(model->elasticity, C));
     PetscCall(StabiliserTangent(model->work->stabiliser, model->A));
     TimingEnd(TIMING_ASSEMBLY_CONTACT);
   }
+  if (!ModelIsLinear(model)) PetscCall(LinearSolverOrder(model->work->solver, model->A)); /* a single solve is done sooner with any */
   PetscCall(LinearSolverNext(model->work->solver, C, changed, terms, &older));
   if (older && terms > 0) PetscCall(ModelUpdateFactor(model, terms));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -1,0 +1,28 @@
+/* A parallel AIJ matrix that is the sum of the ranks' blocks over pairs of nodes, each rank's a block CSR over nodes of its own list, with room for the
+   entries of another matrix: the elastic tangent, which contact is added to, and the contact matrix. A rank finds what it has for its own rows by one number
+   for each pair and dof; only what belongs to rows of others goes through PETSc's COO format, whose lists are ten times as long and are sorted.
+
+     NodeMatrixCreate(); NodeMatrixJoin(), again where the other matrix has a new pattern; NodeMatrixSet(); NodeMatrixAdd() */
+#pragma once
+#include "petsccompat.h"
+
+typedef struct _n_NodeMatrix *NodeMatrix;
+
+/* Nodes of a rank and pairs of them */
+typedef struct {
+  int             size;         /* dofs of a node */
+  PetscInt        n;            /* nodes */
+  const PetscInt *dof;          /* n*size: global dofs, -1: left out; those of a node are of one rank */
+  const PetscInt *ptr, *column; /* pairs of nodes, row by row, each once */
+} NodePairs;
+
+/* For `rows` rows on this rank; the arrays of the pairs are borrowed. Collective. */
+PetscErrorCode NodeMatrixCreate(MPI_Comm, PetscInt rows, const NodePairs *, NodeMatrix *);
+PetscErrorCode NodeMatrixDestroy(NodeMatrix *);
+/* The pattern of the pairs and of another matrix (NULL: none), without values. Collective. */
+PetscErrorCode NodeMatrixJoin(NodeMatrix, Mat other);
+/* The values: size x size blocks, row-major, in the order of the pairs. Collective. */
+PetscErrorCode NodeMatrixSet(NodeMatrix, const PetscReal *value);
+/* += another matrix, whose entries the pattern holds. Collective. */
+PetscErrorCode NodeMatrixAdd(NodeMatrix, Mat other);
+Mat            NodeMatrixGet(NodeMatrix); /* the same handle all the time; borrowed */

@@ -1,0 +1,483 @@
+#include "nodematrix.h"
+#include "matrixrows.h"
+
+/* Room for entries over what a pattern needs, for the next one: memory that is new costs more than what is written there. It is not touched before it is
+   needed. */
+#define NODE_MATRIX_ROOM 1.25
+/* Place of a dof that is left out */
+#define NODE_MATRIX_NONE PETSC_MIN_INT
+/* Matrices that the pattern is joined with: of other ranks' blocks, and what NodeMatrixJoin() is given */
+enum { TERM_FOREIGN, TERM_OTHER, TERMS };
+
+/* The arrays of one block of the matrix: columns of the rank itself, or of others; alone: entries that the pairs take without other terms */
+typedef struct {
+  PetscInt    *ptr, *column, room, alone;
+  PetscScalar *value;
+} NodeBlock;
+
+/* Columns of one row, ascending: those of ranks before, of this one, of ranks after */
+typedef struct {
+  PetscInt *column, n, before, own;
+} NodeRow;
+
+struct _n_NodeMatrix {
+  MPI_Comm     comm;
+  NodePairs    pairs;
+  PetscInt     rows, first; /* of this rank */
+  PetscInt    *node;        /* of each row, -1: this rank has no pairs for it */
+  PetscBool   *inner;       /* of each node: its pairs' columns are all of this rank, in ascending order */
+  PetscBool   *placed;      /* and its places are those of a row without other terms */
+  PetscInt     longest;     /* entries of a row without other terms */
+  PetscInt    *place;       /* of each pair and dof of its column in the row: k: in the rank's own block, -1 - k: in the other ranks' */
+  NodeBlock    block[MATRIX_BLOCKS];
+  Mat          matrix, foreign; /* foreign: sum of what ranks have for rows of others; NULL: there is one rank */
+  PetscInt     n_foreign, *foreign_node, foreign_pairs;
+  PetscScalar *foreign_value;
+};
+
+static PetscBool IsMine(NodeMatrix m, PetscInt dof)
+{
+  return (PetscBool)(dof >= m->first && dof < m->first + m->rows);
+}
+
+/* ---------- rows of other ranks ---------- */
+
+/* The rows of nodes of other ranks in PETSc's COO format, which leaves negative dofs out. */
+static PetscErrorCode CreateForeign(NodeMatrix m)
+{
+  const NodePairs *p    = &m->pairs;
+  const PetscInt   size = p->size;
+  PetscInt         n    = 0, *i, *j;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc2(m->foreign_pairs * size * size, &i, m->foreign_pairs * size * size, &j));
+  PetscCall(PetscMalloc1(m->foreign_pairs * size * size, &m->foreign_value));
+  for (PetscInt f = 0; f < m->n_foreign; f++) {
+    const PetscInt node = m->foreign_node[f];
+
+    for (PetscInt k = p->ptr[node]; k < p->ptr[node + 1]; k++) {
+      for (PetscInt e = 0; e < size * size; e++, n++) {
+        i[n] = p->dof[node * size + e / size];
+        j[n] = p->dof[p->column[k] * size + e % size];
+      }
+    }
+  }
+  PetscCall(MatCreate(m->comm, &m->foreign));
+  PetscCall(MatSetSizes(m->foreign, m->rows, m->rows, PETSC_DETERMINE, PETSC_DETERMINE));
+  PetscCall(MatSetType(m->foreign, MATAIJ));
+  PetscCall(MatSetPreallocationCOO(m->foreign, n, i, j));
+  PetscCall(PetscFree2(i, j));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode SetForeign(NodeMatrix m, const PetscReal *value)
+{
+  const NodePairs *p     = &m->pairs;
+  const PetscInt   block = p->size * p->size;
+  PetscInt         n     = 0;
+
+  PetscFunctionBeginUser;
+  for (PetscInt f = 0; f < m->n_foreign; f++) {
+    const PetscInt from = p->ptr[m->foreign_node[f]], count = (p->ptr[m->foreign_node[f] + 1] - from) * block;
+
+    PetscCall(PetscArraycpy(&m->foreign_value[n], &value[(size_t)from * block], count));
+    n += count;
+  }
+  PetscCall(MatSetValuesCOO(m->foreign, m->foreign_value, INSERT_VALUES));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* ---------- pattern ---------- */
+
+/* Finds the node of every row of this rank; nodes with rows of others are listed. */
+static PetscErrorCode FindNodes(NodeMatrix m)
+{
+  const NodePairs *p = &m->pairs;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc2(m->rows, &m->node, p->n, &m->foreign_node));
+  for (PetscInt r = 0; r < m->rows; r++) m->node[r] = -1;
+  for (PetscInt node = 0; node < p->n; node++) {
+    PetscBool foreign = PETSC_FALSE;
+
+    for (int d = 0; d < p->size; d++) {
+      const PetscInt dof = p->dof[node * p->size + d];
+
+      if (IsMine(m, dof))
+        m->node[dof - m->first] = node;
+      else
+        foreign = (PetscBool)(foreign || dof >= 0);
+    }
+    if (!foreign) continue;
+    m->foreign_node[m->n_foreign++] = node;
+    m->foreign_pairs += p->ptr[node + 1] - p->ptr[node];
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* What the pairs of each node of this rank are alone, without other terms. */
+static void LookAtPairs(NodeMatrix m)
+{
+  const NodePairs *p = &m->pairs;
+
+  for (PetscInt r = 0; r < m->rows; r++) {
+    const PetscInt node = m->node[r];
+    PetscInt       last = m->first - 1, own = 0, others = 0;
+    PetscBool      rising = PETSC_TRUE;
+
+    for (PetscInt k = node < 0 ? 0 : p->ptr[node] * p->size; node >= 0 && k < p->ptr[node + 1] * p->size; k++) {
+      const PetscInt dof = p->dof[p->column[k / p->size] * p->size + k % p->size];
+
+      if (dof < 0) continue;
+      own += IsMine(m, dof);
+      others += !IsMine(m, dof);
+      rising = (PetscBool)(rising && dof > last);
+      last   = dof;
+    }
+    m->block[MATRIX_OWN].alone += own;
+    m->block[MATRIX_OTHERS].alone += others;
+    m->longest = PetscMax(m->longest, own + others);
+    if (node >= 0) m->inner[node] = (PetscBool)(rising && !others);
+  }
+}
+
+/* NodeMatrixCreate - what the ranks' pairs need; the matrix itself is made by NodeMatrixJoin().
+
+   Collective. rows: of this rank; pairs: their arrays are borrowed. Destroy with NodeMatrixDestroy(). */
+PetscErrorCode NodeMatrixCreate(MPI_Comm comm, PetscInt rows, const NodePairs *pairs, NodeMatrix *out)
+{
+  NodeMatrix  m;
+  PetscMPIInt size;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscNew(&m));
+  m->comm  = comm;
+  m->pairs = *pairs;
+  m->rows  = rows;
+  PetscCallMPI(MPI_Scan(&rows, &m->first, 1, MPIU_INT, MPI_SUM, comm));
+  m->first -= rows;
+  PetscCall(FindNodes(m));
+  PetscCall(PetscCalloc2(pairs->n, &m->inner, pairs->n, &m->placed));
+  LookAtPairs(m);
+  PetscCall(PetscMalloc1(pairs->ptr[pairs->n] * pairs->size, &m->place));
+  PetscCallMPI(MPI_Comm_size(comm, &size));
+  if (size > 1) PetscCall(CreateForeign(m));
+  *out = m;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* NodeMatrixDestroy - Collective. */
+PetscErrorCode NodeMatrixDestroy(NodeMatrix *matrix)
+{
+  NodeMatrix m = *matrix;
+
+  PetscFunctionBeginUser;
+  if (!m) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(MatDestroy(&m->matrix));
+  PetscCall(MatDestroy(&m->foreign));
+  for (int b = 0; b < MATRIX_BLOCKS; b++) PetscCall(PetscFree(m->block[b].ptr));
+  for (int b = 0; b < MATRIX_BLOCKS; b++) PetscCall(PetscFree2(m->block[b].column, m->block[b].value));
+  PetscCall(PetscFree2(m->node, m->foreign_node));
+  PetscCall(PetscFree2(m->inner, m->placed));
+  PetscCall(PetscFree(m->foreign_value));
+  PetscCall(PetscFree(m->place));
+  PetscCall(PetscFree(*matrix));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Makes room for the pattern; *longest: room that a row needs. */
+static PetscErrorCode TakeRoom(NodeMatrix m, MatrixRows terms[TERMS][MATRIX_BLOCKS], PetscInt *longest)
+{
+  PetscInt need[MATRIX_BLOCKS] = {m->block[MATRIX_OWN].alone, m->block[MATRIX_OTHERS].alone}, most = 0;
+
+  PetscFunctionBeginUser;
+  for (int t = 0; t < TERMS; t++) {
+    for (int b = 0; b < MATRIX_BLOCKS; b++) {
+      const MatrixRows *term = &terms[t][b];
+
+      for (PetscInt r = 0; term->mat && r < m->rows; r++) most = PetscMax(most, term->ptr[r + 1] - term->ptr[r]);
+      need[b] += term->mat ? term->ptr[m->rows] : 0;
+    }
+  }
+  *longest = m->longest + TERMS * MATRIX_BLOCKS * most;
+  for (int b = 0; b < MATRIX_BLOCKS; b++) {
+    NodeBlock *block = &m->block[b];
+
+    if (!block->ptr) PetscCall(PetscMalloc1(m->rows + 1, &block->ptr));
+    if (need[b] <= block->room && block->column) continue;
+    block->room = (PetscInt)(NODE_MATRIX_ROOM * need[b]);
+    PetscCall(PetscFree2(block->column, block->value));
+    PetscCall(PetscMalloc2(block->room, &block->column, block->room, &block->value));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The columns of a row in the pairs and in the terms. */
+static PetscErrorCode GatherRow(NodeMatrix m, PetscInt r, MatrixRows terms[TERMS][MATRIX_BLOCKS], NodeRow *row)
+{
+  const NodePairs *p    = &m->pairs;
+  const PetscInt   node = m->node[r];
+  PetscInt         n    = 0;
+
+  PetscFunctionBeginUser;
+  for (PetscInt k = node < 0 ? 0 : p->ptr[node]; node >= 0 && k < p->ptr[node + 1]; k++)
+    for (int c = 0; c < p->size; c++)
+      if (p->dof[p->column[k] * p->size + c] >= 0) row->column[n++] = p->dof[p->column[k] * p->size + c];
+  for (int t = 0; t < TERMS; t++) {
+    for (int b = 0; b < MATRIX_BLOCKS; b++) {
+      const MatrixRows *term = &terms[t][b];
+
+      for (PetscInt l = term->mat ? term->ptr[r] : 0; term->mat && l < term->ptr[r + 1]; l++)
+        row->column[n++] = term->global ? term->global[term->column[l]] : m->first + term->column[l];
+    }
+  }
+  PetscCall(PetscSortRemoveDupsInt(&n, row->column));
+  row->n = n;
+  for (row->before = 0; row->before < n && row->column[row->before] < m->first;) row->before++;
+  for (row->own = 0; row->before + row->own < n && IsMine(m, row->column[row->before + row->own]);) row->own++;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Tells the pairs of a row their places in it. */
+static PetscErrorCode PlacePairs(NodeMatrix m, PetscInt node, const NodeRow *row)
+{
+  const NodePairs *p = &m->pairs;
+
+  PetscFunctionBeginUser;
+  for (PetscInt k = p->ptr[node] * p->size; k < p->ptr[node + 1] * p->size; k++) {
+    const PetscInt dof = p->dof[p->column[k / p->size] * p->size + k % p->size];
+    PetscInt       at;
+
+    m->place[k] = NODE_MATRIX_NONE;
+    if (dof < 0) continue;
+    PetscCall(PetscFindInt(dof, row->n, row->column, &at));
+    m->place[k] = at < row->before ? -1 - at : at < row->before + row->own ? at - row->before : -1 - (at - row->own);
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* A row of any kind, after those before it; the columns in the numbering that PETSc wants, its own from 0. */
+static PetscErrorCode AppendRow(NodeMatrix m, PetscInt r, MatrixRows terms[TERMS][MATRIX_BLOCKS], NodeRow *row)
+{
+  NodeBlock *own = &m->block[MATRIX_OWN], *others = &m->block[MATRIX_OTHERS];
+  PetscInt  *mine = &own->column[own->ptr[r]], *column = &others->column[others->ptr[r]], after;
+
+  PetscFunctionBeginUser;
+  PetscCall(GatherRow(m, r, terms, row));
+  if (m->node[r] >= 0) PetscCall(PlacePairs(m, m->node[r], row));
+  if (m->node[r] >= 0) m->placed[m->node[r]] = PETSC_FALSE;
+  after = row->before + row->own;
+  for (PetscInt k = 0; k < row->own; k++) mine[k] = row->column[row->before + k] - m->first;
+  PetscCall(PetscArraycpy(column, row->column, row->before));
+  PetscCall(PetscArraycpy(&column[row->before], &row->column[after], row->n - after));
+  own->ptr[r + 1]    = own->ptr[r] + row->own;
+  others->ptr[r + 1] = others->ptr[r] + row->n - row->own;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* A row of an inner node that no term shares, most rows of a large matrix: nothing to be sorted or looked for. */
+static void AppendInner(NodeMatrix m, PetscInt r)
+{
+  const NodePairs *p   = &m->pairs;
+  NodeBlock       *own = &m->block[MATRIX_OWN], *others = &m->block[MATRIX_OTHERS];
+  const PetscInt   node   = m->node[r];
+  PetscInt        *column = &own->column[own->ptr[r]], n = 0;
+
+  for (PetscInt k = p->ptr[node]; k < p->ptr[node + 1]; k++) {
+    const PetscInt *dof = &p->dof[p->column[k] * p->size];
+
+    for (int c = 0; c < p->size; c++) {
+      if (!m->placed[node]) m->place[k * p->size + c] = dof[c] < 0 ? NODE_MATRIX_NONE : n;
+      if (dof[c] >= 0) column[n++] = dof[c] - m->first;
+    }
+  }
+  m->placed[node]    = PETSC_TRUE;
+  own->ptr[r + 1]    = own->ptr[r] + n;
+  others->ptr[r + 1] = others->ptr[r];
+}
+
+/* A row as the one before it, of the same node. */
+static PetscErrorCode AppendSame(NodeMatrix m, PetscInt r)
+{
+  PetscFunctionBeginUser;
+  for (int b = 0; b < MATRIX_BLOCKS; b++) {
+    NodeBlock     *block = &m->block[b];
+    const PetscInt from = block->ptr[r - 1], to = block->ptr[r];
+
+    PetscCall(PetscArraycpy(&block->column[to], &block->column[from], to - from));
+    block->ptr[r + 1] = to + to - from;
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Does some term have entries in this row? */
+static PetscBool IsShared(PetscInt r, MatrixRows terms[TERMS][MATRIX_BLOCKS])
+{
+  for (int t = 0; t < TERMS; t++)
+    for (int b = 0; b < MATRIX_BLOCKS; b++)
+      if (terms[t][b].mat && terms[t][b].ptr[r + 1] > terms[t][b].ptr[r]) return PETSC_TRUE;
+  return PETSC_FALSE;
+}
+
+/* The arrays become the matrix, under the handle that is known. */
+static PetscErrorCode MakeMatrix(NodeMatrix m)
+{
+  NodeBlock *own = &m->block[MATRIX_OWN], *others = &m->block[MATRIX_OTHERS];
+  Mat        made;
+
+  PetscFunctionBeginUser;
+  if (m->foreign)
+    PetscCall(MatCreateMPIAIJWithSplitArrays(m->comm, m->rows, m->rows, PETSC_DETERMINE, PETSC_DETERMINE, own->ptr, own->column, own->value, others->ptr,
+                                             others->column, others->value, &made));
+  else
+    PetscCall(MatCreateSeqAIJWithArrays(m->comm, m->rows, m->rows, own->ptr, own->column, own->value, &made));
+  if (m->matrix)
+    PetscCall(MatHeaderReplace(m->matrix, &made));
+  else
+    m->matrix = made;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* NodeMatrixJoin - a new pattern, in the memory of the last one where that does; the values are undefined.
+
+   Collective. other: an AIJ matrix of the same rows, in which all rows of a node have the same columns; NULL: none. */
+PetscErrorCode NodeMatrixJoin(NodeMatrix m, Mat other)
+{
+  const Mat  mats[TERMS] = {[TERM_FOREIGN] = m->foreign, [TERM_OTHER] = other};
+  MatrixRows terms[TERMS][MATRIX_BLOCKS];
+  NodeRow    row;
+  PetscInt   longest;
+
+  PetscFunctionBeginUser;
+  for (int t = 0; t < TERMS; t++) {
+    for (int b = 0; b < MATRIX_BLOCKS; b++) {
+      terms[t][b] = (MatrixRows){.mat = NULL};
+      if (mats[t]) PetscCall(MatrixRowsGet(mats[t], b, &terms[t][b]));
+    }
+  }
+  PetscCall(TakeRoom(m, terms, &longest));
+  PetscCall(PetscMalloc1(longest, &row.column));
+  for (int b = 0; b < MATRIX_BLOCKS; b++) m->block[b].ptr[0] = 0;
+  for (PetscInt r = 0; r < m->rows; r++) {
+    if (r && m->node[r] >= 0 && m->node[r] == m->node[r - 1])
+      PetscCall(AppendSame(m, r));
+    else if (m->node[r] >= 0 && m->inner[m->node[r]] && !IsShared(r, terms))
+      AppendInner(m, r);
+    else
+      PetscCall(AppendRow(m, r, terms, &row));
+  }
+  PetscCall(PetscFree(row.column));
+  for (int t = 0; t < TERMS; t++)
+    for (int b = 0; b < MATRIX_BLOCKS; b++) PetscCall(MatrixRowsRestore(&terms[t][b]));
+  PetscCall(MakeMatrix(m));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* ---------- values ---------- */
+
+/* One row of a node's blocks, or zeros; size constant where this is called, so that the loop over a node's dofs unrolls. */
+static inline void SetRow(const int size, NodeMatrix m, PetscInt r, const PetscReal *value)
+{
+  const NodePairs *p    = &m->pairs;
+  const PetscInt   node = m->node[r];
+  PetscScalar     *to[MATRIX_BLOCKS];
+  int              d = 0;
+
+  for (int b = 0; b < MATRIX_BLOCKS; b++) {
+    const PetscInt *ptr = m->block[b].ptr;
+
+    to[b] = &m->block[b].value[ptr[r]];
+    for (PetscInt k = 0; k < ptr[r + 1] - ptr[r]; k++) to[b][k] = 0;
+  }
+  if (node < 0) return;
+  while (p->dof[node * size + d] != m->first + r) d++;
+  for (PetscInt k = p->ptr[node]; k < p->ptr[node + 1]; k++) {
+    const PetscReal *from  = &value[((size_t)k * size + d) * size];
+    const PetscInt  *place = &m->place[k * size];
+
+    for (int c = 0; c < size; c++) {
+      if (place[c] >= 0)
+        to[MATRIX_OWN][place[c]] = from[c];
+      else if (place[c] != NODE_MATRIX_NONE)
+        to[MATRIX_OTHERS][-1 - place[c]] = from[c];
+    }
+  }
+}
+
+/* Nothing moves: it tells the matrix' users that its values are new. */
+static PetscErrorCode TellChange(NodeMatrix m)
+{
+  PetscFunctionBeginUser;
+  PetscCall(MatAssemblyBegin(m->matrix, MAT_FINAL_ASSEMBLY));
+  PetscCall(MatAssemblyEnd(m->matrix, MAT_FINAL_ASSEMBLY));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* NodeMatrixSet - the sum of the ranks' blocks; what the pattern holds besides becomes 0.
+
+   Collective. value[pairs*size*size]: blocks of this rank, row-major, in the order of its pairs. */
+PetscErrorCode NodeMatrixSet(NodeMatrix m, const PetscReal *value)
+{
+  PetscFunctionBeginUser;
+  for (PetscInt r = 0; r < m->rows; r++) {
+    if (m->pairs.size == 3)
+      SetRow(3, m, r, value);
+    else
+      SetRow(m->pairs.size, m, r, value);
+  }
+  if (m->foreign) {
+    PetscCall(SetForeign(m, value));
+    PetscCall(NodeMatrixAdd(m, m->foreign));
+  } else
+    PetscCall(TellChange(m));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static inline PetscInt Column(const MatrixRows *rows, PetscInt k)
+{
+  return rows->global ? rows->global[rows->column[k]] : rows->column[k];
+}
+
+/* y += x in one row, both ascending; every entry of x is in y. */
+static PetscErrorCode AddRow(PetscInt row, const MatrixRows *x, const PetscScalar *from, const MatrixRows *y, PetscScalar *to)
+{
+  PetscInt at = y->ptr[row];
+
+  PetscFunctionBeginUser;
+  for (PetscInt k = x->ptr[row]; k < x->ptr[row + 1]; k++, at++) {
+    while (at < y->ptr[row + 1] && Column(y, at) < Column(x, k)) at++;
+    PetscCheck(at < y->ptr[row + 1] && Column(y, at) == Column(x, k), PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE,
+               "row %" PetscInt_FMT " of the matrix lacks an entry", row);
+    to[at] += from[k];
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* NodeMatrixAdd - adds a matrix to the values.
+
+   Collective. other: an AIJ matrix of the same rows; an entry that the pattern lacks is an error. */
+PetscErrorCode NodeMatrixAdd(NodeMatrix m, Mat other)
+{
+  PetscFunctionBeginUser;
+  for (int b = 0; b < MATRIX_BLOCKS; b++) {
+    MatrixRows         x, y;
+    const PetscScalar *from;
+
+    PetscCall(MatrixRowsGet(m->matrix, b, &y));
+    if (!y.mat) continue;
+    PetscCall(MatrixRowsGet(other, b, &x));
+    PetscCall(MatSeqAIJGetArrayRead(x.mat, &from));
+    for (PetscInt r = 0; r < x.n; r++) PetscCall(AddRow(r, &x, from, &y, m->block[b].value));
+    PetscCall(MatSeqAIJRestoreArrayRead(x.mat, &from));
+    PetscCall(MatrixRowsRestore(&x));
+    PetscCall(MatrixRowsRestore(&y));
+  }
+  PetscCall(TellChange(m));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* NodeMatrixGet - the matrix, undefined before the first NodeMatrixJoin(). Not collective; borrowed. */
+Mat NodeMatrixGet(NodeMatrix m)
+{
+  return m->matrix;
+}

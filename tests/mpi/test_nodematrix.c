@@ -1,0 +1,140 @@
+/* A matrix made of the ranks' blocks of nodes equals the sum of what they put in, on any number of ranks, also where another matrix has joined its pattern. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <cmocka.h>
+#include "nodematrix.h"
+
+enum { SIZE = 2, NODES = 4, ROWS = SIZE * NODES - 1 }; /* of each rank; its first node lacks one dof */
+
+/* What a rank lists: its own nodes, backwards, and the first two of the next rank; a node is coupled to itself and to its neighbours in the list. */
+typedef struct {
+  PetscInt  dof[(NODES + 2) * SIZE], ptr[NODES + 3], column[3 * (NODES + 2)];
+  PetscReal value[3 * (NODES + 2) * SIZE * SIZE];
+  NodePairs pairs;
+} List;
+
+static PetscInt Dof(PetscMPIInt rank, PetscInt node, PetscInt d)
+{
+  return node || d ? rank * ROWS + node * SIZE + d - 1 : -1;
+}
+
+static void MakeList(List *list)
+{
+  PetscMPIInt rank, size;
+  PetscInt    n = 0;
+
+  MPI_Comm_rank(PETSC_COMM_WORLD, &rank);
+  MPI_Comm_size(PETSC_COMM_WORLD, &size);
+  list->pairs = (NodePairs){SIZE, size > 1 ? NODES + 2 : NODES, list->dof, list->ptr, list->column};
+  for (PetscInt i = 0; i < list->pairs.n; i++)
+    for (PetscInt d = 0; d < SIZE; d++) list->dof[i * SIZE + d] = i < NODES ? Dof(rank, NODES - 1 - i, d) : Dof((rank + 1) % size, i - NODES, d);
+  for (PetscInt i = 0; i < list->pairs.n; i++) {
+    list->ptr[i] = n;
+    for (PetscInt j = PetscMax(0, i - 1); j <= PetscMin(list->pairs.n - 1, i + 1); j++) list->column[n++] = j;
+  }
+  list->ptr[list->pairs.n] = n;
+  for (PetscInt k = 0; k < n * SIZE * SIZE; k++) list->value[k] = 1 + k + 100 * rank;
+}
+
+/* The same sum by MatSetValues(). */
+static Mat Expected(const List *list)
+{
+  Mat mat;
+
+  assert_int_equal(MatCreate(PETSC_COMM_WORLD, &mat), 0);
+  assert_int_equal(MatSetSizes(mat, ROWS, ROWS, PETSC_DETERMINE, PETSC_DETERMINE), 0);
+  assert_int_equal(MatSetType(mat, MATAIJ), 0);
+  assert_int_equal(MatSetUp(mat), 0);
+  assert_int_equal(MatSetOption(mat, MAT_NEW_NONZERO_ALLOCATION_ERR, PETSC_FALSE), 0);
+  for (PetscInt i = 0; i < list->pairs.n; i++)
+    for (PetscInt k = list->ptr[i]; k < list->ptr[i + 1]; k++)
+      assert_int_equal(MatSetValues(mat, SIZE, &list->dof[i * SIZE], SIZE, &list->dof[list->column[k] * SIZE], &list->value[k * SIZE * SIZE], ADD_VALUES), 0);
+  assert_int_equal(MatAssemblyBegin(mat, MAT_FINAL_ASSEMBLY), 0);
+  assert_int_equal(MatAssemblyEnd(mat, MAT_FINAL_ASSEMBLY), 0);
+  return mat;
+}
+
+/* mat is a + b; b NULL: a alone. */
+static void AssertSum(Mat mat, Mat a, Mat b)
+{
+  Mat       rest;
+  PetscReal norm;
+
+  assert_int_equal(MatDuplicate(mat, MAT_COPY_VALUES, &rest), 0);
+  assert_int_equal(MatAXPY(rest, -1, a, DIFFERENT_NONZERO_PATTERN), 0);
+  if (b) assert_int_equal(MatAXPY(rest, -1, b, DIFFERENT_NONZERO_PATTERN), 0);
+  assert_int_equal(MatNorm(rest, NORM_FROBENIUS, &norm), 0);
+  assert_true(norm == 0);
+  assert_int_equal(MatDestroy(&rest), 0);
+}
+
+static void test_sum(void **state)
+{
+  List       narrow, wide;
+  NodeMatrix matrix, other;
+  Mat        a, b, mat;
+
+  (void)state;
+  MakeList(&narrow);
+  MakeList(&wide);
+  wide.column[0] = 3; /* a pair more than `narrow` has, in no order */
+  a              = Expected(&narrow);
+  b              = Expected(&wide);
+  assert_int_equal(NodeMatrixCreate(PETSC_COMM_WORLD, ROWS, &narrow.pairs, &matrix), 0);
+  assert_int_equal(NodeMatrixCreate(PETSC_COMM_WORLD, ROWS, &wide.pairs, &other), 0);
+  assert_int_equal(NodeMatrixJoin(matrix, NULL), 0);
+  assert_int_equal(NodeMatrixJoin(other, NULL), 0);
+  assert_int_equal(NodeMatrixSet(matrix, narrow.value), 0);
+  assert_int_equal(NodeMatrixSet(other, wide.value), 0);
+  mat = NodeMatrixGet(matrix);
+  AssertSum(mat, a, NULL);
+  AssertSum(NodeMatrixGet(other), b, NULL);
+  for (int pass = 0; pass < 2; pass++) {
+    assert_int_equal(NodeMatrixJoin(matrix, NodeMatrixGet(other)), 0);
+    for (int again = 0; again < 2; again++) {
+      assert_int_equal(NodeMatrixSet(matrix, narrow.value), 0);
+      AssertSum(mat, a, NULL);
+      assert_int_equal(NodeMatrixAdd(matrix, NodeMatrixGet(other)), 0);
+      AssertSum(mat, a, b);
+    }
+  }
+  assert_true(NodeMatrixGet(matrix) == mat);
+  assert_int_equal(NodeMatrixJoin(matrix, NULL), 0);
+  assert_int_equal(NodeMatrixSet(matrix, narrow.value), 0);
+  AssertSum(mat, a, NULL);
+  assert_int_equal(NodeMatrixDestroy(&matrix), 0);
+  assert_int_equal(NodeMatrixDestroy(&other), 0);
+  assert_int_equal(MatDestroy(&a), 0);
+  assert_int_equal(MatDestroy(&b), 0);
+}
+
+/* A factorisation's symbolic part is kept as long as the pattern is the same. */
+static void test_pattern_stays(void **state)
+{
+  List             list;
+  NodeMatrix       matrix;
+  PetscObjectState before, after;
+
+  (void)state;
+  MakeList(&list);
+  assert_int_equal(NodeMatrixCreate(PETSC_COMM_WORLD, ROWS, &list.pairs, &matrix), 0);
+  assert_int_equal(NodeMatrixJoin(matrix, NULL), 0);
+  assert_int_equal(NodeMatrixSet(matrix, list.value), 0);
+  assert_int_equal(MatGetNonzeroState(NodeMatrixGet(matrix), &before), 0);
+  assert_int_equal(NodeMatrixSet(matrix, list.value), 0);
+  assert_int_equal(MatGetNonzeroState(NodeMatrixGet(matrix), &after), 0);
+  assert_true(before == after);
+  assert_int_equal(NodeMatrixDestroy(&matrix), 0);
+}
+
+int main(int argc, char **argv)
+{
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_sum), cmocka_unit_test(test_pattern_stays)};
+  int                     failed;
+
+  if (PetscInitialize(&argc, &argv, NULL, NULL)) return 1;
+  failed = cmocka_run_group_tests(tests, NULL, NULL);
+  return PetscFinalize() || failed;
+}
