@@ -1,96 +1,106 @@
 // A sphere pressed on a block, a quarter of both: x = 0 and z = 0 are planes of symmetry, the first touch is at the origin. Lengths in mm.
 // Of the sphere only a square column of base size x size over its lowest point is there, cut at y = size: it is loaded through that cut. Each body
-// is four by two blocks of bricks: uniform within `zone` of the planes of symmetry and of the surface, growing from there on.
+// is a lattice of bricks: uniform within `zone` of the planes of symmetry and of the surface, growing from there on. The interface's nodes are points
+// of their own, so that they can be moved within the surface; on the sphere run arcs of great circles between them.
 DefineConstant[
   radius = {50, Name "radius of the sphere"}, size = {16, Name "width and height of the bodies"},
   zone = {1.5, Name "length that is meshed uniformly"}, n = {6, Name "elements along that length, sphere"},
   ratio = {0.8, Name "the block's element size over the sphere's: the two meshes do not match"},
-  growth = {1.4, Name "of an element over the one before it, beyond"}
+  growth = {1.4, Name "of an element over the one before it, beyond"},
+  jitter = {0, Name "largest move of an interface node inside the uniform length, in elements along each direction"}, seed = {1, Name "of the moves"}
 ];
-edge[] = {0, zone, size};
+height[] = {0, zone, size};
 cut_x[] = {};
 cut_z[] = {};
+Point(1) = {0, radius, 0};
 For b In {0 : 1} // sphere, block
-  o = 1000 * (b + 1);
   n_zone = Ceil(b ? n / ratio : n);
   h = zone / n_zone;
   n_far = Ceil(Log(1 + (size - zone) * (growth - 1) / (growth * h)) / Log(growth));
+  n_side = n_zone + n_far;
+  row = n_side + 1;
+  count = row^2;
+  o = 1000000 * (b + 1); // a tag is o + kind * count + place in the lattice, from x to x along z
   body~{b}[] = {};
-  Point(o - 1) = {0, radius, 0};
-  For j In {0 : 2} // heights; a tag is o + 100 * kind + place
-    For k In {0 : 2}
-      For i In {0 : 2}
-        fall = b ? 0 : radius - Sqrt(radius^2 - edge[i]^2 - edge[k]^2); // where the sphere is
-        share = edge[j] / size;
-        Point(o + 9 * j + 3 * k + i) = {edge[i], (b ? -1 : 1) * edge[j] + (1 - share) * fall, edge[k]};
+  touching~{b}[] = {};
+  far~{b}[] = {};
+  For i In {0 : n_side}
+    even[i] = (i <= n_zone) ? i * h : zone + (size - zone) * (growth^(i - n_zone) - 1) / (growth^n_far - 1);
+  EndFor
+  For k In {0 : n_side}
+    For i In {0 : n_side}
+      s = o + k * row + i;
+      For d In {0 : 1}
+        x = 43758.5453 * Sin(12.9898 * (2 * s + d + 7 * seed)); // the digits behind the point serve as random numbers
+        at = d ? k : i;
+        move[d] = (at == 0 || i >= n_zone || k >= n_zone) ? 0 : jitter * h * (2 * (x - Floor(x)) - 1);
+      EndFor
+      For j In {0 : 2} // heights, kinds 0 to 2
+        x = even[i] + (j ? 0 : move[0]);
+        z = even[k] + (j ? 0 : move[1]);
+        fall = b ? 0 : radius - Sqrt(radius^2 - x^2 - z^2); // where the sphere is
+        Point(s + j * count) = {x, (b ? -1 : 1) * height[j] + (1 - height[j] / size) * fall, z};
+      EndFor
+      Line(s) = {s, s + count}; // kinds 0 and 1: along y
+      Transfinite Curve{s} = n_zone + 1;
+      Line(s + count) = {s + count, s + 2 * count};
+      Transfinite Curve{s + count} = n_far + 1 Using Progression growth;
+    EndFor
+  EndFor
+  For k In {0 : n_side}
+    For i In {0 : n_side}
+      s = o + k * row + i;
+      For d In {0 : 1} // along x, along z
+        next = d ? row : 1;
+        If ((d ? k : i) < n_side)
+          For j In {0 : 2} // kinds 2 to 7
+            c = s + (2 + 3 * d + j) * count;
+            If (b == 0 && j == 0)
+              Circle(c) = {s, 1, s + next};
+            Else
+              Line(c) = {s + j * count, s + next + j * count};
+            EndIf
+            Transfinite Curve{c} = 2;
+          EndFor
+          For j In {0 : 1} // kinds 0 to 3: standing
+            c = s + (2 + 3 * d + j) * count;
+            q = s + (2 * d + j) * count;
+            Curve Loop(q) = {c, s + next + j * count, -(c + count), -(s + j * count)};
+            Surface(q) = {q};
+            If (d == 0 && k == 0)
+              cut_z[] += {q};
+            EndIf
+            If (d == 1 && i == 0)
+              cut_x[] += {q};
+            EndIf
+          EndFor
+        EndIf
       EndFor
     EndFor
   EndFor
-  For k In {0 : 2}
-    Point(o - 10 - k) = {0, radius, edge[k]}; // centres of the sphere's sections
-    Point(o - 20 - k) = {edge[k], radius, 0};
-  EndFor
-  For j In {0 : 2}
-    For k In {0 : 2}
-      For i In {0 : 1}
-        s = o + 9 * j + 3 * k + i; // kind 1: along x
-        r = o + 9 * j + 3 * i + k; // kind 2: along z
+  For k In {0 : n_side - 1}
+    For i In {0 : n_side - 1}
+      s = o + k * row + i;
+      For j In {0 : 2} // kinds 4 to 6: lying
+        c = s + (2 + j) * count;
+        q = s + (4 + j) * count;
+        Curve Loop(q) = {c, c + 1 + 3 * count, -(c + row), -(c + 3 * count)};
         If (b == 0 && j == 0)
-          Circle(s + 100) = {s, o - 10 - k, s + 1};
-          Circle(r + 200) = {r, o - 20 - k, r + 3};
+          Surface(q) = {q} In Sphere{1};
         Else
-          Line(s + 100) = {s, s + 1};
-          Line(r + 200) = {r, r + 3};
+          Surface(q) = {q};
         EndIf
-        If (i == 0)
-          Transfinite Curve{s + 100, r + 200} = n_zone + 1;
-        Else
-          Transfinite Curve{s + 100, r + 200} = n_far + 1 Using Progression growth;
-        EndIf
-        Line(o + 9 * i + 3 * k + j + 300) = {o + 9 * i + 3 * k + j, o + 9 * (i + 1) + 3 * k + j}; // kind 3: along y
-        If (i == 0)
-          Transfinite Curve{o + 9 * i + 3 * k + j + 300} = n_zone + 1;
-        Else
-          Transfinite Curve{o + 9 * i + 3 * k + j + 300} = n_far + 1 Using Progression growth;
-        EndIf
+      EndFor
+      touching~{b}[] += {s + 4 * count};
+      far~{b}[] += {s + 6 * count};
+      For j In {0 : 1}
+        v = s + j * count;
+        Surface Loop(v) = {v, v + row, v + 2 * count, v + 1 + 2 * count, v + 4 * count, v + 5 * count};
+        Volume(v) = {v};
+        body~{b}[] += {v};
       EndFor
     EndFor
   EndFor
-  For j In {0 : 2}
-    For k In {0 : 1}
-      For i In {0 : 1}
-        s = o + 9 * j + 3 * k + i;
-        Curve Loop(s) = {s + 100, s + 201, -(s + 103), -(s + 200)};
-        If (b == 0 && j == 0)
-          Surface(s) = {s} In Sphere{o - 1};
-        Else
-          Surface(s) = {s};
-        EndIf
-        r = o + 9 * k + 3 * j + i; // standing along x, at z = edge[j]
-        Curve Loop(r + 400) = {r + 100, r + 301, -(r + 109), -(r + 300)};
-        Surface(r + 400) = {r + 400};
-        q = o + 9 * k + 3 * i + j; // standing along z, at x = edge[j]
-        Curve Loop(q + 500) = {q + 200, q + 303, -(q + 209), -(q + 300)};
-        Surface(q + 500) = {q + 500};
-        If (j == 0)
-          cut_z[] += {r + 400};
-          cut_x[] += {q + 500};
-        EndIf
-      EndFor
-    EndFor
-  EndFor
-  For j In {0 : 1}
-    For k In {0 : 1}
-      For i In {0 : 1}
-        s = o + 9 * j + 3 * k + i;
-        Surface Loop(s) = {s, s + 9, s + 400, s + 403, s + 500, s + 501};
-        Volume(s) = {s};
-        body~{b}[] += {s};
-      EndFor
-    EndFor
-  EndFor
-  touching~{b}[] = {o, o + 1, o + 3, o + 4};
-  far~{b}[] = {o + 18, o + 19, o + 21, o + 22};
 EndFor
 Transfinite Surface{:};
 Recombine Surface{:};

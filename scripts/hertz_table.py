@@ -22,25 +22,46 @@ SCENES = {
     # pair, probe of the edge, peak pressure, centre of force over the width, growth of width and peak with the load, first load that counts, step; by order:
     # elements of the slave along the half-width or radius, and jitters and seeds
     "line": ("line", "half_width", 3585.4 / 6.215, 4 / (3 * numpy.pi), 1 / 2, 0.8, 0.05, {1: ((4, 6, 8, 12, 16), ((0, 1), (0.25, 1), (0.25, 2))), 2: ((2, 3, 4, 6, 8), ((0, 1),))}),
-    "sphere": ("point", "radius", 734.6, 3 * numpy.pi / 16, 1 / 3, 0.5, 0.1, {1: ((2.5, 3.33, 5), ((0, 1),))}),
+    "sphere": ("point", "radius", 734.6, 3 * numpy.pi / 16, 1 / 3, 0.5, 0.1, {1: ((2.5, 3.33, 4.17, 5, 6.67), ((0, 1), (0.25, 1), (0.25, 2))), 2: ((1.67,), ((0, 1),))}),
 }
+# nodes of the bricks by their place along three directions
+LATTICES = {"cells_hex8": numpy.reshape([0, 1, 3, 2, 4, 5, 7, 6], (2, 2, 2)),
+            "cells_hex27": numpy.reshape([0, 8, 1, 11, 24, 9, 3, 10, 2, 16, 22, 17, 20, 26, 21, 19, 23, 18, 4, 12, 5, 15, 25, 13, 7, 14, 6], (3, 3, 3))}
 FORMULATIONS = ("node_to_surface", "surface_to_surface")
 COLUMNS = ("scene", "order", "faces", "jitter", "seed", "formulation", "status", "elements", "iterations", "wall_s", "width", "peak", "edge")
 
 
-def overrides(scene, faces, jitter, seed):
+def overrides(scene, order, faces, jitter, seed):
     if scene == "line":
         mesh = {"h": 1 / (RATIO * faces), "zone": LINE_ZONE, "jitter": jitter, "seed": seed}
         rest = [f"loads.0.pressure={LINE_LOAD:.6g}", "contact.0.penalty.scale=100"]
     else:
-        mesh, rest = {"n": round(SPHERE_ZONE * faces * RATIO)}, []
+        mesh, rest = {"n": round(SPHERE_ZONE * faces * RATIO), "jitter": jitter, "seed": seed}, [f"solver.type={'direct' if order > 1 else 'iterative'}"]  # what is faster
     return ["mesh.parameters={" + ", ".join(f"{k}: {v:.8g}" for k, v in mesh.items()) + "}", *rest]
 
 
-def shares(x):
-    """Lengths that go with the sorted coordinates x."""
-    half = numpy.diff(x) / 2
-    return numpy.append(half, 0) + numpy.insert(half, 0, 0)
+def length_shares(x):
+    """Of the lines between the coordinates x, by node."""
+    order = numpy.argsort(x)
+    half, found = numpy.diff(x[order]) / 2, numpy.empty(len(x))
+    found[order] = numpy.append(half, 0) + numpy.insert(half, 0, 0)
+    return found
+
+
+def area_shares(file, rows, x):
+    """Of the quadrilaterals that the nodes (rows) of a flat surface y = 0 make, by node: the integrals of the bilinear shape functions."""
+    found = numpy.zeros(len(x))
+    for name, lattice in LATTICES.items():
+        if f"mesh/{name}" not in file:
+            continue
+        for face in (numpy.take(file[f"mesh/{name}"][()][:, lattice], end, axis) for axis in (1, 2, 3) for end in (0, -1)):
+            face = face[numpy.isin(face, rows).all(axis=(1, 2))]
+            corners = numpy.stack([c.ravel() for c in (face[:, :-1, :-1], face[:, 1:, :-1], face[:, 1:, 1:], face[:, :-1, 1:])])
+            edges = x[numpy.roll(corners, -1, 0)] - x[corners]
+            before = numpy.roll(edges, 1, 0)
+            turned = numpy.abs(before[..., 0] * edges[..., 2] - before[..., 2] * edges[..., 0])  # twice the triangle at each corner
+            numpy.add.at(found, corners, turned.sum(0) / 24 + turned / 12)
+    return found[rows]
 
 
 def centre_of_force(directory, pair):
@@ -48,14 +69,11 @@ def centre_of_force(directory, pair):
     found = {}
     with h5py.File(directory / "results.h5", "r") as file:
         rows = file["contact"][pair]["nodes"][()]
-        reference = file["mesh/nodes"][()][rows]
-        area = numpy.ones(len(rows))
-        for axis in (0, 2):
-            places, which = numpy.unique(numpy.round(reference[:, axis], 9), return_inverse=True)
-            area *= shares(places)[which] if len(places) > 1 else 1
+        nodes = file["mesh/nodes"][()]
+        area = area_shares(file, rows, nodes) if nodes[:, 2].any() else length_shares(nodes[rows, 0])
         for step in file["steps"].values():
             force = area * numpy.nan_to_num(step["contact"][pair]["pressure"][()])
-            place = reference + step["displacement"][()][rows]
+            place = nodes[rows] + step["displacement"][()][rows]
             found[float(step.attrs["t"])] = numpy.sum(force * numpy.hypot(place[:, 0], place[:, 2])) / numpy.sum(force)
     return found
 
@@ -67,7 +85,7 @@ def solve(case, args):
     shutil.rmtree(directory, ignore_errors=True)
     command = [args.burnish, str(ROOT / "runs" / f"hertz_{scene}.yaml"), "-o", str(directory), "-quiet"]
     for override in (f"mesh.order={order}", f"contact.0.formulation={formulation}", f"stepping.initial={step}", "output.every=1", "output.fields=[displacement, contact]",
-                     *overrides(scene, faces, jitter, seed)):
+                     *overrides(scene, order, faces, jitter, seed)):
         command += ["-set", override]
     finished = subprocess.run(command, env=environment(), stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
     record = dict(zip(COLUMNS, (*case, finished.returncode)))

@@ -170,16 +170,6 @@ static void WindowSpacing(const Fitting *fit, PetscInt n, double covariance[3][3
   *area = sum / faces;
 }
 
-static PetscReal PointRho2(const Fitting *fit, PetscInt p, const PetscReal foot[3], const PetscReal space[9])
-{
-  const int dim  = fit->lists->dim;
-  PetscReal rho2 = 0;
-
-  for (int i = 0; i < dim; i++)
-    for (int j = 0; j < dim; j++) rho2 += (fit->view.x[p * dim + i] - foot[i]) * space[3 * i + j] * (fit->view.x[p * dim + j] - foot[j]);
-  return rho2;
-}
-
 /* Tries one rung at a foot: points, frame, metric into fit and problem; true when every guard holds. Quadrature points come in clusters, whose
    number says nothing: the pivot does. */
 static PetscErrorCode FitRung(Fitting *fit, const FitFoot *at, int rung, FitProblem *problem, FitResult *result, PetscBool *holds)
@@ -188,6 +178,7 @@ static PetscErrorCode FitRung(Fitting *fit, const FitFoot *at, int rung, FitProb
   const int          dim = fit->lists->dim, degree = Ladder[rung].degree ? PetscMin(Ladder[rung].degree, settings->degree) : settings->degree;
   const int          wanted = settings->integral ? FitTerms(dim, degree) : FitPointsWanted(dim, degree);
   double             covariance[3][3], area;
+  const PetscReal   *rho2;
   PetscReal          space[9];
   PetscInt           n, found, inside;
 
@@ -200,15 +191,13 @@ static PetscErrorCode FitRung(Fitting *fit, const FitFoot *at, int rung, FitProb
   for (int pass = 0; pass < 2; pass++) { /* first seen along the facet's normal, then along the points' own */
     FitMetricFromCovariance(dim, problem->frame, covariance, area, settings->support * Ladder[rung].widen, problem->metric);
     MetricInSpace(dim, problem->frame, problem->metric, space);
-    PetscCall(NeighbourhoodGather(fit->neighbourhoods, at->facet, at->foot, problem->frame[dim - 1], space, SEARCH_FIT_MARGIN, FIT_MAX_POINTS, fit->points, &n,
-                                  &found));
+    PetscCall(NeighbourhoodGather(fit->neighbourhoods, at->facet, at->foot, problem->frame[dim - 1], space, SEARCH_FIT_MARGIN, FIT_MAX_POINTS, fit->points,
+                                  &rho2, &n, &found));
     inside = 0;
     for (PetscInt i = 0; i < n; i++) {
-      const PetscReal rho2 = PointRho2(fit, fit->points[i], at->foot, space);
-
-      inside += rho2 <= 1 + SEARCH_FIT_TIE;
+      inside += rho2[i] <= 1 + SEARCH_FIT_TIE;
       fit->multiplier[i] = fit->lists->point_weight[fit->points[i]];
-      fit->taper[i]      = fit->multiplier[i] * PetscMax(SEARCH_FIT_TIE, 1 - rho2 / SEARCH_FIT_MARGIN);
+      fit->taper[i]      = fit->multiplier[i] * PetscMax(SEARCH_FIT_TIE, 1 - rho2[i] / SEARCH_FIT_MARGIN);
       for (int d = 0; d < dim; d++) fit->x[i * dim + d] = fit->view.x[fit->points[i] * dim + d] - at->x[d];
     }
     problem->n = (int)n;

@@ -483,17 +483,19 @@ PetscReal ListsNearestSize(ContactLists lists, PetscInt q)
    Not collective. centre[2]: dim - 1 entries are used. */
 void ListsCentre(ContactLists lists, PetscInt q, PetscReal centre[2])
 {
-  const int        dim   = lists->dim;
-  const PetscReal *frame = &lists->frame[9 * q];
+  const int        dim    = lists->dim;
+  const PetscReal *frame  = &lists->frame[9 * q];
+  PetscReal        sum[3] = {0, 0, 0};
 
   centre[0] = centre[1] = 0;
   for (PetscInt i = lists->list_ptr[q]; i < lists->list_ptr[q] + lists->fit_n[q]; i++) {
     PetscReal x[3];
 
     ListsRelative(lists, q, lists->list_point[i], x);
-    for (int d = 0; d < dim; d++)
-      for (int a = 0; a < dim - 1; a++) centre[a] += frame[3 * a + d] * x[d] / lists->fit_n[q];
+    for (int d = 0; d < dim; d++) sum[d] += x[d];
   }
+  for (int a = 0; a < dim - 1 && lists->fit_n[q]; a++)
+    for (int d = 0; d < dim; d++) centre[a] += frame[3 * a + d] * sum[d] / lists->fit_n[q];
 }
 
 /* ListsSlip - Not collective. */

@@ -140,7 +140,7 @@ static void ReachAdd(Neighbourhoods nb, PetscInt *count, PetscReal rho2, PetscIn
 }
 
 PetscErrorCode NeighbourhoodGather(Neighbourhoods nb, PetscInt start, const PetscReal x0[3], const PetscReal e3[3], const PetscReal metric[9], PetscReal limit,
-                                   PetscInt max, PetscInt *points, PetscInt *n, PetscInt *found)
+                                   PetscInt max, PetscInt *points, const PetscReal **rho2, PetscInt *n, PetscInt *found)
 {
   const SurfaceView *view = nb->view;
   PetscInt           head = 0, tail = 0, count = 0;
@@ -154,20 +154,20 @@ PetscErrorCode NeighbourhoodGather(Neighbourhoods nb, PetscInt start, const Pets
     const Facet   *facet  = &view->facets[f];
     PetscBool      inside = PETSC_FALSE;
 
-    for (int a = 0; a < ElementGet(facet->type)->nodes; a++) {
-      const PetscInt  p    = facet->nodes[a];
-      const PetscReal rho2 = Rho2(view, p, x0, metric);
+    for (int q = 0, points = view->first ? FaceRuleGet(facet->type, 0)->n : 0; q < points; q++) {
+      const PetscReal own = Rho2(view, view->first[f] + q, x0, metric);
 
-      inside = (PetscBool)(inside || rho2 <= limit);
-      if (view->first || nb->seen_point[p] == nb->stamp || rho2 > limit) continue;
-      nb->seen_point[p] = nb->stamp;
-      if (view->geometry[p].weight > 0 && Dot(view->geometry[p].normal, e3) >= NEIGHBOURHOOD_COSINE) ReachAdd(nb, &count, rho2, p);
+      inside = (PetscBool)(inside || own <= limit);
+      if (own <= limit) ReachAdd(nb, &count, own, view->first[f] + q);
     }
-    for (int q = 0; view->first && q < FaceRuleGet(facet->type, 0)->n; q++) {
-      const PetscReal rho2 = Rho2(view, view->first[f] + q, x0, metric);
+    for (int a = 0, nodes = view->first && inside ? 0 : ElementGet(facet->type)->nodes; a < nodes; a++) { /* a quadrature point inside tells as much */
+      const PetscInt  p   = facet->nodes[a];
+      const PetscReal own = Rho2(view, p, x0, metric);
 
-      inside = (PetscBool)(inside || rho2 <= limit);
-      if (rho2 <= limit) ReachAdd(nb, &count, rho2, view->first[f] + q);
+      inside = (PetscBool)(inside || own <= limit);
+      if (view->first || nb->seen_point[p] == nb->stamp || own > limit) continue;
+      nb->seen_point[p] = nb->stamp;
+      if (view->geometry[p].weight > 0 && Dot(view->geometry[p].normal, e3) >= NEIGHBOURHOOD_COSINE) ReachAdd(nb, &count, own, p);
     }
     if (!inside && f != start) continue;
     for (PetscInt k = nb->link_ptr[f]; k < nb->link_ptr[f + 1]; k++) {
@@ -181,6 +181,7 @@ PetscErrorCode NeighbourhoodGather(Neighbourhoods nb, PetscInt start, const Pets
   PetscCall(SortReach(nb, count));
   *found = count;
   *n     = PetscMin(count, max);
+  *rho2  = nb->rho2;
   for (PetscInt i = 0; i < *n; i++) points[i] = nb->reach[i];
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -12,6 +12,7 @@ struct _n_Offsets {
   PetscInt       n;
   PetscReal     *used, *now, *before; /* now, before: of the last two accepted states */
   PetscReal      t_now, t_before;
+  PetscReal     *last, *u_last, t_last; /* the last ones that were taken, and where; t_last NAN: none yet */
 };
 
 /* OffsetsCreate - offsets of a surface, 0 until they are taken. Collective. feature_angle: radians. */
@@ -28,9 +29,10 @@ PetscErrorCode OffsetsCreate(Mesh mesh, Scene scene, Loads loads, ContactSurface
   o->once    = (PetscBool)(surface->rigid || scene->kinematics == KINEMATICS_SMALL);
   o->t_now = o->t_before = -1;
   /* the nodal fit's own defaults: the smoothest whose guards hold on jittered meshes */
-  o->fit = (FitSettings){.degree = 4, .support = mesh->dim == 2 ? 4.5 : 3.5, .exponent = mesh->dim == 2 ? 6 : 3, .feature_angle = feature_angle};
-  o->n   = surface->n_faces * FACE_RULE_POINTS * mesh->dim;
-  PetscCall(PetscCalloc3(o->n, &o->used, o->n, &o->now, o->n, &o->before));
+  o->fit    = (FitSettings){.degree = 4, .support = mesh->dim == 2 ? 4.5 : 3.5, .exponent = mesh->dim == 2 ? 6 : 3, .feature_angle = feature_angle};
+  o->n      = surface->n_faces * FACE_RULE_POINTS * mesh->dim;
+  o->t_last = NAN;
+  PetscCall(PetscCalloc5(o->n, &o->used, o->n, &o->now, o->n, &o->before, o->n, &o->last, mesh->n_nodes * mesh->dim, &o->u_last));
   PetscCall(SearchCreate(mesh, scene, loads, surface, surface->max_size, n_images, images, &o->fit, NULL, NULL, NULL, &o->search));
   *out = o;
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -43,7 +45,7 @@ PetscErrorCode OffsetsDestroy(Offsets *offsets)
   if (!*offsets) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(SearchDestroy(&(*offsets)->search));
   PetscCall(FaceMapsDestroy(&(*offsets)->maps));
-  PetscCall(PetscFree3((*offsets)->used, (*offsets)->now, (*offsets)->before));
+  PetscCall(PetscFree5((*offsets)->used, (*offsets)->now, (*offsets)->before, (*offsets)->last, (*offsets)->u_last));
   PetscCall(PetscFree(*offsets));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -262,6 +264,26 @@ static PetscErrorCode TakeOnce(Offsets o, PetscBool *done)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* The offsets at (u, t). A solution is asked for twice: when its lists are checked, and where the next step begins. */
+static PetscErrorCode OffsetsAt(Offsets o, const PetscReal *u, PetscReal t, PetscReal *values)
+{
+  const PetscInt n = o->search->mesh->n_nodes * o->search->mesh->dim;
+  PetscBool      same;
+  int            all;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscArraycmp(u, o->u_last, n, &same));
+  all = same && t == o->t_last;
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &all, 1, MPI_INT, MPI_LAND, o->search->mesh->comm));
+  if (!all) {
+    PetscCall(OffsetsVisit(o, u, t, TakeFace, o->last));
+    PetscCall(PetscArraycpy(o->u_last, u, n));
+    o->t_last = t;
+  }
+  PetscCall(PetscArraycpy(values, o->last, o->n));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* OffsetsExtrapolate - Collective. u[n_nodes*dim]: local displacements, ghosts included, of the accepted state at t; t_next: where the step goes. A step that
    is tried again starts from the same t and finds the same offsets. */
 PetscErrorCode OffsetsExtrapolate(Offsets o, const PetscReal *u, PetscReal t, PetscReal t_next)
@@ -280,7 +302,7 @@ PetscErrorCode OffsetsExtrapolate(Offsets o, const PetscReal *u, PetscReal t, Pe
     o->t_before = o->t_now;
     o->t_now    = t;
   }
-  PetscCall(OffsetsVisit(o, u, t, TakeFace, o->now));
+  PetscCall(OffsetsAt(o, u, t, o->now));
   if (o->t_before >= 0 && !SceneBreaks(o->search->scene, t)) ahead = (t_next - t) / (t - o->t_before); /* past a breakpoint things go another way */
   for (PetscInt i = 0; i < o->n; i++) o->used[i] = o->now[i] + ahead * (o->now[i] - o->before[i]);
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -293,7 +315,7 @@ PetscErrorCode OffsetsTake(Offsets o, const PetscReal *u, PetscReal t)
 
   PetscFunctionBeginUser;
   PetscCall(TakeOnce(o, &done));
-  if (!done) PetscCall(OffsetsVisit(o, u, t, TakeFace, o->used));
+  if (!done) PetscCall(OffsetsAt(o, u, t, o->used));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

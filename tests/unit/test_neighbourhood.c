@@ -63,15 +63,16 @@ static void MakeStrip(Strip *s, PetscReal angle, PetscReal wall, SurfaceView *vi
 /* Gathers around (1.5, 0) within `radius`: how many points of the flat, of the bent flank (the edge's own node apart) and of the far side. */
 static void Count(PetscReal angle, PetscReal wall, PetscReal radius, int count[3])
 {
-  const PetscReal foot[3] = {1.5, 0, 0}, up[3] = {0, 1, 0}, metric[9] = {1 / (radius * radius), 0, 0, 0, 1 / (radius * radius), 0, 0, 0, 0};
-  Strip           strip;
-  SurfaceView     view;
-  Neighbourhoods  nb;
-  PetscInt        points[POINTS], n, found;
+  const PetscReal  foot[3] = {1.5, 0, 0}, up[3] = {0, 1, 0}, metric[9] = {1 / (radius * radius), 0, 0, 0, 1 / (radius * radius), 0, 0, 0, 0};
+  Strip            strip;
+  SurfaceView      view;
+  Neighbourhoods   nb;
+  const PetscReal *rho2;
+  PetscInt         points[POINTS], n, found;
 
   MakeStrip(&strip, angle, wall, &view);
   assert_int_equal(NeighbourhoodsCreate(&view, &nb), PETSC_SUCCESS);
-  assert_int_equal(NeighbourhoodGather(nb, SIDE - 2, foot, up, metric, 1, POINTS, points, &n, &found), PETSC_SUCCESS);
+  assert_int_equal(NeighbourhoodGather(nb, SIDE - 2, foot, up, metric, 1, POINTS, points, &rho2, &n, &found), PETSC_SUCCESS);
   assert_int_equal(n, found);
   count[0] = count[1] = count[2] = 0;
   for (PetscInt i = 0; i < n; i++) count[points[i] <= SIDE ? 0 : points[i] <= 2 * SIDE ? 1 : 2]++;
