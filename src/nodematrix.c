@@ -115,29 +115,39 @@ static PetscErrorCode FindNodes(NodeMatrix m)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* What the pairs of each node of this rank are alone, without other terms. */
-static void LookAtPairs(NodeMatrix m)
+/* Counts the columns of a node's pairs that are of this rank, or of others; are they all of this rank and in ascending order? */
+static PetscBool LookAtNode(NodeMatrix m, PetscInt node, PetscInt count[MATRIX_BLOCKS])
 {
-  const NodePairs *p = &m->pairs;
+  const NodePairs *p      = &m->pairs;
+  PetscInt         last   = -1;
+  PetscBool        rising = PETSC_TRUE;
 
-  for (PetscInt r = 0; r < m->rows; r++) {
-    const PetscInt node = m->node[r];
-    PetscInt       last = m->first - 1, own = 0, others = 0;
-    PetscBool      rising = PETSC_TRUE;
-
-    for (PetscInt k = node < 0 ? 0 : p->ptr[node] * p->size; node >= 0 && k < p->ptr[node + 1] * p->size; k++) {
-      const PetscInt dof = p->dof[p->column[k / p->size] * p->size + k % p->size];
+  count[MATRIX_OWN] = count[MATRIX_OTHERS] = 0;
+  for (PetscInt k = p->ptr[node]; k < p->ptr[node + 1]; k++) {
+    for (int c = 0; c < p->size; c++) {
+      const PetscInt dof = p->dof[p->column[k] * p->size + c];
 
       if (dof < 0) continue;
-      own += IsMine(m, dof);
-      others += !IsMine(m, dof);
+      count[IsMine(m, dof) ? MATRIX_OWN : MATRIX_OTHERS]++;
       rising = (PetscBool)(rising && dof > last);
       last   = dof;
     }
-    m->block[MATRIX_OWN].alone += own;
-    m->block[MATRIX_OTHERS].alone += others;
-    m->longest = PetscMax(m->longest, own + others);
-    if (node >= 0) m->inner[node] = (PetscBool)(rising && !others);
+  }
+  return (PetscBool)(rising && !count[MATRIX_OTHERS]);
+}
+
+/* What the rows of this rank need for its pairs alone, without other terms. */
+static void LookAtRows(NodeMatrix m)
+{
+  PetscInt count[MATRIX_BLOCKS] = {0, 0};
+
+  for (PetscInt r = 0; r < m->rows; r++) {
+    const PetscInt node = m->node[r];
+
+    if (node < 0) continue;
+    if (!r || node != m->node[r - 1]) m->inner[node] = LookAtNode(m, node, count);
+    for (int b = 0; b < MATRIX_BLOCKS; b++) m->block[b].alone += count[b];
+    m->longest = PetscMax(m->longest, count[MATRIX_OWN] + count[MATRIX_OTHERS]);
   }
 }
 
@@ -158,7 +168,7 @@ PetscErrorCode NodeMatrixCreate(MPI_Comm comm, PetscInt rows, const NodePairs *p
   m->first -= rows;
   PetscCall(FindNodes(m));
   PetscCall(PetscCalloc2(pairs->n, &m->inner, pairs->n, &m->placed));
-  LookAtPairs(m);
+  LookAtRows(m);
   PetscCall(PetscMalloc1(pairs->ptr[pairs->n] * pairs->size, &m->place));
   PetscCallMPI(MPI_Comm_size(comm, &size));
   if (size > 1) PetscCall(CreateForeign(m));
@@ -205,7 +215,7 @@ static PetscErrorCode TakeRoom(NodeMatrix m, MatrixRows terms[TERMS][MATRIX_BLOC
 
     if (!block->ptr) PetscCall(PetscMalloc1(m->rows + 1, &block->ptr));
     if (need[b] <= block->room && block->column) continue;
-    block->room = (PetscInt)(NODE_MATRIX_ROOM * need[b]);
+    block->room = 1 + (PetscInt)(NODE_MATRIX_ROOM * need[b]); /* none would be no array */
     PetscCall(PetscFree2(block->column, block->value));
     PetscCall(PetscMalloc2(block->room, &block->column, block->room, &block->value));
   }
