@@ -19,10 +19,11 @@ RATIO = 0.8  # of the two bodies' elements, as in the meshes
 LINE_LOAD, LINE_ZONE = 350 / 6.215**2, 1.3  # half-width 1
 SPHERE_ZONE = 1.5
 SCENES = {
-    # pair, probe of the edge, peak pressure, centre of force over the width, growth of width and peak with the load, first load that counts, step; by order:
-    # elements of the slave along the half-width or radius, and jitters and seeds
-    "line": ("line", "half_width", 3585.4 / 6.215, 4 / (3 * numpy.pi), 1 / 2, 0.8, 0.05, {1: ((4, 6, 8, 12, 16), ((0, 1), (0.25, 1), (0.25, 2))), 2: ((2, 3, 4, 6, 8), ((0, 1),))}),
-    "sphere": ("point", "radius", 734.6, 3 * numpy.pi / 16, 1 / 3, 0.5, 0.1, {1: ((2.5, 3.33, 4.17, 5, 6.67), ((0, 1), (0.25, 1), (0.25, 2))), 2: ((1.67,), ((0, 1),))}),
+    # pair, probe of the edge, peak pressure, centre of force over the width, growth of width and peak with the load, first load that counts, step; series:
+    # order, elements of the slave along the half-width or radius, jitters and seeds
+    "line": ("line", "half_width", 3585.4 / 6.215, 4 / (3 * numpy.pi), 1 / 2, 0.8, 0.05, ((1, (4, 6, 8, 12, 16), ((0, 1), (0.25, 1), (0.25, 2))), (2, (2, 3, 4, 6, 8), ((0, 1),)))),
+    "sphere": ("point", "radius", 734.6, 3 * numpy.pi / 16, 1 / 3, 0.5, 0.1, (
+        (1, (2.5, 3.33, 4.17, 5, 6.67), ((0, 1),)), (1, (2.5, 3.33, 4.17, 5, 6.67, 8.33), ((0.25, 1), (0.25, 2))), (2, (1.67,), ((0, 1),)))),
 }
 # nodes of the bricks by their place along three directions
 LATTICES = {"cells_hex8": numpy.reshape([0, 1, 3, 2, 4, 5, 7, 6], (2, 2, 2)),
@@ -135,7 +136,7 @@ def main():
     parser.add_argument("scenes", nargs="*", metavar="SCENE", help=f"of {', '.join(SCENES)}; default: both")
     parser.add_argument("--jobs", type=int, default=1, help="runs at the same time")
     args = parser.parse_args()
-    cases = [(scene, order, faces, *moves, formulation) for scene in args.scenes or SCENES for order, (meshes, moved) in SCENES[scene][7].items() for moves in moved
+    cases = [(scene, order, faces, *moves, formulation) for scene in args.scenes or SCENES for order, meshes, moved in SCENES[scene][7] for moves in moved
              for faces in meshes for formulation in FORMULATIONS]
     if not args.only_print:
         args.out.mkdir(parents=True, exist_ok=True)
