@@ -80,8 +80,8 @@ static PetscErrorCode LineLeast(Model model, PetscReal slope, PetscReal full, Pe
 
 /* Where backtracking cut a step: the place on it where the energy is least, if that is lower. Backtracking stops before the first kink that a term which closes
    puts into the energy, as far from it as its factors will have it; the tangent there knows nothing of that term, the next step runs into the same kink, and
-   with stiff penalties the iterates creep up to it. The least place is behind the kink. (Sun 1997, J. Optim. Theory Appl. 95, 147-162: with exact line
-   searches Newton's method for convex piecewise quadratic functions ends after finitely many steps.) */
+   with stiff penalties the iterates creep up to it. The least place is behind the kink. (Sun 1997, Math. Program. 76, 451-467: with exact line searches
+   Newton's method for convex piecewise quadratic functions ends after finitely many steps.) */
 static PetscErrorCode ModelLengthenStep(SNESLineSearch search, Vec x, Vec y, Vec w, PetscBool *changed_y, PetscBool *changed_w, void *context)
 {
   Model     model = context;
