@@ -17,14 +17,12 @@ PetscErrorCode KeptFactorDestroy(KeptFactor *);
 /* The next tangent is factored, whatever has changed. Not collective. */
 PetscErrorCode KeptFactorRenew(KeptFactor);
 /* Before each solve with a new operator. changes: contact terms that came, went or changed their stiffness since the operator before; pattern: it has a new
-   one. *serves: the factor does, and wants to be told of the changes, if there are. Collective. */
+   one. *serves: the factor does, the KSP leaves it alone, and it wants to be told of the changes, if there are. Collective. */
 PetscErrorCode KeptFactorNext(KeptFactor, PetscInt changes, PetscBool pattern, PetscBool *serves);
 /* After that: the changes are N diag(s) N^T, N dense. Collective. */
 PetscErrorCode KeptFactorUpdate(KeptFactor, Mat N, const PetscReal *s);
 /* The residual (2-norm) with which the nonlinear solver will be content. Logically collective. */
 PetscErrorCode KeptFactorSetEnough(KeptFactor, PetscReal residual);
-/* Before the KSP sets up for a solve. Logically collective. */
-PetscErrorCode KeptFactorBefore(KeptFactor);
 /* After the KSP's own solve of A x = b: goes on from x where the factor is an older one. *tolerance: relative residual that was asked for, left alone where
    the factor is A's; *failed: a factor had to be made and could not. Collective. */
 PetscErrorCode KeptFactorSolve(KeptFactor, Mat A, Vec b, Vec x, PetscReal *tolerance, PetscBool *failed);

@@ -9,8 +9,9 @@ typedef struct _n_LinearSolver *LinearSolver;
 PetscErrorCode LinearSolverCreate(KSP, Mesh, Scene, PetscBool symmetric, LinearSolver *);
 /* After the KSP is destroyed. Collective. */
 PetscErrorCode LinearSolverDestroy(LinearSolver *);
-/* With the first operator, before it is solved with, where many are to come. Collective. */
-PetscErrorCode LinearSolverOrder(LinearSolver, Mat A);
+/* With the pattern of the first operator's elastic part, before contact joins it, which a run that is restarted finds too; where many operators are to come.
+   Collective. */
+PetscErrorCode LinearSolverOrder(LinearSolver, Mat K);
 /* Before each solve with a new operator. C: its contact part, NULL: none; pattern: it has a new one; changes: contact terms that came, went or changed their
    stiffness since the operator before; *older: an older factor serves and wants to be told of them (KeptFactorUpdate()). Collective. */
 PetscErrorCode LinearSolverNext(LinearSolver, Mat C, PetscBool pattern, PetscInt changes, PetscBool *older);

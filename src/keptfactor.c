@@ -146,6 +146,7 @@ PetscErrorCode KeptFactorNext(KeptFactor kept, PetscInt changes, PetscBool patte
   kept->serves = (PetscBool)(direct && kept->exists && kept->changes <= KEPT_CHANGES);
   if (!kept->serves && kept->stale) PetscCall(KSPReset(kept->ksp));
   if (!kept->serves) PetscCall(Begin(kept));
+  PetscCall(KSPSetReusePreconditioner(kept->ksp, kept->serves));
   *serves = kept->serves;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -160,14 +161,6 @@ PetscErrorCode KeptFactorUpdate(KeptFactor kept, Mat N, const PetscReal *s)
   PetscCall(KSPGetPC(kept->ksp, &pc));
   PetscCall(PCFactorGetMatrix(pc, &factored));
   PetscCall(RankUpdateAdd(&kept->update, factored, N, s));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* KeptFactorBefore - Logically collective. */
-PetscErrorCode KeptFactorBefore(KeptFactor kept)
-{
-  PetscFunctionBeginUser;
-  PetscCall(KSPSetReusePreconditioner(kept->ksp, kept->serves)); /* not sooner: SNES says so too after each tangent */
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -20,13 +20,11 @@ struct _n_LinearCheck {
 
 static PetscErrorCode SolveBegins(KSP ksp, Vec b, Vec x, void *context)
 {
-  const LinearCheck check = context;
-
   PetscFunctionBeginUser;
   (void)ksp;
   (void)b;
   (void)x;
-  if (check->kept) PetscCall(KeptFactorBefore(check->kept));
+  (void)context;
   TimingBegin(TIMING_SOLVE);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -134,7 +132,7 @@ PetscErrorCode LinearCheckCreate(KSP ksp, PetscReal tolerance, KeptFactor kept, 
   PetscCall(PetscNew(check));
   (*check)->tolerance = tolerance;
   (*check)->kept      = kept;
-  PetscCall(KSPSetPreSolve(ksp, SolveBegins, *check));
+  PetscCall(KSPSetPreSolve(ksp, SolveBegins, NULL));
   PetscCall(KSPSetPostSolve(ksp, SolveEnds, *check));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

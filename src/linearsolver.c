@@ -69,14 +69,14 @@ PetscErrorCode LinearSolverDestroy(LinearSolver *solver)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* LinearSolverOrder - a direct solver's ordering for operators that are much like A. Collective; at the first call, the others do nothing. */
-PetscErrorCode LinearSolverOrder(LinearSolver solver, Mat A)
+/* LinearSolverOrder - a direct solver's ordering for operators that are much like K. Collective; at the first call, the others do nothing. */
+PetscErrorCode LinearSolverOrder(LinearSolver solver, Mat K)
 {
   PetscBool mumps = PETSC_FALSE, cholesky;
 
   PetscFunctionBeginUser;
   if (!solver->multigrid && !solver->ordered) PetscCall(DirectSolverFind(solver->ksp, &mumps, &cholesky));
-  if (mumps) PetscCall(DirectSolverOrder(A, cholesky));
+  if (mumps) PetscCall(DirectSolverOrder(K, cholesky));
   solver->ordered = PETSC_TRUE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

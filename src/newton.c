@@ -155,6 +155,7 @@ PetscErrorCode ModelTangent(Model model, const PetscReal *u, PetscReal t)
   PetscInt  terms   = 0;
 
   PetscFunctionBeginUser;
+  if (!ModelIsLinear(model)) PetscCall(LinearSolverOrder(model->work->solver, model->A)); /* a single solve is done sooner with any */
   if (model->contact) PetscCall(ModelContactTangent(model, u, t, &C, &changed, &terms));
   TimingBegin(TIMING_ASSEMBLY_ELASTIC);
   PetscCall(ElasticityTangent(model->elasticity, u));
@@ -169,8 +170,8 @@ PetscErrorCode ModelTangent(Model model, const PetscReal *u, PetscReal t)
     PetscCall(StabiliserTangent(model->work->stabiliser, model->A));
     TimingEnd(TIMING_ASSEMBLY_CONTACT);
   }
-  if (!ModelIsLinear(model)) PetscCall(LinearSolverOrder(model->work->solver, model->A)); /* a single solve is done sooner with any */
   PetscCall(LinearSolverNext(model->work->solver, C, changed, terms, &older));
+  PetscCall(SNESSetLagPreconditioner(model->snes, older ? -1 : 1)); /* after each tangent SNES tells the KSP so */
   if (older && terms > 0) PetscCall(ModelUpdateFactor(model, terms));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
