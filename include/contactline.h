@@ -11,5 +11,5 @@ PetscErrorCode ContactLineDestroy(ContactLine *);
 PetscErrorCode ContactLineSet(ContactLine, int place, PetscReal lambda, const PetscReal *u, PetscReal t);
 /* Derivative of this rank's contact energy with lambda, and the second one; stiffness may be NULL. Not collective. */
 void ContactLineSlope(ContactLine, PetscReal lambda, PetscReal *slope, PetscReal *stiffness);
-/* From u to u_ahead, a trifle farther, is there a slave point in contact whose normal turns at once? place: a node of its face. Collective. */
+/* From u to u_ahead, a trifle farther, is there a slave point in contact of facets whose normal turns at once? place: its slave node. Collective. */
 PetscErrorCode ContactLocateTurn(Contact, const PetscReal *u, const PetscReal *u_ahead, PetscReal t, PetscBool *found, ContactPlace *place);

@@ -30,7 +30,7 @@ typedef struct _n_ModelWork {
   PetscInt     inverted;   /* gmsh's tag of a cell of this rank that was turned inside out in this solve, or -1 */
   PetscBool    near;       /* the iterate is so close that energies differ by round-off only */
   PetscBool    soft;       /* penalties are softened: a residual within MODEL_SOFT_ENOUGH will do */
-  PetscReal    energy;     /* the last one that was evaluated, 0: none was */
+  PetscReal    energy;     /* the last one that was evaluated in this step, 0: none was */
   PetscReal    step;       /* norm of Newton's last step, before the line search */
   PetscReal    norm;       /* residual of the iterate before */
   PetscBool    balanced;   /* the residual of the iterate is within the tolerance */

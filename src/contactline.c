@@ -139,7 +139,11 @@ PetscErrorCode ContactLocateTurn(Contact contact, const PetscReal *u, const Pets
   } mine = {TURN_AT_ONCE, 0}, most;
 
   PetscFunctionBeginUser;
-  for (int p = 0; p < contact->n_pairs; p++) PetscCall(PairTurn(contact, &contact->pairs[p], u, u_ahead, t, &mine.value, &node));
+  for (int p = 0; p < contact->n_pairs; p++) {
+    ContactPair *pair = &contact->pairs[p];
+
+    if (pair->master && !pair->smoother->smooth) PetscCall(PairTurn(contact, pair, u, u_ahead, t, &mine.value, &node));
+  }
   PetscCallMPI(MPI_Comm_rank(mesh->comm, &mine.rank));
   PetscCallMPI(MPI_Allreduce(&mine, &most, 1, MPI_DOUBLE_INT, MPI_MAXLOC, mesh->comm));
   *found = most.value > TURN_AT_ONCE ? PETSC_TRUE : PETSC_FALSE;

@@ -84,7 +84,8 @@ static PetscErrorCode ModelExplainFailure(Model model, SolveReport *report)
                             !model->contact || report->result == SOLVE_ADRIFT ? "" : " (contact may, from the start or with stabilise: true)"));
   else {
     FailureText(&report->failure, report->detail, sizeof(report->detail));
-    PetscCall(ModelBlameFacets(model, report->detail, sizeof(report->detail), &edge));
+    if (report->result == SOLVE_LINE_SEARCH || report->result == SOLVE_ITERATIONS)
+      PetscCall(ModelBlameFacets(model, report->detail, sizeof(report->detail), &edge));
     if (!edge) PetscCall(ModelBlamePenalty(model, report->detail, sizeof(report->detail)));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -103,6 +104,7 @@ static PetscErrorCode ModelDepart(Model model, PetscReal t)
   work->cycling  = PETSC_FALSE;
   work->cycles   = 0;
   work->cycle[0] = '\0';
+  work->energy   = 0;
   if (!model->contact) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscMalloc1(model->mesh->n_nodes * model->mesh->dim, &u));
   PetscCall(PetscArraycpy(u, work->accepted_u, model->mesh->n_nodes * model->mesh->dim));

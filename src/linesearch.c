@@ -16,13 +16,16 @@
 static PetscErrorCode ModelMeasureStep(SNESLineSearch search, Vec x, Vec y, PetscBool *changed, void *context)
 {
   Model     model = context;
+  SNES      snes;
   Vec       F;
-  PetscReal slope;
+  PetscReal slope, energy;
 
   PetscFunctionBeginUser;
-  (void)x;
   *changed = PETSC_FALSE;
   PetscCall(VecNorm(y, NORM_2, &model->work->step));
+  if (model->work->near) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(SNESLineSearchGetSNES(search, &snes));
+  if (model->work->energy == 0) PetscCall(SNESComputeObjective(snes, x, &energy)); /* none was evaluated since the step began */
   PetscCall(SNESLineSearchGetVecs(search, NULL, &F, NULL, NULL, NULL));
   PetscCall(VecDotRealPart(F, y, &slope));
   if (PetscAbsReal(slope) <= LINE_RISE * PETSC_MACHINE_EPSILON * PetscAbsReal(model->work->energy)) model->work->near = PETSC_TRUE;
@@ -108,7 +111,9 @@ static PetscErrorCode ModelLengthenStep(SNESLineSearch search, Vec x, Vec y, Vec
   PetscCall(PetscInfo(snes, "%g of the step instead of %g: energy %.16g instead of %.16g\n", (double)(least / full), (double)(cut / full), (double)after,
                       (double)before));
   *changed_w = PETSC_TRUE;
-  if (after >= before) PetscCall(VecWAXPY(w, -cut, y, x));
+  if (after < before) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(VecWAXPY(w, -cut, y, x));
+  model->work->energy = before;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -120,13 +125,16 @@ static PetscErrorCode ModelLengthenStep(SNESLineSearch search, Vec x, Vec y, Vec
 PetscErrorCode ModelLocateEdge(Model model, PetscBool *found, ContactPlace *place)
 {
   ModelWork *work = model->work;
-  Vec        y, w;
-  PetscReal *here, before, after;
+  Vec        y, w, F;
+  PetscReal *here, before, after, slope;
 
   PetscFunctionBeginUser;
   *found = PETSC_FALSE;
   PetscCall(SNESGetSolutionUpdate(model->snes, &y));
   if (!work->line || !y || work->near) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(SNESGetFunction(model->snes, &F, NULL, NULL));
+  PetscCall(VecDotRealPart(F, y, &slope));
+  if (!(slope > 0)) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(VecDuplicate(y, &w));
   PetscCall(VecWAXPY(w, -LINE_TRIFLE, y, model->x));
   PetscCall(SNESComputeObjective(model->snes, w, &after));
