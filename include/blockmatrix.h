@@ -1,8 +1,8 @@
-/* A matrix that is a sum of small dense blocks over scattered dofs: what contact adds to the tangent. Blocks are gathered on each rank over
-   the entries of rank-local vectors (one per contact pair), multiplied as they stand, or assembled into a parallel matrix over the global
-   dofs, whose pattern is kept as long as it holds the blocks, with zeros where none asks for an entry.
+/* A matrix that is a sum of small dense blocks over scattered dofs: what contact adds to the tangent. Blocks stand over nodes of rank-local vectors (one per
+   contact pair). They are large and overlap: first all are named, which gives the pattern, then their values are added one by one and nowhere kept. The sum is
+   a parallel matrix over the global dofs, whose pattern is kept as long as it holds the blocks, with zeros where none asks for an entry.
 
-     BlockMatrixReset(); BlockMatrixAdd() per block; then BlockMatrixAssemble(), BlockMatrixMultiply() */
+     BlockMatrixBegin(); BlockMatrixName() per block; BlockMatrixPlace(); BlockMatrixAdd() per block; BlockMatrixEnd() */
 #pragma once
 #include "archive.h"
 
@@ -11,17 +11,24 @@ typedef struct _n_BlockMatrix *BlockMatrix;
 /* size: the dofs of a node, which stand next to each other in every block. Collective. */
 PetscErrorCode BlockMatrixCreate(MPI_Comm, int size, BlockMatrix *);
 PetscErrorCode BlockMatrixDestroy(BlockMatrix *);
-PetscErrorCode BlockMatrixReset(BlockMatrix);
-/* A block of size m over entries of vector `list`: entry[m] to be written, value[m*m] (row-major, symmetric) to be added to (it is zero). Both are valid
-   until the next call. Not collective. */
-PetscErrorCode BlockMatrixAdd(BlockMatrix, int list, PetscInt m, PetscInt **entry, PetscReal **value);
-/* A block v v^T over such entries: value[m] is v. Not collective. */
-PetscErrorCode BlockMatrixAddOuter(BlockMatrix, int list, PetscInt m, PetscInt **entry, PetscReal **value);
-/* The matrix over global dofs (n rows on this rank); dof[list][entry]: global dof, or -1 for an entry without one. It stays the block matrix's.
- *changed: its pattern is new. Collective. */
-PetscErrorCode BlockMatrixAssemble(BlockMatrix, PetscInt n, const PetscInt *const dof[], Mat *, PetscBool *changed);
-/* y += (blocks of list) x for rank-local vectors. Not collective. */
-PetscErrorCode BlockMatrixMultiply(BlockMatrix, int list, const PetscReal *x, PetscReal *y);
+/* n[list]: nodes of the rank-local vectors; dof[list][n*size]: global dof, or -1 for an entry without one. Not collective. */
+PetscErrorCode BlockMatrixBegin(BlockMatrix, int n_lists, const PetscInt n[], const PetscInt *const dof[]);
+/* The order of nodes in a block; *with: those with dofs, which come first. Not collective. */
+PetscErrorCode BlockMatrixSort(BlockMatrix, int list, PetscInt n, PetscInt node[], PetscInt *with);
+/* A block over nodes of a list, in any order; whole: those without dofs too. Not collective. */
+PetscErrorCode BlockMatrixName(BlockMatrix, int list, PetscInt n, const PetscInt node[], PetscBool whole);
+/* The pattern, with `rows` rows on this rank; *changed: it is new. Collective. */
+PetscErrorCode BlockMatrixPlace(BlockMatrix, PetscInt rows, PetscBool *changed);
+/* The nodes of block b, counted as they were named, in its order. */
+void BlockMatrixGetNodes(BlockMatrix, PetscInt b, PetscInt *n, const PetscInt **node);
+/* Adds a block within a named one, nodes in the order of BlockMatrixSort(): value[(n*size)^2], of which the upper triangle is read, or v[n*size] for v v^T. Not
+   collective. */
+PetscErrorCode BlockMatrixAdd(BlockMatrix, int list, PetscInt n, const PetscInt node[], const PetscReal value[]);
+PetscErrorCode BlockMatrixAddOuter(BlockMatrix, int list, PetscInt n, const PetscInt node[], const PetscReal v[]);
+/* y += x times each block that is added from now on, for rank-local vectors of its list; NULL: no more. Not collective. */
+void BlockMatrixMultiply(BlockMatrix, const PetscReal *x, PetscReal *y);
+/* The matrix; it stays the block matrix's. Collective. */
+PetscErrorCode BlockMatrixEnd(BlockMatrix, Mat *);
 
 /* The pattern that is kept, on one rank: another one orders the solver's sums in another way. On several it is found anew. Collective. */
 PetscErrorCode BlockMatrixArchive(BlockMatrix, Archive, const char *name, PetscInt n);

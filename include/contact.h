@@ -112,8 +112,10 @@ PetscErrorCode ContactTangent(Contact, const PetscReal *u, PetscReal t, Mat *C, 
 PetscErrorCode ContactTangentChanges(Contact, PetscInt *terms);
 /* What these add to the tangent, N diag(s) N^T: s[terms] and a dense N of so many columns, the caller's. rows: the matrix's on this rank. Collective. */
 PetscErrorCode ContactChangeVectors(Contact, PetscInt rows, PetscInt terms, PetscReal *s, Mat *N);
-/* y += C x with the last tangent, all dofs; rigid tools contribute their motion from t to t_next. x, y local, y complete at owned nodes. Collective. */
-PetscErrorCode ContactMultiply(Contact, const PetscReal *x, PetscReal t, PetscReal t_next, PetscReal *y);
+/* y += C x with the tangent that is asked for in between, all dofs; rigid tools contribute their motion from t to t_next. x, y local, y complete at owned
+   nodes. Collective. */
+PetscErrorCode ContactMultiplyBegin(Contact, const PetscReal *x, PetscReal t, PetscReal t_next);
+PetscErrorCode ContactMultiplyEnd(Contact, PetscReal *y);
 PetscErrorCode ContactAccept(Contact); /* the present state is the one that ContactRestore() returns to. Not collective */
 PetscErrorCode ContactRestore(Contact);
 /* The accepted state, at (u, t), and all else that the next steps depend on. Loading it also makes it the present one, with lists. Collective. */

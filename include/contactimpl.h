@@ -17,22 +17,29 @@ typedef struct {
   int     rows_room, entries_room;
 } ContactMap;
 
-/* Room to evaluate one slave point in, and its variations carried to the contact nodes: number[count] are these, N runs over them. Second variations of
-   some slave points are summed over the nodes of a block. */
+/* Room to evaluate one slave point in, and its first variation carried to the contact nodes: number[count] are these, N runs over them. Second variations of
+   some slave points are summed over the nodes of a block into M. */
 typedef struct {
   SmootherResult result;
   PetscReal     *x, *multiplier, *workspace; /* positions relative to the slave point */
   PetscInt       x_room;
   ContactMap     map;
   PetscInt       count, *number;
-  PetscReal     *N, *half; /* half: on the way from a facet's M to the sum */
-  PetscInt       room, half_room;
+  PetscReal     *N;
+  PetscInt       room;
   FitMapSum      sum;
-  PetscReal     *sum_workspace;
-  PetscInt       sum_room;
-  int           *slot; /* of every contact node: its place in number[], -1 between evaluations */
+  PetscReal     *sum_workspace, *M;
+  PetscInt       sum_room, M_room;
+  int           *slot; /* of every contact node: its place in number[] or in the block at hand, -1 elsewhere and between evaluations */
   PetscInt       slot_room;
 } ContactWork;
+
+/* First variations of slave points over contact nodes where the pair was last projected: residual, tangent and its changes ask for the same ones. */
+typedef struct {
+  PetscInt   n_points, *first, *end; /* of each point; first -1: not evaluated yet; no nodes: no master is near */
+  PetscInt  *number, n, room;        /* nodes of one point after another */
+  PetscReal *N, *own;                /* over these; own[dim] of each point: by the slave point itself */
+} ContactVariations;
 
 /* The slave point that was lost the deepest behind its master; depth 0: none */
 typedef struct {
@@ -71,31 +78,38 @@ typedef struct {
   ContactLists        lists, next;              /* next: fresh ones, NULL: none */
   PetscReal          *next_factor, next_motion; /* of the next ones: area factors, and the motion they were made for */
   /* per slave point; factor: frozen with the lists, fades out past a free edge; seed: the facet of last time; gap, normal: of the last projection */
-  PetscReal   *factor;
-  int         *seed;
-  PetscReal   *point_gap, *point_normal, *point_force;
-  PetscReal   *stiffness, *stiffness_before; /* of the terms in the last tangent, in the one before */
-  PetscReal   *force, *normal;               /* of the last residual: normal nodal force, contact normal (n*3) */
-  PetscReal    total[3];                     /* and the force on this rank's terms */
-  PetscReal    t;                            /* of the last residual */
-  PetscReal   *pressure, *law_pressure;      /* what ContactGetNodes() shows: force over area; of the law */
-  Mixing       mixing;                       /* of the multipliers of one step; NULL: not augmented */
-  PetscBool    projected;                    /* there was one with these lists */
-  ContactLost  lost;                         /* since the step began */
-  PetscInt     updates;                      /* times in this step that penalties were adjusted, or pressures became multipliers */
-  ContactWork *work;                         /* shared by all pairs */
+  PetscReal         *factor;
+  int               *seed;
+  PetscReal         *point_gap, *point_normal, *point_force;
+  ContactVariations *variations;
+  PetscReal         *stiffness, *stiffness_before; /* of the terms in the last tangent, in the one before */
+  PetscReal         *force, *normal;               /* of the last residual: normal nodal force, contact normal (n*3) */
+  PetscReal          total[3];                     /* and the force on this rank's terms */
+  PetscReal          t;                            /* of the last residual */
+  PetscReal         *pressure, *law_pressure;      /* what ContactGetNodes() shows: force over area; of the law */
+  Mixing             mixing;                       /* of the multipliers of one step; NULL: not augmented */
+  PetscBool          projected;                    /* there was one with these lists */
+  ContactLost        lost;                         /* since the step began */
+  PetscInt           updates;                      /* times in this step that penalties were adjusted, or pressures became multipliers */
+  ContactWork       *work;                         /* shared by all pairs */
 } ContactPair;
 
+/* What the next tangent is multiplied with, and the product, over the contact nodes of a pair */
+typedef struct {
+  PetscReal *x, *y;
+} ContactProduct;
+
 struct _n_Contact {
-  Mesh          mesh;
-  Scene         scene;
-  Loads         loads;
-  int           n_pairs;
-  ContactPair  *pairs;
-  ContactWork   work;
-  BlockMatrix   blocks; /* the last tangent */
-  PetscLogEvent event_search, event_project, event_residual, event_tangent;
-  PetscLogEvent event_fit, event_offset, event_adjust, event_touch; /* of effects: none where the scene does not call for them */
+  Mesh            mesh;
+  Scene           scene;
+  Loads           loads;
+  int             n_pairs;
+  ContactPair    *pairs;
+  ContactWork     work;
+  BlockMatrix     blocks;  /* the last tangent */
+  ContactProduct *product; /* of each pair; NULL: none is asked for */
+  PetscLogEvent   event_search, event_project, event_residual, event_tangent;
+  PetscLogEvent   event_fit, event_offset, event_adjust, event_touch; /* of effects: none where the scene does not call for them */
 };
 
 /* contact.c */
@@ -118,19 +132,34 @@ PetscErrorCode ContactListsArchive(Contact, Archive, const PetscReal *u, PetscRe
 PetscErrorCode ContactPointEvaluate(const ContactPair *, const Smoother *, ContactLists, PetscInt q, int seed, SmootherWant, PetscBool *found);
 /* The first variation of the last evaluation over contact nodes, into the work's number and N. */
 PetscErrorCode ContactPointToNodes(const ContactPair *, ContactLists, PetscInt q);
-/* M[(nodes*dim)^2] += factor times the second variation, for some slave points: each evaluated, taken to nodes, added. place: of contact nodes in M;
-   NULL: the point's own numbers. */
-PetscErrorCode ContactSecondBegin(const ContactPair *, PetscInt nodes, PetscInt points, PetscReal *M);
-PetscErrorCode ContactSecondAdd(const ContactPair *, ContactLists, PetscInt q, PetscReal factor, const PetscInt *place, double (*own)[FITMAP_OWN]);
+/* Contact nodes that are mentioned, each once, into the work's number */
+PetscErrorCode ContactNodesBegin(const ContactPair *, PetscInt room);
+void           ContactNodesAdd(const ContactPair *, PetscInt n, const PetscInt nodes[]);
+void           ContactNodesEnd(const ContactPair *);
+/* The nodes of a block: where they stand in it, until they are forgotten. */
+PetscErrorCode ContactBlockBegin(const ContactPair *, PetscInt n, const PetscInt nodes[]);
+void           ContactBlockEnd(const ContactPair *, PetscInt n, const PetscInt nodes[]);
+/* The sum of factor times second variations of some slave points over the nodes of a block, and of vectors' products with themselves, into the work's M. */
+PetscErrorCode ContactSecondBegin(const ContactPair *, PetscInt nodes, PetscInt points);
+PetscErrorCode ContactSecondAdd(const ContactPair *, PetscInt q, PetscReal factor, double (*own)[FITMAP_OWN]);
 void           ContactSecondEnd(const ContactPair *);
-/* What belongs to fit points one by one, own[n_points] of all slave points: some points' nodes, then the sum over these. */
-PetscErrorCode ContactPointsToNodes(const ContactPair *, ContactLists, PetscInt first, PetscInt end);
-void           ContactOwnToNodes(const ContactPair *, PetscInt points, const double (*own)[FITMAP_OWN], PetscReal *M);
+/* What belongs to fit points one by one, own[n_points] of all slave points: some points' nodes into the work's number, then the sum over a block. */
+PetscErrorCode ContactPointsToNodes(const ContactPair *, PetscInt first, PetscInt end);
+PetscErrorCode ContactOwnToNodes(const ContactPair *, PetscInt nodes, PetscInt first, PetscInt end, const double (*own)[FITMAP_OWN]);
 PetscErrorCode ContactWorkDestroy(ContactWork *);
-/* Gaps of all slave points that have a factor, NaN of the others; seed, normals: may be NULL. */
-PetscErrorCode ContactPointGaps(const ContactPair *, ContactLists, const PetscReal *factor, int *seed, PetscReal *gap, PetscReal *normals);
+/* Gaps of all slave points that have a factor, NaN of the others; force: points with one have their first variations kept too; force, seed, normals: may be
+   NULL. */
+PetscErrorCode ContactPointGaps(const ContactPair *, ContactLists, const PetscReal *factor, const PetscReal *force, int *seed, PetscReal *gap,
+                                PetscReal *normals);
 /* Weighted mean of its points' gaps, NaN without any; *area: of those that count. */
 PetscReal ContactTermGap(const ContactPair *, const PetscReal *factor, const PetscReal *point_gap, PetscInt term, PetscReal *area);
+/* contactvariation.c */
+PetscErrorCode ContactVariationsCreate(int dim, PetscInt n_points, ContactVariations **);
+PetscErrorCode ContactVariationsDestroy(ContactVariations **);
+void           ContactVariationsReset(ContactVariations *);                                      /* the points have moved */
+PetscErrorCode ContactVariationsKeep(const ContactPair *, PetscInt q, PetscBool found);          /* that of the last evaluation */
+PetscErrorCode ContactVariationsNeed(const ContactPair *, PetscInt q);                           /* evaluates it, unless it is there */
+PetscErrorCode ContactVariationsNodes(const ContactPair *, PetscInt n, const PetscInt points[]); /* of some points that carry area, into the work's number */
 /* contactlost.c */
 /* Remember the slave points behind their masters that the next lists have lost; those that passed through it; those that jumped out since the accepted state.
  */

@@ -18,21 +18,25 @@ typedef struct {
 
 enum { FITMAP_OWN = 6 }; /* entries of a point's own H: xx xy yy xz yz zz (2D: the first three) */
 
-/* A sum of second variations in the making: FitMapBegin(), FitMapAdd() for each slave point, FitMapEnd(); the points' own H are added apart, FitMapAddOwn() */
+/* A sum of second variations in the making: FitMapBegin(), FitMapAdd() for each slave point, FitMapEnd(); the points' own H are added apart, FitMapAddOwn().
+   Of symmetric sums the upper triangle is written. */
 typedef struct {
   int     dim, n_nodes, stride, depth;
   double *rows, *K, *J; /* rows: of the slave point at hand; K, J: [depth][stride], of all so far */
-  double *M;
 } FitMapSum;
 
 /* nodal[n_nodes*dim] = S^T N, for N[(1 + n)*dim] of n points inside. */
 void FitMapFirst(int dim, int n, const double *N, const FitMap *, double *nodal);
-/* M[(n_nodes*dim)^2] += sum factor S^T M S over slave points with maps to the same nodes, symmetric to the last bit. degree: the highest; workspace:
-   FitMapWorkspace() doubles, another one than that where the factors lie. */
-long FitMapWorkspace(int dim, int degree, int n_nodes, int points);
-void FitMapBegin(FitMapSum *, int dim, int degree, int n_nodes, int points, double *workspace, double *M);
+/* M[(n_nodes*dim)^2] = sum factor S^T M S over slave points with maps to the same nodes. degree: the highest; depth: see there; workspace: FitMapWorkspace()
+   doubles, another one than that where the factors lie. */
+int  FitMapDepth(int dim, int degree);
+long FitMapWorkspace(int dim, int degree, int n_nodes, int depth);
+void FitMapBegin(FitMapSum *, int dim, int degree, int n_nodes, int depth, double *workspace);
 void FitMapAdd(FitMapSum *, double factor, const FitFactors *, const FitMap *);
-void FitMapEnd(FitMapSum *);
+/* Where M itself is there instead of its factors; factor v v^T. */
+void FitMapAddDense(FitMapSum *, double factor, int n, const double *M, const FitMap *);
+void FitMapAddOuter(FitMapSum *, double factor, const double *v);
+void FitMapEnd(FitMapSum *, double *M);
 /* The points' own H: own += factor H_i; M += sum of S^T own S over rows first to end - 1 of a map, which may belong to points of many slave points. */
 void FitMapOwn(double factor, const FitFactors *, int i, double own[FITMAP_OWN]);
 void FitMapAddOwn(int dim, int first, int end, const double (*own)[FITMAP_OWN], const FitMap *, double *M);

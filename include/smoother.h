@@ -36,6 +36,7 @@ typedef struct {
   FitFactors factors;
 } SmootherResult;
 
+/* The gap always, and one of the two variations */
 typedef enum { SMOOTHER_GAP, SMOOTHER_FIRST_VARIATION, SMOOTHER_SECOND_VARIATION } SmootherWant;
 
 typedef struct {

@@ -1,5 +1,5 @@
 /* The symmetric product M = K^T J + J^T K of two tall thin factors: what second variations of smoothed contact are made of. Plain C: no PETSc,
-   no MPI, no allocation. Only the upper triangle is computed; the lower one is its mirror image, to the last bit. */
+   no MPI, no allocation. Only the upper triangle is computed; the lower one is its mirror image, to the last bit, or left out. */
 #pragma once
 #include "lanes.h"
 
@@ -8,6 +8,6 @@ enum { PRODUCT_VECTORS = 3 };
 
 /* Least length of a row of K and J for a product of n rows: the entries past n must be finite, they are read and not used. */
 int SymmetricProductStride(int n);
-/* K, J: [depth][stride], stride >= SymmetricProductStride(n), aligned to a vector. M: [n][n], written or, symmetric before, added to. */
+/* K, J: [depth][stride], stride >= SymmetricProductStride(n), aligned to a vector. M: [n][n], whole or its upper triangle only. */
 void SymmetricProduct(int n, int depth, int stride, const double *K, const double *J, double *M);
-void SymmetricProductAdd(int n, int depth, int stride, const double *K, const double *J, double *M);
+void SymmetricProductUpper(int n, int depth, int stride, const double *K, const double *J, double *M);

@@ -5,43 +5,32 @@
    other matrices and the solver's analysis (half of a factorisation at 10,000 dofs), a zero costs fill. Contact that moves on seldom reaches it. */
 #define BLOCK_SLACK 1.5
 
-/* Values are kept in pieces of this many or more, which never move: as one array that grows they are copied, and need twice the memory. */
-#define BLOCK_PIECE (1 << 20)
-
+/* One row of nodes of a block: where the block starts in the pattern, which of its rows it is */
 typedef struct {
-  int        list;
-  PetscInt   m, entry; /* size; first place in the array */
-  PetscReal *value;
-  PetscBool  outer; /* the values are a vector v, the block is v v^T */
-} Block;
-
-typedef struct {
-  PetscInt   n, room;
-  PetscReal *value;
-} BlockPiece;
-
-/* One row of nodes of a block. Targets: a column of nodes in the block, and the pair of the row, counted from its first, that it is added to. */
-typedef struct {
-  PetscInt at, block, node;       /* the block's place in the pattern, its number, which of its rows */
-  PetscInt first_target, targets; /* pairs up to the diagonal: all blocks are symmetric */
+  PetscInt at, node;
 } BlockRow;
 
 struct _n_BlockMatrix {
-  MPI_Comm    comm;
-  int         size;                                                       /* of a node: its dofs */
-  PetscInt    n, room, n_entries, entries_room, n_pieces, piece, n_pairs; /* piece: that is being filled; n_pairs: of nodes, over all blocks */
-  Block      *block;
-  PetscInt   *entry;
-  BlockPiece *pieces;
-  NodeMatrix  matrix;
-  PetscInt    n_pattern, *pattern; /* of the blocks: number of nodes and nodes' keys of block after block; key: the first dof, -1 without any */
-  PetscInt    n_nodes, *key, *dof; /* of the matrix: keys ascending, dofs (n_nodes*size) */
-  PetscInt   *pair_ptr, *pair;     /* blocks overlap: every pair of nodes once, row by row, ascending */
-  PetscInt   *mirror;              /* of the pairs below the diagonal: the pair with row and column swapped */
-  PetscInt   *row_ptr, *target;    /* of each node, its rows in the blocks; where these are added */
-  BlockRow   *row;
-  PetscReal  *sum;      /* over the pairs, block by block */
-  PetscBool   restored; /* the matrix is not the one that its user knows */
+  MPI_Comm         comm;
+  int              size;                   /* of a node: its dofs */
+  PetscInt         n_listed, *list;        /* nodes of all lists, one list after another; where each starts */
+  PetscInt        *list_key, *list_number; /* of every node of the lists: its key, -1 without any; its place among those of the matrix, -1 elsewhere */
+  PetscInt        *list_dof;               /* size for each of these nodes */
+  PetscInt         n, room, *ptr, *of;     /* named blocks: where their nodes start; their lists */
+  PetscInt         nodes_room, *node;      /* of the blocks one after another, by ascending key, those without one last: place in the list */
+  NodeMatrix       matrix;
+  PetscInt         n_pattern, *pattern; /* of the blocks: number of nodes with keys and these keys of block after block; key: the first dof */
+  PetscInt         n_nodes, *key, *dof; /* of the matrix: keys ascending, dofs (n_nodes*size) */
+  PetscInt        *pair_ptr, *pair;     /* blocks overlap: every pair of nodes once, row by row, ascending */
+  PetscInt        *diagonal;            /* of each row: its first pair that is not below the diagonal */
+  PetscInt        *mirror;              /* of the pairs above the diagonal: the pair with row and column swapped */
+  PetscInt        *row_ptr;             /* of each node, its rows in the blocks */
+  BlockRow        *row;
+  PetscInt        *seen, *at; /* of each node of the matrix: the last pair in whose column it stood; at: numbers of the block at hand */
+  PetscReal       *sum;       /* over the pairs, block by block */
+  const PetscReal *along;     /* what blocks are multiplied with as they are added, or NULL */
+  PetscReal       *product;
+  PetscBool        restored; /* the matrix is not the one that its user knows */
 };
 
 /* BlockMatrixCreate - an empty one.
@@ -56,164 +45,174 @@ PetscErrorCode BlockMatrixCreate(MPI_Comm comm, int size, BlockMatrix *blocks)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+static PetscErrorCode DestroyLists(BlockMatrix blocks)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscFree4(blocks->list, blocks->list_key, blocks->list_number, blocks->list_dof));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* BlockMatrixDestroy - Collective. */
 PetscErrorCode BlockMatrixDestroy(BlockMatrix *blocks)
 {
   PetscFunctionBeginUser;
   if (!*blocks) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PetscFree((*blocks)->block));
-  PetscCall(PetscFree((*blocks)->entry));
-  for (PetscInt k = 0; k < (*blocks)->n_pieces; k++) PetscCall(PetscFree((*blocks)->pieces[k].value));
-  PetscCall(PetscFree((*blocks)->pieces));
+  PetscCall(DestroyLists(*blocks));
+  PetscCall(PetscFree((*blocks)->ptr));
+  PetscCall(PetscFree((*blocks)->of));
+  PetscCall(PetscFree((*blocks)->node));
   PetscCall(PetscFree((*blocks)->pattern));
   PetscCall(PetscFree((*blocks)->key));
   PetscCall(PetscFree((*blocks)->dof));
   PetscCall(PetscFree((*blocks)->pair_ptr));
   PetscCall(PetscFree((*blocks)->pair));
+  PetscCall(PetscFree((*blocks)->diagonal));
   PetscCall(PetscFree((*blocks)->mirror));
   PetscCall(PetscFree((*blocks)->row_ptr));
-  PetscCall(PetscFree((*blocks)->target));
   PetscCall(PetscFree((*blocks)->row));
+  PetscCall(PetscFree2((*blocks)->seen, (*blocks)->at));
   PetscCall(PetscFree((*blocks)->sum));
   PetscCall(NodeMatrixDestroy(&(*blocks)->matrix));
   PetscCall(PetscFree(*blocks));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* BlockMatrixReset - drops all blocks; the assembled matrix and its pattern stay. Not collective. */
-PetscErrorCode BlockMatrixReset(BlockMatrix blocks)
-{
-  PetscFunctionBeginUser;
-  blocks->n = blocks->n_entries = blocks->piece = blocks->n_pairs = 0;
-  for (PetscInt k = 0; k < blocks->n_pieces; k++) blocks->pieces[k].n = 0;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
+/* BlockMatrixBegin - a new sum: without blocks, over the nodes of new lists; the assembled matrix and its pattern stay.
 
-/* Room for n values, which are zero, until the next reset. */
-static PetscErrorCode TakeValues(BlockMatrix blocks, PetscInt n, PetscReal **value)
+   Not collective. n_lists: rank-local vectors (contact: one for each pair); n[list]: their nodes; dof[list][n*size]: global dofs, -1: none (its rows and
+   columns are left out). */
+PetscErrorCode BlockMatrixBegin(BlockMatrix blocks, int n_lists, const PetscInt n[], const PetscInt *const dof[])
 {
-  PetscFunctionBeginUser;
-  while (blocks->piece < blocks->n_pieces && blocks->pieces[blocks->piece].n + n > blocks->pieces[blocks->piece].room) blocks->piece++;
-  if (blocks->piece == blocks->n_pieces) {
-    const PetscInt room = PetscMax(n, BLOCK_PIECE);
+  const int size  = blocks->size;
+  PetscInt  total = 0;
 
-    PetscCall(PetscRealloc((blocks->n_pieces + 1) * sizeof(BlockPiece), &blocks->pieces));
-    blocks->pieces[blocks->n_pieces] = (BlockPiece){.room = room};
-    PetscCall(PetscMalloc1(room, &blocks->pieces[blocks->n_pieces++].value));
+  PetscFunctionBeginUser;
+  PetscCall(DestroyLists(blocks));
+  for (int l = 0; l < n_lists; l++) total += n[l];
+  PetscCall(PetscMalloc4(n_lists, &blocks->list, total, &blocks->list_key, total, &blocks->list_number, total * size, &blocks->list_dof));
+  blocks->n        = 0;
+  blocks->along    = NULL;
+  blocks->n_listed = 0;
+  for (int l = 0; l < n_lists; l++) {
+    blocks->list[l] = blocks->n_listed;
+    PetscCall(PetscArraycpy(&blocks->list_dof[blocks->n_listed * size], dof[l], n[l] * size));
+    blocks->n_listed += n[l];
   }
-  *value = &blocks->pieces[blocks->piece].value[blocks->pieces[blocks->piece].n];
-  blocks->pieces[blocks->piece].n += n;
-  PetscCall(PetscArrayzero(*value, n));
+  for (PetscInt i = 0; i < total; i++) {
+    blocks->list_key[i] = blocks->list_number[i] = -1;
+    for (int d = 0; d < size && blocks->list_key[i] < 0; d++) blocks->list_key[i] = PetscMax(-1, blocks->list_dof[i * size + d]);
+  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Makes room for a block of size m with n values, which are zero. */
-static PetscErrorCode AddBlock(BlockMatrix blocks, int list, PetscInt m, PetscInt n, PetscInt **entry, PetscReal **value)
+/* BlockMatrixSort - brings nodes of a list into the order in which blocks have them; *with: how many of them have dofs, which come first. Not collective. */
+PetscErrorCode BlockMatrixSort(BlockMatrix blocks, int list, PetscInt n, PetscInt node[], PetscInt *with)
 {
+  const PetscInt *key = &blocks->list_key[blocks->list[list]];
+  PetscInt       *keys;
+
   PetscFunctionBeginUser;
-  if (blocks->n == blocks->room) PetscCall(PetscRealloc((blocks->room = 2 * blocks->room + 64) * sizeof(Block), &blocks->block));
-  if (blocks->n_entries + m > blocks->entries_room)
-    PetscCall(PetscRealloc((blocks->entries_room = 2 * (blocks->entries_room + m)) * sizeof(PetscInt), &blocks->entry));
-  *entry = &blocks->entry[blocks->n_entries];
-  PetscCall(TakeValues(blocks, n, value));
-  blocks->block[blocks->n++] = (Block){.list = list, .m = m, .entry = blocks->n_entries, .value = *value};
-  blocks->n_entries += m;
-  blocks->n_pairs += PetscSqr(m / blocks->size);
+  PetscCall(PetscMalloc1(n, &keys));
+  *with = 0;
+  for (PetscInt i = 0; i < n; i++) {
+    *with += key[node[i]] >= 0;
+    keys[i] = key[node[i]] >= 0 ? key[node[i]] : PETSC_MAX_INT;
+  }
+  PetscCall(PetscSortIntWithArray(n, keys, node));
+  PetscCall(PetscFree(keys));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* BlockMatrixAdd - a new block over entries of rank-local vector `list` (contact: the pair's number).
+/* BlockMatrixName - announces a block over nodes of list `list`, or, with fewer of them, blocks within it.
 
-   Not collective. m: size of the block, whole nodes. entry[m]: to be written, node by node; value[m*m]: row-major (force per length), zero, to be added to.
-   Both stand until the next call: growing moves them. */
-PetscErrorCode BlockMatrixAdd(BlockMatrix blocks, int list, PetscInt m, PetscInt **entry, PetscReal **value)
+   Not collective, before BlockMatrixPlace(). whole: its nodes without dofs, too, are wanted by BlockMatrixGetNodes(). */
+PetscErrorCode BlockMatrixName(BlockMatrix blocks, int list, PetscInt n, const PetscInt node[], PetscBool whole)
 {
+  PetscInt first, with;
+
   PetscFunctionBeginUser;
-  PetscCall(AddBlock(blocks, list, m, m * m, entry, value));
+  if (blocks->n + 1 >= blocks->room) {
+    blocks->room = 2 * blocks->room + 64;
+    PetscCall(PetscRealloc(blocks->room * sizeof(PetscInt), &blocks->ptr));
+    PetscCall(PetscRealloc(blocks->room * sizeof(PetscInt), &blocks->of));
+  }
+  if (!blocks->n) blocks->ptr[0] = 0;
+  first = blocks->ptr[blocks->n];
+  if (first + n > blocks->nodes_room) PetscCall(PetscRealloc((blocks->nodes_room = 2 * (first + n)) * sizeof(PetscInt), &blocks->node));
+  PetscCall(PetscArraycpy(&blocks->node[first], node, n));
+  PetscCall(BlockMatrixSort(blocks, list, n, &blocks->node[first], &with));
+  blocks->of[blocks->n]    = list;
+  blocks->ptr[++blocks->n] = first + (whole ? n : with);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* BlockMatrixAddOuter - as BlockMatrixAdd() for a block v v^T, which is never written out: value[m] is v. Not collective. */
-PetscErrorCode BlockMatrixAddOuter(BlockMatrix blocks, int list, PetscInt m, PetscInt **entry, PetscReal **value)
+/* BlockMatrixGetNodes - the nodes of the b-th block that was named, in its order; borrowed until BlockMatrixBegin(). Not collective. */
+void BlockMatrixGetNodes(BlockMatrix blocks, PetscInt b, PetscInt *n, const PetscInt **node)
 {
-  PetscFunctionBeginUser;
-  PetscCall(AddBlock(blocks, list, m, m, entry, value));
-  blocks->block[blocks->n - 1].outer = PETSC_TRUE;
-  PetscFunctionReturn(PETSC_SUCCESS);
+  *n    = blocks->ptr[b + 1] - blocks->ptr[b];
+  *node = &blocks->node[blocks->ptr[b]];
 }
 
-/* The pattern that the present blocks need. */
-static PetscErrorCode BlocksPattern(BlockMatrix blocks, const PetscInt *const dof[], PetscInt *n, PetscInt **pattern)
+/* The pattern that the named blocks need. */
+static PetscErrorCode BlocksPattern(BlockMatrix blocks, PetscInt *n, PetscInt **pattern)
 {
-  const int size = blocks->size;
-
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc1(blocks->n + blocks->n_entries / size, pattern));
+  PetscCall(PetscMalloc1(blocks->n + (blocks->n ? blocks->ptr[blocks->n] : 0), pattern));
   *n = 0;
   for (PetscInt b = 0; b < blocks->n; b++) {
-    const Block *block = &blocks->block[b];
+    const PetscInt *key = &blocks->list_key[blocks->list[blocks->of[b]]], count = (*n)++;
 
-    (*pattern)[(*n)++] = block->m / size;
-    for (PetscInt i = 0; i < block->m; i += size) {
-      PetscInt key = -1;
-
-      for (int d = 0; d < size && key < 0; d++) key = dof[block->list][blocks->entry[block->entry + i + d]];
-      (*pattern)[(*n)++] = PetscMax(key, -1);
-    }
+    for (PetscInt i = blocks->ptr[b]; i < blocks->ptr[b + 1] && key[blocks->node[i]] >= 0; i++) (*pattern)[(*n)++] = key[blocks->node[i]];
+    (*pattern)[count] = *n - count - 1;
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* The nodes that occur in the pattern, ascending, each once, with their dofs. */
-static PetscErrorCode ListNodes(BlockMatrix blocks, const PetscInt *const dof[])
+static PetscErrorCode ListNodes(BlockMatrix blocks)
 {
-  const int size = blocks->size;
-  PetscInt  n = 0, at = 0, number;
+  PetscInt n = 0;
 
   PetscFunctionBeginUser;
   PetscCall(PetscFree(blocks->key));
-  PetscCall(PetscFree(blocks->dof));
   PetscCall(PetscMalloc1(blocks->n_pattern, &blocks->key));
-  for (at = 0; at < blocks->n_pattern; at += 1 + blocks->pattern[at]) {
-    for (PetscInt i = 1; i <= blocks->pattern[at]; i++)
-      if (blocks->pattern[at + i] >= 0) blocks->key[n++] = blocks->pattern[at + i];
-  }
+  for (PetscInt at = 0; at < blocks->n_pattern; at += 1 + blocks->pattern[at])
+    for (PetscInt i = 1; i <= blocks->pattern[at]; i++) blocks->key[n++] = blocks->pattern[at + i];
   PetscCall(PetscSortRemoveDupsInt(&n, blocks->key));
   blocks->n_nodes = n;
-  PetscCall(PetscMalloc1(n * size, &blocks->dof));
-  at = 0;
-  for (PetscInt b = 0; b < blocks->n; b++, at++) {
-    const Block *block = &blocks->block[b];
-
-    for (PetscInt i = 0; i < block->m; i += size) {
-      if (blocks->pattern[++at] < 0) continue;
-      PetscCall(PetscFindInt(blocks->pattern[at], n, blocks->key, &number));
-      for (int d = 0; d < size; d++) blocks->dof[number * size + d] = dof[block->list][blocks->entry[block->entry + i + d]];
-    }
-  }
+  PetscCall(PetscFree(blocks->dof));
+  PetscCall(PetscMalloc1(n * blocks->size, &blocks->dof));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Which of the listed nodes stands at each place of the pattern, -1: none; *known: all that stand there are listed. */
-static PetscErrorCode NumberNodes(BlockMatrix blocks, PetscInt *number, PetscBool *known)
+/* Which node of the matrix each node of the lists is that a block has; *known: all of them are listed there. fresh: it gets its dofs from there. */
+static PetscErrorCode NumberNodes(BlockMatrix blocks, PetscBool fresh, PetscBool *known)
 {
+  const int size = blocks->size;
+
   PetscFunctionBeginUser;
   *known = PETSC_TRUE;
-  for (PetscInt k = 0; k < blocks->n_pattern; k++) number[k] = -1;
-  for (PetscInt at = 0; at < blocks->n_pattern; at += 1 + blocks->pattern[at]) {
-    for (PetscInt i = 1; i <= blocks->pattern[at]; i++) {
-      if (blocks->pattern[at + i] < 0) continue;
-      PetscCall(PetscFindInt(blocks->pattern[at + i], blocks->n_nodes, blocks->key, &number[at + i]));
-      if (number[at + i] >= 0) continue;
-      number[at + i] = -1;
-      *known         = PETSC_FALSE;
+  for (PetscInt b = 0; b < blocks->n; b++) {
+    const PetscInt first = blocks->list[blocks->of[b]];
+
+    for (PetscInt i = blocks->ptr[b]; i < blocks->ptr[b + 1]; i++) {
+      const PetscInt node = first + blocks->node[i];
+      PetscInt      *at   = &blocks->list_number[node];
+
+      if (*at >= 0 || blocks->list_key[node] < 0) continue;
+      PetscCall(PetscFindInt(blocks->list_key[node], blocks->n_nodes, blocks->key, at));
+      if (*at < 0) {
+        *at    = -1;
+        *known = PETSC_FALSE;
+      } else if (fresh)
+        PetscCall(PetscArraycpy(&blocks->dof[*at * size], &blocks->list_dof[node * size], size));
     }
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The rows of all blocks, those of one node together, in the blocks' order. */
-static PetscErrorCode GroupRows(BlockMatrix blocks, const PetscInt *number)
+/* The rows of all blocks, those of one node together, in the blocks' order. number[n_pattern]: out, the nodes of the pattern in the matrix. */
+static PetscErrorCode GroupRows(BlockMatrix blocks, PetscInt *number)
 {
   PetscInt *ptr, block = 0;
 
@@ -222,38 +221,41 @@ static PetscErrorCode GroupRows(BlockMatrix blocks, const PetscInt *number)
   PetscCall(PetscFree(blocks->row));
   PetscCall(PetscCalloc1(blocks->n_nodes + 2, &ptr));
   PetscCall(PetscMalloc1(blocks->n_pattern, &blocks->row));
-  for (PetscInt k = 0; k < blocks->n_pattern; k++)
-    if (number[k] >= 0) ptr[number[k] + 2]++;
-  for (PetscInt r = 0; r < blocks->n_nodes; r++) ptr[r + 2] += ptr[r + 1];
   for (PetscInt at = 0; at < blocks->n_pattern; at += 1 + blocks->pattern[at], block++) {
-    for (PetscInt i = 1; i <= blocks->pattern[at]; i++) /* moves ptr[r + 1] from the start of r's to their end */
-      if (number[at + i] >= 0) blocks->row[ptr[number[at + i] + 1]++] = (BlockRow){.at = at, .block = block, .node = i - 1};
+    const PetscInt first = blocks->list[blocks->of[block]], *node = &blocks->node[blocks->ptr[block]];
+
+    for (PetscInt i = 0; i < blocks->pattern[at]; i++) ptr[(number[at + 1 + i] = blocks->list_number[first + node[i]]) + 2]++;
   }
+  for (PetscInt r = 0; r < blocks->n_nodes; r++) ptr[r + 2] += ptr[r + 1];
+  for (PetscInt at = 0; at < blocks->n_pattern; at += 1 + blocks->pattern[at])
+    for (PetscInt i = 0; i < blocks->pattern[at]; i++) /* moves ptr[r + 1] from the start of r's to their end */
+      blocks->row[ptr[number[at + 1 + i] + 1]++] = (BlockRow){.at = at + 1, .node = i};
   blocks->row_ptr = ptr;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* The pairs of nodes that some block couples, each once, row by row. Blocks overlap several times over, so this spares the parallel matrix most of
-   the entries. seen[n_nodes]: scratch. */
-static PetscErrorCode ListPairs(BlockMatrix blocks, const PetscInt *number, PetscInt *seen)
+   the entries. */
+static PetscErrorCode ListPairs(BlockMatrix blocks, const PetscInt *number)
 {
   const BlockRow *row = blocks->row;
-  PetscInt        n   = 0, *pair;
+  PetscInt        n = 0, room = 0, *pair, *seen;
 
   PetscFunctionBeginUser;
   PetscCall(PetscFree(blocks->pair_ptr));
   PetscCall(PetscFree(blocks->pair));
-  PetscCall(PetscMalloc1(blocks->n_pairs, &pair));
+  for (PetscInt at = 0; at < blocks->n_pattern; at += 1 + blocks->pattern[at]) room += PetscSqr(blocks->pattern[at]);
+  PetscCall(PetscMalloc2(room, &pair, blocks->n_nodes, &seen));
   PetscCall(PetscMalloc1(blocks->n_nodes + 1, &blocks->pair_ptr));
   for (PetscInt r = 0; r < blocks->n_nodes; r++) seen[r] = -1;
   for (PetscInt r = 0; r < blocks->n_nodes; r++) {
     blocks->pair_ptr[r] = n;
     for (PetscInt k = blocks->row_ptr[r]; k < blocks->row_ptr[r + 1]; k++) {
-      for (PetscInt j = 1; j <= blocks->pattern[row[k].at]; j++) {
+      for (PetscInt j = 0; j < blocks->pattern[row[k].at - 1]; j++) {
         const PetscInt column = number[row[k].at + j];
 
-        if (column < 0 || seen[column] >= blocks->pair_ptr[r]) continue;
-        seen[column] = n;
+        if (seen[column] == r) continue;
+        seen[column] = r;
         pair[n++]    = column;
       }
     }
@@ -262,83 +264,81 @@ static PetscErrorCode ListPairs(BlockMatrix blocks, const PetscInt *number, Pets
   blocks->pair_ptr[blocks->n_nodes] = n;
   PetscCall(PetscMalloc1(n, &blocks->pair));
   PetscCall(PetscArraycpy(blocks->pair, pair, n));
-  PetscCall(PetscFree(pair));
+  PetscCall(PetscFree2(pair, seen));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Finds the image of each pair below the diagonal. */
+/* Finds the diagonal, and the image of each pair above it. */
 static PetscErrorCode ListMirrors(BlockMatrix blocks)
 {
-  PetscFunctionBeginUser;
-  PetscCall(PetscFree(blocks->mirror));
-  PetscCall(PetscMalloc1(blocks->pair_ptr[blocks->n_nodes], &blocks->mirror));
-  for (PetscInt r = 0; r < blocks->n_nodes; r++) {
-    for (PetscInt k = blocks->pair_ptr[r]; k < blocks->pair_ptr[r + 1] && blocks->pair[k] < r; k++) {
-      const PetscInt first = blocks->pair_ptr[blocks->pair[k]], n = blocks->pair_ptr[blocks->pair[k] + 1] - first;
+  const PetscInt *ptr = blocks->pair_ptr, n = ptr[blocks->n_nodes];
+  PetscInt       *next;
 
-      PetscCall(PetscFindInt(r, n, &blocks->pair[first], &blocks->mirror[k]));
-      blocks->mirror[k] += first;
-    }
+  PetscFunctionBeginUser;
+  PetscCall(PetscFree(blocks->diagonal));
+  PetscCall(PetscFree(blocks->mirror));
+  PetscCall(PetscFree2(blocks->seen, blocks->at));
+  PetscCall(PetscMalloc1(blocks->n_nodes, &blocks->diagonal));
+  PetscCall(PetscMalloc1(n, &blocks->mirror));
+  PetscCall(PetscMalloc2(blocks->n_nodes, &blocks->seen, blocks->n_nodes, &blocks->at));
+  PetscCall(PetscMalloc1(blocks->n_nodes, &next)); /* of each row: the pair below the diagonal whose image comes next; images come in the order of rows */
+  for (PetscInt r = 0; r < blocks->n_nodes; r++) {
+    next[r] = ptr[r];
+    for (blocks->diagonal[r] = ptr[r]; blocks->diagonal[r] < ptr[r + 1] && blocks->pair[blocks->diagonal[r]] < r;) blocks->diagonal[r]++;
   }
+  for (PetscInt r = 0; r < blocks->n_nodes; r++)
+    for (PetscInt k = blocks->diagonal[r]; k < ptr[r + 1]; k++) blocks->mirror[k] = next[blocks->pair[k]]++;
+  PetscCall(PetscFree(next));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Gives every pair in the blocks its place in the sums; *used: how many get one, -1: one is missing. seen[2*n_nodes]: scratch. */
-static PetscErrorCode PlacePairs(BlockMatrix blocks, const PetscInt *number, PetscInt *seen, PetscInt *used)
+/* How many of the matrix' pairs the pattern needs, -1: one is missing. */
+static PetscErrorCode CountPairs(BlockMatrix blocks, const PetscInt *number, PetscInt *used)
 {
-  PetscInt *met = seen + blocks->n_nodes, n = 0; /* met: the last row in which a column was asked for */
+  PetscInt *seen = blocks->seen, *met = blocks->at; /* met: the last row in which a column was asked for */
 
   PetscFunctionBeginUser;
   *used = 0;
-  PetscCall(PetscFree(blocks->target));
-  PetscCall(PetscMalloc1(2 * blocks->n_pairs, &blocks->target));
   for (PetscInt r = 0; r < blocks->n_nodes; r++) seen[r] = met[r] = -1;
   for (PetscInt r = 0; r < blocks->n_nodes; r++) {
-    const PetscInt first = blocks->pair_ptr[r];
-
-    for (PetscInt k = first; k < blocks->pair_ptr[r + 1]; k++) seen[blocks->pair[k]] = k;
+    for (PetscInt k = blocks->diagonal[r]; k < blocks->pair_ptr[r + 1]; k++) seen[blocks->pair[k]] = r;
     for (PetscInt k = blocks->row_ptr[r]; k < blocks->row_ptr[r + 1]; k++) {
-      BlockRow *row = &blocks->row[k];
+      const BlockRow *row = &blocks->row[k];
 
-      row->first_target = n;
-      for (PetscInt j = 0; j < blocks->pattern[row->at]; j++) {
-        const PetscInt column = number[row->at + 1 + j];
+      for (PetscInt j = row->node; j < blocks->pattern[row->at - 1]; j++) {
+        const PetscInt column = number[row->at + j];
 
-        if (column < 0) continue;
-        if (seen[column] < first) {
+        if (seen[column] != r) {
           *used = -1;
           PetscFunctionReturn(PETSC_SUCCESS);
         }
-        *used += met[column] != r;
+        *used += met[column] == r ? 0 : column == r ? 1 : 2;
         met[column] = r;
-        if (column > r) continue;
-        blocks->target[2 * n]     = j;
-        blocks->target[2 * n + 1] = seen[column] - first;
-        n++;
       }
-      row->targets = n - row->first_target;
     }
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* Finds a place for every pair. fresh: among pairs listed anew; else among those that are there, if these hold all and are not far too many: *placed. */
-static PetscErrorCode PlacePattern(BlockMatrix blocks, const PetscInt *const dof[], PetscBool fresh, PetscBool *placed)
+static PetscErrorCode PlacePattern(BlockMatrix blocks, PetscBool fresh, PetscBool *placed)
 {
-  PetscInt *number, *seen, used = -1;
+  PetscInt *number, used;
 
   PetscFunctionBeginUser;
-  if (fresh) PetscCall(ListNodes(blocks, dof));
-  PetscCall(PetscMalloc2(blocks->n_pattern, &number, 2 * blocks->n_nodes, &seen));
-  PetscCall(NumberNodes(blocks, number, placed));
-  if (*placed) {
-    PetscCall(GroupRows(blocks, number));
-    if (fresh) PetscCall(ListPairs(blocks, number, seen));
-    if (fresh) PetscCall(ListMirrors(blocks));
-    PetscCall(PlacePairs(blocks, number, seen, &used));
+  if (fresh) PetscCall(ListNodes(blocks));
+  PetscCall(NumberNodes(blocks, fresh, placed));
+  if (!*placed) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscMalloc1(blocks->n_pattern, &number));
+  PetscCall(GroupRows(blocks, number));
+  if (fresh) {
+    PetscCall(ListPairs(blocks, number));
+    PetscCall(ListMirrors(blocks));
+  } else {
+    PetscCall(CountPairs(blocks, number, &used));
     *placed = used >= 0 && blocks->pair_ptr[blocks->n_nodes] <= BLOCK_SLACK * used ? PETSC_TRUE : PETSC_FALSE;
   }
-  PetscCall(PetscFree2(number, seen));
+  PetscCall(PetscFree(number));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -356,116 +356,157 @@ static PetscErrorCode CreateMatrix(BlockMatrix blocks, PetscInt rows)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Adds one row of nodes of a block to the sums of its node; size and outer constants where this is called, so that the loops over a node's dofs unroll. */
-static inline void SumRow(const int size, const PetscBool outer, PetscInt m, PetscInt node, const PetscReal *value, PetscInt n, const PetscInt *target,
-                          PetscReal *sum)
-{
-  const PetscReal *row = outer ? value : value + node * size * m;
+/* BlockMatrixPlace - the places of all named blocks in a parallel AIJ matrix over the global dofs, which stays the block matrix's; the sum is 0.
 
-  for (PetscInt k = 0; k < n; k++) {
-    const PetscReal *from = row + target[2 * k] * size;
-    PetscReal       *to   = sum + target[2 * k + 1] * size * size;
-
-    for (int d = 0; d < size; d++)
-      for (int e = 0; e < size; e++) to[d * size + e] += outer ? value[node * size + d] * from[e] : from[d * m + e];
-  }
-}
-
-/* The upper triangle from the lower one. */
-static void Mirror(BlockMatrix blocks)
-{
-  const int size = blocks->size;
-
-  for (PetscInt r = 0; r < blocks->n_nodes; r++) {
-    for (PetscInt k = blocks->pair_ptr[r]; k < blocks->pair_ptr[r + 1] && blocks->pair[k] < r; k++) {
-      const PetscReal *from = &blocks->sum[k * PetscSqr(size)];
-      PetscReal       *to   = &blocks->sum[blocks->mirror[k] * PetscSqr(size)];
-
-      for (int d = 0; d < size; d++)
-        for (int e = 0; e < size; e++) to[e * size + d] = from[d * size + e];
-    }
-  }
-}
-
-/* Row of nodes by row of nodes, so that what is added to stays at hand. */
-static PetscErrorCode SumBlocks(BlockMatrix blocks)
-{
-  const int size = blocks->size;
-
-  PetscFunctionBeginUser;
-  PetscCall(PetscArrayzero(blocks->sum, blocks->pair_ptr[blocks->n_nodes] * PetscSqr(size)));
-  for (PetscInt r = 0; r < blocks->n_nodes; r++) {
-    PetscReal *const sum = &blocks->sum[blocks->pair_ptr[r] * PetscSqr(size)];
-
-    for (PetscInt k = blocks->row_ptr[r]; k < blocks->row_ptr[r + 1]; k++) {
-      const BlockRow  *row    = &blocks->row[k];
-      const Block     *block  = &blocks->block[row->block];
-      const PetscReal *value  = block->value;
-      const PetscInt  *target = &blocks->target[2 * row->first_target];
-
-      if (size == 3 && block->outer)
-        SumRow(3, PETSC_TRUE, block->m, row->node, value, row->targets, target, sum);
-      else if (size == 3)
-        SumRow(3, PETSC_FALSE, block->m, row->node, value, row->targets, target, sum);
-      else
-        SumRow(size, block->outer, block->m, row->node, value, row->targets, target, sum);
-    }
-  }
-  Mirror(blocks);
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* BlockMatrixAssemble - the sum of all ranks' blocks as a parallel AIJ matrix over the global dofs; it stays the block matrix's.
-
-   Collective. rows: of this rank; dof[list][entry]: global dof of an entry, -1 without one (its rows and columns are left out).
-   *changed: the matrix is a new one, as the last one's pattern did not hold some rank's blocks or was far larger; else only its values are,
-   with zeros where no block asks for an entry. */
-PetscErrorCode BlockMatrixAssemble(BlockMatrix blocks, PetscInt rows, const PetscInt *const dof[], Mat *matrix, PetscBool *changed)
+   Collective. rows: of this rank. *changed: the matrix is a new one, as the last one's pattern did not hold some rank's blocks or was far larger; else only
+   its values are, with zeros where no block asks for an entry. */
+PetscErrorCode BlockMatrixPlace(BlockMatrix blocks, PetscInt rows, PetscBool *changed)
 {
   PetscInt  n = 0, *pattern = NULL;
   PetscBool placed;
   int       all;
 
   PetscFunctionBeginUser;
-  PetscCall(BlocksPattern(blocks, dof, &n, &pattern));
+  PetscCall(BlocksPattern(blocks, &n, &pattern));
   placed = (PetscBool)(blocks->matrix && n == blocks->n_pattern);
   if (placed && n) PetscCall(PetscArraycmp(pattern, blocks->pattern, n, &placed));
   PetscCall(PetscFree(blocks->pattern));
   blocks->pattern   = pattern;
   blocks->n_pattern = n;
-  if (!placed && blocks->matrix) PetscCall(PlacePattern(blocks, dof, PETSC_FALSE, &placed));
+  if (placed)
+    PetscCall(NumberNodes(blocks, PETSC_FALSE, &placed));
+  else if (blocks->matrix)
+    PetscCall(PlacePattern(blocks, PETSC_FALSE, &placed));
   all = placed;
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &all, 1, MPI_INT, MPI_LAND, blocks->comm));
   if (!all) {
-    PetscCall(PlacePattern(blocks, dof, PETSC_TRUE, &placed));
+    for (PetscInt i = 0; i < blocks->n_listed; i++) blocks->list_number[i] = -1;
+    PetscCall(PlacePattern(blocks, PETSC_TRUE, &placed));
     PetscCall(CreateMatrix(blocks, rows));
   }
-  PetscCall(SumBlocks(blocks));
-  PetscCall(NodeMatrixSet(blocks->matrix, blocks->sum));
-  *matrix          = NodeMatrixGet(blocks->matrix);
+  PetscCall(PetscArrayzero(blocks->sum, blocks->pair_ptr[blocks->n_nodes] * PetscSqr(blocks->size)));
+  for (PetscInt r = 0; r < blocks->n_nodes; r++) blocks->seen[r] = -1;
   *changed         = all && !blocks->restored ? PETSC_FALSE : PETSC_TRUE;
   blocks->restored = PETSC_FALSE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* BlockMatrixMultiply - y += (this rank's blocks of `list`) x, entries without a global dof included.
+/* Notes where the pairs of a row stand. */
+static inline void LookAlong(BlockMatrix blocks, PetscInt r)
+{
+  for (PetscInt k = blocks->diagonal[r]; k < blocks->pair_ptr[r + 1]; k++) blocks->seen[blocks->pair[k]] = k;
+}
 
-   Not collective. x, y: over the entries of that rank-local vector. */
-PetscErrorCode BlockMatrixMultiply(BlockMatrix blocks, int list, const PetscReal *x, PetscReal *y)
+/* Adds the upper triangle of a block to the sums; size and outer constants where this is called, so that the loops over a node's dofs unroll. */
+static inline PetscErrorCode Sum(const int size, const PetscBool outer, BlockMatrix blocks, PetscInt n, PetscInt m, const PetscReal *value)
+{
+  const PetscInt *at = blocks->at, *seen = blocks->seen;
+
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < n; i++) {
+    const PetscInt   first = blocks->diagonal[at[i]], end = blocks->pair_ptr[at[i] + 1];
+    const PetscReal *row = outer ? value : value + i * size * m;
+
+    LookAlong(blocks, at[i]);
+    for (PetscInt j = i; j < n; j++) {
+      const PetscReal *from = row + j * size;
+      PetscReal       *to   = blocks->sum + seen[at[j]] * size * size;
+
+      PetscCheck(seen[at[j]] >= first && seen[at[j]] < end, PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE, "a block couples nodes that no named one does");
+      for (int d = 0; d < size; d++)
+        for (int e = 0; e < size; e++) to[d * size + e] += outer ? value[i * size + d] * from[e] : from[d * m + e];
+    }
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* product += block along, from the upper triangle. */
+static void Multiply(BlockMatrix blocks, PetscInt n, const PetscInt *node, PetscBool outer, const PetscReal *value)
+{
+  const int      size = blocks->size;
+  const PetscInt m    = n * size;
+
+  for (PetscInt i = 0; i < m; i++) {
+    const PetscInt row = node[i / size] * size + i % size;
+
+    for (PetscInt j = i; j < m; j++) {
+      const PetscInt  column = node[j / size] * size + j % size;
+      const PetscReal entry  = outer ? value[i] * value[j] : value[i * m + j];
+
+      blocks->product[row] += entry * blocks->along[column];
+      if (j > i) blocks->product[column] += entry * blocks->along[row];
+    }
+  }
+}
+
+static PetscErrorCode Add(BlockMatrix blocks, int list, PetscInt n, const PetscInt *node, PetscBool outer, const PetscReal *value)
+{
+  const PetscInt *number = &blocks->list_number[blocks->list[list]];
+  PetscInt        with   = 0;
+
+  PetscFunctionBeginUser;
+  for (; with < n && number[node[with]] >= 0; with++) blocks->at[with] = number[node[with]];
+  PetscCheck(with == n || blocks->list_key[blocks->list[list] + node[with]] < 0, PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE, "a node is in no named block");
+  if (blocks->size == 3 && outer)
+    PetscCall(Sum(3, PETSC_TRUE, blocks, with, n * 3, value));
+  else if (blocks->size == 3)
+    PetscCall(Sum(3, PETSC_FALSE, blocks, with, n * 3, value));
+  else
+    PetscCall(Sum(blocks->size, outer, blocks, with, n * blocks->size, value));
+  if (blocks->along) Multiply(blocks, n, node, outer, value);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* BlockMatrixAdd - adds a block over nodes of list `list`, in the order of BlockMatrixSort(), all pairs of which some named block has.
+
+   Not collective, after BlockMatrixPlace(). value[(n*size)^2]: symmetric, row-major (force per length); what is below the diagonal is not read. */
+PetscErrorCode BlockMatrixAdd(BlockMatrix blocks, int list, PetscInt n, const PetscInt node[], const PetscReal value[])
 {
   PetscFunctionBeginUser;
-  for (PetscInt b = 0; b < blocks->n; b++) {
-    const Block     *block = &blocks->block[b];
-    const PetscInt  *entry = &blocks->entry[block->entry];
-    const PetscReal *value = block->value;
-    PetscReal        along = 0;
+  PetscCall(Add(blocks, list, n, node, PETSC_FALSE, value));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
 
-    if (block->list != list) continue;
-    for (PetscInt i = 0; i < block->m && block->outer; i++) along += value[i] * x[entry[i]];
-    for (PetscInt i = 0; i < block->m && block->outer; i++) y[entry[i]] += value[i] * along;
-    for (PetscInt i = 0; i < block->m && !block->outer; i++)
-      for (PetscInt j = 0; j < block->m; j++) y[entry[i]] += value[i * block->m + j] * x[entry[j]];
+/* BlockMatrixAddOuter - as BlockMatrixAdd() for a block v v^T, which is never written out: value[n*size] is v. Not collective. */
+PetscErrorCode BlockMatrixAddOuter(BlockMatrix blocks, int list, PetscInt n, const PetscInt node[], const PetscReal value[])
+{
+  PetscFunctionBeginUser;
+  PetscCall(Add(blocks, list, n, node, PETSC_TRUE, value));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* BlockMatrixMultiply - from now on blocks are multiplied as they are added: y += block x, entries without a global dof included.
+
+   Not collective. x, y: over the nodes of the blocks' list, borrowed; NULL: not any more. */
+void BlockMatrixMultiply(BlockMatrix blocks, const PetscReal *x, PetscReal *y)
+{
+  blocks->along   = x;
+  blocks->product = y;
+}
+
+/* The lower triangle from the upper one, that of the blocks on the diagonal too. */
+static void Mirror(BlockMatrix blocks)
+{
+  const int size = blocks->size;
+
+  for (PetscInt r = 0; r < blocks->n_nodes; r++) {
+    for (PetscInt k = blocks->diagonal[r]; k < blocks->pair_ptr[r + 1]; k++) {
+      const PetscReal *from = &blocks->sum[k * PetscSqr(size)];
+      PetscReal       *to   = &blocks->sum[blocks->mirror[k] * PetscSqr(size)];
+
+      for (int d = 0; d < size; d++)
+        for (int e = blocks->pair[k] == r ? d + 1 : 0; e < size; e++) to[e * size + d] = from[d * size + e];
+    }
   }
+}
+
+/* BlockMatrixEnd - the sum of all ranks' blocks. Collective. */
+PetscErrorCode BlockMatrixEnd(BlockMatrix blocks, Mat *matrix)
+{
+  PetscFunctionBeginUser;
+  Mirror(blocks);
+  PetscCall(NodeMatrixSet(blocks->matrix, blocks->sum));
+  *matrix = NodeMatrixGet(blocks->matrix);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -87,10 +87,11 @@ PetscErrorCode ContactPairProject(Contact contact, ContactPair *pair, const Pets
   PetscCall(ListsUpdate(pair->search, pair->lists, u, t, &moved));
   if (pair->projected && !moved) PetscFunctionReturn(PETSC_SUCCESS);
   pair->projected = PETSC_TRUE;
+  ContactVariationsReset(pair->variations);
   PetscCall(PetscLogEventBegin(contact->event_project, 0, 0, 0, 0));
   if (pair->fit.degree) TimingBegin(TIMING_FIT);
   if (pair->fit.degree) PetscCall(PetscLogEventBegin(contact->event_fit, 0, 0, 0, 0));
-  PetscCall(ContactPointGaps(pair, pair->lists, pair->factor, pair->seed, pair->point_gap, pair->point_normal));
+  PetscCall(ContactPointGaps(pair, pair->lists, pair->factor, pair->point_force, pair->seed, pair->point_gap, pair->point_normal));
   if (pair->fit.degree) PetscCall(PetscLogEventEnd(contact->event_fit, 0, 0, 0, 0));
   if (pair->fit.degree) TimingEnd(TIMING_FIT);
   PetscCall(PetscLogEventEnd(contact->event_project, 0, 0, 0, 0));
@@ -148,33 +149,21 @@ static void TermPress(ContactPair *pair, PetscInt c, PetscReal pressure)
     pair->point_force[pair->term_point[k]] += pressure * pair->term_weight[k] * pair->factor[pair->term_point[k]];
 }
 
-/* First variation of a slave point over contact nodes, in the pair's work; second: what ContactSecondAdd() needs too. */
-static PetscErrorCode PointVary(const ContactPair *pair, PetscInt q, PetscBool second, PetscBool *found)
-{
-  PetscFunctionBeginUser;
-  if (pair->fit.degree) TimingBegin(TIMING_FIT);
-  PetscCall(ContactPointEvaluate(pair, pair->smoother, pair->lists, q, pair->seed[q], second ? SMOOTHER_SECOND_VARIATION : SMOOTHER_FIRST_VARIATION, found));
-  if (pair->fit.degree) TimingEnd(TIMING_FIT);
-  if (*found) PetscCall(ContactPointToNodes(pair, pair->lists, q));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* Adds the forces of the loaded slave points to the contact nodes' values. */
 static PetscErrorCode PairForces(ContactPair *pair, PetscReal *values)
 {
-  const int    dim  = pair->mesh->dim;
-  ContactWork *work = pair->work;
-  PetscBool    found;
+  const int                dim = pair->mesh->dim;
+  const ContactVariations *v   = pair->variations;
 
   PetscFunctionBeginUser;
   for (PetscInt q = 0; q < pair->lists->n_slaves; q++) {
     const PetscReal force = pair->point_force[q];
 
     if (force == 0) continue;
-    PetscCall(PointVary(pair, q, PETSC_FALSE, &found));
-    if (!found) continue;
-    for (PetscInt i = 0; i < work->count * dim; i++) values[work->number[i / dim] * dim + i % dim] -= force * work->N[i];
-    for (int d = 0; d < dim; d++) pair->total[d] += force * work->result.N[d];
+    PetscCall(ContactVariationsNeed(pair, q));
+    for (PetscInt i = v->first[q]; i < v->end[q]; i++)
+      for (int d = 0; d < dim; d++) values[v->number[i] * dim + d] -= force * v->N[i * dim + d];
+    for (int d = 0; d < dim && v->first[q] < v->end[q]; d++) pair->total[d] += force * v->own[q * dim + d];
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -297,200 +286,6 @@ PetscErrorCode ContactUnforeseen(Contact contact, const PetscReal *u, PetscReal 
 
 /* ---------- tangent ---------- */
 
-/* What the law says of each term at a tangent: stiffness 0 where it takes no part */
-typedef struct {
-  PetscReal stiffness, area;
-} TermState;
-
-/* The first variations of the points of active terms over contact nodes, one after another */
-typedef struct {
-  PetscInt  *first, *last; /* of each point */
-  PetscInt  *number, n, room;
-  PetscReal *N;
-  PetscInt  *place; /* of each contact node in the block at hand, -1: none */
-} PointVariations;
-
-static PetscErrorCode VariationsAdd(PointVariations *all, const ContactWork *work, int dim, PetscInt q)
-{
-  PetscFunctionBeginUser;
-  if (all->n + work->count > all->room) {
-    all->room = 2 * (all->n + work->count);
-    PetscCall(PetscRealloc(all->room * sizeof(PetscInt), &all->number));
-    PetscCall(PetscRealloc(all->room * dim * sizeof(PetscReal), &all->N));
-  }
-  all->first[q] = all->n;
-  PetscCall(PetscArraycpy(&all->number[all->n], work->number, work->count));
-  PetscCall(PetscArraycpy(&all->N[all->n * dim], work->N, work->count * dim));
-  all->n += work->count;
-  all->last[q] = all->n;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-static PetscErrorCode VariationsCreate(const ContactPair *pair, const TermState *terms, PointVariations *all)
-{
-  const int dim = pair->mesh->dim;
-  PetscInt  n   = pair->lists->n_slaves;
-  PetscBool found;
-
-  PetscFunctionBeginUser;
-  *all = (PointVariations){0};
-  PetscCall(PetscMalloc3(n, &all->first, n, &all->last, pair->lists->n_nodes, &all->place));
-  for (PetscInt q = 0; q < n; q++) all->first[q] = all->last[q] = -1;
-  for (PetscInt i = 0; i < pair->lists->n_nodes; i++) all->place[i] = -1;
-  for (PetscInt c = 0; c < pair->n; c++) {
-    for (PetscInt k = pair->term_ptr[c]; k < pair->term_ptr[c + 1] && terms[c].stiffness > 0; k++) {
-      const PetscInt q = pair->term_point[k];
-
-      if (all->first[q] >= 0 || pair->factor[q] == 0) continue;
-      PetscCall(PointVary(pair, q, PETSC_FALSE, &found));
-      if (found) PetscCall(VariationsAdd(all, pair->work, dim, q));
-    }
-  }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-static PetscErrorCode VariationsDestroy(PointVariations *all)
-{
-  PetscFunctionBeginUser;
-  PetscCall(PetscFree3(all->first, all->last, all->place));
-  PetscCall(PetscFree(all->number));
-  PetscCall(PetscFree(all->N));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Numbers the nodes of some points in a block. */
-static PetscInt NumberNodes(PetscInt n, const PetscInt *points, PointVariations *all)
-{
-  PetscInt m = 0;
-
-  for (PetscInt k = 0; k < n; k++)
-    for (PetscInt i = all->first[points[k]]; i < all->last[points[k]]; i++)
-      if (all->place[all->number[i]] < 0) all->place[all->number[i]] = m++;
-  return m;
-}
-
-/* Writes the dofs of the numbered nodes into the block's entries. */
-static void NameEntries(int dim, PetscInt n, const PetscInt *points, const PointVariations *all, PetscInt *entry)
-{
-  for (PetscInt k = 0; k < n; k++)
-    for (PetscInt i = all->first[points[k]]; i < all->last[points[k]]; i++)
-      for (int d = 0; d < dim; d++) entry[all->place[all->number[i]] * dim + d] = all->number[i] * dim + d;
-}
-
-static void ForgetNodes(PetscInt n, const PetscInt *points, PointVariations *all)
-{
-  for (PetscInt k = 0; k < n; k++)
-    for (PetscInt i = all->first[points[k]]; i < all->last[points[k]]; i++) all->place[all->number[i]] = -1;
-}
-
-/* The block A psi'' Nbar Nbar^T of one active term. */
-static PetscErrorCode TermBlock(Contact contact, const ContactPair *pair, int p, PetscInt c, const TermState *term, PointVariations *all)
-{
-  const int       dim    = contact->mesh->dim;
-  const PetscInt *points = &pair->term_point[pair->term_ptr[c]], n = pair->term_ptr[c + 1] - pair->term_ptr[c];
-  PetscInt        m     = NumberNodes(n, points, all), *entry;
-  const PetscReal scale = PetscSqrtReal(term->stiffness / term->area);
-  PetscReal      *N;
-
-  PetscFunctionBeginUser;
-  PetscCall(BlockMatrixAddOuter(contact->blocks, p, m * dim, &entry, &N));
-  NameEntries(dim, n, points, all, entry);
-  for (PetscInt k = 0; k < n; k++) {
-    const PetscReal weight = scale * pair->term_weight[pair->term_ptr[c] + k] * pair->factor[points[k]];
-
-    for (PetscInt i = all->first[points[k]]; i < all->last[points[k]]; i++)
-      for (int d = 0; d < dim; d++) N[all->place[all->number[i]] * dim + d] += weight * all->N[i * dim + d];
-  }
-  ForgetNodes(n, points, all);
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* The block -sum p M of the points of one face, which share most of their nodes: their second variations are summed before they are written. */
-static PetscErrorCode FaceBlock(Contact contact, const ContactPair *pair, int p, PetscInt face, PointVariations *all, double (*own)[FITMAP_OWN])
-{
-  const int  dim = contact->mesh->dim;
-  PetscInt   points[FACE_RULE_POINTS], n = 0, m, *entry;
-  PetscReal *value;
-  PetscBool  found;
-
-  PetscFunctionBeginUser;
-  for (PetscInt q = pair->slaves->first[face]; q < pair->slaves->first[face + 1]; q++)
-    if (pair->point_force[q] != 0 && all->first[q] >= 0) points[n++] = q;
-  if (!n) PetscFunctionReturn(PETSC_SUCCESS);
-  m = NumberNodes(n, points, all);
-  PetscCall(BlockMatrixAdd(contact->blocks, p, m * dim, &entry, &value));
-  NameEntries(dim, n, points, all, entry);
-  PetscCall(ContactSecondBegin(pair, m, n, value));
-  for (PetscInt k = 0; k < n; k++) {
-    PetscCall(PointVary(pair, points[k], PETSC_TRUE, &found));
-    PetscCall(ContactSecondAdd(pair, pair->lists, points[k], -pair->point_force[points[k]], all->place, own));
-  }
-  ContactSecondEnd(pair);
-  ForgetNodes(n, points, all);
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* The block of a term with one point: A psi'' N N^T - p M. */
-static PetscErrorCode PointBlock(Contact contact, const ContactPair *pair, int p, PetscInt q, const TermState *term, double (*own)[FITMAP_OWN])
-{
-  const int          dim  = contact->mesh->dim;
-  const ContactWork *work = pair->work;
-  PetscInt           m, *entry;
-  PetscReal         *value;
-  PetscBool          found;
-
-  PetscFunctionBeginUser;
-  PetscCall(PointVary(pair, q, PETSC_TRUE, &found));
-  if (!found) PetscFunctionReturn(PETSC_SUCCESS);
-  m = work->count * dim;
-  PetscCall(BlockMatrixAdd(contact->blocks, p, m, &entry, &value));
-  for (PetscInt i = 0; i < m; i++) entry[i] = work->number[i / dim] * dim + i % dim;
-  for (PetscInt i = 0; i < m; i++)
-    for (PetscInt j = 0; j < m; j++) value[i * m + j] = term->area * term->stiffness * work->N[i] * work->N[j];
-  PetscCall(ContactSecondBegin(pair, work->count, 1, value));
-  PetscCall(ContactSecondAdd(pair, pair->lists, q, -pair->point_force[q], NULL, own));
-  ContactSecondEnd(pair);
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* The blocks of terms that share their points. */
-static PetscErrorCode SharedBlocks(Contact contact, ContactPair *pair, int p, const TermState *terms, double (*own)[FITMAP_OWN])
-{
-  PointVariations all;
-
-  PetscFunctionBeginUser;
-  PetscCall(VariationsCreate(pair, terms, &all));
-  for (PetscInt c = 0; c < pair->n; c++)
-    if (terms[c].stiffness > 0) PetscCall(TermBlock(contact, pair, p, c, &terms[c], &all));
-  for (PetscInt face = 0; face < pair->slaves->n_faces; face++) PetscCall(FaceBlock(contact, pair, p, face, &all, own));
-  PetscCall(VariationsDestroy(&all));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Blocks of what belongs to the fit points one by one, for all slave points at once: one for the points of a face, which are made of the same nodes. */
-static PetscErrorCode OwnBlocks(Contact contact, const ContactPair *pair, int p, const double (*own)[FITMAP_OWN])
-{
-  const int    dim   = contact->mesh->dim;
-  ContactLists lists = pair->lists;
-
-  PetscFunctionBeginUser;
-  for (PetscInt first = 0, end; first < lists->n_points; first = end) {
-    PetscInt   m, *entry;
-    PetscReal *value, most = 0;
-
-    end = ListsAlikeEnd(lists, first);
-    for (PetscInt k = first; k < end; k++)
-      for (int e = 0; e < FITMAP_OWN; e++) most = PetscMax(most, PetscAbsReal(own[k][e]));
-    if (most == 0) continue;
-    PetscCall(ContactPointsToNodes(pair, lists, first, end));
-    m = pair->work->count * dim;
-    PetscCall(BlockMatrixAdd(contact->blocks, p, m, &entry, &value));
-    for (PetscInt i = 0; i < m; i++) entry[i] = pair->work->number[i / dim] * dim + i % dim;
-    ContactOwnToNodes(pair, end - first, &own[first], value);
-  }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* Pressure whose turning with the surface counts in a tangent: in a linear step that of the accepted state, not what pulls a term to its place. The
    state before any load is in no equilibrium: its overlaps pull, and their pressure grows with the penalty until the tangent is indefinite. */
 static PetscReal TermTurningPressure(const ContactPair *pair, PetscInt c, PetscReal t, const LawValue *value)
@@ -502,31 +297,162 @@ static PetscReal TermTurningPressure(const ContactPair *pair, PetscInt c, PetscR
   return accepted->status[c] == CONTACT_CLOSED ? accepted->multiplier[c] + accepted->penalty[c] * (ContactTermOffset(pair, c, t) - accepted->gap[c]) : 0;
 }
 
-static PetscErrorCode PairBlocks(Contact contact, ContactPair *pair, int p, const PetscReal *u, PetscReal t)
+/* Stiffness of the terms, 0 where they take no part, and the forces of slave points that turn with the surface. */
+static PetscErrorCode PairStiffness(Contact contact, ContactPair *pair, const PetscReal *u, PetscReal t)
 {
-  TermState *terms;
+  PetscFunctionBeginUser;
+  PetscCall(ContactPairProject(contact, pair, u, t));
+  PetscCall(PetscArrayzero(pair->point_force, pair->lists->n_slaves));
+  for (PetscInt c = 0; c < pair->n; c++) {
+    LawValue  value;
+    PetscReal area;
+
+    TermLaw(pair, c, t, &value, NULL, &area);
+    pair->stiffness_before[c] = pair->stiffness[c];
+    pair->stiffness[c]        = value.stiffness;
+    if (value.stiffness > 0) TermPress(pair, c, TermTurningPressure(pair, c, t, &value));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Names the block over the nodes of some slave points, unless there are none. */
+static PetscErrorCode NameBlock(Contact contact, const ContactPair *pair, int p, PetscInt n, const PetscInt *points)
+{
+  PetscFunctionBeginUser;
+  PetscCall(ContactVariationsNodes(pair, n, points));
+  PetscCall(BlockMatrixName(contact->blocks, p, pair->work->count, pair->work->number, (PetscBool)(contact->product != NULL)));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The loaded points of a face, which share most of their nodes */
+static PetscInt FacePoints(const ContactPair *pair, PetscInt face, PetscInt points[FACE_RULE_POINTS])
+{
+  PetscInt n = 0;
+
+  for (PetscInt q = pair->slaves->first[face]; q < pair->slaves->first[face + 1]; q++)
+    if (pair->point_force[q] != 0) points[n++] = q;
+  return n;
+}
+
+/* Names the blocks of a pair: one for each active term, and where terms share their points one for each loaded face. */
+static PetscErrorCode PairName(Contact contact, const ContactPair *pair, int p)
+{
+  PetscInt points[FACE_RULE_POINTS];
+
+  PetscFunctionBeginUser;
+  for (PetscInt c = 0; c < pair->n; c++)
+    if (pair->stiffness[c] > 0) PetscCall(NameBlock(contact, pair, p, pair->term_ptr[c + 1] - pair->term_ptr[c], &pair->term_point[pair->term_ptr[c]]));
+  for (PetscInt face = 0; pair->slaves->face_sf && face < pair->slaves->n_faces; face++)
+    PetscCall(NameBlock(contact, pair, p, FacePoints(pair, face, points), points));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* v = sqrt(A psi'') Nbar of an active term over the nodes of the block at hand */
+static void TermVector(const ContactPair *pair, PetscInt c, PetscInt nodes, PetscReal *v)
+{
+  const int                dim = pair->mesh->dim;
+  const ContactVariations *all = pair->variations;
+  PetscReal                area;
+
+  ContactTermGap(pair, pair->factor, pair->point_gap, c, &area);
+  for (PetscInt i = 0; i < nodes * dim; i++) v[i] = 0;
+  for (PetscInt k = pair->term_ptr[c]; k < pair->term_ptr[c + 1]; k++) {
+    const PetscInt  q      = pair->term_point[k];
+    const PetscReal weight = PetscSqrtReal(pair->stiffness[c] / area) * pair->term_weight[k] * pair->factor[q];
+
+    for (PetscInt i = all->first[q]; weight != 0 && i < all->end[q]; i++) {
+      const int place = pair->work->slot[all->number[i]];
+
+      for (int d = 0; place >= 0 && d < dim; d++) v[place * dim + d] += weight * all->N[i * dim + d];
+    }
+  }
+}
+
+/* The block A psi'' Nbar Nbar^T of a term, which stands alone where it shares its points; else with -p M of its one point. */
+static PetscErrorCode TermBlock(Contact contact, const ContactPair *pair, int p, PetscInt c, PetscInt n, const PetscInt *nodes, double (*own)[FITMAP_OWN])
+{
+  const PetscInt q = pair->term_point[pair->term_ptr[c]];
+  PetscReal     *v;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(n * contact->mesh->dim, &v));
+  TermVector(pair, c, n, v);
+  if (pair->slaves->face_sf)
+    PetscCall(BlockMatrixAddOuter(contact->blocks, p, n, nodes, v));
+  else {
+    PetscCall(ContactSecondBegin(pair, n, 1));
+    FitMapAddOuter(&pair->work->sum, 1, v);
+    if (pair->point_force[q] != 0) PetscCall(ContactSecondAdd(pair, q, -pair->point_force[q], own));
+    ContactSecondEnd(pair);
+    PetscCall(BlockMatrixAdd(contact->blocks, p, n, nodes, pair->work->M));
+  }
+  PetscCall(PetscFree(v));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The block -sum p M of the points of one face: their second variations are summed before they are taken apart. */
+static PetscErrorCode FaceBlock(Contact contact, const ContactPair *pair, int p, PetscInt face, PetscInt n, const PetscInt *nodes, double (*own)[FITMAP_OWN])
+{
+  PetscInt       points[FACE_RULE_POINTS];
+  const PetscInt loaded = FacePoints(pair, face, points);
+
+  PetscFunctionBeginUser;
+  PetscCall(ContactSecondBegin(pair, n, loaded));
+  for (PetscInt k = 0; k < loaded; k++) PetscCall(ContactSecondAdd(pair, points[k], -pair->point_force[points[k]], own));
+  ContactSecondEnd(pair);
+  PetscCall(BlockMatrixAdd(contact->blocks, p, n, nodes, pair->work->M));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Blocks of what belongs to the fit points one by one, for all slave points at once: one for the points of a face, which are made of the same nodes. */
+static PetscErrorCode OwnBlocks(Contact contact, const ContactPair *pair, int p, const double (*own)[FITMAP_OWN])
+{
+  ContactLists lists = pair->lists;
+
+  PetscFunctionBeginUser;
+  for (PetscInt first = 0, end; first < lists->n_points; first = end) {
+    PetscInt  n, with, *nodes;
+    PetscReal most = 0;
+
+    end = ListsAlikeEnd(lists, first);
+    for (PetscInt k = first; k < end; k++)
+      for (int e = 0; e < FITMAP_OWN; e++) most = PetscMax(most, PetscAbsReal(own[k][e]));
+    if (most == 0) continue;
+    PetscCall(ContactPointsToNodes(pair, first, end));
+    nodes = pair->work->number;
+    PetscCall(BlockMatrixSort(contact->blocks, p, pair->work->count, nodes, &with));
+    n = contact->product ? pair->work->count : with;
+    PetscCall(ContactBlockBegin(pair, n, nodes));
+    PetscCall(ContactOwnToNodes(pair, n, first, end, own));
+    PetscCall(BlockMatrixAdd(contact->blocks, p, n, nodes, pair->work->M));
+    ContactBlockEnd(pair, n, nodes);
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Adds the blocks of a pair as PairName() named them, from block number *block on. */
+static PetscErrorCode PairBlocks(Contact contact, ContactPair *pair, int p, PetscInt *block)
+{
+  const PetscInt  faces = pair->slaves->face_sf ? pair->slaves->n_faces : 0;
+  const PetscInt *nodes;
+  PetscInt        n;
   double(*own)[FITMAP_OWN] = NULL;
 
   PetscFunctionBeginUser;
-  PetscCall(ContactPairProject(contact, pair, u, t));
-  PetscCall(PetscMalloc1(pair->n, &terms));
   if (pair->fit.degree) PetscCall(PetscCalloc1(pair->lists->n_points, &own));
-  PetscCall(PetscArrayzero(pair->point_force, pair->lists->n_slaves));
-  for (PetscInt c = 0; c < pair->n; c++) {
-    LawValue value;
-
-    TermLaw(pair, c, t, &value, NULL, &terms[c].area);
-    terms[c].stiffness        = value.stiffness;
-    pair->stiffness_before[c] = pair->stiffness[c];
-    pair->stiffness[c]        = value.stiffness;
-    TermPress(pair, c, TermTurningPressure(pair, c, t, &value));
+  for (PetscInt k = 0; k < pair->n + faces; k++) {
+    if (k < pair->n && pair->stiffness[k] <= 0) continue;
+    BlockMatrixGetNodes(contact->blocks, (*block)++, &n, &nodes);
+    if (!n) continue;
+    PetscCall(ContactBlockBegin(pair, n, nodes));
+    if (k < pair->n)
+      PetscCall(TermBlock(contact, pair, p, k, n, nodes, own));
+    else
+      PetscCall(FaceBlock(contact, pair, p, k - pair->n, n, nodes, own));
+    ContactBlockEnd(pair, n, nodes);
   }
-  if (pair->slaves->face_sf) PetscCall(SharedBlocks(contact, pair, p, terms, own));
-  for (PetscInt c = 0; c < pair->n && !pair->slaves->face_sf; c++)
-    if (terms[c].stiffness > 0) PetscCall(PointBlock(contact, pair, p, pair->term_point[pair->term_ptr[c]], &terms[c], own));
   if (pair->fit.degree) PetscCall(OwnBlocks(contact, pair, p, own));
   PetscCall(PetscFree(own));
-  PetscCall(PetscFree(terms));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -541,26 +467,43 @@ static PetscErrorCode ContactMatrixRows(Contact contact, PetscInt *rows)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Names all blocks and finds their places. */
+static PetscErrorCode PlaceBlocks(Contact contact, PetscBool *changed)
+{
+  const PetscInt **dof;
+  PetscInt        *n, rows;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc2(contact->n_pairs, &dof, contact->n_pairs, &n));
+  for (int p = 0; p < contact->n_pairs; p++) {
+    dof[p] = contact->pairs[p].lists->dof;
+    n[p]   = contact->pairs[p].lists->n_nodes;
+  }
+  PetscCall(BlockMatrixBegin(contact->blocks, contact->n_pairs, n, dof));
+  PetscCall(PetscFree2(dof, n));
+  for (int p = 0; p < contact->n_pairs; p++) PetscCall(PairName(contact, &contact->pairs[p], p));
+  PetscCall(ContactMatrixRows(contact, &rows));
+  PetscCall(BlockMatrixPlace(contact->blocks, rows, changed));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* ContactTangent - the derivative of ContactResidual()'s forces by the free displacements: A (psi'' N N^T - p M) for each closed term, p its pressure.
 
    Collective. u, t: as of ContactResidual(). *C: over the global free dofs, the contact's own; *changed: its pattern is new.
    Source: Chamoret et al. 2004, eq. 14. */
 PetscErrorCode ContactTangent(Contact contact, const PetscReal *u, PetscReal t, Mat *C, PetscBool *changed)
 {
-  const PetscInt **dof;
-  PetscInt         size;
+  PetscInt block = 0;
 
   PetscFunctionBeginUser;
   PetscCall(PetscLogEventBegin(contact->event_tangent, 0, 0, 0, 0));
-  PetscCall(BlockMatrixReset(contact->blocks));
-  PetscCall(PetscMalloc1(contact->n_pairs, &dof));
+  for (int p = 0; p < contact->n_pairs; p++) PetscCall(PairStiffness(contact, &contact->pairs[p], u, t));
+  PetscCall(PlaceBlocks(contact, changed));
   for (int p = 0; p < contact->n_pairs; p++) {
-    PetscCall(PairBlocks(contact, &contact->pairs[p], p, u, t));
-    dof[p] = contact->pairs[p].lists->dof;
+    if (contact->product) BlockMatrixMultiply(contact->blocks, contact->product[p].x, contact->product[p].y);
+    PetscCall(PairBlocks(contact, &contact->pairs[p], p, &block));
   }
-  PetscCall(ContactMatrixRows(contact, &size));
-  PetscCall(BlockMatrixAssemble(contact->blocks, size, dof, C, changed));
-  PetscCall(PetscFree(dof));
+  PetscCall(BlockMatrixEnd(contact->blocks, C));
   PetscCall(PetscLogEventEnd(contact->event_tangent, 0, 0, 0, 0));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -576,26 +519,37 @@ static void AnalyticTravel(Contact contact, const ContactPair *pair, PetscReal t
   for (PetscInt i = 0; i < pair->lists->n_nodes * dim; i++) values[i] -= to[i % dim] - from[i % dim];
 }
 
-/* ContactMultiply - y += C x with the blocks of the last ContactTangent(), prescribed dofs included.
+/* ContactMultiplyBegin - the next ContactTangent() is multiplied with x, prescribed dofs included.
 
-   Collective. x[n_nodes*dim]: local displacements (length), ghosts included, to which the rigid tools' motion from t to t_next is joined;
-   y[n_nodes*dim]: local forces, complete at owned nodes. */
-PetscErrorCode ContactMultiply(Contact contact, const PetscReal *x, PetscReal t, PetscReal t_next, PetscReal *y)
+   Collective. x[n_nodes*dim]: local displacements (length), ghosts included, to which the rigid tools' motion from t to t_next is joined. Lists stay until
+   ContactMultiplyEnd(). */
+PetscErrorCode ContactMultiplyBegin(Contact contact, const PetscReal *x, PetscReal t, PetscReal t_next)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(contact->n_pairs, &contact->product));
+  for (int p = 0; p < contact->n_pairs; p++) {
+    ContactPair    *pair    = &contact->pairs[p];
+    ContactProduct *product = &contact->product[p];
+    const PetscInt  n       = pair->lists->n_nodes * contact->mesh->dim;
+
+    PetscCall(PetscCalloc2(n, &product->x, n, &product->y));
+    PetscCall(ListsBroadcast(pair->search, pair->lists, x, t, t_next, product->x));
+    if (!pair->master) AnalyticTravel(contact, pair, t, t_next, product->x);
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* ContactMultiplyEnd - y += C x of the tangent since ContactMultiplyBegin().
+
+   Collective. y[n_nodes*dim]: local forces, complete at owned nodes. */
+PetscErrorCode ContactMultiplyEnd(Contact contact, PetscReal *y)
 {
   PetscFunctionBeginUser;
   for (int p = 0; p < contact->n_pairs; p++) {
-    ContactPair   *pair = &contact->pairs[p];
-    const PetscInt n    = pair->lists->n_nodes * contact->mesh->dim;
-    PetscReal     *in, *out;
-
-    PetscCall(PetscMalloc2(n, &in, n, &out));
-    PetscCall(PetscArrayzero(out, n));
-    PetscCall(ListsBroadcast(pair->search, pair->lists, x, t, t_next, in));
-    if (!pair->master) AnalyticTravel(contact, pair, t, t_next, in);
-    PetscCall(BlockMatrixMultiply(contact->blocks, p, in, out));
-    PetscCall(ListsReduce(pair->lists, out, y));
-    PetscCall(PetscFree2(in, out));
+    PetscCall(ListsReduce(contact->pairs[p].lists, contact->product[p].y, y));
+    PetscCall(PetscFree2(contact->product[p].x, contact->product[p].y));
   }
+  PetscCall(PetscFree(contact->product));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

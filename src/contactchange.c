@@ -21,22 +21,19 @@ PetscErrorCode ContactTangentChanges(Contact contact, PetscInt *terms)
 /* Adds the gap's first variation of a term, times its area, to a column, as the last tangent has it. */
 static PetscErrorCode AddTerm(const ContactPair *pair, PetscInt c, PetscInt column, Mat N)
 {
-  const int       dim  = pair->mesh->dim;
-  ContactWork    *work = pair->work;
-  const PetscInt *dof  = pair->lists->dof;
+  const int                dim = pair->mesh->dim;
+  const ContactVariations *v   = pair->variations;
+  const PetscInt          *dof = pair->lists->dof;
 
   PetscFunctionBeginUser;
   for (PetscInt k = pair->term_ptr[c]; k < pair->term_ptr[c + 1]; k++) {
     const PetscInt  q      = pair->term_point[k];
     const PetscReal weight = pair->term_weight[k] * pair->factor[q];
-    PetscBool       found;
 
     if (weight == 0) continue;
-    PetscCall(ContactPointEvaluate(pair, pair->smoother, pair->lists, q, pair->seed[q], SMOOTHER_FIRST_VARIATION, &found));
-    if (!found) continue;
-    PetscCall(ContactPointToNodes(pair, pair->lists, q));
-    for (PetscInt i = 0; i < work->count; i++)
-      for (int d = 0; d < dim; d++) PetscCall(MatSetValue(N, dof[work->number[i] * dim + d], column, weight * work->N[i * dim + d], ADD_VALUES));
+    PetscCall(ContactVariationsNeed(pair, q));
+    for (PetscInt i = v->first[q]; i < v->end[q]; i++)
+      for (int d = 0; d < dim; d++) PetscCall(MatSetValue(N, dof[v->number[i] * dim + d], column, weight * v->N[i * dim + d], ADD_VALUES));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -116,7 +116,7 @@ static PetscErrorCode PairMotion(Contact contact, const ContactPair *pair, Petsc
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ContactGather - new lists, and with them new offsets and area factors, for all pairs; the blocks of the last tangent are dropped.
+/* ContactGather - new lists, and with them new offsets and area factors, for all pairs.
 
    Collective. u[n_nodes*dim]: local displacements (length) of the accepted state, ghosts included; t: its load parameter; t_next: where the
    step goes; motion: relative motion (length) that the lists must be good for. Those that ContactListsHold() made at
@@ -125,7 +125,6 @@ PetscErrorCode ContactGather(Contact contact, const PetscReal *u, PetscReal t, P
 {
   PetscFunctionBeginUser;
   PetscCall(PetscLogEventBegin(contact->event_search, 0, 0, 0, 0));
-  PetscCall(BlockMatrixReset(contact->blocks)); /* its blocks speak of the old lists */
   for (int p = 0; p < contact->n_pairs; p++) {
     ContactPair *pair   = &contact->pairs[p];
     PetscReal    needed = motion;
@@ -211,7 +210,7 @@ static PetscErrorCode PairNextAgrees(Contact contact, ContactPair *pair, PetscRe
   *agrees = PETSC_TRUE;
   PetscCall(PetscMalloc1(pair->next->n_slaves, &gaps));
   if (pair->fit.degree) TimingBegin(TIMING_FIT);
-  PetscCall(ContactPointGaps(pair, pair->next, pair->next_factor, NULL, gaps, NULL));
+  PetscCall(ContactPointGaps(pair, pair->next, pair->next_factor, NULL, NULL, gaps, NULL));
   if (pair->fit.degree) TimingEnd(TIMING_FIT);
   for (PetscInt c = 0; c < pair->n && *agrees; c++)
     *agrees = TermAgrees(pair, pair->next, c, ContactTermGap(pair, pair->next_factor, gaps, c, NULL), pair->next_factor, t, depth, drift);
@@ -256,7 +255,6 @@ PetscErrorCode ContactListsRenew(Contact contact, const PetscReal *u, PetscReal 
     PetscCall(ContactNoteLost(pair, t));
     PetscCall(PairTakeNext(pair));
   }
-  PetscCall(BlockMatrixReset(contact->blocks));
   PetscCall(PetscLogEventEnd(contact->event_search, 0, 0, 0, 0));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -290,7 +288,6 @@ PetscErrorCode ContactListsHold(Contact contact, const PetscReal *u, PetscReal t
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &agree, 1, MPI_INT, MPI_LAND, contact->mesh->comm));
   *hold = agree ? PETSC_TRUE : PETSC_FALSE;
   for (int p = 0; p < contact->n_pairs && !agree; p++) PetscCall(PairTakeNext(&contact->pairs[p]));
-  if (!agree) PetscCall(BlockMatrixReset(contact->blocks));
   PetscCall(PetscLogEventEnd(contact->event_search, 0, 0, 0, 0));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -89,6 +89,7 @@ static PetscErrorCode PairCreateTerms(Mesh mesh, ContactPair *pair)
                          pair->n, &pair->stiffness_before));
   PetscCall(PetscCalloc6(slaves->n, &pair->factor, slaves->n, &pair->next_factor, slaves->n, &pair->seed, slaves->n, &pair->point_gap, 3 * slaves->n,
                          &pair->point_normal, slaves->n, &pair->point_force));
+  PetscCall(ContactVariationsCreate(mesh->dim, slaves->n, &pair->variations));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -214,6 +215,7 @@ PetscErrorCode ContactPairDestroy(ContactPair *pair)
   PetscCall(PetscFree2(pair->term_point, pair->term_weight));
   PetscCall(PetscFree6(pair->force, pair->normal, pair->pressure, pair->law_pressure, pair->stiffness, pair->stiffness_before));
   PetscCall(PetscFree6(pair->factor, pair->next_factor, pair->seed, pair->point_gap, pair->point_normal, pair->point_force));
+  PetscCall(ContactVariationsDestroy(&pair->variations));
   PetscCall(PetscFree(pair->before));
   PetscCall(MixingDestroy(&pair->mixing));
   PetscCall(PetscFree2(pair->held, pair->foreseen));

@@ -1,4 +1,5 @@
 #include "contactimpl.h"
+#include "timing.h"
 
 /* The gap and its variations against an analytic master, which has no points. */
 static PetscBool PointEvaluateAnalytic(const ContactPair *pair, ContactLists lists, PetscInt q)
@@ -69,22 +70,27 @@ PetscErrorCode ContactPointEvaluate(const ContactPair *pair, const Smoother *smo
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+static PetscErrorCode WorkReserveSlots(ContactWork *work, ContactLists lists)
+{
+  PetscFunctionBeginUser;
+  if (lists->n_nodes <= work->slot_room) PetscFunctionReturn(PETSC_SUCCESS);
+  work->slot_room = 2 * lists->n_nodes;
+  PetscCall(PetscFree(work->slot));
+  PetscCall(PetscMalloc1(work->slot_room, &work->slot));
+  for (PetscInt i = 0; i < work->slot_room; i++) work->slot[i] = -1;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 static PetscErrorCode WorkReserveMap(ContactWork *work, ContactLists lists, int rows, PetscInt entries)
 {
   PetscFunctionBeginUser;
-  if (rows > work->map.rows_room || entries > work->map.entries_room) {
-    work->map.rows_room    = 2 * rows;
-    work->map.entries_room = 2 * (int)entries;
-    PetscCall(PetscFree5(work->map.ptr, work->map.node, work->map.S, work->map.sign, work->number));
-    PetscCall(PetscMalloc5(work->map.rows_room + 1, &work->map.ptr, work->map.entries_room, &work->map.node, work->map.entries_room, &work->map.S,
-                           3 * work->map.entries_room, &work->map.sign, work->map.entries_room, &work->number));
-  }
-  if (lists->n_nodes > work->slot_room) {
-    work->slot_room = 2 * lists->n_nodes;
-    PetscCall(PetscFree(work->slot));
-    PetscCall(PetscMalloc1(work->slot_room, &work->slot));
-    for (PetscInt i = 0; i < work->slot_room; i++) work->slot[i] = -1;
-  }
+  PetscCall(WorkReserveSlots(work, lists));
+  if (rows <= work->map.rows_room && entries <= work->map.entries_room) PetscFunctionReturn(PETSC_SUCCESS);
+  work->map.rows_room    = 2 * rows;
+  work->map.entries_room = 2 * (int)entries;
+  PetscCall(PetscFree5(work->map.ptr, work->map.node, work->map.S, work->map.sign, work->number));
+  PetscCall(PetscMalloc5(work->map.rows_room + 1, &work->map.ptr, work->map.entries_room, &work->map.node, work->map.entries_room, &work->map.S,
+                         3 * work->map.entries_room, &work->map.sign, work->map.entries_room, &work->number));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -95,8 +101,8 @@ PetscErrorCode ContactWorkDestroy(ContactWork *work)
   PetscCall(PetscFree2(work->x, work->multiplier));
   PetscCall(PetscFree5(work->map.ptr, work->map.node, work->map.S, work->map.sign, work->number));
   PetscCall(PetscFree(work->N));
-  PetscCall(PetscFree(work->half));
   PetscCall(PetscFree(work->sum_workspace));
+  PetscCall(PetscFree(work->M));
   PetscCall(PetscFree(work->slot));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -110,28 +116,11 @@ static void MapAddRow(const ContactPair *pair, int row, int image, PetscInt n, c
   int              k    = map->ptr[row];
 
   for (PetscInt a = 0; a < n; a++, k++) {
-    int *slot = &work->slot[nodes[a]];
-
-    if (*slot < 0) {
-      *slot                       = (int)work->count;
-      work->number[work->count++] = nodes[a];
-    }
-    map->node[k] = *slot;
+    map->node[k] = work->slot[nodes[a]];
     map->S[k]    = S[a];
     for (int d = 0; d < 3; d++) map->sign[3 * k + d] = sign[d] * pair->images[side[a]].sign[d];
   }
   map->ptr[row + 1] = k;
-}
-
-static void MapBegin(ContactWork *work)
-{
-  work->count      = 0;
-  work->map.ptr[0] = 0;
-}
-
-static void MapEnd(ContactWork *work)
-{
-  for (PetscInt i = 0; i < work->count; i++) work->slot[work->number[i]] = -1;
 }
 
 /* A row for fit point p. */
@@ -142,16 +131,64 @@ static void MapAddPoint(const ContactPair *pair, ContactLists lists, int row, Pe
   MapAddRow(pair, row, lists->point_image[p], lists->point_ptr[p + 1] - first, &lists->point_node[first], &lists->point_side[first], &lists->point_S[first]);
 }
 
-/* The map of the last evaluation. */
+/* The map of the last evaluation, to where the nodes' slots are. */
 static void MapFill(const ContactPair *pair, ContactLists lists, PetscInt q)
 {
   ContactWork   *work = pair->work;
   const PetscInt own  = lists->slave_ptr[q];
 
-  MapBegin(work);
+  work->map.ptr[0] = 0;
   MapAddRow(pair, 0, 0, lists->slave_ptr[q + 1] - own, &lists->slave_node[own], &lists->slave_side[own], &lists->slave_S[own]);
   for (int i = 0; i < work->result.n; i++) MapAddPoint(pair, lists, 1 + i, lists->list_point[lists->list_ptr[q] + work->result.points[i]]);
-  MapEnd(work);
+}
+
+/* How many entries the map of the last evaluation has. */
+static PetscInt MapEntries(const ContactPair *pair, ContactLists lists, PetscInt q)
+{
+  PetscInt entries = lists->slave_ptr[q + 1] - lists->slave_ptr[q];
+
+  for (int i = 0; i < pair->work->result.n; i++) {
+    const PetscInt p = lists->list_point[lists->list_ptr[q] + pair->work->result.points[i]];
+
+    entries += lists->point_ptr[p + 1] - lists->point_ptr[p];
+  }
+  return entries;
+}
+
+/* ContactNodesBegin - begins a list of contact nodes in the work's number, of up to `room` mentions. Not collective. */
+PetscErrorCode ContactNodesBegin(const ContactPair *pair, PetscInt room)
+{
+  PetscFunctionBeginUser;
+  PetscCall(WorkReserveMap(pair->work, pair->lists, 0, room));
+  pair->work->count = 0;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* ContactNodesAdd - nodes that are not in the list yet get its next places as their slots. Not collective. */
+void ContactNodesAdd(const ContactPair *pair, PetscInt n, const PetscInt nodes[])
+{
+  ContactWork *work = pair->work;
+
+  for (PetscInt a = 0; a < n; a++) {
+    int *slot = &work->slot[nodes[a]];
+
+    if (*slot >= 0) continue;
+    *slot                       = (int)work->count;
+    work->number[work->count++] = nodes[a];
+  }
+}
+
+/* ContactNodesEnd - the list is complete, slots are given back. Not collective. */
+void ContactNodesEnd(const ContactPair *pair)
+{
+  ContactBlockEnd(pair, pair->work->count, pair->work->number);
+}
+
+static void NodesAddPoint(const ContactPair *pair, PetscInt p)
+{
+  const ContactLists lists = pair->lists;
+
+  ContactNodesAdd(pair, lists->point_ptr[p + 1] - lists->point_ptr[p], &lists->point_node[lists->point_ptr[p]]);
 }
 
 /* ContactPointToNodes - carries N of the last evaluation from points to contact nodes, each of which occurs once.
@@ -159,18 +196,16 @@ static void MapFill(const ContactPair *pair, ContactLists lists, PetscInt q)
    Not collective. q: the slave point that was evaluated. */
 PetscErrorCode ContactPointToNodes(const ContactPair *pair, ContactLists lists, PetscInt q)
 {
-  ContactWork *work    = pair->work;
-  PetscInt     entries = lists->slave_ptr[q + 1] - lists->slave_ptr[q];
+  ContactWork *work = pair->work;
   FitMap       map;
 
   PetscFunctionBeginUser;
-  for (int i = 0; i < work->result.n; i++) {
-    const PetscInt p = lists->list_point[lists->list_ptr[q] + work->result.points[i]];
-
-    entries += lists->point_ptr[p + 1] - lists->point_ptr[p];
-  }
-  PetscCall(WorkReserveMap(work, lists, 1 + work->result.n, entries));
+  PetscCall(WorkReserveMap(work, lists, 1 + work->result.n, MapEntries(pair, lists, q)));
+  work->count = 0;
+  ContactNodesAdd(pair, lists->slave_ptr[q + 1] - lists->slave_ptr[q], &lists->slave_node[lists->slave_ptr[q]]);
+  for (int i = 0; i < work->result.n; i++) NodesAddPoint(pair, lists->list_point[lists->list_ptr[q] + work->result.points[i]]);
   MapFill(pair, lists, q);
+  ContactNodesEnd(pair);
   if (work->count > work->room) {
     work->room = 2 * work->count;
     PetscCall(PetscFree(work->N));
@@ -181,124 +216,133 @@ PetscErrorCode ContactPointToNodes(const ContactPair *pair, ContactLists lists, 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ContactSecondBegin - begins a sum of second variations over the nodes of a block. Not collective.
-
-   nodes: of the block; points: how many slave points are added at most; M[nodes*dim][nodes*dim]: symmetric, to be added to. */
-PetscErrorCode ContactSecondBegin(const ContactPair *pair, PetscInt nodes, PetscInt points, PetscReal *M)
+/* ContactBlockBegin - the nodes' places in the block at hand become their slots; contact nodes that are not among them take no part in it. Not collective. */
+PetscErrorCode ContactBlockBegin(const ContactPair *pair, PetscInt n, const PetscInt nodes[])
 {
-  ContactWork   *work   = pair->work;
-  const int      degree = PetscMax(pair->fit.degree, 1); /* facets need no more than the sum's head */
-  const PetscInt room   = FitMapWorkspace(pair->mesh->dim, degree, (int)nodes, (int)points);
+  PetscFunctionBeginUser;
+  PetscCall(WorkReserveSlots(pair->work, pair->lists));
+  for (PetscInt i = 0; i < n; i++) pair->work->slot[nodes[i]] = (int)i;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* ContactBlockEnd - Not collective. */
+void ContactBlockEnd(const ContactPair *pair, PetscInt n, const PetscInt nodes[])
+{
+  for (PetscInt i = 0; i < n; i++) pair->work->slot[nodes[i]] = -1;
+}
+
+/* Room for the M of a block. */
+static PetscErrorCode WorkReserveBlock(ContactWork *work, PetscInt m)
+{
+  PetscFunctionBeginUser;
+  if (m * m <= work->M_room) PetscFunctionReturn(PETSC_SUCCESS);
+  work->M_room = 2 * m * m;
+  PetscCall(PetscFree(work->M));
+  PetscCall(PetscMalloc1(work->M_room, &work->M));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* ContactSecondBegin - begins a sum of second variations over the nodes of a block, after ContactBlockBegin(). Not collective.
+
+   nodes: of the block; points: how many slave points are added at most, and as many vectors with FitMapAddOuter(). */
+PetscErrorCode ContactSecondBegin(const ContactPair *pair, PetscInt nodes, PetscInt points)
+{
+  ContactWork *work   = pair->work;
+  const int    dim    = pair->mesh->dim;
+  const int    degree = PetscMax(pair->fit.degree, 1); /* facets need no more than the sum's head */
+  const int    depth  = (int)points * (1 + PetscMax(FitMapDepth(dim, degree), dim * (1 + FACE_MAX_NODES)));
+  const long   room   = FitMapWorkspace(dim, degree, (int)nodes, depth);
 
   PetscFunctionBeginUser;
   if (room > work->sum_room) {
-    work->sum_room = 2 * room;
+    work->sum_room = 2 * (PetscInt)room;
     PetscCall(PetscFree(work->sum_workspace));
     PetscCall(PetscMalloc1(work->sum_room, &work->sum_workspace));
   }
-  FitMapBegin(&work->sum, pair->mesh->dim, degree, (int)nodes, (int)points, work->sum_workspace, M);
+  PetscCall(WorkReserveBlock(work, nodes * dim));
+  FitMapBegin(&work->sum, dim, degree, (int)nodes, depth, work->sum_workspace);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Adds factor S^T M S for the few points of a facet: rows first, then columns. */
-static PetscErrorCode AddFacetSecond(ContactWork *work, int dim, PetscReal factor)
+/* ContactSecondAdd - evaluates slave point q and adds factor times its second variation. Not collective.
+
+   own[n_points]: takes what belongs to the fit points one by one, for ContactOwnToNodes(). */
+PetscErrorCode ContactSecondAdd(const ContactPair *pair, PetscInt q, PetscReal factor, double (*own)[FITMAP_OWN])
 {
-  const ContactMap     *map  = &work->map;
-  const SmootherResult *r    = &work->result;
-  const int             rows = 1 + r->n, m = rows * dim, n = work->sum.n_nodes * dim;
-
-  PetscFunctionBeginUser;
-  if (n * m > work->half_room) {
-    work->half_room = 2 * n * m;
-    PetscCall(PetscFree(work->half));
-    PetscCall(PetscMalloc1(work->half_room, &work->half));
-  }
-  PetscCall(PetscArrayzero(work->half, n * m));
-  for (int i = 0; i < rows; i++) {
-    for (int k = map->ptr[i]; k < map->ptr[i + 1]; k++) {
-      for (int d = 0; d < dim; d++) {
-        const PetscReal  scale = factor * map->S[k] * map->sign[3 * k + d];
-        const PetscReal *from  = &r->M[(i * dim + d) * m];
-        PetscReal       *to    = &work->half[(map->node[k] * dim + d) * m];
-
-        for (int j = 0; j < m; j++) to[j] += scale * from[j];
-      }
-    }
-  }
-  for (int i = 0; i < rows; i++) {
-    for (int k = map->ptr[i]; k < map->ptr[i + 1]; k++) {
-      for (int d = 0; d < dim; d++) {
-        const PetscReal scale = map->S[k] * map->sign[3 * k + d];
-
-        for (int j = 0; j < n; j++) work->sum.M[j * n + map->node[k] * dim + d] += scale * work->half[j * m + i * dim + d];
-      }
-    }
-  }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* ContactSecondAdd - adds factor times the second variation of the last evaluation, after ContactPointToNodes(). Not collective.
-
-   place: of each contact node in the block, or NULL for the numbers of the point's own nodes; own[n_points]: takes what belongs to the fit points one by one,
-   for ContactOwnToNodes(). */
-PetscErrorCode ContactSecondAdd(const ContactPair *pair, ContactLists lists, PetscInt q, PetscReal factor, const PetscInt *place, double (*own)[FITMAP_OWN])
-{
-  ContactWork *work = pair->work;
-  ContactMap  *map  = &work->map;
+  ContactWork *work  = pair->work;
+  ContactLists lists = pair->lists;
+  ContactMap  *map   = &work->map;
+  PetscBool    found;
   FitMap       fit;
 
   PetscFunctionBeginUser;
-  for (int k = 0; place && k < map->ptr[1 + work->result.n]; k++) map->node[k] = (int)place[work->number[map->node[k]]];
+  if (pair->fit.degree) TimingBegin(TIMING_FIT);
+  PetscCall(ContactPointEvaluate(pair, pair->smoother, lists, q, pair->seed[q], SMOOTHER_SECOND_VARIATION, &found));
+  if (pair->fit.degree) TimingEnd(TIMING_FIT);
+  if (!found) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(WorkReserveMap(work, lists, 1 + work->result.n, MapEntries(pair, lists, q)));
+  MapFill(pair, lists, q);
   fit = (FitMap){work->sum.n_nodes, map->ptr, map->node, map->S, map->sign};
   if (work->result.factored) {
     FitMapAdd(&work->sum, factor, &work->result.factors, &fit);
     for (int i = 0; i < work->result.n; i++) FitMapOwn(factor, &work->result.factors, i, own[lists->list_point[lists->list_ptr[q] + work->result.points[i]]]);
   } else
-    PetscCall(AddFacetSecond(work, pair->mesh->dim, factor));
+    FitMapAddDense(&work->sum, factor, work->result.n, work->result.M, &fit);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ContactSecondEnd - the sum is complete. Not collective. */
+/* ContactSecondEnd - the work's M is the sum. Not collective. */
 void ContactSecondEnd(const ContactPair *pair)
 {
-  FitMapEnd(&pair->work->sum);
+  FitMapEnd(&pair->work->sum, pair->work->M);
 }
 
 /* ContactPointsToNodes - the contact nodes of fit points first to end - 1, into the work's number. Not collective. */
-PetscErrorCode ContactPointsToNodes(const ContactPair *pair, ContactLists lists, PetscInt first, PetscInt end)
+PetscErrorCode ContactPointsToNodes(const ContactPair *pair, PetscInt first, PetscInt end)
 {
-  ContactWork *work = pair->work;
-
   PetscFunctionBeginUser;
-  PetscCall(WorkReserveMap(work, lists, (int)(end - first), lists->point_ptr[end] - lists->point_ptr[first]));
-  MapBegin(work);
-  for (PetscInt p = first; p < end; p++) MapAddPoint(pair, lists, (int)(p - first), p);
-  MapEnd(work);
+  PetscCall(WorkReserveMap(pair->work, pair->lists, (int)(end - first), pair->lists->point_ptr[end] - pair->lists->point_ptr[first]));
+  pair->work->count = 0;
+  for (PetscInt p = first; p < end; p++) NodesAddPoint(pair, p);
+  ContactNodesEnd(pair);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ContactOwnToNodes - adds the fit points' own second variations, summed over slave points, over the nodes of the last ContactPointsToNodes(). Not collective.
+/* ContactOwnToNodes - the second variations that belong to fit points first to end - 1, summed over slave points, into the work's M. Not collective.
 
-   own: of the first of the points; M[count*dim][count*dim]: symmetric, to be added to. */
-void ContactOwnToNodes(const ContactPair *pair, PetscInt points, const double (*own)[FITMAP_OWN], PetscReal *M)
+   nodes: of the block at hand, which are these points'; own: of all fit points. */
+PetscErrorCode ContactOwnToNodes(const ContactPair *pair, PetscInt nodes, PetscInt first, PetscInt end, const double (*own)[FITMAP_OWN])
 {
-  const ContactMap *map = &pair->work->map;
-  const FitMap      fit = {(int)pair->work->count, map->ptr, map->node, map->S, map->sign};
+  const int    dim  = pair->mesh->dim;
+  ContactWork *work = pair->work;
+  FitMap       map;
 
-  FitMapAddOwn(pair->mesh->dim, 0, (int)points, own, &fit, M);
+  PetscFunctionBeginUser;
+  PetscCall(WorkReserveBlock(work, nodes * dim));
+  PetscCall(PetscArrayzero(work->M, PetscSqr(nodes * dim)));
+  work->map.ptr[0] = 0;
+  for (PetscInt p = first; p < end; p++) MapAddPoint(pair, pair->lists, (int)(p - first), p);
+  map = (FitMap){(int)nodes, work->map.ptr, work->map.node, work->map.S, work->map.sign};
+  FitMapAddOwn(dim, 0, (int)(end - first), &own[first], &map, work->M);
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* ContactPointGaps - gaps (lengths) of the slave points of this rank, positions as the lists were last updated.
 
    Not collective. factor[n_slaves]: points of factor 0 are not asked for; seed[n_slaves]: the facets of last time, rewritten, or NULL;
-   gap[n_slaves]: NaN where there is none; normals[3*n_slaves]: out of the master at the feet, or NULL. */
-PetscErrorCode ContactPointGaps(const ContactPair *pair, ContactLists lists, const PetscReal *factor, int *seed, PetscReal *gap, PetscReal *normals)
+   gap[n_slaves]: NaN where there is none; normals[3*n_slaves]: out of the master at the feet, or NULL. force[n_slaves]: points with one, of last time, will
+   most likely have one again, and their first variations are taken among the pair's, whose lists these are; or NULL. */
+PetscErrorCode ContactPointGaps(const ContactPair *pair, ContactLists lists, const PetscReal *factor, const PetscReal *force, int *seed, PetscReal *gap,
+                                PetscReal *normals)
 {
   PetscFunctionBeginUser;
   for (PetscInt q = 0; q < lists->n_slaves; q++) {
-    PetscBool found = PETSC_FALSE;
+    const PetscBool vary  = (PetscBool)(force && force[q] != 0 && factor[q] > 0);
+    PetscBool       found = PETSC_FALSE;
 
-    if (factor[q] > 0) PetscCall(ContactPointEvaluate(pair, pair->smoother, lists, q, seed ? seed[q] : -1, SMOOTHER_GAP, &found));
+    if (factor[q] > 0)
+      PetscCall(ContactPointEvaluate(pair, pair->smoother, lists, q, seed ? seed[q] : -1, vary ? SMOOTHER_FIRST_VARIATION : SMOOTHER_GAP, &found));
+    if (vary) PetscCall(ContactVariationsKeep(pair, q, found));
     gap[q] = found ? pair->work->result.gap : NAN;
     if (found && seed) seed[q] = pair->work->result.seed;
     for (int d = 0; normals && d < 3; d++) normals[3 * q + d] = found && d < lists->dim ? pair->work->result.normal[d] : 0;

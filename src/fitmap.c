@@ -164,16 +164,7 @@ LANES_INLINE void AddBlock(const int dim, const double *h, const double *row_sig
   }
 }
 
-/* Adds an H and its mirror image between two entries of one node to the node's block, at once: the order of the two would show in the last bit. */
-LANES_INLINE void AddBothBlocks(const int dim, const double *h, const double *a, const double *b, long size, double *block)
-{
-  for (int c = 0; c < dim; c++) {
-    for (int d = 0; d < dim; d++) block[c * size + d] += (a[c] * b[d] + b[c] * a[d]) * h[HessianEntry(c, d)];
-  }
-}
-
-/* Adds sum_r S_r^T H_r S_r over a run's rows: to each pair of its nodes, and to its mirror image in the same order, so that M stays symmetric to the last
-   bit. own: of row `first`. */
+/* Adds sum_r S_r^T H_r S_r over a run's rows to each pair of its nodes, above the diagonal. own: of row `first`. */
 LANES_INLINE void AddPairs(const int dim, int first, const double (*own)[FITMAP_OWN], const FitRun *run, long size, double *M)
 {
   for (int k = 0; k < run->entries; k++) {
@@ -189,12 +180,8 @@ LANES_INLINE void AddPairs(const int dim, int first, const double (*own)[FITMAP_
       for (int r = run->first; r < run->end; r++, S += run->entries) {
         for (int e = 0; e < FITMAP_OWN; e++) sum[e] += S[k] * S[l] * own[r - first][e];
       }
-      if (l < k && i == j) {
-        AddBothBlocks(dim, sum, row_sign, column_sign, size, M + i * size + i);
-        continue;
-      }
-      AddBlock(dim, sum, row_sign, column_sign, size, M + i * size + j);
-      if (l < k) AddBlock(dim, sum, column_sign, row_sign, size, M + j * size + i);
+      if (i <= j) AddBlock(dim, sum, row_sign, column_sign, size, M + i * size + j);
+      if (j < i || (j == i && l < k)) AddBlock(dim, sum, column_sign, row_sign, size, M + j * size + i);
     }
   }
 }
@@ -229,6 +216,30 @@ LANES_INLINE void Second(const int dim, const int terms, double factor, const Fi
   sum->depth += terms + dim;
 }
 
+/* Row i of S: component c of point r */
+LANES_INLINE void AddSelection(const int dim, const FitMap *map, int r, int c, double scale, double *row)
+{
+  for (int e = map->ptr[r]; e < map->ptr[r + 1]; e++) {
+    if (map->node[e] >= 0) row[map->node[e] * dim + c] += scale * map->S[e] * map->sign[3 * e + c];
+  }
+}
+
+/* S^T M S = 1/2 (M S)^T S + S^T 1/2 (M S): a row of M S and of S for each component of each point */
+LANES_INLINE void Dense(const int dim, int n, double factor, const double *M, const FitMap *map, FitMapSum *sum)
+{
+  const int     m     = (1 + n) * dim;
+  const long    first = (long)sum->depth * sum->stride;
+  double *const K = sum->K + first, *const J = sum->J + first;
+
+  memset(K, 0, (size_t)m * sum->stride * sizeof(double));
+  memset(J, 0, (size_t)m * sum->stride * sizeof(double));
+  for (int i = 0; i < m; i++) {
+    AddSelection(dim, map, i / dim, i % dim, 1, J + (long)i * sum->stride);
+    for (int j = 0; j < m; j++) AddSelection(dim, map, j / dim, j % dim, 0.5 * factor * M[i * m + j], K + (long)i * sum->stride);
+  }
+  sum->depth += m;
+}
+
 LANES_INLINE void First(const int dim, int n, const double *N, const FitMap *map, double *nodal)
 {
   for (int r = 0; r < 1 + n; r++) {
@@ -239,14 +250,23 @@ LANES_INLINE void First(const int dim, int n, const double *N, const FitMap *map
   }
 }
 
+/* FitMapDepth - rows of K and J for one slave point by its factors. Not collective.
+
+   Input: dim, degree - of the fit */
+int FitMapDepth(int dim, int degree)
+{
+  return FitTerms(dim, degree) + dim;
+}
+
 /* FitMapWorkspace - doubles of workspace for a sum of second variations. Not collective.
 
-   Input: dim, degree - the highest of the fits; n_nodes - of the maps; points - how many are added at most */
-long FitMapWorkspace(int dim, int degree, int n_nodes, int points)
+   Input: dim, degree - the highest of the fits; n_nodes - of the maps; depth - most rows of K and J in all: FitMapDepth() for each FitMapAdd(),
+   dim*(1 + n) for each FitMapAddDense(), 1 for each FitMapAddOuter() */
+long FitMapWorkspace(int dim, int degree, int n_nodes, int depth)
 {
-  const int terms = FitTerms(dim, degree), stride = SymmetricProductStride(n_nodes * dim);
+  const int stride = SymmetricProductStride(n_nodes * dim);
 
-  return ALIGNMENT / (long)sizeof(double) + (long)(stride + dim) * FactorStride(terms) + 2L * points * (terms + dim) * stride;
+  return ALIGNMENT / (long)sizeof(double) + (long)(stride + dim) * FactorStride(FitTerms(dim, degree)) + 2L * depth * stride;
 }
 
 /* FitMapFirst - the first variation over nodes, S^T N. Not collective.
@@ -264,16 +284,15 @@ void FitMapFirst(int dim, int n, const double *N, const FitMap *map, double *nod
 
 /* FitMapBegin - begins a sum of second variations over the same nodes. Not collective.
 
-   Input: dim, degree, n_nodes, points - as of FitMapWorkspace(); workspace - that many doubles of any contents, to be left alone until FitMapEnd();
-   M[n_nodes*dim][n_nodes*dim] - symmetric, to be added to */
-void FitMapBegin(FitMapSum *sum, int dim, int degree, int n_nodes, int points, double *workspace, double *M)
+   Input: dim, degree, n_nodes, depth - as of FitMapWorkspace(); workspace - that many doubles of any contents, to be left alone until FitMapEnd() */
+void FitMapBegin(FitMapSum *sum, int dim, int degree, int n_nodes, int depth, double *workspace)
 {
-  const int terms = FitTerms(dim, degree), stride = SymmetricProductStride(n_nodes * dim);
+  const int stride = SymmetricProductStride(n_nodes * dim);
 
-  *sum      = (FitMapSum){.dim = dim, .n_nodes = n_nodes, .stride = stride, .M = M};
+  *sum      = (FitMapSum){.dim = dim, .n_nodes = n_nodes, .stride = stride};
   sum->rows = (double *)(((uintptr_t)workspace + ALIGNMENT - 1) / ALIGNMENT * ALIGNMENT);
-  sum->K    = sum->rows + (stride + dim) * FactorStride(terms);
-  sum->J    = sum->K + (long)points * (terms + dim) * stride;
+  sum->K    = sum->rows + (stride + dim) * FactorStride(FitTerms(dim, degree));
+  sum->J    = sum->K + (long)depth * stride;
 }
 
 /* FitMapAdd - adds factor times the second variation over nodes, S^T M S, of one slave point, without M; the points' own H are left to FitMapAddOwn().
@@ -291,6 +310,32 @@ void FitMapAdd(FitMapSum *sum, double factor, const FitFactors *factors, const F
 #undef SECOND
 }
 
+/* FitMapAddDense - adds factor S^T M S. Not collective.
+
+   Input: n - points that take part; M[((1 + n)*dim)^2] - symmetric; map - nodes below the sum's n_nodes */
+void FitMapAddDense(FitMapSum *sum, double factor, int n, const double *M, const FitMap *map)
+{
+  if (sum->dim == 3)
+    Dense(3, n, factor, M, map, sum);
+  else
+    Dense(2, n, factor, M, map, sum);
+}
+
+/* FitMapAddOuter - adds factor v v^T. Not collective.
+
+   Input: v[n_nodes*dim] */
+void FitMapAddOuter(FitMapSum *sum, double factor, const double *v)
+{
+  const int     n     = sum->n_nodes * sum->dim;
+  const long    first = (long)sum->depth++ * sum->stride;
+  double *const K = sum->K + first, *const J = sum->J + first;
+
+  for (int i = 0; i < sum->stride; i++) {
+    J[i] = i < n ? v[i] : 0;
+    K[i] = 0.5 * factor * J[i];
+  }
+}
+
 /* FitMapOwn - own += factor H, for point i of those inside. Not collective. */
 void FitMapOwn(double factor, const FitFactors *factors, int i, double own[FITMAP_OWN])
 {
@@ -301,8 +346,8 @@ void FitMapOwn(double factor, const FitFactors *factors, int i, double own[FITMA
 
 /* FitMapAddOwn - M += sum_r S_r^T own_r S_r, the points' own part of second variations. Not collective.
 
-   Input: dim; rows first to end - 1 of the map; own[end - first] - of these rows' points, from FitMapOwn(). M[n_nodes*dim][n_nodes*dim] - symmetric to the
-   last bit if it was */
+   Input: dim; rows first to end - 1 of the map; own[end - first] - of these rows' points, from FitMapOwn(). M[n_nodes*dim][n_nodes*dim] - its upper
+   triangle, in whole blocks on the diagonal */
 void FitMapAddOwn(int dim, int first, int end, const double (*own)[FITMAP_OWN], const FitMap *map, double *M)
 {
   if (dim == 3)
@@ -311,8 +356,8 @@ void FitMapAddOwn(int dim, int first, int end, const double (*own)[FITMAP_OWN], 
     Own(2, first, end, own, map, M);
 }
 
-/* FitMapEnd - M holds the sum, symmetric to the last bit. Not collective. */
-void FitMapEnd(FitMapSum *sum)
+/* FitMapEnd - the sum into the upper triangle of M[n_nodes*dim][n_nodes*dim]; what is below is left alone. Not collective. */
+void FitMapEnd(FitMapSum *sum, double *M)
 {
-  SymmetricProductAdd(sum->n_nodes * sum->dim, sum->depth, sum->stride, sum->K, sum->J, sum->M);
+  SymmetricProductUpper(sum->n_nodes * sum->dim, sum->depth, sum->stride, sum->K, sum->J, M);
 }

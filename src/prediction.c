@@ -50,12 +50,13 @@ static PetscErrorCode ModelStepLoads(Model model, const PetscReal *u, PetscReal 
   for (PetscInt i = 0; i < n; i++) step[i] -= u[i];
   if (holding) PetscCall(ContactPredict(model->contact, PETSC_TRUE, (PetscBool)(t == 0))); /* touching: a body that only contact holds */
   PetscCall(LinearSolverRenew(work->solver));
+  if (model->contact) PetscCall(ContactMultiplyBegin(model->contact, step, t, model->t));
   PetscCall(ModelTangent(model, u, t));
   PetscCall(ModelResidual(model, u, model->t, t, &ok));
   if (holding) PetscCall(ContactForesee(model->contact));
   if (holding) PetscCall(ContactPredict(model->contact, PETSC_FALSE, PETSC_FALSE));
   PetscCall(ElasticityMultiplyLocal(model->elasticity, step, work->f));
-  if (model->contact) PetscCall(ContactMultiply(model->contact, step, t, model->t, work->f));
+  if (model->contact) PetscCall(ContactMultiplyEnd(model->contact, work->f));
   PetscCall(ModelStepLinear(model, report));
   PetscCall(PetscFree(step));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -16,8 +16,8 @@ int SmootherEvaluate_Facet(const SmootherInput *in, SmootherWant want, SmootherR
   memcpy(out->normal, foot.normal, sizeof(out->normal));
   out->n = ElementGet(facet->type)->nodes;
   memcpy(out->points, facet->nodes, out->n * sizeof(int));
-  if (want >= SMOOTHER_FIRST_VARIATION) FacetFirstVariation(in->dim, facet, in->x, &foot, out->N);
-  if (want >= SMOOTHER_SECOND_VARIATION) FacetSecondVariation(in->dim, facet, in->x, &foot, out->M);
+  if (want == SMOOTHER_FIRST_VARIATION) FacetFirstVariation(in->dim, facet, in->x, &foot, out->N);
+  if (want == SMOOTHER_SECOND_VARIATION) FacetSecondVariation(in->dim, facet, in->x, &foot, out->M);
   return 1;
 }
 
@@ -28,7 +28,7 @@ static int SmootherEvaluate_Diffuse(const SmootherInput *in, SmootherWant want, 
     {[SMOOTHER_GAP] = FIT_GAP, [SMOOTHER_FIRST_VARIATION] = FIT_FIRST_VARIATION, [SMOOTHER_SECOND_VARIATION] = FIT_SECOND_VARIATION};
   FitProblem problem =
     {.dim = in->dim, .degree = in->degree, .exponent = in->exponent, .n = in->n_fit, .x = in->x, .multiplier = in->multiplier, .derivatives = in->derivatives};
-  FitResult fit = {.points = out->points, .N = out->N, .factors = &out->factors};
+  FitResult fit = {.points = out->points, .N = want == SMOOTHER_FIRST_VARIATION ? out->N : NULL, .factors = &out->factors};
 
   out->facet_served = 0;
   if (in->n_fit) {

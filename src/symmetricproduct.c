@@ -24,26 +24,28 @@ LANES_INLINE void AddOuterProducts(const int vectors, int depth, int stride, con
   }
 }
 
-/* A square above the diagonal that lies wholly within M, and its image */
-LANES_INLINE void StoreInside(const int add, int n, int row, int column, Lanes square[LANES], double *M)
+/* A square above the diagonal that lies wholly within M, and, of a full M, its image */
+LANES_INLINE void StoreInside(const int full, int n, int row, int column, Lanes square[LANES], double *M)
 {
-  for (int r = 0; add && r < LANES; r++) square[r] += *(LanesInArray *)(M + (long)(row + r) * n + column);
   for (int r = 0; r < LANES; r++) *(LanesInArray *)(M + (long)(row + r) * n + column) = square[r];
+  if (!full) return;
   Transpose(square);
   for (int r = 0; r < LANES; r++) *(LanesInArray *)(M + (long)(column + r) * n + row) = square[r];
 }
 
 /* A square on the diagonal or across the end of M */
-LANES_INLINE void StorePart(const int add, int n, int row, int column, Lanes square[LANES], double *M)
+LANES_INLINE void StorePart(const int full, int n, int row, int column, Lanes square[LANES], double *M)
 {
   for (int r = row; r < row + LANES && r < n; r++) {
-    for (int c = column < r ? r : column; c < column + LANES && c < n; c++)
-      M[(long)r * n + c] = M[(long)c * n + r] = (add ? M[(long)r * n + c] : 0) + square[r - row][c - column];
+    for (int c = column < r ? r : column; c < column + LANES && c < n; c++) {
+      M[(long)r * n + c] = square[r - row][c - column];
+      if (full) M[(long)c * n + r] = square[r - row][c - column];
+    }
   }
 }
 
-/* The tile at (row, column), a whole number of vectors wide, and its image */
-LANES_INLINE void ProductTile(const int add, const int vectors, int n, int depth, int stride, const double *K, const double *J, int row, int column, double *M)
+/* The tile at (row, column), a whole number of vectors wide, and, of a full M, its image */
+LANES_INLINE void ProductTile(const int full, const int vectors, int n, int depth, int stride, const double *K, const double *J, int row, int column, double *M)
 {
   Lanes tile[TILE_ROWS][PRODUCT_VECTORS] = {{{0}}};
 
@@ -55,13 +57,13 @@ LANES_INLINE void ProductTile(const int add, const int vectors, int n, int depth
 
     for (int r = 0; r < LANES; r++) square[r] = tile[r][c];
     if (first > row && first + LANES <= n)
-      StoreInside(add, n, row, first, square, M);
+      StoreInside(full, n, row, first, square, M);
     else
-      StorePart(add, n, row, first, square, M);
+      StorePart(full, n, row, first, square, M);
   }
 }
 
-LANES_INLINE void Product(const int add, int n, int depth, int stride, const double *K, const double *J, double *M)
+LANES_INLINE void Product(const int full, int n, int depth, int stride, const double *K, const double *J, double *M)
 {
   for (int column = 0; column < n; column += TILE_COLUMNS) {
     const int end = LanesGroups(n) * LANES < column + TILE_COLUMNS ? LanesGroups(n) * LANES : column + TILE_COLUMNS;
@@ -70,9 +72,9 @@ LANES_INLINE void Product(const int add, int n, int depth, int stride, const dou
       const int first = row < column ? column : row;
 
       switch ((end - first) / LANES) {
-      case 1: ProductTile(add, 1, n, depth, stride, K, J, row, first, M); break;
-      case 2: ProductTile(add, 2, n, depth, stride, K, J, row, first, M); break;
-      case 3: ProductTile(add, 3, n, depth, stride, K, J, row, first, M); break;
+      case 1: ProductTile(full, 1, n, depth, stride, K, J, row, first, M); break;
+      case 2: ProductTile(full, 2, n, depth, stride, K, J, row, first, M); break;
+      case 3: ProductTile(full, 3, n, depth, stride, K, J, row, first, M); break;
       }
     }
   }
@@ -85,11 +87,11 @@ LANES_INLINE void Product(const int add, int n, int depth, int stride, const dou
    Output: M - [n][n], symmetric to the last bit */
 void SymmetricProduct(int n, int depth, int stride, const double *K, const double *J, double *M)
 {
-  Product(0, n, depth, stride, K, J, M);
+  Product(1, n, depth, stride, K, J, M);
 }
 
-/* SymmetricProductAdd - M += K^T J + J^T K. Not collective. As SymmetricProduct(), of an M that is symmetric before. */
-void SymmetricProductAdd(int n, int depth, int stride, const double *K, const double *J, double *M)
+/* SymmetricProductUpper - as SymmetricProduct(), but the triangle below the diagonal is left alone. Not collective. */
+void SymmetricProductUpper(int n, int depth, int stride, const double *K, const double *J, double *M)
 {
-  Product(1, n, depth, stride, K, J, M);
+  Product(0, n, depth, stride, K, J, M);
 }

@@ -134,14 +134,14 @@ static void Do(Part part, Slave *s)
   }
   if (part == NODAL_N || part == ALL) FitMapFirst(s->problem.dim, s->result.n, s->N, &s->map.map, nodal);
   if (part == NODAL_M || part == ALL) {
-    FitMapBegin(&sum, s->problem.dim, s->problem.degree, s->map.map.n_nodes, 1, scratch, M);
+    FitMapBegin(&sum, s->problem.dim, s->problem.degree, s->map.map.n_nodes, FitMapDepth(s->problem.dim, s->problem.degree), scratch);
     FitMapAdd(&sum, 1, &s->factors, &s->map.map);
-    FitMapEnd(&sum);
+    FitMapEnd(&sum, M);
     memset(own, 0, s->result.n * sizeof(own[0]));
     for (int i = 0; i < s->result.n; i++) FitMapOwn(1, &s->factors, i, own[i]);
     FitMapAddOwn(s->problem.dim, 1, 1 + s->result.n, own, &s->map.map, M);
   }
-  if (part == PRODUCT) SymmetricProduct(size, terms, stride, scratch, scratch + terms * stride, M);
+  if (part == PRODUCT) SymmetricProductUpper(size, terms, stride, scratch, scratch + terms * stride, M);
 }
 
 static void Setup(const Kind *kind, Slave *s)
@@ -206,7 +206,7 @@ int main(void)
     {"quad9,4", {2, 4, 2, 2.25, 3}}
   };
 
-  scratch = aligned_alloc(64, (FitMapWorkspace(3, 4, MAX_NODES, 1) + 7) / 8 * 64);
+  scratch = aligned_alloc(64, (FitMapWorkspace(3, 4, MAX_NODES, FitMapDepth(3, 4)) + 7) / 8 * 64);
   if (!scratch) return 1;
   puts("# diffuse fit over nodes, by element and degree: microseconds per slave quadrature point");
   for (int i = 0; i < (int)(sizeof(cases) / sizeof(cases[0])); i++) Bench(cases[i].row, &cases[i].kind);

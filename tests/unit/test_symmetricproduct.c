@@ -11,7 +11,7 @@ enum { MAX = 80, MAX_DEPTH = 15, STRIDE = 120 };
 
 static void TestProduct(void **state)
 {
-  static double K[MAX_DEPTH * STRIDE] __attribute__((aligned(64))), J[MAX_DEPTH * STRIDE] __attribute__((aligned(64))), M[MAX * MAX + 1];
+  static double K[MAX_DEPTH * STRIDE] __attribute__((aligned(64))), J[MAX_DEPTH * STRIDE] __attribute__((aligned(64))), M[MAX * MAX + 1], upper[MAX * MAX + 1];
 
   (void)state;
   for (int i = 0; i < MAX_DEPTH * STRIDE; i++) {
@@ -21,8 +21,9 @@ static void TestProduct(void **state)
   for (int depth = 1; depth <= MAX_DEPTH; depth += 7) {
     for (int n = 1; n <= MAX; n++) {
       assert_true(SymmetricProductStride(n) <= STRIDE);
-      M[n * n] = 7;
+      for (int i = 0; i <= n * n; i++) M[i] = upper[i] = 7;
       SymmetricProduct(n, depth, STRIDE, K, J, M);
+      SymmetricProductUpper(n, depth, STRIDE, K, J, upper);
       for (int r = 0; r < n; r++) {
         for (int c = 0; c < n; c++) {
           double sum = 0;
@@ -30,9 +31,10 @@ static void TestProduct(void **state)
           for (int k = 0; k < depth; k++) sum += K[k * STRIDE + r] * J[k * STRIDE + c] + J[k * STRIDE + r] * K[k * STRIDE + c];
           assert_true(fabs(M[r * n + c] - sum) <= 1e-14 * depth);
           assert_true(M[r * n + c] == M[c * n + r]);
+          assert_true(upper[r * n + c] == (c < r ? 7 : M[r * n + c]));
         }
       }
-      assert_true(M[n * n] == 7);
+      assert_true(M[n * n] == 7 && upper[n * n] == 7);
     }
   }
 }

@@ -1,0 +1,94 @@
+#include "contactimpl.h"
+#include "timing.h"
+
+/* ContactVariationsCreate - room for the first variations of so many slave points, none of them known. Not collective. */
+PetscErrorCode ContactVariationsCreate(int dim, PetscInt n_points, ContactVariations **variations)
+{
+  ContactVariations *v;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscNew(&v));
+  v->n_points = n_points;
+  PetscCall(PetscMalloc3(n_points, &v->first, n_points, &v->end, n_points * dim, &v->own));
+  ContactVariationsReset(v);
+  *variations = v;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* ContactVariationsDestroy - Not collective. */
+PetscErrorCode ContactVariationsDestroy(ContactVariations **variations)
+{
+  ContactVariations *v = *variations;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscFree3(v->first, v->end, v->own));
+  PetscCall(PetscFree(v->number));
+  PetscCall(PetscFree(v->N));
+  PetscCall(PetscFree(*variations));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* ContactVariationsReset - none is known: the points have moved, or their lists are new. Not collective. */
+void ContactVariationsReset(ContactVariations *v)
+{
+  v->n = 0;
+  for (PetscInt q = 0; q < v->n_points; q++) v->first[q] = -1;
+}
+
+/* ContactVariationsKeep - takes that of point q from the pair's work, where it was evaluated last. Not collective. found: a master is near. */
+PetscErrorCode ContactVariationsKeep(const ContactPair *pair, PetscInt q, PetscBool found)
+{
+  const int          dim  = pair->mesh->dim;
+  const ContactWork *work = pair->work;
+  ContactVariations *v    = pair->variations;
+
+  PetscFunctionBeginUser;
+  v->first[q] = v->end[q] = v->n;
+  if (!found) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(ContactPointToNodes(pair, pair->lists, q));
+  if (v->n + work->count > v->room) {
+    v->room = 2 * (v->n + work->count);
+    PetscCall(PetscRealloc(v->room * sizeof(PetscInt), &v->number));
+    PetscCall(PetscRealloc(v->room * dim * sizeof(PetscReal), &v->N));
+  }
+  PetscCall(PetscArraycpy(&v->number[v->n], work->number, work->count));
+  PetscCall(PetscArraycpy(&v->N[v->n * dim], work->N, work->count * dim));
+  PetscCall(PetscArraycpy(&v->own[q * dim], work->result.N, dim));
+  v->n += work->count;
+  v->end[q] = v->n;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* ContactVariationsNeed - sees that the first variation of point q is among the pair's. Not collective. */
+PetscErrorCode ContactVariationsNeed(const ContactPair *pair, PetscInt q)
+{
+  PetscBool found;
+
+  PetscFunctionBeginUser;
+  if (pair->variations->first[q] >= 0) PetscFunctionReturn(PETSC_SUCCESS);
+  if (pair->fit.degree) TimingBegin(TIMING_FIT);
+  PetscCall(ContactPointEvaluate(pair, pair->smoother, pair->lists, q, pair->seed[q], SMOOTHER_FIRST_VARIATION, &found));
+  PetscCall(ContactVariationsKeep(pair, q, found));
+  if (pair->fit.degree) TimingEnd(TIMING_FIT);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* ContactVariationsNodes - the nodes of the first variations of some slave points, each once, into the work's number; points without area have none.
+   Not collective. */
+PetscErrorCode ContactVariationsNodes(const ContactPair *pair, PetscInt n, const PetscInt points[])
+{
+  const ContactVariations *v     = pair->variations;
+  PetscInt                 nodes = 0;
+
+  PetscFunctionBeginUser;
+  for (PetscInt k = 0; k < n; k++) {
+    if (pair->factor[points[k]] == 0) continue;
+    PetscCall(ContactVariationsNeed(pair, points[k]));
+    nodes += v->end[points[k]] - v->first[points[k]];
+  }
+  PetscCall(ContactNodesBegin(pair, nodes));
+  for (PetscInt k = 0; k < n; k++)
+    if (pair->factor[points[k]] != 0) ContactNodesAdd(pair, v->end[points[k]] - v->first[points[k]], &v->number[v->first[points[k]]]);
+  ContactNodesEnd(pair);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
