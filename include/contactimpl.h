@@ -34,6 +34,14 @@ typedef struct {
   PetscInt       slot_room;
 } ContactWork;
 
+/* The first variations of slave points over contact nodes, one point after another */
+typedef struct {
+  PetscInt  *first, *last; /* of each point; -1: it is not among them */
+  PetscInt  *number, n, room;
+  PetscReal *N;
+  PetscInt  *place; /* of each contact node in the block at hand, -1: none */
+} ContactVariations;
+
 /* The slave point that was lost the deepest behind its master; depth 0: none */
 typedef struct {
   PetscReal depth, gap; /* depth: behind the master; gap: in front of it, where it is found now (NaN: no master is near) */
@@ -100,7 +108,9 @@ struct _n_Contact {
 
 /* contact.c */
 PetscErrorCode ContactPairProject(Contact, ContactPair *, const PetscReal *u, PetscReal t); /* gaps of all slave points there */
+PetscErrorCode ContactPairMove(Contact, ContactPair *, const PetscReal *x, PetscReal t, PetscReal t_next, PetscReal *values); /* of its contact nodes */
 LawState       ContactTermState(const ContactPair *, PetscInt term, PetscReal t);
+void           ContactTermLaw(const ContactPair *, PetscInt term, PetscReal t, LawValue *, PetscReal *gap, PetscReal *area); /* of the last projection */
 /* contactpair.c */
 PetscErrorCode ContactPairCreate(Mesh, Scene, Elasticity, Loads, const SceneContact *, ContactPair *);
 PetscErrorCode ContactPairDestroy(ContactPair *);
@@ -131,6 +141,15 @@ PetscErrorCode ContactWorkDestroy(ContactWork *);
 PetscErrorCode ContactPointGaps(const ContactPair *, ContactLists, const PetscReal *factor, int *seed, PetscReal *gap, PetscReal *normals);
 /* Weighted mean of its points' gaps, NaN without any; *area: of those that count. */
 PetscReal ContactTermGap(const ContactPair *, const PetscReal *factor, const PetscReal *point_gap, PetscInt term, PetscReal *area);
+/* contactvariation.c */
+PetscErrorCode ContactPointVary(const ContactPair *, PetscInt q, PetscBool second, PetscBool *found);      /* of one point, into the work's number and N */
+PetscErrorCode ContactVariationsCreate(const ContactPair *, const PetscBool *wanted, ContactVariations *); /* of all points of some terms */
+PetscErrorCode ContactVariationsDestroy(ContactVariations *);
+/* The nodes of some points as the places of a block, until they are forgotten. */
+PetscInt ContactVariationsNumber(PetscInt n, const PetscInt *points, ContactVariations *);
+void     ContactVariationsName(int dim, PetscInt n, const PetscInt *points, const ContactVariations *, PetscInt *entry);
+void     ContactVariationsForget(PetscInt n, const PetscInt *points, ContactVariations *);
+void     ContactTermVary(const ContactPair *, PetscInt term, PetscReal scale, const ContactVariations *, PetscReal *N); /* adds scale area N of the term */
 /* contactlost.c */
 /* Remember the slave points behind their masters that the next lists have lost; those that passed through it; those that jumped out since the accepted state.
  */

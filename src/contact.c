@@ -115,8 +115,9 @@ LawState ContactTermState(const ContactPair *pair, PetscInt c, PetscReal t)
   return (LawState){PetscMin(pair->most, pair->now.penalty[c]), ContactTermOffset(pair, c, t), pair->now.multiplier[c]};
 }
 
-/* Law, gap (may be NULL) and area of a term in the state of the last projection. */
-static void TermLaw(const ContactPair *pair, PetscInt c, PetscReal t, LawValue *value, PetscReal *gap, PetscReal *area)
+/* ContactTermLaw - law, gap (length; may be NULL) and area of a term in the state of the last projection; in a linear step what it counts on. Not collective.
+ */
+void ContactTermLaw(const ContactPair *pair, PetscInt c, PetscReal t, LawValue *value, PetscReal *gap, PetscReal *area)
 {
   const LawState  state = ContactTermState(pair, c, t);
   const PetscReal found = ContactTermGap(pair, pair->factor, pair->point_gap, c, area);
@@ -148,17 +149,6 @@ static void TermPress(ContactPair *pair, PetscInt c, PetscReal pressure)
     pair->point_force[pair->term_point[k]] += pressure * pair->term_weight[k] * pair->factor[pair->term_point[k]];
 }
 
-/* First variation of a slave point over contact nodes, in the pair's work; second: what ContactSecondAdd() needs too. */
-static PetscErrorCode PointVary(const ContactPair *pair, PetscInt q, PetscBool second, PetscBool *found)
-{
-  PetscFunctionBeginUser;
-  if (pair->fit.degree) TimingBegin(TIMING_FIT);
-  PetscCall(ContactPointEvaluate(pair, pair->smoother, pair->lists, q, pair->seed[q], second ? SMOOTHER_SECOND_VARIATION : SMOOTHER_FIRST_VARIATION, found));
-  if (pair->fit.degree) TimingEnd(TIMING_FIT);
-  if (*found) PetscCall(ContactPointToNodes(pair, pair->lists, q));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* Adds the forces of the loaded slave points to the contact nodes' values. */
 static PetscErrorCode PairForces(ContactPair *pair, PetscReal *values)
 {
@@ -171,7 +161,7 @@ static PetscErrorCode PairForces(ContactPair *pair, PetscReal *values)
     const PetscReal force = pair->point_force[q];
 
     if (force == 0) continue;
-    PetscCall(PointVary(pair, q, PETSC_FALSE, &found));
+    PetscCall(ContactPointVary(pair, q, PETSC_FALSE, &found));
     if (!found) continue;
     for (PetscInt i = 0; i < work->count * dim; i++) values[work->number[i / dim] * dim + i % dim] -= force * work->N[i];
     for (int d = 0; d < dim; d++) pair->total[d] += force * work->result.N[d];
@@ -208,7 +198,7 @@ static PetscErrorCode PairResidual(Contact contact, ContactPair *pair, const Pet
     LawValue  value;
     PetscReal gap, area;
 
-    TermLaw(pair, c, t, &value, &gap, &area);
+    ContactTermLaw(pair, c, t, &value, &gap, &area);
     if (energy) *energy += area * value.psi;
     if (force2) *force2 += 2 * PetscSqr(area * value.pressure); /* on the slave and on the master */
     if (!f) continue;
@@ -288,7 +278,7 @@ PetscErrorCode ContactUnforeseen(Contact contact, const PetscReal *u, PetscReal 
       LawValue  value;
       PetscReal area;
 
-      TermLaw(pair, c, t, &value, NULL, &area);
+      ContactTermLaw(pair, c, t, &value, NULL, &area);
       if (!pair->foreseen[c]) *energy += area * value.psi;
     }
   }
@@ -302,111 +292,25 @@ typedef struct {
   PetscReal stiffness, area;
 } TermState;
 
-/* The first variations of the points of active terms over contact nodes, one after another */
-typedef struct {
-  PetscInt  *first, *last; /* of each point */
-  PetscInt  *number, n, room;
-  PetscReal *N;
-  PetscInt  *place; /* of each contact node in the block at hand, -1: none */
-} PointVariations;
-
-static PetscErrorCode VariationsAdd(PointVariations *all, const ContactWork *work, int dim, PetscInt q)
-{
-  PetscFunctionBeginUser;
-  if (all->n + work->count > all->room) {
-    all->room = 2 * (all->n + work->count);
-    PetscCall(PetscRealloc(all->room * sizeof(PetscInt), &all->number));
-    PetscCall(PetscRealloc(all->room * dim * sizeof(PetscReal), &all->N));
-  }
-  all->first[q] = all->n;
-  PetscCall(PetscArraycpy(&all->number[all->n], work->number, work->count));
-  PetscCall(PetscArraycpy(&all->N[all->n * dim], work->N, work->count * dim));
-  all->n += work->count;
-  all->last[q] = all->n;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-static PetscErrorCode VariationsCreate(const ContactPair *pair, const TermState *terms, PointVariations *all)
-{
-  const int dim = pair->mesh->dim;
-  PetscInt  n   = pair->lists->n_slaves;
-  PetscBool found;
-
-  PetscFunctionBeginUser;
-  *all = (PointVariations){0};
-  PetscCall(PetscMalloc3(n, &all->first, n, &all->last, pair->lists->n_nodes, &all->place));
-  for (PetscInt q = 0; q < n; q++) all->first[q] = all->last[q] = -1;
-  for (PetscInt i = 0; i < pair->lists->n_nodes; i++) all->place[i] = -1;
-  for (PetscInt c = 0; c < pair->n; c++) {
-    for (PetscInt k = pair->term_ptr[c]; k < pair->term_ptr[c + 1] && terms[c].stiffness > 0; k++) {
-      const PetscInt q = pair->term_point[k];
-
-      if (all->first[q] >= 0 || pair->factor[q] == 0) continue;
-      PetscCall(PointVary(pair, q, PETSC_FALSE, &found));
-      if (found) PetscCall(VariationsAdd(all, pair->work, dim, q));
-    }
-  }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-static PetscErrorCode VariationsDestroy(PointVariations *all)
-{
-  PetscFunctionBeginUser;
-  PetscCall(PetscFree3(all->first, all->last, all->place));
-  PetscCall(PetscFree(all->number));
-  PetscCall(PetscFree(all->N));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Numbers the nodes of some points in a block. */
-static PetscInt NumberNodes(PetscInt n, const PetscInt *points, PointVariations *all)
-{
-  PetscInt m = 0;
-
-  for (PetscInt k = 0; k < n; k++)
-    for (PetscInt i = all->first[points[k]]; i < all->last[points[k]]; i++)
-      if (all->place[all->number[i]] < 0) all->place[all->number[i]] = m++;
-  return m;
-}
-
-/* Writes the dofs of the numbered nodes into the block's entries. */
-static void NameEntries(int dim, PetscInt n, const PetscInt *points, const PointVariations *all, PetscInt *entry)
-{
-  for (PetscInt k = 0; k < n; k++)
-    for (PetscInt i = all->first[points[k]]; i < all->last[points[k]]; i++)
-      for (int d = 0; d < dim; d++) entry[all->place[all->number[i]] * dim + d] = all->number[i] * dim + d;
-}
-
-static void ForgetNodes(PetscInt n, const PetscInt *points, PointVariations *all)
-{
-  for (PetscInt k = 0; k < n; k++)
-    for (PetscInt i = all->first[points[k]]; i < all->last[points[k]]; i++) all->place[all->number[i]] = -1;
-}
-
 /* The block A psi'' Nbar Nbar^T of one active term. */
-static PetscErrorCode TermBlock(Contact contact, const ContactPair *pair, int p, PetscInt c, const TermState *term, PointVariations *all)
+static PetscErrorCode TermBlock(Contact contact, const ContactPair *pair, int p, PetscInt c, const TermState *term, ContactVariations *all)
 {
   const int       dim    = contact->mesh->dim;
   const PetscInt *points = &pair->term_point[pair->term_ptr[c]], n = pair->term_ptr[c + 1] - pair->term_ptr[c];
-  PetscInt        m     = NumberNodes(n, points, all), *entry;
+  PetscInt        m     = ContactVariationsNumber(n, points, all), *entry;
   const PetscReal scale = PetscSqrtReal(term->stiffness / term->area);
   PetscReal      *N;
 
   PetscFunctionBeginUser;
   PetscCall(BlockMatrixAddOuter(contact->blocks, p, m * dim, &entry, &N));
-  NameEntries(dim, n, points, all, entry);
-  for (PetscInt k = 0; k < n; k++) {
-    const PetscReal weight = scale * pair->term_weight[pair->term_ptr[c] + k] * pair->factor[points[k]];
-
-    for (PetscInt i = all->first[points[k]]; i < all->last[points[k]]; i++)
-      for (int d = 0; d < dim; d++) N[all->place[all->number[i]] * dim + d] += weight * all->N[i * dim + d];
-  }
-  ForgetNodes(n, points, all);
+  ContactVariationsName(dim, n, points, all, entry);
+  ContactTermVary(pair, c, scale, all, N);
+  ContactVariationsForget(n, points, all);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* The block -sum p M of the points of one face, which share most of their nodes: their second variations are summed before they are written. */
-static PetscErrorCode FaceBlock(Contact contact, const ContactPair *pair, int p, PetscInt face, PointVariations *all, double (*own)[FITMAP_OWN])
+static PetscErrorCode FaceBlock(Contact contact, const ContactPair *pair, int p, PetscInt face, ContactVariations *all, double (*own)[FITMAP_OWN])
 {
   const int  dim = contact->mesh->dim;
   PetscInt   points[FACE_RULE_POINTS], n = 0, m, *entry;
@@ -417,16 +321,16 @@ static PetscErrorCode FaceBlock(Contact contact, const ContactPair *pair, int p,
   for (PetscInt q = pair->slaves->first[face]; q < pair->slaves->first[face + 1]; q++)
     if (pair->point_force[q] != 0 && all->first[q] >= 0) points[n++] = q;
   if (!n) PetscFunctionReturn(PETSC_SUCCESS);
-  m = NumberNodes(n, points, all);
+  m = ContactVariationsNumber(n, points, all);
   PetscCall(BlockMatrixAdd(contact->blocks, p, m * dim, &entry, &value));
-  NameEntries(dim, n, points, all, entry);
+  ContactVariationsName(dim, n, points, all, entry);
   PetscCall(ContactSecondBegin(pair, m, n, value));
   for (PetscInt k = 0; k < n; k++) {
-    PetscCall(PointVary(pair, points[k], PETSC_TRUE, &found));
+    PetscCall(ContactPointVary(pair, points[k], PETSC_TRUE, &found));
     PetscCall(ContactSecondAdd(pair, pair->lists, points[k], -pair->point_force[points[k]], all->place, own));
   }
   ContactSecondEnd(pair);
-  ForgetNodes(n, points, all);
+  ContactVariationsForget(n, points, all);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -440,7 +344,7 @@ static PetscErrorCode PointBlock(Contact contact, const ContactPair *pair, int p
   PetscBool          found;
 
   PetscFunctionBeginUser;
-  PetscCall(PointVary(pair, q, PETSC_TRUE, &found));
+  PetscCall(ContactPointVary(pair, q, PETSC_TRUE, &found));
   if (!found) PetscFunctionReturn(PETSC_SUCCESS);
   m = work->count * dim;
   PetscCall(BlockMatrixAdd(contact->blocks, p, m, &entry, &value));
@@ -456,14 +360,18 @@ static PetscErrorCode PointBlock(Contact contact, const ContactPair *pair, int p
 /* The blocks of terms that share their points. */
 static PetscErrorCode SharedBlocks(Contact contact, ContactPair *pair, int p, const TermState *terms, double (*own)[FITMAP_OWN])
 {
-  PointVariations all;
+  ContactVariations all;
+  PetscBool        *active;
 
   PetscFunctionBeginUser;
-  PetscCall(VariationsCreate(pair, terms, &all));
+  PetscCall(PetscMalloc1(pair->n, &active));
+  for (PetscInt c = 0; c < pair->n; c++) active[c] = (PetscBool)(terms[c].stiffness > 0);
+  PetscCall(ContactVariationsCreate(pair, active, &all));
+  PetscCall(PetscFree(active));
   for (PetscInt c = 0; c < pair->n; c++)
     if (terms[c].stiffness > 0) PetscCall(TermBlock(contact, pair, p, c, &terms[c], &all));
   for (PetscInt face = 0; face < pair->slaves->n_faces; face++) PetscCall(FaceBlock(contact, pair, p, face, &all, own));
-  PetscCall(VariationsDestroy(&all));
+  PetscCall(ContactVariationsDestroy(&all));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -515,7 +423,7 @@ static PetscErrorCode PairBlocks(Contact contact, ContactPair *pair, int p, cons
   for (PetscInt c = 0; c < pair->n; c++) {
     LawValue value;
 
-    TermLaw(pair, c, t, &value, NULL, &terms[c].area);
+    ContactTermLaw(pair, c, t, &value, NULL, &terms[c].area);
     terms[c].stiffness        = value.stiffness;
     pair->stiffness_before[c] = pair->stiffness[c];
     pair->stiffness[c]        = value.stiffness;
@@ -576,6 +484,16 @@ static void AnalyticTravel(Contact contact, const ContactPair *pair, PetscReal t
   for (PetscInt i = 0; i < pair->lists->n_nodes * dim; i++) values[i] -= to[i % dim] - from[i % dim];
 }
 
+/* ContactPairMove - how the contact nodes of a pair move with local displacements x, tools and an analytic master from t to t_next: values[lists n_nodes*dim].
+   Collective. */
+PetscErrorCode ContactPairMove(Contact contact, ContactPair *pair, const PetscReal *x, PetscReal t, PetscReal t_next, PetscReal *values)
+{
+  PetscFunctionBeginUser;
+  PetscCall(ListsBroadcast(pair->search, pair->lists, x, t, t_next, values));
+  if (!pair->master) AnalyticTravel(contact, pair, t, t_next, values);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* ContactMultiply - y += C x with the blocks of the last ContactTangent(), prescribed dofs included.
 
    Collective. x[n_nodes*dim]: local displacements (length), ghosts included, to which the rigid tools' motion from t to t_next is joined;
@@ -590,8 +508,7 @@ PetscErrorCode ContactMultiply(Contact contact, const PetscReal *x, PetscReal t,
 
     PetscCall(PetscMalloc2(n, &in, n, &out));
     PetscCall(PetscArrayzero(out, n));
-    PetscCall(ListsBroadcast(pair->search, pair->lists, x, t, t_next, in));
-    if (!pair->master) AnalyticTravel(contact, pair, t, t_next, in);
+    PetscCall(ContactPairMove(contact, pair, x, t, t_next, in));
     PetscCall(BlockMatrixMultiply(contact->blocks, p, in, out));
     PetscCall(ListsReduce(pair->lists, out, y));
     PetscCall(PetscFree2(in, out));
