@@ -114,7 +114,9 @@ struct _n_Contact {
 
 /* contact.c */
 PetscErrorCode ContactPairProject(Contact, ContactPair *, const PetscReal *u, PetscReal t); /* gaps of all slave points there */
+PetscErrorCode ContactPairMove(Contact, ContactPair *, const PetscReal *x, PetscReal t, PetscReal t_next, PetscReal *values); /* of its contact nodes */
 LawState       ContactTermState(const ContactPair *, PetscInt term, PetscReal t);
+void           ContactTermLaw(const ContactPair *, PetscInt term, PetscReal t, LawValue *, PetscReal *gap, PetscReal *area); /* of the last projection */
 /* contactpair.c */
 PetscErrorCode ContactPairCreate(Mesh, Scene, Elasticity, Loads, const SceneContact *, ContactPair *);
 PetscErrorCode ContactPairDestroy(ContactPair *);
@@ -156,10 +158,11 @@ PetscReal ContactTermGap(const ContactPair *, const PetscReal *factor, const Pet
 /* contactvariation.c */
 PetscErrorCode ContactVariationsCreate(int dim, PetscInt n_points, ContactVariations **);
 PetscErrorCode ContactVariationsDestroy(ContactVariations **);
-void           ContactVariationsReset(ContactVariations *);                                      /* the points have moved */
-PetscErrorCode ContactVariationsKeep(const ContactPair *, PetscInt q, PetscBool found);          /* that of the last evaluation */
-PetscErrorCode ContactVariationsNeed(const ContactPair *, PetscInt q);                           /* evaluates it, unless it is there */
-PetscErrorCode ContactVariationsNodes(const ContactPair *, PetscInt n, const PetscInt points[]); /* of some points that carry area, into the work's number */
+void           ContactVariationsReset(ContactVariations *);                                        /* the points have moved */
+PetscErrorCode ContactVariationsKeep(const ContactPair *, PetscInt q, PetscBool found);            /* that of the last evaluation */
+PetscErrorCode ContactVariationsNeed(const ContactPair *, PetscInt q);                             /* evaluates it, unless it is there */
+PetscErrorCode ContactVariationsNodes(const ContactPair *, PetscInt n, const PetscInt points[]);   /* of some points that carry area, into the work's number */
+void           ContactTermVary(const ContactPair *, PetscInt term, PetscReal scale, PetscReal *v); /* adds scale area N of the term over the block at hand */
 /* contactlost.c */
 /* Remember the slave points behind their masters that the next lists have lost; those that passed through it; those that jumped out since the accepted state.
  */

@@ -26,4 +26,6 @@ PetscErrorCode KeptFactorSetEnough(KeptFactor, PetscReal residual);
 /* After the KSP's own solve of A x = b: goes on from x where the factor is an older one. *tolerance: relative residual that was asked for, left alone where
    the factor is A's; *failed: a factor had to be made and could not. Collective. */
 PetscErrorCode KeptFactorSolve(KeptFactor, Mat A, Vec b, Vec x, PetscReal *tolerance, PetscBool *failed);
+/* After that: the factor becomes A's own, where it is an older one. Collective. */
+PetscErrorCode KeptFactorOwn(KeptFactor, Mat A, PetscBool *failed);
 void           KeptFactorGetCounts(KeptFactor, KeptCounts *);

@@ -19,5 +19,9 @@ PetscErrorCode LinearSolverNext(LinearSolver, Mat C, PetscBool pattern, PetscInt
 PetscErrorCode LinearSolverRenew(LinearSolver);
 /* The residual (2-norm) with which the nonlinear solver will be content: much smaller ones are not worth iterations. Logically collective. */
 PetscErrorCode LinearSolverSetEnough(LinearSolver, PetscReal residual);
+/* Is there a factor, so that LinearSolverColumns() may be asked? Not collective, the same on all ranks. */
+PetscErrorCode LinearSolverDirect(LinearSolver, PetscBool *direct);
+/* X = A^-1 B for dense B and X, A the operator of the last solve; *able: that could be done. Collective. */
+PetscErrorCode LinearSolverColumns(LinearSolver, Mat A, Mat B, Mat X, PetscBool *able);
 /* The factor that may serve more than one operator, for those who watch the solves; NULL: there is none. Not collective. */
 KeptFactor LinearSolverKept(LinearSolver);

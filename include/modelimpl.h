@@ -60,6 +60,8 @@ PetscErrorCode ModelNewton(Model, SolveReport *);        /* SNES once, from mode
 /* linesearch.c */
 PetscErrorCode ModelCreateLineSearch(Model);                             /* what the SNES's line search does where contact cuts a step */
 PetscErrorCode ModelLocateEdge(Model, PetscBool *found, ContactPlace *); /* does a failed iterate rest on an edge between facets? */
+/* settle.c */
+PetscErrorCode ModelSettle(Model, const PetscReal *u, const PetscReal *carried, PetscReal t, Vec y); /* a linear step y whose contact is right where it ends */
 /* prediction.c */
 PetscErrorCode ModelPredict(Model, SolveReport *);     /* model->x at model->t by one linear solve from the accepted state */
 PetscErrorCode ModelPredictFar(Model, SolveReport *);  /* in pieces, where that is too far */

@@ -116,8 +116,9 @@ LawState ContactTermState(const ContactPair *pair, PetscInt c, PetscReal t)
   return (LawState){PetscMin(pair->most, pair->now.penalty[c]), ContactTermOffset(pair, c, t), pair->now.multiplier[c]};
 }
 
-/* Law, gap (may be NULL) and area of a term in the state of the last projection. */
-static void TermLaw(const ContactPair *pair, PetscInt c, PetscReal t, LawValue *value, PetscReal *gap, PetscReal *area)
+/* ContactTermLaw - law, gap (length; may be NULL) and area of a term in the state of the last projection; in a linear step what it counts on. Not collective.
+ */
+void ContactTermLaw(const ContactPair *pair, PetscInt c, PetscReal t, LawValue *value, PetscReal *gap, PetscReal *area)
 {
   const LawState  state = ContactTermState(pair, c, t);
   const PetscReal found = ContactTermGap(pair, pair->factor, pair->point_gap, c, area);
@@ -197,7 +198,7 @@ static PetscErrorCode PairResidual(Contact contact, ContactPair *pair, const Pet
     LawValue  value;
     PetscReal gap, area;
 
-    TermLaw(pair, c, t, &value, &gap, &area);
+    ContactTermLaw(pair, c, t, &value, &gap, &area);
     if (energy) *energy += area * value.psi;
     if (force2) *force2 += 2 * PetscSqr(area * value.pressure); /* on the slave and on the master */
     if (!f) continue;
@@ -277,7 +278,7 @@ PetscErrorCode ContactUnforeseen(Contact contact, const PetscReal *u, PetscReal 
       LawValue  value;
       PetscReal area;
 
-      TermLaw(pair, c, t, &value, NULL, &area);
+      ContactTermLaw(pair, c, t, &value, NULL, &area);
       if (!pair->foreseen[c]) *energy += area * value.psi;
     }
   }
@@ -307,7 +308,7 @@ static PetscErrorCode PairStiffness(Contact contact, ContactPair *pair, const Pe
     LawValue  value;
     PetscReal area;
 
-    TermLaw(pair, c, t, &value, NULL, &area);
+    ContactTermLaw(pair, c, t, &value, NULL, &area);
     pair->stiffness_before[c] = pair->stiffness[c];
     pair->stiffness[c]        = value.stiffness;
     if (value.stiffness > 0) TermPress(pair, c, TermTurningPressure(pair, c, t, &value));
@@ -347,36 +348,16 @@ static PetscErrorCode PairName(Contact contact, const ContactPair *pair, int p)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* v = sqrt(A psi'') Nbar of an active term over the nodes of the block at hand */
-static void TermVector(const ContactPair *pair, PetscInt c, PetscInt nodes, PetscReal *v)
-{
-  const int                dim = pair->mesh->dim;
-  const ContactVariations *all = pair->variations;
-  PetscReal                area;
-
-  ContactTermGap(pair, pair->factor, pair->point_gap, c, &area);
-  for (PetscInt i = 0; i < nodes * dim; i++) v[i] = 0;
-  for (PetscInt k = pair->term_ptr[c]; k < pair->term_ptr[c + 1]; k++) {
-    const PetscInt  q      = pair->term_point[k];
-    const PetscReal weight = PetscSqrtReal(pair->stiffness[c] / area) * pair->term_weight[k] * pair->factor[q];
-
-    for (PetscInt i = all->first[q]; weight != 0 && i < all->end[q]; i++) {
-      const int place = pair->work->slot[all->number[i]];
-
-      for (int d = 0; place >= 0 && d < dim; d++) v[place * dim + d] += weight * all->N[i * dim + d];
-    }
-  }
-}
-
 /* The block A psi'' Nbar Nbar^T of a term, which stands alone where it shares its points; else with -p M of its one point. */
 static PetscErrorCode TermBlock(Contact contact, const ContactPair *pair, int p, PetscInt c, PetscInt n, const PetscInt *nodes, double (*own)[FITMAP_OWN])
 {
   const PetscInt q = pair->term_point[pair->term_ptr[c]];
-  PetscReal     *v;
+  PetscReal     *v, area;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc1(n * contact->mesh->dim, &v));
-  TermVector(pair, c, n, v);
+  PetscCall(PetscCalloc1(n * contact->mesh->dim, &v));
+  ContactTermGap(pair, pair->factor, pair->point_gap, c, &area);
+  ContactTermVary(pair, c, PetscSqrtReal(pair->stiffness[c] / area), v);
   if (pair->slaves->face_sf)
     PetscCall(BlockMatrixAddOuter(contact->blocks, p, n, nodes, v));
   else {
@@ -519,6 +500,16 @@ static void AnalyticTravel(Contact contact, const ContactPair *pair, PetscReal t
   for (PetscInt i = 0; i < pair->lists->n_nodes * dim; i++) values[i] -= to[i % dim] - from[i % dim];
 }
 
+/* ContactPairMove - how the contact nodes of a pair move with local displacements x, tools and an analytic master from t to t_next: values[lists n_nodes*dim].
+   Collective. */
+PetscErrorCode ContactPairMove(Contact contact, ContactPair *pair, const PetscReal *x, PetscReal t, PetscReal t_next, PetscReal *values)
+{
+  PetscFunctionBeginUser;
+  PetscCall(ListsBroadcast(pair->search, pair->lists, x, t, t_next, values));
+  if (!pair->master) AnalyticTravel(contact, pair, t, t_next, values);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* ContactMultiplyBegin - the next ContactTangent() is multiplied with x, prescribed dofs included.
 
    Collective. x[n_nodes*dim]: local displacements (length), ghosts included, to which the rigid tools' motion from t to t_next is joined. Lists stay until
@@ -533,8 +524,7 @@ PetscErrorCode ContactMultiplyBegin(Contact contact, const PetscReal *x, PetscRe
     const PetscInt  n       = pair->lists->n_nodes * contact->mesh->dim;
 
     PetscCall(PetscCalloc2(n, &product->x, n, &product->y));
-    PetscCall(ListsBroadcast(pair->search, pair->lists, x, t, t_next, product->x));
-    if (!pair->master) AnalyticTravel(contact, pair, t, t_next, product->x);
+    PetscCall(ContactPairMove(contact, pair, x, t, t_next, product->x));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -92,3 +92,22 @@ PetscErrorCode ContactVariationsNodes(const ContactPair *pair, PetscInt n, const
   ContactNodesEnd(pair);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
+
+/* ContactTermVary - v[] += scale times the sum of a term's points' variations, weighted by their areas, over the nodes of the block at hand; they are there
+   (ContactVariationsNodes()). Not collective. */
+void ContactTermVary(const ContactPair *pair, PetscInt c, PetscReal scale, PetscReal *v)
+{
+  const int                dim = pair->mesh->dim;
+  const ContactVariations *all = pair->variations;
+
+  for (PetscInt k = pair->term_ptr[c]; k < pair->term_ptr[c + 1]; k++) {
+    const PetscInt  q      = pair->term_point[k];
+    const PetscReal weight = scale * pair->term_weight[k] * pair->factor[q];
+
+    for (PetscInt i = all->first[q]; weight != 0 && i < all->end[q]; i++) {
+      const int place = pair->work->slot[all->number[i]];
+
+      for (int d = 0; place >= 0 && d < dim; d++) v[place * dim + d] += weight * all->N[i * dim + d];
+    }
+  }
+}

@@ -164,8 +164,8 @@ PetscErrorCode KeptFactorUpdate(KeptFactor kept, Mat N, const PetscReal *s)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* A new factor after all, and the solution by it. */
-static PetscErrorCode SolveAnew(KeptFactor kept, PC pc, Mat A, Vec b, Vec x, PetscBool *failed)
+/* A new factor after all. */
+static PetscErrorCode FactorAnew(KeptFactor kept, PC pc, Mat A, PetscBool *failed)
 {
   PCFailedReason reason;
 
@@ -177,7 +177,19 @@ static PetscErrorCode SolveAnew(KeptFactor kept, PC pc, Mat A, Vec b, Vec x, Pet
   PetscCall(Begin(kept));
   PetscCall(PCGetFailedReason(pc, &reason));
   *failed = reason ? PETSC_TRUE : PETSC_FALSE;
-  if (!reason) PetscCall(PCApply(pc, b, x));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* KeptFactorOwn - Collective. */
+PetscErrorCode KeptFactorOwn(KeptFactor kept, Mat A, PetscBool *failed)
+{
+  PC pc;
+
+  PetscFunctionBeginUser;
+  *failed = PETSC_FALSE;
+  if (!kept->serves) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(KSPGetPC(kept->ksp, &pc));
+  PetscCall(FactorAnew(kept, pc, A, failed));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -205,7 +217,8 @@ PetscErrorCode KeptFactorSolve(KeptFactor kept, Mat A, Vec b, Vec x, PetscReal *
   if (reason > 0)
     *tolerance = kept->target / right;
   else
-    PetscCall(SolveAnew(kept, pc, A, b, x, failed));
+    PetscCall(FactorAnew(kept, pc, A, failed));
+  if (reason <= 0 && !*failed) PetscCall(PCApply(pc, b, x));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -112,6 +112,39 @@ PetscErrorCode LinearSolverSetEnough(LinearSolver solver, PetscReal residual)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* LinearSolverDirect - is the last operator factored? Not collective, the same on all ranks. */
+PetscErrorCode LinearSolverDirect(LinearSolver solver, PetscBool *direct)
+{
+  PC pc;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscObjectTypeCompare((PetscObject)solver->ksp, KSPPREONLY, direct));
+  if (!*direct) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(KSPGetPC(solver->ksp, &pc));
+  PetscCall(PetscObjectTypeCompareAny((PetscObject)pc, direct, PCCHOLESKY, PCLU, ""));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* LinearSolverColumns - X = A^-1 B for dense B and X, where the last solve was a direct one, with A.
+
+   Collective. *able: there is a factor, and it is A's. */
+PetscErrorCode LinearSolverColumns(LinearSolver solver, Mat A, Mat B, Mat X, PetscBool *able)
+{
+  PetscBool failed = PETSC_FALSE;
+  PC        pc;
+  Mat       factored;
+
+  PetscFunctionBeginUser;
+  PetscCall(LinearSolverDirect(solver, able));
+  if (*able && solver->kept) PetscCall(KeptFactorOwn(solver->kept, A, &failed));
+  *able = (PetscBool)(*able && !failed);
+  if (!*able) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(KSPGetPC(solver->ksp, &pc));
+  PetscCall(PCFactorGetMatrix(pc, &factored));
+  PetscCall(MatMatSolve(factored, B, X));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* LinearSolverKept - the factor that may serve more than one operator; NULL: there is none. Not collective; borrowed. */
 KeptFactor LinearSolverKept(LinearSolver solver)
 {

@@ -11,8 +11,8 @@
 /* Bisections of that stretch: a stiff penalty bends the energy within a small part of it. */
 #define LINE_BISECTIONS 50
 
-/* Before the search: how long Newton's step is; and whether energies can tell whether it leads downwards, which where penalties are stiff ends long before the
-   residual is small. */
+/* Before the search: Newton's step with the contact that it ends in; how long Newton's step is; and whether energies can tell whether it leads downwards, which
+   where penalties are stiff ends long before the residual is small. */
 static PetscErrorCode ModelMeasureStep(SNESLineSearch search, Vec x, Vec y, PetscBool *changed, void *context)
 {
   Model     model = context;
@@ -21,9 +21,11 @@ static PetscErrorCode ModelMeasureStep(SNESLineSearch search, Vec x, Vec y, Pets
   PetscReal slope, energy;
 
   PetscFunctionBeginUser;
-  *changed = PETSC_FALSE;
+  PetscCall(ModelTrial(model, x));
+  PetscCall(ModelSettle(model, model->work->trial, NULL, model->t, y));
+  *changed = PETSC_TRUE;
   PetscCall(VecNorm(y, NORM_2, &model->work->step));
-  if (model->work->near) PetscFunctionReturn(PETSC_SUCCESS);
+  if (model->work->near || !LoadsConservative(model->loads)) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(SNESLineSearchGetSNES(search, &snes));
   if (model->work->energy == 0) PetscCall(SNESComputeObjective(snes, x, &energy)); /* none was evaluated since the step began */
   PetscCall(SNESLineSearchGetVecs(search, NULL, &F, NULL, NULL, NULL));
@@ -59,9 +61,9 @@ static PetscErrorCode LinePlace(Model model, int place, PetscReal lambda, Vec x,
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Where on the line up to `to` the energy is least: contact by its gaps, all else by its tangent at 0, where the slope of the sum is `slope` and which would
-   have it vanish at `full`. */
-static PetscErrorCode LineLeast(Model model, PetscReal slope, PetscReal full, PetscReal to, PetscReal *least)
+/* Where on the line up to `to` the energy is least: contact by its gaps, all else by its tangent at 0, where the slope of the sum is `slope` and its curvature
+   by the whole tangent `curvature`. */
+static PetscErrorCode LineLeast(Model model, PetscReal slope, PetscReal curvature, PetscReal to, PetscReal *least)
 {
   PetscReal from = 0, start[2], here;
 
@@ -72,12 +74,25 @@ static PetscErrorCode LineLeast(Model model, PetscReal slope, PetscReal full, Pe
     *least = 0.5 * (from + to);
     ContactLineSlope(model->work->line, *least, &here, NULL);
     PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &here, 1, MPIU_REAL, MPI_SUM, model->mesh->comm));
-    if (here + slope - start[0] - *least * (slope / full + start[1]) < 0)
+    if (here + slope - start[0] + *least * (curvature - start[1]) < 0)
       from = *least;
     else
       to = *least;
   }
   *least = 0.5 * (from + to);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The curvature of the energy along y by the last tangent. */
+static PetscErrorCode Curvature(Model model, Vec y, PetscReal *curvature)
+{
+  Vec Ay;
+
+  PetscFunctionBeginUser;
+  PetscCall(VecDuplicate(y, &Ay));
+  PetscCall(MatMult(model->A, y, Ay));
+  PetscCall(VecDotRealPart(y, Ay, curvature));
+  PetscCall(VecDestroy(&Ay));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -90,7 +105,7 @@ static PetscErrorCode ModelLengthenStep(SNESLineSearch search, Vec x, Vec y, Vec
   Model     model = context;
   SNES      snes;
   Vec       F;
-  PetscReal cut = 1, full = 1, damping, slope, ahead, least, before, after;
+  PetscReal cut = 1, full = 1, damping, slope, curvature, ahead, least, before, after;
 
   PetscFunctionBeginUser;
   *changed_y = *changed_w = PETSC_FALSE;
@@ -105,7 +120,8 @@ static PetscErrorCode ModelLengthenStep(SNESLineSearch search, Vec x, Vec y, Vec
   PetscCall(LinePlace(model, 0, 0, x, y, w));
   PetscCall(LinePlace(model, 1, cut, x, y, w));
   PetscCall(LinePlace(model, 2, ahead, x, y, w));
-  PetscCall(LineLeast(model, -slope, full, ahead, &least));
+  PetscCall(Curvature(model, y, &curvature));
+  PetscCall(LineLeast(model, -slope, curvature, ahead, &least));
   PetscCall(VecWAXPY(w, -least, y, x));
   PetscCall(SNESComputeObjective(snes, w, &after));
   PetscCall(PetscInfo(snes, "%g of the step instead of %g: energy %.16g instead of %.16g\n", (double)(least / full), (double)(cut / full), (double)after,
@@ -156,10 +172,11 @@ PetscErrorCode ModelCreateLineSearch(Model model)
   SNESLineSearch search;
 
   PetscFunctionBeginUser;
-  if (!model->contact || !LoadsConservative(model->loads)) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(ContactLineCreate(model->contact, &model->work->line));
+  if (!model->contact) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(SNESGetLineSearch(model->snes, &search));
   PetscCall(SNESLineSearchSetPreCheck(search, ModelMeasureStep, model));
+  if (!LoadsConservative(model->loads)) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(ContactLineCreate(model->contact, &model->work->line));
   PetscCall(SNESLineSearchSetPostCheck(search, ModelLengthenStep, model));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -16,7 +16,8 @@
 /* Iterations without any change of the set after which steps have their full length again. */
 #define MODEL_STEADY 2
 /* The last tangent serves once more where it should end the solve: the next residual is then about twice this one times the last contraction
-   (Deuflhard, Newton Methods for Nonlinear Problems, 2004, sec. 2.2, simplified Newton), with a factor two for what that does not know. */
+   (Deuflhard, Newton Methods for Nonlinear Problems, 2004, sec. 2.2, simplified Newton), with a factor two for what that does not know. Not that from a first
+   residual, which is mostly stiff motions that any tangent takes away: on a plate on a cylinder it promises 200 times too much. */
 #define MODEL_TANGENT_REUSE 4
 /* With softened penalties a solve is to find what touches, not more: this residual (relative to F_ref) is enough. Ten times less or three times more cost a
    pipe between plates more iterations. */
@@ -239,7 +240,7 @@ static PetscErrorCode ModelBreakCycle(Model model, PetscReal fnorm, SNESConverge
 /* Keeps the tangent and its factors for the next iteration where that will be the last one anyway. norm: of this iterate, allowed: of the last. */
 static PetscErrorCode ModelReuseTangent(Model model, PetscInt it, PetscReal norm, PetscReal allowed)
 {
-  const PetscBool reuse = it > 0 && MODEL_TANGENT_REUSE * norm * norm <= allowed * model->work->norm ? PETSC_TRUE : PETSC_FALSE;
+  const PetscBool reuse = it > 1 && MODEL_TANGENT_REUSE * norm * norm <= allowed * model->work->norm ? PETSC_TRUE : PETSC_FALSE;
 
   PetscFunctionBeginUser;
   PetscCall(SNESSetLagJacobian(model->snes, reuse ? -1 : 1));

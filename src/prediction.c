@@ -9,8 +9,8 @@
 /* Contact that is met on the way is to turn the bodies back, not to hold them exactly: automatic penalties, as in softstart.c. */
 #define PREDICTION_SOFT 0.1
 
-/* One linear solve with the present tangent and the forces in work->f moves model->x. */
-static PetscErrorCode ModelStepLinear(Model model, SolveReport *report)
+/* One linear solve with the present tangent, at (u, t), and the forces in work->f moves model->x; carried: displacements that go with it. */
+static PetscErrorCode ModelStepLinear(Model model, const PetscReal *u, const PetscReal *carried, PetscReal t, SolveReport *report)
 {
   Vec      b, dx;
   KSP      ksp;
@@ -27,8 +27,11 @@ static PetscErrorCode ModelStepLinear(Model model, SolveReport *report)
   PetscCall(KSPGetIterationNumber(ksp, &its));
   report->newton++;
   report->krylov += its;
+  if (LinearCheckLost(model->linear))
+    PetscCall(ModelLinearFailure(model, &report->result));
+  else
+    PetscCall(ModelSettle(model, u, carried, t, dx));
   PetscCall(VecAXPY(model->x, -1, dx));
-  if (LinearCheckLost(model->linear)) PetscCall(ModelLinearFailure(model, &report->result));
   PetscCall(VecDestroy(&b));
   PetscCall(VecDestroy(&dx));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -54,10 +57,10 @@ static PetscErrorCode ModelStepLoads(Model model, const PetscReal *u, PetscReal 
   PetscCall(ModelTangent(model, u, t));
   PetscCall(ModelResidual(model, u, model->t, t, &ok));
   if (holding) PetscCall(ContactForesee(model->contact));
-  if (holding) PetscCall(ContactPredict(model->contact, PETSC_FALSE, PETSC_FALSE));
   PetscCall(ElasticityMultiplyLocal(model->elasticity, step, work->f));
   if (model->contact) PetscCall(ContactMultiplyEnd(model->contact, work->f));
-  PetscCall(ModelStepLinear(model, report));
+  PetscCall(ModelStepLinear(model, u, step, t, report));
+  if (holding) PetscCall(ContactPredict(model->contact, PETSC_FALSE, PETSC_FALSE));
   PetscCall(PetscFree(step));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -170,7 +173,7 @@ PetscErrorCode ModelFollowLists(Model model, SolveReport *report)
   PetscCall(ContactPredict(model->contact, PETSC_TRUE, PETSC_FALSE));
   PetscCall(ModelTangent(model, model->work->trial, model->t));
   PetscCall(ModelResidual(model, model->work->trial, model->t, model->t, &ok));
+  PetscCall(ModelStepLinear(model, model->work->trial, NULL, model->t, report));
   PetscCall(ContactPredict(model->contact, PETSC_FALSE, PETSC_FALSE));
-  PetscCall(ModelStepLinear(model, report));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

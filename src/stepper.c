@@ -5,8 +5,8 @@
 #define STEPPER_SAME_T 1e-12
 /* A failed step is tried again with this part of its dt. */
 #define STEPPER_CUT 0.5
-/* Up to this many dt short of a landing point the step stretches to it, ... */
-#define STEPPER_STRETCH 1.2
+/* Up to this many dt short of a landing point the step stretches to it: sqrt(2), where one step is as many times longer than dt as two would be shorter, ... */
+#define STEPPER_STRETCH 1.4142135623730951
 /* ... up to this many the rest is halved, so that no sliver of a step remains. */
 #define STEPPER_HALVE 2.0
 

@@ -11,12 +11,12 @@ landed = run(args, lame, out="landing", overrides=(*finite, "stepping={control: 
 t = [row["t"] for row in landed.steps()]
 for point in (0.15, 0.3, 0.77, 1):
     check.holds(f"lands on {point}", point in t)
-check.holds("no step beyond 1.2 dt", max(b - a for a, b in zip([0, *t], t)) <= 1.2 * 0.13 + 1e-12)
+check.holds("no step beyond sqrt(2) dt", max(b - a for a, b in zip([0, *t], t)) <= 2**0.5 * 0.13 + 1e-12)
 
-# 2. Cutback: two iterations are too few for a step of a quarter turn; the cut steps reach the same end as steps that never failed.
+# 2. Cutback: four iterations are too few for a tenth of the way where no factor settles their contact; the cut steps reach the same end as steps that never failed.
 slide = SCENES.parent.parent / "runs" / "slide_cylinder.yaml"
 good = run(args, slide, out="uncut", overrides=("stepping.initial=0.1",))
-cut = run(args, slide, out="cut", overrides=("stepping.initial=0.1", "solver.max_iterations=3"))
+cut = run(args, slide, out="cut", overrides=("stepping.initial=0.1", "solver.max_iterations=4", "solver.type=iterative"))
 check.holds("uncut run never failed", good.summary()["steps_failed"] == 0)
 check.holds("cut run failed and went on", cut.summary()["steps_failed"] > 0, f"{cut.summary()['steps_failed']} failed steps")
 check.holds("failed attempts are counted", cut.summary()["newton_iterations"] > cut.summary()["newton_accepted"])

@@ -1,0 +1,193 @@
+/* A linear step with the wrong terms in its tangent ends in equilibrium with the right ones: bodies that overlap or open on the way, terms that share their
+ * neighbours, pulled ones; where nothing holds a body once its term has opened, the step is left alone. */
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <setjmp.h>
+#include <cmocka.h>
+#include "pressing.h"
+
+enum { N = 8 };
+
+/* A chain held at both ends under loads, and terms between it and a floor */
+typedef struct {
+  double       spring[N + 1], load[N];
+  double       hat; /* share of a node's neighbours in its term */
+  PressingTerm term[N];
+} Case;
+
+/* b = A^-1 b by Gauss, pivots on the diagonal */
+static void Solve(double A[N][N], double *b)
+{
+  for (int k = 0; k < N; k++) {
+    for (int i = k + 1; i < N; i++) {
+      const double f = A[i][k] / A[k][k];
+
+      for (int j = k; j < N; j++) A[i][j] -= f * A[k][j];
+      b[i] -= f * b[k];
+    }
+  }
+  for (int k = N - 1; k >= 0; k--) {
+    for (int j = k + 1; j < N; j++) b[k] -= A[k][j] * b[j];
+    b[k] /= A[k][k];
+  }
+}
+
+/* Share of node i in term c */
+static double Share(const Case *t, int c, int i)
+{
+  return i == c ? 1 : i == c - 1 || i == c + 1 ? t->hat : 0;
+}
+
+static double Elastic(const Case *t, int i, int j)
+{
+  if (i == j) return t->spring[i] + t->spring[i + 1];
+  return i == j + 1 ? -t->spring[i] : j == i + 1 ? -t->spring[j] : 0;
+}
+
+/* x = K^-1 b with the tangent */
+static void SolveTangent(const Case *t, const double *b, double *x)
+{
+  double K[N][N];
+
+  for (int i = 0; i < N; i++) {
+    x[i] = b[i];
+    for (int j = 0; j < N; j++) {
+      K[i][j] = Elastic(t, i, j);
+      for (int c = 0; c < N; c++) K[i][j] += t->term[c].stiffness * Share(t, c, i) * Share(t, c, j);
+    }
+  }
+  Solve(K, x);
+}
+
+static double Gap(const Case *t, int c, const double *x)
+{
+  double gap = 0;
+
+  for (int i = 0; i < N; i++) gap += Share(t, c, i) * x[i];
+  return gap;
+}
+
+/* Takes the step from x = 0; the largest force that is out of balance where it ends. */
+static double Step(const Case *t, PetscBool *settled)
+{
+  double           b[N], x[N], column[N][N], G[N * N], travel[N], worst = 0;
+  PetscInt         which[N], order[N], m, n = 0;
+  const PetscReal *excess;
+  const PetscBool *pressed;
+  Pressing         pressing;
+
+  for (int i = 0; i < N; i++) {
+    b[i] = t->load[i];
+    for (int c = 0; c < N; c++) b[i] += t->term[c].pressure * Share(t, c, i);
+  }
+  SolveTangent(t, b, x);
+  for (int c = 0; c < N; c++) travel[c] = Gap(t, c, x);
+  assert_int_equal(PressingCreate(N, t->term, travel, &pressing), 0);
+  for (assert_int_equal(PressingSolve(pressing, &m, which, settled), 0); m; assert_int_equal(PressingSolve(pressing, &m, which, settled), 0)) {
+    for (int j = 0; j < m; j++) {
+      for (int i = 0; i < N; i++) b[i] = Share(t, (int)which[j], i);
+      SolveTangent(t, b, column[n]);
+      for (int c = 0; c < N; c++) G[j * N + c] = Gap(t, c, column[n]);
+      order[n++] = which[j];
+    }
+    assert_int_equal(PressingAddColumns(pressing, m, which, G), 0);
+  }
+  PressingGet(pressing, &excess, &pressed);
+  for (int j = 0; j < n; j++)
+    for (int i = 0; i < N; i++) x[i] -= excess[j] * column[j][i];
+  for (int i = 0; i < N; i++) {
+    double force = t->load[i];
+
+    for (int j = 0; j < N; j++) force -= Elastic(t, i, j) * x[j];
+    for (int c = 0; c < N; c++) force += Share(t, c, i) * t->term[c].penalty * PetscMax(0, -t->term[c].opening - Gap(t, c, x));
+    worst = PetscMax(worst, PetscAbsReal(force));
+  }
+  for (int c = 0; c < N && *settled; c++) assert_int_equal(pressed[c], t->term[c].opening + Gap(t, c, x) < 0);
+  for (int j = 0; j < n; j++)
+    for (int k = 0; k < j; k++) assert_int_not_equal(order[j], order[k]);
+  assert_int_equal(PressingDestroy(&pressing), 0);
+  return worst;
+}
+
+/* Pressed in the tangent: the first half. Openings are such that some of these open and some of the others close. */
+static void Make(double hat, double pulled, Case *t)
+{
+  *t = (Case){.hat = hat};
+  for (int i = 0; i <= N; i++) t->spring[i] = 1 + 0.1 * i;
+  for (int c = 0; c < N; c++) {
+    const double opening = c < N / 2 ? (c % 2 ? -0.01 : pulled) : 0.05 * (c - 3), penalty = 1000;
+
+    t->load[c] = c < 2 ? 2 : -1 - 0.2 * c;
+    t->term[c] = (PressingTerm){opening, c < N / 2 ? -penalty * opening : 0, c < N / 2 ? penalty : 0, penalty};
+  }
+}
+
+static void test_ends_in_equilibrium(void **state)
+{
+  const double hats[] = {0, 0.25, 0.5}, pulled[] = {-0.02, 0.02};
+  PetscBool    settled;
+  Case         t;
+
+  (void)state;
+  for (int h = 0; h < 3; h++) {
+    for (int p = 0; p < 2; p++) {
+      Make(hats[h], pulled[p], &t);
+      assert_true(Step(&t, &settled) < 1e-9);
+      assert_true(settled);
+    }
+  }
+}
+
+/* The tangent has the right ones: nothing is asked for. */
+static void test_right_set_needs_nothing(void **state)
+{
+  PetscReal    travel[2] = {-0.3, 0.1};
+  PressingTerm term[2]   = {
+      {-0.1, 0.1 * 7, 7, 7},
+      {0.2,  0,       0, 7}
+  };
+  PetscInt  m, which[2];
+  PetscBool settled;
+  Pressing  pressing;
+
+  (void)state;
+  assert_int_equal(PressingCreate(2, term, travel, &pressing), 0);
+  assert_int_equal(PressingSolve(pressing, &m, which, &settled), 0);
+  assert_int_equal(m, 0);
+  assert_true(settled);
+  assert_int_equal(PressingDestroy(&pressing), 0);
+}
+
+static void test_loose_body_is_left_alone(void **state)
+{
+  PetscReal    travel = 0.5, influence = 1.0 / 8;
+  PressingTerm term = {-0.1, 0.8, 8, 8};
+  PetscInt     m, which;
+  PetscBool    settled;
+  Pressing     pressing;
+
+  (void)state;
+  assert_int_equal(PressingCreate(1, &term, &travel, &pressing), 0);
+  assert_int_equal(PressingSolve(pressing, &m, &which, &settled), 0);
+  assert_int_equal(m, 1);
+  assert_int_equal(PressingAddColumns(pressing, 1, &which, &influence), 0);
+  assert_int_equal(PressingSolve(pressing, &m, &which, &settled), 0);
+  assert_int_equal(m, 0);
+  assert_false(settled);
+  assert_int_equal(PressingDestroy(&pressing), 0);
+}
+
+int main(int argc, char **argv)
+{
+  const struct CMUnitTest tests[] = {
+    cmocka_unit_test(test_ends_in_equilibrium),
+    cmocka_unit_test(test_right_set_needs_nothing),
+    cmocka_unit_test(test_loose_body_is_left_alone),
+  };
+  int failed;
+
+  if (PetscInitialize(&argc, &argv, NULL, NULL)) return 1;
+  failed = cmocka_run_group_tests(tests, NULL, NULL);
+  return PetscFinalize() ? 1 : failed;
+}
