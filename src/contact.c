@@ -347,15 +347,14 @@ static PetscErrorCode PairName(Contact contact, const ContactPair *pair, int p)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* v = sqrt(A psi'') Nbar of an active term over the nodes of the block at hand */
-static void TermVector(const ContactPair *pair, PetscInt c, PetscInt nodes, PetscReal *v)
+/* v += sqrt(A psi'') Nbar of an active term over the nodes of the block at hand */
+static void TermVector(const ContactPair *pair, PetscInt c, PetscReal *v)
 {
   const int                dim = pair->mesh->dim;
   const ContactVariations *all = pair->variations;
   PetscReal                area;
 
   ContactTermGap(pair, pair->factor, pair->point_gap, c, &area);
-  for (PetscInt i = 0; i < nodes * dim; i++) v[i] = 0;
   for (PetscInt k = pair->term_ptr[c]; k < pair->term_ptr[c + 1]; k++) {
     const PetscInt  q      = pair->term_point[k];
     const PetscReal weight = PetscSqrtReal(pair->stiffness[c] / area) * pair->term_weight[k] * pair->factor[q];
@@ -375,8 +374,8 @@ static PetscErrorCode TermBlock(Contact contact, const ContactPair *pair, int p,
   PetscReal     *v;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc1(n * contact->mesh->dim, &v));
-  TermVector(pair, c, n, v);
+  PetscCall(PetscCalloc1(n * contact->mesh->dim + BLOCK_PADDING, &v));
+  TermVector(pair, c, v);
   if (pair->slaves->face_sf)
     PetscCall(BlockMatrixAddOuter(contact->blocks, p, n, nodes, v));
   else {
