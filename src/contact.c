@@ -85,6 +85,7 @@ PetscErrorCode ContactPairProject(Contact contact, ContactPair *pair, const Pets
 
   PetscFunctionBeginUser;
   PetscCall(ListsUpdate(pair->search, pair->lists, u, t, &moved));
+  if (moved) pair->fresh = PETSC_FALSE;
   if (pair->projected && !moved) PetscFunctionReturn(PETSC_SUCCESS);
   pair->projected = PETSC_TRUE;
   ContactVariationsReset(pair->variations);
