@@ -6,9 +6,11 @@
 #pragma once
 #include "archive.h"
 
+enum { BLOCK_PADDING = 3 }; /* a node's dofs are read as vectors of four: so many values more stand behind those of a block */
+
 typedef struct _n_BlockMatrix *BlockMatrix;
 
-/* size: the dofs of a node, which stand next to each other in every block. Collective. */
+/* size: the dofs of a node, up to 4, which stand next to each other in every block. Collective. */
 PetscErrorCode BlockMatrixCreate(MPI_Comm, int size, BlockMatrix *);
 PetscErrorCode BlockMatrixDestroy(BlockMatrix *);
 /* n[list]: nodes of the rank-local vectors; dof[list][n*size]: global dof, or -1 for an entry without one. Not collective. */
@@ -21,8 +23,8 @@ PetscErrorCode BlockMatrixName(BlockMatrix, int list, PetscInt n, const PetscInt
 PetscErrorCode BlockMatrixPlace(BlockMatrix, PetscInt rows, PetscBool *changed);
 /* The nodes of block b, counted as they were named, in its order. */
 void BlockMatrixGetNodes(BlockMatrix, PetscInt b, PetscInt *n, const PetscInt **node);
-/* Adds a block within a named one, nodes in the order of BlockMatrixSort(): value[(n*size)^2], of which the upper triangle is read, or v[n*size] for v v^T. Not
-   collective. */
+/* Adds a block within a named one, nodes in the order of BlockMatrixSort(): value[(n*size)^2 + BLOCK_PADDING], of which the upper triangle is used, or
+   v[n*size + BLOCK_PADDING] for v v^T. Not collective. */
 PetscErrorCode BlockMatrixAdd(BlockMatrix, int list, PetscInt n, const PetscInt node[], const PetscReal value[]);
 PetscErrorCode BlockMatrixAddOuter(BlockMatrix, int list, PetscInt n, const PetscInt node[], const PetscReal v[]);
 /* y += x times each block that is added from now on, for rank-local vectors of its list; NULL: no more. Not collective. */

@@ -77,6 +77,8 @@ typedef struct {
   PetscReal          *before;                   /* gaps of the iterate before, where the penalty is adjusted */
   ContactLists        lists, next;              /* next: fresh ones, NULL: none */
   PetscReal          *next_factor, next_motion; /* of the next ones: area factors, and the motion they were made for */
+  PetscReal           motion;                   /* that those in force were made for */
+  PetscBool           fresh;                    /* they were made where they are, with the offsets in force */
   /* per slave point; factor: frozen with the lists, fades out past a free edge; seed: the facet of last time; gap, normal: of the last projection */
   PetscReal         *factor;
   int               *seed;

@@ -71,3 +71,4 @@ PetscErrorCode ModelSoftStart(Model, SolveReport *); /* from the prediction to w
 /* equilibrium.c */
 PetscErrorCode ModelRenewLists(Model, PetscBool settle, PetscBool *hold);              /* new lists after a solve, for the next one */
 PetscErrorCode ModelMotion(Model, const PetscReal *u, PetscReal t, PetscReal *motion); /* largest one between the accepted state and (u, t) */
+PetscErrorCode ModelImposedMotion(Model, PetscReal t, PetscReal *motion);              /* of what is prescribed, and of rigid tools */

@@ -19,8 +19,9 @@ typedef enum { OFFSETS_NONE, OFFSETS_HELD, OFFSETS_LIVE } OffsetsKind;
 PetscErrorCode OffsetsCreate(Mesh, Scene, Loads, ContactSurface, int n_images, const SurfaceImage *, PetscReal feature_angle, int finer, OffsetsKind,
                              Offsets *);
 PetscErrorCode OffsetsDestroy(Offsets *);
-/* Takes the offsets at the accepted state (u, t) and carries their change since the one before on to t_next. Collective. */
-PetscErrorCode OffsetsExtrapolate(Offsets, const PetscReal *u, PetscReal t, PetscReal t_next);
+/* Takes the offsets at the accepted state (u, t) and carries their change since the one before on to t_next; *changed is set if others were in force.
+   Collective. */
+PetscErrorCode OffsetsExtrapolate(Offsets, const PetscReal *u, PetscReal t, PetscReal t_next, PetscBool *changed);
 /* Takes the offsets at u as they are. Collective. */
 PetscErrorCode OffsetsTake(Offsets, const PetscReal *u, PetscReal t);
 /* What the next extrapolation starts from; nothing where they are taken once. Collective. */

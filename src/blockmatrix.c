@@ -5,6 +5,10 @@
    other matrices and the solver's analysis (half of a factorisation at 10,000 dofs), a zero costs fill. Contact that moves on seldom reaches it. */
 #define BLOCK_SLACK 1.5
 
+/* A row of a pair's sum, filled up to a vector of the machine's; what is beyond the pair's own columns is not used */
+enum { ROW = BLOCK_PADDING + 1 };
+typedef double SumRow __attribute__((vector_size(ROW * sizeof(double)), aligned(sizeof(double)), may_alias)); /* as PetscMalloc() aligns, and within arrays */
+
 /* One row of nodes of a block: where the block starts in the pattern, which of its rows it is */
 typedef struct {
   PetscInt at, node;
@@ -22,12 +26,13 @@ struct _n_BlockMatrix {
   PetscInt         n_pattern, *pattern; /* of the blocks: number of nodes with keys and these keys of block after block; key: the first dof */
   PetscInt         n_nodes, *key, *dof; /* of the matrix: keys ascending, dofs (n_nodes*size) */
   PetscInt        *pair_ptr, *pair;     /* blocks overlap: every pair of nodes once, row by row, ascending */
-  PetscInt        *diagonal;            /* of each row: its first pair that is not below the diagonal */
+  PetscInt        *diagonal, *above;    /* of each row: its first pair that is not below the diagonal; which of those of all rows that is */
   PetscInt        *mirror;              /* of the pairs above the diagonal: the pair with row and column swapped */
   PetscInt        *row_ptr;             /* of each node, its rows in the blocks */
   BlockRow        *row;
   PetscInt        *seen, *at; /* of each node of the matrix: the last pair in whose column it stood; at: numbers of the block at hand */
-  PetscReal       *sum;       /* over the pairs, block by block */
+  SumRow          *sum;       /* [pairs not below the diagonal][size] */
+  PetscReal       *value;     /* the matrix' values, pair by pair */
   const PetscReal *along;     /* what blocks are multiplied with as they are added, or NULL */
   PetscReal       *product;
   PetscBool        restored; /* the matrix is not the one that its user knows */
@@ -66,12 +71,12 @@ PetscErrorCode BlockMatrixDestroy(BlockMatrix *blocks)
   PetscCall(PetscFree((*blocks)->dof));
   PetscCall(PetscFree((*blocks)->pair_ptr));
   PetscCall(PetscFree((*blocks)->pair));
-  PetscCall(PetscFree((*blocks)->diagonal));
+  PetscCall(PetscFree2((*blocks)->diagonal, (*blocks)->above));
   PetscCall(PetscFree((*blocks)->mirror));
   PetscCall(PetscFree((*blocks)->row_ptr));
   PetscCall(PetscFree((*blocks)->row));
   PetscCall(PetscFree2((*blocks)->seen, (*blocks)->at));
-  PetscCall(PetscFree((*blocks)->sum));
+  PetscCall(PetscFree2((*blocks)->sum, (*blocks)->value));
   PetscCall(NodeMatrixDestroy(&(*blocks)->matrix));
   PetscCall(PetscFree(*blocks));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -275,16 +280,18 @@ static PetscErrorCode ListMirrors(BlockMatrix blocks)
   PetscInt       *next;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscFree(blocks->diagonal));
+  PetscCall(PetscFree2(blocks->diagonal, blocks->above));
   PetscCall(PetscFree(blocks->mirror));
   PetscCall(PetscFree2(blocks->seen, blocks->at));
-  PetscCall(PetscMalloc1(blocks->n_nodes, &blocks->diagonal));
+  PetscCall(PetscMalloc2(blocks->n_nodes, &blocks->diagonal, blocks->n_nodes + 1, &blocks->above));
+  blocks->above[0] = 0;
   PetscCall(PetscMalloc1(n, &blocks->mirror));
   PetscCall(PetscMalloc2(blocks->n_nodes, &blocks->seen, blocks->n_nodes, &blocks->at));
   PetscCall(PetscMalloc1(blocks->n_nodes, &next)); /* of each row: the pair below the diagonal whose image comes next; images come in the order of rows */
   for (PetscInt r = 0; r < blocks->n_nodes; r++) {
     next[r] = ptr[r];
     for (blocks->diagonal[r] = ptr[r]; blocks->diagonal[r] < ptr[r + 1] && blocks->pair[blocks->diagonal[r]] < r;) blocks->diagonal[r]++;
+    blocks->above[r + 1] = blocks->above[r] + ptr[r + 1] - blocks->diagonal[r];
   }
   for (PetscInt r = 0; r < blocks->n_nodes; r++)
     for (PetscInt k = blocks->diagonal[r]; k < ptr[r + 1]; k++) blocks->mirror[k] = next[blocks->pair[k]]++;
@@ -351,8 +358,9 @@ static PetscErrorCode CreateMatrix(BlockMatrix blocks, PetscInt rows)
   PetscCall(NodeMatrixDestroy(&blocks->matrix));
   PetscCall(NodeMatrixCreate(blocks->comm, rows, &pairs, &blocks->matrix));
   PetscCall(NodeMatrixJoin(blocks->matrix, NULL));
-  PetscCall(PetscFree(blocks->sum));
-  PetscCall(PetscMalloc1(blocks->pair_ptr[blocks->n_nodes] * PetscSqr(blocks->size), &blocks->sum));
+  PetscCall(PetscFree2(blocks->sum, blocks->value));
+  PetscCall(
+    PetscMalloc2(blocks->above[blocks->n_nodes] * blocks->size, &blocks->sum, blocks->pair_ptr[blocks->n_nodes] * PetscSqr(blocks->size), &blocks->value));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -384,59 +392,95 @@ PetscErrorCode BlockMatrixPlace(BlockMatrix blocks, PetscInt rows, PetscBool *ch
     PetscCall(PlacePattern(blocks, PETSC_TRUE, &placed));
     PetscCall(CreateMatrix(blocks, rows));
   }
-  PetscCall(PetscArrayzero(blocks->sum, blocks->pair_ptr[blocks->n_nodes] * PetscSqr(blocks->size)));
+  PetscCall(PetscArrayzero(blocks->sum, blocks->above[blocks->n_nodes] * blocks->size));
   for (PetscInt r = 0; r < blocks->n_nodes; r++) blocks->seen[r] = -1;
   *changed         = all && !blocks->restored ? PETSC_FALSE : PETSC_TRUE;
   blocks->restored = PETSC_FALSE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Notes where the pairs of a row stand. */
+/* Notes where the sums of a row stand. */
 static inline void LookAlong(BlockMatrix blocks, PetscInt r)
 {
-  for (PetscInt k = blocks->diagonal[r]; k < blocks->pair_ptr[r + 1]; k++) blocks->seen[blocks->pair[k]] = k;
+  const PetscInt *pair = &blocks->pair[blocks->diagonal[r]], first = blocks->above[r], n = blocks->above[r + 1] - first;
+
+  for (PetscInt k = 0; k < n; k++) blocks->seen[pair[k]] = first + k;
 }
 
-/* Adds the upper triangle of a block to the sums; size and outer constants where this is called, so that the loops over a node's dofs unroll. */
+/* Adds the upper triangle of a block to the sums; size and outer constants where this is called, so that the loop over a node's rows unrolls. */
 static inline PetscErrorCode Sum(const int size, const PetscBool outer, BlockMatrix blocks, PetscInt n, PetscInt m, const PetscReal *value)
 {
   const PetscInt *at = blocks->at, *seen = blocks->seen;
 
   PetscFunctionBeginUser;
   for (PetscInt i = 0; i < n; i++) {
-    const PetscInt   first = blocks->diagonal[at[i]], end = blocks->pair_ptr[at[i] + 1];
+    const PetscInt   first = blocks->above[at[i]], end = blocks->above[at[i] + 1];
     const PetscReal *row = outer ? value : value + i * size * m;
 
     LookAlong(blocks, at[i]);
     for (PetscInt j = i; j < n; j++) {
+      const PetscInt   k    = seen[at[j]];
       const PetscReal *from = row + j * size;
-      PetscReal       *to   = blocks->sum + seen[at[j]] * size * size;
 
-      PetscCheck(seen[at[j]] >= first && seen[at[j]] < end, PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE, "a block couples nodes that no named one does");
-      for (int d = 0; d < size; d++)
-        for (int e = 0; e < size; e++) to[d * size + e] += outer ? value[i * size + d] * from[e] : from[d * m + e];
+      PetscCheck(k >= first && k < end, PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE, "a block couples nodes that no named one does");
+      for (int d = 0; d < size; d++) {
+        if (outer)
+          blocks->sum[k * size + d] += value[i * size + d] * *(const SumRow *)from;
+        else
+          blocks->sum[k * size + d] += *(const SumRow *)(from + d * m);
+      }
     }
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* product += block along, from the upper triangle. */
-static void Multiply(BlockMatrix blocks, PetscInt n, const PetscInt *node, PetscBool outer, const PetscReal *value)
+/* y += A x from the upper triangle. */
+static void MultiplyUpper(PetscInt m, const PetscReal *A, const PetscReal *x, PetscReal *y)
 {
-  const int      size = blocks->size;
-  const PetscInt m    = n * size;
-
   for (PetscInt i = 0; i < m; i++) {
-    const PetscInt row = node[i / size] * size + i % size;
+    const PetscReal *row = A + i * m;
+    PetscReal        sum = row[i] * x[i];
 
-    for (PetscInt j = i; j < m; j++) {
-      const PetscInt  column = node[j / size] * size + j % size;
-      const PetscReal entry  = outer ? value[i] * value[j] : value[i * m + j];
-
-      blocks->product[row] += entry * blocks->along[column];
-      if (j > i) blocks->product[column] += entry * blocks->along[row];
+    for (PetscInt j = i + 1; j < m; j++) {
+      sum += row[j] * x[j];
+      y[j] += row[j] * x[i];
     }
+    y[i] += sum;
   }
+}
+
+/* y += v v^T x */
+static void MultiplyOuter(PetscInt m, const PetscReal *v, const PetscReal *x, PetscReal *y)
+{
+  PetscReal along = 0;
+
+  for (PetscInt i = 0; i < m; i++) along += v[i] * x[i];
+  for (PetscInt i = 0; i < m; i++) y[i] += along * v[i];
+}
+
+/* product += block along; most blocks are far from all that moves. */
+static PetscErrorCode Multiply(BlockMatrix blocks, PetscInt n, const PetscInt *node, PetscBool outer, const PetscReal *value)
+{
+  const int  size = blocks->size;
+  PetscBool  any  = PETSC_FALSE;
+  PetscReal *x, *y;
+
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < n; i++)
+    for (int d = 0; d < size; d++) any = (PetscBool)(any || blocks->along[node[i] * size + d] != 0);
+  if (!any) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscMalloc2(n * size, &x, n * size, &y));
+  PetscCall(PetscArrayzero(y, n * size));
+  for (PetscInt i = 0; i < n; i++)
+    for (int d = 0; d < size; d++) x[i * size + d] = blocks->along[node[i] * size + d];
+  if (outer)
+    MultiplyOuter(n * size, value, x, y);
+  else
+    MultiplyUpper(n * size, value, x, y);
+  for (PetscInt i = 0; i < n; i++)
+    for (int d = 0; d < size; d++) blocks->product[node[i] * size + d] += y[i * size + d];
+  PetscCall(PetscFree2(x, y));
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 static PetscErrorCode Add(BlockMatrix blocks, int list, PetscInt n, const PetscInt *node, PetscBool outer, const PetscReal *value)
@@ -453,13 +497,14 @@ static PetscErrorCode Add(BlockMatrix blocks, int list, PetscInt n, const PetscI
     PetscCall(Sum(3, PETSC_FALSE, blocks, with, n * 3, value));
   else
     PetscCall(Sum(blocks->size, outer, blocks, with, n * blocks->size, value));
-  if (blocks->along) Multiply(blocks, n, node, outer, value);
+  if (blocks->along) PetscCall(Multiply(blocks, n, node, outer, value));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* BlockMatrixAdd - adds a block over nodes of list `list`, in the order of BlockMatrixSort(), all pairs of which some named block has.
 
-   Not collective, after BlockMatrixPlace(). value[(n*size)^2]: symmetric, row-major (force per length); what is below the diagonal is not read. */
+   Not collective, after BlockMatrixPlace(). value[(n*size)^2 + BLOCK_PADDING]: symmetric, row-major (force per length); what is below the diagonal, and the
+   padding, is not used. */
 PetscErrorCode BlockMatrixAdd(BlockMatrix blocks, int list, PetscInt n, const PetscInt node[], const PetscReal value[])
 {
   PetscFunctionBeginUser;
@@ -467,7 +512,7 @@ PetscErrorCode BlockMatrixAdd(BlockMatrix blocks, int list, PetscInt n, const Pe
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* BlockMatrixAddOuter - as BlockMatrixAdd() for a block v v^T, which is never written out: value[n*size] is v. Not collective. */
+/* BlockMatrixAddOuter - as BlockMatrixAdd() for a block v v^T, which is never written out: value[n*size + BLOCK_PADDING] is v. Not collective. */
 PetscErrorCode BlockMatrixAddOuter(BlockMatrix blocks, int list, PetscInt n, const PetscInt node[], const PetscReal value[])
 {
   PetscFunctionBeginUser;
@@ -484,18 +529,18 @@ void BlockMatrixMultiply(BlockMatrix blocks, const PetscReal *x, PetscReal *y)
   blocks->product = y;
 }
 
-/* The lower triangle from the upper one, that of the blocks on the diagonal too. */
-static void Mirror(BlockMatrix blocks)
+/* The matrix' values: the sums, their mirror images below the diagonal, and those of blocks on the diagonal. */
+static void TakeSums(BlockMatrix blocks)
 {
   const int size = blocks->size;
 
   for (PetscInt r = 0; r < blocks->n_nodes; r++) {
     for (PetscInt k = blocks->diagonal[r]; k < blocks->pair_ptr[r + 1]; k++) {
-      const PetscReal *from = &blocks->sum[k * PetscSqr(size)];
-      PetscReal       *to   = &blocks->sum[blocks->mirror[k] * PetscSqr(size)];
+      const SumRow *from  = &blocks->sum[(blocks->above[r] + k - blocks->diagonal[r]) * size];
+      PetscReal    *above = &blocks->value[k * PetscSqr(size)], *below = &blocks->value[blocks->mirror[k] * PetscSqr(size)];
 
       for (int d = 0; d < size; d++)
-        for (int e = blocks->pair[k] == r ? d + 1 : 0; e < size; e++) to[e * size + d] = from[d * size + e];
+        for (int e = above == below ? d : 0; e < size; e++) above[d * size + e] = below[e * size + d] = from[d][e];
     }
   }
 }
@@ -504,8 +549,8 @@ static void Mirror(BlockMatrix blocks)
 PetscErrorCode BlockMatrixEnd(BlockMatrix blocks, Mat *matrix)
 {
   PetscFunctionBeginUser;
-  Mirror(blocks);
-  PetscCall(NodeMatrixSet(blocks->matrix, blocks->sum));
+  TakeSums(blocks);
+  PetscCall(NodeMatrixSet(blocks->matrix, blocks->value));
   *matrix = NodeMatrixGet(blocks->matrix);
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -85,6 +85,7 @@ PetscErrorCode ContactPairProject(Contact contact, ContactPair *pair, const Pets
 
   PetscFunctionBeginUser;
   PetscCall(ListsUpdate(pair->search, pair->lists, u, t, &moved));
+  if (moved) pair->fresh = PETSC_FALSE;
   if (pair->projected && !moved) PetscFunctionReturn(PETSC_SUCCESS);
   pair->projected = PETSC_TRUE;
   ContactVariationsReset(pair->variations);
@@ -355,7 +356,7 @@ static PetscErrorCode TermBlock(Contact contact, const ContactPair *pair, int p,
   PetscReal     *v, area;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscCalloc1(n * contact->mesh->dim, &v));
+  PetscCall(PetscCalloc1(n * contact->mesh->dim + BLOCK_PADDING, &v));
   ContactTermGap(pair, pair->factor, pair->point_gap, c, &area);
   ContactTermVary(pair, c, PetscSqrtReal(pair->stiffness[c] / area), v);
   if (pair->slaves->face_sf)

@@ -56,19 +56,19 @@ static PetscErrorCode PairSearch(ContactPair *pair, const PetscReal *u, PetscRea
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Are there next lists that were made for these positions and offsets and for that much motion? The same on all ranks. */
-static PetscErrorCode PairNextServes(ContactPair *pair, const PetscReal *u, PetscReal t, PetscReal motion, PetscBool *serves)
+/* Are there lists that were made for these positions and for that much motion: the next ones, or those in force? The same on all ranks. */
+static PetscErrorCode PairListsServe(ContactPair *pair, const PetscReal *u, PetscReal t, PetscReal motion, PetscBool changed, PetscBool *serve)
 {
-  PetscBool moved = PETSC_TRUE;
-  int       all;
+  ContactLists    lists = pair->next ? pair->next : pair->lists;
+  const PetscReal made  = pair->next ? pair->next_motion : pair->motion;
+  PetscBool       moved = PETSC_TRUE;
+  int             all;
 
   PetscFunctionBeginUser;
-  *serves = PETSC_FALSE;
-  if (pair->lags) PetscFunctionReturn(PETSC_SUCCESS);
-  if (pair->next && motion <= pair->next_motion * (1 + CONTACT_SAME_MOTION)) PetscCall(ListsUpdate(pair->search, pair->next, u, t, &moved));
-  all = !moved;
+  if (lists && motion <= made * (1 + CONTACT_SAME_MOTION)) PetscCall(ListsUpdate(pair->search, lists, u, t, &moved));
+  all = !moved && !changed && (pair->next || pair->fresh);
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &all, 1, MPI_INT, MPI_LAND, pair->mesh->comm));
-  *serves = all ? PETSC_TRUE : PETSC_FALSE;
+  *serve = all ? PETSC_TRUE : PETSC_FALSE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -78,6 +78,8 @@ static PetscErrorCode PairTakeNext(ContactPair *pair)
   PetscFunctionBeginUser;
   PetscCall(ListsDestroy(&pair->lists));
   pair->lists     = pair->next;
+  pair->motion    = pair->next_motion;
+  pair->fresh     = PETSC_TRUE;
   pair->next      = NULL;
   pair->projected = PETSC_FALSE;
   PetscCall(PetscArraycpy(pair->factor, pair->next_factor, pair->lists->n_slaves));
@@ -120,24 +122,24 @@ static PetscErrorCode PairMotion(Contact contact, const ContactPair *pair, Petsc
 
    Collective. u[n_nodes*dim]: local displacements (length) of the accepted state, ghosts included; t: its load parameter; t_next: where the
    step goes; motion: relative motion (length) that the lists must be good for. Those that ContactListsHold() made at
-   the same place for as much motion are taken as they are. The contact state is not touched. */
+   the same place for as much motion are taken as they are, and so are those in force. The contact state is not touched. */
 PetscErrorCode ContactGather(Contact contact, const PetscReal *u, PetscReal t, PetscReal t_next, PetscReal motion)
 {
   PetscFunctionBeginUser;
   PetscCall(PetscLogEventBegin(contact->event_search, 0, 0, 0, 0));
   for (int p = 0; p < contact->n_pairs; p++) {
-    ContactPair *pair   = &contact->pairs[p];
-    PetscReal    needed = motion;
-    PetscBool    serves;
+    ContactPair *pair    = &contact->pairs[p];
+    PetscReal    needed  = motion;
+    PetscBool    changed = PETSC_FALSE, serve;
 
     PetscCall(PairMotion(contact, pair, t, &needed));
     if (pair->slave_offsets) PetscCall(PetscLogEventBegin(contact->event_offset, 0, 0, 0, 0));
-    if (pair->slave_offsets) PetscCall(OffsetsExtrapolate(pair->slave_offsets, u, t, t_next));
-    if (pair->master_offsets) PetscCall(OffsetsExtrapolate(pair->master_offsets, u, t, t_next));
+    if (pair->slave_offsets) PetscCall(OffsetsExtrapolate(pair->slave_offsets, u, t, t_next, &changed));
+    if (pair->master_offsets) PetscCall(OffsetsExtrapolate(pair->master_offsets, u, t, t_next, &changed));
     if (pair->slave_offsets) PetscCall(PetscLogEventEnd(contact->event_offset, 0, 0, 0, 0));
-    PetscCall(PairNextServes(pair, u, t, needed, &serves));
-    if (!serves) PetscCall(PairSearch(pair, u, t, needed));
-    PetscCall(PairTakeNext(pair));
+    PetscCall(PairListsServe(pair, u, t, needed, changed, &serve));
+    if (!serve) PetscCall(PairSearch(pair, u, t, needed));
+    if (pair->next) PetscCall(PairTakeNext(pair));
     pair->lost    = (ContactLost){0, NAN, 0, -1};
     pair->updates = 0;
   }
@@ -283,7 +285,8 @@ PetscErrorCode ContactListsHold(Contact contact, const PetscReal *u, PetscReal t
     ContactNoteTunnelled(pair, t);
     ContactNoteJumps(pair, motion);
     PetscCall(PairNextAgrees(contact, pair, t, settle, &agrees));
-    agree = agree && agrees;
+    pair->fresh = PETSC_FALSE;
+    agree       = agree && agrees;
   }
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &agree, 1, MPI_INT, MPI_LAND, contact->mesh->comm));
   *hold = agree ? PETSC_TRUE : PETSC_FALSE;

@@ -235,8 +235,8 @@ void ContactBlockEnd(const ContactPair *pair, PetscInt n, const PetscInt nodes[]
 static PetscErrorCode WorkReserveBlock(ContactWork *work, PetscInt m)
 {
   PetscFunctionBeginUser;
-  if (m * m <= work->M_room) PetscFunctionReturn(PETSC_SUCCESS);
-  work->M_room = 2 * m * m;
+  if (m * m + BLOCK_PADDING <= work->M_room) PetscFunctionReturn(PETSC_SUCCESS);
+  work->M_room = 2 * m * m + BLOCK_PADDING;
   PetscCall(PetscFree(work->M));
   PetscCall(PetscMalloc1(work->M_room, &work->M));
   PetscFunctionReturn(PETSC_SUCCESS);

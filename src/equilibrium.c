@@ -30,6 +30,20 @@ PetscErrorCode ModelMotion(Model model, const PetscReal *u, PetscReal t, PetscRe
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Of that, what is imposed on the way to t. */
+PetscErrorCode ModelImposedMotion(Model model, PetscReal t, PetscReal *motion)
+{
+  PetscReal *u;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(model->mesh->n_nodes * model->mesh->dim, &u));
+  PetscCall(PetscArraycpy(u, model->work->accepted_u, model->mesh->n_nodes * model->mesh->dim));
+  PetscCall(LoadsPrescribe(model->loads, t, u));
+  PetscCall(ModelMotion(model, u, t, motion));
+  PetscCall(PetscFree(u));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Adds that a slave node rests on an edge between facets, where it does. */
 static PetscErrorCode ModelBlameFacets(Model model, char *text, size_t size, PetscBool *found)
 {
@@ -95,7 +109,7 @@ static PetscErrorCode ModelExplainFailure(Model model, SolveReport *report)
 static PetscErrorCode ModelDepart(Model model, PetscReal t)
 {
   ModelWork *work = model->work;
-  PetscReal  motion, *u;
+  PetscReal  motion;
 
   PetscFunctionBeginUser;
   PetscCall(StabiliserRelax(work->stabiliser, work->accepted_x));
@@ -106,11 +120,7 @@ static PetscErrorCode ModelDepart(Model model, PetscReal t)
   work->cycle[0] = '\0';
   work->energy   = 0;
   if (!model->contact) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PetscMalloc1(model->mesh->n_nodes * model->mesh->dim, &u));
-  PetscCall(PetscArraycpy(u, work->accepted_u, model->mesh->n_nodes * model->mesh->dim));
-  PetscCall(LoadsPrescribe(model->loads, t, u));
-  PetscCall(ModelMotion(model, u, t, &motion));
-  PetscCall(PetscFree(u));
+  PetscCall(ModelImposedMotion(model, t, &motion));
   motion = PetscMax(motion, MODEL_MOTION_SAFETY * work->rate * (t - work->accepted_t));
   PetscCall(ContactRestore(model->contact));
   work->expected = motion;

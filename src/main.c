@@ -154,7 +154,7 @@ static PetscErrorCode RunScene(const CommandLine *command, int *status)
     PetscCall(ModelCreate(scene, mesh, &model));
     PetscCall(ProbesCreate(model, scene, &probes));
     if (!command->restart) {
-      PetscCall(ModelPlace(model));
+      PetscCall(ModelPlace(model, command->mode == COMMAND_RUN ? scene->stepping.initial : 0));
       TimingEnd(TIMING_SETUP);
       PetscCall(PrecheckModel(model, command->mode == COMMAND_CHECK ? PETSC_TRUE : PETSC_FALSE, stdout));
       TimingBegin(TIMING_SETUP);

@@ -74,15 +74,20 @@ PetscErrorCode ModelDestroy(Model *model)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ModelPlace - displacements, contact lists and gaps at t = 0, as they are: to be looked at before ModelSetUp() judges them. Collective. */
-PetscErrorCode ModelPlace(Model model)
+/* ModelPlace - displacements, contact lists and gaps at t = 0, as they are: to be looked at before ModelSetUp() judges them.
+
+   Collective. t: load parameter where the first step goes, whose lists these are then; 0: no step follows. */
+PetscErrorCode ModelPlace(Model model, PetscReal t)
 {
+  PetscReal motion;
   PetscBool ok;
 
   PetscFunctionBeginUser;
   PetscCall(LoadsPrescribe(model->loads, 0, model->u));
   if (!model->contact) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(ContactGather(model->contact, model->u, 0, 0, 0));
+  PetscCall(PetscArraycpy(model->work->accepted_u, model->u, model->mesh->n_nodes * model->mesh->dim));
+  PetscCall(ModelImposedMotion(model, t, &motion));
+  PetscCall(ContactGather(model->contact, model->u, 0, 0, motion));
   PetscCall(ModelResidual(model, model->u, 0, 0, &ok));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

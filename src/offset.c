@@ -285,13 +285,14 @@ static PetscErrorCode OffsetsAt(Offsets o, const PetscReal *u, PetscReal t, Pets
 }
 
 /* OffsetsExtrapolate - Collective. u[n_nodes*dim]: local displacements, ghosts included, of the accepted state at t; t_next: where the step goes. A step that
-   is tried again starts from the same t and finds the same offsets. */
-PetscErrorCode OffsetsExtrapolate(Offsets o, const PetscReal *u, PetscReal t, PetscReal t_next)
+   is tried again starts from the same t and finds the same offsets. *changed: set where those in force were others, on this rank. */
+PetscErrorCode OffsetsExtrapolate(Offsets o, const PetscReal *u, PetscReal t, PetscReal t_next, PetscBool *changed)
 {
   PetscReal ahead = 0;
   PetscBool done;
 
   PetscFunctionBeginUser;
+  if (!o->taken) *changed = PETSC_TRUE;
   PetscCall(TakeOnce(o, &done));
   if (done) PetscFunctionReturn(PETSC_SUCCESS);
   if (t != o->t_now) {
@@ -304,7 +305,13 @@ PetscErrorCode OffsetsExtrapolate(Offsets o, const PetscReal *u, PetscReal t, Pe
   }
   PetscCall(OffsetsAt(o, u, t, o->now));
   if (o->t_before >= 0 && !SceneBreaks(o->search->scene, t)) ahead = (t_next - t) / (t - o->t_before); /* past a breakpoint things go another way */
-  for (PetscInt i = 0; i < o->n; i++) o->used[i] = o->now[i] + ahead * (o->now[i] - o->before[i]);
+  for (PetscInt i = 0; i < o->n; i++) {
+    const PetscReal value = o->now[i] + ahead * (o->now[i] - o->before[i]);
+
+    if (value != o->used[i]) *changed = PETSC_TRUE;
+    o->used[i] = value;
+  }
+  o->taken = PETSC_TRUE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -15,8 +15,9 @@ static void AddBlocks(BlockMatrix blocks, int node, const PetscInt *dof, PetscRe
   const PetscInt        n = 4 / node, *nodes;
   PetscInt              count;
   const PetscInt *const lists[] = {dof};
-  PetscReal             value[16], vector[4];
+  PetscReal             value[16 + BLOCK_PADDING], vector[4 + BLOCK_PADDING];
 
+  for (int i = 0; i < BLOCK_PADDING; i++) value[16 + i] = vector[4 + i] = NAN;
   assert_int_equal(BlockMatrixBegin(blocks, 1, &n, lists), 0);
   assert_int_equal(BlockMatrixName(blocks, 0, n, node == 1 ? (PetscInt[]){3, 1, 2, 0} : (PetscInt[]){1, 0}, PETSC_TRUE), 0);
   assert_int_equal(BlockMatrixPlace(blocks, ROWS, changed), 0);
@@ -92,11 +93,11 @@ static PetscBool AssembleOwn(BlockMatrix blocks, PetscInt n, const PetscInt firs
   Mat            matrix;
   Vec            x, y;
   PetscBool      changed;
-  PetscReal      value[ROWS * ROWS], sum, expected = 0;
+  PetscReal      value[ROWS * ROWS + BLOCK_PADDING], sum, expected = 0;
   PetscMPIInt    size;
 
   MPI_Comm_size(PETSC_COMM_WORLD, &size);
-  for (int i = 0; i < ROWS * ROWS; i++) value[i] = 1;
+  for (int i = 0; i < ROWS * ROWS + BLOCK_PADDING; i++) value[i] = 1;
   assert_int_equal(BlockMatrixBegin(blocks, 1, &rows, dof), 0);
   for (PetscInt b = 0; b < n; b++) assert_int_equal(BlockMatrixName(blocks, 0, m[b], &nodes[first[b]], PETSC_FALSE), 0);
   assert_int_equal(BlockMatrixPlace(blocks, ROWS, &changed), 0);
