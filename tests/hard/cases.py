@@ -136,7 +136,7 @@ CASES = [
     *(Case("contact", f"penalty {scale}", "stiff: the linear system is badly conditioned", PUNCH, [f"contact.0.penalty.scale={scale}"], STIFF)
       for scale in ("1e2", "1e4")),
     Case("contact", "penalty 1e6", "stiffer: where a slave point meets an edge between facets they push it there from either side", PUNCH, ["contact.0.penalty.scale=1e6"],
-         (STIFF, Stops("rests on an edge between two facets"), STIFF, STIFF), ranks=1e-3),  # a failed step leaves another history of offsets
+         STIFF, ranks=1e-3),  # a failed step leaves another history of offsets
     Case("contact", "nu = 0.499", "bulk modulus 500 times the shear modulus", SQUEEZE,
          mesh(n_lower=13) + ["bodies.0.material.nu=0.499", "bodies.1.material.nu=0.499"], Uniform(1, (0.12, 0.006, 0.07, 0.005))),
     Case("contact", "slave 8 times denser", "more conditions than the master can follow", PUNCH, mesh(n_lower=6, n_upper=40),
@@ -156,8 +156,8 @@ CASES = [
          All(Near("force", 1, 1e-9), Told("stabilisation.largest_energy_share", most=1e-15))),
     Case("guards", "chatter", "a pinched pipe without mirrored neighbours, plain Newton steps: nodes come and go", PIPE,
          [*mesh(n_arc=16, n_wall=2, n_len=4), *PLAIN, "stepping.initial=0.04"], Same("petsc={}", probes=STROKE, bound=0.001)),
-    Case("guards", "cycle", "the same, coarser and with a stiffer penalty: the contact set repeats itself every 2 to 6 iterations", PIPE,
-         [*mesh(n_arc=10, n_len=4), *PLAIN, "contact.0.penalty.scale=3e3", "stepping.initial=0.1"],
+    Case("guards", "cycle", "the same, coarser and with a stiffer penalty: where no step is settled the contact set repeats itself", PIPE,
+         [*mesh(n_arc=10, n_len=4), *PLAIN, "petsc={snes_linesearch_type: basic, ksp_type: gmres}", "contact.0.penalty.scale=3e3", "stepping.initial=0.1"],
          All(Same("petsc={}", probes=STROKE, bound=(1e-8, 1e-8, 1e-5, 5e-4)), Told("cycles.found", least=1, last=r"repeats every \d .*: node \d+ of 'crown'"))),
     Case("guards", "through a thin plate", "the floor below belongs to the master, and is nearer from t = 0.7 on", STACK, [*PLATE, "stepping.initial=0.1"],
          Stops("lost behind a master", r"'joint': node \d+ was 0\.8 behind its master", "in front of another part of it", t=0.7, within=0.001)),

@@ -39,15 +39,15 @@ for name, options in (("gap", ()), ("touching", ("mesh.parameters={gap: 0}",)), 
 adrift = run(args, stack, out="adrift", overrides=(FREE[0], "loads=[{surface: upper_top, pressure: -10}]", "contact.0.stabilise=true", "stepping.dt_min=0.1"), must=None)
 ends("adrift", adrift, 2, "does not come to rest", "holds 'upper'")
 
-# Plain Newton steps on facets repeat themselves where their contact is not settled, as without a factor; with one, or with the line search, they do not.
+# Plain Newton steps on facets repeat themselves where their contact is not settled, as with GMRES; with a factor, or with the line search, they do not.
 COARSE = ("mesh.order=1", "mesh.parameters={n_arc: 12, n_wall: 1, n_len: 4}", "contact.0.symmetry=[]", "stepping.initial=0.2", "probes=[]")
-plain = run(args, pipe, "-snes_linesearch_type", "basic", out="plain", overrides=(*COARSE, "solver.type=iterative"))
+plain = run(args, pipe, "-snes_linesearch_type", "basic", "-ksp_type", "gmres", out="plain", overrides=COARSE)
 cycles = plain.summary()["cycles"]
-check.holds("cycles: found", cycles["found"] >= 1, str(cycles["found"]))
+check.holds("cycles: found", cycles["found"] >= 2, str(cycles["found"]))
 check.holds("cycles: named", "repeats every 3 iterations" in cycles["last"] and "of 'crown'" in cycles["last"], cycles["last"])
 settled = run(args, pipe, "-snes_linesearch_type", "basic", out="settled", overrides=COARSE)
 check.holds("cycles: none where steps are settled", settled.summary()["cycles"]["found"] == 0)
-searched = run(args, pipe, out="searched", overrides=(*COARSE, "solver.type=iterative"))
+searched = run(args, pipe, "-ksp_type", "gmres", out="searched", overrides=COARSE)
 check.holds("cycles: none with the line search", searched.summary()["cycles"]["found"] == 0)
 check.near("cycles: the same end", plain.summary()["max_penetration"], searched.summary()["max_penetration"], 1e-9)
 check.finish()
