@@ -34,7 +34,8 @@ typedef enum {
   FIT_HIGH_SUM   = 32  /* Lambda above FIT_AMPLIFIED */
 } FitGuard;
 
-typedef enum { FIT_SURFACE, FIT_GAP, FIT_FIRST_VARIATION, FIT_SECOND_VARIATION } FitWant;
+/* FIT_GAP_ONLY: the gap, but neither Lambda, its guard nor shape values, which solves have no use for */
+typedef enum { FIT_SURFACE, FIT_GAP_ONLY, FIT_GAP, FIT_FIRST_VARIATION, FIT_SECOND_VARIATION } FitWant;
 
 /* Tangent only: M with or without the derivatives of the weights ("diffuse derivatives"); gap and N are exact in both. */
 typedef enum { FIT_FULL, FIT_DIFFUSE } FitDerivatives;

@@ -21,7 +21,8 @@ typedef struct _n_Neighbourhoods *Neighbourhoods;
 
 PetscErrorCode NeighbourhoodsCreate(const SurfaceView *, Neighbourhoods *);
 PetscErrorCode NeighbourhoodsDestroy(Neighbourhoods *);
-/* Points around the foot x0 with normal e3 on facet `start`, with rho^2 <= limit in the metric (inverse squared lengths, dim x dim, row-major 3x3): at most
-   max are written to points[], nearest first, their rho^2 are (*rho2)[] until the next call; returns how many there were in *found. */
+/* Points around the foot x0 with normal e3 on facet `start`, with rho^2 <= limit in the metric (inverse squared lengths, dim x dim, row-major 3x3,
+   symmetric): at most max, the nearest, are written to points[], those of a facet together where all are, their rho^2 are (*rho2)[] until the next call;
+   returns how many there were in *found. */
 PetscErrorCode NeighbourhoodGather(Neighbourhoods, PetscInt start, const PetscReal x0[3], const PetscReal e3[3], const PetscReal metric[9], PetscReal limit,
                                    PetscInt max, PetscInt *points, const PetscReal **rho2, PetscInt *n, PetscInt *found);

@@ -32,7 +32,7 @@ static PetscErrorCode PairFactors(const ContactPair *pair, ContactLists lists, P
     PetscBool found;
 
     factor[q] = 0;
-    PetscCall(ContactPointEvaluate(pair, pair->facets, lists, q, -1, SMOOTHER_GAP, &found));
+    PetscCall(ContactPointEvaluate(pair, pair->facets, lists, q, lists->nearest[q], SMOOTHER_GAP, &found));
     if (found && !pair->master)
       factor[q] = 1;
     else if (found)
@@ -152,6 +152,8 @@ static PetscBool FitHolds(ContactLists old, ContactLists fresh, PetscInt q)
 {
   const int        dim   = old->dim;
   const PetscReal *frame = &old->frame[9 * q], *turned = &fresh->frame[9 * q], *metric = &old->metric[4 * q];
+  const PetscInt   n      = old->fit_n[q];
+  PetscInt         at     = 0;
   PetscReal        cosine = 0;
 
   for (int d = 0; d < dim; d++) cosine += frame[3 * (dim - 1) + d] * turned[3 * (dim - 1) + d];
@@ -168,8 +170,12 @@ static PetscBool FitHolds(ContactLists old, ContactLists fresh, PetscInt q)
     for (int a = 0; a < dim - 1; a++)
       for (int b = 0; b < dim - 1; b++) rho2 += y[a] * metric[2 * a + b] * y[b];
     if (rho2 >= 1) continue;
-    for (PetscInt k = old->list_ptr[q]; !known && k < old->list_ptr[q] + old->fit_n[q]; k++)
-      known = old->point_key[old->list_point[k]] == key ? PETSC_TRUE : PETSC_FALSE;
+    for (PetscInt k = 0; !known && k < n; k++) { /* most points have the places that they had */
+      const PetscInt place = (at + k) % n;
+
+      known = old->point_key[old->list_point[old->list_ptr[q] + place]] == key ? PETSC_TRUE : PETSC_FALSE;
+      if (known) at = (place + 1) % n;
+    }
     if (!known) return PETSC_FALSE;
   }
   return PETSC_TRUE;

@@ -1,4 +1,5 @@
 #include "contactimpl.h"
+#include "lanes.h"
 #include "timing.h"
 
 /* The gap and its variations against an analytic master, which has no points. */
@@ -27,13 +28,32 @@ static PetscBool PointEvaluateAnalytic(const ContactPair *pair, ContactLists lis
   return PETSC_TRUE;
 }
 
+/* Positions relative to slave point q, as of ListsRelative(), and weights of the points in its list */
+LANES_INLINE void GatherPoints(const int dim, ContactLists lists, PetscInt q, PetscReal *x, PetscReal *multiplier)
+{
+  const PetscInt  *point = &lists->list_point[lists->list_ptr[q]], n = lists->list_ptr[q + 1] - lists->list_ptr[q];
+  const PetscReal *X = lists->point_X, *u = lists->point_u, *weight = lists->point_weight;
+  PetscReal        X_0[3], u_0[3];
+
+  for (int d = 0; d < dim; d++) {
+    X_0[d] = lists->slave_X[q * dim + d];
+    u_0[d] = lists->slave_u[q * dim + d];
+  }
+  for (PetscInt i = 0; i < n; i++) {
+    const PetscInt p = point[i];
+
+    multiplier[i] = weight[p];
+    for (int d = 0; d < dim; d++) x[i * dim + d] = (X[p * dim + d] - X_0[d]) + (u[p * dim + d] - u_0[d]);
+  }
+}
+
 /* ContactPointEvaluate - gap (and variations over the fit points) of slave point q of the lists; *found is PETSC_FALSE where no master is near. */
 PetscErrorCode ContactPointEvaluate(const ContactPair *pair, const Smoother *smoother, ContactLists lists, PetscInt q, int seed, SmootherWant want,
                                     PetscBool *found)
 {
-  const int      dim   = lists->dim;
-  ContactWork   *work  = pair->work;
-  const PetscInt first = lists->list_ptr[q], n = lists->list_ptr[q + 1] - first;
+  const int      dim  = lists->dim;
+  ContactWork   *work = pair->work;
+  const PetscInt n    = lists->list_ptr[q + 1] - lists->list_ptr[q];
   SmootherInput  in;
 
   PetscFunctionBeginUser;
@@ -46,12 +66,10 @@ PetscErrorCode ContactPointEvaluate(const ContactPair *pair, const Smoother *smo
     PetscCall(PetscFree2(work->x, work->multiplier));
     PetscCall(PetscMalloc2(work->x_room * dim, &work->x, work->x_room, &work->multiplier));
   }
-  for (PetscInt i = 0; i < n; i++) {
-    const PetscInt p = lists->list_point[first + i];
-
-    work->multiplier[i] = lists->point_weight[p];
-    ListsRelative(lists, q, p, &work->x[i * dim]);
-  }
+  if (dim == 3)
+    GatherPoints(3, lists, q, work->x, work->multiplier);
+  else
+    GatherPoints(2, lists, q, work->x, work->multiplier);
   in     = (SmootherInput){.dim         = dim,
                            .n_points    = (int)n,
                            .n_facets    = (int)(lists->facet_ptr[q + 1] - lists->facet_ptr[q]),

@@ -333,16 +333,18 @@ LANES_INLINE int Evaluate(const int dim, const int degree, const int terms, cons
 
   Layout(terms, in->n, workspace, &a);
   if (!MakeSurface(dim, degree, terms, in, &a, &s, out)) return 0;
-  if (want < FIT_GAP) return 1;
+  if (want < FIT_GAP_ONLY) return 1;
   if (!FindFoot(dim - 1, degree, terms, &s, &at, out)) {
     out->guards |= FIT_NO_FOOT;
     return 0;
   }
   Describe(dim, in, &at, out);
+  out->guards |= out->reach < FIT_REACH ? 0 : FIT_FAR_FOOT;
+  if (want < FIT_GAP) return 1;
   FootVariation(dim - 1, terms, &at, out, &s);
   out->amplified = Shapes(terms, &a, s.foot[0]);
   if (out->shape) memcpy(out->shape, a.scratch, a.n * sizeof(double));
-  out->guards |= (out->reach < FIT_REACH ? 0 : FIT_FAR_FOOT) | (out->amplified <= FIT_AMPLIFIED ? 0 : FIT_HIGH_SUM);
+  out->guards |= out->amplified <= FIT_AMPLIFIED ? 0 : FIT_HIGH_SUM;
   if (want >= FIT_FIRST_VARIATION && out->N) FitVariationFirst(in, &a, &s, out->N);
   if (want >= FIT_SECOND_VARIATION && out->M)
     FitVariationSecond(in, &a, &s, out->M);
@@ -384,7 +386,7 @@ long FitWorkspace(int dim, int degree, int n)
 
 /* FitEvaluate - gap, first and second variation of one slave point against the diffuse surface through its fit points. Not collective.
 
-   Input: in - the problem; want - surface only, gap, and N, and M; workspace - FitWorkspace() doubles of any contents
+   Input: in - the problem; want - surface only, gap, and Lambda with the shape values, and N, and M; workspace - FitWorkspace() doubles of any contents
    Output: out - see FitResult; arrays as its comment says
 
    Returns 1 if all that was wanted is there, 0 if there is no surface (FIT_NO_SURFACE) or no foot (FIT_NO_FOOT). Never NaN for finite input.
@@ -412,14 +414,25 @@ int FitEvaluateBatch(int n, const FitProblem *in, FitWant want, double *workspac
   return whole;
 }
 
+LANES_INLINE double HeightOnly(const int m, const int degree, const int terms, const FitSurface *surface, const Lanes *alpha, const double *y)
+{
+  const double(*const B)[2] = surface->scale;
+  Lanes eta[MAX_TANGENTS], p[FIT_MAX_TERMS];
+
+  for (int k = 0; k < m; k++) eta[k] = Broadcast(B[k][0] * y[0] + (m == 2 ? B[k][1] * y[1] : 0));
+  Monomials(m, degree, eta, p);
+  return DotTerms(terms, p, alpha)[0];
+}
+
 LANES_INLINE double HeightAt(const int m, const int degree, const int terms, const FitSurface *surface, const double *y, double *gradient)
 {
   Lanes    alpha[FIT_MAX_TERMS];
   FitLocal at;
 
   for (int k = 0; k < terms; k++) alpha[k] = Broadcast(surface->coefficient[k]);
+  if (!gradient) return HeightOnly(m, degree, terms, surface, alpha, y);
   SurfaceAt(m, degree, terms, surface, alpha, y, &at);
-  if (gradient) memcpy(gradient, at.g, m * sizeof(double));
+  memcpy(gradient, at.g, m * sizeof(double));
   return at.q;
 }
 

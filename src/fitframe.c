@@ -1,5 +1,6 @@
 /* Least-squares plane by the eigenvectors of a 3 x 3 covariance, and the metric of the fit's support. */
 #include "fitframe.h"
+#include <float.h>
 #include <math.h>
 #include <string.h>
 
@@ -36,7 +37,7 @@ static void Eigen(double a[3][3], double value[3], double v[3][3])
   for (int sweep = 0; sweep < SWEEPS; sweep++) {
     for (int p = 0; p < 2; p++) {
       for (int q = p + 1; q < 3; q++) {
-        if (a[p][q] != 0) Rotate(a, v, p, q);
+        if (fabs(a[p][q]) > DBL_EPSILON * (fabs(a[p][p]) + fabs(a[q][q]))) Rotate(a, v, p, q);
       }
     }
   }
@@ -102,10 +103,14 @@ int FitFrame(int dim, int n, const double *x, const double *multiplier, const do
   }
   FitFrameFromNormal(dim, outward, frame);
   if (!(sum > 0)) return 0;
+  for (int c = 0; c < dim; c++) centre[c] /= sum;
   for (int i = 0; i < n; i++) {
     for (int c = 0; c < dim; c++) {
-      for (int d = 0; d < dim; d++) covariance[c][d] += multiplier[i] / sum * (x[i * dim + c] - centre[c] / sum) * (x[i * dim + d] - centre[d] / sum);
+      for (int d = 0; d <= c; d++) covariance[c][d] += multiplier[i] * (x[i * dim + c] - centre[c]) * (x[i * dim + d] - centre[d]);
     }
+  }
+  for (int c = 0; c < dim; c++) {
+    for (int d = 0; d <= c; d++) covariance[c][d] = covariance[d][c] = covariance[c][d] / sum;
   }
   if (dim == 2) covariance[2][2] = -1; /* below every eigenvalue of the plane */
   Eigen(covariance, value, vector);

@@ -110,14 +110,11 @@ PetscErrorCode NeighbourhoodsDestroy(Neighbourhoods *nb)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscReal Rho2(const SurfaceView *view, PetscInt p, const PetscReal x0[3], const PetscReal metric[9])
+static inline PetscReal Rho2(const SurfaceView *view, PetscInt p, const PetscReal x0[3], const PetscReal metric[9])
 {
-  PetscReal r[3] = {0, 0, 0}, rho2 = 0;
+  const PetscReal *x = &view->x[p * view->dim], a = x[0] - x0[0], b = x[1] - x0[1], c = view->dim == 3 ? x[2] - x0[2] : 0;
 
-  for (int d = 0; d < view->dim; d++) r[d] = view->x[p * view->dim + d] - x0[d];
-  for (int i = 0; i < 3; i++)
-    for (int j = 0; j < 3; j++) rho2 += r[i] * metric[3 * i + j] * r[j];
-  return rho2;
+  return metric[0] * a * a + metric[4] * b * b + metric[8] * c * c + 2 * (metric[1] * a * b + metric[2] * a * c + metric[5] * b * c);
 }
 
 /* Nearest first; of those equally near, by number. */
@@ -178,7 +175,7 @@ PetscErrorCode NeighbourhoodGather(Neighbourhoods nb, PetscInt start, const Pets
       nb->queue[tail++] = g;
     }
   }
-  PetscCall(SortReach(nb, count));
+  if (count > max) PetscCall(SortReach(nb, count));
   *found = count;
   *n     = PetscMin(count, max);
   *rho2  = nb->rho2;

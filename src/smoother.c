@@ -25,7 +25,7 @@ int SmootherEvaluate_Facet(const SmootherInput *in, SmootherWant want, SmootherR
 static int SmootherEvaluate_Diffuse(const SmootherInput *in, SmootherWant want, SmootherResult *out)
 {
   static const FitWant wants[] =
-    {[SMOOTHER_GAP] = FIT_GAP, [SMOOTHER_FIRST_VARIATION] = FIT_FIRST_VARIATION, [SMOOTHER_SECOND_VARIATION] = FIT_SECOND_VARIATION};
+    {[SMOOTHER_GAP] = FIT_GAP_ONLY, [SMOOTHER_FIRST_VARIATION] = FIT_FIRST_VARIATION, [SMOOTHER_SECOND_VARIATION] = FIT_SECOND_VARIATION};
   FitProblem problem =
     {.dim = in->dim, .degree = in->degree, .exponent = in->exponent, .n = in->n_fit, .x = in->x, .multiplier = in->multiplier, .derivatives = in->derivatives};
   FitResult fit = {.points = out->points, .N = want == SMOOTHER_FIRST_VARIATION ? out->N : NULL, .factors = &out->factors};
