@@ -1,5 +1,5 @@
 /* What the files of the model share and nobody else sees: model.c holds the state, newton.c finds equilibrium with the lists that are there, equilibrium.c
-   is the way from an accepted state to the next one, prediction.c and softstart.c parts of it. */
+   is the way from an accepted state to the next one, prediction.c and softstart.c parts of it; settle.c makes the contact of their linear steps right. */
 #pragma once
 #include "contactcycle.h"
 #include "contactline.h"

@@ -44,6 +44,19 @@ PetscErrorCode DirectSolverSet(KSP ksp, PetscBool symmetric)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* DirectSolverServes - does a KSP still factor and solve once, whatever options have said? Not collective. */
+PetscErrorCode DirectSolverServes(KSP ksp, PetscBool *serves)
+{
+  PC pc;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscObjectTypeCompare((PetscObject)ksp, KSPPREONLY, serves));
+  if (!*serves) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(KSPGetPC(ksp, &pc));
+  PetscCall(PetscObjectTypeCompareAny((PetscObject)pc, serves, PCCHOLESKY, PCLU, ""));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* DirectSolverFind - is a KSP's preconditioner a factorisation by MUMPS, and a symmetric one? Not collective. */
 PetscErrorCode DirectSolverFind(KSP ksp, PetscBool *mumps, PetscBool *cholesky)
 {

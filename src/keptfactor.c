@@ -1,4 +1,5 @@
 #include "keptfactor.h"
+#include "directsolver.h"
 #include "rankupdate.h"
 
 /* A factor is kept while at most so many contact terms have come, gone or changed their stiffness since it was made. Each is a change of rank one, for which
@@ -105,19 +106,6 @@ PetscErrorCode KeptFactorSetEnough(KeptFactor kept, PetscReal residual)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Does the KSP still factor and solve once, whatever options have said? */
-static PetscErrorCode IsDirect(KSP ksp, PetscBool *direct)
-{
-  PC pc;
-
-  PetscFunctionBeginUser;
-  PetscCall(PetscObjectTypeCompare((PetscObject)ksp, KSPPREONLY, direct));
-  if (!*direct) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(KSPGetPC(ksp, &pc));
-  PetscCall(PetscObjectTypeCompareAny((PetscObject)pc, direct, PCCHOLESKY, PCLU, ""));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* The factor is, or will be, the present operator's. */
 static PetscErrorCode Begin(KeptFactor kept)
 {
@@ -140,7 +128,7 @@ PetscErrorCode KeptFactorNext(KeptFactor kept, PetscInt changes, PetscBool patte
   PetscBool direct;
 
   PetscFunctionBeginUser;
-  PetscCall(IsDirect(kept->ksp, &direct));
+  PetscCall(DirectSolverServes(kept->ksp, &direct));
   kept->changes += changes;
   kept->stale  = (PetscBool)(kept->stale || pattern);
   kept->serves = (PetscBool)(direct && kept->exists && kept->changes <= KEPT_CHANGES);

@@ -115,13 +115,8 @@ PetscErrorCode LinearSolverSetEnough(LinearSolver solver, PetscReal residual)
 /* LinearSolverDirect - is the last operator factored? Not collective, the same on all ranks. */
 PetscErrorCode LinearSolverDirect(LinearSolver solver, PetscBool *direct)
 {
-  PC pc;
-
   PetscFunctionBeginUser;
-  PetscCall(PetscObjectTypeCompare((PetscObject)solver->ksp, KSPPREONLY, direct));
-  if (!*direct) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(KSPGetPC(solver->ksp, &pc));
-  PetscCall(PetscObjectTypeCompareAny((PetscObject)pc, direct, PCCHOLESKY, PCLU, ""));
+  PetscCall(DirectSolverServes(solver->ksp, direct));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
