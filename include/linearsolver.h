@@ -19,5 +19,7 @@ PetscErrorCode LinearSolverNext(LinearSolver, Mat C, PetscBool pattern, PetscInt
 PetscErrorCode LinearSolverRenew(LinearSolver);
 /* The residual (2-norm) with which the nonlinear solver will be content: much smaller ones are not worth iterations. Logically collective. */
 PetscErrorCode LinearSolverSetEnough(LinearSolver, PetscReal residual);
+/* Around the solve that predicts a step, whose first guess of what is in contact should hold. Logically collective. */
+PetscErrorCode LinearSolverPredict(LinearSolver, PetscBool);
 /* The factor that may serve more than one operator, for those who watch the solves; NULL: there is none. Not collective. */
 KeptFactor LinearSolverKept(LinearSolver);
