@@ -3,6 +3,7 @@
 #include "meshdistribution.h"
 #include "refusal.h"
 #include "rootgroups.h"
+#include "rootlinks.h"
 #include "rootrigid.h"
 #include "roottopology.h"
 #include <string.h>
@@ -97,12 +98,19 @@ static PetscErrorCode CreateTopology(Scene scene, const char *file, RootMesh *ro
 /* DM on rank 0 -> parts for all ranks */
 static PetscErrorCode PartitionBodies(Scene scene, const RootMesh *root, Mesh mesh)
 {
-  PetscBool *contact = NULL;
+  PetscBool  *contact = NULL;
+  CellLinks   links   = {0};
+  PetscMPIInt size;
 
   PetscFunctionBeginUser;
-  if (root) PetscCall(RootGroupsContactCells(scene, root, mesh, &contact));
-  PetscCall(PartitionCells(mesh->dm, contact, &mesh->partition));
+  PetscCallMPI(MPI_Comm_size(mesh->comm, &size));
+  if (root && size > 1) {
+    PetscCall(RootGroupsContactCells(scene, root, mesh, &contact));
+    PetscCall(RootLinksFind(scene, root, mesh, &links));
+  }
+  PetscCall(PartitionCells(mesh->dm, contact, &links, &mesh->partition));
   PetscCall(PetscFree(contact));
+  PetscCall(PetscFree(links.cell));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -1,5 +1,6 @@
 #include "multigrid.h"
 #include "directsolver.h"
+#include "gaussseidel.h"
 #include "matrixrows.h"
 
 /* The parts have option names of their own: -bodies_... for multigrid, -interface_... for the direct solve */
@@ -11,7 +12,7 @@
 /* Multigrid made for an older operator serves until its effort, iterations for a power of ten in the residual, is this many times
    the effort at first: its coarse matrices cost as much as some ten iterations. */
 #define MULTIGRID_AGE 1.5
-/* What the finest level's smoother damps on one rank: eigenvalues of the operator after symmetric Gauss-Seidel sweeps, none of which is above 1. */
+/* What the finest level's smoother damps: eigenvalues of the operator after symmetric Gauss-Seidel sweeps, none of which is above 1. */
 #define MULTIGRID_LARGEST 1.1
 #define MULTIGRID_LEAST   0.1
 /* Powers of ten in the residual that a solve must show for its effort to be told: the first iterations of any solve are the fastest. */
@@ -202,7 +203,7 @@ static PetscErrorCode CopyRows(Multigrid m, Mat A, PetscReal factor, InsertMode 
 
 /* How stiff contact is to be for multigrid, of its full stiffness: at most as the bodies are where it is. *mean: diagonal entry of the operator, so softened.
 
-   Stiffer contact makes smoothers diverge that work on each rank for itself; the interface's solve does the rest, and a hundredth costs no iteration. */
+   Stiffer contact makes smoothers diverge whose largest eigenvalue is estimated; the interface's solve does the rest, and a hundredth costs no iteration. */
 static PetscErrorCode SoftenContact(Multigrid m, Mat A, PetscReal *softness, PetscScalar *mean)
 {
   PetscScalar sum[2] = {0, 0}, *contact;
@@ -294,24 +295,20 @@ static PetscErrorCode CreateBodies(Multigrid m)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* On one rank the finest level is smoothed by Gauss-Seidel's method (symmetric sweeps): half of Jacobi's iterations, and fewer more of them on finer meshes.
-   The coarse levels keep Jacobi's: aggregates of few nodes leave rotations without stiffness, which Gauss-Seidel's method would divide by. On several ranks,
-   each with sweeps of its own, an eigenvalue may be missed that then grows: two thick rings with 345,000 unknowns took 20 iterations on two ranks, as many as
-   with Jacobi's method, and at times did not converge. */
+/* The finest level is smoothed by Gauss-Seidel's method: half of Jacobi's iterations, and fewer more of them on finer meshes. The coarse levels keep Jacobi's:
+   aggregates of few nodes leave rotations without stiffness, which Gauss-Seidel's method would divide by. */
 static PetscErrorCode SmoothFinest(Multigrid m)
 {
-  KSP         ksp;
-  PC          pc;
-  PetscInt    levels;
-  PetscMPIInt ranks;
+  KSP      ksp;
+  PC       pc;
+  PetscInt levels;
 
   PetscFunctionBeginUser;
-  PetscCallMPI(MPI_Comm_size(m->mesh->comm, &ranks));
   PetscCall(PCMGGetLevels(m->bodies, &levels));
-  if (levels == 1 || ranks > 1) PetscFunctionReturn(PETSC_SUCCESS);
+  if (levels == 1) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PCMGGetSmoother(m->bodies, levels - 1, &ksp));
   PetscCall(KSPGetPC(ksp, &pc));
-  PetscCall(PCSetType(pc, PCSOR));
+  PetscCall(GaussSeidelSet(pc));
   PetscCall(KSPSetType(ksp, KSPRICHARDSON)); /* forgets the eigenvalues for Jacobi's method, which would count as given */
   PetscCall(KSPSetType(ksp, KSPCHEBYSHEV));
   PetscCall(KSPChebyshevSetEigenvalues(ksp, MULTIGRID_LARGEST, MULTIGRID_LEAST));

@@ -6,6 +6,10 @@ enum { METIS_SEED = 1 }; /* any fixed number: the same mesh and ranks give the s
 /* How far parts may exceed the mean: cells decide the cost of every Newton iteration, contact cells a small part of it */
 static const real_t CELL_TOLERANCE = 1.03f, CONTACT_TOLERANCE = 1.10f;
 
+/* Cutting a link costs as much as so many faces between cells: a slave node is coupled to some twenty nodes of the master, a node of a face to nine beyond it,
+   and what smooths on each rank for itself misses the stiffest couplings there are. */
+enum { LINK_WEIGHT = 4 };
+
 static PetscErrorCode IndexCast(PetscInt value, idx_t *index)
 {
   PetscFunctionBeginUser;
@@ -15,12 +19,58 @@ static PetscErrorCode IndexCast(PetscInt value, idx_t *index)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode IndexArrayCast(PetscInt n, const PetscInt values[], idx_t **indices)
+/* Cells, and edges between them: faces and, heavier, links */
+typedef struct {
+  idx_t *offsets, *neighbours, *weights;
+} Graph;
+
+static PetscErrorCode GraphCreate(PetscInt n, const PetscInt offsets[], const PetscInt adjacency[], const CellLinks *links, Graph *graph)
+{
+  const PetscInt ends  = 2 * links->n;
+  idx_t          edges = 0, *next;
+
+  PetscFunctionBeginUser;
+  PetscCall(IndexCast(offsets[n] + ends, &edges));
+  PetscCall(PetscCalloc1(n + 1, &graph->offsets));
+  PetscCall(PetscMalloc1(edges, &graph->neighbours));
+  PetscCall(PetscMalloc1(edges, &graph->weights));
+  PetscCall(PetscMalloc1(n, &next));
+  for (PetscInt e = 0; e < ends; e++) graph->offsets[links->cell[e] + 1]++;
+  for (PetscInt c = 0; c < n; c++) {
+    next[c] = graph->offsets[c];
+    graph->offsets[c + 1] += next[c] + (idx_t)(offsets[c + 1] - offsets[c]);
+    for (PetscInt k = offsets[c]; k < offsets[c + 1]; k++, next[c]++) {
+      PetscCall(IndexCast(adjacency[k], &graph->neighbours[next[c]]));
+      graph->weights[next[c]] = 1;
+    }
+  }
+  for (PetscInt e = 0; e < ends; e++) {
+    const PetscInt c = links->cell[e];
+
+    PetscCall(IndexCast(links->cell[e ^ 1], &graph->neighbours[next[c]]));
+    graph->weights[next[c]++] = LINK_WEIGHT;
+  }
+  PetscCall(PetscFree(next));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode GraphFree(Graph *graph)
 {
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc1(n, indices));
-  for (PetscInt i = 0; i < n; i++) PetscCall(IndexCast(values[i], &(*indices)[i]));
+  PetscCall(PetscFree(graph->offsets));
+  PetscCall(PetscFree(graph->neighbours));
+  PetscCall(PetscFree(graph->weights));
   PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Pairs of neighbours, links apart, in different parts */
+static PetscInt CountCut(PetscInt n, const PetscInt offsets[], const PetscInt adjacency[], const PetscInt part[])
+{
+  PetscInt ends = 0;
+
+  for (PetscInt c = 0; c < n; c++)
+    for (PetscInt k = offsets[c]; k < offsets[c + 1]; k++) ends += part[c] != part[adjacency[k]];
+  return ends / 2;
 }
 
 /*
@@ -61,16 +111,18 @@ PetscReal PartitionImbalance(PetscInt n, const PetscInt part[], const PetscBool 
 . offsets   - where each cell's neighbours start in adjacency, n + 1
 . adjacency - neighbours
 . contact   - per cell, whether it has a face in contact (a second weight), or NULL: cells alone are balanced
+. links     - pairs of cells that had better be of one part
 - parts     - number of parts, at least 2
 
   Output Parameters:
 + part     - per cell
 - edge_cut - pairs of neighbours in different parts
 */
-PetscErrorCode PartitionGraph(PetscInt n, const PetscInt offsets[], const PetscInt adjacency[], const PetscBool contact[], PetscInt parts, PetscInt part[],
-                              PetscInt *edge_cut)
+PetscErrorCode PartitionGraph(PetscInt n, const PetscInt offsets[], const PetscInt adjacency[], const PetscBool contact[], const CellLinks *links,
+                              PetscInt parts, PetscInt part[], PetscInt *edge_cut)
 {
-  idx_t *xadj, *adjncy, *weights, *found, options[METIS_NOPTIONS], n_vertices, n_constraints = 1, n_parts, cut = 0;
+  Graph  graph;
+  idx_t *weights, *found, options[METIS_NOPTIONS], n_vertices, n_constraints = 1, n_parts, cut = 0;
   real_t tolerance[2] = {CELL_TOLERANCE, CONTACT_TOLERANCE};
   int    status;
 
@@ -79,8 +131,7 @@ PetscErrorCode PartitionGraph(PetscInt n, const PetscInt offsets[], const PetscI
     if (contact[c]) n_constraints = 2; /* a constraint whose weights are all zero cannot be balanced */
   PetscCall(IndexCast(n, &n_vertices));
   PetscCall(IndexCast(parts, &n_parts));
-  PetscCall(IndexArrayCast(n + 1, offsets, &xadj));
-  PetscCall(IndexArrayCast(offsets[n], adjacency, &adjncy));
+  PetscCall(GraphCreate(n, offsets, adjacency, links, &graph));
   PetscCall(PetscMalloc2(n * n_constraints, &weights, n, &found));
   for (PetscInt c = 0; c < n; c++) {
     weights[c * n_constraints] = 1;
@@ -89,12 +140,12 @@ PetscErrorCode PartitionGraph(PetscInt n, const PetscInt offsets[], const PetscI
   METIS_SetDefaultOptions(options);
   options[METIS_OPTION_SEED]      = METIS_SEED;
   options[METIS_OPTION_NUMBERING] = 0;
-  status = METIS_PartGraphKway(&n_vertices, &n_constraints, xadj, adjncy, weights, NULL, NULL, &n_parts, NULL, tolerance, options, &cut, found);
+  status = METIS_PartGraphKway(&n_vertices, &n_constraints, graph.offsets, graph.neighbours, weights, NULL, graph.weights, &n_parts, NULL, tolerance, options,
+                               &cut, found);
   PetscCheck(status == METIS_OK, PETSC_COMM_SELF, PETSC_ERR_LIB, "METIS failed with status %d", status);
-  *edge_cut = (PetscInt)cut;
   for (PetscInt c = 0; c < n; c++) part[c] = (PetscInt)found[c];
-  PetscCall(PetscFree(xadj));
-  PetscCall(PetscFree(adjncy));
+  *edge_cut = CountCut(n, offsets, adjacency, part);
+  PetscCall(GraphFree(&graph));
   PetscCall(PetscFree2(weights, found));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -119,7 +170,8 @@ static PetscErrorCode PartitionSort(PetscInt n, const PetscInt part[], PetscMPII
 
   Input Parameters:
 + dm      - DMPlex, interpolated, all its cells on rank 0
-- contact - on rank 0: per cell, whether it has a face in contact (a second weight, so that contact work is shared out too)
+. contact - on rank 0: per cell, whether it has a face in contact (a second weight, so that contact work is shared out too)
+- links   - on rank 0: cells that face each other across contact, which are kept on one rank where that is cheap
 
   Output Parameter:
 . partition - tool, edge cut and imbalances, the same on all ranks
@@ -127,7 +179,7 @@ static PetscErrorCode PartitionSort(PetscInt n, const PetscInt part[], PetscMPII
   Note:
   DMPlexDistribute() follows the partition afterwards.
 */
-PetscErrorCode PartitionCells(DM dm, const PetscBool contact[], Partition *partition)
+PetscErrorCode PartitionCells(DM dm, const PetscBool contact[], const CellLinks *links, Partition *partition)
 {
   MPI_Comm         comm = PetscObjectComm((PetscObject)dm);
   PetscPartitioner partitioner;
@@ -144,7 +196,7 @@ PetscErrorCode PartitionCells(DM dm, const PetscBool contact[], Partition *parti
   PetscCall(DMPlexCreatePartitionerGraph(dm, 0, &n, &offsets, &adjacency, NULL));
   PetscCall(PetscCalloc4(size, &sizes, size, &contact_sizes, n, &cells, n, &part));
   if (!rank) {
-    PetscCall(PartitionGraph(n, offsets, adjacency, contact, size, part, &partition->edge_cut));
+    PetscCall(PartitionGraph(n, offsets, adjacency, contact, links, size, part, &partition->edge_cut));
     imbalances[0] = PartitionImbalance(n, part, NULL, size, sizes);
     imbalances[1] = PartitionImbalance(n, part, contact, size, contact_sizes);
     PetscCall(PartitionSort(n, part, size, sizes, cells));

@@ -23,7 +23,9 @@ static PetscErrorCode ModelStepLinear(Model model, const PetscReal *u, const Pet
   PetscCall(StabiliserResidual(model->work->stabiliser, model->x, b));
   PetscCall(SNESGetKSP(model->snes, &ksp));
   PetscCall(KSPSetOperators(ksp, model->A, model->A));
+  PetscCall(LinearSolverPredict(model->work->solver, PETSC_TRUE));
   PetscCall(KSPSolve(ksp, b, dx));
+  PetscCall(LinearSolverPredict(model->work->solver, PETSC_FALSE));
   PetscCall(KSPGetIterationNumber(ksp, &its));
   report->newton++;
   report->krylov += its;

@@ -169,17 +169,21 @@ static PetscErrorCode PrintContact(const Study *study)
 
 static PetscErrorCode PrintPartitions(Study *study, PetscBool two_weights)
 {
-  const PetscInt n = study->mesh->n_cells;
+  const PetscInt n     = study->mesh->n_cells;
+  CellLinks      links = {.n = study->n_slaves};
   PetscInt       edge_cut;
 
   PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(2 * links.n, &links.cell));
+  for (PetscInt e = 0; e < 2 * links.n; e++) links.cell[e] = e % 2 ? study->opposite[e / 2] : study->slave[e / 2];
   for (study->parts = 2; study->parts <= MOST_PARTS && n / study->parts >= LEAST_CELLS; study->parts *= 2) {
-    PetscCall(PartitionGraph(n, study->offsets, study->adjacency, two_weights ? study->contact : NULL, study->parts, study->part, &edge_cut));
+    PetscCall(PartitionGraph(n, study->offsets, study->adjacency, two_weights ? study->contact : NULL, &links, study->parts, study->part, &edge_cut));
     PetscCall(Print(study, "cells", PartitionImbalance(n, study->part, NULL, study->parts, study->count)));
     PetscCall(Print(study, "contact", PartitionImbalance(n, study->part, study->contact, study->parts, study->count)));
     PetscCall(PrintGhosts(study));
     PetscCall(PrintContact(study));
   }
+  PetscCall(PetscFree(links.cell));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
