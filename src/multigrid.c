@@ -19,6 +19,9 @@
 #define MULTIGRID_SHOWN 2
 /* Whatever its effort was at first, multigrid of an older operator is made anew after a solve of so many iterations. */
 #define MULTIGRID_MOST 60
+/* Rows of the interface up to which one rank factors them for all: in so small a factor ranks wait for each other longer than they work. With 5,600 rows two
+   take 1.5 to 3 times as long as one, and four times for a solve. */
+#define MULTIGRID_ALONE 30000
 /* Most rigid-body modes there are */
 #define MULTIGRID_MODES 6
 
@@ -37,6 +40,7 @@ struct _n_Multigrid {
   Vec        nodes_right, nodes_left, rest;
   Mat        contact;   /* borrowed: that part of the operator */
   IS         interface; /* rows of this rank that contact couples; NULL: no rank has any */
+  IS         whole;     /* where the first rank factors for all: those of all ranks there, none on others; NULL: each has its own */
   PetscInt   coupled;   /* how many there were, on all ranks, when multigrid was made */
   KSP        direct;
   Vec        interface_right, interface_left;
@@ -375,9 +379,43 @@ static PetscErrorCode ForgetInterface(Multigrid m)
 {
   PetscFunctionBeginUser;
   PetscCall(ISDestroy(&m->interface));
+  PetscCall(ISDestroy(&m->whole));
   PetscCall(VecDestroy(&m->interface_right));
   PetscCall(VecDestroy(&m->interface_left));
   PetscCall(VecScatterDestroy(&m->to_interface));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* A direct solver on some of the ranks */
+static PetscErrorCode CreateDirect(Multigrid m, MPI_Comm comm)
+{
+  PetscFunctionBeginUser;
+  PetscCall(KSPDestroy(&m->direct));
+  PetscCall(KSPCreate(comm, &m->direct));
+  PetscCall(KSPSetOptionsPrefix(m->direct, MULTIGRID_INTERFACE));
+  PetscCall(DirectSolverSet(m->direct, m->symmetric));
+  PetscCall(KSPSetFromOptions(m->direct));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Who factors an interface of n rows. */
+static PetscErrorCode ShareInterface(Multigrid m, PetscInt n)
+{
+  PetscMPIInt     rank, size;
+  const PetscInt *rows;
+  IS              all;
+
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Comm_rank(m->mesh->comm, &rank));
+  PetscCallMPI(MPI_Comm_size(m->mesh->comm, &size));
+  if (size > 1 && n <= MULTIGRID_ALONE) {
+    PetscCall(ISAllGather(m->interface, &all));
+    PetscCall(ISGetIndices(all, &rows));
+    PetscCall(ISCreateGeneral(PETSC_COMM_SELF, rank ? 0 : n, rows, PETSC_COPY_VALUES, &m->whole));
+    PetscCall(ISRestoreIndices(all, &rows));
+    PetscCall(ISDestroy(&all));
+  }
+  PetscCall(CreateDirect(m, m->whole ? PETSC_COMM_SELF : m->mesh->comm));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -405,7 +443,10 @@ PetscErrorCode MultigridSetContact(Multigrid m, Mat C, PetscBool changed)
     if (coupled) rows[n++] = row;
   }
   PetscCallMPI(MPI_Allreduce(&n, &all, 1, MPIU_INT, MPI_SUM, m->mesh->comm));
-  if (all) PetscCall(ISCreateGeneral(m->mesh->comm, n, rows, PETSC_COPY_VALUES, &m->interface));
+  if (all) {
+    PetscCall(ISCreateGeneral(m->mesh->comm, n, rows, PETSC_COPY_VALUES, &m->interface));
+    PetscCall(ShareInterface(m, all));
+  }
   PetscCall(PetscFree(rows));
   if (all > MULTIGRID_CHANGE * m->coupled || m->coupled > MULTIGRID_CHANGE * all) m->renew = PETSC_TRUE;
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -419,21 +460,47 @@ PetscErrorCode MultigridRenew(Multigrid m)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Factors of the operator's rows and columns of the interface, on all ranks together. */
+/* The operator's rows and columns of the interface; NULL: another rank has them. */
+static PetscErrorCode InterfaceBlock(Multigrid m, Mat A, Mat *block)
+{
+  Mat     *blocks;
+  PetscInt n;
+
+  PetscFunctionBeginUser;
+  *block = NULL;
+  if (!m->whole) {
+    PetscCall(MatCreateSubMatrix(A, m->interface, m->interface, MAT_INITIAL_MATRIX, block));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  PetscCall(ISGetLocalSize(m->whole, &n));
+  PetscCall(MatCreateSubMatrices(A, n ? 1 : 0, &m->whole, &m->whole, MAT_INITIAL_MATRIX, &blocks));
+  if (n) PetscCall(PetscObjectReference((PetscObject)(*block = blocks[0])));
+  PetscCall(MatDestroySubMatrices(n ? 1 : 0, &blocks));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Factors of the operator's rows and columns of the interface. */
 static PetscErrorCode SetUpInterface(Multigrid m, Mat A)
 {
-  Mat block;
+  const IS rows = m->whole ? m->whole : m->interface;
+  PetscInt n;
+  Mat      block;
 
   PetscFunctionBeginUser;
   if (!m->interface) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(MatCreateSubMatrix(A, m->interface, m->interface, MAT_INITIAL_MATRIX, &block));
-  PetscCall(MatSetOption(block, MAT_SYMMETRIC, m->symmetric));
-  PetscCall(KSPReset(m->direct));
-  PetscCall(KSPSetOperators(m->direct, block, block));
-  PetscCall(KSPSetUp(m->direct));
+  PetscCall(InterfaceBlock(m, A, &block));
+  if (block) {
+    PetscCall(MatSetOption(block, MAT_SYMMETRIC, m->symmetric));
+    PetscCall(KSPSetOperators(m->direct, block, block));
+    PetscCall(KSPSetUp(m->direct));
+  }
   if (!m->to_interface) {
-    PetscCall(MatCreateVecs(block, &m->interface_left, &m->interface_right));
-    PetscCall(VecScatterCreate(m->number, m->interface, m->interface_right, NULL, &m->to_interface));
+    PetscCall(ISGetLocalSize(rows, &n));
+    PetscCall(VecCreate(PetscObjectComm((PetscObject)rows), &m->interface_right));
+    PetscCall(VecSetSizes(m->interface_right, n, PETSC_DETERMINE));
+    PetscCall(VecSetType(m->interface_right, VECSTANDARD));
+    PetscCall(VecDuplicate(m->interface_right, &m->interface_left));
+    PetscCall(VecScatterCreate(m->number, rows, m->interface_right, NULL, &m->to_interface));
   }
   PetscCall(MatDestroy(&block));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -442,10 +509,13 @@ static PetscErrorCode SetUpInterface(Multigrid m, Mat A)
 /* left += (interface solve of right) */
 static PetscErrorCode AddInterface(Multigrid m, Vec right, Vec left)
 {
+  PetscInt n;
+
   PetscFunctionBeginUser;
   PetscCall(VecScatterBegin(m->to_interface, right, m->interface_right, INSERT_VALUES, SCATTER_FORWARD));
   PetscCall(VecScatterEnd(m->to_interface, right, m->interface_right, INSERT_VALUES, SCATTER_FORWARD));
-  PetscCall(KSPSolve(m->direct, m->interface_right, m->interface_left));
+  PetscCall(VecGetSize(m->interface_right, &n));
+  if (n) PetscCall(KSPSolve(m->direct, m->interface_right, m->interface_left));
   PetscCall(VecScatterBegin(m->to_interface, m->interface_left, left, ADD_VALUES, SCATTER_REVERSE));
   PetscCall(VecScatterEnd(m->to_interface, m->interface_left, left, ADD_VALUES, SCATTER_REVERSE));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -519,16 +589,6 @@ static PetscErrorCode Apply(PC pc, Vec right, Vec left)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode CreateDirect(Multigrid m)
-{
-  PetscFunctionBeginUser;
-  PetscCall(KSPCreate(m->mesh->comm, &m->direct));
-  PetscCall(KSPSetOptionsPrefix(m->direct, MULTIGRID_INTERFACE));
-  PetscCall(DirectSolverSet(m->direct, m->symmetric));
-  PetscCall(KSPSetFromOptions(m->direct));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* MultigridCreate - makes itself the preconditioner of a KSP, which keeps its residuals for it; the caller destroys *out after the KSP.
 
    Collective. mesh: borrowed, its constraints set. axisymmetric: the only rigid-body mode is the one along the axis. symmetric: of the operators.
@@ -546,7 +606,6 @@ PetscErrorCode MultigridCreate(Mesh mesh, PetscBool axisymmetric, PetscBool symm
   m->symmetric    = symmetric;
   m->changed = m->renew = PETSC_TRUE;
   PetscCall(NumberNodes(m));
-  PetscCall(CreateDirect(m));
   PetscCall(KSPSetResidualHistory(ksp, NULL, PETSC_DECIDE, PETSC_TRUE));
   PetscCall(KSPGetPC(ksp, &pc));
   PetscCall(PCSetType(pc, PCSHELL));
