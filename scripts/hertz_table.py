@@ -1,9 +1,11 @@
 """Hertz's line and point contact on series of meshes, node to surface and surface to surface: contact width and peak pressure against the closed form.
 Runs the scenes, leaves one record per run and prints the table; --print tables an existing record.
-    python scripts/hertz_table.py [--burnish BINARY] [--record FILE] [--jobs N] [--print] [line] [sphere]
+    python scripts/hertz_table.py [--burnish BINARY] [--record FILE] [--jobs N] [--print] [line] [sphere] [far]
 The line's load is a fortieth of its scene's: half-width 1 on a radius of 50, where Hertz's parabola and half-spaces hold to 0.1 %. An edge falls somewhere in
 an element; so each figure is the largest error over the last loads, in which the edge runs over one of them. Width: of the half-ellipse with the centre of
-force that the nodal pressures have, which sees the whole zone and no single node; beside it the probe's edge, along a line of nodes."""
+force that the nodal pressures have, which sees the whole zone and no single node; beside it the probe's edge, along a line of nodes.
+Meshes: `rows` of bricks, their interface nodes moved or not, and `free` ones, as a mesher lays quadrilaterals; several draws of what is random. They are even
+within 1.3 (line) and 1.5 half-widths (sphere) and grow from there on as fast as the answers allow, GROWTH; `far` tells what slower growth changes."""
 import csv
 import json
 import shutil
@@ -18,27 +20,44 @@ WITHIN = 1.0  # per cent: what an engineer asks of a width and a peak
 RATIO = 0.8  # of the two bodies' elements, as in the meshes
 LINE_LOAD, LINE_ZONE = 350 / 6.215**2, 1.3  # half-width 1
 SPHERE_ZONE = 1.5
+GROWTH = {"line": 0.5, "sphere": 3, "sphere free": 1}  # of the scenes' meshes, beyond the zone
+SLOWER = {"line": (0.05, 0.15), "sphere": (1.4,)}  # to see what that changes
+EVEN, MOVED, FREE = ("rows", 0, 1), tuple(("rows", 0.25, seed) for seed in (1, 2, 3)), tuple(("free", 0, seed) for seed in (1, 2, 3))
+MOVED_5, FREE_MOVED = tuple(("rows", 0.25, seed) for seed in (1, 2, 3, 4, 5)), tuple(("free", 0.25, seed) for seed in (1, 2, 3))
 SCENES = {
     # pair, probe of the edge, peak pressure, centre of force over the width, growth of width and peak with the load, first load that counts, step; series:
-    # order, elements of the slave along the half-width or radius, jitters and seeds
-    "line": ("line", "half_width", 3585.4 / 6.215, 4 / (3 * numpy.pi), 1 / 2, 0.8, 0.05, ((1, (4, 6, 8, 12, 16), ((0, 1), (0.25, 1), (0.25, 2))), (2, (2, 3, 4, 6, 8), ((0, 1),)))),
+    # order, elements of the slave along the half-width or radius, meshes: kind, largest move of an interface node in elements, draw; growth if not GROWTH
+    "line": ("line", "half_width", 3585.4 / 6.215, 4 / (3 * numpy.pi), 1 / 2, 0.8, 0.05, (
+        (1, (4, 5, 6, 8, 10, 12, 16), (EVEN, *MOVED_5, ("free", 0, 1), *FREE_MOVED)),
+        (2, (2, 3, 4, 5, 6, 8, 12), (EVEN, *MOVED_5, ("free", 0, 1), *FREE_MOVED)))),
     "sphere": ("point", "radius", 734.6, 3 * numpy.pi / 16, 1 / 3, 0.5, 0.1, (
-        (1, (2.5, 3.33, 4.17, 5, 6.67), ((0, 1),)), (1, (2.5, 3.33, 4.17, 5, 6.67, 8.33), ((0.25, 1), (0.25, 2))), (2, (1.67,), ((0, 1),)))),
+        (1, (2.5, 3.33, 4.17, 5, 6.67), (EVEN, *MOVED)), (1, (8.33,), MOVED[:2]),
+        (1, (3.33, 4.17, 5, 6.67), FREE), (1, (8.33,), FREE[:2]), (2, (1.67, 2.5), (EVEN,)),
+        (1, (2.5, 3.33, 4.17, 5, 6.67), (EVEN, *MOVED[:2]), SLOWER["sphere"][0]), (1, (8.33,), MOVED[:2], SLOWER["sphere"][0]))),
 }
+FAR = (("line", 1, 6, *EVEN), ("line", 2, 3, *EVEN), ("sphere", 1, 5, *EVEN))
 # nodes of the bricks by their place along three directions
 LATTICES = {"cells_hex8": numpy.reshape([0, 1, 3, 2, 4, 5, 7, 6], (2, 2, 2)),
             "cells_hex27": numpy.reshape([0, 8, 1, 11, 24, 9, 3, 10, 2, 16, 22, 17, 20, 26, 21, 19, 23, 18, 4, 12, 5, 15, 25, 13, 7, 14, 6], (3, 3, 3))}
 FORMULATIONS = ("node_to_surface", "surface_to_surface")
-COLUMNS = ("scene", "order", "faces", "jitter", "seed", "formulation", "status", "elements", "iterations", "wall_s", "width", "peak", "edge")
+COLUMNS = ("scene", "order", "faces", "mesh", "jitter", "seed", "growth", "formulation", "status", "elements", "iterations", "wall_s", "width", "peak", "edge")
 
 
-def overrides(scene, order, faces, jitter, seed):
-    if scene == "line":
-        mesh = {"h": 1 / (RATIO * faces), "zone": LINE_ZONE, "jitter": jitter, "seed": seed}
-        rest = [f"loads.0.pressure={LINE_LOAD:.6g}", "contact.0.penalty.scale=100"]
+def growth_of(scene, mesh):
+    """Key of GROWTH and SLOWER."""
+    return "sphere free" if (scene, mesh) == ("sphere", "free") else scene
+
+
+def overrides(scene, order, faces, mesh, jitter, seed, growth):
+    if scene == "line":  # the penalty's softness shall not count: at 100 it is 0.4 % of the width
+        values = {"h": 1 / (RATIO * faces), "zone": LINE_ZONE, "core": LINE_ZONE, "rows": int(mesh == "rows"), "jitter": jitter}
+        rest = [f"loads.0.pressure={LINE_LOAD:.6g}", "contact.0.penalty.scale=1000"]
     else:
-        mesh, rest = {"n": round(SPHERE_ZONE * faces * RATIO), "jitter": jitter, "seed": seed}, [f"solver.type={'direct' if order > 1 else 'iterative'}"]  # what is faster
-    return ["mesh.parameters={" + ", ".join(f"{k}: {v:.8g}" for k, v in mesh.items()) + "}", *rest]
+        values = {"n": round(SPHERE_ZONE * faces * RATIO), **({"jitter": jitter} if mesh == "rows" else {})}
+        rest = [f"solver.type={'direct' if order > 1 else 'iterative'}"]  # what is faster
+        rest += ["mesh.file=../meshes/hertz_sphere_free.geo"] if mesh == "free" else []
+    values.update(seed=seed, growth=growth)
+    return [*rest, "mesh.parameters={" + ", ".join(f"{k}: {v:.8g}" for k, v in values.items()) + "}"]
 
 
 def length_shares(x):
@@ -80,13 +99,13 @@ def centre_of_force(directory, pair):
 
 
 def solve(case, args):
-    scene, order, faces, jitter, seed, formulation = case
+    scene, order, faces, mesh, jitter, seed, slope, formulation = case
     pair, probe, peak, centre, growth, first, step, *_ = SCENES[scene]
     directory = args.out / "-".join(str(v) for v in case)
     shutil.rmtree(directory, ignore_errors=True)
     command = [args.burnish, str(ROOT / "runs" / f"hertz_{scene}.yaml"), "-o", str(directory), "-quiet"]
     for override in (f"mesh.order={order}", f"contact.0.formulation={formulation}", f"stepping.initial={step}", "output.every=1", "output.fields=[displacement, contact]",
-                     *overrides(scene, order, faces, jitter, seed)):
+                     *overrides(scene, order, faces, mesh, jitter, seed, slope)):
         command += ["-set", override]
     finished = subprocess.run(command, env=environment(), stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
     record = dict(zip(COLUMNS, (*case, finished.returncode)))
@@ -107,41 +126,73 @@ def solve(case, args):
     return record
 
 
+def largest(runs, names=("width", "peak", "edge")):
+    return [max((float(r[name]) for r in runs), key=abs) for name in names]
+
+
 def print_table(records):
-    print("Largest error against Hertz over the last loads, per cent: width, peak pressure, (edge of the probe)\n")
-    print("| scene | order | moved by | faces | elements | node to surface | surface to surface | iterations |\n|" + " --- |" * 8)
+    series, solved = ("scene", "order", "mesh", "jitter", "growth"), [r for r in records if r["status"] == "0"]
+    print("Largest error against Hertz over the last loads and all draws, per cent: width, peak pressure, (edge of the probe)\n")
+    print("| scene | order | mesh | moved by | growth | faces | draws | elements | node to surface | surface to surface | iterations |\n|" + " --- |" * 11)
     needed = {}
-    for key in dict.fromkeys((r["scene"], r["order"], r["jitter"], r["faces"]) for r in records):
-        cells, same = [], [r for r in records if (r["scene"], r["order"], r["jitter"], r["faces"]) == key]
+    for key in dict.fromkeys(tuple(r[name] for name in (*series, "faces")) for r in records):
+        cells, iterations, elements, draws = [], [], "-", 0
         for formulation in FORMULATIONS:
-            runs = [r for r in same if r["formulation"] == formulation and r["status"] == "0"]
+            runs = [r for r in solved if tuple(r[name] for name in (*series, "faces")) == key and r["formulation"] == formulation]
+            iterations.append(str(max((int(r["iterations"]) for r in runs), default="-")))
             if not runs:
                 cells.append("-")
                 continue
-            width, peak, edge = (max((float(r[name]) for r in runs), key=abs) for name in ("width", "peak", "edge"))
+            width, peak, edge = largest(runs)
+            elements, draws = max(int(r["elements"]) for r in runs), max(draws, len(runs))
             cells.append(f"{width:+.2f}, {peak:+.2f} ({edge:+.1f})")
-            mine = needed.setdefault((*key[:3], formulation), [])
-            mine.append((float(key[3]), int(runs[0]["elements"]), max(abs(width), abs(peak)) <= WITHIN))
-        iterations = " / ".join(str(max((int(r["iterations"]) for r in same if r["formulation"] == f and r["status"] == "0"), default="-")) for f in FORMULATIONS)
-        print(f"| {key[0]} | {key[1]} | {100 * float(key[2]):g} % | {key[3]} | {same[0]['elements'] or '-'} | {cells[0]} | {cells[1]} | {iterations} |")
-    print(f"\nElements from which on width and peak are within {WITHIN:g} %:")
-    for (scene, order, jitter, formulation), meshes in needed.items():
-        meshes.sort()
-        missed = max((i for i, (*_, good) in enumerate(meshes) if not good), default=-1)
-        print(f"  {scene}, order {order}, moved by {100 * float(jitter):g} %, {formulation}: {meshes[missed + 1][1] if missed + 1 < len(meshes) else f'more than {meshes[-1][1]}'}")
+            needed.setdefault((*key[:5], formulation), []).append((float(key[5]), elements, max(abs(width), abs(peak)) <= WITHIN))
+        print(f"| {key[0]} | {key[1]} | {key[2]} | {100 * float(key[3]):g} % | {key[4]} | {key[5]} | {draws} | {elements} | {cells[0]} | {cells[1]} | {' / '.join(iterations)} |")
+    print(f"\nElements from which on width and peak of all draws are within {WITHIN:g} %:\n")
+    print("| scene | order | mesh | moved by | growth | node to surface | surface to surface | ratio |\n|" + " --- |" * 8)
+    for key in dict.fromkeys(key[:5] for key in needed if len(needed[key]) > 1):
+        cells, counts = [], []
+        for formulation in FORMULATIONS:
+            meshes = sorted(needed.get((*key, formulation), []))
+            missed = max((i for i, (*_, good) in enumerate(meshes) if not good), default=-1)
+            beyond = missed + 1 >= len(meshes)
+            counts.append((meshes[missed if beyond else missed + 1][1], beyond))
+            cells.append(f"{'more than ' if beyond else ''}{counts[-1][0]}")
+        (node, node_beyond), (surface, surface_beyond) = counts
+        ratio = "-" if surface_beyond else f"{'more than ' if node_beyond else ''}{node / surface:.2g}"
+        print(f"| {key[0]} | {key[1]} | {key[2]} | {100 * float(key[3]):g} % | {key[4]} | {cells[0]} | {cells[1]} | {ratio} |")
+
+
+def print_far(records):
+    """What the growth of the elements beyond the contact changes."""
+    print("\nThe same against the growth of the elements beyond\n\n| scene | order | mesh | faces | growth | elements | node to surface | surface to surface |\n|" + " --- |" * 8)
+    for scene, order, faces, mesh, jitter, seed in FAR:
+        for growth in (*SLOWER[growth_of(scene, mesh)], GROWTH[growth_of(scene, mesh)]):
+            key = tuple(str(v) for v in (scene, order, faces, mesh, jitter, seed, growth))
+            runs = [r for r in records if tuple(r[name] for name in COLUMNS[:7]) == key and r["status"] == "0"]
+            cells = ["{:+.2f}, {:+.2f} ({:+.1f})".format(*largest([r])) for f in FORMULATIONS for r in runs if r["formulation"] == f]
+            if len(cells) == 2:
+                print(f"| {scene} | {order} | {mesh} | {faces} | {growth} | {runs[0]['elements']} | {cells[0]} | {cells[1]} |")
+
+
+def cases_of(names):
+    cases = [(scene, order, faces, *moves, *(growth or [GROWTH[growth_of(scene, moves[0])]]), formulation) for scene in SCENES if scene in names
+             for order, meshes, moved, *growth in SCENES[scene][7] for moves in moved for faces in meshes for formulation in FORMULATIONS]
+    if "far" in names:
+        cases += [(*case, growth, formulation) for case in FAR for growth in SLOWER[growth_of(case[0], case[3])] for formulation in FORMULATIONS]
+    return list(dict.fromkeys(cases))
 
 
 def main():
     parser = table_parser(__doc__, "hertz")
-    parser.add_argument("scenes", nargs="*", metavar="SCENE", help=f"of {', '.join(SCENES)}; default: both")
+    parser.add_argument("scenes", nargs="*", metavar="SCENE", help=f"of {', '.join(SCENES)}, far; default: all")
     parser.add_argument("--jobs", type=int, default=1, help="runs at the same time")
     args = parser.parse_args()
-    cases = [(scene, order, faces, *moves, formulation) for scene in args.scenes or SCENES for order, meshes, moved in SCENES[scene][7] for moves in moved
-             for faces in meshes for formulation in FORMULATIONS]
     if not args.only_print:
         args.out.mkdir(parents=True, exist_ok=True)
-        write_records(args.record, COLUMNS, lambda case: [solve(case, args)], cases, args.jobs)
+        write_records(args.record, COLUMNS, lambda case: [solve(case, args)], cases_of(args.scenes or (*SCENES, "far")), args.jobs)
     print_table(read_records(args.record))
+    print_far(read_records(args.record))
 
 
 if __name__ == "__main__":
