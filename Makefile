@@ -31,7 +31,8 @@ PACKAGES      := PETSc yaml-0.1 libcjson
 pkgconfig      = $(shell PKG_CONFIG_PATH='$(PKG_CONFIG_PATH)' pkg-config $(1) 2>/dev/null)
 petscvariable  = $(shell sed -n 's/^$(1) *= *//p' $(call pkgconfig,--variable=prefix PETSc)/lib/petsc/conf/petscvariables 2>/dev/null)
 
-ALL_CFLAGS := -std=gnu11 -march=$(ARCH) $(CFLAGS) -Wall -Wextra
+# -fno-math-errno: nobody asks errno about a root, for which each one of a vector would be taken by itself.
+ALL_CFLAGS := -std=gnu11 -march=$(ARCH) $(CFLAGS) -Wall -Wextra -fno-math-errno
 INCLUDES    = -Iinclude $(call pkgconfig,--cflags-only-I $(PACKAGES)) $(call petscvariable,HDF5_INCLUDE)
 LIBRARIES   = -lmetis $(call pkgconfig,--libs $(PACKAGES)) $(call petscvariable,HDF5_LIB) -Wl,-rpath,$(call pkgconfig,--variable=libdir PETSc) -ldl -lm
 CMOCKA      = $(call pkgconfig,--libs cmocka)

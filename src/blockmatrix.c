@@ -30,7 +30,7 @@ struct _n_BlockMatrix {
   PetscInt        *mirror;              /* of the pairs above the diagonal: the pair with row and column swapped */
   PetscInt        *row_ptr;             /* of each node, its rows in the blocks */
   BlockRow        *row;
-  PetscInt        *seen, *at; /* of each node of the matrix: the last pair in whose column it stood; at: numbers of the block at hand */
+  PetscInt        *seen, *at; /* of each node of the matrix: the last sum in whose column it stood; at: numbers of the block at hand */
   SumRow          *sum;       /* [pairs not below the diagonal][size] */
   PetscReal       *value;     /* the matrix' values, pair by pair */
   const PetscReal *along;     /* what blocks are multiplied with as they are added, or NULL */
@@ -40,7 +40,7 @@ struct _n_BlockMatrix {
 
 /* BlockMatrixCreate - an empty one.
 
-   Collective. size: entries come in runs of so many, the dofs of a node, in an order of their own; 1: one by one. */
+   Collective. size: dofs of a node, up to 4, which stand next to each other in blocks in an order of their own; 1: one by one. */
 PetscErrorCode BlockMatrixCreate(MPI_Comm comm, int size, BlockMatrix *blocks)
 {
   PetscFunctionBeginUser;
@@ -557,7 +557,7 @@ PetscErrorCode BlockMatrixEnd(BlockMatrix blocks, Mat *matrix)
 
 /* BlockMatrixArchive - saves or takes over the pattern of the last assembled matrix.
 
-   Collective. name: where it stands in the archive; rows: of this rank, as for BlockMatrixAssemble(). A pattern that is kept depends on what was
+   Collective. name: where it stands in the archive; rows: of this rank, as for BlockMatrixPlace(). A pattern that is kept depends on what was
    assembled before. Dofs are numbered by rank, so that it serves on one rank only, where runs repeat to the last bit. */
 PetscErrorCode BlockMatrixArchive(BlockMatrix blocks, Archive archive, const char *name, PetscInt rows)
 {

@@ -128,8 +128,8 @@ LANES_INLINE void Assemble(const int m, const int degree, const int terms, doubl
   for (int k = 0; k < terms; k++) length[k] = sqrt(LanesSum(squares[k]));
 }
 
-/* Takes the share along the unit column k out of BLOCK columns from j on; share[BLOCK]: how much it was. */
-LANES_INLINE void Project(FitArrays *a, const Lanes *unit, Lanes *column, double *share)
+/* Takes the share along a column out of BLOCK others; its weighted values are in scratch. share[BLOCK]: products of the two. */
+LANES_INLINE void Project(const FitArrays *a, const Lanes *along, double square, Lanes *column, double *share)
 {
   Lanes sum[BLOCK] = {{0}};
 
@@ -138,11 +138,12 @@ LANES_INLINE void Project(FitArrays *a, const Lanes *unit, Lanes *column, double
   }
   for (int b = 0; b < BLOCK; b++) share[b] = LanesSum(sum[b]);
   for (int g = 0; g < a->groups; g++) {
-    for (int b = 0; b < BLOCK; b++) column[b * a->capacity + g] -= share[b] * unit[g];
+    for (int b = 0; b < BLOCK; b++) column[b * a->capacity + g] -= share[b] / square * along[g];
   }
 }
 
-/* Gram-Schmidt; returns the smallest |R_kk| of unit columns. Below FIT_SINGULAR it stops. height[terms]: the heights' coefficients. */
+/* Gram-Schmidt; returns the smallest |R_kk| of unit columns. Below FIT_SINGULAR it stops. height[terms]: the heights' coefficients. A column becomes a unit one
+   after it has been taken out of the others, so that nothing waits for the root. */
 LANES_INLINE double Orthonormalise(const int terms, const double *length, FitArrays *a, FitState *s, Lanes *height)
 {
   double pivot = 1;
@@ -150,20 +151,21 @@ LANES_INLINE double Orthonormalise(const int terms, const double *length, FitArr
   for (int k = 0; k < terms; k++) {
     Lanes *const unit = a->basis + k * a->capacity;
     Lanes        sum  = Broadcast(0);
-    double       norm, share[FIT_MAX_TERMS + 1 + BLOCK];
+    double       square, norm, share[FIT_MAX_TERMS + 1 + BLOCK];
 
-    for (int g = 0; g < a->groups; g++) sum += a->weight[g] * unit[g] * unit[g];
-    norm  = sqrt(LanesSum(sum));
-    pivot = fmin(pivot, norm > 0 ? norm / length[k] : 0);
-    if (!(pivot > FIT_SINGULAR)) return pivot;
-    s->inverse[k] = Broadcast(1 / norm);
     for (int g = 0; g < a->groups; g++) {
-      unit[g] *= s->inverse[k];
       a->scratch[g] = a->weight[g] * unit[g];
+      sum += a->scratch[g] * unit[g];
     }
-    for (int j = k + 1; j <= terms; j += BLOCK) Project(a, unit, a->basis + j * a->capacity, share + j);
-    for (int j = k + 1; j < terms; j++) s->R[k][j] = Broadcast(share[j]);
-    height[k] = Broadcast(share[terms]);
+    square = LanesSum(sum);
+    norm   = sqrt(square);
+    pivot  = fmin(pivot, norm > 0 ? norm / length[k] : 0);
+    if (!(pivot > FIT_SINGULAR)) return pivot;
+    for (int j = k + 1; j <= terms; j += BLOCK) Project(a, unit, square, a->basis + j * a->capacity, share + j);
+    s->inverse[k] = Broadcast(1 / norm);
+    for (int g = 0; g < a->groups; g++) unit[g] *= s->inverse[k];
+    for (int j = k + 1; j < terms; j++) s->R[k][j] = Broadcast(share[j] / norm);
+    height[k] = Broadcast(share[terms] / norm);
   }
   return pivot;
 }
@@ -173,7 +175,7 @@ LANES_INLINE int MakeSurface(const int dim, const int degree, const int terms, c
 {
   FitSurface *const surface = &out->surface;
   double            length[FIT_MAX_TERMS];
-  Lanes             height[FIT_MAX_TERMS];
+  Lanes             height[FIT_MAX_TERMS] = {{0}};
 
   surface->dim    = dim;
   surface->degree = degree;
