@@ -1,7 +1,6 @@
 #include "pressing.h"
 
-/* Sets tried with the columns at hand. Each follows from the gaps that the one before leads to; where terms do not share their neighbours' points the sets
-   shrink or grow to the right one, two in three times at once. */
+/* Sets tried with the columns at hand. Each follows from the gaps that the one before leads to; what is not settled by then goes in circles. */
 #define PRESSING_SETS 30
 /* Rounding of a pressure, by itself */
 #define PRESSING_ROUND_OFF 1e-12
