@@ -156,6 +156,8 @@ PetscErrorCode ContactPairFits(Contact, int pair, ContactFits *);
 /* contactquality.c: the present state of a pair, for reports. Collective. */
 PetscErrorCode ContactPairGaps(Contact, int pair, ContactGaps *);
 PetscErrorCode ContactPairQuality(Contact, int pair, ContactQuality *);
+/* Slave nodes that are the master's too, and the place of one of them. */
+PetscErrorCode ContactPairJoined(Contact, int pair, PetscInt *nodes, ContactPlace *);
 PetscReal      ContactNodeGap(Contact, PetscInt node); /* smallest gap of a local node of this rank, NaN: none. Not collective */
 const char    *ContactPairText(Contact, int pair);     /* what touches what, and how; valid until the next call */
 MPI_Comm       ContactComm(Contact);

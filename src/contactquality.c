@@ -1,4 +1,5 @@
 #include "contactimpl.h"
+#include "meshdofs.h"
 
 /* Gaps below this part of a face size are round-off of coordinates and projections. */
 #define QUALITY_ROUND_OFF 1e-9
@@ -104,6 +105,34 @@ PetscErrorCode ContactPairQuality(Contact contact, int p, ContactQuality *qualit
   quality->max_penetration_over_h = most[1];
   quality->sagitta                = sum[1] > 0 ? sum[0] / sum[1] : 0;
   if (quality->sagitta <= QUALITY_ROUND_OFF * pair->slave->mean_size) quality->sagitta = 0;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* ContactPairJoined - how many slave nodes of pair p are nodes of its master as well: there the surfaces are one and never part. Collective. */
+PetscErrorCode ContactPairJoined(Contact contact, int p, PetscInt *nodes, ContactPlace *place)
+{
+  const ContactPair *pair = &contact->pairs[p];
+  Mesh               mesh = contact->mesh;
+  PetscReal         *of_master, *joined;
+
+  PetscFunctionBeginUser;
+  *nodes = 0;
+  if (!pair->master || pair->master->rigid) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscMalloc2(mesh->n_nodes, &of_master, pair->n, &joined));
+  PetscCall(PetscArrayzero(of_master, mesh->n_nodes));
+  for (PetscInt f = 0; f < pair->master->n_faces; f++) {
+    const Facet *face = &pair->master->faces[f];
+
+    for (int i = 0; i < ElementGet(face->type)->nodes; i++) of_master[face->nodes[i]] = 1;
+  }
+  PetscCall(MeshSumNodes(mesh, 1, of_master));
+  for (PetscInt c = 0; c < pair->n; c++) {
+    joined[c] = of_master[pair->node[c]] > 0 ? 1 : NAN;
+    *nodes += of_master[pair->node[c]] > 0;
+  }
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, nodes, 1, MPIU_INT, MPI_SUM, mesh->comm));
+  PetscCall(FindPlace(mesh, pair, joined, 1, place));
+  PetscCall(PetscFree2(of_master, joined));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

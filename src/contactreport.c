@@ -33,6 +33,13 @@ static void PrintGaps(const ContactGaps *gaps, FILE *file)
             gaps->overlapping, (double)gaps->area, gaps->refused);
 }
 
+static void PrintJoined(PetscInt nodes, const ContactPlace *place, FILE *file)
+{
+  if (!nodes) return;
+  fprintf(file, "           slave and master have %" PetscInt_FMT " node%s in common, as node %" PetscInt_FMT " (%.6g, %.6g, %.6g): there they never part\n",
+          nodes, nodes > 1 ? "s" : "", place->tag, (double)place->X[0], (double)place->X[1], (double)place->X[2]);
+}
+
 static void PrintPenalty(const SceneContact *scene, PetscReal penalty, FILE *file)
 {
   fprintf(file, "           penalty %.6g (force per length and area), %s times %g\n", (double)penalty, scene->penalty_auto ? "automatic" : "as given",
@@ -58,17 +65,21 @@ PetscErrorCode ContactReport(Contact contact, FILE *file)
     ContactFits      fits;
     ContactGaps      gaps;
     ContactQuality   quality;
+    PetscInt         joined;
+    ContactPlace     place;
 
     PetscCallMPI(MPI_Comm_rank(ContactComm(contact), &rank));
     PetscCall(ContactPairPenalty(contact, p, &least, &most));
     PetscCall(ContactPairGaps(contact, p, &gaps));
     PetscCall(ContactPairQuality(contact, p, &quality));
     PetscCall(ContactPairFits(contact, p, &fits));
+    PetscCall(ContactPairJoined(contact, p, &joined, &place));
     PetscCall(ContactPairSurface(contact, p, &slave, &size));
     if (rank) continue;
     fprintf(file, "contact  %s: %s\n", ContactPairName(contact, p), ContactPairText(contact, p));
     PrintPenalty(ContactPairScene(contact, p), most, file);
     PrintGaps(&gaps, file);
+    PrintJoined(joined, &place, file);
     if (fits.points)
       PrintFits(&fits, size, file);
     else if (quality.sagitta > 0)

@@ -548,6 +548,27 @@ static void ResultsPrintLocking(Results results)
   }
 }
 
+/* A mesher that merges the points in which two bodies touch has joined them: no load would part them, and no gap say so. */
+static PetscErrorCode ResultsPrintJoined(Results results)
+{
+  const Scene  scene = results->scene;
+  PetscInt     nodes;
+  ContactPlace place;
+
+  PetscFunctionBeginUser;
+  for (int p = 0; p < scene->n_contacts; p++) {
+    const SceneContact *contact = &scene->contacts[p];
+
+    PetscCall(ContactPairJoined(results->model->contact, p, &nodes, &place));
+    if (results->rank || !nodes) continue;
+    fprintf(stderr,
+            "burnish: warning: contact '%s': '%s' and '%s' have %" PetscInt_FMT " node%s in common, as node %" PetscInt_FMT
+            " (%.6g, %.6g, %.6g): there they are one body and never part\n",
+            contact->name, contact->slave, contact->master, nodes, nodes > 1 ? "s" : "", place.tag, (double)place.X[0], (double)place.X[1], (double)place.X[2]);
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /*
   ResultsStart - Makes the directory with the record of the scene and the head of steps.csv, and prints the run's first lines. The time
   spent counts from here. Collective. Errors: refuses (exit 1) a directory that cannot be made or written.
@@ -570,6 +591,7 @@ PetscErrorCode ResultsStart(Results results)
   }
   PetscCall(ResultsPrintHead(results));
   ResultsPrintLocking(results);
+  PetscCall(ResultsPrintJoined(results));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

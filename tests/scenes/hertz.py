@@ -53,4 +53,6 @@ for name, faces, share, mesh in (("sphere", 2, 0.2, []), ("sphere, free", 3, 0.3
     probes = run(args, SCENES.parent.parent / "runs" / "hertz_sphere.yaml", out=name.replace(", ", "_"), overrides=[*mesh, f"mesh.parameters.n={faces}"]).summary()["probes"]
     check.near(f"{name}: force", probes["force"], force, 1e-6 * force)
     check.near(f"{name}: radius", probes["radius"], 1, share / faces)
+joined = run(args, SCENES.parent.parent / "runs" / "hertz_sphere.yaml", out="joined", overrides=["mesh.file=../meshes/hertz_sphere_free.geo", "mesh.parameters={n: 2, apart: 0}"])
+check.holds("bodies that the mesher has joined are told of", "have 1 node in common" in joined.text, "no warning")
 check.finish()
