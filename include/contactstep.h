@@ -17,5 +17,5 @@ PetscErrorCode ContactStepWithin(ContactStep, const PetscReal *du, PetscReal t, 
 /* The forces of a pressure of 1 on each of m terms, against the gap's opening, over the free dofs: dense, the caller's. rows: the matrix's on this rank.
    Collective. */
 PetscErrorCode ContactStepForces(ContactStep, PetscInt rows, PetscInt m, const PetscInt *which, Mat *B);
-/* What presses at the end of the step is what ContactUnforeseen() leaves out; pressed[n]. Not collective. */
+/* What presses at the end of a step that predicts (ContactPredict()) is what ContactUnforeseen() leaves out; pressed[n]. Not collective. */
 PetscErrorCode ContactStepForesee(ContactStep, const PetscBool *pressed);

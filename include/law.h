@@ -1,5 +1,6 @@
 /* The contact law: from the (weighted) gap of a slave node and its state to the potential per area and its derivatives. Plain C.
-   A new law is one function in law.c and one line in its table. */
+   A new law is one function in law.c and one line in its table. Where a term presses its pressure is -penalty (gap - LawRest()), as linear steps count on
+   (pressing.h): a law of another shape must be left out there. */
 #pragma once
 
 typedef struct {

@@ -587,7 +587,7 @@ PetscErrorCode BlockMatrixArchive(BlockMatrix blocks, Archive archive, const cha
   if (!ArchiveLoads(archive)) PetscFunctionReturn(PETSC_SUCCESS);
   blocks->n_nodes = n[0];
   PetscCall(ListMirrors(blocks));
-  blocks->n_pattern = 0; /* where the next blocks stand in it is found then */
+  blocks->n_pattern = -1; /* no blocks' as yet: where the next ones stand in it is found then */
   PetscCall(CreateMatrix(blocks, rows));
   blocks->restored = PETSC_TRUE;
   PetscFunctionReturn(PETSC_SUCCESS);

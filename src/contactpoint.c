@@ -104,8 +104,8 @@ static PetscErrorCode WorkReserveMap(ContactWork *work, ContactLists lists, int 
   PetscFunctionBeginUser;
   PetscCall(WorkReserveSlots(work, lists));
   if (rows <= work->map.rows_room && entries <= work->map.entries_room) PetscFunctionReturn(PETSC_SUCCESS);
-  work->map.rows_room    = 2 * rows;
-  work->map.entries_room = 2 * (int)entries;
+  work->map.rows_room    = PetscMax(work->map.rows_room, 2 * rows);
+  work->map.entries_room = PetscMax(work->map.entries_room, 2 * (int)entries);
   PetscCall(PetscFree5(work->map.ptr, work->map.node, work->map.S, work->map.sign, work->number));
   PetscCall(PetscMalloc5(work->map.rows_room + 1, &work->map.ptr, work->map.entries_room, &work->map.node, work->map.entries_room, &work->map.S,
                          3 * work->map.entries_room, &work->map.sign, work->map.entries_room, &work->number));

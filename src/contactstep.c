@@ -261,6 +261,10 @@ PetscErrorCode ContactStepForces(ContactStep step, PetscInt rows, PetscInt m, co
 PetscErrorCode ContactStepForesee(ContactStep step, const PetscBool *pressed)
 {
   PetscFunctionBeginUser;
-  for (PetscInt i = 0; i < step->mine; i++) step->contact->pairs[step->pair[i]].foreseen[step->term[i]] = pressed[step->first[step->rank] + i];
+  for (PetscInt i = 0; i < step->mine; i++) {
+    const ContactPair *pair = &step->contact->pairs[step->pair[i]];
+
+    if (pair->predicting) pair->foreseen[step->term[i]] = pressed[step->first[step->rank] + i];
+  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -164,7 +164,8 @@ static PetscErrorCode FactorAnew(KeptFactor kept, PC pc, Mat A, PetscBool *faile
   PetscCall(PCSetUp(pc));
   PetscCall(Begin(kept));
   PetscCall(PCGetFailedReason(pc, &reason));
-  *failed = reason ? PETSC_TRUE : PETSC_FALSE;
+  *failed      = reason ? PETSC_TRUE : PETSC_FALSE;
+  kept->exists = *failed ? PETSC_FALSE : PETSC_TRUE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -103,6 +103,7 @@ PetscErrorCode LinearSolverRenew(LinearSolver solver)
 {
   PetscFunctionBeginUser;
   if (solver->multigrid) PetscCall(MultigridRenew(solver->multigrid));
+  if (solver->multigrid) PetscCall(KSPSetTolerances(solver->ksp, PETSC_DEFAULT, 0, PETSC_DEFAULT, PETSC_DEFAULT)); /* what the last solve was content with */
   if (solver->kept) PetscCall(KeptFactorRenew(solver->kept));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -292,7 +292,7 @@ PetscErrorCode OffsetsExtrapolate(Offsets o, const PetscReal *u, PetscReal t, Pe
   PetscBool done;
 
   PetscFunctionBeginUser;
-  if (!o->taken) *changed = PETSC_TRUE;
+  if (!o->taken && o->kind != OFFSETS_NONE) *changed = PETSC_TRUE;
   PetscCall(TakeOnce(o, &done));
   if (done) PetscFunctionReturn(PETSC_SUCCESS);
   if (t != o->t_now) {

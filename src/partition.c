@@ -7,7 +7,7 @@ enum { METIS_SEED = 1 }; /* any fixed number: the same mesh and ranks give the s
 static const real_t CELL_TOLERANCE = 1.03f, CONTACT_TOLERANCE = 1.10f;
 
 /* Cutting a link costs as much as so many faces between cells: a slave node is coupled to some twenty nodes of the master, a node of a face to nine beyond it,
-   and what smooths on each rank for itself misses the stiffest couplings there are. */
+   and what couples ranks is sent in every tangent and every sweep. */
 enum { LINK_WEIGHT = 4 };
 
 static PetscErrorCode IndexCast(PetscInt value, idx_t *index)

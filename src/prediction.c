@@ -29,10 +29,8 @@ static PetscErrorCode ModelStepLinear(Model model, const PetscReal *u, const Pet
   PetscCall(KSPGetIterationNumber(ksp, &its));
   report->newton++;
   report->krylov += its;
-  if (LinearCheckLost(model->linear))
-    PetscCall(ModelLinearFailure(model, &report->result));
-  else
-    PetscCall(ModelSettle(model, u, carried, t, dx));
+  if (LinearCheckLost(model->linear)) PetscCall(ModelLinearFailure(model, &report->result));
+  PetscCall(ModelSettle(model, u, carried, t, dx));
   PetscCall(VecAXPY(model->x, -1, dx));
   PetscCall(VecDestroy(&b));
   PetscCall(VecDestroy(&dx));

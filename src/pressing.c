@@ -120,7 +120,10 @@ static PetscErrorCode Balance(Pressing p, PetscBool *regular)
   if (*regular) {
     PetscCall(MatSolve(matrix, right, e));
     PetscCall(VecGetArray(e, &b));
-    for (PetscInt j = 0; j < m; j++) p->excess[j] = PetscRealPart(b[j]);
+    for (PetscInt j = 0; j < m; j++) {
+      p->excess[j] = PetscRealPart(b[j]);
+      if (PetscIsInfOrNanReal(p->excess[j])) *regular = PETSC_FALSE;
+    }
     PetscCall(VecRestoreArray(e, &b));
   }
   PetscCall(MatDestroy(&matrix));

@@ -5,6 +5,8 @@
 /* Terms that change in one step, at most. As many solves at once cost about as much as two or three factors, and save as many iterations; with half as many a
    pipe between plates has steps that are left alone, and takes 69 iterations instead of 63. */
 #define SETTLE_TERMS 256
+/* Numbers in all columns, at most: 0.4 GB */
+#define SETTLE_VALUES 5e7
 /* Times that terms are found to change which did not seem to. */
 #define SETTLE_ROUNDS 16
 
@@ -59,13 +61,14 @@ static PetscErrorCode SettlingEnd(Settling *s)
 /* What the terms which[m] do to the step. *able: it could be found. */
 static PetscErrorCode SettlingAdd(Model model, Settling *s, PetscInt m, const PetscInt *which, PetscBool *able)
 {
-  PetscInt   rows;
+  PetscInt   rows, n;
   PetscReal *G;
   Mat        B, Z;
   Vec        z;
 
   PetscFunctionBeginUser;
-  *able = (PetscBool)(s->rounds < SETTLE_ROUNDS && s->m + m <= SETTLE_TERMS);
+  PetscCall(VecGetSize(model->x, &n));
+  *able = (PetscBool)(s->rounds < SETTLE_ROUNDS && s->m + m <= SETTLE_TERMS && (PetscReal)(s->m + m) * n <= SETTLE_VALUES);
   if (!*able) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(VecGetLocalSize(model->x, &rows));
   PetscCall(ContactStepForces(s->contact, rows, m, which, &B));
@@ -89,16 +92,52 @@ static PetscErrorCode SettlingAdd(Model model, Settling *s, PetscInt m, const Pe
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Goes on as far as the columns at hand allow, on the first rank: what each would find by itself may differ in the last bits, and the ranks go on together. */
+static PetscErrorCode SettlingSolve(Model model, Settling *s, PetscInt *m, PetscInt *which, PetscBool *settled)
+{
+  MPI_Comm    comm = model->mesh->comm;
+  PetscMPIInt rank, n;
+
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Comm_rank(comm, &rank));
+  if (!rank) PetscCall(PressingSolve(s->pressing, m, which, settled));
+  PetscCallMPI(MPI_Bcast(m, 1, MPIU_INT, 0, comm));
+  PetscCallMPI(MPI_Bcast(settled, 1, MPIU_BOOL, 0, comm));
+  PetscCall(PetscMPIIntCast(*m, &n));
+  PetscCallMPI(MPI_Bcast(which, n, MPIU_INT, 0, comm));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* What the first rank has found: the caller frees excess[m] and pressed[n]. */
+static PetscErrorCode SettlingGet(Model model, const Settling *s, PetscReal **excess, PetscBool **pressed)
+{
+  MPI_Comm         comm = model->mesh->comm;
+  const PetscReal *found;
+  const PetscBool *presses;
+  PetscMPIInt      m, n;
+
+  PetscFunctionBeginUser;
+  PressingGet(s->pressing, &found, &presses);
+  PetscCall(PetscMalloc2(s->m, excess, s->n, pressed));
+  PetscCall(PetscArraycpy(*excess, found, s->m));
+  PetscCall(PetscArraycpy(*pressed, presses, s->n));
+  PetscCall(PetscMPIIntCast(s->m, &m));
+  PetscCall(PetscMPIIntCast(s->n, &n));
+  PetscCallMPI(MPI_Bcast(*excess, m, MPIU_REAL, 0, comm));
+  PetscCallMPI(MPI_Bcast(*pressed, n, MPIU_BOOL, 0, comm));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* The step with what presses in the end; y stays where that goes further than what is near was looked for, as that of a body that has lost its hold. */
 static PetscErrorCode SettlingTake(Model model, const PetscReal *carried, PetscReal t, Settling *s, Vec y, PetscBool *taken)
 {
-  const PetscReal *excess;
-  const PetscBool *pressed;
-  PetscInt         m, j = 0;
-  Vec              z, end;
+  PetscReal *excess;
+  PetscBool *pressed;
+  PetscInt   m, j = 0;
+  Vec        z, end;
 
   PetscFunctionBeginUser;
-  PressingGet(s->pressing, &excess, &pressed);
+  PetscCall(SettlingGet(model, s, &excess, &pressed));
   PetscCall(VecDuplicate(y, &end));
   PetscCall(VecCopy(y, end));
   for (PetscInt r = 0; r < s->rounds; r++) {
@@ -114,6 +153,7 @@ static PetscErrorCode SettlingTake(Model model, const PetscReal *carried, PetscR
   if (*taken) PetscCall(ContactStepForesee(s->contact, pressed));
   if (*taken) PetscCall(VecCopy(end, y));
   PetscCall(VecDestroy(&end));
+  PetscCall(PetscFree2(excess, pressed));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -132,14 +172,14 @@ PetscErrorCode ModelSettle(Model model, const PetscReal *u, const PetscReal *car
   Settling  s;
 
   PetscFunctionBeginUser;
-  if (!model->contact) PetscFunctionReturn(PETSC_SUCCESS);
+  if (!model->contact || LinearCheckLost(model->linear)) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(LinearSolverDirect(model->work->solver, &able));
   if (!able) PetscFunctionReturn(PETSC_SUCCESS);
   TimingBegin(TIMING_ASSEMBLY_CONTACT);
   PetscCall(SettlingBegin(model, u, carried, t, y, &s));
   PetscCall(PetscMalloc1(s.n, &which));
   while (able && m) {
-    PetscCall(PressingSolve(s.pressing, &m, which, &settled));
+    PetscCall(SettlingSolve(model, &s, &m, which, &settled));
     if (m) PetscCall(SettlingAdd(model, &s, m, which, &able));
   }
   if (settled) PetscCall(SettlingTake(model, carried, t, &s, y, &settled));

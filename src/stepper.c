@@ -164,7 +164,7 @@ static PetscReal StepEnd(LoadStepper stepper, PetscReal t, PetscReal dt, PetscBo
   landing  = stepper->landings[stepper->next_landing];
   rest     = landing - t;
   *clipped = PETSC_FALSE;
-  if (rest <= STEPPER_STRETCH * dt) {
+  if (rest <= PetscMax(dt, PetscMin(STEPPER_STRETCH * dt, stepper->size.dt_max)) + STEPPER_SAME_T) {
     *clipped = rest < dt - STEPPER_SAME_T ? PETSC_TRUE : PETSC_FALSE;
     return landing;
   }
