@@ -274,7 +274,7 @@ def plate_penalties(study, scene, quick, plane):
             directory = study.run(f"{scene}-{short(law)}-scale_{scale:g}", scene, [*quick, penalty(scale=scale, **BOUNDS, **keys), PLATE_STEPS])
             cases[law, scale] = history(directory, 2)
             rows.append(summarise_penalty(law, scale, outcome(directory), cases[law, scale]))
-    for law, options in (("emulated classical, plain Newton", ("-snes_linesearch_type", "basic")), ("emulated classical, with line search", ())):
+    for law, options in (("emulated classical, plain Newton", ("-snes_linesearch_type", "basic", "-ksp_type", "gmres")), ("emulated classical, with line search", ())):
         cases[law, SCALES[-1]], result = classical(study, f"{scene}_meshed", plane, *options)
         rows.append(summarise_penalty(law, SCALES[-1], result, cases[law, SCALES[-1]]))
     header = ["penalty", "start, times automatic", *OUTCOME[:-1], "inside the window at the end, %", "smallest share of a step, %", "largest excess of a step", "largest excess at the end",

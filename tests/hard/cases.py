@@ -154,7 +154,7 @@ CASES = [
          Stops("singular", "holds 'upper'", "stabilise: true")),
     Case("guards", "the same, stabilised", "springs hold it until it touches, and must leave no force behind", SQUEEZE, [*HELD, "contact.0.stabilise=true"],
          All(Near("force", 1, 1e-9), Told("stabilisation.largest_energy_share", most=1e-15))),
-    Case("guards", "chatter", "a pinched pipe without mirrored neighbours, plain Newton steps: nodes come and go", PIPE,
+    Case("guards", "chatter", "a pinched pipe without mirrored neighbours, no line search: nodes come and go", PIPE,
          [*mesh(n_arc=16, n_wall=2, n_len=4), *PLAIN, "stepping.initial=0.04"], Same("petsc={}", probes=STROKE, bound=0.001)),
     Case("guards", "cycle", "the same, coarser and with a stiffer penalty: where no step is settled the contact set repeats itself", PIPE,
          [*mesh(n_arc=10, n_len=4), *PLAIN, "petsc={snes_linesearch_type: basic, ksp_type: gmres}", "contact.0.penalty.scale=3e3", "stepping.initial=0.1"],
