@@ -102,7 +102,7 @@ static PetscErrorCode SettlingSolve(Model model, Settling *s, PetscInt *m, Petsc
   PetscCallMPI(MPI_Comm_rank(comm, &rank));
   if (!rank) PetscCall(PressingSolve(s->pressing, m, which, settled));
   PetscCallMPI(MPI_Bcast(m, 1, MPIU_INT, 0, comm));
-  PetscCallMPI(MPI_Bcast(settled, 1, MPIU_BOOL, 0, comm));
+  PetscCallMPI(MPI_Bcast(settled, sizeof(PetscBool), MPI_BYTE, 0, comm));
   PetscCall(PetscMPIIntCast(*m, &n));
   PetscCallMPI(MPI_Bcast(which, n, MPIU_INT, 0, comm));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -122,9 +122,9 @@ static PetscErrorCode SettlingGet(Model model, const Settling *s, PetscReal **ex
   PetscCall(PetscArraycpy(*excess, found, s->m));
   PetscCall(PetscArraycpy(*pressed, presses, s->n));
   PetscCall(PetscMPIIntCast(s->m, &m));
-  PetscCall(PetscMPIIntCast(s->n, &n));
+  PetscCall(PetscMPIIntCast(s->n * (PetscInt)sizeof(PetscBool), &n));
   PetscCallMPI(MPI_Bcast(*excess, m, MPIU_REAL, 0, comm));
-  PetscCallMPI(MPI_Bcast(*pressed, n, MPIU_BOOL, 0, comm));
+  PetscCallMPI(MPI_Bcast(*pressed, n, MPI_BYTE, 0, comm));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
