@@ -47,17 +47,18 @@ static PetscErrorCode PairMotion(Contact contact, ContactPair *pair, const Petsc
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Adds a term of a pair, in its state at the last projection, without its variation. */
+/* Adds a term of a pair, in its state at the last projection and without its variation, if the step may reach its gap. */
 static void AddTerm(ContactStep step, int p, PetscInt c, PetscReal t)
 {
   const ContactPair *pair  = &step->contact->pairs[p];
   const LawState     state = ContactTermState(pair, c, t);
   LawValue           value;
-  PetscReal          gap;
+  PetscReal          opening;
 
-  ContactTermLaw(pair, c, t, &value, &gap, &step->area[step->mine]);
-  step->terms[step->mine] =
-    (PressingTerm){.opening = gap - LawRest(&state), .pressure = value.pressure, .stiffness = pair->stiffness[c], .penalty = state.penalty};
+  ContactTermLaw(pair, c, t, &value, &opening, &step->area[step->mine]);
+  opening -= LawRest(&state);
+  if (!(PetscAbsReal(opening) <= step->reach[p])) return; /* nor where no master is near */
+  step->terms[step->mine]  = (PressingTerm){.opening = opening, .pressure = value.pressure, .stiffness = pair->stiffness[c], .penalty = state.penalty};
   step->pair[step->mine]   = p;
   step->term[step->mine++] = c;
 }
@@ -97,13 +98,7 @@ static PetscErrorCode AddPair(ContactStep step, int p, const PetscReal *u, Petsc
 
   PetscFunctionBeginUser;
   PetscCall(ContactPairProject(step->contact, pair, u, t));
-  for (PetscInt c = 0; c < pair->n; c++) {
-    const LawState  state = ContactTermState(pair, c, t);
-    PetscReal       area;
-    const PetscReal gap = ContactTermGap(pair, pair->factor, pair->point_gap, c, &area);
-
-    if (PetscAbsReal(gap - LawRest(&state)) <= step->reach[p]) AddTerm(step, p, c, t); /* NaN: no */
-  }
+  for (PetscInt c = 0; c < pair->n; c++) AddTerm(step, p, c, t);
   PetscCall(AddVariations(step, p, from));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
