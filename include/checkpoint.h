@@ -3,7 +3,7 @@
 
      scene/     file: its name; text: the document after -set
      mesh/file  the .msh file, gmsh's tags included: a restart needs no gmsh and no other file
-     model/     displacements by node, load parameter, scales;  contact/  state by pair and slave node
+     model/     displacements by node, load parameter, scales;  path/  the last states;  contact/  state by pair and slave node
      stepper/   step size and counts;  results/  last step, probes, what steps.csv and results.h5 held
 
    A run: CheckpointCreate(), CheckpointSetRun(), CheckpointWrite() whenever the state is to be kept. A restart: CheckpointOpen(), CheckpointReadScene(),

@@ -5,6 +5,7 @@
 #include "contactline.h"
 #include "linearsolver.h"
 #include "model.h"
+#include "path.h"
 #include "stabiliser.h"
 
 /* Times that contact lists are replaced and the step solved on before it counts as unsettled. */
@@ -18,6 +19,7 @@ typedef struct _n_ModelWork {
   PetscReal   *f;     /* local residual of the last evaluation, all dofs */
   PetscReal   *trial; /* local displacements of the last evaluation */
   PetscReal   *accepted_u;
+  Path         path; /* NULL: small kinematics, whose bodies go straight */
   Vec          accepted_x;
   PetscReal    accepted_t;
   Vec          forecast; /* x at forecast_t by ModelForecast() */
@@ -48,7 +50,8 @@ typedef struct _n_ModelWork {
 } ModelWork;
 
 /* model.c */
-PetscBool ModelHasFormulation(Scene, Formulation); /* has some deformable body elements of that kind? */
+PetscBool      ModelHasFormulation(Scene, Formulation);            /* has some deformable body elements of that kind? */
+PetscErrorCode ModelCollectFree(Model, const PetscReal *u, Vec x); /* the free displacements among the local ones */
 /* newton.c */
 PetscErrorCode ModelResidual(Model, const PetscReal *u, PetscReal t, PetscReal t_contact, PetscBool *ok);
 PetscErrorCode ModelTrial(Model, Vec x); /* free displacements x and the prescribed ones into work->trial */
@@ -63,9 +66,10 @@ PetscErrorCode ModelLocateEdge(Model, PetscBool *found, ContactPlace *); /* does
 /* settle.c */
 PetscErrorCode ModelSettle(Model, const PetscReal *u, const PetscReal *carried, PetscReal t, Vec y); /* a linear step y whose contact is right where it ends */
 /* prediction.c */
-PetscErrorCode ModelPredict(Model, SolveReport *);     /* model->x at model->t by one linear solve from the accepted state */
-PetscErrorCode ModelPredictFar(Model, SolveReport *);  /* in pieces, where that is too far */
-PetscErrorCode ModelFollowLists(Model, SolveReport *); /* a linear step that holds contact while its lists are other ones */
+PetscErrorCode ModelForesee(Model, PetscReal t, PetscReal *u, Vec x, PetscBool *smooth); /* where the way so far leads to */
+PetscErrorCode ModelPredict(Model, SolveReport *);                                       /* model->x at model->t by one linear solve from the accepted state */
+PetscErrorCode ModelPredictFar(Model, SolveReport *);                                    /* in pieces, where that is too far */
+PetscErrorCode ModelFollowLists(Model, SolveReport *);                                   /* a linear step that holds contact while its lists are other ones */
 /* softstart.c */
 PetscErrorCode ModelSoftStart(Model, SolveReport *); /* from the prediction to where what touches is known, on softened penalties */
 /* equilibrium.c */

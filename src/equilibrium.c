@@ -130,17 +130,36 @@ static PetscErrorCode ModelDepart(Model model, PetscReal t)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Where Newton's method starts: at a forecast that has been made, in proportion to the way; else it is made now. */
-static PetscErrorCode ModelStart(Model model, SolveReport *report)
+/* A part of the way to the forecast: in proportion, or on the path that led to it, of whose end it was so far off. */
+static PetscErrorCode ModelTakePart(Model model)
 {
-  ModelWork *work = model->work;
-  PetscReal  part;
+  ModelWork      *work = model->work;
+  const PetscReal part = (model->t - work->accepted_t) / (work->forecast_t - work->accepted_t);
+  PetscReal      *u;
+  PetscBool       smooth;
+  Vec             end;
 
   PetscFunctionBeginUser;
-  if (work->forecasted) {
-    part = (model->t - work->accepted_t) / (work->forecast_t - work->accepted_t);
+  PetscCall(PetscMalloc1(model->mesh->n_nodes * model->mesh->dim, &u));
+  PetscCall(VecDuplicate(model->x, &end));
+  PetscCall(ModelForesee(model, work->forecast_t, u, end, &smooth));
+  if (smooth) PetscCall(ModelForesee(model, model->t, u, model->x, &smooth));
+  if (smooth)
+    PetscCall(VecAXPBYPCZ(model->x, part, -part, 1, work->forecast, end));
+  else
     PetscCall(VecAXPBYPCZ(model->x, 1 - part, part, 0, work->accepted_x, work->forecast));
-  } else
+  PetscCall(VecDestroy(&end));
+  PetscCall(PetscFree(u));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Where Newton's method starts: at a forecast that has been made, or on the way to it; else it is made now. */
+static PetscErrorCode ModelStart(Model model, SolveReport *report)
+{
+  PetscFunctionBeginUser;
+  if (model->work->forecasted)
+    PetscCall(ModelTakePart(model));
+  else
     PetscCall(ModelPredict(model, report));
   PetscCall(ModelPredictFar(model, report));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -39,6 +39,7 @@ PetscErrorCode ModelCreate(Scene scene, Mesh mesh, Model *out)
   PetscCall(VecDuplicate(model->x, &model->work->accepted_x));
   PetscCall(VecDuplicate(model->x, &model->work->forecast));
   PetscCall(VecDuplicate(model->x, &model->work->residual));
+  if (scene->kinematics != KINEMATICS_SMALL) PetscCall(PathCreate(mesh, &model->work->path));
   PetscCall(ModelCreateSNES(model));
   if (model->contact) {
     PetscCall(ContactCycleCreate(model->contact, &model->work->watch));
@@ -61,6 +62,7 @@ PetscErrorCode ModelDestroy(Model *model)
   PetscCall(ContactCycleDestroy(&m->work->watch));
   PetscCall(ContactLineDestroy(&m->work->line));
   PetscCall(StabiliserDestroy(&m->work->stabiliser));
+  PetscCall(PathDestroy(&m->work->path));
   PetscCall(VecDestroy(&m->x));
   PetscCall(VecDestroy(&m->work->accepted_x));
   PetscCall(VecDestroy(&m->work->forecast));
@@ -146,6 +148,8 @@ PetscErrorCode ModelAccept(Model model)
   PetscCall(PetscArraycpy(work->accepted_u, model->u, model->mesh->n_nodes * model->mesh->dim));
   PetscCall(VecCopy(model->x, work->accepted_x));
   work->accepted_t = model->t;
+  if (work->path) PetscCall(PathAdd(work->path, model->u, model->t));
+  if (work->path && SceneBreaks(model->scene, model->t)) PetscCall(PathForget(work->path));
   work->forecasted = PETSC_FALSE;
   if (model->contact) {
     PetscCall(ContactAccept(model->contact));
@@ -175,7 +179,7 @@ PetscErrorCode ModelRestore(Model model)
 }
 
 /* The free displacements among the local ones. */
-static PetscErrorCode ModelCollectFree(Model model, const PetscReal *u, Vec x)
+PetscErrorCode ModelCollectFree(Model model, const PetscReal *u, Vec x)
 {
   const PetscInt  n = model->mesh->n_nodes * model->mesh->dim;
   const PetscInt *dof;
@@ -191,7 +195,7 @@ static PetscErrorCode ModelCollectFree(Model model, const PetscReal *u, Vec x)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ModelArchive - saves or takes over the accepted state: displacements, load parameter, scales, contact.
+/* ModelArchive - saves or takes over the accepted state: displacements and the way there, load parameter, scales, contact.
 
    Collective. To be saved between steps; to be loaded into a model fresh from ModelCreate(), in the place of ModelSetUp(). The model then stands as
    after the ModelAccept() of that step, forces and gaps included. */
@@ -205,6 +209,7 @@ PetscErrorCode ModelArchive(Model model, Archive archive)
   PetscFunctionBeginUser;
   PetscCall(RowsCreate(mesh->comm, mesh->n_global, mesh->n_nodes, mesh->node_id, &nodes));
   PetscCall(ArchiveRows(archive, "model/displacement", &nodes, mesh->dim, work->accepted_u));
+  if (work->path) PetscCall(PathArchive(work->path, archive, &nodes));
   PetscCall(RowsDestroy(&nodes));
   PetscCall(ArchiveReals(archive, "model/t", 1, &work->accepted_t));
   PetscCall(ArchiveReals(archive, "model/rate", 1, &work->rate));

@@ -65,12 +65,53 @@ static PetscErrorCode ModelStepLoads(Model model, const PetscReal *u, PetscReal 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ModelPredict - displacements at model->t by one linear solve from the accepted state, into model->x. Collective. Costs and failures are added to the report.
- */
-PetscErrorCode ModelPredict(Model model, SolveReport *report)
+/* ModelForesee - local displacements u[n_nodes*dim] at t as the way so far leads to expect, prescribed ones included, and the free ones among them.
+
+   Collective. smooth: the way has been such that this is worth more than what the tangent says; u and x are set then only. */
+PetscErrorCode ModelForesee(Model model, PetscReal t, PetscReal *u, Vec x, PetscBool *smooth)
 {
   PetscFunctionBeginUser;
-  PetscCall(ModelStepLoads(model, model->work->accepted_u, model->work->accepted_t, (PetscBool)(model->contact != NULL), report));
+  *smooth = PETSC_FALSE;
+  if (model->work->path) PetscCall(PathForesee(model->work->path, t, u, smooth));
+  if (!*smooth) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(LoadsPrescribe(model->loads, t, u));
+  PetscCall(ModelCollectFree(model, u, x));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Is no element turned inside out at local displacements u, on any rank? */
+static PetscErrorCode ModelInOrder(Model model, const PetscReal *u, PetscBool *ok)
+{
+  PetscBool mine;
+
+  PetscFunctionBeginUser;
+  TimingBegin(TIMING_ASSEMBLY_ELASTIC);
+  PetscCall(ElasticityResidual(model->elasticity, u, NULL, NULL, NULL, &mine));
+  TimingEnd(TIMING_ASSEMBLY_ELASTIC);
+  PetscCallMPI(MPI_Allreduce(&mine, ok, sizeof(PetscBool), MPI_BYTE, MPI_BAND, model->mesh->comm));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* ModelPredict - displacements at model->t by one linear solve, into model->x. Collective. Costs and failures are added to the report.
+
+   From the accepted state; where the way was smooth from where it would lead to, whose elements are in order: Newton's first iteration from there. */
+PetscErrorCode ModelPredict(Model model, SolveReport *report)
+{
+  const PetscInt n = model->mesh->n_nodes * model->mesh->dim;
+  PetscBool      smooth, holding = (PetscBool)(model->contact != NULL);
+  PetscReal     *u;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(n, &u));
+  PetscCall(ModelForesee(model, model->t, u, model->x, &smooth));
+  if (smooth) PetscCall(ModelInOrder(model, u, &smooth));
+  if (smooth)
+    PetscCall(ModelStepLoads(model, u, model->t, holding, report));
+  else {
+    PetscCall(VecCopy(model->work->accepted_x, model->x));
+    PetscCall(ModelStepLoads(model, model->work->accepted_u, model->work->accepted_t, holding, report));
+  }
+  PetscCall(PetscFree(u));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
