@@ -141,7 +141,7 @@ PetscErrorCode LinearSolverColumns(LinearSolver solver, Mat A, Mat B, Mat X, Pet
   if (!*able) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(KSPGetPC(solver->ksp, &pc));
   PetscCall(PCFactorGetMatrix(pc, &factored));
-  PetscCall(MatMatSolve(factored, B, X));
+  PetscCall(DirectSolverColumns(factored, B, X));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
