@@ -10,3 +10,5 @@ PetscErrorCode DirectSolverServes(KSP, PetscBool *);
 PetscErrorCode DirectSolverFind(KSP, PetscBool *mumps, PetscBool *cholesky);
 /* Chooses the ordering of all factors from now on: the one that needs the fewest operations for A, a matrix much like those to come. Collective. */
 PetscErrorCode DirectSolverOrder(Mat A, PetscBool symmetric);
+/* X = A^-1 B for dense B and X, with the factor of A; that most of B is zero is made use of. Collective. */
+PetscErrorCode DirectSolverColumns(Mat factored, Mat B, Mat X);

@@ -2,7 +2,7 @@
    the same solution; of contact terms that came or went it is told. Only of what was solved since the last KeptFactorRenew(), so that a step repeats itself to
    the last bit. */
 #pragma once
-#include "petsccompat.h"
+#include "nodeturn.h"
 
 typedef struct _n_KeptFactor *KeptFactor;
 
@@ -14,12 +14,14 @@ typedef struct {
 /* For a KSP that factors (preonly); one that options have made another is left alone. Collective. */
 PetscErrorCode KeptFactorCreate(KSP, KeptFactor *);
 PetscErrorCode KeptFactorDestroy(KeptFactor *);
+/* The operators are tangents of bodies that turn, by this object, which knows the state of each before KeptFactorNext(); borrowed. Not collective. */
+PetscErrorCode KeptFactorSetTurn(KeptFactor, NodeTurn);
 /* The next tangent is factored, whatever has changed. Not collective. */
 PetscErrorCode KeptFactorRenew(KeptFactor);
 /* Before each solve with a new operator. changes: contact terms that came, went or changed their stiffness since the operator before; pattern: it has a new
    one. *serves: the factor does, the KSP leaves it alone, and it wants to be told of the changes, if there are. Collective. */
 PetscErrorCode KeptFactorNext(KeptFactor, PetscInt changes, PetscBool pattern, PetscBool *serves);
-/* After that: the changes are N diag(s) N^T, N dense. Collective. */
+/* After that: the changes are N diag(s) N^T, N dense, which is written to. Collective. */
 PetscErrorCode KeptFactorUpdate(KeptFactor, Mat N, const PetscReal *s);
 /* The residual (2-norm) with which the nonlinear solver will be content. Logically collective. */
 PetscErrorCode KeptFactorSetEnough(KeptFactor, PetscReal residual);

@@ -12,9 +12,10 @@ PetscErrorCode LinearSolverDestroy(LinearSolver *);
 /* With the pattern of the first operator's elastic part, before contact joins it, which a run that is restarted finds too; where many operators are to come.
    Collective. */
 PetscErrorCode LinearSolverOrder(LinearSolver, Mat K);
-/* Before each solve with a new operator. C: its contact part, NULL: none; pattern: it has a new one; changes: contact terms that came, went or changed their
-   stiffness since the operator before; *older: an older factor serves and wants to be told of them (KeptFactorUpdate()). Collective. */
-PetscErrorCode LinearSolverNext(LinearSolver, Mat C, PetscBool pattern, PetscInt changes, PetscBool *older);
+/* Before each solve with a new operator. u: local displacements (n_nodes*dim) that it is the tangent at; C: its contact part, NULL: none; pattern: it has a new
+   one; changes: contact terms that came, went or changed their stiffness since the operator before; *older: an older factor serves and wants to be told of them
+   (KeptFactorUpdate()). Collective. */
+PetscErrorCode LinearSolverNext(LinearSolver, const PetscReal *u, Mat C, PetscBool pattern, PetscInt changes, PetscBool *older);
 /* What follows must not depend on what was solved before. Not collective. */
 PetscErrorCode LinearSolverRenew(LinearSolver);
 /* The residual (2-norm) with which the nonlinear solver will be content: much smaller ones are not worth iterations. Logically collective. */

@@ -119,3 +119,63 @@ PetscErrorCode DirectSolverOrder(Mat A, PetscBool symmetric)
   PetscCall(PetscInfo(A, "MUMPS's ordering %s takes the fewest operations: %g\n", ordering, (double)best));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
+
+/* The entries of a dense matrix of one rank that differ from zero, transposed. */
+static PetscErrorCode SparseRows(Mat B, Mat *rows)
+{
+  PetscInt           m, n, *nonzeros, *place;
+  const PetscScalar *b;
+  PetscScalar       *value;
+
+  PetscFunctionBeginUser;
+  PetscCall(MatGetSize(B, &m, &n));
+  PetscCall(PetscCalloc1(n, &nonzeros));
+  PetscCall(PetscMalloc2(m, &place, m, &value));
+  PetscCall(MatDenseGetArrayRead(B, &b));
+  for (PetscInt j = 0; j < n; j++)
+    for (PetscInt i = 0; i < m; i++) nonzeros[j] += b[j * m + i] != 0;
+  PetscCall(MatCreateSeqAIJ(PETSC_COMM_SELF, n, m, 0, nonzeros, rows));
+  for (PetscInt j = 0; j < n; j++) {
+    PetscInt k = 0;
+
+    for (PetscInt i = 0; i < m && k < nonzeros[j]; i++) {
+      place[k] = i;
+      value[k] = b[j * m + i];
+      k += value[k] != 0;
+    }
+    PetscCall(MatSetValues(*rows, 1, &j, k, place, value, INSERT_VALUES));
+  }
+  PetscCall(MatDenseRestoreArrayRead(B, &b));
+  PetscCall(MatAssemblyBegin(*rows, MAT_FINAL_ASSEMBLY));
+  PetscCall(MatAssemblyEnd(*rows, MAT_FINAL_ASSEMBLY));
+  PetscCall(PetscFree2(place, value));
+  PetscCall(PetscFree(nonzeros));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* DirectSolverColumns - X = A^-1 B for dense B and X.
+
+   Collective. factored: A's factor. B with few entries that differ from zero, as forces on contact nodes have: on one rank MUMPS is given these alone, and
+   eliminates only what they reach (its ICNTL(20)), half of the solve's time. On more ranks it would want them gathered on the first. */
+PetscErrorCode DirectSolverColumns(Mat factored, Mat B, Mat X)
+{
+  MatSolverType type;
+  PetscMPIInt   size;
+  PetscBool     mumps;
+  Mat           rows, sparse;
+
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Comm_size(PetscObjectComm((PetscObject)B), &size));
+  PetscCall(MatFactorGetSolverType(factored, &type));
+  PetscCall(PetscStrcmp(type, MATSOLVERMUMPS, &mumps));
+  if (size > 1 || !mumps) {
+    PetscCall(MatMatSolve(factored, B, X));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  PetscCall(SparseRows(B, &rows));
+  PetscCall(MatCreateTranspose(rows, &sparse));
+  PetscCall(MatMatSolve(factored, sparse, X));
+  PetscCall(MatDestroy(&sparse));
+  PetscCall(MatDestroy(&rows));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

@@ -16,7 +16,9 @@
 
 struct _n_KeptFactor {
   KSP        ksp, gmres;
-  RankUpdate update;  /* of the factor to the present contact terms; NULL: none */
+  NodeTurn   turn;    /* of the bodies since the factor was made; NULL: none */
+  Vec        turned;  /* forces turned back */
+  RankUpdate update;  /* of the factor to the present contact terms, turned back; NULL: none */
   PetscBool  exists;  /* a factor of this step */
   PetscBool  serves;  /* it is of an older operator than the present one */
   PetscBool  stale;   /* and that one had another pattern */
@@ -42,7 +44,7 @@ static PetscErrorCode Converged(KSP gmres, PetscInt it, PetscReal norm, KSPConve
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The factor, and its update. */
+/* The factor and its update, for forces and displacements turned back to where it was made. */
 static PetscErrorCode Precondition(PC shell, Vec b, Vec x)
 {
   KeptFactor kept;
@@ -51,8 +53,12 @@ static PetscErrorCode Precondition(PC shell, Vec b, Vec x)
   PetscFunctionBeginUser;
   PetscCall(PCShellGetContext(shell, &kept));
   PetscCall(KSPGetPC(kept->ksp, &pc));
-  PetscCall(PCApply(pc, b, x));
+  if (kept->turn && !kept->turned) PetscCall(VecDuplicate(b, &kept->turned));
+  if (kept->turn) PetscCall(VecCopy(b, kept->turned));
+  if (kept->turn) PetscCall(NodeTurnApply(kept->turn, PETSC_TRUE, kept->turned));
+  PetscCall(PCApply(pc, kept->turn ? kept->turned : b, x));
   if (kept->update) PetscCall(RankUpdateApply(kept->update, x));
+  if (kept->turn) PetscCall(NodeTurnApply(kept->turn, PETSC_FALSE, x));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -85,8 +91,17 @@ PetscErrorCode KeptFactorDestroy(KeptFactor *kept)
   PetscFunctionBeginUser;
   if (!*kept) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(KSPDestroy(&(*kept)->gmres));
+  PetscCall(VecDestroy(&(*kept)->turned));
   PetscCall(RankUpdateDestroy(&(*kept)->update));
   PetscCall(PetscFree(*kept));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* KeptFactorSetTurn - Not collective. */
+PetscErrorCode KeptFactorSetTurn(KeptFactor kept, NodeTurn turn)
+{
+  PetscFunctionBeginUser;
+  kept->turn = turn;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -116,6 +131,7 @@ static PetscErrorCode Begin(KeptFactor kept)
   kept->changes = 0;
   kept->counts.made++;
   PetscCall(RankUpdateDestroy(&kept->update));
+  if (kept->turn) PetscCall(NodeTurnBegin(kept->turn));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -134,18 +150,27 @@ PetscErrorCode KeptFactorNext(KeptFactor kept, PetscInt changes, PetscBool patte
   kept->serves = (PetscBool)(direct && kept->exists && kept->changes <= KEPT_CHANGES);
   if (!kept->serves && kept->stale) PetscCall(KSPReset(kept->ksp));
   if (!kept->serves) PetscCall(Begin(kept));
+  if (kept->serves && kept->turn) PetscCall(NodeTurnFind(kept->turn));
   PetscCall(KSPSetReusePreconditioner(kept->ksp, kept->serves));
   *serves = kept->serves;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* KeptFactorUpdate - Collective. N and s as of RankUpdateAdd(). */
+/* KeptFactorUpdate - Collective. N, which is turned back to where the factor was made, and s as of RankUpdateAdd(). */
 PetscErrorCode KeptFactorUpdate(KeptFactor kept, Mat N, const PetscReal *s)
 {
-  PC  pc;
-  Mat factored;
+  PetscInt n;
+  PC       pc;
+  Mat      factored;
+  Vec      column;
 
   PetscFunctionBeginUser;
+  PetscCall(MatGetSize(N, NULL, &n));
+  for (PetscInt j = 0; j < n && kept->turn; j++) {
+    PetscCall(MatDenseGetColumnVec(N, j, &column));
+    PetscCall(NodeTurnApply(kept->turn, PETSC_TRUE, column));
+    PetscCall(MatDenseRestoreColumnVec(N, j, &column));
+  }
   PetscCall(KSPGetPC(kept->ksp, &pc));
   PetscCall(PCFactorGetMatrix(pc, &factored));
   PetscCall(RankUpdateAdd(&kept->update, factored, N, s));

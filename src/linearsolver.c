@@ -24,6 +24,7 @@ struct _n_LinearSolver {
   KSP        ksp;
   Multigrid  multigrid; /* NULL: direct */
   KeptFactor kept;      /* NULL: iterative, or each tangent is factored */
+  NodeTurn   turn;      /* of the bodies, for what is kept; NULL: they do not turn */
   PetscBool  ordered;
   PetscReal  usual; /* tolerance, while a prediction is made */
 };
@@ -57,6 +58,8 @@ PetscErrorCode LinearSolverCreate(KSP ksp, Mesh mesh, Scene scene, PetscBool sym
   if (type == SOLVER_DIRECT) {
     PetscCall(DirectSolverSet(ksp, symmetric));
     if (mesh->dim * mesh->n_global >= LINEAR_KEPT_DOFS) PetscCall(KeptFactorCreate(ksp, &(*solver)->kept));
+    if ((*solver)->kept && scene->kinematics == KINEMATICS_FINITE) PetscCall(NodeTurnCreate(mesh, &(*solver)->turn));
+    if ((*solver)->turn) PetscCall(KeptFactorSetTurn((*solver)->kept, (*solver)->turn));
   } else
     PetscCall(SetIterative(*solver, mesh, axisymmetric, symmetric));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -69,6 +72,7 @@ PetscErrorCode LinearSolverDestroy(LinearSolver *solver)
   if (!*solver) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(MultigridDestroy(&(*solver)->multigrid));
   PetscCall(KeptFactorDestroy(&(*solver)->kept));
+  PetscCall(NodeTurnDestroy(&(*solver)->turn));
   PetscCall(PetscFree(*solver));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -87,11 +91,13 @@ PetscErrorCode LinearSolverOrder(LinearSolver solver, Mat K)
 
 /* LinearSolverNext - what is known of the next operator K + C before it is solved with.
 
-   Collective. C: its contact part, NULL: none; pattern: the operator has a new one; changes, *older: see KeptFactorNext(). */
-PetscErrorCode LinearSolverNext(LinearSolver solver, Mat C, PetscBool pattern, PetscInt changes, PetscBool *older)
+   Collective. u[n_nodes*dim]: where it is the tangent (length); C: its contact part, NULL: none; pattern: the operator has a new one; changes, *older: see
+   KeptFactorNext(). */
+PetscErrorCode LinearSolverNext(LinearSolver solver, const PetscReal *u, Mat C, PetscBool pattern, PetscInt changes, PetscBool *older)
 {
   PetscFunctionBeginUser;
   *older = PETSC_FALSE;
+  if (solver->turn) PetscCall(NodeTurnMove(solver->turn, u));
   if (solver->kept) PetscCall(KeptFactorNext(solver->kept, changes, pattern, older));
   if (!solver->kept && pattern) PetscCall(KSPReset(solver->ksp));
   if (solver->multigrid && C) PetscCall(MultigridSetContact(solver->multigrid, C, pattern));
@@ -141,7 +147,7 @@ PetscErrorCode LinearSolverColumns(LinearSolver solver, Mat A, Mat B, Mat X, Pet
   if (!*able) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(KSPGetPC(solver->ksp, &pc));
   PetscCall(PCFactorGetMatrix(pc, &factored));
-  PetscCall(MatMatSolve(factored, B, X));
+  PetscCall(DirectSolverColumns(factored, B, X));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

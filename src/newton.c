@@ -171,7 +171,7 @@ PetscErrorCode ModelTangent(Model model, const PetscReal *u, PetscReal t)
     PetscCall(StabiliserTangent(model->work->stabiliser, model->A));
     TimingEnd(TIMING_ASSEMBLY_CONTACT);
   }
-  PetscCall(LinearSolverNext(model->work->solver, C, changed, terms, &older));
+  PetscCall(LinearSolverNext(model->work->solver, u, C, changed, terms, &older));
   PetscCall(SNESSetLagPreconditioner(model->snes, older ? -1 : 1)); /* after each tangent SNES tells the KSP so */
   if (older && terms > 0) PetscCall(ModelUpdateFactor(model, terms));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -1,4 +1,5 @@
 #include "rankupdate.h"
+#include "directsolver.h"
 
 struct _n_RankUpdate {
   MPI_Comm     comm;
@@ -51,7 +52,7 @@ static PetscErrorCode SolveColumns(RankUpdate update, Mat factored, Mat N)
   PetscFunctionBeginUser;
   PetscCall(MatGetSize(N, NULL, &more));
   PetscCall(MatDuplicate(N, MAT_DO_NOT_COPY_VALUES, &Z));
-  PetscCall(MatMatSolve(factored, N, Z));
+  PetscCall(DirectSolverColumns(factored, N, Z));
   PetscCall(PetscRealloc((update->n * update->m + 1) * sizeof(PetscScalar), &update->Z));
   PetscCall(MatDenseGetArrayRead(Z, &from));
   PetscCall(PetscArraycpy(&update->Z[(update->n - more) * update->m], from, more * update->m));
