@@ -7,14 +7,18 @@ enum { NODES_BEYOND = 2, NODES_APART = 2 };
 /* A root p = c sqrt(d - y) from y = 0 to d has the moment 4/15 c d^(5/2) about y = 0. */
 #define POWER_OF_MOMENT 2.5
 
-/* Loaded nodes in a row inwards from the node `last` over which the pressure rises: to the middle of the zone, or to the line's end, where a plane of
-   symmetry may be */
+/* Nodes in a row inwards from the node `last` over which the pressure rises, in the outer half of the zone, or all of it where it ends with the line: there
+   may be a plane of symmetry */
 static int RisingNodes(int n, const double *p, int last, int outward)
 {
-  int count = 0, node = last - outward;
+  int loaded = 0, rising = 0, most, node = last - outward;
 
-  for (; node >= 0 && node < n && p[node] > 0.0; node -= outward) count++;
-  return node < 0 || node == n ? count : (count + 1) / 2;
+  for (; node >= 0 && node < n && p[node] > 0.0; node -= outward) {
+    rising += rising == loaded && p[node] > p[node + outward];
+    loaded++;
+  }
+  most = node < 0 || node == n ? loaded : (loaded + 1) / 2;
+  return rising < most ? rising : most;
 }
 
 /* Moment about node k of the forces from there to the node `last`: pressures times half the lengths to the neighbours */
@@ -34,6 +38,14 @@ static double RootOfPressures(const double *x, const double *p, int last, int in
   return fall > 0.0 ? p[last] * p[last] / fall * fabs(x[last] - x[inner]) : INFINITY;
 }
 
+/* Distance from the node `last` to the end of the root with the moments of the nodal forces about two nodes farther in */
+static double RootOfMoments(const double *x, const double *p, int last, int near, int far, int outward)
+{
+  const double ratio = pow(MomentAbout(far, x, p, last, outward) / MomentAbout(near, x, p, last, outward), 1 / POWER_OF_MOMENT);
+
+  return fabs(x[near] - x[far]) / (ratio - 1) - fabs(x[last] - x[near]);
+}
+
 /*
   ContactEdge - Coordinate at which contact ends along a line of nodes. Plain C, not collective.
 
@@ -47,7 +59,7 @@ double ContactEdge(EdgeReach reach, int n, const double *x, const double *p, int
 {
   const int outward = max_side ? 1 : -1, end = max_side ? n - 1 : 0;
   int       last = end, rising, near, far;
-  double    beyond; /* of the last loaded node */
+  double    beyond, least; /* of the last loaded node */
 
   *spacing = NAN;
   while (last >= 0 && last < n && !(p[last] > 0.0)) last -= outward;
@@ -55,16 +67,11 @@ double ContactEdge(EdgeReach reach, int n, const double *x, const double *p, int
   *spacing = 0.0;
   if (last == end) return x[last];
   *spacing = fabs(x[last + outward] - x[last]);
-  rising   = RisingNodes(n, p, last, outward);
-  if (!rising) return 0.5 * (x[last] + x[last + outward]);
-  near = last - outward * (rising > NODES_BEYOND ? NODES_BEYOND : 1);
-  far  = last - outward * (rising < NODES_BEYOND + NODES_APART ? rising : NODES_BEYOND + NODES_APART);
-  if (far == near) {
-    beyond = RootOfPressures(x, p, last, near);
-  } else {
-    const double ratio = pow(MomentAbout(far, x, p, last, outward) / MomentAbout(near, x, p, last, outward), 1 / POWER_OF_MOMENT);
-
-    beyond = fabs(x[near] - x[far]) / (ratio - 1) - fabs(x[last] - x[near]);
-  }
-  return x[last] + outward * fmax(reach == EDGE_AT_NODES ? 0.0 : -fabs(x[last] - x[last - outward]), fmin(*spacing, beyond));
+  if (last == n - 1 - end || !(p[last - outward] > 0.0)) return 0.5 * (x[last] + x[last + outward]);
+  rising = RisingNodes(n, p, last, outward);
+  near   = last - outward * (rising > NODES_BEYOND ? NODES_BEYOND : 1);
+  far    = last - outward * (rising < NODES_BEYOND + NODES_APART ? rising : NODES_BEYOND + NODES_APART);
+  beyond = rising < 2 ? RootOfPressures(x, p, last, near) : RootOfMoments(x, p, last, near, far, outward);
+  least  = reach == EDGE_AT_NODES ? 0.0 : -fabs(x[last] - x[last - outward]);
+  return x[last] + outward * fmax(least, fmin(*spacing, beyond));
 }

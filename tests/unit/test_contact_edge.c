@@ -11,7 +11,7 @@
 
 enum { MAX_NODES = 64 };
 static const double TOLERANCE = 1e-12;
-static const double OF_FORCES = 0.45, OF_VALUES = 0.25; /* of an element: bounds, the first over the elements along a half-width */
+static const double OF_FORCES = 0.45, OF_VALUES = 0.45; /* of an element: bounds, the first over the elements along a half-width */
 
 /* Moments about x of the pressure beyond it: of the root sqrt(2 - s), and of Hertz's ellipse of half-width 1 */
 static double MomentOfRoot(double x)
