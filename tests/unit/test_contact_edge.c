@@ -117,6 +117,16 @@ static void test_punch(void **state)
     }
 }
 
+/* A flattened shell presses most at its edge: the last two nodes tell where that is */
+static void test_shell(void **state)
+{
+  const double x[] = {0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0}, p[] = {2.0, 2.5, 3.0, 3.5, 5.0, 3.0, 0.0};
+  double       spacing;
+
+  (void)state;
+  for (int hats = 0; hats < 2; hats++) assert_near(ContactEdge(hats ? EDGE_OF_HATS : EDGE_AT_NODES, 7, x, p, 1, &spacing), 5.0 + 9.0 / 16, TOLERANCE);
+}
+
 static void test_end_of_line(void **state)
 {
   const double x[] = {0.0, 1.0, 2.0}, p[] = {5.0, 4.0, 3.0};
@@ -153,8 +163,8 @@ static void test_no_contact(void **state)
 int main(void)
 {
   const struct CMUnitTest tests[] = {
-    cmocka_unit_test(test_exact_for_root), cmocka_unit_test(test_ellipse),    cmocka_unit_test(test_bounded_by_open_node), cmocka_unit_test(test_punch),
-    cmocka_unit_test(test_end_of_line),    cmocka_unit_test(test_two_strips), cmocka_unit_test(test_no_contact),
+    cmocka_unit_test(test_exact_for_root), cmocka_unit_test(test_ellipse),     cmocka_unit_test(test_bounded_by_open_node), cmocka_unit_test(test_punch),
+    cmocka_unit_test(test_shell),          cmocka_unit_test(test_end_of_line), cmocka_unit_test(test_two_strips),           cmocka_unit_test(test_no_contact),
   };
 
   return cmocka_run_group_tests(tests, NULL, NULL);
