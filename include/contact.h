@@ -18,7 +18,6 @@ typedef struct {
   const PetscReal *gap, *penalty;
   const PetscReal *force;    /* normal force */
   const PetscReal *pressure; /* normal force over current tributary area */
-  const PetscReal *law;      /* pressure of the law at the node: what tells where contact ends, as hat functions carry force beyond it */
   const PetscReal *normal;   /* n*3, out of the master; 0 where no master is near */
 } ContactNodes;
 

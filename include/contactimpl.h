@@ -88,7 +88,7 @@ typedef struct {
   PetscReal         *force, *normal;               /* of the last residual: normal nodal force, contact normal (n*3) */
   PetscReal          total[3];                     /* and the force on this rank's terms */
   PetscReal          t;                            /* of the last residual */
-  PetscReal         *pressure, *law_pressure;      /* what ContactGetNodes() shows: force over area; of the law */
+  PetscReal         *pressure;                     /* what ContactGetNodes() shows: force over area */
   Mixing             mixing;                       /* of the multipliers of one step; NULL: not augmented */
   PetscBool          projected;                    /* there was one with these lists */
   ContactLost        lost;                         /* since the step began */

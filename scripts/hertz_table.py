@@ -3,7 +3,7 @@ Runs the scenes, leaves one record per run and prints the table; --print tables 
     python scripts/hertz_table.py [--burnish BINARY] [--record FILE] [--jobs N] [--print] [line] [sphere] [far]
 The line's load is a fortieth of its scene's: half-width 1 on a radius of 50, where Hertz's parabola and half-spaces hold to 0.1 %. An edge falls somewhere in
 an element; so each figure is the largest error over the last loads, in which the edge runs over one of them. Width: of the half-ellipse with the centre of
-force that the nodal pressures have, which sees the whole zone and no single node; beside it the probe's edge, along a line of nodes.
+force that the nodal forces have, which sees the whole zone and no single node; beside it the probe's edge, along a line of nodes.
 Meshes: `rows` of bricks, their interface nodes moved or not, and `free` ones, as a mesher lays quadrilaterals; several draws of what is random. They are even
 within 1.3 (line) and 1.5 half-widths (sphere) and grow from there on as fast as the answers allow, GROWTH; `far` tells what slower growth changes."""
 import csv
@@ -32,7 +32,8 @@ SCENES = {
         (2, (2, 3, 4, 5, 6, 8, 12), (EVEN, *MOVED_5, ("free", 0, 1), *FREE_MOVED)))),
     "sphere": ("point", "radius", 734.6, 3 * numpy.pi / 16, 1 / 3, 0.5, 0.1, (
         (1, (2.5, 3.33, 4.17, 5, 6.67), (EVEN, *MOVED)), (1, (8.33,), MOVED[:2]),
-        (1, (3.33, 4.17, 5, 6.67), FREE), (1, (8.33,), FREE[:2]), (2, (1.67, 2.5), (EVEN,)),
+        (1, (3.33, 4.17, 5, 6.67), FREE), (1, (8.33,), FREE[:2]),
+        (2, (1.67, 2.5, 3.33, 4.17, 5), (EVEN, *MOVED)), (2, (2.5, 3.33, 4.17), FREE),
         (1, (2.5, 3.33, 4.17, 5, 6.67), (EVEN, *MOVED[:2]), SLOWER["sphere"][0]), (1, (8.33,), MOVED[:2], SLOWER["sphere"][0]))),
 }
 FAR = (("line", 1, 6, *EVEN), ("line", 2, 3, *EVEN), ("sphere", 1, 5, *EVEN))
@@ -60,37 +61,51 @@ def overrides(scene, order, faces, mesh, jitter, seed, growth):
     return [*rest, "mesh.parameters={" + ", ".join(f"{k}: {v:.8g}" for k, v in values.items()) + "}"]
 
 
-def length_shares(x):
-    """Of the lines between the coordinates x, by node."""
-    order = numpy.argsort(x)
-    half, found = numpy.diff(x[order]) / 2, numpy.empty(len(x))
-    found[order] = numpy.append(half, 0) + numpy.insert(half, 0, 0)
+def lagrange(n, at):
+    """Values and derivatives at points of the polynomials that are 1 at one of n places even in [-1, 1] and 0 at the others: (n, points) each."""
+    every = [numpy.poly1d(numpy.linalg.solve(numpy.vander(numpy.linspace(-1, 1, n)), unit)) for unit in numpy.eye(n)]
+    return numpy.array([p(at) for p in every]), numpy.array([p.deriv()(at) for p in every])
+
+
+def shares(faces, x):
+    """Integrals of the shape functions of faces in a flat surface, by node. faces: nodes as a line (k, n) or a lattice (k, n, n); x: in the surface's directions."""
+    at, weights = numpy.polynomial.legendre.leggauss(3)
+    value, slope = lagrange(faces.shape[1], at)
+    found = numpy.zeros(len(x))
+    if faces.ndim == 2:
+        parts = numpy.einsum("g,ag,kg->ka", weights, value, numpy.abs(numpy.einsum("ag,ka->kg", slope, x[faces, 0])))
+    else:
+        (xu, yu), (xv, yv) = (numpy.einsum("ag,bh,kabd->dkgh", first, second, x[faces]) for first, second in ((slope, value), (value, slope)))
+        parts = numpy.einsum("g,h,ag,bh,kgh->kab", weights, weights, value, value, numpy.abs(xu * yv - yu * xv))
+    numpy.add.at(found, faces, parts)
     return found
 
 
-def area_shares(file, rows, x):
-    """Of the quadrilaterals that the nodes (rows) of a flat surface y = 0 make, by node: the integrals of the bilinear shape functions."""
-    found = numpy.zeros(len(x))
-    for name, lattice in LATTICES.items():
-        if f"mesh/{name}" not in file:
-            continue
-        for face in (numpy.take(file[f"mesh/{name}"][()][:, lattice], end, axis) for axis in (1, 2, 3) for end in (0, -1)):
-            face = face[numpy.isin(face, rows).all(axis=(1, 2))]
-            corners = numpy.stack([c.ravel() for c in (face[:, :-1, :-1], face[:, 1:, :-1], face[:, 1:, 1:], face[:, :-1, 1:])])
-            edges = x[numpy.roll(corners, -1, 0)] - x[corners]
-            before = numpy.roll(edges, 1, 0)
-            turned = numpy.abs(before[..., 0] * edges[..., 2] - before[..., 2] * edges[..., 0])  # twice the triangle at each corner
-            numpy.add.at(found, corners, turned.sum(0) / 24 + turned / 12)
-    return found[rows]
+def faces_of(file, rows, nodes):
+    """The nodes of the faces that the slave nodes (rows) of a flat surface y = 0 make: lines (k, n) along x, or lattices (k, n, n)."""
+    if not nodes[:, 2].any():
+        line, n = rows[numpy.argsort(nodes[rows, 0])], 3 if "mesh/cells_quad9" in file else 2
+        return line[numpy.arange(0, len(line) - 1, n - 1)[:, None] + numpy.arange(n)]
+    name = next(name for name in LATTICES if f"mesh/{name}" in file)
+    faces = [numpy.take(file[f"mesh/{name}"][()][:, LATTICES[name]], end, axis) for axis in (1, 2, 3) for end in (0, -1)]
+    return numpy.concatenate([face[numpy.isin(face, rows).all(axis=(1, 2))] for face in faces])
 
 
-def centre_of_force(directory, pair):
-    """By load: mean distance from the centre of the nodal pressures."""
+def halves(faces):
+    """Second-order faces as the first-order ones between their nodes, on which surface to surface has its hat functions."""
+    if faces.ndim == 2:
+        return numpy.concatenate([faces[:, i : i + 2] for i in range(faces.shape[1] - 1)])
+    return numpy.concatenate([faces[:, i : i + 2, j : j + 2] for i in range(faces.shape[1] - 1) for j in range(faces.shape[1] - 1)])
+
+
+def centre_of_force(directory, pair, formulation):
+    """By load: mean distance from the centre of the nodal forces."""
     found = {}
     with h5py.File(directory / "results.h5", "r") as file:
         rows = file["contact"][pair]["nodes"][()]
         nodes = file["mesh/nodes"][()]
-        area = area_shares(file, rows, nodes) if nodes[:, 2].any() else length_shares(nodes[rows, 0])
+        faces = faces_of(file, rows, nodes)
+        area = shares(halves(faces) if formulation == "surface_to_surface" else faces, nodes[:, [0, 2]])[rows]
         for step in file["steps"].values():
             force = area * numpy.nan_to_num(step["contact"][pair]["pressure"][()])
             place = nodes[rows] + step["displacement"][()][rows]
@@ -110,7 +125,7 @@ def solve(case, args):
     finished = subprocess.run(command, env=environment(), stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
     record = dict(zip(COLUMNS, (*case, finished.returncode)))
     if finished.returncode == 0:
-        summary, centres = json.loads((directory / "summary.json").read_text()), centre_of_force(directory, pair)
+        summary, centres = json.loads((directory / "summary.json").read_text()), centre_of_force(directory, pair, formulation)
         with open(directory / "steps.csv", newline="") as file:
             steps = [{k: v for k, v in row.items()} for row in csv.DictReader(file)]
         worst = {"width": 0, "peak": 0, "edge": 0}
@@ -127,7 +142,7 @@ def solve(case, args):
 
 
 def largest(runs, names=("width", "peak", "edge")):
-    return [max((float(r[name]) for r in runs), key=abs) for name in names]
+    return [max((float(r[name]) for r in runs if r[name]), key=abs, default=numpy.nan) for name in names]
 
 
 def print_table(records):

@@ -85,8 +85,8 @@ static PetscErrorCode PairCreateTerms(Mesh mesh, ContactPair *pair)
     }
   }
   PetscCall(PetscFree(term));
-  PetscCall(PetscCalloc6(pair->n, &pair->force, 3 * pair->n, &pair->normal, pair->n, &pair->pressure, pair->n, &pair->law_pressure, pair->n, &pair->stiffness,
-                         pair->n, &pair->stiffness_before));
+  PetscCall(
+    PetscCalloc5(pair->n, &pair->force, 3 * pair->n, &pair->normal, pair->n, &pair->pressure, pair->n, &pair->stiffness, pair->n, &pair->stiffness_before));
   PetscCall(PetscCalloc6(slaves->n, &pair->factor, slaves->n, &pair->next_factor, slaves->n, &pair->seed, slaves->n, &pair->point_gap, 3 * slaves->n,
                          &pair->point_normal, slaves->n, &pair->point_force));
   PetscCall(ContactVariationsCreate(mesh->dim, slaves->n, &pair->variations));
@@ -213,7 +213,7 @@ PetscErrorCode ContactPairDestroy(ContactPair *pair)
   PetscCall(PetscFree4(pair->node, pair->area, pair->size, pair->turn));
   PetscCall(PetscFree(pair->term_ptr));
   PetscCall(PetscFree2(pair->term_point, pair->term_weight));
-  PetscCall(PetscFree6(pair->force, pair->normal, pair->pressure, pair->law_pressure, pair->stiffness, pair->stiffness_before));
+  PetscCall(PetscFree5(pair->force, pair->normal, pair->pressure, pair->stiffness, pair->stiffness_before));
   PetscCall(PetscFree6(pair->factor, pair->next_factor, pair->seed, pair->point_gap, pair->point_normal, pair->point_force));
   PetscCall(ContactVariationsDestroy(&pair->variations));
   PetscCall(PetscFree(pair->before));

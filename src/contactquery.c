@@ -125,14 +125,9 @@ PetscErrorCode ContactGetNodes(Contact contact, int p, const PetscReal *u, Conta
     PetscCall(SlavePointsHatAreas(pair->slaves, pair->geometry, u, area));
   else
     PetscCall(SurfaceNodeAreas(pair->slave, pair->geometry, u, area, NULL));
-  for (PetscInt c = 0; c < pair->n; c++) {
-    const PetscReal pressure = pair->now.multiplier[c] + pair->now.penalty[c] * (ContactTermOffset(pair, c, pair->t) - pair->now.gap[c]);
-
-    pair->pressure[c]     = pair->force[c] / area[pair->node[c]];
-    pair->law_pressure[c] = !pair->slave_offsets ? pair->pressure[c] : pair->now.status[c] == CONTACT_CLOSED ? pressure : 0;
-  }
+  for (PetscInt c = 0; c < pair->n; c++) pair->pressure[c] = pair->force[c] / area[pair->node[c]];
   PetscCall(PetscFree(area));
-  *nodes = (ContactNodes){pair->n, pair->node, pair->area, pair->now.gap, pair->now.penalty, pair->force, pair->pressure, pair->law_pressure, pair->normal};
+  *nodes = (ContactNodes){pair->n, pair->node, pair->area, pair->now.gap, pair->now.penalty, pair->force, pair->pressure, pair->normal};
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

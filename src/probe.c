@@ -14,7 +14,7 @@ static const PetscReal RING_TOLERANCE = 1e-6;
 enum { MESSAGE_SIZE = 2048 };
 
 /* Slave nodes of a pair, by node_id */
-enum { SLAVE_ID, SLAVE_REFERENCE, SLAVE_POSITION = SLAVE_REFERENCE + 3, SLAVE_AREA = SLAVE_POSITION + 3, SLAVE_PRESSURE, SLAVE_LAW, SLAVE_COLUMNS };
+enum { SLAVE_ID, SLAVE_REFERENCE, SLAVE_POSITION = SLAVE_REFERENCE + 3, SLAVE_AREA = SLAVE_POSITION + 3, SLAVE_PRESSURE, SLAVE_COLUMNS };
 
 typedef struct {
   const SceneProbe *scene;
@@ -240,7 +240,6 @@ static PetscErrorCode ProbesGetSlaves(Probes probes, int pair, const Table **tab
     }
     row[SLAVE_AREA]     = slaves.area[k];
     row[SLAVE_PRESSURE] = slaves.pressure[k];
-    row[SLAVE_LAW]      = slaves.law[k];
   }
   PetscCall(TableGather(mesh->comm, SLAVE_COLUMNS, slaves.n, rows, &probes->slaves[pair]));
   PetscCall(PetscFree(rows));
@@ -359,7 +358,7 @@ static PetscErrorCode EvaluateContactEdge(Probes probes, Probe *probe, PetscReal
     if (probe->scene->has_at && !ProbeIsAt(probes, probe, slave[SLAVE_REFERENCE + probe->scene->at_axis])) continue;
     n++;
     line[2 * n]     = slave[SLAVE_POSITION + probe->scene->axis];
-    line[2 * n + 1] = slave[SLAVE_LAW];
+    line[2 * n + 1] = slave[SLAVE_PRESSURE];
   }
   qsort(&line[2], (size_t)n, 2 * sizeof(PetscReal), TableCompare);
   if (n && ends[1] > line[2 * n]) {

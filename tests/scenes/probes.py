@@ -71,10 +71,11 @@ def hertz(force, axisymmetric):
 
 
 def edge(x, p):
-    """Zero of p^2 through the last two loaded nodes, at most the next one."""
+    """End of the root with the moments of the nodal forces about the second node before the last loaded one and another two before; between that and the next one."""
     last = max(i for i in range(len(p)) if p[i] > 0)
-    slope = (p[last - 1] ** 2 - p[last] ** 2) / (x[last] - x[last - 1])
-    return min(x[last] + p[last] ** 2 / slope, x[last + 1])
+    force = p[: last + 1] * (x[1 : last + 2] - numpy.concatenate(([x[0]], x[:last]))) / 2
+    near, far = (numpy.sum(force * numpy.maximum(x[: last + 1] - x[k], 0)) ** 0.4 for k in (last - 2, last - 4))
+    return min(max((far * x[last - 2] - near * x[last - 4]) / (far - near), x[last]), x[last + 1])
 
 
 def deviation(p, area, keep, rms):
