@@ -1,9 +1,9 @@
 /* The distributed mesh: a DMPlex from gmsh, partitioned by METIS, with every node's reference coordinates, physical groups by name, and
    gmsh's tags as rank-independent keys. Knows no physics.
 
-   How it comes about: gmsh.h makes the file, gmshfile.h reads it on rank 0, rootmesh.h checks it against the scene, roottopology.h,
-   rootgroups.h and rootrigid.h make a DMPlex, groups and rigid tools of it, meshdistribution.h shares it out. The headers included here
-   are the rest of what users of a mesh need. */
+   How it comes about: gmsh.h makes the file, gmshfile.h reads it on rank 0, rootmesh.h checks it against the scene, cellfaces.h finds
+   which cells share faces, roottopology.h, rootgroups.h and rootrigid.h make a DMPlex, groups and rigid tools of it, meshdistribution.h shares it out. The
+   headers included here are the rest of what users of a mesh need. */
 #pragma once
 #include "meshdata.h"
 #include "meshdofs.h"

@@ -13,8 +13,8 @@ typedef struct {
   PetscInt n, *cell;
 } CellLinks;
 
-/* Gives the DM, whose cells all are on rank 0, a partitioner that holds the partition. contact: per cell, on rank 0, as the links. Collective. */
-PetscErrorCode PartitionCells(DM, const PetscBool contact[], const CellLinks *, Partition *);
+/* Gives the DM, whose cells all are on rank 0, a partitioner that holds the partition of their graph. contact: per cell; all on rank 0. Collective. */
+PetscErrorCode PartitionCells(DM, const PetscInt offsets[], const PetscInt adjacency[], const PetscBool contact[], const CellLinks *, Partition *);
 /* A graph of cells in parts: part[n]. contact: per cell, or NULL: cells alone are balanced. Not collective. */
 PetscErrorCode PartitionGraph(PetscInt n, const PetscInt offsets[], const PetscInt adjacency[], const PetscBool contact[], const CellLinks *, PetscInt parts,
                               PetscInt part[], PetscInt *edge_cut);

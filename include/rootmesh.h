@@ -10,6 +10,14 @@ typedef struct {
   int      number;
 } RootFace;
 
+enum { CELL_FACE_CORNERS = 4 };
+
+/* One face of a cell: its corners' vertex numbers, ascending */
+typedef struct {
+  PetscInt corner[CELL_FACE_CORNERS], cell;
+  int      number;
+} CellFace;
+
 /* Cells and nodes go by their ids: the order of gmsh's tags. */
 typedef struct {
   GmshMesh          gmsh;
@@ -21,6 +29,8 @@ typedef struct {
   PetscInt          n_vertices, *point; /* id -> Plex point; by RootTopologyPlaceNodes() */
   PetscInt          n_faces, *face_ptr; /* cell -> its faces in groups; by RootGroupsFind() */
   RootFace         *faces;
+  PetscInt         *corner_faces; /* vertex -> the cells' faces of which it is the lowest corner; by CellFacesCreate() */
+  CellFace         *cell_faces;
   PetscInt         *interior; /* per group: faces between two cells */
 } RootMesh;
 

@@ -2,11 +2,9 @@
 #pragma once
 #include "rootmesh.h"
 
-/* Cells, vertices, then faces and edges; points are cells (by id), vertices, and what interpolation adds. Collective. */
-PetscErrorCode RootTopologyCreate(MPI_Comm, int dim, const RootMesh *, DM *);
+/* Points are cells (by id), vertices, and, of second order, the faces and edges that interpolation adds. Collective. */
+PetscErrorCode RootTopologyCreate(MPI_Comm, int dim, int order, const RootMesh *, DM *);
 /* The vertices' coordinates on the DM, for viewers. Collective. */
 PetscErrorCode RootTopologySetCoordinates(DM, int dim, const RootMesh *);
 /* Fills root->point; complains where cells share an edge or face but not its middle node. Rank 0 only. */
 PetscErrorCode RootTopologyPlaceNodes(DM, const char *file, RootMesh *, Complaint *);
-/* The point of that depth with exactly these vertices in its closure, or -1. Rank 0 only. */
-PetscErrorCode RootTopologyFindPoint(DM, int depth, PetscInt n, const PetscInt vertices[], PetscInt *point);

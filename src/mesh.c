@@ -1,4 +1,5 @@
 #include "mesh.h"
+#include "cellfaces.h"
 #include "gmsh.h"
 #include "meshdistribution.h"
 #include "refusal.h"
@@ -76,16 +77,17 @@ static PetscErrorCode ReadFile(Scene scene, const char *file, RootMesh *root, Me
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Root -> DM, whole on rank 0, with points for the nodes, faces and labels for the groups */
+/* Root -> DM, whole on rank 0, with points for the nodes, and faces and labels of the groups */
 static PetscErrorCode CreateTopology(Scene scene, const char *file, RootMesh *root, Mesh mesh)
 {
   Complaint complaint = {""};
 
   PetscFunctionBeginUser;
-  PetscCall(RootTopologyCreate(mesh->comm, mesh->dim, root, &mesh->dm));
+  PetscCall(RootTopologyCreate(mesh->comm, mesh->dim, mesh->order, root, &mesh->dm));
   PetscCall(RootTopologySetCoordinates(mesh->dm, mesh->dim, root));
   PetscCall(RootGroupsShare(mesh->dm, mesh, root));
   if (root) {
+    PetscCall(CellFacesCreate(root));
     PetscCall(RootTopologyPlaceNodes(mesh->dm, file, root, &complaint));
     if (!complaint.text[0]) PetscCall(RootGroupsFind(mesh->dm, scene, file, root, mesh, &complaint));
     if (!complaint.text[0]) RootGroupsCheckUses(scene, root, mesh, &complaint);
@@ -99,7 +101,8 @@ static PetscErrorCode CreateTopology(Scene scene, const char *file, RootMesh *ro
 static PetscErrorCode PartitionBodies(Scene scene, const RootMesh *root, Mesh mesh)
 {
   PetscBool  *contact = NULL;
-  CellLinks   links   = {0};
+  PetscInt   *offsets = NULL, *adjacency = NULL;
+  CellLinks   links = {0};
   PetscMPIInt size;
 
   PetscFunctionBeginUser;
@@ -107,8 +110,11 @@ static PetscErrorCode PartitionBodies(Scene scene, const RootMesh *root, Mesh me
   if (root && size > 1) {
     PetscCall(RootGroupsContactCells(scene, root, mesh, &contact));
     PetscCall(RootLinksFind(scene, root, mesh, &links));
+    PetscCall(CellFacesNeighbours(root, &offsets, &adjacency));
   }
-  PetscCall(PartitionCells(mesh->dm, contact, &links, &mesh->partition));
+  PetscCall(PartitionCells(mesh->dm, offsets, adjacency, contact, &links, &mesh->partition));
+  PetscCall(PetscFree(offsets));
+  PetscCall(PetscFree(adjacency));
   PetscCall(PetscFree(contact));
   PetscCall(PetscFree(links.cell));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -19,9 +19,9 @@
 #define MULTIGRID_SHOWN 2
 /* Whatever its effort was at first, multigrid of an older operator is made anew after a solve of so many iterations. */
 #define MULTIGRID_MOST 60
-/* Rows of the interface up to which one rank factors them for all: in so small a factor ranks wait for each other longer than they work. With 5,600 rows two
-   take 1.5 to 3 times as long as one, and four times for a solve. */
-#define MULTIGRID_ALONE 30000
+/* How far across contact, in rows that it couples, a rank factors what others own of the interface. None takes five times the iterations on two ranks, one no
+   more than one rank takes; a second is for parts that are small. */
+#define MULTIGRID_OVERLAP 2
 /* Most rigid-body modes there are */
 #define MULTIGRID_MODES 6
 
@@ -40,7 +40,7 @@ struct _n_Multigrid {
   Vec        nodes_right, nodes_left, rest;
   Mat        contact;   /* borrowed: that part of the operator */
   IS         interface; /* rows of this rank that contact couples; NULL: no rank has any */
-  IS         whole;     /* where the first rank factors for all: those of all ranks there, none on others; NULL: each has its own */
+  IS         reach;     /* these and near ones of other ranks, ascending: those that this one factors */
   PetscInt   coupled;   /* how many there were, on all ranks, when multigrid was made */
   KSP        direct;
   Vec        interface_right, interface_left;
@@ -379,43 +379,31 @@ static PetscErrorCode ForgetInterface(Multigrid m)
 {
   PetscFunctionBeginUser;
   PetscCall(ISDestroy(&m->interface));
-  PetscCall(ISDestroy(&m->whole));
+  PetscCall(ISDestroy(&m->reach));
   PetscCall(VecDestroy(&m->interface_right));
   PetscCall(VecDestroy(&m->interface_left));
   PetscCall(VecScatterDestroy(&m->to_interface));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* A direct solver on some of the ranks */
-static PetscErrorCode CreateDirect(Multigrid m, MPI_Comm comm)
-{
-  PetscFunctionBeginUser;
   PetscCall(KSPDestroy(&m->direct));
-  PetscCall(KSPCreate(comm, &m->direct));
-  PetscCall(KSPSetOptionsPrefix(m->direct, MULTIGRID_INTERFACE));
-  PetscCall(DirectSolverSet(m->direct, m->symmetric));
-  PetscCall(KSPSetFromOptions(m->direct));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Who factors an interface of n rows. */
-static PetscErrorCode ShareInterface(Multigrid m, PetscInt n)
+/* What each rank factors by itself: its rows of the interface with those of others that contact couples to them. Of its solution it keeps its own rows:
+   restricted additive Schwarz (Cai and Sarkis, SIAM J. Sci. Comput. 21, 1999). One factor over all ranks has them wait for each other longer than they work. */
+static PetscErrorCode FindReach(Multigrid m)
 {
-  PetscMPIInt     rank, size;
+  PetscMPIInt     size;
+  PetscInt        n;
   const PetscInt *rows;
-  IS              all;
 
   PetscFunctionBeginUser;
-  PetscCallMPI(MPI_Comm_rank(m->mesh->comm, &rank));
   PetscCallMPI(MPI_Comm_size(m->mesh->comm, &size));
-  if (size > 1 && n <= MULTIGRID_ALONE) {
-    PetscCall(ISAllGather(m->interface, &all));
-    PetscCall(ISGetIndices(all, &rows));
-    PetscCall(ISCreateGeneral(PETSC_COMM_SELF, rank ? 0 : n, rows, PETSC_COPY_VALUES, &m->whole));
-    PetscCall(ISRestoreIndices(all, &rows));
-    PetscCall(ISDestroy(&all));
-  }
-  PetscCall(CreateDirect(m, m->whole ? PETSC_COMM_SELF : m->mesh->comm));
+  PetscCall(ISGetLocalSize(m->interface, &n));
+  PetscCall(ISGetIndices(m->interface, &rows));
+  PetscCall(ISCreateGeneral(PETSC_COMM_SELF, n, rows, PETSC_COPY_VALUES, &m->reach));
+  PetscCall(ISRestoreIndices(m->interface, &rows));
+  if (size == 1) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(MatIncreaseOverlap(m->contact, 1, &m->reach, MULTIGRID_OVERLAP));
+  PetscCall(ISSort(m->reach));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -445,7 +433,7 @@ PetscErrorCode MultigridSetContact(Multigrid m, Mat C, PetscBool changed)
   PetscCallMPI(MPI_Allreduce(&n, &all, 1, MPIU_INT, MPI_SUM, m->mesh->comm));
   if (all) {
     PetscCall(ISCreateGeneral(m->mesh->comm, n, rows, PETSC_COPY_VALUES, &m->interface));
-    PetscCall(ShareInterface(m, all));
+    PetscCall(FindReach(m));
   }
   PetscCall(PetscFree(rows));
   if (all > MULTIGRID_CHANGE * m->coupled || m->coupled > MULTIGRID_CHANGE * all) m->renew = PETSC_TRUE;
@@ -460,64 +448,70 @@ PetscErrorCode MultigridRenew(Multigrid m)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The operator's rows and columns of the interface; NULL: another rank has them. */
-static PetscErrorCode InterfaceBlock(Multigrid m, Mat A, Mat *block)
+static PetscErrorCode CreateDirect(Multigrid m)
 {
-  Mat     *blocks;
   PetscInt n;
 
   PetscFunctionBeginUser;
-  *block = NULL;
-  if (!m->whole) {
-    PetscCall(MatCreateSubMatrix(A, m->interface, m->interface, MAT_INITIAL_MATRIX, block));
-    PetscFunctionReturn(PETSC_SUCCESS);
-  }
-  PetscCall(ISGetLocalSize(m->whole, &n));
-  PetscCall(MatCreateSubMatrices(A, n ? 1 : 0, &m->whole, &m->whole, MAT_INITIAL_MATRIX, &blocks));
-  if (n) PetscCall(PetscObjectReference((PetscObject)(*block = blocks[0])));
-  PetscCall(MatDestroySubMatrices(n ? 1 : 0, &blocks));
+  PetscCall(ISGetLocalSize(m->reach, &n));
+  PetscCall(VecCreateSeq(PETSC_COMM_SELF, n, &m->interface_right));
+  PetscCall(VecDuplicate(m->interface_right, &m->interface_left));
+  PetscCall(VecScatterCreate(m->number, m->reach, m->interface_right, NULL, &m->to_interface));
+  PetscCall(KSPCreate(PETSC_COMM_SELF, &m->direct));
+  PetscCall(KSPSetOptionsPrefix(m->direct, MULTIGRID_INTERFACE));
+  PetscCall(DirectSolverSet(m->direct, m->symmetric));
+  PetscCall(KSPSetFromOptions(m->direct));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* Factors of the operator's rows and columns of the interface. */
 static PetscErrorCode SetUpInterface(Multigrid m, Mat A)
 {
-  const IS rows = m->whole ? m->whole : m->interface;
   PetscInt n;
-  Mat      block;
+  Mat     *blocks;
 
   PetscFunctionBeginUser;
   if (!m->interface) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(InterfaceBlock(m, A, &block));
-  if (block) {
-    PetscCall(MatSetOption(block, MAT_SYMMETRIC, m->symmetric));
-    PetscCall(KSPSetOperators(m->direct, block, block));
+  if (!m->direct) PetscCall(CreateDirect(m));
+  PetscCall(VecGetSize(m->interface_right, &n));
+  PetscCall(MatCreateSubMatrices(A, n ? 1 : 0, &m->reach, &m->reach, MAT_INITIAL_MATRIX, &blocks));
+  if (n) {
+    PetscCall(MatSetOption(blocks[0], MAT_SYMMETRIC, m->symmetric));
+    PetscCall(KSPSetOperators(m->direct, blocks[0], blocks[0]));
     PetscCall(KSPSetUp(m->direct));
   }
-  if (!m->to_interface) {
-    PetscCall(ISGetLocalSize(rows, &n));
-    PetscCall(VecCreate(PetscObjectComm((PetscObject)rows), &m->interface_right));
-    PetscCall(VecSetSizes(m->interface_right, n, PETSC_DETERMINE));
-    PetscCall(VecSetType(m->interface_right, VECSTANDARD));
-    PetscCall(VecDuplicate(m->interface_right, &m->interface_left));
-    PetscCall(VecScatterCreate(m->number, rows, m->interface_right, NULL, &m->to_interface));
-  }
-  PetscCall(MatDestroy(&block));
+  PetscCall(MatDestroySubMatrices(n ? 1 : 0, &blocks));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* left += (interface solve of right) */
 static PetscErrorCode AddInterface(Multigrid m, Vec right, Vec left)
 {
-  PetscInt n;
+  PetscInt           n, n_own, first;
+  const PetscInt    *own, *reach;
+  const PetscScalar *from;
+  PetscScalar       *to;
 
   PetscFunctionBeginUser;
   PetscCall(VecScatterBegin(m->to_interface, right, m->interface_right, INSERT_VALUES, SCATTER_FORWARD));
   PetscCall(VecScatterEnd(m->to_interface, right, m->interface_right, INSERT_VALUES, SCATTER_FORWARD));
   PetscCall(VecGetSize(m->interface_right, &n));
-  if (n) PetscCall(KSPSolve(m->direct, m->interface_right, m->interface_left));
-  PetscCall(VecScatterBegin(m->to_interface, m->interface_left, left, ADD_VALUES, SCATTER_REVERSE));
-  PetscCall(VecScatterEnd(m->to_interface, m->interface_left, left, ADD_VALUES, SCATTER_REVERSE));
+  if (!n) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(KSPSolve(m->direct, m->interface_right, m->interface_left));
+  PetscCall(VecGetOwnershipRange(left, &first, NULL));
+  PetscCall(ISGetLocalSize(m->interface, &n_own));
+  PetscCall(ISGetIndices(m->interface, &own));
+  PetscCall(ISGetIndices(m->reach, &reach));
+  PetscCall(VecGetArrayRead(m->interface_left, &from));
+  PetscCall(VecGetArray(left, &to));
+  for (PetscInt i = 0, k = 0; i < n_own; i++) {
+    while (reach[k] != own[i]) k++;
+    to[own[i] - first] += from[k];
+  }
+  PetscCall(VecRestoreArray(left, &to));
+  PetscCall(VecRestoreArrayRead(m->interface_left, &from));
+  PetscCall(ISRestoreIndices(m->reach, &reach));
+  PetscCall(ISRestoreIndices(m->interface, &own));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -625,7 +619,6 @@ PetscErrorCode MultigridDestroy(Multigrid *multigrid)
   PetscFunctionBeginUser;
   if (!m) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(ForgetInterface(m));
-  PetscCall(KSPDestroy(&m->direct));
   PetscCall(PCDestroy(&m->bodies));
   PetscCall(MatDestroy(&m->nodes));
   PetscCall(VecDestroy(&m->nodes_right));

@@ -1,6 +1,6 @@
 #include "rootgroups.h"
+#include "cellfaces.h"
 #include "meshgroup.h"
-#include "roottopology.h"
 #include <string.h>
 
 static PetscBool IsRigidGroup(Scene scene, int dim, const char *name)
@@ -58,23 +58,6 @@ PetscErrorCode RootGroupsShare(DM dm, Mesh mesh, const RootMesh *root)
 
 /* ------------------------------------------------------------------------------------------------------------ faces */
 
-/* Which face of the cell has these corners (gmsh's nodes); -1: none */
-static int FaceNumber(const RootMesh *root, PetscInt cell, int n, const PetscInt corners[])
-{
-  const Element  *element   = root->cell_block[cell]->element;
-  const int       n_corners = ElementGet((ElementType)element->face_type)->corners;
-  const PetscInt *nodes     = RootMeshCellNodes(root, cell);
-
-  for (int f = 0; f < element->faces && n == n_corners; f++) {
-    int same = 0;
-
-    for (int i = 0; i < n; i++)
-      for (int k = 0; k < n; k++) same += nodes[element->face_nodes[f][i]] == corners[k];
-    if (same == n) return f;
-  }
-  return -1;
-}
-
 /* Does the element have a node that no cell uses? */
 static PetscBool IsLoose(const RootMesh *root, const GmshBlock *block, PetscInt item)
 {
@@ -84,40 +67,32 @@ static PetscBool IsLoose(const RootMesh *root, const GmshBlock *block, PetscInt 
 }
 
 /* The cell that an element of dimension dim - 1 is a face of: the one with the lower id of two. face->cell -1: none */
-static PetscErrorCode FindFace(DM dm, const RootMesh *root, const GmshBlock *block, PetscInt item, RootFace *face, PetscBool *interior)
+static void FindFace(const RootMesh *root, const GmshBlock *block, PetscInt item, RootFace *face, PetscBool *interior)
 {
-  const PetscInt *nodes     = &block->connectivity[item * block->nodes];
-  const int       n_corners = block->element->corners;
-  const PetscInt *cells;
-  PetscInt        vertices[4], point, n_cells;
+  const PetscInt *nodes = &block->connectivity[item * block->nodes];
+  const CellFace *found;
+  PetscInt        vertices[CELL_FACE_CORNERS], n_cells;
 
-  PetscFunctionBeginUser;
   face->cell = -1;
   face->tag  = block->tag[item];
   *interior  = PETSC_FALSE;
-  if (IsLoose(root, block, item)) PetscFunctionReturn(PETSC_SUCCESS);
-  for (int k = 0; k < n_corners; k++) vertices[k] = root->point[root->id[nodes[k]]];
-  PetscCall(RootTopologyFindPoint(dm, block->dim, n_corners, vertices, &point));
-  if (point < 0) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(DMPlexGetSupportSize(dm, point, &n_cells));
-  PetscCall(DMPlexGetSupport(dm, point, &cells));
-  if (!n_cells) PetscFunctionReturn(PETSC_SUCCESS);
-  face->cell = cells[0];
-  for (PetscInt i = 1; i < n_cells; i++) face->cell = PetscMin(face->cell, cells[i]);
-  face->number = FaceNumber(root, face->cell, n_corners, nodes);
-  if (face->number < 0) face->cell = -1;
-  *interior = n_cells > 1 ? PETSC_TRUE : PETSC_FALSE;
-  PetscFunctionReturn(PETSC_SUCCESS);
+  if (IsLoose(root, block, item)) return;
+  for (int k = 0; k < block->element->corners; k++) vertices[k] = root->vertex[root->id[nodes[k]]];
+  n_cells = CellFacesFind(root, block->element->corners, vertices, &found);
+  if (!n_cells) return;
+  face->cell   = found->cell;
+  face->number = found->number;
+  *interior    = n_cells > 1 ? PETSC_TRUE : PETSC_FALSE;
 }
 
 /* One element of a deformable body's group: its face, if the group is a surface, and its nodes' points into the label. loose: it does not lie on a body. */
-static PetscErrorCode AddElement(DM dm, RootMesh *root, const GmshBlock *block, PetscInt item, int g, PetscBool surface, DMLabel label, PetscBool *loose)
+static PetscErrorCode AddElement(RootMesh *root, const GmshBlock *block, PetscInt item, int g, PetscBool surface, DMLabel label, PetscBool *loose)
 {
   RootFace  face     = {.group = g};
   PetscBool interior = PETSC_FALSE;
 
   PetscFunctionBeginUser;
-  if (surface) PetscCall(FindFace(dm, root, block, item, &face, &interior));
+  if (surface) FindFace(root, block, item, &face, &interior);
   *loose = IsLoose(root, block, item) || (surface && face.cell < 0) ? PETSC_TRUE : PETSC_FALSE;
   if (*loose) PetscFunctionReturn(PETSC_SUCCESS);
   if (surface) {
@@ -129,20 +104,17 @@ static PetscErrorCode AddElement(DM dm, RootMesh *root, const GmshBlock *block, 
 }
 
 /* A rigid tool has no faces of a body. */
-static PetscErrorCode CheckRigidBlock(DM dm, Scene scene, const char *file, const RootMesh *root, const GmshBlock *block, const char *name,
-                                      Complaint *complaint)
+static void CheckRigidBlock(Scene scene, const char *file, const RootMesh *root, const GmshBlock *block, const char *name, Complaint *complaint)
 {
-  PetscFunctionBeginUser;
   for (PetscInt item = 0; item < block->n; item++) {
     RootFace  face;
     PetscBool interior;
 
-    PetscCall(FindFace(dm, root, block, item, &face, &interior));
+    FindFace(root, block, item, &face, &interior);
     if (face.cell < 0) continue;
     Complain(complaint, "%s: element %" PetscInt_FMT " of the rigid surface '%s' is a face of a deformable body in '%s'; a rigid tool has a mesh of its own",
              SceneWhere(scene, scene->bodies[MeshFindBody(scene, name, PETSC_TRUE)].path, "surface"), block->tag[item], name, file);
   }
-  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* The elements of one block in one of its groups */
@@ -159,7 +131,7 @@ static PetscErrorCode AddBlock(DM dm, Scene scene, RootMesh *root, const GmshBlo
   for (PetscInt item = 0; item < block->n; item++) {
     PetscBool loose;
 
-    PetscCall(AddElement(dm, root, block, item, g, surface, label, &loose));
+    PetscCall(AddElement(root, block, item, g, surface, label, &loose));
     group->n_loose += loose;
   }
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -193,7 +165,8 @@ static PetscErrorCode SortFaces(RootMesh *root)
   Input Parameters:
 + dm    - by RootTopologyCreate()
 . scene - which groups are rigid tools
-- file  - the mesh's name, for the complaint
+. file  - the mesh's name, for the complaint
+- root  - after CellFacesCreate() and RootTopologyPlaceNodes()
 
   Output Parameters:
 + root      - its faces are set
@@ -218,7 +191,7 @@ PetscErrorCode RootGroupsFind(DM dm, Scene scene, const char *file, RootMesh *ro
 
       group->n_elements += block->n;
       if (IsRigidGroup(scene, group->dim, group->name))
-        PetscCall(CheckRigidBlock(dm, scene, file, root, block, group->name, complaint));
+        CheckRigidBlock(scene, file, root, block, group->name, complaint);
       else
         PetscCall(AddBlock(dm, scene, root, block, block->physical[i], mesh));
     }

@@ -273,6 +273,8 @@ PetscErrorCode RootMeshReset(RootMesh *root)
   PetscCall(PetscFree4(root->node, root->id, root->vertex, root->point));
   PetscCall(PetscFree(root->face_ptr));
   PetscCall(PetscFree(root->faces));
+  PetscCall(PetscFree(root->corner_faces));
+  PetscCall(PetscFree(root->cell_faces));
   PetscCall(PetscFree(root->interior));
   PetscCall(GmshReset(&root->gmsh));
   PetscFunctionReturn(PETSC_SUCCESS);

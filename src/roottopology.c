@@ -24,19 +24,21 @@ static int PlexCorner(ElementType type, int i)
 }
 
 /*
-  RootTopologyCreate - the cells' DMPlex with its edges and faces, all on rank 0
+  RootTopologyCreate - the cells' DMPlex, all on rank 0
 
   Collective
 
   Input Parameters:
-+ comm - all ranks
-. dim  - of the cells
-- root - on rank 0; NULL elsewhere
++ comm  - all ranks
+. dim   - of the cells
+. order - of the elements
+- root  - on rank 0; NULL elsewhere
 
   Output Parameter:
-. dm - cells have their ids as points
+. dm - cells have their ids as points; edges and faces are points only where nodes sit on them: of first-order elements, where none does, they take half
+       the time that there is before the first unknown
 */
-PetscErrorCode RootTopologyCreate(MPI_Comm comm, int dim, const RootMesh *root, DM *dm)
+PetscErrorCode RootTopologyCreate(MPI_Comm comm, int dim, int order, const RootMesh *root, DM *dm)
 {
   const PetscInt n_cells = root ? root->n_cells : 0, n_points = n_cells + (root ? root->n_vertices : 0);
   PetscInt       cone[8];
@@ -60,8 +62,11 @@ PetscErrorCode RootTopologyCreate(MPI_Comm comm, int dim, const RootMesh *root, 
   for (PetscInt v = n_cells; v < n_points; v++) PetscCall(DMPlexSetCellType(cells, v, DM_POLYTOPE_POINT));
   PetscCall(DMPlexSymmetrize(cells));
   PetscCall(DMPlexStratify(cells));
-  PetscCall(DMPlexInterpolate(cells, dm));
-  PetscCall(DMDestroy(&cells));
+  if (order > 1) {
+    PetscCall(DMPlexInterpolate(cells, dm));
+    PetscCall(DMDestroy(&cells));
+  } else
+    *dm = cells;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -117,21 +122,8 @@ PetscErrorCode RootTopologySetCoordinates(DM dm, int dim, const RootMesh *root)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*
-  RootTopologyFindPoint - the edge, face or cell with given vertices
-
-  Not Collective; rank 0
-
-  Input Parameters:
-+ dm       - by RootTopologyCreate()
-. depth    - 1 for edges, 2 for faces of solids
-. n        - number of vertices
-- vertices - Plex points
-
-  Output Parameter:
-. point - that has exactly these in its closure; -1: there is none
-*/
-PetscErrorCode RootTopologyFindPoint(DM dm, int depth, PetscInt n, const PetscInt vertices[], PetscInt *point)
+/* The edge (depth 1) or face (2) that has exactly these vertices in its closure; -1: there is none */
+static PetscErrorCode FindPoint(DM dm, int depth, PetscInt n, const PetscInt vertices[], PetscInt *point)
 {
   const PetscInt *covered;
   PetscInt        n_covered, start, end;
@@ -171,7 +163,7 @@ static PetscErrorCode NodePoint(DM dm, const RootMesh *root, PetscInt c, int k, 
     n       = ElementGet((ElementType)element->face_type)->corners;
   }
   for (int i = 0; i < n; i++) vertices[i] = root->point[root->id[nodes[corners[i]]]];
-  if (n) PetscCall(RootTopologyFindPoint(dm, depth, n, vertices, point));
+  if (n) PetscCall(FindPoint(dm, depth, n, vertices, point));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
