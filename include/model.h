@@ -67,7 +67,7 @@ PetscErrorCode ModelAssemble(Model);
 /* Refusal of initial overlaps, the state at t = 0 accepted. Collective. */
 PetscErrorCode ModelSetUp(Model);
 PetscErrorCode ModelSolve(Model, PetscReal t, SolveReport *);
-/* Where one linear solve with the tangent of the accepted state, whose contact stays as it is, leads at t: u[n_nodes*dim], the state is not changed.
+/* Where one linear solve, for which the accepted state's contact stays as it is, leads at t: u[n_nodes*dim], the state is not changed.
    Its solve is added to the report. The contact lists are those of the way to t. */
 PetscErrorCode ModelForecast(Model, PetscReal t, PetscReal *u, SolveReport *);
 PetscErrorCode ModelGetAccepted(Model, const PetscReal **u, PetscReal *t);

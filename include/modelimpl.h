@@ -24,7 +24,8 @@ typedef struct _n_ModelWork {
   PetscReal    accepted_t;
   Vec          forecast; /* x at forecast_t by ModelForecast() */
   PetscReal    forecast_t;
-  PetscBool    forecasted; /* forecast starts from the accepted state */
+  PetscBool    forecasted; /* and is one from the accepted state */
+  PetscBool    foreseen;   /* the last prediction started from where the path leads to */
   PetscReal    expected;   /* motion that the lists of this step were made for */
   PetscReal    rate;       /* largest displacement per unit of t in the last accepted step */
   PetscReal    scale;      /* force norm of the last evaluation */
@@ -67,7 +68,8 @@ PetscErrorCode ModelLocateEdge(Model, PetscBool *found, ContactPlace *); /* does
 PetscErrorCode ModelSettle(Model, const PetscReal *u, const PetscReal *carried, PetscReal t, Vec y); /* a linear step y whose contact is right where it ends */
 /* prediction.c */
 PetscErrorCode ModelForesee(Model, PetscReal t, PetscReal *u, Vec x, PetscBool *smooth); /* where the way so far leads to */
-PetscErrorCode ModelPredict(Model, SolveReport *);                                       /* model->x at model->t by one linear solve from the accepted state */
+PetscErrorCode ModelInOrder(Model, const PetscReal *u, PetscBool *ok);                   /* can elements and contact lists be there? */
+PetscErrorCode ModelPredict(Model, SolveReport *);                                       /* model->x at model->t by one linear solve */
 PetscErrorCode ModelPredictFar(Model, SolveReport *);                                    /* in pieces, where that is too far */
 PetscErrorCode ModelFollowLists(Model, SolveReport *);                                   /* a linear step that holds contact while its lists are other ones */
 /* softstart.c */

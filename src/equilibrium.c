@@ -130,26 +130,39 @@ static PetscErrorCode ModelDepart(Model model, PetscReal t)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* A part of the way to the forecast: in proportion, or on the path that led to it, of whose end it was so far off. */
+/* A part of the way to the forecast, where that came from the path: on the path, with so much of what its end was off. made: that is possible. */
+static PetscErrorCode ModelTakePathPart(Model model, PetscReal part, PetscBool *made)
+{
+  ModelWork *work = model->work;
+  PetscReal *u;
+  Vec        end;
+
+  PetscFunctionBeginUser;
+  *made = work->foreseen;
+  if (!*made) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscMalloc1(model->mesh->n_nodes * model->mesh->dim, &u));
+  PetscCall(VecDuplicate(model->x, &end));
+  PetscCall(ModelForesee(model, work->forecast_t, u, end, made));
+  if (*made) PetscCall(ModelForesee(model, model->t, u, model->x, made));
+  if (*made) {
+    PetscCall(VecAXPBYPCZ(model->x, part, -part, 1, work->forecast, end));
+    PetscCall(ModelTrial(model, model->x));
+    PetscCall(ModelInOrder(model, work->trial, made));
+  }
+  PetscCall(VecDestroy(&end));
+  PetscCall(PetscFree(u));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* A part of the way to the forecast. */
 static PetscErrorCode ModelTakePart(Model model)
 {
   ModelWork      *work = model->work;
   const PetscReal part = (model->t - work->accepted_t) / (work->forecast_t - work->accepted_t);
-  PetscReal      *u;
-  PetscBool       smooth;
-  Vec             end;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc1(model->mesh->n_nodes * model->mesh->dim, &u));
-  PetscCall(VecDuplicate(model->x, &end));
-  PetscCall(ModelForesee(model, work->forecast_t, u, end, &smooth));
-  if (smooth) PetscCall(ModelForesee(model, model->t, u, model->x, &smooth));
-  if (smooth)
-    PetscCall(VecAXPBYPCZ(model->x, part, -part, 1, work->forecast, end));
-  else
-    PetscCall(VecAXPBYPCZ(model->x, 1 - part, part, 0, work->accepted_x, work->forecast));
-  PetscCall(VecDestroy(&end));
-  PetscCall(PetscFree(u));
+  PetscCall(ModelTakePathPart(model, part, &work->foreseen));
+  if (!work->foreseen) PetscCall(VecAXPBYPCZ(model->x, 1 - part, part, 0, work->accepted_x, work->forecast));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -284,7 +297,7 @@ PetscErrorCode ModelSolve(Model model, PetscReal t, SolveReport *report)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ModelForecast - displacements at t by one linear solve from the accepted state with its contact set, as a guess of what will touch.
+/* ModelForecast - displacements at t by one linear solve with the accepted state's contact set, as a guess of what will touch.
 
    Collective. u[n_nodes*dim]: local displacements (length), prescribed ones included. Costs and failures are added to the report; the state is
    the accepted one afterwards, the contact lists are made for the way to t. The next ModelSolve() starts from the forecast instead of a

@@ -23,9 +23,9 @@ static PetscErrorCode ModelStepLinear(Model model, const PetscReal *u, const Pet
   PetscCall(StabiliserResidual(model->work->stabiliser, model->x, b));
   PetscCall(SNESGetKSP(model->snes, &ksp));
   PetscCall(KSPSetOperators(ksp, model->A, model->A));
-  PetscCall(LinearSolverPredict(model->work->solver, PETSC_TRUE));
+  if (!model->work->foreseen) PetscCall(LinearSolverPredict(model->work->solver, PETSC_TRUE));
   PetscCall(KSPSolve(ksp, b, dx));
-  PetscCall(LinearSolverPredict(model->work->solver, PETSC_FALSE));
+  if (!model->work->foreseen) PetscCall(LinearSolverPredict(model->work->solver, PETSC_FALSE));
   PetscCall(KSPGetIterationNumber(ksp, &its));
   report->newton++;
   report->krylov += its;
@@ -65,56 +65,6 @@ static PetscErrorCode ModelStepLoads(Model model, const PetscReal *u, PetscReal 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ModelForesee - local displacements u[n_nodes*dim] at t as the way so far leads to expect, prescribed ones included, and the free ones among them.
-
-   Collective. smooth: the way has been such that this is worth more than what the tangent says; u and x are set then only. */
-PetscErrorCode ModelForesee(Model model, PetscReal t, PetscReal *u, Vec x, PetscBool *smooth)
-{
-  PetscFunctionBeginUser;
-  *smooth = PETSC_FALSE;
-  if (model->work->path) PetscCall(PathForesee(model->work->path, t, u, smooth));
-  if (!*smooth) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(LoadsPrescribe(model->loads, t, u));
-  PetscCall(ModelCollectFree(model, u, x));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Is no element turned inside out at local displacements u, on any rank? */
-static PetscErrorCode ModelInOrder(Model model, const PetscReal *u, PetscBool *ok)
-{
-  PetscBool mine;
-
-  PetscFunctionBeginUser;
-  TimingBegin(TIMING_ASSEMBLY_ELASTIC);
-  PetscCall(ElasticityResidual(model->elasticity, u, NULL, NULL, NULL, &mine));
-  TimingEnd(TIMING_ASSEMBLY_ELASTIC);
-  PetscCallMPI(MPI_Allreduce(&mine, ok, sizeof(PetscBool), MPI_BYTE, MPI_BAND, model->mesh->comm));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* ModelPredict - displacements at model->t by one linear solve, into model->x. Collective. Costs and failures are added to the report.
-
-   From the accepted state; where the way was smooth from where it would lead to, whose elements are in order: Newton's first iteration from there. */
-PetscErrorCode ModelPredict(Model model, SolveReport *report)
-{
-  const PetscInt n = model->mesh->n_nodes * model->mesh->dim;
-  PetscBool      smooth, holding = (PetscBool)(model->contact != NULL);
-  PetscReal     *u;
-
-  PetscFunctionBeginUser;
-  PetscCall(PetscMalloc1(n, &u));
-  PetscCall(ModelForesee(model, model->t, u, model->x, &smooth));
-  if (smooth) PetscCall(ModelInOrder(model, u, &smooth));
-  if (smooth)
-    PetscCall(ModelStepLoads(model, u, model->t, holding, report));
-  else {
-    PetscCall(VecCopy(model->work->accepted_x, model->x));
-    PetscCall(ModelStepLoads(model, model->work->accepted_u, model->work->accepted_t, holding, report));
-  }
-  PetscCall(PetscFree(u));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* Largest motion of the ends of a cell's edge against each other from displacements u to v, by its length, all ranks */
 static PetscErrorCode ModelLargestTurn(Model model, const PetscReal *u, const PetscReal *v, PetscReal *turn)
 {
@@ -150,6 +100,73 @@ static PetscErrorCode ModelLocal(Model model, Vec x, PetscReal t, PetscReal *u)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* ModelForesee - the displacements at t that the way so far leads to expect, prescribed ones included: local ones u[n_nodes*dim], and the free ones among them.
+
+   Collective. smooth: the way has been such that this is worth more than what the tangent says; x is set then only. */
+PetscErrorCode ModelForesee(Model model, PetscReal t, PetscReal *u, Vec x, PetscBool *smooth)
+{
+  PetscFunctionBeginUser;
+  *smooth = PETSC_FALSE;
+  if (model->work->path) PetscCall(PathForesee(model->work->path, t, u, smooth));
+  if (!*smooth) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(LoadsPrescribe(model->loads, t, u));
+  PetscCall(ModelCollectFree(model, u, x));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* ModelInOrder - is no element turned inside out at local displacements u, on any rank, and do the lists reach so far? Collective. */
+PetscErrorCode ModelInOrder(Model model, const PetscReal *u, PetscBool *ok)
+{
+  PetscReal motion = 0;
+  PetscBool mine;
+
+  PetscFunctionBeginUser;
+  TimingBegin(TIMING_ASSEMBLY_ELASTIC);
+  PetscCall(ElasticityResidual(model->elasticity, u, NULL, NULL, NULL, &mine));
+  TimingEnd(TIMING_ASSEMBLY_ELASTIC);
+  PetscCallMPI(MPI_Allreduce(&mine, ok, sizeof(PetscBool), MPI_BYTE, MPI_BAND, model->mesh->comm));
+  if (model->contact) PetscCall(ModelMotion(model, u, model->t, &motion));
+  *ok = (PetscBool)(*ok && motion <= model->work->expected);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* A step from where the way so far leads to: Newton's first iteration from there. work->foreseen: it has been made, and did not lead far away. */
+static PetscErrorCode ModelPredictForeseen(Model model, SolveReport *report)
+{
+  ModelWork     *work = model->work;
+  const PetscInt n    = model->mesh->n_nodes * model->mesh->dim;
+  PetscReal     *u, *v, turn;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc2(n, &u, n, &v));
+  PetscCall(ModelForesee(model, model->t, u, model->x, &work->foreseen));
+  if (work->foreseen) PetscCall(ModelInOrder(model, u, &work->foreseen));
+  if (work->foreseen) {
+    PetscCall(ModelStepLoads(model, u, model->t, (PetscBool)(model->contact != NULL), report));
+    PetscCall(ModelLocal(model, model->x, model->t, v));
+    PetscCall(ModelLargestTurn(model, u, v, &turn));
+    work->foreseen = (PetscBool)(report->result == SOLVE_CONVERGED && turn <= PREDICTION_FARTHEST);
+  }
+  PetscCall(PetscFree2(u, v));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* ModelPredict - displacements at model->t by one linear solve, into model->x. Collective. Costs and failures are added to the report.
+
+   From the accepted state; where the way was smooth, from where it leads to. */
+PetscErrorCode ModelPredict(Model model, SolveReport *report)
+{
+  const SolveReport before = *report;
+
+  PetscFunctionBeginUser;
+  PetscCall(ModelPredictForeseen(model, report));
+  if (model->work->foreseen) PetscFunctionReturn(PETSC_SUCCESS);
+  *report = before; /* a singular tangent there says nothing of the one here */
+  PetscCall(VecCopy(model->work->accepted_x, model->x));
+  PetscCall(ModelStepLoads(model, model->work->accepted_u, model->work->accepted_t, (PetscBool)(model->contact != NULL), report));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* New lists at (u, t) on the way, if these do not reach so far. */
 static PetscErrorCode ModelReachOn(Model model, const PetscReal *u, PetscReal t, SolveReport *report)
 {
@@ -178,7 +195,7 @@ PetscErrorCode ModelPredictFar(Model model, SolveReport *report)
   Vec            from;
 
   PetscFunctionBeginUser;
-  if (model->scene->kinematics == KINEMATICS_SMALL) PetscFunctionReturn(PETSC_SUCCESS);
+  if (model->scene->kinematics == KINEMATICS_SMALL || model->work->foreseen) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(VecDuplicate(model->x, &from));
   PetscCall(VecCopy(model->work->accepted_x, from));
   PetscCall(PetscCalloc2(n, &u, n, &v));
