@@ -1,8 +1,8 @@
 /* Preconditioner of the iterative solver: algebraic multigrid for the bodies, a direct solve for the contact interface, one after the other.
 
    Multigrid alone cannot smooth what stiff penalties tie across two meshes (its iterations grow with the square root of the penalty). So the
-   dofs that contact couples, of all ranks, are solved with directly; the surfaces are thin, and so are the factors. Multigrid wants whole
-   nodes: it works on a copy of the matrix in which constrained dofs have rows of their own, and knows each node's rigid-body modes. */
+   dofs that contact couples are solved with directly, by each rank its own with near ones of others; the surfaces are thin, and so are the factors. Multigrid
+   wants whole nodes: it works on a copy of the matrix in which constrained dofs have rows of their own, and knows each node's rigid-body modes. */
 #pragma once
 #include "mesh.h"
 

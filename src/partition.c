@@ -3,9 +3,8 @@
 
 enum { METIS_SEED = 1 }; /* any fixed number: the same mesh and ranks give the same partition */
 
-/* How far parts may exceed the mean: cells decide the cost of every Newton iteration, contact cells a small part of it. A tolerance of 1.03 is used up in full, and
-   cuts as many faces. */
-static const real_t CELL_TOLERANCE = 1.005f, CONTACT_TOLERANCE = 1.10f;
+/* How far parts may exceed the mean: cells decide the cost of every Newton iteration, contact cells a small part of it */
+static const real_t CELL_TOLERANCE = 1.03f, CONTACT_TOLERANCE = 1.10f;
 
 /* Cutting a link costs as much as so many faces between cells: a slave node is coupled to some twenty nodes of the master, a node of a face to nine beyond it,
    and what couples ranks is sent in every tangent and every sweep. */
