@@ -207,6 +207,22 @@ PetscErrorCode KeptFactorOwn(KeptFactor kept, Mat A, PetscBool *failed)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* What the factor at hand makes of b, before it is turned, may be further from the solution than nothing is. */
+static PetscErrorCode ChooseStart(Mat A, Vec b, PetscReal right, Vec x)
+{
+  PetscReal left;
+  Vec       r;
+
+  PetscFunctionBeginUser;
+  PetscCall(VecDuplicate(b, &r));
+  PetscCall(MatMult(A, x, r));
+  PetscCall(VecAYPX(r, -1, b));
+  PetscCall(VecNorm(r, NORM_2, &left));
+  if (!(left < right)) PetscCall(VecSet(x, 0));
+  PetscCall(VecDestroy(&r));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* KeptFactorSolve - Collective. x: what the factor at hand makes of b. */
 PetscErrorCode KeptFactorSolve(KeptFactor kept, Mat A, Vec b, Vec x, PetscReal *tolerance, PetscBool *failed)
 {
@@ -222,6 +238,7 @@ PetscErrorCode KeptFactorSolve(KeptFactor kept, Mat A, Vec b, Vec x, PetscReal *
   kept->target = PetscMax(KEPT_TOLERANCE * right, KEPT_SHARE * kept->enough);
   PetscCall(KSPGetPC(kept->ksp, &pc));
   if (kept->update) PetscCall(RankUpdateApply(kept->update, x));
+  PetscCall(ChooseStart(A, b, right, x));
   PetscCall(KSPSetOperators(kept->gmres, A, A));
   PetscCall(KSPSolve(kept->gmres, b, x));
   PetscCall(KSPGetConvergedReason(kept->gmres, &reason));

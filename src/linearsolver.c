@@ -30,7 +30,7 @@ struct _n_LinearSolver {
 };
 
 /* GMRES, as a tangent may be indefinite far from equilibrium; preconditioned from the right, so that its residual is the true one. The flexible kind keeps the
-   preconditioned directions, so that the solution needs no iteration more. */
+   preconditioned directions, so that the solution needs no iteration more. The preconditioner is not symmetric, whatever the tangent is. */
 static PetscErrorCode SetIterative(LinearSolver solver, Mesh mesh, PetscBool axisymmetric, PetscBool symmetric)
 {
   PetscFunctionBeginUser;

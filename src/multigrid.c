@@ -496,8 +496,7 @@ static PetscErrorCode AddInterface(Multigrid m, Vec right, Vec left)
   PetscCall(VecScatterBegin(m->to_interface, right, m->interface_right, INSERT_VALUES, SCATTER_FORWARD));
   PetscCall(VecScatterEnd(m->to_interface, right, m->interface_right, INSERT_VALUES, SCATTER_FORWARD));
   PetscCall(VecGetSize(m->interface_right, &n));
-  if (!n) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(KSPSolve(m->direct, m->interface_right, m->interface_left));
+  if (n) PetscCall(KSPSolve(m->direct, m->interface_right, m->interface_left));
   PetscCall(VecGetOwnershipRange(left, &first, NULL));
   PetscCall(ISGetLocalSize(m->interface, &n_own));
   PetscCall(ISGetIndices(m->interface, &own));

@@ -102,32 +102,39 @@ static void Identity(PetscReal a[ENTRIES])
   for (int e = 0; e < ENTRIES; e++) a[e] = e % 4 == 0;
 }
 
-/* The turn of a node with three free dofs: the polar factor of the sum.
+static PetscReal Norm(const PetscReal a[ENTRIES])
+{
+  PetscReal square = 0;
+
+  for (int e = 0; e < ENTRIES; e++) square += PetscSqr(a[e]);
+  return PetscSqrtReal(square);
+}
+
+/* The turn of a node with three free dofs: the polar factor of the sum, by Newton's method on scaled iterates: flat cells' sums have singular values far apart.
 
    Source: Higham, Computing the polar decomposition - with applications, SIAM J. Sci. Stat. Comput. 7 (1986) 1160-1174. */
 static void TurnInSpace(PetscReal a[ENTRIES])
 {
-  PetscReal cofactor[ENTRIES], size = 0;
+  const PetscReal size = Norm(a);
+  PetscReal       cofactor[ENTRIES];
 
-  for (int e = 0; e < ENTRIES; e++) size += PetscSqr(a[e]);
-  for (int e = 0; e < ENTRIES && size > 0; e++) a[e] /= PetscSqrtReal(size);
+  for (int e = 0; e < ENTRIES && size > 0; e++) a[e] /= size;
   for (int i = 0; i < TURN_ITERATIONS; i++) {
-    PetscReal determinant, change = 0;
+    PetscReal determinant, scale, change = 0;
 
     Cofactors(a, cofactor);
     determinant = Determinant(a, cofactor);
-    if (!(determinant > TURN_LEAST)) {
-      Identity(a);
-      return;
-    }
+    if (!(determinant > TURN_LEAST)) break;
+    scale = PetscSqrtReal(Norm(cofactor) / (determinant * Norm(a)));
     for (int e = 0; e < ENTRIES; e++) {
-      const PetscReal next = 0.5 * (a[e] + cofactor[e] / determinant);
+      const PetscReal next = 0.5 * (scale * a[e] + cofactor[e] / (scale * determinant));
 
       change = PetscMax(change, PetscAbsReal(next - a[e]));
       a[e]   = next;
     }
     if (change < PETSC_SQRT_MACHINE_EPSILON) return;
   }
+  Identity(a);
 }
 
 /* The turn in the plane of components p and q, of a node that is free in these: nearest to the sum's part. */

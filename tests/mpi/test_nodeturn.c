@@ -19,10 +19,13 @@ static const char *const files[][2] = {
    "Point(1) = {0, 0, 0}; Point(2) = {3, 0, 0}; Point(3) = {3, 1, 0}; Point(4) = {0, 1, 0};\n"
    "Line(1) = {1, 2}; Line(2) = {2, 3}; Line(3) = {3, 4}; Line(4) = {4, 1}; Curve Loop(1) = {1, 2, 3, 4}; Plane Surface(1) = {1};\n"
    "Transfinite Curve{1, 3} = 4; Transfinite Curve{2, 4} = 2; Transfinite Surface{1}; Recombine Surface{1};\n"
-   "If(solid) v[] = Extrude{0, 0, 0.5} { Surface{1}; Layers{1}; Recombine; }; Physical Volume(\"block\") = {v[1]}; Physical Surface(\"end\") = {1};\n"
+   "If(solid) v[] = Extrude{0, 0, solid / 2} { Surface{1}; Layers{1}; Recombine; }; Physical Volume(\"block\") = {v[1]}; Physical Surface(\"end\") = {1};\n"
    "Else Physical Surface(\"block\") = {1}; Physical Curve(\"end\") = {4}; EndIf\n"},
   {"solid.yaml", "mesh: {file: block.geo, order: 2, parameters: {solid: 1}}\ngeometry: solid\nbodies: [{volume: block, material: {law: svk, E: 1, nu: 0.3}}]\n"
                  "supports: [{surface: end, uz: 0}]\n"             },
+  {"sheet.yaml",
+   "mesh: {file: block.geo, order: 1, parameters: {solid: 0.01}}\ngeometry: solid\nbodies: [{volume: block, material: {law: svk, E: 1, nu: 0.3}}]\n"
+   "supports: [{surface: end, uz: 0}]\n"                                           },
   {"plane.yaml",
    "mesh: {file: block.geo, order: 1, parameters: {solid: 0}}\ngeometry: plane_strain\nbodies: [{volume: block, material: {law: svk, E: 1, nu: 0.3}}]\n"
    "supports: [{surface: end, ux: 0}]\n"                                           }
@@ -140,6 +143,7 @@ static void test_body_turns_as_a_whole(void **state)
   (void)state;
   Turn("solid.yaml", -1, slanted, 0.7);
   Turn("solid.yaml", -1, slanted, -2.5);
+  Turn("sheet.yaml", -1, slanted, 0.7);
   Turn("plane.yaml", -1, z, 0.7);
 }
 
