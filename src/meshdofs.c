@@ -181,6 +181,35 @@ PetscErrorCode MeshGlobalToLocal(Mesh mesh, Vec x, PetscReal *u)
 }
 
 /*
+  MeshCollectFree - the free values among local ones, each from the rank that owns it
+
+  Not collective
+
+  Input Parameters:
++ mesh - the mesh, after MeshSetConstraints()
+- u    - n_nodes*dim
+
+  Output Parameter:
+. x - made by DMCreateGlobalVector(); overwritten
+*/
+PetscErrorCode MeshCollectFree(Mesh mesh, const PetscReal *u, Vec x)
+{
+  PetscScalar *values;
+  PetscInt     first, last;
+
+  PetscFunctionBeginUser;
+  PetscCall(VecGetOwnershipRange(x, &first, &last));
+  PetscCall(VecGetArrayWrite(x, &values));
+  for (PetscInt i = 0; i < mesh->n_nodes * mesh->dim; i++) {
+    const PetscInt dof = mesh->global_dofs[i];
+
+    if (dof >= first && dof < last) values[dof - first] = u[i];
+  }
+  PetscCall(VecRestoreArrayWrite(x, &values));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*
   MeshLocalToGlobal - sums local contributions of all ranks into a global vector over the free dofs
 
   Collective
@@ -194,21 +223,10 @@ PetscErrorCode MeshGlobalToLocal(Mesh mesh, Vec x, PetscReal *u)
 */
 PetscErrorCode MeshLocalToGlobal(Mesh mesh, const PetscReal *f, Vec F)
 {
-  const PetscInt n = mesh->n_nodes * mesh->dim;
-  PetscScalar   *values;
-  PetscInt       first, last;
-
   PetscFunctionBeginUser;
-  PetscCall(PetscArraycpy(mesh->work, f, n));
+  PetscCall(PetscArraycpy(mesh->work, f, mesh->n_nodes * mesh->dim));
   PetscCall(AddNodes(mesh, mesh->dim, f, mesh->work));
-  PetscCall(VecGetOwnershipRange(F, &first, &last));
-  PetscCall(VecGetArrayWrite(F, &values));
-  for (PetscInt i = 0; i < n; i++) {
-    const PetscInt dof = mesh->global_dofs[i];
-
-    if (dof >= first && dof < last) values[dof - first] = mesh->work[i];
-  }
-  PetscCall(VecRestoreArrayWrite(F, &values));
+  PetscCall(MeshCollectFree(mesh, mesh->work, F));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
