@@ -24,35 +24,35 @@ typedef struct _n_ModelWork {
   PetscReal    accepted_t;
   Vec          forecast; /* x at forecast_t by ModelForecast() */
   PetscReal    forecast_t;
-  PetscBool    forecasted; /* and is one from the accepted state */
-  PetscBool    foreseen;   /* the last prediction started from where the path leads to */
-  PetscReal    expected;   /* motion that the lists of this step were made for */
-  PetscReal    rate;       /* largest displacement per unit of t in the last accepted step */
-  PetscReal    scale;      /* force norm of the last evaluation */
-  PetscReal    stiffness;  /* norm of the elastic tangent's diagonal */
-  PetscInt     inverted;   /* gmsh's tag of a cell of this rank that was turned inside out in this solve, or -1 */
-  PetscBool    near;       /* the iterate is so close that energies differ by round-off only */
-  PetscBool    soft;       /* penalties are softened: a residual within MODEL_SOFT_ENOUGH will do */
-  PetscReal    energy;     /* the last one that was evaluated in this step, 0: none was */
-  PetscReal    step;       /* norm of Newton's last step, before the line search */
-  PetscReal    norm;       /* residual of the iterate before */
-  PetscBool    balanced;   /* the residual of the iterate is within the tolerance */
-  PetscInt     renewed;    /* how often that happened in this step */
-  PetscBool    cycling;    /* the contact set repeats itself whatever the steps: the solve ended */
-  PetscInt     cycles;     /* times it repeated itself in this load step */
-  char         cycle[256]; /* the last one in words */
-  PetscReal    damping;    /* of the line search when nothing repeats */
-  PetscBool    left;       /* a slave point slid out of its lists: the solve ended for new ones */
-  PetscInt     cuts;       /* iterations of the last Newton solve that the line search shortened */
-  Vec          residual;   /* of a trial point, while near; the tangent's diagonal for a moment */
-  Stabiliser   stabiliser; /* NULL: no pair asks for it */
-  ContactCycle watch;      /* of the contact set; NULL: no contact */
-  ContactLine  line;       /* contact along a Newton step; NULL: no contact */
+  PetscBool    forecasted;        /* and is one from the accepted state */
+  PetscBool    foreseen;          /* the last prediction, or the way to a forecast, started from where the path leads to */
+  PetscBool    forecast_foreseen; /* so did the forecast */
+  PetscReal    expected;          /* motion that the lists of this step were made for */
+  PetscReal    rate;              /* largest displacement per unit of t in the last accepted step */
+  PetscReal    scale;             /* force norm of the last evaluation */
+  PetscReal    stiffness;         /* norm of the elastic tangent's diagonal */
+  PetscInt     inverted;          /* gmsh's tag of a cell of this rank that was turned inside out in this solve, or -1 */
+  PetscBool    near;              /* the iterate is so close that energies differ by round-off only */
+  PetscBool    soft;              /* penalties are softened: a residual within MODEL_SOFT_ENOUGH will do */
+  PetscReal    energy;            /* the last one that was evaluated in this step, 0: none was */
+  PetscReal    step;              /* norm of Newton's last step, before the line search */
+  PetscReal    norm;              /* residual of the iterate before */
+  PetscBool    balanced;          /* the residual of the iterate is within the tolerance */
+  PetscInt     renewed;           /* how often that happened in this step */
+  PetscBool    cycling;           /* the contact set repeats itself whatever the steps: the solve ended */
+  PetscInt     cycles;            /* times it repeated itself in this load step */
+  char         cycle[256];        /* the last one in words */
+  PetscReal    damping;           /* of the line search when nothing repeats */
+  PetscBool    left;              /* a slave point slid out of its lists: the solve ended for new ones */
+  PetscInt     cuts;              /* iterations of the last Newton solve that the line search shortened */
+  Vec          residual;          /* of a trial point, while near; the tangent's diagonal for a moment */
+  Stabiliser   stabiliser;        /* NULL: no pair asks for it */
+  ContactCycle watch;             /* of the contact set; NULL: no contact */
+  ContactLine  line;              /* contact along a Newton step; NULL: no contact */
 } ModelWork;
 
 /* model.c */
-PetscBool      ModelHasFormulation(Scene, Formulation);            /* has some deformable body elements of that kind? */
-PetscErrorCode ModelCollectFree(Model, const PetscReal *u, Vec x); /* the free displacements among the local ones */
+PetscBool ModelHasFormulation(Scene, Formulation); /* has some deformable body elements of that kind? */
 /* newton.c */
 PetscErrorCode ModelResidual(Model, const PetscReal *u, PetscReal t, PetscReal t_contact, PetscBool *ok);
 PetscErrorCode ModelTrial(Model, Vec x); /* free displacements x and the prescribed ones into work->trial */

@@ -14,5 +14,5 @@ PetscErrorCode PathAdd(Path, const PetscReal *u, PetscReal t);
 PetscErrorCode PathForget(Path);
 /* Displacements to be expected at t, and whether the last state was where this would have expected it. Collective. */
 PetscErrorCode PathForesee(Path, PetscReal t, PetscReal *u, PetscBool *smooth);
-/* Saves or restores what is known. nodes: the rows of the local nodes. Collective. */
-PetscErrorCode PathArchive(Path, Archive, const Rows *nodes);
+/* Saves or restores what is known beside the last state u. nodes: the rows of the local nodes. Collective. */
+PetscErrorCode PathArchive(Path, Archive, const Rows *nodes, const PetscReal *u);

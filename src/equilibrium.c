@@ -138,7 +138,7 @@ static PetscErrorCode ModelTakePathPart(Model model, PetscReal part, PetscBool *
   Vec        end;
 
   PetscFunctionBeginUser;
-  *made = work->foreseen;
+  *made = work->forecast_foreseen;
   if (!*made) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscMalloc1(model->mesh->n_nodes * model->mesh->dim, &u));
   PetscCall(VecDuplicate(model->x, &end));
@@ -311,8 +311,9 @@ PetscErrorCode ModelForecast(Model model, PetscReal t, PetscReal *u, SolveReport
   PetscCall(PetscArraycpy(u, model->work->trial, model->mesh->n_nodes * model->mesh->dim));
   PetscCall(VecCopy(model->x, model->work->forecast));
   PetscCall(VecCopy(model->work->accepted_x, model->x));
-  model->work->forecast_t = t;
-  model->work->forecasted = report->result == SOLVE_CONVERGED ? PETSC_TRUE : PETSC_FALSE;
-  model->t                = model->work->accepted_t;
+  model->work->forecast_t        = t;
+  model->work->forecast_foreseen = model->work->foreseen;
+  model->work->forecasted        = report->result == SOLVE_CONVERGED ? PETSC_TRUE : PETSC_FALSE;
+  model->t                       = model->work->accepted_t;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -238,7 +238,7 @@ PetscErrorCode KeptFactorSolve(KeptFactor kept, Mat A, Vec b, Vec x, PetscReal *
   kept->target = PetscMax(KEPT_TOLERANCE * right, KEPT_SHARE * kept->enough);
   PetscCall(KSPGetPC(kept->ksp, &pc));
   if (kept->update) PetscCall(RankUpdateApply(kept->update, x));
-  PetscCall(ChooseStart(A, b, right, x));
+  if (kept->turn) PetscCall(ChooseStart(A, b, right, x));
   PetscCall(KSPSetOperators(kept->gmres, A, A));
   PetscCall(KSPSolve(kept->gmres, b, x));
   PetscCall(KSPGetConvergedReason(kept->gmres, &reason));

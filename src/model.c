@@ -178,23 +178,6 @@ PetscErrorCode ModelRestore(Model model)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The free displacements among the local ones. */
-PetscErrorCode ModelCollectFree(Model model, const PetscReal *u, Vec x)
-{
-  const PetscInt  n = model->mesh->n_nodes * model->mesh->dim;
-  const PetscInt *dof;
-  PetscInt        first, end;
-
-  PetscFunctionBeginUser;
-  PetscCall(MeshGetGlobalDofs(model->mesh, &dof));
-  PetscCall(VecGetOwnershipRange(x, &first, &end));
-  for (PetscInt i = 0; i < n; i++)
-    if (dof[i] >= first && dof[i] < end) PetscCall(VecSetValue(x, dof[i], u[i], INSERT_VALUES));
-  PetscCall(VecAssemblyBegin(x));
-  PetscCall(VecAssemblyEnd(x));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* ModelArchive - saves or takes over the accepted state: displacements and the way there, load parameter, scales, contact.
 
    Collective. To be saved between steps; to be loaded into a model fresh from ModelCreate(), in the place of ModelSetUp(). The model then stands as
@@ -209,14 +192,14 @@ PetscErrorCode ModelArchive(Model model, Archive archive)
   PetscFunctionBeginUser;
   PetscCall(RowsCreate(mesh->comm, mesh->n_global, mesh->n_nodes, mesh->node_id, &nodes));
   PetscCall(ArchiveRows(archive, "model/displacement", &nodes, mesh->dim, work->accepted_u));
-  if (work->path) PetscCall(PathArchive(work->path, archive, &nodes));
+  if (work->path) PetscCall(PathArchive(work->path, archive, &nodes, work->accepted_u));
   PetscCall(RowsDestroy(&nodes));
   PetscCall(ArchiveReals(archive, "model/t", 1, &work->accepted_t));
   PetscCall(ArchiveReals(archive, "model/rate", 1, &work->rate));
   PetscCall(ArchiveReals(archive, "model/force_scale", 1, &model->force_scale));
   if (ArchiveLoads(archive)) {
     PetscCall(PetscArraycpy(model->u, work->accepted_u, mesh->n_nodes * mesh->dim));
-    PetscCall(ModelCollectFree(model, model->u, model->x));
+    PetscCall(MeshCollectFree(mesh, model->u, model->x));
     PetscCall(VecCopy(model->x, work->accepted_x));
     model->t = work->accepted_t;
   }

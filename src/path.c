@@ -127,7 +127,7 @@ PetscErrorCode PathForesee(Path path, PetscReal t, PetscReal *u, PetscBool *smoo
 }
 
 /* PathArchive - Collective. */
-PetscErrorCode PathArchive(Path path, Archive archive, const Rows *nodes)
+PetscErrorCode PathArchive(Path path, Archive archive, const Rows *nodes, const PetscReal *u)
 {
   char name[PETSC_MAX_PATH_LEN];
 
@@ -135,7 +135,8 @@ PetscErrorCode PathArchive(Path path, Archive archive, const Rows *nodes)
   PetscCall(ArchiveIntegers(archive, "path/known", 1, &path->known));
   PetscCheck(path->known >= 0 && path->known <= PATH_STATES, path->mesh->comm, PETSC_ERR_FILE_UNEXPECTED, "%" PetscInt_FMT " states of a path", path->known);
   PetscCall(ArchiveReals(archive, "path/t", PATH_STATES, path->t));
-  for (PetscInt i = 0; i < path->known; i++) {
+  PetscCall(PetscArraycpy(path->u[0], u, path->mesh->n_nodes * path->mesh->dim));
+  for (PetscInt i = 1; i < path->known; i++) {
     PetscCall(PetscSNPrintf(name, sizeof(name), "path/displacement_%" PetscInt_FMT, i));
     PetscCall(ArchiveRows(archive, name, nodes, path->mesh->dim, path->u[i]));
   }

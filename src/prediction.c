@@ -110,7 +110,7 @@ PetscErrorCode ModelForesee(Model model, PetscReal t, PetscReal *u, Vec x, Petsc
   if (model->work->path) PetscCall(PathForesee(model->work->path, t, u, smooth));
   if (!*smooth) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(LoadsPrescribe(model->loads, t, u));
-  PetscCall(ModelCollectFree(model, u, x));
+  PetscCall(MeshCollectFree(model->mesh, u, x));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
