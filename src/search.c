@@ -208,6 +208,8 @@ static PetscBool CandidateFaces(const Nearest *look, const Candidate *c)
   return PETSC_TRUE;
 }
 
+/* Two facets share the foot on the edge between them; there, as wherever facets are equally near, the smaller tag counts and not round-off, which fits would
+   show: they start from the nearest facet and its normal. */
 static void NearestVisit(void *context, int index, double *bound)
 {
   Nearest         *look = context;
@@ -226,10 +228,11 @@ static void NearestVisit(void *context, int index, double *bound)
   }
   FacetProject(dim, &own, x, &foot);
   distance = PetscAbsReal(foot.gap);
-  if (distance > *bound || (distance == *bound && look->best >= 0 && c->facet.tag > look->candidates[look->best].facet.tag)) return;
-  *bound     = distance;
-  look->best = index;
-  look->foot = foot;
+  if (distance > *bound || (look->best >= 0 && distance >= look->distance - look->tie && c->facet.tag > look->candidates[look->best].facet.tag)) return;
+  look->distance = PetscMin(distance, look->distance);
+  look->best     = index;
+  look->foot     = foot;
+  *bound         = look->distance + look->tie;
 }
 
 /* Curvature of the master around its nearest facet: turn of the normals of the facets that touch it over the distance of their centres. */
@@ -321,8 +324,14 @@ static PetscErrorCode ListsFill(ContactSearch s, ContactLists lists, const Petsc
   PetscCheck(!TreeBuild(dim, (int)n_candidates, lower, upper, &tree), PETSC_COMM_SELF, PETSC_ERR_MEM, "no memory for the search tree");
   for (PetscInt q = 0; q < lists->n_slaves; q++) {
     const PetscInt first = buffer.n_points;
-    Nearest        look  = {.lists = lists, .candidates = candidates, .q = q, .own = s->slaves->ptr[q + 1] - s->slaves->ptr[q], .best = -1};
-    double         bound = s->reach + motion;
+    Nearest        look  = {.lists      = lists,
+                            .candidates = candidates,
+                            .q          = q,
+                            .own        = s->slaves->ptr[q + 1] - s->slaves->ptr[q],
+                            .best       = -1,
+                            .distance   = s->reach + motion,
+                            .tie        = FACET_TIE * (s->reach + motion)};
+    double         bound = look.distance + look.tie;
 
     for (int d = 0; d < dim; d++) look.x[d] = lists->slave_X[q * dim + d] + lists->slave_u[q * dim + d];
     for (int d = 0; d < 3; d++) look.normal[d] = normals[3 * q + d];
@@ -332,7 +341,7 @@ static PetscErrorCode ListsFill(ContactSearch s, ContactLists lists, const Petsc
     lists->nearest[q]   = -1;
     TreeClosest(tree, look.x, &bound, NearestVisit, &look);
     if (look.best < 0) continue;
-    count           = TreeNear(tree, look.x, bound + s->margin + motion, (int)n_candidates, found);
+    count           = TreeNear(tree, look.x, look.distance + s->margin + motion, (int)n_candidates, found);
     count           = KeepFacing(&look, count, found);
     lists->kappa[q] = ListCurvature(&look, count, found);
     for (int i = 0; i < count; i++)
