@@ -32,5 +32,8 @@ void BlockMatrixMultiply(BlockMatrix, const PetscReal *x, PetscReal *y);
 /* The matrix; it stays the block matrix's. Collective. */
 PetscErrorCode BlockMatrixEnd(BlockMatrix, Mat *);
 
+/* The pattern of now is the one that BlockMatrixReturn() goes back to. Not collective. */
+PetscErrorCode BlockMatrixMark(BlockMatrix);
+PetscErrorCode BlockMatrixReturn(BlockMatrix, PetscInt rows); /* Collective */
 /* The pattern that is kept, on one rank: another one orders the solver's sums in another way. On several it is found anew. Collective. */
 PetscErrorCode BlockMatrixArchive(BlockMatrix, Archive, const char *name, PetscInt n);

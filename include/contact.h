@@ -117,6 +117,7 @@ PetscErrorCode ContactMultiplyBegin(Contact, const PetscReal *x, PetscReal t, Pe
 PetscErrorCode ContactMultiplyEnd(Contact, PetscReal *y);
 PetscErrorCode ContactAccept(Contact); /* the present state is the one that ContactRestore() returns to. Not collective */
 PetscErrorCode ContactRestore(Contact);
+PetscErrorCode ContactTangentRestore(Contact); /* what earlier tangents have left is that of the accepted state too. Collective */
 /* The accepted state, at (u, t), and all else that the next steps depend on. Loading it also makes it the present one, with lists. Collective. */
 PetscErrorCode ContactArchive(Contact, Archive, const PetscReal *u, PetscReal t);
 /* What the scene says of overlaps before any load (initial_overlap): refuses those beyond what the facets' own shape explains (pair, node,

@@ -14,6 +14,11 @@ typedef struct {
   PetscInt at, node;
 } BlockRow;
 
+/* A pattern that was put aside, as the block matrix holds its own; pair_ptr NULL: there was no matrix */
+typedef struct {
+  PetscInt n_nodes, *key, *dof, *pair_ptr, *pair;
+} BlockPattern;
+
 struct _n_BlockMatrix {
   MPI_Comm         comm;
   int              size;                   /* of a node: its dofs */
@@ -36,6 +41,8 @@ struct _n_BlockMatrix {
   const PetscReal *along;     /* what blocks are multiplied with as they are added, or NULL */
   PetscReal       *product;
   PetscBool        restored; /* the matrix is not the one that its user knows */
+  PetscBool        replaced; /* the pattern is not the one of BlockMatrixMark(), which is put aside */
+  BlockPattern     marked;
 };
 
 /* BlockMatrixCreate - an empty one.
@@ -57,9 +64,32 @@ static PetscErrorCode DestroyLists(BlockMatrix blocks)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+static PetscErrorCode DestroyPattern(BlockPattern *pattern)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscFree(pattern->key));
+  PetscCall(PetscFree(pattern->dof));
+  PetscCall(PetscFree(pattern->pair_ptr));
+  PetscCall(PetscFree(pattern->pair));
+  pattern->n_nodes = 0;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Takes the pattern out of the block matrix. */
+static BlockPattern TakePattern(BlockMatrix blocks)
+{
+  const BlockPattern pattern = {blocks->n_nodes, blocks->key, blocks->dof, blocks->pair_ptr, blocks->pair};
+
+  blocks->n_nodes = 0;
+  blocks->key = blocks->dof = blocks->pair_ptr = blocks->pair = NULL;
+  return pattern;
+}
+
 /* BlockMatrixDestroy - Collective. */
 PetscErrorCode BlockMatrixDestroy(BlockMatrix *blocks)
 {
+  BlockPattern own;
+
   PetscFunctionBeginUser;
   if (!*blocks) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(DestroyLists(*blocks));
@@ -67,10 +97,9 @@ PetscErrorCode BlockMatrixDestroy(BlockMatrix *blocks)
   PetscCall(PetscFree((*blocks)->of));
   PetscCall(PetscFree((*blocks)->node));
   PetscCall(PetscFree((*blocks)->pattern));
-  PetscCall(PetscFree((*blocks)->key));
-  PetscCall(PetscFree((*blocks)->dof));
-  PetscCall(PetscFree((*blocks)->pair_ptr));
-  PetscCall(PetscFree((*blocks)->pair));
+  own = TakePattern(*blocks);
+  PetscCall(DestroyPattern(&own));
+  PetscCall(DestroyPattern(&(*blocks)->marked));
   PetscCall(PetscFree2((*blocks)->diagonal, (*blocks)->above));
   PetscCall(PetscFree((*blocks)->mirror));
   PetscCall(PetscFree((*blocks)->row_ptr));
@@ -388,6 +417,8 @@ PetscErrorCode BlockMatrixPlace(BlockMatrix blocks, PetscInt rows, PetscBool *ch
   all = placed;
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &all, 1, MPI_INT, MPI_LAND, blocks->comm));
   if (!all) {
+    if (!blocks->replaced) blocks->marked = TakePattern(blocks);
+    blocks->replaced = PETSC_TRUE;
     for (PetscInt i = 0; i < blocks->n_listed; i++) blocks->list_number[i] = -1;
     PetscCall(PlacePattern(blocks, PETSC_TRUE, &placed));
     PetscCall(CreateMatrix(blocks, rows));
@@ -555,6 +586,51 @@ PetscErrorCode BlockMatrixEnd(BlockMatrix blocks, Mat *matrix)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* The pattern that has been put back gets its matrix, which is a new one to its user. */
+static PetscErrorCode RestoreMatrix(BlockMatrix blocks, PetscInt rows)
+{
+  PetscFunctionBeginUser;
+  PetscCall(ListMirrors(blocks));
+  blocks->n_pattern = -1; /* no blocks' as yet: where the next ones stand in it is found then */
+  PetscCall(CreateMatrix(blocks, rows));
+  blocks->restored = PETSC_TRUE;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* BlockMatrixMark - Not collective. */
+PetscErrorCode BlockMatrixMark(BlockMatrix blocks)
+{
+  PetscFunctionBeginUser;
+  PetscCall(DestroyPattern(&blocks->marked));
+  blocks->replaced = PETSC_FALSE;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* BlockMatrixReturn - the pattern is again the one of the last BlockMatrixMark(): what is assembled from now on does not depend on what was since.
+
+   Collective. rows: of this rank, as for BlockMatrixPlace(). The matrix of BlockMatrixEnd() is gone if the pattern was another one. */
+PetscErrorCode BlockMatrixReturn(BlockMatrix blocks, PetscInt rows)
+{
+  BlockPattern own;
+
+  PetscFunctionBeginUser;
+  if (!blocks->replaced) PetscFunctionReturn(PETSC_SUCCESS);
+  own = TakePattern(blocks);
+  PetscCall(DestroyPattern(&own));
+  blocks->n_nodes  = blocks->marked.n_nodes;
+  blocks->key      = blocks->marked.key;
+  blocks->dof      = blocks->marked.dof;
+  blocks->pair_ptr = blocks->marked.pair_ptr;
+  blocks->pair     = blocks->marked.pair;
+  blocks->marked   = (BlockPattern){0};
+  blocks->replaced = PETSC_FALSE;
+  if (blocks->pair_ptr)
+    PetscCall(RestoreMatrix(blocks, rows));
+  else
+    PetscCall(NodeMatrixDestroy(&blocks->matrix));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* BlockMatrixArchive - saves or takes over the pattern of the last assembled matrix.
 
    Collective. name: where it stands in the archive; rows: of this rank, as for BlockMatrixPlace(). A pattern that is kept depends on what was
@@ -586,9 +662,6 @@ PetscErrorCode BlockMatrixArchive(BlockMatrix blocks, Archive archive, const cha
   }
   if (!ArchiveLoads(archive)) PetscFunctionReturn(PETSC_SUCCESS);
   blocks->n_nodes = n[0];
-  PetscCall(ListMirrors(blocks));
-  blocks->n_pattern = -1; /* no blocks' as yet: where the next ones stand in it is found then */
-  PetscCall(CreateMatrix(blocks, rows));
-  blocks->restored = PETSC_TRUE;
+  PetscCall(RestoreMatrix(blocks, rows));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -551,6 +551,7 @@ PetscErrorCode ContactAccept(Contact contact)
 {
   PetscFunctionBeginUser;
   for (int p = 0; p < contact->n_pairs; p++) PetscCall(ContactStateCopy(&contact->pairs[p].now, &contact->pairs[p].accepted));
+  PetscCall(BlockMatrixMark(contact->blocks));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -564,6 +565,17 @@ PetscErrorCode ContactRestore(Contact contact)
     PetscCall(ContactStateCopy(&pair->accepted, &pair->now));
     if (pair->before) PetscCall(PetscArraycpy(pair->before, pair->accepted.gap, pair->n));
   }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* ContactTangentRestore - the tangent's pattern is again that of the last ContactAccept(): it orders the solver's sums. Collective. */
+PetscErrorCode ContactTangentRestore(Contact contact)
+{
+  PetscInt rows;
+
+  PetscFunctionBeginUser;
+  PetscCall(ContactMatrixRows(contact, &rows));
+  PetscCall(BlockMatrixReturn(contact->blocks, rows));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -171,6 +171,7 @@ PetscErrorCode ModelRestore(Model model)
   model->t = work->accepted_t;
   if (model->contact) {
     PetscCall(ContactRestore(model->contact));
+    PetscCall(ContactTangentRestore(model->contact));
     PetscCall(ContactGather(model->contact, model->u, model->t, model->t, 0));
   }
   PetscCall(ModelResidual(model, model->u, model->t, model->t, &ok));

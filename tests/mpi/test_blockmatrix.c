@@ -1,4 +1,5 @@
-/* Blocks assembled on any number of ranks give the same product as the blocks themselves; the pattern is kept while it serves. */
+/* Blocks assembled on any number of ranks give the same product as the blocks themselves; the pattern is kept while it serves, and goes back to a marked one.
+ */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -135,6 +136,32 @@ static void test_pattern_is_kept_while_it_holds(void **state)
   assert_int_equal(BlockMatrixDestroy(&blocks), 0);
 }
 
+static void test_returns_to_the_marked_pattern(void **state)
+{
+  PetscMPIInt     rank;
+  BlockMatrix     blocks;
+  PetscInt        mine[ROWS];
+  const PetscInt *dof[1] = {mine};
+
+  (void)state;
+  MPI_Comm_rank(PETSC_COMM_WORLD, &rank);
+  for (PetscInt i = 0; i < ROWS; i++) mine[i] = ROWS * rank + i;
+  assert_int_equal(BlockMatrixCreate(PETSC_COMM_WORLD, 1, &blocks), 0);
+  assert_int_equal(BlockMatrixMark(blocks), 0);
+  assert_true(AssembleOwn(blocks, 1, (const PetscInt[]){0}, (const PetscInt[]){ROWS}, dof));
+  assert_int_equal(BlockMatrixReturn(blocks, ROWS), 0); /* to none */
+  assert_true(AssembleOwn(blocks, 2, (const PetscInt[]){0, 3}, (const PetscInt[]){4, 3}, dof));
+  assert_int_equal(BlockMatrixMark(blocks), 0);
+  assert_int_equal(BlockMatrixReturn(blocks, ROWS), 0); /* to the same */
+  assert_false(AssembleOwn(blocks, 2, (const PetscInt[]){0, 3}, (const PetscInt[]){4, 3}, dof));
+  assert_true(AssembleOwn(blocks, 1, (const PetscInt[]){0}, (const PetscInt[]){ROWS}, dof));
+  assert_true(AssembleOwn(blocks, 1, (const PetscInt[]){0}, (const PetscInt[]){2}, dof));
+  assert_int_equal(BlockMatrixReturn(blocks, ROWS), 0);
+  assert_true(AssembleOwn(blocks, 1, (const PetscInt[]){0}, (const PetscInt[]){4}, dof)); /* in the marked one, whose matrix is new */
+  assert_false(AssembleOwn(blocks, 2, (const PetscInt[]){0, 3}, (const PetscInt[]){4, 3}, dof));
+  assert_int_equal(BlockMatrixDestroy(&blocks), 0);
+}
+
 static void test_no_blocks(void **state)
 {
   BlockMatrix blocks;
@@ -155,7 +182,7 @@ static void test_no_blocks(void **state)
 int main(int argc, char **argv)
 {
   const struct CMUnitTest tests[] = {cmocka_unit_test(test_assembled_equals_blocks), cmocka_unit_test(test_pattern_is_kept_while_it_holds),
-                                     cmocka_unit_test(test_no_blocks)};
+                                     cmocka_unit_test(test_returns_to_the_marked_pattern), cmocka_unit_test(test_no_blocks)};
   int                     failed;
 
   if (PetscInitialize(&argc, &argv, NULL, NULL)) return 1;

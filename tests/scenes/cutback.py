@@ -1,4 +1,4 @@
-"""A failed step leaves nothing behind: a run with cutbacks equals, bit for bit on one rank, one that is given the same steps from the start, penalties that follow the penetration and live offsets included."""
+"""A failed step leaves nothing behind: a run with cutbacks equals, bit for bit on one rank, one that is given the same steps from the start, penalties that follow the penetration and offsets of either kind included."""
 import h5py
 import numpy
 
@@ -12,8 +12,9 @@ CASES = {
     f"penalties, {when}": ("cup_flattening", [f"contact.0.penalty={{adjust: true, when: {when}, g_min: 1e-6, g_max: 5e-6, unit: length}}", "solver.max_iterations=3"],
                            ("plane_force", "contact_radius", "apex_thickness"), 2) for when in ("step", "converged")}
 PIPE = ["mesh.order=1", "mesh.parameters={n_arc: 6, n_wall: 1, n_len: 2}", "loads.0.uy=-50", "probes=[{name: force, reaction: plate_top, component: y}]", "contact.0.smoother=diffuse",
-        "contact.0.formulation=surface_to_surface", "contact.0.offset=live", "solver.max_iterations=3"]
-CASES["live offsets"] = ("pipe_pinch", PIPE, ("force",), 1)
+        "contact.0.formulation=surface_to_surface", "solver.max_iterations=3"]
+for offset in ("held", "live"):
+    CASES[f"{offset} offsets"] = ("pipe_pinch", [*PIPE, f"contact.0.offset={offset}"], ("force",), 1)
 for name, (scene, common, shown, failures) in CASES.items():
     path, folder = SCENES.parent.parent / "runs" / f"{scene}.yaml", name.replace(", ", "_").replace(" ", "_")
     cut = run(args, path, out=f"cut_{folder}", overrides=(*common, "stepping={control: fixed, initial: 0.25}"))
