@@ -361,7 +361,7 @@ PetscErrorCode FactorSolve(Factor f, Vec b, Vec x)
 
   PetscFunctionBeginUser;
   if (!f->n) PetscFunctionReturn(PETSC_SUCCESS);
-  if (!f->exists) PetscCall(VecSetInf(x));
+  if (!f->exists) PetscCall(VecSet(x, INFINITY));
   if (!f->exists) PetscFunctionReturn(PETSC_SUCCESS);
   if (!f->right) PetscCall(MakeRoom(f, 1));
   PetscCall(VecGetArrayRead(b, &from));
