@@ -21,7 +21,7 @@ PetscErrorCode FactorDestroy(Factor *);
 PetscErrorCode FactorSetOrdering(Factor, int ordering, PetscBool *chosen);
 /* Orders an AIJ matrix of symmetric pattern and counts what its factor will take. Collective. */
 PetscErrorCode FactorAnalyse(Factor, Mat A, PCFailedReason *);
-/* Factors it, after an analysis where its pattern is not that of the last. Collective. */
+/* Factors it, after an analysis where its pattern is not that of the last; with more workspace where MUMPS finds its own too short. Collective. */
 PetscErrorCode FactorMake(Factor, Mat A, PCFailedReason *);
 /* x = A^-1 b. Collective. */
 PetscErrorCode FactorSolve(Factor, Vec b, Vec x);

@@ -19,6 +19,8 @@ enum { MUMPS_GIVEN = 1, MUMPS_OWN = 7 };
 enum { FACTOR_DISSECTED = 4000 };
 /* Workspace above its estimate, in per cent. Its own 20 is too little for symmetric systems of a few thousand dofs on four ranks. */
 enum { FACTOR_WORKSPACE = 100 };
+/* How often it may be doubled: to a multiple of the estimate that delayed pivots of regular systems never need */
+enum { FACTOR_MORE = 2 };
 /* How it scales symmetric systems: by the diagonal. Its own choice iterates over rows and columns, which costs a seventh of a factorisation at 10,000 dofs;
    stiff penalties stand on the diagonal. */
 enum { FACTOR_SCALING = 1 };
@@ -295,6 +297,18 @@ static PetscErrorCode IsNew(Factor f, Mat A, PetscBool *is)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Factors; where the workspace was too short, with twice the surplus, and that once more. */
+static PetscErrorCode CallFactor(Factor f)
+{
+  PetscFunctionBeginUser;
+  PetscCall(Call(f, MUMPS_FACTOR));
+  for (int more = 0; more < FACTOR_MORE && (f->mumps.INFOG(1) == -8 || f->mumps.INFOG(1) == -9); more++) {
+    f->mumps.ICNTL(14) = PetscMax(2 * f->mumps.ICNTL(14), FACTOR_WORKSPACE);
+    PetscCall(Call(f, MUMPS_FACTOR));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* FactorMake - Collective. */
 PetscErrorCode FactorMake(Factor f, Mat A, PCFailedReason *reason)
 {
@@ -308,7 +322,7 @@ PetscErrorCode FactorMake(Factor f, Mat A, PCFailedReason *reason)
   f->exists = PETSC_FALSE;
   if (*reason || !f->n) PetscFunctionReturn(PETSC_SUCCESS);
   if (!is_new) PetscCall(TakeEntries(f, A, NULL, NULL, f->value, &n));
-  PetscCall(Call(f, MUMPS_FACTOR));
+  PetscCall(CallFactor(f));
   PetscCall(Tell(f, "factorisation", reason));
   f->exists = *reason ? PETSC_FALSE : PETSC_TRUE;
   PetscFunctionReturn(PETSC_SUCCESS);
