@@ -34,7 +34,9 @@ petscvariable  = $(shell sed -n 's/^$(1) *= *//p' $(call pkgconfig,--variable=pr
 # -fno-math-errno: nobody asks errno about a root, for which each one of a vector would be taken by itself.
 ALL_CFLAGS := -std=gnu11 -march=$(ARCH) $(CFLAGS) -Wall -Wextra -fno-math-errno
 INCLUDES    = -Iinclude $(call pkgconfig,--cflags-only-I $(PACKAGES)) $(call petscvariable,HDF5_INCLUDE)
-LIBRARIES   = -lmetis $(call pkgconfig,--libs $(PACKAGES)) $(call petscvariable,HDF5_LIB) -Wl,-rpath,$(call pkgconfig,--variable=libdir PETSc) -ldl -lm
+LIBRARIES   = -lmetis $(call pkgconfig,--libs $(PACKAGES)) $(MUMPS) $(call petscvariable,HDF5_LIB) -Wl,-rpath,$(call pkgconfig,--variable=libdir PETSc) -ldl -lm
+# The MUMPS that PETSc was built with, under the name it was linked by
+MUMPS       = $(filter -L% -ldmumps%,$(call pkgconfig,--static --libs PETSc))
 CMOCKA      = $(call pkgconfig,--libs cmocka)
 COMPILE     = $(CC) $(ALL_CFLAGS) $(CPPFLAGS) $(INCLUDES)
 LINK        = $(LDFLAGS) $(LIBRARIES) $(LDLIBS)

@@ -1,14 +1,14 @@
 /* Factorisation by MUMPS, wherever a system is solved directly. */
 #pragma once
-#include "petsccompat.h"
+#include "factor.h"
 
 /* Sets a KSP up to factor its operator; symmetric: every operator will be. Options set on the KSP later win. Collective. */
 PetscErrorCode DirectSolverSet(KSP, PetscBool symmetric);
 /* Does it, after options, factor its operator and solve once? Not collective. */
 PetscErrorCode DirectSolverServes(KSP, PetscBool *);
-/* Is its preconditioner, after options, a factorisation by MUMPS, and a symmetric one? Not collective. */
-PetscErrorCode DirectSolverFind(KSP, PetscBool *mumps, PetscBool *cholesky);
-/* Chooses the ordering of all factors from now on: the one that needs the fewest operations for A, a matrix much like those to come. Collective. */
-PetscErrorCode DirectSolverOrder(Mat A, PetscBool symmetric);
-/* X = A^-1 B for dense B and X, with the factor of A; that most of B is zero is made use of. Collective. */
-PetscErrorCode DirectSolverColumns(Mat factored, Mat B, Mat X);
+/* What it factors with; NULL: options have replaced it. Not collective; borrowed. */
+PetscErrorCode DirectSolverFactor(KSP, Factor *);
+/* Chooses the ordering of its factors from now on: the one that needs the fewest operations for A, a matrix much like those to come. Collective. */
+PetscErrorCode DirectSolverOrder(KSP, Mat A);
+/* X = A^-1 B for dense B and X, with the preconditioner of a KSP that serves, which has A's factor; that most of B is zero is made use of. Collective. */
+PetscErrorCode DirectSolverColumns(PC, Mat B, Mat X);

@@ -9,7 +9,11 @@ typedef struct {
 } MatrixRows;
 
 enum { MATRIX_OWN, MATRIX_OTHERS, MATRIX_BLOCKS };
+/* Most rows of a node */
+enum { MATRIX_NODE_ROWS = 3 };
 
 /* The rows of one block. Not collective. */
 PetscErrorCode MatrixRowsGet(Mat, int block, MatrixRows *);
 PetscErrorCode MatrixRowsRestore(MatrixRows *);
+/* How many rows from one on have the same columns, all blocks: the dofs of a node. Not collective. */
+PetscInt MatrixRowsAlike(const MatrixRows rows[MATRIX_BLOCKS], PetscInt row);

@@ -30,6 +30,7 @@ has_petsc() {
 }
 has_blas() { ! reference_blas; }
 has_hdf5() { preprocesses '#include <hdf5.h>\n#ifndef H5_HAVE_PARALLEL\n#error\n#endif' "$(petsc_variable HDF5_INCLUDE)"; }
+has_mumps() { preprocesses '#include <dmumps_c.h>' "$(petsc_flags)"; }
 has_metis() { preprocesses '#include <metis.h>' ''; }
 has_yaml() { pkg-config --exists yaml-0.1; }
 has_cjson() { pkg-config --exists libcjson; }
@@ -40,13 +41,13 @@ has_h5dump() { command -v h5dump; }
 has_python() { python_found; }
 
 declare -A packages=([compiler]="gcc libc6-dev" [pkgconfig]=pkg-config [mpi]=libopenmpi-dev [mpirun]=openmpi-bin
-  [petsc]="petsc-dev libopenblas0-serial" [blas]=libopenblas0-serial [hdf5]=libhdf5-openmpi-dev [metis]=libmetis-dev [yaml]=libyaml-dev
+  [petsc]="petsc-dev libopenblas0-serial" [blas]=libopenblas0-serial [hdf5]=libhdf5-openmpi-dev [mumps]=libmumps-dev [metis]=libmetis-dev [yaml]=libyaml-dev
   [cjson]=libcjson-dev [cmocka]=libcmocka-dev [gmsh]=gmsh [cmake]=cmake [h5dump]=hdf5-tools [python]="python3 python3-venv")
 declare -A meaning=([compiler]="a C compiler" [pkgconfig]="pkg-config" [mpi]="MPI: mpicc" [mpirun]="MPI: mpirun"
   [petsc]="PETSc 3.18 or newer, real double precision, with MUMPS and HDF5${PETSC_DIR:+ (PETSC_DIR=$PETSC_DIR has none)}"
-  [blas]="an optimised BLAS (libblas.so.3 is the reference BLAS: MUMPS 6 times slower)" [hdf5]="parallel HDF5, the one of PETSc, with headers" [metis]="METIS"
+  [blas]="an optimised BLAS (libblas.so.3 is the reference BLAS: MUMPS 6 times slower)" [hdf5]="parallel HDF5, the one of PETSc, with headers" [mumps]="MUMPS with its C header, the one of PETSc" [metis]="METIS"
   [yaml]="libyaml" [cjson]="cJSON" [cmocka]="cmocka" [gmsh]="gmsh" [cmake]="cmake and ctest" [h5dump]="HDF5 tools" [python]="Python 3.10 to 3.13 with venv")
-order="compiler pkgconfig mpi mpirun petsc blas hdf5 metis yaml cjson cmocka gmsh cmake h5dump python"
+order="compiler pkgconfig mpi mpirun petsc blas hdf5 mumps metis yaml cjson cmocka gmsh cmake h5dump python"
 
 missing() {
   local thing

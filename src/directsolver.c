@@ -1,28 +1,49 @@
 #include "directsolver.h"
 
-/* Workspace of MUMPS above its estimate, in per cent. Its own 20 is too little for symmetric systems of a few thousand dofs on four ranks. */
-#define DIRECT_WORKSPACE "100"
-/* How MUMPS scales symmetric systems: by the diagonal. Its own choice iterates over rows and columns, which costs a seventh of a factorisation at 10,000
-   dofs; stiff penalties stand on the diagonal. */
-#define DIRECT_SCALING "1"
 /* Unknowns from which on orderings are compared: below, a factorisation is not what a run spends its time with. */
 #define DIRECT_COMPARED 4000
+/* Takes METIS's dissection unless another ordering needs less than this part of its operations: it cuts the work into even parts, for ranks and for large
+   fronts. */
+#define DIRECT_BETTER 0.9
 
-/* MUMPS's orderings that are compared, its own choice first: that goes by the number of unknowns, while approximate minimum fill (2) and degree (0) take 0.67
-   to 0.8 of its operations on thin walls of second-order bricks, and 1.5 times as many on thick blocks. */
-static const char *const DirectOrderings[] = {"7", "2", "0"};
-#define DIRECT_ORDERING "-mat_mumps_icntl_7"
+/* What the factorisation is called, among preconditioners. */
+#define DIRECT_NAME "mumps"
 
-/* A value for one of PETSc's options that the user has not given: MUMPS reads them as each new factor is made. */
-static PetscErrorCode SetDefaultOption(const char *name, const char *value)
+/* Orderings that are compared with METIS's dissection: approximate minimum fill and degree take 0.67 to 0.8 of its operations on thin walls of second-order
+   bricks, and 1.5 times as many on thick blocks. */
+static const int DirectOthers[] = {FACTOR_MINIMUM_FILL, FACTOR_MINIMUM_DEGREE};
+
+static PetscErrorCode SetUp(PC pc)
 {
-  PetscBool given;
+  Factor         factor;
+  Mat            A;
+  PCFailedReason reason;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscOptionsHasName(NULL, NULL, name, &given));
-  if (given) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PetscOptionsSetValue(NULL, name, value));
-  PetscCall(PetscOptionsHasName(NULL, NULL, name, &given)); /* asked for, so that it never counts as one that nobody uses */
+  PetscCall(PCShellGetContext(pc, &factor));
+  PetscCall(PCGetOperators(pc, NULL, &A));
+  PetscCall(FactorMake(factor, A, &reason));
+  PetscCall(PCSetFailedReason(pc, reason));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode Apply(PC pc, Vec b, Vec x)
+{
+  Factor factor;
+
+  PetscFunctionBeginUser;
+  PetscCall(PCShellGetContext(pc, &factor));
+  PetscCall(FactorSolve(factor, b, x));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode Destroy(PC pc)
+{
+  Factor factor;
+
+  PetscFunctionBeginUser;
+  PetscCall(PCShellGetContext(pc, &factor));
+  PetscCall(FactorDestroy(&factor));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -32,150 +53,122 @@ static PetscErrorCode SetDefaultOption(const char *name, const char *value)
    Options Database Keys: those of the KSP, and MUMPS's own (-mat_mumps_icntl_...) for all direct solves. */
 PetscErrorCode DirectSolverSet(KSP ksp, PetscBool symmetric)
 {
-  PC pc;
+  PC     pc;
+  Factor factor;
 
   PetscFunctionBeginUser;
   PetscCall(KSPSetType(ksp, KSPPREONLY));
   PetscCall(KSPGetPC(ksp, &pc));
-  PetscCall(PCSetType(pc, symmetric ? PCCHOLESKY : PCLU));
-  PetscCall(PCFactorSetMatSolverType(pc, MATSOLVERMUMPS));
-  PetscCall(SetDefaultOption("-mat_mumps_icntl_14", DIRECT_WORKSPACE));
-  if (symmetric) PetscCall(SetDefaultOption("-mat_mumps_icntl_8", DIRECT_SCALING));
+  PetscCall(FactorCreate(PetscObjectComm((PetscObject)ksp), symmetric, &factor));
+  PetscCall(FactorSetOrdering(factor, FACTOR_AUTOMATIC, NULL));
+  PetscCall(PCSetType(pc, PCSHELL));
+  PetscCall(PCShellSetName(pc, DIRECT_NAME));
+  PetscCall(PCShellSetContext(pc, factor));
+  PetscCall(PCShellSetSetUp(pc, SetUp));
+  PetscCall(PCShellSetApply(pc, Apply));
+  PetscCall(PCShellSetDestroy(pc, Destroy));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The factor of a preconditioner made by DirectSolverSet(); NULL: options have replaced it */
+static PetscErrorCode OwnFactor(PC pc, Factor *factor)
+{
+  const char *name = NULL;
+  PetscBool   own;
+
+  PetscFunctionBeginUser;
+  *factor = NULL;
+  PetscCall(PetscObjectTypeCompare((PetscObject)pc, PCSHELL, &own));
+  if (own) PetscCall(PCShellGetName(pc, &name));
+  if (own) PetscCall(PetscStrcmp(name, DIRECT_NAME, &own));
+  if (own) PetscCall(PCShellGetContext(pc, factor));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* DirectSolverServes - does a KSP still factor and solve once, whatever options have said? Not collective. */
 PetscErrorCode DirectSolverServes(KSP ksp, PetscBool *serves)
 {
-  PC pc;
+  PC     pc;
+  Factor factor;
 
   PetscFunctionBeginUser;
   PetscCall(PetscObjectTypeCompare((PetscObject)ksp, KSPPREONLY, serves));
   if (!*serves) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(KSPGetPC(ksp, &pc));
-  PetscCall(PetscObjectTypeCompareAny((PetscObject)pc, serves, PCCHOLESKY, PCLU, ""));
+  PetscCall(OwnFactor(pc, &factor));
+  if (!factor) PetscCall(PetscObjectTypeCompareAny((PetscObject)pc, serves, PCCHOLESKY, PCLU, ""));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* DirectSolverFind - is a KSP's preconditioner a factorisation by MUMPS, and a symmetric one? Not collective. */
-PetscErrorCode DirectSolverFind(KSP ksp, PetscBool *mumps, PetscBool *cholesky)
+/* DirectSolverFactor - Not collective; borrowed. */
+PetscErrorCode DirectSolverFactor(KSP ksp, Factor *factor)
 {
-  PC            pc;
-  PetscBool     lu;
-  MatSolverType type = NULL;
+  PC pc;
 
   PetscFunctionBeginUser;
   PetscCall(KSPGetPC(ksp, &pc));
-  PetscCall(PetscObjectTypeCompare((PetscObject)pc, PCCHOLESKY, cholesky));
-  PetscCall(PetscObjectTypeCompare((PetscObject)pc, PCLU, &lu));
-  *mumps = PETSC_FALSE;
-  if (*cholesky || lu) PetscCall(PCFactorGetMatSolverType(pc, &type));
-  if (type) PetscCall(PetscStrcmp(type, MATSOLVERMUMPS, mumps));
+  PetscCall(OwnFactor(pc, factor));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Operations of a factorisation of A with MUMPS's options as they are, by its analysis */
-static PetscErrorCode CountOperations(Mat A, PetscBool symmetric, PetscReal *operations)
+/* Operations with an ordering; infinite where the analysis fails */
+static PetscErrorCode CountOperations(Factor factor, int ordering, Mat A, PetscReal *operations)
 {
-  MatFactorInfo info;
-  Mat           F;
+  FactorCost     cost;
+  PCFailedReason reason;
 
   PetscFunctionBeginUser;
-  PetscCall(MatFactorInfoInitialize(&info));
-  PetscCall(MatGetFactor(A, MATSOLVERMUMPS, symmetric ? MAT_FACTOR_CHOLESKY : MAT_FACTOR_LU, &F));
-  if (symmetric)
-    PetscCall(MatCholeskyFactorSymbolic(F, A, NULL, &info));
-  else
-    PetscCall(MatLUFactorSymbolic(F, A, NULL, NULL, &info));
-  PetscCall(MatMumpsGetRinfog(F, 1, operations));
-  PetscCall(MatDestroy(&F));
+  PetscCall(FactorSetOrdering(factor, ordering, NULL));
+  PetscCall(FactorAnalyse(factor, A, &reason));
+  FactorGetCost(factor, &cost);
+  *operations = reason ? PETSC_INFINITY : cost.operations;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* DirectSolverOrder - all factors from now on are ordered as needs the fewest operations for A.
+/* DirectSolverOrder - the KSP's factors from now on are ordered as needs the fewest operations for A.
 
    Collective. A: a matrix much like those to come; only its pattern counts. Costs three analyses, each about a third of a factorisation at 10,000 unknowns and
    less above. One that the user has chosen (-mat_mumps_icntl_7) stays. */
-PetscErrorCode DirectSolverOrder(Mat A, PetscBool symmetric)
+PetscErrorCode DirectSolverOrder(KSP ksp, Mat A)
 {
-  const char *ordering = DirectOrderings[0];
-  PetscReal   best     = PETSC_MAX_REAL, operations;
-  PetscInt    n;
-  PetscBool   given;
+  int       ordering = FACTOR_METIS;
+  PetscReal best, operations;
+  PetscInt  n;
+  PetscBool chosen;
+  Factor    factor;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscOptionsHasName(NULL, NULL, DIRECT_ORDERING, &given));
+  PetscCall(DirectSolverFactor(ksp, &factor));
   PetscCall(MatGetSize(A, &n, NULL));
-  if (given || n < DIRECT_COMPARED) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(MatSetOption(A, MAT_SYMMETRIC, symmetric));
-  for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(DirectOrderings); i++) {
-    PetscCall(PetscOptionsSetValue(NULL, DIRECT_ORDERING, DirectOrderings[i])); /* MatMumpsSetIcntl() comes too late or is forgotten, by PETSc's version */
-    PetscCall(CountOperations(A, symmetric, &operations));
+  if (!factor || n < DIRECT_COMPARED) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(FactorSetOrdering(factor, ordering, &chosen));
+  if (!chosen) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(CountOperations(factor, FACTOR_METIS, A, &best));
+  best *= DIRECT_BETTER;
+  for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(DirectOthers); i++) {
+    PetscCall(CountOperations(factor, DirectOthers[i], A, &operations));
     if (operations >= best) continue;
     best     = operations;
-    ordering = DirectOrderings[i];
+    ordering = DirectOthers[i];
   }
-  PetscCall(PetscOptionsSetValue(NULL, DIRECT_ORDERING, ordering));
-  PetscCall(PetscInfo(A, "MUMPS's ordering %s takes the fewest operations: %g\n", ordering, (double)best));
+  PetscCall(FactorSetOrdering(factor, ordering, NULL));
+  PetscCall(PetscInfo(A, "MUMPS's ordering %d takes the fewest operations: %g\n", ordering, (double)best));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The entries of a dense matrix of one rank that differ from zero, transposed. */
-static PetscErrorCode SparseRows(Mat B, Mat *rows)
+/* DirectSolverColumns - X = A^-1 B for dense B and X. Collective. */
+PetscErrorCode DirectSolverColumns(PC pc, Mat B, Mat X)
 {
-  PetscInt           m, n, *nonzeros, *place;
-  const PetscScalar *b;
-  PetscScalar       *value;
+  Factor factor;
+  Mat    factored;
 
   PetscFunctionBeginUser;
-  PetscCall(MatGetSize(B, &m, &n));
-  PetscCall(PetscCalloc1(n, &nonzeros));
-  PetscCall(PetscMalloc2(m, &place, m, &value));
-  PetscCall(MatDenseGetArrayRead(B, &b));
-  for (PetscInt j = 0; j < n; j++)
-    for (PetscInt i = 0; i < m; i++) nonzeros[j] += b[j * m + i] != 0;
-  PetscCall(MatCreateSeqAIJ(PETSC_COMM_SELF, n, m, 0, nonzeros, rows));
-  for (PetscInt j = 0; j < n; j++) {
-    PetscInt k = 0;
-
-    for (PetscInt i = 0; i < m && k < nonzeros[j]; i++) {
-      place[k] = i;
-      value[k] = b[j * m + i];
-      k += value[k] != 0;
-    }
-    PetscCall(MatSetValues(*rows, 1, &j, k, place, value, INSERT_VALUES));
-  }
-  PetscCall(MatDenseRestoreArrayRead(B, &b));
-  PetscCall(MatAssemblyBegin(*rows, MAT_FINAL_ASSEMBLY));
-  PetscCall(MatAssemblyEnd(*rows, MAT_FINAL_ASSEMBLY));
-  PetscCall(PetscFree2(place, value));
-  PetscCall(PetscFree(nonzeros));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* DirectSolverColumns - X = A^-1 B for dense B and X.
-
-   Collective. factored: A's factor. B with few entries that differ from zero, as forces on contact nodes have: on one rank MUMPS is given these alone, and
-   eliminates only what they reach (its ICNTL(20)), half of the solve's time. On more ranks it would want them gathered on the first. */
-PetscErrorCode DirectSolverColumns(Mat factored, Mat B, Mat X)
-{
-  MatSolverType type;
-  PetscMPIInt   size;
-  PetscBool     mumps;
-  Mat           rows, sparse;
-
-  PetscFunctionBeginUser;
-  PetscCallMPI(MPI_Comm_size(PetscObjectComm((PetscObject)B), &size));
-  PetscCall(MatFactorGetSolverType(factored, &type));
-  PetscCall(PetscStrcmp(type, MATSOLVERMUMPS, &mumps));
-  if (size > 1 || !mumps) {
+  PetscCall(OwnFactor(pc, &factor));
+  if (factor)
+    PetscCall(FactorSolveColumns(factor, B, X));
+  else {
+    PetscCall(PCFactorGetMatrix(pc, &factored));
     PetscCall(MatMatSolve(factored, B, X));
-    PetscFunctionReturn(PETSC_SUCCESS);
   }
-  PetscCall(SparseRows(B, &rows));
-  PetscCall(MatCreateTranspose(rows, &sparse));
-  PetscCall(MatMatSolve(factored, sparse, X));
-  PetscCall(MatDestroy(&sparse));
-  PetscCall(MatDestroy(&rows));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -66,31 +66,22 @@ static PetscErrorCode MeasureAssembly(Model model, PetscReal *seconds)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* MUMPS's analysis of the tangent: INFOG(16), INFOG(17) memory of the largest and of all ranks in MB, INFOG(20) entries of the factor (negative: in
-   millions), RINFOG(1) operations of the elimination */
-static PetscErrorCode AnalyseFactor(Model model, PetscBool cholesky, Estimate *estimate)
+/* MUMPS's analysis of the tangent */
+static PetscErrorCode AnalyseFactor(Model model, Factor factor, Estimate *estimate)
 {
-  Mat           F;
-  MatFactorInfo info;
-  PetscInt      most, all, entries;
-  const double  start = CpuSeconds();
+  const double   start = CpuSeconds();
+  FactorCost     cost;
+  PCFailedReason reason;
 
   PetscFunctionBeginUser;
-  PetscCall(MatFactorInfoInitialize(&info));
-  PetscCall(MatGetFactor(model->A, MATSOLVERMUMPS, cholesky ? MAT_FACTOR_CHOLESKY : MAT_FACTOR_LU, &F));
-  if (cholesky)
-    PetscCall(MatCholeskyFactorSymbolic(F, model->A, NULL, &info));
-  else
-    PetscCall(MatLUFactorSymbolic(F, model->A, NULL, NULL, &info));
-  PetscCall(MatMumpsGetInfog(F, 16, &most));
-  PetscCall(MatMumpsGetInfog(F, 17, &all));
-  PetscCall(MatMumpsGetInfog(F, 20, &entries));
-  PetscCall(MatMumpsGetRinfog(F, 1, &estimate->flops));
-  estimate->solver_mb[0] = (PetscReal)most;
-  estimate->solver_mb[1] = (PetscReal)all;
-  estimate->entries      = entries < 0 ? -1e6 * (PetscReal)entries : (PetscReal)entries;
+  PetscCall(FactorAnalyse(factor, model->A, &reason));
+  FactorGetCost(factor, &cost);
+  estimate->known        = reason ? PETSC_FALSE : PETSC_TRUE;
+  estimate->flops        = cost.operations;
+  estimate->entries      = cost.entries;
+  estimate->solver_mb[0] = cost.memory_mb[0];
+  estimate->solver_mb[1] = cost.memory_mb[1];
   estimate->analysis_s   = CpuSeconds() - start;
-  PetscCall(MatDestroy(&F));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &estimate->analysis_s, 1, MPIU_REAL, MPIU_MAX, model->mesh->comm));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -121,7 +112,7 @@ PetscErrorCode EstimateModel(Model model, Estimate *estimate)
   const MPI_Comm comm = model->mesh->comm;
   PetscReal      rate;
   PetscMPIInt    size;
-  PetscBool      cholesky;
+  Factor         factor;
   MatInfo        info;
   KSP            ksp;
 
@@ -134,9 +125,9 @@ PetscErrorCode EstimateModel(Model model, Estimate *estimate)
   PetscCall(MatGetInfo(model->A, MAT_GLOBAL_SUM, &info));
   estimate->nonzeros = info.nz_used;
   PetscCall(SNESGetKSP(model->snes, &ksp));
-  PetscCall(DirectSolverFind(ksp, &estimate->known, &cholesky));
+  PetscCall(DirectSolverFactor(ksp, &factor));
+  if (factor) PetscCall(AnalyseFactor(model, factor, estimate));
   if (!estimate->known) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(AnalyseFactor(model, cholesky, estimate));
   PetscCall(MeasureProduct(comm, &rate));
   PetscCall(MeasureMemory(comm, estimate->memory_mb));
   for (int k = 0; k < 2; k++) estimate->memory_mb[k] += estimate->solver_mb[k];

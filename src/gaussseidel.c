@@ -1,8 +1,8 @@
 #include "gaussseidel.h"
 #include "matrixrows.h"
 
-/* Most rows of a block: the dofs of a node */
-enum { BLOCK_ROWS = 3 };
+/* Most rows of a block */
+enum { BLOCK_ROWS = MATRIX_NODE_ROWS };
 
 enum { FORWARD, BACKWARD, WAYS };
 
@@ -134,19 +134,6 @@ static PetscErrorCode FindGhosts(GaussSeidel g, Mat mat, const MatrixRows *other
 
 /* ---------- blocks ---------- */
 
-/* Do two rows have the same columns? */
-static PetscBool AreAlike(const Operator *A, PetscInt r, PetscInt s)
-{
-  for (int b = 0; b < MATRIX_BLOCKS; b++) {
-    const MatrixRows *rows = &A->rows[b];
-    const PetscInt    n    = rows->mat ? rows->ptr[r + 1] - rows->ptr[r] : 0;
-
-    if (!rows->mat) continue;
-    if (rows->ptr[s + 1] - rows->ptr[s] != n || memcmp(&rows->column[rows->ptr[r]], &rows->column[rows->ptr[s]], n * sizeof(PetscInt))) return PETSC_FALSE;
-  }
-  return PETSC_TRUE;
-}
-
 static PetscBool IsBorder(const Operator *A, const Block *b)
 {
   const MatrixRows *others = &A->rows[MATRIX_OTHERS];
@@ -174,9 +161,8 @@ static PetscErrorCode FindBlocks(GaussSeidel g, const Operator *A)
   for (int border = 0; border < 2; border++) {
     if (border) g->n_inner = n;
     for (PetscInt row = 0; row < own->n;) {
-      Block b = {.row = row, .size = 1};
+      Block b = {.row = row, .size = MatrixRowsAlike(A->rows, row)};
 
-      while (b.size < BLOCK_ROWS && row + b.size < own->n && AreAlike(A, row, row + b.size)) b.size++;
       row += b.size;
       if ((int)IsBorder(A, &b) != border) continue;
       PetscCall(FindDiagonal(own, &b));

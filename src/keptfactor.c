@@ -161,7 +161,6 @@ PetscErrorCode KeptFactorUpdate(KeptFactor kept, Mat N, const PetscReal *s)
 {
   PetscInt n;
   PC       pc;
-  Mat      factored;
   Vec      column;
 
   PetscFunctionBeginUser;
@@ -172,8 +171,7 @@ PetscErrorCode KeptFactorUpdate(KeptFactor kept, Mat N, const PetscReal *s)
     PetscCall(MatDenseRestoreColumnVec(N, j, &column));
   }
   PetscCall(KSPGetPC(kept->ksp, &pc));
-  PetscCall(PCFactorGetMatrix(pc, &factored));
-  PetscCall(RankUpdateAdd(&kept->update, factored, N, s));
+  PetscCall(RankUpdateAdd(&kept->update, pc, N, s));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

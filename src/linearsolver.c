@@ -80,11 +80,8 @@ PetscErrorCode LinearSolverDestroy(LinearSolver *solver)
 /* LinearSolverOrder - a direct solver's ordering for operators that are much like K. Collective; at the first call, the others do nothing. */
 PetscErrorCode LinearSolverOrder(LinearSolver solver, Mat K)
 {
-  PetscBool mumps = PETSC_FALSE, cholesky;
-
   PetscFunctionBeginUser;
-  if (!solver->multigrid && !solver->ordered) PetscCall(DirectSolverFind(solver->ksp, &mumps, &cholesky));
-  if (mumps) PetscCall(DirectSolverOrder(K, cholesky));
+  if (!solver->multigrid && !solver->ordered) PetscCall(DirectSolverOrder(solver->ksp, K));
   solver->ordered = PETSC_TRUE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -138,7 +135,6 @@ PetscErrorCode LinearSolverColumns(LinearSolver solver, Mat A, Mat B, Mat X, Pet
 {
   PetscBool failed = PETSC_FALSE;
   PC        pc;
-  Mat       factored;
 
   PetscFunctionBeginUser;
   PetscCall(LinearSolverDirect(solver, able));
@@ -146,8 +142,7 @@ PetscErrorCode LinearSolverColumns(LinearSolver solver, Mat A, Mat B, Mat X, Pet
   *able = (PetscBool)(*able && !failed);
   if (!*able) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(KSPGetPC(solver->ksp, &pc));
-  PetscCall(PCFactorGetMatrix(pc, &factored));
-  PetscCall(DirectSolverColumns(factored, B, X));
+  PetscCall(DirectSolverColumns(pc, B, X));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -27,3 +27,25 @@ PetscErrorCode MatrixRowsRestore(MatrixRows *rows)
   if (rows->mat) PetscCall(MatRestoreRowIJ(rows->mat, 0, PETSC_FALSE, PETSC_FALSE, &rows->n, &rows->ptr, &rows->column, &done));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
+
+/* Do two rows have the same columns? */
+static PetscBool AreAlike(const MatrixRows rows[MATRIX_BLOCKS], PetscInt r, PetscInt s)
+{
+  for (int b = 0; b < MATRIX_BLOCKS; b++) {
+    const PetscInt n = rows[b].mat ? rows[b].ptr[r + 1] - rows[b].ptr[r] : 0;
+
+    if (!rows[b].mat) continue;
+    if (rows[b].ptr[s + 1] - rows[b].ptr[s] != n || memcmp(&rows[b].column[rows[b].ptr[r]], &rows[b].column[rows[b].ptr[s]], n * sizeof(PetscInt)))
+      return PETSC_FALSE;
+  }
+  return PETSC_TRUE;
+}
+
+/* MatrixRowsAlike - rows next to each other with the same columns, from `row` on, at most MATRIX_NODE_ROWS. Not collective. */
+PetscInt MatrixRowsAlike(const MatrixRows rows[MATRIX_BLOCKS], PetscInt row)
+{
+  PetscInt n = 1;
+
+  while (n < MATRIX_NODE_ROWS && row + n < rows[MATRIX_OWN].n && AreAlike(rows, row, row + n)) n++;
+  return n;
+}

@@ -311,15 +311,16 @@ static PetscErrorCode KeepMessage(MPI_Comm comm, int line, const char *function,
   return code;
 }
 
-/* PETSc's options for the solver; a value that PETSc refuses is the user's mistake. */
-static PetscErrorCode ModelSetFromOptions(Model model)
+/* The linear solver, and PETSc's options for all of them; a value that PETSc refuses is the user's mistake. */
+static PetscErrorCode ModelSetFromOptions(Model model, KSP ksp, PetscBool symmetric)
 {
   char           message[256] = "";
   PetscErrorCode code;
 
   PetscFunctionBeginUser;
   PetscCall(PetscPushErrorHandler(KeepMessage, message));
-  code = SNESSetFromOptions(model->snes);
+  code = LinearSolverCreate(ksp, model->mesh, model->scene, symmetric, &model->work->solver); /* reads MUMPS's */
+  if (!code) code = SNESSetFromOptions(model->snes);
   PetscCall(PetscPopErrorHandler());
   if (code) PetscCall(RefuseInput(model->mesh->comm, "a PETSc option (command line, environment or the scene's petsc) was refused: %s", message));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -344,9 +345,8 @@ PetscErrorCode ModelCreateSNES(Model model)
   PetscCall(SNESLineSearchSetType(search, SNESLINESEARCHBT));
   PetscCall(ModelCreateLineSearch(model));
   PetscCall(SNESGetKSP(model->snes, &ksp));
-  PetscCall(LinearSolverCreate(ksp, model->mesh, model->scene, symmetric, &model->work->solver));
+  PetscCall(ModelSetFromOptions(model, ksp, symmetric));
   PetscCall(LinearCheckCreate(ksp, model->scene->solver.tolerance, LinearSolverKept(model->work->solver), &model->linear));
-  PetscCall(ModelSetFromOptions(model));
   PetscCall(SNESLineSearchGetDamping(search, &model->work->damping));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

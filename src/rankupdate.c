@@ -43,7 +43,7 @@ static PetscErrorCode TakeColumns(RankUpdate update, Mat N, const PetscReal *s)
 }
 
 /* The last columns of Z: one solve for all, which takes a fifth of the time of as many. */
-static PetscErrorCode SolveColumns(RankUpdate update, Mat factored, Mat N)
+static PetscErrorCode SolveColumns(RankUpdate update, PC factored, Mat N)
 {
   Mat                Z;
   PetscInt           more;
@@ -97,7 +97,7 @@ static PetscErrorCode FactorCore(RankUpdate update)
 /* RankUpdateAdd - Collective. A column and its like with -s cancel each other.
 
    Source: Golub, Van Loan, Matrix Computations, sec. 2.1.4 (Sherman, Morrison, Woodbury). */
-PetscErrorCode RankUpdateAdd(RankUpdate *update, Mat factored, Mat N, const PetscReal *s)
+PetscErrorCode RankUpdateAdd(RankUpdate *update, PC factored, Mat N, const PetscReal *s)
 {
   PetscFunctionBeginUser;
   if (!*update) {

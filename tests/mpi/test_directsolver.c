@@ -50,7 +50,7 @@ static PetscErrorCode Forces(Mat A, PetscInt columns, Mat *B)
 /* Largest entry of A X - B */
 static PetscErrorCode Miss(PetscInt columns, PetscReal *miss)
 {
-  Mat A, factored, B, X, AX;
+  Mat A, B, X, AX;
   KSP ksp;
   PC  pc;
 
@@ -61,10 +61,9 @@ static PetscErrorCode Miss(PetscInt columns, PetscReal *miss)
   PetscCall(KSPSetOperators(ksp, A, A));
   PetscCall(KSPSetUp(ksp));
   PetscCall(KSPGetPC(ksp, &pc));
-  PetscCall(PCFactorGetMatrix(pc, &factored));
   PetscCall(Forces(A, columns, &B));
   PetscCall(MatDuplicate(B, MAT_DO_NOT_COPY_VALUES, &X));
-  PetscCall(DirectSolverColumns(factored, B, X));
+  PetscCall(DirectSolverColumns(pc, B, X));
   PetscCall(MatMatMult(A, X, MAT_INITIAL_MATRIX, PETSC_DEFAULT, &AX));
   PetscCall(MatAXPY(AX, -1, B, SAME_NONZERO_PATTERN));
   PetscCall(MatNorm(AX, NORM_FROBENIUS, miss));

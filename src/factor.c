@@ -1,0 +1,526 @@
+#include "factor.h"
+#include "matrixrows.h"
+#include "ordering.h"
+#include <dmumps_c.h>
+
+/* MUMPS's parameters have numbers, from 1. */
+#define MUMPS_ICNTL  60
+#define MUMPS_CNTL   15
+#define ICNTL(i)     icntl[(i)-1]
+#define INFOG(i)     infog[(i)-1]
+#define RINFOG(i)    rinfog[(i)-1]
+#define MPI_MUMPSINT (sizeof(MUMPS_INT) == sizeof(int64_t) ? MPI_INT64_T : MPI_INT32_T)
+
+/* Its jobs */
+enum { MUMPS_BEGIN = -1, MUMPS_END = -2, MUMPS_ANALYSE = 1, MUMPS_FACTOR = 2, MUMPS_SOLVE = 3 };
+/* Its ICNTL(7) for an ordering that it is given, and for its own choice */
+enum { MUMPS_GIVEN = 1, MUMPS_OWN = 7 };
+/* Unknowns from which on rows are ordered by dissection: below, a factorisation is not what a run spends its time with. */
+enum { FACTOR_DISSECTED = 4000 };
+/* Workspace above its estimate, in per cent. Its own 20 is too little for symmetric systems of a few thousand dofs on four ranks. */
+enum { FACTOR_WORKSPACE = 100 };
+/* How often it may be doubled: to a multiple of the estimate that delayed pivots of regular systems never need */
+enum { FACTOR_MORE = 2 };
+/* How it scales symmetric systems: by the diagonal. Its own choice iterates over rows and columns, which costs a seventh of a factorisation at 10,000 dofs;
+   stiff penalties stand on the diagonal. */
+enum { FACTOR_SCALING = 1 };
+/* Columns that are solved for at a time: enough for products of matrices, few enough for the first rank's memory. */
+enum { FACTOR_COLUMNS = 128 };
+
+struct _n_Factor {
+  MPI_Comm         comm;
+  PetscMPIInt      rank, size, *count, *first; /* rows of each rank */
+  PetscBool        symmetric, exists;          /* there is a factor */
+  int              ordering;
+  PetscObjectId    matrix; /* the last that was analysed, 0: none; and its pattern */
+  PetscObjectState pattern;
+  PetscInt         n, entries, rows; /* of all ranks; of this one, and its rows */
+  MUMPS_INT       *row, *column;     /* entries of this rank, from 1; of a symmetric matrix those on and above the diagonal */
+  PetscScalar     *value;
+  MUMPS_INT       *position; /* of rows, where the ordering is given; on the first rank, as are: */
+  PetscScalar     *right;    /* room for right-hand sides and solutions */
+  DMUMPS_STRUC_C   mumps;
+};
+
+static PetscErrorCode Call(Factor f, int job)
+{
+  PetscFunctionBeginUser;
+  f->mumps.job = job;
+  dmumps_c(&f->mumps);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* ---------- parameters ---------- */
+
+/* -mat_mumps_<kind>_<i> */
+static PetscErrorCode ReadOptions(Factor f)
+{
+  char      name[64];
+  PetscInt  integer;
+  PetscReal real;
+  PetscBool given;
+
+  PetscFunctionBeginUser;
+  for (int i = 1; i <= MUMPS_ICNTL; i++) {
+    PetscCall(PetscSNPrintf(name, sizeof(name), "-mat_mumps_icntl_%d", i));
+    PetscCall(PetscOptionsGetInt(NULL, NULL, name, &integer, &given));
+    if (given) f->mumps.ICNTL(i) = (MUMPS_INT)integer;
+  }
+  for (int i = 1; i <= MUMPS_CNTL; i++) {
+    PetscCall(PetscSNPrintf(name, sizeof(name), "-mat_mumps_cntl_%d", i));
+    PetscCall(PetscOptionsGetReal(NULL, NULL, name, &real, &given));
+    if (given) f->mumps.cntl[i - 1] = real;
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode Begin(Factor f)
+{
+  DMUMPS_STRUC_C *mumps = &f->mumps;
+
+  PetscFunctionBeginUser;
+  mumps->comm_fortran = (MUMPS_INT)MPI_Comm_c2f(f->comm);
+  mumps->par          = 1;                    /* the first rank works too */
+  mumps->sym          = f->symmetric ? 2 : 0; /* 2: need not be positive definite */
+  PetscCall(Call(f, MUMPS_BEGIN));
+  PetscCheck(mumps->INFOG(1) >= 0, f->comm, PETSC_ERR_LIB, "MUMPS does not start: INFOG(1) = %d, INFOG(2) = %d", (int)mumps->INFOG(1), (int)mumps->INFOG(2));
+  for (int i = 1; i <= 4; i++) mumps->ICNTL(i) = 0; /* prints nothing */
+  mumps->ICNTL(6) = 0;                              /* nor brings large entries to the diagonal, where they are */
+  if (f->symmetric) mumps->ICNTL(8) = FACTOR_SCALING;
+  mumps->ICNTL(14) = FACTOR_WORKSPACE;
+  PetscCall(ReadOptions(f));
+  mumps->ICNTL(18) = f->size > 1 ? 3 : 0; /* entries: of each rank where it has them */
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* FactorCreate - Collective. */
+PetscErrorCode FactorCreate(MPI_Comm comm, PetscBool symmetric, Factor *out)
+{
+  Factor f;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscNew(&f));
+  PetscCall(PetscCommDuplicate(comm, &f->comm, NULL));
+  PetscCallMPI(MPI_Comm_rank(f->comm, &f->rank));
+  PetscCallMPI(MPI_Comm_size(f->comm, &f->size));
+  PetscCall(PetscCalloc2(f->size, &f->count, f->size + 1, &f->first));
+  f->symmetric = symmetric;
+  f->ordering  = FACTOR_AUTOMATIC;
+  PetscCall(Begin(f));
+  *out = f;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* FactorDestroy - Collective. */
+PetscErrorCode FactorDestroy(Factor *factor)
+{
+  Factor f = *factor;
+
+  PetscFunctionBeginUser;
+  if (!f) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(Call(f, MUMPS_END));
+  PetscCall(PetscFree3(f->row, f->column, f->value));
+  PetscCall(PetscFree(f->position));
+  PetscCall(PetscFree(f->right));
+  PetscCall(PetscFree2(f->count, f->first));
+  PetscCall(PetscCommDestroy(&f->comm));
+  PetscCall(PetscFree(*factor));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* FactorSetOrdering - Logically collective. */
+PetscErrorCode FactorSetOrdering(Factor f, int ordering, PetscBool *chosen)
+{
+  PetscInt  asked;
+  PetscBool given;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscOptionsGetInt(NULL, NULL, "-mat_mumps_icntl_7", &asked, &given));
+  f->ordering = given ? (int)asked : ordering;
+  if (chosen) *chosen = given ? PETSC_FALSE : PETSC_TRUE;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* ---------- the matrix ---------- */
+
+/* Takes rows (from 1), columns and values of this rank's entries, each if asked for; *n: how many there are. */
+static PetscErrorCode TakeEntries(Factor f, Mat A, MUMPS_INT *row, MUMPS_INT *column, PetscScalar *value, PetscInt *n)
+{
+  PetscInt start;
+
+  PetscFunctionBeginUser;
+  *n = 0;
+  PetscCall(MatGetOwnershipRange(A, &start, NULL));
+  for (int block = 0; block < MATRIX_BLOCKS; block++) {
+    MatrixRows         rows;
+    const PetscScalar *from = NULL;
+
+    PetscCall(MatrixRowsGet(A, block, &rows));
+    if (rows.mat) PetscCall(MatSeqAIJGetArrayRead(rows.mat, &from));
+    for (PetscInt r = 0; rows.mat && r < rows.n; r++)
+      for (PetscInt k = rows.ptr[r]; k < rows.ptr[r + 1]; k++) {
+        const PetscInt c = rows.global ? rows.global[rows.column[k]] : start + rows.column[k];
+
+        if (f->symmetric && c < start + r) continue;
+        if (row) row[*n] = (MUMPS_INT)(start + r + 1);
+        if (column) column[*n] = (MUMPS_INT)(c + 1);
+        if (value) value[*n] = from[k];
+        ++*n;
+      }
+    if (rows.mat) PetscCall(MatSeqAIJRestoreArrayRead(rows.mat, &from));
+    PetscCall(MatrixRowsRestore(&rows));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* MUMPS is told where the entries are. */
+static PetscErrorCode ShowEntries(Factor f, Mat A)
+{
+  DMUMPS_STRUC_C *mumps = &f->mumps;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscFree3(f->row, f->column, f->value));
+  PetscCall(TakeEntries(f, A, NULL, NULL, NULL, &f->entries));
+  PetscCall(PetscMalloc3(f->entries, &f->row, f->entries, &f->column, f->entries, &f->value));
+  PetscCall(TakeEntries(f, A, f->row, f->column, f->value, &f->entries));
+  if (f->size > 1) {
+    mumps->nnz_loc = f->entries;
+    mumps->irn_loc = f->row;
+    mumps->jcn_loc = f->column;
+    mumps->a_loc   = f->value;
+  } else {
+    mumps->nnz = f->entries;
+    mumps->irn = f->row;
+    mumps->jcn = f->column;
+    mumps->a   = f->value;
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Rows of all ranks */
+static PetscErrorCode ShowSize(Factor f, Mat A)
+{
+  PetscMPIInt mine;
+
+  PetscFunctionBeginUser;
+  PetscCall(MatGetSize(A, &f->n, NULL));
+  PetscCall(MatGetLocalSize(A, &f->rows, NULL));
+  PetscCheck(f->n == (MUMPS_INT)f->n, f->comm, PETSC_ERR_ARG_OUTOFRANGE, "%" PetscInt_FMT " unknowns are more than MUMPS can count", f->n);
+  f->mumps.n = (MUMPS_INT)f->n;
+  mine       = (PetscMPIInt)f->rows;
+  PetscCallMPI(MPI_Allgather(&mine, 1, MPI_INT, f->count, 1, MPI_INT, f->comm));
+  for (PetscMPIInt r = 0; r < f->size; r++) f->first[r + 1] = f->first[r] + f->count[r];
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode ShowOrdering(Factor f, Mat A)
+{
+  int       ordering = f->ordering;
+  PetscInt *position;
+
+  PetscFunctionBeginUser;
+  if (ordering == FACTOR_AUTOMATIC) ordering = f->n < FACTOR_DISSECTED ? MUMPS_OWN : FACTOR_METIS;
+  f->mumps.ICNTL(7) = (MUMPS_INT)(ordering == FACTOR_METIS ? MUMPS_GIVEN : ordering);
+  if (ordering != FACTOR_METIS) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(OrderingFind(A, &position));
+  PetscCall(PetscFree(f->position));
+  if (!f->rank) PetscCall(PetscMalloc1(f->n, &f->position));
+  for (PetscInt i = 0; i < f->n && !f->rank; i++) f->position[i] = (MUMPS_INT)(position[i] + 1);
+  f->mumps.perm_in = f->position;
+  PetscCall(PetscFree(position));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Why a job failed, as PETSc's interface to MUMPS tells it. Source: MUMPS 5.5 Users' guide, section 8. */
+static PCFailedReason Reason(Factor f)
+{
+  switch (f->mumps.INFOG(1)) {
+  case -10: return PC_FACTOR_NUMERIC_ZEROPIVOT;
+  case -6: return PC_FACTOR_STRUCT_ZEROPIVOT;
+  case -5:
+  case -7:
+  case -8:
+  case -9:
+  case -11:
+  case -12:
+  case -13:
+  case -14:
+  case -15:
+  case -18:
+  case -19:
+  case -20: return PC_FACTOR_OUTMEMORY;
+  default: return f->mumps.INFOG(1) < 0 ? PC_FACTOR_OTHER : PC_NOERROR;
+  }
+}
+
+static PetscErrorCode Tell(Factor f, const char *job, PCFailedReason *reason)
+{
+  PetscFunctionBeginUser;
+  *reason = Reason(f);
+  if (*reason) PetscCall(PetscInfo(NULL, "MUMPS's %s failed: INFOG(1) = %d, INFOG(2) = %d\n", job, (int)f->mumps.INFOG(1), (int)f->mumps.INFOG(2)));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* FactorAnalyse - Collective. */
+PetscErrorCode FactorAnalyse(Factor f, Mat A, PCFailedReason *reason)
+{
+  PetscFunctionBeginUser;
+  f->exists = PETSC_FALSE;
+  f->matrix = 0;
+  *reason   = PC_NOERROR;
+  PetscCall(ShowSize(f, A));
+  if (!f->n) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(ShowEntries(f, A));
+  PetscCall(ShowOrdering(f, A));
+  PetscCall(PetscFree(f->right));
+  PetscCall(Call(f, MUMPS_ANALYSE));
+  PetscCall(Tell(f, "analysis", reason));
+  if (*reason) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscObjectGetId((PetscObject)A, &f->matrix));
+  PetscCall(MatGetNonzeroState(A, &f->pattern));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Has it another pattern than the last that was analysed? The same on all ranks. */
+static PetscErrorCode IsNew(Factor f, Mat A, PetscBool *is)
+{
+  PetscObjectId    matrix;
+  PetscObjectState pattern;
+  int              differs;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscObjectGetId((PetscObject)A, &matrix));
+  PetscCall(MatGetNonzeroState(A, &pattern));
+  differs = matrix != f->matrix || pattern != f->pattern;
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &differs, 1, MPI_INT, MPI_MAX, f->comm));
+  *is = differs ? PETSC_TRUE : PETSC_FALSE;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Factors; where the workspace was too short, with twice the surplus, and that once more. */
+static PetscErrorCode CallFactor(Factor f)
+{
+  PetscFunctionBeginUser;
+  PetscCall(Call(f, MUMPS_FACTOR));
+  for (int more = 0; more < FACTOR_MORE && (f->mumps.INFOG(1) == -8 || f->mumps.INFOG(1) == -9); more++) {
+    f->mumps.ICNTL(14) = PetscMax(2 * f->mumps.ICNTL(14), FACTOR_WORKSPACE);
+    PetscCall(Call(f, MUMPS_FACTOR));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* FactorMake - Collective. */
+PetscErrorCode FactorMake(Factor f, Mat A, PCFailedReason *reason)
+{
+  PetscInt  n;
+  PetscBool is_new;
+
+  PetscFunctionBeginUser;
+  *reason = PC_NOERROR;
+  PetscCall(IsNew(f, A, &is_new));
+  if (is_new) PetscCall(FactorAnalyse(f, A, reason));
+  f->exists = PETSC_FALSE;
+  if (*reason || !f->n) PetscFunctionReturn(PETSC_SUCCESS);
+  if (!is_new) PetscCall(TakeEntries(f, A, NULL, NULL, f->value, &n));
+  PetscCall(CallFactor(f));
+  PetscCall(Tell(f, "factorisation", reason));
+  f->exists = *reason ? PETSC_FALSE : PETSC_TRUE;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* FactorGetCost - INFOG(16), INFOG(17): memory; INFOG(20): entries, negative: in millions; RINFOG(1): operations. Not collective. */
+void FactorGetCost(Factor f, FactorCost *cost)
+{
+  const DMUMPS_STRUC_C *mumps   = &f->mumps;
+  const PetscReal       entries = mumps->INFOG(20);
+
+  *cost = (FactorCost){
+    .operations = mumps->RINFOG(1),
+    .entries    = entries < 0 ? -1e6 * entries : entries,
+    .memory_mb  = {mumps->INFOG(16), mumps->INFOG(17)}
+  };
+}
+
+/* ---------- solves ---------- */
+
+/* Solves for `columns` of them; the solutions stand in right. */
+static PetscErrorCode Solve(Factor f, PetscInt columns)
+{
+  DMUMPS_STRUC_C *mumps = &f->mumps;
+
+  PetscFunctionBeginUser;
+  mumps->nrhs      = (MUMPS_INT)columns;
+  mumps->lrhs      = mumps->n;
+  mumps->rhs       = f->right;
+  mumps->ICNTL(21) = 0; /* the solution: all of it on the first rank */
+  PetscCall(Call(f, MUMPS_SOLVE));
+  PetscCheck(mumps->INFOG(1) >= 0, f->comm, PETSC_ERR_LIB, "MUMPS does not solve: INFOG(1) = %d, INFOG(2) = %d", (int)mumps->INFOG(1), (int)mumps->INFOG(2));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Room for `columns` on the first rank */
+static PetscErrorCode MakeRoom(Factor f, PetscInt columns)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscFree(f->right));
+  if (!f->rank) PetscCall(PetscMalloc1(f->n * columns, &f->right));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* FactorSolve - Collective. Infinity where there is no factor. */
+PetscErrorCode FactorSolve(Factor f, Vec b, Vec x)
+{
+  const PetscScalar *from;
+  PetscScalar       *to;
+
+  PetscFunctionBeginUser;
+  if (!f->n) PetscFunctionReturn(PETSC_SUCCESS);
+  if (!f->exists) PetscCall(VecSet(x, INFINITY));
+  if (!f->exists) PetscFunctionReturn(PETSC_SUCCESS);
+  if (!f->right) PetscCall(MakeRoom(f, 1));
+  PetscCall(VecGetArrayRead(b, &from));
+  PetscCallMPI(MPI_Gatherv(from, f->count[f->rank], MPIU_SCALAR, f->right, f->count, f->first, MPIU_SCALAR, 0, f->comm));
+  PetscCall(VecRestoreArrayRead(b, &from));
+  f->mumps.ICNTL(20) = 0; /* dense */
+  PetscCall(Solve(f, 1));
+  PetscCall(VecGetArrayWrite(x, &to));
+  PetscCallMPI(MPI_Scatterv(f->right, f->count, f->first, MPIU_SCALAR, to, f->count[f->rank], MPIU_SCALAR, 0, f->comm));
+  PetscCall(VecRestoreArrayWrite(x, &to));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Entries of right-hand sides that differ from zero: first each rank's, then all of them on the first rank */
+typedef struct {
+  PetscInt     columns;
+  MUMPS_INT   *ptr, *row; /* from 1 */
+  PetscScalar *value;
+} SparseColumns;
+
+static PetscErrorCode SparseCreate(PetscInt columns, PetscInt entries, SparseColumns *sparse)
+{
+  PetscFunctionBeginUser;
+  sparse->columns = columns;
+  PetscCall(PetscCalloc3(columns + 1, &sparse->ptr, entries, &sparse->row, entries, &sparse->value));
+  sparse->ptr[0] = 1;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode SparseFree(SparseColumns *sparse)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscFree3(sparse->ptr, sparse->row, sparse->value));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Of this rank's rows b[columns][rows] */
+static PetscErrorCode SparseFind(Factor f, PetscInt columns, const PetscScalar *b, SparseColumns *sparse)
+{
+  PetscInt n = 0;
+
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < columns * f->rows; i++) n += b[i] != 0;
+  PetscCall(SparseCreate(columns, n, sparse));
+  n = 0;
+  for (PetscInt j = 0; j < columns; j++) {
+    for (PetscInt i = 0; i < f->rows; i++) {
+      if (b[j * f->rows + i] == 0) continue;
+      sparse->row[n]     = (MUMPS_INT)(f->first[f->rank] + i + 1);
+      sparse->value[n++] = b[j * f->rows + i];
+    }
+    sparse->ptr[j + 1] = (MUMPS_INT)(n + 1);
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Column by column, of each the ranks' one after the other; all: on the first rank */
+static PetscErrorCode SparseGather(Factor f, const SparseColumns *mine, SparseColumns *all)
+{
+  const PetscMPIInt width = (PetscMPIInt)mine->columns + 1, count = (PetscMPIInt)(mine->ptr[mine->columns] - 1);
+  PetscMPIInt      *counts, *first;
+  MUMPS_INT        *ptr, *row;
+  PetscScalar      *value;
+  PetscInt          n = 0;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc3(f->size, &counts, f->size + 1, &first, f->size * width, &ptr));
+  PetscCallMPI(MPI_Gather(&count, 1, MPI_INT, counts, 1, MPI_INT, 0, f->comm));
+  for (PetscMPIInt r = 0; r < f->size; r++) first[r + 1] = first[r] + counts[r];
+  PetscCall(PetscMalloc2(first[f->size], &row, first[f->size], &value));
+  PetscCallMPI(MPI_Gather(mine->ptr, width, MPI_MUMPSINT, ptr, width, MPI_MUMPSINT, 0, f->comm));
+  PetscCallMPI(MPI_Gatherv(mine->row, count, MPI_MUMPSINT, row, counts, first, MPI_MUMPSINT, 0, f->comm));
+  PetscCallMPI(MPI_Gatherv(mine->value, count, MPIU_SCALAR, value, counts, first, MPIU_SCALAR, 0, f->comm));
+  PetscCall(SparseCreate(mine->columns, first[f->size], all));
+  for (PetscInt j = 0; j < mine->columns; j++) {
+    for (PetscMPIInt r = 0; r < f->size; r++)
+      for (MUMPS_INT k = ptr[r * width + j]; k < ptr[r * width + j + 1]; k++, n++) {
+        all->row[n]   = row[first[r] + k - 1];
+        all->value[n] = value[first[r] + k - 1];
+      }
+    all->ptr[j + 1] = (MUMPS_INT)(n + 1);
+  }
+  PetscCall(PetscFree2(row, value));
+  PetscCall(PetscFree3(counts, first, ptr));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* MUMPS is told of right-hand sides on the first rank, and refuses any that others have. */
+static void ShowColumns(Factor f, SparseColumns *all)
+{
+  f->mumps.ICNTL(20) = 1; /* sparse */
+  if (f->rank) return;
+  f->mumps.nz_rhs      = all->ptr[all->columns] - 1;
+  f->mumps.irhs_ptr    = all->ptr;
+  f->mumps.irhs_sparse = all->row;
+  f->mumps.rhs_sparse  = all->value;
+}
+
+/* x = A^-1 b, `columns` of this rank's rows each */
+static PetscErrorCode SolveSparse(Factor f, PetscInt columns, const PetscScalar *b, PetscScalar *x)
+{
+  SparseColumns mine, all;
+  PetscMPIInt   entries;
+
+  PetscFunctionBeginUser;
+  PetscCall(SparseFind(f, columns, b, &mine));
+  PetscCall(SparseGather(f, &mine, &all));
+  entries = (PetscMPIInt)(all.ptr[columns] - 1);
+  PetscCallMPI(MPI_Bcast(&entries, 1, MPI_INT, 0, f->comm));
+  PetscCall(PetscArrayzero(x, columns * f->rows));
+  if (entries) {
+    PetscCall(MakeRoom(f, columns));
+    ShowColumns(f, &all);
+    PetscCall(Solve(f, columns));
+    for (PetscInt j = 0; j < columns; j++)
+      PetscCallMPI(
+        MPI_Scatterv(f->rank ? NULL : &f->right[j * f->n], f->count, f->first, MPIU_SCALAR, &x[j * f->rows], f->count[f->rank], MPIU_SCALAR, 0, f->comm));
+    PetscCall(PetscFree(f->right));
+  }
+  PetscCall(SparseFree(&all));
+  PetscCall(SparseFree(&mine));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*
+  FactorSolveColumns - X = A^-1 B for dense B and X
+
+  Collective
+
+  Note:
+  MUMPS is given the entries of B that differ from zero, and eliminates only what they reach (its ICNTL(20)): for forces on contact nodes, half of the time.
+*/
+PetscErrorCode FactorSolveColumns(Factor f, Mat B, Mat X)
+{
+  PetscInt           columns;
+  const PetscScalar *b;
+  PetscScalar       *x;
+
+  PetscFunctionBeginUser;
+  PetscCheck(f->exists, f->comm, PETSC_ERR_ARG_WRONGSTATE, "there is no factor");
+  PetscCall(MatGetSize(B, NULL, &columns));
+  PetscCall(MatDenseGetArrayRead(B, &b));
+  PetscCall(MatDenseGetArrayWrite(X, &x));
+  for (PetscInt j = 0; j < columns; j += FACTOR_COLUMNS) PetscCall(SolveSparse(f, PetscMin(FACTOR_COLUMNS, columns - j), &b[j * f->rows], &x[j * f->rows]));
+  PetscCall(MatDenseRestoreArrayWrite(X, &x));
+  PetscCall(MatDenseRestoreArrayRead(B, &b));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

@@ -1,0 +1,193 @@
+/* Factors of grids: each ordering, symmetric or not, other values, other patterns and singular ones; and what dissection costs. */
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <setjmp.h>
+#include <cmocka.h>
+#include "factor.h"
+
+enum { EDGE = 12, DOFS = 2 };
+
+/* Adds the block of nodes i and j: springs of k in every direction, and `skew` that only one way knows of. */
+static PetscErrorCode AddBlock(Mat A, PetscInt i, PetscInt j, PetscReal k, PetscReal skew)
+{
+  PetscInt  first, end, rows[DOFS], columns[DOFS];
+  PetscReal value[DOFS * DOFS] = {k, 0.1 * k, 0.1 * k, k};
+
+  PetscFunctionBeginUser;
+  PetscCall(MatGetOwnershipRange(A, &first, &end));
+  value[1] += i < j ? skew : i > j ? -skew : 0;
+  for (int d = 0; d < DOFS; d++) {
+    rows[d]    = i * DOFS + d;
+    columns[d] = j * DOFS + d;
+    if (rows[d] < first || rows[d] >= end) rows[d] = -1; /* another rank's */
+  }
+  PetscCall(MatSetValues(A, DOFS, rows, DOFS, columns, value, ADD_VALUES));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* EDGE^3 nodes, coupled to the six next to them; ground: stiffness of the springs that hold each. */
+static PetscErrorCode Grid(PetscReal ground, PetscReal skew, Mat *A)
+{
+  const PetscInt n = EDGE * EDGE * EDGE, step[] = {1, EDGE, EDGE * EDGE};
+
+  PetscFunctionBeginUser;
+  PetscCall(MatCreateAIJ(PETSC_COMM_WORLD, PETSC_DECIDE, PETSC_DECIDE, n * DOFS, n * DOFS, 7 * DOFS, NULL, 7 * DOFS, NULL, A));
+  for (PetscInt i = 0; i < n; i++) {
+    PetscCall(AddBlock(*A, i, i, ground, 0));
+    for (int d = 0; d < 3; d++) {
+      const PetscInt j = i + step[d];
+
+      if (i / step[d] % EDGE == EDGE - 1) continue;
+      PetscCall(AddBlock(*A, i, i, 1, 0));
+      PetscCall(AddBlock(*A, j, j, 1, 0));
+      PetscCall(AddBlock(*A, i, j, -1, skew));
+      PetscCall(AddBlock(*A, j, i, -1, skew));
+    }
+  }
+  PetscCall(MatAssemblyBegin(*A, MAT_FINAL_ASSEMBLY));
+  PetscCall(MatAssemblyEnd(*A, MAT_FINAL_ASSEMBLY));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Relative residual of a solution */
+static PetscErrorCode Miss(Factor factor, Mat A, PetscReal *miss)
+{
+  PetscReal right;
+  Vec       b, x, r;
+
+  PetscFunctionBeginUser;
+  PetscCall(MatCreateVecs(A, &x, &b));
+  PetscCall(VecDuplicate(b, &r));
+  PetscCall(VecSet(b, 1));
+  PetscCall(FactorSolve(factor, b, x));
+  PetscCall(MatMult(A, x, r));
+  PetscCall(VecAXPY(r, -1, b));
+  PetscCall(VecNorm(r, NORM_2, miss));
+  PetscCall(VecNorm(b, NORM_2, &right));
+  *miss /= right;
+  PetscCall(VecDestroy(&b));
+  PetscCall(VecDestroy(&x));
+  PetscCall(VecDestroy(&r));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static void MakeAndSolve(Factor factor, Mat A)
+{
+  PCFailedReason reason;
+  PetscReal      miss;
+
+  assert_int_equal(FactorMake(factor, A, &reason), 0);
+  assert_int_equal(reason, PC_NOERROR);
+  assert_int_equal(Miss(factor, A, &miss), 0);
+  assert_true(miss < 1e-11);
+}
+
+static void Solves(PetscBool symmetric, int ordering)
+{
+  Factor factor;
+  Mat    A;
+
+  assert_int_equal(Grid(0.1, symmetric ? 0 : 0.3, &A), 0);
+  assert_int_equal(FactorCreate(PETSC_COMM_WORLD, symmetric, &factor), 0);
+  assert_int_equal(FactorSetOrdering(factor, ordering, NULL), 0);
+  MakeAndSolve(factor, A);
+  assert_int_equal(FactorDestroy(&factor), 0);
+  assert_int_equal(MatDestroy(&A), 0);
+}
+
+static void test_orderings(void **state)
+{
+  const int orderings[] = {FACTOR_AUTOMATIC, FACTOR_MINIMUM_DEGREE, FACTOR_MINIMUM_FILL, FACTOR_METIS};
+
+  (void)state;
+  for (size_t i = 0; i < sizeof(orderings) / sizeof(orderings[0]); i++)
+    for (int symmetric = 0; symmetric < 2; symmetric++) Solves((PetscBool)symmetric, orderings[i]);
+}
+
+static void test_other_values_and_patterns(void **state)
+{
+  Factor factor;
+  Mat    A, other;
+
+  (void)state;
+  assert_int_equal(Grid(0.1, 0, &A), 0);
+  assert_int_equal(Grid(0.2, 0, &other), 0);
+  assert_int_equal(FactorCreate(PETSC_COMM_WORLD, PETSC_TRUE, &factor), 0);
+  assert_int_equal(FactorSetOrdering(factor, FACTOR_METIS, NULL), 0);
+  MakeAndSolve(factor, A);
+  assert_int_equal(MatScale(A, 3), 0);
+  MakeAndSolve(factor, A);
+  MakeAndSolve(factor, other);
+  assert_int_equal(MatSetOption(A, MAT_NEW_NONZERO_ALLOCATION_ERR, PETSC_FALSE), 0);
+  assert_int_equal(AddBlock(A, 0, EDGE * EDGE * EDGE - 1, -0.5, 0), 0);
+  assert_int_equal(AddBlock(A, EDGE * EDGE * EDGE - 1, 0, -0.5, 0), 0);
+  assert_int_equal(MatAssemblyBegin(A, MAT_FINAL_ASSEMBLY), 0);
+  assert_int_equal(MatAssemblyEnd(A, MAT_FINAL_ASSEMBLY), 0);
+  MakeAndSolve(factor, A);
+  assert_int_equal(FactorDestroy(&factor), 0);
+  assert_int_equal(MatDestroy(&A), 0);
+  assert_int_equal(MatDestroy(&other), 0);
+}
+
+/* A matrix of zeros has no factor: that is told, solutions are infinite, and the next matrix is solved with all the same. */
+static void test_singular(void **state)
+{
+  PCFailedReason reason;
+  PetscReal      miss;
+  Factor         factor;
+  Mat            A, zero;
+
+  (void)state;
+  assert_int_equal(Grid(0.1, 0, &A), 0);
+  assert_int_equal(MatDuplicate(A, MAT_COPY_VALUES, &zero), 0);
+  assert_int_equal(MatScale(zero, 0), 0);
+  assert_int_equal(FactorCreate(PETSC_COMM_WORLD, PETSC_TRUE, &factor), 0);
+  assert_int_equal(FactorMake(factor, zero, &reason), 0);
+  assert_int_not_equal(reason, PC_NOERROR);
+  assert_int_equal(Miss(factor, zero, &miss), 0);
+  assert_true(PetscIsInfOrNanReal(miss));
+  MakeAndSolve(factor, A);
+  assert_int_equal(FactorDestroy(&factor), 0);
+  assert_int_equal(MatDestroy(&A), 0);
+  assert_int_equal(MatDestroy(&zero), 0);
+}
+
+static PetscReal Operations(Mat A, int ordering)
+{
+  PCFailedReason reason;
+  FactorCost     cost;
+  Factor         factor;
+
+  assert_int_equal(FactorCreate(PETSC_COMM_WORLD, PETSC_TRUE, &factor), 0);
+  assert_int_equal(FactorSetOrdering(factor, ordering, NULL), 0);
+  assert_int_equal(FactorAnalyse(factor, A, &reason), 0);
+  assert_int_equal(reason, PC_NOERROR);
+  FactorGetCost(factor, &cost);
+  assert_int_equal(FactorDestroy(&factor), 0);
+  assert_true(cost.entries > 0 && cost.memory_mb[0] > 0 && cost.memory_mb[1] >= cost.memory_mb[0]);
+  return cost.operations;
+}
+
+/* A wrong order would take ten times as many. */
+static void test_dissection_costs(void **state)
+{
+  Mat A;
+
+  (void)state;
+  assert_int_equal(Grid(0.1, 0, &A), 0);
+  assert_true(Operations(A, FACTOR_METIS) < 1.5 * Operations(A, FACTOR_MINIMUM_DEGREE));
+  assert_int_equal(MatDestroy(&A), 0);
+}
+
+int main(int argc, char **argv)
+{
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_orderings), cmocka_unit_test(test_other_values_and_patterns), cmocka_unit_test(test_singular),
+                                     cmocka_unit_test(test_dissection_costs)};
+  int                     failed;
+
+  if (PetscInitialize(&argc, &argv, NULL, NULL)) return 1;
+  failed = cmocka_run_group_tests(tests, NULL, NULL);
+  if (PetscFinalize()) return 1;
+  return failed;
+}
