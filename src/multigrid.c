@@ -305,6 +305,7 @@ static PetscErrorCode SmoothFinest(Multigrid m)
 {
   KSP      ksp;
   PC       pc;
+  Mat      swept;
   PetscInt levels;
 
   PetscFunctionBeginUser;
@@ -312,10 +313,11 @@ static PetscErrorCode SmoothFinest(Multigrid m)
   if (levels == 1) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PCMGGetSmoother(m->bodies, levels - 1, &ksp));
   PetscCall(KSPGetPC(ksp, &pc));
-  PetscCall(GaussSeidelSet(pc));
-  PetscCall(KSPSetType(ksp, KSPRICHARDSON)); /* forgets the eigenvalues for Jacobi's method, which would count as given */
-  PetscCall(KSPSetType(ksp, KSPCHEBYSHEV));
-  PetscCall(KSPChebyshevSetEigenvalues(ksp, MULTIGRID_LARGEST, MULTIGRID_LEAST));
+  PetscCall(GaussSeidelSet(pc, MULTIGRID_LEAST, MULTIGRID_LARGEST));
+  PetscCall(KSPSetType(ksp, KSPRICHARDSON));
+  PetscCall(GaussSeidelGetMat(pc, &swept));
+  PetscCall(PCMGSetResidual(m->bodies, levels - 1, GaussSeidelResidual, swept));
+  PetscCall(MatDestroy(&swept));
   PetscCall(KSPSetFromOptions(ksp));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
