@@ -20,7 +20,6 @@ typedef struct {
   BlockPart part[BLOCKROWS_PARTS];
 } * BlockRows;
 
-typedef float  BlockFloats __attribute__((vector_size(BLOCKROWS_LANES * sizeof(float)), aligned(sizeof(float)), may_alias));
 typedef double BlockDoubles __attribute__((vector_size(BLOCKROWS_LANES * sizeof(double))));
 typedef double BlockDoublesInArray __attribute__((vector_size(BLOCKROWS_LANES * sizeof(double)), aligned(sizeof(double)), may_alias));
 
@@ -28,14 +27,19 @@ typedef double BlockDoublesInArray __attribute__((vector_size(BLOCKROWS_LANES * 
 PetscErrorCode BlockRowsCreate(Mat, SweepOrder, BlockRows *);
 PetscErrorCode BlockRowsDestroy(BlockRows *);
 
+/* A column of a block; written so that it takes one instruction. */
+LANES_INLINE BlockDoubles BlockColumn(const float *value)
+{
+  return (BlockDoubles){value[0], value[1], value[2], value[3]};
+}
+
 /* Blocks from, from + step, ... before to, times x; size, rows of a block, and step are constants where this is called. */
 LANES_INLINE BlockDoubles BlockRowsProduct(const int size, const BlockPart *part, PetscInt from, PetscInt to, const int step, const PetscReal *x)
 {
   BlockDoubles sum[BLOCKROWS_SIZE] = {{0}}; /* one for each column: a single one would wait for itself */
 
   for (PetscInt k = from; k != to; k += step) {
-    for (int c = 0; c < size; c++)
-      sum[c] += __builtin_convertvector(*(const BlockFloats *)&part->value[(k * size + c) * size], BlockDoubles) * x[part->column[k] + c];
+    for (int c = 0; c < size; c++) sum[c] += BlockColumn(&part->value[(k * size + c) * size]) * x[part->column[k] + c];
   }
   for (int c = 1; c < size; c++) sum[0] += sum[c];
   return sum[0];
