@@ -37,14 +37,15 @@ struct _n_Multigrid {
   PetscReal  usual;                /* effort of the first one long enough to tell, 0: none yet */
   KSP        outer;                /* whose preconditioner this is */
   PC         bodies;
-  Vec        nodes_right, nodes_left, rest;
+  Vec        nodes_right, nodes_left;
   Mat        contact;   /* borrowed: that part of the operator */
   IS         interface; /* rows of this rank that contact couples; NULL: no rank has any */
   IS         reach;     /* these and near ones of other ranks, ascending: those that this one factors */
   PetscInt   coupled;   /* how many there were, on all ranks, when multigrid was made */
   KSP        direct;
   Vec        interface_right, interface_left;
-  VecScatter to_interface;
+  Vec        rest, ghosts;  /* what the bodies leave on the interface, 0 elsewhere; values of other ranks for it, NULL: one rank */
+  VecScatter to_interface, to_ghosts;
 };
 
 /* ---------- whole nodes ---------- */
@@ -122,34 +123,46 @@ static PetscErrorCode ModesCreate(Multigrid m, MatNullSpace *modes)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Numbers among all dofs of a matrix's columns of other ranks, in *ghost, which the caller frees. */
-static PetscErrorCode NumberGhosts(Multigrid m, Mat A, PetscInt **ghost)
+/* How values of a matrix's columns of other ranks come: nothing where it has no block of them. */
+static PetscErrorCode CreateGhosts(Multigrid m, Mat A, Vec *ghosts, VecScatter *scatter)
 {
-  MatrixRows         rows;
-  PetscInt           n;
-  const PetscScalar *value;
-  Vec                ghosts;
-  IS                 from;
-  VecScatter         scatter;
+  MatrixRows rows;
+  PetscInt   n;
+  IS         from;
 
   PetscFunctionBeginUser;
-  *ghost = NULL;
   PetscCall(MatrixRowsGet(A, MATRIX_OTHERS, &rows));
   if (!rows.mat) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(MatGetSize(rows.mat, NULL, &n));
-  PetscCall(VecCreateSeq(PETSC_COMM_SELF, n, &ghosts));
+  PetscCall(VecCreateSeq(PETSC_COMM_SELF, n, ghosts));
   PetscCall(ISCreateGeneral(PETSC_COMM_SELF, n, rows.global, PETSC_USE_POINTER, &from));
-  PetscCall(VecScatterCreate(m->number, from, ghosts, NULL, &scatter));
+  PetscCall(VecScatterCreate(m->number, from, *ghosts, NULL, scatter));
+  PetscCall(ISDestroy(&from));
+  PetscCall(MatrixRowsRestore(&rows));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Numbers among all dofs of a matrix's columns of other ranks, in *ghost, which the caller frees. */
+static PetscErrorCode NumberGhosts(Multigrid m, Mat A, PetscInt **ghost)
+{
+  PetscInt           n;
+  const PetscScalar *value;
+  Vec                ghosts  = NULL;
+  VecScatter         scatter = NULL;
+
+  PetscFunctionBeginUser;
+  *ghost = NULL;
+  PetscCall(CreateGhosts(m, A, &ghosts, &scatter));
+  if (!ghosts) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(VecScatterBegin(scatter, m->number, ghosts, INSERT_VALUES, SCATTER_FORWARD));
   PetscCall(VecScatterEnd(scatter, m->number, ghosts, INSERT_VALUES, SCATTER_FORWARD));
+  PetscCall(VecGetSize(ghosts, &n));
   PetscCall(PetscMalloc1(n, ghost));
   PetscCall(VecGetArrayRead(ghosts, &value));
   for (PetscInt i = 0; i < n; i++) (*ghost)[i] = (PetscInt)PetscRealPart(value[i]);
   PetscCall(VecRestoreArrayRead(ghosts, &value));
   PetscCall(VecScatterDestroy(&scatter));
-  PetscCall(ISDestroy(&from));
   PetscCall(VecDestroy(&ghosts));
-  PetscCall(MatrixRowsRestore(&rows));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -305,6 +318,7 @@ static PetscErrorCode SmoothFinest(Multigrid m)
 {
   KSP      ksp;
   PC       pc;
+  Mat      swept;
   PetscInt levels;
 
   PetscFunctionBeginUser;
@@ -312,10 +326,11 @@ static PetscErrorCode SmoothFinest(Multigrid m)
   if (levels == 1) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PCMGGetSmoother(m->bodies, levels - 1, &ksp));
   PetscCall(KSPGetPC(ksp, &pc));
-  PetscCall(GaussSeidelSet(pc));
-  PetscCall(KSPSetType(ksp, KSPRICHARDSON)); /* forgets the eigenvalues for Jacobi's method, which would count as given */
-  PetscCall(KSPSetType(ksp, KSPCHEBYSHEV));
-  PetscCall(KSPChebyshevSetEigenvalues(ksp, MULTIGRID_LARGEST, MULTIGRID_LEAST));
+  PetscCall(GaussSeidelSet(pc, MULTIGRID_LEAST, MULTIGRID_LARGEST));
+  PetscCall(KSPSetType(ksp, KSPRICHARDSON));
+  PetscCall(GaussSeidelGetMat(pc, &swept));
+  PetscCall(PCMGSetResidual(m->bodies, levels - 1, GaussSeidelResidual, swept));
+  PetscCall(MatDestroy(&swept));
   PetscCall(KSPSetFromOptions(ksp));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -383,6 +398,8 @@ static PetscErrorCode ForgetInterface(Multigrid m)
   PetscCall(VecDestroy(&m->interface_right));
   PetscCall(VecDestroy(&m->interface_left));
   PetscCall(VecScatterDestroy(&m->to_interface));
+  PetscCall(VecDestroy(&m->ghosts));
+  PetscCall(VecScatterDestroy(&m->to_ghosts));
   PetscCall(KSPDestroy(&m->direct));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -448,11 +465,14 @@ PetscErrorCode MultigridRenew(Multigrid m)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode CreateDirect(Multigrid m)
+static PetscErrorCode CreateDirect(Multigrid m, Mat A)
 {
   PetscInt n;
 
   PetscFunctionBeginUser;
+  if (!m->rest) PetscCall(VecDuplicate(m->number, &m->rest));
+  PetscCall(VecSet(m->rest, 0));
+  PetscCall(CreateGhosts(m, A, &m->ghosts, &m->to_ghosts));
   PetscCall(ISGetLocalSize(m->reach, &n));
   PetscCall(VecCreateSeq(PETSC_COMM_SELF, n, &m->interface_right));
   PetscCall(VecDuplicate(m->interface_right, &m->interface_left));
@@ -472,7 +492,7 @@ static PetscErrorCode SetUpInterface(Multigrid m, Mat A)
 
   PetscFunctionBeginUser;
   if (!m->interface) PetscFunctionReturn(PETSC_SUCCESS);
-  if (!m->direct) PetscCall(CreateDirect(m));
+  if (!m->direct) PetscCall(CreateDirect(m, A));
   PetscCall(VecGetSize(m->interface_right, &n));
   PetscCall(MatCreateSubMatrices(A, n ? 1 : 0, &m->reach, &m->reach, MAT_INITIAL_MATRIX, &blocks));
   if (n) {
@@ -481,6 +501,55 @@ static PetscErrorCode SetUpInterface(Multigrid m, Mat A)
     PetscCall(KSPSetUp(m->direct));
   }
   PetscCall(MatDestroySubMatrices(n ? 1 : 0, &blocks));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* rest -= (one block of the operator) x in rows of the interface; begin: first row of this rank */
+static PetscErrorCode SubtractBlock(Mat A, int block, PetscInt n, const PetscInt *interface, PetscInt begin, Vec x, PetscScalar *rest)
+{
+  MatrixRows         rows;
+  const PetscScalar *value, *from;
+
+  PetscFunctionBeginUser;
+  PetscCall(MatrixRowsGet(A, block, &rows));
+  if (!rows.mat) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(MatSeqAIJGetArrayRead(rows.mat, &value));
+  PetscCall(VecGetArrayRead(x, &from));
+  for (PetscInt i = 0; i < n; i++) {
+    const PetscInt row = interface[i] - begin;
+    PetscScalar    sum = 0;
+
+    for (PetscInt k = rows.ptr[row]; k < rows.ptr[row + 1]; k++) sum += value[k] * from[rows.column[k]];
+    rest[row] -= sum;
+  }
+  PetscCall(VecRestoreArrayRead(x, &from));
+  PetscCall(MatSeqAIJRestoreArrayRead(rows.mat, &value));
+  PetscCall(MatrixRowsRestore(&rows));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* m->rest = right - A left, where an interface is: its rows are few. */
+static PetscErrorCode FindRest(Multigrid m, Mat A, Vec right, Vec left)
+{
+  PetscInt           n, begin;
+  const PetscInt    *interface;
+  const PetscScalar *from;
+  PetscScalar       *rest;
+
+  PetscFunctionBeginUser;
+  if (m->ghosts) PetscCall(VecScatterBegin(m->to_ghosts, left, m->ghosts, INSERT_VALUES, SCATTER_FORWARD));
+  PetscCall(VecGetOwnershipRange(left, &begin, NULL));
+  PetscCall(ISGetLocalSize(m->interface, &n));
+  PetscCall(ISGetIndices(m->interface, &interface));
+  PetscCall(VecGetArrayRead(right, &from));
+  PetscCall(VecGetArray(m->rest, &rest));
+  for (PetscInt i = 0; i < n; i++) rest[interface[i] - begin] = from[interface[i] - begin];
+  PetscCall(SubtractBlock(A, MATRIX_OWN, n, interface, begin, left, rest));
+  if (m->ghosts) PetscCall(VecScatterEnd(m->to_ghosts, left, m->ghosts, INSERT_VALUES, SCATTER_FORWARD));
+  if (m->ghosts) PetscCall(SubtractBlock(A, MATRIX_OTHERS, n, interface, begin, m->ghosts, rest));
+  PetscCall(VecRestoreArray(m->rest, &rest));
+  PetscCall(VecRestoreArrayRead(right, &from));
+  PetscCall(ISRestoreIndices(m->interface, &interface));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -575,9 +644,7 @@ static PetscErrorCode Apply(PC pc, Vec right, Vec left)
   PetscCall(ApplyBodies(m, right, left));
   if (!m->interface) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PCGetOperators(pc, NULL, &A));
-  if (!m->rest) PetscCall(VecDuplicate(m->number, &m->rest));
-  PetscCall(MatMult(A, left, m->rest));
-  PetscCall(VecAYPX(m->rest, -1, right));
+  PetscCall(FindRest(m, A, right, left));
   PetscCall(AddInterface(m, m->rest, left));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
