@@ -131,6 +131,19 @@ void ContactTermLaw(const ContactPair *pair, PetscInt c, PetscReal t, LawValue *
   if (pair->predicting && value->stiffness == 0) TermPredict(pair, c, found - LawRest(&state), value);
 }
 
+/* ContactTermForce - what a term's own gap presses with in the last residual (force). Not collective.
+
+   In surface contact it is not the nodal force, most of which may be the neighbours': they press on the faces that they share with it. */
+PetscReal ContactTermForce(const ContactPair *pair, PetscInt c)
+{
+  LawValue  value;
+  PetscReal area;
+
+  if (!pair->slaves->face_sf) return pair->force[c];
+  ContactTermLaw(pair, c, pair->t, &value, NULL, &area);
+  return value.pressure * area;
+}
+
 /* Direction of a term's contact: the mean of its points'. */
 static void TermNormal(ContactPair *pair, PetscInt c)
 {

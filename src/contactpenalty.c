@@ -27,7 +27,7 @@ static PenaltyUpdate TermUpdate(const ContactPair *pair, PetscInt c, PetscReal l
   const PenaltyRule rule = TermRule(pair, c);
   PenaltyUpdate     update;
 
-  PenaltyAdjust(&rule, TermPenetration(pair, c), largest > 0 ? pair->force[c] / largest : 0, pair->now.penalty[c], &update);
+  PenaltyAdjust(&rule, TermPenetration(pair, c), largest > 0 ? ContactTermForce(pair, c) / largest : 0, pair->now.penalty[c], &update);
   return update;
 }
 
@@ -45,13 +45,13 @@ static PetscBool AnyAugments(Contact contact)
   return PETSC_FALSE;
 }
 
-/* Largest force of a slave node of all pairs in the present state. */
+/* Largest force of a term of all pairs in the present state. */
 static PetscErrorCode LargestForce(Contact contact, PetscReal *largest)
 {
   PetscFunctionBeginUser;
   *largest = 0;
   for (int p = 0; p < contact->n_pairs; p++)
-    for (PetscInt c = 0; c < contact->pairs[p].n; c++) *largest = PetscMax(*largest, contact->pairs[p].force[c]);
+    for (PetscInt c = 0; c < contact->pairs[p].n; c++) *largest = PetscMax(*largest, ContactTermForce(&contact->pairs[p], c));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, largest, 1, MPIU_REAL, MPI_MAX, contact->mesh->comm));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -170,7 +170,7 @@ PetscErrorCode ContactPairWindow(Contact contact, int p, ContactWindow *window)
   }
   PetscCall(LargestForce(contact, &largest));
   for (PetscInt c = 0; c < pair->n && pair->scene->adjust; c++) {
-    count[0] += pair->force[c] >= PENALTY_LOADED * largest && pair->force[c] > 0;
+    count[0] += ContactTermForce(pair, c) >= PENALTY_LOADED * largest && pair->now.status[c] == CONTACT_CLOSED;
     count[1] += TermUpdate(pair, c, largest).outside != 0;
     if (pair->now.status[c] == CONTACT_CLOSED) excess = PetscMax(excess, TermPenetration(pair, c) / TermRule(pair, c).g_max);
   }

@@ -23,7 +23,7 @@ PetscErrorCode ContactSummarise(Contact contact, ContactSummary *summary)
 {
   PetscInt  count[3] = {0, 0, 0};
   PetscReal most[5] = {0, 0, PETSC_MIN_REAL, PETSC_MIN_REAL, 0}, total[3] = {0, 0, 0},
-            least = PETSC_MAX_REAL; /* most: penetration, over h, -penalty_min, penalty_max, nodal force */
+            least = PETSC_MAX_REAL; /* most: penetration, over h, -penalty_min, penalty_max, force of a term */
   PetscInt outside;
 
   PetscFunctionBeginUser;
@@ -40,7 +40,7 @@ PetscErrorCode ContactSummarise(Contact contact, ContactSummary *summary)
       most[1] = PetscMax(most[1], penetration / pair->size[c]);
       most[2] = PetscMax(most[2], -pair->now.penalty[c]);
       most[3] = PetscMax(most[3], pair->now.penalty[c]);
-      most[4] = PetscMax(most[4], pair->force[c]);
+      most[4] = PetscMax(most[4], ContactTermForce(pair, c));
     }
     for (int d = 0; d < 3; d++) total[d] += pair->total[d];
   }
@@ -51,7 +51,7 @@ PetscErrorCode ContactSummarise(Contact contact, ContactSummary *summary)
     const ContactPair *pair = &contact->pairs[p];
 
     for (PetscInt c = 0; c < pair->n; c++)
-      if (pair->now.status[c] == CONTACT_CLOSED && pair->force[c] > PENALTY_LOADED * most[4])
+      if (pair->now.status[c] == CONTACT_CLOSED && ContactTermForce(pair, c) > PENALTY_LOADED * most[4])
         least = PetscMin(least, ContactTermOffset(pair, c, pair->t) - pair->now.gap[c]);
   }
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &least, 1, MPIU_REAL, MPI_MIN, contact->mesh->comm));

@@ -25,6 +25,16 @@ for name, value in results["1"].summary()["probes"].items():
     for scale in ("1e-4", "1e4"):
         check.near(f"{name}: scale {scale} as scale 1", results[scale].summary()["probes"][name], value, 1e-3 * abs(value))
 
+# 1b. Surface to surface: loaded is what its own gap presses, not what its neighbours press on the faces between; a tight window does not lock.
+surface = {}
+for g_min, g_max in ((low, high), (100 * low, 100 * high)):
+    result = surface[g_min] = run(args, plate, out=f"surface_{g_min:g}", overrides=(*mesh, "contact.0.formulation=surface_to_surface", f"contact.0.penalty.g_min={g_min}", f"contact.0.penalty.g_max={g_max}"))
+    check.holds(f"surface, from {g_min:g}: no step fails", result.summary()["steps_failed"] == 0, f"{result.summary()['newton_iterations']} iterations")
+    check.holds(f"surface, from {g_min:g}: none outside in any step", all(row["outside_window"] == 0 and row["min_penetration"] >= g_min and row["max_penetration"] <= g_max for row in result.steps()))
+for name in ("tip_uy", "cylinder_fx", "cylinder_fy"):
+    value = surface[100 * low].summary()["probes"][name]
+    check.near(f"surface, {name}: tight as loose", surface[low].summary()["probes"][name], value, 2e-3 * abs(value))
+
 # 2. Two blocks under a pressure that stays from t = 0.2 on: eq. 16 to the letter lands on the edge of the window with one update at constant force.
 patch = SCENES / "contact_patch.yaml"
 hold = ("loads.0.history=[[0, 0], [0.2, 1], [1, 1]]", "stepping.initial=0.1")
