@@ -4,8 +4,8 @@
 #include "lanes.h"
 #include "sweeporder.h"
 
-enum { BLOCKROWS_SIZE = 3 };  /* most rows of a block */
-enum { BLOCKROWS_LANES = 4 }; /* a column of a block is read as a vector of so many, of which the last ones are not used */
+enum { BLOCKROWS_SIZE = 3 };     /* most rows of a block */
+enum { BLOCKROWS_LANES = 4 };    /* a column of a block is read as a vector of so many, of which the last ones are not used */
 enum { BLOCKROWS_AHEAD = 1024 }; /* values are fetched so far ahead: rows are too short for the processor to see where they go on; 1.4 times as fast */
 
 /* Of each node what is swept before it; itself, and what is swept after it */
