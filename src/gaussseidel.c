@@ -1,5 +1,9 @@
+#include <float.h>
 #include "gaussseidel.h"
 #include "blockrows.h"
+
+/* A pivot that is this small beside the block's diagonal is what rounding to single precision has left of nothing. */
+#define SWEEP_PIVOT FLT_EPSILON
 
 /* What must be done before the rest, right-hand side less A x, is known: nothing; A guess; A (a step) */
 typedef enum { REST_KNOWN, REST_GUESS, REST_STEP } Rest;
@@ -35,7 +39,7 @@ static void InvertBlock(int n, const float *block, PetscReal *inverse)
   for (int p = 0; p < n; p++) {
     const PetscReal pivot = a[p][p];
 
-    if (PetscAbsReal(pivot) <= PETSC_MACHINE_EPSILON * scale) {
+    if (PetscAbsReal(pivot) <= SWEEP_PIVOT * scale) {
       for (int k = 0; k < n * n; k++) inverse[k] = 0;
       return;
     }

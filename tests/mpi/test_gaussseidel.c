@@ -7,16 +7,17 @@
 #include <cmocka.h>
 #include "gaussseidel.h"
 
-enum { SIDE = 12, DOFS = 2, POWERS = 300 };
+enum { SIDE = 12, DOFS = 2, MOST = 3, POWERS = 300 };
 
 static const PetscReal EXACT = 1e-12, SINGLE = 1e-6, LEAST = 0.1, LARGEST = 1.1;
 
 /* Springs between the neighbours of a square of nodes, diagonals too, and a stiff one between every node and the opposite one, whose rank is another. */
-static PetscErrorCode Square(PetscReal stiff, Mat *A)
+static PetscErrorCode Square(int dofs, PetscReal stiff, Mat *A)
 {
-  const PetscReal spring[DOFS][DOFS] = {
-    {2,   0.5},
-    {0.5, 1  }
+  const PetscReal spring[MOST][MOST] = {
+    {2,   0.5, 0.1},
+    {0.5, 1,   0.3},
+    {0.1, 0.3, 3  }
   };
   const PetscInt n = SIDE * SIDE;
   PetscMPIInt    rank;
@@ -24,8 +25,8 @@ static PetscErrorCode Square(PetscReal stiff, Mat *A)
   PetscFunctionBeginUser;
   PetscCallMPI(MPI_Comm_rank(PETSC_COMM_WORLD, &rank));
   PetscCall(MatCreate(PETSC_COMM_WORLD, A));
-  PetscCall(MatSetSizes(*A, PETSC_DECIDE, PETSC_DECIDE, n * DOFS, n * DOFS));
-  PetscCall(MatSetBlockSize(*A, DOFS));
+  PetscCall(MatSetSizes(*A, PETSC_DECIDE, PETSC_DECIDE, n * dofs, n * dofs));
+  PetscCall(MatSetBlockSize(*A, dofs));
   PetscCall(MatSetType(*A, MATAIJ));
   PetscCall(MatSetUp(*A));
   PetscCall(MatSetOption(*A, MAT_NEW_NONZERO_ALLOCATION_ERR, PETSC_FALSE));
@@ -36,12 +37,12 @@ static PetscErrorCode Square(PetscReal stiff, Mat *A)
       const PetscInt  b      = others[k];
       const PetscReal factor = k == 3 ? stiff : 1;
 
-      for (int i = 0; i < DOFS && b >= 0; i++) {
-        for (int j = 0; j < DOFS; j++) {
-          PetscCall(MatSetValue(*A, a * DOFS + i, a * DOFS + j, factor * spring[i][j] + (i == j) * 1e-3, ADD_VALUES));
-          PetscCall(MatSetValue(*A, b * DOFS + i, b * DOFS + j, factor * spring[i][j], ADD_VALUES));
-          PetscCall(MatSetValue(*A, a * DOFS + i, b * DOFS + j, -factor * spring[i][j], ADD_VALUES));
-          PetscCall(MatSetValue(*A, b * DOFS + i, a * DOFS + j, -factor * spring[i][j], ADD_VALUES));
+      for (int i = 0; i < dofs && b >= 0; i++) {
+        for (int j = 0; j < dofs; j++) {
+          PetscCall(MatSetValue(*A, a * dofs + i, a * dofs + j, factor * spring[i][j] + (i == j) * 1e-3, ADD_VALUES));
+          PetscCall(MatSetValue(*A, b * dofs + i, b * dofs + j, factor * spring[i][j], ADD_VALUES));
+          PetscCall(MatSetValue(*A, a * dofs + i, b * dofs + j, -factor * spring[i][j], ADD_VALUES));
+          PetscCall(MatSetValue(*A, b * dofs + i, a * dofs + j, -factor * spring[i][j], ADD_VALUES));
         }
       }
     }
@@ -107,7 +108,7 @@ static void test_no_eigenvalue_above_one(void **state)
     PC        across, apart;
     PetscReal largest = 0, others = 0;
 
-    assert_int_equal(Square(stiff[k], &A), 0);
+    assert_int_equal(Square(DOFS, stiff[k], &A), 0);
     assert_int_equal(Sweeps(A, PETSC_TRUE, &across), 0);
     assert_int_equal(Sweeps(A, PETSC_FALSE, &apart), 0);
     assert_int_equal(Largest(A, across, &largest), 0);
@@ -128,7 +129,7 @@ static void test_symmetric(void **state)
   PetscReal one = 0, other = 0;
 
   (void)state;
-  assert_int_equal(Square(3, &A), 0);
+  assert_int_equal(Square(DOFS, 3, &A), 0);
   assert_int_equal(Sweeps(A, PETSC_TRUE, &pc), 0);
   assert_int_equal(MatCreateVecs(A, &x, &y), 0);
   assert_int_equal(VecDuplicate(x, &left), 0);
@@ -157,7 +158,7 @@ static void test_follows_values(void **state)
 
   (void)state;
   assert_int_equal(MPI_Comm_size(PETSC_COMM_WORLD, &size), 0);
-  assert_int_equal(Square(1, &A), 0);
+  assert_int_equal(Square(DOFS, 1, &A), 0);
   assert_int_equal(Sweeps(A, PETSC_TRUE, &pc), 0);
   assert_int_equal(Sweeps(A, PETSC_FALSE, &petsc), 0);
   assert_int_equal(MatCreateVecs(A, &x, &first), 0);
@@ -204,15 +205,14 @@ static PetscErrorCode Iterate(Mat A, PC pc, PetscBool chebyshev, PetscInt iterat
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static void test_smooths(void **state)
+static void CheckSmoother(int dofs)
 {
   Mat       A, swept;
   PC        pc;
   Vec       b, x, exact;
   PetscReal scale = 0, error = 0;
 
-  (void)state;
-  assert_int_equal(Square(3, &A), 0);
+  assert_int_equal(Square(dofs, 3, &A), 0);
   assert_int_equal(Sweeps(A, PETSC_TRUE, &pc), 0);
   assert_int_equal(MatCreateVecs(A, &b, &x), 0);
   assert_int_equal(VecDuplicate(x, &exact), 0);
@@ -238,6 +238,12 @@ static void test_smooths(void **state)
   assert_int_equal(MatDestroy(&swept), 0);
   assert_int_equal(PCDestroy(&pc), 0);
   assert_int_equal(MatDestroy(&A), 0);
+}
+
+static void test_smooths(void **state)
+{
+  (void)state;
+  for (int dofs = 1; dofs <= MOST; dofs++) CheckSmoother(dofs);
 }
 
 int main(int argc, char **argv)
