@@ -36,7 +36,10 @@ ALL_CFLAGS := -std=gnu11 -march=$(ARCH) $(CFLAGS) -Wall -Wextra -fno-math-errno
 INCLUDES    = -Iinclude $(call pkgconfig,--cflags-only-I $(PACKAGES)) $(call petscvariable,HDF5_INCLUDE)
 LIBRARIES   = -lmetis $(call pkgconfig,--libs $(PACKAGES)) $(MUMPS) $(call petscvariable,HDF5_LIB) -Wl,-rpath,$(call pkgconfig,--variable=libdir PETSc) -ldl -lm
 # The MUMPS that PETSc was built with, under the name it was linked by
-MUMPS       = $(filter -L% -ldmumps%,$(call pkgconfig,--static --libs PETSc))
+PRIVATE     = $(call pkgconfig,--static --libs PETSc)
+COMMA      := ,
+MUMPS       = $(filter -L%,$(PRIVATE)) $(patsubst -L%,-Wl$(COMMA)-rpath$(COMMA)%,$(filter -L%,$(PRIVATE))) \
+  $(foreach flag,$(PRIVATE),$(if $(findstring dmumps,$(flag)),$(flag)))
 CMOCKA      = $(call pkgconfig,--libs cmocka)
 COMPILE     = $(CC) $(ALL_CFLAGS) $(CPPFLAGS) $(INCLUDES)
 LINK        = $(LDFLAGS) $(LIBRARIES) $(LDLIBS)

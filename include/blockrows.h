@@ -2,10 +2,11 @@
    3 x 3 values with their column, where AIJ takes 84 to 108. What is computed with it is summed in double precision. */
 #pragma once
 #include "lanes.h"
+#include "matrixrows.h"
 #include "sweeporder.h"
 
-enum { BLOCKROWS_SIZE = 3 };     /* most rows of a block */
-enum { BLOCKROWS_LANES = 4 };    /* a column of a block is read as a vector of so many, of which the last ones are not used */
+enum { BLOCKROWS_SIZE = MATRIX_NODE_ROWS }; /* most rows of a block */
+enum { BLOCKROWS_LANES = 4 };               /* a column of a block is read as a vector of so many, of which the last ones are not used */
 enum { BLOCKROWS_AHEAD = 1024 }; /* values are fetched so far ahead: rows are too short for the processor to see where they go on; 1.4 times as fast */
 
 /* Of each node what is swept before it; itself, and what is swept after it */
@@ -13,7 +14,7 @@ enum { BLOCKROWS_BEFORE, BLOCKROWS_AFTER, BLOCKROWS_PARTS };
 
 typedef struct {
   PetscInt *first;  /* block of each place */
-  PetscInt *column; /* first row of the other node of each block, those nearest in the sweep nearest to the node itself */
+  PetscInt *column; /* first row of the other node of each block, those of this rank in the order of columns */
   float    *value;  /* column-major */
 } BlockPart;
 

@@ -119,7 +119,7 @@ PetscErrorCode ContactPairProject(Contact, ContactPair *, const PetscReal *u, Pe
 PetscErrorCode ContactPairMove(Contact, ContactPair *, const PetscReal *x, PetscReal t, PetscReal t_next, PetscReal *values); /* of its contact nodes */
 LawState       ContactTermState(const ContactPair *, PetscInt term, PetscReal t);
 void           ContactTermLaw(const ContactPair *, PetscInt term, PetscReal t, LawValue *, PetscReal *gap, PetscReal *area); /* of the last projection */
-PetscReal      ContactTermForce(const ContactPair *, PetscInt term); /* of the last residual: what the term's own gap presses with */
+PetscReal      ContactTermForce(const ContactPair *, PetscInt term); /* what the term's own gap, of the last projection, presses with */
 /* contactpair.c */
 PetscErrorCode ContactPairCreate(Mesh, Scene, Elasticity, Loads, const SceneContact *, ContactPair *);
 PetscErrorCode ContactPairDestroy(ContactPair *);

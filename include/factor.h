@@ -17,6 +17,8 @@ typedef struct {
    Options Database Keys: -mat_mumps_icntl_<i>, -mat_mumps_cntl_<i>, as of PETSc's interface. */
 PetscErrorCode FactorCreate(MPI_Comm, PetscBool symmetric, Factor *);
 PetscErrorCode FactorDestroy(Factor *);
+/* Are the values of these options numbers? An error of PETSc's if not. Not collective. */
+PetscErrorCode FactorCheckOptions(void);
 /* For the analyses to come; what -mat_mumps_icntl_7 says stays. *chosen (or NULL): it has said nothing. Logically collective. */
 PetscErrorCode FactorSetOrdering(Factor, int ordering, PetscBool *chosen);
 /* Orders an AIJ matrix of symmetric pattern and counts what its factor will take. Collective. */

@@ -7,6 +7,7 @@
 /* Makes a preconditioner of that kind, for AIJ matrices with symmetric pattern and values, whose block size is that of nodes, up to three. As KSPRICHARDSON's
    it smooths: eigenvalues from least to largest, of which none is above 1 but by rounding. Logically collective. */
 PetscErrorCode GaussSeidelSet(PC, PetscReal least, PetscReal largest);
-/* right - A x as PCMGSetResidual() wants it, for the matrix that stands for the preconditioner's; the caller destroys that. Collective. */
+/* right - A x as PCMGSetResidual() wants it, for the matrix that stands for the preconditioner's; the caller destroys that. NULL: options have
+   replaced the preconditioner. Collective. */
 PetscErrorCode GaussSeidelGetMat(PC, Mat *);
 PetscErrorCode GaussSeidelResidual(Mat, Vec right, Vec x, Vec rest);

@@ -9,7 +9,7 @@ typedef struct {
 } MatrixRows;
 
 enum { MATRIX_OWN, MATRIX_OTHERS, MATRIX_BLOCKS };
-/* Most rows of a node */
+/* Most rows of a node: one for each direction in space */
 enum { MATRIX_NODE_ROWS = 3 };
 
 /* The rows of one block. Not collective. */

@@ -44,8 +44,9 @@ typedef struct {
   PetscReal        x[3], normal[3];
   PetscInt         q, own; /* the slave point, and of how many nodes its own face is: a face with one of these is not its master */
   PetscInt         best;
-  PetscReal        distance, tie; /* of the best, or as far as is looked; distances (lengths) that differ by less than the tie are equal */
-  Foot             foot;          /* on the best */
+  PetscReal        distance;   /* of the best */
+  PetscReal        least, tie; /* of all, or as far as is looked; distances (lengths) that differ by less than the tie are equal */
+  Foot             foot;       /* on the best */
 } Nearest;
 
 /* Lists of all slave points, growing. */

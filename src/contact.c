@@ -131,7 +131,7 @@ void ContactTermLaw(const ContactPair *pair, PetscInt c, PetscReal t, LawValue *
   if (pair->predicting && value->stiffness == 0) TermPredict(pair, c, found - LawRest(&state), value);
 }
 
-/* ContactTermForce - what a term's own gap presses with in the last residual (force). Not collective.
+/* ContactTermForce - what a term's own gap, of the last projection, presses with (force). Not collective.
 
    In surface contact it is not the nodal force, most of which may be the neighbours': they press on the faces that they share with it. */
 PetscReal ContactTermForce(const ContactPair *pair, PetscInt c)

@@ -75,8 +75,9 @@ static PetscErrorCode AnalyseFactor(Model model, Factor factor, Estimate *estima
 
   PetscFunctionBeginUser;
   PetscCall(FactorAnalyse(factor, model->A, &reason));
+  if (reason) PetscFunctionReturn(PETSC_SUCCESS);
   FactorGetCost(factor, &cost);
-  estimate->known        = reason ? PETSC_FALSE : PETSC_TRUE;
+  estimate->known        = PETSC_TRUE;
   estimate->flops        = cost.operations;
   estimate->entries      = cost.entries;
   estimate->solver_mb[0] = cost.memory_mb[0];
@@ -148,7 +149,7 @@ PetscErrorCode EstimatePrint(Model model, FILE *stream)
   PetscCall(EstimateModel(model, &estimate));
   if (rank) PetscFunctionReturn(PETSC_SUCCESS);
   if (!estimate.known) {
-    fprintf(stream, "cost     not estimated: PETSc's options replace the direct solver, or no dof is free\n");
+    fprintf(stream, "cost     not estimated: PETSc's options replace the direct solver, it cannot order the tangent, or no dof is free\n");
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   fprintf(stream, "cost     tangent of %.3g nonzeros at the start, its factor %.3g entries in %.3g operations\n", (double)estimate.nonzeros,

@@ -37,8 +37,9 @@ struct _n_Factor {
   PetscInt         n, entries, rows; /* of all ranks; of this one, and its rows */
   MUMPS_INT       *row, *column;     /* entries of this rank, from 1; of a symmetric matrix those on and above the diagonal */
   PetscScalar     *value;
-  MUMPS_INT       *position; /* of rows, where the ordering is given; on the first rank, as are: */
-  PetscScalar     *right;    /* room for right-hand sides and solutions */
+  MUMPS_INT        workspace; /* ICNTL(14) at first */
+  MUMPS_INT       *position;  /* of rows, where the ordering is given; on the first rank, as are: */
+  PetscScalar     *right;     /* room for right-hand sides and solutions */
   DMUMPS_STRUC_C   mumps;
 };
 
@@ -53,7 +54,7 @@ static PetscErrorCode Call(Factor f, int job)
 /* ---------- parameters ---------- */
 
 /* -mat_mumps_<kind>_<i> */
-static PetscErrorCode ReadOptions(Factor f)
+static PetscErrorCode ReadOptions(MUMPS_INT *icntl, DMUMPS_REAL *cntl)
 {
   char      name[64];
   PetscInt  integer;
@@ -64,13 +65,24 @@ static PetscErrorCode ReadOptions(Factor f)
   for (int i = 1; i <= MUMPS_ICNTL; i++) {
     PetscCall(PetscSNPrintf(name, sizeof(name), "-mat_mumps_icntl_%d", i));
     PetscCall(PetscOptionsGetInt(NULL, NULL, name, &integer, &given));
-    if (given) f->mumps.ICNTL(i) = (MUMPS_INT)integer;
+    if (given) ICNTL(i) = (MUMPS_INT)integer;
   }
   for (int i = 1; i <= MUMPS_CNTL; i++) {
     PetscCall(PetscSNPrintf(name, sizeof(name), "-mat_mumps_cntl_%d", i));
     PetscCall(PetscOptionsGetReal(NULL, NULL, name, &real, &given));
-    if (given) f->mumps.cntl[i - 1] = real;
+    if (given) cntl[i - 1] = real;
   }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* FactorCheckOptions - Not collective. */
+PetscErrorCode FactorCheckOptions(void)
+{
+  MUMPS_INT   icntl[MUMPS_ICNTL];
+  DMUMPS_REAL cntl[MUMPS_CNTL];
+
+  PetscFunctionBeginUser;
+  PetscCall(ReadOptions(icntl, cntl));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -88,12 +100,13 @@ static PetscErrorCode Begin(Factor f)
   mumps->ICNTL(6) = 0;                              /* nor brings large entries to the diagonal, where they are */
   if (f->symmetric) mumps->ICNTL(8) = FACTOR_SCALING;
   mumps->ICNTL(14) = FACTOR_WORKSPACE;
-  PetscCall(ReadOptions(f));
+  PetscCall(ReadOptions(mumps->icntl, mumps->cntl));
+  f->workspace     = mumps->ICNTL(14);
   mumps->ICNTL(18) = f->size > 1 ? 3 : 0; /* entries: of each rank where it has them */
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* FactorCreate - Collective. */
+/* FactorCreate - Collective; destroy it with FactorDestroy(). */
 PetscErrorCode FactorCreate(MPI_Comm comm, PetscBool symmetric, Factor *out)
 {
   Factor f;
@@ -136,7 +149,9 @@ PetscErrorCode FactorSetOrdering(Factor f, int ordering, PetscBool *chosen)
 
   PetscFunctionBeginUser;
   PetscCall(PetscOptionsGetInt(NULL, NULL, "-mat_mumps_icntl_7", &asked, &given));
-  f->ordering = given ? (int)asked : ordering;
+  if (given) ordering = (int)asked;
+  if (ordering != f->ordering) f->matrix = 0; /* to be analysed anew */
+  f->ordering = ordering;
   if (chosen) *chosen = given ? PETSC_FALSE : PETSC_TRUE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -207,7 +222,7 @@ static PetscErrorCode ShowSize(Factor f, Mat A)
   PetscCall(MatGetLocalSize(A, &f->rows, NULL));
   PetscCheck(f->n == (MUMPS_INT)f->n, f->comm, PETSC_ERR_ARG_OUTOFRANGE, "%" PetscInt_FMT " unknowns are more than MUMPS can count", f->n);
   f->mumps.n = (MUMPS_INT)f->n;
-  mine       = (PetscMPIInt)f->rows;
+  PetscCall(PetscMPIIntCast(f->rows, &mine));
   PetscCallMPI(MPI_Allgather(&mine, 1, MPI_INT, f->count, 1, MPI_INT, f->comm));
   for (PetscMPIInt r = 0; r < f->size; r++) f->first[r + 1] = f->first[r] + f->count[r];
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -246,6 +261,7 @@ static PCFailedReason Reason(Factor f)
   case -13:
   case -14:
   case -15:
+  case -17:
   case -18:
   case -19:
   case -20: return PC_FACTOR_OUTMEMORY;
@@ -261,13 +277,14 @@ static PetscErrorCode Tell(Factor f, const char *job, PCFailedReason *reason)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* FactorAnalyse - Collective. */
+/* FactorAnalyse - Collective. *reason: why there will be no factor; a matrix without rows has one. */
 PetscErrorCode FactorAnalyse(Factor f, Mat A, PCFailedReason *reason)
 {
   PetscFunctionBeginUser;
-  f->exists = PETSC_FALSE;
-  f->matrix = 0;
-  *reason   = PC_NOERROR;
+  f->exists          = PETSC_FALSE;
+  f->matrix          = 0;
+  f->mumps.ICNTL(14) = f->workspace;
+  *reason            = PC_NOERROR;
   PetscCall(ShowSize(f, A));
   if (!f->n) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(ShowEntries(f, A));
@@ -297,19 +314,31 @@ static PetscErrorCode IsNew(Factor f, Mat A, PetscBool *is)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Were workspace or the buffers of messages too short, which ICNTL(14) makes longer? */
+static PetscBool IsShort(Factor f)
+{
+  switch (f->mumps.INFOG(1)) {
+  case -8:
+  case -9:
+  case -17:
+  case -20: return PETSC_TRUE;
+  default: return PETSC_FALSE;
+  }
+}
+
 /* Factors; where the workspace was too short, with twice the surplus, and that once more. */
 static PetscErrorCode CallFactor(Factor f)
 {
   PetscFunctionBeginUser;
   PetscCall(Call(f, MUMPS_FACTOR));
-  for (int more = 0; more < FACTOR_MORE && (f->mumps.INFOG(1) == -8 || f->mumps.INFOG(1) == -9); more++) {
+  for (int more = 0; more < FACTOR_MORE && IsShort(f); more++) {
     f->mumps.ICNTL(14) = PetscMax(2 * f->mumps.ICNTL(14), FACTOR_WORKSPACE);
     PetscCall(Call(f, MUMPS_FACTOR));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* FactorMake - Collective. */
+/* FactorMake - Collective. *reason: as of FactorAnalyse(). A's values are copied. */
 PetscErrorCode FactorMake(Factor f, Mat A, PCFailedReason *reason)
 {
   PetscInt  n;
@@ -363,7 +392,7 @@ static PetscErrorCode MakeRoom(Factor f, PetscInt columns)
 {
   PetscFunctionBeginUser;
   PetscCall(PetscFree(f->right));
-  if (!f->rank) PetscCall(PetscMalloc1(f->n * columns, &f->right));
+  if (!f->rank) PetscCall(PetscMalloc1((size_t)f->n * columns, &f->right));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -491,8 +520,8 @@ static PetscErrorCode SolveSparse(Factor f, PetscInt columns, const PetscScalar 
     ShowColumns(f, &all);
     PetscCall(Solve(f, columns));
     for (PetscInt j = 0; j < columns; j++)
-      PetscCallMPI(
-        MPI_Scatterv(f->rank ? NULL : &f->right[j * f->n], f->count, f->first, MPIU_SCALAR, &x[j * f->rows], f->count[f->rank], MPIU_SCALAR, 0, f->comm));
+      PetscCallMPI(MPI_Scatterv(f->rank ? NULL : &f->right[(size_t)j * f->n], f->count, f->first, MPIU_SCALAR, &x[j * f->rows], f->count[f->rank], MPIU_SCALAR,
+                                0, f->comm));
     PetscCall(PetscFree(f->right));
   }
   PetscCall(SparseFree(&all));
@@ -505,7 +534,9 @@ static PetscErrorCode SolveSparse(Factor f, PetscInt columns, const PetscScalar 
 
   Collective
 
-  Note:
+  Notes:
+  The last matrix must have been factored: an error otherwise. Columns of B and X stand next to each other (their leading dimension is that of the rows).
+
   MUMPS is given the entries of B that differ from zero, and eliminates only what they reach (its ICNTL(20)): for forces on contact nodes, half of the time.
 */
 PetscErrorCode FactorSolveColumns(Factor f, Mat B, Mat X)

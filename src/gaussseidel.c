@@ -5,6 +5,8 @@
 /* A pivot that is this small beside the block's diagonal is what rounding to single precision has left of nothing. */
 #define SWEEP_PIVOT FLT_EPSILON
 
+#define GAUSSSEIDEL_NAME "symmetric Gauss-Seidel sweep across all ranks"
+
 /* What must be done before the rest, right-hand side less A x, is known: nothing; A guess; A (a step) */
 typedef enum { REST_KNOWN, REST_GUESS, REST_STEP } Rest;
 
@@ -316,7 +318,7 @@ PetscErrorCode GaussSeidelSet(PC pc, PetscReal least, PetscReal largest)
   g->largest = largest;
   PetscCall(PCSetType(pc, PCSHELL));
   PetscCall(PCShellSetContext(pc, g));
-  PetscCall(PCShellSetName(pc, "symmetric Gauss-Seidel sweep across all ranks"));
+  PetscCall(PCShellSetName(pc, GAUSSSEIDEL_NAME));
   PetscCall(PCShellSetSetUp(pc, SetUp));
   PetscCall(PCShellSetApply(pc, Apply));
   PetscCall(PCShellSetApplyRichardson(pc, Smooth));
@@ -324,14 +326,21 @@ PetscErrorCode GaussSeidelSet(PC pc, PetscReal least, PetscReal largest)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* GaussSeidelGetMat - a matrix that knows the preconditioner, for GaussSeidelResidual(). Collective. */
+/* GaussSeidelGetMat - a matrix that knows the preconditioner, for GaussSeidelResidual(). Collective. *mat: NULL where options have replaced the method. */
 PetscErrorCode GaussSeidelGetMat(PC pc, Mat *mat)
 {
   GaussSeidel g;
   Mat         A;
   PetscInt    n, all;
+  const char *name = NULL;
+  PetscBool   own;
 
   PetscFunctionBeginUser;
+  *mat = NULL;
+  PetscCall(PetscObjectTypeCompare((PetscObject)pc, PCSHELL, &own));
+  if (own) PetscCall(PCShellGetName(pc, &name));
+  if (own) PetscCall(PetscStrcmp(name, GAUSSSEIDEL_NAME, &own));
+  if (!own) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PCShellGetContext(pc, &g));
   PetscCall(PCGetOperators(pc, NULL, &A));
   PetscCall(MatGetLocalSize(A, &n, NULL));

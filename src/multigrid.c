@@ -328,10 +328,10 @@ static PetscErrorCode SmoothFinest(Multigrid m)
   PetscCall(KSPGetPC(ksp, &pc));
   PetscCall(GaussSeidelSet(pc, MULTIGRID_LEAST, MULTIGRID_LARGEST));
   PetscCall(KSPSetType(ksp, KSPRICHARDSON));
-  PetscCall(GaussSeidelGetMat(pc, &swept));
-  PetscCall(PCMGSetResidual(m->bodies, levels - 1, GaussSeidelResidual, swept));
-  PetscCall(MatDestroy(&swept));
   PetscCall(KSPSetFromOptions(ksp));
+  PetscCall(GaussSeidelGetMat(pc, &swept));
+  if (swept) PetscCall(PCMGSetResidual(m->bodies, levels - 1, GaussSeidelResidual, swept));
+  PetscCall(MatDestroy(&swept));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -1,3 +1,4 @@
+#include "factor.h"
 #include "modelimpl.h"
 #include "refusal.h"
 #include "timing.h"
@@ -311,16 +312,21 @@ static PetscErrorCode KeepMessage(MPI_Comm comm, int line, const char *function,
   return code;
 }
 
-/* The linear solver, and PETSc's options for all of them; a value that PETSc refuses is the user's mistake. */
-static PetscErrorCode ModelSetFromOptions(Model model, KSP ksp, PetscBool symmetric)
+static PetscErrorCode CheckFactorOptions(SNES snes)
+{
+  (void)snes;
+  return FactorCheckOptions();
+}
+
+/* Reads some of PETSc's options; a value that PETSc refuses is the user's mistake. */
+static PetscErrorCode ModelReadOptions(Model model, PetscErrorCode (*read)(SNES))
 {
   char           message[256] = "";
   PetscErrorCode code;
 
   PetscFunctionBeginUser;
   PetscCall(PetscPushErrorHandler(KeepMessage, message));
-  code = LinearSolverCreate(ksp, model->mesh, model->scene, symmetric, &model->work->solver); /* reads MUMPS's */
-  if (!code) code = SNESSetFromOptions(model->snes);
+  code = read(model->snes);
   PetscCall(PetscPopErrorHandler());
   if (code) PetscCall(RefuseInput(model->mesh->comm, "a PETSc option (command line, environment or the scene's petsc) was refused: %s", message));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -345,7 +351,9 @@ PetscErrorCode ModelCreateSNES(Model model)
   PetscCall(SNESLineSearchSetType(search, SNESLINESEARCHBT));
   PetscCall(ModelCreateLineSearch(model));
   PetscCall(SNESGetKSP(model->snes, &ksp));
-  PetscCall(ModelSetFromOptions(model, ksp, symmetric));
+  PetscCall(ModelReadOptions(model, CheckFactorOptions));
+  PetscCall(LinearSolverCreate(ksp, model->mesh, model->scene, symmetric, &model->work->solver));
+  PetscCall(ModelReadOptions(model, SNESSetFromOptions));
   PetscCall(LinearCheckCreate(ksp, model->scene->solver.tolerance, LinearSolverKept(model->work->solver), &model->linear));
   PetscCall(SNESLineSearchGetDamping(search, &model->work->damping));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -228,11 +228,13 @@ static void NearestVisit(void *context, int index, double *bound)
   }
   FacetProject(dim, &own, x, &foot);
   distance = PetscAbsReal(foot.gap);
-  if (distance > *bound || (look->best >= 0 && distance >= look->distance - look->tie && c->facet.tag > look->candidates[look->best].facet.tag)) return;
-  look->distance = PetscMin(distance, look->distance);
+  if (distance > *bound) return;
+  look->least = PetscMin(distance, look->least);
+  *bound      = look->least + look->tie;
+  if (look->best >= 0 && look->distance <= *bound && c->facet.tag > look->candidates[look->best].facet.tag) return;
+  look->distance = distance;
   look->best     = index;
   look->foot     = foot;
-  *bound         = look->distance + look->tie;
 }
 
 /* Curvature of the master around its nearest facet: turn of the normals of the facets that touch it over the distance of their centres. */
@@ -329,9 +331,9 @@ static PetscErrorCode ListsFill(ContactSearch s, ContactLists lists, const Petsc
                             .q          = q,
                             .own        = s->slaves->ptr[q + 1] - s->slaves->ptr[q],
                             .best       = -1,
-                            .distance   = s->reach + motion,
+                            .least      = s->reach + motion,
                             .tie        = FACET_TIE * (s->reach + motion)};
-    double         bound = look.distance + look.tie;
+    double         bound = look.least + look.tie;
 
     for (int d = 0; d < dim; d++) look.x[d] = lists->slave_X[q * dim + d] + lists->slave_u[q * dim + d];
     for (int d = 0; d < 3; d++) look.normal[d] = normals[3 * q + d];
@@ -341,7 +343,7 @@ static PetscErrorCode ListsFill(ContactSearch s, ContactLists lists, const Petsc
     lists->nearest[q]   = -1;
     TreeClosest(tree, look.x, &bound, NearestVisit, &look);
     if (look.best < 0) continue;
-    count           = TreeNear(tree, look.x, look.distance + s->margin + motion, (int)n_candidates, found);
+    count           = TreeNear(tree, look.x, look.least + s->margin + motion, (int)n_candidates, found);
     count           = KeepFacing(&look, count, found);
     lists->kappa[q] = ListCurvature(&look, count, found);
     for (int i = 0; i < count; i++)

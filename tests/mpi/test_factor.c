@@ -180,10 +180,42 @@ static void test_dissection_costs(void **state)
   assert_int_equal(MatDestroy(&A), 0);
 }
 
+static PetscReal Cost(Factor factor)
+{
+  FactorCost cost;
+
+  FactorGetCost(factor, &cost);
+  return cost.operations;
+}
+
+/* Another ordering counts, for a matrix that has been analysed too. */
+static void test_other_ordering(void **state)
+{
+  PCFailedReason reason;
+  PetscReal      first;
+  Factor         factor;
+  Mat            A;
+
+  (void)state;
+  assert_int_equal(Grid(0.1, 0, &A), 0);
+  assert_int_equal(FactorCreate(PETSC_COMM_WORLD, PETSC_TRUE, &factor), 0);
+  assert_int_equal(FactorSetOrdering(factor, FACTOR_METIS, NULL), 0);
+  assert_int_equal(FactorAnalyse(factor, A, &reason), 0);
+  first = Cost(factor);
+  assert_int_equal(FactorSetOrdering(factor, FACTOR_MINIMUM_DEGREE, NULL), 0);
+  assert_int_equal(FactorAnalyse(factor, A, &reason), 0);
+  assert_true(Cost(factor) != first);
+  assert_int_equal(FactorSetOrdering(factor, FACTOR_METIS, NULL), 0);
+  MakeAndSolve(factor, A);
+  assert_true(Cost(factor) == first);
+  assert_int_equal(FactorDestroy(&factor), 0);
+  assert_int_equal(MatDestroy(&A), 0);
+}
+
 int main(int argc, char **argv)
 {
   const struct CMUnitTest tests[] = {cmocka_unit_test(test_orderings), cmocka_unit_test(test_other_values_and_patterns), cmocka_unit_test(test_singular),
-                                     cmocka_unit_test(test_dissection_costs)};
+                                     cmocka_unit_test(test_dissection_costs), cmocka_unit_test(test_other_ordering)};
   int                     failed;
 
   if (PetscInitialize(&argc, &argv, NULL, NULL)) return 1;
