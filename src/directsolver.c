@@ -6,6 +6,10 @@
    fronts. */
 #define DIRECT_BETTER 0.9
 
+/* Where dissection of n unknowns takes more than this many n^2 operations they fill space (9 to 12 n^2 on rings and spheres), and nothing does with fewer. On
+   walls and in planes it goes with n^1.5 (1 to 2 n^2 at 15,000 and 60,000), and others are looked at. Source: George, SIAM J. Numer. Anal. 10, 1973. */
+#define DIRECT_THICK 5
+
 /* What the factorisation is called, among preconditioners. */
 #define DIRECT_NAME "mumps"
 
@@ -127,14 +131,14 @@ static PetscErrorCode CountOperations(Factor factor, int ordering, Mat A, PetscR
 
 /* DirectSolverOrder - the KSP's factors from now on are ordered as needs the fewest operations for A.
 
-   Collective. A: a matrix much like those to come; only its pattern counts. Costs three analyses, each about a third of a factorisation at 10,000 unknowns and
-   less above. One that the user has chosen (-mat_mumps_icntl_7) stays. */
+   Collective. A: a matrix much like those to come; only its pattern counts. Costs one to three analyses, each about a third of a factorisation at 10,000
+   unknowns and less above. One that the user has chosen (-mat_mumps_icntl_7) stays. */
 PetscErrorCode DirectSolverOrder(KSP ksp, Mat A)
 {
   int       ordering = FACTOR_METIS;
   PetscReal best, operations;
   PetscInt  n;
-  PetscBool chosen;
+  PetscBool chosen, thick;
   Factor    factor;
 
   PetscFunctionBeginUser;
@@ -144,8 +148,9 @@ PetscErrorCode DirectSolverOrder(KSP ksp, Mat A)
   PetscCall(FactorSetOrdering(factor, ordering, &chosen));
   if (!chosen) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(CountOperations(factor, FACTOR_METIS, A, &best));
+  thick = (PetscBool)(best > DIRECT_THICK * (PetscReal)n * (PetscReal)n);
   best *= DIRECT_BETTER;
-  for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(DirectOthers); i++) {
+  for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(DirectOthers) && !thick; i++) {
     PetscCall(CountOperations(factor, DirectOthers[i], A, &operations));
     if (operations >= best) continue;
     best     = operations;
