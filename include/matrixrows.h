@@ -3,9 +3,10 @@
 #include "petsccompat.h"
 
 typedef struct {
-  Mat             mat;                   /* the block, sequential; NULL: there is none */
-  PetscInt        n;                     /* rows */
-  const PetscInt *ptr, *column, *global; /* columns ascending in every row; global: their numbers, NULL: they are their own */
+  Mat                mat;                   /* the block, sequential; NULL: there is none */
+  PetscInt           n;                     /* rows */
+  const PetscInt    *ptr, *column, *global; /* columns ascending in every row; global: their numbers, NULL: they are their own */
+  const PetscScalar *value;                 /* of each column */
 } MatrixRows;
 
 enum { MATRIX_OWN, MATRIX_OTHERS, MATRIX_BLOCKS };

@@ -20,7 +20,7 @@ static PetscInt FindBlock(BlockRows rows, const SweepOrder order, Builder *build
 }
 
 /* Adds the entries of a node's rows that one block of the matrix has. */
-static void AddEntries(BlockRows rows, const SweepOrder order, Builder *builder, PetscInt place, const MatrixRows *from, const PetscScalar *value, int block)
+static void AddEntries(BlockRows rows, const SweepOrder order, Builder *builder, PetscInt place, const MatrixRows *from, int block)
 {
   const int      size = order->size;
   const PetscInt row  = order->node[place] * size;
@@ -31,7 +31,7 @@ static void AddEntries(BlockRows rows, const SweepOrder order, Builder *builder,
       int            part;
       const PetscInt b = FindBlock(rows, order, builder, place, column / size, &part);
 
-      if (rows->part[part].value) rows->part[part].value[(b * size + column % size) * size + r] = (float)PetscRealPart(value[k]);
+      if (rows->part[part].value) rows->part[part].value[(b * size + column % size) * size + r] = (float)PetscRealPart(from->value[k]);
     }
   }
 }
@@ -39,30 +39,23 @@ static void AddEntries(BlockRows rows, const SweepOrder order, Builder *builder,
 /* Goes through all entries: counts blocks, or fills them in where there is room. */
 static PetscErrorCode AddAll(Mat mat, SweepOrder order, BlockRows rows, PetscInt count[BLOCKROWS_PARTS])
 {
-  const PetscInt     n       = order->n + order->n_ghosts;
-  Builder            builder = {{0}, NULL, NULL};
-  MatrixRows         from[MATRIX_BLOCKS];
-  const PetscScalar *value[MATRIX_BLOCKS] = {NULL};
+  const PetscInt n       = order->n + order->n_ghosts;
+  Builder        builder = {{0}, NULL, NULL};
+  MatrixRows     from[MATRIX_BLOCKS];
 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc2(n, &builder.last, n, &builder.block));
   for (PetscInt i = 0; i < n; i++) builder.last[i] = -1;
-  for (int b = 0; b < MATRIX_BLOCKS; b++) {
-    PetscCall(MatrixRowsGet(mat, b, &from[b]));
-    if (from[b].mat) PetscCall(MatSeqAIJGetArrayRead(from[b].mat, &value[b]));
-  }
+  for (int b = 0; b < MATRIX_BLOCKS; b++) PetscCall(MatrixRowsGet(mat, b, &from[b]));
   for (PetscInt place = 0; place < order->n; place++) {
     int part;
 
     for (int p = 0; p < BLOCKROWS_PARTS; p++) rows->part[p].first[place] = builder.count[p];
     (void)FindBlock(rows, order, &builder, place, order->node[place], &part); /* itself comes first */
-    for (int b = 0; b < MATRIX_BLOCKS; b++) AddEntries(rows, order, &builder, place, &from[b], value[b], b);
+    for (int b = 0; b < MATRIX_BLOCKS; b++) AddEntries(rows, order, &builder, place, &from[b], b);
   }
   for (int p = 0; p < BLOCKROWS_PARTS; p++) rows->part[p].first[order->n] = count[p] = builder.count[p];
-  for (int b = 0; b < MATRIX_BLOCKS; b++) {
-    if (from[b].mat) PetscCall(MatSeqAIJRestoreArrayRead(from[b].mat, &value[b]));
-    PetscCall(MatrixRowsRestore(&from[b]));
-  }
+  for (int b = 0; b < MATRIX_BLOCKS; b++) PetscCall(MatrixRowsRestore(&from[b]));
   PetscCall(PetscFree2(builder.last, builder.block));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

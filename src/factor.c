@@ -167,11 +167,9 @@ static PetscErrorCode TakeEntries(Factor f, Mat A, MUMPS_INT *row, MUMPS_INT *co
   *n = 0;
   PetscCall(MatGetOwnershipRange(A, &start, NULL));
   for (int block = 0; block < MATRIX_BLOCKS; block++) {
-    MatrixRows         rows;
-    const PetscScalar *from = NULL;
+    MatrixRows rows;
 
     PetscCall(MatrixRowsGet(A, block, &rows));
-    if (rows.mat) PetscCall(MatSeqAIJGetArrayRead(rows.mat, &from));
     for (PetscInt r = 0; rows.mat && r < rows.n; r++)
       for (PetscInt k = rows.ptr[r]; k < rows.ptr[r + 1]; k++) {
         const PetscInt c = rows.global ? rows.global[rows.column[k]] : start + rows.column[k];
@@ -179,10 +177,9 @@ static PetscErrorCode TakeEntries(Factor f, Mat A, MUMPS_INT *row, MUMPS_INT *co
         if (f->symmetric && c < start + r) continue;
         if (row) row[*n] = (MUMPS_INT)(start + r + 1);
         if (column) column[*n] = (MUMPS_INT)(c + 1);
-        if (value) value[*n] = from[k];
+        if (value) value[*n] = rows.value[k];
         ++*n;
       }
-    if (rows.mat) PetscCall(MatSeqAIJRestoreArrayRead(rows.mat, &from));
     PetscCall(MatrixRowsRestore(&rows));
   }
   PetscFunctionReturn(PETSC_SUCCESS);

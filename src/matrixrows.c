@@ -15,6 +15,7 @@ PetscErrorCode MatrixRowsGet(Mat mat, int block, MatrixRows *rows)
   if (!rows->mat) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(MatGetRowIJ(rows->mat, 0, PETSC_FALSE, PETSC_FALSE, &rows->n, &rows->ptr, &rows->column, &done));
   PetscCheck(done, PetscObjectComm((PetscObject)mat), PETSC_ERR_SUP, "the matrix shows no rows");
+  PetscCall(MatSeqAIJGetArrayRead(rows->mat, &rows->value));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -24,6 +25,7 @@ PetscErrorCode MatrixRowsRestore(MatrixRows *rows)
   PetscBool done;
 
   PetscFunctionBeginUser;
+  if (rows->mat) PetscCall(MatSeqAIJRestoreArrayRead(rows->mat, &rows->value));
   if (rows->mat) PetscCall(MatRestoreRowIJ(rows->mat, 0, PETSC_FALSE, PETSC_FALSE, &rows->n, &rows->ptr, &rows->column, &done));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -181,15 +181,13 @@ static PetscErrorCode CountRows(Multigrid m, Mat A, int block, PetscInt *count)
 /* Sets the values of one block of the operator in m->nodes, or adds them, times a factor. */
 static PetscErrorCode CopyBlock(Multigrid m, Mat A, int block, const PetscInt *ghost, PetscReal factor, InsertMode mode)
 {
-  MatrixRows         rows;
-  PetscInt           room = 0, *column = NULL;
-  const PetscScalar *value;
-  PetscScalar       *scaled = NULL;
+  MatrixRows   rows;
+  PetscInt     room = 0, *column = NULL;
+  PetscScalar *scaled = NULL;
 
   PetscFunctionBeginUser;
   PetscCall(MatrixRowsGet(A, block, &rows));
   if (!rows.mat) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(MatSeqAIJGetArrayRead(rows.mat, &value));
   for (PetscInt i = 0; i < rows.n; i++) room = PetscMax(room, rows.ptr[i + 1] - rows.ptr[i]);
   PetscCall(PetscMalloc2(room, &column, room, &scaled));
   for (PetscInt i = 0; i < rows.n; i++) {
@@ -197,12 +195,11 @@ static PetscErrorCode CopyBlock(Multigrid m, Mat A, int block, const PetscInt *g
 
     for (PetscInt k = 0; k < entries; k++) {
       column[k] = block == MATRIX_OWN ? m->first + m->row[rows.column[first + k]] : ghost[rows.column[first + k]];
-      scaled[k] = factor * value[first + k];
+      scaled[k] = factor * rows.value[first + k];
     }
     if (entries) PetscCall(MatSetValues(m->nodes, 1, &row, entries, column, scaled, mode));
   }
   PetscCall(PetscFree2(column, scaled));
-  PetscCall(MatSeqAIJRestoreArrayRead(rows.mat, &value));
   PetscCall(MatrixRowsRestore(&rows));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -508,22 +505,20 @@ static PetscErrorCode SetUpInterface(Multigrid m, Mat A)
 static PetscErrorCode SubtractBlock(Mat A, int block, PetscInt n, const PetscInt *interface, PetscInt begin, Vec x, PetscScalar *rest)
 {
   MatrixRows         rows;
-  const PetscScalar *value, *from;
+  const PetscScalar *from;
 
   PetscFunctionBeginUser;
   PetscCall(MatrixRowsGet(A, block, &rows));
   if (!rows.mat) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(MatSeqAIJGetArrayRead(rows.mat, &value));
   PetscCall(VecGetArrayRead(x, &from));
   for (PetscInt i = 0; i < n; i++) {
     const PetscInt row = interface[i] - begin;
     PetscScalar    sum = 0;
 
-    for (PetscInt k = rows.ptr[row]; k < rows.ptr[row + 1]; k++) sum += value[k] * from[rows.column[k]];
+    for (PetscInt k = rows.ptr[row]; k < rows.ptr[row + 1]; k++) sum += rows.value[k] * from[rows.column[k]];
     rest[row] -= sum;
   }
   PetscCall(VecRestoreArrayRead(x, &from));
-  PetscCall(MatSeqAIJRestoreArrayRead(rows.mat, &value));
   PetscCall(MatrixRowsRestore(&rows));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

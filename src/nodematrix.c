@@ -449,7 +449,7 @@ static inline PetscInt Column(const MatrixRows *rows, PetscInt k)
 }
 
 /* y += x in one row, both ascending; every entry of x is in y. */
-static PetscErrorCode AddRow(PetscInt row, const MatrixRows *x, const PetscScalar *from, const MatrixRows *y, PetscScalar *to)
+static PetscErrorCode AddRow(PetscInt row, const MatrixRows *x, const MatrixRows *y, PetscScalar *to)
 {
   PetscInt at = y->ptr[row];
 
@@ -458,7 +458,7 @@ static PetscErrorCode AddRow(PetscInt row, const MatrixRows *x, const PetscScala
     while (at < y->ptr[row + 1] && Column(y, at) < Column(x, k)) at++;
     PetscCheck(at < y->ptr[row + 1] && Column(y, at) == Column(x, k), PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE,
                "row %" PetscInt_FMT " of the matrix lacks an entry", row);
-    to[at] += from[k];
+    to[at] += x->value[k];
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -470,15 +470,12 @@ PetscErrorCode NodeMatrixAdd(NodeMatrix m, Mat other)
 {
   PetscFunctionBeginUser;
   for (int b = 0; b < MATRIX_BLOCKS; b++) {
-    MatrixRows         x, y;
-    const PetscScalar *from;
+    MatrixRows x, y;
 
     PetscCall(MatrixRowsGet(m->matrix, b, &y));
     if (!y.mat) continue;
     PetscCall(MatrixRowsGet(other, b, &x));
-    PetscCall(MatSeqAIJGetArrayRead(x.mat, &from));
-    for (PetscInt r = 0; r < x.n; r++) PetscCall(AddRow(r, &x, from, &y, m->block[b].value));
-    PetscCall(MatSeqAIJRestoreArrayRead(x.mat, &from));
+    for (PetscInt r = 0; r < x.n; r++) PetscCall(AddRow(r, &x, &y, m->block[b].value));
     PetscCall(MatrixRowsRestore(&x));
     PetscCall(MatrixRowsRestore(&y));
   }
