@@ -8,8 +8,9 @@ PetscErrorCode MeshSetConstraints(Mesh, const PetscBool *constrained);
 PetscErrorCode MeshGetGlobalDofs(Mesh, const PetscInt **dofs);
 /* x (global, free dofs) into u (n_nodes*dim local, ghosts too); constrained entries of u are left alone. Collective. */
 PetscErrorCode MeshGlobalToLocal(Mesh, Vec x, PetscReal *u);
+/* The free values among local ones u (n_nodes*dim), ghosts left out. Not collective. */
+PetscErrorCode MeshCollectFree(Mesh, const PetscReal *u, Vec x);
 /* F = sum over ranks of the free dofs of f (n_nodes*dim local contributions). Collective. */
-PetscErrorCode MeshCollectFree(Mesh, const PetscReal *u, Vec x); /* the free values among local ones, ghosts left out */
 PetscErrorCode MeshLocalToGlobal(Mesh, const PetscReal *f, Vec F);
 /* Sums values (n_nodes*block) over all ranks' copies of a node; the sum stands on every copy. Collective. */
 PetscErrorCode MeshSumNodes(Mesh, PetscInt block, PetscReal *values);

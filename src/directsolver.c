@@ -1,4 +1,5 @@
 #include "directsolver.h"
+#include "shell.h"
 
 /* Unknowns from which on orderings are compared: below, a factorisation is not what a run spends its time with. */
 #define DIRECT_COMPARED 4000
@@ -64,28 +65,12 @@ PetscErrorCode DirectSolverSet(KSP ksp, PetscBool symmetric)
   PetscCall(KSPSetType(ksp, KSPPREONLY));
   PetscCall(KSPGetPC(ksp, &pc));
   PetscCall(FactorCreate(PetscObjectComm((PetscObject)ksp), symmetric, &factor));
-  PetscCall(FactorSetOrdering(factor, FACTOR_AUTOMATIC, NULL));
   PetscCall(PCSetType(pc, PCSHELL));
   PetscCall(PCShellSetName(pc, DIRECT_NAME));
   PetscCall(PCShellSetContext(pc, factor));
   PetscCall(PCShellSetSetUp(pc, SetUp));
   PetscCall(PCShellSetApply(pc, Apply));
   PetscCall(PCShellSetDestroy(pc, Destroy));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* The factor of a preconditioner made by DirectSolverSet(); NULL: options have replaced it */
-static PetscErrorCode OwnFactor(PC pc, Factor *factor)
-{
-  const char *name = NULL;
-  PetscBool   own;
-
-  PetscFunctionBeginUser;
-  *factor = NULL;
-  PetscCall(PetscObjectTypeCompare((PetscObject)pc, PCSHELL, &own));
-  if (own) PetscCall(PCShellGetName(pc, &name));
-  if (own) PetscCall(PetscStrcmp(name, DIRECT_NAME, &own));
-  if (own) PetscCall(PCShellGetContext(pc, factor));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -99,7 +84,7 @@ PetscErrorCode DirectSolverServes(KSP ksp, PetscBool *serves)
   PetscCall(PetscObjectTypeCompare((PetscObject)ksp, KSPPREONLY, serves));
   if (!*serves) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(KSPGetPC(ksp, &pc));
-  PetscCall(OwnFactor(pc, &factor));
+  PetscCall(ShellFind(pc, DIRECT_NAME, &factor));
   if (!factor) PetscCall(PetscObjectTypeCompareAny((PetscObject)pc, serves, PCCHOLESKY, PCLU, ""));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -111,7 +96,7 @@ PetscErrorCode DirectSolverFactor(KSP ksp, Factor *factor)
 
   PetscFunctionBeginUser;
   PetscCall(KSPGetPC(ksp, &pc));
-  PetscCall(OwnFactor(pc, factor));
+  PetscCall(ShellFind(pc, DIRECT_NAME, factor));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -168,7 +153,7 @@ PetscErrorCode DirectSolverColumns(PC pc, Mat B, Mat X)
   Mat    factored;
 
   PetscFunctionBeginUser;
-  PetscCall(OwnFactor(pc, &factor));
+  PetscCall(ShellFind(pc, DIRECT_NAME, &factor));
   if (factor)
     PetscCall(FactorSolveColumns(factor, B, X));
   else {

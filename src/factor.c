@@ -118,8 +118,8 @@ PetscErrorCode FactorCreate(MPI_Comm comm, PetscBool symmetric, Factor *out)
   PetscCallMPI(MPI_Comm_size(f->comm, &f->size));
   PetscCall(PetscCalloc2(f->size, &f->count, f->size + 1, &f->first));
   f->symmetric = symmetric;
-  f->ordering  = FACTOR_AUTOMATIC;
   PetscCall(Begin(f));
+  PetscCall(FactorSetOrdering(f, FACTOR_AUTOMATIC, NULL));
   *out = f;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -212,16 +212,18 @@ static PetscErrorCode ShowEntries(Factor f, Mat A)
 /* Rows of all ranks */
 static PetscErrorCode ShowSize(Factor f, Mat A)
 {
-  PetscMPIInt mine;
+  const PetscInt *ranges;
 
   PetscFunctionBeginUser;
   PetscCall(MatGetSize(A, &f->n, NULL));
   PetscCall(MatGetLocalSize(A, &f->rows, NULL));
   PetscCheck(f->n == (MUMPS_INT)f->n, f->comm, PETSC_ERR_ARG_OUTOFRANGE, "%" PetscInt_FMT " unknowns are more than MUMPS can count", f->n);
   f->mumps.n = (MUMPS_INT)f->n;
-  PetscCall(PetscMPIIntCast(f->rows, &mine));
-  PetscCallMPI(MPI_Allgather(&mine, 1, MPI_INT, f->count, 1, MPI_INT, f->comm));
-  for (PetscMPIInt r = 0; r < f->size; r++) f->first[r + 1] = f->first[r] + f->count[r];
+  PetscCall(MatGetOwnershipRanges(A, &ranges));
+  for (PetscMPIInt r = 0; r < f->size; r++) {
+    PetscCall(PetscMPIIntCast(ranges[r + 1], &f->first[r + 1]));
+    f->count[r] = f->first[r + 1] - f->first[r];
+  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

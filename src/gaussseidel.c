@@ -1,6 +1,7 @@
 #include <float.h>
 #include "gaussseidel.h"
 #include "blockrows.h"
+#include "shell.h"
 
 /* A pivot that is this small beside the block's diagonal is what rounding to single precision has left of nothing. */
 #define SWEEP_PIVOT FLT_EPSILON
@@ -332,16 +333,11 @@ PetscErrorCode GaussSeidelGetMat(PC pc, Mat *mat)
   GaussSeidel g;
   Mat         A;
   PetscInt    n, all;
-  const char *name = NULL;
-  PetscBool   own;
 
   PetscFunctionBeginUser;
   *mat = NULL;
-  PetscCall(PetscObjectTypeCompare((PetscObject)pc, PCSHELL, &own));
-  if (own) PetscCall(PCShellGetName(pc, &name));
-  if (own) PetscCall(PetscStrcmp(name, GAUSSSEIDEL_NAME, &own));
-  if (!own) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PCShellGetContext(pc, &g));
+  PetscCall(ShellFind(pc, GAUSSSEIDEL_NAME, &g));
+  if (!g) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PCGetOperators(pc, NULL, &A));
   PetscCall(MatGetLocalSize(A, &n, NULL));
   PetscCall(MatGetSize(A, &all, NULL));
