@@ -1,5 +1,6 @@
 /* The figures of a finished run, collected once: summary.json writes them, the last screen prints them, advice judges them. */
 #pragma once
+#include "blas.h"
 #include "results.h"
 #include "timing.h"
 
@@ -23,6 +24,8 @@ typedef struct {
   RunUsage          usage;    /* of all parts of the run */
   PetscInt          restarts; /* their number less one */
   LinearCounts      linear;
+  PetscBool         direct; /* the solver factors each tangent, which is the BLAS's work */
+  Blas              blas;   /* of this rank */
   int               n_pairs;
   PairFigures      *pairs;
 } RunFigures;

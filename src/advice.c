@@ -16,6 +16,9 @@
 /* Part of the time that writing may take, in a run long enough to care (s). */
 #define ADVICE_OUTPUT   0.3
 #define ADVICE_OUTPUT_S 10
+/* The same of the direct solver, where the BLAS uses kernels for a lesser processor. The iterative one takes a twentieth longer by them. */
+#define ADVICE_SOLVER   0.3
+#define ADVICE_SOLVER_S 10
 
 typedef int (*RunRuleFn)(const RunFigures *, char *text);                       /* 1: applies, text[ADVICE_TEXT] says what to do */
 typedef int (*PairRuleFn)(const RunFigures *, const PairFigures *, char *text); /* the same for a pair */
@@ -146,7 +149,19 @@ static int OutputIsSlow(const RunFigures *figures, char *text)
   return 1;
 }
 
-static const RunRuleFn run_rules[] = {StepsFail, StepsRepeat, ListsAreRemade, StepsAreLong, LineSearchCuts, OutputIsSlow};
+static int KernelsAreOld(const RunFigures *figures, char *text)
+{
+  const PetscReal seconds = figures->usage.seconds[TIMING_SOLVE];
+  const Blas     *blas    = &figures->blas;
+
+  if (!blas->faster_kernels || !figures->direct || seconds <= ADVICE_SOLVER_S || seconds <= ADVICE_SOLVER * figures->usage.wall_s) return 0;
+  snprintf(text, ADVICE_TEXT, "the direct solver took %.0f %% of the time, with OpenBLAS's kernels for older processors (%s): %s%s",
+           (double)(100 * seconds / figures->usage.wall_s), blas->kernels,
+           blas->can_choose ? "in the environment OPENBLAS_CORETYPE=" : "an OpenBLAS made with DYNAMIC_ARCH=1, or TARGET=", blas->faster_kernels);
+  return 1;
+}
+
+static const RunRuleFn run_rules[] = {StepsFail, StepsRepeat, ListsAreRemade, StepsAreLong, LineSearchCuts, OutputIsSlow, KernelsAreOld};
 
 /* AdviceGive - one line for each figure that is bad and can be helped. Not collective. */
 void AdviceGive(const RunFigures *figures, AdvicePrintFn print, void *context)

@@ -1,4 +1,5 @@
 #include "commandline.h"
+#include "blas.h"
 #include "schema.h"
 #include <stdlib.h>
 #include <string.h>
@@ -182,8 +183,13 @@ void CommandLineHelp(FILE *file)
   SchemaReference(file);
 }
 
-/* CommandLineVersion - prints name, version and PETSc's version. Not collective: for one rank. */
+/* CommandLineVersion - prints name, version, PETSc's version, and the BLAS. Not collective: for one rank. */
 void CommandLineVersion(FILE *file)
 {
+  Blas blas;
+
+  BlasFind(&blas);
   fprintf(file, "burnish %s, PETSc %d.%d.%d\n", BURNISH_VERSION, PETSC_VERSION_MAJOR, PETSC_VERSION_MINOR, PETSC_VERSION_SUBMINOR);
+  fprintf(file, "BLAS ");
+  BlasPrint(&blas, file);
 }

@@ -1,5 +1,5 @@
-#define _GNU_SOURCE /* dladdr() */
 #include "results.h"
+#include "blas.h"
 #include "columns.h"
 #include "commandline.h"
 #include "endreport.h"
@@ -8,7 +8,6 @@
 #include "refusal.h"
 #include "summary.h"
 #include "timing.h"
-#include <dlfcn.h>
 #include <errno.h>
 #include <math.h>
 #include <stdio.h>
@@ -363,21 +362,15 @@ static PetscErrorCode ResultsPrintCsv(Results results, const StepRecord *step)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The BLAS that the dynamic linker chose, by the file that holds dgemm; reference: the slow one that Debian installs by default */
-static void BlasFind(char file[PETSC_MAX_PATH_LEN], PetscBool *reference)
+static void ResultsPrintBlas(void)
 {
-  static const char *const fast[] = {"openblas", "mkl", "blis", "atlas", "libsci", "essl", "armpl", "flexiblas", "nvpl", "accelerate"};
-  void                    *dgemm  = dlsym(RTLD_DEFAULT, "dgemm_");
-  char                    *real   = NULL;
-  Dl_info                  info;
+  Blas blas;
 
-  *reference = PETSC_FALSE;
-  if (dgemm && dladdr(dgemm, &info) && info.dli_fname) real = realpath(info.dli_fname, NULL);
-  snprintf(file, PETSC_MAX_PATH_LEN, "%s", real ? real : "unknown");
-  if (real) *reference = strstr(real, "blas") ? PETSC_TRUE : PETSC_FALSE;
-  for (size_t i = 0; i < sizeof(fast) / sizeof(fast[0]); i++)
-    if (real && strcasestr(real, fast[i])) *reference = PETSC_FALSE;
-  free(real);
+  BlasFind(&blas);
+  printf("BLAS     ");
+  BlasPrint(&blas, stdout);
+  if (blas.reference)
+    printf("warning: this is the reference BLAS; the direct solver is 6 to 7 times faster with OpenBLAS (Debian: apt install libopenblas0-serial)\n");
 }
 
 static PetscErrorCode ResultsPrintSolver(Results results)
@@ -406,21 +399,17 @@ static PetscErrorCode ResultsPrintSolver(Results results)
 
 static PetscErrorCode ResultsPrintHead(Results results)
 {
-  char      blas[PETSC_MAX_PATH_LEN], effects[MESSAGE_SIZE];
-  PetscBool reference;
-  PetscInt  dofs;
+  char     effects[MESSAGE_SIZE];
+  PetscInt dofs;
 
   PetscFunctionBeginUser;
   PetscCall(ModelEffects(results->model, effects, sizeof(effects)));
   PetscCall(ModelDofs(results->model, &dofs));
-  BlasFind(blas, &reference);
   if (results->talks) {
     printf("burnish %s: %s (%s)\n", BURNISH_VERSION, results->scene->name, results->scene->file);
     printf("machine  %d rank%s, PETSc %d.%d.%d, %d-bit indices\n", results->size, results->size > 1 ? "s" : "", PETSC_VERSION_MAJOR, PETSC_VERSION_MINOR,
            PETSC_VERSION_SUBMINOR, (int)(8 * sizeof(PetscInt)));
-    printf("BLAS     %s\n", blas);
-    if (reference)
-      printf("warning: this is the reference BLAS; the direct solver is 6 to 7 times faster with OpenBLAS (Debian: apt install libopenblas0-serial)\n");
+    ResultsPrintBlas();
   }
   if (results->talks && results->restarts) printf("restart  after step %lld, t = %g\n", (long long)results->last.step, (double)results->model->t);
   PetscCall(ResultsPrintSolver(results));

@@ -1,4 +1,5 @@
 #include "runfigures.h"
+#include "directsolver.h"
 #include <sys/resource.h>
 
 /* RunUsageCollect - what this program has used since it started, the same on all ranks; wall_s is left alone. Collective. */
@@ -34,6 +35,7 @@ PetscErrorCode RunFiguresCollect(Model model, Scene scene, const RunRecord *run,
                                  RunFigures *figures)
 {
   PetscMPIInt ranks;
+  KSP         ksp;
 
   PetscFunctionBeginUser;
   PetscCallMPI(MPI_Comm_size(model->mesh->comm, &ranks));
@@ -42,6 +44,9 @@ PetscErrorCode RunFiguresCollect(Model model, Scene scene, const RunRecord *run,
   PetscCall(ModelDofs(model, &figures->dofs));
   PetscCall(ModelEffects(model, figures->effects, sizeof(figures->effects)));
   LinearCheckGetCounts(model->linear, &figures->linear);
+  PetscCall(SNESGetKSP(model->snes, &ksp));
+  PetscCall(DirectSolverServes(ksp, &figures->direct));
+  BlasFind(&figures->blas);
   PetscCall(PetscCalloc1(figures->n_pairs, &figures->pairs));
   for (int p = 0; p < figures->n_pairs; p++) PetscCall(CollectPair(model->contact, p, &figures->pairs[p]));
   PetscFunctionReturn(PETSC_SUCCESS);

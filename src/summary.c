@@ -47,6 +47,18 @@ static PetscErrorCode AddOptions(cJSON *json, Scene scene)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* What the linear algebra ran with; null: not known */
+static void AddBlas(cJSON *json, const Blas *blas)
+{
+  cJSON *map = cJSON_AddObjectToObject(json, "blas");
+
+  cJSON_AddStringToObject(map, "file", blas->file);
+  if (blas->kernels)
+    cJSON_AddStringToObject(map, "kernels", blas->kernels);
+  else
+    cJSON_AddNullToObject(map, "kernels");
+}
+
 static void AddRun(cJSON *json, const RunRecord *run)
 {
   cJSON_AddStringToObject(json, "status", run->status);
@@ -202,6 +214,7 @@ PetscErrorCode SummaryWrite(const Mesh mesh, const RunFigures *figures, const ch
   cJSON_AddNumberToObject(json, "elements", (double)mesh->n_cells_global);
   AddList(json, "effects", effects);
   PetscCall(AddOptions(json, figures->scene));
+  AddBlas(json, &figures->blas);
   AddRun(json, run);
   cJSON_AddNumberToObject(json, "restarts", (double)figures->restarts);
   AddCycles(json, run->way);

@@ -1,4 +1,5 @@
-/* Advice is given for figures that are bad and only for those: penetration against the surface's error, coarse facets, fits that fall back, steps that fail. */
+/* Advice is given for figures that are bad and only for those: penetration against the surface's error, coarse facets, fits that fall back, steps that fail,
+ * old kernels. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -111,9 +112,33 @@ static void test_steps(void **state)
   Expect(&c, "50 %");
 }
 
+static void test_kernels(void **state)
+{
+  Case c;
+
+  (void)state;
+  Good(&c);
+  c.figures.direct                      = PETSC_TRUE;
+  c.figures.usage.wall_s                = 40;
+  c.figures.usage.seconds[TIMING_SOLVE] = 20;
+  c.figures.blas                        = (Blas){.kernels = "SkylakeX", .can_choose = 1};
+  Expect(&c, NULL);
+  c.figures.blas = (Blas){.kernels = "Prescott", .faster_kernels = "SkylakeX", .can_choose = 1};
+  Expect(&c, "50 % of the time, with OpenBLAS's kernels for older processors (Prescott): in the environment OPENBLAS_CORETYPE=SkylakeX");
+  c.figures.blas.can_choose = 0;
+  Expect(&c, "an OpenBLAS made with DYNAMIC_ARCH=1, or TARGET=SkylakeX");
+  c.figures.direct = PETSC_FALSE; /* little of its work is the BLAS's */
+  Expect(&c, NULL);
+  c.figures.direct       = PETSC_TRUE;
+  c.figures.usage.wall_s = 100;
+  Expect(&c, NULL);
+  c.figures.usage.wall_s = c.figures.usage.seconds[TIMING_SOLVE] = 5;
+  Expect(&c, NULL);
+}
+
 int main(void)
 {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_pairs), cmocka_unit_test(test_steps)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_pairs), cmocka_unit_test(test_steps), cmocka_unit_test(test_kernels)};
 
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
