@@ -6,7 +6,7 @@ import shutil
 import subprocess
 import sys
 
-from launch import ROOT, read_records, read_summary, replace_records, table_parser
+from launch import ROOT, environment, read_records, read_summary, replace_records, table_parser
 
 ITERATIVE = "solver.type=iterative"
 CASES = {  # scene, overrides, bound of the penetration (length), times the automatic penalty: as it is, augmented, probes shown
@@ -27,7 +27,7 @@ def record(args, case, scale, g_max):
     command = [str(args.burnish), str(ROOT / "runs" / f"{scene}.yaml"), "-quiet", "-o", str(args.out)]
     for override in (*overrides, "output.every=0", f"contact.0.penalty={{initial: auto, scale: {scale}{augment}}}"):
         command += ["-set", override]
-    finished = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+    finished = subprocess.run(command, env=environment(args.burnish), stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
     if finished.returncode not in (0, 2):  # 2: did not converge; the summary says how far it came
         sys.exit(f"{' '.join(command)}\n{finished.stdout}")
     summary = read_summary(args.out)

@@ -4,6 +4,8 @@ set -uo pipefail
 build=$1 log=$1/ctest/tests.log
 shift
 [ -x build/venv/bin/python ] || { echo "no Python environment in build/venv: run make deps" >&2; exit 1; }
+# The kernels that the program says its BLAS should use on this processor, where the caller has not chosen
+if [ -z "${OPENBLAS_CORETYPE+set}" ] && kernels=$("$build/burnish" -version 2>/dev/null | grep -o 'OPENBLAS_CORETYPE=.*'); then export "$kernels"; fi
 mkdir -p "$build/ctest"
 cmake -S tests -B "$build/ctest" -DBURNISH_BUILD="$(realpath "$build")" >"$build/ctest/configure.log" 2>&1 || { cat "$build/ctest/configure.log" >&2; exit 1; }
 ctest --test-dir "$build/ctest" --output-on-failure -j "$(env -u OMP_NUM_THREADS nproc)" "$@" | tee "$log"

@@ -39,7 +39,7 @@ def directory(name):
 def solve(burnish, name):
     line = command(burnish, RANKS, SCENE, directory(name), RUNS[name], "-overwrite")
     print(" ".join(line), flush=True)
-    status = subprocess.run(line, env=environment()).returncode
+    status = subprocess.run(line, env=environment(burnish)).returncode
     if status:
         sys.exit(status)
 

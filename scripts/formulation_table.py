@@ -8,7 +8,7 @@ import shutil
 import subprocess
 import sys
 
-from launch import ROOT, read_records, replace_records, table_parser
+from launch import ROOT, environment, read_records, replace_records, table_parser
 
 FORMULATIONS = ("node_to_surface", "surface_to_surface")
 OFFSETS = ("held", "live")
@@ -54,7 +54,7 @@ def record(args, case, formulation):
     chosen = [f"contact.0.formulation={formulation}"] if formulation in FORMULATIONS else ["contact.0.formulation=surface_to_surface", f"contact.0.offset={formulation}"]
     for override in (*overrides, "output.every=0", *chosen):
         command += ["-set", override]
-    finished = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+    finished = subprocess.run(command, env=environment(args.burnish), stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
     if finished.returncode not in (0, 2):  # 2: did not converge; the summary says how far it came
         sys.exit(f"{' '.join(command)}\n{finished.stdout}")
     summary = json.loads((directory / "summary.json").read_text())

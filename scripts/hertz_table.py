@@ -122,7 +122,7 @@ def solve(case, args):
     for override in (f"mesh.order={order}", f"contact.0.formulation={formulation}", f"stepping.initial={step}", "output.every=1", "output.fields=[displacement, contact]",
                      *overrides(scene, order, faces, mesh, jitter, seed, slope)):
         command += ["-set", override]
-    finished = subprocess.run(command, env=environment(), stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+    finished = subprocess.run(command, env=environment(args.burnish), stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
     record = dict(zip(COLUMNS, (*case, finished.returncode)))
     if finished.returncode == 0:
         summary, centres = json.loads((directory / "summary.json").read_text()), centre_of_force(directory, pair, formulation)

@@ -1,9 +1,12 @@
 """Runs of Burnish for the scripts here: the environment in which mpirun starts, and what a run leaves as Python values."""
 import argparse
 import csv
+import functools
 import json
 import os
 import pathlib
+import re
+import subprocess
 from concurrent.futures import ThreadPoolExecutor
 
 import numpy
@@ -22,9 +25,19 @@ MPI = {
 }
 
 
-def environment():
-    """The caller's, with what several ranks on few cores need where it says nothing."""
-    return {**MPI, **os.environ}
+@functools.cache
+def kernels(burnish):
+    """OPENBLAS_CORETYPE, where the program says that its BLAS has faster kernels for this processor than those it chooses."""
+    try:
+        said = subprocess.run([burnish, "-version"], env={**MPI, **os.environ}, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True).stdout
+    except OSError:  # the run will say why
+        return {}
+    return dict(re.findall(r"(OPENBLAS_CORETYPE)=(\w+)", said))
+
+
+def environment(burnish):
+    """The caller's, with what several ranks on few cores and the BLAS need where it says nothing."""
+    return {**MPI, **kernels(burnish), **os.environ}
 
 
 def command(burnish, ranks, scene, directory, overrides, *options):

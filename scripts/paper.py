@@ -62,7 +62,7 @@ class Study:
         print(f"{name}: {' '.join(line)}", flush=True)
         start = time.monotonic()
         try:
-            finished = subprocess.run(line, env=environment(), stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, timeout=TIME_LIMIT)
+            finished = subprocess.run(line, env=environment(self.args.burnish), stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, timeout=TIME_LIMIT)
         except subprocess.TimeoutExpired:
             sys.exit(f"{' '.join(line)}\nnot done after {TIME_LIMIT} s")
         if finished.returncode not in (0, 2):  # 2: did not converge, which is a result here

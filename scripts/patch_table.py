@@ -128,7 +128,7 @@ def solve(case, args):
     command = [args.burnish, str(SCENE), "-o", str(directory), "-quiet"]
     for override in overrides(*case):
         command += ["-set", override]
-    finished = subprocess.run(command, env=environment(), stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+    finished = subprocess.run(command, env=environment(args.burnish), stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
     record = dict(zip(COLUMNS, (strain, elements, order, *pair, jitter, formulation, finished.returncode)))
     if finished.returncode == 0:
         summary = json.loads((directory / "summary.json").read_text())

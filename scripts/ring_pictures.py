@@ -4,7 +4,6 @@ the stress along the radius with facets and with surface to surface diffuse cont
 leaves rings.png, formulations.png and the curves in ring_pressure.csv."""
 import argparse
 import csv
-import os
 import pathlib
 import shutil
 import subprocess
@@ -18,6 +17,7 @@ import numpy
 from matplotlib.collections import PolyCollection
 
 import ring_table
+from launch import environment
 
 LAME = ring_table.LAME["ring_in_ring"]
 MESH = ["mesh.parameters.n_inner=24", "mesh.parameters.n_outer=30", "mesh.parameters.jitter=0.25"]
@@ -31,7 +31,7 @@ def solve(args, method):
     command = [args.burnish, str(ring_table.ROOT / "runs/ring_in_ring.yaml"), "-o", str(directory), "-quiet"]
     for override in MESH + ring_table.METHODS[method]:
         command += ["-set", override]
-    subprocess.run(command, env={**ring_table.ENVIRONMENT, **os.environ}, check=True)
+    subprocess.run(command, env=environment(args.burnish), check=True)
     with h5py.File(directory / "results.h5", "r") as file:
         step = file["steps"][sorted(file["steps"])[-1]]
         nodes, cells = file["mesh/nodes"][()], file["mesh/cells_quad4"][()]

@@ -89,7 +89,7 @@ def solve(table, case, args):
     command += [args.burnish, str(ROOT / "runs" / f"{scene}.yaml"), "-o", str(directory), "-quiet"]
     for override in overrides(table, *case):
         command += ["-set", override]
-    finished = subprocess.run(command, env=environment(), stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+    finished = subprocess.run(command, env=environment(args.burnish), stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
     record = dict(zip(COLUMNS, (table, scene, *pair, slave, method, jitter, seed, finished.returncode)), order=order)
     records = [record]
     if finished.returncode == 0:

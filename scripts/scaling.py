@@ -83,7 +83,7 @@ def solve(args, scene, size, solver, ranks):
     directory = args.out / "run"
     shutil.rmtree(directory, ignore_errors=True)
     line = command(args.burnish, ranks, ROOT / "runs" / f"{scene}.yaml", directory, (*COMMON, mesh(size), f"solver.type={solver}"), "-quiet")
-    finished = subprocess.run([*args.launcher, *line], cwd=ROOT, env=environment(), stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+    finished = subprocess.run([*args.launcher, *line], cwd=ROOT, env=environment(args.burnish), stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
     if finished.returncode not in (0, 2):  # 2: did not converge; the summary says so
         print(f"{' '.join(line)}\n{finished.stdout}", file=sys.stderr)
         return {"scene": scene, "size": size, "solver": solver, "ranks": ranks, "status": f"exit {finished.returncode}"}

@@ -12,7 +12,9 @@ import statistics
 import subprocess
 import sys
 
-SCENE = pathlib.Path(__file__).resolve().parent.parent / "runs" / "pipe_pinch.yaml"
+from launch import ROOT, environment
+
+SCENE = ROOT / "runs" / "pipe_pinch.yaml"
 MESHES = ((12, 5), (18, 8), (24, 10))  # elements around the quarter, along the length
 SMOOTHERS = {
     "facet": ["contact.0.smoother=facet"],
@@ -32,7 +34,7 @@ def record(args, mesh, smoother, repeat):
     command = ["mpirun", "-n", str(args.ranks), str(args.burnish), str(SCENE), "-quiet", "-o", str(directory)]
     for override in (f"mesh.parameters.n_arc={n_arc}", f"mesh.parameters.n_len={n_len}", "output.every=0", *SMOOTHERS[smoother]):
         command += ["-set", override]
-    finished = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+    finished = subprocess.run(command, env=environment(args.burnish), stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
     if finished.returncode not in (0, 2):  # 2: did not converge; the summary says how far it came
         sys.exit(f"{' '.join(command)}\n{finished.stdout}")
     summary = json.loads((directory / "summary.json").read_text())

@@ -145,7 +145,7 @@ def solve(study, case, repeat, key):
     line = command(options.burnish, options.ranks, options.scene, directory, study.overrides(case), "-quiet")
     line = line[3:] if options.ranks == 1 else line  # without mpirun: two at a time are then not bound to one core
     try:
-        finished = subprocess.run(line, env=environment(), stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, errors="replace", timeout=options.time_limit)
+        finished = subprocess.run(line, env=environment(options.burnish), stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, errors="replace", timeout=options.time_limit)
         result = outcome(finished.returncode, directory, finished.stdout)
     except subprocess.TimeoutExpired:
         result = {"status": "time limit", "cause": f"not done after {options.time_limit:g} s"}

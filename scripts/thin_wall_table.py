@@ -5,12 +5,11 @@ Error: per cent off the reference; CPU seconds are for one rank, meshing apart."
 import argparse
 import csv
 import json
-import os
 import pathlib
 import subprocess
 
-ROOT = pathlib.Path(__file__).resolve().parent.parent
-ENVIRONMENT = {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1", "OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
+from launch import ROOT, environment
+
 COLUMNS = ("scene", "element", "mesh", "dt", "smoother", "slave", "dofs", "status", "steps", "steps_failed", "newton_iterations", "cpu_s", "value", "error")
 ORDER_1 = {"first order": "full", "enhanced": "enhanced"}
 SWAPPED = ("contact.0.slave=pipe_outer", "contact.0.master=plate_bottom")
@@ -38,7 +37,7 @@ def run(args, scene, overrides):
     command = [str(args.burnish), str(ROOT / "runs" / f"{scene}.yaml"), "-o", str(directory), "-overwrite", "-quiet"]
     for override in overrides:
         command += ["-set", override]
-    finished = subprocess.run(command, env={**os.environ, **ENVIRONMENT}, capture_output=True, text=True)
+    finished = subprocess.run(command, env=environment(args.burnish), capture_output=True, text=True)
     if finished.returncode not in (0, 2):
         raise SystemExit(f"{' '.join(command)}\n{finished.stderr}")
     return json.loads((directory / "summary.json").read_text())

@@ -108,7 +108,7 @@ def main():
     if args.table:
         table(list(csv.DictReader(open(args.table, newline=""))))
         return 0
-    os.environ.update(launch.environment())
+    os.environ.update(launch.environment(args.burnish))
     driver = Driver(args)
     rows = [row for case in cases.CASES if args.group in (None, case.group) and (not args.case or args.case in case.name) for row in driver.rows(case)]
     if args.record:
