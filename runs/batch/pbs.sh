@@ -12,6 +12,7 @@ LIMIT=${LIMIT:-43000}
 cd "${PBS_O_WORKDIR:-.}" || exit 4
 . runs/batch/chain.sh
 export OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1
+# export OPENBLAS_CORETYPE=SkylakeX # where a run's first lines say that this is faster, and all nodes are alike
 # shellcheck disable=SC2034 # read by chain.sh
 BURNISH=(build/burnish -time_limit "$LIMIT")
 # shellcheck disable=SC2034,SC2206 # a command of several words

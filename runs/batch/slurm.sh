@@ -18,6 +18,7 @@ SCENE=$1 DIR=$2
 cd "${SLURM_SUBMIT_DIR:-.}" || exit 4
 . runs/batch/chain.sh
 export OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1
+# export OPENBLAS_CORETYPE=SkylakeX # where a run's first lines say that this is faster, and all nodes are alike
 # shellcheck disable=SC2034 # read by chain.sh
 BURNISH=(build/burnish "${@:3}")
 # srun where Open MPI or MPICH is built for Slurm: LAUNCH=(srun --cpu-bind=cores)
