@@ -64,10 +64,10 @@ void BlasFind(Blas *blas)
 {
   const char *made = LibraryText("openblas_get_config");
 
+  *blas = (Blas){.can_choose = made && strstr(made, "DYNAMIC_ARCH")};
   BlasFindFile(blas);
-  blas->kernels        = LibraryText("openblas_get_corename");
+  if (strcasestr(blas->file, "openblas")) blas->kernels = LibraryText("openblas_get_corename"); /* OpenBLAS may be there for another library's sake */
   blas->faster_kernels = BlasFasterKernels(blas->kernels, ProcessorGetVectors());
-  blas->can_choose     = made && strstr(made, "DYNAMIC_ARCH");
 }
 
 /* BlasPrint - the file, the kernels where they are known, and how to have faster ones where that takes no other library. Not collective. */
