@@ -15,9 +15,9 @@ typedef struct {
   PetscScalar *value;
 } NodeBlock;
 
-/* Columns of one row, ascending: those of ranks before, of this one, of ranks after */
+/* Columns of one row in one block as they are gathered, ascending, and room for more */
 typedef struct {
-  PetscInt *column, n, before, own;
+  PetscInt *column, *room, n;
 } NodeRow;
 
 struct _n_NodeMatrix {
@@ -38,6 +38,11 @@ struct _n_NodeMatrix {
 static PetscBool IsMine(NodeMatrix m, PetscInt dof)
 {
   return (PetscBool)(dof >= m->first && dof < m->first + m->rows);
+}
+
+static inline PetscInt Column(const MatrixRows *rows, PetscInt k)
+{
+  return rows->global ? rows->global[rows->column[k]] : rows->column[k];
 }
 
 /* ---------- rows of other ranks ---------- */
@@ -222,66 +227,90 @@ static PetscErrorCode TakeRoom(NodeMatrix m, MatrixRows terms[TERMS][MATRIX_BLOC
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The columns of a row in the pairs and in the terms. */
-static PetscErrorCode GatherRow(NodeMatrix m, PetscInt r, MatrixRows terms[TERMS][MATRIX_BLOCKS], NodeRow *row)
+/* The columns of a row's pairs in one block; each occurs once. */
+static PetscErrorCode GatherPairs(NodeMatrix m, PetscInt node, int block, NodeRow *row)
 {
-  const NodePairs *p    = &m->pairs;
-  const PetscInt   node = m->node[r];
-  PetscInt         n    = 0;
+  const NodePairs *p      = &m->pairs;
+  const PetscInt   first  = block == MATRIX_OWN ? m->first : 0;
+  PetscBool        rising = PETSC_TRUE;
 
   PetscFunctionBeginUser;
-  for (PetscInt k = node < 0 ? 0 : p->ptr[node]; node >= 0 && k < p->ptr[node + 1]; k++)
-    for (int c = 0; c < p->size; c++)
-      if (p->dof[p->column[k] * p->size + c] >= 0) row->column[n++] = p->dof[p->column[k] * p->size + c];
-  for (int t = 0; t < TERMS; t++) {
-    for (int b = 0; b < MATRIX_BLOCKS; b++) {
-      const MatrixRows *term = &terms[t][b];
+  row->n = 0;
+  for (PetscInt k = node < 0 ? 0 : p->ptr[node]; node >= 0 && k < p->ptr[node + 1]; k++) {
+    for (int c = 0; c < p->size; c++) {
+      const PetscInt dof = p->dof[p->column[k] * p->size + c];
 
-      for (PetscInt l = term->mat ? term->ptr[r] : 0; term->mat && l < term->ptr[r + 1]; l++)
-        row->column[n++] = term->global ? term->global[term->column[l]] : m->first + term->column[l];
+      if (dof < 0 || IsMine(m, dof) != (block == MATRIX_OWN)) continue;
+      rising                = (PetscBool)(rising && (!row->n || dof - first > row->column[row->n - 1]));
+      row->column[row->n++] = dof - first;
     }
   }
-  PetscCall(PetscSortRemoveDupsInt(&n, row->column));
-  row->n = n;
-  for (row->before = 0; row->before < n && row->column[row->before] < m->first;) row->before++;
-  for (row->own = 0; row->before + row->own < n && IsMine(m, row->column[row->before + row->own]);) row->own++;
+  if (!rising) PetscCall(PetscSortInt(row->n, row->column));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Tells the pairs of a row their places in it. */
-static PetscErrorCode PlacePairs(NodeMatrix m, PetscInt node, const NodeRow *row)
+/* Merges the columns of a term's row into those gathered, both ascending. */
+static void MergeRow(const MatrixRows *term, PetscInt r, NodeRow *row)
 {
-  const NodePairs *p = &m->pairs;
+  const PetscInt end = term->ptr[r + 1];
+  PetscInt      *to = row->room, n = 0, i = 0, k = term->ptr[r];
 
-  PetscFunctionBeginUser;
-  for (PetscInt k = p->ptr[node] * p->size; k < p->ptr[node + 1] * p->size; k++) {
-    const PetscInt dof = p->dof[p->column[k / p->size] * p->size + k % p->size];
-    PetscInt       at;
+  while (i < row->n && k < end) {
+    const PetscInt a = row->column[i], b = Column(term, k);
 
-    m->place[k] = NODE_MATRIX_NONE;
-    if (dof < 0) continue;
-    PetscCall(PetscFindInt(dof, row->n, row->column, &at));
-    m->place[k] = at < row->before ? -1 - at : at < row->before + row->own ? at - row->before : -1 - (at - row->own);
+    to[n++] = PetscMin(a, b);
+    i += a <= b;
+    k += b <= a;
   }
+  while (i < row->n) to[n++] = row->column[i++];
+  while (k < end) to[n++] = Column(term, k++);
+  row->room   = row->column;
+  row->column = to;
+  row->n      = n;
+}
+
+/* Tells the pairs of a node their places in its row r. at[rows]: room. */
+static PetscErrorCode PlacePairs(NodeMatrix m, PetscInt node, PetscInt r, PetscInt *at)
+{
+  const NodePairs *p   = &m->pairs;
+  const NodeBlock *own = &m->block[MATRIX_OWN], *others = &m->block[MATRIX_OTHERS];
+  const PetscInt  *column = &others->column[others->ptr[r]], n = others->ptr[r + 1] - others->ptr[r];
+
+  PetscFunctionBeginUser;
+  for (PetscInt k = own->ptr[r]; k < own->ptr[r + 1]; k++) at[own->column[k]] = k - own->ptr[r];
+  for (PetscInt k = p->ptr[node]; k < p->ptr[node + 1]; k++) {
+    for (int c = 0; c < p->size; c++) {
+      const PetscInt dof   = p->dof[p->column[k] * p->size + c];
+      PetscInt      *place = &m->place[k * p->size + c];
+
+      if (dof < 0)
+        *place = NODE_MATRIX_NONE;
+      else if (IsMine(m, dof))
+        *place = at[dof - m->first];
+      else {
+        PetscCall(PetscFindInt(dof, n, column, place));
+        *place = -1 - *place;
+      }
+    }
+  }
+  m->placed[node] = PETSC_FALSE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* A row of any kind, after those before it; the columns in the numbering that PETSc wants, its own from 0. */
-static PetscErrorCode AppendRow(NodeMatrix m, PetscInt r, MatrixRows terms[TERMS][MATRIX_BLOCKS], NodeRow *row)
+/* A row of any kind, after those before it; the columns in the numbering that PETSc wants, its own from 0. at[rows]: room. */
+static PetscErrorCode AppendRow(NodeMatrix m, PetscInt r, MatrixRows terms[TERMS][MATRIX_BLOCKS], NodeRow *row, PetscInt *at)
 {
-  NodeBlock *own = &m->block[MATRIX_OWN], *others = &m->block[MATRIX_OTHERS];
-  PetscInt  *mine = &own->column[own->ptr[r]], *column = &others->column[others->ptr[r]], after;
-
   PetscFunctionBeginUser;
-  PetscCall(GatherRow(m, r, terms, row));
-  if (m->node[r] >= 0) PetscCall(PlacePairs(m, m->node[r], row));
-  if (m->node[r] >= 0) m->placed[m->node[r]] = PETSC_FALSE;
-  after = row->before + row->own;
-  for (PetscInt k = 0; k < row->own; k++) mine[k] = row->column[row->before + k] - m->first;
-  PetscCall(PetscArraycpy(column, row->column, row->before));
-  PetscCall(PetscArraycpy(&column[row->before], &row->column[after], row->n - after));
-  own->ptr[r + 1]    = own->ptr[r] + row->own;
-  others->ptr[r + 1] = others->ptr[r] + row->n - row->own;
+  for (int b = 0; b < MATRIX_BLOCKS; b++) {
+    NodeBlock *block = &m->block[b];
+
+    PetscCall(GatherPairs(m, m->node[r], b, row));
+    for (int t = 0; t < TERMS; t++)
+      if (terms[t][b].mat) MergeRow(&terms[t][b], r, row);
+    PetscCall(PetscArraycpy(&block->column[block->ptr[r]], row->column, row->n));
+    block->ptr[r + 1] = block->ptr[r] + row->n;
+  }
+  if (m->node[r] >= 0) PetscCall(PlacePairs(m, m->node[r], r, at));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -356,7 +385,7 @@ PetscErrorCode NodeMatrixJoin(NodeMatrix m, Mat other)
   const Mat  mats[TERMS] = {[TERM_FOREIGN] = m->foreign, [TERM_OTHER] = other};
   MatrixRows terms[TERMS][MATRIX_BLOCKS];
   NodeRow    row;
-  PetscInt   longest;
+  PetscInt   longest, *room, *at;
 
   PetscFunctionBeginUser;
   for (int t = 0; t < TERMS; t++) {
@@ -366,7 +395,8 @@ PetscErrorCode NodeMatrixJoin(NodeMatrix m, Mat other)
     }
   }
   PetscCall(TakeRoom(m, terms, &longest));
-  PetscCall(PetscMalloc1(longest, &row.column));
+  PetscCall(PetscMalloc2(2 * longest, &room, m->rows, &at));
+  row = (NodeRow){.column = room, .room = &room[longest]};
   for (int b = 0; b < MATRIX_BLOCKS; b++) m->block[b].ptr[0] = 0;
   for (PetscInt r = 0; r < m->rows; r++) {
     if (r && m->node[r] >= 0 && m->node[r] == m->node[r - 1])
@@ -374,9 +404,9 @@ PetscErrorCode NodeMatrixJoin(NodeMatrix m, Mat other)
     else if (m->node[r] >= 0 && m->inner[m->node[r]] && !IsShared(r, terms))
       AppendInner(m, r);
     else
-      PetscCall(AppendRow(m, r, terms, &row));
+      PetscCall(AppendRow(m, r, terms, &row, at));
   }
-  PetscCall(PetscFree(row.column));
+  PetscCall(PetscFree2(room, at));
   for (int t = 0; t < TERMS; t++)
     for (int b = 0; b < MATRIX_BLOCKS; b++) PetscCall(MatrixRowsRestore(&terms[t][b]));
   PetscCall(MakeMatrix(m));
@@ -441,11 +471,6 @@ PetscErrorCode NodeMatrixSet(NodeMatrix m, const PetscReal *value)
   } else
     PetscCall(TellChange(m));
   PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-static inline PetscInt Column(const MatrixRows *rows, PetscInt k)
-{
-  return rows->global ? rows->global[rows->column[k]] : rows->column[k];
 }
 
 /* y += x in one row, both ascending; every entry of x is in y. */
