@@ -2,7 +2,7 @@
    entries of another matrix: the elastic tangent, which contact is added to, and the contact matrix. A rank finds what it has for its own rows by one number
    for each pair and dof; only what belongs to rows of others goes through PETSc's COO format, whose lists are ten times as long and are sorted.
 
-     NodeMatrixCreate(); NodeMatrixJoin(), again where the other matrix has a new pattern; NodeMatrixSet(); NodeMatrixAdd() */
+     NodeMatrixCreate(); NodeMatrixJoin(), again where the other matrix has a new pattern; NodeMatrixSet() */
 #pragma once
 #include "petsccompat.h"
 
@@ -21,8 +21,7 @@ PetscErrorCode NodeMatrixCreate(MPI_Comm, PetscInt rows, const NodePairs *, Node
 PetscErrorCode NodeMatrixDestroy(NodeMatrix *);
 /* The pattern of the pairs and of another matrix (NULL: none), without values. Collective. */
 PetscErrorCode NodeMatrixJoin(NodeMatrix, Mat other);
-/* The values: size x size blocks, row-major, in the order of the pairs. Collective. */
-PetscErrorCode NodeMatrixSet(NodeMatrix, const PetscReal *value);
-/* += another matrix, whose entries the pattern holds. Collective. */
-PetscErrorCode NodeMatrixAdd(NodeMatrix, Mat other);
+/* The values: size x size blocks, row-major, in the order of the pairs, and those of the other matrix of the last NodeMatrixJoin() (NULL: not added);
+   diagonal: of the blocks alone (NULL: not asked for). Collective. */
+PetscErrorCode NodeMatrixSet(NodeMatrix, const PetscReal *value, Mat other, Vec diagonal);
 Mat            NodeMatrixGet(NodeMatrix); /* the same handle all the time; borrowed */

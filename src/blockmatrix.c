@@ -570,7 +570,7 @@ PetscErrorCode BlockMatrixEnd(BlockMatrix blocks, Mat *matrix)
 {
   PetscFunctionBeginUser;
   TakeSums(blocks);
-  PetscCall(NodeMatrixSet(blocks->matrix, blocks->value));
+  PetscCall(NodeMatrixSet(blocks->matrix, blocks->value, NULL, NULL));
   *matrix = NodeMatrixGet(blocks->matrix);
   PetscFunctionReturn(PETSC_SUCCESS);
 }

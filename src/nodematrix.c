@@ -20,6 +20,13 @@ typedef struct {
   PetscInt *column, *room, n;
 } NodeRow;
 
+/* A matrix that the pattern was joined with, by its number; place: of each of its entries in a first row of a node, in the row of the sum. Other rows of the
+   node are alike. */
+typedef struct {
+  PetscObjectId matrix;
+  PetscInt      n[MATRIX_BLOCKS], room[MATRIX_BLOCKS], *place[MATRIX_BLOCKS];
+} NodeTerm;
+
 struct _n_NodeMatrix {
   MPI_Comm     comm;
   NodePairs    pairs;
@@ -30,6 +37,8 @@ struct _n_NodeMatrix {
   PetscInt     longest;     /* entries of a row without other terms */
   PetscInt    *place;       /* of each pair and dof of its column in the row: k: in the rank's own block, -1 - k: in the other ranks' */
   NodeBlock    block[MATRIX_BLOCKS];
+  NodeTerm     term[TERMS];
+  PetscInt    *diagonal;        /* of each row, the place of its diagonal in its own block, -1: it has none */
   Mat          matrix, foreign; /* foreign: sum of what ranks have for rows of others; NULL: there is one rank */
   PetscInt     n_foreign, *foreign_node, foreign_pairs;
   PetscScalar *foreign_value;
@@ -174,7 +183,7 @@ PetscErrorCode NodeMatrixCreate(MPI_Comm comm, PetscInt rows, const NodePairs *p
   PetscCall(FindNodes(m));
   PetscCall(PetscCalloc2(pairs->n, &m->inner, pairs->n, &m->placed));
   LookAtRows(m);
-  PetscCall(PetscMalloc1(pairs->ptr[pairs->n] * pairs->size, &m->place));
+  PetscCall(PetscMalloc2(pairs->ptr[pairs->n] * pairs->size, &m->place, rows, &m->diagonal));
   PetscCallMPI(MPI_Comm_size(comm, &size));
   if (size > 1) PetscCall(CreateForeign(m));
   *out = m;
@@ -192,10 +201,12 @@ PetscErrorCode NodeMatrixDestroy(NodeMatrix *matrix)
   PetscCall(MatDestroy(&m->foreign));
   for (int b = 0; b < MATRIX_BLOCKS; b++) PetscCall(PetscFree(m->block[b].ptr));
   for (int b = 0; b < MATRIX_BLOCKS; b++) PetscCall(PetscFree2(m->block[b].column, m->block[b].value));
+  for (int t = 0; t < TERMS; t++)
+    for (int b = 0; b < MATRIX_BLOCKS; b++) PetscCall(PetscFree(m->term[t].place[b]));
   PetscCall(PetscFree2(m->node, m->foreign_node));
   PetscCall(PetscFree2(m->inner, m->placed));
   PetscCall(PetscFree(m->foreign_value));
-  PetscCall(PetscFree(m->place));
+  PetscCall(PetscFree2(m->place, m->diagonal));
   PetscCall(PetscFree(*matrix));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -297,6 +308,18 @@ static PetscErrorCode PlacePairs(NodeMatrix m, PetscInt node, PetscInt r, PetscI
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Notes where the entries of a term's row are in row r of the matrix. */
+static void PlaceTerm(NodeMatrix m, PetscInt r, int b, const MatrixRows *term, PetscInt *place)
+{
+  const PetscInt *column = &m->block[b].column[m->block[b].ptr[r]];
+  PetscInt        at     = 0;
+
+  for (PetscInt k = term->ptr[r]; k < term->ptr[r + 1]; k++) {
+    while (column[at] < Column(term, k)) at++;
+    place[k] = at;
+  }
+}
+
 /* A row of any kind, after those before it; the columns in the numbering that PETSc wants, its own from 0. at[rows]: room. */
 static PetscErrorCode AppendRow(NodeMatrix m, PetscInt r, MatrixRows terms[TERMS][MATRIX_BLOCKS], NodeRow *row, PetscInt *at)
 {
@@ -309,6 +332,8 @@ static PetscErrorCode AppendRow(NodeMatrix m, PetscInt r, MatrixRows terms[TERMS
       if (terms[t][b].mat) MergeRow(&terms[t][b], r, row);
     PetscCall(PetscArraycpy(&block->column[block->ptr[r]], row->column, row->n));
     block->ptr[r + 1] = block->ptr[r] + row->n;
+    for (int t = 0; t < TERMS; t++)
+      if (terms[t][b].mat) PlaceTerm(m, r, b, &terms[t][b], m->term[t].place[b]);
   }
   if (m->node[r] >= 0) PetscCall(PlacePairs(m, m->node[r], r, at));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -358,6 +383,63 @@ static PetscBool IsShared(PetscInt r, MatrixRows terms[TERMS][MATRIX_BLOCKS])
   return PETSC_FALSE;
 }
 
+/* The rows of terms, NULL: none */
+static PetscErrorCode GetTerms(const Mat mats[TERMS], MatrixRows terms[TERMS][MATRIX_BLOCKS])
+{
+  PetscFunctionBeginUser;
+  for (int t = 0; t < TERMS; t++) {
+    for (int b = 0; b < MATRIX_BLOCKS; b++) {
+      terms[t][b] = (MatrixRows){.mat = NULL};
+      if (mats[t]) PetscCall(MatrixRowsGet(mats[t], b, &terms[t][b]));
+    }
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode RestoreTerms(MatrixRows terms[TERMS][MATRIX_BLOCKS])
+{
+  PetscFunctionBeginUser;
+  for (int t = 0; t < TERMS; t++)
+    for (int b = 0; b < MATRIX_BLOCKS; b++) PetscCall(MatrixRowsRestore(&terms[t][b]));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Makes room for the places of a term. */
+static PetscErrorCode TakeTerm(Mat mat, const MatrixRows rows[MATRIX_BLOCKS], NodeTerm *term)
+{
+  PetscFunctionBeginUser;
+  term->matrix = 0;
+  if (mat) PetscCall(PetscObjectGetId((PetscObject)mat, &term->matrix));
+  for (int b = 0; b < MATRIX_BLOCKS; b++) {
+    term->n[b] = rows[b].mat ? rows[b].ptr[rows[b].n] : 0;
+    if (term->n[b] <= term->room[b]) continue;
+    term->room[b] = (PetscInt)(NODE_MATRIX_ROOM * term->n[b]);
+    PetscCall(PetscFree(term->place[b]));
+    PetscCall(PetscMalloc1(term->room[b], &term->place[b]));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Is this row of the same node as the one before it? */
+static inline PetscBool IsSame(NodeMatrix m, PetscInt r)
+{
+  return (PetscBool)(r && m->node[r] >= 0 && m->node[r] == m->node[r - 1]);
+}
+
+/* Finds the diagonal of a row of the pattern. */
+static PetscErrorCode FindDiagonal(NodeMatrix m, PetscInt r)
+{
+  const NodeBlock *own = &m->block[MATRIX_OWN];
+
+  PetscFunctionBeginUser;
+  if (IsSame(m, r) && m->diagonal[r - 1] >= 0)
+    m->diagonal[r] = m->diagonal[r - 1] + 1; /* both are columns of either */
+  else
+    PetscCall(PetscFindInt(r, own->ptr[r + 1] - own->ptr[r], &own->column[own->ptr[r]], &m->diagonal[r]));
+  m->diagonal[r] = PetscMax(m->diagonal[r], -1);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* The arrays become the matrix, under the handle that is known. */
 static PetscErrorCode MakeMatrix(NodeMatrix m)
 {
@@ -388,32 +470,35 @@ PetscErrorCode NodeMatrixJoin(NodeMatrix m, Mat other)
   PetscInt   longest, *room, *at;
 
   PetscFunctionBeginUser;
-  for (int t = 0; t < TERMS; t++) {
-    for (int b = 0; b < MATRIX_BLOCKS; b++) {
-      terms[t][b] = (MatrixRows){.mat = NULL};
-      if (mats[t]) PetscCall(MatrixRowsGet(mats[t], b, &terms[t][b]));
-    }
-  }
+  PetscCall(GetTerms(mats, terms));
+  for (int t = 0; t < TERMS; t++) PetscCall(TakeTerm(mats[t], terms[t], &m->term[t]));
   PetscCall(TakeRoom(m, terms, &longest));
   PetscCall(PetscMalloc2(2 * longest, &room, m->rows, &at));
   row = (NodeRow){.column = room, .room = &room[longest]};
   for (int b = 0; b < MATRIX_BLOCKS; b++) m->block[b].ptr[0] = 0;
   for (PetscInt r = 0; r < m->rows; r++) {
-    if (r && m->node[r] >= 0 && m->node[r] == m->node[r - 1])
+    if (IsSame(m, r))
       PetscCall(AppendSame(m, r));
     else if (m->node[r] >= 0 && m->inner[m->node[r]] && !IsShared(r, terms))
       AppendInner(m, r);
     else
       PetscCall(AppendRow(m, r, terms, &row, at));
+    PetscCall(FindDiagonal(m, r));
   }
   PetscCall(PetscFree2(room, at));
-  for (int t = 0; t < TERMS; t++)
-    for (int b = 0; b < MATRIX_BLOCKS; b++) PetscCall(MatrixRowsRestore(&terms[t][b]));
+  PetscCall(RestoreTerms(terms));
   PetscCall(MakeMatrix(m));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* ---------- values ---------- */
+
+/* One row of a node's blocks where all columns stand as the pairs do */
+static inline void CopyRow(const int size, PetscInt n, const PetscReal *from, PetscScalar *to)
+{
+  for (PetscInt k = 0; k < n; k++)
+    for (int c = 0; c < size; c++) to[k * size + c] = from[k * size * size + c];
+}
 
 /* One row of a node's blocks, or zeros; size constant where this is called, so that the loop over a node's dofs unrolls. */
 static inline void SetRow(const int size, NodeMatrix m, PetscInt r, const PetscReal *value)
@@ -421,17 +506,21 @@ static inline void SetRow(const int size, NodeMatrix m, PetscInt r, const PetscR
   const NodePairs *p    = &m->pairs;
   const PetscInt   node = m->node[r];
   PetscScalar     *to[MATRIX_BLOCKS];
+  PetscInt         n[MATRIX_BLOCKS];
   int              d = 0;
 
   for (int b = 0; b < MATRIX_BLOCKS; b++) {
-    const PetscInt *ptr = m->block[b].ptr;
-
-    to[b] = &m->block[b].value[ptr[r]];
-    for (PetscInt k = 0; k < ptr[r + 1] - ptr[r]; k++) to[b][k] = 0;
+    to[b] = &m->block[b].value[m->block[b].ptr[r]];
+    n[b]  = m->block[b].ptr[r + 1] - m->block[b].ptr[r];
   }
-  if (node < 0) return;
-  while (p->dof[node * size + d] != m->first + r) d++;
-  for (PetscInt k = p->ptr[node]; k < p->ptr[node + 1]; k++) {
+  while (node >= 0 && p->dof[node * size + d] != m->first + r) d++;
+  if (node >= 0 && m->placed[node] && n[MATRIX_OWN] == (p->ptr[node + 1] - p->ptr[node]) * size) {
+    CopyRow(size, p->ptr[node + 1] - p->ptr[node], &value[((size_t)p->ptr[node] * size + d) * size], to[MATRIX_OWN]);
+    return;
+  }
+  for (int b = 0; b < MATRIX_BLOCKS; b++)
+    for (PetscInt k = 0; k < n[b]; k++) to[b][k] = 0;
+  for (PetscInt k = node < 0 ? 0 : p->ptr[node]; node >= 0 && k < p->ptr[node + 1]; k++) {
     const PetscReal *from  = &value[((size_t)k * size + d) * size];
     const PetscInt  *place = &m->place[k * size];
 
@@ -444,6 +533,18 @@ static inline void SetRow(const int size, NodeMatrix m, PetscInt r, const PetscR
   }
 }
 
+/* Adds row r of a term, where its entries are in the sum as those of row `first` of the same node. */
+static inline void AddRow(NodeMatrix m, PetscInt r, PetscInt first, const NodeTerm *term, const MatrixRows rows[MATRIX_BLOCKS])
+{
+  for (int b = 0; b < MATRIX_BLOCKS; b++) {
+    const MatrixRows *x = &rows[b];
+
+    if (!x->mat) continue;
+    for (PetscInt k = 0; k < x->ptr[r + 1] - x->ptr[r]; k++)
+      m->block[b].value[m->block[b].ptr[r] + term->place[b][x->ptr[first] + k]] += x->value[x->ptr[r] + k];
+  }
+}
+
 /* Nothing moves: it tells the matrix' users that its values are new. */
 static PetscErrorCode TellChange(NodeMatrix m)
 {
@@ -453,57 +554,62 @@ static PetscErrorCode TellChange(NodeMatrix m)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* NodeMatrixSet - the sum of the ranks' blocks; what the pattern holds besides becomes 0.
-
-   Collective. value[pairs*size*size]: blocks of this rank, row-major, in the order of its pairs. */
-PetscErrorCode NodeMatrixSet(NodeMatrix m, const PetscReal *value)
+/* Is this the matrix that the pattern was joined with? */
+static PetscErrorCode CheckTerm(NodeMatrix m, Mat other, const MatrixRows rows[MATRIX_BLOCKS])
 {
+  const NodeTerm *term = &m->term[TERM_OTHER];
+  PetscObjectId   matrix;
+
   PetscFunctionBeginUser;
-  for (PetscInt r = 0; r < m->rows; r++) {
+  PetscCall(PetscObjectGetId((PetscObject)other, &matrix));
+  for (int b = 0; b < MATRIX_BLOCKS; b++)
+    PetscCheck(matrix == term->matrix && (rows[b].mat ? rows[b].ptr[rows[b].n] : 0) == term->n[b], m->comm, PETSC_ERR_ARG_WRONGSTATE,
+               "the pattern was joined with that of another matrix");
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Row by row, so that a row is still at hand where something is added to it; diagonal NULL: not asked for. */
+static void SetRows(NodeMatrix m, const PetscReal *value, MatrixRows terms[TERMS][MATRIX_BLOCKS], PetscScalar *diagonal)
+{
+  for (PetscInt r = 0, first = 0; r < m->rows; r++) {
+    if (!IsSame(m, r)) first = r;
     if (m->pairs.size == 3)
       SetRow(3, m, r, value);
     else
       SetRow(m->pairs.size, m, r, value);
+    AddRow(m, r, first, &m->term[TERM_FOREIGN], terms[TERM_FOREIGN]);
+    if (diagonal) diagonal[r] = m->diagonal[r] < 0 ? 0 : m->block[MATRIX_OWN].value[m->block[MATRIX_OWN].ptr[r] + m->diagonal[r]];
+    AddRow(m, r, first, &m->term[TERM_OTHER], terms[TERM_OTHER]);
   }
-  if (m->foreign) {
-    PetscCall(SetForeign(m, value));
-    PetscCall(NodeMatrixAdd(m, m->foreign));
-  } else
-    PetscCall(TellChange(m));
-  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* y += x in one row, both ascending; every entry of x is in y. */
-static PetscErrorCode AddRow(PetscInt row, const MatrixRows *x, const MatrixRows *y, PetscScalar *to)
+/*
+  NodeMatrixSet - The sum of the ranks' blocks and of another matrix; what the pattern holds besides becomes 0
+
+  Collective
+
+  Input:
++ m     - the matrix, after NodeMatrixJoin()
+. value - blocks of this rank, row-major, in the order of its pairs [pairs*size*size]
+- other - the one that the pattern was joined with, of the same pattern as then; NULL: nothing is added
+
+  Output:
+. diagonal - that of the ranks' blocks alone, over the rows; NULL: it is not asked for
+*/
+PetscErrorCode NodeMatrixSet(NodeMatrix m, const PetscReal *value, Mat other, Vec diagonal)
 {
-  PetscInt at = y->ptr[row];
+  const Mat    mats[TERMS] = {[TERM_FOREIGN] = m->foreign, [TERM_OTHER] = other};
+  MatrixRows   terms[TERMS][MATRIX_BLOCKS];
+  PetscScalar *entry = NULL;
 
   PetscFunctionBeginUser;
-  for (PetscInt k = x->ptr[row]; k < x->ptr[row + 1]; k++, at++) {
-    while (at < y->ptr[row + 1] && Column(y, at) < Column(x, k)) at++;
-    PetscCheck(at < y->ptr[row + 1] && Column(y, at) == Column(x, k), PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE,
-               "row %" PetscInt_FMT " of the matrix lacks an entry", row);
-    to[at] += x->value[k];
-  }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* NodeMatrixAdd - adds a matrix to the values.
-
-   Collective. other: an AIJ matrix of the same rows; an entry that the pattern lacks is an error. */
-PetscErrorCode NodeMatrixAdd(NodeMatrix m, Mat other)
-{
-  PetscFunctionBeginUser;
-  for (int b = 0; b < MATRIX_BLOCKS; b++) {
-    MatrixRows x, y;
-
-    PetscCall(MatrixRowsGet(m->matrix, b, &y));
-    if (!y.mat) continue;
-    PetscCall(MatrixRowsGet(other, b, &x));
-    for (PetscInt r = 0; r < x.n; r++) PetscCall(AddRow(r, &x, &y, m->block[b].value));
-    PetscCall(MatrixRowsRestore(&x));
-    PetscCall(MatrixRowsRestore(&y));
-  }
+  if (m->foreign) PetscCall(SetForeign(m, value));
+  PetscCall(GetTerms(mats, terms));
+  if (other) PetscCall(CheckTerm(m, other, terms[TERM_OTHER]));
+  if (diagonal) PetscCall(VecGetArrayWrite(diagonal, &entry));
+  SetRows(m, value, terms, entry);
+  if (diagonal) PetscCall(VecRestoreArrayWrite(diagonal, &entry));
+  PetscCall(RestoreTerms(terms));
   PetscCall(TellChange(m));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
