@@ -5,6 +5,9 @@
    other matrices and the solver's analysis (half of a factorisation at 10,000 dofs), a zero costs fill. Contact that moves on seldom reaches it. */
 #define BLOCK_SLACK 1.5
 
+/* Number of a node while nodes are listed */
+enum { BLOCK_LISTED = -2 };
+
 /* A row of a pair's sum, filled up to a vector of the machine's; what is beyond the pair's own columns is not used */
 enum { ROW = BLOCK_PADDING + 1 };
 typedef double SumRow __attribute__((vector_size(ROW * sizeof(double)), aligned(sizeof(double)), may_alias)); /* as PetscMalloc() aligns, and within arrays */
@@ -188,7 +191,7 @@ static PetscErrorCode BlocksPattern(BlockMatrix blocks, PetscInt *n, PetscInt **
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The nodes that occur in the pattern, ascending, each once, with their dofs. */
+/* The nodes that blocks have, ascending, each once, with room for their dofs. */
 static PetscErrorCode ListNodes(BlockMatrix blocks)
 {
   PetscInt n = 0;
@@ -196,9 +199,16 @@ static PetscErrorCode ListNodes(BlockMatrix blocks)
   PetscFunctionBeginUser;
   PetscCall(PetscFree(blocks->own.key));
   PetscCall(PetscMalloc1(blocks->n_pattern, &blocks->own.key));
-  for (PetscInt at = 0; at < blocks->n_pattern; at += 1 + blocks->pattern[at])
-    for (PetscInt i = 1; i <= blocks->pattern[at]; i++) blocks->own.key[n++] = blocks->pattern[at + i];
-  PetscCall(PetscSortRemoveDupsInt(&n, blocks->own.key));
+  for (PetscInt b = 0; b < blocks->n; b++) {
+    for (PetscInt i = blocks->ptr[b]; i < blocks->ptr[b + 1]; i++) {
+      const PetscInt node = blocks->list[blocks->of[b]] + blocks->node[i];
+
+      if (blocks->list_key[node] < 0 || blocks->list_number[node] == BLOCK_LISTED) continue;
+      blocks->list_number[node] = BLOCK_LISTED;
+      blocks->own.key[n++]      = blocks->list_key[node];
+    }
+  }
+  PetscCall(PetscSortRemoveDupsInt(&n, blocks->own.key)); /* of several lists */
   blocks->own.n_nodes = n;
   PetscCall(PetscFree(blocks->own.dof));
   PetscCall(PetscMalloc1(n * blocks->size, &blocks->own.dof));
@@ -254,37 +264,67 @@ static PetscErrorCode GroupRows(BlockMatrix blocks, PetscInt *number)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The pairs of nodes that some block couples, each once, row by row. Blocks overlap several times over, so this spares the parallel matrix most of
-   the entries. */
+/* The pairs on and above the diagonal that some block couples, each once, row by row, in no order. ptr[n_nodes + 1]: out; *pair: out, to be freed. */
+static PetscErrorCode ListUpper(BlockMatrix blocks, const PetscInt *number, PetscInt *ptr, PetscInt **pair)
+{
+  const BlockRow *row  = blocks->row;
+  PetscInt        room = 0, *seen;
+
+  PetscFunctionBeginUser;
+  for (PetscInt at = 0; at < blocks->n_pattern; at += 1 + blocks->pattern[at]) room += blocks->pattern[at] * (blocks->pattern[at] + 1) / 2;
+  PetscCall(PetscMalloc1(room, pair));
+  PetscCall(PetscMalloc1(blocks->own.n_nodes, &seen));
+  for (PetscInt r = 0; r < blocks->own.n_nodes; r++) seen[r] = -1;
+  ptr[0] = 0;
+  for (PetscInt r = 0; r < blocks->own.n_nodes; r++) {
+    ptr[r + 1] = ptr[r];
+    for (PetscInt k = blocks->row_ptr[r]; k < blocks->row_ptr[r + 1]; k++) {
+      for (PetscInt j = row[k].node; j < blocks->pattern[row[k].at - 1]; j++) {
+        const PetscInt column = number[row[k].at + j];
+
+        if (seen[column] == r) continue;
+        seen[column]          = r;
+        (*pair)[ptr[r + 1]++] = column;
+      }
+    }
+  }
+  PetscCall(PetscFree(seen));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The pairs of nodes that some block couples, each once, row by row, ascending. Blocks overlap several times over, so this spares the parallel matrix most of
+   the entries. Nothing is sorted: who has a node in its row is found in ascending order. */
 static PetscErrorCode ListPairs(BlockMatrix blocks, const PetscInt *number)
 {
-  const BlockRow *row = blocks->row;
-  PetscInt        n = 0, room = 0, *pair, *seen;
+  const PetscInt n = blocks->own.n_nodes;
+  PetscInt      *ptr, *next, *upper_ptr, *upper, *pair;
 
   PetscFunctionBeginUser;
   PetscCall(PetscFree(blocks->own.pair_ptr));
   PetscCall(PetscFree(blocks->own.pair));
-  for (PetscInt at = 0; at < blocks->n_pattern; at += 1 + blocks->pattern[at]) room += PetscSqr(blocks->pattern[at]);
-  PetscCall(PetscMalloc2(room, &pair, blocks->own.n_nodes, &seen));
-  PetscCall(PetscMalloc1(blocks->own.n_nodes + 1, &blocks->own.pair_ptr));
-  for (PetscInt r = 0; r < blocks->own.n_nodes; r++) seen[r] = -1;
-  for (PetscInt r = 0; r < blocks->own.n_nodes; r++) {
-    blocks->own.pair_ptr[r] = n;
-    for (PetscInt k = blocks->row_ptr[r]; k < blocks->row_ptr[r + 1]; k++) {
-      for (PetscInt j = 0; j < blocks->pattern[row[k].at - 1]; j++) {
-        const PetscInt column = number[row[k].at + j];
-
-        if (seen[column] == r) continue;
-        seen[column] = r;
-        pair[n++]    = column;
-      }
-    }
-    PetscCall(PetscSortInt(n - blocks->own.pair_ptr[r], &pair[blocks->own.pair_ptr[r]])); /* so the matrix need not sort its rows */
+  PetscCall(PetscCalloc1(n + 1, &ptr));
+  PetscCall(PetscMalloc2(n, &next, n + 1, &upper_ptr));
+  PetscCall(ListUpper(blocks, number, upper_ptr, &upper));
+  for (PetscInt r = 0; r < n; r++) {
+    ptr[r + 1] += upper_ptr[r + 1] - upper_ptr[r];
+    for (PetscInt k = upper_ptr[r]; k < upper_ptr[r + 1]; k++) ptr[upper[k] + 1] += upper[k] > r;
   }
-  blocks->own.pair_ptr[blocks->own.n_nodes] = n;
-  PetscCall(PetscMalloc1(n, &blocks->own.pair));
-  PetscCall(PetscArraycpy(blocks->own.pair, pair, n));
-  PetscCall(PetscFree2(pair, seen));
+  for (PetscInt r = 0; r < n; r++) ptr[r + 1] += ptr[r];
+  PetscCall(PetscArraycpy(next, ptr, n));
+  PetscCall(PetscMalloc1(ptr[n], &pair));
+  for (PetscInt r = 0; r < n; r++) /* below the diagonal */
+    for (PetscInt k = upper_ptr[r]; k < upper_ptr[r + 1]; k++)
+      if (upper[k] > r) pair[next[upper[k]]++] = r;
+  for (PetscInt r = 0; r < n; r++) { /* and the rest */
+    const PetscInt diagonal = next[r]++;
+
+    pair[diagonal] = r;
+    for (PetscInt k = ptr[r]; k < diagonal; k++) pair[next[pair[k]]++] = r;
+  }
+  PetscCall(PetscFree(upper));
+  PetscCall(PetscFree2(next, upper_ptr));
+  blocks->own.pair_ptr = ptr;
+  blocks->own.pair     = pair;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
