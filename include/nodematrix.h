@@ -16,6 +16,14 @@ typedef struct {
   const PetscInt *ptr, *column; /* pairs of nodes, row by row, each once */
 } NodePairs;
 
+/* Values of pairs: `size` rows of `width` numbers, of which the first `size` count, for each pair on or above the diagonal */
+typedef struct {
+  const PetscReal *value;
+  PetscInt         width;
+  const PetscInt  *block;    /* of each pair, where that of the pair or of its mirror image stands in value, in blocks */
+  const PetscInt  *diagonal; /* of each row of pairs, the first that is not below the diagonal */
+} NodeUpper;
+
 /* For `rows` rows on this rank; the arrays of the pairs are borrowed. Collective. */
 PetscErrorCode NodeMatrixCreate(MPI_Comm, PetscInt rows, const NodePairs *, NodeMatrix *);
 PetscErrorCode NodeMatrixDestroy(NodeMatrix *);
@@ -24,4 +32,6 @@ PetscErrorCode NodeMatrixJoin(NodeMatrix, Mat other);
 /* The values: size x size blocks, row-major, in the order of the pairs, and those of the other matrix of the last NodeMatrixJoin() (NULL: not added);
    diagonal: of the blocks alone (NULL: not asked for). Collective. */
 PetscErrorCode NodeMatrixSet(NodeMatrix, const PetscReal *value, Mat other, Vec diagonal);
+/* As NodeMatrixSet() for a symmetric sum. Collective. */
+PetscErrorCode NodeMatrixSetUpper(NodeMatrix, const NodeUpper *);
 Mat            NodeMatrixGet(NodeMatrix); /* the same handle all the time; borrowed */

@@ -34,12 +34,11 @@ struct _n_BlockMatrix {
   PetscInt         n_pattern, *pattern; /* of the blocks: number of nodes with keys and these keys of block after block; key: the first dof */
   BlockPattern     own;                 /* of the matrix */
   PetscInt        *diagonal, *above;    /* of each row: its first pair that is not below the diagonal; which of those of all rows that is */
-  PetscInt        *mirror;              /* of the pairs above the diagonal: the pair with row and column swapped */
+  PetscInt        *of_pair;             /* the sum of each pair: its own, below the diagonal that of its mirror image */
   PetscInt        *row_ptr;             /* of each node, its rows in the blocks */
   BlockRow        *row;
   PetscInt        *seen, *at; /* of each node of the matrix: the last sum in whose column it stood; at: numbers of the block at hand */
   SumRow          *sum;       /* [pairs not below the diagonal][size] */
-  PetscReal       *value;     /* the matrix' values, pair by pair */
   const PetscReal *along;     /* what blocks are multiplied with as they are added, or NULL */
   PetscReal       *product;
   PetscBool        restored; /* the matrix is not the one that its user knows */
@@ -90,11 +89,11 @@ PetscErrorCode BlockMatrixDestroy(BlockMatrix *blocks)
   PetscCall(DestroyPattern(&(*blocks)->own));
   PetscCall(DestroyPattern(&(*blocks)->marked));
   PetscCall(PetscFree2((*blocks)->diagonal, (*blocks)->above));
-  PetscCall(PetscFree((*blocks)->mirror));
+  PetscCall(PetscFree((*blocks)->of_pair));
   PetscCall(PetscFree((*blocks)->row_ptr));
   PetscCall(PetscFree((*blocks)->row));
   PetscCall(PetscFree2((*blocks)->seen, (*blocks)->at));
-  PetscCall(PetscFree2((*blocks)->sum, (*blocks)->value));
+  PetscCall(PetscFree((*blocks)->sum));
   PetscCall(NodeMatrixDestroy(&(*blocks)->matrix));
   PetscCall(PetscFree(*blocks));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -328,19 +327,19 @@ static PetscErrorCode ListPairs(BlockMatrix blocks, const PetscInt *number)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Finds the diagonal, and the image of each pair above it. */
-static PetscErrorCode ListMirrors(BlockMatrix blocks)
+/* Finds the diagonal, and the sum of each pair: there is one for it and its mirror image. */
+static PetscErrorCode ListSums(BlockMatrix blocks)
 {
   const PetscInt *ptr = blocks->own.pair_ptr, n = ptr[blocks->own.n_nodes];
   PetscInt       *next;
 
   PetscFunctionBeginUser;
   PetscCall(PetscFree2(blocks->diagonal, blocks->above));
-  PetscCall(PetscFree(blocks->mirror));
+  PetscCall(PetscFree(blocks->of_pair));
   PetscCall(PetscFree2(blocks->seen, blocks->at));
   PetscCall(PetscMalloc2(blocks->own.n_nodes, &blocks->diagonal, blocks->own.n_nodes + 1, &blocks->above));
   blocks->above[0] = 0;
-  PetscCall(PetscMalloc1(n, &blocks->mirror));
+  PetscCall(PetscMalloc1(n, &blocks->of_pair));
   PetscCall(PetscMalloc2(blocks->own.n_nodes, &blocks->seen, blocks->own.n_nodes, &blocks->at));
   PetscCall(PetscMalloc1(blocks->own.n_nodes, &next)); /* of each row: the pair below the diagonal whose image comes next; images come in the order of rows */
   for (PetscInt r = 0; r < blocks->own.n_nodes; r++) {
@@ -349,7 +348,8 @@ static PetscErrorCode ListMirrors(BlockMatrix blocks)
     blocks->above[r + 1] = blocks->above[r] + ptr[r + 1] - blocks->diagonal[r];
   }
   for (PetscInt r = 0; r < blocks->own.n_nodes; r++)
-    for (PetscInt k = blocks->diagonal[r]; k < ptr[r + 1]; k++) blocks->mirror[k] = next[blocks->own.pair[k]]++;
+    for (PetscInt k = blocks->diagonal[r]; k < ptr[r + 1]; k++)
+      blocks->of_pair[k] = blocks->of_pair[next[blocks->own.pair[k]]++] = blocks->above[r] + k - blocks->diagonal[r];
   PetscCall(PetscFree(next));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -395,7 +395,7 @@ static PetscErrorCode PlacePattern(BlockMatrix blocks, PetscBool fresh, PetscBoo
   PetscCall(GroupRows(blocks, number));
   if (fresh) {
     PetscCall(ListPairs(blocks, number));
-    PetscCall(ListMirrors(blocks));
+    PetscCall(ListSums(blocks));
   } else {
     PetscCall(CountPairs(blocks, number, &used));
     *placed = used >= 0 && blocks->own.pair_ptr[blocks->own.n_nodes] <= BLOCK_SLACK * used ? PETSC_TRUE : PETSC_FALSE;
@@ -413,9 +413,8 @@ static PetscErrorCode CreateMatrix(BlockMatrix blocks, PetscInt rows)
   PetscCall(NodeMatrixDestroy(&blocks->matrix));
   PetscCall(NodeMatrixCreate(blocks->comm, rows, &pairs, &blocks->matrix));
   PetscCall(NodeMatrixJoin(blocks->matrix, NULL));
-  PetscCall(PetscFree2(blocks->sum, blocks->value));
-  PetscCall(PetscMalloc2(blocks->above[blocks->own.n_nodes] * blocks->size, &blocks->sum, blocks->own.pair_ptr[blocks->own.n_nodes] * PetscSqr(blocks->size),
-                         &blocks->value));
+  PetscCall(PetscFree(blocks->sum));
+  PetscCall(PetscMalloc1(blocks->above[blocks->own.n_nodes] * blocks->size, &blocks->sum));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -589,28 +588,25 @@ void BlockMatrixMultiply(BlockMatrix blocks, const PetscReal *x, PetscReal *y)
   blocks->product = y;
 }
 
-/* The matrix' values: the sums, their mirror images below the diagonal, and those of blocks on the diagonal. */
-static void TakeSums(BlockMatrix blocks)
+/* Fills the sums on the diagonal, of which blocks have the upper triangle. */
+static void FillDiagonal(BlockMatrix blocks)
 {
-  const int size = blocks->size;
-
   for (PetscInt r = 0; r < blocks->own.n_nodes; r++) {
-    for (PetscInt k = blocks->diagonal[r]; k < blocks->own.pair_ptr[r + 1]; k++) {
-      const SumRow *from  = &blocks->sum[(blocks->above[r] + k - blocks->diagonal[r]) * size];
-      PetscReal    *above = &blocks->value[k * PetscSqr(size)], *below = &blocks->value[blocks->mirror[k] * PetscSqr(size)];
+    SumRow *sum = &blocks->sum[blocks->above[r] * blocks->size];
 
-      for (int d = 0; d < size; d++)
-        for (int e = above == below ? d : 0; e < size; e++) above[d * size + e] = below[e * size + d] = from[d][e];
-    }
+    for (int d = 0; d < blocks->size; d++)
+      for (int e = 0; e < d; e++) sum[d][e] = sum[e][d];
   }
 }
 
 /* BlockMatrixEnd - the sum of all ranks' blocks. Collective. */
 PetscErrorCode BlockMatrixEnd(BlockMatrix blocks, Mat *matrix)
 {
+  const NodeUpper values = {(const PetscReal *)blocks->sum, ROW, blocks->of_pair, blocks->diagonal};
+
   PetscFunctionBeginUser;
-  TakeSums(blocks);
-  PetscCall(NodeMatrixSet(blocks->matrix, blocks->value, NULL, NULL));
+  FillDiagonal(blocks);
+  PetscCall(NodeMatrixSetUpper(blocks->matrix, &values));
   *matrix = NodeMatrixGet(blocks->matrix);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -619,7 +615,7 @@ PetscErrorCode BlockMatrixEnd(BlockMatrix blocks, Mat *matrix)
 static PetscErrorCode RestoreMatrix(BlockMatrix blocks, PetscInt rows)
 {
   PetscFunctionBeginUser;
-  PetscCall(ListMirrors(blocks));
+  PetscCall(ListSums(blocks));
   blocks->n_pattern = -1; /* no blocks' as yet: where the next ones stand in it is found then */
   PetscCall(CreateMatrix(blocks, rows));
   blocks->restored = PETSC_TRUE;

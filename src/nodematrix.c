@@ -27,6 +27,18 @@ typedef struct {
   PetscInt      n[MATRIX_BLOCKS], room[MATRIX_BLOCKS], *place[MATRIX_BLOCKS];
 } NodeTerm;
 
+/* The values of pairs: all blocks, in the order of the pairs, or (not NULL) those of a symmetric matrix */
+typedef struct {
+  const PetscReal *all;
+  const NodeUpper *upper;
+} NodeValues;
+
+/* One row of a block: its first value and the distance to the next */
+typedef struct {
+  const PetscReal *value;
+  PetscInt         step;
+} ValueRow;
+
 struct _n_NodeMatrix {
   MPI_Comm     comm;
   NodePairs    pairs;
@@ -52,6 +64,22 @@ static PetscBool IsMine(NodeMatrix m, PetscInt dof)
 static inline PetscInt Column(const MatrixRows *rows, PetscInt k)
 {
   return rows->global ? rows->global[rows->column[k]] : rows->column[k];
+}
+
+static inline PetscBool IsSymmetric(const NodeValues *values)
+{
+  return values->upper ? PETSC_TRUE : PETSC_FALSE;
+}
+
+/* Row d of pair k of a node; size and symmetric constants where loops are to unroll */
+static inline ValueRow FindValues(const int size, const PetscBool symmetric, const NodeValues *values, PetscInt node, PetscInt k, int d)
+{
+  const NodeUpper *upper = values->upper;
+  const PetscReal *block;
+
+  if (!symmetric) return (ValueRow){&values->all[((size_t)k * size + d) * size], 1};
+  block = &upper->value[(size_t)upper->block[k] * size * upper->width];
+  return k < upper->diagonal[node] ? (ValueRow){&block[d], upper->width} : (ValueRow){&block[d * upper->width], 1};
 }
 
 /* ---------- rows of other ranks ---------- */
@@ -84,18 +112,22 @@ static PetscErrorCode CreateForeign(NodeMatrix m)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode SetForeign(NodeMatrix m, const PetscReal *value)
+static PetscErrorCode SetForeign(NodeMatrix m, const NodeValues *values)
 {
-  const NodePairs *p     = &m->pairs;
-  const PetscInt   block = p->size * p->size;
-  PetscInt         n     = 0;
+  const NodePairs *p = &m->pairs;
+  PetscInt         n = 0;
 
   PetscFunctionBeginUser;
   for (PetscInt f = 0; f < m->n_foreign; f++) {
-    const PetscInt from = p->ptr[m->foreign_node[f]], count = (p->ptr[m->foreign_node[f] + 1] - from) * block;
+    const PetscInt node = m->foreign_node[f];
 
-    PetscCall(PetscArraycpy(&m->foreign_value[n], &value[(size_t)from * block], count));
-    n += count;
+    for (PetscInt k = p->ptr[node]; k < p->ptr[node + 1]; k++) {
+      for (int d = 0; d < p->size; d++) {
+        const ValueRow row = FindValues(p->size, IsSymmetric(values), values, node, k, d);
+
+        for (int c = 0; c < p->size; c++) m->foreign_value[n++] = row.value[c * row.step];
+      }
+    }
   }
   PetscCall(MatSetValuesCOO(m->foreign, m->foreign_value, INSERT_VALUES));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -500,8 +532,8 @@ static inline void CopyRow(const int size, PetscInt n, const PetscReal *from, Pe
     for (int c = 0; c < size; c++) to[k * size + c] = from[k * size * size + c];
 }
 
-/* One row of a node's blocks, or zeros; size constant where this is called, so that the loop over a node's dofs unrolls. */
-static inline void SetRow(const int size, NodeMatrix m, PetscInt r, const PetscReal *value)
+/* One row of a node's blocks, or zeros; size and symmetric constants where this is called, so that the loop over a node's dofs unrolls. */
+static inline void SetRow(const int size, const PetscBool symmetric, NodeMatrix m, PetscInt r, const NodeValues *values)
 {
   const NodePairs *p    = &m->pairs;
   const PetscInt   node = m->node[r];
@@ -514,21 +546,21 @@ static inline void SetRow(const int size, NodeMatrix m, PetscInt r, const PetscR
     n[b]  = m->block[b].ptr[r + 1] - m->block[b].ptr[r];
   }
   while (node >= 0 && p->dof[node * size + d] != m->first + r) d++;
-  if (node >= 0 && m->placed[node] && n[MATRIX_OWN] == (p->ptr[node + 1] - p->ptr[node]) * size) {
-    CopyRow(size, p->ptr[node + 1] - p->ptr[node], &value[((size_t)p->ptr[node] * size + d) * size], to[MATRIX_OWN]);
+  if (!symmetric && node >= 0 && m->placed[node] && n[MATRIX_OWN] == (p->ptr[node + 1] - p->ptr[node]) * size) {
+    CopyRow(size, p->ptr[node + 1] - p->ptr[node], &values->all[((size_t)p->ptr[node] * size + d) * size], to[MATRIX_OWN]);
     return;
   }
   for (int b = 0; b < MATRIX_BLOCKS; b++)
     for (PetscInt k = 0; k < n[b]; k++) to[b][k] = 0;
   for (PetscInt k = node < 0 ? 0 : p->ptr[node]; node >= 0 && k < p->ptr[node + 1]; k++) {
-    const PetscReal *from  = &value[((size_t)k * size + d) * size];
-    const PetscInt  *place = &m->place[k * size];
+    const ValueRow  row   = FindValues(size, symmetric, values, node, k, d);
+    const PetscInt *place = &m->place[k * size];
 
     for (int c = 0; c < size; c++) {
       if (place[c] >= 0)
-        to[MATRIX_OWN][place[c]] = from[c];
+        to[MATRIX_OWN][place[c]] = row.value[c * row.step];
       else if (place[c] != NODE_MATRIX_NONE)
-        to[MATRIX_OTHERS][-1 - place[c]] = from[c];
+        to[MATRIX_OTHERS][-1 - place[c]] = row.value[c * row.step];
     }
   }
 }
@@ -569,18 +601,38 @@ static PetscErrorCode CheckTerm(NodeMatrix m, Mat other, const MatrixRows rows[M
 }
 
 /* Row by row, so that a row is still at hand where something is added to it; diagonal NULL: not asked for. */
-static void SetRows(NodeMatrix m, const PetscReal *value, MatrixRows terms[TERMS][MATRIX_BLOCKS], PetscScalar *diagonal)
+static void SetRows(NodeMatrix m, const NodeValues *values, MatrixRows terms[TERMS][MATRIX_BLOCKS], PetscScalar *diagonal)
 {
   for (PetscInt r = 0, first = 0; r < m->rows; r++) {
     if (!IsSame(m, r)) first = r;
-    if (m->pairs.size == 3)
-      SetRow(3, m, r, value);
+    if (m->pairs.size == 3 && IsSymmetric(values))
+      SetRow(3, PETSC_TRUE, m, r, values);
+    else if (m->pairs.size == 3)
+      SetRow(3, PETSC_FALSE, m, r, values);
     else
-      SetRow(m->pairs.size, m, r, value);
+      SetRow(m->pairs.size, IsSymmetric(values), m, r, values);
     AddRow(m, r, first, &m->term[TERM_FOREIGN], terms[TERM_FOREIGN]);
     if (diagonal) diagonal[r] = m->diagonal[r] < 0 ? 0 : m->block[MATRIX_OWN].value[m->block[MATRIX_OWN].ptr[r] + m->diagonal[r]];
     AddRow(m, r, first, &m->term[TERM_OTHER], terms[TERM_OTHER]);
   }
+}
+
+static PetscErrorCode SetValues(NodeMatrix m, const NodeValues *values, Mat other, Vec diagonal)
+{
+  const Mat    mats[TERMS] = {[TERM_FOREIGN] = m->foreign, [TERM_OTHER] = other};
+  MatrixRows   terms[TERMS][MATRIX_BLOCKS];
+  PetscScalar *entry = NULL;
+
+  PetscFunctionBeginUser;
+  if (m->foreign) PetscCall(SetForeign(m, values));
+  PetscCall(GetTerms(mats, terms));
+  if (other) PetscCall(CheckTerm(m, other, terms[TERM_OTHER]));
+  if (diagonal) PetscCall(VecGetArrayWrite(diagonal, &entry));
+  SetRows(m, values, terms, entry);
+  if (diagonal) PetscCall(VecRestoreArrayWrite(diagonal, &entry));
+  PetscCall(RestoreTerms(terms));
+  PetscCall(TellChange(m));
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /*
@@ -598,19 +650,16 @@ static void SetRows(NodeMatrix m, const PetscReal *value, MatrixRows terms[TERMS
 */
 PetscErrorCode NodeMatrixSet(NodeMatrix m, const PetscReal *value, Mat other, Vec diagonal)
 {
-  const Mat    mats[TERMS] = {[TERM_FOREIGN] = m->foreign, [TERM_OTHER] = other};
-  MatrixRows   terms[TERMS][MATRIX_BLOCKS];
-  PetscScalar *entry = NULL;
-
   PetscFunctionBeginUser;
-  if (m->foreign) PetscCall(SetForeign(m, value));
-  PetscCall(GetTerms(mats, terms));
-  if (other) PetscCall(CheckTerm(m, other, terms[TERM_OTHER]));
-  if (diagonal) PetscCall(VecGetArrayWrite(diagonal, &entry));
-  SetRows(m, value, terms, entry);
-  if (diagonal) PetscCall(VecRestoreArrayWrite(diagonal, &entry));
-  PetscCall(RestoreTerms(terms));
-  PetscCall(TellChange(m));
+  PetscCall(SetValues(m, &(NodeValues){.all = value}, other, diagonal));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* NodeMatrixSetUpper - the sum of the ranks' blocks, which is symmetric on every rank; of blocks on the diagonal both triangles are used. Collective. */
+PetscErrorCode NodeMatrixSetUpper(NodeMatrix m, const NodeUpper *upper)
+{
+  PetscFunctionBeginUser;
+  PetscCall(SetValues(m, &(NodeValues){.upper = upper}, NULL, NULL));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
