@@ -312,15 +312,14 @@ static void MergeRow(const MatrixRows *term, PetscInt r, NodeRow *row)
   row->n      = n;
 }
 
-/* Tells the pairs of a node their places in its row r. at[rows]: room. */
-static PetscErrorCode PlacePairs(NodeMatrix m, PetscInt node, PetscInt r, PetscInt *at)
+/* Tells the pairs of a node their places in its row r. at: of the columns of this rank in that row. */
+static PetscErrorCode PlacePairs(NodeMatrix m, PetscInt node, PetscInt r, const PetscInt *at)
 {
-  const NodePairs *p   = &m->pairs;
-  const NodeBlock *own = &m->block[MATRIX_OWN], *others = &m->block[MATRIX_OTHERS];
+  const NodePairs *p      = &m->pairs;
+  const NodeBlock *others = &m->block[MATRIX_OTHERS];
   const PetscInt  *column = &others->column[others->ptr[r]], n = others->ptr[r + 1] - others->ptr[r];
 
   PetscFunctionBeginUser;
-  for (PetscInt k = own->ptr[r]; k < own->ptr[r + 1]; k++) at[own->column[k]] = k - own->ptr[r];
   for (PetscInt k = p->ptr[node]; k < p->ptr[node + 1]; k++) {
     for (int c = 0; c < p->size; c++) {
       const PetscInt dof   = p->dof[p->column[k] * p->size + c];
@@ -340,15 +339,17 @@ static PetscErrorCode PlacePairs(NodeMatrix m, PetscInt node, PetscInt r, PetscI
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Notes where the entries of a term's row are in row r of the matrix. */
-static void PlaceTerm(NodeMatrix m, PetscInt r, int b, const MatrixRows *term, PetscInt *place)
+/* Notes where the entries of a term's row are in row r of the matrix. at: as of PlacePairs(). */
+static void PlaceTerm(NodeMatrix m, PetscInt r, int t, MatrixRows term[MATRIX_BLOCKS], const PetscInt *at)
 {
-  const PetscInt *column = &m->block[b].column[m->block[b].ptr[r]];
-  PetscInt        at     = 0;
+  const MatrixRows *own = &term[MATRIX_OWN], *others = &term[MATRIX_OTHERS];
+  const PetscInt   *column = &m->block[MATRIX_OTHERS].column[m->block[MATRIX_OTHERS].ptr[r]];
+  PetscInt          next   = 0;
 
-  for (PetscInt k = term->ptr[r]; k < term->ptr[r + 1]; k++) {
-    while (column[at] < Column(term, k)) at++;
-    place[k] = at;
+  for (PetscInt k = own->ptr[r]; k < own->ptr[r + 1]; k++) m->term[t].place[MATRIX_OWN][k] = at[own->column[k]];
+  for (PetscInt k = others->mat ? others->ptr[r] : 0; others->mat && k < others->ptr[r + 1]; k++) {
+    while (column[next] < Column(others, k)) next++;
+    m->term[t].place[MATRIX_OTHERS][k] = next;
   }
 }
 
@@ -364,9 +365,10 @@ static PetscErrorCode AppendRow(NodeMatrix m, PetscInt r, MatrixRows terms[TERMS
       if (terms[t][b].mat) MergeRow(&terms[t][b], r, row);
     PetscCall(PetscArraycpy(&block->column[block->ptr[r]], row->column, row->n));
     block->ptr[r + 1] = block->ptr[r] + row->n;
-    for (int t = 0; t < TERMS; t++)
-      if (terms[t][b].mat) PlaceTerm(m, r, b, &terms[t][b], m->term[t].place[b]);
+    for (PetscInt k = 0; b == MATRIX_OWN && k < row->n; k++) at[row->column[k]] = k;
   }
+  for (int t = 0; t < TERMS; t++)
+    if (terms[t][MATRIX_OWN].mat) PlaceTerm(m, r, t, terms[t], at);
   if (m->node[r] >= 0) PetscCall(PlacePairs(m, m->node[r], r, at));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
