@@ -208,18 +208,21 @@ static PetscErrorCode FindEntries(Factor f, Mat A, PetscInt start)
 /* Rows and columns of the entries, from 1 */
 static PetscErrorCode TakePlaces(Factor f, Mat A, PetscInt start)
 {
-  PetscInt n = 0;
+  MUMPS_INT *row = f->row, *column = f->column;
 
   PetscFunctionBeginUser;
   for (int block = 0; block < MATRIX_BLOCKS; block++) {
     MatrixRows rows;
 
     PetscCall(MatrixRowsGet(A, block, &rows));
-    for (PetscInt r = 0; rows.mat && r < rows.n; r++)
-      for (PetscInt k = f->from[block][r]; k < rows.ptr[r + 1]; k++, n++) {
-        f->row[n]    = (MUMPS_INT)(start + r + 1);
-        f->column[n] = (MUMPS_INT)((rows.global ? 0 : start) + Column(&rows, k) + 1);
-      }
+    for (PetscInt r = 0; rows.mat && r < rows.n; r++) {
+      const PetscInt from = f->from[block][r], n = rows.ptr[r + 1] - from, first = rows.global ? 1 : start + 1;
+
+      for (PetscInt k = 0; k < n; k++) row[k] = (MUMPS_INT)(start + r + 1);
+      for (PetscInt k = 0; k < n; k++) column[k] = (MUMPS_INT)(first + Column(&rows, from + k));
+      row += n;
+      column += n;
+    }
     PetscCall(MatrixRowsRestore(&rows));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
