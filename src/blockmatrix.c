@@ -470,6 +470,7 @@ static inline void LookAlong(BlockMatrix blocks, PetscInt r)
 static inline PetscErrorCode Sum(const int size, const PetscBool outer, BlockMatrix blocks, PetscInt n, PetscInt m, const PetscReal *value)
 {
   const PetscInt *at = blocks->at, *seen = blocks->seen;
+  SumRow *const   sums = blocks->sum; /* else it would be read again after every sum, which may be anything */
 
   PetscFunctionBeginUser;
   for (PetscInt i = 0; i < n; i++) {
@@ -480,13 +481,14 @@ static inline PetscErrorCode Sum(const int size, const PetscBool outer, BlockMat
     for (PetscInt j = i; j < n; j++) {
       const PetscInt   k    = seen[at[j]];
       const PetscReal *from = row + j * size;
+      SumRow          *sum  = &sums[k * size];
 
       PetscCheck(k >= first && k < end, PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE, "a block couples nodes that no named one does");
       for (int d = 0; d < size; d++) {
         if (outer)
-          blocks->sum[k * size + d] += value[i * size + d] * *(const SumRow *)from;
+          sum[d] += value[i * size + d] * *(const SumRow *)from;
         else
-          blocks->sum[k * size + d] += *(const SumRow *)(from + d * m);
+          sum[d] += *(const SumRow *)(from + d * m);
       }
     }
   }
