@@ -273,15 +273,16 @@ static PetscErrorCode TakeRoom(NodeMatrix m, MatrixRows terms[TERMS][MATRIX_BLOC
 /* The columns of a row's pairs in one block; each occurs once. */
 static PetscErrorCode GatherPairs(NodeMatrix m, PetscInt node, int block, NodeRow *row)
 {
-  const NodePairs *p      = &m->pairs;
-  const PetscInt   first  = block == MATRIX_OWN ? m->first : 0;
+  const NodePairs *p     = &m->pairs;
+  const PetscInt   first = block == MATRIX_OWN ? m->first : 0, size = p->size;
   PetscBool        rising = PETSC_TRUE;
 
   PetscFunctionBeginUser;
   row->n = 0;
-  for (PetscInt k = node < 0 ? 0 : p->ptr[node]; node >= 0 && k < p->ptr[node + 1]; k++) {
-    for (int c = 0; c < p->size; c++) {
-      const PetscInt dof = p->dof[p->column[k] * p->size + c];
+  if (node < 0 || (block == MATRIX_OTHERS && m->inner[node])) PetscFunctionReturn(PETSC_SUCCESS);
+  for (PetscInt k = p->ptr[node]; k < p->ptr[node + 1]; k++) {
+    for (PetscInt c = 0; c < size; c++) {
+      const PetscInt dof = p->dof[p->column[k] * size + c];
 
       if (dof < 0 || IsMine(m, dof) != (block == MATRIX_OWN)) continue;
       rising                = (PetscBool)(rising && (!row->n || dof - first > row->column[row->n - 1]));
@@ -408,6 +409,12 @@ static PetscErrorCode AppendSame(NodeMatrix m, PetscInt r)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* A row without entries */
+static void AppendNone(NodeMatrix m, PetscInt r)
+{
+  for (int b = 0; b < MATRIX_BLOCKS; b++) m->block[b].ptr[r + 1] = m->block[b].ptr[r];
+}
+
 /* Does some term have entries in this row? */
 static PetscBool IsShared(PetscInt r, MatrixRows terms[TERMS][MATRIX_BLOCKS])
 {
@@ -513,10 +520,12 @@ PetscErrorCode NodeMatrixJoin(NodeMatrix m, Mat other)
   for (PetscInt r = 0; r < m->rows; r++) {
     if (IsSame(m, r))
       PetscCall(AppendSame(m, r));
-    else if (m->node[r] >= 0 && m->inner[m->node[r]] && !IsShared(r, terms))
+    else if (IsShared(r, terms) || (m->node[r] >= 0 && !m->inner[m->node[r]]))
+      PetscCall(AppendRow(m, r, terms, &row, at));
+    else if (m->node[r] >= 0)
       AppendInner(m, r);
     else
-      PetscCall(AppendRow(m, r, terms, &row, at));
+      AppendNone(m, r);
     PetscCall(FindDiagonal(m, r));
   }
   PetscCall(PetscFree2(room, at));
