@@ -16,7 +16,7 @@ typedef struct {
   const PetscInt *ptr, *column; /* pairs of nodes, row by row, each once */
 } NodePairs;
 
-/* Values of pairs: `size` rows of `width` numbers, of which the first `size` count, for each pair on or above the diagonal */
+/* Values of pairs of a symmetric sum: `size` rows of `width` numbers, of which the first `size` count, for each pair on the diagonal (whole) or above it */
 typedef struct {
   const PetscReal *value;
   PetscInt         width;
@@ -27,7 +27,7 @@ typedef struct {
 /* For `rows` rows on this rank; the arrays of the pairs are borrowed. Collective. */
 PetscErrorCode NodeMatrixCreate(MPI_Comm, PetscInt rows, const NodePairs *, NodeMatrix *);
 PetscErrorCode NodeMatrixDestroy(NodeMatrix *);
-/* The pattern of the pairs and of another matrix (NULL: none), without values. Collective. */
+/* The pattern of the pairs and of another matrix (NULL: none), without values; where the other's entries are in it is noted. Collective. */
 PetscErrorCode NodeMatrixJoin(NodeMatrix, Mat other);
 /* The values: size x size blocks, row-major, in the order of the pairs, and those of the other matrix of the last NodeMatrixJoin() (NULL: not added);
    diagonal: of the blocks alone (NULL: not asked for). Collective. */
