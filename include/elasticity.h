@@ -21,11 +21,11 @@ PetscErrorCode ElasticityAddBlock(Elasticity, PetscInt n, const PetscInt nodes[]
 PetscErrorCode ElasticityMultiplyLocal(Elasticity, const PetscReal *x, PetscReal *y);
 /* Whether the tangent is symmetric (default: yes); no as soon as somebody adds unsymmetric blocks. Before the first ElasticityMatrix(). */
 PetscErrorCode ElasticitySetSymmetric(Elasticity, PetscBool);
-/* The matrix over the global free dofs: created by the first call, filled from the local block CSR. The elasticity keeps ownership. Collective. */
-PetscErrorCode ElasticityMatrix(Elasticity, Mat *);
-/* Room in it for the entries of another matrix, before the next ElasticityMatrix(); and these added, after it. Collective. */
-PetscErrorCode ElasticityMatrixJoin(Elasticity, Mat);
-PetscErrorCode ElasticityMatrixAdd(Elasticity, Mat);
+/* The matrix over the global free dofs: created by the first call, filled from the local block CSR, plus another matrix for which there is room (NULL: none);
+   diagonal: without that one (NULL: not asked for). The elasticity keeps ownership. Collective. */
+PetscErrorCode ElasticityMatrix(Elasticity, Mat C, Vec diagonal, Mat *);
+/* Room in it for the entries of another matrix, before the next ElasticityMatrix(). Collective. */
+PetscErrorCode ElasticityMatrixJoin(Elasticity, Mat C);
 /* Cauchy stress at the nodes: in each cell the least-squares fit by the corner shape functions to the quadrature points' stress, averaged
    over the cells around a node by their volume (of each body apart is not needed: bodies share no nodes). stress n_nodes*6 (xx yy zz xy yz
    xz; axisymmetric rr zz hoop rz) and the weights n_nodes are set to this rank's share, to be summed over ranks and divided by the caller. */

@@ -5,6 +5,9 @@
    other matrices and the solver's analysis (half of a factorisation at 10,000 dofs), a zero costs fill. Contact that moves on seldom reaches it. */
 #define BLOCK_SLACK 1.5
 
+/* Number of a node while nodes are listed */
+enum { BLOCK_LISTED = -2 };
+
 /* A row of a pair's sum, filled up to a vector of the machine's; what is beyond the pair's own columns is not used */
 enum { ROW = BLOCK_PADDING + 1 };
 typedef double SumRow __attribute__((vector_size(ROW * sizeof(double)), aligned(sizeof(double)), may_alias)); /* as PetscMalloc() aligns, and within arrays */
@@ -14,7 +17,7 @@ typedef struct {
   PetscInt at, node;
 } BlockRow;
 
-/* A pattern that was put aside, as the block matrix holds its own; pair_ptr NULL: there was no matrix */
+/* Nodes by ascending keys with their dofs (n_nodes*size); blocks overlap: every pair of nodes once, row by row, ascending; pair_ptr NULL: there is no matrix */
 typedef struct {
   PetscInt n_nodes, *key, *dof, *pair_ptr, *pair;
 } BlockPattern;
@@ -29,15 +32,13 @@ struct _n_BlockMatrix {
   PetscInt         nodes_room, *node;      /* of the blocks one after another, by ascending key, those without one last: place in the list */
   NodeMatrix       matrix;
   PetscInt         n_pattern, *pattern; /* of the blocks: number of nodes with keys and these keys of block after block; key: the first dof */
-  PetscInt         n_nodes, *key, *dof; /* of the matrix: keys ascending, dofs (n_nodes*size) */
-  PetscInt        *pair_ptr, *pair;     /* blocks overlap: every pair of nodes once, row by row, ascending */
+  BlockPattern     own;                 /* of the matrix */
   PetscInt        *diagonal, *above;    /* of each row: its first pair that is not below the diagonal; which of those of all rows that is */
-  PetscInt        *mirror;              /* of the pairs above the diagonal: the pair with row and column swapped */
+  PetscInt        *of_pair;             /* the sum of each pair: its own, below the diagonal that of its mirror image */
   PetscInt        *row_ptr;             /* of each node, its rows in the blocks */
   BlockRow        *row;
   PetscInt        *seen, *at; /* of each node of the matrix: the last sum in whose column it stood; at: numbers of the block at hand */
   SumRow          *sum;       /* [pairs not below the diagonal][size] */
-  PetscReal       *value;     /* the matrix' values, pair by pair */
   const PetscReal *along;     /* what blocks are multiplied with as they are added, or NULL */
   PetscReal       *product;
   PetscBool        restored; /* the matrix is not the one that its user knows */
@@ -71,25 +72,13 @@ static PetscErrorCode DestroyPattern(BlockPattern *pattern)
   PetscCall(PetscFree(pattern->dof));
   PetscCall(PetscFree(pattern->pair_ptr));
   PetscCall(PetscFree(pattern->pair));
-  pattern->n_nodes = 0;
+  *pattern = (BlockPattern){0};
   PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Takes the pattern out of the block matrix. */
-static BlockPattern TakePattern(BlockMatrix blocks)
-{
-  const BlockPattern pattern = {blocks->n_nodes, blocks->key, blocks->dof, blocks->pair_ptr, blocks->pair};
-
-  blocks->n_nodes = 0;
-  blocks->key = blocks->dof = blocks->pair_ptr = blocks->pair = NULL;
-  return pattern;
 }
 
 /* BlockMatrixDestroy - Collective. */
 PetscErrorCode BlockMatrixDestroy(BlockMatrix *blocks)
 {
-  BlockPattern own;
-
   PetscFunctionBeginUser;
   if (!*blocks) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(DestroyLists(*blocks));
@@ -97,15 +86,14 @@ PetscErrorCode BlockMatrixDestroy(BlockMatrix *blocks)
   PetscCall(PetscFree((*blocks)->of));
   PetscCall(PetscFree((*blocks)->node));
   PetscCall(PetscFree((*blocks)->pattern));
-  own = TakePattern(*blocks);
-  PetscCall(DestroyPattern(&own));
+  PetscCall(DestroyPattern(&(*blocks)->own));
   PetscCall(DestroyPattern(&(*blocks)->marked));
   PetscCall(PetscFree2((*blocks)->diagonal, (*blocks)->above));
-  PetscCall(PetscFree((*blocks)->mirror));
+  PetscCall(PetscFree((*blocks)->of_pair));
   PetscCall(PetscFree((*blocks)->row_ptr));
   PetscCall(PetscFree((*blocks)->row));
   PetscCall(PetscFree2((*blocks)->seen, (*blocks)->at));
-  PetscCall(PetscFree2((*blocks)->sum, (*blocks)->value));
+  PetscCall(PetscFree((*blocks)->sum));
   PetscCall(NodeMatrixDestroy(&(*blocks)->matrix));
   PetscCall(PetscFree(*blocks));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -202,20 +190,27 @@ static PetscErrorCode BlocksPattern(BlockMatrix blocks, PetscInt *n, PetscInt **
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The nodes that occur in the pattern, ascending, each once, with their dofs. */
+/* The nodes that blocks have, ascending, each once, with room for their dofs. */
 static PetscErrorCode ListNodes(BlockMatrix blocks)
 {
   PetscInt n = 0;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscFree(blocks->key));
-  PetscCall(PetscMalloc1(blocks->n_pattern, &blocks->key));
-  for (PetscInt at = 0; at < blocks->n_pattern; at += 1 + blocks->pattern[at])
-    for (PetscInt i = 1; i <= blocks->pattern[at]; i++) blocks->key[n++] = blocks->pattern[at + i];
-  PetscCall(PetscSortRemoveDupsInt(&n, blocks->key));
-  blocks->n_nodes = n;
-  PetscCall(PetscFree(blocks->dof));
-  PetscCall(PetscMalloc1(n * blocks->size, &blocks->dof));
+  PetscCall(PetscFree(blocks->own.key));
+  PetscCall(PetscMalloc1(blocks->n_pattern, &blocks->own.key));
+  for (PetscInt b = 0; b < blocks->n; b++) {
+    for (PetscInt i = blocks->ptr[b]; i < blocks->ptr[b + 1]; i++) {
+      const PetscInt node = blocks->list[blocks->of[b]] + blocks->node[i];
+
+      if (blocks->list_key[node] < 0 || blocks->list_number[node] == BLOCK_LISTED) continue;
+      blocks->list_number[node] = BLOCK_LISTED;
+      blocks->own.key[n++]      = blocks->list_key[node];
+    }
+  }
+  PetscCall(PetscSortRemoveDupsInt(&n, blocks->own.key)); /* of several lists */
+  blocks->own.n_nodes = n;
+  PetscCall(PetscFree(blocks->own.dof));
+  PetscCall(PetscMalloc1(n * blocks->size, &blocks->own.dof));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -234,12 +229,12 @@ static PetscErrorCode NumberNodes(BlockMatrix blocks, PetscBool fresh, PetscBool
       PetscInt      *at   = &blocks->list_number[node];
 
       if (*at >= 0 || blocks->list_key[node] < 0) continue;
-      PetscCall(PetscFindInt(blocks->list_key[node], blocks->n_nodes, blocks->key, at));
+      PetscCall(PetscFindInt(blocks->list_key[node], blocks->own.n_nodes, blocks->own.key, at));
       if (*at < 0) {
         *at    = -1;
         *known = PETSC_FALSE;
       } else if (fresh)
-        PetscCall(PetscArraycpy(&blocks->dof[*at * size], &blocks->list_dof[node * size], size));
+        PetscCall(PetscArraycpy(&blocks->own.dof[*at * size], &blocks->list_dof[node * size], size));
     }
   }
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -253,14 +248,14 @@ static PetscErrorCode GroupRows(BlockMatrix blocks, PetscInt *number)
   PetscFunctionBeginUser;
   PetscCall(PetscFree(blocks->row_ptr));
   PetscCall(PetscFree(blocks->row));
-  PetscCall(PetscCalloc1(blocks->n_nodes + 2, &ptr));
+  PetscCall(PetscCalloc1(blocks->own.n_nodes + 2, &ptr));
   PetscCall(PetscMalloc1(blocks->n_pattern, &blocks->row));
   for (PetscInt at = 0; at < blocks->n_pattern; at += 1 + blocks->pattern[at], block++) {
     const PetscInt first = blocks->list[blocks->of[block]], *node = &blocks->node[blocks->ptr[block]];
 
     for (PetscInt i = 0; i < blocks->pattern[at]; i++) ptr[(number[at + 1 + i] = blocks->list_number[first + node[i]]) + 2]++;
   }
-  for (PetscInt r = 0; r < blocks->n_nodes; r++) ptr[r + 2] += ptr[r + 1];
+  for (PetscInt r = 0; r < blocks->own.n_nodes; r++) ptr[r + 2] += ptr[r + 1];
   for (PetscInt at = 0; at < blocks->n_pattern; at += 1 + blocks->pattern[at])
     for (PetscInt i = 0; i < blocks->pattern[at]; i++) /* moves ptr[r + 1] from the start of r's to their end */
       blocks->row[ptr[number[at + 1 + i] + 1]++] = (BlockRow){.at = at + 1, .node = i};
@@ -268,62 +263,93 @@ static PetscErrorCode GroupRows(BlockMatrix blocks, PetscInt *number)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The pairs of nodes that some block couples, each once, row by row. Blocks overlap several times over, so this spares the parallel matrix most of
-   the entries. */
-static PetscErrorCode ListPairs(BlockMatrix blocks, const PetscInt *number)
+/* The pairs on and above the diagonal that some block couples, each once, row by row, in no order. ptr[n_nodes + 1]: out; *pair: out, to be freed. */
+static PetscErrorCode ListUpper(BlockMatrix blocks, const PetscInt *number, PetscInt *ptr, PetscInt **pair)
 {
-  const BlockRow *row = blocks->row;
-  PetscInt        n = 0, room = 0, *pair, *seen;
+  const BlockRow *row  = blocks->row;
+  PetscInt        room = 0, *seen;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscFree(blocks->pair_ptr));
-  PetscCall(PetscFree(blocks->pair));
-  for (PetscInt at = 0; at < blocks->n_pattern; at += 1 + blocks->pattern[at]) room += PetscSqr(blocks->pattern[at]);
-  PetscCall(PetscMalloc2(room, &pair, blocks->n_nodes, &seen));
-  PetscCall(PetscMalloc1(blocks->n_nodes + 1, &blocks->pair_ptr));
-  for (PetscInt r = 0; r < blocks->n_nodes; r++) seen[r] = -1;
-  for (PetscInt r = 0; r < blocks->n_nodes; r++) {
-    blocks->pair_ptr[r] = n;
+  for (PetscInt at = 0; at < blocks->n_pattern; at += 1 + blocks->pattern[at]) room += blocks->pattern[at] * (blocks->pattern[at] + 1) / 2;
+  PetscCall(PetscMalloc1(room, pair));
+  PetscCall(PetscMalloc1(blocks->own.n_nodes, &seen));
+  for (PetscInt r = 0; r < blocks->own.n_nodes; r++) seen[r] = -1;
+  ptr[0] = 0;
+  for (PetscInt r = 0; r < blocks->own.n_nodes; r++) {
+    ptr[r + 1] = ptr[r];
     for (PetscInt k = blocks->row_ptr[r]; k < blocks->row_ptr[r + 1]; k++) {
-      for (PetscInt j = 0; j < blocks->pattern[row[k].at - 1]; j++) {
+      for (PetscInt j = row[k].node; j < blocks->pattern[row[k].at - 1]; j++) {
         const PetscInt column = number[row[k].at + j];
 
         if (seen[column] == r) continue;
-        seen[column] = r;
-        pair[n++]    = column;
+        seen[column]          = r;
+        (*pair)[ptr[r + 1]++] = column;
       }
     }
-    PetscCall(PetscSortInt(n - blocks->pair_ptr[r], &pair[blocks->pair_ptr[r]])); /* so the matrix need not sort its rows */
   }
-  blocks->pair_ptr[blocks->n_nodes] = n;
-  PetscCall(PetscMalloc1(n, &blocks->pair));
-  PetscCall(PetscArraycpy(blocks->pair, pair, n));
-  PetscCall(PetscFree2(pair, seen));
+  PetscCall(PetscFree(seen));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Finds the diagonal, and the image of each pair above it. */
-static PetscErrorCode ListMirrors(BlockMatrix blocks)
+/* The pairs of nodes that some block couples, each once, row by row, ascending. Blocks overlap several times over, so this spares the parallel matrix most of
+   the entries. Nothing is sorted: who has a node in its row is found in ascending order. */
+static PetscErrorCode ListPairs(BlockMatrix blocks, const PetscInt *number)
 {
-  const PetscInt *ptr = blocks->pair_ptr, n = ptr[blocks->n_nodes];
+  const PetscInt n = blocks->own.n_nodes;
+  PetscInt      *ptr, *next, *upper_ptr, *upper, *pair;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscFree(blocks->own.pair_ptr));
+  PetscCall(PetscFree(blocks->own.pair));
+  PetscCall(PetscCalloc1(n + 1, &ptr));
+  PetscCall(PetscMalloc2(n, &next, n + 1, &upper_ptr));
+  PetscCall(ListUpper(blocks, number, upper_ptr, &upper));
+  for (PetscInt r = 0; r < n; r++) {
+    ptr[r + 1] += upper_ptr[r + 1] - upper_ptr[r];
+    for (PetscInt k = upper_ptr[r]; k < upper_ptr[r + 1]; k++) ptr[upper[k] + 1] += upper[k] > r;
+  }
+  for (PetscInt r = 0; r < n; r++) ptr[r + 1] += ptr[r];
+  PetscCall(PetscArraycpy(next, ptr, n));
+  PetscCall(PetscMalloc1(ptr[n], &pair));
+  for (PetscInt r = 0; r < n; r++) /* below the diagonal */
+    for (PetscInt k = upper_ptr[r]; k < upper_ptr[r + 1]; k++)
+      if (upper[k] > r) pair[next[upper[k]]++] = r;
+  for (PetscInt r = 0; r < n; r++) { /* and the rest */
+    const PetscInt diagonal = next[r]++;
+
+    pair[diagonal] = r;
+    for (PetscInt k = ptr[r]; k < diagonal; k++) pair[next[pair[k]]++] = r;
+  }
+  PetscCall(PetscFree(upper));
+  PetscCall(PetscFree2(next, upper_ptr));
+  blocks->own.pair_ptr = ptr;
+  blocks->own.pair     = pair;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Finds the diagonal, and the sum of each pair: there is one for it and its mirror image. */
+static PetscErrorCode ListSums(BlockMatrix blocks)
+{
+  const PetscInt *ptr = blocks->own.pair_ptr, n = ptr[blocks->own.n_nodes];
   PetscInt       *next;
 
   PetscFunctionBeginUser;
   PetscCall(PetscFree2(blocks->diagonal, blocks->above));
-  PetscCall(PetscFree(blocks->mirror));
+  PetscCall(PetscFree(blocks->of_pair));
   PetscCall(PetscFree2(blocks->seen, blocks->at));
-  PetscCall(PetscMalloc2(blocks->n_nodes, &blocks->diagonal, blocks->n_nodes + 1, &blocks->above));
+  PetscCall(PetscMalloc2(blocks->own.n_nodes, &blocks->diagonal, blocks->own.n_nodes + 1, &blocks->above));
   blocks->above[0] = 0;
-  PetscCall(PetscMalloc1(n, &blocks->mirror));
-  PetscCall(PetscMalloc2(blocks->n_nodes, &blocks->seen, blocks->n_nodes, &blocks->at));
-  PetscCall(PetscMalloc1(blocks->n_nodes, &next)); /* of each row: the pair below the diagonal whose image comes next; images come in the order of rows */
-  for (PetscInt r = 0; r < blocks->n_nodes; r++) {
+  PetscCall(PetscMalloc1(n, &blocks->of_pair));
+  PetscCall(PetscMalloc2(blocks->own.n_nodes, &blocks->seen, blocks->own.n_nodes, &blocks->at));
+  PetscCall(PetscMalloc1(blocks->own.n_nodes, &next)); /* of each row: the pair below the diagonal whose image comes next; images come in the order of rows */
+  for (PetscInt r = 0; r < blocks->own.n_nodes; r++) {
     next[r] = ptr[r];
-    for (blocks->diagonal[r] = ptr[r]; blocks->diagonal[r] < ptr[r + 1] && blocks->pair[blocks->diagonal[r]] < r;) blocks->diagonal[r]++;
+    for (blocks->diagonal[r] = ptr[r]; blocks->diagonal[r] < ptr[r + 1] && blocks->own.pair[blocks->diagonal[r]] < r;) blocks->diagonal[r]++;
     blocks->above[r + 1] = blocks->above[r] + ptr[r + 1] - blocks->diagonal[r];
   }
-  for (PetscInt r = 0; r < blocks->n_nodes; r++)
-    for (PetscInt k = blocks->diagonal[r]; k < ptr[r + 1]; k++) blocks->mirror[k] = next[blocks->pair[k]]++;
+  for (PetscInt r = 0; r < blocks->own.n_nodes; r++)
+    for (PetscInt k = blocks->diagonal[r]; k < ptr[r + 1]; k++)
+      blocks->of_pair[k] = blocks->of_pair[next[blocks->own.pair[k]]++] = blocks->above[r] + k - blocks->diagonal[r];
   PetscCall(PetscFree(next));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -335,9 +361,9 @@ static PetscErrorCode CountPairs(BlockMatrix blocks, const PetscInt *number, Pet
 
   PetscFunctionBeginUser;
   *used = 0;
-  for (PetscInt r = 0; r < blocks->n_nodes; r++) seen[r] = met[r] = -1;
-  for (PetscInt r = 0; r < blocks->n_nodes; r++) {
-    for (PetscInt k = blocks->diagonal[r]; k < blocks->pair_ptr[r + 1]; k++) seen[blocks->pair[k]] = r;
+  for (PetscInt r = 0; r < blocks->own.n_nodes; r++) seen[r] = met[r] = -1;
+  for (PetscInt r = 0; r < blocks->own.n_nodes; r++) {
+    for (PetscInt k = blocks->diagonal[r]; k < blocks->own.pair_ptr[r + 1]; k++) seen[blocks->own.pair[k]] = r;
     for (PetscInt k = blocks->row_ptr[r]; k < blocks->row_ptr[r + 1]; k++) {
       const BlockRow *row = &blocks->row[k];
 
@@ -369,10 +395,10 @@ static PetscErrorCode PlacePattern(BlockMatrix blocks, PetscBool fresh, PetscBoo
   PetscCall(GroupRows(blocks, number));
   if (fresh) {
     PetscCall(ListPairs(blocks, number));
-    PetscCall(ListMirrors(blocks));
+    PetscCall(ListSums(blocks));
   } else {
     PetscCall(CountPairs(blocks, number, &used));
-    *placed = used >= 0 && blocks->pair_ptr[blocks->n_nodes] <= BLOCK_SLACK * used ? PETSC_TRUE : PETSC_FALSE;
+    *placed = used >= 0 && blocks->own.pair_ptr[blocks->own.n_nodes] <= BLOCK_SLACK * used ? PETSC_TRUE : PETSC_FALSE;
   }
   PetscCall(PetscFree(number));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -381,15 +407,14 @@ static PetscErrorCode PlacePattern(BlockMatrix blocks, PetscBool fresh, PetscBoo
 /* A matrix of `rows` rows on this rank with the pairs that are listed. */
 static PetscErrorCode CreateMatrix(BlockMatrix blocks, PetscInt rows)
 {
-  const NodePairs pairs = {blocks->size, blocks->n_nodes, blocks->dof, blocks->pair_ptr, blocks->pair};
+  const NodePairs pairs = {blocks->size, blocks->own.n_nodes, blocks->own.dof, blocks->own.pair_ptr, blocks->own.pair};
 
   PetscFunctionBeginUser;
   PetscCall(NodeMatrixDestroy(&blocks->matrix));
   PetscCall(NodeMatrixCreate(blocks->comm, rows, &pairs, &blocks->matrix));
   PetscCall(NodeMatrixJoin(blocks->matrix, NULL));
-  PetscCall(PetscFree2(blocks->sum, blocks->value));
-  PetscCall(
-    PetscMalloc2(blocks->above[blocks->n_nodes] * blocks->size, &blocks->sum, blocks->pair_ptr[blocks->n_nodes] * PetscSqr(blocks->size), &blocks->value));
+  PetscCall(PetscFree(blocks->sum));
+  PetscCall(PetscMalloc1(blocks->above[blocks->own.n_nodes] * blocks->size, &blocks->sum));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -417,14 +442,17 @@ PetscErrorCode BlockMatrixPlace(BlockMatrix blocks, PetscInt rows, PetscBool *ch
   all = placed;
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &all, 1, MPI_INT, MPI_LAND, blocks->comm));
   if (!all) {
-    if (!blocks->replaced) blocks->marked = TakePattern(blocks);
+    if (!blocks->replaced) {
+      blocks->marked = blocks->own;
+      blocks->own    = (BlockPattern){0};
+    }
     blocks->replaced = PETSC_TRUE;
     for (PetscInt i = 0; i < blocks->n_listed; i++) blocks->list_number[i] = -1;
     PetscCall(PlacePattern(blocks, PETSC_TRUE, &placed));
     PetscCall(CreateMatrix(blocks, rows));
   }
-  PetscCall(PetscArrayzero(blocks->sum, blocks->above[blocks->n_nodes] * blocks->size));
-  for (PetscInt r = 0; r < blocks->n_nodes; r++) blocks->seen[r] = -1;
+  PetscCall(PetscArrayzero(blocks->sum, blocks->above[blocks->own.n_nodes] * blocks->size));
+  for (PetscInt r = 0; r < blocks->own.n_nodes; r++) blocks->seen[r] = -1;
   *changed         = all && !blocks->restored ? PETSC_FALSE : PETSC_TRUE;
   blocks->restored = PETSC_FALSE;
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -433,7 +461,7 @@ PetscErrorCode BlockMatrixPlace(BlockMatrix blocks, PetscInt rows, PetscBool *ch
 /* Notes where the sums of a row stand. */
 static inline void LookAlong(BlockMatrix blocks, PetscInt r)
 {
-  const PetscInt *pair = &blocks->pair[blocks->diagonal[r]], first = blocks->above[r], n = blocks->above[r + 1] - first;
+  const PetscInt *pair = &blocks->own.pair[blocks->diagonal[r]], first = blocks->above[r], n = blocks->above[r + 1] - first;
 
   for (PetscInt k = 0; k < n; k++) blocks->seen[pair[k]] = first + k;
 }
@@ -442,6 +470,7 @@ static inline void LookAlong(BlockMatrix blocks, PetscInt r)
 static inline PetscErrorCode Sum(const int size, const PetscBool outer, BlockMatrix blocks, PetscInt n, PetscInt m, const PetscReal *value)
 {
   const PetscInt *at = blocks->at, *seen = blocks->seen;
+  SumRow *const   sums = blocks->sum; /* else it would be read again after every sum, which may be anything */
 
   PetscFunctionBeginUser;
   for (PetscInt i = 0; i < n; i++) {
@@ -452,13 +481,14 @@ static inline PetscErrorCode Sum(const int size, const PetscBool outer, BlockMat
     for (PetscInt j = i; j < n; j++) {
       const PetscInt   k    = seen[at[j]];
       const PetscReal *from = row + j * size;
+      SumRow          *sum  = &sums[k * size];
 
       PetscCheck(k >= first && k < end, PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE, "a block couples nodes that no named one does");
       for (int d = 0; d < size; d++) {
         if (outer)
-          blocks->sum[k * size + d] += value[i * size + d] * *(const SumRow *)from;
+          sum[d] += value[i * size + d] * *(const SumRow *)from;
         else
-          blocks->sum[k * size + d] += *(const SumRow *)(from + d * m);
+          sum[d] += *(const SumRow *)(from + d * m);
       }
     }
   }
@@ -560,28 +590,25 @@ void BlockMatrixMultiply(BlockMatrix blocks, const PetscReal *x, PetscReal *y)
   blocks->product = y;
 }
 
-/* The matrix' values: the sums, their mirror images below the diagonal, and those of blocks on the diagonal. */
-static void TakeSums(BlockMatrix blocks)
+/* Fills the sums on the diagonal, of which blocks have the upper triangle. */
+static void FillDiagonal(BlockMatrix blocks)
 {
-  const int size = blocks->size;
+  for (PetscInt r = 0; r < blocks->own.n_nodes; r++) {
+    SumRow *sum = &blocks->sum[blocks->above[r] * blocks->size];
 
-  for (PetscInt r = 0; r < blocks->n_nodes; r++) {
-    for (PetscInt k = blocks->diagonal[r]; k < blocks->pair_ptr[r + 1]; k++) {
-      const SumRow *from  = &blocks->sum[(blocks->above[r] + k - blocks->diagonal[r]) * size];
-      PetscReal    *above = &blocks->value[k * PetscSqr(size)], *below = &blocks->value[blocks->mirror[k] * PetscSqr(size)];
-
-      for (int d = 0; d < size; d++)
-        for (int e = above == below ? d : 0; e < size; e++) above[d * size + e] = below[e * size + d] = from[d][e];
-    }
+    for (int d = 0; d < blocks->size; d++)
+      for (int e = 0; e < d; e++) sum[d][e] = sum[e][d];
   }
 }
 
 /* BlockMatrixEnd - the sum of all ranks' blocks. Collective. */
 PetscErrorCode BlockMatrixEnd(BlockMatrix blocks, Mat *matrix)
 {
+  const NodeUpper values = {(const PetscReal *)blocks->sum, ROW, blocks->of_pair, blocks->diagonal};
+
   PetscFunctionBeginUser;
-  TakeSums(blocks);
-  PetscCall(NodeMatrixSet(blocks->matrix, blocks->value));
+  FillDiagonal(blocks);
+  PetscCall(NodeMatrixSetUpper(blocks->matrix, &values));
   *matrix = NodeMatrixGet(blocks->matrix);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -590,7 +617,7 @@ PetscErrorCode BlockMatrixEnd(BlockMatrix blocks, Mat *matrix)
 static PetscErrorCode RestoreMatrix(BlockMatrix blocks, PetscInt rows)
 {
   PetscFunctionBeginUser;
-  PetscCall(ListMirrors(blocks));
+  PetscCall(ListSums(blocks));
   blocks->n_pattern = -1; /* no blocks' as yet: where the next ones stand in it is found then */
   PetscCall(CreateMatrix(blocks, rows));
   blocks->restored = PETSC_TRUE;
@@ -611,20 +638,13 @@ PetscErrorCode BlockMatrixMark(BlockMatrix blocks)
    Collective. rows: of this rank, as for BlockMatrixPlace(). The matrix of BlockMatrixEnd() is gone if the pattern was another one. */
 PetscErrorCode BlockMatrixReturn(BlockMatrix blocks, PetscInt rows)
 {
-  BlockPattern own;
-
   PetscFunctionBeginUser;
   if (!blocks->replaced) PetscFunctionReturn(PETSC_SUCCESS);
-  own = TakePattern(blocks);
-  PetscCall(DestroyPattern(&own));
-  blocks->n_nodes  = blocks->marked.n_nodes;
-  blocks->key      = blocks->marked.key;
-  blocks->dof      = blocks->marked.dof;
-  blocks->pair_ptr = blocks->marked.pair_ptr;
-  blocks->pair     = blocks->marked.pair;
+  PetscCall(DestroyPattern(&blocks->own));
+  blocks->own      = blocks->marked;
   blocks->marked   = (BlockPattern){0};
   blocks->replaced = PETSC_FALSE;
-  if (blocks->pair_ptr)
+  if (blocks->own.pair_ptr)
     PetscCall(RestoreMatrix(blocks, rows));
   else
     PetscCall(NodeMatrixDestroy(&blocks->matrix));
@@ -638,7 +658,7 @@ PetscErrorCode BlockMatrixReturn(BlockMatrix blocks, PetscInt rows)
 PetscErrorCode BlockMatrixArchive(BlockMatrix blocks, Archive archive, const char *name, PetscInt rows)
 {
   static const char *names[] = {"key", "dof", "pair_ptr", "pair"};
-  PetscInt         **list[]  = {&blocks->key, &blocks->dof, &blocks->pair_ptr, &blocks->pair};
+  PetscInt         **list[]  = {&blocks->own.key, &blocks->own.dof, &blocks->own.pair_ptr, &blocks->own.pair};
   PetscInt           n[4]    = {0, 0, 0, 0};
   PetscMPIInt        size;
   PetscBool          there = blocks->matrix ? PETSC_TRUE : PETSC_FALSE;
@@ -650,10 +670,10 @@ PetscErrorCode BlockMatrixArchive(BlockMatrix blocks, Archive archive, const cha
   if (ArchiveLoads(archive)) PetscCall(ArchiveHas(archive, path, &there));
   if (size > 1 || !there) PetscFunctionReturn(PETSC_SUCCESS);
   if (!ArchiveLoads(archive)) {
-    n[0] = blocks->n_nodes;
-    n[1] = blocks->n_nodes * blocks->size;
-    n[2] = blocks->n_nodes + 1;
-    n[3] = blocks->pair_ptr[blocks->n_nodes];
+    n[0] = blocks->own.n_nodes;
+    n[1] = blocks->own.n_nodes * blocks->size;
+    n[2] = blocks->own.n_nodes + 1;
+    n[3] = blocks->own.pair_ptr[blocks->own.n_nodes];
   }
   for (int k = 0; k < 4; k++) {
     if (ArchiveLoads(archive)) PetscCall(PetscFree(*list[k]));
@@ -661,7 +681,7 @@ PetscErrorCode BlockMatrixArchive(BlockMatrix blocks, Archive archive, const cha
     PetscCall(ArchiveIntegerList(archive, path, &n[k], list[k]));
   }
   if (!ArchiveLoads(archive)) PetscFunctionReturn(PETSC_SUCCESS);
-  blocks->n_nodes = n[0];
+  blocks->own.n_nodes = n[0];
   PetscCall(RestoreMatrix(blocks, rows));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -558,17 +558,19 @@ static PetscErrorCode CreateMatrix(Elasticity e)
   Collective
 
   Input:
-. e - the elasticity
++ e - the elasticity
+- C - the last matrix of ElasticityMatrixJoin(), which is added; NULL: nothing is
 
   Output:
-. matrix - a parallel AIJ matrix, always the same one; belongs to the elasticity
++ diagonal - of the tangent without C, over the global free dofs; NULL: it is not asked for
+- matrix   - a parallel AIJ matrix, always the same one; belongs to the elasticity
 */
-PetscErrorCode ElasticityMatrix(Elasticity e, Mat *matrix)
+PetscErrorCode ElasticityMatrix(Elasticity e, Mat C, Vec diagonal, Mat *matrix)
 {
   PetscFunctionBeginUser;
   if (!e->matrix) PetscCall(CreateMatrix(e));
   PetscCall(PetscLogEventBegin(event_insert, 0, 0, 0, 0));
-  PetscCall(NodeMatrixSet(e->matrix, e->value));
+  PetscCall(NodeMatrixSet(e->matrix, e->value, C, diagonal));
   PetscCall(PetscLogEventEnd(event_insert, 0, 0, 0, 0));
   *matrix = NodeMatrixGet(e->matrix);
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -587,22 +589,6 @@ PetscErrorCode ElasticityMatrixJoin(Elasticity e, Mat C)
 {
   PetscFunctionBeginUser;
   PetscCall(JoinPattern(e, C));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/*
-  ElasticityMatrixAdd - Adds a matrix to what ElasticityMatrix() has made
-
-  Collective
-
-  Input:
-+ e - the elasticity
-- C - its entries have their places in the pattern
-*/
-PetscErrorCode ElasticityMatrixAdd(Elasticity e, Mat C)
-{
-  PetscFunctionBeginUser;
-  PetscCall(NodeMatrixAdd(e->matrix, C));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

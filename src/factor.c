@@ -27,6 +27,9 @@ enum { FACTOR_SCALING = 1 };
 /* Columns that are solved for at a time: enough for products of matrices, few enough for the first rank's memory. */
 enum { FACTOR_COLUMNS = 128 };
 
+/* Memory for entries over what a pattern has, for the next one, which often has few more: new memory costs more than what is written there. */
+#define FACTOR_ROOM 1.25
+
 struct _n_Factor {
   MPI_Comm         comm;
   PetscMPIInt      rank, size, *count, *first; /* rows of each rank */
@@ -34,8 +37,10 @@ struct _n_Factor {
   int              ordering;
   PetscObjectId    matrix; /* the last that was analysed, 0: none; and its pattern */
   PetscObjectState pattern;
-  PetscInt         n, entries, rows; /* of all ranks; of this one, and its rows */
-  MUMPS_INT       *row, *column;     /* entries of this rank, from 1; of a symmetric matrix those on and above the diagonal */
+  PetscInt         n, entries, rows;    /* of all ranks; of this one, and its rows */
+  PetscInt        *from[MATRIX_BLOCKS]; /* of each row and block, its first entry that is taken: of a symmetric matrix none below the diagonal */
+  PetscInt         room;
+  MUMPS_INT       *row, *column; /* entries of this rank, from 1, in memory for `room` */
   PetscScalar     *value;
   MUMPS_INT        workspace; /* ICNTL(14) at first */
   MUMPS_INT       *position;  /* of rows, where the ordering is given; on the first rank, as are: */
@@ -132,6 +137,7 @@ PetscErrorCode FactorDestroy(Factor *factor)
   PetscFunctionBeginUser;
   if (!f) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(Call(f, MUMPS_END));
+  PetscCall(PetscFree2(f->from[MATRIX_OWN], f->from[MATRIX_OTHERS]));
   PetscCall(PetscFree3(f->row, f->column, f->value));
   PetscCall(PetscFree(f->position));
   PetscCall(PetscFree(f->right));
@@ -158,28 +164,85 @@ PetscErrorCode FactorSetOrdering(Factor f, int ordering, PetscBool *chosen)
 
 /* ---------- the matrix ---------- */
 
-/* Takes rows (from 1), columns and values of this rank's entries, each if asked for; *n: how many there are. */
-static PetscErrorCode TakeEntries(Factor f, Mat A, MUMPS_INT *row, MUMPS_INT *column, PetscScalar *value, PetscInt *n)
+static inline PetscInt Column(const MatrixRows *rows, PetscInt k)
 {
-  PetscInt start;
+  return rows->global ? rows->global[rows->column[k]] : rows->column[k];
+}
 
+/* The first entry of row r in or after a column, by bisection: columns ascend. */
+static PetscInt FirstEntry(const MatrixRows *rows, PetscInt r, PetscInt column)
+{
+  PetscInt low = rows->ptr[r], high = rows->ptr[r + 1];
+
+  while (low < high) {
+    const PetscInt middle = low + (high - low) / 2;
+
+    if (Column(rows, middle) < column)
+      low = middle + 1;
+    else
+      high = middle;
+  }
+  return low;
+}
+
+/* Finds and counts the entries of this rank that MUMPS is given. */
+static PetscErrorCode FindEntries(Factor f, Mat A, PetscInt start)
+{
   PetscFunctionBeginUser;
-  *n = 0;
-  PetscCall(MatGetOwnershipRange(A, &start, NULL));
+  PetscCall(PetscFree2(f->from[MATRIX_OWN], f->from[MATRIX_OTHERS]));
+  PetscCall(PetscMalloc2(f->rows, &f->from[MATRIX_OWN], f->rows, &f->from[MATRIX_OTHERS]));
+  f->entries = 0;
   for (int block = 0; block < MATRIX_BLOCKS; block++) {
     MatrixRows rows;
 
     PetscCall(MatrixRowsGet(A, block, &rows));
-    for (PetscInt r = 0; rows.mat && r < rows.n; r++)
-      for (PetscInt k = rows.ptr[r]; k < rows.ptr[r + 1]; k++) {
-        const PetscInt c = rows.global ? rows.global[rows.column[k]] : start + rows.column[k];
+    for (PetscInt r = 0; rows.mat && r < rows.n; r++) {
+      f->from[block][r] = f->symmetric ? FirstEntry(&rows, r, rows.global ? start + r : r) : rows.ptr[r];
+      f->entries += rows.ptr[r + 1] - f->from[block][r];
+    }
+    PetscCall(MatrixRowsRestore(&rows));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
 
-        if (f->symmetric && c < start + r) continue;
-        if (row) row[*n] = (MUMPS_INT)(start + r + 1);
-        if (column) column[*n] = (MUMPS_INT)(c + 1);
-        if (value) value[*n] = rows.value[k];
-        ++*n;
-      }
+/* Rows and columns of the entries, from 1 */
+static PetscErrorCode TakePlaces(Factor f, Mat A, PetscInt start)
+{
+  MUMPS_INT *row = f->row, *column = f->column;
+
+  PetscFunctionBeginUser;
+  for (int block = 0; block < MATRIX_BLOCKS; block++) {
+    MatrixRows rows;
+
+    PetscCall(MatrixRowsGet(A, block, &rows));
+    for (PetscInt r = 0; rows.mat && r < rows.n; r++) {
+      const PetscInt from = f->from[block][r], n = rows.ptr[r + 1] - from, first = rows.global ? 1 : start + 1;
+
+      for (PetscInt k = 0; k < n; k++) row[k] = (MUMPS_INT)(start + r + 1);
+      for (PetscInt k = 0; k < n; k++) column[k] = (MUMPS_INT)(first + Column(&rows, from + k));
+      row += n;
+      column += n;
+    }
+    PetscCall(MatrixRowsRestore(&rows));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode TakeValues(Factor f, Mat A)
+{
+  PetscScalar *value = f->value;
+
+  PetscFunctionBeginUser;
+  for (int block = 0; block < MATRIX_BLOCKS; block++) {
+    MatrixRows rows;
+
+    PetscCall(MatrixRowsGet(A, block, &rows));
+    for (PetscInt r = 0; rows.mat && r < rows.n; r++) {
+      const PetscInt from = f->from[block][r], n = rows.ptr[r + 1] - from;
+
+      PetscCall(PetscArraycpy(value, &rows.value[from], n));
+      value += n;
+    }
     PetscCall(MatrixRowsRestore(&rows));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -189,12 +252,18 @@ static PetscErrorCode TakeEntries(Factor f, Mat A, MUMPS_INT *row, MUMPS_INT *co
 static PetscErrorCode ShowEntries(Factor f, Mat A)
 {
   DMUMPS_STRUC_C *mumps = &f->mumps;
+  PetscInt        start;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscFree3(f->row, f->column, f->value));
-  PetscCall(TakeEntries(f, A, NULL, NULL, NULL, &f->entries));
-  PetscCall(PetscMalloc3(f->entries, &f->row, f->entries, &f->column, f->entries, &f->value));
-  PetscCall(TakeEntries(f, A, f->row, f->column, f->value, &f->entries));
+  PetscCall(MatGetOwnershipRange(A, &start, NULL));
+  PetscCall(FindEntries(f, A, start));
+  if (f->entries > f->room || !f->row) {
+    f->room = (PetscInt)(FACTOR_ROOM * f->entries);
+    PetscCall(PetscFree3(f->row, f->column, f->value));
+    PetscCall(PetscMalloc3(f->room, &f->row, f->room, &f->column, f->room, &f->value));
+  }
+  PetscCall(TakePlaces(f, A, start));
+  PetscCall(TakeValues(f, A));
   if (f->size > 1) {
     mumps->nnz_loc = f->entries;
     mumps->irn_loc = f->row;
@@ -340,7 +409,6 @@ static PetscErrorCode CallFactor(Factor f)
 /* FactorMake - Collective. *reason: as of FactorAnalyse(). A's values are copied. */
 PetscErrorCode FactorMake(Factor f, Mat A, PCFailedReason *reason)
 {
-  PetscInt  n;
   PetscBool is_new;
 
   PetscFunctionBeginUser;
@@ -349,7 +417,7 @@ PetscErrorCode FactorMake(Factor f, Mat A, PCFailedReason *reason)
   if (is_new) PetscCall(FactorAnalyse(f, A, reason));
   f->exists = PETSC_FALSE;
   if (*reason || !f->n) PetscFunctionReturn(PETSC_SUCCESS);
-  if (!is_new) PetscCall(TakeEntries(f, A, NULL, NULL, f->value, &n));
+  if (!is_new) PetscCall(TakeValues(f, A));
   PetscCall(CallFactor(f));
   PetscCall(Tell(f, "factorisation", reason));
   f->exists = *reason ? PETSC_FALSE : PETSC_TRUE;

@@ -34,7 +34,7 @@ PetscErrorCode ModelCreate(Scene scene, Mesh mesh, Model *out)
   if (scene->n_contacts) PetscCall(ContactCreate(mesh, scene, model->elasticity, model->loads, &model->contact));
   PetscCall(PetscCalloc4(n, &model->u, n, &model->work->f, n, &model->work->trial, n, &model->work->accepted_u));
   PetscCall(ElasticityTangent(model->elasticity, model->u));
-  PetscCall(ElasticityMatrix(model->elasticity, &model->A));
+  PetscCall(ElasticityMatrix(model->elasticity, NULL, NULL, &model->A));
   PetscCall(MatCreateVecs(model->A, &model->x, NULL));
   PetscCall(VecDuplicate(model->x, &model->work->accepted_x));
   PetscCall(VecDuplicate(model->x, &model->work->forecast));

@@ -162,16 +162,10 @@ PetscErrorCode ModelTangent(Model model, const PetscReal *u, PetscReal t)
   TimingBegin(TIMING_ASSEMBLY_ELASTIC);
   PetscCall(ElasticityTangent(model->elasticity, u));
   PetscCall(LoadsTangent(model->loads, t, u, model->elasticity));
-  PetscCall(ElasticityMatrix(model->elasticity, &model->A));
-  PetscCall(MatGetDiagonal(model->A, model->work->residual));
+  PetscCall(ElasticityMatrix(model->elasticity, C, model->work->residual, &model->A));
   PetscCall(VecNorm(model->work->residual, NORM_2, &model->work->stiffness));
   TimingEnd(TIMING_ASSEMBLY_ELASTIC);
-  if (model->contact) {
-    TimingBegin(TIMING_ASSEMBLY_CONTACT);
-    PetscCall(ElasticityMatrixAdd(model->elasticity, C));
-    PetscCall(StabiliserTangent(model->work->stabiliser, model->A));
-    TimingEnd(TIMING_ASSEMBLY_CONTACT);
-  }
+  PetscCall(StabiliserTangent(model->work->stabiliser, model->A));
   PetscCall(LinearSolverNext(model->work->solver, u, C, changed, terms, &older));
   PetscCall(SNESSetLagPreconditioner(model->snes, older ? -1 : 1)); /* after each tangent SNES tells the KSP so */
   if (older && terms > 0) PetscCall(ModelUpdateFactor(model, terms));

@@ -15,10 +15,29 @@ typedef struct {
   PetscScalar *value;
 } NodeBlock;
 
-/* Columns of one row, ascending: those of ranks before, of this one, of ranks after */
+/* Columns of one row in one block as they are gathered, ascending, and room for more */
 typedef struct {
-  PetscInt *column, n, before, own;
+  PetscInt *column, *room, n;
 } NodeRow;
+
+/* A matrix that the pattern was joined with, by its number; place: of each of its entries in a first row of a node, in the row of the sum. Other rows of the
+   node are alike. */
+typedef struct {
+  PetscObjectId matrix;
+  PetscInt      n[MATRIX_BLOCKS], room[MATRIX_BLOCKS], *place[MATRIX_BLOCKS];
+} NodeTerm;
+
+/* The values of pairs: all blocks, in the order of the pairs, or (not NULL) those of a symmetric matrix */
+typedef struct {
+  const PetscReal *all;
+  const NodeUpper *upper;
+} NodeValues;
+
+/* One row of a block: its first value and the distance to the next */
+typedef struct {
+  const PetscReal *value;
+  PetscInt         step;
+} ValueRow;
 
 struct _n_NodeMatrix {
   MPI_Comm     comm;
@@ -30,6 +49,8 @@ struct _n_NodeMatrix {
   PetscInt     longest;     /* entries of a row without other terms */
   PetscInt    *place;       /* of each pair and dof of its column in the row: k: in the rank's own block, -1 - k: in the other ranks' */
   NodeBlock    block[MATRIX_BLOCKS];
+  NodeTerm     term[TERMS];
+  PetscInt    *diagonal;        /* of each row, the place of its diagonal in its own block, -1: it has none */
   Mat          matrix, foreign; /* foreign: sum of what ranks have for rows of others; NULL: there is one rank */
   PetscInt     n_foreign, *foreign_node, foreign_pairs;
   PetscScalar *foreign_value;
@@ -38,6 +59,27 @@ struct _n_NodeMatrix {
 static PetscBool IsMine(NodeMatrix m, PetscInt dof)
 {
   return (PetscBool)(dof >= m->first && dof < m->first + m->rows);
+}
+
+static inline PetscInt Column(const MatrixRows *rows, PetscInt k)
+{
+  return rows->global ? rows->global[rows->column[k]] : rows->column[k];
+}
+
+static inline PetscBool IsSymmetric(const NodeValues *values)
+{
+  return values->upper ? PETSC_TRUE : PETSC_FALSE;
+}
+
+/* Row d of pair k of a node; size and symmetric constants where loops are to unroll */
+static inline ValueRow FindValues(const int size, const PetscBool symmetric, const NodeValues *values, PetscInt node, PetscInt k, int d)
+{
+  const NodeUpper *upper = values->upper;
+  const PetscReal *block;
+
+  if (!symmetric) return (ValueRow){&values->all[((size_t)k * size + d) * size], 1};
+  block = &upper->value[(size_t)upper->block[k] * size * upper->width];
+  return k < upper->diagonal[node] ? (ValueRow){&block[d], upper->width} : (ValueRow){&block[d * upper->width], 1};
 }
 
 /* ---------- rows of other ranks ---------- */
@@ -70,18 +112,22 @@ static PetscErrorCode CreateForeign(NodeMatrix m)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode SetForeign(NodeMatrix m, const PetscReal *value)
+static PetscErrorCode SetForeign(NodeMatrix m, const NodeValues *values)
 {
-  const NodePairs *p     = &m->pairs;
-  const PetscInt   block = p->size * p->size;
-  PetscInt         n     = 0;
+  const NodePairs *p = &m->pairs;
+  PetscInt         n = 0;
 
   PetscFunctionBeginUser;
   for (PetscInt f = 0; f < m->n_foreign; f++) {
-    const PetscInt from = p->ptr[m->foreign_node[f]], count = (p->ptr[m->foreign_node[f] + 1] - from) * block;
+    const PetscInt node = m->foreign_node[f];
 
-    PetscCall(PetscArraycpy(&m->foreign_value[n], &value[(size_t)from * block], count));
-    n += count;
+    for (PetscInt k = p->ptr[node]; k < p->ptr[node + 1]; k++) {
+      for (int d = 0; d < p->size; d++) {
+        const ValueRow row = FindValues(p->size, IsSymmetric(values), values, node, k, d);
+
+        for (int c = 0; c < p->size; c++) m->foreign_value[n++] = row.value[c * row.step];
+      }
+    }
   }
   PetscCall(MatSetValuesCOO(m->foreign, m->foreign_value, INSERT_VALUES));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -169,7 +215,7 @@ PetscErrorCode NodeMatrixCreate(MPI_Comm comm, PetscInt rows, const NodePairs *p
   PetscCall(FindNodes(m));
   PetscCall(PetscCalloc2(pairs->n, &m->inner, pairs->n, &m->placed));
   LookAtRows(m);
-  PetscCall(PetscMalloc1(pairs->ptr[pairs->n] * pairs->size, &m->place));
+  PetscCall(PetscMalloc2(pairs->ptr[pairs->n] * pairs->size, &m->place, rows, &m->diagonal));
   PetscCallMPI(MPI_Comm_size(comm, &size));
   if (size > 1) PetscCall(CreateForeign(m));
   *out = m;
@@ -187,10 +233,12 @@ PetscErrorCode NodeMatrixDestroy(NodeMatrix *matrix)
   PetscCall(MatDestroy(&m->foreign));
   for (int b = 0; b < MATRIX_BLOCKS; b++) PetscCall(PetscFree(m->block[b].ptr));
   for (int b = 0; b < MATRIX_BLOCKS; b++) PetscCall(PetscFree2(m->block[b].column, m->block[b].value));
+  for (int t = 0; t < TERMS; t++)
+    for (int b = 0; b < MATRIX_BLOCKS; b++) PetscCall(PetscFree(m->term[t].place[b]));
   PetscCall(PetscFree2(m->node, m->foreign_node));
   PetscCall(PetscFree2(m->inner, m->placed));
   PetscCall(PetscFree(m->foreign_value));
-  PetscCall(PetscFree(m->place));
+  PetscCall(PetscFree2(m->place, m->diagonal));
   PetscCall(PetscFree(*matrix));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -222,66 +270,107 @@ static PetscErrorCode TakeRoom(NodeMatrix m, MatrixRows terms[TERMS][MATRIX_BLOC
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The columns of a row in the pairs and in the terms. */
-static PetscErrorCode GatherRow(NodeMatrix m, PetscInt r, MatrixRows terms[TERMS][MATRIX_BLOCKS], NodeRow *row)
+/* The columns of a row's pairs in one block; each occurs once. */
+static PetscErrorCode GatherPairs(NodeMatrix m, PetscInt node, int block, NodeRow *row)
 {
-  const NodePairs *p    = &m->pairs;
-  const PetscInt   node = m->node[r];
-  PetscInt         n    = 0;
+  const NodePairs *p     = &m->pairs;
+  const PetscInt   first = block == MATRIX_OWN ? m->first : 0, size = p->size;
+  PetscBool        rising = PETSC_TRUE;
 
   PetscFunctionBeginUser;
-  for (PetscInt k = node < 0 ? 0 : p->ptr[node]; node >= 0 && k < p->ptr[node + 1]; k++)
-    for (int c = 0; c < p->size; c++)
-      if (p->dof[p->column[k] * p->size + c] >= 0) row->column[n++] = p->dof[p->column[k] * p->size + c];
-  for (int t = 0; t < TERMS; t++) {
-    for (int b = 0; b < MATRIX_BLOCKS; b++) {
-      const MatrixRows *term = &terms[t][b];
+  row->n = 0;
+  if (node < 0 || (block == MATRIX_OTHERS && m->inner[node])) PetscFunctionReturn(PETSC_SUCCESS);
+  for (PetscInt k = p->ptr[node]; k < p->ptr[node + 1]; k++) {
+    for (PetscInt c = 0; c < size; c++) {
+      const PetscInt dof = p->dof[p->column[k] * size + c];
 
-      for (PetscInt l = term->mat ? term->ptr[r] : 0; term->mat && l < term->ptr[r + 1]; l++)
-        row->column[n++] = term->global ? term->global[term->column[l]] : m->first + term->column[l];
+      if (dof < 0 || IsMine(m, dof) != (block == MATRIX_OWN)) continue;
+      rising                = (PetscBool)(rising && (!row->n || dof - first > row->column[row->n - 1]));
+      row->column[row->n++] = dof - first;
     }
   }
-  PetscCall(PetscSortRemoveDupsInt(&n, row->column));
-  row->n = n;
-  for (row->before = 0; row->before < n && row->column[row->before] < m->first;) row->before++;
-  for (row->own = 0; row->before + row->own < n && IsMine(m, row->column[row->before + row->own]);) row->own++;
+  if (!rising) PetscCall(PetscSortInt(row->n, row->column));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Tells the pairs of a row their places in it. */
-static PetscErrorCode PlacePairs(NodeMatrix m, PetscInt node, const NodeRow *row)
+/* Merges the columns of a term's row into those gathered, both ascending. */
+static void MergeRow(const MatrixRows *term, PetscInt r, NodeRow *row)
 {
-  const NodePairs *p = &m->pairs;
+  const PetscInt end = term->ptr[r + 1];
+  PetscInt      *to = row->room, n = 0, i = 0, k = term->ptr[r];
 
-  PetscFunctionBeginUser;
-  for (PetscInt k = p->ptr[node] * p->size; k < p->ptr[node + 1] * p->size; k++) {
-    const PetscInt dof = p->dof[p->column[k / p->size] * p->size + k % p->size];
-    PetscInt       at;
+  while (i < row->n && k < end) {
+    const PetscInt a = row->column[i], b = Column(term, k);
 
-    m->place[k] = NODE_MATRIX_NONE;
-    if (dof < 0) continue;
-    PetscCall(PetscFindInt(dof, row->n, row->column, &at));
-    m->place[k] = at < row->before ? -1 - at : at < row->before + row->own ? at - row->before : -1 - (at - row->own);
+    to[n++] = PetscMin(a, b);
+    i += a <= b;
+    k += b <= a;
   }
+  while (i < row->n) to[n++] = row->column[i++];
+  while (k < end) to[n++] = Column(term, k++);
+  row->room   = row->column;
+  row->column = to;
+  row->n      = n;
+}
+
+/* Tells the pairs of a node their places in its row r. at: of the columns of this rank in that row. */
+static PetscErrorCode PlacePairs(NodeMatrix m, PetscInt node, PetscInt r, const PetscInt *at)
+{
+  const NodePairs *p      = &m->pairs;
+  const NodeBlock *others = &m->block[MATRIX_OTHERS];
+  const PetscInt  *column = &others->column[others->ptr[r]], n = others->ptr[r + 1] - others->ptr[r];
+
+  PetscFunctionBeginUser;
+  for (PetscInt k = p->ptr[node]; k < p->ptr[node + 1]; k++) {
+    for (int c = 0; c < p->size; c++) {
+      const PetscInt dof   = p->dof[p->column[k] * p->size + c];
+      PetscInt      *place = &m->place[k * p->size + c];
+
+      if (dof < 0)
+        *place = NODE_MATRIX_NONE;
+      else if (IsMine(m, dof))
+        *place = at[dof - m->first];
+      else {
+        PetscCall(PetscFindInt(dof, n, column, place));
+        *place = -1 - *place;
+      }
+    }
+  }
+  m->placed[node] = PETSC_FALSE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* A row of any kind, after those before it; the columns in the numbering that PETSc wants, its own from 0. */
-static PetscErrorCode AppendRow(NodeMatrix m, PetscInt r, MatrixRows terms[TERMS][MATRIX_BLOCKS], NodeRow *row)
+/* Notes where the entries of a term's row are in row r of the matrix. at: as of PlacePairs(). */
+static void PlaceTerm(NodeMatrix m, PetscInt r, int t, MatrixRows term[MATRIX_BLOCKS], const PetscInt *at)
 {
-  NodeBlock *own = &m->block[MATRIX_OWN], *others = &m->block[MATRIX_OTHERS];
-  PetscInt  *mine = &own->column[own->ptr[r]], *column = &others->column[others->ptr[r]], after;
+  const MatrixRows *own = &term[MATRIX_OWN], *others = &term[MATRIX_OTHERS];
+  const PetscInt   *column = &m->block[MATRIX_OTHERS].column[m->block[MATRIX_OTHERS].ptr[r]];
+  PetscInt          next   = 0;
 
+  for (PetscInt k = own->ptr[r]; k < own->ptr[r + 1]; k++) m->term[t].place[MATRIX_OWN][k] = at[own->column[k]];
+  for (PetscInt k = others->mat ? others->ptr[r] : 0; others->mat && k < others->ptr[r + 1]; k++) {
+    while (column[next] < Column(others, k)) next++;
+    m->term[t].place[MATRIX_OTHERS][k] = next;
+  }
+}
+
+/* A row of any kind, after those before it; the columns in the numbering that PETSc wants, its own from 0. at[rows]: room. */
+static PetscErrorCode AppendRow(NodeMatrix m, PetscInt r, MatrixRows terms[TERMS][MATRIX_BLOCKS], NodeRow *row, PetscInt *at)
+{
   PetscFunctionBeginUser;
-  PetscCall(GatherRow(m, r, terms, row));
-  if (m->node[r] >= 0) PetscCall(PlacePairs(m, m->node[r], row));
-  if (m->node[r] >= 0) m->placed[m->node[r]] = PETSC_FALSE;
-  after = row->before + row->own;
-  for (PetscInt k = 0; k < row->own; k++) mine[k] = row->column[row->before + k] - m->first;
-  PetscCall(PetscArraycpy(column, row->column, row->before));
-  PetscCall(PetscArraycpy(&column[row->before], &row->column[after], row->n - after));
-  own->ptr[r + 1]    = own->ptr[r] + row->own;
-  others->ptr[r + 1] = others->ptr[r] + row->n - row->own;
+  for (int b = 0; b < MATRIX_BLOCKS; b++) {
+    NodeBlock *block = &m->block[b];
+
+    PetscCall(GatherPairs(m, m->node[r], b, row));
+    for (int t = 0; t < TERMS; t++)
+      if (terms[t][b].mat) MergeRow(&terms[t][b], r, row);
+    PetscCall(PetscArraycpy(&block->column[block->ptr[r]], row->column, row->n));
+    block->ptr[r + 1] = block->ptr[r] + row->n;
+    for (PetscInt k = 0; b == MATRIX_OWN && k < row->n; k++) at[row->column[k]] = k;
+  }
+  for (int t = 0; t < TERMS; t++)
+    if (terms[t][MATRIX_OWN].mat) PlaceTerm(m, r, t, terms[t], at);
+  if (m->node[r] >= 0) PetscCall(PlacePairs(m, m->node[r], r, at));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -320,6 +409,12 @@ static PetscErrorCode AppendSame(NodeMatrix m, PetscInt r)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* A row without entries */
+static void AppendNone(NodeMatrix m, PetscInt r)
+{
+  for (int b = 0; b < MATRIX_BLOCKS; b++) m->block[b].ptr[r + 1] = m->block[b].ptr[r];
+}
+
 /* Does some term have entries in this row? */
 static PetscBool IsShared(PetscInt r, MatrixRows terms[TERMS][MATRIX_BLOCKS])
 {
@@ -327,6 +422,63 @@ static PetscBool IsShared(PetscInt r, MatrixRows terms[TERMS][MATRIX_BLOCKS])
     for (int b = 0; b < MATRIX_BLOCKS; b++)
       if (terms[t][b].mat && terms[t][b].ptr[r + 1] > terms[t][b].ptr[r]) return PETSC_TRUE;
   return PETSC_FALSE;
+}
+
+/* The rows of terms, NULL: none */
+static PetscErrorCode GetTerms(const Mat mats[TERMS], MatrixRows terms[TERMS][MATRIX_BLOCKS])
+{
+  PetscFunctionBeginUser;
+  for (int t = 0; t < TERMS; t++) {
+    for (int b = 0; b < MATRIX_BLOCKS; b++) {
+      terms[t][b] = (MatrixRows){.mat = NULL};
+      if (mats[t]) PetscCall(MatrixRowsGet(mats[t], b, &terms[t][b]));
+    }
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode RestoreTerms(MatrixRows terms[TERMS][MATRIX_BLOCKS])
+{
+  PetscFunctionBeginUser;
+  for (int t = 0; t < TERMS; t++)
+    for (int b = 0; b < MATRIX_BLOCKS; b++) PetscCall(MatrixRowsRestore(&terms[t][b]));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Makes room for the places of a term. */
+static PetscErrorCode TakeTerm(Mat mat, const MatrixRows rows[MATRIX_BLOCKS], NodeTerm *term)
+{
+  PetscFunctionBeginUser;
+  term->matrix = 0;
+  if (mat) PetscCall(PetscObjectGetId((PetscObject)mat, &term->matrix));
+  for (int b = 0; b < MATRIX_BLOCKS; b++) {
+    term->n[b] = rows[b].mat ? rows[b].ptr[rows[b].n] : 0;
+    if (term->n[b] <= term->room[b]) continue;
+    term->room[b] = (PetscInt)(NODE_MATRIX_ROOM * term->n[b]);
+    PetscCall(PetscFree(term->place[b]));
+    PetscCall(PetscMalloc1(term->room[b], &term->place[b]));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Is this row of the same node as the one before it? */
+static inline PetscBool IsSame(NodeMatrix m, PetscInt r)
+{
+  return (PetscBool)(r && m->node[r] >= 0 && m->node[r] == m->node[r - 1]);
+}
+
+/* Finds the diagonal of a row of the pattern. */
+static PetscErrorCode FindDiagonal(NodeMatrix m, PetscInt r)
+{
+  const NodeBlock *own = &m->block[MATRIX_OWN];
+
+  PetscFunctionBeginUser;
+  if (IsSame(m, r) && m->diagonal[r - 1] >= 0)
+    m->diagonal[r] = m->diagonal[r - 1] + 1; /* both are columns of either */
+  else
+    PetscCall(PetscFindInt(r, own->ptr[r + 1] - own->ptr[r], &own->column[own->ptr[r]], &m->diagonal[r]));
+  m->diagonal[r] = PetscMax(m->diagonal[r], -1);
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* The arrays become the matrix, under the handle that is known. */
@@ -356,61 +508,83 @@ PetscErrorCode NodeMatrixJoin(NodeMatrix m, Mat other)
   const Mat  mats[TERMS] = {[TERM_FOREIGN] = m->foreign, [TERM_OTHER] = other};
   MatrixRows terms[TERMS][MATRIX_BLOCKS];
   NodeRow    row;
-  PetscInt   longest;
+  PetscInt   longest, *room, *at;
 
   PetscFunctionBeginUser;
-  for (int t = 0; t < TERMS; t++) {
-    for (int b = 0; b < MATRIX_BLOCKS; b++) {
-      terms[t][b] = (MatrixRows){.mat = NULL};
-      if (mats[t]) PetscCall(MatrixRowsGet(mats[t], b, &terms[t][b]));
-    }
-  }
+  PetscCall(GetTerms(mats, terms));
+  for (int t = 0; t < TERMS; t++) PetscCall(TakeTerm(mats[t], terms[t], &m->term[t]));
   PetscCall(TakeRoom(m, terms, &longest));
-  PetscCall(PetscMalloc1(longest, &row.column));
+  PetscCall(PetscMalloc2(2 * longest, &room, m->rows, &at));
+  row = (NodeRow){.column = room, .room = &room[longest]};
   for (int b = 0; b < MATRIX_BLOCKS; b++) m->block[b].ptr[0] = 0;
   for (PetscInt r = 0; r < m->rows; r++) {
-    if (r && m->node[r] >= 0 && m->node[r] == m->node[r - 1])
+    if (IsSame(m, r))
       PetscCall(AppendSame(m, r));
-    else if (m->node[r] >= 0 && m->inner[m->node[r]] && !IsShared(r, terms))
+    else if (IsShared(r, terms) || (m->node[r] >= 0 && !m->inner[m->node[r]]))
+      PetscCall(AppendRow(m, r, terms, &row, at));
+    else if (m->node[r] >= 0)
       AppendInner(m, r);
     else
-      PetscCall(AppendRow(m, r, terms, &row));
+      AppendNone(m, r);
+    PetscCall(FindDiagonal(m, r));
   }
-  PetscCall(PetscFree(row.column));
-  for (int t = 0; t < TERMS; t++)
-    for (int b = 0; b < MATRIX_BLOCKS; b++) PetscCall(MatrixRowsRestore(&terms[t][b]));
+  PetscCall(PetscFree2(room, at));
+  PetscCall(RestoreTerms(terms));
   PetscCall(MakeMatrix(m));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* ---------- values ---------- */
 
-/* One row of a node's blocks, or zeros; size constant where this is called, so that the loop over a node's dofs unrolls. */
-static inline void SetRow(const int size, NodeMatrix m, PetscInt r, const PetscReal *value)
+/* One row of a node's blocks where all columns stand as the pairs do */
+static inline void CopyRow(const int size, PetscInt n, const PetscReal *from, PetscScalar *to)
+{
+  for (PetscInt k = 0; k < n; k++)
+    for (int c = 0; c < size; c++) to[k * size + c] = from[k * size * size + c];
+}
+
+/* One row of a node's blocks, or zeros; size and symmetric constants where this is called, so that the loop over a node's dofs unrolls. */
+static inline void SetRow(const int size, const PetscBool symmetric, NodeMatrix m, PetscInt r, const NodeValues *values)
 {
   const NodePairs *p    = &m->pairs;
   const PetscInt   node = m->node[r];
   PetscScalar     *to[MATRIX_BLOCKS];
+  PetscInt         n[MATRIX_BLOCKS];
   int              d = 0;
 
   for (int b = 0; b < MATRIX_BLOCKS; b++) {
-    const PetscInt *ptr = m->block[b].ptr;
-
-    to[b] = &m->block[b].value[ptr[r]];
-    for (PetscInt k = 0; k < ptr[r + 1] - ptr[r]; k++) to[b][k] = 0;
+    to[b] = &m->block[b].value[m->block[b].ptr[r]];
+    n[b]  = m->block[b].ptr[r + 1] - m->block[b].ptr[r];
   }
-  if (node < 0) return;
-  while (p->dof[node * size + d] != m->first + r) d++;
-  for (PetscInt k = p->ptr[node]; k < p->ptr[node + 1]; k++) {
-    const PetscReal *from  = &value[((size_t)k * size + d) * size];
-    const PetscInt  *place = &m->place[k * size];
+  while (node >= 0 && p->dof[node * size + d] != m->first + r) d++;
+  if (!symmetric && node >= 0 && m->placed[node] && n[MATRIX_OWN] == (p->ptr[node + 1] - p->ptr[node]) * size) {
+    CopyRow(size, p->ptr[node + 1] - p->ptr[node], &values->all[((size_t)p->ptr[node] * size + d) * size], to[MATRIX_OWN]);
+    return;
+  }
+  for (int b = 0; b < MATRIX_BLOCKS; b++)
+    for (PetscInt k = 0; k < n[b]; k++) to[b][k] = 0;
+  for (PetscInt k = node < 0 ? 0 : p->ptr[node]; node >= 0 && k < p->ptr[node + 1]; k++) {
+    const ValueRow  row   = FindValues(size, symmetric, values, node, k, d);
+    const PetscInt *place = &m->place[k * size];
 
     for (int c = 0; c < size; c++) {
       if (place[c] >= 0)
-        to[MATRIX_OWN][place[c]] = from[c];
+        to[MATRIX_OWN][place[c]] = row.value[c * row.step];
       else if (place[c] != NODE_MATRIX_NONE)
-        to[MATRIX_OTHERS][-1 - place[c]] = from[c];
+        to[MATRIX_OTHERS][-1 - place[c]] = row.value[c * row.step];
     }
+  }
+}
+
+/* Adds row r of a term, where its entries are in the sum as those of row `first` of the same node. */
+static inline void AddRow(NodeMatrix m, PetscInt r, PetscInt first, const NodeTerm *term, const MatrixRows rows[MATRIX_BLOCKS])
+{
+  for (int b = 0; b < MATRIX_BLOCKS; b++) {
+    const MatrixRows *x = &rows[b];
+
+    if (!x->mat) continue;
+    for (PetscInt k = 0; k < x->ptr[r + 1] - x->ptr[r]; k++)
+      m->block[b].value[m->block[b].ptr[r] + term->place[b][x->ptr[first] + k]] += x->value[x->ptr[r] + k];
   }
 }
 
@@ -423,63 +597,80 @@ static PetscErrorCode TellChange(NodeMatrix m)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* NodeMatrixSet - the sum of the ranks' blocks; what the pattern holds besides becomes 0.
-
-   Collective. value[pairs*size*size]: blocks of this rank, row-major, in the order of its pairs. */
-PetscErrorCode NodeMatrixSet(NodeMatrix m, const PetscReal *value)
+/* Is this the matrix that the pattern was joined with? */
+static PetscErrorCode CheckTerm(NodeMatrix m, Mat other, const MatrixRows rows[MATRIX_BLOCKS])
 {
+  const NodeTerm *term = &m->term[TERM_OTHER];
+  PetscObjectId   matrix;
+
   PetscFunctionBeginUser;
-  for (PetscInt r = 0; r < m->rows; r++) {
-    if (m->pairs.size == 3)
-      SetRow(3, m, r, value);
+  PetscCall(PetscObjectGetId((PetscObject)other, &matrix));
+  for (int b = 0; b < MATRIX_BLOCKS; b++)
+    PetscCheck(matrix == term->matrix && (rows[b].mat ? rows[b].ptr[rows[b].n] : 0) == term->n[b], m->comm, PETSC_ERR_ARG_WRONGSTATE,
+               "the pattern was joined with that of another matrix");
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Row by row, so that a row is still at hand where something is added to it; diagonal NULL: not asked for. */
+static void SetRows(NodeMatrix m, const NodeValues *values, MatrixRows terms[TERMS][MATRIX_BLOCKS], PetscScalar *diagonal)
+{
+  for (PetscInt r = 0, first = 0; r < m->rows; r++) {
+    if (!IsSame(m, r)) first = r;
+    if (m->pairs.size == 3 && IsSymmetric(values))
+      SetRow(3, PETSC_TRUE, m, r, values);
+    else if (m->pairs.size == 3)
+      SetRow(3, PETSC_FALSE, m, r, values);
     else
-      SetRow(m->pairs.size, m, r, value);
+      SetRow(m->pairs.size, IsSymmetric(values), m, r, values);
+    AddRow(m, r, first, &m->term[TERM_FOREIGN], terms[TERM_FOREIGN]);
+    if (diagonal) diagonal[r] = m->diagonal[r] < 0 ? 0 : m->block[MATRIX_OWN].value[m->block[MATRIX_OWN].ptr[r] + m->diagonal[r]];
+    AddRow(m, r, first, &m->term[TERM_OTHER], terms[TERM_OTHER]);
   }
-  if (m->foreign) {
-    PetscCall(SetForeign(m, value));
-    PetscCall(NodeMatrixAdd(m, m->foreign));
-  } else
-    PetscCall(TellChange(m));
-  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static inline PetscInt Column(const MatrixRows *rows, PetscInt k)
+static PetscErrorCode SetValues(NodeMatrix m, const NodeValues *values, Mat other, Vec diagonal)
 {
-  return rows->global ? rows->global[rows->column[k]] : rows->column[k];
-}
-
-/* y += x in one row, both ascending; every entry of x is in y. */
-static PetscErrorCode AddRow(PetscInt row, const MatrixRows *x, const MatrixRows *y, PetscScalar *to)
-{
-  PetscInt at = y->ptr[row];
+  const Mat    mats[TERMS] = {[TERM_FOREIGN] = m->foreign, [TERM_OTHER] = other};
+  MatrixRows   terms[TERMS][MATRIX_BLOCKS];
+  PetscScalar *entry = NULL;
 
   PetscFunctionBeginUser;
-  for (PetscInt k = x->ptr[row]; k < x->ptr[row + 1]; k++, at++) {
-    while (at < y->ptr[row + 1] && Column(y, at) < Column(x, k)) at++;
-    PetscCheck(at < y->ptr[row + 1] && Column(y, at) == Column(x, k), PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE,
-               "row %" PetscInt_FMT " of the matrix lacks an entry", row);
-    to[at] += x->value[k];
-  }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* NodeMatrixAdd - adds a matrix to the values.
-
-   Collective. other: an AIJ matrix of the same rows; an entry that the pattern lacks is an error. */
-PetscErrorCode NodeMatrixAdd(NodeMatrix m, Mat other)
-{
-  PetscFunctionBeginUser;
-  for (int b = 0; b < MATRIX_BLOCKS; b++) {
-    MatrixRows x, y;
-
-    PetscCall(MatrixRowsGet(m->matrix, b, &y));
-    if (!y.mat) continue;
-    PetscCall(MatrixRowsGet(other, b, &x));
-    for (PetscInt r = 0; r < x.n; r++) PetscCall(AddRow(r, &x, &y, m->block[b].value));
-    PetscCall(MatrixRowsRestore(&x));
-    PetscCall(MatrixRowsRestore(&y));
-  }
+  if (m->foreign) PetscCall(SetForeign(m, values));
+  PetscCall(GetTerms(mats, terms));
+  if (other) PetscCall(CheckTerm(m, other, terms[TERM_OTHER]));
+  if (diagonal) PetscCall(VecGetArrayWrite(diagonal, &entry));
+  SetRows(m, values, terms, entry);
+  if (diagonal) PetscCall(VecRestoreArrayWrite(diagonal, &entry));
+  PetscCall(RestoreTerms(terms));
   PetscCall(TellChange(m));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*
+  NodeMatrixSet - The sum of the ranks' blocks and of another matrix; what the pattern holds besides becomes 0
+
+  Collective
+
+  Input:
++ m     - the matrix, after NodeMatrixJoin()
+. value - blocks of this rank, row-major, in the order of its pairs [pairs*size*size]
+- other - the one that the pattern was joined with, of the same pattern as then; NULL: nothing is added
+
+  Output:
+. diagonal - that of the ranks' blocks alone, over the rows; NULL: it is not asked for
+*/
+PetscErrorCode NodeMatrixSet(NodeMatrix m, const PetscReal *value, Mat other, Vec diagonal)
+{
+  PetscFunctionBeginUser;
+  PetscCall(SetValues(m, &(NodeValues){.all = value}, other, diagonal));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* NodeMatrixSetUpper - the sum of the ranks' blocks, which is symmetric on every rank; of blocks on the diagonal both triangles are used. Collective. */
+PetscErrorCode NodeMatrixSetUpper(NodeMatrix m, const NodeUpper *upper)
+{
+  PetscFunctionBeginUser;
+  PetscCall(SetValues(m, &(NodeValues){.upper = upper}, NULL, NULL));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

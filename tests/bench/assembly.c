@@ -52,7 +52,7 @@ static PetscErrorCode Insert(Work *w)
 {
   Mat K;
 
-  return ElasticityMatrix(w->e, &K);
+  return ElasticityMatrix(w->e, NULL, NULL, &K);
 }
 
 static PetscErrorCode PetscResidual(Work *w)

@@ -86,6 +86,16 @@ static void test_assembled_equals_blocks(void **state)
   AssembledEqualsBlocks(2);
 }
 
+/* A block matrix over single dofs, and those of this rank */
+static void CreateOwn(BlockMatrix *blocks, PetscInt mine[ROWS])
+{
+  PetscMPIInt rank;
+
+  MPI_Comm_rank(PETSC_COMM_WORLD, &rank);
+  for (PetscInt i = 0; i < ROWS; i++) mine[i] = ROWS * rank + i;
+  assert_int_equal(BlockMatrixCreate(PETSC_COMM_WORLD, 1, blocks), 0);
+}
+
 /* Assembles blocks of ones of the given sizes, each over its own dofs from `first` on, one after the other on every rank's dofs; returns whether the matrix is
    new, and checks the sum of its values. */
 static PetscBool AssembleOwn(BlockMatrix blocks, PetscInt n, const PetscInt first[], const PetscInt m[], const PetscInt *const dof[])
@@ -119,15 +129,12 @@ static PetscBool AssembleOwn(BlockMatrix blocks, PetscInt n, const PetscInt firs
 
 static void test_pattern_is_kept_while_it_holds(void **state)
 {
-  PetscMPIInt     rank;
   BlockMatrix     blocks;
   PetscInt        mine[ROWS];
   const PetscInt *dof[1] = {mine};
 
   (void)state;
-  MPI_Comm_rank(PETSC_COMM_WORLD, &rank);
-  for (PetscInt i = 0; i < ROWS; i++) mine[i] = ROWS * rank + i;
-  assert_int_equal(BlockMatrixCreate(PETSC_COMM_WORLD, 1, &blocks), 0);
+  CreateOwn(&blocks, mine);
   assert_true(AssembleOwn(blocks, 2, (const PetscInt[]){0, 3}, (const PetscInt[]){4, 3}, dof));
   assert_false(AssembleOwn(blocks, 2, (const PetscInt[]){3, 0}, (const PetscInt[]){3, 4}, dof)); /* another order */
   assert_false(AssembleOwn(blocks, 1, (const PetscInt[]){0}, (const PetscInt[]){4}, dof));       /* a part */
@@ -138,15 +145,12 @@ static void test_pattern_is_kept_while_it_holds(void **state)
 
 static void test_returns_to_the_marked_pattern(void **state)
 {
-  PetscMPIInt     rank;
   BlockMatrix     blocks;
   PetscInt        mine[ROWS];
   const PetscInt *dof[1] = {mine};
 
   (void)state;
-  MPI_Comm_rank(PETSC_COMM_WORLD, &rank);
-  for (PetscInt i = 0; i < ROWS; i++) mine[i] = ROWS * rank + i;
-  assert_int_equal(BlockMatrixCreate(PETSC_COMM_WORLD, 1, &blocks), 0);
+  CreateOwn(&blocks, mine);
   assert_int_equal(BlockMatrixMark(blocks), 0);
   assert_true(AssembleOwn(blocks, 1, (const PetscInt[]){0}, (const PetscInt[]){ROWS}, dof));
   assert_int_equal(BlockMatrixReturn(blocks, ROWS), 0); /* to none */

@@ -70,11 +70,24 @@ static void AssertSum(Mat mat, Mat a, Mat b)
   assert_int_equal(MatDestroy(&rest), 0);
 }
 
+static void AssertDiagonal(Vec diagonal, Mat a)
+{
+  Vec       expected;
+  PetscBool same;
+
+  assert_int_equal(VecDuplicate(diagonal, &expected), 0);
+  assert_int_equal(MatGetDiagonal(a, expected), 0);
+  assert_int_equal(VecEqual(diagonal, expected, &same), 0);
+  assert_true(same);
+  assert_int_equal(VecDestroy(&expected), 0);
+}
+
 static void test_sum(void **state)
 {
   List       narrow, wide;
   NodeMatrix matrix, other;
   Mat        a, b, mat;
+  Vec        diagonal;
 
   (void)state;
   MakeList(&narrow);
@@ -86,28 +99,31 @@ static void test_sum(void **state)
   assert_int_equal(NodeMatrixCreate(PETSC_COMM_WORLD, ROWS, &wide.pairs, &other), 0);
   assert_int_equal(NodeMatrixJoin(matrix, NULL), 0);
   assert_int_equal(NodeMatrixJoin(other, NULL), 0);
-  assert_int_equal(NodeMatrixSet(matrix, narrow.value), 0);
-  assert_int_equal(NodeMatrixSet(other, wide.value), 0);
+  assert_int_equal(NodeMatrixSet(matrix, narrow.value, NULL, NULL), 0);
+  assert_int_equal(NodeMatrixSet(other, wide.value, NULL, NULL), 0);
   mat = NodeMatrixGet(matrix);
+  assert_int_equal(MatCreateVecs(mat, &diagonal, NULL), 0);
   AssertSum(mat, a, NULL);
   AssertSum(NodeMatrixGet(other), b, NULL);
   for (int pass = 0; pass < 2; pass++) {
     assert_int_equal(NodeMatrixJoin(matrix, NodeMatrixGet(other)), 0);
     for (int again = 0; again < 2; again++) {
-      assert_int_equal(NodeMatrixSet(matrix, narrow.value), 0);
+      assert_int_equal(NodeMatrixSet(matrix, narrow.value, NULL, NULL), 0);
       AssertSum(mat, a, NULL);
-      assert_int_equal(NodeMatrixAdd(matrix, NodeMatrixGet(other)), 0);
+      assert_int_equal(NodeMatrixSet(matrix, narrow.value, NodeMatrixGet(other), diagonal), 0);
       AssertSum(mat, a, b);
+      AssertDiagonal(diagonal, a);
     }
   }
   assert_true(NodeMatrixGet(matrix) == mat);
   assert_int_equal(NodeMatrixJoin(matrix, NULL), 0);
-  assert_int_equal(NodeMatrixSet(matrix, narrow.value), 0);
+  assert_int_equal(NodeMatrixSet(matrix, narrow.value, NULL, NULL), 0);
   AssertSum(mat, a, NULL);
   assert_int_equal(NodeMatrixDestroy(&matrix), 0);
   assert_int_equal(NodeMatrixDestroy(&other), 0);
   assert_int_equal(MatDestroy(&a), 0);
   assert_int_equal(MatDestroy(&b), 0);
+  assert_int_equal(VecDestroy(&diagonal), 0);
 }
 
 /* A factorisation's symbolic part is kept as long as the pattern is the same. */
@@ -121,9 +137,9 @@ static void test_pattern_stays(void **state)
   MakeList(&list);
   assert_int_equal(NodeMatrixCreate(PETSC_COMM_WORLD, ROWS, &list.pairs, &matrix), 0);
   assert_int_equal(NodeMatrixJoin(matrix, NULL), 0);
-  assert_int_equal(NodeMatrixSet(matrix, list.value), 0);
+  assert_int_equal(NodeMatrixSet(matrix, list.value, NULL, NULL), 0);
   assert_int_equal(MatGetNonzeroState(NodeMatrixGet(matrix), &before), 0);
-  assert_int_equal(NodeMatrixSet(matrix, list.value), 0);
+  assert_int_equal(NodeMatrixSet(matrix, list.value, NULL, NULL), 0);
   assert_int_equal(MatGetNonzeroState(NodeMatrixGet(matrix), &after), 0);
   assert_true(before == after);
   assert_int_equal(NodeMatrixDestroy(&matrix), 0);

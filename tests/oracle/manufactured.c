@@ -402,7 +402,7 @@ static PetscErrorCode Newton(Mesh mesh, Elasticity e, const PetscReal *load, Pet
     PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &scale, 1, MPIU_REAL, MPIU_SUM, mesh->comm));
     if (norm <= newton_done * PetscSqrtReal(scale) || *steps == MAX_NEWTON) break;
     PetscCall(ElasticityTangent(e, u));
-    PetscCall(ElasticityMatrix(e, &K));
+    PetscCall(ElasticityMatrix(e, NULL, NULL, &K));
     PetscCall(KSPSetOperators(ksp, K, K));
     PetscCall(KSPSolve(ksp, R, dx));
     PetscCall(MeshGlobalToLocal(mesh, dx, du));
