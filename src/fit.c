@@ -268,9 +268,15 @@ LANES_INLINE void SurfaceAt(const int m, const int degree, const int terms, cons
   }
 }
 
+/* Length of a vector in supports, or of what is as far from the ends of the numbers: hypot() guards against these, at many times the cost. */
+LANES_INLINE double Length(double a, double b)
+{
+  return sqrt(a * a + b * b);
+}
+
 static double SmallestEigenvalue(double (*a)[2])
 {
-  return 0.5 * (a[0][0] + a[1][1]) - hypot(0.5 * (a[0][0] - a[1][1]), a[0][1]);
+  return 0.5 * (a[0][0] + a[1][1]) - Length(0.5 * (a[0][0] - a[1][1]), a[0][1]);
 }
 
 static void Invert(double (*a)[2], double (*inverse)[2])
@@ -300,9 +306,9 @@ LANES_INLINE int FindFoot(const int m, const int degree, const int terms, const 
     Invert(out->J, inverse);
     for (int c = 0; c < 2; c++) step[c] = -inverse[c][0] * (y[0] + at->q * at->g[0]) - inverse[c][1] * (y[1] + at->q * at->g[1]);
     for (int c = 0; c < m; c++) y[c] += step[c];
-    size = m == 1 ? fabs(B[0][0] * step[0]) : hypot(B[0][0] * step[0] + B[0][1] * step[1], B[1][0] * step[0] + B[1][1] * step[1]);
+    size = m == 1 ? fabs(B[0][0] * step[0]) : Length(B[0][0] * step[0] + B[0][1] * step[1], B[1][0] * step[0] + B[1][1] * step[1]);
   }
-  out->reach = m == 1 ? fabs(B[0][0] * y[0]) : hypot(B[0][0] * y[0] + B[0][1] * y[1], B[1][0] * y[0] + B[1][1] * y[1]);
+  out->reach = m == 1 ? fabs(B[0][0] * y[0]) : Length(B[0][0] * y[0] + B[0][1] * y[1], B[1][0] * y[0] + B[1][1] * y[1]);
   return SmallestEigenvalue(out->J) > FIT_FOCAL;
 }
 
