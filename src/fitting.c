@@ -170,6 +170,14 @@ static void WindowSpacing(const Fitting *fit, PetscInt n, double covariance[3][3
   *area = sum / faces;
 }
 
+/* Position of a point relative to the fit's origin, as of ListsRelative() */
+static void FitPlace(ContactLists lists, PetscInt p, const FitFoot *at, double *x)
+{
+  const int dim = lists->dim;
+
+  for (int d = 0; d < dim; d++) x[d] = (lists->point_X[p * dim + d] - at->X[d]) + (lists->point_u[p * dim + d] - at->u[d]);
+}
+
 /* Tries one rung at a foot: points, frame, metric into fit and problem; true when every guard holds. Quadrature points come in clusters, whose
    number says nothing: the pivot does. */
 static PetscErrorCode FitRung(Fitting *fit, const FitFoot *at, int rung, FitProblem *problem, FitResult *result, PetscBool *holds)
@@ -198,7 +206,7 @@ static PetscErrorCode FitRung(Fitting *fit, const FitFoot *at, int rung, FitProb
       inside += rho2[i] <= 1 + SEARCH_FIT_TIE;
       fit->multiplier[i] = fit->lists->point_weight[fit->points[i]];
       fit->taper[i]      = fit->multiplier[i] * PetscMax(SEARCH_FIT_TIE, 1 - rho2[i] / SEARCH_FIT_MARGIN);
-      for (int d = 0; d < dim; d++) fit->x[i * dim + d] = fit->view.x[fit->points[i] * dim + d] - at->x[d];
+      FitPlace(fit->lists, fit->points[i], at, &fit->x[i * dim]);
     }
     problem->n = (int)n;
     if (inside < wanted) PetscFunctionReturn(PETSC_SUCCESS);
@@ -262,7 +270,8 @@ PetscErrorCode FittingSlave(Fitting *fit, const Nearest *look, PetscInt q, Petsc
   PetscFunctionBeginUser;
   for (int d = 0; d < 3; d++) at.outward[d] = best->normal[d]; /* the foot's own may lie along the surface when the foot is on an edge */
   for (int d = 0; d < lists->dim; d++) {
-    at.x[d]    = look->x[d];
+    at.X[d]    = lists->slave_X[q * lists->dim + d];
+    at.u[d]    = lists->slave_u[q * lists->dim + d];
     at.foot[d] = look->x[d] - look->foot.gap * look->foot.normal[d];
   }
   TimingBegin(TIMING_FIT); /* two looks at the clock, 0.1 % of a ladder */
@@ -273,7 +282,9 @@ PetscErrorCode FittingSlave(Fitting *fit, const Nearest *look, PetscInt q, Petsc
   lists->degree[q]    = problem.degree;
   lists->pivot[q]     = result.pivot;
   lists->amplified[q] = result.amplified;
-  lists->residual[q]  = FitResidual(&problem, &result);
+  lists->gap[q]       = result.gap;
+  for (int d = 0; d < 3; d++) lists->normal[3 * q + d] = result.normal[d];
+  lists->residual[q] = FitResidual(&problem, &result);
   for (int i = 0; i < 9; i++) lists->frame[9 * q + i] = problem.frame[i / 3][i % 3];
   for (int i = 0; i < 4; i++) lists->metric[4 * q + i] = problem.metric[i / 2][i % 2];
   for (PetscInt i = 0; i < problem.n; i++) PetscCall(ListBufferAddPoint(buffer, first, fit->points[i]));
