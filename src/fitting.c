@@ -235,21 +235,20 @@ PetscErrorCode FittingClimb(Fitting *fit, const FitFoot *at, FitProblem *problem
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* How far the points in the inner half of the support lie from the fit: what the smoothing itself costs. */
-static PetscReal FitResidual(const FitProblem *problem, const FitResult *result)
+/* How far the points in the inner half of the support lie from the fit: what the smoothing itself costs. dim constant where this is called. */
+static inline PetscReal FitResidual(const int dim, const FitProblem *problem, const FitResult *result)
 {
-  const int dim  = problem->dim;
-  PetscReal most = 0;
+  const double Q[3] = {problem->metric[0][0], 2 * problem->metric[0][1], problem->metric[1][1]};
+  PetscReal    most = 0;
 
   for (int i = 0; i < problem->n; i++) {
-    double y[2] = {0, 0}, z = 0, rho2 = 0;
+    double y[2] = {0, 0}, z = 0, rho2;
 
     for (int d = 0; d < dim; d++) {
       for (int a = 0; a < dim - 1; a++) y[a] += problem->frame[a][d] * problem->x[i * dim + d];
       z += problem->frame[dim - 1][d] * problem->x[i * dim + d];
     }
-    for (int a = 0; a < dim - 1; a++)
-      for (int b = 0; b < dim - 1; b++) rho2 += y[a] * problem->metric[a][b] * y[b];
+    rho2 = Q[0] * y[0] * y[0] + (dim == 3 ? (Q[1] * y[0] + Q[2] * y[1]) * y[1] : 0);
     if (rho2 <= 0.25) most = PetscMax(most, PetscAbsReal(z - FitSurfaceHeight(&result->surface, y, NULL)));
   }
   return most;
@@ -284,7 +283,7 @@ PetscErrorCode FittingSlave(Fitting *fit, const Nearest *look, PetscInt q, Petsc
   lists->amplified[q] = result.amplified;
   lists->gap[q]       = result.gap;
   for (int d = 0; d < 3; d++) lists->normal[3 * q + d] = result.normal[d];
-  lists->residual[q] = FitResidual(&problem, &result);
+  lists->residual[q] = lists->dim == 3 ? FitResidual(3, &problem, &result) : FitResidual(2, &problem, &result);
   for (int i = 0; i < 9; i++) lists->frame[9 * q + i] = problem.frame[i / 3][i % 3];
   for (int i = 0; i < 4; i++) lists->metric[4 * q + i] = problem.metric[i / 2][i % 2];
   for (PetscInt i = 0; i < problem.n; i++) PetscCall(ListBufferAddPoint(buffer, first, fit->points[i]));

@@ -480,22 +480,34 @@ PetscReal ListsNearestSize(ContactLists lists, PetscInt q)
   return lists->nearest[q] < 0 ? 0 : lists->facet_size[lists->facet_ptr[q] + lists->nearest[q]];
 }
 
+/* Sum of the fit points of a slave point, seen from it; dim constant where this is called. */
+static inline void SumPoints(const int dim, ContactLists lists, PetscInt q, PetscReal sum[3])
+{
+  const PetscReal *X = lists->point_X, *u = lists->point_u, *X_0 = &lists->slave_X[q * dim], *u_0 = &lists->slave_u[q * dim];
+  PetscReal        total[3] = {0, 0, 0};
+
+  for (PetscInt i = lists->list_ptr[q]; i < lists->list_ptr[q] + lists->fit_n[q]; i++) {
+    const PetscInt p = lists->list_point[i];
+
+    for (int d = 0; d < dim; d++) total[d] += (X[p * dim + d] - X_0[d]) + (u[p * dim + d] - u_0[d]);
+  }
+  for (int d = 0; d < 3; d++) sum[d] = total[d];
+}
+
 /* ListsCentre - mean of the fit points of slave point q in the tangents of its frame, relative to it, in the present position (lengths).
 
    Not collective. centre[2]: dim - 1 entries are used. */
 void ListsCentre(ContactLists lists, PetscInt q, PetscReal centre[2])
 {
-  const int        dim    = lists->dim;
-  const PetscReal *frame  = &lists->frame[9 * q];
-  PetscReal        sum[3] = {0, 0, 0};
+  const int        dim   = lists->dim;
+  const PetscReal *frame = &lists->frame[9 * q];
+  PetscReal        sum[3];
 
   centre[0] = centre[1] = 0;
-  for (PetscInt i = lists->list_ptr[q]; i < lists->list_ptr[q] + lists->fit_n[q]; i++) {
-    PetscReal x[3];
-
-    ListsRelative(lists, q, lists->list_point[i], x);
-    for (int d = 0; d < dim; d++) sum[d] += x[d];
-  }
+  if (dim == 3)
+    SumPoints(3, lists, q, sum);
+  else
+    SumPoints(2, lists, q, sum);
   for (int a = 0; a < dim - 1 && lists->fit_n[q]; a++)
     for (int d = 0; d < dim; d++) centre[a] += frame[3 * a + d] * sum[d] / lists->fit_n[q];
 }
