@@ -170,12 +170,24 @@ static void WindowSpacing(const Fitting *fit, PetscInt n, double covariance[3][3
   *area = sum / faces;
 }
 
-/* Position of a point relative to the fit's origin, as of ListsRelative() */
-static void FitPlace(ContactLists lists, PetscInt p, const FitFoot *at, double *x)
+/* Weights of n points and their positions relative to the fit's origin, as of ListsRelative(); returns how many are inside the support. dim constant where this
+   is called. */
+static inline PetscInt TakePoints(const int dim, Fitting *fit, const FitFoot *at, PetscInt n, const PetscReal *rho2)
 {
-  const int dim = lists->dim;
+  const ContactLists lists = fit->lists;
+  const PetscReal   *X = lists->point_X, *u = lists->point_u;
+  PetscInt           inside = 0;
 
-  for (int d = 0; d < dim; d++) x[d] = (lists->point_X[p * dim + d] - at->X[d]) + (lists->point_u[p * dim + d] - at->u[d]);
+  for (PetscInt i = 0; i < n; i++) {
+    const PetscInt  p      = fit->points[i];
+    const PetscReal weight = lists->point_weight[p];
+
+    inside += rho2[i] <= 1 + SEARCH_FIT_TIE;
+    fit->multiplier[i] = weight;
+    fit->taper[i]      = weight * PetscMax(SEARCH_FIT_TIE, 1 - rho2[i] / SEARCH_FIT_MARGIN);
+    for (int d = 0; d < dim; d++) fit->x[i * dim + d] = (X[p * dim + d] - at->X[d]) + (u[p * dim + d] - at->u[d]);
+  }
+  return inside;
 }
 
 /* Tries one rung at a foot: points, frame, metric into fit and problem; true when every guard holds. Quadrature points come in clusters, whose
@@ -201,13 +213,7 @@ static PetscErrorCode FitRung(Fitting *fit, const FitFoot *at, int rung, FitProb
     MetricInSpace(dim, problem->frame, problem->metric, space);
     PetscCall(NeighbourhoodGather(fit->neighbourhoods, at->facet, at->foot, problem->frame[dim - 1], space, SEARCH_FIT_MARGIN, FIT_MAX_POINTS, fit->points,
                                   &rho2, &n, &found));
-    inside = 0;
-    for (PetscInt i = 0; i < n; i++) {
-      inside += rho2[i] <= 1 + SEARCH_FIT_TIE;
-      fit->multiplier[i] = fit->lists->point_weight[fit->points[i]];
-      fit->taper[i]      = fit->multiplier[i] * PetscMax(SEARCH_FIT_TIE, 1 - rho2[i] / SEARCH_FIT_MARGIN);
-      FitPlace(fit->lists, fit->points[i], at, &fit->x[i * dim]);
-    }
+    inside     = dim == 3 ? TakePoints(3, fit, at, n, rho2) : TakePoints(2, fit, at, n, rho2);
     problem->n = (int)n;
     if (inside < wanted) PetscFunctionReturn(PETSC_SUCCESS);
     if (settings->integral && pass == 0) WindowSpacing(fit, n, covariance, &area);
