@@ -75,8 +75,7 @@ LANES_INLINE void Layout(const int terms, int n, double *workspace, FitArrays *a
   a->K          = a->basis + (terms + 2) * a->capacity;
 }
 
-/* Takes the points inside the support into the arrays, their heights into the basis's last column. A point outside is overwritten by the next one: which are
-   inside is too irregular to be foreseen by the machine. */
+/* Takes the points inside the support into the arrays, their heights into the basis's last column. */
 LANES_INLINE void Collect(const int dim, const int terms, const FitProblem *in, double (*G)[3], FitArrays *a)
 {
   double *const z = (double *)(a->basis + terms * a->capacity);
