@@ -7,9 +7,9 @@
 
 enum {
   MAX_TANGENTS = 2,
-  ROWS         = 1 + MAX_TANGENTS,                                  /* of F */
-  BLOCK        = 4,                                                 /* columns orthogonalised together, so that their sums do not wait for each other */
-  ALIGNMENT    = 64,                                                /* bytes: a cache line, and the widest vector */
+  ROWS         = 1 + MAX_TANGENTS, /* of F */
+  BLOCK        = 4,                /* columns orthogonalised together, so that their sums do not wait for each other: no more than 8 */
+  ALIGNMENT    = 64,               /* bytes: a cache line, and the widest vector */
   FACTORS      = LANES * ((2 * FIT_MAX_TERMS + LANES - 1) / LANES), /* most entries of a row of factors */
   FIT_HESSIAN  = 8,                                                 /* most entries of a point's H, filled up to whole vectors */
   ARRAYS       = 13 /* vectors per LANES points besides the basis: eta (2), multiplier, inside, power, weight, scratch, H (6) */
@@ -22,16 +22,17 @@ typedef struct {
   int    stride;                                                             /* vectors per row of K and J */
   Lanes *eta[MAX_TANGENTS], *multiplier, *inside, *power, *weight, *scratch; /* inside: 1 - rho^2, power: v inside^(exponent - 2) */
   Lanes *H;                                                                  /* [6][capacity]: xx xy yy xz yz zz */
-  Lanes *basis; /* [terms + 1 + BLOCK][capacity]: orthonormal basis, residual e, columns of zeros */
-  Lanes *K, *J; /* [terms][stride]: entry (1 + i)*dim + c of a row */
+  Lanes *basis;                                                              /* [terms + 1][capacity]: orthonormal basis, residual e */
+  Lanes *K, *J;                                                              /* [terms][stride]: entry (1 + i)*dim + c of a row */
   int   *points;
 } FitArrays;
 
-/* The fit and its foot, broadcast to all lanes */
+/* The fit and its foot; Lanes: broadcast to all */
 typedef struct {
-  Lanes  R[FIT_MAX_TERMS][FIT_MAX_TERMS], inverse[FIT_MAX_TERMS]; /* inverse: of the diagonal */
-  Lanes  alpha[FIT_MAX_TERMS], lambda[FIT_MAX_TERMS];             /* of the monomials */
-  Lanes  foot[ROWS][FIT_MAX_TERMS];                               /* F = p^, Dp^ at the foot, D with respect to y */
+  double R[FIT_MAX_TERMS][FIT_MAX_TERMS + 1 + BLOCK];   /* over its diagonal: above that only, and of the heights at the end */
+  double square[FIT_MAX_TERMS], inverse[FIT_MAX_TERMS]; /* of the diagonal */
+  Lanes  alpha[FIT_MAX_TERMS], lambda[FIT_MAX_TERMS];   /* of the monomials */
+  Lanes  foot[ROWS][FIT_MAX_TERMS];                     /* F = p^, Dp^ at the foot, D with respect to y */
   double S[ROWS][ROWS];
   double G[3][3], nu3; /* d = G x */
 } FitState;
@@ -132,6 +133,17 @@ LANES_INLINE void MonomialGradients(const int m, const int degree, const Lanes *
   }
 }
 
+/* Derivatives (s, t) of the polynomial c where the monomials are p */
+LANES_INLINE void PolynomialGradient(const int m, const int degree, const Lanes *p, const Lanes *c, Lanes gradient[2])
+{
+  gradient[0] = gradient[1] = Broadcast(0);
+  FOR_MONOMIALS(m, degree, k, b)
+  {
+    if (k - b > 0) gradient[0] += (k - b) * (c[Term(m, k, b)] * p[Term(m, k - 1, b)]);
+    if (b > 0) gradient[1] += b * (c[Term(m, k, b)] * p[Term(m, k - 1, b - 1)]);
+  }
+}
+
 /* Second derivatives (ss, st, tt) of the polynomial c where the monomials are p */
 LANES_INLINE void PolynomialHessian(const int m, const int degree, const Lanes *p, const Lanes *c, Lanes hessian[3])
 {
@@ -146,19 +158,19 @@ LANES_INLINE void PolynomialHessian(const int m, const int degree, const Lanes *
 
 LANES_INLINE Lanes DotTerms(const int terms, const Lanes *a, const Lanes *b)
 {
-  Lanes sum = a[0] * b[0];
+  Lanes even = a[0] * b[0], odd = a[1] * b[1]; /* neither waits for the other */
 
-  for (int k = 1; k < terms; k++) sum += a[k] * b[k];
-  return sum;
+  for (int k = 2; k < terms; k += 2) even += a[k] * b[k];
+  for (int k = 3; k < terms; k += 2) odd += a[k] * b[k];
+  return even + odd;
 }
 
 /* p := R^-T p, column by column: row by row each operation would wait for the one before */
 LANES_INLINE void ToOrthonormal(const int terms, const FitState *s, Lanes *p)
 {
-  for (int l = 0; l < terms; l++) {
-    p[l] *= s->inverse[l];
+  for (int l = 0; l < terms; l++)
     for (int k = l + 1; k < terms; k++) p[k] -= s->R[l][k] * p[l];
-  }
+  for (int k = 0; k < terms; k++) p[k] *= s->inverse[k];
 }
 
 /* Calls body(dim, degree, terms) with constants for the problem's dimension and degree. */

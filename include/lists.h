@@ -46,6 +46,8 @@ typedef struct {
   PetscReal *frame, *metric;        /* 9 and 4 for each slave point, as FitProblem wants them */
   PetscReal *centre;                /* 2 for each slave point: mean of its fit points in the frame's tangents, seen from it, when the lists were made */
   PetscReal *pivot, *amplified;     /* guards of the fit when the lists were made */
+  PetscReal *gap, *normal;          /* of the fit when the lists were made, 1 and 3 for each slave point; they stand while ... */
+  PetscBool  made;                  /* ... nothing has moved since then */
   PetscReal *residual;              /* largest distance of a point in the inner half of the support to the fit */
   PetscInt  *facet_ptr;             /* facets of each slave point; their nodes count within the slave point's points */
   Facet     *facet;

@@ -62,8 +62,9 @@ typedef struct {
 typedef struct {
   PetscInt  facet; /* candidate */
   double    xi[2];
-  PetscReal x[3], foot[3], outward[3]; /* origin of the fit; centre of the support; direction */
-  PetscBool upright;                   /* the frame's normal is `outward`, not that of the points' plane */
+  PetscReal X[3], u[3];          /* origin of the fit: their sum */
+  PetscReal foot[3], outward[3]; /* centre of the support; direction */
+  PetscBool upright;             /* the frame's normal is `outward`, not that of the points' plane */
 } FitFoot;
 
 /* The fits of a pair's slave points in the making. */

@@ -345,6 +345,23 @@ PetscErrorCode ContactOwnToNodes(const ContactPair *pair, PetscInt nodes, PetscI
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* The gap of a slave point, with its first variation where `vary`; where nothing has moved since its fit was made, that tells it. */
+static PetscErrorCode PointGap(const ContactPair *pair, ContactLists lists, PetscInt q, int seed, PetscBool vary, PetscBool *found)
+{
+  SmootherResult *result = &pair->work->result;
+
+  PetscFunctionBeginUser;
+  if (vary || !lists->made || !lists->fit_n[q])
+    PetscCall(ContactPointEvaluate(pair, pair->smoother, lists, q, seed, vary ? SMOOTHER_FIRST_VARIATION : SMOOTHER_GAP, found));
+  else {
+    *found       = PETSC_TRUE;
+    result->gap  = lists->gap[q];
+    result->seed = seed;
+    for (int d = 0; d < 3; d++) result->normal[d] = lists->normal[3 * q + d];
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* ContactPointGaps - gaps (lengths) of the slave points of this rank, positions as the lists were last updated.
 
    Not collective. factor[n_slaves]: points of factor 0 are not asked for; seed[n_slaves]: the facets of last time, rewritten, or NULL;
@@ -358,8 +375,7 @@ PetscErrorCode ContactPointGaps(const ContactPair *pair, ContactLists lists, con
     const PetscBool vary  = (PetscBool)(force && force[q] != 0 && factor[q] > 0);
     PetscBool       found = PETSC_FALSE;
 
-    if (factor[q] > 0)
-      PetscCall(ContactPointEvaluate(pair, pair->smoother, lists, q, seed ? seed[q] : -1, vary ? SMOOTHER_FIRST_VARIATION : SMOOTHER_GAP, &found));
+    if (factor[q] > 0) PetscCall(PointGap(pair, lists, q, seed ? seed[q] : -1, vary, &found));
     if (vary) PetscCall(ContactVariationsKeep(pair, q, found));
     gap[q] = found ? pair->work->result.gap : NAN;
     if (found && seed) seed[q] = pair->work->result.seed;

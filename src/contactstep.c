@@ -14,8 +14,8 @@ struct _n_ContactStep {
   PressingTerm *terms;                /* n */
   PetscInt     *pair, *term;          /* of mine */
   PetscReal    *area;
-  PetscInt     *ptr, *number; /* gap's first variation, over contact nodes of the pair */
-  PetscReal    *N;
+  PetscInt     *ptr, *node; /* gap's first variation, over contact nodes of the pair */
+  PetscReal    *N;          /* dim for each of these */
 };
 
 /* How contact nodes of a pair move with du, tools and an analytic master included: values[lists n_nodes*dim], the caller's. */
@@ -78,13 +78,13 @@ static PetscErrorCode AddVariations(ContactStep step, int p, PetscInt from)
     PetscCall(ContactVariationsNodes(pair, pair->term_ptr[c + 1] - pair->term_ptr[c], &pair->term_point[pair->term_ptr[c]]));
     n                = pair->work->count;
     nodes            = pair->work->number;
-    step->ptr[i + 1] = first + n * dim;
-    PetscCall(PetscRealloc(step->ptr[i + 1] * sizeof(PetscInt), &step->number));
-    PetscCall(PetscRealloc(step->ptr[i + 1] * sizeof(PetscReal), &step->N));
-    for (PetscInt k = 0; k < n * dim; k++) step->number[first + k] = nodes[k / dim] * dim + k % dim;
-    PetscCall(PetscArrayzero(&step->N[first], n * dim));
+    step->ptr[i + 1] = first + n;
+    PetscCall(PetscRealloc((first + n) * sizeof(PetscInt), &step->node));
+    PetscCall(PetscRealloc((first + n) * dim * sizeof(PetscReal), &step->N));
+    PetscCall(PetscArraycpy(&step->node[first], nodes, n));
+    PetscCall(PetscArrayzero(&step->N[first * dim], n * dim));
     PetscCall(ContactBlockBegin(pair, n, nodes));
-    ContactTermVary(pair, c, 1 / step->area[i], &step->N[first]);
+    ContactTermVary(pair, c, 1 / step->area[i], &step->N[first * dim]);
     ContactBlockEnd(pair, n, nodes);
   }
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -187,7 +187,7 @@ PetscErrorCode ContactStepDestroy(ContactStep *step)
   PetscCall(PetscFree(s->terms));
   PetscCall(PetscFree4(s->pair, s->term, s->area, s->ptr));
   PetscCall(PetscFree2(s->count, s->first));
-  PetscCall(PetscFree(s->number));
+  PetscCall(PetscFree(s->node));
   PetscCall(PetscFree(s->N));
   PetscCall(PetscFree(*step));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -202,18 +202,33 @@ PetscErrorCode ContactStepGetTerms(ContactStep step, PetscInt *n, const Pressing
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* The change of a term's gap, summed by components so that a product does not wait for the one before it. */
+static inline PetscReal TermTravel(const int dim, const PetscReal *N, PetscInt n, const PetscInt *node, const PetscReal *values)
+{
+  PetscReal sum[3] = {0, 0, 0};
+
+  for (PetscInt i = 0; i < n; i++)
+    for (int d = 0; d < dim; d++) sum[d] += N[i * dim + d] * values[node[i] * dim + d];
+  return sum[0] + sum[1] + sum[2];
+}
+
 /* ContactStepTravel - change of the gaps (length) with du, to first order. Collective. */
 PetscErrorCode ContactStepTravel(ContactStep step, const PetscReal *du, PetscReal t, PetscReal t_next, PetscReal *travel)
 {
+  const int  dim = step->contact->mesh->dim;
   PetscReal *mine, *values;
   PetscInt   i = 0;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscCalloc1(step->mine, &mine));
+  PetscCall(PetscMalloc1(step->mine, &mine));
   for (int p = 0; p < step->contact->n_pairs; p++) {
     PetscCall(PairMove(step->contact, &step->contact->pairs[p], du, t, t_next, &values));
-    for (; i < step->mine && step->pair[i] == p; i++)
-      for (PetscInt k = step->ptr[i]; k < step->ptr[i + 1]; k++) mine[i] += step->N[k] * values[step->number[k]];
+    for (; i < step->mine && step->pair[i] == p; i++) {
+      const PetscInt first = step->ptr[i], n = step->ptr[i + 1] - first;
+
+      mine[i] =
+        dim == 3 ? TermTravel(3, &step->N[first * 3], n, &step->node[first], values) : TermTravel(2, &step->N[first * 2], n, &step->node[first], values);
+    }
     PetscCall(PetscFree(values));
   }
   PetscCall(Gather(step, 1, mine, travel));
@@ -238,14 +253,17 @@ PetscErrorCode ContactStepWithin(ContactStep step, const PetscReal *du, PetscRea
 /* ContactStepForces - Collective. which[m]: numbers of terms, the same on all ranks. */
 PetscErrorCode ContactStepForces(ContactStep step, PetscInt rows, PetscInt m, const PetscInt *which, Mat *B)
 {
+  const int dim = step->contact->mesh->dim;
+
   PetscFunctionBeginUser;
   PetscCall(MatCreateDense(step->contact->mesh->comm, rows, PETSC_DECIDE, PETSC_DETERMINE, m, NULL, B));
   for (PetscInt j = 0; j < m; j++) {
     const PetscInt i = which[j] - step->first[step->rank];
 
     if (i < 0 || i >= step->mine) continue;
-    for (PetscInt k = step->ptr[i]; k < step->ptr[i + 1]; k++)
-      PetscCall(MatSetValue(*B, step->contact->pairs[step->pair[i]].lists->dof[step->number[k]], j, step->area[i] * step->N[k], ADD_VALUES));
+    for (PetscInt k = step->ptr[i] * dim; k < step->ptr[i + 1] * dim; k++)
+      PetscCall(
+        MatSetValue(*B, step->contact->pairs[step->pair[i]].lists->dof[step->node[k / dim] * dim + k % dim], j, step->area[i] * step->N[k], ADD_VALUES));
   }
   PetscCall(MatAssemblyBegin(*B, MAT_FINAL_ASSEMBLY));
   PetscCall(MatAssemblyEnd(*B, MAT_FINAL_ASSEMBLY));

@@ -17,18 +17,15 @@
 
 /* The surface at tangent coordinates y; without second tangent its components are 0. */
 typedef struct {
-  Lanes  p[FIT_MAX_TERMS], dp[MAX_TANGENTS][FIT_MAX_TERMS]; /* by the scaled coordinates */
+  Lanes  p[FIT_MAX_TERMS]; /* of the scaled coordinates */
   double q, g[2], h[2][2];
 } FitLocal;
 
-/* c := R^-1 c^ */
-LANES_INLINE void ToMonomials(const int terms, const FitState *s, const Lanes *orthonormal, Lanes *c)
+/* c := R^-1 c, R over its diagonal; column by column, as above */
+LANES_INLINE void ToMonomials(const int terms, const FitState *s, Lanes *c)
 {
-  for (int k = terms - 1; k >= 0; k--) {
-    c[k] = orthonormal[k];
-    for (int l = k + 1; l < terms; l++) c[k] -= s->R[k][l] * c[l];
-    c[k] *= s->inverse[k];
-  }
+  for (int l = terms - 1; l > 0; l--)
+    for (int k = 0; k < l; k++) c[k] -= s->R[k][l] * c[l];
 }
 
 /* base^exponent: by products where the exponent is whole */
@@ -74,8 +71,8 @@ LANES_INLINE void Layout(const int terms, int n, double *workspace, FitArrays *a
   a->scratch    = at + 6 * a->capacity;
   a->H          = at + 7 * a->capacity;
   a->basis      = at + ARRAYS * a->capacity;
-  a->points     = (int *)(a->basis + (terms + 1 + BLOCK) * a->capacity);
-  a->K          = a->basis + (terms + 2 + BLOCK) * a->capacity;
+  a->points     = (int *)(a->basis + (terms + 1) * a->capacity);
+  a->K          = a->basis + (terms + 2) * a->capacity;
 }
 
 /* Takes the points inside the support into the arrays, their heights into the basis's last column. */
@@ -95,7 +92,8 @@ LANES_INLINE void Collect(const int dim, const int terms, const FitProblem *in, 
     ((double *)a->multiplier)[n] = in->multiplier[i];
     ((double *)a->inside)[n]     = 1 - rho2;
     z[n]                         = d[dim - 1];
-    a->points[n++]               = i;
+    a->points[n]                 = i;
+    n++;
   }
   a->n      = n;
   a->groups = LanesGroups(n);
@@ -107,10 +105,23 @@ LANES_INLINE void Collect(const int dim, const int terms, const FitProblem *in, 
   }
 }
 
-/* Weights and monomials of the points inside; length[terms]: norms of the weighted columns. */
-LANES_INLINE void Assemble(const int m, const int degree, const int terms, double exponent, FitArrays *a, double *length)
+/* Sums of the lanes of each of `vectors` vectors, 1 or BLOCK: pairs of vectors become one, then the last one's halves. */
+LANES_INLINE void SumEach(const int vectors, Lanes *a, double *sum)
 {
-  Lanes squares[FIT_MAX_TERMS] = {{0}};
+  for (int stage = 0, count = vectors; stage < SWAP_STAGES; stage++, count = (count + 1) / 2) {
+    for (int i = 0; 2 * i < count; i++) {
+      const Lanes even = a[2 * i], odd = a[count > 1 ? 2 * i + 1 : 2 * i];
+
+      a[i] = Shuffle(even, odd, swap_low[stage]) + Shuffle(even, odd, swap_high[stage]);
+    }
+  }
+  memcpy(sum, a, vectors * sizeof(double));
+}
+
+/* Weights and monomials of the points inside; square[terms]: of the weighted columns' norms. */
+LANES_INLINE void Assemble(const int m, const int degree, const int terms, double exponent, FitArrays *a, double *square)
+{
+  Lanes squares[FIT_MAX_TERMS + BLOCK] = {{0}};
 
   for (int g = 0; g < a->groups; g++) {
     const Lanes eta[MAX_TANGENTS] = {a->eta[0][g], a->eta[1][g]};
@@ -123,59 +134,94 @@ LANES_INLINE void Assemble(const int m, const int degree, const int terms, doubl
       a->basis[k * a->capacity + g] = p[k];
       squares[k] += a->weight[g] * p[k] * p[k];
     }
-    for (int k = terms + 1; k < terms + 1 + BLOCK; k++) a->basis[k * a->capacity + g] = Broadcast(0);
   }
-  for (int k = 0; k < terms; k++) length[k] = sqrt(LanesSum(squares[k]));
+  for (int k = 0; k < terms; k += BLOCK) SumEach(BLOCK, squares + k, square + k);
 }
 
-/* Takes the share along a column out of BLOCK others; its weighted values are in scratch. share[BLOCK]: products of the two. */
-LANES_INLINE void Project(const FitArrays *a, const Lanes *along, double square, Lanes *column, double *share)
+/* The shares of column k in `width` columns from j on, whose products with it are summed: its weighted values are in scratch. Where `take`, the shares of
+   the column before, which are known, are taken out of them first. */
+LANES_INLINE void Project(const int take, const int width, const FitArrays *a, int k, int j, double inverse, FitState *s)
 {
-  Lanes sum[BLOCK] = {{0}};
+  Lanes *const       column     = a->basis + j * a->capacity;
+  const Lanes *const before     = column - (take ? j - k + 1 : 0) * a->capacity;
+  const double      *share      = s->R[take ? k - 1 : k] + j;
+  Lanes              sum[BLOCK] = {{0}};
 
   for (int g = 0; g < a->groups; g++) {
-    for (int b = 0; b < BLOCK; b++) sum[b] += a->scratch[g] * column[b * a->capacity + g];
+    const Lanes along = before[g], weighted = a->scratch[g];
+
+    for (int b = 0; b < width; b++) {
+      Lanes at = column[b * a->capacity + g];
+
+      if (take) column[b * a->capacity + g] = at -= share[b] * along;
+      sum[b] += weighted * at;
+    }
   }
-  for (int b = 0; b < BLOCK; b++) share[b] = LanesSum(sum[b]);
-  for (int g = 0; g < a->groups; g++) {
-    for (int b = 0; b < BLOCK; b++) column[b * a->capacity + g] -= share[b] / square * along[g];
+  for (int b = 0; b < width; b++) sum[b] *= inverse;
+  SumEach(BLOCK, sum, s->R[k] + j);
+}
+
+/* The shares of column k in all columns after it */
+LANES_INLINE void ProjectAll(const int take, const int terms, const FitArrays *a, int k, double inverse, FitState *s)
+{
+  int j = k + 1;
+
+  for (; j + BLOCK <= terms + 1; j += BLOCK) Project(take, BLOCK, a, k, j, inverse, s);
+  switch (terms + 1 - j) {
+  case 3: Project(take, 3, a, k, j, inverse, s); break;
+  case 2: Project(take, 2, a, k, j, inverse, s); break;
+  case 1: Project(take, 1, a, k, j, inverse, s); break;
   }
 }
 
-/* Gram-Schmidt; returns the smallest |R_kk| of unit columns. Below FIT_SINGULAR it stops. height[terms]: the heights' coefficients. A column becomes a unit one
-   after it has been taken out of the others, so that nothing waits for the root. */
-LANES_INLINE double Orthonormalise(const int terms, const double *length, FitArrays *a, FitState *s, Lanes *height)
+/* Gram-Schmidt without roots; returns the smallest |R_kk| of unit columns. Below FIT_SINGULAR it stops. length2[terms]: squares of the columns' norms.
+   A column goes out of those behind it while these are multiplied with the next one: they are read once for both. */
+LANES_INLINE double Orthogonalise(const int terms, const double *length2, FitArrays *a, FitState *s)
 {
-  double pivot = 1;
+  double pivot2 = 1;
 
   for (int k = 0; k < terms; k++) {
-    Lanes *const unit = a->basis + k * a->capacity;
-    Lanes        sum  = Broadcast(0);
-    double       square, norm, share[FIT_MAX_TERMS + 1 + BLOCK];
+    Lanes *const       column = a->basis + k * a->capacity;
+    const Lanes *const before = column - (k ? a->capacity : 0);
+    const double       share  = k ? s->R[k - 1][k] : 0;
+    Lanes              sum    = Broadcast(0);
+    double             square, ratio;
 
     for (int g = 0; g < a->groups; g++) {
-      a->scratch[g] = a->weight[g] * unit[g];
-      sum += a->scratch[g] * unit[g];
+      if (k) column[g] -= share * before[g];
+      a->scratch[g] = a->weight[g] * column[g];
+      sum += a->scratch[g] * column[g];
     }
-    square = LanesSum(sum);
-    norm   = sqrt(square);
-    pivot  = fmin(pivot, norm > 0 ? norm / length[k] : 0);
-    if (!(pivot > FIT_SINGULAR)) return pivot;
-    for (int j = k + 1; j <= terms; j += BLOCK) Project(a, unit, square, a->basis + j * a->capacity, share + j);
-    s->inverse[k] = Broadcast(1 / norm);
-    for (int g = 0; g < a->groups; g++) unit[g] *= s->inverse[k];
-    for (int j = k + 1; j < terms; j++) s->R[k][j] = Broadcast(share[j] / norm);
-    height[k] = Broadcast(share[terms] / norm);
+    SumEach(1, &sum, &square);
+    s->square[k] = square;
+    ratio        = square > 0 ? square / length2[k] : 0;
+    if (ratio < pivot2) pivot2 = ratio;
+    if (!(pivot2 > FIT_SINGULAR * FIT_SINGULAR)) break;
+    if (k)
+      ProjectAll(1, terms, a, k, 1 / square, s);
+    else
+      ProjectAll(0, terms, a, k, 1 / square, s);
   }
-  return pivot;
+  return sqrt(pivot2);
+}
+
+/* What is left to do of the heights, and of the columns: they become unit ones. */
+LANES_INLINE void Normalise(const int terms, FitArrays *a, FitState *s)
+{
+  Lanes *const residual = a->basis + terms * a->capacity;
+
+  for (int k = 0; k < terms; k++) s->inverse[k] = 1 / sqrt(s->square[k]);
+  for (int g = 0; g < a->groups; g++) {
+    residual[g] -= s->R[terms - 1][terms] * a->basis[(terms - 1) * a->capacity + g];
+    for (int k = 0; k < terms; k++) a->basis[k * a->capacity + g] *= s->inverse[k];
+  }
 }
 
 /* The polynomial through the points inside; returns 0 without one. */
 LANES_INLINE int MakeSurface(const int dim, const int degree, const int terms, const FitProblem *in, FitArrays *a, FitState *s, FitResult *out)
 {
   FitSurface *const surface = &out->surface;
-  double            length[FIT_MAX_TERMS];
-  Lanes             height[FIT_MAX_TERMS] = {{0}};
+  double            length2[FIT_MAX_TERMS + BLOCK];
 
   surface->dim    = dim;
   surface->degree = degree;
@@ -191,10 +237,11 @@ LANES_INLINE int MakeSurface(const int dim, const int degree, const int terms, c
   out->n = a->n;
   if (out->points) memcpy(out->points, a->points, a->n * sizeof(int));
   if (a->n < terms) return 0;
-  Assemble(dim - 1, degree, terms, in->exponent, a, length);
-  out->pivot = Orthonormalise(terms, length, a, s, height);
+  Assemble(dim - 1, degree, terms, in->exponent, a, length2);
+  out->pivot = Orthogonalise(terms, length2, a, s);
   if (!(out->pivot > FIT_SINGULAR)) return 0;
-  ToMonomials(terms, s, height, s->alpha);
+  for (int k = 0; k < terms; k++) s->alpha[k] = Broadcast(s->R[k][terms]);
+  ToMonomials(terms, s, s->alpha);
   for (int k = 0; k < terms; k++) surface->coefficient[k] = s->alpha[k][0];
   out->guards = (a->n < FitPointsWanted(dim, degree) ? FIT_FEW_POINTS : 0) | (out->pivot < FIT_PIVOT ? FIT_LOW_PIVOT : 0);
   return 1;
@@ -203,27 +250,32 @@ LANES_INLINE int MakeSurface(const int dim, const int degree, const int terms, c
 LANES_INLINE void SurfaceAt(const int m, const int degree, const int terms, const FitSurface *surface, const Lanes *alpha, const double *y, FitLocal *at)
 {
   const double(*const B)[2] = surface->scale;
-  Lanes  eta[MAX_TANGENTS], hessian[3];
-  double gradient[2] = {0}, h[2][2] = {{0}};
+  Lanes  eta[MAX_TANGENTS], gradient[2], hessian[3];
+  double h[2][2];
 
   for (int k = 0; k < m; k++) eta[k] = Broadcast(B[k][0] * y[0] + (m == 2 ? B[k][1] * y[1] : 0));
   Monomials(m, degree, eta, at->p);
-  MonomialGradients(m, degree, at->p, at->dp);
+  PolynomialGradient(m, degree, at->p, alpha, gradient);
   PolynomialHessian(m, degree, at->p, alpha, hessian);
-  at->q = DotTerms(terms, at->p, alpha)[0];
-  for (int k = 0; k < m; k++) gradient[k] = DotTerms(terms, at->dp[k], alpha)[0];
+  at->q   = DotTerms(terms, at->p, alpha)[0];
   h[0][0] = hessian[0][0];
   h[0][1] = h[1][0] = hessian[1][0];
   h[1][1]           = hessian[2][0];
   for (int c = 0; c < 2; c++) {
-    at->g[c] = B[0][c] * gradient[0] + B[1][c] * gradient[1];
+    at->g[c] = B[0][c] * gradient[0][0] + B[1][c] * gradient[1][0];
     for (int d = 0; d < 2; d++) { at->h[c][d] = B[0][c] * (h[0][0] * B[0][d] + h[0][1] * B[1][d]) + B[1][c] * (h[1][0] * B[0][d] + h[1][1] * B[1][d]); }
   }
 }
 
+/* Length of a vector in supports, or of what is as far from the ends of the numbers: hypot() guards against these, at many times the cost. */
+LANES_INLINE double Length(double a, double b)
+{
+  return sqrt(a * a + b * b);
+}
+
 static double SmallestEigenvalue(double (*a)[2])
 {
-  return 0.5 * (a[0][0] + a[1][1]) - hypot(0.5 * (a[0][0] - a[1][1]), a[0][1]);
+  return 0.5 * (a[0][0] + a[1][1]) - Length(0.5 * (a[0][0] - a[1][1]), a[0][1]);
 }
 
 static void Invert(double (*a)[2], double (*inverse)[2])
@@ -253,9 +305,9 @@ LANES_INLINE int FindFoot(const int m, const int degree, const int terms, const 
     Invert(out->J, inverse);
     for (int c = 0; c < 2; c++) step[c] = -inverse[c][0] * (y[0] + at->q * at->g[0]) - inverse[c][1] * (y[1] + at->q * at->g[1]);
     for (int c = 0; c < m; c++) y[c] += step[c];
-    size = m == 1 ? fabs(B[0][0] * step[0]) : hypot(B[0][0] * step[0] + B[0][1] * step[1], B[1][0] * step[0] + B[1][1] * step[1]);
+    size = m == 1 ? fabs(B[0][0] * step[0]) : Length(B[0][0] * step[0] + B[0][1] * step[1], B[1][0] * step[0] + B[1][1] * step[1]);
   }
-  out->reach = m == 1 ? fabs(B[0][0] * y[0]) : hypot(B[0][0] * y[0] + B[0][1] * y[1], B[1][0] * y[0] + B[1][1] * y[1]);
+  out->reach = m == 1 ? fabs(B[0][0] * y[0]) : Length(B[0][0] * y[0] + B[0][1] * y[1], B[1][0] * y[0] + B[1][1] * y[1]);
   return SmallestEigenvalue(out->J) > FIT_FOCAL;
 }
 
@@ -281,10 +333,10 @@ static void Describe(int dim, const FitProblem *in, const FitLocal *at, FitResul
 }
 
 /* F and S of G_aa = F^T S F, and lambda, from the surface at the foot. dy[c][r]: dy*_c by the rows of F. */
-LANES_INLINE void FootVariation(const int m, const int terms, const FitLocal *at, const FitResult *out, FitState *s)
+LANES_INLINE void FootVariation(const int m, const int degree, const int terms, const FitLocal *at, const FitResult *out, FitState *s)
 {
   double dy[2][ROWS] = {{0}}, inverse[2][2], J[2][2];
-  Lanes  orthonormal[FIT_MAX_TERMS];
+  Lanes  dp[MAX_TANGENTS][FIT_MAX_TERMS];
 
   memcpy(J, out->J, sizeof(J));
   Invert(J, inverse);
@@ -300,16 +352,17 @@ LANES_INLINE void FootVariation(const int m, const int terms, const FitLocal *at
     s->S[0][r] = s->nu3 * s->nu3 * s->nu3 * slope;
     for (int c = 0; c < m; c++) s->S[1 + c][r] = -s->nu3 * dy[c][r];
   }
+  MonomialGradients(m, degree, at->p, dp);
   for (int k = 0; k < terms; k++) {
     s->foot[0][k] = at->p[k];
     for (int c = 0; c < m; c++) {
-      s->foot[1 + c][k] = out->surface.scale[0][c] * at->dp[0][k];
-      if (m == 2) s->foot[1 + c][k] += out->surface.scale[1][c] * at->dp[1][k];
+      s->foot[1 + c][k] = out->surface.scale[0][c] * dp[0][k];
+      if (m == 2) s->foot[1 + c][k] += out->surface.scale[1][c] * dp[1][k];
     }
   }
   for (int r = 0; r < 1 + m; r++) ToOrthonormal(terms, s, s->foot[r]);
-  for (int k = 0; k < terms; k++) orthonormal[k] = -s->nu3 * s->foot[0][k];
-  ToMonomials(terms, s, orthonormal, s->lambda);
+  for (int k = 0; k < terms; k++) s->lambda[k] = -s->nu3 * s->inverse[k] * s->foot[0][k];
+  ToMonomials(terms, s, s->lambda);
 }
 
 /* Shape values dq(y*)/dz_i = w_i p^_i.p^(y*) into scratch; returns the sum of their magnitudes. */
@@ -343,7 +396,8 @@ LANES_INLINE int Evaluate(const int dim, const int degree, const int terms, cons
   Describe(dim, in, &at, out);
   out->guards |= out->reach < FIT_REACH ? 0 : FIT_FAR_FOOT;
   if (want < FIT_GAP) return 1;
-  FootVariation(dim - 1, terms, &at, out, &s);
+  Normalise(terms, &a, &s);
+  FootVariation(dim - 1, degree, terms, &at, out, &s);
   out->amplified = Shapes(terms, &a, s.foot[0]);
   if (out->shape) memcpy(out->shape, a.scratch, a.n * sizeof(double));
   out->guards |= out->amplified <= FIT_AMPLIFIED ? 0 : FIT_HIGH_SUM;
@@ -383,7 +437,7 @@ long FitWorkspace(int dim, int degree, int n)
   const long product = 2 * terms * SymmetricProductStride(dim * (int)(LANES + points)),
              factors = (1 + points) * (dim * FactorStride((int)terms) + HessianStride(dim));
 
-  return ALIGNMENT / (long)sizeof(double) + (ARRAYS + terms + 2 + BLOCK) * points + (product > factors ? product : factors);
+  return ALIGNMENT / (long)sizeof(double) + (ARRAYS + terms + 2) * points + (product > factors ? product : factors);
 }
 
 /* FitEvaluate - gap, first and second variation of one slave point against the diffuse surface through its fit points. Not collective.
@@ -462,6 +516,7 @@ LANES_INLINE int Shape(const int dim, const int degree, const int terms, const F
   Layout(terms, in->n, workspace, &a);
   memset(shape, 0, in->n * sizeof(double));
   if (!MakeSurface(dim, degree, terms, in, &a, &s, &out)) return 0;
+  Normalise(terms, &a, &s);
   for (int i = 0; i < n; i++) {
     SurfaceAt(dim - 1, degree, terms, &out.surface, s.alpha, y + i * (dim - 1), &at);
     for (int k = 0; k < terms; k++) row[k] += factor[i] * at.p[k];

@@ -170,6 +170,26 @@ static void WindowSpacing(const Fitting *fit, PetscInt n, double covariance[3][3
   *area = sum / faces;
 }
 
+/* Weights of n points and their positions relative to the fit's origin, as of ListsRelative(); returns how many are inside the support. dim constant where this
+   is called. */
+static inline PetscInt TakePoints(const int dim, Fitting *fit, const FitFoot *at, PetscInt n, const PetscReal *rho2)
+{
+  const ContactLists lists = fit->lists;
+  const PetscReal   *X = lists->point_X, *u = lists->point_u;
+  PetscInt           inside = 0;
+
+  for (PetscInt i = 0; i < n; i++) {
+    const PetscInt  p      = fit->points[i];
+    const PetscReal weight = lists->point_weight[p];
+
+    inside += rho2[i] <= 1 + SEARCH_FIT_TIE;
+    fit->multiplier[i] = weight;
+    fit->taper[i]      = weight * PetscMax(SEARCH_FIT_TIE, 1 - rho2[i] / SEARCH_FIT_MARGIN);
+    for (int d = 0; d < dim; d++) fit->x[i * dim + d] = (X[p * dim + d] - at->X[d]) + (u[p * dim + d] - at->u[d]);
+  }
+  return inside;
+}
+
 /* Tries one rung at a foot: points, frame, metric into fit and problem; true when every guard holds. Quadrature points come in clusters, whose
    number says nothing: the pivot does. */
 static PetscErrorCode FitRung(Fitting *fit, const FitFoot *at, int rung, FitProblem *problem, FitResult *result, PetscBool *holds)
@@ -193,13 +213,7 @@ static PetscErrorCode FitRung(Fitting *fit, const FitFoot *at, int rung, FitProb
     MetricInSpace(dim, problem->frame, problem->metric, space);
     PetscCall(NeighbourhoodGather(fit->neighbourhoods, at->facet, at->foot, problem->frame[dim - 1], space, SEARCH_FIT_MARGIN, FIT_MAX_POINTS, fit->points,
                                   &rho2, &n, &found));
-    inside = 0;
-    for (PetscInt i = 0; i < n; i++) {
-      inside += rho2[i] <= 1 + SEARCH_FIT_TIE;
-      fit->multiplier[i] = fit->lists->point_weight[fit->points[i]];
-      fit->taper[i]      = fit->multiplier[i] * PetscMax(SEARCH_FIT_TIE, 1 - rho2[i] / SEARCH_FIT_MARGIN);
-      for (int d = 0; d < dim; d++) fit->x[i * dim + d] = fit->view.x[fit->points[i] * dim + d] - at->x[d];
-    }
+    inside     = dim == 3 ? TakePoints(3, fit, at, n, rho2) : TakePoints(2, fit, at, n, rho2);
     problem->n = (int)n;
     if (inside < wanted) PetscFunctionReturn(PETSC_SUCCESS);
     if (settings->integral && pass == 0) WindowSpacing(fit, n, covariance, &area);
@@ -227,21 +241,20 @@ PetscErrorCode FittingClimb(Fitting *fit, const FitFoot *at, FitProblem *problem
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* How far the points in the inner half of the support lie from the fit: what the smoothing itself costs. */
-static PetscReal FitResidual(const FitProblem *problem, const FitResult *result)
+/* How far the points in the inner half of the support lie from the fit: what the smoothing itself costs. dim constant where this is called. */
+static inline PetscReal FitResidual(const int dim, const FitProblem *problem, const FitResult *result)
 {
-  const int dim  = problem->dim;
-  PetscReal most = 0;
+  const double Q[3] = {problem->metric[0][0], 2 * problem->metric[0][1], problem->metric[1][1]};
+  PetscReal    most = 0;
 
   for (int i = 0; i < problem->n; i++) {
-    double y[2] = {0, 0}, z = 0, rho2 = 0;
+    double y[2] = {0, 0}, z = 0, rho2;
 
     for (int d = 0; d < dim; d++) {
       for (int a = 0; a < dim - 1; a++) y[a] += problem->frame[a][d] * problem->x[i * dim + d];
       z += problem->frame[dim - 1][d] * problem->x[i * dim + d];
     }
-    for (int a = 0; a < dim - 1; a++)
-      for (int b = 0; b < dim - 1; b++) rho2 += y[a] * problem->metric[a][b] * y[b];
+    rho2 = Q[0] * y[0] * y[0] + (dim == 3 ? (Q[1] * y[0] + Q[2] * y[1]) * y[1] : 0);
     if (rho2 <= 0.25) most = PetscMax(most, PetscAbsReal(z - FitSurfaceHeight(&result->surface, y, NULL)));
   }
   return most;
@@ -262,7 +275,8 @@ PetscErrorCode FittingSlave(Fitting *fit, const Nearest *look, PetscInt q, Petsc
   PetscFunctionBeginUser;
   for (int d = 0; d < 3; d++) at.outward[d] = best->normal[d]; /* the foot's own may lie along the surface when the foot is on an edge */
   for (int d = 0; d < lists->dim; d++) {
-    at.x[d]    = look->x[d];
+    at.X[d]    = lists->slave_X[q * lists->dim + d];
+    at.u[d]    = lists->slave_u[q * lists->dim + d];
     at.foot[d] = look->x[d] - look->foot.gap * look->foot.normal[d];
   }
   TimingBegin(TIMING_FIT); /* two looks at the clock, 0.1 % of a ladder */
@@ -273,7 +287,9 @@ PetscErrorCode FittingSlave(Fitting *fit, const Nearest *look, PetscInt q, Petsc
   lists->degree[q]    = problem.degree;
   lists->pivot[q]     = result.pivot;
   lists->amplified[q] = result.amplified;
-  lists->residual[q]  = FitResidual(&problem, &result);
+  lists->gap[q]       = result.gap;
+  for (int d = 0; d < 3; d++) lists->normal[3 * q + d] = result.normal[d];
+  lists->residual[q] = lists->dim == 3 ? FitResidual(3, &problem, &result) : FitResidual(2, &problem, &result);
   for (int i = 0; i < 9; i++) lists->frame[9 * q + i] = problem.frame[i / 3][i % 3];
   for (int i = 0; i < 4; i++) lists->metric[4 * q + i] = problem.metric[i / 2][i % 2];
   for (PetscInt i = 0; i < problem.n; i++) PetscCall(ListBufferAddPoint(buffer, first, fit->points[i]));

@@ -158,9 +158,10 @@ static void TurnOffsets(ContactSearch s, ContactLists lists, PetscReal t)
    may be NULL. */
 PetscErrorCode ListsUpdate(ContactSearch s, ContactLists lists, const PetscReal *u, PetscReal t, PetscBool *moved)
 {
-  const PetscInt n = lists->n_nodes * lists->dim;
-  PetscReal     *before;
-  PetscBool      same;
+  const PetscInt  n     = lists->n_nodes * lists->dim;
+  const PetscBool turns = (PetscBool)(s->fit->integral && s->master && s->master->rigid);
+  PetscReal      *before;
+  PetscBool       same;
 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(n, &before));
@@ -168,11 +169,12 @@ PetscErrorCode ListsUpdate(ContactSearch s, ContactLists lists, const PetscReal 
   PetscCall(ListsUpdateNodes(s, lists, u, t));
   PetscCall(PetscArraycmp(before, lists->u, n, &same));
   PetscCall(PetscFree(before));
+  lists->made = (PetscBool)(same && !turns && (lists->made || PetscIsNanReal(lists->t))); /* t: the lists are being made */
   if (moved) *moved = same && lists->t == t ? PETSC_FALSE : PETSC_TRUE;
   if (same && lists->t == t) PetscFunctionReturn(PETSC_SUCCESS);
   lists->t = t;
   for (PetscInt p = 0; p < lists->n_points; p++) PointMap(s, lists, p, lists->u, &lists->point_u[p * lists->dim]);
-  if (s->fit->integral && s->master && s->master->rigid) TurnOffsets(s, lists, t);
+  if (turns) TurnOffsets(s, lists, t);
   for (PetscInt q = 0; q < lists->n_slaves; q++) SlaveMap(s, lists, q, lists->u, &lists->slave_u[q * lists->dim]);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -433,7 +435,7 @@ PetscErrorCode ListsCreateSlaves(ContactSearch s, ContactLists lists)
   PetscCall(PetscMalloc2(n * dim, &lists->slave_X, n * dim, &lists->slave_u));
   PetscCall(PetscMalloc4(n + 1, &lists->list_ptr, n + 1, &lists->facet_ptr, n, &lists->kappa, n, &lists->nearest));
   PetscCall(PetscCalloc5(n, &lists->fit_n, n, &lists->rung, n, &lists->degree, 9 * n, &lists->frame, 4 * n, &lists->metric));
-  PetscCall(PetscCalloc4(n, &lists->pivot, n, &lists->amplified, n, &lists->residual, 2 * n, &lists->centre));
+  PetscCall(PetscCalloc6(n, &lists->pivot, n, &lists->amplified, n, &lists->residual, 2 * n, &lists->centre, n, &lists->gap, 3 * n, &lists->normal));
   if (slaves->maps.ptr)
     PetscCall(TakeSlaveMaps(s, lists));
   else
@@ -478,22 +480,34 @@ PetscReal ListsNearestSize(ContactLists lists, PetscInt q)
   return lists->nearest[q] < 0 ? 0 : lists->facet_size[lists->facet_ptr[q] + lists->nearest[q]];
 }
 
+/* Sum of the fit points of a slave point, seen from it; dim constant where this is called. */
+static inline void SumPoints(const int dim, ContactLists lists, PetscInt q, PetscReal sum[3])
+{
+  const PetscReal *X = lists->point_X, *u = lists->point_u, *X_0 = &lists->slave_X[q * dim], *u_0 = &lists->slave_u[q * dim];
+  PetscReal        total[3] = {0, 0, 0};
+
+  for (PetscInt i = lists->list_ptr[q]; i < lists->list_ptr[q] + lists->fit_n[q]; i++) {
+    const PetscInt p = lists->list_point[i];
+
+    for (int d = 0; d < dim; d++) total[d] += (X[p * dim + d] - X_0[d]) + (u[p * dim + d] - u_0[d]);
+  }
+  for (int d = 0; d < 3; d++) sum[d] = total[d];
+}
+
 /* ListsCentre - mean of the fit points of slave point q in the tangents of its frame, relative to it, in the present position (lengths).
 
    Not collective. centre[2]: dim - 1 entries are used. */
 void ListsCentre(ContactLists lists, PetscInt q, PetscReal centre[2])
 {
-  const int        dim    = lists->dim;
-  const PetscReal *frame  = &lists->frame[9 * q];
-  PetscReal        sum[3] = {0, 0, 0};
+  const int        dim   = lists->dim;
+  const PetscReal *frame = &lists->frame[9 * q];
+  PetscReal        sum[3];
 
   centre[0] = centre[1] = 0;
-  for (PetscInt i = lists->list_ptr[q]; i < lists->list_ptr[q] + lists->fit_n[q]; i++) {
-    PetscReal x[3];
-
-    ListsRelative(lists, q, lists->list_point[i], x);
-    for (int d = 0; d < dim; d++) sum[d] += x[d];
-  }
+  if (dim == 3)
+    SumPoints(3, lists, q, sum);
+  else
+    SumPoints(2, lists, q, sum);
   for (int a = 0; a < dim - 1 && lists->fit_n[q]; a++)
     for (int d = 0; d < dim; d++) centre[a] += frame[3 * a + d] * sum[d] / lists->fit_n[q];
 }
@@ -529,7 +543,7 @@ PetscErrorCode ListsDestroy(ContactLists *lists)
   PetscCall(PetscFree2(l->slave_X, l->slave_u));
   PetscCall(PetscFree4(l->list_ptr, l->facet_ptr, l->kappa, l->nearest));
   PetscCall(PetscFree5(l->fit_n, l->rung, l->degree, l->frame, l->metric));
-  PetscCall(PetscFree4(l->pivot, l->amplified, l->residual, l->centre));
+  PetscCall(PetscFree6(l->pivot, l->amplified, l->residual, l->centre, l->gap, l->normal));
   PetscCall(PetscFree(l->list_point));
   PetscCall(PetscFree(l->facet));
   PetscCall(PetscFree(l->facet_size));

@@ -12,7 +12,7 @@ struct _n_Neighbourhoods {
   PetscInt          *link_ptr, *link; /* facets across the edges that are not sharp, CSR */
   PetscInt          *seen_facet, *seen_point, stamp;
   PetscInt          *queue;
-  PetscReal         *rho2; /* of the points found */
+  PetscReal         *rho2, *point_rho2; /* of the points found; of every point that was seen */
   PetscInt          *reach;
 };
 
@@ -92,7 +92,7 @@ PetscErrorCode NeighbourhoodsCreate(const SurfaceView *view, Neighbourhoods *out
   nb->link_ptr[0] = 0;
   PetscCall(PetscFree(edges));
   PetscCall(PetscCalloc2(view->n_facets, &nb->seen_facet, view->n_points, &nb->seen_point));
-  PetscCall(PetscMalloc3(view->n_facets, &nb->queue, view->n_points, &nb->reach, view->n_points, &nb->rho2));
+  PetscCall(PetscMalloc4(view->n_facets, &nb->queue, view->n_points, &nb->reach, view->n_points, &nb->rho2, view->n_points, &nb->point_rho2));
   *out = nb;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -103,7 +103,7 @@ PetscErrorCode NeighbourhoodsDestroy(Neighbourhoods *nb)
   PetscFunctionBeginUser;
   if (!*nb) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscFree2((*nb)->seen_facet, (*nb)->seen_point));
-  PetscCall(PetscFree3((*nb)->queue, (*nb)->reach, (*nb)->rho2));
+  PetscCall(PetscFree4((*nb)->queue, (*nb)->reach, (*nb)->rho2, (*nb)->point_rho2));
   PetscCall(PetscFree((*nb)->link_ptr));
   PetscCall(PetscFree((*nb)->link));
   PetscCall(PetscFree(*nb));
@@ -158,13 +158,15 @@ PetscErrorCode NeighbourhoodGather(Neighbourhoods nb, PetscInt start, const Pets
       if (own <= limit) ReachAdd(nb, &count, own, view->first[f] + q);
     }
     for (int a = 0, nodes = view->first && inside ? 0 : ElementGet(facet->type)->nodes; a < nodes; a++) { /* a quadrature point inside tells as much */
-      const PetscInt  p   = facet->nodes[a];
-      const PetscReal own = Rho2(view, p, x0, metric);
+      const PetscInt p = facet->nodes[a];
 
-      inside = (PetscBool)(inside || own <= limit);
-      if (view->first || nb->seen_point[p] == nb->stamp || own > limit) continue;
-      nb->seen_point[p] = nb->stamp;
-      if (view->geometry[p].weight > 0 && Dot(view->geometry[p].normal, e3) >= NEIGHBOURHOOD_COSINE) ReachAdd(nb, &count, own, p);
+      if (nb->seen_point[p] != nb->stamp) {
+        nb->seen_point[p] = nb->stamp;
+        nb->point_rho2[p] = Rho2(view, p, x0, metric);
+        if (!view->first && nb->point_rho2[p] <= limit && view->geometry[p].weight > 0 && Dot(view->geometry[p].normal, e3) >= NEIGHBOURHOOD_COSINE)
+          ReachAdd(nb, &count, nb->point_rho2[p], p);
+      }
+      inside = (PetscBool)(inside || nb->point_rho2[p] <= limit);
     }
     if (!inside && f != start) continue;
     for (PetscInt k = nb->link_ptr[f]; k < nb->link_ptr[f + 1]; k++) {

@@ -70,16 +70,16 @@ static PetscErrorCode FitAt(Fitting *fit, const OffsetFace *face, int q, FitProb
 
   PetscFunctionBeginUser;
   for (int a = 0; a < n; a++)
-    for (int d = 0; d < dim; d++) at.x[d] += face->rule->N[q][a] * face->x[a * dim + d];
+    for (int d = 0; d < dim; d++) at.X[d] += face->rule->N[q][a] * face->x[a * dim + d];
   for (int d = 0; d < 3; d++) {
-    at.foot[d]    = at.x[d];
+    at.foot[d]    = at.X[d];
     at.outward[d] = face->normal[3 * q + d];
   }
   PetscCall(FittingClimb(fit, &at, problem, result, rung));
   for (int a = 0; a < n && *rung != RUNG_FACET; a++) {
     for (int k = 0; k < dim - 1; k++) {
       nodes[a][k] = 0;
-      for (int d = 0; d < dim; d++) nodes[a][k] += problem->frame[k][d] * (face->x[a * dim + d] - at.x[d]);
+      for (int d = 0; d < dim; d++) nodes[a][k] += problem->frame[k][d] * (face->x[a * dim + d] - at.X[d]);
     }
   }
   PetscFunctionReturn(PETSC_SUCCESS);
