@@ -5,6 +5,7 @@
    Lists are frozen inside one solve: ContactGather() makes them before it, ContactListsHold() says after it whether they were right. The
    rank that owns a slave node computes its terms; masters come from any rank. */
 #pragma once
+#include "bordering.h"
 #include "contactstate.h"
 #include "loads.h"
 #include "mesh.h"
@@ -111,6 +112,10 @@ PetscErrorCode ContactTangent(Contact, const PetscReal *u, PetscReal t, Mat *C, 
 PetscErrorCode ContactTangentChanges(Contact, PetscInt *terms);
 /* What these add to the tangent, N diag(s) N^T: s[terms] and a dense N of so many columns, the caller's. rows: the matrix's on this rank. Collective. */
 PetscErrorCode ContactChangeVectors(Contact, PetscInt rows, PetscInt terms, PetscReal *s, Mat *N);
+/* The last tangent, C, as nearly a sum of v v^T over its terms; the arrays stay the contact's. Not collective. */
+PetscErrorCode ContactGetBorder(Contact, Mat C, Border *);
+/* Do the surfaces of a pair of bodies couple many nodes with each slave node? Not collective. */
+PetscBool ContactHasFits(Contact);
 /* y += C x with the tangent that is asked for in between, all dofs; rigid tools contribute their motion from t to t_next. x, y local, y complete at owned
    nodes. Collective. */
 PetscErrorCode ContactMultiplyBegin(Contact, const PetscReal *x, PetscReal t, PetscReal t_next);

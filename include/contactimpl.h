@@ -96,6 +96,12 @@ typedef struct {
   ContactWork       *work;                         /* shared by all pairs */
 } ContactPair;
 
+/* Vectors of the terms of the last tangent (Border), and where they stand */
+typedef struct {
+  PetscInt     n, *ptr, *row;
+  PetscScalar *value;
+} ContactBorder;
+
 /* What the next tangent is multiplied with, and the product, over the contact nodes of a pair */
 typedef struct {
   PetscReal *x, *y;
@@ -108,7 +114,8 @@ struct _n_Contact {
   int             n_pairs;
   ContactPair    *pairs;
   ContactWork     work;
-  BlockMatrix     blocks;  /* the last tangent */
+  BlockMatrix     blocks; /* the last tangent */
+  ContactBorder   border;
   ContactProduct *product; /* of each pair; NULL: none is asked for */
   PetscLogEvent   event_search, event_project, event_residual, event_tangent;
   PetscLogEvent   event_fit, event_offset, event_adjust, event_touch; /* of effects: none where the scene does not call for them */

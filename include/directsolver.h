@@ -8,7 +8,8 @@ PetscErrorCode DirectSolverSet(KSP, PetscBool symmetric);
 PetscErrorCode DirectSolverServes(KSP, PetscBool *);
 /* What it factors with; NULL: options have replaced it. Not collective; borrowed. */
 PetscErrorCode DirectSolverFactor(KSP, Factor *);
-/* Chooses the ordering of its factors from now on: the one that needs the fewest operations for A, a matrix much like those to come. Collective. */
-PetscErrorCode DirectSolverOrder(KSP, Mat A);
+/* Chooses the ordering of its factors from now on: the one that needs the fewest operations for A, a matrix much like those to come. *thin: A is that of walls
+   or planes, not of bodies that fill space, and large enough for orderings to matter; no where the user has chosen one. Collective. */
+PetscErrorCode DirectSolverOrder(KSP, Mat A, PetscBool *thin);
 /* X = A^-1 B for dense B and X, with the preconditioner of a KSP that serves, which has A's factor; that most of B is zero is made use of. Collective. */
 PetscErrorCode DirectSolverColumns(PC, Mat B, Mat X);

@@ -1,7 +1,7 @@
 /* The factor of a sparse matrix by MUMPS, spoken to without PETSc's interface in between: that hands it no ordering on more than one rank, no right-hand sides
    with few entries, and a MUMPS without METIS cuts graphs so unevenly that a second rank gains little. */
 #pragma once
-#include "petsccompat.h"
+#include "bordering.h"
 
 typedef struct _n_Factor *Factor;
 
@@ -21,6 +21,10 @@ PetscErrorCode FactorDestroy(Factor *);
 PetscErrorCode FactorCheckOptions(void);
 /* For the analyses to come; what -mat_mumps_icntl_7 says stays. *chosen (or NULL): it has said nothing. Logically collective. */
 PetscErrorCode FactorSetOrdering(Factor, int ordering, PetscBool *chosen);
+/* For the matrices to come, which are K and what borders say: K is ordered by minimum fill. Symmetric ones only. Collective. */
+PetscErrorCode FactorPrepareBorder(Factor, Mat K, PCFailedReason *);
+/* The next matrix that is factored is K + C, made of K and these vectors; NULL: as it is. FactorPrepareBorder() was called. Not collective, borrowed. */
+PetscErrorCode FactorSetBorder(Factor, const Border *);
 /* Orders an AIJ matrix of symmetric pattern and counts what its factor will take. Collective. */
 PetscErrorCode FactorAnalyse(Factor, Mat A, PCFailedReason *);
 /* Factors it, after an analysis where its pattern is not that of the last; with more workspace where MUMPS finds its own too short. Collective. */

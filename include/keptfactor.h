@@ -9,6 +9,7 @@ typedef struct _n_KeptFactor *KeptFactor;
 typedef struct {
   PetscInt made;               /* factors */
   PetscInt served, iterations; /* solves with the factor of an older tangent, iterations of these */
+  PetscInt finishing;          /* iterations of solves with their own factor, which leaves out a part */
 } KeptCounts;
 
 /* For a KSP that factors (preonly); one that options have made another is left alone. Collective. */
@@ -21,13 +22,16 @@ PetscErrorCode KeptFactorRenew(KeptFactor);
 /* Before each solve with a new operator. changes: contact terms that came, went or changed their stiffness since the operator before; pattern: it has a new
    one. *serves: the factor does, the KSP leaves it alone, and it wants to be told of the changes, if there are. Collective. */
 PetscErrorCode KeptFactorNext(KeptFactor, PetscInt changes, PetscBool pattern, PetscBool *serves);
+/* The factors to come leave out a part of their operators that is small: solves with them are finished by iterations, as those with older ones are. Not
+   collective. */
+PetscErrorCode KeptFactorSetRough(KeptFactor, PetscBool rough);
 /* After that: the changes are N diag(s) N^T, N dense, which is written to. Collective. */
 PetscErrorCode KeptFactorUpdate(KeptFactor, Mat N, const PetscReal *s);
 /* The residual (2-norm) with which the nonlinear solver will be content. Logically collective. */
 PetscErrorCode KeptFactorSetEnough(KeptFactor, PetscReal residual);
-/* After the KSP's own solve of A x = b: goes on from x where the factor is an older one. *tolerance: relative residual that was asked for, left alone where
-   the factor is A's; *failed: a factor had to be made and could not. Collective. */
-PetscErrorCode KeptFactorSolve(KeptFactor, Mat A, Vec b, Vec x, PetscReal *tolerance, PetscBool *failed);
+/* After the KSP's own solve of A x = b: goes on from x where the factor is not A's, or not all of A's. *tolerance: relative residual that was asked for, left
+   alone where the factor solves; *norm: the residual, negative: not known; *failed: a factor had to be made and could not. Collective. */
+PetscErrorCode KeptFactorSolve(KeptFactor, Mat A, Vec b, Vec x, PetscReal *tolerance, PetscReal *norm, PetscBool *failed);
 /* After that: the factor becomes A's own, where it is an older one. Collective. */
 PetscErrorCode KeptFactorOwn(KeptFactor, Mat A, PetscBool *failed);
 void           KeptFactorGetCounts(KeptFactor, KeptCounts *);

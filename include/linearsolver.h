@@ -1,5 +1,6 @@
 /* How the tangent systems are solved, behind SNES's KSP: directly (MUMPS), or by GMRES with a preconditioner of its own (multigrid.h). */
 #pragma once
+#include "bordering.h"
 #include "keptfactor.h"
 #include "mesh.h"
 
@@ -10,8 +11,12 @@ PetscErrorCode LinearSolverCreate(KSP, Mesh, Scene, PetscBool symmetric, LinearS
 /* After the KSP is destroyed. Collective. */
 PetscErrorCode LinearSolverDestroy(LinearSolver *);
 /* With the pattern of the first operator's elastic part, before contact joins it, which a run that is restarted finds too; where many operators are to come.
-   Collective. */
-PetscErrorCode LinearSolverOrder(LinearSolver, Mat K);
+   couples: contact couples many unknowns with each other. Collective. */
+PetscErrorCode LinearSolverOrder(LinearSolver, Mat K, PetscBool couples);
+/* Does it want to be told what contact adds as a sum of v v^T? Not collective, the same on all ranks. */
+PetscBool LinearSolverBorders(LinearSolver);
+/* That, of the next operator, before LinearSolverNext(); borrowed until the next call. Not collective. */
+PetscErrorCode LinearSolverSetBorder(LinearSolver, const Border *);
 /* Before each solve with a new operator. u: local displacements (n_nodes*dim) that it is the tangent at; C: its contact part, NULL: none; pattern: it has a new
    one; changes: contact terms that came, went or changed their stiffness since the operator before; *older: an older factor serves and wants to be told of them
    (KeptFactorUpdate()). Collective. */

@@ -71,6 +71,9 @@ PetscErrorCode ContactDestroy(Contact *contact)
   PetscCall(ContactWorkDestroy(&c->work));
   PetscCall(PetscFree(c->work.workspace));
   PetscCall(BlockMatrixDestroy(&c->blocks));
+  PetscCall(PetscFree(c->border.ptr));
+  PetscCall(PetscFree(c->border.row));
+  PetscCall(PetscFree(c->border.value));
   PetscCall(PetscFree(*contact));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -118,24 +118,25 @@ static PetscErrorCode CountOperations(Factor factor, int ordering, Mat A, PetscR
 
    Collective. A: a matrix much like those to come; only its pattern counts. Costs one to three analyses, each about a third of a factorisation at 10,000
    unknowns and less above. One that the user has chosen (-mat_mumps_icntl_7) stays. */
-PetscErrorCode DirectSolverOrder(KSP ksp, Mat A)
+PetscErrorCode DirectSolverOrder(KSP ksp, Mat A, PetscBool *thin)
 {
   int       ordering = FACTOR_METIS;
   PetscReal best, operations;
   PetscInt  n;
-  PetscBool chosen, thick;
+  PetscBool chosen;
   Factor    factor;
 
   PetscFunctionBeginUser;
+  *thin = PETSC_FALSE;
   PetscCall(DirectSolverFactor(ksp, &factor));
   PetscCall(MatGetSize(A, &n, NULL));
   if (!factor || n < DIRECT_COMPARED) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(FactorSetOrdering(factor, ordering, &chosen));
   if (!chosen) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(CountOperations(factor, FACTOR_METIS, A, &best));
-  thick = (PetscBool)(best > DIRECT_THICK * (PetscReal)n * (PetscReal)n);
+  *thin = (PetscBool)(best <= DIRECT_THICK * (PetscReal)n * (PetscReal)n);
   best *= DIRECT_BETTER;
-  for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(DirectOthers) && !thick; i++) {
+  for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(DirectOthers) && *thin; i++) {
     PetscCall(CountOperations(factor, DirectOthers[i], A, &operations));
     if (operations >= best) continue;
     best     = operations;

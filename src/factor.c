@@ -42,6 +42,10 @@ struct _n_Factor {
   PetscInt         room;
   MUMPS_INT       *row, *column; /* entries of this rank, from 1, in memory for `room` */
   PetscScalar     *value;
+  Bordering        bordering; /* NULL: none was prepared */
+  PetscBool        bordered;  /* the next matrix is */
+  Border           border;
+  PetscBool        placed;    /* rows and columns of the bodies' entries, which a border leaves where they are */
   MUMPS_INT        workspace; /* ICNTL(14) at first */
   MUMPS_INT       *position;  /* of rows, where the ordering is given; on the first rank, as are: */
   PetscScalar     *right;     /* room for right-hand sides and solutions */
@@ -142,6 +146,7 @@ PetscErrorCode FactorDestroy(Factor *factor)
   PetscCall(PetscFree(f->position));
   PetscCall(PetscFree(f->right));
   PetscCall(PetscFree2(f->count, f->first));
+  PetscCall(BorderingDestroy(&f->bordering));
   PetscCall(PetscCommDestroy(&f->comm));
   PetscCall(PetscFree(*factor));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -159,6 +164,19 @@ PetscErrorCode FactorSetOrdering(Factor f, int ordering, PetscBool *chosen)
   if (ordering != f->ordering) f->matrix = 0; /* to be analysed anew */
   f->ordering = ordering;
   if (chosen) *chosen = given ? PETSC_FALSE : PETSC_TRUE;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* FactorSetBorder - Not collective, the same on all ranks. */
+PetscErrorCode FactorSetBorder(Factor f, const Border *border)
+{
+  const PetscBool bordered = border ? PETSC_TRUE : PETSC_FALSE;
+
+  PetscFunctionBeginUser;
+  PetscCheck(!border || f->bordering, f->comm, PETSC_ERR_ARG_WRONGSTATE, "borders have not been prepared for");
+  if (bordered != f->bordered) f->matrix = 0; /* to be analysed anew */
+  f->bordered = bordered;
+  f->border   = border ? *border : (Border){.n = 0};
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -233,6 +251,10 @@ static PetscErrorCode TakeValues(Factor f, Mat A)
   PetscScalar *value = f->value;
 
   PetscFunctionBeginUser;
+  if (f->bordered) {
+    PetscCall(BorderingTake(f->bordering, A, value));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
   for (int block = 0; block < MATRIX_BLOCKS; block++) {
     MatrixRows rows;
 
@@ -248,21 +270,69 @@ static PetscErrorCode TakeValues(Factor f, Mat A)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* MUMPS is told where the entries are. */
-static PetscErrorCode ShowEntries(Factor f, Mat A)
+/* Memory for the entries; *kept: what stood there stands there still. */
+static PetscErrorCode Reserve(Factor f, PetscBool *kept)
 {
-  DMUMPS_STRUC_C *mumps = &f->mumps;
-  PetscInt        start;
+  PetscFunctionBeginUser;
+  *kept = (PetscBool)(f->row && f->entries <= f->room);
+  if (*kept) PetscFunctionReturn(PETSC_SUCCESS);
+  f->room = (PetscInt)(FACTOR_ROOM * f->entries);
+  PetscCall(PetscFree3(f->row, f->column, f->value));
+  PetscCall(PetscMalloc3(f->room, &f->row, f->room, &f->column, f->room, &f->value));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode PlaceEntries(Factor f, Mat A)
+{
+  PetscInt  start;
+  PetscBool kept;
 
   PetscFunctionBeginUser;
   PetscCall(MatGetOwnershipRange(A, &start, NULL));
   PetscCall(FindEntries(f, A, start));
-  if (f->entries > f->room || !f->row) {
-    f->room = (PetscInt)(FACTOR_ROOM * f->entries);
-    PetscCall(PetscFree3(f->row, f->column, f->value));
-    PetscCall(PetscMalloc3(f->room, &f->row, f->room, &f->column, f->room, &f->value));
-  }
+  PetscCall(Reserve(f, &kept));
   PetscCall(TakePlaces(f, A, start));
+  f->placed = PETSC_FALSE;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Rows and columns of a part of the entries with a border, from 1 */
+static PetscErrorCode PlacePart(Factor f, int part, PetscInt n, PetscInt from)
+{
+  PetscInt *row, *column;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc2(n, &row, n, &column));
+  BorderingNumber(f->bordering, part, row, column);
+  for (PetscInt k = 0; k < n; k++) f->row[from + k] = (MUMPS_INT)(row[k] + 1);
+  for (PetscInt k = 0; k < n; k++) f->column[from + k] = (MUMPS_INT)(column[k] + 1);
+  PetscCall(PetscFree2(row, column));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* With a border, whose rows are behind those of the matrix */
+static PetscErrorCode PlaceBordered(Factor f)
+{
+  PetscInt  n[BORDERING_PARTS];
+  PetscBool kept;
+
+  PetscFunctionBeginUser;
+  BorderingCountEntries(f->bordering, n);
+  f->entries = n[BORDERING_BODIES] + n[BORDERING_VECTORS];
+  PetscCall(Reserve(f, &kept));
+  if (!kept || !f->placed) PetscCall(PlacePart(f, BORDERING_BODIES, n[BORDERING_BODIES], 0));
+  PetscCall(PlacePart(f, BORDERING_VECTORS, n[BORDERING_VECTORS], n[BORDERING_BODIES]));
+  f->placed = PETSC_TRUE;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* MUMPS is told where the entries are. */
+static PetscErrorCode ShowEntries(Factor f, Mat A)
+{
+  DMUMPS_STRUC_C *mumps = &f->mumps;
+
+  PetscFunctionBeginUser;
+  PetscCall(f->bordered ? PlaceBordered(f) : PlaceEntries(f, A));
   PetscCall(TakeValues(f, A));
   if (f->size > 1) {
     mumps->nnz_loc = f->entries;
@@ -287,7 +357,7 @@ static PetscErrorCode ShowSize(Factor f, Mat A)
   PetscCall(MatGetSize(A, &f->n, NULL));
   PetscCall(MatGetLocalSize(A, &f->rows, NULL));
   PetscCheck(f->n == (MUMPS_INT)f->n, f->comm, PETSC_ERR_ARG_OUTOFRANGE, "%" PetscInt_FMT " unknowns are more than MUMPS can count", f->n);
-  f->mumps.n = (MUMPS_INT)f->n;
+  f->mumps.n = (MUMPS_INT)(f->n + (f->bordered ? BorderingCount(f->bordering) : 0));
   PetscCall(MatGetOwnershipRanges(A, &ranges));
   for (PetscMPIInt r = 0; r < f->size; r++) {
     PetscCall(PetscMPIIntCast(ranges[r + 1], &f->first[r + 1]));
@@ -303,12 +373,15 @@ static PetscErrorCode ShowOrdering(Factor f, Mat A)
 
   PetscFunctionBeginUser;
   if (ordering == FACTOR_AUTOMATIC) ordering = f->n < FACTOR_DISSECTED ? MUMPS_OWN : FACTOR_METIS;
-  f->mumps.ICNTL(7) = (MUMPS_INT)(ordering == FACTOR_METIS ? MUMPS_GIVEN : ordering);
-  if (ordering != FACTOR_METIS) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(OrderingFind(A, &position));
+  f->mumps.ICNTL(7) = (MUMPS_INT)(f->bordered || ordering == FACTOR_METIS ? MUMPS_GIVEN : ordering);
+  if (f->mumps.ICNTL(7) != MUMPS_GIVEN) PetscFunctionReturn(PETSC_SUCCESS);
+  if (f->bordered)
+    PetscCall(BorderingOrder(f->bordering, &position));
+  else
+    PetscCall(OrderingFind(A, &position));
   PetscCall(PetscFree(f->position));
-  if (!f->rank) PetscCall(PetscMalloc1(f->n, &f->position));
-  for (PetscInt i = 0; i < f->n && !f->rank; i++) f->position[i] = (MUMPS_INT)(position[i] + 1);
+  if (!f->rank) PetscCall(PetscMalloc1(f->mumps.n, &f->position));
+  for (MUMPS_INT i = 0; i < f->mumps.n && !f->rank; i++) f->position[i] = (MUMPS_INT)(position[i] + 1);
   f->mumps.perm_in = f->position;
   PetscCall(PetscFree(position));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -366,6 +439,25 @@ PetscErrorCode FactorAnalyse(Factor f, Mat A, PCFailedReason *reason)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* FactorPrepareBorder - Collective. *reason: why K cannot be ordered; there are no borders then. */
+PetscErrorCode FactorPrepareBorder(Factor f, Mat K, PCFailedReason *reason)
+{
+  const int ordering = f->ordering;
+  PetscInt *position = NULL;
+
+  PetscFunctionBeginUser;
+  PetscCall(FactorSetOrdering(f, FACTOR_MINIMUM_FILL, NULL));
+  PetscCall(FactorAnalyse(f, K, reason));
+  PetscCall(FactorSetOrdering(f, ordering, NULL));
+  if (*reason || !f->n) PetscFunctionReturn(PETSC_SUCCESS);
+  if (!f->rank) PetscCall(PetscMalloc1(f->n, &position));
+  for (PetscInt i = 0; i < f->n && !f->rank; i++) position[i] = f->mumps.sym_perm[i] - 1;
+  PetscCall(BorderingDestroy(&f->bordering));
+  PetscCall(BorderingCreate(K, position, &f->bordering));
+  PetscCall(PetscFree(position));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Has it another pattern than the last that was analysed? The same on all ranks. */
 static PetscErrorCode IsNew(Factor f, Mat A, PetscBool *is)
 {
@@ -374,6 +466,11 @@ static PetscErrorCode IsNew(Factor f, Mat A, PetscBool *is)
   int              differs;
 
   PetscFunctionBeginUser;
+  if (f->bordered) {
+    PetscCall(BorderingSet(f->bordering, &f->border, is));
+    *is = (PetscBool)(*is || !f->matrix);
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
   PetscCall(PetscObjectGetId((PetscObject)A, &matrix));
   PetscCall(MatGetNonzeroState(A, &pattern));
   differs = matrix != f->matrix || pattern != f->pattern;
@@ -459,7 +556,7 @@ static PetscErrorCode MakeRoom(Factor f, PetscInt columns)
 {
   PetscFunctionBeginUser;
   PetscCall(PetscFree(f->right));
-  if (!f->rank) PetscCall(PetscMalloc1((size_t)f->n * columns, &f->right));
+  if (!f->rank) PetscCall(PetscMalloc1((size_t)f->mumps.n * columns, &f->right));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -477,7 +574,8 @@ PetscErrorCode FactorSolve(Factor f, Vec b, Vec x)
   PetscCall(VecGetArrayRead(b, &from));
   PetscCallMPI(MPI_Gatherv(from, f->count[f->rank], MPIU_SCALAR, f->right, f->count, f->first, MPIU_SCALAR, 0, f->comm));
   PetscCall(VecRestoreArrayRead(b, &from));
-  f->mumps.ICNTL(20) = 0; /* dense */
+  for (MUMPS_INT i = (MUMPS_INT)f->n; i < f->mumps.n && !f->rank; i++) f->right[i] = 0; /* the border's */
+  f->mumps.ICNTL(20) = 0;                                                               /* dense */
   PetscCall(Solve(f, 1));
   PetscCall(VecGetArrayWrite(x, &to));
   PetscCallMPI(MPI_Scatterv(f->right, f->count, f->first, MPIU_SCALAR, to, f->count[f->rank], MPIU_SCALAR, 0, f->comm));
@@ -587,8 +685,8 @@ static PetscErrorCode SolveSparse(Factor f, PetscInt columns, const PetscScalar 
     ShowColumns(f, &all);
     PetscCall(Solve(f, columns));
     for (PetscInt j = 0; j < columns; j++)
-      PetscCallMPI(MPI_Scatterv(f->rank ? NULL : &f->right[(size_t)j * f->n], f->count, f->first, MPIU_SCALAR, &x[j * f->rows], f->count[f->rank], MPIU_SCALAR,
-                                0, f->comm));
+      PetscCallMPI(MPI_Scatterv(f->rank ? NULL : &f->right[(size_t)j * f->mumps.n], f->count, f->first, MPIU_SCALAR, &x[j * f->rows], f->count[f->rank],
+                                MPIU_SCALAR, 0, f->comm));
     PetscCall(PetscFree(f->right));
   }
   PetscCall(SparseFree(&all));

@@ -80,7 +80,7 @@ static PetscErrorCode AskedFor(LinearCheck check, KSP ksp, PetscReal right, Pets
 
 static PetscErrorCode CheckSolution(LinearCheck check, KSP ksp, Vec b, Vec x)
 {
-  PetscReal right, norm, tolerance, own;
+  PetscReal right, norm = -1, tolerance, own;
   PetscBool failed = PETSC_FALSE;
   PetscInt  steps  = 0;
   Mat       A;
@@ -91,10 +91,10 @@ static PetscErrorCode CheckSolution(LinearCheck check, KSP ksp, Vec b, Vec x)
   PetscCall(VecNorm(b, NORM_2, &right));
   PetscCall(AskedFor(check, ksp, right, &tolerance));
   own = tolerance;
-  if (check->kept) PetscCall(KeptFactorSolve(check->kept, A, b, x, &tolerance, &failed));
+  if (check->kept) PetscCall(KeptFactorSolve(check->kept, A, b, x, &tolerance, &norm, &failed));
   if (failed) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(VecDuplicate(b, &r));
-  PetscCall(TrueResidual(A, b, x, r, &norm));
+  if (norm < 0) PetscCall(TrueResidual(A, b, x, r, &norm));
   if (norm > LINEAR_SLACK * tolerance * right) PetscCall(Refine(ksp, A, b, x, r, LINEAR_SLACK * tolerance * right, &norm, &steps));
   PetscCall(VecDestroy(&r));
   check->lost = norm <= PetscMax(LINEAR_SINGULAR, tolerance) * right ? PETSC_FALSE : PETSC_TRUE; /* so is not-a-number */

@@ -25,7 +25,7 @@ struct _n_LinearSolver {
   Multigrid  multigrid; /* NULL: direct */
   KeptFactor kept;      /* NULL: iterative, or each tangent is factored */
   NodeTurn   turn;      /* of the bodies, for what is kept; NULL: they do not turn */
-  PetscBool  ordered;
+  PetscBool  symmetric, ordered, borders;
   PetscReal  usual; /* tolerance, while a prediction is made */
 };
 
@@ -53,7 +53,8 @@ PetscErrorCode LinearSolverCreate(KSP ksp, Mesh mesh, Scene scene, PetscBool sym
 
   PetscFunctionBeginUser;
   PetscCall(PetscNew(solver));
-  (*solver)->ksp = ksp;
+  (*solver)->ksp       = ksp;
+  (*solver)->symmetric = symmetric;
   if (type == SOLVER_AUTO) type = mesh->dim == 3 && mesh->dim * mesh->n_global > LINEAR_DIRECT_DOFS ? SOLVER_ITERATIVE : SOLVER_DIRECT;
   if (type == SOLVER_DIRECT) {
     PetscCall(DirectSolverSet(ksp, symmetric));
@@ -78,11 +79,37 @@ PetscErrorCode LinearSolverDestroy(LinearSolver *solver)
 }
 
 /* LinearSolverOrder - a direct solver's ordering for operators that are much like K. Collective; at the first call, the others do nothing. */
-PetscErrorCode LinearSolverOrder(LinearSolver solver, Mat K)
+PetscErrorCode LinearSolverOrder(LinearSolver solver, Mat K, PetscBool couples)
 {
+  PCFailedReason reason;
+  PetscBool      thin = PETSC_FALSE;
+  Factor         factor;
+
   PetscFunctionBeginUser;
-  if (!solver->multigrid && !solver->ordered) PetscCall(DirectSolverOrder(solver->ksp, K));
+  if (!solver->multigrid && !solver->ordered) PetscCall(DirectSolverOrder(solver->ksp, K, &thin));
   solver->ordered = PETSC_TRUE;
+  if (!thin || !couples || !solver->symmetric || !solver->kept) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(DirectSolverFactor(solver->ksp, &factor));
+  PetscCall(FactorPrepareBorder(factor, K, &reason));
+  solver->borders = reason ? PETSC_FALSE : PETSC_TRUE;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* LinearSolverBorders - Not collective. */
+PetscBool LinearSolverBorders(LinearSolver solver)
+{
+  return solver->borders;
+}
+
+/* LinearSolverSetBorder - Not collective. What contact adds but for that sum, small beside it, is left to iterations. */
+PetscErrorCode LinearSolverSetBorder(LinearSolver solver, const Border *border)
+{
+  Factor factor;
+
+  PetscFunctionBeginUser;
+  PetscCall(DirectSolverFactor(solver->ksp, &factor));
+  PetscCall(FactorSetBorder(factor, border));
+  PetscCall(KeptFactorSetRough(solver->kept, PETSC_TRUE));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -149,6 +149,24 @@ static PetscErrorCode ModelUpdateFactor(Model model, PetscInt terms)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Does contact couple so many unknowns that factors of bodies and contact have much more fill than those of bodies? On lines it does not. */
+static PetscBool ModelCouples(Model model)
+{
+  return (PetscBool)(model->contact && model->mesh->dim == 3 && ContactHasFits(model->contact));
+}
+
+/* Tells the solver what contact, C, adds to the tangent. */
+static PetscErrorCode ModelBorder(Model model, Mat C)
+{
+  Border border;
+
+  PetscFunctionBeginUser;
+  if (!model->contact || !LinearSolverBorders(model->work->solver)) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(ContactGetBorder(model->contact, C, &border));
+  PetscCall(LinearSolverSetBorder(model->work->solver, &border));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* The tangent at (u, t) into model->A. */
 PetscErrorCode ModelTangent(Model model, const PetscReal *u, PetscReal t)
 {
@@ -157,7 +175,7 @@ PetscErrorCode ModelTangent(Model model, const PetscReal *u, PetscReal t)
   PetscInt  terms   = 0;
 
   PetscFunctionBeginUser;
-  if (!ModelIsLinear(model)) PetscCall(LinearSolverOrder(model->work->solver, model->A)); /* a single solve is done sooner with any */
+  if (!ModelIsLinear(model)) PetscCall(LinearSolverOrder(model->work->solver, model->A, ModelCouples(model))); /* a single solve is done sooner with any */
   if (model->contact) PetscCall(ModelContactTangent(model, u, t, &C, &changed, &terms));
   TimingBegin(TIMING_ASSEMBLY_ELASTIC);
   PetscCall(ElasticityTangent(model->elasticity, u));
@@ -166,6 +184,7 @@ PetscErrorCode ModelTangent(Model model, const PetscReal *u, PetscReal t)
   PetscCall(VecNorm(model->work->residual, NORM_2, &model->work->stiffness));
   TimingEnd(TIMING_ASSEMBLY_ELASTIC);
   PetscCall(StabiliserTangent(model->work->stabiliser, model->A));
+  PetscCall(ModelBorder(model, C));
   PetscCall(LinearSolverNext(model->work->solver, u, C, changed, terms, &older));
   PetscCall(SNESSetLagPreconditioner(model->snes, older ? -1 : 1)); /* after each tangent SNES tells the KSP so */
   if (older && terms > 0) PetscCall(ModelUpdateFactor(model, terms));

@@ -136,6 +136,7 @@ static void AddLinear(cJSON *json, const LinearCounts *counts)
   cJSON_AddNumberToObject(map, "factors", (double)counts->kept.made);
   cJSON_AddNumberToObject(map, "older_factors", (double)counts->kept.served);
   cJSON_AddNumberToObject(map, "older_factor_iterations", (double)counts->kept.iterations);
+  cJSON_AddNumberToObject(map, "own_factor_iterations", (double)counts->kept.finishing);
 }
 
 /* The last accepted state */
