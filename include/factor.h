@@ -23,7 +23,8 @@ PetscErrorCode FactorCheckOptions(void);
 PetscErrorCode FactorSetOrdering(Factor, int ordering, PetscBool *chosen);
 /* For the matrices to come, which are K and what borders say: K is ordered by minimum fill. Symmetric ones only. Collective. */
 PetscErrorCode FactorPrepareBorder(Factor, Mat K, PCFailedReason *);
-/* The next matrix that is factored is K + C, made of K and these vectors; NULL: as it is. FactorPrepareBorder() was called. Not collective, borrowed. */
+/* The matrices that are factored until the next call are K + C, and what is factored and solved with is K and these vectors, K + V V^T; NULL: as they are.
+   FactorPrepareBorder() was called. Not collective, borrowed until the next call. */
 PetscErrorCode FactorSetBorder(Factor, const Border *);
 /* Orders an AIJ matrix of symmetric pattern and counts what its factor will take. Collective. */
 PetscErrorCode FactorAnalyse(Factor, Mat A, PCFailedReason *);

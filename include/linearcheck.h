@@ -1,5 +1,6 @@
 /* Is what the linear solver returns a solution? After each solve of a KSP the true residual |b - A x| / |b| is looked at; one that is too large is refined with
-   the factor at hand, and what was done is counted. A direct solver reports success whatever its round-off has left. */
+   the factor at hand, and what was done is counted. A direct solver reports success whatever its round-off has left. The residual of a
+   solve that iterations have finished (keptfactor.h) is theirs. */
 #pragma once
 #include "keptfactor.h"
 

@@ -355,7 +355,7 @@ static PetscErrorCode PointGap(const ContactPair *pair, ContactLists lists, Pets
     PetscCall(ContactPointEvaluate(pair, pair->smoother, lists, q, seed, vary ? SMOOTHER_FIRST_VARIATION : SMOOTHER_GAP, found));
   else {
     *found       = PETSC_TRUE;
-    result->gap  = lists->gap[q];
+    result->gap  = lists->gap[q]; /* facet_served, points and factors are those of the point before */
     result->seed = seed;
     for (int d = 0; d < 3; d++) result->normal[d] = lists->normal[3 * q + d];
   }

@@ -352,12 +352,14 @@ static PetscErrorCode ShowEntries(Factor f, Mat A)
 static PetscErrorCode ShowSize(Factor f, Mat A)
 {
   const PetscInt *ranges;
+  PetscInt        all;
 
   PetscFunctionBeginUser;
   PetscCall(MatGetSize(A, &f->n, NULL));
   PetscCall(MatGetLocalSize(A, &f->rows, NULL));
-  PetscCheck(f->n == (MUMPS_INT)f->n, f->comm, PETSC_ERR_ARG_OUTOFRANGE, "%" PetscInt_FMT " unknowns are more than MUMPS can count", f->n);
-  f->mumps.n = (MUMPS_INT)(f->n + (f->bordered ? BorderingCount(f->bordering) : 0));
+  all        = f->n + (f->bordered ? BorderingCount(f->bordering) : 0);
+  f->mumps.n = (MUMPS_INT)all;
+  PetscCheck(f->mumps.n == all, f->comm, PETSC_ERR_ARG_OUTOFRANGE, "%" PetscInt_FMT " unknowns are more than MUMPS can count", all);
   PetscCall(MatGetOwnershipRanges(A, &ranges));
   for (PetscMPIInt r = 0; r < f->size; r++) {
     PetscCall(PetscMPIIntCast(ranges[r + 1], &f->first[r + 1]));
@@ -421,11 +423,14 @@ static PetscErrorCode Tell(Factor f, const char *job, PCFailedReason *reason)
 /* FactorAnalyse - Collective. *reason: why there will be no factor; a matrix without rows has one. */
 PetscErrorCode FactorAnalyse(Factor f, Mat A, PCFailedReason *reason)
 {
+  PetscBool changed;
+
   PetscFunctionBeginUser;
   f->exists          = PETSC_FALSE;
   f->matrix          = 0;
   f->mumps.ICNTL(14) = f->workspace;
   *reason            = PC_NOERROR;
+  if (f->bordered) PetscCall(BorderingSet(f->bordering, &f->border, &changed));
   PetscCall(ShowSize(f, A));
   if (!f->n) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(ShowEntries(f, A));
@@ -446,6 +451,7 @@ PetscErrorCode FactorPrepareBorder(Factor f, Mat K, PCFailedReason *reason)
   PetscInt *position = NULL;
 
   PetscFunctionBeginUser;
+  PetscCheck(!f->bordered, f->comm, PETSC_ERR_ARG_WRONGSTATE, "there is a border already");
   PetscCall(FactorSetOrdering(f, FACTOR_MINIMUM_FILL, NULL));
   PetscCall(FactorAnalyse(f, K, reason));
   PetscCall(FactorSetOrdering(f, ordering, NULL));
@@ -518,6 +524,9 @@ PetscErrorCode FactorMake(Factor f, Mat A, PCFailedReason *reason)
   PetscCall(CallFactor(f));
   PetscCall(Tell(f, "factorisation", reason));
   f->exists = *reason ? PETSC_FALSE : PETSC_TRUE;
+  if (f->exists || !f->bordered) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(FactorSetBorder(f, NULL)); /* as it is, once more */
+  PetscCall(FactorMake(f, A, reason));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -115,14 +115,15 @@ PetscErrorCode KeptFactorRenew(KeptFactor kept)
 {
   PetscFunctionBeginUser;
   kept->exists = PETSC_FALSE;
+  kept->enough = 0; /* what the last step was content with */
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* KeptFactorSetRough - Not collective. */
-PetscErrorCode KeptFactorSetRough(KeptFactor kept, PetscBool rough)
+PetscErrorCode KeptFactorSetRough(KeptFactor kept)
 {
   PetscFunctionBeginUser;
-  kept->rough = rough;
+  kept->rough = PETSC_TRUE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -158,6 +159,7 @@ PetscErrorCode KeptFactorNext(KeptFactor kept, PetscInt changes, PetscBool patte
 
   PetscFunctionBeginUser;
   PetscCall(DirectSolverServes(kept->ksp, &direct));
+  if (!direct) kept->rough = PETSC_FALSE; /* what options have put there iterates by itself */
   kept->changes += changes;
   kept->stale  = (PetscBool)(kept->stale || pattern);
   kept->serves = (PetscBool)(direct && kept->exists && kept->changes <= KEPT_CHANGES);

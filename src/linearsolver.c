@@ -82,13 +82,14 @@ PetscErrorCode LinearSolverDestroy(LinearSolver *solver)
 PetscErrorCode LinearSolverOrder(LinearSolver solver, Mat K, PetscBool couples)
 {
   PCFailedReason reason;
-  PetscBool      thin = PETSC_FALSE;
+  PetscBool      thin = PETSC_FALSE, direct;
   Factor         factor;
 
   PetscFunctionBeginUser;
   if (!solver->multigrid && !solver->ordered) PetscCall(DirectSolverOrder(solver->ksp, K, &thin));
   solver->ordered = PETSC_TRUE;
-  if (!thin || !couples || !solver->symmetric || !solver->kept) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(DirectSolverServes(solver->ksp, &direct)); /* options may iterate with what factors */
+  if (!thin || !couples || !direct || !solver->symmetric || !solver->kept) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(DirectSolverFactor(solver->ksp, &factor));
   PetscCall(FactorPrepareBorder(factor, K, &reason));
   solver->borders = reason ? PETSC_FALSE : PETSC_TRUE;
@@ -109,7 +110,7 @@ PetscErrorCode LinearSolverSetBorder(LinearSolver solver, const Border *border)
   PetscFunctionBeginUser;
   PetscCall(DirectSolverFactor(solver->ksp, &factor));
   PetscCall(FactorSetBorder(factor, border));
-  PetscCall(KeptFactorSetRough(solver->kept, PETSC_TRUE));
+  PetscCall(KeptFactorSetRough(solver->kept));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -157,7 +158,8 @@ PetscErrorCode LinearSolverDirect(LinearSolver solver, PetscBool *direct)
 
 /* LinearSolverColumns - X = A^-1 B for dense B and X, where the last solve was a direct one, with A.
 
-   Collective. *able: there is a factor, and it is A's. */
+   Collective. *able: there is a factor, and it is A's; with a border but for what that leaves out, which columns that settle contact may lack: the next
+   iteration sees it. */
 PetscErrorCode LinearSolverColumns(LinearSolver solver, Mat A, Mat B, Mat X, PetscBool *able)
 {
   PetscBool failed = PETSC_FALSE;

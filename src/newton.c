@@ -162,8 +162,10 @@ static PetscErrorCode ModelBorder(Model model, Mat C)
 
   PetscFunctionBeginUser;
   if (!model->contact || !LinearSolverBorders(model->work->solver)) PetscFunctionReturn(PETSC_SUCCESS);
+  TimingBegin(TIMING_ASSEMBLY_CONTACT);
   PetscCall(ContactGetBorder(model->contact, C, &border));
   PetscCall(LinearSolverSetBorder(model->work->solver, &border));
+  TimingEnd(TIMING_ASSEMBLY_CONTACT);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

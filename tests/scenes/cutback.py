@@ -15,6 +15,8 @@ PIPE = ["mesh.order=1", "mesh.parameters={n_arc: 6, n_wall: 1, n_len: 2}", "load
         "contact.0.formulation=surface_to_surface", "solver.max_iterations=3"]
 for offset in ("held", "live"):
     CASES[f"{offset} offsets"] = ("pipe_pinch", [*PIPE, f"contact.0.offset={offset}"], ("force",), 1)
+CASES["factors with a border"] = ("pipe_pinch", ["mesh.parameters={n_arc: 18, n_wall: 1, n_len: 8}", "loads.0.uy=-50", "probes=[{name: force, reaction: plate_top, component: y}]",
+                                                 "contact.0.smoother=diffuse", "contact.0.degree=2", "solver.max_iterations=3"], ("force",), 0)
 for name, (scene, common, shown, failures) in CASES.items():
     path, folder = SCENES.parent.parent / "runs" / f"{scene}.yaml", name.replace(", ", "_").replace(" ", "_")
     cut = run(args, path, out=f"cut_{folder}", overrides=(*common, "stepping={control: fixed, initial: 0.25}"))
