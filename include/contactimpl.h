@@ -96,11 +96,11 @@ typedef struct {
   ContactWork       *work;                         /* shared by all pairs */
 } ContactPair;
 
-/* Vectors of the terms of the last tangent (Border), and where they stand */
+/* First variations of the gaps of some terms over the free dofs: of vector k the entries ptr[k] to ptr[k + 1], in which a row may occur more than once */
 typedef struct {
-  PetscInt     n, *ptr, *row;
+  PetscInt     n, *ptr, *row, room, vectors_room;
   PetscScalar *value;
-} ContactBorder;
+} ContactVectors;
 
 /* What the next tangent is multiplied with, and the product, over the contact nodes of a pair */
 typedef struct {
@@ -114,8 +114,8 @@ struct _n_Contact {
   int             n_pairs;
   ContactPair    *pairs;
   ContactWork     work;
-  BlockMatrix     blocks; /* the last tangent */
-  ContactBorder   border;
+  BlockMatrix     blocks;  /* the last tangent */
+  ContactVectors  border;  /* of its terms */
   ContactProduct *product; /* of each pair; NULL: none is asked for */
   PetscLogEvent   event_search, event_project, event_residual, event_tangent;
   PetscLogEvent   event_fit, event_offset, event_adjust, event_touch; /* of effects: none where the scene does not call for them */
@@ -173,6 +173,8 @@ PetscErrorCode ContactVariationsKeep(const ContactPair *, PetscInt q, PetscBool 
 PetscErrorCode ContactVariationsNeed(const ContactPair *, PetscInt q);                             /* evaluates it, unless it is there */
 PetscErrorCode ContactVariationsNodes(const ContactPair *, PetscInt n, const PetscInt points[]);   /* of some points that carry area, into the work's number */
 void           ContactTermVary(const ContactPair *, PetscInt term, PetscReal scale, PetscReal *v); /* adds scale area N of the term over the block at hand */
+PetscErrorCode ContactVectorsAdd(ContactVectors *, const ContactPair *, PetscInt term, PetscReal scale); /* scale area N of the term as one more */
+PetscErrorCode ContactVectorsFree(ContactVectors *);
 /* contactlost.c */
 /* Remember the slave points behind their masters that the next lists have lost; those that passed through it; those that jumped out since the accepted state.
  */

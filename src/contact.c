@@ -71,9 +71,7 @@ PetscErrorCode ContactDestroy(Contact *contact)
   PetscCall(ContactWorkDestroy(&c->work));
   PetscCall(PetscFree(c->work.workspace));
   PetscCall(BlockMatrixDestroy(&c->blocks));
-  PetscCall(PetscFree(c->border.ptr));
-  PetscCall(PetscFree(c->border.row));
-  PetscCall(PetscFree(c->border.value));
+  PetscCall(ContactVectorsFree(&c->border));
   PetscCall(PetscFree(*contact));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

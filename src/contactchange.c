@@ -18,26 +18,6 @@ PetscErrorCode ContactTangentChanges(Contact contact, PetscInt *terms)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Adds the gap's first variation of a term, times its area, to a column, as the last tangent has it. */
-static PetscErrorCode AddTerm(const ContactPair *pair, PetscInt c, PetscInt column, Mat N)
-{
-  const int                dim = pair->mesh->dim;
-  const ContactVariations *v   = pair->variations;
-  const PetscInt          *dof = pair->lists->dof;
-
-  PetscFunctionBeginUser;
-  for (PetscInt k = pair->term_ptr[c]; k < pair->term_ptr[c + 1]; k++) {
-    const PetscInt  q      = pair->term_point[k];
-    const PetscReal weight = pair->term_weight[k] * pair->factor[q];
-
-    if (weight == 0) continue;
-    PetscCall(ContactVariationsNeed(pair, q));
-    for (PetscInt i = v->first[q]; i < v->end[q]; i++)
-      for (int d = 0; d < dim; d++) PetscCall(MatSetValue(N, dof[v->number[i] * dim + d], column, weight * v->N[i * dim + d], ADD_VALUES));
-  }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* ContactChangeVectors - what ContactTangentChanges() counts, as N diag(s) N^T: by that much the last tangent is more than the one before, but for the motion
    in between and pressures that turn with the surface.
 
@@ -45,7 +25,8 @@ static PetscErrorCode AddTerm(const ContactPair *pair, PetscInt c, PetscInt colu
    on all ranks; N: dense, n columns, the caller's. */
 PetscErrorCode ContactChangeVectors(Contact contact, PetscInt rows, PetscInt n, PetscReal *s, Mat *N)
 {
-  PetscInt mine = CountMine(contact), column = 0;
+  PetscInt       mine = CountMine(contact), column = 0;
+  ContactVectors vectors = {.n = 0};
 
   PetscFunctionBeginUser;
   PetscCall(MatCreateDense(contact->mesh->comm, rows, PETSC_DECIDE, PETSC_DETERMINE, n, NULL, N));
@@ -61,9 +42,13 @@ PetscErrorCode ContactChangeVectors(Contact contact, PetscInt rows, PetscInt n, 
       if (pair->stiffness[c] == pair->stiffness_before[c]) continue;
       ContactTermGap(pair, pair->factor, pair->point_gap, c, &area);
       s[column] = (pair->stiffness[c] - pair->stiffness_before[c]) / (area > 0 ? area : 1); /* no area: a column of zeros */
-      PetscCall(AddTerm(pair, c, column++, *N));
+      vectors.n = 0;
+      PetscCall(ContactVectorsAdd(&vectors, pair, c, 1));
+      PetscCall(MatSetValues(*N, vectors.ptr[1], vectors.row, 1, &column, vectors.value, ADD_VALUES));
+      column++;
     }
   }
+  PetscCall(ContactVectorsFree(&vectors));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, s, n, MPIU_REAL, MPIU_SUM, contact->mesh->comm));
   PetscCall(MatAssemblyBegin(*N, MAT_FINAL_ASSEMBLY));
   PetscCall(MatAssemblyEnd(*N, MAT_FINAL_ASSEMBLY));
