@@ -17,7 +17,7 @@ typedef struct _n_Bordering *Bordering;
 /* K: AIJ, of symmetric pattern, without C; position: in which order to eliminate its rows, from 0, on the first rank (elsewhere NULL); copied. Collective. */
 PetscErrorCode BorderingCreate(Mat K, const PetscInt *position, Bordering *);
 PetscErrorCode BorderingDestroy(Bordering *);
-/* The vectors from now on, NULL: none; *changed: others or more rows than before. Collective. */
+/* The vectors from now on; *changed: others or more rows than before. Collective. */
 PetscErrorCode BorderingSet(Bordering, const Border *, PetscBool *changed);
 /* Vectors of all ranks. Not collective. */
 PetscInt BorderingCount(Bordering);

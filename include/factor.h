@@ -24,7 +24,7 @@ PetscErrorCode FactorSetOrdering(Factor, int ordering, PetscBool *chosen);
 /* For the matrices to come, which are K and what borders say: K is ordered by minimum fill. Symmetric ones only. Collective. */
 PetscErrorCode FactorPrepareBorder(Factor, Mat K, PCFailedReason *);
 /* The matrices that are factored until the next call are K + C, and what is factored and solved with is K and these vectors, K + V V^T; NULL: as they are.
-   FactorPrepareBorder() was called. Not collective, borrowed until the next call. */
+   FactorPrepareBorder() was called. Collective, borrowed until the next call. */
 PetscErrorCode FactorSetBorder(Factor, const Border *);
 /* Orders an AIJ matrix of symmetric pattern and counts what its factor will take. Collective. */
 PetscErrorCode FactorAnalyse(Factor, Mat A, PCFailedReason *);

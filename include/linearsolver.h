@@ -15,7 +15,7 @@ PetscErrorCode LinearSolverDestroy(LinearSolver *);
 PetscErrorCode LinearSolverOrder(LinearSolver, Mat K, PetscBool couples);
 /* Does it want to be told what contact adds as a sum of v v^T? Not collective, the same on all ranks. */
 PetscBool LinearSolverBorders(LinearSolver);
-/* That, of the next operator, before LinearSolverNext(); borrowed until the next call. Not collective. */
+/* That, of the next operator, before LinearSolverNext(); borrowed until the next call. Collective. */
 PetscErrorCode LinearSolverSetBorder(LinearSolver, const Border *);
 /* Before each solve with a new operator. u: local displacements (n_nodes*dim) that it is the tangent at; C: its contact part, NULL: none; pattern: it has a new
    one; changes: contact terms that came, went or changed their stiffness since the operator before; *older: an older factor serves and wants to be told of them

@@ -9,6 +9,12 @@ typedef struct {
   const PetscScalar *value;                 /* of each column */
 } MatrixRows;
 
+/* The column of an entry, those of the rank itself counted from `first`: its first row, or 0. Not collective. */
+static inline PetscInt MatrixRowsColumn(const MatrixRows *rows, PetscInt first, PetscInt entry)
+{
+  return rows->global ? rows->global[rows->column[entry]] : first + rows->column[entry];
+}
+
 enum { MATRIX_OWN, MATRIX_OTHERS, MATRIX_BLOCKS };
 /* Most rows of a node: one for each direction in space */
 enum { MATRIX_NODE_ROWS = 3 };

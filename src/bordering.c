@@ -26,7 +26,7 @@ static PetscErrorCode NoteBlock(Bordering b, Mat K, int block)
   for (PetscInt r = 0; r < b->rows; r++) {
     b->width[block][r] = rows.mat ? rows.ptr[r + 1] - rows.ptr[r] : 0;
     for (PetscInt k = rows.mat ? rows.ptr[r] : 0; rows.mat && k < rows.ptr[r + 1]; k++) {
-      const PetscInt c = rows.global ? rows.global[rows.column[k]] : b->first + rows.column[k];
+      const PetscInt c = MatrixRowsColumn(&rows, b->first, k);
 
       if (c >= b->first + r) b->column[block][n++] = c;
     }
@@ -98,7 +98,7 @@ PetscErrorCode BorderingSet(Bordering b, const Border *border, PetscBool *change
   int       differs;
 
   PetscFunctionBeginUser;
-  b->border = border ? *border : (Border){.n = 0};
+  b->border = *border;
   PetscCallMPI(MPI_Scan(&b->border.n, &b->before, 1, MPIU_INT, MPI_SUM, b->comm));
   b->before -= b->border.n;
   PetscCallMPI(MPI_Allreduce(&b->border.n, &b->count, 1, MPIU_INT, MPI_SUM, b->comm));
@@ -121,7 +121,7 @@ PetscInt BorderingCount(Bordering b)
 static PetscScalar Look(const MatrixRows *rows, PetscInt first, PetscInt end, PetscInt column, PetscInt *at)
 {
   for (; *at < end; ++*at) {
-    const PetscInt c = rows->global ? rows->global[rows->column[*at]] : first + rows->column[*at];
+    const PetscInt c = MatrixRowsColumn(rows, first, *at);
 
     if (c == column) return rows->value[*at];
     if (c > column) return 0;

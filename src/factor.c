@@ -44,7 +44,6 @@ struct _n_Factor {
   PetscScalar     *value;
   Bordering        bordering; /* NULL: none was prepared */
   PetscBool        bordered;  /* the next matrix is */
-  Border           border;
   PetscBool        placed;    /* rows and columns of the bodies' entries, which a border leaves where they are */
   MUMPS_INT        workspace; /* ICNTL(14) at first */
   MUMPS_INT       *position;  /* of rows, where the ordering is given; on the first rank, as are: */
@@ -167,35 +166,31 @@ PetscErrorCode FactorSetOrdering(Factor f, int ordering, PetscBool *chosen)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* FactorSetBorder - Not collective, the same on all ranks. */
+/* FactorSetBorder - Collective. The factor that there is stays as it is. */
 PetscErrorCode FactorSetBorder(Factor f, const Border *border)
 {
   const PetscBool bordered = border ? PETSC_TRUE : PETSC_FALSE;
+  PetscBool       changed  = PETSC_FALSE;
 
   PetscFunctionBeginUser;
   PetscCheck(!border || f->bordering, f->comm, PETSC_ERR_ARG_WRONGSTATE, "borders have not been prepared for");
-  if (bordered != f->bordered) f->matrix = 0; /* to be analysed anew */
+  if (border) PetscCall(BorderingSet(f->bordering, border, &changed));
+  if (changed || bordered != f->bordered) f->matrix = 0; /* to be analysed anew */
   f->bordered = bordered;
-  f->border   = border ? *border : (Border){.n = 0};
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* ---------- the matrix ---------- */
 
-static inline PetscInt Column(const MatrixRows *rows, PetscInt k)
-{
-  return rows->global ? rows->global[rows->column[k]] : rows->column[k];
-}
-
-/* The first entry of row r in or after a column, by bisection: columns ascend. */
-static PetscInt FirstEntry(const MatrixRows *rows, PetscInt r, PetscInt column)
+/* The first entry of row r, start + r of all ranks, that is not below the diagonal, by bisection: columns ascend. */
+static PetscInt FirstEntry(const MatrixRows *rows, PetscInt start, PetscInt r)
 {
   PetscInt low = rows->ptr[r], high = rows->ptr[r + 1];
 
   while (low < high) {
     const PetscInt middle = low + (high - low) / 2;
 
-    if (Column(rows, middle) < column)
+    if (MatrixRowsColumn(rows, start, middle) < start + r)
       low = middle + 1;
     else
       high = middle;
@@ -215,7 +210,7 @@ static PetscErrorCode FindEntries(Factor f, Mat A, PetscInt start)
 
     PetscCall(MatrixRowsGet(A, block, &rows));
     for (PetscInt r = 0; rows.mat && r < rows.n; r++) {
-      f->from[block][r] = f->symmetric ? FirstEntry(&rows, r, rows.global ? start + r : r) : rows.ptr[r];
+      f->from[block][r] = f->symmetric ? FirstEntry(&rows, start, r) : rows.ptr[r];
       f->entries += rows.ptr[r + 1] - f->from[block][r];
     }
     PetscCall(MatrixRowsRestore(&rows));
@@ -234,10 +229,10 @@ static PetscErrorCode TakePlaces(Factor f, Mat A, PetscInt start)
 
     PetscCall(MatrixRowsGet(A, block, &rows));
     for (PetscInt r = 0; rows.mat && r < rows.n; r++) {
-      const PetscInt from = f->from[block][r], n = rows.ptr[r + 1] - from, first = rows.global ? 1 : start + 1;
+      const PetscInt from = f->from[block][r], n = rows.ptr[r + 1] - from;
 
       for (PetscInt k = 0; k < n; k++) row[k] = (MUMPS_INT)(start + r + 1);
-      for (PetscInt k = 0; k < n; k++) column[k] = (MUMPS_INT)(first + Column(&rows, from + k));
+      for (PetscInt k = 0; k < n; k++) column[k] = (MUMPS_INT)(MatrixRowsColumn(&rows, start, from + k) + 1);
       row += n;
       column += n;
     }
@@ -423,14 +418,11 @@ static PetscErrorCode Tell(Factor f, const char *job, PCFailedReason *reason)
 /* FactorAnalyse - Collective. *reason: why there will be no factor; a matrix without rows has one. */
 PetscErrorCode FactorAnalyse(Factor f, Mat A, PCFailedReason *reason)
 {
-  PetscBool changed;
-
   PetscFunctionBeginUser;
   f->exists          = PETSC_FALSE;
   f->matrix          = 0;
   f->mumps.ICNTL(14) = f->workspace;
   *reason            = PC_NOERROR;
-  if (f->bordered) PetscCall(BorderingSet(f->bordering, &f->border, &changed));
   PetscCall(ShowSize(f, A));
   if (!f->n) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(ShowEntries(f, A));
@@ -472,11 +464,8 @@ static PetscErrorCode IsNew(Factor f, Mat A, PetscBool *is)
   int              differs;
 
   PetscFunctionBeginUser;
-  if (f->bordered) {
-    PetscCall(BorderingSet(f->bordering, &f->border, is));
-    *is = (PetscBool)(*is || !f->matrix);
-    PetscFunctionReturn(PETSC_SUCCESS);
-  }
+  *is = (PetscBool)!f->matrix;
+  if (f->bordered) PetscFunctionReturn(PETSC_SUCCESS); /* K's pattern is always the same */
   PetscCall(PetscObjectGetId((PetscObject)A, &matrix));
   PetscCall(MatGetNonzeroState(A, &pattern));
   differs = matrix != f->matrix || pattern != f->pattern;

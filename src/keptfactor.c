@@ -287,7 +287,7 @@ PetscErrorCode KeptFactorSolve(KeptFactor kept, Mat A, Vec b, Vec x, PetscReal *
   *failed = PETSC_FALSE;
   *norm   = -1;
   PetscCall(VecNorm(b, NORM_2, &right));
-  if (right == 0) PetscFunctionReturn(PETSC_SUCCESS);
+  if (right == 0 || !(kept->serves || kept->rough)) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(VecDuplicate(b, &r));
   while ((kept->serves || kept->rough) && !reached && !*failed) {
     kept->target = PetscMax((kept->serves ? KEPT_TOLERANCE : KEPT_ROUGH) * right, KEPT_SHARE * kept->enough);

@@ -102,7 +102,7 @@ PetscBool LinearSolverBorders(LinearSolver solver)
   return solver->borders;
 }
 
-/* LinearSolverSetBorder - Not collective. What contact adds but for that sum, small beside it, is left to iterations. */
+/* LinearSolverSetBorder - Collective. What contact adds but for that sum, small beside it, is left to iterations. */
 PetscErrorCode LinearSolverSetBorder(LinearSolver solver, const Border *border)
 {
   Factor factor;

@@ -61,11 +61,6 @@ static PetscBool IsMine(NodeMatrix m, PetscInt dof)
   return (PetscBool)(dof >= m->first && dof < m->first + m->rows);
 }
 
-static inline PetscInt Column(const MatrixRows *rows, PetscInt k)
-{
-  return rows->global ? rows->global[rows->column[k]] : rows->column[k];
-}
-
 static inline PetscBool IsSymmetric(const NodeValues *values)
 {
   return values->upper ? PETSC_TRUE : PETSC_FALSE;
@@ -300,14 +295,14 @@ static void MergeRow(const MatrixRows *term, PetscInt r, NodeRow *row)
   PetscInt      *to = row->room, n = 0, i = 0, k = term->ptr[r];
 
   while (i < row->n && k < end) {
-    const PetscInt a = row->column[i], b = Column(term, k);
+    const PetscInt a = row->column[i], b = MatrixRowsColumn(term, 0, k);
 
     to[n++] = PetscMin(a, b);
     i += a <= b;
     k += b <= a;
   }
   while (i < row->n) to[n++] = row->column[i++];
-  while (k < end) to[n++] = Column(term, k++);
+  while (k < end) to[n++] = MatrixRowsColumn(term, 0, k++);
   row->room   = row->column;
   row->column = to;
   row->n      = n;
@@ -349,7 +344,7 @@ static void PlaceTerm(NodeMatrix m, PetscInt r, int t, MatrixRows term[MATRIX_BL
 
   for (PetscInt k = own->ptr[r]; k < own->ptr[r + 1]; k++) m->term[t].place[MATRIX_OWN][k] = at[own->column[k]];
   for (PetscInt k = others->mat ? others->ptr[r] : 0; others->mat && k < others->ptr[r + 1]; k++) {
-    while (column[next] < Column(others, k)) next++;
+    while (column[next] < MatrixRowsColumn(others, 0, k)) next++;
     m->term[t].place[MATRIX_OTHERS][k] = next;
   }
 }

@@ -4,7 +4,7 @@
 #include <stdint.h>
 #include <setjmp.h>
 #include <cmocka.h>
-#include "factor.h"
+#include "solution.h"
 
 enum { EDGE = 12, DOFS = 2 };
 
@@ -50,28 +50,6 @@ static PetscErrorCode Grid(PetscReal ground, PetscReal skew, Mat *A)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Relative residual of a solution */
-static PetscErrorCode Miss(Factor factor, Mat A, PetscReal *miss)
-{
-  PetscReal right;
-  Vec       b, x, r;
-
-  PetscFunctionBeginUser;
-  PetscCall(MatCreateVecs(A, &x, &b));
-  PetscCall(VecDuplicate(b, &r));
-  PetscCall(VecSet(b, 1));
-  PetscCall(FactorSolve(factor, b, x));
-  PetscCall(MatMult(A, x, r));
-  PetscCall(VecAXPY(r, -1, b));
-  PetscCall(VecNorm(r, NORM_2, miss));
-  PetscCall(VecNorm(b, NORM_2, &right));
-  *miss /= right;
-  PetscCall(VecDestroy(&b));
-  PetscCall(VecDestroy(&x));
-  PetscCall(VecDestroy(&r));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 static void MakeAndSolve(Factor factor, Mat A)
 {
   PCFailedReason reason;
@@ -79,7 +57,7 @@ static void MakeAndSolve(Factor factor, Mat A)
 
   assert_int_equal(FactorMake(factor, A, &reason), 0);
   assert_int_equal(reason, PC_NOERROR);
-  assert_int_equal(Miss(factor, A, &miss), 0);
+  assert_int_equal(SolutionMiss(factor, A, &miss), 0);
   assert_true(miss < 1e-11);
 }
 
@@ -145,7 +123,7 @@ static void test_singular(void **state)
   assert_int_equal(FactorCreate(PETSC_COMM_WORLD, PETSC_TRUE, &factor), 0);
   assert_int_equal(FactorMake(factor, zero, &reason), 0);
   assert_int_not_equal(reason, PC_NOERROR);
-  assert_int_equal(Miss(factor, zero, &miss), 0);
+  assert_int_equal(SolutionMiss(factor, zero, &miss), 0);
   assert_true(PetscIsInfOrNanReal(miss));
   MakeAndSolve(factor, A);
   assert_int_equal(FactorDestroy(&factor), 0);
