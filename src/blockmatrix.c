@@ -39,6 +39,7 @@ struct _n_BlockMatrix {
   BlockRow        *row;
   PetscInt        *seen, *at; /* of each node of the matrix: the last sum in whose column it stood; at: numbers of the block at hand */
   SumRow          *sum;       /* [pairs not below the diagonal][size] */
+  PetscInt        *coupled;   /* room for what BlockMatrixGetCoupled() shows */
   const PetscReal *along;     /* what blocks are multiplied with as they are added, or NULL */
   PetscReal       *product;
   PetscBool        restored; /* the matrix is not the one that its user knows */
@@ -94,6 +95,7 @@ PetscErrorCode BlockMatrixDestroy(BlockMatrix *blocks)
   PetscCall(PetscFree((*blocks)->row));
   PetscCall(PetscFree2((*blocks)->seen, (*blocks)->at));
   PetscCall(PetscFree((*blocks)->sum));
+  PetscCall(PetscFree((*blocks)->coupled));
   PetscCall(NodeMatrixDestroy(&(*blocks)->matrix));
   PetscCall(PetscFree(*blocks));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -414,6 +416,7 @@ static PetscErrorCode CreateMatrix(BlockMatrix blocks, PetscInt rows)
   PetscCall(NodeMatrixCreate(blocks->comm, rows, &pairs, &blocks->matrix));
   PetscCall(NodeMatrixJoin(blocks->matrix, NULL));
   PetscCall(PetscFree(blocks->sum));
+  PetscCall(PetscFree(blocks->coupled));
   PetscCall(PetscMalloc1(blocks->above[blocks->own.n_nodes] * blocks->size, &blocks->sum));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -610,6 +613,29 @@ PetscErrorCode BlockMatrixEnd(BlockMatrix blocks, Mat *matrix)
   FillDiagonal(blocks);
   PetscCall(NodeMatrixSetUpper(blocks->matrix, &values));
   *matrix = NodeMatrixGet(blocks->matrix);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* BlockMatrixGetCoupled - Not collective. dof: its node's first one that is free, -1: none is. */
+PetscErrorCode BlockMatrixGetCoupled(BlockMatrix blocks, PetscInt dof, PetscInt *n, const PetscInt **coupled)
+{
+  const BlockPattern *own  = &blocks->own;
+  const int           size = blocks->size;
+  PetscInt            r    = -1;
+
+  PetscFunctionBeginUser;
+  *n = 0;
+  if (dof >= 0 && own->n_nodes) PetscCall(PetscFindInt(dof, own->n_nodes, own->key, &r));
+  if (r < 0) PetscFunctionReturn(PETSC_SUCCESS);
+  if (!blocks->coupled) PetscCall(PetscMalloc1(own->n_nodes * size, &blocks->coupled));
+  for (PetscInt k = own->pair_ptr[r]; k < own->pair_ptr[r + 1]; k++) {
+    for (int d = 0; d < size; d++) {
+      const PetscInt column = own->dof[own->pair[k] * size + d];
+
+      if (column >= 0) blocks->coupled[(*n)++] = column;
+    }
+  }
+  *coupled = blocks->coupled;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -1,7 +1,42 @@
 #include "contactimpl.h"
 
+/* A vector more, of zeros in the rows that the kept pattern of the tangent couples a slave node with; *n: how many these are, 0: it has none of the node. */
+static PetscErrorCode AddZeros(Contact contact, PetscInt node, PetscInt *n)
+{
+  const int       dim = contact->mesh->dim;
+  const PetscInt *dof, *row;
+  PetscInt        first = -1;
+
+  PetscFunctionBeginUser;
+  PetscCall(MeshGetGlobalDofs(contact->mesh, &dof));
+  for (int d = 0; d < dim && first < 0; d++) first = dof[node * dim + d];
+  PetscCall(BlockMatrixGetCoupled(contact->blocks, first, n, &row));
+  if (*n) PetscCall(ContactVectorsAddZeros(&contact->border, *n, row));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The values of a term into the vector at hand. */
+static PetscErrorCode FillTerm(Contact contact, const ContactPair *pair, PetscInt c, PetscReal scale)
+{
+  ContactVectors *border = &contact->border, *term = &contact->term;
+  const PetscInt  first = border->ptr[border->n - 1], n = border->ptr[border->n] - first;
+
+  PetscFunctionBeginUser;
+  term->n = 0;
+  PetscCall(ContactVectorsAdd(term, pair, c, scale));
+  for (PetscInt k = 0; k < term->ptr[1]; k++) {
+    PetscInt at;
+
+    PetscCall(PetscFindInt(term->row[k], n, &border->row[first], &at));
+    PetscCheck(at >= 0, PETSC_COMM_SELF, PETSC_ERR_PLIB, "the tangent's pattern lacks a node of a term");
+    border->value[first + at] += term->value[k];
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* ContactGetBorder - what the terms of the last tangent add to it, C, as a sum of v v^T, but for pressures that turn with the surface: of each the first
-   variation of its gap times the root of its stiffness.
+   variation of its gap times the root of its stiffness. Vectors have the entries that C's kept pattern leaves them, so that they change with it only, and those
+   of terms that it still has are zero.
 
    Not collective. C: of ContactTangent(). The arrays are the contact's, until the next call. */
 PetscErrorCode ContactGetBorder(Contact contact, Mat C, Border *out)
@@ -14,11 +49,14 @@ PetscErrorCode ContactGetBorder(Contact contact, Mat C, Border *out)
     const ContactPair *pair = &contact->pairs[p];
 
     for (PetscInt c = 0; c < pair->n; c++) {
-      PetscReal area;
+      const PetscBool acts = pair->stiffness[c] > 0 ? PETSC_TRUE : PETSC_FALSE;
+      PetscReal       area, scale = 0;
+      PetscInt        n;
 
-      if (!(pair->stiffness[c] > 0)) continue;
-      ContactTermGap(pair, pair->factor, pair->point_gap, c, &area);
-      PetscCall(ContactVectorsAdd(border, pair, c, PetscSqrtReal(pair->stiffness[c] / area)));
+      if (acts) ContactTermGap(pair, pair->factor, pair->point_gap, c, &area);
+      if (acts) scale = PetscSqrtReal(pair->stiffness[c] / area);
+      PetscCall(AddZeros(contact, pair->node[c], &n));
+      if (acts) PetscCall(n ? FillTerm(contact, pair, c, scale) : ContactVectorsAdd(border, pair, c, scale));
     }
   }
   *out = (Border){.sum = C, .n = border->n, .ptr = border->ptr, .row = border->row, .value = border->value};

@@ -165,6 +165,20 @@ PetscErrorCode ContactVectorsAdd(ContactVectors *vectors, const ContactPair *pai
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* ContactVectorsAddZeros - Not collective. */
+PetscErrorCode ContactVectorsAddZeros(ContactVectors *vectors, PetscInt n, const PetscInt row[])
+{
+  PetscInt first;
+
+  PetscFunctionBeginUser;
+  PetscCall(Reserve(vectors, n));
+  first = vectors->ptr[vectors->n];
+  PetscCall(PetscArraycpy(&vectors->row[first], row, n));
+  PetscCall(PetscArrayzero(&vectors->value[first], n));
+  vectors->ptr[++vectors->n] = first + n;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* ContactVectorsFree - Not collective. There are none afterwards. */
 PetscErrorCode ContactVectorsFree(ContactVectors *vectors)
 {
