@@ -113,7 +113,7 @@ PetscErrorCode ContactTangentChanges(Contact, PetscInt *terms);
 /* What these add to the tangent, N diag(s) N^T: s[terms] and a dense N of so many columns, the caller's. rows: the matrix's on this rank. Collective. */
 PetscErrorCode ContactChangeVectors(Contact, PetscInt rows, PetscInt terms, PetscReal *s, Mat *N);
 /* The last tangent, C, as nearly a sum of v v^T over its terms; the arrays stay the contact's. Not collective. */
-PetscErrorCode ContactGetBorder(Contact, Mat C, Border *);
+PetscErrorCode ContactGetBorder(Contact, Border *);
 /* Do the surfaces of a pair of bodies couple many nodes with each slave node? Not collective. */
 PetscBool ContactHasFits(Contact);
 /* y += C x with the tangent that is asked for in between, all dofs; rigid tools contribute their motion from t to t_next. x, y local, y complete at owned

@@ -175,7 +175,7 @@ PetscErrorCode ContactVariationsNeed(const ContactPair *, PetscInt q);          
 PetscErrorCode ContactVariationsNodes(const ContactPair *, PetscInt n, const PetscInt points[]);   /* of some points that carry area, into the work's number */
 void           ContactTermVary(const ContactPair *, PetscInt term, PetscReal scale, PetscReal *v); /* adds scale area N of the term over the block at hand */
 PetscErrorCode ContactVectorsAdd(ContactVectors *, const ContactPair *, PetscInt term, PetscReal scale); /* scale area N of the term as one more */
-PetscErrorCode ContactVectorsAddZeros(ContactVectors *, PetscInt n, const PetscInt row[]); /* zeros in these rows as one more */
+PetscErrorCode ContactVectorsAddZeros(ContactVectors *, PetscInt n, const PetscInt row[]);               /* zeros in these rows as one more */
 PetscErrorCode ContactVectorsFree(ContactVectors *);
 /* contactlost.c */
 /* Remember the slave points behind their masters that the next lists have lost; those that passed through it; those that jumped out since the accepted state.

@@ -21,11 +21,13 @@ PetscErrorCode FactorDestroy(Factor *);
 PetscErrorCode FactorCheckOptions(void);
 /* For the analyses to come; what -mat_mumps_icntl_7 says stays. *chosen (or NULL): it has said nothing. Logically collective. */
 PetscErrorCode FactorSetOrdering(Factor, int ordering, PetscBool *chosen);
-/* For the matrices to come, which are K and what borders say: K is ordered by minimum fill. Symmetric ones only. Collective. */
+/* For the matrices to come, which have K's pattern and a border: K is ordered by minimum fill, or degree if that was set. Symmetric ones only. Collective. */
 PetscErrorCode FactorPrepareBorder(Factor, Mat K, PCFailedReason *);
-/* The matrices that are factored until the next call are K + C, and what is factored and solved with is K and these vectors, K + V V^T; NULL: as they are.
-   FactorPrepareBorder() was called. Collective, borrowed until the next call. */
+/* What is factored and solved with until the next call is the matrix, of the pattern that FactorPrepareBorder() was told, and these vectors, K + V V^T; NULL:
+   the matrix. Collective, borrowed until the next call. */
 PetscErrorCode FactorSetBorder(Factor, const Border *);
+/* Has the next factor a border? Not collective, the same on all ranks. */
+PetscBool FactorHasBorder(Factor);
 /* Orders an AIJ matrix of symmetric pattern and counts what its factor will take. Collective. */
 PetscErrorCode FactorAnalyse(Factor, Mat A, PCFailedReason *);
 /* Factors it, after an analysis where its pattern is not that of the last; with more workspace where MUMPS finds its own too short. Collective. */

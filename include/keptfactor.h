@@ -33,5 +33,5 @@ PetscErrorCode KeptFactorSetEnough(KeptFactor, PetscReal residual);
    alone where the factor solves; *norm: the residual, negative: not known; *failed: a factor had to be made and could not. Collective. */
 PetscErrorCode KeptFactorSolve(KeptFactor, Mat A, Vec b, Vec x, PetscReal *tolerance, PetscReal *norm, PetscBool *failed);
 /* After that: the factor becomes A's own, but for a part that is left out, where it is an older one. Collective. */
-PetscErrorCode KeptFactorOwn(KeptFactor, Mat A, PetscBool *failed);
+PetscErrorCode KeptFactorOwn(KeptFactor, PetscBool *failed);
 void           KeptFactorGetCounts(KeptFactor, KeptCounts *);

@@ -28,7 +28,7 @@ PetscErrorCode LinearSolverSetEnough(LinearSolver, PetscReal residual);
 /* Is there a factor, so that LinearSolverColumns() may be asked? Not collective, the same on all ranks. */
 PetscErrorCode LinearSolverDirect(LinearSolver, PetscBool *direct);
 /* X = A^-1 B for dense B and X, A the operator of the last solve; *able: that could be done. Collective. */
-PetscErrorCode LinearSolverColumns(LinearSolver, Mat A, Mat B, Mat X, PetscBool *able);
+PetscErrorCode LinearSolverColumns(LinearSolver, Mat B, Mat X, PetscBool *able);
 /* Around the solve that predicts a step, whose first guess of what is in contact should hold. Logically collective. */
 PetscErrorCode LinearSolverPredict(LinearSolver, PetscBool);
 /* The factor that may serve more than one operator, for those who watch the solves; NULL: there is none. Not collective. */

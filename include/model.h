@@ -51,7 +51,8 @@ typedef struct _n_Model {
   SNES                 snes;
   LinearCheck          linear; /* of the solver's KSP */
   Vec                  x;      /* free displacements */
-  Mat                  A;      /* K + C; the elasticity's */
+  Mat                  A;      /* K + C: P, or an operator of its own where factors take contact as a border */
+  Mat                  P;      /* K + C or K; the elasticity's */
   PetscReal           *u;      /* n_nodes*dim local displacements, prescribed ones included, at load parameter t */
   PetscReal            t;
   PetscReal            force_scale; /* F_ref of the accepted states: the largest norm so far of the unassembled internal, contact and external forces */

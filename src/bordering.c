@@ -1,57 +1,28 @@
 #include "bordering.h"
-#include "matrixrows.h"
 
 struct _n_Bordering {
   MPI_Comm    comm;
   PetscMPIInt rank, size;
-  PetscInt    n, first, rows;                             /* rows of K: of all ranks; the first of this one, how many */
-  PetscInt   *width[MATRIX_BLOCKS];                       /* of K's rows */
-  PetscInt   *ptr[MATRIX_BLOCKS], *column[MATRIX_BLOCKS]; /* K's pattern on and above the diagonal, columns in the numbers of all ranks */
-  PetscInt   *position;                                   /* of K's rows, on the first rank */
+  PetscInt    n;        /* rows of K */
+  PetscInt   *position; /* of these, on the first rank */
   Border      border;
   PetscInt    before, count;                /* vectors of ranks before this one, of all ranks */
   PetscInt    n_seen, *seen_ptr, *seen_row; /* the pattern of the vectors before */
 };
 
-/* Notes which entries K has on and above the diagonal in one of its blocks. */
-static PetscErrorCode NoteBlock(Bordering b, Mat K, int block)
-{
-  MatrixRows rows;
-  PetscInt   n = 0;
-
-  PetscFunctionBeginUser;
-  PetscCall(MatrixRowsGet(K, block, &rows));
-  PetscCall(PetscCalloc2(b->rows + 1, &b->ptr[block], b->rows, &b->width[block]));
-  PetscCall(PetscMalloc1(rows.mat ? rows.ptr[b->rows] : 0, &b->column[block]));
-  for (PetscInt r = 0; r < b->rows; r++) {
-    b->width[block][r] = rows.mat ? rows.ptr[r + 1] - rows.ptr[r] : 0;
-    for (PetscInt k = rows.mat ? rows.ptr[r] : 0; rows.mat && k < rows.ptr[r + 1]; k++) {
-      const PetscInt c = MatrixRowsColumn(&rows, b->first, k);
-
-      if (c >= b->first + r) b->column[block][n++] = c;
-    }
-    b->ptr[block][r + 1] = n;
-  }
-  PetscCall(MatrixRowsRestore(&rows));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* BorderingCreate - Collective. */
-PetscErrorCode BorderingCreate(Mat K, const PetscInt *position, Bordering *out)
+PetscErrorCode BorderingCreate(MPI_Comm comm, PetscInt n, const PetscInt *position, Bordering *out)
 {
   Bordering b;
 
   PetscFunctionBeginUser;
   PetscCall(PetscNew(&b));
-  b->comm = PetscObjectComm((PetscObject)K);
-  PetscCallMPI(MPI_Comm_rank(b->comm, &b->rank));
-  PetscCallMPI(MPI_Comm_size(b->comm, &b->size));
-  PetscCall(MatGetSize(K, &b->n, NULL));
-  PetscCall(MatGetLocalSize(K, &b->rows, NULL));
-  PetscCall(MatGetOwnershipRange(K, &b->first, NULL));
-  for (int block = 0; block < MATRIX_BLOCKS; block++) PetscCall(NoteBlock(b, K, block));
-  if (!b->rank) PetscCall(PetscMalloc1(b->n, &b->position));
-  if (!b->rank) PetscCall(PetscArraycpy(b->position, position, b->n));
+  b->comm = comm;
+  b->n    = n;
+  PetscCallMPI(MPI_Comm_rank(comm, &b->rank));
+  PetscCallMPI(MPI_Comm_size(comm, &b->size));
+  if (!b->rank) PetscCall(PetscMalloc1(n, &b->position));
+  if (!b->rank) PetscCall(PetscArraycpy(b->position, position, n));
   *out = b;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -63,8 +34,6 @@ PetscErrorCode BorderingDestroy(Bordering *bordering)
 
   PetscFunctionBeginUser;
   if (!b) PetscFunctionReturn(PETSC_SUCCESS);
-  for (int block = 0; block < MATRIX_BLOCKS; block++) PetscCall(PetscFree2(b->ptr[block], b->width[block]));
-  for (int block = 0; block < MATRIX_BLOCKS; block++) PetscCall(PetscFree(b->column[block]));
   PetscCall(PetscFree(b->position));
   PetscCall(PetscFree(b->seen_ptr));
   PetscCall(PetscFree(b->seen_row));
@@ -91,7 +60,7 @@ static PetscErrorCode NotePattern(Bordering b, PetscBool *same)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* BorderingSet - Collective. Arrays and matrix stay the caller's until the next call. */
+/* BorderingSet - Collective. The arrays stay the caller's until the next call. */
 PetscErrorCode BorderingSet(Bordering b, const Border *border, PetscBool *changed)
 {
   PetscBool same;
@@ -117,83 +86,14 @@ PetscInt BorderingCount(Bordering b)
 
 /* ---------- entries ---------- */
 
-/* The value of a column in a row, searched from *at on, as columns ascend; 0 where the row lacks it. */
-static PetscScalar Look(const MatrixRows *rows, PetscInt first, PetscInt end, PetscInt column, PetscInt *at)
-{
-  for (; *at < end; ++*at) {
-    const PetscInt c = MatrixRowsColumn(rows, first, *at);
-
-    if (c == column) return rows->value[*at];
-    if (c > column) return 0;
-  }
-  return 0;
-}
-
-/* A - C in a row of one block, where K has entries. */
-static void TakeRow(Bordering b, int block, PetscInt r, const MatrixRows *a, const MatrixRows *c, PetscScalar *value)
-{
-  const PetscInt n = b->ptr[block][r + 1] - b->ptr[block][r], *column = &b->column[block][b->ptr[block][r]];
-  PetscInt       in_a = a->ptr[r], in_c = c->mat ? c->ptr[r] : 0;
-
-  for (PetscInt k = 0; k < n; k++) {
-    value[k] = Look(a, b->first, a->ptr[r + 1], column[k], &in_a);
-    if (c->mat) value[k] -= Look(c, b->first, c->ptr[r + 1], column[k], &in_c);
-  }
-}
-
-/* The same in all rows; those that C is not in are K's. */
-static PetscErrorCode TakeBlock(Bordering b, Mat A, int block, PetscScalar *value)
-{
-  MatrixRows a, c = {.mat = NULL};
-
-  PetscFunctionBeginUser;
-  PetscCall(MatrixRowsGet(A, block, &a));
-  if (b->border.sum) PetscCall(MatrixRowsGet(b->border.sum, block, &c));
-  for (PetscInt r = 0; a.mat && r < b->rows; r++) {
-    const PetscInt n = b->ptr[block][r + 1] - b->ptr[block][r];
-
-    if (a.ptr[r + 1] - a.ptr[r] == b->width[block][r] && (!c.mat || c.ptr[r + 1] == c.ptr[r]))
-      PetscCall(PetscArraycpy(value, &a.value[a.ptr[r + 1] - n], n));
-    else
-      TakeRow(b, block, r, &a, &c, value);
-    value += n;
-  }
-  if (c.mat) PetscCall(MatrixRowsRestore(&c));
-  PetscCall(MatrixRowsRestore(&a));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* The vectors' values, and -1 on their diagonal */
-static void TakeVectors(Bordering b, PetscScalar *value)
-{
-  const Border *border = &b->border;
-
-  for (PetscInt v = 0; v < border->n; v++) {
-    for (PetscInt k = border->ptr[v]; k < border->ptr[v + 1]; k++) *value++ = border->value[k];
-    *value++ = -1;
-  }
-}
-
 /* BorderingCountEntries - Not collective. */
-void BorderingCountEntries(Bordering b, PetscInt n[BORDERING_PARTS])
+PetscInt BorderingCountEntries(Bordering b)
 {
-  n[BORDERING_BODIES]  = b->ptr[MATRIX_OWN][b->rows] + b->ptr[MATRIX_OTHERS][b->rows];
-  n[BORDERING_VECTORS] = b->border.n ? b->border.ptr[b->border.n] + b->border.n : 0;
+  return b->border.n ? b->border.ptr[b->border.n] + b->border.n : 0;
 }
 
-static void NumberBodies(Bordering b, PetscInt *row, PetscInt *column)
-{
-  for (int block = 0; block < MATRIX_BLOCKS; block++) {
-    for (PetscInt r = 0; r < b->rows; r++) {
-      for (PetscInt k = b->ptr[block][r]; k < b->ptr[block][r + 1]; k++) {
-        *row++    = b->first + r;
-        *column++ = b->column[block][k];
-      }
-    }
-  }
-}
-
-static void NumberVectors(Bordering b, PetscInt *row, PetscInt *column)
+/* BorderingNumber - Not collective. row, column: as many as BorderingCountEntries() says. */
+void BorderingNumber(Bordering b, PetscInt *row, PetscInt *column)
 {
   const Border *border = &b->border;
 
@@ -208,25 +108,15 @@ static void NumberVectors(Bordering b, PetscInt *row, PetscInt *column)
   }
 }
 
-/* BorderingNumber - Not collective. row, column: as many as BorderingCountEntries() says. */
-void BorderingNumber(Bordering b, int part, PetscInt *row, PetscInt *column)
+/* BorderingTake - Not collective. value: as many as BorderingCountEntries() says. */
+void BorderingTake(Bordering b, PetscScalar *value)
 {
-  if (part == BORDERING_BODIES)
-    NumberBodies(b, row, column);
-  else
-    NumberVectors(b, row, column);
-}
+  const Border *border = &b->border;
 
-/* BorderingTake - Not collective. A has entries wherever K has, and C's. */
-PetscErrorCode BorderingTake(Bordering b, Mat A, PetscScalar *value)
-{
-  PetscFunctionBeginUser;
-  for (int block = 0; block < MATRIX_BLOCKS; block++) {
-    PetscCall(TakeBlock(b, A, block, value));
-    value += b->ptr[block][b->rows];
+  for (PetscInt v = 0; v < border->n; v++) {
+    for (PetscInt k = border->ptr[v]; k < border->ptr[v + 1]; k++) *value++ = border->value[k];
+    *value++ = -1;
   }
-  TakeVectors(b, value);
-  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* ---------- order ---------- */

@@ -34,12 +34,12 @@ static PetscErrorCode FillTerm(Contact contact, const ContactPair *pair, PetscIn
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ContactGetBorder - what the terms of the last tangent add to it, C, as a sum of v v^T, but for pressures that turn with the surface: of each the first
-   variation of its gap times the root of its stiffness. Vectors have the entries that C's kept pattern leaves them, so that they change with it only, and those
-   of terms that it still has are zero.
+/* ContactGetBorder - what the terms of the last ContactTangent() add to it as a sum of v v^T, but for pressures that turn with the surface: of each the first
+   variation of its gap times the root of its stiffness. Vectors have the entries that the tangent's kept pattern leaves them, so that they change with it only,
+   and those of terms that it still has are zero.
 
-   Not collective. C: of ContactTangent(). The arrays are the contact's, until the next call. */
-PetscErrorCode ContactGetBorder(Contact contact, Mat C, Border *out)
+   Not collective. The arrays are the contact's, until the next call. */
+PetscErrorCode ContactGetBorder(Contact contact, Border *out)
 {
   ContactVectors *border = &contact->border;
 
@@ -59,7 +59,7 @@ PetscErrorCode ContactGetBorder(Contact contact, Mat C, Border *out)
       if (acts) PetscCall(n ? FillTerm(contact, pair, c, scale) : ContactVectorsAdd(border, pair, c, scale));
     }
   }
-  *out = (Border){.sum = C, .n = border->n, .ptr = border->ptr, .row = border->row, .value = border->value};
+  *out = (Border){.n = border->n, .ptr = border->ptr, .row = border->row, .value = border->value};
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -1,5 +1,6 @@
 #include "directsolver.h"
 #include "shell.h"
+#include "sumoperator.h"
 
 /* Unknowns from which on orderings are compared: below, a factorisation is not what a run spends its time with. */
 #define DIRECT_COMPARED 4000
@@ -18,16 +19,31 @@
    bricks, and 1.5 times as many on thick blocks. */
 static const int DirectOthers[] = {FACTOR_MINIMUM_FILL, FACTOR_MINIMUM_DEGREE};
 
+/* Factors the operator itself, whatever the preconditioner is made from. */
+static PetscErrorCode MakeWhole(Factor factor, Mat A, Mat P, PCFailedReason *reason)
+{
+  Mat whole;
+
+  PetscFunctionBeginUser;
+  PetscCall(SumOperatorMerge(A, &whole));
+  PetscCall(FactorMake(factor, whole ? whole : P, reason));
+  PetscCall(MatDestroy(&whole));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Where a border makes up for what P lacks of A, and its factor fails, that of A is made. */
 static PetscErrorCode SetUp(PC pc)
 {
   Factor         factor;
-  Mat            A;
-  PCFailedReason reason;
+  Mat            A, P;
+  PCFailedReason reason = PC_NOERROR;
 
   PetscFunctionBeginUser;
   PetscCall(PCShellGetContext(pc, &factor));
-  PetscCall(PCGetOperators(pc, NULL, &A));
-  PetscCall(FactorMake(factor, A, &reason));
+  PetscCall(PCGetOperators(pc, &A, &P));
+  if (FactorHasBorder(factor)) PetscCall(FactorMake(factor, P, &reason));
+  if (reason) PetscCall(FactorSetBorder(factor, NULL));
+  if (reason || !FactorHasBorder(factor)) PetscCall(MakeWhole(factor, A, P, &reason));
   PetscCall(PCSetFailedReason(pc, reason));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

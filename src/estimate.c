@@ -74,7 +74,7 @@ static PetscErrorCode AnalyseFactor(Model model, Factor factor, Estimate *estima
   PCFailedReason reason;
 
   PetscFunctionBeginUser;
-  PetscCall(FactorAnalyse(factor, model->A, &reason));
+  PetscCall(FactorAnalyse(factor, model->P, &reason));
   if (reason) PetscFunctionReturn(PETSC_SUCCESS);
   FactorGetCost(factor, &cost);
   estimate->known        = PETSC_TRUE;
@@ -103,7 +103,7 @@ static PetscErrorCode MeasureMemory(MPI_Comm comm, PetscReal mb[2])
 /*
   EstimateModel - what one Newton iteration of the model will take, on these ranks and this machine
 
-  Collective, after ModelPlace(). The tangent of that state is left in model->A.
+  Collective, after ModelPlace(). The tangent of that state is left in the model's.
 
   Note:
   Operations over the speed of a matrix product, entries of the factor times a constant, and the assembly as measured: good to about a factor of two.
@@ -123,7 +123,7 @@ PetscErrorCode EstimateModel(Model model, Estimate *estimate)
   PetscCall(ModelDofs(model, &estimate->dofs));
   if (!estimate->dofs) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(MeasureAssembly(model, &estimate->assembly_s));
-  PetscCall(MatGetInfo(model->A, MAT_GLOBAL_SUM, &info));
+  PetscCall(MatGetInfo(model->P, MAT_GLOBAL_SUM, &info));
   estimate->nonzeros = info.nz_used;
   PetscCall(SNESGetKSP(model->snes, &ksp));
   PetscCall(DirectSolverFactor(ksp, &factor));

@@ -37,14 +37,15 @@ struct _n_Factor {
   int              ordering;
   PetscObjectId    matrix; /* the last that was analysed, 0: none; and its pattern */
   PetscObjectState pattern;
-  PetscInt         n, entries, rows;    /* of all ranks; of this one, and its rows */
+  PetscInt         n, rows;             /* rows of all ranks, of this one */
+  PetscInt         entries, own;        /* of this rank: all, those of the matrix */
   PetscInt        *from[MATRIX_BLOCKS]; /* of each row and block, its first entry that is taken: of a symmetric matrix none below the diagonal */
   PetscInt         room;
   MUMPS_INT       *row, *column; /* entries of this rank, from 1, in memory for `room` */
   PetscScalar     *value;
   Bordering        bordering; /* NULL: none was prepared */
   PetscBool        bordered;  /* the next matrix is */
-  PetscBool        placed;    /* rows and columns of the bodies' entries, which a border leaves where they are */
+  PetscBool        placed;    /* rows and columns are those of a matrix with a border */
   MUMPS_INT        workspace; /* ICNTL(14) at first */
   MUMPS_INT       *position;  /* of rows, where the ordering is given; on the first rank, as are: */
   PetscScalar     *right;     /* room for right-hand sides and solutions */
@@ -180,6 +181,12 @@ PetscErrorCode FactorSetBorder(Factor f, const Border *border)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* FactorHasBorder - Not collective. */
+PetscBool FactorHasBorder(Factor f)
+{
+  return f->bordered;
+}
+
 /* ---------- the matrix ---------- */
 
 /* The first entry of row r, start + r of all ranks, that is not below the diagonal, by bisection: columns ascend. */
@@ -204,14 +211,14 @@ static PetscErrorCode FindEntries(Factor f, Mat A, PetscInt start)
   PetscFunctionBeginUser;
   PetscCall(PetscFree2(f->from[MATRIX_OWN], f->from[MATRIX_OTHERS]));
   PetscCall(PetscMalloc2(f->rows, &f->from[MATRIX_OWN], f->rows, &f->from[MATRIX_OTHERS]));
-  f->entries = 0;
+  f->own = 0;
   for (int block = 0; block < MATRIX_BLOCKS; block++) {
     MatrixRows rows;
 
     PetscCall(MatrixRowsGet(A, block, &rows));
     for (PetscInt r = 0; rows.mat && r < rows.n; r++) {
       f->from[block][r] = f->symmetric ? FirstEntry(&rows, start, r) : rows.ptr[r];
-      f->entries += rows.ptr[r + 1] - f->from[block][r];
+      f->own += rows.ptr[r + 1] - f->from[block][r];
     }
     PetscCall(MatrixRowsRestore(&rows));
   }
@@ -246,10 +253,6 @@ static PetscErrorCode TakeValues(Factor f, Mat A)
   PetscScalar *value = f->value;
 
   PetscFunctionBeginUser;
-  if (f->bordered) {
-    PetscCall(BorderingTake(f->bordering, A, value));
-    PetscFunctionReturn(PETSC_SUCCESS);
-  }
   for (int block = 0; block < MATRIX_BLOCKS; block++) {
     MatrixRows rows;
 
@@ -262,6 +265,7 @@ static PetscErrorCode TakeValues(Factor f, Mat A)
     }
     PetscCall(MatrixRowsRestore(&rows));
   }
+  if (f->bordered) BorderingTake(f->bordering, value);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -277,47 +281,36 @@ static PetscErrorCode Reserve(Factor f, PetscBool *kept)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode PlaceEntries(Factor f, Mat A)
+/* Rows and columns of the border's entries, from 1, behind those of the matrix */
+static PetscErrorCode PlaceBorder(Factor f)
 {
-  PetscInt  start;
-  PetscBool kept;
-
-  PetscFunctionBeginUser;
-  PetscCall(MatGetOwnershipRange(A, &start, NULL));
-  PetscCall(FindEntries(f, A, start));
-  PetscCall(Reserve(f, &kept));
-  PetscCall(TakePlaces(f, A, start));
-  f->placed = PETSC_FALSE;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Rows and columns of a part of the entries with a border, from 1 */
-static PetscErrorCode PlacePart(Factor f, int part, PetscInt n, PetscInt from)
-{
-  PetscInt *row, *column;
+  const PetscInt from = f->own, n = f->entries - from;
+  PetscInt      *row, *column;
 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc2(n, &row, n, &column));
-  BorderingNumber(f->bordering, part, row, column);
+  BorderingNumber(f->bordering, row, column);
   for (PetscInt k = 0; k < n; k++) f->row[from + k] = (MUMPS_INT)(row[k] + 1);
   for (PetscInt k = 0; k < n; k++) f->column[from + k] = (MUMPS_INT)(column[k] + 1);
   PetscCall(PetscFree2(row, column));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* With a border, whose rows are behind those of the matrix */
-static PetscErrorCode PlaceBordered(Factor f)
+/* Rows and columns of all entries. A border leaves those of the matrix where they are. */
+static PetscErrorCode PlaceEntries(Factor f, Mat A)
 {
-  PetscInt  n[BORDERING_PARTS];
-  PetscBool kept;
+  const PetscBool again = (PetscBool)(f->bordered && f->placed);
+  PetscInt        start;
+  PetscBool       kept;
 
   PetscFunctionBeginUser;
-  BorderingCountEntries(f->bordering, n);
-  f->entries = n[BORDERING_BODIES] + n[BORDERING_VECTORS];
+  PetscCall(MatGetOwnershipRange(A, &start, NULL));
+  if (!again) PetscCall(FindEntries(f, A, start));
+  f->entries = f->own + (f->bordered ? BorderingCountEntries(f->bordering) : 0);
   PetscCall(Reserve(f, &kept));
-  if (!kept || !f->placed) PetscCall(PlacePart(f, BORDERING_BODIES, n[BORDERING_BODIES], 0));
-  PetscCall(PlacePart(f, BORDERING_VECTORS, n[BORDERING_VECTORS], n[BORDERING_BODIES]));
-  f->placed = PETSC_TRUE;
+  if (!again || !kept) PetscCall(TakePlaces(f, A, start));
+  if (f->bordered) PetscCall(PlaceBorder(f));
+  f->placed = f->bordered;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -327,7 +320,7 @@ static PetscErrorCode ShowEntries(Factor f, Mat A)
   DMUMPS_STRUC_C *mumps = &f->mumps;
 
   PetscFunctionBeginUser;
-  PetscCall(f->bordered ? PlaceBordered(f) : PlaceEntries(f, A));
+  PetscCall(PlaceEntries(f, A));
   PetscCall(TakeValues(f, A));
   if (f->size > 1) {
     mumps->nnz_loc = f->entries;
@@ -436,26 +429,6 @@ PetscErrorCode FactorAnalyse(Factor f, Mat A, PCFailedReason *reason)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* FactorPrepareBorder - Collective. *reason: why K cannot be ordered; there are no borders then. */
-PetscErrorCode FactorPrepareBorder(Factor f, Mat K, PCFailedReason *reason)
-{
-  const int ordering = f->ordering;
-  PetscInt *position = NULL;
-
-  PetscFunctionBeginUser;
-  PetscCheck(!f->bordered, f->comm, PETSC_ERR_ARG_WRONGSTATE, "there is a border already");
-  PetscCall(FactorSetOrdering(f, FACTOR_MINIMUM_FILL, NULL));
-  PetscCall(FactorAnalyse(f, K, reason));
-  PetscCall(FactorSetOrdering(f, ordering, NULL));
-  if (*reason || !f->n) PetscFunctionReturn(PETSC_SUCCESS);
-  if (!f->rank) PetscCall(PetscMalloc1(f->n, &position));
-  for (PetscInt i = 0; i < f->n && !f->rank; i++) position[i] = f->mumps.sym_perm[i] - 1;
-  PetscCall(BorderingDestroy(&f->bordering));
-  PetscCall(BorderingCreate(K, position, &f->bordering));
-  PetscCall(PetscFree(position));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* Has it another pattern than the last that was analysed? The same on all ranks. */
 static PetscErrorCode IsNew(Factor f, Mat A, PetscBool *is)
 {
@@ -471,6 +444,29 @@ static PetscErrorCode IsNew(Factor f, Mat A, PetscBool *is)
   differs = matrix != f->matrix || pattern != f->pattern;
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &differs, 1, MPI_INT, MPI_MAX, f->comm));
   *is = differs ? PETSC_TRUE : PETSC_FALSE;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* FactorPrepareBorder - Collective. *reason: why K cannot be ordered; there are no borders then. An analysis of K that there is serves. */
+PetscErrorCode FactorPrepareBorder(Factor f, Mat K, PCFailedReason *reason)
+{
+  const int ordering = f->ordering;
+  PetscBool is_new;
+  PetscInt *position = NULL;
+
+  PetscFunctionBeginUser;
+  PetscCheck(!f->bordered, f->comm, PETSC_ERR_ARG_WRONGSTATE, "there is a border already");
+  *reason = PC_NOERROR;
+  if (ordering != FACTOR_MINIMUM_DEGREE) PetscCall(FactorSetOrdering(f, FACTOR_MINIMUM_FILL, NULL));
+  PetscCall(IsNew(f, K, &is_new));
+  if (is_new) PetscCall(FactorAnalyse(f, K, reason));
+  if (!*reason && f->n && !f->rank) PetscCall(PetscMalloc1(f->n, &position));
+  for (PetscInt i = 0; position && i < f->n; i++) position[i] = f->mumps.sym_perm[i] - 1;
+  PetscCall(FactorSetOrdering(f, ordering, NULL));
+  if (*reason || !f->n) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(BorderingDestroy(&f->bordering));
+  PetscCall(BorderingCreate(f->comm, f->n, position, &f->bordering));
+  PetscCall(PetscFree(position));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -513,9 +509,6 @@ PetscErrorCode FactorMake(Factor f, Mat A, PCFailedReason *reason)
   PetscCall(CallFactor(f));
   PetscCall(Tell(f, "factorisation", reason));
   f->exists = *reason ? PETSC_FALSE : PETSC_TRUE;
-  if (f->exists || !f->bordered) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(FactorSetBorder(f, NULL)); /* as it is, once more */
-  PetscCall(FactorMake(f, A, reason));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -156,18 +156,18 @@ PetscErrorCode LinearSolverDirect(LinearSolver solver, PetscBool *direct)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* LinearSolverColumns - X = A^-1 B for dense B and X, where the last solve was a direct one, with A.
+/* LinearSolverColumns - X = A^-1 B for dense B and X, A the operator of the last solve, where that was a direct one.
 
    Collective. *able: there is a factor, and it is A's; with a border but for what that leaves out, which columns that settle contact may lack: the next
    iteration sees it. */
-PetscErrorCode LinearSolverColumns(LinearSolver solver, Mat A, Mat B, Mat X, PetscBool *able)
+PetscErrorCode LinearSolverColumns(LinearSolver solver, Mat B, Mat X, PetscBool *able)
 {
   PetscBool failed = PETSC_FALSE;
   PC        pc;
 
   PetscFunctionBeginUser;
   PetscCall(LinearSolverDirect(solver, able));
-  if (*able && solver->kept) PetscCall(KeptFactorOwn(solver->kept, A, &failed));
+  if (*able && solver->kept) PetscCall(KeptFactorOwn(solver->kept, &failed));
   *able = (PetscBool)(*able && !failed);
   if (!*able) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(KSPGetPC(solver->ksp, &pc));

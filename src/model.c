@@ -34,7 +34,9 @@ PetscErrorCode ModelCreate(Scene scene, Mesh mesh, Model *out)
   if (scene->n_contacts) PetscCall(ContactCreate(mesh, scene, model->elasticity, model->loads, &model->contact));
   PetscCall(PetscCalloc4(n, &model->u, n, &model->work->f, n, &model->work->trial, n, &model->work->accepted_u));
   PetscCall(ElasticityTangent(model->elasticity, model->u));
-  PetscCall(ElasticityMatrix(model->elasticity, NULL, NULL, &model->A));
+  PetscCall(ElasticityMatrix(model->elasticity, NULL, NULL, &model->P));
+  model->A = model->P;
+  PetscCall(PetscObjectReference((PetscObject)model->A));
   PetscCall(MatCreateVecs(model->A, &model->x, NULL));
   PetscCall(VecDuplicate(model->x, &model->work->accepted_x));
   PetscCall(VecDuplicate(model->x, &model->work->forecast));
@@ -63,6 +65,7 @@ PetscErrorCode ModelDestroy(Model *model)
   PetscCall(ContactLineDestroy(&m->work->line));
   PetscCall(StabiliserDestroy(&m->work->stabiliser));
   PetscCall(PathDestroy(&m->work->path));
+  PetscCall(MatDestroy(&m->A));
   PetscCall(VecDestroy(&m->x));
   PetscCall(VecDestroy(&m->work->accepted_x));
   PetscCall(VecDestroy(&m->work->forecast));
@@ -94,7 +97,7 @@ PetscErrorCode ModelPlace(Model model, PetscReal t)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ModelAssemble - the tangent of the present state into model->A: to see its pattern and its cost without a solve. Collective. */
+/* ModelAssemble - the tangent of the present state: to see its pattern and its cost without a solve. Collective. */
 PetscErrorCode ModelAssemble(Model model)
 {
   PetscFunctionBeginUser;

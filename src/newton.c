@@ -1,6 +1,7 @@
 #include "factor.h"
 #include "modelimpl.h"
 #include "refusal.h"
+#include "sumoperator.h"
 #include "timing.h"
 
 /* Energy of a state with an inverted element: above any other, yet its square is a number, which the line search takes. */
@@ -126,7 +127,7 @@ static PetscErrorCode ModelContactTangent(Model model, const PetscReal *u, Petsc
   PetscFunctionBeginUser;
   TimingBegin(TIMING_ASSEMBLY_CONTACT);
   PetscCall(ContactTangent(model->contact, u, t, C, changed));
-  if (*changed) PetscCall(ElasticityMatrixJoin(model->elasticity, *C));
+  if (*changed && model->A == model->P) PetscCall(ElasticityMatrixJoin(model->elasticity, *C));
   PetscCall(ContactTangentChanges(model->contact, terms));
   TimingEnd(TIMING_ASSEMBLY_CONTACT);
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -155,39 +156,54 @@ static PetscBool ModelCouples(Model model)
   return (PetscBool)(model->contact && model->mesh->dim == 3 && ContactHasFits(model->contact));
 }
 
-/* Tells the solver what contact, C, adds to the tangent. */
+/* Before the first tangent: how the solver orders its unknowns, and whether it wants contact apart from the bodies. */
+static PetscErrorCode ModelOrder(Model model)
+{
+  PetscFunctionBeginUser;
+  if (ModelIsLinear(model)) PetscFunctionReturn(PETSC_SUCCESS); /* a single solve is done sooner with any */
+  PetscCall(LinearSolverOrder(model->work->solver, model->P, ModelCouples(model)));
+  if (model->A != model->P || !LinearSolverBorders(model->work->solver)) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(MatDestroy(&model->A));
+  PetscCall(SumOperatorCreate(model->P, &model->A));
+  PetscCall(SNESSetJacobian(model->snes, model->A, model->P, NULL, NULL)); /* NULL: as it is */
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* What contact adds to the tangent stays apart from it: C for products, its terms for the factor. */
 static PetscErrorCode ModelBorder(Model model, Mat C)
 {
   Border border;
 
   PetscFunctionBeginUser;
-  if (!model->contact || !LinearSolverBorders(model->work->solver)) PetscFunctionReturn(PETSC_SUCCESS);
+  if (model->A == model->P) PetscFunctionReturn(PETSC_SUCCESS);
   TimingBegin(TIMING_ASSEMBLY_CONTACT);
-  PetscCall(ContactGetBorder(model->contact, C, &border));
+  PetscCall(SumOperatorSet(model->A, C));
+  PetscCall(ContactGetBorder(model->contact, &border));
   PetscCall(LinearSolverSetBorder(model->work->solver, &border));
   TimingEnd(TIMING_ASSEMBLY_CONTACT);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The tangent at (u, t) into model->A. */
+/* The tangent at (u, t) into model->A and model->P. */
 PetscErrorCode ModelTangent(Model model, const PetscReal *u, PetscReal t)
 {
   Mat       C       = NULL;
-  PetscBool changed = PETSC_FALSE, older;
+  PetscBool changed = PETSC_FALSE, older, joined;
   PetscInt  terms   = 0;
 
   PetscFunctionBeginUser;
-  if (!ModelIsLinear(model)) PetscCall(LinearSolverOrder(model->work->solver, model->A, ModelCouples(model))); /* a single solve is done sooner with any */
+  PetscCall(ModelOrder(model));
+  joined = (PetscBool)(model->A == model->P);
   if (model->contact) PetscCall(ModelContactTangent(model, u, t, &C, &changed, &terms));
   TimingBegin(TIMING_ASSEMBLY_ELASTIC);
   PetscCall(ElasticityTangent(model->elasticity, u));
   PetscCall(LoadsTangent(model->loads, t, u, model->elasticity));
-  PetscCall(ElasticityMatrix(model->elasticity, C, model->work->residual, &model->A));
+  PetscCall(ElasticityMatrix(model->elasticity, joined ? C : NULL, model->work->residual, &model->P));
   PetscCall(VecNorm(model->work->residual, NORM_2, &model->work->stiffness));
   TimingEnd(TIMING_ASSEMBLY_ELASTIC);
-  PetscCall(StabiliserTangent(model->work->stabiliser, model->A));
+  PetscCall(StabiliserTangent(model->work->stabiliser, model->P));
   PetscCall(ModelBorder(model, C));
-  PetscCall(LinearSolverNext(model->work->solver, u, C, changed, terms, &older));
+  PetscCall(LinearSolverNext(model->work->solver, u, C, (PetscBool)(changed && joined), terms, &older));
   PetscCall(SNESSetLagPreconditioner(model->snes, older ? -1 : 1)); /* after each tangent SNES tells the KSP so */
   if (older && terms > 0) PetscCall(ModelUpdateFactor(model, terms));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -357,7 +373,7 @@ PetscErrorCode ModelCreateSNES(Model model)
   PetscCall(SNESCreate(model->mesh->comm, &model->snes));
   PetscCall(SNESSetType(model->snes, SNESNEWTONLS));
   PetscCall(SNESSetFunction(model->snes, NULL, ModelFunction, model));
-  PetscCall(SNESSetJacobian(model->snes, model->A, model->A, ModelJacobian, model));
+  PetscCall(SNESSetJacobian(model->snes, model->A, model->P, ModelJacobian, model));
   if (symmetric) PetscCall(SNESSetObjective(model->snes, ModelObjective, model));
   PetscCall(SNESSetTolerances(model->snes, 0, 0, 0, model->scene->solver.max_iterations, MODEL_MAX_FUNCTIONS));
   PetscCall(SNESSetConvergenceTest(model->snes, ModelConverged, model, NULL));

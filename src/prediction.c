@@ -22,7 +22,7 @@ static PetscErrorCode ModelStepLinear(Model model, const PetscReal *u, const Pet
   PetscCall(MeshLocalToGlobal(model->mesh, model->work->f, b));
   PetscCall(StabiliserResidual(model->work->stabiliser, model->x, b));
   PetscCall(SNESGetKSP(model->snes, &ksp));
-  PetscCall(KSPSetOperators(ksp, model->A, model->A));
+  PetscCall(KSPSetOperators(ksp, model->A, model->P));
   if (!model->work->foreseen) PetscCall(LinearSolverPredict(model->work->solver, PETSC_TRUE));
   PetscCall(KSPSolve(ksp, b, dx));
   if (!model->work->foreseen) PetscCall(LinearSolverPredict(model->work->solver, PETSC_FALSE));

@@ -74,7 +74,7 @@ static PetscErrorCode SettlingAdd(Model model, Settling *s, PetscInt m, const Pe
   PetscCall(ContactStepForces(s->contact, rows, m, which, &B));
   PetscCall(MatDuplicate(B, MAT_DO_NOT_COPY_VALUES, &Z));
   TimingBegin(TIMING_SOLVE);
-  PetscCall(LinearSolverColumns(model->work->solver, model->A, B, Z, able));
+  PetscCall(LinearSolverColumns(model->work->solver, B, Z, able));
   TimingEnd(TIMING_SOLVE);
   PetscCall(MatDestroy(&B));
   s->Z[s->rounds++] = Z;

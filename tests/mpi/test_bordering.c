@@ -6,7 +6,11 @@
 #include <math.h>
 #include <string.h>
 #include <cmocka.h>
+#include "directsolver.h"
+#include "keptfactor.h"
+#include "linearcheck.h"
 #include "solution.h"
+#include "sumoperator.h"
 
 enum { EDGE = 24, DOFS = 2, PLATE = EDGE * EDGE, NODES = 2 * PLATE, REACH = 2, LINKED = 1 + (2 * REACH + 1) * (2 * REACH + 1), MOST = 3 * EDGE };
 
@@ -129,7 +133,7 @@ static PetscErrorCode Sum(Plates *plates)
   PetscCall(Assemble(plates->C));
   PetscCall(MatDuplicate(plates->K, MAT_COPY_VALUES, &plates->A));
   PetscCall(MatAXPY(plates->A, 1, plates->C, DIFFERENT_NONZERO_PATTERN));
-  links->border = (Border){.sum = plates->C, .n = links->n, .ptr = links->ptr, .row = links->row, .value = links->value};
+  links->border = (Border){.n = links->n, .ptr = links->ptr, .row = links->row, .value = links->value};
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -187,7 +191,7 @@ static void MakeAndSolve(Factor factor, const Plates *plates, PetscBool bordered
   PetscReal      miss;
 
   assert_int_equal(FactorSetBorder(factor, bordered ? &plates->links.border : NULL), 0);
-  assert_int_equal(FactorMake(factor, plates->A, &reason), 0);
+  assert_int_equal(FactorMake(factor, bordered ? plates->K : plates->A, &reason), 0);
   assert_int_equal(reason, PC_NOERROR);
   assert_int_equal(Miss(factor, plates->A, &miss), 0);
   assert_true(miss < 1e-10);
@@ -234,6 +238,21 @@ static void test_links(void **state)
   PlatesDestroy(&plates);
 }
 
+/* Links that hold the second plate in both directions, and their sum. */
+static PetscErrorCode HoldPlate(Plates *plates)
+{
+  PetscFunctionBeginUser;
+  PetscCall(AddLinks(EDGE, MOST, 3, &plates->links));
+  for (PetscInt v = 0; v < plates->links.n; v++) {
+    const PetscInt end = plates->links.ptr[v + 1];
+
+    for (PetscInt k = plates->links.ptr[v]; k < end; k++)
+      if (k % DOFS == v % DOFS) plates->links.value[k] *= 0.1;
+  }
+  PetscCall(Sum(plates));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* K alone is singular where only the links hold the second plate, or where it has no stiffness at all in a node. */
 static void test_plate_held_by_links(void **state)
 {
@@ -242,23 +261,135 @@ static void test_plate_held_by_links(void **state)
 
   (void)state;
   PlatesCreate(0, &plates);
-  assert_int_equal(AddLinks(EDGE, MOST, 3, &plates.links), 0);
-  for (PetscInt v = 0; v < plates.links.n; v++) { /* in both directions */
-    const PetscInt end = plates.links.ptr[v + 1];
-
-    for (PetscInt k = plates.links.ptr[v]; k < end; k++)
-      if (k % DOFS == v % DOFS) plates.links.value[k] *= 0.1;
-  }
-  assert_int_equal(Sum(&plates), 0);
+  assert_int_equal(HoldPlate(&plates), 0);
   NewFactor(plates.K, &factor);
   MakeAndSolve(factor, &plates, PETSC_TRUE);
   assert_int_equal(FactorDestroy(&factor), 0);
   PlatesDestroy(&plates);
 }
 
+/* The sum of K and C multiplies as A does, and is A when it is merged; other matrices are no such sums. */
+static void test_sum_of_terms(void **state)
+{
+  static Plates plates;
+  PetscReal     miss, norm;
+  Mat           sum, whole;
+  Vec           x, y, z;
+
+  (void)state;
+  PlatesCreate(0.1, &plates);
+  assert_int_equal(AddLinks(2 * EDGE, EDGE, 10, &plates.links), 0);
+  assert_int_equal(Sum(&plates), 0);
+  assert_int_equal(SumOperatorCreate(plates.K, &sum), 0);
+  assert_int_equal(MatCreateVecs(sum, &x, &y), 0);
+  assert_int_equal(VecDuplicate(y, &z), 0);
+  assert_int_equal(VecSetRandom(x, NULL), 0);
+  for (int terms = 1; terms <= 2; terms++) {
+    const Mat A = terms == 1 ? plates.K : plates.A;
+
+    if (terms == 2) assert_int_equal(SumOperatorSet(sum, plates.C), 0);
+    assert_int_equal(MatMult(sum, x, y), 0);
+    assert_int_equal(MatMult(A, x, z), 0);
+    assert_int_equal(VecNorm(z, NORM_2, &norm), 0);
+    assert_int_equal(VecAXPY(z, -1, y), 0);
+    assert_int_equal(VecNorm(z, NORM_2, &miss), 0);
+    assert_true(miss < 1e-14 * norm);
+    assert_int_equal(SumOperatorMerge(sum, &whole), 0);
+    assert_int_equal(MatAXPY(whole, -1, A, DIFFERENT_NONZERO_PATTERN), 0);
+    assert_int_equal(MatNorm(whole, NORM_FROBENIUS, &miss), 0);
+    assert_true(miss < 1e-14 * norm);
+    assert_int_equal(MatDestroy(&whole), 0);
+  }
+  assert_int_equal(SumOperatorMerge(plates.A, &whole), 0);
+  assert_null(whole);
+  assert_int_equal(VecDestroy(&x), 0);
+  assert_int_equal(VecDestroy(&y), 0);
+  assert_int_equal(VecDestroy(&z), 0);
+  assert_int_equal(MatDestroy(&sum), 0);
+  PlatesDestroy(&plates);
+}
+
+/* A solver of K and C that is told of the first `told` links of each rank, their stiffness taken `times` as large: relative residual, and what it took */
+static void SolveTold(Plates *plates, PetscInt told, PetscReal times, PetscReal *miss, LinearCounts *counts)
+{
+  Links         *links  = &plates->links;
+  Border         border = links->border;
+  PetscReal      right;
+  PCFailedReason reason;
+  PetscBool      serves;
+  LinearCheck    check;
+  KeptFactor     kept;
+  Factor         factor;
+  Mat            sum;
+  Vec            b, x, r;
+  KSP            ksp;
+
+  border.n = PetscMin(told, links->n);
+  for (PetscInt k = 0; k < links->ptr[links->n]; k++) links->value[k] *= PetscSqrtReal(times);
+  assert_int_equal(SumOperatorCreate(plates->K, &sum), 0);
+  assert_int_equal(SumOperatorSet(sum, plates->C), 0);
+  assert_int_equal(MatCreateVecs(sum, &x, &b), 0);
+  assert_int_equal(VecDuplicate(b, &r), 0);
+  assert_int_equal(VecSetRandom(b, NULL), 0);
+  assert_int_equal(KSPCreate(PETSC_COMM_WORLD, &ksp), 0);
+  assert_int_equal(DirectSolverSet(ksp, PETSC_TRUE), 0);
+  assert_int_equal(KeptFactorCreate(ksp, &kept), 0);
+  assert_int_equal(LinearCheckCreate(ksp, 1e-8, kept, &check), 0);
+  assert_int_equal(DirectSolverFactor(ksp, &factor), 0);
+  assert_int_equal(FactorPrepareBorder(factor, plates->K, &reason), 0);
+  assert_int_equal(FactorSetBorder(factor, &border), 0);
+  assert_int_equal(KeptFactorSetRough(kept), 0);
+  assert_int_equal(KeptFactorNext(kept, 0, PETSC_TRUE, &serves), 0);
+  assert_int_equal(KSPSetOperators(ksp, sum, plates->K), 0);
+  assert_int_equal(KSPSolve(ksp, b, x), 0);
+  assert_false(LinearCheckLost(check));
+  LinearCheckGetCounts(check, counts);
+  assert_int_equal(MatMult(plates->A, x, r), 0);
+  assert_int_equal(VecAXPY(r, -1, b), 0);
+  assert_int_equal(VecNorm(r, NORM_2, miss), 0);
+  assert_int_equal(VecNorm(b, NORM_2, &right), 0);
+  *miss /= right;
+  assert_int_equal(VecDestroy(&b), 0);
+  assert_int_equal(VecDestroy(&x), 0);
+  assert_int_equal(VecDestroy(&r), 0);
+  assert_int_equal(MatDestroy(&sum), 0);
+  assert_int_equal(KSPDestroy(&ksp), 0);
+  assert_int_equal(LinearCheckDestroy(&check), 0);
+  assert_int_equal(KeptFactorDestroy(&kept), 0);
+}
+
+/* What the border leaves out of C is made up for by iterations where it is small, else by a factor of the whole; so is a bordered factor that cannot be. */
+static void test_solver_makes_up_for_what_is_left_out(void **state)
+{
+  const PetscInt loose = (PLATE + EDGE + 4) * DOFS; /* held by a link only */
+  static Plates  plates;
+  LinearCounts   counts;
+  PetscReal      miss;
+
+  (void)state;
+  PlatesCreate(0.1, &plates);
+  assert_int_equal(AddLinks(2 * EDGE, EDGE, 10, &plates.links), 0);
+  assert_int_equal(Sum(&plates), 0);
+  SolveTold(&plates, MOST, 1, &miss, &counts);
+  assert_true(miss < 1e-10 && counts.kept.made == 1 && counts.kept.finishing == 0);
+  SolveTold(&plates, MOST, 1.01, &miss, &counts);
+  assert_true(miss < 1.1e-5 && counts.kept.made == 1 && counts.kept.finishing > 0 && counts.kept.finishing < 4);
+  SolveTold(&plates, 0, 1, &miss, &counts);
+  assert_true(miss < 1e-10 && counts.kept.made == 2);
+  PlatesDestroy(&plates);
+  PlatesCreate(0.1, &plates);
+  assert_int_equal(MatSetOption(plates.K, MAT_KEEP_NONZERO_PATTERN, PETSC_TRUE), 0);
+  assert_int_equal(MatZeroRowsColumns(plates.K, 1, &loose, 0, NULL, NULL), 0);
+  assert_int_equal(HoldPlate(&plates), 0);
+  SolveTold(&plates, 0, 1, &miss, &counts); /* K alone cannot be factored */
+  assert_true(miss < 1e-10 && counts.kept.made == 1 && counts.kept.finishing == 0);
+  PlatesDestroy(&plates);
+}
+
 int main(int argc, char **argv)
 {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_links), cmocka_unit_test(test_plate_held_by_links)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_links), cmocka_unit_test(test_plate_held_by_links), cmocka_unit_test(test_sum_of_terms),
+                                     cmocka_unit_test(test_solver_makes_up_for_what_is_left_out)};
   int                     failed;
 
   if (PetscInitialize(&argc, &argv, NULL, NULL)) return 1;
