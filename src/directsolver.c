@@ -3,7 +3,7 @@
 #include "sumoperator.h"
 
 /* Unknowns from which on orderings are compared: below, a factorisation is not what a run spends its time with. */
-#define DIRECT_COMPARED 4000
+#define DIRECT_COMPARED 3000
 /* Takes METIS's dissection unless another ordering needs less than this part of its operations: it cuts the work into even parts, for ranks and for large
    fronts. */
 #define DIRECT_BETTER 0.9
