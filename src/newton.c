@@ -150,18 +150,27 @@ static PetscErrorCode ModelUpdateFactor(Model model, PetscInt terms)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Does contact couple so many unknowns that factors of bodies and contact have much more fill than those of bodies? On lines it does not. */
-static PetscBool ModelCouples(Model model)
+/* Does contact couple so many unknowns that factors of bodies and contact have much more fill than those of bodies? On lines it does not. Where PETSc is to
+   test the tangent, all of it is to be in the matrix, which PETSc tests as well. */
+static PetscErrorCode ModelCouples(Model model, PetscBool *couples)
 {
-  return (PetscBool)(model->contact && model->mesh->dim == 3 && ContactHasFits(model->contact));
+  PetscBool tests;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscOptionsHasName(NULL, NULL, "-snes_test_jacobian", &tests));
+  *couples = (PetscBool)(!tests && model->contact && model->mesh->dim == 3 && ContactHasFits(model->contact));
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* Before the first tangent: how the solver orders its unknowns, and whether it wants contact apart from the bodies. */
 static PetscErrorCode ModelOrder(Model model)
 {
+  PetscBool couples = PETSC_FALSE;
+
   PetscFunctionBeginUser;
   if (ModelIsLinear(model)) PetscFunctionReturn(PETSC_SUCCESS); /* a single solve is done sooner with any */
-  PetscCall(LinearSolverOrder(model->work->solver, model->P, ModelCouples(model)));
+  PetscCall(ModelCouples(model, &couples));
+  PetscCall(LinearSolverOrder(model->work->solver, model->P, couples));
   if (model->A != model->P || !LinearSolverBorders(model->work->solver)) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(MatDestroy(&model->A));
   PetscCall(SumOperatorCreate(model->P, &model->A));
