@@ -31,7 +31,8 @@ PetscErrorCode BlockMatrixAddOuter(BlockMatrix, int list, PetscInt n, const Pets
 void BlockMatrixMultiply(BlockMatrix, const PetscReal *x, PetscReal *y);
 /* The matrix; it stays the block matrix's. Collective. */
 PetscErrorCode BlockMatrixEnd(BlockMatrix, Mat *);
-/* The dofs, ascending, that the pattern couples with the node of which `dof` is the first; n 0: it lacks that. Borrowed until the next call. Not collective. */
+/* The dofs, ascending, that the pattern couples with the node of which `dof` is the first (-1: it has none); n 0: it lacks that. Borrowed until the next call
+   for this block matrix. Not collective. */
 PetscErrorCode BlockMatrixGetCoupled(BlockMatrix, PetscInt dof, PetscInt *n, const PetscInt **coupled);
 
 /* The pattern of now is the one that BlockMatrixReturn() goes back to. Not collective. */

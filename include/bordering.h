@@ -16,7 +16,7 @@ typedef struct _n_Bordering *Bordering;
 /* n: rows of K on all ranks; position: in which order to eliminate them, from 0, on the first rank (elsewhere NULL); copied. Collective. */
 PetscErrorCode BorderingCreate(MPI_Comm, PetscInt n, const PetscInt *position, Bordering *);
 PetscErrorCode BorderingDestroy(Bordering *);
-/* The vectors from now on; *changed: others or more rows than before. Collective. */
+/* The vectors from now on; *changed: they have other rows than those that BorderingOrder() was asked about last. Collective. */
 PetscErrorCode BorderingSet(Bordering, const Border *, PetscBool *changed);
 /* Vectors of all ranks. Not collective. */
 PetscInt BorderingCount(Bordering);

@@ -116,7 +116,7 @@ struct _n_Contact {
   ContactWork     work;
   BlockMatrix     blocks;  /* the last tangent */
   ContactVectors  border;  /* of its terms */
-  ContactVectors  term;    /* room for one of them */
+  ContactVectors  one;     /* room for one of them */
   ContactProduct *product; /* of each pair; NULL: none is asked for */
   PetscLogEvent   event_search, event_project, event_residual, event_tangent;
   PetscLogEvent   event_fit, event_offset, event_adjust, event_touch; /* of effects: none where the scene does not call for them */

@@ -7,7 +7,7 @@
 typedef struct {
   PetscBool known;                                         /* PETSc's options left the direct solver in place */
   PetscInt  dofs;                                          /* free */
-  PetscReal nonzeros;                                      /* of the tangent */
+  PetscReal nonzeros;                                      /* of the tangent; of the bodies' where contact is a border of its factor */
   PetscReal entries, flops;                                /* of the factor; to make it */
   PetscReal solver_mb[2];                                  /* of the direct solver: largest rank, all ranks */
   PetscReal memory_mb[2];                                  /* with all the rest */

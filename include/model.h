@@ -63,7 +63,7 @@ PetscErrorCode ModelCreate(Scene, Mesh, Model *);
 PetscErrorCode ModelDestroy(Model *);
 /* First contact lists and gaps, the state at t = 0; lists are good for a step to t. Collective. */
 PetscErrorCode ModelPlace(Model, PetscReal t);
-/* The tangent of the present state into A. Collective. */
+/* The tangent of the present state. Collective. */
 PetscErrorCode ModelAssemble(Model);
 /* Refusal of initial overlaps, the state at t = 0 accepted. Collective. */
 PetscErrorCode ModelSetUp(Model);

@@ -4,7 +4,7 @@
 
 /* A shell over an AIJ matrix K, whose values may change. Collective. */
 PetscErrorCode SumOperatorCreate(Mat K, Mat *A);
-/* The other term from now on, of the same layout; NULL: none. Logically collective. */
+/* The other term from now on, of the same layout, as it is when the operator is used; NULL: none. Logically collective. */
 PetscErrorCode SumOperatorSet(Mat A, Mat C);
 /* K + C in one AIJ matrix, which the caller destroys; NULL: A is no such operator. Collective. */
 PetscErrorCode SumOperatorMerge(Mat A, Mat *whole);

@@ -7,7 +7,7 @@ struct _n_Bordering {
   PetscInt   *position; /* of these, on the first rank */
   Border      border;
   PetscInt    before, count;                /* vectors of ranks before this one, of all ranks */
-  PetscInt    n_seen, *seen_ptr, *seen_row; /* the pattern of the vectors before */
+  PetscInt    n_seen, *seen_ptr, *seen_row; /* the pattern of those that were ordered last */
 };
 
 /* BorderingCreate - Collective. */
@@ -41,17 +41,24 @@ PetscErrorCode BorderingDestroy(Bordering *bordering)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Have the vectors of this rank the pattern of those before? If not, it is noted. */
-static PetscErrorCode NotePattern(Bordering b, PetscBool *same)
+/* Have the vectors of this rank the pattern that was noted? */
+static PetscErrorCode HavePattern(Bordering b, PetscBool *same)
+{
+  const Border *border = &b->border;
+
+  PetscFunctionBeginUser;
+  *same = (PetscBool)(b->seen_ptr && b->n_seen == border->n);
+  if (*same && border->n) PetscCall(PetscArraycmp(b->seen_ptr, border->ptr, border->n + 1, same));
+  if (*same && border->n) PetscCall(PetscArraycmp(b->seen_row, border->row, border->ptr[border->n], same));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode NotePattern(Bordering b)
 {
   const Border  *border  = &b->border;
   const PetscInt entries = border->n ? border->ptr[border->n] : 0;
 
   PetscFunctionBeginUser;
-  *same = (PetscBool)(b->seen_ptr && b->n_seen == border->n);
-  if (*same && border->n) PetscCall(PetscArraycmp(b->seen_ptr, border->ptr, border->n + 1, same));
-  if (*same && border->n) PetscCall(PetscArraycmp(b->seen_row, border->row, entries, same));
-  if (*same) PetscFunctionReturn(PETSC_SUCCESS);
   b->n_seen = border->n;
   PetscCall(PetscRealloc((border->n + 1) * sizeof(PetscInt), &b->seen_ptr));
   PetscCall(PetscRealloc(entries * sizeof(PetscInt), &b->seen_row));
@@ -71,7 +78,7 @@ PetscErrorCode BorderingSet(Bordering b, const Border *border, PetscBool *change
   PetscCallMPI(MPI_Scan(&b->border.n, &b->before, 1, MPIU_INT, MPI_SUM, b->comm));
   b->before -= b->border.n;
   PetscCallMPI(MPI_Allreduce(&b->border.n, &b->count, 1, MPIU_INT, MPI_SUM, b->comm));
-  PetscCall(NotePattern(b, &same));
+  PetscCall(HavePattern(b, &same));
   differs = !same;
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &differs, 1, MPI_INT, MPI_MAX, b->comm));
   *changed = differs ? PETSC_TRUE : PETSC_FALSE;
@@ -155,6 +162,7 @@ PetscErrorCode BorderingOrder(Bordering b, PetscInt **position)
 
   PetscFunctionBeginUser;
   *position = NULL;
+  PetscCall(NotePattern(b));
   PetscCall(PetscCalloc2(b->rank ? 0 : b->count, &last, b->rank ? 0 : b->n + 1, &follow));
   PetscCall(FindLast(b, last));
   if (!b->rank) {

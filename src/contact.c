@@ -72,7 +72,7 @@ PetscErrorCode ContactDestroy(Contact *contact)
   PetscCall(PetscFree(c->work.workspace));
   PetscCall(BlockMatrixDestroy(&c->blocks));
   PetscCall(ContactVectorsFree(&c->border));
-  PetscCall(ContactVectorsFree(&c->term));
+  PetscCall(ContactVectorsFree(&c->one));
   PetscCall(PetscFree(*contact));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -18,25 +18,25 @@ static PetscErrorCode AddZeros(Contact contact, PetscInt node, PetscInt *n)
 /* The values of a term into the vector at hand. */
 static PetscErrorCode FillTerm(Contact contact, const ContactPair *pair, PetscInt c, PetscReal scale)
 {
-  ContactVectors *border = &contact->border, *term = &contact->term;
+  ContactVectors *border = &contact->border, *one = &contact->one;
   const PetscInt  first = border->ptr[border->n - 1], n = border->ptr[border->n] - first;
 
   PetscFunctionBeginUser;
-  term->n = 0;
-  PetscCall(ContactVectorsAdd(term, pair, c, scale));
-  for (PetscInt k = 0; k < term->ptr[1]; k++) {
+  one->n = 0;
+  PetscCall(ContactVectorsAdd(one, pair, c, scale));
+  for (PetscInt k = 0; k < one->ptr[1]; k++) {
     PetscInt at;
 
-    PetscCall(PetscFindInt(term->row[k], n, &border->row[first], &at));
+    PetscCall(PetscFindInt(one->row[k], n, &border->row[first], &at));
     PetscCheck(at >= 0, PETSC_COMM_SELF, PETSC_ERR_PLIB, "the tangent's pattern lacks a node of a term");
-    border->value[first + at] += term->value[k];
+    border->value[first + at] += one->value[k];
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* ContactGetBorder - what the terms of the last ContactTangent() add to it as a sum of v v^T, but for pressures that turn with the surface: of each the first
-   variation of its gap times the root of its stiffness. Vectors have the entries that the tangent's kept pattern leaves them, so that they change with it only,
-   and those of terms that it still has are zero.
+   variation of its gap times the root of its stiffness. Vectors have the entries that the tangent's kept pattern leaves them, those of open terms that it still
+   has are zero, so that they seldom have others than before.
 
    Not collective. The arrays are the contact's, until the next call. */
 PetscErrorCode ContactGetBorder(Contact contact, Border *out)
@@ -53,7 +53,7 @@ PetscErrorCode ContactGetBorder(Contact contact, Border *out)
       PetscReal       area, scale = 0;
       PetscInt        n;
 
-      if (acts) ContactTermGap(pair, pair->factor, pair->point_gap, c, &area);
+      if (PetscIsNanReal(ContactTermGap(pair, pair->factor, pair->point_gap, c, &area))) continue; /* far from the master, but maybe in another pair */
       if (acts) scale = PetscSqrtReal(pair->stiffness[c] / area);
       PetscCall(AddZeros(contact, pair->node[c], &n));
       if (acts) PetscCall(n ? FillTerm(contact, pair, c, scale) : ContactVectorsAdd(border, pair, c, scale));

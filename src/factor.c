@@ -37,6 +37,8 @@ struct _n_Factor {
   int              ordering;
   PetscObjectId    matrix; /* the last that was analysed, 0: none; and its pattern */
   PetscObjectState pattern;
+  PetscObjectId    placed; /* whose entries' rows and columns stand below, 0: none's; and its pattern */
+  PetscObjectState placed_pattern;
   PetscInt         n, rows;             /* rows of all ranks, of this one */
   PetscInt         entries, own;        /* of this rank: all, those of the matrix */
   PetscInt        *from[MATRIX_BLOCKS]; /* of each row and block, its first entry that is taken: of a symmetric matrix none below the diagonal */
@@ -45,7 +47,7 @@ struct _n_Factor {
   PetscScalar     *value;
   Bordering        bordering; /* NULL: none was prepared */
   PetscBool        bordered;  /* the next matrix is */
-  PetscBool        placed;    /* rows and columns are those of a matrix with a border */
+  PetscBool        changed;   /* by another border than the one that was analysed */
   MUMPS_INT        workspace; /* ICNTL(14) at first */
   MUMPS_INT       *position;  /* of rows, where the ordering is given; on the first rank, as are: */
   PetscScalar     *right;     /* room for right-hand sides and solutions */
@@ -171,12 +173,11 @@ PetscErrorCode FactorSetOrdering(Factor f, int ordering, PetscBool *chosen)
 PetscErrorCode FactorSetBorder(Factor f, const Border *border)
 {
   const PetscBool bordered = border ? PETSC_TRUE : PETSC_FALSE;
-  PetscBool       changed  = PETSC_FALSE;
 
   PetscFunctionBeginUser;
   PetscCheck(!border || f->bordering, f->comm, PETSC_ERR_ARG_WRONGSTATE, "borders have not been prepared for");
-  if (border) PetscCall(BorderingSet(f->bordering, border, &changed));
-  if (changed || bordered != f->bordered) f->matrix = 0; /* to be analysed anew */
+  if (border) PetscCall(BorderingSet(f->bordering, border, &f->changed));
+  if (bordered != f->bordered) f->matrix = 0; /* to be analysed anew */
   f->bordered = bordered;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -296,21 +297,26 @@ static PetscErrorCode PlaceBorder(Factor f)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Rows and columns of all entries. A border leaves those of the matrix where they are. */
+/* Rows and columns of all entries; those of the matrix stand where they stood, if it is the same. */
 static PetscErrorCode PlaceEntries(Factor f, Mat A)
 {
-  const PetscBool again = (PetscBool)(f->bordered && f->placed);
-  PetscInt        start;
-  PetscBool       kept;
+  PetscObjectId    matrix;
+  PetscObjectState pattern;
+  PetscInt         start;
+  PetscBool        again, kept;
 
   PetscFunctionBeginUser;
+  PetscCall(PetscObjectGetId((PetscObject)A, &matrix));
+  PetscCall(MatGetNonzeroState(A, &pattern));
   PetscCall(MatGetOwnershipRange(A, &start, NULL));
+  again = (PetscBool)(matrix == f->placed && pattern == f->placed_pattern);
   if (!again) PetscCall(FindEntries(f, A, start));
   f->entries = f->own + (f->bordered ? BorderingCountEntries(f->bordering) : 0);
   PetscCall(Reserve(f, &kept));
   if (!again || !kept) PetscCall(TakePlaces(f, A, start));
   if (f->bordered) PetscCall(PlaceBorder(f));
-  f->placed = f->bordered;
+  f->placed         = matrix;
+  f->placed_pattern = pattern;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -424,6 +430,7 @@ PetscErrorCode FactorAnalyse(Factor f, Mat A, PCFailedReason *reason)
   PetscCall(Call(f, MUMPS_ANALYSE));
   PetscCall(Tell(f, "analysis", reason));
   if (*reason) PetscFunctionReturn(PETSC_SUCCESS);
+  f->changed = PETSC_FALSE;
   PetscCall(PetscObjectGetId((PetscObject)A, &f->matrix));
   PetscCall(MatGetNonzeroState(A, &f->pattern));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -437,11 +444,9 @@ static PetscErrorCode IsNew(Factor f, Mat A, PetscBool *is)
   int              differs;
 
   PetscFunctionBeginUser;
-  *is = (PetscBool)!f->matrix;
-  if (f->bordered) PetscFunctionReturn(PETSC_SUCCESS); /* K's pattern is always the same */
   PetscCall(PetscObjectGetId((PetscObject)A, &matrix));
   PetscCall(MatGetNonzeroState(A, &pattern));
-  differs = matrix != f->matrix || pattern != f->pattern;
+  differs = matrix != f->matrix || pattern != f->pattern || (f->bordered && f->changed);
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &differs, 1, MPI_INT, MPI_MAX, f->comm));
   *is = differs ? PETSC_TRUE : PETSC_FALSE;
   PetscFunctionReturn(PETSC_SUCCESS);

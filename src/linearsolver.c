@@ -116,7 +116,7 @@ PetscErrorCode LinearSolverSetBorder(LinearSolver solver, const Border *border)
 
 /* LinearSolverNext - what is known of the next operator K + C before it is solved with.
 
-   Collective. u[n_nodes*dim]: where it is the tangent (length); C: its contact part, NULL: none; pattern: the operator has a new one; changes, *older: see
+   Collective. u[n_nodes*dim]: where it is the tangent (length); C: its contact part, NULL: none; pattern: what is factored has a new one; changes, *older: see
    KeptFactorNext(). */
 PetscErrorCode LinearSolverNext(LinearSolver solver, const PetscReal *u, Mat C, PetscBool pattern, PetscInt changes, PetscBool *older)
 {

@@ -1,5 +1,6 @@
 #include "modelimpl.h"
 #include "smoother.h"
+#include "sumoperator.h"
 #include "timing.h"
 
 const char *const SolveResults[] = {"converged",
@@ -174,6 +175,7 @@ PetscErrorCode ModelRestore(Model model)
   model->t = work->accepted_t;
   if (model->contact) {
     PetscCall(ContactRestore(model->contact));
+    if (model->A != model->P) PetscCall(SumOperatorSet(model->A, NULL));
     PetscCall(ContactTangentRestore(model->contact));
     PetscCall(ContactGather(model->contact, model->u, model->t, model->t, 0));
   }

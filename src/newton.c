@@ -151,18 +151,23 @@ static PetscErrorCode ModelUpdateFactor(Model model, PetscInt terms)
 }
 
 /* Does contact couple so many unknowns that factors of bodies and contact have much more fill than those of bodies? On lines it does not. Where PETSc is to
-   test the tangent, all of it is to be in the matrix, which PETSc tests as well. */
+   test the tangent, or to make its own, all of it is to be in the matrix. */
 static PetscErrorCode ModelCouples(Model model, PetscBool *couples)
 {
-  PetscBool tests;
+  static const char *const options[] = {"-snes_test_jacobian", "-snes_fd", "-snes_fd_color", "-snes_mf", "-snes_mf_operator"};
 
   PetscFunctionBeginUser;
-  PetscCall(PetscOptionsHasName(NULL, NULL, "-snes_test_jacobian", &tests));
-  *couples = (PetscBool)(!tests && model->contact && model->mesh->dim == 3 && ContactHasFits(model->contact));
+  *couples = (PetscBool)(model->contact && model->mesh->dim == 3 && ContactHasFits(model->contact));
+  for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(options) && *couples; i++) {
+    PetscBool given;
+
+    PetscCall(PetscOptionsHasName(NULL, NULL, options[i], &given));
+    if (given) *couples = PETSC_FALSE;
+  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Before the first tangent: how the solver orders its unknowns, and whether it wants contact apart from the bodies. */
+/* At the first tangent: how the solver orders its unknowns, and whether it wants contact apart from the bodies. */
 static PetscErrorCode ModelOrder(Model model)
 {
   PetscBool couples = PETSC_FALSE;
