@@ -27,7 +27,7 @@ PetscErrorCode KeptFactorNext(KeptFactor, PetscInt changes, PetscBool pattern, P
 PetscErrorCode KeptFactorSetRough(KeptFactor);
 /* After that: the changes are N diag(s) N^T, N dense, which is written to. Collective. */
 PetscErrorCode KeptFactorUpdate(KeptFactor, Mat N, const PetscReal *s);
-/* The residual (2-norm) with which the nonlinear solver will be content. Logically collective. */
+/* The residual (2-norm) that is enough for whoever solves, such as what ends Newton's method: a small part of it may be left. Logically collective. */
 PetscErrorCode KeptFactorSetEnough(KeptFactor, PetscReal residual);
 /* After the KSP's own solve of A x = b: goes on from x where the factor is not A's, or not all of A's. *tolerance: relative residual that was asked for, left
    alone where the factor solves; *norm: the residual, negative: not known; *failed: a factor had to be made and could not. Collective. */

@@ -29,6 +29,8 @@ PetscErrorCode LinearSolverSetEnough(LinearSolver, PetscReal residual);
 PetscErrorCode LinearSolverDirect(LinearSolver, PetscBool *direct);
 /* X = A^-1 B for dense B and X, A the operator of the last solve; *able: that could be done. Collective. */
 PetscErrorCode LinearSolverColumns(LinearSolver, Mat B, Mat X, PetscBool *able);
+/* For the solve that predicts a step: the residual (2-norm) that the last prediction left, 0: unknown. Logically collective. */
+PetscErrorCode LinearSolverSetStart(LinearSolver, PetscReal residual);
 /* Around the solve that predicts a step, whose first guess of what is in contact should hold. Logically collective. */
 PetscErrorCode LinearSolverPredict(LinearSolver, PetscBool);
 /* The factor that may serve more than one operator, for those who watch the solves; NULL: there is none. Not collective. */

@@ -37,6 +37,8 @@ typedef struct _n_ModelWork {
   PetscReal    energy;            /* the last one that was evaluated in this step, 0: none was */
   PetscReal    step;              /* norm of Newton's last step, before the line search */
   PetscReal    norm;              /* residual of the iterate before */
+  PetscReal    start;             /* residual where Newton started in this step, 0: it has not yet */
+  PetscReal    accepted_start;    /* the same in the last accepted step, 0: unknown */
   PetscBool    balanced;          /* the residual of the iterate is within the tolerance */
   PetscInt     renewed;           /* how often that happened in this step */
   PetscBool    cycling;           /* the contact set repeats itself whatever the steps: the solve ended */

@@ -7,7 +7,7 @@
 #include <unistd.h>
 
 /* The layout of the state; to be raised whenever a value gets another name, shape or meaning. */
-#define ARCHIVE_VERSION 3
+#define ARCHIVE_VERSION 4
 /* The attribute by which the file is known. */
 #define ARCHIVE_MARK "burnish_checkpoint"
 /* What HDF5 itself may need: for every dataset and for the file, bytes. Measured: under 1 kB and 4 kB. */

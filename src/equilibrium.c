@@ -115,6 +115,7 @@ static PetscErrorCode ModelDepart(Model model, PetscReal t)
   PetscCall(StabiliserRelax(work->stabiliser, work->accepted_x));
   model->t       = t;
   work->inverted = -1;
+  work->start    = 0;
   work->cycling  = PETSC_FALSE;
   work->cycles   = 0;
   work->cycle[0] = '\0';

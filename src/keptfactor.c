@@ -12,7 +12,7 @@
    with 3e-5 some runs take one more. A factor that leaves out pressures that turn with the surface of a pipe between plates leaves 2e-3, an iteration with it
    1e-5. */
 #define KEPT_TOLERANCE 1e-5
-/* But not below this part of what ends Newton's method. */
+/* But not below this part of what is enough. */
 #define KEPT_SHARE 0.1
 
 struct _n_KeptFactor {
@@ -297,7 +297,7 @@ PetscErrorCode KeptFactorSolve(KeptFactor kept, Mat A, Vec b, Vec x, PetscReal *
   if (right == 0 || !(kept->serves || kept->rough)) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(VecDuplicate(b, &r));
   while ((kept->serves || kept->rough) && !reached && !*failed) {
-    kept->target = PetscMax(KEPT_TOLERANCE * right, KEPT_SHARE * kept->enough);
+    kept->target = PetscMax(KEPT_TOLERANCE * right, KEPT_SHARE * PetscMin(kept->enough, right));
     kept->counts.served += kept->serves;
     if (kept->update) PetscCall(RankUpdateApply(kept->update, x));
     PetscCall(Start(A, b, right, x, r, norm));

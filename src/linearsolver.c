@@ -148,6 +148,17 @@ PetscErrorCode LinearSolverSetEnough(LinearSolver solver, PetscReal residual)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* LinearSolverSetStart - a prediction leaves a residual however precisely it is solved for, so a kept factor's solve may leave a small part of that: on a pipe
+   between plates half of the iterations that finish solves go, and none of Newton's comes. Not for iterative solvers: LINEAR_PREDICTION.
+
+   Logically collective. residual: 2-norm (a force) that Newton started from in the last step. */
+PetscErrorCode LinearSolverSetStart(LinearSolver solver, PetscReal residual)
+{
+  PetscFunctionBeginUser;
+  if (solver->kept) PetscCall(KeptFactorSetEnough(solver->kept, residual));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* LinearSolverDirect - is the last operator factored? Not collective, the same on all ranks. */
 PetscErrorCode LinearSolverDirect(LinearSolver solver, PetscBool *direct)
 {

@@ -152,6 +152,7 @@ PetscErrorCode ModelAccept(Model model)
   PetscCall(PetscArraycpy(work->accepted_u, model->u, model->mesh->n_nodes * model->mesh->dim));
   PetscCall(VecCopy(model->x, work->accepted_x));
   work->accepted_t = model->t;
+  if (stepped) work->accepted_start = work->start;
   if (work->path) PetscCall(PathAdd(work->path, model->u, model->t));
   if (work->path && SceneBreaks(model->scene, model->t)) PetscCall(PathForget(work->path));
   work->forecasted = PETSC_FALSE;
@@ -202,6 +203,7 @@ PetscErrorCode ModelArchive(Model model, Archive archive)
   PetscCall(RowsDestroy(&nodes));
   PetscCall(ArchiveReals(archive, "model/t", 1, &work->accepted_t));
   PetscCall(ArchiveReals(archive, "model/rate", 1, &work->rate));
+  PetscCall(ArchiveReals(archive, "model/start", 1, &work->accepted_start));
   PetscCall(ArchiveReals(archive, "model/force_scale", 1, &model->force_scale));
   if (ArchiveLoads(archive)) {
     PetscCall(PetscArraycpy(model->u, work->accepted_u, mesh->n_nodes * mesh->dim));

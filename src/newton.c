@@ -329,6 +329,7 @@ static PetscErrorCode ModelConverged(SNES snes, PetscInt it, PetscReal xnorm, Pe
   allowed               = PetscMax((model->work->soft ? MODEL_SOFT_ENOUGH : model->scene->solver.tolerance) * scale, round_off);
   model->work->balanced = fnorm <= allowed ? PETSC_TRUE : PETSC_FALSE;
   PetscCall(ModelReuseTangent(model, it, fnorm, allowed));
+  if (!it && model->work->start == 0 && !model->work->soft) model->work->start = fnorm;
   PetscCall(LinearSolverSetEnough(model->work->solver, allowed));
   if (it > 0 && LinearCheckLost(model->linear))
     *reason = SNES_DIVERGED_LINEAR_SOLVE;

@@ -53,6 +53,7 @@ static PetscErrorCode ModelStepLoads(Model model, const PetscReal *u, PetscReal 
   for (PetscInt i = 0; i < n; i++) step[i] -= u[i];
   if (holding) PetscCall(ContactPredict(model->contact, PETSC_TRUE, (PetscBool)(t == 0))); /* touching: a body that only contact holds */
   PetscCall(LinearSolverRenew(work->solver));
+  PetscCall(LinearSolverSetStart(work->solver, work->accepted_start));
   if (model->contact) PetscCall(ContactMultiplyBegin(model->contact, step, t, model->t));
   PetscCall(ModelTangent(model, u, t));
   PetscCall(ModelResidual(model, u, model->t, t, &ok));
