@@ -183,10 +183,39 @@ static void test_no_blocks(void **state)
   assert_int_equal(BlockMatrixDestroy(&blocks), 0);
 }
 
+/* What the pattern couples a node with: all of its blocks, ascending, blocks of the past too while the pattern is kept */
+static void test_coupled_nodes(void **state)
+{
+  BlockMatrix     blocks;
+  PetscInt        mine[ROWS], n;
+  const PetscInt *dof[1] = {mine}, *coupled;
+
+  (void)state;
+  CreateOwn(&blocks, mine);
+  assert_int_equal(BlockMatrixGetCoupled(blocks, mine[0], &n, &coupled), 0);
+  assert_int_equal(n, 0); /* there is no pattern yet */
+  AssembleOwn(blocks, 2, (const PetscInt[]){0, 2}, (const PetscInt[]){3, 3}, dof);
+  for (int pass = 0; pass < 2; pass++) {
+    assert_int_equal(BlockMatrixGetCoupled(blocks, mine[2], &n, &coupled), 0);
+    assert_int_equal(n, 5);
+    for (PetscInt i = 0; i < n; i++) assert_int_equal(coupled[i], mine[i]);
+    assert_int_equal(BlockMatrixGetCoupled(blocks, mine[4], &n, &coupled), 0);
+    assert_int_equal(n, 3);
+    for (PetscInt i = 0; i < n; i++) assert_int_equal(coupled[i], mine[2 + i]);
+    if (pass == 0) assert_false(AssembleOwn(blocks, 2, (const PetscInt[]){0, 2}, (const PetscInt[]){3, 2}, dof));
+  }
+  assert_int_equal(BlockMatrixGetCoupled(blocks, mine[5], &n, &coupled), 0);
+  assert_int_equal(n, 0); /* in no block */
+  assert_int_equal(BlockMatrixGetCoupled(blocks, -1, &n, &coupled), 0);
+  assert_int_equal(n, 0);
+  assert_int_equal(BlockMatrixDestroy(&blocks), 0);
+}
+
 int main(int argc, char **argv)
 {
   const struct CMUnitTest tests[] = {cmocka_unit_test(test_assembled_equals_blocks), cmocka_unit_test(test_pattern_is_kept_while_it_holds),
-                                     cmocka_unit_test(test_returns_to_the_marked_pattern), cmocka_unit_test(test_no_blocks)};
+                                     cmocka_unit_test(test_returns_to_the_marked_pattern), cmocka_unit_test(test_no_blocks),
+                                     cmocka_unit_test(test_coupled_nodes)};
   int                     failed;
 
   if (PetscInitialize(&argc, &argv, NULL, NULL)) return 1;
