@@ -19,7 +19,7 @@
    bricks, and 1.5 times as many on thick blocks. */
 static const int DirectOthers[] = {FACTOR_MINIMUM_FILL, FACTOR_MINIMUM_DEGREE};
 
-/* Factors the operator itself, whatever the preconditioner is made from. */
+/* Factors all of the operator: where it is a sum, P is but one term of it. */
 static PetscErrorCode MakeWhole(Factor factor, Mat A, Mat P, PCFailedReason *reason)
 {
   Mat whole;
