@@ -22,15 +22,13 @@ PetscErrorCode KeptFactorRenew(KeptFactor);
 /* Before each solve with a new operator. changes: contact terms that came, went or changed their stiffness since the operator before; pattern: it has a new
    one. *serves: the factor does, the KSP leaves it alone, and it wants to be told of the changes, if there are. Collective. */
 PetscErrorCode KeptFactorNext(KeptFactor, PetscInt changes, PetscBool pattern, PetscBool *serves);
-/* The next factor leaves out a part of its operator that is small: solves with it are finished by iterations, as those with older ones are. Where these do not
-   converge, a whole one is made. Before KeptFactorNext(). Not collective. */
-PetscErrorCode KeptFactorSetRough(KeptFactor);
 /* After that: the changes are N diag(s) N^T, N dense, which is written to. Collective. */
 PetscErrorCode KeptFactorUpdate(KeptFactor, Mat N, const PetscReal *s);
 /* The residual (2-norm) that is enough for whoever solves, such as what ends Newton's method: a small part of it may be left. Logically collective. */
 PetscErrorCode KeptFactorSetEnough(KeptFactor, PetscReal residual);
-/* After the KSP's own solve of A x = b: goes on from x where the factor is not A's, or not all of A's. *tolerance: relative residual that was asked for, left
-   alone where the factor solves; *norm: the residual, negative: not known; *failed: a factor had to be made and could not. Collective. */
+/* After the KSP's own solve of A x = b: goes on from x by iterations where the factor is not A's, or has a border, which leaves a small part of A out; where
+   these do not converge, with a new factor. *tolerance: relative residual that was asked for, left alone where the factor solves; *norm: the residual,
+   negative: not known; *failed: a factor had to be made and could not. Collective. */
 PetscErrorCode KeptFactorSolve(KeptFactor, Mat A, Vec b, Vec x, PetscReal *tolerance, PetscReal *norm, PetscBool *failed);
 /* After that: the factor becomes A's own, but for a part that is left out, where it is an older one. Collective. */
 PetscErrorCode KeptFactorOwn(KeptFactor, PetscBool *failed);

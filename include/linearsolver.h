@@ -11,7 +11,7 @@ PetscErrorCode LinearSolverCreate(KSP, Mesh, Scene, PetscBool symmetric, LinearS
 /* After the KSP is destroyed. Collective. */
 PetscErrorCode LinearSolverDestroy(LinearSolver *);
 /* With the pattern of the first operator's elastic part, before contact joins it, which a run that is restarted finds too; where many operators are to come.
-   couples: contact couples many unknowns with each other. Collective. */
+   couples: contact couples many unknowns with each other. Collective; once. */
 PetscErrorCode LinearSolverOrder(LinearSolver, Mat K, PetscBool couples);
 /* Does it want to be told what contact adds as a sum of v v^T? Not collective, the same on all ranks. */
 PetscBool LinearSolverBorders(LinearSolver);

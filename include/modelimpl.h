@@ -16,8 +16,9 @@
 
 typedef struct _n_ModelWork {
   LinearSolver solver;
-  PetscReal   *f;     /* local residual of the last evaluation, all dofs */
-  PetscReal   *trial; /* local displacements of the last evaluation */
+  PetscBool    ordered; /* it has chosen its ordering */
+  PetscReal   *f;       /* local residual of the last evaluation, all dofs */
+  PetscReal   *trial;   /* local displacements of the last evaluation */
   PetscReal   *accepted_u;
   Path         path; /* NULL: small kinematics, whose bodies go straight */
   Vec          accepted_x;

@@ -35,10 +35,9 @@ struct _n_Factor {
   PetscMPIInt      rank, size, *count, *first; /* rows of each rank */
   PetscBool        symmetric, exists;          /* there is a factor */
   int              ordering;
-  PetscObjectId    matrix; /* the last that was analysed, 0: none; and its pattern */
+  PetscObjectId    matrix; /* whose entries' rows and columns stand below, 0: none's; and its pattern */
   PetscObjectState pattern;
-  PetscObjectId    placed; /* whose entries' rows and columns stand below, 0: none's; and its pattern */
-  PetscObjectState placed_pattern;
+  PetscBool        analysed;            /* and that, as it is ordered and bordered now */
   PetscInt         n, rows;             /* rows of all ranks, of this one */
   PetscInt         entries, own;        /* of this rank: all, those of the matrix */
   PetscInt        *from[MATRIX_BLOCKS]; /* of each row and block, its first entry that is taken: of a symmetric matrix none below the diagonal */
@@ -163,7 +162,7 @@ PetscErrorCode FactorSetOrdering(Factor f, int ordering, PetscBool *chosen)
   PetscFunctionBeginUser;
   PetscCall(PetscOptionsGetInt(NULL, NULL, "-mat_mumps_icntl_7", &asked, &given));
   if (given) ordering = (int)asked;
-  if (ordering != f->ordering) f->matrix = 0; /* to be analysed anew */
+  if (ordering != f->ordering) f->analysed = PETSC_FALSE;
   f->ordering = ordering;
   if (chosen) *chosen = given ? PETSC_FALSE : PETSC_TRUE;
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -177,7 +176,7 @@ PetscErrorCode FactorSetBorder(Factor f, const Border *border)
   PetscFunctionBeginUser;
   PetscCheck(!border || f->bordering, f->comm, PETSC_ERR_ARG_WRONGSTATE, "borders have not been prepared for");
   if (border) PetscCall(BorderingSet(f->bordering, border, &f->changed));
-  if (bordered != f->bordered) f->matrix = 0; /* to be analysed anew */
+  if (bordered != f->bordered) f->analysed = PETSC_FALSE;
   f->bordered = bordered;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -297,26 +296,35 @@ static PetscErrorCode PlaceBorder(Factor f)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Rows and columns of all entries; those of the matrix stand where they stood, if it is the same. */
-static PetscErrorCode PlaceEntries(Factor f, Mat A)
+/* Do the places of a matrix with this pattern stand there? */
+static PetscErrorCode IsPlaced(Factor f, Mat A, PetscBool *is)
 {
   PetscObjectId    matrix;
   PetscObjectState pattern;
-  PetscInt         start;
-  PetscBool        again, kept;
 
   PetscFunctionBeginUser;
   PetscCall(PetscObjectGetId((PetscObject)A, &matrix));
   PetscCall(MatGetNonzeroState(A, &pattern));
+  *is = (PetscBool)(matrix == f->matrix && pattern == f->pattern);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Rows and columns of all entries; those of the matrix stand where they stood, if it is the same. */
+static PetscErrorCode PlaceEntries(Factor f, Mat A)
+{
+  PetscInt  start;
+  PetscBool again, kept;
+
+  PetscFunctionBeginUser;
   PetscCall(MatGetOwnershipRange(A, &start, NULL));
-  again = (PetscBool)(matrix == f->placed && pattern == f->placed_pattern);
+  PetscCall(IsPlaced(f, A, &again));
   if (!again) PetscCall(FindEntries(f, A, start));
   f->entries = f->own + (f->bordered ? BorderingCountEntries(f->bordering) : 0);
   PetscCall(Reserve(f, &kept));
   if (!again || !kept) PetscCall(TakePlaces(f, A, start));
   if (f->bordered) PetscCall(PlaceBorder(f));
-  f->placed         = matrix;
-  f->placed_pattern = pattern;
+  PetscCall(PetscObjectGetId((PetscObject)A, &f->matrix));
+  PetscCall(MatGetNonzeroState(A, &f->pattern));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -419,7 +427,7 @@ PetscErrorCode FactorAnalyse(Factor f, Mat A, PCFailedReason *reason)
 {
   PetscFunctionBeginUser;
   f->exists          = PETSC_FALSE;
-  f->matrix          = 0;
+  f->analysed        = PETSC_FALSE;
   f->mumps.ICNTL(14) = f->workspace;
   *reason            = PC_NOERROR;
   PetscCall(ShowSize(f, A));
@@ -430,23 +438,20 @@ PetscErrorCode FactorAnalyse(Factor f, Mat A, PCFailedReason *reason)
   PetscCall(Call(f, MUMPS_ANALYSE));
   PetscCall(Tell(f, "analysis", reason));
   if (*reason) PetscFunctionReturn(PETSC_SUCCESS);
-  f->changed = PETSC_FALSE;
-  PetscCall(PetscObjectGetId((PetscObject)A, &f->matrix));
-  PetscCall(MatGetNonzeroState(A, &f->pattern));
+  f->changed  = PETSC_FALSE;
+  f->analysed = PETSC_TRUE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* Has it another pattern than the last that was analysed? The same on all ranks. */
 static PetscErrorCode IsNew(Factor f, Mat A, PetscBool *is)
 {
-  PetscObjectId    matrix;
-  PetscObjectState pattern;
-  int              differs;
+  PetscBool placed;
+  int       differs;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscObjectGetId((PetscObject)A, &matrix));
-  PetscCall(MatGetNonzeroState(A, &pattern));
-  differs = matrix != f->matrix || pattern != f->pattern || (f->bordered && f->changed);
+  PetscCall(IsPlaced(f, A, &placed));
+  differs = !f->analysed || !placed || (f->bordered && f->changed);
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &differs, 1, MPI_INT, MPI_MAX, f->comm));
   *is = differs ? PETSC_TRUE : PETSC_FALSE;
   PetscFunctionReturn(PETSC_SUCCESS);

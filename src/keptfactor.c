@@ -23,7 +23,6 @@ struct _n_KeptFactor {
   PetscBool  exists;  /* a factor of this step */
   PetscBool  serves;  /* it is of an older operator than the present one */
   PetscBool  stale;   /* and that one had another pattern */
-  PetscBool  rough;   /* factors leave out a small part of their operators */
   PetscInt   changes; /* of contact terms since it was made */
   PetscReal  enough, target;
   KeptCounts counts;
@@ -117,14 +116,6 @@ PetscErrorCode KeptFactorRenew(KeptFactor kept)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* KeptFactorSetRough - Not collective. */
-PetscErrorCode KeptFactorSetRough(KeptFactor kept)
-{
-  PetscFunctionBeginUser;
-  kept->rough = PETSC_TRUE;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* KeptFactorSetEnough - Logically collective. */
 PetscErrorCode KeptFactorSetEnough(KeptFactor kept, PetscReal residual)
 {
@@ -157,7 +148,6 @@ PetscErrorCode KeptFactorNext(KeptFactor kept, PetscInt changes, PetscBool patte
 
   PetscFunctionBeginUser;
   PetscCall(DirectSolverServes(kept->ksp, &direct));
-  if (!direct) kept->rough = PETSC_FALSE; /* what options have put there iterates by itself */
   kept->changes += changes;
   kept->stale  = (PetscBool)(kept->stale || pattern);
   kept->serves = (PetscBool)(direct && kept->exists && kept->changes <= KEPT_CHANGES);
@@ -261,7 +251,7 @@ static PetscErrorCode Iterate(KeptFactor kept, Mat A, Vec r, Vec x, PetscReal *l
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* x = A^-1 b with a new factor, a whole one where that at hand is new and rough: what it leaves out was not small. */
+/* x = A^-1 b with a new factor, a whole one where that at hand is A's own: what its border leaves out was not small. */
 static PetscErrorCode SolveAnew(KeptFactor kept, Vec b, Vec x, PetscBool *failed)
 {
   Factor factor;
@@ -272,7 +262,6 @@ static PetscErrorCode SolveAnew(KeptFactor kept, Vec b, Vec x, PetscBool *failed
   if (!kept->serves) {
     PetscCall(DirectSolverFactor(kept->ksp, &factor));
     PetscCall(FactorSetBorder(factor, NULL));
-    kept->rough = PETSC_FALSE;
     kept->stale = PETSC_TRUE; /* or the preconditioner takes it for the factor that it has */
   }
   PetscCall(FactorAnew(kept, pc, failed));
@@ -280,29 +269,39 @@ static PetscErrorCode SolveAnew(KeptFactor kept, Vec b, Vec x, PetscBool *failed
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Is the factor at hand of an older operator, or does it leave a part of its own out, as those with a border do? */
+static PetscErrorCode IsRough(KeptFactor kept, PetscBool *rough)
+{
+  Factor factor;
+
+  PetscFunctionBeginUser;
+  PetscCall(DirectSolverFactor(kept->ksp, &factor));
+  *rough = (PetscBool)(kept->serves || (factor && FactorHasBorder(factor)));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* KeptFactorSolve - Collective. x: what the factor at hand makes of b. */
 PetscErrorCode KeptFactorSolve(KeptFactor kept, Mat A, Vec b, Vec x, PetscReal *tolerance, PetscReal *norm, PetscBool *failed)
 {
   PetscReal right;
-  PetscBool reached = PETSC_FALSE;
-  Factor    factor;
+  PetscBool reached = PETSC_FALSE, rough = PETSC_FALSE;
   Vec       r;
 
   PetscFunctionBeginUser;
   *failed = PETSC_FALSE;
   *norm   = -1;
-  PetscCall(DirectSolverFactor(kept->ksp, &factor));
-  if (factor && !FactorHasBorder(factor)) kept->rough = PETSC_FALSE; /* that could not be made, the whole one was */
   PetscCall(VecNorm(b, NORM_2, &right));
-  if (right == 0 || !(kept->serves || kept->rough)) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(IsRough(kept, &rough));
+  if (right == 0 || !rough) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(VecDuplicate(b, &r));
-  while ((kept->serves || kept->rough) && !reached && !*failed) {
+  while (rough && !reached && !*failed) {
     kept->target = PetscMax(KEPT_TOLERANCE * right, KEPT_SHARE * PetscMin(kept->enough, right));
     kept->counts.served += kept->serves;
     if (kept->update) PetscCall(RankUpdateApply(kept->update, x));
     PetscCall(Start(A, b, right, x, r, norm));
     PetscCall(Iterate(kept, A, r, x, norm, &reached));
     if (!reached) PetscCall(SolveAnew(kept, b, x, failed));
+    PetscCall(IsRough(kept, &rough));
   }
   if (reached) *tolerance = kept->target / right;
   if (!reached) *norm = -1;

@@ -25,7 +25,7 @@ struct _n_LinearSolver {
   Multigrid  multigrid; /* NULL: direct */
   KeptFactor kept;      /* NULL: iterative, or each tangent is factored */
   NodeTurn   turn;      /* of the bodies, for what is kept; NULL: they do not turn */
-  PetscBool  symmetric, ordered, borders;
+  PetscBool  symmetric, borders;
   PetscReal  usual; /* tolerance, while a prediction is made */
 };
 
@@ -78,7 +78,7 @@ PetscErrorCode LinearSolverDestroy(LinearSolver *solver)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* LinearSolverOrder - a direct solver's ordering for operators that are much like K. Collective; at the first call, the others do nothing. */
+/* LinearSolverOrder - a direct solver's ordering for operators that are much like K. Collective; once. */
 PetscErrorCode LinearSolverOrder(LinearSolver solver, Mat K, PetscBool couples)
 {
   PCFailedReason reason;
@@ -86,8 +86,7 @@ PetscErrorCode LinearSolverOrder(LinearSolver solver, Mat K, PetscBool couples)
   Factor         factor;
 
   PetscFunctionBeginUser;
-  if (!solver->multigrid && !solver->ordered) PetscCall(DirectSolverOrder(solver->ksp, K, &thin));
-  solver->ordered = PETSC_TRUE;
+  if (!solver->multigrid) PetscCall(DirectSolverOrder(solver->ksp, K, &thin));
   PetscCall(DirectSolverServes(solver->ksp, &direct)); /* options may iterate with what factors */
   if (!thin || !couples || !direct || !solver->symmetric || !solver->kept) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(DirectSolverFactor(solver->ksp, &factor));
@@ -110,7 +109,6 @@ PetscErrorCode LinearSolverSetBorder(LinearSolver solver, const Border *border)
   PetscFunctionBeginUser;
   PetscCall(DirectSolverFactor(solver->ksp, &factor));
   PetscCall(FactorSetBorder(factor, border));
-  PetscCall(KeptFactorSetRough(solver->kept));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -173,10 +173,11 @@ static PetscErrorCode ModelOrder(Model model)
   PetscBool couples = PETSC_FALSE;
 
   PetscFunctionBeginUser;
-  if (ModelIsLinear(model)) PetscFunctionReturn(PETSC_SUCCESS); /* a single solve is done sooner with any */
+  if (model->work->ordered || ModelIsLinear(model)) PetscFunctionReturn(PETSC_SUCCESS); /* a single solve is done sooner with any */
+  model->work->ordered = PETSC_TRUE;
   PetscCall(ModelCouples(model, &couples));
   PetscCall(LinearSolverOrder(model->work->solver, model->P, couples));
-  if (model->A != model->P || !LinearSolverBorders(model->work->solver)) PetscFunctionReturn(PETSC_SUCCESS);
+  if (!LinearSolverBorders(model->work->solver)) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(MatDestroy(&model->A));
   PetscCall(SumOperatorCreate(model->P, &model->A));
   PetscCall(SNESSetJacobian(model->snes, model->A, model->P, NULL, NULL)); /* NULL: as it is */

@@ -338,7 +338,6 @@ static void SolveTold(Plates *plates, PetscInt told, PetscReal times, PetscReal 
   assert_int_equal(DirectSolverFactor(ksp, &factor), 0);
   assert_int_equal(FactorPrepareBorder(factor, plates->K, &reason), 0);
   assert_int_equal(FactorSetBorder(factor, &border), 0);
-  assert_int_equal(KeptFactorSetRough(kept), 0);
   assert_int_equal(KeptFactorNext(kept, 0, PETSC_TRUE, &serves), 0);
   assert_int_equal(KSPSetOperators(ksp, sum, plates->K), 0);
   assert_int_equal(KSPSolve(ksp, b, x), 0);
