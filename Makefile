@@ -16,7 +16,7 @@ endif
 ifdef SANITIZE
   BUILD  := build/sanitize
   CFLAGS := -O1 -g -fno-omit-frame-pointer -fsanitize=address,undefined -fno-sanitize-recover=undefined
-  LDLIBS = tests/sanitize.c -Iinclude $(call pkgconfig,--cflags-only-I PETSc) -rdynamic
+  LDLIBS = tests/sanitize.c -Isrc $(call pkgconfig,--cflags-only-I PETSc) -rdynamic
 endif
 
 # PETSc is the one of PETSC_DIR and PETSC_ARCH, else the one that pkg-config knows; HDF5 is the one PETSc was built with.
@@ -33,7 +33,7 @@ petscvariable  = $(shell sed -n 's/^$(1) *= *//p' $(call pkgconfig,--variable=pr
 
 # -fno-math-errno: nobody asks errno about a root, for which each one of a vector would be taken by itself.
 ALL_CFLAGS := -std=gnu11 -march=$(ARCH) $(CFLAGS) -Wall -Wextra -fno-math-errno
-INCLUDES    = -Iinclude $(call pkgconfig,--cflags-only-I $(PACKAGES)) $(call petscvariable,HDF5_INCLUDE)
+INCLUDES    = -Iinclude -Isrc $(call pkgconfig,--cflags-only-I $(PACKAGES)) $(call petscvariable,HDF5_INCLUDE)
 LIBRARIES   = -lmetis $(call pkgconfig,--libs $(PACKAGES)) $(MUMPS) $(call petscvariable,HDF5_LIB) -Wl,-rpath,$(call pkgconfig,--variable=libdir PETSc) -ldl -lm
 # The MUMPS that PETSc was built with, under the name it was linked by
 PRIVATE     = $(call pkgconfig,--static --libs PETSc)
@@ -44,8 +44,10 @@ CMOCKA      = $(call pkgconfig,--libs cmocka)
 COMPILE     = $(CC) $(ALL_CFLAGS) $(CPPFLAGS) $(INCLUDES)
 LINK        = $(LDFLAGS) $(LIBRARIES) $(LDLIBS)
 
-SOURCES   := $(filter-out src/main.c,$(wildcard src/*.c src/*/*.c))
+SOURCES   := $(filter-out src/main.c,$(wildcard src/*/*.c))
 OBJECTS   := $(SOURCES:src/%.c=$(BUILD)/obj/%.o)
+# Tests look inside; a source sees the private headers of its own folder only.
+PRIVATES  := $(patsubst %,-iquote %,$(wildcard src/*/private))
 LIBRARY   := $(BUILD)/libburnish.a
 BURNISH   := $(BUILD)/burnish
 TESTS     := $(patsubst %.c,$(BUILD)/tests/%,$(notdir $(wildcard tests/unit/test_*.c tests/mpi/test_*.c tests/oracle/*.c tests/fuzz/*.c)))
@@ -63,14 +65,14 @@ $(LIBRARY): $(OBJECTS)
 
 $(BUILD)/obj/%.o: src/%.c $(BUILD)/flags
 	@mkdir -p $(@D)
-	$(COMPILE) -MMD -MP -c -o $@ $<
+	$(COMPILE) -iquote $(<D)/private -MMD -MP -c -o $@ $<
 
 tests: $(TESTS) $(BENCHES)
 
 define program # $(1): source folder, $(2): folder of the program
 $(2)/%: $(1)/%.c $(LIBRARY) $(BUILD)/flags
 	@mkdir -p $$(@D)
-	$$(COMPILE) -MMD -MP -o $$@ $$< $(LIBRARY) $$(CMOCKA) $$(LINK)
+	$$(COMPILE) $(PRIVATES) -MMD -MP -o $$@ $$< $(LIBRARY) $$(CMOCKA) $$(LINK)
 endef
 $(eval $(call program,tests/unit,$(BUILD)/tests))
 $(eval $(call program,tests/mpi,$(BUILD)/tests))
@@ -127,7 +129,7 @@ help: ## this list
 	@sed -n 's/^\([a-z]*\):.*## \(.*\)/make \1\t\2/p' Makefile | expand -t 16
 
 format: ## formats the C sources
-	clang-format -i $(wildcard include/*.h src/*.c src/*/*.c tests/*.h tests/*/*.c)
+	clang-format -i $(wildcard include/*.h src/*.c src/*/*.[ch] src/*/private/*.h tests/*.h tests/*/*.[ch])
 
 clean: ## removes what was built (out/ and the Python environment stay)
 	rm -rf $(BUILD)/obj $(BUILD)/tests $(BUILD)/bench $(BUILD)/ctest $(BUILD)/flags $(LIBRARY) $(BURNISH)

@@ -16,7 +16,7 @@ for reader in "$@"; do
   seeds=(tests/fuzz/"$reader")
   [ "$reader" = scene ] && seeds+=(tests/input tests/scenes runs)
   # every word in quotes of the table of keys or of the reader
-  grep -ohE '"[A-Za-z_$][A-Za-z_]*"' src/schemakeys.c src/gmshfile.c | sort -u >out/fuzz/words
+  grep -ohE '"[A-Za-z_$][A-Za-z_]*"' src/scene/schemakeys.c src/mesh/gmshfile.c | sort -u >out/fuzz/words
   for ((left = seconds; left > 0; left -= SLICE)); do
     timeout $((SLICE + 120)) "$build"/tests/fuzz_"$reader" -max_total_time=$((left < SLICE ? left : SLICE)) -timeout=10 -rss_limit_mb=8192 -max_len=16384 \
       -dict=out/fuzz/words -artifact_prefix=out/fuzz/"$reader"- -print_final_stats=1 out/fuzz/"$reader" "${seeds[@]}" || status=1

@@ -1,15 +1,15 @@
 /* burnish: scene -> mesh -> model -> load stepper -> results. */
 #include <signal.h>
 #include <petsctime.h>
-#include "checkpoint.h"
-#include "commandline.h"
-#include "errorlog.h"
-#include "interruption.h"
-#include "precheck.h"
-#include "refusal.h"
-#include "results.h"
-#include "stepper.h"
-#include "timing.h"
+#include "report/checkpoint.h"
+#include "scene/commandline.h"
+#include "base/errorlog.h"
+#include "base/interruption.h"
+#include "report/precheck.h"
+#include "base/refusal.h"
+#include "report/results.h"
+#include "step/stepper.h"
+#include "base/timing.h"
 
 /* The scene's PETSc options, below the environment's and the command line's: only those that nobody has set. */
 static PetscErrorCode InsertSceneOptions(Scene scene)

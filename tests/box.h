@@ -1,8 +1,8 @@
 /* A box of distorted cells, once as our mesh (made by hand: one rank, no supports) and once as a PetscFE problem with the same nodes, law
    (St. Venant-Kirchhoff) and quadrature: for the oracle and the bench of assembly. Each program includes it once. */
 #pragma once
-#include "elasticity.h"
-#include "elementkernel.h"
+#include "bodies/elasticity.h"
+#include "kernels/elementkernel.h"
 #include <petscds.h>
 #include <math.h>
 

@@ -1,7 +1,7 @@
 /* Linked into builds with SANITIZE=1 only: what the leak sanitiser has to know of a program that stands on MPI and may end by a refusal. */
 #define _DEFAULT_SOURCE /* on_exit() */
 #include <stdlib.h>
-#include "refusal.h"
+#include "base/refusal.h"
 
 /* Libraries that a program loads stay loaded to its end, so that it can be told whose memory is whose: Open MPI's plugins are many, and gone before that. */
 int dlclose(void *library)

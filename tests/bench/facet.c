@@ -4,8 +4,8 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include "bench.h"
-#include "facet.h"
-#include "tree.h"
+#include "smooth/facet.h"
+#include "base/boxtree.h"
 
 enum { POINTS = 2000, REPEATS = 20, MAX_DOFS = 3 * (1 + FACE_MAX_NODES), MAX_SIDE = 5, MAX_POSITIONS = 25 * FACE_MAX_NODES };
 

@@ -4,8 +4,8 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include "bench.h"
-#include "fit.h"
-#include "fitframe.h"
+#include "smooth/diffusefit.h"
+#include "smooth/fitframe.h"
 #include "symmetricproduct.h"
 
 enum { SLAVES = 64, REPEATS = 40, MAX_LIST = 400, MAX_SIZE = 3 * (1 + MAX_LIST) };

@@ -5,8 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 #include "bench.h"
-#include "fitframe.h"
-#include "fitmap.h"
+#include "smooth/fitframe.h"
+#include "smooth/fitderivatives.h"
 #include "symmetricproduct.h"
 
 enum { SLAVES = 48, REPEATS = 60, SIDE = 7, MAX_ORDER = 2, MAX_LINE = SIDE * MAX_ORDER + 1, MAX_FACE = 9, MAX_POINTS = SIDE * SIDE * MAX_FACE };

@@ -1,8 +1,8 @@
 /* What partitions of a scene's mesh would cost on 2 to 4096 ranks, from the partition alone (lines: row, column, value; # heads a table): cells and contact
    cells balanced as in a run, and cells alone. Arguments: SCENE.yaml KEY=VALUE ...; without, two rings with 1e5 unknowns. */
 #include <float.h>
-#include "mesh.h"
-#include "tree.h"
+#include "mesh/mesh.h"
+#include "base/boxtree.h"
 
 enum { MOST_PARTS = 4096, LEAST_CELLS = 16 /* in a part: fewer than a rank would ever have */ };
 

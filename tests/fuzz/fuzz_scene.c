@@ -2,8 +2,8 @@
 #include "fuzz.h"
 #include <setjmp.h>
 #include <stdarg.h>
-#include "refusal.h"
-#include "scene.h"
+#include "base/refusal.h"
+#include "scene/scene.h"
 
 /* A refusal ends the program; here it ends the input, and what was allocated on the way is freed for it. */
 static jmp_buf Refused;

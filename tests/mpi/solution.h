@@ -1,6 +1,6 @@
 /* What tests of factors share. */
 #pragma once
-#include "factor.h"
+#include "linear/factor.h"
 
 /* Relative residual of a solution */
 static PetscErrorCode SolutionMiss(Factor factor, Mat A, PetscReal *miss)

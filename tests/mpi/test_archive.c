@@ -6,7 +6,7 @@
 #include <cmocka.h>
 #include <string.h>
 #include <unistd.h>
-#include "archive.h"
+#include "files/archive.h"
 
 enum { ROWS = 5, WIDTH = 2 }; /* of each rank */
 static const char name[] = "test_archive.h5";

@@ -5,7 +5,7 @@
 #include <stddef.h>
 #include <stdint.h>
 #include <cmocka.h>
-#include "blockmatrix.h"
+#include "matrix/blockmatrix.h"
 
 enum { ROWS = 6 }; /* of each rank */
 

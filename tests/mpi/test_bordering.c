@@ -6,11 +6,11 @@
 #include <math.h>
 #include <string.h>
 #include <cmocka.h>
-#include "directsolver.h"
-#include "keptfactor.h"
-#include "linearcheck.h"
+#include "linear/directsolver.h"
+#include "linear/reusedfactor.h"
+#include "linear/linearcheck.h"
 #include "solution.h"
-#include "sumoperator.h"
+#include "matrix/sumoperator.h"
 
 enum { EDGE = 24, DOFS = 2, PLATE = EDGE * EDGE, NODES = 2 * PLATE, REACH = 2, LINKED = 1 + (2 * REACH + 1) * (2 * REACH + 1), MOST = 3 * EDGE };
 

@@ -4,7 +4,7 @@
 #include <stdint.h>
 #include <setjmp.h>
 #include <cmocka.h>
-#include "directsolver.h"
+#include "linear/directsolver.h"
 
 enum { SIZE = 40, COLUMNS = 4 };
 

@@ -5,8 +5,8 @@
 #include <stdint.h>
 #include <setjmp.h>
 #include <cmocka.h>
-#include "directsolver.h"
-#include "linearcheck.h"
+#include "linear/directsolver.h"
+#include "linear/linearcheck.h"
 
 enum { SIZE = 60 };
 

@@ -5,7 +5,7 @@
 #include <stdint.h>
 #include <setjmp.h>
 #include <cmocka.h>
-#include "linearcheck.h"
+#include "linear/linearcheck.h"
 
 enum { SIZE = 40 };
 

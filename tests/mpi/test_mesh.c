@@ -1,9 +1,9 @@
 /* The distributed mesh is the file's mesh: every element type on a curved body, nodes, faces, groups, dofs and sums on any number of ranks; wrong meshes are
  * refused in words. */
-#include "mesh.h"
-#include "elementkernel.h"
+#include "mesh/mesh.h"
+#include "kernels/elementkernel.h"
 #include "gmshfile.h"
-#include "refusal.h"
+#include "base/refusal.h"
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>

@@ -4,7 +4,7 @@
 #include <stddef.h>
 #include <stdint.h>
 #include <cmocka.h>
-#include "nodematrix.h"
+#include "matrix/nodematrix.h"
 
 enum { SIZE = 2, NODES = 4, ROWS = SIZE * NODES - 1 }; /* of each rank; its first node lacks one dof */
 

@@ -9,7 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
-#include "nodeturn.h"
+#include "linear/corotation.h"
 
 static char        folder[64];
 static PetscMPIInt rank;

@@ -5,7 +5,7 @@
 #include <stdint.h>
 #include <setjmp.h>
 #include <cmocka.h>
-#include "directsolver.h"
+#include "linear/directsolver.h"
 #include "rankupdate.h"
 
 enum { SIZE = 40, CHANGES = 3 };

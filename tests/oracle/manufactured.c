@@ -3,7 +3,7 @@
 
    The field is chosen, its stress and body force follow from the laws as a textbook writes them; the library only gets nodal values of the field on the
    boundary and the nodal forces, and gives back the interior. Argument: the folder of the meshes (default: meshes). */
-#include "elasticity.h"
+#include "bodies/elasticity.h"
 #include <petscdt.h>
 #include <petscksp.h>
 #include <stdarg.h>

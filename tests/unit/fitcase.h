@@ -8,8 +8,8 @@
 #include <stdint.h>
 #include <string.h>
 #include <cmocka.h>
-#include "fit.h"
-#include "fitframe.h"
+#include "smooth/diffusefit.h"
+#include "smooth/fitframe.h"
 
 enum { MAX = FIT_MAX_POINTS, FEW = 120, WORK = 400000 };
 

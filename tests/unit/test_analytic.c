@@ -6,7 +6,7 @@
 #include <stdint.h>
 #include <string.h>
 #include <cmocka.h>
-#include "analytic.h"
+#include "smooth/analyticsurface.h"
 
 static double Random(double low, double high)
 {

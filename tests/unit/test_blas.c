@@ -7,7 +7,7 @@
 #include <cmocka.h>
 #include <stdlib.h>
 #include <string.h>
-#include "blas.h"
+#include "base/blas.h"
 
 static void test_old_kernels(void **state)
 {

@@ -6,7 +6,7 @@
 #include <math.h>
 #include <string.h>
 #include "eigenvalues.h"
-#include "elementkernel.h"
+#include "kernels/elementkernel.h"
 
 #define assert_near(a, b, tolerance) assert_true(fabs((a) - (b)) <= (tolerance))
 

@@ -5,7 +5,7 @@
 #include <cmocka.h>
 #include <math.h>
 #include <string.h>
-#include "elementkernel.h"
+#include "kernels/elementkernel.h"
 
 #define assert_near(a, b, tolerance) assert_true(fabs((a) - (b)) <= (tolerance))
 

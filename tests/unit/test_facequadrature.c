@@ -4,7 +4,7 @@
 #include <stddef.h>
 #include <cmocka.h>
 #include <math.h>
-#include "facequadrature.h"
+#include "search/facequadrature.h"
 
 static const ElementType types[] = {ELEMENT_EDGE2, ELEMENT_EDGE3, ELEMENT_TRI3, ELEMENT_TRI6, ELEMENT_QUAD4, ELEMENT_QUAD9};
 enum { TYPES = sizeof(types) / sizeof(types[0]) };

@@ -7,7 +7,7 @@
 #include <stdint.h>
 #include <string.h>
 #include <cmocka.h>
-#include "facet.h"
+#include "smooth/facet.h"
 
 enum { MAX_DOFS = 3 * (1 + FACE_MAX_NODES), MAX_NODES = 128, MAX_FACETS = 32 };
 

@@ -1,6 +1,6 @@
 /* Variations over nodes are those over points, summed by the map, and the derivatives of the gap as the nodes move. */
 #include "fitcase.h"
-#include "fitmap.h"
+#include "smooth/fitderivatives.h"
 
 enum { MAX_ENTRIES = 12, NODES = 1 + FEW, SIZE = 3 * NODES, MAP_WORK = 200000 };
 

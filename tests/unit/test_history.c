@@ -1,5 +1,5 @@
 /* A history is linear between its breakpoints, exact at them, and constant beyond them. */
-#include "history.h"
+#include "scene/history.h"
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdint.h>

@@ -4,7 +4,7 @@
 #include <stddef.h>
 #include <stdint.h>
 #include <cmocka.h>
-#include "mixing.h"
+#include "anderson.h"
 
 enum { N = 6 };
 

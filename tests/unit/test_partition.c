@@ -4,7 +4,7 @@
 #include <stdint.h>
 #include <setjmp.h>
 #include <cmocka.h>
-#include "partition.h"
+#include "mesh/partition.h"
 
 enum { LENGTH = 24, WIDTH = 3, STRIPS = 2, CELLS = STRIPS * LENGTH * WIDTH };
 

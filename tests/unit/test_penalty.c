@@ -5,7 +5,7 @@
 #include <stdint.h>
 #include <cmocka.h>
 #include <math.h>
-#include "penalty.h"
+#include "penaltylaw.h"
 
 #define assert_near(a, b) assert_true(fabs((a) - (b)) <= 1e-12 * fabs(b))
 

@@ -5,7 +5,7 @@
 #include <stdint.h>
 #include <setjmp.h>
 #include <cmocka.h>
-#include "pressing.h"
+#include "contact/activeset.h"
 
 enum { N = 8 };
 

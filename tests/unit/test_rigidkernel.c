@@ -6,7 +6,7 @@
 #include <stdint.h>
 #include <cmocka.h>
 #include <math.h>
-#include "rigidkernel.h"
+#include "kernels/rigidkernel.h"
 
 enum { N = RIGID_MODES };
 

@@ -1,8 +1,8 @@
 /* Every key of a scene file, its default and -set arrive in the scene's fields; places, canonical text and the command line are as promised. */
-#include "petsccompat.h"
-#include "scene.h"
+#include "base/petsccompat.h"
+#include "scene/scene.h"
 #include "schema.h"
-#include "commandline.h"
+#include "scene/commandline.h"
 #include <stdlib.h>
 #include <unistd.h>
 #include <string.h>

@@ -5,7 +5,7 @@
 #include <stdint.h>
 #include <cmocka.h>
 #include <mpi.h>
-#include "timing.h"
+#include "base/timing.h"
 
 static const double NAP = 0.01; /* s, far above the clock's resolution */
 

@@ -5,7 +5,7 @@
 #include <stdint.h>
 #include <cmocka.h>
 #include <math.h>
-#include "touch.h"
+#include "contact/touchstep.h"
 
 static const double Resting = 1e-9;
 

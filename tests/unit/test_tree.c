@@ -6,7 +6,7 @@
 #include <stdint.h>
 #include <stdlib.h>
 #include <cmocka.h>
-#include "tree.h"
+#include "base/boxtree.h"
 
 enum { MAX_BOXES = 3000 };
 

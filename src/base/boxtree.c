@@ -1,0 +1,263 @@
+/* A balanced binary tree over the boxes, halved at the median centre of the widest direction until one box is left. The nodes stand in one
+   array in preorder: below node i with n boxes come the left half's n/2 boxes at node i + 1 and the rest at node i + 2 (n/2), so that neither
+   children nor ranges need be stored. Halving by position, not by value, keeps the depth at log2 n for any boxes, equal ones too. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include "base/boxtree.h"
+
+enum { MAX_DIM = 3, MAX_DEPTH = 64 };
+
+/* A subtree: its node and the range of `order` it holds; distance: squared, from the point of the search. */
+typedef struct {
+  double distance;
+  int    node, first, count;
+} Range;
+
+struct _n_Tree {
+  int     dim, n;
+  double *box;   /* [2n-1][2][dim]: lower and upper corners of the nodes */
+  int    *order; /* box numbers in the order of the leaves */
+  Range  *queue; /* [n + 1]: heap of TreeClosest(), nearest first */
+};
+
+/* What the halving needs of the boxes */
+typedef struct {
+  int           dim;
+  const double *lower, *upper;
+} Boxes;
+
+static double Centre(const Boxes *boxes, int box, int k)
+{
+  return 0.5 * boxes->lower[(size_t)box * boxes->dim + k] + 0.5 * boxes->upper[(size_t)box * boxes->dim + k];
+}
+
+/* Does box a come before box b along direction k? Equal centres by number: the tree is the same for the same boxes. */
+static int Before(const Boxes *boxes, int k, int a, int b)
+{
+  const double p = Centre(boxes, a, k), q = Centre(boxes, b, k);
+
+  return p < q || (p == q && a < b);
+}
+
+static void Swap(int *a, int *b)
+{
+  const int keep = *a;
+
+  *a = *b;
+  *b = keep;
+}
+
+/* Puts the boxes that come first along direction k into the first `half` places (Hoare's selection). */
+static void Select(const Boxes *boxes, int k, int *order, int count, int half)
+{
+  int low = 0, high = count - 1;
+
+  while (low < high) {
+    const int pivot = order[low + (high - low) / 2];
+    int       i = low, j = high;
+
+    while (i <= j) {
+      while (Before(boxes, k, order[i], pivot)) ++i;
+      while (Before(boxes, k, pivot, order[j])) --j;
+      if (i <= j) Swap(&order[i++], &order[j--]);
+    }
+    if (half <= j)
+      high = j;
+    else if (half >= i)
+      low = i;
+    else
+      return;
+  }
+}
+
+static Range Left(const Range *range)
+{
+  return (Range){0, range->node + 1, range->first, range->count / 2};
+}
+
+static Range Right(const Range *range)
+{
+  const int half = range->count / 2;
+
+  return (Range){0, range->node + 2 * half, range->first + half, range->count - half};
+}
+
+/* Boxes and order of a subtree */
+static void BuildRange(Tree tree, const Boxes *boxes, Range range)
+{
+  const int dim   = tree->dim;
+  double   *lower = tree->box + (size_t)range.node * 2 * dim, *upper = lower + dim, widest = -1;
+  int      *order = tree->order + range.first, along = 0;
+  double    low[MAX_DIM], high[MAX_DIM];
+
+  for (int k = 0; k < dim; ++k) {
+    lower[k] = low[k] = INFINITY;
+    upper[k] = high[k] = -INFINITY;
+    for (int i = 0; i < range.count; ++i) {
+      const double centre = Centre(boxes, order[i], k);
+
+      lower[k] = fmin(lower[k], boxes->lower[(size_t)order[i] * dim + k]);
+      upper[k] = fmax(upper[k], boxes->upper[(size_t)order[i] * dim + k]);
+      low[k]   = fmin(low[k], centre);
+      high[k]  = fmax(high[k], centre);
+    }
+    if (high[k] - low[k] > widest) {
+      widest = high[k] - low[k];
+      along  = k;
+    }
+  }
+  if (range.count == 1) return;
+  Select(boxes, along, order, range.count, range.count / 2);
+  BuildRange(tree, boxes, Left(&range));
+  BuildRange(tree, boxes, Right(&range));
+}
+
+/* Builds the tree. Not collective, plain C. dim: 1 to 3; n: boxes, 0 allowed; lower, upper: [n][dim] corners (lengths), not kept.
+   Returns 0, or 1 without memory (*tree is NULL then). To be freed by TreeDestroy(). */
+int TreeBuild(int dim, int n, const double *lower, const double *upper, Tree *tree)
+{
+  const Boxes boxes = {dim, lower, upper};
+  Tree        t     = calloc(1, sizeof(*t));
+
+  *tree = t;
+  if (!t) return 1;
+  t->dim   = dim;
+  t->n     = n;
+  t->box   = malloc(sizeof(*t->box) * ((size_t)2 * n + 1) * 2 * dim);
+  t->order = malloc(sizeof(*t->order) * ((size_t)n + 1));
+  t->queue = malloc(sizeof(*t->queue) * ((size_t)n + 1));
+  if (!t->box || !t->order || !t->queue) {
+    TreeDestroy(tree);
+    return 1;
+  }
+  for (int i = 0; i < n; ++i) t->order[i] = i;
+  if (n) BuildRange(t, &boxes, (Range){0, 0, 0, n});
+  return 0;
+}
+
+/* Frees the tree, NULL allowed, and sets it to NULL. Not collective, plain C. */
+void TreeDestroy(Tree *tree)
+{
+  if (!*tree) return;
+  free((*tree)->box);
+  free((*tree)->order);
+  free((*tree)->queue);
+  free(*tree);
+  *tree = NULL;
+}
+
+/* Squared distance of a node's box from a point, 0 inside */
+static double SquaredDistance(Tree tree, int node, const double *point)
+{
+  const double *lower = tree->box + (size_t)node * 2 * tree->dim, *upper = lower + tree->dim;
+  double        sum = 0;
+
+  for (int k = 0; k < tree->dim; ++k) {
+    const double d = fmax(0, fmax(lower[k] - point[k], point[k] - upper[k]));
+
+    sum += d * d;
+  }
+  return sum;
+}
+
+/* Puts a number into an ascending list of at most max, the largest falling out; returns the new length. */
+static int InsertAscending(int value, int max, int n, int *list)
+{
+  int low = 0, high = n;
+
+  while (low < high) {
+    const int middle = low + (high - low) / 2;
+
+    if (list[middle] < value)
+      low = middle + 1;
+    else
+      high = middle;
+  }
+  if (low >= max) return n;
+  if (n == max) --n;
+  memmove(list + low + 1, list + low, sizeof(*list) * (n - low));
+  list[low] = value;
+  return n + 1;
+}
+
+/* All boxes nearer to a point than radius. Not collective, plain C. point[dim], radius: lengths; found[max]: their numbers, ascending, the
+   first max of them. Returns how many there are, which may exceed max. */
+int TreeNear(Tree tree, const double *point, double radius, int max, int *found)
+{
+  Range stack[MAX_DEPTH];
+  int   depth = 0, count = 0, written = 0;
+
+  if (!tree->n || radius <= 0) return 0;
+  stack[depth++] = (Range){0, 0, 0, tree->n};
+  while (depth) {
+    const Range range = stack[--depth];
+
+    if (SquaredDistance(tree, range.node, point) >= radius * radius) continue;
+    if (range.count == 1) {
+      written = InsertAscending(tree->order[range.first], max, written, found);
+      ++count;
+    } else {
+      stack[depth++] = Right(&range);
+      stack[depth++] = Left(&range);
+    }
+  }
+  return count;
+}
+
+/* Order of the queue: distance; subtrees before boxes, as they may hold one just as near; then number. */
+static int Nearer(Tree tree, const Range *a, const Range *b)
+{
+  if (a->distance != b->distance) return a->distance < b->distance;
+  if ((a->count == 1) != (b->count == 1)) return a->count > 1;
+  return a->count == 1 ? tree->order[a->first] < tree->order[b->first] : a->node < b->node;
+}
+
+/* Adds a subtree to the queue; returns the new length. */
+static int Push(Tree tree, Range range, const double *point, int length)
+{
+  Range *queue = tree->queue;
+  int    i     = length;
+
+  range.distance = SquaredDistance(tree, range.node, point);
+  for (; i > 0 && Nearer(tree, &range, &queue[(i - 1) / 2]); i = (i - 1) / 2) queue[i] = queue[(i - 1) / 2];
+  queue[i] = range;
+  return length + 1;
+}
+
+/* Takes the nearest subtree out of the queue of that length */
+static Range Pop(Tree tree, int length)
+{
+  Range      *queue = tree->queue;
+  const Range top = queue[0], last = queue[length - 1];
+  int         i = 0;
+
+  for (int child = 1; child < length - 1; child = 2 * i + 1) {
+    if (child + 1 < length - 1 && Nearer(tree, &queue[child + 1], &queue[child])) ++child;
+    if (!Nearer(tree, &queue[child], &last)) break;
+    queue[i] = queue[child];
+    i        = child;
+  }
+  queue[i] = last;
+  return top;
+}
+
+/* Visits boxes in order of their distance from a point, of equal distances by number, while that is at most *bound.
+   Not collective, plain C; not to be called from visit. point[dim], *bound: lengths, *bound may be INFINITY; visit(context, box, bound) may
+   lower *bound. */
+void TreeClosest(Tree tree, const double *point, double *bound, void (*visit)(void *context, int index, double *bound), void *context)
+{
+  int length = tree->n ? Push(tree, (Range){0, 0, 0, tree->n}, point, 0) : 0;
+
+  while (length) {
+    const Range range = Pop(tree, length--);
+
+    if (range.distance > *bound * *bound || *bound < 0) return;
+    if (range.count == 1)
+      visit(context, tree->order[range.first], bound);
+    else {
+      length = Push(tree, Left(&range), point, length);
+      length = Push(tree, Right(&range), point, length);
+    }
+  }
+}

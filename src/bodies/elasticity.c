@@ -1,0 +1,665 @@
+/* Assembly of the elastic problem from batched element kernels. */
+#include "bodies/elasticity.h"
+#include "kernels/elementkernel.h"
+#include "matrix/nodematrix.h"
+
+/* PREFETCH_PAIRS: how many pairs of nodes ahead blocks are asked for; the scattered blocks come from main memory, 4 hides most of the wait */
+enum { MAX_DOFS = ELEMENT_MAX_NODES * 3, BYTES_OF_CACHE_LINE = 64, PREFETCH_PAIRS = 4 };
+
+/* Cells of one type and law, KERNEL_LANES to a batch; the last batch repeats its last cell. Arrays are those of a batch, one batch after
+   the other. */
+typedef struct {
+  KernelCase kernel;
+  int        nodes; /* of one cell */
+  PetscInt   n_cells, n_batches;
+  PetscInt  *cell;   /* [lanes] */
+  PetscInt  *node;   /* [nodes][lanes] */
+  PetscInt  *block;  /* [nodes][nodes][lanes]: where the pair of nodes stands in the block CSR; PREFETCH_PAIRS of zeros at the end */
+  PetscReal *X;      /* [nodes][dim][lanes] */
+  PetscReal *E, *nu; /* [lanes] */
+} CellGroup;
+
+struct _n_Elasticity {
+  Mesh       mesh;
+  int        dim, n_groups;
+  CellGroup *groups;
+  PetscInt  *cell_group, *cell_slot; /* of every local cell: its group, and its number there */
+  PetscReal *cell_modulus;
+  PetscInt  *row, *column; /* block CSR over local nodes, columns ascending */
+  PetscReal *value;        /* dim x dim blocks, row-major, in the order of column */
+  PetscReal *u, *f, *K;    /* of one batch, aligned to cache lines */
+  void      *buffer;       /* what u, f and K are in */
+  PetscInt   inverted;     /* a local cell that the last residual found inverted, or -1 */
+  PetscBool  symmetric;
+  NodeMatrix matrix;
+};
+
+static PetscLogEvent event_residual, event_tangent, event_insert;
+
+static PetscErrorCode RegisterEvents(void)
+{
+  static PetscClassId classid = 0;
+
+  PetscFunctionBeginUser;
+  if (classid) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscClassIdRegister("Elasticity", &classid));
+  PetscCall(PetscLogEventRegister("ElasticResidual", classid, &event_residual));
+  PetscCall(PetscLogEventRegister("ElasticTangent", classid, &event_tangent));
+  PetscCall(PetscLogEventRegister("ElasticInsert", classid, &event_insert));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static KernelCase BodyKernel(Scene scene, PetscInt body, ElementType type)
+{
+  const SceneBody *b = &scene->bodies[body];
+
+  return (KernelCase){type, scene->geometry, scene->kinematics, scene->kinematics == KINEMATICS_SMALL ? MATERIAL_LINEAR : b->material.law, b->formulation};
+}
+
+/* Of one scene: geometry and kinematics are the same */
+static PetscBool SameKernel(const KernelCase *a, const KernelCase *b)
+{
+  return a->type == b->type && a->law == b->law && a->formulation == b->formulation ? PETSC_TRUE : PETSC_FALSE;
+}
+
+/* Sorts the cells into groups in the order in which new kinds appear: cell_group and cell_slot */
+static PetscErrorCode GroupCells(Elasticity e, Scene scene)
+{
+  const Mesh mesh = e->mesh;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc1(ELEMENT_TYPES * MATERIAL_LAWS * FORMULATIONS, &e->groups));
+  PetscCall(PetscMalloc3(mesh->n_cells, &e->cell_group, mesh->n_cells, &e->cell_slot, mesh->n_cells, &e->cell_modulus));
+  for (PetscInt c = 0; c < mesh->n_cells; c++) {
+    const Material  *material = &scene->bodies[mesh->cell_body[c]].material;
+    const KernelCase kernel   = BodyKernel(scene, mesh->cell_body[c], mesh->cell_type[c]);
+    int              g        = 0;
+
+    while (g < e->n_groups && !SameKernel(&e->groups[g].kernel, &kernel)) g++;
+    if (g == e->n_groups) e->groups[e->n_groups++] = (CellGroup){.kernel = kernel, .nodes = ElementGet(kernel.type)->nodes};
+    e->cell_group[c]   = g;
+    e->cell_slot[c]    = e->groups[g].n_cells++;
+    e->cell_modulus[c] = material->E;
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode AllocateGroup(CellGroup *g, int dim)
+{
+  size_t lanes;
+
+  PetscFunctionBeginUser;
+  g->n_batches = (g->n_cells + KERNEL_LANES - 1) / KERNEL_LANES;
+  lanes        = (size_t)g->n_batches * KERNEL_LANES;
+  PetscCall(PetscCalloc3(lanes, &g->cell, lanes * g->nodes, &g->node, lanes * g->nodes * g->nodes + PREFETCH_PAIRS * KERNEL_LANES, &g->block));
+  PetscCall(PetscMalloc3(lanes * g->nodes * dim, &g->X, lanes, &g->E, lanes, &g->nu));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Fills slot (and, for the last cell, the rest of its batch) of a group with a cell */
+static void SetCell(Elasticity e, Scene scene, CellGroup *g, PetscInt slot, PetscInt c)
+{
+  const Mesh      mesh     = e->mesh;
+  const Material *material = &scene->bodies[mesh->cell_body[c]].material;
+  const PetscInt *nodes    = &mesh->cell_nodes[mesh->cell_ptr[c]];
+  const PetscInt  end      = slot == g->n_cells - 1 ? g->n_batches * KERNEL_LANES : slot + 1;
+
+  for (PetscInt s = slot; s < end; s++) {
+    const size_t batch = s / KERNEL_LANES, lane = s % KERNEL_LANES;
+
+    g->cell[s] = c;
+    g->E[s]    = material->E;
+    g->nu[s]   = material->nu;
+    for (int a = 0; a < g->nodes; a++) {
+      g->node[(batch * g->nodes + a) * KERNEL_LANES + lane] = nodes[a];
+      for (int i = 0; i < e->dim; i++) g->X[((batch * g->nodes + a) * e->dim + i) * KERNEL_LANES + lane] = mesh->coords[nodes[a] * e->dim + i];
+    }
+  }
+}
+
+/* The cells around every node as a CSR */
+static PetscErrorCode NodeCells(Mesh mesh, PetscInt **ptr, PetscInt **cells)
+{
+  PetscInt *p, *list;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc1(mesh->n_nodes + 2, &p));
+  PetscCall(PetscMalloc1(mesh->n_cells ? mesh->cell_ptr[mesh->n_cells] : 0, &list));
+  for (PetscInt c = 0; c < mesh->n_cells; c++) {
+    for (PetscInt k = mesh->cell_ptr[c]; k < mesh->cell_ptr[c + 1]; k++) p[mesh->cell_nodes[k] + 2]++;
+  }
+  for (PetscInt n = 0; n < mesh->n_nodes; n++) p[n + 2] += p[n + 1];
+  for (PetscInt c = 0; c < mesh->n_cells; c++) {
+    for (PetscInt k = mesh->cell_ptr[c]; k < mesh->cell_ptr[c + 1]; k++) list[p[mesh->cell_nodes[k] + 1]++] = c;
+  }
+  *ptr   = p;
+  *cells = list;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Nodes that share a cell with a node, ascending; mark[] holds the last node each one was counted for. */
+static PetscErrorCode NodeNeighbours(Mesh mesh, PetscInt node, const PetscInt *ptr, const PetscInt *cells, PetscInt *mark, PetscInt *neighbours,
+                                     PetscInt *count)
+{
+  PetscFunctionBeginUser;
+  *count = 0;
+  for (PetscInt k = ptr[node]; k < ptr[node + 1]; k++) {
+    for (PetscInt m = mesh->cell_ptr[cells[k]]; m < mesh->cell_ptr[cells[k] + 1]; m++) {
+      const PetscInt n = mesh->cell_nodes[m];
+
+      if (mark[n] == node) continue;
+      mark[n]                = node;
+      neighbours[(*count)++] = n;
+    }
+  }
+  PetscCall(PetscSortInt(*count, neighbours));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Scatter map of all pairs (node, b) of the cells around a node; place[n] is where column n stands in its row */
+static void SetBlocks(Elasticity e, PetscInt node, const PetscInt *ptr, const PetscInt *cells, const PetscInt *place)
+{
+  for (PetscInt k = ptr[node]; k < ptr[node + 1]; k++) {
+    const PetscInt  c     = cells[k];
+    CellGroup      *g     = &e->groups[e->cell_group[c]];
+    const PetscInt *nodes = &e->mesh->cell_nodes[e->mesh->cell_ptr[c]], slot = e->cell_slot[c];
+    const PetscInt  end = slot == g->n_cells - 1 ? g->n_batches * KERNEL_LANES : slot + 1;
+
+    for (int a = 0; a < g->nodes; a++) {
+      if (nodes[a] != node) continue;
+      for (PetscInt s = slot; s < end; s++) {
+        for (int b = 0; b < g->nodes; b++)
+          g->block[(((size_t)(s / KERNEL_LANES) * g->nodes + a) * g->nodes + b) * KERNEL_LANES + s % KERNEL_LANES] = place[nodes[b]];
+      }
+    }
+  }
+}
+
+/* Pattern of the block CSR and the scatter maps into it */
+static PetscErrorCode CreateBlocks(Elasticity e)
+{
+  const Mesh mesh = e->mesh;
+  PetscInt  *ptr = NULL, *cells = NULL, *mark, *neighbours, count = 0;
+  PetscCount total = 0;
+
+  PetscFunctionBeginUser;
+  PetscCall(NodeCells(mesh, &ptr, &cells));
+  PetscCall(PetscMalloc2(mesh->n_nodes, &mark, mesh->n_nodes, &neighbours));
+  PetscCall(PetscMalloc1(mesh->n_nodes + 1, &e->row));
+  for (PetscInt n = 0; n < mesh->n_nodes; n++) mark[n] = -1;
+  for (PetscInt n = 0; n < mesh->n_nodes; n++) {
+    PetscCall(PetscIntCast(total, &e->row[n]));
+    PetscCall(NodeNeighbours(mesh, n, ptr, cells, mark, neighbours, &count));
+    total += count;
+  }
+  PetscCall(PetscIntCast(total, &e->row[mesh->n_nodes]));
+  PetscCall(PetscMalloc1(total, &e->column));
+  PetscCall(PetscCalloc1(total * e->dim * e->dim, &e->value));
+  for (PetscInt n = 0; n < mesh->n_nodes; n++) mark[n] = -1;
+  for (PetscInt n = 0; n < mesh->n_nodes; n++) PetscCall(NodeNeighbours(mesh, n, ptr, cells, mark, &e->column[e->row[n]], &count));
+  for (PetscInt n = 0; n < mesh->n_nodes; n++) {
+    PetscInt *place = mark;
+
+    for (PetscInt k = e->row[n]; k < e->row[n + 1]; k++) place[e->column[k]] = k;
+    SetBlocks(e, n, ptr, cells, place);
+  }
+  PetscCall(PetscFree2(mark, neighbours));
+  PetscCall(PetscFree(ptr));
+  PetscCall(PetscFree(cells));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode CreateBuffers(Elasticity e)
+{
+  PetscReal *aligned;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc((size_t)(MAX_DOFS + 2) * MAX_DOFS * KERNEL_LANES * sizeof(PetscReal) + BYTES_OF_CACHE_LINE, &e->buffer));
+  aligned = (PetscReal *)(((PETSC_UINTPTR_T)e->buffer + BYTES_OF_CACHE_LINE - 1) / BYTES_OF_CACHE_LINE * BYTES_OF_CACHE_LINE);
+  e->u    = aligned;
+  e->f    = e->u + MAX_DOFS * KERNEL_LANES;
+  e->K    = e->f + MAX_DOFS * KERNEL_LANES;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*
+  ElasticityCreate - Prepares the assembly of all local cells: batches, pattern of the local tangent, scatter maps
+
+  Not collective
+
+  Input:
++ mesh  - the mesh; must outlive the elasticity
+- scene - geometry, kinematics and the bodies' materials
+
+  Output:
+. elasticity - the object, destroyed by ElasticityDestroy()
+*/
+PetscErrorCode ElasticityCreate(Mesh mesh, Scene scene, Elasticity *elasticity)
+{
+  Elasticity e;
+
+  PetscFunctionBeginUser;
+  PetscCall(RegisterEvents());
+  PetscCall(PetscNew(&e));
+  e->mesh      = mesh;
+  e->dim       = mesh->dim;
+  e->symmetric = PETSC_TRUE;
+  PetscCall(GroupCells(e, scene));
+  for (int g = 0; g < e->n_groups; g++) PetscCall(AllocateGroup(&e->groups[g], e->dim));
+  for (PetscInt c = 0; c < mesh->n_cells; c++) SetCell(e, scene, &e->groups[e->cell_group[c]], e->cell_slot[c], c);
+  PetscCall(CreateBlocks(e));
+  PetscCall(CreateBuffers(e));
+  *elasticity = e;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*
+  ElasticityDestroy - Frees the object and its matrix
+
+  Collective, if ElasticityMatrix() was called
+*/
+PetscErrorCode ElasticityDestroy(Elasticity *elasticity)
+{
+  Elasticity e = *elasticity;
+
+  PetscFunctionBeginUser;
+  if (!e) PetscFunctionReturn(PETSC_SUCCESS);
+  for (int g = 0; g < e->n_groups; g++) {
+    PetscCall(PetscFree3(e->groups[g].cell, e->groups[g].node, e->groups[g].block));
+    PetscCall(PetscFree3(e->groups[g].X, e->groups[g].E, e->groups[g].nu));
+  }
+  PetscCall(PetscFree(e->groups));
+  PetscCall(PetscFree3(e->cell_group, e->cell_slot, e->cell_modulus));
+  PetscCall(PetscFree(e->row));
+  PetscCall(PetscFree(e->column));
+  PetscCall(PetscFree(e->value));
+  PetscCall(PetscFree(e->buffer));
+  PetscCall(NodeMatrixDestroy(&e->matrix));
+  PetscCall(PetscFree(*elasticity));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static void GatherBatch(Elasticity e, const CellGroup *g, PetscInt batch, const PetscReal *u)
+{
+  const PetscInt *node = &g->node[(size_t)batch * g->nodes * KERNEL_LANES];
+
+  for (int a = 0; a < g->nodes; a++) {
+    for (int i = 0; i < e->dim; i++) {
+      for (int lane = 0; lane < KERNEL_LANES; lane++) e->u[(a * e->dim + i) * KERNEL_LANES + lane] = u[node[a * KERNEL_LANES + lane] * e->dim + i];
+    }
+  }
+}
+
+/* Cells of a batch that are no repetition */
+static int BatchCells(const CellGroup *g, PetscInt batch)
+{
+  return (int)PetscMin(KERNEL_LANES, g->n_cells - batch * KERNEL_LANES);
+}
+
+static void ScatterForce(Elasticity e, const CellGroup *g, PetscInt batch, PetscReal *f, PetscReal *force2)
+{
+  const PetscInt *node  = &g->node[(size_t)batch * g->nodes * KERNEL_LANES];
+  const int       count = BatchCells(g, batch);
+  PetscReal       sum   = 0;
+
+  for (int a = 0; a < g->nodes; a++) {
+    for (int i = 0; i < e->dim; i++) {
+      for (int lane = 0; lane < count; lane++) {
+        const PetscReal force = e->f[(a * e->dim + i) * KERNEL_LANES + lane];
+
+        if (f) f[node[a * KERNEL_LANES + lane] * e->dim + i] += force;
+        sum += force * force;
+      }
+    }
+  }
+  if (force2) *force2 += sum;
+}
+
+/*
+  ElasticityResidual - Internal forces and strain energy of this rank's cells
+
+  Not collective
+
+  Input:
++ e - the elasticity
+- u - local displacements (length) [n_nodes*dim]
+
+  Output (each but ok may be NULL):
++ f      - internal forces [n_nodes*dim], added to; not summed over ranks
+. energy - strain energy of this rank's cells
+. force2 - sum of the squares of the element forces before assembly
+- ok     - PETSC_FALSE: det F <= 0, or not a number, somewhere; f is filled all the same
+*/
+PetscErrorCode ElasticityResidual(Elasticity e, const PetscReal *u, PetscReal *f, PetscReal *energy, PetscReal *force2, PetscBool *ok)
+{
+  const PetscBool forces = (PetscBool)(f || force2);
+  PetscReal       W[KERNEL_LANES], J[KERNEL_LANES];
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscLogEventBegin(event_residual, 0, 0, 0, 0));
+  if (energy) *energy = 0;
+  if (force2) *force2 = 0;
+  *ok         = PETSC_TRUE;
+  e->inverted = -1;
+  for (int k = 0; k < e->n_groups; k++) {
+    const CellGroup *g    = &e->groups[k];
+    const size_t     dofs = (size_t)g->nodes * e->dim;
+
+    for (PetscInt batch = 0; batch < g->n_batches; batch++) {
+      const size_t first = (size_t)batch * KERNEL_LANES;
+
+      GatherBatch(e, g, batch, u);
+      ElementKernel(&g->kernel, &g->X[first * dofs], e->u, &g->E[first], &g->nu[first], energy ? W : NULL, forces ? e->f : NULL, NULL, J);
+      if (forces) ScatterForce(e, g, batch, f, force2);
+      for (int lane = 0; lane < BatchCells(g, batch); lane++) {
+        if (energy) *energy += W[lane];
+        if (J[lane] > 0) continue;
+        *ok         = PETSC_FALSE;
+        e->inverted = g->cell[first + lane];
+      }
+    }
+  }
+  PetscCall(PetscLogEventEnd(event_residual, 0, 0, 0, 0));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Adds the batch's K into the block CSR, pair of nodes by pair of nodes: its lanes are read once, each block is contiguous. dim and count
+   are constants where this is inlined. */
+static inline __attribute__((always_inline)) void ScatterTangent(Elasticity e, const CellGroup *g, PetscInt batch, const int dim, const int count)
+{
+  const int       n     = g->nodes;
+  const PetscInt *block = &g->block[(size_t)batch * n * n * KERNEL_LANES];
+
+  for (int a = 0; a < n; a++) {
+    for (int b = 0; b < n; b++, block += KERNEL_LANES) {
+      const PetscReal *K = &e->K[((size_t)a * dim * n + b) * dim * KERNEL_LANES];
+
+      for (int lane = 0; lane < count; lane++) { /* a block of 3 x 3 doubles lies on two cache lines */
+        const PetscReal *ahead = &e->value[(size_t)block[PREFETCH_PAIRS * KERNEL_LANES + lane] * dim * dim];
+
+        __builtin_prefetch(ahead, 1);
+        __builtin_prefetch(ahead + dim * dim - 1, 1);
+      }
+      for (int lane = 0; lane < count; lane++) {
+        PetscReal *value = &e->value[(size_t)block[lane] * dim * dim];
+
+        for (int i = 0; i < dim; i++) {
+          for (int j = 0; j < dim; j++) value[i * dim + j] += K[(i * n * dim + j) * KERNEL_LANES + lane];
+        }
+      }
+    }
+  }
+}
+
+/*
+  ElasticityTangent - The tangent of this rank's cells into the local block CSR, which is zeroed first
+
+  Not collective
+
+  Input:
++ e - the elasticity
+- u - local displacements (length) [n_nodes*dim]
+*/
+PetscErrorCode ElasticityTangent(Elasticity e, const PetscReal *u)
+{
+  PetscReal J[KERNEL_LANES];
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscLogEventBegin(event_tangent, 0, 0, 0, 0));
+  PetscCall(PetscArrayzero(e->value, (size_t)e->row[e->mesh->n_nodes] * e->dim * e->dim));
+  for (int k = 0; k < e->n_groups; k++) {
+    const CellGroup *g    = &e->groups[k];
+    const size_t     dofs = (size_t)g->nodes * e->dim;
+
+    for (PetscInt batch = 0; batch < g->n_batches; batch++) {
+      const size_t first = (size_t)batch * KERNEL_LANES;
+      const int    count = BatchCells(g, batch);
+
+      GatherBatch(e, g, batch, u);
+      ElementKernel(&g->kernel, &g->X[first * dofs], e->u, &g->E[first], &g->nu[first], NULL, NULL, e->K, J);
+      if (count < KERNEL_LANES)
+        ScatterTangent(e, g, batch, e->dim, count);
+      else if (e->dim == 3)
+        ScatterTangent(e, g, batch, 3, KERNEL_LANES);
+      else
+        ScatterTangent(e, g, batch, 2, KERNEL_LANES);
+    }
+  }
+  PetscCall(PetscLogEventEnd(event_tangent, 0, 0, 0, 0));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*
+  ElasticityAddBlock - Adds a dense block of dofs into the local block CSR
+
+  Not collective
+
+  Input:
++ e     - the elasticity
+. n     - number of nodes
+. nodes - local nodes, all of one local cell
+- k     - [n*dim][n*dim], row-major, dofs node by node
+
+  Note:
+  If the block is not symmetric, ElasticitySetSymmetric() must have said so.
+*/
+PetscErrorCode ElasticityAddBlock(Elasticity e, PetscInt n, const PetscInt nodes[], const PetscReal k[])
+{
+  const int dim = e->dim;
+
+  PetscFunctionBeginUser;
+  for (PetscInt a = 0; a < n; a++) {
+    const PetscInt row = e->row[nodes[a]];
+
+    for (PetscInt b = 0; b < n; b++) {
+      PetscInt   place;
+      PetscReal *value;
+
+      PetscCall(PetscFindInt(nodes[b], e->row[nodes[a] + 1] - row, &e->column[row], &place));
+      PetscCheck(place >= 0, PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE, "nodes %" PetscInt_FMT " and %" PetscInt_FMT " share no local cell", nodes[a],
+                 nodes[b]);
+      value = &e->value[(size_t)(row + place) * dim * dim];
+      for (int i = 0; i < dim; i++) {
+        for (int j = 0; j < dim; j++) value[i * dim + j] += k[(a * dim + i) * n * dim + b * dim + j];
+      }
+    }
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*
+  ElasticityMultiplyLocal - Product with the local block CSR, supported and imposed dofs included: y += K x
+
+  Not collective
+
+  Input:
++ e - the elasticity
+- x - local vector [n_nodes*dim]
+
+  Output:
+. y - local vector [n_nodes*dim], added to; not summed over ranks
+*/
+PetscErrorCode ElasticityMultiplyLocal(Elasticity e, const PetscReal *x, PetscReal *y)
+{
+  const int dim = e->dim;
+
+  PetscFunctionBeginUser;
+  for (PetscInt n = 0; n < e->mesh->n_nodes; n++) {
+    for (PetscInt k = e->row[n]; k < e->row[n + 1]; k++) {
+      const PetscReal *value = &e->value[(size_t)k * dim * dim], *xk = &x[e->column[k] * dim];
+
+      for (int i = 0; i < dim; i++) {
+        for (int j = 0; j < dim; j++) y[n * dim + i] += value[i * dim + j] * xk[j];
+      }
+    }
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*
+  ElasticitySetSymmetric - Says whether the tangent, with the blocks that others add, is symmetric
+
+  Logically collective; before the first ElasticityMatrix()
+
+  Input:
++ e         - the elasticity
+- symmetric - PETSC_TRUE is the default
+*/
+PetscErrorCode ElasticitySetSymmetric(Elasticity e, PetscBool symmetric)
+{
+  PetscFunctionBeginUser;
+  PetscCheck(!e->matrix, e->mesh->comm, PETSC_ERR_ARG_WRONGSTATE, "the matrix exists already");
+  e->symmetric = symmetric;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Free dofs that this rank owns */
+static PetscErrorCode CountOwnedDofs(Mesh mesh, const PetscInt *dofs, PetscInt *count)
+{
+  PetscMPIInt rank;
+
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Comm_rank(mesh->comm, &rank));
+  *count = 0;
+  for (PetscInt n = 0; n < mesh->n_nodes; n++) {
+    for (int i = 0; i < mesh->dim && mesh->node_owner[n] == rank; i++) *count += dofs[n * mesh->dim + i] >= 0;
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* A pattern joined with that of another matrix (NULL: none). */
+static PetscErrorCode JoinPattern(Elasticity e, Mat other)
+{
+  PetscFunctionBeginUser;
+  PetscCall(NodeMatrixJoin(e->matrix, other));
+  if (e->symmetric) {
+    PetscCall(MatSetOption(NodeMatrixGet(e->matrix), MAT_SYMMETRIC, PETSC_TRUE));
+    PetscCall(MatSetOption(NodeMatrixGet(e->matrix), MAT_SYMMETRY_ETERNAL, PETSC_TRUE));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode CreateMatrix(Elasticity e)
+{
+  NodePairs pairs = {e->dim, e->mesh->n_nodes, NULL, e->row, e->column};
+  PetscInt  owned;
+
+  PetscFunctionBeginUser;
+  PetscCall(MeshGetGlobalDofs(e->mesh, &pairs.dof));
+  PetscCall(CountOwnedDofs(e->mesh, pairs.dof, &owned));
+  PetscCall(NodeMatrixCreate(e->mesh->comm, owned, &pairs, &e->matrix));
+  PetscCall(JoinPattern(e, NULL));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*
+  ElasticityMatrix - The tangent over the global free dofs, from the local block CSRs of all ranks
+
+  Collective
+
+  Input:
++ e - the elasticity
+- C - the last matrix of ElasticityMatrixJoin(), which is added; NULL: nothing is
+
+  Output:
++ diagonal - of the tangent without C, over the global free dofs; NULL: it is not asked for
+- matrix   - a parallel AIJ matrix, always the same one; belongs to the elasticity
+*/
+PetscErrorCode ElasticityMatrix(Elasticity e, Mat C, Vec diagonal, Mat *matrix)
+{
+  PetscFunctionBeginUser;
+  if (!e->matrix) PetscCall(CreateMatrix(e));
+  PetscCall(PetscLogEventBegin(event_insert, 0, 0, 0, 0));
+  PetscCall(NodeMatrixSet(e->matrix, e->value, C, diagonal));
+  PetscCall(PetscLogEventEnd(event_insert, 0, 0, 0, 0));
+  *matrix = NodeMatrixGet(e->matrix);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*
+  ElasticityMatrixJoin - Makes room in the matrix for what another one adds to it
+
+  Collective; after the first ElasticityMatrix(). Values are undefined until the next one
+
+  Input:
++ e - the elasticity
+- C - an AIJ matrix over the global free dofs, in which all dofs of a node are coupled to the same ones
+*/
+PetscErrorCode ElasticityMatrixJoin(Elasticity e, Mat C)
+{
+  PetscFunctionBeginUser;
+  PetscCall(JoinPattern(e, C));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Adds one cell's share to its nodes */
+static void AddCellStress(Elasticity e, const CellGroup *g, PetscInt slot, const PetscReal *u, PetscReal *stress, PetscReal *weight)
+{
+  const Element  *element = ElementGet(g->kernel.type);
+  const size_t    batch = slot / KERNEL_LANES, lane = slot % KERNEL_LANES;
+  const PetscInt *nodes = &e->mesh->cell_nodes[e->mesh->cell_ptr[g->cell[slot]]];
+  PetscReal       X[MAX_DOFS], cell_u[MAX_DOFS], point_stress[ELEMENT_MAX_POINTS * 6], point_volume[ELEMENT_MAX_POINTS], volume = 0;
+
+  for (int a = 0; a < g->nodes; a++) {
+    for (int i = 0; i < e->dim; i++) {
+      X[a * e->dim + i]      = g->X[((batch * g->nodes + a) * e->dim + i) * KERNEL_LANES + lane];
+      cell_u[a * e->dim + i] = u[nodes[a] * e->dim + i];
+    }
+  }
+  ElementPointStress(&g->kernel, X, cell_u, g->E[slot], g->nu[slot], point_stress, point_volume);
+  for (int p = 0; p < element->points; p++) volume += point_volume[p];
+  for (int a = 0; a < g->nodes; a++) {
+    weight[nodes[a]] += volume;
+    for (int p = 0; p < element->points; p++) {
+      for (int c = 0; c < 6; c++) stress[nodes[a] * 6 + c] += volume * element->fit[a][p] * point_stress[p * 6 + c];
+    }
+  }
+}
+
+/*
+  ElasticityNodalStress - Cauchy stress at the nodes, this rank's share
+
+  Not collective
+
+  Input:
++ e - the elasticity
+- u - local displacements (length) [n_nodes*dim]
+
+  Output:
++ stress - volume of the cells around a node times their stress there [n_nodes*6]: xx yy zz xy yz xz; axisymmetric: rr zz hoop rz 0 0
+- weight - volume of the cells around a node [n_nodes]
+
+  Notes:
+  The caller sums both over the ranks and divides. Inside a cell the stress is the least-squares fit of the corner shape functions (one
+  point: a constant) to the quadrature points, so that second-order cells reproduce linear stress fields at every node, on boundaries too.
+*/
+PetscErrorCode ElasticityNodalStress(Elasticity e, const PetscReal *u, PetscReal *stress, PetscReal *weight)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscArrayzero(stress, e->mesh->n_nodes * 6));
+  PetscCall(PetscArrayzero(weight, e->mesh->n_nodes));
+  for (int g = 0; g < e->n_groups; g++) {
+    for (PetscInt slot = 0; slot < e->groups[g].n_cells; slot++) AddCellStress(e, &e->groups[g], slot, u, stress, weight);
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*
+  ElasticityCellModulus - Young's modulus (stress) of a local cell: the stiffness that the automatic penalty is measured by
+
+  Not collective
+*/
+PetscReal ElasticityCellModulus(Elasticity e, PetscInt cell)
+{
+  return e->cell_modulus[cell];
+}
+
+/*
+  ElasticityInvertedCell - a local cell that the last ElasticityResidual() found with det F <= 0, or -1
+
+  Not collective
+*/
+PetscInt ElasticityInvertedCell(Elasticity e)
+{
+  return e->inverted;
+}

@@ -1,0 +1,177 @@
+#include "contact/activeset.h"
+
+/* Sets tried with the columns at hand. Each follows from the gaps that the one before leads to; what is not settled by then goes in circles. */
+#define PRESSING_SETS 30
+/* Rounding of a pressure, by itself */
+#define PRESSING_ROUND_OFF 1e-12
+
+struct _n_Pressing {
+  PetscInt      n, m;
+  PressingTerm *terms;
+  PetscReal    *travel, *end; /* n; end: with the excess at hand */
+  PetscBool    *pressed;      /* n: the set at hand */
+  PetscInt     *column;       /* n: -1: none */
+  PetscInt     *term;         /* of each column */
+  PetscReal    *G, *excess;   /* m*n, m */
+};
+
+/* PressingCreate - Not collective. */
+PetscErrorCode PressingCreate(PetscInt n, const PressingTerm *terms, const PetscReal *travel, Pressing *out)
+{
+  Pressing p;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscNew(&p));
+  p->n = n;
+  PetscCall(PetscMalloc5(n, &p->terms, n, &p->travel, n, &p->end, n, &p->pressed, n, &p->column));
+  PetscCall(PetscArraycpy(p->terms, terms, n));
+  PetscCall(PetscArraycpy(p->travel, travel, n));
+  PetscCall(PetscArraycpy(p->end, travel, n));
+  for (PetscInt i = 0; i < n; i++) {
+    p->pressed[i] = (PetscBool)(terms[i].opening + travel[i] < 0);
+    p->column[i]  = -1;
+  }
+  *out = p;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* PressingDestroy - Not collective. */
+PetscErrorCode PressingDestroy(Pressing *pressing)
+{
+  Pressing p = *pressing;
+
+  PetscFunctionBeginUser;
+  if (!p) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscFree5(p->terms, p->travel, p->end, p->pressed, p->column));
+  PetscCall(PetscFree(p->term));
+  PetscCall(PetscFree(p->G));
+  PetscCall(PetscFree(p->excess));
+  PetscCall(PetscFree(*pressing));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* PressingAddColumns - Not collective. */
+PetscErrorCode PressingAddColumns(Pressing p, PetscInt m, const PetscInt *which, const PetscReal *G)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscRealloc((p->m + m) * sizeof(PetscInt), &p->term));
+  PetscCall(PetscRealloc((p->m + m) * sizeof(PetscReal), &p->excess));
+  PetscCall(PetscRealloc((p->m + m) * p->n * sizeof(PetscReal), &p->G));
+  PetscCall(PetscArraycpy(&p->G[p->m * p->n], G, m * p->n));
+  for (PetscInt k = 0; k < m; k++) {
+    p->column[which[k]] = p->m;
+    p->excess[p->m]     = 0;
+    p->term[p->m++]     = which[k];
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The pressure of residual and tangent at a travel, less the law's, is start + rate travel; both vanish where these know the term as it is. */
+static void Excess(const PressingTerm *term, PetscBool pressed, PetscReal *start, PetscReal *rate)
+{
+  *start = term->pressure + (pressed ? term->penalty * term->opening : 0);
+  *rate  = (pressed ? term->penalty : 0) - term->stiffness;
+  if (PetscAbsReal(*start) <= PRESSING_ROUND_OFF * PetscAbsReal(term->pressure)) *start = 0;
+}
+
+/* Terms of the set at hand that need a column and have none */
+static PetscInt Missing(Pressing p, PetscInt *which)
+{
+  PetscInt m = 0;
+
+  for (PetscInt i = 0; i < p->n; i++) {
+    PetscReal start, rate;
+
+    Excess(&p->terms[i], p->pressed[i], &start, &rate);
+    if (p->column[i] < 0 && (start != 0 || rate != 0)) which[m++] = i;
+  }
+  return m;
+}
+
+/* The excess of the set at hand: e - rate (travel - G e) = start. regular: it can be had. */
+static PetscErrorCode Balance(Pressing p, PetscBool *regular)
+{
+  const PetscInt m = p->m;
+  PetscScalar   *a, *b;
+  PetscReal     *A;
+  PetscErrorCode code;
+  Mat            matrix;
+  Vec            right, e;
+
+  PetscFunctionBeginUser;
+  PetscCall(MatCreateSeqDense(PETSC_COMM_SELF, m, m, NULL, &matrix));
+  PetscCall(MatCreateVecs(matrix, &e, &right));
+  PetscCall(MatDenseGetArray(matrix, &a));
+  PetscCall(VecGetArray(right, &b));
+  for (PetscInt j = 0; j < m; j++) {
+    PetscReal start, rate;
+
+    Excess(&p->terms[p->term[j]], p->pressed[p->term[j]], &start, &rate);
+    b[j] = start + rate * p->travel[p->term[j]];
+    A    = &p->G[p->term[j]];
+    for (PetscInt l = 0; l < m; l++) a[l * m + j] = (l == j) + rate * A[l * p->n];
+  }
+  PetscCall(VecRestoreArray(right, &b));
+  PetscCall(MatDenseRestoreArray(matrix, &a));
+  PetscCall(PetscPushErrorHandler(PetscReturnErrorHandler, NULL)); /* a pivot of exactly zero is an error to PETSc */
+  code = MatLUFactor(matrix, NULL, NULL, NULL);
+  PetscCall(PetscPopErrorHandler());
+  *regular = code ? PETSC_FALSE : PETSC_TRUE;
+  if (*regular) {
+    PetscCall(MatSolve(matrix, right, e));
+    PetscCall(VecGetArray(e, &b));
+    for (PetscInt j = 0; j < m; j++) {
+      p->excess[j] = PetscRealPart(b[j]);
+      if (PetscIsInfOrNanReal(p->excess[j])) *regular = PETSC_FALSE;
+    }
+    PetscCall(VecRestoreArray(e, &b));
+  }
+  PetscCall(MatDestroy(&matrix));
+  PetscCall(VecDestroy(&right));
+  PetscCall(VecDestroy(&e));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The set that the excess at hand leads to; is it another one? */
+static PetscBool Follow(Pressing p)
+{
+  PetscBool changed = PETSC_FALSE;
+
+  for (PetscInt i = 0; i < p->n; i++) {
+    PetscBool pressed;
+
+    p->end[i] = p->travel[i];
+    for (PetscInt j = 0; j < p->m; j++) p->end[i] -= p->G[j * p->n + i] * p->excess[j];
+    pressed       = (PetscBool)(p->terms[i].opening + p->end[i] < 0);
+    changed       = (PetscBool)(changed || pressed != p->pressed[i]);
+    p->pressed[i] = pressed;
+  }
+  return changed;
+}
+
+/* PressingSolve - Not collective. The linear step's contact problem by Newton's method, which here is that of its active sets.
+
+   Source: Josephy, Newton's method for generalized equations, 1979 (the problem linearised but for its contact conditions); Hintermueller, Ito, Kunisch, The
+   primal-dual active set strategy as a semismooth Newton method, SIAM J. Optim. 13 (2003) 865-888. */
+PetscErrorCode PressingSolve(Pressing p, PetscInt *m, PetscInt *which, PetscBool *settled)
+{
+  PetscBool regular = PETSC_TRUE, changed = PETSC_TRUE;
+
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < PRESSING_SETS && changed && regular; i++) {
+    *m       = Missing(p, which);
+    *settled = (PetscBool)(!*m && !p->m);
+    if (*m || *settled) PetscFunctionReturn(PETSC_SUCCESS);
+    PetscCall(Balance(p, &regular));
+    if (regular) changed = Follow(p);
+  }
+  *settled = (PetscBool)(regular && !changed);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* PressingGet - Not collective. */
+void PressingGet(Pressing p, const PetscReal **excess, const PetscBool **pressed)
+{
+  *excess  = p->excess;
+  *pressed = p->pressed;
+}

@@ -1,0 +1,99 @@
+#include "anderson.h"
+
+/* Differences of results that are kept. On a cylinder pressed on a block, whose contact set changes on the way, 3 need 33 iterations where 5 need 40 and
+   more than 5 do not always end. */
+#define MIXING_DEPTH 3
+/* Of a difference that the others nearly combine to, the least part of its square that counts as its own: round-off beyond. */
+#define MIXING_RIDGE 1e-10
+
+struct _n_Mixing {
+  MPI_Comm         comm;
+  const PetscReal *weight;
+  PetscInt         n, results;                          /* results: since the start */
+  PetscReal       *g, *f;                               /* the last result and its residual g - x */
+  PetscReal       *dg[MIXING_DEPTH], *df[MIXING_DEPTH]; /* their differences, newest over oldest */
+};
+
+/* MixingCreate - Collective. n: entries of this rank; weight[n]: of inner products, above 0. */
+PetscErrorCode MixingCreate(MPI_Comm comm, PetscInt n, const PetscReal *weight, Mixing *mixing)
+{
+  Mixing m;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscNew(&m));
+  m->comm   = comm;
+  m->n      = n;
+  m->weight = weight;
+  PetscCall(PetscMalloc2(n, &m->g, n, &m->f));
+  for (int k = 0; k < MIXING_DEPTH; k++) PetscCall(PetscMalloc2(n, &m->dg[k], n, &m->df[k]));
+  *mixing = m;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* MixingDestroy - Collective. */
+PetscErrorCode MixingDestroy(Mixing *mixing)
+{
+  PetscFunctionBeginUser;
+  if (!*mixing) PetscFunctionReturn(PETSC_SUCCESS);
+  for (int k = 0; k < MIXING_DEPTH; k++) PetscCall(PetscFree2((*mixing)->dg[k], (*mixing)->df[k]));
+  PetscCall(PetscFree2((*mixing)->g, (*mixing)->f));
+  PetscCall(PetscFree(*mixing));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* MixingStart - Not collective. The next result stands alone. */
+void MixingStart(Mixing m)
+{
+  m->results = 0;
+}
+
+/* A gamma = b by Cholesky's method, in place of b; A[n][n] is a Gram matrix, symmetric and never quite singular with the ridge. */
+static void SolveGram(int n, PetscReal A[][MIXING_DEPTH], PetscReal b[])
+{
+  for (int k = 0; k < n; k++) {
+    const PetscReal square = A[k][k];
+
+    for (int j = 0; j < k; j++) {
+      for (int i = 0; i < j; i++) A[k][j] -= A[k][i] * A[j][i];
+      A[k][j] /= A[j][j];
+      A[k][k] -= PetscSqr(A[k][j]);
+      b[k] -= A[k][j] * b[j];
+    }
+    A[k][k] = square > 0 ? PetscSqrtReal(PetscMax(A[k][k], MIXING_RIDGE * square)) : 1;
+    b[k] /= A[k][k];
+  }
+  for (int k = n - 1; k >= 0; k--) {
+    for (int j = k + 1; j < n; j++) b[k] -= A[j][k] * b[j];
+    b[k] /= A[k][k];
+  }
+}
+
+/* MixingNext - what to put in next, of all combinations of the last results that whose residuals cancel best; after a start the result itself.
+
+   Collective. x[n]: what was put in; g[n]: what came out, replaced. Source: Walker and Ni 2011, SIAM J. Numer. Anal. 49, 1715-1735, eq. 1.1. */
+PetscErrorCode MixingNext(Mixing m, const PetscReal *x, PetscReal *g)
+{
+  const int depth = (int)PetscMin(m->results, MIXING_DEPTH), newest = (int)((m->results + MIXING_DEPTH - 1) % MIXING_DEPTH);
+  PetscReal sum[MIXING_DEPTH + 1][MIXING_DEPTH] = {{0}}, *gamma = sum[MIXING_DEPTH];
+
+  PetscFunctionBeginUser;
+  m->results++;
+  for (PetscInt i = 0; i < m->n; i++) {
+    const PetscReal f = g[i] - x[i];
+
+    if (depth) m->dg[newest][i] = g[i] - m->g[i];
+    if (depth) m->df[newest][i] = f - m->f[i];
+    m->g[i] = g[i];
+    m->f[i] = f;
+    for (int k = 0; k < depth; k++) {
+      for (int j = 0; j < depth; j++) sum[j][k] += m->weight[i] * m->df[j][i] * m->df[k][i];
+      gamma[k] += m->weight[i] * m->df[k][i] * f;
+    }
+  }
+  if (!depth) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sum, (MIXING_DEPTH + 1) * MIXING_DEPTH, MPIU_REAL, MPI_SUM, m->comm));
+  SolveGram(depth, sum, gamma);
+  for (PetscInt i = 0; i < m->n; i++)
+    for (int k = 0; k < depth; k++) g[i] -= gamma[k] * m->dg[k][i];
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

@@ -1,0 +1,155 @@
+#include "contact/contactcycle.h"
+#include "contactimpl.h"
+#include "base/gathertable.h"
+#include <stdint.h>
+
+/* Longest period looked for; those seen have 2 or 3. Two of the longest fit into the default number of iterations. */
+#define CYCLE_LONGEST 8
+/* A residual that falls below this part of what it was a period before is progress. */
+#define CYCLE_PROGRESS 0.5
+/* Nodes named in a message. */
+#define CYCLE_NAMED 8
+
+enum { CYCLE_ITERATES = 2 * CYCLE_LONGEST + 1 };
+
+struct _n_ContactCycle {
+  Contact        contact;
+  PetscInt       n;     /* terms of this rank, all pairs */
+  PetscInt       looks; /* iterates of this solve */
+  uint64_t       set[CYCLE_ITERATES];
+  PetscReal      residual[CYCLE_ITERATES];
+  unsigned char *closed; /* [CYCLE_ITERATES][n] */
+};
+
+/* ContactCycleCreate - Not collective. The contact is borrowed. */
+PetscErrorCode ContactCycleCreate(Contact contact, ContactCycle *out)
+{
+  ContactCycle cycle;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscNew(&cycle));
+  cycle->contact = contact;
+  for (int p = 0; p < contact->n_pairs; p++) cycle->n += contact->pairs[p].n;
+  PetscCall(PetscCalloc1(CYCLE_ITERATES * cycle->n, &cycle->closed));
+  *out = cycle;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* ContactCycleDestroy - Not collective. */
+PetscErrorCode ContactCycleDestroy(ContactCycle *cycle)
+{
+  PetscFunctionBeginUser;
+  if (!*cycle) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscFree((*cycle)->closed));
+  PetscCall(PetscFree(*cycle));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* ContactCycleStart - forgets the iterates so far. Not collective. */
+PetscErrorCode ContactCycleStart(ContactCycle cycle)
+{
+  PetscFunctionBeginUser;
+  cycle->looks = 0;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Spreads a node's number over 64 bits, so that sums of them tell sets apart (the finaliser of Steele, Lea and Flood's SplitMix, 2014). */
+static uint64_t Spread(uint64_t x)
+{
+  x += 0x9e3779b97f4a7c15;
+  x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9;
+  x = (x ^ (x >> 27)) * 0x94d049bb133111eb;
+  return x ^ (x >> 31);
+}
+
+/* The present set: its number, the same on all ranks, and this rank's part of it. */
+static PetscErrorCode TakeSet(ContactCycle cycle, PetscInt slot)
+{
+  const Contact  contact = cycle->contact;
+  unsigned char *closed  = &cycle->closed[slot * cycle->n];
+  uint64_t       sum     = 0;
+
+  PetscFunctionBeginUser;
+  for (int p = 0; p < contact->n_pairs; p++) {
+    const ContactPair *pair = &contact->pairs[p];
+
+    for (PetscInt c = 0; c < pair->n; c++) {
+      *closed = pair->now.status[c] == CONTACT_CLOSED;
+      if (*closed++) sum += Spread((uint64_t)contact->mesh->node_id[pair->node[c]] * (uint64_t)contact->n_pairs + (uint64_t)p);
+    }
+  }
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &sum, 1, MPI_UINT64_T, MPI_SUM, contact->mesh->comm));
+  cycle->set[slot] = sum;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Place of the iterate `back` looks ago */
+static PetscInt Slot(ContactCycle cycle, PetscInt back)
+{
+  return (cycle->looks - 1 - back) % CYCLE_ITERATES;
+}
+
+/* Have the last `period` sets come in the same order before, and has the residual stayed? */
+static PetscBool Repeats(ContactCycle cycle, PetscInt period)
+{
+  for (PetscInt i = 0; i < period; i++)
+    if (cycle->set[Slot(cycle, i)] != cycle->set[Slot(cycle, i + period)]) return PETSC_FALSE;
+  return (PetscBool)(cycle->residual[Slot(cycle, 0)] > CYCLE_PROGRESS * cycle->residual[Slot(cycle, period)]);
+}
+
+/* ContactCycleLook - whether the sets in contact of the last iterates repeat those before.
+
+   Collective; once for each iterate, after its ContactResidual() with forces. residual: a norm of it, the same on all ranks. *period: of the cycle
+   that ends here, at least 2, or 0; *steady: how many iterates before this one had the same set. */
+PetscErrorCode ContactCycleLook(ContactCycle cycle, PetscReal residual, PetscInt *period, PetscInt *steady)
+{
+  PetscInt known;
+
+  PetscFunctionBeginUser;
+  cycle->looks++;
+  known = PetscMin(cycle->looks, CYCLE_ITERATES);
+  PetscCall(TakeSet(cycle, Slot(cycle, 0)));
+  cycle->residual[Slot(cycle, 0)] = residual;
+  *period = *steady = 0;
+  while (*steady + 1 < known && cycle->set[Slot(cycle, *steady + 1)] == cycle->set[Slot(cycle, 0)]) ++*steady;
+  if (*steady) PetscFunctionReturn(PETSC_SUCCESS);
+  for (PetscInt p = 2; !*period && p <= CYCLE_LONGEST && 2 * p <= known; p++)
+    if (Repeats(cycle, p)) *period = p;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* ContactCycleLocate - "the contact set repeats every 3 iterations: 2 nodes come and go, of the pair 'crown' node 17, node 21", into text[size].
+
+   Collective; after ContactCycleLook() has found that period. */
+PetscErrorCode ContactCycleLocate(ContactCycle cycle, PetscInt period, char *text, size_t size)
+{
+  const Contact contact = cycle->contact;
+  PetscReal    *rows;
+  PetscInt      n = 0, i = 0;
+  Table         table;
+  size_t        used;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(2 * cycle->n, &rows));
+  for (int p = 0; p < contact->n_pairs; p++) {
+    for (PetscInt c = 0; c < contact->pairs[p].n; c++, i++) {
+      PetscBool changes = PETSC_FALSE;
+
+      for (PetscInt back = 1; back < period; back++)
+        changes = (PetscBool)(changes || cycle->closed[Slot(cycle, back) * cycle->n + i] != cycle->closed[Slot(cycle, 0) * cycle->n + i]);
+      if (!changes) continue;
+      rows[2 * n]       = p;
+      rows[2 * n++ + 1] = contact->mesh->node_tag[contact->pairs[p].node[c]];
+    }
+  }
+  PetscCall(TableGather(contact->mesh->comm, 2, n, rows, &table));
+  PetscCall(PetscFree(rows));
+  PetscCall(PetscSNPrintf(text, size, "the contact set repeats every %" PetscInt_FMT " iterations, %" PetscInt_FMT " nodes come and go:", period, table.n));
+  for (PetscInt k = 0; k < PetscMin(table.n, CYCLE_NAMED); k++) {
+    PetscCall(PetscStrlen(text, &used));
+    PetscCall(PetscSNPrintf(text + used, size - used, "%s node %.0f of '%s'", k ? "," : "", (double)table.row[2 * k + 1],
+                            ContactPairName(contact, (int)table.row[2 * k])));
+  }
+  PetscCall(TableDestroy(&table));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

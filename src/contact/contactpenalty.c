@@ -1,0 +1,241 @@
+#include "contactimpl.h"
+#include "penaltylaw.h"
+
+/* A penetration is known well enough to be judged when the last iterate moved it by no more than this part of g_min. */
+#define CONTACT_SETTLED 0.1
+/* Times in one step that the penalties of a pair are adjusted until their window holds. A penalty that starts 1e8 times too small needs four with
+   the default clamp, neighbours that share the load two or three more. */
+#define CONTACT_MAX_ADJUST 12
+
+static PenaltyRule TermRule(const ContactPair *pair, PetscInt c)
+{
+  const SceneContact *scene = pair->scene;
+  const PetscReal     unit  = scene->window_in_spacings ? pair->size[c] : 1;
+
+  return PenaltyMakeRule(unit * scene->g_min, unit * scene->g_max, scene->adjust_converged, scene->clamp, pair->automatic, scene->range);
+}
+
+/* Negative: apart; NaN: no master near */
+static PetscReal TermPenetration(const ContactPair *pair, PetscInt c)
+{
+  return ContactTermOffset(pair, c, pair->t) - pair->now.gap[c];
+}
+
+/* What the rule says of a term in the present state. */
+static PenaltyUpdate TermUpdate(const ContactPair *pair, PetscInt c, PetscReal largest)
+{
+  const PenaltyRule rule = TermRule(pair, c);
+  PenaltyUpdate     update;
+
+  PenaltyAdjust(&rule, TermPenetration(pair, c), largest > 0 ? ContactTermForce(pair, c) / largest : 0, pair->now.penalty[c], &update);
+  return update;
+}
+
+static PetscBool AnyAdjusts(Contact contact, int converged)
+{
+  for (int p = 0; p < contact->n_pairs; p++)
+    if (contact->pairs[p].scene->adjust && contact->pairs[p].scene->adjust_converged == converged) return PETSC_TRUE;
+  return PETSC_FALSE;
+}
+
+static PetscBool AnyAugments(Contact contact)
+{
+  for (int p = 0; p < contact->n_pairs; p++)
+    if (contact->pairs[p].scene->augment) return PETSC_TRUE;
+  return PETSC_FALSE;
+}
+
+/* Largest force of a term of all pairs in the present state. */
+static PetscErrorCode LargestForce(Contact contact, PetscReal *largest)
+{
+  PetscFunctionBeginUser;
+  *largest = 0;
+  for (int p = 0; p < contact->n_pairs; p++)
+    for (PetscInt c = 0; c < contact->pairs[p].n; c++) *largest = PetscMax(*largest, ContactTermForce(&contact->pairs[p], c));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, largest, 1, MPIU_REAL, MPI_MAX, contact->mesh->comm));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Penalties and counts of `to` follow the present penetrations, if they may once more. count[0]: terms that miss the window, but for those whose penalty
+   would have to fall below its bound (a penetration that is too small is no error); count[1]: penalties that changed. */
+static PetscErrorCode PairAdjust(ContactPair *pair, PetscReal largest, ContactState *to, ContactWindowState *state)
+{
+  const PetscBool may      = (PetscBool)(pair->updates < CONTACT_MAX_ADJUST);
+  PetscInt        count[2] = {0, 0};
+
+  PetscFunctionBeginUser;
+  for (PetscInt c = 0; c < pair->n; c++) {
+    const PenaltyUpdate update = TermUpdate(pair, c, largest);
+
+    count[0] += update.outside > 0 || (update.outside < 0 && update.change != PENALTY_KEPT);
+    count[1] += may && update.change != PENALTY_KEPT;
+    if (!may) continue;
+    to->penalty[c] = update.penalty;
+    to->raised += update.change == PENALTY_RAISED;
+    to->lowered += update.change == PENALTY_LOWERED;
+    to->clamped += update.clamped;
+    to->light += update.light;
+    if (update.change != PENALTY_KEPT) pair->before[c] = NAN; /* its gap is to be found anew */
+  }
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, count, 2, MPIU_INT, MPI_SUM, pair->mesh->comm));
+  *state = !count[0] ? WINDOW_HOLDS : count[1] ? WINDOW_MISSED : WINDOW_AT_BOUND;
+  pair->updates += *state == WINDOW_MISSED;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* ContactAdjustPenalty - new penalties for the nodes outside the window, or multipliers, of the pairs that are solved until it holds.
+
+   Collective. To be called after a converged solve, in the state of its last ContactResidual(). WINDOW_HOLDS: nothing was changed; WINDOW_MISSED:
+   the step is to be solved again; WINDOW_AT_BOUND: nodes are outside, and no penalty could be changed, or they were too often. Source: Chamoret et al. 2004,
+   eq. 16. */
+PetscErrorCode ContactAdjustPenalty(Contact contact, ContactWindowState *state)
+{
+  PetscReal largest;
+
+  PetscFunctionBeginUser;
+  *state = WINDOW_HOLDS;
+  if (!AnyAdjusts(contact, 1) && !AnyAugments(contact)) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscLogEventBegin(contact->event_adjust, 0, 0, 0, 0));
+  PetscCall(LargestForce(contact, &largest));
+  for (int p = 0; p < contact->n_pairs; p++) {
+    ContactPair       *pair = &contact->pairs[p];
+    ContactWindowState one  = WINDOW_HOLDS;
+
+    if (pair->scene->adjust && pair->scene->adjust_converged) PetscCall(PairAdjust(pair, largest, &pair->now, &one));
+    if (pair->scene->augment) PetscCall(ContactPairAugment(pair, &one));
+    if (one == WINDOW_MISSED || *state == WINDOW_HOLDS) *state = one; /* what changes for one pair may bring the others inside */
+  }
+  PetscCall(PetscLogEventEnd(contact->event_adjust, 0, 0, 0, 0));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* ContactAdjustNextPenalty - new penalties for the next step, of the pairs that are adjusted from step to step.
+
+   Collective, after ContactAccept(): the present state keeps the penalties it was solved with, ContactRestore() brings the new ones.
+   Source: Chamoret et al. 2004, eq. 16. */
+PetscErrorCode ContactAdjustNextPenalty(Contact contact)
+{
+  ContactWindowState ignored;
+  PetscReal          largest;
+
+  PetscFunctionBeginUser;
+  if (!AnyAdjusts(contact, 0)) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscLogEventBegin(contact->event_adjust, 0, 0, 0, 0));
+  PetscCall(LargestForce(contact, &largest));
+  for (int p = 0; p < contact->n_pairs; p++) {
+    ContactPair *pair = &contact->pairs[p];
+
+    if (pair->scene->adjust && !pair->scene->adjust_converged) PetscCall(PairAdjust(pair, largest, &pair->accepted, &ignored));
+  }
+  PetscCall(PetscLogEventEnd(contact->event_adjust, 0, 0, 0, 0));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* ContactGapsSettled - whether every closed node of the pairs that adjust moved by no more than a tenth of g_min since the last call.
+
+   Collective; once for each iterate, after its ContactResidual() with forces. The first call in a solve compares with the accepted state. */
+PetscErrorCode ContactGapsSettled(Contact contact, PetscBool *settled)
+{
+  int yes = 1, any = 0;
+
+  PetscFunctionBeginUser;
+  for (int p = 0; p < contact->n_pairs; p++) {
+    ContactPair *pair = &contact->pairs[p];
+
+    if (!pair->scene->adjust) continue;
+    any = 1;
+    for (PetscInt c = 0; c < pair->n; c++) {
+      const PetscReal moved = PetscAbsReal(pair->now.gap[c] - pair->before[c]);
+
+      if (pair->now.status[c] == CONTACT_CLOSED && !(moved <= CONTACT_SETTLED * TermRule(pair, c).g_min)) yes = 0;
+      pair->before[c] = pair->now.gap[c];
+    }
+  }
+  if (any) PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &yes, 1, MPI_INT, MPI_LAND, contact->mesh->comm));
+  *settled = yes ? PETSC_TRUE : PETSC_FALSE;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* ContactPairWindow - how the present penetrations of pair p stand to the window, and what the adjustment did so far, over all ranks. Collective. */
+PetscErrorCode ContactPairWindow(Contact contact, int p, ContactWindow *window)
+{
+  const ContactPair *pair     = &contact->pairs[p];
+  PetscInt           count[6] = {0, 0, pair->now.raised, pair->now.lowered, pair->now.clamped, pair->now.light};
+  PetscReal          largest, excess = 0;
+
+  PetscFunctionBeginUser;
+  if (pair->scene->augment) {
+    PetscCall(ContactPairBeyond(pair, window));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  PetscCall(LargestForce(contact, &largest));
+  for (PetscInt c = 0; c < pair->n && pair->scene->adjust; c++) {
+    count[0] += ContactTermForce(pair, c) >= PENALTY_LOADED * largest && pair->now.status[c] == CONTACT_CLOSED;
+    count[1] += TermUpdate(pair, c, largest).outside != 0;
+    if (pair->now.status[c] == CONTACT_CLOSED) excess = PetscMax(excess, TermPenetration(pair, c) / TermRule(pair, c).g_max);
+  }
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, count, 6, MPIU_INT, MPI_SUM, contact->mesh->comm));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &excess, 1, MPIU_REAL, MPI_MAX, contact->mesh->comm));
+  *window =
+    (ContactWindow){.loaded = count[0], .outside = count[1], .excess = excess, .raised = count[2], .lowered = count[3], .clamped = count[4], .light = count[5]};
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* ContactLocateOutside - the pair and node (gmsh's tag) that misses its window by the largest factor, with its penetration and penalty, into
+   text[size]. Collective. */
+PetscErrorCode ContactLocateOutside(Contact contact, char *text, size_t size)
+{
+  PetscReal largest, worst[5] = {-1, 0, 0, 0, 0}; /* tag, penetration, penalty, pair, whether the penalty is at its bound */
+  struct {
+    double factor;
+    int    rank;
+  } mine = {0, 0}, most;
+
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Comm_rank(contact->mesh->comm, &mine.rank));
+  PetscCall(LargestForce(contact, &largest));
+  for (int p = 0; p < contact->n_pairs; p++) {
+    const ContactPair *pair = &contact->pairs[p];
+
+    for (PetscInt c = 0; pair->scene->adjust && c < pair->n; c++) {
+      const PenaltyRule rule        = TermRule(pair, c);
+      const PetscReal   penetration = TermPenetration(pair, c);
+      const int         outside     = TermUpdate(pair, c, largest).outside;
+      const PetscReal   factor      = outside > 0 ? penetration / rule.g_max : rule.g_min / PetscMax(penetration, PETSC_SMALL * rule.g_min);
+
+      if (!outside || factor <= mine.factor) continue;
+      mine.factor = factor;
+      worst[0]    = contact->mesh->node_tag[pair->node[c]];
+      worst[1]    = penetration;
+      worst[2]    = pair->now.penalty[c];
+      worst[3]    = p;
+      worst[4]    = outside > 0 && pair->now.penalty[c] >= rule.most;
+    }
+  }
+  PetscCallMPI(MPI_Allreduce(&mine, &most, 1, MPI_DOUBLE_INT, MPI_MAXLOC, contact->mesh->comm));
+  PetscCallMPI(MPI_Bcast(worst, 5, MPIU_REAL, most.rank, contact->mesh->comm));
+  PetscCall(PetscSNPrintf(text, size, "contact '%s': node %.0f is the farthest outside, penetration %g, penalty %g%s", ContactPairName(contact, (int)worst[3]),
+                          (double)worst[0], (double)worst[1], (double)worst[2], worst[4] > 0 ? " (penalty.range allows no more)" : ""));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* ContactSoften - until the next call no penalty counts for more than `most` times its pair's automatic one, in energy, force and tangent.
+
+   Not collective, the same on all ranks. PETSC_MAX_REAL: all count for what they are. The penalties themselves stay. */
+PetscErrorCode ContactSoften(Contact contact, PetscReal most)
+{
+  PetscFunctionBeginUser;
+  for (int p = 0; p < contact->n_pairs; p++) contact->pairs[p].most = most < PETSC_MAX_REAL ? most * contact->pairs[p].automatic : PETSC_MAX_REAL;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* ContactStiffest - the largest penalty, in automatic ones of its pair. Collective, the same on all ranks. */
+PetscErrorCode ContactStiffest(Contact contact, PetscReal *most)
+{
+  PetscFunctionBeginUser;
+  *most = 0;
+  for (int p = 0; p < contact->n_pairs; p++)
+    for (PetscInt c = 0; c < contact->pairs[p].n; c++) *most = PetscMax(*most, contact->pairs[p].now.penalty[c] / contact->pairs[p].automatic);
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, most, 1, MPIU_REAL, MPI_MAX, contact->mesh->comm));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

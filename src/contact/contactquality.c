@@ -1,0 +1,149 @@
+#include "contactimpl.h"
+#include "mesh/meshdofs.h"
+
+/* Gaps below this part of a face size are round-off of coordinates and projections. */
+#define QUALITY_ROUND_OFF 1e-9
+
+/* The place of the node of this value, largest of all ranks: of those that differ by round-off the one of lowest tag. value[c] of each term; tag -1: none
+   has any. */
+static PetscErrorCode FindPlace(Mesh mesh, const ContactPair *pair, const PetscReal value[], PetscReal largest, ContactPlace *place)
+{
+  PetscReal X[3] = {PETSC_MIN_REAL, PETSC_MIN_REAL, PETSC_MIN_REAL};
+  PetscInt  tag = PETSC_MAX_INT, node = -1;
+
+  PetscFunctionBeginUser;
+  for (PetscInt c = 0; c < pair->n; c++) {
+    if (!(value[c] >= largest - QUALITY_ROUND_OFF * pair->slave->mean_size) || mesh->node_tag[pair->node[c]] >= tag) continue;
+    node = pair->node[c];
+    tag  = mesh->node_tag[node];
+  }
+  PetscCallMPI(MPI_Allreduce(&tag, &place->tag, 1, MPIU_INT, MPI_MIN, mesh->comm));
+  if (tag == place->tag && node >= 0) MeshNodePlace(mesh, node, X);
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, X, 3, MPIU_REAL, MPIU_MAX, mesh->comm));
+  if (place->tag == PETSC_MAX_INT) place->tag = -1;
+  for (int d = 0; d < 3; d++) place->X[d] = place->tag >= 0 ? X[d] : 0;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* ContactPairGaps - how the surfaces of pair p lie to each other in the present state.
+
+   Collective, after ContactResidual(); meant for the state before any load. Offsets (g_0) do not count. */
+PetscErrorCode ContactPairGaps(Contact contact, int p, ContactGaps *gaps)
+{
+  const ContactPair *pair     = &contact->pairs[p];
+  PetscInt           count[4] = {pair->n, 0, 0, 0};
+  PetscReal          range[2] = {PETSC_MIN_REAL, PETSC_MIN_REAL}, area = 0, *depth; /* -least, most */
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(pair->n, &depth));
+  for (PetscInt c = 0; c < pair->n; c++) {
+    const PetscReal gap = PetscAbsReal(pair->now.gap[c]) <= QUALITY_ROUND_OFF * pair->size[c] ? 0 : pair->now.gap[c];
+
+    depth[c] = -gap;
+    if (PetscIsNanReal(gap)) continue;
+    count[1]++;
+    count[2] += gap < 0;
+    count[3] += gap < -ContactTouchTolerance(pair, c);
+    if (gap < 0) area += pair->area[c];
+    range[1] = PetscMax(range[1], gap);
+    range[0] = PetscMax(range[0], -gap);
+  }
+  *gaps = (ContactGaps){.least = 0};
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, count, 4, MPIU_INT, MPI_SUM, contact->mesh->comm));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, range, 2, MPIU_REAL, MPIU_MAX, contact->mesh->comm));
+  PetscCall(FindPlace(contact->mesh, pair, depth, range[0], &gaps->deepest));
+  PetscCall(PetscFree(depth));
+  PetscCallMPI(MPI_Allreduce(&area, &gaps->area, 1, MPIU_REAL, MPIU_SUM, contact->mesh->comm));
+  gaps->nodes       = count[0];
+  gaps->near        = count[1];
+  gaps->overlapping = count[2];
+  gaps->refused     = count[3];
+  gaps->least       = count[1] ? -range[0] : 0;
+  gaps->most        = count[1] ? range[1] : 0;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* How far first-order facets lie off the curved surface whose normals turn as theirs do; this rank's sum and number of slave points */
+static void SumSagitta(const ContactPair *pair, PetscMPIInt rank, PetscReal sum[2])
+{
+  if (!pair->master || pair->master->order > 1) return;
+  for (PetscInt q = 0; q < pair->lists->n_slaves; q++) {
+    if (pair->lists->facet_ptr[q] == pair->lists->facet_ptr[q + 1] || !SlavePointIsOwn(pair->slaves, q, rank)) continue;
+    sum[0] += pair->lists->kappa[q] * PetscSqr(pair->master->mean_size) / 8;
+    sum[1]++;
+  }
+}
+
+/* ContactPairQuality - penetrations of pair p in the present state, against the size of its faces and of what facets leave out. Collective. */
+PetscErrorCode ContactPairQuality(Contact contact, int p, ContactQuality *quality)
+{
+  const ContactPair *pair  = &contact->pairs[p];
+  PetscInt           nodes = 0;
+  PetscMPIInt        rank;
+  PetscReal          most[2] = {0, 0}, sum[2] = {0, 0}, *depth;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(pair->n, &depth));
+  for (PetscInt c = 0; c < pair->n; c++) {
+    const PetscReal penetration = ContactTermOffset(pair, c, pair->t) - pair->now.gap[c];
+
+    depth[c] = pair->now.status[c] == CONTACT_CLOSED ? penetration : NAN;
+    if (pair->now.status[c] != CONTACT_CLOSED) continue;
+    nodes++;
+    most[0] = PetscMax(most[0], penetration);
+    most[1] = PetscMax(most[1], penetration / pair->size[c]);
+  }
+  PetscCallMPI(MPI_Comm_rank(contact->mesh->comm, &rank));
+  SumSagitta(pair, rank, sum);
+  *quality = (ContactQuality){.nodes = 0};
+  PetscCallMPI(MPI_Allreduce(&nodes, &quality->nodes, 1, MPIU_INT, MPI_SUM, contact->mesh->comm));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, most, 2, MPIU_REAL, MPIU_MAX, contact->mesh->comm));
+  PetscCall(FindPlace(contact->mesh, pair, depth, most[0], &quality->deepest));
+  PetscCall(PetscFree(depth));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sum, 2, MPIU_REAL, MPIU_SUM, contact->mesh->comm));
+  quality->max_penetration        = most[0];
+  quality->max_penetration_over_h = most[1];
+  quality->sagitta                = sum[1] > 0 ? sum[0] / sum[1] : 0;
+  if (quality->sagitta <= QUALITY_ROUND_OFF * pair->slave->mean_size) quality->sagitta = 0;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* ContactPairJoined - how many slave nodes of pair p are nodes of its master as well: there the surfaces are one and never part. Collective. */
+PetscErrorCode ContactPairJoined(Contact contact, int p, PetscInt *nodes, ContactPlace *place)
+{
+  const ContactPair *pair = &contact->pairs[p];
+  Mesh               mesh = contact->mesh;
+  PetscReal         *of_master, *joined;
+
+  PetscFunctionBeginUser;
+  *nodes = 0;
+  if (!pair->master || pair->master->rigid) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscMalloc2(mesh->n_nodes, &of_master, pair->n, &joined));
+  PetscCall(PetscArrayzero(of_master, mesh->n_nodes));
+  for (PetscInt f = 0; f < pair->master->n_faces; f++) {
+    const Facet *face = &pair->master->faces[f];
+
+    for (int i = 0; i < ElementGet(face->type)->nodes; i++) of_master[face->nodes[i]] = 1;
+  }
+  PetscCall(MeshSumNodes(mesh, 1, of_master));
+  for (PetscInt c = 0; c < pair->n; c++) {
+    joined[c] = of_master[pair->node[c]] > 0 ? 1 : NAN;
+    *nodes += of_master[pair->node[c]] > 0;
+  }
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, nodes, 1, MPIU_INT, MPI_SUM, mesh->comm));
+  PetscCall(FindPlace(mesh, pair, joined, 1, place));
+  PetscCall(PetscFree2(of_master, joined));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* ContactNodeGap - smallest gap of a local node among all pairs that it is a slave of, in the present state; NaN: of none, no master near, or another
+   rank's node. Not collective. */
+PetscReal ContactNodeGap(Contact contact, PetscInt node)
+{
+  PetscReal gap = NAN;
+
+  for (int p = 0; p < contact->n_pairs; p++)
+    for (PetscInt c = 0; c < contact->pairs[p].n; c++)
+      if (contact->pairs[p].node[c] == node) gap = fmin(gap, contact->pairs[p].now.gap[c]);
+  return gap;
+}

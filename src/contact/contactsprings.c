@@ -1,0 +1,138 @@
+#include "contact/contactsprings.h"
+#include "contactimpl.h"
+
+/* Stiffness of the springs as a part of the automatic penalty, which is the stiffness of the elements at the surface. Each pass leaves about this part (times
+   the elements through a body) of the force of the pass before; a body that flies covers its penetration at rest divided by this in one pass. */
+#define STABILISER_STIFFNESS 1e-3
+
+struct _n_Stabiliser {
+  Vec stiffness, anchor, work; /* force per length of each free dof; where the spring has no force */
+};
+
+/* Adds to each owned node of a deformable surface its area times the stiffness. */
+static PetscErrorCode AddSurface(ContactSurface surface, Geometry geometry, PetscReal stiffness, PetscReal *values)
+{
+  Mesh        mesh = surface->mesh;
+  PetscReal  *area;
+  PetscMPIInt rank;
+
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Comm_rank(mesh->comm, &rank));
+  PetscCall(PetscMalloc1(mesh->n_nodes, &area));
+  PetscCall(SurfaceNodeAreas(surface, geometry, NULL, area, NULL));
+  for (PetscInt i = 0; i < surface->group->n_nodes; i++) {
+    const PetscInt node = surface->group->nodes[i];
+
+    for (int d = 0; d < mesh->dim && mesh->node_owner[node] == rank; d++) values[node * mesh->dim + d] += stiffness * PetscMax(area[node], 0);
+  }
+  PetscCall(PetscFree(area));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* StabiliserCreate - springs on the deformable surfaces of all pairs that ask for it, slave and master.
+
+   Collective. The contact is borrowed for the call. like: vector of the free dofs, whose layout is taken; the anchor is 0.
+
+   Source: the proximal point method (Rockafellar 1976) on the potential energy. */
+PetscErrorCode StabiliserCreate(Contact contact, Vec like, Stabiliser *out)
+{
+  Stabiliser s;
+  PetscReal *values;
+  PetscBool  any = PETSC_FALSE;
+
+  PetscFunctionBeginUser;
+  *out = NULL;
+  for (int p = 0; p < contact->n_pairs; p++) any = (PetscBool)(any || contact->pairs[p].scene->stabilise);
+  if (!any) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscNew(&s));
+  PetscCall(VecDuplicate(like, &s->stiffness));
+  PetscCall(VecDuplicate(like, &s->anchor));
+  PetscCall(VecDuplicate(like, &s->work));
+  PetscCall(VecZeroEntries(s->anchor));
+  PetscCall(PetscCalloc1(contact->mesh->n_nodes * contact->mesh->dim, &values));
+  for (int p = 0; p < contact->n_pairs; p++) {
+    const ContactPair *pair = &contact->pairs[p];
+
+    if (!pair->scene->stabilise) continue;
+    PetscCall(AddSurface(pair->slave, pair->geometry, STABILISER_STIFFNESS * pair->automatic, values));
+    if (pair->master && pair->master->group) PetscCall(AddSurface(pair->master, pair->geometry, STABILISER_STIFFNESS * pair->automatic, values));
+  }
+  PetscCall(MeshLocalToGlobal(contact->mesh, values, s->stiffness));
+  PetscCall(PetscFree(values));
+  *out = s;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* StabiliserDestroy - Collective. */
+PetscErrorCode StabiliserDestroy(Stabiliser *s)
+{
+  PetscFunctionBeginUser;
+  if (!*s) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(VecDestroy(&(*s)->stiffness));
+  PetscCall(VecDestroy(&(*s)->anchor));
+  PetscCall(VecDestroy(&(*s)->work));
+  PetscCall(PetscFree(*s));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* StabiliserRelax - the springs' ends follow to x (free displacements), where their force is 0. Collective. */
+PetscErrorCode StabiliserRelax(Stabiliser s, Vec x)
+{
+  PetscFunctionBeginUser;
+  if (s) PetscCall(VecCopy(x, s->anchor));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Their forces at x, into the work vector */
+static PetscErrorCode SpringForces(Stabiliser s, Vec x)
+{
+  PetscFunctionBeginUser;
+  PetscCall(VecWAXPY(s->work, -1, s->anchor, x));
+  PetscCall(VecPointwiseMult(s->work, s->work, s->stiffness));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* StabiliserResidual - F += the springs' forces at x. Collective. */
+PetscErrorCode StabiliserResidual(Stabiliser s, Vec x, Vec F)
+{
+  PetscFunctionBeginUser;
+  if (!s) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(SpringForces(s, x));
+  PetscCall(VecAXPY(F, 1, s->work));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* StabiliserLoad - norm of the springs' forces and their energy at x; 0 without springs. Collective. */
+PetscErrorCode StabiliserLoad(Stabiliser s, Vec x, PetscReal *force, PetscReal *energy)
+{
+  PetscScalar work[2] = {0, 0};
+
+  PetscFunctionBeginUser;
+  *force = *energy = 0;
+  if (!s) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(SpringForces(s, x));
+  PetscCall(VecNorm(s->work, NORM_2, force));
+  PetscCall(VecDot(s->work, x, &work[0]));
+  PetscCall(VecDot(s->work, s->anchor, &work[1]));
+  *energy = PetscRealPart(work[0] - work[1]) / 2;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* StabiliserEnergy - adds the springs' energy at x. Collective. */
+PetscErrorCode StabiliserEnergy(Stabiliser s, Vec x, PetscReal *energy)
+{
+  PetscReal force, mine;
+
+  PetscFunctionBeginUser;
+  PetscCall(StabiliserLoad(s, x, &force, &mine));
+  *energy += mine;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* StabiliserTangent - A += the springs' stiffness, on the diagonal. Collective. */
+PetscErrorCode StabiliserTangent(Stabiliser s, Mat A)
+{
+  PetscFunctionBeginUser;
+  if (s) PetscCall(MatDiagonalSet(A, s->stiffness, ADD_VALUES));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

@@ -1,0 +1,70 @@
+#include "contact/contactstate.h"
+
+/* ContactStateCreate - open, unstressed, gaps unknown. Not collective. n: slave nodes; penalty: force per length and area. */
+PetscErrorCode ContactStateCreate(PetscInt n, PetscReal penalty, ContactState *state)
+{
+  PetscFunctionBeginUser;
+  state->n = n;
+  PetscCall(PetscCalloc5(n, &state->penalty, n, &state->status, n, &state->gap, n, &state->offset, n, &state->multiplier));
+  for (PetscInt c = 0; c < n; c++) {
+    state->penalty[c] = penalty;
+    state->gap[c]     = NAN;
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* ContactStateCopy - everything, between states of one size. Not collective. */
+PetscErrorCode ContactStateCopy(const ContactState *from, ContactState *to)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscArraycpy(to->penalty, from->penalty, from->n));
+  PetscCall(PetscArraycpy(to->status, from->status, from->n));
+  PetscCall(PetscArraycpy(to->gap, from->gap, from->n));
+  PetscCall(PetscArraycpy(to->offset, from->offset, from->n));
+  PetscCall(PetscArraycpy(to->multiplier, from->multiplier, from->n));
+  to->raised    = from->raised;
+  to->lowered   = from->lowered;
+  to->clamped   = from->clamped;
+  to->light     = from->light;
+  to->augmented = from->augmented;
+  to->missed    = from->missed;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* ContactStateDestroy - Not collective. */
+PetscErrorCode ContactStateDestroy(ContactState *state)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscFree5(state->penalty, state->status, state->gap, state->offset, state->multiplier));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* ContactStateArchive - Collective. name: where it stands in the archive; nodes: the rows of the state's n slave nodes. */
+PetscErrorCode ContactStateArchive(ContactState *state, Archive archive, const char *name, const Rows *nodes)
+{
+  PetscReal *const   values[]  = {state->penalty, NULL, state->gap, state->offset, state->multiplier};
+  static const char *names[]   = {"penalty", "status", "gap", "offset", "multiplier"};
+  PetscInt          *updates[] = {&state->raised, &state->lowered, &state->clamped, &state->light, &state->augmented, &state->missed};
+  PetscInt           all[PETSC_STATIC_ARRAY_LENGTH(updates)];
+  PetscReal         *status;
+  PetscMPIInt        rank;
+  char               path[PETSC_MAX_PATH_LEN];
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(state->n, &status));
+  for (PetscInt c = 0; c < state->n; c++) status[c] = state->status[c];
+  for (size_t k = 0; k < PETSC_STATIC_ARRAY_LENGTH(values); k++) {
+    PetscCall(PetscSNPrintf(path, sizeof(path), "%s/%s", name, names[k]));
+    PetscCall(ArchiveRows(archive, path, nodes, 1, values[k] ? values[k] : status));
+  }
+  for (PetscInt c = 0; c < state->n; c++) state->status[c] = (ContactStatus)status[c];
+  PetscCall(PetscFree(status));
+  PetscCallMPI(MPI_Comm_rank(PetscObjectComm((PetscObject)nodes->sf), &rank));
+  for (size_t k = 0; k < PETSC_STATIC_ARRAY_LENGTH(updates); k++) all[k] = *updates[k];
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, all, PETSC_STATIC_ARRAY_LENGTH(updates), MPIU_INT, MPI_SUM, PetscObjectComm((PetscObject)nodes->sf)));
+  PetscCall(PetscSNPrintf(path, sizeof(path), "%s/updates", name));
+  PetscCall(ArchiveIntegers(archive, path, PETSC_STATIC_ARRAY_LENGTH(updates), all));
+  for (size_t k = 0; k < PETSC_STATIC_ARRAY_LENGTH(updates) && ArchiveLoads(archive); k++)
+    *updates[k] = rank ? 0 : all[k]; /* counts of all ranks together: where they stand does not matter */
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

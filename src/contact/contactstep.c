@@ -1,0 +1,283 @@
+#include "contact/contactstep.h"
+#include "contactimpl.h"
+
+/* Gaps change by the motions of two bodies; and as what opens or closes changes the step, by more than the step as it is says. */
+#define STEP_REACH 3
+/* Numbers of a PressingTerm */
+#define STEP_TERM 4
+
+struct _n_ContactStep {
+  Contact       contact;
+  PetscReal    *reach; /* of each pair */
+  PetscInt      n, mine;
+  PetscMPIInt   rank, *count, *first; /* terms of each rank */
+  PressingTerm *terms;                /* n */
+  PetscInt     *pair, *term;          /* of mine */
+  PetscReal    *area;
+  PetscInt     *ptr, *node; /* gap's first variation, over contact nodes of the pair */
+  PetscReal    *N;          /* dim for each of these */
+};
+
+/* How contact nodes of a pair move with du, tools and an analytic master included: values[lists n_nodes*dim], the caller's. */
+static PetscErrorCode PairMove(Contact contact, ContactPair *pair, const PetscReal *du, PetscReal t, PetscReal t_next, PetscReal **values)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(pair->lists->n_nodes * contact->mesh->dim, values));
+  PetscCall(ContactPairMove(contact, pair, du, t, t_next, *values));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Longest motion of a pair's contact nodes, all ranks */
+static PetscErrorCode PairMotion(Contact contact, ContactPair *pair, const PetscReal *du, PetscReal t, PetscReal t_next, PetscReal *motion)
+{
+  const int  dim = contact->mesh->dim;
+  PetscReal *values;
+
+  PetscFunctionBeginUser;
+  *motion = 0;
+  PetscCall(PairMove(contact, pair, du, t, t_next, &values));
+  for (PetscInt i = 0; i < pair->lists->n_nodes; i++) {
+    PetscReal square = 0;
+
+    for (int d = 0; d < dim; d++) square += PetscSqr(values[i * dim + d]);
+    *motion = PetscMax(*motion, PetscSqrtReal(square));
+  }
+  PetscCall(PetscFree(values));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, motion, 1, MPIU_REAL, MPI_MAX, contact->mesh->comm));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Adds a term of a pair, in its state at the last projection and without its variation, if the step may reach its gap. */
+static void AddTerm(ContactStep step, int p, PetscInt c, PetscReal t)
+{
+  const ContactPair *pair  = &step->contact->pairs[p];
+  const LawState     state = ContactTermState(pair, c, t);
+  LawValue           value;
+  PetscReal          opening;
+
+  ContactTermLaw(pair, c, t, &value, &opening, &step->area[step->mine]);
+  opening -= LawRest(&state);
+  if (!(PetscAbsReal(opening) <= step->reach[p])) return; /* nor where no master is near */
+  step->terms[step->mine]  = (PressingTerm){.opening = opening, .pressure = value.pressure, .stiffness = pair->stiffness[c], .penalty = state.penalty};
+  step->pair[step->mine]   = p;
+  step->term[step->mine++] = c;
+}
+
+/* Adds the variations of a pair's terms, the last ones from `from` on. */
+static PetscErrorCode AddVariations(ContactStep step, int p, PetscInt from)
+{
+  const ContactPair *pair = &step->contact->pairs[p];
+  const int          dim  = step->contact->mesh->dim;
+
+  PetscFunctionBeginUser;
+  for (PetscInt i = from; i < step->mine; i++) {
+    const PetscInt  c = step->term[i], first = step->ptr[i];
+    const PetscInt *nodes;
+    PetscInt        n;
+
+    PetscCall(ContactVariationsNodes(pair, pair->term_ptr[c + 1] - pair->term_ptr[c], &pair->term_point[pair->term_ptr[c]]));
+    n                = pair->work->count;
+    nodes            = pair->work->number;
+    step->ptr[i + 1] = first + n;
+    PetscCall(PetscRealloc((first + n) * sizeof(PetscInt), &step->node));
+    PetscCall(PetscRealloc((first + n) * dim * sizeof(PetscReal), &step->N));
+    PetscCall(PetscArraycpy(&step->node[first], nodes, n));
+    PetscCall(PetscArrayzero(&step->N[first * dim], n * dim));
+    PetscCall(ContactBlockBegin(pair, n, nodes));
+    ContactTermVary(pair, c, 1 / step->area[i], &step->N[first * dim]);
+    ContactBlockEnd(pair, n, nodes);
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The terms of a pair whose gaps the step may reach. */
+static PetscErrorCode AddPair(ContactStep step, int p, const PetscReal *u, PetscReal t)
+{
+  ContactPair   *pair = &step->contact->pairs[p];
+  const PetscInt from = step->mine;
+
+  PetscFunctionBeginUser;
+  PetscCall(ContactPairProject(step->contact, pair, u, t));
+  for (PetscInt c = 0; c < pair->n; c++) AddTerm(step, p, c, t);
+  PetscCall(AddVariations(step, p, from));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* size values of each of my terms in their places among those of all ranks. */
+static PetscErrorCode Gather(ContactStep step, PetscInt size, const PetscReal *mine, PetscReal *all)
+{
+  MPI_Comm     comm = step->contact->mesh->comm;
+  MPI_Datatype block;
+
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Type_contiguous((PetscMPIInt)size, MPIU_REAL, &block));
+  PetscCallMPI(MPI_Type_commit(&block));
+  PetscCallMPI(MPI_Allgatherv(mine, step->count[step->rank], block, all, step->count, step->first, block, comm));
+  PetscCallMPI(MPI_Type_free(&block));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* My terms become those of all ranks. */
+static PetscErrorCode GatherTerms(ContactStep step)
+{
+  MPI_Comm      comm = step->contact->mesh->comm;
+  PetscMPIInt   size, mine = (PetscMPIInt)step->mine;
+  PressingTerm *own = step->terms;
+  PetscReal    *from, *to;
+
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Comm_size(comm, &size));
+  PetscCallMPI(MPI_Comm_rank(comm, &step->rank));
+  PetscCall(PetscMalloc2(size, &step->count, size + 1, &step->first));
+  PetscCallMPI(MPI_Allgather(&mine, 1, MPI_INT, step->count, 1, MPI_INT, comm));
+  step->first[0] = 0;
+  for (PetscMPIInt r = 0; r < size; r++) step->first[r + 1] = step->first[r] + step->count[r];
+  step->n = step->first[size];
+  PetscCall(PetscMalloc2(STEP_TERM * step->mine, &from, STEP_TERM * step->n, &to));
+  for (PetscInt i = 0; i < step->mine; i++) {
+    from[STEP_TERM * i]     = own[i].opening;
+    from[STEP_TERM * i + 1] = own[i].pressure;
+    from[STEP_TERM * i + 2] = own[i].stiffness;
+    from[STEP_TERM * i + 3] = own[i].penalty;
+  }
+  PetscCall(Gather(step, STEP_TERM, from, to));
+  PetscCall(PetscFree(step->terms));
+  PetscCall(PetscMalloc1(step->n, &step->terms));
+  for (PetscInt i = 0; i < step->n; i++)
+    step->terms[i] = (PressingTerm){to[STEP_TERM * i], to[STEP_TERM * i + 1], to[STEP_TERM * i + 2], to[STEP_TERM * i + 3]};
+  PetscCall(PetscFree2(from, to));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* ContactStepCreate - the terms whose gaps the step may reach.
+
+   Collective. u, du[n_nodes*dim]: local displacements and their change (length), ghosts included. ContactPredict() holds what it does until the step is taken.
+ */
+PetscErrorCode ContactStepCreate(Contact contact, const PetscReal *u, const PetscReal *du, PetscReal t, PetscReal t_next, ContactStep *out)
+{
+  ContactStep step;
+  PetscInt    most = 0;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscNew(&step));
+  step->contact = contact;
+  for (int p = 0; p < contact->n_pairs; p++) most += contact->pairs[p].n;
+  PetscCall(PetscMalloc1(most, &step->terms));
+  PetscCall(PetscMalloc4(most, &step->pair, most, &step->term, most, &step->area, most + 1, &step->ptr));
+  step->ptr[0] = 0;
+  PetscCall(PetscMalloc1(contact->n_pairs, &step->reach));
+  for (int p = 0; p < contact->n_pairs; p++) {
+    PetscCall(PairMotion(contact, &contact->pairs[p], du, t, t_next, &step->reach[p]));
+    step->reach[p] *= STEP_REACH;
+    PetscCall(AddPair(step, p, u, t));
+  }
+  PetscCall(GatherTerms(step));
+  *out = step;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* ContactStepDestroy - Not collective. */
+PetscErrorCode ContactStepDestroy(ContactStep *step)
+{
+  ContactStep s = *step;
+
+  PetscFunctionBeginUser;
+  if (!s) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscFree(s->reach));
+  PetscCall(PetscFree(s->terms));
+  PetscCall(PetscFree4(s->pair, s->term, s->area, s->ptr));
+  PetscCall(PetscFree2(s->count, s->first));
+  PetscCall(PetscFree(s->node));
+  PetscCall(PetscFree(s->N));
+  PetscCall(PetscFree(*step));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* ContactStepGetTerms - Not collective. */
+PetscErrorCode ContactStepGetTerms(ContactStep step, PetscInt *n, const PressingTerm **terms)
+{
+  PetscFunctionBeginUser;
+  *n     = step->n;
+  *terms = step->terms;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The change of a term's gap, summed by components so that a product does not wait for the one before it. */
+static inline PetscReal TermTravel(const int dim, const PetscReal *N, PetscInt n, const PetscInt *node, const PetscReal *values)
+{
+  PetscReal sum[3] = {0, 0, 0};
+
+  for (PetscInt i = 0; i < n; i++)
+    for (int d = 0; d < dim; d++) sum[d] += N[i * dim + d] * values[node[i] * dim + d];
+  return sum[0] + sum[1] + sum[2];
+}
+
+/* ContactStepTravel - change of the gaps (length) with du, to first order. Collective. */
+PetscErrorCode ContactStepTravel(ContactStep step, const PetscReal *du, PetscReal t, PetscReal t_next, PetscReal *travel)
+{
+  const int  dim = step->contact->mesh->dim;
+  PetscReal *mine, *values;
+  PetscInt   i = 0;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(step->mine, &mine));
+  for (int p = 0; p < step->contact->n_pairs; p++) {
+    PetscCall(PairMove(step->contact, &step->contact->pairs[p], du, t, t_next, &values));
+    for (; i < step->mine && step->pair[i] == p; i++) {
+      const PetscInt first = step->ptr[i], n = step->ptr[i + 1] - first;
+
+      mine[i] =
+        dim == 3 ? TermTravel(3, &step->N[first * 3], n, &step->node[first], values) : TermTravel(2, &step->N[first * 2], n, &step->node[first], values);
+    }
+    PetscCall(PetscFree(values));
+  }
+  PetscCall(Gather(step, 1, mine, travel));
+  PetscCall(PetscFree(mine));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* ContactStepWithin - Collective. du, t, t_next: as of ContactStepCreate(). */
+PetscErrorCode ContactStepWithin(ContactStep step, const PetscReal *du, PetscReal t, PetscReal t_next, PetscBool *within)
+{
+  PetscReal motion;
+
+  PetscFunctionBeginUser;
+  *within = PETSC_TRUE;
+  for (int p = 0; p < step->contact->n_pairs; p++) {
+    PetscCall(PairMotion(step->contact, &step->contact->pairs[p], du, t, t_next, &motion));
+    *within = (PetscBool)(*within && motion <= step->reach[p]);
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* ContactStepForces - Collective. which[m]: numbers of terms, the same on all ranks. */
+PetscErrorCode ContactStepForces(ContactStep step, PetscInt rows, PetscInt m, const PetscInt *which, Mat *B)
+{
+  const int dim = step->contact->mesh->dim;
+
+  PetscFunctionBeginUser;
+  PetscCall(MatCreateDense(step->contact->mesh->comm, rows, PETSC_DECIDE, PETSC_DETERMINE, m, NULL, B));
+  for (PetscInt j = 0; j < m; j++) {
+    const PetscInt i = which[j] - step->first[step->rank];
+
+    if (i < 0 || i >= step->mine) continue;
+    for (PetscInt k = step->ptr[i] * dim; k < step->ptr[i + 1] * dim; k++)
+      PetscCall(
+        MatSetValue(*B, step->contact->pairs[step->pair[i]].lists->dof[step->node[k / dim] * dim + k % dim], j, step->area[i] * step->N[k], ADD_VALUES));
+  }
+  PetscCall(MatAssemblyBegin(*B, MAT_FINAL_ASSEMBLY));
+  PetscCall(MatAssemblyEnd(*B, MAT_FINAL_ASSEMBLY));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* ContactStepForesee - Not collective. */
+PetscErrorCode ContactStepForesee(ContactStep step, const PetscBool *pressed)
+{
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < step->mine; i++) {
+    const ContactPair *pair = &step->contact->pairs[step->pair[i]];
+
+    if (pair->predicting) pair->foreseen[step->term[i]] = pressed[step->first[step->rank] + i];
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

@@ -1,0 +1,145 @@
+#include "contactimpl.h"
+#include "base/gathertable.h"
+
+/* Gaps up to this part of the face size are no gaps: the node touches already, and no load step makes it touch later. */
+#define CONTACT_RESTING 1e-9
+
+/* What is known of the slave points at one time; NaN: no master near */
+typedef struct {
+  PetscReal *gap, *facet; /* by the pair's smoother; by facets */
+  PetscBool *fitted;
+} Distances;
+
+static PetscErrorCode PairMeasure(ContactPair *pair, const PetscReal *u, PetscReal t, Distances *out)
+{
+  const PetscInt n = pair->lists->n_slaves;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc3(n, &out->gap, n, &out->facet, n, &out->fitted));
+  PetscCall(ListsUpdate(pair->search, pair->lists, u, t, NULL));
+  pair->projected = PETSC_FALSE; /* the last projection was elsewhere */
+  for (PetscInt q = 0; q < n; q++) {
+    PetscBool found;
+
+    out->gap[q] = out->facet[q] = NAN;
+    out->fitted[q]              = PETSC_FALSE;
+    if (pair->factor[q] == 0) continue;
+    PetscCall(ContactPointEvaluate(pair, pair->smoother, pair->lists, q, -1, SMOOTHER_GAP, &found));
+    if (!found) continue;
+    out->gap[q]    = pair->work->result.gap;
+    out->fitted[q] = (PetscBool)(pair->master && pair->fit.degree && !pair->work->result.facet_served);
+    if (!pair->master || !pair->fit.degree) continue;
+    PetscCall(ContactPointEvaluate(pair, pair->facets, pair->lists, q, -1, SMOOTHER_GAP, &found));
+    if (found) out->facet[q] = pair->work->result.gap;
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode DistancesDestroy(Distances *d)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscFree3(d->gap, d->facet, d->fitted));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Weighted gaps of a term at both times, from the points known at both; a point that is fitted at only one of them is measured to the facets
+   at both: fit and facets lie apart, and their difference is no approach. NaN: no point. */
+static void TermGaps(const ContactPair *pair, PetscInt c, const Distances *before, const Distances *after, PetscReal gap[2])
+{
+  PetscReal area = 0;
+
+  gap[0] = gap[1] = 0;
+  for (PetscInt i = pair->term_ptr[c]; i < pair->term_ptr[c + 1]; i++) {
+    const PetscInt  q    = pair->term_point[i];
+    const PetscBool same = (PetscBool)(before->fitted[q] == after->fitted[q]);
+    const PetscReal g[2] = {same ? before->gap[q] : before->facet[q], same ? after->gap[q] : after->facet[q]};
+
+    if (PetscIsNanReal(g[0]) || PetscIsNanReal(g[1])) continue;
+    area += pair->term_weight[i] * pair->factor[q];
+    for (int k = 0; k < 2; k++) gap[k] += pair->term_weight[i] * pair->factor[q] * g[k];
+  }
+  for (int k = 0; k < 2; k++) gap[k] = area > 0 ? gap[k] / area : NAN;
+}
+
+/* Room for the touches of all pairs on this rank, three columns each */
+static PetscErrorCode TouchRows(Contact contact, PetscReal **rows)
+{
+  PetscInt n = 0;
+
+  PetscFunctionBeginUser;
+  for (int p = 0; p < contact->n_pairs; p++) n += contact->pairs[p].n;
+  PetscCall(PetscMalloc1(3 * n, rows));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* ContactTouches - beta_k of the open slave nodes that approach their masters from (u_0, t_0) to (u, t), sorted, on all ranks.
+
+   Collective. u_0, u [n_nodes*dim]: local displacements (length) within the reach of the present lists; by_area: a node weighs its reference
+   area (else 1); still_open: only nodes that are open at (u, t). *touch: to be freed with PetscFree(). Source: Chamoret et al. 2004, eqs 17, 18. */
+PetscErrorCode ContactTouches(Contact contact, const PetscReal *u_0, PetscReal t_0, const PetscReal *u, PetscReal t, PetscBool by_area, PetscBool still_open,
+                              int *n, Touch **touch)
+{
+  PetscReal *rows;
+  PetscInt   count = 0;
+  Table      table;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscLogEventBegin(contact->event_touch, 0, 0, 0, 0));
+  PetscCall(TouchRows(contact, &rows));
+  for (int p = 0; p < contact->n_pairs; p++) {
+    ContactPair *pair = &contact->pairs[p];
+    Distances    before, after;
+
+    PetscCall(PairMeasure(pair, u_0, t_0, &before));
+    PetscCall(PairMeasure(pair, u, t, &after));
+    for (PetscInt c = 0; c < pair->n; c++) {
+      PetscReal gap[2], beta;
+
+      TermGaps(pair, c, &before, &after, gap);
+      gap[0] -= ContactTermRest(pair, c, t_0);
+      gap[1] -= ContactTermRest(pair, c, t);
+      beta = TouchBeta(gap[0], gap[1], CONTACT_RESTING * pair->size[c]);
+      if (PetscIsNanReal(beta) || (still_open && !(gap[1] > 0))) continue;
+      rows[3 * count]     = beta;
+      rows[3 * count + 1] = (PetscReal)contact->mesh->node_id[pair->node[c]] * contact->n_pairs + p;
+      rows[3 * count + 2] = by_area ? pair->area[c] : 1;
+      count++;
+    }
+    PetscCall(DistancesDestroy(&before));
+    PetscCall(DistancesDestroy(&after));
+  }
+  PetscCall(TableGather(contact->mesh->comm, 3, count, rows, &table));
+  PetscCall(PetscMalloc1(table.n, touch));
+  for (PetscInt i = 0; i < table.n; i++) (*touch)[i] = (Touch){table.row[3 * i], table.row[3 * i + 1], table.row[3 * i + 2]};
+  *n = (int)table.n;
+  PetscCall(TableDestroy(&table));
+  PetscCall(PetscFree(rows));
+  PetscCall(PetscLogEventEnd(contact->event_touch, 0, 0, 0, 0));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* ContactChanges - how much came into contact or left it since the accepted state: nodes, or their reference area. A node that touched already
+   is no change: no load step makes it touch later.
+
+   Collective. t_0: load parameter of the accepted state; *all: the same of all slave nodes. */
+PetscErrorCode ContactChanges(Contact contact, PetscReal t_0, PetscBool by_area, PetscReal *changed, PetscReal *all)
+{
+  PetscReal sum[2] = {0, 0};
+
+  PetscFunctionBeginUser;
+  for (int p = 0; p < contact->n_pairs; p++) {
+    const ContactPair *pair = &contact->pairs[p];
+
+    for (PetscInt c = 0; c < pair->n; c++) {
+      const PetscReal weight = by_area ? pair->area[c] : 1, gap = pair->accepted.gap[c] - ContactTermOffset(pair, c, t_0);
+      const PetscBool resting = (PetscBool)(pair->accepted.status[c] == CONTACT_OPEN && gap <= CONTACT_RESTING * pair->size[c]);
+
+      sum[1] += weight;
+      if (pair->now.status[c] != pair->accepted.status[c] && !resting) sum[0] += weight;
+    }
+  }
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sum, 2, MPIU_REAL, MPI_SUM, contact->mesh->comm));
+  *changed = sum[0];
+  *all     = sum[1];
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

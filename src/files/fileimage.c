@@ -1,0 +1,125 @@
+#include "files/fileimage.h"
+#include "files/hdf5table.h"
+#include <errno.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+/* A run of bytes of the file. An image is an array of runs, that of the values' runs inverted, each followed by its bytes; the first one has no bytes,
+   its `first` is the file's length and its `n` the number of runs. */
+typedef struct {
+  int64_t first, n;
+} Run;
+
+/* Where the values of the file's datasets stand */
+typedef struct {
+  size_t n, room;
+  Run   *run;
+} Runs;
+
+static int RunCompare(const void *a, const void *b)
+{
+  const Run *p = a, *q = b;
+
+  return (p->first > q->first) - (p->first < q->first);
+}
+
+static PetscErrorCode RunsAdd(Runs *runs, int64_t first, int64_t n)
+{
+  PetscFunctionBeginUser;
+  if (runs->n == runs->room) {
+    runs->room = 2 * runs->room + 64;
+    PetscCall(PetscRealloc(runs->room * sizeof(Run), &runs->run));
+  }
+  runs->run[runs->n++] = (Run){first, n};
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static herr_t VisitLink(hid_t file, const char *name, const H5L_info_t *info, void *runs)
+{
+  hid_t   object = H5Oopen(file, name, H5P_DEFAULT);
+  haddr_t first  = H5Iget_type(object) == H5I_DATASET ? H5Dget_offset(object) : HADDR_UNDEF;
+
+  (void)info;
+  if (object < 0 || (first != HADDR_UNDEF && RunsAdd(runs, (int64_t)first, (int64_t)H5Dget_storage_size(object)))) return -1;
+  return H5Oclose(object);
+}
+
+/* Everything between the runs. */
+static PetscErrorCode RunsInvert(Runs *runs, int64_t length)
+{
+  Runs    between = {0};
+  int64_t at      = 0;
+
+  PetscFunctionBeginUser;
+  qsort(runs->run, runs->n, sizeof(Run), RunCompare);
+  for (size_t k = 0; k < runs->n; k++) {
+    if (runs->run[k].first > at) PetscCall(RunsAdd(&between, at, runs->run[k].first - at));
+    at = runs->run[k].first + runs->run[k].n;
+  }
+  if (length > at) PetscCall(RunsAdd(&between, at, length - at));
+  PetscCall(PetscFree(runs->run));
+  *runs = between;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* FileImageTake - Not collective. The datasets must be contiguous, as rows.c makes them. Errors: PETSC_ERR_FILE_OPEN, PETSC_ERR_FILE_READ. */
+PetscErrorCode FileImageTake(const char *name, char **data, PetscInt64 *size)
+{
+  Runs        runs = {0};
+  struct stat status;
+  FILE       *stream;
+  char       *at;
+  hid_t       file;
+
+  PetscFunctionBeginUser;
+  file = H5Fopen(name, H5F_ACC_RDONLY, H5P_DEFAULT);
+  PetscCheck(file >= 0, PETSC_COMM_SELF, PETSC_ERR_FILE_OPEN, "HDF5 could not open %s", name);
+  CallHDF5(H5Lvisit(file, H5_INDEX_NAME, H5_ITER_NATIVE, VisitLink, &runs));
+  CallHDF5(H5Fclose(file));
+  stream = fopen(name, "r+b");
+  PetscCheck(stream && !fstat(fileno(stream), &status), PETSC_COMM_SELF, PETSC_ERR_FILE_OPEN, "Cannot read %s: %s", name, strerror(errno));
+  PetscCall(RunsInvert(&runs, (int64_t)status.st_size));
+  *size = sizeof(Run);
+  for (size_t k = 0; k < runs.n; k++) *size += (PetscInt64)sizeof(Run) + runs.run[k].n;
+  PetscCall(PetscMalloc1(*size, data));
+  at         = *data;
+  *(Run *)at = (Run){(int64_t)status.st_size, (int64_t)runs.n};
+  at += sizeof(Run);
+  for (size_t k = 0; k < runs.n; k++) {
+    const size_t n = (size_t)runs.run[k].n;
+
+    memcpy(at, &runs.run[k], sizeof(Run));
+    PetscCheck(!fseeko(stream, runs.run[k].first, SEEK_SET) && fread(at + sizeof(Run), 1, n, stream) == n, PETSC_COMM_SELF, PETSC_ERR_FILE_READ,
+               "Cannot read %s: %s", name, strerror(errno));
+    at += sizeof(Run) + n;
+  }
+  fsync(fileno(stream)); /* the values too: the image speaks of them */
+  fclose(stream);
+  PetscCall(PetscFree(runs.run));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* FileImagePutBack - Not collective. data: of FileImageTake(). Errors: PETSC_ERR_FILE_WRITE. */
+PetscErrorCode FileImagePutBack(const char *name, const char *data, PetscBool *done)
+{
+  struct stat status;
+  FILE       *stream = fopen(name, "r+b");
+  Run         head, run;
+  PetscBool   failed = PETSC_FALSE;
+
+  PetscFunctionBeginUser;
+  memcpy(&head, data, sizeof(Run));
+  *done = stream && !fstat(fileno(stream), &status) && status.st_size >= head.first ? PETSC_TRUE : PETSC_FALSE;
+  data += sizeof(Run);
+  for (int64_t k = 0; *done && k < head.n; k++) {
+    memcpy(&run, data, sizeof(Run));
+    data += sizeof(Run);
+    if (fseeko(stream, run.first, SEEK_SET) || fwrite(data, 1, (size_t)run.n, stream) != (size_t)run.n) failed = PETSC_TRUE;
+    data += run.n;
+  }
+  if (*done && (fflush(stream) || ftruncate(fileno(stream), head.first))) failed = PETSC_TRUE;
+  if (stream && fclose(stream)) failed = PETSC_TRUE;
+  PetscCheck(!failed, PETSC_COMM_SELF, PETSC_ERR_FILE_WRITE, "Cannot write %s: %s", name, strerror(errno));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

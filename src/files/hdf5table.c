@@ -1,0 +1,181 @@
+#include "files/hdf5table.h"
+
+/* RowsCreate - the rows of one table.
+
+   Collective. total: of the table; row[n]: that of each of this rank's items; of items that share a row any one is written. Free with RowsDestroy(). */
+PetscErrorCode RowsCreate(MPI_Comm comm, PetscInt total, PetscInt n, const PetscInt *row, Rows *rows)
+{
+  PetscLayout layout;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscLayoutCreate(comm, &layout));
+  PetscCall(PetscLayoutSetSize(layout, total));
+  PetscCall(PetscLayoutSetUp(layout));
+  PetscCall(PetscLayoutGetLocalSize(layout, &rows->n));
+  PetscCall(PetscLayoutGetRange(layout, &rows->first, NULL));
+  rows->total = total;
+  rows->items = n;
+  PetscCall(PetscSFCreate(comm, &rows->sf));
+  PetscCall(PetscSFSetGraphLayout(rows->sf, layout, n, NULL, PETSC_COPY_VALUES, row));
+  PetscCall(PetscLayoutDestroy(&layout));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* RowsCreateByKey - a table with one row for each key, in ascending order.
+
+   Collective. key[n]: of this rank's items, each key on one rank once. Every rank sees all keys. */
+PetscErrorCode RowsCreateByKey(MPI_Comm comm, PetscInt n, const PetscInt *key, Rows *rows)
+{
+  PetscMPIInt size, mine, total = 0, *counts, *starts;
+  PetscInt   *all, *row;
+
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Comm_size(comm, &size));
+  PetscCall(PetscMPIIntCast(n, &mine));
+  PetscCall(PetscMalloc3(n, &row, size, &counts, size, &starts));
+  PetscCallMPI(MPI_Allgather(&mine, 1, MPI_INT, counts, 1, MPI_INT, comm));
+  for (PetscMPIInt r = 0; r < size; r++) {
+    starts[r] = total;
+    total += counts[r];
+  }
+  PetscCall(PetscMalloc1(total, &all));
+  PetscCallMPI(MPI_Allgatherv(key, mine, MPIU_INT, all, counts, starts, MPIU_INT, comm));
+  PetscCall(PetscSortInt(total, all));
+  for (PetscInt k = 0; k < n; k++) PetscCall(PetscFindInt(key[k], total, all, &row[k]));
+  PetscCall(RowsCreate(comm, total, n, row, rows));
+  PetscCall(PetscFree(all));
+  PetscCall(PetscFree3(row, counts, starts));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* RowsDestroy - Collective. */
+PetscErrorCode RowsDestroy(Rows *rows)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscSFDestroy(&rows->sf));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* RowsCollect - brings items to the ranks that write their rows.
+
+   Collective. items[rows->items * width], values[rows->n * width]: of one MPI type. */
+PetscErrorCode RowsCollect(const Rows *rows, int width, MPI_Datatype type, const void *items, void *values)
+{
+  MPI_Datatype unit;
+
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Type_contiguous(width, type, &unit));
+  PetscCallMPI(MPI_Type_commit(&unit));
+  PetscCall(PetscSFReduceBegin(rows->sf, unit, items, values, MPI_REPLACE));
+  PetscCall(PetscSFReduceEnd(rows->sf, unit, items, values, MPI_REPLACE));
+  PetscCallMPI(MPI_Type_free(&unit));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* RowsSpread - the way back from RowsCollect(). Collective. */
+PetscErrorCode RowsSpread(const Rows *rows, int width, MPI_Datatype type, const void *values, void *items)
+{
+  MPI_Datatype unit;
+
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Type_contiguous(width, type, &unit));
+  PetscCallMPI(MPI_Type_commit(&unit));
+  PetscCall(PetscSFBcastBegin(rows->sf, unit, values, items, MPI_REPLACE));
+  PetscCall(PetscSFBcastEnd(rows->sf, unit, values, items, MPI_REPLACE));
+  PetscCallMPI(MPI_Type_free(&unit));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* RowsWrite - a new dataset, with the groups above it.
+
+   Collective. total: rows of all ranks; values[n * width]: rows first to first + n - 1; type: HDF5's native type of them. */
+PetscErrorCode RowsWrite(hid_t file, const char *path, hsize_t total, hsize_t first, hsize_t n, int width, hid_t type, const void *values)
+{
+  const hsize_t size[2] = {total, (hsize_t)width}, start[2] = {first, 0}, count[2] = {n, (hsize_t)width};
+  const int     rank = width > 1 ? 2 : 1;
+  hid_t         space, memory, links, transfer, data;
+
+  PetscFunctionBeginUser;
+  CallHDF5(space = H5Screate_simple(rank, size, NULL));
+  CallHDF5(memory = H5Screate_simple(rank, count, NULL));
+  CallHDF5(H5Sselect_hyperslab(space, H5S_SELECT_SET, start, NULL, count, NULL));
+  if (!n) {
+    CallHDF5(H5Sselect_none(space));
+    CallHDF5(H5Sselect_none(memory));
+  }
+  CallHDF5(links = H5Pcreate(H5P_LINK_CREATE));
+  CallHDF5(H5Pset_create_intermediate_group(links, 1));
+  CallHDF5(data = H5Dcreate2(file, path, type, space, links, H5P_DEFAULT, H5P_DEFAULT));
+  CallHDF5(transfer = H5Pcreate(H5P_DATASET_XFER));
+  CallHDF5(H5Pset_dxpl_mpio(transfer, H5FD_MPIO_COLLECTIVE));
+  if (total) CallHDF5(H5Dwrite(data, type, memory, space, transfer, values)); /* HDF5 has no place for nothing */
+  CallHDF5(H5Dclose(data));
+  CallHDF5(H5Pclose(transfer));
+  CallHDF5(H5Pclose(links));
+  CallHDF5(H5Sclose(memory));
+  CallHDF5(H5Sclose(space));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Items of a type as a dataset, `size` bytes a value. */
+static PetscErrorCode WriteItems(hid_t file, const char *path, const Rows *rows, int width, MPI_Datatype unit, hid_t type, size_t size, const void *items)
+{
+  char *values;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1((size_t)rows->n * width * size, &values));
+  PetscCall(RowsCollect(rows, width, unit, items, values));
+  PetscCall(RowsWrite(file, path, (hsize_t)rows->total, (hsize_t)rows->first, (hsize_t)rows->n, width, type, values));
+  PetscCall(PetscFree(values));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* RowsWriteReals - items[rows->items * width] as a dataset of doubles. Collective. */
+PetscErrorCode RowsWriteReals(hid_t file, const char *path, const Rows *rows, int width, const PetscReal *items)
+{
+  PetscFunctionBeginUser;
+  PetscCall(WriteItems(file, path, rows, width, MPIU_REAL, H5T_NATIVE_DOUBLE, sizeof(PetscReal), items));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* RowsWriteIntegers - items[rows->items * width] as a dataset of 64-bit integers. Collective. */
+PetscErrorCode RowsWriteIntegers(hid_t file, const char *path, const Rows *rows, int width, const int64_t *items)
+{
+  PetscFunctionBeginUser;
+  PetscCall(WriteItems(file, path, rows, width, MPI_INT64_T, H5T_NATIVE_INT64, sizeof(int64_t), items));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode FileAccess(MPI_Comm comm, hid_t *access)
+{
+  PetscFunctionBeginUser;
+  CallHDF5(*access = H5Pcreate(H5P_FILE_ACCESS));
+  CallHDF5(H5Pset_fapl_mpio(*access, comm, MPI_INFO_NULL));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* RowsCreateFile - a new HDF5 file in the place of any old one, open on all ranks. Collective. Errors: PETSC_ERR_FILE_OPEN. */
+PetscErrorCode RowsCreateFile(MPI_Comm comm, const char *name, hid_t *file)
+{
+  hid_t access;
+
+  PetscFunctionBeginUser;
+  PetscCall(FileAccess(comm, &access));
+  *file = H5Fcreate(name, H5F_ACC_TRUNC, H5P_DEFAULT, access);
+  PetscCheck(*file >= 0, PETSC_COMM_SELF, PETSC_ERR_FILE_OPEN, "HDF5 could not make %s", name);
+  CallHDF5(H5Pclose(access));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* RowsOpenFile - an HDF5 file on all ranks; mode: H5F_ACC_RDWR or H5F_ACC_RDONLY. Collective. Errors: PETSC_ERR_FILE_OPEN. */
+PetscErrorCode RowsOpenFile(MPI_Comm comm, const char *name, unsigned mode, hid_t *file)
+{
+  hid_t access;
+
+  PetscFunctionBeginUser;
+  PetscCall(FileAccess(comm, &access));
+  *file = H5Fopen(name, mode, access);
+  PetscCheck(*file >= 0, PETSC_COMM_SELF, PETSC_ERR_FILE_OPEN, "HDF5 could not open %s", name);
+  CallHDF5(H5Pclose(access));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

@@ -1,0 +1,202 @@
+/* Integrals over one cell at a time: volume, quality, body force, stress. What is called once per step or per run, not per iteration. */
+#include "kernels/elementkernel.h"
+#include <float.h>
+#include <math.h>
+
+static const double two_pi = 6.28318530717958647693;
+
+/* J[k][m] = dX_m/dxi_k; returns its determinant */
+static double Jacobian(int nodes, int dim, const double *dN, int stride, const double *X, double J[3][3])
+{
+  for (int k = 0; k < dim; k++) {
+    for (int m = 0; m < dim; m++) {
+      J[k][m] = 0;
+      for (int a = 0; a < nodes; a++) J[k][m] += dN[a * stride + k] * X[a * dim + m];
+    }
+  }
+  if (dim == 2) return J[0][0] * J[1][1] - J[0][1] * J[1][0];
+  return J[0][0] * (J[1][1] * J[2][2] - J[1][2] * J[2][1]) + J[0][1] * (J[1][2] * J[2][0] - J[1][0] * J[2][2]) +
+         J[0][2] * (J[1][0] * J[2][1] - J[1][1] * J[2][0]);
+}
+
+static double Radius(const Element *e, int p, int dim, const double *X)
+{
+  double radius = 0;
+
+  for (int a = 0; a < e->nodes; a++) radius += e->N[p][a] * X[a * dim];
+  return radius;
+}
+
+/* Reference volume that quadrature point p stands for */
+static double PointVolume(const Element *e, int p, int dim, Geometry geometry, const double *X, double J[3][3])
+{
+  const double volume = e->weight[p] * Jacobian(e->nodes, dim, e->dN[p][0], 3, X, J);
+
+  return geometry == GEOMETRY_AXISYMMETRIC ? volume * two_pi * Radius(e, p, dim, X) : volume;
+}
+
+/* Cauchy stress P F^T / det F; small strains: P itself */
+static void CauchyStress(const double H[9], const double P[9], int finite, double stress[6])
+{
+  static const int component[6][2] = {
+    {0, 0},
+    {1, 1},
+    {2, 2},
+    {0, 1},
+    {1, 2},
+    {0, 2}
+  };
+  double F[9], determinant;
+
+  for (int r = 0; r < 9; r++) F[r] = finite ? H[r] + (r % 4 == 0) : (r % 4 == 0);
+  determinant = F[0] * (F[4] * F[8] - F[5] * F[7]) + F[1] * (F[5] * F[6] - F[3] * F[8]) + F[2] * (F[3] * F[7] - F[4] * F[6]);
+  for (int c = 0; c < 6; c++) {
+    const int i = component[c][0], j = component[c][1];
+
+    stress[c] = (P[3 * i] * F[3 * j] + P[3 * i + 1] * F[3 * j + 1] + P[3 * i + 2] * F[3 * j + 2]) / determinant;
+  }
+}
+
+/*
+  ElementPointStress - Cauchy stress at the quadrature points of one element
+
+  Not collective
+
+  Input:
++ kernel - element type, geometry, kinematics and law
+. X      - reference coordinates (length) [nodes][dim]; axisymmetric: X[.][0] is the radius
+. u      - displacements (length) [nodes][dim]
+- E, nu  - Young's modulus (stress) and Poisson's ratio
+
+  Output:
++ stress - xx yy zz xy yz xz at each point [points][6]; axisymmetric: rr zz hoop rz 0 0
+- volume - reference volume of each point [points]
+*/
+void ElementPointStress(const KernelCase *kernel, const double *X, const double *u, double E, double nu, double *stress, double *volume)
+{
+  const Element *e        = ElementGet(kernel->type);
+  const int      finite   = kernel->kinematics == KINEMATICS_FINITE;
+  const Material material = {kernel->law, E, nu};
+  double         H[ELEMENT_MAX_POINTS * 9];
+
+  ElementPointGradient(kernel, X, u, E, nu, H);
+  for (int p = 0; p < e->points; p++) {
+    double J[3][3], P[9];
+
+    volume[p] = PointVolume(e, p, e->dim, kernel->geometry, X, J);
+    MaterialPoint(&material, finite, &H[9 * p], NULL, P, NULL);
+    CauchyStress(&H[9 * p], P, finite, &stress[6 * p]);
+  }
+}
+
+/*
+  ElementStress - Cauchy stress of one element, averaged over its volume
+
+  Not collective
+
+  Input:
++ kernel - element type, geometry, kinematics and law
+. X      - reference coordinates (length) [nodes][dim]; axisymmetric: X[.][0] is the radius
+. u      - displacements (length) [nodes][dim]
+- E, nu  - Young's modulus (stress) and Poisson's ratio
+
+  Output:
++ stress - xx yy zz xy yz xz; axisymmetric: rr zz hoop rz 0 0
+- volume - reference volume; axisymmetric: over 360 degrees
+*/
+void ElementStress(const KernelCase *kernel, const double *X, const double *u, double E, double nu, double stress[6], double *volume)
+{
+  const int points = ElementGet(kernel->type)->points;
+  double    point_stress[ELEMENT_MAX_POINTS * 6], point_volume[ELEMENT_MAX_POINTS];
+
+  ElementPointStress(kernel, X, u, E, nu, point_stress, point_volume);
+  *volume = 0;
+  for (int c = 0; c < 6; c++) stress[c] = 0;
+  for (int p = 0; p < points; p++) {
+    *volume += point_volume[p];
+    for (int c = 0; c < 6; c++) stress[c] += point_volume[p] * point_stress[6 * p + c];
+  }
+  for (int c = 0; c < 6; c++) stress[c] /= *volume;
+}
+
+/*
+  ElementQuality - Scaled Jacobian of one cell: how far it is from a parallelepiped, and whether it is inverted
+
+  Not collective
+
+  Input:
++ type - element type of a cell
+. dim  - its dimension
+- X    - reference coordinates (length) [nodes][dim]
+
+  Output:
+. quality - smallest determinant of dX/dxi at nodes and quadrature points over its mean: 1 parallelepiped, <= 0 inverted; -1 if the mean
+            itself is not positive
+*/
+double ElementQuality(ElementType type, int dim, const double *X)
+{
+  const Element *e     = ElementGet(type);
+  double         least = DBL_MAX, mean = 0, total = 0, J[3][3], dN[ELEMENT_MAX_NODES * 3];
+
+  for (int p = 0; p < e->points; p++) {
+    const double determinant = Jacobian(e->nodes, dim, e->dN[p][0], 3, X, J);
+
+    least = fmin(least, determinant);
+    mean += e->weight[p] * determinant;
+    total += e->weight[p];
+  }
+  for (int a = 0; a < e->nodes; a++) {
+    ElementShape(type, e->node[a], NULL, dN, NULL);
+    least = fmin(least, Jacobian(e->nodes, dim, dN, dim, X, J));
+  }
+  return mean > 0 ? least * total / mean : -1;
+}
+
+/*
+  BodyForceKernel - External force of a constant body force on one cell
+
+  Not collective
+
+  Input:
++ type     - element type of a cell
+. dim      - its dimension
+. geometry - axisymmetric: forces over 360 degrees
+. X        - reference coordinates (length) [nodes][dim]
+- value    - force per reference volume [dim]
+
+  Output:
+. f - nodal forces [nodes][dim], added to
+*/
+void BodyForceKernel(ElementType type, int dim, Geometry geometry, const double *X, const double *value, double *f)
+{
+  const Element *e = ElementGet(type);
+
+  for (int p = 0; p < e->points; p++) {
+    double       J[3][3];
+    const double volume = PointVolume(e, p, dim, geometry, X, J);
+
+    for (int a = 0; a < e->nodes; a++) {
+      for (int i = 0; i < dim; i++) f[a * dim + i] += volume * e->N[p][a] * value[i];
+    }
+  }
+}
+
+/*
+  CellVolume - Volume of one cell by its quadrature; 2D: its area; axisymmetric: volume over 360 degrees
+
+  Not collective
+
+  Input:
++ type     - element type of a cell
+. dim      - its dimension
+. geometry - solid, plane strain or axisymmetric
+- X        - reference coordinates (length) [nodes][dim]
+*/
+double CellVolume(ElementType type, int dim, Geometry geometry, const double *X)
+{
+  const Element *e      = ElementGet(type);
+  double         volume = 0, J[3][3];
+
+  for (int p = 0; p < e->points; p++) volume += PointVolume(e, p, dim, geometry, X, J);
+  return volume;
+}

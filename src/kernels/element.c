@@ -1,0 +1,362 @@
+/* Reference elements. What a manual lists (corners, edges, faces, orders) stands in the table below; all the rest (middle nodes, shape
+   functions, quadrature tables, fits) is derived from it once, on first use. */
+#include "kernels/element.h"
+#include <stddef.h>
+#include <string.h>
+
+enum { MAX_CORNERS = 8 };
+
+/* clang-format off */
+#define CORNERS_EDGE {{-1, 0, 0}, {1, 0, 0}}
+#define CORNERS_TRI  {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}
+#define CORNERS_QUAD {{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}}
+#define CORNERS_TET  {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}
+#define CORNERS_HEX  {{-1, -1, -1}, {1, -1, -1}, {1, 1, -1}, {-1, 1, -1}, {-1, -1, 1}, {1, -1, 1}, {1, 1, 1}, {-1, 1, 1}}
+#define EDGES_EDGE   {{0, 1}}
+#define EDGES_TRI    {{0, 1}, {1, 2}, {2, 0}}
+#define EDGES_QUAD   {{0, 1}, {1, 2}, {2, 3}, {3, 0}}
+#define EDGES_TET    {{0, 1}, {1, 2}, {2, 0}, {3, 0}, {3, 2}, {3, 1}}
+#define EDGES_HEX    {{0, 1}, {0, 3}, {0, 4}, {1, 2}, {1, 5}, {2, 3}, {2, 6}, {3, 7}, {4, 5}, {4, 7}, {5, 6}, {6, 7}}
+#define FACES_TET    {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {3, 1, 2}}
+#define FACES_HEX    {{0, 3, 2, 1}, {0, 1, 5, 4}, {0, 4, 7, 3}, {1, 2, 6, 5}, {2, 3, 7, 6}, {4, 5, 6, 7}}
+
+/* XDMF numbers and orders are those of its readers in ParaView, which pass connectivity on as VTK's without reordering. */
+static Element element_table[ELEMENT_TYPES] = {
+  [ELEMENT_EDGE2] = {.type = ELEMENT_EDGE2, .name = "edge2", .gmsh = 1, .xdmf = 2, .dim = 1, .order = 1, .nodes = 2, .corners = 2, .edges = 1, .edge_corners = EDGES_EDGE,
+                     .xdmf_order = {0, 1}, .node = CORNERS_EDGE},
+  [ELEMENT_EDGE3] = {.type = ELEMENT_EDGE3, .name = "edge3", .gmsh = 8, .xdmf = 34, .dim = 1, .order = 2, .nodes = 3, .corners = 2, .edges = 1, .edge_corners = EDGES_EDGE,
+                     .xdmf_order = {0, 1, 2}, .node = CORNERS_EDGE},
+  [ELEMENT_TRI3]  = {.type = ELEMENT_TRI3, .name = "tri3", .gmsh = 2, .xdmf = 4, .dim = 2, .order = 1, .nodes = 3, .corners = 3, .faces = 3, .face_type = ELEMENT_EDGE2,
+                     .face_nodes = EDGES_TRI, .edges = 3, .edge_corners = EDGES_TRI, .xdmf_order = {0, 1, 2}, .node = CORNERS_TRI},
+  [ELEMENT_TRI6]  = {.type = ELEMENT_TRI6, .name = "tri6", .gmsh = 9, .xdmf = 36, .dim = 2, .order = 2, .nodes = 6, .corners = 3, .faces = 3, .face_type = ELEMENT_EDGE3,
+                     .face_nodes = EDGES_TRI, .edges = 3, .edge_corners = EDGES_TRI, .xdmf_order = {0, 1, 2, 3, 4, 5}, .node = CORNERS_TRI},
+  [ELEMENT_QUAD4] = {.type = ELEMENT_QUAD4, .name = "quad4", .gmsh = 3, .xdmf = 5, .dim = 2, .order = 1, .nodes = 4, .corners = 4, .faces = 4, .face_type = ELEMENT_EDGE2,
+                     .face_nodes = EDGES_QUAD, .edges = 4, .edge_corners = EDGES_QUAD, .xdmf_order = {0, 1, 2, 3}, .node = CORNERS_QUAD},
+  [ELEMENT_QUAD9] = {.type = ELEMENT_QUAD9, .name = "quad9", .gmsh = 10, .xdmf = 35, .dim = 2, .order = 2, .nodes = 9, .corners = 4, .faces = 4, .face_type = ELEMENT_EDGE3,
+                     .face_nodes = EDGES_QUAD, .edges = 4, .edge_corners = EDGES_QUAD, .xdmf_order = {0, 1, 2, 3, 4, 5, 6, 7, 8}, .node = CORNERS_QUAD},
+  [ELEMENT_TET4]  = {.type = ELEMENT_TET4, .name = "tet4", .gmsh = 4, .xdmf = 6, .dim = 3, .order = 1, .nodes = 4, .corners = 4, .faces = 4, .face_type = ELEMENT_TRI3,
+                     .face_nodes = FACES_TET, .edges = 6, .edge_corners = EDGES_TET, .xdmf_order = {0, 1, 2, 3}, .node = CORNERS_TET},
+  [ELEMENT_TET10] = {.type = ELEMENT_TET10, .name = "tet10", .gmsh = 11, .xdmf = 38, .dim = 3, .order = 2, .nodes = 10, .corners = 4, .faces = 4, .face_type = ELEMENT_TRI6,
+                     .face_nodes = FACES_TET, .edges = 6, .edge_corners = EDGES_TET, .xdmf_order = {0, 1, 2, 3, 4, 5, 6, 7, 9, 8}, .node = CORNERS_TET},
+  [ELEMENT_HEX8]  = {.type = ELEMENT_HEX8, .name = "hex8", .gmsh = 5, .xdmf = 9, .dim = 3, .order = 1, .nodes = 8, .corners = 8, .faces = 6, .face_type = ELEMENT_QUAD4,
+                     .face_nodes = FACES_HEX, .edges = 12, .edge_corners = EDGES_HEX, .xdmf_order = {0, 1, 2, 3, 4, 5, 6, 7}, .node = CORNERS_HEX},
+  [ELEMENT_HEX27] = {.type = ELEMENT_HEX27, .name = "hex27", .gmsh = 12, .xdmf = 50, .dim = 3, .order = 2, .nodes = 27, .corners = 8, .faces = 6, .face_type = ELEMENT_QUAD9,
+                     .face_nodes = FACES_HEX, .edges = 12, .edge_corners = EDGES_HEX,
+                     .xdmf_order = {0, 1, 2, 3, 4, 5, 6, 7, 8, 11, 13, 9, 16, 18, 19, 17, 10, 12, 14, 15, 22, 23, 21, 24, 20, 25, 26}, .node = CORNERS_HEX},
+};
+/* clang-format on */
+static Element face_tri3; /* tri3 with the quadrature of a face */
+
+static const double gauss2_point = 0.57735026918962576451; /* 1/sqrt(3) */
+static const double gauss3_point = 0.77459666924148337704; /* sqrt(3/5) */
+
+static int IsSimplex(const Element *e)
+{
+  return e->corners == e->dim + 1 && e->dim > 1;
+}
+
+static int IsTensor(const Element *e)
+{
+  return !IsSimplex(e);
+}
+
+/* Lagrange polynomial of a line through -1, (0,) 1 that is 1 at c, with its first and second derivative */
+static void ShapeLine(int order, double c, double x, double value[3])
+{
+  if (order == 1) {
+    value[0] = (1 + c * x) / 2;
+    value[1] = c / 2;
+    value[2] = 0;
+  } else if (c == 0) {
+    value[0] = 1 - x * x;
+    value[1] = -2 * x;
+    value[2] = -2;
+  } else {
+    value[0] = x * (x + c) / 2;
+    value[1] = x + c / 2;
+    value[2] = 1;
+  }
+}
+
+static void ShapeTensor(const Element *e, const double *xi, double *N, double *dN, double *d2N)
+{
+  const int dim = e->dim;
+
+  for (int a = 0; a < e->nodes; a++) {
+    double line[3][3] = {
+      {1, 0, 0},
+      {1, 0, 0},
+      {1, 0, 0}
+    };
+
+    for (int k = 0; k < dim; k++) ShapeLine(e->order, e->node[a][k], xi[k], line[k]);
+    if (N) N[a] = line[0][0] * line[1][0] * line[2][0];
+    for (int k = 0; k < dim && dN; k++) dN[a * dim + k] = line[0][k == 0] * line[1][k == 1] * line[2][k == 2];
+    for (int k = 0; k < dim && d2N; k++) {
+      for (int l = 0; l < dim; l++) d2N[(a * dim + k) * dim + l] = line[0][(k == 0) + (l == 0)] * line[1][(k == 1) + (l == 1)] * line[2][(k == 2) + (l == 2)];
+    }
+  }
+}
+
+/* Barycentric coordinates L: corners L_a (2 L_a - 1) and edges 4 L_a L_b, or L_a in first order */
+static void ShapeSimplex(const Element *e, const double *xi, double *N, double *dN, double *d2N)
+{
+  const int dim = e->dim;
+  double    L[4] =
+    {
+      1, 0, 0, 0
+  },
+         dL[4][3] = {{-1, -1, -1}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+
+  for (int k = 0; k < dim; k++) {
+    L[0] -= xi[k];
+    L[k + 1] = xi[k];
+  }
+  for (int n = 0; n < e->nodes; n++) {
+    const int    edge = n >= e->corners, a = edge ? e->edge_corners[n - e->corners][0] : n, b = edge ? e->edge_corners[n - e->corners][1] : n;
+    const double factor = edge ? 4 : 2; /* of L_a L_b; at a corner L_a is taken off */
+
+    if (N) N[n] = e->order == 1 ? L[n] : factor * L[a] * L[b] - (edge ? 0 : L[n]);
+    for (int k = 0; k < dim && dN; k++) dN[n * dim + k] = e->order == 1 ? dL[n][k] : factor * (dL[a][k] * L[b] + L[a] * dL[b][k]) - (edge ? 0 : dL[n][k]);
+    for (int k = 0; k < dim && d2N; k++) {
+      for (int l = 0; l < dim; l++) d2N[(n * dim + k) * dim + l] = e->order == 1 ? 0 : factor * (dL[a][k] * dL[b][l] + dL[a][l] * dL[b][k]);
+    }
+  }
+}
+
+static void Shape(const Element *e, const double *xi, double *N, double *dN, double *d2N)
+{
+  if (IsTensor(e))
+    ShapeTensor(e, xi, N, dN, d2N);
+  else
+    ShapeSimplex(e, xi, N, dN, d2N);
+}
+
+/* Middles of edges and faces, and the centre, as means of the corners they lie between */
+static void CompleteNodes(Element *e)
+{
+  int n = e->corners;
+
+  if (e->order == 1) return;
+  for (int i = 0; i < e->edges; i++, n++) {
+    for (int k = 0; k < 3; k++) e->node[n][k] = (e->node[e->edge_corners[i][0]][k] + e->node[e->edge_corners[i][1]][k]) / 2;
+  }
+  for (int f = 0; f < e->faces && e->type == ELEMENT_HEX27; f++, n++) {
+    for (int k = 0; k < 3; k++) e->node[n][k] = (e->node[e->face_nodes[f][0]][k] + e->node[e->face_nodes[f][2]][k]) / 2;
+  }
+}
+
+static int FindEdge(const Element *e, int a, int b)
+{
+  for (int i = 0; i < e->edges; i++) {
+    if ((e->edge_corners[i][0] == a && e->edge_corners[i][1] == b) || (e->edge_corners[i][0] == b && e->edge_corners[i][1] == a)) return i;
+  }
+  return -1;
+}
+
+/* Middle nodes of the faces in the order of the face's own element, whose table need not be complete yet */
+static void CompleteFaces(Element *e)
+{
+  const Element *face = &element_table[e->face_type];
+
+  if (e->order == 1) return;
+  for (int f = 0; f < e->faces; f++) {
+    int *nodes = e->face_nodes[f];
+
+    for (int i = 0; i < face->edges; i++) nodes[face->corners + i] = e->corners + FindEdge(e, nodes[face->edge_corners[i][0]], nodes[face->edge_corners[i][1]]);
+    if (face->type == ELEMENT_QUAD9) nodes[8] = e->corners + e->edges + f;
+  }
+}
+
+static void SetPoint(Element *e, double x, double y, double z, double weight)
+{
+  e->point[e->points][0] = x;
+  e->point[e->points][1] = y;
+  e->point[e->points][2] = z;
+  e->weight[e->points++] = weight;
+}
+
+static void QuadratureTensor(Element *e)
+{
+  const int     n    = e->order + 1;
+  const double  p2[] = {-gauss2_point, gauss2_point}, w2[] = {1, 1}, p3[] = {-gauss3_point, 0, gauss3_point}, w3[] = {5. / 9, 8. / 9, 5. / 9};
+  const double *p = n == 2 ? p2 : p3, *w = n == 2 ? w2 : w3;
+
+  for (int k = 0; k < (e->dim > 2 ? n : 1); k++) {
+    for (int j = 0; j < (e->dim > 1 ? n : 1); j++) {
+      for (int i = 0; i < n; i++) SetPoint(e, p[i], e->dim > 1 ? p[j] : 0, e->dim > 2 ? p[k] : 0, w[i] * (e->dim > 1 ? w[j] : 1) * (e->dim > 2 ? w[k] : 1));
+    }
+  }
+}
+
+/* One point in the middle, or one towards each corner (exact to degree 2; Zienkiewicz and Taylor, tables 5.3 and 5.4) */
+static void QuadratureSimplex(Element *e, int points)
+{
+  const double volume = e->dim == 2 ? 1. / 2 : 1. / 6;
+  const double inner = e->dim == 2 ? 1. / 6 : 0.13819660112501051518, outer = 1 - e->dim * inner; /* tet: (5 - sqrt 5) / 20 */
+
+  if (points == 1)
+    SetPoint(e, 1. / (e->dim + 1), 1. / (e->dim + 1), e->dim == 3 ? 0.25 : 0, volume);
+  else {
+    for (int a = 0; a <= e->dim; a++) SetPoint(e, a == 1 ? outer : inner, a == 2 ? outer : inner, e->dim < 3 ? 0 : a == 3 ? outer : inner, volume / points);
+  }
+}
+
+/* Solves the symmetric positive definite n x n system A X = B for m right-hand sides in place, without pivoting */
+static void SolveSmall(int n, double A[][MAX_CORNERS], int m, double B[][ELEMENT_MAX_POINTS])
+{
+  for (int k = 0; k < n; k++) {
+    for (int i = 0; i < n; i++) {
+      const double factor = i == k ? 0 : A[i][k] / A[k][k];
+
+      for (int j = k; j < n && i != k; j++) A[i][j] -= factor * A[k][j];
+      for (int j = 0; j < m; j++) B[i][j] -= factor * B[k][j];
+    }
+  }
+  for (int i = 0; i < n; i++) {
+    for (int j = 0; j < m; j++) B[i][j] /= A[i][i];
+  }
+}
+
+/* Normal equations of the fit by the shape functions C of the first-order element: c = (C^T C)^-1 C^T v, nodal values C(node) c */
+static void Fit(Element *e)
+{
+  Element linear = *e;
+  double  C[ELEMENT_MAX_POINTS][MAX_CORNERS], A[MAX_CORNERS][MAX_CORNERS], B[MAX_CORNERS][ELEMENT_MAX_POINTS];
+
+  memset(e->fit, 0, sizeof(e->fit));
+  if (e->points == 1) {
+    for (int a = 0; a < e->nodes; a++) e->fit[a][0] = 1;
+    return;
+  }
+  linear.order = 1;
+  linear.nodes = e->corners;
+  for (int p = 0; p < e->points; p++) Shape(&linear, e->point[p], C[p], NULL, NULL);
+  for (int i = 0; i < e->corners; i++) {
+    for (int p = 0; p < e->points; p++) B[i][p] = C[p][i];
+    for (int j = 0; j < e->corners; j++) {
+      A[i][j] = 0;
+      for (int p = 0; p < e->points; p++) A[i][j] += C[p][i] * C[p][j];
+    }
+  }
+  SolveSmall(e->corners, A, e->points, B);
+  for (int a = 0; a < e->nodes; a++) {
+    double N[MAX_CORNERS];
+
+    Shape(&linear, e->node[a], N, NULL, NULL);
+    for (int p = 0; p < e->points; p++) {
+      for (int i = 0; i < e->corners; i++) e->fit[a][p] += N[i] * B[i][p];
+    }
+  }
+}
+
+static void Tabulate(Element *e)
+{
+  for (int p = 0; p < e->points; p++) {
+    double dN[ELEMENT_MAX_NODES * 3];
+
+    Shape(e, e->point[p], e->N[p], dN, NULL);
+    for (int a = 0; a < e->nodes; a++) {
+      for (int k = 0; k < e->dim; k++) e->dN[p][a][k] = dN[a * e->dim + k];
+    }
+  }
+  Fit(e);
+}
+
+static void CompleteTable(void)
+{
+  static int complete = 0;
+
+  if (complete) return;
+  complete = 1;
+  for (int type = 0; type < ELEMENT_TYPES; type++) {
+    Element *e = &element_table[type];
+
+    CompleteNodes(e);
+    CompleteFaces(e);
+    if (IsTensor(e))
+      QuadratureTensor(e);
+    else
+      QuadratureSimplex(e, e->order == 1 ? 1 : e->dim + 1);
+    Tabulate(e);
+  }
+  face_tri3        = element_table[ELEMENT_TRI3];
+  face_tri3.points = 0;
+  QuadratureSimplex(&face_tri3, 3);
+  Tabulate(&face_tri3);
+}
+
+/*
+  ElementGet - The table of a reference element
+
+  Not collective
+
+  Input:
+. type - the element type
+
+  Output:
+. element - its table; belongs to this part
+
+  Source: gmsh reference manual, "Node ordering"
+*/
+const Element *ElementGet(ElementType type)
+{
+  CompleteTable();
+  return &element_table[type];
+}
+
+/*
+  ElementGetFace - The table of a reference element as the face of a cell: ElementGet() but for its quadrature
+
+  Not collective
+
+  Input:
+. type - an element of dimension 1 or 2
+
+  Output:
+. element - its table; tri3 has three points, because integrals over faces hold products of its shape functions
+*/
+const Element *ElementGetFace(ElementType type)
+{
+  CompleteTable();
+  return type == ELEMENT_TRI3 ? &face_tri3 : &element_table[type];
+}
+
+/*
+  ElementFromGmsh - The reference element of one of gmsh's element types
+
+  Not collective
+
+  Input:
+. gmsh_type - gmsh's number, as in its mesh files
+
+  Output:
+. element - the table, or NULL if it is not one of ours
+*/
+const Element *ElementFromGmsh(int gmsh_type)
+{
+  CompleteTable();
+  for (int type = 0; type < ELEMENT_TYPES; type++) {
+    if (element_table[type].gmsh == gmsh_type) return &element_table[type];
+  }
+  return NULL;
+}
+
+/*
+  ElementShape - Shape functions and their derivatives at any reference point, also outside the element
+
+  Not collective
+
+  Input:
++ type - the element type
+- xi   - reference coordinates [dim]
+
+  Output (each may be NULL):
++ N   - values [nodes]
+. dN  - derivatives by the reference coordinates [nodes][dim]
+- d2N - second derivatives [nodes][dim][dim]
+*/
+void ElementShape(ElementType type, const double *xi, double *N, double *dN, double *d2N)
+{
+  Shape(ElementGet(type), xi, N, dN, d2N);
+}

@@ -1,0 +1,159 @@
+#include "linear/linearcheck.h"
+#include "base/timing.h"
+
+/* A residual up to this many times the tolerance asked for is the solver's own business: Newton's method contracts all the same. */
+#define LINEAR_SLACK 100
+/* A direct solve of a regular system leaves a relative residual of 1e-12 to 1e-7, stiff penalties included; one that is still above this after refinement is
+   that of a singular system. */
+#define LINEAR_SINGULAR 1e-3
+/* Refinement contracts the residual by the same factor in each step; after these steps one that helps has helped. */
+#define LINEAR_MAX_REFINE 8
+/* A refinement step that leaves more than this of the residual does not help. */
+#define LINEAR_HELPS 0.5
+
+struct _n_LinearCheck {
+  PetscReal    tolerance;
+  KeptFactor   kept;
+  PetscBool    lost;
+  LinearCounts counts;
+};
+
+static PetscErrorCode SolveBegins(KSP ksp, Vec b, Vec x, void *context)
+{
+  PetscFunctionBeginUser;
+  (void)ksp;
+  (void)b;
+  (void)x;
+  (void)context;
+  TimingBegin(TIMING_SOLVE);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* r = b - A x and its norm */
+static PetscErrorCode TrueResidual(Mat A, Vec b, Vec x, Vec r, PetscReal *norm)
+{
+  PetscFunctionBeginUser;
+  PetscCall(MatMult(A, x, r));
+  PetscCall(VecAYPX(r, -1, b));
+  PetscCall(VecNorm(r, NORM_2, norm));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* x += A^-1 r with the factor at hand, as long as that helps, until the residual is at most `enough`. */
+static PetscErrorCode Refine(KSP ksp, Mat A, Vec b, Vec x, Vec r, PetscReal enough, PetscReal *norm, PetscInt *steps)
+{
+  PetscReal before = PETSC_MAX_REAL;
+  PC        pc;
+  Vec       d;
+
+  PetscFunctionBeginUser;
+  PetscCall(KSPGetPC(ksp, &pc));
+  PetscCall(VecDuplicate(x, &d));
+  for (PetscInt i = 0; i<LINEAR_MAX_REFINE && * norm> enough && *norm <= LINEAR_HELPS * before; i++) {
+    before = *norm;
+    PetscCall(PCApply(pc, r, d));
+    PetscCall(VecAXPY(x, 1, d));
+    PetscCall(TrueResidual(A, b, x, r, norm));
+    ++*steps;
+    if (*norm < before) continue;
+    PetscCall(VecAXPY(x, -1, d));
+    *norm = before;
+  }
+  PetscCall(VecDestroy(&d));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The relative residual that the solver was asked for: its own where it iterates. right: norm of the right-hand side */
+static PetscErrorCode AskedFor(LinearCheck check, KSP ksp, PetscReal right, PetscReal *tolerance)
+{
+  PetscReal least;
+  PetscBool direct;
+
+  PetscFunctionBeginUser;
+  *tolerance = check->tolerance;
+  PetscCall(PetscObjectTypeCompare((PetscObject)ksp, KSPPREONLY, &direct));
+  if (direct) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(KSPGetTolerances(ksp, tolerance, &least, NULL, NULL));
+  if (right > 0) *tolerance = PetscMax(*tolerance, least / right);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode CheckSolution(LinearCheck check, KSP ksp, Vec b, Vec x)
+{
+  PetscReal right, norm = -1, tolerance, own;
+  PetscBool failed = PETSC_FALSE;
+  PetscInt  steps  = 0;
+  Mat       A;
+  Vec       r;
+
+  PetscFunctionBeginUser;
+  PetscCall(KSPGetOperators(ksp, &A, NULL));
+  PetscCall(VecNorm(b, NORM_2, &right));
+  PetscCall(AskedFor(check, ksp, right, &tolerance));
+  own = tolerance;
+  if (check->kept) PetscCall(KeptFactorSolve(check->kept, A, b, x, &tolerance, &norm, &failed));
+  if (failed) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(VecDuplicate(b, &r));
+  if (norm < 0) PetscCall(TrueResidual(A, b, x, r, &norm));
+  if (norm > LINEAR_SLACK * tolerance * right) PetscCall(Refine(ksp, A, b, x, r, LINEAR_SLACK * tolerance * right, &norm, &steps));
+  PetscCall(VecDestroy(&r));
+  check->lost = norm <= PetscMax(LINEAR_SINGULAR, tolerance) * right ? PETSC_FALSE : PETSC_TRUE; /* so is not-a-number */
+  check->counts.refined += steps > 0;
+  check->counts.steps += steps;
+  if (check->lost || right == 0) PetscFunctionReturn(PETSC_SUCCESS);
+  check->counts.inaccurate += norm > LINEAR_SLACK * tolerance * right;
+  if (tolerance == own) check->counts.worst = PetscMax(check->counts.worst, norm / right); /* not of solves that ended where it is enough for Newton's method */
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode SolveEnds(KSP ksp, Vec b, Vec x, void *context)
+{
+  LinearCheck        check = context;
+  KSPConvergedReason reason;
+
+  PetscFunctionBeginUser;
+  check->counts.solves++;
+  check->lost = PETSC_TRUE;
+  PetscCall(KSPGetConvergedReason(ksp, &reason));
+  if (reason >= 0) PetscCall(CheckSolution(check, ksp, b, x));
+  TimingEnd(TIMING_SOLVE);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* LinearCheckCreate - looks at every solution of a KSP, and times its solves (TIMING_SOLVE).
+
+   Collective. tolerance: relative residual that is asked for of a direct solver; an iterative one has its own. A solution that misses it by more than
+   LINEAR_SLACK is refined. Destroy the check after the KSP.
+
+   Source: Higham, Accuracy and Stability of Numerical Algorithms, chapter 12 (refinement in fixed precision). */
+PetscErrorCode LinearCheckCreate(KSP ksp, PetscReal tolerance, KeptFactor kept, LinearCheck *check)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscNew(check));
+  (*check)->tolerance = tolerance;
+  (*check)->kept      = kept;
+  PetscCall(KSPSetPreSolve(ksp, SolveBegins, NULL));
+  PetscCall(KSPSetPostSolve(ksp, SolveEnds, *check));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* LinearCheckDestroy - Not collective. */
+PetscErrorCode LinearCheckDestroy(LinearCheck *check)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscFree(*check));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* LinearCheckLost - whether the last solve failed, or left a residual that only a singular matrix leaves. Not collective, the same on all ranks. */
+PetscBool LinearCheckLost(LinearCheck check)
+{
+  return check->lost;
+}
+
+/* LinearCheckGetCounts - what was done so far. Not collective, the same on all ranks. */
+void LinearCheckGetCounts(LinearCheck check, LinearCounts *counts)
+{
+  *counts = check->counts;
+  if (check->kept) KeptFactorGetCounts(check->kept, &counts->kept);
+}

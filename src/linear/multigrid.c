@@ -1,0 +1,692 @@
+#include "multigrid.h"
+#include "linear/directsolver.h"
+#include "gaussseidel.h"
+#include "matrix/matrixrows.h"
+
+/* The parts have option names of their own: -bodies_... for multigrid, -interface_... for the direct solve */
+#define MULTIGRID_BODIES    "bodies_"
+#define MULTIGRID_INTERFACE "interface_"
+/* Multigrid is made anew when the interface has become this many times as large, or as small. Contact that only moves does without: how stiff it is on the
+   coarse levels hardly matters (a hundredth costs one iteration more in 26), that it is there does. */
+#define MULTIGRID_CHANGE 1.5
+/* Multigrid made for an older operator serves until its effort, iterations for a power of ten in the residual, is this many times
+   the effort at first: its coarse matrices cost as much as some ten iterations. */
+#define MULTIGRID_AGE 1.5
+/* What the finest level's smoother damps: eigenvalues of the operator after symmetric Gauss-Seidel sweeps, none of which is above 1. */
+#define MULTIGRID_LARGEST 1.1
+#define MULTIGRID_LEAST   0.1
+/* Powers of ten in the residual that a solve must show for its effort to be told: the first iterations of any solve are the fastest. */
+#define MULTIGRID_SHOWN 2
+/* Whatever its effort was at first, multigrid of an older operator is made anew after a solve of so many iterations. */
+#define MULTIGRID_MOST 60
+/* How far across contact, in rows that it couples, a rank factors what others own of the interface. None takes five times the iterations on two ranks; a
+   second takes one in 25 less and half as much time again for the factors, more than that saves. */
+#define MULTIGRID_OVERLAP 1
+/* Most rigid-body modes there are */
+#define MULTIGRID_MODES 6
+
+struct _n_Multigrid {
+  Mesh       mesh;
+  PetscBool  axisymmetric, symmetric;
+  PetscInt   n_free, n_all, first; /* rows of this rank: free dofs, all dofs of nodes that have one; the latter's first number of all ranks */
+  PetscInt  *row;                  /* of each free dof of this rank: its row among all dofs, counted from first */
+  Vec        number;               /* of each free dof: its number among all dofs of all ranks */
+  Mat        nodes;                /* the operator with all dofs of a node */
+  PetscBool  changed, renew;       /* the operator has another pattern than that; its values are wanted */
+  PetscInt   solves, applied;      /* operators since multigrid was made; iterations for the last of them */
+  PetscReal  usual;                /* effort of the first one long enough to tell, 0: none yet */
+  KSP        outer;                /* whose preconditioner this is */
+  PC         bodies;
+  Vec        nodes_right, nodes_left;
+  Mat        contact;   /* borrowed: that part of the operator */
+  IS         interface; /* rows of this rank that contact couples; NULL: no rank has any */
+  IS         reach;     /* these and near ones of other ranks, ascending: those that this one factors */
+  PetscInt   coupled;   /* how many there were, on all ranks, when multigrid was made */
+  KSP        direct;
+  Vec        interface_right, interface_left;
+  Vec        rest, ghosts; /* what the bodies leave on the interface, 0 elsewhere; values of other ranks for it, NULL: one rank */
+  VecScatter to_interface, to_ghosts;
+};
+
+/* ---------- whole nodes ---------- */
+
+/* Numbers all dofs of the nodes of this rank that have a free one. */
+static PetscErrorCode NumberNodes(Multigrid m)
+{
+  const int       dim = m->mesh->dim;
+  const PetscInt *dofs;
+  PetscInt        begin, end;
+  PetscMPIInt     rank;
+  PetscScalar    *number;
+
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Comm_rank(m->mesh->comm, &rank));
+  PetscCall(MeshGetGlobalDofs(m->mesh, &dofs));
+  PetscCall(DMCreateGlobalVector(m->mesh->dm, &m->number));
+  PetscCall(VecGetOwnershipRange(m->number, &begin, &end));
+  m->n_free = end - begin;
+  PetscCall(PetscMalloc1(m->n_free, &m->row));
+  for (PetscInt node = 0; node < m->mesh->n_nodes; node++) {
+    PetscBool free = PETSC_FALSE;
+
+    if (m->mesh->node_owner[node] != rank) continue;
+    for (int d = 0; d < dim; d++) {
+      if (dofs[node * dim + d] < 0) continue;
+      m->row[dofs[node * dim + d] - begin] = m->n_all + d;
+      free                                 = PETSC_TRUE;
+    }
+    if (free) m->n_all += dim;
+  }
+  PetscCallMPI(MPI_Exscan(&m->n_all, &m->first, 1, MPIU_INT, MPI_SUM, m->mesh->comm));
+  if (!rank) m->first = 0;
+  PetscCall(VecGetArray(m->number, &number));
+  for (PetscInt i = 0; i < m->n_free; i++) number[i] = m->first + m->row[i];
+  PetscCall(VecRestoreArray(m->number, &number));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Rigid-body modes of a node at x: displacement in direction d of mode k. Translations first, then rotations; axisymmetric: along the axis only. */
+static PetscReal ModeValue(int dim, const PetscReal *x, int k, int d)
+{
+  const int from = dim == 2 ? 0 : (k - dim + 1) % 3, to = dim == 2 ? 1 : (k - dim + 2) % 3;
+
+  if (k < dim) return k == d ? 1 : 0;
+  return d == from ? -x[to] : d == to ? x[from] : 0;
+}
+
+/* The modes of all bodies together, orthonormal; 0 where a dof is constrained. */
+static PetscErrorCode ModesCreate(Multigrid m, MatNullSpace *modes)
+{
+  const int       dim = m->mesh->dim, first = m->axisymmetric ? 1 : 0, count = m->axisymmetric ? 1 : dim * (dim + 1) / 2;
+  const PetscInt *dofs;
+  PetscInt        begin, end;
+  PetscScalar    *value, product[MULTIGRID_MODES];
+  PetscReal       length;
+  Vec             mode[MULTIGRID_MODES];
+
+  PetscFunctionBeginUser;
+  PetscCall(MeshGetGlobalDofs(m->mesh, &dofs));
+  PetscCall(VecGetOwnershipRange(m->number, &begin, &end));
+  for (int k = 0; k < count; k++) {
+    PetscCall(VecDuplicate(m->nodes_right, &mode[k]));
+    PetscCall(VecGetArray(mode[k], &value));
+    for (PetscInt i = 0; i < m->mesh->n_nodes * dim; i++)
+      if (dofs[i] >= begin && dofs[i] < end) value[m->row[dofs[i] - begin]] = ModeValue(dim, &m->mesh->coords[i - i % dim], first + k, (int)(i % dim));
+    PetscCall(VecRestoreArray(mode[k], &value));
+    if (k) PetscCall(VecMDot(mode[k], k, mode, product));
+    for (int l = 0; l < k; l++) product[l] = -product[l];
+    if (k) PetscCall(VecMAXPY(mode[k], k, product, mode));
+    PetscCall(VecNormalize(mode[k], &length));
+  }
+  PetscCall(MatNullSpaceCreate(m->mesh->comm, PETSC_FALSE, count, mode, modes));
+  for (int k = 0; k < count; k++) PetscCall(VecDestroy(&mode[k]));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* How values of a matrix's columns of other ranks come: nothing where it has no block of them. */
+static PetscErrorCode CreateGhosts(Multigrid m, Mat A, Vec *ghosts, VecScatter *scatter)
+{
+  MatrixRows rows;
+  PetscInt   n;
+  IS         from;
+
+  PetscFunctionBeginUser;
+  PetscCall(MatrixRowsGet(A, MATRIX_OTHERS, &rows));
+  if (!rows.mat) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(MatGetSize(rows.mat, NULL, &n));
+  PetscCall(VecCreateSeq(PETSC_COMM_SELF, n, ghosts));
+  PetscCall(ISCreateGeneral(PETSC_COMM_SELF, n, rows.global, PETSC_USE_POINTER, &from));
+  PetscCall(VecScatterCreate(m->number, from, *ghosts, NULL, scatter));
+  PetscCall(ISDestroy(&from));
+  PetscCall(MatrixRowsRestore(&rows));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Numbers among all dofs of a matrix's columns of other ranks, in *ghost, which the caller frees. */
+static PetscErrorCode NumberGhosts(Multigrid m, Mat A, PetscInt **ghost)
+{
+  PetscInt           n;
+  const PetscScalar *value;
+  Vec                ghosts  = NULL;
+  VecScatter         scatter = NULL;
+
+  PetscFunctionBeginUser;
+  *ghost = NULL;
+  PetscCall(CreateGhosts(m, A, &ghosts, &scatter));
+  if (!ghosts) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(VecScatterBegin(scatter, m->number, ghosts, INSERT_VALUES, SCATTER_FORWARD));
+  PetscCall(VecScatterEnd(scatter, m->number, ghosts, INSERT_VALUES, SCATTER_FORWARD));
+  PetscCall(VecGetSize(ghosts, &n));
+  PetscCall(PetscMalloc1(n, ghost));
+  PetscCall(VecGetArrayRead(ghosts, &value));
+  for (PetscInt i = 0; i < n; i++) (*ghost)[i] = (PetscInt)PetscRealPart(value[i]);
+  PetscCall(VecRestoreArrayRead(ghosts, &value));
+  PetscCall(VecScatterDestroy(&scatter));
+  PetscCall(VecDestroy(&ghosts));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* How many entries one block of the operator has in each row of all dofs. */
+static PetscErrorCode CountRows(Multigrid m, Mat A, int block, PetscInt *count)
+{
+  MatrixRows rows;
+
+  PetscFunctionBeginUser;
+  PetscCall(MatrixRowsGet(A, block, &rows));
+  for (PetscInt i = 0; i < rows.n; i++) count[m->row[i]] = rows.ptr[i + 1] - rows.ptr[i];
+  PetscCall(MatrixRowsRestore(&rows));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Sets the values of one block of the operator in m->nodes, or adds them, times a factor. */
+static PetscErrorCode CopyBlock(Multigrid m, Mat A, int block, const PetscInt *ghost, PetscReal factor, InsertMode mode)
+{
+  MatrixRows   rows;
+  PetscInt     room = 0, *column = NULL;
+  PetscScalar *scaled = NULL;
+
+  PetscFunctionBeginUser;
+  PetscCall(MatrixRowsGet(A, block, &rows));
+  if (!rows.mat) PetscFunctionReturn(PETSC_SUCCESS);
+  for (PetscInt i = 0; i < rows.n; i++) room = PetscMax(room, rows.ptr[i + 1] - rows.ptr[i]);
+  PetscCall(PetscMalloc2(room, &column, room, &scaled));
+  for (PetscInt i = 0; i < rows.n; i++) {
+    const PetscInt row = m->first + m->row[i], first = rows.ptr[i], entries = rows.ptr[i + 1] - first;
+
+    for (PetscInt k = 0; k < entries; k++) {
+      column[k] = block == MATRIX_OWN ? m->first + m->row[rows.column[first + k]] : ghost[rows.column[first + k]];
+      scaled[k] = factor * rows.value[first + k];
+    }
+    if (entries) PetscCall(MatSetValues(m->nodes, 1, &row, entries, column, scaled, mode));
+  }
+  PetscCall(PetscFree2(column, scaled));
+  PetscCall(MatrixRowsRestore(&rows));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode CopyRows(Multigrid m, Mat A, PetscReal factor, InsertMode mode)
+{
+  PetscInt *ghost;
+
+  PetscFunctionBeginUser;
+  PetscCall(NumberGhosts(m, A, &ghost));
+  for (int block = 0; block < MATRIX_BLOCKS; block++) PetscCall(CopyBlock(m, A, block, ghost, factor, mode));
+  PetscCall(PetscFree(ghost));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* How stiff contact is to be for multigrid, of its full stiffness: at most as the bodies are where it is. *mean: diagonal entry of the operator, so softened.
+
+   Stiffer contact makes smoothers diverge whose largest eigenvalue is estimated; the interface's solve does the rest, and a hundredth costs no iteration. */
+static PetscErrorCode SoftenContact(Multigrid m, Mat A, PetscReal *softness, PetscScalar *mean)
+{
+  PetscScalar sum[2] = {0, 0}, *contact;
+  Vec         diagonal, of_contact;
+  PetscInt    n;
+
+  PetscFunctionBeginUser;
+  *softness = 1;
+  PetscCall(VecDuplicate(m->number, &diagonal));
+  PetscCall(VecDuplicate(m->number, &of_contact));
+  PetscCall(MatGetDiagonal(A, diagonal));
+  if (m->interface) {
+    const PetscScalar *whole;
+
+    PetscCall(MatGetDiagonal(m->contact, of_contact));
+    PetscCall(VecGetArray(of_contact, &contact));
+    PetscCall(VecGetArrayRead(diagonal, &whole));
+    for (PetscInt i = 0; i < m->n_free; i++) {
+      sum[0] += contact[i] != 0 ? whole[i] - contact[i] : 0;
+      sum[1] += contact[i];
+    }
+    PetscCall(VecRestoreArrayRead(diagonal, &whole));
+    PetscCall(VecRestoreArray(of_contact, &contact));
+    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sum, 2, MPIU_SCALAR, MPIU_SUM, m->mesh->comm));
+    if (PetscRealPart(sum[0]) > 0 && PetscRealPart(sum[1]) > PetscRealPart(sum[0])) *softness = PetscRealPart(sum[0]) / PetscRealPart(sum[1]);
+    PetscCall(VecAXPY(diagonal, *softness - 1, of_contact));
+  }
+  PetscCall(VecSum(diagonal, mean));
+  PetscCall(VecGetSize(diagonal, &n));
+  *mean /= n;
+  PetscCall(VecDestroy(&diagonal));
+  PetscCall(VecDestroy(&of_contact));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* An empty matrix over all dofs with room for the operator's entries and the diagonal of constrained dofs. */
+static PetscErrorCode CreateNodesMatrix(Multigrid m, Mat A)
+{
+  PetscInt    *own, *others;
+  MatNullSpace modes;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc2(m->n_all, &own, m->n_all, &others));
+  PetscCall(CountRows(m, A, MATRIX_OWN, own));
+  PetscCall(CountRows(m, A, MATRIX_OTHERS, others));
+  for (PetscInt i = 0; i < m->n_all; i++) own[i] = PetscMax(own[i], 1);
+  PetscCall(MatDestroy(&m->nodes));
+  PetscCall(MatCreate(m->mesh->comm, &m->nodes));
+  PetscCall(MatSetSizes(m->nodes, m->n_all, m->n_all, PETSC_DETERMINE, PETSC_DETERMINE));
+  PetscCall(MatSetBlockSize(m->nodes, m->mesh->dim));
+  PetscCall(MatSetType(m->nodes, MATAIJ));
+  PetscCall(MatSeqAIJSetPreallocation(m->nodes, 0, own));
+  PetscCall(MatMPIAIJSetPreallocation(m->nodes, 0, own, 0, others));
+  PetscCall(MatSetOption(m->nodes, MAT_NO_OFF_PROC_ENTRIES, PETSC_TRUE));
+  PetscCall(PetscFree2(own, others));
+  if (!m->nodes_right) PetscCall(MatCreateVecs(m->nodes, &m->nodes_right, &m->nodes_left));
+  PetscCall(ModesCreate(m, &modes));
+  PetscCall(MatSetNearNullSpace(m->nodes, modes));
+  PetscCall(MatNullSpaceDestroy(&modes));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Constrained dofs get the mean of the others on the diagonal, so that no coarse row mixes scales. */
+static PetscErrorCode SetConstrainedRows(Multigrid m, PetscScalar mean)
+{
+  PetscBool *free;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc1(m->n_all, &free));
+  for (PetscInt i = 0; i < m->n_free; i++) free[m->row[i]] = PETSC_TRUE;
+  for (PetscInt i = 0; i < m->n_all; i++) {
+    const PetscInt row = m->first + i;
+
+    if (!free[i]) PetscCall(MatSetValues(m->nodes, 1, &row, 1, &row, &mean, INSERT_VALUES));
+  }
+  PetscCall(PetscFree(free));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode CreateBodies(Multigrid m)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PCDestroy(&m->bodies)); /* levels of other sizes survive a reset */
+  PetscCall(PCCreate(m->mesh->comm, &m->bodies));
+  PetscCall(PCSetOptionsPrefix(m->bodies, MULTIGRID_BODIES));
+  PetscCall(PCSetType(m->bodies, PCGAMG));
+  PetscCall(PCGAMGSetReuseInterpolation(m->bodies, PETSC_TRUE));
+  PetscCall(PCSetFromOptions(m->bodies));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The finest level is smoothed by Gauss-Seidel's method: half of Jacobi's iterations, and fewer more of them on finer meshes. The coarse levels keep Jacobi's:
+   aggregates of few nodes leave rotations without stiffness, which Gauss-Seidel's method would divide by. */
+static PetscErrorCode SmoothFinest(Multigrid m)
+{
+  KSP      ksp;
+  PC       pc;
+  Mat      swept;
+  PetscInt levels;
+
+  PetscFunctionBeginUser;
+  PetscCall(PCMGGetLevels(m->bodies, &levels));
+  if (levels == 1) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PCMGGetSmoother(m->bodies, levels - 1, &ksp));
+  PetscCall(KSPGetPC(ksp, &pc));
+  PetscCall(GaussSeidelSet(pc, MULTIGRID_LEAST, MULTIGRID_LARGEST));
+  PetscCall(KSPSetType(ksp, KSPRICHARDSON));
+  PetscCall(KSPSetFromOptions(ksp));
+  PetscCall(GaussSeidelGetMat(pc, &swept));
+  if (swept) PetscCall(PCMGSetResidual(m->bodies, levels - 1, GaussSeidelResidual, swept));
+  PetscCall(MatDestroy(&swept));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Multigrid for the operator; its coarse spaces stay as long as the pattern does. */
+static PetscErrorCode SetUpBodies(Multigrid m, Mat A)
+{
+  const PetscBool fresh = m->changed;
+  PetscReal       softness;
+  PetscScalar     mean;
+
+  PetscFunctionBeginUser;
+  if (fresh) {
+    PetscCall(CreateNodesMatrix(m, A));
+    PetscCall(CreateBodies(m));
+    m->changed = PETSC_FALSE;
+  }
+  PetscCall(SoftenContact(m, A, &softness, &mean));
+  PetscCall(CopyRows(m, A, 1, INSERT_VALUES));
+  PetscCall(SetConstrainedRows(m, mean));
+  PetscCall(MatAssemblyBegin(m->nodes, MAT_FLUSH_ASSEMBLY));
+  PetscCall(MatAssemblyEnd(m->nodes, MAT_FLUSH_ASSEMBLY));
+  if (softness < 1) PetscCall(CopyRows(m, m->contact, softness - 1, ADD_VALUES));
+  PetscCall(MatAssemblyBegin(m->nodes, MAT_FINAL_ASSEMBLY));
+  PetscCall(MatAssemblyEnd(m->nodes, MAT_FINAL_ASSEMBLY));
+  PetscCall(MatSetOption(m->nodes, MAT_SYMMETRIC, m->symmetric));
+  PetscCall(PCSetOperators(m->bodies, m->nodes, m->nodes));
+  PetscCall(PCSetUp(m->bodies));
+  if (fresh) PetscCall(SmoothFinest(m));
+  m->renew  = PETSC_FALSE;
+  m->usual  = 0;
+  m->solves = m->coupled = 0;
+  if (m->interface) PetscCall(ISGetSize(m->interface, &m->coupled));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode ApplyBodies(Multigrid m, Vec right, Vec left)
+{
+  const PetscScalar *from;
+  PetscScalar       *to;
+
+  PetscFunctionBeginUser;
+  PetscCall(VecSet(m->nodes_right, 0));
+  PetscCall(VecGetArrayRead(right, &from));
+  PetscCall(VecGetArray(m->nodes_right, &to));
+  for (PetscInt i = 0; i < m->n_free; i++) to[m->row[i]] = from[i];
+  PetscCall(VecRestoreArray(m->nodes_right, &to));
+  PetscCall(VecRestoreArrayRead(right, &from));
+  PetscCall(PCApply(m->bodies, m->nodes_right, m->nodes_left));
+  PetscCall(VecGetArrayRead(m->nodes_left, &from));
+  PetscCall(VecGetArray(left, &to));
+  for (PetscInt i = 0; i < m->n_free; i++) to[i] = from[m->row[i]];
+  PetscCall(VecRestoreArray(left, &to));
+  PetscCall(VecRestoreArrayRead(m->nodes_left, &from));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* ---------- interface ---------- */
+
+static PetscErrorCode ForgetInterface(Multigrid m)
+{
+  PetscFunctionBeginUser;
+  PetscCall(ISDestroy(&m->interface));
+  PetscCall(ISDestroy(&m->reach));
+  PetscCall(VecDestroy(&m->interface_right));
+  PetscCall(VecDestroy(&m->interface_left));
+  PetscCall(VecScatterDestroy(&m->to_interface));
+  PetscCall(VecDestroy(&m->ghosts));
+  PetscCall(VecScatterDestroy(&m->to_ghosts));
+  PetscCall(KSPDestroy(&m->direct));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* What each rank factors by itself: its rows of the interface with those of others that contact couples to them. Of its solution it keeps its own rows:
+   restricted additive Schwarz (Cai and Sarkis, SIAM J. Sci. Comput. 21, 1999). One factor over all ranks has them wait for each other longer than they work. */
+static PetscErrorCode FindReach(Multigrid m)
+{
+  PetscMPIInt     size;
+  PetscInt        n;
+  const PetscInt *rows;
+
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Comm_size(m->mesh->comm, &size));
+  PetscCall(ISGetLocalSize(m->interface, &n));
+  PetscCall(ISGetIndices(m->interface, &rows));
+  PetscCall(ISCreateGeneral(PETSC_COMM_SELF, n, rows, PETSC_COPY_VALUES, &m->reach));
+  PetscCall(ISRestoreIndices(m->interface, &rows));
+  if (size == 1) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(MatIncreaseOverlap(m->contact, 1, &m->reach, MULTIGRID_OVERLAP));
+  PetscCall(ISSort(m->reach));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* MultigridSetContact - the contact part C of the next operator K + C, whose non-zero rows are the interface.
+
+   Collective. changed: the operator has another pattern than the last one. */
+PetscErrorCode MultigridSetContact(Multigrid m, Mat C, PetscBool changed)
+{
+  PetscInt begin, end, n = 0, all, *rows;
+
+  PetscFunctionBeginUser;
+  m->changed = (PetscBool)(m->changed || changed);
+  m->contact = C;
+  PetscCall(ForgetInterface(m));
+  PetscCall(MatGetOwnershipRange(C, &begin, &end));
+  PetscCall(PetscMalloc1(end - begin, &rows));
+  for (PetscInt row = begin; row < end; row++) {
+    PetscInt           entries;
+    const PetscScalar *value;
+    PetscBool          coupled = PETSC_FALSE;
+
+    PetscCall(MatGetRow(C, row, &entries, NULL, &value));
+    for (PetscInt k = 0; k < entries && !coupled; k++) coupled = (PetscBool)(value[k] != 0);
+    PetscCall(MatRestoreRow(C, row, &entries, NULL, &value));
+    if (coupled) rows[n++] = row;
+  }
+  PetscCallMPI(MPI_Allreduce(&n, &all, 1, MPIU_INT, MPI_SUM, m->mesh->comm));
+  if (all) {
+    PetscCall(ISCreateGeneral(m->mesh->comm, n, rows, PETSC_COPY_VALUES, &m->interface));
+    PetscCall(FindReach(m));
+  }
+  PetscCall(PetscFree(rows));
+  if (all > MULTIGRID_CHANGE * m->coupled || m->coupled > MULTIGRID_CHANGE * all) m->renew = PETSC_TRUE;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* MultigridRenew - the next operator is a new beginning: multigrid is made for it, whatever was solved before. Not collective. */
+PetscErrorCode MultigridRenew(Multigrid m)
+{
+  PetscFunctionBeginUser;
+  m->renew = PETSC_TRUE;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode CreateDirect(Multigrid m, Mat A)
+{
+  PetscInt n;
+
+  PetscFunctionBeginUser;
+  if (!m->rest) PetscCall(VecDuplicate(m->number, &m->rest));
+  PetscCall(VecSet(m->rest, 0));
+  PetscCall(CreateGhosts(m, A, &m->ghosts, &m->to_ghosts));
+  PetscCall(ISGetLocalSize(m->reach, &n));
+  PetscCall(VecCreateSeq(PETSC_COMM_SELF, n, &m->interface_right));
+  PetscCall(VecDuplicate(m->interface_right, &m->interface_left));
+  PetscCall(VecScatterCreate(m->number, m->reach, m->interface_right, NULL, &m->to_interface));
+  PetscCall(KSPCreate(PETSC_COMM_SELF, &m->direct));
+  PetscCall(KSPSetOptionsPrefix(m->direct, MULTIGRID_INTERFACE));
+  PetscCall(DirectSolverSet(m->direct, m->symmetric));
+  PetscCall(KSPSetFromOptions(m->direct));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Factors of the operator's rows and columns of the interface. */
+static PetscErrorCode SetUpInterface(Multigrid m, Mat A)
+{
+  PetscInt n;
+  Mat     *blocks;
+
+  PetscFunctionBeginUser;
+  if (!m->interface) PetscFunctionReturn(PETSC_SUCCESS);
+  if (!m->direct) PetscCall(CreateDirect(m, A));
+  PetscCall(VecGetSize(m->interface_right, &n));
+  PetscCall(MatCreateSubMatrices(A, n ? 1 : 0, &m->reach, &m->reach, MAT_INITIAL_MATRIX, &blocks));
+  if (n) {
+    PetscCall(MatSetOption(blocks[0], MAT_SYMMETRIC, m->symmetric));
+    PetscCall(KSPSetOperators(m->direct, blocks[0], blocks[0]));
+    PetscCall(KSPSetUp(m->direct));
+  }
+  PetscCall(MatDestroySubMatrices(n ? 1 : 0, &blocks));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* rest -= (one block of the operator) x in rows of the interface; begin: first row of this rank */
+static PetscErrorCode SubtractBlock(Mat A, int block, PetscInt n, const PetscInt *interface, PetscInt begin, Vec x, PetscScalar *rest)
+{
+  MatrixRows         rows;
+  const PetscScalar *from;
+
+  PetscFunctionBeginUser;
+  PetscCall(MatrixRowsGet(A, block, &rows));
+  if (!rows.mat) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(VecGetArrayRead(x, &from));
+  for (PetscInt i = 0; i < n; i++) {
+    const PetscInt row = interface[i] - begin;
+    PetscScalar    sum = 0;
+
+    for (PetscInt k = rows.ptr[row]; k < rows.ptr[row + 1]; k++) sum += rows.value[k] * from[rows.column[k]];
+    rest[row] -= sum;
+  }
+  PetscCall(VecRestoreArrayRead(x, &from));
+  PetscCall(MatrixRowsRestore(&rows));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* m->rest = right - A left, where an interface is: its rows are few. */
+static PetscErrorCode FindRest(Multigrid m, Mat A, Vec right, Vec left)
+{
+  PetscInt           n, begin;
+  const PetscInt    *interface;
+  const PetscScalar *from;
+  PetscScalar       *rest;
+
+  PetscFunctionBeginUser;
+  if (m->ghosts) PetscCall(VecScatterBegin(m->to_ghosts, left, m->ghosts, INSERT_VALUES, SCATTER_FORWARD));
+  PetscCall(VecGetOwnershipRange(left, &begin, NULL));
+  PetscCall(ISGetLocalSize(m->interface, &n));
+  PetscCall(ISGetIndices(m->interface, &interface));
+  PetscCall(VecGetArrayRead(right, &from));
+  PetscCall(VecGetArray(m->rest, &rest));
+  for (PetscInt i = 0; i < n; i++) rest[interface[i] - begin] = from[interface[i] - begin];
+  PetscCall(SubtractBlock(A, MATRIX_OWN, n, interface, begin, left, rest));
+  if (m->ghosts) PetscCall(VecScatterEnd(m->to_ghosts, left, m->ghosts, INSERT_VALUES, SCATTER_FORWARD));
+  if (m->ghosts) PetscCall(SubtractBlock(A, MATRIX_OTHERS, n, interface, begin, m->ghosts, rest));
+  PetscCall(VecRestoreArray(m->rest, &rest));
+  PetscCall(VecRestoreArrayRead(right, &from));
+  PetscCall(ISRestoreIndices(m->interface, &interface));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* left += (interface solve of right) */
+static PetscErrorCode AddInterface(Multigrid m, Vec right, Vec left)
+{
+  PetscInt           n, n_own, first;
+  const PetscInt    *own, *reach;
+  const PetscScalar *from;
+  PetscScalar       *to;
+
+  PetscFunctionBeginUser;
+  PetscCall(VecScatterBegin(m->to_interface, right, m->interface_right, INSERT_VALUES, SCATTER_FORWARD));
+  PetscCall(VecScatterEnd(m->to_interface, right, m->interface_right, INSERT_VALUES, SCATTER_FORWARD));
+  PetscCall(VecGetSize(m->interface_right, &n));
+  if (n) PetscCall(KSPSolve(m->direct, m->interface_right, m->interface_left));
+  PetscCall(VecGetOwnershipRange(left, &first, NULL));
+  PetscCall(ISGetLocalSize(m->interface, &n_own));
+  PetscCall(ISGetIndices(m->interface, &own));
+  PetscCall(ISGetIndices(m->reach, &reach));
+  PetscCall(VecGetArrayRead(m->interface_left, &from));
+  PetscCall(VecGetArray(left, &to));
+  for (PetscInt i = 0, k = 0; i < n_own; i++) {
+    while (reach[k] != own[i]) k++;
+    to[own[i] - first] += from[k];
+  }
+  PetscCall(VecRestoreArray(left, &to));
+  PetscCall(VecRestoreArrayRead(m->interface_left, &from));
+  PetscCall(ISRestoreIndices(m->reach, &reach));
+  PetscCall(ISRestoreIndices(m->interface, &own));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* ---------- the preconditioner ---------- */
+
+/* Iterations of the last solve for each power of ten in the residual, 0: it was too short to tell. The first iteration does not count: it is the
+   interface's, whose stiff forces may be all there is at first. */
+static PetscErrorCode LastEffort(Multigrid m, PetscReal *effort)
+{
+  const PetscReal *residual;
+  PetscInt         n;
+  PetscReal        shown;
+
+  PetscFunctionBeginUser;
+  *effort = 0;
+  PetscCall(KSPGetResidualHistory(m->outer, &residual, &n));
+  if (n < 3 || !(residual[n - 1] > 0)) PetscFunctionReturn(PETSC_SUCCESS);
+  shown = PetscLog10Real(residual[1] / residual[n - 1]);
+  if (shown >= MULTIGRID_SHOWN) *effort = (n - 2) / shown;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Has multigrid become too old for the operators of now? */
+static PetscErrorCode IsAged(Multigrid m, PetscBool *aged)
+{
+  PetscReal effort = 0;
+
+  PetscFunctionBeginUser;
+  *aged = PETSC_FALSE;
+  PetscCall(LastEffort(m, &effort));
+  if (!(m->usual > 0)) m->usual = effort;
+  *aged = (PetscBool)((m->solves > 1 && m->applied > MULTIGRID_MOST) || effort > MULTIGRID_AGE * m->usual);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode SetUp(PC pc)
+{
+  Multigrid m;
+  Mat       A;
+  PetscBool aged;
+
+  PetscFunctionBeginUser;
+  PetscCall(PCShellGetContext(pc, &m));
+  PetscCall(PCGetOperators(pc, NULL, &A));
+  PetscCall(IsAged(m, &aged));
+  if (m->renew || aged) PetscCall(SetUpBodies(m, A));
+  PetscCall(SetUpInterface(m, A));
+  m->applied = 0;
+  m->solves++;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Bodies first, then the interface for what they left. */
+static PetscErrorCode Apply(PC pc, Vec right, Vec left)
+{
+  Multigrid m;
+  Mat       A;
+
+  PetscFunctionBeginUser;
+  PetscCall(PCShellGetContext(pc, &m));
+  m->applied++;
+  PetscCall(ApplyBodies(m, right, left));
+  if (!m->interface) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PCGetOperators(pc, NULL, &A));
+  PetscCall(FindRest(m, A, right, left));
+  PetscCall(AddInterface(m, m->rest, left));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* MultigridCreate - makes itself the preconditioner of a KSP, which keeps its residuals for it; the caller destroys *out after the KSP.
+
+   Collective. mesh: borrowed, its constraints set. axisymmetric: the only rigid-body mode is the one along the axis. symmetric: of the operators.
+   Options Database Keys: -bodies_pc_..., -bodies_mg_... of multigrid; -interface_ksp_..., -interface_pc_... of the direct solve. */
+PetscErrorCode MultigridCreate(Mesh mesh, PetscBool axisymmetric, PetscBool symmetric, KSP ksp, Multigrid *out)
+{
+  Multigrid m;
+  PC        pc;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscNew(&m));
+  m->outer        = ksp;
+  m->mesh         = mesh;
+  m->axisymmetric = axisymmetric;
+  m->symmetric    = symmetric;
+  m->changed = m->renew = PETSC_TRUE;
+  PetscCall(NumberNodes(m));
+  PetscCall(KSPSetResidualHistory(ksp, NULL, PETSC_DECIDE, PETSC_TRUE));
+  PetscCall(KSPGetPC(ksp, &pc));
+  PetscCall(PCSetType(pc, PCSHELL));
+  PetscCall(PCShellSetContext(pc, m));
+  PetscCall(PCShellSetName(pc, "multigrid for the bodies, direct solve for the contact interface"));
+  PetscCall(PCShellSetSetUp(pc, SetUp));
+  PetscCall(PCShellSetApply(pc, Apply));
+  *out = m;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* MultigridDestroy - Collective. */
+PetscErrorCode MultigridDestroy(Multigrid *multigrid)
+{
+  Multigrid m = *multigrid;
+
+  PetscFunctionBeginUser;
+  if (!m) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(ForgetInterface(m));
+  PetscCall(PCDestroy(&m->bodies));
+  PetscCall(MatDestroy(&m->nodes));
+  PetscCall(VecDestroy(&m->nodes_right));
+  PetscCall(VecDestroy(&m->nodes_left));
+  PetscCall(VecDestroy(&m->rest));
+  PetscCall(VecDestroy(&m->number));
+  PetscCall(PetscFree(m->row));
+  PetscCall(PetscFree(*multigrid));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

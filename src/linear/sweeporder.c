@@ -1,0 +1,175 @@
+#include "sweeporder.h"
+#include "matrix/matrixrows.h"
+
+/* ---------- colours of ranks ---------- */
+
+/* Ranks that own ghosts of this one, ascending; ranks: room for all. */
+static void ListNeighbours(PetscInt n, const PetscInt *row, const PetscInt *ranges, PetscMPIInt *ranks, PetscMPIInt *count)
+{
+  PetscMPIInt rank = 0;
+
+  *count = 0;
+  for (PetscInt k = 0; k < n; k++) {
+    while (row[k] >= ranges[rank + 1]) rank++;
+    if (!*count || ranks[*count - 1] != rank) ranks[(*count)++] = rank;
+  }
+}
+
+/* The first colour that no neighbour before has, rank by rank: all ranks find the same. */
+static PetscErrorCode ColourRanks(MPI_Comm comm, const PetscMPIInt *mine, PetscMPIInt count, int *colour)
+{
+  PetscMPIInt  size, *counts, *first, *all;
+  PetscMPIInt *taken;
+
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Comm_size(comm, &size));
+  PetscCall(PetscMalloc3(size, &counts, size + 1, &first, size, &taken));
+  PetscCallMPI(MPI_Allgather(&count, 1, MPI_INT, counts, 1, MPI_INT, comm));
+  first[0] = 0;
+  for (PetscMPIInt r = 0; r < size; r++) first[r + 1] = first[r] + counts[r];
+  PetscCall(PetscMalloc1(first[size], &all));
+  PetscCallMPI(MPI_Allgatherv(mine, count, MPI_INT, all, counts, first, MPI_INT, comm));
+  for (PetscMPIInt c = 0; c < size; c++) taken[c] = -1;
+  for (PetscMPIInt r = 0; r < size; r++) {
+    for (PetscMPIInt k = first[r]; k < first[r + 1]; k++)
+      if (all[k] < r) taken[colour[all[k]]] = r;
+    for (colour[r] = 0; taken[colour[r]] == r;) colour[r]++;
+  }
+  PetscCall(PetscFree(all));
+  PetscCall(PetscFree3(counts, first, taken));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Colours of this rank and its ghosts, whose places say whether they are swept before it or after it. row: first of each ghost, ascending */
+static PetscErrorCode PlaceGhosts(SweepOrder o, Mat mat, const PetscInt *row)
+{
+  const MPI_Comm  comm = PetscObjectComm((PetscObject)mat);
+  const PetscInt *ranges;
+  PetscMPIInt     size, rank, count, *ranks;
+  int            *colour;
+
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Comm_size(comm, &size));
+  PetscCallMPI(MPI_Comm_rank(comm, &rank));
+  PetscCall(MatGetOwnershipRanges(mat, &ranges));
+  PetscCall(PetscMalloc2(size, &ranks, size, &colour));
+  ListNeighbours(o->n_ghosts, row, ranges, ranks, &count);
+  PetscCall(ColourRanks(comm, ranks, count, colour));
+  o->colour = colour[rank];
+  for (PetscMPIInt r = 0; r < size; r++) o->colours = PetscMax(o->colours, colour[r] + 1);
+  for (PetscInt k = 0, r = 0; k < o->n_ghosts; k++) {
+    while (row[k] >= ranges[r + 1]) r++;
+    o->place[o->n + k] = colour[r] < o->colour ? -1 : o->n;
+  }
+  PetscCall(PetscFree2(ranks, colour));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* ---------- nodes ---------- */
+
+/* Whole nodes of other ranks, some of whose rows may be no columns here, and how their values come. *row: the first of each, which the caller frees */
+static PetscErrorCode FindGhosts(SweepOrder o, Mat mat, const MatrixRows *others, PetscInt **row)
+{
+  PetscInt    n = 0, *rows;
+  PetscLayout layout;
+
+  PetscFunctionBeginUser;
+  *row = NULL;
+  if (!others->mat) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(MatGetSize(others->mat, NULL, &n));
+  PetscCall(PetscMalloc1(n, row));
+  PetscCall(PetscMalloc1(n * o->size, &rows));
+  PetscCall(PetscMalloc1(n, &o->ghost));
+  for (PetscInt k = 0; k < n; k++) {
+    const PetscInt d = others->global[k] % o->size, first = others->global[k] - d;
+
+    if (!o->n_ghosts || (*row)[o->n_ghosts - 1] != first) (*row)[o->n_ghosts++] = first;
+    o->ghost[k] = (o->n_ghosts - 1) * o->size + d;
+  }
+  for (PetscInt k = 0; k < o->n_ghosts * o->size; k++) rows[k] = (*row)[k / o->size] + k % o->size;
+  PetscCall(MatGetLayouts(mat, &layout, NULL));
+  PetscCall(PetscSFCreate(PetscObjectComm((PetscObject)mat), &o->sf));
+  PetscCall(PetscSFSetGraphLayout(o->sf, layout, o->n_ghosts * o->size, NULL, PETSC_COPY_VALUES, rows));
+  PetscCall(PetscFree(rows));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Places, those without ghosts next to each other: ranks of even colours sweep their border first, those of odd ones last; of two ranks none waits for the
+   other. */
+static PetscErrorCode PlaceNodes(SweepOrder o, const MatrixRows *others)
+{
+  PetscInt n_border = 0, border, inner;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(o->n, &o->node));
+  for (PetscInt i = 0; i < o->n; i++) {
+    o->place[i] = others->mat && others->ptr[(i + 1) * o->size] > others->ptr[i * o->size];
+    n_border += o->place[i];
+  }
+  o->n_inner = o->n - n_border;
+  o->border = border = o->colour % 2 == 0 ? 0 : o->n_inner;
+  o->inner = inner = o->colour % 2 == 0 ? n_border : 0;
+  for (PetscInt i = 0; i < o->n; i++) {
+    o->place[i]          = o->place[i] ? border++ : inner++;
+    o->node[o->place[i]] = i;
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* SweepOrderCreate - inner nodes of a rank in ascending order, and so its border.
+
+   Collective. mat: AIJ of symmetric pattern, square blocks of its block size all on one rank.
+   Source: Adams, A distributed memory unstructured Gauss-Seidel algorithm for multigrid smoothers, 2001. */
+PetscErrorCode SweepOrderCreate(Mat mat, SweepOrder *order)
+{
+  SweepOrder o;
+  MatrixRows others;
+  PetscInt   size, rows, *ghost;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscNew(&o));
+  PetscCall(MatGetBlockSize(mat, &size));
+  PetscCall(MatGetLocalSize(mat, &rows, NULL));
+  PetscCall(MatrixRowsGet(mat, MATRIX_OTHERS, &others));
+  o->size = (int)size;
+  o->n    = rows / size;
+  PetscCall(FindGhosts(o, mat, &others, &ghost));
+  PetscCall(PetscMalloc1(o->n + o->n_ghosts, &o->place));
+  if (o->sf) PetscCall(PlaceGhosts(o, mat, ghost));
+  PetscCall(PlaceNodes(o, &others));
+  PetscCall(PetscFree(ghost));
+  PetscCall(MatrixRowsRestore(&others));
+  *order = o;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* SweepOrderDestroy - Collective. */
+PetscErrorCode SweepOrderDestroy(SweepOrder *order)
+{
+  SweepOrder o = *order;
+
+  PetscFunctionBeginUser;
+  if (!o) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscSFDestroy(&o->sf));
+  PetscCall(PetscFree(o->node));
+  PetscCall(PetscFree(o->place));
+  PetscCall(PetscFree(o->ghost));
+  PetscCall(PetscFree(*order));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* SweepOrderShareBegin - fetches what follows the n*size values of this rank in x[(n + n_ghosts)*size]. Collective. */
+PetscErrorCode SweepOrderShareBegin(SweepOrder o, PetscReal *x)
+{
+  PetscFunctionBeginUser;
+  if (o->sf) PetscCall(PetscSFBcastBegin(o->sf, MPIU_REAL, x, x + o->n * o->size, MPI_REPLACE));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* SweepOrderShareEnd - Collective. */
+PetscErrorCode SweepOrderShareEnd(SweepOrder o, PetscReal *x)
+{
+  PetscFunctionBeginUser;
+  if (o->sf) PetscCall(PetscSFBcastEnd(o->sf, MPIU_REAL, x, x + o->n * o->size, MPI_REPLACE));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

@@ -1,0 +1,259 @@
+#include "mesh/mesh.h"
+#include "cellfaces.h"
+#include "gmsh.h"
+#include "meshdistribution.h"
+#include "base/refusal.h"
+#include "rootgroups.h"
+#include "rootlinks.h"
+#include "rootrigid.h"
+#include "roottopology.h"
+#include <string.h>
+
+/*
+  MeshGenerate - the scene's mesh file, made from its .geo by gmsh if need be
+
+  Collective
+
+  Input Parameters:
++ comm      - all ranks; rank 0 runs gmsh
+. scene     - mesh file, order, parameters
+- directory - where made meshes are kept
+
+  Output Parameters:
++ file    - path of the .msh (PETSC_MAX_PATH_LEN characters)
+- seconds - wall time of gmsh, 0 if nothing was made
+
+  Note:
+  Refuses a file that is neither .geo nor .msh, and what gmsh refuses.
+*/
+PetscErrorCode MeshGenerate(MPI_Comm comm, Scene scene, const char *directory, char *file, PetscReal *seconds)
+{
+  const char *ending    = strrchr(scene->mesh_file, '.');
+  Complaint   complaint = {""};
+  PetscMPIInt rank;
+
+  PetscFunctionBeginUser;
+  *seconds = 0;
+  PetscCallMPI(MPI_Comm_rank(comm, &rank));
+  if (!ending || (strcmp(ending, ".geo") && strcmp(ending, ".msh"))) {
+    PetscCall(RefuseInput(comm, "%s: '%s' is neither a .geo nor a .msh file", SceneWhere(scene, "mesh", "file"), scene->mesh_file));
+  }
+  if (!strcmp(ending, ".msh"))
+    PetscCall(PetscStrncpy(file, scene->mesh_file, PETSC_MAX_PATH_LEN));
+  else if (!rank)
+    PetscCall(GmshGenerate(scene, directory, file, seconds, &complaint));
+  PetscCall(ComplaintRefuse(comm, &complaint));
+  PetscCallMPI(MPI_Bcast(file, PETSC_MAX_PATH_LEN, MPI_CHAR, 0, comm));
+  PetscCallMPI(MPI_Bcast(seconds, 1, MPIU_REAL, 0, comm));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* ------------------------------------------------------------------------------------------------------------ creation */
+
+/* Rank 0's findings that all need */
+static PetscErrorCode ShareFrame(Mesh mesh)
+{
+  PetscReal frame[4] = {mesh->centre[0], mesh->centre[1], mesh->centre[2], mesh->size};
+
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Bcast(frame, 4, MPIU_REAL, 0, mesh->comm));
+  PetscCallMPI(MPI_Bcast(&mesh->order, 1, MPI_INT, 0, mesh->comm));
+  PetscCall(PetscArraycpy(mesh->centre, frame, 3));
+  mesh->size = frame[3];
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* File -> root: cells and nodes on rank 0, order and frame on all ranks */
+static PetscErrorCode ReadFile(Scene scene, const char *file, RootMesh *root, Mesh mesh)
+{
+  Complaint   complaint = {""};
+  PetscMPIInt size;
+
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Comm_size(mesh->comm, &size));
+  if (root) PetscCall(RootMeshRead(scene, file, size, root, mesh, &complaint));
+  PetscCall(ComplaintRefuse(mesh->comm, &complaint));
+  PetscCall(ShareFrame(mesh));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Root -> DM, whole on rank 0, with points for the nodes, and faces and labels of the groups */
+static PetscErrorCode CreateTopology(Scene scene, const char *file, RootMesh *root, Mesh mesh)
+{
+  Complaint complaint = {""};
+
+  PetscFunctionBeginUser;
+  PetscCall(RootTopologyCreate(mesh->comm, mesh->dim, mesh->order, root, &mesh->dm));
+  PetscCall(RootTopologySetCoordinates(mesh->dm, mesh->dim, root));
+  PetscCall(RootGroupsShare(mesh->dm, mesh, root));
+  if (root) {
+    PetscCall(CellFacesCreate(root));
+    PetscCall(RootTopologyPlaceNodes(mesh->dm, file, root, &complaint));
+    if (!complaint.text[0]) PetscCall(RootGroupsFind(mesh->dm, scene, file, root, mesh, &complaint));
+    if (!complaint.text[0]) RootGroupsCheckUses(scene, root, mesh, &complaint);
+  }
+  PetscCall(ComplaintRefuse(mesh->comm, &complaint));
+  PetscCall(RootGroupsShareCounts(scene, mesh));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* DM on rank 0 -> parts for all ranks */
+static PetscErrorCode PartitionBodies(Scene scene, const RootMesh *root, Mesh mesh)
+{
+  PetscBool  *contact = NULL;
+  PetscInt   *offsets = NULL, *adjacency = NULL;
+  CellLinks   links = {0};
+  PetscMPIInt size;
+
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Comm_size(mesh->comm, &size));
+  if (root && size > 1) {
+    PetscCall(RootGroupsContactCells(scene, root, mesh, &contact));
+    PetscCall(RootLinksFind(scene, root, mesh, &links));
+    PetscCall(CellFacesNeighbours(root, &offsets, &adjacency));
+  }
+  PetscCall(PartitionCells(mesh->dm, offsets, adjacency, contact, &links, &mesh->partition));
+  PetscCall(PetscFree(offsets));
+  PetscCall(PetscFree(adjacency));
+  PetscCall(PetscFree(contact));
+  PetscCall(PetscFree(links.cell));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Until supports are known every dof is free. */
+static PetscErrorCode FreeAllDofs(Mesh mesh)
+{
+  PetscBool *constrained;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc1(mesh->n_nodes * mesh->dim, &constrained));
+  PetscCall(MeshSetConstraints(mesh, constrained));
+  PetscCall(PetscFree(constrained));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*
+  MeshCreate - the distributed mesh from a .msh file
+
+  Collective
+
+  Input Parameters:
++ comm  - all ranks; rank 0 reads
+. scene - bodies, dimension, and which surfaces are loaded or in contact
+- file  - a .msh file, format 4.1
+
+  Output Parameter:
+. mesh - to be destroyed with MeshDestroy(). The local section holds every dof as free until MeshSetConstraints() is called.
+
+  Options Database Key:
+. -mesh_dm_view - views the DMPlex
+
+  Note:
+  Refuses damaged files, elements that are not available, bodies without cells, cells without a body, mixed orders, a two-dimensional mesh
+  out of its plane, and loads or contact on surfaces that are rigid or lie between cells.
+*/
+PetscErrorCode MeshCreate(MPI_Comm comm, Scene scene, const char *file, Mesh *created)
+{
+  RootMesh    storage, *root;
+  Mesh        mesh;
+  PetscMPIInt rank;
+
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Comm_rank(comm, &rank));
+  root = rank ? NULL : &storage;
+  PetscCall(PetscNew(&mesh));
+  mesh->comm = comm;
+  mesh->dim  = scene->dim;
+  PetscCall(ReadFile(scene, file, root, mesh));
+  PetscCall(CreateTopology(scene, file, root, mesh));
+  PetscCall(RootRigidCreate(scene, root, mesh));
+  PetscCall(PartitionBodies(scene, root, mesh));
+  PetscCall(MeshDistribute(root, mesh));
+  PetscCall(FreeAllDofs(mesh));
+  PetscCall(DMSetOptionsPrefix(mesh->dm, "mesh_"));
+  PetscCall(PetscObjectSetName((PetscObject)mesh->dm, "mesh"));
+  PetscCall(DMViewFromOptions(mesh->dm, NULL, "-dm_view"));
+  *created = mesh;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*
+  MeshDestroy - frees a mesh
+
+  Collective
+*/
+PetscErrorCode MeshDestroy(Mesh *destroyed)
+{
+  Mesh mesh = *destroyed;
+
+  PetscFunctionBeginUser;
+  if (!mesh) PetscFunctionReturn(PETSC_SUCCESS);
+  for (int g = 0; g < mesh->n_groups; g++) {
+    PetscCall(PetscFree(mesh->groups[g].name));
+    PetscCall(PetscFree(mesh->groups[g].nodes));
+    PetscCall(PetscFree3(mesh->groups[g].face_cell, mesh->groups[g].face_number, mesh->groups[g].face_tag));
+  }
+  PetscCall(PetscFree(mesh->groups));
+  PetscCall(RootRigidDestroy(mesh));
+  PetscCall(PetscFree6(mesh->node_id, mesh->node_tag, mesh->node_owner, mesh->node_owner_local, mesh->node_point, mesh->coords));
+  PetscCall(PetscFree6(mesh->cell_id, mesh->cell_type, mesh->cell_ptr, mesh->cell_nodes, mesh->cell_body, mesh->cell_tag));
+  PetscCall(PetscFree(mesh->global_dofs));
+  PetscCall(PetscFree(mesh->work));
+  PetscCall(PetscSFDestroy(&mesh->node_sf));
+  PetscCall(DMDestroy(&mesh->dm));
+  PetscCall(PetscFree(*destroyed));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* --------------------------------------------------------------------------------------------------------- coordinates */
+
+/*
+  MeshGatherNodes - a nodal field's values at some nodes, for an element kernel
+
+  Not Collective
+
+  Input Parameters:
++ mesh   - its dimension is read
+. n      - number of nodes
+. nodes  - local nodes
+- values - n_nodes*dim: mesh->coords, or displacements
+
+  Output Parameter:
+. gathered - n*dim
+*/
+void MeshGatherNodes(Mesh mesh, PetscInt n, const PetscInt nodes[], const PetscReal *values, PetscReal *gathered)
+{
+  for (PetscInt a = 0; a < n; a++)
+    for (int k = 0; k < mesh->dim; k++) gathered[a * mesh->dim + k] = values[nodes[a] * mesh->dim + k];
+}
+
+/*
+  MeshCellCoordinates - reference coordinates of a cell's nodes
+
+  Not Collective
+
+  Input Parameters:
++ mesh - the mesh
+- cell - local cell
+
+  Output Parameter:
+. X - nodes*dim, in gmsh's node order, relative to mesh->centre (axisymmetric: the first is the radius itself)
+*/
+void MeshCellCoordinates(Mesh mesh, PetscInt cell, PetscReal *X)
+{
+  const PetscInt first = mesh->cell_ptr[cell];
+
+  MeshGatherNodes(mesh, mesh->cell_ptr[cell + 1] - first, &mesh->cell_nodes[first], mesh->coords, X);
+}
+
+/* Coordinates below this part of the model's size are round-off of the mesh generator. */
+#define PLACE_ROUND_OFF 1e-9
+
+/* MeshNodePlace - where a local node lies, for messages. Not collective. */
+void MeshNodePlace(Mesh mesh, PetscInt node, PetscReal X[3])
+{
+  for (int d = 0; d < 3; d++) {
+    X[d] = d < mesh->dim ? mesh->coords[node * mesh->dim + d] + mesh->centre[d] : 0;
+    if (PetscAbsReal(X[d]) <= PLACE_ROUND_OFF * mesh->size) X[d] = 0;
+  }
+}

@@ -1,0 +1,249 @@
+#include "mesh/meshdofs.h"
+
+/* The displacement's section: dim dofs on each point with a node */
+static PetscErrorCode CreateSection(Mesh mesh, const PetscBool constrained[], PetscSection *section)
+{
+  PetscInt which[3], start, end;
+
+  PetscFunctionBeginUser;
+  PetscCall(DMPlexGetChart(mesh->dm, &start, &end));
+  PetscCall(PetscSectionCreate(mesh->comm, section));
+  PetscCall(PetscSectionSetNumFields(*section, 1)); /* before the chart, which the fields take over */
+  PetscCall(PetscSectionSetChart(*section, start, end));
+  PetscCall(PetscSectionSetFieldName(*section, 0, "displacement"));
+  PetscCall(PetscSectionSetFieldComponents(*section, 0, mesh->dim));
+  for (PetscInt i = 0; i < mesh->n_nodes; i++) {
+    PetscInt n = 0;
+
+    for (int k = 0; k < mesh->dim; k++) n += constrained[i * mesh->dim + k];
+    PetscCall(PetscSectionSetDof(*section, mesh->node_point[i], mesh->dim));
+    PetscCall(PetscSectionSetFieldDof(*section, mesh->node_point[i], 0, mesh->dim));
+    PetscCall(PetscSectionSetConstraintDof(*section, mesh->node_point[i], n));
+    PetscCall(PetscSectionSetFieldConstraintDof(*section, mesh->node_point[i], 0, n));
+  }
+  PetscCall(PetscSectionSetUp(*section));
+  for (PetscInt i = 0; i < mesh->n_nodes; i++) {
+    PetscInt n = 0;
+
+    for (int k = 0; k < mesh->dim; k++)
+      if (constrained[i * mesh->dim + k]) which[n++] = k;
+    if (!n) continue;
+    PetscCall(PetscSectionSetConstraintIndices(*section, mesh->node_point[i], which));
+    PetscCall(PetscSectionSetFieldConstraintIndices(*section, mesh->node_point[i], 0, which));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* block values of a node as one unit of communication, to be given back. Real values only: two 64-bit integers would be taken for MPI's
+   pair type. One value is the basic type itself: a contiguous type of one is none that PetscSF can sum. */
+static PetscErrorCode NodeTypeCreate(PetscInt block, MPI_Datatype *type)
+{
+  PetscMPIInt count;
+
+  PetscFunctionBeginUser;
+  *type = MPIU_REAL;
+  if (block == 1) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscMPIIntCast(block, &count));
+  PetscCallMPI(MPI_Type_contiguous(count, MPIU_REAL, type));
+  PetscCallMPI(MPI_Type_commit(type));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode NodeTypeFree(MPI_Datatype *type)
+{
+  PetscFunctionBeginUser;
+  if (*type != MPIU_REAL) PetscCallMPI(MPI_Type_free(type));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Owners' values to the copies */
+static PetscErrorCode CopyNodes(Mesh mesh, PetscInt block, PetscReal *values)
+{
+  MPI_Datatype type;
+
+  PetscFunctionBeginUser;
+  PetscCall(NodeTypeCreate(block, &type));
+  PetscCall(PetscSFBcastBegin(mesh->node_sf, type, values, values, MPI_REPLACE));
+  PetscCall(PetscSFBcastEnd(mesh->node_sf, type, values, values, MPI_REPLACE));
+  PetscCall(NodeTypeFree(&type));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Adds the copies' values (which may be those of sums) to their owners' sums */
+static PetscErrorCode AddNodes(Mesh mesh, PetscInt block, const PetscReal *values, PetscReal *sums)
+{
+  MPI_Datatype type;
+
+  PetscFunctionBeginUser;
+  PetscCall(NodeTypeCreate(block, &type));
+  PetscCall(PetscSFReduceBegin(mesh->node_sf, type, values, sums, MPIU_SUM));
+  PetscCall(PetscSFReduceEnd(mesh->node_sf, type, values, sums, MPIU_SUM));
+  PetscCall(NodeTypeFree(&type));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Global numbers of the free dofs, from the global section (which stores -(x + 1) for points of other ranks) */
+static PetscErrorCode NumberDofs(Mesh mesh, const PetscBool constrained[])
+{
+  PetscSection global;
+  PetscInt     offset;
+
+  PetscFunctionBeginUser;
+  PetscCall(DMGetGlobalSection(mesh->dm, &global));
+  PetscCall(PetscFree(mesh->global_dofs));
+  PetscCall(PetscMalloc1(mesh->n_nodes * mesh->dim, &mesh->global_dofs));
+  for (PetscInt i = 0; i < mesh->n_nodes; i++) {
+    PetscCall(PetscSectionGetOffset(global, mesh->node_point[i], &offset));
+    if (offset < 0) offset = -(offset + 1);
+    for (int k = 0; k < mesh->dim; k++) mesh->global_dofs[i * mesh->dim + k] = constrained[i * mesh->dim + k] ? -1 : offset++;
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*
+  MeshSetConstraints - says which dofs are prescribed, and numbers the free ones
+
+  Collective
+
+  Input Parameters:
++ mesh        - the mesh
+- constrained - n_nodes*dim: this rank's local dofs; a dof is prescribed if any rank that has its node says so
+
+  Note:
+  Sets the DM's local section; vectors and matrices made before do not fit any more.
+*/
+PetscErrorCode MeshSetConstraints(Mesh mesh, const PetscBool *constrained)
+{
+  const PetscInt n = mesh->n_nodes * mesh->dim;
+  PetscSection   section;
+  PetscReal     *votes;
+  PetscBool     *agreed;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc2(n, &votes, n, &agreed));
+  for (PetscInt i = 0; i < n; i++) votes[i] = constrained[i] ? 1 : 0;
+  PetscCall(MeshSumNodes(mesh, mesh->dim, votes));
+  for (PetscInt i = 0; i < n; i++) agreed[i] = votes[i] > 0 ? PETSC_TRUE : PETSC_FALSE;
+  PetscCall(CreateSection(mesh, agreed, &section));
+  PetscCall(DMSetLocalSection(mesh->dm, section));
+  PetscCall(NumberDofs(mesh, agreed));
+  PetscCall(PetscSectionDestroy(&section));
+  PetscCall(PetscFree2(votes, agreed));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*
+  MeshGetGlobalDofs - global numbers of the local dofs
+
+  Not Collective
+
+  Output Parameter:
+. dofs - n_nodes*dim, -1 where constrained; also for nodes of other ranks. Belongs to the mesh; a new array after each MeshSetConstraints().
+*/
+PetscErrorCode MeshGetGlobalDofs(Mesh mesh, const PetscInt **dofs)
+{
+  PetscFunctionBeginUser;
+  *dofs = mesh->global_dofs;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*
+  MeshGlobalToLocal - free displacements from a global vector to the local array, ghost nodes included
+
+  Collective
+
+  Input Parameters:
++ mesh - the mesh, after MeshSetConstraints()
+- x    - made by DMCreateGlobalVector()
+
+  Output Parameter:
+. u - n_nodes*dim; constrained entries are left alone
+*/
+PetscErrorCode MeshGlobalToLocal(Mesh mesh, Vec x, PetscReal *u)
+{
+  const PetscInt     n = mesh->n_nodes * mesh->dim;
+  const PetscScalar *values;
+  PetscInt           first, last;
+
+  PetscFunctionBeginUser;
+  PetscCall(VecGetOwnershipRange(x, &first, &last));
+  PetscCall(VecGetArrayRead(x, &values));
+  for (PetscInt i = 0; i < n; i++) {
+    const PetscInt dof = mesh->global_dofs[i];
+
+    mesh->work[i] = dof >= first && dof < last ? PetscRealPart(values[dof - first]) : 0;
+  }
+  PetscCall(VecRestoreArrayRead(x, &values));
+  PetscCall(CopyNodes(mesh, mesh->dim, mesh->work));
+  for (PetscInt i = 0; i < n; i++)
+    if (mesh->global_dofs[i] >= 0) u[i] = mesh->work[i];
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*
+  MeshCollectFree - the free values among local ones, each from the rank that owns it
+
+  Not collective
+
+  Input Parameters:
++ mesh - the mesh, after MeshSetConstraints()
+- u    - n_nodes*dim
+
+  Output Parameter:
+. x - made by DMCreateGlobalVector(); overwritten
+*/
+PetscErrorCode MeshCollectFree(Mesh mesh, const PetscReal *u, Vec x)
+{
+  PetscScalar *values;
+  PetscInt     first, last;
+
+  PetscFunctionBeginUser;
+  PetscCall(VecGetOwnershipRange(x, &first, &last));
+  PetscCall(VecGetArrayWrite(x, &values));
+  for (PetscInt i = 0; i < mesh->n_nodes * mesh->dim; i++) {
+    const PetscInt dof = mesh->global_dofs[i];
+
+    if (dof >= first && dof < last) values[dof - first] = u[i];
+  }
+  PetscCall(VecRestoreArrayWrite(x, &values));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*
+  MeshLocalToGlobal - sums local contributions of all ranks into a global vector over the free dofs
+
+  Collective
+
+  Input Parameters:
++ mesh - the mesh, after MeshSetConstraints()
+- f    - n_nodes*dim: this rank's contributions, not changed
+
+  Output Parameter:
+. F - made by DMCreateGlobalVector(); overwritten
+*/
+PetscErrorCode MeshLocalToGlobal(Mesh mesh, const PetscReal *f, Vec F)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscArraycpy(mesh->work, f, mesh->n_nodes * mesh->dim));
+  PetscCall(AddNodes(mesh, mesh->dim, f, mesh->work));
+  PetscCall(MeshCollectFree(mesh, mesh->work, F));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*
+  MeshSumNodes - sums nodal values over all ranks' copies of a node
+
+  Collective
+
+  Input Parameters:
++ mesh   - the mesh
+. block  - values per node
+- values - n_nodes*block; on return every copy holds the same sum
+*/
+PetscErrorCode MeshSumNodes(Mesh mesh, PetscInt block, PetscReal *values)
+{
+  PetscFunctionBeginUser;
+  PetscCall(AddNodes(mesh, block, values, values));
+  PetscCall(CopyNodes(mesh, block, values));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

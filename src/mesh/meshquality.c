@@ -1,0 +1,243 @@
+#include "mesh/meshquality.h"
+#include "base/complaint.h"
+#include "kernels/elementkernel.h"
+#include "mesh/mesh.h"
+#include <string.h>
+
+/* -------------------------------------------------------------------------------------------------------------- quality */
+
+/* A cell is inverted if its Jacobian changes sign, or has the wrong sign all over (then its volume is negative). */
+static PetscBool CellInverted(Mesh mesh, PetscInt c, double *quality)
+{
+  double X[ELEMENT_MAX_NODES * 3];
+
+  MeshCellCoordinates(mesh, c, X);
+  *quality = ElementQuality(mesh->cell_type[c], mesh->dim, X);
+  return !(*quality > 0) || !(CellVolume(mesh->cell_type[c], mesh->dim, GEOMETRY_PLANE_STRAIN, X) > 0) ? PETSC_TRUE : PETSC_FALSE;
+}
+
+/*
+  MeshCheckQuality - refuses inverted cells
+
+  Collective
+
+  Input Parameters:
++ mesh  - the mesh
+- scene - for the names of its bodies
+*/
+PetscErrorCode MeshCheckQuality(Mesh mesh, Scene scene)
+{
+  Complaint complaint = {""};
+  double    quality, its_quality = 0;
+  PetscInt  first = -1, tag = PETSC_MAX_INT, lowest, count = 0; /* first: this rank's inverted cell of lowest tag */
+
+  PetscFunctionBeginUser;
+  for (PetscInt c = 0; c < mesh->n_cells; c++) {
+    if (!CellInverted(mesh, c, &quality)) continue;
+    count++;
+    if (mesh->cell_tag[c] > tag) continue;
+    first       = c;
+    tag         = mesh->cell_tag[c];
+    its_quality = quality;
+  }
+  PetscCallMPI(MPI_Allreduce(&tag, &lowest, 1, MPIU_INT, MPI_MIN, mesh->comm));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &count, 1, MPIU_INT, MPI_SUM, mesh->comm));
+  if (first >= 0 && tag == lowest) {
+    Complain(&complaint,
+             "%s: cell %" PetscInt_FMT " of body '%s' is inverted (smallest over mean Jacobian determinant %g); inverted cells in all: %" PetscInt_FMT
+             "; turn the entity round in gmsh, or mesh more finely where it is curved",
+             SceneWhere(scene, "mesh", "file"), tag, scene->bodies[mesh->cell_body[first]].name, its_quality, count);
+  }
+  PetscCall(ComplaintRefuse(mesh->comm, &complaint));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*
+  MeshCheckFormulations - refuses cells that their body's formulation has no kernel for
+
+  Collective
+
+  Input Parameters:
++ mesh  - the mesh
+- scene - its bodies
+*/
+PetscErrorCode MeshCheckFormulations(Mesh mesh, Scene scene)
+{
+  Complaint complaint = {""};
+
+  PetscFunctionBeginUser;
+  for (PetscInt c = 0; c < mesh->n_cells; c++) {
+    const SceneBody *body = &scene->bodies[mesh->cell_body[c]];
+
+    if (ElementKernelExists(&(KernelCase){.type = mesh->cell_type[c], .geometry = scene->geometry, .formulation = body->formulation})) continue;
+    Complain(&complaint, "%s: %s is for quad4 and hex8 only; cell %" PetscInt_FMT " of body '%s' is %s, which needs formulation: full",
+             SceneWhere(scene, body->path, "formulation"), Formulations[body->formulation], mesh->cell_tag[c], body->name,
+             ElementGet(mesh->cell_type[c])->name);
+  }
+  PetscCall(ComplaintRefuse(mesh->comm, &complaint));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* --------------------------------------------------------------------------------------------------------------- report */
+
+/* A line of the report: a body, a surface, or a rigid tool; all ranks' */
+typedef struct {
+  const char *name;
+  char        cells[MESH_TEXT]; /* body: "240 hex27" */
+  double      count;            /* body, tool: nodes; surface: faces */
+  double      measure;          /* volume, area */
+  double      mean, least;      /* body: quality */
+  PetscInt    worst;            /* tag of the cell of least quality */
+} ReportRow;
+
+/* "240 hex27, 12 tet10" */
+static void ListCells(const PetscReal cells[ELEMENT_TYPES], char list[MESH_TEXT])
+{
+  size_t used = 0;
+
+  list[0] = '\0';
+  for (int type = 0; type < ELEMENT_TYPES && used < MESH_TEXT; type++)
+    if (cells[type] > 0)
+      used += (size_t)snprintf(list + used, MESH_TEXT - used, "%s%.0f %s", used ? ", " : "", cells[type], ElementGet((ElementType)type)->name);
+}
+
+/* Nodes of a group, each counted by its owner */
+static PetscErrorCode CountNodes(Mesh mesh, const MeshGroup *group, PetscReal *count)
+{
+  PetscMPIInt rank;
+
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Comm_rank(mesh->comm, &rank));
+  *count = 0;
+  for (PetscInt i = 0; i < group->n_nodes; i++) *count += mesh->node_owner[group->nodes[i]] == rank;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode MeasureBody(Mesh mesh, Scene scene, int b, ReportRow *row)
+{
+  enum { NODES = ELEMENT_TYPES, VOLUME, QUALITY, CELLS, SUMS };
+  PetscReal sums[SUMS] = {0}; /* the first: cells by type */
+  PetscReal least      = PETSC_MAX_REAL, here;
+  PetscInt  worst      = PETSC_MAX_INT;
+
+  PetscFunctionBeginUser;
+  for (PetscInt c = 0; c < mesh->n_cells; c++) {
+    double X[ELEMENT_MAX_NODES * 3], quality;
+
+    if (mesh->cell_body[c] != b) continue;
+    (void)CellInverted(mesh, c, &quality);
+    MeshCellCoordinates(mesh, c, X);
+    sums[mesh->cell_type[c]]++;
+    sums[CELLS]++;
+    sums[VOLUME] += CellVolume(mesh->cell_type[c], mesh->dim, scene->geometry, X);
+    sums[QUALITY] += quality;
+    if (quality < least || (quality == least && mesh->cell_tag[c] < worst)) worst = mesh->cell_tag[c];
+    least = PetscMin(least, quality);
+  }
+  PetscCall(CountNodes(mesh, &mesh->groups[MeshFindGroup(mesh, mesh->dim, scene->bodies[b].name)], &sums[NODES]));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sums, SUMS, MPIU_REAL, MPIU_SUM, mesh->comm));
+  here = least;
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &least, 1, MPIU_REAL, MPIU_MIN, mesh->comm));
+  if (here > least) worst = PETSC_MAX_INT;
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &worst, 1, MPIU_INT, MPI_MIN, mesh->comm));
+  *row = (ReportRow){.name    = scene->bodies[b].name,
+                     .count   = sums[NODES],
+                     .measure = sums[VOLUME],
+                     .mean    = sums[QUALITY] / sums[CELLS],
+                     .least   = least,
+                     .worst   = worst};
+  ListCells(sums, row->cells);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode MeasureSurface(Mesh mesh, Scene scene, const MeshGroup *group, ReportRow *row)
+{
+  PetscReal sums[2] = {(PetscReal)group->n_faces, 0}; /* faces, area */
+
+  PetscFunctionBeginUser;
+  for (PetscInt f = 0; f < group->n_faces; f++) {
+    PetscInt          nodes[FACE_MAX_NODES];
+    const ElementType type = MeshFaceNodes(mesh, group, f, nodes);
+    const int         n    = ElementGet(type)->nodes;
+    double            X[FACE_MAX_NODES * 3], area[FACE_MAX_NODES] = {0};
+
+    MeshGatherNodes(mesh, n, nodes, mesh->coords, X);
+    FaceAreaKernel(type, mesh->dim, scene->geometry, X, area, NULL);
+    for (int a = 0; a < n; a++) sums[1] += area[a];
+  }
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sums, 2, MPIU_REAL, MPIU_SUM, mesh->comm));
+  *row = (ReportRow){.name = group->name, .count = sums[0], .measure = sums[1]};
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Rows of the bodies and of the surfaces on them; bodies has room for all of the scene's, surfaces for all groups */
+static PetscErrorCode Measure(Mesh mesh, Scene scene, int *n_bodies, ReportRow bodies[], int *n_surfaces, ReportRow surfaces[])
+{
+  PetscFunctionBeginUser;
+  *n_bodies = *n_surfaces = 0;
+  for (int b = 0; b < scene->n_bodies; b++)
+    if (!scene->bodies[b].rigid) PetscCall(MeasureBody(mesh, scene, b, &bodies[(*n_bodies)++]));
+  for (int g = 0; g < mesh->n_groups; g++)
+    if (mesh->groups[g].dim == mesh->dim - 1 && mesh->groups[g].attached) PetscCall(MeasureSurface(mesh, scene, &mesh->groups[g], &surfaces[(*n_surfaces)++]));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Of a column that holds the text too */
+static int Width(int width, const char *text)
+{
+  return PetscMax(width, (int)strlen(text));
+}
+
+/* By stdio, not by PetscFPrintf(), which writes whole numbers with a point behind them */
+static void PrintReport(Mesh mesh, int n_bodies, const ReportRow bodies[], int n_surfaces, const ReportRow surfaces[], FILE *stream)
+{
+  int name = Width(0, "rigid tool");
+
+  for (int b = 0; b < n_bodies; b++) name = Width(name, bodies[b].name);
+  for (int s = 0; s < n_surfaces; s++) name = Width(name, surfaces[s].name);
+  for (int r = 0; r < mesh->n_rigid; r++) name = Width(name, mesh->rigid[r].name);
+  fprintf(stream, "mesh     %" PetscInt_FMT " cells of order %d, %" PetscInt_FMT " nodes, diagonal %g\n", mesh->n_cells_global, mesh->order, mesh->n_global,
+          (double)mesh->size);
+  fprintf(stream, "         %-*s %9s %11s  %7s %7s %9s  %s\n", name, "body", "nodes", "volume", "quality", "least", "in cell", "cells");
+  for (int b = 0; b < n_bodies; b++)
+    fprintf(stream, "         %-*s %9.0f %11g  %7.3f %7.3f %9" PetscInt_FMT "  %s\n", name, bodies[b].name, bodies[b].count, bodies[b].measure, bodies[b].mean,
+            bodies[b].least, bodies[b].worst, bodies[b].cells);
+  if (n_surfaces) fprintf(stream, "         %-*s %9s %11s\n", name, "surface", "faces", "area");
+  for (int s = 0; s < n_surfaces; s++) fprintf(stream, "         %-*s %9.0f %11g\n", name, surfaces[s].name, surfaces[s].count, surfaces[s].measure);
+  if (mesh->n_rigid) fprintf(stream, "         %-*s %9s %11s\n", name, "rigid tool", "faces", "nodes");
+  for (int r = 0; r < mesh->n_rigid; r++)
+    fprintf(stream, "         %-*s %9" PetscInt_FMT " %11" PetscInt_FMT "\n", name, mesh->rigid[r].name, mesh->rigid[r].n_faces, mesh->rigid[r].n_nodes);
+  if (strcmp(mesh->partition.tool, "none")) {
+    fprintf(stream, "parts    %s: edge cut %" PetscInt_FMT ", largest over mean %.2f (cells in contact %.2f)\n", mesh->partition.tool, mesh->partition.edge_cut,
+            (double)mesh->partition.imbalance_cells, (double)mesh->partition.imbalance_contact);
+  }
+}
+
+/*
+  MeshReport - prints bodies, surfaces, rigid tools and the partition
+
+  Collective; rank 0 prints
+
+  Input Parameters:
++ mesh   - the mesh
+. scene  - for its bodies
+- stream - of rank 0
+
+  Note:
+  Quality: mean and least scaled Jacobian (ElementQuality()), 1 is a parallelepiped. Areas and volumes are over 360 degrees if
+  axisymmetric. A surface between cells counts once.
+*/
+PetscErrorCode MeshReport(Mesh mesh, Scene scene, FILE *stream)
+{
+  ReportRow  *bodies, *surfaces;
+  int         n_bodies, n_surfaces;
+  PetscMPIInt rank;
+
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Comm_rank(mesh->comm, &rank));
+  PetscCall(PetscMalloc2(scene->n_bodies, &bodies, mesh->n_groups, &surfaces));
+  PetscCall(Measure(mesh, scene, &n_bodies, bodies, &n_surfaces, surfaces));
+  if (!rank) PrintReport(mesh, n_bodies, bodies, n_surfaces, surfaces, stream);
+  PetscCall(PetscFree2(bodies, surfaces));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

@@ -1,0 +1,216 @@
+#include "mesh/partition.h"
+#include <metis.h>
+
+enum { METIS_SEED = 1 }; /* any fixed number: the same mesh and ranks give the same partition */
+
+/* How far parts may exceed the mean: cells decide the cost of every Newton iteration, contact cells a small part of it */
+static const real_t CELL_TOLERANCE = 1.03f, CONTACT_TOLERANCE = 1.10f;
+
+/* Cutting a link costs as much as so many faces between cells: a slave node is coupled to some twenty nodes of the master, a node of a face to nine beyond it,
+   and what couples ranks is sent in every tangent and every sweep. */
+enum { LINK_WEIGHT = 4 };
+
+static PetscErrorCode IndexCast(PetscInt value, idx_t *index)
+{
+  PetscFunctionBeginUser;
+  *index = (idx_t)value;
+  PetscCheck((PetscInt)*index == value, PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE, "%" PetscInt_FMT " does not fit into METIS' index type of %zu bytes", value,
+             sizeof(idx_t));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Cells, and edges between them: faces and, heavier, links */
+typedef struct {
+  idx_t *offsets, *neighbours, *weights;
+} Graph;
+
+static PetscErrorCode GraphCreate(PetscInt n, const PetscInt offsets[], const PetscInt adjacency[], const CellLinks *links, Graph *graph)
+{
+  const PetscInt ends  = 2 * links->n;
+  idx_t          edges = 0, *next;
+
+  PetscFunctionBeginUser;
+  PetscCall(IndexCast(offsets[n] + ends, &edges));
+  PetscCall(PetscCalloc1(n + 1, &graph->offsets));
+  PetscCall(PetscMalloc1(edges, &graph->neighbours));
+  PetscCall(PetscMalloc1(edges, &graph->weights));
+  PetscCall(PetscMalloc1(n, &next));
+  for (PetscInt e = 0; e < ends; e++) graph->offsets[links->cell[e] + 1]++;
+  for (PetscInt c = 0; c < n; c++) {
+    next[c] = graph->offsets[c];
+    graph->offsets[c + 1] += next[c] + (idx_t)(offsets[c + 1] - offsets[c]);
+    for (PetscInt k = offsets[c]; k < offsets[c + 1]; k++, next[c]++) {
+      PetscCall(IndexCast(adjacency[k], &graph->neighbours[next[c]]));
+      graph->weights[next[c]] = 1;
+    }
+  }
+  for (PetscInt e = 0; e < ends; e++) {
+    const PetscInt c = links->cell[e];
+
+    PetscCall(IndexCast(links->cell[e ^ 1], &graph->neighbours[next[c]]));
+    graph->weights[next[c]++] = LINK_WEIGHT;
+  }
+  PetscCall(PetscFree(next));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode GraphFree(Graph *graph)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscFree(graph->offsets));
+  PetscCall(PetscFree(graph->neighbours));
+  PetscCall(PetscFree(graph->weights));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Pairs of neighbours, links apart, in different parts */
+static PetscInt CountCut(PetscInt n, const PetscInt offsets[], const PetscInt adjacency[], const PetscInt part[])
+{
+  PetscInt ends = 0;
+
+  for (PetscInt c = 0; c < n; c++)
+    for (PetscInt k = offsets[c]; k < offsets[c + 1]; k++) ends += part[c] != part[adjacency[k]];
+  return ends / 2;
+}
+
+/*
+  PartitionImbalance - the largest part over the mean; 1 where there is nothing to share out
+
+  Not Collective
+
+  Input Parameters:
++ n       - number of cells
+. part    - per cell
+. counted - per cell, or NULL: all of them
+- parts   - number of parts
+
+  Output Parameter:
+. count - cells counted, per part
+*/
+PetscReal PartitionImbalance(PetscInt n, const PetscInt part[], const PetscBool counted[], PetscInt parts, PetscInt count[])
+{
+  PetscInt total = 0, largest = 0;
+
+  for (PetscInt p = 0; p < parts; p++) count[p] = 0;
+  for (PetscInt c = 0; c < n; c++) {
+    if (counted && !counted[c]) continue;
+    total++;
+    count[part[c]]++;
+    largest = PetscMax(largest, count[part[c]]);
+  }
+  return total ? (PetscReal)largest * parts / (PetscReal)total : 1;
+}
+
+/*
+  PartitionGraph - METIS' k-way partition of a graph of cells
+
+  Not Collective
+
+  Input Parameters:
++ n         - number of cells
+. offsets   - where each cell's neighbours start in adjacency, n + 1
+. adjacency - neighbours
+. contact   - per cell, whether it has a face in contact (a second weight), or NULL: cells alone are balanced
+. links     - pairs of cells that had better be of one part
+- parts     - number of parts, at least 2
+
+  Output Parameters:
++ part     - per cell
+- edge_cut - pairs of neighbours in different parts
+*/
+PetscErrorCode PartitionGraph(PetscInt n, const PetscInt offsets[], const PetscInt adjacency[], const PetscBool contact[], const CellLinks *links,
+                              PetscInt parts, PetscInt part[], PetscInt *edge_cut)
+{
+  Graph  graph;
+  idx_t *weights, *found, options[METIS_NOPTIONS], n_vertices, n_constraints = 1, n_parts, cut = 0;
+  real_t tolerance[2] = {CELL_TOLERANCE, CONTACT_TOLERANCE};
+  int    status;
+
+  PetscFunctionBeginUser;
+  for (PetscInt c = 0; contact && c < n; c++)
+    if (contact[c]) n_constraints = 2; /* a constraint whose weights are all zero cannot be balanced */
+  PetscCall(IndexCast(n, &n_vertices));
+  PetscCall(IndexCast(parts, &n_parts));
+  PetscCall(GraphCreate(n, offsets, adjacency, links, &graph));
+  PetscCall(PetscMalloc2(n * n_constraints, &weights, n, &found));
+  for (PetscInt c = 0; c < n; c++) {
+    weights[c * n_constraints] = 1;
+    if (n_constraints == 2) weights[c * n_constraints + 1] = contact[c] ? 1 : 0;
+  }
+  METIS_SetDefaultOptions(options);
+  options[METIS_OPTION_SEED]      = METIS_SEED;
+  options[METIS_OPTION_NUMBERING] = 0;
+  status = METIS_PartGraphKway(&n_vertices, &n_constraints, graph.offsets, graph.neighbours, weights, NULL, graph.weights, &n_parts, NULL, tolerance, options,
+                               &cut, found);
+  PetscCheck(status == METIS_OK, PETSC_COMM_SELF, PETSC_ERR_LIB, "METIS failed with status %d", status);
+  for (PetscInt c = 0; c < n; c++) part[c] = (PetscInt)found[c];
+  *edge_cut = CountCut(n, offsets, adjacency, part);
+  PetscCall(GraphFree(&graph));
+  PetscCall(PetscFree2(weights, found));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Cells by part, as PETSCPARTITIONERSHELL wants them */
+static PetscErrorCode PartitionSort(PetscInt n, const PetscInt part[], PetscMPIInt parts, const PetscInt sizes[], PetscInt cells[])
+{
+  PetscInt *next;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc1(parts + 1, &next));
+  for (PetscMPIInt p = 0; p < parts; p++) next[p + 1] = next[p] + sizes[p];
+  for (PetscInt c = 0; c < n; c++) cells[next[part[c]]++] = c;
+  PetscCall(PetscFree(next));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*
+  PartitionCells - decides which rank gets which cell
+
+  Collective
+
+  Input Parameters:
++ dm        - DMPlex, all its cells on rank 0
+. offsets   - on rank 0: where each cell's neighbours start in adjacency
+. adjacency - on rank 0: neighbours across faces
+. contact   - on rank 0: per cell, whether it has a face in contact (a second weight, so that contact work is shared out too)
+- links     - on rank 0: cells that face each other across contact, which are kept on one rank where that is cheap
+
+  Output Parameter:
+. partition - tool, edge cut and imbalances, the same on all ranks
+
+  Note:
+  DMPlexDistribute() follows the partition afterwards.
+*/
+PetscErrorCode PartitionCells(DM dm, const PetscInt offsets[], const PetscInt adjacency[], const PetscBool contact[], const CellLinks *links,
+                              Partition *partition)
+{
+  MPI_Comm         comm = PetscObjectComm((PetscObject)dm);
+  PetscPartitioner partitioner;
+  PetscMPIInt      rank, size;
+  PetscInt         n, *sizes, *contact_sizes, *cells, *part;
+  PetscReal        imbalances[2] = {1, 1};
+
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Comm_rank(comm, &rank));
+  PetscCallMPI(MPI_Comm_size(comm, &size));
+  *partition = (Partition){.tool = "none", .imbalance_cells = 1, .imbalance_contact = 1};
+  if (size == 1) PetscFunctionReturn(PETSC_SUCCESS);
+  partition->tool = "metis";
+  PetscCall(DMPlexGetHeightStratum(dm, 0, NULL, &n));
+  PetscCall(PetscCalloc4(size, &sizes, size, &contact_sizes, n, &cells, n, &part));
+  if (!rank) {
+    PetscCall(PartitionGraph(n, offsets, adjacency, contact, links, size, part, &partition->edge_cut));
+    imbalances[0] = PartitionImbalance(n, part, NULL, size, sizes);
+    imbalances[1] = PartitionImbalance(n, part, contact, size, contact_sizes);
+    PetscCall(PartitionSort(n, part, size, sizes, cells));
+  }
+  PetscCall(DMPlexGetPartitioner(dm, &partitioner));
+  PetscCall(PetscPartitionerSetType(partitioner, PETSCPARTITIONERSHELL));
+  PetscCall(PetscPartitionerShellSetPartition(partitioner, size, sizes, cells));
+  PetscCallMPI(MPI_Bcast(&partition->edge_cut, 1, MPIU_INT, 0, comm));
+  PetscCallMPI(MPI_Bcast(imbalances, 2, MPIU_REAL, 0, comm));
+  partition->imbalance_cells   = imbalances[0];
+  partition->imbalance_contact = imbalances[1];
+  PetscCall(PetscFree4(sizes, contact_sizes, cells, part));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

@@ -1,0 +1,299 @@
+#include "rootgroups.h"
+#include "cellfaces.h"
+#include "mesh/meshgroup.h"
+#include <string.h>
+
+static PetscBool IsRigidGroup(Scene scene, int dim, const char *name)
+{
+  return dim == scene->dim - 1 && MeshFindBody(scene, name, PETSC_TRUE) >= 0 ? PETSC_TRUE : PETSC_FALSE;
+}
+
+/* A group's head from rank 0 to all */
+static PetscErrorCode ShareGroup(Mesh mesh, const GmshPhysical *physical, MeshGroup *group)
+{
+  PetscInt    numbers[3] = {0, 0, 0};
+  PetscMPIInt length;
+
+  PetscFunctionBeginUser;
+  if (physical) {
+    numbers[0] = physical->dim;
+    numbers[1] = physical->tag;
+    numbers[2] = (PetscInt)strlen(physical->name) + 1;
+  }
+  PetscCallMPI(MPI_Bcast(numbers, 3, MPIU_INT, 0, mesh->comm));
+  group->dim = (int)numbers[0];
+  group->tag = numbers[1];
+  PetscCall(PetscMPIIntCast(numbers[2], &length));
+  PetscCall(PetscMalloc1(length, &group->name));
+  if (physical) PetscCall(PetscArraycpy(group->name, physical->name, length));
+  PetscCallMPI(MPI_Bcast(group->name, length, MPI_CHAR, 0, mesh->comm));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*
+  RootGroupsShare - makes mesh->groups, without nodes and faces, and their labels
+
+  Collective
+
+  Input Parameters:
++ dm   - by RootTopologyCreate()
+. mesh - its groups are set
+- root - on rank 0; NULL elsewhere
+*/
+PetscErrorCode RootGroupsShare(DM dm, Mesh mesh, const RootMesh *root)
+{
+  char label[MESH_TEXT];
+
+  PetscFunctionBeginUser;
+  if (root) mesh->n_groups = root->gmsh.n_physicals;
+  PetscCallMPI(MPI_Bcast(&mesh->n_groups, 1, MPI_INT, 0, mesh->comm));
+  PetscCall(PetscCalloc1(mesh->n_groups, &mesh->groups));
+  for (int g = 0; g < mesh->n_groups; g++) {
+    PetscCall(ShareGroup(mesh, root ? &root->gmsh.physicals[g] : NULL, &mesh->groups[g]));
+    MeshGroupLabel(mesh, &mesh->groups[g], label);
+    PetscCall(DMCreateLabel(dm, label));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* ------------------------------------------------------------------------------------------------------------ faces */
+
+/* Does the element have a node that no cell uses? */
+static PetscBool IsLoose(const RootMesh *root, const GmshBlock *block, PetscInt item)
+{
+  for (int k = 0; k < block->nodes; k++)
+    if (root->id[block->connectivity[item * block->nodes + k]] < 0) return PETSC_TRUE;
+  return PETSC_FALSE;
+}
+
+/* The cell that an element of dimension dim - 1 is a face of: the one with the lower id of two. face->cell -1: none */
+static void FindFace(const RootMesh *root, const GmshBlock *block, PetscInt item, RootFace *face, PetscBool *interior)
+{
+  const PetscInt *nodes = &block->connectivity[item * block->nodes];
+  const CellFace *found;
+  PetscInt        vertices[CELL_FACE_CORNERS], n_cells;
+
+  face->cell = -1;
+  face->tag  = block->tag[item];
+  *interior  = PETSC_FALSE;
+  if (IsLoose(root, block, item)) return;
+  for (int k = 0; k < block->element->corners; k++) vertices[k] = root->vertex[root->id[nodes[k]]];
+  n_cells = CellFacesFind(root, block->element->corners, vertices, &found);
+  if (!n_cells) return;
+  face->cell   = found->cell;
+  face->number = found->number;
+  *interior    = n_cells > 1 ? PETSC_TRUE : PETSC_FALSE;
+}
+
+/* One element of a deformable body's group: its face, if the group is a surface, and its nodes' points into the label. loose: it does not lie on a body. */
+static PetscErrorCode AddElement(RootMesh *root, const GmshBlock *block, PetscInt item, int g, PetscBool surface, DMLabel label, PetscBool *loose)
+{
+  RootFace  face     = {.group = g};
+  PetscBool interior = PETSC_FALSE;
+
+  PetscFunctionBeginUser;
+  if (surface) FindFace(root, block, item, &face, &interior);
+  *loose = IsLoose(root, block, item) || (surface && face.cell < 0) ? PETSC_TRUE : PETSC_FALSE;
+  if (*loose) PetscFunctionReturn(PETSC_SUCCESS);
+  if (surface) {
+    root->faces[root->n_faces++] = face;
+    root->interior[g] += interior;
+  }
+  for (int k = 0; k < block->nodes; k++) PetscCall(DMLabelSetValue(label, root->point[root->id[block->connectivity[item * block->nodes + k]]], 1));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* A rigid tool has no faces of a body. */
+static void CheckRigidBlock(Scene scene, const char *file, const RootMesh *root, const GmshBlock *block, const char *name, Complaint *complaint)
+{
+  for (PetscInt item = 0; item < block->n; item++) {
+    RootFace  face;
+    PetscBool interior;
+
+    FindFace(root, block, item, &face, &interior);
+    if (face.cell < 0) continue;
+    Complain(complaint, "%s: element %" PetscInt_FMT " of the rigid surface '%s' is a face of a deformable body in '%s'; a rigid tool has a mesh of its own",
+             SceneWhere(scene, scene->bodies[MeshFindBody(scene, name, PETSC_TRUE)].path, "surface"), block->tag[item], name, file);
+  }
+}
+
+/* The elements of one block in one of its groups */
+static PetscErrorCode AddBlock(DM dm, Scene scene, RootMesh *root, const GmshBlock *block, int g, Mesh mesh)
+{
+  MeshGroup      *group   = &mesh->groups[g];
+  const PetscBool surface = group->dim == scene->dim - 1 ? PETSC_TRUE : PETSC_FALSE;
+  DMLabel         label;
+  char            name[MESH_TEXT];
+
+  PetscFunctionBeginUser;
+  MeshGroupLabel(mesh, group, name);
+  PetscCall(DMGetLabel(dm, name, &label));
+  for (PetscInt item = 0; item < block->n; item++) {
+    PetscBool loose;
+
+    PetscCall(AddElement(root, block, item, g, surface, label, &loose));
+    group->n_loose += loose;
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Faces by cell, in the order in which they were found */
+static PetscErrorCode SortFaces(RootMesh *root)
+{
+  RootFace *sorted;
+  PetscInt *next;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc1(root->n_cells + 1, &root->face_ptr));
+  PetscCall(PetscMalloc1(root->n_faces, &sorted));
+  PetscCall(PetscMalloc1(root->n_cells + 1, &next));
+  for (PetscInt f = 0; f < root->n_faces; f++) root->face_ptr[root->faces[f].cell + 1]++;
+  for (PetscInt c = 0; c < root->n_cells; c++) root->face_ptr[c + 1] += root->face_ptr[c];
+  PetscCall(PetscArraycpy(next, root->face_ptr, root->n_cells + 1));
+  for (PetscInt f = 0; f < root->n_faces; f++) sorted[next[root->faces[f].cell]++] = root->faces[f];
+  PetscCall(PetscFree(root->faces));
+  PetscCall(PetscFree(next));
+  root->faces = sorted;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*
+  RootGroupsFind - the groups' faces by cell, and the points of their nodes in the groups' labels
+
+  Not Collective; rank 0
+
+  Input Parameters:
++ dm    - by RootTopologyCreate()
+. scene - which groups are rigid tools
+. file  - the mesh's name, for the complaint
+- root  - after CellFacesCreate() and RootTopologyPlaceNodes()
+
+  Output Parameters:
++ root      - its faces are set
+. mesh      - the groups' counts of elements are set, not yet on other ranks
+- complaint - a rigid tool that shares faces with a body
+*/
+PetscErrorCode RootGroupsFind(DM dm, Scene scene, const char *file, RootMesh *root, Mesh mesh, Complaint *complaint)
+{
+  const GmshMesh *gmsh      = &root->gmsh;
+  PetscInt        max_faces = 0;
+
+  PetscFunctionBeginUser;
+  for (int b = 0; b < gmsh->n_blocks; b++)
+    if (gmsh->blocks[b].dim == scene->dim - 1) max_faces += gmsh->blocks[b].n * gmsh->blocks[b].n_physicals;
+  PetscCall(PetscMalloc1(max_faces, &root->faces));
+  PetscCall(PetscCalloc1(mesh->n_groups, &root->interior));
+  for (int b = 0; b < gmsh->n_blocks; b++) {
+    const GmshBlock *block = &gmsh->blocks[b];
+
+    for (int i = 0; i < block->n_physicals; i++) {
+      MeshGroup *group = &mesh->groups[block->physical[i]];
+
+      group->n_elements += block->n;
+      if (IsRigidGroup(scene, group->dim, group->name))
+        CheckRigidBlock(scene, file, root, block, group->name, complaint);
+      else
+        PetscCall(AddBlock(dm, scene, root, block, block->physical[i], mesh));
+    }
+  }
+  PetscCall(SortFaces(root));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*
+  RootGroupsShareCounts - tells all ranks what RootGroupsFind() counted, and which groups lie on bodies
+
+  Collective
+
+  Input Parameters:
++ scene - which groups are rigid tools
+- mesh  - n_elements, n_loose and attached of its groups are set
+*/
+PetscErrorCode RootGroupsShareCounts(Scene scene, Mesh mesh)
+{
+  PetscFunctionBeginUser;
+  for (int g = 0; g < mesh->n_groups; g++) {
+    MeshGroup *group    = &mesh->groups[g];
+    PetscInt   count[2] = {group->n_elements, group->n_loose};
+
+    PetscCallMPI(MPI_Bcast(count, 2, MPIU_INT, 0, mesh->comm));
+    group->n_elements = count[0];
+    group->n_loose    = count[1];
+    group->attached   = group->n_loose || IsRigidGroup(scene, group->dim, group->name) ? PETSC_FALSE : PETSC_TRUE;
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* ------------------------------------------------------------------------------------------------------------- uses */
+
+/* A surface that the scene loads or brings into contact lies on the boundary; supports and probes may be anywhere. */
+static void CheckBoundary(Scene scene, const RootMesh *root, Mesh mesh, const char *path, const char *key, const char *name, Complaint *complaint)
+{
+  const int g = name ? MeshFindGroup(mesh, scene->dim - 1, name) : -1;
+
+  if (g >= 0 && root->interior[g]) {
+    Complain(complaint, "%s: %" PetscInt_FMT " of the %" PetscInt_FMT " faces of '%s' lie between two cells; allowed: a surface on the boundary",
+             SceneWhere(scene, path, key), root->interior[g], mesh->groups[g].n_elements, name);
+  }
+}
+
+/*
+  RootGroupsCheckUses - are the surfaces that the scene loads or brings into contact on the boundary?
+
+  Not Collective; rank 0, after RootGroupsFind()
+
+  Input Parameters:
++ scene - its pressures, tractions and contact pairs are looked at: supports and probes may be anywhere
+. root  - which groups have faces between cells
+- mesh  - names of the groups
+
+  Output Parameter:
+. complaint - the first that is not
+*/
+void RootGroupsCheckUses(Scene scene, const RootMesh *root, Mesh mesh, Complaint *complaint)
+{
+  for (int i = 0; i < scene->n_loads; i++) {
+    const SceneLoad *load = &scene->loads[i];
+
+    if (load->kind == LOAD_PRESSURE || load->kind == LOAD_TRACTION) CheckBoundary(scene, root, mesh, load->path, "surface", load->region, complaint);
+  }
+  for (int i = 0; i < scene->n_contacts; i++) {
+    CheckBoundary(scene, root, mesh, scene->contacts[i].path, "slave", scene->contacts[i].slave, complaint);
+    if (scene->contacts[i].master) CheckBoundary(scene, root, mesh, scene->contacts[i].path, "master", scene->contacts[i].master, complaint);
+  }
+}
+
+/*
+  RootGroupsContactCells - cells with a face in contact, for the partition
+
+  Not Collective; rank 0, after RootGroupsFind()
+
+  Input Parameters:
++ scene - its contact pairs are looked at
+. root  - faces of the groups
+- mesh  - names of the groups
+
+  Output Parameter:
+. contact - per cell; to be freed by PetscFree()
+*/
+PetscErrorCode RootGroupsContactCells(Scene scene, const RootMesh *root, Mesh mesh, PetscBool **contact)
+{
+  PetscBool *in_contact;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc1(root->n_cells, contact));
+  PetscCall(PetscCalloc1(mesh->n_groups, &in_contact));
+  for (int i = 0; i < scene->n_contacts; i++) {
+    const char *const names[] = {scene->contacts[i].slave, scene->contacts[i].master};
+
+    for (int k = 0; k < 2; k++) {
+      const int g = names[k] ? MeshFindGroup(mesh, scene->dim - 1, names[k]) : -1;
+
+      if (g >= 0) in_contact[g] = PETSC_TRUE;
+    }
+  }
+  for (PetscInt f = 0; f < root->n_faces; f++)
+    if (in_contact[root->faces[f].group]) (*contact)[root->faces[f].cell] = PETSC_TRUE;
+  PetscCall(PetscFree(in_contact));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

@@ -1,0 +1,281 @@
+#include "rootmesh.h"
+#include "mesh/meshgroup.h"
+#include <string.h>
+
+static const PetscReal PLANE_TOLERANCE = 1e-9; /* of the mesh's size: what counts as on the plane z = 0, or on the axis */
+
+/*
+  RootMeshCellNodes - the nodes of a cell
+
+  Not Collective; rank 0
+
+  Input Parameters:
++ root - after RootMeshRead()
+- cell - its id
+
+  Returns indices into root->gmsh's nodes, in gmsh's order.
+*/
+const PetscInt *RootMeshCellNodes(const RootMesh *root, PetscInt c)
+{
+  return root->cell_block[c]->connectivity + root->cell_item[c] * root->cell_block[c]->nodes;
+}
+
+/* ---------------------------------------------------------------------------------------------------- bodies and order */
+
+/* "a, b, c": the names of one dimension, cut off where the text is full */
+static void ListPhysicals(const GmshMesh *gmsh, int dim, char list[MESH_TEXT])
+{
+  size_t used = 0;
+
+  snprintf(list, MESH_TEXT, "none");
+  for (int i = 0; i < gmsh->n_physicals && used < MESH_TEXT; i++)
+    if (gmsh->physicals[i].dim == dim) used += (size_t)snprintf(list + used, MESH_TEXT - used, "%s%s", used ? ", " : "", gmsh->physicals[i].name);
+}
+
+/* Every deformable body is a volume group of the mesh: asked first, because a misspelt name also leaves a group without a body */
+static void CheckBodyNames(Scene scene, const char *file, const RootMesh *root, Complaint *complaint)
+{
+  char list[MESH_TEXT];
+
+  ListPhysicals(&root->gmsh, scene->dim, list);
+  for (int b = 0; b < scene->n_bodies; b++) {
+    PetscBool there = PETSC_FALSE;
+
+    for (int i = 0; i < root->gmsh.n_physicals; i++)
+      if (root->gmsh.physicals[i].dim == scene->dim && !strcmp(root->gmsh.physicals[i].name, scene->bodies[b].name)) there = PETSC_TRUE;
+    if (scene->bodies[b].rigid || there) continue;
+    Complain(complaint, "%s: the mesh '%s' has no volume group '%s'; its volume groups: %s", SceneWhere(scene, scene->bodies[b].path, "volume"), file,
+             scene->bodies[b].name, list);
+  }
+}
+
+/* The one body whose volume group a block is in; -1 after a mistake */
+static int BlockBody(Scene scene, const char *file, const RootMesh *root, const GmshBlock *block, Complaint *complaint)
+{
+  int body = -1;
+
+  for (int i = 0; i < block->n_physicals; i++) {
+    const char *name  = root->gmsh.physicals[block->physical[i]].name;
+    const int   found = MeshFindBody(scene, name, PETSC_FALSE);
+
+    if (found < 0) {
+      Complain(complaint, "%s: the mesh '%s' has a volume group '%s' that is no body of the scene; list it with its material",
+               SceneWhere(scene, "bodies", NULL), file, name);
+    } else if (body >= 0) {
+      Complain(complaint, "%s: cell %" PetscInt_FMT " is in two bodies, '%s' and '%s'", file, block->n ? block->tag[0] : 0, scene->bodies[body].name,
+               scene->bodies[found].name);
+    }
+    body = found;
+  }
+  return body;
+}
+
+/* All elements of one order, that of the scene */
+static void CheckOrder(Scene scene, const char *file, const RootMesh *root, Complaint *complaint)
+{
+  const GmshBlock *first = NULL;
+
+  for (int b = 0; b < root->gmsh.n_blocks; b++) {
+    const GmshBlock *block = &root->gmsh.blocks[b];
+
+    if (!block->element || !block->n) continue;
+    if (!first) first = block;
+    if (block->element->order != first->element->order) {
+      Complain(complaint, "%s: elements of two orders: %" PetscInt_FMT " is %s, %" PetscInt_FMT " is %s", file, first->tag[0], first->element->name,
+               block->tag[0], block->element->name);
+    }
+  }
+  if (first && scene->order && first->element->order != scene->order) {
+    Complain(complaint, "%s: order is %d, but the elements of '%s' (%s) are of order %d", SceneWhere(scene, "mesh", "order"), scene->order, file,
+             first->element->name, first->element->order);
+  }
+}
+
+static void CheckBodies(Scene scene, const char *file, const RootMesh *root, const PetscInt cells[], Complaint *complaint)
+{
+  char list[MESH_TEXT];
+
+  ListPhysicals(&root->gmsh, scene->dim, list);
+  for (int b = 0; b < scene->n_bodies; b++) {
+    if (scene->bodies[b].rigid || cells[b]) continue;
+    Complain(complaint, "%s: the mesh '%s' has no cells of a volume group '%s'; its volume groups: %s", SceneWhere(scene, scene->bodies[b].path, "volume"),
+             file, scene->bodies[b].name, list);
+  }
+}
+
+/* -------------------------------------------------------------------------------------------------------- numbering */
+
+/* Cells of the scene's dimension; complains of higher ones */
+static PetscInt CountCells(Scene scene, const char *file, const GmshMesh *gmsh, Complaint *complaint)
+{
+  PetscInt n = 0;
+
+  for (int b = 0; b < gmsh->n_blocks; b++) {
+    if (gmsh->blocks[b].dim > scene->dim)
+      Complain(complaint, "%s: the mesh '%s' has volumes; a two-dimensional one is needed", SceneWhere(scene, "geometry", NULL), file);
+    if (gmsh->blocks[b].dim == scene->dim) n += gmsh->blocks[b].n;
+  }
+  return n;
+}
+
+/* Cells in the order of the file: those of block b from start[b] on, all of body body[b] (-1: no cells) */
+static PetscErrorCode BlockBodies(Scene scene, const char *file, const RootMesh *root, int body[], Complaint *complaint)
+{
+  PetscInt *per_body;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc1(scene->n_bodies, &per_body));
+  for (int b = 0; b < root->gmsh.n_blocks; b++) {
+    const GmshBlock *block = &root->gmsh.blocks[b];
+
+    body[b] = block->dim == scene->dim ? BlockBody(scene, file, root, block, complaint) : -1;
+    if (body[b] >= 0) per_body[body[b]] += block->n;
+  }
+  CheckBodies(scene, file, root, per_body, complaint);
+  PetscCall(PetscFree(per_body));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Cells by ascending tag, each in one body */
+static PetscErrorCode NumberCells(Scene scene, const char *file, RootMesh *root, Complaint *complaint)
+{
+  const GmshMesh *gmsh = &root->gmsh;
+  const PetscInt  n    = CountCells(scene, file, gmsh, complaint);
+  PetscInt        done = 0, *order, *tag, *item;
+  int            *block, *body;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc3(n, &root->cell_item, n, &root->cell_block, n, &root->cell_body));
+  PetscCall(PetscMalloc5(n, &order, n, &tag, n, &item, n, &block, gmsh->n_blocks, &body));
+  PetscCall(BlockBodies(scene, file, root, body, complaint));
+  for (int b = 0; b < gmsh->n_blocks; b++) {
+    for (PetscInt i = 0; i < gmsh->blocks[b].n && gmsh->blocks[b].dim == scene->dim; i++, done++) {
+      order[done] = done;
+      tag[done]   = gmsh->blocks[b].tag[i];
+      item[done]  = i;
+      block[done] = b;
+    }
+  }
+  PetscCall(PetscSortIntWithPermutation(n, tag, order));
+  for (PetscInt c = 0; c < n; c++) {
+    root->cell_item[c]  = item[order[c]];
+    root->cell_block[c] = &gmsh->blocks[block[order[c]]];
+    root->cell_body[c]  = body[block[order[c]]];
+    if (c && tag[order[c]] == tag[order[c - 1]]) Complain(complaint, "%s: two cells have the tag %" PetscInt_FMT, file, tag[order[c]]);
+  }
+  root->n_cells = n;
+  PetscCall(PetscFree5(order, tag, item, block, body));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Numbers the nodes that cells use by ascending tag, and the corners among them */
+static PetscErrorCode NumberNodes(RootMesh *root)
+{
+  const PetscInt n = root->gmsh.n_nodes;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc4(n, &root->node, n, &root->id, n, &root->vertex, n, &root->point));
+  for (PetscInt i = 0; i < n; i++) root->id[i] = root->vertex[i] = root->point[i] = -1;
+  for (PetscInt c = 0; c < root->n_cells; c++)
+    for (int k = 0; k < root->cell_block[c]->nodes; k++) root->id[RootMeshCellNodes(root, c)[k]] = 0;
+  for (PetscInt i = 0; i < n; i++) {
+    if (root->id[i] < 0) continue;
+    root->node[root->n_nodes] = i;
+    root->id[i]               = root->n_nodes++;
+  }
+  for (PetscInt c = 0; c < root->n_cells; c++)
+    for (int k = 0; k < root->cell_block[c]->element->corners; k++) root->vertex[root->id[RootMeshCellNodes(root, c)[k]]] = 0;
+  for (PetscInt i = 0; i < root->n_nodes; i++)
+    if (!root->vertex[i]) root->vertex[i] = root->n_vertices++;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* ------------------------------------------------------------------------------------------------------------ place */
+
+/* Centre and diagonal of the bodies' bounding box */
+static void FindBox(Scene scene, const RootMesh *root, Mesh mesh)
+{
+  PetscReal lower[3] = {PETSC_MAX_REAL, PETSC_MAX_REAL, PETSC_MAX_REAL}, upper[3] = {PETSC_MIN_REAL, PETSC_MIN_REAL, PETSC_MIN_REAL}, square = 0;
+
+  for (PetscInt i = 0; i < root->n_nodes; i++) {
+    for (int k = 0; k < 3; k++) {
+      const PetscReal x = root->gmsh.coords[3 * root->node[i] + k];
+
+      lower[k] = PetscMin(lower[k], x);
+      upper[k] = PetscMax(upper[k], x);
+    }
+  }
+  for (int k = 0; k < scene->dim; k++) {
+    mesh->centre[k] = (lower[k] + upper[k]) / 2;
+    square += PetscSqr(upper[k] - lower[k]);
+  }
+  mesh->size = PetscSqrtReal(square);
+  if (scene->geometry == GEOMETRY_AXISYMMETRIC) mesh->centre[0] = 0;
+}
+
+static void CheckPlane(Scene scene, const char *file, const RootMesh *root, PetscReal size, Complaint *complaint)
+{
+  for (PetscInt i = 0; i < root->n_nodes && scene->dim == 2; i++) {
+    const PetscReal *x   = &root->gmsh.coords[3 * root->node[i]];
+    const PetscInt   tag = root->gmsh.node_tag[root->node[i]];
+
+    if (PetscAbsReal(x[2]) > PLANE_TOLERANCE * size)
+      Complain(complaint, "%s: node %" PetscInt_FMT " has z = %g; a two-dimensional mesh lies in the plane z = 0", file, tag, (double)x[2]);
+    if (scene->geometry == GEOMETRY_AXISYMMETRIC && x[0] < -PLANE_TOLERANCE * size) {
+      Complain(complaint, "%s: node %" PetscInt_FMT " has x = %g; an axisymmetric mesh has no negative radius x", file, tag, (double)x[0]);
+    }
+  }
+}
+
+/*
+  RootMeshRead - the scene's mesh from its file, checked
+
+  Not Collective; rank 0
+
+  Input Parameters:
++ scene - bodies, dimension, order
+. file  - a .msh file, format 4.1
+- ranks - there must be a cell for each
+
+  Output Parameters:
++ root      - to be freed with RootMeshReset(), also after a complaint
+. mesh      - its order, centre and size are set
+- complaint - what GmshRead() found, two orders or another one than the scene's, a body without cells, a cell without a body or in two,
+              equal tags, a two-dimensional mesh out of its plane or with negative radii, fewer cells than ranks
+*/
+PetscErrorCode RootMeshRead(Scene scene, const char *file, PetscMPIInt ranks, RootMesh *root, Mesh mesh, Complaint *complaint)
+{
+  PetscFunctionBeginUser;
+  *root = (RootMesh){.n_cells = 0};
+  PetscCall(GmshRead(file, &root->gmsh, complaint));
+  if (complaint->text[0]) PetscFunctionReturn(PETSC_SUCCESS);
+  CheckBodyNames(scene, file, root, complaint);
+  CheckOrder(scene, file, root, complaint);
+  PetscCall(NumberCells(scene, file, root, complaint));
+  if (complaint->text[0]) PetscFunctionReturn(PETSC_SUCCESS);
+  if (root->n_cells < ranks) Complain(complaint, "%s: %" PetscInt_FMT " cells cannot be shared out to %d ranks; run with fewer", file, root->n_cells, ranks);
+  PetscCall(NumberNodes(root));
+  FindBox(scene, root, mesh);
+  CheckPlane(scene, file, root, mesh->size, complaint);
+  mesh->order = root->n_cells ? root->cell_block[0]->element->order : 1;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*
+  RootMeshReset - frees what the root mesh holds
+
+  Not Collective; rank 0
+*/
+PetscErrorCode RootMeshReset(RootMesh *root)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscFree3(root->cell_item, root->cell_block, root->cell_body));
+  PetscCall(PetscFree4(root->node, root->id, root->vertex, root->point));
+  PetscCall(PetscFree(root->face_ptr));
+  PetscCall(PetscFree(root->faces));
+  PetscCall(PetscFree(root->corner_faces));
+  PetscCall(PetscFree(root->cell_faces));
+  PetscCall(PetscFree(root->interior));
+  PetscCall(GmshReset(&root->gmsh));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

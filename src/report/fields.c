@@ -1,0 +1,609 @@
+#include "fields.h"
+#include "files/fileimage.h"
+#include "files/hdf5table.h"
+#include "xdmf.h"
+#include <math.h>
+
+enum { PATH_SIZE = 512 };
+
+struct _n_Fields {
+  Model      model;
+  Scene      scene;
+  char       directory[PETSC_MAX_PATH_LEN], file[PETSC_MAX_PATH_LEN];
+  PetscInt  *owned; /* local nodes that this rank owns */
+  Rows       nodes;
+  int        n_pairs;
+  Rows      *pairs;                /* slave nodes, per contact pair */
+  PetscInt   cells[ELEMENT_TYPES]; /* rows of /mesh/cells_TYPE */
+  PetscInt   n_written, room;
+  PetscReal *t;     /* of the written steps */
+  PetscInt  *shows; /* what they hold: bits by kind; a restart may change it */
+  Xdmf       xdmf;  /* what they show */
+  char      *image; /* rank 0: of the file, between loading and FieldsResume() */
+};
+
+/* What output.fields may ask for, and what ParaView sees of it */
+enum { SHOW_DISPLACEMENT, SHOW_STRESS, SHOW_CONTACT, SHOW_KINDS };
+static const XdmfArray shown[] = {
+  {"displacement", 3, SHOW_DISPLACEMENT},
+  {"von_mises",    1, SHOW_STRESS      },
+  {"stress",       6, SHOW_STRESS      },
+  {"gap",          1, SHOW_CONTACT     },
+  {"penetration",  1, SHOW_CONTACT     },
+  {"penalty",      1, SHOW_CONTACT     },
+  {"pressure",     1, SHOW_CONTACT     },
+  {"normal",       3, SHOW_CONTACT     },
+};
+
+/* Contact values of one node: columns of the nodal array that FieldsWriteContact() forms */
+enum { COLUMN_GAP, COLUMN_PENETRATION, COLUMN_PENALTY, COLUMN_PRESSURE, COLUMN_NORMAL, COLUMN_PRESENT = COLUMN_NORMAL + 3, COLUMNS };
+static const struct {
+  const char *name;
+  int         column, width;
+  PetscReal   absent; /* value off the slave surfaces */
+} contact_fields[] = {
+  {"gap",         COLUMN_GAP,         1, NAN},
+  {"penetration", COLUMN_PENETRATION, 1, 0.0},
+  {"penalty",     COLUMN_PENALTY,     1, NAN},
+  {"pressure",    COLUMN_PRESSURE,    1, 0.0},
+  {"normal",      COLUMN_NORMAL,      3, 0.0},
+};
+#define COUNT(array) ((int)(sizeof(array) / sizeof((array)[0])))
+
+/* A scalar, or n > 1 values */
+static PetscErrorCode FileWriteAttribute(hid_t object, const char *name, hid_t type, int n, const void *value)
+{
+  const hsize_t size = (hsize_t)n;
+  hid_t         space, attribute;
+
+  PetscFunctionBeginUser;
+  CallHDF5(space = n > 1 ? H5Screate_simple(1, &size, NULL) : H5Screate(H5S_SCALAR));
+  CallHDF5(attribute = H5Acreate2(object, name, type, space, H5P_DEFAULT, H5P_DEFAULT));
+  CallHDF5(H5Awrite(attribute, type, value));
+  CallHDF5(H5Aclose(attribute));
+  CallHDF5(H5Sclose(space));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscBool FieldsShows(Fields fields, int kind)
+{
+  switch (kind) {
+  case SHOW_DISPLACEMENT: return fields->scene->output.displacement ? PETSC_TRUE : PETSC_FALSE;
+  case SHOW_STRESS: return fields->scene->output.stress ? PETSC_TRUE : PETSC_FALSE;
+  default: return fields->scene->output.contact && fields->model->contact ? PETSC_TRUE : PETSC_FALSE;
+  }
+}
+
+/* The file is opened for one step at a time: a run that is killed between two steps leaves a closed file. */
+static PetscErrorCode FieldsOpenFile(Fields fields, hid_t *file)
+{
+  PetscFunctionBeginUser;
+  if (fields->n_written)
+    PetscCall(RowsOpenFile(fields->model->mesh->comm, fields->file, H5F_ACC_RDWR, file));
+  else
+    PetscCall(RowsCreateFile(fields->model->mesh->comm, fields->file, file));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode FieldsWriteNodes(Fields fields, hid_t file)
+{
+  const Mesh mesh = fields->model->mesh;
+  PetscReal *items;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc1(mesh->n_owned * 3, &items));
+  for (PetscInt k = 0; k < mesh->n_owned; k++)
+    for (int i = 0; i < mesh->dim; i++) items[k * 3 + i] = mesh->coords[fields->owned[k] * mesh->dim + i] + mesh->centre[i];
+  PetscCall(RowsWriteReals(file, "/mesh/nodes", &fields->nodes, 3, items));
+  PetscCall(PetscFree(items));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The row of every local cell in the table of its type, by body and then cell_id. All ranks count their part of the cell_ids by body and type. */
+static PetscErrorCode FieldsNumberCells(Fields fields, PetscInt *row)
+{
+  const Mesh mesh   = fields->model->mesh;
+  const int  n_keys = fields->scene->n_bodies * ELEMENT_TYPES;
+  Xdmf      *xdmf   = &fields->xdmf;
+  PetscInt  *key, *keys, *rows, *count, *before;
+  Rows       by_id;
+
+  PetscFunctionBeginUser;
+  PetscCall(RowsCreate(mesh->comm, mesh->n_cells_global, mesh->n_cells, mesh->cell_id, &by_id));
+  PetscCall(PetscMalloc3(mesh->n_cells, &key, by_id.n, &keys, by_id.n, &rows));
+  PetscCall(PetscCalloc2(n_keys, &count, n_keys, &before));
+  for (PetscInt c = 0; c < mesh->n_cells; c++) key[c] = mesh->cell_body[c] * ELEMENT_TYPES + mesh->cell_type[c];
+  PetscCall(RowsCollect(&by_id, 1, MPIU_INT, key, keys));
+  for (PetscInt c = 0; c < by_id.n; c++) count[keys[c]]++;
+  PetscCallMPI(MPI_Exscan(count, before, n_keys, MPIU_INT, MPI_SUM, mesh->comm));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, count, n_keys, MPIU_INT, MPI_SUM, mesh->comm));
+  for (int k = 0; k < n_keys; k++) {
+    const ElementType type  = (ElementType)(k % ELEMENT_TYPES);
+    PetscInt         *cells = &fields->cells[type];
+
+    if (count[k])
+      xdmf->blocks[xdmf->n_blocks++] = (XdmfBlock){.body = fields->scene->bodies[k / ELEMENT_TYPES].name, .type = type, .first = *cells, .n = count[k]};
+    before[k] += *cells;
+    *cells += count[k];
+  }
+  for (PetscInt c = 0; c < by_id.n; c++) rows[c] = before[keys[c]]++;
+  PetscCall(PetscSFBcastBegin(by_id.sf, MPIU_INT, rows, row, MPI_REPLACE));
+  PetscCall(PetscSFBcastEnd(by_id.sf, MPIU_INT, rows, row, MPI_REPLACE));
+  PetscCall(PetscFree2(count, before));
+  PetscCall(PetscFree3(key, keys, rows));
+  PetscCall(RowsDestroy(&by_id));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Rows first .. first+total-1 of the cells of a type as a table of their nodes at `path` and, where asked for, one of their bodies at `body_path` */
+static PetscErrorCode FieldsWriteCellTable(Fields fields, hid_t file, ElementType type, const PetscInt *cell_row, PetscInt first, PetscInt total,
+                                           const char *path, const char *body_path)
+{
+  const Mesh     mesh    = fields->model->mesh;
+  const Element *element = ElementGet(type);
+  const int      nodes   = element->nodes;
+  int64_t       *ids, *body;
+  PetscInt      *row, n = 0;
+  Rows           rows;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc3(mesh->n_cells * nodes, &ids, mesh->n_cells, &body, mesh->n_cells, &row));
+  for (PetscInt c = 0; c < mesh->n_cells; c++) {
+    if (mesh->cell_type[c] != type || cell_row[c] < first || cell_row[c] >= first + total) continue;
+    for (int i = 0; i < nodes; i++) ids[n * nodes + i] = mesh->node_id[mesh->cell_nodes[mesh->cell_ptr[c] + element->xdmf_order[i]]];
+    body[n]  = mesh->cell_body[c];
+    row[n++] = cell_row[c] - first;
+  }
+  PetscCall(RowsCreate(mesh->comm, total, n, row, &rows));
+  PetscCall(RowsWriteIntegers(file, path, &rows, nodes, ids));
+  if (body_path) PetscCall(RowsWriteIntegers(file, body_path, &rows, 1, body));
+  PetscCall(RowsDestroy(&rows));
+  PetscCall(PetscFree3(ids, body, row));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode FieldsWriteCells(Fields fields, hid_t file)
+{
+  const Xdmf *xdmf = &fields->xdmf;
+  PetscInt   *row;
+  char        path[PATH_SIZE], body_path[PATH_SIZE];
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(fields->model->mesh->n_cells, &row));
+  PetscCall(FieldsNumberCells(fields, row));
+  for (int type = 0; type < ELEMENT_TYPES; type++) {
+    if (!fields->cells[type]) continue;
+    PetscCall(PetscSNPrintf(path, sizeof(path), "/mesh/cells_%s", ElementGet((ElementType)type)->name));
+    PetscCall(PetscSNPrintf(body_path, sizeof(body_path), "%s_body", path));
+    PetscCall(FieldsWriteCellTable(fields, file, (ElementType)type, row, 0, fields->cells[type], path, body_path));
+  }
+  for (int b = 0; b < xdmf->n_blocks; b++) {
+    PetscCall(PetscSNPrintf(path, sizeof(path), "/mesh/block_%d", b));
+    PetscCall(FieldsWriteCellTable(fields, file, xdmf->blocks[b].type, row, xdmf->blocks[b].first, xdmf->blocks[b].n, path, NULL));
+  }
+  PetscCall(PetscFree(row));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The rows of the pairs' slave nodes, ascending by id. */
+static PetscErrorCode FieldsListSlaveNodes(Fields fields)
+{
+  const Mesh   mesh = fields->model->mesh;
+  ContactNodes slaves;
+  PetscInt    *ids;
+
+  PetscFunctionBeginUser;
+  for (int p = 0; p < fields->n_pairs; p++) {
+    if (fields->pairs[p].sf) continue;
+    PetscCall(ContactGetNodes(fields->model->contact, p, fields->model->u, &slaves));
+    PetscCall(PetscMalloc1(slaves.n, &ids));
+    for (PetscInt k = 0; k < slaves.n; k++) ids[k] = mesh->node_id[slaves.node[k]];
+    PetscCall(RowsCreateByKey(mesh->comm, slaves.n, ids, &fields->pairs[p]));
+    PetscCall(PetscFree(ids));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode FieldsWriteSlaveNodes(Fields fields, hid_t file)
+{
+  ContactNodes slaves;
+  int64_t     *ids;
+  char         path[PATH_SIZE];
+
+  PetscFunctionBeginUser;
+  PetscCall(FieldsListSlaveNodes(fields));
+  for (int p = 0; p < fields->n_pairs; p++) {
+    PetscCall(ContactGetNodes(fields->model->contact, p, fields->model->u, &slaves));
+    PetscCall(PetscMalloc1(slaves.n, &ids));
+    for (PetscInt k = 0; k < slaves.n; k++) ids[k] = fields->model->mesh->node_id[slaves.node[k]];
+    PetscCall(PetscSNPrintf(path, sizeof(path), "/contact/%s/nodes", ContactPairName(fields->model->contact, p)));
+    PetscCall(RowsWriteIntegers(file, path, &fields->pairs[p], 1, ids));
+    PetscCall(PetscFree(ids));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Everything that does not change from step to step */
+static PetscErrorCode FieldsWriteMesh(Fields fields, hid_t file)
+{
+  PetscFunctionBeginUser;
+  PetscCall(FieldsWriteNodes(fields, file));
+  PetscCall(FieldsWriteCells(fields, file));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Columns first .. first+width-1 of a nodal array (stride columns, local nodes) as one dataset */
+static PetscErrorCode FieldsWriteNodal(Fields fields, hid_t file, const char *name, const PetscReal *values, int stride, int first, int width)
+{
+  const PetscInt n = fields->model->mesh->n_owned;
+  PetscReal     *items;
+  char           path[PATH_SIZE];
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(n * width, &items));
+  for (PetscInt k = 0; k < n; k++)
+    for (int i = 0; i < width; i++) items[k * width + i] = values[fields->owned[k] * stride + first + i];
+  PetscCall(PetscSNPrintf(path, sizeof(path), "/steps/%04d/%s", (int)fields->n_written, name));
+  PetscCall(RowsWriteReals(file, path, &fields->nodes, width, items));
+  PetscCall(PetscFree(items));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode FieldsWriteDisplacement(Fields fields, hid_t file)
+{
+  const Mesh mesh = fields->model->mesh;
+  PetscReal *u;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc1(mesh->n_nodes * 3, &u));
+  for (PetscInt n = 0; n < mesh->n_nodes; n++)
+    for (int i = 0; i < mesh->dim; i++) u[n * 3 + i] = fields->model->u[n * mesh->dim + i];
+  PetscCall(FieldsWriteNodal(fields, file, "displacement", u, 3, 0, 3));
+  PetscCall(PetscFree(u));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscReal VonMises(const PetscReal s[6])
+{
+  return PetscSqrtReal(0.5 * (PetscSqr(s[0] - s[1]) + PetscSqr(s[1] - s[2]) + PetscSqr(s[2] - s[0])) +
+                       3.0 * (PetscSqr(s[3]) + PetscSqr(s[4]) + PetscSqr(s[5])));
+}
+
+static PetscErrorCode FieldsWriteStress(Fields fields, hid_t file)
+{
+  const Mesh mesh = fields->model->mesh;
+  PetscReal *stress, *weight, *equivalent;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc3(mesh->n_nodes * 6, &stress, mesh->n_nodes, &weight, mesh->n_nodes, &equivalent));
+  PetscCall(ElasticityNodalStress(fields->model->elasticity, fields->model->u, stress, weight));
+  PetscCall(MeshSumNodes(mesh, 6, stress));
+  PetscCall(MeshSumNodes(mesh, 1, weight));
+  for (PetscInt n = 0; n < mesh->n_nodes; n++) {
+    for (int i = 0; i < 6; i++) stress[n * 6 + i] /= weight[n];
+    equivalent[n] = VonMises(&stress[n * 6]);
+  }
+  PetscCall(FieldsWriteNodal(fields, file, "stress", stress, 6, 0, 6));
+  PetscCall(FieldsWriteNodal(fields, file, "von_mises", equivalent, 1, 0, 1));
+  PetscCall(PetscFree3(stress, weight, equivalent));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Where an analytic master is at this step: no mesh shows it */
+static PetscErrorCode FieldsWriteMaster(Fields fields, hid_t file, int pair)
+{
+  static const char *const names[] = {[ANALYTIC_PLANE] = "plane", [ANALYTIC_CYLINDER] = "cylinder", [ANALYTIC_SPHERE] = "sphere"};
+  const SceneContact      *contact = &fields->scene->contacts[pair];
+  const AnalyticMaster    *master  = &contact->analytic;
+  const double             t       = (double)fields->model->t;
+  double                   values[7]; /* point, then axis or normal, then radius */
+  int                      n = 3;
+  char                     path[PATH_SIZE];
+  hid_t                    group;
+
+  PetscFunctionBeginUser;
+  if (contact->master) PetscFunctionReturn(PETSC_SUCCESS);
+  MotionPlace(&contact->motion, t, contact->motion.point, values);
+  if (master->shape != ANALYTIC_SPHERE) {
+    MotionTurn(&contact->motion, t, master->axis, &values[n]);
+    n += 3;
+  }
+  if (master->shape != ANALYTIC_PLANE) values[n++] = master->radius;
+  PetscCall(PetscSNPrintf(path, sizeof(path), "/steps/%04d/contact/%s", (int)fields->n_written, contact->name));
+  CallHDF5(group = H5Gopen2(file, path, H5P_DEFAULT));
+  PetscCall(FileWriteAttribute(group, names[master->shape], H5T_NATIVE_DOUBLE, n, values));
+  CallHDF5(H5Gclose(group));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* One pair's tables; its values also go to the nodal array (COLUMNS per local node, owned nodes only). Where pairs share a slave node
+   the larger pressure counts. */
+static PetscErrorCode FieldsWritePair(Fields fields, hid_t file, int pair, PetscReal *nodal)
+{
+  ContactNodes slaves;
+  PetscReal   *values, *items;
+  char         path[PATH_SIZE];
+
+  PetscFunctionBeginUser;
+  PetscCall(ContactGetNodes(fields->model->contact, pair, fields->model->u, &slaves));
+  PetscCall(PetscMalloc2(slaves.n * COLUMNS, &values, slaves.n * 3, &items));
+  for (PetscInt k = 0; k < slaves.n; k++) {
+    PetscReal *value = &values[k * COLUMNS], *node = &nodal[slaves.node[k] * COLUMNS];
+
+    value[COLUMN_GAP]         = slaves.gap[k];
+    value[COLUMN_PENETRATION] = slaves.gap[k] < 0.0 ? -slaves.gap[k] : 0.0;
+    value[COLUMN_PENALTY]     = slaves.penalty[k];
+    value[COLUMN_PRESSURE]    = slaves.pressure[k];
+    for (int i = 0; i < 3; i++) value[COLUMN_NORMAL + i] = slaves.normal[k * 3 + i];
+    value[COLUMN_PRESENT] = 1.0;
+    if (node[COLUMN_PRESENT] == 0.0 || value[COLUMN_PRESSURE] > node[COLUMN_PRESSURE]) PetscCall(PetscArraycpy(node, value, COLUMNS));
+  }
+  for (int f = 0; f < COUNT(contact_fields); f++) {
+    const int width = contact_fields[f].width;
+
+    for (PetscInt k = 0; k < slaves.n; k++)
+      for (int i = 0; i < width; i++) items[k * width + i] = values[k * COLUMNS + contact_fields[f].column + i];
+    PetscCall(PetscSNPrintf(path, sizeof(path), "/steps/%04d/contact/%s/%s", (int)fields->n_written, ContactPairName(fields->model->contact, pair),
+                            contact_fields[f].name));
+    PetscCall(RowsWriteReals(file, path, &fields->pairs[pair], width, items));
+  }
+  PetscCall(PetscFree2(values, items));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Corners of a slave surface's second-order triangles carry no area, so they have no contact values of their own: for the eye they get the
+   mean of the mid-side nodes beside them. nodal: complete on every copy of a node. */
+static PetscErrorCode FieldsFillCorners(Fields fields, int pair, const PetscReal *nodal, PetscReal *fill)
+{
+  const Mesh       mesh = fields->model->mesh;
+  const MeshGroup *slave;
+  PetscReal        face_size;
+  PetscInt         nodes[FACE_MAX_NODES];
+
+  PetscFunctionBeginUser;
+  PetscCall(ContactPairSurface(fields->model->contact, pair, &slave, &face_size));
+  for (PetscInt f = 0; f < slave->n_faces; f++) {
+    const Element *face = ElementGet(MeshFaceNodes(mesh, slave, f, nodes));
+
+    for (int e = 0; e < (face->order == 2 ? face->edges : 0); e++) {
+      const PetscReal *middle = &nodal[nodes[face->corners + e] * COLUMNS];
+
+      for (int end = 0; end < 2; end++) {
+        const PetscInt corner = nodes[face->edge_corners[e][end]];
+
+        if (nodal[corner * COLUMNS + COLUMN_PRESENT] == 0.0)
+          for (int i = 0; i < COLUMNS; i++) fill[corner * COLUMNS + i] += middle[i];
+      }
+    }
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode FieldsWriteContact(Fields fields, hid_t file)
+{
+  const Mesh mesh = fields->model->mesh;
+  PetscReal *nodal, *fill;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc2(mesh->n_nodes * COLUMNS, &nodal, mesh->n_nodes * COLUMNS, &fill));
+  for (int p = 0; p < fields->n_pairs; p++) {
+    PetscCall(FieldsWritePair(fields, file, p, nodal));
+    PetscCall(FieldsWriteMaster(fields, file, p));
+  }
+  PetscCall(MeshSumNodes(mesh, COLUMNS, nodal));
+  for (int p = 0; p < fields->n_pairs; p++) PetscCall(FieldsFillCorners(fields, p, nodal, fill));
+  PetscCall(MeshSumNodes(mesh, COLUMNS, fill));
+  for (PetscInt n = 0; n < mesh->n_nodes; n++) {
+    PetscReal      *value  = &nodal[n * COLUMNS];
+    const PetscReal weight = fill[n * COLUMNS + COLUMN_PRESENT];
+
+    if (value[COLUMN_PRESENT] > 0.0) continue;
+    for (int f = 0; f < COUNT(contact_fields); f++)
+      for (int i = contact_fields[f].column; i < contact_fields[f].column + contact_fields[f].width; i++)
+        value[i] = weight > 0.0 ? fill[n * COLUMNS + i] / weight : contact_fields[f].absent;
+  }
+  for (int f = 0; f < COUNT(contact_fields); f++)
+    PetscCall(FieldsWriteNodal(fields, file, contact_fields[f].name, nodal, COLUMNS, contact_fields[f].column, contact_fields[f].width));
+  PetscCall(PetscFree2(nodal, fill));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The kinds that a step written now holds, as bits */
+static PetscInt FieldsShown(Fields fields)
+{
+  PetscInt shows = 0;
+
+  for (int kind = 0; kind < SHOW_KINDS; kind++) shows |= FieldsShows(fields, kind) ? 1 << kind : 0;
+  return shows;
+}
+
+/* Does some written step hold contact fields? */
+static PetscBool FieldsHoldContact(Fields fields)
+{
+  for (PetscInt s = 0; s < fields->n_written; s++)
+    if (fields->shows[s] & 1 << SHOW_CONTACT) return PETSC_TRUE;
+  return PETSC_FALSE;
+}
+
+static PetscErrorCode FieldsRemember(Fields fields, PetscReal t)
+{
+  PetscFunctionBeginUser;
+  if (fields->n_written == fields->room) {
+    fields->room = 2 * fields->room + 16;
+    PetscCall(PetscRealloc((size_t)fields->room * sizeof(PetscReal), &fields->t));
+    PetscCall(PetscRealloc((size_t)fields->room * sizeof(PetscInt), &fields->shows));
+  }
+  fields->shows[fields->n_written] = FieldsShown(fields);
+  fields->t[fields->n_written++]   = t;
+  fields->xdmf.t                   = fields->t;
+  fields->xdmf.shows               = fields->shows;
+  fields->xdmf.n_steps             = fields->n_written;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* What the text will show; cells are numbered when the file is made. */
+static PetscErrorCode FieldsPrepareXdmf(Fields fields)
+{
+  Xdmf *xdmf = &fields->xdmf;
+
+  PetscFunctionBeginUser;
+  xdmf->name  = fields->scene->name;
+  xdmf->nodes = fields->model->mesh->n_global;
+  PetscCall(PetscCalloc1(fields->scene->n_bodies * ELEMENT_TYPES, &xdmf->blocks));
+  xdmf->n_arrays = COUNT(shown);
+  xdmf->arrays   = shown;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*
+  FieldsCreate - Prepares results.h5 and results.xdmf in a directory; no file is touched yet. Collective.
+
+  Input: model (its elasticity, contact and displacements are read at each write), scene (output.fields chooses), directory (must exist at the first write).
+*/
+PetscErrorCode FieldsCreate(Model model, Scene scene, const char *directory, Fields *result)
+{
+  const Mesh  mesh = model->mesh;
+  Fields      fields;
+  PetscMPIInt rank;
+  PetscInt   *id, n = 0;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscNew(&fields));
+  fields->model = model;
+  fields->scene = scene;
+  PetscCall(PetscStrncpy(fields->directory, directory, sizeof(fields->directory)));
+  PetscCall(PetscSNPrintf(fields->file, sizeof(fields->file), "%s/results.h5", directory));
+  fields->n_pairs = model->contact ? ContactPairs(model->contact) : 0;
+  PetscCall(PetscCalloc1(fields->n_pairs, &fields->pairs));
+  PetscCallMPI(MPI_Comm_rank(mesh->comm, &rank));
+  PetscCall(PetscMalloc1(mesh->n_owned, &fields->owned));
+  PetscCall(PetscMalloc1(mesh->n_owned, &id));
+  for (PetscInt k = 0; k < mesh->n_nodes; k++) {
+    if (mesh->node_owner[k] != rank) continue;
+    fields->owned[n] = k;
+    id[n++]          = mesh->node_id[k];
+  }
+  PetscCall(RowsCreate(mesh->comm, mesh->n_global, n, id, &fields->nodes));
+  PetscCall(PetscFree(id));
+  PetscCall(FieldsPrepareXdmf(fields));
+  *result = fields;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* FieldsDestroy - Frees the fields; the files stay. Collective. */
+PetscErrorCode FieldsDestroy(Fields *fields)
+{
+  PetscFunctionBeginUser;
+  if (!*fields) PetscFunctionReturn(PETSC_SUCCESS);
+  for (int p = 0; p < (*fields)->n_pairs; p++) PetscCall(RowsDestroy(&(*fields)->pairs[p]));
+  PetscCall(RowsDestroy(&(*fields)->nodes));
+  PetscCall(PetscFree((*fields)->image));
+  PetscCall(PetscFree((*fields)->owned));
+  PetscCall(PetscFree((*fields)->pairs));
+  PetscCall(PetscFree((*fields)->xdmf.blocks));
+  PetscCall(PetscFree((*fields)->t));
+  PetscCall(PetscFree((*fields)->shows));
+  PetscCall(PetscFree(*fields));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*
+  FieldsWrite - Adds the model's present state to results.h5 and writes results.xdmf anew. Collective.
+
+  Input: step (number of the accepted step), t (load parameter). Errors: PETSC_ERR_FILE_OPEN, PETSC_ERR_FILE_WRITE.
+*/
+PetscErrorCode FieldsWrite(Fields fields, PetscInt step, PetscReal t)
+{
+  const int64_t number = step;
+  PetscMPIInt   rank;
+  char          path[PATH_SIZE];
+  hid_t         file, group;
+
+  PetscFunctionBeginUser;
+  PetscCall(FieldsOpenFile(fields, &file));
+  if (!fields->n_written) {
+    PetscCall(FieldsWriteMesh(fields, file));
+    CallHDF5(group = H5Gcreate2(file, "/steps", H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT));
+    CallHDF5(H5Gclose(group));
+  }
+  if (FieldsShows(fields, SHOW_CONTACT) && !FieldsHoldContact(fields)) PetscCall(FieldsWriteSlaveNodes(fields, file));
+  PetscCall(PetscSNPrintf(path, sizeof(path), "/steps/%04d", (int)fields->n_written));
+  CallHDF5(group = H5Gcreate2(file, path, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT));
+  PetscCall(FileWriteAttribute(group, "t", H5T_NATIVE_DOUBLE, 1, &t));
+  PetscCall(FileWriteAttribute(group, "step", H5T_NATIVE_INT64, 1, &number));
+  CallHDF5(H5Gclose(group));
+  if (FieldsShows(fields, SHOW_DISPLACEMENT)) PetscCall(FieldsWriteDisplacement(fields, file));
+  if (FieldsShows(fields, SHOW_STRESS)) PetscCall(FieldsWriteStress(fields, file));
+  if (FieldsShows(fields, SHOW_CONTACT)) PetscCall(FieldsWriteContact(fields, file));
+  CallHDF5(H5Fclose(file));
+  PetscCall(FieldsRemember(fields, t));
+  PetscCallMPI(MPI_Comm_rank(fields->model->mesh->comm, &rank));
+  if (rank == 0) PetscCall(XdmfWrite(&fields->xdmf, fields->directory));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*
+  FieldsArchive - Saves or takes over which states are written, with an image of the file that holds them. Collective.
+*/
+PetscErrorCode FieldsArchive(Fields fields, Archive archive)
+{
+  PetscInt    n     = fields->n_written;
+  PetscInt64  size  = 0;
+  char       *image = NULL;
+  FILE       *stream;
+  size_t      length;
+  PetscMPIInt rank;
+
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Comm_rank(fields->model->mesh->comm, &rank));
+  PetscCall(ArchiveIntegers(archive, "results/written", 1, &n));
+  for (PetscInt s = fields->n_written; s < n; s++) PetscCall(FieldsRemember(fields, 0));
+  PetscCall(ArchiveReals(archive, "results/t", n, fields->t));
+  PetscCall(ArchiveIntegers(archive, "results/shows", n, fields->shows));
+  if (!n) PetscFunctionReturn(PETSC_SUCCESS);
+  if (!ArchiveLoads(archive)) {
+    if (rank == 0) PetscCall(FileImageTake(fields->file, &image, &size));
+    PetscCall(ArchiveBytes(archive, "results/image", &size, &image));
+    PetscCall(PetscFree(image));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  stream = open_memstream(&image, &length);
+  PetscCheck(stream, PETSC_COMM_SELF, PETSC_ERR_MEM, "No memory for a part of results.h5");
+  PetscCall(ArchiveExtract(archive, "results/image", stream));
+  PetscCheck(!fclose(stream), PETSC_COMM_SELF, PETSC_ERR_MEM, "No memory for a part of results.h5");
+  PetscCall(PetscMalloc1(length, &fields->image));
+  PetscCall(PetscArraycpy(fields->image, image, length));
+  free(image);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*
+  FieldsResume - Brings results.h5 and results.xdmf back to the states of the loaded checkpoint. Collective. Errors: PETSC_ERR_FILE_WRITE.
+*/
+PetscErrorCode FieldsResume(Fields fields, PetscBool *lost)
+{
+  const Mesh  mesh = fields->model->mesh;
+  PetscBool   back = PETSC_TRUE;
+  int         all;
+  PetscInt   *row;
+  PetscMPIInt rank;
+
+  PetscFunctionBeginUser;
+  *lost = PETSC_FALSE;
+  if (!fields->n_written) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCallMPI(MPI_Comm_rank(mesh->comm, &rank));
+  if (rank == 0) PetscCall(FileImagePutBack(fields->file, fields->image, &back));
+  all = back;
+  PetscCallMPI(MPI_Bcast(&all, 1, MPI_INT, 0, mesh->comm));
+  if (!all) {
+    *lost             = PETSC_TRUE;
+    fields->n_written = 0;
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  PetscCall(PetscMalloc1(mesh->n_cells, &row));
+  PetscCall(FieldsNumberCells(fields, row)); /* the blocks that the text shows */
+  PetscCall(PetscFree(row));
+  PetscCall(FieldsListSlaveNodes(fields));
+  if (rank == 0) PetscCall(XdmfWrite(&fields->xdmf, fields->directory));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

@@ -1,0 +1,60 @@
+#include "report/precheck.h"
+#include "contactreport.h"
+#include "estimate.h"
+#include "bodies/freemodes.h"
+
+static PetscErrorCode PrintEffects(Model model, FILE *stream)
+{
+  char        effects[512];
+  PetscMPIInt rank;
+  PetscInt    dofs;
+
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Comm_rank(model->mesh->comm, &rank));
+  PetscCall(ModelEffects(model, effects, sizeof(effects)));
+  PetscCall(ModelDofs(model, &dofs));
+  if (!rank) fprintf(stream, "dofs     %" PetscInt_FMT " free\neffects  %s\n", dofs, effects);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*
+  PrecheckModel - looks for what makes a scene fail before anything is solved
+
+  Collective
+
+  Input Parameters:
++ model  - after ModelPlace(), before ModelSetUp(), which refuses initial overlaps: they are reported here first
+. report - print what was found: dofs, effects, rigid motions, contact pairs, cost
+- stream - of rank 0
+
+  Note:
+  Refuses (exit 1) a body that nothing can hold, FreeModesRefuse().
+*/
+PetscErrorCode PrecheckModel(Model model, PetscBool report, FILE *stream)
+{
+  FreeModes modes;
+
+  PetscFunctionBeginUser;
+  PetscCall(FreeModesCreate(model->mesh, model->scene, model->loads, &modes));
+  if (report) {
+    PetscCall(PrintEffects(model, stream));
+    PetscCall(FreeModesReport(modes, PETSC_TRUE, stream));
+    PetscCall(ContactReport(model->contact, stream));
+    PetscCall(EstimatePrint(model, stream));
+  }
+  PetscCall(FreeModesRefuse(modes));
+  PetscCall(FreeModesDestroy(&modes));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* PrecheckMotions - prints the rigid motions that supports leave to the bodies, if any. Collective; rank 0 prints. */
+PetscErrorCode PrecheckMotions(Model model, FILE *stream)
+{
+  FreeModes modes;
+
+  PetscFunctionBeginUser;
+  PetscCall(FreeModesCreate(model->mesh, model->scene, model->loads, &modes));
+  PetscCall(FreeModesReport(modes, PETSC_FALSE, stream));
+  PetscCall(FreeModesDestroy(&modes));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

@@ -1,0 +1,559 @@
+#include "report/probe.h"
+#include "contact/contactedge.h"
+#include "search/freeedge.h"
+#include "base/refusal.h"
+#include "base/gathertable.h"
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* A probe's point is a node's reference coordinate to within this part of the model's size: what hand-written scene files can be expected to meet. */
+static const PetscReal POINT_TOLERANCE = 1e-6;
+/* A node n face sizes from an edge counts as within n of it, whatever the rounding of the mesh generator, as part of a face size. */
+static const PetscReal RING_TOLERANCE = 1e-6;
+enum { MESSAGE_SIZE = 2048 };
+
+/* Slave nodes of a pair, by node_id */
+enum { SLAVE_ID, SLAVE_REFERENCE, SLAVE_POSITION = SLAVE_REFERENCE + 3, SLAVE_AREA = SLAVE_POSITION + 3, SLAVE_PRESSURE, SLAVE_COLUMNS };
+
+typedef struct {
+  const SceneProbe *scene;
+  const MeshGroup  *group; /* reaction; slave surface of the pair */
+  int               pair;
+  PetscInt          id[2];      /* node_id of the points */
+  PetscInt          node[2];    /* the local node on its owner, -1 elsewhere */
+  FreeEdges         free_edges; /* of the slave surface, NULL: not asked for */
+  PetscReal         face_size;  /* mean, of the slave surface */
+  PetscReal         spacing;
+} Probe;
+
+struct _n_Probes {
+  Model  model;
+  Scene  scene;
+  int   *node_body; /* index into scene->bodies, during the preparation */
+  Probe *probe;
+  Table *slaves; /* per pair, of the evaluation under way; row NULL: not asked for yet */
+};
+
+typedef enum { NAMES_NOTHING, NAMES_SURFACE, NAMES_PAIR } ProbeNames;
+
+typedef struct {
+  const char *key;   /* that names the kind in the scene */
+  ProbeNames  names; /* what the scene gives under that key */
+  int         points;
+  const char *points_key; /* what the scene gives them under */
+  PetscErrorCode (*evaluate)(Probes, Probe *, PetscReal *);
+} ProbeType;
+
+/* "(1, 2, 3)" of dim coordinates; text belongs to the caller */
+static const char *PointText(int dim, const PetscReal *x, char text[128])
+{
+  if (dim == 3)
+    snprintf(text, 128, "(%.9g, %.9g, %.9g)", (double)x[0], (double)x[1], (double)x[2]);
+  else
+    snprintf(text, 128, "(%.9g, %.9g)", (double)x[0], (double)x[1]);
+  return text;
+}
+
+/* Values that one rank knows of a node, on all ranks. local: the node on its owner, else -1. Collective. */
+static PetscErrorCode ProbesShare(Probes probes, PetscInt local, int n, const PetscReal *mine, PetscReal *shared)
+{
+  PetscFunctionBeginUser;
+  for (int i = 0; i < n; i++) shared[i] = local < 0 ? 0.0 : mine[i];
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, shared, n, MPIU_REAL, MPI_SUM, probes->model->mesh->comm));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The local node of a node_id where this rank owns it, else -1 */
+static PetscErrorCode ProbesLocalNode(Probes probes, PetscInt id, PetscInt *local)
+{
+  const Mesh  mesh = probes->model->mesh;
+  PetscMPIInt rank;
+
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Comm_rank(mesh->comm, &rank));
+  *local = -1;
+  for (PetscInt n = 0; n < mesh->n_nodes; n++)
+    if (mesh->node_id[n] == id && mesh->node_owner[n] == rank) *local = n;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Index of the body that a probe names, -1 if it names none. The scene has made sure that there is one. */
+static int ProbesFindBody(Probes probes, const Probe *probe)
+{
+  for (int b = 0; probe->scene->body && b < probes->scene->n_bodies; b++)
+    if (!probes->scene->bodies[b].rigid && !strcmp(probes->scene->bodies[b].name, probe->scene->body)) return b;
+  return -1;
+}
+
+/* What this rank, then all ranks, know of the nodes around a point */
+typedef struct {
+  PetscReal distance; /* of the nearest node */
+  PetscInt  nearest;  /* its node_id; the smallest where several are as near */
+  PetscInt  id;       /* smallest node_id within the tolerance */
+} Nearby;
+
+/* Looks through the local nodes (of a group, or all), of one body or any (-1); at[body] counts nodes at the point. */
+static void ProbesLookAround(Probes probes, const PetscReal point[3], const MeshGroup *within, int body, Nearby *nearby, PetscInt *at)
+{
+  const Mesh     mesh = probes->model->mesh;
+  const PetscInt n    = within ? within->n_nodes : mesh->n_nodes;
+
+  *nearby = (Nearby){.distance = PETSC_MAX_REAL, .nearest = PETSC_MAX_INT, .id = PETSC_MAX_INT};
+  for (PetscInt k = 0; k < n; k++) {
+    const PetscInt node   = within ? within->nodes[k] : k;
+    PetscReal      square = 0.0, distance;
+
+    if (body >= 0 && probes->node_body[node] != body) continue;
+    for (int i = 0; i < mesh->dim; i++) square += PetscSqr(mesh->coords[node * mesh->dim + i] + mesh->centre[i] - point[i]);
+    distance = PetscSqrtReal(square);
+    if (distance < nearby->distance || (distance == nearby->distance && mesh->node_id[node] < nearby->nearest)) {
+      nearby->distance = distance;
+      nearby->nearest  = mesh->node_id[node];
+    }
+    if (distance > POINT_TOLERANCE * mesh->size) continue;
+    nearby->id = PetscMin(nearby->id, mesh->node_id[node]);
+    if (probes->node_body[node] >= 0) at[probes->node_body[node]] = 1;
+  }
+}
+
+/* No node at the point: names the nearest one. Does not return. Collective. */
+static PetscErrorCode ProbesRefusePoint(Probes probes, const Probe *probe, const char *key, const PetscReal point[3], const Nearby *nearby)
+{
+  const Mesh mesh    = probes->model->mesh;
+  PetscReal  mine[4] = {0}, shared[4];
+  PetscInt   local;
+  char       asked[128], found[128];
+
+  PetscFunctionBeginUser;
+  PetscCall(ProbesLocalNode(probes, nearby->nearest, &local));
+  if (local >= 0) {
+    for (int i = 0; i < mesh->dim; i++) mine[i] = mesh->coords[local * mesh->dim + i] + mesh->centre[i];
+    mine[3] = (PetscReal)mesh->node_tag[local];
+  }
+  PetscCall(ProbesShare(probes, local, 4, mine, shared));
+  PetscCall(RefuseInput(
+    mesh->comm, "%s: no node at %s%s; allowed: reference coordinates of a node, to within %g of the model's size; the nearest is node %.0f at %s, %.3g away",
+    SceneWhere(probes->scene, probe->scene->path, key), PointText(mesh->dim, point, asked), probe->scene->target ? " on the slave surface" : "",
+    (double)POINT_TOLERANCE, (double)shared[3], PointText(mesh->dim, shared, found), (double)nearby->distance));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Two bodies have a node at the point and the scene does not say which is meant. Does not return. Collective. */
+static PetscErrorCode ProbesRefuseBodies(Probes probes, const Probe *probe, const char *key, const PetscReal point[3], const PetscInt *at)
+{
+  char names[MESSAGE_SIZE] = "", asked[128];
+
+  PetscFunctionBeginUser;
+  for (int b = 0; b < probes->scene->n_bodies; b++) {
+    if (!at[b]) continue;
+    PetscCall(PetscStrlcat(names, *names ? ", " : "", sizeof(names)));
+    PetscCall(PetscStrlcat(names, probes->scene->bodies[b].name, sizeof(names)));
+  }
+  PetscCall(RefuseInput(probes->model->mesh->comm, "%s: several bodies have a node at %s; \"body\" must say which; allowed: %s",
+                        SceneWhere(probes->scene, probe->scene->path, key), PointText(probes->model->mesh->dim, point, asked), names));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The node at point number `which` of a probe, of all nodes or of a group's. Refuses a point without node and one where the body is left open. Collective. */
+static PetscErrorCode ProbesFindNode(Probes probes, Probe *probe, const char *key, int which, const MeshGroup *within)
+{
+  const MPI_Comm   comm  = probes->model->mesh->comm;
+  const PetscReal *point = probe->scene->point[which];
+  PetscInt        *at, bodies = 0;
+  PetscReal        least;
+  Nearby           nearby;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc1(probes->scene->n_bodies, &at));
+  ProbesLookAround(probes, point, within, ProbesFindBody(probes, probe), &nearby, at);
+  PetscCallMPI(MPI_Allreduce(&nearby.distance, &least, 1, MPIU_REAL, MPI_MIN, comm));
+  if (nearby.distance > least) nearby.nearest = PETSC_MAX_INT;
+  nearby.distance = least;
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &nearby.nearest, 1, MPIU_INT, MPI_MIN, comm));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &nearby.id, 1, MPIU_INT, MPI_MIN, comm));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, at, probes->scene->n_bodies, MPIU_INT, MPI_MAX, comm));
+  if (nearby.id == PETSC_MAX_INT) PetscCall(ProbesRefusePoint(probes, probe, key, point, &nearby));
+  for (int b = 0; b < probes->scene->n_bodies; b++) bodies += at[b];
+  if (bodies > 1) PetscCall(ProbesRefuseBodies(probes, probe, key, point, at));
+  PetscCall(PetscFree(at));
+  probe->id[which] = nearby.id;
+  PetscCall(ProbesLocalNode(probes, nearby.id, &probe->node[which]));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Is a reference coordinate the one that `at` asks for? */
+static PetscBool ProbeIsAt(Probes probes, const Probe *probe, PetscReal coordinate)
+{
+  const PetscReal distance = PetscAbsReal(coordinate - probe->scene->at_value);
+
+  return distance <= POINT_TOLERANCE * probes->model->mesh->size ? PETSC_TRUE : PETSC_FALSE;
+}
+
+/* Refuses a value of `at` that no slave node has: names the nearest one. Collective. */
+static PetscErrorCode ProbesCheckAt(Probes probes, const Probe *probe)
+{
+  const Mesh      mesh     = probes->model->mesh;
+  const int       axis     = probe->scene->at_axis;
+  const PetscReal asked    = probe->scene->at_value;
+  PetscReal       sides[2] = {PETSC_MAX_REAL, PETSC_MAX_REAL}; /* distance to the nearest node below, above */
+
+  PetscFunctionBeginUser;
+  if (!probe->scene->has_at) PetscFunctionReturn(PETSC_SUCCESS);
+  for (PetscInt k = 0; k < probe->group->n_nodes; k++) {
+    const PetscReal x = mesh->coords[probe->group->nodes[k] * mesh->dim + axis] + mesh->centre[axis] - asked;
+
+    sides[x > 0.0] = PetscMin(sides[x > 0.0], PetscAbsReal(x));
+  }
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sides, 2, MPIU_REAL, MPI_MIN, mesh->comm));
+  if (PetscMin(sides[0], sides[1]) > POINT_TOLERANCE * mesh->size) {
+    const PetscReal nearest = asked + (sides[0] < sides[1] ? -sides[0] : sides[1]);
+
+    PetscCall(RefuseInput(mesh->comm,
+                          "%s: no node of the slave surface \"%s\" has the reference coordinate %c = %.9g; allowed: a node's coordinate, the nearest is %.9g",
+                          SceneWhere(probes->scene, probe->scene->path, "at"), probe->group->name, "xyz"[axis], (double)asked, (double)nearest));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The slave nodes that carry area, of the present state. Collective. */
+static PetscErrorCode ProbesGetSlaves(Probes probes, int pair, const Table **table)
+{
+  const Model  model = probes->model;
+  const Mesh   mesh  = model->mesh;
+  ContactNodes slaves;
+  PetscReal   *rows;
+
+  PetscFunctionBeginUser;
+  *table = &probes->slaves[pair];
+  if ((*table)->row) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(ContactGetNodes(model->contact, pair, model->u, &slaves));
+  PetscCall(PetscCalloc1(slaves.n * SLAVE_COLUMNS, &rows));
+  for (PetscInt k = 0; k < slaves.n; k++) {
+    PetscReal     *row  = &rows[k * SLAVE_COLUMNS];
+    const PetscInt node = slaves.node[k];
+
+    row[SLAVE_ID] = (PetscReal)mesh->node_id[node];
+    for (int i = 0; i < mesh->dim; i++) {
+      row[SLAVE_REFERENCE + i] = mesh->coords[node * mesh->dim + i] + mesh->centre[i];
+      row[SLAVE_POSITION + i]  = row[SLAVE_REFERENCE + i] + model->u[node * mesh->dim + i];
+    }
+    row[SLAVE_AREA]     = slaves.area[k];
+    row[SLAVE_PRESSURE] = slaves.pressure[k];
+  }
+  PetscCall(TableGather(mesh->comm, SLAVE_COLUMNS, slaves.n, rows, &probes->slaves[pair]));
+  PetscCall(PetscFree(rows));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Does the probe keep this slave node? */
+static PetscBool ProbeKeeps(const Probe *probe, const PetscReal *slave)
+{
+  PetscBool near;
+
+  if (!probe->free_edges) return PETSC_TRUE;
+  near =
+    FreeEdgesDistance(probe->free_edges, &slave[SLAVE_REFERENCE]) <= (probe->scene->edge_faces + RING_TOLERANCE) * probe->face_size ? PETSC_TRUE : PETSC_FALSE;
+  return (probe->scene->edge_filter == 2) == near ? PETSC_TRUE : PETSC_FALSE;
+}
+
+static PetscErrorCode EvaluateReaction(Probes probes, Probe *probe, PetscReal *value)
+{
+  PetscReal force[3];
+
+  PetscFunctionBeginUser;
+  PetscCall(ModelReaction(probes->model, probe->group, force));
+  *value = force[probe->scene->component];
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode EvaluateContactForce(Probes probes, Probe *probe, PetscReal *value)
+{
+  PetscReal force[3];
+
+  PetscFunctionBeginUser;
+  PetscCall(ContactMasterForce(probes->model->contact, probe->pair, force));
+  *value = force[probe->scene->component];
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode EvaluateDisplacement(Probes probes, Probe *probe, PetscReal *value)
+{
+  const Model model = probes->model;
+
+  PetscFunctionBeginUser;
+  PetscCall(ProbesShare(probes, probe->node[0], 1, &model->u[PetscMax(probe->node[0], 0) * model->mesh->dim + probe->scene->component], value));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode EvaluateDistance(Probes probes, Probe *probe, PetscReal *value)
+{
+  const Model model = probes->model;
+  const int   dim   = model->mesh->dim;
+  PetscReal   X[2][3], u[2][3], before = 0.0, now = 0.0;
+
+  PetscFunctionBeginUser;
+  for (int k = 0; k < 2; k++) {
+    const PetscInt node = PetscMax(probe->node[k], 0);
+
+    PetscCall(ProbesShare(probes, probe->node[k], dim, &model->mesh->coords[node * dim], X[k]));
+    PetscCall(ProbesShare(probes, probe->node[k], dim, &model->u[node * dim], u[k]));
+  }
+  for (int i = 0; i < dim; i++) {
+    const PetscReal reference = X[1][i] - X[0][i];
+
+    before += PetscSqr(reference);
+    now += PetscSqr(reference + (u[1][i] - u[0][i]));
+  }
+  *value = PetscSqrtReal(now) - (probe->scene->change ? PetscSqrtReal(before) : 0.0);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode EvaluateGap(Probes probes, Probe *probe, PetscReal *value)
+{
+  const Model model = probes->model;
+
+  PetscFunctionBeginUser;
+  PetscCall(ContactGapAt(model->contact, probe->pair, model->u, model->t, probe->id[0], value));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Where the slave surface ends along a contact edge's axis, min and max, on the line of nodes that `at` picks. Collective. */
+static PetscErrorCode ProbesLineEnds(Probes probes, const Probe *probe, PetscReal ends[2])
+{
+  const Mesh        mesh  = probes->model->mesh;
+  const SceneProbe *scene = probe->scene;
+
+  PetscFunctionBeginUser;
+  ends[0] = ends[1] = -PETSC_MAX_REAL; /* of -x and x */
+  for (PetscInt k = 0; k < probe->group->n_nodes; k++) {
+    const PetscInt  node = probe->group->nodes[k] * mesh->dim;
+    const PetscReal x    = mesh->coords[node + scene->axis] + mesh->centre[scene->axis] + probes->model->u[node + scene->axis];
+
+    if (scene->has_at && !ProbeIsAt(probes, probe, mesh->coords[node + scene->at_axis] + mesh->centre[scene->at_axis])) continue;
+    ends[0] = PetscMax(ends[0], -x);
+    ends[1] = PetscMax(ends[1], x);
+  }
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, ends, 2, MPIU_REAL, MPI_MAX, mesh->comm));
+  ends[0] = -ends[0];
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Second-order nodes at the end of the line may carry no area (corners of triangles, the node on the axis of revolution): they have no
+   pressure of their own and go with the last node that has one. */
+static PetscErrorCode EvaluateContactEdge(Probes probes, Probe *probe, PetscReal *value)
+{
+  const Table *slaves;
+  PetscReal   *line, ends[2]; /* line: position and pressure of the nodes on it, from row 1 on */
+  double      *x, *p;
+  int          n = 0, first = 1;
+
+  PetscFunctionBeginUser;
+  PetscCall(ProbesGetSlaves(probes, probe->pair, &slaves));
+  PetscCall(ProbesLineEnds(probes, probe, ends));
+  PetscCall(PetscMalloc3((slaves->n + 2) * 2, &line, slaves->n + 2, &x, slaves->n + 2, &p));
+  for (PetscInt k = 0; k < slaves->n; k++) {
+    const PetscReal *slave = &slaves->row[k * SLAVE_COLUMNS];
+
+    if (probe->scene->has_at && !ProbeIsAt(probes, probe, slave[SLAVE_REFERENCE + probe->scene->at_axis])) continue;
+    n++;
+    line[2 * n]     = slave[SLAVE_POSITION + probe->scene->axis];
+    line[2 * n + 1] = slave[SLAVE_PRESSURE];
+  }
+  qsort(&line[2], (size_t)n, 2 * sizeof(PetscReal), TableCompare);
+  if (n && ends[1] > line[2 * n]) {
+    line[2 * n + 2] = ends[1];
+    line[2 * n + 3] = line[2 * n + 1];
+    n++;
+  }
+  if (n && ends[0] < line[2]) {
+    line[0] = ends[0];
+    line[1] = line[3];
+    first   = 0;
+    n++;
+  }
+  for (int k = 0; k < n; k++) {
+    x[k] = line[2 * (first + k)];
+    p[k] = line[2 * (first + k) + 1];
+  }
+  *value = ContactEdge(ContactPairScene(probes->model->contact, probe->pair)->formulation == CONTACT_SURFACE_TO_SURFACE ? EDGE_OF_HATS : EDGE_AT_NODES, n, x, p,
+                       probe->scene->max_side, &probe->spacing);
+  PetscCall(PetscFree3(line, x, p));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode EvaluatePressureMax(Probes probes, Probe *probe, PetscReal *value)
+{
+  const Table *slaves;
+  PetscReal    most = 0.0;
+
+  PetscFunctionBeginUser;
+  PetscCall(ProbesGetSlaves(probes, probe->pair, &slaves));
+  for (PetscInt k = 0; k < slaves->n; k++) {
+    const PetscReal *slave = &slaves->row[k * SLAVE_COLUMNS];
+
+    if (probe->scene->has_at && !ProbeIsAt(probes, probe, slave[SLAVE_REFERENCE + probe->scene->at_axis])) continue;
+    most = PetscMax(most, slave[SLAVE_PRESSURE]);
+  }
+  *value = most > 0.0 ? most : NAN;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Area-weighted mean pressure over the slave nodes that the probe keeps, and their area; NaN without contact or without a node */
+static PetscReal MeanPressure(const Probe *probe, const Table *slaves, PetscReal *area)
+{
+  PetscReal force = 0.0;
+
+  *area = 0.0;
+  for (PetscInt k = 0; k < slaves->n; k++) {
+    const PetscReal *slave = &slaves->row[k * SLAVE_COLUMNS];
+
+    if (!ProbeKeeps(probe, slave)) continue;
+    *area += slave[SLAVE_AREA];
+    force += slave[SLAVE_AREA] * slave[SLAVE_PRESSURE];
+  }
+  return force > 0.0 ? force / *area : NAN;
+}
+
+static PetscErrorCode EvaluatePressureMean(Probes probes, Probe *probe, PetscReal *value)
+{
+  const Table *slaves;
+  PetscReal    area;
+
+  PetscFunctionBeginUser;
+  PetscCall(ProbesGetSlaves(probes, probe->pair, &slaves));
+  *value = MeanPressure(probe, slaves, &area);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode EvaluatePressureDeviation(Probes probes, Probe *probe, PetscReal *value)
+{
+  const Table *slaves;
+  PetscReal    area, mean, most = 0.0, square = 0.0;
+
+  PetscFunctionBeginUser;
+  PetscCall(ProbesGetSlaves(probes, probe->pair, &slaves));
+  mean = MeanPressure(probe, slaves, &area);
+  for (PetscInt k = 0; k < slaves->n; k++) {
+    const PetscReal *slave = &slaves->row[k * SLAVE_COLUMNS];
+    const PetscReal  off   = slave[SLAVE_PRESSURE] - mean;
+
+    if (!ProbeKeeps(probe, slave)) continue;
+    most = PetscMax(most, PetscAbsReal(off));
+    square += slave[SLAVE_AREA] * PetscSqr(off);
+  }
+  *value = 100.0 * (probe->scene->rms ? PetscSqrtReal(square / area) : most) / mean; /* NaN where the mean is */
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static const ProbeType types[PROBE_KINDS] = {
+  [PROBE_REACTION]           = {"reaction",           NAMES_SURFACE, 0, NULL,           EvaluateReaction         },
+  [PROBE_CONTACT_FORCE]      = {"contact_force",      NAMES_PAIR,    0, NULL,           EvaluateContactForce     },
+  [PROBE_DISPLACEMENT]       = {"displacement",       NAMES_NOTHING, 1, "displacement", EvaluateDisplacement     },
+  [PROBE_DISTANCE]           = {"distance",           NAMES_NOTHING, 2, "distance",     EvaluateDistance         },
+  [PROBE_GAP]                = {"gap",                NAMES_PAIR,    1, "at",           EvaluateGap              },
+  [PROBE_CONTACT_EDGE]       = {"contact_edge",       NAMES_PAIR,    0, NULL,           EvaluateContactEdge      },
+  [PROBE_PRESSURE_MAX]       = {"pressure_max",       NAMES_PAIR,    0, NULL,           EvaluatePressureMax      },
+  [PROBE_PRESSURE_MEAN]      = {"pressure_mean",      NAMES_PAIR,    0, NULL,           EvaluatePressureMean     },
+  [PROBE_PRESSURE_DEVIATION] = {"pressure_deviation", NAMES_PAIR,    0, NULL,           EvaluatePressureDeviation},
+};
+
+/* Resolves what a probe's kind refers to. Collective. */
+static PetscErrorCode ProbesPrepare(Probes probes, Probe *probe)
+{
+  const Mesh        mesh  = probes->model->mesh;
+  const SceneProbe *scene = probe->scene;
+  const ProbeType  *type  = &types[scene->kind];
+  MeshGroup        *surface;
+
+  PetscFunctionBeginUser;
+  if (type->names == NAMES_SURFACE) {
+    PetscCall(MeshGetGroup(mesh, probes->scene, scene->path, type->key, scene->target, mesh->dim, &surface));
+    probe->group = surface;
+  } else if (type->names == NAMES_PAIR) {
+    probe->pair = ContactFindPair(probes->model->contact, scene->target); /* the scene has made sure that there is one */
+    PetscCall(ContactPairSurface(probes->model->contact, probe->pair, &probe->group, &probe->face_size));
+    PetscCall(ProbesCheckAt(probes, probe));
+    if (scene->edge_filter) PetscCall(FreeEdgesCreate(mesh, probes->scene, &probes->scene->contacts[probe->pair], probe->group, &probe->free_edges));
+  }
+  for (int i = 0; i < type->points; i++) PetscCall(ProbesFindNode(probes, probe, type->points_key, i, type->names == NAMES_PAIR ? probe->group : NULL));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The body of every local node, by its cells: bodies share no nodes */
+static PetscErrorCode ProbesFindNodeBodies(Probes probes)
+{
+  const Mesh mesh = probes->model->mesh;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(mesh->n_nodes, &probes->node_body));
+  for (PetscInt n = 0; n < mesh->n_nodes; n++) probes->node_body[n] = -1;
+  for (PetscInt c = 0; c < mesh->n_cells; c++)
+    for (PetscInt k = mesh->cell_ptr[c]; k < mesh->cell_ptr[c + 1]; k++) probes->node_body[mesh->cell_nodes[k]] = mesh->cell_body[c];
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*
+  ProbesCreate - Resolves the scene's probes in a model. Collective.
+
+  Input: model (with its mesh and contact), scene. Errors: refuses (exit 1) surfaces, pairs and volumes that do not exist, points without a
+  node and points where several bodies have one and none is named.
+*/
+PetscErrorCode ProbesCreate(Model model, Scene scene, Probes *result)
+{
+  Probes probes;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscNew(&probes));
+  probes->model = model;
+  probes->scene = scene;
+  PetscCall(PetscCalloc1(scene->n_probes, &probes->probe));
+  PetscCall(PetscCalloc1(scene->n_contacts, &probes->slaves));
+  PetscCall(ProbesFindNodeBodies(probes));
+  for (int i = 0; i < scene->n_probes; i++) {
+    probes->probe[i] = (Probe){.scene = &scene->probes[i], .spacing = NAN};
+    PetscCall(ProbesPrepare(probes, &probes->probe[i]));
+  }
+  PetscCall(PetscFree(probes->node_body));
+  *result = probes;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* ProbesDestroy - Frees the probes. Not collective. */
+PetscErrorCode ProbesDestroy(Probes *probes)
+{
+  PetscFunctionBeginUser;
+  if (!*probes) PetscFunctionReturn(PETSC_SUCCESS);
+  for (int i = 0; i < (*probes)->scene->n_probes; i++) PetscCall(FreeEdgesDestroy(&(*probes)->probe[i].free_edges));
+  PetscCall(PetscFree((*probes)->probe));
+  PetscCall(PetscFree((*probes)->slaves));
+  PetscCall(PetscFree(*probes));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*
+  ProbesEvaluate - Values of all probes in the model's present state, the same on all ranks and on any number of them. Collective.
+
+  Output: values[scene->n_probes]: forces, lengths, pressures or per cent by kind, after `absolute` and `factor`; NaN where there is no value.
+*/
+PetscErrorCode ProbesEvaluate(Probes probes, PetscReal values[])
+{
+  PetscFunctionBeginUser;
+  for (int i = 0; i < probes->scene->n_probes; i++) {
+    const SceneProbe *scene = &probes->scene->probes[i];
+
+    PetscCall(types[scene->kind].evaluate(probes, &probes->probe[i], &values[i]));
+    if (scene->absolute) values[i] = PetscAbsReal(values[i]);
+    values[i] *= scene->factor;
+  }
+  for (int p = 0; p < probes->scene->n_contacts; p++) PetscCall(TableDestroy(&probes->slaves[p]));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* ProbesGetSpacing - Node spacing (length) around the contact edge of probe i at the last evaluation, NaN if there is none. Not collective. */
+PetscErrorCode ProbesGetSpacing(Probes probes, int i, PetscReal *spacing)
+{
+  PetscFunctionBeginUser;
+  *spacing = probes->probe[i].spacing;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

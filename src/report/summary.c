@@ -1,0 +1,235 @@
+#include "summary.h"
+#include "scene/commandline.h"
+#include <cJSON.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* The parts of a text between commas, without the blanks around them */
+static void AddList(cJSON *json, const char *key, char *text)
+{
+  cJSON *list = cJSON_AddArrayToObject(json, key);
+  char  *rest = NULL;
+
+  for (char *part = strtok_r(text, ",", &rest); part; part = strtok_r(NULL, ",", &rest)) {
+    part += strspn(part, " ");
+    for (size_t n = strlen(part); n && part[n - 1] == ' '; n--) part[n - 1] = '\0';
+    if (*part) cJSON_AddItemToArray(list, cJSON_CreateString(part));
+  }
+}
+
+/* null where there is no value */
+static void AddReal(cJSON *json, const char *key, PetscReal value)
+{
+  if (isfinite((double)value))
+    cJSON_AddNumberToObject(json, key, (double)value);
+  else
+    cJSON_AddNullToObject(json, key);
+}
+
+/* PETSc's options as they are now, the scene's own, and those that nothing has asked for */
+static PetscErrorCode AddOptions(cJSON *json, Scene scene)
+{
+  cJSON   *options = cJSON_AddObjectToObject(json, "options"), *map, *unused;
+  char    *all, **names, **values;
+  PetscInt n;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscOptionsGetAll(NULL, &all));
+  cJSON_AddStringToObject(options, "petsc", all);
+  PetscCall(PetscFree(all));
+  map = cJSON_AddObjectToObject(options, "scene");
+  for (int i = 0; i < scene->n_petsc; i++) cJSON_AddStringToObject(map, scene->petsc[i].key, scene->petsc[i].value ? scene->petsc[i].value : "");
+  unused = cJSON_AddArrayToObject(options, "unused");
+  PetscCall(PetscOptionsLeftGet(NULL, &n, &names, &values));
+  for (PetscInt i = 0; i < n; i++) cJSON_AddItemToArray(unused, cJSON_CreateString(names[i]));
+  PetscCall(PetscOptionsLeftRestore(NULL, &n, &names, &values));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* What the linear algebra ran with; null: not known */
+static void AddBlas(cJSON *json, const Blas *blas)
+{
+  cJSON *map = cJSON_AddObjectToObject(json, "blas");
+
+  cJSON_AddStringToObject(map, "file", blas->file);
+  if (blas->kernels)
+    cJSON_AddStringToObject(map, "kernels", blas->kernels);
+  else
+    cJSON_AddNullToObject(map, "kernels");
+}
+
+static void AddRun(cJSON *json, const RunRecord *run)
+{
+  cJSON_AddStringToObject(json, "status", run->status);
+  if (run->message)
+    cJSON_AddStringToObject(json, "message", run->message);
+  else
+    cJSON_AddNullToObject(json, "message");
+  cJSON_AddNumberToObject(json, "steps", (double)run->way->steps);
+  cJSON_AddNumberToObject(json, "steps_failed", (double)run->way->steps_failed);
+  cJSON_AddNumberToObject(json, "steps_repeated", (double)run->way->steps_repeated);
+  cJSON_AddNumberToObject(json, "newton_iterations", (double)run->way->newton_iterations);
+  cJSON_AddNumberToObject(json, "newton_accepted", (double)run->way->newton_accepted);
+  cJSON_AddNumberToObject(json, "krylov_iterations", (double)run->way->krylov_iterations);
+}
+
+static void AddUsage(cJSON *json, const RunFigures *figures)
+{
+  cJSON *seconds;
+
+  AddReal(json, "wall_s", figures->usage.wall_s);
+  AddReal(json, "cpu_s", figures->usage.cpu_s);
+  AddReal(json, "mesh_s", figures->run->mesh_s);
+  AddReal(json, "peak_rss_mb", figures->usage.peak_rss_mb);
+  seconds = cJSON_AddObjectToObject(json, "seconds");
+  for (int k = 0; k < TIMING_KINDS; k++) AddReal(seconds, TimingNames[k], figures->usage.seconds[k]);
+}
+
+static void AddGuards(cJSON *json, const StepperReport *way)
+{
+  cJSON *map = cJSON_AddObjectToObject(json, "guards");
+
+  cJSON_AddNumberToObject(map, "line_search_cuts", (double)way->cuts);
+  cJSON_AddNumberToObject(map, "lists_made_anew", (double)way->regathered);
+  cJSON_AddNumberToObject(map, "penalty_solves", (double)way->adjusted);
+}
+
+/* Contact sets that repeated themselves */
+static void AddCycles(cJSON *json, const StepperReport *way)
+{
+  cJSON *map = cJSON_AddObjectToObject(json, "cycles");
+
+  cJSON_AddNumberToObject(map, "found", (double)way->cycles);
+  cJSON_AddNumberToObject(map, "steps_cut", (double)way->cycles_cut);
+  if (way->cycles)
+    cJSON_AddStringToObject(map, "last", way->cycle);
+  else
+    cJSON_AddNullToObject(map, "last");
+}
+
+/* What the springs of stabilised pairs did, where there are any */
+static void AddSprings(cJSON *json, Scene scene, const StepperReport *way)
+{
+  cJSON *map;
+  int    any = 0;
+
+  for (int c = 0; c < scene->n_contacts; c++) any = any || scene->contacts[c].stabilise;
+  if (!any) return;
+  map = cJSON_AddObjectToObject(json, "stabilisation");
+  cJSON_AddNumberToObject(map, "relaxed", (double)way->relaxed);
+  AddReal(map, "energy_taken", way->taken);
+  AddReal(map, "largest_energy_share", way->left);
+}
+
+/* How the linear solves went */
+static void AddLinear(cJSON *json, const LinearCounts *counts)
+{
+  cJSON *map = cJSON_AddObjectToObject(json, "linear");
+
+  cJSON_AddNumberToObject(map, "solves", (double)counts->solves);
+  cJSON_AddNumberToObject(map, "refined", (double)counts->refined);
+  cJSON_AddNumberToObject(map, "refinement_steps", (double)counts->steps);
+  cJSON_AddNumberToObject(map, "inaccurate", (double)counts->inaccurate);
+  AddReal(map, "largest_residual", counts->worst);
+  if (!counts->kept.made) return;
+  cJSON_AddNumberToObject(map, "factors", (double)counts->kept.made);
+  cJSON_AddNumberToObject(map, "older_factors", (double)counts->kept.served);
+  cJSON_AddNumberToObject(map, "older_factor_iterations", (double)counts->kept.iterations);
+  cJSON_AddNumberToObject(map, "own_factor_iterations", (double)counts->kept.finishing);
+}
+
+/* The last accepted state */
+static void AddState(cJSON *json, Scene scene, PetscBool has_contact, const StepRecord *last, const PetscReal *probes)
+{
+  const PetscBool touches = has_contact && last ? PETSC_TRUE : PETSC_FALSE;
+  cJSON          *map;
+
+  AddReal(json, "t", last ? last->t : 0.0);
+  AddReal(json, "max_penetration", touches ? last->contact.max_penetration : NAN);
+  AddReal(json, "max_penetration_over_h", touches ? last->contact.max_penetration_over_h : NAN);
+  cJSON_AddNumberToObject(json, "contact_nodes", touches ? (double)last->contact.nodes : 0.0);
+  map = cJSON_AddObjectToObject(json, "probes");
+  for (int i = 0; i < scene->n_probes; i++) AddReal(map, scene->probes[i].name, last ? probes[i] : NAN);
+}
+
+static void AddPartition(cJSON *json, const Mesh mesh)
+{
+  cJSON *map = cJSON_AddObjectToObject(json, "partition");
+
+  cJSON_AddStringToObject(map, "tool", mesh->partition.tool);
+  cJSON_AddNumberToObject(map, "edge_cut", (double)mesh->partition.edge_cut);
+  AddReal(map, "imbalance_cells", mesh->partition.imbalance_cells);
+  AddReal(map, "imbalance_contact", mesh->partition.imbalance_contact);
+}
+
+static void AddContact(cJSON *json, const RunFigures *figures)
+{
+  cJSON *list = cJSON_AddArrayToObject(json, "contact");
+
+  for (int p = 0; p < figures->n_pairs; p++) {
+    const PairFigures   *figure = &figures->pairs[p];
+    const ContactWindow *window = &figure->window;
+    cJSON               *pair   = cJSON_CreateObject(), *penalty;
+
+    cJSON_AddItemToArray(list, pair);
+    cJSON_AddStringToObject(pair, "name", figure->name);
+    cJSON_AddNumberToObject(pair, "nodes", (double)figure->quality.nodes);
+    AddReal(pair, "max_penetration", figure->quality.max_penetration);
+    AddReal(pair, "max_penetration_over_h", figure->quality.max_penetration_over_h);
+    AddReal(pair, "facet_error", figure->fits.points ? figure->fits.facet_error : figure->quality.sagitta);
+    AddReal(pair, "smoothing_error", figure->fits.points ? figure->fits.smoothing_error : NAN);
+    cJSON_AddNumberToObject(pair, "fall_backs", (double)(figure->fits.points - figure->fits.plain));
+    penalty = cJSON_AddObjectToObject(pair, "penalty");
+    AddReal(penalty, "min", figure->penalty_min);
+    AddReal(penalty, "max", figure->penalty_max);
+    cJSON_AddNumberToObject(penalty, "raised", (double)window->raised);
+    cJSON_AddNumberToObject(penalty, "lowered", (double)window->lowered);
+    cJSON_AddNumberToObject(penalty, "clamped", (double)window->clamped);
+    cJSON_AddNumberToObject(penalty, "light", (double)window->light);
+    cJSON_AddNumberToObject(penalty, "augmented", (double)window->augmented);
+    cJSON_AddNumberToObject(penalty, "missed", (double)window->missed);
+    cJSON_AddNumberToObject(penalty, "outside_window", (double)window->outside);
+    cJSON_AddNumberToObject(penalty, "largest_excess", (double)window->excess);
+  }
+}
+
+/*
+  SummaryWrite - Writes summary.json under a temporary name and renames it. Not collective; for one rank.
+
+  Input: mesh, figures, directory (exists), probes[n_probes of the scene] (final values, NaN: none). Errors: PETSC_ERR_FILE_OPEN,
+  PETSC_ERR_FILE_WRITE, PETSC_ERR_MEM.
+*/
+PetscErrorCode SummaryWrite(const Mesh mesh, const RunFigures *figures, const char *directory, const PetscReal *probes)
+{
+  const RunRecord *run  = figures->run;
+  cJSON           *json = cJSON_CreateObject();
+  char             effects[sizeof(figures->effects)], *text;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscStrncpy(effects, figures->effects, sizeof(effects)));
+  cJSON_AddStringToObject(json, "name", figures->scene->name);
+  cJSON_AddStringToObject(json, "version", BURNISH_VERSION);
+  cJSON_AddNumberToObject(json, "ranks", figures->ranks);
+  cJSON_AddNumberToObject(json, "dofs", (double)figures->dofs);
+  cJSON_AddNumberToObject(json, "elements", (double)mesh->n_cells_global);
+  AddList(json, "effects", effects);
+  PetscCall(AddOptions(json, figures->scene));
+  AddBlas(json, &figures->blas);
+  AddRun(json, run);
+  cJSON_AddNumberToObject(json, "restarts", (double)figures->restarts);
+  AddCycles(json, run->way);
+  AddSprings(json, figures->scene, run->way);
+  AddLinear(json, &figures->linear);
+  AddUsage(json, figures);
+  AddGuards(json, run->way);
+  AddState(json, figures->scene, figures->n_pairs ? PETSC_TRUE : PETSC_FALSE, figures->last, probes);
+  AddPartition(json, mesh);
+  AddContact(json, figures);
+  text = cJSON_Print(json);
+  PetscCheck(text, PETSC_COMM_SELF, PETSC_ERR_MEM, "No memory for summary.json");
+  PetscCall(ResultsReplaceFile(directory, "summary.json", text));
+  cJSON_free(text);
+  cJSON_Delete(json);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

@@ -1,0 +1,555 @@
+#include "document.h"
+#include "base/refusal.h"
+#include <errno.h>
+#include <math.h>
+#include <stdarg.h>
+#include <stdlib.h>
+#include <string.h>
+#include <yaml.h>
+
+/* A scene is a few kB of text. The bound keeps a wrong file (a mesh, a device) from being read whole by every rank. */
+enum { SCENE_FIRST_BYTES = 64 << 10, SCENE_MAX_BYTES = 16 << 20 };
+/* The schema is 6 levels deep. The bound keeps the recursions over the tree from exhausting the stack. */
+enum { SCENE_MAX_DEPTH = 32 };
+
+/* ---- paths ---- */
+
+/* PathComponent - length of the component that a path starts with, up to the next dot or the end. Not collective. */
+size_t PathComponent(const char *path)
+{
+  return strcspn(path, ".");
+}
+
+/* PathComponentIsIndex - whether the component that a path starts with is an index of a list. Not collective. */
+int PathComponentIsIndex(const char *path)
+{
+  const size_t n = PathComponent(path);
+
+  return n > 0 && n < 10 && strspn(path, "0123456789") >= n;
+}
+
+/* PathJoin - parent.key, or key alone below the root, into path[PATH_LENGTH]. Not collective. */
+void PathJoin(char path[PATH_LENGTH], const char *parent, const char *key)
+{
+  snprintf(path, PATH_LENGTH, "%.*s%s%.*s", PATH_LENGTH / 2, parent, *parent ? "." : "", PATH_LENGTH / 2 - 2, key);
+}
+
+/* PathJoinIndex - parent.index into path[PATH_LENGTH]. Not collective. */
+void PathJoinIndex(char path[PATH_LENGTH], const char *parent, int index)
+{
+  char key[16];
+
+  snprintf(key, sizeof key, "%d", index);
+  PathJoin(path, parent, key);
+}
+
+/* ---- nodes ---- */
+
+/* NodeChild - the child of a list or map that the first component of path names; NULL if there is none. Not collective. */
+Node NodeChild(Node node, const char *path)
+{
+  const size_t n = PathComponent(path);
+
+  if (node->kind == NODE_LIST && PathComponentIsIndex(path) && atoi(path) < node->n) return node->child[atoi(path)];
+  for (int i = 0; node->kind == NODE_MAP && i < node->n; i++) {
+    if (strlen(node->key[i]) == n && !strncmp(node->key[i], path, n)) return node->child[i];
+  }
+  return NULL;
+}
+
+/* NodeFind - the value at a path below a node, list indices included; NULL if there is none. Not collective. */
+Node NodeFind(Node node, const char *path)
+{
+  while (node && *path) {
+    node = NodeChild(node, path);
+    path += PathComponent(path);
+    if (*path) path++;
+  }
+  return node;
+}
+
+/* NodeReal - the value of a scalar that is a number in decimal notation, from its first character to its last; no hexadecimal, nan, inf.
+
+   Not collective. Returns 0 where it is not one (or too large for a double). The C locale is the program's. */
+int NodeReal(Node node, double *value)
+{
+  char *end;
+
+  if (node->kind != NODE_SCALAR || !node->plain || !*node->text || node->text[strspn(node->text, "0123456789+-.eE")]) return 0;
+  *value = strtod(node->text, &end);
+  return !*end && isfinite(*value);
+}
+
+/* NodeInteger - the value of a scalar that is a whole number in decimal notation. Not collective. Returns 0 where it is not one. */
+int NodeInteger(Node node, long *value)
+{
+  char *end;
+
+  if (node->kind != NODE_SCALAR || !node->plain || !*node->text || node->text[strspn(node->text, "0123456789+-")]) return 0;
+  errno  = 0;
+  *value = strtol(node->text, &end, 10);
+  return !*end && !errno;
+}
+
+/* NodeBoolean - the value of a scalar that is true or false, in these words. Not collective. Returns 0 where it is not one. */
+int NodeBoolean(Node node, int *value)
+{
+  *value = node->kind == NODE_SCALAR && node->plain && !strcmp(node->text, "true");
+  return *value || (node->kind == NODE_SCALAR && node->plain && !strcmp(node->text, "false"));
+}
+
+/* ---- refusals ---- */
+
+static const char *DocumentWhereNode(Document *document, Node node, const char *path)
+{
+  if (!node->set)
+    snprintf(document->where, sizeof document->where, "%.400s:%d%s%s", document->file, node->line, *path ? ": " : "", path);
+  else if (!strcmp(node->set, path))
+    snprintf(document->where, sizeof document->where, "-set %s", path);
+  else
+    snprintf(document->where, sizeof document->where, "-set %.400s: %s", node->set, path);
+  return document->where;
+}
+
+/* DocumentWhere - "FILE:LINE: PATH", the line being that of the path or of its nearest ancestor in the file; "-set KEY" in place of file and
+   line if it came from there. Valid until the next call. Not collective. */
+const char *DocumentWhere(Document *document, const char *path)
+{
+  Node        node = document->root, next = node;
+  const char *rest = path;
+
+  while (*rest && (next = NodeChild(node, rest))) {
+    node = next;
+    rest += PathComponent(rest);
+    if (*rest) rest++;
+  }
+  return DocumentWhereNode(document, node, path);
+}
+
+static void DocumentRefuseList(Document *document, const char *where, const char *format, va_list arguments) __attribute__((noreturn));
+static void DocumentRefuseList(Document *document, const char *where, const char *format, va_list arguments)
+{
+  char text[1024];
+
+  vsnprintf(text, sizeof text, format, arguments);
+  (void)!RefuseInput(document->comm, "%s: %s", where, text);
+  exit(EXIT_WRONG_INPUT);
+}
+
+/* DocumentRefuse - refuses the value at a path, which need not be there. Collective, does not return; printf's format. */
+void DocumentRefuse(Document *document, const char *path, const char *format, ...)
+{
+  va_list arguments;
+
+  va_start(arguments, format);
+  DocumentRefuseList(document, DocumentWhere(document, path), format, arguments);
+}
+
+/* DocumentRefuseNode - as DocumentRefuse(), of a node that need not be in the tree yet. */
+void DocumentRefuseNode(Document *document, Node node, const char *path, const char *format, ...)
+{
+  va_list arguments;
+
+  va_start(arguments, format);
+  DocumentRefuseList(document, DocumentWhereNode(document, node, path), format, arguments);
+}
+
+/* ---- text to tree ---- */
+
+typedef struct {
+  Document        *document;
+  const char      *set; /* key of the -set whose value is read, or NULL */
+  yaml_document_t *yaml;
+  PetscBool       *visited; /* per libyaml node: a second visit is an alias */
+} TreeReader;
+
+static PetscErrorCode NodeDestroy(Node *node)
+{
+  PetscFunctionBeginUser;
+  if (!*node) PetscFunctionReturn(PETSC_SUCCESS);
+  for (int i = 0; i < (*node)->n; i++) {
+    PetscCall(NodeDestroy(&(*node)->child[i]));
+    if ((*node)->kind == NODE_MAP) PetscCall(PetscFree((*node)->key[i]));
+  }
+  PetscCall(PetscFree((*node)->child));
+  PetscCall(PetscFree((*node)->key));
+  PetscCall(PetscFree((*node)->text));
+  PetscCall(PetscFree(*node));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode NodeCreate(NodeKind kind, int line, const char *set, Node *node)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscNew(node));
+  (*node)->kind = kind;
+  (*node)->line = line;
+  (*node)->set  = set;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Adds a child; key is copied (NULL for a list). */
+static PetscErrorCode NodeAppend(Node node, const char *key, Node child)
+{
+  Node  *children;
+  char **keys;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc1(node->n + 1, &children));
+  PetscCall(PetscArraycpy(children, node->child, node->n));
+  PetscCall(PetscFree(node->child));
+  node->child          = children;
+  node->child[node->n] = child;
+  if (key) {
+    PetscCall(PetscCalloc1(node->n + 1, &keys));
+    PetscCall(PetscArraycpy(keys, node->key, node->n));
+    PetscCall(PetscFree(node->key));
+    node->key = keys;
+    PetscCall(PetscStrallocpy(key, &node->key[node->n]));
+  }
+  node->n++;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode TreeRead(TreeReader *, int id, int line, const char *path, int depth, Node *);
+
+static PetscErrorCode TreeReadMap(TreeReader *reader, const yaml_node_t *yaml, const char *path, int depth, Node map)
+{
+  char below[PATH_LENGTH];
+  Node child;
+
+  PetscFunctionBeginUser;
+  for (yaml_node_pair_t *pair = yaml->data.mapping.pairs.start; pair < yaml->data.mapping.pairs.top; pair++) {
+    const yaml_node_t *key  = yaml_document_get_node(reader->yaml, pair->key);
+    const int          line = (int)key->start_mark.line + 1;
+    const char        *text = (const char *)key->data.scalar.value;
+
+    if (key->type != YAML_SCALAR_NODE) DocumentRefuseNode(reader->document, map, path, "a key is a list or a map (line %d); allowed: names", line);
+    PathJoin(below, path, text);
+    for (int i = 0; i < map->n; i++) {
+      if (strcmp(map->key[i], text)) continue;
+      PetscCall(NodeCreate(NODE_SCALAR, line, reader->set, &child));
+      DocumentRefuseNode(reader->document, child, below, "duplicate key, first in line %d; allowed: once", map->child[i]->line);
+    }
+    PetscCall(TreeRead(reader, pair->value, line, below, depth + 1, &child));
+    PetscCall(NodeAppend(map, text, child));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* line: of the key of a map's value; 0: where the value itself starts */
+static PetscErrorCode TreeRead(TreeReader *reader, int id, int line, const char *path, int depth, Node *node)
+{
+  static const char *const Tags[] = {YAML_DEFAULT_SCALAR_TAG, YAML_DEFAULT_SEQUENCE_TAG, YAML_DEFAULT_MAPPING_TAG};
+  const yaml_node_t       *yaml   = yaml_document_get_node(reader->yaml, id);
+  const NodeKind           kind   = yaml->type == YAML_SCALAR_NODE ? NODE_SCALAR : yaml->type == YAML_SEQUENCE_NODE ? NODE_LIST : NODE_MAP;
+  char                     below[PATH_LENGTH], index[16];
+  Node                     child;
+
+  PetscFunctionBeginUser;
+  PetscCall(NodeCreate(kind, line ? line : (int)yaml->start_mark.line + 1, reader->set, node));
+  if (depth > SCENE_MAX_DEPTH) DocumentRefuseNode(reader->document, *node, path, "is nested too deeply; allowed: %d levels", SCENE_MAX_DEPTH);
+  if (reader->visited[id]) DocumentRefuseNode(reader->document, *node, path, "is a YAML alias; allowed: the value written out");
+  reader->visited[id] = PETSC_TRUE;
+  if (strcmp((const char *)yaml->tag, Tags[kind])) DocumentRefuseNode(reader->document, *node, path, "has a YAML tag; allowed: plain values");
+  if (kind == NODE_SCALAR) {
+    (*node)->plain = yaml->data.scalar.style == YAML_PLAIN_SCALAR_STYLE;
+    PetscCall(PetscStrallocpy((const char *)yaml->data.scalar.value, &(*node)->text));
+    if (strlen((*node)->text) != yaml->data.scalar.length) DocumentRefuseNode(reader->document, *node, path, "has a zero character; allowed: text");
+  } else if (kind == NODE_MAP) {
+    PetscCall(TreeReadMap(reader, yaml, path, depth, *node));
+  } else {
+    for (yaml_node_item_t *item = yaml->data.sequence.items.start; item < yaml->data.sequence.items.top; item++) {
+      snprintf(index, sizeof index, "%d", (*node)->n);
+      PathJoin(below, path, index);
+      PetscCall(TreeRead(reader, *item, 0, below, depth + 1, &child));
+      PetscCall(NodeAppend(*node, NULL, child));
+    }
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Is the first character of a line (from 0) that is no space a tab? */
+static PetscBool LineStartsWithTab(const char *text, size_t length, size_t line)
+{
+  size_t i = 0;
+
+  for (; i < length && line; i++) line -= text[i] == '\n';
+  while (i < length && text[i] == ' ') i++;
+  return i < length && text[i] == '\t' ? PETSC_TRUE : PETSC_FALSE;
+}
+
+/* Ends with libyaml's own complaint. A tab is named, because it cannot be seen in an editor. */
+static PetscErrorCode DocumentRefuseYaml(Document *document, const yaml_parser_t *parser, const char *text, size_t length, const char *set)
+{
+  const yaml_mark_t mark = parser->problem_mark;
+  int               line = (int)mark.line + 1;
+  Node              place;
+
+  PetscFunctionBeginUser;
+  if (parser->error == YAML_READER_ERROR) {
+    line = 1;
+    for (size_t i = 0; i < parser->problem_offset && i < length; i++) line += text[i] == '\n';
+  }
+  PetscCall(NodeCreate(NODE_SCALAR, line, set, &place));
+  if (parser->error != YAML_READER_ERROR && LineStartsWithTab(text, length, mark.line))
+    DocumentRefuseNode(document, place, set ? set : "", "a tab; allowed: spaces");
+  DocumentRefuseNode(document, place, set ? set : "", "malformed YAML: %s%s%s; allowed: one YAML document", parser->problem, parser->context ? " " : "",
+                     parser->context ? parser->context : "");
+}
+
+/* The tree of a text: one YAML document. path: where the tree belongs. set: the -set that it came from, or NULL. */
+static PetscErrorCode DocumentParse(Document *document, const char *text, size_t length, const char *path, const char *set, Node *root)
+{
+  yaml_parser_t   parser;
+  yaml_document_t yaml, second;
+  TreeReader      reader = {document, set, &yaml, NULL};
+  Node            place;
+  PetscBool       more;
+
+  PetscFunctionBeginUser;
+  PetscCheck(yaml_parser_initialize(&parser), PETSC_COMM_SELF, PETSC_ERR_MEM, "libyaml has no memory for a parser");
+  yaml_parser_set_input_string(&parser, (const unsigned char *)text, length);
+  if (!yaml_parser_load(&parser, &yaml)) PetscCall(DocumentRefuseYaml(document, &parser, text, length, set));
+  PetscCall(NodeCreate(NODE_SCALAR, 1, set, &place));
+  if (!yaml_document_get_root_node(&yaml)) DocumentRefuseNode(document, place, path, "has no value; allowed: %s", set ? "a YAML value" : "a scene");
+  PetscCall(PetscCalloc1((yaml.nodes.top - yaml.nodes.start) + 1, &reader.visited));
+  PetscCall(TreeRead(&reader, 1, 0, path, 0, root));
+  if (!yaml_parser_load(&parser, &second)) PetscCall(DocumentRefuseYaml(document, &parser, text, length, set));
+  more        = yaml_document_get_root_node(&second) ? PETSC_TRUE : PETSC_FALSE;
+  place->line = (int)second.start_mark.line + 1;
+  if (more) DocumentRefuseNode(document, place, path, "a second YAML document; allowed: one");
+  yaml_document_delete(&second);
+  yaml_document_delete(&yaml);
+  yaml_parser_delete(&parser);
+  PetscCall(PetscFree(reader.visited));
+  PetscCall(NodeDestroy(&place));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Rank 0 reads, all get the text: every rank then parses, and refuses, the same. */
+static PetscErrorCode FileBroadcast(MPI_Comm comm, const char *name, char **text, size_t *length)
+{
+  PetscMPIInt rank;
+  int         size[2] = {0, 0}; /* bytes, errno */
+  FILE       *file;
+
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Comm_rank(comm, &rank));
+  PetscCall(PetscMalloc1(SCENE_FIRST_BYTES, text));
+  if (!rank) {
+    errno = 0;
+    file  = fopen(name, "rb");
+    if (file) {
+      for (int room = SCENE_FIRST_BYTES; size[0] < room && !feof(file) && !ferror(file);) {
+        size[0] += (int)fread(*text + size[0], 1, (size_t)(room - size[0]), file);
+        if (size[0] < room || room > SCENE_MAX_BYTES) continue;
+        room *= 2;
+        PetscCall(PetscRealloc((size_t)room, text));
+      }
+      size[1] = ferror(file) ? errno : 0;
+      fclose(file);
+    } else
+      size[1] = errno ? errno : EIO;
+  }
+  PetscCallMPI(MPI_Bcast(size, 2, MPI_INT, 0, comm));
+  if (size[1]) PetscCall(RefuseInput(comm, "%s: cannot be read (%s); allowed: a scene file", name, strerror(size[1])));
+  if (size[0] > SCENE_MAX_BYTES) PetscCall(RefuseInput(comm, "%s: is too large for a scene; allowed: %d bytes", name, SCENE_MAX_BYTES));
+  if (rank) {
+    PetscCall(PetscFree(*text));
+    PetscCall(PetscMalloc1(size[0] + 1, text));
+  }
+  PetscCallMPI(MPI_Bcast(*text, size[0], MPI_CHAR, 0, comm));
+  *length = (size_t)size[0];
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* ---- -set ---- */
+
+/* The place of a child, made empty if the map lacks the key or if the index is the list's length. */
+static PetscErrorCode NodeSlot(Document *document, Node place, Node node, const char *key, Node **slot)
+{
+  Node  child = NodeFind(node, key);
+  char *end;
+  long  index;
+
+  PetscFunctionBeginUser;
+  if (node->kind == NODE_SCALAR)
+    DocumentRefuseNode(document, place, place->set, "'%s' is below a single value; allowed: keys of a map, indices of a list", key);
+  if (node->kind == NODE_LIST) {
+    index = strtol(key, &end, 10);
+    if (*end || strspn(key, "0123456789") != strlen(key) || index > node->n)
+      DocumentRefuseNode(document, place, place->set, "'%s' is no index of this list; allowed: 0 to %d", key, node->n);
+  }
+  if (!child) {
+    PetscCall(NodeAppend(node, node->kind == NODE_MAP ? key : NULL, NULL));
+    *slot = &node->child[node->n - 1];
+  } else {
+    for (int i = 0; i < node->n; i++) {
+      if (node->child[i] == child) *slot = &node->child[i];
+    }
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* One -set: replaces or adds the value at the path, with the maps and lists that lead to it. */
+static PetscErrorCode DocumentSet(Document *document, const char *set, const char *text)
+{
+  struct _n_Node place = {.set = set};
+  Node           node = document->root, value, *slot = NULL;
+  char           key[PATH_LENGTH];
+  const char    *rest = set;
+
+  PetscFunctionBeginUser;
+  PetscCall(DocumentParse(document, text, strlen(text), set, set, &value));
+  if (node->kind != NODE_MAP) DocumentRefuse(document, "", "a scene is a map; allowed: KEY: VALUE lines");
+  while (rest) {
+    const size_t n = strcspn(rest, ".");
+
+    if (!n || n >= sizeof key)
+      DocumentRefuseNode(document, &place, set, "is no path; allowed: keys and indices with dots between them, such as contact.0.slave");
+    snprintf(key, sizeof key, "%.*s", (int)n, rest);
+    rest = rest[n] ? rest + n + 1 : NULL;
+    PetscCall(NodeSlot(document, &place, node, key, &slot));
+    if (rest && !*slot)
+      PetscCall(NodeCreate(rest[strspn(rest, "0123456789")] == '.' || !rest[strspn(rest, "0123456789")] ? NODE_LIST : NODE_MAP, 0, set, slot));
+    node = *slot;
+  }
+  PetscCall(NodeDestroy(slot));
+  *slot = value;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* ---- canonical text ---- */
+
+typedef struct {
+  char *key;
+  Node  value;
+} NodeEntry;
+
+static int NodeEntryCompare(const void *a, const void *b)
+{
+  return strcmp(((const NodeEntry *)a)->key, ((const NodeEntry *)b)->key);
+}
+
+/* Adds a copy of the tree to a libyaml document, keys in alphabetical order; *id is its root there. */
+static PetscErrorCode NodeToYaml(Node node, yaml_document_t *yaml, int *id)
+{
+  NodeEntry *entries;
+  int        key, value;
+
+  PetscFunctionBeginUser;
+  if (node->kind == NODE_SCALAR) {
+    *id = yaml_document_add_scalar(yaml, NULL, (yaml_char_t *)node->text, -1, node->plain ? YAML_PLAIN_SCALAR_STYLE : YAML_DOUBLE_QUOTED_SCALAR_STYLE);
+  } else if (node->kind == NODE_LIST) {
+    *id = yaml_document_add_sequence(yaml, NULL, node->n && node->child[0]->kind == NODE_MAP ? YAML_BLOCK_SEQUENCE_STYLE : YAML_FLOW_SEQUENCE_STYLE);
+    for (int i = 0; i < node->n; i++) {
+      PetscCall(NodeToYaml(node->child[i], yaml, &value));
+      yaml_document_append_sequence_item(yaml, *id, value);
+    }
+  } else {
+    *id = yaml_document_add_mapping(yaml, NULL, YAML_BLOCK_MAPPING_STYLE);
+    PetscCall(PetscCalloc1(node->n + 1, &entries));
+    for (int i = 0; i < node->n; i++) entries[i] = (NodeEntry){node->key[i], node->child[i]};
+    qsort(entries, (size_t)node->n, sizeof *entries, NodeEntryCompare);
+    for (int i = 0; i < node->n; i++) {
+      key = yaml_document_add_scalar(yaml, NULL, (yaml_char_t *)entries[i].key, -1, YAML_PLAIN_SCALAR_STYLE);
+      PetscCall(NodeToYaml(entries[i].value, yaml, &value));
+      yaml_document_append_mapping_pair(yaml, *id, key, value);
+    }
+    PetscCall(PetscFree(entries));
+  }
+  PetscCheck(*id, PETSC_COMM_SELF, PETSC_ERR_MEM, "libyaml has no memory for a node");
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* DocumentText - the document as one YAML text that depends on its keys and values alone: not on comments, layout, order of keys, file or -set.
+
+   Not collective. text: free with PetscFree(). */
+PetscErrorCode DocumentText(Document *document, char **text)
+{
+  yaml_document_t yaml;
+  yaml_emitter_t  emitter;
+  char           *buffer = NULL;
+  size_t          size   = 0;
+  FILE           *stream = open_memstream(&buffer, &size);
+  int             root;
+
+  PetscFunctionBeginUser;
+  PetscCheck(stream && yaml_emitter_initialize(&emitter) && yaml_document_initialize(&yaml, NULL, NULL, NULL, 1, 1), PETSC_COMM_SELF, PETSC_ERR_MEM,
+             "No memory for the scene's text");
+  PetscCall(NodeToYaml(document->root, &yaml, &root));
+  yaml_emitter_set_output_file(&emitter, stream);
+  yaml_emitter_set_unicode(&emitter, 1);
+  yaml_emitter_set_width(&emitter, -1);
+  PetscCheck(yaml_emitter_dump(&emitter, &yaml), PETSC_COMM_SELF, PETSC_ERR_LIB, "libyaml: %s", emitter.problem);
+  yaml_emitter_flush(&emitter);
+  yaml_emitter_delete(&emitter);
+  fclose(stream);
+  PetscCall(PetscStrallocpy(buffer, text));
+  free(buffer);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* ---- the whole ---- */
+
+static PetscErrorCode DocumentEdit(Document *document, int n_set, char *const *set)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc1(n_set, &document->set_key));
+  for (int i = 0; i < n_set; i++) {
+    const char *equals = strchr(set[i], '=');
+    char       *key;
+
+    if (!equals) PetscCall(RefuseInput(document->comm, "-set %s: has no value; allowed: KEY=VALUE", set[i]));
+    PetscCall(PetscStrallocpy(set[i], &key));
+    key[equals - set[i]]                 = 0;
+    document->set_key[document->n_set++] = key;
+    PetscCall(DocumentSet(document, key, equals + 1));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* DocumentReadText - a document whose text stands in memory, the same on all ranks; name: stands for the file in messages. As DocumentRead() else. */
+PetscErrorCode DocumentReadText(MPI_Comm comm, const char *name, const char *text, int n_set, char *const *set, Document **document)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscNew(document));
+  (*document)->comm = comm;
+  PetscCall(PetscStrallocpy(name, &(*document)->file));
+  PetscCall(DocumentParse(*document, text, strlen(text), "", NULL, &(*document)->root));
+  PetscCall(DocumentEdit(*document, n_set, set));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* DocumentRead - reads a file and applies edits to it.
+
+   Collective. file: as the process can open it on rank 0. set[n_set]: KEY=VALUE, in order. Refuses (exit status 1) what cannot be read or is no
+   plain YAML. document: free with DocumentDestroy(). */
+PetscErrorCode DocumentRead(MPI_Comm comm, const char *file, int n_set, char *const *set, Document **document)
+{
+  char  *text;
+  size_t length;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscNew(document));
+  (*document)->comm = comm;
+  PetscCall(PetscStrallocpy(file, &(*document)->file));
+  PetscCall(FileBroadcast(comm, file, &text, &length));
+  PetscCall(DocumentParse(*document, text, length, "", NULL, &(*document)->root));
+  PetscCall(PetscFree(text));
+  PetscCall(DocumentEdit(*document, n_set, set));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* DocumentDestroy - frees a document. Not collective. */
+PetscErrorCode DocumentDestroy(Document *document)
+{
+  PetscFunctionBeginUser;
+  for (int i = 0; i < document->n_set; i++) PetscCall(PetscFree(document->set_key[i]));
+  PetscCall(PetscFree(document->set_key));
+  PetscCall(PetscFree(document->file));
+  PetscCall(NodeDestroy(&document->root));
+  PetscCall(PetscFree(document));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

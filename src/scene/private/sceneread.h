@@ -1,0 +1,18 @@
+/* What the readers of a scene share: scene.c, which reads the whole, and sceneprobe.c, which reads the probes. For these two only.
+
+   path is that of a scene's part ("contact.0"), key a value below it. */
+#pragma once
+#include "base/petsccompat.h"
+#include "scene/scene.h"
+#include "schema.h"
+
+PetscErrorCode SceneReadProbes(Scene); /* after the bodies and contacts, whose names they may use */
+
+Document        *SceneDocument(Scene);
+Node             SceneNode(Scene, const char *path, const char *key); /* NULL: the document has none */
+int              SceneHas(Scene, const char *path, const char *key);
+int              SceneReals(Scene, const char *path, const char *key, double *);   /* a list's numbers; returns how many, 0 if absent */
+PetscErrorCode   SceneReadText(Scene, const char *path, const char *key, char **); /* a copy, or NULL */
+PetscErrorCode   ScenePath(char **path, const char *list, int i);                  /* "list.i" */
+const SceneBody *SceneFindBody(Scene, const char *name, int rigid);                /* NULL: none */
+void             SceneRefuse(Scene, const char *path, const char *key, const char *what, const char *about) __attribute__((noreturn));

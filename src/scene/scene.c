@@ -1,0 +1,705 @@
+#include "sceneread.h"
+#include "base/refusal.h"
+#include <string.h>
+
+const char *const Formulations[] = {"full", "enhanced", "fbar", NULL};
+
+static const char *const Displacements[] = {"ux", "uy", "uz"}, *const Rotations[] = {"rx", "ry", "rz"};
+
+/* ---- for all readers ---- */
+
+/* SceneDocument - the tree that the scene was read from. Not collective. */
+Document *SceneDocument(Scene scene)
+{
+  return (Document *)scene->document;
+}
+
+/* ScenePath - "list.i" as a text of its own. Not collective. */
+PetscErrorCode ScenePath(char **path, const char *list, int i)
+{
+  char text[PATH_LENGTH];
+
+  PetscFunctionBeginUser;
+  snprintf(text, sizeof text, "%s.%d", list, i);
+  PetscCall(PetscStrallocpy(text, path));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* SceneNode - the document's value at path.key, NULL if there is none. Not collective. */
+Node SceneNode(Scene scene, const char *path, const char *key)
+{
+  char text[PATH_LENGTH];
+
+  PathJoin(text, path, key);
+  return NodeFind(SceneDocument(scene)->root, text);
+}
+
+/* SceneReals - a list of numbers into v; absent: v stays as it is. Returns how many there are. Not collective. */
+int SceneReals(Scene scene, const char *path, const char *key, double *v)
+{
+  Node list = SceneNode(scene, path, key);
+
+  for (int i = 0; list && i < list->n; i++) (void)NodeReal(list->child[i], &v[i]);
+  return list ? list->n : 0;
+}
+
+/* SceneReadText - a copy of the text at path.key, or its default; NULL if there is neither. Not collective. */
+PetscErrorCode SceneReadText(Scene scene, const char *path, const char *key, char **text)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscStrallocpy(SchemaText(SceneDocument(scene), "%s.%s", path, key), text));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* SceneHas - whether the document itself has a value at path.key. Not collective. */
+int SceneHas(Scene scene, const char *path, const char *key)
+{
+  return SceneNode(scene, path, key) != NULL;
+}
+
+/* SceneRefuse - refuses the value at path.key: "about what", about may be NULL. Collective, does not return. */
+void SceneRefuse(Scene scene, const char *path, const char *key, const char *what, const char *about)
+{
+  char text[PATH_LENGTH];
+
+  PathJoin(text, path, key);
+  DocumentRefuse(SceneDocument(scene), *key ? text : path, "%s%s%s", about ? about : "", about ? " " : "", what);
+}
+
+/* SceneFindBody - the body of that name, among the rigid tools or the deformable ones read so far; NULL if there is none. Not collective. */
+const SceneBody *SceneFindBody(Scene scene, const char *name, int rigid)
+{
+  for (int i = 0; i < scene->n_bodies; i++) {
+    if (scene->bodies[i].rigid == rigid && !strcmp(scene->bodies[i].name, name)) return &scene->bodies[i];
+  }
+  return NULL;
+}
+
+/* ---- the parts ---- */
+
+/* path's history, or the load parameter itself. */
+static PetscErrorCode SceneReadHistory(Scene scene, const char *path, History *history)
+{
+  Node list = SceneNode(scene, path, "history");
+
+  PetscFunctionBeginUser;
+  history->n = list ? list->n : 2;
+  PetscCall(PetscCalloc2(history->n, &history->t, history->n, &history->v));
+  if (!list) history->t[1] = history->v[1] = 1;
+  for (int i = 0; list && i < list->n; i++) {
+    (void)NodeReal(list->child[i]->child[0], &history->t[i]);
+    (void)NodeReal(list->child[i]->child[1], &history->v[i]);
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode SceneReadPairs(Scene scene, const char *key, int *n, ScenePair **pairs)
+{
+  Node map = NodeFind(SceneDocument(scene)->root, key);
+
+  PetscFunctionBeginUser;
+  *n = map ? map->n : 0;
+  PetscCall(PetscCalloc1(*n, pairs));
+  for (int i = 0; i < *n; i++) {
+    const Node value = map->child[i];
+
+    PetscCall(PetscStrallocpy(map->key[i] + (map->key[i][0] == '-'), &(*pairs)[i].key));
+    PetscCall(PetscStrallocpy(value->plain && (!strcmp(value->text, "null") || !strcmp(value->text, "~")) ? "" : value->text, &(*pairs)[i].value));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode SceneReadMesh(Scene scene)
+{
+  const char *file = SchemaText(SceneDocument(scene), "mesh.file"), *dot = strrchr(file, '.');
+  const int   geo = dot && !strcmp(dot, ".geo");
+  char        path[PETSC_MAX_PATH_LEN];
+
+  PetscFunctionBeginUser;
+  if (!geo && (!dot || strcmp(dot, ".msh"))) SceneRefuse(scene, "mesh", "file", "is no mesh file; allowed: a .geo or a .msh file", file);
+  if (snprintf(path, sizeof path, "%s%s%s", file[0] == '/' ? "" : scene->directory, file[0] == '/' ? "" : "/", file) >= (int)sizeof path)
+    SceneRefuse(scene, "mesh", "file", "the path is too long", NULL);
+  PetscCall(PetscStrallocpy(path, &scene->mesh_file));
+  scene->order = SchemaHas(SceneDocument(scene), "mesh.order") ? SchemaInteger(SceneDocument(scene), "mesh.order") : geo;
+  PetscCall(SceneReadPairs(scene, "mesh.parameters", &scene->n_parameters, &scene->parameters));
+  for (int i = 0; i < scene->n_parameters; i++) {
+    if (!scene->parameters[i].value[0]) SceneRefuse(scene, "mesh.parameters", scene->parameters[i].key, "has no value; allowed: a number or a text", NULL);
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode MotionFree(Motion *motion)
+{
+  PetscFunctionBeginUser;
+  for (int k = 0; k < motion->n; k++) PetscCall(PetscFree2(motion->components[k].history.t, motion->components[k].history.v));
+  PetscCall(PetscFree(motion->components));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The motion of a rigid tool or an analytic master; tool: its path. */
+static PetscErrorCode SceneReadMotion(Scene scene, const char *tool, Motion *motion)
+{
+  const int n = SchemaCount(SceneDocument(scene), "%s.motion", tool);
+  char      path[PATH_LENGTH];
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc1(6 * n, &motion->components));
+  for (int i = 0; i < n; i++) {
+    const int before = motion->n;
+
+    snprintf(path, sizeof path, "%s.motion.%d", tool, i);
+    for (int k = 0; k < 6; k++) {
+      const char *key = k < 3 ? Displacements[k] : Rotations[k - 3];
+
+      if (!SceneHas(scene, path, key)) continue;
+      if (scene->geometry == GEOMETRY_AXISYMMETRIC && k != 1) SceneRefuse(scene, path, key, "would break the symmetry about the axis; allowed: uy", NULL);
+      motion->components[motion->n].component = k;
+      motion->components[motion->n].value     = SchemaReal(SceneDocument(scene), "%s.%s", path, key);
+      PetscCall(SceneReadHistory(scene, path, &motion->components[motion->n++].history));
+    }
+    if (motion->n == before) SceneRefuse(scene, path, "", "moves nothing; allowed: at least one displacement (ux ...) or rotation (rz ...)", NULL);
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode SceneReadBody(Scene scene, SceneBody *body)
+{
+  static const char Needs[] = "a body is volume with material, or surface with rigid";
+
+  PetscFunctionBeginUser;
+  body->rigid = SceneHas(scene, body->path, "surface");
+  if (body->rigid == SceneHas(scene, body->path, "volume"))
+    SceneRefuse(scene, body->path, "", body->rigid ? "has both a volume and a surface; allowed:" : "has neither a volume nor a surface; allowed:", NULL);
+  if (!SceneHas(scene, body->path, body->rigid ? "rigid" : "material"))
+    SceneRefuse(scene, body->path, body->rigid ? "rigid" : "material", Needs, "is missing; allowed:");
+  if (SceneHas(scene, body->path, body->rigid ? "material" : "rigid"))
+    SceneRefuse(scene, body->path, body->rigid ? "material" : "rigid", Needs, "has no place here; allowed:");
+  PetscCall(SceneReadText(scene, body->path, body->rigid ? "surface" : "volume", &body->name));
+  if (body->rigid) {
+    char tool[PATH_LENGTH];
+
+    snprintf(tool, sizeof tool, "%s.rigid", body->path);
+    (void)SceneReals(scene, body->path, "rigid.point", body->motion.point);
+    PetscCall(SceneReadMotion(scene, tool, &body->motion));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  body->material.law = (MaterialLaw)SchemaChoice(SceneDocument(scene), "%s.material.law", body->path);
+  body->material.E   = SchemaReal(SceneDocument(scene), "%s.material.E", body->path);
+  body->material.nu  = SchemaReal(SceneDocument(scene), "%s.material.nu", body->path);
+  if (body->material.law == MATERIAL_LINEAR && scene->kinematics == KINEMATICS_FINITE)
+    SceneRefuse(scene, body->path, "material.law", "linear needs kinematics: small; allowed with finite: svk | neo_hookean", NULL);
+  body->formulation = (Formulation)SchemaChoice(SceneDocument(scene), "%s.formulation", body->path);
+  if (body->formulation != FORMULATION_FULL && scene->order == 2)
+    SceneRefuse(scene, body->path, "formulation", "is for first-order elements; allowed with mesh.order: 2: full", Formulations[body->formulation]);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode SceneReadBodies(Scene scene)
+{
+  int deformable = 0;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc1(SchemaCount(SceneDocument(scene), "bodies"), &scene->bodies));
+  for (int i = 0; i < SchemaCount(SceneDocument(scene), "bodies"); i++) {
+    SceneBody *body = &scene->bodies[i];
+
+    PetscCall(ScenePath(&body->path, "bodies", i));
+    PetscCall(SceneReadBody(scene, body));
+    if (SceneFindBody(scene, body->name, body->rigid))
+      SceneRefuse(scene, body->path, body->rigid ? "surface" : "volume", "is a body already; allowed: once", body->name);
+    scene->n_bodies++;
+    deformable += !body->rigid;
+  }
+  if (!deformable) SceneRefuse(scene, "bodies", "", "has only rigid tools; allowed: at least one volume with material", NULL);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static void SceneRefuseRigid(Scene scene, const char *path, const char *key, const char *surface)
+{
+  if (surface && SceneFindBody(scene, surface, 1))
+    SceneRefuse(scene, path, key, "is a rigid tool, moved by its own motion; allowed: a surface of a deformable body", surface);
+}
+
+static PetscErrorCode SceneReadSupports(Scene scene)
+{
+  PetscFunctionBeginUser;
+  scene->n_supports = SchemaCount(SceneDocument(scene), "supports");
+  PetscCall(PetscCalloc1(scene->n_supports, &scene->supports));
+  for (int i = 0; i < scene->n_supports; i++) {
+    SceneSupport *support = &scene->supports[i];
+    int           held    = 0;
+
+    PetscCall(ScenePath(&support->path, "supports", i));
+    PetscCall(SceneReadText(scene, support->path, "surface", &support->surface));
+    SceneRefuseRigid(scene, support->path, "surface", support->surface);
+    for (int k = 0; k < 3; k++) {
+      if (!SceneHas(scene, support->path, Displacements[k])) continue;
+      if (SchemaReal(SceneDocument(scene), "%s.%s", support->path, Displacements[k]) != 0)
+        SceneRefuse(scene, support->path, Displacements[k], "a support holds at 0; allowed: 0 (an imposed displacement is a load, under loads:)", NULL);
+      support->fixed[k] = 1;
+      held++;
+    }
+    if (!held) SceneRefuse(scene, support->path, "", "holds nothing; allowed: at least one of ux: 0, uy: 0, uz: 0 (3D)", NULL);
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode SceneReadLoad(Scene scene, SceneLoad *load)
+{
+  static const char *const Kinds[] = {"displacement", "pressure", "traction", "body_force"};
+  int                      kinds   = 0;
+  const char              *region;
+
+  PetscFunctionBeginUser;
+  for (int k = 0; k < 3; k++) load->has[k] = SceneHas(scene, load->path, Displacements[k]);
+  for (int kind = LOAD_DISPLACEMENT; kind <= LOAD_BODY_FORCE; kind++) {
+    if (kind == LOAD_DISPLACEMENT ? !(load->has[0] || load->has[1] || load->has[2]) : !SceneHas(scene, load->path, Kinds[kind])) continue;
+    load->kind = (LoadKind)kind;
+    kinds++;
+  }
+  if (kinds != 1)
+    SceneRefuse(scene, load->path, "", "allowed: exactly one of displacement (ux, uy, uz), pressure, traction, body_force",
+                kinds ? "has more than one kind;" : "has no kind;");
+  region = load->kind == LOAD_BODY_FORCE ? "volume" : "surface";
+  if (!SceneHas(scene, load->path, region)) SceneRefuse(scene, load->path, region, Kinds[load->kind], "is missing; allowed: where it acts, for a");
+  if (SceneHas(scene, load->path, "surface") && SceneHas(scene, load->path, "volume"))
+    SceneRefuse(scene, load->path, load->kind == LOAD_BODY_FORCE ? "surface" : "volume", region, "has no place here; allowed: only");
+  PetscCall(SceneReadText(scene, load->path, region, &load->region));
+  if (load->kind == LOAD_BODY_FORCE && !SceneFindBody(scene, load->region, 0))
+    SceneRefuse(scene, load->path, region, "is no deformable body; allowed: a volume under bodies:", load->region);
+  if (load->kind != LOAD_BODY_FORCE) SceneRefuseRigid(scene, load->path, region, load->region);
+  load->follower = SchemaBoolean(SceneDocument(scene), "%s.follower", load->path);
+  if (load->follower && load->kind != LOAD_PRESSURE)
+    SceneRefuse(scene, load->path, "follower", "only a pressure follows the face; allowed: with pressure", NULL);
+  if (load->kind == LOAD_PRESSURE)
+    load->value[0] = SchemaReal(SceneDocument(scene), "%s.pressure", load->path);
+  else if (load->kind != LOAD_DISPLACEMENT)
+    (void)SceneReals(scene, load->path, Kinds[load->kind], load->value);
+  for (int k = 0; k < 3; k++) {
+    if (load->has[k]) load->value[k] = SchemaReal(SceneDocument(scene), "%s.%s", load->path, Displacements[k]);
+  }
+  PetscCall(SceneReadHistory(scene, load->path, &load->history));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode SceneReadLoads(Scene scene)
+{
+  PetscFunctionBeginUser;
+  scene->n_loads = SchemaCount(SceneDocument(scene), "loads");
+  PetscCall(PetscCalloc1(scene->n_loads, &scene->loads));
+  for (int i = 0; i < scene->n_loads; i++) {
+    PetscCall(ScenePath(&scene->loads[i].path, "loads", i));
+    PetscCall(SceneReadLoad(scene, &scene->loads[i]));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* plane, cylinder or sphere: which of them the master's map names */
+static PetscErrorCode SceneReadAnalytic(Scene scene, SceneContact *contact)
+{
+  static const char *const shapes[] = {"plane", "cylinder", "sphere"};
+  char                     tool[PATH_LENGTH];
+  double                   length = 0;
+  int                      count  = 0;
+
+  PetscFunctionBeginUser;
+  for (int k = 0; k < 3; k++) {
+    snprintf(tool, sizeof tool, "master.%s", shapes[k]);
+    if (!SceneHas(scene, contact->path, tool)) continue;
+    contact->analytic.shape = (AnalyticShape)k;
+    count++;
+  }
+  if (count != 1)
+    SceneRefuse(scene, contact->path, "master",
+                count ? "names several shapes; allowed: a surface, or one of plane, cylinder, sphere"
+                      : "is empty; allowed: a surface, or one of plane, cylinder, sphere",
+                NULL);
+  snprintf(tool, sizeof tool, "%s.master.%s", contact->path, shapes[contact->analytic.shape]);
+  (void)SceneReals(scene, tool, contact->analytic.shape == ANALYTIC_SPHERE ? "centre" : "point", contact->motion.point);
+  contact->analytic.axis[scene->geometry == GEOMETRY_AXISYMMETRIC ? 1 : 2] = 1; /* a cylinder in 2D: a circle; axisymmetric: about the axis */
+  if (contact->analytic.shape == ANALYTIC_PLANE || scene->dim == 3) {
+    contact->analytic.axis[1] = contact->analytic.axis[2] = 0;
+    (void)SceneReals(scene, tool, contact->analytic.shape == ANALYTIC_PLANE ? "normal" : "axis", contact->analytic.axis);
+  }
+  if (contact->analytic.shape != ANALYTIC_PLANE) {
+    contact->analytic.radius = SchemaReal(SceneDocument(scene), "%s.radius", tool);
+    contact->analytic.inside = SchemaChoice(SceneDocument(scene), "%s.side", tool);
+  }
+  for (int d = 0; d < 3; d++) length += contact->analytic.axis[d] * contact->analytic.axis[d];
+  if (contact->analytic.shape != ANALYTIC_SPHERE && length == 0)
+    SceneRefuse(scene, tool, contact->analytic.shape == ANALYTIC_PLANE ? "normal" : "axis", "has no direction; allowed: any vector but zero", NULL);
+  if (scene->geometry == GEOMETRY_AXISYMMETRIC && contact->analytic.shape != ANALYTIC_PLANE && contact->motion.point[0] != 0)
+    SceneRefuse(scene, tool, contact->analytic.shape == ANALYTIC_SPHERE ? "centre" : "point",
+                "is off the axis, where it would be no body of revolution of that name; allowed: x = 0", NULL);
+  if (scene->geometry == GEOMETRY_AXISYMMETRIC && contact->analytic.shape == ANALYTIC_PLANE && contact->analytic.axis[0] != 0)
+    SceneRefuse(scene, tool, "normal", "is oblique to the axis: that is a cone, not a plane; allowed: [0, y]", NULL);
+  PetscCall(SceneReadMotion(scene, tool, &contact->motion));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* How pressures carry over as multipliers; g_max and its unit are those of the adjustment. */
+static void SceneReadAugmentation(Scene scene, SceneContact *contact)
+{
+  static const char *const needs[] = {"penalty.g_max", "penalty.unit"};
+
+  contact->augment     = SchemaBoolean(SceneDocument(scene), "%s.penalty.augment", contact->path);
+  contact->max_updates = SchemaInteger(SceneDocument(scene), "%s.penalty.max_updates", contact->path);
+  if (contact->augment && contact->adjust)
+    SceneRefuse(scene, contact->path, "penalty.augment", "is true beside adjust: true; allowed: one of them (augment keeps the penalty, adjust changes it)",
+                NULL);
+  for (size_t k = 0; contact->augment && k < PETSC_STATIC_ARRAY_LENGTH(needs); k++)
+    if (!SceneHas(scene, contact->path, needs[k])) SceneRefuse(scene, contact->path, needs[k], "is missing; allowed with augment: g_max and unit", NULL);
+}
+
+/* How the penalty follows the penetration */
+static void SceneReadAdjustment(Scene scene, SceneContact *contact)
+{
+  static const char *const needs[] = {"penalty.g_min", "penalty.g_max", "penalty.unit"};
+
+  contact->adjust = SchemaBoolean(SceneDocument(scene), "%s.penalty.adjust", contact->path);
+  for (size_t k = 0; contact->adjust && k < PETSC_STATIC_ARRAY_LENGTH(needs); k++)
+    if (!SceneHas(scene, contact->path, needs[k])) SceneRefuse(scene, contact->path, needs[k], "is missing; allowed with adjust: g_min, g_max and unit", NULL);
+  contact->adjust_converged = SchemaChoice(SceneDocument(scene), "%s.penalty.when", contact->path);
+  contact->clamp            = SchemaReal(SceneDocument(scene), "%s.penalty.clamp", contact->path);
+  contact->range            = SchemaReal(SceneDocument(scene), "%s.penalty.range", contact->path);
+  if (SceneHas(scene, contact->path, "penalty.unit")) contact->window_in_spacings = SchemaChoice(SceneDocument(scene), "%s.penalty.unit", contact->path);
+  if (SceneHas(scene, contact->path, "penalty.g_min")) contact->g_min = SchemaReal(SceneDocument(scene), "%s.penalty.g_min", contact->path);
+  if (SceneHas(scene, contact->path, "penalty.g_max")) contact->g_max = SchemaReal(SceneDocument(scene), "%s.penalty.g_max", contact->path);
+  if (contact->g_min > 0 && contact->g_max > 0 && contact->g_min >= contact->g_max)
+    SceneRefuse(scene, contact->path, "penalty.g_min", "is not below g_max; allowed: g_min < g_max", NULL);
+}
+
+static PetscErrorCode SceneReadContact(Scene scene, SceneContact *contact)
+{
+  Node symmetry = SceneNode(scene, contact->path, "symmetry");
+
+  PetscFunctionBeginUser;
+  PetscCall(SceneReadText(scene, contact->path, "name", &contact->name));
+  PetscCall(SceneReadText(scene, contact->path, "slave", &contact->slave));
+  PetscCall(SceneReadText(scene, contact->path, "master", &contact->master));
+  if (!contact->master) PetscCall(SceneReadAnalytic(scene, contact));
+  SceneRefuseRigid(scene, contact->path, "slave", contact->slave);
+  if (contact->master && !strcmp(contact->slave, contact->master))
+    SceneRefuse(scene, contact->path, "master", "is the slave too; allowed: another surface (self contact is not available yet)", contact->master);
+  contact->smoother            = (SmootherKind)SchemaChoice(SceneDocument(scene), "%s.smoother", contact->path);
+  contact->formulation         = (ContactFormulation)SchemaChoice(SceneDocument(scene), "%s.formulation", contact->path);
+  contact->live_offset         = SchemaChoice(SceneDocument(scene), "%s.offset", contact->path);
+  contact->degree              = SchemaChoice(SceneDocument(scene), "%s.degree", contact->path) == 0 ? 4 : 2;
+  contact->support             = SceneHas(scene, contact->path, "support") ? SchemaReal(SceneDocument(scene), "%s.support", contact->path) : 0;
+  contact->weight              = SceneHas(scene, contact->path, "weight") ? SchemaReal(SceneDocument(scene), "%s.weight", contact->path) : 0;
+  contact->global_frame        = SchemaChoice(SceneDocument(scene), "%s.frame", contact->path);
+  contact->diffuse_derivatives = SchemaChoice(SceneDocument(scene), "%s.derivatives", contact->path);
+  contact->initial_overlap     = (InitialOverlap)SchemaChoice(SceneDocument(scene), "%s.initial_overlap", contact->path);
+  contact->stabilise           = SchemaBoolean(SceneDocument(scene), "%s.stabilise", contact->path);
+  contact->feature_angle       = SchemaReal(SceneDocument(scene), "%s.feature_angle", contact->path);
+  contact->penalty_auto        = SchemaChoice(SceneDocument(scene), "%s.penalty.initial", contact->path) == 0;
+  contact->penalty             = contact->penalty_auto ? 0 : SchemaReal(SceneDocument(scene), "%s.penalty.initial", contact->path);
+  contact->penalty_scale       = SchemaReal(SceneDocument(scene), "%s.penalty.scale", contact->path);
+  SceneReadAdjustment(scene, contact);
+  SceneReadAugmentation(scene, contact);
+  contact->n_symmetry = symmetry ? symmetry->n : 0;
+  PetscCall(PetscCalloc1(contact->n_symmetry, &contact->symmetry));
+  for (int i = 0; i < contact->n_symmetry; i++) PetscCall(PetscStrallocpy(symmetry->child[i]->text, &contact->symmetry[i]));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode SceneReadContacts(Scene scene)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc1(SchemaCount(SceneDocument(scene), "contact"), &scene->contacts));
+  for (int i = 0; i < SchemaCount(SceneDocument(scene), "contact"); i++) {
+    PetscCall(ScenePath(&scene->contacts[i].path, "contact", i));
+    PetscCall(SceneReadContact(scene, &scene->contacts[i]));
+    for (int j = 0; j < i; j++) {
+      if (!strcmp(scene->contacts[i].name, scene->contacts[j].name))
+        SceneRefuse(scene, scene->contacts[i].path, "name", "names another pair already; allowed: names used once", scene->contacts[i].name);
+    }
+    scene->n_contacts++;
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode SceneReadStepping(Scene scene)
+{
+  Document *document = SceneDocument(scene);
+
+  PetscFunctionBeginUser;
+  if (SchemaHas(document, "stepping.N_c") && SchemaHas(document, "stepping.N_c_fraction"))
+    SceneRefuse(scene, "stepping", "N_c_fraction", "stands beside N_c; allowed: one of them", NULL);
+  scene->stepping.control = (StepControlKind)SchemaChoice(document, "stepping.control");
+  if (SchemaHas(document, "stepping.N_c")) scene->stepping.N_c = SchemaInteger(document, "stepping.N_c");
+  if (SchemaHas(document, "stepping.N_c_fraction")) scene->stepping.N_c_fraction = SchemaReal(document, "stepping.N_c_fraction");
+  if (scene->stepping.control == STEP_CONTACT && !scene->stepping.N_c && !(scene->stepping.N_c_fraction > 0))
+    SceneRefuse(scene, "stepping", "control", "contact needs N_c (nodes) or N_c_fraction (of the slave area); allowed: one of them", NULL);
+  scene->stepping.predict_linearly = SchemaChoice(document, "stepping.prediction");
+  scene->stepping.initial          = SchemaReal(document, "stepping.initial");
+  scene->stepping.dt_min           = SchemaReal(document, "stepping.dt_min");
+  scene->stepping.dt_max           = SchemaReal(document, "stepping.dt_max");
+  scene->stepping.growth           = SchemaReal(document, "stepping.growth");
+  if (scene->stepping.dt_min > scene->stepping.dt_max) SceneRefuse(scene, "stepping", "dt_min", "is above dt_max; allowed: dt_min <= initial <= dt_max", NULL);
+  if (SchemaHas(document, "stepping.initial") && (scene->stepping.initial < scene->stepping.dt_min || scene->stepping.initial > scene->stepping.dt_max))
+    SceneRefuse(scene, "stepping", "initial", "is not between dt_min and dt_max; allowed: dt_min <= initial <= dt_max", NULL);
+  scene->stepping.initial = PetscMin(PetscMax(scene->stepping.initial, scene->stepping.dt_min), scene->stepping.dt_max);
+  scene->stepping.n_at    = SchemaCount(document, "stepping.at");
+  PetscCall(PetscCalloc1(scene->stepping.n_at, &scene->stepping.at));
+  (void)SceneReals(scene, "stepping", "at", scene->stepping.at);
+  scene->solver.type           = (SolverType)SchemaChoice(document, "solver.type");
+  scene->solver.tolerance      = SchemaReal(document, "solver.tolerance");
+  scene->solver.max_iterations = SchemaInteger(document, "solver.max_iterations");
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode SceneReadOutput(Scene scene)
+{
+  const char *const names[] = {"displacement", "stress", "contact"};
+  int *const        flags[] = {&scene->output.displacement, &scene->output.stress, &scene->output.contact};
+  Node              fields  = NodeFind(SceneDocument(scene)->root, "output.fields");
+
+  PetscFunctionBeginUser;
+  scene->output.every      = SchemaInteger(SceneDocument(scene), "output.every");
+  scene->output.checkpoint = SchemaInteger(SceneDocument(scene), "output.checkpoint");
+  for (int k = 0; k < 3; k++) {
+    *flags[k] = !fields;
+    for (int i = 0; fields && i < fields->n; i++) *flags[k] |= !strcmp(fields->child[i]->text, names[k]);
+  }
+  PetscCall(SceneReadPairs(scene, "petsc", &scene->n_petsc, &scene->petsc));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* ---- the whole ---- */
+
+static PetscErrorCode SceneReadNames(Scene scene, const char *file)
+{
+  const char *slash = strrchr(file, '/'), *stem = slash ? slash + 1 : file;
+  char       *dot;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscStrallocpy(file, &scene->file));
+  PetscCall(PetscStrallocpy(slash ? file : ".", &scene->directory));
+  if (slash) scene->directory[PetscMax(1, slash - file)] = 0;
+  PetscCall(PetscStrallocpy(SchemaHas(SceneDocument(scene), "name") ? SchemaText(SceneDocument(scene), "name") : stem, &scene->name));
+  dot = strrchr(scene->name, '.');
+  if (!SchemaHas(SceneDocument(scene), "name") && dot && dot > scene->name) *dot = 0;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The scene of a document, which is its own from now on. */
+static PetscErrorCode SceneCreate(Document *document, const char *file, Scene *scene)
+{
+  PetscFunctionBeginUser;
+  SchemaCheck(document);
+  PetscCall(PetscNew(scene));
+  (*scene)->document = document;
+  PetscCall(SceneReadNames(*scene, file));
+  PetscCall(DocumentText(document, &(*scene)->text));
+  (*scene)->geometry   = (Geometry)SchemaChoice(document, "geometry");
+  (*scene)->kinematics = (Kinematics)SchemaChoice(document, "kinematics");
+  (*scene)->dim        = document->dim;
+  PetscCall(SceneReadMesh(*scene));
+  PetscCall(SceneReadBodies(*scene));
+  PetscCall(SceneReadSupports(*scene));
+  PetscCall(SceneReadLoads(*scene));
+  PetscCall(SceneReadContacts(*scene));
+  PetscCall(SceneReadStepping(*scene));
+  PetscCall(SceneReadProbes(*scene));
+  PetscCall(SceneReadOutput(*scene));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* SceneRead - reads, edits, validates and converts a scene file.
+
+   Collective. file: as the process can open it on rank 0. set[n_set]: KEY=VALUE edits, in order, the last of a key wins. scene: free with
+   SceneDestroy(). Refuses (exit status 1) the first mistake; see schemakeys.c for the keys. */
+PetscErrorCode SceneRead(MPI_Comm comm, const char *file, int n_set, char *const *set, Scene *scene)
+{
+  Document *document;
+
+  PetscFunctionBeginUser;
+  PetscCall(DocumentRead(comm, file, n_set, set, &document));
+  PetscCall(SceneCreate(document, file, scene));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* What may be another in the rest of a run: parts of a scene that its state does not depend on. */
+static const char *const changeable[] = {"output", "solver", "stepping"};
+
+/* Is the first component of a path, which `end` follows, one of those? */
+static PetscBool IsChangeable(const char *path, const char *end)
+{
+  for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(changeable); i++) {
+    const size_t n = strlen(changeable[i]);
+
+    if (!strncmp(path, changeable[i], n) && path[n] && strchr(end, path[n])) return PETSC_TRUE;
+  }
+  return PETSC_FALSE;
+}
+
+/* The next line of a text that belongs to the problem: the others are parts that may change, a key and what stands below it. */
+static const char *ProblemLine(const char *text)
+{
+  PetscBool skips = PETSC_FALSE;
+
+  while (*text) {
+    if (*text != ' ' && *text != '-') skips = IsChangeable(text, ":");
+    if (!skips) return text;
+    text += strcspn(text, "\n");
+    text += *text == '\n';
+  }
+  return text;
+}
+
+/* SceneSameProblem - Not collective. */
+PetscBool SceneSameProblem(const char *a, const char *b)
+{
+  for (a = ProblemLine(a), b = ProblemLine(b); *a && *b; a = ProblemLine(a), b = ProblemLine(b)) {
+    const size_t n = strcspn(a, "\n"), m = strcspn(b, "\n");
+
+    if (n != m || strncmp(a, b, n)) return PETSC_FALSE;
+    a += n + (a[n] == '\n');
+    b += m + (b[m] == '\n');
+  }
+  return !*a && !*b ? PETSC_TRUE : PETSC_FALSE;
+}
+
+/* SceneReadAgain - as SceneRead(), from the text that a run has kept. Collective. Refuses (exit status 1) edits that make it another problem; those that
+   change nothing are fine, so that a command may be given again with the edits it began with. */
+PetscErrorCode SceneReadAgain(MPI_Comm comm, const char *file, const char *where, const char *text, int n_set, char *const *set, Scene *scene)
+{
+  Document *document;
+  char     *edited;
+
+  PetscFunctionBeginUser;
+  PetscCall(DocumentReadText(comm, where, text, n_set, set, &document));
+  PetscCall(DocumentText(document, &edited));
+  for (int i = 0; i < n_set && !SceneSameProblem(text, edited); i++) {
+    if (!IsChangeable(set[i], ".="))
+      PetscCall(RefuseInput(comm, "-set %s: a restart goes on with the scene as it is; allowed: keys of output, solver and stepping", set[i]));
+  }
+  PetscCall(PetscFree(edited));
+  PetscCall(SceneCreate(document, file, scene));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode PairsDestroy(int n, ScenePair **pairs)
+{
+  PetscFunctionBeginUser;
+  for (int i = 0; i < n; i++) {
+    PetscCall(PetscFree((*pairs)[i].key));
+    PetscCall(PetscFree((*pairs)[i].value));
+  }
+  PetscCall(PetscFree(*pairs));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode SceneDestroyBodies(Scene scene)
+{
+  PetscFunctionBeginUser;
+  for (int i = 0; i < scene->n_bodies; i++) {
+    SceneBody *body = &scene->bodies[i];
+
+    PetscCall(MotionFree(&body->motion));
+    PetscCall(PetscFree(body->path));
+    PetscCall(PetscFree(body->name));
+  }
+  PetscCall(PetscFree(scene->bodies));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode SceneDestroyContacts(Scene scene)
+{
+  PetscFunctionBeginUser;
+  for (int i = 0; i < scene->n_contacts; i++) {
+    SceneContact *contact = &scene->contacts[i];
+
+    for (int k = 0; k < contact->n_symmetry; k++) PetscCall(PetscFree(contact->symmetry[k]));
+    PetscCall(PetscFree(contact->symmetry));
+    PetscCall(PetscFree(contact->path));
+    PetscCall(PetscFree(contact->name));
+    PetscCall(PetscFree(contact->slave));
+    PetscCall(PetscFree(contact->master));
+    PetscCall(MotionFree(&contact->motion));
+  }
+  PetscCall(PetscFree(scene->contacts));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* SceneDestroy - frees a scene. Not collective. */
+PetscErrorCode SceneDestroy(Scene *scene)
+{
+  Scene s = *scene;
+
+  PetscFunctionBeginUser;
+  if (!s) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(SceneDestroyBodies(s));
+  PetscCall(SceneDestroyContacts(s));
+  for (int i = 0; i < s->n_supports; i++) {
+    PetscCall(PetscFree(s->supports[i].path));
+    PetscCall(PetscFree(s->supports[i].surface));
+  }
+  for (int i = 0; i < s->n_loads; i++) {
+    PetscCall(PetscFree2(s->loads[i].history.t, s->loads[i].history.v));
+    PetscCall(PetscFree(s->loads[i].path));
+    PetscCall(PetscFree(s->loads[i].region));
+  }
+  for (int i = 0; i < s->n_probes; i++) {
+    PetscCall(PetscFree(s->probes[i].path));
+    PetscCall(PetscFree(s->probes[i].name));
+    PetscCall(PetscFree(s->probes[i].target));
+    PetscCall(PetscFree(s->probes[i].body));
+  }
+  PetscCall(PetscFree(s->supports));
+  PetscCall(PetscFree(s->loads));
+  PetscCall(PetscFree(s->probes));
+  PetscCall(PetscFree(s->stepping.at));
+  PetscCall(PairsDestroy(s->n_parameters, &s->parameters));
+  PetscCall(PairsDestroy(s->n_petsc, &s->petsc));
+  PetscCall(PetscFree(s->file));
+  PetscCall(PetscFree(s->directory));
+  PetscCall(PetscFree(s->text));
+  PetscCall(PetscFree(s->name));
+  PetscCall(PetscFree(s->mesh_file));
+  PetscCall(DocumentDestroy(SceneDocument(s)));
+  PetscCall(PetscFree(*scene));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* SceneWhere - "FILE:LINE: PATH.KEY" for the start of a message about the value at path.key; the line of its nearest ancestor if the file
+   lacks it, "-set ..." if it came from there.
+
+   Not collective. path: of a scene's part ("contact.0"), or ""; key: below it, or "". The text is valid until the next call. */
+const char *SceneWhere(Scene scene, const char *path, const char *key)
+{
+  char text[PATH_LENGTH];
+
+  PathJoin(text, path ? path : "", key ? key : "");
+  if (!key || !*key) snprintf(text, sizeof text, "%s", path ? path : "");
+  return DocumentWhere(SceneDocument(scene), text);
+}
+
+/* SceneReference - prints the scene reference: every key with type, range, unit, default and help. Not collective: for one rank. */
+PetscErrorCode SceneReference(FILE *file)
+{
+  PetscFunctionBeginUser;
+  SchemaReference(file);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscBool MotionBreaks(const Motion *motion, PetscReal t)
+{
+  for (int m = 0; m < motion->n; m++)
+    if (HistoryBreaks(&motion->components[m].history, t)) return PETSC_TRUE;
+  return PETSC_FALSE;
+}
+
+/* SceneBreaks - whether some load, imposed displacement or motion changes its rate at load parameter t: what went before says nothing of what comes.
+   Not collective. */
+PetscBool SceneBreaks(Scene scene, PetscReal t)
+{
+  for (int l = 0; l < scene->n_loads; l++)
+    if (HistoryBreaks(&scene->loads[l].history, t)) return PETSC_TRUE;
+  for (int b = 0; b < scene->n_bodies; b++)
+    if (MotionBreaks(&scene->bodies[b].motion, t)) return PETSC_TRUE;
+  for (int c = 0; c < scene->n_contacts; c++)
+    if (MotionBreaks(&scene->contacts[c].motion, t)) return PETSC_TRUE;
+  return PETSC_FALSE;
+}

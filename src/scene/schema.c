@@ -1,0 +1,486 @@
+#include "schema.h"
+#include "schemakeys.h"
+#include "base/refusal.h"
+#include <errno.h>
+#include <math.h>
+#include <stdarg.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* ---- what a key allows, in words ---- */
+
+static void Append(char *text, size_t size, const char *apart, const char *more)
+{
+  const size_t n = strlen(text);
+
+  snprintf(text + n, size - n, "%s%s", n ? apart : "", more);
+}
+
+static void SchemaAllowed(const SchemaKey *key, char *text, size_t size)
+{
+  static const struct {
+    int         type;
+    const char *words;
+  } Types[] = {
+    {REAL,    "a number"                                                           },
+    {INTEGER, "an integer"                                                         },
+    {BOOLEAN, "true | false"                                                       },
+    {TEXT,    "a name"                                                             },
+    {NAME,    "a name (letters, digits, _ - .)"                                    },
+    {POINT,   "[x, y, z] (2D: [x, y])"                                             },
+    {POINTS,  "[[x, y, z], [x, y, z]] (2D: [[x, y], [x, y]])"                      },
+    {REALS,   "an increasing list of numbers"                                      },
+    {TEXTS,   "a list of names"                                                    },
+    {CHOICES, "a list of"                                                          },
+    {HISTORY, "[[t, factor], ...], at least two, t increasing from 0 within [0, 1]"},
+    {MAP,     "a map"                                                              },
+    {LIST,    "a list of maps"                                                     },
+    {FREE,    "a map of plain values"                                              },
+  };
+
+  text[0] = 0;
+  if (key->type & CHOICE) Append(text, size, " | ", key->values);
+  for (size_t i = 0; i < sizeof Types / sizeof Types[0]; i++) {
+    if (key->type & Types[i].type) Append(text, size, " | ", Types[i].words);
+  }
+  if (key->type & CHOICES) Append(text, size, " ", key->values);
+  if (key->range) Append(text, size, key->type & LIST ? ", entries in " : " in ", key->range);
+  if (key->unit) Append(text, size, ", ", key->unit);
+}
+
+static void SchemaRefuse(Document *document, const SchemaKey *key, Node node, const char *path, const char *wrong) __attribute__((noreturn));
+static void SchemaRefuse(Document *document, const SchemaKey *key, Node node, const char *path, const char *wrong)
+{
+  static const char *const Kinds[] = {"", "this list ", "this map "};
+  char                     allowed[400];
+
+  SchemaAllowed(key, allowed, sizeof allowed);
+  if (node->kind == NODE_SCALAR && node->plain && !*node->text) DocumentRefuseNode(document, node, path, "has no value; allowed: %s", allowed);
+  if (node->kind == NODE_SCALAR)
+    DocumentRefuseNode(document, node, path, "%s%.100s%s %s; allowed: %s", node->plain ? "" : "\"", node->text, node->plain ? "" : "\"", wrong, allowed);
+  DocumentRefuseNode(document, node, path, "%s%s; allowed: %s", Kinds[node->kind], wrong, allowed);
+}
+
+/* ---- checks of one value: NULL, or what is wrong with it ---- */
+
+static const char WrongType[] = "has the wrong type", OutOfRange[] = "is out of range";
+
+static int RangeHolds(const char *range, double value)
+{
+  char  *end;
+  double low, high;
+
+  if (!range) return 1;
+  low  = strtod(range + 1, &end);
+  high = strtod(end + 1, &end);
+  return (range[0] == '[' ? value >= low : value > low) && (*end == ']' ? value <= high : value < high);
+}
+
+static const char *CheckReal(Node node, const char *range)
+{
+  double value;
+
+  if (!NodeReal(node, &value)) return WrongType;
+  return RangeHolds(range, value) ? NULL : OutOfRange;
+}
+
+static const char *CheckInteger(Node node, const char *range)
+{
+  long value;
+
+  if (!NodeInteger(node, &value)) return WrongType;
+  return RangeHolds(range, (double)value) && value == (int)value ? NULL : OutOfRange;
+}
+
+static const char *CheckName(Node node)
+{
+  const char *text = node->text;
+
+  return *text && *text != '.' && *text != '-' && !text[strspn(text, "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_-.")] ? NULL
+                                                                                                                                           : "is no name";
+}
+
+static const char *CheckText(Node node)
+{
+  const int null = node->plain && (!*node->text || !strcmp(node->text, "~") || !strcmp(node->text, "null"));
+
+  if (null || !*node->text) return "is empty";
+  for (const char *c = node->text; *c; c++) {
+    if ((unsigned char)*c < ' ') return "has a control character";
+  }
+  return NULL;
+}
+
+/* The reason of the last type that does not fit, unless one does. */
+static const char *CheckScalar(const SchemaKey *key, int type, Node node)
+{
+  const char *wrong = WrongType;
+  int         truth;
+
+  if (type & CHOICE && WordFind(key->values, " |", node->text, strlen(node->text)) >= 0) return NULL;
+  if (type & CHOICE) wrong = "is not allowed";
+  if (type & BOOLEAN && NodeBoolean(node, &truth)) return NULL;
+  if (type & REAL) wrong = CheckReal(node, key->range);
+  if (type & INTEGER) wrong = CheckInteger(node, key->range);
+  if (type & NAME) wrong = CheckName(node);
+  if (type & TEXT) wrong = CheckText(node);
+  return wrong;
+}
+
+static const char *CheckPoint(Node node, const char *range)
+{
+  const char *wrong;
+
+  if (node->kind != NODE_LIST || node->n < 2 || node->n > 3) return WrongType;
+  for (int i = 0; i < node->n; i++) {
+    if ((wrong = CheckReal(node->child[i], range))) return wrong;
+  }
+  return NULL;
+}
+
+static const char *CheckHistory(Node node)
+{
+  double t, before = 0, factor;
+
+  if (node->n < 2) return "has less than two points";
+  for (int i = 0; i < node->n; i++) {
+    Node pair = node->child[i];
+
+    if (pair->kind != NODE_LIST || pair->n != 2 || !NodeReal(pair->child[0], &t) || !NodeReal(pair->child[1], &factor)) return WrongType;
+    if (t < 0 || t > 1) return "has a t outside [0, 1]";
+    if (!i && t != 0) return "does not start at t = 0";
+    if (i && t <= before) return "is not increasing in t";
+    before = t;
+  }
+  return NULL;
+}
+
+static const char *CheckEntries(const SchemaKey *key, Node node)
+{
+  const int   type = key->type & REALS ? REAL : key->type & TEXTS ? TEXT : CHOICE;
+  const char *wrong;
+  double      value, before = -HUGE_VAL;
+
+  for (int i = 0; i < node->n; i++) {
+    if (node->child[i]->kind != NODE_SCALAR) return WrongType;
+    if ((wrong = CheckScalar(key, type, node->child[i]))) return wrong;
+    if (key->type & (TEXTS | CHOICES)) {
+      for (int j = 0; j < i; j++) {
+        if (!strcmp(node->child[i]->text, node->child[j]->text)) return "names something twice";
+      }
+    } else if (NodeReal(node->child[i], &value)) {
+      if (value <= before) return "is not increasing";
+      before = value;
+    }
+  }
+  return NULL;
+}
+
+/* A list of plain values, pairs or points; lists of maps are SchemaCheckList()'s. */
+static const char *CheckList(const SchemaKey *key, Node node)
+{
+  if (key->type & POINT) return CheckPoint(node, key->range);
+  if (key->type & POINTS) return node->n == 2 && !CheckPoint(node->child[0], NULL) && !CheckPoint(node->child[1], NULL) ? NULL : WrongType;
+  if (key->type & HISTORY) return CheckHistory(node);
+  if (key->type & (REALS | TEXTS | CHOICES)) return CheckEntries(key, node);
+  return WrongType;
+}
+
+/* ---- the walk over the document ---- */
+
+/* Edit distance with a bounded row: keys longer than that are not near to any of ours. */
+static int WordDistance(const char *a, size_t na, const char *b, size_t nb)
+{
+  enum { LONGEST = 40 };
+  int row[LONGEST + 1];
+
+  if (na > LONGEST || nb > LONGEST) return LONGEST;
+  for (size_t j = 0; j <= nb; j++) row[j] = (int)j;
+  for (size_t i = 1; i <= na; i++) {
+    int diagonal = row[0];
+
+    row[0] = (int)i;
+    for (size_t j = 1; j <= nb; j++) {
+      const int change = diagonal + (a[i - 1] != b[j - 1]);
+      const int insert = 1 + (row[j] < row[j - 1] ? row[j] : row[j - 1]);
+
+      diagonal = row[j];
+      row[j]   = change < insert ? change : insert;
+    }
+  }
+  return row[nb];
+}
+
+static void SchemaRefuseUnknown(Document *document, Node node, const char *parent, const char *path, const char *unknown) __attribute__((noreturn));
+static void SchemaRefuseUnknown(Document *document, Node node, const char *parent, const char *path, const char *unknown)
+{
+  char        allowed[600] = "", word[80];
+  const char *nearest      = "";
+  int         least = 1000, length = 0;
+
+  for (int i = 0; i < SchemaKeysCount; i++) {
+    if (!SchemaKeyIsChild(&SchemaKeys[i], parent)) continue;
+    for (const char *key = SchemaKeyName(&SchemaKeys[i]); *key;) {
+      const size_t n = strcspn(key, "|");
+      const int    d = WordDistance(unknown, strlen(unknown), key, n);
+
+      snprintf(word, sizeof word, "%.*s", (int)n, key);
+      Append(allowed, sizeof allowed, ", ", word);
+      if (d < least) {
+        least   = d;
+        nearest = key;
+        length  = (int)n;
+      }
+      key += n + (key[n] == '|');
+    }
+  }
+  DocumentRefuseNode(document, node, path, "unknown key, did you mean %.*s? allowed: %s", length, nearest, allowed);
+}
+
+static void SchemaRefuseMissing(Document *document, const SchemaKey *key, Node node, const char *path)
+{
+  char allowed[400], missing[PATH_LENGTH];
+
+  SchemaAllowed(key, allowed, sizeof allowed);
+  PathJoin(missing, path, SchemaKeyName(key));
+  DocumentRefuseNode(document, node, missing, "is missing; allowed: %s", allowed);
+}
+
+static void SchemaCheckFree(Document *document, Node node, const char *path)
+{
+  char below[PATH_LENGTH];
+
+  for (int i = 0; i < node->n; i++) {
+    PathJoin(below, path, node->key[i]);
+    if (!*node->key[i] || strpbrk(node->key[i], " \t\n="))
+      DocumentRefuseNode(document, node->child[i], below, "is no name of a parameter or option; allowed: no blanks, no =");
+    if (node->child[i]->kind != NODE_SCALAR) DocumentRefuseNode(document, node->child[i], below, "has the wrong type; allowed: a number or a text");
+  }
+}
+
+/* Before anything else is said about a map: a misspelt key is not a missing one. */
+static void SchemaCheckKeys(Document *document, Node node, const char *path)
+{
+  char below[PATH_LENGTH];
+
+  for (int i = 0; i < node->n; i++) {
+    PathJoin(below, path, node->key[i]);
+    if (strchr(node->key[i], '.') || !SchemaKeyFind(below)) SchemaRefuseUnknown(document, node->child[i], path, below, node->key[i]);
+  }
+}
+
+typedef void (*NodeVisit)(Document *, const SchemaKey *, Node, const char *path);
+
+static void SchemaWalk(Document *document, Node node, const char *path, NodeVisit visit)
+{
+  const SchemaKey *key = SchemaKeyFind(path);
+  char             below[PATH_LENGTH];
+
+  if (node->kind == NODE_MAP && (!key || key->type & MAP)) SchemaCheckKeys(document, node, path);
+  if (key) visit(document, key, node, path);
+  if (key && !(key->type & (node->kind == NODE_MAP ? MAP : LIST))) return;
+  for (int i = 0; i < node->n; i++) {
+    if (node->kind == NODE_MAP)
+      PathJoin(below, path, node->key[i]);
+    else
+      PathJoinIndex(below, path, i);
+    SchemaWalk(document, node->child[i], below, visit);
+  }
+}
+
+static void SchemaVisitMissing(Document *document, Node node, const char *path)
+{
+  for (int i = 0; i < SchemaKeysCount; i++) {
+    if (!(SchemaKeys[i].flags & REQUIRED) || !SchemaKeyIsChild(&SchemaKeys[i], path) || NodeChild(node, SchemaKeyName(&SchemaKeys[i]))) continue;
+    if (SchemaKeys[i].flags & SOLID && document->dim == 2) continue;
+    SchemaRefuseMissing(document, &SchemaKeys[i], node, path);
+  }
+}
+
+/* Type and range; required keys of a map. */
+static void SchemaVisitValue(Document *document, const SchemaKey *key, Node node, const char *path)
+{
+  const char *wrong = NULL;
+
+  if (node->kind == NODE_MAP) {
+    if (key->type & FREE)
+      SchemaCheckFree(document, node, path);
+    else if (key->type & MAP)
+      SchemaVisitMissing(document, node, path);
+    else
+      wrong = WrongType;
+  } else if (node->kind == NODE_LIST) {
+    if (key->type & LIST)
+      wrong = RangeHolds(key->range, node->n) ? NULL : "is empty";
+    else
+      wrong = CheckList(key, node);
+  } else
+    wrong = CheckScalar(key, key->type, node);
+  if (wrong) SchemaRefuse(document, key, node, path, wrong);
+}
+
+/* Values that call for what a later release brings. */
+static void SchemaVisitAvailable(Document *document, const SchemaKey *key, Node node, const char *path)
+{
+  double value, now;
+  char  *end;
+
+  if (!key->now) return;
+  if (!*key->now) DocumentRefuseNode(document, node, path, "not available yet");
+  if (WordFind(key->now, " |", node->text, strlen(node->text)) >= 0) return;
+  now = strtod(key->now, &end);
+  if (key->type & INTEGER && NodeReal(node, &value) && !*end && value == now) return;
+  DocumentRefuseNode(document, node, path, "%s is not available yet; available: %s", node->text, key->now);
+}
+
+/* A 2D scene has no third direction: no such keys, no such component, points of two coordinates. */
+static void SchemaVisitDimension(Document *document, const SchemaKey *key, Node node, const char *path)
+{
+  static const char Solid[] = "geometry: solid";
+
+  if (document->dim == 2 && key->flags & SOLID) DocumentRefuseNode(document, node, path, "has no meaning in 2D; allowed: only with %s", Solid);
+  if (document->dim == 2 && key->type & CHOICE && node->kind == NODE_SCALAR && !strcmp(node->text, "z"))
+    DocumentRefuseNode(document, node, path, "z has no meaning in 2D; allowed: x | y, z only with %s", Solid);
+  for (int i = 0; node->kind == NODE_LIST && i < (key->type & POINTS ? 2 : key->type & POINT ? 1 : 0); i++) {
+    if ((key->type & POINTS ? node->child[i] : node)->n != document->dim)
+      DocumentRefuseNode(document, node, path, "has not as many coordinates as the scene; allowed: %d numbers", document->dim);
+  }
+}
+
+/* SchemaCheck - validates the document against the table: unknown and missing keys, types and ranges, then what is not available yet, then
+   what a 2D scene cannot have. Collective; refuses the first mistake. Sets document->dim. */
+void SchemaCheck(Document *document)
+{
+  Node geometry;
+
+  if (document->root->kind != NODE_MAP) DocumentRefuse(document, "", "a scene is a map; allowed: KEY: VALUE lines");
+  geometry      = NodeFind(document->root, "geometry");
+  document->dim = geometry && geometry->kind == NODE_SCALAR && strcmp(geometry->text, "solid") ? 2 : 3;
+  SchemaWalk(document, document->root, "", SchemaVisitValue);
+  SchemaVisitMissing(document, document->root, "");
+  SchemaWalk(document, document->root, "", SchemaVisitAvailable);
+  SchemaWalk(document, document->root, "", SchemaVisitDimension);
+}
+
+/* ---- accessors, after SchemaCheck() ---- */
+
+/* The text of the scalar at a path, else the table's default, else NULL; *key is the table's line. */
+static const char *SchemaScalar(Document *document, const char *format, va_list arguments, const SchemaKey **key)
+{
+  char path[PATH_LENGTH];
+  Node node;
+
+  vsnprintf(path, sizeof path, format, arguments);
+  *key = SchemaKeyFind(path);
+  if (!*key) {
+    fprintf(stderr, "burnish: the schema has no key %s\n", path);
+    abort();
+  }
+  node = NodeFind(document->root, path);
+  return node ? node->text : (*key)->preset;
+}
+
+/* SchemaHas - is there a value at this path in the document? printf's format. Not collective, as all accessors. */
+int SchemaHas(Document *document, const char *format, ...)
+{
+  char    path[PATH_LENGTH];
+  va_list arguments;
+
+  va_start(arguments, format);
+  vsnprintf(path, sizeof path, format, arguments);
+  va_end(arguments);
+  return NodeFind(document->root, path) != NULL;
+}
+
+/* SchemaCount - number of entries of the list or map at a path; 0 if there is none. */
+int SchemaCount(Document *document, const char *format, ...)
+{
+  char    path[PATH_LENGTH];
+  va_list arguments;
+  Node    node;
+
+  va_start(arguments, format);
+  vsnprintf(path, sizeof path, format, arguments);
+  va_end(arguments);
+  node = NodeFind(document->root, path);
+  return node ? node->n : 0;
+}
+
+#define SCHEMA_SCALAR(text, key)                            \
+  do {                                                      \
+    va_list arguments;                                      \
+    va_start(arguments, format);                            \
+    text = SchemaScalar(document, format, arguments, &key); \
+    va_end(arguments);                                      \
+  } while (0)
+
+/* SchemaReal - the number at a path, or its default; 0 where neither is. */
+double SchemaReal(Document *document, const char *format, ...)
+{
+  const SchemaKey *key;
+  const char      *text;
+
+  SCHEMA_SCALAR(text, key);
+  return text ? strtod(text, NULL) : 0;
+}
+
+/* SchemaInteger - the integer at a path, or its default; 0 where neither is. */
+int SchemaInteger(Document *document, const char *format, ...)
+{
+  const SchemaKey *key;
+  const char      *text;
+
+  SCHEMA_SCALAR(text, key);
+  return text ? atoi(text) : 0;
+}
+
+/* SchemaBoolean - 1 for true, 0 for false, or the default. */
+int SchemaBoolean(Document *document, const char *format, ...)
+{
+  const SchemaKey *key;
+  const char      *text;
+
+  SCHEMA_SCALAR(text, key);
+  return text && !strcmp(text, "true");
+}
+
+/* SchemaChoice - which of the table's values stands at a path, counted from 0; -1 where neither value nor default is one of them. */
+int SchemaChoice(Document *document, const char *format, ...)
+{
+  const SchemaKey *key;
+  const char      *text;
+
+  SCHEMA_SCALAR(text, key);
+  return text ? WordFind(key->values, " |", text, strlen(text)) : -1;
+}
+
+/* SchemaText - the text at a path, or its default, or NULL. It belongs to the document. */
+const char *SchemaText(Document *document, const char *format, ...)
+{
+  const SchemaKey *key;
+  const char      *text;
+
+  SCHEMA_SCALAR(text, key);
+  return text;
+}
+
+/* SchemaReference - prints every key, by the path that -set takes, with what it allows, its default and what it means; N stands for an index
+   into a list. Not collective. */
+void SchemaReference(FILE *file)
+{
+  char allowed[400];
+
+  for (int i = 0; i < SchemaKeysCount; i++) {
+    const SchemaKey *key = &SchemaKeys[i];
+
+    fprintf(file, "  ");
+    for (const char *c = key->path; *c; c++) fputc(*c == '*' ? 'N' : *c, file);
+    SchemaAllowed(key, allowed, sizeof allowed);
+    fprintf(file, ": %s", allowed);
+    if (key->flags & REQUIRED) fprintf(file, "; required");
+    if (key->flags & SOLID) fprintf(file, "; 3D only");
+    if (key->preset) fprintf(file, "; default %s", key->preset);
+    if (key->now) fprintf(file, "%s%s%s", *key->now ? "; only " : "; not", key->now, " available yet");
+    fprintf(file, "%s%s\n", key->help ? " - " : "", key->help ? key->help : "");
+  }
+}

@@ -1,0 +1,154 @@
+#include <math.h>
+#include <string.h>
+#include "search/facequadrature.h"
+
+static FaceRule rules[2][ELEMENT_TYPES];
+
+/* Gauss and Legendre's points on [-1, 1], n of them */
+static const struct {
+  double x[5], w[5];
+} gauss[6] = {
+  [2] = {{-0.57735026918962576451, 0.57735026918962576451},                                                     {1, 1}                  },
+  [3] = {{-0.77459666924148337704, 0, 0.77459666924148337704},                                                  {5. / 9, 8. / 9, 5. / 9}},
+  [4] = {{-0.86113631159405257522, -0.33998104358485626480, 0.33998104358485626480, 0.86113631159405257522},
+         {0.34785484513745385737, 0.65214515486254614263, 0.65214515486254614263, 0.34785484513745385737}                               },
+  [5] = {{-0.90617984593866399280, -0.53846931010568309104, 0, 0.53846931010568309104, 0.90617984593866399280},
+         {0.23692688505618908751, 0.47862867049936646804, 128. / 225, 0.47862867049936646804, 0.23692688505618908751}                   }
+};
+
+/* Orbits of symmetric points of a triangle: barycentric coordinates (a, b, 1 - a - b) in all their orders, weights as shares of the area.
+   Degrees 2, 4 and 6: Dunavant, Int. J. Numer. Meth. Engng. 21 (1985), 1129. */
+typedef struct {
+  double a, b, weight;
+} Orbit;
+static const Orbit triangle3[] = {
+  {1. / 6, 1. / 6, 1. / 3},
+  {0,      0,      0     }
+};
+static const Orbit triangle6[] = {
+  {0.44594849091596488632, 0.44594849091596488632, 0.22338158967801146570},
+  {0.09157621350977074346, 0.09157621350977074346, 0.10995174365532186764},
+  {0,                      0,                      0                     }
+};
+static const Orbit triangle12[] = {
+  {0.24928674517091042129, 0.24928674517091042129, 0.11678627572637936603},
+  {0.06308901449150222834, 0.06308901449150222834, 0.05084490637020681692},
+  {0.05314504984481694735, 0.31035245103378440542, 0.08285107561837357519},
+  {0,                      0,                      0                     }
+};
+
+static void AddPoint(FaceRule *rule, double x, double y, double weight)
+{
+  rule->xi[rule->n][0]    = x;
+  rule->xi[rule->n][1]    = y;
+  rule->weight[rule->n++] = weight;
+}
+
+static void AddOrbits(FaceRule *rule, const Orbit *orbit)
+{
+  for (; orbit->weight > 0; orbit++) {
+    const double l[3] = {orbit->a, orbit->b, 1 - orbit->a - orbit->b}, w = 0.5 * orbit->weight;
+
+    for (int i = 0; i < 3; i++) {
+      AddPoint(rule, l[i], l[(i + 1) % 3], w);
+      if (orbit->a != orbit->b) AddPoint(rule, l[(i + 1) % 3], l[i], w);
+    }
+  }
+}
+
+static void MakeRule(const Element *e, int finer, FaceRule *rule)
+{
+  const int n = e->order + 1 + finer + (e->dim == 1); /* on edges points cost little, and one more leaves a third of the noise of curved second-order ones */
+
+  if (e->corners == 3)
+    AddOrbits(rule, n == 2 ? triangle3 : n == 3 ? triangle6 : triangle12);
+  else {
+    for (int j = 0; j < (e->dim > 1 ? n : 1); j++)
+      for (int i = 0; i < n; i++) AddPoint(rule, gauss[n].x[i], e->dim > 1 ? gauss[n].x[j] : 0, gauss[n].w[i] * (e->dim > 1 ? gauss[n].w[j] : 1));
+  }
+  for (int q = 0; q < rule->n; q++) {
+    double dN[FACE_MAX_NODES * 2];
+
+    ElementShape(e->type, rule->xi[q], rule->N[q], dN, NULL);
+    for (int a = 0; a < e->nodes; a++)
+      for (int k = 0; k < e->dim; k++) rule->dN[q][a][k] = dN[a * e->dim + k];
+    FaceHat(e->type, rule->xi[q], rule->hat[q]);
+  }
+}
+
+/* FaceRuleGet - the quadrature rule of a type of face, tabulated on first use. Not collective. finer: 0 or 1. */
+const FaceRule *FaceRuleGet(ElementType type, int finer)
+{
+  FaceRule *rule = &rules[finer][type];
+
+  if (!rule->n) MakeRule(ElementGet(type), finer, rule);
+  return rule;
+}
+
+/* Hat functions of a 6-node triangle: its four small triangles by the barycentric coordinates l; node 3 + i is the middle of corners i and i + 1. */
+static void HatTriangle(const double l[3], double *psi)
+{
+  for (int i = 0; i < 3; i++) {
+    if (l[i] < 0.5) continue;
+    psi[i]               = 2 * l[i] - 1;
+    psi[3 + i]           = 2 * l[(i + 1) % 3];
+    psi[3 + (i + 2) % 3] = 2 * l[(i + 2) % 3];
+    return;
+  }
+  for (int i = 0; i < 3; i++) psi[3 + i] = 1 - 2 * l[(i + 2) % 3];
+}
+
+/* FaceHat - positive weighting functions of a face's nodes: every node gets area on every element, which second-order shape functions deny to
+   corners of triangles. Not collective.
+
+   Input: type; xi - reference coordinates. Output: psi[nodes], sum 1 */
+void FaceHat(ElementType type, const double *xi, double *psi)
+{
+  const Element *e = ElementGet(type);
+
+  if (e->order == 1) {
+    ElementShape(type, xi, psi, NULL, NULL);
+    return;
+  }
+  memset(psi, 0, e->nodes * sizeof(double));
+  if (e->corners == 3 && e->dim == 2) {
+    const double l[3] = {1 - xi[0] - xi[1], xi[0], xi[1]};
+
+    HatTriangle(l, psi);
+    return;
+  }
+  for (int a = 0; a < e->nodes; a++) { /* nodes at -1, 0, 1: the distance between them is 1 */
+    psi[a] = 1;
+    for (int k = 0; k < e->dim; k++) psi[a] *= fmax(0, 1 - fabs(xi[k] - e->node[a][k]));
+  }
+}
+
+/* FaceRuleAreas - what part of the face's area each point of the rule stands for. Not collective.
+
+   Input: rule, type; dim, geometry - axisymmetric: times 2 pi R, over 360 degrees; X[nodes][dim] - reference or current coordinates
+   Output: area[n]; normal[n][3] - unit, out of the body; may be NULL */
+void FaceRuleAreas(const FaceRule *rule, ElementType type, int dim, Geometry geometry, const double *X, double *area, double *normal)
+{
+  const double two_pi = 6.28318530717958647693;
+  const int    nodes  = ElementGet(type)->nodes;
+
+  for (int q = 0; q < rule->n; q++) {
+    double t[2][3] = {{0}}, n[3], radius = 0, length;
+
+    for (int a = 0; a < nodes; a++) {
+      radius += rule->N[q][a] * X[a * dim];
+      for (int k = 0; k < dim - 1; k++)
+        for (int d = 0; d < dim; d++) t[k][d] += rule->dN[q][a][k] * X[a * dim + d];
+    }
+    if (dim == 2) {
+      n[0] = t[0][1];
+      n[1] = -t[0][0];
+      n[2] = 0;
+    } else {
+      for (int d = 0; d < 3; d++) n[d] = t[0][(d + 1) % 3] * t[1][(d + 2) % 3] - t[0][(d + 2) % 3] * t[1][(d + 1) % 3];
+    }
+    length  = sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
+    area[q] = rule->weight[q] * length * (geometry == GEOMETRY_AXISYMMETRIC ? two_pi * radius : 1);
+    for (int d = 0; d < 3 && normal; d++) normal[3 * q + d] = length > 0 ? n[d] / length : 0;
+  }
+}

@@ -1,0 +1,133 @@
+#include "search/facerecord.h"
+
+/* FaceRecordFromSurface - face f of a surface with its nodes' keys and reference positions. Not collective.
+
+   geometry: by local node of the mesh or the tool, or NULL; offset[faces][FACE_RULE_POINTS*dim]: lengths, or NULL. home is left 0. */
+void FaceRecordFromSurface(ContactSurface surface, const NodeGeometry *geometry, const PetscReal *offset, PetscInt f, FaceRecord *record)
+{
+  Mesh         mesh  = surface->mesh;
+  const int    dim   = mesh->dim;
+  const Facet *facet = &surface->faces[f];
+
+  *record = (FaceRecord){.facet = *facet, .size = surface->face_size[f], .home_face = f};
+  for (int a = 0; a < ElementGet(facet->type)->nodes; a++) {
+    const PetscInt node = facet->nodes[a];
+
+    record->id[a] = surface->rigid ? node : mesh->node_id[node];
+    if (geometry) record->geometry[a] = geometry[node];
+    if (surface->rigid) continue;
+    record->owner[a] = mesh->node_owner[node];
+    record->local[a] = mesh->node_owner_local[node];
+    for (int d = 0; d < dim; d++) record->X[a * 3 + d] = mesh->coords[node * dim + d];
+  }
+  for (int i = 0; offset && i < FACE_RULE_POINTS * dim; i++) record->offset[i] = offset[f * FACE_RULE_POINTS * dim + i];
+}
+
+/* Sends count[r] records to each rank r, one rank after the other in send; what arrives is in the order of the ranks it comes from. */
+static PetscErrorCode ExchangeRecords(MPI_Comm comm, const PetscInt count[], const FaceRecord *send, PetscInt *n, FaceRecord **received)
+{
+  PetscMPIInt  size, *send_count, *send_start, *receive_count, *receive_start;
+  PetscInt     total = 0;
+  MPI_Datatype type;
+
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Comm_size(comm, &size));
+  PetscCall(PetscMalloc4(size, &send_count, size, &send_start, size, &receive_count, size, &receive_start));
+  for (PetscMPIInt r = 0; r < size; r++) {
+    PetscCall(PetscMPIIntCast(total, &send_start[r]));
+    PetscCall(PetscMPIIntCast(count[r], &send_count[r]));
+    total += count[r];
+  }
+  PetscCallMPI(MPI_Alltoall(send_count, 1, MPI_INT, receive_count, 1, MPI_INT, comm));
+  *n = 0;
+  for (PetscMPIInt r = 0; r < size; r++) {
+    PetscCall(PetscMPIIntCast(*n, &receive_start[r]));
+    *n += receive_count[r];
+  }
+  PetscCall(PetscMalloc1(*n, received));
+  PetscCallMPI(MPI_Type_contiguous((int)sizeof(FaceRecord), MPI_BYTE, &type));
+  PetscCallMPI(MPI_Type_commit(&type));
+  PetscCallMPI(MPI_Alltoallv(send, send_count, send_start, type, *received, receive_count, receive_start, type, comm));
+  PetscCallMPI(MPI_Type_free(&type));
+  PetscCall(PetscFree4(send_count, send_start, receive_count, receive_start));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* FaceRecordsShare - sends the faces of a surface, whose home is this rank, to every rank that wants them, itself included.
+
+   Collective. geometry, offset: as of FaceRecordFromSurface(); wanted(context, f, r): does rank r want face f of this rank? received[*n]: in the
+   order of the ranks they come from; to be freed with PetscFree(). */
+PetscErrorCode FaceRecordsShare(ContactSurface surface, const NodeGeometry *geometry, const PetscReal *offset, FaceWantedFn wanted, const void *context,
+                                PetscInt *n, FaceRecord **received)
+{
+  const MPI_Comm comm = surface->mesh->comm;
+  PetscMPIInt    size, rank;
+  PetscInt      *count, total = 0, room = PetscMax(1, surface->n_faces);
+  FaceRecord    *send;
+
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Comm_size(comm, &size));
+  PetscCallMPI(MPI_Comm_rank(comm, &rank));
+  PetscCall(PetscCalloc1(size, &count));
+  PetscCall(PetscMalloc1(room, &send));
+  for (PetscMPIInt r = 0; r < size; r++) {
+    for (PetscInt f = 0; f < surface->n_faces; f++) {
+      if (!wanted(context, f, r)) continue;
+      if (total == room) PetscCall(PetscRealloc((room *= 2) * sizeof(FaceRecord), &send));
+      FaceRecordFromSurface(surface, geometry, offset, f, &send[total]);
+      send[total++].home = rank;
+      count[r]++;
+    }
+  }
+  PetscCall(ExchangeRecords(comm, count, send, n, received));
+  PetscCall(PetscFree(send));
+  PetscCall(PetscFree(count));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* FaceRecordKeys - keys[nodes of the face], in its order. Not collective. */
+void FaceRecordKeys(const FaceRecord *record, NodeKey *keys)
+{
+  for (int a = 0; a < ElementGet(record->facet.type)->nodes; a++) {
+    keys[a] = (NodeKey){.id = record->id[a], .owner = record->owner[a], .local = record->local[a]};
+    for (int d = 0; d < 3; d++) keys[a].X[d] = record->X[a * 3 + d];
+  }
+}
+
+static int FaceRecordCompare(const void *a, const void *b)
+{
+  const FaceRecord *p = a, *q = b;
+  return p->facet.tag < q->facet.tag ? -1 : p->facet.tag > q->facet.tag;
+}
+
+static int NodeKeyCompare(const void *a, const void *b)
+{
+  const NodeKey *p = a, *q = b;
+  return p->id < q->id ? -1 : p->id > q->id;
+}
+
+/* NodeKeysUnique - Not collective. keys[n] is sorted in place by id; returns how many are left once each id stands once. */
+PetscInt NodeKeysUnique(PetscInt n, NodeKey *keys)
+{
+  PetscInt kept = 0;
+
+  if (n) qsort(keys, n, sizeof(*keys), NodeKeyCompare);
+  for (PetscInt i = 0; i < n; i++)
+    if (!kept || keys[i].id != keys[kept - 1].id) keys[kept++] = keys[i];
+  return kept;
+}
+
+/* FaceRecordsSort - by the faces' tags: an order that does not depend on the ranks. Not collective. */
+void FaceRecordsSort(PetscInt n, FaceRecord *records)
+{
+  if (n) qsort(records, n, sizeof(*records), FaceRecordCompare);
+}
+
+/* NodeKeysFind - Not collective. keys[n]: of NodeKeysUnique(); id is among them. */
+int NodeKeysFind(PetscInt n, const NodeKey *keys, PetscInt id)
+{
+  const NodeKey  wanted = {.id = id};
+  const NodeKey *found  = bsearch(&wanted, keys, n, sizeof(*keys), NodeKeyCompare);
+
+  return (int)(found - keys);
+}

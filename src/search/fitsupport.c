@@ -1,0 +1,303 @@
+#include "smooth/fitframe.h"
+#include "searchimpl.h"
+#include "base/timing.h"
+
+/* Points are gathered a little beyond the support (rho^2 up to this), so that those which enter while a solve lasts are in the list. */
+#define SEARCH_FIT_MARGIN PetscSqr(1 + LISTS_MARGIN)
+/* On regular meshes points lie exactly on the border of the support; this much beyond still counts as inside, and round-off decides nothing. */
+#define SEARCH_FIT_TIE 1e-6
+
+/* The ladder: wider supports, then lower degrees, until every guard holds. Degree 0: the scene's. */
+static const struct {
+  int    degree;
+  double widen;
+} Ladder[RUNGS] = {
+  {0, 1   },
+  {0, 1.15},
+  {0, 1.32},
+  {0, 1.52},
+  {0, 1.75},
+  {2, 1   },
+  {2, 1.32},
+  {1, 1   }
+};
+
+/* Unit normal at the centre of a candidate in the reference position. */
+static void ReferenceNormal(ContactLists lists, const Candidate *c, PetscReal normal[3])
+{
+  Candidate at_rest = *c;
+  PetscReal x[FACE_MAX_NODES * 3];
+
+  for (int a = 0; a < ElementGet(c->facet.type)->nodes; a++)
+    for (int d = 0; d < lists->dim; d++) x[a * lists->dim + d] = lists->point_X[c->facet.nodes[a] * lists->dim + d];
+  SearchCandidatePlace(lists->dim, x, 0, &at_rest);
+  for (int d = 0; d < 3; d++) normal[d] = at_rest.normal[d];
+}
+
+/* What the quadrature points of a candidate know of the spacing: area and second moments of their face. */
+static void FaceSpacing(Fitting *fit, PetscInt candidate)
+{
+  const Facet    *facet = &fit->view.facets[candidate];
+  const FaceRule *rule  = FaceRuleGet(facet->type, 0);
+  const int       dim   = fit->lists->dim;
+  NodeGeometry   *first = &fit->geometry[fit->view.first[candidate]], of_face = {.spacing = 0};
+  double          x[FACE_MAX_NODES * 3], area[FACE_RULE_POINTS], centre[3] = {0}, total = 0;
+
+  for (int a = 0; a < ElementGet(facet->type)->nodes; a++)
+    for (int d = 0; d < dim; d++) x[a * dim + d] = fit->view.x[facet->nodes[a] * dim + d];
+  FaceRuleAreas(rule, facet->type, dim, GEOMETRY_SOLID, x, area, NULL);
+  for (int q = 0; q < rule->n; q++) {
+    total += area[q];
+    for (int d = 0; d < dim; d++) centre[d] += area[q] * fit->view.x[(fit->view.first[candidate] + q) * dim + d];
+  }
+  for (int q = 0; q < rule->n; q++) {
+    double r[3] = {0};
+
+    for (int d = 0; d < dim; d++) r[d] = fit->view.x[(fit->view.first[candidate] + q) * dim + d] - centre[d] / total;
+    for (int k = 0; k < 3; k++) {
+      of_face.covariance[k] += area[q] / total * r[k] * r[k];
+      of_face.covariance[3 + k] += area[q] / total * r[k] * r[(k + 1) % 3]; /* xy yz zx */
+    }
+  }
+  of_face.spacing = total / SurfaceNodesPerFace(facet->type);
+  if (dim == 3) of_face.spacing = PetscSqrtReal(of_face.spacing);
+  for (int q = 0; q < rule->n; q++) first[q] = of_face;
+}
+
+PetscErrorCode FittingCreate(ContactSearch s, ContactLists lists, const SearchField *field, Fitting *fit)
+{
+  const PetscInt   n          = field->n_candidates;
+  const Candidate *candidates = field->candidates;
+  NodeGeometry    *node_geometry;
+  Facet           *facets;
+  PetscReal       *x;
+  PetscInt        *first = NULL;
+
+  PetscFunctionBeginUser;
+  *fit = (Fitting){.s = s, .lists = lists};
+  PetscCall(PetscMalloc5(3 * n, &fit->normals, 3 * n, &fit->reference, lists->n_points, &fit->geometry, n, &facets, lists->n_points * lists->dim, &x));
+  PetscCall(PetscCalloc1(lists->n_nodes, &node_geometry));
+  ListsPointGeometry(s, lists, field, node_geometry, fit->geometry);
+  PetscCall(PetscFree(node_geometry));
+  if (s->fit->integral) PetscCall(PetscMalloc1(n, &first));
+  for (PetscInt i = 0; i < n; i++) {
+    facets[i] = candidates[i].facet;
+    ReferenceNormal(lists, &candidates[i], &fit->reference[3 * i]);
+    for (int d = 0; d < 3; d++) fit->normals[3 * i + d] = candidates[i].normal[d];
+    if (first) first[i] = candidates[i].first;
+  }
+  for (PetscInt i = 0; i < lists->n_points * lists->dim; i++) x[i] = lists->point_X[i] + lists->point_u[i];
+  fit->view = (SurfaceView){lists->dim, n, lists->n_points, facets, fit->normals, fit->reference, x, fit->geometry, PetscCosReal(s->fit->feature_angle), first};
+  for (PetscInt i = 0; i < n && first; i++) FaceSpacing(fit, i);
+  PetscCall(NeighbourhoodsCreate(&fit->view, &fit->neighbourhoods));
+  PetscCall(PetscMalloc6(FIT_MAX_POINTS, &fit->points, FIT_MAX_POINTS * 3, &fit->x, FIT_MAX_POINTS, &fit->multiplier, FIT_MAX_POINTS, &fit->taper,
+                         FitWorkspace(lists->dim, s->fit->degree, FIT_MAX_POINTS), &fit->workspace, FIT_MAX_POINTS, &fit->used));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode FittingDestroy(Fitting *fit)
+{
+  Facet     *facets = (Facet *)fit->view.facets;
+  PetscReal *x      = (PetscReal *)fit->view.x;
+
+  PetscFunctionBeginUser;
+  PetscCall(NeighbourhoodsDestroy(&fit->neighbourhoods));
+  PetscCall(PetscFree(fit->view.first));
+  PetscCall(PetscFree5(fit->normals, fit->reference, fit->geometry, facets, x));
+  PetscCall(PetscFree6(fit->points, fit->x, fit->multiplier, fit->taper, fit->workspace, fit->used));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The metric over a frame's tangents as a tensor in space: inverse squared lengths. */
+static void MetricInSpace(int dim, double (*frame)[3], double metric[2][2], PetscReal space[9])
+{
+  for (int i = 0; i < 3; i++) {
+    for (int j = 0; j < 3; j++) {
+      space[3 * i + j] = 0;
+      for (int a = 0; a < dim - 1; a++)
+        for (int b = 0; b < dim - 1; b++) space[3 * i + j] += frame[a][i] * metric[a][b] * frame[b][j];
+    }
+  }
+}
+
+static void AddCovariance(double factor, const NodeGeometry *g, double covariance[3][3])
+{
+  for (int d = 0; d < 3; d++) {
+    covariance[d][d] += factor * g->covariance[d];
+    covariance[d][(d + 1) % 3] += factor * g->covariance[3 + d];
+    covariance[(d + 1) % 3][d] += factor * g->covariance[3 + d];
+  }
+}
+
+/* Spacing of the points at a foot. Shape: the nodes' covariances, between the nodes by the shape functions, so that the support does not jump
+   from facet to facet and keeps the symmetry of a ring around a node. Size: the mean over the facet's nodes, as those on a cut see one side only. */
+static void FootSpacing(const Fitting *fit, PetscInt f, const double *xi, double covariance[3][3], double *area)
+{
+  const Facet *facet = &fit->view.facets[f];
+  const int    n = ElementGet(facet->type)->nodes, dim = fit->lists->dim;
+  double       share[FACE_MAX_NODES], total            = 0;
+
+  ElementShape(facet->type, xi, share, NULL, NULL);
+  for (int a = 0; a < n; a++) total += share[a] = PetscMax(share[a], 0); /* second-order ones are negative in places */
+  *area = 0;
+  for (int i = 0; i < 3; i++)
+    for (int j = 0; j < 3; j++) covariance[i][j] = 0;
+  for (int a = 0; a < n; a++) {
+    const NodeGeometry *g = &fit->geometry[facet->nodes[a]];
+    const double        w = share[a] / total;
+
+    *area += (dim == 3 ? PetscSqr(g->spacing) : g->spacing) / n;
+    AddCovariance(w, g, covariance);
+  }
+}
+
+/* Spacing for a fit through quadrature points: the mean over the faces that it sees. Forces spread by the fit are consistent nodal loads as far as
+   neighbouring slave points share one support; its change from face to face by the local spacing costs 2 to 10 times the error of the patch test. */
+static void WindowSpacing(const Fitting *fit, PetscInt n, double covariance[3][3], double *area)
+{
+  double sum = 0, faces = 0;
+
+  for (int i = 0; i < 3; i++)
+    for (int j = 0; j < 3; j++) covariance[i][j] = 0;
+  for (PetscInt i = 0; i < n; i++) {
+    const NodeGeometry *g     = &fit->geometry[fit->points[i]];
+    const double        share = fit->taper[i] / (fit->lists->dim == 3 ? PetscSqr(g->spacing) : g->spacing);
+
+    sum += fit->taper[i];
+    faces += share;
+    AddCovariance(share, g, covariance);
+  }
+  *area = sum / faces;
+}
+
+/* Weights of n points and their positions relative to the fit's origin, as of ListsRelative(); returns how many are inside the support. dim constant where this
+   is called. */
+static inline PetscInt TakePoints(const int dim, Fitting *fit, const FitFoot *at, PetscInt n, const PetscReal *rho2)
+{
+  const ContactLists lists = fit->lists;
+  const PetscReal   *X = lists->point_X, *u = lists->point_u;
+  PetscInt           inside = 0;
+
+  for (PetscInt i = 0; i < n; i++) {
+    const PetscInt  p      = fit->points[i];
+    const PetscReal weight = lists->point_weight[p];
+
+    inside += rho2[i] <= 1 + SEARCH_FIT_TIE;
+    fit->multiplier[i] = weight;
+    fit->taper[i]      = weight * PetscMax(SEARCH_FIT_TIE, 1 - rho2[i] / SEARCH_FIT_MARGIN);
+    for (int d = 0; d < dim; d++) fit->x[i * dim + d] = (X[p * dim + d] - at->X[d]) + (u[p * dim + d] - at->u[d]);
+  }
+  return inside;
+}
+
+/* Tries one rung at a foot: points, frame, metric into fit and problem; true when every guard holds. Quadrature points come in clusters, whose
+   number says nothing: the pivot does. */
+static PetscErrorCode FitRung(Fitting *fit, const FitFoot *at, int rung, FitProblem *problem, FitResult *result, PetscBool *holds)
+{
+  const FitSettings *settings = fit->s->fit;
+  const int          dim = fit->lists->dim, degree = Ladder[rung].degree ? PetscMin(Ladder[rung].degree, settings->degree) : settings->degree;
+  const int          wanted = settings->integral ? FitTerms(dim, degree) : FitPointsWanted(dim, degree);
+  double             covariance[3][3], area;
+  const PetscReal   *rho2;
+  PetscReal          space[9];
+  PetscInt           n, found, inside;
+
+  PetscFunctionBeginUser;
+  *holds   = PETSC_FALSE;
+  *result  = (FitResult){.points = fit->used};
+  *problem = (FitProblem){.dim = dim, .degree = degree, .exponent = settings->exponent, .x = fit->x, .multiplier = fit->multiplier};
+  FootSpacing(fit, at->facet, at->xi, covariance, &area);
+  FitFrameFromNormal(dim, settings->global_frame ? fit->plane : at->outward, problem->frame);
+  for (int pass = 0; pass < 2; pass++) { /* first seen along the facet's normal, then along the points' own */
+    FitMetricFromCovariance(dim, problem->frame, covariance, area, settings->support * Ladder[rung].widen, problem->metric);
+    MetricInSpace(dim, problem->frame, problem->metric, space);
+    PetscCall(NeighbourhoodGather(fit->neighbourhoods, at->facet, at->foot, problem->frame[dim - 1], space, SEARCH_FIT_MARGIN, FIT_MAX_POINTS, fit->points,
+                                  &rho2, &n, &found));
+    inside     = dim == 3 ? TakePoints(3, fit, at, n, rho2) : TakePoints(2, fit, at, n, rho2);
+    problem->n = (int)n;
+    if (inside < wanted) PetscFunctionReturn(PETSC_SUCCESS);
+    if (settings->integral && pass == 0) WindowSpacing(fit, n, covariance, &area);
+    if (settings->global_frame || at->upright) {
+      if (settings->integral) continue;
+      break;
+    }
+    if (pass == 0 && !FitFrame(dim, problem->n, fit->x, fit->taper, at->outward, problem->frame)) PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  *holds = FitEvaluate(problem, FIT_GAP, fit->workspace, result) && (result->guards & ~FIT_FEW_POINTS) == FIT_HOLDS ? PETSC_TRUE : PETSC_FALSE;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Climbs down the ladder until a fit holds; *rung is where it stands, RUNG_FACET: nowhere. problem and result speak of fit's arrays. */
+PetscErrorCode FittingClimb(Fitting *fit, const FitFoot *at, FitProblem *problem, FitResult *result, int *rung)
+{
+  PetscBool holds = PETSC_FALSE;
+
+  PetscFunctionBeginUser;
+  *rung = RUNG_FACET;
+  for (int r = 0; r < RUNGS && !holds; r++) {
+    PetscCall(FitRung(fit, at, r, problem, result, &holds));
+    if (holds) *rung = r;
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* How far the points in the inner half of the support lie from the fit: what the smoothing itself costs. dim constant where this is called. */
+static inline PetscReal FitResidual(const int dim, const FitProblem *problem, const FitResult *result)
+{
+  const double Q[3] = {problem->metric[0][0], 2 * problem->metric[0][1], problem->metric[1][1]};
+  PetscReal    most = 0;
+
+  for (int i = 0; i < problem->n; i++) {
+    double y[2] = {0, 0}, z = 0, rho2;
+
+    for (int d = 0; d < dim; d++) {
+      for (int a = 0; a < dim - 1; a++) y[a] += problem->frame[a][d] * problem->x[i * dim + d];
+      z += problem->frame[dim - 1][d] * problem->x[i * dim + d];
+    }
+    rho2 = Q[0] * y[0] * y[0] + (dim == 3 ? (Q[1] * y[0] + Q[2] * y[1]) * y[1] : 0);
+    if (rho2 <= 0.25) most = PetscMax(most, PetscAbsReal(z - FitSurfaceHeight(&result->surface, y, NULL)));
+  }
+  return most;
+}
+
+/* Fits the surface for one slave point and writes what holds into its list, which starts at first. */
+PetscErrorCode FittingSlave(Fitting *fit, const Nearest *look, PetscInt q, PetscInt first, ListBuffer *buffer)
+{
+  ContactLists     lists = fit->lists;
+  const Candidate *best  = &look->candidates[look->best];
+  FitFoot          at    = {
+                .facet = look->best,
+                .xi    = {look->foot.xi[0], look->foot.xi[1]}
+  };
+  FitProblem problem;
+  FitResult  result;
+
+  PetscFunctionBeginUser;
+  for (int d = 0; d < 3; d++) at.outward[d] = best->normal[d]; /* the foot's own may lie along the surface when the foot is on an edge */
+  for (int d = 0; d < lists->dim; d++) {
+    at.X[d]    = lists->slave_X[q * lists->dim + d];
+    at.u[d]    = lists->slave_u[q * lists->dim + d];
+    at.foot[d] = look->x[d] - look->foot.gap * look->foot.normal[d];
+  }
+  TimingBegin(TIMING_FIT); /* two looks at the clock, 0.1 % of a ladder */
+  PetscCall(FittingClimb(fit, &at, &problem, &result, &lists->rung[q]));
+  TimingEnd(TIMING_FIT);
+  if (lists->rung[q] == RUNG_FACET) PetscFunctionReturn(PETSC_SUCCESS);
+  lists->fit_n[q]     = problem.n;
+  lists->degree[q]    = problem.degree;
+  lists->pivot[q]     = result.pivot;
+  lists->amplified[q] = result.amplified;
+  lists->gap[q]       = result.gap;
+  for (int d = 0; d < 3; d++) lists->normal[3 * q + d] = result.normal[d];
+  lists->residual[q] = lists->dim == 3 ? FitResidual(3, &problem, &result) : FitResidual(2, &problem, &result);
+  for (int i = 0; i < 9; i++) lists->frame[9 * q + i] = problem.frame[i / 3][i % 3];
+  for (int i = 0; i < 4; i++) lists->metric[4 * q + i] = problem.metric[i / 2][i % 2];
+  for (PetscInt i = 0; i < problem.n; i++) PetscCall(ListBufferAddPoint(buffer, first, fit->points[i]));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* How far from a slave point the points of its fit may lie: the widest support with its margin, along the longest face where it is drawn out. */
+PetscReal SearchFitReach(ContactSearch s)
+{
+  return s->fit->degree ? PetscSqrtReal(SEARCH_FIT_MARGIN) * Ladder[RUNG_WIDER].widen * s->fit->support * s->master->max_extent / s->master->order : 0;
+}

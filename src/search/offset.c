@@ -1,0 +1,366 @@
+#include "search/offset.h"
+#include "searchimpl.h"
+
+struct _n_Offsets {
+  ContactSurface surface;
+  ContactSearch  search; /* the surface looking at itself */
+  FitSettings    fit;
+  int            finer;
+  OffsetsKind    kind;
+  PetscBool      once, taken; /* once: held, but never taken again */
+  FaceMaps       maps;        /* live */
+  PetscInt       n;
+  PetscReal     *used, *now, *before; /* now, before: of the last two accepted states */
+  PetscReal      t_now, t_before;
+  PetscReal     *last, *u_last, t_last; /* the last ones that were taken, and where; t_last NAN: none yet */
+};
+
+/* OffsetsCreate - offsets of a surface, 0 until they are taken. Collective. feature_angle: radians. */
+PetscErrorCode OffsetsCreate(Mesh mesh, Scene scene, Loads loads, ContactSurface surface, int n_images, const SurfaceImage *images, PetscReal feature_angle,
+                             int finer, OffsetsKind kind, Offsets *out)
+{
+  Offsets o;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscNew(&o));
+  o->surface = surface;
+  o->finer   = finer;
+  o->kind    = kind == OFFSETS_LIVE && surface->rigid ? OFFSETS_HELD : kind;
+  o->once    = (PetscBool)(surface->rigid || scene->kinematics == KINEMATICS_SMALL);
+  o->t_now = o->t_before = -1;
+  /* the nodal fit's own defaults: the smoothest whose guards hold on jittered meshes */
+  o->fit    = (FitSettings){.degree = 4, .support = mesh->dim == 2 ? 4.5 : 3.5, .exponent = mesh->dim == 2 ? 6 : 3, .feature_angle = feature_angle};
+  o->n      = surface->n_faces * FACE_RULE_POINTS * mesh->dim;
+  o->t_last = NAN;
+  PetscCall(PetscCalloc5(o->n, &o->used, o->n, &o->now, o->n, &o->before, o->n, &o->last, mesh->n_nodes * mesh->dim, &o->u_last));
+  PetscCall(SearchCreate(mesh, scene, loads, surface, surface->max_size, n_images, images, &o->fit, NULL, NULL, NULL, &o->search));
+  *out = o;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* OffsetsDestroy - Collective. */
+PetscErrorCode OffsetsDestroy(Offsets *offsets)
+{
+  PetscFunctionBeginUser;
+  if (!*offsets) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(SearchDestroy(&(*offsets)->search));
+  PetscCall(FaceMapsDestroy(&(*offsets)->maps));
+  PetscCall(PetscFree5((*offsets)->used, (*offsets)->now, (*offsets)->before, (*offsets)->last, (*offsets)->u_last));
+  PetscCall(PetscFree(*offsets));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* A face of the surface with its place among the candidates, its rule and its nodes' positions */
+typedef struct {
+  PetscInt        candidate;
+  const Facet    *facet;
+  const FaceRule *rule;
+  double          x[FACE_MAX_NODES * 3], normal[FACE_RULE_POINTS * 3];
+} OffsetFace;
+
+/* The surface's own nodal fit about point q of a face, in the face's frame; nodes[a]: the face's nodes there. *rung: RUNG_FACET without one. */
+static PetscErrorCode FitAt(Fitting *fit, const OffsetFace *face, int q, FitProblem *problem, FitResult *result, int *rung, double (*nodes)[2])
+{
+  const int dim = fit->lists->dim, n = ElementGet(face->facet->type)->nodes;
+  FitFoot   at = {
+      .facet   = face->candidate,
+      .xi      = {face->rule->xi[q][0], face->rule->xi[q][1]},
+      .upright = PETSC_TRUE
+  };
+
+  PetscFunctionBeginUser;
+  for (int a = 0; a < n; a++)
+    for (int d = 0; d < dim; d++) at.X[d] += face->rule->N[q][a] * face->x[a * dim + d];
+  for (int d = 0; d < 3; d++) {
+    at.foot[d]    = at.X[d];
+    at.outward[d] = face->normal[3 * q + d];
+  }
+  PetscCall(FittingClimb(fit, &at, problem, result, rung));
+  for (int a = 0; a < n && *rung != RUNG_FACET; a++) {
+    for (int k = 0; k < dim - 1; k++) {
+      nodes[a][k] = 0;
+      for (int d = 0; d < dim; d++) nodes[a][k] += problem->frame[k][d] * (face->x[a * dim + d] - at.X[d]);
+    }
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* b = (f(0) - sum_a N_a f(s_a)) n at one quadrature point: f the fit about it in the face's frame, s_a the face's nodes there. */
+static PetscErrorCode OffsetAt(Fitting *fit, const OffsetFace *face, int q, PetscReal *b)
+{
+  const int  dim = fit->lists->dim;
+  FitProblem problem;
+  FitResult  result;
+  double     zero[2] = {0, 0}, nodes[FACE_MAX_NODES][2], sagitta;
+  int        rung;
+
+  PetscFunctionBeginUser;
+  for (int d = 0; d < dim; d++) b[d] = 0;
+  PetscCall(FitAt(fit, face, q, &problem, &result, &rung, nodes));
+  if (rung == RUNG_FACET) PetscFunctionReturn(PETSC_SUCCESS);
+  sagitta = FitSurfaceHeight(&result.surface, zero, NULL);
+  for (int a = 0; a < ElementGet(face->facet->type)->nodes; a++) sagitta -= face->rule->N[q][a] * FitSurfaceHeight(&result.surface, nodes[a], NULL);
+  for (int d = 0; d < dim; d++) b[d] = sagitta * face->normal[3 * q + d];
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The same sagitta as a combination of the fit's points, *n of them, in fit->points: shape[*n]. It vanishes where these lie on a plane, so that taken of their
+   whole positions it is along the normal and turns with the surface. */
+static PetscErrorCode SagittaShape(Fitting *fit, const OffsetFace *face, int q, double *shape, PetscInt *n)
+{
+  const int  dim = fit->lists->dim, corners = ElementGet(face->facet->type)->nodes;
+  FitProblem problem;
+  FitResult  result;
+  double     nodes[FACE_MAX_NODES][2], y[(1 + FACE_MAX_NODES) * 2] = {0}, factor[1 + FACE_MAX_NODES] = {1};
+  int        rung;
+
+  PetscFunctionBeginUser;
+  *n = 0;
+  PetscCall(FitAt(fit, face, q, &problem, &result, &rung, nodes));
+  if (rung == RUNG_FACET) PetscFunctionReturn(PETSC_SUCCESS);
+  for (int a = 0; a < corners; a++) {
+    factor[1 + a] = -face->rule->N[q][a];
+    for (int k = 0; k < dim - 1; k++) y[(1 + a) * (dim - 1) + k] = nodes[a][k];
+  }
+  FitShape(&problem, 1 + corners, y, factor, fit->workspace, shape);
+  *n = problem.n;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static int CandidateCompare(const void *a, const void *b)
+{
+  const Candidate *p = a, *q = b;
+  return p->facet.tag < q->facet.tag ? -1 : p->facet.tag > q->facet.tag;
+}
+
+/* What is done with a face while the fits about it can be made */
+typedef PetscErrorCode (*OffsetFaceFn)(Offsets, Fitting *, const OffsetFace *, PetscInt f, void *context);
+
+/* Visits all own faces with the surface at (u, t). */
+static PetscErrorCode OffsetsVisit(Offsets o, const PetscReal *u, PetscReal t, OffsetFaceFn visit, void *context)
+{
+  ContactSearch s   = o->search;
+  const int     dim = s->mesh->dim;
+  ContactLists  lists;
+  SearchField   field;
+  Fitting       fit;
+  PetscReal     box[6];
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscNew(&lists));
+  SearchMasterBox(s, u, t, box);
+  PetscCall(SearchFieldCreate(s, u, t, box, SearchFitReach(s), lists, &field));
+  PetscCall(FittingCreate(s, lists, &field, &fit));
+  for (PetscInt f = 0; f < o->surface->n_faces; f++) {
+    const Facet    *facet  = &o->surface->faces[f];
+    const Candidate wanted = {.facet = {.tag = facet->tag * SURFACE_MAX_IMAGES}},
+                    *own   = bsearch(&wanted, field.candidates, field.n_candidates, sizeof(Candidate), CandidateCompare);
+    OffsetFace face        = {.candidate = own - field.candidates, .facet = facet, .rule = FaceRuleGet(facet->type, o->finer)};
+    double     area[FACE_RULE_POINTS];
+
+    for (int a = 0; a < ElementGet(facet->type)->nodes; a++)
+      for (int d = 0; d < dim; d++) face.x[a * dim + d] = fit.view.x[own->facet.nodes[a] * dim + d];
+    FaceRuleAreas(face.rule, facet->type, dim, GEOMETRY_SOLID, face.x, area, face.normal);
+    PetscCall(visit(o, &fit, &face, f, context));
+  }
+  PetscCall(FittingDestroy(&fit));
+  PetscCall(SearchFieldDestroy(&field));
+  PetscCall(ListsDestroy(&lists));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode TakeFace(Offsets o, Fitting *fit, const OffsetFace *face, PetscInt f, void *context)
+{
+  PetscReal *offset = context;
+
+  PetscFunctionBeginUser;
+  for (int q = 0; q < face->rule->n; q++) PetscCall(OffsetAt(fit, face, q, &offset[(f * FACE_RULE_POINTS + q) * o->search->mesh->dim]));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Maps growing face by face */
+typedef struct {
+  PetscInt  room;
+  PetscInt *place; /* of each point of the fitting's lists among the entries; those of other faces are below the face's first */
+} MapsInMaking;
+
+/* Adds S of point q of the face at hand at a point of the lists, which is an image of a node. */
+static PetscErrorCode AddEntry(FaceMaps *maps, MapsInMaking *making, ContactLists lists, PetscInt point, int q, double S)
+{
+  PetscInt          *end  = &maps->ptr[maps->n + 1];
+  const PetscInt     node = lists->point_node[lists->point_ptr[point]];
+  const PetscSFNode *owner;
+
+  PetscFunctionBeginUser;
+  if (making->place[point] < maps->ptr[maps->n]) {
+    if (*end == making->room) PetscCall(PetscRealloc((making->room = 2 * making->room + 1024) * sizeof(FaceMapEntry), &maps->entry));
+    PetscCall(PetscSFGetGraph(lists->sf, NULL, NULL, NULL, &owner));
+    maps->entry[*end] = (FaceMapEntry){
+      .node  = {.id = lists->node_id[node], .owner = owner[node].rank, .local = owner[node].index},
+      .image = lists->point_image[point]
+    };
+    for (int d = 0; d < lists->dim; d++) maps->entry[*end].node.X[d] = lists->X[node * lists->dim + d];
+    making->place[point] = (*end)++;
+  }
+  maps->entry[making->place[point]].S[q] += S;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The map of a face: its shape functions and the coefficients of the sagittas. Nodes: first its own. */
+static PetscErrorCode MapFace(Offsets o, Fitting *fit, const OffsetFace *face, PetscInt f, void *context)
+{
+  FaceMaps     *maps   = &o->maps;
+  MapsInMaking *making = context;
+  ContactLists  lists  = fit->lists;
+  double        shape[FIT_MAX_POINTS];
+  PetscInt      n;
+
+  PetscFunctionBeginUser;
+  if (!making->place) {
+    PetscCall(PetscMalloc1(lists->n_points, &making->place));
+    for (PetscInt p = 0; p < lists->n_points; p++) making->place[p] = -1;
+  }
+  maps->n          = f;
+  maps->ptr[f + 1] = maps->ptr[f];
+  for (int a = 0; a < ElementGet(face->facet->type)->nodes; a++)
+    for (int q = 0; q < face->rule->n; q++) PetscCall(AddEntry(maps, making, lists, fit->view.facets[face->candidate].nodes[a], q, face->rule->N[q][a]));
+  for (int q = 0; q < face->rule->n; q++) {
+    PetscCall(SagittaShape(fit, face, q, shape, &n));
+    for (PetscInt i = 0; i < n; i++)
+      if (shape[i] != 0) PetscCall(AddEntry(maps, making, lists, fit->points[i], q, shape[i]));
+  }
+  maps->n = f + 1;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The maps of all own faces in the reference position. */
+static PetscErrorCode OffsetsMap(Offsets o, const PetscReal *zero)
+{
+  MapsInMaking making = {0};
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc1(o->surface->n_faces + 1, &o->maps.ptr));
+  PetscCall(OffsetsVisit(o, zero, 0, MapFace, &making));
+  PetscCall(PetscFree(making.place));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Offsets that are taken once. *done: they are there. */
+static PetscErrorCode TakeOnce(Offsets o, PetscBool *done)
+{
+  PetscFunctionBeginUser;
+  *done = (PetscBool)(o->once || o->kind != OFFSETS_HELD);
+  if (*done && o->kind != OFFSETS_NONE && !o->taken) {
+    PetscReal *zero;
+
+    PetscCall(PetscCalloc1(o->search->mesh->n_nodes * o->search->mesh->dim, &zero));
+    if (o->kind == OFFSETS_LIVE)
+      PetscCall(OffsetsMap(o, zero));
+    else
+      PetscCall(OffsetsVisit(o, zero, 0, TakeFace, o->used));
+    PetscCall(PetscFree(zero));
+    o->taken = PETSC_TRUE;
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The offsets at (u, t). A solution is asked for twice: when its lists are checked, and where the next step begins. */
+static PetscErrorCode OffsetsAt(Offsets o, const PetscReal *u, PetscReal t, PetscReal *values)
+{
+  const PetscInt n = o->search->mesh->n_nodes * o->search->mesh->dim;
+  PetscBool      same;
+  int            all;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscArraycmp(u, o->u_last, n, &same));
+  all = same && t == o->t_last;
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &all, 1, MPI_INT, MPI_LAND, o->search->mesh->comm));
+  if (!all) {
+    PetscCall(OffsetsVisit(o, u, t, TakeFace, o->last));
+    PetscCall(PetscArraycpy(o->u_last, u, n));
+    o->t_last = t;
+  }
+  PetscCall(PetscArraycpy(values, o->last, o->n));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* OffsetsExtrapolate - Collective. u[n_nodes*dim]: local displacements, ghosts included, of the accepted state at t; t_next: where the step goes. A step that
+   is tried again starts from the same t and finds the same offsets. *changed: set where those in force were others, on this rank. */
+PetscErrorCode OffsetsExtrapolate(Offsets o, const PetscReal *u, PetscReal t, PetscReal t_next, PetscBool *changed)
+{
+  PetscReal ahead = 0;
+  PetscBool done;
+
+  PetscFunctionBeginUser;
+  if (!o->taken && o->kind != OFFSETS_NONE) *changed = PETSC_TRUE;
+  PetscCall(TakeOnce(o, &done));
+  if (done) PetscFunctionReturn(PETSC_SUCCESS);
+  if (t != o->t_now) {
+    PetscReal *swap = o->before;
+
+    o->before   = o->now;
+    o->now      = swap;
+    o->t_before = o->t_now;
+    o->t_now    = t;
+  }
+  PetscCall(OffsetsAt(o, u, t, o->now));
+  if (o->t_before >= 0 && !SceneBreaks(o->search->scene, t)) ahead = (t_next - t) / (t - o->t_before); /* past a breakpoint things go another way */
+  for (PetscInt i = 0; i < o->n; i++) {
+    const PetscReal value = o->now[i] + ahead * (o->now[i] - o->before[i]);
+
+    if (value != o->used[i]) *changed = PETSC_TRUE;
+    o->used[i] = value;
+  }
+  o->taken = PETSC_TRUE;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* OffsetsTake - Collective. */
+PetscErrorCode OffsetsTake(Offsets o, const PetscReal *u, PetscReal t)
+{
+  PetscBool done;
+
+  PetscFunctionBeginUser;
+  PetscCall(TakeOnce(o, &done));
+  if (!done) PetscCall(OffsetsAt(o, u, t, o->used));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* OffsetsGet - the offsets in force, lengths along the normals of the time they were taken. Not collective. */
+const PetscReal *OffsetsGet(Offsets o)
+{
+  return o->used;
+}
+
+/* OffsetsMaps - the maps of live offsets, NULL for others. Not collective. */
+const FaceMaps *OffsetsMaps(Offsets o)
+{
+  return o->kind == OFFSETS_LIVE ? &o->maps : NULL;
+}
+
+/* OffsetsArchive - Collective. name: where they stand in the archive. */
+PetscErrorCode OffsetsArchive(Offsets o, Archive archive, const char *name)
+{
+  PetscReal   time[] = {o->t_now, o->t_before}, *values[] = {o->now, o->before};
+  const char *names[] = {"now", "before"};
+  PetscInt   *tag;
+  char        path[PETSC_MAX_PATH_LEN];
+  Rows        faces;
+
+  PetscFunctionBeginUser;
+  if (o->once || o->kind != OFFSETS_HELD) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscMalloc1(o->surface->n_faces, &tag));
+  for (PetscInt f = 0; f < o->surface->n_faces; f++) tag[f] = o->surface->faces[f].tag;
+  PetscCall(RowsCreateByKey(o->search->mesh->comm, o->surface->n_faces, tag, &faces));
+  PetscCall(PetscFree(tag));
+  for (int k = 0; k < 2; k++) {
+    PetscCall(PetscSNPrintf(path, sizeof(path), "%s/%s", name, names[k]));
+    PetscCall(ArchiveRows(archive, path, &faces, FACE_RULE_POINTS * o->search->mesh->dim, values[k]));
+  }
+  PetscCall(PetscSNPrintf(path, sizeof(path), "%s/t", name));
+  PetscCall(ArchiveReals(archive, path, 2, time));
+  o->t_now    = time[0];
+  o->t_before = time[1];
+  PetscCall(RowsDestroy(&faces));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

@@ -1,0 +1,430 @@
+#include "searchimpl.h"
+#include "base/boxtree.h"
+
+/* Reach of the search beyond the asked motion, in face sizes: the nearest facet of a slave point that is no farther than this is listed. */
+#define SEARCH_REACH 2.0
+/* A list holds every facet within this many face sizes (plus the motion) of the nearest one, so that a solve may slide the point there. */
+#define SEARCH_MARGIN 1.5
+/* Facets are listed only if they face the slave: cosine between the two outward normals below this. 0: any opposed pair. */
+#define SEARCH_OPPOSED 0.0
+/* Boxes of curved facets are widened by this fraction of the face size: the bulge of a quadratic face beyond its nodes is at most 1/8 of its chord. */
+#define SEARCH_BULGE 0.15
+
+/* SearchCreate - what stands still for the run: surfaces, images, slave points. Collective. slave_size: largest face of the slave (length). */
+PetscErrorCode SearchCreate(Mesh mesh, Scene scene, Loads loads, ContactSurface master, PetscReal slave_size, int n_images, const SurfaceImage *images,
+                            const FitSettings *fit, SlavePoints slaves, const PetscReal *offset, const FaceMaps *maps, ContactSearch *out)
+{
+  ContactSearch   s;
+  const PetscReal size = master ? PetscMax(slave_size, master->max_size) : slave_size;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscNew(&s));
+  *s   = (struct _n_ContactSearch){.mesh     = mesh,
+                                   .scene    = scene,
+                                   .loads    = loads,
+                                   .master   = master,
+                                   .n_images = n_images,
+                                   .images   = images,
+                                   .fit      = fit,
+                                   .slaves   = slaves,
+                                   .offset   = offset,
+                                   .maps     = maps,
+                                   .reach    = SEARCH_REACH * size,
+                                   .margin   = SEARCH_MARGIN * size};
+  *out = s;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* SearchDestroy - Collective. */
+PetscErrorCode SearchDestroy(ContactSearch *s)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscFree(*s));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Centre and unit normal of a candidate from the current positions of its nodes. */
+void SearchCandidatePlace(int dim, const PetscReal *x, PetscReal size, Candidate *c)
+{
+  const Element *e     = ElementGet(c->facet.type);
+  double         xi[2] = {0, 0}, N[FACE_MAX_NODES], dN[FACE_MAX_NODES * 2], t[2][3] = {{0}}, length = 0;
+
+  if (e->corners == 3) xi[0] = xi[1] = 1.0 / 3;
+  ElementShape(e->type, xi, N, dN, NULL);
+  for (int d = 0; d < 3; d++) {
+    c->centre[d] = 0;
+    c->lower[d]  = PETSC_MAX_REAL;
+    c->upper[d]  = PETSC_MIN_REAL;
+  }
+  for (int a = 0; a < e->nodes; a++) {
+    for (int d = 0; d < dim; d++) {
+      c->centre[d] += N[a] * x[a * dim + d];
+      c->lower[d] = PetscMin(c->lower[d], x[a * dim + d]);
+      c->upper[d] = PetscMax(c->upper[d], x[a * dim + d]);
+      for (int k = 0; k < e->dim; k++) t[k][d] += dN[a * e->dim + k] * x[a * dim + d];
+    }
+  }
+  if (dim == 2) {
+    c->normal[0] = t[0][1];
+    c->normal[1] = -t[0][0];
+    c->normal[2] = 0;
+  } else {
+    for (int d = 0; d < 3; d++) c->normal[d] = t[0][(d + 1) % 3] * t[1][(d + 2) % 3] - t[0][(d + 2) % 3] * t[1][(d + 1) % 3];
+  }
+  for (int d = 0; d < 3; d++) length += PetscSqr(c->normal[d]);
+  length = PetscSqrtReal(length);
+  for (int d = 0; d < 3; d++) {
+    if (length > 0) c->normal[d] /= length;
+    c->lower[d] -= e->order == 2 ? SEARCH_BULGE * size : 0;
+    c->upper[d] += e->order == 2 ? SEARCH_BULGE * size : 0;
+  }
+}
+
+/* Positions of a candidate's nodes while they are contact nodes still. */
+static void ImagePositions(ContactSearch s, ContactLists lists, const Candidate *c, PetscReal *x)
+{
+  const int dim = lists->dim;
+
+  for (int a = 0; a < ElementGet(c->facet.type)->nodes; a++) {
+    PetscReal y[3];
+
+    for (int d = 0; d < dim; d++) y[d] = lists->X[c->facet.nodes[a] * dim + d] + lists->u[c->facet.nodes[a] * dim + d];
+    SurfaceReflect(&s->images[c->image], dim, y, &x[a * dim]);
+  }
+}
+
+/* Positions of a candidate's nodes once they are points. */
+static void CandidatePositions(ContactLists lists, const Candidate *c, PetscReal *x)
+{
+  const int dim = lists->dim;
+
+  for (int a = 0; a < ElementGet(c->facet.type)->nodes; a++)
+    for (int d = 0; d < dim; d++) x[a * dim + d] = lists->point_X[c->facet.nodes[a] * dim + d] + lists->point_u[c->facet.nodes[a] * dim + d];
+}
+
+/* All faces and mirror images near a box, in an order that does not depend on the ranks. */
+static PetscErrorCode MakeCandidates(ContactSearch s, ContactLists lists, const PetscReal box[6], PetscReal distance, SearchField *field)
+{
+  const int dim = lists->dim;
+  PetscReal x[FACE_MAX_NODES * 3];
+
+  PetscFunctionBeginUser;
+  field->n_candidates = 0;
+  PetscCall(PetscMalloc1(field->n_records * s->n_images, &field->candidates));
+  for (PetscInt r = 0; r < field->n_records; r++) {
+    const FaceRecord *record = &field->records[r];
+
+    for (int m = 0; m < s->n_images; m++) {
+      Candidate *c = &field->candidates[field->n_candidates];
+      PetscReal  own[6];
+
+      if (s->images[m].left_out) continue;
+      *c           = (Candidate){.record = r, .image = m, .facet = SurfaceImageFacet(&record->facet, &s->images[m])};
+      c->facet.tag = record->facet.tag * SURFACE_MAX_IMAGES + m;
+      ImagePositions(s, lists, c, x);
+      SearchCandidatePlace(dim, x, record->size, c);
+      for (int d = 0; d < 3; d++) {
+        own[d]     = c->lower[d];
+        own[3 + d] = c->upper[d];
+      }
+      if (SearchBoxesMeet(own, box, dim, distance)) field->n_candidates++;
+    }
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The maps of the faces that arrived. */
+static PetscErrorCode FetchMaps(ContactSearch s, SearchField *field)
+{
+  PetscSFNode *remote;
+  PetscSF      faces;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(field->n_records, &remote));
+  for (PetscInt r = 0; r < field->n_records; r++) remote[r] = (PetscSFNode){field->records[r].home, field->records[r].home_face};
+  PetscCall(PetscSFCreate(s->mesh->comm, &faces));
+  PetscCall(PetscSFSetGraph(faces, s->master->n_faces, field->n_records, NULL, PETSC_OWN_POINTER, remote, PETSC_OWN_POINTER));
+  PetscCall(PetscSFSetUp(faces));
+  PetscCall(FaceMapsFetch(faces, s->maps, &field->maps));
+  PetscCall(PetscSFDestroy(&faces));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode SearchFieldCreate(ContactSearch s, const PetscReal *u, PetscReal t, const PetscReal box[6], PetscReal distance, ContactLists lists,
+                                 SearchField *field)
+{
+  Mesh          mesh = s->mesh;
+  PetscMPIInt   size;
+  PetscReal    *boxes;
+  NodeGeometry *geometry = NULL;
+
+  PetscFunctionBeginUser;
+  *field     = (SearchField){0};
+  lists->dim = mesh->dim;
+  if (s->fit->degree) {
+    PetscCall(PetscMalloc1(s->master->rigid ? s->master->rigid->n_nodes : mesh->n_nodes, &geometry));
+    PetscCall(SurfaceNodeGeometry(s->master, s->loads, u, t, geometry));
+  }
+  if (!s->master)
+    PetscCall(PetscMalloc1(0, &field->records));
+  else if (s->master->rigid)
+    PetscCall(SearchPickRigidFaces(s, geometry, t, box, distance, &field->n_records, &field->records));
+  else {
+    PetscCallMPI(MPI_Comm_size(mesh->comm, &size));
+    PetscCall(PetscMalloc1(6 * size, &boxes));
+    PetscCallMPI(MPI_Allgather(box, 6, MPIU_REAL, boxes, 6, MPIU_REAL, mesh->comm));
+    PetscCall(SearchExchangeFaces(s, geometry, u, boxes, distance, &field->n_records, &field->records));
+    PetscCall(PetscFree(boxes));
+  }
+  FaceRecordsSort(field->n_records, field->records);
+  PetscCall(PetscFree(geometry));
+  if (s->maps) PetscCall(FetchMaps(s, field));
+  PetscCall(ListsCreateNodes(s, field, lists));
+  PetscCall(ListsUpdateNodes(s, lists, u, t));
+  PetscCall(MakeCandidates(s, lists, box, distance, field));
+  PetscCall(ListsCreatePoints(s, lists, field));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode SearchFieldDestroy(SearchField *field)
+{
+  PetscFunctionBeginUser;
+  PetscCall(FaceMapsDestroy(&field->maps));
+  PetscCall(PetscFree(field->candidates));
+  PetscCall(PetscFree(field->records));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscBool CandidateFaces(const Nearest *look, const Candidate *c)
+{
+  PetscReal cosine = 0;
+
+  for (int d = 0; d < look->lists->dim; d++) cosine += look->normal[d] * c->normal[d];
+  if (cosine >= SEARCH_OPPOSED) return PETSC_FALSE;
+  for (int a = 0; a < ElementGet(c->facet.type)->nodes; a++)
+    for (PetscInt k = 0; k < look->own; k++)
+      if (look->lists->point_node[look->lists->point_ptr[c->facet.nodes[a]]] == look->lists->slave_node[look->lists->slave_ptr[look->q] + k])
+        return PETSC_FALSE;
+  return PETSC_TRUE;
+}
+
+/* Two facets share the foot on the edge between them; there, as wherever facets are equally near, the smaller tag counts and not round-off, which fits would
+   show: they start from the nearest facet and its normal. */
+static void NearestVisit(void *context, int index, double *bound)
+{
+  Nearest         *look = context;
+  const int        dim  = look->lists->dim;
+  const Candidate *c    = &look->candidates[index];
+  Facet            own  = c->facet; /* without free edges: the distance to the facet itself, not to its extension */
+  PetscReal        x[FACE_MAX_NODES * 3], distance;
+  Foot             foot;
+
+  if (!CandidateFaces(look, c)) return;
+  CandidatePositions(look->lists, c, x);
+  own.free_edges = 0;
+  for (int a = 0; a < ElementGet(own.type)->nodes; a++) {
+    own.nodes[a] = a;
+    for (int d = 0; d < dim; d++) x[a * dim + d] -= look->x[d];
+  }
+  FacetProject(dim, &own, x, &foot);
+  distance = PetscAbsReal(foot.gap);
+  if (distance > *bound) return;
+  look->least = PetscMin(distance, look->least);
+  *bound      = look->least + look->tie;
+  if (look->best >= 0 && look->distance <= *bound && c->facet.tag > look->candidates[look->best].facet.tag) return;
+  look->distance = distance;
+  look->best     = index;
+  look->foot     = foot;
+}
+
+/* Curvature of the master around its nearest facet: turn of the normals of the facets that touch it over the distance of their centres. */
+static PetscReal ListCurvature(const Nearest *look, PetscInt n, const int *found)
+{
+  const Candidate *c     = &look->candidates[look->best];
+  PetscReal        kappa = 0;
+
+  for (PetscInt i = 0; i < n; i++) {
+    const Candidate *o      = &look->candidates[found[i]];
+    PetscReal        cosine = 0, distance = 0;
+    PetscBool        touch = PETSC_FALSE;
+
+    for (int a = 0; a < ElementGet(c->facet.type)->corners; a++)
+      for (int b = 0; b < ElementGet(o->facet.type)->corners; b++) touch = (PetscBool)(touch || c->facet.nodes[a] == o->facet.nodes[b]);
+    for (int d = 0; d < 3; d++) {
+      cosine += c->normal[d] * o->normal[d];
+      distance += PetscSqr(c->centre[d] - o->centre[d]);
+    }
+    if (touch && distance > 0) kappa = PetscMax(kappa, PetscAcosReal(PetscMax(-1, PetscMin(1, cosine))) / PetscSqrtReal(distance));
+  }
+  return kappa;
+}
+
+PetscErrorCode ListBufferAddPoint(ListBuffer *buffer, PetscInt first, PetscInt point)
+{
+  PetscFunctionBeginUser;
+  if (buffer->position[point] >= first) PetscFunctionReturn(PETSC_SUCCESS);
+  if (buffer->n_points == buffer->points_room)
+    PetscCall(PetscRealloc((buffer->points_room = 2 * buffer->points_room + 1024) * sizeof(PetscInt), &buffer->point));
+  buffer->position[point]           = buffer->n_points;
+  buffer->point[buffer->n_points++] = point;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Appends the found candidates to the slave point's list, which starts at first; facets' nodes become positions in it. */
+static PetscErrorCode ListAddFacets(const Nearest *look, PetscInt n, const int *found, const FaceRecord *records, PetscInt first, ListBuffer *buffer)
+{
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < n; i++) {
+    const Candidate *c     = &look->candidates[found[i]];
+    Facet            facet = c->facet;
+
+    if (buffer->n == buffer->room) {
+      buffer->room = 2 * buffer->room + 64;
+      PetscCall(PetscRealloc(buffer->room * sizeof(Facet), &buffer->facet));
+      PetscCall(PetscRealloc(buffer->room * sizeof(PetscReal), &buffer->size));
+    }
+    for (int a = 0; a < ElementGet(facet.type)->nodes; a++) {
+      PetscCall(ListBufferAddPoint(buffer, first, facet.nodes[a]));
+      facet.nodes[a] = (int)(buffer->position[facet.nodes[a]] - first);
+    }
+    buffer->size[buffer->n]    = records[c->record].size;
+    buffer->facet[buffer->n++] = facet;
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Drops found candidates that do not face the slave point. */
+static int KeepFacing(const Nearest *look, int n, int *found)
+{
+  int kept = 0;
+
+  for (int i = 0; i < n; i++)
+    if (CandidateFaces(look, &look->candidates[found[i]])) found[kept++] = found[i];
+  return kept;
+}
+
+/* Looks for the nearest facet of every slave point, lists it with what surrounds it, and fits the surface there. */
+static PetscErrorCode ListsFill(ContactSearch s, ContactLists lists, const PetscReal *normals, const SearchField *field, Fitting *fit, PetscReal motion)
+{
+  const int        dim          = lists->dim;
+  const PetscInt   n_candidates = field->n_candidates;
+  const Candidate *candidates   = field->candidates;
+  Tree             tree;
+  double          *lower, *upper;
+  int             *found, count;
+  ListBuffer       buffer = {0};
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc4(n_candidates * dim, &lower, n_candidates * dim, &upper, n_candidates, &found, lists->n_points, &buffer.position));
+  for (PetscInt i = 0; i < n_candidates; i++) {
+    for (int d = 0; d < dim; d++) {
+      lower[i * dim + d] = candidates[i].lower[d];
+      upper[i * dim + d] = candidates[i].upper[d];
+    }
+  }
+  for (PetscInt p = 0; p < lists->n_points; p++) buffer.position[p] = -1;
+  PetscCheck(!TreeBuild(dim, (int)n_candidates, lower, upper, &tree), PETSC_COMM_SELF, PETSC_ERR_MEM, "no memory for the search tree");
+  for (PetscInt q = 0; q < lists->n_slaves; q++) {
+    const PetscInt first = buffer.n_points;
+    Nearest        look  = {.lists      = lists,
+                            .candidates = candidates,
+                            .q          = q,
+                            .own        = s->slaves->ptr[q + 1] - s->slaves->ptr[q],
+                            .best       = -1,
+                            .least      = s->reach + motion,
+                            .tie        = FACET_TIE * (s->reach + motion)};
+    double         bound = look.least + look.tie;
+
+    for (int d = 0; d < dim; d++) look.x[d] = lists->slave_X[q * dim + d] + lists->slave_u[q * dim + d];
+    for (int d = 0; d < 3; d++) look.normal[d] = normals[3 * q + d];
+    lists->list_ptr[q]  = first;
+    lists->facet_ptr[q] = buffer.n;
+    lists->kappa[q]     = 0;
+    lists->nearest[q]   = -1;
+    TreeClosest(tree, look.x, &bound, NearestVisit, &look);
+    if (look.best < 0) continue;
+    count           = TreeNear(tree, look.x, look.least + s->margin + motion, (int)n_candidates, found);
+    count           = KeepFacing(&look, count, found);
+    lists->kappa[q] = ListCurvature(&look, count, found);
+    for (int i = 0; i < count; i++)
+      if (found[i] == look.best) lists->nearest[q] = i;
+    if (fit) PetscCall(FittingSlave(fit, &look, q, first, &buffer));
+    PetscCall(ListAddFacets(&look, count, found, field->records, first, &buffer));
+  }
+  lists->list_ptr[lists->n_slaves]  = buffer.n_points;
+  lists->facet_ptr[lists->n_slaves] = buffer.n;
+  lists->list_point                 = buffer.point;
+  lists->facet                      = buffer.facet;
+  lists->facet_size                 = buffer.size;
+  TreeDestroy(&tree);
+  PetscCall(PetscFree4(lower, upper, found, buffer.position));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* SearchLists - for every slave point of this rank the facets near it and the points these stand on, from whatever rank.
+
+   Collective. u[mesh n_nodes*dim]: local displacements (length), ghosts included; t: load parameter, for rigid tools; motion: relative
+   motion (length) the lists must be good for. Listed is what faces the slave within SEARCH_MARGIN of the nearest facet, if that is within
+   SEARCH_REACH; order and content do not depend on the ranks. The caller destroys the lists with ListsDestroy(). */
+PetscErrorCode SearchLists(ContactSearch s, const PetscReal *u, PetscReal t, PetscReal motion, ContactLists *out)
+{
+  const PetscReal distance = s->reach + PetscMax(s->margin, SearchFitReach(s)) + 2 * motion;
+  PetscReal       box[6], *normals;
+  SearchField     field;
+  ContactLists    lists;
+  Fitting         fit;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscNew(&lists));
+  lists->t = NAN; /* not updated yet */
+  PetscCall(SlavePointsMove(s->slaves, u));
+  SearchSlaveBox(s, box);
+  PetscCall(SearchFieldCreate(s, u, t, box, distance, lists, &field));
+  PetscCall(ListsCreateSlaves(s, lists));
+  PetscCall(PetscMalloc1(3 * lists->n_slaves, &normals));
+  PetscCall(SlavePointsNormals(s->slaves, u, normals));
+  if (s->fit->degree) PetscCall(FittingCreate(s, lists, &field, &fit));
+  if (s->fit->degree && s->fit->global_frame) PetscCall(SurfaceMeanNormal(s->master, s->loads, s->n_images, s->images, u, t, fit.plane, NULL));
+  PetscCall(ListsFill(s, lists, normals, &field, s->fit->degree ? &fit : NULL, motion));
+  if (s->fit->degree) PetscCall(FittingDestroy(&fit));
+  PetscCall(ListsUpdate(s, lists, u, t, NULL));
+  for (PetscInt q = 0; q < lists->n_slaves; q++) ListsCentre(lists, q, &lists->centre[2 * q]);
+  PetscCall(PetscFree(normals));
+  PetscCall(SearchFieldDestroy(&field));
+  *out = lists;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* SearchDistance - signed distance (length) of a point to the whole master, the same on all ranks; mirror images are left out.
+
+   Collective. u[mesh n_nodes*dim]: local displacements (length), ghosts included; x: the point's position relative to the mesh's centre. */
+PetscErrorCode SearchDistance(ContactSearch s, const PetscReal *u, PetscReal t, const PetscReal x[3], PetscReal *gap)
+{
+  Mesh      mesh = s->mesh;
+  const int dim  = mesh->dim;
+  PetscInt  n    = s->master->rigid ? s->master->rigid->n_nodes : mesh->n_nodes;
+  double   *relative;
+  Foot      foot;
+  struct {
+    double distance;
+    int    rank;
+  } mine = {PETSC_MAX_REAL, 0}, least;
+
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Comm_rank(mesh->comm, &mine.rank));
+  PetscCall(PetscMalloc1(n * dim, &relative));
+  for (PetscInt i = 0; i < n; i++) {
+    PetscReal y[3] = {0, 0, 0};
+
+    if (s->master->rigid) SearchRigidPosition(s, i, t, y);
+    for (int d = 0; d < dim; d++) relative[i * dim + d] = (s->master->rigid ? y[d] : mesh->coords[i * dim + d] + u[i * dim + d]) - x[d];
+  }
+  if (FacetClosest(dim, (int)s->master->n_faces, s->master->faces, relative, -1, &foot)) {
+    mine.distance = PetscSqrtReal(PetscSqr(foot.gap) + PetscSqr(foot.beyond));
+    *gap          = foot.gap;
+  }
+  PetscCallMPI(MPI_Allreduce(&mine, &least, 1, MPI_DOUBLE_INT, MPI_MINLOC, mesh->comm));
+  PetscCallMPI(MPI_Bcast(gap, 1, MPIU_REAL, least.rank, mesh->comm));
+  PetscCall(PetscFree(relative));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

@@ -1,0 +1,272 @@
+#include "search/slavepoints.h"
+
+/* Makes the star forest from the owners to the nodes, whose keys are complete. */
+static PetscErrorCode CreateForest(SlavePoints points)
+{
+  PetscSFNode *remote;
+  const int    dim = points->mesh->dim;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(points->n_nodes, &remote));
+  for (PetscInt i = 0; i < points->n_nodes; i++) remote[i] = (PetscSFNode){points->nodes[i].owner, points->nodes[i].local};
+  PetscCall(PetscSFCreate(points->mesh->comm, &points->sf));
+  PetscCall(PetscSFSetGraph(points->sf, points->mesh->n_nodes, points->n_nodes, NULL, PETSC_OWN_POINTER, remote, PETSC_OWN_POINTER));
+  PetscCall(PetscSFSetUp(points->sf));
+  PetscCallMPI(MPI_Type_contiguous(dim, MPIU_REAL, &points->block));
+  PetscCallMPI(MPI_Type_commit(&points->block));
+  PetscCall(PetscCalloc1(points->n_nodes * dim, &points->u));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* SlavePointsCreateNodes - slave points that are nodes: S = 1, no offset. Collective. n, nodes[n]: local nodes. */
+PetscErrorCode SlavePointsCreateNodes(ContactSurface surface, PetscInt n, const PetscInt nodes[], SlavePoints *out)
+{
+  Mesh        mesh = surface->mesh;
+  SlavePoints points;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscNew(&points));
+  points->mesh    = mesh;
+  points->surface = surface;
+  points->n_nodes = points->n = n;
+  PetscCall(PetscMalloc1(n, &points->nodes));
+  PetscCall(PetscMalloc6(n + 1, &points->ptr, n, &points->node, n, &points->S, n, &points->hat, n, &points->weight, n * mesh->dim, &points->offset));
+  PetscCall(PetscArrayzero(points->offset, n * mesh->dim));
+  for (PetscInt i = 0; i < n; i++) {
+    points->nodes[i] = (NodeKey){.id = mesh->node_id[nodes[i]], .owner = mesh->node_owner[nodes[i]], .local = mesh->node_owner_local[nodes[i]]};
+    for (int d = 0; d < mesh->dim; d++) points->nodes[i].X[d] = mesh->coords[nodes[i] * mesh->dim + d];
+  }
+  n = NodeKeysUnique(n, points->nodes);
+  for (PetscInt q = 0; q < n; q++) {
+    points->ptr[q]  = q;
+    points->node[q] = NodeKeysFind(n, points->nodes, mesh->node_id[nodes[q]]);
+    points->S[q] = points->hat[q] = points->weight[q] = 1;
+  }
+  points->ptr[n] = n;
+  PetscCall(CreateForest(points));
+  *out = points;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* A face goes to each rank that owns one of its nodes. */
+static PetscBool OwnsNode(const void *context, PetscInt f, PetscMPIInt r)
+{
+  const ContactSurface surface = (const ContactSurface)context;
+  const Facet         *facet   = &surface->faces[f];
+
+  for (int a = 0; a < ElementGet(facet->type)->nodes; a++)
+    if (surface->mesh->node_owner[facet->nodes[a]] == r) return PETSC_TRUE;
+  return PETSC_FALSE;
+}
+
+/* Nodes and faces of the points from the faces that arrived. */
+static PetscErrorCode TakeRecords(SlavePoints points, PetscInt n_records, FaceRecord *records)
+{
+  PetscSFNode *remote;
+
+  PetscFunctionBeginUser;
+  points->n_faces = n_records;
+  PetscCall(PetscMalloc2(n_records, &points->faces, n_records + 1, &points->first));
+  PetscCall(PetscMalloc1(n_records * FACE_MAX_NODES, &points->nodes));
+  for (PetscInt f = 0; f < n_records; f++) {
+    FaceRecordKeys(&records[f], &points->nodes[points->n_nodes]);
+    points->n_nodes += ElementGet(records[f].facet.type)->nodes;
+  }
+  points->n_nodes = NodeKeysUnique(points->n_nodes, points->nodes);
+  PetscCall(PetscMalloc1(n_records, &remote));
+  for (PetscInt f = 0; f < n_records; f++) {
+    points->faces[f] = records[f].facet;
+    for (int a = 0; a < ElementGet(records[f].facet.type)->nodes; a++)
+      points->faces[f].nodes[a] = NodeKeysFind(points->n_nodes, points->nodes, records[f].id[a]);
+    remote[f] = (PetscSFNode){records[f].home, records[f].home_face};
+  }
+  PetscCall(PetscSFCreate(points->mesh->comm, &points->face_sf));
+  PetscCall(PetscSFSetGraph(points->face_sf, points->surface->n_faces, n_records, NULL, PETSC_OWN_POINTER, remote, PETSC_OWN_POINTER));
+  PetscCall(PetscSFSetUp(points->face_sf));
+  PetscCallMPI(MPI_Type_contiguous(FACE_RULE_POINTS * points->mesh->dim, MPIU_REAL, &points->face_block));
+  PetscCallMPI(MPI_Type_commit(&points->face_block));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* SlavePointsCreateQuadrature - the points of surface contact, on this rank those of every face that touches one of its nodes; offsets 0.
+
+   Collective. geometry: axisymmetric weights are over 360 degrees; finer: quadrature of one order more. */
+PetscErrorCode SlavePointsCreateQuadrature(ContactSurface surface, Geometry geometry, int finer, SlavePoints *out)
+{
+  const int   dim = surface->mesh->dim;
+  PetscInt    n_records, n = 0, entries = 0;
+  FaceRecord *records;
+  SlavePoints points;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscNew(&points));
+  points->mesh    = surface->mesh;
+  points->surface = surface;
+  points->finer   = finer;
+  PetscCall(FaceRecordsShare(surface, NULL, NULL, OwnsNode, surface, &n_records, &records));
+  FaceRecordsSort(n_records, records);
+  PetscCall(TakeRecords(points, n_records, records));
+  for (PetscInt f = 0; f < n_records; f++) {
+    points->first[f] = n;
+    n += FaceRuleGet(records[f].facet.type, finer)->n;
+    entries += FaceRuleGet(records[f].facet.type, finer)->n * ElementGet(records[f].facet.type)->nodes;
+  }
+  points->first[n_records] = points->n = n;
+  PetscCall(
+    PetscMalloc6(n + 1, &points->ptr, entries, &points->node, entries, &points->S, entries, &points->hat, n, &points->weight, n * dim, &points->offset));
+  PetscCall(PetscArrayzero(points->offset, n * dim));
+  entries = 0;
+  for (PetscInt f = 0; f < n_records; f++) {
+    const Facet    *facet = &points->faces[f];
+    const FaceRule *rule  = FaceRuleGet(facet->type, finer);
+    const int       nodes = ElementGet(facet->type)->nodes;
+    double          X[FACE_MAX_NODES * 3];
+
+    for (int a = 0; a < nodes; a++)
+      for (int d = 0; d < dim; d++) X[a * dim + d] = points->nodes[facet->nodes[a]].X[d];
+    FaceRuleAreas(rule, facet->type, dim, geometry, X, &points->weight[points->first[f]], NULL);
+    for (int q = 0; q < rule->n; q++) {
+      points->ptr[points->first[f] + q] = entries;
+      for (int a = 0; a < nodes; a++, entries++) {
+        points->node[entries] = facet->nodes[a];
+        points->S[entries]    = rule->N[q][a];
+        points->hat[entries]  = rule->hat[q][a];
+      }
+    }
+  }
+  points->ptr[n] = entries;
+  PetscCall(PetscFree(records));
+  PetscCall(CreateForest(points));
+  *out = points;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* SlavePointIsOwn - of the ranks that hold point q, the owner of its first node is the one to count it. Not collective. */
+PetscBool SlavePointIsOwn(SlavePoints points, PetscInt q, PetscMPIInt rank)
+{
+  return points->nodes[points->node[points->ptr[q]]].owner == rank ? PETSC_TRUE : PETSC_FALSE;
+}
+
+/* SlavePointsDestroy - Collective. */
+PetscErrorCode SlavePointsDestroy(SlavePoints *points)
+{
+  SlavePoints p = *points;
+
+  PetscFunctionBeginUser;
+  if (!p) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscSFDestroy(&p->sf));
+  PetscCallMPI(MPI_Type_free(&p->block));
+  if (p->face_sf) {
+    PetscCall(PetscSFDestroy(&p->face_sf));
+    PetscCallMPI(MPI_Type_free(&p->face_block));
+    PetscCall(PetscFree2(p->faces, p->first));
+    PetscCall(FaceMapsDestroy(&p->maps));
+  }
+  PetscCall(PetscFree6(p->ptr, p->node, p->S, p->hat, p->weight, p->offset));
+  PetscCall(PetscFree(p->nodes));
+  PetscCall(PetscFree(p->u));
+  PetscCall(PetscFree(*points));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* SlavePointsMove - Collective. u[mesh n_nodes*dim]: local displacements (length), read at owned nodes. */
+PetscErrorCode SlavePointsMove(SlavePoints points, const PetscReal *u)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscSFBcastBegin(points->sf, points->block, u, points->u, MPI_REPLACE));
+  PetscCall(PetscSFBcastEnd(points->sf, points->block, u, points->u, MPI_REPLACE));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* SlavePointsPosition - Not collective. x[dim]: relative to the mesh's centre (length). */
+void SlavePointsPosition(SlavePoints points, PetscInt q, PetscReal *x)
+{
+  const int dim = points->mesh->dim;
+
+  for (int d = 0; d < dim; d++) x[d] = 0;
+  for (PetscInt k = points->ptr[q]; k < points->ptr[q + 1]; k++)
+    for (int d = 0; d < dim; d++) x[d] += points->S[k] * (points->nodes[points->node[k]].X[d] + points->u[points->node[k] * dim + d]);
+}
+
+/* Nodes: the area-weighted mean normal of the faces around. */
+static PetscErrorCode NodeNormals(SlavePoints points, const PetscReal *u, PetscReal *normals)
+{
+  Mesh       mesh = points->mesh;
+  PetscReal *area, *all, *at;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc3(mesh->n_nodes, &area, 3 * mesh->n_nodes, &all, 3 * points->n_nodes, &at));
+  PetscCall(SurfaceNodeAreas(points->surface, mesh->dim == 3 ? GEOMETRY_SOLID : GEOMETRY_PLANE_STRAIN, u, area, all));
+  for (PetscInt i = 0; i < points->n_nodes; i++) /* slave nodes are owned */
+    for (int d = 0; d < 3; d++) at[3 * i + d] = all[3 * points->nodes[i].local + d];
+  for (PetscInt q = 0; q < points->n; q++)
+    for (int d = 0; d < 3; d++) normals[3 * q + d] = at[3 * points->node[q] + d];
+  PetscCall(PetscFree3(area, all, at));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* SlavePointsNormals - Collective. u[mesh n_nodes*dim]: that of the last SlavePointsMove(); normals[n*3]: out of the slave's body, of any length. */
+PetscErrorCode SlavePointsNormals(SlavePoints points, const PetscReal *u, PetscReal *normals)
+{
+  const int dim = points->mesh->dim;
+
+  PetscFunctionBeginUser;
+  if (!points->face_sf) PetscCall(NodeNormals(points, u, normals));
+  for (PetscInt f = 0; f < points->n_faces; f++) {
+    const Facet *facet = &points->faces[f];
+    double       x[FACE_MAX_NODES * 3], area[FACE_RULE_POINTS];
+
+    for (int a = 0; a < ElementGet(facet->type)->nodes; a++)
+      for (int d = 0; d < dim; d++) x[a * dim + d] = points->nodes[facet->nodes[a]].X[d] + points->u[facet->nodes[a] * dim + d];
+    FaceRuleAreas(FaceRuleGet(facet->type, points->finer), facet->type, dim, GEOMETRY_SOLID, x, area, &normals[3 * points->first[f]]);
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* SlavePointsSetOffsets - Collective. offset: of this rank's faces (length). */
+PetscErrorCode SlavePointsSetOffsets(SlavePoints points, const PetscReal *offset)
+{
+  const int  dim = points->mesh->dim;
+  PetscReal *arrived;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(points->n_faces * FACE_RULE_POINTS * dim, &arrived));
+  PetscCall(PetscSFBcastBegin(points->face_sf, points->face_block, offset, arrived, MPI_REPLACE));
+  PetscCall(PetscSFBcastEnd(points->face_sf, points->face_block, offset, arrived, MPI_REPLACE));
+  for (PetscInt f = 0; f < points->n_faces; f++)
+    PetscCall(PetscArraycpy(&points->offset[points->first[f] * dim], &arrived[f * FACE_RULE_POINTS * dim], (points->first[f + 1] - points->first[f]) * dim));
+  PetscCall(PetscFree(arrived));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* SlavePointsSetMaps - Collective. maps: of this rank's faces. Once they are there nothing is done. */
+PetscErrorCode SlavePointsSetMaps(SlavePoints points, const FaceMaps *maps)
+{
+  PetscFunctionBeginUser;
+  if (!points->maps.ptr) PetscCall(FaceMapsFetch(points->face_sf, maps, &points->maps));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* SlavePointsHatAreas - Collective. geometry: axisymmetric areas are over 360 degrees; u[n_nodes*dim]: local displacements, ghosts included. */
+PetscErrorCode SlavePointsHatAreas(SlavePoints points, Geometry geometry, const PetscReal *u, PetscReal *area)
+{
+  Mesh      mesh = points->mesh;
+  const int dim  = mesh->dim;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscArrayzero(area, mesh->n_nodes));
+  for (PetscInt f = 0; f < points->surface->n_faces; f++) {
+    const Facet    *facet = &points->surface->faces[f];
+    const FaceRule *rule  = FaceRuleGet(facet->type, points->finer);
+    const int       nodes = ElementGet(facet->type)->nodes;
+    double          x[FACE_MAX_NODES * 3], parts[FACE_RULE_POINTS];
+
+    for (int a = 0; a < nodes; a++)
+      for (int d = 0; d < dim; d++) x[a * dim + d] = mesh->coords[facet->nodes[a] * dim + d] + (u ? u[facet->nodes[a] * dim + d] : 0);
+    FaceRuleAreas(rule, facet->type, dim, geometry, x, parts, NULL);
+    for (int q = 0; q < rule->n; q++)
+      for (int a = 0; a < nodes; a++) area[facet->nodes[a]] += parts[q] * rule->hat[q][a];
+  }
+  PetscCall(MeshSumNodes(mesh, 1, area));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

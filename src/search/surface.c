@@ -1,0 +1,574 @@
+#include "kernels/elementkernel.h"
+#include "base/refusal.h"
+#include "search/surface.h"
+
+/* A plane of symmetry may deviate from flatness, and its normal from an axis, by this fraction of the model's size: round-off of a CAD kernel. */
+#define SURFACE_FLATNESS 1e-6
+/* Directions are told apart by the cells of a cube's faces, so many along an edge; a cell is some 20 degrees wide, so normals count as opposed
+   up to this cosine. */
+enum { SURFACE_CELLS = 4, SURFACE_DIRECTIONS = 6 * SURFACE_CELLS * SURFACE_CELLS };
+#define SURFACE_OPPOSED 0.25
+
+static void FaceCoordinates(ContactSurface surface, const Facet *face, const PetscReal *u, double *X)
+{
+  Mesh             mesh   = surface->mesh;
+  const PetscReal *coords = surface->rigid ? surface->rigid->coords : mesh->coords;
+
+  for (int a = 0; a < ElementGet(face->type)->nodes; a++) {
+    for (int d = 0; d < mesh->dim; d++) { X[a * mesh->dim + d] = coords[face->nodes[a] * mesh->dim + d] + (u ? u[face->nodes[a] * mesh->dim + d] : 0); }
+  }
+}
+
+/* Plain area (length in 2D), also in axisymmetric scenes: sizes are lengths in the meridian. */
+static PetscReal FaceArea(ContactSurface surface, const Facet *face, const double *X)
+{
+  const int dim                  = surface->mesh->dim;
+  double    area[FACE_MAX_NODES] = {0}, sum = 0;
+
+  FaceAreaKernel(face->type, dim, dim == 3 ? GEOMETRY_SOLID : GEOMETRY_PLANE_STRAIN, X, area, NULL);
+  for (int a = 0; a < ElementGet(face->type)->nodes; a++) sum += area[a];
+  return sum;
+}
+
+static PetscErrorCode SurfaceFacesFromGroup(ContactSurface surface)
+{
+  const MeshGroup *group = surface->group;
+
+  PetscFunctionBeginUser;
+  surface->n_faces = group->n_faces;
+  PetscCall(PetscCalloc2(surface->n_faces, &surface->faces, surface->n_faces, &surface->face_size));
+  for (PetscInt f = 0; f < surface->n_faces; f++) {
+    Facet   *face = &surface->faces[f];
+    PetscInt nodes[FACE_MAX_NODES];
+
+    face->type = MeshFaceNodes(surface->mesh, group, f, nodes);
+    face->tag  = (long)group->face_tag[f];
+    for (int a = 0; a < ElementGet(face->type)->nodes; a++) face->nodes[a] = (int)nodes[a];
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode SurfaceFacesFromRigid(ContactSurface surface)
+{
+  const MeshRigid *rigid = surface->rigid;
+
+  PetscFunctionBeginUser;
+  surface->n_faces = rigid->n_faces;
+  PetscCall(PetscCalloc2(surface->n_faces, &surface->faces, surface->n_faces, &surface->face_size));
+  for (PetscInt f = 0; f < surface->n_faces; f++) {
+    Facet *face = &surface->faces[f];
+
+    face->type = rigid->face_type[f];
+    face->tag  = (long)rigid->face_tag[f];
+    for (int a = 0; a < ElementGet(face->type)->nodes; a++) face->nodes[a] = (int)rigid->face_nodes[rigid->face_ptr[f] + a];
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Stiffness of the layer of elements below a face: E over element height, height = volume over area (simplices: dim times that). */
+static PetscReal FaceStiffness(ContactSurface surface, Elasticity elasticity, PetscInt f, PetscReal area)
+{
+  Mesh           mesh = surface->mesh;
+  const PetscInt c    = surface->group->face_cell[f];
+  const Element *e    = ElementGet(mesh->cell_type[c]);
+  double         X[ELEMENT_MAX_NODES * 3], volume;
+
+  MeshCellCoordinates(mesh, c, X);
+  volume = CellVolume(mesh->cell_type[c], mesh->dim, mesh->dim == 3 ? GEOMETRY_SOLID : GEOMETRY_PLANE_STRAIN, X);
+  return ElasticityCellModulus(elasticity, c) * area / (volume * (e->corners == e->dim + 1 ? e->dim : 1));
+}
+
+/* Longest distance between two corners. */
+static PetscReal FaceExtent(int dim, const Facet *face, const double *X)
+{
+  PetscReal most = 0;
+
+  for (int a = 0; a < ElementGet(face->type)->corners; a++) {
+    for (int b = 0; b < a; b++) {
+      PetscReal r2 = 0;
+
+      for (int d = 0; d < dim; d++) r2 += PetscSqr(X[a * dim + d] - X[b * dim + d]);
+      most = PetscMax(most, PetscSqrtReal(r2));
+    }
+  }
+  return most;
+}
+
+static PetscErrorCode SurfaceMeasure(ContactSurface surface, Elasticity elasticity)
+{
+  Mesh      mesh   = surface->mesh;
+  PetscReal sum[4] = {0, 0, 0, 0}, most[2] = {0, 0}; /* area, faces, size, stiffness * area; size, extent */
+  double    X[FACE_MAX_NODES * 3];
+
+  PetscFunctionBeginUser;
+  for (PetscInt f = 0; f < surface->n_faces; f++) {
+    PetscReal area;
+
+    FaceCoordinates(surface, &surface->faces[f], NULL, X);
+    area                  = FaceArea(surface, &surface->faces[f], X);
+    surface->face_size[f] = mesh->dim == 3 ? PetscSqrtReal(area) : area;
+    most[0]               = PetscMax(most[0], surface->face_size[f]);
+    most[1]               = PetscMax(most[1], FaceExtent(mesh->dim, &surface->faces[f], X));
+    sum[0] += area;
+    sum[1] += 1;
+    sum[2] += surface->face_size[f];
+    if (surface->group) sum[3] += area * FaceStiffness(surface, elasticity, f, area);
+  }
+  if (surface->group) {
+    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sum, 4, MPIU_REAL, MPI_SUM, mesh->comm));
+    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, most, 2, MPIU_REAL, MPI_MAX, mesh->comm));
+  }
+  surface->mean_size  = sum[2] / sum[1];
+  surface->order      = mesh->order;
+  surface->max_size   = most[0];
+  surface->max_extent = most[1];
+  surface->stiffness  = sum[3] / sum[0];
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* SurfaceCreate - the contact surface of that name: a surface of a deformable body or of a meshed rigid tool.
+
+   path, key: the scene's key that names it, for messages. Refuses unknown and empty surfaces. Collective. */
+PetscErrorCode SurfaceCreate(Mesh mesh, Scene scene, Elasticity elasticity, const char *path, const char *key, const char *name, ContactSurface *out)
+{
+  ContactSurface surface;
+  PetscInt       faces;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscNew(&surface));
+  surface->mesh  = mesh;
+  surface->body  = -1;
+  surface->rigid = MeshFindRigid(mesh, name);
+  if (surface->rigid) {
+    surface->body = MeshFindBody(scene, name, PETSC_TRUE);
+    PetscCall(SurfaceFacesFromRigid(surface));
+    faces = surface->n_faces;
+  } else {
+    MeshGroup *group;
+
+    PetscCall(MeshGetGroup(mesh, scene, path, key, name, mesh->dim - 1, &group));
+    surface->group = group;
+    PetscCall(SurfaceFacesFromGroup(surface));
+    PetscCallMPI(MPI_Allreduce(&surface->n_faces, &faces, 1, MPIU_INT, MPI_SUM, mesh->comm));
+  }
+  if (!faces)
+    PetscCall(RefuseInput(mesh->comm, "%s: the contact surface '%s' has no faces; allowed: a physical surface with at least one face",
+                          SceneWhere(scene, path, key), name));
+  PetscCall(SurfaceMeasure(surface, elasticity));
+  *out = surface;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* SurfaceDestroy - Collective. */
+PetscErrorCode SurfaceDestroy(ContactSurface *surface)
+{
+  PetscFunctionBeginUser;
+  if (!*surface) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscFree2((*surface)->faces, (*surface)->face_size));
+  PetscCall(PetscFree(*surface));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* An edge of a face (an end in 2D) by the rank-independent numbers of its corners. */
+typedef struct {
+  PetscInt id[2], face;
+  int      edge;
+} FaceEdge;
+
+static int FaceEdgeCompare(const void *a, const void *b)
+{
+  const FaceEdge *p = a, *q = b;
+
+  if (p->id[0] != q->id[0]) return p->id[0] < q->id[0] ? -1 : 1;
+  if (p->id[1] != q->id[1]) return p->id[1] < q->id[1] ? -1 : 1;
+  return 0;
+}
+
+static int FaceEdges(const Facet *face)
+{
+  const Element *e = ElementGet(face->type);
+  return e->dim == 1 ? 2 : e->edges;
+}
+
+static int FaceEdgeNodes(const Facet *face, int edge, int corners[2])
+{
+  const Element *e = ElementGet(face->type);
+
+  corners[0] = e->dim == 1 ? edge : e->edge_corners[edge][0];
+  corners[1] = e->dim == 1 ? edge : e->edge_corners[edge][1];
+  return e->dim == 1 ? 1 : 2;
+}
+
+/* Drops from a sorted list every edge that occurs more than once. */
+static PetscInt KeepSingleEdges(PetscInt n, FaceEdge *edges)
+{
+  PetscInt kept = 0;
+
+  if (n) qsort(edges, n, sizeof(*edges), FaceEdgeCompare);
+  for (PetscInt i = 0; i < n;) {
+    PetscInt j = i + 1;
+
+    while (j < n && !FaceEdgeCompare(&edges[i], &edges[j])) j++;
+    if (j == i + 1) edges[kept++] = edges[i];
+    i = j;
+  }
+  return kept;
+}
+
+/* Does some plane of symmetry hold all nodes of the edge? */
+static PetscBool EdgeOnSymmetry(ContactSurface surface, const FaceEdge *edge, int n_images, const SurfaceImage *images)
+{
+  const int        dim    = surface->mesh->dim;
+  const PetscReal *coords = surface->rigid ? surface->rigid->coords : surface->mesh->coords;
+  const Facet     *face   = &surface->faces[edge->face];
+  int              corners[2];
+  const int        n = FaceEdgeNodes(face, edge->edge, corners);
+
+  for (int plane = 1; plane < n_images; plane <<= 1) {
+    PetscReal distance = 0;
+
+    for (int i = 0; i < n; i++) {
+      const PetscReal *x = &coords[face->nodes[corners[i]] * dim];
+
+      for (int d = 0; d < dim; d++) distance = PetscMax(distance, PetscAbsReal(images[plane].sign[d] * x[d] + images[plane].shift[d] - x[d]));
+    }
+    if (distance <= SURFACE_FLATNESS * surface->mesh->size) return PETSC_TRUE;
+  }
+  return PETSC_FALSE;
+}
+
+/* Of the edges that stand alone on this rank, those that another rank holds too are partition borders, not ends of the surface. */
+static PetscErrorCode DropPartitionBorders(MPI_Comm comm, PetscInt *n, FaceEdge *edges)
+{
+  PetscMPIInt size, mine, *counts, *starts;
+  PetscInt   *all, *send, total = 0, kept = 0;
+  FaceEdge   *every;
+
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Comm_size(comm, &size));
+  PetscCall(PetscMalloc3(size, &counts, size, &starts, 2 * *n, &send));
+  PetscCall(PetscMPIIntCast(2 * *n, &mine));
+  PetscCallMPI(MPI_Allgather(&mine, 1, MPI_INT, counts, 1, MPI_INT, comm));
+  for (PetscMPIInt r = 0; r < size; r++) {
+    PetscCall(PetscMPIIntCast(total, &starts[r]));
+    total += counts[r];
+  }
+  for (PetscInt i = 0; i < *n; i++)
+    for (int k = 0; k < 2; k++) send[2 * i + k] = edges[i].id[k];
+  PetscCall(PetscMalloc2(total, &all, total / 2, &every));
+  PetscCallMPI(MPI_Allgatherv(send, mine, MPIU_INT, all, counts, starts, MPIU_INT, comm));
+  for (PetscInt i = 0; i < total / 2; i++)
+    every[i] = (FaceEdge){
+      {all[2 * i], all[2 * i + 1]},
+      0,
+      0
+    };
+  total = KeepSingleEdges(total / 2, every);
+  for (PetscInt i = 0; i < *n; i++)
+    if (bsearch(&edges[i], every, total, sizeof(*every), FaceEdgeCompare)) edges[kept++] = edges[i];
+  *n = kept;
+  PetscCall(PetscFree2(all, every));
+  PetscCall(PetscFree3(counts, starts, send));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* SurfaceFindFreeEdges - marks the edges (ends in 2D) that one face alone holds, over all ranks, unless they lie on a plane of symmetry.
+
+   Collective. images[n_images]: the pair's, SurfaceImages(); by their planes the test is the same for bodies, tools and the axis. Sets bits
+   of free_edges. */
+PetscErrorCode SurfaceFindFreeEdges(ContactSurface surface, int n_images, const SurfaceImage *images)
+{
+  Mesh      mesh = surface->mesh;
+  PetscInt  n    = 0;
+  FaceEdge *edges;
+
+  PetscFunctionBeginUser;
+  for (PetscInt f = 0; f < surface->n_faces; f++) n += FaceEdges(&surface->faces[f]);
+  PetscCall(PetscMalloc1(n, &edges));
+  n = 0;
+  for (PetscInt f = 0; f < surface->n_faces; f++) {
+    const Facet *face = &surface->faces[f];
+
+    for (int e = 0; e < FaceEdges(face); e++) {
+      int      corners[2];
+      PetscInt a, b;
+
+      FaceEdgeNodes(face, e, corners);
+      a          = surface->rigid ? face->nodes[corners[0]] : mesh->node_id[face->nodes[corners[0]]];
+      b          = surface->rigid ? face->nodes[corners[1]] : mesh->node_id[face->nodes[corners[1]]];
+      edges[n++] = (FaceEdge){
+        {PetscMin(a, b), PetscMax(a, b)},
+        f,
+        e
+      };
+    }
+  }
+  n = KeepSingleEdges(n, edges);
+  if (surface->group) PetscCall(DropPartitionBorders(mesh->comm, &n, edges));
+  for (PetscInt i = 0; i < n; i++) {
+    if (EdgeOnSymmetry(surface, &edges[i], n_images, images)) continue;
+    surface->faces[edges[i].face].free_edges |= 1 << edges[i].edge;
+  }
+  PetscCall(PetscFree(edges));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* SurfaceNodeAreas - tributary areas int N_a dA and normals int N_a n dA of all local nodes, summed over the faces of all ranks.
+
+   Collective. Deformable surfaces only. geometry: axisymmetric areas are over 360 degrees; u[n_nodes*dim]: local displacements (length),
+   NULL: reference. area[n_nodes], normal[n_nodes*3] (NULL: not asked for; its length is an area): complete on every copy, 0 off the surface. */
+PetscErrorCode SurfaceNodeAreas(ContactSurface surface, Geometry geometry, const PetscReal *u, PetscReal *area, PetscReal *normal)
+{
+  Mesh      mesh = surface->mesh;
+  const int dim  = mesh->dim;
+  double    X[FACE_MAX_NODES * 3];
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscArrayzero(area, mesh->n_nodes));
+  if (normal) PetscCall(PetscArrayzero(normal, 3 * mesh->n_nodes));
+  for (PetscInt f = 0; f < surface->n_faces; f++) {
+    const Facet *face              = &surface->faces[f];
+    double       a[FACE_MAX_NODES] = {0}, n[FACE_MAX_NODES * 3] = {0};
+
+    FaceCoordinates(surface, face, u, X);
+    FaceAreaKernel(face->type, dim, geometry, X, a, n);
+    for (int i = 0; i < ElementGet(face->type)->nodes; i++) {
+      area[face->nodes[i]] += a[i];
+      for (int d = 0; normal && d < dim; d++) normal[3 * face->nodes[i] + d] += n[i * dim + d];
+    }
+  }
+  PetscCall(MeshSumNodes(mesh, 1, area));
+  if (normal) PetscCall(MeshSumNodes(mesh, 3, normal));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* SurfaceNodeSizes - what the faces around each local node are like in the reference configuration.
+
+   Collective. Deformable surfaces only. size[n_nodes]: mean face size (length); turn[n_nodes]: how far the faces turn from their mean normal
+   (radians), from the resultant of their areas; share[n_nodes]: tributary area over the area of the faces. 0 off the surface. */
+PetscErrorCode SurfaceNodeSizes(ContactSurface surface, Geometry geometry, PetscReal *size, PetscReal *turn, PetscReal *share)
+{
+  enum { SIZE, FACES, AREA, SUMS };
+  Mesh           mesh  = surface->mesh;
+  const Geometry plane = mesh->dim == 3 ? GEOMETRY_SOLID : GEOMETRY_PLANE_STRAIN;
+  PetscReal     *sum, *normal, *area;
+  double         X[FACE_MAX_NODES * 3];
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc3(SUMS * mesh->n_nodes, &sum, 3 * mesh->n_nodes, &normal, mesh->n_nodes, &area));
+  PetscCall(PetscArrayzero(sum, SUMS * mesh->n_nodes));
+  for (PetscInt f = 0; f < surface->n_faces; f++) {
+    const Facet *face                  = &surface->faces[f];
+    const int    n                     = ElementGet(face->type)->nodes;
+    double       parts[FACE_MAX_NODES] = {0}, whole = 0;
+
+    FaceCoordinates(surface, face, NULL, X);
+    FaceAreaKernel(face->type, mesh->dim, geometry, X, parts, NULL);
+    for (int i = 0; i < n; i++) whole += parts[i];
+    for (int i = 0; i < n; i++) {
+      PetscReal *at = &sum[SUMS * face->nodes[i]];
+
+      at[SIZE] += surface->face_size[f];
+      at[FACES] += 1;
+      at[AREA] += whole;
+    }
+  }
+  PetscCall(MeshSumNodes(mesh, SUMS, sum));
+  PetscCall(SurfaceNodeAreas(surface, geometry, NULL, area, NULL));
+  for (PetscInt n = 0; n < mesh->n_nodes; n++) {
+    size[n]  = sum[SUMS * n + FACES] > 0 ? sum[SUMS * n + SIZE] / sum[SUMS * n + FACES] : 0;
+    share[n] = sum[SUMS * n + AREA] > 0 ? area[n] / sum[SUMS * n + AREA] : 0;
+  }
+  PetscCall(SurfaceNodeAreas(surface, plane, NULL, area, normal));
+  for (PetscInt n = 0; n < mesh->n_nodes; n++) {
+    const PetscReal *m = &normal[3 * n], length = PetscSqrtReal(m[0] * m[0] + m[1] * m[1] + m[2] * m[2]);
+
+    turn[n] = area[n] > 0 ? PetscAcosReal(PetscMin(1, length / area[n])) : 0; /* the resultant of faces that turn by +-a is cos a of their area */
+  }
+  PetscCall(PetscFree3(sum, normal, area));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The axis a planar group is normal to and its position, or axis -1. */
+static PetscErrorCode GroupPlane(Mesh mesh, const MeshGroup *group, int *axis, PetscReal *position)
+{
+  PetscReal range[6]; /* -min, max of each component over all ranks */
+
+  PetscFunctionBeginUser;
+  for (int k = 0; k < 6; k++) range[k] = PETSC_MIN_REAL;
+  for (PetscInt i = 0; i < group->n_nodes; i++) {
+    for (int d = 0; d < mesh->dim; d++) {
+      const PetscReal x = mesh->coords[group->nodes[i] * mesh->dim + d];
+
+      range[2 * d]     = PetscMax(range[2 * d], -x);
+      range[2 * d + 1] = PetscMax(range[2 * d + 1], x);
+    }
+  }
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, range, 6, MPIU_REAL, MPI_MAX, mesh->comm));
+  *axis = -1;
+  for (int d = 0; d < mesh->dim; d++) {
+    if (range[2 * d] + range[2 * d + 1] > SURFACE_FLATNESS * mesh->size) continue;
+    *axis     = d;
+    *position = 0.5 * (range[2 * d + 1] - range[2 * d]);
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscBool SupportHolds(Scene scene, const char *surface, int component)
+{
+  for (int s = 0; s < scene->n_supports; s++)
+    if (!strcmp(scene->supports[s].surface, surface) && scene->supports[s].fixed[component]) return PETSC_TRUE;
+  return PETSC_FALSE;
+}
+
+/* Is the plane there already? Two surfaces may lie on one plane, and the axis r = 0 is always there. */
+static PetscBool ImagesHavePlane(int axis, PetscReal position, PetscReal size, int n, const SurfaceImage *images)
+{
+  for (int bit = 1; bit < n; bit <<= 1)
+    if (images[bit].sign[axis] < 0 && PetscAbsReal(images[bit].shift[axis] - 2 * position) <= SURFACE_FLATNESS * size) return PETSC_TRUE;
+  return PETSC_FALSE;
+}
+
+/* Doubles the set of images by one more plane. */
+static void ImagesAddPlane(int axis, PetscReal position, int *n, SurfaceImage *images)
+{
+  for (int i = 0; i < *n; i++) {
+    SurfaceImage image = images[i];
+
+    image.left_out    = (PetscBool)(image.left_out || image.sign[axis] < 0);
+    image.sign[axis]  = -1;
+    image.shift[axis] = 2 * position;
+    image.reverses    = (PetscBool)!image.reverses;
+    images[*n + i]    = image;
+  }
+  *n *= 2;
+}
+
+/* SurfaceImages - mirror images of a pair's master: identity, each plane of symmetry, all their products; the axis r = 0 is always one.
+
+   Collective. images[SURFACE_MAX_IMAGES]: in coordinates relative to the mesh's centre. Refuses (exit 1) surfaces that are not planar and
+   normal to an axis, that no support holds in that direction, and a third plane normal to one axis. */
+PetscErrorCode SurfaceImages(Mesh mesh, Scene scene, const SceneContact *contact, int *n_images, SurfaceImage images[SURFACE_MAX_IMAGES])
+{
+  int taken[3] = {0, 0, 0};
+
+  PetscFunctionBeginUser;
+  *n_images = 1;
+  images[0] = (SurfaceImage){
+    .sign = {1, 1, 1}
+  };
+  if (scene->geometry == GEOMETRY_AXISYMMETRIC) {
+    ImagesAddPlane(0, -mesh->centre[0], n_images, images);
+    taken[0] = 1;
+  }
+  for (int s = 0; s < contact->n_symmetry; s++) {
+    const char *name = contact->symmetry[s];
+    MeshGroup  *group;
+    PetscReal   position = 0;
+    int         axis;
+
+    PetscCall(MeshGetGroup(mesh, scene, contact->path, "symmetry", name, mesh->dim - 1, &group));
+    PetscCall(GroupPlane(mesh, group, &axis, &position));
+    if (axis < 0)
+      PetscCall(RefuseInput(mesh->comm, "%s: '%s' is not a plane normal to a coordinate axis; allowed: planar surfaces x, y or z = constant",
+                            SceneWhere(scene, contact->path, "symmetry"), name));
+    if (!SupportHolds(scene, name, axis)) {
+      PetscCall(RefuseInput(mesh->comm,
+                            "%s: no support holds u%c on '%s', so it is no plane of symmetry; allowed: surfaces whose normal displacement a support fixes",
+                            SceneWhere(scene, contact->path, "symmetry"), "xyz"[axis], name));
+    }
+    if (ImagesHavePlane(axis, position, mesh->size, *n_images, images)) continue;
+    if (taken[axis] == SURFACE_AXIS_PLANES)
+      PetscCall(RefuseInput(mesh->comm, "%s: '%s' is a third plane normal to %c; allowed: two planes for each axis (the axis r = 0 is one)",
+                            SceneWhere(scene, contact->path, "symmetry"), name, "xyz"[axis]));
+    taken[axis]++;
+    ImagesAddPlane(axis, position, n_images, images);
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* SurfaceReflect - the mirror image of a position. Not collective. x[dim], y[dim] (length) may be the same array. */
+void SurfaceReflect(const SurfaceImage *image, int dim, const PetscReal *x, PetscReal *y)
+{
+  for (int d = 0; d < dim; d++) y[d] = image->sign[d] * x[d] + image->shift[d];
+}
+
+/* SurfaceImageFacet - a facet as one of its images sees it: turned over where the image reverses orientation, so that its normal points
+   out of the image again; free edges go along. Not collective. */
+Facet SurfaceImageFacet(const Facet *facet, const SurfaceImage *image)
+{
+  const Element *e     = ElementGet(facet->type);
+  const int      edges = FaceEdges(facet), middles = e->dim == 1 ? 1 : e->edges;
+  Facet          out = *facet;
+
+  if (!image->reverses) return out;
+  for (int c = 0; c < e->corners; c++) out.nodes[c] = facet->nodes[e->dim == 1 ? 1 - c : (e->corners - c) % e->corners];
+  for (int m = 0; e->order == 2 && m < middles; m++) out.nodes[e->corners + m] = facet->nodes[e->corners + middles - 1 - m];
+  out.free_edges = 0;
+  for (int k = 0; k < edges; k++)
+    if (facet->free_edges >> k & 1) out.free_edges |= 1 << (edges - 1 - k);
+  return out;
+}
+
+/* The cell of the cube that a direction points into, and back to the cell's middle. */
+static int DirectionCell(const PetscReal v[3])
+{
+  int axis = 0, cell[2];
+
+  for (int d = 1; d < 3; d++)
+    if (PetscAbsReal(v[d]) > PetscAbsReal(v[axis])) axis = d;
+  for (int k = 0; k < 2; k++) cell[k] = PetscMin(SURFACE_CELLS - 1, (int)((v[(axis + 1 + k) % 3] / PetscAbsReal(v[axis]) + 1) / 2 * SURFACE_CELLS));
+  return ((2 * axis + (v[axis] < 0)) * SURFACE_CELLS + cell[0]) * SURFACE_CELLS + cell[1];
+}
+
+static void DirectionMiddle(int index, PetscReal v[3])
+{
+  const int cell[2] = {index / SURFACE_CELLS % SURFACE_CELLS, index % SURFACE_CELLS}, side = index / (SURFACE_CELLS * SURFACE_CELLS), axis = side / 2;
+
+  v[axis] = side % 2 ? -1 : 1;
+  for (int k = 0; k < 2; k++) v[(axis + 1 + k) % 3] = (2 * cell[k] + 1.0) / SURFACE_CELLS - 1;
+}
+
+/* SurfaceFaces - is there any face of the master whose normal is opposed to that of any of these nodes?
+
+   Collective. n, nodes: this rank's; normals[3*local node]. The faces' directions are gathered by cells of about 20 degrees, so that ranks
+   exchange a fixed, small table. *facing: the same on all ranks. */
+PetscErrorCode SurfaceFaces(ContactSurface master, PetscInt n, const PetscInt nodes[], const PetscReal normals[], PetscBool *facing)
+{
+  const int dim                       = master->mesh->dim;
+  int       there[SURFACE_DIRECTIONS] = {0}, found = 0;
+  double    X[FACE_MAX_NODES * 3];
+
+  PetscFunctionBeginUser;
+  for (PetscInt f = 0; f < master->n_faces; f++) {
+    double    area[FACE_MAX_NODES] = {0}, normal[FACE_MAX_NODES * 3] = {0};
+    PetscReal sum[3] = {0, 0, 0};
+
+    FaceCoordinates(master, &master->faces[f], NULL, X);
+    FaceAreaKernel(master->faces[f].type, dim, dim == 3 ? GEOMETRY_SOLID : GEOMETRY_PLANE_STRAIN, X, area, normal);
+    for (int a = 0; a < ElementGet(master->faces[f].type)->nodes; a++)
+      for (int d = 0; d < dim; d++) sum[d] += normal[a * dim + d];
+    if (sum[0] != 0 || sum[1] != 0 || sum[2] != 0) there[DirectionCell(sum)] = 1;
+  }
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, there, SURFACE_DIRECTIONS, MPI_INT, MPI_MAX, master->mesh->comm));
+  for (int k = 0; k < SURFACE_DIRECTIONS && !found; k++) {
+    PetscReal m[3];
+
+    if (!there[k]) continue;
+    DirectionMiddle(k, m);
+    for (PetscInt i = 0; i < n && !found; i++) {
+      const PetscReal *v       = &normals[3 * nodes[i]];
+      PetscReal        product = 0, lengths[2] = {0, 0};
+
+      for (int d = 0; d < 3; d++) {
+        product += v[d] * m[d];
+        lengths[0] += v[d] * v[d];
+        lengths[1] += m[d] * m[d];
+      }
+      found = product < SURFACE_OPPOSED * PetscSqrtReal(lengths[0] * lengths[1]);
+    }
+  }
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &found, 1, MPI_INT, MPI_MAX, master->mesh->comm));
+  *facing = found ? PETSC_TRUE : PETSC_FALSE;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

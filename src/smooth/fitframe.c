@@ -1,0 +1,162 @@
+/* Least-squares plane by the eigenvectors of a 3 x 3 covariance, and the metric of the fit's support. */
+#include "smooth/fitframe.h"
+#include <float.h>
+#include <math.h>
+#include <string.h>
+
+enum { SWEEPS = 16 }; /* cyclic Jacobi of a 3 x 3 matrix ends within 6; the rest is never reached */
+
+/* Turns row and column p against q so that a[p][q] vanishes. */
+static void Rotate(double a[3][3], double v[3][3], int p, int q)
+{
+  const double theta = 0.5 * (a[q][q] - a[p][p]) / a[p][q], t = (theta >= 0 ? 1 : -1) / (fabs(theta) + sqrt(theta * theta + 1));
+  const double c = 1 / sqrt(t * t + 1), s = t * c;
+
+  for (int k = 0; k < 3; k++) {
+    const double kp = a[k][p], kq = a[k][q];
+
+    a[k][p] = c * kp - s * kq;
+    a[k][q] = s * kp + c * kq;
+  }
+  for (int k = 0; k < 3; k++) {
+    const double pk = a[p][k], qk = a[q][k], vp = v[p][k], vq = v[q][k];
+
+    a[p][k] = c * pk - s * qk;
+    a[q][k] = s * pk + c * qk;
+    v[p][k] = c * vp - s * vq;
+    v[q][k] = s * vp + c * vq;
+  }
+}
+
+/* Eigenvalues and eigenvectors v[k] of a symmetric matrix by Jacobi's method, ascending */
+static void Eigen(double a[3][3], double value[3], double v[3][3])
+{
+  for (int i = 0; i < 3; i++) {
+    for (int j = 0; j < 3; j++) v[i][j] = i == j;
+  }
+  for (int sweep = 0; sweep < SWEEPS; sweep++) {
+    for (int p = 0; p < 2; p++) {
+      for (int q = p + 1; q < 3; q++) {
+        if (fabs(a[p][q]) > DBL_EPSILON * (fabs(a[p][p]) + fabs(a[q][q]))) Rotate(a, v, p, q);
+      }
+    }
+  }
+  for (int k = 0; k < 3; k++) value[k] = a[k][k];
+  for (int i = 0; i < 2; i++) {
+    for (int k = 0; k < 2 - i; k++) {
+      if (value[k] > value[k + 1]) {
+        double       swap[3];
+        const double larger = value[k];
+
+        value[k]     = value[k + 1];
+        value[k + 1] = larger;
+        memcpy(swap, v[k], sizeof(swap));
+        memcpy(v[k], v[k + 1], sizeof(swap));
+        memcpy(v[k + 1], swap, sizeof(swap));
+      }
+    }
+  }
+}
+
+/* FitFrameFromNormal - a right-handed orthonormal frame about a direction; its tangents jump only where the normal passes between coordinate
+   axes, and the fit does not depend on them. Not collective.
+
+   Input: dim; normal[dim] - of any length but 0
+   Output: frame[k] - tangents, then the normal; 2D: third components 0 */
+void FitFrameFromNormal(int dim, const double *normal, double frame[3][3])
+{
+  double *const n = frame[dim - 1], *const t = frame[0], length = 0;
+  int least = 0;
+
+  memset(frame, 0, 9 * sizeof(double));
+  for (int c = 0; c < dim; c++) length = hypot(length, normal[c]);
+  for (int c = 0; c < dim; c++) n[c] = normal[c] / length;
+  if (dim == 2) {
+    t[0] = n[1];
+    t[1] = -n[0];
+    return;
+  }
+  for (int c = 1; c < 3; c++) {
+    if (fabs(n[c]) < fabs(n[least])) least = c;
+  }
+  length = sqrt(1 - n[least] * n[least]);
+  for (int c = 0; c < 3; c++) t[c] = ((c == least) - n[least] * n[c]) / length;
+  for (int c = 0; c < 3; c++) frame[1][c] = n[(c + 1) % 3] * t[(c + 2) % 3] - n[(c + 2) % 3] * t[(c + 1) % 3];
+}
+
+/* FitFrame - the frame of the least-squares plane of weighted points. Not collective.
+
+   Input: dim; n, x[n][dim], multiplier[n] - points and weights; outward[dim] - roughly the normal out of the master, of any length but 0
+   Output: frame[k] - tangents, then the normal; 2D: third components 0
+
+   Returns 0, with the frame about `outward`, where points have no plane (on a line, a heap) or one seen edge-on from `outward`.
+   Source: Chamoret et al. 2004, eq. 3 (reference plane of the slave point). */
+int FitFrame(int dim, int n, const double *x, const double *multiplier, const double *outward, double frame[3][3])
+{
+  double    sum = 0, centre[3] = {0}, covariance[3][3] = {{0}}, value[3], vector[3][3], cosine = 0, length = 0;
+  const int last = 2, first = 3 - dim; /* 2D: the third direction has no extent and comes first */
+  double   *normal;
+
+  for (int i = 0; i < n; i++) {
+    sum += multiplier[i];
+    for (int c = 0; c < dim; c++) centre[c] += multiplier[i] * x[i * dim + c];
+  }
+  FitFrameFromNormal(dim, outward, frame);
+  if (!(sum > 0)) return 0;
+  for (int c = 0; c < dim; c++) centre[c] /= sum;
+  for (int i = 0; i < n; i++) {
+    for (int c = 0; c < dim; c++) {
+      for (int d = 0; d <= c; d++) covariance[c][d] += multiplier[i] * (x[i * dim + c] - centre[c]) * (x[i * dim + d] - centre[d]);
+    }
+  }
+  for (int c = 0; c < dim; c++) {
+    for (int d = 0; d <= c; d++) covariance[c][d] = covariance[d][c] = covariance[c][d] / sum;
+  }
+  if (dim == 2) covariance[2][2] = -1; /* below every eigenvalue of the plane */
+  Eigen(covariance, value, vector);
+  normal = vector[first];
+  if (!(value[first + 1] > FRAME_LINE * value[last] && value[first] < FRAME_AMBIGUOUS * value[first + 1])) return 0;
+  for (int c = 0; c < dim; c++) {
+    cosine += normal[c] * outward[c];
+    length = hypot(length, outward[c]);
+  }
+  if (!(fabs(cosine) > FRAME_OBLIQUE * length)) return 0;
+  for (int c = 0; c < dim; c++) normal[c] *= cosine < 0 ? -1 : 1;
+  FitFrameFromNormal(dim, normal, frame);
+  return 1;
+}
+
+/* FitMetricFromCovariance - the metric of the support. Its shape is that of the one-ring seen along the normal, round where the ring is flatter
+   than METRIC_FLAT; its size follows from the area per node alone, so that the support holds as many nodes on any mesh. Not collective.
+
+   Input: dim; frame - of FitFrame(); covariance[3][3] - of the one-ring's nodes (any scale, 2D: not read); area - mean facet area per node:
+   over 1 (4-node face), 1/2 (triangle), 4 (9-node face), 2 (6-node triangle); 2D: mean length per node; support - in spacings
+   Output: metric[2][2] - Q, per length squared; 2D: [0][0] */
+void FitMetricFromCovariance(int dim, double (*frame)[3], double (*covariance)[3], double area, double support, double metric[2][2])
+{
+  double C[2][2] = {{0}}, determinant, mean, spread, root;
+
+  memset(metric, 0, 4 * sizeof(double));
+  if (dim == 2) {
+    metric[0][0] = 1 / (support * support * area * area);
+    return;
+  }
+  for (int a = 0; a < 2; a++) {
+    for (int b = 0; b < 2; b++) {
+      for (int c = 0; c < 3; c++) {
+        for (int d = 0; d < 3; d++) C[a][b] += frame[a][c] * covariance[c][d] * frame[b][d];
+      }
+    }
+  }
+  mean   = 0.5 * (C[0][0] + C[1][1]);
+  spread = hypot(0.5 * (C[0][0] - C[1][1]), C[0][1]);
+  if (!(mean - spread > METRIC_FLAT * METRIC_FLAT * (mean + spread))) {
+    C[0][0] = C[1][1] = 1;
+    C[0][1] = C[1][0] = 0;
+  }
+  determinant  = C[0][0] * C[1][1] - C[0][1] * C[1][0];
+  root         = sqrt(determinant) * support * support * area;
+  metric[0][0] = C[1][1] / root;
+  metric[1][1] = C[0][0] / root;
+  metric[0][1] = metric[1][0] = -C[0][1] / root;
+}

@@ -1,0 +1,203 @@
+/* What the files of the diffuse fit share: fit.c makes surface and foot, fitvariation.c the variations N and M over points, fitmap.c those over
+   nodes. Private to these; symmetricproduct.c turns its squares over by Transpose(). */
+#pragma once
+#include "smooth/diffusefit.h"
+#include "base/lanes.h"
+#include <string.h>
+
+enum {
+  MAX_TANGENTS = 2,
+  ROWS         = 1 + MAX_TANGENTS, /* of F */
+  BLOCK        = 4,                /* columns orthogonalised together, so that their sums do not wait for each other: no more than 8 */
+  ALIGNMENT    = 64,               /* bytes: a cache line, and the widest vector */
+  FACTORS      = LANES * ((2 * FIT_MAX_TERMS + LANES - 1) / LANES), /* most entries of a row of factors */
+  FIT_HESSIAN  = 8,                                                 /* most entries of a point's H, filled up to whole vectors */
+  ARRAYS       = 13 /* vectors per LANES points besides the basis: eta (2), multiplier, inside, power, weight, scratch, H (6) */
+};
+
+/* Arrays over the points inside the support, in vectors of LANES points; the last one is filled up with points of no weight. */
+typedef struct {
+  int    n, groups;                                                          /* points inside, vectors that hold them */
+  int    capacity;                                                           /* vectors that hold all points of the problem: length of an array */
+  int    stride;                                                             /* vectors per row of K and J */
+  Lanes *eta[MAX_TANGENTS], *multiplier, *inside, *power, *weight, *scratch; /* inside: 1 - rho^2, power: v inside^(exponent - 2) */
+  Lanes *H;                                                                  /* [6][capacity]: xx xy yy xz yz zz */
+  Lanes *basis;                                                              /* [terms + 1][capacity]: orthonormal basis, residual e */
+  Lanes *K, *J;                                                              /* [terms][stride]: entry (1 + i)*dim + c of a row */
+  int   *points;
+} FitArrays;
+
+/* The fit and its foot; Lanes: broadcast to all */
+typedef struct {
+  double R[FIT_MAX_TERMS][FIT_MAX_TERMS + 1 + BLOCK];   /* over its diagonal: above that only, and of the heights at the end */
+  double square[FIT_MAX_TERMS], inverse[FIT_MAX_TERMS]; /* of the diagonal */
+  Lanes  alpha[FIT_MAX_TERMS], lambda[FIT_MAX_TERMS];   /* of the monomials */
+  Lanes  foot[ROWS][FIT_MAX_TERMS];                     /* F = p^, Dp^ at the foot, D with respect to y */
+  double S[ROWS][ROWS];
+  double G[3][3], nu3; /* d = G x */
+} FitState;
+
+#if defined(__AVX512F__)
+  #define SWAP_STAGES 3
+static const LaneMask swap_low[SWAP_STAGES] = {
+  {0, 8, 2, 10, 4, 12, 6,  14},
+  {0, 1, 8, 9,  4, 5,  12, 13},
+  {0, 1, 2, 3,  8, 9,  10, 11}
+};
+static const LaneMask swap_high[SWAP_STAGES] = {
+  {1, 9, 3,  11, 5,  13, 7,  15},
+  {2, 3, 10, 11, 6,  7,  14, 15},
+  {4, 5, 6,  7,  12, 13, 14, 15}
+};
+#elif defined(__AVX__)
+  #define SWAP_STAGES 2
+static const LaneMask swap_low[SWAP_STAGES] = {
+  {0, 4, 2, 6},
+  {0, 1, 4, 5}
+};
+static const LaneMask swap_high[SWAP_STAGES] = {
+  {1, 5, 3, 7},
+  {2, 3, 6, 7}
+};
+#else
+  #define SWAP_STAGES 1
+static const LaneMask swap_low[SWAP_STAGES] = {
+  {0, 2}
+};
+static const LaneMask swap_high[SWAP_STAGES] = {
+  {1, 3}
+};
+#endif
+
+#ifdef __clang__ /* has no __builtin_shuffle() */
+LANES_INLINE Lanes Shuffle(Lanes a, Lanes b, LaneMask from)
+{
+  Lanes mixed = a;
+
+  for (int i = 0; i < LANES; i++) mixed[i] = from[i] < LANES ? a[from[i]] : b[from[i] - LANES];
+  return mixed;
+}
+#else
+  #define Shuffle __builtin_shuffle
+#endif
+
+/* Turns a square of LANES vectors over, by swapping ever larger off-diagonal blocks. */
+LANES_INLINE void Transpose(Lanes a[LANES])
+{
+  for (int stage = 0; stage < SWAP_STAGES; stage++) {
+    const int half = 1 << stage;
+
+    for (int i = 0; i < LANES; i++) {
+      const int j = i + half;
+
+      if (!(i & half)) {
+        const Lanes low = Shuffle(a[i], a[j], swap_low[stage]);
+
+        a[j] = Shuffle(a[i], a[j], swap_high[stage]);
+        a[i] = low;
+      }
+    }
+  }
+}
+
+LANES_INLINE Lanes Broadcast(double a)
+{
+  return (Lanes){0} + a;
+}
+
+/* Place of s^(k-b) t^b among the monomials */
+LANES_INLINE int Term(const int tangents, const int k, const int b)
+{
+  return tangents == 1 ? k : k * (k + 1) / 2 + b;
+}
+
+#define FOR_MONOMIALS(tangents, degree, k, b) \
+  for (int k = 0; k <= (degree); k++)         \
+    for (int b = 0; b <= ((tangents) == 1 ? 0 : k); b++)
+
+LANES_INLINE void Monomials(const int m, const int degree, const Lanes *eta, Lanes *p)
+{
+  p[0] = Broadcast(1);
+  FOR_MONOMIALS(m, degree, k, b)
+  {
+    if (k > 0) p[Term(m, k, b)] = b < k ? eta[0] * p[Term(m, k - 1, b)] : eta[1] * p[Term(m, k - 1, b - 1)];
+  }
+}
+
+LANES_INLINE void MonomialGradients(const int m, const int degree, const Lanes *p, Lanes (*dp)[FIT_MAX_TERMS])
+{
+  FOR_MONOMIALS(m, degree, k, b)
+  {
+    dp[0][Term(m, k, b)] = b < k ? (k - b) * p[Term(m, k - 1, b)] : Broadcast(0);
+    if (m == 2) dp[1][Term(m, k, b)] = b > 0 ? b * p[Term(m, k - 1, b - 1)] : Broadcast(0);
+  }
+}
+
+/* Derivatives (s, t) of the polynomial c where the monomials are p */
+LANES_INLINE void PolynomialGradient(const int m, const int degree, const Lanes *p, const Lanes *c, Lanes gradient[2])
+{
+  gradient[0] = gradient[1] = Broadcast(0);
+  FOR_MONOMIALS(m, degree, k, b)
+  {
+    if (k - b > 0) gradient[0] += (k - b) * (c[Term(m, k, b)] * p[Term(m, k - 1, b)]);
+    if (b > 0) gradient[1] += b * (c[Term(m, k, b)] * p[Term(m, k - 1, b - 1)]);
+  }
+}
+
+/* Second derivatives (ss, st, tt) of the polynomial c where the monomials are p */
+LANES_INLINE void PolynomialHessian(const int m, const int degree, const Lanes *p, const Lanes *c, Lanes hessian[3])
+{
+  hessian[0] = hessian[1] = hessian[2] = Broadcast(0);
+  FOR_MONOMIALS(m, degree, k, b)
+  {
+    if (k - b > 1) hessian[0] += ((k - b) * (k - b - 1)) * (c[Term(m, k, b)] * p[Term(m, k - 2, b)]);
+    if (k - b > 0 && b > 0) hessian[1] += ((k - b) * b) * (c[Term(m, k, b)] * p[Term(m, k - 2, b - 1)]);
+    if (b > 1) hessian[2] += (b * (b - 1)) * (c[Term(m, k, b)] * p[Term(m, k - 2, b - 2)]);
+  }
+}
+
+LANES_INLINE Lanes DotTerms(const int terms, const Lanes *a, const Lanes *b)
+{
+  Lanes even = a[0] * b[0], odd = a[1] * b[1]; /* neither waits for the other */
+
+  for (int k = 2; k < terms; k += 2) even += a[k] * b[k];
+  for (int k = 3; k < terms; k += 2) odd += a[k] * b[k];
+  return even + odd;
+}
+
+/* p := R^-T p, column by column: row by row each operation would wait for the one before */
+LANES_INLINE void ToOrthonormal(const int terms, const FitState *s, Lanes *p)
+{
+  for (int l = 0; l < terms; l++)
+    for (int k = l + 1; k < terms; k++) p[k] -= s->R[l][k] * p[l];
+  for (int k = 0; k < terms; k++) p[k] *= s->inverse[k];
+}
+
+/* Calls body(dim, degree, terms) with constants for the problem's dimension and degree. */
+#define INSTANTIATE(in, body)              \
+  switch (10 * (in)->dim + (in)->degree) { \
+  case 21: body(2, 1, 2);                  \
+  case 22: body(2, 2, 3);                  \
+  case 24: body(2, 4, 5);                  \
+  case 31: body(3, 1, 3);                  \
+  case 32: body(3, 2, 6);                  \
+  case 34: body(3, 4, 15);                 \
+  }
+
+/* Length of a row of FitFactors: terms of K, terms of J, filled up with zeros */
+LANES_INLINE int FactorStride(const int terms)
+{
+  return LanesGroups(2 * terms) * LANES;
+}
+
+/* Length of a point's H in FitFactors: xx xy yy | xz yz zz, filled up with zeros */
+LANES_INLINE int HessianStride(const int dim)
+{
+  return LanesGroups(dim * (dim + 1) / 2) * LANES;
+}
+
+/* N[(1 + points inside)*dim] and M[its square] from fit and foot; workspace of the arrays is used up. */
+void FitVariationFirst(const FitProblem *, const FitArrays *, const FitState *, double *N);
+void FitVariationSecond(const FitProblem *, FitArrays *, const FitState *, double *M);
+/* What M is made of, in the place of the arrays K and J */
+void FitVariationFactors(const FitProblem *, const FitArrays *, const FitState *, FitFactors *);

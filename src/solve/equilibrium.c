@@ -1,0 +1,320 @@
+#include "modelimpl.h"
+#include "bodies/loosebody.h"
+#include "base/timing.h"
+
+/* Of these, so many may be spent at a breakpoint of the scene's histories on offsets of surface contact that lag behind by little: each takes a lag to a
+   twentieth, and from the next step on it would show as a jump. */
+#define MODEL_MAX_SETTLE 4
+/* Lists are made for this multiple of the motion that the last step's rate predicts; those that check a step too, so that an equal step takes them. */
+#define MODEL_MOTION_SAFETY 1.5
+/* Times that the springs of stabilised pairs are relaxed. A body at rest needs two or three; one that flies covers its penetration at rest, times a
+   thousand, in each. */
+#define MODEL_MAX_RELAX 30
+
+/* Largest displacement of a node, or of a rigid tool, between the accepted state and (u, t). */
+PetscErrorCode ModelMotion(Model model, const PetscReal *u, PetscReal t, PetscReal *motion)
+{
+  const int dim = model->mesh->dim;
+
+  PetscFunctionBeginUser;
+  *motion = 0;
+  for (PetscInt n = 0; n < model->mesh->n_nodes; n++) {
+    PetscReal square = 0;
+
+    for (int d = 0; d < dim; d++) square += PetscSqr(u[n * dim + d] - model->work->accepted_u[n * dim + d]);
+    *motion = PetscMax(*motion, PetscSqrtReal(square));
+  }
+  for (int b = 0; b < model->scene->n_bodies; b++)
+    if (model->scene->bodies[b].rigid) *motion = PetscMax(*motion, LoadsRigidTravel(model->loads, b, model->work->accepted_t, t));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, motion, 1, MPIU_REAL, MPI_MAX, model->mesh->comm));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Of that, what is imposed on the way to t. */
+PetscErrorCode ModelImposedMotion(Model model, PetscReal t, PetscReal *motion)
+{
+  PetscReal *u;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(model->mesh->n_nodes * model->mesh->dim, &u));
+  PetscCall(PetscArraycpy(u, model->work->accepted_u, model->mesh->n_nodes * model->mesh->dim));
+  PetscCall(LoadsPrescribe(model->loads, t, u));
+  PetscCall(ModelMotion(model, u, t, motion));
+  PetscCall(PetscFree(u));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Adds that a slave node rests on an edge between facets, where it does. */
+static PetscErrorCode ModelBlameFacets(Model model, char *text, size_t size, PetscBool *found)
+{
+  ContactPlace place;
+  size_t       used;
+
+  PetscFunctionBeginUser;
+  PetscCall(ModelLocateEdge(model, found, &place));
+  PetscCall(PetscStrlen(text, &used));
+  if (*found)
+    PetscCall(PetscSNPrintf(text + used, size - used,
+                            "; node %" PetscInt_FMT " rests on an edge between two facets, which push it there from either side: no equilibrium is near",
+                            place.tag));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Adds that the penalty is so stiff that rounding alone may keep the residual above the tolerance, where it is. */
+static PetscErrorCode ModelBlamePenalty(Model model, char *text, size_t size)
+{
+  const PetscReal allowed = model->scene->solver.tolerance * PetscMax(model->force_scale, model->work->scale);
+  PetscReal       force;
+  size_t          used;
+
+  PetscFunctionBeginUser;
+  if (!model->contact) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(ContactRoundOff(model->contact, &force));
+  PetscCall(PetscStrlen(text, &used));
+  if (force > MODEL_ROUND_OFF * allowed)
+    PetscCall(PetscSNPrintf(text + used, size - used, "; the penalty is too stiff: rounding of positions alone is a force of %.2g, the tolerance is %.2g",
+                            (double)force, (double)allowed));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* What is known of a failed solve: the bodies that nothing holds where the system is singular, else where to look. */
+static PetscErrorCode ModelExplainFailure(Model model, SolveReport *report)
+{
+  const PetscBool adrift = (PetscBool)(report->result == SOLVE_LINEAR || report->result == SOLVE_ADRIFT);
+  char            loose[128];
+  PetscBool       edge = PETSC_FALSE;
+
+  PetscFunctionBeginUser;
+  PetscCall(FailureLocate(model->mesh, model->loads, model->contact, model->work->f, model->work->inverted, &report->failure));
+  report->failure.enhanced = ModelHasFormulation(model->scene, FORMULATION_ENHANCED);
+  if (report->result == SOLVE_WINDOW || report->result == SOLVE_LOST) PetscFunctionReturn(PETSC_SUCCESS); /* known already */
+  if (report->result == SOLVE_CYCLE) {
+    PetscCall(PetscStrncpy(report->detail, report->cycle, sizeof(report->detail)));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  if (adrift) PetscCall(LooseBodies(model->mesh, model->scene, model->loads, loose, sizeof(loose)));
+  if (adrift && loose[0])
+    PetscCall(PetscSNPrintf(report->detail, sizeof(report->detail), "no support and no imposed displacement holds %s%s", loose,
+                            !model->contact || report->result == SOLVE_ADRIFT ? "" : " (contact may, from the start or with stabilise: true)"));
+  else {
+    FailureText(&report->failure, report->detail, sizeof(report->detail));
+    if (report->result == SOLVE_LINE_SEARCH || report->result == SOLVE_ITERATIONS)
+      PetscCall(ModelBlameFacets(model, report->detail, sizeof(report->detail), &edge));
+    if (!edge) PetscCall(ModelBlamePenalty(model, report->detail, sizeof(report->detail)));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* From the accepted state on the way to t: its contact state, and lists for the motion to be expected. */
+static PetscErrorCode ModelDepart(Model model, PetscReal t)
+{
+  ModelWork *work = model->work;
+  PetscReal  motion;
+
+  PetscFunctionBeginUser;
+  PetscCall(StabiliserRelax(work->stabiliser, work->accepted_x));
+  model->t       = t;
+  work->inverted = -1;
+  work->start    = 0;
+  work->cycling  = PETSC_FALSE;
+  work->cycles   = 0;
+  work->cycle[0] = '\0';
+  work->energy   = 0;
+  if (!model->contact) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(ModelImposedMotion(model, t, &motion));
+  motion = PetscMax(motion, MODEL_MOTION_SAFETY * work->rate * (t - work->accepted_t));
+  PetscCall(ContactRestore(model->contact));
+  work->expected = motion;
+  TimingBegin(TIMING_SEARCH);
+  PetscCall(ContactGather(model->contact, work->accepted_u, work->accepted_t, t, motion));
+  TimingEnd(TIMING_SEARCH);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* A part of the way to the forecast, where that came from the path: on the path, with so much of what its end was off. made: that is possible. */
+static PetscErrorCode ModelTakePathPart(Model model, PetscReal part, PetscBool *made)
+{
+  ModelWork *work = model->work;
+  PetscReal *u;
+  Vec        end;
+
+  PetscFunctionBeginUser;
+  *made = work->forecast_foreseen;
+  if (!*made) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscMalloc1(model->mesh->n_nodes * model->mesh->dim, &u));
+  PetscCall(VecDuplicate(model->x, &end));
+  PetscCall(ModelForesee(model, work->forecast_t, u, end, made));
+  if (*made) PetscCall(ModelForesee(model, model->t, u, model->x, made));
+  if (*made) {
+    PetscCall(VecAXPBYPCZ(model->x, part, -part, 1, work->forecast, end));
+    PetscCall(ModelTrial(model, model->x));
+    PetscCall(ModelInOrder(model, work->trial, made));
+  }
+  PetscCall(VecDestroy(&end));
+  PetscCall(PetscFree(u));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* A part of the way to the forecast. */
+static PetscErrorCode ModelTakePart(Model model)
+{
+  ModelWork      *work = model->work;
+  const PetscReal part = (model->t - work->accepted_t) / (work->forecast_t - work->accepted_t);
+
+  PetscFunctionBeginUser;
+  PetscCall(ModelTakePathPart(model, part, &work->foreseen));
+  if (!work->foreseen) PetscCall(VecAXPBYPCZ(model->x, 1 - part, part, 0, work->accepted_x, work->forecast));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Where Newton's method starts: at a forecast that has been made, or on the way to it; else it is made now. */
+static PetscErrorCode ModelStart(Model model, SolveReport *report)
+{
+  PetscFunctionBeginUser;
+  if (model->work->forecasted)
+    PetscCall(ModelTakePart(model));
+  else
+    PetscCall(ModelPredict(model, report));
+  PetscCall(ModelPredictFar(model, report));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* New lists after a solve, for the next one: in the middle of the way where it left the old ones, or because they do not hold. */
+PetscErrorCode ModelRenewLists(Model model, PetscBool settle, PetscBool *hold)
+{
+  ModelWork *work = model->work;
+  PetscReal  motion, next;
+
+  PetscFunctionBeginUser;
+  PetscCall(ModelMotion(model, work->trial, model->t, &motion));
+  next = MODEL_MOTION_SAFETY * motion;
+  if (motion > work->expected) motion *= 2; /* two bodies that the lists at the start did not let meet may have passed through each other */
+  TimingBegin(TIMING_SEARCH);
+  *hold = PETSC_FALSE;
+  if (work->left) {
+    work->renewed++;
+    PetscCall(ContactListsRenew(model->contact, work->trial, model->t, motion));
+  } else
+    PetscCall(ContactListsHold(model->contact, work->trial, model->t, motion, PetscMax(motion, next), settle, hold));
+  TimingEnd(TIMING_SEARCH);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Solves with frozen lists until they hold. */
+static PetscErrorCode ModelSolveLists(Model model, SolveReport *report)
+{
+  PetscBool hold = PETSC_FALSE, lost = PETSC_FALSE;
+  PetscInt  times = 0;
+
+  PetscFunctionBeginUser;
+  model->work->renewed = 0;
+  while (!hold && report->result == SOLVE_CONVERGED) {
+    model->work->left = PETSC_FALSE;
+    PetscCall(ModelNewton(model, report));
+    if (report->result != SOLVE_CONVERGED || !model->contact) break;
+    PetscCall(ModelRenewLists(model, (PetscBool)(times < MODEL_MAX_SETTLE && model->t < 1 && SceneBreaks(model->scene, model->t)), &hold));
+    PetscCall(ContactLocateLost(model->contact, &lost, report->detail, sizeof(report->detail)));
+    if (lost) report->result = SOLVE_LOST;
+    if (hold || lost) break;
+    report->regathered++;
+    if (!model->work->left && times++ == MODEL_MAX_REGATHER) report->result = SOLVE_LISTS;
+    if (!model->work->left && report->result == SOLVE_CONVERGED) PetscCall(ModelFollowLists(model, report));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Energy in elements and contact at the trial displacements, all ranks */
+static PetscErrorCode ModelStoredEnergy(Model model, PetscReal *energy)
+{
+  PetscBool ok;
+
+  PetscFunctionBeginUser;
+  *energy = 0;
+  PetscCall(ElasticityResidual(model->elasticity, model->work->trial, NULL, energy, NULL, &ok));
+  PetscCall(ContactResidual(model->contact, model->work->trial, model->t, NULL, energy, NULL));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, energy, 1, MPIU_REAL, MPI_SUM, model->mesh->comm));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Solves, with springs where pairs are stabilised; these are relaxed and all is solved on until they carry nothing. */
+static PetscErrorCode ModelSolveHeld(Model model, SolveReport *report)
+{
+  ModelWork *work = model->work;
+  PetscReal  force, energy, stored, allowed;
+  PetscInt   times = 0;
+
+  PetscFunctionBeginUser;
+  PetscCall(ModelSolveLists(model, report));
+  while (work->stabiliser && report->result == SOLVE_CONVERGED) {
+    PetscCall(StabiliserLoad(work->stabiliser, model->x, &force, &energy));
+    PetscCall(ModelStoredEnergy(model, &stored));
+    report->taken += energy;
+    report->left = stored > 0 ? energy / stored : 0;
+    PetscCall(ModelRoundOff(model, &allowed));
+    allowed = PetscMax(allowed, model->scene->solver.tolerance * PetscMax(model->force_scale, work->scale));
+    if (force <= allowed) break;
+    if (times++ == MODEL_MAX_RELAX) {
+      report->result = SOLVE_ADRIFT;
+      break;
+    }
+    report->relaxed++;
+    PetscCall(StabiliserRelax(work->stabiliser, model->x));
+    PetscCall(ModelSolveLists(model, report));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* ModelSolve - equilibrium at load parameter t, from the accepted state.
+
+   Collective. On success model->u, model->x and the contact state are the solution (not yet accepted); on failure call ModelRestore().
+   Contact lists are made before, frozen in each Newton solve, and made anew after it until they hold (at most MODEL_MAX_REGATHER times); then
+   penalties that are adjusted within the step, and all is solved on from there, until their window holds or no more can be done for it. */
+PetscErrorCode ModelSolve(Model model, PetscReal t, SolveReport *report)
+{
+  ModelWork         *work   = model->work;
+  ContactWindowState window = WINDOW_MISSED;
+
+  PetscFunctionBeginUser;
+  *report = (SolveReport){.result = SOLVE_CONVERGED};
+  PetscCall(ModelDepart(model, t));
+  PetscCall(ModelStart(model, report));
+  PetscCall(ModelSoftStart(model, report));
+  while (window == WINDOW_MISSED && report->result == SOLVE_CONVERGED) {
+    PetscCall(ModelSolveHeld(model, report));
+    if (report->result != SOLVE_CONVERGED || !model->contact) break;
+    PetscCall(ContactAdjustPenalty(model->contact, &window));
+    report->adjusted += window == WINDOW_MISSED;
+    if (window == WINDOW_AT_BOUND) {
+      PetscCall(ContactLocateOutside(model->contact, report->detail, sizeof(report->detail)));
+      report->result = SOLVE_WINDOW;
+    }
+  }
+  report->cycles = work->cycles;
+  PetscCall(PetscStrncpy(report->cycle, work->cycle, sizeof(report->cycle)));
+  if (report->result == SOLVE_CONVERGED)
+    PetscCall(PetscArraycpy(model->u, work->trial, model->mesh->n_nodes * model->mesh->dim));
+  else
+    PetscCall(ModelExplainFailure(model, report));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* ModelForecast - displacements at t by one linear solve with the accepted state's contact set, as a guess of what will touch.
+
+   Collective. u[n_nodes*dim]: local displacements (length), prescribed ones included. Costs and failures are added to the report; the state is
+   the accepted one afterwards, the contact lists are made for the way to t. The next ModelSolve() starts from the forecast instead of a
+   prediction of its own, so that the solve is paid once. */
+PetscErrorCode ModelForecast(Model model, PetscReal t, PetscReal *u, SolveReport *report)
+{
+  PetscFunctionBeginUser;
+  PetscCall(ModelDepart(model, t));
+  PetscCall(ModelPredict(model, report));
+  PetscCall(ModelTrial(model, model->x));
+  PetscCall(PetscArraycpy(u, model->work->trial, model->mesh->n_nodes * model->mesh->dim));
+  PetscCall(VecCopy(model->x, model->work->forecast));
+  PetscCall(VecCopy(model->work->accepted_x, model->x));
+  model->work->forecast_t        = t;
+  model->work->forecast_foreseen = model->work->foreseen;
+  model->work->forecasted        = report->result == SOLVE_CONVERGED ? PETSC_TRUE : PETSC_FALSE;
+  model->t                       = model->work->accepted_t;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

@@ -1,0 +1,238 @@
+#include "modelimpl.h"
+#include "base/timing.h"
+
+/* A linear step that moves the ends of a cell's edge against each other by more than this part of its length is taken in pieces: a rotation by as much comes
+   out as a stretch by a sixth. On a pipe between plates 0.5 to 0.75 serve; shorter pieces, each of which may leave the contact, cost more than they save. */
+#define PREDICTION_FARTHEST 0.6
+/* Pieces of one prediction; what is left is then taken at once. */
+#define PREDICTION_PIECES 8
+/* Contact that is met on the way is to turn the bodies back, not to hold them exactly: automatic penalties, as in softstart.c. */
+#define PREDICTION_SOFT 0.1
+
+/* One linear solve with the present tangent, at (u, t), and the forces in work->f moves model->x; carried: displacements that go with it. */
+static PetscErrorCode ModelStepLinear(Model model, const PetscReal *u, const PetscReal *carried, PetscReal t, SolveReport *report)
+{
+  Vec      b, dx;
+  KSP      ksp;
+  PetscInt its;
+
+  PetscFunctionBeginUser;
+  PetscCall(VecDuplicate(model->x, &b));
+  PetscCall(VecDuplicate(model->x, &dx));
+  PetscCall(MeshLocalToGlobal(model->mesh, model->work->f, b));
+  PetscCall(StabiliserResidual(model->work->stabiliser, model->x, b));
+  PetscCall(SNESGetKSP(model->snes, &ksp));
+  PetscCall(KSPSetOperators(ksp, model->A, model->P));
+  if (!model->work->foreseen) PetscCall(LinearSolverPredict(model->work->solver, PETSC_TRUE));
+  PetscCall(KSPSolve(ksp, b, dx));
+  if (!model->work->foreseen) PetscCall(LinearSolverPredict(model->work->solver, PETSC_FALSE));
+  PetscCall(KSPGetIterationNumber(ksp, &its));
+  report->newton++;
+  report->krylov += its;
+  if (LinearCheckLost(model->linear)) PetscCall(ModelLinearFailure(model, &report->result));
+  PetscCall(ModelSettle(model, u, carried, t, dx));
+  PetscCall(VecAXPY(model->x, -1, dx));
+  PetscCall(VecDestroy(&b));
+  PetscCall(VecDestroy(&dx));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* One linear solve with the tangent at (u, t) for the loads, imposed displacements and tool motions at model->t moves model->x, which stands there. It is a
+   Newton iteration, written so that what is prescribed moves with the whole body and not through it. holding: contact that is there stays. */
+static PetscErrorCode ModelStepLoads(Model model, const PetscReal *u, PetscReal t, PetscBool holding, SolveReport *report)
+{
+  ModelWork     *work = model->work;
+  const PetscInt n    = model->mesh->n_nodes * model->mesh->dim;
+  PetscReal     *step;
+  PetscBool      ok;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(n, &step));
+  PetscCall(PetscArraycpy(step, u, n));
+  PetscCall(LoadsPrescribe(model->loads, model->t, step));
+  for (PetscInt i = 0; i < n; i++) step[i] -= u[i];
+  if (holding) PetscCall(ContactPredict(model->contact, PETSC_TRUE, (PetscBool)(t == 0))); /* touching: a body that only contact holds */
+  PetscCall(LinearSolverRenew(work->solver));
+  PetscCall(LinearSolverSetStart(work->solver, work->accepted_start));
+  if (model->contact) PetscCall(ContactMultiplyBegin(model->contact, step, t, model->t));
+  PetscCall(ModelTangent(model, u, t));
+  PetscCall(ModelResidual(model, u, model->t, t, &ok));
+  if (holding) PetscCall(ContactForesee(model->contact));
+  PetscCall(ElasticityMultiplyLocal(model->elasticity, step, work->f));
+  if (model->contact) PetscCall(ContactMultiplyEnd(model->contact, work->f));
+  PetscCall(ModelStepLinear(model, u, step, t, report));
+  if (holding) PetscCall(ContactPredict(model->contact, PETSC_FALSE, PETSC_FALSE));
+  PetscCall(PetscFree(step));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Largest motion of the ends of a cell's edge against each other from displacements u to v, by its length, all ranks */
+static PetscErrorCode ModelLargestTurn(Model model, const PetscReal *u, const PetscReal *v, PetscReal *turn)
+{
+  const Mesh mesh = model->mesh;
+
+  PetscFunctionBeginUser;
+  *turn = 0;
+  for (PetscInt c = 0; c < mesh->n_cells; c++) {
+    const Element  *element = ElementGet(mesh->cell_type[c]);
+    const PetscInt *nodes   = &mesh->cell_nodes[mesh->cell_ptr[c]];
+
+    for (int e = 0; e < element->edges; e++) {
+      const PetscInt a = nodes[element->edge_corners[e][0]] * mesh->dim, b = nodes[element->edge_corners[e][1]] * mesh->dim;
+      PetscReal      motion = 0, length = 0;
+
+      for (int d = 0; d < mesh->dim; d++) {
+        motion += PetscSqr((v[b + d] - v[a + d]) - (u[b + d] - u[a + d]));
+        length += PetscSqr(mesh->coords[b + d] - mesh->coords[a + d]);
+      }
+      *turn = PetscMax(*turn, PetscSqrtReal(motion / length));
+    }
+  }
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, turn, 1, MPIU_REAL, MPI_MAX, mesh->comm));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Local displacements at (x, t) into u. */
+static PetscErrorCode ModelLocal(Model model, Vec x, PetscReal t, PetscReal *u)
+{
+  PetscFunctionBeginUser;
+  PetscCall(LoadsPrescribe(model->loads, t, u));
+  PetscCall(MeshGlobalToLocal(model->mesh, x, u));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* ModelForesee - the displacements at t that the way so far leads to expect, prescribed ones included: local ones u[n_nodes*dim], and the free ones among them.
+
+   Collective. smooth: the way has been such that this is worth more than what the tangent says; x is set then only. */
+PetscErrorCode ModelForesee(Model model, PetscReal t, PetscReal *u, Vec x, PetscBool *smooth)
+{
+  PetscFunctionBeginUser;
+  *smooth = PETSC_FALSE;
+  if (model->work->path) PetscCall(PathForesee(model->work->path, t, u, smooth));
+  if (!*smooth) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(LoadsPrescribe(model->loads, t, u));
+  PetscCall(MeshCollectFree(model->mesh, u, x));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* ModelInOrder - is no element turned inside out at local displacements u, on any rank, and do the lists reach so far? Collective. */
+PetscErrorCode ModelInOrder(Model model, const PetscReal *u, PetscBool *ok)
+{
+  PetscReal motion = 0;
+  PetscBool mine;
+
+  PetscFunctionBeginUser;
+  TimingBegin(TIMING_ASSEMBLY_ELASTIC);
+  PetscCall(ElasticityResidual(model->elasticity, u, NULL, NULL, NULL, &mine));
+  TimingEnd(TIMING_ASSEMBLY_ELASTIC);
+  PetscCallMPI(MPI_Allreduce(&mine, ok, sizeof(PetscBool), MPI_BYTE, MPI_BAND, model->mesh->comm));
+  if (model->contact) PetscCall(ModelMotion(model, u, model->t, &motion));
+  *ok = (PetscBool)(*ok && motion <= model->work->expected);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* A step from where the way so far leads to: Newton's first iteration from there. work->foreseen: it has been made, and did not lead far away. */
+static PetscErrorCode ModelPredictForeseen(Model model, SolveReport *report)
+{
+  ModelWork     *work = model->work;
+  const PetscInt n    = model->mesh->n_nodes * model->mesh->dim;
+  PetscReal     *u, *v, turn;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc2(n, &u, n, &v));
+  PetscCall(ModelForesee(model, model->t, u, model->x, &work->foreseen));
+  if (work->foreseen) PetscCall(ModelInOrder(model, u, &work->foreseen));
+  if (work->foreseen) {
+    PetscCall(ModelStepLoads(model, u, model->t, (PetscBool)(model->contact != NULL), report));
+    PetscCall(ModelLocal(model, model->x, model->t, v));
+    PetscCall(ModelLargestTurn(model, u, v, &turn));
+    work->foreseen = (PetscBool)(report->result == SOLVE_CONVERGED && turn <= PREDICTION_FARTHEST);
+  }
+  PetscCall(PetscFree2(u, v));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* ModelPredict - displacements at model->t by one linear solve, into model->x. Collective. Costs and failures are added to the report.
+
+   From the accepted state; where the way was smooth, from where it leads to. */
+PetscErrorCode ModelPredict(Model model, SolveReport *report)
+{
+  const SolveReport before = *report;
+
+  PetscFunctionBeginUser;
+  PetscCall(ModelPredictForeseen(model, report));
+  if (model->work->foreseen) PetscFunctionReturn(PETSC_SUCCESS);
+  *report = before; /* a singular tangent there says nothing of the one here */
+  PetscCall(VecCopy(model->work->accepted_x, model->x));
+  PetscCall(ModelStepLoads(model, model->work->accepted_u, model->work->accepted_t, (PetscBool)(model->contact != NULL), report));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* New lists at (u, t) on the way, if these do not reach so far. */
+static PetscErrorCode ModelReachOn(Model model, const PetscReal *u, PetscReal t, SolveReport *report)
+{
+  PetscReal motion;
+  PetscBool ok, within;
+
+  PetscFunctionBeginUser;
+  PetscCall(ModelResidual(model, u, t, t, &ok));
+  PetscCall(ContactListsReach(model->contact, &within));
+  if (within) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(ModelMotion(model, u, t, &motion));
+  TimingBegin(TIMING_SEARCH);
+  PetscCall(ContactListsRenew(model->contact, u, t, PetscMax(motion, model->work->expected)));
+  TimingEnd(TIMING_SEARCH);
+  report->regathered++;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* ModelPredictFar - where the prediction in model->x is too far for one linear step, goes a part of the way and on from there.
+
+   Collective. Costs and failures are added to the report; none of the states on the way is in equilibrium. */
+PetscErrorCode ModelPredictFar(Model model, SolveReport *report)
+{
+  const PetscInt n = model->mesh->n_nodes * model->mesh->dim;
+  PetscReal      t = model->work->accepted_t, turn, part, *u, *v;
+  Vec            from;
+
+  PetscFunctionBeginUser;
+  if (model->scene->kinematics == KINEMATICS_SMALL || model->work->foreseen) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(VecDuplicate(model->x, &from));
+  PetscCall(VecCopy(model->work->accepted_x, from));
+  PetscCall(PetscCalloc2(n, &u, n, &v));
+  PetscCall(PetscArraycpy(u, model->work->accepted_u, n));
+  if (model->contact) PetscCall(ContactSoften(model->contact, PREDICTION_SOFT));
+  for (PetscInt piece = 0; piece < PREDICTION_PIECES && report->result == SOLVE_CONVERGED; piece++) {
+    PetscCall(ModelLocal(model, model->x, model->t, v));
+    PetscCall(ModelLargestTurn(model, u, v, &turn));
+    if (turn <= PREDICTION_FARTHEST) break;
+    part = PREDICTION_FARTHEST / turn;
+    t += part * (model->t - t);
+    PetscCall(VecAXPBY(model->x, 1 - part, part, from));
+    PetscCall(VecCopy(model->x, from));
+    PetscCall(ModelLocal(model, from, t, u));
+    if (model->contact) PetscCall(ModelReachOn(model, u, t, report));
+    PetscCall(ModelStepLoads(model, u, t, PETSC_FALSE, report));
+  }
+  if (model->contact) PetscCall(ContactSoften(model->contact, PETSC_MAX_REAL));
+  PetscCall(PetscFree2(u, v));
+  PetscCall(VecDestroy(&from));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* ModelFollowLists - the first iteration after lists have been replaced at a solution: what is in contact stays so.
+
+   Collective. Other lists, and the offsets that come with them, move the
+   surfaces by more than a stiff penalty lets them overlap; nodes that this would open let go of the bodies, which then fly apart. */
+PetscErrorCode ModelFollowLists(Model model, SolveReport *report)
+{
+  PetscBool ok;
+
+  PetscFunctionBeginUser;
+  PetscCall(ContactPredict(model->contact, PETSC_TRUE, PETSC_FALSE));
+  PetscCall(ModelTangent(model, model->work->trial, model->t));
+  PetscCall(ModelResidual(model, model->work->trial, model->t, model->t, &ok));
+  PetscCall(ModelStepLinear(model, model->work->trial, NULL, model->t, report));
+  PetscCall(ContactPredict(model->contact, PETSC_FALSE, PETSC_FALSE));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

@@ -1,0 +1,334 @@
+#include "step/stepper.h"
+#include "stepcontrol.h"
+
+/* Load parameters closer than this are the same point of the way (t runs from 0 to 1). */
+#define STEPPER_SAME_T 1e-12
+/* A failed step is tried again with this part of its dt. */
+#define STEPPER_CUT 0.5
+/* Up to this many dt short of a landing point the step stretches to it: sqrt(2), where one step is as many times longer than dt as two would be shorter, ... */
+#define STEPPER_STRETCH 1.4142135623730951
+/* ... up to this many the rest is halved, so that no sliver of a step remains. */
+#define STEPPER_HALVE 2.0
+
+struct _n_LoadStepper {
+  MPI_Comm             comm;
+  Model                model;
+  StepControlKind      kind;
+  const StepControl   *control;     /* that of the kind */
+  StepSize             size, start; /* start: at the last accepted step */
+  StepperReport        report;
+  PetscInt             n_landings, next_landing; /* load parameters to be met exactly, ascending, the last one 1 */
+  PetscReal           *landings;
+  LoadStepperMonitorFn monitor;
+  void                *monitor_context;
+  PetscBool            view;
+};
+
+/* LoadStepperCreate - Collective. */
+PetscErrorCode LoadStepperCreate(MPI_Comm comm, LoadStepper *stepper)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscNew(stepper));
+  (*stepper)->comm = comm;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* LoadStepperDestroy - Collective. The model remains. */
+PetscErrorCode LoadStepperDestroy(LoadStepper *stepper)
+{
+  PetscFunctionBeginUser;
+  if (!*stepper) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscFree((*stepper)->landings));
+  PetscCall(PetscFree(*stepper));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* LoadStepperSetModel - the model to be stepped; borrowed, set up (ModelSetUp()) by the caller. Not collective. */
+PetscErrorCode LoadStepperSetModel(LoadStepper stepper, Model model)
+{
+  PetscFunctionBeginUser;
+  stepper->model = model;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode AddHistory(const History *history, PetscInt *n, PetscReal *landings)
+{
+  PetscFunctionBeginUser;
+  for (int i = 0; i < history->n; i++)
+    if (history->t[i] > STEPPER_SAME_T && history->t[i] < 1 - STEPPER_SAME_T) landings[(*n)++] = history->t[i];
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode AddMotion(const Motion *motion, PetscInt *n, PetscReal *landings)
+{
+  PetscFunctionBeginUser;
+  for (int m = 0; m < motion->n; m++) PetscCall(AddHistory(&motion->components[m].history, n, landings));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscInt MotionBreakpoints(const Motion *motion)
+{
+  PetscInt n = 0;
+
+  for (int m = 0; m < motion->n; m++) n += motion->components[m].history.n;
+  return n;
+}
+
+/* Every load parameter that a step must end on: `at`, the breakpoints of all histories, 1. */
+static PetscErrorCode LoadStepperSetLandings(LoadStepper stepper, Scene scene)
+{
+  PetscInt n = scene->stepping.n_at + 1, kept = 0;
+
+  PetscFunctionBeginUser;
+  for (int l = 0; l < scene->n_loads; l++) n += scene->loads[l].history.n;
+  for (int b = 0; b < scene->n_bodies; b++) n += MotionBreakpoints(&scene->bodies[b].motion);
+  for (int c = 0; c < scene->n_contacts; c++) n += MotionBreakpoints(&scene->contacts[c].motion);
+  PetscCall(PetscFree(stepper->landings));
+  PetscCall(PetscMalloc1(n, &stepper->landings));
+  n = 0;
+  for (int i = 0; i < scene->stepping.n_at; i++) stepper->landings[n++] = scene->stepping.at[i];
+  for (int l = 0; l < scene->n_loads; l++) PetscCall(AddHistory(&scene->loads[l].history, &n, stepper->landings));
+  for (int b = 0; b < scene->n_bodies; b++) PetscCall(AddMotion(&scene->bodies[b].motion, &n, stepper->landings));
+  for (int c = 0; c < scene->n_contacts; c++) PetscCall(AddMotion(&scene->contacts[c].motion, &n, stepper->landings));
+  stepper->landings[n++] = 1;
+  PetscCall(PetscSortReal(n, stepper->landings));
+  for (PetscInt i = 0; i < n; i++) {
+    if (stepper->landings[i] <= STEPPER_SAME_T) continue;
+    if (!kept || stepper->landings[i] > stepper->landings[kept - 1] + STEPPER_SAME_T) stepper->landings[kept++] = stepper->landings[i];
+  }
+  stepper->n_landings = kept;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* LoadStepperSetFromScene - control, dt and its bounds, landing points. The only source of these values. Not collective. */
+PetscErrorCode LoadStepperSetFromScene(LoadStepper stepper, Scene scene)
+{
+  PetscFunctionBeginUser;
+  stepper->kind    = scene->stepping.control;
+  stepper->control = StepControls[stepper->kind];
+  stepper->size    = (StepSize){.initial   = scene->stepping.initial,
+                                .dt_min    = scene->stepping.dt_min,
+                                .dt_max    = scene->stepping.dt_max,
+                                .growth    = scene->stepping.growth,
+                                .wanted    = scene->stepping.N_c ? scene->stepping.N_c : scene->stepping.N_c_fraction,
+                                .by_area   = (PetscBool)!scene->stepping.N_c,
+                                .linearly  = (PetscBool)scene->stepping.predict_linearly,
+                                .shortfall = 1,
+                                .beta      = NAN,
+                                .dt        = scene->stepping.initial};
+  PetscCall(LoadStepperSetLandings(stepper, scene));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* LoadStepperSetFromOptions - what is no physics and no stepping value, and so may come from PETSc's options.
+
+   Options Database Key:
+   -load_stepper_view - print the stepper before it starts
+
+   Collective. */
+PetscErrorCode LoadStepperSetFromOptions(LoadStepper stepper)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscOptionsGetBool(NULL, NULL, "-load_stepper_view", &stepper->view, NULL));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* LoadStepperMonitorSet - a function called after each accepted step. Logically collective. */
+PetscErrorCode LoadStepperMonitorSet(LoadStepper stepper, LoadStepperMonitorFn monitor, void *context)
+{
+  PetscFunctionBeginUser;
+  stepper->monitor         = monitor;
+  stepper->monitor_context = context;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* LoadStepperView - prints control, dt, bounds and landing points. Collective on the viewer. */
+PetscErrorCode LoadStepperView(LoadStepper stepper, PetscViewer viewer)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscViewerASCIIPrintf(viewer, "LoadStepper: control %s, initial %g, dt_min %g, dt_max %g, growth %g\n", StepControlNames[stepper->kind],
+                                   (double)stepper->size.initial, (double)stepper->size.dt_min, (double)stepper->size.dt_max, (double)stepper->size.growth));
+  PetscCall(PetscViewerASCIIPrintf(viewer, "  lands on"));
+  for (PetscInt i = 0; i < stepper->n_landings; i++) PetscCall(PetscViewerASCIIPrintf(viewer, " %g", (double)stepper->landings[i]));
+  PetscCall(PetscViewerASCIIPrintf(viewer, "\n"));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The end of a step of about dt from t: exactly the next landing point where it is near. *clipped: dt was shortened for it, so its size says nothing of what
+ * the model can take. */
+static PetscReal StepEnd(LoadStepper stepper, PetscReal t, PetscReal dt, PetscBool *clipped)
+{
+  PetscReal landing, rest;
+
+  while (stepper->landings[stepper->next_landing] <= t + STEPPER_SAME_T) stepper->next_landing++;
+  landing  = stepper->landings[stepper->next_landing];
+  rest     = landing - t;
+  *clipped = PETSC_FALSE;
+  if (rest <= PetscMax(dt, PetscMin(STEPPER_STRETCH * dt, stepper->size.dt_max)) + STEPPER_SAME_T) {
+    *clipped = rest < dt - STEPPER_SAME_T ? PETSC_TRUE : PETSC_FALSE;
+    return landing;
+  }
+  if (rest < STEPPER_HALVE * dt) {
+    *clipped = PETSC_TRUE;
+    return t + rest / 2;
+  }
+  return t + dt;
+}
+
+static void CountSolve(PetscReal t, const SolveReport *solve, StepRecord *record, StepperReport *report)
+{
+  report->relaxed += solve->relaxed;
+  report->cycles += solve->cycles;
+  report->cycles_cut += solve->result == SOLVE_CYCLE;
+  if (solve->cycles) snprintf(report->cycle, sizeof(report->cycle), "on the way to t = %.6g %s", (double)t, solve->cycle);
+  record->newton += solve->newton;
+  record->krylov += solve->krylov;
+  report->newton_iterations += solve->newton;
+  report->krylov_iterations += solve->krylov;
+  report->regathered += solve->regathered;
+  report->adjusted += solve->adjusted;
+  report->cuts += solve->cuts;
+}
+
+/* The control's prediction, once for each step */
+static PetscErrorCode LoadStepperPredict(LoadStepper stepper, StepRecord *record)
+{
+  SolveReport solve = {.result = SOLVE_CONVERGED};
+  PetscBool   clipped;
+
+  PetscFunctionBeginUser;
+  if (!stepper->control->predict) PetscFunctionReturn(PETSC_SUCCESS);
+  (void)StepEnd(stepper, stepper->model->t, stepper->size.dt, &clipped); /* finds the landing point ahead */
+  PetscCall(stepper->control->predict(stepper->model, stepper->landings[stepper->next_landing] - stepper->model->t, &stepper->size, &solve));
+  CountSolve(stepper->model->t, &solve, record, &stepper->report);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* A converged step of dt that is to stay: the record, the accepted state, the next dt. */
+static PetscErrorCode LoadStepperAccept(LoadStepper stepper, PetscReal dt, PetscBool clipped, const SolveReport *solve, StepRecord *record)
+{
+  Model model = stepper->model;
+
+  PetscFunctionBeginUser;
+  record->t        = model->t;
+  record->dt       = dt;
+  record->residual = solve->residual;
+  if (model->contact) PetscCall(ContactSummarise(model->contact, &record->contact));
+  PetscCall(stepper->control->next(model, dt, clipped, solve->newton, &stepper->size));
+  stepper->size.dt = PetscMin(stepper->size.dt_max, stepper->size.dt);
+  record->beta     = stepper->size.beta;
+  record->tied     = stepper->size.tied;
+  PetscCall(ModelAccept(model));
+  stepper->start    = stepper->size;
+  stepper->report.t = model->t;
+  stepper->report.steps++;
+  stepper->report.newton_accepted += solve->newton;
+  stepper->report.taken += solve->taken;
+  stepper->report.left = PetscMax(stepper->report.left, solve->left);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Tries one step, smaller and smaller until it converges and the control is content, or it falls below the floor. */
+static PetscErrorCode LoadStepperAdvance(LoadStepper stepper, StepRecord *record, PetscBool *advanced)
+{
+  Model           model  = stepper->model;
+  StepperReport  *report = &stepper->report;
+  const PetscReal t = model->t, first = stepper->size.dt;
+  SolveReport     solve;
+  PetscBool       clipped;
+
+  PetscFunctionBeginUser;
+  *advanced = PETSC_FALSE;
+  *record   = (StepRecord){.step = report->steps + 1};
+  PetscCall(LoadStepperPredict(stepper, record));
+  while (PETSC_TRUE) {
+    const PetscReal end = StepEnd(stepper, t, stepper->size.dt, &clipped), dt = end - t;
+
+    PetscCall(ModelSolve(model, end, &solve));
+    record->attempts++;
+    CountSolve(end, &solve, record, &stepper->report);
+    if (solve.result == SOLVE_CONVERGED) {
+      *advanced = PETSC_TRUE;
+      if (stepper->control->judge) PetscCall(stepper->control->judge(model, dt, &stepper->size, advanced));
+      if (*advanced) {
+        PetscCall(LoadStepperAccept(stepper, dt, clipped, &solve, record));
+        PetscFunctionReturn(PETSC_SUCCESS);
+      }
+      PetscCall(ModelRestore(model));
+      report->steps_repeated++;
+      continue;
+    }
+    PetscCall(PetscInfo(model->snes, "step to t = %g failed: %s; %s\n", (double)end, SolveResults[solve.result], solve.detail));
+    PetscCall(ModelRestore(model));
+    report->steps_failed++;
+    stepper->size.dt = STEPPER_CUT * dt;
+    if (stepper->size.dt < stepper->size.dt_min || (solve.result == SOLVE_LINEAR && solve.newton == 1)) { /* a tangent singular at the start is so for any dt */
+      PetscCall(PetscSNPrintf(report->message, sizeof(report->message),
+                              "no equilibrium from t = %.6g to %.6g: %s; %s; tried %" PetscInt_FMT " steps, dt from %.3g down to %.3g (dt_min %.3g)", (double)t,
+                              (double)end, SolveResults[solve.result], solve.detail, record->attempts, (double)first, (double)dt,
+                              (double)stepper->size.dt_min));
+      report->failed.solve    = solve;
+      report->failed.attempts = record->attempts;
+      report->failed.t        = end;
+      report->failed.first    = first;
+      report->failed.last     = dt;
+      PetscFunctionReturn(PETSC_SUCCESS);
+    }
+  }
+}
+
+/* LoadStepperStop - ends LoadStepperSolve() before its next step. Logically collective; for the monitor. */
+PetscErrorCode LoadStepperStop(LoadStepper stepper)
+{
+  PetscFunctionBeginUser;
+  stepper->report.stopped = PETSC_TRUE;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* LoadStepperSolve - steps the model from its t to 1, or until no step above dt_min converges; then the model stands at the last good state.
+
+   Collective. The monitor is called after each accepted step. */
+PetscErrorCode LoadStepperSolve(LoadStepper stepper, StepperReport *report)
+{
+  PetscBool  advanced = PETSC_TRUE;
+  StepRecord record;
+
+  PetscFunctionBeginUser;
+  if (ModelIsLinear(stepper->model)) stepper->size.dt = stepper->size.initial = stepper->size.dt_max = 1; /* the answer at any t is one solve away */
+  stepper->start        = stepper->size;
+  stepper->report.t     = stepper->model->t;
+  stepper->next_landing = 0;
+  if (stepper->view) PetscCall(LoadStepperView(stepper, PETSC_VIEWER_STDOUT_(stepper->comm)));
+  while (stepper->report.t < 1 - STEPPER_SAME_T && advanced && !stepper->report.stopped) {
+    PetscCall(LoadStepperAdvance(stepper, &record, &advanced));
+    if (advanced && stepper->monitor) PetscCall(stepper->monitor(stepper, &record, stepper->monitor_context));
+  }
+  stepper->report.done    = stepper->report.t < 1 - STEPPER_SAME_T ? PETSC_FALSE : PETSC_TRUE;
+  stepper->report.stopped = (PetscBool)(stepper->report.stopped && !stepper->report.done);
+  *report                 = stepper->report;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* LoadStepperArchive - saves or takes over the size of the next step and the counts.
+
+   Collective. A failed step is not part of it: it is tried again from its first dt, with the solver or stepping that has been changed. Loading comes after
+   LoadStepperSetFromScene(), whose dt_max holds; so does its `initial` if that is another one than the run had. */
+PetscErrorCode LoadStepperArchive(LoadStepper stepper, Archive archive)
+{
+  StepperReport *report  = &stepper->report;
+  StepSize       size    = ArchiveLoads(archive) ? stepper->size : stepper->start;
+  PetscReal      initial = size.initial, dt = size.dt;
+  PetscReal     *real[]    = {&initial, &dt, &size.beta, &size.together, &size.shortfall, &size.planned, &report->taken, &report->left};
+  PetscInt      *integer[] = {
+         &report->steps,      &report->steps_failed, &report->steps_repeated, &report->newton_iterations, &report->newton_accepted, &report->krylov_iterations,
+         &report->regathered, &report->adjusted,     &report->cuts,           &report->relaxed,           &report->cycles,          &report->cycles_cut,
+         &size.tied};
+
+  PetscFunctionBeginUser;
+  PetscCall(ArchiveRealsAt(archive, "stepper/size", PETSC_STATIC_ARRAY_LENGTH(real), real));
+  PetscCall(ArchiveIntegersAt(archive, "stepper/counts", PETSC_STATIC_ARRAY_LENGTH(integer), integer));
+  if (!ArchiveLoads(archive)) PetscFunctionReturn(PETSC_SUCCESS);
+  if (initial == stepper->size.initial) size.dt = PetscMin(size.dt_max, dt);
+  stepper->size = size;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
