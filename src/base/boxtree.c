@@ -18,7 +18,7 @@ struct _n_Tree {
   int     dim, n;
   double *box;   /* [2n-1][2][dim]: lower and upper corners of the nodes */
   int    *order; /* box numbers in the order of the leaves */
-  Range  *queue; /* [n + 1]: heap of TreeClosest(), nearest first */
+  Range  *queue; /* [n + 1]: heap of BoxTreeClosest(), nearest first */
 };
 
 /* What the halving needs of the boxes */
@@ -84,7 +84,7 @@ static Range Right(const Range *range)
 }
 
 /* Boxes and order of a subtree */
-static void BuildRange(Tree tree, const Boxes *boxes, Range range)
+static void BuildRange(BoxTree tree, const Boxes *boxes, Range range)
 {
   const int dim   = tree->dim;
   double   *lower = tree->box + (size_t)range.node * 2 * dim, *upper = lower + dim, widest = -1;
@@ -114,11 +114,11 @@ static void BuildRange(Tree tree, const Boxes *boxes, Range range)
 }
 
 /* Builds the tree. Not collective, plain C. dim: 1 to 3; n: boxes, 0 allowed; lower, upper: [n][dim] corners (lengths), not kept.
-   Returns 0, or 1 without memory (*tree is NULL then). To be freed by TreeDestroy(). */
-int TreeBuild(int dim, int n, const double *lower, const double *upper, Tree *tree)
+   Returns 0, or 1 without memory (*tree is NULL then). To be freed by BoxTreeDestroy(). */
+int BoxTreeBuild(int dim, int n, const double *lower, const double *upper, BoxTree *tree)
 {
   const Boxes boxes = {dim, lower, upper};
-  Tree        t     = calloc(1, sizeof(*t));
+  BoxTree        t     = calloc(1, sizeof(*t));
 
   *tree = t;
   if (!t) return 1;
@@ -128,7 +128,7 @@ int TreeBuild(int dim, int n, const double *lower, const double *upper, Tree *tr
   t->order = malloc(sizeof(*t->order) * ((size_t)n + 1));
   t->queue = malloc(sizeof(*t->queue) * ((size_t)n + 1));
   if (!t->box || !t->order || !t->queue) {
-    TreeDestroy(tree);
+    BoxTreeDestroy(tree);
     return 1;
   }
   for (int i = 0; i < n; ++i) t->order[i] = i;
@@ -137,7 +137,7 @@ int TreeBuild(int dim, int n, const double *lower, const double *upper, Tree *tr
 }
 
 /* Frees the tree, NULL allowed, and sets it to NULL. Not collective, plain C. */
-void TreeDestroy(Tree *tree)
+void BoxTreeDestroy(BoxTree *tree)
 {
   if (!*tree) return;
   free((*tree)->box);
@@ -148,7 +148,7 @@ void TreeDestroy(Tree *tree)
 }
 
 /* Squared distance of a node's box from a point, 0 inside */
-static double SquaredDistance(Tree tree, int node, const double *point)
+static double SquaredDistance(BoxTree tree, int node, const double *point)
 {
   const double *lower = tree->box + (size_t)node * 2 * tree->dim, *upper = lower + tree->dim;
   double        sum = 0;
@@ -183,7 +183,7 @@ static int InsertAscending(int value, int max, int n, int *list)
 
 /* All boxes nearer to a point than radius. Not collective, plain C. point[dim], radius: lengths; found[max]: their numbers, ascending, the
    first max of them. Returns how many there are, which may exceed max. */
-int TreeNear(Tree tree, const double *point, double radius, int max, int *found)
+int BoxTreeNear(BoxTree tree, const double *point, double radius, int max, int *found)
 {
   Range stack[MAX_DEPTH];
   int   depth = 0, count = 0, written = 0;
@@ -206,7 +206,7 @@ int TreeNear(Tree tree, const double *point, double radius, int max, int *found)
 }
 
 /* Order of the queue: distance; subtrees before boxes, as they may hold one just as near; then number. */
-static int Nearer(Tree tree, const Range *a, const Range *b)
+static int Nearer(BoxTree tree, const Range *a, const Range *b)
 {
   if (a->distance != b->distance) return a->distance < b->distance;
   if ((a->count == 1) != (b->count == 1)) return a->count > 1;
@@ -214,7 +214,7 @@ static int Nearer(Tree tree, const Range *a, const Range *b)
 }
 
 /* Adds a subtree to the queue; returns the new length. */
-static int Push(Tree tree, Range range, const double *point, int length)
+static int Push(BoxTree tree, Range range, const double *point, int length)
 {
   Range *queue = tree->queue;
   int    i     = length;
@@ -226,7 +226,7 @@ static int Push(Tree tree, Range range, const double *point, int length)
 }
 
 /* Takes the nearest subtree out of the queue of that length */
-static Range Pop(Tree tree, int length)
+static Range Pop(BoxTree tree, int length)
 {
   Range      *queue = tree->queue;
   const Range top = queue[0], last = queue[length - 1];
@@ -245,7 +245,7 @@ static Range Pop(Tree tree, int length)
 /* Visits boxes in order of their distance from a point, of equal distances by number, while that is at most *bound.
    Not collective, plain C; not to be called from visit. point[dim], *bound: lengths, *bound may be INFINITY; visit(context, box, bound) may
    lower *bound. */
-void TreeClosest(Tree tree, const double *point, double *bound, void (*visit)(void *context, int index, double *bound), void *context)
+void BoxTreeClosest(BoxTree tree, const double *point, double *bound, void (*visit)(void *context, int index, double *bound), void *context)
 {
   int length = tree->n ? Push(tree, (Range){0, 0, 0, tree->n}, point, 0) : 0;
 

@@ -1,8 +1,8 @@
 #include "base/gathertable.h"
 #include <stdlib.h>
 
-/* TableCompare - orders rows by their first two columns. Not collective. */
-int TableCompare(const void *a, const void *b)
+/* GatherTableCompare - orders rows by their first two columns. Not collective. */
+int GatherTableCompare(const void *a, const void *b)
 {
   const PetscReal *p = a, *q = b;
 
@@ -11,11 +11,11 @@ int TableCompare(const void *a, const void *b)
 }
 
 /*
-  TableGather - Joins the ranks' rows into one table, which every rank gets. Collective.
+  GatherTableCreate - Joins the ranks' rows into one table, which every rank gets. Collective.
 
-  Input: width (columns, at least 2), n and rows[n*width] of this rank. Output: table, freed with TableDestroy().
+  Input: width (columns, at least 2), n and rows[n*width] of this rank. Output: table, freed with GatherTableDestroy().
 */
-PetscErrorCode TableGather(MPI_Comm comm, int width, PetscInt n, const PetscReal *rows, Table *table)
+PetscErrorCode GatherTableCreate(MPI_Comm comm, int width, PetscInt n, const PetscReal *rows, GatherTable *table)
 {
   PetscMPIInt size, mine, total = 0, *count, *start;
 
@@ -32,13 +32,13 @@ PetscErrorCode TableGather(MPI_Comm comm, int width, PetscInt n, const PetscReal
   table->width = width;
   PetscCall(PetscMalloc1(total + 1, &table->row)); /* never NULL, an empty table neither */
   PetscCallMPI(MPI_Allgatherv(rows, mine, MPIU_REAL, table->row, count, start, MPIU_REAL, comm));
-  qsort(table->row, (size_t)table->n, (size_t)width * sizeof(PetscReal), TableCompare);
+  qsort(table->row, (size_t)table->n, (size_t)width * sizeof(PetscReal), GatherTableCompare);
   PetscCall(PetscFree2(count, start));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* TableDestroy - Frees a table; it is empty then. Not collective. */
-PetscErrorCode TableDestroy(Table *table)
+/* GatherTableDestroy - Frees a table; it is empty then. Not collective. */
+PetscErrorCode GatherTableDestroy(GatherTable *table)
 {
   PetscFunctionBeginUser;
   PetscCall(PetscFree(table->row));

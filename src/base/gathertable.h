@@ -8,10 +8,10 @@ typedef struct {
   PetscInt   n;
   int        width;
   PetscReal *row;
-} Table;
+} GatherTable;
 
 /* rows[n*width] of this rank. Collective. */
-PetscErrorCode TableGather(MPI_Comm, int width, PetscInt n, const PetscReal *rows, Table *);
-PetscErrorCode TableDestroy(Table *);
+PetscErrorCode GatherTableCreate(MPI_Comm, int width, PetscInt n, const PetscReal *rows, GatherTable *);
+PetscErrorCode GatherTableDestroy(GatherTable *);
 /* Negative, 0 or positive as row a comes before, with or after row b, for qsort() */
-int TableCompare(const void *a, const void *b);
+int GatherTableCompare(const void *a, const void *b);

@@ -539,7 +539,7 @@ static PetscErrorCode JoinPattern(Elasticity e, Mat other)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode CreateMatrix(Elasticity e)
+static PetscErrorCode ElasticityCreateMatrix(Elasticity e)
 {
   NodePairs pairs = {e->dim, e->mesh->n_nodes, NULL, e->row, e->column};
   PetscInt  owned;
@@ -568,7 +568,7 @@ static PetscErrorCode CreateMatrix(Elasticity e)
 PetscErrorCode ElasticityMatrix(Elasticity e, Mat C, Vec diagonal, Mat *matrix)
 {
   PetscFunctionBeginUser;
-  if (!e->matrix) PetscCall(CreateMatrix(e));
+  if (!e->matrix) PetscCall(ElasticityCreateMatrix(e));
   PetscCall(PetscLogEventBegin(event_insert, 0, 0, 0, 0));
   PetscCall(NodeMatrixSet(e->matrix, e->value, C, diagonal));
   PetscCall(PetscLogEventEnd(event_insert, 0, 0, 0, 0));

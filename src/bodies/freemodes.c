@@ -273,7 +273,7 @@ static PetscErrorCode MeasurePair(FreeModes modes, const SceneContact *contact, 
 }
 
 /* a gram b */
-static double Product(int n, const double gram[], const double a[], const double b[])
+static double VectorProduct(int n, const double gram[], const double a[], const double b[])
 {
   double sum = 0;
 
@@ -307,7 +307,7 @@ static PetscErrorCode FindLoose(FreeModes modes)
   PetscCall(PetscArrayzero(small, k * k));
   for (int c = 0; c < modes->scene->n_contacts; c++)
     for (int i = 0; i < k; i++)
-      for (int j = 0; j < k; j++) small[i * k + j] += Product(n, &modes->gram[c * n * n], &rows[i * n], &rows[j * n]);
+      for (int j = 0; j < k; j++) small[i * k + j] += VectorProduct(n, &modes->gram[c * n * n], &rows[i * n], &rows[j * n]);
   modes->n_loose = RigidFree(k, small, PetscSqr(FREE_CONTACT), free);
   PetscCall(PetscCalloc1(modes->n_loose * n, &modes->loose));
   for (int l = 0; l < modes->n_loose; l++)
@@ -373,13 +373,13 @@ PetscErrorCode FreeModesDestroy(FreeModes *modes)
 
 /* ---------- in words ---------- */
 
-static double Length(const double v[3])
+static double VectorLength(const double v[3])
 {
   return sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
 }
 
 /* What is below the uncertainty of a component is 0 */
-static double Clean(double value, double scale)
+static double RoundToZero(double value, double scale)
 {
   return fabs(value) <= 1e-6 * scale ? 0 : value;
 }
@@ -387,14 +387,14 @@ static double Clean(double value, double scale)
 /* "(0, 1, 0)": dim components of a vector, times factor */
 static void VectorText(int dim, const double v[3], double factor, double scale, char text[FREE_TEXT])
 {
-  snprintf(text, FREE_TEXT, dim == 3 ? "(%.4g, %.4g, %.4g)" : "(%.4g, %.4g)", Clean(factor * v[0], scale), Clean(factor * v[1], scale),
-           Clean(factor * v[2], scale));
+  snprintf(text, FREE_TEXT, dim == 3 ? "(%.4g, %.4g, %.4g)" : "(%.4g, %.4g)", RoundToZero(factor * v[0], scale), RoundToZero(factor * v[1], scale),
+           RoundToZero(factor * v[2], scale));
 }
 
 /* "y, (0, 1, 0)", or the vector alone; pointing to the positive side */
 static void DirectionText(int dim, const double v[3], char text[FREE_TEXT])
 {
-  const double length = Length(v);
+  const double length = VectorLength(v);
   double       unit[3];
   char         vector[FREE_TEXT];
   int          axis = -1, largest = 0;
@@ -414,12 +414,12 @@ static void DirectionText(int dim, const double v[3], char text[FREE_TEXT])
 /* "translation along y, (0, 1, 0)", "rotation about z, (0, 0, 1), through (10, 0, 5)": motion[6] of a piece */
 static void MotionText(FreeModes modes, const Piece *piece, const double motion[RIGID_MODES], char text[FREE_TEXT])
 {
-  const double *rotation = motion, *translation = motion + 3, square = PetscSqr(Length(rotation));
+  const double *rotation = motion, *translation = motion + 3, square = PetscSqr(VectorLength(rotation));
   const int     dim = modes->mesh->dim;
   double        point[3], pitch;
   char          direction[FREE_TEXT], place[FREE_TEXT];
 
-  if (Length(rotation) <= FREE_ALIGNED * Length(translation)) {
+  if (VectorLength(rotation) <= FREE_ALIGNED * VectorLength(translation)) {
     DirectionText(dim, translation, direction);
     snprintf(text, FREE_TEXT, "translation along %.*s", FREE_TEXT / 2, direction);
     return;
@@ -449,14 +449,14 @@ static void PairsText(FreeModes modes, PetscInt p, int mode, char text[FREE_TEXT
   Embed(modes, p, mode, motion);
   text[0] = '\0';
   for (int c = 0; c < modes->scene->n_contacts; c++)
-    if (Product(n, &modes->gram[c * n * n], motion, motion) > PetscSqr(FREE_CONTACT) && used < FREE_TEXT)
+    if (VectorProduct(n, &modes->gram[c * n * n], motion, motion) > PetscSqr(FREE_CONTACT) && used < FREE_TEXT)
       used += (size_t)snprintf(text + used, FREE_TEXT - used, "%s%s", used ? ", " : "", modes->scene->contacts[c].name);
 }
 
 static PetscBool Moves(FreeModes modes, int loose, PetscInt p)
 {
-  return Length(&modes->loose[(loose * modes->n_pieces + p) * RIGID_MODES]) > FREE_ALIGNED ||
-             Length(&modes->loose[(loose * modes->n_pieces + p) * RIGID_MODES + 3]) > FREE_ALIGNED
+  return VectorLength(&modes->loose[(loose * modes->n_pieces + p) * RIGID_MODES]) > FREE_ALIGNED ||
+             VectorLength(&modes->loose[(loose * modes->n_pieces + p) * RIGID_MODES + 3]) > FREE_ALIGNED
            ? PETSC_TRUE
            : PETSC_FALSE;
 }

@@ -1,13 +1,13 @@
 #include "contact/activeset.h"
 
 /* Sets tried with the columns at hand. Each follows from the gaps that the one before leads to; what is not settled by then goes in circles. */
-#define PRESSING_SETS 30
+#define ACTIVE_SET_MAX_SETS 30
 /* Rounding of a pressure, by itself */
-#define PRESSING_ROUND_OFF 1e-12
+#define ACTIVE_SET_ROUND_OFF 1e-12
 
 struct _n_Pressing {
   PetscInt      n, m;
-  PressingTerm *terms;
+  ActiveSetTerm *terms;
   PetscReal    *travel, *end; /* n; end: with the excess at hand */
   PetscBool    *pressed;      /* n: the set at hand */
   PetscInt     *column;       /* n: -1: none */
@@ -15,10 +15,10 @@ struct _n_Pressing {
   PetscReal    *G, *excess;   /* m*n, m */
 };
 
-/* PressingCreate - Not collective. */
-PetscErrorCode PressingCreate(PetscInt n, const PressingTerm *terms, const PetscReal *travel, Pressing *out)
+/* ActiveSetCreate - Not collective. */
+PetscErrorCode ActiveSetCreate(PetscInt n, const ActiveSetTerm *terms, const PetscReal *travel, ActiveSet *out)
 {
-  Pressing p;
+  ActiveSet p;
 
   PetscFunctionBeginUser;
   PetscCall(PetscNew(&p));
@@ -35,10 +35,10 @@ PetscErrorCode PressingCreate(PetscInt n, const PressingTerm *terms, const Petsc
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* PressingDestroy - Not collective. */
-PetscErrorCode PressingDestroy(Pressing *pressing)
+/* ActiveSetDestroy - Not collective. */
+PetscErrorCode ActiveSetDestroy(ActiveSet *pressing)
 {
-  Pressing p = *pressing;
+  ActiveSet p = *pressing;
 
   PetscFunctionBeginUser;
   if (!p) PetscFunctionReturn(PETSC_SUCCESS);
@@ -50,8 +50,8 @@ PetscErrorCode PressingDestroy(Pressing *pressing)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* PressingAddColumns - Not collective. */
-PetscErrorCode PressingAddColumns(Pressing p, PetscInt m, const PetscInt *which, const PetscReal *G)
+/* ActiveSetAddColumns - Not collective. */
+PetscErrorCode ActiveSetAddColumns(ActiveSet p, PetscInt m, const PetscInt *which, const PetscReal *G)
 {
   PetscFunctionBeginUser;
   PetscCall(PetscRealloc((p->m + m) * sizeof(PetscInt), &p->term));
@@ -67,15 +67,15 @@ PetscErrorCode PressingAddColumns(Pressing p, PetscInt m, const PetscInt *which,
 }
 
 /* The pressure of residual and tangent at a travel, less the law's, is start + rate travel; both vanish where these know the term as it is. */
-static void Excess(const PressingTerm *term, PetscBool pressed, PetscReal *start, PetscReal *rate)
+static void Excess(const ActiveSetTerm *term, PetscBool pressed, PetscReal *start, PetscReal *rate)
 {
   *start = term->pressure + (pressed ? term->penalty * term->opening : 0);
   *rate  = (pressed ? term->penalty : 0) - term->stiffness;
-  if (PetscAbsReal(*start) <= PRESSING_ROUND_OFF * PetscAbsReal(term->pressure)) *start = 0;
+  if (PetscAbsReal(*start) <= ACTIVE_SET_ROUND_OFF * PetscAbsReal(term->pressure)) *start = 0;
 }
 
 /* Terms of the set at hand that need a column and have none */
-static PetscInt Missing(Pressing p, PetscInt *which)
+static PetscInt Missing(ActiveSet p, PetscInt *which)
 {
   PetscInt m = 0;
 
@@ -89,7 +89,7 @@ static PetscInt Missing(Pressing p, PetscInt *which)
 }
 
 /* The excess of the set at hand: e - rate (travel - G e) = start. regular: it can be had. */
-static PetscErrorCode Balance(Pressing p, PetscBool *regular)
+static PetscErrorCode Balance(ActiveSet p, PetscBool *regular)
 {
   const PetscInt m = p->m;
   PetscScalar   *a, *b;
@@ -133,7 +133,7 @@ static PetscErrorCode Balance(Pressing p, PetscBool *regular)
 }
 
 /* The set that the excess at hand leads to; is it another one? */
-static PetscBool Follow(Pressing p)
+static PetscBool Follow(ActiveSet p)
 {
   PetscBool changed = PETSC_FALSE;
 
@@ -149,28 +149,28 @@ static PetscBool Follow(Pressing p)
   return changed;
 }
 
-/* PressingSolve - Not collective. The linear step's contact problem by Newton's method, which here is that of its active sets.
+/* ActiveSetSolve - Not collective. The linear step's contact problem by Newton's method, which here is that of its active sets.
 
    Source: Josephy, Newton's method for generalized equations, 1979 (the problem linearised but for its contact conditions); Hintermueller, Ito, Kunisch, The
    primal-dual active set strategy as a semismooth Newton method, SIAM J. Optim. 13 (2003) 865-888. */
-PetscErrorCode PressingSolve(Pressing p, PetscInt *m, PetscInt *which, PetscBool *settled)
+PetscErrorCode ActiveSetSolve(ActiveSet p, PetscInt *m, PetscInt *which, PetscBool *converged)
 {
   PetscBool regular = PETSC_TRUE, changed = PETSC_TRUE;
 
   PetscFunctionBeginUser;
-  for (PetscInt i = 0; i < PRESSING_SETS && changed && regular; i++) {
+  for (PetscInt i = 0; i < ACTIVE_SET_MAX_SETS && changed && regular; i++) {
     *m       = Missing(p, which);
-    *settled = (PetscBool)(!*m && !p->m);
-    if (*m || *settled) PetscFunctionReturn(PETSC_SUCCESS);
+    *converged = (PetscBool)(!*m && !p->m);
+    if (*m || *converged) PetscFunctionReturn(PETSC_SUCCESS);
     PetscCall(Balance(p, &regular));
     if (regular) changed = Follow(p);
   }
-  *settled = (PetscBool)(regular && !changed);
+  *converged = (PetscBool)(regular && !changed);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* PressingGet - Not collective. */
-void PressingGet(Pressing p, const PetscReal **excess, const PetscBool **pressed)
+/* ActiveSetGet - Not collective. */
+void ActiveSetGet(ActiveSet p, const PetscReal **excess, const PetscBool **pressed)
 {
   *excess  = p->excess;
   *pressed = p->pressed;

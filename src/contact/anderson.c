@@ -2,22 +2,22 @@
 
 /* Differences of results that are kept. On a cylinder pressed on a block, whose contact set changes on the way, 3 need 33 iterations where 5 need 40 and
    more than 5 do not always end. */
-#define MIXING_DEPTH 3
+#define ANDERSON_DEPTH 3
 /* Of a difference that the others nearly combine to, the least part of its square that counts as its own: round-off beyond. */
-#define MIXING_RIDGE 1e-10
+#define ANDERSON_RIDGE 1e-10
 
 struct _n_Mixing {
   MPI_Comm         comm;
   const PetscReal *weight;
   PetscInt         n, results;                          /* results: since the start */
   PetscReal       *g, *f;                               /* the last result and its residual g - x */
-  PetscReal       *dg[MIXING_DEPTH], *df[MIXING_DEPTH]; /* their differences, newest over oldest */
+  PetscReal       *dg[ANDERSON_DEPTH], *df[ANDERSON_DEPTH]; /* their differences, newest over oldest */
 };
 
-/* MixingCreate - Collective. n: entries of this rank; weight[n]: of inner products, above 0. */
-PetscErrorCode MixingCreate(MPI_Comm comm, PetscInt n, const PetscReal *weight, Mixing *mixing)
+/* AndersonCreate - Collective. n: entries of this rank; weight[n]: of inner products, above 0. */
+PetscErrorCode AndersonCreate(MPI_Comm comm, PetscInt n, const PetscReal *weight, Anderson *mixing)
 {
-  Mixing m;
+  Anderson m;
 
   PetscFunctionBeginUser;
   PetscCall(PetscNew(&m));
@@ -25,30 +25,30 @@ PetscErrorCode MixingCreate(MPI_Comm comm, PetscInt n, const PetscReal *weight, 
   m->n      = n;
   m->weight = weight;
   PetscCall(PetscMalloc2(n, &m->g, n, &m->f));
-  for (int k = 0; k < MIXING_DEPTH; k++) PetscCall(PetscMalloc2(n, &m->dg[k], n, &m->df[k]));
+  for (int k = 0; k < ANDERSON_DEPTH; k++) PetscCall(PetscMalloc2(n, &m->dg[k], n, &m->df[k]));
   *mixing = m;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* MixingDestroy - Collective. */
-PetscErrorCode MixingDestroy(Mixing *mixing)
+/* AndersonDestroy - Collective. */
+PetscErrorCode AndersonDestroy(Anderson *mixing)
 {
   PetscFunctionBeginUser;
   if (!*mixing) PetscFunctionReturn(PETSC_SUCCESS);
-  for (int k = 0; k < MIXING_DEPTH; k++) PetscCall(PetscFree2((*mixing)->dg[k], (*mixing)->df[k]));
+  for (int k = 0; k < ANDERSON_DEPTH; k++) PetscCall(PetscFree2((*mixing)->dg[k], (*mixing)->df[k]));
   PetscCall(PetscFree2((*mixing)->g, (*mixing)->f));
   PetscCall(PetscFree(*mixing));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* MixingStart - Not collective. The next result stands alone. */
-void MixingStart(Mixing m)
+/* AndersonStart - Not collective. The next result stands alone. */
+void AndersonStart(Anderson m)
 {
   m->results = 0;
 }
 
 /* A gamma = b by Cholesky's method, in place of b; A[n][n] is a Gram matrix, symmetric and never quite singular with the ridge. */
-static void SolveGram(int n, PetscReal A[][MIXING_DEPTH], PetscReal b[])
+static void SolveGram(int n, PetscReal A[][ANDERSON_DEPTH], PetscReal b[])
 {
   for (int k = 0; k < n; k++) {
     const PetscReal square = A[k][k];
@@ -59,7 +59,7 @@ static void SolveGram(int n, PetscReal A[][MIXING_DEPTH], PetscReal b[])
       A[k][k] -= PetscSqr(A[k][j]);
       b[k] -= A[k][j] * b[j];
     }
-    A[k][k] = square > 0 ? PetscSqrtReal(PetscMax(A[k][k], MIXING_RIDGE * square)) : 1;
+    A[k][k] = square > 0 ? PetscSqrtReal(PetscMax(A[k][k], ANDERSON_RIDGE * square)) : 1;
     b[k] /= A[k][k];
   }
   for (int k = n - 1; k >= 0; k--) {
@@ -68,13 +68,13 @@ static void SolveGram(int n, PetscReal A[][MIXING_DEPTH], PetscReal b[])
   }
 }
 
-/* MixingNext - what to put in next, of all combinations of the last results that whose residuals cancel best; after a start the result itself.
+/* AndersonNext - what to put in next, of all combinations of the last results that whose residuals cancel best; after a start the result itself.
 
    Collective. x[n]: what was put in; g[n]: what came out, replaced. Source: Walker and Ni 2011, SIAM J. Numer. Anal. 49, 1715-1735, eq. 1.1. */
-PetscErrorCode MixingNext(Mixing m, const PetscReal *x, PetscReal *g)
+PetscErrorCode AndersonNext(Anderson m, const PetscReal *x, PetscReal *g)
 {
-  const int depth = (int)PetscMin(m->results, MIXING_DEPTH), newest = (int)((m->results + MIXING_DEPTH - 1) % MIXING_DEPTH);
-  PetscReal sum[MIXING_DEPTH + 1][MIXING_DEPTH] = {{0}}, *gamma = sum[MIXING_DEPTH];
+  const int depth = (int)PetscMin(m->results, ANDERSON_DEPTH), newest = (int)((m->results + ANDERSON_DEPTH - 1) % ANDERSON_DEPTH);
+  PetscReal sum[ANDERSON_DEPTH + 1][ANDERSON_DEPTH] = {{0}}, *gamma = sum[ANDERSON_DEPTH];
 
   PetscFunctionBeginUser;
   m->results++;
@@ -91,7 +91,7 @@ PetscErrorCode MixingNext(Mixing m, const PetscReal *x, PetscReal *g)
     }
   }
   if (!depth) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sum, (MIXING_DEPTH + 1) * MIXING_DEPTH, MPIU_REAL, MPI_SUM, m->comm));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sum, (ANDERSON_DEPTH + 1) * ANDERSON_DEPTH, MPIU_REAL, MPI_SUM, m->comm));
   SolveGram(depth, sum, gamma);
   for (PetscInt i = 0; i < m->n; i++)
     for (int k = 0; k < depth; k++) g[i] -= gamma[k] * m->dg[k][i];

@@ -86,7 +86,7 @@ PetscErrorCode ContactPairProject(Contact contact, ContactPair *pair, const Pets
   PetscBool moved;
 
   PetscFunctionBeginUser;
-  PetscCall(ListsUpdate(pair->search, pair->lists, u, t, &moved));
+  PetscCall(NeighbourListsUpdate(pair->search, pair->lists, u, t, &moved));
   if (moved) pair->fresh = PETSC_FALSE;
   if (pair->projected && !moved) PetscFunctionReturn(PETSC_SUCCESS);
   pair->projected = PETSC_TRUE;
@@ -104,7 +104,7 @@ PetscErrorCode ContactPairProject(Contact contact, ContactPair *pair, const Pets
 /* What a linear step counts on of an open term: what was closed stays so, pressed or pulled; what touches at the start of a run resists, for a
    body that only contact holds. In surface contact the mean over the faces around a node that touches is open by their curvature: such terms are pulled, all
    of them, as those that only resist would hold the others open. */
-static void TermPredict(const ContactPair *pair, PetscInt c, PetscReal opening, LawValue *value)
+static void TermHold(const ContactPair *pair, PetscInt c, PetscReal opening, LawValue *value)
 {
   const PetscBool closed = pair->held[c], means = (PetscBool)(pair->slave_offsets && pair->fit.degree);
 
@@ -130,7 +130,7 @@ void ContactTermLaw(const ContactPair *pair, PetscInt c, PetscReal t, LawValue *
   if (gap) *gap = found;
   if (PetscIsNanReal(found)) return;
   pair->law->evaluate(found, &state, value);
-  if (pair->predicting && value->stiffness == 0) TermPredict(pair, c, found - LawRest(&state), value);
+  if (pair->holding && value->stiffness == 0) TermHold(pair, c, found - LawOnsetGap(&state), value);
 }
 
 /* ContactTermForce - what a term's own gap, of the last projection, presses with (force). Not collective.
@@ -189,7 +189,7 @@ static PetscErrorCode PairForces(ContactPair *pair, PetscReal *values)
 static PetscErrorCode PairSharedForces(ContactPair *pair)
 {
   const int    dim   = pair->mesh->dim;
-  ContactLists lists = pair->lists;
+  NeighbourLists lists = pair->lists;
   PetscReal   *values, *nodal;
 
   PetscFunctionBeginUser;
@@ -197,7 +197,7 @@ static PetscErrorCode PairSharedForces(ContactPair *pair)
   for (PetscInt q = 0; q < lists->n_slaves; q++)
     for (PetscInt k = pair->slaves->ptr[q], node = lists->slave_ptr[q]; k < pair->slaves->ptr[q + 1]; k++, node++)
       values[lists->slave_node[node] * dim] += pair->slaves->hat[k] * pair->point_force[q];
-  PetscCall(ListsReduce(lists, values, nodal));
+  PetscCall(NeighbourListsReduce(lists, values, nodal));
   for (PetscInt c = 0; c < pair->n; c++) pair->force[c] = nodal[pair->node[c] * dim];
   PetscCall(PetscFree2(values, nodal));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -228,26 +228,26 @@ static PetscErrorCode PairResidual(Contact contact, ContactPair *pair, const Pet
   PetscCall(PetscArrayzero(pair->total, 3));
   PetscCall(PetscCalloc1(pair->lists->n_nodes * contact->mesh->dim, &values));
   PetscCall(PairForces(pair, values));
-  PetscCall(ListsReduce(pair->lists, values, f));
+  PetscCall(NeighbourListsReduce(pair->lists, values, f));
   if (pair->slaves->face_sf) PetscCall(PairSharedForces(pair));
   for (PetscInt c = 0; c < pair->n && !pair->slaves->face_sf; c++) pair->force[c] = pair->point_force[pair->term_point[pair->term_ptr[c]]];
   PetscCall(PetscFree(values));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ContactPredict - between the two calls what is in contact at the first one stays so, pressed or pulled, in residual and tangent.
+/* ContactHoldActiveSet - between the two calls what is in contact at the first one stays so, pressed or pulled, in residual and tangent.
 
    Not collective. For a linear step from a solution: fresh lists and offsets move the surfaces a little, which is a load of the step, not an
    opening. touching: what is open within ContactTouchTolerance() is closed too (Chamoret et al. start from surfaces that touch). */
-PetscErrorCode ContactPredict(Contact contact, PetscBool predicting, PetscBool touching)
+PetscErrorCode ContactHoldActiveSet(Contact contact, PetscBool holding, PetscBool touching)
 {
   PetscFunctionBeginUser;
   for (int p = 0; p < contact->n_pairs; p++) {
     ContactPair *pair = &contact->pairs[p];
 
-    pair->predicting = predicting;
+    pair->holding = holding;
     pair->touching   = touching;
-    for (PetscInt c = 0; c < pair->n && predicting; c++) pair->held[c] = (PetscBool)(pair->now.status[c] == CONTACT_CLOSED);
+    for (PetscInt c = 0; c < pair->n && holding; c++) pair->held[c] = (PetscBool)(pair->now.status[c] == CONTACT_CLOSED);
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -268,22 +268,22 @@ PetscErrorCode ContactResidual(Contact contact, const PetscReal *u, PetscReal t,
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ContactForesee - what is in contact now is what ContactUnforeseen() takes for foreseen. Not collective. */
-PetscErrorCode ContactForesee(Contact contact)
+/* ContactMarkPredicted - what is in contact now is what ContactUnpredictedEnergy() takes for foreseen. Not collective. */
+PetscErrorCode ContactMarkPredicted(Contact contact)
 {
   PetscFunctionBeginUser;
   for (int p = 0; p < contact->n_pairs; p++) {
     ContactPair *pair = &contact->pairs[p];
 
-    for (PetscInt c = 0; c < pair->n; c++) pair->foreseen[c] = (PetscBool)(pair->now.status[c] == CONTACT_CLOSED);
+    for (PetscInt c = 0; c < pair->n; c++) pair->predicted[c] = (PetscBool)(pair->now.status[c] == CONTACT_CLOSED);
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ContactUnforeseen - energy of the terms in contact at (u, t) that ContactForesee() found open, of this rank, added to.
+/* ContactUnpredictedEnergy - energy of the terms in contact at (u, t) that ContactMarkPredicted() found open, of this rank, added to.
 
    Collective. u[n_nodes*dim]: local displacements (length). */
-PetscErrorCode ContactUnforeseen(Contact contact, const PetscReal *u, PetscReal t, PetscReal *energy)
+PetscErrorCode ContactUnpredictedEnergy(Contact contact, const PetscReal *u, PetscReal t, PetscReal *energy)
 {
   PetscFunctionBeginUser;
   for (int p = 0; p < contact->n_pairs; p++) {
@@ -295,7 +295,7 @@ PetscErrorCode ContactUnforeseen(Contact contact, const PetscReal *u, PetscReal 
       PetscReal area;
 
       ContactTermLaw(pair, c, t, &value, NULL, &area);
-      if (!pair->foreseen[c]) *energy += area * value.psi;
+      if (!pair->predicted[c]) *energy += area * value.psi;
     }
   }
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -309,7 +309,7 @@ static PetscReal TermTurningPressure(const ContactPair *pair, PetscInt c, PetscR
 {
   const ContactState *accepted = &pair->accepted;
 
-  if (!pair->predicting) return value->pressure;
+  if (!pair->holding) return value->pressure;
   if (pair->touching) return 0;
   return accepted->status[c] == CONTACT_CLOSED ? accepted->multiplier[c] + accepted->penalty[c] * (ContactTermOffset(pair, c, t) - accepted->gap[c]) : 0;
 }
@@ -365,7 +365,7 @@ static PetscErrorCode PairName(Contact contact, const ContactPair *pair, int p)
 }
 
 /* The block A psi'' Nbar Nbar^T of a term, which stands alone where it shares its points; else with -p M of its one point. */
-static PetscErrorCode TermBlock(Contact contact, const ContactPair *pair, int p, PetscInt c, PetscInt n, const PetscInt *nodes, double (*own)[FITMAP_OWN])
+static PetscErrorCode TermBlock(Contact contact, const ContactPair *pair, int p, PetscInt c, PetscInt n, const PetscInt *nodes, double (*own)[FIT_DERIVATIVES_OWN])
 {
   const PetscInt q = pair->term_point[pair->term_ptr[c]];
   PetscReal     *v, area;
@@ -378,7 +378,7 @@ static PetscErrorCode TermBlock(Contact contact, const ContactPair *pair, int p,
     PetscCall(BlockMatrixAddOuter(contact->blocks, p, n, nodes, v));
   else {
     PetscCall(ContactSecondBegin(pair, n, 1));
-    FitMapAddOuter(&pair->work->sum, 1, v);
+    FitDerivativesAddOuter(&pair->work->sum, 1, v);
     if (pair->point_force[q] != 0) PetscCall(ContactSecondAdd(pair, q, -pair->point_force[q], own));
     ContactSecondEnd(pair);
     PetscCall(BlockMatrixAdd(contact->blocks, p, n, nodes, pair->work->M));
@@ -388,7 +388,7 @@ static PetscErrorCode TermBlock(Contact contact, const ContactPair *pair, int p,
 }
 
 /* The block -sum p M of the points of one face: their second variations are summed before they are taken apart. */
-static PetscErrorCode FaceBlock(Contact contact, const ContactPair *pair, int p, PetscInt face, PetscInt n, const PetscInt *nodes, double (*own)[FITMAP_OWN])
+static PetscErrorCode FaceBlock(Contact contact, const ContactPair *pair, int p, PetscInt face, PetscInt n, const PetscInt *nodes, double (*own)[FIT_DERIVATIVES_OWN])
 {
   PetscInt       points[FACE_RULE_POINTS];
   const PetscInt loaded = FacePoints(pair, face, points);
@@ -402,18 +402,18 @@ static PetscErrorCode FaceBlock(Contact contact, const ContactPair *pair, int p,
 }
 
 /* Blocks of what belongs to the fit points one by one, for all slave points at once: one for the points of a face, which are made of the same nodes. */
-static PetscErrorCode OwnBlocks(Contact contact, const ContactPair *pair, int p, const double (*own)[FITMAP_OWN])
+static PetscErrorCode OwnBlocks(Contact contact, const ContactPair *pair, int p, const double (*own)[FIT_DERIVATIVES_OWN])
 {
-  ContactLists lists = pair->lists;
+  NeighbourLists lists = pair->lists;
 
   PetscFunctionBeginUser;
   for (PetscInt first = 0, end; first < lists->n_points; first = end) {
     PetscInt  n, with, *nodes;
     PetscReal most = 0;
 
-    end = ListsAlikeEnd(lists, first);
+    end = NeighbourListsAlikeEnd(lists, first);
     for (PetscInt k = first; k < end; k++)
-      for (int e = 0; e < FITMAP_OWN; e++) most = PetscMax(most, PetscAbsReal(own[k][e]));
+      for (int e = 0; e < FIT_DERIVATIVES_OWN; e++) most = PetscMax(most, PetscAbsReal(own[k][e]));
     if (most == 0) continue;
     PetscCall(ContactPointsToNodes(pair, first, end));
     nodes = pair->work->number;
@@ -433,7 +433,7 @@ static PetscErrorCode PairBlocks(Contact contact, ContactPair *pair, int p, Pets
   const PetscInt  faces = pair->slaves->face_sf ? pair->slaves->n_faces : 0;
   const PetscInt *nodes;
   PetscInt        n;
-  double(*own)[FITMAP_OWN] = NULL;
+  double(*own)[FIT_DERIVATIVES_OWN] = NULL;
 
   PetscFunctionBeginUser;
   if (pair->fit.degree) PetscCall(PetscCalloc1(pair->lists->n_points, &own));
@@ -521,7 +521,7 @@ static void AnalyticTravel(Contact contact, const ContactPair *pair, PetscReal t
 PetscErrorCode ContactPairMove(Contact contact, ContactPair *pair, const PetscReal *x, PetscReal t, PetscReal t_next, PetscReal *values)
 {
   PetscFunctionBeginUser;
-  PetscCall(ListsBroadcast(pair->search, pair->lists, x, t, t_next, values));
+  PetscCall(NeighbourListsBroadcast(pair->search, pair->lists, x, t, t_next, values));
   if (!pair->master) AnalyticTravel(contact, pair, t, t_next, values);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -552,7 +552,7 @@ PetscErrorCode ContactMultiplyEnd(Contact contact, PetscReal *y)
 {
   PetscFunctionBeginUser;
   for (int p = 0; p < contact->n_pairs; p++) {
-    PetscCall(ListsReduce(contact->pairs[p].lists, contact->product[p].y, y));
+    PetscCall(NeighbourListsReduce(contact->pairs[p].lists, contact->product[p].y, y));
     PetscCall(PetscFree2(contact->product[p].x, contact->product[p].y));
   }
   PetscCall(PetscFree(contact->product));
@@ -598,16 +598,16 @@ static PetscErrorCode PairArchive(ContactPair *pair, int p, Archive archive)
 {
   PetscInt *id;
   char      name[PETSC_MAX_PATH_LEN];
-  Rows      nodes;
+  Hdf5Table      nodes;
 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(pair->n, &id));
   for (PetscInt c = 0; c < pair->n; c++) id[c] = pair->mesh->node_id[pair->node[c]];
-  PetscCall(RowsCreateByKey(pair->mesh->comm, pair->n, id, &nodes));
+  PetscCall(Hdf5TableCreateByKey(pair->mesh->comm, pair->n, id, &nodes));
   PetscCall(PetscFree(id));
   PetscCall(PetscSNPrintf(name, sizeof(name), "contact/%d/state", p));
   PetscCall(ContactStateArchive(&pair->accepted, archive, name, &nodes));
-  PetscCall(RowsDestroy(&nodes));
+  PetscCall(Hdf5TableDestroy(&nodes));
   PetscCall(PetscSNPrintf(name, sizeof(name), "contact/%d/slave_offsets", p));
   if (pair->slave_offsets) PetscCall(OffsetsArchive(pair->slave_offsets, archive, name));
   PetscCall(PetscSNPrintf(name, sizeof(name), "contact/%d/master_offsets", p));

@@ -90,19 +90,19 @@ PetscErrorCode ContactListsReach(Contact, PetscBool *within);
 PetscErrorCode ContactListsRenew(Contact, const PetscReal *u, PetscReal t, PetscReal motion);
 /* After ContactResidual() at (u, t): does a fresh search, for `next` motion, give the same gaps? If not, the fresh lists replace the old. motion: since the
    accepted state; settle: offsets must not lag. Collective. */
-PetscErrorCode ContactListsHold(Contact, const PetscReal *u, PetscReal t, PetscReal motion, PetscReal next, PetscBool settle, PetscBool *hold);
+PetscErrorCode ContactListsHold(Contact, const PetscReal *u, PetscReal t, PetscReal motion, PetscReal next, PetscBool update_offsets, PetscBool *hold);
 /* The force that rounding of positions stands for at the largest penalty. Collective. */
 PetscErrorCode ContactRoundOff(Contact, PetscReal *force);
 /* Has new lists' search lost a slave point that was behind its master by more than the face size, since the step began? Its place into text. Collective. */
 PetscErrorCode ContactLocateLost(Contact, PetscBool *lost, char *text, size_t size);
 /* A linear step begins or ends: what is closed stays so, and what touches if that is asked for. Not collective. */
-PetscErrorCode ContactPredict(Contact, PetscBool predicting, PetscBool touching);
+PetscErrorCode ContactHoldActiveSet(Contact, PetscBool holding, PetscBool touching);
 /* Penalties count for no more than that many automatic ones; PETSC_MAX_REAL: as they are. The largest there is, so measured. */
 PetscErrorCode ContactSoften(Contact, PetscReal most);
 PetscErrorCode ContactStiffest(Contact, PetscReal *most);
 /* What is in contact now is what a prediction counts on; the energy of other terms at (u, t). */
-PetscErrorCode ContactForesee(Contact);
-PetscErrorCode ContactUnforeseen(Contact, const PetscReal *u, PetscReal t, PetscReal *energy);
+PetscErrorCode ContactMarkPredicted(Contact);
+PetscErrorCode ContactUnpredictedEnergy(Contact, const PetscReal *u, PetscReal t, PetscReal *energy);
 /* Adds the contact forces to f (n_nodes*dim local, complete at owned nodes), this rank's energy and sum of squares of the terms' forces; each may
    be NULL. With f it also becomes the present state (gap, status, forces). Collective. */
 PetscErrorCode ContactResidual(Contact, const PetscReal *u, PetscReal t, PetscReal *f, PetscReal *energy, PetscReal *force2);
@@ -135,7 +135,7 @@ PetscErrorCode ContactAdjustPenalty(Contact, ContactWindowState *);
 /* ... or, after ContactAccept(), for the next step. Each sees only the pairs whose scene asks for it. */
 PetscErrorCode ContactAdjustNextPenalty(Contact);
 /* Did the last iterate move the penetrations by so little that the window can be judged? Once for each iterate. Collective. */
-PetscErrorCode ContactGapsSettled(Contact, PetscBool *settled);
+PetscErrorCode ContactGapsConverged(Contact, PetscBool *converged);
 PetscErrorCode ContactPairWindow(Contact, int pair, ContactWindow *);
 PetscErrorCode ContactLocateOutside(Contact, char *text, size_t size); /* which node misses its window most. Collective. */
 /* Control of the load step (contacttouch.c): when open slave nodes touch if all goes on as from (u_0, t_0) to (u, t); sorted, the same on all

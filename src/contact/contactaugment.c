@@ -60,11 +60,11 @@ PetscErrorCode ContactPairAugment(ContactPair *pair, ContactWindowState *state)
   *state = window.outside && pair->updates < pair->scene->max_updates ? WINDOW_MISSED : WINDOW_HOLDS;
   if (!rank) pair->now.augmented += *state == WINDOW_MISSED; /* counts of all ranks are added up */
   if (!rank) pair->now.missed += window.outside && pair->updates == pair->scene->max_updates;
-  if (!pair->updates) MixingStart(pair->mixing);
+  if (!pair->updates) AndersonStart(pair->mixing);
   pair->updates += window.outside > 0;
   PetscCall(PetscMalloc1(pair->n, &pressure));
   for (PetscInt c = 0; c < pair->n; c++) pressure[c] = TermPressure(pair, c);
-  if (*state == WINDOW_MISSED) PetscCall(MixingNext(pair->mixing, pair->now.multiplier, pressure));
+  if (*state == WINDOW_MISSED) PetscCall(AndersonNext(pair->mixing, pair->now.multiplier, pressure));
   for (PetscInt c = 0; c < pair->n; c++) {
     if (pair->now.status[c] == CONTACT_OPEN)
       pair->now.multiplier[c] = 0;

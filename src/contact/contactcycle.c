@@ -54,7 +54,7 @@ PetscErrorCode ContactCycleStart(ContactCycle cycle)
 }
 
 /* Spreads a node's number over 64 bits, so that sums of them tell sets apart (the finaliser of Steele, Lea and Flood's SplitMix, 2014). */
-static uint64_t Spread(uint64_t x)
+static uint64_t HashFinish(uint64_t x)
 {
   x += 0x9e3779b97f4a7c15;
   x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9;
@@ -75,7 +75,7 @@ static PetscErrorCode TakeSet(ContactCycle cycle, PetscInt slot)
 
     for (PetscInt c = 0; c < pair->n; c++) {
       *closed = pair->now.status[c] == CONTACT_CLOSED;
-      if (*closed++) sum += Spread((uint64_t)contact->mesh->node_id[pair->node[c]] * (uint64_t)contact->n_pairs + (uint64_t)p);
+      if (*closed++) sum += HashFinish((uint64_t)contact->mesh->node_id[pair->node[c]] * (uint64_t)contact->n_pairs + (uint64_t)p);
     }
   }
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &sum, 1, MPI_UINT64_T, MPI_SUM, contact->mesh->comm));
@@ -126,7 +126,7 @@ PetscErrorCode ContactCycleLocate(ContactCycle cycle, PetscInt period, char *tex
   const Contact contact = cycle->contact;
   PetscReal    *rows;
   PetscInt      n = 0, i = 0;
-  Table         table;
+  GatherTable         table;
   size_t        used;
 
   PetscFunctionBeginUser;
@@ -142,7 +142,7 @@ PetscErrorCode ContactCycleLocate(ContactCycle cycle, PetscInt period, char *tex
       rows[2 * n++ + 1] = contact->mesh->node_tag[contact->pairs[p].node[c]];
     }
   }
-  PetscCall(TableGather(contact->mesh->comm, 2, n, rows, &table));
+  PetscCall(GatherTableCreate(contact->mesh->comm, 2, n, rows, &table));
   PetscCall(PetscFree(rows));
   PetscCall(PetscSNPrintf(text, size, "the contact set repeats every %" PetscInt_FMT " iterations, %" PetscInt_FMT " nodes come and go:", period, table.n));
   for (PetscInt k = 0; k < PetscMin(table.n, CYCLE_NAMED); k++) {
@@ -150,6 +150,6 @@ PetscErrorCode ContactCycleLocate(ContactCycle cycle, PetscInt period, char *tex
     PetscCall(PetscSNPrintf(text + used, size - used, "%s node %.0f of '%s'", k ? "," : "", (double)table.row[2 * k + 1],
                             ContactPairName(contact, (int)table.row[2 * k])));
   }
-  PetscCall(TableDestroy(&table));
+  PetscCall(GatherTableDestroy(&table));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

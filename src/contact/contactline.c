@@ -101,7 +101,7 @@ void ContactLineSlope(ContactLine line, PetscReal lambda, PetscReal *slope, Pets
 /* The point of a pair whose normal turns most from u to u_ahead, of those that its term's pressure acts on. */
 static PetscErrorCode PairTurn(Contact contact, ContactPair *pair, const PetscReal *u, const PetscReal *u_ahead, PetscReal t, PetscReal *most, PetscInt *node)
 {
-  const ContactLists lists = pair->lists;
+  const NeighbourLists lists = pair->lists;
   PetscReal         *before;
 
   PetscFunctionBeginUser;

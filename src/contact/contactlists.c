@@ -12,7 +12,7 @@
 /* Offsets of surface contact are frozen in a solve; gaps may drift with them by this part of what the largest pressure presses the automatic penalty in. */
 #define CONTACT_OFFSET_AGREES 0.1
 /* Where histories break offsets are not carried on to the next step: what they lag behind would come as a jump in it, so they have to agree so much better. */
-#define CONTACT_OFFSET_SETTLED 1e-5
+#define CONTACT_OFFSET_CURRENT 1e-5
 /* The area factor past a free edge is frozen in a solve; a change above this makes the step solve again. */
 #define CONTACT_FACTOR_AGREES 1e-2
 /* Motions that differ by less than this fraction differ by round-off. */
@@ -25,7 +25,7 @@ static PetscReal SmoothStep(PetscReal x)
 }
 
 /* Area factors of the slave points for these lists: 1 inside, fading to 0 one face size past a free edge. */
-static PetscErrorCode PairFactors(const ContactPair *pair, ContactLists lists, PetscReal *factor)
+static PetscErrorCode PairFactors(const ContactPair *pair, NeighbourLists lists, PetscReal *factor)
 {
   PetscFunctionBeginUser;
   for (PetscInt q = 0; q < lists->n_slaves; q++) {
@@ -45,7 +45,7 @@ static PetscErrorCode PairFactors(const ContactPair *pair, ContactLists lists, P
 static PetscErrorCode PairSearch(ContactPair *pair, const PetscReal *u, PetscReal t, PetscReal motion)
 {
   PetscFunctionBeginUser;
-  PetscCall(ListsDestroy(&pair->next));
+  PetscCall(NeighbourListsDestroy(&pair->next));
   if (pair->slave_offsets && OffsetsMaps(pair->slave_offsets))
     PetscCall(SlavePointsSetMaps(pair->slaves, OffsetsMaps(pair->slave_offsets)));
   else if (pair->slave_offsets)
@@ -59,13 +59,13 @@ static PetscErrorCode PairSearch(ContactPair *pair, const PetscReal *u, PetscRea
 /* Are there lists that were made for these positions and for that much motion: the next ones, or those in force? The same on all ranks. */
 static PetscErrorCode PairListsServe(ContactPair *pair, const PetscReal *u, PetscReal t, PetscReal motion, PetscBool changed, PetscBool *serve)
 {
-  ContactLists    lists = pair->next ? pair->next : pair->lists;
+  NeighbourLists    lists = pair->next ? pair->next : pair->lists;
   const PetscReal made  = pair->next ? pair->next_motion : pair->motion;
   PetscBool       moved = PETSC_TRUE;
   int             all;
 
   PetscFunctionBeginUser;
-  if (lists && motion <= made * (1 + CONTACT_SAME_MOTION)) PetscCall(ListsUpdate(pair->search, lists, u, t, &moved));
+  if (lists && motion <= made * (1 + CONTACT_SAME_MOTION)) PetscCall(NeighbourListsUpdate(pair->search, lists, u, t, &moved));
   all = !moved && !changed && (pair->next || pair->fresh);
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &all, 1, MPI_INT, MPI_LAND, pair->mesh->comm));
   *serve = all ? PETSC_TRUE : PETSC_FALSE;
@@ -76,7 +76,7 @@ static PetscErrorCode PairListsServe(ContactPair *pair, const PetscReal *u, Pets
 static PetscErrorCode PairTakeNext(ContactPair *pair)
 {
   PetscFunctionBeginUser;
-  PetscCall(ListsDestroy(&pair->lists));
+  PetscCall(NeighbourListsDestroy(&pair->lists));
   pair->lists     = pair->next;
   pair->motion    = pair->next_motion;
   pair->fresh     = PETSC_TRUE;
@@ -108,7 +108,7 @@ static PetscErrorCode PairDepth(Contact contact, const ContactPair *pair, PetscR
 }
 
 /* A soft penalty's contact may lie deeper than the search reaches: then lists are made for as much motion as leads back out. */
-static PetscErrorCode PairMotion(Contact contact, const ContactPair *pair, PetscReal t, PetscReal *motion)
+static PetscErrorCode PairListsMotion(Contact contact, const ContactPair *pair, PetscReal t, PetscReal *motion)
 {
   PetscReal depth, pressure;
 
@@ -132,7 +132,7 @@ PetscErrorCode ContactGather(Contact contact, const PetscReal *u, PetscReal t, P
     PetscReal    needed  = motion;
     PetscBool    changed = PETSC_FALSE, serve;
 
-    PetscCall(PairMotion(contact, pair, t, &needed));
+    PetscCall(PairListsMotion(contact, pair, t, &needed));
     if (pair->slave_offsets) PetscCall(PetscLogEventBegin(contact->event_offset, 0, 0, 0, 0));
     if (pair->slave_offsets) PetscCall(OffsetsExtrapolate(pair->slave_offsets, u, t, t_next, &changed));
     if (pair->master_offsets) PetscCall(OffsetsExtrapolate(pair->master_offsets, u, t, t_next, &changed));
@@ -148,7 +148,7 @@ PetscErrorCode ContactGather(Contact contact, const PetscReal *u, PetscReal t, P
 }
 
 /* Is every point that now lies inside the support of the old fit of slave point q in its list, and has the frame stayed? */
-static PetscBool FitHolds(ContactLists old, ContactLists fresh, PetscInt q)
+static PetscBool FitHolds(NeighbourLists old, NeighbourLists fresh, PetscInt q)
 {
   const int        dim   = old->dim;
   const PetscReal *frame = &old->frame[9 * q], *turned = &fresh->frame[9 * q], *metric = &old->metric[4 * q];
@@ -164,7 +164,7 @@ static PetscBool FitHolds(ContactLists old, ContactLists fresh, PetscInt q)
     PetscReal      x[3], y[2] = {0, 0}, rho2 = 0;
     PetscBool      known = PETSC_FALSE;
 
-    ListsRelative(fresh, q, p, x);
+    NeighbourListsRelative(fresh, q, p, x);
     for (int a = 0; a < dim - 1; a++)
       for (int d = 0; d < dim; d++) y[a] += frame[3 * a + d] * x[d];
     for (int a = 0; a < dim - 1; a++)
@@ -184,10 +184,10 @@ static PetscBool FitHolds(ContactLists old, ContactLists fresh, PetscInt q)
 /* Do fresh lists say the same of this term as the solve did? Open is open. On facets a closed gap must agree; on fits, whose gap changes a
    little with their frames, frames and points must, and with offsets the gap within `drift`. The area factors must agree on both. depth: the
    largest penetration of the pair; where it is augmented down to nothing, what it may be counts. */
-static PetscBool TermAgrees(const ContactPair *pair, ContactLists fresh, PetscInt c, PetscReal gap, const PetscReal *factor, PetscReal t, PetscReal depth,
+static PetscBool TermAgrees(const ContactPair *pair, NeighbourLists fresh, PetscInt c, PetscReal gap, const PetscReal *factor, PetscReal t, PetscReal depth,
                             PetscReal drift)
 {
-  const PetscReal rest = ContactTermRest(pair, c, t), old = pair->now.gap[c];
+  const PetscReal rest = ContactTermOnsetGap(pair, c, t), old = pair->now.gap[c];
   PetscBool       fitted = PETSC_TRUE;
   PetscReal       tolerance;
 
@@ -207,14 +207,14 @@ static PetscBool TermAgrees(const ContactPair *pair, ContactLists fresh, PetscIn
 }
 
 /* Do the pair's next lists say the same of each of this rank's terms as the last residual? */
-static PetscErrorCode PairNextAgrees(Contact contact, ContactPair *pair, PetscReal t, PetscBool settle, PetscBool *agrees)
+static PetscErrorCode PairNextAgrees(Contact contact, ContactPair *pair, PetscReal t, PetscBool update_offsets, PetscBool *agrees)
 {
   PetscReal depth = 0, pressure = 0, drift, *gaps;
 
   PetscFunctionBeginUser;
   PetscCall(PairDepth(contact, pair, t, &depth, &pressure));
   drift = pair->lags ? CONTACT_OFFSET_AGREES * pressure / pair->automatic : 0;
-  if (settle) drift *= CONTACT_OFFSET_SETTLED;
+  if (update_offsets) drift *= CONTACT_OFFSET_CURRENT;
   *agrees = PETSC_TRUE;
   PetscCall(PetscMalloc1(pair->next->n_slaves, &gaps));
   if (pair->fit.degree) TimingBegin(TIMING_FIT);
@@ -240,7 +240,7 @@ PetscErrorCode ContactListsReach(Contact contact, PetscBool *within)
 
     fits += pair->fit.degree > 0;
     for (PetscInt q = 0; q < pair->lists->n_slaves && pair->fit.degree; q++)
-      if (pair->point_gap[q] <= pair->slave->max_size && ListsSlip(pair->lists, q) > LISTS_MARGIN) all = 0;
+      if (pair->point_gap[q] <= pair->slave->max_size && NeighbourListsSlip(pair->lists, q) > NEIGHBOUR_LISTS_MARGIN) all = 0;
   }
   if (fits) PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &all, 1, MPI_INT, MPI_LAND, contact->mesh->comm));
   *within = all ? PETSC_TRUE : PETSC_FALSE;
@@ -258,7 +258,7 @@ PetscErrorCode ContactListsRenew(Contact contact, const PetscReal *u, PetscReal 
     ContactPair *pair   = &contact->pairs[p];
     PetscReal    needed = motion;
 
-    PetscCall(PairMotion(contact, pair, t, &needed));
+    PetscCall(PairListsMotion(contact, pair, t, &needed));
     PetscCall(PairSearch(pair, u, t, needed));
     PetscCall(ContactNoteLost(pair, t));
     PetscCall(PairTakeNext(pair));
@@ -272,7 +272,7 @@ PetscErrorCode ContactListsRenew(Contact contact, const PetscReal *u, PetscReal 
    Collective. u, t: of the last ContactResidual() with forces; motion: since the accepted state (length); next: that the fresh lists must be good for, as
    ContactGather() may take them for the next step. *hold: the same on all ranks; if it is PETSC_FALSE the fresh lists of all pairs, and fresh offsets, have
    replaced the old, and the problem is to be solved again. */
-PetscErrorCode ContactListsHold(Contact contact, const PetscReal *u, PetscReal t, PetscReal motion, PetscReal next, PetscBool settle, PetscBool *hold)
+PetscErrorCode ContactListsHold(Contact contact, const PetscReal *u, PetscReal t, PetscReal motion, PetscReal next, PetscBool update_offsets, PetscBool *hold)
 {
   int agree = 1;
 
@@ -283,14 +283,14 @@ PetscErrorCode ContactListsHold(Contact contact, const PetscReal *u, PetscReal t
     PetscReal    needed = next;
     PetscBool    agrees = PETSC_TRUE;
 
-    PetscCall(PairMotion(contact, pair, t, &needed));
+    PetscCall(PairListsMotion(contact, pair, t, &needed));
     if (pair->slave_offsets) PetscCall(OffsetsTake(pair->slave_offsets, u, t));
     if (pair->master_offsets) PetscCall(OffsetsTake(pair->master_offsets, u, t));
     PetscCall(PairSearch(pair, u, t, needed));
     PetscCall(ContactNoteLost(pair, t));
     ContactNoteTunnelled(pair, t);
     ContactNoteJumps(pair, motion);
-    PetscCall(PairNextAgrees(contact, pair, t, settle, &agrees));
+    PetscCall(PairNextAgrees(contact, pair, t, update_offsets, &agrees));
     pair->fresh = PETSC_FALSE;
     agree       = agree && agrees;
   }

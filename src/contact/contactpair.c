@@ -190,9 +190,9 @@ PetscErrorCode ContactPairCreate(Mesh mesh, Scene scene, Elasticity elasticity, 
   PetscCall(SearchCreate(mesh, scene, loads, pair->master, pair->slave->max_size, pair->n_images, pair->images, &pair->fit, pair->slaves,
                          pair->master_offsets ? OffsetsGet(pair->master_offsets) : NULL, pair->master_offsets ? OffsetsMaps(pair->master_offsets) : NULL,
                          &pair->search));
-  PetscCall(PetscCalloc2(pair->n, &pair->held, pair->n, &pair->foreseen));
+  PetscCall(PetscCalloc2(pair->n, &pair->held, pair->n, &pair->predicted));
   if (contact->adjust) PetscCall(PetscMalloc1(pair->n, &pair->before));
-  if (contact->augment) PetscCall(MixingCreate(mesh->comm, pair->n, pair->area, &pair->mixing));
+  if (contact->augment) PetscCall(AndersonCreate(mesh->comm, pair->n, pair->area, &pair->mixing));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -200,8 +200,8 @@ PetscErrorCode ContactPairCreate(Mesh mesh, Scene scene, Elasticity elasticity, 
 PetscErrorCode ContactPairDestroy(ContactPair *pair)
 {
   PetscFunctionBeginUser;
-  PetscCall(ListsDestroy(&pair->lists));
-  PetscCall(ListsDestroy(&pair->next));
+  PetscCall(NeighbourListsDestroy(&pair->lists));
+  PetscCall(NeighbourListsDestroy(&pair->next));
   PetscCall(SearchDestroy(&pair->search));
   PetscCall(OffsetsDestroy(&pair->slave_offsets));
   PetscCall(OffsetsDestroy(&pair->master_offsets));
@@ -217,8 +217,8 @@ PetscErrorCode ContactPairDestroy(ContactPair *pair)
   PetscCall(PetscFree6(pair->factor, pair->next_factor, pair->seed, pair->point_gap, pair->point_normal, pair->point_force));
   PetscCall(ContactVariationsDestroy(&pair->variations));
   PetscCall(PetscFree(pair->before));
-  PetscCall(MixingDestroy(&pair->mixing));
-  PetscCall(PetscFree2(pair->held, pair->foreseen));
+  PetscCall(AndersonDestroy(&pair->mixing));
+  PetscCall(PetscFree2(pair->held, pair->predicted));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -229,9 +229,9 @@ PetscReal ContactTermOffset(const ContactPair *pair, PetscInt c, PetscReal t)
 }
 
 /* The gap below which a term presses: where it would have its multiplier's pressure, the surfaces meet at its offset. */
-PetscReal ContactTermRest(const ContactPair *pair, PetscInt c, PetscReal t)
+PetscReal ContactTermOnsetGap(const ContactPair *pair, PetscInt c, PetscReal t)
 {
-  return LawRest(&(LawState){pair->now.penalty[c], ContactTermOffset(pair, c, t), pair->now.multiplier[c]});
+  return LawOnsetGap(&(LawState){pair->now.penalty[c], ContactTermOffset(pair, c, t), pair->now.multiplier[c]});
 }
 
 /* Relative curvature of slave and master at a term. */
@@ -249,7 +249,7 @@ static PetscReal TermMasterSize(const ContactPair *pair, PetscInt c)
 {
   PetscReal size = 0;
 
-  for (PetscInt k = pair->term_ptr[c]; k < pair->term_ptr[c + 1]; k++) size = PetscMax(size, ListsNearestSize(pair->lists, pair->term_point[k]));
+  for (PetscInt k = pair->term_ptr[c]; k < pair->term_ptr[c + 1]; k++) size = PetscMax(size, NeighbourListsNearestSize(pair->lists, pair->term_point[k]));
   return size;
 }
 

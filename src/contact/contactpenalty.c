@@ -2,7 +2,7 @@
 #include "penaltylaw.h"
 
 /* A penetration is known well enough to be judged when the last iterate moved it by no more than this part of g_min. */
-#define CONTACT_SETTLED 0.1
+#define CONTACT_GAPS_CONVERGED 0.1
 /* Times in one step that the penalties of a pair are adjusted until their window holds. A penalty that starts 1e8 times too small needs four with
    the default clamp, neighbours that share the load two or three more. */
 #define CONTACT_MAX_ADJUST 12
@@ -131,10 +131,10 @@ PetscErrorCode ContactAdjustNextPenalty(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ContactGapsSettled - whether every closed node of the pairs that adjust moved by no more than a tenth of g_min since the last call.
+/* ContactGapsConverged - whether every closed node of the pairs that adjust moved by no more than a tenth of g_min since the last call.
 
    Collective; once for each iterate, after its ContactResidual() with forces. The first call in a solve compares with the accepted state. */
-PetscErrorCode ContactGapsSettled(Contact contact, PetscBool *settled)
+PetscErrorCode ContactGapsConverged(Contact contact, PetscBool *converged)
 {
   int yes = 1, any = 0;
 
@@ -147,12 +147,12 @@ PetscErrorCode ContactGapsSettled(Contact contact, PetscBool *settled)
     for (PetscInt c = 0; c < pair->n; c++) {
       const PetscReal moved = PetscAbsReal(pair->now.gap[c] - pair->before[c]);
 
-      if (pair->now.status[c] == CONTACT_CLOSED && !(moved <= CONTACT_SETTLED * TermRule(pair, c).g_min)) yes = 0;
+      if (pair->now.status[c] == CONTACT_CLOSED && !(moved <= CONTACT_GAPS_CONVERGED * TermRule(pair, c).g_min)) yes = 0;
       pair->before[c] = pair->now.gap[c];
     }
   }
   if (any) PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &yes, 1, MPI_INT, MPI_LAND, contact->mesh->comm));
-  *settled = yes ? PETSC_TRUE : PETSC_FALSE;
+  *converged = yes ? PETSC_TRUE : PETSC_FALSE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

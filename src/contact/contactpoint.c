@@ -3,19 +3,19 @@
 #include "base/timing.h"
 
 /* The gap and its variations against an analytic master, which has no points. */
-static PetscBool PointEvaluateAnalytic(const ContactPair *pair, ContactLists lists, PetscInt q)
+static PetscBool PointEvaluateAnalytic(const ContactPair *pair, NeighbourLists lists, PetscInt q)
 {
   const int        dim    = lists->dim;
   const PetscReal *centre = pair->mesh->centre;
   SmootherResult  *result = &pair->work->result;
-  AnalyticMaster   master = pair->scene->analytic;
+  AnalyticSurface   master = pair->scene->analytic;
   AnalyticResult   found;
   PetscReal        point[3], x[3];
 
   MotionPlace(&pair->scene->motion, lists->t, pair->scene->motion.point, point);
   MotionTurn(&pair->scene->motion, lists->t, pair->scene->analytic.axis, master.axis);
   for (int d = 0; d < dim; d++) x[d] = (lists->slave_X[q * dim + d] - (point[d] - centre[d])) + lists->slave_u[q * dim + d];
-  if (!AnalyticEvaluate(&master, dim, x, &found)) return PETSC_FALSE;
+  if (!AnalyticSurfaceEvaluate(&master, dim, x, &found)) return PETSC_FALSE;
   result->gap          = found.gap;
   result->beyond       = 0;
   result->seed         = -1;
@@ -28,8 +28,8 @@ static PetscBool PointEvaluateAnalytic(const ContactPair *pair, ContactLists lis
   return PETSC_TRUE;
 }
 
-/* Positions relative to slave point q, as of ListsRelative(), and weights of the points in its list */
-LANES_INLINE void GatherPoints(const int dim, ContactLists lists, PetscInt q, PetscReal *x, PetscReal *multiplier)
+/* Positions relative to slave point q, as of NeighbourListsRelative(), and weights of the points in its list */
+LANES_INLINE void GatherPoints(const int dim, NeighbourLists lists, PetscInt q, PetscReal *x, PetscReal *multiplier)
 {
   const PetscInt  *point = &lists->list_point[lists->list_ptr[q]], n = lists->list_ptr[q + 1] - lists->list_ptr[q];
   const PetscReal *X = lists->point_X, *u = lists->point_u, *weight = lists->point_weight;
@@ -48,7 +48,7 @@ LANES_INLINE void GatherPoints(const int dim, ContactLists lists, PetscInt q, Pe
 }
 
 /* ContactPointEvaluate - gap (and variations over the fit points) of slave point q of the lists; *found is PETSC_FALSE where no master is near. */
-PetscErrorCode ContactPointEvaluate(const ContactPair *pair, const Smoother *smoother, ContactLists lists, PetscInt q, int seed, SmootherWant want,
+PetscErrorCode ContactPointEvaluate(const ContactPair *pair, const Smoother *smoother, NeighbourLists lists, PetscInt q, int seed, SmootherWant want,
                                     PetscBool *found)
 {
   const int      dim  = lists->dim;
@@ -88,7 +88,7 @@ PetscErrorCode ContactPointEvaluate(const ContactPair *pair, const Smoother *smo
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode WorkReserveSlots(ContactWork *work, ContactLists lists)
+static PetscErrorCode WorkReserveSlots(ContactWork *work, NeighbourLists lists)
 {
   PetscFunctionBeginUser;
   if (lists->n_nodes <= work->slot_room) PetscFunctionReturn(PETSC_SUCCESS);
@@ -99,7 +99,7 @@ static PetscErrorCode WorkReserveSlots(ContactWork *work, ContactLists lists)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode WorkReserveMap(ContactWork *work, ContactLists lists, int rows, PetscInt entries)
+static PetscErrorCode WorkReserveMap(ContactWork *work, NeighbourLists lists, int rows, PetscInt entries)
 {
   PetscFunctionBeginUser;
   PetscCall(WorkReserveSlots(work, lists));
@@ -142,7 +142,7 @@ static void MapAddRow(const ContactPair *pair, int row, int image, PetscInt n, c
 }
 
 /* A row for fit point p. */
-static void MapAddPoint(const ContactPair *pair, ContactLists lists, int row, PetscInt p)
+static void MapAddPoint(const ContactPair *pair, NeighbourLists lists, int row, PetscInt p)
 {
   const PetscInt first = lists->point_ptr[p];
 
@@ -150,7 +150,7 @@ static void MapAddPoint(const ContactPair *pair, ContactLists lists, int row, Pe
 }
 
 /* The map of the last evaluation, to where the nodes' slots are. */
-static void MapFill(const ContactPair *pair, ContactLists lists, PetscInt q)
+static void MapFill(const ContactPair *pair, NeighbourLists lists, PetscInt q)
 {
   ContactWork   *work = pair->work;
   const PetscInt own  = lists->slave_ptr[q];
@@ -161,7 +161,7 @@ static void MapFill(const ContactPair *pair, ContactLists lists, PetscInt q)
 }
 
 /* How many entries the map of the last evaluation has. */
-static PetscInt MapEntries(const ContactPair *pair, ContactLists lists, PetscInt q)
+static PetscInt MapEntries(const ContactPair *pair, NeighbourLists lists, PetscInt q)
 {
   PetscInt entries = lists->slave_ptr[q + 1] - lists->slave_ptr[q];
 
@@ -204,7 +204,7 @@ void ContactNodesEnd(const ContactPair *pair)
 
 static void NodesAddPoint(const ContactPair *pair, PetscInt p)
 {
-  const ContactLists lists = pair->lists;
+  const NeighbourLists lists = pair->lists;
 
   ContactNodesAdd(pair, lists->point_ptr[p + 1] - lists->point_ptr[p], &lists->point_node[lists->point_ptr[p]]);
 }
@@ -212,10 +212,10 @@ static void NodesAddPoint(const ContactPair *pair, PetscInt p)
 /* ContactPointToNodes - carries N of the last evaluation from points to contact nodes, each of which occurs once.
 
    Not collective. q: the slave point that was evaluated. */
-PetscErrorCode ContactPointToNodes(const ContactPair *pair, ContactLists lists, PetscInt q)
+PetscErrorCode ContactPointToNodes(const ContactPair *pair, NeighbourLists lists, PetscInt q)
 {
   ContactWork *work = pair->work;
-  FitMap       map;
+  FitDerivatives       map;
 
   PetscFunctionBeginUser;
   PetscCall(WorkReserveMap(work, lists, 1 + work->result.n, MapEntries(pair, lists, q)));
@@ -229,8 +229,8 @@ PetscErrorCode ContactPointToNodes(const ContactPair *pair, ContactLists lists, 
     PetscCall(PetscFree(work->N));
     PetscCall(PetscMalloc1(work->room * lists->dim, &work->N));
   }
-  map = (FitMap){(int)work->count, work->map.ptr, work->map.node, work->map.S, work->map.sign};
-  FitMapFirst(lists->dim, work->result.n, work->result.N, &map, work->N);
+  map = (FitDerivatives){(int)work->count, work->map.ptr, work->map.node, work->map.S, work->map.sign};
+  FitDerivativesFirst(lists->dim, work->result.n, work->result.N, &map, work->N);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -262,14 +262,14 @@ static PetscErrorCode WorkReserveBlock(ContactWork *work, PetscInt m)
 
 /* ContactSecondBegin - begins a sum of second variations over the nodes of a block, after ContactBlockBegin(). Not collective.
 
-   nodes: of the block; points: how many slave points are added at most, and as many vectors with FitMapAddOuter(). */
+   nodes: of the block; points: how many slave points are added at most, and as many vectors with FitDerivativesAddOuter(). */
 PetscErrorCode ContactSecondBegin(const ContactPair *pair, PetscInt nodes, PetscInt points)
 {
   ContactWork *work   = pair->work;
   const int    dim    = pair->mesh->dim;
   const int    degree = PetscMax(pair->fit.degree, 1); /* facets need no more than the sum's head */
-  const int    depth  = (int)points * (1 + PetscMax(FitMapDepth(dim, degree), dim * (1 + FACE_MAX_NODES)));
-  const long   room   = FitMapWorkspace(dim, degree, (int)nodes, depth);
+  const int    depth  = (int)points * (1 + PetscMax(FitDerivativesDepth(dim, degree), dim * (1 + FACE_MAX_NODES)));
+  const long   room   = FitDerivativesWorkspace(dim, degree, (int)nodes, depth);
 
   PetscFunctionBeginUser;
   if (room > work->sum_room) {
@@ -278,20 +278,20 @@ PetscErrorCode ContactSecondBegin(const ContactPair *pair, PetscInt nodes, Petsc
     PetscCall(PetscMalloc1(work->sum_room, &work->sum_workspace));
   }
   PetscCall(WorkReserveBlock(work, nodes * dim));
-  FitMapBegin(&work->sum, dim, degree, (int)nodes, depth, work->sum_workspace);
+  FitDerivativesBegin(&work->sum, dim, degree, (int)nodes, depth, work->sum_workspace);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* ContactSecondAdd - evaluates slave point q and adds factor times its second variation. Not collective.
 
    own[n_points]: takes what belongs to the fit points one by one, for ContactOwnToNodes(). */
-PetscErrorCode ContactSecondAdd(const ContactPair *pair, PetscInt q, PetscReal factor, double (*own)[FITMAP_OWN])
+PetscErrorCode ContactSecondAdd(const ContactPair *pair, PetscInt q, PetscReal factor, double (*own)[FIT_DERIVATIVES_OWN])
 {
   ContactWork *work  = pair->work;
-  ContactLists lists = pair->lists;
+  NeighbourLists lists = pair->lists;
   ContactMap  *map   = &work->map;
   PetscBool    found;
-  FitMap       fit;
+  FitDerivatives       fit;
 
   PetscFunctionBeginUser;
   if (pair->fit.degree) TimingBegin(TIMING_FIT);
@@ -300,19 +300,19 @@ PetscErrorCode ContactSecondAdd(const ContactPair *pair, PetscInt q, PetscReal f
   if (!found) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(WorkReserveMap(work, lists, 1 + work->result.n, MapEntries(pair, lists, q)));
   MapFill(pair, lists, q);
-  fit = (FitMap){work->sum.n_nodes, map->ptr, map->node, map->S, map->sign};
+  fit = (FitDerivatives){work->sum.n_nodes, map->ptr, map->node, map->S, map->sign};
   if (work->result.factored) {
-    FitMapAdd(&work->sum, factor, &work->result.factors, &fit);
-    for (int i = 0; i < work->result.n; i++) FitMapOwn(factor, &work->result.factors, i, own[lists->list_point[lists->list_ptr[q] + work->result.points[i]]]);
+    FitDerivativesAdd(&work->sum, factor, &work->result.factors, &fit);
+    for (int i = 0; i < work->result.n; i++) FitDerivativesOwn(factor, &work->result.factors, i, own[lists->list_point[lists->list_ptr[q] + work->result.points[i]]]);
   } else
-    FitMapAddDense(&work->sum, factor, work->result.n, work->result.M, &fit);
+    FitDerivativesAddDense(&work->sum, factor, work->result.n, work->result.M, &fit);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* ContactSecondEnd - the work's M is the sum. Not collective. */
 void ContactSecondEnd(const ContactPair *pair)
 {
-  FitMapEnd(&pair->work->sum, pair->work->M);
+  FitDerivativesEnd(&pair->work->sum, pair->work->M);
 }
 
 /* ContactPointsToNodes - the contact nodes of fit points first to end - 1, into the work's number. Not collective. */
@@ -329,24 +329,24 @@ PetscErrorCode ContactPointsToNodes(const ContactPair *pair, PetscInt first, Pet
 /* ContactOwnToNodes - the second variations that belong to fit points first to end - 1, summed over slave points, into the work's M. Not collective.
 
    nodes: of the block at hand, which are these points'; own: of all fit points. */
-PetscErrorCode ContactOwnToNodes(const ContactPair *pair, PetscInt nodes, PetscInt first, PetscInt end, const double (*own)[FITMAP_OWN])
+PetscErrorCode ContactOwnToNodes(const ContactPair *pair, PetscInt nodes, PetscInt first, PetscInt end, const double (*own)[FIT_DERIVATIVES_OWN])
 {
   const int    dim  = pair->mesh->dim;
   ContactWork *work = pair->work;
-  FitMap       map;
+  FitDerivatives       map;
 
   PetscFunctionBeginUser;
   PetscCall(WorkReserveBlock(work, nodes * dim));
   PetscCall(PetscArrayzero(work->M, PetscSqr(nodes * dim)));
   work->map.ptr[0] = 0;
   for (PetscInt p = first; p < end; p++) MapAddPoint(pair, pair->lists, (int)(p - first), p);
-  map = (FitMap){(int)nodes, work->map.ptr, work->map.node, work->map.S, work->map.sign};
-  FitMapAddOwn(dim, 0, (int)(end - first), &own[first], &map, work->M);
+  map = (FitDerivatives){(int)nodes, work->map.ptr, work->map.node, work->map.S, work->map.sign};
+  FitDerivativesAddOwn(dim, 0, (int)(end - first), &own[first], &map, work->M);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* The gap of a slave point, with its first variation where `vary`; where nothing has moved since its fit was made, that tells it. */
-static PetscErrorCode PointGap(const ContactPair *pair, ContactLists lists, PetscInt q, int seed, PetscBool vary, PetscBool *found)
+static PetscErrorCode PointGap(const ContactPair *pair, NeighbourLists lists, PetscInt q, int seed, PetscBool vary, PetscBool *found)
 {
   SmootherResult *result = &pair->work->result;
 
@@ -367,7 +367,7 @@ static PetscErrorCode PointGap(const ContactPair *pair, ContactLists lists, Pets
    Not collective. factor[n_slaves]: points of factor 0 are not asked for; seed[n_slaves]: the facets of last time, rewritten, or NULL;
    gap[n_slaves]: NaN where there is none; normals[3*n_slaves]: out of the master at the feet, or NULL. force[n_slaves]: points with one, of last time, will
    most likely have one again, and their first variations are taken among the pair's, whose lists these are; or NULL. */
-PetscErrorCode ContactPointGaps(const ContactPair *pair, ContactLists lists, const PetscReal *factor, const PetscReal *force, int *seed, PetscReal *gap,
+PetscErrorCode ContactPointGaps(const ContactPair *pair, NeighbourLists lists, const PetscReal *factor, const PetscReal *force, int *seed, PetscReal *gap,
                                 PetscReal *normals)
 {
   PetscFunctionBeginUser;

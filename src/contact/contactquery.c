@@ -212,7 +212,7 @@ PetscErrorCode ContactPairSurface(Contact contact, int p, const MeshGroup **slav
 PetscErrorCode ContactPairFits(Contact contact, int p, ContactFits *fits)
 {
   ContactPair *pair             = &contact->pairs[p];
-  ContactLists lists            = pair->lists;
+  NeighbourLists lists            = pair->lists;
   PetscInt     count[RUNGS + 3] = {0};                                                       /* by rung, facets, points, neighbours */
   PetscReal    most[6]          = {PETSC_MIN_REAL, PETSC_MIN_REAL, PETSC_MIN_REAL, 0, 0, 0}; /* -fewest, most neighbours, -pivot, Lambda, smoothing, facets */
   PetscMPIInt  rank;

@@ -3,7 +3,7 @@
 
 /* Stiffness of the springs as a part of the automatic penalty, which is the stiffness of the elements at the surface. Each pass leaves about this part (times
    the elements through a body) of the force of the pass before; a body that flies covers its penetration at rest divided by this in one pass. */
-#define STABILISER_STIFFNESS 1e-3
+#define CONTACT_SPRINGS_STIFFNESS 1e-3
 
 struct _n_Stabiliser {
   Vec stiffness, anchor, work; /* force per length of each free dof; where the spring has no force */
@@ -29,14 +29,14 @@ static PetscErrorCode AddSurface(ContactSurface surface, Geometry geometry, Pets
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* StabiliserCreate - springs on the deformable surfaces of all pairs that ask for it, slave and master.
+/* ContactSpringsCreate - springs on the deformable surfaces of all pairs that ask for it, slave and master.
 
    Collective. The contact is borrowed for the call. like: vector of the free dofs, whose layout is taken; the anchor is 0.
 
    Source: the proximal point method (Rockafellar 1976) on the potential energy. */
-PetscErrorCode StabiliserCreate(Contact contact, Vec like, Stabiliser *out)
+PetscErrorCode ContactSpringsCreate(Contact contact, Vec like, ContactSprings *out)
 {
-  Stabiliser s;
+  ContactSprings s;
   PetscReal *values;
   PetscBool  any = PETSC_FALSE;
 
@@ -54,8 +54,8 @@ PetscErrorCode StabiliserCreate(Contact contact, Vec like, Stabiliser *out)
     const ContactPair *pair = &contact->pairs[p];
 
     if (!pair->scene->stabilise) continue;
-    PetscCall(AddSurface(pair->slave, pair->geometry, STABILISER_STIFFNESS * pair->automatic, values));
-    if (pair->master && pair->master->group) PetscCall(AddSurface(pair->master, pair->geometry, STABILISER_STIFFNESS * pair->automatic, values));
+    PetscCall(AddSurface(pair->slave, pair->geometry, CONTACT_SPRINGS_STIFFNESS * pair->automatic, values));
+    if (pair->master && pair->master->group) PetscCall(AddSurface(pair->master, pair->geometry, CONTACT_SPRINGS_STIFFNESS * pair->automatic, values));
   }
   PetscCall(MeshLocalToGlobal(contact->mesh, values, s->stiffness));
   PetscCall(PetscFree(values));
@@ -63,8 +63,8 @@ PetscErrorCode StabiliserCreate(Contact contact, Vec like, Stabiliser *out)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* StabiliserDestroy - Collective. */
-PetscErrorCode StabiliserDestroy(Stabiliser *s)
+/* ContactSpringsDestroy - Collective. */
+PetscErrorCode ContactSpringsDestroy(ContactSprings *s)
 {
   PetscFunctionBeginUser;
   if (!*s) PetscFunctionReturn(PETSC_SUCCESS);
@@ -75,8 +75,8 @@ PetscErrorCode StabiliserDestroy(Stabiliser *s)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* StabiliserRelax - the springs' ends follow to x (free displacements), where their force is 0. Collective. */
-PetscErrorCode StabiliserRelax(Stabiliser s, Vec x)
+/* ContactSpringsRelax - the springs' ends follow to x (free displacements), where their force is 0. Collective. */
+PetscErrorCode ContactSpringsRelax(ContactSprings s, Vec x)
 {
   PetscFunctionBeginUser;
   if (s) PetscCall(VecCopy(x, s->anchor));
@@ -84,7 +84,7 @@ PetscErrorCode StabiliserRelax(Stabiliser s, Vec x)
 }
 
 /* Their forces at x, into the work vector */
-static PetscErrorCode SpringForces(Stabiliser s, Vec x)
+static PetscErrorCode SpringForces(ContactSprings s, Vec x)
 {
   PetscFunctionBeginUser;
   PetscCall(VecWAXPY(s->work, -1, s->anchor, x));
@@ -92,8 +92,8 @@ static PetscErrorCode SpringForces(Stabiliser s, Vec x)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* StabiliserResidual - F += the springs' forces at x. Collective. */
-PetscErrorCode StabiliserResidual(Stabiliser s, Vec x, Vec F)
+/* ContactSpringsResidual - F += the springs' forces at x. Collective. */
+PetscErrorCode ContactSpringsResidual(ContactSprings s, Vec x, Vec F)
 {
   PetscFunctionBeginUser;
   if (!s) PetscFunctionReturn(PETSC_SUCCESS);
@@ -102,8 +102,8 @@ PetscErrorCode StabiliserResidual(Stabiliser s, Vec x, Vec F)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* StabiliserLoad - norm of the springs' forces and their energy at x; 0 without springs. Collective. */
-PetscErrorCode StabiliserLoad(Stabiliser s, Vec x, PetscReal *force, PetscReal *energy)
+/* ContactSpringsLoad - norm of the springs' forces and their energy at x; 0 without springs. Collective. */
+PetscErrorCode ContactSpringsLoad(ContactSprings s, Vec x, PetscReal *force, PetscReal *energy)
 {
   PetscScalar work[2] = {0, 0};
 
@@ -118,19 +118,19 @@ PetscErrorCode StabiliserLoad(Stabiliser s, Vec x, PetscReal *force, PetscReal *
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* StabiliserEnergy - adds the springs' energy at x. Collective. */
-PetscErrorCode StabiliserEnergy(Stabiliser s, Vec x, PetscReal *energy)
+/* ContactSpringsEnergy - adds the springs' energy at x. Collective. */
+PetscErrorCode ContactSpringsEnergy(ContactSprings s, Vec x, PetscReal *energy)
 {
   PetscReal force, mine;
 
   PetscFunctionBeginUser;
-  PetscCall(StabiliserLoad(s, x, &force, &mine));
+  PetscCall(ContactSpringsLoad(s, x, &force, &mine));
   *energy += mine;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* StabiliserTangent - A += the springs' stiffness, on the diagonal. Collective. */
-PetscErrorCode StabiliserTangent(Stabiliser s, Mat A)
+/* ContactSpringsTangent - A += the springs' stiffness, on the diagonal. Collective. */
+PetscErrorCode ContactSpringsTangent(ContactSprings s, Mat A)
 {
   PetscFunctionBeginUser;
   if (s) PetscCall(MatDiagonalSet(A, s->stiffness, ADD_VALUES));

@@ -4,16 +4,16 @@
 #pragma once
 #include "contact/contact.h"
 
-typedef struct _n_Stabiliser *Stabiliser;
+typedef struct _n_Stabiliser *ContactSprings;
 
 /* NULL where no pair asks for it. like: a vector of the free dofs. Collective. */
-PetscErrorCode StabiliserCreate(Contact, Vec like, Stabiliser *);
-PetscErrorCode StabiliserDestroy(Stabiliser *);
+PetscErrorCode ContactSpringsCreate(Contact, Vec like, ContactSprings *);
+PetscErrorCode ContactSpringsDestroy(ContactSprings *);
 /* All springs are without force at x. Collective. */
-PetscErrorCode StabiliserRelax(Stabiliser, Vec x);
+PetscErrorCode ContactSpringsRelax(ContactSprings, Vec x);
 /* Adds to the residual F, to the energy (all ranks' sum), to the tangent A. NULL: nothing to be added. Collective. */
-PetscErrorCode StabiliserResidual(Stabiliser, Vec x, Vec F);
-PetscErrorCode StabiliserEnergy(Stabiliser, Vec x, PetscReal *energy);
-PetscErrorCode StabiliserTangent(Stabiliser, Mat A);
+PetscErrorCode ContactSpringsResidual(ContactSprings, Vec x, Vec F);
+PetscErrorCode ContactSpringsEnergy(ContactSprings, Vec x, PetscReal *energy);
+PetscErrorCode ContactSpringsTangent(ContactSprings, Mat A);
 /* Norm of the springs' forces at x, and the energy in them. Collective. */
-PetscErrorCode StabiliserLoad(Stabiliser, Vec x, PetscReal *force, PetscReal *energy);
+PetscErrorCode ContactSpringsLoad(ContactSprings, Vec x, PetscReal *force, PetscReal *energy);

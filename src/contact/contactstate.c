@@ -40,7 +40,7 @@ PetscErrorCode ContactStateDestroy(ContactState *state)
 }
 
 /* ContactStateArchive - Collective. name: where it stands in the archive; nodes: the rows of the state's n slave nodes. */
-PetscErrorCode ContactStateArchive(ContactState *state, Archive archive, const char *name, const Rows *nodes)
+PetscErrorCode ContactStateArchive(ContactState *state, Archive archive, const char *name, const Hdf5Table *nodes)
 {
   PetscReal *const   values[]  = {state->penalty, NULL, state->gap, state->offset, state->multiplier};
   static const char *names[]   = {"penalty", "status", "gap", "offset", "multiplier"};

@@ -20,4 +20,4 @@ typedef struct {
 PetscErrorCode ContactStateCreate(PetscInt n, PetscReal penalty, ContactState *);
 PetscErrorCode ContactStateCopy(const ContactState *from, ContactState *to);
 PetscErrorCode ContactStateDestroy(ContactState *);
-PetscErrorCode ContactStateArchive(ContactState *, Archive, const char *name, const Rows *nodes); /* nodes: of its n slave nodes */
+PetscErrorCode ContactStateArchive(ContactState *, Archive, const char *name, const Hdf5Table *nodes); /* nodes: of its n slave nodes */

@@ -3,7 +3,7 @@
 
 /* Gaps change by the motions of two bodies; and as what opens or closes changes the step, by more than the step as it is says. */
 #define STEP_REACH 3
-/* Numbers of a PressingTerm */
+/* Numbers of a ActiveSetTerm */
 #define STEP_TERM 4
 
 struct _n_ContactStep {
@@ -11,7 +11,7 @@ struct _n_ContactStep {
   PetscReal    *reach; /* of each pair */
   PetscInt      n, mine;
   PetscMPIInt   rank, *count, *first; /* terms of each rank */
-  PressingTerm *terms;                /* n */
+  ActiveSetTerm *terms;                /* n */
   PetscInt     *pair, *term;          /* of mine */
   PetscReal    *area;
   PetscInt     *ptr, *node; /* gap's first variation, over contact nodes of the pair */
@@ -28,7 +28,7 @@ static PetscErrorCode PairMove(Contact contact, ContactPair *pair, const PetscRe
 }
 
 /* Longest motion of a pair's contact nodes, all ranks */
-static PetscErrorCode PairMotion(Contact contact, ContactPair *pair, const PetscReal *du, PetscReal t, PetscReal t_next, PetscReal *motion)
+static PetscErrorCode PairStepMotion(Contact contact, ContactPair *pair, const PetscReal *du, PetscReal t, PetscReal t_next, PetscReal *motion)
 {
   const int  dim = contact->mesh->dim;
   PetscReal *values;
@@ -56,9 +56,9 @@ static void AddTerm(ContactStep step, int p, PetscInt c, PetscReal t)
   PetscReal          opening;
 
   ContactTermLaw(pair, c, t, &value, &opening, &step->area[step->mine]);
-  opening -= LawRest(&state);
+  opening -= LawOnsetGap(&state);
   if (!(PetscAbsReal(opening) <= step->reach[p])) return; /* nor where no master is near */
-  step->terms[step->mine]  = (PressingTerm){.opening = opening, .pressure = value.pressure, .stiffness = pair->stiffness[c], .penalty = state.penalty};
+  step->terms[step->mine]  = (ActiveSetTerm){.opening = opening, .pressure = value.pressure, .stiffness = pair->stiffness[c], .penalty = state.penalty};
   step->pair[step->mine]   = p;
   step->term[step->mine++] = c;
 }
@@ -122,7 +122,7 @@ static PetscErrorCode GatherTerms(ContactStep step)
 {
   MPI_Comm      comm = step->contact->mesh->comm;
   PetscMPIInt   size, mine = (PetscMPIInt)step->mine;
-  PressingTerm *own = step->terms;
+  ActiveSetTerm *own = step->terms;
   PetscReal    *from, *to;
 
   PetscFunctionBeginUser;
@@ -144,14 +144,14 @@ static PetscErrorCode GatherTerms(ContactStep step)
   PetscCall(PetscFree(step->terms));
   PetscCall(PetscMalloc1(step->n, &step->terms));
   for (PetscInt i = 0; i < step->n; i++)
-    step->terms[i] = (PressingTerm){to[STEP_TERM * i], to[STEP_TERM * i + 1], to[STEP_TERM * i + 2], to[STEP_TERM * i + 3]};
+    step->terms[i] = (ActiveSetTerm){to[STEP_TERM * i], to[STEP_TERM * i + 1], to[STEP_TERM * i + 2], to[STEP_TERM * i + 3]};
   PetscCall(PetscFree2(from, to));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* ContactStepCreate - the terms whose gaps the step may reach.
 
-   Collective. u, du[n_nodes*dim]: local displacements and their change (length), ghosts included. ContactPredict() holds what it does until the step is taken.
+   Collective. u, du[n_nodes*dim]: local displacements and their change (length), ghosts included. ContactHoldActiveSet() holds what it does until the step is taken.
  */
 PetscErrorCode ContactStepCreate(Contact contact, const PetscReal *u, const PetscReal *du, PetscReal t, PetscReal t_next, ContactStep *out)
 {
@@ -167,7 +167,7 @@ PetscErrorCode ContactStepCreate(Contact contact, const PetscReal *u, const Pets
   step->ptr[0] = 0;
   PetscCall(PetscMalloc1(contact->n_pairs, &step->reach));
   for (int p = 0; p < contact->n_pairs; p++) {
-    PetscCall(PairMotion(contact, &contact->pairs[p], du, t, t_next, &step->reach[p]));
+    PetscCall(PairStepMotion(contact, &contact->pairs[p], du, t, t_next, &step->reach[p]));
     step->reach[p] *= STEP_REACH;
     PetscCall(AddPair(step, p, u, t));
   }
@@ -194,7 +194,7 @@ PetscErrorCode ContactStepDestroy(ContactStep *step)
 }
 
 /* ContactStepGetTerms - Not collective. */
-PetscErrorCode ContactStepGetTerms(ContactStep step, PetscInt *n, const PressingTerm **terms)
+PetscErrorCode ContactStepGetTerms(ContactStep step, PetscInt *n, const ActiveSetTerm **terms)
 {
   PetscFunctionBeginUser;
   *n     = step->n;
@@ -244,7 +244,7 @@ PetscErrorCode ContactStepWithin(ContactStep step, const PetscReal *du, PetscRea
   PetscFunctionBeginUser;
   *within = PETSC_TRUE;
   for (int p = 0; p < step->contact->n_pairs; p++) {
-    PetscCall(PairMotion(step->contact, &step->contact->pairs[p], du, t, t_next, &motion));
+    PetscCall(PairStepMotion(step->contact, &step->contact->pairs[p], du, t, t_next, &motion));
     *within = (PetscBool)(*within && motion <= step->reach[p]);
   }
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -270,14 +270,14 @@ PetscErrorCode ContactStepForces(ContactStep step, PetscInt rows, PetscInt m, co
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ContactStepForesee - Not collective. */
-PetscErrorCode ContactStepForesee(ContactStep step, const PetscBool *pressed)
+/* ContactStepMarkPredicted - Not collective. */
+PetscErrorCode ContactStepMarkPredicted(ContactStep step, const PetscBool *pressed)
 {
   PetscFunctionBeginUser;
   for (PetscInt i = 0; i < step->mine; i++) {
     const ContactPair *pair = &step->contact->pairs[step->pair[i]];
 
-    if (pair->predicting) pair->foreseen[step->term[i]] = pressed[step->first[step->rank] + i];
+    if (pair->holding) pair->predicted[step->term[i]] = pressed[step->first[step->rank] + i];
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

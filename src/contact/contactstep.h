@@ -9,7 +9,7 @@ typedef struct _n_ContactStep *ContactStep;
 PetscErrorCode ContactStepCreate(Contact, const PetscReal *u, const PetscReal *du, PetscReal t, PetscReal t_next, ContactStep *);
 PetscErrorCode ContactStepDestroy(ContactStep *);
 /* The terms of all ranks, the same on each; they belong to the step. Not collective. */
-PetscErrorCode ContactStepGetTerms(ContactStep, PetscInt *n, const PressingTerm **);
+PetscErrorCode ContactStepGetTerms(ContactStep, PetscInt *n, const ActiveSetTerm **);
 /* How local displacements du (prescribed ones included), tools moving from t to t_next, change the gaps (travel[n], length). Collective. */
 PetscErrorCode ContactStepTravel(ContactStep, const PetscReal *du, PetscReal t, PetscReal t_next, PetscReal *travel);
 /* Do these displacements go no further than the terms were chosen for? Collective. */
@@ -17,5 +17,5 @@ PetscErrorCode ContactStepWithin(ContactStep, const PetscReal *du, PetscReal t, 
 /* The forces of a pressure of 1 on each of m terms, against the gap's opening, over the free dofs: dense, the caller's. rows: the matrix's on this rank.
    Collective. */
 PetscErrorCode ContactStepForces(ContactStep, PetscInt rows, PetscInt m, const PetscInt *which, Mat *B);
-/* What presses at the end of a step that predicts (ContactPredict()) is what ContactUnforeseen() leaves out; pressed[n]. Not collective. */
-PetscErrorCode ContactStepForesee(ContactStep, const PetscBool *pressed);
+/* What presses at the end of a step that predicts (ContactHoldActiveSet()) is what ContactUnpredictedEnergy() leaves out; pressed[n]. Not collective. */
+PetscErrorCode ContactStepMarkPredicted(ContactStep, const PetscBool *pressed);

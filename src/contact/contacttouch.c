@@ -16,7 +16,7 @@ static PetscErrorCode PairMeasure(ContactPair *pair, const PetscReal *u, PetscRe
 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc3(n, &out->gap, n, &out->facet, n, &out->fitted));
-  PetscCall(ListsUpdate(pair->search, pair->lists, u, t, NULL));
+  PetscCall(NeighbourListsUpdate(pair->search, pair->lists, u, t, NULL));
   pair->projected = PETSC_FALSE; /* the last projection was elsewhere */
   for (PetscInt q = 0; q < n; q++) {
     PetscBool found;
@@ -62,7 +62,7 @@ static void TermGaps(const ContactPair *pair, PetscInt c, const Distances *befor
 }
 
 /* Room for the touches of all pairs on this rank, three columns each */
-static PetscErrorCode TouchRows(Contact contact, PetscReal **rows)
+static PetscErrorCode TouchStepRows(Contact contact, PetscReal **rows)
 {
   PetscInt n = 0;
 
@@ -81,11 +81,11 @@ PetscErrorCode ContactTouches(Contact contact, const PetscReal *u_0, PetscReal t
 {
   PetscReal *rows;
   PetscInt   count = 0;
-  Table      table;
+  GatherTable      table;
 
   PetscFunctionBeginUser;
   PetscCall(PetscLogEventBegin(contact->event_touch, 0, 0, 0, 0));
-  PetscCall(TouchRows(contact, &rows));
+  PetscCall(TouchStepRows(contact, &rows));
   for (int p = 0; p < contact->n_pairs; p++) {
     ContactPair *pair = &contact->pairs[p];
     Distances    before, after;
@@ -96,9 +96,9 @@ PetscErrorCode ContactTouches(Contact contact, const PetscReal *u_0, PetscReal t
       PetscReal gap[2], beta;
 
       TermGaps(pair, c, &before, &after, gap);
-      gap[0] -= ContactTermRest(pair, c, t_0);
-      gap[1] -= ContactTermRest(pair, c, t);
-      beta = TouchBeta(gap[0], gap[1], CONTACT_RESTING * pair->size[c]);
+      gap[0] -= ContactTermOnsetGap(pair, c, t_0);
+      gap[1] -= ContactTermOnsetGap(pair, c, t);
+      beta = TouchStepBeta(gap[0], gap[1], CONTACT_RESTING * pair->size[c]);
       if (PetscIsNanReal(beta) || (still_open && !(gap[1] > 0))) continue;
       rows[3 * count]     = beta;
       rows[3 * count + 1] = (PetscReal)contact->mesh->node_id[pair->node[c]] * contact->n_pairs + p;
@@ -108,11 +108,11 @@ PetscErrorCode ContactTouches(Contact contact, const PetscReal *u_0, PetscReal t
     PetscCall(DistancesDestroy(&before));
     PetscCall(DistancesDestroy(&after));
   }
-  PetscCall(TableGather(contact->mesh->comm, 3, count, rows, &table));
+  PetscCall(GatherTableCreate(contact->mesh->comm, 3, count, rows, &table));
   PetscCall(PetscMalloc1(table.n, touch));
   for (PetscInt i = 0; i < table.n; i++) (*touch)[i] = (Touch){table.row[3 * i], table.row[3 * i + 1], table.row[3 * i + 2]};
   *n = (int)table.n;
-  PetscCall(TableDestroy(&table));
+  PetscCall(GatherTableDestroy(&table));
   PetscCall(PetscFree(rows));
   PetscCall(PetscLogEventEnd(contact->event_touch, 0, 0, 0, 0));
   PetscFunctionReturn(PETSC_SUCCESS);

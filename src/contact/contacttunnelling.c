@@ -8,7 +8,7 @@
  */
 static PetscBool PointLost(const ContactPair *pair, PetscInt c, PetscInt q, PetscReal t, ContactLost *lost)
 {
-  const ContactLists next   = pair->next;
+  const NeighbourLists next   = pair->next;
   const PetscReal    offset = ContactTermOffset(pair, c, t);
   PetscBool          found  = PETSC_FALSE;
 
@@ -45,7 +45,7 @@ PetscErrorCode ContactNoteLost(ContactPair *pair, PetscReal t)
    part of it is nearer now. */
 static PetscBool PointTunnelled(const ContactPair *pair, PetscInt c, PetscInt q, PetscReal t, ContactLost *lost)
 {
-  const ContactLists lists  = pair->lists;
+  const NeighbourLists lists  = pair->lists;
   const int          dim    = lists->dim;
   const PetscReal    offset = ContactTermOffset(pair, c, t);
   PetscReal          x[FACE_MAX_NODES * 3];
@@ -55,7 +55,7 @@ static PetscBool PointTunnelled(const ContactPair *pair, PetscInt c, PetscInt q,
   if (!pair->master || lists->nearest[q] < 0 || !(pair->point_gap[q] - offset >= 0)) return PETSC_FALSE;
   facet = lists->facet[lists->facet_ptr[q] + lists->nearest[q]];
   for (int a = 0; a < ElementGet(facet.type)->nodes; a++) {
-    ListsRelative(lists, q, lists->list_point[lists->list_ptr[q] + facet.nodes[a]], &x[a * dim]);
+    NeighbourListsRelative(lists, q, lists->list_point[lists->list_ptr[q] + facet.nodes[a]], &x[a * dim]);
     facet.nodes[a] = a;
   }
   facet.free_edges = (1 << ElementGet(facet.type)->corners) - 1; /* else a foot on an edge would be no more over the facet than one beyond it */

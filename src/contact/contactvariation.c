@@ -113,7 +113,7 @@ void ContactTermVary(const ContactPair *pair, PetscInt c, PetscReal scale, Petsc
 }
 
 /* Room for one vector more, of so many entries at most. */
-static PetscErrorCode Reserve(ContactVectors *vectors, PetscInt entries)
+static PetscErrorCode VectorsReserve(ContactVectors *vectors, PetscInt entries)
 {
   const PetscInt used = vectors->n ? vectors->ptr[vectors->n] : 0;
 
@@ -147,7 +147,7 @@ PetscErrorCode ContactVectorsAdd(ContactVectors *vectors, const ContactPair *pai
     PetscCall(ContactVariationsNeed(pair, q));
     n += (all->end[q] - all->first[q]) * dim;
   }
-  PetscCall(Reserve(vectors, n));
+  PetscCall(VectorsReserve(vectors, n));
   n = vectors->ptr[vectors->n];
   for (PetscInt k = pair->term_ptr[c]; k < pair->term_ptr[c + 1]; k++) {
     const PetscInt  q      = pair->term_point[k];
@@ -171,7 +171,7 @@ PetscErrorCode ContactVectorsAddZeros(ContactVectors *vectors, PetscInt n, const
   PetscInt first;
 
   PetscFunctionBeginUser;
-  PetscCall(Reserve(vectors, n));
+  PetscCall(VectorsReserve(vectors, n));
   first = vectors->ptr[vectors->n];
   PetscCall(PetscArraycpy(&vectors->row[first], row, n));
   PetscCall(PetscArrayzero(&vectors->value[first], n));

@@ -1,8 +1,8 @@
 #include <string.h>
 #include "law.h"
 
-/* LawRest - the gap below which there is pressure (length). Not collective. */
-double LawRest(const LawState *state)
+/* LawOnsetGap - the gap below which there is pressure (length). Not collective. */
+double LawOnsetGap(const LawState *state)
 {
   return state->offset + state->multiplier / state->penalty;
 }
@@ -12,7 +12,7 @@ double LawRest(const LawState *state)
    potential but for a constant). */
 static void LawPenalty(double gap, const LawState *state, LawValue *value)
 {
-  const double g = gap - LawRest(state);
+  const double g = gap - LawOnsetGap(state);
 
   if (g < 0)
     *value = (LawValue){0.5 * state->penalty * g * g, -state->penalty * g, state->penalty};

@@ -14,7 +14,7 @@ typedef struct {
   double met;   /* weight that touches by then, nodes that tie included */
   int    nodes; /* how many nodes that is */
   int    tied;  /* how many of them beyond those wanted, as no step separates them from the last one wanted */
-} TouchChoice;
+} TouchStepChoice;
 
-double TouchBeta(double before, double after, double resting);
-void   TouchChoose(int n, const Touch *, double wanted, double apart, TouchChoice *);
+double TouchStepBeta(double before, double after, double resting);
+void   TouchStepChoose(int n, const Touch *, double wanted, double apart, TouchStepChoice *);

@@ -84,7 +84,7 @@ PetscErrorCode ArchiveCreate(MPI_Comm comm, const char *name, PetscInt64 bytes, 
   PetscCheck(!cause, PETSC_COMM_SELF, PETSC_ERR_FILE_WRITE, "cannot write %s (%.3g MB): %s; what stood there before is intact", name, 1e-6 * (double)bytes,
              strerror(cause));
   PetscCallMPI(MPI_Barrier(comm));
-  PetscCall(RowsCreateFile(comm, (*archive)->temporary, &(*archive)->file));
+  PetscCall(Hdf5TableCreateFile(comm, (*archive)->temporary, &(*archive)->file));
   CallHDF5(space = H5Screate(H5S_SCALAR));
   CallHDF5(attribute = H5Acreate2((*archive)->file, ARCHIVE_MARK, H5T_NATIVE_INT64, space, H5P_DEFAULT, H5P_DEFAULT));
   CallHDF5(H5Awrite(attribute, H5T_NATIVE_INT64, &version));
@@ -144,7 +144,7 @@ PetscErrorCode ArchiveOpen(MPI_Comm comm, const char *name, Archive *archive)
   PetscCall(ArchiveNew(comm, name, archive));
   if (!(*archive)->rank) FileComplaint(name, message, sizeof(message));
   PetscCall(RefuseInputAnywhere(comm, *message ? message : NULL));
-  PetscCall(RowsOpenFile(comm, name, H5F_ACC_RDONLY, &(*archive)->file));
+  PetscCall(Hdf5TableOpenFile(comm, name, H5F_ACC_RDONLY, &(*archive)->file));
   (*archive)->loads = PETSC_TRUE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -271,7 +271,7 @@ static PetscErrorCode ArchiveShared(Archive a, const char *name, PetscInt n, hid
   } else if (a->measures)
     a->bytes += a->rank ? 0 : ARCHIVE_DATASET_BYTES + n * (PetscInt64)size;
   else
-    PetscCall(RowsWrite(a->file, name, (hsize_t)n, 0, a->rank ? 0 : (hsize_t)n, 1, type, values));
+    PetscCall(Hdf5TableWrite(a->file, name, (hsize_t)n, 0, a->rank ? 0 : (hsize_t)n, 1, type, values));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -377,7 +377,7 @@ PetscErrorCode ArchiveText(Archive a, const char *name, char **text)
 }
 
 /* ArchiveRows - items[rows->items * width], by their rows. Collective. */
-PetscErrorCode ArchiveRows(Archive a, const char *name, const Rows *rows, int width, PetscReal *items)
+PetscErrorCode ArchiveRows(Archive a, const char *name, const Hdf5Table *rows, int width, PetscReal *items)
 {
   PetscReal *values;
   hid_t      data;
@@ -389,12 +389,12 @@ PetscErrorCode ArchiveRows(Archive a, const char *name, const Rows *rows, int wi
     PetscCall(PetscMalloc1(rows->n * width, &values));
     PetscCall(ReadPart(data, (hsize_t)rows->first, (hsize_t)rows->n, width, H5T_NATIVE_DOUBLE, values));
     CallHDF5(H5Dclose(data));
-    PetscCall(RowsSpread(rows, width, MPIU_REAL, values, items));
+    PetscCall(Hdf5TableSpread(rows, width, MPIU_REAL, values, items));
     PetscCall(PetscFree(values));
   } else if (a->measures)
     a->bytes += rows->n * width * (PetscInt64)sizeof(double) + (a->rank ? 0 : ARCHIVE_DATASET_BYTES);
   else
-    PetscCall(RowsWriteReals(a->file, name, rows, width, items));
+    PetscCall(Hdf5TableWriteReals(a->file, name, rows, width, items));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -422,7 +422,7 @@ PetscErrorCode ArchiveBytes(Archive a, const char *name, PetscInt64 *n, char **b
   else {
     PetscCallMPI(MPI_Exscan(n, &first, 1, MPIU_INT64, MPI_SUM, a->comm));
     PetscCallMPI(MPI_Allreduce(n, &total, 1, MPIU_INT64, MPI_SUM, a->comm));
-    PetscCall(RowsWrite(a->file, name, (hsize_t)total, a->rank ? (hsize_t)first : 0, (hsize_t)*n, 1, H5T_NATIVE_CHAR, *bytes));
+    PetscCall(Hdf5TableWrite(a->file, name, (hsize_t)total, a->rank ? (hsize_t)first : 0, (hsize_t)*n, 1, H5T_NATIVE_CHAR, *bytes));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

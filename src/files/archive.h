@@ -28,7 +28,7 @@ PetscErrorCode ArchiveBoolean(Archive, const char *name, PetscBool *value);
 PetscErrorCode ArchiveIntegerList(Archive, const char *name, PetscInt *n, PetscInt **list);
 PetscErrorCode ArchiveText(Archive, const char *name, char **text);
 /* Items that ranks hold parts of, by the rows of a table. Collective. */
-PetscErrorCode ArchiveRows(Archive, const char *name, const Rows *, int width, PetscReal *items);
+PetscErrorCode ArchiveRows(Archive, const char *name, const Hdf5Table *, int width, PetscReal *items);
 /* Bytes, one rank's after the other's; loaded, they are shared out anew and the caller's. Collective. */
 PetscErrorCode ArchiveBytes(Archive, const char *name, PetscInt64 *n, char **bytes);
 /* All of these bytes to a stream on rank 0, loading only. Collective. */

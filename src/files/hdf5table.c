@@ -1,9 +1,9 @@
 #include "files/hdf5table.h"
 
-/* RowsCreate - the rows of one table.
+/* Hdf5TableCreate - the rows of one table.
 
-   Collective. total: of the table; row[n]: that of each of this rank's items; of items that share a row any one is written. Free with RowsDestroy(). */
-PetscErrorCode RowsCreate(MPI_Comm comm, PetscInt total, PetscInt n, const PetscInt *row, Rows *rows)
+   Collective. total: of the table; row[n]: that of each of this rank's items; of items that share a row any one is written. Free with Hdf5TableDestroy(). */
+PetscErrorCode Hdf5TableCreate(MPI_Comm comm, PetscInt total, PetscInt n, const PetscInt *row, Hdf5Table *rows)
 {
   PetscLayout layout;
 
@@ -21,10 +21,10 @@ PetscErrorCode RowsCreate(MPI_Comm comm, PetscInt total, PetscInt n, const Petsc
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* RowsCreateByKey - a table with one row for each key, in ascending order.
+/* Hdf5TableCreateByKey - a table with one row for each key, in ascending order.
 
    Collective. key[n]: of this rank's items, each key on one rank once. Every rank sees all keys. */
-PetscErrorCode RowsCreateByKey(MPI_Comm comm, PetscInt n, const PetscInt *key, Rows *rows)
+PetscErrorCode Hdf5TableCreateByKey(MPI_Comm comm, PetscInt n, const PetscInt *key, Hdf5Table *rows)
 {
   PetscMPIInt size, mine, total = 0, *counts, *starts;
   PetscInt   *all, *row;
@@ -42,24 +42,24 @@ PetscErrorCode RowsCreateByKey(MPI_Comm comm, PetscInt n, const PetscInt *key, R
   PetscCallMPI(MPI_Allgatherv(key, mine, MPIU_INT, all, counts, starts, MPIU_INT, comm));
   PetscCall(PetscSortInt(total, all));
   for (PetscInt k = 0; k < n; k++) PetscCall(PetscFindInt(key[k], total, all, &row[k]));
-  PetscCall(RowsCreate(comm, total, n, row, rows));
+  PetscCall(Hdf5TableCreate(comm, total, n, row, rows));
   PetscCall(PetscFree(all));
   PetscCall(PetscFree3(row, counts, starts));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* RowsDestroy - Collective. */
-PetscErrorCode RowsDestroy(Rows *rows)
+/* Hdf5TableDestroy - Collective. */
+PetscErrorCode Hdf5TableDestroy(Hdf5Table *rows)
 {
   PetscFunctionBeginUser;
   PetscCall(PetscSFDestroy(&rows->sf));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* RowsCollect - brings items to the ranks that write their rows.
+/* Hdf5TableCollect - brings items to the ranks that write their rows.
 
    Collective. items[rows->items * width], values[rows->n * width]: of one MPI type. */
-PetscErrorCode RowsCollect(const Rows *rows, int width, MPI_Datatype type, const void *items, void *values)
+PetscErrorCode Hdf5TableCollect(const Hdf5Table *rows, int width, MPI_Datatype type, const void *items, void *values)
 {
   MPI_Datatype unit;
 
@@ -72,8 +72,8 @@ PetscErrorCode RowsCollect(const Rows *rows, int width, MPI_Datatype type, const
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* RowsSpread - the way back from RowsCollect(). Collective. */
-PetscErrorCode RowsSpread(const Rows *rows, int width, MPI_Datatype type, const void *values, void *items)
+/* Hdf5TableSpread - the way back from Hdf5TableCollect(). Collective. */
+PetscErrorCode Hdf5TableSpread(const Hdf5Table *rows, int width, MPI_Datatype type, const void *values, void *items)
 {
   MPI_Datatype unit;
 
@@ -86,10 +86,10 @@ PetscErrorCode RowsSpread(const Rows *rows, int width, MPI_Datatype type, const 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* RowsWrite - a new dataset, with the groups above it.
+/* Hdf5TableWrite - a new dataset, with the groups above it.
 
    Collective. total: rows of all ranks; values[n * width]: rows first to first + n - 1; type: HDF5's native type of them. */
-PetscErrorCode RowsWrite(hid_t file, const char *path, hsize_t total, hsize_t first, hsize_t n, int width, hid_t type, const void *values)
+PetscErrorCode Hdf5TableWrite(hid_t file, const char *path, hsize_t total, hsize_t first, hsize_t n, int width, hid_t type, const void *values)
 {
   const hsize_t size[2] = {total, (hsize_t)width}, start[2] = {first, 0}, count[2] = {n, (hsize_t)width};
   const int     rank = width > 1 ? 2 : 1;
@@ -118,28 +118,28 @@ PetscErrorCode RowsWrite(hid_t file, const char *path, hsize_t total, hsize_t fi
 }
 
 /* Items of a type as a dataset, `size` bytes a value. */
-static PetscErrorCode WriteItems(hid_t file, const char *path, const Rows *rows, int width, MPI_Datatype unit, hid_t type, size_t size, const void *items)
+static PetscErrorCode WriteItems(hid_t file, const char *path, const Hdf5Table *rows, int width, MPI_Datatype unit, hid_t type, size_t size, const void *items)
 {
   char *values;
 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1((size_t)rows->n * width * size, &values));
-  PetscCall(RowsCollect(rows, width, unit, items, values));
-  PetscCall(RowsWrite(file, path, (hsize_t)rows->total, (hsize_t)rows->first, (hsize_t)rows->n, width, type, values));
+  PetscCall(Hdf5TableCollect(rows, width, unit, items, values));
+  PetscCall(Hdf5TableWrite(file, path, (hsize_t)rows->total, (hsize_t)rows->first, (hsize_t)rows->n, width, type, values));
   PetscCall(PetscFree(values));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* RowsWriteReals - items[rows->items * width] as a dataset of doubles. Collective. */
-PetscErrorCode RowsWriteReals(hid_t file, const char *path, const Rows *rows, int width, const PetscReal *items)
+/* Hdf5TableWriteReals - items[rows->items * width] as a dataset of doubles. Collective. */
+PetscErrorCode Hdf5TableWriteReals(hid_t file, const char *path, const Hdf5Table *rows, int width, const PetscReal *items)
 {
   PetscFunctionBeginUser;
   PetscCall(WriteItems(file, path, rows, width, MPIU_REAL, H5T_NATIVE_DOUBLE, sizeof(PetscReal), items));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* RowsWriteIntegers - items[rows->items * width] as a dataset of 64-bit integers. Collective. */
-PetscErrorCode RowsWriteIntegers(hid_t file, const char *path, const Rows *rows, int width, const int64_t *items)
+/* Hdf5TableWriteIntegers - items[rows->items * width] as a dataset of 64-bit integers. Collective. */
+PetscErrorCode Hdf5TableWriteIntegers(hid_t file, const char *path, const Hdf5Table *rows, int width, const int64_t *items)
 {
   PetscFunctionBeginUser;
   PetscCall(WriteItems(file, path, rows, width, MPI_INT64_T, H5T_NATIVE_INT64, sizeof(int64_t), items));
@@ -154,8 +154,8 @@ static PetscErrorCode FileAccess(MPI_Comm comm, hid_t *access)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* RowsCreateFile - a new HDF5 file in the place of any old one, open on all ranks. Collective. Errors: PETSC_ERR_FILE_OPEN. */
-PetscErrorCode RowsCreateFile(MPI_Comm comm, const char *name, hid_t *file)
+/* Hdf5TableCreateFile - a new HDF5 file in the place of any old one, open on all ranks. Collective. Errors: PETSC_ERR_FILE_OPEN. */
+PetscErrorCode Hdf5TableCreateFile(MPI_Comm comm, const char *name, hid_t *file)
 {
   hid_t access;
 
@@ -167,8 +167,8 @@ PetscErrorCode RowsCreateFile(MPI_Comm comm, const char *name, hid_t *file)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* RowsOpenFile - an HDF5 file on all ranks; mode: H5F_ACC_RDWR or H5F_ACC_RDONLY. Collective. Errors: PETSC_ERR_FILE_OPEN. */
-PetscErrorCode RowsOpenFile(MPI_Comm comm, const char *name, unsigned mode, hid_t *file)
+/* Hdf5TableOpenFile - an HDF5 file on all ranks; mode: H5F_ACC_RDWR or H5F_ACC_RDONLY. Collective. Errors: PETSC_ERR_FILE_OPEN. */
+PetscErrorCode Hdf5TableOpenFile(MPI_Comm comm, const char *name, unsigned mode, hid_t *file)
 {
   hid_t access;
 

@@ -14,20 +14,20 @@ _Static_assert(sizeof(PetscReal) == sizeof(double), "files hold doubles");
 typedef struct {
   PetscSF  sf; /* leaves: items; roots: rows */
   PetscInt total, first, n, items;
-} Rows;
+} Hdf5Table;
 
 /* Item i stands in row[i] of `total` rows; items that share a row must be equal. Collective. */
-PetscErrorCode RowsCreate(MPI_Comm, PetscInt total, PetscInt n, const PetscInt *row, Rows *);
+PetscErrorCode Hdf5TableCreate(MPI_Comm, PetscInt total, PetscInt n, const PetscInt *row, Hdf5Table *);
 /* One row for each key of all ranks, ascending; every rank sees all keys: for what is small beside the mesh. Collective. */
-PetscErrorCode RowsCreateByKey(MPI_Comm, PetscInt n, const PetscInt *key, Rows *);
-PetscErrorCode RowsDestroy(Rows *);
+PetscErrorCode Hdf5TableCreateByKey(MPI_Comm, PetscInt n, const PetscInt *key, Hdf5Table *);
+PetscErrorCode Hdf5TableDestroy(Hdf5Table *);
 /* Items (width values of a type each) to the ranks that hold their rows, and back. Collective. */
-PetscErrorCode RowsCollect(const Rows *, int width, MPI_Datatype, const void *items, void *values);
-PetscErrorCode RowsSpread(const Rows *, int width, MPI_Datatype, const void *values, void *items);
+PetscErrorCode Hdf5TableCollect(const Hdf5Table *, int width, MPI_Datatype, const void *items, void *values);
+PetscErrorCode Hdf5TableSpread(const Hdf5Table *, int width, MPI_Datatype, const void *values, void *items);
 /* Makes the dataset `path` with the groups above it; every rank writes its part, n rows from row `first` on. Collective. */
-PetscErrorCode RowsWrite(hid_t file, const char *path, hsize_t total, hsize_t first, hsize_t n, int width, hid_t type, const void *values);
-PetscErrorCode RowsWriteReals(hid_t file, const char *path, const Rows *, int width, const PetscReal *items);
-PetscErrorCode RowsWriteIntegers(hid_t file, const char *path, const Rows *, int width, const int64_t *items);
+PetscErrorCode Hdf5TableWrite(hid_t file, const char *path, hsize_t total, hsize_t first, hsize_t n, int width, hid_t type, const void *values);
+PetscErrorCode Hdf5TableWriteReals(hid_t file, const char *path, const Hdf5Table *, int width, const PetscReal *items);
+PetscErrorCode Hdf5TableWriteIntegers(hid_t file, const char *path, const Hdf5Table *, int width, const int64_t *items);
 /* A file on all ranks: made anew, or opened with access H5F_ACC_RDWR or H5F_ACC_RDONLY. Collective. */
-PetscErrorCode RowsCreateFile(MPI_Comm, const char *name, hid_t *file);
-PetscErrorCode RowsOpenFile(MPI_Comm, const char *name, unsigned access, hid_t *file);
+PetscErrorCode Hdf5TableCreateFile(MPI_Comm, const char *name, hid_t *file);
+PetscErrorCode Hdf5TableOpenFile(MPI_Comm, const char *name, unsigned access, hid_t *file);

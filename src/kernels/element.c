@@ -124,7 +124,7 @@ static void ShapeSimplex(const Element *e, const double *xi, double *N, double *
   }
 }
 
-static void Shape(const Element *e, const double *xi, double *N, double *dN, double *d2N)
+static void ElementShapeOf(const Element *e, const double *xi, double *N, double *dN, double *d2N)
 {
   if (IsTensor(e))
     ShapeTensor(e, xi, N, dN, d2N);
@@ -231,7 +231,7 @@ static void Fit(Element *e)
   }
   linear.order = 1;
   linear.nodes = e->corners;
-  for (int p = 0; p < e->points; p++) Shape(&linear, e->point[p], C[p], NULL, NULL);
+  for (int p = 0; p < e->points; p++) ElementShapeOf(&linear, e->point[p], C[p], NULL, NULL);
   for (int i = 0; i < e->corners; i++) {
     for (int p = 0; p < e->points; p++) B[i][p] = C[p][i];
     for (int j = 0; j < e->corners; j++) {
@@ -243,7 +243,7 @@ static void Fit(Element *e)
   for (int a = 0; a < e->nodes; a++) {
     double N[MAX_CORNERS];
 
-    Shape(&linear, e->node[a], N, NULL, NULL);
+    ElementShapeOf(&linear, e->node[a], N, NULL, NULL);
     for (int p = 0; p < e->points; p++) {
       for (int i = 0; i < e->corners; i++) e->fit[a][p] += N[i] * B[i][p];
     }
@@ -255,7 +255,7 @@ static void Tabulate(Element *e)
   for (int p = 0; p < e->points; p++) {
     double dN[ELEMENT_MAX_NODES * 3];
 
-    Shape(e, e->point[p], e->N[p], dN, NULL);
+    ElementShapeOf(e, e->point[p], e->N[p], dN, NULL);
     for (int a = 0; a < e->nodes; a++) {
       for (int k = 0; k < e->dim; k++) e->dN[p][a][k] = dN[a * e->dim + k];
     }
@@ -358,5 +358,5 @@ const Element *ElementFromGmsh(int gmsh_type)
 */
 void ElementShape(ElementType type, const double *xi, double *N, double *dN, double *d2N)
 {
-  Shape(ElementGet(type), xi, N, dN, d2N);
+  ElementShapeOf(ElementGet(type), xi, N, dN, d2N);
 }

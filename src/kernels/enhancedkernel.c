@@ -21,11 +21,11 @@ enum { MAX_ITERATIONS = 40 };
    so that no element sees the others of its batch */
 enum { RENEWED_FIRST = 2, RENEWED_AGAIN = 5 };
 /* What follows a correction whose energy is this part of the element's is a small part of it: too small to matter */
-static const double settled_energy = 1e-16;
+static const double converged_energy = 1e-16;
 /* Relative error of an energy that is a sum over the points: a lower one is not told from a higher one below it */
 static const double energy_round_off = 1e-13;
 /* The same for elements that have no energy: square of a strain, far above rounding of displacements and far below what its square could spoil */
-static const double settled_strain2 = 1e-20;
+static const double converged_strain2 = 1e-20;
 
 /* Mode k is component J of vector I; the hoop mode stands alone in the third direction. It acts on the space components from FIRST to END. */
 #define MODE_IS_HOOP(dim, k)   ((dim) == 2 && (k) == 4)
@@ -169,7 +169,7 @@ LANES_INLINE void SolveLower(const int modes, Lanes K[MAX_MODES][MAX_MODES], Lan
 }
 
 /* y = K^-1 y */
-LANES_INLINE void Solve(const int modes, Lanes K[MAX_MODES][MAX_MODES], Lanes y[MAX_MODES])
+LANES_INLINE void SolveModesSystem(const int modes, Lanes K[MAX_MODES][MAX_MODES], Lanes y[MAX_MODES])
 {
   SolveLower(modes, K, y);
   for (int k = modes - 1; k >= 0; k--) {
@@ -211,58 +211,58 @@ typedef struct {
   Lanes gone[MAX_MODES]; /* from there to b */
   Lanes active;          /* 1: not at rest yet, else 0 */
   Lanes scale;           /* energy of a strain too small to matter */
-} Rest;
+} ModesState;
 
 /* The correction d, from the force f, that lanes at a lower energy than before make; the others go half of their way back. A lane at rest stays as it is,
    whatever the others do. Returns how many are not at rest. */
-LANES_INLINE int Advance(const int modes, const Lanes *W, const Lanes *f, const Lanes *d, Rest *rest, Enhanced *x)
+LANES_INLINE int Advance(const int modes, const Lanes *W, const Lanes *f, const Lanes *d, ModesState *modes_state, Enhanced *x)
 {
   int left = 0;
 
   for (int lane = 0; lane < LANES; lane++) {
     double work = 0; /* twice the energy that the correction sets free */
 
-    if (rest->active[lane] == 0) continue;
-    if ((*W)[lane] > rest->W[lane] * (1 + energy_round_off) + rest->scale[lane]) {
+    if (modes_state->active[lane] == 0) continue;
+    if ((*W)[lane] > modes_state->W[lane] * (1 + energy_round_off) + modes_state->scale[lane]) {
       for (int k = 0; k < modes; k++) {
-        rest->gone[k][lane] /= 2;
-        x->b[k][lane] -= rest->gone[k][lane];
+        modes_state->gone[k][lane] /= 2;
+        x->b[k][lane] -= modes_state->gone[k][lane];
       }
       left++;
       continue;
     }
-    rest->W[lane] = (*W)[lane];
+    modes_state->W[lane] = (*W)[lane];
     for (int k = 0; k < modes; k++) {
-      rest->gone[k][lane] = -d[k][lane];
+      modes_state->gone[k][lane] = -d[k][lane];
       x->b[k][lane] -= d[k][lane];
       work += fabs(f[k][lane] * d[k][lane]);
     }
-    rest->active[lane] = !(work <= settled_energy * (*W)[lane] + rest->scale[lane]);
-    left += rest->active[lane] != 0;
+    modes_state->active[lane] = !(work <= converged_energy * (*W)[lane] + modes_state->scale[lane]);
+    left += modes_state->active[lane] != 0;
   }
   return left;
 }
 
 /* The modes of each lane at rest. A lane that does not get there is given J = NaN, and no modes; small strains are there after one step. */
-LANES_INLINE void Settle(const BatchCall *call, const int points, const int dim, const int hoop, Enhanced *x)
+LANES_INLINE void SolveModes(const BatchCall *call, const int points, const int dim, const int hoop, Enhanced *x)
 {
   const int modes = dim * dim + hoop;
-  Rest      rest  = {.W = (Lanes){0} + __DBL_MAX__, .active = (Lanes){0} + 1};
+  ModesState      modes_state  = {.W = (Lanes){0} + __DBL_MAX__, .active = (Lanes){0} + 1};
   int       left  = LANES;
   Lanes     K[MAX_MODES][MAX_MODES];
 
-  for (int q = 0; q < points; q++) rest.scale += settled_strain2 * call->mu * x->volume[q];
+  for (int q = 0; q < points; q++) modes_state.scale += converged_strain2 * call->mu * x->volume[q];
   for (int iteration = 0; left && iteration < (call->finite ? MAX_ITERATIONS : 1); iteration++) {
     Lanes W, f[MAX_MODES], d[MAX_MODES];
 
     ModeSystem(call, points, dim, hoop, iteration < RENEWED_FIRST || iteration >= RENEWED_AGAIN, x, &W, f, K);
     for (int k = 0; k < modes; k++) d[k] = f[k];
-    Solve(modes, K, d);
-    left = Advance(modes, &W, f, d, &rest, x);
+    SolveModesSystem(modes, K, d);
+    left = Advance(modes, &W, f, d, &modes_state, x);
   }
   for (int lane = 0; lane < LANES && call->finite; lane++) {
-    for (int k = 0; k < modes && rest.active[lane] != 0; k++) x->b[k][lane] = 0;
-    if (rest.active[lane] != 0) call->J[lane] = NAN;
+    for (int k = 0; k < modes && modes_state.active[lane] != 0; k++) x->b[k][lane] = 0;
+    if (modes_state.active[lane] != 0) call->J[lane] = NAN;
   }
 }
 
@@ -278,7 +278,7 @@ LANES_INLINE void CarryModes(const int n, const int dim, const int hoop, int q, 
 }
 
 /* Adds a point to the tangent between displacements and modes, K[n*dim][modes]; P times volume */
-LANES_INLINE void AddCoupling(const int n, const int dim, const int hoop, int finite, int q, const Enhanced *x, const Lanes P[9], Lanes T[MAX_ROWS][MAX_MODES],
+LANES_INLINE void AddModeCoupling(const int n, const int dim, const int hoop, int finite, int q, const Enhanced *x, const Lanes P[9], Lanes T[MAX_ROWS][MAX_MODES],
                               Lanes K[MAX_NODES * 3][MAX_MODES])
 {
   for (int a = 0; a < n; a++) {
@@ -331,7 +331,7 @@ LANES_INLINE void Batch(const BatchCall *call, const int n, const int points, co
   for (int i = 0; i < n * dim && f; i++) LANE(f, i) = zero;
   StartLeastJ(call);
   Prepare(call, n, points, dim, hoop, &x);
-  Settle(call, points, dim, hoop, &x);
+  SolveModes(call, points, dim, hoop, &x);
   for (int q = 0; q < points; q++) {
     Lanes H[9], P[9], T[MAX_ROWS][MAX_MODES], dilatation, energy;
 
@@ -347,7 +347,7 @@ LANES_INLINE void Batch(const BatchCall *call, const int n, const int points, co
     if (!K) continue;
     for (int k = 0; k < MATERIAL_TANGENT_SIZE; k++) x.c.A[q][k] *= x.volume[q];
     AddModeTangent(dim, hoop, &x, q, T, Kbb);
-    AddCoupling(n, dim, hoop, call->finite, q, &x, P, T, Kub);
+    AddModeCoupling(n, dim, hoop, call->finite, q, &x, P, T, Kub);
   }
   if (!K) return;
   AddTangent(n, dim, hoop, points, 1, 1, &x.c, K);

@@ -10,10 +10,10 @@ struct _n_Bordering {
   PetscInt    n_seen, *seen_ptr, *seen_row; /* the pattern of those that were ordered last */
 };
 
-/* BorderingCreate - Collective. */
-PetscErrorCode BorderingCreate(MPI_Comm comm, PetscInt n, const PetscInt *position, Bordering *out)
+/* BorderedFactorCreate - Collective. */
+PetscErrorCode BorderedFactorCreate(MPI_Comm comm, PetscInt n, const PetscInt *position, BorderedFactor *out)
 {
-  Bordering b;
+  BorderedFactor b;
 
   PetscFunctionBeginUser;
   PetscCall(PetscNew(&b));
@@ -27,10 +27,10 @@ PetscErrorCode BorderingCreate(MPI_Comm comm, PetscInt n, const PetscInt *positi
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* BorderingDestroy - Not collective. */
-PetscErrorCode BorderingDestroy(Bordering *bordering)
+/* BorderedFactorDestroy - Not collective. */
+PetscErrorCode BorderedFactorDestroy(BorderedFactor *bordering)
 {
-  Bordering b = *bordering;
+  BorderedFactor b = *bordering;
 
   PetscFunctionBeginUser;
   if (!b) PetscFunctionReturn(PETSC_SUCCESS);
@@ -42,7 +42,7 @@ PetscErrorCode BorderingDestroy(Bordering *bordering)
 }
 
 /* Have the vectors of this rank the pattern that was noted? */
-static PetscErrorCode HavePattern(Bordering b, PetscBool *same)
+static PetscErrorCode HavePattern(BorderedFactor b, PetscBool *same)
 {
   const Border *border = &b->border;
 
@@ -53,7 +53,7 @@ static PetscErrorCode HavePattern(Bordering b, PetscBool *same)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode NotePattern(Bordering b)
+static PetscErrorCode NotePattern(BorderedFactor b)
 {
   const Border  *border  = &b->border;
   const PetscInt entries = border->n ? border->ptr[border->n] : 0;
@@ -67,8 +67,8 @@ static PetscErrorCode NotePattern(Bordering b)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* BorderingSet - Collective. The arrays stay the caller's until the next call. */
-PetscErrorCode BorderingSet(Bordering b, const Border *border, PetscBool *changed)
+/* BorderedFactorSet - Collective. The arrays stay the caller's until the next call. */
+PetscErrorCode BorderedFactorSet(BorderedFactor b, const Border *border, PetscBool *changed)
 {
   PetscBool same;
   int       differs;
@@ -85,22 +85,22 @@ PetscErrorCode BorderingSet(Bordering b, const Border *border, PetscBool *change
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* BorderingCount - Not collective. */
-PetscInt BorderingCount(Bordering b)
+/* BorderedFactorCount - Not collective. */
+PetscInt BorderedFactorCount(BorderedFactor b)
 {
   return b->count;
 }
 
 /* ---------- entries ---------- */
 
-/* BorderingCountEntries - Not collective. */
-PetscInt BorderingCountEntries(Bordering b)
+/* BorderedFactorCountEntries - Not collective. */
+PetscInt BorderedFactorCountEntries(BorderedFactor b)
 {
   return b->border.n ? b->border.ptr[b->border.n] + b->border.n : 0;
 }
 
-/* BorderingNumber - Not collective. row, column: as many as BorderingCountEntries() says. */
-void BorderingNumber(Bordering b, PetscInt *row, PetscInt *column)
+/* BorderedFactorNumber - Not collective. row, column: as many as BorderedFactorCountEntries() says. */
+void BorderedFactorNumber(BorderedFactor b, PetscInt *row, PetscInt *column)
 {
   const Border *border = &b->border;
 
@@ -115,8 +115,8 @@ void BorderingNumber(Bordering b, PetscInt *row, PetscInt *column)
   }
 }
 
-/* BorderingTake - Not collective. value: as many as BorderingCountEntries() says. */
-void BorderingTake(Bordering b, PetscScalar *value)
+/* BorderedFactorTake - Not collective. value: as many as BorderedFactorCountEntries() says. */
+void BorderedFactorTake(BorderedFactor b, PetscScalar *value)
 {
   const Border *border = &b->border;
 
@@ -129,7 +129,7 @@ void BorderingTake(Bordering b, PetscScalar *value)
 /* ---------- order ---------- */
 
 /* The last row that each vector of all ranks has in the order of K, on the first rank */
-static PetscErrorCode FindLast(Bordering b, PetscInt *last)
+static PetscErrorCode FindLast(BorderedFactor b, PetscInt *last)
 {
   const Border *border = &b->border;
   PetscMPIInt   mine, *counts, *first;
@@ -154,9 +154,9 @@ static PetscErrorCode FindLast(Bordering b, PetscInt *last)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* BorderingOrder - Collective. A vector's unknown follows the last of its rows: from there on it is all that is left of them, and to eliminate it later would
+/* BorderedFactorOrder - Collective. A vector's unknown follows the last of its rows: from there on it is all that is left of them, and to eliminate it later would
    have it stand in every front up to there. */
-PetscErrorCode BorderingOrder(Bordering b, PetscInt **position)
+PetscErrorCode BorderedFactorOrder(BorderedFactor b, PetscInt **position)
 {
   PetscInt *last, *follow;
 

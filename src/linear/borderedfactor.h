@@ -11,20 +11,20 @@ typedef struct {
   const PetscScalar *value;
 } Border;
 
-typedef struct _n_Bordering *Bordering;
+typedef struct _n_Bordering *BorderedFactor;
 
 /* n: rows of K on all ranks; position: in which order to eliminate them, from 0, on the first rank (elsewhere NULL); copied. Collective. */
-PetscErrorCode BorderingCreate(MPI_Comm, PetscInt n, const PetscInt *position, Bordering *);
-PetscErrorCode BorderingDestroy(Bordering *);
-/* The vectors from now on; *changed: they have other rows than those that BorderingOrder() was asked about last. Collective. */
-PetscErrorCode BorderingSet(Bordering, const Border *, PetscBool *changed);
+PetscErrorCode BorderedFactorCreate(MPI_Comm, PetscInt n, const PetscInt *position, BorderedFactor *);
+PetscErrorCode BorderedFactorDestroy(BorderedFactor *);
+/* The vectors from now on; *changed: they have other rows than those that BorderedFactorOrder() was asked about last. Collective. */
+PetscErrorCode BorderedFactorSet(BorderedFactor, const Border *, PetscBool *changed);
 /* Vectors of all ranks. Not collective. */
-PetscInt BorderingCount(Bordering);
+PetscInt BorderedFactorCount(BorderedFactor);
 /* Entries of this rank's vectors above the diagonal, each with a -1 behind it. Not collective. */
-PetscInt BorderingCountEntries(Bordering);
+PetscInt BorderedFactorCountEntries(BorderedFactor);
 /* Their rows and columns, from 0, where the vectors' unknowns follow K's. Not collective. */
-void BorderingNumber(Bordering, PetscInt *row, PetscInt *column);
+void BorderedFactorNumber(BorderedFactor, PetscInt *row, PetscInt *column);
 /* Their values. Not collective. */
-void BorderingTake(Bordering, PetscScalar *value);
+void BorderedFactorTake(BorderedFactor, PetscScalar *value);
 /* Where to eliminate each row, from 0, on the first rank; NULL on the others. The caller frees it. Collective. */
-PetscErrorCode BorderingOrder(Bordering, PetscInt **position);
+PetscErrorCode BorderedFactorOrder(BorderedFactor, PetscInt **position);

@@ -14,8 +14,8 @@ struct _n_NodeTurn {
   PetscBool  turned;    /* some turn is not the identity */
 };
 
-/* NodeTurnCreate - Collective. */
-PetscErrorCode NodeTurnCreate(Mesh mesh, NodeTurn *turn)
+/* CorotationCreate - Collective. */
+PetscErrorCode CorotationCreate(Mesh mesh, Corotation *turn)
 {
   PetscFunctionBeginUser;
   PetscCall(PetscNew(turn));
@@ -24,8 +24,8 @@ PetscErrorCode NodeTurnCreate(Mesh mesh, NodeTurn *turn)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* NodeTurnDestroy - Collective. */
-PetscErrorCode NodeTurnDestroy(NodeTurn *turn)
+/* CorotationDestroy - Collective. */
+PetscErrorCode CorotationDestroy(Corotation *turn)
 {
   PetscFunctionBeginUser;
   if (!*turn) PetscFunctionReturn(PETSC_SUCCESS);
@@ -34,16 +34,16 @@ PetscErrorCode NodeTurnDestroy(NodeTurn *turn)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* NodeTurnMove - u[n_nodes*dim]: local displacements (length), ghosts included. Not collective. */
-PetscErrorCode NodeTurnMove(NodeTurn turn, const PetscReal *u)
+/* CorotationMove - u[n_nodes*dim]: local displacements (length), ghosts included. Not collective. */
+PetscErrorCode CorotationMove(Corotation turn, const PetscReal *u)
 {
   PetscFunctionBeginUser;
   PetscCall(PetscArraycpy(turn->to, u, turn->mesh->n_nodes * turn->mesh->dim));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* NodeTurnBegin - Not collective. */
-PetscErrorCode NodeTurnBegin(NodeTurn turn)
+/* CorotationBegin - Not collective. */
+PetscErrorCode CorotationBegin(Corotation turn)
 {
   PetscFunctionBeginUser;
   PetscCall(PetscArraycpy(turn->from, turn->to, turn->mesh->n_nodes * turn->mesh->dim));
@@ -52,7 +52,7 @@ PetscErrorCode NodeTurnBegin(NodeTurn turn)
 }
 
 /* A cell's nodes about their centre in the two states: sum of their products, of unit size, so that cells of all sizes count alike. */
-static void CellProduct(NodeTurn turn, PetscInt cell, PetscReal product[ENTRIES])
+static void CellProduct(Corotation turn, PetscInt cell, PetscReal product[ENTRIES])
 {
   const Mesh      mesh = turn->mesh;
   const int       dim  = mesh->dim;
@@ -150,7 +150,7 @@ static void TurnInPlane(int p, int q, PetscReal a[ENTRIES])
 }
 
 /* A node's sum of its cells' products becomes its turn; what is held does not turn. */
-static void NodeTurns(int dim, const PetscInt dof[], PetscReal a[ENTRIES])
+static void Corotations(int dim, const PetscInt dof[], PetscReal a[ENTRIES])
 {
   int free[3], n = 0;
 
@@ -164,8 +164,8 @@ static void NodeTurns(int dim, const PetscInt dof[], PetscReal a[ENTRIES])
     Identity(a);
 }
 
-/* NodeTurnFind - Collective. The turn of a node is that of the cells around it, on all ranks. */
-PetscErrorCode NodeTurnFind(NodeTurn turn)
+/* CorotationFind - Collective. The turn of a node is that of the cells around it, on all ranks. */
+PetscErrorCode CorotationFind(Corotation turn)
 {
   const Mesh      mesh = turn->mesh;
   const PetscInt *dof;
@@ -180,13 +180,13 @@ PetscErrorCode NodeTurnFind(NodeTurn turn)
       for (int e = 0; e < ENTRIES; e++) turn->turn[mesh->cell_nodes[k] * ENTRIES + e] += product[e];
   }
   PetscCall(MeshSumNodes(mesh, ENTRIES, turn->turn));
-  for (PetscInt n = 0; n < mesh->n_nodes; n++) NodeTurns(mesh->dim, &dof[n * mesh->dim], &turn->turn[n * ENTRIES]);
+  for (PetscInt n = 0; n < mesh->n_nodes; n++) Corotations(mesh->dim, &dof[n * mesh->dim], &turn->turn[n * ENTRIES]);
   turn->turned = PETSC_TRUE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* NodeTurnApply - Not collective. x: over the free dofs. */
-PetscErrorCode NodeTurnApply(NodeTurn turn, PetscBool back, Vec x)
+/* CorotationApply - Not collective. x: over the free dofs. */
+PetscErrorCode CorotationApply(Corotation turn, PetscBool back, Vec x)
 {
   const int       dim = turn->mesh->dim;
   const PetscInt *dof;

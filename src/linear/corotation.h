@@ -3,16 +3,16 @@
 #pragma once
 #include "mesh/mesh.h"
 
-typedef struct _n_NodeTurn *NodeTurn;
+typedef struct _n_NodeTurn *Corotation;
 
 /* Borrows the mesh, whose constraints need not be set yet. Collective. */
-PetscErrorCode NodeTurnCreate(Mesh, NodeTurn *);
-PetscErrorCode NodeTurnDestroy(NodeTurn *);
+PetscErrorCode CorotationCreate(Mesh, Corotation *);
+PetscErrorCode CorotationDestroy(Corotation *);
 /* The present state: local displacements u. Not collective. */
-PetscErrorCode NodeTurnMove(NodeTurn, const PetscReal *u);
+PetscErrorCode CorotationMove(Corotation, const PetscReal *u);
 /* Turns count from the present state on. Not collective. */
-PetscErrorCode NodeTurnBegin(NodeTurn);
+PetscErrorCode CorotationBegin(Corotation);
 /* Finds the turns from there to the present state. Collective. */
-PetscErrorCode NodeTurnFind(NodeTurn);
+PetscErrorCode CorotationFind(Corotation);
 /* Turns a vector over the free dofs along, or back. Not collective. */
-PetscErrorCode NodeTurnApply(NodeTurn, PetscBool back, Vec x);
+PetscErrorCode CorotationApply(Corotation, PetscBool back, Vec x);

@@ -32,7 +32,7 @@ static PetscErrorCode MakeWhole(Factor factor, Mat A, Mat P, PCFailedReason *rea
 }
 
 /* Where a border makes up for what P lacks of A, and its factor fails, that of A is made. */
-static PetscErrorCode SetUp(PC pc)
+static PetscErrorCode DirectSolverSetUp(PC pc)
 {
   Factor         factor;
   Mat            A, P;
@@ -48,7 +48,7 @@ static PetscErrorCode SetUp(PC pc)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode Apply(PC pc, Vec b, Vec x)
+static PetscErrorCode DirectSolverApply(PC pc, Vec b, Vec x)
 {
   Factor factor;
 
@@ -58,7 +58,7 @@ static PetscErrorCode Apply(PC pc, Vec b, Vec x)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode Destroy(PC pc)
+static PetscErrorCode DirectSolverDestroy(PC pc)
 {
   Factor factor;
 
@@ -84,9 +84,9 @@ PetscErrorCode DirectSolverSet(KSP ksp, PetscBool symmetric)
   PetscCall(PCSetType(pc, PCSHELL));
   PetscCall(PCShellSetName(pc, DIRECT_NAME));
   PetscCall(PCShellSetContext(pc, factor));
-  PetscCall(PCShellSetSetUp(pc, SetUp));
-  PetscCall(PCShellSetApply(pc, Apply));
-  PetscCall(PCShellSetDestroy(pc, Destroy));
+  PetscCall(PCShellSetSetUp(pc, DirectSolverSetUp));
+  PetscCall(PCShellSetApply(pc, DirectSolverApply));
+  PetscCall(PCShellSetDestroy(pc, DirectSolverDestroy));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -44,7 +44,7 @@ struct _n_Factor {
   PetscInt         room;
   MUMPS_INT       *row, *column; /* entries of this rank, from 1, in memory for `room` */
   PetscScalar     *value;
-  Bordering        bordering; /* NULL: none was prepared */
+  BorderedFactor        bordering; /* NULL: none was prepared */
   PetscBool        bordered;  /* the next matrix is */
   PetscBool        changed;   /* by another border than the one that was analysed */
   MUMPS_INT        workspace; /* ICNTL(14) at first */
@@ -96,7 +96,7 @@ PetscErrorCode FactorCheckOptions(void)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode Begin(Factor f)
+static PetscErrorCode FactorBegin(Factor f)
 {
   DMUMPS_STRUC_C *mumps = &f->mumps;
 
@@ -128,7 +128,7 @@ PetscErrorCode FactorCreate(MPI_Comm comm, PetscBool symmetric, Factor *out)
   PetscCallMPI(MPI_Comm_size(f->comm, &f->size));
   PetscCall(PetscCalloc2(f->size, &f->count, f->size + 1, &f->first));
   f->symmetric = symmetric;
-  PetscCall(Begin(f));
+  PetscCall(FactorBegin(f));
   PetscCall(FactorSetOrdering(f, FACTOR_AUTOMATIC, NULL));
   *out = f;
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -147,7 +147,7 @@ PetscErrorCode FactorDestroy(Factor *factor)
   PetscCall(PetscFree(f->position));
   PetscCall(PetscFree(f->right));
   PetscCall(PetscFree2(f->count, f->first));
-  PetscCall(BorderingDestroy(&f->bordering));
+  PetscCall(BorderedFactorDestroy(&f->bordering));
   PetscCall(PetscCommDestroy(&f->comm));
   PetscCall(PetscFree(*factor));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -175,7 +175,7 @@ PetscErrorCode FactorSetBorder(Factor f, const Border *border)
 
   PetscFunctionBeginUser;
   PetscCheck(!border || f->bordering, f->comm, PETSC_ERR_ARG_WRONGSTATE, "borders have not been prepared for");
-  if (border) PetscCall(BorderingSet(f->bordering, border, &f->changed));
+  if (border) PetscCall(BorderedFactorSet(f->bordering, border, &f->changed));
   if (bordered != f->bordered) f->analysed = PETSC_FALSE;
   f->bordered = bordered;
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -265,12 +265,12 @@ static PetscErrorCode TakeValues(Factor f, Mat A)
     }
     PetscCall(MatrixRowsRestore(&rows));
   }
-  if (f->bordered) BorderingTake(f->bordering, value);
+  if (f->bordered) BorderedFactorTake(f->bordering, value);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* Memory for the entries; *kept: what stood there stands there still. */
-static PetscErrorCode Reserve(Factor f, PetscBool *kept)
+static PetscErrorCode FactorReserve(Factor f, PetscBool *kept)
 {
   PetscFunctionBeginUser;
   *kept = (PetscBool)(f->row && f->entries <= f->room);
@@ -289,7 +289,7 @@ static PetscErrorCode PlaceBorder(Factor f)
 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc2(n, &row, n, &column));
-  BorderingNumber(f->bordering, row, column);
+  BorderedFactorNumber(f->bordering, row, column);
   for (PetscInt k = 0; k < n; k++) f->row[from + k] = (MUMPS_INT)(row[k] + 1);
   for (PetscInt k = 0; k < n; k++) f->column[from + k] = (MUMPS_INT)(column[k] + 1);
   PetscCall(PetscFree2(row, column));
@@ -319,8 +319,8 @@ static PetscErrorCode PlaceEntries(Factor f, Mat A)
   PetscCall(MatGetOwnershipRange(A, &start, NULL));
   PetscCall(IsPlaced(f, A, &again));
   if (!again) PetscCall(FindEntries(f, A, start));
-  f->entries = f->own + (f->bordered ? BorderingCountEntries(f->bordering) : 0);
-  PetscCall(Reserve(f, &kept));
+  f->entries = f->own + (f->bordered ? BorderedFactorCountEntries(f->bordering) : 0);
+  PetscCall(FactorReserve(f, &kept));
   if (!again || !kept) PetscCall(TakePlaces(f, A, start));
   if (f->bordered) PetscCall(PlaceBorder(f));
   PetscCall(PetscObjectGetId((PetscObject)A, &f->matrix));
@@ -359,7 +359,7 @@ static PetscErrorCode ShowSize(Factor f, Mat A)
   PetscFunctionBeginUser;
   PetscCall(MatGetSize(A, &f->n, NULL));
   PetscCall(MatGetLocalSize(A, &f->rows, NULL));
-  all        = f->n + (f->bordered ? BorderingCount(f->bordering) : 0);
+  all        = f->n + (f->bordered ? BorderedFactorCount(f->bordering) : 0);
   f->mumps.n = (MUMPS_INT)all;
   PetscCheck(f->mumps.n == all, f->comm, PETSC_ERR_ARG_OUTOFRANGE, "%" PetscInt_FMT " unknowns are more than MUMPS can count", all);
   PetscCall(MatGetOwnershipRanges(A, &ranges));
@@ -380,7 +380,7 @@ static PetscErrorCode ShowOrdering(Factor f, Mat A)
   f->mumps.ICNTL(7) = (MUMPS_INT)(f->bordered || ordering == FACTOR_METIS ? MUMPS_GIVEN : ordering);
   if (f->mumps.ICNTL(7) != MUMPS_GIVEN) PetscFunctionReturn(PETSC_SUCCESS);
   if (f->bordered)
-    PetscCall(BorderingOrder(f->bordering, &position));
+    PetscCall(BorderedFactorOrder(f->bordering, &position));
   else
     PetscCall(OrderingFind(A, &position));
   PetscCall(PetscFree(f->position));
@@ -474,8 +474,8 @@ PetscErrorCode FactorPrepareBorder(Factor f, Mat K, PCFailedReason *reason)
   for (PetscInt i = 0; position && i < f->n; i++) position[i] = f->mumps.sym_perm[i] - 1;
   PetscCall(FactorSetOrdering(f, ordering, NULL));
   if (*reason || !f->n) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(BorderingDestroy(&f->bordering));
-  PetscCall(BorderingCreate(f->comm, f->n, position, &f->bordering));
+  PetscCall(BorderedFactorDestroy(&f->bordering));
+  PetscCall(BorderedFactorCreate(f->comm, f->n, position, &f->bordering));
   PetscCall(PetscFree(position));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -538,7 +538,7 @@ void FactorGetCost(Factor f, FactorCost *cost)
 /* ---------- solves ---------- */
 
 /* Solves for `columns` of them; the solutions stand in right. */
-static PetscErrorCode Solve(Factor f, PetscInt columns)
+static PetscErrorCode FactorSolveOnce(Factor f, PetscInt columns)
 {
   DMUMPS_STRUC_C *mumps = &f->mumps;
 
@@ -577,7 +577,7 @@ PetscErrorCode FactorSolve(Factor f, Vec b, Vec x)
   PetscCall(VecRestoreArrayRead(b, &from));
   for (MUMPS_INT i = (MUMPS_INT)f->n; i < f->mumps.n && !f->rank; i++) f->right[i] = 0; /* the border's */
   f->mumps.ICNTL(20) = 0;                                                               /* dense */
-  PetscCall(Solve(f, 1));
+  PetscCall(FactorSolveOnce(f, 1));
   PetscCall(VecGetArrayWrite(x, &to));
   PetscCallMPI(MPI_Scatterv(f->right, f->count, f->first, MPIU_SCALAR, to, f->count[f->rank], MPIU_SCALAR, 0, f->comm));
   PetscCall(VecRestoreArrayWrite(x, &to));
@@ -684,7 +684,7 @@ static PetscErrorCode SolveSparse(Factor f, PetscInt columns, const PetscScalar 
   if (entries) {
     PetscCall(MakeRoom(f, columns));
     ShowColumns(f, &all);
-    PetscCall(Solve(f, columns));
+    PetscCall(FactorSolveOnce(f, columns));
     for (PetscInt j = 0; j < columns; j++)
       PetscCallMPI(MPI_Scatterv(f->rank ? NULL : &f->right[(size_t)j * f->mumps.n], f->count, f->first, MPIU_SCALAR, &x[j * f->rows], f->count[f->rank],
                                 MPIU_SCALAR, 0, f->comm));

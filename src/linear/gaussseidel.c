@@ -9,7 +9,7 @@
 #define GAUSSSEIDEL_NAME "symmetric Gauss-Seidel sweep across all ranks"
 
 /* What must be done before the rest, right-hand side less A x, is known: nothing; A guess; A (a step) */
-typedef enum { REST_KNOWN, REST_GUESS, REST_STEP } Rest;
+typedef enum { RESIDUAL_KNOWN, RESIDUAL_GUESS, RESIDUAL_STEP } ResidualKind;
 
 typedef enum { FORWARD, BACKWARD, REST_ONLY } Way;
 
@@ -19,9 +19,9 @@ typedef struct _n_GaussSeidel {
   SweepOrder order;
   BlockRows  rows;
   PetscReal *inverse;            /* of the blocks on the diagonal, in the order of the sweep, column-major */
-  PetscReal *rest, *step, *fall; /* fall: A step */
+  PetscReal *residual, *step, *fall; /* fall: A step */
   PetscReal *x, *other;          /* with ghosts. x: y, then z; other: y - z, or a guess */
-  Rest       what;
+  ResidualKind       what;
   PetscReal  keep, add; /* step = keep (the last one) + add z */
 } * GaussSeidel;
 
@@ -64,23 +64,23 @@ static void InvertBlock(int n, const float *block, PetscReal *inverse)
 /* ---------- sweeps ---------- */
 
 /* The rest of a node: rest -= A (a guess), or A (a step) = keep A (the last one) + add A z */
-LANES_INLINE void FindRest(const int size, const Rest what, GaussSeidel g, PetscInt place)
+LANES_INLINE void GaussSeidelFindResidual(const int size, const ResidualKind what, GaussSeidel g, PetscInt place)
 {
   const BlockPart *before = &g->rows->part[BLOCKROWS_BEFORE], *after = &g->rows->part[BLOCKROWS_AFTER];
   const PetscInt   row = g->order->node[place] * size;
   BlockDoubles     sum;
 
-  if (what == REST_KNOWN) return;
+  if (what == RESIDUAL_KNOWN) return;
   sum = BlockRowsProduct(size, before, before->first[place], before->first[place + 1], 1, g->other);
-  if (what == REST_GUESS) sum += BlockRowsProduct(size, after, after->first[place], after->first[place + 1], 1, g->other);
+  if (what == RESIDUAL_GUESS) sum += BlockRowsProduct(size, after, after->first[place], after->first[place + 1], 1, g->other);
   for (int r = 0; r < size; r++) {
-    g->fall[row + r] = what == REST_GUESS ? 0 : g->keep * g->fall[row + r] + g->add * (g->rest[row + r] - sum[r]);
-    g->rest[row + r] -= what == REST_GUESS ? sum[r] : g->fall[row + r];
+    g->fall[row + r] = what == RESIDUAL_GUESS ? 0 : g->keep * g->fall[row + r] + g->add * (g->residual[row + r] - sum[r]);
+    g->residual[row + r] -= what == RESIDUAL_GUESS ? sum[r] : g->fall[row + r];
   }
 }
 
 /* Solves for a node with the block on the diagonal. */
-LANES_INLINE BlockDoubles Solve(const int size, GaussSeidel g, PetscInt place, BlockDoubles right)
+LANES_INLINE BlockDoubles GaussSeidelSolve(const int size, GaussSeidel g, PetscInt place, BlockDoubles right)
 {
   const PetscReal *inverse = &g->inverse[place * size * size];
   BlockDoubles     x       = {0};
@@ -95,8 +95,8 @@ LANES_INLINE void SweepForward(const int size, GaussSeidel g, PetscInt place)
   const PetscInt   row    = g->order->node[place] * size;
   BlockDoubles     x      = -BlockRowsProduct(size, before, before->first[place], before->first[place + 1], 1, g->x);
 
-  for (int r = 0; r < size; r++) x[r] += g->rest[row + r];
-  x = Solve(size, g, place, x);
+  for (int r = 0; r < size; r++) x[r] += g->residual[row + r];
+  x = GaussSeidelSolve(size, g, place, x);
   for (int r = 0; r < size; r++) g->x[row + r] = x[r];
 }
 
@@ -104,7 +104,7 @@ LANES_INLINE void SweepBackward(const int size, GaussSeidel g, PetscInt place)
 {
   const BlockPart   *after = &g->rows->part[BLOCKROWS_AFTER];
   const PetscInt     row   = g->order->node[place] * size;
-  const BlockDoubles other = Solve(size, g, place, BlockRowsProduct(size, after, after->first[place + 1] - 1, after->first[place], -1, g->x));
+  const BlockDoubles other = GaussSeidelSolve(size, g, place, BlockRowsProduct(size, after, after->first[place + 1] - 1, after->first[place], -1, g->x));
 
   for (int r = 0; r < size; r++) {
     g->other[row + r] = other[r];
@@ -113,22 +113,22 @@ LANES_INLINE void SweepBackward(const int size, GaussSeidel g, PetscInt place)
 }
 
 /* Places from..to-1, or from the last of them to the first. */
-LANES_INLINE void SweepPlaces(const int size, const Rest what, GaussSeidel g, PetscInt from, PetscInt to, Way way)
+LANES_INLINE void SweepPlaces(const int size, const ResidualKind what, GaussSeidel g, PetscInt from, PetscInt to, Way way)
 {
-  for (PetscInt place = from; place < to && way == REST_ONLY; place++) FindRest(size, what, g, place);
+  for (PetscInt place = from; place < to && way == REST_ONLY; place++) GaussSeidelFindResidual(size, what, g, place);
   for (PetscInt place = to; place-- > from && way == BACKWARD;) SweepBackward(size, g, place);
   for (PetscInt place = from; place < to && way == FORWARD; place++) {
-    FindRest(size, what, g, place);
+    GaussSeidelFindResidual(size, what, g, place);
     SweepForward(size, g, place);
   }
 }
 
 LANES_INLINE void SweepSize(const int size, GaussSeidel g, PetscInt from, PetscInt to, Way way)
 {
-  switch (way == BACKWARD ? REST_KNOWN : g->what) {
-  case REST_KNOWN: SweepPlaces(size, REST_KNOWN, g, from, to, way); break;
-  case REST_GUESS: SweepPlaces(size, REST_GUESS, g, from, to, way); break;
-  case REST_STEP: SweepPlaces(size, REST_STEP, g, from, to, way); break;
+  switch (way == BACKWARD ? RESIDUAL_KNOWN : g->what) {
+  case RESIDUAL_KNOWN: SweepPlaces(size, RESIDUAL_KNOWN, g, from, to, way); break;
+  case RESIDUAL_GUESS: SweepPlaces(size, RESIDUAL_GUESS, g, from, to, way); break;
+  case RESIDUAL_STEP: SweepPlaces(size, RESIDUAL_STEP, g, from, to, way); break;
   }
 }
 
@@ -145,14 +145,14 @@ static void Sweep(GaussSeidel g, PetscInt from, PetscInt n, Way way)
 static PetscErrorCode SweepAll(GaussSeidel g, Way way)
 {
   const SweepOrder o            = g->order;
-  const PetscBool  border_first = (PetscBool)((o->border < o->inner) == (way == FORWARD));
+  const PetscBool  border_first = (PetscBool)((o->interface < o->inner) == (way == FORWARD));
 
   PetscFunctionBeginUser;
   if (!border_first || !o->sf) Sweep(g, o->inner, o->n_inner, way);
   for (int turn = 0; o->sf && turn < o->colours; turn++) {
     const PetscBool mine = (PetscBool)(o->colour == (way == FORWARD ? turn : o->colours - 1 - turn)), last = (PetscBool)(turn == o->colours - 1);
 
-    if (mine) Sweep(g, o->border, o->n - o->n_inner, way);
+    if (mine) Sweep(g, o->interface, o->n - o->n_inner, way);
     if (!last) PetscCall(SweepOrderShareBegin(o, g->x));
     if (mine && border_first) Sweep(g, o->inner, o->n_inner, way);
     if (!last) PetscCall(SweepOrderShareEnd(o, g->x));
@@ -164,10 +164,10 @@ static PetscErrorCode SweepAll(GaussSeidel g, Way way)
 static PetscErrorCode SweepBothWays(GaussSeidel g)
 {
   PetscFunctionBeginUser;
-  if (g->what != REST_KNOWN) PetscCall(SweepOrderShareBegin(g->order, g->other));
-  if (g->what != REST_KNOWN) PetscCall(SweepOrderShareEnd(g->order, g->other));
+  if (g->what != RESIDUAL_KNOWN) PetscCall(SweepOrderShareBegin(g->order, g->other));
+  if (g->what != RESIDUAL_KNOWN) PetscCall(SweepOrderShareEnd(g->order, g->other));
   PetscCall(SweepAll(g, FORWARD));
-  g->what = REST_KNOWN;
+  g->what = RESIDUAL_KNOWN;
   PetscCall(SweepAll(g, BACKWARD));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -202,11 +202,11 @@ static PetscErrorCode Reset(GaussSeidel g)
   PetscCall(SweepOrderDestroy(&g->order));
   PetscCall(BlockRowsDestroy(&g->rows));
   PetscCall(PetscFree(g->inverse));
-  PetscCall(PetscFree5(g->rest, g->step, g->fall, g->x, g->other));
+  PetscCall(PetscFree5(g->residual, g->step, g->fall, g->x, g->other));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode SetUp(PC pc)
+static PetscErrorCode GaussSeidelSetUp(PC pc)
 {
   GaussSeidel      g;
   Mat              mat;
@@ -228,19 +228,19 @@ static PetscErrorCode SetUp(PC pc)
   PetscCall(PetscMalloc1(own * size + BLOCKROWS_LANES, &g->inverse));
   PetscCall(PetscArrayzero(&g->inverse[own * size], BLOCKROWS_LANES));
   for (PetscInt place = 0; place < n; place++) InvertBlock(size, &after->value[after->first[place] * size * size], &g->inverse[place * size * size]);
-  PetscCall(PetscMalloc5(own, &g->rest, own, &g->step, own, &g->fall, all, &g->x, all, &g->other));
+  PetscCall(PetscMalloc5(own, &g->residual, own, &g->step, own, &g->fall, all, &g->x, all, &g->other));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* One sweep forward and back again from 0 */
-static PetscErrorCode Apply(PC pc, Vec right, Vec left)
+static PetscErrorCode GaussSeidelApply(PC pc, Vec right, Vec left)
 {
   GaussSeidel g;
 
   PetscFunctionBeginUser;
   PetscCall(PCShellGetContext(pc, &g));
-  PetscCall(CopyFrom(g, right, g->rest));
-  g->what = REST_KNOWN;
+  PetscCall(CopyFrom(g, right, g->residual));
+  g->what = RESIDUAL_KNOWN;
   PetscCall(SweepBothWays(g));
   PetscCall(CopyTo(g, g->x, left));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -275,16 +275,16 @@ static PetscErrorCode Smooth(PC pc, Vec right, Vec left, Vec work, PetscReal rto
   (void)dtol;
   PetscCall(PCShellGetContext(pc, &g));
   spread = (g->largest - g->least) / (g->largest + g->least);
-  PetscCall(CopyFrom(g, right, g->rest));
+  PetscCall(CopyFrom(g, right, g->residual));
   if (!zero) PetscCall(CopyFrom(g, left, g->other));
   if (zero) PetscCall(PetscArrayzero(g->fall, g->order->n * g->order->size));
-  g->what = zero ? REST_KNOWN : REST_GUESS;
+  g->what = zero ? RESIDUAL_KNOWN : RESIDUAL_GUESS;
   for (PetscInt i = 0; i < iterations; i++) {
     PetscCall(SweepBothWays(g));
     if (i) omega = 1 / (1 - spread * spread * omega / 4);
     g->keep = i ? omega - 1 : 0;
     g->add  = (i ? omega : 1) * 2 / (g->largest + g->least);
-    g->what = REST_STEP;
+    g->what = RESIDUAL_STEP;
     PetscCall(AddStep(g, i == 0, (PetscBool)(zero && i == 0), left));
   }
   *done   = iterations;
@@ -292,7 +292,7 @@ static PetscErrorCode Smooth(PC pc, Vec right, Vec left, Vec work, PetscReal rto
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode Destroy(PC pc)
+static PetscErrorCode GaussSeidelDestroy(PC pc)
 {
   GaussSeidel g;
 
@@ -320,10 +320,10 @@ PetscErrorCode GaussSeidelSet(PC pc, PetscReal least, PetscReal largest)
   PetscCall(PCSetType(pc, PCSHELL));
   PetscCall(PCShellSetContext(pc, g));
   PetscCall(PCShellSetName(pc, GAUSSSEIDEL_NAME));
-  PetscCall(PCShellSetSetUp(pc, SetUp));
-  PetscCall(PCShellSetApply(pc, Apply));
+  PetscCall(PCShellSetSetUp(pc, GaussSeidelSetUp));
+  PetscCall(PCShellSetApply(pc, GaussSeidelApply));
   PetscCall(PCShellSetApplyRichardson(pc, Smooth));
-  PetscCall(PCShellSetDestroy(pc, Destroy));
+  PetscCall(PCShellSetDestroy(pc, GaussSeidelDestroy));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -346,18 +346,18 @@ PetscErrorCode GaussSeidelGetMat(PC pc, Mat *mat)
 }
 
 /* GaussSeidelResidual - rest = right - A x, with the copy of A. Collective. mat: of GaussSeidelGetMat(). */
-PetscErrorCode GaussSeidelResidual(Mat mat, Vec right, Vec x, Vec rest)
+PetscErrorCode GaussSeidelResidual(Mat mat, Vec right, Vec x, Vec residual)
 {
   GaussSeidel g;
 
   PetscFunctionBeginUser;
   PetscCall(MatShellGetContext(mat, &g));
-  PetscCall(CopyFrom(g, right, g->rest));
+  PetscCall(CopyFrom(g, right, g->residual));
   PetscCall(CopyFrom(g, x, g->other));
-  g->what = REST_GUESS;
+  g->what = RESIDUAL_GUESS;
   PetscCall(SweepOrderShareBegin(g->order, g->other));
   PetscCall(SweepOrderShareEnd(g->order, g->other));
   Sweep(g, 0, g->order->n, REST_ONLY);
-  PetscCall(CopyTo(g, g->rest, rest));
+  PetscCall(CopyTo(g, g->residual, residual));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

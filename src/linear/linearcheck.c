@@ -13,7 +13,7 @@
 
 struct _n_LinearCheck {
   PetscReal    tolerance;
-  KeptFactor   kept;
+  ReusedFactor   kept;
   PetscBool    lost;
   LinearCounts counts;
 };
@@ -91,7 +91,7 @@ static PetscErrorCode CheckSolution(LinearCheck check, KSP ksp, Vec b, Vec x)
   PetscCall(VecNorm(b, NORM_2, &right));
   PetscCall(AskedFor(check, ksp, right, &tolerance));
   own = tolerance;
-  if (check->kept) PetscCall(KeptFactorSolve(check->kept, A, b, x, &tolerance, &norm, &failed));
+  if (check->kept) PetscCall(ReusedFactorSolve(check->kept, A, b, x, &tolerance, &norm, &failed));
   if (failed) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(VecDuplicate(b, &r));
   if (norm < 0) PetscCall(TrueResidual(A, b, x, r, &norm));
@@ -126,7 +126,7 @@ static PetscErrorCode SolveEnds(KSP ksp, Vec b, Vec x, void *context)
    LINEAR_SLACK is refined. Destroy the check after the KSP.
 
    Source: Higham, Accuracy and Stability of Numerical Algorithms, chapter 12 (refinement in fixed precision). */
-PetscErrorCode LinearCheckCreate(KSP ksp, PetscReal tolerance, KeptFactor kept, LinearCheck *check)
+PetscErrorCode LinearCheckCreate(KSP ksp, PetscReal tolerance, ReusedFactor kept, LinearCheck *check)
 {
   PetscFunctionBeginUser;
   PetscCall(PetscNew(check));
@@ -155,5 +155,5 @@ PetscBool LinearCheckLost(LinearCheck check)
 void LinearCheckGetCounts(LinearCheck check, LinearCounts *counts)
 {
   *counts = check->counts;
-  if (check->kept) KeptFactorGetCounts(check->kept, &counts->kept);
+  if (check->kept) ReusedFactorGetCounts(check->kept, &counts->kept);
 }

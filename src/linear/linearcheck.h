@@ -16,7 +16,7 @@ typedef struct _n_LinearCheck *LinearCheck;
 
 /* Watches a KSP from now on. tolerance: the relative residual asked for where the solver has none of its own (direct); kept: what finishes its solves, NULL:
    nothing. Collective. */
-PetscErrorCode LinearCheckCreate(KSP, PetscReal tolerance, KeptFactor kept, LinearCheck *);
+PetscErrorCode LinearCheckCreate(KSP, PetscReal tolerance, ReusedFactor kept, LinearCheck *);
 PetscErrorCode LinearCheckDestroy(LinearCheck *);
 /* Has the last solve come to nothing: a failed factorisation, or a residual like that of a singular matrix? Not collective, the same on all ranks. */
 PetscBool LinearCheckLost(LinearCheck);

@@ -23,8 +23,8 @@
 struct _n_LinearSolver {
   KSP        ksp;
   Multigrid  multigrid; /* NULL: direct */
-  KeptFactor kept;      /* NULL: iterative, or each tangent is factored */
-  NodeTurn   turn;      /* of the bodies, for what is kept; NULL: they do not turn */
+  ReusedFactor kept;      /* NULL: iterative, or each tangent is factored */
+  Corotation   turn;      /* of the bodies, for what is kept; NULL: they do not turn */
   PetscBool  symmetric, borders;
   PetscReal  usual; /* tolerance, while a prediction is made */
 };
@@ -58,9 +58,9 @@ PetscErrorCode LinearSolverCreate(KSP ksp, Mesh mesh, Scene scene, PetscBool sym
   if (type == SOLVER_AUTO) type = mesh->dim == 3 && mesh->dim * mesh->n_global > LINEAR_DIRECT_DOFS ? SOLVER_ITERATIVE : SOLVER_DIRECT;
   if (type == SOLVER_DIRECT) {
     PetscCall(DirectSolverSet(ksp, symmetric));
-    if (mesh->dim * mesh->n_global >= LINEAR_KEPT_DOFS) PetscCall(KeptFactorCreate(ksp, &(*solver)->kept));
-    if ((*solver)->kept && scene->kinematics == KINEMATICS_FINITE) PetscCall(NodeTurnCreate(mesh, &(*solver)->turn));
-    if ((*solver)->turn) PetscCall(KeptFactorSetTurn((*solver)->kept, (*solver)->turn));
+    if (mesh->dim * mesh->n_global >= LINEAR_KEPT_DOFS) PetscCall(ReusedFactorCreate(ksp, &(*solver)->kept));
+    if ((*solver)->kept && scene->kinematics == KINEMATICS_FINITE) PetscCall(CorotationCreate(mesh, &(*solver)->turn));
+    if ((*solver)->turn) PetscCall(ReusedFactorSetCorotation((*solver)->kept, (*solver)->turn));
   } else
     PetscCall(SetIterative(*solver, mesh, axisymmetric, symmetric));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -72,8 +72,8 @@ PetscErrorCode LinearSolverDestroy(LinearSolver *solver)
   PetscFunctionBeginUser;
   if (!*solver) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(MultigridDestroy(&(*solver)->multigrid));
-  PetscCall(KeptFactorDestroy(&(*solver)->kept));
-  PetscCall(NodeTurnDestroy(&(*solver)->turn));
+  PetscCall(ReusedFactorDestroy(&(*solver)->kept));
+  PetscCall(CorotationDestroy(&(*solver)->turn));
   PetscCall(PetscFree(*solver));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -115,13 +115,13 @@ PetscErrorCode LinearSolverSetBorder(LinearSolver solver, const Border *border)
 /* LinearSolverNext - what is known of the next operator K + C before it is solved with.
 
    Collective. u[n_nodes*dim]: where it is the tangent (length); C: its contact part, NULL: none; pattern: what is factored has a new one; changes, *older: see
-   KeptFactorNext(). */
+   ReusedFactorNext(). */
 PetscErrorCode LinearSolverNext(LinearSolver solver, const PetscReal *u, Mat C, PetscBool pattern, PetscInt changes, PetscBool *older)
 {
   PetscFunctionBeginUser;
   *older = PETSC_FALSE;
-  if (solver->turn) PetscCall(NodeTurnMove(solver->turn, u));
-  if (solver->kept) PetscCall(KeptFactorNext(solver->kept, changes, pattern, older));
+  if (solver->turn) PetscCall(CorotationMove(solver->turn, u));
+  if (solver->kept) PetscCall(ReusedFactorNext(solver->kept, changes, pattern, older));
   if (!solver->kept && pattern) PetscCall(KSPReset(solver->ksp));
   if (solver->multigrid && C) PetscCall(MultigridSetContact(solver->multigrid, C, pattern));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -133,7 +133,7 @@ PetscErrorCode LinearSolverRenew(LinearSolver solver)
   PetscFunctionBeginUser;
   if (solver->multigrid) PetscCall(MultigridRenew(solver->multigrid));
   if (solver->multigrid) PetscCall(KSPSetTolerances(solver->ksp, PETSC_DEFAULT, 0, PETSC_DEFAULT, PETSC_DEFAULT)); /* what the last solve was content with */
-  if (solver->kept) PetscCall(KeptFactorRenew(solver->kept));
+  if (solver->kept) PetscCall(ReusedFactorRenew(solver->kept));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -142,7 +142,7 @@ PetscErrorCode LinearSolverSetEnough(LinearSolver solver, PetscReal residual)
 {
   PetscFunctionBeginUser;
   if (solver->multigrid) PetscCall(KSPSetTolerances(solver->ksp, PETSC_DEFAULT, LINEAR_SHARE * residual, PETSC_DEFAULT, PETSC_DEFAULT));
-  if (solver->kept) PetscCall(KeptFactorSetEnough(solver->kept, residual));
+  if (solver->kept) PetscCall(ReusedFactorSetEnough(solver->kept, residual));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -153,7 +153,7 @@ PetscErrorCode LinearSolverSetEnough(LinearSolver solver, PetscReal residual)
 PetscErrorCode LinearSolverSetStart(LinearSolver solver, PetscReal residual)
 {
   PetscFunctionBeginUser;
-  if (solver->kept) PetscCall(KeptFactorSetEnough(solver->kept, residual));
+  if (solver->kept) PetscCall(ReusedFactorSetEnough(solver->kept, residual));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -176,7 +176,7 @@ PetscErrorCode LinearSolverColumns(LinearSolver solver, Mat B, Mat X, PetscBool 
 
   PetscFunctionBeginUser;
   PetscCall(LinearSolverDirect(solver, able));
-  if (*able && solver->kept) PetscCall(KeptFactorOwn(solver->kept, &failed));
+  if (*able && solver->kept) PetscCall(ReusedFactorOwn(solver->kept, &failed));
   *able = (PetscBool)(*able && !failed);
   if (!*able) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(KSPGetPC(solver->ksp, &pc));
@@ -184,8 +184,8 @@ PetscErrorCode LinearSolverColumns(LinearSolver solver, Mat B, Mat X, PetscBool 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* LinearSolverPredict - whether the next solution is a prediction, which is asked for more precisely. Logically collective; on, then off. */
-PetscErrorCode LinearSolverPredict(LinearSolver solver, PetscBool predicting)
+/* LinearSolverSetPrediction - whether the next solution is a prediction, which is asked for more precisely. Logically collective; on, then off. */
+PetscErrorCode LinearSolverSetPrediction(LinearSolver solver, PetscBool predicting)
 {
   PetscFunctionBeginUser;
   if (!solver->multigrid) PetscFunctionReturn(PETSC_SUCCESS);
@@ -195,7 +195,7 @@ PetscErrorCode LinearSolverPredict(LinearSolver solver, PetscBool predicting)
 }
 
 /* LinearSolverKept - the factor that may serve more than one operator; NULL: there is none. Not collective; borrowed. */
-KeptFactor LinearSolverKept(LinearSolver solver)
+ReusedFactor LinearSolverKept(LinearSolver solver)
 {
   return solver->kept;
 }

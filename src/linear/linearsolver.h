@@ -19,7 +19,7 @@ PetscBool LinearSolverBorders(LinearSolver);
 PetscErrorCode LinearSolverSetBorder(LinearSolver, const Border *);
 /* Before each solve with a new operator. u: local displacements (n_nodes*dim) that it is the tangent at; C: its contact part, NULL: none; pattern: it has a new
    one; changes: contact terms that came, went or changed their stiffness since the operator before; *older: an older factor serves and wants to be told of them
-   (KeptFactorUpdate()). Collective. */
+   (ReusedFactorUpdate()). Collective. */
 PetscErrorCode LinearSolverNext(LinearSolver, const PetscReal *u, Mat C, PetscBool pattern, PetscInt changes, PetscBool *older);
 /* What follows must not depend on what was solved before. Not collective. */
 PetscErrorCode LinearSolverRenew(LinearSolver);
@@ -32,6 +32,6 @@ PetscErrorCode LinearSolverColumns(LinearSolver, Mat B, Mat X, PetscBool *able);
 /* For the solve that predicts a step: the residual (2-norm) that the last prediction left, 0: unknown. Logically collective. */
 PetscErrorCode LinearSolverSetStart(LinearSolver, PetscReal residual);
 /* Around the solve that predicts a step, whose first guess of what is in contact should hold. Logically collective. */
-PetscErrorCode LinearSolverPredict(LinearSolver, PetscBool);
+PetscErrorCode LinearSolverSetPrediction(LinearSolver, PetscBool);
 /* The factor that may serve more than one operator, for those who watch the solves; NULL: there is none. Not collective. */
-KeptFactor LinearSolverKept(LinearSolver);
+ReusedFactor LinearSolverKept(LinearSolver);

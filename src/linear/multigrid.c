@@ -44,14 +44,14 @@ struct _n_Multigrid {
   PetscInt   coupled;   /* how many there were, on all ranks, when multigrid was made */
   KSP        direct;
   Vec        interface_right, interface_left;
-  Vec        rest, ghosts; /* what the bodies leave on the interface, 0 elsewhere; values of other ranks for it, NULL: one rank */
+  Vec        residual, ghosts; /* what the bodies leave on the interface, 0 elsewhere; values of other ranks for it, NULL: one rank */
   VecScatter to_interface, to_ghosts;
 };
 
 /* ---------- whole nodes ---------- */
 
 /* Numbers all dofs of the nodes of this rank that have a free one. */
-static PetscErrorCode NumberNodes(Multigrid m)
+static PetscErrorCode MultigridNumberNodes(Multigrid m)
 {
   const int       dim = m->mesh->dim;
   const PetscInt *dofs;
@@ -467,8 +467,8 @@ static PetscErrorCode CreateDirect(Multigrid m, Mat A)
   PetscInt n;
 
   PetscFunctionBeginUser;
-  if (!m->rest) PetscCall(VecDuplicate(m->number, &m->rest));
-  PetscCall(VecSet(m->rest, 0));
+  if (!m->residual) PetscCall(VecDuplicate(m->number, &m->residual));
+  PetscCall(VecSet(m->residual, 0));
   PetscCall(CreateGhosts(m, A, &m->ghosts, &m->to_ghosts));
   PetscCall(ISGetLocalSize(m->reach, &n));
   PetscCall(VecCreateSeq(PETSC_COMM_SELF, n, &m->interface_right));
@@ -502,7 +502,7 @@ static PetscErrorCode SetUpInterface(Multigrid m, Mat A)
 }
 
 /* rest -= (one block of the operator) x in rows of the interface; begin: first row of this rank */
-static PetscErrorCode SubtractBlock(Mat A, int block, PetscInt n, const PetscInt *interface, PetscInt begin, Vec x, PetscScalar *rest)
+static PetscErrorCode SubtractBlock(Mat A, int block, PetscInt n, const PetscInt *interface, PetscInt begin, Vec x, PetscScalar *residual)
 {
   MatrixRows         rows;
   const PetscScalar *from;
@@ -516,7 +516,7 @@ static PetscErrorCode SubtractBlock(Mat A, int block, PetscInt n, const PetscInt
     PetscScalar    sum = 0;
 
     for (PetscInt k = rows.ptr[row]; k < rows.ptr[row + 1]; k++) sum += rows.value[k] * from[rows.column[k]];
-    rest[row] -= sum;
+    residual[row] -= sum;
   }
   PetscCall(VecRestoreArrayRead(x, &from));
   PetscCall(MatrixRowsRestore(&rows));
@@ -524,12 +524,12 @@ static PetscErrorCode SubtractBlock(Mat A, int block, PetscInt n, const PetscInt
 }
 
 /* m->rest = right - A left, where an interface is: its rows are few. */
-static PetscErrorCode FindRest(Multigrid m, Mat A, Vec right, Vec left)
+static PetscErrorCode MultigridFindResidual(Multigrid m, Mat A, Vec right, Vec left)
 {
   PetscInt           n, begin;
   const PetscInt    *interface;
   const PetscScalar *from;
-  PetscScalar       *rest;
+  PetscScalar       *residual;
 
   PetscFunctionBeginUser;
   if (m->ghosts) PetscCall(VecScatterBegin(m->to_ghosts, left, m->ghosts, INSERT_VALUES, SCATTER_FORWARD));
@@ -537,12 +537,12 @@ static PetscErrorCode FindRest(Multigrid m, Mat A, Vec right, Vec left)
   PetscCall(ISGetLocalSize(m->interface, &n));
   PetscCall(ISGetIndices(m->interface, &interface));
   PetscCall(VecGetArrayRead(right, &from));
-  PetscCall(VecGetArray(m->rest, &rest));
-  for (PetscInt i = 0; i < n; i++) rest[interface[i] - begin] = from[interface[i] - begin];
-  PetscCall(SubtractBlock(A, MATRIX_OWN, n, interface, begin, left, rest));
+  PetscCall(VecGetArray(m->residual, &residual));
+  for (PetscInt i = 0; i < n; i++) residual[interface[i] - begin] = from[interface[i] - begin];
+  PetscCall(SubtractBlock(A, MATRIX_OWN, n, interface, begin, left, residual));
   if (m->ghosts) PetscCall(VecScatterEnd(m->to_ghosts, left, m->ghosts, INSERT_VALUES, SCATTER_FORWARD));
-  if (m->ghosts) PetscCall(SubtractBlock(A, MATRIX_OTHERS, n, interface, begin, m->ghosts, rest));
-  PetscCall(VecRestoreArray(m->rest, &rest));
+  if (m->ghosts) PetscCall(SubtractBlock(A, MATRIX_OTHERS, n, interface, begin, m->ghosts, residual));
+  PetscCall(VecRestoreArray(m->residual, &residual));
   PetscCall(VecRestoreArrayRead(right, &from));
   PetscCall(ISRestoreIndices(m->interface, &interface));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -610,7 +610,7 @@ static PetscErrorCode IsAged(Multigrid m, PetscBool *aged)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode SetUp(PC pc)
+static PetscErrorCode MultigridSetUp(PC pc)
 {
   Multigrid m;
   Mat       A;
@@ -628,7 +628,7 @@ static PetscErrorCode SetUp(PC pc)
 }
 
 /* Bodies first, then the interface for what they left. */
-static PetscErrorCode Apply(PC pc, Vec right, Vec left)
+static PetscErrorCode MultigridApply(PC pc, Vec right, Vec left)
 {
   Multigrid m;
   Mat       A;
@@ -639,8 +639,8 @@ static PetscErrorCode Apply(PC pc, Vec right, Vec left)
   PetscCall(ApplyBodies(m, right, left));
   if (!m->interface) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PCGetOperators(pc, NULL, &A));
-  PetscCall(FindRest(m, A, right, left));
-  PetscCall(AddInterface(m, m->rest, left));
+  PetscCall(MultigridFindResidual(m, A, right, left));
+  PetscCall(AddInterface(m, m->residual, left));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -660,14 +660,14 @@ PetscErrorCode MultigridCreate(Mesh mesh, PetscBool axisymmetric, PetscBool symm
   m->axisymmetric = axisymmetric;
   m->symmetric    = symmetric;
   m->changed = m->renew = PETSC_TRUE;
-  PetscCall(NumberNodes(m));
+  PetscCall(MultigridNumberNodes(m));
   PetscCall(KSPSetResidualHistory(ksp, NULL, PETSC_DECIDE, PETSC_TRUE));
   PetscCall(KSPGetPC(ksp, &pc));
   PetscCall(PCSetType(pc, PCSHELL));
   PetscCall(PCShellSetContext(pc, m));
   PetscCall(PCShellSetName(pc, "multigrid for the bodies, direct solve for the contact interface"));
-  PetscCall(PCShellSetSetUp(pc, SetUp));
-  PetscCall(PCShellSetApply(pc, Apply));
+  PetscCall(PCShellSetSetUp(pc, MultigridSetUp));
+  PetscCall(PCShellSetApply(pc, MultigridApply));
   *out = m;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -684,7 +684,7 @@ PetscErrorCode MultigridDestroy(Multigrid *multigrid)
   PetscCall(MatDestroy(&m->nodes));
   PetscCall(VecDestroy(&m->nodes_right));
   PetscCall(VecDestroy(&m->nodes_left));
-  PetscCall(VecDestroy(&m->rest));
+  PetscCall(VecDestroy(&m->residual));
   PetscCall(VecDestroy(&m->number));
   PetscCall(PetscFree(m->row));
   PetscCall(PetscFree(*multigrid));

@@ -20,7 +20,7 @@ typedef struct {
   idx_t n, *rows, *offsets, *neighbours; /* rows: how many, of each node */
 } Graph;
 
-static PetscErrorCode FindNodes(Nodes *nodes)
+static PetscErrorCode OrderingFindNodes(Nodes *nodes)
 {
   const PetscInt n_rows = nodes->rows[MATRIX_OWN].n;
   PetscInt       before;
@@ -63,7 +63,7 @@ static PetscErrorCode NodesCreate(Mat A, Nodes *nodes)
   PetscCallMPI(MPI_Comm_rank(nodes->comm, &nodes->rank));
   PetscCallMPI(MPI_Comm_size(nodes->comm, &nodes->size));
   for (int block = 0; block < MATRIX_BLOCKS; block++) PetscCall(MatrixRowsGet(A, block, &nodes->rows[block]));
-  PetscCall(FindNodes(nodes));
+  PetscCall(OrderingFindNodes(nodes));
   PetscCall(FindOtherNodes(A, nodes));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -78,7 +78,7 @@ static PetscErrorCode NodesFree(Nodes *nodes)
 }
 
 /* Neighbours of this rank's i-th node, how many; those of one node are next to each other among the columns. */
-static idx_t ListNeighbours(const Nodes *nodes, PetscInt i, idx_t *neighbours)
+static idx_t OrderingListNeighbours(const Nodes *nodes, PetscInt i, idx_t *neighbours)
 {
   const PetscInt *node[MATRIX_BLOCKS] = {nodes->node, nodes->other}, row = nodes->first[i];
   idx_t           n = 0;
@@ -126,7 +126,7 @@ static PetscErrorCode GraphGather(const Nodes *nodes, Graph *graph)
   PetscCall(PetscMalloc3(nodes->n, &rows, nodes->n, &degrees, room, &neighbours));
   for (PetscInt i = 0; i < nodes->n; i++, n += degrees[i - 1]) {
     rows[i]    = (idx_t)(nodes->first[i + 1] - nodes->first[i]);
-    degrees[i] = ListNeighbours(nodes, i, &neighbours[n]);
+    degrees[i] = OrderingListNeighbours(nodes, i, &neighbours[n]);
   }
   PetscCall(GatherNumbers(nodes, nodes->n, rows, &graph->n, &graph->rows));
   PetscCall(GatherNumbers(nodes, nodes->n, degrees, &graph->n, &graph->offsets));
@@ -140,7 +140,7 @@ static PetscErrorCode GraphGather(const Nodes *nodes, Graph *graph)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode GraphFree(Graph *graph)
+static PetscErrorCode OrderingFreeGraph(Graph *graph)
 {
   PetscFunctionBeginUser;
   PetscCall(PetscFree(graph->rows));
@@ -201,7 +201,7 @@ PetscErrorCode OrderingFind(Mat A, PetscInt **position)
   PetscCall(NodesCreate(A, &nodes));
   PetscCall(GraphGather(&nodes, &graph));
   if (!nodes.rank) PetscCall(Dissect(&graph, position));
-  PetscCall(GraphFree(&graph));
+  PetscCall(OrderingFreeGraph(&graph));
   PetscCall(NodesFree(&nodes));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

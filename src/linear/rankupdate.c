@@ -62,7 +62,7 @@ static PetscErrorCode SolveColumns(RankUpdate update, PC factored, Mat N)
 }
 
 /* to[n] = N^T from, of this rank's rows */
-static void Project(RankUpdate update, const PetscScalar *from, PetscScalar *to)
+static void ProjectOnUpdates(RankUpdate update, const PetscScalar *from, PetscScalar *to)
 {
   for (PetscInt j = 0; j < update->n; j++) {
     to[j] = 0;
@@ -83,7 +83,7 @@ static PetscErrorCode FactorCore(RankUpdate update)
   PetscCall(MatCreateSeqDense(PETSC_COMM_SELF, n, n, NULL, &update->core));
   PetscCall(MatCreateVecs(update->core, &update->share, &update->y));
   PetscCall(MatDenseGetArray(update->core, &core));
-  for (PetscInt k = 0; k < n; k++) Project(update, &update->Z[k * update->m], &core[k * n]);
+  for (PetscInt k = 0; k < n; k++) ProjectOnUpdates(update, &update->Z[k * update->m], &core[k * n]);
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, core, (PetscMPIInt)(n * n), MPIU_SCALAR, MPIU_SUM, update->comm));
   for (PetscInt k = 0; k < n; k++) core[k * (n + 1)] += 1 / update->s[k];
   PetscCall(MatDenseRestoreArray(update->core, &core));
@@ -138,7 +138,7 @@ PetscErrorCode RankUpdateApply(RankUpdate update, Vec x)
   if (!update->regular) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(VecGetArray(x, &a));
   PetscCall(VecGetArray(update->y, &y));
-  Project(update, a, y);
+  ProjectOnUpdates(update, a, y);
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, y, (PetscMPIInt)update->n, MPIU_SCALAR, MPIU_SUM, update->comm));
   PetscCall(VecRestoreArray(update->y, &y));
   PetscCall(MatSolve(update->core, update->y, update->share));

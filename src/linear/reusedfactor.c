@@ -4,20 +4,20 @@
 
 /* A factor is kept while at most so many contact terms have come, gone or changed their stiffness since it was made. Each is a change of rank one, for which
    its update takes a fifth of a solve. */
-#define KEPT_CHANGES 24
+#define REUSED_FACTOR_CHANGES 24
 /* A new factor costs as much as 8 (plane problems of some thousand unknowns) to 20 (blocks of 100,000) solves with one: more iterations than these are given
  * up. */
-#define KEPT_ITERATIONS 8
+#define REUSED_FACTOR_ITERATIONS 8
 /* The residual asked for: this part of the right-hand side, which Newton's method does not notice as it contracts less in an iteration that is not the last;
    with 3e-5 some runs take one more. A factor that leaves out pressures that turn with the surface of a pipe between plates leaves 2e-3, an iteration with it
    1e-5. */
-#define KEPT_TOLERANCE 1e-5
+#define REUSED_FACTOR_TOLERANCE 1e-5
 /* But not below this part of what is enough. */
-#define KEPT_SHARE 0.1
+#define REUSED_FACTOR_SHARE 0.1
 
 struct _n_KeptFactor {
   KSP        ksp, gmres;
-  NodeTurn   turn;    /* of the bodies since the factor was made; NULL: none */
+  Corotation   turn;    /* of the bodies since the factor was made; NULL: none */
   Vec        turned;  /* forces turned back */
   RankUpdate update;  /* of the factor to the present contact terms, turned back; NULL: none */
   PetscBool  exists;  /* a factor of this step */
@@ -31,7 +31,7 @@ struct _n_KeptFactor {
 /* Ends GMRES; its own test would take the first residual for the right-hand side. */
 static PetscErrorCode Converged(KSP gmres, PetscInt it, PetscReal norm, KSPConvergedReason *reason, void *context)
 {
-  const KeptFactor kept = context;
+  const ReusedFactor kept = context;
 
   PetscFunctionBeginUser;
   (void)gmres;
@@ -40,7 +40,7 @@ static PetscErrorCode Converged(KSP gmres, PetscInt it, PetscReal norm, KSPConve
     *reason = KSP_DIVERGED_NANORINF;
   else if (norm <= kept->target)
     *reason = KSP_CONVERGED_RTOL;
-  else if (it >= KEPT_ITERATIONS)
+  else if (it >= REUSED_FACTOR_ITERATIONS)
     *reason = KSP_DIVERGED_ITS;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -48,7 +48,7 @@ static PetscErrorCode Converged(KSP gmres, PetscInt it, PetscReal norm, KSPConve
 /* The factor and its update, for forces and displacements turned back to where it was made. */
 static PetscErrorCode Precondition(PC shell, Vec b, Vec x)
 {
-  KeptFactor kept;
+  ReusedFactor kept;
   PetscBool  turn;
   PC         pc;
 
@@ -58,17 +58,17 @@ static PetscErrorCode Precondition(PC shell, Vec b, Vec x)
   turn = (PetscBool)(kept->turn && kept->serves);
   if (turn && !kept->turned) PetscCall(VecDuplicate(b, &kept->turned));
   if (turn) PetscCall(VecCopy(b, kept->turned));
-  if (turn) PetscCall(NodeTurnApply(kept->turn, PETSC_TRUE, kept->turned));
+  if (turn) PetscCall(CorotationApply(kept->turn, PETSC_TRUE, kept->turned));
   PetscCall(PCApply(pc, turn ? kept->turned : b, x));
   if (kept->update) PetscCall(RankUpdateApply(kept->update, x));
-  if (turn) PetscCall(NodeTurnApply(kept->turn, PETSC_FALSE, x));
+  if (turn) PetscCall(CorotationApply(kept->turn, PETSC_FALSE, x));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* KeptFactorCreate - Collective. The KSP is borrowed; destroy what is kept after it. */
-PetscErrorCode KeptFactorCreate(KSP ksp, KeptFactor *out)
+/* ReusedFactorCreate - Collective. The KSP is borrowed; destroy what is kept after it. */
+PetscErrorCode ReusedFactorCreate(KSP ksp, ReusedFactor *out)
 {
-  KeptFactor kept;
+  ReusedFactor kept;
   PC         shell;
 
   PetscFunctionBeginUser;
@@ -76,8 +76,8 @@ PetscErrorCode KeptFactorCreate(KSP ksp, KeptFactor *out)
   kept->ksp = ksp;
   PetscCall(KSPCreate(PetscObjectComm((PetscObject)ksp), &kept->gmres));
   PetscCall(KSPSetType(kept->gmres, KSPFGMRES)); /* keeps what the factor has made of its directions: one solve less than GMRES */
-  PetscCall(KSPGMRESSetRestart(kept->gmres, KEPT_ITERATIONS));
-  PetscCall(KSPSetTolerances(kept->gmres, PETSC_DEFAULT, PETSC_DEFAULT, PETSC_DEFAULT, KEPT_ITERATIONS));
+  PetscCall(KSPGMRESSetRestart(kept->gmres, REUSED_FACTOR_ITERATIONS));
+  PetscCall(KSPSetTolerances(kept->gmres, PETSC_DEFAULT, PETSC_DEFAULT, PETSC_DEFAULT, REUSED_FACTOR_ITERATIONS));
   PetscCall(KSPSetConvergenceTest(kept->gmres, Converged, kept, NULL));
   PetscCall(KSPGetPC(kept->gmres, &shell));
   PetscCall(PCSetType(shell, PCSHELL));
@@ -87,8 +87,8 @@ PetscErrorCode KeptFactorCreate(KSP ksp, KeptFactor *out)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* KeptFactorDestroy - Collective. */
-PetscErrorCode KeptFactorDestroy(KeptFactor *kept)
+/* ReusedFactorDestroy - Collective. */
+PetscErrorCode ReusedFactorDestroy(ReusedFactor *kept)
 {
   PetscFunctionBeginUser;
   if (!*kept) PetscFunctionReturn(PETSC_SUCCESS);
@@ -99,16 +99,16 @@ PetscErrorCode KeptFactorDestroy(KeptFactor *kept)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* KeptFactorSetTurn - Not collective. */
-PetscErrorCode KeptFactorSetTurn(KeptFactor kept, NodeTurn turn)
+/* ReusedFactorSetCorotation - Not collective. */
+PetscErrorCode ReusedFactorSetCorotation(ReusedFactor kept, Corotation turn)
 {
   PetscFunctionBeginUser;
   kept->turn = turn;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* KeptFactorRenew - Not collective. */
-PetscErrorCode KeptFactorRenew(KeptFactor kept)
+/* ReusedFactorRenew - Not collective. */
+PetscErrorCode ReusedFactorRenew(ReusedFactor kept)
 {
   PetscFunctionBeginUser;
   kept->exists = PETSC_FALSE;
@@ -116,8 +116,8 @@ PetscErrorCode KeptFactorRenew(KeptFactor kept)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* KeptFactorSetEnough - Logically collective. */
-PetscErrorCode KeptFactorSetEnough(KeptFactor kept, PetscReal residual)
+/* ReusedFactorSetEnough - Logically collective. */
+PetscErrorCode ReusedFactorSetEnough(ReusedFactor kept, PetscReal residual)
 {
   PetscFunctionBeginUser;
   kept->enough = residual;
@@ -125,7 +125,7 @@ PetscErrorCode KeptFactorSetEnough(KeptFactor kept, PetscReal residual)
 }
 
 /* The factor is, or will be, the present operator's. */
-static PetscErrorCode Begin(KeptFactor kept)
+static PetscErrorCode ReusedFactorBegin(ReusedFactor kept)
 {
   PetscFunctionBeginUser;
   kept->exists  = PETSC_TRUE;
@@ -134,15 +134,15 @@ static PetscErrorCode Begin(KeptFactor kept)
   kept->changes = 0;
   kept->counts.made++;
   PetscCall(RankUpdateDestroy(&kept->update));
-  if (kept->turn) PetscCall(NodeTurnBegin(kept->turn));
+  if (kept->turn) PetscCall(CorotationBegin(kept->turn));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* KeptFactorNext - decides whether the factor at hand serves the next operator.
+/* ReusedFactorNext - decides whether the factor at hand serves the next operator.
 
    Collective. changes: the same on all ranks, since the operator before. A pattern that is new makes the solver forget its symbolic factorisation,
    once there is a new factor to be made. */
-PetscErrorCode KeptFactorNext(KeptFactor kept, PetscInt changes, PetscBool pattern, PetscBool *serves)
+PetscErrorCode ReusedFactorNext(ReusedFactor kept, PetscInt changes, PetscBool pattern, PetscBool *serves)
 {
   PetscBool direct;
 
@@ -150,17 +150,17 @@ PetscErrorCode KeptFactorNext(KeptFactor kept, PetscInt changes, PetscBool patte
   PetscCall(DirectSolverServes(kept->ksp, &direct));
   kept->changes += changes;
   kept->stale  = (PetscBool)(kept->stale || pattern);
-  kept->serves = (PetscBool)(direct && kept->exists && kept->changes <= KEPT_CHANGES);
+  kept->serves = (PetscBool)(direct && kept->exists && kept->changes <= REUSED_FACTOR_CHANGES);
   if (!kept->serves && kept->stale) PetscCall(KSPReset(kept->ksp));
-  if (!kept->serves) PetscCall(Begin(kept));
-  if (kept->serves && kept->turn) PetscCall(NodeTurnFind(kept->turn));
+  if (!kept->serves) PetscCall(ReusedFactorBegin(kept));
+  if (kept->serves && kept->turn) PetscCall(CorotationFind(kept->turn));
   PetscCall(KSPSetReusePreconditioner(kept->ksp, kept->serves));
   *serves = kept->serves;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* KeptFactorUpdate - Collective. N, which is turned back to where the factor was made, and s as of RankUpdateAdd(). */
-PetscErrorCode KeptFactorUpdate(KeptFactor kept, Mat N, const PetscReal *s)
+/* ReusedFactorUpdate - Collective. N, which is turned back to where the factor was made, and s as of RankUpdateAdd(). */
+PetscErrorCode ReusedFactorUpdate(ReusedFactor kept, Mat N, const PetscReal *s)
 {
   PetscInt n;
   PC       pc;
@@ -170,7 +170,7 @@ PetscErrorCode KeptFactorUpdate(KeptFactor kept, Mat N, const PetscReal *s)
   PetscCall(MatGetSize(N, NULL, &n));
   for (PetscInt j = 0; j < n && kept->turn; j++) {
     PetscCall(MatDenseGetColumnVec(N, j, &column));
-    PetscCall(NodeTurnApply(kept->turn, PETSC_TRUE, column));
+    PetscCall(CorotationApply(kept->turn, PETSC_TRUE, column));
     PetscCall(MatDenseRestoreColumnVec(N, j, &column));
   }
   PetscCall(KSPGetPC(kept->ksp, &pc));
@@ -179,7 +179,7 @@ PetscErrorCode KeptFactorUpdate(KeptFactor kept, Mat N, const PetscReal *s)
 }
 
 /* A new factor after all. */
-static PetscErrorCode FactorAnew(KeptFactor kept, PC pc, PetscBool *failed)
+static PetscErrorCode FactorAnew(ReusedFactor kept, PC pc, PetscBool *failed)
 {
   Mat            A, P;
   PCFailedReason reason;
@@ -194,15 +194,15 @@ static PetscErrorCode FactorAnew(KeptFactor kept, PC pc, PetscBool *failed)
   PetscCall(MatDestroy(&P));
   PetscCall(PCSetReusePreconditioner(pc, PETSC_FALSE));
   PetscCall(PCSetUp(pc));
-  PetscCall(Begin(kept));
+  PetscCall(ReusedFactorBegin(kept));
   PetscCall(PCGetFailedReason(pc, &reason));
   *failed      = reason ? PETSC_TRUE : PETSC_FALSE;
   kept->exists = *failed ? PETSC_FALSE : PETSC_TRUE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* KeptFactorOwn - Collective. */
-PetscErrorCode KeptFactorOwn(KeptFactor kept, PetscBool *failed)
+/* ReusedFactorOwn - Collective. */
+PetscErrorCode ReusedFactorOwn(ReusedFactor kept, PetscBool *failed)
 {
   PC pc;
 
@@ -229,7 +229,7 @@ static PetscErrorCode Start(Mat A, Vec b, PetscReal right, Vec x, Vec r, PetscRe
 }
 
 /* x + A^-1 r by GMRES, if the residual r, of norm *left, is too large; *reached: it is no more. */
-static PetscErrorCode Iterate(KeptFactor kept, Mat A, Vec r, Vec x, PetscReal *left, PetscBool *reached)
+static PetscErrorCode Iterate(ReusedFactor kept, Mat A, Vec r, Vec x, PetscReal *left, PetscBool *reached)
 {
   KSPConvergedReason reason;
   PetscInt           iterations;
@@ -252,7 +252,7 @@ static PetscErrorCode Iterate(KeptFactor kept, Mat A, Vec r, Vec x, PetscReal *l
 }
 
 /* x = A^-1 b with a new factor, a whole one where that at hand is A's own: what its border leaves out was not small. */
-static PetscErrorCode SolveAnew(KeptFactor kept, Vec b, Vec x, PetscBool *failed)
+static PetscErrorCode SolveAnew(ReusedFactor kept, Vec b, Vec x, PetscBool *failed)
 {
   Factor factor;
   PC     pc;
@@ -270,7 +270,7 @@ static PetscErrorCode SolveAnew(KeptFactor kept, Vec b, Vec x, PetscBool *failed
 }
 
 /* Is the factor at hand of an older operator, or does it leave a part of its own out, as those with a border do? */
-static PetscErrorCode IsRough(KeptFactor kept, PetscBool *rough)
+static PetscErrorCode IsRough(ReusedFactor kept, PetscBool *rough)
 {
   Factor factor;
 
@@ -280,8 +280,8 @@ static PetscErrorCode IsRough(KeptFactor kept, PetscBool *rough)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* KeptFactorSolve - Collective. x: what the factor at hand makes of b. */
-PetscErrorCode KeptFactorSolve(KeptFactor kept, Mat A, Vec b, Vec x, PetscReal *tolerance, PetscReal *norm, PetscBool *failed)
+/* ReusedFactorSolve - Collective. x: what the factor at hand makes of b. */
+PetscErrorCode ReusedFactorSolve(ReusedFactor kept, Mat A, Vec b, Vec x, PetscReal *tolerance, PetscReal *norm, PetscBool *failed)
 {
   PetscReal right;
   PetscBool reached = PETSC_FALSE, rough = PETSC_FALSE;
@@ -295,7 +295,7 @@ PetscErrorCode KeptFactorSolve(KeptFactor kept, Mat A, Vec b, Vec x, PetscReal *
   if (right == 0 || !rough) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(VecDuplicate(b, &r));
   while (rough && !reached && !*failed) {
-    kept->target = PetscMax(KEPT_TOLERANCE * right, KEPT_SHARE * PetscMin(kept->enough, right));
+    kept->target = PetscMax(REUSED_FACTOR_TOLERANCE * right, REUSED_FACTOR_SHARE * PetscMin(kept->enough, right));
     kept->counts.served += kept->serves;
     if (kept->update) PetscCall(RankUpdateApply(kept->update, x));
     PetscCall(Start(A, b, right, x, r, norm));
@@ -309,8 +309,8 @@ PetscErrorCode KeptFactorSolve(KeptFactor kept, Mat A, Vec b, Vec x, PetscReal *
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* KeptFactorGetCounts - what was done so far. Not collective, the same on all ranks. */
-void KeptFactorGetCounts(KeptFactor kept, KeptCounts *counts)
+/* ReusedFactorGetCounts - what was done so far. Not collective, the same on all ranks. */
+void ReusedFactorGetCounts(ReusedFactor kept, KeptCounts *counts)
 {
   *counts = kept->counts;
 }

@@ -4,7 +4,7 @@
 /* ---------- colours of ranks ---------- */
 
 /* Ranks that own ghosts of this one, ascending; ranks: room for all. */
-static void ListNeighbours(PetscInt n, const PetscInt *row, const PetscInt *ranges, PetscMPIInt *ranks, PetscMPIInt *count)
+static void SweepOrderListNeighbours(PetscInt n, const PetscInt *row, const PetscInt *ranges, PetscMPIInt *ranks, PetscMPIInt *count)
 {
   PetscMPIInt rank = 0;
 
@@ -53,7 +53,7 @@ static PetscErrorCode PlaceGhosts(SweepOrder o, Mat mat, const PetscInt *row)
   PetscCallMPI(MPI_Comm_rank(comm, &rank));
   PetscCall(MatGetOwnershipRanges(mat, &ranges));
   PetscCall(PetscMalloc2(size, &ranks, size, &colour));
-  ListNeighbours(o->n_ghosts, row, ranges, ranks, &count);
+  SweepOrderListNeighbours(o->n_ghosts, row, ranges, ranks, &count);
   PetscCall(ColourRanks(comm, ranks, count, colour));
   o->colour = colour[rank];
   for (PetscMPIInt r = 0; r < size; r++) o->colours = PetscMax(o->colours, colour[r] + 1);
@@ -98,7 +98,7 @@ static PetscErrorCode FindGhosts(SweepOrder o, Mat mat, const MatrixRows *others
    other. */
 static PetscErrorCode PlaceNodes(SweepOrder o, const MatrixRows *others)
 {
-  PetscInt n_border = 0, border, inner;
+  PetscInt n_border = 0, interface, inner;
 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(o->n, &o->node));
@@ -107,10 +107,10 @@ static PetscErrorCode PlaceNodes(SweepOrder o, const MatrixRows *others)
     n_border += o->place[i];
   }
   o->n_inner = o->n - n_border;
-  o->border = border = o->colour % 2 == 0 ? 0 : o->n_inner;
+  o->interface = interface = o->colour % 2 == 0 ? 0 : o->n_inner;
   o->inner = inner = o->colour % 2 == 0 ? n_border : 0;
   for (PetscInt i = 0; i < o->n; i++) {
-    o->place[i]          = o->place[i] ? border++ : inner++;
+    o->place[i]          = o->place[i] ? interface++ : inner++;
     o->node[o->place[i]] = i;
   }
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -217,7 +217,7 @@ static PetscErrorCode ListNodes(BlockMatrix blocks)
 }
 
 /* Which node of the matrix each node of the lists is that a block has; *known: all of them are listed there. fresh: it gets its dofs from there. */
-static PetscErrorCode NumberNodes(BlockMatrix blocks, PetscBool fresh, PetscBool *known)
+static PetscErrorCode BlockMatrixNumberNodes(BlockMatrix blocks, PetscBool fresh, PetscBool *known)
 {
   const int size = blocks->size;
 
@@ -391,7 +391,7 @@ static PetscErrorCode PlacePattern(BlockMatrix blocks, PetscBool fresh, PetscBoo
 
   PetscFunctionBeginUser;
   if (fresh) PetscCall(ListNodes(blocks));
-  PetscCall(NumberNodes(blocks, fresh, placed));
+  PetscCall(BlockMatrixNumberNodes(blocks, fresh, placed));
   if (!*placed) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscMalloc1(blocks->n_pattern, &number));
   PetscCall(GroupRows(blocks, number));
@@ -407,7 +407,7 @@ static PetscErrorCode PlacePattern(BlockMatrix blocks, PetscBool fresh, PetscBoo
 }
 
 /* A matrix of `rows` rows on this rank with the pairs that are listed. */
-static PetscErrorCode CreateMatrix(BlockMatrix blocks, PetscInt rows)
+static PetscErrorCode BlockMatrixCreateMat(BlockMatrix blocks, PetscInt rows)
 {
   const NodePairs pairs = {blocks->size, blocks->own.n_nodes, blocks->own.dof, blocks->own.pair_ptr, blocks->own.pair};
 
@@ -439,7 +439,7 @@ PetscErrorCode BlockMatrixPlace(BlockMatrix blocks, PetscInt rows, PetscBool *ch
   blocks->pattern   = pattern;
   blocks->n_pattern = n;
   if (placed)
-    PetscCall(NumberNodes(blocks, PETSC_FALSE, &placed));
+    PetscCall(BlockMatrixNumberNodes(blocks, PETSC_FALSE, &placed));
   else if (blocks->matrix)
     PetscCall(PlacePattern(blocks, PETSC_FALSE, &placed));
   all = placed;
@@ -452,7 +452,7 @@ PetscErrorCode BlockMatrixPlace(BlockMatrix blocks, PetscInt rows, PetscBool *ch
     blocks->replaced = PETSC_TRUE;
     for (PetscInt i = 0; i < blocks->n_listed; i++) blocks->list_number[i] = -1;
     PetscCall(PlacePattern(blocks, PETSC_TRUE, &placed));
-    PetscCall(CreateMatrix(blocks, rows));
+    PetscCall(BlockMatrixCreateMat(blocks, rows));
   }
   PetscCall(PetscArrayzero(blocks->sum, blocks->above[blocks->own.n_nodes] * blocks->size));
   for (PetscInt r = 0; r < blocks->own.n_nodes; r++) blocks->seen[r] = -1;
@@ -523,7 +523,7 @@ static void MultiplyOuter(PetscInt m, const PetscReal *v, const PetscReal *x, Pe
 }
 
 /* product += block along; most blocks are far from all that moves. */
-static PetscErrorCode Multiply(BlockMatrix blocks, PetscInt n, const PetscInt *node, PetscBool outer, const PetscReal *value)
+static PetscErrorCode BlockMatrixMultiplyRows(BlockMatrix blocks, PetscInt n, const PetscInt *node, PetscBool outer, const PetscReal *value)
 {
   const int  size = blocks->size;
   PetscBool  any  = PETSC_FALSE;
@@ -561,7 +561,7 @@ static PetscErrorCode Add(BlockMatrix blocks, int list, PetscInt n, const PetscI
     PetscCall(Sum(3, PETSC_FALSE, blocks, with, n * 3, value));
   else
     PetscCall(Sum(blocks->size, outer, blocks, with, n * blocks->size, value));
-  if (blocks->along) PetscCall(Multiply(blocks, n, node, outer, value));
+  if (blocks->along) PetscCall(BlockMatrixMultiplyRows(blocks, n, node, outer, value));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -645,7 +645,7 @@ static PetscErrorCode RestoreMatrix(BlockMatrix blocks, PetscInt rows)
   PetscFunctionBeginUser;
   PetscCall(ListSums(blocks));
   blocks->n_pattern = -1; /* no blocks' as yet: where the next ones stand in it is found then */
-  PetscCall(CreateMatrix(blocks, rows));
+  PetscCall(BlockMatrixCreateMat(blocks, rows));
   blocks->restored = PETSC_TRUE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

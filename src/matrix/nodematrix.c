@@ -131,7 +131,7 @@ static PetscErrorCode SetForeign(NodeMatrix m, const NodeValues *values)
 /* ---------- pattern ---------- */
 
 /* Finds the node of every row of this rank; nodes with rows of others are listed. */
-static PetscErrorCode FindNodes(NodeMatrix m)
+static PetscErrorCode NodeMatrixFindNodes(NodeMatrix m)
 {
   const NodePairs *p = &m->pairs;
 
@@ -207,7 +207,7 @@ PetscErrorCode NodeMatrixCreate(MPI_Comm comm, PetscInt rows, const NodePairs *p
   m->rows  = rows;
   PetscCallMPI(MPI_Scan(&rows, &m->first, 1, MPIU_INT, MPI_SUM, comm));
   m->first -= rows;
-  PetscCall(FindNodes(m));
+  PetscCall(NodeMatrixFindNodes(m));
   PetscCall(PetscCalloc2(pairs->n, &m->inner, pairs->n, &m->placed));
   LookAtRows(m);
   PetscCall(PetscMalloc2(pairs->ptr[pairs->n] * pairs->size, &m->place, rows, &m->diagonal));
@@ -420,7 +420,7 @@ static PetscBool IsShared(PetscInt r, MatrixRows terms[TERMS][MATRIX_BLOCKS])
 }
 
 /* The rows of terms, NULL: none */
-static PetscErrorCode GetTerms(const Mat mats[TERMS], MatrixRows terms[TERMS][MATRIX_BLOCKS])
+static PetscErrorCode NodeMatrixGetTerms(const Mat mats[TERMS], MatrixRows terms[TERMS][MATRIX_BLOCKS])
 {
   PetscFunctionBeginUser;
   for (int t = 0; t < TERMS; t++) {
@@ -506,7 +506,7 @@ PetscErrorCode NodeMatrixJoin(NodeMatrix m, Mat other)
   PetscInt   longest, *room, *at;
 
   PetscFunctionBeginUser;
-  PetscCall(GetTerms(mats, terms));
+  PetscCall(NodeMatrixGetTerms(mats, terms));
   for (int t = 0; t < TERMS; t++) PetscCall(TakeTerm(mats[t], terms[t], &m->term[t]));
   PetscCall(TakeRoom(m, terms, &longest));
   PetscCall(PetscMalloc2(2 * longest, &room, m->rows, &at));
@@ -631,7 +631,7 @@ static PetscErrorCode SetValues(NodeMatrix m, const NodeValues *values, Mat othe
 
   PetscFunctionBeginUser;
   if (m->foreign) PetscCall(SetForeign(m, values));
-  PetscCall(GetTerms(mats, terms));
+  PetscCall(NodeMatrixGetTerms(mats, terms));
   if (other) PetscCall(CheckTerm(m, other, terms[TERM_OTHER]));
   if (diagonal) PetscCall(VecGetArrayWrite(diagonal, &entry));
   SetRows(m, values, terms, entry);

@@ -4,7 +4,7 @@
 #define SUM_K "K"
 #define SUM_C "C"
 
-static PetscErrorCode GetTerms(Mat A, Mat *K, Mat *C)
+static PetscErrorCode SumOperatorGetTerms(Mat A, Mat *K, Mat *C)
 {
   PetscFunctionBeginUser;
   PetscCall(PetscObjectQuery((PetscObject)A, SUM_K, (PetscObject *)K));
@@ -12,12 +12,12 @@ static PetscErrorCode GetTerms(Mat A, Mat *K, Mat *C)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode Multiply(Mat A, Vec x, Vec y)
+static PetscErrorCode SumOperatorMultiply(Mat A, Vec x, Vec y)
 {
   Mat K, C;
 
   PetscFunctionBeginUser;
-  PetscCall(GetTerms(A, &K, &C));
+  PetscCall(SumOperatorGetTerms(A, &K, &C));
   PetscCall(MatMult(K, x, y));
   if (C) PetscCall(MatMultAdd(C, x, y, y));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -31,7 +31,7 @@ PetscErrorCode SumOperatorCreate(Mat K, Mat *A)
   PetscFunctionBeginUser;
   PetscCall(MatGetLocalSize(K, &rows, &columns));
   PetscCall(MatCreateShell(PetscObjectComm((PetscObject)K), rows, columns, PETSC_DETERMINE, PETSC_DETERMINE, NULL, A));
-  PetscCall(MatShellSetOperation(*A, MATOP_MULT, (void (*)(void))Multiply));
+  PetscCall(MatShellSetOperation(*A, MATOP_MULT, (void (*)(void))SumOperatorMultiply));
   PetscCall(PetscObjectCompose((PetscObject)*A, SUM_K, (PetscObject)K));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -53,7 +53,7 @@ PetscErrorCode SumOperatorMerge(Mat A, Mat *whole)
   PetscFunctionBeginUser;
   *whole = NULL;
   PetscCall(PetscObjectTypeCompare((PetscObject)A, MATSHELL, &shell));
-  if (shell) PetscCall(GetTerms(A, &K, &C));
+  if (shell) PetscCall(SumOperatorGetTerms(A, &K, &C));
   if (K) PetscCall(MatDuplicate(K, MAT_COPY_VALUES, whole));
   if (K && C) PetscCall(MatAXPY(*whole, 1, C, DIFFERENT_NONZERO_PATTERN));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -33,7 +33,7 @@ static void LoadFace(const RootMesh *root, PetscInt c, int number, CellFace *fac
 }
 
 /* Faces of one lowest corner by the others; those of equal corners stay in the order of their cells. A corner has few, so they are inserted one by one. */
-static void SortFaces(PetscInt n, CellFace faces[])
+static void SortCellFaces(PetscInt n, CellFace faces[])
 {
   for (PetscInt f = 1; f < n; f++) {
     const CellFace face  = faces[f];
@@ -81,7 +81,7 @@ PetscErrorCode CellFacesCreate(RootMesh *root)
       root->cell_faces[next[face.corner[0]]++] = face;
     }
   }
-  for (PetscInt v = 0; v < root->n_vertices; v++) SortFaces(root->corner_faces[v + 1] - root->corner_faces[v], &root->cell_faces[root->corner_faces[v]]);
+  for (PetscInt v = 0; v < root->n_vertices; v++) SortCellFaces(root->corner_faces[v + 1] - root->corner_faces[v], &root->cell_faces[root->corner_faces[v]]);
   PetscCall(PetscFree(next));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

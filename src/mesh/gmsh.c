@@ -136,14 +136,14 @@ static uint64_t Hash(uint64_t hash, const char *data, size_t size)
 
 /* Every bit of a hash depends on every other (the last step of MurmurHash3; Appleby). Values that differ in one digit have FNV hashes that differ by a
    small multiple of one constant, and sums of them coincide: 3 + 4 is 4 + 3. */
-static uint64_t Spread(uint64_t hash)
+static uint64_t HashFinish(uint64_t hash)
 {
   hash = (hash ^ (hash >> 33)) * 0xff51afd7ed558ccdull;
   hash = (hash ^ (hash >> 33)) * 0xc4ceb9fe1a85ec53ull;
   return hash ^ (hash >> 33);
 }
 
-static PetscBool HasWord(const char *text, const char *word)
+static PetscBool OptionHasWord(const char *text, const char *word)
 {
   size_t length = strlen(word);
 
@@ -190,7 +190,7 @@ static PetscErrorCode FingerprintFile(Fingerprint *print, const char *file, int 
   if (!text) PetscFunctionReturn(PETSC_SUCCESS); /* gmsh complains if it matters */
   print->content = Hash(print->content, text, size + 1);
   for (int i = 0; i < print->scene->n_parameters; i++)
-    if (HasWord(text, print->scene->parameters[i].key)) print->used[i] = PETSC_TRUE;
+    if (OptionHasWord(text, print->scene->parameters[i].key)) print->used[i] = PETSC_TRUE;
   PetscCall(FingerprintIncludes(print, file, text, depth));
   PetscCall(PetscFree(text));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -211,7 +211,7 @@ static PetscErrorCode FingerprintScene(Scene scene, uint64_t *content, Complaint
     /* a name with a dot is one of gmsh's own options */
     if (!print.used[i] && !strchr(pair->key, '.'))
       Complain(complaint, "%s: '%s' has no parameter of this name", SceneWhere(scene, "mesh.parameters", pair->key), scene->mesh_file);
-    sum += Spread(Hash(Hash(FNV_BASIS, pair->key, strlen(pair->key) + 1), pair->value, strlen(pair->value) + 1));
+    sum += HashFinish(Hash(Hash(FNV_BASIS, pair->key, strlen(pair->key) + 1), pair->value, strlen(pair->value) + 1));
   }
   snprintf(text, sizeof(text), "%016llx %d %d", (unsigned long long)sum, scene->dim, scene->order);
   *content = Hash(print.content, text, strlen(text));

@@ -54,7 +54,7 @@ static PetscErrorCode GraphCreate(PetscInt n, const PetscInt offsets[], const Pe
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode GraphFree(Graph *graph)
+static PetscErrorCode PartitionFreeGraph(Graph *graph)
 {
   PetscFunctionBeginUser;
   PetscCall(PetscFree(graph->offsets));
@@ -145,7 +145,7 @@ PetscErrorCode PartitionGraph(PetscInt n, const PetscInt offsets[], const PetscI
   PetscCheck(status == METIS_OK, PETSC_COMM_SELF, PETSC_ERR_LIB, "METIS failed with status %d", status);
   for (PetscInt c = 0; c < n; c++) part[c] = (PetscInt)found[c];
   *edge_cut = CountCut(n, offsets, adjacency, part);
-  PetscCall(GraphFree(&graph));
+  PetscCall(PartitionFreeGraph(&graph));
   PetscCall(PetscFree2(weights, found));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -118,7 +118,7 @@ static void CheckRigidBlock(Scene scene, const char *file, const RootMesh *root,
 }
 
 /* The elements of one block in one of its groups */
-static PetscErrorCode AddBlock(DM dm, Scene scene, RootMesh *root, const GmshBlock *block, int g, Mesh mesh)
+static PetscErrorCode AddCellBlock(DM dm, Scene scene, RootMesh *root, const GmshBlock *block, int g, Mesh mesh)
 {
   MeshGroup      *group   = &mesh->groups[g];
   const PetscBool surface = group->dim == scene->dim - 1 ? PETSC_TRUE : PETSC_FALSE;
@@ -138,7 +138,7 @@ static PetscErrorCode AddBlock(DM dm, Scene scene, RootMesh *root, const GmshBlo
 }
 
 /* Faces by cell, in the order in which they were found */
-static PetscErrorCode SortFaces(RootMesh *root)
+static PetscErrorCode SortGroupFaces(RootMesh *root)
 {
   RootFace *sorted;
   PetscInt *next;
@@ -193,10 +193,10 @@ PetscErrorCode RootGroupsFind(DM dm, Scene scene, const char *file, RootMesh *ro
       if (IsRigidGroup(scene, group->dim, group->name))
         CheckRigidBlock(scene, file, root, block, group->name, complaint);
       else
-        PetscCall(AddBlock(dm, scene, root, block, block->physical[i], mesh));
+        PetscCall(AddCellBlock(dm, scene, root, block, block->physical[i], mesh));
     }
   }
-  PetscCall(SortFaces(root));
+  PetscCall(SortGroupFaces(root));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

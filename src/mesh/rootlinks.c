@@ -18,7 +18,7 @@ typedef struct {
   PetscInt            closest;
 } Nearest;
 
-static PetscReal Distance(const PetscReal *a, const PetscReal *b)
+static PetscReal FaceDistance(const PetscReal *a, const PetscReal *b)
 {
   return PetscSqrtReal(PetscSqr(a[0] - b[0]) + PetscSqr(a[1] - b[1]) + PetscSqr(a[2] - b[2]));
 }
@@ -40,7 +40,7 @@ static PetscReal CellSize(const RootMesh *root, PetscInt cell, const PetscReal c
   const PetscInt *nodes = RootMeshCellNodes(root, cell);
   PetscReal       size  = 0;
 
-  for (int k = 0; k < root->cell_block[cell]->nodes; k++) size = PetscMax(size, 2 * Distance(centre, &root->gmsh.coords[3 * nodes[k]]));
+  for (int k = 0; k < root->cell_block[cell]->nodes; k++) size = PetscMax(size, 2 * FaceDistance(centre, &root->gmsh.coords[3 * nodes[k]]));
   return size;
 }
 
@@ -65,11 +65,11 @@ static PetscErrorCode FreeCells(SurfaceCells *cells)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* TreeClosest()'s visitor; of equally near centres the first counts. */
+/* BoxTreeClosest()'s visitor; of equally near centres the first counts. */
 static void VisitCentre(void *context, int i, double *bound)
 {
   Nearest        *nearest  = context;
-  const PetscReal distance = Distance(nearest->point, &nearest->cells->centre[3 * i]);
+  const PetscReal distance = FaceDistance(nearest->point, &nearest->cells->centre[3 * i]);
 
   if (distance > *bound || (distance == *bound && nearest->closest >= 0 && nearest->closest < i)) return;
   nearest->closest = i;
@@ -79,24 +79,24 @@ static void VisitCentre(void *context, int i, double *bound)
 static PetscErrorCode LinkPair(const RootMesh *root, int slave_group, int master_group, CellLinks *links)
 {
   SurfaceCells slave, master;
-  Tree         tree;
+  BoxTree         tree;
 
   PetscFunctionBeginUser;
   PetscCall(FindCells(root, slave_group, &slave));
   PetscCall(FindCells(root, master_group, &master));
-  PetscCheck(!TreeBuild(3, (int)master.n, master.centre, master.centre, &tree), PETSC_COMM_SELF, PETSC_ERR_MEM, "no memory for %" PetscInt_FMT " cells",
+  PetscCheck(!BoxTreeBuild(3, (int)master.n, master.centre, master.centre, &tree), PETSC_COMM_SELF, PETSC_ERR_MEM, "no memory for %" PetscInt_FMT " cells",
              master.n);
   PetscCall(PetscRealloc((links->n + slave.n) * 2 * sizeof(PetscInt), &links->cell));
   for (PetscInt i = 0; i < slave.n; i++) {
     Nearest   nearest = {.cells = &master, .point = &slave.centre[3 * i], .closest = -1};
     PetscReal bound   = LINK_REACH * CellSize(root, slave.cell[i], nearest.point);
 
-    TreeClosest(tree, nearest.point, &bound, VisitCentre, &nearest);
+    BoxTreeClosest(tree, nearest.point, &bound, VisitCentre, &nearest);
     if (nearest.closest < 0 || master.cell[nearest.closest] == slave.cell[i]) continue;
     links->cell[2 * links->n]       = slave.cell[i];
     links->cell[2 * links->n++ + 1] = master.cell[nearest.closest];
   }
-  TreeDestroy(&tree);
+  BoxTreeDestroy(&tree);
   PetscCall(FreeCells(&slave));
   PetscCall(FreeCells(&master));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -169,7 +169,7 @@ static PetscErrorCode NumberCells(Scene scene, const char *file, RootMesh *root,
 }
 
 /* Numbers the nodes that cells use by ascending tag, and the corners among them */
-static PetscErrorCode NumberNodes(RootMesh *root)
+static PetscErrorCode RootMeshNumberNodes(RootMesh *root)
 {
   const PetscInt n = root->gmsh.n_nodes;
 
@@ -254,7 +254,7 @@ PetscErrorCode RootMeshRead(Scene scene, const char *file, PetscMPIInt ranks, Ro
   PetscCall(NumberCells(scene, file, root, complaint));
   if (complaint->text[0]) PetscFunctionReturn(PETSC_SUCCESS);
   if (root->n_cells < ranks) Complain(complaint, "%s: %" PetscInt_FMT " cells cannot be shared out to %d ranks; run with fewer", file, root->n_cells, ranks);
-  PetscCall(NumberNodes(root));
+  PetscCall(RootMeshNumberNodes(root));
   FindBox(scene, root, mesh);
   CheckPlane(scene, file, root, mesh->size, complaint);
   mesh->order = root->n_cells ? root->cell_block[0]->element->order : 1;

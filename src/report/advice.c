@@ -110,7 +110,7 @@ static int StepsRepeat(const RunFigures *figures, char *text)
   return 1;
 }
 
-static int ListsAreRemade(const RunFigures *figures, char *text)
+static int NeighbourListsAreRemade(const RunFigures *figures, char *text)
 {
   const PetscInt times = figures->run->way->regathered;
 
@@ -161,7 +161,7 @@ static int KernelsAreOld(const RunFigures *figures, char *text)
   return 1;
 }
 
-static const RunRuleFn run_rules[] = {StepsFail, StepsRepeat, ListsAreRemade, StepsAreLong, LineSearchCuts, OutputIsSlow, KernelsAreOld};
+static const RunRuleFn run_rules[] = {StepsFail, StepsRepeat, NeighbourListsAreRemade, StepsAreLong, LineSearchCuts, OutputIsSlow, KernelsAreOld};
 
 /* AdviceGive - one line for each figure that is bad and can be helped. Not collective. */
 void AdviceGive(const RunFigures *figures, AdvicePrintFn print, void *context)

@@ -3,14 +3,14 @@
 /* Errors below this part of a face size are round-off. */
 #define REPORT_ROUND_OFF 1e-9
 
-static double Clean(PetscReal value, PetscReal size)
+static double PrintableGap(PetscReal value, PetscReal size)
 {
   return PetscAbsReal(value) <= REPORT_ROUND_OFF * size ? 0 : (double)value;
 }
 
 static void PrintFits(const ContactFits *fits, PetscReal size, FILE *file)
 {
-  fprintf(file, "           facet error %.3g, smoothing error %.3g (lengths)\n", Clean(fits->facet_error, size), Clean(fits->smoothing_error, size));
+  fprintf(file, "           facet error %.3g, smoothing error %.3g (lengths)\n", PrintableGap(fits->facet_error, size), PrintableGap(fits->smoothing_error, size));
   fprintf(file, "           neighbours %" PetscInt_FMT " to %" PetscInt_FMT ", mean %.1f; smallest pivot %.3g, largest amplification %.3g\n",
           fits->neighbours_min, fits->neighbours_max, (double)fits->neighbours_mean, (double)fits->pivot, (double)fits->amplified);
   fprintf(file,

@@ -4,16 +4,16 @@
 #include "xdmf.h"
 #include <math.h>
 
-enum { PATH_SIZE = 512 };
+enum { EXTRAPOLATION_SIZE = 512 };
 
 struct _n_Fields {
   Model      model;
   Scene      scene;
   char       directory[PETSC_MAX_PATH_LEN], file[PETSC_MAX_PATH_LEN];
   PetscInt  *owned; /* local nodes that this rank owns */
-  Rows       nodes;
+  Hdf5Table       nodes;
   int        n_pairs;
-  Rows      *pairs;                /* slave nodes, per contact pair */
+  Hdf5Table      *pairs;                /* slave nodes, per contact pair */
   PetscInt   cells[ELEMENT_TYPES]; /* rows of /mesh/cells_TYPE */
   PetscInt   n_written, room;
   PetscReal *t;     /* of the written steps */
@@ -79,9 +79,9 @@ static PetscErrorCode FieldsOpenFile(Fields fields, hid_t *file)
 {
   PetscFunctionBeginUser;
   if (fields->n_written)
-    PetscCall(RowsOpenFile(fields->model->mesh->comm, fields->file, H5F_ACC_RDWR, file));
+    PetscCall(Hdf5TableOpenFile(fields->model->mesh->comm, fields->file, H5F_ACC_RDWR, file));
   else
-    PetscCall(RowsCreateFile(fields->model->mesh->comm, fields->file, file));
+    PetscCall(Hdf5TableCreateFile(fields->model->mesh->comm, fields->file, file));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -94,7 +94,7 @@ static PetscErrorCode FieldsWriteNodes(Fields fields, hid_t file)
   PetscCall(PetscCalloc1(mesh->n_owned * 3, &items));
   for (PetscInt k = 0; k < mesh->n_owned; k++)
     for (int i = 0; i < mesh->dim; i++) items[k * 3 + i] = mesh->coords[fields->owned[k] * mesh->dim + i] + mesh->centre[i];
-  PetscCall(RowsWriteReals(file, "/mesh/nodes", &fields->nodes, 3, items));
+  PetscCall(Hdf5TableWriteReals(file, "/mesh/nodes", &fields->nodes, 3, items));
   PetscCall(PetscFree(items));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -106,14 +106,14 @@ static PetscErrorCode FieldsNumberCells(Fields fields, PetscInt *row)
   const int  n_keys = fields->scene->n_bodies * ELEMENT_TYPES;
   Xdmf      *xdmf   = &fields->xdmf;
   PetscInt  *key, *keys, *rows, *count, *before;
-  Rows       by_id;
+  Hdf5Table       by_id;
 
   PetscFunctionBeginUser;
-  PetscCall(RowsCreate(mesh->comm, mesh->n_cells_global, mesh->n_cells, mesh->cell_id, &by_id));
+  PetscCall(Hdf5TableCreate(mesh->comm, mesh->n_cells_global, mesh->n_cells, mesh->cell_id, &by_id));
   PetscCall(PetscMalloc3(mesh->n_cells, &key, by_id.n, &keys, by_id.n, &rows));
   PetscCall(PetscCalloc2(n_keys, &count, n_keys, &before));
   for (PetscInt c = 0; c < mesh->n_cells; c++) key[c] = mesh->cell_body[c] * ELEMENT_TYPES + mesh->cell_type[c];
-  PetscCall(RowsCollect(&by_id, 1, MPIU_INT, key, keys));
+  PetscCall(Hdf5TableCollect(&by_id, 1, MPIU_INT, key, keys));
   for (PetscInt c = 0; c < by_id.n; c++) count[keys[c]]++;
   PetscCallMPI(MPI_Exscan(count, before, n_keys, MPIU_INT, MPI_SUM, mesh->comm));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, count, n_keys, MPIU_INT, MPI_SUM, mesh->comm));
@@ -131,7 +131,7 @@ static PetscErrorCode FieldsNumberCells(Fields fields, PetscInt *row)
   PetscCall(PetscSFBcastEnd(by_id.sf, MPIU_INT, rows, row, MPI_REPLACE));
   PetscCall(PetscFree2(count, before));
   PetscCall(PetscFree3(key, keys, rows));
-  PetscCall(RowsDestroy(&by_id));
+  PetscCall(Hdf5TableDestroy(&by_id));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -144,7 +144,7 @@ static PetscErrorCode FieldsWriteCellTable(Fields fields, hid_t file, ElementTyp
   const int      nodes   = element->nodes;
   int64_t       *ids, *body;
   PetscInt      *row, n = 0;
-  Rows           rows;
+  Hdf5Table           rows;
 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc3(mesh->n_cells * nodes, &ids, mesh->n_cells, &body, mesh->n_cells, &row));
@@ -154,10 +154,10 @@ static PetscErrorCode FieldsWriteCellTable(Fields fields, hid_t file, ElementTyp
     body[n]  = mesh->cell_body[c];
     row[n++] = cell_row[c] - first;
   }
-  PetscCall(RowsCreate(mesh->comm, total, n, row, &rows));
-  PetscCall(RowsWriteIntegers(file, path, &rows, nodes, ids));
-  if (body_path) PetscCall(RowsWriteIntegers(file, body_path, &rows, 1, body));
-  PetscCall(RowsDestroy(&rows));
+  PetscCall(Hdf5TableCreate(mesh->comm, total, n, row, &rows));
+  PetscCall(Hdf5TableWriteIntegers(file, path, &rows, nodes, ids));
+  if (body_path) PetscCall(Hdf5TableWriteIntegers(file, body_path, &rows, 1, body));
+  PetscCall(Hdf5TableDestroy(&rows));
   PetscCall(PetscFree3(ids, body, row));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -166,7 +166,7 @@ static PetscErrorCode FieldsWriteCells(Fields fields, hid_t file)
 {
   const Xdmf *xdmf = &fields->xdmf;
   PetscInt   *row;
-  char        path[PATH_SIZE], body_path[PATH_SIZE];
+  char        path[EXTRAPOLATION_SIZE], body_path[EXTRAPOLATION_SIZE];
 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(fields->model->mesh->n_cells, &row));
@@ -198,7 +198,7 @@ static PetscErrorCode FieldsListSlaveNodes(Fields fields)
     PetscCall(ContactGetNodes(fields->model->contact, p, fields->model->u, &slaves));
     PetscCall(PetscMalloc1(slaves.n, &ids));
     for (PetscInt k = 0; k < slaves.n; k++) ids[k] = mesh->node_id[slaves.node[k]];
-    PetscCall(RowsCreateByKey(mesh->comm, slaves.n, ids, &fields->pairs[p]));
+    PetscCall(Hdf5TableCreateByKey(mesh->comm, slaves.n, ids, &fields->pairs[p]));
     PetscCall(PetscFree(ids));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -208,7 +208,7 @@ static PetscErrorCode FieldsWriteSlaveNodes(Fields fields, hid_t file)
 {
   ContactNodes slaves;
   int64_t     *ids;
-  char         path[PATH_SIZE];
+  char         path[EXTRAPOLATION_SIZE];
 
   PetscFunctionBeginUser;
   PetscCall(FieldsListSlaveNodes(fields));
@@ -217,7 +217,7 @@ static PetscErrorCode FieldsWriteSlaveNodes(Fields fields, hid_t file)
     PetscCall(PetscMalloc1(slaves.n, &ids));
     for (PetscInt k = 0; k < slaves.n; k++) ids[k] = fields->model->mesh->node_id[slaves.node[k]];
     PetscCall(PetscSNPrintf(path, sizeof(path), "/contact/%s/nodes", ContactPairName(fields->model->contact, p)));
-    PetscCall(RowsWriteIntegers(file, path, &fields->pairs[p], 1, ids));
+    PetscCall(Hdf5TableWriteIntegers(file, path, &fields->pairs[p], 1, ids));
     PetscCall(PetscFree(ids));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -237,14 +237,14 @@ static PetscErrorCode FieldsWriteNodal(Fields fields, hid_t file, const char *na
 {
   const PetscInt n = fields->model->mesh->n_owned;
   PetscReal     *items;
-  char           path[PATH_SIZE];
+  char           path[EXTRAPOLATION_SIZE];
 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(n * width, &items));
   for (PetscInt k = 0; k < n; k++)
     for (int i = 0; i < width; i++) items[k * width + i] = values[fields->owned[k] * stride + first + i];
   PetscCall(PetscSNPrintf(path, sizeof(path), "/steps/%04d/%s", (int)fields->n_written, name));
-  PetscCall(RowsWriteReals(file, path, &fields->nodes, width, items));
+  PetscCall(Hdf5TableWriteReals(file, path, &fields->nodes, width, items));
   PetscCall(PetscFree(items));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -294,11 +294,11 @@ static PetscErrorCode FieldsWriteMaster(Fields fields, hid_t file, int pair)
 {
   static const char *const names[] = {[ANALYTIC_PLANE] = "plane", [ANALYTIC_CYLINDER] = "cylinder", [ANALYTIC_SPHERE] = "sphere"};
   const SceneContact      *contact = &fields->scene->contacts[pair];
-  const AnalyticMaster    *master  = &contact->analytic;
+  const AnalyticSurface    *master  = &contact->analytic;
   const double             t       = (double)fields->model->t;
   double                   values[7]; /* point, then axis or normal, then radius */
   int                      n = 3;
-  char                     path[PATH_SIZE];
+  char                     path[EXTRAPOLATION_SIZE];
   hid_t                    group;
 
   PetscFunctionBeginUser;
@@ -322,7 +322,7 @@ static PetscErrorCode FieldsWritePair(Fields fields, hid_t file, int pair, Petsc
 {
   ContactNodes slaves;
   PetscReal   *values, *items;
-  char         path[PATH_SIZE];
+  char         path[EXTRAPOLATION_SIZE];
 
   PetscFunctionBeginUser;
   PetscCall(ContactGetNodes(fields->model->contact, pair, fields->model->u, &slaves));
@@ -345,7 +345,7 @@ static PetscErrorCode FieldsWritePair(Fields fields, hid_t file, int pair, Petsc
       for (int i = 0; i < width; i++) items[k * width + i] = values[k * COLUMNS + contact_fields[f].column + i];
     PetscCall(PetscSNPrintf(path, sizeof(path), "/steps/%04d/contact/%s/%s", (int)fields->n_written, ContactPairName(fields->model->contact, pair),
                             contact_fields[f].name));
-    PetscCall(RowsWriteReals(file, path, &fields->pairs[pair], width, items));
+    PetscCall(Hdf5TableWriteReals(file, path, &fields->pairs[pair], width, items));
   }
   PetscCall(PetscFree2(values, items));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -483,7 +483,7 @@ PetscErrorCode FieldsCreate(Model model, Scene scene, const char *directory, Fie
     fields->owned[n] = k;
     id[n++]          = mesh->node_id[k];
   }
-  PetscCall(RowsCreate(mesh->comm, mesh->n_global, n, id, &fields->nodes));
+  PetscCall(Hdf5TableCreate(mesh->comm, mesh->n_global, n, id, &fields->nodes));
   PetscCall(PetscFree(id));
   PetscCall(FieldsPrepareXdmf(fields));
   *result = fields;
@@ -495,8 +495,8 @@ PetscErrorCode FieldsDestroy(Fields *fields)
 {
   PetscFunctionBeginUser;
   if (!*fields) PetscFunctionReturn(PETSC_SUCCESS);
-  for (int p = 0; p < (*fields)->n_pairs; p++) PetscCall(RowsDestroy(&(*fields)->pairs[p]));
-  PetscCall(RowsDestroy(&(*fields)->nodes));
+  for (int p = 0; p < (*fields)->n_pairs; p++) PetscCall(Hdf5TableDestroy(&(*fields)->pairs[p]));
+  PetscCall(Hdf5TableDestroy(&(*fields)->nodes));
   PetscCall(PetscFree((*fields)->image));
   PetscCall(PetscFree((*fields)->owned));
   PetscCall(PetscFree((*fields)->pairs));
@@ -516,7 +516,7 @@ PetscErrorCode FieldsWrite(Fields fields, PetscInt step, PetscReal t)
 {
   const int64_t number = step;
   PetscMPIInt   rank;
-  char          path[PATH_SIZE];
+  char          path[EXTRAPOLATION_SIZE];
   hid_t         file, group;
 
   PetscFunctionBeginUser;

@@ -32,7 +32,7 @@ struct _n_Probes {
   Scene  scene;
   int   *node_body; /* index into scene->bodies, during the preparation */
   Probe *probe;
-  Table *slaves; /* per pair, of the evaluation under way; row NULL: not asked for yet */
+  GatherTable *slaves; /* per pair, of the evaluation under way; row NULL: not asked for yet */
 };
 
 typedef enum { NAMES_NOTHING, NAMES_SURFACE, NAMES_PAIR } ProbeNames;
@@ -217,7 +217,7 @@ static PetscErrorCode ProbesCheckAt(Probes probes, const Probe *probe)
 }
 
 /* The slave nodes that carry area, of the present state. Collective. */
-static PetscErrorCode ProbesGetSlaves(Probes probes, int pair, const Table **table)
+static PetscErrorCode ProbesGetSlaves(Probes probes, int pair, const GatherTable **table)
 {
   const Model  model = probes->model;
   const Mesh   mesh  = model->mesh;
@@ -241,7 +241,7 @@ static PetscErrorCode ProbesGetSlaves(Probes probes, int pair, const Table **tab
     row[SLAVE_AREA]     = slaves.area[k];
     row[SLAVE_PRESSURE] = slaves.pressure[k];
   }
-  PetscCall(TableGather(mesh->comm, SLAVE_COLUMNS, slaves.n, rows, &probes->slaves[pair]));
+  PetscCall(GatherTableCreate(mesh->comm, SLAVE_COLUMNS, slaves.n, rows, &probes->slaves[pair]));
   PetscCall(PetscFree(rows));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -343,7 +343,7 @@ static PetscErrorCode ProbesLineEnds(Probes probes, const Probe *probe, PetscRea
    pressure of their own and go with the last node that has one. */
 static PetscErrorCode EvaluateContactEdge(Probes probes, Probe *probe, PetscReal *value)
 {
-  const Table *slaves;
+  const GatherTable *slaves;
   PetscReal   *line, ends[2]; /* line: position and pressure of the nodes on it, from row 1 on */
   double      *x, *p;
   int          n = 0, first = 1;
@@ -360,7 +360,7 @@ static PetscErrorCode EvaluateContactEdge(Probes probes, Probe *probe, PetscReal
     line[2 * n]     = slave[SLAVE_POSITION + probe->scene->axis];
     line[2 * n + 1] = slave[SLAVE_PRESSURE];
   }
-  qsort(&line[2], (size_t)n, 2 * sizeof(PetscReal), TableCompare);
+  qsort(&line[2], (size_t)n, 2 * sizeof(PetscReal), GatherTableCompare);
   if (n && ends[1] > line[2 * n]) {
     line[2 * n + 2] = ends[1];
     line[2 * n + 3] = line[2 * n + 1];
@@ -384,7 +384,7 @@ static PetscErrorCode EvaluateContactEdge(Probes probes, Probe *probe, PetscReal
 
 static PetscErrorCode EvaluatePressureMax(Probes probes, Probe *probe, PetscReal *value)
 {
-  const Table *slaves;
+  const GatherTable *slaves;
   PetscReal    most = 0.0;
 
   PetscFunctionBeginUser;
@@ -400,7 +400,7 @@ static PetscErrorCode EvaluatePressureMax(Probes probes, Probe *probe, PetscReal
 }
 
 /* Area-weighted mean pressure over the slave nodes that the probe keeps, and their area; NaN without contact or without a node */
-static PetscReal MeanPressure(const Probe *probe, const Table *slaves, PetscReal *area)
+static PetscReal MeanPressure(const Probe *probe, const GatherTable *slaves, PetscReal *area)
 {
   PetscReal force = 0.0;
 
@@ -417,7 +417,7 @@ static PetscReal MeanPressure(const Probe *probe, const Table *slaves, PetscReal
 
 static PetscErrorCode EvaluatePressureMean(Probes probes, Probe *probe, PetscReal *value)
 {
-  const Table *slaves;
+  const GatherTable *slaves;
   PetscReal    area;
 
   PetscFunctionBeginUser;
@@ -428,7 +428,7 @@ static PetscErrorCode EvaluatePressureMean(Probes probes, Probe *probe, PetscRea
 
 static PetscErrorCode EvaluatePressureDeviation(Probes probes, Probe *probe, PetscReal *value)
 {
-  const Table *slaves;
+  const GatherTable *slaves;
   PetscReal    area, mean, most = 0.0, square = 0.0;
 
   PetscFunctionBeginUser;
@@ -546,7 +546,7 @@ PetscErrorCode ProbesEvaluate(Probes probes, PetscReal values[])
     if (scene->absolute) values[i] = PetscAbsReal(values[i]);
     values[i] *= scene->factor;
   }
-  for (int p = 0; p < probes->scene->n_contacts; p++) PetscCall(TableDestroy(&probes->slaves[p]));
+  for (int p = 0; p < probes->scene->n_contacts; p++) PetscCall(GatherTableDestroy(&probes->slaves[p]));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

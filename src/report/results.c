@@ -16,7 +16,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-enum { MESSAGE_SIZE = 2 * PETSC_MAX_PATH_LEN, LINE_SIZE = 160, PATH_SIZE = PETSC_MAX_PATH_LEN + 32 /* a directory and one of our names */ };
+enum { MESSAGE_SIZE = 2 * PETSC_MAX_PATH_LEN, LINE_SIZE = 160, EXTRAPOLATION_SIZE = PETSC_MAX_PATH_LEN + 32 /* a directory and one of our names */ };
 
 struct _n_Results {
   Model       model;
@@ -47,27 +47,27 @@ struct _n_Results {
 /* The record of the scene in its directory: one line with the file's name, then the text */
 static const char record_name[] = "scene.yaml", record_head[] = "# scene: ";
 
-static void PathJoin(char path[PATH_SIZE], const char *directory, const char *name)
+static void KeyPathJoin(char path[EXTRAPOLATION_SIZE], const char *directory, const char *name)
 {
-  snprintf(path, PATH_SIZE, "%s/%s", directory, name);
+  snprintf(path, EXTRAPOLATION_SIZE, "%s/%s", directory, name);
 }
 
 static PetscBool FileExists(const char *directory, const char *name)
 {
-  char path[PATH_SIZE];
+  char path[EXTRAPOLATION_SIZE];
 
-  PathJoin(path, directory, name);
+  KeyPathJoin(path, directory, name);
   return access(path, F_OK) ? PETSC_FALSE : PETSC_TRUE;
 }
 
 /* The whole of a text file, to be freed; NULL if there is none */
 static char *FileRead(const char *directory, const char *name)
 {
-  char   path[PATH_SIZE], *text = NULL;
+  char   path[EXTRAPOLATION_SIZE], *text = NULL;
   size_t room = 0;
   FILE  *file;
 
-  PathJoin(path, directory, name);
+  KeyPathJoin(path, directory, name);
   file = fopen(path, "r");
   if (!file) return NULL;
   if (getdelim(&text, &room, '\0', file) < 0) {
@@ -85,12 +85,12 @@ static char *FileRead(const char *directory, const char *name)
 */
 PetscErrorCode ResultsReplaceFile(const char *directory, const char *name, const char *text)
 {
-  char  path[PATH_SIZE], temporary[PATH_SIZE + 8];
+  char  path[EXTRAPOLATION_SIZE], temporary[EXTRAPOLATION_SIZE + 8];
   FILE *file;
   int   failed;
 
   PetscFunctionBeginUser;
-  PathJoin(path, directory, name);
+  KeyPathJoin(path, directory, name);
   snprintf(temporary, sizeof(temporary), "%s.tmp", path);
   file = fopen(temporary, "w");
   PetscCheck(file, PETSC_COMM_SELF, PETSC_ERR_FILE_OPEN, "Cannot write %s: %s", temporary, strerror(errno));
@@ -231,10 +231,10 @@ static void DirectoryMake(const char *directory, char message[MESSAGE_SIZE])
 static void DirectoryClear(const char *directory)
 {
   static const char *const names[] = {"summary.json", "results.xdmf", "results.h5", "checkpoint.h5", "checkpoint.h5.tmp"};
-  char                     path[PATH_SIZE];
+  char                     path[EXTRAPOLATION_SIZE];
 
   for (size_t i = 0; i < sizeof(names) / sizeof(names[0]); i++) {
-    PathJoin(path, directory, names[i]);
+    KeyPathJoin(path, directory, names[i]);
     unlink(path);
   }
 }
@@ -285,11 +285,11 @@ static off_t CsvLength(const PetscInt length[2])
 static PetscErrorCode ResultsReopenCsv(Results results, PetscBool *lost)
 {
   const off_t length = CsvLength(results->csv_length);
-  char        path[PATH_SIZE];
+  char        path[EXTRAPOLATION_SIZE];
   struct stat status;
 
   PetscFunctionBeginUser;
-  PathJoin(path, results->directory, "steps.csv");
+  KeyPathJoin(path, results->directory, "steps.csv");
   *lost = stat(path, &status) || status.st_size < length ? PETSC_TRUE : PETSC_FALSE;
   if (*lost) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCheck(!truncate(path, length) && (results->csv = fopen(path, "a")), PETSC_COMM_SELF, PETSC_ERR_FILE_OPEN, "Cannot write %s: %s", path, strerror(errno));
@@ -298,10 +298,10 @@ static PetscErrorCode ResultsReopenCsv(Results results, PetscBool *lost)
 
 static PetscErrorCode ResultsOpenCsv(Results results)
 {
-  char path[PATH_SIZE];
+  char path[EXTRAPOLATION_SIZE];
 
   PetscFunctionBeginUser;
-  PathJoin(path, results->directory, "steps.csv");
+  KeyPathJoin(path, results->directory, "steps.csv");
   results->csv = fopen(path, "w");
   PetscCheck(results->csv, PETSC_COMM_SELF, PETSC_ERR_FILE_OPEN, "Cannot write %s: %s", path, strerror(errno));
   for (int k = 0; k < STEP_COLUMNS; k++) fprintf(results->csv, "%s%s", k ? "," : "", StepColumnNames[k]);
@@ -507,14 +507,14 @@ static void ResultsPrintLost(Results results, const char *name)
 /* The directory as it was at the loaded checkpoint. */
 static PetscErrorCode ResultsResume(Results results)
 {
-  char      path[PATH_SIZE];
+  char      path[EXTRAPOLATION_SIZE];
   PetscBool lost = PETSC_FALSE;
 
   PetscFunctionBeginUser;
   PetscCall(FieldsResume(results->fields, &lost));
   if (lost) ResultsPrintLost(results, "results.h5");
   if (results->rank) PetscFunctionReturn(PETSC_SUCCESS);
-  PathJoin(path, results->directory, "summary.json");
+  KeyPathJoin(path, results->directory, "summary.json");
   unlink(path);
   PetscCall(ResultsWriteRecord(results));
   PetscCall(ResultsReopenCsv(results, &lost));

@@ -3,7 +3,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-enum { PATH_SIZE = 512 };
+enum { EXTRAPOLATION_SIZE = 512 };
 
 static const char *const topology[ELEMENT_TYPES] = {
   [ELEMENT_TRI3] = "Triangle",    [ELEMENT_TRI6] = "Triangle_6",      [ELEMENT_QUAD4] = "Quadrilateral", [ELEMENT_QUAD9] = "Quadrilateral_9",
@@ -36,7 +36,7 @@ static void XdmfPrintDataset(FILE *out, const char *type, PetscInt n, int width,
    matrix XX YY ZZ XY YZ XZ, which is our order. */
 static void XdmfPrintAttribute(FILE *out, const XdmfArray *array, PetscInt n, PetscInt step)
 {
-  char path[PATH_SIZE];
+  char path[EXTRAPOLATION_SIZE];
 
   snprintf(path, sizeof(path), "/steps/%04d/%s", (int)step, array->name);
   fprintf(out, "    <Attribute Name=\"%s\" AttributeType=\"%s\" Center=\"Node\">", array->name, attribute_type[array->width]);
@@ -49,7 +49,7 @@ static void XdmfPrintGrid(const Xdmf *xdmf, FILE *out, int b, PetscInt step)
 {
   const XdmfBlock *block   = &xdmf->blocks[b];
   const Element   *element = ElementGet(block->type);
-  char             path[PATH_SIZE];
+  char             path[EXTRAPOLATION_SIZE];
 
   fprintf(out, "   <Grid Name=\"");
   XdmfPrintText(out, block->body);

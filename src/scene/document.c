@@ -14,33 +14,33 @@ enum { SCENE_MAX_DEPTH = 32 };
 
 /* ---- paths ---- */
 
-/* PathComponent - length of the component that a path starts with, up to the next dot or the end. Not collective. */
-size_t PathComponent(const char *path)
+/* KeyPathComponent - length of the component that a path starts with, up to the next dot or the end. Not collective. */
+size_t KeyPathComponent(const char *path)
 {
   return strcspn(path, ".");
 }
 
-/* PathComponentIsIndex - whether the component that a path starts with is an index of a list. Not collective. */
-int PathComponentIsIndex(const char *path)
+/* KeyPathComponentIsIndex - whether the component that a path starts with is an index of a list. Not collective. */
+int KeyPathComponentIsIndex(const char *path)
 {
-  const size_t n = PathComponent(path);
+  const size_t n = KeyPathComponent(path);
 
   return n > 0 && n < 10 && strspn(path, "0123456789") >= n;
 }
 
-/* PathJoin - parent.key, or key alone below the root, into path[PATH_LENGTH]. Not collective. */
-void PathJoin(char path[PATH_LENGTH], const char *parent, const char *key)
+/* KeyPathJoin - parent.key, or key alone below the root, into path[EXTRAPOLATION_LENGTH]. Not collective. */
+void KeyPathJoin(char path[EXTRAPOLATION_LENGTH], const char *parent, const char *key)
 {
-  snprintf(path, PATH_LENGTH, "%.*s%s%.*s", PATH_LENGTH / 2, parent, *parent ? "." : "", PATH_LENGTH / 2 - 2, key);
+  snprintf(path, EXTRAPOLATION_LENGTH, "%.*s%s%.*s", EXTRAPOLATION_LENGTH / 2, parent, *parent ? "." : "", EXTRAPOLATION_LENGTH / 2 - 2, key);
 }
 
-/* PathJoinIndex - parent.index into path[PATH_LENGTH]. Not collective. */
-void PathJoinIndex(char path[PATH_LENGTH], const char *parent, int index)
+/* KeyPathJoinIndex - parent.index into path[EXTRAPOLATION_LENGTH]. Not collective. */
+void KeyPathJoinIndex(char path[EXTRAPOLATION_LENGTH], const char *parent, int index)
 {
   char key[16];
 
   snprintf(key, sizeof key, "%d", index);
-  PathJoin(path, parent, key);
+  KeyPathJoin(path, parent, key);
 }
 
 /* ---- nodes ---- */
@@ -48,9 +48,9 @@ void PathJoinIndex(char path[PATH_LENGTH], const char *parent, int index)
 /* NodeChild - the child of a list or map that the first component of path names; NULL if there is none. Not collective. */
 Node NodeChild(Node node, const char *path)
 {
-  const size_t n = PathComponent(path);
+  const size_t n = KeyPathComponent(path);
 
-  if (node->kind == NODE_LIST && PathComponentIsIndex(path) && atoi(path) < node->n) return node->child[atoi(path)];
+  if (node->kind == NODE_LIST && KeyPathComponentIsIndex(path) && atoi(path) < node->n) return node->child[atoi(path)];
   for (int i = 0; node->kind == NODE_MAP && i < node->n; i++) {
     if (strlen(node->key[i]) == n && !strncmp(node->key[i], path, n)) return node->child[i];
   }
@@ -62,7 +62,7 @@ Node NodeFind(Node node, const char *path)
 {
   while (node && *path) {
     node = NodeChild(node, path);
-    path += PathComponent(path);
+    path += KeyPathComponent(path);
     if (*path) path++;
   }
   return node;
@@ -120,7 +120,7 @@ const char *DocumentWhere(Document *document, const char *path)
 
   while (*rest && (next = NodeChild(node, rest))) {
     node = next;
-    rest += PathComponent(rest);
+    rest += KeyPathComponent(rest);
     if (*rest) rest++;
   }
   return DocumentWhereNode(document, node, path);
@@ -215,7 +215,7 @@ static PetscErrorCode TreeRead(TreeReader *, int id, int line, const char *path,
 
 static PetscErrorCode TreeReadMap(TreeReader *reader, const yaml_node_t *yaml, const char *path, int depth, Node map)
 {
-  char below[PATH_LENGTH];
+  char below[EXTRAPOLATION_LENGTH];
   Node child;
 
   PetscFunctionBeginUser;
@@ -225,7 +225,7 @@ static PetscErrorCode TreeReadMap(TreeReader *reader, const yaml_node_t *yaml, c
     const char        *text = (const char *)key->data.scalar.value;
 
     if (key->type != YAML_SCALAR_NODE) DocumentRefuseNode(reader->document, map, path, "a key is a list or a map (line %d); allowed: names", line);
-    PathJoin(below, path, text);
+    KeyPathJoin(below, path, text);
     for (int i = 0; i < map->n; i++) {
       if (strcmp(map->key[i], text)) continue;
       PetscCall(NodeCreate(NODE_SCALAR, line, reader->set, &child));
@@ -243,7 +243,7 @@ static PetscErrorCode TreeRead(TreeReader *reader, int id, int line, const char 
   static const char *const Tags[] = {YAML_DEFAULT_SCALAR_TAG, YAML_DEFAULT_SEQUENCE_TAG, YAML_DEFAULT_MAPPING_TAG};
   const yaml_node_t       *yaml   = yaml_document_get_node(reader->yaml, id);
   const NodeKind           kind   = yaml->type == YAML_SCALAR_NODE ? NODE_SCALAR : yaml->type == YAML_SEQUENCE_NODE ? NODE_LIST : NODE_MAP;
-  char                     below[PATH_LENGTH], index[16];
+  char                     below[EXTRAPOLATION_LENGTH], index[16];
   Node                     child;
 
   PetscFunctionBeginUser;
@@ -261,7 +261,7 @@ static PetscErrorCode TreeRead(TreeReader *reader, int id, int line, const char 
   } else {
     for (yaml_node_item_t *item = yaml->data.sequence.items.start; item < yaml->data.sequence.items.top; item++) {
       snprintf(index, sizeof index, "%d", (*node)->n);
-      PathJoin(below, path, index);
+      KeyPathJoin(below, path, index);
       PetscCall(TreeRead(reader, *item, 0, below, depth + 1, &child));
       PetscCall(NodeAppend(*node, NULL, child));
     }
@@ -397,7 +397,7 @@ static PetscErrorCode DocumentSet(Document *document, const char *set, const cha
 {
   struct _n_Node place = {.set = set};
   Node           node = document->root, value, *slot = NULL;
-  char           key[PATH_LENGTH];
+  char           key[EXTRAPOLATION_LENGTH];
   const char    *rest = set;
 
   PetscFunctionBeginUser;

@@ -17,7 +17,7 @@ static void MotionAt(const Motion *motion, double t, double shift[3], double tur
 }
 
 /* v = R(turn) V, Rodrigues' formula. */
-static void Rotate(const double turn[3], const double V[3], double v[3])
+static void RotatePoint(const double turn[3], const double V[3], double v[3])
 {
   const double angle = sqrt(turn[0] * turn[0] + turn[1] * turn[1] + turn[2] * turn[2]), s = sin(angle), c = cos(angle);
   double       a[3] = {0, 0, 0}, along = 0;
@@ -34,7 +34,7 @@ void MotionPlace(const Motion *motion, double t, const double X[3], double x[3])
 
   MotionAt(motion, t, shift, turn);
   for (int d = 0; d < 3; d++) arm[d] = X[d] - motion->point[d];
-  Rotate(turn, arm, turned);
+  RotatePoint(turn, arm, turned);
   for (int d = 0; d < 3; d++) x[d] = X[d] + shift[d] + (turned[d] - arm[d]); /* exactly X where nothing moves */
 }
 
@@ -44,5 +44,5 @@ void MotionTurn(const Motion *motion, double t, const double V[3], double v[3])
   double shift[3], turn[3];
 
   MotionAt(motion, t, shift, turn);
-  Rotate(turn, V, v);
+  RotatePoint(turn, V, v);
 }

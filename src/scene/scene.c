@@ -17,7 +17,7 @@ Document *SceneDocument(Scene scene)
 /* ScenePath - "list.i" as a text of its own. Not collective. */
 PetscErrorCode ScenePath(char **path, const char *list, int i)
 {
-  char text[PATH_LENGTH];
+  char text[EXTRAPOLATION_LENGTH];
 
   PetscFunctionBeginUser;
   snprintf(text, sizeof text, "%s.%d", list, i);
@@ -28,9 +28,9 @@ PetscErrorCode ScenePath(char **path, const char *list, int i)
 /* SceneNode - the document's value at path.key, NULL if there is none. Not collective. */
 Node SceneNode(Scene scene, const char *path, const char *key)
 {
-  char text[PATH_LENGTH];
+  char text[EXTRAPOLATION_LENGTH];
 
-  PathJoin(text, path, key);
+  KeyPathJoin(text, path, key);
   return NodeFind(SceneDocument(scene)->root, text);
 }
 
@@ -60,9 +60,9 @@ int SceneHas(Scene scene, const char *path, const char *key)
 /* SceneRefuse - refuses the value at path.key: "about what", about may be NULL. Collective, does not return. */
 void SceneRefuse(Scene scene, const char *path, const char *key, const char *what, const char *about)
 {
-  char text[PATH_LENGTH];
+  char text[EXTRAPOLATION_LENGTH];
 
-  PathJoin(text, path, key);
+  KeyPathJoin(text, path, key);
   DocumentRefuse(SceneDocument(scene), *key ? text : path, "%s%s%s", about ? about : "", about ? " " : "", what);
 }
 
@@ -140,7 +140,7 @@ static PetscErrorCode MotionFree(Motion *motion)
 static PetscErrorCode SceneReadMotion(Scene scene, const char *tool, Motion *motion)
 {
   const int n = SchemaCount(SceneDocument(scene), "%s.motion", tool);
-  char      path[PATH_LENGTH];
+  char      path[EXTRAPOLATION_LENGTH];
 
   PetscFunctionBeginUser;
   PetscCall(PetscCalloc1(6 * n, &motion->components));
@@ -176,7 +176,7 @@ static PetscErrorCode SceneReadBody(Scene scene, SceneBody *body)
     SceneRefuse(scene, body->path, body->rigid ? "material" : "rigid", Needs, "has no place here; allowed:");
   PetscCall(SceneReadText(scene, body->path, body->rigid ? "surface" : "volume", &body->name));
   if (body->rigid) {
-    char tool[PATH_LENGTH];
+    char tool[EXTRAPOLATION_LENGTH];
 
     snprintf(tool, sizeof tool, "%s.rigid", body->path);
     (void)SceneReals(scene, body->path, "rigid.point", body->motion.point);
@@ -298,7 +298,7 @@ static PetscErrorCode SceneReadLoads(Scene scene)
 static PetscErrorCode SceneReadAnalytic(Scene scene, SceneContact *contact)
 {
   static const char *const shapes[] = {"plane", "cylinder", "sphere"};
-  char                     tool[PATH_LENGTH];
+  char                     tool[EXTRAPOLATION_LENGTH];
   double                   length = 0;
   int                      count  = 0;
 
@@ -669,9 +669,9 @@ PetscErrorCode SceneDestroy(Scene *scene)
    Not collective. path: of a scene's part ("contact.0"), or ""; key: below it, or "". The text is valid until the next call. */
 const char *SceneWhere(Scene scene, const char *path, const char *key)
 {
-  char text[PATH_LENGTH];
+  char text[EXTRAPOLATION_LENGTH];
 
-  PathJoin(text, path ? path : "", key ? key : "");
+  KeyPathJoin(text, path ? path : "", key ? key : "");
   if (!key || !*key) snprintf(text, sizeof text, "%s", path ? path : "");
   return DocumentWhere(SceneDocument(scene), text);
 }

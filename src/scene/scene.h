@@ -44,7 +44,7 @@ typedef struct {
 
 typedef struct {
   char              *path, *name, *slave, *master; /* master: physical surface, or NULL: analytic */
-  AnalyticMaster     analytic;                     /* with motion.point: on the plane, on the axis, the centre */
+  AnalyticSurface     analytic;                     /* with motion.point: on the plane, on the axis, the centre */
   Motion             motion;
   SmootherKind       smoother;
   ContactFormulation formulation;

@@ -20,7 +20,7 @@ static const struct {
 };
 static const char ProbeCommon[] = "name absolute factor";
 
-static int HasWord(const char *words, const char *word)
+static int ProbeHasWord(const char *words, const char *word)
 {
   const size_t n = strlen(word);
 
@@ -50,11 +50,11 @@ static void SceneProbeKind(Scene scene, SceneProbe *probe)
   }
   snprintf(allowed, sizeof allowed, "%s %s %s %s", ProbeForms[probe->kind].kind, ProbeForms[probe->kind].needs, ProbeForms[probe->kind].takes, ProbeCommon);
   for (size_t i = 0; i < sizeof Optional / sizeof Optional[0]; i++) {
-    if (HasWord(ProbeForms[probe->kind].needs, Optional[i]) && !SceneHas(scene, probe->path, Optional[i]))
+    if (ProbeHasWord(ProbeForms[probe->kind].needs, Optional[i]) && !SceneHas(scene, probe->path, Optional[i]))
       SceneRefuse(scene, probe->path, Optional[i], ProbeForms[probe->kind].kind, "is missing; needed by");
   }
   for (int i = 0; i < node->n; i++) {
-    if (!HasWord(allowed, node->key[i])) SceneRefuse(scene, probe->path, node->key[i], allowed, "has no place in this kind of probe; allowed:");
+    if (!ProbeHasWord(allowed, node->key[i])) SceneRefuse(scene, probe->path, node->key[i], allowed, "has no place in this kind of probe; allowed:");
   }
 }
 

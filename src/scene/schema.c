@@ -239,19 +239,19 @@ static void SchemaRefuseUnknown(Document *document, Node node, const char *paren
 
 static void SchemaRefuseMissing(Document *document, const SchemaKey *key, Node node, const char *path)
 {
-  char allowed[400], missing[PATH_LENGTH];
+  char allowed[400], missing[EXTRAPOLATION_LENGTH];
 
   SchemaAllowed(key, allowed, sizeof allowed);
-  PathJoin(missing, path, SchemaKeyName(key));
+  KeyPathJoin(missing, path, SchemaKeyName(key));
   DocumentRefuseNode(document, node, missing, "is missing; allowed: %s", allowed);
 }
 
 static void SchemaCheckFree(Document *document, Node node, const char *path)
 {
-  char below[PATH_LENGTH];
+  char below[EXTRAPOLATION_LENGTH];
 
   for (int i = 0; i < node->n; i++) {
-    PathJoin(below, path, node->key[i]);
+    KeyPathJoin(below, path, node->key[i]);
     if (!*node->key[i] || strpbrk(node->key[i], " \t\n="))
       DocumentRefuseNode(document, node->child[i], below, "is no name of a parameter or option; allowed: no blanks, no =");
     if (node->child[i]->kind != NODE_SCALAR) DocumentRefuseNode(document, node->child[i], below, "has the wrong type; allowed: a number or a text");
@@ -261,10 +261,10 @@ static void SchemaCheckFree(Document *document, Node node, const char *path)
 /* Before anything else is said about a map: a misspelt key is not a missing one. */
 static void SchemaCheckKeys(Document *document, Node node, const char *path)
 {
-  char below[PATH_LENGTH];
+  char below[EXTRAPOLATION_LENGTH];
 
   for (int i = 0; i < node->n; i++) {
-    PathJoin(below, path, node->key[i]);
+    KeyPathJoin(below, path, node->key[i]);
     if (strchr(node->key[i], '.') || !SchemaKeyFind(below)) SchemaRefuseUnknown(document, node->child[i], path, below, node->key[i]);
   }
 }
@@ -274,16 +274,16 @@ typedef void (*NodeVisit)(Document *, const SchemaKey *, Node, const char *path)
 static void SchemaWalk(Document *document, Node node, const char *path, NodeVisit visit)
 {
   const SchemaKey *key = SchemaKeyFind(path);
-  char             below[PATH_LENGTH];
+  char             below[EXTRAPOLATION_LENGTH];
 
   if (node->kind == NODE_MAP && (!key || key->type & MAP)) SchemaCheckKeys(document, node, path);
   if (key) visit(document, key, node, path);
   if (key && !(key->type & (node->kind == NODE_MAP ? MAP : LIST))) return;
   for (int i = 0; i < node->n; i++) {
     if (node->kind == NODE_MAP)
-      PathJoin(below, path, node->key[i]);
+      KeyPathJoin(below, path, node->key[i]);
     else
-      PathJoinIndex(below, path, i);
+      KeyPathJoinIndex(below, path, i);
     SchemaWalk(document, node->child[i], below, visit);
   }
 }
@@ -367,7 +367,7 @@ void SchemaCheck(Document *document)
 /* The text of the scalar at a path, else the table's default, else NULL; *key is the table's line. */
 static const char *SchemaScalar(Document *document, const char *format, va_list arguments, const SchemaKey **key)
 {
-  char path[PATH_LENGTH];
+  char path[EXTRAPOLATION_LENGTH];
   Node node;
 
   vsnprintf(path, sizeof path, format, arguments);
@@ -383,7 +383,7 @@ static const char *SchemaScalar(Document *document, const char *format, va_list 
 /* SchemaHas - is there a value at this path in the document? printf's format. Not collective, as all accessors. */
 int SchemaHas(Document *document, const char *format, ...)
 {
-  char    path[PATH_LENGTH];
+  char    path[EXTRAPOLATION_LENGTH];
   va_list arguments;
 
   va_start(arguments, format);
@@ -395,7 +395,7 @@ int SchemaHas(Document *document, const char *format, ...)
 /* SchemaCount - number of entries of the list or map at a path; 0 if there is none. */
 int SchemaCount(Document *document, const char *format, ...)
 {
-  char    path[PATH_LENGTH];
+  char    path[EXTRAPOLATION_LENGTH];
   va_list arguments;
   Node    node;
 

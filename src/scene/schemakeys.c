@@ -161,11 +161,11 @@ static int PatternMatches(const char *pattern, size_t n, const char *path)
   const char *end = pattern + n;
 
   while (pattern < end && *path) {
-    const size_t np = PathComponent(pattern), nt = PathComponent(path);
+    const size_t np = KeyPathComponent(pattern), nt = KeyPathComponent(path);
     char         component[80];
 
     snprintf(component, sizeof component, "%.*s", (int)np, pattern);
-    if (!strcmp(component, "*") ? !PathComponentIsIndex(path) : WordFind(component, "|", path, nt) < 0) return 0;
+    if (!strcmp(component, "*") ? !KeyPathComponentIsIndex(path) : WordFind(component, "|", path, nt) < 0) return 0;
     pattern += np;
     path += nt;
     if (pattern < end)

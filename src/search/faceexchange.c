@@ -34,7 +34,7 @@ void SearchRigidPosition(ContactSearch s, PetscInt n, PetscReal t, PetscReal x[3
 }
 
 /* Where the nodes of a master face are. */
-static void FacePositions(ContactSearch s, PetscInt f, const PetscReal *u, PetscReal t, PetscReal *x)
+static void FacePointPositions(ContactSearch s, PetscInt f, const PetscReal *u, PetscReal t, PetscReal *x)
 {
   const int    dim   = s->mesh->dim;
   const Facet *facet = &s->master->faces[f];
@@ -70,7 +70,7 @@ void SearchMasterBox(ContactSearch s, const PetscReal *u, PetscReal t, PetscReal
   for (PetscInt f = 0; f < s->master->n_faces; f++) {
     PetscReal x[FACE_MAX_NODES * 3];
 
-    FacePositions(s, f, u, t, x);
+    FacePointPositions(s, f, u, t, x);
     for (int a = 0; a < ElementGet(s->master->faces[f].type)->nodes; a++) BoxAdd(box, dim, &x[a * dim]);
   }
 }
@@ -106,7 +106,7 @@ static PetscBool ReachesBox(const void *context, PetscInt f, PetscMPIInt r)
   const Reach *reach = context;
   PetscReal    x[FACE_MAX_NODES * 3];
 
-  FacePositions(reach->s, f, reach->u, 0, x);
+  FacePointPositions(reach->s, f, reach->u, 0, x);
   return SomeImageMeets(reach->s, ElementGet(reach->s->master->faces[f].type)->nodes, x, &reach->boxes[6 * r], reach->distance);
 }
 
@@ -131,7 +131,7 @@ PetscErrorCode SearchPickRigidFaces(ContactSearch s, const NodeGeometry *geometr
   for (PetscInt f = 0; f < s->master->n_faces; f++) {
     PetscReal x[FACE_MAX_NODES * 3];
 
-    FacePositions(s, f, NULL, t, x);
+    FacePointPositions(s, f, NULL, t, x);
     if (!SomeImageMeets(s, ElementGet(s->master->faces[f].type)->nodes, x, box, distance)) continue;
     FaceRecordFromSurface(s->master, geometry, s->offset, f, &(*records)[(*n_records)++]);
   }

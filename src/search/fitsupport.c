@@ -3,7 +3,7 @@
 #include "base/timing.h"
 
 /* Points are gathered a little beyond the support (rho^2 up to this), so that those which enter while a solve lasts are in the list. */
-#define SEARCH_FIT_MARGIN PetscSqr(1 + LISTS_MARGIN)
+#define SEARCH_FIT_MARGIN PetscSqr(1 + NEIGHBOUR_LISTS_MARGIN)
 /* On regular meshes points lie exactly on the border of the support; this much beyond still counts as inside, and round-off decides nothing. */
 #define SEARCH_FIT_TIE 1e-6
 
@@ -23,7 +23,7 @@ static const struct {
 };
 
 /* Unit normal at the centre of a candidate in the reference position. */
-static void ReferenceNormal(ContactLists lists, const Candidate *c, PetscReal normal[3])
+static void ReferenceNormal(NeighbourLists lists, const Candidate *c, PetscReal normal[3])
 {
   Candidate at_rest = *c;
   PetscReal x[FACE_MAX_NODES * 3];
@@ -35,7 +35,7 @@ static void ReferenceNormal(ContactLists lists, const Candidate *c, PetscReal no
 }
 
 /* What the quadrature points of a candidate know of the spacing: area and second moments of their face. */
-static void FaceSpacing(Fitting *fit, PetscInt candidate)
+static void FaceSpacing(FitSupport *fit, PetscInt candidate)
 {
   const Facet    *facet = &fit->view.facets[candidate];
   const FaceRule *rule  = FaceRuleGet(facet->type, 0);
@@ -64,7 +64,7 @@ static void FaceSpacing(Fitting *fit, PetscInt candidate)
   for (int q = 0; q < rule->n; q++) first[q] = of_face;
 }
 
-PetscErrorCode FittingCreate(ContactSearch s, ContactLists lists, const SearchField *field, Fitting *fit)
+PetscErrorCode FitSupportCreate(ContactSearch s, NeighbourLists lists, const SearchField *field, FitSupport *fit)
 {
   const PetscInt   n          = field->n_candidates;
   const Candidate *candidates = field->candidates;
@@ -74,10 +74,10 @@ PetscErrorCode FittingCreate(ContactSearch s, ContactLists lists, const SearchFi
   PetscInt        *first = NULL;
 
   PetscFunctionBeginUser;
-  *fit = (Fitting){.s = s, .lists = lists};
+  *fit = (FitSupport){.s = s, .lists = lists};
   PetscCall(PetscMalloc5(3 * n, &fit->normals, 3 * n, &fit->reference, lists->n_points, &fit->geometry, n, &facets, lists->n_points * lists->dim, &x));
   PetscCall(PetscCalloc1(lists->n_nodes, &node_geometry));
-  ListsPointGeometry(s, lists, field, node_geometry, fit->geometry);
+  NeighbourListsPointGeometry(s, lists, field, node_geometry, fit->geometry);
   PetscCall(PetscFree(node_geometry));
   if (s->fit->integral) PetscCall(PetscMalloc1(n, &first));
   for (PetscInt i = 0; i < n; i++) {
@@ -95,7 +95,7 @@ PetscErrorCode FittingCreate(ContactSearch s, ContactLists lists, const SearchFi
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode FittingDestroy(Fitting *fit)
+PetscErrorCode FitSupportDestroy(FitSupport *fit)
 {
   Facet     *facets = (Facet *)fit->view.facets;
   PetscReal *x      = (PetscReal *)fit->view.x;
@@ -131,7 +131,7 @@ static void AddCovariance(double factor, const NodeGeometry *g, double covarianc
 
 /* Spacing of the points at a foot. Shape: the nodes' covariances, between the nodes by the shape functions, so that the support does not jump
    from facet to facet and keeps the symmetry of a ring around a node. Size: the mean over the facet's nodes, as those on a cut see one side only. */
-static void FootSpacing(const Fitting *fit, PetscInt f, const double *xi, double covariance[3][3], double *area)
+static void FootSpacing(const FitSupport *fit, PetscInt f, const double *xi, double covariance[3][3], double *area)
 {
   const Facet *facet = &fit->view.facets[f];
   const int    n = ElementGet(facet->type)->nodes, dim = fit->lists->dim;
@@ -153,7 +153,7 @@ static void FootSpacing(const Fitting *fit, PetscInt f, const double *xi, double
 
 /* Spacing for a fit through quadrature points: the mean over the faces that it sees. Forces spread by the fit are consistent nodal loads as far as
    neighbouring slave points share one support; its change from face to face by the local spacing costs 2 to 10 times the error of the patch test. */
-static void WindowSpacing(const Fitting *fit, PetscInt n, double covariance[3][3], double *area)
+static void WindowSpacing(const FitSupport *fit, PetscInt n, double covariance[3][3], double *area)
 {
   double sum = 0, faces = 0;
 
@@ -170,11 +170,11 @@ static void WindowSpacing(const Fitting *fit, PetscInt n, double covariance[3][3
   *area = sum / faces;
 }
 
-/* Weights of n points and their positions relative to the fit's origin, as of ListsRelative(); returns how many are inside the support. dim constant where this
+/* Weights of n points and their positions relative to the fit's origin, as of NeighbourListsRelative(); returns how many are inside the support. dim constant where this
    is called. */
-static inline PetscInt TakePoints(const int dim, Fitting *fit, const FitFoot *at, PetscInt n, const PetscReal *rho2)
+static inline PetscInt TakePoints(const int dim, FitSupport *fit, const FitFoot *at, PetscInt n, const PetscReal *rho2)
 {
-  const ContactLists lists = fit->lists;
+  const NeighbourLists lists = fit->lists;
   const PetscReal   *X = lists->point_X, *u = lists->point_u;
   PetscInt           inside = 0;
 
@@ -192,7 +192,7 @@ static inline PetscInt TakePoints(const int dim, Fitting *fit, const FitFoot *at
 
 /* Tries one rung at a foot: points, frame, metric into fit and problem; true when every guard holds. Quadrature points come in clusters, whose
    number says nothing: the pivot does. */
-static PetscErrorCode FitRung(Fitting *fit, const FitFoot *at, int rung, FitProblem *problem, FitResult *result, PetscBool *holds)
+static PetscErrorCode FitRung(FitSupport *fit, const FitFoot *at, int rung, FitProblem *problem, FitResult *result, PetscBool *holds)
 {
   const FitSettings *settings = fit->s->fit;
   const int          dim = fit->lists->dim, degree = Ladder[rung].degree ? PetscMin(Ladder[rung].degree, settings->degree) : settings->degree;
@@ -223,12 +223,12 @@ static PetscErrorCode FitRung(Fitting *fit, const FitFoot *at, int rung, FitProb
     }
     if (pass == 0 && !FitFrame(dim, problem->n, fit->x, fit->taper, at->outward, problem->frame)) PetscFunctionReturn(PETSC_SUCCESS);
   }
-  *holds = FitEvaluate(problem, FIT_GAP, fit->workspace, result) && (result->guards & ~FIT_FEW_POINTS) == FIT_HOLDS ? PETSC_TRUE : PETSC_FALSE;
+  *holds = DiffuseFitEvaluate(problem, FIT_GAP, fit->workspace, result) && (result->guards & ~FIT_FEW_POINTS) == FIT_HOLDS ? PETSC_TRUE : PETSC_FALSE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* Climbs down the ladder until a fit holds; *rung is where it stands, RUNG_FACET: nowhere. problem and result speak of fit's arrays. */
-PetscErrorCode FittingClimb(Fitting *fit, const FitFoot *at, FitProblem *problem, FitResult *result, int *rung)
+PetscErrorCode FitSupportClimb(FitSupport *fit, const FitFoot *at, FitProblem *problem, FitResult *result, int *rung)
 {
   PetscBool holds = PETSC_FALSE;
 
@@ -261,9 +261,9 @@ static inline PetscReal FitResidual(const int dim, const FitProblem *problem, co
 }
 
 /* Fits the surface for one slave point and writes what holds into its list, which starts at first. */
-PetscErrorCode FittingSlave(Fitting *fit, const Nearest *look, PetscInt q, PetscInt first, ListBuffer *buffer)
+PetscErrorCode FitSupportSlave(FitSupport *fit, const Nearest *look, PetscInt q, PetscInt first, ListBuffer *buffer)
 {
-  ContactLists     lists = fit->lists;
+  NeighbourLists     lists = fit->lists;
   const Candidate *best  = &look->candidates[look->best];
   FitFoot          at    = {
                 .facet = look->best,
@@ -280,7 +280,7 @@ PetscErrorCode FittingSlave(Fitting *fit, const Nearest *look, PetscInt q, Petsc
     at.foot[d] = look->x[d] - look->foot.gap * look->foot.normal[d];
   }
   TimingBegin(TIMING_FIT); /* two looks at the clock, 0.1 % of a ladder */
-  PetscCall(FittingClimb(fit, &at, &problem, &result, &lists->rung[q]));
+  PetscCall(FitSupportClimb(fit, &at, &problem, &result, &lists->rung[q]));
   TimingEnd(TIMING_FIT);
   if (lists->rung[q] == RUNG_FACET) PetscFunctionReturn(PETSC_SUCCESS);
   lists->fit_n[q]     = problem.n;

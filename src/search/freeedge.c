@@ -11,7 +11,7 @@ struct _n_FreeEdges {
   Mesh                mesh;
   Scene               scene;
   const SceneContact *contact;
-  Table               table; /* EDGE_COLUMNS */
+  GatherTable               table; /* EDGE_COLUMNS */
 };
 
 /* Are all the corners on one of the planes beyond which the pair continues as its mirror image (the axis of revolution is one)? */
@@ -80,7 +80,7 @@ static PetscErrorCode GatherEdges(FreeEdges edges, const MeshGroup *surface)
       }
     }
   }
-  PetscCall(TableGather(mesh->comm, EDGE_COLUMNS, n, rows, &edges->table));
+  PetscCall(GatherTableCreate(mesh->comm, EDGE_COLUMNS, n, rows, &edges->table));
   PetscCall(PetscFree(rows));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -95,7 +95,7 @@ PetscErrorCode FreeEdgesCreate(Mesh mesh, Scene scene, const SceneContact *conta
 {
   FreeEdges edges;
   PetscInt  kept = 0;
-  Table    *table;
+  GatherTable    *table;
 
   PetscFunctionBeginUser;
   PetscCall(PetscNew(&edges));
@@ -107,7 +107,7 @@ PetscErrorCode FreeEdgesCreate(Mesh mesh, Scene scene, const SceneContact *conta
   for (PetscInt i = 0, next; i < table->n; i = next) {
     const PetscReal *row = &table->row[i * EDGE_COLUMNS];
 
-    for (next = i + 1; next < table->n && !TableCompare(row, &table->row[next * EDGE_COLUMNS]); next++) {}
+    for (next = i + 1; next < table->n && !GatherTableCompare(row, &table->row[next * EDGE_COLUMNS]); next++) {}
     if (next > i + 1 || row[EDGE_SYMMETRIC] > 0.0) continue;
     PetscCall(PetscArraymove(&table->row[kept++ * EDGE_COLUMNS], row, EDGE_COLUMNS));
   }
@@ -121,7 +121,7 @@ PetscErrorCode FreeEdgesDestroy(FreeEdges *edges)
 {
   PetscFunctionBeginUser;
   if (!*edges) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(TableDestroy(&(*edges)->table));
+  PetscCall(GatherTableDestroy(&(*edges)->table));
   PetscCall(PetscFree(*edges));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

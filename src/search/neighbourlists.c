@@ -2,7 +2,7 @@
 
 /* Numbers the contact nodes (slave nodes and nodes of the listed faces), makes the star forest to their owners, and rewrites the records'
    facets in these numbers. */
-PetscErrorCode ListsCreateNodes(ContactSearch s, SearchField *field, ContactLists lists)
+PetscErrorCode NeighbourListsCreateNodes(ContactSearch s, SearchField *field, NeighbourLists lists)
 {
   Mesh            mesh      = s->mesh;
   const int       dim       = mesh->dim;
@@ -65,11 +65,11 @@ PetscErrorCode ListsCreateNodes(ContactSearch s, SearchField *field, ContactList
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ListsBroadcast - values of the contact nodes from those of the mesh's nodes.
+/* NeighbourListsBroadcast - values of the contact nodes from those of the mesh's nodes.
 
    Collective. x[mesh n_nodes*dim]: local, read at owned nodes; values[lists n_nodes*dim]: nodes of a rigid tool get their motion (length)
    from load parameter t to t_next. */
-PetscErrorCode ListsBroadcast(ContactSearch s, ContactLists lists, const PetscReal *x, PetscReal t, PetscReal t_next, PetscReal *values)
+PetscErrorCode NeighbourListsBroadcast(ContactSearch s, NeighbourLists lists, const PetscReal *x, PetscReal t, PetscReal t_next, PetscReal *values)
 {
   PetscFunctionBeginUser;
   PetscCall(PetscSFBcastBegin(lists->sf, lists->block, x, values, MPI_REPLACE));
@@ -84,10 +84,10 @@ PetscErrorCode ListsBroadcast(ContactSearch s, ContactLists lists, const PetscRe
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ListsReduce - the transpose of ListsBroadcast(): adds values[lists n_nodes*dim] to y[mesh n_nodes*dim] at the owners of the nodes.
+/* NeighbourListsReduce - the transpose of NeighbourListsBroadcast(): adds values[lists n_nodes*dim] to y[mesh n_nodes*dim] at the owners of the nodes.
 
    Collective. Values of nodes of a rigid tool go nowhere. */
-PetscErrorCode ListsReduce(ContactLists lists, const PetscReal *values, PetscReal *y)
+PetscErrorCode NeighbourListsReduce(NeighbourLists lists, const PetscReal *values, PetscReal *y)
 {
   PetscFunctionBeginUser;
   PetscCall(PetscSFReduceBegin(lists->sf, lists->block, values, y, MPI_SUM));
@@ -95,7 +95,7 @@ PetscErrorCode ListsReduce(ContactLists lists, const PetscReal *values, PetscRea
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode ListsUpdateNodes(ContactSearch s, ContactLists lists, const PetscReal *u, PetscReal t)
+PetscErrorCode NeighbourListsUpdateNodes(ContactSearch s, NeighbourLists lists, const PetscReal *u, PetscReal t)
 {
   PetscFunctionBeginUser;
   PetscCall(PetscSFBcastBegin(lists->sf, lists->block, u, lists->u, MPI_REPLACE));
@@ -120,7 +120,7 @@ static void Map(ContactSearch s, int dim, PetscInt n, const PetscInt *node, cons
   }
 }
 
-static void PointMap(ContactSearch s, ContactLists lists, PetscInt p, const PetscReal *x, PetscReal *y)
+static void PointMap(ContactSearch s, NeighbourLists lists, PetscInt p, const PetscReal *x, PetscReal *y)
 {
   const PetscInt first = lists->point_ptr[p];
 
@@ -128,7 +128,7 @@ static void PointMap(ContactSearch s, ContactLists lists, PetscInt p, const Pets
   for (int d = 0; d < lists->dim; d++) y[d] *= s->images[lists->point_image[p]].sign[d];
 }
 
-static void SlaveMap(ContactSearch s, ContactLists lists, PetscInt q, const PetscReal *x, PetscReal *y)
+static void SlaveMap(ContactSearch s, NeighbourLists lists, PetscInt q, const PetscReal *x, PetscReal *y)
 {
   const PetscInt first = lists->slave_ptr[q];
 
@@ -136,7 +136,7 @@ static void SlaveMap(ContactSearch s, ContactLists lists, PetscInt q, const Pets
 }
 
 /* On a rigid tool the offsets, which are those of its first position, turn with it. */
-static void TurnOffsets(ContactSearch s, ContactLists lists, PetscReal t)
+static void TurnOffsets(ContactSearch s, NeighbourLists lists, PetscReal t)
 {
   const int dim = lists->dim;
 
@@ -152,11 +152,11 @@ static void TurnOffsets(ContactSearch s, ContactLists lists, PetscReal t)
   }
 }
 
-/* ListsUpdate - moves contact nodes, fit points and slave points to (u, t); what is listed stays.
+/* NeighbourListsUpdate - moves contact nodes, fit points and slave points to (u, t); what is listed stays.
 
    Collective. u[mesh n_nodes*dim]: local displacements (length), read at owned nodes. *moved: this rank's are not where they were, or t is another;
    may be NULL. */
-PetscErrorCode ListsUpdate(ContactSearch s, ContactLists lists, const PetscReal *u, PetscReal t, PetscBool *moved)
+PetscErrorCode NeighbourListsUpdate(ContactSearch s, NeighbourLists lists, const PetscReal *u, PetscReal t, PetscBool *moved)
 {
   const PetscInt  n     = lists->n_nodes * lists->dim;
   const PetscBool turns = (PetscBool)(s->fit->integral && s->master && s->master->rigid);
@@ -166,7 +166,7 @@ PetscErrorCode ListsUpdate(ContactSearch s, ContactLists lists, const PetscReal 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(n, &before));
   PetscCall(PetscArraycpy(before, lists->u, n));
-  PetscCall(ListsUpdateNodes(s, lists, u, t));
+  PetscCall(NeighbourListsUpdateNodes(s, lists, u, t));
   PetscCall(PetscArraycmp(before, lists->u, n, &same));
   PetscCall(PetscFree(before));
   lists->made = (PetscBool)(same && !turns && (lists->made || PetscIsNanReal(lists->t))); /* t: the lists are being made */
@@ -195,7 +195,7 @@ static int CanonicalImage(ContactSearch s, const PetscReal *X, int image, int *p
   return image;
 }
 
-static PetscErrorCode ListsAllocatePoints(ContactLists lists, PetscInt room, PetscInt entries)
+static PetscErrorCode NeighbourListsAllocatePoints(NeighbourLists lists, PetscInt room, PetscInt entries)
 {
   const int dim = lists->dim;
 
@@ -209,7 +209,7 @@ static PetscErrorCode ListsAllocatePoints(ContactLists lists, PetscInt room, Pet
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static void ListsAddPoint(ContactLists lists, int n, const int *nodes, const double *S, int image, PetscReal weight, long key)
+static void NeighbourListsAddPoint(NeighbourLists lists, int n, const int *nodes, const double *S, int image, PetscReal weight, long key)
 {
   const PetscInt p = lists->n_points++;
   PetscInt       k = lists->point_ptr[p];
@@ -227,7 +227,7 @@ static void ListsAddPoint(ContactLists lists, int n, const int *nodes, const dou
 
 /* The points that are nodes or images of nodes: those that the facets stand on. Candidates are left in numbers of contact nodes; number[]: point of
    an image of a node, or -1. */
-static void ListsAddNodePoints(ContactSearch s, ContactLists lists, SearchField *field, PetscInt *number)
+static void NeighbourListsAddNodePoints(ContactSearch s, NeighbourLists lists, SearchField *field, PetscInt *number)
 {
   for (PetscInt c = 0; c < field->n_candidates; c++) {
     Candidate *candidate = &field->candidates[c];
@@ -240,14 +240,14 @@ static void ListsAddNodePoints(ContactSearch s, ContactLists lists, SearchField 
 
       if (*p < 0) {
         *p = lists->n_points; /* what the faces on this side give to a node on a plane is half of its whole */
-        ListsAddPoint(lists, 1, &node, NULL, image, 1 << planes, (2L * lists->node_id[node] + (node >= lists->n_deformable)) * SURFACE_MAX_IMAGES + image);
+        NeighbourListsAddPoint(lists, 1, &node, NULL, image, 1 << planes, (2L * lists->node_id[node] + (node >= lists->n_deformable)) * SURFACE_MAX_IMAGES + image);
       }
     }
   }
 }
 
 /* Writes the entries of a face's map for one of its points: number of the node in the lists, image, share. */
-static PetscErrorCode TakeMap(ContactLists lists, const FaceMaps *maps, PetscInt face, int point, PetscInt *node, int *side, PetscReal *S)
+static PetscErrorCode TakeMap(NeighbourLists lists, const FaceMaps *maps, PetscInt face, int point, PetscInt *node, int *side, PetscReal *S)
 {
   PetscFunctionBeginUser;
   for (PetscInt k = maps->ptr[face]; k < maps->ptr[face + 1]; k++) {
@@ -261,7 +261,7 @@ static PetscErrorCode TakeMap(ContactLists lists, const FaceMaps *maps, PetscInt
 }
 
 /* The point added last gets a map instead of shape functions, and the part of it that stands still instead of an offset. */
-static PetscErrorCode ListsMapPoint(ContactSearch s, ContactLists lists, const SearchField *field, const Candidate *candidate, int q)
+static PetscErrorCode NeighbourListsMapPoint(ContactSearch s, NeighbourLists lists, const SearchField *field, const Candidate *candidate, int q)
 {
   const PetscInt p = lists->n_points - 1, first = lists->point_ptr[p], r = candidate->record;
   PetscReal     *shift = &lists->point_offset[p * lists->dim];
@@ -275,7 +275,7 @@ static PetscErrorCode ListsMapPoint(ContactSearch s, ContactLists lists, const S
 }
 
 /* The quadrature points of the candidates, weighted by their reference area, with their offsets. */
-static PetscErrorCode ListsAddQuadraturePoints(ContactSearch s, ContactLists lists, SearchField *field)
+static PetscErrorCode NeighbourListsAddQuadraturePoints(ContactSearch s, NeighbourLists lists, SearchField *field)
 {
   const int dim = lists->dim;
 
@@ -293,16 +293,16 @@ static PetscErrorCode ListsAddQuadraturePoints(ContactSearch s, ContactLists lis
     FaceRuleAreas(rule, facet->type, dim, GEOMETRY_SOLID, X, area, NULL);
     for (int q = 0; q < rule->n; q++) {
       for (int d = 0; d < dim; d++) lists->point_offset[lists->n_points * dim + d] = s->images[candidate->image].sign[d] * record->offset[q * dim + d];
-      ListsAddPoint(lists, ElementGet(facet->type)->nodes, facet->nodes, rule->N[q], candidate->image, area[q] / PetscPowRealInt(s->master->mean_size, dim - 1),
+      NeighbourListsAddPoint(lists, ElementGet(facet->type)->nodes, facet->nodes, rule->N[q], candidate->image, area[q] / PetscPowRealInt(s->master->mean_size, dim - 1),
                     candidate->facet.tag * FACE_RULE_POINTS + q);
-      if (field->maps.n) PetscCall(ListsMapPoint(s, lists, field, candidate, q));
+      if (field->maps.n) PetscCall(NeighbourListsMapPoint(s, lists, field, candidate, q));
     }
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* Numbers the points that the candidates use, writes their maps, and rewrites the candidates' nodes in them. */
-PetscErrorCode ListsCreatePoints(ContactSearch s, ContactLists lists, SearchField *field)
+PetscErrorCode NeighbourListsCreatePoints(ContactSearch s, NeighbourLists lists, SearchField *field)
 {
   const int dim = lists->dim;
   PetscInt *number, nodes = s->n_images * lists->n_nodes, points = nodes, entries = nodes;
@@ -317,9 +317,9 @@ PetscErrorCode ListsCreatePoints(ContactSearch s, ContactLists lists, SearchFiel
   }
   PetscCall(PetscMalloc1(nodes, &number));
   for (PetscInt k = 0; k < nodes; k++) number[k] = -1;
-  PetscCall(ListsAllocatePoints(lists, points, entries));
-  ListsAddNodePoints(s, lists, field, number);
-  if (s->fit->integral) PetscCall(ListsAddQuadraturePoints(s, lists, field));
+  PetscCall(NeighbourListsAllocatePoints(lists, points, entries));
+  NeighbourListsAddNodePoints(s, lists, field, number);
+  if (s->fit->integral) PetscCall(NeighbourListsAddQuadraturePoints(s, lists, field));
   for (PetscInt c = 0; c < field->n_candidates; c++) {
     Candidate *candidate = &field->candidates[c];
 
@@ -343,7 +343,7 @@ PetscErrorCode ListsCreatePoints(ContactSearch s, ContactLists lists, SearchFiel
 }
 
 /* Normal, spacing and weight of the points: those of their nodes, reflected with them. */
-void ListsPointGeometry(ContactSearch s, ContactLists lists, const SearchField *field, NodeGeometry *node_geometry, NodeGeometry *geometry)
+void NeighbourListsPointGeometry(ContactSearch s, NeighbourLists lists, const SearchField *field, NodeGeometry *node_geometry, NodeGeometry *geometry)
 {
   for (PetscInt r = 0; r < field->n_records; r++) {
     const FaceRecord *record = &field->records[r];
@@ -382,7 +382,7 @@ void ListsPointGeometry(ContactSearch s, ContactLists lists, const SearchField *
 }
 
 /* What the slave points are made of: nodes of their faces, with fixed offsets. */
-static PetscErrorCode TakeSlaveShapes(ContactLists lists, SlavePoints slaves)
+static PetscErrorCode TakeSlaveShapes(NeighbourLists lists, SlavePoints slaves)
 {
   const PetscInt n = slaves->n, entries = slaves->ptr[n];
   PetscInt      *number;
@@ -400,7 +400,7 @@ static PetscErrorCode TakeSlaveShapes(ContactLists lists, SlavePoints slaves)
 }
 
 /* Or of the nodes of their faces' maps. */
-static PetscErrorCode TakeSlaveMaps(ContactSearch s, ContactLists lists)
+static PetscErrorCode TakeSlaveMaps(ContactSearch s, NeighbourLists lists)
 {
   SlavePoints slaves = s->slaves;
   PetscInt    end    = 0;
@@ -420,7 +420,7 @@ static PetscErrorCode TakeSlaveMaps(ContactSearch s, ContactLists lists)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode ListsCreateSlaves(ContactSearch s, ContactLists lists)
+PetscErrorCode NeighbourListsCreateSlaves(ContactSearch s, NeighbourLists lists)
 {
   const int   dim    = lists->dim;
   SlavePoints slaves = s->slaves;
@@ -448,9 +448,9 @@ PetscErrorCode ListsCreateSlaves(ContactSearch s, ContactLists lists)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ListsRelative - position x[dim] (length) of point p seen from slave point q: a difference of differences, so that a gap keeps its digits far from
+/* NeighbourListsRelative - position x[dim] (length) of point p seen from slave point q: a difference of differences, so that a gap keeps its digits far from
    the origin. Not collective. */
-void ListsRelative(ContactLists lists, PetscInt q, PetscInt p, PetscReal *x)
+void NeighbourListsRelative(NeighbourLists lists, PetscInt q, PetscInt p, PetscReal *x)
 {
   const int dim = lists->dim;
 
@@ -458,8 +458,8 @@ void ListsRelative(ContactLists lists, PetscInt q, PetscInt p, PetscReal *x)
     x[d] = (lists->point_X[p * dim + d] - lists->slave_X[q * dim + d]) + (lists->point_u[p * dim + d] - lists->slave_u[q * dim + d]);
 }
 
-/* ListsAlikeEnd - Not collective. */
-PetscInt ListsAlikeEnd(ContactLists lists, PetscInt p)
+/* NeighbourListsAlikeEnd - Not collective. */
+PetscInt NeighbourListsAlikeEnd(NeighbourLists lists, PetscInt p)
 {
   const PetscInt first = lists->point_ptr[p], n = lists->point_ptr[p + 1] - first;
   PetscInt       end = p + 1;
@@ -474,14 +474,14 @@ PetscInt ListsAlikeEnd(ContactLists lists, PetscInt p)
   return end;
 }
 
-/* ListsNearestSize - size (length) of the facet nearest to slave point q when the lists were made, 0 without any. Not collective. */
-PetscReal ListsNearestSize(ContactLists lists, PetscInt q)
+/* NeighbourListsNearestSize - size (length) of the facet nearest to slave point q when the lists were made, 0 without any. Not collective. */
+PetscReal NeighbourListsNearestSize(NeighbourLists lists, PetscInt q)
 {
   return lists->nearest[q] < 0 ? 0 : lists->facet_size[lists->facet_ptr[q] + lists->nearest[q]];
 }
 
 /* Sum of the fit points of a slave point, seen from it; dim constant where this is called. */
-static inline void SumPoints(const int dim, ContactLists lists, PetscInt q, PetscReal sum[3])
+static inline void SumPoints(const int dim, NeighbourLists lists, PetscInt q, PetscReal sum[3])
 {
   const PetscReal *X = lists->point_X, *u = lists->point_u, *X_0 = &lists->slave_X[q * dim], *u_0 = &lists->slave_u[q * dim];
   PetscReal        total[3] = {0, 0, 0};
@@ -494,10 +494,10 @@ static inline void SumPoints(const int dim, ContactLists lists, PetscInt q, Pets
   for (int d = 0; d < 3; d++) sum[d] = total[d];
 }
 
-/* ListsCentre - mean of the fit points of slave point q in the tangents of its frame, relative to it, in the present position (lengths).
+/* NeighbourListsCentre - mean of the fit points of slave point q in the tangents of its frame, relative to it, in the present position (lengths).
 
    Not collective. centre[2]: dim - 1 entries are used. */
-void ListsCentre(ContactLists lists, PetscInt q, PetscReal centre[2])
+void NeighbourListsCentre(NeighbourLists lists, PetscInt q, PetscReal centre[2])
 {
   const int        dim   = lists->dim;
   const PetscReal *frame = &lists->frame[9 * q];
@@ -512,24 +512,24 @@ void ListsCentre(ContactLists lists, PetscInt q, PetscReal centre[2])
     for (int d = 0; d < dim; d++) centre[a] += frame[3 * a + d] * sum[d] / lists->fit_n[q];
 }
 
-/* ListsSlip - Not collective. */
-PetscReal ListsSlip(ContactLists lists, PetscInt q)
+/* NeighbourListsSlip - Not collective. */
+PetscReal NeighbourListsSlip(NeighbourLists lists, PetscInt q)
 {
   const PetscReal *metric = &lists->metric[4 * q];
   PetscReal        slip[2], square = 0;
 
   if (!lists->fit_n[q]) return 0;
-  ListsCentre(lists, q, slip);
+  NeighbourListsCentre(lists, q, slip);
   for (int a = 0; a < 2; a++) slip[a] -= lists->centre[2 * q + a];
   for (int a = 0; a < lists->dim - 1; a++)
     for (int b = 0; b < lists->dim - 1; b++) square += slip[a] * metric[2 * a + b] * slip[b];
   return PetscSqrtReal(square);
 }
 
-/* ListsDestroy - Collective. */
-PetscErrorCode ListsDestroy(ContactLists *lists)
+/* NeighbourListsDestroy - Collective. */
+PetscErrorCode NeighbourListsDestroy(NeighbourLists *lists)
 {
-  ContactLists l = *lists;
+  NeighbourLists l = *lists;
 
   PetscFunctionBeginUser;
   if (!l) PetscFunctionReturn(PETSC_SUCCESS);

@@ -1,5 +1,5 @@
 /* What a rank holds of a pair while the lists stand still: contact nodes, the fit points and slave points that are made of them, and for each
-   slave point the facets and fit points it is measured against. The lists stay while the positions move (ListsUpdate()). */
+   slave point the facets and fit points it is measured against. The lists stay while the positions move (NeighbourListsUpdate()). */
 #pragma once
 #include "smooth/diffusefit.h"
 #include "search/surface.h"
@@ -7,7 +7,7 @@
 typedef struct _n_ContactSearch *ContactSearch; /* search.h */
 
 /* Lists reach this much beyond the support of a fit, in supports: so far a slave point may slide while they stand still. */
-#define LISTS_MARGIN 0.3
+#define NEIGHBOUR_LISTS_MARGIN 0.3
 
 /* Which rung of the ladder a slave point stands on: fits of falling quality, then the facets. */
 enum { RUNG_FACET = -1, RUNG_PLAIN = 0, RUNG_WIDER = 4, RUNG_DEGREE_2 = 6, RUNG_LINEAR = 7, RUNGS = 8 };
@@ -54,20 +54,20 @@ typedef struct {
   PetscReal *facet_size;
   int       *nearest; /* of each slave point's facets the nearest when the lists were made; -1: it has none */
   PetscReal *kappa;   /* curvature of the master near each slave point: turn of normals over distance; 0: flat or no facet */
-} * ContactLists;
+} * NeighbourLists;
 
-PetscErrorCode ListsDestroy(ContactLists *);
+PetscErrorCode NeighbourListsDestroy(NeighbourLists *);
 /* Positions of contact nodes, fit points and slave points for local displacements u at t; *moved (may be NULL): not where they were. Collective. */
-PetscErrorCode ListsUpdate(ContactSearch, ContactLists, const PetscReal *u, PetscReal t, PetscBool *moved);
+PetscErrorCode NeighbourListsUpdate(ContactSearch, NeighbourLists, const PetscReal *u, PetscReal t, PetscBool *moved);
 /* x[dim]: point p seen from slave point q at the last update. Not collective. */
-void ListsRelative(ContactLists, PetscInt q, PetscInt p, PetscReal *x);
+void NeighbourListsRelative(NeighbourLists, PetscInt q, PetscInt p, PetscReal *x);
 /* Where the run of points ends that are made of the same images of nodes as point p: those of a face. Not collective. */
-PetscInt ListsAlikeEnd(ContactLists, PetscInt p);
+PetscInt NeighbourListsAlikeEnd(NeighbourLists, PetscInt p);
 /* Size (length) of the facet nearest to slave point q, 0 without any. Not collective. */
-PetscReal ListsNearestSize(ContactLists, PetscInt q);
+PetscReal NeighbourListsNearestSize(NeighbourLists, PetscInt q);
 /* How far slave point q has slid over its fit points since the lists were made, in supports; 0 without a fit. Not collective. */
-PetscReal ListsSlip(ContactLists, PetscInt q);
+PetscReal NeighbourListsSlip(NeighbourLists, PetscInt q);
 /* Values of the contact nodes (n_nodes*dim) from local values x (n_nodes of the mesh * dim); rigid nodes get their motion from t to t_next. Collective. */
-PetscErrorCode ListsBroadcast(ContactSearch, ContactLists, const PetscReal *x, PetscReal t, PetscReal t_next, PetscReal *values);
+PetscErrorCode NeighbourListsBroadcast(ContactSearch, NeighbourLists, const PetscReal *x, PetscReal t, PetscReal t_next, PetscReal *values);
 /* Adds values of the contact nodes (n_nodes*dim) to y (local), complete at owned nodes; rigid nodes are left out. Collective. */
-PetscErrorCode ListsReduce(ContactLists, const PetscReal *values, PetscReal *y);
+PetscErrorCode NeighbourListsReduce(NeighbourLists, const PetscReal *values, PetscReal *y);

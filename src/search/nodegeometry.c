@@ -23,7 +23,7 @@ static PetscErrorCode SumOverRanks(ContactSurface surface, PetscInt block, Petsc
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static void FacePositions(ContactSurface surface, const Facet *face, const PetscReal *x, double *X)
+static void FaceNodePositions(ContactSurface surface, const Facet *face, const PetscReal *x, double *X)
 {
   const int dim = surface->mesh->dim;
 
@@ -38,9 +38,9 @@ static void AddFace(ContactSurface surface, const Facet *face, const PetscReal *
   const Geometry plane = dim == 3 ? GEOMETRY_SOLID : GEOMETRY_PLANE_STRAIN;
   double         X[FACE_MAX_NODES * 3], area[FACE_MAX_NODES] = {0}, tributary[FACE_MAX_NODES] = {0}, normal[FACE_MAX_NODES * 3] = {0}, total = 0;
 
-  FacePositions(surface, face, reference, X);
+  FaceNodePositions(surface, face, reference, X);
   FaceAreaKernel(face->type, dim, plane, X, tributary, NULL);
-  FacePositions(surface, face, x, X);
+  FaceNodePositions(surface, face, x, X);
   FaceAreaKernel(face->type, dim, plane, X, area, normal);
   for (int a = 0; a < n; a++) total += area[a];
   for (int a = 0; a < n; a++) {
@@ -155,14 +155,14 @@ static void FaceVector(ContactSurface surface, const Facet *face, const PetscRea
   const int dim = surface->mesh->dim;
   double    X[FACE_MAX_NODES * 3], area[FACE_MAX_NODES] = {0}, normal[FACE_MAX_NODES * 3] = {0};
 
-  FacePositions(surface, face, x, X);
+  FaceNodePositions(surface, face, x, X);
   FaceAreaKernel(face->type, dim, dim == 3 ? GEOMETRY_SOLID : GEOMETRY_PLANE_STRAIN, X, area, normal);
   vector[0] = vector[1] = vector[2] = 0;
   for (int a = 0; a < ElementGet(face->type)->nodes; a++)
     for (int d = 0; d < dim; d++) vector[d] += normal[a * dim + d];
 }
 
-static PetscReal Length(const PetscReal v[3])
+static PetscReal VectorLength(const PetscReal v[3])
 {
   return PetscSqrtReal(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
 }
@@ -196,13 +196,13 @@ PetscErrorCode SurfaceMeanNormal(ContactSurface surface, Loads loads, int n_imag
   for (int m = 0; m < n_images; m++) {
     for (int d = 0; d < 3; d++) normal[d] = images[m].sign[d] < 0 ? 0 : normal[d];
   }
-  length = Length(normal);
+  length = VectorLength(normal);
   for (int d = 0; d < 3 && length > 0; d++) normal[d] /= length;
   if (cosine) {
     *cosine = 1;
     for (PetscInt f = 0; f < surface->n_faces; f++) {
       FaceVector(surface, &surface->faces[f], x, vector);
-      *cosine = PetscMin(*cosine, (vector[0] * normal[0] + vector[1] * normal[1] + vector[2] * normal[2]) / Length(vector));
+      *cosine = PetscMin(*cosine, (vector[0] * normal[0] + vector[1] * normal[1] + vector[2] * normal[2]) / VectorLength(vector));
     }
     if (surface->group) PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, cosine, 1, MPIU_REAL, MPI_MIN, surface->mesh->comm));
   }

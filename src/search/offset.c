@@ -59,7 +59,7 @@ typedef struct {
 } OffsetFace;
 
 /* The surface's own nodal fit about point q of a face, in the face's frame; nodes[a]: the face's nodes there. *rung: RUNG_FACET without one. */
-static PetscErrorCode FitAt(Fitting *fit, const OffsetFace *face, int q, FitProblem *problem, FitResult *result, int *rung, double (*nodes)[2])
+static PetscErrorCode FitAt(FitSupport *fit, const OffsetFace *face, int q, FitProblem *problem, FitResult *result, int *rung, double (*nodes)[2])
 {
   const int dim = fit->lists->dim, n = ElementGet(face->facet->type)->nodes;
   FitFoot   at = {
@@ -75,7 +75,7 @@ static PetscErrorCode FitAt(Fitting *fit, const OffsetFace *face, int q, FitProb
     at.foot[d]    = at.X[d];
     at.outward[d] = face->normal[3 * q + d];
   }
-  PetscCall(FittingClimb(fit, &at, problem, result, rung));
+  PetscCall(FitSupportClimb(fit, &at, problem, result, rung));
   for (int a = 0; a < n && *rung != RUNG_FACET; a++) {
     for (int k = 0; k < dim - 1; k++) {
       nodes[a][k] = 0;
@@ -86,7 +86,7 @@ static PetscErrorCode FitAt(Fitting *fit, const OffsetFace *face, int q, FitProb
 }
 
 /* b = (f(0) - sum_a N_a f(s_a)) n at one quadrature point: f the fit about it in the face's frame, s_a the face's nodes there. */
-static PetscErrorCode OffsetAt(Fitting *fit, const OffsetFace *face, int q, PetscReal *b)
+static PetscErrorCode OffsetAt(FitSupport *fit, const OffsetFace *face, int q, PetscReal *b)
 {
   const int  dim = fit->lists->dim;
   FitProblem problem;
@@ -106,7 +106,7 @@ static PetscErrorCode OffsetAt(Fitting *fit, const OffsetFace *face, int q, Pets
 
 /* The same sagitta as a combination of the fit's points, *n of them, in fit->points: shape[*n]. It vanishes where these lie on a plane, so that taken of their
    whole positions it is along the normal and turns with the surface. */
-static PetscErrorCode SagittaShape(Fitting *fit, const OffsetFace *face, int q, double *shape, PetscInt *n)
+static PetscErrorCode SagittaShape(FitSupport *fit, const OffsetFace *face, int q, double *shape, PetscInt *n)
 {
   const int  dim = fit->lists->dim, corners = ElementGet(face->facet->type)->nodes;
   FitProblem problem;
@@ -134,23 +134,23 @@ static int CandidateCompare(const void *a, const void *b)
 }
 
 /* What is done with a face while the fits about it can be made */
-typedef PetscErrorCode (*OffsetFaceFn)(Offsets, Fitting *, const OffsetFace *, PetscInt f, void *context);
+typedef PetscErrorCode (*OffsetFaceFn)(Offsets, FitSupport *, const OffsetFace *, PetscInt f, void *context);
 
 /* Visits all own faces with the surface at (u, t). */
 static PetscErrorCode OffsetsVisit(Offsets o, const PetscReal *u, PetscReal t, OffsetFaceFn visit, void *context)
 {
   ContactSearch s   = o->search;
   const int     dim = s->mesh->dim;
-  ContactLists  lists;
+  NeighbourLists  lists;
   SearchField   field;
-  Fitting       fit;
+  FitSupport       fit;
   PetscReal     box[6];
 
   PetscFunctionBeginUser;
   PetscCall(PetscNew(&lists));
   SearchMasterBox(s, u, t, box);
   PetscCall(SearchFieldCreate(s, u, t, box, SearchFitReach(s), lists, &field));
-  PetscCall(FittingCreate(s, lists, &field, &fit));
+  PetscCall(FitSupportCreate(s, lists, &field, &fit));
   for (PetscInt f = 0; f < o->surface->n_faces; f++) {
     const Facet    *facet  = &o->surface->faces[f];
     const Candidate wanted = {.facet = {.tag = facet->tag * SURFACE_MAX_IMAGES}},
@@ -163,13 +163,13 @@ static PetscErrorCode OffsetsVisit(Offsets o, const PetscReal *u, PetscReal t, O
     FaceRuleAreas(face.rule, facet->type, dim, GEOMETRY_SOLID, face.x, area, face.normal);
     PetscCall(visit(o, &fit, &face, f, context));
   }
-  PetscCall(FittingDestroy(&fit));
+  PetscCall(FitSupportDestroy(&fit));
   PetscCall(SearchFieldDestroy(&field));
-  PetscCall(ListsDestroy(&lists));
+  PetscCall(NeighbourListsDestroy(&lists));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode TakeFace(Offsets o, Fitting *fit, const OffsetFace *face, PetscInt f, void *context)
+static PetscErrorCode TakeFace(Offsets o, FitSupport *fit, const OffsetFace *face, PetscInt f, void *context)
 {
   PetscReal *offset = context;
 
@@ -185,7 +185,7 @@ typedef struct {
 } MapsInMaking;
 
 /* Adds S of point q of the face at hand at a point of the lists, which is an image of a node. */
-static PetscErrorCode AddEntry(FaceMaps *maps, MapsInMaking *making, ContactLists lists, PetscInt point, int q, double S)
+static PetscErrorCode AddEntry(FaceMaps *maps, MapsInMaking *making, NeighbourLists lists, PetscInt point, int q, double S)
 {
   PetscInt          *end  = &maps->ptr[maps->n + 1];
   const PetscInt     node = lists->point_node[lists->point_ptr[point]];
@@ -207,11 +207,11 @@ static PetscErrorCode AddEntry(FaceMaps *maps, MapsInMaking *making, ContactList
 }
 
 /* The map of a face: its shape functions and the coefficients of the sagittas. Nodes: first its own. */
-static PetscErrorCode MapFace(Offsets o, Fitting *fit, const OffsetFace *face, PetscInt f, void *context)
+static PetscErrorCode MapFace(Offsets o, FitSupport *fit, const OffsetFace *face, PetscInt f, void *context)
 {
   FaceMaps     *maps   = &o->maps;
   MapsInMaking *making = context;
-  ContactLists  lists  = fit->lists;
+  NeighbourLists  lists  = fit->lists;
   double        shape[FIT_MAX_POINTS];
   PetscInt      n;
 
@@ -345,13 +345,13 @@ PetscErrorCode OffsetsArchive(Offsets o, Archive archive, const char *name)
   const char *names[] = {"now", "before"};
   PetscInt   *tag;
   char        path[PETSC_MAX_PATH_LEN];
-  Rows        faces;
+  Hdf5Table        faces;
 
   PetscFunctionBeginUser;
   if (o->once || o->kind != OFFSETS_HELD) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscMalloc1(o->surface->n_faces, &tag));
   for (PetscInt f = 0; f < o->surface->n_faces; f++) tag[f] = o->surface->faces[f].tag;
-  PetscCall(RowsCreateByKey(o->search->mesh->comm, o->surface->n_faces, tag, &faces));
+  PetscCall(Hdf5TableCreateByKey(o->search->mesh->comm, o->surface->n_faces, tag, &faces));
   PetscCall(PetscFree(tag));
   for (int k = 0; k < 2; k++) {
     PetscCall(PetscSNPrintf(path, sizeof(path), "%s/%s", name, names[k]));
@@ -361,6 +361,6 @@ PetscErrorCode OffsetsArchive(Offsets o, Archive archive, const char *name)
   PetscCall(ArchiveReals(archive, path, 2, time));
   o->t_now    = time[0];
   o->t_before = time[1];
-  PetscCall(RowsDestroy(&faces));
+  PetscCall(Hdf5TableDestroy(&faces));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -81,7 +81,7 @@ void SearchCandidatePlace(int dim, const PetscReal *x, PetscReal size, Candidate
 }
 
 /* Positions of a candidate's nodes while they are contact nodes still. */
-static void ImagePositions(ContactSearch s, ContactLists lists, const Candidate *c, PetscReal *x)
+static void ImagePositions(ContactSearch s, NeighbourLists lists, const Candidate *c, PetscReal *x)
 {
   const int dim = lists->dim;
 
@@ -94,7 +94,7 @@ static void ImagePositions(ContactSearch s, ContactLists lists, const Candidate 
 }
 
 /* Positions of a candidate's nodes once they are points. */
-static void CandidatePositions(ContactLists lists, const Candidate *c, PetscReal *x)
+static void CandidatePositions(NeighbourLists lists, const Candidate *c, PetscReal *x)
 {
   const int dim = lists->dim;
 
@@ -103,7 +103,7 @@ static void CandidatePositions(ContactLists lists, const Candidate *c, PetscReal
 }
 
 /* All faces and mirror images near a box, in an order that does not depend on the ranks. */
-static PetscErrorCode MakeCandidates(ContactSearch s, ContactLists lists, const PetscReal box[6], PetscReal distance, SearchField *field)
+static PetscErrorCode MakeCandidates(ContactSearch s, NeighbourLists lists, const PetscReal box[6], PetscReal distance, SearchField *field)
 {
   const int dim = lists->dim;
   PetscReal x[FACE_MAX_NODES * 3];
@@ -150,7 +150,7 @@ static PetscErrorCode FetchMaps(ContactSearch s, SearchField *field)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode SearchFieldCreate(ContactSearch s, const PetscReal *u, PetscReal t, const PetscReal box[6], PetscReal distance, ContactLists lists,
+PetscErrorCode SearchFieldCreate(ContactSearch s, const PetscReal *u, PetscReal t, const PetscReal box[6], PetscReal distance, NeighbourLists lists,
                                  SearchField *field)
 {
   Mesh          mesh = s->mesh;
@@ -179,10 +179,10 @@ PetscErrorCode SearchFieldCreate(ContactSearch s, const PetscReal *u, PetscReal 
   FaceRecordsSort(field->n_records, field->records);
   PetscCall(PetscFree(geometry));
   if (s->maps) PetscCall(FetchMaps(s, field));
-  PetscCall(ListsCreateNodes(s, field, lists));
-  PetscCall(ListsUpdateNodes(s, lists, u, t));
+  PetscCall(NeighbourListsCreateNodes(s, field, lists));
+  PetscCall(NeighbourListsUpdateNodes(s, lists, u, t));
   PetscCall(MakeCandidates(s, lists, box, distance, field));
-  PetscCall(ListsCreatePoints(s, lists, field));
+  PetscCall(NeighbourListsCreatePoints(s, lists, field));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -304,12 +304,12 @@ static int KeepFacing(const Nearest *look, int n, int *found)
 }
 
 /* Looks for the nearest facet of every slave point, lists it with what surrounds it, and fits the surface there. */
-static PetscErrorCode ListsFill(ContactSearch s, ContactLists lists, const PetscReal *normals, const SearchField *field, Fitting *fit, PetscReal motion)
+static PetscErrorCode NeighbourListsFill(ContactSearch s, NeighbourLists lists, const PetscReal *normals, const SearchField *field, FitSupport *fit, PetscReal motion)
 {
   const int        dim          = lists->dim;
   const PetscInt   n_candidates = field->n_candidates;
   const Candidate *candidates   = field->candidates;
-  Tree             tree;
+  BoxTree             tree;
   double          *lower, *upper;
   int             *found, count;
   ListBuffer       buffer = {0};
@@ -323,7 +323,7 @@ static PetscErrorCode ListsFill(ContactSearch s, ContactLists lists, const Petsc
     }
   }
   for (PetscInt p = 0; p < lists->n_points; p++) buffer.position[p] = -1;
-  PetscCheck(!TreeBuild(dim, (int)n_candidates, lower, upper, &tree), PETSC_COMM_SELF, PETSC_ERR_MEM, "no memory for the search tree");
+  PetscCheck(!BoxTreeBuild(dim, (int)n_candidates, lower, upper, &tree), PETSC_COMM_SELF, PETSC_ERR_MEM, "no memory for the search tree");
   for (PetscInt q = 0; q < lists->n_slaves; q++) {
     const PetscInt first = buffer.n_points;
     Nearest        look  = {.lists      = lists,
@@ -341,14 +341,14 @@ static PetscErrorCode ListsFill(ContactSearch s, ContactLists lists, const Petsc
     lists->facet_ptr[q] = buffer.n;
     lists->kappa[q]     = 0;
     lists->nearest[q]   = -1;
-    TreeClosest(tree, look.x, &bound, NearestVisit, &look);
+    BoxTreeClosest(tree, look.x, &bound, NearestVisit, &look);
     if (look.best < 0) continue;
-    count           = TreeNear(tree, look.x, look.least + s->margin + motion, (int)n_candidates, found);
+    count           = BoxTreeNear(tree, look.x, look.least + s->margin + motion, (int)n_candidates, found);
     count           = KeepFacing(&look, count, found);
     lists->kappa[q] = ListCurvature(&look, count, found);
     for (int i = 0; i < count; i++)
       if (found[i] == look.best) lists->nearest[q] = i;
-    if (fit) PetscCall(FittingSlave(fit, &look, q, first, &buffer));
+    if (fit) PetscCall(FitSupportSlave(fit, &look, q, first, &buffer));
     PetscCall(ListAddFacets(&look, count, found, field->records, first, &buffer));
   }
   lists->list_ptr[lists->n_slaves]  = buffer.n_points;
@@ -356,7 +356,7 @@ static PetscErrorCode ListsFill(ContactSearch s, ContactLists lists, const Petsc
   lists->list_point                 = buffer.point;
   lists->facet                      = buffer.facet;
   lists->facet_size                 = buffer.size;
-  TreeDestroy(&tree);
+  BoxTreeDestroy(&tree);
   PetscCall(PetscFree4(lower, upper, found, buffer.position));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -365,14 +365,14 @@ static PetscErrorCode ListsFill(ContactSearch s, ContactLists lists, const Petsc
 
    Collective. u[mesh n_nodes*dim]: local displacements (length), ghosts included; t: load parameter, for rigid tools; motion: relative
    motion (length) the lists must be good for. Listed is what faces the slave within SEARCH_MARGIN of the nearest facet, if that is within
-   SEARCH_REACH; order and content do not depend on the ranks. The caller destroys the lists with ListsDestroy(). */
-PetscErrorCode SearchLists(ContactSearch s, const PetscReal *u, PetscReal t, PetscReal motion, ContactLists *out)
+   SEARCH_REACH; order and content do not depend on the ranks. The caller destroys the lists with NeighbourListsDestroy(). */
+PetscErrorCode SearchLists(ContactSearch s, const PetscReal *u, PetscReal t, PetscReal motion, NeighbourLists *out)
 {
   const PetscReal distance = s->reach + PetscMax(s->margin, SearchFitReach(s)) + 2 * motion;
   PetscReal       box[6], *normals;
   SearchField     field;
-  ContactLists    lists;
-  Fitting         fit;
+  NeighbourLists    lists;
+  FitSupport         fit;
 
   PetscFunctionBeginUser;
   PetscCall(PetscNew(&lists));
@@ -380,15 +380,15 @@ PetscErrorCode SearchLists(ContactSearch s, const PetscReal *u, PetscReal t, Pet
   PetscCall(SlavePointsMove(s->slaves, u));
   SearchSlaveBox(s, box);
   PetscCall(SearchFieldCreate(s, u, t, box, distance, lists, &field));
-  PetscCall(ListsCreateSlaves(s, lists));
+  PetscCall(NeighbourListsCreateSlaves(s, lists));
   PetscCall(PetscMalloc1(3 * lists->n_slaves, &normals));
   PetscCall(SlavePointsNormals(s->slaves, u, normals));
-  if (s->fit->degree) PetscCall(FittingCreate(s, lists, &field, &fit));
+  if (s->fit->degree) PetscCall(FitSupportCreate(s, lists, &field, &fit));
   if (s->fit->degree && s->fit->global_frame) PetscCall(SurfaceMeanNormal(s->master, s->loads, s->n_images, s->images, u, t, fit.plane, NULL));
-  PetscCall(ListsFill(s, lists, normals, &field, s->fit->degree ? &fit : NULL, motion));
-  if (s->fit->degree) PetscCall(FittingDestroy(&fit));
-  PetscCall(ListsUpdate(s, lists, u, t, NULL));
-  for (PetscInt q = 0; q < lists->n_slaves; q++) ListsCentre(lists, q, &lists->centre[2 * q]);
+  PetscCall(NeighbourListsFill(s, lists, normals, &field, s->fit->degree ? &fit : NULL, motion));
+  if (s->fit->degree) PetscCall(FitSupportDestroy(&fit));
+  PetscCall(NeighbourListsUpdate(s, lists, u, t, NULL));
+  for (PetscInt q = 0; q < lists->n_slaves; q++) NeighbourListsCentre(lists, q, &lists->centre[2 * q]);
   PetscCall(PetscFree(normals));
   PetscCall(SearchFieldDestroy(&field));
   *out = lists;

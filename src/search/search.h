@@ -1,7 +1,7 @@
 /* Who may touch whom: for the slave points of this rank, the master facets near them, from whatever rank, with what is needed to follow
    their nodes. Knows no gaps beyond the distance of candidates, no penalty.
 
-   SearchLists() is called with the positions of the moment; the lists then stand still while the positions move (ListsUpdate()).
+   SearchLists() is called with the positions of the moment; the lists then stand still while the positions move (NeighbourListsUpdate()).
    Search goes in two stages: boxes of the ranks' slave nodes against boxes of facets to find the ranks, then a tree over the facets that
    arrived. There is no patch size to choose: the reach is two face sizes plus the largest motion asked for. */
 #pragma once
@@ -15,7 +15,7 @@ typedef struct {
   PetscBool      integral; /* through the quadrature points of the faces, weighted by area, instead of the nodes */
   double         support;  /* in spacings of the master's nodes */
   double         exponent; /* of the weight */
-  FitDerivatives derivatives;
+  FitDerivativeKind derivatives;
   PetscBool      global_frame;  /* one reference plane for all slave points */
   PetscReal      feature_angle; /* radians: lists end at sharper edges */
 } FitSettings;
@@ -27,6 +27,6 @@ PetscErrorCode SearchCreate(Mesh, Scene, Loads, ContactSurface master, PetscReal
                             SlavePoints slaves, const PetscReal *offset, const FaceMaps *maps, ContactSearch *);
 PetscErrorCode SearchDestroy(ContactSearch *);
 /* New lists for local displacements u at load parameter t, good for a relative motion of `motion`. Collective. */
-PetscErrorCode SearchLists(ContactSearch, const PetscReal *u, PetscReal t, PetscReal motion, ContactLists *);
+PetscErrorCode SearchLists(ContactSearch, const PetscReal *u, PetscReal t, PetscReal motion, NeighbourLists *);
 /* The signed distance of any point to the whole master without its mirror images, by every rank looking at its own facets. Collective. */
 PetscErrorCode SearchDistance(ContactSearch, const PetscReal *u, PetscReal t, const PetscReal x[3], PetscReal *gap);

@@ -4,7 +4,7 @@
 #include <math.h>
 #include <string.h>
 
-static double Length(const double a[3])
+static double VectorLength(const double a[3])
 {
   return sqrt(a[0] * a[0] + a[1] * a[1] + a[2] * a[2]);
 }
@@ -19,7 +19,7 @@ static void EvaluatePlane(const double x[3], const double axis[3], AnalyticResul
   }
 }
 
-static int EvaluateRound(const AnalyticMaster *master, int dim, const double x[3], const double axis[3], AnalyticResult *out)
+static int EvaluateRound(const AnalyticSurface *master, int dim, const double x[3], const double axis[3], AnalyticResult *out)
 {
   const double side = master->inside ? -1 : 1;
   double       P[3][3], r[3] = {0}, length;
@@ -30,7 +30,7 @@ static int EvaluateRound(const AnalyticMaster *master, int dim, const double x[3
       r[c] += P[c][d] * x[d];
     }
   }
-  length = Length(r);
+  length = VectorLength(r);
   if (!(length > ANALYTIC_CENTRE * master->radius)) return 0;
   out->gap       = side * (length - master->radius);
   out->curvature = 1 / master->radius;
@@ -41,15 +41,15 @@ static int EvaluateRound(const AnalyticMaster *master, int dim, const double x[3
   return 1;
 }
 
-/* AnalyticEvaluate - gap of a slave point to a rigid plane, cylinder or sphere, with first and second variation. Not collective.
+/* AnalyticSurfaceEvaluate - gap of a slave point to a rigid plane, cylinder or sphere, with first and second variation. Not collective.
 
    Input: master - its shape; dim - 2 or 3; x[dim] - slave point relative to the master's point
    Output: out - gap, normal, N[dim], M[dim*dim], curvature
 
    Returns 0, with nothing valid in out, on the axis of a cylinder or at the centre of a sphere, or where the axis has no length. */
-int AnalyticEvaluate(const AnalyticMaster *master, int dim, const double *x, AnalyticResult *out)
+int AnalyticSurfaceEvaluate(const AnalyticSurface *master, int dim, const double *x, AnalyticResult *out)
 {
-  const double length      = Length(master->axis);
+  const double length      = VectorLength(master->axis);
   double       position[3] = {0}, axis[3];
 
   memset(out, 0, sizeof(*out));

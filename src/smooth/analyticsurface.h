@@ -14,7 +14,7 @@ typedef struct {
   int           inside;  /* the body is around the slave point: a bore */
   double        axis[3]; /* plane: normal out of the body; cylinder: its axis; of any length but 0 */
   double        radius;
-} AnalyticMaster;
+} AnalyticSurface;
 
 typedef struct {
   double gap;       /* < 0: penetration */
@@ -25,4 +25,4 @@ typedef struct {
 } AnalyticResult;
 
 /* x[dim]: slave point relative to the master's point (on the plane, on the axis, the centre). Returns 0 on the axis or at the centre. */
-int AnalyticEvaluate(const AnalyticMaster *, int dim, const double *x, AnalyticResult *);
+int AnalyticSurfaceEvaluate(const AnalyticSurface *, int dim, const double *x, AnalyticResult *);

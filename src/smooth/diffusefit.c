@@ -140,7 +140,7 @@ LANES_INLINE void Assemble(const int m, const int degree, const int terms, doubl
 
 /* The shares of column k in `width` columns from j on, whose products with it are summed: its weighted values are in scratch. Where `take`, the shares of
    the column before, which are known, are taken out of them first. */
-LANES_INLINE void Project(const int take, const int width, const FitArrays *a, int k, int j, double inverse, FitState *s)
+LANES_INLINE void ProjectOnPlane(const int take, const int width, const FitArrays *a, int k, int j, double inverse, FitState *s)
 {
   Lanes *const       column     = a->basis + j * a->capacity;
   const Lanes *const before     = column - (take ? j - k + 1 : 0) * a->capacity;
@@ -166,11 +166,11 @@ LANES_INLINE void ProjectAll(const int take, const int terms, const FitArrays *a
 {
   int j = k + 1;
 
-  for (; j + BLOCK <= terms + 1; j += BLOCK) Project(take, BLOCK, a, k, j, inverse, s);
+  for (; j + BLOCK <= terms + 1; j += BLOCK) ProjectOnPlane(take, BLOCK, a, k, j, inverse, s);
   switch (terms + 1 - j) {
-  case 3: Project(take, 3, a, k, j, inverse, s); break;
-  case 2: Project(take, 2, a, k, j, inverse, s); break;
-  case 1: Project(take, 1, a, k, j, inverse, s); break;
+  case 3: ProjectOnPlane(take, 3, a, k, j, inverse, s); break;
+  case 2: ProjectOnPlane(take, 2, a, k, j, inverse, s); break;
+  case 1: ProjectOnPlane(take, 1, a, k, j, inverse, s); break;
   }
 }
 
@@ -268,17 +268,17 @@ LANES_INLINE void SurfaceAt(const int m, const int degree, const int terms, cons
 }
 
 /* Length of a vector in supports, or of what is as far from the ends of the numbers: hypot() guards against these, at many times the cost. */
-LANES_INLINE double Length(double a, double b)
+LANES_INLINE double VectorLength(double a, double b)
 {
   return sqrt(a * a + b * b);
 }
 
 static double SmallestEigenvalue(double (*a)[2])
 {
-  return 0.5 * (a[0][0] + a[1][1]) - Length(0.5 * (a[0][0] - a[1][1]), a[0][1]);
+  return 0.5 * (a[0][0] + a[1][1]) - VectorLength(0.5 * (a[0][0] - a[1][1]), a[0][1]);
 }
 
-static void Invert(double (*a)[2], double (*inverse)[2])
+static void InvertMetric(double (*a)[2], double (*inverse)[2])
 {
   const double determinant = a[0][0] * a[1][1] - a[0][1] * a[1][0];
 
@@ -302,12 +302,12 @@ LANES_INLINE int FindFoot(const int m, const int degree, const int terms, const 
     }
     if (size <= FIT_FOOT) break;
     if (iteration == FIT_ITERATIONS) return 0;
-    Invert(out->J, inverse);
+    InvertMetric(out->J, inverse);
     for (int c = 0; c < 2; c++) step[c] = -inverse[c][0] * (y[0] + at->q * at->g[0]) - inverse[c][1] * (y[1] + at->q * at->g[1]);
     for (int c = 0; c < m; c++) y[c] += step[c];
-    size = m == 1 ? fabs(B[0][0] * step[0]) : Length(B[0][0] * step[0] + B[0][1] * step[1], B[1][0] * step[0] + B[1][1] * step[1]);
+    size = m == 1 ? fabs(B[0][0] * step[0]) : VectorLength(B[0][0] * step[0] + B[0][1] * step[1], B[1][0] * step[0] + B[1][1] * step[1]);
   }
-  out->reach = m == 1 ? fabs(B[0][0] * y[0]) : Length(B[0][0] * y[0] + B[0][1] * y[1], B[1][0] * y[0] + B[1][1] * y[1]);
+  out->reach = m == 1 ? fabs(B[0][0] * y[0]) : VectorLength(B[0][0] * y[0] + B[0][1] * y[1], B[1][0] * y[0] + B[1][1] * y[1]);
   return SmallestEigenvalue(out->J) > FIT_FOCAL;
 }
 
@@ -339,7 +339,7 @@ LANES_INLINE void FootVariation(const int m, const int degree, const int terms, 
   Lanes  dp[MAX_TANGENTS][FIT_MAX_TERMS];
 
   memcpy(J, out->J, sizeof(J));
-  Invert(J, inverse);
+  InvertMetric(J, inverse);
   s->nu3 = 1 / sqrt(1 + at->g[0] * at->g[0] + at->g[1] * at->g[1]);
   for (int c = 0; c < m; c++) {
     dy[c][0] = -inverse[c][0] * at->g[0] - inverse[c][1] * at->g[1];
@@ -440,14 +440,14 @@ long FitWorkspace(int dim, int degree, int n)
   return ALIGNMENT / (long)sizeof(double) + (ARRAYS + terms + 2) * points + (product > factors ? product : factors);
 }
 
-/* FitEvaluate - gap, first and second variation of one slave point against the diffuse surface through its fit points. Not collective.
+/* DiffuseFitEvaluate - gap, first and second variation of one slave point against the diffuse surface through its fit points. Not collective.
 
    Input: in - the problem; want - surface only, gap, and Lambda with the shape values, and N, and M; workspace - FitWorkspace() doubles of any contents
    Output: out - see FitResult; arrays as its comment says
 
    Returns 1 if all that was wanted is there, 0 if there is no surface (FIT_NO_SURFACE) or no foot (FIT_NO_FOOT). Never NaN for finite input.
    Source: Chamoret et al. 2004, eqs 1 to 14; the closed forms of N and M are derived by the envelope theorem from g(alpha(x)). */
-int FitEvaluate(const FitProblem *in, FitWant want, double *workspace, FitResult *out)
+int DiffuseFitEvaluate(const FitProblem *in, FitWant want, double *workspace, FitResult *out)
 {
 #define EVALUATE(dim, degree, terms) return Evaluate(dim, degree, terms, in, want, workspace, out)
   INSTANTIATE(in, EVALUATE)
@@ -456,17 +456,17 @@ int FitEvaluate(const FitProblem *in, FitWant want, double *workspace, FitResult
   return 0;
 }
 
-/* FitEvaluateBatch - FitEvaluate() for n slave points. Not collective.
+/* DiffuseFitEvaluateBatch - DiffuseFitEvaluate() for n slave points. Not collective.
 
    Input: n - slave points; in[n], want - as there; workspace - FitWorkspace() doubles for the largest of them
    Output: out[n] - as there; guards tell what is missing
 
    Returns how many have all that was wanted. */
-int FitEvaluateBatch(int n, const FitProblem *in, FitWant want, double *workspace, FitResult *out)
+int DiffuseFitEvaluateBatch(int n, const FitProblem *in, FitWant want, double *workspace, FitResult *out)
 {
   int whole = 0;
 
-  for (int i = 0; i < n; i++) whole += FitEvaluate(&in[i], want, workspace, &out[i]);
+  for (int i = 0; i < n; i++) whole += DiffuseFitEvaluate(&in[i], want, workspace, &out[i]);
   return whole;
 }
 
@@ -504,7 +504,7 @@ double FitSurfaceHeight(const FitSurface *surface, const double *y, double *grad
   return 0;
 }
 
-LANES_INLINE int Shape(const int dim, const int degree, const int terms, const FitProblem *in, int n, const double *y, const double *factor, double *workspace,
+LANES_INLINE int FitShapeValues(const int dim, const int degree, const int terms, const FitProblem *in, int n, const double *y, const double *factor, double *workspace,
                        double *shape)
 {
   FitArrays a;
@@ -536,7 +536,7 @@ LANES_INLINE int Shape(const int dim, const int degree, const int terms, const F
    Returns 0, with all shape values 0, if there is no surface. */
 int FitShape(const FitProblem *in, int n, const double *y, const double *factor, double *workspace, double *shape)
 {
-#define SHAPE(dim, degree, terms) return Shape(dim, degree, terms, in, n, y, factor, workspace, shape)
+#define SHAPE(dim, degree, terms) return FitShapeValues(dim, degree, terms, in, n, y, factor, workspace, shape)
   INSTANTIATE(in, SHAPE)
 #undef SHAPE
   return 0;

@@ -2,7 +2,7 @@
    point: gap, first variation N and second variation M. Plain C: no PETSc, no MPI, no allocation.
    Source: Chamoret, Saillard, Rassineux, Bergheau, "New smoothing procedures in contact mechanics" (2004), eqs 1 to 14.
 
-   FitEvaluate() serves function, Jacobian and objective; frame and metric (fitframe.h), points and multipliers are contact state, held in a
+   DiffuseFitEvaluate() serves function, Jacobian and objective; frame and metric (fitframe.h), points and multipliers are contact state, held in a
    solve; the weights follow the positions. The kernel sees points, never elements or nodes. Only points inside the support take part: the
    result lists them, and N and M run over the slave point and these.
 
@@ -38,7 +38,7 @@ typedef enum {
 typedef enum { FIT_SURFACE, FIT_GAP_ONLY, FIT_GAP, FIT_FIRST_VARIATION, FIT_SECOND_VARIATION } FitWant;
 
 /* Tangent only: M with or without the derivatives of the weights ("diffuse derivatives"); gap and N are exact in both. */
-typedef enum { FIT_FULL, FIT_DIFFUSE } FitDerivatives;
+typedef enum { FIT_FULL, FIT_DIFFUSE } FitDerivativeKind;
 
 typedef struct {
   int            dim, degree;  /* degree 1, 2 or 4 */
@@ -48,7 +48,7 @@ typedef struct {
   int            n;
   const double  *x;          /* [n][dim], relative to the slave point */
   const double  *multiplier; /* [n], v > 0 */
-  FitDerivatives derivatives;
+  FitDerivativeKind derivatives;
 } FitProblem;
 
 /* The fitted height over the tangent plane, which outlives the evaluation. */
@@ -94,9 +94,9 @@ int FitPointsWanted(int dim, int degree);
 /* Doubles of workspace for one evaluation with n points. */
 long FitWorkspace(int dim, int degree, int n);
 /* Returns 1 if what was wanted is there (guards may still be set), 0 with FIT_NO_SURFACE or FIT_NO_FOOT. */
-int FitEvaluate(const FitProblem *, FitWant, double *workspace, FitResult *);
+int DiffuseFitEvaluate(const FitProblem *, FitWant, double *workspace, FitResult *);
 /* Many slave points with one workspace, large enough for each; returns how many have what was wanted. */
-int FitEvaluateBatch(int n, const FitProblem *, FitWant, double *workspace, FitResult *);
+int DiffuseFitEvaluateBatch(int n, const FitProblem *, FitWant, double *workspace, FitResult *);
 /* Height over tangent coordinates y, and its gradient with respect to them (may be NULL). */
 double FitSurfaceHeight(const FitSurface *, const double *y, double *gradient);
 /* shape[problem's n] = sum_a factor_a dq(y_a)/dz_i, y: [n][dim - 1]: the height's dependence on the points, weights held. Returns 0 without a surface. */

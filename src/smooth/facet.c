@@ -27,10 +27,10 @@ typedef struct {
   int          index, feature;
   FootRegion   region;
   double       size, distance;
-  PatchPoint   point;
+  FacetPolynomialPoint   point;
 } Candidate;
 
-static double Distance(const double a[3], const double b[3])
+static double FacetDistance(const double a[3], const double b[3])
 {
   const double d[3] = {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
 
@@ -47,11 +47,11 @@ static int Preferred(const Candidate *a, const Candidate *b)
   return a->facet->tag < b->facet->tag;
 }
 
-static void Consider(const Patch *patch, Candidate *candidate)
+static void Consider(const FacetPolynomial *patch, Candidate *candidate)
 {
   candidate->size     = patch->size;
   candidate->distance = sqrt(Dot(candidate->point.x, candidate->point.x));
-  PatchClassify(patch, &candidate->point, &candidate->region, &candidate->feature);
+  FacetPolynomialClassify(patch, &candidate->point, &candidate->region, &candidate->feature);
 }
 
 /* Sides of a candidate that its foot is on and that are free */
@@ -64,10 +64,10 @@ static unsigned FreeSides(const Candidate *candidate)
 static void Extend(int dim, const double *x, Candidate *candidate, int *ended)
 {
   const unsigned free_sides = FreeSides(candidate), active = candidate->point.active;
-  double         limit[PATCH_MAX_SIDES] = {0};
-  Patch          patch;
+  double         limit[FACET_POLYNOMIAL_MAX_SIDES] = {0};
+  FacetPolynomial          patch;
 
-  PatchOfFacet(dim, candidate->facet, x, &patch);
+  FacetPolynomialOfFacet(dim, candidate->facet, x, &patch);
   for (int s = 0; s < patch.domain->sides; ++s) {
     const int opposite = patch.domain->sides != 3 && active == 1u << (s + patch.domain->sides / 2) % patch.domain->sides;
     const int lateral  = !(active & (active - 1)) && !opposite;
@@ -76,7 +76,7 @@ static void Extend(int dim, const double *x, Candidate *candidate, int *ended)
     limit[s] = -FACET_EXTENSION * patch.domain->width;
     candidate->point.active &= ~(1u << s);
   }
-  PatchDescend(&patch, limit, &candidate->point);
+  FacetPolynomialDescend(&patch, limit, &candidate->point);
   Consider(&patch, candidate);
   *ended = 0;
   for (int s = 0; s < patch.domain->sides; ++s)
@@ -88,15 +88,15 @@ static void SetGap(int dim, const double *x, const Candidate *candidate, const d
 {
   const double *at = candidate->point.x, length = sqrt(Dot(pseudo, pseudo));
   double        own[3], sign;
-  Patch         patch;
+  FacetPolynomial         patch;
 
   foot->facet     = candidate->index;
   foot->region    = candidate->region;
   foot->feature   = candidate->feature;
   foot->converged = candidate->point.converged;
   memcpy(foot->xi, candidate->point.xi, sizeof(foot->xi));
-  PatchOfFacet(dim, candidate->facet, x, &patch);
-  PatchNormal(&patch, candidate->point.xi, own);
+  FacetPolynomialOfFacet(dim, candidate->facet, x, &patch);
+  FacetPolynomialNormal(&patch, candidate->point.xi, own);
   if (candidate->region == FOOT_INTERIOR) {
     foot->gap = -Dot(own, at);
     memcpy(foot->normal, own, sizeof(own));
@@ -116,12 +116,12 @@ static void SetGap(int dim, const double *x, const Candidate *candidate, const d
 /* Adds the normal of a candidate at its foot, times its angle there or 1 */
 static void AddNormal(int dim, const double *x, const Candidate *candidate, int weighted, double pseudo[3])
 {
-  Patch  patch;
+  FacetPolynomial  patch;
   double normal[3], weight;
 
-  PatchOfFacet(dim, candidate->facet, x, &patch);
-  PatchNormal(&patch, candidate->point.xi, normal);
-  weight = weighted ? PatchAngle(&patch, &candidate->point) : 1;
+  FacetPolynomialOfFacet(dim, candidate->facet, x, &patch);
+  FacetPolynomialNormal(&patch, candidate->point.xi, normal);
+  weight = weighted ? FacetPolynomialAngle(&patch, &candidate->point) : 1;
   for (int k = 0; k < 3; ++k) pseudo[k] += weight * normal[k];
 }
 
@@ -139,7 +139,7 @@ static void Decide(int dim, const double *x, int n, const Candidate candidates[]
   for (int i = 0; best->region != FOOT_INTERIOR && i < n; ++i) {
     const Candidate *c = &candidates[i];
 
-    if (Distance(c->point.x, best->point.x) > FACET_COINCIDENT * best->size) continue;
+    if (FacetDistance(c->point.x, best->point.x) > FACET_COINCIDENT * best->size) continue;
     AddNormal(dim, x, c, 1, pseudo);
     if (FreeSides(c)) {
       Candidate trial = *c;
@@ -158,7 +158,7 @@ static void Decide(int dim, const double *x, int n, const Candidate candidates[]
     return;
   }
   SetGap(dim, x, &extended, free_pseudo, foot);
-  foot->beyond = Distance(extended.point.x, edge->point.x);
+  foot->beyond = FacetDistance(extended.point.x, edge->point.x);
   if (ended) {
     foot->beyond = fmax(foot->beyond, extended.size);
     if (foot->gap < 0) {
@@ -218,14 +218,14 @@ int FacetClosest(int dim, int n, const Facet *facets, const double *x, int seed,
     const int   i = k == 0 ? seed : k <= seed ? k - 1 : k;
     double      X[FACE_MAX_NODES][3];
     Candidate   candidate = {.facet = &facets[i], .index = i};
-    PatchSphere sphere;
-    Patch       patch;
+    FacetPolynomialSphere sphere;
+    FacetPolynomial       patch;
 
-    PatchGather(dim, &facets[i], x, X);
-    PatchBound(facets[i].type, X, &sphere);
+    FacetPolynomialGather(dim, &facets[i], x, X);
+    FacetPolynomialBound(facets[i].type, X, &sphere);
     if (sqrt(Dot(sphere.centre, sphere.centre)) - sphere.radius > least + 2 * FACET_COINCIDENT * sphere.radius) continue;
-    PatchCreate(facets[i].type, X, 2 * sphere.radius, &patch);
-    PatchClosest(&patch, &candidate.point);
+    FacetPolynomialCreate(facets[i].type, X, 2 * sphere.radius, &patch);
+    FacetPolynomialClosest(&patch, &candidate.point);
     Consider(&patch, &candidate);
     least = fmin(least, candidate.distance);
     count = Insert(&candidate, least, count, candidates);
@@ -246,10 +246,10 @@ void FacetProject(int dim, const Facet *facet, const double *x, Foot *foot)
 double FacetSize(int dim, const Facet *facet, const double *x)
 {
   double      X[FACE_MAX_NODES][3];
-  PatchSphere sphere;
+  FacetPolynomialSphere sphere;
 
-  PatchGather(dim, facet, x, X);
-  PatchBound(facet->type, X, &sphere);
+  FacetPolynomialGather(dim, facet, x, X);
+  FacetPolynomialBound(facet->type, X, &sphere);
   return 2 * sphere.radius;
 }
 
@@ -269,7 +269,7 @@ void FacetFirstVariation(int dim, const Facet *facet, const double *x, const Foo
 }
 
 /* Inverse of a symmetric 2x2 matrix over its first m rows; 0 where it is singular. */
-static void Invert(int m, double a[2][2], double inverse[2][2])
+static void FacetInvert2(int m, double a[2][2], double inverse[2][2])
 {
   const double det = m == 2 ? a[0][0] * a[1][1] - a[0][1] * a[1][0] : a[0][0];
 
@@ -298,14 +298,14 @@ static void ChartCreate(int dim, const Facet *facet, const double *x, const Foot
         {0, 1}
   },
     metric[2][2], kappa[2][2], hessian[2][2], det, scale;
-  Patch      patch;
-  PatchLocal l;
+  FacetPolynomial      patch;
+  FacetPolynomialLocal l;
 
   memset(chart, 0, sizeof(*chart));
   chart->m = m;
   if (m == 0) return;
-  PatchOfFacet(dim, facet, x, &patch);
-  PatchEvaluate(&patch, foot->xi, &l);
+  FacetPolynomialOfFacet(dim, facet, x, &patch);
+  FacetPolynomialEvaluate(&patch, foot->xi, &l);
   ElementShape(facet->type, foot->xi, NULL, d, NULL);
   if (foot->region == FOOT_EDGE) memcpy(direction[0], patch.domain->tangent[foot->feature], sizeof(direction[0]));
   for (int p = 0; p < m; ++p) {
@@ -326,8 +326,8 @@ static void ChartCreate(int dim, const Facet *facet, const double *x, const Foot
   det   = m == 2 ? hessian[0][0] * hessian[1][1] - hessian[0][1] * hessian[1][0] : hessian[0][0];
   scale = m == 2 ? metric[0][0] * metric[1][1] : metric[0][0];
   if (fabs(det) <= FACET_FOCAL * scale) memcpy(hessian, metric, sizeof(metric));
-  Invert(m, metric, chart->inverse_metric);
-  Invert(m, hessian, chart->inverse_hessian);
+  FacetInvert2(m, metric, chart->inverse_metric);
+  FacetInvert2(m, hessian, chart->inverse_hessian);
   for (int p = 0; p < m; ++p)
     for (int q = 0; q < m; ++q)
       for (int i = 0; i < m; ++i)

@@ -16,7 +16,7 @@
    5 % none does. */
 enum { SAMPLES = 5 };
 
-static const PatchDomain line = {
+static const FacetPolynomialDomain line = {
   .sides   = 2,
   .low     = -1,
   .width   = 2,
@@ -24,7 +24,7 @@ static const PatchDomain line = {
   .normal  = {{1, 0}, {-1, 0}},
   .tangent = {{0, 1}, {0, 1} }
 };
-static const PatchDomain triangle = {
+static const FacetPolynomialDomain triangle = {
   .sides   = 3,
   .low     = 0,
   .width   = 1,
@@ -33,7 +33,7 @@ static const PatchDomain triangle = {
   .normal  = { {0, 1}, {-1, -1},  {1, 0}},
   .tangent = { {1, 0},  {-1, 1}, {0, -1}}
 };
-static const PatchDomain square = {
+static const FacetPolynomialDomain square = {
   .sides   = 4,
   .low     = -1,
   .width   = 2,
@@ -48,7 +48,7 @@ static double Dot2(const double a[2], const double b[2])
 }
 
 /* Nodes of a facet as points in space; returns how many. Not collective, plain C. x[node][dim]: positions (a length), X: room for FACE_MAX_NODES. */
-int PatchGather(int dim, const Facet *facet, const double *x, double X[FACE_MAX_NODES][3])
+int FacetPolynomialGather(int dim, const Facet *facet, const double *x, double X[FACE_MAX_NODES][3])
 {
   const int nodes = ElementGet(facet->type)->nodes;
 
@@ -61,7 +61,7 @@ int PatchGather(int dim, const Facet *facet, const double *x, double X[FACE_MAX_
 
 /* A sphere around the control points of the facet as a Bezier patch, which hold the patch in their convex hull. Not collective, plain C.
    X[node]: positions (a length). */
-void PatchBound(ElementType type, double (*X)[3], PatchSphere *sphere)
+void FacetPolynomialBound(ElementType type, double (*X)[3], FacetPolynomialSphere *sphere)
 {
   const Element *element = ElementGet(type);
   double         control[FACE_MAX_NODES][3], radius2 = 0;
@@ -100,7 +100,7 @@ static void Quadratic(double left, double middle, double right, double c[3])
 }
 
 /* The polynomial of a QUAD9 in one component */
-static void PatchQuad9(double (*X)[3], int k, Patch *patch)
+static void PatchQuad9(double (*X)[3], int k, FacetPolynomial *patch)
 {
   static const int grid[3][3] = {
     {0, 7, 3},
@@ -118,7 +118,7 @@ static void PatchQuad9(double (*X)[3], int k, Patch *patch)
 
 /* The polynomial through the nodes of a facet. Not collective, plain C. X[node]: positions (a length); size: the facet's extent (a length),
    which scales the guards and the extruded direction of a 2D facet. */
-void PatchCreate(ElementType type, double (*X)[3], double size, Patch *patch)
+void FacetPolynomialCreate(ElementType type, double (*X)[3], double size, FacetPolynomial *patch)
 {
   memset(patch->c, 0, sizeof(patch->c));
   patch->size   = size;
@@ -161,18 +161,18 @@ void PatchCreate(ElementType type, double (*X)[3], double size, Patch *patch)
 }
 
 /* The polynomial of a facet of a list. Not collective, plain C. x[node][dim]: positions of the list's nodes (a length). */
-void PatchOfFacet(int dim, const Facet *facet, const double *x, Patch *patch)
+void FacetPolynomialOfFacet(int dim, const Facet *facet, const double *x, FacetPolynomial *patch)
 {
   double      X[FACE_MAX_NODES][3];
-  PatchSphere sphere;
+  FacetPolynomialSphere sphere;
 
-  PatchGather(dim, facet, x, X);
-  PatchBound(facet->type, X, &sphere);
-  PatchCreate(facet->type, X, 2 * sphere.radius, patch);
+  FacetPolynomialGather(dim, facet, x, X);
+  FacetPolynomialBound(facet->type, X, &sphere);
+  FacetPolynomialCreate(facet->type, X, 2 * sphere.radius, patch);
 }
 
 /* Position, tangents and second derivatives at xi. Not collective, plain C. */
-void PatchEvaluate(const Patch *patch, const double xi[2], PatchLocal *l)
+void FacetPolynomialEvaluate(const FacetPolynomial *patch, const double xi[2], FacetPolynomialLocal *l)
 {
   const double s = xi[0], t = xi[1];
 
@@ -196,19 +196,19 @@ void PatchEvaluate(const Patch *patch, const double xi[2], PatchLocal *l)
 }
 
 /* Columns of samples (second index) that a row of the grid has */
-static int SampleColumns(const PatchDomain *domain, int i)
+static int SampleColumns(const FacetPolynomialDomain *domain, int i)
 {
   return domain->sides == 2 ? 1 : domain->sides == 3 ? SAMPLES - i : SAMPLES;
 }
 
-static void SamplePoint(const PatchDomain *domain, int i, int j, double xi[2])
+static void SamplePoint(const FacetPolynomialDomain *domain, int i, int j, double xi[2])
 {
   xi[0] = domain->low + domain->width * i / (SAMPLES - 1);
   xi[1] = domain->sides == 2 ? 0 : domain->low + domain->width * j / (SAMPLES - 1);
 }
 
 /* Squared distances of a grid of points */
-static void Sample(const Patch *patch, double value[SAMPLES][SAMPLES])
+static void Sample(const FacetPolynomial *patch, double value[SAMPLES][SAMPLES])
 {
   for (int i = 0; i < SAMPLES; ++i) {
     double xi[2], row[3][3];
@@ -227,7 +227,7 @@ static void Sample(const Patch *patch, double value[SAMPLES][SAMPLES])
 }
 
 /* No tangent plane here: a tangent vanishes, or they are parallel. cross: x_,1 times x_,2. */
-static int Degenerate(const PatchLocal *l, double size, double cross[3])
+static int Degenerate(const FacetPolynomialLocal *l, double size, double cross[3])
 {
   const double a = Dot(l->x1, l->x1), b = Dot(l->x2, l->x2);
 
@@ -239,15 +239,15 @@ static int Degenerate(const PatchLocal *l, double size, double cross[3])
 
 /* Unit normal at xi, or at the facet's centre where there is none at xi (a collapsed side); 0 if there is none at all.
    Not collective, plain C. */
-void PatchNormal(const Patch *patch, const double xi[2], double normal[3])
+void FacetPolynomialNormal(const FacetPolynomial *patch, const double xi[2], double normal[3])
 {
   const double *at[2] = {xi, patch->domain->centre};
 
   for (int attempt = 0; attempt < 2; ++attempt) {
-    PatchLocal l;
+    FacetPolynomialLocal l;
     double     length;
 
-    PatchEvaluate(patch, at[attempt], &l);
+    FacetPolynomialEvaluate(patch, at[attempt], &l);
     if (Degenerate(&l, patch->size, normal)) continue;
     length = sqrt(Dot(normal, normal));
     for (int k = 0; k < 3; ++k) normal[k] /= length;
@@ -257,14 +257,14 @@ void PatchNormal(const Patch *patch, const double xi[2], double normal[3])
 }
 
 /* Angle of the facet at a point (radians): of the corner, or half a turn. Not collective, plain C. */
-double PatchAngle(const Patch *patch, const PatchPoint *point)
+double FacetPolynomialAngle(const FacetPolynomial *patch, const FacetPolynomialPoint *point)
 {
-  PatchLocal l;
+  FacetPolynomialLocal l;
   double     t[2][3];
   int        sides = 0;
 
   if (!(point->active & (point->active - 1))) return M_PI;
-  PatchEvaluate(patch, point->xi, &l);
+  FacetPolynomialEvaluate(patch, point->xi, &l);
   for (int s = 0; s < patch->domain->sides; ++s) {
     const double *tangent = patch->domain->tangent[s];
 
@@ -281,7 +281,7 @@ typedef struct {
   double G[2], metric[3], hessian[3];
 } Slope;
 
-static void SlopeAt(const Patch *patch, const PatchLocal *l, Slope *slope)
+static void SlopeAt(const FacetPolynomial *patch, const FacetPolynomialLocal *l, Slope *slope)
 {
   double *a = slope->metric, cross[3];
 
@@ -325,7 +325,7 @@ static void StepFree(const Slope *slope, double d[2])
 }
 
 /* Descent direction d that respects the active sides, releasing those it leaves; 0 at a stationary corner. */
-static int Direction(const PatchDomain *domain, const Slope *slope, unsigned *active, double d[2])
+static int Direction(const FacetPolynomialDomain *domain, const Slope *slope, unsigned *active, double d[2])
 {
   unsigned keep = 0, best = 0;
   double   most = 0;
@@ -361,7 +361,7 @@ static int Direction(const PatchDomain *domain, const Slope *slope, unsigned *ac
 }
 
 /* Puts the point on side s */
-static void Snap(const PatchDomain *domain, const double limit[], int s, double xi[2])
+static void Snap(const FacetPolynomialDomain *domain, const double limit[], int s, double xi[2])
 {
   const double *n   = domain->normal[s];
   const double  off = (domain->offset[s] + Dot2(n, xi) - limit[s]) / Dot2(n, n);
@@ -370,7 +370,7 @@ static void Snap(const PatchDomain *domain, const double limit[], int s, double 
 }
 
 /* The part of the step d up to the first side in its way; *hit: that side or -1. */
-static double Reach(const PatchDomain *domain, const double limit[], const PatchPoint *point, const double d[2], int *hit)
+static double Reach(const FacetPolynomialDomain *domain, const double limit[], const FacetPolynomialPoint *point, const double d[2], int *hit)
 {
   double reach = 1;
 
@@ -387,12 +387,12 @@ static double Reach(const PatchDomain *domain, const double limit[], const Patch
 
 /* From a point to a local minimum of the distance over the polygon with the given limits of its sides (0, or negative where extended).
    Not collective, plain C. point: start, then result; its active sides are those it is held at. */
-void PatchDescend(const Patch *patch, const double limit[], PatchPoint *point)
+void FacetPolynomialDescend(const FacetPolynomial *patch, const double limit[], FacetPolynomialPoint *point)
 {
-  const PatchDomain *domain = patch->domain;
-  PatchLocal         l;
+  const FacetPolynomialDomain *domain = patch->domain;
+  FacetPolynomialLocal         l;
 
-  PatchEvaluate(patch, point->xi, &l);
+  FacetPolynomialEvaluate(patch, point->xi, &l);
   point->converged = patch->size <= 0;
   for (int k = 0; k < FACET_ITERATIONS && !point->converged; ++k) {
     const double f = 0.5 * Dot(l.x, l.x), rounding = 8 * DBL_EPSILON * sqrt(2 * f) * (sqrt(2 * f) + patch->size);
@@ -411,7 +411,7 @@ void PatchDescend(const Patch *patch, const double limit[], PatchPoint *point)
       double xi[2] = {point->xi[0] + step * d[0], point->xi[1] + step * d[1]};
 
       if (hit >= 0) Snap(domain, limit, hit, xi);
-      PatchEvaluate(patch, xi, &l);
+      FacetPolynomialEvaluate(patch, xi, &l);
       if (0.5 * Dot(l.x, l.x) <= f - FACET_DESCENT * step * decrease + rounding) {
         memcpy(point->xi, xi, sizeof(xi));
         break;
@@ -428,7 +428,7 @@ void PatchDescend(const Patch *patch, const double limit[], PatchPoint *point)
 }
 
 /* Is sample i, j nearer than its neighbours on the grid? */
-static int LocalMinimum(const PatchDomain *domain, double value[SAMPLES][SAMPLES], int i, int j)
+static int LocalMinimum(const FacetPolynomialDomain *domain, double value[SAMPLES][SAMPLES], int i, int j)
 {
   for (int p = i > 0 ? i - 1 : 0; p <= i + 1 && p < SAMPLES; ++p) {
     for (int q = j > 0 ? j - 1 : 0; q <= j + 1 && q < SampleColumns(domain, p); ++q) {
@@ -442,36 +442,36 @@ static int LocalMinimum(const PatchDomain *domain, double value[SAMPLES][SAMPLES
 }
 
 /* Adds the sides that the point is on */
-static void Activate(const PatchDomain *domain, PatchPoint *point)
+static void Activate(const FacetPolynomialDomain *domain, FacetPolynomialPoint *point)
 {
   for (int s = 0; s < domain->sides; ++s)
     if (domain->offset[s] + Dot2(domain->normal[s], point->xi) <= FACET_COINCIDENT * domain->width) point->active |= 1u << s;
 }
 
 /* Closest point of the unextended patch: the best of the descents from all local minima of the samples. Not collective, plain C. */
-void PatchClosest(const Patch *patch, PatchPoint *best)
+void FacetPolynomialClosest(const FacetPolynomial *patch, FacetPolynomialPoint *best)
 {
-  static const double inside[PATCH_MAX_SIDES] = {0};
-  const PatchDomain  *domain                  = patch->domain;
+  static const double inside[FACET_POLYNOMIAL_MAX_SIDES] = {0};
+  const FacetPolynomialDomain  *domain                  = patch->domain;
   double              value[SAMPLES][SAMPLES], least = INFINITY;
 
   if (patch->flat) {
     memcpy(best->xi, domain->centre, sizeof(best->xi));
     best->active = 0;
-    PatchDescend(patch, inside, best);
+    FacetPolynomialDescend(patch, inside, best);
     Activate(domain, best);
     return;
   }
   Sample(patch, value);
   for (int i = 0; i < SAMPLES; ++i) {
     for (int j = 0; j < SampleColumns(domain, i); ++j) {
-      PatchPoint point = {.active = 0};
+      FacetPolynomialPoint point = {.active = 0};
       double     distance2;
 
       if (!LocalMinimum(domain, value, i, j)) continue;
       SamplePoint(domain, i, j, point.xi);
       Activate(domain, &point);
-      PatchDescend(patch, inside, &point);
+      FacetPolynomialDescend(patch, inside, &point);
       distance2 = Dot(point.x, point.x);
       if (distance2 >= least) continue;
       least = distance2;
@@ -483,16 +483,16 @@ void PatchClosest(const Patch *patch, PatchPoint *best)
 
 /* Which region a point is in, by its active sides and by what is left of the residual's tangential part.
    Not collective, plain C. feature: the edge or corner, -1 in the interior. */
-void PatchClassify(const Patch *patch, const PatchPoint *point, FootRegion *region, int *feature)
+void FacetPolynomialClassify(const FacetPolynomial *patch, const FacetPolynomialPoint *point, FootRegion *region, int *feature)
 {
-  const PatchDomain *domain   = patch->domain;
+  const FacetPolynomialDomain *domain   = patch->domain;
   const double       distance = sqrt(Dot(point->x, point->x)), tolerance = FACET_TIE * (patch->size + distance);
   const int          apart = distance > FACET_TOUCHING * patch->size, last = domain->sides - 1;
   const int          two_sides = (point->active & (point->active - 1)) != 0;
-  PatchLocal         l;
+  FacetPolynomialLocal         l;
   double             cross[3], G[2], tangential2, area2;
 
-  PatchEvaluate(patch, point->xi, &l);
+  FacetPolynomialEvaluate(patch, point->xi, &l);
   *region  = FOOT_VERTEX;
   *feature = 0;
   if (two_sides && point->active != (1u | 1u << last))

@@ -1,6 +1,6 @@
 /* First and second variation of the diffuse gap over nodes. With rows K_i, J_i, H_i of the points and x_i = S_i x,
        S^T M S = Kbar^T Jbar + Jbar^T Kbar + sum_i (S_i - S_c)^T H_i (S_i - S_c),   Kbar = sum_i K_i S_i,  Jbar likewise.
-   In the last sum the points' own part goes to pairs of nodes of one row: it is summed by FitMapAddOwn(), for a single slave point or, as slave points near
+   In the last sum the points' own part goes to pairs of nodes of one row: it is summed by FitDerivativesAddOwn(), for a single slave point or, as slave points near
    each other see the same points, over many of them before it goes to the nodes. What couples them to the slave point is again such a product,
        sum_i -S_i^T H_i S_c - S_c^T H_i S_i + S_c^T H_c S_c = B^T S_c + S_c^T B,   B = 1/2 H_c S_c - sum_i H_i S_i,  H_c = sum H_i,
    so B and S_c are dim more rows of the factors. The rows of many slave points over the same nodes stand below each other: one product, which writes the
@@ -28,7 +28,7 @@ typedef struct {
   double  factor; /* of this slave point in the sum; K carries it */
 } FitNodal;
 
-static int SameNodes(const FitMap *map, int a, int b)
+static int SameNodes(const FitDerivatives *map, int a, int b)
 {
   const int *const ptr = map->ptr, entries = ptr[a + 1] - ptr[a];
 
@@ -41,7 +41,7 @@ static int SameNodes(const FitMap *map, int a, int b)
 }
 
 /* The rows that belong together from `first` on. */
-static FitRun NextRun(const FitMap *map, int rows, int first)
+static FitRun NextRun(const FitDerivatives *map, int rows, int first)
 {
   const int start = map->ptr[first];
   int       end   = first + 1;
@@ -127,7 +127,7 @@ LANES_INLINE int HessianEntry(const int c, const int d)
 }
 
 /* Adds `share` times the run's part of H_i S_i to B, the last dim rows of K. */
-LANES_INLINE void AddCoupling(const int dim, const int terms, const FitFactors *factors, const FitRun *run, double share, FitNodal *nodal)
+LANES_INLINE void AddSumCoupling(const int dim, const int terms, const FitFactors *factors, const FitRun *run, double share, FitNodal *nodal)
 {
   const int vectors = HessianStride(dim) / LANES;
 
@@ -157,7 +157,7 @@ LANES_INLINE void AddSlave(const int dim, const int terms, const FitRun *slave, 
 }
 
 /* Adds an H between entries of these signs to a block of M. */
-LANES_INLINE void AddBlock(const int dim, const double *h, const double *row_sign, const double *column_sign, long size, double *block)
+LANES_INLINE void AddSumBlock(const int dim, const double *h, const double *row_sign, const double *column_sign, long size, double *block)
 {
   for (int c = 0; c < dim; c++) {
     for (int d = 0; d < dim; d++) block[c * size + d] += row_sign[c] * column_sign[d] * h[HessianEntry(c, d)];
@@ -165,7 +165,7 @@ LANES_INLINE void AddBlock(const int dim, const double *h, const double *row_sig
 }
 
 /* Adds sum_r S_r^T H_r S_r over a run's rows to each pair of its nodes, above the diagonal. own: of row `first`. */
-LANES_INLINE void AddPairs(const int dim, int first, const double (*own)[FITMAP_OWN], const FitRun *run, long size, double *M)
+LANES_INLINE void AddPairs(const int dim, int first, const double (*own)[FIT_DERIVATIVES_OWN], const FitRun *run, long size, double *M)
 {
   for (int k = 0; k < run->entries; k++) {
     const long          i        = (long)run->node[k] * dim;
@@ -174,19 +174,19 @@ LANES_INLINE void AddPairs(const int dim, int first, const double (*own)[FITMAP_
     for (int l = 0; i >= 0 && l <= k; l++) {
       const long          j           = (long)run->node[l] * dim;
       const double *const column_sign = run->sign + 3 * l, *S = run->S;
-      double              sum[FITMAP_OWN] = {0};
+      double              sum[FIT_DERIVATIVES_OWN] = {0};
 
       if (j < 0) continue;
       for (int r = run->first; r < run->end; r++, S += run->entries) {
-        for (int e = 0; e < FITMAP_OWN; e++) sum[e] += S[k] * S[l] * own[r - first][e];
+        for (int e = 0; e < FIT_DERIVATIVES_OWN; e++) sum[e] += S[k] * S[l] * own[r - first][e];
       }
-      if (i <= j) AddBlock(dim, sum, row_sign, column_sign, size, M + i * size + j);
-      if (j < i || (j == i && l < k)) AddBlock(dim, sum, column_sign, row_sign, size, M + j * size + i);
+      if (i <= j) AddSumBlock(dim, sum, row_sign, column_sign, size, M + i * size + j);
+      if (j < i || (j == i && l < k)) AddSumBlock(dim, sum, column_sign, row_sign, size, M + j * size + i);
     }
   }
 }
 
-LANES_INLINE void Own(const int dim, int first, int end, const double (*own)[FITMAP_OWN], const FitMap *map, double *M)
+LANES_INLINE void Own(const int dim, int first, int end, const double (*own)[FIT_DERIVATIVES_OWN], const FitDerivatives *map, double *M)
 {
   for (FitRun run = {.end = first}; run.end < end;) {
     run = NextRun(map, end, run.end);
@@ -194,7 +194,7 @@ LANES_INLINE void Own(const int dim, int first, int end, const double (*own)[FIT
   }
 }
 
-LANES_INLINE void Second(const int dim, const int terms, double factor, const FitFactors *factors, const FitMap *map, FitMapSum *sum)
+LANES_INLINE void Second(const int dim, const int terms, double factor, const FitFactors *factors, const FitDerivatives *map, FitDerivativesSum *sum)
 {
   const int    vectors = FactorStride(terms) / LANES, rows = 1 + factors->n;
   const FitRun slave = NextRun(map, 1, 0);
@@ -205,19 +205,19 @@ LANES_INLINE void Second(const int dim, const int terms, double factor, const Fi
   memset(nodal.K + terms * nodal.stride, 0, (size_t)dim * nodal.stride * sizeof(double));
   memset(nodal.J + terms * nodal.stride, 0, (size_t)dim * nodal.stride * sizeof(double));
   AddRows(dim, vectors, factors, &slave, &nodal);
-  AddCoupling(dim, terms, factors, &slave, 0.5, &nodal);
+  AddSumCoupling(dim, terms, factors, &slave, 0.5, &nodal);
   AddSlave(dim, terms, &slave, &nodal);
   for (FitRun run = slave; run.end < rows;) {
     run = NextRun(map, rows, run.end);
     AddRows(dim, vectors, factors, &run, &nodal);
-    AddCoupling(dim, terms, factors, &run, -1, &nodal);
+    AddSumCoupling(dim, terms, factors, &run, -1, &nodal);
   }
   TurnBack(terms, vectors, &nodal);
   sum->depth += terms + dim;
 }
 
 /* Row i of S: component c of point r */
-LANES_INLINE void AddSelection(const int dim, const FitMap *map, int r, int c, double scale, double *row)
+LANES_INLINE void AddSelection(const int dim, const FitDerivatives *map, int r, int c, double scale, double *row)
 {
   for (int e = map->ptr[r]; e < map->ptr[r + 1]; e++) {
     if (map->node[e] >= 0) row[map->node[e] * dim + c] += scale * map->S[e] * map->sign[3 * e + c];
@@ -225,7 +225,7 @@ LANES_INLINE void AddSelection(const int dim, const FitMap *map, int r, int c, d
 }
 
 /* S^T M S = 1/2 (M S)^T S + S^T 1/2 (M S): a row of M S and of S for each component of each point */
-LANES_INLINE void Dense(const int dim, int n, double factor, const double *M, const FitMap *map, FitMapSum *sum)
+LANES_INLINE void Dense(const int dim, int n, double factor, const double *M, const FitDerivatives *map, FitDerivativesSum *sum)
 {
   const int     m     = (1 + n) * dim;
   const long    first = (long)sum->depth * sum->stride;
@@ -240,7 +240,7 @@ LANES_INLINE void Dense(const int dim, int n, double factor, const double *M, co
   sum->depth += m;
 }
 
-LANES_INLINE void First(const int dim, int n, const double *N, const FitMap *map, double *nodal)
+LANES_INLINE void First(const int dim, int n, const double *N, const FitDerivatives *map, double *nodal)
 {
   for (int r = 0; r < 1 + n; r++) {
     for (int e = map->ptr[r]; e < map->ptr[r + 1]; e++) {
@@ -250,30 +250,30 @@ LANES_INLINE void First(const int dim, int n, const double *N, const FitMap *map
   }
 }
 
-/* FitMapDepth - rows of K and J for one slave point by its factors. Not collective.
+/* FitDerivativesDepth - rows of K and J for one slave point by its factors. Not collective.
 
    Input: dim, degree - of the fit */
-int FitMapDepth(int dim, int degree)
+int FitDerivativesDepth(int dim, int degree)
 {
   return FitTerms(dim, degree) + dim;
 }
 
-/* FitMapWorkspace - doubles of workspace for a sum of second variations. Not collective.
+/* FitDerivativesWorkspace - doubles of workspace for a sum of second variations. Not collective.
 
-   Input: dim, degree - the highest of the fits; n_nodes - of the maps; depth - most rows of K and J in all: FitMapDepth() for each FitMapAdd(),
-   dim*(1 + n) for each FitMapAddDense(), 1 for each FitMapAddOuter() */
-long FitMapWorkspace(int dim, int degree, int n_nodes, int depth)
+   Input: dim, degree - the highest of the fits; n_nodes - of the maps; depth - most rows of K and J in all: FitDerivativesDepth() for each FitDerivativesAdd(),
+   dim*(1 + n) for each FitDerivativesAddDense(), 1 for each FitDerivativesAddOuter() */
+long FitDerivativesWorkspace(int dim, int degree, int n_nodes, int depth)
 {
   const int stride = SymmetricProductStride(n_nodes * dim);
 
   return ALIGNMENT / (long)sizeof(double) + (long)(stride + dim) * FactorStride(FitTerms(dim, degree)) + 2L * depth * stride;
 }
 
-/* FitMapFirst - the first variation over nodes, S^T N. Not collective.
+/* FitDerivativesFirst - the first variation over nodes, S^T N. Not collective.
 
-   Input: dim; n - points inside; N[(1 + n)*dim] - over slave point and points, as FitEvaluate() makes it; map
+   Input: dim; n - points inside; N[(1 + n)*dim] - over slave point and points, as DiffuseFitEvaluate() makes it; map
    Output: nodal[n_nodes*dim] */
-void FitMapFirst(int dim, int n, const double *N, const FitMap *map, double *nodal)
+void FitDerivativesFirst(int dim, int n, const double *N, const FitDerivatives *map, double *nodal)
 {
   memset(nodal, 0, (size_t)map->n_nodes * dim * sizeof(double));
   if (dim == 3)
@@ -282,26 +282,26 @@ void FitMapFirst(int dim, int n, const double *N, const FitMap *map, double *nod
     First(2, n, N, map, nodal);
 }
 
-/* FitMapBegin - begins a sum of second variations over the same nodes. Not collective.
+/* FitDerivativesBegin - begins a sum of second variations over the same nodes. Not collective.
 
-   Input: dim, degree, n_nodes, depth - as of FitMapWorkspace(); workspace - that many doubles of any contents, to be left alone until FitMapEnd() */
-void FitMapBegin(FitMapSum *sum, int dim, int degree, int n_nodes, int depth, double *workspace)
+   Input: dim, degree, n_nodes, depth - as of FitDerivativesWorkspace(); workspace - that many doubles of any contents, to be left alone until FitDerivativesEnd() */
+void FitDerivativesBegin(FitDerivativesSum *sum, int dim, int degree, int n_nodes, int depth, double *workspace)
 {
   const int stride = SymmetricProductStride(n_nodes * dim);
 
-  *sum      = (FitMapSum){.dim = dim, .n_nodes = n_nodes, .stride = stride};
+  *sum      = (FitDerivativesSum){.dim = dim, .n_nodes = n_nodes, .stride = stride};
   sum->rows = (double *)(((uintptr_t)workspace + ALIGNMENT - 1) / ALIGNMENT * ALIGNMENT);
   sum->K    = sum->rows + (stride + dim) * FactorStride(FitTerms(dim, degree));
   sum->J    = sum->K + (long)depth * stride;
 }
 
-/* FitMapAdd - adds factor times the second variation over nodes, S^T M S, of one slave point, without M; the points' own H are left to FitMapAddOwn().
+/* FitDerivativesAdd - adds factor times the second variation over nodes, S^T M S, of one slave point, without M; the points' own H are left to FitDerivativesAddOwn().
    Not collective.
 
-   Input: factors - of M, as FitEvaluate() leaves them in its workspace; map - nodes below the sum's n_nodes
+   Input: factors - of M, as DiffuseFitEvaluate() leaves them in its workspace; map - nodes below the sum's n_nodes
 
    Source: Chamoret et al. 2004, eqs 13 and 14, for points that are combinations of nodes. */
-void FitMapAdd(FitMapSum *sum, double factor, const FitFactors *factors, const FitMap *map)
+void FitDerivativesAdd(FitDerivativesSum *sum, double factor, const FitFactors *factors, const FitDerivatives *map)
 {
 #define SECOND(dim, degree, terms)               \
   Second(dim, terms, factor, factors, map, sum); \
@@ -310,10 +310,10 @@ void FitMapAdd(FitMapSum *sum, double factor, const FitFactors *factors, const F
 #undef SECOND
 }
 
-/* FitMapAddDense - adds factor S^T M S. Not collective.
+/* FitDerivativesAddDense - adds factor S^T M S. Not collective.
 
    Input: n - points that take part; M[((1 + n)*dim)^2] - symmetric; map - nodes below the sum's n_nodes */
-void FitMapAddDense(FitMapSum *sum, double factor, int n, const double *M, const FitMap *map)
+void FitDerivativesAddDense(FitDerivativesSum *sum, double factor, int n, const double *M, const FitDerivatives *map)
 {
   if (sum->dim == 3)
     Dense(3, n, factor, M, map, sum);
@@ -321,10 +321,10 @@ void FitMapAddDense(FitMapSum *sum, double factor, int n, const double *M, const
     Dense(2, n, factor, M, map, sum);
 }
 
-/* FitMapAddOuter - adds factor v v^T. Not collective.
+/* FitDerivativesAddOuter - adds factor v v^T. Not collective.
 
    Input: v[n_nodes*dim] */
-void FitMapAddOuter(FitMapSum *sum, double factor, const double *v)
+void FitDerivativesAddOuter(FitDerivativesSum *sum, double factor, const double *v)
 {
   const int     n     = sum->n_nodes * sum->dim;
   const long    first = (long)sum->depth++ * sum->stride;
@@ -336,19 +336,19 @@ void FitMapAddOuter(FitMapSum *sum, double factor, const double *v)
   }
 }
 
-/* FitMapOwn - own += factor H, for point i of those inside. Not collective. */
-void FitMapOwn(double factor, const FitFactors *factors, int i, double own[FITMAP_OWN])
+/* FitDerivativesOwn - own += factor H, for point i of those inside. Not collective. */
+void FitDerivativesOwn(double factor, const FitFactors *factors, int i, double own[FIT_DERIVATIVES_OWN])
 {
   const double *const h = factors->hessians + (1 + i) * factors->hessianstride;
 
   for (int e = 0; e < factors->dim * (factors->dim + 1) / 2; e++) own[e] += factor * h[e];
 }
 
-/* FitMapAddOwn - M += sum_r S_r^T own_r S_r, the points' own part of second variations. Not collective.
+/* FitDerivativesAddOwn - M += sum_r S_r^T own_r S_r, the points' own part of second variations. Not collective.
 
-   Input: dim; rows first to end - 1 of the map; own[end - first] - of these rows' points, from FitMapOwn(). M[n_nodes*dim][n_nodes*dim] - its upper
+   Input: dim; rows first to end - 1 of the map; own[end - first] - of these rows' points, from FitDerivativesOwn(). M[n_nodes*dim][n_nodes*dim] - its upper
    triangle, in whole blocks on the diagonal */
-void FitMapAddOwn(int dim, int first, int end, const double (*own)[FITMAP_OWN], const FitMap *map, double *M)
+void FitDerivativesAddOwn(int dim, int first, int end, const double (*own)[FIT_DERIVATIVES_OWN], const FitDerivatives *map, double *M)
 {
   if (dim == 3)
     Own(3, first, end, own, map, M);
@@ -356,8 +356,8 @@ void FitMapAddOwn(int dim, int first, int end, const double (*own)[FITMAP_OWN], 
     Own(2, first, end, own, map, M);
 }
 
-/* FitMapEnd - the sum into the upper triangle of M[n_nodes*dim][n_nodes*dim]; what is below is left alone. Not collective. */
-void FitMapEnd(FitMapSum *sum, double *M)
+/* FitDerivativesEnd - the sum into the upper triangle of M[n_nodes*dim][n_nodes*dim]; what is below is left alone. Not collective. */
+void FitDerivativesEnd(FitDerivativesSum *sum, double *M)
 {
   SymmetricProductUpper(sum->n_nodes * sum->dim, sum->depth, sum->stride, sum->K, sum->J, M);
 }

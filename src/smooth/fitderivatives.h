@@ -1,7 +1,7 @@
 /* Variations of the diffuse gap over nodes, where fit points and slave point are combinations of nodes: x = sum S sign * x_node by component,
    as quadrature points of faces are, those on mirror images and those with an offset that follows the nodes around. Plain C: no PETSc, no MPI, no allocation.
 
-   A support has more points than nodes behind them, and M grows with the square: FitMapAdd() therefore takes the factors of M to the nodes
+   A support has more points than nodes behind them, and M grows with the square: FitDerivativesAdd() therefore takes the factors of M to the nodes
    (FitResult.factors instead of FitResult.M), not M. */
 #pragma once
 #include "smooth/diffusefit.h"
@@ -14,29 +14,29 @@ typedef struct {
   const int    *node; /* of each entry, below n_nodes; negative: left out, a rigid tool's node without unknowns */
   const double *S;    /* of each entry */
   const double *sign; /* of each entry 3, each +1 or -1, whatever the dimension */
-} FitMap;
+} FitDerivatives;
 
-enum { FITMAP_OWN = 6 }; /* entries of a point's own H: xx xy yy xz yz zz (2D: the first three) */
+enum { FIT_DERIVATIVES_OWN = 6 }; /* entries of a point's own H: xx xy yy xz yz zz (2D: the first three) */
 
-/* A sum of second variations in the making: FitMapBegin(), FitMapAdd() for each slave point, FitMapEnd(); the points' own H are added apart, FitMapAddOwn().
+/* A sum of second variations in the making: FitDerivativesBegin(), FitDerivativesAdd() for each slave point, FitDerivativesEnd(); the points' own H are added apart, FitDerivativesAddOwn().
    Of symmetric sums the upper triangle is written. */
 typedef struct {
   int     dim, n_nodes, stride, depth;
   double *rows, *K, *J; /* rows: of the slave point at hand; K, J: [depth][stride], of all so far */
-} FitMapSum;
+} FitDerivativesSum;
 
 /* nodal[n_nodes*dim] = S^T N, for N[(1 + n)*dim] of n points inside. */
-void FitMapFirst(int dim, int n, const double *N, const FitMap *, double *nodal);
-/* M[(n_nodes*dim)^2] = sum factor S^T M S over slave points with maps to the same nodes. degree: the highest; depth: see there; workspace: FitMapWorkspace()
+void FitDerivativesFirst(int dim, int n, const double *N, const FitDerivatives *, double *nodal);
+/* M[(n_nodes*dim)^2] = sum factor S^T M S over slave points with maps to the same nodes. degree: the highest; depth: see there; workspace: FitDerivativesWorkspace()
    doubles, another one than that where the factors lie. */
-int  FitMapDepth(int dim, int degree);
-long FitMapWorkspace(int dim, int degree, int n_nodes, int depth);
-void FitMapBegin(FitMapSum *, int dim, int degree, int n_nodes, int depth, double *workspace);
-void FitMapAdd(FitMapSum *, double factor, const FitFactors *, const FitMap *);
+int  FitDerivativesDepth(int dim, int degree);
+long FitDerivativesWorkspace(int dim, int degree, int n_nodes, int depth);
+void FitDerivativesBegin(FitDerivativesSum *, int dim, int degree, int n_nodes, int depth, double *workspace);
+void FitDerivativesAdd(FitDerivativesSum *, double factor, const FitFactors *, const FitDerivatives *);
 /* Where M itself is there instead of its factors; factor v v^T. */
-void FitMapAddDense(FitMapSum *, double factor, int n, const double *M, const FitMap *);
-void FitMapAddOuter(FitMapSum *, double factor, const double *v);
-void FitMapEnd(FitMapSum *, double *M);
+void FitDerivativesAddDense(FitDerivativesSum *, double factor, int n, const double *M, const FitDerivatives *);
+void FitDerivativesAddOuter(FitDerivativesSum *, double factor, const double *v);
+void FitDerivativesEnd(FitDerivativesSum *, double *M);
 /* The points' own H: own += factor H_i; M += sum of S^T own S over rows first to end - 1 of a map, which may belong to points of many slave points. */
-void FitMapOwn(double factor, const FitFactors *, int i, double own[FITMAP_OWN]);
-void FitMapAddOwn(int dim, int first, int end, const double (*own)[FITMAP_OWN], const FitMap *, double *M);
+void FitDerivativesOwn(double factor, const FitFactors *, int i, double own[FIT_DERIVATIVES_OWN]);
+void FitDerivativesAddOwn(int dim, int first, int end, const double (*own)[FIT_DERIVATIVES_OWN], const FitDerivatives *, double *M);

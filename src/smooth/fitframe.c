@@ -7,7 +7,7 @@
 enum { SWEEPS = 16 }; /* cyclic Jacobi of a 3 x 3 matrix ends within 6; the rest is never reached */
 
 /* Turns row and column p against q so that a[p][q] vanishes. */
-static void Rotate(double a[3][3], double v[3][3], int p, int q)
+static void JacobiRotate(double a[3][3], double v[3][3], int p, int q)
 {
   const double theta = 0.5 * (a[q][q] - a[p][p]) / a[p][q], t = (theta >= 0 ? 1 : -1) / (fabs(theta) + sqrt(theta * theta + 1));
   const double c = 1 / sqrt(t * t + 1), s = t * c;
@@ -37,7 +37,7 @@ static void Eigen(double a[3][3], double value[3], double v[3][3])
   for (int sweep = 0; sweep < SWEEPS; sweep++) {
     for (int p = 0; p < 2; p++) {
       for (int q = p + 1; q < 3; q++) {
-        if (fabs(a[p][q]) > DBL_EPSILON * (fabs(a[p][p]) + fabs(a[q][q]))) Rotate(a, v, p, q);
+        if (fabs(a[p][q]) > DBL_EPSILON * (fabs(a[p][p]) + fabs(a[q][q]))) JacobiRotate(a, v, p, q);
       }
     }
   }

@@ -16,7 +16,7 @@ typedef struct {
 } FitBundle;
 
 /* With derivatives == FIT_DIFFUSE the weights count as constants. */
-LANES_INLINE void Bundle(const int m, const int degree, const int terms, const FitArrays *a, const FitState *s, double exponent, FitDerivatives derivatives,
+LANES_INLINE void Bundle(const int m, const int degree, const int terms, const FitArrays *a, const FitState *s, double exponent, FitDerivativeKind derivatives,
                          int g, FitBundle *b)
 {
   for (int k = 0; k < m; k++) b->eta[k] = a->eta[k][g];

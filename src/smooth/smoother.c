@@ -34,7 +34,7 @@ static int SmootherEvaluate_Diffuse(const SmootherInput *in, SmootherWant want, 
   if (in->n_fit) {
     memcpy(problem.frame, in->frame, sizeof(problem.frame));
     memcpy(problem.metric, in->metric, sizeof(problem.metric));
-    if (FitEvaluate(&problem, wants[want], in->workspace, &fit) && !(fit.guards & FIT_FAR_FOOT)) {
+    if (DiffuseFitEvaluate(&problem, wants[want], in->workspace, &fit) && !(fit.guards & FIT_FAR_FOOT)) {
       out->gap      = fit.gap;
       out->factored = 1;
       out->beyond   = 0; /* faded by the facets' free edges when lists are made */

@@ -18,7 +18,7 @@ typedef struct {
   double         exponent;
   const double  *multiplier;     /* of the fit points' weights */
   const double  *frame, *metric; /* 9 and 4, held in a solve */
-  FitDerivatives derivatives;
+  FitDerivativeKind derivatives;
   double        *workspace; /* FitWorkspace(dim, degree, n_fit) */
 } SmootherInput;
 

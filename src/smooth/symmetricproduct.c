@@ -63,7 +63,7 @@ LANES_INLINE void ProductTile(const int full, const int vectors, int n, int dept
   }
 }
 
-LANES_INLINE void Product(const int full, int n, int depth, int stride, const double *K, const double *J, double *M)
+LANES_INLINE void SymmetricProductTile(const int full, int n, int depth, int stride, const double *K, const double *J, double *M)
 {
   for (int column = 0; column < n; column += TILE_COLUMNS) {
     const int end = LanesGroups(n) * LANES < column + TILE_COLUMNS ? LanesGroups(n) * LANES : column + TILE_COLUMNS;
@@ -87,11 +87,11 @@ LANES_INLINE void Product(const int full, int n, int depth, int stride, const do
    Output: M - [n][n], symmetric to the last bit */
 void SymmetricProduct(int n, int depth, int stride, const double *K, const double *J, double *M)
 {
-  Product(1, n, depth, stride, K, J, M);
+  SymmetricProductTile(1, n, depth, stride, K, J, M);
 }
 
 /* SymmetricProductUpper - as SymmetricProduct(), but the triangle below the diagonal is left alone. Not collective. */
 void SymmetricProductUpper(int n, int depth, int stride, const double *K, const double *J, double *M)
 {
-  Product(0, n, depth, stride, K, J, M);
+  SymmetricProductTile(0, n, depth, stride, K, J, M);
 }

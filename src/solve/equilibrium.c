@@ -4,7 +4,7 @@
 
 /* Of these, so many may be spent at a breakpoint of the scene's histories on offsets of surface contact that lag behind by little: each takes a lag to a
    twentieth, and from the next step on it would show as a jump. */
-#define MODEL_MAX_SETTLE 4
+#define MODEL_MAX_OFFSET_UPDATES 4
 /* Lists are made for this multiple of the motion that the last step's rate predicts; those that check a step too, so that an equal step takes them. */
 #define MODEL_MOTION_SAFETY 1.5
 /* Times that the springs of stabilised pairs are relaxed. A body at rest needs two or three; one that flies covers its penetration at rest, times a
@@ -112,7 +112,7 @@ static PetscErrorCode ModelDepart(Model model, PetscReal t)
   PetscReal  motion;
 
   PetscFunctionBeginUser;
-  PetscCall(StabiliserRelax(work->stabiliser, work->accepted_x));
+  PetscCall(ContactSpringsRelax(work->stabiliser, work->accepted_x));
   model->t       = t;
   work->inverted = -1;
   work->start    = 0;
@@ -132,21 +132,21 @@ static PetscErrorCode ModelDepart(Model model, PetscReal t)
 }
 
 /* A part of the way to the forecast, where that came from the path: on the path, with so much of what its end was off. made: that is possible. */
-static PetscErrorCode ModelTakePathPart(Model model, PetscReal part, PetscBool *made)
+static PetscErrorCode ModelTakeExtrapolatedPart(Model model, PetscReal part, PetscBool *made)
 {
   ModelWork *work = model->work;
   PetscReal *u;
   Vec        end;
 
   PetscFunctionBeginUser;
-  *made = work->forecast_foreseen;
+  *made = work->look_ahead_extrapolated;
   if (!*made) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscMalloc1(model->mesh->n_nodes * model->mesh->dim, &u));
   PetscCall(VecDuplicate(model->x, &end));
-  PetscCall(ModelForesee(model, work->forecast_t, u, end, made));
-  if (*made) PetscCall(ModelForesee(model, model->t, u, model->x, made));
+  PetscCall(ModelExtrapolate(model, work->look_ahead_t, u, end, made));
+  if (*made) PetscCall(ModelExtrapolate(model, model->t, u, model->x, made));
   if (*made) {
-    PetscCall(VecAXPBYPCZ(model->x, part, -part, 1, work->forecast, end));
+    PetscCall(VecAXPBYPCZ(model->x, part, -part, 1, work->look_ahead, end));
     PetscCall(ModelTrial(model, model->x));
     PetscCall(ModelInOrder(model, work->trial, made));
   }
@@ -159,11 +159,11 @@ static PetscErrorCode ModelTakePathPart(Model model, PetscReal part, PetscBool *
 static PetscErrorCode ModelTakePart(Model model)
 {
   ModelWork      *work = model->work;
-  const PetscReal part = (model->t - work->accepted_t) / (work->forecast_t - work->accepted_t);
+  const PetscReal part = (model->t - work->accepted_t) / (work->look_ahead_t - work->accepted_t);
 
   PetscFunctionBeginUser;
-  PetscCall(ModelTakePathPart(model, part, &work->foreseen));
-  if (!work->foreseen) PetscCall(VecAXPBYPCZ(model->x, 1 - part, part, 0, work->accepted_x, work->forecast));
+  PetscCall(ModelTakeExtrapolatedPart(model, part, &work->extrapolated));
+  if (!work->extrapolated) PetscCall(VecAXPBYPCZ(model->x, 1 - part, part, 0, work->accepted_x, work->look_ahead));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -171,7 +171,7 @@ static PetscErrorCode ModelTakePart(Model model)
 static PetscErrorCode ModelStart(Model model, SolveReport *report)
 {
   PetscFunctionBeginUser;
-  if (model->work->forecasted)
+  if (model->work->looked_ahead)
     PetscCall(ModelTakePart(model));
   else
     PetscCall(ModelPredict(model, report));
@@ -180,7 +180,7 @@ static PetscErrorCode ModelStart(Model model, SolveReport *report)
 }
 
 /* New lists after a solve, for the next one: in the middle of the way where it left the old ones, or because they do not hold. */
-PetscErrorCode ModelRenewLists(Model model, PetscBool settle, PetscBool *hold)
+PetscErrorCode ModelRenewLists(Model model, PetscBool update_offsets, PetscBool *hold)
 {
   ModelWork *work = model->work;
   PetscReal  motion, next;
@@ -195,7 +195,7 @@ PetscErrorCode ModelRenewLists(Model model, PetscBool settle, PetscBool *hold)
     work->renewed++;
     PetscCall(ContactListsRenew(model->contact, work->trial, model->t, motion));
   } else
-    PetscCall(ContactListsHold(model->contact, work->trial, model->t, motion, PetscMax(motion, next), settle, hold));
+    PetscCall(ContactListsHold(model->contact, work->trial, model->t, motion, PetscMax(motion, next), update_offsets, hold));
   TimingEnd(TIMING_SEARCH);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -212,7 +212,7 @@ static PetscErrorCode ModelSolveLists(Model model, SolveReport *report)
     model->work->left = PETSC_FALSE;
     PetscCall(ModelNewton(model, report));
     if (report->result != SOLVE_CONVERGED || !model->contact) break;
-    PetscCall(ModelRenewLists(model, (PetscBool)(times < MODEL_MAX_SETTLE && model->t < 1 && SceneBreaks(model->scene, model->t)), &hold));
+    PetscCall(ModelRenewLists(model, (PetscBool)(times < MODEL_MAX_OFFSET_UPDATES && model->t < 1 && SceneBreaks(model->scene, model->t)), &hold));
     PetscCall(ContactLocateLost(model->contact, &lost, report->detail, sizeof(report->detail)));
     if (lost) report->result = SOLVE_LOST;
     if (hold || lost) break;
@@ -246,7 +246,7 @@ static PetscErrorCode ModelSolveHeld(Model model, SolveReport *report)
   PetscFunctionBeginUser;
   PetscCall(ModelSolveLists(model, report));
   while (work->stabiliser && report->result == SOLVE_CONVERGED) {
-    PetscCall(StabiliserLoad(work->stabiliser, model->x, &force, &energy));
+    PetscCall(ContactSpringsLoad(work->stabiliser, model->x, &force, &energy));
     PetscCall(ModelStoredEnergy(model, &stored));
     report->taken += energy;
     report->left = stored > 0 ? energy / stored : 0;
@@ -258,7 +258,7 @@ static PetscErrorCode ModelSolveHeld(Model model, SolveReport *report)
       break;
     }
     report->relaxed++;
-    PetscCall(StabiliserRelax(work->stabiliser, model->x));
+    PetscCall(ContactSpringsRelax(work->stabiliser, model->x));
     PetscCall(ModelSolveLists(model, report));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -278,7 +278,7 @@ PetscErrorCode ModelSolve(Model model, PetscReal t, SolveReport *report)
   *report = (SolveReport){.result = SOLVE_CONVERGED};
   PetscCall(ModelDepart(model, t));
   PetscCall(ModelStart(model, report));
-  PetscCall(ModelSoftStart(model, report));
+  PetscCall(ModelRampPenalty(model, report));
   while (window == WINDOW_MISSED && report->result == SOLVE_CONVERGED) {
     PetscCall(ModelSolveHeld(model, report));
     if (report->result != SOLVE_CONVERGED || !model->contact) break;
@@ -298,23 +298,23 @@ PetscErrorCode ModelSolve(Model model, PetscReal t, SolveReport *report)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ModelForecast - displacements at t by one linear solve with the accepted state's contact set, as a guess of what will touch.
+/* ModelLookAhead - displacements at t by one linear solve with the accepted state's contact set, as a guess of what will touch.
 
    Collective. u[n_nodes*dim]: local displacements (length), prescribed ones included. Costs and failures are added to the report; the state is
    the accepted one afterwards, the contact lists are made for the way to t. The next ModelSolve() starts from the forecast instead of a
    prediction of its own, so that the solve is paid once. */
-PetscErrorCode ModelForecast(Model model, PetscReal t, PetscReal *u, SolveReport *report)
+PetscErrorCode ModelLookAhead(Model model, PetscReal t, PetscReal *u, SolveReport *report)
 {
   PetscFunctionBeginUser;
   PetscCall(ModelDepart(model, t));
   PetscCall(ModelPredict(model, report));
   PetscCall(ModelTrial(model, model->x));
   PetscCall(PetscArraycpy(u, model->work->trial, model->mesh->n_nodes * model->mesh->dim));
-  PetscCall(VecCopy(model->x, model->work->forecast));
+  PetscCall(VecCopy(model->x, model->work->look_ahead));
   PetscCall(VecCopy(model->work->accepted_x, model->x));
-  model->work->forecast_t        = t;
-  model->work->forecast_foreseen = model->work->foreseen;
-  model->work->forecasted        = report->result == SOLVE_CONVERGED ? PETSC_TRUE : PETSC_FALSE;
+  model->work->look_ahead_t        = t;
+  model->work->look_ahead_extrapolated = model->work->extrapolated;
+  model->work->looked_ahead        = report->result == SOLVE_CONVERGED ? PETSC_TRUE : PETSC_FALSE;
   model->t                       = model->work->accepted_t;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

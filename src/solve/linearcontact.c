@@ -4,20 +4,20 @@
 
 /* Terms that change in one step, at most. As many solves at once cost about as much as two or three factors, and save as many iterations; with half as many a
    pipe between plates has steps that are left alone, and takes 69 iterations instead of 63. */
-#define SETTLE_TERMS 256
+#define LINEAR_CONTACT_TERMS 256
 /* Numbers in all columns, at most: 0.4 GB */
-#define SETTLE_VALUES 5e7
+#define LINEAR_CONTACT_VALUES 5e7
 /* Times that terms are found to change which did not seem to. */
-#define SETTLE_ROUNDS 16
+#define LINEAR_CONTACT_ROUNDS 16
 
 /* A linear step on the way to its end */
 typedef struct {
   ContactStep contact;
-  Pressing    pressing;
+  ActiveSet    pressing;
   PetscInt    n, m, rounds;     /* terms near, those that change */
-  Mat         Z[SETTLE_ROUNDS]; /* what a pressure of 1 on each of these, in their order, does to the free displacements */
+  Mat         Z[LINEAR_CONTACT_ROUNDS]; /* what a pressure of 1 on each of these, in their order, does to the free displacements */
   PetscReal  *du, *travel;
-} Settling;
+} LinearContact;
 
 /* Local displacements: those carried along, if any, and scale times a global vector. */
 static PetscErrorCode LocalChange(Model model, Vec x, PetscReal scale, const PetscReal *carried, PetscReal *du)
@@ -31,27 +31,27 @@ static PetscErrorCode LocalChange(Model model, Vec x, PetscReal scale, const Pet
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode SettlingBegin(Model model, const PetscReal *u, const PetscReal *carried, PetscReal t, Vec y, Settling *s)
+static PetscErrorCode LinearContactBegin(Model model, const PetscReal *u, const PetscReal *carried, PetscReal t, Vec y, LinearContact *s)
 {
-  const PressingTerm *terms;
+  const ActiveSetTerm *terms;
 
   PetscFunctionBeginUser;
-  *s = (Settling){.n = 0};
+  *s = (LinearContact){.n = 0};
   PetscCall(PetscMalloc1(model->mesh->n_nodes * model->mesh->dim, &s->du));
   PetscCall(LocalChange(model, y, -1, carried, s->du));
   PetscCall(ContactStepCreate(model->contact, u, s->du, t, model->t, &s->contact));
   PetscCall(ContactStepGetTerms(s->contact, &s->n, &terms));
   PetscCall(PetscMalloc1(s->n, &s->travel));
   PetscCall(ContactStepTravel(s->contact, s->du, t, model->t, s->travel));
-  PetscCall(PressingCreate(s->n, terms, s->travel, &s->pressing));
+  PetscCall(ActiveSetCreate(s->n, terms, s->travel, &s->pressing));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode SettlingEnd(Settling *s)
+static PetscErrorCode LinearContactEnd(LinearContact *s)
 {
   PetscFunctionBeginUser;
   for (PetscInt r = 0; r < s->rounds; r++) PetscCall(MatDestroy(&s->Z[r]));
-  PetscCall(PressingDestroy(&s->pressing));
+  PetscCall(ActiveSetDestroy(&s->pressing));
   PetscCall(ContactStepDestroy(&s->contact));
   PetscCall(PetscFree(s->travel));
   PetscCall(PetscFree(s->du));
@@ -59,7 +59,7 @@ static PetscErrorCode SettlingEnd(Settling *s)
 }
 
 /* What the terms which[m] do to the step. *able: it could be found. */
-static PetscErrorCode SettlingAdd(Model model, Settling *s, PetscInt m, const PetscInt *which, PetscBool *able)
+static PetscErrorCode LinearContactAdd(Model model, LinearContact *s, PetscInt m, const PetscInt *which, PetscBool *able)
 {
   PetscInt   rows, n;
   PetscReal *G;
@@ -68,7 +68,7 @@ static PetscErrorCode SettlingAdd(Model model, Settling *s, PetscInt m, const Pe
 
   PetscFunctionBeginUser;
   PetscCall(VecGetSize(model->x, &n));
-  *able = (PetscBool)(s->rounds < SETTLE_ROUNDS && s->m + m <= SETTLE_TERMS && (PetscReal)(s->m + m) * n <= SETTLE_VALUES);
+  *able = (PetscBool)(s->rounds < LINEAR_CONTACT_ROUNDS && s->m + m <= LINEAR_CONTACT_TERMS && (PetscReal)(s->m + m) * n <= LINEAR_CONTACT_VALUES);
   if (!*able) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(VecGetLocalSize(model->x, &rows));
   PetscCall(ContactStepForces(s->contact, rows, m, which, &B));
@@ -87,29 +87,29 @@ static PetscErrorCode SettlingAdd(Model model, Settling *s, PetscInt m, const Pe
     PetscCall(MatDenseRestoreColumnVecRead(Z, j, &z));
     PetscCall(ContactStepTravel(s->contact, s->du, model->t, model->t, &G[j * s->n]));
   }
-  PetscCall(PressingAddColumns(s->pressing, m, which, G));
+  PetscCall(ActiveSetAddColumns(s->pressing, m, which, G));
   PetscCall(PetscFree(G));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* Goes on as far as the columns at hand allow, on the first rank: what each would find by itself may differ in the last bits, and the ranks go on together. */
-static PetscErrorCode SettlingSolve(Model model, Settling *s, PetscInt *m, PetscInt *which, PetscBool *settled)
+static PetscErrorCode LinearContactSolve(Model model, LinearContact *s, PetscInt *m, PetscInt *which, PetscBool *converged)
 {
   MPI_Comm    comm = model->mesh->comm;
   PetscMPIInt rank, n;
 
   PetscFunctionBeginUser;
   PetscCallMPI(MPI_Comm_rank(comm, &rank));
-  if (!rank) PetscCall(PressingSolve(s->pressing, m, which, settled));
+  if (!rank) PetscCall(ActiveSetSolve(s->pressing, m, which, converged));
   PetscCallMPI(MPI_Bcast(m, 1, MPIU_INT, 0, comm));
-  PetscCallMPI(MPI_Bcast(settled, sizeof(PetscBool), MPI_BYTE, 0, comm));
+  PetscCallMPI(MPI_Bcast(converged, sizeof(PetscBool), MPI_BYTE, 0, comm));
   PetscCall(PetscMPIIntCast(*m, &n));
   PetscCallMPI(MPI_Bcast(which, n, MPIU_INT, 0, comm));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* What the first rank has found: the caller frees excess[m] and pressed[n]. */
-static PetscErrorCode SettlingGet(Model model, const Settling *s, PetscReal **excess, PetscBool **pressed)
+static PetscErrorCode LinearContactGet(Model model, const LinearContact *s, PetscReal **excess, PetscBool **pressed)
 {
   MPI_Comm         comm = model->mesh->comm;
   const PetscReal *found;
@@ -117,7 +117,7 @@ static PetscErrorCode SettlingGet(Model model, const Settling *s, PetscReal **ex
   PetscMPIInt      m, n;
 
   PetscFunctionBeginUser;
-  PressingGet(s->pressing, &found, &presses);
+  ActiveSetGet(s->pressing, &found, &presses);
   PetscCall(PetscMalloc2(s->m, excess, s->n, pressed));
   PetscCall(PetscArraycpy(*excess, found, s->m));
   PetscCall(PetscArraycpy(*pressed, presses, s->n));
@@ -129,7 +129,7 @@ static PetscErrorCode SettlingGet(Model model, const Settling *s, PetscReal **ex
 }
 
 /* The step with what presses in the end; y stays where that goes further than what is near was looked for, as that of a body that has lost its hold. */
-static PetscErrorCode SettlingTake(Model model, const PetscReal *carried, PetscReal t, Settling *s, Vec y, PetscBool *taken)
+static PetscErrorCode LinearContactTake(Model model, const PetscReal *carried, PetscReal t, LinearContact *s, Vec y, PetscBool *taken)
 {
   PetscReal *excess;
   PetscBool *pressed;
@@ -137,7 +137,7 @@ static PetscErrorCode SettlingTake(Model model, const PetscReal *carried, PetscR
   Vec        z, end;
 
   PetscFunctionBeginUser;
-  PetscCall(SettlingGet(model, s, &excess, &pressed));
+  PetscCall(LinearContactGet(model, s, &excess, &pressed));
   PetscCall(VecDuplicate(y, &end));
   PetscCall(VecCopy(y, end));
   for (PetscInt r = 0; r < s->rounds; r++) {
@@ -150,14 +150,14 @@ static PetscErrorCode SettlingTake(Model model, const PetscReal *carried, PetscR
   }
   PetscCall(LocalChange(model, end, -1, carried, s->du));
   PetscCall(ContactStepWithin(s->contact, s->du, t, model->t, taken));
-  if (*taken) PetscCall(ContactStepForesee(s->contact, pressed));
+  if (*taken) PetscCall(ContactStepMarkPredicted(s->contact, pressed));
   if (*taken) PetscCall(VecCopy(end, y));
   PetscCall(VecDestroy(&end));
   PetscCall(PetscFree2(excess, pressed));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ModelSettle - a linear step whose contact is right where it ends.
+/* ModelSolveLinearContact - a linear step whose contact is right where it ends.
 
    Collective. y: the step from free displacements x to x - y by the last tangent, at local displacements u and t; carried (may be NULL): local displacements
    that go with it. The tangent holds terms that the step opens, and lacks those that it closes; Newton's method finds that out one iteration later, and so on
@@ -165,28 +165,28 @@ static PetscErrorCode SettlingTake(Model model, const PetscReal *carried, PetscR
    hand. Where that is not had, y stays.
 
    Source: Josephy, Newton's method for generalized equations, 1979: of second order, whatever opens or closes. */
-PetscErrorCode ModelSettle(Model model, const PetscReal *u, const PetscReal *carried, PetscReal t, Vec y)
+PetscErrorCode ModelSolveLinearContact(Model model, const PetscReal *u, const PetscReal *carried, PetscReal t, Vec y)
 {
-  PetscBool able, settled = PETSC_FALSE;
+  PetscBool able, converged = PETSC_FALSE;
   PetscInt *which, m      = 1;
-  Settling  s;
+  LinearContact  s;
 
   PetscFunctionBeginUser;
   if (!model->contact || LinearCheckLost(model->linear)) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(LinearSolverDirect(model->work->solver, &able));
   if (!able) PetscFunctionReturn(PETSC_SUCCESS);
   TimingBegin(TIMING_ASSEMBLY_CONTACT);
-  PetscCall(SettlingBegin(model, u, carried, t, y, &s));
+  PetscCall(LinearContactBegin(model, u, carried, t, y, &s));
   PetscCall(PetscMalloc1(s.n, &which));
   while (able && m) {
-    PetscCall(SettlingSolve(model, &s, &m, which, &settled));
-    if (m) PetscCall(SettlingAdd(model, &s, m, which, &able));
+    PetscCall(LinearContactSolve(model, &s, &m, which, &converged));
+    if (m) PetscCall(LinearContactAdd(model, &s, m, which, &able));
   }
-  if (settled) PetscCall(SettlingTake(model, carried, t, &s, y, &settled));
+  if (converged) PetscCall(LinearContactTake(model, carried, t, &s, y, &converged));
   PetscCall(
-    PetscInfo(model->snes, "of %" PetscInt_FMT " terms near %" PetscInt_FMT " change: %s\n", s.n, s.m, settled ? "settled" : "left to the next iteration"));
+    PetscInfo(model->snes, "of %" PetscInt_FMT " terms near %" PetscInt_FMT " change: %s\n", s.n, s.m, converged ? "settled" : "left to the next iteration"));
   PetscCall(PetscFree(which));
-  PetscCall(SettlingEnd(&s));
+  PetscCall(LinearContactEnd(&s));
   TimingEnd(TIMING_ASSEMBLY_CONTACT);
   PetscFunctionReturn(PETSC_SUCCESS);
 }

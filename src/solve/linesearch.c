@@ -22,7 +22,7 @@ static PetscErrorCode ModelMeasureStep(SNESLineSearch search, Vec x, Vec y, Pets
 
   PetscFunctionBeginUser;
   PetscCall(ModelTrial(model, x));
-  PetscCall(ModelSettle(model, model->work->trial, NULL, model->t, y));
+  PetscCall(ModelSolveLinearContact(model, model->work->trial, NULL, model->t, y));
   *changed = PETSC_TRUE;
   PetscCall(VecNorm(y, NORM_2, &model->work->step));
   if (model->work->near || !LoadsConservative(model->loads)) PetscFunctionReturn(PETSC_SUCCESS);

@@ -40,13 +40,13 @@ PetscErrorCode ModelCreate(Scene scene, Mesh mesh, Model *out)
   PetscCall(PetscObjectReference((PetscObject)model->A));
   PetscCall(MatCreateVecs(model->A, &model->x, NULL));
   PetscCall(VecDuplicate(model->x, &model->work->accepted_x));
-  PetscCall(VecDuplicate(model->x, &model->work->forecast));
+  PetscCall(VecDuplicate(model->x, &model->work->look_ahead));
   PetscCall(VecDuplicate(model->x, &model->work->residual));
-  if (scene->kinematics != KINEMATICS_SMALL) PetscCall(PathCreate(mesh, &model->work->path));
+  if (scene->kinematics != KINEMATICS_SMALL) PetscCall(ExtrapolationCreate(mesh, &model->work->extrapolation));
   PetscCall(ModelCreateSNES(model));
   if (model->contact) {
     PetscCall(ContactCycleCreate(model->contact, &model->work->watch));
-    PetscCall(StabiliserCreate(model->contact, model->x, &model->work->stabiliser));
+    PetscCall(ContactSpringsCreate(model->contact, model->x, &model->work->stabiliser));
   }
   *out = model;
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -64,12 +64,12 @@ PetscErrorCode ModelDestroy(Model *model)
   PetscCall(LinearCheckDestroy(&m->linear));
   PetscCall(ContactCycleDestroy(&m->work->watch));
   PetscCall(ContactLineDestroy(&m->work->line));
-  PetscCall(StabiliserDestroy(&m->work->stabiliser));
-  PetscCall(PathDestroy(&m->work->path));
+  PetscCall(ContactSpringsDestroy(&m->work->stabiliser));
+  PetscCall(ExtrapolationDestroy(&m->work->extrapolation));
   PetscCall(MatDestroy(&m->A));
   PetscCall(VecDestroy(&m->x));
   PetscCall(VecDestroy(&m->work->accepted_x));
-  PetscCall(VecDestroy(&m->work->forecast));
+  PetscCall(VecDestroy(&m->work->look_ahead));
   PetscCall(VecDestroy(&m->work->residual));
   PetscCall(ContactDestroy(&m->contact));
   PetscCall(ElasticityDestroy(&m->elasticity));
@@ -153,9 +153,9 @@ PetscErrorCode ModelAccept(Model model)
   PetscCall(VecCopy(model->x, work->accepted_x));
   work->accepted_t = model->t;
   if (stepped) work->accepted_start = work->start;
-  if (work->path) PetscCall(PathAdd(work->path, model->u, model->t));
-  if (work->path && SceneBreaks(model->scene, model->t)) PetscCall(PathForget(work->path));
-  work->forecasted = PETSC_FALSE;
+  if (work->extrapolation) PetscCall(ExtrapolationAdd(work->extrapolation, model->u, model->t));
+  if (work->extrapolation && SceneBreaks(model->scene, model->t)) PetscCall(ExtrapolationForget(work->extrapolation));
+  work->looked_ahead = PETSC_FALSE;
   if (model->contact) {
     PetscCall(ContactAccept(model->contact));
     if (stepped) PetscCall(ContactAdjustNextPenalty(model->contact));
@@ -193,14 +193,14 @@ PetscErrorCode ModelArchive(Model model, Archive archive)
 {
   const Mesh mesh = model->mesh;
   ModelWork *work = model->work;
-  Rows       nodes;
+  Hdf5Table       nodes;
   PetscBool  ok;
 
   PetscFunctionBeginUser;
-  PetscCall(RowsCreate(mesh->comm, mesh->n_global, mesh->n_nodes, mesh->node_id, &nodes));
+  PetscCall(Hdf5TableCreate(mesh->comm, mesh->n_global, mesh->n_nodes, mesh->node_id, &nodes));
   PetscCall(ArchiveRows(archive, "model/displacement", &nodes, mesh->dim, work->accepted_u));
-  if (work->path) PetscCall(PathArchive(work->path, archive, &nodes, work->accepted_u));
-  PetscCall(RowsDestroy(&nodes));
+  if (work->extrapolation) PetscCall(ExtrapolationArchive(work->extrapolation, archive, &nodes, work->accepted_u));
+  PetscCall(Hdf5TableDestroy(&nodes));
   PetscCall(ArchiveReals(archive, "model/t", 1, &work->accepted_t));
   PetscCall(ArchiveReals(archive, "model/rate", 1, &work->rate));
   PetscCall(ArchiveReals(archive, "model/start", 1, &work->accepted_start));

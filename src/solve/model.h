@@ -70,7 +70,7 @@ PetscErrorCode ModelSetUp(Model);
 PetscErrorCode ModelSolve(Model, PetscReal t, SolveReport *);
 /* Where one linear solve, for which the accepted state's contact stays as it is, leads at t: u[n_nodes*dim], the state is not changed.
    Its solve is added to the report. The contact lists are those of the way to t. */
-PetscErrorCode ModelForecast(Model, PetscReal t, PetscReal *u, SolveReport *);
+PetscErrorCode ModelLookAhead(Model, PetscReal t, PetscReal *u, SolveReport *);
 PetscErrorCode ModelGetAccepted(Model, const PetscReal **u, PetscReal *t);
 PetscErrorCode ModelAccept(Model);
 PetscErrorCode ModelRestore(Model);

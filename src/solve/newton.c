@@ -71,7 +71,7 @@ static PetscErrorCode ModelFunction(SNES snes, Vec x, Vec F, void *context)
   PetscCall(ModelTrial(model, x));
   PetscCall(ModelResidual(model, model->work->trial, model->t, model->t, &ok));
   PetscCall(MeshLocalToGlobal(model->mesh, model->work->f, F));
-  PetscCall(StabiliserResidual(model->work->stabiliser, x, F));
+  PetscCall(ContactSpringsResidual(model->work->stabiliser, x, F));
   if (!ok) PetscCall(SNESSetFunctionDomainError(snes));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -110,12 +110,12 @@ static PetscErrorCode ModelObjective(SNES snes, Vec x, PetscReal *objective, voi
   PetscCall(ModelTrial(model, x));
   if (!work->near) {
     PetscCall(ModelEnergy(model, objective));
-    PetscCall(StabiliserEnergy(work->stabiliser, x, objective));
+    PetscCall(ContactSpringsEnergy(work->stabiliser, x, objective));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   PetscCall(ModelResidual(model, work->trial, model->t, model->t, &ok));
   PetscCall(MeshLocalToGlobal(model->mesh, work->f, work->residual));
-  PetscCall(StabiliserResidual(work->stabiliser, x, work->residual));
+  PetscCall(ContactSpringsResidual(work->stabiliser, x, work->residual));
   PetscCall(VecNorm(work->residual, NORM_2, objective));
   *objective *= MODEL_RESIDUAL_WEIGHT;
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -144,7 +144,7 @@ static PetscErrorCode ModelUpdateFactor(Model model, PetscInt terms)
   PetscCall(VecGetLocalSize(model->x, &rows));
   PetscCall(PetscMalloc1(terms, &s));
   PetscCall(ContactChangeVectors(model->contact, rows, terms, s, &N));
-  PetscCall(KeptFactorUpdate(LinearSolverKept(model->work->solver), N, s));
+  PetscCall(ReusedFactorUpdate(LinearSolverKept(model->work->solver), N, s));
   PetscCall(MatDestroy(&N));
   PetscCall(PetscFree(s));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -216,7 +216,7 @@ PetscErrorCode ModelTangent(Model model, const PetscReal *u, PetscReal t)
   PetscCall(ElasticityMatrix(model->elasticity, joined ? C : NULL, model->work->residual, &model->P));
   PetscCall(VecNorm(model->work->residual, NORM_2, &model->work->stiffness));
   TimingEnd(TIMING_ASSEMBLY_ELASTIC);
-  PetscCall(StabiliserTangent(model->work->stabiliser, model->P));
+  PetscCall(ContactSpringsTangent(model->work->stabiliser, model->P));
   PetscCall(ModelBorder(model, C));
   PetscCall(LinearSolverNext(model->work->solver, u, C, (PetscBool)(changed && joined), terms, &older));
   PetscCall(SNESSetLagPreconditioner(model->snes, older ? -1 : 1)); /* after each tangent SNES tells the KSP so */
@@ -316,7 +316,7 @@ static PetscErrorCode ModelConverged(SNES snes, PetscInt it, PetscReal xnorm, Pe
   Model           model = context;
   const PetscReal scale = PetscMax(model->force_scale, model->work->scale);
   PetscReal       round_off, allowed;
-  PetscBool       settled = PETSC_TRUE;
+  PetscBool       converged = PETSC_TRUE;
 
   PetscFunctionBeginUser;
   (void)snes;
@@ -324,7 +324,7 @@ static PetscErrorCode ModelConverged(SNES snes, PetscInt it, PetscReal xnorm, Pe
   (void)snorm;
   PetscCall(ModelCountCut(model, it));
   PetscCall(ModelRoundOff(model, &round_off));
-  if (model->contact) PetscCall(ContactGapsSettled(model->contact, &settled));
+  if (model->contact) PetscCall(ContactGapsConverged(model->contact, &converged));
   *reason               = SNES_CONVERGED_ITERATING;
   model->work->near     = fnorm <= MODEL_ENERGY_ROUND_OFF * scale ? PETSC_TRUE : PETSC_FALSE;
   allowed               = PetscMax((model->work->soft ? MODEL_SOFT_ENOUGH : model->scene->solver.tolerance) * scale, round_off);
@@ -336,7 +336,7 @@ static PetscErrorCode ModelConverged(SNES snes, PetscInt it, PetscReal xnorm, Pe
     *reason = SNES_DIVERGED_LINEAR_SOLVE;
   else if (PetscIsInfOrNanReal(fnorm))
     *reason = SNES_DIVERGED_FUNCTION_NANORINF;
-  else if (fnorm <= round_off || (model->work->balanced && (settled || model->work->soft)))
+  else if (fnorm <= round_off || (model->work->balanced && (converged || model->work->soft)))
     *reason = SNES_CONVERGED_FNORM_ABS;
   else if (model->contact)
     PetscCall(ModelLeaveLists(model, reason));

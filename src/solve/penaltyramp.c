@@ -3,16 +3,16 @@
 /* Penalties are softened where contact that the prediction did not count on stores, before Newton's method starts, this part of the elastic energy that the
    step brings. On a pipe between plates Newton's method takes three to five iterations below 0.15, seven to twenty, and most of its failures, above 0.2; a
    plate on a cylinder is better off without below 0.15. */
-#define SOFT_UNFORESEEN 0.15
+#define RAMP_UNPREDICTED 0.15
 /* That energy is not asked to be less than this part of the elastic energy: a step may bring none at all. */
-#define SOFT_NEGLIGIBLE 0.003
+#define RAMP_NEGLIGIBLE 0.003
 /* Penalties are raised until contact, where the last ones left it, would store this part of the elastic energy. With 0.1 a pipe between plates that takes its
    whole load in one step needs 16 to 20 iterations instead of 9 to 17. */
-#define SOFT_RAISED 0.03
+#define RAMP_RAISED 0.03
 /* Each soft solve's penalties are this many times those before, at least: where the next ones begin, contact then stores up to ten times the energy. */
-#define SOFT_FACTOR 10
+#define RAMP_FACTOR 10
 /* No softer than this part of the automatic penalty, which is the stiffness of the elements below the surface: bodies would pass through each other. */
-#define SOFT_LEAST 0.1
+#define RAMP_LEAST 0.1
 
 /* Elastic energy (all ranks) at model->x, and what it is more than in the accepted state, or less */
 static PetscErrorCode ModelElasticEnergy(Model model, PetscReal *energy, PetscReal *change)
@@ -30,20 +30,20 @@ static PetscErrorCode ModelElasticEnergy(Model model, PetscReal *energy, PetscRe
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The stiffest penalties, a power of SOFT_FACTOR below the full ones and not below `least`, whose energy at model->x is small. unforeseen: only that of terms
+/* The stiffest penalties, a power of RAMP_FACTOR below the full ones and not below `least`, whose energy at model->x is small. unforeseen: only that of terms
    which the prediction took for open counts. All in automatic penalties. */
-static PetscErrorCode ModelChooseSoftness(Model model, PetscBool unforeseen, PetscReal least, PetscReal full, PetscReal *most)
+static PetscErrorCode ModelChooseSoftness(Model model, PetscBool unpredicted, PetscReal least, PetscReal full, PetscReal *most)
 {
   PetscReal elastic = 0, change = 0, allowed, energy;
 
   PetscFunctionBeginUser;
   PetscCall(ModelElasticEnergy(model, &elastic, &change));
-  allowed = unforeseen ? PetscMax(SOFT_UNFORESEEN * change, SOFT_NEGLIGIBLE * elastic) : SOFT_RAISED * elastic;
-  for (*most = full;; *most = PetscMax(least, *most / SOFT_FACTOR)) {
+  allowed = unpredicted ? PetscMax(RAMP_UNPREDICTED * change, RAMP_NEGLIGIBLE * elastic) : RAMP_RAISED * elastic;
+  for (*most = full;; *most = PetscMax(least, *most / RAMP_FACTOR)) {
     energy = 0;
     PetscCall(ContactSoften(model->contact, *most));
-    if (unforeseen)
-      PetscCall(ContactUnforeseen(model->contact, model->work->trial, model->t, &energy));
+    if (unpredicted)
+      PetscCall(ContactUnpredictedEnergy(model->contact, model->work->trial, model->t, &energy));
     else
       PetscCall(ContactResidual(model->contact, model->work->trial, model->t, NULL, &energy, NULL));
     PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &energy, 1, MPIU_REAL, MPI_SUM, model->mesh->comm));
@@ -69,12 +69,12 @@ static PetscErrorCode ModelSolveSoft(Model model, PetscReal most, SolveReport *r
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ModelSoftStart - from the prediction to where it is known what touches, where the prediction ran into contact that it did not count on.
+/* ModelRampPenalty - from the prediction to where it is known what touches, where the prediction ran into contact that it did not count on.
 
    Collective. With stiff penalties every node that comes into contact puts a kink into the energy, and the line search goes from one to the next; with soft
    ones the nodes share the load at once. Each solve is made with stiffer ones from where the last one ended, none to its end; the next one, with the full
    penalties, is the caller's. model->x is where it ended; costs and failures are added to the report. */
-PetscErrorCode ModelSoftStart(Model model, SolveReport *report)
+PetscErrorCode ModelRampPenalty(Model model, SolveReport *report)
 {
   PetscReal full, most;
   PetscBool hold;
@@ -83,7 +83,7 @@ PetscErrorCode ModelSoftStart(Model model, SolveReport *report)
   if (!model->contact || report->result != SOLVE_CONVERGED) PetscFunctionReturn(PETSC_SUCCESS);
   model->work->renewed = 0;
   PetscCall(ContactStiffest(model->contact, &full));
-  PetscCall(ModelChooseSoftness(model, PETSC_TRUE, SOFT_LEAST, full, &most));
+  PetscCall(ModelChooseSoftness(model, PETSC_TRUE, RAMP_LEAST, full, &most));
   while (most < full) {
     PetscCall(ModelSolveSoft(model, most, report));
     if (report->result != SOLVE_CONVERGED) break;
@@ -91,7 +91,7 @@ PetscErrorCode ModelSoftStart(Model model, SolveReport *report)
       PetscCall(ModelRenewLists(model, PETSC_FALSE, &hold));
       report->regathered++;
     } else
-      PetscCall(ModelChooseSoftness(model, PETSC_FALSE, SOFT_FACTOR * most, full, &most));
+      PetscCall(ModelChooseSoftness(model, PETSC_FALSE, RAMP_FACTOR * most, full, &most));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -20,17 +20,17 @@ static PetscErrorCode ModelStepLinear(Model model, const PetscReal *u, const Pet
   PetscCall(VecDuplicate(model->x, &b));
   PetscCall(VecDuplicate(model->x, &dx));
   PetscCall(MeshLocalToGlobal(model->mesh, model->work->f, b));
-  PetscCall(StabiliserResidual(model->work->stabiliser, model->x, b));
+  PetscCall(ContactSpringsResidual(model->work->stabiliser, model->x, b));
   PetscCall(SNESGetKSP(model->snes, &ksp));
   PetscCall(KSPSetOperators(ksp, model->A, model->P));
-  if (!model->work->foreseen) PetscCall(LinearSolverPredict(model->work->solver, PETSC_TRUE));
+  if (!model->work->extrapolated) PetscCall(LinearSolverSetPrediction(model->work->solver, PETSC_TRUE));
   PetscCall(KSPSolve(ksp, b, dx));
-  if (!model->work->foreseen) PetscCall(LinearSolverPredict(model->work->solver, PETSC_FALSE));
+  if (!model->work->extrapolated) PetscCall(LinearSolverSetPrediction(model->work->solver, PETSC_FALSE));
   PetscCall(KSPGetIterationNumber(ksp, &its));
   report->newton++;
   report->krylov += its;
   if (LinearCheckLost(model->linear)) PetscCall(ModelLinearFailure(model, &report->result));
-  PetscCall(ModelSettle(model, u, carried, t, dx));
+  PetscCall(ModelSolveLinearContact(model, u, carried, t, dx));
   PetscCall(VecAXPY(model->x, -1, dx));
   PetscCall(VecDestroy(&b));
   PetscCall(VecDestroy(&dx));
@@ -51,17 +51,17 @@ static PetscErrorCode ModelStepLoads(Model model, const PetscReal *u, PetscReal 
   PetscCall(PetscArraycpy(step, u, n));
   PetscCall(LoadsPrescribe(model->loads, model->t, step));
   for (PetscInt i = 0; i < n; i++) step[i] -= u[i];
-  if (holding) PetscCall(ContactPredict(model->contact, PETSC_TRUE, (PetscBool)(t == 0))); /* touching: a body that only contact holds */
+  if (holding) PetscCall(ContactHoldActiveSet(model->contact, PETSC_TRUE, (PetscBool)(t == 0))); /* touching: a body that only contact holds */
   PetscCall(LinearSolverRenew(work->solver));
   PetscCall(LinearSolverSetStart(work->solver, work->accepted_start));
   if (model->contact) PetscCall(ContactMultiplyBegin(model->contact, step, t, model->t));
   PetscCall(ModelTangent(model, u, t));
   PetscCall(ModelResidual(model, u, model->t, t, &ok));
-  if (holding) PetscCall(ContactForesee(model->contact));
+  if (holding) PetscCall(ContactMarkPredicted(model->contact));
   PetscCall(ElasticityMultiplyLocal(model->elasticity, step, work->f));
   if (model->contact) PetscCall(ContactMultiplyEnd(model->contact, work->f));
   PetscCall(ModelStepLinear(model, u, step, t, report));
-  if (holding) PetscCall(ContactPredict(model->contact, PETSC_FALSE, PETSC_FALSE));
+  if (holding) PetscCall(ContactHoldActiveSet(model->contact, PETSC_FALSE, PETSC_FALSE));
   PetscCall(PetscFree(step));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -101,14 +101,14 @@ static PetscErrorCode ModelLocal(Model model, Vec x, PetscReal t, PetscReal *u)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ModelForesee - the displacements at t that the way so far leads to expect, prescribed ones included: local ones u[n_nodes*dim], and the free ones among them.
+/* ModelExtrapolate - the displacements at t that the way so far leads to expect, prescribed ones included: local ones u[n_nodes*dim], and the free ones among them.
 
    Collective. smooth: the way has been such that this is worth more than what the tangent says; x is set then only. */
-PetscErrorCode ModelForesee(Model model, PetscReal t, PetscReal *u, Vec x, PetscBool *smooth)
+PetscErrorCode ModelExtrapolate(Model model, PetscReal t, PetscReal *u, Vec x, PetscBool *smooth)
 {
   PetscFunctionBeginUser;
   *smooth = PETSC_FALSE;
-  if (model->work->path) PetscCall(PathForesee(model->work->path, t, u, smooth));
+  if (model->work->extrapolation) PetscCall(ExtrapolationEvaluate(model->work->extrapolation, t, u, smooth));
   if (!*smooth) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(LoadsPrescribe(model->loads, t, u));
   PetscCall(MeshCollectFree(model->mesh, u, x));
@@ -132,7 +132,7 @@ PetscErrorCode ModelInOrder(Model model, const PetscReal *u, PetscBool *ok)
 }
 
 /* A step from where the way so far leads to: Newton's first iteration from there. work->foreseen: it has been made, and did not lead far away. */
-static PetscErrorCode ModelPredictForeseen(Model model, SolveReport *report)
+static PetscErrorCode ModelPredictFromExtrapolation(Model model, SolveReport *report)
 {
   ModelWork     *work = model->work;
   const PetscInt n    = model->mesh->n_nodes * model->mesh->dim;
@@ -140,13 +140,13 @@ static PetscErrorCode ModelPredictForeseen(Model model, SolveReport *report)
 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc2(n, &u, n, &v));
-  PetscCall(ModelForesee(model, model->t, u, model->x, &work->foreseen));
-  if (work->foreseen) PetscCall(ModelInOrder(model, u, &work->foreseen));
-  if (work->foreseen) {
+  PetscCall(ModelExtrapolate(model, model->t, u, model->x, &work->extrapolated));
+  if (work->extrapolated) PetscCall(ModelInOrder(model, u, &work->extrapolated));
+  if (work->extrapolated) {
     PetscCall(ModelStepLoads(model, u, model->t, (PetscBool)(model->contact != NULL), report));
     PetscCall(ModelLocal(model, model->x, model->t, v));
     PetscCall(ModelLargestTurn(model, u, v, &turn));
-    work->foreseen = (PetscBool)(report->result == SOLVE_CONVERGED && turn <= PREDICTION_FARTHEST);
+    work->extrapolated = (PetscBool)(report->result == SOLVE_CONVERGED && turn <= PREDICTION_FARTHEST);
   }
   PetscCall(PetscFree2(u, v));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -160,8 +160,8 @@ PetscErrorCode ModelPredict(Model model, SolveReport *report)
   const SolveReport before = *report;
 
   PetscFunctionBeginUser;
-  PetscCall(ModelPredictForeseen(model, report));
-  if (model->work->foreseen) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(ModelPredictFromExtrapolation(model, report));
+  if (model->work->extrapolated) PetscFunctionReturn(PETSC_SUCCESS);
   *report = before; /* a singular tangent there says nothing of the one here */
   PetscCall(VecCopy(model->work->accepted_x, model->x));
   PetscCall(ModelStepLoads(model, model->work->accepted_u, model->work->accepted_t, (PetscBool)(model->contact != NULL), report));
@@ -196,7 +196,7 @@ PetscErrorCode ModelPredictFar(Model model, SolveReport *report)
   Vec            from;
 
   PetscFunctionBeginUser;
-  if (model->scene->kinematics == KINEMATICS_SMALL || model->work->foreseen) PetscFunctionReturn(PETSC_SUCCESS);
+  if (model->scene->kinematics == KINEMATICS_SMALL || model->work->extrapolated) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(VecDuplicate(model->x, &from));
   PetscCall(VecCopy(model->work->accepted_x, from));
   PetscCall(PetscCalloc2(n, &u, n, &v));
@@ -229,10 +229,10 @@ PetscErrorCode ModelFollowLists(Model model, SolveReport *report)
   PetscBool ok;
 
   PetscFunctionBeginUser;
-  PetscCall(ContactPredict(model->contact, PETSC_TRUE, PETSC_FALSE));
+  PetscCall(ContactHoldActiveSet(model->contact, PETSC_TRUE, PETSC_FALSE));
   PetscCall(ModelTangent(model, model->work->trial, model->t));
   PetscCall(ModelResidual(model, model->work->trial, model->t, model->t, &ok));
   PetscCall(ModelStepLinear(model, model->work->trial, NULL, model->t, report));
-  PetscCall(ContactPredict(model->contact, PETSC_FALSE, PETSC_FALSE));
+  PetscCall(ContactHoldActiveSet(model->contact, PETSC_FALSE, PETSC_FALSE));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -47,7 +47,7 @@ static PetscErrorCode Changes(Model model, const StepSize *size, PetscReal *chan
 }
 
 /* beta_{N_c} from the accepted state to (u, t), dt apart. Source: Chamoret et al. 2004, eqs 17 to 20. */
-static PetscErrorCode Choose(Model model, const PetscReal *u, PetscReal t, PetscBool still_open, PetscReal factor, StepSize *size, TouchChoice *choice)
+static PetscErrorCode Choose(Model model, const PetscReal *u, PetscReal t, PetscBool still_open, PetscReal factor, StepSize *size, TouchStepChoice *choice)
 {
   const PetscReal *u_0;
   PetscReal        t_0, changed, wanted;
@@ -58,7 +58,7 @@ static PetscErrorCode Choose(Model model, const PetscReal *u, PetscReal t, Petsc
   PetscCall(ModelGetAccepted(model, &u_0, &t_0));
   PetscCall(Changes(model, size, &changed, &wanted));
   PetscCall(ContactTouches(model->contact, u_0, t_0, u, t, size->by_area, still_open, &n, &touch));
-  TouchChoose(n, touch, factor * wanted, size->dt_min / (t - t_0), choice);
+  TouchStepChoose(n, touch, factor * wanted, size->dt_min / (t - t_0), choice);
   PetscCall(PetscFree(touch));
   size->beta     = choice->beta;
   size->together = choice->tied ? choice->met : 0;
@@ -67,16 +67,16 @@ static PetscErrorCode Choose(Model model, const PetscReal *u, PetscReal t, Petsc
 
 /* StepControlPredict_Contact - the paper's order, for `prediction: tangent`: one linear solve over the present dt says when nodes touch, and dt
    is made so that the wanted ones do. Collective. */
-static PetscErrorCode StepControlPredict_Contact(Model model, PetscReal rest, StepSize *size, SolveReport *report)
+static PetscErrorCode StepControlPredict_Contact(Model model, PetscReal remaining, StepSize *size, SolveReport *report)
 {
-  const PetscReal dt = PetscMin(size->dt, rest);
+  const PetscReal dt = PetscMin(size->dt, remaining);
   PetscReal      *u;
-  TouchChoice     choice;
+  TouchStepChoice     choice;
 
   PetscFunctionBeginUser;
   if (!size->linearly || !model->contact) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscMalloc1(model->mesh->n_nodes * model->mesh->dim, &u));
-  PetscCall(ModelForecast(model, model->t + dt, u, report));
+  PetscCall(ModelLookAhead(model, model->t + dt, u, report));
   if (report->result == SOLVE_CONVERGED) {
     PetscCall(Choose(model, u, model->t + dt, PETSC_FALSE, size->shortfall, size, &choice));
     size->tied    = choice.tied ? choice.nodes : 0;
@@ -143,7 +143,7 @@ static PetscErrorCode Longest(Model model, PetscReal dt, PetscReal beta, const S
    the paper repeats the present one, whose solution is good as it is. `prediction: tangent` decides before the next step. Collective. */
 static PetscErrorCode StepControlNext_Contact(Model model, PetscReal dt, PetscBool clipped, PetscInt newton, StepSize *size)
 {
-  TouchChoice choice;
+  TouchStepChoice choice;
   PetscReal   longest = dt;
 
   PetscFunctionBeginUser;

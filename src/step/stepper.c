@@ -158,19 +158,19 @@ PetscErrorCode LoadStepperView(LoadStepper stepper, PetscViewer viewer)
  * the model can take. */
 static PetscReal StepEnd(LoadStepper stepper, PetscReal t, PetscReal dt, PetscBool *clipped)
 {
-  PetscReal landing, rest;
+  PetscReal landing, remaining;
 
   while (stepper->landings[stepper->next_landing] <= t + STEPPER_SAME_T) stepper->next_landing++;
   landing  = stepper->landings[stepper->next_landing];
-  rest     = landing - t;
+  remaining     = landing - t;
   *clipped = PETSC_FALSE;
-  if (rest <= PetscMax(dt, PetscMin(STEPPER_STRETCH * dt, stepper->size.dt_max)) + STEPPER_SAME_T) {
-    *clipped = rest < dt - STEPPER_SAME_T ? PETSC_TRUE : PETSC_FALSE;
+  if (remaining <= PetscMax(dt, PetscMin(STEPPER_STRETCH * dt, stepper->size.dt_max)) + STEPPER_SAME_T) {
+    *clipped = remaining < dt - STEPPER_SAME_T ? PETSC_TRUE : PETSC_FALSE;
     return landing;
   }
-  if (rest < STEPPER_HALVE * dt) {
+  if (remaining < STEPPER_HALVE * dt) {
     *clipped = PETSC_TRUE;
-    return t + rest / 2;
+    return t + remaining / 2;
   }
   return t + dt;
 }

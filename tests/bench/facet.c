@@ -128,7 +128,7 @@ static int BenchTree(int n)
   double   *lower = malloc(sizeof(double) * 3 * n), *upper = malloc(sizeof(double) * 3 * n), begin, build, near, closest;
   int       found[64], total                               = 0;
   char      row[16];
-  Tree      tree;
+  BoxTree      tree;
 
   if (!lower || !upper) return 1;
   for (int i = 0; i < n; ++i) {
@@ -138,10 +138,10 @@ static int BenchTree(int n)
     }
   }
   begin = Seconds();
-  if (TreeBuild(3, n, lower, upper, &tree)) return 1;
+  if (BoxTreeBuild(3, n, lower, upper, &tree)) return 1;
   build = Seconds() - begin;
   begin = Seconds();
-  for (int p = 0; p < POINTS; ++p) total += TreeNear(tree, (double[3]){Random(0, side), Random(0, side), 0.1}, 1.2, 64, found);
+  for (int p = 0; p < POINTS; ++p) total += BoxTreeNear(tree, (double[3]){Random(0, side), Random(0, side), 0.1}, 1.2, 64, found);
   near  = Seconds() - begin;
   begin = Seconds();
   for (int p = 0; p < POINTS; ++p) {
@@ -149,7 +149,7 @@ static int BenchTree(int n)
     const double *data[3]  = {lower, upper, point};
     double        bound    = INFINITY;
 
-    TreeClosest(tree, point, &bound, VisitCentre, data);
+    BoxTreeClosest(tree, point, &bound, VisitCentre, data);
   }
   closest = Seconds() - begin;
   snprintf(row, sizeof(row), "%d", n);
@@ -157,7 +157,7 @@ static int BenchTree(int n)
   Print(row, "near", 1e6 * near / POINTS);
   Print(row, "found", (double)total / POINTS);
   Print(row, "closest", 1e6 * closest / POINTS);
-  TreeDestroy(&tree);
+  BoxTreeDestroy(&tree);
   free(lower);
   free(upper);
   return 0;

@@ -51,23 +51,23 @@ static PetscErrorCode AddPair(Study *study, const MeshGroup *slave, const MeshGr
 {
   const int  dim = study->mesh->dim;
   PetscReal *slaves, *masters;
-  Tree       tree;
+  BoxTree       tree;
 
   PetscFunctionBeginUser;
   PetscCall(FaceCentres(study->mesh, slave, &slaves));
   PetscCall(FaceCentres(study->mesh, master, &masters));
-  PetscCheck(!TreeBuild(dim, (int)master->n_faces, masters, masters, &tree), PETSC_COMM_SELF, PETSC_ERR_MEM, "no memory for the tree");
+  PetscCheck(!BoxTreeBuild(dim, (int)master->n_faces, masters, masters, &tree), PETSC_COMM_SELF, PETSC_ERR_MEM, "no memory for the tree");
   for (PetscInt f = 0; f < slave->n_faces; f++) {
     Nearest nearest = {.dim = dim, .centres = masters, .point = slaves + f * dim};
     double  bound   = DBL_MAX;
 
-    TreeClosest(tree, nearest.point, &bound, VisitCentre, &nearest);
+    BoxTreeClosest(tree, nearest.point, &bound, VisitCentre, &nearest);
     study->slave[study->n_slaves]      = slave->face_cell[f];
     study->opposite[study->n_slaves++] = master->face_cell[nearest.closest];
   }
   for (PetscInt f = 0; f < slave->n_faces; f++) study->contact[slave->face_cell[f]] = PETSC_TRUE;
   for (PetscInt f = 0; f < master->n_faces; f++) study->contact[master->face_cell[f]] = PETSC_TRUE;
-  TreeDestroy(&tree);
+  BoxTreeDestroy(&tree);
   PetscCall(PetscFree(slaves));
   PetscCall(PetscFree(masters));
   PetscFunctionReturn(PETSC_SUCCESS);

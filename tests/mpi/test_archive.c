@@ -32,11 +32,11 @@ static void StateArchive(State *state, Archive archive)
 {
   PetscMPIInt size;
   PetscInt    key[ROWS];
-  Rows        rows;
+  Hdf5Table        rows;
 
   MPI_Comm_size(PETSC_COMM_WORLD, &size);
   for (int i = 0; i < ROWS; i++) key[i] = 10 * (size - Rank()) - i;
-  assert_int_equal(RowsCreateByKey(PETSC_COMM_WORLD, ROWS, key, &rows), 0);
+  assert_int_equal(Hdf5TableCreateByKey(PETSC_COMM_WORLD, ROWS, key, &rows), 0);
   assert_int_equal(rows.total, ROWS * size);
   assert_int_equal(ArchiveReals(archive, "group/real", 2, state->real), 0);
   assert_int_equal(ArchiveRows(archive, "group/items", &rows, WIDTH, state->items), 0);
@@ -45,7 +45,7 @@ static void StateArchive(State *state, Archive archive)
   assert_int_equal(ArchiveBytes(archive, "bytes", &state->n_bytes, &state->bytes), 0);
   assert_int_equal(ArchiveBoolean(archive, "flag", &state->flag), 0);
   assert_int_equal(ArchiveReals(archive, "none", 0, NULL), 0);
-  assert_int_equal(RowsDestroy(&rows), 0);
+  assert_int_equal(Hdf5TableDestroy(&rows), 0);
 }
 
 static State StateFill(PetscInt *list, char *text, char *bytes)

@@ -72,7 +72,7 @@ static inline int Evaluate(Case *c, FitWant want)
   c->in.x          = c->x;
   c->in.multiplier = c->v;
   c->out           = (FitResult){.points = c->points, .shape = c->shape, .N = c->N, .M = c->in.n <= FEW ? c->M : NULL};
-  whole            = FitEvaluate(&c->in, want, work + 1, &c->out);
+  whole            = DiffuseFitEvaluate(&c->in, want, work + 1, &c->out);
   assert_true(work[1 + size] == 7);
   return whole;
 }

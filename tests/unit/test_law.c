@@ -38,7 +38,7 @@ static void test_multiplier(void **state)
   const double   gaps[] = {-0.02, -0.01, 0.01, 0.0199, 0.0201, 1}, pressures[] = {1200, 900, 300, 3, 0, 0};
 
   (void)state;
-  assert_true(fabs(LawRest(&given) - 0.02) <= 1e-15);
+  assert_true(fabs(LawOnsetGap(&given) - 0.02) <= 1e-15);
   for (int i = 0; i < 6; i++) {
     LawValue value;
 

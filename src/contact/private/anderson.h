@@ -2,10 +2,10 @@
 #pragma once
 #include "base/petsccompat.h"
 
-typedef struct _n_Mixing *Mixing;
+typedef struct _n_Mixing *Anderson;
 
-PetscErrorCode MixingCreate(MPI_Comm, PetscInt n, const PetscReal *weight, Mixing *); /* weight[n] is borrowed */
-PetscErrorCode MixingDestroy(Mixing *);
-void           MixingStart(Mixing); /* of another iteration. Not collective */
+PetscErrorCode AndersonCreate(MPI_Comm, PetscInt n, const PetscReal *weight, Anderson *); /* weight[n] is borrowed */
+PetscErrorCode AndersonDestroy(Anderson *);
+void           AndersonStart(Anderson); /* of another iteration. Not collective */
 /* x[n]: what was put in; g[n]: G(x), replaced by what is to be put in next. Collective. */
-PetscErrorCode MixingNext(Mixing, const PetscReal *x, PetscReal *g);
+PetscErrorCode AndersonNext(Anderson, const PetscReal *x, PetscReal *g);

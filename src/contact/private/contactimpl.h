@@ -27,7 +27,7 @@ typedef struct {
   PetscInt       count, *number;
   PetscReal     *N;
   PetscInt       room;
-  FitMapSum      sum;
+  FitDerivativesSum      sum;
   PetscReal     *sum_workspace, *M;
   PetscInt       sum_room, M_room;
   int           *slot; /* of every contact node: its place in number[] or in the block at hand, -1 elsewhere and between evaluations */
@@ -70,12 +70,12 @@ typedef struct {
   PetscInt           *term_ptr, *term_point; /* slave points of each term */
   PetscReal          *term_weight;           /* their areas in it: sum is the term's area */
   PetscReal           automatic;             /* penalty: force per length and area */
-  PetscBool           predicting, touching;  /* what is held stays closed; what touches is closed */
-  PetscBool          *held, *foreseen;       /* terms closed where the linear step began; those that the last prediction counted on */
+  PetscBool           holding, touching;  /* what is held stays closed; what touches is closed */
+  PetscBool          *held, *predicted;       /* terms closed where the linear step began; those that the last prediction counted on */
   PetscReal           most;                  /* that a penalty counts for (force per length and area) */
   ContactState        now, accepted;
   PetscReal          *before;                   /* gaps of the iterate before, where the penalty is adjusted */
-  ContactLists        lists, next;              /* next: fresh ones, NULL: none */
+  NeighbourLists        lists, next;              /* next: fresh ones, NULL: none */
   PetscReal          *next_factor, next_motion; /* of the next ones: area factors, and the motion they were made for */
   PetscReal           motion;                   /* that those in force were made for */
   PetscBool           fresh;                    /* they were made where they are, with the offsets in force */
@@ -89,7 +89,7 @@ typedef struct {
   PetscReal          total[3];                     /* and the force on this rank's terms */
   PetscReal          t;                            /* of the last residual */
   PetscReal         *pressure;                     /* what ContactGetNodes() shows: force over area */
-  Mixing             mixing;                       /* of the multipliers of one step; NULL: not augmented */
+  Anderson             mixing;                       /* of the multipliers of one step; NULL: not augmented */
   PetscBool          projected;                    /* there was one with these lists */
   ContactLost        lost;                         /* since the step began */
   PetscInt           updates;                      /* times in this step that penalties were adjusted, or pressures became multipliers */
@@ -132,7 +132,7 @@ PetscReal      ContactTermForce(const ContactPair *, PetscInt term); /* what the
 PetscErrorCode ContactPairCreate(Mesh, Scene, Elasticity, Loads, const SceneContact *, ContactPair *);
 PetscErrorCode ContactPairDestroy(ContactPair *);
 PetscReal      ContactTermOffset(const ContactPair *, PetscInt term, PetscReal t);
-PetscReal      ContactTermRest(const ContactPair *, PetscInt term, PetscReal t); /* gap below which the term presses */
+PetscReal      ContactTermOnsetGap(const ContactPair *, PetscInt term, PetscReal t); /* gap below which the term presses */
 PetscReal      ContactTouchTolerance(const ContactPair *, PetscInt term);
 PetscReal      ContactMeanOpening(const ContactPair *, PetscInt term);
 /* contactaugment.c */
@@ -142,9 +142,9 @@ PetscErrorCode ContactPairAugment(ContactPair *, ContactWindowState *);
 /* contactlists.c */
 PetscErrorCode ContactListsArchive(Contact, Archive, const PetscReal *u, PetscReal t);
 /* contactpoint.c */
-PetscErrorCode ContactPointEvaluate(const ContactPair *, const Smoother *, ContactLists, PetscInt q, int seed, SmootherWant, PetscBool *found);
+PetscErrorCode ContactPointEvaluate(const ContactPair *, const Smoother *, NeighbourLists, PetscInt q, int seed, SmootherWant, PetscBool *found);
 /* The first variation of the last evaluation over contact nodes, into the work's number and N. */
-PetscErrorCode ContactPointToNodes(const ContactPair *, ContactLists, PetscInt q);
+PetscErrorCode ContactPointToNodes(const ContactPair *, NeighbourLists, PetscInt q);
 /* Contact nodes that are mentioned, each once, into the work's number */
 PetscErrorCode ContactNodesBegin(const ContactPair *, PetscInt room);
 void           ContactNodesAdd(const ContactPair *, PetscInt n, const PetscInt nodes[]);
@@ -154,15 +154,15 @@ PetscErrorCode ContactBlockBegin(const ContactPair *, PetscInt n, const PetscInt
 void           ContactBlockEnd(const ContactPair *, PetscInt n, const PetscInt nodes[]);
 /* The sum of factor times second variations of some slave points over the nodes of a block, and of vectors' products with themselves, into the work's M. */
 PetscErrorCode ContactSecondBegin(const ContactPair *, PetscInt nodes, PetscInt points);
-PetscErrorCode ContactSecondAdd(const ContactPair *, PetscInt q, PetscReal factor, double (*own)[FITMAP_OWN]);
+PetscErrorCode ContactSecondAdd(const ContactPair *, PetscInt q, PetscReal factor, double (*own)[FIT_DERIVATIVES_OWN]);
 void           ContactSecondEnd(const ContactPair *);
 /* What belongs to fit points one by one, own[n_points] of all slave points: some points' nodes into the work's number, then the sum over a block. */
 PetscErrorCode ContactPointsToNodes(const ContactPair *, PetscInt first, PetscInt end);
-PetscErrorCode ContactOwnToNodes(const ContactPair *, PetscInt nodes, PetscInt first, PetscInt end, const double (*own)[FITMAP_OWN]);
+PetscErrorCode ContactOwnToNodes(const ContactPair *, PetscInt nodes, PetscInt first, PetscInt end, const double (*own)[FIT_DERIVATIVES_OWN]);
 PetscErrorCode ContactWorkDestroy(ContactWork *);
 /* Gaps of all slave points that have a factor, NaN of the others; force: points with one have their first variations kept too; force, seed, normals: may be
    NULL. */
-PetscErrorCode ContactPointGaps(const ContactPair *, ContactLists, const PetscReal *factor, const PetscReal *force, int *seed, PetscReal *gap,
+PetscErrorCode ContactPointGaps(const ContactPair *, NeighbourLists, const PetscReal *factor, const PetscReal *force, int *seed, PetscReal *gap,
                                 PetscReal *normals);
 /* Weighted mean of its points' gaps, NaN without any; *area: of those that count. */
 PetscReal ContactTermGap(const ContactPair *, const PetscReal *factor, const PetscReal *point_gap, PetscInt term, PetscReal *area);

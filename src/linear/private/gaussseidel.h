@@ -10,4 +10,4 @@ PetscErrorCode GaussSeidelSet(PC, PetscReal least, PetscReal largest);
 /* right - A x as PCMGSetResidual() wants it, for the matrix that stands for the preconditioner's; the caller destroys that. NULL: options have
    replaced the preconditioner. Collective. */
 PetscErrorCode GaussSeidelGetMat(PC, Mat *);
-PetscErrorCode GaussSeidelResidual(Mat, Vec right, Vec x, Vec rest);
+PetscErrorCode GaussSeidelResidual(Mat, Vec right, Vec x, Vec residual);

@@ -9,7 +9,7 @@ typedef struct {
   PetscInt *node;            /* of each place */
   PetscInt *place;           /* of each node; ghosts: -1 when all of them are swept before, n: after */
   PetscInt *ghost;           /* of each column of other ranks, as the matrix has it: its number of [n_ghosts], times size, and which row */
-  PetscInt  inner, border;   /* first place of the nodes without ghosts, and of the others ... */
+  PetscInt  inner, interface;   /* first place of the nodes without ghosts, and of the others ... */
   PetscInt  n_inner;         /* how many the former are */
   int       colours, colour; /* of the ranks; this one's */
   PetscSF   sf;              /* from rows to those of ghosts; NULL: one rank */

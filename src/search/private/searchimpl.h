@@ -39,7 +39,7 @@ typedef struct {
 
 /* One slave point looking for its nearest facet. */
 typedef struct {
-  ContactLists     lists;
+  NeighbourLists     lists;
   const Candidate *candidates;
   PetscReal        x[3], normal[3];
   PetscInt         q, own; /* the slave point, and of how many nodes its own face is: a face with one of these is not its master */
@@ -70,7 +70,7 @@ typedef struct {
 /* The fits of a pair's slave points in the making. */
 typedef struct {
   ContactSearch  s;
-  ContactLists   lists;
+  NeighbourLists   lists;
   SurfaceView    view;
   Neighbourhoods neighbourhoods;
   PetscReal     *normals, *reference;
@@ -79,7 +79,7 @@ typedef struct {
   double        *x, *multiplier, *taper, *workspace; /* taper: weights of the frame, which fall to nothing where the list ends */
   int           *used;
   PetscReal      plane[3]; /* normal of the one reference plane of a global frame */
-} Fitting;
+} FitSupport;
 
 /* faceexchange.c */
 void           SearchSlaveBox(ContactSearch, PetscReal box[6]);
@@ -90,21 +90,21 @@ PetscErrorCode SearchExchangeFaces(ContactSearch, const NodeGeometry *, const Pe
                                    FaceRecord **);
 PetscErrorCode SearchPickRigidFaces(ContactSearch, const NodeGeometry *, PetscReal t, const PetscReal box[6], PetscReal distance, PetscInt *n, FaceRecord **);
 /* lists.c */
-PetscErrorCode ListsCreateNodes(ContactSearch, SearchField *, ContactLists);
-PetscErrorCode ListsCreatePoints(ContactSearch, ContactLists, SearchField *);
-PetscErrorCode ListsCreateSlaves(ContactSearch, ContactLists);
-void           ListsPointGeometry(ContactSearch, ContactLists, const SearchField *, NodeGeometry *of_nodes, NodeGeometry *of_points);
-PetscErrorCode ListsUpdateNodes(ContactSearch, ContactLists, const PetscReal *u, PetscReal t);
-void           ListsCentre(ContactLists, PetscInt q, PetscReal centre[2]);
+PetscErrorCode NeighbourListsCreateNodes(ContactSearch, SearchField *, NeighbourLists);
+PetscErrorCode NeighbourListsCreatePoints(ContactSearch, NeighbourLists, SearchField *);
+PetscErrorCode NeighbourListsCreateSlaves(ContactSearch, NeighbourLists);
+void           NeighbourListsPointGeometry(ContactSearch, NeighbourLists, const SearchField *, NodeGeometry *of_nodes, NodeGeometry *of_points);
+PetscErrorCode NeighbourListsUpdateNodes(ContactSearch, NeighbourLists, const PetscReal *u, PetscReal t);
+void           NeighbourListsCentre(NeighbourLists, PetscInt q, PetscReal centre[2]);
 /* fitting.c */
 PetscReal      SearchFitReach(ContactSearch);
-PetscErrorCode FittingCreate(ContactSearch, ContactLists, const SearchField *, Fitting *);
-PetscErrorCode FittingDestroy(Fitting *);
-PetscErrorCode FittingSlave(Fitting *, const Nearest *, PetscInt q, PetscInt first, ListBuffer *);
-PetscErrorCode FittingClimb(Fitting *, const FitFoot *, FitProblem *, FitResult *, int *rung);
+PetscErrorCode FitSupportCreate(ContactSearch, NeighbourLists, const SearchField *, FitSupport *);
+PetscErrorCode FitSupportDestroy(FitSupport *);
+PetscErrorCode FitSupportSlave(FitSupport *, const Nearest *, PetscInt q, PetscInt first, ListBuffer *);
+PetscErrorCode FitSupportClimb(FitSupport *, const FitFoot *, FitProblem *, FitResult *, int *rung);
 /* search.c */
 /* The faces around a box with nodes, images and points in lists, whose slave points are not yet there. Collective. */
-PetscErrorCode SearchFieldCreate(ContactSearch, const PetscReal *u, PetscReal t, const PetscReal box[6], PetscReal distance, ContactLists, SearchField *);
+PetscErrorCode SearchFieldCreate(ContactSearch, const PetscReal *u, PetscReal t, const PetscReal box[6], PetscReal distance, NeighbourLists, SearchField *);
 PetscErrorCode SearchFieldDestroy(SearchField *);
 void           SearchCandidatePlace(int dim, const PetscReal *x, PetscReal size, Candidate *);
 PetscErrorCode ListBufferAddPoint(ListBuffer *, PetscInt first, PetscInt point);

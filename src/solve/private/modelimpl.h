@@ -20,14 +20,14 @@ typedef struct _n_ModelWork {
   PetscReal   *f;       /* local residual of the last evaluation, all dofs */
   PetscReal   *trial;   /* local displacements of the last evaluation */
   PetscReal   *accepted_u;
-  Path         path; /* NULL: small kinematics, whose bodies go straight */
+  Extrapolation         extrapolation; /* NULL: small kinematics, whose bodies go straight */
   Vec          accepted_x;
   PetscReal    accepted_t;
-  Vec          forecast; /* x at forecast_t by ModelForecast() */
-  PetscReal    forecast_t;
-  PetscBool    forecasted;        /* and is one from the accepted state */
-  PetscBool    foreseen;          /* the last prediction, or the way to a forecast, started from where the path leads to */
-  PetscBool    forecast_foreseen; /* so did the forecast */
+  Vec          look_ahead; /* x at look_ahead_t by ModelLookAhead() */
+  PetscReal    look_ahead_t;
+  PetscBool    looked_ahead;        /* and is one from the accepted state */
+  PetscBool    extrapolated;          /* the last prediction, or the way to a forecast, started from where the path leads to */
+  PetscBool    look_ahead_extrapolated; /* so did the forecast */
   PetscReal    expected;          /* motion that the lists of this step were made for */
   PetscReal    rate;              /* largest displacement per unit of t in the last accepted step */
   PetscReal    scale;             /* force norm of the last evaluation */
@@ -49,7 +49,7 @@ typedef struct _n_ModelWork {
   PetscBool    left;              /* a slave point slid out of its lists: the solve ended for new ones */
   PetscInt     cuts;              /* iterations of the last Newton solve that the line search shortened */
   Vec          residual;          /* of a trial point, while near; the tangent's diagonal for a moment */
-  Stabiliser   stabiliser;        /* NULL: no pair asks for it */
+  ContactSprings   stabiliser;        /* NULL: no pair asks for it */
   ContactCycle watch;             /* of the contact set; NULL: no contact */
   ContactLine  line;              /* contact along a Newton step; NULL: no contact */
 } ModelWork;
@@ -68,16 +68,16 @@ PetscErrorCode ModelNewton(Model, SolveReport *);        /* SNES once, from mode
 PetscErrorCode ModelCreateLineSearch(Model);                             /* what the SNES's line search does where contact cuts a step */
 PetscErrorCode ModelLocateEdge(Model, PetscBool *found, ContactPlace *); /* does a failed iterate rest on an edge between facets? */
 /* settle.c */
-PetscErrorCode ModelSettle(Model, const PetscReal *u, const PetscReal *carried, PetscReal t, Vec y); /* a linear step y whose contact is right where it ends */
+PetscErrorCode ModelSolveLinearContact(Model, const PetscReal *u, const PetscReal *carried, PetscReal t, Vec y); /* a linear step y whose contact is right where it ends */
 /* prediction.c */
-PetscErrorCode ModelForesee(Model, PetscReal t, PetscReal *u, Vec x, PetscBool *smooth); /* where the way so far leads to */
+PetscErrorCode ModelExtrapolate(Model, PetscReal t, PetscReal *u, Vec x, PetscBool *smooth); /* where the way so far leads to */
 PetscErrorCode ModelInOrder(Model, const PetscReal *u, PetscBool *ok);                   /* can elements and contact lists be there? */
 PetscErrorCode ModelPredict(Model, SolveReport *);                                       /* model->x at model->t by one linear solve */
 PetscErrorCode ModelPredictFar(Model, SolveReport *);                                    /* in pieces, where that is too far */
 PetscErrorCode ModelFollowLists(Model, SolveReport *);                                   /* a linear step that holds contact while its lists are other ones */
 /* softstart.c */
-PetscErrorCode ModelSoftStart(Model, SolveReport *); /* from the prediction to where what touches is known, on softened penalties */
+PetscErrorCode ModelRampPenalty(Model, SolveReport *); /* from the prediction to where what touches is known, on softened penalties */
 /* equilibrium.c */
-PetscErrorCode ModelRenewLists(Model, PetscBool settle, PetscBool *hold);              /* new lists after a solve, for the next one */
+PetscErrorCode ModelRenewLists(Model, PetscBool update_offsets, PetscBool *hold);              /* new lists after a solve, for the next one */
 PetscErrorCode ModelMotion(Model, const PetscReal *u, PetscReal t, PetscReal *motion); /* largest one between the accepted state and (u, t) */
 PetscErrorCode ModelImposedMotion(Model, PetscReal t, PetscReal *motion);              /* of what is prescribed, and of rigid tools */

@@ -19,7 +19,7 @@ typedef struct {
 
 typedef struct {
   /* before a step that may be as long as `rest`: may change dt; its solves are added to the report. NULL: nothing to be done */
-  PetscErrorCode (*predict)(Model, PetscReal rest, StepSize *, SolveReport *);
+  PetscErrorCode (*predict)(Model, PetscReal remaining, StepSize *, SolveReport *);
   /* after a converged step of dt: is it to be accepted? If not it is taken back and tried with the new size->dt. NULL: always */
   PetscErrorCode (*judge)(Model, PetscReal dt, StepSize *, PetscBool *accepted);
   /* after a step of dt that took `newton` iterations, before it is accepted: the next dt, from size->dt. clipped: dt was shortened to land on a

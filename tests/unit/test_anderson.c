@@ -1,4 +1,4 @@
-/* Mixing ends a linear iteration with three slow modes in four results, weights or not, and leaves one result alone after a start. */
+/* Anderson ends a linear iteration with three slow modes in four results, weights or not, and leaves one result alone after a start. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -19,23 +19,23 @@ static void iterate(const PetscReal *x, PetscReal *g)
 static void check_linear(const PetscReal weight[N])
 {
   PetscReal x[N] = {0}, g[N];
-  Mixing    mixing;
+  Anderson    mixing;
 
-  assert_int_equal(MixingCreate(PETSC_COMM_SELF, N, weight, &mixing), 0);
+  assert_int_equal(AndersonCreate(PETSC_COMM_SELF, N, weight, &mixing), 0);
   for (int run = 0; run < 2; run++) {
-    MixingStart(mixing);
+    AndersonStart(mixing);
     for (int i = 0; i < N; i++) x[i] = 0;
     for (int k = 0; k < 5; k++) {
       iterate(x, g);
-      assert_int_equal(MixingNext(mixing, x, g), 0);
+      assert_int_equal(AndersonNext(mixing, x, g), 0);
       for (int i = 0; i < N; i++) x[i] = g[i];
       if (k == 0) assert_true(PetscAbsReal(x[0] - 0.01) <= 1e-15);
     }
     for (int i = 0; i < N; i++) assert_true(PetscAbsReal(x[i] - (i + 1)) <= 1e-4);
   }
-  assert_int_equal(MixingNext(mixing, x, x), 0); /* at the fixed point it stays */
+  assert_int_equal(AndersonNext(mixing, x, x), 0); /* at the fixed point it stays */
   for (int i = 0; i < N; i++) assert_true(PetscAbsReal(x[i] - (i + 1)) <= 1e-4);
-  assert_int_equal(MixingDestroy(&mixing), 0);
+  assert_int_equal(AndersonDestroy(&mixing), 0);
 }
 
 static void test_linear(void **state)

@@ -38,11 +38,11 @@ static void RandomBoxes(int dim, int n, double size)
   }
 }
 
-static void CheckNear(int dim, int n, Tree tree, const double *point, double radius, int max)
+static void CheckNear(int dim, int n, BoxTree tree, const double *point, double radius, int max)
 {
   static int found[MAX_BOXES];
   int        count = 0;
-  const int  there = TreeNear(tree, point, radius, max, found);
+  const int  there = BoxTreeNear(tree, point, radius, max, found);
 
   for (int i = 0; i < n; ++i) {
     if (BoxDistance(dim, i, point) >= radius) continue;
@@ -59,10 +59,10 @@ static void TestNear(void **state)
   (void)state;
   for (int dim = 1; dim <= 3; ++dim) {
     for (int s = 0; s < 7; ++s) {
-      Tree tree;
+      BoxTree tree;
 
       RandomBoxes(dim, sizes[s], 0.1);
-      assert_int_equal(TreeBuild(dim, sizes[s], lower, upper, &tree), 0);
+      assert_int_equal(BoxTreeBuild(dim, sizes[s], lower, upper, &tree), 0);
       for (int trial = 0; trial < 50; ++trial) {
         const double point[3] = {Random(-0.5, 1.5), Random(-0.5, 1.5), Random(-0.5, 1.5)};
 
@@ -71,7 +71,7 @@ static void TestNear(void **state)
         CheckNear(dim, sizes[s], tree, point, INFINITY, 3);
         CheckNear(dim, sizes[s], tree, point, 0, 3);
       }
-      TreeDestroy(&tree);
+      BoxTreeDestroy(&tree);
       assert_null(tree);
     }
   }
@@ -111,30 +111,30 @@ static void TestClosest(void **state)
   for (int dim = 2; dim <= 3; ++dim) {
     const int n       = 3000;
     int       visited = 0;
-    Tree      tree;
+    BoxTree      tree;
 
     RandomBoxes(dim, n, 0.02);
-    assert_int_equal(TreeBuild(dim, n, lower, upper, &tree), 0);
+    assert_int_equal(BoxTreeBuild(dim, n, lower, upper, &tree), 0);
     for (int trial = 0; trial < 100; ++trial) {
       const double point[3] = {Random(0, 1), Random(0, 1), Random(0, 1)};
       Search       all = {.dim = dim, .point = point, .least = INFINITY}, search = {.dim = dim, .point = point, .least = INFINITY, .shrink = 1};
       double       bound = INFINITY;
 
-      TreeClosest(tree, point, &bound, Visit, &all);
+      BoxTreeClosest(tree, point, &bound, Visit, &all);
       assert_int_equal(all.visited, n);
-      TreeClosest(tree, point, &bound, Visit, &search);
+      BoxTreeClosest(tree, point, &bound, Visit, &search);
       assert_int_equal(search.best, all.best);
       assert_true(bound == search.least);
       visited += search.visited;
       bound  = 0.1;
       search = (Search){.dim = dim, .point = point, .least = INFINITY};
-      TreeClosest(tree, point, &bound, Visit, &search);
+      BoxTreeClosest(tree, point, &bound, Visit, &search);
       for (int i = 0; i < n; ++i) search.visited -= BoxDistance(dim, i, point) <= 0.1;
       assert_int_equal(search.visited, 0);
     }
     print_message("%dD: %.1f of %d boxes visited for the closest\n", dim, visited / 100.0, n);
     assert_true(visited <= 100 * 10);
-    TreeDestroy(&tree);
+    BoxTreeDestroy(&tree);
   }
 }
 
@@ -144,21 +144,21 @@ static void TestEqualBoxes(void **state)
   const double point[2] = {2, 2};
   double       bound    = INFINITY;
   Search       search   = {.dim = 2, .point = point, .least = INFINITY};
-  Tree         tree;
+  BoxTree         tree;
 
   (void)state;
   for (int i = 0; i < 2 * n; ++i) {
     lower[i] = 0;
     upper[i] = 1;
   }
-  assert_int_equal(TreeBuild(2, n, lower, upper, &tree), 0);
+  assert_int_equal(BoxTreeBuild(2, n, lower, upper, &tree), 0);
   CheckNear(2, n, tree, point, 2, MAX_BOXES);
   CheckNear(2, n, tree, point, 2, 10);
   CheckNear(2, n, tree, point, 1, 10);
-  TreeClosest(tree, point, &bound, Visit, &search);
+  BoxTreeClosest(tree, point, &bound, Visit, &search);
   assert_int_equal(search.visited, n);
   assert_int_equal(search.best, 0);
-  TreeDestroy(&tree);
+  BoxTreeDestroy(&tree);
 }
 
 static void TestEmpty(void **state)
@@ -166,14 +166,14 @@ static void TestEmpty(void **state)
   const double point[2] = {0, 0};
   double       bound    = INFINITY;
   Search       search   = {.dim = 2, .point = point, .least = INFINITY};
-  Tree         tree;
+  BoxTree         tree;
 
   (void)state;
-  assert_int_equal(TreeBuild(2, 0, NULL, NULL, &tree), 0);
-  TreeClosest(tree, point, &bound, Visit, &search);
+  assert_int_equal(BoxTreeBuild(2, 0, NULL, NULL, &tree), 0);
+  BoxTreeClosest(tree, point, &bound, Visit, &search);
   assert_int_equal(search.visited, 0);
-  TreeDestroy(&tree);
-  TreeDestroy(&tree);
+  BoxTreeDestroy(&tree);
+  BoxTreeDestroy(&tree);
 }
 
 int main(void)

@@ -27,7 +27,7 @@ typedef struct {
 
 /* Points inside with the nodes behind them */
 typedef struct {
-  FitMap map;
+  FitDerivatives map;
   int    ptr[MAX_POINTS + 2], node[(MAX_POINTS + 1) * MAX_FACE];
   double S[(MAX_POINTS + 1) * MAX_FACE], sign[3 * (MAX_POINTS + 1) * MAX_FACE];
 } Map;
@@ -87,7 +87,7 @@ static void MakeMap(const List *list, int n, const int *points, Map *map)
 {
   int number[MAX_LINE * MAX_LINE], entries = list->entries;
 
-  map->map = (FitMap){.n_nodes = list->entries, .ptr = map->ptr, .node = map->node, .S = map->S, .sign = map->sign};
+  map->map = (FitDerivatives){.n_nodes = list->entries, .ptr = map->ptr, .node = map->node, .S = map->S, .sign = map->sign};
   for (int i = 0; i < MAX_LINE * MAX_LINE; i++) number[i] = -1;
   for (int i = 0; i < 3 * (1 + n) * list->entries; i++) map->sign[i] = 1;
   for (int k = 0; k < entries; k++) {
@@ -121,25 +121,25 @@ typedef struct {
   double     N[3 * (1 + MAX_POINTS)], *workspace;
 } Slave;
 
-static double nodal[MAX_SIZE], own[MAX_POINTS][FITMAP_OWN], M[(long)MAX_SIZE * MAX_SIZE], *scratch;
+static double nodal[MAX_SIZE], own[MAX_POINTS][FIT_DERIVATIVES_OWN], M[(long)MAX_SIZE * MAX_SIZE], *scratch;
 
 static void Do(Part part, Slave *s)
 {
   const int terms = FitTerms(s->problem.dim, s->problem.degree), size = s->map.map.n_nodes * s->problem.dim, stride = SymmetricProductStride(size);
-  FitMapSum sum;
+  FitDerivativesSum sum;
 
   s->result.factors = part == FACTORS || part == ALL ? &s->factors : NULL;
   if (part <= FACTORS || part == ALL) {
-    if (!FitEvaluate(&s->problem, part == GAP ? FIT_GAP : part == GAP_N ? FIT_FIRST_VARIATION : FIT_SECOND_VARIATION, s->workspace, &s->result)) exit(1);
+    if (!DiffuseFitEvaluate(&s->problem, part == GAP ? FIT_GAP : part == GAP_N ? FIT_FIRST_VARIATION : FIT_SECOND_VARIATION, s->workspace, &s->result)) exit(1);
   }
-  if (part == NODAL_N || part == ALL) FitMapFirst(s->problem.dim, s->result.n, s->N, &s->map.map, nodal);
+  if (part == NODAL_N || part == ALL) FitDerivativesFirst(s->problem.dim, s->result.n, s->N, &s->map.map, nodal);
   if (part == NODAL_M || part == ALL) {
-    FitMapBegin(&sum, s->problem.dim, s->problem.degree, s->map.map.n_nodes, FitMapDepth(s->problem.dim, s->problem.degree), scratch);
-    FitMapAdd(&sum, 1, &s->factors, &s->map.map);
-    FitMapEnd(&sum, M);
+    FitDerivativesBegin(&sum, s->problem.dim, s->problem.degree, s->map.map.n_nodes, FitDerivativesDepth(s->problem.dim, s->problem.degree), scratch);
+    FitDerivativesAdd(&sum, 1, &s->factors, &s->map.map);
+    FitDerivativesEnd(&sum, M);
     memset(own, 0, s->result.n * sizeof(own[0]));
-    for (int i = 0; i < s->result.n; i++) FitMapOwn(1, &s->factors, i, own[i]);
-    FitMapAddOwn(s->problem.dim, 1, 1 + s->result.n, own, &s->map.map, M);
+    for (int i = 0; i < s->result.n; i++) FitDerivativesOwn(1, &s->factors, i, own[i]);
+    FitDerivativesAddOwn(s->problem.dim, 1, 1 + s->result.n, own, &s->map.map, M);
   }
   if (part == PRODUCT) SymmetricProductUpper(size, terms, stride, scratch, scratch + terms * stride, M);
 }
@@ -206,7 +206,7 @@ int main(void)
     {"quad9,4", {2, 4, 2, 2.25, 3}}
   };
 
-  scratch = aligned_alloc(64, (FitMapWorkspace(3, 4, MAX_NODES, FitMapDepth(3, 4)) + 7) / 8 * 64);
+  scratch = aligned_alloc(64, (FitDerivativesWorkspace(3, 4, MAX_NODES, FitDerivativesDepth(3, 4)) + 7) / 8 * 64);
   if (!scratch) return 1;
   puts("# diffuse fit over nodes, by element and degree: microseconds per slave quadrature point");
   for (int i = 0; i < (int)(sizeof(cases) / sizeof(cases[0])); i++) Bench(cases[i].row, &cases[i].kind);

@@ -313,7 +313,7 @@ static void TestLargeAndBatch(void **state)
     in[i]  = batch[i].in;
     out[i] = (FitResult){.points = batch[i].points};
   }
-  assert_int_equal(FitEvaluateBatch(3, in, FIT_GAP, work, out), 2);
+  assert_int_equal(DiffuseFitEvaluateBatch(3, in, FIT_GAP, work, out), 2);
   for (int i = 0; i < 3; i++) assert_true(out[i].guards == batch[i].out.guards && (i == 1 || out[i].gap == batch[i].out.gap));
 }
 

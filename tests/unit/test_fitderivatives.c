@@ -6,7 +6,7 @@ enum { MAX_ENTRIES = 12, NODES = 1 + FEW, SIZE = 3 * NODES, MAP_WORK = 200000 };
 
 /* A map with its arrays */
 typedef struct {
-  FitMap map;
+  FitDerivatives map;
   int    ptr[2 + FEW], node[(1 + FEW) * MAX_ENTRIES];
   double S[(1 + FEW) * MAX_ENTRIES], sign[3 * (1 + FEW) * MAX_ENTRIES];
 } Map;
@@ -18,7 +18,7 @@ static int Whole(int low, int high)
 
 static void Empty(Map *m, int n_nodes)
 {
-  m->map    = (FitMap){.n_nodes = n_nodes, .ptr = m->ptr, .node = m->node, .S = m->S, .sign = m->sign};
+  m->map    = (FitDerivatives){.n_nodes = n_nodes, .ptr = m->ptr, .node = m->node, .S = m->S, .sign = m->sign};
   m->ptr[0] = 0;
 }
 
@@ -49,7 +49,7 @@ static void RandomMap(Map *m, int n, int n_nodes)
 }
 
 /* S, dense: [size][points' components] */
-static void Dense(int dim, int n, const FitMap *map, double *S)
+static void Dense(int dim, int n, const FitDerivatives *map, double *S)
 {
   const int own = dim * (1 + n);
 
@@ -62,7 +62,7 @@ static void Dense(int dim, int n, const FitMap *map, double *S)
 }
 
 /* S^T N and S^T M S */
-static void Reference(const Case *c, const FitMap *map, double *N, double *M)
+static void Reference(const Case *c, const FitDerivatives *map, double *N, double *M)
 {
   static double S[SIZE * SIZE], half[SIZE * SIZE];
   const int     own = c->in.dim * (1 + c->out.n), size = c->in.dim * map->n_nodes;
@@ -88,36 +88,36 @@ static void Reference(const Case *c, const FitMap *map, double *N, double *M)
 
 /* N and M over nodes by the kernel, M as a sum of shares, one of them dense, and a vector's product with itself taken away again; nothing written past the ends
  */
-static void Mapped(Case *c, const FitMap *map, double *N, double *M)
+static void Mapped(Case *c, const FitDerivatives *map, double *N, double *M)
 {
-  static double scratch[MAP_WORK], own[FEW][FITMAP_OWN];
-  const int     depth  = 2 * FitMapDepth(c->in.dim, c->in.degree) + c->in.dim * (1 + c->out.n) + 2;
-  const long    length = FitWorkspace(c->in.dim, c->in.degree, c->in.n), need = FitMapWorkspace(c->in.dim, c->in.degree, map->n_nodes, depth);
+  static double scratch[MAP_WORK], own[FEW][FIT_DERIVATIVES_OWN];
+  const int     depth  = 2 * FitDerivativesDepth(c->in.dim, c->in.degree) + c->in.dim * (1 + c->out.n) + 2;
+  const long    length = FitWorkspace(c->in.dim, c->in.degree, c->in.n), need = FitDerivativesWorkspace(c->in.dim, c->in.degree, map->n_nodes, depth);
   const int     size = c->in.dim * map->n_nodes;
   FitFactors    factors;
-  FitMapSum     sum;
+  FitDerivativesSum     sum;
   FitResult     out = {.points = c->points, .N = c->N, .factors = &factors};
 
   assert_true(1 + need < MAP_WORK && 1 + length < WORK);
   for (int i = 0; i < MAP_WORK; i++) scratch[i] = NAN;
   for (int i = 0; i < WORK; i++) work[i] = NAN;
   work[1 + length] = scratch[1 + need] = N[size] = M[(long)size * size] = 7;
-  assert_true(FitEvaluate(&c->in, FIT_SECOND_VARIATION, work + 1, &out));
+  assert_true(DiffuseFitEvaluate(&c->in, FIT_SECOND_VARIATION, work + 1, &out));
   assert_int_equal(factors.n, out.n);
-  FitMapFirst(c->in.dim, out.n, c->N, map, N);
-  FitMapBegin(&sum, c->in.dim, c->in.degree, map->n_nodes, depth, scratch + 1);
-  FitMapAdd(&sum, -2, &factors, map);
-  FitMapAdd(&sum, 2.5, &factors, map);
-  FitMapAddOuter(&sum, 2, N);
-  FitMapAddDense(&sum, 0.5, out.n, c->M, map);
-  FitMapAddOuter(&sum, -2, N);
-  FitMapEnd(&sum, M);
+  FitDerivativesFirst(c->in.dim, out.n, c->N, map, N);
+  FitDerivativesBegin(&sum, c->in.dim, c->in.degree, map->n_nodes, depth, scratch + 1);
+  FitDerivativesAdd(&sum, -2, &factors, map);
+  FitDerivativesAdd(&sum, 2.5, &factors, map);
+  FitDerivativesAddOuter(&sum, 2, N);
+  FitDerivativesAddDense(&sum, 0.5, out.n, c->M, map);
+  FitDerivativesAddOuter(&sum, -2, N);
+  FitDerivativesEnd(&sum, M);
   memset(own, 0, sizeof(own));
   for (int i = 0; i < out.n; i++) {
-    FitMapOwn(-2, &factors, i, own[i]);
-    FitMapOwn(2.5, &factors, i, own[i]);
+    FitDerivativesOwn(-2, &factors, i, own[i]);
+    FitDerivativesOwn(2.5, &factors, i, own[i]);
   }
-  FitMapAddOwn(c->in.dim, 1, 1 + out.n, own, map, M);
+  FitDerivativesAddOwn(c->in.dim, 1, 1 + out.n, own, map, M);
   assert_true(work[1 + length] == 7 && scratch[1 + need] == 7 && N[size] == 7 && M[(long)size * size] == 7);
   for (int i = 0; i < size; i++) {
     for (int j = 0; j < i; j++) M[i * size + j] = M[j * size + i];
@@ -183,7 +183,7 @@ static void TestOwnNodes(void **state)
 }
 
 /* Moves a component of a node: the points move by the map, relative to the slave point, which moves too. */
-static void Move(Case *c, const FitMap *map, int column, double step)
+static void Move(Case *c, const FitDerivatives *map, int column, double step)
 {
   const int dim = c->in.dim, k = column % dim;
   double    by[1 + FEW] = {0};
@@ -229,7 +229,7 @@ static void TestDerivatives(void **state)
         assert_true(Evaluate(&moved, FIT_FIRST_VARIATION));
         assert_int_equal(moved.out.n, c.out.n);
         gap[s] = moved.out.gap;
-        FitMapFirst(c.in.dim, c.out.n, moved.N, &m.map, moved_N[s]);
+        FitDerivativesFirst(c.in.dim, c.out.n, moved.N, &m.map, moved_N[s]);
       }
       AssertNear(N[column], Difference(gap, h), 1e-7 * MaxAbs(size, N));
       for (int row = 0; row < size; row++) {

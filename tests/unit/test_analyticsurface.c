@@ -29,59 +29,59 @@ static void AssertNear(double a, double b, double tolerance)
 
 static void TestValues(void **state)
 {
-  const AnalyticMaster plane = {
+  const AnalyticSurface plane = {
     .shape = ANALYTIC_PLANE,
     .axis  = {0, 0, 2}
   };
-  const AnalyticMaster cylinder = {
+  const AnalyticSurface cylinder = {
     .shape  = ANALYTIC_CYLINDER,
     .axis   = {0, 3, 0},
     .radius = 2
   };
-  const AnalyticMaster bore = {
+  const AnalyticSurface bore = {
     .shape  = ANALYTIC_CYLINDER,
     .inside = 1,
     .axis   = {0, 3, 0},
     .radius = 2
   };
-  const AnalyticMaster sphere = {.shape = ANALYTIC_SPHERE, .radius = 5};
-  const AnalyticMaster socket = {.shape = ANALYTIC_SPHERE, .inside = 1, .radius = 5};
+  const AnalyticSurface sphere = {.shape = ANALYTIC_SPHERE, .radius = 5};
+  const AnalyticSurface socket = {.shape = ANALYTIC_SPHERE, .inside = 1, .radius = 5};
   AnalyticResult       out;
 
   (void)state;
-  assert_true(AnalyticEvaluate(&plane, 3, (double[3]){7, 8, -0.25}, &out));
+  assert_true(AnalyticSurfaceEvaluate(&plane, 3, (double[3]){7, 8, -0.25}, &out));
   AssertNear(out.gap, -0.25, 0);
   AssertNear(out.curvature, 0, 0);
-  assert_true(AnalyticEvaluate(&cylinder, 3, (double[3]){1.8, 40, 2.4}, &out));
+  assert_true(AnalyticSurfaceEvaluate(&cylinder, 3, (double[3]){1.8, 40, 2.4}, &out));
   AssertNear(out.gap, 1, 1e-14);
   AssertNear(out.normal[0], 0.6, 1e-14);
   AssertNear(out.normal[1], 0, 1e-14);
   AssertNear(out.curvature, 0.5, 1e-14);
-  assert_true(AnalyticEvaluate(&bore, 3, (double[3]){1.8, 40, 2.4}, &out));
+  assert_true(AnalyticSurfaceEvaluate(&bore, 3, (double[3]){1.8, 40, 2.4}, &out));
   AssertNear(out.gap, -1, 1e-14);
   AssertNear(out.normal[2], -0.8, 1e-14);
-  assert_true(AnalyticEvaluate(&sphere, 3, (double[3]){0, 3, -4.5}, &out));
+  assert_true(AnalyticSurfaceEvaluate(&sphere, 3, (double[3]){0, 3, -4.5}, &out));
   AssertNear(out.gap, sqrt(29.25) - 5, 1e-14);
-  assert_true(AnalyticEvaluate(&socket, 3, (double[3]){0, 3, -4.5}, &out));
+  assert_true(AnalyticSurfaceEvaluate(&socket, 3, (double[3]){0, 3, -4.5}, &out));
   AssertNear(out.gap, 5 - sqrt(29.25), 1e-14);
 }
 
 static void TestNoClosestPoint(void **state)
 {
-  const AnalyticMaster cylinder = {
+  const AnalyticSurface cylinder = {
     .shape  = ANALYTIC_CYLINDER,
     .inside = 1,
     .axis   = {0, 0, 1},
     .radius = 2
   };
-  const AnalyticMaster sphere = {.shape = ANALYTIC_SPHERE, .radius = 2};
-  const AnalyticMaster plane  = {.shape = ANALYTIC_PLANE};
+  const AnalyticSurface sphere = {.shape = ANALYTIC_SPHERE, .radius = 2};
+  const AnalyticSurface plane  = {.shape = ANALYTIC_PLANE};
   AnalyticResult       out;
 
   (void)state;
-  assert_false(AnalyticEvaluate(&cylinder, 3, (double[3]){0, 0, 5}, &out));
-  assert_false(AnalyticEvaluate(&sphere, 3, (double[3]){0, 0, 1e-9}, &out));
-  assert_false(AnalyticEvaluate(&plane, 3, (double[3]){0, 0, 1}, &out));
+  assert_false(AnalyticSurfaceEvaluate(&cylinder, 3, (double[3]){0, 0, 5}, &out));
+  assert_false(AnalyticSurfaceEvaluate(&sphere, 3, (double[3]){0, 0, 1e-9}, &out));
+  assert_false(AnalyticSurfaceEvaluate(&plane, 3, (double[3]){0, 0, 1}, &out));
 }
 
 /* Fourth-order central difference from the values at -2h, -h, h, 2h */
@@ -91,14 +91,14 @@ static double Difference(const double value[4], double h)
 }
 
 /* N and M against central differences of gap and N; M annihilates the normal. */
-static void CheckVariations(const AnalyticMaster *master, int dim)
+static void CheckVariations(const AnalyticSurface *master, int dim)
 {
   const double   h = 1e-4;
   double         x[3];
   AnalyticResult out, step;
 
   for (int c = 0; c < 3; c++) x[c] = c < dim ? Random(0.5, 2) : 0;
-  assert_true(AnalyticEvaluate(master, dim, x, &out));
+  assert_true(AnalyticSurfaceEvaluate(master, dim, x, &out));
   for (int c = 0; c < dim; c++) {
     double product = 0, size = 1, gap[4], N[3][4];
 
@@ -107,7 +107,7 @@ static void CheckVariations(const AnalyticMaster *master, int dim)
 
       memcpy(moved, x, sizeof(x));
       moved[c] += (i < 2 ? i - 2 : i - 1) * h;
-      assert_true(AnalyticEvaluate(master, dim, moved, &step));
+      assert_true(AnalyticSurfaceEvaluate(master, dim, moved, &step));
       gap[i] = step.gap;
       for (int d = 0; d < dim; d++) N[d][i] = step.N[d];
     }
@@ -128,13 +128,13 @@ static void TestVariations(void **state)
   for (int trial = 0; trial < 20; trial++) {
     for (int inside = 0; inside < 2; inside++) {
       for (AnalyticShape shape = ANALYTIC_PLANE; shape <= ANALYTIC_SPHERE; shape++) {
-        const AnalyticMaster solid = {
+        const AnalyticSurface solid = {
           .shape  = shape,
           .inside = inside,
           .axis   = {Random(-1, 1), Random(-1, 1), Random(0.1, 1)},
           .radius = Random(0.5, 3)
         };
-        AnalyticMaster flat = solid;
+        AnalyticSurface flat = solid;
 
         CheckVariations(&solid, 3);
         if (shape == ANALYTIC_CYLINDER)
@@ -150,7 +150,7 @@ static void TestVariations(void **state)
 /* In the meridian of an axisymmetric scene a cylinder about the axis is a straight wall. */
 static void TestAxisymmetricCylinder(void **state)
 {
-  const AnalyticMaster cylinder = {
+  const AnalyticSurface cylinder = {
     .shape  = ANALYTIC_CYLINDER,
     .axis   = {0, 1, 0},
     .radius = 2
@@ -158,7 +158,7 @@ static void TestAxisymmetricCylinder(void **state)
   AnalyticResult out;
 
   (void)state;
-  assert_true(AnalyticEvaluate(&cylinder, 2, (double[2]){2.5, 7}, &out));
+  assert_true(AnalyticSurfaceEvaluate(&cylinder, 2, (double[2]){2.5, 7}, &out));
   AssertNear(out.gap, 0.5, 1e-15);
   AssertNear(out.N[0], 1, 0);
   for (int i = 0; i < 4; i++) AssertNear(out.M[i], 0, 0);

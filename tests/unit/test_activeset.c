@@ -13,7 +13,7 @@ enum { N = 8 };
 typedef struct {
   double       spring[N + 1], load[N];
   double       hat; /* share of a node's neighbours in its term */
-  PressingTerm term[N];
+  ActiveSetTerm term[N];
 } Case;
 
 /* b = A^-1 b by Gauss, pivots on the diagonal */
@@ -75,7 +75,7 @@ static double Step(const Case *t, PetscBool *settled)
   PetscInt         which[N], order[N], m, n = 0;
   const PetscReal *excess;
   const PetscBool *pressed;
-  Pressing         pressing;
+  ActiveSet         pressing;
 
   for (int i = 0; i < N; i++) {
     b[i] = t->load[i];
@@ -83,17 +83,17 @@ static double Step(const Case *t, PetscBool *settled)
   }
   SolveTangent(t, b, x);
   for (int c = 0; c < N; c++) travel[c] = Gap(t, c, x);
-  assert_int_equal(PressingCreate(N, t->term, travel, &pressing), 0);
-  for (assert_int_equal(PressingSolve(pressing, &m, which, settled), 0); m; assert_int_equal(PressingSolve(pressing, &m, which, settled), 0)) {
+  assert_int_equal(ActiveSetCreate(N, t->term, travel, &pressing), 0);
+  for (assert_int_equal(ActiveSetSolve(pressing, &m, which, settled), 0); m; assert_int_equal(ActiveSetSolve(pressing, &m, which, settled), 0)) {
     for (int j = 0; j < m; j++) {
       for (int i = 0; i < N; i++) b[i] = Share(t, (int)which[j], i);
       SolveTangent(t, b, column[n]);
       for (int c = 0; c < N; c++) G[j * N + c] = Gap(t, c, column[n]);
       order[n++] = which[j];
     }
-    assert_int_equal(PressingAddColumns(pressing, m, which, G), 0);
+    assert_int_equal(ActiveSetAddColumns(pressing, m, which, G), 0);
   }
-  PressingGet(pressing, &excess, &pressed);
+  ActiveSetGet(pressing, &excess, &pressed);
   for (int j = 0; j < n; j++)
     for (int i = 0; i < N; i++) x[i] -= excess[j] * column[j][i];
   for (int i = 0; i < N; i++) {
@@ -106,7 +106,7 @@ static double Step(const Case *t, PetscBool *settled)
   for (int c = 0; c < N && *settled; c++) assert_int_equal(pressed[c], t->term[c].opening + Gap(t, c, x) < 0);
   for (int j = 0; j < n; j++)
     for (int k = 0; k < j; k++) assert_int_not_equal(order[j], order[k]);
-  assert_int_equal(PressingDestroy(&pressing), 0);
+  assert_int_equal(ActiveSetDestroy(&pressing), 0);
   return worst;
 }
 
@@ -119,7 +119,7 @@ static void Make(double hat, double pulled, Case *t)
     const double opening = c < N / 2 ? (c % 2 ? -0.01 : pulled) : 0.05 * (c - 3), penalty = 1000;
 
     t->load[c] = c < 2 ? 2 : -1 - 0.2 * c;
-    t->term[c] = (PressingTerm){opening, c < N / 2 ? -penalty * opening : 0, c < N / 2 ? penalty : 0, penalty};
+    t->term[c] = (ActiveSetTerm){opening, c < N / 2 ? -penalty * opening : 0, c < N / 2 ? penalty : 0, penalty};
   }
 }
 
@@ -143,39 +143,39 @@ static void test_ends_in_equilibrium(void **state)
 static void test_right_set_needs_nothing(void **state)
 {
   PetscReal    travel[2] = {-0.3, 0.1};
-  PressingTerm term[2]   = {
+  ActiveSetTerm term[2]   = {
       {-0.1, 0.1 * 7, 7, 7},
       {0.2,  0,       0, 7}
   };
   PetscInt  m, which[2];
   PetscBool settled;
-  Pressing  pressing;
+  ActiveSet  pressing;
 
   (void)state;
-  assert_int_equal(PressingCreate(2, term, travel, &pressing), 0);
-  assert_int_equal(PressingSolve(pressing, &m, which, &settled), 0);
+  assert_int_equal(ActiveSetCreate(2, term, travel, &pressing), 0);
+  assert_int_equal(ActiveSetSolve(pressing, &m, which, &settled), 0);
   assert_int_equal(m, 0);
   assert_true(settled);
-  assert_int_equal(PressingDestroy(&pressing), 0);
+  assert_int_equal(ActiveSetDestroy(&pressing), 0);
 }
 
 static void test_loose_body_is_left_alone(void **state)
 {
   PetscReal    travel = 0.5, influence = 1.0 / 8;
-  PressingTerm term = {-0.1, 0.8, 8, 8};
+  ActiveSetTerm term = {-0.1, 0.8, 8, 8};
   PetscInt     m, which;
   PetscBool    settled;
-  Pressing     pressing;
+  ActiveSet     pressing;
 
   (void)state;
-  assert_int_equal(PressingCreate(1, &term, &travel, &pressing), 0);
-  assert_int_equal(PressingSolve(pressing, &m, &which, &settled), 0);
+  assert_int_equal(ActiveSetCreate(1, &term, &travel, &pressing), 0);
+  assert_int_equal(ActiveSetSolve(pressing, &m, &which, &settled), 0);
   assert_int_equal(m, 1);
-  assert_int_equal(PressingAddColumns(pressing, 1, &which, &influence), 0);
-  assert_int_equal(PressingSolve(pressing, &m, &which, &settled), 0);
+  assert_int_equal(ActiveSetAddColumns(pressing, 1, &which, &influence), 0);
+  assert_int_equal(ActiveSetSolve(pressing, &m, &which, &settled), 0);
   assert_int_equal(m, 0);
   assert_false(settled);
-  assert_int_equal(PressingDestroy(&pressing), 0);
+  assert_int_equal(ActiveSetDestroy(&pressing), 0);
 }
 
 int main(int argc, char **argv)

@@ -12,7 +12,7 @@ enum { SIZE = 60 };
 
 typedef struct {
   KSP         ksp;
-  KeptFactor  kept;
+  ReusedFactor  kept;
   LinearCheck check;
 } Solver;
 
@@ -52,7 +52,7 @@ static PetscErrorCode Tell(Solver *s, Mat A, PetscInt first, PetscInt end, Petsc
   }
   PetscCall(MatAssemblyBegin(N, MAT_FINAL_ASSEMBLY));
   PetscCall(MatAssemblyEnd(N, MAT_FINAL_ASSEMBLY));
-  PetscCall(KeptFactorUpdate(s->kept, N, by_each));
+  PetscCall(ReusedFactorUpdate(s->kept, N, by_each));
   PetscCall(MatDestroy(&N));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -62,7 +62,7 @@ static PetscErrorCode SolverCreate(Solver *s)
   PetscFunctionBeginUser;
   PetscCall(KSPCreate(PETSC_COMM_WORLD, &s->ksp));
   PetscCall(DirectSolverSet(s->ksp, PETSC_TRUE));
-  PetscCall(KeptFactorCreate(s->ksp, &s->kept));
+  PetscCall(ReusedFactorCreate(s->ksp, &s->kept));
   PetscCall(LinearCheckCreate(s->ksp, 1e-8, s->kept, &s->check));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -72,7 +72,7 @@ static PetscErrorCode SolverDestroy(Solver *s)
   PetscFunctionBeginUser;
   PetscCall(KSPDestroy(&s->ksp));
   PetscCall(LinearCheckDestroy(&s->check));
-  PetscCall(KeptFactorDestroy(&s->kept));
+  PetscCall(ReusedFactorDestroy(&s->kept));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -88,7 +88,7 @@ static PetscReal SolveTold(Solver *s, PetscInt stiff, PetscReal by, PetscBool fa
   assert_int_equal(MatCreateVecs(A, &x, &b), 0);
   assert_int_equal(VecDuplicate(b, &r), 0);
   assert_int_equal(VecSet(b, 1), 0);
-  assert_int_equal(KeptFactorNext(s->kept, changes, pattern, &serves), 0);
+  assert_int_equal(ReusedFactorNext(s->kept, changes, pattern, &serves), 0);
   if (told >= 0 && serves) assert_int_equal(Tell(s, A, told, stiff, by), 0);
   assert_int_equal(KSPSetOperators(s->ksp, A, A), 0);
   assert_int_equal(KSPSolve(s->ksp, b, x), 0);
@@ -154,7 +154,7 @@ static void test_new_step_has_its_own_factor(void **state)
   (void)state;
   assert_int_equal(SolverCreate(&s), 0);
   assert_true(Solve(&s, 0, 0, PETSC_FALSE, 0, PETSC_TRUE) < 1e-12);
-  assert_int_equal(KeptFactorRenew(s.kept), 0);
+  assert_int_equal(ReusedFactorRenew(s.kept), 0);
   assert_true(Solve(&s, 1, 1, PETSC_FALSE, 0, PETSC_FALSE) < 1e-12);
   assert_true(Counts(&s).made == 2 && Counts(&s).served == 0);
   assert_int_equal(SolverDestroy(&s), 0);
@@ -201,7 +201,7 @@ static void test_no_more_than_enough(void **state)
   (void)state;
   assert_int_equal(SolverCreate(&s), 0);
   assert_true(Solve(&s, 0, 0, PETSC_FALSE, 0, PETSC_TRUE) < 1e-12);
-  assert_int_equal(KeptFactorSetEnough(s.kept, PetscSqrtReal(SIZE)), 0); /* the norm of the right-hand side */
+  assert_int_equal(ReusedFactorSetEnough(s.kept, PetscSqrtReal(SIZE)), 0); /* the norm of the right-hand side */
   residual = Solve(&s, 3, 0.1, PETSC_FALSE, 3, PETSC_FALSE);
   assert_true(residual > 1e-5 && residual <= 0.1);
   assert_int_equal(SolverDestroy(&s), 0);

@@ -98,7 +98,7 @@ static void Turn(const char *name, int held, const double axis[3], double angle)
   const PetscInt *dof;
   PetscInt        first, end;
   double          R[9];
-  NodeTurn        turn;
+  Corotation        turn;
   Vec             x;
 
   Rotation(axis, angle, R);
@@ -117,19 +117,19 @@ static void Turn(const char *name, int held, const double axis[3], double angle)
     if (dof[i] >= first && dof[i] < end) assert_int_equal(VecSetValue(x, dof[i], Value(mesh, i / dim, (int)(i % dim)), INSERT_VALUES), 0);
   assert_int_equal(VecAssemblyBegin(x), 0);
   assert_int_equal(VecAssemblyEnd(x), 0);
-  assert_int_equal(NodeTurnCreate(mesh, &turn), 0);
-  assert_int_equal(NodeTurnMove(turn, from), 0);
-  assert_int_equal(NodeTurnBegin(turn), 0);
-  assert_int_equal(NodeTurnMove(turn, u), 0);
-  assert_int_equal(NodeTurnFind(turn), 0);
-  assert_int_equal(NodeTurnApply(turn, PETSC_FALSE, x), 0);
+  assert_int_equal(CorotationCreate(mesh, &turn), 0);
+  assert_int_equal(CorotationMove(turn, from), 0);
+  assert_int_equal(CorotationBegin(turn), 0);
+  assert_int_equal(CorotationMove(turn, u), 0);
+  assert_int_equal(CorotationFind(turn), 0);
+  assert_int_equal(CorotationApply(turn, PETSC_FALSE, x), 0);
   assert_true(Miss(mesh, x, R) < 1e-12);
-  assert_int_equal(NodeTurnApply(turn, PETSC_TRUE, x), 0);
+  assert_int_equal(CorotationApply(turn, PETSC_TRUE, x), 0);
   assert_true(Miss(mesh, x, NULL) < 1e-12);
-  assert_int_equal(NodeTurnBegin(turn), 0);
-  assert_int_equal(NodeTurnApply(turn, PETSC_TRUE, x), 0);
+  assert_int_equal(CorotationBegin(turn), 0);
+  assert_int_equal(CorotationApply(turn, PETSC_TRUE, x), 0);
   assert_true(Miss(mesh, x, NULL) < 1e-12);
-  assert_int_equal(NodeTurnDestroy(&turn), 0);
+  assert_int_equal(CorotationDestroy(&turn), 0);
   assert_int_equal(VecDestroy(&x), 0);
   assert_int_equal(PetscFree3(u, from, constrained), 0);
   assert_int_equal(MeshDestroy(&mesh), 0);

@@ -318,7 +318,7 @@ static void SolveTold(Plates *plates, PetscInt told, PetscReal times, PetscReal 
   PCFailedReason reason;
   PetscBool      serves;
   LinearCheck    check;
-  KeptFactor     kept;
+  ReusedFactor     kept;
   Factor         factor;
   Mat            sum;
   Vec            b, x, r;
@@ -333,12 +333,12 @@ static void SolveTold(Plates *plates, PetscInt told, PetscReal times, PetscReal 
   assert_int_equal(VecSetRandom(b, NULL), 0);
   assert_int_equal(KSPCreate(PETSC_COMM_WORLD, &ksp), 0);
   assert_int_equal(DirectSolverSet(ksp, PETSC_TRUE), 0);
-  assert_int_equal(KeptFactorCreate(ksp, &kept), 0);
+  assert_int_equal(ReusedFactorCreate(ksp, &kept), 0);
   assert_int_equal(LinearCheckCreate(ksp, 1e-8, kept, &check), 0);
   assert_int_equal(DirectSolverFactor(ksp, &factor), 0);
   assert_int_equal(FactorPrepareBorder(factor, plates->K, &reason), 0);
   assert_int_equal(FactorSetBorder(factor, &border), 0);
-  assert_int_equal(KeptFactorNext(kept, 0, PETSC_TRUE, &serves), 0);
+  assert_int_equal(ReusedFactorNext(kept, 0, PETSC_TRUE, &serves), 0);
   assert_int_equal(KSPSetOperators(ksp, sum, plates->K), 0);
   assert_int_equal(KSPSolve(ksp, b, x), 0);
   assert_false(LinearCheckLost(check));
@@ -354,7 +354,7 @@ static void SolveTold(Plates *plates, PetscInt told, PetscReal times, PetscReal 
   assert_int_equal(MatDestroy(&sum), 0);
   assert_int_equal(KSPDestroy(&ksp), 0);
   assert_int_equal(LinearCheckDestroy(&check), 0);
-  assert_int_equal(KeptFactorDestroy(&kept), 0);
+  assert_int_equal(ReusedFactorDestroy(&kept), 0);
 }
 
 /* What the border leaves out of C is made up for by iterations where it is small, else by a factor of the whole; so is a bordered factor that cannot be. */

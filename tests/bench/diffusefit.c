@@ -67,7 +67,7 @@ static double Time(const Neighbourhoods *all, FitWant want, double *points)
 
       in.n = all->n[s];
       in.x = all->x[s];
-      if (!FitEvaluate(&in, want, workspace, &out)) exit(1);
+      if (!DiffuseFitEvaluate(&in, want, workspace, &out)) exit(1);
       sum += out.n;
     }
     best    = fmin(best, 1e6 * (Seconds() - begin) / SLAVES);

@@ -12,16 +12,16 @@ static const double Resting = 1e-9;
 static void test_beta(void **state)
 {
   (void)state;
-  assert_true(TouchBeta(0.4, 0, Resting) == 1);         /* touches at the end of the step */
-  assert_true(TouchBeta(0.25, -0.75, Resting) == 0.25); /* went through: a quarter of the step was enough */
-  assert_true(TouchBeta(0.75, 0.5, Resting) == 3);      /* still open: three such steps */
-  assert_true(isnan(TouchBeta(0, 0, Resting)));         /* at rest, 0/0 */
-  assert_true(isnan(TouchBeta(0, -0.1, Resting)));      /* touches already */
-  assert_true(isnan(TouchBeta(1e-10, -0.1, Resting)));  /* round-off of a touch */
-  assert_true(isnan(TouchBeta(0.1, 0.2, Resting)));     /* separates */
-  assert_true(isnan(TouchBeta(0.1, 0.1, Resting)));     /* keeps its distance */
-  assert_true(isnan(TouchBeta(-0.1, 0.1, Resting)));    /* leaves */
-  assert_true(isnan(TouchBeta(NAN, -0.1, Resting)) && isnan(TouchBeta(0.1, NAN, Resting)));
+  assert_true(TouchStepBeta(0.4, 0, Resting) == 1);         /* touches at the end of the step */
+  assert_true(TouchStepBeta(0.25, -0.75, Resting) == 0.25); /* went through: a quarter of the step was enough */
+  assert_true(TouchStepBeta(0.75, 0.5, Resting) == 3);      /* still open: three such steps */
+  assert_true(isnan(TouchStepBeta(0, 0, Resting)));         /* at rest, 0/0 */
+  assert_true(isnan(TouchStepBeta(0, -0.1, Resting)));      /* touches already */
+  assert_true(isnan(TouchStepBeta(1e-10, -0.1, Resting)));  /* round-off of a touch */
+  assert_true(isnan(TouchStepBeta(0.1, 0.2, Resting)));     /* separates */
+  assert_true(isnan(TouchStepBeta(0.1, 0.1, Resting)));     /* keeps its distance */
+  assert_true(isnan(TouchStepBeta(-0.1, 0.1, Resting)));    /* leaves */
+  assert_true(isnan(TouchStepBeta(NAN, -0.1, Resting)) && isnan(TouchStepBeta(0.1, NAN, Resting)));
 }
 
 static void test_by_count(void **state)
@@ -32,11 +32,11 @@ static void test_by_count(void **state)
     {0.4, 9, 1},
     {0.8, 1, 1}
   };
-  TouchChoice choice;
+  TouchStepChoice choice;
 
   (void)state;
   for (int wanted = 1; wanted <= 4; wanted++) {
-    TouchChoose(4, touch, wanted, 1e-3, &choice);
+    TouchStepChoose(4, touch, wanted, 1e-3, &choice);
     assert_true(choice.beta == touch[wanted - 1].beta && choice.nodes == wanted && choice.met == wanted && choice.tied == 0);
   }
 }
@@ -47,12 +47,12 @@ static void test_fewer_than_wanted(void **state)
     {0.1, 4, 1},
     {0.2, 2, 1}
   };
-  TouchChoice choice;
+  TouchStepChoice choice;
 
   (void)state;
-  TouchChoose(2, touch, 5, 1e-3, &choice);
+  TouchStepChoose(2, touch, 5, 1e-3, &choice);
   assert_true(choice.beta == 0.2 && choice.nodes == 2);
-  TouchChoose(0, NULL, 5, 1e-3, &choice);
+  TouchStepChoose(0, NULL, 5, 1e-3, &choice);
   assert_true(isnan(choice.beta) && choice.nodes == 0 && choice.met == 0 && choice.tied == 0);
 }
 
@@ -64,14 +64,14 @@ static void test_by_area(void **state)
     {0.4, 9, 0.25},
     {0.8, 1, 3   }
   };
-  TouchChoice choice;
+  TouchStepChoice choice;
 
   (void)state;
-  TouchChoose(4, touch, 0.3, 1e-3, &choice);
+  TouchStepChoose(4, touch, 0.3, 1e-3, &choice);
   assert_true(choice.beta == 0.2 && choice.met == 0.75);
-  TouchChoose(4, touch, 0.75 * (1 + 1e-12), 1e-3, &choice); /* round-off of a sum asks for no further node */
+  TouchStepChoose(4, touch, 0.75 * (1 + 1e-12), 1e-3, &choice); /* round-off of a sum asks for no further node */
   assert_true(choice.beta == 0.2);
-  TouchChoose(4, touch, 1.5, 1e-3, &choice);
+  TouchStepChoose(4, touch, 1.5, 1e-3, &choice);
   assert_true(choice.beta == 0.8 && choice.met == 4);
 }
 
@@ -83,14 +83,14 @@ static void test_ties(void **state)
     {0.30001, 3, 1},
     {0.5,     4, 1}
   };
-  TouchChoice choice;
+  TouchStepChoice choice;
 
   (void)state;
-  TouchChoose(4, touch, 1, 1e-4, &choice);
+  TouchStepChoose(4, touch, 1, 1e-4, &choice);
   assert_true(choice.beta == 0.3 && choice.nodes == 3 && choice.tied == 2 && choice.met == 3);
-  TouchChoose(4, touch, 1, 0, &choice);
+  TouchStepChoose(4, touch, 1, 0, &choice);
   assert_true(choice.nodes == 2 && choice.tied == 1);
-  TouchChoose(4, touch, 3, 1e-4, &choice);
+  TouchStepChoose(4, touch, 3, 1e-4, &choice);
   assert_true(choice.nodes == 3 && choice.tied == 0);
 }
 
