@@ -129,7 +129,7 @@ help: ## this list
 	@sed -n 's/^\([a-z]*\):.*## \(.*\)/make \1\t\2/p' Makefile | expand -t 16
 
 format: ## formats the C sources
-	clang-format -i $(wildcard include/*.h src/*.c src/*/*.[ch] src/*/private/*.h tests/*.h tests/*/*.[ch])
+	$(VENV)/bin/clang-format -i $(wildcard include/*.h src/*.c src/*/*.[ch] src/*/private/*.h tests/*.h tests/*/*.[ch])
 
 clean: ## removes what was built (out/ and the Python environment stay)
 	rm -rf $(BUILD)/obj $(BUILD)/tests $(BUILD)/bench $(BUILD)/ctest $(BUILD)/flags $(LIBRARY) $(BURNISH)

@@ -49,14 +49,16 @@ static PetscErrorCode WatchStep(LoadStepper stepper, const StepRecord *record, v
     watch->kept = record->step;
   }
   if (!why) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PetscSNPrintf(watch->message, sizeof(watch->message), "%s: ended after step %" PetscInt_FMT ", t = %g", why, record->step, (double)record->t));
+  PetscCall(PetscSNPrintf(watch->message, sizeof(watch->message), "%s: ended after step %" PetscInt_FMT ", t = %g", why,
+                          record->step, (double)record->t));
   PetscCall(LoadStepperStop(stepper));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* Steps the model to t = 1 and writes what is to be written; the exit status says how it ended. */
-static PetscErrorCode RunModel(Model model, Probes probes, Scene scene, Checkpoint checkpoint, const CommandLine *command, const char *directory,
-                               PetscLogDouble start, PetscReal mesh_s, int *status)
+static PetscErrorCode RunModel(Model model, Probes probes, Scene scene, Checkpoint checkpoint,
+                               const CommandLine *command, const char *directory, PetscLogDouble start,
+                               PetscReal mesh_s, int *status)
 {
   Watch          watch = {.scene = scene, .checkpoint = checkpoint, .kept = -1};
   RunRecord      run;
@@ -99,23 +101,25 @@ static PetscErrorCode RunModel(Model model, Probes probes, Scene scene, Checkpoi
 }
 
 /* A scene and its mesh file, from the scene's own files. */
-static PetscErrorCode OpenScene(MPI_Comm comm, const CommandLine *command, char *directory, Scene *scene, char *mesh_file, PetscReal *mesh_s,
-                                Checkpoint *checkpoint)
+static PetscErrorCode OpenScene(MPI_Comm comm, const CommandLine *command, char *directory, Scene *scene,
+                                char *mesh_file, PetscReal *mesh_s, Checkpoint *checkpoint)
 {
   PetscFunctionBeginUser;
   *checkpoint = NULL;
   PetscCall(SceneRead(comm, command->scene, command->n_set, command->set, scene));
   PetscCall(InsertSceneOptions(*scene));
-  PetscCall(PetscSNPrintf(directory, PETSC_MAX_PATH_LEN, "%s%s", command->directory ? command->directory : "out/", command->directory ? "" : (*scene)->name));
+  PetscCall(PetscSNPrintf(directory, PETSC_MAX_PATH_LEN, "%s%s", command->directory ? command->directory : "out/",
+                          command->directory ? "" : (*scene)->name));
   PetscCall(ErrorLogOpen(directory));
-  if (command->mode == COMMAND_RUN) PetscCall(ResultsCheckDirectory(comm, *scene, directory, command->overwrite ? PETSC_TRUE : PETSC_FALSE));
+  if (command->mode == COMMAND_RUN)
+    PetscCall(ResultsCheckDirectory(comm, *scene, directory, command->overwrite ? PETSC_TRUE : PETSC_FALSE));
   PetscCall(MeshGenerate(comm, *scene, "out", mesh_file, mesh_s));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* The same from a run's checkpoint. */
-static PetscErrorCode ReopenScene(MPI_Comm comm, const CommandLine *command, char *directory, Scene *scene, char *mesh_file, PetscReal *mesh_s,
-                                  Checkpoint *checkpoint)
+static PetscErrorCode ReopenScene(MPI_Comm comm, const CommandLine *command, char *directory, Scene *scene,
+                                  char *mesh_file, PetscReal *mesh_s, Checkpoint *checkpoint)
 {
   PetscFunctionBeginUser;
   *mesh_s = 0;
@@ -143,13 +147,15 @@ static PetscErrorCode RunScene(const CommandLine *command, int *status)
 
   PetscFunctionBeginUser;
   PetscCall(PetscTime(&start));
-  PetscCall((command->restart ? ReopenScene : OpenScene)(comm, command, directory, &scene, mesh_file, &mesh_s, &checkpoint));
+  PetscCall(
+    (command->restart ? ReopenScene : OpenScene)(comm, command, directory, &scene, mesh_file, &mesh_s, &checkpoint));
   if (command->mode != COMMAND_MESH) {
     TimingBegin(TIMING_SETUP);
     PetscCall(MeshCreate(comm, scene, mesh_file, &mesh));
     if (command->mode == COMMAND_CHECK) PetscCall(MeshReport(mesh, scene, stdout));
     PetscCall(MeshCheckQuality(mesh, scene));
-    if (command->mode == COMMAND_RUN && !checkpoint) PetscCall(CheckpointCreate(comm, directory, mesh_file, &checkpoint));
+    if (command->mode == COMMAND_RUN && !checkpoint)
+      PetscCall(CheckpointCreate(comm, directory, mesh_file, &checkpoint));
     PetscCall(MeshCheckFormulations(mesh, scene));
     PetscCall(ModelCreate(scene, mesh, &model));
     PetscCall(ProbesCreate(model, scene, &probes));
@@ -161,7 +167,8 @@ static PetscErrorCode RunScene(const CommandLine *command, int *status)
       PetscCall(ModelSetUp(model));
     }
     TimingEnd(TIMING_SETUP);
-    if (command->mode == COMMAND_RUN) PetscCall(RunModel(model, probes, scene, checkpoint, command, directory, start, mesh_s, status));
+    if (command->mode == COMMAND_RUN)
+      PetscCall(RunModel(model, probes, scene, checkpoint, command, directory, start, mesh_s, status));
     PetscCall(ProbesDestroy(&probes));
     PetscCall(ModelDestroy(&model));
     PetscCall(MeshDestroy(&mesh));
@@ -181,7 +188,7 @@ int main(int argc, char **argv)
   CommandLineParse(argc, argv, &command);
   if (command.mode == COMMAND_RUN) InterruptionInstall(command.time_limit);
   if (PetscInitialize(&command.argc, &command.argv, NULL, NULL)) return EXIT_MACHINE;
-  signal(SIGPIPE, SIG_IGN);                                                 /* who reads the terminal's text may leave before its end */
+  signal(SIGPIPE, SIG_IGN); /* who reads the terminal's text may leave before its end */
   if (command.mode == COMMAND_RUN) InterruptionInstall(command.time_limit); /* PETSc has taken SIGTERM */
   if (command.complaint[0]) PetscCall(RefuseInput(PETSC_COMM_WORLD, "%s", command.complaint));
   PetscCallMPI(MPI_Comm_rank(PETSC_COMM_WORLD, &rank));

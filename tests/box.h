@@ -1,5 +1,6 @@
-/* A box of distorted cells, once as our mesh (made by hand: one rank, no supports) and once as a PetscFE problem with the same nodes, law
-   (St. Venant-Kirchhoff) and quadrature: for the oracle and the bench of assembly. Each program includes it once. */
+/* A box of distorted cells, once as our mesh (made by hand: one rank, no supports) and once as a PetscFE problem with
+   the same nodes, law (St. Venant-Kirchhoff) and quadrature: for the oracle and the bench of assembly. Each program
+   includes it once. */
 #pragma once
 #include "bodies/elasticity.h"
 #include "kernels/elementkernel.h"
@@ -36,7 +37,8 @@ static inline void BoxPosition(const PetscReal s[3], PetscReal x[3])
   x[2] = s[2] + 0.08 * PetscCosReal(2 * s[0]) * s[1];
 }
 
-static inline PetscErrorCode BoxDisplacement(PetscInt dim, PetscReal time, const PetscReal x[], PetscInt n, PetscScalar u[], void *context)
+static inline PetscErrorCode BoxDisplacement(PetscInt dim, PetscReal time, const PetscReal x[], PetscInt n,
+                                             PetscScalar u[], void *context)
 {
   (void)dim;
   (void)time;
@@ -48,7 +50,8 @@ static inline PetscErrorCode BoxDisplacement(PetscInt dim, PetscReal time, const
   return PETSC_SUCCESS;
 }
 
-static inline PetscErrorCode BoxIdentity(PetscInt dim, PetscReal time, const PetscReal x[], PetscInt n, PetscScalar u[], void *context)
+static inline PetscErrorCode BoxIdentity(PetscInt dim, PetscReal time, const PetscReal x[], PetscInt n, PetscScalar u[],
+                                         void *context)
 {
   (void)time;
   (void)n;
@@ -80,7 +83,8 @@ static inline PetscInt BoxGridIndex(PetscInt side, const PetscInt at[3])
   return (at[2] * side + at[1]) * side + at[0];
 }
 
-/* Where DMPlex has gmsh's corner k: its tetrahedra have the first two swapped, its hexahedra the bottom face turned over */
+/* Where DMPlex has gmsh's corner k: its tetrahedra have the first two swapped, its hexahedra the bottom face turned
+ * over */
 static inline int BoxPlexPlace(const Element *e, int k)
 {
   if (e->corners == 4) return k < 2 ? 1 - k : k;
@@ -168,7 +172,8 @@ static inline PetscErrorCode BoxCreate(ElementType type, PetscInt n, Box *box)
   PetscCall(PetscMalloc1(m->n_nodes * 3, &box_dofs));
   PetscCall(PetscMalloc1(m->n_nodes * 3, &box->u));
   for (PetscInt k = 0; k < m->n_nodes * 3; k++) box_dofs[k] = k;
-  for (PetscInt k = 0; k < m->n_nodes; k++) PetscCall(BoxDisplacement(3, 0, &m->coords[k * 3], 3, &box->u[k * 3], NULL));
+  for (PetscInt k = 0; k < m->n_nodes; k++)
+    PetscCall(BoxDisplacement(3, 0, &m->coords[k * 3], 3, &box->u[k * 3], NULL));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -192,17 +197,18 @@ static inline PetscErrorCode BoxDestroy(Box *box)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-#define BOX_POINTWISE_ARGUMENTS                                                                                                                       \
-  PetscInt dim, PetscInt Nf, PetscInt NfAux, const PetscInt uOff[], const PetscInt uOff_x[], const PetscScalar u[], const PetscScalar u_t[],          \
-    const PetscScalar u_x[], const PetscInt aOff[], const PetscInt aOff_x[], const PetscScalar a[], const PetscScalar a_t[], const PetscScalar a_x[], \
-    PetscReal t
+#define BOX_POINTWISE_ARGUMENTS                                                                                     \
+  PetscInt dim, PetscInt Nf, PetscInt NfAux, const PetscInt uOff[], const PetscInt uOff_x[], const PetscScalar u[], \
+    const PetscScalar u_t[], const PetscScalar u_x[], const PetscInt aOff[], const PetscInt aOff_x[],               \
+    const PetscScalar a[], const PetscScalar a_t[], const PetscScalar a_x[], PetscReal t
 
-#define BOX_POINTWISE_UNUSED                                                                                                                        \
-  (void)dim, (void)Nf, (void)NfAux, (void)uOff, (void)uOff_x, (void)u, (void)u_t, (void)aOff, (void)aOff_x, (void)a, (void)a_t, (void)a_x, (void)t, \
-    (void)numConstants, (void)constants, (void)x
+#define BOX_POINTWISE_UNUSED                                                                                         \
+  (void)dim, (void)Nf, (void)NfAux, (void)uOff, (void)uOff_x, (void)u, (void)u_t, (void)aOff, (void)aOff_x, (void)a, \
+    (void)a_t, (void)a_x, (void)t, (void)numConstants, (void)constants, (void)x
 
 /* F and S of the law, written as in a textbook */
-static inline void BoxStress(const PetscScalar u_x[], PetscReal F[3][3], PetscReal S[3][3], PetscReal *lambda, PetscReal *mu)
+static inline void BoxStress(const PetscScalar u_x[], PetscReal F[3][3], PetscReal S[3][3], PetscReal *lambda,
+                             PetscReal *mu)
 {
   PetscReal trace = 0;
 
@@ -220,7 +226,8 @@ static inline void BoxStress(const PetscScalar u_x[], PetscReal F[3][3], PetscRe
   }
 }
 
-static inline void BoxResidual(BOX_POINTWISE_ARGUMENTS, const PetscReal x[], PetscInt numConstants, const PetscScalar constants[], PetscScalar f1[])
+static inline void BoxResidual(BOX_POINTWISE_ARGUMENTS, const PetscReal x[], PetscInt numConstants,
+                               const PetscScalar constants[], PetscScalar f1[])
 {
   PetscReal F[3][3], S[3][3], lambda, mu;
 
@@ -231,8 +238,8 @@ static inline void BoxResidual(BOX_POINTWISE_ARGUMENTS, const PetscReal x[], Pet
   }
 }
 
-static inline void BoxJacobian(BOX_POINTWISE_ARGUMENTS, PetscReal shift, const PetscReal x[], PetscInt numConstants, const PetscScalar constants[],
-                               PetscScalar g3[])
+static inline void BoxJacobian(BOX_POINTWISE_ARGUMENTS, PetscReal shift, const PetscReal x[], PetscInt numConstants,
+                               const PetscScalar constants[], PetscScalar g3[])
 {
   PetscReal F[3][3], S[3][3], lambda, mu;
 
@@ -285,12 +292,14 @@ static inline PetscErrorCode BoxCreatePetsc(const Box *box, DM *dm)
   PetscCall(PetscMalloc1(vertices * 3, &coords));
   for (PetscInt c = 0; c < box->mesh->n_cells; c++) {
     for (int k = 0; k < e->corners; k++)
-      PetscCall(
-        PetscArraycpy(&coords[box->corners[c * e->corners + BoxPlexPlace(e, k)] * 3], &box->mesh->coords[box->mesh->cell_nodes[c * e->nodes + k] * 3], 3));
+      PetscCall(PetscArraycpy(&coords[box->corners[c * e->corners + BoxPlexPlace(e, k)] * 3],
+                              &box->mesh->coords[box->mesh->cell_nodes[c * e->nodes + k] * 3], 3));
   }
-  PetscCall(DMPlexCreateFromCellListPetsc(PETSC_COMM_SELF, 3, box->mesh->n_cells, vertices, e->corners, PETSC_TRUE, box->corners, 3, coords, dm));
+  PetscCall(DMPlexCreateFromCellListPetsc(PETSC_COMM_SELF, 3, box->mesh->n_cells, vertices, e->corners, PETSC_TRUE,
+                                          box->corners, 3, coords, dm));
   PetscCall(PetscFree(coords));
-  PetscCall(PetscFECreateLagrange(PETSC_COMM_SELF, 3, 3, e->corners == 4 ? PETSC_TRUE : PETSC_FALSE, e->order, PETSC_DETERMINE, &fe));
+  PetscCall(PetscFECreateLagrange(PETSC_COMM_SELF, 3, 3, e->corners == 4 ? PETSC_TRUE : PETSC_FALSE, e->order,
+                                  PETSC_DETERMINE, &fe));
   PetscCall(BoxQuadrature(e, &quadrature));
   PetscCall(PetscFESetQuadrature(fe, quadrature));
   PetscCall(PetscQuadratureDestroy(&quadrature));

@@ -6,29 +6,32 @@
 #include <string.h>
 #include <strings.h>
 
-/* OpenBLAS's kernels for processors that have no more than SSE. Later ones are chosen where they are right (Zen on a processor of AMD), where somebody has
-   asked for them, or where OpenBLAS was made without those for AVX-512. */
-static const char *const sse_kernels[] = {"Generic", "Katmai",     "Coppermine", "Northwood", "Prescott", "Banias",       "Atom",      "Core2", "Penryn",
-                                          "Nehalem", "Dunnington", "Athlon",     "Opteron",   "Nano",     "Opteron_SSE3", "Barcelona", "Bobcat"};
+/* OpenBLAS's kernels for processors that have no more than SSE. Later ones are chosen where they are right (Zen on a
+   processor of AMD), where somebody has asked for them, or where OpenBLAS was made without those for AVX-512. */
+static const char *const sse_kernels[] = {"Generic", "Katmai", "Coppermine",   "Northwood", "Prescott",   "Banias",
+                                          "Atom",    "Core2",  "Penryn",       "Nehalem",   "Dunnington", "Athlon",
+                                          "Opteron", "Nano",   "Opteron_SSE3", "Barcelona", "Bobcat"};
 
-/* ProcessorGetVectors - of the processor this runs on, as far as the operating system lets programs use them. Not collective. */
+/* ProcessorGetVectors - of the processor this runs on, as far as the operating system lets programs use them. Not
+ * collective. */
 ProcessorVectors ProcessorGetVectors(void)
 {
 #if defined(__x86_64__) && defined(__GNUC__)
   __builtin_cpu_init();
-  if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512bw") && __builtin_cpu_supports("avx512vl") &&
-      __builtin_cpu_supports("avx512cd"))
+  if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512bw") &&
+      __builtin_cpu_supports("avx512vl") && __builtin_cpu_supports("avx512cd"))
     return PROCESSOR_AVX512;
   if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")) return PROCESSOR_AVX2;
 #endif
   return PROCESSOR_OTHER;
 }
 
-/* BlasFasterKernels - the name of kernels that would be much faster than these (NULL: of no OpenBLAS) on a processor with these vectors; NULL: there are none.
-   Not collective. */
+/* BlasFasterKernels - the name of kernels that would be much faster than these (NULL: of no OpenBLAS) on a processor
+   with these vectors; NULL: there are none. Not collective. */
 const char *BlasFasterKernels(const char *kernels, ProcessorVectors vectors)
 {
-  static const char *const made_for[] = {[PROCESSOR_OTHER] = NULL, [PROCESSOR_AVX2] = "Haswell", [PROCESSOR_AVX512] = "SkylakeX"};
+  static const char *const made_for[] =
+    {[PROCESSOR_OTHER] = NULL, [PROCESSOR_AVX2] = "Haswell", [PROCESSOR_AVX512] = "SkylakeX"};
 
   for (size_t i = 0; i < sizeof(sse_kernels) / sizeof(sse_kernels[0]); i++)
     if (kernels && !strcasecmp(kernels, sse_kernels[i])) return made_for[vectors];
@@ -46,7 +49,8 @@ static const char *LibraryText(const char *function)
 
 static void BlasFindFile(Blas *blas)
 {
-  static const char *const fast[] = {"openblas", "mkl", "blis", "atlas", "libsci", "essl", "armpl", "flexiblas", "nvpl", "accelerate"};
+  static const char *const fast[] = {"openblas", "mkl",   "blis",      "atlas", "libsci",
+                                     "essl",     "armpl", "flexiblas", "nvpl",  "accelerate"};
   void                    *dgemm  = dlsym(RTLD_DEFAULT, "dgemm_");
   char                    *real   = NULL;
   Dl_info                  info;
@@ -66,15 +70,18 @@ void BlasFind(Blas *blas)
 
   *blas = (Blas){.can_choose = made && strstr(made, "DYNAMIC_ARCH")};
   BlasFindFile(blas);
-  if (strcasestr(blas->file, "openblas")) blas->kernels = LibraryText("openblas_get_corename"); /* OpenBLAS may be there for another library's sake */
+  if (strcasestr(blas->file, "openblas"))
+    blas->kernels = LibraryText("openblas_get_corename"); /* OpenBLAS may be there for another library's sake */
   blas->faster_kernels = BlasFasterKernels(blas->kernels, ProcessorGetVectors());
 }
 
-/* BlasPrint - the file, the kernels where they are known, and how to have faster ones where that takes no other library. Not collective. */
+/* BlasPrint - the file, the kernels where they are known, and how to have faster ones where that takes no other
+ * library. Not collective. */
 void BlasPrint(const Blas *blas, FILE *stream)
 {
   fprintf(stream, "%s", blas->file);
   if (blas->kernels) fprintf(stream, ", kernels %s", blas->kernels);
-  if (blas->faster_kernels && blas->can_choose) fprintf(stream, "; faster here: OPENBLAS_CORETYPE=%s", blas->faster_kernels);
+  if (blas->faster_kernels && blas->can_choose)
+    fprintf(stream, "; faster here: OPENBLAS_CORETYPE=%s", blas->faster_kernels);
   fprintf(stream, "\n");
 }

@@ -1,5 +1,6 @@
-/* The BLAS that the dynamic linker chose: whose it is, and whether it makes use of what the processor has. OpenBLAS holds kernels for many
-   processors and chooses by model number when it starts: one of before 0.3.25 takes those of 2004 on an Intel processor that is newer than itself. */
+/* The BLAS that the dynamic linker chose: whose it is, and whether it makes use of what the processor has. OpenBLAS
+   holds kernels for many processors and chooses by model number when it starts: one of before 0.3.25 takes those of
+   2004 on an Intel processor that is newer than itself. */
 #pragma once
 #include <stdio.h>
 

@@ -1,6 +1,7 @@
-/* A balanced binary tree over the boxes, halved at the median centre of the widest direction until one box is left. The nodes stand in one
-   array in preorder: below node i with n boxes come the left half's n/2 boxes at node i + 1 and the rest at node i + 2 (n/2), so that neither
-   children nor ranges need be stored. Halving by position, not by value, keeps the depth at log2 n for any boxes, equal ones too. */
+/* A balanced binary tree over the boxes, halved at the median centre of the widest direction until one box is left. The
+   nodes stand in one array in preorder: below node i with n boxes come the left half's n/2 boxes at node i + 1 and the
+   rest at node i + 2 (n/2), so that neither children nor ranges need be stored. Halving by position, not by value,
+   keeps the depth at log2 n for any boxes, equal ones too. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -113,12 +114,12 @@ static void BuildRange(BoxTree tree, const Boxes *boxes, Range range)
   BuildRange(tree, boxes, Right(&range));
 }
 
-/* Builds the tree. Not collective, plain C. dim: 1 to 3; n: boxes, 0 allowed; lower, upper: [n][dim] corners (lengths), not kept.
-   Returns 0, or 1 without memory (*tree is NULL then). To be freed by BoxTreeDestroy(). */
+/* Builds the tree. Not collective, plain C. dim: 1 to 3; n: boxes, 0 allowed; lower, upper: [n][dim] corners (lengths),
+   not kept. Returns 0, or 1 without memory (*tree is NULL then). To be freed by BoxTreeDestroy(). */
 int BoxTreeBuild(int dim, int n, const double *lower, const double *upper, BoxTree *tree)
 {
   const Boxes boxes = {dim, lower, upper};
-  BoxTree        t     = calloc(1, sizeof(*t));
+  BoxTree     t     = calloc(1, sizeof(*t));
 
   *tree = t;
   if (!t) return 1;
@@ -181,8 +182,8 @@ static int InsertAscending(int value, int max, int n, int *list)
   return n + 1;
 }
 
-/* All boxes nearer to a point than radius. Not collective, plain C. point[dim], radius: lengths; found[max]: their numbers, ascending, the
-   first max of them. Returns how many there are, which may exceed max. */
+/* All boxes nearer to a point than radius. Not collective, plain C. point[dim], radius: lengths; found[max]: their
+   numbers, ascending, the first max of them. Returns how many there are, which may exceed max. */
 int BoxTreeNear(BoxTree tree, const double *point, double radius, int max, int *found)
 {
   Range stack[MAX_DEPTH];
@@ -243,9 +244,10 @@ static Range Pop(BoxTree tree, int length)
 }
 
 /* Visits boxes in order of their distance from a point, of equal distances by number, while that is at most *bound.
-   Not collective, plain C; not to be called from visit. point[dim], *bound: lengths, *bound may be INFINITY; visit(context, box, bound) may
-   lower *bound. */
-void BoxTreeClosest(BoxTree tree, const double *point, double *bound, void (*visit)(void *context, int index, double *bound), void *context)
+   Not collective, plain C; not to be called from visit. point[dim], *bound: lengths, *bound may be INFINITY;
+   visit(context, box, bound) may lower *bound. */
+void BoxTreeClosest(BoxTree tree, const double *point, double *bound,
+                    void (*visit)(void *context, int index, double *bound), void *context)
 {
   int length = tree->n ? Push(tree, (Range){0, 0, 0, tree->n}, point, 0) : 0;
 

@@ -1,7 +1,7 @@
 /* What a scene chooses by name and the program grows by: elastic laws, smoothers, step controls. Plain C.
 
-   A new one is a file of its own that defines the object, and a line here. Enumerations, tables, the scene's key and its reference follow from the
-   lists; what the object is, material.h, smoother.h and stepcontrol.h tell.
+   A new one is a file of its own that defines the object, and a line here. Enumerations, tables, the scene's key and
+   its reference follow from the lists; what the object is, material.h, smoother.h and stepcontrol.h tell.
 
      LINE(enumerator, word of the scene, object) */
 #pragma once

@@ -1,5 +1,5 @@
-/* The first mistake found, in words, on the one rank that looked: all ranks then refuse together (RefuseInputAnywhere() of refusal.h).
-   What is found later is mostly a consequence of the first. */
+/* The first mistake found, in words, on the one rank that looked: all ranks then refuse together (RefuseInputAnywhere()
+   of refusal.h). What is found later is mostly a consequence of the first. */
 #pragma once
 #include "base/petsccompat.h"
 

@@ -1,4 +1,5 @@
-/* Internal errors and machine failures (exit status 4): PETSc's trace goes to DIR/error.log, the terminal gets one line. */
+/* Internal errors and machine failures (exit status 4): PETSc's trace goes to DIR/error.log, the terminal gets one
+ * line. */
 #pragma once
 #include "base/petsccompat.h"
 

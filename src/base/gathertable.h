@@ -1,5 +1,5 @@
-/* A table of reals that stands whole on every rank, put together from the ranks' rows: for what is small beside the mesh, such as the slave
-   nodes of a contact pair, and must come out the same on any number of ranks. */
+/* A table of reals that stands whole on every rank, put together from the ranks' rows: for what is small beside the
+   mesh, such as the slave nodes of a contact pair, and must come out the same on any number of ranks. */
 #pragma once
 #include "base/petsccompat.h"
 

@@ -3,8 +3,8 @@
 #include <signal.h>
 #include <time.h>
 
-/* The run ends when less time is left than this many times the longest that passed between two steps, output and checkpoints included: one step more,
-   a checkpoint that takes as long, and the last output. */
+/* The run ends when less time is left than this many times the longest that passed between two steps, output and
+   checkpoints included: one step more, a checkpoint that takes as long, and the last output. */
 #define INTERRUPTION_MARGIN 3.0
 
 /* The strongest last: ranks may know of different ones. */

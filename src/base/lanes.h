@@ -1,4 +1,5 @@
-/* Vectors of doubles as wide as the machine's registers, for kernels that treat several points at a time. Plain C with GNU vector extensions. */
+/* Vectors of doubles as wide as the machine's registers, for kernels that treat several points at a time. Plain C with
+ * GNU vector extensions. */
 #pragma once
 
 /* Wider vectors than the machine's are taken apart by the compiler at many times the cost. */

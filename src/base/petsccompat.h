@@ -1,4 +1,5 @@
-/* What lets one source build against PETSc 3.18 and the newest release, with 32- and 64-bit indices. Nothing else belongs here. */
+/* What lets one source build against PETSc 3.18 and the newest release, with 32- and 64-bit indices. Nothing else
+ * belongs here. */
 #pragma once
 #include <petscsnes.h>
 #include <petscdmplex.h>

@@ -2,14 +2,16 @@
 #include <stdarg.h>
 #include <stdlib.h>
 
-/* Ends MPI and PETSc in order and leaves with status 1. All ranks come here together: MPI_Finalize waits for the rank that printed, so
-   that a launcher which ends the job at the first non-zero status finds the message already written. */
+/* Ends MPI and PETSc in order and leaves with status 1. All ranks come here together: MPI_Finalize waits for the rank
+   that printed, so that a launcher which ends the job at the first non-zero status finds the message already written.
+ */
 static PetscErrorCode RefusalLeave(void)
 {
   int finalized;
 
   PetscFunctionBeginUser;
-  /* builds of PETSc for debugging list options that were not looked at yet; here that would be noise beside the message */
+  /* builds of PETSc for debugging list options that were not looked at yet; here that would be noise beside the message
+   */
   PetscCall(PetscOptionsSetValue(NULL, "-options_left", "0"));
   PetscCall(PetscFinalize());
   PetscCallMPI(MPI_Finalized(&finalized));
@@ -20,8 +22,8 @@ static PetscErrorCode RefusalLeave(void)
 
 /* RefuseInput - one message about a mistake that every rank knows, then the end of the program with status 1.
 
-   Collective on all ranks of the program; rank 0 of comm prints. format: printf's, without name and newline: both are added.
-   Does not return. */
+   Collective on all ranks of the program; rank 0 of comm prints. format: printf's, without name and newline: both are
+   added. Does not return. */
 PetscErrorCode RefuseInput(MPI_Comm comm, const char *format, ...)
 {
   va_list     arguments;
@@ -42,9 +44,11 @@ PetscErrorCode RefuseInput(MPI_Comm comm, const char *format, ...)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* RefuseInputAnywhere - as RefuseInput() for a mistake that only some ranks know: the text of the lowest complaining rank is printed.
+/* RefuseInputAnywhere - as RefuseInput() for a mistake that only some ranks know: the text of the lowest complaining
+   rank is printed.
 
-   Collective on all ranks of the program. text: this rank's complaint, or NULL. Returns only where no rank complains. */
+   Collective on all ranks of the program. text: this rank's complaint, or NULL. Returns only where no rank complains.
+ */
 PetscErrorCode RefuseInputAnywhere(MPI_Comm comm, const char *text)
 {
   PetscMPIInt rank, size, complaining, length = 0;

@@ -3,8 +3,8 @@
    RefuseInput()         every rank knows the mistake (it stands in the scene, which all ranks read)
    RefuseInputAnywhere() some rank may know one (it stands in that rank's part of the mesh); always called by all ranks
 
-   Neither returns after a refusal: they end MPI and PETSc in order and leave the process. Internal errors are not refusals: those go
-   through PETSc's error codes and end with status 4. */
+   Neither returns after a refusal: they end MPI and PETSc in order and leave the process. Internal errors are not
+   refusals: those go through PETSc's error codes and end with status 4. */
 #pragma once
 #include "base/petsccompat.h"
 

@@ -19,7 +19,8 @@ static void Book(void)
   since = now;
 }
 
-/* TimingBegin - Starts the clock of one purpose on this rank and stops the one that goes. Not collective; MPI must be initialised. */
+/* TimingBegin - Starts the clock of one purpose on this rank and stops the one that goes. Not collective; MPI must be
+ * initialised. */
 void TimingBegin(TimingKind kind)
 {
   Book();

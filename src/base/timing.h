@@ -1,5 +1,5 @@
-/* Wall seconds by purpose, for summary.json; -log_view tells more. Pairs of Begin and End nest: while an inner purpose runs the outer one
-   stands still, so that no second counts twice (the search of the set-up is search, not set-up). */
+/* Wall seconds by purpose, for summary.json; -log_view tells more. Pairs of Begin and End nest: while an inner purpose
+   runs the outer one stands still, so that no second counts twice (the search of the set-up is search, not set-up). */
 #pragma once
 
 typedef enum {

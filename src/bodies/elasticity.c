@@ -3,19 +3,21 @@
 #include "kernels/elementkernel.h"
 #include "matrix/nodematrix.h"
 
-/* PREFETCH_PAIRS: how many pairs of nodes ahead blocks are asked for; the scattered blocks come from main memory, 4 hides most of the wait */
+/* PREFETCH_PAIRS: how many pairs of nodes ahead blocks are asked for; the scattered blocks come from main memory, 4
+ * hides most of the wait */
 enum { MAX_DOFS = ELEMENT_MAX_NODES * 3, BYTES_OF_CACHE_LINE = 64, PREFETCH_PAIRS = 4 };
 
-/* Cells of one type and law, KERNEL_LANES to a batch; the last batch repeats its last cell. Arrays are those of a batch, one batch after
-   the other. */
+/* Cells of one type and law, KERNEL_LANES to a batch; the last batch repeats its last cell. Arrays are those of a
+   batch, one batch after the other. */
 typedef struct {
   KernelCase kernel;
   int        nodes; /* of one cell */
   PetscInt   n_cells, n_batches;
-  PetscInt  *cell;   /* [lanes] */
-  PetscInt  *node;   /* [nodes][lanes] */
-  PetscInt  *block;  /* [nodes][nodes][lanes]: where the pair of nodes stands in the block CSR; PREFETCH_PAIRS of zeros at the end */
-  PetscReal *X;      /* [nodes][dim][lanes] */
+  PetscInt  *cell; /* [lanes] */
+  PetscInt  *node; /* [nodes][lanes] */
+  PetscInt *block; /* [nodes][nodes][lanes]: where the pair of nodes stands in the block CSR; PREFETCH_PAIRS of zeros at
+                      the end */
+  PetscReal *X;    /* [nodes][dim][lanes] */
   PetscReal *E, *nu; /* [lanes] */
 } CellGroup;
 
@@ -53,7 +55,8 @@ static KernelCase BodyKernel(Scene scene, PetscInt body, ElementType type)
 {
   const SceneBody *b = &scene->bodies[body];
 
-  return (KernelCase){type, scene->geometry, scene->kinematics, scene->kinematics == KINEMATICS_SMALL ? MATERIAL_LINEAR : b->material.law, b->formulation};
+  return (KernelCase){type, scene->geometry, scene->kinematics,
+                      scene->kinematics == KINEMATICS_SMALL ? MATERIAL_LINEAR : b->material.law, b->formulation};
 }
 
 /* Of one scene: geometry and kinematics are the same */
@@ -76,7 +79,8 @@ static PetscErrorCode GroupCells(Elasticity e, Scene scene)
     int              g        = 0;
 
     while (g < e->n_groups && !SameKernel(&e->groups[g].kernel, &kernel)) g++;
-    if (g == e->n_groups) e->groups[e->n_groups++] = (CellGroup){.kernel = kernel, .nodes = ElementGet(kernel.type)->nodes};
+    if (g == e->n_groups)
+      e->groups[e->n_groups++] = (CellGroup){.kernel = kernel, .nodes = ElementGet(kernel.type)->nodes};
     e->cell_group[c]   = g;
     e->cell_slot[c]    = e->groups[g].n_cells++;
     e->cell_modulus[c] = material->E;
@@ -91,7 +95,8 @@ static PetscErrorCode AllocateGroup(CellGroup *g, int dim)
   PetscFunctionBeginUser;
   g->n_batches = (g->n_cells + KERNEL_LANES - 1) / KERNEL_LANES;
   lanes        = (size_t)g->n_batches * KERNEL_LANES;
-  PetscCall(PetscCalloc3(lanes, &g->cell, lanes * g->nodes, &g->node, lanes * g->nodes * g->nodes + PREFETCH_PAIRS * KERNEL_LANES, &g->block));
+  PetscCall(PetscCalloc3(lanes, &g->cell, lanes * g->nodes, &g->node,
+                         lanes * g->nodes * g->nodes + PREFETCH_PAIRS * KERNEL_LANES, &g->block));
   PetscCall(PetscMalloc3(lanes * g->nodes * dim, &g->X, lanes, &g->E, lanes, &g->nu));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -112,7 +117,8 @@ static void SetCell(Elasticity e, Scene scene, CellGroup *g, PetscInt slot, Pets
     g->nu[s]   = material->nu;
     for (int a = 0; a < g->nodes; a++) {
       g->node[(batch * g->nodes + a) * KERNEL_LANES + lane] = nodes[a];
-      for (int i = 0; i < e->dim; i++) g->X[((batch * g->nodes + a) * e->dim + i) * KERNEL_LANES + lane] = mesh->coords[nodes[a] * e->dim + i];
+      for (int i = 0; i < e->dim; i++)
+        g->X[((batch * g->nodes + a) * e->dim + i) * KERNEL_LANES + lane] = mesh->coords[nodes[a] * e->dim + i];
     }
   }
 }
@@ -138,8 +144,8 @@ static PetscErrorCode NodeCells(Mesh mesh, PetscInt **ptr, PetscInt **cells)
 }
 
 /* Nodes that share a cell with a node, ascending; mark[] holds the last node each one was counted for. */
-static PetscErrorCode NodeNeighbours(Mesh mesh, PetscInt node, const PetscInt *ptr, const PetscInt *cells, PetscInt *mark, PetscInt *neighbours,
-                                     PetscInt *count)
+static PetscErrorCode NodeNeighbours(Mesh mesh, PetscInt node, const PetscInt *ptr, const PetscInt *cells,
+                                     PetscInt *mark, PetscInt *neighbours, PetscInt *count)
 {
   PetscFunctionBeginUser;
   *count = 0;
@@ -169,7 +175,8 @@ static void SetBlocks(Elasticity e, PetscInt node, const PetscInt *ptr, const Pe
       if (nodes[a] != node) continue;
       for (PetscInt s = slot; s < end; s++) {
         for (int b = 0; b < g->nodes; b++)
-          g->block[(((size_t)(s / KERNEL_LANES) * g->nodes + a) * g->nodes + b) * KERNEL_LANES + s % KERNEL_LANES] = place[nodes[b]];
+          g->block[(((size_t)(s / KERNEL_LANES) * g->nodes + a) * g->nodes + b) * KERNEL_LANES + s % KERNEL_LANES] =
+            place[nodes[b]];
       }
     }
   }
@@ -196,7 +203,8 @@ static PetscErrorCode CreateBlocks(Elasticity e)
   PetscCall(PetscMalloc1(total, &e->column));
   PetscCall(PetscCalloc1(total * e->dim * e->dim, &e->value));
   for (PetscInt n = 0; n < mesh->n_nodes; n++) mark[n] = -1;
-  for (PetscInt n = 0; n < mesh->n_nodes; n++) PetscCall(NodeNeighbours(mesh, n, ptr, cells, mark, &e->column[e->row[n]], &count));
+  for (PetscInt n = 0; n < mesh->n_nodes; n++)
+    PetscCall(NodeNeighbours(mesh, n, ptr, cells, mark, &e->column[e->row[n]], &count));
   for (PetscInt n = 0; n < mesh->n_nodes; n++) {
     PetscInt *place = mark;
 
@@ -214,11 +222,13 @@ static PetscErrorCode CreateBuffers(Elasticity e)
   PetscReal *aligned;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc((size_t)(MAX_DOFS + 2) * MAX_DOFS * KERNEL_LANES * sizeof(PetscReal) + BYTES_OF_CACHE_LINE, &e->buffer));
-  aligned = (PetscReal *)(((PETSC_UINTPTR_T)e->buffer + BYTES_OF_CACHE_LINE - 1) / BYTES_OF_CACHE_LINE * BYTES_OF_CACHE_LINE);
-  e->u    = aligned;
-  e->f    = e->u + MAX_DOFS * KERNEL_LANES;
-  e->K    = e->f + MAX_DOFS * KERNEL_LANES;
+  PetscCall(PetscMalloc((size_t)(MAX_DOFS + 2) * MAX_DOFS * KERNEL_LANES * sizeof(PetscReal) + BYTES_OF_CACHE_LINE,
+                        &e->buffer));
+  aligned =
+    (PetscReal *)(((PETSC_UINTPTR_T)e->buffer + BYTES_OF_CACHE_LINE - 1) / BYTES_OF_CACHE_LINE * BYTES_OF_CACHE_LINE);
+  e->u = aligned;
+  e->f = e->u + MAX_DOFS * KERNEL_LANES;
+  e->K = e->f + MAX_DOFS * KERNEL_LANES;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -285,7 +295,8 @@ static void GatherBatch(Elasticity e, const CellGroup *g, PetscInt batch, const 
 
   for (int a = 0; a < g->nodes; a++) {
     for (int i = 0; i < e->dim; i++) {
-      for (int lane = 0; lane < KERNEL_LANES; lane++) e->u[(a * e->dim + i) * KERNEL_LANES + lane] = u[node[a * KERNEL_LANES + lane] * e->dim + i];
+      for (int lane = 0; lane < KERNEL_LANES; lane++)
+        e->u[(a * e->dim + i) * KERNEL_LANES + lane] = u[node[a * KERNEL_LANES + lane] * e->dim + i];
     }
   }
 }
@@ -330,7 +341,8 @@ static void ScatterForce(Elasticity e, const CellGroup *g, PetscInt batch, Petsc
 . force2 - sum of the squares of the element forces before assembly
 - ok     - PETSC_FALSE: det F <= 0, or not a number, somewhere; f is filled all the same
 */
-PetscErrorCode ElasticityResidual(Elasticity e, const PetscReal *u, PetscReal *f, PetscReal *energy, PetscReal *force2, PetscBool *ok)
+PetscErrorCode ElasticityResidual(Elasticity e, const PetscReal *u, PetscReal *f, PetscReal *energy, PetscReal *force2,
+                                  PetscBool *ok)
 {
   const PetscBool forces = (PetscBool)(f || force2);
   PetscReal       W[KERNEL_LANES], J[KERNEL_LANES];
@@ -349,7 +361,8 @@ PetscErrorCode ElasticityResidual(Elasticity e, const PetscReal *u, PetscReal *f
       const size_t first = (size_t)batch * KERNEL_LANES;
 
       GatherBatch(e, g, batch, u);
-      ElementKernel(&g->kernel, &g->X[first * dofs], e->u, &g->E[first], &g->nu[first], energy ? W : NULL, forces ? e->f : NULL, NULL, J);
+      ElementKernel(&g->kernel, &g->X[first * dofs], e->u, &g->E[first], &g->nu[first], energy ? W : NULL,
+                    forces ? e->f : NULL, NULL, J);
       if (forces) ScatterForce(e, g, batch, f, force2);
       for (int lane = 0; lane < BatchCells(g, batch); lane++) {
         if (energy) *energy += W[lane];
@@ -363,9 +376,10 @@ PetscErrorCode ElasticityResidual(Elasticity e, const PetscReal *u, PetscReal *f
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Adds the batch's K into the block CSR, pair of nodes by pair of nodes: its lanes are read once, each block is contiguous. dim and count
-   are constants where this is inlined. */
-static inline __attribute__((always_inline)) void ScatterTangent(Elasticity e, const CellGroup *g, PetscInt batch, const int dim, const int count)
+/* Adds the batch's K into the block CSR, pair of nodes by pair of nodes: its lanes are read once, each block is
+   contiguous. dim and count are constants where this is inlined. */
+static inline __attribute__((always_inline)) void ScatterTangent(Elasticity e, const CellGroup *g, PetscInt batch,
+                                                                 const int dim, const int count)
 {
   const int       n     = g->nodes;
   const PetscInt *block = &g->block[(size_t)batch * n * n * KERNEL_LANES];
@@ -456,8 +470,8 @@ PetscErrorCode ElasticityAddBlock(Elasticity e, PetscInt n, const PetscInt nodes
       PetscReal *value;
 
       PetscCall(PetscFindInt(nodes[b], e->row[nodes[a] + 1] - row, &e->column[row], &place));
-      PetscCheck(place >= 0, PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE, "nodes %" PetscInt_FMT " and %" PetscInt_FMT " share no local cell", nodes[a],
-                 nodes[b]);
+      PetscCheck(place >= 0, PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE,
+                 "nodes %" PetscInt_FMT " and %" PetscInt_FMT " share no local cell", nodes[a], nodes[b]);
       value = &e->value[(size_t)(row + place) * dim * dim];
       for (int i = 0; i < dim; i++) {
         for (int j = 0; j < dim; j++) value[i * dim + j] += k[(a * dim + i) * n * dim + b * dim + j];
@@ -593,12 +607,14 @@ PetscErrorCode ElasticityMatrixJoin(Elasticity e, Mat C)
 }
 
 /* Adds one cell's share to its nodes */
-static void AddCellStress(Elasticity e, const CellGroup *g, PetscInt slot, const PetscReal *u, PetscReal *stress, PetscReal *weight)
+static void AddCellStress(Elasticity e, const CellGroup *g, PetscInt slot, const PetscReal *u, PetscReal *stress,
+                          PetscReal *weight)
 {
   const Element  *element = ElementGet(g->kernel.type);
   const size_t    batch = slot / KERNEL_LANES, lane = slot % KERNEL_LANES;
   const PetscInt *nodes = &e->mesh->cell_nodes[e->mesh->cell_ptr[g->cell[slot]]];
-  PetscReal       X[MAX_DOFS], cell_u[MAX_DOFS], point_stress[ELEMENT_MAX_POINTS * 6], point_volume[ELEMENT_MAX_POINTS], volume = 0;
+  PetscReal       X[MAX_DOFS], cell_u[MAX_DOFS], point_stress[ELEMENT_MAX_POINTS * 6], point_volume[ELEMENT_MAX_POINTS],
+    volume = 0;
 
   for (int a = 0; a < g->nodes; a++) {
     for (int i = 0; i < e->dim; i++) {
@@ -626,12 +642,14 @@ static void AddCellStress(Elasticity e, const CellGroup *g, PetscInt slot, const
 - u - local displacements (length) [n_nodes*dim]
 
   Output:
-+ stress - volume of the cells around a node times their stress there [n_nodes*6]: xx yy zz xy yz xz; axisymmetric: rr zz hoop rz 0 0
++ stress - volume of the cells around a node times their stress there [n_nodes*6]: xx yy zz xy yz xz; axisymmetric: rr
+zz hoop rz 0 0
 - weight - volume of the cells around a node [n_nodes]
 
   Notes:
-  The caller sums both over the ranks and divides. Inside a cell the stress is the least-squares fit of the corner shape functions (one
-  point: a constant) to the quadrature points, so that second-order cells reproduce linear stress fields at every node, on boundaries too.
+  The caller sums both over the ranks and divides. Inside a cell the stress is the least-squares fit of the corner shape
+functions (one point: a constant) to the quadrature points, so that second-order cells reproduce linear stress fields at
+every node, on boundaries too.
 */
 PetscErrorCode ElasticityNodalStress(Elasticity e, const PetscReal *u, PetscReal *stress, PetscReal *weight)
 {
@@ -639,13 +657,15 @@ PetscErrorCode ElasticityNodalStress(Elasticity e, const PetscReal *u, PetscReal
   PetscCall(PetscArrayzero(stress, e->mesh->n_nodes * 6));
   PetscCall(PetscArrayzero(weight, e->mesh->n_nodes));
   for (int g = 0; g < e->n_groups; g++) {
-    for (PetscInt slot = 0; slot < e->groups[g].n_cells; slot++) AddCellStress(e, &e->groups[g], slot, u, stress, weight);
+    for (PetscInt slot = 0; slot < e->groups[g].n_cells; slot++)
+      AddCellStress(e, &e->groups[g], slot, u, stress, weight);
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /*
-  ElasticityCellModulus - Young's modulus (stress) of a local cell: the stiffness that the automatic penalty is measured by
+  ElasticityCellModulus - Young's modulus (stress) of a local cell: the stiffness that the automatic penalty is measured
+  by
 
   Not collective
 */

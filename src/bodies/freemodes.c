@@ -4,15 +4,18 @@
 #include "base/refusal.h"
 #include "kernels/rigidkernel.h"
 
-/* Supports whose lever arm is below a millionth of a body's size do not count as holding a rotation: its square. Round-off is some 1e-16 times their number. */
+/* Supports whose lever arm is below a millionth of a body's size do not count as holding a rotation: its square.
+ * Round-off is some 1e-16 times their number. */
 #define FREE_SUPPORT 1e-12
-/* A contact pair holds a motion if the normal part of it, root mean square over the surface, is above this part of the motion: less is the slope that
-   facets of a coarse round surface leave to a rotation about its own axis. */
+/* A contact pair holds a motion if the normal part of it, root mean square over the surface, is above this part of the
+   motion: less is the slope that facets of a coarse round surface leave to a rotation about its own axis. */
 #define FREE_CONTACT 3e-3
-/* Directions nearer than this to a coordinate axis are called by its name, screw motions of less pitch rotations: what FREE_CONTACT leaves uncertain. */
+/* Directions nearer than this to a coordinate axis are called by its name, screw motions of less pitch rotations: what
+ * FREE_CONTACT leaves uncertain. */
 #define FREE_ALIGNED 1e-2
 
-/* Above so many connected pieces their joint motions are not looked for: elimination of 6 times as many unknowns, and no screen that could tell of them. */
+/* Above so many connected pieces their joint motions are not looked for: elimination of 6 times as many unknowns, and
+ * no screen that could tell of them. */
 enum { FREE_PIECES = 100 };
 
 enum { FREE_TEXT = 320, FREE_MESSAGE = 1400 };
@@ -33,7 +36,7 @@ struct _n_FreeModes {
   PetscInt *piece; /* of every local node */
   PetscInt  n_pieces;
   Piece    *pieces;
-  double   *gram;    /* n_contacts matrices of (6 n_pieces)^2: mean square of the normal motion over each pair's surface */
+  double   *gram; /* n_contacts matrices of (6 n_pieces)^2: mean square of the normal motion over each pair's surface */
   int       n_loose; /* motions of all pieces (rows of 6 n_pieces) that neither supports nor contact hold */
   double   *loose;
 };
@@ -84,9 +87,11 @@ static PetscErrorCode NamePieces(FreeModes modes)
   PetscCall(PetscCalloc1(modes->n_pieces * scene->n_bodies, &has));
   PetscCall(PetscMalloc1(modes->n_pieces, &tag));
   for (PetscInt p = 0; p < modes->n_pieces; p++) tag[p] = PETSC_MAX_INT;
-  for (PetscInt c = 0; c < mesh->n_cells; c++) has[modes->piece[mesh->cell_nodes[mesh->cell_ptr[c]]] * scene->n_bodies + mesh->cell_body[c]] = 1;
+  for (PetscInt c = 0; c < mesh->n_cells; c++)
+    has[modes->piece[mesh->cell_nodes[mesh->cell_ptr[c]]] * scene->n_bodies + mesh->cell_body[c]] = 1;
   for (PetscInt n = 0; n < mesh->n_nodes; n++) tag[modes->piece[n]] = PetscMin(tag[modes->piece[n]], mesh->node_tag[n]);
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, has, (PetscMPIInt)(modes->n_pieces * scene->n_bodies), MPIU_INT, MPI_MAX, mesh->comm));
+  PetscCallMPI(
+    MPI_Allreduce(MPI_IN_PLACE, has, (PetscMPIInt)(modes->n_pieces * scene->n_bodies), MPIU_INT, MPI_MAX, mesh->comm));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, tag, (PetscMPIInt)modes->n_pieces, MPIU_INT, MPI_MIN, mesh->comm));
   for (PetscInt p = 0; p < modes->n_pieces; p++) {
     Piece    *piece = &modes->pieces[p];
@@ -98,9 +103,12 @@ static PetscErrorCode NamePieces(FreeModes modes)
       piece->body = b;
       for (PetscInt q = 0; q < modes->n_pieces; q++)
         if (q != p && has[q * scene->n_bodies + b]) split = PETSC_TRUE;
-      if (used < FREE_TEXT) used += (size_t)snprintf(piece->name + used, FREE_TEXT - used, "%s%s", used ? " + " : "", scene->bodies[b].name);
+      if (used < FREE_TEXT)
+        used +=
+          (size_t)snprintf(piece->name + used, FREE_TEXT - used, "%s%s", used ? " + " : "", scene->bodies[b].name);
     }
-    if (split && used < FREE_TEXT) snprintf(piece->name + used, FREE_TEXT - used, " (its part with node %" PetscInt_FMT ")", tag[p]);
+    if (split && used < FREE_TEXT)
+      snprintf(piece->name + used, FREE_TEXT - used, " (its part with node %" PetscInt_FMT ")", tag[p]);
   }
   PetscCall(PetscFree(has));
   PetscCall(PetscFree(tag));
@@ -163,7 +171,8 @@ static PetscErrorCode FindSupported(FreeModes modes, Loads loads)
       RigidAddRow(RIGID_MODES, row, 1, &gram[p * square]);
     }
   }
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, gram, (PetscMPIInt)(modes->n_pieces * square), MPI_DOUBLE, MPI_SUM, mesh->comm));
+  PetscCallMPI(
+    MPI_Allreduce(MPI_IN_PLACE, gram, (PetscMPIInt)(modes->n_pieces * square), MPI_DOUBLE, MPI_SUM, mesh->comm));
   PetscCall(ColumnOrder(1, columns));
   for (PetscInt p = 0; p < modes->n_pieces; p++) {
     HoldImpossible(modes->scene->geometry, &gram[p * square]);
@@ -208,7 +217,8 @@ static PetscErrorCode MarkPaired(FreeModes modes)
 }
 
 /* Centre, unit normal and area of a face in the reference configuration */
-static double FacePlace(Mesh mesh, const MeshGroup *group, PetscInt f, PetscReal centre[3], double normal[3], PetscInt *node)
+static double FacePlace(Mesh mesh, const MeshGroup *group, PetscInt f, PetscReal centre[3], double normal[3],
+                        PetscInt *node)
 {
   PetscInt          nodes[FACE_MAX_NODES];
   const ElementType type    = MeshFaceNodes(mesh, group, f, nodes);
@@ -228,8 +238,8 @@ static double FacePlace(Mesh mesh, const MeshGroup *group, PetscInt f, PetscReal
   return size;
 }
 
-/* Normal motion between slave and master over the slave's faces, mean square. Master pieces are those that the pair's surface lies on, all of them, as
-   where they meet is not known before; gaps are small against the bodies. */
+/* Normal motion between slave and master over the slave's faces, mean square. Master pieces are those that the pair's
+   surface lies on, all of them, as where they meet is not known before; gaps are small against the bodies. */
 static PetscErrorCode MeasurePair(FreeModes modes, const SceneContact *contact, double gram[])
 {
   Mesh             mesh  = modes->mesh;
@@ -307,7 +317,8 @@ static PetscErrorCode FindLoose(FreeModes modes)
   PetscCall(PetscArrayzero(small, k * k));
   for (int c = 0; c < modes->scene->n_contacts; c++)
     for (int i = 0; i < k; i++)
-      for (int j = 0; j < k; j++) small[i * k + j] += VectorProduct(n, &modes->gram[c * n * n], &rows[i * n], &rows[j * n]);
+      for (int j = 0; j < k; j++)
+        small[i * k + j] += VectorProduct(n, &modes->gram[c * n * n], &rows[i * n], &rows[j * n]);
   modes->n_loose = RigidFree(k, small, PetscSqr(FREE_CONTACT), free);
   PetscCall(PetscCalloc1(modes->n_loose * n, &modes->loose));
   for (int l = 0; l < modes->n_loose; l++)
@@ -320,18 +331,20 @@ static PetscErrorCode FindLoose(FreeModes modes)
 }
 
 /*
-  FreeModesCreate - finds the rigid motions that supports leave to every connected piece of the mesh, and those that contact does not hold either
+  FreeModesCreate - finds the rigid motions that supports leave to every connected piece of the mesh, and those that
+contact does not hold either
 
   Collective
 
   Input Parameters:
 + mesh  - with its groups
-. scene - its contact pairs: frictionless, so that they hold what moves along their surfaces' normals, were they closed all over
+. scene - its contact pairs: frictionless, so that they hold what moves along their surfaces' normals, were they closed
+all over
 - loads - which displacements are prescribed (supports, imposed displacements, the axis of an axisymmetric scene)
 
   Note:
-  A rigid motion is free if no prescribed component of any node sees it: null space of the constraints on 6 motions (3 in plane strain, 1 axisymmetric).
-  With more than FREE_PIECES pieces contact is not looked at.
+  A rigid motion is free if no prescribed component of any node sees it: null space of the constraints on 6 motions (3
+in plane strain, 1 axisymmetric). With more than FREE_PIECES pieces contact is not looked at.
 */
 PetscErrorCode FreeModesCreate(Mesh mesh, Scene scene, Loads loads, FreeModes *out)
 {
@@ -353,7 +366,8 @@ PetscErrorCode FreeModesCreate(Mesh mesh, Scene scene, Loads loads, FreeModes *o
   if (modes->n_pieces > FREE_PIECES) PetscFunctionReturn(PETSC_SUCCESS);
   square = (size_t)PetscSqr(RIGID_MODES * modes->n_pieces);
   PetscCall(PetscCalloc1(scene->n_contacts * square, &modes->gram));
-  for (int c = 0; c < scene->n_contacts; c++) PetscCall(MeasurePair(modes, &scene->contacts[c], &modes->gram[c * square]));
+  for (int c = 0; c < scene->n_contacts; c++)
+    PetscCall(MeasurePair(modes, &scene->contacts[c], &modes->gram[c * square]));
   PetscCall(FindLoose(modes));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -387,8 +401,8 @@ static double RoundToZero(double value, double scale)
 /* "(0, 1, 0)": dim components of a vector, times factor */
 static void VectorText(int dim, const double v[3], double factor, double scale, char text[FREE_TEXT])
 {
-  snprintf(text, FREE_TEXT, dim == 3 ? "(%.4g, %.4g, %.4g)" : "(%.4g, %.4g)", RoundToZero(factor * v[0], scale), RoundToZero(factor * v[1], scale),
-           RoundToZero(factor * v[2], scale));
+  snprintf(text, FREE_TEXT, dim == 3 ? "(%.4g, %.4g, %.4g)" : "(%.4g, %.4g)", RoundToZero(factor * v[0], scale),
+           RoundToZero(factor * v[1], scale), RoundToZero(factor * v[2], scale));
 }
 
 /* "y, (0, 1, 0)", or the vector alone; pointing to the positive side */
@@ -427,7 +441,8 @@ static void MotionText(FreeModes modes, const Piece *piece, const double motion[
   for (int d = 0; d < 3; d++) {
     const int e = (d + 1) % 3, f = (d + 2) % 3;
 
-    point[d] = piece->centre[d] + modes->mesh->centre[d] + piece->size * (rotation[e] * translation[f] - rotation[f] * translation[e]) / square;
+    point[d] = piece->centre[d] + modes->mesh->centre[d] +
+               piece->size * (rotation[e] * translation[f] - rotation[f] * translation[e]) / square;
   }
   pitch = (rotation[0] * translation[0] + rotation[1] * translation[1] + rotation[2] * translation[2]) / square;
   VectorText(dim, point, 1, modes->mesh->size, place);
@@ -435,8 +450,8 @@ static void MotionText(FreeModes modes, const Piece *piece, const double motion[
   if (dim == 2)
     snprintf(text, FREE_TEXT, "rotation in the plane about %.*s", FREE_TEXT / 2, place);
   else
-    snprintf(text, FREE_TEXT, "%s about %.*s, through %.*s", fabs(pitch) > FREE_ALIGNED ? "screw motion" : "rotation", FREE_TEXT / 4, direction, FREE_TEXT / 4,
-             place);
+    snprintf(text, FREE_TEXT, "%s about %.*s, through %.*s", fabs(pitch) > FREE_ALIGNED ? "screw motion" : "rotation",
+             FREE_TEXT / 4, direction, FREE_TEXT / 4, place);
 }
 
 /* The pairs that would hold a motion if they were closed: "crown, sole"; empty: none. all: whatever they hold */
@@ -461,7 +476,8 @@ static PetscBool Moves(FreeModes modes, int loose, PetscInt p)
            : PETSC_FALSE;
 }
 
-/* A motion that nothing holds: "upper: translation along y, (0, 1); lower: ..."; *paired: some of the pieces is in a contact pair */
+/* A motion that nothing holds: "upper: translation along y, (0, 1); lower: ..."; *paired: some of the pieces is in a
+ * contact pair */
 static void LooseText(FreeModes modes, int loose, char text[FREE_MESSAGE], PetscBool *paired)
 {
   size_t used = 0;
@@ -472,7 +488,8 @@ static void LooseText(FreeModes modes, int loose, char text[FREE_MESSAGE], Petsc
 
     if (!Moves(modes, loose, p)) continue;
     MotionText(modes, &modes->pieces[p], &modes->loose[(loose * modes->n_pieces + p) * RIGID_MODES], motion);
-    used += (size_t)snprintf(text + used, FREE_MESSAGE - used, "%s%s: %s", used ? "; with it " : "", modes->pieces[p].name, motion);
+    used += (size_t)snprintf(text + used, FREE_MESSAGE - used, "%s%s: %s", used ? "; with it " : "",
+                             modes->pieces[p].name, motion);
     if (modes->pieces[p].paired) *paired = PETSC_TRUE;
   }
 }
@@ -519,12 +536,14 @@ PetscErrorCode FreeModesReport(FreeModes modes, PetscBool held, FILE *stream)
     PetscBool paired;
 
     LooseText(modes, l, text, &paired);
-    fprintf(stream, "motion   %s: NOTHING holds it, %s\n", text, paired ? "contact does not act that way" : "and no contact pair knows the body");
+    fprintf(stream, "motion   %s: NOTHING holds it, %s\n", text,
+            paired ? "contact does not act that way" : "and no contact pair knows the body");
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* FreeModesRefuse - ends the program (exit 1) where a body can move that is in no contact pair: nothing could make its system regular.
+/* FreeModesRefuse - ends the program (exit 1) where a body can move that is in no contact pair: nothing could make its
+   system regular.
 
    Collective. The message names the body and all such motions. */
 PetscErrorCode FreeModesRefuse(FreeModes modes)
@@ -549,7 +568,8 @@ PetscErrorCode FreeModesRefuse(FreeModes modes)
   }
   if (body >= 0)
     PetscCall(RefuseInput(modes->mesh->comm,
-                          "%s: %s; no support, imposed displacement or contact pair holds it; allowed: bodies that something holds in every direction",
+                          "%s: %s; no support, imposed displacement or contact pair holds it; allowed: bodies that "
+                          "something holds in every direction",
                           SceneWhere(modes->scene, modes->scene->bodies[body].path, "volume"), message));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -8,7 +8,8 @@ enum { LOADS_AXIS = 0x7fffffff };
 /* A node within this fraction of the model's size from r = 0 is on the axis. */
 #define LOADS_ON_AXIS 1e-9
 
-/* A dof that a support or an imposed displacement holds: u = value * history (a support's value is 0, its history NULL). */
+/* A dof that a support or an imposed displacement holds: u = value * history (a support's value is 0, its history
+ * NULL). */
 typedef struct {
   PetscInt       dof;
   PetscReal      value;
@@ -63,7 +64,8 @@ static const char *PrescribedPath(Scene scene, const Prescribed *p)
 }
 
 /* The rule for one dof; a second rule for it must say the same, else the complaint says who disagrees. */
-static PetscErrorCode LoadsAddDof(Loads loads, PetscInt dof, PetscReal value, const History *history, int load, PetscInt *owner, char *complaint, size_t size)
+static PetscErrorCode LoadsAddDof(Loads loads, PetscInt dof, PetscReal value, const History *history, int load,
+                                  PetscInt *owner, char *complaint, size_t size)
 {
   const int        dim = loads->mesh->dim;
   const Prescribed p   = {dof, value, history, load};
@@ -75,9 +77,10 @@ static PetscErrorCode LoadsAddDof(Loads loads, PetscInt dof, PetscReal value, co
     if (!PrescribedAgree(&p, q) && !complaint[0]) {
       PetscCall(PetscSNPrintf(complaint, size,
                               "%s: u%c of node %" PetscInt_FMT
-                              " is prescribed differently by %s; allowed: one value for each component of a node (part the surfaces, or drop one of the two)",
-                              SceneWhere(loads->scene, PrescribedPath(loads->scene, &p), NULL), "xyz"[dof % dim], loads -> mesh -> node_tag[dof / dim],
-                              PrescribedPath(loads->scene, q)));
+                              " is prescribed differently by %s; allowed: one value for each component of a node (part "
+                              "the surfaces, or drop one of the two)",
+                              SceneWhere(loads->scene, PrescribedPath(loads->scene, &p), NULL), "xyz"[dof % dim],
+                              loads -> mesh -> node_tag[dof / dim], PrescribedPath(loads->scene, q)));
     }
     PetscFunctionReturn(PETSC_SUCCESS);
   }
@@ -87,12 +90,14 @@ static PetscErrorCode LoadsAddDof(Loads loads, PetscInt dof, PetscReal value, co
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode LoadsAddPrescribed(Loads loads, const MeshGroup *group, int component, PetscReal value, const History *history, int load, PetscInt *owner,
-                                         char *complaint, size_t size)
+static PetscErrorCode LoadsAddPrescribed(Loads loads, const MeshGroup *group, int component, PetscReal value,
+                                         const History *history, int load, PetscInt *owner, char *complaint,
+                                         size_t size)
 {
   PetscFunctionBeginUser;
   for (PetscInt i = 0; i < group->n_nodes; i++)
-    PetscCall(LoadsAddDof(loads, group->nodes[i] * loads->mesh->dim + component, value, history, load, owner, complaint, size));
+    PetscCall(
+      LoadsAddDof(loads, group->nodes[i] * loads->mesh->dim + component, value, history, load, owner, complaint, size));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -119,7 +124,8 @@ static PetscErrorCode LoadsCreatePrescribed(Loads loads)
 
     PetscCall(MeshGetGroup(mesh, scene, support->path, "surface", support->surface, mesh->dim - 1, &group));
     for (int c = 0; c < mesh->dim; c++)
-      if (support->fixed[c]) PetscCall(LoadsAddPrescribed(loads, group, c, 0, NULL, -1 - s, owner, complaint, sizeof(complaint)));
+      if (support->fixed[c])
+        PetscCall(LoadsAddPrescribed(loads, group, c, 0, NULL, -1 - s, owner, complaint, sizeof(complaint)));
   }
   for (int l = 0; l < scene->n_loads; l++) {
     const SceneLoad *load = &scene->loads[l];
@@ -127,7 +133,9 @@ static PetscErrorCode LoadsCreatePrescribed(Loads loads)
     if (load->kind != LOAD_DISPLACEMENT) continue;
     PetscCall(MeshGetGroup(mesh, scene, load->path, "surface", load->region, mesh->dim - 1, &group));
     for (int c = 0; c < mesh->dim; c++)
-      if (load->has[c]) PetscCall(LoadsAddPrescribed(loads, group, c, load->value[c], &load->history, l, owner, complaint, sizeof(complaint)));
+      if (load->has[c])
+        PetscCall(
+          LoadsAddPrescribed(loads, group, c, load->value[c], &load->history, l, owner, complaint, sizeof(complaint)));
   }
   PetscCall(PetscFree(owner));
   PetscCall(RefuseInputAnywhere(mesh->comm, complaint[0] ? complaint : NULL));
@@ -136,7 +144,8 @@ static PetscErrorCode LoadsCreatePrescribed(Loads loads)
 }
 
 /* Adds one face's or cell's nodal forces for factor 1 to the dense work vector. */
-static void DeadLoadAdd(Mesh mesh, PetscInt n, const PetscInt *nodes, const double *fe, PetscReal *dense, PetscReal *force2)
+static void DeadLoadAdd(Mesh mesh, PetscInt n, const PetscInt *nodes, const double *fe, PetscReal *dense,
+                        PetscReal *force2)
 {
   for (PetscInt a = 0; a < n; a++) {
     for (int d = 0; d < mesh->dim; d++) {
@@ -146,7 +155,8 @@ static void DeadLoadAdd(Mesh mesh, PetscInt n, const PetscInt *nodes, const doub
   }
 }
 
-static PetscErrorCode DeadLoadSurface(Loads loads, const SceneLoad *load, const MeshGroup *group, PetscReal *dense, PetscReal *force2)
+static PetscErrorCode DeadLoadSurface(Loads loads, const SceneLoad *load, const MeshGroup *group, PetscReal *dense,
+                                      PetscReal *force2)
 {
   Mesh     mesh = loads->mesh;
   PetscInt nodes[FACE_MAX_NODES];
@@ -159,7 +169,8 @@ static PetscErrorCode DeadLoadSurface(Loads loads, const SceneLoad *load, const 
 
     MeshGatherNodes(mesh, n, nodes, mesh->coords, X);
     PetscCall(PetscArrayzero(fe, n * mesh->dim));
-    FaceLoadKernel(type, mesh->dim, loads->scene->geometry, load->kind == LOAD_TRACTION ? FACE_TRACTION : FACE_DEAD_PRESSURE, X, zero, load->value, fe, NULL,
+    FaceLoadKernel(type, mesh->dim, loads->scene->geometry,
+                   load->kind == LOAD_TRACTION ? FACE_TRACTION : FACE_DEAD_PRESSURE, X, zero, load->value, fe, NULL,
                    NULL);
     DeadLoadAdd(mesh, n, nodes, fe, dense, force2);
   }
@@ -175,8 +186,8 @@ static PetscErrorCode DeadLoadVolume(Loads loads, const SceneLoad *load, PetscRe
 
   PetscFunctionBeginUser;
   if (body < 0)
-    PetscCall(
-      RefuseInput(mesh->comm, "%s: no deformable body named '%s'; allowed: a volume listed in bodies", SceneWhere(scene, load->path, "volume"), load->region));
+    PetscCall(RefuseInput(mesh->comm, "%s: no deformable body named '%s'; allowed: a volume listed in bodies",
+                          SceneWhere(scene, load->path, "volume"), load->region));
   for (PetscInt c = 0; c < mesh->n_cells; c++) {
     const PetscInt *nodes = &mesh->cell_nodes[mesh->cell_ptr[c]];
     const int       n     = ElementGet(mesh->cell_type[c])->nodes;
@@ -228,7 +239,8 @@ static PetscErrorCode LoadsCreateForces(Loads loads)
     DeadLoad        *dead = &loads->dead[loads->n_dead];
 
     if (load->kind == LOAD_DISPLACEMENT) continue;
-    if (load->kind != LOAD_BODY_FORCE) PetscCall(MeshGetGroup(mesh, scene, load->path, "surface", load->region, mesh->dim - 1, &group));
+    if (load->kind != LOAD_BODY_FORCE)
+      PetscCall(MeshGetGroup(mesh, scene, load->path, "surface", load->region, mesh->dim - 1, &group));
     if (LoadFollows(scene, load)) {
       loads->follower[loads->n_follower++] = (FollowerLoad){group, load->value[0], &load->history};
       continue;
@@ -246,7 +258,8 @@ static PetscErrorCode LoadsCreateForces(Loads loads)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* LoadsCreate - reads supports, loads and imposed displacements of the scene, refuses contradictions, and sets the mesh's sections.
+/* LoadsCreate - reads supports, loads and imposed displacements of the scene, refuses contradictions, and sets the
+   mesh's sections.
 
    Collective. mesh and scene are borrowed. */
 PetscErrorCode LoadsCreate(Mesh mesh, Scene scene, Loads *out)
@@ -275,20 +288,22 @@ PetscErrorCode LoadsDestroy(Loads *loads)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* LoadsPrescribe - writes the supported and imposed displacements at load parameter t into u[n_nodes*dim]. Not collective. */
+/* LoadsPrescribe - writes the supported and imposed displacements at load parameter t into u[n_nodes*dim]. Not
+ * collective. */
 PetscErrorCode LoadsPrescribe(Loads loads, PetscReal t, PetscReal *u)
 {
   PetscFunctionBeginUser;
-  for (PetscInt i = 0; i < loads->n_prescribed; i++) u[loads->prescribed[i].dof] = loads->prescribed[i].value * HistoryFactor(loads->prescribed[i].history, t);
+  for (PetscInt i = 0; i < loads->n_prescribed; i++)
+    u[loads->prescribed[i].dof] = loads->prescribed[i].value * HistoryFactor(loads->prescribed[i].history, t);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode FollowerFace(Loads loads, const FollowerLoad *load, PetscInt f, PetscReal t, const PetscReal *u, PetscInt *nodes, int *n, double *fe,
-                                   double *ke)
+static PetscErrorCode FollowerFace(Loads loads, const FollowerLoad *load, PetscInt f, PetscReal t, const PetscReal *u,
+                                   PetscInt *nodes, int *n, double *fe, double *ke)
 {
   Mesh              mesh = loads->mesh;
   const ElementType type = MeshFaceNodes(mesh, load->group, f, nodes);
-  double            X[FACE_MAX_NODES * 3], v[FACE_MAX_NODES * 3], pressure = load->pressure * HistoryValue(load->history, t);
+  double X[FACE_MAX_NODES * 3], v[FACE_MAX_NODES * 3], pressure = load->pressure * HistoryValue(load->history, t);
 
   PetscFunctionBeginUser;
   *n = ElementGet(type)->nodes;
@@ -300,9 +315,11 @@ static PetscErrorCode FollowerFace(Loads loads, const FollowerLoad *load, PetscI
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* LoadsResidual - subtracts the external forces at (t, u) from f[n_nodes*dim], adds the potential of the dead loads to energy and the
-   squares of the unassembled forces to force2 (this rank's part each); any may be NULL. Not collective. */
-PetscErrorCode LoadsResidual(Loads loads, PetscReal t, const PetscReal *u, PetscReal *f, PetscReal *energy, PetscReal *force2)
+/* LoadsResidual - subtracts the external forces at (t, u) from f[n_nodes*dim], adds the potential of the dead loads to
+   energy and the squares of the unassembled forces to force2 (this rank's part each); any may be NULL. Not collective.
+ */
+PetscErrorCode LoadsResidual(Loads loads, PetscReal t, const PetscReal *u, PetscReal *f, PetscReal *energy,
+                             PetscReal *force2)
 {
   const int dim = loads->mesh->dim;
   PetscInt  nodes[FACE_MAX_NODES];
@@ -355,7 +372,8 @@ PetscErrorCode LoadsTangent(Loads loads, PetscReal t, const PetscReal *u, Elasti
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* LoadsConservative - is there a potential? Follower pressures have none in general. Not collective, same on all ranks. */
+/* LoadsConservative - is there a potential? Follower pressures have none in general. Not collective, same on all ranks.
+ */
 PetscBool LoadsConservative(Loads loads)
 {
   return loads->n_follower ? PETSC_FALSE : PETSC_TRUE;
@@ -369,8 +387,8 @@ PetscBool LoadsPrescribed(Loads loads, PetscInt local_dof)
 
 /* LoadsRigidMotion - where a point of a rigid body is at load parameter t.
 
-   The motion is a translation of the body's point and a rotation about it by the vector (rx, ry, rz), each component a value times its
-   history. X, x: relative to the mesh's centre, 3 components (the third 0 in 2D). Not collective. */
+   The motion is a translation of the body's point and a rotation about it by the vector (rx, ry, rz), each component a
+   value times its history. X, x: relative to the mesh's centre, 3 components (the third 0 in 2D). Not collective. */
 void LoadsRigidMotion(Loads loads, int body, PetscReal t, const PetscReal X[3], PetscReal x[3])
 {
   const PetscReal *centre = loads->mesh->centre;
@@ -381,7 +399,8 @@ void LoadsRigidMotion(Loads loads, int body, PetscReal t, const PetscReal X[3], 
   for (int d = 0; d < 3; d++) x[d] = X[d] + (moved[d] - absolute[d]);
 }
 
-/* LoadsRigidTravel - the largest distance between the positions of the body's nodes at t0 and t1. Not collective, same on all ranks. */
+/* LoadsRigidTravel - the largest distance between the positions of the body's nodes at t0 and t1. Not collective, same
+ * on all ranks. */
 PetscReal LoadsRigidTravel(Loads loads, int body, PetscReal t0, PetscReal t1)
 {
   const MeshRigid *rigid = MeshFindRigid(loads->mesh, loads->scene->bodies[body].name);

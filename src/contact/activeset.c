@@ -1,18 +1,19 @@
 #include "contact/activeset.h"
 
-/* Sets tried with the columns at hand. Each follows from the gaps that the one before leads to; what is not settled by then goes in circles. */
+/* Sets tried with the columns at hand. Each follows from the gaps that the one before leads to; what is not settled by
+ * then goes in circles. */
 #define ACTIVE_SET_MAX_SETS 30
 /* Rounding of a pressure, by itself */
 #define ACTIVE_SET_ROUND_OFF 1e-12
 
 struct _n_Pressing {
-  PetscInt      n, m;
+  PetscInt       n, m;
   ActiveSetTerm *terms;
-  PetscReal    *travel, *end; /* n; end: with the excess at hand */
-  PetscBool    *pressed;      /* n: the set at hand */
-  PetscInt     *column;       /* n: -1: none */
-  PetscInt     *term;         /* of each column */
-  PetscReal    *G, *excess;   /* m*n, m */
+  PetscReal     *travel, *end; /* n; end: with the excess at hand */
+  PetscBool     *pressed;      /* n: the set at hand */
+  PetscInt      *column;       /* n: -1: none */
+  PetscInt      *term;         /* of each column */
+  PetscReal     *G, *excess;   /* m*n, m */
 };
 
 /* ActiveSetCreate - Not collective. */
@@ -66,7 +67,8 @@ PetscErrorCode ActiveSetAddColumns(ActiveSet p, PetscInt m, const PetscInt *whic
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The pressure of residual and tangent at a travel, less the law's, is start + rate travel; both vanish where these know the term as it is. */
+/* The pressure of residual and tangent at a travel, less the law's, is start + rate travel; both vanish where these
+ * know the term as it is. */
 static void Excess(const ActiveSetTerm *term, PetscBool pressed, PetscReal *start, PetscReal *rate)
 {
   *start = term->pressure + (pressed ? term->penalty * term->opening : 0);
@@ -149,17 +151,19 @@ static PetscBool Follow(ActiveSet p)
   return changed;
 }
 
-/* ActiveSetSolve - Not collective. The linear step's contact problem by Newton's method, which here is that of its active sets.
+/* ActiveSetSolve - Not collective. The linear step's contact problem by Newton's method, which here is that of its
+   active sets.
 
-   Source: Josephy, Newton's method for generalized equations, 1979 (the problem linearised but for its contact conditions); Hintermueller, Ito, Kunisch, The
-   primal-dual active set strategy as a semismooth Newton method, SIAM J. Optim. 13 (2003) 865-888. */
+   Source: Josephy, Newton's method for generalized equations, 1979 (the problem linearised but for its contact
+   conditions); Hintermueller, Ito, Kunisch, The primal-dual active set strategy as a semismooth Newton method, SIAM J.
+   Optim. 13 (2003) 865-888. */
 PetscErrorCode ActiveSetSolve(ActiveSet p, PetscInt *m, PetscInt *which, PetscBool *converged)
 {
   PetscBool regular = PETSC_TRUE, changed = PETSC_TRUE;
 
   PetscFunctionBeginUser;
   for (PetscInt i = 0; i < ACTIVE_SET_MAX_SETS && changed && regular; i++) {
-    *m       = Missing(p, which);
+    *m         = Missing(p, which);
     *converged = (PetscBool)(!*m && !p->m);
     if (*m || *converged) PetscFunctionReturn(PETSC_SUCCESS);
     PetscCall(Balance(p, &regular));

@@ -1,16 +1,17 @@
 #include "anderson.h"
 
-/* Differences of results that are kept. On a cylinder pressed on a block, whose contact set changes on the way, 3 need 33 iterations where 5 need 40 and
-   more than 5 do not always end. */
+/* Differences of results that are kept. On a cylinder pressed on a block, whose contact set changes on the way, 3 need
+   33 iterations where 5 need 40 and more than 5 do not always end. */
 #define ANDERSON_DEPTH 3
-/* Of a difference that the others nearly combine to, the least part of its square that counts as its own: round-off beyond. */
+/* Of a difference that the others nearly combine to, the least part of its square that counts as its own: round-off
+ * beyond. */
 #define ANDERSON_RIDGE 1e-10
 
 struct _n_Mixing {
   MPI_Comm         comm;
   const PetscReal *weight;
-  PetscInt         n, results;                          /* results: since the start */
-  PetscReal       *g, *f;                               /* the last result and its residual g - x */
+  PetscInt         n, results;                              /* results: since the start */
+  PetscReal       *g, *f;                                   /* the last result and its residual g - x */
   PetscReal       *dg[ANDERSON_DEPTH], *df[ANDERSON_DEPTH]; /* their differences, newest over oldest */
 };
 
@@ -47,7 +48,8 @@ void AndersonStart(Anderson m)
   m->results = 0;
 }
 
-/* A gamma = b by Cholesky's method, in place of b; A[n][n] is a Gram matrix, symmetric and never quite singular with the ridge. */
+/* A gamma = b by Cholesky's method, in place of b; A[n][n] is a Gram matrix, symmetric and never quite singular with
+ * the ridge. */
 static void SolveGram(int n, PetscReal A[][ANDERSON_DEPTH], PetscReal b[])
 {
   for (int k = 0; k < n; k++) {
@@ -68,12 +70,15 @@ static void SolveGram(int n, PetscReal A[][ANDERSON_DEPTH], PetscReal b[])
   }
 }
 
-/* AndersonNext - what to put in next, of all combinations of the last results that whose residuals cancel best; after a start the result itself.
+/* AndersonNext - what to put in next, of all combinations of the last results that whose residuals cancel best; after a
+   start the result itself.
 
-   Collective. x[n]: what was put in; g[n]: what came out, replaced. Source: Walker and Ni 2011, SIAM J. Numer. Anal. 49, 1715-1735, eq. 1.1. */
+   Collective. x[n]: what was put in; g[n]: what came out, replaced. Source: Walker and Ni 2011, SIAM J. Numer. Anal.
+   49, 1715-1735, eq. 1.1. */
 PetscErrorCode AndersonNext(Anderson m, const PetscReal *x, PetscReal *g)
 {
-  const int depth = (int)PetscMin(m->results, ANDERSON_DEPTH), newest = (int)((m->results + ANDERSON_DEPTH - 1) % ANDERSON_DEPTH);
+  const int depth                                   = (int)PetscMin(m->results, ANDERSON_DEPTH),
+            newest                                  = (int)((m->results + ANDERSON_DEPTH - 1) % ANDERSON_DEPTH);
   PetscReal sum[ANDERSON_DEPTH + 1][ANDERSON_DEPTH] = {{0}}, *gamma = sum[ANDERSON_DEPTH];
 
   PetscFunctionBeginUser;

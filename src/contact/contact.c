@@ -9,12 +9,15 @@ static PetscErrorCode RefuseRepeatedPairs(Mesh mesh, Scene scene)
   for (int p = 0; p < scene->n_contacts; p++) {
     for (int q = 0; q < p; q++) {
       const SceneContact *a = &scene->contacts[p], *b = &scene->contacts[q];
-      const PetscBool meshed = (PetscBool)(a->master && b->master), same = (PetscBool)(meshed && !strcmp(a->slave, b->slave) && !strcmp(a->master, b->master));
-      const PetscBool swapped = (PetscBool)(meshed && !strcmp(a->slave, b->master) && !strcmp(a->master, b->slave));
+      const PetscBool     meshed = (PetscBool)(a->master && b->master),
+                      same       = (PetscBool)(meshed && !strcmp(a->slave, b->slave) && !strcmp(a->master, b->master));
+      const PetscBool swapped    = (PetscBool)(meshed && !strcmp(a->slave, b->master) && !strcmp(a->master, b->slave));
 
       if (same || swapped)
-        PetscCall(RefuseInput(mesh->comm, "%s: contact '%s' is '%s' once more%s: their forces would add up; allowed: one pair for each two surfaces",
-                              SceneWhere(scene, a->path, "slave"), a->name, b->name, swapped ? ", slave and master swapped" : ""));
+        PetscCall(RefuseInput(
+          mesh->comm,
+          "%s: contact '%s' is '%s' once more%s: their forces would add up; allowed: one pair for each two surfaces",
+          SceneWhere(scene, a->path, "slave"), a->name, b->name, swapped ? ", slave and master swapped" : ""));
     }
   }
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -22,7 +25,8 @@ static PetscErrorCode RefuseRepeatedPairs(Mesh mesh, Scene scene)
 
 /* ContactCreate - all pairs of the scene, without lists yet.
 
-   Collective. Refuses what the mesh shows to be wrong: missing or empty surfaces, a rigid slave, planes of symmetry that are none. */
+   Collective. Refuses what the mesh shows to be wrong: missing or empty surfaces, a rigid slave, planes of symmetry
+   that are none. */
 PetscErrorCode ContactCreate(Mesh mesh, Scene scene, Elasticity elasticity, Loads loads, Contact *out)
 {
   Contact contact;
@@ -52,8 +56,8 @@ PetscErrorCode ContactCreate(Mesh mesh, Scene scene, Elasticity elasticity, Load
     fits += contact->pairs[p].fit.degree > 0;
   }
   if (fits) PetscCall(PetscMalloc1(FitWorkspace(mesh->dim, 4, FIT_MAX_POINTS), &contact->work.workspace));
-  PetscCall(
-    PetscMalloc3(capacity, &contact->work.result.points, 3 * (capacity + 1), &contact->work.result.N, PetscSqr(3 * (capacity + 1)), &contact->work.result.M));
+  PetscCall(PetscMalloc3(capacity, &contact->work.result.points, 3 * (capacity + 1), &contact->work.result.N,
+                         PetscSqr(3 * (capacity + 1)), &contact->work.result.M));
   *out = contact;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -79,8 +83,9 @@ PetscErrorCode ContactDestroy(Contact *contact)
 
 /* ---------- residual ---------- */
 
-/* Moves the lists' points to (u, t) and projects every slave point. The gaps stand already where the last evaluation was at the same place:
-   three in four, as the solver asks for residual, energy and tangent of each iterate one by one. */
+/* Moves the lists' points to (u, t) and projects every slave point. The gaps stand already where the last evaluation
+   was at the same place: three in four, as the solver asks for residual, energy and tangent of each iterate one by one.
+ */
 PetscErrorCode ContactPairProject(Contact contact, ContactPair *pair, const PetscReal *u, PetscReal t)
 {
   PetscBool moved;
@@ -94,21 +99,24 @@ PetscErrorCode ContactPairProject(Contact contact, ContactPair *pair, const Pets
   PetscCall(PetscLogEventBegin(contact->event_project, 0, 0, 0, 0));
   if (pair->fit.degree) TimingBegin(TIMING_FIT);
   if (pair->fit.degree) PetscCall(PetscLogEventBegin(contact->event_fit, 0, 0, 0, 0));
-  PetscCall(ContactPointGaps(pair, pair->lists, pair->factor, pair->point_force, pair->seed, pair->point_gap, pair->point_normal));
+  PetscCall(ContactPointGaps(pair, pair->lists, pair->factor, pair->point_force, pair->seed, pair->point_gap,
+                             pair->point_normal));
   if (pair->fit.degree) PetscCall(PetscLogEventEnd(contact->event_fit, 0, 0, 0, 0));
   if (pair->fit.degree) TimingEnd(TIMING_FIT);
   PetscCall(PetscLogEventEnd(contact->event_project, 0, 0, 0, 0));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* What a linear step counts on of an open term: what was closed stays so, pressed or pulled; what touches at the start of a run resists, for a
-   body that only contact holds. In surface contact the mean over the faces around a node that touches is open by their curvature: such terms are pulled, all
-   of them, as those that only resist would hold the others open. */
+/* What a linear step counts on of an open term: what was closed stays so, pressed or pulled; what touches at the start
+   of a run resists, for a body that only contact holds. In surface contact the mean over the faces around a node that
+   touches is open by their curvature: such terms are pulled, all of them, as those that only resist would hold the
+   others open. */
 static void TermHold(const ContactPair *pair, PetscInt c, PetscReal opening, LawValue *value)
 {
   const PetscBool closed = pair->held[c], means = (PetscBool)(pair->slave_offsets && pair->fit.degree);
 
-  if (!closed && !(pair->touching && opening <= (means ? ContactMeanOpening(pair, c) : ContactTouchTolerance(pair, c)))) return;
+  if (!closed && !(pair->touching && opening <= (means ? ContactMeanOpening(pair, c) : ContactTouchTolerance(pair, c))))
+    return;
   value->stiffness = PetscMin(pair->most, pair->now.penalty[c]);
   if (closed || pair->slave_offsets) value->pressure = -value->stiffness * opening;
 }
@@ -119,7 +127,8 @@ LawState ContactTermState(const ContactPair *pair, PetscInt c, PetscReal t)
   return (LawState){PetscMin(pair->most, pair->now.penalty[c]), ContactTermOffset(pair, c, t), pair->now.multiplier[c]};
 }
 
-/* ContactTermLaw - law, gap (length; may be NULL) and area of a term in the state of the last projection; in a linear step what it counts on. Not collective.
+/* ContactTermLaw - law, gap (length; may be NULL) and area of a term in the state of the last projection; in a linear
+ * step what it counts on. Not collective.
  */
 void ContactTermLaw(const ContactPair *pair, PetscInt c, PetscReal t, LawValue *value, PetscReal *gap, PetscReal *area)
 {
@@ -135,7 +144,8 @@ void ContactTermLaw(const ContactPair *pair, PetscInt c, PetscReal t, LawValue *
 
 /* ContactTermForce - what a term's own gap, of the last projection, presses with (force). Not collective.
 
-   In surface contact it is not the nodal force, most of which may be the neighbours': they press on the faces that they share with it. */
+   In surface contact it is not the nodal force, most of which may be the neighbours': they press on the faces that they
+   share with it. */
 PetscReal ContactTermForce(const ContactPair *pair, PetscInt c)
 {
   LawValue  value;
@@ -153,7 +163,9 @@ static void TermNormal(ContactPair *pair, PetscInt c)
 
   for (int d = 0; d < 3; d++) normal[d] = 0;
   for (PetscInt k = pair->term_ptr[c]; k < pair->term_ptr[c + 1]; k++)
-    for (int d = 0; d < 3; d++) normal[d] += pair->term_weight[k] * pair->factor[pair->term_point[k]] * pair->point_normal[3 * pair->term_point[k] + d];
+    for (int d = 0; d < 3; d++)
+      normal[d] +=
+        pair->term_weight[k] * pair->factor[pair->term_point[k]] * pair->point_normal[3 * pair->term_point[k] + d];
   for (int d = 0; d < 3; d++) length += PetscSqr(normal[d]);
   for (int d = 0; d < 3 && length > 0; d++) normal[d] /= PetscSqrtReal(length);
 }
@@ -185,12 +197,13 @@ static PetscErrorCode PairForces(ContactPair *pair, PetscReal *values)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Normal nodal forces of terms that share their points: the points' forces by the hat functions, those of terms on other ranks too. */
+/* Normal nodal forces of terms that share their points: the points' forces by the hat functions, those of terms on
+ * other ranks too. */
 static PetscErrorCode PairSharedForces(ContactPair *pair)
 {
-  const int    dim   = pair->mesh->dim;
+  const int      dim   = pair->mesh->dim;
   NeighbourLists lists = pair->lists;
-  PetscReal   *values, *nodal;
+  PetscReal     *values, *nodal;
 
   PetscFunctionBeginUser;
   PetscCall(PetscCalloc2(lists->n_nodes * dim, &values, pair->mesh->n_nodes * dim, &nodal));
@@ -203,7 +216,8 @@ static PetscErrorCode PairSharedForces(ContactPair *pair)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode PairResidual(Contact contact, ContactPair *pair, const PetscReal *u, PetscReal t, PetscReal *f, PetscReal *energy, PetscReal *force2)
+static PetscErrorCode PairResidual(Contact contact, ContactPair *pair, const PetscReal *u, PetscReal t, PetscReal *f,
+                                   PetscReal *energy, PetscReal *force2)
 {
   PetscReal *values;
 
@@ -230,45 +244,53 @@ static PetscErrorCode PairResidual(Contact contact, ContactPair *pair, const Pet
   PetscCall(PairForces(pair, values));
   PetscCall(NeighbourListsReduce(pair->lists, values, f));
   if (pair->slaves->face_sf) PetscCall(PairSharedForces(pair));
-  for (PetscInt c = 0; c < pair->n && !pair->slaves->face_sf; c++) pair->force[c] = pair->point_force[pair->term_point[pair->term_ptr[c]]];
+  for (PetscInt c = 0; c < pair->n && !pair->slaves->face_sf; c++)
+    pair->force[c] = pair->point_force[pair->term_point[pair->term_ptr[c]]];
   PetscCall(PetscFree(values));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ContactHoldActiveSet - between the two calls what is in contact at the first one stays so, pressed or pulled, in residual and tangent.
+/* ContactHoldActiveSet - between the two calls what is in contact at the first one stays so, pressed or pulled, in
+   residual and tangent.
 
-   Not collective. For a linear step from a solution: fresh lists and offsets move the surfaces a little, which is a load of the step, not an
-   opening. touching: what is open within ContactTouchTolerance() is closed too (Chamoret et al. start from surfaces that touch). */
+   Not collective. For a linear step from a solution: fresh lists and offsets move the surfaces a little, which is a
+   load of the step, not an opening. touching: what is open within ContactTouchTolerance() is closed too (Chamoret et
+   al. start from surfaces that touch). */
 PetscErrorCode ContactHoldActiveSet(Contact contact, PetscBool holding, PetscBool touching)
 {
   PetscFunctionBeginUser;
   for (int p = 0; p < contact->n_pairs; p++) {
     ContactPair *pair = &contact->pairs[p];
 
-    pair->holding = holding;
-    pair->touching   = touching;
-    for (PetscInt c = 0; c < pair->n && holding; c++) pair->held[c] = (PetscBool)(pair->now.status[c] == CONTACT_CLOSED);
+    pair->holding  = holding;
+    pair->touching = touching;
+    for (PetscInt c = 0; c < pair->n && holding; c++)
+      pair->held[c] = (PetscBool)(pair->now.status[c] == CONTACT_CLOSED);
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* ContactResidual - contact forces, energy and their unassembled norm at (u, t).
 
-   Collective, with the same arguments NULL on all ranks. u[n_nodes*dim]: local displacements (length). f[n_nodes*dim]: contact forces are
-   subtracted as external ones are, complete at owned nodes; with f gaps, status and nodal forces become the present state. energy, force2
-   (sum of the squared forces of the terms on either side): this rank's, added to. Each of the three may be NULL.
+   Collective, with the same arguments NULL on all ranks. u[n_nodes*dim]: local displacements (length). f[n_nodes*dim]:
+   contact forces are subtracted as external ones are, complete at owned nodes; with f gaps, status and nodal forces
+   become the present state. energy, force2 (sum of the squared forces of the terms on either side): this rank's, added
+   to. Each of the three may be NULL.
 
    Source: Chamoret et al. 2004, eq. 12 and 15. */
-PetscErrorCode ContactResidual(Contact contact, const PetscReal *u, PetscReal t, PetscReal *f, PetscReal *energy, PetscReal *force2)
+PetscErrorCode ContactResidual(Contact contact, const PetscReal *u, PetscReal t, PetscReal *f, PetscReal *energy,
+                               PetscReal *force2)
 {
   PetscFunctionBeginUser;
   PetscCall(PetscLogEventBegin(contact->event_residual, 0, 0, 0, 0));
-  for (int p = 0; p < contact->n_pairs; p++) PetscCall(PairResidual(contact, &contact->pairs[p], u, t, f, energy, force2));
+  for (int p = 0; p < contact->n_pairs; p++)
+    PetscCall(PairResidual(contact, &contact->pairs[p], u, t, f, energy, force2));
   PetscCall(PetscLogEventEnd(contact->event_residual, 0, 0, 0, 0));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ContactMarkPredicted - what is in contact now is what ContactUnpredictedEnergy() takes for foreseen. Not collective. */
+/* ContactMarkPredicted - what is in contact now is what ContactUnpredictedEnergy() takes for foreseen. Not collective.
+ */
 PetscErrorCode ContactMarkPredicted(Contact contact)
 {
   PetscFunctionBeginUser;
@@ -280,7 +302,8 @@ PetscErrorCode ContactMarkPredicted(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ContactUnpredictedEnergy - energy of the terms in contact at (u, t) that ContactMarkPredicted() found open, of this rank, added to.
+/* ContactUnpredictedEnergy - energy of the terms in contact at (u, t) that ContactMarkPredicted() found open, of this
+   rank, added to.
 
    Collective. u[n_nodes*dim]: local displacements (length). */
 PetscErrorCode ContactUnpredictedEnergy(Contact contact, const PetscReal *u, PetscReal t, PetscReal *energy)
@@ -303,15 +326,18 @@ PetscErrorCode ContactUnpredictedEnergy(Contact contact, const PetscReal *u, Pet
 
 /* ---------- tangent ---------- */
 
-/* Pressure whose turning with the surface counts in a tangent: in a linear step that of the accepted state, not what pulls a term to its place. The
-   state before any load is in no equilibrium: its overlaps pull, and their pressure grows with the penalty until the tangent is indefinite. */
+/* Pressure whose turning with the surface counts in a tangent: in a linear step that of the accepted state, not what
+   pulls a term to its place. The state before any load is in no equilibrium: its overlaps pull, and their pressure
+   grows with the penalty until the tangent is indefinite. */
 static PetscReal TermTurningPressure(const ContactPair *pair, PetscInt c, PetscReal t, const LawValue *value)
 {
   const ContactState *accepted = &pair->accepted;
 
   if (!pair->holding) return value->pressure;
   if (pair->touching) return 0;
-  return accepted->status[c] == CONTACT_CLOSED ? accepted->multiplier[c] + accepted->penalty[c] * (ContactTermOffset(pair, c, t) - accepted->gap[c]) : 0;
+  return accepted->status[c] == CONTACT_CLOSED
+           ? accepted->multiplier[c] + accepted->penalty[c] * (ContactTermOffset(pair, c, t) - accepted->gap[c])
+           : 0;
 }
 
 /* Stiffness of the terms, 0 where they take no part, and the forces of slave points that turn with the surface. */
@@ -337,7 +363,8 @@ static PetscErrorCode NameBlock(Contact contact, const ContactPair *pair, int p,
 {
   PetscFunctionBeginUser;
   PetscCall(ContactVariationsNodes(pair, n, points));
-  PetscCall(BlockMatrixName(contact->blocks, p, pair->work->count, pair->work->number, (PetscBool)(contact->product != NULL)));
+  PetscCall(
+    BlockMatrixName(contact->blocks, p, pair->work->count, pair->work->number, (PetscBool)(contact->product != NULL)));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -358,14 +385,18 @@ static PetscErrorCode PairName(Contact contact, const ContactPair *pair, int p)
 
   PetscFunctionBeginUser;
   for (PetscInt c = 0; c < pair->n; c++)
-    if (pair->stiffness[c] > 0) PetscCall(NameBlock(contact, pair, p, pair->term_ptr[c + 1] - pair->term_ptr[c], &pair->term_point[pair->term_ptr[c]]));
+    if (pair->stiffness[c] > 0)
+      PetscCall(
+        NameBlock(contact, pair, p, pair->term_ptr[c + 1] - pair->term_ptr[c], &pair->term_point[pair->term_ptr[c]]));
   for (PetscInt face = 0; pair->slaves->face_sf && face < pair->slaves->n_faces; face++)
     PetscCall(NameBlock(contact, pair, p, FacePoints(pair, face, points), points));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The block A psi'' Nbar Nbar^T of a term, which stands alone where it shares its points; else with -p M of its one point. */
-static PetscErrorCode TermBlock(Contact contact, const ContactPair *pair, int p, PetscInt c, PetscInt n, const PetscInt *nodes, double (*own)[FIT_DERIVATIVES_OWN])
+/* The block A psi'' Nbar Nbar^T of a term, which stands alone where it shares its points; else with -p M of its one
+ * point. */
+static PetscErrorCode TermBlock(Contact contact, const ContactPair *pair, int p, PetscInt c, PetscInt n,
+                                const PetscInt *nodes, double (*own)[FIT_DERIVATIVES_OWN])
 {
   const PetscInt q = pair->term_point[pair->term_ptr[c]];
   PetscReal     *v, area;
@@ -388,21 +419,25 @@ static PetscErrorCode TermBlock(Contact contact, const ContactPair *pair, int p,
 }
 
 /* The block -sum p M of the points of one face: their second variations are summed before they are taken apart. */
-static PetscErrorCode FaceBlock(Contact contact, const ContactPair *pair, int p, PetscInt face, PetscInt n, const PetscInt *nodes, double (*own)[FIT_DERIVATIVES_OWN])
+static PetscErrorCode FaceBlock(Contact contact, const ContactPair *pair, int p, PetscInt face, PetscInt n,
+                                const PetscInt *nodes, double (*own)[FIT_DERIVATIVES_OWN])
 {
   PetscInt       points[FACE_RULE_POINTS];
   const PetscInt loaded = FacePoints(pair, face, points);
 
   PetscFunctionBeginUser;
   PetscCall(ContactSecondBegin(pair, n, loaded));
-  for (PetscInt k = 0; k < loaded; k++) PetscCall(ContactSecondAdd(pair, points[k], -pair->point_force[points[k]], own));
+  for (PetscInt k = 0; k < loaded; k++)
+    PetscCall(ContactSecondAdd(pair, points[k], -pair->point_force[points[k]], own));
   ContactSecondEnd(pair);
   PetscCall(BlockMatrixAdd(contact->blocks, p, n, nodes, pair->work->M));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Blocks of what belongs to the fit points one by one, for all slave points at once: one for the points of a face, which are made of the same nodes. */
-static PetscErrorCode OwnBlocks(Contact contact, const ContactPair *pair, int p, const double (*own)[FIT_DERIVATIVES_OWN])
+/* Blocks of what belongs to the fit points one by one, for all slave points at once: one for the points of a face,
+ * which are made of the same nodes. */
+static PetscErrorCode OwnBlocks(Contact contact, const ContactPair *pair, int p,
+                                const double (*own)[FIT_DERIVATIVES_OWN])
 {
   NeighbourLists lists = pair->lists;
 
@@ -484,10 +519,11 @@ static PetscErrorCode PlaceBlocks(Contact contact, PetscBool *changed)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ContactTangent - the derivative of ContactResidual()'s forces by the free displacements: A (psi'' N N^T - p M) for each closed term, p its pressure.
+/* ContactTangent - the derivative of ContactResidual()'s forces by the free displacements: A (psi'' N N^T - p M) for
+   each closed term, p its pressure.
 
-   Collective. u, t: as of ContactResidual(). *C: over the global free dofs, the contact's own; *changed: its pattern is new.
-   Source: Chamoret et al. 2004, eq. 14. */
+   Collective. u, t: as of ContactResidual(). *C: over the global free dofs, the contact's own; *changed: its pattern is
+   new. Source: Chamoret et al. 2004, eq. 14. */
 PetscErrorCode ContactTangent(Contact contact, const PetscReal *u, PetscReal t, Mat *C, PetscBool *changed)
 {
   PetscInt block = 0;
@@ -516,9 +552,10 @@ static void AnalyticTravel(Contact contact, const ContactPair *pair, PetscReal t
   for (PetscInt i = 0; i < pair->lists->n_nodes * dim; i++) values[i] -= to[i % dim] - from[i % dim];
 }
 
-/* ContactPairMove - how the contact nodes of a pair move with local displacements x, tools and an analytic master from t to t_next: values[lists n_nodes*dim].
-   Collective. */
-PetscErrorCode ContactPairMove(Contact contact, ContactPair *pair, const PetscReal *x, PetscReal t, PetscReal t_next, PetscReal *values)
+/* ContactPairMove - how the contact nodes of a pair move with local displacements x, tools and an analytic master from
+   t to t_next: values[lists n_nodes*dim]. Collective. */
+PetscErrorCode ContactPairMove(Contact contact, ContactPair *pair, const PetscReal *x, PetscReal t, PetscReal t_next,
+                               PetscReal *values)
 {
   PetscFunctionBeginUser;
   PetscCall(NeighbourListsBroadcast(pair->search, pair->lists, x, t, t_next, values));
@@ -528,8 +565,8 @@ PetscErrorCode ContactPairMove(Contact contact, ContactPair *pair, const PetscRe
 
 /* ContactMultiplyBegin - the next ContactTangent() is multiplied with x, prescribed dofs included.
 
-   Collective. x[n_nodes*dim]: local displacements (length), ghosts included, to which the rigid tools' motion from t to t_next is joined. Lists stay until
-   ContactMultiplyEnd(). */
+   Collective. x[n_nodes*dim]: local displacements (length), ghosts included, to which the rigid tools' motion from t to
+   t_next is joined. Lists stay until ContactMultiplyEnd(). */
 PetscErrorCode ContactMultiplyBegin(Contact contact, const PetscReal *x, PetscReal t, PetscReal t_next)
 {
   PetscFunctionBeginUser;
@@ -565,12 +602,14 @@ PetscErrorCode ContactMultiplyEnd(Contact contact, PetscReal *y)
 PetscErrorCode ContactAccept(Contact contact)
 {
   PetscFunctionBeginUser;
-  for (int p = 0; p < contact->n_pairs; p++) PetscCall(ContactStateCopy(&contact->pairs[p].now, &contact->pairs[p].accepted));
+  for (int p = 0; p < contact->n_pairs; p++)
+    PetscCall(ContactStateCopy(&contact->pairs[p].now, &contact->pairs[p].accepted));
   PetscCall(BlockMatrixMark(contact->blocks));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ContactRestore - takes the state back to the last ContactAccept(); the lists are not part of it: ContactGather(). Not collective. */
+/* ContactRestore - takes the state back to the last ContactAccept(); the lists are not part of it: ContactGather(). Not
+ * collective. */
 PetscErrorCode ContactRestore(Contact contact)
 {
   PetscFunctionBeginUser;
@@ -583,7 +622,8 @@ PetscErrorCode ContactRestore(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ContactTangentRestore - the tangent's pattern is again that of the last ContactAccept(): it orders the solver's sums. Collective. */
+/* ContactTangentRestore - the tangent's pattern is again that of the last ContactAccept(): it orders the solver's sums.
+ * Collective. */
 PetscErrorCode ContactTangentRestore(Contact contact)
 {
   PetscInt rows;
@@ -598,7 +638,7 @@ static PetscErrorCode PairArchive(ContactPair *pair, int p, Archive archive)
 {
   PetscInt *id;
   char      name[PETSC_MAX_PATH_LEN];
-  Hdf5Table      nodes;
+  Hdf5Table nodes;
 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(pair->n, &id));
@@ -615,10 +655,11 @@ static PetscErrorCode PairArchive(ContactPair *pair, int p, Archive archive)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ContactArchive - saves or takes over the accepted state by node and face, with what else the next steps depend on to the last bit: offsets to
-   extrapolate from, lists that stand ready, the kept pattern of the matrix.
+/* ContactArchive - saves or takes over the accepted state by node and face, with what else the next steps depend on to
+   the last bit: offsets to extrapolate from, lists that stand ready, the kept pattern of the matrix.
 
-   Collective. u[n_nodes*dim], t: the accepted state of the model. Loaded, it is the present state too; ContactResidual() gives its forces. */
+   Collective. u[n_nodes*dim], t: the accepted state of the model. Loaded, it is the present state too;
+   ContactResidual() gives its forces. */
 PetscErrorCode ContactArchive(Contact contact, Archive archive, const PetscReal *u, PetscReal t)
 {
   PetscInt rows;

@@ -1,6 +1,7 @@
 #include "contactimpl.h"
 
-/* A vector more, of zeros in the rows that the kept pattern of the tangent couples a slave node with; *n: how many these are, 0: it has none of the node. */
+/* A vector more, of zeros in the rows that the kept pattern of the tangent couples a slave node with; *n: how many
+ * these are, 0: it has none of the node. */
 static PetscErrorCode AddZeros(Contact contact, PetscInt node, PetscInt *n)
 {
   const int       dim = contact->mesh->dim;
@@ -34,9 +35,10 @@ static PetscErrorCode FillTerm(Contact contact, const ContactPair *pair, PetscIn
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ContactGetBorder - what the terms of the last ContactTangent() add to it as a sum of v v^T, but for pressures that turn with the surface: of each the first
-   variation of its gap times the root of its stiffness. Vectors have the entries that the tangent's kept pattern leaves them, those of open terms that it still
-   has are zero, so that they seldom have others than before.
+/* ContactGetBorder - what the terms of the last ContactTangent() add to it as a sum of v v^T, but for pressures that
+   turn with the surface: of each the first variation of its gap times the root of its stiffness. Vectors have the
+   entries that the tangent's kept pattern leaves them, those of open terms that it still has are zero, so that they
+   seldom have others than before.
 
    Not collective. The arrays are the contact's, until the next call. */
 PetscErrorCode ContactGetBorder(Contact contact, Border *out)
@@ -53,7 +55,8 @@ PetscErrorCode ContactGetBorder(Contact contact, Border *out)
       PetscReal       area, scale = 0;
       PetscInt        n;
 
-      if (PetscIsNanReal(ContactTermGap(pair, pair->factor, pair->point_gap, c, &area))) continue; /* far from the master, but maybe in another pair */
+      if (PetscIsNanReal(ContactTermGap(pair, pair->factor, pair->point_gap, c, &area)))
+        continue; /* far from the master, but maybe in another pair */
       if (acts) scale = PetscSqrtReal(pair->stiffness[c] / area);
       PetscCall(AddZeros(contact, pair->node[c], &n));
       if (acts) PetscCall(n ? FillTerm(contact, pair, c, scale) : ContactVectorsAdd(border, pair, c, scale));
@@ -63,10 +66,12 @@ PetscErrorCode ContactGetBorder(Contact contact, Border *out)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ContactHasFits - does a surface of some pair couple many nodes to each slave node? Not collective, the same on all ranks. */
+/* ContactHasFits - does a surface of some pair couple many nodes to each slave node? Not collective, the same on all
+ * ranks. */
 PetscBool ContactHasFits(Contact contact)
 {
   for (int p = 0; p < contact->n_pairs; p++)
-    if (contact->pairs[p].fit.degree && !MeshFindRigid(contact->mesh, contact->pairs[p].scene->master)) return PETSC_TRUE;
+    if (contact->pairs[p].fit.degree && !MeshFindRigid(contact->mesh, contact->pairs[p].scene->master))
+      return PETSC_TRUE;
   return PETSC_FALSE;
 }

@@ -5,11 +5,13 @@ static PetscInt CountMine(Contact contact)
   PetscInt n = 0;
 
   for (int p = 0; p < contact->n_pairs; p++)
-    for (PetscInt c = 0; c < contact->pairs[p].n; c++) n += contact->pairs[p].stiffness[c] != contact->pairs[p].stiffness_before[c];
+    for (PetscInt c = 0; c < contact->pairs[p].n; c++)
+      n += contact->pairs[p].stiffness[c] != contact->pairs[p].stiffness_before[c];
   return n;
 }
 
-/* ContactTangentChanges - terms of all ranks that came, went or changed their stiffness between the last two calls of ContactTangent(). Collective. */
+/* ContactTangentChanges - terms of all ranks that came, went or changed their stiffness between the last two calls of
+ * ContactTangent(). Collective. */
 PetscErrorCode ContactTangentChanges(Contact contact, PetscInt *terms)
 {
   PetscFunctionBeginUser;
@@ -18,11 +20,11 @@ PetscErrorCode ContactTangentChanges(Contact contact, PetscInt *terms)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ContactChangeVectors - what ContactTangentChanges() counts, as N diag(s) N^T: by that much the last tangent is more than the one before, but for the motion
-   in between and pressures that turn with the surface.
+/* ContactChangeVectors - what ContactTangentChanges() counts, as N diag(s) N^T: by that much the last tangent is more
+   than the one before, but for the motion in between and pressures that turn with the surface.
 
-   Collective. rows: of this rank, as of the matrix; n: of ContactTangentChanges(); s[n]: stiffness over area (force per length and area squared), the same
-   on all ranks; N: dense, n columns, the caller's. */
+   Collective. rows: of this rank, as of the matrix; n: of ContactTangentChanges(); s[n]: stiffness over area (force per
+   length and area squared), the same on all ranks; N: dense, n columns, the caller's. */
 PetscErrorCode ContactChangeVectors(Contact contact, PetscInt rows, PetscInt n, PetscReal *s, Mat *N)
 {
   PetscInt       mine = CountMine(contact), column = 0;
@@ -41,7 +43,8 @@ PetscErrorCode ContactChangeVectors(Contact contact, PetscInt rows, PetscInt n, 
 
       if (pair->stiffness[c] == pair->stiffness_before[c]) continue;
       ContactTermGap(pair, pair->factor, pair->point_gap, c, &area);
-      s[column] = (pair->stiffness[c] - pair->stiffness_before[c]) / (area > 0 ? area : 1); /* no area: a column of zeros */
+      s[column] =
+        (pair->stiffness[c] - pair->stiffness_before[c]) / (area > 0 ? area : 1); /* no area: a column of zeros */
       vectors.n = 0;
       PetscCall(ContactVectorsAdd(&vectors, pair, c, 1));
       PetscCall(MatSetValues(*N, vectors.ptr[1], vectors.row, 1, &column, vectors.value, ADD_VALUES));

@@ -53,7 +53,8 @@ PetscErrorCode ContactCycleStart(ContactCycle cycle)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Spreads a node's number over 64 bits, so that sums of them tell sets apart (the finaliser of Steele, Lea and Flood's SplitMix, 2014). */
+/* Spreads a node's number over 64 bits, so that sums of them tell sets apart (the finaliser of Steele, Lea and Flood's
+ * SplitMix, 2014). */
 static uint64_t HashFinish(uint64_t x)
 {
   x += 0x9e3779b97f4a7c15;
@@ -75,7 +76,8 @@ static PetscErrorCode TakeSet(ContactCycle cycle, PetscInt slot)
 
     for (PetscInt c = 0; c < pair->n; c++) {
       *closed = pair->now.status[c] == CONTACT_CLOSED;
-      if (*closed++) sum += HashFinish((uint64_t)contact->mesh->node_id[pair->node[c]] * (uint64_t)contact->n_pairs + (uint64_t)p);
+      if (*closed++)
+        sum += HashFinish((uint64_t)contact->mesh->node_id[pair->node[c]] * (uint64_t)contact->n_pairs + (uint64_t)p);
     }
   }
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &sum, 1, MPI_UINT64_T, MPI_SUM, contact->mesh->comm));
@@ -99,8 +101,9 @@ static PetscBool Repeats(ContactCycle cycle, PetscInt period)
 
 /* ContactCycleLook - whether the sets in contact of the last iterates repeat those before.
 
-   Collective; once for each iterate, after its ContactResidual() with forces. residual: a norm of it, the same on all ranks. *period: of the cycle
-   that ends here, at least 2, or 0; *steady: how many iterates before this one had the same set. */
+   Collective; once for each iterate, after its ContactResidual() with forces. residual: a norm of it, the same on all
+   ranks. *period: of the cycle that ends here, at least 2, or 0; *steady: how many iterates before this one had the
+   same set. */
 PetscErrorCode ContactCycleLook(ContactCycle cycle, PetscReal residual, PetscInt *period, PetscInt *steady)
 {
   PetscInt known;
@@ -118,7 +121,8 @@ PetscErrorCode ContactCycleLook(ContactCycle cycle, PetscReal residual, PetscInt
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ContactCycleLocate - "the contact set repeats every 3 iterations: 2 nodes come and go, of the pair 'crown' node 17, node 21", into text[size].
+/* ContactCycleLocate - "the contact set repeats every 3 iterations: 2 nodes come and go, of the pair 'crown' node 17,
+   node 21", into text[size].
 
    Collective; after ContactCycleLook() has found that period. */
 PetscErrorCode ContactCycleLocate(ContactCycle cycle, PetscInt period, char *text, size_t size)
@@ -126,7 +130,7 @@ PetscErrorCode ContactCycleLocate(ContactCycle cycle, PetscInt period, char *tex
   const Contact contact = cycle->contact;
   PetscReal    *rows;
   PetscInt      n = 0, i = 0;
-  GatherTable         table;
+  GatherTable   table;
   size_t        used;
 
   PetscFunctionBeginUser;
@@ -136,7 +140,8 @@ PetscErrorCode ContactCycleLocate(ContactCycle cycle, PetscInt period, char *tex
       PetscBool changes = PETSC_FALSE;
 
       for (PetscInt back = 1; back < period; back++)
-        changes = (PetscBool)(changes || cycle->closed[Slot(cycle, back) * cycle->n + i] != cycle->closed[Slot(cycle, 0) * cycle->n + i]);
+        changes = (PetscBool)(changes || cycle->closed[Slot(cycle, back) * cycle->n + i] !=
+                                           cycle->closed[Slot(cycle, 0) * cycle->n + i]);
       if (!changes) continue;
       rows[2 * n]       = p;
       rows[2 * n++ + 1] = contact->mesh->node_tag[contact->pairs[p].node[c]];
@@ -144,11 +149,13 @@ PetscErrorCode ContactCycleLocate(ContactCycle cycle, PetscInt period, char *tex
   }
   PetscCall(GatherTableCreate(contact->mesh->comm, 2, n, rows, &table));
   PetscCall(PetscFree(rows));
-  PetscCall(PetscSNPrintf(text, size, "the contact set repeats every %" PetscInt_FMT " iterations, %" PetscInt_FMT " nodes come and go:", period, table.n));
+  PetscCall(PetscSNPrintf(
+    text, size, "the contact set repeats every %" PetscInt_FMT " iterations, %" PetscInt_FMT " nodes come and go:",
+    period, table.n));
   for (PetscInt k = 0; k < PetscMin(table.n, CYCLE_NAMED); k++) {
     PetscCall(PetscStrlen(text, &used));
-    PetscCall(PetscSNPrintf(text + used, size - used, "%s node %.0f of '%s'", k ? "," : "", (double)table.row[2 * k + 1],
-                            ContactPairName(contact, (int)table.row[2 * k])));
+    PetscCall(PetscSNPrintf(text + used, size - used, "%s node %.0f of '%s'", k ? "," : "",
+                            (double)table.row[2 * k + 1], ContactPairName(contact, (int)table.row[2 * k])));
   }
   PetscCall(GatherTableDestroy(&table));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -72,7 +72,8 @@ static PetscReal LineGap(ContactLine line, PetscInt n, PetscReal lambda, PetscRe
   return a + (lambda - l[0]) * (first + second * (lambda - l[1]));
 }
 
-/* ContactLineSlope - derivative of the contact energy of this rank's terms with lambda (energy), and the second one (may be NULL).
+/* ContactLineSlope - derivative of the contact energy of this rank's terms with lambda (energy), and the second one
+   (may be NULL).
 
    Not collective. After ContactLineSet() of all places, which must differ. */
 void ContactLineSlope(ContactLine line, PetscReal lambda, PetscReal *slope, PetscReal *stiffness)
@@ -99,10 +100,11 @@ void ContactLineSlope(ContactLine line, PetscReal lambda, PetscReal *slope, Pets
 }
 
 /* The point of a pair whose normal turns most from u to u_ahead, of those that its term's pressure acts on. */
-static PetscErrorCode PairTurn(Contact contact, ContactPair *pair, const PetscReal *u, const PetscReal *u_ahead, PetscReal t, PetscReal *most, PetscInt *node)
+static PetscErrorCode PairTurn(Contact contact, ContactPair *pair, const PetscReal *u, const PetscReal *u_ahead,
+                               PetscReal t, PetscReal *most, PetscInt *node)
 {
   const NeighbourLists lists = pair->lists;
-  PetscReal         *before;
+  PetscReal           *before;
 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(3 * lists->n_slaves, &before));
@@ -126,9 +128,10 @@ static PetscErrorCode PairTurn(Contact contact, ContactPair *pair, const PetscRe
 
 /* ContactLocateTurn - a slave node in contact with a point that goes over an edge between facets from u to u_ahead.
 
-   Collective. u, u_ahead[n_nodes*dim]: local displacements (length) that differ by a trifle; after ContactResidual() with forces. place: where *found, the
-   same on all ranks. */
-PetscErrorCode ContactLocateTurn(Contact contact, const PetscReal *u, const PetscReal *u_ahead, PetscReal t, PetscBool *found, ContactPlace *place)
+   Collective. u, u_ahead[n_nodes*dim]: local displacements (length) that differ by a trifle; after ContactResidual()
+   with forces. place: where *found, the same on all ranks. */
+PetscErrorCode ContactLocateTurn(Contact contact, const PetscReal *u, const PetscReal *u_ahead, PetscReal t,
+                                 PetscBool *found, ContactPlace *place)
 {
   Mesh      mesh      = contact->mesh;
   PetscReal values[4] = {0};

@@ -1,5 +1,6 @@
-/* Contact along a line of displacements: gaps of all terms at three places on it, and from these the slope of the contact energy anywhere between. The slope is
-   piecewise smooth, with a kink where a term closes; a line search that knows the kinks steps over them. */
+/* Contact along a line of displacements: gaps of all terms at three places on it, and from these the slope of the
+   contact energy anywhere between. The slope is piecewise smooth, with a kink where a term closes; a line search that
+   knows the kinks steps over them. */
 #pragma once
 #include "contact/contact.h"
 
@@ -11,5 +12,7 @@ PetscErrorCode ContactLineDestroy(ContactLine *);
 PetscErrorCode ContactLineSet(ContactLine, int place, PetscReal lambda, const PetscReal *u, PetscReal t);
 /* Derivative of this rank's contact energy with lambda, and the second one; stiffness may be NULL. Not collective. */
 void ContactLineSlope(ContactLine, PetscReal lambda, PetscReal *slope, PetscReal *stiffness);
-/* From u to u_ahead, a trifle farther, is there a slave point in contact of facets whose normal turns at once? place: its slave node. Collective. */
-PetscErrorCode ContactLocateTurn(Contact, const PetscReal *u, const PetscReal *u_ahead, PetscReal t, PetscBool *found, ContactPlace *place);
+/* From u to u_ahead, a trifle farther, is there a slave point in contact of facets whose normal turns at once? place:
+ * its slave node. Collective. */
+PetscErrorCode ContactLocateTurn(Contact, const PetscReal *u, const PetscReal *u_ahead, PetscReal t, PetscBool *found,
+                                 ContactPlace *place);

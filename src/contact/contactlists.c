@@ -1,17 +1,19 @@
 #include "contactimpl.h"
 #include "base/timing.h"
 
-/* A gap from fresh lists agrees with the solve's when it differs by less than this fraction of itself, or of the face size (round-off of a
-   closest-point projection). */
+/* A gap from fresh lists agrees with the solve's when it differs by less than this fraction of itself, or of the face
+   size (round-off of a closest-point projection). */
 #define CONTACT_GAP_AGREES    1e-6
 #define CONTACT_GAP_ROUND_OFF 1e-11
 /* A fit's frame may turn by 5 degrees before the step is solved again with a new one. */
 #define CONTACT_FRAME_COSINE 0.9962
 /* An open node whose fresh fit finds it this much of the largest penetration behind the master was open by mistake. */
 #define CONTACT_FIT_AGREES 0.1
-/* Offsets of surface contact are frozen in a solve; gaps may drift with them by this part of what the largest pressure presses the automatic penalty in. */
+/* Offsets of surface contact are frozen in a solve; gaps may drift with them by this part of what the largest pressure
+ * presses the automatic penalty in. */
 #define CONTACT_OFFSET_AGREES 0.1
-/* Where histories break offsets are not carried on to the next step: what they lag behind would come as a jump in it, so they have to agree so much better. */
+/* Where histories break offsets are not carried on to the next step: what they lag behind would come as a jump in it,
+ * so they have to agree so much better. */
 #define CONTACT_OFFSET_CURRENT 1e-5
 /* The area factor past a free edge is frozen in a solve; a change above this makes the step solve again. */
 #define CONTACT_FACTOR_AGREES 1e-2
@@ -36,7 +38,8 @@ static PetscErrorCode PairFactors(const ContactPair *pair, NeighbourLists lists,
     if (found && !pair->master)
       factor[q] = 1;
     else if (found)
-      factor[q] = 1 - SmoothStep(pair->work->result.beyond / lists->facet_size[lists->facet_ptr[q] + pair->work->result.seed]);
+      factor[q] =
+        1 - SmoothStep(pair->work->result.beyond / lists->facet_size[lists->facet_ptr[q] + pair->work->result.seed]);
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -56,16 +59,19 @@ static PetscErrorCode PairSearch(ContactPair *pair, const PetscReal *u, PetscRea
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Are there lists that were made for these positions and for that much motion: the next ones, or those in force? The same on all ranks. */
-static PetscErrorCode PairListsServe(ContactPair *pair, const PetscReal *u, PetscReal t, PetscReal motion, PetscBool changed, PetscBool *serve)
+/* Are there lists that were made for these positions and for that much motion: the next ones, or those in force? The
+ * same on all ranks. */
+static PetscErrorCode PairListsServe(ContactPair *pair, const PetscReal *u, PetscReal t, PetscReal motion,
+                                     PetscBool changed, PetscBool *serve)
 {
-  NeighbourLists    lists = pair->next ? pair->next : pair->lists;
+  NeighbourLists  lists = pair->next ? pair->next : pair->lists;
   const PetscReal made  = pair->next ? pair->next_motion : pair->motion;
   PetscBool       moved = PETSC_TRUE;
   int             all;
 
   PetscFunctionBeginUser;
-  if (lists && motion <= made * (1 + CONTACT_SAME_MOTION)) PetscCall(NeighbourListsUpdate(pair->search, lists, u, t, &moved));
+  if (lists && motion <= made * (1 + CONTACT_SAME_MOTION))
+    PetscCall(NeighbourListsUpdate(pair->search, lists, u, t, &moved));
   all = !moved && !changed && (pair->next || pair->fresh);
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &all, 1, MPI_INT, MPI_LAND, pair->mesh->comm));
   *serve = all ? PETSC_TRUE : PETSC_FALSE;
@@ -88,7 +94,8 @@ static PetscErrorCode PairTakeNext(ContactPair *pair)
 }
 
 /* Largest penetration of the pair and largest pressure, all ranks, at the last residual. */
-static PetscErrorCode PairDepth(Contact contact, const ContactPair *pair, PetscReal t, PetscReal *depth, PetscReal *pressure)
+static PetscErrorCode PairDepth(Contact contact, const ContactPair *pair, PetscReal t, PetscReal *depth,
+                                PetscReal *pressure)
 {
   PetscReal most[2] = {0, 0};
 
@@ -107,7 +114,8 @@ static PetscErrorCode PairDepth(Contact contact, const ContactPair *pair, PetscR
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* A soft penalty's contact may lie deeper than the search reaches: then lists are made for as much motion as leads back out. */
+/* A soft penalty's contact may lie deeper than the search reaches: then lists are made for as much motion as leads back
+ * out. */
 static PetscErrorCode PairListsMotion(Contact contact, const ContactPair *pair, PetscReal t, PetscReal *motion)
 {
   PetscReal depth, pressure;
@@ -120,9 +128,10 @@ static PetscErrorCode PairListsMotion(Contact contact, const ContactPair *pair, 
 
 /* ContactGather - new lists, and with them new offsets and area factors, for all pairs.
 
-   Collective. u[n_nodes*dim]: local displacements (length) of the accepted state, ghosts included; t: its load parameter; t_next: where the
-   step goes; motion: relative motion (length) that the lists must be good for. Those that ContactListsHold() made at
-   the same place for as much motion are taken as they are, and so are those in force. The contact state is not touched. */
+   Collective. u[n_nodes*dim]: local displacements (length) of the accepted state, ghosts included; t: its load
+   parameter; t_next: where the step goes; motion: relative motion (length) that the lists must be good for. Those that
+   ContactListsHold() made at the same place for as much motion are taken as they are, and so are those in force. The
+   contact state is not touched. */
 PetscErrorCode ContactGather(Contact contact, const PetscReal *u, PetscReal t, PetscReal t_next, PetscReal motion)
 {
   PetscFunctionBeginUser;
@@ -147,7 +156,8 @@ PetscErrorCode ContactGather(Contact contact, const PetscReal *u, PetscReal t, P
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Is every point that now lies inside the support of the old fit of slave point q in its list, and has the frame stayed? */
+/* Is every point that now lies inside the support of the old fit of slave point q in its list, and has the frame
+ * stayed? */
 static PetscBool FitHolds(NeighbourLists old, NeighbourLists fresh, PetscInt q)
 {
   const int        dim   = old->dim;
@@ -181,11 +191,12 @@ static PetscBool FitHolds(NeighbourLists old, NeighbourLists fresh, PetscInt q)
   return PETSC_TRUE;
 }
 
-/* Do fresh lists say the same of this term as the solve did? Open is open. On facets a closed gap must agree; on fits, whose gap changes a
-   little with their frames, frames and points must, and with offsets the gap within `drift`. The area factors must agree on both. depth: the
-   largest penetration of the pair; where it is augmented down to nothing, what it may be counts. */
-static PetscBool TermAgrees(const ContactPair *pair, NeighbourLists fresh, PetscInt c, PetscReal gap, const PetscReal *factor, PetscReal t, PetscReal depth,
-                            PetscReal drift)
+/* Do fresh lists say the same of this term as the solve did? Open is open. On facets a closed gap must agree; on fits,
+   whose gap changes a little with their frames, frames and points must, and with offsets the gap within `drift`. The
+   area factors must agree on both. depth: the largest penetration of the pair; where it is augmented down to nothing,
+   what it may be counts. */
+static PetscBool TermAgrees(const ContactPair *pair, NeighbourLists fresh, PetscInt c, PetscReal gap,
+                            const PetscReal *factor, PetscReal t, PetscReal depth, PetscReal drift)
 {
   const PetscReal rest = ContactTermOnsetGap(pair, c, t), old = pair->now.gap[c];
   PetscBool       fitted = PETSC_TRUE;
@@ -207,7 +218,8 @@ static PetscBool TermAgrees(const ContactPair *pair, NeighbourLists fresh, Petsc
 }
 
 /* Do the pair's next lists say the same of each of this rank's terms as the last residual? */
-static PetscErrorCode PairNextAgrees(Contact contact, ContactPair *pair, PetscReal t, PetscBool update_offsets, PetscBool *agrees)
+static PetscErrorCode PairNextAgrees(Contact contact, ContactPair *pair, PetscReal t, PetscBool update_offsets,
+                                     PetscBool *agrees)
 {
   PetscReal depth = 0, pressure = 0, drift, *gaps;
 
@@ -221,13 +233,15 @@ static PetscErrorCode PairNextAgrees(Contact contact, ContactPair *pair, PetscRe
   PetscCall(ContactPointGaps(pair, pair->next, pair->next_factor, NULL, NULL, gaps, NULL));
   if (pair->fit.degree) TimingEnd(TIMING_FIT);
   for (PetscInt c = 0; c < pair->n && *agrees; c++)
-    *agrees = TermAgrees(pair, pair->next, c, ContactTermGap(pair, pair->next_factor, gaps, c, NULL), pair->next_factor, t, depth, drift);
+    *agrees = TermAgrees(pair, pair->next, c, ContactTermGap(pair, pair->next_factor, gaps, c, NULL), pair->next_factor,
+                         t, depth, drift);
   PetscCall(PetscFree(gaps));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ContactListsReach - whether lists still hold every point that the fits of slave points near contact may ask for: a point that slides further
-   than the lists' margin would be fitted by a part of its neighbours, and nothing would show it.
+/* ContactListsReach - whether lists still hold every point that the fits of slave points near contact may ask for: a
+   point that slides further than the lists' margin would be fitted by a part of its neighbours, and nothing would show
+   it.
 
    Collective. To be called after ContactResidual(). *within: the same on all ranks. */
 PetscErrorCode ContactListsReach(Contact contact, PetscBool *within)
@@ -240,7 +254,8 @@ PetscErrorCode ContactListsReach(Contact contact, PetscBool *within)
 
     fits += pair->fit.degree > 0;
     for (PetscInt q = 0; q < pair->lists->n_slaves && pair->fit.degree; q++)
-      if (pair->point_gap[q] <= pair->slave->max_size && NeighbourListsSlip(pair->lists, q) > NEIGHBOUR_LISTS_MARGIN) all = 0;
+      if (pair->point_gap[q] <= pair->slave->max_size && NeighbourListsSlip(pair->lists, q) > NEIGHBOUR_LISTS_MARGIN)
+        all = 0;
   }
   if (fits) PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &all, 1, MPI_INT, MPI_LAND, contact->mesh->comm));
   *within = all ? PETSC_TRUE : PETSC_FALSE;
@@ -269,10 +284,12 @@ PetscErrorCode ContactListsRenew(Contact contact, const PetscReal *u, PetscReal 
 
 /* ContactListsHold - whether lists made afresh at the solution say the same of every term as those it was found with.
 
-   Collective. u, t: of the last ContactResidual() with forces; motion: since the accepted state (length); next: that the fresh lists must be good for, as
-   ContactGather() may take them for the next step. *hold: the same on all ranks; if it is PETSC_FALSE the fresh lists of all pairs, and fresh offsets, have
-   replaced the old, and the problem is to be solved again. */
-PetscErrorCode ContactListsHold(Contact contact, const PetscReal *u, PetscReal t, PetscReal motion, PetscReal next, PetscBool update_offsets, PetscBool *hold)
+   Collective. u, t: of the last ContactResidual() with forces; motion: since the accepted state (length); next: that
+   the fresh lists must be good for, as ContactGather() may take them for the next step. *hold: the same on all ranks;
+   if it is PETSC_FALSE the fresh lists of all pairs, and fresh offsets, have replaced the old, and the problem is to be
+   solved again. */
+PetscErrorCode ContactListsHold(Contact contact, const PetscReal *u, PetscReal t, PetscReal motion, PetscReal next,
+                                PetscBool update_offsets, PetscBool *hold)
 {
   int agree = 1;
 
@@ -301,8 +318,9 @@ PetscErrorCode ContactListsHold(Contact contact, const PetscReal *u, PetscReal t
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ContactListsArchive - the fresh lists that stand ready for the next step, by the motion they were made for; loading: lists at the accepted state
-   (u, t), and the same fresh ones. Other lists would list as much, in another order of sums.
+/* ContactListsArchive - the fresh lists that stand ready for the next step, by the motion they were made for; loading:
+   lists at the accepted state (u, t), and the same fresh ones. Other lists would list as much, in another order of
+   sums.
 
    Collective. u, t: as of ContactGather(). */
 PetscErrorCode ContactListsArchive(Contact contact, Archive archive, const PetscReal *u, PetscReal t)

@@ -1,7 +1,8 @@
 #include "contactimpl.h"
 #include "base/refusal.h"
 
-/* Refuses a pair in which no master face looks towards any slave node: a surface turned inside out, or the wrong one. */
+/* Refuses a pair in which no master face looks towards any slave node: a surface turned inside out, or the wrong one.
+ */
 static PetscErrorCode PairCheckFacing(Contact contact, const ContactPair *pair)
 {
   Mesh       mesh = contact->mesh;
@@ -15,15 +16,17 @@ static PetscErrorCode PairCheckFacing(Contact contact, const ContactPair *pair)
   PetscCall(PetscFree2(area, normal));
   if (!facing) {
     PetscCall(RefuseInput(mesh->comm,
-                          "%s: contact '%s': no face of '%s' faces '%s', their outward normals point the same way; allowed: surfaces that look at each other "
+                          "%s: contact '%s': no face of '%s' faces '%s', their outward normals point the same way; "
+                          "allowed: surfaces that look at each other "
                           "(turn a rigid tool's surface round in gmsh, ReverseMesh, or name the other side)",
-                          SceneWhere(contact->scene, pair->scene->path, "master"), pair->scene->name, pair->scene->master, pair->scene->slave));
+                          SceneWhere(contact->scene, pair->scene->path, "master"), pair->scene->name,
+                          pair->scene->master, pair->scene->slave));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ContactTakeOverlap - what the scene says of surfaces that overlap before any load: refuses (exit 1) the deepest overlap of each pair that is
-   more than the facets' own sagitta explains, or keeps the overlaps as g_0.
+/* ContactTakeOverlap - what the scene says of surfaces that overlap before any load: refuses (exit 1) the deepest
+   overlap of each pair that is more than the facets' own sagitta explains, or keeps the overlaps as g_0.
 
    Collective; after ContactResidual() with forces, at the undeformed state. The message names pair, node and depth. */
 PetscErrorCode ContactTakeOverlap(Contact contact)
@@ -54,11 +57,12 @@ PetscErrorCode ContactTakeOverlap(Contact contact)
     PetscCallMPI(MPI_Comm_rank(mesh->comm, &mine.rank));
     PetscCallMPI(MPI_Allreduce(&mine, &least, 1, MPI_DOUBLE_INT, MPI_MINLOC, mesh->comm));
     if (at >= 0) {
-      PetscCall(
-        PetscSNPrintf(complaint, sizeof(complaint),
-                      "%s: contact '%s': slave node %" PetscInt_FMT
-                      " lies %g behind the master before any load; allowed: surfaces that touch or are apart, or initial_overlap: resolve, ramp or ignore",
-                      SceneWhere(contact->scene, pair->scene->path, "initial_overlap"), pair->scene->name, mesh->node_tag[pair->node[at]], (double)-worst));
+      PetscCall(PetscSNPrintf(complaint, sizeof(complaint),
+                              "%s: contact '%s': slave node %" PetscInt_FMT
+                              " lies %g behind the master before any load; allowed: surfaces that touch or are apart, "
+                              "or initial_overlap: resolve, ramp or ignore",
+                              SceneWhere(contact->scene, pair->scene->path, "initial_overlap"), pair->scene->name,
+                              mesh->node_tag[pair->node[at]], (double)-worst));
     }
     PetscCall(RefuseInputAnywhere(mesh->comm, at >= 0 && least.rank == mine.rank ? complaint : NULL));
   }

@@ -3,17 +3,17 @@
 #include "penaltylaw.h"
 #include "base/refusal.h"
 
-/* Slave nodes whose tributary area is below this share of the faces around them carry no force: corners of 6-node triangles and the axis node
-   of second-order axisymmetric edges, whose areas are zero on flat faces and small, of either sign, on curved ones. Corners of 9-node faces
-   have 1/36, all others more. */
+/* Slave nodes whose tributary area is below this share of the faces around them carry no force: corners of 6-node
+   triangles and the axis node of second-order axisymmetric edges, whose areas are zero on flat faces and small, of
+   either sign, on curved ones. Corners of 9-node faces have 1/36, all others more. */
 #define CONTACT_SHARE_FLOOR 5e-3
 /* A surface that turns more than this from its one reference plane cannot be written over it: cos 60 degrees. */
 #define CONTACT_GLOBAL_COSINE 0.5
 /* Touching start: a gap within this fraction of the face size is no gap, whatever the curvature. */
 #define CONTACT_TOUCH 1e-6
 
-/* Surface contact on faces at least this much coarser than the master's takes a finer quadrature: its points would skip facets. Below 2, so that round-off
-   does not decide on a mesh of half the size. */
+/* Surface contact on faces at least this much coarser than the master's takes a finer quadrature: its points would skip
+   facets. Below 2, so that round-off does not decide on a mesh of half the size. */
 #define CONTACT_COARSE 1.9
 /* Surface contact: a node with less of this share of the mean hat area has none: an axis node where R vanishes. */
 #define CONTACT_HAT_FLOOR 1e-8
@@ -34,7 +34,8 @@ static PetscErrorCode PairChooseNodes(Mesh mesh, Scene scene, ContactPair *pair)
     PetscCall(SlavePointsHatAreas(pair->slaves, scene->geometry, NULL, area));
   else
     PetscCall(SurfaceNodeAreas(pair->slave, scene->geometry, NULL, area, NULL));
-  PetscCall(PetscMalloc4(group->n_nodes, &pair->node, group->n_nodes, &pair->area, group->n_nodes, &pair->size, group->n_nodes, &pair->turn));
+  PetscCall(PetscMalloc4(group->n_nodes, &pair->node, group->n_nodes, &pair->area, group->n_nodes, &pair->size,
+                         group->n_nodes, &pair->turn));
   for (PetscInt i = 0; i < group->n_nodes; i++) {
     if (mesh->node_owner[group->nodes[i]] != rank) continue;
     sum[0] += area[group->nodes[i]];
@@ -44,7 +45,9 @@ static PetscErrorCode PairChooseNodes(Mesh mesh, Scene scene, ContactPair *pair)
   for (PetscInt i = 0; i < group->n_nodes; i++) {
     const PetscInt node = group->nodes[i];
 
-    if (mesh->node_owner[node] != rank || (hats ? area[node] < CONTACT_HAT_FLOOR * sum[0] / sum[1] : share[node] < CONTACT_SHARE_FLOOR)) continue;
+    if (mesh->node_owner[node] != rank ||
+        (hats ? area[node] < CONTACT_HAT_FLOOR * sum[0] / sum[1] : share[node] < CONTACT_SHARE_FLOOR))
+      continue;
     pair->node[pair->n] = node;
     pair->area[pair->n] = area[node];
     pair->size[pair->n] = size[node];
@@ -64,7 +67,8 @@ static PetscErrorCode PairCreateTerms(Mesh mesh, ContactPair *pair)
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(slaves->n_nodes, &term)); /* of each node of the points */
   for (PetscInt i = 0; i < slaves->n_nodes; i++) term[i] = -1;
-  for (PetscInt c = 0; c < pair->n; c++) term[NodeKeysFind(slaves->n_nodes, slaves->nodes, mesh->node_id[pair->node[c]])] = c;
+  for (PetscInt c = 0; c < pair->n; c++)
+    term[NodeKeysFind(slaves->n_nodes, slaves->nodes, mesh->node_id[pair->node[c]])] = c;
   PetscCall(PetscCalloc1(pair->n + 2, &pair->term_ptr));
   for (PetscInt k = 0; k < slaves->ptr[slaves->n]; k++) {
     if (term[slaves->node[k]] < 0 || slaves->hat[k] == 0) continue;
@@ -85,10 +89,10 @@ static PetscErrorCode PairCreateTerms(Mesh mesh, ContactPair *pair)
     }
   }
   PetscCall(PetscFree(term));
-  PetscCall(
-    PetscCalloc5(pair->n, &pair->force, 3 * pair->n, &pair->normal, pair->n, &pair->pressure, pair->n, &pair->stiffness, pair->n, &pair->stiffness_before));
-  PetscCall(PetscCalloc6(slaves->n, &pair->factor, slaves->n, &pair->next_factor, slaves->n, &pair->seed, slaves->n, &pair->point_gap, 3 * slaves->n,
-                         &pair->point_normal, slaves->n, &pair->point_force));
+  PetscCall(PetscCalloc5(pair->n, &pair->force, 3 * pair->n, &pair->normal, pair->n, &pair->pressure, pair->n,
+                         &pair->stiffness, pair->n, &pair->stiffness_before));
+  PetscCall(PetscCalloc6(slaves->n, &pair->factor, slaves->n, &pair->next_factor, slaves->n, &pair->seed, slaves->n,
+                         &pair->point_gap, 3 * slaves->n, &pair->point_normal, slaves->n, &pair->point_force));
   PetscCall(ContactVariationsCreate(mesh->dim, slaves->n, &pair->variations));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -96,16 +100,20 @@ static PetscErrorCode PairCreateTerms(Mesh mesh, ContactPair *pair)
 /* Slave points, terms and offsets, by formulation. */
 static PetscErrorCode PairCreatePoints(Mesh mesh, Scene scene, Loads loads, ContactPair *pair)
 {
-  const OffsetsKind kind  = !pair->smoother->smooth ? OFFSETS_NONE : pair->scene->live_offset ? OFFSETS_LIVE : OFFSETS_HELD;
+  const OffsetsKind kind  = !pair->smoother->smooth    ? OFFSETS_NONE
+                            : pair->scene->live_offset ? OFFSETS_LIVE
+                                                       : OFFSETS_HELD;
   const int         finer = pair->master && pair->slave->mean_size >= CONTACT_COARSE * pair->master->mean_size;
 
   PetscFunctionBeginUser;
   if (pair->scene->formulation == CONTACT_SURFACE_TO_SURFACE) {
     PetscCall(SlavePointsCreateQuadrature(pair->slave, scene->geometry, finer, &pair->slaves));
     PetscCall(PairChooseNodes(mesh, scene, pair));
-    PetscCall(OffsetsCreate(mesh, scene, loads, pair->slave, pair->n_images, pair->images, pair->fit.feature_angle, finer, kind, &pair->slave_offsets));
+    PetscCall(OffsetsCreate(mesh, scene, loads, pair->slave, pair->n_images, pair->images, pair->fit.feature_angle,
+                            finer, kind, &pair->slave_offsets));
     if (pair->master)
-      PetscCall(OffsetsCreate(mesh, scene, loads, pair->master, pair->n_images, pair->images, pair->fit.feature_angle, 0, kind, &pair->master_offsets));
+      PetscCall(OffsetsCreate(mesh, scene, loads, pair->master, pair->n_images, pair->images, pair->fit.feature_angle,
+                              0, kind, &pair->master_offsets));
     pair->lags = kind != OFFSETS_LIVE ? PETSC_TRUE : PETSC_FALSE;
   } else {
     PetscCall(PairChooseNodes(mesh, scene, pair));
@@ -115,12 +123,15 @@ static PetscErrorCode PairCreatePoints(Mesh mesh, Scene scene, Loads loads, Cont
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Support and exponent of the weight where the scene leaves them open, by dimension and degree. Nodes as fit points: in spacings, the smoothest fits
-   whose guards hold on jittered meshes (3D: some 40 nodes; 2D: 9); in 3D between 3.5 and 3.65, 3 and 4 rings, spheres and their three-valent nodes
-   are quiet at once. Quadrature points: in face sizes, some 113 of them in 3D. */
+/* Support and exponent of the weight where the scene leaves them open, by dimension and degree. Nodes as fit points: in
+   spacings, the smoothest fits whose guards hold on jittered meshes (3D: some 40 nodes; 2D: 9); in 3D between 3.5
+   and 3.65, 3 and 4 rings, spheres and their three-valent nodes are quiet at once. Quadrature points: in face sizes,
+   some 113 of them in 3D. */
 static FitSettings PairFitSettings(Scene scene, const SceneContact *contact, const Smoother *smoother, int order)
 {
-  FitSettings fit = {.degree = smoother->smooth ? contact->degree : 0, .support = contact->support, .exponent = contact->weight};
+  FitSettings fit = {.degree   = smoother->smooth ? contact->degree : 0,
+                     .support  = contact->support,
+                     .exponent = contact->weight};
 
   fit.integral = (PetscBool)(fit.degree && contact->formulation == CONTACT_SURFACE_TO_SURFACE);
   if (fit.integral) {
@@ -145,16 +156,19 @@ static PetscErrorCode PairCheckGlobalFrame(Mesh mesh, Scene scene, Loads loads, 
   PetscCall(SurfaceMeanNormal(pair->master, loads, pair->n_images, pair->images, zero, 0, normal, &cosine));
   PetscCall(PetscFree(zero));
   if (cosine < CONTACT_GLOBAL_COSINE) {
-    PetscCall(RefuseInput(
-      mesh->comm,
-      "%s: the surface '%s' turns by %.0f degrees from its one reference plane; allowed: up to 60 degrees (frame: local has one plane for each slave point)",
-      SceneWhere(scene, pair->scene->path, "frame"), pair->scene->master, (double)(PetscAcosReal(PetscMax(-1, cosine)) * 180 / PETSC_PI)));
+    PetscCall(RefuseInput(mesh->comm,
+                          "%s: the surface '%s' turns by %.0f degrees from its one reference plane; allowed: up to 60 "
+                          "degrees (frame: local has one plane for each slave point)",
+                          SceneWhere(scene, pair->scene->path, "frame"), pair->scene->master,
+                          (double)(PetscAcosReal(PetscMax(-1, cosine)) * 180 / PETSC_PI)));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ContactPairCreate - surfaces, terms, state and search of one pair of the scene, without lists yet. Collective. Refuses what the mesh shows to be wrong. */
-PetscErrorCode ContactPairCreate(Mesh mesh, Scene scene, Elasticity elasticity, Loads loads, const SceneContact *contact, ContactPair *pair)
+/* ContactPairCreate - surfaces, terms, state and search of one pair of the scene, without lists yet. Collective.
+ * Refuses what the mesh shows to be wrong. */
+PetscErrorCode ContactPairCreate(Mesh mesh, Scene scene, Elasticity elasticity, Loads loads,
+                                 const SceneContact *contact, ContactPair *pair)
 {
   PetscReal penalty;
 
@@ -168,11 +182,14 @@ PetscErrorCode ContactPairCreate(Mesh mesh, Scene scene, Elasticity elasticity, 
   pair->law      = LawFind("penalty");
   if (contact->master && !strcmp(contact->slave, contact->master))
     PetscCall(RefuseInput(mesh->comm,
-                          "%s: slave and master are both '%s'; allowed: two different surfaces (a surface in contact with itself is not available yet)",
+                          "%s: slave and master are both '%s'; allowed: two different surfaces (a surface in contact "
+                          "with itself is not available yet)",
                           SceneWhere(scene, contact->path, "master"), contact->master));
   if (MeshFindRigid(mesh, contact->slave))
-    PetscCall(RefuseInput(mesh->comm, "%s: the slave '%s' is a rigid tool; allowed: a surface of a deformable body (make the tool the master)",
-                          SceneWhere(scene, contact->path, "slave"), contact->slave));
+    PetscCall(RefuseInput(
+      mesh->comm,
+      "%s: the slave '%s' is a rigid tool; allowed: a surface of a deformable body (make the tool the master)",
+      SceneWhere(scene, contact->path, "slave"), contact->slave));
   PetscCall(SurfaceCreate(mesh, scene, elasticity, contact->path, "slave", contact->slave, &pair->slave));
   if (contact->master)
     PetscCall(SurfaceCreate(mesh, scene, elasticity, contact->path, "master", contact->master, &pair->master));
@@ -180,16 +197,17 @@ PetscErrorCode ContactPairCreate(Mesh mesh, Scene scene, Elasticity elasticity, 
     pair->fit.degree = 0;
   PetscCall(SurfaceImages(mesh, scene, contact, &pair->n_images, pair->images));
   if (pair->master) PetscCall(SurfaceFindFreeEdges(pair->master, pair->n_images, pair->images));
-  if (pair->master && pair->fit.degree && pair->fit.global_frame) PetscCall(PairCheckGlobalFrame(mesh, scene, loads, pair));
+  if (pair->master && pair->fit.degree && pair->fit.global_frame)
+    PetscCall(PairCheckGlobalFrame(mesh, scene, loads, pair));
   PetscCall(PairCreatePoints(mesh, scene, loads, pair));
   pair->automatic = PenaltyAutomatic(pair->slave->stiffness, pair->master ? pair->master->stiffness : 0);
   pair->most      = PETSC_MAX_REAL;
   penalty         = contact->penalty_scale * (contact->penalty_auto ? pair->automatic : contact->penalty);
   PetscCall(ContactStateCreate(pair->n, penalty, &pair->now));
   PetscCall(ContactStateCreate(pair->n, penalty, &pair->accepted));
-  PetscCall(SearchCreate(mesh, scene, loads, pair->master, pair->slave->max_size, pair->n_images, pair->images, &pair->fit, pair->slaves,
-                         pair->master_offsets ? OffsetsGet(pair->master_offsets) : NULL, pair->master_offsets ? OffsetsMaps(pair->master_offsets) : NULL,
-                         &pair->search));
+  PetscCall(SearchCreate(mesh, scene, loads, pair->master, pair->slave->max_size, pair->n_images, pair->images,
+                         &pair->fit, pair->slaves, pair->master_offsets ? OffsetsGet(pair->master_offsets) : NULL,
+                         pair->master_offsets ? OffsetsMaps(pair->master_offsets) : NULL, &pair->search));
   PetscCall(PetscCalloc2(pair->n, &pair->held, pair->n, &pair->predicted));
   if (contact->adjust) PetscCall(PetscMalloc1(pair->n, &pair->before));
   if (contact->augment) PetscCall(AndersonCreate(mesh->comm, pair->n, pair->area, &pair->mixing));
@@ -214,7 +232,8 @@ PetscErrorCode ContactPairDestroy(ContactPair *pair)
   PetscCall(PetscFree(pair->term_ptr));
   PetscCall(PetscFree2(pair->term_point, pair->term_weight));
   PetscCall(PetscFree5(pair->force, pair->normal, pair->pressure, pair->stiffness, pair->stiffness_before));
-  PetscCall(PetscFree6(pair->factor, pair->next_factor, pair->seed, pair->point_gap, pair->point_normal, pair->point_force));
+  PetscCall(
+    PetscFree6(pair->factor, pair->next_factor, pair->seed, pair->point_gap, pair->point_normal, pair->point_force));
   PetscCall(ContactVariationsDestroy(&pair->variations));
   PetscCall(PetscFree(pair->before));
   PetscCall(AndersonDestroy(&pair->mixing));
@@ -222,13 +241,15 @@ PetscErrorCode ContactPairDestroy(ContactPair *pair)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* What is left at t of the gap that the surfaces had before any load: all of an ignored overlap, a shrinking part of a ramped one. */
+/* What is left at t of the gap that the surfaces had before any load: all of an ignored overlap, a shrinking part of a
+ * ramped one. */
 PetscReal ContactTermOffset(const ContactPair *pair, PetscInt c, PetscReal t)
 {
   return pair->now.offset[c] * (pair->scene->initial_overlap == OVERLAP_RAMP ? 1 - t : 1);
 }
 
-/* The gap below which a term presses: where it would have its multiplier's pressure, the surfaces meet at its offset. */
+/* The gap below which a term presses: where it would have its multiplier's pressure, the surfaces meet at its offset.
+ */
 PetscReal ContactTermOnsetGap(const ContactPair *pair, PetscInt c, PetscReal t)
 {
   return LawOnsetGap(&(LawState){pair->now.penalty[c], ContactTermOffset(pair, c, t), pair->now.multiplier[c]});
@@ -240,7 +261,8 @@ static PetscReal TermCurvature(const ContactPair *pair, PetscInt c)
   const PetscReal radius = pair->scene->analytic.radius;
   PetscReal       kappa  = 0;
 
-  for (PetscInt k = pair->term_ptr[c]; k < pair->term_ptr[c + 1]; k++) kappa = PetscMax(kappa, pair->lists->kappa[pair->term_point[k]]);
+  for (PetscInt k = pair->term_ptr[c]; k < pair->term_ptr[c + 1]; k++)
+    kappa = PetscMax(kappa, pair->lists->kappa[pair->term_point[k]]);
   return kappa + 2 * pair->turn[c] / pair->size[c] + (radius > 0 ? 1 / radius : 0);
 }
 
@@ -249,11 +271,13 @@ static PetscReal TermMasterSize(const ContactPair *pair, PetscInt c)
 {
   PetscReal size = 0;
 
-  for (PetscInt k = pair->term_ptr[c]; k < pair->term_ptr[c + 1]; k++) size = PetscMax(size, NeighbourListsNearestSize(pair->lists, pair->term_point[k]));
+  for (PetscInt k = pair->term_ptr[c]; k < pair->term_ptr[c + 1]; k++)
+    size = PetscMax(size, NeighbourListsNearestSize(pair->lists, pair->term_point[k]));
   return size;
 }
 
-/* Opening up to which a node counts as touching: what round-off and the facets' own sagitta leave between surfaces that touch. */
+/* Opening up to which a node counts as touching: what round-off and the facets' own sagitta leave between surfaces that
+ * touch. */
 PetscReal ContactTouchTolerance(const ContactPair *pair, PetscInt c)
 {
   const PetscReal h = pair->size[c];
@@ -261,8 +285,9 @@ PetscReal ContactTouchTolerance(const ContactPair *pair, PetscInt c)
   return CONTACT_TOUCH * h + TermCurvature(pair, c) * (PetscSqr(h) + PetscSqr(TermMasterSize(pair, c))) / 8;
 }
 
-/* Opening of a term of surface contact whose node touches: the mean over the faces around it, where the surfaces bend away from each other. Hat functions
-   of width h weigh x^2 by h^2/6, so the mean of kappa x^2/2 is kappa h^2/12 for each direction; half as much again for faces of unlike size. */
+/* Opening of a term of surface contact whose node touches: the mean over the faces around it, where the surfaces bend
+   away from each other. Hat functions of width h weigh x^2 by h^2/6, so the mean of kappa x^2/2 is kappa h^2/12 for
+   each direction; half as much again for faces of unlike size. */
 PetscReal ContactMeanOpening(const ContactPair *pair, PetscInt c)
 {
   return CONTACT_TOUCH * pair->size[c] + (pair->mesh->dim - 1) * TermCurvature(pair, c) * PetscSqr(pair->size[c]) / 8;

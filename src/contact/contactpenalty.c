@@ -3,8 +3,8 @@
 
 /* A penetration is known well enough to be judged when the last iterate moved it by no more than this part of g_min. */
 #define CONTACT_GAPS_CONVERGED 0.1
-/* Times in one step that the penalties of a pair are adjusted until their window holds. A penalty that starts 1e8 times too small needs four with
-   the default clamp, neighbours that share the load two or three more. */
+/* Times in one step that the penalties of a pair are adjusted until their window holds. A penalty that starts 1e8 times
+   too small needs four with the default clamp, neighbours that share the load two or three more. */
 #define CONTACT_MAX_ADJUST 12
 
 static PenaltyRule TermRule(const ContactPair *pair, PetscInt c)
@@ -12,7 +12,8 @@ static PenaltyRule TermRule(const ContactPair *pair, PetscInt c)
   const SceneContact *scene = pair->scene;
   const PetscReal     unit  = scene->window_in_spacings ? pair->size[c] : 1;
 
-  return PenaltyMakeRule(unit * scene->g_min, unit * scene->g_max, scene->adjust_converged, scene->clamp, pair->automatic, scene->range);
+  return PenaltyMakeRule(unit * scene->g_min, unit * scene->g_max, scene->adjust_converged, scene->clamp,
+                         pair->automatic, scene->range);
 }
 
 /* Negative: apart; NaN: no master near */
@@ -27,7 +28,8 @@ static PenaltyUpdate TermUpdate(const ContactPair *pair, PetscInt c, PetscReal l
   const PenaltyRule rule = TermRule(pair, c);
   PenaltyUpdate     update;
 
-  PenaltyAdjust(&rule, TermPenetration(pair, c), largest > 0 ? ContactTermForce(pair, c) / largest : 0, pair->now.penalty[c], &update);
+  PenaltyAdjust(&rule, TermPenetration(pair, c), largest > 0 ? ContactTermForce(pair, c) / largest : 0,
+                pair->now.penalty[c], &update);
   return update;
 }
 
@@ -51,13 +53,15 @@ static PetscErrorCode LargestForce(Contact contact, PetscReal *largest)
   PetscFunctionBeginUser;
   *largest = 0;
   for (int p = 0; p < contact->n_pairs; p++)
-    for (PetscInt c = 0; c < contact->pairs[p].n; c++) *largest = PetscMax(*largest, ContactTermForce(&contact->pairs[p], c));
+    for (PetscInt c = 0; c < contact->pairs[p].n; c++)
+      *largest = PetscMax(*largest, ContactTermForce(&contact->pairs[p], c));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, largest, 1, MPIU_REAL, MPI_MAX, contact->mesh->comm));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Penalties and counts of `to` follow the present penetrations, if they may once more. count[0]: terms that miss the window, but for those whose penalty
-   would have to fall below its bound (a penetration that is too small is no error); count[1]: penalties that changed. */
+/* Penalties and counts of `to` follow the present penetrations, if they may once more. count[0]: terms that miss the
+   window, but for those whose penalty would have to fall below its bound (a penetration that is too small is no error);
+   count[1]: penalties that changed. */
 static PetscErrorCode PairAdjust(ContactPair *pair, PetscReal largest, ContactState *to, ContactWindowState *state)
 {
   const PetscBool may      = (PetscBool)(pair->updates < CONTACT_MAX_ADJUST);
@@ -83,11 +87,12 @@ static PetscErrorCode PairAdjust(ContactPair *pair, PetscReal largest, ContactSt
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ContactAdjustPenalty - new penalties for the nodes outside the window, or multipliers, of the pairs that are solved until it holds.
+/* ContactAdjustPenalty - new penalties for the nodes outside the window, or multipliers, of the pairs that are solved
+   until it holds.
 
-   Collective. To be called after a converged solve, in the state of its last ContactResidual(). WINDOW_HOLDS: nothing was changed; WINDOW_MISSED:
-   the step is to be solved again; WINDOW_AT_BOUND: nodes are outside, and no penalty could be changed, or they were too often. Source: Chamoret et al. 2004,
-   eq. 16. */
+   Collective. To be called after a converged solve, in the state of its last ContactResidual(). WINDOW_HOLDS: nothing
+   was changed; WINDOW_MISSED: the step is to be solved again; WINDOW_AT_BOUND: nodes are outside, and no penalty could
+   be changed, or they were too often. Source: Chamoret et al. 2004, eq. 16. */
 PetscErrorCode ContactAdjustPenalty(Contact contact, ContactWindowState *state)
 {
   PetscReal largest;
@@ -103,7 +108,8 @@ PetscErrorCode ContactAdjustPenalty(Contact contact, ContactWindowState *state)
 
     if (pair->scene->adjust && pair->scene->adjust_converged) PetscCall(PairAdjust(pair, largest, &pair->now, &one));
     if (pair->scene->augment) PetscCall(ContactPairAugment(pair, &one));
-    if (one == WINDOW_MISSED || *state == WINDOW_HOLDS) *state = one; /* what changes for one pair may bring the others inside */
+    if (one == WINDOW_MISSED || *state == WINDOW_HOLDS)
+      *state = one; /* what changes for one pair may bring the others inside */
   }
   PetscCall(PetscLogEventEnd(contact->event_adjust, 0, 0, 0, 0));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -111,8 +117,8 @@ PetscErrorCode ContactAdjustPenalty(Contact contact, ContactWindowState *state)
 
 /* ContactAdjustNextPenalty - new penalties for the next step, of the pairs that are adjusted from step to step.
 
-   Collective, after ContactAccept(): the present state keeps the penalties it was solved with, ContactRestore() brings the new ones.
-   Source: Chamoret et al. 2004, eq. 16. */
+   Collective, after ContactAccept(): the present state keeps the penalties it was solved with, ContactRestore() brings
+   the new ones. Source: Chamoret et al. 2004, eq. 16. */
 PetscErrorCode ContactAdjustNextPenalty(Contact contact)
 {
   ContactWindowState ignored;
@@ -125,15 +131,18 @@ PetscErrorCode ContactAdjustNextPenalty(Contact contact)
   for (int p = 0; p < contact->n_pairs; p++) {
     ContactPair *pair = &contact->pairs[p];
 
-    if (pair->scene->adjust && !pair->scene->adjust_converged) PetscCall(PairAdjust(pair, largest, &pair->accepted, &ignored));
+    if (pair->scene->adjust && !pair->scene->adjust_converged)
+      PetscCall(PairAdjust(pair, largest, &pair->accepted, &ignored));
   }
   PetscCall(PetscLogEventEnd(contact->event_adjust, 0, 0, 0, 0));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ContactGapsConverged - whether every closed node of the pairs that adjust moved by no more than a tenth of g_min since the last call.
+/* ContactGapsConverged - whether every closed node of the pairs that adjust moved by no more than a tenth of g_min
+   since the last call.
 
-   Collective; once for each iterate, after its ContactResidual() with forces. The first call in a solve compares with the accepted state. */
+   Collective; once for each iterate, after its ContactResidual() with forces. The first call in a solve compares with
+   the accepted state. */
 PetscErrorCode ContactGapsConverged(Contact contact, PetscBool *converged)
 {
   int yes = 1, any = 0;
@@ -147,7 +156,8 @@ PetscErrorCode ContactGapsConverged(Contact contact, PetscBool *converged)
     for (PetscInt c = 0; c < pair->n; c++) {
       const PetscReal moved = PetscAbsReal(pair->now.gap[c] - pair->before[c]);
 
-      if (pair->now.status[c] == CONTACT_CLOSED && !(moved <= CONTACT_GAPS_CONVERGED * TermRule(pair, c).g_min)) yes = 0;
+      if (pair->now.status[c] == CONTACT_CLOSED && !(moved <= CONTACT_GAPS_CONVERGED * TermRule(pair, c).g_min))
+        yes = 0;
       pair->before[c] = pair->now.gap[c];
     }
   }
@@ -156,7 +166,8 @@ PetscErrorCode ContactGapsConverged(Contact contact, PetscBool *converged)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ContactPairWindow - how the present penetrations of pair p stand to the window, and what the adjustment did so far, over all ranks. Collective. */
+/* ContactPairWindow - how the present penetrations of pair p stand to the window, and what the adjustment did so far,
+ * over all ranks. Collective. */
 PetscErrorCode ContactPairWindow(Contact contact, int p, ContactWindow *window)
 {
   const ContactPair *pair     = &contact->pairs[p];
@@ -172,20 +183,27 @@ PetscErrorCode ContactPairWindow(Contact contact, int p, ContactWindow *window)
   for (PetscInt c = 0; c < pair->n && pair->scene->adjust; c++) {
     count[0] += ContactTermForce(pair, c) >= PENALTY_LOADED * largest && pair->now.status[c] == CONTACT_CLOSED;
     count[1] += TermUpdate(pair, c, largest).outside != 0;
-    if (pair->now.status[c] == CONTACT_CLOSED) excess = PetscMax(excess, TermPenetration(pair, c) / TermRule(pair, c).g_max);
+    if (pair->now.status[c] == CONTACT_CLOSED)
+      excess = PetscMax(excess, TermPenetration(pair, c) / TermRule(pair, c).g_max);
   }
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, count, 6, MPIU_INT, MPI_SUM, contact->mesh->comm));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &excess, 1, MPIU_REAL, MPI_MAX, contact->mesh->comm));
-  *window =
-    (ContactWindow){.loaded = count[0], .outside = count[1], .excess = excess, .raised = count[2], .lowered = count[3], .clamped = count[4], .light = count[5]};
+  *window = (ContactWindow){.loaded  = count[0],
+                            .outside = count[1],
+                            .excess  = excess,
+                            .raised  = count[2],
+                            .lowered = count[3],
+                            .clamped = count[4],
+                            .light   = count[5]};
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ContactLocateOutside - the pair and node (gmsh's tag) that misses its window by the largest factor, with its penetration and penalty, into
-   text[size]. Collective. */
+/* ContactLocateOutside - the pair and node (gmsh's tag) that misses its window by the largest factor, with its
+   penetration and penalty, into text[size]. Collective. */
 PetscErrorCode ContactLocateOutside(Contact contact, char *text, size_t size)
 {
-  PetscReal largest, worst[5] = {-1, 0, 0, 0, 0}; /* tag, penetration, penalty, pair, whether the penalty is at its bound */
+  PetscReal largest,
+    worst[5] = {-1, 0, 0, 0, 0}; /* tag, penetration, penalty, pair, whether the penalty is at its bound */
   struct {
     double factor;
     int    rank;
@@ -201,7 +219,8 @@ PetscErrorCode ContactLocateOutside(Contact contact, char *text, size_t size)
       const PenaltyRule rule        = TermRule(pair, c);
       const PetscReal   penetration = TermPenetration(pair, c);
       const int         outside     = TermUpdate(pair, c, largest).outside;
-      const PetscReal   factor      = outside > 0 ? penetration / rule.g_max : rule.g_min / PetscMax(penetration, PETSC_SMALL * rule.g_min);
+      const PetscReal   factor =
+        outside > 0 ? penetration / rule.g_max : rule.g_min / PetscMax(penetration, PETSC_SMALL * rule.g_min);
 
       if (!outside || factor <= mine.factor) continue;
       mine.factor = factor;
@@ -214,18 +233,21 @@ PetscErrorCode ContactLocateOutside(Contact contact, char *text, size_t size)
   }
   PetscCallMPI(MPI_Allreduce(&mine, &most, 1, MPI_DOUBLE_INT, MPI_MAXLOC, contact->mesh->comm));
   PetscCallMPI(MPI_Bcast(worst, 5, MPIU_REAL, most.rank, contact->mesh->comm));
-  PetscCall(PetscSNPrintf(text, size, "contact '%s': node %.0f is the farthest outside, penetration %g, penalty %g%s", ContactPairName(contact, (int)worst[3]),
-                          (double)worst[0], (double)worst[1], (double)worst[2], worst[4] > 0 ? " (penalty.range allows no more)" : ""));
+  PetscCall(PetscSNPrintf(text, size, "contact '%s': node %.0f is the farthest outside, penetration %g, penalty %g%s",
+                          ContactPairName(contact, (int)worst[3]), (double)worst[0], (double)worst[1], (double)worst[2],
+                          worst[4] > 0 ? " (penalty.range allows no more)" : ""));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ContactSoften - until the next call no penalty counts for more than `most` times its pair's automatic one, in energy, force and tangent.
+/* ContactSoften - until the next call no penalty counts for more than `most` times its pair's automatic one, in energy,
+   force and tangent.
 
    Not collective, the same on all ranks. PETSC_MAX_REAL: all count for what they are. The penalties themselves stay. */
 PetscErrorCode ContactSoften(Contact contact, PetscReal most)
 {
   PetscFunctionBeginUser;
-  for (int p = 0; p < contact->n_pairs; p++) contact->pairs[p].most = most < PETSC_MAX_REAL ? most * contact->pairs[p].automatic : PETSC_MAX_REAL;
+  for (int p = 0; p < contact->n_pairs; p++)
+    contact->pairs[p].most = most < PETSC_MAX_REAL ? most * contact->pairs[p].automatic : PETSC_MAX_REAL;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -235,7 +257,8 @@ PetscErrorCode ContactStiffest(Contact contact, PetscReal *most)
   PetscFunctionBeginUser;
   *most = 0;
   for (int p = 0; p < contact->n_pairs; p++)
-    for (PetscInt c = 0; c < contact->pairs[p].n; c++) *most = PetscMax(*most, contact->pairs[p].now.penalty[c] / contact->pairs[p].automatic);
+    for (PetscInt c = 0; c < contact->pairs[p].n; c++)
+      *most = PetscMax(*most, contact->pairs[p].now.penalty[c] / contact->pairs[p].automatic);
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, most, 1, MPIU_REAL, MPI_MAX, contact->mesh->comm));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -8,13 +8,14 @@ static PetscBool PointEvaluateAnalytic(const ContactPair *pair, NeighbourLists l
   const int        dim    = lists->dim;
   const PetscReal *centre = pair->mesh->centre;
   SmootherResult  *result = &pair->work->result;
-  AnalyticSurface   master = pair->scene->analytic;
+  AnalyticSurface  master = pair->scene->analytic;
   AnalyticResult   found;
   PetscReal        point[3], x[3];
 
   MotionPlace(&pair->scene->motion, lists->t, pair->scene->motion.point, point);
   MotionTurn(&pair->scene->motion, lists->t, pair->scene->analytic.axis, master.axis);
-  for (int d = 0; d < dim; d++) x[d] = (lists->slave_X[q * dim + d] - (point[d] - centre[d])) + lists->slave_u[q * dim + d];
+  for (int d = 0; d < dim; d++)
+    x[d] = (lists->slave_X[q * dim + d] - (point[d] - centre[d])) + lists->slave_u[q * dim + d];
   if (!AnalyticSurfaceEvaluate(&master, dim, x, &found)) return PETSC_FALSE;
   result->gap          = found.gap;
   result->beyond       = 0;
@@ -47,9 +48,10 @@ LANES_INLINE void GatherPoints(const int dim, NeighbourLists lists, PetscInt q, 
   }
 }
 
-/* ContactPointEvaluate - gap (and variations over the fit points) of slave point q of the lists; *found is PETSC_FALSE where no master is near. */
-PetscErrorCode ContactPointEvaluate(const ContactPair *pair, const Smoother *smoother, NeighbourLists lists, PetscInt q, int seed, SmootherWant want,
-                                    PetscBool *found)
+/* ContactPointEvaluate - gap (and variations over the fit points) of slave point q of the lists; *found is PETSC_FALSE
+ * where no master is near. */
+PetscErrorCode ContactPointEvaluate(const ContactPair *pair, const Smoother *smoother, NeighbourLists lists, PetscInt q,
+                                    int seed, SmootherWant want, PetscBool *found)
 {
   const int      dim  = lists->dim;
   ContactWork   *work = pair->work;
@@ -107,8 +109,9 @@ static PetscErrorCode WorkReserveMap(ContactWork *work, NeighbourLists lists, in
   work->map.rows_room    = PetscMax(work->map.rows_room, 2 * rows);
   work->map.entries_room = PetscMax(work->map.entries_room, 2 * (int)entries);
   PetscCall(PetscFree5(work->map.ptr, work->map.node, work->map.S, work->map.sign, work->number));
-  PetscCall(PetscMalloc5(work->map.rows_room + 1, &work->map.ptr, work->map.entries_room, &work->map.node, work->map.entries_room, &work->map.S,
-                         3 * work->map.entries_room, &work->map.sign, work->map.entries_room, &work->number));
+  PetscCall(PetscMalloc5(work->map.rows_room + 1, &work->map.ptr, work->map.entries_room, &work->map.node,
+                         work->map.entries_room, &work->map.S, 3 * work->map.entries_room, &work->map.sign,
+                         work->map.entries_room, &work->number));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -126,7 +129,8 @@ PetscErrorCode ContactWorkDestroy(ContactWork *work)
 }
 
 /* A row of n images of nodes, side[n], on image `image`. */
-static void MapAddRow(const ContactPair *pair, int row, int image, PetscInt n, const PetscInt *nodes, const int *side, const PetscReal *S)
+static void MapAddRow(const ContactPair *pair, int row, int image, PetscInt n, const PetscInt *nodes, const int *side,
+                      const PetscReal *S)
 {
   ContactWork     *work = pair->work;
   ContactMap      *map  = &work->map;
@@ -146,7 +150,8 @@ static void MapAddPoint(const ContactPair *pair, NeighbourLists lists, int row, 
 {
   const PetscInt first = lists->point_ptr[p];
 
-  MapAddRow(pair, row, lists->point_image[p], lists->point_ptr[p + 1] - first, &lists->point_node[first], &lists->point_side[first], &lists->point_S[first]);
+  MapAddRow(pair, row, lists->point_image[p], lists->point_ptr[p + 1] - first, &lists->point_node[first],
+            &lists->point_side[first], &lists->point_S[first]);
 }
 
 /* The map of the last evaluation, to where the nodes' slots are. */
@@ -156,8 +161,10 @@ static void MapFill(const ContactPair *pair, NeighbourLists lists, PetscInt q)
   const PetscInt own  = lists->slave_ptr[q];
 
   work->map.ptr[0] = 0;
-  MapAddRow(pair, 0, 0, lists->slave_ptr[q + 1] - own, &lists->slave_node[own], &lists->slave_side[own], &lists->slave_S[own]);
-  for (int i = 0; i < work->result.n; i++) MapAddPoint(pair, lists, 1 + i, lists->list_point[lists->list_ptr[q] + work->result.points[i]]);
+  MapAddRow(pair, 0, 0, lists->slave_ptr[q + 1] - own, &lists->slave_node[own], &lists->slave_side[own],
+            &lists->slave_S[own]);
+  for (int i = 0; i < work->result.n; i++)
+    MapAddPoint(pair, lists, 1 + i, lists->list_point[lists->list_ptr[q] + work->result.points[i]]);
 }
 
 /* How many entries the map of the last evaluation has. */
@@ -214,14 +221,15 @@ static void NodesAddPoint(const ContactPair *pair, PetscInt p)
    Not collective. q: the slave point that was evaluated. */
 PetscErrorCode ContactPointToNodes(const ContactPair *pair, NeighbourLists lists, PetscInt q)
 {
-  ContactWork *work = pair->work;
-  FitDerivatives       map;
+  ContactWork   *work = pair->work;
+  FitDerivatives map;
 
   PetscFunctionBeginUser;
   PetscCall(WorkReserveMap(work, lists, 1 + work->result.n, MapEntries(pair, lists, q)));
   work->count = 0;
   ContactNodesAdd(pair, lists->slave_ptr[q + 1] - lists->slave_ptr[q], &lists->slave_node[lists->slave_ptr[q]]);
-  for (int i = 0; i < work->result.n; i++) NodesAddPoint(pair, lists->list_point[lists->list_ptr[q] + work->result.points[i]]);
+  for (int i = 0; i < work->result.n; i++)
+    NodesAddPoint(pair, lists->list_point[lists->list_ptr[q] + work->result.points[i]]);
   MapFill(pair, lists, q);
   ContactNodesEnd(pair);
   if (work->count > work->room) {
@@ -234,7 +242,8 @@ PetscErrorCode ContactPointToNodes(const ContactPair *pair, NeighbourLists lists
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ContactBlockBegin - the nodes' places in the block at hand become their slots; contact nodes that are not among them take no part in it. Not collective. */
+/* ContactBlockBegin - the nodes' places in the block at hand become their slots; contact nodes that are not among them
+ * take no part in it. Not collective. */
 PetscErrorCode ContactBlockBegin(const ContactPair *pair, PetscInt n, const PetscInt nodes[])
 {
   PetscFunctionBeginUser;
@@ -260,9 +269,11 @@ static PetscErrorCode WorkReserveBlock(ContactWork *work, PetscInt m)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ContactSecondBegin - begins a sum of second variations over the nodes of a block, after ContactBlockBegin(). Not collective.
+/* ContactSecondBegin - begins a sum of second variations over the nodes of a block, after ContactBlockBegin(). Not
+   collective.
 
-   nodes: of the block; points: how many slave points are added at most, and as many vectors with FitDerivativesAddOuter(). */
+   nodes: of the block; points: how many slave points are added at most, and as many vectors with
+   FitDerivativesAddOuter(). */
 PetscErrorCode ContactSecondBegin(const ContactPair *pair, PetscInt nodes, PetscInt points)
 {
   ContactWork *work   = pair->work;
@@ -285,13 +296,14 @@ PetscErrorCode ContactSecondBegin(const ContactPair *pair, PetscInt nodes, Petsc
 /* ContactSecondAdd - evaluates slave point q and adds factor times its second variation. Not collective.
 
    own[n_points]: takes what belongs to the fit points one by one, for ContactOwnToNodes(). */
-PetscErrorCode ContactSecondAdd(const ContactPair *pair, PetscInt q, PetscReal factor, double (*own)[FIT_DERIVATIVES_OWN])
+PetscErrorCode ContactSecondAdd(const ContactPair *pair, PetscInt q, PetscReal factor,
+                                double (*own)[FIT_DERIVATIVES_OWN])
 {
-  ContactWork *work  = pair->work;
+  ContactWork   *work  = pair->work;
   NeighbourLists lists = pair->lists;
-  ContactMap  *map   = &work->map;
-  PetscBool    found;
-  FitDerivatives       fit;
+  ContactMap    *map   = &work->map;
+  PetscBool      found;
+  FitDerivatives fit;
 
   PetscFunctionBeginUser;
   if (pair->fit.degree) TimingBegin(TIMING_FIT);
@@ -303,7 +315,9 @@ PetscErrorCode ContactSecondAdd(const ContactPair *pair, PetscInt q, PetscReal f
   fit = (FitDerivatives){work->sum.n_nodes, map->ptr, map->node, map->S, map->sign};
   if (work->result.factored) {
     FitDerivativesAdd(&work->sum, factor, &work->result.factors, &fit);
-    for (int i = 0; i < work->result.n; i++) FitDerivativesOwn(factor, &work->result.factors, i, own[lists->list_point[lists->list_ptr[q] + work->result.points[i]]]);
+    for (int i = 0; i < work->result.n; i++)
+      FitDerivativesOwn(factor, &work->result.factors, i,
+                        own[lists->list_point[lists->list_ptr[q] + work->result.points[i]]]);
   } else
     FitDerivativesAddDense(&work->sum, factor, work->result.n, work->result.M, &fit);
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -319,21 +333,24 @@ void ContactSecondEnd(const ContactPair *pair)
 PetscErrorCode ContactPointsToNodes(const ContactPair *pair, PetscInt first, PetscInt end)
 {
   PetscFunctionBeginUser;
-  PetscCall(WorkReserveMap(pair->work, pair->lists, (int)(end - first), pair->lists->point_ptr[end] - pair->lists->point_ptr[first]));
+  PetscCall(WorkReserveMap(pair->work, pair->lists, (int)(end - first),
+                           pair->lists->point_ptr[end] - pair->lists->point_ptr[first]));
   pair->work->count = 0;
   for (PetscInt p = first; p < end; p++) NodesAddPoint(pair, p);
   ContactNodesEnd(pair);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ContactOwnToNodes - the second variations that belong to fit points first to end - 1, summed over slave points, into the work's M. Not collective.
+/* ContactOwnToNodes - the second variations that belong to fit points first to end - 1, summed over slave points, into
+   the work's M. Not collective.
 
    nodes: of the block at hand, which are these points'; own: of all fit points. */
-PetscErrorCode ContactOwnToNodes(const ContactPair *pair, PetscInt nodes, PetscInt first, PetscInt end, const double (*own)[FIT_DERIVATIVES_OWN])
+PetscErrorCode ContactOwnToNodes(const ContactPair *pair, PetscInt nodes, PetscInt first, PetscInt end,
+                                 const double (*own)[FIT_DERIVATIVES_OWN])
 {
-  const int    dim  = pair->mesh->dim;
-  ContactWork *work = pair->work;
-  FitDerivatives       map;
+  const int      dim  = pair->mesh->dim;
+  ContactWork   *work = pair->work;
+  FitDerivatives map;
 
   PetscFunctionBeginUser;
   PetscCall(WorkReserveBlock(work, nodes * dim));
@@ -345,14 +362,17 @@ PetscErrorCode ContactOwnToNodes(const ContactPair *pair, PetscInt nodes, PetscI
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The gap of a slave point, with its first variation where `vary`; where nothing has moved since its fit was made, that tells it. */
-static PetscErrorCode PointGap(const ContactPair *pair, NeighbourLists lists, PetscInt q, int seed, PetscBool vary, PetscBool *found)
+/* The gap of a slave point, with its first variation where `vary`; where nothing has moved since its fit was made, that
+ * tells it. */
+static PetscErrorCode PointGap(const ContactPair *pair, NeighbourLists lists, PetscInt q, int seed, PetscBool vary,
+                               PetscBool *found)
 {
   SmootherResult *result = &pair->work->result;
 
   PetscFunctionBeginUser;
   if (vary || !lists->made || !lists->fit_n[q])
-    PetscCall(ContactPointEvaluate(pair, pair->smoother, lists, q, seed, vary ? SMOOTHER_FIRST_VARIATION : SMOOTHER_GAP, found));
+    PetscCall(ContactPointEvaluate(pair, pair->smoother, lists, q, seed, vary ? SMOOTHER_FIRST_VARIATION : SMOOTHER_GAP,
+                                   found));
   else {
     *found       = PETSC_TRUE;
     result->gap  = lists->gap[q]; /* facet_served, points and factors are those of the point before */
@@ -364,11 +384,12 @@ static PetscErrorCode PointGap(const ContactPair *pair, NeighbourLists lists, Pe
 
 /* ContactPointGaps - gaps (lengths) of the slave points of this rank, positions as the lists were last updated.
 
-   Not collective. factor[n_slaves]: points of factor 0 are not asked for; seed[n_slaves]: the facets of last time, rewritten, or NULL;
-   gap[n_slaves]: NaN where there is none; normals[3*n_slaves]: out of the master at the feet, or NULL. force[n_slaves]: points with one, of last time, will
-   most likely have one again, and their first variations are taken among the pair's, whose lists these are; or NULL. */
-PetscErrorCode ContactPointGaps(const ContactPair *pair, NeighbourLists lists, const PetscReal *factor, const PetscReal *force, int *seed, PetscReal *gap,
-                                PetscReal *normals)
+   Not collective. factor[n_slaves]: points of factor 0 are not asked for; seed[n_slaves]: the facets of last time,
+   rewritten, or NULL; gap[n_slaves]: NaN where there is none; normals[3*n_slaves]: out of the master at the feet, or
+   NULL. force[n_slaves]: points with one, of last time, will most likely have one again, and their first variations are
+   taken among the pair's, whose lists these are; or NULL. */
+PetscErrorCode ContactPointGaps(const ContactPair *pair, NeighbourLists lists, const PetscReal *factor,
+                                const PetscReal *force, int *seed, PetscReal *gap, PetscReal *normals)
 {
   PetscFunctionBeginUser;
   for (PetscInt q = 0; q < lists->n_slaves; q++) {
@@ -379,7 +400,8 @@ PetscErrorCode ContactPointGaps(const ContactPair *pair, NeighbourLists lists, c
     if (vary) PetscCall(ContactVariationsKeep(pair, q, found));
     gap[q] = found ? pair->work->result.gap : NAN;
     if (found && seed) seed[q] = pair->work->result.seed;
-    for (int d = 0; normals && d < 3; d++) normals[3 * q + d] = found && d < lists->dim ? pair->work->result.normal[d] : 0;
+    for (int d = 0; normals && d < 3; d++)
+      normals[3 * q + d] = found && d < lists->dim ? pair->work->result.normal[d] : 0;
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -387,7 +409,8 @@ PetscErrorCode ContactPointGaps(const ContactPair *pair, NeighbourLists lists, c
 /* ContactTermGap - the weighted gap sum W f g / sum W f (length) of a term over its points with a gap; NaN without any.
 
    Not collective. factor, point_gap[n_slaves]: of ContactPointGaps(). *area: sum W f, or NULL. */
-PetscReal ContactTermGap(const ContactPair *pair, const PetscReal *factor, const PetscReal *point_gap, PetscInt c, PetscReal *area)
+PetscReal ContactTermGap(const ContactPair *pair, const PetscReal *factor, const PetscReal *point_gap, PetscInt c,
+                         PetscReal *area)
 {
   PetscReal sum = 0, total = 0;
 

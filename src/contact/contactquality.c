@@ -4,16 +4,18 @@
 /* Gaps below this part of a face size are round-off of coordinates and projections. */
 #define QUALITY_ROUND_OFF 1e-9
 
-/* The place of the node of this value, largest of all ranks: of those that differ by round-off the one of lowest tag. value[c] of each term; tag -1: none
-   has any. */
-static PetscErrorCode FindPlace(Mesh mesh, const ContactPair *pair, const PetscReal value[], PetscReal largest, ContactPlace *place)
+/* The place of the node of this value, largest of all ranks: of those that differ by round-off the one of lowest tag.
+   value[c] of each term; tag -1: none has any. */
+static PetscErrorCode FindPlace(Mesh mesh, const ContactPair *pair, const PetscReal value[], PetscReal largest,
+                                ContactPlace *place)
 {
   PetscReal X[3] = {PETSC_MIN_REAL, PETSC_MIN_REAL, PETSC_MIN_REAL};
   PetscInt  tag = PETSC_MAX_INT, node = -1;
 
   PetscFunctionBeginUser;
   for (PetscInt c = 0; c < pair->n; c++) {
-    if (!(value[c] >= largest - QUALITY_ROUND_OFF * pair->slave->mean_size) || mesh->node_tag[pair->node[c]] >= tag) continue;
+    if (!(value[c] >= largest - QUALITY_ROUND_OFF * pair->slave->mean_size) || mesh->node_tag[pair->node[c]] >= tag)
+      continue;
     node = pair->node[c];
     tag  = mesh->node_tag[node];
   }
@@ -63,7 +65,8 @@ PetscErrorCode ContactPairGaps(Contact contact, int p, ContactGaps *gaps)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* How far first-order facets lie off the curved surface whose normals turn as theirs do; this rank's sum and number of slave points */
+/* How far first-order facets lie off the curved surface whose normals turn as theirs do; this rank's sum and number of
+ * slave points */
 static void SumSagitta(const ContactPair *pair, PetscMPIInt rank, PetscReal sum[2])
 {
   if (!pair->master || pair->master->order > 1) return;
@@ -74,7 +77,8 @@ static void SumSagitta(const ContactPair *pair, PetscMPIInt rank, PetscReal sum[
   }
 }
 
-/* ContactPairQuality - penetrations of pair p in the present state, against the size of its faces and of what facets leave out. Collective. */
+/* ContactPairQuality - penetrations of pair p in the present state, against the size of its faces and of what facets
+ * leave out. Collective. */
 PetscErrorCode ContactPairQuality(Contact contact, int p, ContactQuality *quality)
 {
   const ContactPair *pair  = &contact->pairs[p];
@@ -108,7 +112,8 @@ PetscErrorCode ContactPairQuality(Contact contact, int p, ContactQuality *qualit
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ContactPairJoined - how many slave nodes of pair p are nodes of its master as well: there the surfaces are one and never part. Collective. */
+/* ContactPairJoined - how many slave nodes of pair p are nodes of its master as well: there the surfaces are one and
+ * never part. Collective. */
 PetscErrorCode ContactPairJoined(Contact contact, int p, PetscInt *nodes, ContactPlace *place)
 {
   const ContactPair *pair = &contact->pairs[p];
@@ -136,8 +141,8 @@ PetscErrorCode ContactPairJoined(Contact contact, int p, PetscInt *nodes, Contac
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ContactNodeGap - smallest gap of a local node among all pairs that it is a slave of, in the present state; NaN: of none, no master near, or another
-   rank's node. Not collective. */
+/* ContactNodeGap - smallest gap of a local node among all pairs that it is a slave of, in the present state; NaN: of
+   none, no master near, or another rank's node. Not collective. */
 PetscReal ContactNodeGap(Contact contact, PetscInt node)
 {
   PetscReal gap = NAN;

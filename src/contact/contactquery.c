@@ -16,7 +16,8 @@ static PetscErrorCode CountOutside(Contact contact, PetscInt *outside)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ContactSummarise - counts, penetrations (lengths), penalties and total force of all pairs in the present state, the same on all ranks.
+/* ContactSummarise - counts, penetrations (lengths), penalties and total force of all pairs in the present state, the
+   same on all ranks.
 
    Collective. in and out count against the accepted state: to be called before ContactAccept(). */
 PetscErrorCode ContactSummarise(Contact contact, ContactSummary *summary)
@@ -31,7 +32,8 @@ PetscErrorCode ContactSummarise(Contact contact, ContactSummary *summary)
     const ContactPair *pair = &contact->pairs[p];
 
     for (PetscInt c = 0; c < pair->n; c++) {
-      const PetscReal penetration = pair->now.status[c] == CONTACT_CLOSED ? ContactTermOffset(pair, c, pair->t) - pair->now.gap[c] : 0;
+      const PetscReal penetration =
+        pair->now.status[c] == CONTACT_CLOSED ? ContactTermOffset(pair, c, pair->t) - pair->now.gap[c] : 0;
 
       count[0] += pair->now.status[c] == CONTACT_CLOSED;
       count[1] += pair->now.status[c] == CONTACT_CLOSED && pair->accepted.status[c] == CONTACT_OPEN;
@@ -65,11 +67,12 @@ PetscErrorCode ContactSummarise(Contact contact, ContactSummary *summary)
                               .penalty_min            = -most[2],
                               .penalty_max            = most[3],
                               .outside_window         = outside,
-                              .force                  = PetscSqrtReal(PetscSqr(total[0]) + PetscSqr(total[1]) + PetscSqr(total[2]))};
+                              .force = PetscSqrtReal(PetscSqr(total[0]) + PetscSqr(total[1]) + PetscSqr(total[2]))};
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ContactRoundOff - what rounding of positions leaves of the residual where the penalty is largest: penalty times area times machine epsilon times model size.
+/* ContactRoundOff - what rounding of positions leaves of the residual where the penalty is largest: penalty times area
+   times machine epsilon times model size.
 
    Collective. *force: the same on all ranks. */
 PetscErrorCode ContactRoundOff(Contact contact, PetscReal *force)
@@ -77,7 +80,8 @@ PetscErrorCode ContactRoundOff(Contact contact, PetscReal *force)
   PetscFunctionBeginUser;
   *force = 0;
   for (int p = 0; p < contact->n_pairs; p++)
-    for (PetscInt c = 0; c < contact->pairs[p].n; c++) *force = PetscMax(*force, contact->pairs[p].now.penalty[c] * contact->pairs[p].area[c]);
+    for (PetscInt c = 0; c < contact->pairs[p].n; c++)
+      *force = PetscMax(*force, contact->pairs[p].now.penalty[c] * contact->pairs[p].area[c]);
   *force *= PETSC_MACHINE_EPSILON * contact->mesh->size;
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, force, 1, MPIU_REAL, MPI_MAX, contact->mesh->comm));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -111,8 +115,8 @@ int ContactFindPair(Contact contact, const char *name)
 
 /* ContactGetNodes - what this rank's slave nodes of pair p show: areas, gaps, forces, pressures, normals.
 
-   Collective. u[n_nodes*dim]: local displacements (length), for the current tributary areas (finite kinematics; else the reference's). The
-   arrays belong to the contact and stand until its next call. */
+   Collective. u[n_nodes*dim]: local displacements (length), for the current tributary areas (finite kinematics; else
+   the reference's). The arrays belong to the contact and stand until its next call. */
 PetscErrorCode ContactGetNodes(Contact contact, int p, const PetscReal *u, ContactNodes *nodes)
 {
   ContactPair *pair = &contact->pairs[p];
@@ -127,11 +131,13 @@ PetscErrorCode ContactGetNodes(Contact contact, int p, const PetscReal *u, Conta
     PetscCall(SurfaceNodeAreas(pair->slave, pair->geometry, u, area, NULL));
   for (PetscInt c = 0; c < pair->n; c++) pair->pressure[c] = pair->force[c] / area[pair->node[c]];
   PetscCall(PetscFree(area));
-  *nodes = (ContactNodes){pair->n, pair->node, pair->area, pair->now.gap, pair->now.penalty, pair->force, pair->pressure, pair->normal};
+  *nodes = (ContactNodes){pair->n,           pair->node,  pair->area,     pair->now.gap,
+                          pair->now.penalty, pair->force, pair->pressure, pair->normal};
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ContactMasterForce - total force of pair p on its master in the present state, the same on all ranks; axisymmetric: over 360 degrees.
+/* ContactMasterForce - total force of pair p on its master in the present state, the same on all ranks; axisymmetric:
+   over 360 degrees.
 
    Collective. */
 PetscErrorCode ContactMasterForce(Contact contact, int p, PetscReal force[3])
@@ -146,13 +152,14 @@ PetscErrorCode ContactMasterForce(Contact contact, int p, PetscReal force[3])
 
 /* ContactGapAt - gap (length) of pair p at a slave node, the same on all ranks.
 
-   Collective. u[n_nodes*dim], t: the present state; node_id: the mesh's rank-independent number. The state's own gap where there is one;
-   else the signed distance to the whole master without its mirror images (SearchDistance()). NaN: no node of the slave surface. */
+   Collective. u[n_nodes*dim], t: the present state; node_id: the mesh's rank-independent number. The state's own gap
+   where there is one; else the signed distance to the whole master without its mirror images (SearchDistance()). NaN:
+   no node of the slave surface. */
 PetscErrorCode ContactGapAt(Contact contact, int p, const PetscReal *u, PetscReal t, PetscInt node_id, PetscReal *gap)
 {
-  Mesh               mesh     = contact->mesh;
-  const ContactPair *pair     = &contact->pairs[p];
-  PetscReal          found[5] = {-1, 0, 0, 0, 0}; /* 1: a node of the slave surface, 2: with a finite gap; gap; position */
+  Mesh               mesh = contact->mesh;
+  const ContactPair *pair = &contact->pairs[p];
+  PetscReal found[5]      = {-1, 0, 0, 0, 0}; /* 1: a node of the slave surface, 2: with a finite gap; gap; position */
 
   PetscFunctionBeginUser;
   for (PetscInt i = 0; i < pair->slave->group->n_nodes; i++) {
@@ -182,7 +189,8 @@ PetscErrorCode ContactGapAt(Contact contact, int p, const PetscReal *u, PetscRea
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ContactPairPenalty - smallest and largest penalty (force per length and area) of pair p over all ranks. Collective. */
+/* ContactPairPenalty - smallest and largest penalty (force per length and area) of pair p over all ranks. Collective.
+ */
 PetscErrorCode ContactPairPenalty(Contact contact, int p, PetscReal *least, PetscReal *most)
 {
   const ContactPair *pair     = &contact->pairs[p];
@@ -199,7 +207,8 @@ PetscErrorCode ContactPairPenalty(Contact contact, int p, PetscReal *least, Pets
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ContactPairSurface - the group of the slave surface of pair p (the mesh's) and its mean face size (length). Not collective. */
+/* ContactPairSurface - the group of the slave surface of pair p (the mesh's) and its mean face size (length). Not
+ * collective. */
 PetscErrorCode ContactPairSurface(Contact contact, int p, const MeshGroup **slave, PetscReal *mean_face_size)
 {
   PetscFunctionBeginUser;
@@ -208,14 +217,20 @@ PetscErrorCode ContactPairSurface(Contact contact, int p, const MeshGroup **slav
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ContactPairFits - how the fits of a pair stand: counts by rung, neighbours, guards, and the two errors of the surface. Collective. */
+/* ContactPairFits - how the fits of a pair stand: counts by rung, neighbours, guards, and the two errors of the
+ * surface. Collective. */
 PetscErrorCode ContactPairFits(Contact contact, int p, ContactFits *fits)
 {
-  ContactPair *pair             = &contact->pairs[p];
+  ContactPair   *pair             = &contact->pairs[p];
   NeighbourLists lists            = pair->lists;
-  PetscInt     count[RUNGS + 3] = {0};                                                       /* by rung, facets, points, neighbours */
-  PetscReal    most[6]          = {PETSC_MIN_REAL, PETSC_MIN_REAL, PETSC_MIN_REAL, 0, 0, 0}; /* -fewest, most neighbours, -pivot, Lambda, smoothing, facets */
-  PetscMPIInt  rank;
+  PetscInt       count[RUNGS + 3] = {0}; /* by rung, facets, points, neighbours */
+  PetscReal      most[6]          = {PETSC_MIN_REAL,
+                                     PETSC_MIN_REAL,
+                                     PETSC_MIN_REAL,
+                                     0,
+                                     0,
+                                     0}; /* -fewest, most neighbours, -pivot, Lambda, smoothing, facets */
+  PetscMPIInt    rank;
 
   PetscFunctionBeginUser;
   PetscCallMPI(MPI_Comm_rank(contact->mesh->comm, &rank));
@@ -223,7 +238,8 @@ PetscErrorCode ContactPairFits(Contact contact, int p, ContactFits *fits)
     PetscReal gap;
     PetscBool found;
 
-    if (!pair->fit.degree || lists->facet_ptr[q] == lists->facet_ptr[q + 1] || !SlavePointIsOwn(pair->slaves, q, rank)) continue;
+    if (!pair->fit.degree || lists->facet_ptr[q] == lists->facet_ptr[q + 1] || !SlavePointIsOwn(pair->slaves, q, rank))
+      continue;
     count[RUNGS + 1]++;
     count[lists->fit_n[q] ? lists->rung[q] : RUNGS]++;
     if (!lists->fit_n[q]) continue;
@@ -247,7 +263,8 @@ PetscErrorCode ContactPairFits(Contact contact, int p, ContactFits *fits)
                         .amplified       = most[3],
                         .smoothing_error = most[4],
                         .facet_error     = most[5]};
-  for (int r = 1; r < RUNGS; r++) *(r <= RUNG_WIDER ? &fits->wider : r <= RUNG_DEGREE_2 ? &fits->degree_2 : &fits->linear) += count[r];
+  for (int r = 1; r < RUNGS; r++)
+    *(r <= RUNG_WIDER ? &fits->wider : r <= RUNG_DEGREE_2 ? &fits->degree_2 : &fits->linear) += count[r];
   if (fits->points > fits->facets) {
     fits->neighbours_min  = (PetscInt)-most[0];
     fits->neighbours_max  = (PetscInt)most[1];
@@ -271,14 +288,15 @@ const char *ContactPairText(Contact contact, int p)
   const ContactPair       *pair  = &contact->pairs[p];
   const SceneContact      *scene = pair->scene;
   const PetscBool          live  = (PetscBool)(pair->slave_offsets && OffsetsMaps(pair->slave_offsets));
-  const char              *how   = live ? ", surface to surface with live offsets" : pair->slave_offsets ? ", surface to surface" : "";
+  const char *how = live ? ", surface to surface with live offsets" : pair->slave_offsets ? ", surface to surface" : "";
 
   if (!pair->master)
     snprintf(text, sizeof(text), "%s on an analytic %s%s", scene->slave, shapes[scene->analytic.shape], how);
   else if (!pair->fit.degree)
     snprintf(text, sizeof(text), "%s on %s, facets%s", scene->slave, scene->master, how);
   else
-    snprintf(text, sizeof(text), "%s on %s, diffuse%s, degree %d, support %g, weight %g", scene->slave, scene->master, how, pair->fit.degree,
-             pair->fit.integral ? pair->fit.support / pair->master->order : pair->fit.support, pair->fit.exponent);
+    snprintf(text, sizeof(text), "%s on %s, diffuse%s, degree %d, support %g, weight %g", scene->slave, scene->master,
+             how, pair->fit.degree, pair->fit.integral ? pair->fit.support / pair->master->order : pair->fit.support,
+             pair->fit.exponent);
   return text;
 }

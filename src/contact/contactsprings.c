@@ -1,8 +1,9 @@
 #include "contact/contactsprings.h"
 #include "contactimpl.h"
 
-/* Stiffness of the springs as a part of the automatic penalty, which is the stiffness of the elements at the surface. Each pass leaves about this part (times
-   the elements through a body) of the force of the pass before; a body that flies covers its penetration at rest divided by this in one pass. */
+/* Stiffness of the springs as a part of the automatic penalty, which is the stiffness of the elements at the surface.
+   Each pass leaves about this part (times the elements through a body) of the force of the pass before; a body that
+   flies covers its penetration at rest divided by this in one pass. */
 #define CONTACT_SPRINGS_STIFFNESS 1e-3
 
 struct _n_Stabiliser {
@@ -23,7 +24,8 @@ static PetscErrorCode AddSurface(ContactSurface surface, Geometry geometry, Pets
   for (PetscInt i = 0; i < surface->group->n_nodes; i++) {
     const PetscInt node = surface->group->nodes[i];
 
-    for (int d = 0; d < mesh->dim && mesh->node_owner[node] == rank; d++) values[node * mesh->dim + d] += stiffness * PetscMax(area[node], 0);
+    for (int d = 0; d < mesh->dim && mesh->node_owner[node] == rank; d++)
+      values[node * mesh->dim + d] += stiffness * PetscMax(area[node], 0);
   }
   PetscCall(PetscFree(area));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -31,14 +33,15 @@ static PetscErrorCode AddSurface(ContactSurface surface, Geometry geometry, Pets
 
 /* ContactSpringsCreate - springs on the deformable surfaces of all pairs that ask for it, slave and master.
 
-   Collective. The contact is borrowed for the call. like: vector of the free dofs, whose layout is taken; the anchor is 0.
+   Collective. The contact is borrowed for the call. like: vector of the free dofs, whose layout is taken; the anchor is
+   0.
 
    Source: the proximal point method (Rockafellar 1976) on the potential energy. */
 PetscErrorCode ContactSpringsCreate(Contact contact, Vec like, ContactSprings *out)
 {
   ContactSprings s;
-  PetscReal *values;
-  PetscBool  any = PETSC_FALSE;
+  PetscReal     *values;
+  PetscBool      any = PETSC_FALSE;
 
   PetscFunctionBeginUser;
   *out = NULL;
@@ -55,7 +58,8 @@ PetscErrorCode ContactSpringsCreate(Contact contact, Vec like, ContactSprings *o
 
     if (!pair->scene->stabilise) continue;
     PetscCall(AddSurface(pair->slave, pair->geometry, CONTACT_SPRINGS_STIFFNESS * pair->automatic, values));
-    if (pair->master && pair->master->group) PetscCall(AddSurface(pair->master, pair->geometry, CONTACT_SPRINGS_STIFFNESS * pair->automatic, values));
+    if (pair->master && pair->master->group)
+      PetscCall(AddSurface(pair->master, pair->geometry, CONTACT_SPRINGS_STIFFNESS * pair->automatic, values));
   }
   PetscCall(MeshLocalToGlobal(contact->mesh, values, s->stiffness));
   PetscCall(PetscFree(values));

@@ -1,6 +1,6 @@
-/* Holds bodies that contact alone is to hold, until it does: weak springs from the surfaces of pairs with `stabilise: true` to where they were, which are
-   relaxed and the step solved on, until no force is left in them. So an accepted state is an equilibrium without springs, and while nothing is
-   touched a force moves its body on from pass to pass. */
+/* Holds bodies that contact alone is to hold, until it does: weak springs from the surfaces of pairs with `stabilise:
+   true` to where they were, which are relaxed and the step solved on, until no force is left in them. So an accepted
+   state is an equilibrium without springs, and while nothing is touched a force moves its body on from pass to pass. */
 #pragma once
 #include "contact/contact.h"
 

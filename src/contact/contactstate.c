@@ -1,11 +1,13 @@
 #include "contact/contactstate.h"
 
-/* ContactStateCreate - open, unstressed, gaps unknown. Not collective. n: slave nodes; penalty: force per length and area. */
+/* ContactStateCreate - open, unstressed, gaps unknown. Not collective. n: slave nodes; penalty: force per length and
+ * area. */
 PetscErrorCode ContactStateCreate(PetscInt n, PetscReal penalty, ContactState *state)
 {
   PetscFunctionBeginUser;
   state->n = n;
-  PetscCall(PetscCalloc5(n, &state->penalty, n, &state->status, n, &state->gap, n, &state->offset, n, &state->multiplier));
+  PetscCall(
+    PetscCalloc5(n, &state->penalty, n, &state->status, n, &state->gap, n, &state->offset, n, &state->multiplier));
   for (PetscInt c = 0; c < n; c++) {
     state->penalty[c] = penalty;
     state->gap[c]     = NAN;
@@ -39,12 +41,14 @@ PetscErrorCode ContactStateDestroy(ContactState *state)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ContactStateArchive - Collective. name: where it stands in the archive; nodes: the rows of the state's n slave nodes. */
+/* ContactStateArchive - Collective. name: where it stands in the archive; nodes: the rows of the state's n slave nodes.
+ */
 PetscErrorCode ContactStateArchive(ContactState *state, Archive archive, const char *name, const Hdf5Table *nodes)
 {
   PetscReal *const   values[]  = {state->penalty, NULL, state->gap, state->offset, state->multiplier};
   static const char *names[]   = {"penalty", "status", "gap", "offset", "multiplier"};
-  PetscInt          *updates[] = {&state->raised, &state->lowered, &state->clamped, &state->light, &state->augmented, &state->missed};
+  PetscInt          *updates[] = {&state->raised, &state->lowered,   &state->clamped,
+                                  &state->light,  &state->augmented, &state->missed};
   PetscInt           all[PETSC_STATIC_ARRAY_LENGTH(updates)];
   PetscReal         *status;
   PetscMPIInt        rank;
@@ -61,7 +65,8 @@ PetscErrorCode ContactStateArchive(ContactState *state, Archive archive, const c
   PetscCall(PetscFree(status));
   PetscCallMPI(MPI_Comm_rank(PetscObjectComm((PetscObject)nodes->sf), &rank));
   for (size_t k = 0; k < PETSC_STATIC_ARRAY_LENGTH(updates); k++) all[k] = *updates[k];
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, all, PETSC_STATIC_ARRAY_LENGTH(updates), MPIU_INT, MPI_SUM, PetscObjectComm((PetscObject)nodes->sf)));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, all, PETSC_STATIC_ARRAY_LENGTH(updates), MPIU_INT, MPI_SUM,
+                             PetscObjectComm((PetscObject)nodes->sf)));
   PetscCall(PetscSNPrintf(path, sizeof(path), "%s/updates", name));
   PetscCall(ArchiveIntegers(archive, path, PETSC_STATIC_ARRAY_LENGTH(updates), all));
   for (size_t k = 0; k < PETSC_STATIC_ARRAY_LENGTH(updates) && ArchiveLoads(archive); k++)

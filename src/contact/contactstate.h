@@ -14,10 +14,12 @@ typedef struct {
   PetscReal     *offset;                          /* g_0, subtracted from the gap */
   PetscReal     *multiplier;                      /* pressure at no penetration; 0 without augmentation */
   PetscInt       raised, lowered, clamped, light; /* what the adjustment of the penalty did so far, on this rank */
-  PetscInt       augmented, missed;               /* times pressures became multipliers; steps that ended beyond the bound all the same; on rank 0 */
+  PetscInt       augmented,
+    missed; /* times pressures became multipliers; steps that ended beyond the bound all the same; on rank 0 */
 } ContactState;
 
 PetscErrorCode ContactStateCreate(PetscInt n, PetscReal penalty, ContactState *);
 PetscErrorCode ContactStateCopy(const ContactState *from, ContactState *to);
 PetscErrorCode ContactStateDestroy(ContactState *);
-PetscErrorCode ContactStateArchive(ContactState *, Archive, const char *name, const Hdf5Table *nodes); /* nodes: of its n slave nodes */
+PetscErrorCode ContactStateArchive(ContactState *, Archive, const char *name,
+                                   const Hdf5Table *nodes); /* nodes: of its n slave nodes */

@@ -1,25 +1,28 @@
 #include "contact/contactstep.h"
 #include "contactimpl.h"
 
-/* Gaps change by the motions of two bodies; and as what opens or closes changes the step, by more than the step as it is says. */
+/* Gaps change by the motions of two bodies; and as what opens or closes changes the step, by more than the step as it
+ * is says. */
 #define STEP_REACH 3
 /* Numbers of a ActiveSetTerm */
 #define STEP_TERM 4
 
 struct _n_ContactStep {
-  Contact       contact;
-  PetscReal    *reach; /* of each pair */
-  PetscInt      n, mine;
-  PetscMPIInt   rank, *count, *first; /* terms of each rank */
+  Contact        contact;
+  PetscReal     *reach; /* of each pair */
+  PetscInt       n, mine;
+  PetscMPIInt    rank, *count, *first; /* terms of each rank */
   ActiveSetTerm *terms;                /* n */
-  PetscInt     *pair, *term;          /* of mine */
-  PetscReal    *area;
-  PetscInt     *ptr, *node; /* gap's first variation, over contact nodes of the pair */
-  PetscReal    *N;          /* dim for each of these */
+  PetscInt      *pair, *term;          /* of mine */
+  PetscReal     *area;
+  PetscInt      *ptr, *node; /* gap's first variation, over contact nodes of the pair */
+  PetscReal     *N;          /* dim for each of these */
 };
 
-/* How contact nodes of a pair move with du, tools and an analytic master included: values[lists n_nodes*dim], the caller's. */
-static PetscErrorCode PairMove(Contact contact, ContactPair *pair, const PetscReal *du, PetscReal t, PetscReal t_next, PetscReal **values)
+/* How contact nodes of a pair move with du, tools and an analytic master included: values[lists n_nodes*dim], the
+ * caller's. */
+static PetscErrorCode PairMove(Contact contact, ContactPair *pair, const PetscReal *du, PetscReal t, PetscReal t_next,
+                               PetscReal **values)
 {
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(pair->lists->n_nodes * contact->mesh->dim, values));
@@ -28,7 +31,8 @@ static PetscErrorCode PairMove(Contact contact, ContactPair *pair, const PetscRe
 }
 
 /* Longest motion of a pair's contact nodes, all ranks */
-static PetscErrorCode PairStepMotion(Contact contact, ContactPair *pair, const PetscReal *du, PetscReal t, PetscReal t_next, PetscReal *motion)
+static PetscErrorCode PairStepMotion(Contact contact, ContactPair *pair, const PetscReal *du, PetscReal t,
+                                     PetscReal t_next, PetscReal *motion)
 {
   const int  dim = contact->mesh->dim;
   PetscReal *values;
@@ -47,7 +51,8 @@ static PetscErrorCode PairStepMotion(Contact contact, ContactPair *pair, const P
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Adds a term of a pair, in its state at the last projection and without its variation, if the step may reach its gap. */
+/* Adds a term of a pair, in its state at the last projection and without its variation, if the step may reach its gap.
+ */
 static void AddTerm(ContactStep step, int p, PetscInt c, PetscReal t)
 {
   const ContactPair *pair  = &step->contact->pairs[p];
@@ -58,7 +63,10 @@ static void AddTerm(ContactStep step, int p, PetscInt c, PetscReal t)
   ContactTermLaw(pair, c, t, &value, &opening, &step->area[step->mine]);
   opening -= LawOnsetGap(&state);
   if (!(PetscAbsReal(opening) <= step->reach[p])) return; /* nor where no master is near */
-  step->terms[step->mine]  = (ActiveSetTerm){.opening = opening, .pressure = value.pressure, .stiffness = pair->stiffness[c], .penalty = state.penalty};
+  step->terms[step->mine]  = (ActiveSetTerm){.opening   = opening,
+                                             .pressure  = value.pressure,
+                                             .stiffness = pair->stiffness[c],
+                                             .penalty   = state.penalty};
   step->pair[step->mine]   = p;
   step->term[step->mine++] = c;
 }
@@ -75,7 +83,8 @@ static PetscErrorCode AddVariations(ContactStep step, int p, PetscInt from)
     const PetscInt *nodes;
     PetscInt        n;
 
-    PetscCall(ContactVariationsNodes(pair, pair->term_ptr[c + 1] - pair->term_ptr[c], &pair->term_point[pair->term_ptr[c]]));
+    PetscCall(
+      ContactVariationsNodes(pair, pair->term_ptr[c + 1] - pair->term_ptr[c], &pair->term_point[pair->term_ptr[c]]));
     n                = pair->work->count;
     nodes            = pair->work->number;
     step->ptr[i + 1] = first + n;
@@ -120,10 +129,10 @@ static PetscErrorCode Gather(ContactStep step, PetscInt size, const PetscReal *m
 /* My terms become those of all ranks. */
 static PetscErrorCode GatherTerms(ContactStep step)
 {
-  MPI_Comm      comm = step->contact->mesh->comm;
-  PetscMPIInt   size, mine = (PetscMPIInt)step->mine;
+  MPI_Comm       comm = step->contact->mesh->comm;
+  PetscMPIInt    size, mine = (PetscMPIInt)step->mine;
   ActiveSetTerm *own = step->terms;
-  PetscReal    *from, *to;
+  PetscReal     *from, *to;
 
   PetscFunctionBeginUser;
   PetscCallMPI(MPI_Comm_size(comm, &size));
@@ -144,16 +153,19 @@ static PetscErrorCode GatherTerms(ContactStep step)
   PetscCall(PetscFree(step->terms));
   PetscCall(PetscMalloc1(step->n, &step->terms));
   for (PetscInt i = 0; i < step->n; i++)
-    step->terms[i] = (ActiveSetTerm){to[STEP_TERM * i], to[STEP_TERM * i + 1], to[STEP_TERM * i + 2], to[STEP_TERM * i + 3]};
+    step->terms[i] =
+      (ActiveSetTerm){to[STEP_TERM * i], to[STEP_TERM * i + 1], to[STEP_TERM * i + 2], to[STEP_TERM * i + 3]};
   PetscCall(PetscFree2(from, to));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* ContactStepCreate - the terms whose gaps the step may reach.
 
-   Collective. u, du[n_nodes*dim]: local displacements and their change (length), ghosts included. ContactHoldActiveSet() holds what it does until the step is taken.
+   Collective. u, du[n_nodes*dim]: local displacements and their change (length), ghosts included.
+   ContactHoldActiveSet() holds what it does until the step is taken.
  */
-PetscErrorCode ContactStepCreate(Contact contact, const PetscReal *u, const PetscReal *du, PetscReal t, PetscReal t_next, ContactStep *out)
+PetscErrorCode ContactStepCreate(Contact contact, const PetscReal *u, const PetscReal *du, PetscReal t,
+                                 PetscReal t_next, ContactStep *out)
 {
   ContactStep step;
   PetscInt    most = 0;
@@ -203,7 +215,8 @@ PetscErrorCode ContactStepGetTerms(ContactStep step, PetscInt *n, const ActiveSe
 }
 
 /* The change of a term's gap, summed by components so that a product does not wait for the one before it. */
-static inline PetscReal TermTravel(const int dim, const PetscReal *N, PetscInt n, const PetscInt *node, const PetscReal *values)
+static inline PetscReal TermTravel(const int dim, const PetscReal *N, PetscInt n, const PetscInt *node,
+                                   const PetscReal *values)
 {
   PetscReal sum[3] = {0, 0, 0};
 
@@ -213,7 +226,8 @@ static inline PetscReal TermTravel(const int dim, const PetscReal *N, PetscInt n
 }
 
 /* ContactStepTravel - change of the gaps (length) with du, to first order. Collective. */
-PetscErrorCode ContactStepTravel(ContactStep step, const PetscReal *du, PetscReal t, PetscReal t_next, PetscReal *travel)
+PetscErrorCode ContactStepTravel(ContactStep step, const PetscReal *du, PetscReal t, PetscReal t_next,
+                                 PetscReal *travel)
 {
   const int  dim = step->contact->mesh->dim;
   PetscReal *mine, *values;
@@ -226,8 +240,8 @@ PetscErrorCode ContactStepTravel(ContactStep step, const PetscReal *du, PetscRea
     for (; i < step->mine && step->pair[i] == p; i++) {
       const PetscInt first = step->ptr[i], n = step->ptr[i + 1] - first;
 
-      mine[i] =
-        dim == 3 ? TermTravel(3, &step->N[first * 3], n, &step->node[first], values) : TermTravel(2, &step->N[first * 2], n, &step->node[first], values);
+      mine[i] = dim == 3 ? TermTravel(3, &step->N[first * 3], n, &step->node[first], values)
+                         : TermTravel(2, &step->N[first * 2], n, &step->node[first], values);
     }
     PetscCall(PetscFree(values));
   }
@@ -237,7 +251,8 @@ PetscErrorCode ContactStepTravel(ContactStep step, const PetscReal *du, PetscRea
 }
 
 /* ContactStepWithin - Collective. du, t, t_next: as of ContactStepCreate(). */
-PetscErrorCode ContactStepWithin(ContactStep step, const PetscReal *du, PetscReal t, PetscReal t_next, PetscBool *within)
+PetscErrorCode ContactStepWithin(ContactStep step, const PetscReal *du, PetscReal t, PetscReal t_next,
+                                 PetscBool *within)
 {
   PetscReal motion;
 
@@ -262,8 +277,8 @@ PetscErrorCode ContactStepForces(ContactStep step, PetscInt rows, PetscInt m, co
 
     if (i < 0 || i >= step->mine) continue;
     for (PetscInt k = step->ptr[i] * dim; k < step->ptr[i + 1] * dim; k++)
-      PetscCall(
-        MatSetValue(*B, step->contact->pairs[step->pair[i]].lists->dof[step->node[k / dim] * dim + k % dim], j, step->area[i] * step->N[k], ADD_VALUES));
+      PetscCall(MatSetValue(*B, step->contact->pairs[step->pair[i]].lists->dof[step->node[k / dim] * dim + k % dim], j,
+                            step->area[i] * step->N[k], ADD_VALUES));
   }
   PetscCall(MatAssemblyBegin(*B, MAT_FINAL_ASSEMBLY));
   PetscCall(MatAssemblyEnd(*B, MAT_FINAL_ASSEMBLY));

@@ -1,7 +1,8 @@
 #include "contactimpl.h"
 #include "base/gathertable.h"
 
-/* Gaps up to this part of the face size are no gaps: the node touches already, and no load step makes it touch later. */
+/* Gaps up to this part of the face size are no gaps: the node touches already, and no load step makes it touch later.
+ */
 #define CONTACT_RESTING 1e-9
 
 /* What is known of the slave points at one time; NaN: no master near */
@@ -42,9 +43,10 @@ static PetscErrorCode DistancesDestroy(Distances *d)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Weighted gaps of a term at both times, from the points known at both; a point that is fitted at only one of them is measured to the facets
-   at both: fit and facets lie apart, and their difference is no approach. NaN: no point. */
-static void TermGaps(const ContactPair *pair, PetscInt c, const Distances *before, const Distances *after, PetscReal gap[2])
+/* Weighted gaps of a term at both times, from the points known at both; a point that is fitted at only one of them is
+   measured to the facets at both: fit and facets lie apart, and their difference is no approach. NaN: no point. */
+static void TermGaps(const ContactPair *pair, PetscInt c, const Distances *before, const Distances *after,
+                     PetscReal gap[2])
 {
   PetscReal area = 0;
 
@@ -72,16 +74,18 @@ static PetscErrorCode TouchStepRows(Contact contact, PetscReal **rows)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ContactTouches - beta_k of the open slave nodes that approach their masters from (u_0, t_0) to (u, t), sorted, on all ranks.
+/* ContactTouches - beta_k of the open slave nodes that approach their masters from (u_0, t_0) to (u, t), sorted, on all
+   ranks.
 
-   Collective. u_0, u [n_nodes*dim]: local displacements (length) within the reach of the present lists; by_area: a node weighs its reference
-   area (else 1); still_open: only nodes that are open at (u, t). *touch: to be freed with PetscFree(). Source: Chamoret et al. 2004, eqs 17, 18. */
-PetscErrorCode ContactTouches(Contact contact, const PetscReal *u_0, PetscReal t_0, const PetscReal *u, PetscReal t, PetscBool by_area, PetscBool still_open,
-                              int *n, Touch **touch)
+   Collective. u_0, u [n_nodes*dim]: local displacements (length) within the reach of the present lists; by_area: a node
+   weighs its reference area (else 1); still_open: only nodes that are open at (u, t). *touch: to be freed with
+   PetscFree(). Source: Chamoret et al. 2004, eqs 17, 18. */
+PetscErrorCode ContactTouches(Contact contact, const PetscReal *u_0, PetscReal t_0, const PetscReal *u, PetscReal t,
+                              PetscBool by_area, PetscBool still_open, int *n, Touch **touch)
 {
-  PetscReal *rows;
-  PetscInt   count = 0;
-  GatherTable      table;
+  PetscReal  *rows;
+  PetscInt    count = 0;
+  GatherTable table;
 
   PetscFunctionBeginUser;
   PetscCall(PetscLogEventBegin(contact->event_touch, 0, 0, 0, 0));
@@ -110,7 +114,8 @@ PetscErrorCode ContactTouches(Contact contact, const PetscReal *u_0, PetscReal t
   }
   PetscCall(GatherTableCreate(contact->mesh->comm, 3, count, rows, &table));
   PetscCall(PetscMalloc1(table.n, touch));
-  for (PetscInt i = 0; i < table.n; i++) (*touch)[i] = (Touch){table.row[3 * i], table.row[3 * i + 1], table.row[3 * i + 2]};
+  for (PetscInt i = 0; i < table.n; i++)
+    (*touch)[i] = (Touch){table.row[3 * i], table.row[3 * i + 1], table.row[3 * i + 2]};
   *n = (int)table.n;
   PetscCall(GatherTableDestroy(&table));
   PetscCall(PetscFree(rows));
@@ -118,8 +123,8 @@ PetscErrorCode ContactTouches(Contact contact, const PetscReal *u_0, PetscReal t
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ContactChanges - how much came into contact or left it since the accepted state: nodes, or their reference area. A node that touched already
-   is no change: no load step makes it touch later.
+/* ContactChanges - how much came into contact or left it since the accepted state: nodes, or their reference area. A
+   node that touched already is no change: no load step makes it touch later.
 
    Collective. t_0: load parameter of the accepted state; *all: the same of all slave nodes. */
 PetscErrorCode ContactChanges(Contact contact, PetscReal t_0, PetscBool by_area, PetscReal *changed, PetscReal *all)
@@ -131,8 +136,10 @@ PetscErrorCode ContactChanges(Contact contact, PetscReal t_0, PetscBool by_area,
     const ContactPair *pair = &contact->pairs[p];
 
     for (PetscInt c = 0; c < pair->n; c++) {
-      const PetscReal weight = by_area ? pair->area[c] : 1, gap = pair->accepted.gap[c] - ContactTermOffset(pair, c, t_0);
-      const PetscBool resting = (PetscBool)(pair->accepted.status[c] == CONTACT_OPEN && gap <= CONTACT_RESTING * pair->size[c]);
+      const PetscReal weight = by_area ? pair->area[c] : 1,
+                      gap    = pair->accepted.gap[c] - ContactTermOffset(pair, c, t_0);
+      const PetscBool resting =
+        (PetscBool)(pair->accepted.status[c] == CONTACT_OPEN && gap <= CONTACT_RESTING * pair->size[c]);
 
       sum[1] += weight;
       if (pair->now.status[c] != pair->accepted.status[c] && !resting) sum[0] += weight;

@@ -3,20 +3,22 @@
 /* A foot this little past the edge of a facet, in face sizes, is on it: nodes over nodes are no exception. */
 #define LOST_ON_FACET 1e-6
 
-/* Is slave point q of a term, which the present lists find behind the master by more than the term's face size, away from it or in front of it by the next
-   lists, without having left past a free edge? Then the search has lost it: its term would go, and nothing would hold the bodies apart. *depth: how far behind.
+/* Is slave point q of a term, which the present lists find behind the master by more than the term's face size, away
+   from it or in front of it by the next lists, without having left past a free edge? Then the search has lost it: its
+   term would go, and nothing would hold the bodies apart. *depth: how far behind.
  */
 static PetscBool PointLost(const ContactPair *pair, PetscInt c, PetscInt q, PetscReal t, ContactLost *lost)
 {
   const NeighbourLists next   = pair->next;
-  const PetscReal    offset = ContactTermOffset(pair, c, t);
-  PetscBool          found  = PETSC_FALSE;
+  const PetscReal      offset = ContactTermOffset(pair, c, t);
+  PetscBool            found  = PETSC_FALSE;
 
   *lost = (ContactLost){offset - pair->point_gap[q], NAN, pair->size[c], pair->node[c]};
   if (!(lost->depth > lost->size)) return PETSC_FALSE;
   if (pair->master && next->facet_ptr[q] == next->facet_ptr[q + 1]) return PETSC_TRUE;
   if (pair->next_factor[q] == 0) return PETSC_FALSE;
-  if (!ContactPointEvaluate(pair, pair->facets, next, q, -1, SMOOTHER_GAP, &found) && found) lost->gap = pair->work->result.gap - offset;
+  if (!ContactPointEvaluate(pair, pair->facets, next, q, -1, SMOOTHER_GAP, &found) && found)
+    lost->gap = pair->work->result.gap - offset;
   return (PetscBool)(!(lost->gap < 0));
 }
 
@@ -25,9 +27,11 @@ static void KeepDeepest(ContactPair *pair, const ContactLost *lost)
   if (lost->depth > pair->lost.depth) pair->lost = *lost;
 }
 
-/* ContactNoteLost - remembers the slave point of a pair that is the farthest behind its master and that the next lists have lost.
+/* ContactNoteLost - remembers the slave point of a pair that is the farthest behind its master and that the next lists
+   have lost.
 
-   Not collective; after ContactResidual() with forces at (u, t), while the next lists wait to replace those it was found with. */
+   Not collective; after ContactResidual() with forces at (u, t), while the next lists wait to replace those it was
+   found with. */
 PetscErrorCode ContactNoteLost(ContactPair *pair, PetscReal t)
 {
   PetscFunctionBeginUser;
@@ -41,16 +45,16 @@ PetscErrorCode ContactNoteLost(ContactPair *pair, PetscReal t)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Is slave point q, which is open, behind the very facet that was nearest when the lists were made? It has passed through the master, and another
-   part of it is nearer now. */
+/* Is slave point q, which is open, behind the very facet that was nearest when the lists were made? It has passed
+   through the master, and another part of it is nearer now. */
 static PetscBool PointTunnelled(const ContactPair *pair, PetscInt c, PetscInt q, PetscReal t, ContactLost *lost)
 {
   const NeighbourLists lists  = pair->lists;
-  const int          dim    = lists->dim;
-  const PetscReal    offset = ContactTermOffset(pair, c, t);
-  PetscReal          x[FACE_MAX_NODES * 3];
-  Facet              facet;
-  Foot               foot;
+  const int            dim    = lists->dim;
+  const PetscReal      offset = ContactTermOffset(pair, c, t);
+  PetscReal            x[FACE_MAX_NODES * 3];
+  Facet                facet;
+  Foot                 foot;
 
   if (!pair->master || lists->nearest[q] < 0 || !(pair->point_gap[q] - offset >= 0)) return PETSC_FALSE;
   facet = lists->facet[lists->facet_ptr[q] + lists->nearest[q]];
@@ -58,16 +62,18 @@ static PetscBool PointTunnelled(const ContactPair *pair, PetscInt c, PetscInt q,
     NeighbourListsRelative(lists, q, lists->list_point[lists->list_ptr[q] + facet.nodes[a]], &x[a * dim]);
     facet.nodes[a] = a;
   }
-  facet.free_edges = (1 << ElementGet(facet.type)->corners) - 1; /* else a foot on an edge would be no more over the facet than one beyond it */
+  facet.free_edges = (1 << ElementGet(facet.type)->corners) -
+                     1; /* else a foot on an edge would be no more over the facet than one beyond it */
   FacetProject(dim, &facet, x, &foot);
   *lost = (ContactLost){offset - foot.gap, pair->point_gap[q] - offset, pair->size[c], pair->node[c]};
   return (PetscBool)(foot.beyond <= LOST_ON_FACET * lost->size && lost->depth > lost->size);
 }
 
-/* ContactNoteTunnelled - remembers the open slave point that has passed the farthest through its master since the lists were made, by more than a face size.
+/* ContactNoteTunnelled - remembers the open slave point that has passed the farthest through its master since the lists
+   were made, by more than a face size.
 
-   Not collective; after ContactResidual() with forces at (u, t). Known is what was near when the lists were made: what a step leaps over from farther away, and
-   what is thinner than it is passed through, is not seen. */
+   Not collective; after ContactResidual() with forces at (u, t). Known is what was near when the lists were made: what
+   a step leaps over from farther away, and what is thinner than it is passed through, is not seen. */
 void ContactNoteTunnelled(ContactPair *pair, PetscReal t)
 {
   for (PetscInt c = 0; c < pair->n; c++) {
@@ -79,23 +85,29 @@ void ContactNoteTunnelled(ContactPair *pair, PetscReal t)
   }
 }
 
-/* ContactNoteJumps - remembers the term that was closed, is open, and came out of its master faster than anything moved: another part of the master, in front
-   of the node, has become the nearest one, and the node is still behind the first.
+/* ContactNoteJumps - remembers the term that was closed, is open, and came out of its master faster than anything
+   moved: another part of the master, in front of the node, has become the nearest one, and the node is still behind the
+   first.
 
-   Not collective; after ContactResidual() with forces. motion: of any node or tool since the accepted state (length). */
+   Not collective; after ContactResidual() with forces. motion: of any node or tool since the accepted state (length).
+ */
 void ContactNoteJumps(ContactPair *pair, PetscReal motion)
 {
   for (PetscInt c = 0; c < pair->n; c++) {
     const PetscReal   jump = pair->now.gap[c] - pair->accepted.gap[c];
     const ContactLost lost = {-pair->accepted.gap[c], pair->now.gap[c], pair->size[c], pair->node[c]};
 
-    if (pair->accepted.status[c] == CONTACT_CLOSED && pair->now.status[c] == CONTACT_OPEN && jump > 2 * motion + lost.size) KeepDeepest(pair, &lost);
+    if (pair->accepted.status[c] == CONTACT_CLOSED && pair->now.status[c] == CONTACT_OPEN &&
+        jump > 2 * motion + lost.size)
+      KeepDeepest(pair, &lost);
   }
 }
 
-/* ContactLocateLost - whether a slave point was lost since the last ContactGather(): pair, node (gmsh's tag) and depth of the worst, into text[size].
+/* ContactLocateLost - whether a slave point was lost since the last ContactGather(): pair, node (gmsh's tag) and depth
+   of the worst, into text[size].
 
-   Collective. *lost: the same on all ranks. A solution with such a point is none: contact is gone where it should press. */
+   Collective. *lost: the same on all ranks. A solution with such a point is none: contact is gone where it should
+   press. */
 PetscErrorCode ContactLocateLost(Contact contact, PetscBool *lost, char *text, size_t size)
 {
   PetscReal worst[5] = {0, 0, 0, 0, 0}; /* depth, gap, face size, tag, pair */
@@ -121,8 +133,11 @@ PetscErrorCode ContactLocateLost(Contact contact, PetscBool *lost, char *text, s
   *lost = most.depth > 0 ? PETSC_TRUE : PETSC_FALSE;
   if (!*lost) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCallMPI(MPI_Bcast(worst, 5, MPIU_REAL, most.rank, contact->mesh->comm));
-  if (!PetscIsNanReal(worst[1])) PetscCall(PetscSNPrintf(now, sizeof(now), "%.3g in front of another part of it", (double)worst[1]));
-  PetscCall(PetscSNPrintf(text, size, "contact '%s': node %.0f was %.3g behind its master and is found %s (face size %.3g): is the penalty too soft?",
-                          ContactPairName(contact, (int)worst[4]), (double)worst[3], (double)worst[0], now, (double)worst[2]));
+  if (!PetscIsNanReal(worst[1]))
+    PetscCall(PetscSNPrintf(now, sizeof(now), "%.3g in front of another part of it", (double)worst[1]));
+  PetscCall(PetscSNPrintf(
+    text, size,
+    "contact '%s': node %.0f was %.3g behind its master and is found %s (face size %.3g): is the penalty too soft?",
+    ContactPairName(contact, (int)worst[4]), (double)worst[3], (double)worst[0], now, (double)worst[2]));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

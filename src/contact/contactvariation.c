@@ -1,7 +1,8 @@
 #include "contactimpl.h"
 #include "base/timing.h"
 
-/* ContactVariationsCreate - room for the first variations of so many slave points, none of them known. Not collective. */
+/* ContactVariationsCreate - room for the first variations of so many slave points, none of them known. Not collective.
+ */
 PetscErrorCode ContactVariationsCreate(int dim, PetscInt n_points, ContactVariations **variations)
 {
   ContactVariations *v;
@@ -35,7 +36,8 @@ void ContactVariationsReset(ContactVariations *v)
   for (PetscInt q = 0; q < v->n_points; q++) v->first[q] = -1;
 }
 
-/* ContactVariationsKeep - takes that of point q from the pair's work, where it was evaluated last. Not collective. found: a master is near. */
+/* ContactVariationsKeep - takes that of point q from the pair's work, where it was evaluated last. Not collective.
+ * found: a master is near. */
 PetscErrorCode ContactVariationsKeep(const ContactPair *pair, PetscInt q, PetscBool found)
 {
   const int          dim  = pair->mesh->dim;
@@ -67,14 +69,15 @@ PetscErrorCode ContactVariationsNeed(const ContactPair *pair, PetscInt q)
   PetscFunctionBeginUser;
   if (pair->variations->first[q] >= 0) PetscFunctionReturn(PETSC_SUCCESS);
   if (pair->fit.degree) TimingBegin(TIMING_FIT);
-  PetscCall(ContactPointEvaluate(pair, pair->smoother, pair->lists, q, pair->seed[q], SMOOTHER_FIRST_VARIATION, &found));
+  PetscCall(
+    ContactPointEvaluate(pair, pair->smoother, pair->lists, q, pair->seed[q], SMOOTHER_FIRST_VARIATION, &found));
   PetscCall(ContactVariationsKeep(pair, q, found));
   if (pair->fit.degree) TimingEnd(TIMING_FIT);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ContactVariationsNodes - the nodes of the first variations of some slave points, each once, into the work's number; points without area have none.
-   Not collective. */
+/* ContactVariationsNodes - the nodes of the first variations of some slave points, each once, into the work's number;
+   points without area have none. Not collective. */
 PetscErrorCode ContactVariationsNodes(const ContactPair *pair, PetscInt n, const PetscInt points[])
 {
   const ContactVariations *v     = pair->variations;
@@ -88,13 +91,14 @@ PetscErrorCode ContactVariationsNodes(const ContactPair *pair, PetscInt n, const
   }
   PetscCall(ContactNodesBegin(pair, nodes));
   for (PetscInt k = 0; k < n; k++)
-    if (pair->factor[points[k]] != 0) ContactNodesAdd(pair, v->end[points[k]] - v->first[points[k]], &v->number[v->first[points[k]]]);
+    if (pair->factor[points[k]] != 0)
+      ContactNodesAdd(pair, v->end[points[k]] - v->first[points[k]], &v->number[v->first[points[k]]]);
   ContactNodesEnd(pair);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ContactTermVary - v[] += scale times the sum of a term's points' variations, weighted by their areas, over the nodes of the block at hand; they are there
-   (ContactVariationsNodes()). Not collective. */
+/* ContactTermVary - v[] += scale times the sum of a term's points' variations, weighted by their areas, over the nodes
+   of the block at hand; they are there (ContactVariationsNodes()). Not collective. */
 void ContactTermVary(const ContactPair *pair, PetscInt c, PetscReal scale, PetscReal *v)
 {
   const int                dim = pair->mesh->dim;
@@ -131,7 +135,8 @@ static PetscErrorCode VectorsReserve(ContactVectors *vectors, PetscInt entries)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ContactVectorsAdd - scale times the sum of a term's points' variations, weighted by their areas, over the free dofs, as one vector more. Not collective. */
+/* ContactVectorsAdd - scale times the sum of a term's points' variations, weighted by their areas, over the free dofs,
+ * as one vector more. Not collective. */
 PetscErrorCode ContactVectorsAdd(ContactVectors *vectors, const ContactPair *pair, PetscInt c, PetscReal scale)
 {
   const int                dim = pair->mesh->dim;

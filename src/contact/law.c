@@ -7,9 +7,9 @@ double LawOnsetGap(const LawState *state)
   return state->offset + state->multiplier / state->penalty;
 }
 
-/* Chamoret et al. 2004, eq. 15, written as the derivative of psi = eps/2 min(g, 0)^2 so that the tangent (eq. 14) is symmetric. With a multiplier lambda the
-   pressure is max(0, lambda - eps g): the same law over the gap less lambda/eps (Simo and Laursen 1992, Computers & Structures 42, 97-116; its
-   potential but for a constant). */
+/* Chamoret et al. 2004, eq. 15, written as the derivative of psi = eps/2 min(g, 0)^2 so that the tangent (eq. 14) is
+   symmetric. With a multiplier lambda the pressure is max(0, lambda - eps g): the same law over the gap less lambda/eps
+   (Simo and Laursen 1992, Computers & Structures 42, 97-116; its potential but for a constant). */
 static void LawPenalty(double gap, const LawState *state, LawValue *value)
 {
   const double g = gap - LawOnsetGap(state);

@@ -1,5 +1,5 @@
-/* When open slave nodes will touch, and how much of a load step brings as many of them into contact as wanted (Chamoret et al. 2004, section 4).
-   Plain C. */
+/* When open slave nodes will touch, and how much of a load step brings as many of them into contact as wanted (Chamoret
+   et al. 2004, section 4). Plain C. */
 #pragma once
 
 /* One open node on its way to the master */

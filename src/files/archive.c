@@ -70,7 +70,8 @@ static int ReserveRoom(const char *name, PetscInt64 bytes)
 
 /* ArchiveCreate - a new file under its temporary name.
 
-   Collective. bytes: ArchiveSize(). Errors: PETSC_ERR_FILE_WRITE with its cause where there is no room for so many; the file `name` is not touched. */
+   Collective. bytes: ArchiveSize(). Errors: PETSC_ERR_FILE_WRITE with its cause where there is no room for so many; the
+   file `name` is not touched. */
 PetscErrorCode ArchiveCreate(MPI_Comm comm, const char *name, PetscInt64 bytes, Archive *archive)
 {
   const int64_t version = ARCHIVE_VERSION;
@@ -81,7 +82,8 @@ PetscErrorCode ArchiveCreate(MPI_Comm comm, const char *name, PetscInt64 bytes, 
   PetscCall(ArchiveNew(comm, name, archive));
   if (!(*archive)->rank) cause = ReserveRoom((*archive)->temporary, bytes);
   if (cause) PetscCall(PetscFree(*archive));
-  PetscCheck(!cause, PETSC_COMM_SELF, PETSC_ERR_FILE_WRITE, "cannot write %s (%.3g MB): %s; what stood there before is intact", name, 1e-6 * (double)bytes,
+  PetscCheck(!cause, PETSC_COMM_SELF, PETSC_ERR_FILE_WRITE,
+             "cannot write %s (%.3g MB): %s; what stood there before is intact", name, 1e-6 * (double)bytes,
              strerror(cause));
   PetscCallMPI(MPI_Barrier(comm));
   PetscCall(Hdf5TableCreateFile(comm, (*archive)->temporary, &(*archive)->file));
@@ -116,19 +118,23 @@ static void FileComplaint(const char *name, char *message, size_t size)
 
   *message = '\0';
   if (access(name, R_OK)) {
-    snprintf(message, size, "%s: %s; allowed: -restart with a directory whose run has written a checkpoint (output.checkpoint, or a stopped run)", name,
-             strerror(errno));
+    snprintf(message, size,
+             "%s: %s; allowed: -restart with a directory whose run has written a checkpoint (output.checkpoint, or a "
+             "stopped run)",
+             name, strerror(errno));
     return;
   }
   H5Eget_auto2(H5E_DEFAULT, &report, &context);
   H5Eset_auto2(H5E_DEFAULT, NULL, NULL);
   file = H5Fopen(name, H5F_ACC_RDONLY, H5P_DEFAULT);
   if (file < 0)
-    snprintf(message, size, "%s is no HDF5 file, or a part of it is missing; allowed: a whole checkpoint of burnish", name);
+    snprintf(message, size, "%s is no HDF5 file, or a part of it is missing; allowed: a whole checkpoint of burnish",
+             name);
   else if (QuietAttribute(file, &version) < 0)
     snprintf(message, size, "%s was not written by burnish; allowed: a checkpoint of burnish", name);
   else if (version != ARCHIVE_VERSION)
-    snprintf(message, size, "%s is a checkpoint of version %lld; allowed: version %d, of this burnish", name, (long long)version, ARCHIVE_VERSION);
+    snprintf(message, size, "%s is a checkpoint of version %lld; allowed: version %d, of this burnish", name,
+             (long long)version, ARCHIVE_VERSION);
   if (file >= 0) H5Fclose(file);
   H5Eset_auto2(H5E_DEFAULT, report, context);
 }
@@ -188,7 +194,8 @@ PetscErrorCode ArchiveClose(Archive *archive)
   if (!a->measures && !a->loads) {
     PetscCallMPI(MPI_Barrier(a->comm));
     if (!a->rank) cause = MoveInPlace(a->temporary, a->name);
-    PetscCheck(!cause, PETSC_COMM_SELF, PETSC_ERR_FILE_WRITE, "cannot write %s: %s; what stood there before is intact", a->name, strerror(cause));
+    PetscCheck(!cause, PETSC_COMM_SELF, PETSC_ERR_FILE_WRITE, "cannot write %s: %s; what stood there before is intact",
+               a->name, strerror(cause));
     PetscCallMPI(MPI_Barrier(a->comm)); /* it is there when any rank goes on */
   }
   PetscCall(PetscFree(*archive));
@@ -201,7 +208,8 @@ PetscBool ArchiveLoads(Archive archive)
   return archive->loads;
 }
 
-/* Opens a dataset to be read and refuses one that is missing or has another number of values than wanted; < 0: any number. */
+/* Opens a dataset to be read and refuses one that is missing or has another number of values than wanted; < 0: any
+ * number. */
 static PetscErrorCode OpenDataset(Archive a, const char *name, hssize_t values, hid_t *data, hsize_t *size)
 {
   hid_t     space;
@@ -219,8 +227,9 @@ static PetscErrorCode OpenDataset(Archive a, const char *name, hssize_t values, 
     CallHDF5(H5Sclose(space));
   }
   if (found < 0 || (values >= 0 && found != values))
-    PetscCall(RefuseInput(a->comm, "%s is damaged: /%s has %lld values where %lld belong; allowed: a whole checkpoint of this scene", a->name, name,
-                          (long long)PetscMax(found, 0), (long long)values));
+    PetscCall(RefuseInput(
+      a->comm, "%s is damaged: /%s has %lld values where %lld belong; allowed: a whole checkpoint of this scene",
+      a->name, name, (long long)PetscMax(found, 0), (long long)values));
   *size = (hsize_t)found;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -232,7 +241,8 @@ PetscErrorCode ArchiveHas(Archive a, const char *name, PetscBool *there)
 
   PetscFunctionBeginUser;
   *there = PETSC_TRUE;
-  for (const char *end = name; *there && end; end = strchr(end + 1, '/')) { /* H5Lexists() wants every group on the way to be there */
+  for (const char *end = name; *there && end;
+       end             = strchr(end + 1, '/')) { /* H5Lexists() wants every group on the way to be there */
     if (end == name) continue;
     snprintf(path, sizeof(path), "%.*s", (int)(end - name), name);
     *there = H5Lexists(a->file, path, H5P_DEFAULT) > 0 ? PETSC_TRUE : PETSC_FALSE;
@@ -398,8 +408,8 @@ PetscErrorCode ArchiveRows(Archive a, const char *name, const Hdf5Table *rows, i
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ArchiveBytes - *n bytes of this rank, behind those of the ranks before it; loaded, each rank gets an equal share, to be freed with PetscFree().
-   Collective. */
+/* ArchiveBytes - *n bytes of this rank, behind those of the ranks before it; loaded, each rank gets an equal share, to
+   be freed with PetscFree(). Collective. */
 PetscErrorCode ArchiveBytes(Archive a, const char *name, PetscInt64 *n, char **bytes)
 {
   PetscInt64  first = 0, total;
@@ -422,12 +432,14 @@ PetscErrorCode ArchiveBytes(Archive a, const char *name, PetscInt64 *n, char **b
   else {
     PetscCallMPI(MPI_Exscan(n, &first, 1, MPIU_INT64, MPI_SUM, a->comm));
     PetscCallMPI(MPI_Allreduce(n, &total, 1, MPIU_INT64, MPI_SUM, a->comm));
-    PetscCall(Hdf5TableWrite(a->file, name, (hsize_t)total, a->rank ? (hsize_t)first : 0, (hsize_t)*n, 1, H5T_NATIVE_CHAR, *bytes));
+    PetscCall(Hdf5TableWrite(a->file, name, (hsize_t)total, a->rank ? (hsize_t)first : 0, (hsize_t)*n, 1,
+                             H5T_NATIVE_CHAR, *bytes));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ArchiveExtract - all bytes of ArchiveBytes() to a stream of rank 0's. Collective; loading only. Errors: PETSC_ERR_FILE_WRITE. */
+/* ArchiveExtract - all bytes of ArchiveBytes() to a stream of rank 0's. Collective; loading only. Errors:
+ * PETSC_ERR_FILE_WRITE. */
 PetscErrorCode ArchiveExtract(Archive a, const char *name, FILE *stream)
 {
   hid_t   data;
@@ -441,7 +453,8 @@ PetscErrorCode ArchiveExtract(Archive a, const char *name, FILE *stream)
     const size_t n = (size_t)PetscMin(total - at, (hsize_t)ARCHIVE_PIECE);
 
     PetscCall(ReadPart(data, at, n, 1, H5T_NATIVE_CHAR, piece));
-    PetscCheck(fwrite(piece, 1, n, stream) == n, PETSC_COMM_SELF, PETSC_ERR_FILE_WRITE, "cannot hold a copy of /%s of %s: %s", name, a->name, strerror(errno));
+    PetscCheck(fwrite(piece, 1, n, stream) == n, PETSC_COMM_SELF, PETSC_ERR_FILE_WRITE,
+               "cannot hold a copy of /%s of %s: %s", name, a->name, strerror(errno));
   }
   PetscCall(PetscFree(piece));
   CallHDF5(H5Dclose(data));

@@ -1,9 +1,12 @@
-/* The state of a run on its way to a file or back. Every object names its values in one function, NameArchive(object, archive), which saves them or
-   takes them over, so that what is saved is what is restored. The file is the same on any number of ranks and serves any.
+/* The state of a run on its way to a file or back. Every object names its values in one function, NameArchive(object,
+   archive), which saves them or takes them over, so that what is saved is what is restored. The file is the same on any
+   number of ranks and serves any.
 
-     ArchiveMeasure() for the size; ArchiveCreate(), the objects' functions, ArchiveClose(); ArchiveOpen(), the same functions, ArchiveClose()
+     ArchiveMeasure() for the size; ArchiveCreate(), the objects' functions, ArchiveClose(); ArchiveOpen(), the same
+   functions, ArchiveClose()
 
-   A new file is written under a temporary name, synced, and renamed when it is whole: the one before stays until then. */
+   A new file is written under a temporary name, synced, and renamed when it is whole: the one before stays until then.
+ */
 #pragma once
 #include "files/hdf5table.h"
 #include <stdio.h>
@@ -13,7 +16,8 @@ typedef struct _n_Archive *Archive;
 PetscErrorCode ArchiveMeasure(MPI_Comm, Archive *);     /* saves nowhere, counts bytes */
 PetscErrorCode ArchiveSize(Archive, PetscInt64 *bytes); /* all ranks together */
 PetscErrorCode ArchiveCreate(MPI_Comm, const char *file, PetscInt64 bytes, Archive *);
-PetscErrorCode ArchiveOpen(MPI_Comm, const char *file, Archive *); /* refuses what is no whole archive of this version */
+PetscErrorCode ArchiveOpen(MPI_Comm, const char *file,
+                           Archive *); /* refuses what is no whole archive of this version */
 PetscErrorCode ArchiveClose(Archive *);
 PetscBool      ArchiveLoads(Archive); /* values come from the file */
 PetscErrorCode ArchiveHas(Archive, const char *name, PetscBool *);

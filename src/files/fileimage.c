@@ -5,8 +5,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-/* A run of bytes of the file. An image is an array of runs, that of the values' runs inverted, each followed by its bytes; the first one has no bytes,
-   its `first` is the file's length and its `n` the number of runs. */
+/* A run of bytes of the file. An image is an array of runs, that of the values' runs inverted, each followed by its
+   bytes; the first one has no bytes, its `first` is the file's length and its `n` the number of runs. */
 typedef struct {
   int64_t first, n;
 } Run;
@@ -41,7 +41,8 @@ static herr_t VisitLink(hid_t file, const char *name, const H5L_info_t *info, vo
   haddr_t first  = H5Iget_type(object) == H5I_DATASET ? H5Dget_offset(object) : HADDR_UNDEF;
 
   (void)info;
-  if (object < 0 || (first != HADDR_UNDEF && RunsAdd(runs, (int64_t)first, (int64_t)H5Dget_storage_size(object)))) return -1;
+  if (object < 0 || (first != HADDR_UNDEF && RunsAdd(runs, (int64_t)first, (int64_t)H5Dget_storage_size(object))))
+    return -1;
   return H5Oclose(object);
 }
 
@@ -63,7 +64,8 @@ static PetscErrorCode RunsInvert(Runs *runs, int64_t length)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* FileImageTake - Not collective. The datasets must be contiguous, as rows.c makes them. Errors: PETSC_ERR_FILE_OPEN, PETSC_ERR_FILE_READ. */
+/* FileImageTake - Not collective. The datasets must be contiguous, as rows.c makes them. Errors: PETSC_ERR_FILE_OPEN,
+ * PETSC_ERR_FILE_READ. */
 PetscErrorCode FileImageTake(const char *name, char **data, PetscInt64 *size)
 {
   Runs        runs = {0};
@@ -78,7 +80,8 @@ PetscErrorCode FileImageTake(const char *name, char **data, PetscInt64 *size)
   CallHDF5(H5Lvisit(file, H5_INDEX_NAME, H5_ITER_NATIVE, VisitLink, &runs));
   CallHDF5(H5Fclose(file));
   stream = fopen(name, "r+b");
-  PetscCheck(stream && !fstat(fileno(stream), &status), PETSC_COMM_SELF, PETSC_ERR_FILE_OPEN, "Cannot read %s: %s", name, strerror(errno));
+  PetscCheck(stream && !fstat(fileno(stream), &status), PETSC_COMM_SELF, PETSC_ERR_FILE_OPEN, "Cannot read %s: %s",
+             name, strerror(errno));
   PetscCall(RunsInvert(&runs, (int64_t)status.st_size));
   *size = sizeof(Run);
   for (size_t k = 0; k < runs.n; k++) *size += (PetscInt64)sizeof(Run) + runs.run[k].n;
@@ -90,8 +93,8 @@ PetscErrorCode FileImageTake(const char *name, char **data, PetscInt64 *size)
     const size_t n = (size_t)runs.run[k].n;
 
     memcpy(at, &runs.run[k], sizeof(Run));
-    PetscCheck(!fseeko(stream, runs.run[k].first, SEEK_SET) && fread(at + sizeof(Run), 1, n, stream) == n, PETSC_COMM_SELF, PETSC_ERR_FILE_READ,
-               "Cannot read %s: %s", name, strerror(errno));
+    PetscCheck(!fseeko(stream, runs.run[k].first, SEEK_SET) && fread(at + sizeof(Run), 1, n, stream) == n,
+               PETSC_COMM_SELF, PETSC_ERR_FILE_READ, "Cannot read %s: %s", name, strerror(errno));
     at += sizeof(Run) + n;
   }
   fsync(fileno(stream)); /* the values too: the image speaks of them */
@@ -115,7 +118,8 @@ PetscErrorCode FileImagePutBack(const char *name, const char *data, PetscBool *d
   for (int64_t k = 0; *done && k < head.n; k++) {
     memcpy(&run, data, sizeof(Run));
     data += sizeof(Run);
-    if (fseeko(stream, run.first, SEEK_SET) || fwrite(data, 1, (size_t)run.n, stream) != (size_t)run.n) failed = PETSC_TRUE;
+    if (fseeko(stream, run.first, SEEK_SET) || fwrite(data, 1, (size_t)run.n, stream) != (size_t)run.n)
+      failed = PETSC_TRUE;
     data += run.n;
   }
   if (*done && (fflush(stream) || ftruncate(fileno(stream), head.first))) failed = PETSC_TRUE;

@@ -2,7 +2,8 @@
 
 /* Hdf5TableCreate - the rows of one table.
 
-   Collective. total: of the table; row[n]: that of each of this rank's items; of items that share a row any one is written. Free with Hdf5TableDestroy(). */
+   Collective. total: of the table; row[n]: that of each of this rank's items; of items that share a row any one is
+   written. Free with Hdf5TableDestroy(). */
 PetscErrorCode Hdf5TableCreate(MPI_Comm comm, PetscInt total, PetscInt n, const PetscInt *row, Hdf5Table *rows)
 {
   PetscLayout layout;
@@ -88,8 +89,10 @@ PetscErrorCode Hdf5TableSpread(const Hdf5Table *rows, int width, MPI_Datatype ty
 
 /* Hdf5TableWrite - a new dataset, with the groups above it.
 
-   Collective. total: rows of all ranks; values[n * width]: rows first to first + n - 1; type: HDF5's native type of them. */
-PetscErrorCode Hdf5TableWrite(hid_t file, const char *path, hsize_t total, hsize_t first, hsize_t n, int width, hid_t type, const void *values)
+   Collective. total: rows of all ranks; values[n * width]: rows first to first + n - 1; type: HDF5's native type of
+   them. */
+PetscErrorCode Hdf5TableWrite(hid_t file, const char *path, hsize_t total, hsize_t first, hsize_t n, int width,
+                              hid_t type, const void *values)
 {
   const hsize_t size[2] = {total, (hsize_t)width}, start[2] = {first, 0}, count[2] = {n, (hsize_t)width};
   const int     rank = width > 1 ? 2 : 1;
@@ -118,20 +121,23 @@ PetscErrorCode Hdf5TableWrite(hid_t file, const char *path, hsize_t total, hsize
 }
 
 /* Items of a type as a dataset, `size` bytes a value. */
-static PetscErrorCode WriteItems(hid_t file, const char *path, const Hdf5Table *rows, int width, MPI_Datatype unit, hid_t type, size_t size, const void *items)
+static PetscErrorCode WriteItems(hid_t file, const char *path, const Hdf5Table *rows, int width, MPI_Datatype unit,
+                                 hid_t type, size_t size, const void *items)
 {
   char *values;
 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1((size_t)rows->n * width * size, &values));
   PetscCall(Hdf5TableCollect(rows, width, unit, items, values));
-  PetscCall(Hdf5TableWrite(file, path, (hsize_t)rows->total, (hsize_t)rows->first, (hsize_t)rows->n, width, type, values));
+  PetscCall(
+    Hdf5TableWrite(file, path, (hsize_t)rows->total, (hsize_t)rows->first, (hsize_t)rows->n, width, type, values));
   PetscCall(PetscFree(values));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* Hdf5TableWriteReals - items[rows->items * width] as a dataset of doubles. Collective. */
-PetscErrorCode Hdf5TableWriteReals(hid_t file, const char *path, const Hdf5Table *rows, int width, const PetscReal *items)
+PetscErrorCode Hdf5TableWriteReals(hid_t file, const char *path, const Hdf5Table *rows, int width,
+                                   const PetscReal *items)
 {
   PetscFunctionBeginUser;
   PetscCall(WriteItems(file, path, rows, width, MPIU_REAL, H5T_NATIVE_DOUBLE, sizeof(PetscReal), items));
@@ -139,7 +145,8 @@ PetscErrorCode Hdf5TableWriteReals(hid_t file, const char *path, const Hdf5Table
 }
 
 /* Hdf5TableWriteIntegers - items[rows->items * width] as a dataset of 64-bit integers. Collective. */
-PetscErrorCode Hdf5TableWriteIntegers(hid_t file, const char *path, const Hdf5Table *rows, int width, const int64_t *items)
+PetscErrorCode Hdf5TableWriteIntegers(hid_t file, const char *path, const Hdf5Table *rows, int width,
+                                      const int64_t *items)
 {
   PetscFunctionBeginUser;
   PetscCall(WriteItems(file, path, rows, width, MPI_INT64_T, H5T_NATIVE_INT64, sizeof(int64_t), items));
@@ -154,7 +161,8 @@ static PetscErrorCode FileAccess(MPI_Comm comm, hid_t *access)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Hdf5TableCreateFile - a new HDF5 file in the place of any old one, open on all ranks. Collective. Errors: PETSC_ERR_FILE_OPEN. */
+/* Hdf5TableCreateFile - a new HDF5 file in the place of any old one, open on all ranks. Collective. Errors:
+ * PETSC_ERR_FILE_OPEN. */
 PetscErrorCode Hdf5TableCreateFile(MPI_Comm comm, const char *name, hid_t *file)
 {
   hid_t access;
@@ -167,7 +175,8 @@ PetscErrorCode Hdf5TableCreateFile(MPI_Comm comm, const char *name, hid_t *file)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Hdf5TableOpenFile - an HDF5 file on all ranks; mode: H5F_ACC_RDWR or H5F_ACC_RDONLY. Collective. Errors: PETSC_ERR_FILE_OPEN. */
+/* Hdf5TableOpenFile - an HDF5 file on all ranks; mode: H5F_ACC_RDWR or H5F_ACC_RDONLY. Collective. Errors:
+ * PETSC_ERR_FILE_OPEN. */
 PetscErrorCode Hdf5TableOpenFile(MPI_Comm comm, const char *name, unsigned mode, hid_t *file)
 {
   hid_t access;

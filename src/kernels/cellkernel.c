@@ -1,4 +1,5 @@
-/* Integrals over one cell at a time: volume, quality, body force, stress. What is called once per step or per run, not per iteration. */
+/* Integrals over one cell at a time: volume, quality, body force, stress. What is called once per step or per run, not
+ * per iteration. */
 #include "kernels/elementkernel.h"
 #include <float.h>
 #include <math.h>
@@ -49,7 +50,8 @@ static void CauchyStress(const double H[9], const double P[9], int finite, doubl
   double F[9], determinant;
 
   for (int r = 0; r < 9; r++) F[r] = finite ? H[r] + (r % 4 == 0) : (r % 4 == 0);
-  determinant = F[0] * (F[4] * F[8] - F[5] * F[7]) + F[1] * (F[5] * F[6] - F[3] * F[8]) + F[2] * (F[3] * F[7] - F[4] * F[6]);
+  determinant =
+    F[0] * (F[4] * F[8] - F[5] * F[7]) + F[1] * (F[5] * F[6] - F[3] * F[8]) + F[2] * (F[3] * F[7] - F[4] * F[6]);
   for (int c = 0; c < 6; c++) {
     const int i = component[c][0], j = component[c][1];
 
@@ -72,7 +74,8 @@ static void CauchyStress(const double H[9], const double P[9], int finite, doubl
 + stress - xx yy zz xy yz xz at each point [points][6]; axisymmetric: rr zz hoop rz 0 0
 - volume - reference volume of each point [points]
 */
-void ElementPointStress(const KernelCase *kernel, const double *X, const double *u, double E, double nu, double *stress, double *volume)
+void ElementPointStress(const KernelCase *kernel, const double *X, const double *u, double E, double nu, double *stress,
+                        double *volume)
 {
   const Element *e        = ElementGet(kernel->type);
   const int      finite   = kernel->kinematics == KINEMATICS_FINITE;
@@ -104,7 +107,8 @@ void ElementPointStress(const KernelCase *kernel, const double *X, const double 
 + stress - xx yy zz xy yz xz; axisymmetric: rr zz hoop rz 0 0
 - volume - reference volume; axisymmetric: over 360 degrees
 */
-void ElementStress(const KernelCase *kernel, const double *X, const double *u, double E, double nu, double stress[6], double *volume)
+void ElementStress(const KernelCase *kernel, const double *X, const double *u, double E, double nu, double stress[6],
+                   double *volume)
 {
   const int points = ElementGet(kernel->type)->points;
   double    point_stress[ELEMENT_MAX_POINTS * 6], point_volume[ELEMENT_MAX_POINTS];
@@ -130,8 +134,8 @@ void ElementStress(const KernelCase *kernel, const double *X, const double *u, d
 - X    - reference coordinates (length) [nodes][dim]
 
   Output:
-. quality - smallest determinant of dX/dxi at nodes and quadrature points over its mean: 1 parallelepiped, <= 0 inverted; -1 if the mean
-            itself is not positive
+. quality - smallest determinant of dX/dxi at nodes and quadrature points over its mean: 1 parallelepiped, <= 0
+inverted; -1 if the mean itself is not positive
 */
 double ElementQuality(ElementType type, int dim, const double *X)
 {

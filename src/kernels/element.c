@@ -1,5 +1,5 @@
-/* Reference elements. What a manual lists (corners, edges, faces, orders) stands in the table below; all the rest (middle nodes, shape
-   functions, quadrature tables, fits) is derived from it once, on first use. */
+/* Reference elements. What a manual lists (corners, edges, faces, orders) stands in the table below; all the rest
+   (middle nodes, shape functions, quadrature tables, fits) is derived from it once, on first use. */
 #include "kernels/element.h"
 #include <stddef.h>
 #include <string.h>
@@ -93,7 +93,9 @@ static void ShapeTensor(const Element *e, const double *xi, double *N, double *d
     if (N) N[a] = line[0][0] * line[1][0] * line[2][0];
     for (int k = 0; k < dim && dN; k++) dN[a * dim + k] = line[0][k == 0] * line[1][k == 1] * line[2][k == 2];
     for (int k = 0; k < dim && d2N; k++) {
-      for (int l = 0; l < dim; l++) d2N[(a * dim + k) * dim + l] = line[0][(k == 0) + (l == 0)] * line[1][(k == 1) + (l == 1)] * line[2][(k == 2) + (l == 2)];
+      for (int l = 0; l < dim; l++)
+        d2N[(a * dim + k) * dim + l] =
+          line[0][(k == 0) + (l == 0)] * line[1][(k == 1) + (l == 1)] * line[2][(k == 2) + (l == 2)];
     }
   }
 }
@@ -113,13 +115,16 @@ static void ShapeSimplex(const Element *e, const double *xi, double *N, double *
     L[k + 1] = xi[k];
   }
   for (int n = 0; n < e->nodes; n++) {
-    const int    edge = n >= e->corners, a = edge ? e->edge_corners[n - e->corners][0] : n, b = edge ? e->edge_corners[n - e->corners][1] : n;
+    const int edge = n >= e->corners, a = edge ? e->edge_corners[n - e->corners][0] : n,
+              b         = edge ? e->edge_corners[n - e->corners][1] : n;
     const double factor = edge ? 4 : 2; /* of L_a L_b; at a corner L_a is taken off */
 
     if (N) N[n] = e->order == 1 ? L[n] : factor * L[a] * L[b] - (edge ? 0 : L[n]);
-    for (int k = 0; k < dim && dN; k++) dN[n * dim + k] = e->order == 1 ? dL[n][k] : factor * (dL[a][k] * L[b] + L[a] * dL[b][k]) - (edge ? 0 : dL[n][k]);
+    for (int k = 0; k < dim && dN; k++)
+      dN[n * dim + k] = e->order == 1 ? dL[n][k] : factor * (dL[a][k] * L[b] + L[a] * dL[b][k]) - (edge ? 0 : dL[n][k]);
     for (int k = 0; k < dim && d2N; k++) {
-      for (int l = 0; l < dim; l++) d2N[(n * dim + k) * dim + l] = e->order == 1 ? 0 : factor * (dL[a][k] * dL[b][l] + dL[a][l] * dL[b][k]);
+      for (int l = 0; l < dim; l++)
+        d2N[(n * dim + k) * dim + l] = e->order == 1 ? 0 : factor * (dL[a][k] * dL[b][l] + dL[a][l] * dL[b][k]);
     }
   }
 }
@@ -139,7 +144,8 @@ static void CompleteNodes(Element *e)
 
   if (e->order == 1) return;
   for (int i = 0; i < e->edges; i++, n++) {
-    for (int k = 0; k < 3; k++) e->node[n][k] = (e->node[e->edge_corners[i][0]][k] + e->node[e->edge_corners[i][1]][k]) / 2;
+    for (int k = 0; k < 3; k++)
+      e->node[n][k] = (e->node[e->edge_corners[i][0]][k] + e->node[e->edge_corners[i][1]][k]) / 2;
   }
   for (int f = 0; f < e->faces && e->type == ELEMENT_HEX27; f++, n++) {
     for (int k = 0; k < 3; k++) e->node[n][k] = (e->node[e->face_nodes[f][0]][k] + e->node[e->face_nodes[f][2]][k]) / 2;
@@ -149,7 +155,9 @@ static void CompleteNodes(Element *e)
 static int FindEdge(const Element *e, int a, int b)
 {
   for (int i = 0; i < e->edges; i++) {
-    if ((e->edge_corners[i][0] == a && e->edge_corners[i][1] == b) || (e->edge_corners[i][0] == b && e->edge_corners[i][1] == a)) return i;
+    if ((e->edge_corners[i][0] == a && e->edge_corners[i][1] == b) ||
+        (e->edge_corners[i][0] == b && e->edge_corners[i][1] == a))
+      return i;
   }
   return -1;
 }
@@ -163,7 +171,9 @@ static void CompleteFaces(Element *e)
   for (int f = 0; f < e->faces; f++) {
     int *nodes = e->face_nodes[f];
 
-    for (int i = 0; i < face->edges; i++) nodes[face->corners + i] = e->corners + FindEdge(e, nodes[face->edge_corners[i][0]], nodes[face->edge_corners[i][1]]);
+    for (int i = 0; i < face->edges; i++)
+      nodes[face->corners + i] =
+        e->corners + FindEdge(e, nodes[face->edge_corners[i][0]], nodes[face->edge_corners[i][1]]);
     if (face->type == ELEMENT_QUAD9) nodes[8] = e->corners + e->edges + f;
   }
 }
@@ -178,27 +188,37 @@ static void SetPoint(Element *e, double x, double y, double z, double weight)
 
 static void QuadratureTensor(Element *e)
 {
-  const int     n    = e->order + 1;
-  const double  p2[] = {-gauss2_point, gauss2_point}, w2[] = {1, 1}, p3[] = {-gauss3_point, 0, gauss3_point}, w3[] = {5. / 9, 8. / 9, 5. / 9};
+  const int    n    = e->order + 1;
+  const double p2[] = {-gauss2_point, gauss2_point}, w2[] = {1, 1}, p3[] = {-gauss3_point, 0, gauss3_point},
+               w3[] = {5. / 9, 8. / 9, 5. / 9};
   const double *p = n == 2 ? p2 : p3, *w = n == 2 ? w2 : w3;
 
   for (int k = 0; k < (e->dim > 2 ? n : 1); k++) {
     for (int j = 0; j < (e->dim > 1 ? n : 1); j++) {
-      for (int i = 0; i < n; i++) SetPoint(e, p[i], e->dim > 1 ? p[j] : 0, e->dim > 2 ? p[k] : 0, w[i] * (e->dim > 1 ? w[j] : 1) * (e->dim > 2 ? w[k] : 1));
+      for (int i = 0; i < n; i++)
+        SetPoint(e, p[i], e->dim > 1 ? p[j] : 0, e->dim > 2 ? p[k] : 0,
+                 w[i] * (e->dim > 1 ? w[j] : 1) * (e->dim > 2 ? w[k] : 1));
     }
   }
 }
 
-/* One point in the middle, or one towards each corner (exact to degree 2; Zienkiewicz and Taylor, tables 5.3 and 5.4) */
+/* One point in the middle, or one towards each corner (exact to degree 2; Zienkiewicz and Taylor, tables 5.3 and 5.4)
+ */
 static void QuadratureSimplex(Element *e, int points)
 {
   const double volume = e->dim == 2 ? 1. / 2 : 1. / 6;
-  const double inner = e->dim == 2 ? 1. / 6 : 0.13819660112501051518, outer = 1 - e->dim * inner; /* tet: (5 - sqrt 5) / 20 */
+  const double inner  = e->dim == 2 ? 1. / 6 : 0.13819660112501051518,
+               outer  = 1 - e->dim * inner; /* tet: (5 - sqrt 5) / 20 */
 
   if (points == 1)
     SetPoint(e, 1. / (e->dim + 1), 1. / (e->dim + 1), e->dim == 3 ? 0.25 : 0, volume);
   else {
-    for (int a = 0; a <= e->dim; a++) SetPoint(e, a == 1 ? outer : inner, a == 2 ? outer : inner, e->dim < 3 ? 0 : a == 3 ? outer : inner, volume / points);
+    for (int a = 0; a <= e->dim; a++)
+      SetPoint(e, a == 1 ? outer : inner, a == 2 ? outer : inner,
+               e->dim < 3 ? 0
+               : a == 3   ? outer
+                          : inner,
+               volume / points);
   }
 }
 
@@ -218,7 +238,8 @@ static void SolveSmall(int n, double A[][MAX_CORNERS], int m, double B[][ELEMENT
   }
 }
 
-/* Normal equations of the fit by the shape functions C of the first-order element: c = (C^T C)^-1 C^T v, nodal values C(node) c */
+/* Normal equations of the fit by the shape functions C of the first-order element: c = (C^T C)^-1 C^T v, nodal values
+ * C(node) c */
 static void Fit(Element *e)
 {
   Element linear = *e;

@@ -122,12 +122,15 @@ static void SetMaterial(BatchCall *call, const double *E, const double *nu)
 - J - smallest determinant of F over the quadrature points [lanes]; 1 for small kinematics
 
   Notes:
-  2D solids have unit thickness; axisymmetric quantities are over 360 degrees. J <= 0, or NaN, means that the state is not admissible;
-  all arrays hold finite numbers all the same if X and u do. Every formulation has an energy, of which f and K are the derivatives.
+  2D solids have unit thickness; axisymmetric quantities are over 360 degrees. J <= 0, or NaN, means that the state is
+not admissible; all arrays hold finite numbers all the same if X and u do. Every formulation has an energy, of which f
+and K are the derivatives.
 
-  Source: Bonet and Wood, "Nonlinear Continuum Mechanics for Finite Element Analysis", sections 8.4 and 8.5 (reference configuration)
+  Source: Bonet and Wood, "Nonlinear Continuum Mechanics for Finite Element Analysis", sections 8.4 and 8.5 (reference
+configuration)
 */
-void ElementKernel(const KernelCase *kernel, const double *X, const double *u, const double *E, const double *nu, double *W, double *f, double *K, double *J)
+void ElementKernel(const KernelCase *kernel, const double *X, const double *u, const double *E, const double *nu,
+                   double *W, double *f, double *K, double *J)
 {
   BatchFn  *batch = GetBatch(kernel);
   BatchCall call  = StartCall(kernel);
@@ -145,7 +148,8 @@ void ElementKernel(const KernelCase *kernel, const double *X, const double *u, c
 }
 
 /*
-  ElementPointGradient - The displacement gradient that an element's formulation hands to the law, at its quadrature points
+  ElementPointGradient - The displacement gradient that an element's formulation hands to the law, at its quadrature
+points
 
   Not collective
 
@@ -162,8 +166,9 @@ void ElementPointGradient(const KernelCase *kernel, const double *X, const doubl
 {
   BatchCall call = StartCall(kernel);
   const int dofs = call.e->nodes * call.e->dim;
-  double    lanes_X[ELEMENT_MAX_NODES * 3 * KERNEL_LANES], lanes_u[ELEMENT_MAX_NODES * 3 * KERNEL_LANES], lanes_H[ELEMENT_MAX_POINTS * 9 * KERNEL_LANES];
-  double    J[LANES], lanes_E[LANES], lanes_nu[LANES];
+  double    lanes_X[ELEMENT_MAX_NODES * 3 * KERNEL_LANES], lanes_u[ELEMENT_MAX_NODES * 3 * KERNEL_LANES],
+    lanes_H[ELEMENT_MAX_POINTS * 9 * KERNEL_LANES];
+  double J[LANES], lanes_E[LANES], lanes_nu[LANES];
 
   for (int lane = 0; lane < LANES; lane++) {
     lanes_E[lane]  = E;

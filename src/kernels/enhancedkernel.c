@@ -1,13 +1,15 @@
-/* Enhanced assumed strains: F = F(u) + F_0 sum_I w_I G_I (x) b_I with free vectors b_I in every element. G_I is the gradient of reference coordinate I
-   at the element's centre, F_0 = F(u) there, w_I = xi_I times the ratio of the volume elements at the centre and at the point: orthogonal to constants,
-   so that the patch test holds. These are Wilson's incompatible modes transposed: in small strains the element of Taylor, Beresford and Wilson (QM6)
-   and its brick, in large ones without the hourglasses that Wilson's own modes have under compression (Glaser and Armero, "On the formulation of
-   enhanced strain finite elements in finite deformations", Engineering Computations 14, 1997; F_0 and the constant gradients: Pfefferkorn and Betsch,
-   "On transformations and shape functions for enhanced assumed strain elements", International Journal for Numerical Methods in Engineering 120, 2019).
-   Axisymmetric elements have a mode of the hoop strain besides, w = xi eta (Simo and Rifai 1990).
+/* Enhanced assumed strains: F = F(u) + F_0 sum_I w_I G_I (x) b_I with free vectors b_I in every element. G_I is the
+   gradient of reference coordinate I at the element's centre, F_0 = F(u) there, w_I = xi_I times the ratio of the
+   volume elements at the centre and at the point: orthogonal to constants, so that the patch test holds. These are
+   Wilson's incompatible modes transposed: in small strains the element of Taylor, Beresford and Wilson (QM6) and its
+   brick, in large ones without the hourglasses that Wilson's own modes have under compression (Glaser and Armero, "On
+   the formulation of enhanced strain finite elements in finite deformations", Engineering Computations 14, 1997; F_0
+   and the constant gradients: Pfefferkorn and Betsch, "On transformations and shape functions for enhanced assumed
+   strain elements", International Journal for Numerical Methods in Engineering 120, 2019). Axisymmetric elements have a
+   mode of the hoop strain besides, w = xi eta (Simo and Rifai 1990).
 
-   The b_I are solved for at every call, by Newton's method in the element from b = 0, and condensed: energy, force and tangent are functions of u alone,
-   and a state that is returned to is returned to exactly. */
+   The b_I are solved for at every call, by Newton's method in the element from b = 0, and condensed: energy, force and
+   tangent are functions of u alone, and a state that is returned to is returned to exactly. */
 #include "elementbatch.h"
 #include <math.h>
 #include <stddef.h>
@@ -17,17 +19,19 @@ _Static_assert((int)MAX_POINTS < (int)CHUNK, "the centre stands behind the point
 
 /* Newton's method in an element takes 3 to 6 iterations in bending; where it takes more than this it is lost */
 enum { MAX_ITERATIONS = 40 };
-/* Their tangent is renewed in the first iterations, serves in the next, and is renewed again in what has not found rest by then: always the same ones,
-   so that no element sees the others of its batch */
+/* Their tangent is renewed in the first iterations, serves in the next, and is renewed again in what has not found rest
+   by then: always the same ones, so that no element sees the others of its batch */
 enum { RENEWED_FIRST = 2, RENEWED_AGAIN = 5 };
 /* What follows a correction whose energy is this part of the element's is a small part of it: too small to matter */
 static const double converged_energy = 1e-16;
 /* Relative error of an energy that is a sum over the points: a lower one is not told from a higher one below it */
 static const double energy_round_off = 1e-13;
-/* The same for elements that have no energy: square of a strain, far above rounding of displacements and far below what its square could spoil */
+/* The same for elements that have no energy: square of a strain, far above rounding of displacements and far below what
+ * its square could spoil */
 static const double converged_strain2 = 1e-20;
 
-/* Mode k is component J of vector I; the hoop mode stands alone in the third direction. It acts on the space components from FIRST to END. */
+/* Mode k is component J of vector I; the hoop mode stands alone in the third direction. It acts on the space components
+ * from FIRST to END. */
 #define MODE_IS_HOOP(dim, k)   ((dim) == 2 && (k) == 4)
 #define MODE_VECTOR(dim, k)    (MODE_IS_HOOP(dim, k) ? 2 : (k) / (dim))
 #define MODE_COMPONENT(dim, k) (MODE_IS_HOOP(dim, k) ? 2 : (k) % (dim))
@@ -47,7 +51,8 @@ typedef struct {
 } Enhanced;
 
 /* Gradients at points and centre, modes, displacement gradients without modes */
-LANES_INLINE void Prepare(const BatchCall *call, const int n, const int points, const int dim, const int hoop, Enhanced *x)
+LANES_INLINE void Prepare(const BatchCall *call, const int n, const int points, const int dim, const int hoop,
+                          Enhanced *x)
 {
   const Element *e = call->e;
   double         N[MAX_NODES], dN[MAX_NODES][3];
@@ -96,12 +101,15 @@ LANES_INLINE void PointGradient(const int dim, const int hoop, const Enhanced *x
     const int   vector = MODE_VECTOR(dim, k);
     const Lanes b      = x->w[q][vector] * x->b[k];
 
-    for (int i = MODE_FIRST(dim, k); i < MODE_END(dim, k); i++) H[3 * i + MODE_COMPONENT(dim, k)] += x->L[vector][i] * b;
+    for (int i = MODE_FIRST(dim, k); i < MODE_END(dim, k); i++)
+      H[3 * i + MODE_COMPONENT(dim, k)] += x->L[vector][i] * b;
   }
 }
 
-/* The law's tangent (times volume) applied to the modes without their w: T[row of the operator][mode]; adds the modes' own tangent to K, upper triangle */
-LANES_INLINE void AddModeTangent(const int dim, const int hoop, const Enhanced *x, int q, Lanes T[MAX_ROWS][MAX_MODES], Lanes K[MAX_MODES][MAX_MODES])
+/* The law's tangent (times volume) applied to the modes without their w: T[row of the operator][mode]; adds the modes'
+ * own tangent to K, upper triangle */
+LANES_INLINE void AddModeTangent(const int dim, const int hoop, const Enhanced *x, int q, Lanes T[MAX_ROWS][MAX_MODES],
+                                 Lanes K[MAX_MODES][MAX_MODES])
 {
   const int modes = dim * dim + hoop;
 
@@ -112,7 +120,8 @@ LANES_INLINE void AddModeTangent(const int dim, const int hoop, const Enhanced *
       const int first = MODE_FIRST(dim, k), J = MODE_COMPONENT(dim, k), vector = MODE_VECTOR(dim, k);
 
       T[r][k] = TANGENT(x->c.A[q], TENSOR_ROW(dim, r), 3 * first + J) * x->L[vector][first];
-      for (int i = first + 1; i < MODE_END(dim, k); i++) T[r][k] += TANGENT(x->c.A[q], TENSOR_ROW(dim, r), 3 * i + J) * x->L[vector][i];
+      for (int i = first + 1; i < MODE_END(dim, k); i++)
+        T[r][k] += TANGENT(x->c.A[q], TENSOR_ROW(dim, r), 3 * i + J) * x->L[vector][i];
     }
   }
 #pragma GCC unroll 9
@@ -129,14 +138,16 @@ LANES_INLINE void AddModeTangent(const int dim, const int hoop, const Enhanced *
   }
 }
 
-LANES_INLINE void AddModeForce(const int dim, const int hoop, const Enhanced *x, int q, const Lanes P[9], Lanes f[MAX_MODES])
+LANES_INLINE void AddModeForce(const int dim, const int hoop, const Enhanced *x, int q, const Lanes P[9],
+                               Lanes f[MAX_MODES])
 {
 #pragma GCC unroll 9
   for (int k = 0; k < dim * dim + hoop; k++) {
     const int vector = MODE_VECTOR(dim, k);
     Lanes     sum    = {0};
 
-    for (int i = MODE_FIRST(dim, k); i < MODE_END(dim, k); i++) sum += x->L[vector][i] * P[3 * i + MODE_COMPONENT(dim, k)];
+    for (int i = MODE_FIRST(dim, k); i < MODE_END(dim, k); i++)
+      sum += x->L[vector][i] * P[3 * i + MODE_COMPONENT(dim, k)];
     f[k] += x->w[q][vector] * sum;
   }
 }
@@ -179,8 +190,8 @@ LANES_INLINE void SolveModesSystem(const int modes, Lanes K[MAX_MODES][MAX_MODES
 }
 
 /* Energy of the element, force of the modes and, if it is to be renewed, their tangent, factorised */
-LANES_INLINE void ModeSystem(const BatchCall *call, const int points, const int dim, const int hoop, const int renew, Enhanced *x, Lanes *W, Lanes f[MAX_MODES],
-                             Lanes K[MAX_MODES][MAX_MODES])
+LANES_INLINE void ModeSystem(const BatchCall *call, const int points, const int dim, const int hoop, const int renew,
+                             Enhanced *x, Lanes *W, Lanes f[MAX_MODES], Lanes K[MAX_MODES][MAX_MODES])
 {
   const int modes = dim * dim + hoop;
 
@@ -213,9 +224,10 @@ typedef struct {
   Lanes scale;           /* energy of a strain too small to matter */
 } ModesState;
 
-/* The correction d, from the force f, that lanes at a lower energy than before make; the others go half of their way back. A lane at rest stays as it is,
-   whatever the others do. Returns how many are not at rest. */
-LANES_INLINE int Advance(const int modes, const Lanes *W, const Lanes *f, const Lanes *d, ModesState *modes_state, Enhanced *x)
+/* The correction d, from the force f, that lanes at a lower energy than before make; the others go half of their way
+   back. A lane at rest stays as it is, whatever the others do. Returns how many are not at rest. */
+LANES_INLINE int Advance(const int modes, const Lanes *W, const Lanes *f, const Lanes *d, ModesState *modes_state,
+                         Enhanced *x)
 {
   int left = 0;
 
@@ -243,13 +255,14 @@ LANES_INLINE int Advance(const int modes, const Lanes *W, const Lanes *f, const 
   return left;
 }
 
-/* The modes of each lane at rest. A lane that does not get there is given J = NaN, and no modes; small strains are there after one step. */
+/* The modes of each lane at rest. A lane that does not get there is given J = NaN, and no modes; small strains are
+ * there after one step. */
 LANES_INLINE void SolveModes(const BatchCall *call, const int points, const int dim, const int hoop, Enhanced *x)
 {
-  const int modes = dim * dim + hoop;
-  ModesState      modes_state  = {.W = (Lanes){0} + __DBL_MAX__, .active = (Lanes){0} + 1};
-  int       left  = LANES;
-  Lanes     K[MAX_MODES][MAX_MODES];
+  const int  modes       = dim * dim + hoop;
+  ModesState modes_state = {.W = (Lanes){0} + __DBL_MAX__, .active = (Lanes){0} + 1};
+  int        left        = LANES;
+  Lanes      K[MAX_MODES][MAX_MODES];
 
   for (int q = 0; q < points; q++) modes_state.scale += converged_strain2 * call->mu * x->volume[q];
   for (int iteration = 0; left && iteration < (call->finite ? MAX_ITERATIONS : 1); iteration++) {
@@ -278,8 +291,8 @@ LANES_INLINE void CarryModes(const int n, const int dim, const int hoop, int q, 
 }
 
 /* Adds a point to the tangent between displacements and modes, K[n*dim][modes]; P times volume */
-LANES_INLINE void AddModeCoupling(const int n, const int dim, const int hoop, int finite, int q, const Enhanced *x, const Lanes P[9], Lanes T[MAX_ROWS][MAX_MODES],
-                              Lanes K[MAX_NODES * 3][MAX_MODES])
+LANES_INLINE void AddModeCoupling(const int n, const int dim, const int hoop, int finite, int q, const Enhanced *x,
+                                  const Lanes P[9], Lanes T[MAX_ROWS][MAX_MODES], Lanes K[MAX_NODES * 3][MAX_MODES])
 {
   for (int a = 0; a < n; a++) {
 #pragma GCC unroll 3
@@ -300,7 +313,8 @@ LANES_INLINE void AddModeCoupling(const int n, const int dim, const int hoop, in
 }
 
 /* K -= K_ub K_bb^-1 K_bu */
-LANES_INLINE void Condense(const int dofs, const int modes, Lanes Kbb[MAX_MODES][MAX_MODES], Lanes Kub[MAX_NODES * 3][MAX_MODES], double *K)
+LANES_INLINE void Condense(const int dofs, const int modes, Lanes Kbb[MAX_MODES][MAX_MODES],
+                           Lanes Kub[MAX_NODES * 3][MAX_MODES], double *K)
 {
   Factor(modes, Kbb);
   for (int r = 0; r < dofs; r++) SolveLower(modes, Kbb, Kub[r]);

@@ -1,4 +1,5 @@
-/* Integrals over one face at a time: tractions, dead and follower pressure with their tangent, tributary areas and normals. */
+/* Integrals over one face at a time: tractions, dead and follower pressure with their tangent, tributary areas and
+ * normals. */
 #include "kernels/elementkernel.h"
 #include <math.h>
 #include <stddef.h>
@@ -52,8 +53,10 @@ static void NormalVariation(const Element *e, int p, int dim, const FacePoint *p
   }
 }
 
-/* K += pressure int N_a d(n da)/du_b, minus the derivative of the follower pressure's force (Bonet and Wood, section 8.5.2, before it is made symmetric) */
-static void AddFollowerTangent(const Element *e, int p, int dim, int axisymmetric, const FacePoint *point, double pressure, double *K)
+/* K += pressure int N_a d(n da)/du_b, minus the derivative of the follower pressure's force (Bonet and Wood,
+ * section 8.5.2, before it is made symmetric) */
+static void AddFollowerTangent(const Element *e, int p, int dim, int axisymmetric, const FacePoint *point,
+                               double pressure, double *K)
 {
   const int    dofs   = e->nodes * dim;
   const double factor = e->weight[p] * pressure * (axisymmetric ? two_pi : 1);
@@ -63,7 +66,8 @@ static void AddFollowerTangent(const Element *e, int p, int dim, int axisymmetri
       double variation[3];
 
       NormalVariation(e, p, dim, point, b, j, variation);
-      for (int i = 0; i < dim && axisymmetric; i++) variation[i] = variation[i] * point->radius + (j == 0 ? point->normal[i] * e->N[p][b] : 0);
+      for (int i = 0; i < dim && axisymmetric; i++)
+        variation[i] = variation[i] * point->radius + (j == 0 ? point->normal[i] * e->N[p][b] : 0);
       for (int a = 0; a < e->nodes; a++) {
         for (int i = 0; i < dim; i++) K[(a * dim + i) * dofs + b * dim + j] += factor * e->N[p][a] * variation[i];
       }
@@ -87,13 +91,14 @@ static void AddFollowerTangent(const Element *e, int p, int dim, int axisymmetri
 
   Output:
 + f      - external force [nodes][dim], added to
-. K      - minus its derivative by u [nodes*dim][nodes*dim], added to, or NULL; zero unless the load follows, else unsymmetric
+. K      - minus its derivative by u [nodes*dim][nodes*dim], added to, or NULL; zero unless the load follows, else
+unsymmetric
 - energy - potential of the load, added to, or NULL; nothing is added for a follower pressure, which has none
 
   Source: Bonet and Wood, "Nonlinear Continuum Mechanics for Finite Element Analysis", section 8.5.2
 */
-void FaceLoadKernel(ElementType type, int dim, Geometry geometry, FaceLoad load, const double *X, const double *u, const double *value, double *f, double *K,
-                    double *energy)
+void FaceLoadKernel(ElementType type, int dim, Geometry geometry, FaceLoad load, const double *X, const double *u,
+                    const double *value, double *f, double *K, double *energy)
 {
   const Element *e            = ElementGetFace(type);
   const int      axisymmetric = geometry == GEOMETRY_AXISYMMETRIC, follows = load == FACE_FOLLOWER_PRESSURE;
@@ -106,7 +111,9 @@ void FaceLoadKernel(ElementType type, int dim, Geometry geometry, FaceLoad load,
     if (axisymmetric) scale *= two_pi * point.radius;
     for (int i = 0; i < dim; i++) {
       if (load == FACE_TRACTION)
-        force[i] = scale * value[i] * sqrt(point.normal[0] * point.normal[0] + point.normal[1] * point.normal[1] + point.normal[2] * point.normal[2]);
+        force[i] = scale * value[i] *
+                   sqrt(point.normal[0] * point.normal[0] + point.normal[1] * point.normal[1] +
+                        point.normal[2] * point.normal[2]);
       else
         force[i] = -scale * value[0] * point.normal[i];
     }
@@ -146,7 +153,9 @@ void FaceAreaKernel(ElementType type, int dim, Geometry geometry, const double *
     FacePointAt(e, p, dim, X, NULL, &point);
     if (geometry == GEOMETRY_AXISYMMETRIC) scale *= two_pi * point.radius;
     for (int a = 0; a < e->nodes; a++) {
-      area[a] += scale * e->N[p][a] * sqrt(point.normal[0] * point.normal[0] + point.normal[1] * point.normal[1] + point.normal[2] * point.normal[2]);
+      area[a] +=
+        scale * e->N[p][a] *
+        sqrt(point.normal[0] * point.normal[0] + point.normal[1] * point.normal[1] + point.normal[2] * point.normal[2]);
       for (int i = 0; i < dim && normal; i++) normal[a * dim + i] += scale * e->N[p][a] * point.normal[i];
     }
   }

@@ -3,12 +3,13 @@
 #include <math.h>
 #include <stddef.h>
 
-/* Below this determinant neo-Hooke's energy is evaluated as at it: no state with J <= 0 is accepted, but a line search looks at such
-   states and must see finite numbers. Far below any J that an accepted state has. */
+/* Below this determinant neo-Hooke's energy is evaluated as at it: no state with J <= 0 is accepted, but a line search
+   looks at such states and must see finite numbers. Far below any J that an accepted state has. */
 static const double jacobian_floor = 1e-8;
 
 /* Hooke: P = lambda tr(e) 1 + 2 mu e with e = sym H */
-void MaterialLaw_Linear(const Lanes H[9], const Lanes *dilatation, const Lanes *lambda, const Lanes *mu, Lanes *W, Lanes P[9], Lanes A[MATERIAL_TANGENT_SIZE])
+void MaterialLaw_Linear(const Lanes H[9], const Lanes *dilatation, const Lanes *lambda, const Lanes *mu, Lanes *W,
+                        Lanes P[9], Lanes A[MATERIAL_TANGENT_SIZE])
 {
   const Lanes trace = H[0] + H[4] + H[8];
 
@@ -32,14 +33,17 @@ void MaterialLaw_Linear(const Lanes H[9], const Lanes *dilatation, const Lanes *
 }
 
 /* St. Venant-Kirchhoff: S = lambda tr(E) 1 + 2 mu E with Green's strain E, P = F S (Bonet and Wood, section 6.4) */
-void MaterialLaw_Svk(const Lanes H[9], const Lanes *dilatation, const Lanes *lambda, const Lanes *mu, Lanes *W, Lanes P[9], Lanes A[MATERIAL_TANGENT_SIZE])
+void MaterialLaw_Svk(const Lanes H[9], const Lanes *dilatation, const Lanes *lambda, const Lanes *mu, Lanes *W,
+                     Lanes P[9], Lanes A[MATERIAL_TANGENT_SIZE])
 {
   Lanes F[9], E[9], S[9], trace;
 
   (void)dilatation;
   for (int r = 0; r < 9; r++) F[r] = H[r] + (double)(r % 4 == 0);
   for (int i = 0; i < 3; i++) {
-    for (int j = i; j < 3; j++) E[3 * i + j] = E[3 * j + i] = 0.5 * (H[3 * i + j] + H[3 * j + i] + H[i] * H[j] + H[3 + i] * H[3 + j] + H[6 + i] * H[6 + j]);
+    for (int j = i; j < 3; j++)
+      E[3 * i + j] = E[3 * j + i] =
+        0.5 * (H[3 * i + j] + H[3 * j + i] + H[i] * H[j] + H[3 + i] * H[3 + j] + H[6 + i] * H[6 + j]);
   }
   trace = E[0] + E[4] + E[8];
   for (int r = 0; r < 9; r++) S[r] = 2 * *mu * E[r] + *lambda * trace * (double)(r % 4 == 0);
@@ -55,7 +59,9 @@ void MaterialLaw_Svk(const Lanes H[9], const Lanes *dilatation, const Lanes *lam
     Lanes b[9];
 
     for (int i = 0; i < 3; i++) {
-      for (int j = i; j < 3; j++) b[3 * i + j] = b[3 * j + i] = *mu * (F[3 * i] * F[3 * j] + F[3 * i + 1] * F[3 * j + 1] + F[3 * i + 2] * F[3 * j + 2]);
+      for (int j = i; j < 3; j++)
+        b[3 * i + j] = b[3 * j + i] =
+          *mu * (F[3 * i] * F[3 * j] + F[3 * i + 1] * F[3 * j + 1] + F[3 * i + 2] * F[3 * j + 2]);
     }
     for (int r = 0, k = 0; r < 9; r++) {
       const Lanes lambda_F = *lambda * F[r];
@@ -72,8 +78,8 @@ void MaterialLaw_Svk(const Lanes H[9], const Lanes *dilatation, const Lanes *lam
 }
 
 /* Compressible neo-Hooke: W = mu/2 (I1 - 3) - mu ln J + lambda/2 (ln J)^2 (Bonet and Wood, section 6.4.3) */
-void MaterialLaw_NeoHookean(const Lanes H[9], const Lanes *dilatation, const Lanes *lambda, const Lanes *mu, Lanes *W, Lanes P[9],
-                            Lanes A[MATERIAL_TANGENT_SIZE])
+void MaterialLaw_NeoHookean(const Lanes H[9], const Lanes *dilatation, const Lanes *lambda, const Lanes *mu, Lanes *W,
+                            Lanes P[9], Lanes A[MATERIAL_TANGENT_SIZE])
 {
   Lanes F[9], G[9], logJ, inverseJ, pressure; /* G = F^-T */
 
@@ -95,8 +101,11 @@ void MaterialLaw_NeoHookean(const Lanes H[9], const Lanes *dilatation, const Lan
   for (int i = 0; i < 3; i++) { /* P = mu (F - F^-T) + lambda ln J F^-T with F - F^-T = (F F^T - 1) F^-T */
     Lanes e[3];
 
-    for (int j = 0; j < 3; j++) e[j] = *mu * (H[3 * i + j] + H[3 * j + i] + H[3 * i] * H[3 * j] + H[3 * i + 1] * H[3 * j + 1] + H[3 * i + 2] * H[3 * j + 2]);
-    for (int j = 0; j < 3; j++) P[3 * i + j] = e[0] * G[j] + e[1] * G[3 + j] + e[2] * G[6 + j] + pressure * G[3 * i + j];
+    for (int j = 0; j < 3; j++)
+      e[j] = *mu * (H[3 * i + j] + H[3 * j + i] + H[3 * i] * H[3 * j] + H[3 * i + 1] * H[3 * j + 1] +
+                    H[3 * i + 2] * H[3 * j + 2]);
+    for (int j = 0; j < 3; j++)
+      P[3 * i + j] = e[0] * G[j] + e[1] * G[3 + j] + e[2] * G[6 + j] + pressure * G[3 * i + j];
   }
   if (W) {
     Lanes stretch = 2 * (H[0] + H[4] + H[8]); /* I1 - 3 */
@@ -178,7 +187,8 @@ void MaterialLame(double E, double nu, double *lambda, double *mu)
 . P - first Piola-Kirchhoff stress; small strains: the stress
 - A - tangent dP_r/dH_s at MATERIAL_TANGENT_INDEX(r, s), r <= s, or NULL
 */
-void MaterialPoint(const Material *material, int finite, const double H[9], double *W, double P[9], double A[MATERIAL_TANGENT_SIZE])
+void MaterialPoint(const Material *material, int finite, const double H[9], double *W, double P[9],
+                   double A[MATERIAL_TANGENT_SIZE])
 {
   Lanes  lanes_H[9], lanes_P[9], lanes_A[MATERIAL_TANGENT_SIZE], lanes_W, dilatation, lambda, mu;
   double l, m;
@@ -190,7 +200,8 @@ void MaterialPoint(const Material *material, int finite, const double H[9], doub
     mu[lane]     = m;
   }
   MaterialDilatation(lanes_H, &dilatation);
-  MaterialGetLaw(material->law, finite)(lanes_H, &dilatation, &lambda, &mu, W ? &lanes_W : NULL, lanes_P, A ? lanes_A : NULL);
+  MaterialGetLaw(material->law, finite)(lanes_H, &dilatation, &lambda, &mu, W ? &lanes_W : NULL, lanes_P,
+                                        A ? lanes_A : NULL);
   if (W) *W = lanes_W[0];
   for (int r = 0; r < 9; r++) P[r] = lanes_P[r][0];
   for (int k = 0; k < MATERIAL_TANGENT_SIZE && A; k++) A[k] = lanes_A[k][0];

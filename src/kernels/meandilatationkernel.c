@@ -1,8 +1,10 @@
-/* Mean dilatation, the formulation `fbar`: the law sees F' = (J'/J)^(1/3) F, J' being the element's mean of J = det F, so that nearly incompressible
-   solids do not lock. Energy, force and tangent are those of the energy W(F'): with a law that splits volume and shape they are the mean dilatation
-   method (Nagtegaal, Parks and Rice 1974; Bonet and Wood, "Nonlinear Continuum Mechanics for Finite Element Analysis", section 8.6.5), in small strains
-   the B-bar element (Hughes 1980). The F-bar element of de Souza Neto et al. (1996) uses the same F' but not its variation, and has no energy.
-   St. Venant-Kirchhoff's law is nearly incompressible for small strains only: it resists the trace of Green's strain, not J, and locks a little at large ones.
+/* Mean dilatation, the formulation `fbar`: the law sees F' = (J'/J)^(1/3) F, J' being the element's mean of J = det F,
+   so that nearly incompressible solids do not lock. Energy, force and tangent are those of the energy W(F'): with a law
+   that splits volume and shape they are the mean dilatation method (Nagtegaal, Parks and Rice 1974; Bonet and Wood,
+   "Nonlinear Continuum Mechanics for Finite Element Analysis", section 8.6.5), in small strains the B-bar element
+   (Hughes 1980). The F-bar element of de Souza Neto et al. (1996) uses the same F' but not its variation, and has no
+   energy. St. Venant-Kirchhoff's law is nearly incompressible for small strains only: it resists the trace of Green's
+   strain, not J, and locks a little at large ones.
  */
 #include "elementbatch.h"
 #include <math.h>
@@ -11,8 +13,8 @@
 enum { MAX_NODES = 8, MAX_POINTS = 8 };
 _Static_assert((int)MAX_POINTS <= (int)CHUNK, "all points in one chunk");
 
-/* Below this determinant its logarithm and inverse are evaluated as at it: no state with J <= 0 is accepted, but a line search looks at such
-   states and must see finite numbers. */
+/* Below this determinant its logarithm and inverse are evaluated as at it: no state with J <= 0 is accepted, but a line
+   search looks at such states and must see finite numbers. */
 static const double jacobian_floor = 1e-8;
 
 typedef struct {
@@ -25,7 +27,8 @@ typedef struct {
   Lanes       total;                  /* reference volume */
 } MeanDilatation;
 
-LANES_INLINE void Prepare(const BatchCall *call, const int n, const int points, const int dim, const int hoop, MeanDilatation *x)
+LANES_INLINE void Prepare(const BatchCall *call, const int n, const int points, const int dim, const int hoop,
+                          MeanDilatation *x)
 {
   const Element *e = call->e;
 
@@ -55,8 +58,8 @@ LANES_INLINE void MeanGradient(const BatchCall *call, int q, const MeanDilatatio
   Lanes stretch;
 
   for (int lane = 0; lane < LANES; lane++)
-    stretch[lane] =
-      call->finite ? expm1((log1p(Floored(x->mean[lane])) - log1p(Floored(x->dilatation[q][lane]))) / 3) : (x->mean[lane] - x->dilatation[q][lane]) / 3;
+    stretch[lane] = call->finite ? expm1((log1p(Floored(x->mean[lane])) - log1p(Floored(x->dilatation[q][lane]))) / 3)
+                                 : (x->mean[lane] - x->dilatation[q][lane]) / 3;
   *factor = stretch * (double)call->finite;
   for (int r = 0; r < 9; r++) H[r] = x->H[q][r] + *factor * x->H[q][r];
   for (int i = 0; i < 3; i++) H[4 * i] += stretch;
@@ -84,10 +87,12 @@ LANES_INLINE Lanes Contract(const Lanes A[9], const Lanes B[9])
   return sum;
 }
 
-/* The second variation of W(F') in dF at a point into A (in place: the law's tangent, becomes that times volume), what couples dF to the variation of
-   ln J' into Q, and the factor of the square of the latter; P of the law, pressure: of the element. The terms of `geometry` vanish in small strains. */
-LANES_INLINE void PointTangent(const Lanes F[9], const Lanes G[9], const Lanes *J, const Lanes *factor, const Lanes *pressure, double geometry,
-                               const Lanes P[9], Lanes A[MATERIAL_TANGENT_SIZE], Lanes Q[9], Lanes *square)
+/* The second variation of W(F') in dF at a point into A (in place: the law's tangent, becomes that times volume), what
+   couples dF to the variation of ln J' into Q, and the factor of the square of the latter; P of the law, pressure: of
+   the element. The terms of `geometry` vanish in small strains. */
+LANES_INLINE void PointTangent(const Lanes F[9], const Lanes G[9], const Lanes *J, const Lanes *factor,
+                               const Lanes *pressure, double geometry, const Lanes P[9], Lanes A[MATERIAL_TANGENT_SIZE],
+                               Lanes Q[9], Lanes *square)
 {
   const Lanes s = 1 + *factor, t = geometry * s * Contract(P, F) / 3, p = geometry * *pressure * *J;
   Lanes       AF[9], Y[9], FAF, GG;
@@ -103,7 +108,8 @@ LANES_INLINE void PointTangent(const Lanes F[9], const Lanes G[9], const Lanes *
   for (int r = 0; r < 9; r++) Q[r] = Y[r] - *square * G[r];
   for (int r = 0, k = 0; r < 9; r++) {
     for (int m = r; m < 9; m++, k++)
-      A[k] = s * s * A[k] - Y[r] * G[m] - G[r] * Y[m] + GG * G[r] * G[m] + (t - p) * G[3 * (r / 3) + m % 3] * G[3 * (m / 3) + r % 3];
+      A[k] = s * s * A[k] - Y[r] * G[m] - G[r] * Y[m] + GG * G[r] * G[m] +
+             (t - p) * G[3 * (r / 3) + m % 3] * G[3 * (m / 3) + r % 3];
   }
 }
 
@@ -126,9 +132,10 @@ LANES_INLINE void AddMeanTangent(const int dofs, const double *q, const double *
 LANES_INLINE void Batch(const BatchCall *call, const int n, const int points, const int dim, const int hoop)
 {
   double *const W = call->W, *const f = call->f, *const K = call->K;
-  const double   geometry = call->finite;
-  const Lanes    zero     = {0};
-  double         m[MAX_NODES * 3 * KERNEL_LANES], q_force[MAX_NODES * 3 * KERNEL_LANES]; /* variation of ln J'; what couples to it */
+  const double geometry = call->finite;
+  const Lanes  zero     = {0};
+  double       m[MAX_NODES * 3 * KERNEL_LANES],
+    q_force[MAX_NODES * 3 * KERNEL_LANES]; /* variation of ln J'; what couples to it */
   Lanes          pressure = {0}, deformed = {0}, square = {0}, factor[MAX_POINTS];
   MeanDilatation x;
 

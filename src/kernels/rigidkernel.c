@@ -1,7 +1,8 @@
 #include "kernels/rigidkernel.h"
 #include <math.h>
 
-/* Entries of unit scale that round-off leaves; far below any motion, far above machine precision times the number of bodies. */
+/* Entries of unit scale that round-off leaves; far below any motion, far above machine precision times the number of
+ * bodies. */
 static const double ROUND_OFF = 1e-9;
 
 /* RigidRow - the velocity along n of each of the six motions at x (relative to the centre, in sizes). */
@@ -59,8 +60,9 @@ static void ClearColumn(int m, int n, int p, int column, double rows[])
 
 /* RigidFree - the null space of a positive semidefinite matrix.
 
-   Elimination with the largest diagonal entry as pivot, until none exceeds tolerance times the largest entry (absolutely tolerance if that is below 1):
-   what is left over is free. The basis is that of the elimination; RigidReduce() makes it unique. */
+   Elimination with the largest diagonal entry as pivot, until none exceeds tolerance times the largest entry
+   (absolutely tolerance if that is below 1): what is left over is free. The basis is that of the elimination;
+   RigidReduce() makes it unique. */
 int RigidFree(int n, double gram[], double tolerance, double free[])
 {
   int    place[n > 0 ? n : 1], rank = 0;

@@ -8,7 +8,8 @@ typedef struct {
 } Builder;
 
 /* The block of the node at a place with another one, made at first sight; values: as far as there is room for them */
-static PetscInt FindBlock(BlockRows rows, const SweepOrder order, Builder *builder, PetscInt place, PetscInt other, int *part)
+static PetscInt FindBlock(BlockRows rows, const SweepOrder order, Builder *builder, PetscInt place, PetscInt other,
+                          int *part)
 {
   *part = order->place[other] < place ? BLOCKROWS_BEFORE : BLOCKROWS_AFTER;
   if (builder->last[other] != place) {
@@ -20,7 +21,8 @@ static PetscInt FindBlock(BlockRows rows, const SweepOrder order, Builder *build
 }
 
 /* Adds the entries of a node's rows that one block of the matrix has. */
-static void AddEntries(BlockRows rows, const SweepOrder order, Builder *builder, PetscInt place, const MatrixRows *from, int block)
+static void AddEntries(BlockRows rows, const SweepOrder order, Builder *builder, PetscInt place, const MatrixRows *from,
+                       int block)
 {
   const int      size = order->size;
   const PetscInt row  = order->node[place] * size;
@@ -31,7 +33,8 @@ static void AddEntries(BlockRows rows, const SweepOrder order, Builder *builder,
       int            part;
       const PetscInt b = FindBlock(rows, order, builder, place, column / size, &part);
 
-      if (rows->part[part].value) rows->part[part].value[(b * size + column % size) * size + r] = (float)PetscRealPart(from->value[k]);
+      if (rows->part[part].value)
+        rows->part[part].value[(b * size + column % size) * size + r] = (float)PetscRealPart(from->value[k]);
     }
   }
 }
@@ -62,7 +65,8 @@ static PetscErrorCode AddAll(Mat mat, SweepOrder order, BlockRows rows, PetscInt
 
 /* BlockRowsCreate - copies an assembled AIJ matrix; entries that it lacks within a block are zero.
 
-   Not collective. order: of its nodes; destroy the copy with BlockRowsDestroy(). Values beyond the range of single precision become infinite. */
+   Not collective. order: of its nodes; destroy the copy with BlockRowsDestroy(). Values beyond the range of single
+   precision become infinite. */
 PetscErrorCode BlockRowsCreate(Mat mat, SweepOrder order, BlockRows *rows)
 {
   const PetscInt size = order->size;

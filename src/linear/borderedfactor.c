@@ -154,8 +154,8 @@ static PetscErrorCode FindLast(BorderedFactor b, PetscInt *last)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* BorderedFactorOrder - Collective. A vector's unknown follows the last of its rows: from there on it is all that is left of them, and to eliminate it later would
-   have it stand in every front up to there. */
+/* BorderedFactorOrder - Collective. A vector's unknown follows the last of its rows: from there on it is all that is
+   left of them, and to eliminate it later would have it stand in every front up to there. */
 PetscErrorCode BorderedFactorOrder(BorderedFactor b, PetscInt **position)
 {
   PetscInt *last, *follow;

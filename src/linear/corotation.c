@@ -1,8 +1,10 @@
 #include "linear/corotation.h"
 
-/* Newton's method for the polar factor doubles the digits in each iteration once it is near: turns and moderate strains take three to five. */
+/* Newton's method for the polar factor doubles the digits in each iteration once it is near: turns and moderate strains
+ * take three to five. */
 #define TURN_ITERATIONS 12
-/* A gradient with less of a determinant than this, of unit size, is that of a body that is squeezed flat or turned inside out: no turn is read off it. */
+/* A gradient with less of a determinant than this, of unit size, is that of a body that is squeezed flat or turned
+ * inside out: no turn is read off it. */
 #define TURN_LEAST 1e-6
 
 enum { ENTRIES = 9 }; /* of a 3 x 3 matrix; in the plane the third row and column are those of the identity */
@@ -20,7 +22,8 @@ PetscErrorCode CorotationCreate(Mesh mesh, Corotation *turn)
   PetscFunctionBeginUser;
   PetscCall(PetscNew(turn));
   (*turn)->mesh = mesh;
-  PetscCall(PetscCalloc3(mesh->n_nodes * mesh->dim, &(*turn)->from, mesh->n_nodes * mesh->dim, &(*turn)->to, mesh->n_nodes * ENTRIES, &(*turn)->turn));
+  PetscCall(PetscCalloc3(mesh->n_nodes * mesh->dim, &(*turn)->from, mesh->n_nodes * mesh->dim, &(*turn)->to,
+                         mesh->n_nodes * ENTRIES, &(*turn)->turn));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -51,7 +54,8 @@ PetscErrorCode CorotationBegin(Corotation turn)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* A cell's nodes about their centre in the two states: sum of their products, of unit size, so that cells of all sizes count alike. */
+/* A cell's nodes about their centre in the two states: sum of their products, of unit size, so that cells of all sizes
+ * count alike. */
 static void CellProduct(Corotation turn, PetscInt cell, PetscReal product[ENTRIES])
 {
   const Mesh      mesh = turn->mesh;
@@ -110,9 +114,11 @@ static PetscReal Norm(const PetscReal a[ENTRIES])
   return PetscSqrtReal(square);
 }
 
-/* The turn of a node with three free dofs: the polar factor of the sum, by Newton's method on scaled iterates: flat cells' sums have singular values far apart.
+/* The turn of a node with three free dofs: the polar factor of the sum, by Newton's method on scaled iterates: flat
+   cells' sums have singular values far apart.
 
-   Source: Higham, Computing the polar decomposition - with applications, SIAM J. Sci. Stat. Comput. 7 (1986) 1160-1174. */
+   Source: Higham, Computing the polar decomposition - with applications, SIAM J. Sci. Stat. Comput. 7 (1986) 1160-1174.
+ */
 static void TurnInSpace(PetscReal a[ENTRIES])
 {
   const PetscReal size = Norm(a);

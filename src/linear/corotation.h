@@ -1,5 +1,6 @@
-/* How the bodies have turned, node by node, since an earlier state. A body's tangent turns with it, and a slender one turns by far more than it strains: what a
-   factor of an older tangent makes of forces turned back, turned on again, is a better solution than what it makes of the forces as they are. */
+/* How the bodies have turned, node by node, since an earlier state. A body's tangent turns with it, and a slender one
+   turns by far more than it strains: what a factor of an older tangent makes of forces turned back, turned on again, is
+   a better solution than what it makes of the forces as they are. */
 #pragma once
 #include "mesh/mesh.h"
 

@@ -4,19 +4,20 @@
 
 /* Unknowns from which on orderings are compared: below, a factorisation is not what a run spends its time with. */
 #define DIRECT_COMPARED 3000
-/* Takes METIS's dissection unless another ordering needs less than this part of its operations: it cuts the work into even parts, for ranks and for large
-   fronts. */
+/* Takes METIS's dissection unless another ordering needs less than this part of its operations: it cuts the work into
+   even parts, for ranks and for large fronts. */
 #define DIRECT_BETTER 0.9
 
-/* Where dissection of n unknowns takes more than this many n^2 operations they fill space (9 to 12 n^2 on rings and spheres), and nothing does with fewer. On
-   walls and in planes it goes with n^1.5 (1 to 2 n^2 at 15,000 and 60,000), and others are looked at. Source: George, SIAM J. Numer. Anal. 10, 1973. */
+/* Where dissection of n unknowns takes more than this many n^2 operations they fill space (9 to 12 n^2 on rings and
+   spheres), and nothing does with fewer. On walls and in planes it goes with n^1.5 (1 to 2 n^2 at 15,000 and 60,000),
+   and others are looked at. Source: George, SIAM J. Numer. Anal. 10, 1973. */
 #define DIRECT_THICK 5
 
 /* What the factorisation is called, among preconditioners. */
 #define DIRECT_NAME "mumps"
 
-/* Orderings that are compared with METIS's dissection: approximate minimum fill and degree take 0.67 to 0.8 of its operations on thin walls of second-order
-   bricks, and 1.5 times as many on thick blocks. */
+/* Orderings that are compared with METIS's dissection: approximate minimum fill and degree take 0.67 to 0.8 of its
+   operations on thin walls of second-order bricks, and 1.5 times as many on thick blocks. */
 static const int DirectOthers[] = {FACTOR_MINIMUM_FILL, FACTOR_MINIMUM_DEGREE};
 
 /* Factors all of the operator: where it is a sum, P is but one term of it. */
@@ -132,8 +133,9 @@ static PetscErrorCode CountOperations(Factor factor, int ordering, Mat A, PetscR
 
 /* DirectSolverOrder - the KSP's factors from now on are ordered as needs the fewest operations for A.
 
-   Collective. A: a matrix much like those to come; only its pattern counts. Costs one to three analyses, each about a third of a factorisation at 10,000
-   unknowns and less above. One that the user has chosen (-mat_mumps_icntl_7) stays. */
+   Collective. A: a matrix much like those to come; only its pattern counts. Costs one to three analyses, each about a
+   third of a factorisation at 10,000 unknowns and less above. One that the user has chosen (-mat_mumps_icntl_7) stays.
+ */
 PetscErrorCode DirectSolverOrder(KSP ksp, Mat A, PetscBool *thin)
 {
   int       ordering = FACTOR_METIS;

@@ -6,28 +6,31 @@
 /* MUMPS's parameters have numbers, from 1. */
 #define MUMPS_ICNTL  60
 #define MUMPS_CNTL   15
-#define ICNTL(i)     icntl[(i)-1]
-#define INFOG(i)     infog[(i)-1]
-#define RINFOG(i)    rinfog[(i)-1]
+#define ICNTL(i)     icntl[(i) - 1]
+#define INFOG(i)     infog[(i) - 1]
+#define RINFOG(i)    rinfog[(i) - 1]
 #define MPI_MUMPSINT (sizeof(MUMPS_INT) == sizeof(int64_t) ? MPI_INT64_T : MPI_INT32_T)
 
 /* Its jobs */
 enum { MUMPS_BEGIN = -1, MUMPS_END = -2, MUMPS_ANALYSE = 1, MUMPS_FACTOR = 2, MUMPS_SOLVE = 3 };
 /* Its ICNTL(7) for an ordering that it is given, and for its own choice */
 enum { MUMPS_GIVEN = 1, MUMPS_OWN = 7 };
-/* Unknowns from which on rows are ordered by dissection: below, a factorisation is not what a run spends its time with. */
+/* Unknowns from which on rows are ordered by dissection: below, a factorisation is not what a run spends its time with.
+ */
 enum { FACTOR_DISSECTED = 4000 };
-/* Workspace above its estimate, in per cent. Its own 20 is too little for symmetric systems of a few thousand dofs on four ranks. */
+/* Workspace above its estimate, in per cent. Its own 20 is too little for symmetric systems of a few thousand dofs on
+ * four ranks. */
 enum { FACTOR_WORKSPACE = 100 };
 /* How often it may be doubled: to a multiple of the estimate that delayed pivots of regular systems never need */
 enum { FACTOR_MORE = 2 };
-/* How it scales symmetric systems: by the diagonal. Its own choice iterates over rows and columns, which costs a seventh of a factorisation at 10,000 dofs;
-   stiff penalties stand on the diagonal. */
+/* How it scales symmetric systems: by the diagonal. Its own choice iterates over rows and columns, which costs a
+   seventh of a factorisation at 10,000 dofs; stiff penalties stand on the diagonal. */
 enum { FACTOR_SCALING = 1 };
 /* Columns that are solved for at a time: enough for products of matrices, few enough for the first rank's memory. */
 enum { FACTOR_COLUMNS = 128 };
 
-/* Memory for entries over what a pattern has, for the next one, which often has few more: new memory costs more than what is written there. */
+/* Memory for entries over what a pattern has, for the next one, which often has few more: new memory costs more than
+ * what is written there. */
 #define FACTOR_ROOM 1.25
 
 struct _n_Factor {
@@ -37,20 +40,21 @@ struct _n_Factor {
   int              ordering;
   PetscObjectId    matrix; /* whose entries' rows and columns stand below, 0: none's; and its pattern */
   PetscObjectState pattern;
-  PetscBool        analysed;            /* and that, as it is ordered and bordered now */
-  PetscInt         n, rows;             /* rows of all ranks, of this one */
-  PetscInt         entries, own;        /* of this rank: all, those of the matrix */
-  PetscInt        *from[MATRIX_BLOCKS]; /* of each row and block, its first entry that is taken: of a symmetric matrix none below the diagonal */
-  PetscInt         room;
-  MUMPS_INT       *row, *column; /* entries of this rank, from 1, in memory for `room` */
-  PetscScalar     *value;
-  BorderedFactor        bordering; /* NULL: none was prepared */
-  PetscBool        bordered;  /* the next matrix is */
-  PetscBool        changed;   /* by another border than the one that was analysed */
-  MUMPS_INT        workspace; /* ICNTL(14) at first */
-  MUMPS_INT       *position;  /* of rows, where the ordering is given; on the first rank, as are: */
-  PetscScalar     *right;     /* room for right-hand sides and solutions */
-  DMUMPS_STRUC_C   mumps;
+  PetscBool        analysed;     /* and that, as it is ordered and bordered now */
+  PetscInt         n, rows;      /* rows of all ranks, of this one */
+  PetscInt         entries, own; /* of this rank: all, those of the matrix */
+  PetscInt *from[MATRIX_BLOCKS]; /* of each row and block, its first entry that is taken: of a symmetric matrix none
+                                    below the diagonal */
+  PetscInt       room;
+  MUMPS_INT     *row, *column; /* entries of this rank, from 1, in memory for `room` */
+  PetscScalar   *value;
+  BorderedFactor bordering; /* NULL: none was prepared */
+  PetscBool      bordered;  /* the next matrix is */
+  PetscBool      changed;   /* by another border than the one that was analysed */
+  MUMPS_INT      workspace; /* ICNTL(14) at first */
+  MUMPS_INT     *position;  /* of rows, where the ordering is given; on the first rank, as are: */
+  PetscScalar   *right;     /* room for right-hand sides and solutions */
+  DMUMPS_STRUC_C mumps;
 };
 
 static PetscErrorCode Call(Factor f, int job)
@@ -105,7 +109,8 @@ static PetscErrorCode FactorBegin(Factor f)
   mumps->par          = 1;                    /* the first rank works too */
   mumps->sym          = f->symmetric ? 2 : 0; /* 2: need not be positive definite */
   PetscCall(Call(f, MUMPS_BEGIN));
-  PetscCheck(mumps->INFOG(1) >= 0, f->comm, PETSC_ERR_LIB, "MUMPS does not start: INFOG(1) = %d, INFOG(2) = %d", (int)mumps->INFOG(1), (int)mumps->INFOG(2));
+  PetscCheck(mumps->INFOG(1) >= 0, f->comm, PETSC_ERR_LIB, "MUMPS does not start: INFOG(1) = %d, INFOG(2) = %d",
+             (int)mumps->INFOG(1), (int)mumps->INFOG(2));
   for (int i = 1; i <= 4; i++) mumps->ICNTL(i) = 0; /* prints nothing */
   mumps->ICNTL(6) = 0;                              /* nor brings large entries to the diagonal, where they are */
   if (f->symmetric) mumps->ICNTL(8) = FACTOR_SCALING;
@@ -361,7 +366,8 @@ static PetscErrorCode ShowSize(Factor f, Mat A)
   PetscCall(MatGetLocalSize(A, &f->rows, NULL));
   all        = f->n + (f->bordered ? BorderedFactorCount(f->bordering) : 0);
   f->mumps.n = (MUMPS_INT)all;
-  PetscCheck(f->mumps.n == all, f->comm, PETSC_ERR_ARG_OUTOFRANGE, "%" PetscInt_FMT " unknowns are more than MUMPS can count", all);
+  PetscCheck(f->mumps.n == all, f->comm, PETSC_ERR_ARG_OUTOFRANGE,
+             "%" PetscInt_FMT " unknowns are more than MUMPS can count", all);
   PetscCall(MatGetOwnershipRanges(A, &ranges));
   for (PetscMPIInt r = 0; r < f->size; r++) {
     PetscCall(PetscMPIIntCast(ranges[r + 1], &f->first[r + 1]));
@@ -418,7 +424,9 @@ static PetscErrorCode Tell(Factor f, const char *job, PCFailedReason *reason)
 {
   PetscFunctionBeginUser;
   *reason = Reason(f);
-  if (*reason) PetscCall(PetscInfo(NULL, "MUMPS's %s failed: INFOG(1) = %d, INFOG(2) = %d\n", job, (int)f->mumps.INFOG(1), (int)f->mumps.INFOG(2)));
+  if (*reason)
+    PetscCall(PetscInfo(NULL, "MUMPS's %s failed: INFOG(1) = %d, INFOG(2) = %d\n", job, (int)f->mumps.INFOG(1),
+                        (int)f->mumps.INFOG(2)));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -457,7 +465,8 @@ static PetscErrorCode IsNew(Factor f, Mat A, PetscBool *is)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* FactorPrepareBorder - Collective. *reason: why K cannot be ordered; there are no borders then. An analysis of K that there is serves. */
+/* FactorPrepareBorder - Collective. *reason: why K cannot be ordered; there are no borders then. An analysis of K that
+ * there is serves. */
 PetscErrorCode FactorPrepareBorder(Factor f, Mat K, PCFailedReason *reason)
 {
   const int ordering = f->ordering;
@@ -522,7 +531,8 @@ PetscErrorCode FactorMake(Factor f, Mat A, PCFailedReason *reason)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* FactorGetCost - INFOG(16), INFOG(17): memory; INFOG(20): entries, negative: in millions; RINFOG(1): operations. Not collective. */
+/* FactorGetCost - INFOG(16), INFOG(17): memory; INFOG(20): entries, negative: in millions; RINFOG(1): operations. Not
+ * collective. */
 void FactorGetCost(Factor f, FactorCost *cost)
 {
   const DMUMPS_STRUC_C *mumps   = &f->mumps;
@@ -548,7 +558,8 @@ static PetscErrorCode FactorSolveOnce(Factor f, PetscInt columns)
   mumps->rhs       = f->right;
   mumps->ICNTL(21) = 0; /* the solution: all of it on the first rank */
   PetscCall(Call(f, MUMPS_SOLVE));
-  PetscCheck(mumps->INFOG(1) >= 0, f->comm, PETSC_ERR_LIB, "MUMPS does not solve: INFOG(1) = %d, INFOG(2) = %d", (int)mumps->INFOG(1), (int)mumps->INFOG(2));
+  PetscCheck(mumps->INFOG(1) >= 0, f->comm, PETSC_ERR_LIB, "MUMPS does not solve: INFOG(1) = %d, INFOG(2) = %d",
+             (int)mumps->INFOG(1), (int)mumps->INFOG(2));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -573,7 +584,8 @@ PetscErrorCode FactorSolve(Factor f, Vec b, Vec x)
   if (!f->exists) PetscFunctionReturn(PETSC_SUCCESS);
   if (!f->right) PetscCall(MakeRoom(f, 1));
   PetscCall(VecGetArrayRead(b, &from));
-  PetscCallMPI(MPI_Gatherv(from, f->count[f->rank], MPIU_SCALAR, f->right, f->count, f->first, MPIU_SCALAR, 0, f->comm));
+  PetscCallMPI(
+    MPI_Gatherv(from, f->count[f->rank], MPIU_SCALAR, f->right, f->count, f->first, MPIU_SCALAR, 0, f->comm));
   PetscCall(VecRestoreArrayRead(b, &from));
   for (MUMPS_INT i = (MUMPS_INT)f->n; i < f->mumps.n && !f->rank; i++) f->right[i] = 0; /* the border's */
   f->mumps.ICNTL(20) = 0;                                                               /* dense */
@@ -686,8 +698,8 @@ static PetscErrorCode SolveSparse(Factor f, PetscInt columns, const PetscScalar 
     ShowColumns(f, &all);
     PetscCall(FactorSolveOnce(f, columns));
     for (PetscInt j = 0; j < columns; j++)
-      PetscCallMPI(MPI_Scatterv(f->rank ? NULL : &f->right[(size_t)j * f->mumps.n], f->count, f->first, MPIU_SCALAR, &x[j * f->rows], f->count[f->rank],
-                                MPIU_SCALAR, 0, f->comm));
+      PetscCallMPI(MPI_Scatterv(f->rank ? NULL : &f->right[(size_t)j * f->mumps.n], f->count, f->first, MPIU_SCALAR,
+                                &x[j * f->rows], f->count[f->rank], MPIU_SCALAR, 0, f->comm));
     PetscCall(PetscFree(f->right));
   }
   PetscCall(SparseFree(&all));
@@ -701,9 +713,11 @@ static PetscErrorCode SolveSparse(Factor f, PetscInt columns, const PetscScalar 
   Collective
 
   Notes:
-  The last matrix must have been factored: an error otherwise. Columns of B and X stand next to each other (their leading dimension is that of the rows).
+  The last matrix must have been factored: an error otherwise. Columns of B and X stand next to each other (their
+  leading dimension is that of the rows).
 
-  MUMPS is given the entries of B that differ from zero, and eliminates only what they reach (its ICNTL(20)): for forces on contact nodes, half of the time.
+  MUMPS is given the entries of B that differ from zero, and eliminates only what they reach (its ICNTL(20)): for forces
+  on contact nodes, half of the time.
 */
 PetscErrorCode FactorSolveColumns(Factor f, Mat B, Mat X)
 {
@@ -716,7 +730,8 @@ PetscErrorCode FactorSolveColumns(Factor f, Mat B, Mat X)
   PetscCall(MatGetSize(B, NULL, &columns));
   PetscCall(MatDenseGetArrayRead(B, &b));
   PetscCall(MatDenseGetArrayWrite(X, &x));
-  for (PetscInt j = 0; j < columns; j += FACTOR_COLUMNS) PetscCall(SolveSparse(f, PetscMin(FACTOR_COLUMNS, columns - j), &b[j * f->rows], &x[j * f->rows]));
+  for (PetscInt j = 0; j < columns; j += FACTOR_COLUMNS)
+    PetscCall(SolveSparse(f, PetscMin(FACTOR_COLUMNS, columns - j), &b[j * f->rows], &x[j * f->rows]));
   PetscCall(MatDenseRestoreArrayWrite(X, &x));
   PetscCall(MatDenseRestoreArrayRead(B, &b));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -13,21 +13,23 @@ typedef enum { RESIDUAL_KNOWN, RESIDUAL_GUESS, RESIDUAL_STEP } ResidualKind;
 
 typedef enum { FORWARD, BACKWARD, REST_ONLY } Way;
 
-/* With A = L + D + U, in the order of the sweep, and a rest r: (L + D) y = r, (D + U) z = D y. So A z = r - L (y - z). */
+/* With A = L + D + U, in the order of the sweep, and a rest r: (L + D) y = r, (D + U) z = D y. So A z = r - L (y - z).
+ */
 typedef struct _n_GaussSeidel {
-  PetscReal  least, largest; /* eigenvalues that are smoothed */
-  SweepOrder order;
-  BlockRows  rows;
-  PetscReal *inverse;            /* of the blocks on the diagonal, in the order of the sweep, column-major */
-  PetscReal *residual, *step, *fall; /* fall: A step */
-  PetscReal *x, *other;          /* with ghosts. x: y, then z; other: y - z, or a guess */
-  ResidualKind       what;
-  PetscReal  keep, add; /* step = keep (the last one) + add z */
-} * GaussSeidel;
+  PetscReal    least, largest; /* eigenvalues that are smoothed */
+  SweepOrder   order;
+  BlockRows    rows;
+  PetscReal   *inverse;                /* of the blocks on the diagonal, in the order of the sweep, column-major */
+  PetscReal   *residual, *step, *fall; /* fall: A step */
+  PetscReal   *x, *other;              /* with ghosts. x: y, then z; other: y - z, or a guess */
+  ResidualKind what;
+  PetscReal    keep, add; /* step = keep (the last one) + add z */
+} *GaussSeidel;
 
 /* ---------- diagonal ---------- */
 
-/* The inverse of a block by Gauss and Jordan's method, 0 where it has none: what cannot be solved for stays as it is. Both column-major */
+/* The inverse of a block by Gauss and Jordan's method, 0 where it has none: what cannot be solved for stays as it is.
+ * Both column-major */
 static void InvertBlock(int n, const float *block, PetscReal *inverse)
 {
   PetscReal a[BLOCKROWS_SIZE][BLOCKROWS_SIZE], scale = 0;
@@ -72,9 +74,11 @@ LANES_INLINE void GaussSeidelFindResidual(const int size, const ResidualKind wha
 
   if (what == RESIDUAL_KNOWN) return;
   sum = BlockRowsProduct(size, before, before->first[place], before->first[place + 1], 1, g->other);
-  if (what == RESIDUAL_GUESS) sum += BlockRowsProduct(size, after, after->first[place], after->first[place + 1], 1, g->other);
+  if (what == RESIDUAL_GUESS)
+    sum += BlockRowsProduct(size, after, after->first[place], after->first[place + 1], 1, g->other);
   for (int r = 0; r < size; r++) {
-    g->fall[row + r] = what == RESIDUAL_GUESS ? 0 : g->keep * g->fall[row + r] + g->add * (g->residual[row + r] - sum[r]);
+    g->fall[row + r] =
+      what == RESIDUAL_GUESS ? 0 : g->keep * g->fall[row + r] + g->add * (g->residual[row + r] - sum[r]);
     g->residual[row + r] -= what == RESIDUAL_GUESS ? sum[r] : g->fall[row + r];
   }
 }
@@ -104,7 +108,8 @@ LANES_INLINE void SweepBackward(const int size, GaussSeidel g, PetscInt place)
 {
   const BlockPart   *after = &g->rows->part[BLOCKROWS_AFTER];
   const PetscInt     row   = g->order->node[place] * size;
-  const BlockDoubles other = GaussSeidelSolve(size, g, place, BlockRowsProduct(size, after, after->first[place + 1] - 1, after->first[place], -1, g->x));
+  const BlockDoubles other = GaussSeidelSolve(
+    size, g, place, BlockRowsProduct(size, after, after->first[place + 1] - 1, after->first[place], -1, g->x));
 
   for (int r = 0; r < size; r++) {
     g->other[row + r] = other[r];
@@ -113,7 +118,8 @@ LANES_INLINE void SweepBackward(const int size, GaussSeidel g, PetscInt place)
 }
 
 /* Places from..to-1, or from the last of them to the first. */
-LANES_INLINE void SweepPlaces(const int size, const ResidualKind what, GaussSeidel g, PetscInt from, PetscInt to, Way way)
+LANES_INLINE void SweepPlaces(const int size, const ResidualKind what, GaussSeidel g, PetscInt from, PetscInt to,
+                              Way way)
 {
   for (PetscInt place = from; place < to && way == REST_ONLY; place++) GaussSeidelFindResidual(size, what, g, place);
   for (PetscInt place = to; place-- > from && way == BACKWARD;) SweepBackward(size, g, place);
@@ -141,7 +147,8 @@ static void Sweep(GaussSeidel g, PetscInt from, PetscInt n, Way way)
   }
 }
 
-/* One way through all nodes. The ranks take turns at their borders, colour after colour; meanwhile, or before, they sweep what is inside. */
+/* One way through all nodes. The ranks take turns at their borders, colour after colour; meanwhile, or before, they
+ * sweep what is inside. */
 static PetscErrorCode SweepAll(GaussSeidel g, Way way)
 {
   const SweepOrder o            = g->order;
@@ -150,7 +157,8 @@ static PetscErrorCode SweepAll(GaussSeidel g, Way way)
   PetscFunctionBeginUser;
   if (!border_first || !o->sf) Sweep(g, o->inner, o->n_inner, way);
   for (int turn = 0; o->sf && turn < o->colours; turn++) {
-    const PetscBool mine = (PetscBool)(o->colour == (way == FORWARD ? turn : o->colours - 1 - turn)), last = (PetscBool)(turn == o->colours - 1);
+    const PetscBool mine = (PetscBool)(o->colour == (way == FORWARD ? turn : o->colours - 1 - turn)),
+                    last = (PetscBool)(turn == o->colours - 1);
 
     if (mine) Sweep(g, o->interface, o->n - o->n_inner, way);
     if (!last) PetscCall(SweepOrderShareBegin(o, g->x));
@@ -227,7 +235,8 @@ static PetscErrorCode GaussSeidelSetUp(PC pc)
   after = &g->rows->part[BLOCKROWS_AFTER];
   PetscCall(PetscMalloc1(own * size + BLOCKROWS_LANES, &g->inverse));
   PetscCall(PetscArrayzero(&g->inverse[own * size], BLOCKROWS_LANES));
-  for (PetscInt place = 0; place < n; place++) InvertBlock(size, &after->value[after->first[place] * size * size], &g->inverse[place * size * size]);
+  for (PetscInt place = 0; place < n; place++)
+    InvertBlock(size, &after->value[after->first[place] * size * size], &g->inverse[place * size * size]);
   PetscCall(PetscMalloc5(own, &g->residual, own, &g->step, own, &g->fall, all, &g->x, all, &g->other));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -262,8 +271,8 @@ static PetscErrorCode AddStep(GaussSeidel g, PetscBool first, PetscBool zero, Ve
 }
 
 /* Chebyshev's iterations for eigenvalues from least to largest. */
-static PetscErrorCode Smooth(PC pc, Vec right, Vec left, Vec work, PetscReal rtol, PetscReal atol, PetscReal dtol, PetscInt iterations, PetscBool zero,
-                             PetscInt *done, PCRichardsonConvergedReason *reason)
+static PetscErrorCode Smooth(PC pc, Vec right, Vec left, Vec work, PetscReal rtol, PetscReal atol, PetscReal dtol,
+                             PetscInt iterations, PetscBool zero, PetscInt *done, PCRichardsonConvergedReason *reason)
 {
   GaussSeidel g;
   PetscReal   spread, omega = 2;
@@ -303,12 +312,12 @@ static PetscErrorCode GaussSeidelDestroy(PC pc)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* GaussSeidelSet - makes a preconditioner one symmetric sweep of Gauss-Seidel's method over the nodes; as KSPRICHARDSON's, Chebyshev's iterations with it.
+/* GaussSeidelSet - makes a preconditioner one symmetric sweep of Gauss-Seidel's method over the nodes; as
+   KSPRICHARDSON's, Chebyshev's iterations with it.
 
-   Logically collective. pc: of AIJ matrices whose pattern and values are symmetric, of any number of ranks. least, largest: eigenvalues to smooth; none is
-   above 1.
-   Source: Saad, Iterative Methods for Sparse Linear Systems, 4.1, 12.3 and 12.4; residuals from what sweeps leave: Eisenstat, SIAM J. Sci. Stat. Comput. 2,
-   1981. */
+   Logically collective. pc: of AIJ matrices whose pattern and values are symmetric, of any number of ranks. least,
+   largest: eigenvalues to smooth; none is above 1. Source: Saad, Iterative Methods for Sparse Linear Systems, 4.1, 12.3
+   and 12.4; residuals from what sweeps leave: Eisenstat, SIAM J. Sci. Stat. Comput. 2, 1981. */
 PetscErrorCode GaussSeidelSet(PC pc, PetscReal least, PetscReal largest)
 {
   GaussSeidel g;
@@ -327,7 +336,8 @@ PetscErrorCode GaussSeidelSet(PC pc, PetscReal least, PetscReal largest)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* GaussSeidelGetMat - a matrix that knows the preconditioner, for GaussSeidelResidual(). Collective. *mat: NULL where options have replaced the method. */
+/* GaussSeidelGetMat - a matrix that knows the preconditioner, for GaussSeidelResidual(). Collective. *mat: NULL where
+ * options have replaced the method. */
 PetscErrorCode GaussSeidelGetMat(PC pc, Mat *mat)
 {
   GaussSeidel g;

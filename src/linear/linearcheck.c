@@ -1,10 +1,11 @@
 #include "linear/linearcheck.h"
 #include "base/timing.h"
 
-/* A residual up to this many times the tolerance asked for is the solver's own business: Newton's method contracts all the same. */
+/* A residual up to this many times the tolerance asked for is the solver's own business: Newton's method contracts all
+ * the same. */
 #define LINEAR_SLACK 100
-/* A direct solve of a regular system leaves a relative residual of 1e-12 to 1e-7, stiff penalties included; one that is still above this after refinement is
-   that of a singular system. */
+/* A direct solve of a regular system leaves a relative residual of 1e-12 to 1e-7, stiff penalties included; one that is
+   still above this after refinement is that of a singular system. */
 #define LINEAR_SINGULAR 1e-3
 /* Refinement contracts the residual by the same factor in each step; after these steps one that helps has helped. */
 #define LINEAR_MAX_REFINE 8
@@ -13,7 +14,7 @@
 
 struct _n_LinearCheck {
   PetscReal    tolerance;
-  ReusedFactor   kept;
+  ReusedFactor kept;
   PetscBool    lost;
   LinearCounts counts;
 };
@@ -49,7 +50,7 @@ static PetscErrorCode Refine(KSP ksp, Mat A, Vec b, Vec x, Vec r, PetscReal enou
   PetscFunctionBeginUser;
   PetscCall(KSPGetPC(ksp, &pc));
   PetscCall(VecDuplicate(x, &d));
-  for (PetscInt i = 0; i<LINEAR_MAX_REFINE && * norm> enough && *norm <= LINEAR_HELPS * before; i++) {
+  for (PetscInt i = 0; i < LINEAR_MAX_REFINE && *norm > enough && *norm <= LINEAR_HELPS * before; i++) {
     before = *norm;
     PetscCall(PCApply(pc, r, d));
     PetscCall(VecAXPY(x, 1, d));
@@ -95,14 +96,18 @@ static PetscErrorCode CheckSolution(LinearCheck check, KSP ksp, Vec b, Vec x)
   if (failed) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(VecDuplicate(b, &r));
   if (norm < 0) PetscCall(TrueResidual(A, b, x, r, &norm));
-  if (norm > LINEAR_SLACK * tolerance * right) PetscCall(Refine(ksp, A, b, x, r, LINEAR_SLACK * tolerance * right, &norm, &steps));
+  if (norm > LINEAR_SLACK * tolerance * right)
+    PetscCall(Refine(ksp, A, b, x, r, LINEAR_SLACK * tolerance * right, &norm, &steps));
   PetscCall(VecDestroy(&r));
-  check->lost = norm <= PetscMax(LINEAR_SINGULAR, tolerance) * right ? PETSC_FALSE : PETSC_TRUE; /* so is not-a-number */
+  check->lost =
+    norm <= PetscMax(LINEAR_SINGULAR, tolerance) * right ? PETSC_FALSE : PETSC_TRUE; /* so is not-a-number */
   check->counts.refined += steps > 0;
   check->counts.steps += steps;
   if (check->lost || right == 0) PetscFunctionReturn(PETSC_SUCCESS);
   check->counts.inaccurate += norm > LINEAR_SLACK * tolerance * right;
-  if (tolerance == own) check->counts.worst = PetscMax(check->counts.worst, norm / right); /* not of solves that ended where it is enough for Newton's method */
+  if (tolerance == own)
+    check->counts.worst =
+      PetscMax(check->counts.worst, norm / right); /* not of solves that ended where it is enough for Newton's method */
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -122,8 +127,8 @@ static PetscErrorCode SolveEnds(KSP ksp, Vec b, Vec x, void *context)
 
 /* LinearCheckCreate - looks at every solution of a KSP, and times its solves (TIMING_SOLVE).
 
-   Collective. tolerance: relative residual that is asked for of a direct solver; an iterative one has its own. A solution that misses it by more than
-   LINEAR_SLACK is refined. Destroy the check after the KSP.
+   Collective. tolerance: relative residual that is asked for of a direct solver; an iterative one has its own. A
+   solution that misses it by more than LINEAR_SLACK is refined. Destroy the check after the KSP.
 
    Source: Higham, Accuracy and Stability of Numerical Algorithms, chapter 12 (refinement in fixed precision). */
 PetscErrorCode LinearCheckCreate(KSP ksp, PetscReal tolerance, ReusedFactor kept, LinearCheck *check)
@@ -145,7 +150,8 @@ PetscErrorCode LinearCheckDestroy(LinearCheck *check)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* LinearCheckLost - whether the last solve failed, or left a residual that only a singular matrix leaves. Not collective, the same on all ranks. */
+/* LinearCheckLost - whether the last solve failed, or left a residual that only a singular matrix leaves. Not
+ * collective, the same on all ranks. */
 PetscBool LinearCheckLost(LinearCheck check)
 {
   return check->lost;

@@ -6,45 +6,51 @@
 /* The parts have option names of their own: -bodies_... for multigrid, -interface_... for the direct solve */
 #define MULTIGRID_BODIES    "bodies_"
 #define MULTIGRID_INTERFACE "interface_"
-/* Multigrid is made anew when the interface has become this many times as large, or as small. Contact that only moves does without: how stiff it is on the
-   coarse levels hardly matters (a hundredth costs one iteration more in 26), that it is there does. */
+/* Multigrid is made anew when the interface has become this many times as large, or as small. Contact that only moves
+   does without: how stiff it is on the coarse levels hardly matters (a hundredth costs one iteration more in 26), that
+   it is there does. */
 #define MULTIGRID_CHANGE 1.5
-/* Multigrid made for an older operator serves until its effort, iterations for a power of ten in the residual, is this many times
-   the effort at first: its coarse matrices cost as much as some ten iterations. */
+/* Multigrid made for an older operator serves until its effort, iterations for a power of ten in the residual, is this
+   many times the effort at first: its coarse matrices cost as much as some ten iterations. */
 #define MULTIGRID_AGE 1.5
-/* What the finest level's smoother damps: eigenvalues of the operator after symmetric Gauss-Seidel sweeps, none of which is above 1. */
+/* What the finest level's smoother damps: eigenvalues of the operator after symmetric Gauss-Seidel sweeps, none of
+ * which is above 1. */
 #define MULTIGRID_LARGEST 1.1
 #define MULTIGRID_LEAST   0.1
-/* Powers of ten in the residual that a solve must show for its effort to be told: the first iterations of any solve are the fastest. */
+/* Powers of ten in the residual that a solve must show for its effort to be told: the first iterations of any solve are
+ * the fastest. */
 #define MULTIGRID_SHOWN 2
 /* Whatever its effort was at first, multigrid of an older operator is made anew after a solve of so many iterations. */
 #define MULTIGRID_MOST 60
-/* How far across contact, in rows that it couples, a rank factors what others own of the interface. None takes five times the iterations on two ranks; a
-   second takes one in 25 less and half as much time again for the factors, more than that saves. */
+/* How far across contact, in rows that it couples, a rank factors what others own of the interface. None takes five
+   times the iterations on two ranks; a second takes one in 25 less and half as much time again for the factors, more
+   than that saves. */
 #define MULTIGRID_OVERLAP 1
 /* Most rigid-body modes there are */
 #define MULTIGRID_MODES 6
 
 struct _n_Multigrid {
-  Mesh       mesh;
-  PetscBool  axisymmetric, symmetric;
-  PetscInt   n_free, n_all, first; /* rows of this rank: free dofs, all dofs of nodes that have one; the latter's first number of all ranks */
-  PetscInt  *row;                  /* of each free dof of this rank: its row among all dofs, counted from first */
-  Vec        number;               /* of each free dof: its number among all dofs of all ranks */
-  Mat        nodes;                /* the operator with all dofs of a node */
-  PetscBool  changed, renew;       /* the operator has another pattern than that; its values are wanted */
-  PetscInt   solves, applied;      /* operators since multigrid was made; iterations for the last of them */
-  PetscReal  usual;                /* effort of the first one long enough to tell, 0: none yet */
-  KSP        outer;                /* whose preconditioner this is */
-  PC         bodies;
-  Vec        nodes_right, nodes_left;
-  Mat        contact;   /* borrowed: that part of the operator */
-  IS         interface; /* rows of this rank that contact couples; NULL: no rank has any */
-  IS         reach;     /* these and near ones of other ranks, ascending: those that this one factors */
-  PetscInt   coupled;   /* how many there were, on all ranks, when multigrid was made */
-  KSP        direct;
-  Vec        interface_right, interface_left;
-  Vec        residual, ghosts; /* what the bodies leave on the interface, 0 elsewhere; values of other ranks for it, NULL: one rank */
+  Mesh      mesh;
+  PetscBool axisymmetric, symmetric;
+  PetscInt  n_free, n_all,
+    first; /* rows of this rank: free dofs, all dofs of nodes that have one; the latter's first number of all ranks */
+  PetscInt *row;             /* of each free dof of this rank: its row among all dofs, counted from first */
+  Vec       number;          /* of each free dof: its number among all dofs of all ranks */
+  Mat       nodes;           /* the operator with all dofs of a node */
+  PetscBool changed, renew;  /* the operator has another pattern than that; its values are wanted */
+  PetscInt  solves, applied; /* operators since multigrid was made; iterations for the last of them */
+  PetscReal usual;           /* effort of the first one long enough to tell, 0: none yet */
+  KSP       outer;           /* whose preconditioner this is */
+  PC        bodies;
+  Vec       nodes_right, nodes_left;
+  Mat       contact;   /* borrowed: that part of the operator */
+  IS        interface; /* rows of this rank that contact couples; NULL: no rank has any */
+  IS        reach;     /* these and near ones of other ranks, ascending: those that this one factors */
+  PetscInt  coupled;   /* how many there were, on all ranks, when multigrid was made */
+  KSP       direct;
+  Vec       interface_right, interface_left;
+  Vec       residual,
+    ghosts; /* what the bodies leave on the interface, 0 elsewhere; values of other ranks for it, NULL: one rank */
   VecScatter to_interface, to_ghosts;
 };
 
@@ -85,7 +91,8 @@ static PetscErrorCode MultigridNumberNodes(Multigrid m)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Rigid-body modes of a node at x: displacement in direction d of mode k. Translations first, then rotations; axisymmetric: along the axis only. */
+/* Rigid-body modes of a node at x: displacement in direction d of mode k. Translations first, then rotations;
+ * axisymmetric: along the axis only. */
 static PetscReal ModeValue(int dim, const PetscReal *x, int k, int d)
 {
   const int from = dim == 2 ? 0 : (k - dim + 1) % 3, to = dim == 2 ? 1 : (k - dim + 2) % 3;
@@ -97,7 +104,7 @@ static PetscReal ModeValue(int dim, const PetscReal *x, int k, int d)
 /* The modes of all bodies together, orthonormal; 0 where a dof is constrained. */
 static PetscErrorCode ModesCreate(Multigrid m, MatNullSpace *modes)
 {
-  const int       dim = m->mesh->dim, first = m->axisymmetric ? 1 : 0, count = m->axisymmetric ? 1 : dim * (dim + 1) / 2;
+  const int dim = m->mesh->dim, first = m->axisymmetric ? 1 : 0, count = m->axisymmetric ? 1 : dim * (dim + 1) / 2;
   const PetscInt *dofs;
   PetscInt        begin, end;
   PetscScalar    *value, product[MULTIGRID_MODES];
@@ -111,7 +118,8 @@ static PetscErrorCode ModesCreate(Multigrid m, MatNullSpace *modes)
     PetscCall(VecDuplicate(m->nodes_right, &mode[k]));
     PetscCall(VecGetArray(mode[k], &value));
     for (PetscInt i = 0; i < m->mesh->n_nodes * dim; i++)
-      if (dofs[i] >= begin && dofs[i] < end) value[m->row[dofs[i] - begin]] = ModeValue(dim, &m->mesh->coords[i - i % dim], first + k, (int)(i % dim));
+      if (dofs[i] >= begin && dofs[i] < end)
+        value[m->row[dofs[i] - begin]] = ModeValue(dim, &m->mesh->coords[i - i % dim], first + k, (int)(i % dim));
     PetscCall(VecRestoreArray(mode[k], &value));
     if (k) PetscCall(VecMDot(mode[k], k, mode, product));
     for (int l = 0; l < k; l++) product[l] = -product[l];
@@ -215,9 +223,11 @@ static PetscErrorCode CopyRows(Multigrid m, Mat A, PetscReal factor, InsertMode 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* How stiff contact is to be for multigrid, of its full stiffness: at most as the bodies are where it is. *mean: diagonal entry of the operator, so softened.
+/* How stiff contact is to be for multigrid, of its full stiffness: at most as the bodies are where it is. *mean:
+   diagonal entry of the operator, so softened.
 
-   Stiffer contact makes smoothers diverge whose largest eigenvalue is estimated; the interface's solve does the rest, and a hundredth costs no iteration. */
+   Stiffer contact makes smoothers diverge whose largest eigenvalue is estimated; the interface's solve does the rest,
+   and a hundredth costs no iteration. */
 static PetscErrorCode SoftenContact(Multigrid m, Mat A, PetscReal *softness, PetscScalar *mean)
 {
   PetscScalar sum[2] = {0, 0}, *contact;
@@ -242,7 +252,8 @@ static PetscErrorCode SoftenContact(Multigrid m, Mat A, PetscReal *softness, Pet
     PetscCall(VecRestoreArrayRead(diagonal, &whole));
     PetscCall(VecRestoreArray(of_contact, &contact));
     PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sum, 2, MPIU_SCALAR, MPIU_SUM, m->mesh->comm));
-    if (PetscRealPart(sum[0]) > 0 && PetscRealPart(sum[1]) > PetscRealPart(sum[0])) *softness = PetscRealPart(sum[0]) / PetscRealPart(sum[1]);
+    if (PetscRealPart(sum[0]) > 0 && PetscRealPart(sum[1]) > PetscRealPart(sum[0]))
+      *softness = PetscRealPart(sum[0]) / PetscRealPart(sum[1]);
     PetscCall(VecAXPY(diagonal, *softness - 1, of_contact));
   }
   PetscCall(VecSum(diagonal, mean));
@@ -309,8 +320,9 @@ static PetscErrorCode CreateBodies(Multigrid m)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The finest level is smoothed by Gauss-Seidel's method: half of Jacobi's iterations, and fewer more of them on finer meshes. The coarse levels keep Jacobi's:
-   aggregates of few nodes leave rotations without stiffness, which Gauss-Seidel's method would divide by. */
+/* The finest level is smoothed by Gauss-Seidel's method: half of Jacobi's iterations, and fewer more of them on finer
+   meshes. The coarse levels keep Jacobi's: aggregates of few nodes leave rotations without stiffness, which
+   Gauss-Seidel's method would divide by. */
 static PetscErrorCode SmoothFinest(Multigrid m)
 {
   KSP      ksp;
@@ -401,8 +413,9 @@ static PetscErrorCode ForgetInterface(Multigrid m)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* What each rank factors by itself: its rows of the interface with those of others that contact couples to them. Of its solution it keeps its own rows:
-   restricted additive Schwarz (Cai and Sarkis, SIAM J. Sci. Comput. 21, 1999). One factor over all ranks has them wait for each other longer than they work. */
+/* What each rank factors by itself: its rows of the interface with those of others that contact couples to them. Of its
+   solution it keeps its own rows: restricted additive Schwarz (Cai and Sarkis, SIAM J. Sci. Comput. 21, 1999). One
+   factor over all ranks has them wait for each other longer than they work. */
 static PetscErrorCode FindReach(Multigrid m)
 {
   PetscMPIInt     size;
@@ -454,7 +467,8 @@ PetscErrorCode MultigridSetContact(Multigrid m, Mat C, PetscBool changed)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* MultigridRenew - the next operator is a new beginning: multigrid is made for it, whatever was solved before. Not collective. */
+/* MultigridRenew - the next operator is a new beginning: multigrid is made for it, whatever was solved before. Not
+ * collective. */
 PetscErrorCode MultigridRenew(Multigrid m)
 {
   PetscFunctionBeginUser;
@@ -502,7 +516,8 @@ static PetscErrorCode SetUpInterface(Multigrid m, Mat A)
 }
 
 /* rest -= (one block of the operator) x in rows of the interface; begin: first row of this rank */
-static PetscErrorCode SubtractBlock(Mat A, int block, PetscInt n, const PetscInt *interface, PetscInt begin, Vec x, PetscScalar *residual)
+static PetscErrorCode SubtractBlock(Mat A, int block, PetscInt n, const PetscInt *interface, PetscInt begin, Vec x,
+                                    PetscScalar *residual)
 {
   MatrixRows         rows;
   const PetscScalar *from;
@@ -580,8 +595,8 @@ static PetscErrorCode AddInterface(Multigrid m, Vec right, Vec left)
 
 /* ---------- the preconditioner ---------- */
 
-/* Iterations of the last solve for each power of ten in the residual, 0: it was too short to tell. The first iteration does not count: it is the
-   interface's, whose stiff forces may be all there is at first. */
+/* Iterations of the last solve for each power of ten in the residual, 0: it was too short to tell. The first iteration
+   does not count: it is the interface's, whose stiff forces may be all there is at first. */
 static PetscErrorCode LastEffort(Multigrid m, PetscReal *effort)
 {
   const PetscReal *residual;
@@ -644,10 +659,12 @@ static PetscErrorCode MultigridApply(PC pc, Vec right, Vec left)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* MultigridCreate - makes itself the preconditioner of a KSP, which keeps its residuals for it; the caller destroys *out after the KSP.
+/* MultigridCreate - makes itself the preconditioner of a KSP, which keeps its residuals for it; the caller destroys
+   *out after the KSP.
 
-   Collective. mesh: borrowed, its constraints set. axisymmetric: the only rigid-body mode is the one along the axis. symmetric: of the operators.
-   Options Database Keys: -bodies_pc_..., -bodies_mg_... of multigrid; -interface_ksp_..., -interface_pc_... of the direct solve. */
+   Collective. mesh: borrowed, its constraints set. axisymmetric: the only rigid-body mode is the one along the axis.
+   symmetric: of the operators. Options Database Keys: -bodies_pc_..., -bodies_mg_... of multigrid; -interface_ksp_...,
+   -interface_pc_... of the direct solve. */
 PetscErrorCode MultigridCreate(Mesh mesh, PetscBool axisymmetric, PetscBool symmetric, KSP ksp, Multigrid *out)
 {
   Multigrid m;

@@ -122,7 +122,8 @@ static PetscErrorCode GraphGather(const Nodes *nodes, Graph *graph)
   PetscFunctionBeginUser;
   for (PetscInt i = 0; i < nodes->n; i++)
     for (int block = 0; block < MATRIX_BLOCKS; block++)
-      if (nodes->rows[block].mat) room += nodes->rows[block].ptr[nodes->first[i] + 1] - nodes->rows[block].ptr[nodes->first[i]];
+      if (nodes->rows[block].mat)
+        room += nodes->rows[block].ptr[nodes->first[i] + 1] - nodes->rows[block].ptr[nodes->first[i]];
   PetscCall(PetscMalloc3(nodes->n, &rows, nodes->n, &degrees, room, &neighbours));
   for (PetscInt i = 0; i < nodes->n; i++, n += degrees[i - 1]) {
     rows[i]    = (idx_t)(nodes->first[i + 1] - nodes->first[i]);
@@ -162,7 +163,8 @@ static PetscErrorCode Dissect(const Graph *graph, PetscInt **position)
   options[METIS_OPTION_SEED]      = ORDERING_SEED;
   options[METIS_OPTION_NUMBERING] = 0;
   for (idx_t i = 0; i < n; i++) node[i] = place[i] = i;
-  if (graph->offsets[n] > 0) status = METIS_NodeND(&n, graph->offsets, graph->neighbours, NULL, options, node, place); /* it wants an edge */
+  if (graph->offsets[n] > 0)
+    status = METIS_NodeND(&n, graph->offsets, graph->neighbours, NULL, options, node, place); /* it wants an edge */
   PetscCheck(status == METIS_OK, PETSC_COMM_SELF, PETSC_ERR_LIB, "METIS failed with status %d", status);
   for (idx_t k = 0; k < n; k++) {
     first[node[k]] = n_rows;
@@ -176,7 +178,8 @@ static PetscErrorCode Dissect(const Graph *graph, PetscInt **position)
 }
 
 /*
-  OrderingFind - in which order to eliminate the rows of a sparse matrix: nested dissection of the graph of its nodes, whose rows stay together
+  OrderingFind - in which order to eliminate the rows of a sparse matrix: nested dissection of the graph of its nodes,
+whose rows stay together
 
   Collective
 
@@ -187,7 +190,8 @@ static PetscErrorCode Dissect(const Graph *graph, PetscInt **position)
 . position - of each global row, from 0, on the first rank; NULL on the others. The caller frees it.
 
   Note:
-  The graph has a third of the matrix's rows and a ninth of its entries. The order depends on the numbering, hence on the number of ranks.
+  The graph has a third of the matrix's rows and a ninth of its entries. The order depends on the numbering, hence on
+the number of ranks.
 
   Source: George, SIAM J. Numer. Anal. 10, 1973; Karypis and Kumar, SIAM J. Sci. Comput. 20, 1998 (METIS).
 */

@@ -2,22 +2,22 @@
 #include "linear/directsolver.h"
 #include "rankupdate.h"
 
-/* A factor is kept while at most so many contact terms have come, gone or changed their stiffness since it was made. Each is a change of rank one, for which
-   its update takes a fifth of a solve. */
+/* A factor is kept while at most so many contact terms have come, gone or changed their stiffness since it was made.
+   Each is a change of rank one, for which its update takes a fifth of a solve. */
 #define REUSED_FACTOR_CHANGES 24
-/* A new factor costs as much as 8 (plane problems of some thousand unknowns) to 20 (blocks of 100,000) solves with one: more iterations than these are given
- * up. */
+/* A new factor costs as much as 8 (plane problems of some thousand unknowns) to 20 (blocks of 100,000) solves with one:
+ * more iterations than these are given up. */
 #define REUSED_FACTOR_ITERATIONS 8
-/* The residual asked for: this part of the right-hand side, which Newton's method does not notice as it contracts less in an iteration that is not the last;
-   with 3e-5 some runs take one more. A factor that leaves out pressures that turn with the surface of a pipe between plates leaves 2e-3, an iteration with it
-   1e-5. */
+/* The residual asked for: this part of the right-hand side, which Newton's method does not notice as it contracts less
+   in an iteration that is not the last; with 3e-5 some runs take one more. A factor that leaves out pressures that turn
+   with the surface of a pipe between plates leaves 2e-3, an iteration with it 1e-5. */
 #define REUSED_FACTOR_TOLERANCE 1e-5
 /* But not below this part of what is enough. */
 #define REUSED_FACTOR_SHARE 0.1
 
 struct _n_KeptFactor {
   KSP        ksp, gmres;
-  Corotation   turn;    /* of the bodies since the factor was made; NULL: none */
+  Corotation turn;    /* of the bodies since the factor was made; NULL: none */
   Vec        turned;  /* forces turned back */
   RankUpdate update;  /* of the factor to the present contact terms, turned back; NULL: none */
   PetscBool  exists;  /* a factor of this step */
@@ -49,8 +49,8 @@ static PetscErrorCode Converged(KSP gmres, PetscInt it, PetscReal norm, KSPConve
 static PetscErrorCode Precondition(PC shell, Vec b, Vec x)
 {
   ReusedFactor kept;
-  PetscBool  turn;
-  PC         pc;
+  PetscBool    turn;
+  PC           pc;
 
   PetscFunctionBeginUser;
   PetscCall(PCShellGetContext(shell, &kept));
@@ -69,13 +69,14 @@ static PetscErrorCode Precondition(PC shell, Vec b, Vec x)
 PetscErrorCode ReusedFactorCreate(KSP ksp, ReusedFactor *out)
 {
   ReusedFactor kept;
-  PC         shell;
+  PC           shell;
 
   PetscFunctionBeginUser;
   PetscCall(PetscNew(&kept));
   kept->ksp = ksp;
   PetscCall(KSPCreate(PetscObjectComm((PetscObject)ksp), &kept->gmres));
-  PetscCall(KSPSetType(kept->gmres, KSPFGMRES)); /* keeps what the factor has made of its directions: one solve less than GMRES */
+  PetscCall(KSPSetType(kept->gmres,
+                       KSPFGMRES)); /* keeps what the factor has made of its directions: one solve less than GMRES */
   PetscCall(KSPGMRESSetRestart(kept->gmres, REUSED_FACTOR_ITERATIONS));
   PetscCall(KSPSetTolerances(kept->gmres, PETSC_DEFAULT, PETSC_DEFAULT, PETSC_DEFAULT, REUSED_FACTOR_ITERATIONS));
   PetscCall(KSPSetConvergenceTest(kept->gmres, Converged, kept, NULL));
@@ -140,8 +141,8 @@ static PetscErrorCode ReusedFactorBegin(ReusedFactor kept)
 
 /* ReusedFactorNext - decides whether the factor at hand serves the next operator.
 
-   Collective. changes: the same on all ranks, since the operator before. A pattern that is new makes the solver forget its symbolic factorisation,
-   once there is a new factor to be made. */
+   Collective. changes: the same on all ranks, since the operator before. A pattern that is new makes the solver forget
+   its symbolic factorisation, once there is a new factor to be made. */
 PetscErrorCode ReusedFactorNext(ReusedFactor kept, PetscInt changes, PetscBool pattern, PetscBool *serves)
 {
   PetscBool direct;
@@ -159,7 +160,8 @@ PetscErrorCode ReusedFactorNext(ReusedFactor kept, PetscInt changes, PetscBool p
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ReusedFactorUpdate - Collective. N, which is turned back to where the factor was made, and s as of RankUpdateAdd(). */
+/* ReusedFactorUpdate - Collective. N, which is turned back to where the factor was made, and s as of RankUpdateAdd().
+ */
 PetscErrorCode ReusedFactorUpdate(ReusedFactor kept, Mat N, const PetscReal *s)
 {
   PetscInt n;
@@ -214,7 +216,8 @@ PetscErrorCode ReusedFactorOwn(ReusedFactor kept, PetscBool *failed)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* r = b - A x and its norm. What the factor at hand makes of b, before it is turned, may be further from the solution than nothing is: x = 0 then. */
+/* r = b - A x and its norm. What the factor at hand makes of b, before it is turned, may be further from the solution
+ * than nothing is: x = 0 then. */
 static PetscErrorCode Start(Mat A, Vec b, PetscReal right, Vec x, Vec r, PetscReal *left)
 {
   PetscFunctionBeginUser;
@@ -281,7 +284,8 @@ static PetscErrorCode IsRough(ReusedFactor kept, PetscBool *rough)
 }
 
 /* ReusedFactorSolve - Collective. x: what the factor at hand makes of b. */
-PetscErrorCode ReusedFactorSolve(ReusedFactor kept, Mat A, Vec b, Vec x, PetscReal *tolerance, PetscReal *norm, PetscBool *failed)
+PetscErrorCode ReusedFactorSolve(ReusedFactor kept, Mat A, Vec b, Vec x, PetscReal *tolerance, PetscReal *norm,
+                                 PetscBool *failed)
 {
   PetscReal right;
   PetscBool reached = PETSC_FALSE, rough = PETSC_FALSE;

@@ -1,6 +1,7 @@
 #include "shell.h"
 
-/* ShellFind - *context (the address of a pointer): what PCShellSetContext() gave the preconditioner that PCShellSetName() named so. Not collective. */
+/* ShellFind - *context (the address of a pointer): what PCShellSetContext() gave the preconditioner that
+ * PCShellSetName() named so. Not collective. */
 PetscErrorCode ShellFind(PC pc, const char *name, void *context)
 {
   const char *own = NULL;

@@ -4,7 +4,8 @@
 /* ---------- colours of ranks ---------- */
 
 /* Ranks that own ghosts of this one, ascending; ranks: room for all. */
-static void SweepOrderListNeighbours(PetscInt n, const PetscInt *row, const PetscInt *ranges, PetscMPIInt *ranks, PetscMPIInt *count)
+static void SweepOrderListNeighbours(PetscInt n, const PetscInt *row, const PetscInt *ranges, PetscMPIInt *ranks,
+                                     PetscMPIInt *count)
 {
   PetscMPIInt rank = 0;
 
@@ -40,7 +41,8 @@ static PetscErrorCode ColourRanks(MPI_Comm comm, const PetscMPIInt *mine, PetscM
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Colours of this rank and its ghosts, whose places say whether they are swept before it or after it. row: first of each ghost, ascending */
+/* Colours of this rank and its ghosts, whose places say whether they are swept before it or after it. row: first of
+ * each ghost, ascending */
 static PetscErrorCode PlaceGhosts(SweepOrder o, Mat mat, const PetscInt *row)
 {
   const MPI_Comm  comm = PetscObjectComm((PetscObject)mat);
@@ -67,7 +69,8 @@ static PetscErrorCode PlaceGhosts(SweepOrder o, Mat mat, const PetscInt *row)
 
 /* ---------- nodes ---------- */
 
-/* Whole nodes of other ranks, some of whose rows may be no columns here, and how their values come. *row: the first of each, which the caller frees */
+/* Whole nodes of other ranks, some of whose rows may be no columns here, and how their values come. *row: the first of
+ * each, which the caller frees */
 static PetscErrorCode FindGhosts(SweepOrder o, Mat mat, const MatrixRows *others, PetscInt **row)
 {
   PetscInt    n = 0, *rows;
@@ -94,8 +97,8 @@ static PetscErrorCode FindGhosts(SweepOrder o, Mat mat, const MatrixRows *others
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Places, those without ghosts next to each other: ranks of even colours sweep their border first, those of odd ones last; of two ranks none waits for the
-   other. */
+/* Places, those without ghosts next to each other: ranks of even colours sweep their border first, those of odd ones
+   last; of two ranks none waits for the other. */
 static PetscErrorCode PlaceNodes(SweepOrder o, const MatrixRows *others)
 {
   PetscInt n_border = 0, interface, inner;
@@ -106,7 +109,7 @@ static PetscErrorCode PlaceNodes(SweepOrder o, const MatrixRows *others)
     o->place[i] = others->mat && others->ptr[(i + 1) * o->size] > others->ptr[i * o->size];
     n_border += o->place[i];
   }
-  o->n_inner = o->n - n_border;
+  o->n_inner   = o->n - n_border;
   o->interface = interface = o->colour % 2 == 0 ? 0 : o->n_inner;
   o->inner = inner = o->colour % 2 == 0 ? n_border : 0;
   for (PetscInt i = 0; i < o->n; i++) {

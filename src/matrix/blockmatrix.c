@@ -1,8 +1,9 @@
 #include "matrix/blockmatrix.h"
 #include "matrix/nodematrix.h"
 
-/* A pattern is kept while it holds what the blocks need, with zeros elsewhere, and is at most this many times as large: a new one costs the sum with
-   other matrices and the solver's analysis (half of a factorisation at 10,000 dofs), a zero costs fill. Contact that moves on seldom reaches it. */
+/* A pattern is kept while it holds what the blocks need, with zeros elsewhere, and is at most this many times as large:
+   a new one costs the sum with other matrices and the solver's analysis (half of a factorisation at 10,000 dofs), a
+   zero costs fill. Contact that moves on seldom reaches it. */
 #define BLOCK_SLACK 1.5
 
 /* Number of a node while nodes are listed */
@@ -10,37 +11,44 @@ enum { BLOCK_LISTED = -2 };
 
 /* A row of a pair's sum, filled up to a vector of the machine's; what is beyond the pair's own columns is not used */
 enum { ROW = BLOCK_PADDING + 1 };
-typedef double SumRow __attribute__((vector_size(ROW * sizeof(double)), aligned(sizeof(double)), may_alias)); /* as PetscMalloc() aligns, and within arrays */
+typedef double SumRow __attribute__((vector_size(ROW * sizeof(double)), aligned(sizeof(double)),
+                                     may_alias)); /* as PetscMalloc() aligns, and within arrays */
 
 /* One row of nodes of a block: where the block starts in the pattern, which of its rows it is */
 typedef struct {
   PetscInt at, node;
 } BlockRow;
 
-/* Nodes by ascending keys with their dofs (n_nodes*size); blocks overlap: every pair of nodes once, row by row, ascending; pair_ptr NULL: there is no matrix */
+/* Nodes by ascending keys with their dofs (n_nodes*size); blocks overlap: every pair of nodes once, row by row,
+ * ascending; pair_ptr NULL: there is no matrix */
 typedef struct {
   PetscInt n_nodes, *key, *dof, *pair_ptr, *pair;
 } BlockPattern;
 
 struct _n_BlockMatrix {
-  MPI_Comm         comm;
-  int              size;                   /* of a node: its dofs */
-  PetscInt         n_listed, *list;        /* nodes of all lists, one list after another; where each starts */
-  PetscInt        *list_key, *list_number; /* of every node of the lists: its key, -1 without any; its place among those of the matrix, -1 elsewhere */
-  PetscInt        *list_dof;               /* size for each of these nodes */
-  PetscInt         n, room, *ptr, *of;     /* named blocks: where their nodes start; their lists */
-  PetscInt         nodes_room, *node;      /* of the blocks one after another, by ascending key, those without one last: place in the list */
-  NodeMatrix       matrix;
-  PetscInt         n_pattern, *pattern; /* of the blocks: number of nodes with keys and these keys of block after block; key: the first dof */
-  BlockPattern     own;                 /* of the matrix */
-  PetscInt        *diagonal, *above;    /* of each row: its first pair that is not below the diagonal; which of those of all rows that is */
-  PetscInt        *of_pair;             /* the sum of each pair: its own, below the diagonal that of its mirror image */
-  PetscInt        *row_ptr;             /* of each node, its rows in the blocks */
-  BlockRow        *row;
-  PetscInt        *seen, *at; /* of each node of the matrix: the last sum in whose column it stood; at: numbers of the block at hand */
-  SumRow          *sum;       /* [pairs not below the diagonal][size] */
-  PetscInt        *coupled;   /* room for what BlockMatrixGetCoupled() shows */
-  const PetscReal *along;     /* what blocks are multiplied with as they are added, or NULL */
+  MPI_Comm  comm;
+  int       size;                   /* of a node: its dofs */
+  PetscInt  n_listed, *list;        /* nodes of all lists, one list after another; where each starts */
+  PetscInt *list_key, *list_number; /* of every node of the lists: its key, -1 without any; its place among those of the
+                                       matrix, -1 elsewhere */
+  PetscInt *list_dof;               /* size for each of these nodes */
+  PetscInt  n, room, *ptr, *of;     /* named blocks: where their nodes start; their lists */
+  PetscInt  nodes_room,
+    *node; /* of the blocks one after another, by ascending key, those without one last: place in the list */
+  NodeMatrix matrix;
+  PetscInt   n_pattern,
+    *pattern; /* of the blocks: number of nodes with keys and these keys of block after block; key: the first dof */
+  BlockPattern own; /* of the matrix */
+  PetscInt    *diagonal,
+    *above; /* of each row: its first pair that is not below the diagonal; which of those of all rows that is */
+  PetscInt *of_pair; /* the sum of each pair: its own, below the diagonal that of its mirror image */
+  PetscInt *row_ptr; /* of each node, its rows in the blocks */
+  BlockRow *row;
+  PetscInt *seen,
+    *at; /* of each node of the matrix: the last sum in whose column it stood; at: numbers of the block at hand */
+  SumRow          *sum;     /* [pairs not below the diagonal][size] */
+  PetscInt        *coupled; /* room for what BlockMatrixGetCoupled() shows */
+  const PetscReal *along;   /* what blocks are multiplied with as they are added, or NULL */
   PetscReal       *product;
   PetscBool        restored; /* the matrix is not the one that its user knows */
   PetscBool        replaced; /* the pattern is not the one of BlockMatrixMark(), which is put aside */
@@ -49,7 +57,8 @@ struct _n_BlockMatrix {
 
 /* BlockMatrixCreate - an empty one.
 
-   Collective. size: dofs of a node, up to 4, which stand next to each other in blocks in an order of their own; 1: one by one. */
+   Collective. size: dofs of a node, up to 4, which stand next to each other in blocks in an order of their own; 1: one
+   by one. */
 PetscErrorCode BlockMatrixCreate(MPI_Comm comm, int size, BlockMatrix *blocks)
 {
   PetscFunctionBeginUser;
@@ -103,8 +112,8 @@ PetscErrorCode BlockMatrixDestroy(BlockMatrix *blocks)
 
 /* BlockMatrixBegin - a new sum: without blocks, over the nodes of new lists; the assembled matrix and its pattern stay.
 
-   Not collective. n_lists: rank-local vectors (contact: one for each pair); n[list]: their nodes; dof[list][n*size]: global dofs, -1: none (its rows and
-   columns are left out). */
+   Not collective. n_lists: rank-local vectors (contact: one for each pair); n[list]: their nodes; dof[list][n*size]:
+   global dofs, -1: none (its rows and columns are left out). */
 PetscErrorCode BlockMatrixBegin(BlockMatrix blocks, int n_lists, const PetscInt n[], const PetscInt *const dof[])
 {
   const int size  = blocks->size;
@@ -113,7 +122,8 @@ PetscErrorCode BlockMatrixBegin(BlockMatrix blocks, int n_lists, const PetscInt 
   PetscFunctionBeginUser;
   PetscCall(DestroyLists(blocks));
   for (int l = 0; l < n_lists; l++) total += n[l];
-  PetscCall(PetscMalloc4(n_lists, &blocks->list, total, &blocks->list_key, total, &blocks->list_number, total * size, &blocks->list_dof));
+  PetscCall(PetscMalloc4(n_lists, &blocks->list, total, &blocks->list_key, total, &blocks->list_number, total * size,
+                         &blocks->list_dof));
   blocks->n        = 0;
   blocks->along    = NULL;
   blocks->n_listed = 0;
@@ -124,12 +134,14 @@ PetscErrorCode BlockMatrixBegin(BlockMatrix blocks, int n_lists, const PetscInt 
   }
   for (PetscInt i = 0; i < total; i++) {
     blocks->list_key[i] = blocks->list_number[i] = -1;
-    for (int d = 0; d < size && blocks->list_key[i] < 0; d++) blocks->list_key[i] = PetscMax(-1, blocks->list_dof[i * size + d]);
+    for (int d = 0; d < size && blocks->list_key[i] < 0; d++)
+      blocks->list_key[i] = PetscMax(-1, blocks->list_dof[i * size + d]);
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* BlockMatrixSort - brings nodes of a list into the order in which blocks have them; *with: how many of them have dofs, which come first. Not collective. */
+/* BlockMatrixSort - brings nodes of a list into the order in which blocks have them; *with: how many of them have dofs,
+ * which come first. Not collective. */
 PetscErrorCode BlockMatrixSort(BlockMatrix blocks, int list, PetscInt n, PetscInt node[], PetscInt *with)
 {
   const PetscInt *key = &blocks->list_key[blocks->list[list]];
@@ -149,7 +161,8 @@ PetscErrorCode BlockMatrixSort(BlockMatrix blocks, int list, PetscInt n, PetscIn
 
 /* BlockMatrixName - announces a block over nodes of list `list`, or, with fewer of them, blocks within it.
 
-   Not collective, before BlockMatrixPlace(). whole: its nodes without dofs, too, are wanted by BlockMatrixGetNodes(). */
+   Not collective, before BlockMatrixPlace(). whole: its nodes without dofs, too, are wanted by BlockMatrixGetNodes().
+ */
 PetscErrorCode BlockMatrixName(BlockMatrix blocks, int list, PetscInt n, const PetscInt node[], PetscBool whole)
 {
   PetscInt first, with;
@@ -162,7 +175,8 @@ PetscErrorCode BlockMatrixName(BlockMatrix blocks, int list, PetscInt n, const P
   }
   if (!blocks->n) blocks->ptr[0] = 0;
   first = blocks->ptr[blocks->n];
-  if (first + n > blocks->nodes_room) PetscCall(PetscRealloc((blocks->nodes_room = 2 * (first + n)) * sizeof(PetscInt), &blocks->node));
+  if (first + n > blocks->nodes_room)
+    PetscCall(PetscRealloc((blocks->nodes_room = 2 * (first + n)) * sizeof(PetscInt), &blocks->node));
   PetscCall(PetscArraycpy(&blocks->node[first], node, n));
   PetscCall(BlockMatrixSort(blocks, list, n, &blocks->node[first], &with));
   blocks->of[blocks->n]    = list;
@@ -170,7 +184,8 @@ PetscErrorCode BlockMatrixName(BlockMatrix blocks, int list, PetscInt n, const P
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* BlockMatrixGetNodes - the nodes of the b-th block that was named, in its order; borrowed until BlockMatrixBegin(). Not collective. */
+/* BlockMatrixGetNodes - the nodes of the b-th block that was named, in its order; borrowed until BlockMatrixBegin().
+ * Not collective. */
 void BlockMatrixGetNodes(BlockMatrix blocks, PetscInt b, PetscInt *n, const PetscInt **node)
 {
   *n    = blocks->ptr[b + 1] - blocks->ptr[b];
@@ -186,7 +201,8 @@ static PetscErrorCode BlocksPattern(BlockMatrix blocks, PetscInt *n, PetscInt **
   for (PetscInt b = 0; b < blocks->n; b++) {
     const PetscInt *key = &blocks->list_key[blocks->list[blocks->of[b]]], count = (*n)++;
 
-    for (PetscInt i = blocks->ptr[b]; i < blocks->ptr[b + 1] && key[blocks->node[i]] >= 0; i++) (*pattern)[(*n)++] = key[blocks->node[i]];
+    for (PetscInt i = blocks->ptr[b]; i < blocks->ptr[b + 1] && key[blocks->node[i]] >= 0; i++)
+      (*pattern)[(*n)++] = key[blocks->node[i]];
     (*pattern)[count] = *n - count - 1;
   }
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -216,7 +232,8 @@ static PetscErrorCode ListNodes(BlockMatrix blocks)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Which node of the matrix each node of the lists is that a block has; *known: all of them are listed there. fresh: it gets its dofs from there. */
+/* Which node of the matrix each node of the lists is that a block has; *known: all of them are listed there. fresh: it
+ * gets its dofs from there. */
 static PetscErrorCode BlockMatrixNumberNodes(BlockMatrix blocks, PetscBool fresh, PetscBool *known)
 {
   const int size = blocks->size;
@@ -242,7 +259,8 @@ static PetscErrorCode BlockMatrixNumberNodes(BlockMatrix blocks, PetscBool fresh
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The rows of all blocks, those of one node together, in the blocks' order. number[n_pattern]: out, the nodes of the pattern in the matrix. */
+/* The rows of all blocks, those of one node together, in the blocks' order. number[n_pattern]: out, the nodes of the
+ * pattern in the matrix. */
 static PetscErrorCode GroupRows(BlockMatrix blocks, PetscInt *number)
 {
   PetscInt *ptr, block = 0;
@@ -255,7 +273,8 @@ static PetscErrorCode GroupRows(BlockMatrix blocks, PetscInt *number)
   for (PetscInt at = 0; at < blocks->n_pattern; at += 1 + blocks->pattern[at], block++) {
     const PetscInt first = blocks->list[blocks->of[block]], *node = &blocks->node[blocks->ptr[block]];
 
-    for (PetscInt i = 0; i < blocks->pattern[at]; i++) ptr[(number[at + 1 + i] = blocks->list_number[first + node[i]]) + 2]++;
+    for (PetscInt i = 0; i < blocks->pattern[at]; i++)
+      ptr[(number[at + 1 + i] = blocks->list_number[first + node[i]]) + 2]++;
   }
   for (PetscInt r = 0; r < blocks->own.n_nodes; r++) ptr[r + 2] += ptr[r + 1];
   for (PetscInt at = 0; at < blocks->n_pattern; at += 1 + blocks->pattern[at])
@@ -265,14 +284,16 @@ static PetscErrorCode GroupRows(BlockMatrix blocks, PetscInt *number)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The pairs on and above the diagonal that some block couples, each once, row by row, in no order. ptr[n_nodes + 1]: out; *pair: out, to be freed. */
+/* The pairs on and above the diagonal that some block couples, each once, row by row, in no order. ptr[n_nodes + 1]:
+ * out; *pair: out, to be freed. */
 static PetscErrorCode ListUpper(BlockMatrix blocks, const PetscInt *number, PetscInt *ptr, PetscInt **pair)
 {
   const BlockRow *row  = blocks->row;
   PetscInt        room = 0, *seen;
 
   PetscFunctionBeginUser;
-  for (PetscInt at = 0; at < blocks->n_pattern; at += 1 + blocks->pattern[at]) room += blocks->pattern[at] * (blocks->pattern[at] + 1) / 2;
+  for (PetscInt at = 0; at < blocks->n_pattern; at += 1 + blocks->pattern[at])
+    room += blocks->pattern[at] * (blocks->pattern[at] + 1) / 2;
   PetscCall(PetscMalloc1(room, pair));
   PetscCall(PetscMalloc1(blocks->own.n_nodes, &seen));
   for (PetscInt r = 0; r < blocks->own.n_nodes; r++) seen[r] = -1;
@@ -293,8 +314,9 @@ static PetscErrorCode ListUpper(BlockMatrix blocks, const PetscInt *number, Pets
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The pairs of nodes that some block couples, each once, row by row, ascending. Blocks overlap several times over, so this spares the parallel matrix most of
-   the entries. Nothing is sorted: who has a node in its row is found in ascending order. */
+/* The pairs of nodes that some block couples, each once, row by row, ascending. Blocks overlap several times over, so
+   this spares the parallel matrix most of the entries. Nothing is sorted: who has a node in its row is found in
+   ascending order. */
 static PetscErrorCode ListPairs(BlockMatrix blocks, const PetscInt *number)
 {
   const PetscInt n = blocks->own.n_nodes;
@@ -343,10 +365,13 @@ static PetscErrorCode ListSums(BlockMatrix blocks)
   blocks->above[0] = 0;
   PetscCall(PetscMalloc1(n, &blocks->of_pair));
   PetscCall(PetscMalloc2(blocks->own.n_nodes, &blocks->seen, blocks->own.n_nodes, &blocks->at));
-  PetscCall(PetscMalloc1(blocks->own.n_nodes, &next)); /* of each row: the pair below the diagonal whose image comes next; images come in the order of rows */
+  PetscCall(PetscMalloc1(
+    blocks->own.n_nodes,
+    &next)); /* of each row: the pair below the diagonal whose image comes next; images come in the order of rows */
   for (PetscInt r = 0; r < blocks->own.n_nodes; r++) {
     next[r] = ptr[r];
-    for (blocks->diagonal[r] = ptr[r]; blocks->diagonal[r] < ptr[r + 1] && blocks->own.pair[blocks->diagonal[r]] < r;) blocks->diagonal[r]++;
+    for (blocks->diagonal[r] = ptr[r]; blocks->diagonal[r] < ptr[r + 1] && blocks->own.pair[blocks->diagonal[r]] < r;)
+      blocks->diagonal[r]++;
     blocks->above[r + 1] = blocks->above[r] + ptr[r + 1] - blocks->diagonal[r];
   }
   for (PetscInt r = 0; r < blocks->own.n_nodes; r++)
@@ -384,7 +409,8 @@ static PetscErrorCode CountPairs(BlockMatrix blocks, const PetscInt *number, Pet
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Finds a place for every pair. fresh: among pairs listed anew; else among those that are there, if these hold all and are not far too many: *placed. */
+/* Finds a place for every pair. fresh: among pairs listed anew; else among those that are there, if these hold all and
+ * are not far too many: *placed. */
 static PetscErrorCode PlacePattern(BlockMatrix blocks, PetscBool fresh, PetscBool *placed)
 {
   PetscInt *number, used;
@@ -421,10 +447,11 @@ static PetscErrorCode BlockMatrixCreateMat(BlockMatrix blocks, PetscInt rows)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* BlockMatrixPlace - the places of all named blocks in a parallel AIJ matrix over the global dofs, which stays the block matrix's; the sum is 0.
+/* BlockMatrixPlace - the places of all named blocks in a parallel AIJ matrix over the global dofs, which stays the
+   block matrix's; the sum is 0.
 
-   Collective. rows: of this rank. *changed: the matrix is a new one, as the last one's pattern did not hold some rank's blocks or was far larger; else only
-   its values are, with zeros where no block asks for an entry. */
+   Collective. rows: of this rank. *changed: the matrix is a new one, as the last one's pattern did not hold some rank's
+   blocks or was far larger; else only its values are, with zeros where no block asks for an entry. */
 PetscErrorCode BlockMatrixPlace(BlockMatrix blocks, PetscInt rows, PetscBool *changed)
 {
   PetscInt  n = 0, *pattern = NULL;
@@ -464,13 +491,16 @@ PetscErrorCode BlockMatrixPlace(BlockMatrix blocks, PetscInt rows, PetscBool *ch
 /* Notes where the sums of a row stand. */
 static inline void LookAlong(BlockMatrix blocks, PetscInt r)
 {
-  const PetscInt *pair = &blocks->own.pair[blocks->diagonal[r]], first = blocks->above[r], n = blocks->above[r + 1] - first;
+  const PetscInt *pair = &blocks->own.pair[blocks->diagonal[r]], first = blocks->above[r],
+                 n = blocks->above[r + 1] - first;
 
   for (PetscInt k = 0; k < n; k++) blocks->seen[pair[k]] = first + k;
 }
 
-/* Adds the upper triangle of a block to the sums; size and outer constants where this is called, so that the loop over a node's rows unrolls. */
-static inline PetscErrorCode Sum(const int size, const PetscBool outer, BlockMatrix blocks, PetscInt n, PetscInt m, const PetscReal *value)
+/* Adds the upper triangle of a block to the sums; size and outer constants where this is called, so that the loop over
+ * a node's rows unrolls. */
+static inline PetscErrorCode Sum(const int size, const PetscBool outer, BlockMatrix blocks, PetscInt n, PetscInt m,
+                                 const PetscReal *value)
 {
   const PetscInt *at = blocks->at, *seen = blocks->seen;
   SumRow *const   sums = blocks->sum; /* else it would be read again after every sum, which may be anything */
@@ -486,7 +516,8 @@ static inline PetscErrorCode Sum(const int size, const PetscBool outer, BlockMat
       const PetscReal *from = row + j * size;
       SumRow          *sum  = &sums[k * size];
 
-      PetscCheck(k >= first && k < end, PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE, "a block couples nodes that no named one does");
+      PetscCheck(k >= first && k < end, PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE,
+                 "a block couples nodes that no named one does");
       for (int d = 0; d < size; d++) {
         if (outer)
           sum[d] += value[i * size + d] * *(const SumRow *)from;
@@ -523,7 +554,8 @@ static void MultiplyOuter(PetscInt m, const PetscReal *v, const PetscReal *x, Pe
 }
 
 /* product += block along; most blocks are far from all that moves. */
-static PetscErrorCode BlockMatrixMultiplyRows(BlockMatrix blocks, PetscInt n, const PetscInt *node, PetscBool outer, const PetscReal *value)
+static PetscErrorCode BlockMatrixMultiplyRows(BlockMatrix blocks, PetscInt n, const PetscInt *node, PetscBool outer,
+                                              const PetscReal *value)
 {
   const int  size = blocks->size;
   PetscBool  any  = PETSC_FALSE;
@@ -547,14 +579,16 @@ static PetscErrorCode BlockMatrixMultiplyRows(BlockMatrix blocks, PetscInt n, co
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode Add(BlockMatrix blocks, int list, PetscInt n, const PetscInt *node, PetscBool outer, const PetscReal *value)
+static PetscErrorCode Add(BlockMatrix blocks, int list, PetscInt n, const PetscInt *node, PetscBool outer,
+                          const PetscReal *value)
 {
   const PetscInt *number = &blocks->list_number[blocks->list[list]];
   PetscInt        with   = 0;
 
   PetscFunctionBeginUser;
   for (; with < n && number[node[with]] >= 0; with++) blocks->at[with] = number[node[with]];
-  PetscCheck(with == n || blocks->list_key[blocks->list[list] + node[with]] < 0, PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE, "a node is in no named block");
+  PetscCheck(with == n || blocks->list_key[blocks->list[list] + node[with]] < 0, PETSC_COMM_SELF,
+             PETSC_ERR_ARG_OUTOFRANGE, "a node is in no named block");
   if (blocks->size == 3 && outer)
     PetscCall(Sum(3, PETSC_TRUE, blocks, with, n * 3, value));
   else if (blocks->size == 3)
@@ -565,10 +599,11 @@ static PetscErrorCode Add(BlockMatrix blocks, int list, PetscInt n, const PetscI
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* BlockMatrixAdd - adds a block over nodes of list `list`, in the order of BlockMatrixSort(), all pairs of which some named block has.
+/* BlockMatrixAdd - adds a block over nodes of list `list`, in the order of BlockMatrixSort(), all pairs of which some
+   named block has.
 
-   Not collective, after BlockMatrixPlace(). value[(n*size)^2 + BLOCK_PADDING]: symmetric, row-major (force per length); what is below the diagonal, and the
-   padding, is not used. */
+   Not collective, after BlockMatrixPlace(). value[(n*size)^2 + BLOCK_PADDING]: symmetric, row-major (force per length);
+   what is below the diagonal, and the padding, is not used. */
 PetscErrorCode BlockMatrixAdd(BlockMatrix blocks, int list, PetscInt n, const PetscInt node[], const PetscReal value[])
 {
   PetscFunctionBeginUser;
@@ -576,15 +611,18 @@ PetscErrorCode BlockMatrixAdd(BlockMatrix blocks, int list, PetscInt n, const Pe
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* BlockMatrixAddOuter - as BlockMatrixAdd() for a block v v^T, which is never written out: value[n*size + BLOCK_PADDING] is v. Not collective. */
-PetscErrorCode BlockMatrixAddOuter(BlockMatrix blocks, int list, PetscInt n, const PetscInt node[], const PetscReal value[])
+/* BlockMatrixAddOuter - as BlockMatrixAdd() for a block v v^T, which is never written out: value[n*size +
+ * BLOCK_PADDING] is v. Not collective. */
+PetscErrorCode BlockMatrixAddOuter(BlockMatrix blocks, int list, PetscInt n, const PetscInt node[],
+                                   const PetscReal value[])
 {
   PetscFunctionBeginUser;
   PetscCall(Add(blocks, list, n, node, PETSC_TRUE, value));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* BlockMatrixMultiply - from now on blocks are multiplied as they are added: y += block x, entries without a global dof included.
+/* BlockMatrixMultiply - from now on blocks are multiplied as they are added: y += block x, entries without a global dof
+   included.
 
    Not collective. x, y: over the nodes of the blocks' list, borrowed; NULL: not any more. */
 void BlockMatrixMultiply(BlockMatrix blocks, const PetscReal *x, PetscReal *y)
@@ -659,9 +697,11 @@ PetscErrorCode BlockMatrixMark(BlockMatrix blocks)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* BlockMatrixReturn - the pattern is again the one of the last BlockMatrixMark(): what is assembled from now on does not depend on what was since.
+/* BlockMatrixReturn - the pattern is again the one of the last BlockMatrixMark(): what is assembled from now on does
+   not depend on what was since.
 
-   Collective. rows: of this rank, as for BlockMatrixPlace(). The matrix of BlockMatrixEnd() is gone if the pattern was another one. */
+   Collective. rows: of this rank, as for BlockMatrixPlace(). The matrix of BlockMatrixEnd() is gone if the pattern was
+   another one. */
 PetscErrorCode BlockMatrixReturn(BlockMatrix blocks, PetscInt rows)
 {
   PetscFunctionBeginUser;
@@ -679,8 +719,9 @@ PetscErrorCode BlockMatrixReturn(BlockMatrix blocks, PetscInt rows)
 
 /* BlockMatrixArchive - saves or takes over the pattern of the last assembled matrix.
 
-   Collective. name: where it stands in the archive; rows: of this rank, as for BlockMatrixPlace(). A pattern that is kept depends on what was
-   assembled before. Dofs are numbered by rank, so that it serves on one rank only, where runs repeat to the last bit. */
+   Collective. name: where it stands in the archive; rows: of this rank, as for BlockMatrixPlace(). A pattern that is
+   kept depends on what was assembled before. Dofs are numbered by rank, so that it serves on one rank only, where runs
+   repeat to the last bit. */
 PetscErrorCode BlockMatrixArchive(BlockMatrix blocks, Archive archive, const char *name, PetscInt rows)
 {
   static const char *names[] = {"key", "dof", "pair_ptr", "pair"};

@@ -1,6 +1,7 @@
 #include "matrix/matrixrows.h"
 
-/* MatrixRowsGet - the rows of block MATRIX_OWN or MATRIX_OTHERS of an assembled AIJ matrix, to be given back with MatrixRowsRestore(). Not collective. */
+/* MatrixRowsGet - the rows of block MATRIX_OWN or MATRIX_OTHERS of an assembled AIJ matrix, to be given back with
+ * MatrixRowsRestore(). Not collective. */
 PetscErrorCode MatrixRowsGet(Mat mat, int block, MatrixRows *rows)
 {
   PetscBool parallel, done;
@@ -26,7 +27,8 @@ PetscErrorCode MatrixRowsRestore(MatrixRows *rows)
 
   PetscFunctionBeginUser;
   if (rows->mat) PetscCall(MatSeqAIJRestoreArrayRead(rows->mat, &rows->value));
-  if (rows->mat) PetscCall(MatRestoreRowIJ(rows->mat, 0, PETSC_FALSE, PETSC_FALSE, &rows->n, &rows->ptr, &rows->column, &done));
+  if (rows->mat)
+    PetscCall(MatRestoreRowIJ(rows->mat, 0, PETSC_FALSE, PETSC_FALSE, &rows->n, &rows->ptr, &rows->column, &done));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -37,13 +39,15 @@ static PetscBool AreAlike(const MatrixRows rows[MATRIX_BLOCKS], PetscInt r, Pets
     const PetscInt n = rows[b].mat ? rows[b].ptr[r + 1] - rows[b].ptr[r] : 0;
 
     if (!rows[b].mat) continue;
-    if (rows[b].ptr[s + 1] - rows[b].ptr[s] != n || memcmp(&rows[b].column[rows[b].ptr[r]], &rows[b].column[rows[b].ptr[s]], n * sizeof(PetscInt)))
+    if (rows[b].ptr[s + 1] - rows[b].ptr[s] != n ||
+        memcmp(&rows[b].column[rows[b].ptr[r]], &rows[b].column[rows[b].ptr[s]], n * sizeof(PetscInt)))
       return PETSC_FALSE;
   }
   return PETSC_TRUE;
 }
 
-/* MatrixRowsAlike - rows next to each other with the same columns, from `row` on, at most MATRIX_NODE_ROWS. Not collective. */
+/* MatrixRowsAlike - rows next to each other with the same columns, from `row` on, at most MATRIX_NODE_ROWS. Not
+ * collective. */
 PetscInt MatrixRowsAlike(const MatrixRows rows[MATRIX_BLOCKS], PetscInt row)
 {
   PetscInt n = 1;

@@ -1,12 +1,14 @@
-/* The rows of an AIJ matrix as it stores them, without a copy: on one rank in one block, on several in two, columns of the rank itself and of others. */
+/* The rows of an AIJ matrix as it stores them, without a copy: on one rank in one block, on several in two, columns of
+ * the rank itself and of others. */
 #pragma once
 #include "base/petsccompat.h"
 
 typedef struct {
-  Mat                mat;                   /* the block, sequential; NULL: there is none */
-  PetscInt           n;                     /* rows */
-  const PetscInt    *ptr, *column, *global; /* columns ascending in every row; global: their numbers, NULL: they are their own */
-  const PetscScalar *value;                 /* of each column */
+  Mat             mat; /* the block, sequential; NULL: there is none */
+  PetscInt        n;   /* rows */
+  const PetscInt *ptr, *column,
+    *global;                /* columns ascending in every row; global: their numbers, NULL: they are their own */
+  const PetscScalar *value; /* of each column */
 } MatrixRows;
 
 /* The column of an entry, those of the rank itself counted from `first`: its first row, or 0. Not collective. */

@@ -1,15 +1,16 @@
 #include "matrix/nodematrix.h"
 #include "matrix/matrixrows.h"
 
-/* Room for entries over what a pattern needs, for the next one: memory that is new costs more than what is written there. It is not touched before it is
-   needed. */
+/* Room for entries over what a pattern needs, for the next one: memory that is new costs more than what is written
+   there. It is not touched before it is needed. */
 #define NODE_MATRIX_ROOM 1.25
 /* Place of a dof that is left out */
 #define NODE_MATRIX_NONE PETSC_MIN_INT
 /* Matrices that the pattern is joined with: of other ranks' blocks, and what NodeMatrixJoin() is given */
 enum { TERM_FOREIGN, TERM_OTHER, TERMS };
 
-/* The arrays of one block of the matrix: columns of the rank itself, or of others; alone: entries that the pairs take without other terms */
+/* The arrays of one block of the matrix: columns of the rank itself, or of others; alone: entries that the pairs take
+ * without other terms */
 typedef struct {
   PetscInt    *ptr, *column, room, alone;
   PetscScalar *value;
@@ -20,8 +21,8 @@ typedef struct {
   PetscInt *column, *room, n;
 } NodeRow;
 
-/* A matrix that the pattern was joined with, by its number; place: of each of its entries in a first row of a node, in the row of the sum. Other rows of the
-   node are alike. */
+/* A matrix that the pattern was joined with, by its number; place: of each of its entries in a first row of a node, in
+   the row of the sum. Other rows of the node are alike. */
 typedef struct {
   PetscObjectId matrix;
   PetscInt      n[MATRIX_BLOCKS], room[MATRIX_BLOCKS], *place[MATRIX_BLOCKS];
@@ -40,14 +41,15 @@ typedef struct {
 } ValueRow;
 
 struct _n_NodeMatrix {
-  MPI_Comm     comm;
-  NodePairs    pairs;
-  PetscInt     rows, first; /* of this rank */
-  PetscInt    *node;        /* of each row, -1: this rank has no pairs for it */
-  PetscBool   *inner;       /* of each node: its pairs' columns are all of this rank, in ascending order */
-  PetscBool   *placed;      /* and its places are those of a row without other terms */
-  PetscInt     longest;     /* entries of a row without other terms */
-  PetscInt    *place;       /* of each pair and dof of its column in the row: k: in the rank's own block, -1 - k: in the other ranks' */
+  MPI_Comm   comm;
+  NodePairs  pairs;
+  PetscInt   rows, first; /* of this rank */
+  PetscInt  *node;        /* of each row, -1: this rank has no pairs for it */
+  PetscBool *inner;       /* of each node: its pairs' columns are all of this rank, in ascending order */
+  PetscBool *placed;      /* and its places are those of a row without other terms */
+  PetscInt   longest;     /* entries of a row without other terms */
+  PetscInt
+    *place; /* of each pair and dof of its column in the row: k: in the rank's own block, -1 - k: in the other ranks' */
   NodeBlock    block[MATRIX_BLOCKS];
   NodeTerm     term[TERMS];
   PetscInt    *diagonal;        /* of each row, the place of its diagonal in its own block, -1: it has none */
@@ -67,7 +69,8 @@ static inline PetscBool IsSymmetric(const NodeValues *values)
 }
 
 /* Row d of pair k of a node; size and symmetric constants where loops are to unroll */
-static inline ValueRow FindValues(const int size, const PetscBool symmetric, const NodeValues *values, PetscInt node, PetscInt k, int d)
+static inline ValueRow FindValues(const int size, const PetscBool symmetric, const NodeValues *values, PetscInt node,
+                                  PetscInt k, int d)
 {
   const NodeUpper *upper = values->upper;
   const PetscReal *block;
@@ -156,7 +159,8 @@ static PetscErrorCode NodeMatrixFindNodes(NodeMatrix m)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Counts the columns of a node's pairs that are of this rank, or of others; are they all of this rank and in ascending order? */
+/* Counts the columns of a node's pairs that are of this rank, or of others; are they all of this rank and in ascending
+ * order? */
 static PetscBool LookAtNode(NodeMatrix m, PetscInt node, PetscInt count[MATRIX_BLOCKS])
 {
   const NodePairs *p      = &m->pairs;
@@ -349,8 +353,10 @@ static void PlaceTerm(NodeMatrix m, PetscInt r, int t, MatrixRows term[MATRIX_BL
   }
 }
 
-/* A row of any kind, after those before it; the columns in the numbering that PETSc wants, its own from 0. at[rows]: room. */
-static PetscErrorCode AppendRow(NodeMatrix m, PetscInt r, MatrixRows terms[TERMS][MATRIX_BLOCKS], NodeRow *row, PetscInt *at)
+/* A row of any kind, after those before it; the columns in the numbering that PETSc wants, its own from 0. at[rows]:
+ * room. */
+static PetscErrorCode AppendRow(NodeMatrix m, PetscInt r, MatrixRows terms[TERMS][MATRIX_BLOCKS], NodeRow *row,
+                                PetscInt *at)
 {
   PetscFunctionBeginUser;
   for (int b = 0; b < MATRIX_BLOCKS; b++) {
@@ -484,8 +490,9 @@ static PetscErrorCode MakeMatrix(NodeMatrix m)
 
   PetscFunctionBeginUser;
   if (m->foreign)
-    PetscCall(MatCreateMPIAIJWithSplitArrays(m->comm, m->rows, m->rows, PETSC_DETERMINE, PETSC_DETERMINE, own->ptr, own->column, own->value, others->ptr,
-                                             others->column, others->value, &made));
+    PetscCall(MatCreateMPIAIJWithSplitArrays(m->comm, m->rows, m->rows, PETSC_DETERMINE, PETSC_DETERMINE, own->ptr,
+                                             own->column, own->value, others->ptr, others->column, others->value,
+                                             &made));
   else
     PetscCall(MatCreateSeqAIJWithArrays(m->comm, m->rows, m->rows, own->ptr, own->column, own->value, &made));
   if (m->matrix)
@@ -538,7 +545,8 @@ static inline void CopyRow(const int size, PetscInt n, const PetscReal *from, Pe
     for (int c = 0; c < size; c++) to[k * size + c] = from[k * size * size + c];
 }
 
-/* One row of a node's blocks, or zeros; size and symmetric constants where this is called, so that the loop over a node's dofs unrolls. */
+/* One row of a node's blocks, or zeros; size and symmetric constants where this is called, so that the loop over a
+ * node's dofs unrolls. */
 static inline void SetRow(const int size, const PetscBool symmetric, NodeMatrix m, PetscInt r, const NodeValues *values)
 {
   const NodePairs *p    = &m->pairs;
@@ -553,7 +561,8 @@ static inline void SetRow(const int size, const PetscBool symmetric, NodeMatrix 
   }
   while (node >= 0 && p->dof[node * size + d] != m->first + r) d++;
   if (!symmetric && node >= 0 && m->placed[node] && n[MATRIX_OWN] == (p->ptr[node + 1] - p->ptr[node]) * size) {
-    CopyRow(size, p->ptr[node + 1] - p->ptr[node], &values->all[((size_t)p->ptr[node] * size + d) * size], to[MATRIX_OWN]);
+    CopyRow(size, p->ptr[node + 1] - p->ptr[node], &values->all[((size_t)p->ptr[node] * size + d) * size],
+            to[MATRIX_OWN]);
     return;
   }
   for (int b = 0; b < MATRIX_BLOCKS; b++)
@@ -572,7 +581,8 @@ static inline void SetRow(const int size, const PetscBool symmetric, NodeMatrix 
 }
 
 /* Adds row r of a term, where its entries are in the sum as those of row `first` of the same node. */
-static inline void AddRow(NodeMatrix m, PetscInt r, PetscInt first, const NodeTerm *term, const MatrixRows rows[MATRIX_BLOCKS])
+static inline void AddRow(NodeMatrix m, PetscInt r, PetscInt first, const NodeTerm *term,
+                          const MatrixRows rows[MATRIX_BLOCKS])
 {
   for (int b = 0; b < MATRIX_BLOCKS; b++) {
     const MatrixRows *x = &rows[b];
@@ -601,13 +611,14 @@ static PetscErrorCode CheckTerm(NodeMatrix m, Mat other, const MatrixRows rows[M
   PetscFunctionBeginUser;
   PetscCall(PetscObjectGetId((PetscObject)other, &matrix));
   for (int b = 0; b < MATRIX_BLOCKS; b++)
-    PetscCheck(matrix == term->matrix && (rows[b].mat ? rows[b].ptr[rows[b].n] : 0) == term->n[b], m->comm, PETSC_ERR_ARG_WRONGSTATE,
-               "the pattern was joined with that of another matrix");
+    PetscCheck(matrix == term->matrix && (rows[b].mat ? rows[b].ptr[rows[b].n] : 0) == term->n[b], m->comm,
+               PETSC_ERR_ARG_WRONGSTATE, "the pattern was joined with that of another matrix");
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* Row by row, so that a row is still at hand where something is added to it; diagonal NULL: not asked for. */
-static void SetRows(NodeMatrix m, const NodeValues *values, MatrixRows terms[TERMS][MATRIX_BLOCKS], PetscScalar *diagonal)
+static void SetRows(NodeMatrix m, const NodeValues *values, MatrixRows terms[TERMS][MATRIX_BLOCKS],
+                    PetscScalar *diagonal)
 {
   for (PetscInt r = 0, first = 0; r < m->rows; r++) {
     if (!IsSame(m, r)) first = r;
@@ -618,7 +629,8 @@ static void SetRows(NodeMatrix m, const NodeValues *values, MatrixRows terms[TER
     else
       SetRow(m->pairs.size, IsSymmetric(values), m, r, values);
     AddRow(m, r, first, &m->term[TERM_FOREIGN], terms[TERM_FOREIGN]);
-    if (diagonal) diagonal[r] = m->diagonal[r] < 0 ? 0 : m->block[MATRIX_OWN].value[m->block[MATRIX_OWN].ptr[r] + m->diagonal[r]];
+    if (diagonal)
+      diagonal[r] = m->diagonal[r] < 0 ? 0 : m->block[MATRIX_OWN].value[m->block[MATRIX_OWN].ptr[r] + m->diagonal[r]];
     AddRow(m, r, first, &m->term[TERM_OTHER], terms[TERM_OTHER]);
   }
 }
@@ -661,7 +673,8 @@ PetscErrorCode NodeMatrixSet(NodeMatrix m, const PetscReal *value, Mat other, Ve
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* NodeMatrixSetUpper - the sum of the ranks' blocks, which is symmetric on every rank; of blocks on the diagonal both triangles are used. Collective. */
+/* NodeMatrixSetUpper - the sum of the ranks' blocks, which is symmetric on every rank; of blocks on the diagonal both
+ * triangles are used. Collective. */
 PetscErrorCode NodeMatrixSetUpper(NodeMatrix m, const NodeUpper *upper)
 {
   PetscFunctionBeginUser;

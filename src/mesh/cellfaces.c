@@ -32,14 +32,16 @@ static void LoadFace(const RootMesh *root, PetscInt c, int number, CellFace *fac
   SortCorners(corners, vertices, face->corner);
 }
 
-/* Faces of one lowest corner by the others; those of equal corners stay in the order of their cells. A corner has few, so they are inserted one by one. */
+/* Faces of one lowest corner by the others; those of equal corners stay in the order of their cells. A corner has few,
+ * so they are inserted one by one. */
 static void SortCellFaces(PetscInt n, CellFace faces[])
 {
   for (PetscInt f = 1; f < n; f++) {
     const CellFace face  = faces[f];
     PetscInt       place = f;
 
-    for (; place > 0 && CompareCorners(faces[place - 1].corner, face.corner) > 0; place--) faces[place] = faces[place - 1];
+    for (; place > 0 && CompareCorners(faces[place - 1].corner, face.corner) > 0; place--)
+      faces[place] = faces[place - 1];
     faces[place] = face;
   }
 }
@@ -53,10 +55,12 @@ static void SortCellFaces(PetscInt n, CellFace faces[])
 . root - after RootMeshRead()
 
   Output Parameter:
-. root - cell_faces, one for each cell that has the face: those whose lowest corner is vertex v from corner_faces[v] on, the same faces next to each other
+. root - cell_faces, one for each cell that has the face: those whose lowest corner is vertex v from corner_faces[v] on,
+the same faces next to each other
 
   Note:
-  A DMPlex would do after DMPlexInterpolate(), which takes twenty times as long and makes edges and orientations that nobody asks for.
+  A DMPlex would do after DMPlexInterpolate(), which takes twenty times as long and makes edges and orientations that
+nobody asks for.
 */
 PetscErrorCode CellFacesCreate(RootMesh *root)
 {
@@ -81,7 +85,8 @@ PetscErrorCode CellFacesCreate(RootMesh *root)
       root->cell_faces[next[face.corner[0]]++] = face;
     }
   }
-  for (PetscInt v = 0; v < root->n_vertices; v++) SortCellFaces(root->corner_faces[v + 1] - root->corner_faces[v], &root->cell_faces[root->corner_faces[v]]);
+  for (PetscInt v = 0; v < root->n_vertices; v++)
+    SortCellFaces(root->corner_faces[v + 1] - root->corner_faces[v], &root->cell_faces[root->corner_faces[v]]);
   PetscCall(PetscFree(next));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -22,7 +22,8 @@ enum {
   TEXT_PARTS_IN_NAME = 64   /* room in a path for "/mesh-", hash, process number and ending */
 };
 
-/* ------------------------------------------------------------------------------------------------------ running gmsh */
+/* ------------------------------------------------------------------------------------------------------ running gmsh
+ */
 
 /* Is this variable Open MPI's? A gmsh that is linked with MPI would take itself for a rank of ours. */
 static PetscBool EnvironmentIsMPI(const char *entry)
@@ -34,8 +35,8 @@ static PetscBool EnvironmentIsMPI(const char *entry)
   return PETSC_FALSE;
 }
 
-/* The child's environment, to be freed by PetscFree(): ours without MPI's, and without the user's own gmsh options, so that the same scene
-   gives the same mesh everywhere */
+/* The child's environment, to be freed by PetscFree(): ours without MPI's, and without the user's own gmsh options, so
+   that the same scene gives the same mesh everywhere */
 static PetscErrorCode ChildEnvironment(char ***environment)
 {
   int n = 0, kept = 0;
@@ -80,7 +81,8 @@ static PetscErrorCode ReadPipe(int end, char **text)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Runs gmsh without a shell; output: all that it printed (to be freed by PetscFree()), status NO_PROGRAM: there is no gmsh. */
+/* Runs gmsh without a shell; output: all that it printed (to be freed by PetscFree()), status NO_PROGRAM: there is no
+ * gmsh. */
 static PetscErrorCode GmshExecute(char *const arguments[], char **output, int *status)
 {
   char **environment;
@@ -117,9 +119,11 @@ static void ErrorLines(const char *output, char *text, size_t size)
   }
 }
 
-/* ------------------------------------------------------------------------------------------------------- fingerprint */
+/* ------------------------------------------------------------------------------------------------------- fingerprint
+ */
 
-/* What goes into a mesh: hashed by FNV-1a (64 bits; Fowler, Noll, Vo), which needs no library and spreads well enough for a file name */
+/* What goes into a mesh: hashed by FNV-1a (64 bits; Fowler, Noll, Vo), which needs no library and spreads well enough
+ * for a file name */
 typedef struct {
   Scene      scene;
   uint64_t   content;
@@ -134,8 +138,8 @@ static uint64_t Hash(uint64_t hash, const char *data, size_t size)
   return hash;
 }
 
-/* Every bit of a hash depends on every other (the last step of MurmurHash3; Appleby). Values that differ in one digit have FNV hashes that differ by a
-   small multiple of one constant, and sums of them coincide: 3 + 4 is 4 + 3. */
+/* Every bit of a hash depends on every other (the last step of MurmurHash3; Appleby). Values that differ in one digit
+   have FNV hashes that differ by a small multiple of one constant, and sums of them coincide: 3 + 4 is 4 + 3. */
 static uint64_t HashFinish(uint64_t hash)
 {
   hash = (hash ^ (hash >> 33)) * 0xff51afd7ed558ccdull;
@@ -210,7 +214,8 @@ static PetscErrorCode FingerprintScene(Scene scene, uint64_t *content, Complaint
     const ScenePair *pair = &scene->parameters[i];
     /* a name with a dot is one of gmsh's own options */
     if (!print.used[i] && !strchr(pair->key, '.'))
-      Complain(complaint, "%s: '%s' has no parameter of this name", SceneWhere(scene, "mesh.parameters", pair->key), scene->mesh_file);
+      Complain(complaint, "%s: '%s' has no parameter of this name", SceneWhere(scene, "mesh.parameters", pair->key),
+               scene->mesh_file);
     sum += HashFinish(Hash(Hash(FNV_BASIS, pair->key, strlen(pair->key) + 1), pair->value, strlen(pair->value) + 1));
   }
   snprintf(text, sizeof(text), "%016llx %d %d", (unsigned long long)sum, scene->dim, scene->order);
@@ -219,7 +224,8 @@ static PetscErrorCode FingerprintScene(Scene scene, uint64_t *content, Complaint
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ------------------------------------------------------------------------------------------------------------ meshes */
+/* ------------------------------------------------------------------------------------------------------------ meshes
+ */
 
 /* The newest mesh of this content in the directory, whichever gmsh made it */
 static PetscErrorCode FindMesh(const char *directory, const char *prefix, char *file, PetscBool *found)
@@ -287,8 +293,20 @@ static PetscErrorCode MeshGeometry(Scene scene, const char *file, Complaint *com
   snprintf(temporary, sizeof(temporary), "%s.%d.tmp", file, (int)getpid());
   snprintf(dim, sizeof(dim), "-%d", scene->dim);
   snprintf(order, sizeof(order), "%d", PetscMax(scene->order, 1));
-  const char *const fixed[] = {
-    "gmsh", scene->mesh_file, dim, "-order", order, "-format", "msh41", "-nt", "1", "-v", "2", "-setnumber", "Mesh.SecondOrderIncomplete", "0"};
+  const char *const fixed[] = {"gmsh",
+                               scene->mesh_file,
+                               dim,
+                               "-order",
+                               order,
+                               "-format",
+                               "msh41",
+                               "-nt",
+                               "1",
+                               "-v",
+                               "2",
+                               "-setnumber",
+                               "Mesh.SecondOrderIncomplete",
+                               "0"};
   PetscCall(PetscMalloc1(sizeof(fixed) / sizeof(*fixed) + 3 * (size_t)scene->n_parameters + 3, &arguments));
   for (; n < (int)(sizeof(fixed) / sizeof(*fixed)); n++) arguments[n] = fixed[n];
   for (int i = 0; i < scene->n_parameters; i++) {
@@ -303,7 +321,8 @@ static PetscErrorCode MeshGeometry(Scene scene, const char *file, Complaint *com
   ErrorLines(output, errors, sizeof(errors));
   PetscCall(MeshIsWhole(temporary, &whole));
   if (status || errors[0])
-    Complain(complaint, "%s: gmsh failed on '%s' (exit status %d)%s", SceneWhere(scene, "mesh", "file"), scene->mesh_file, status, errors);
+    Complain(complaint, "%s: gmsh failed on '%s' (exit status %d)%s", SceneWhere(scene, "mesh", "file"),
+             scene->mesh_file, status, errors);
   else if (stat(temporary, &made))
     Complain(complaint, "%s: gmsh wrote no mesh for '%s'", SceneWhere(scene, "mesh", "file"), scene->mesh_file);
   else if (!whole)
@@ -328,7 +347,8 @@ static PetscErrorCode MakeDirectories(const char *directory, Complaint *complain
     mkdir(path, 0777);
     *at = '/';
   }
-  if (mkdir(path, 0777) && errno != EEXIST) Complain(complaint, "cannot make the directory '%s' for meshes: %s", directory, strerror(errno));
+  if (mkdir(path, 0777) && errno != EEXIST)
+    Complain(complaint, "cannot make the directory '%s' for meshes: %s", directory, strerror(errno));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -347,8 +367,9 @@ static PetscErrorCode MakeDirectories(const char *directory, Complaint *complain
 - complaint - what was wrong, if anything
 
   Note:
-  HASH stands for the contents of the .geo and of what it includes, the parameters, dimension and order (first CONTENT_DIGITS digits) and
-  gmsh's version (the rest). Where there is no gmsh, a mesh of the same contents is taken whichever version made it.
+  HASH stands for the contents of the .geo and of what it includes, the parameters, dimension and order (first
+CONTENT_DIGITS digits) and gmsh's version (the rest). Where there is no gmsh, a mesh of the same contents is taken
+whichever version made it.
 */
 PetscErrorCode GmshGenerate(Scene scene, const char *directory, char *file, PetscReal *seconds, Complaint *complaint)
 {
@@ -367,22 +388,27 @@ PetscErrorCode GmshGenerate(Scene scene, const char *directory, char *file, Pets
     Complain(complaint, "%s: there is no file '%s'", SceneWhere(scene, "mesh", "file"), scene->mesh_file);
   else if (!S_ISREG(there.st_mode))
     Complain(complaint, "%s: '%s' is no file", SceneWhere(scene, "mesh", "file"), scene->mesh_file);
-  if (strlen(directory) + TEXT_PARTS_IN_NAME > PETSC_MAX_PATH_LEN) Complain(complaint, "the path '%s' is too long", directory);
+  if (strlen(directory) + TEXT_PARTS_IN_NAME > PETSC_MAX_PATH_LEN)
+    Complain(complaint, "the path '%s' is too long", directory);
   if (complaint->text[0]) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(FingerprintScene(scene, &content, complaint));
   if (complaint->text[0]) PetscFunctionReturn(PETSC_SUCCESS);
-  snprintf(prefix, sizeof(prefix), "mesh-%0*llx", CONTENT_DIGITS, (unsigned long long)(content >> (64 - 4 * CONTENT_DIGITS)));
+  snprintf(prefix, sizeof(prefix), "mesh-%0*llx", CONTENT_DIGITS,
+           (unsigned long long)(content >> (64 - 4 * CONTENT_DIGITS)));
   PetscCall(GmshExecute(ask, &version, &status));
   if (status == 127) {
     PetscCall(FindMesh(directory, prefix, file, &found));
     if (!found) {
-      Complain(complaint, "%s: gmsh is not installed here and '%s' has not been meshed yet; where gmsh is, `burnish -mesh %s` makes %s/%s*.msh",
+      Complain(complaint,
+               "%s: gmsh is not installed here and '%s' has not been meshed yet; where gmsh is, `burnish -mesh %s` "
+               "makes %s/%s*.msh",
                SceneWhere(scene, "mesh", "file"), scene->mesh_file, scene->file, directory, prefix);
     }
   } else {
     uint64_t hash = Hash(FNV_BASIS, version, strlen(version));
 
-    snprintf(file, PETSC_MAX_PATH_LEN, "%s/%s%0*llx.msh", directory, prefix, VERSION_DIGITS, (unsigned long long)(hash >> (64 - 4 * VERSION_DIGITS)));
+    snprintf(file, PETSC_MAX_PATH_LEN, "%s/%s%0*llx.msh", directory, prefix, VERSION_DIGITS,
+             (unsigned long long)(hash >> (64 - 4 * VERSION_DIGITS)));
     if (stat(file, &there)) {
       PetscCall(PetscTime(&start));
       PetscCall(MakeDirectories(directory, complaint));

@@ -75,7 +75,8 @@ PetscErrorCode GmshFileLoad(const char *file, char **data, size_t *size)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ----------------------------------------------------------------------------------------------------- single values */
+/* ----------------------------------------------------------------------------------------------------- single values
+ */
 
 static PetscBool ReaderFailed(const Reader *r)
 {
@@ -90,7 +91,8 @@ static void ReaderDamaged(Reader *r)
   if (ReaderFailed(r)) return;
   for (size_t i = 0; i < r->at && i < r->size; i++) line += r->data[i] == '\n';
   if (r->binary)
-    Complain(r->complaint, "%s: the file is truncated or damaged in section %s (byte %zu of %zu)", r->file, r->section, r->at, r->size);
+    Complain(r->complaint, "%s: the file is truncated or damaged in section %s (byte %zu of %zu)", r->file, r->section,
+             r->at, r->size);
   else
     Complain(r->complaint, "%s:%zu: the file is truncated or damaged in section %s", r->file, line, r->section);
 }
@@ -139,7 +141,8 @@ static long long ReadSize(Reader *r)
   return value;
 }
 
-/* A number of things that follow: each takes at least one byte, so that a damaged count cannot ask for more memory than the file has */
+/* A number of things that follow: each takes at least one byte, so that a damaged count cannot ask for more memory than
+ * the file has */
 static PetscInt ReadCount(Reader *r)
 {
   long long value = ReadSize(r);
@@ -195,7 +198,8 @@ static void ReadLine(Reader *r, char *line, size_t size)
   }
 }
 
-/* ---------------------------------------------------------------------------------------------------------- sections */
+/* ---------------------------------------------------------------------------------------------------------- sections
+ */
 
 static PetscErrorCode ReadFormat(Reader *r)
 {
@@ -207,14 +211,19 @@ static PetscErrorCode ReadFormat(Reader *r)
   if (sscanf(line, "%15s %d %d", version, &binary, &size) != 3)
     ReaderDamaged(r);
   else if (strcmp(version, "4.1")) {
-    Complain(r->complaint, "%s: file format %s is not read, only gmsh's 4.1; convert it: gmsh %s -save -format msh41 -o NEW.msh", r->file, version, r->file);
+    Complain(r->complaint,
+             "%s: file format %s is not read, only gmsh's 4.1; convert it: gmsh %s -save -format msh41 -o NEW.msh",
+             r->file, version, r->file);
   } else if (size != 8)
     Complain(r->complaint, "%s: written with data size %d, only 8 is read", r->file, size);
   if (!ReaderFailed(r) && binary) {
     r->binary = PETSC_TRUE;
     ReadBytes(r, &one, sizeof(one));
     if (one != 1)
-      Complain(r->complaint, "%s: binary file of a machine with another byte order; write it as text: gmsh FILE.geo -format msh41 without -bin", r->file);
+      Complain(r->complaint,
+               "%s: binary file of a machine with another byte order; write it as text: gmsh FILE.geo -format msh41 "
+               "without -bin",
+               r->file);
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -287,7 +296,8 @@ static PetscErrorCode SortNodes(Reader *r)
   PetscReal *coords;
 
   PetscFunctionBeginUser;
-  for (PetscInt i = 1; i < mesh->n_nodes; i++) sorted = sorted && mesh->node_tag[i] > mesh->node_tag[i - 1] ? PETSC_TRUE : PETSC_FALSE;
+  for (PetscInt i = 1; i < mesh->n_nodes; i++)
+    sorted = sorted && mesh->node_tag[i] > mesh->node_tag[i - 1] ? PETSC_TRUE : PETSC_FALSE;
   if (sorted) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscMalloc3(mesh->n_nodes, &order, mesh->n_nodes, &tags, 3 * mesh->n_nodes, &coords));
   PetscCall(PetscArraycpy(tags, mesh->node_tag, mesh->n_nodes));
@@ -297,7 +307,8 @@ static PetscErrorCode SortNodes(Reader *r)
   for (PetscInt i = 0; i < mesh->n_nodes; i++) {
     mesh->node_tag[i] = tags[order[i]];
     for (int k = 0; k < 3; k++) mesh->coords[3 * i + k] = coords[3 * order[i] + k];
-    if (i && mesh->node_tag[i] == mesh->node_tag[i - 1]) Complain(r->complaint, "%s: node %" PetscInt_FMT " occurs twice", r->file, mesh->node_tag[i]);
+    if (i && mesh->node_tag[i] == mesh->node_tag[i - 1])
+      Complain(r->complaint, "%s: node %" PetscInt_FMT " occurs twice", r->file, mesh->node_tag[i]);
   }
   PetscCall(PetscFree3(order, tags, coords));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -335,18 +346,24 @@ static PetscErrorCode ReadNodes(Reader *r)
 
 static void RefuseElement(Reader *r, int type, int dim, int entity)
 {
-  const char *known = type >= 0 && type < (int)(sizeof(RefusedElements) / sizeof(*RefusedElements)) ? RefusedElements[type] : NULL;
-  char        name[64];
+  const char *known =
+    type >= 0 && type < (int)(sizeof(RefusedElements) / sizeof(*RefusedElements)) ? RefusedElements[type] : NULL;
+  char name[64];
 
   if (known)
     snprintf(name, sizeof(name), "%s", known);
   else
-    snprintf(name, sizeof(name), "gmsh's type %d%s", type, type > GMSH_POINT && type < GMSH_POLYGON ? ", of order 3 or higher" : "");
+    snprintf(name, sizeof(name), "gmsh's type %d%s", type,
+             type > GMSH_POINT && type < GMSH_POLYGON ? ", of order 3 or higher" : "");
   if (type == GMSH_QUAD8 || type == GMSH_HEX20) {
-    Complain(r->complaint, "%s: serendipity elements (%s) are not available; mesh with: gmsh FILE.geo -order 2 -setnumber Mesh.SecondOrderIncomplete 0",
+    Complain(r->complaint,
+             "%s: serendipity elements (%s) are not available; mesh with: gmsh FILE.geo -order 2 -setnumber "
+             "Mesh.SecondOrderIncomplete 0",
              r->file, name);
   } else {
-    Complain(r->complaint, "%s: elements on entity %d of dimension %d are not available (%s); there are tri3, tri6, quad4, quad9, tet4, tet10, hex8, hex27",
+    Complain(r->complaint,
+             "%s: elements on entity %d of dimension %d are not available (%s); there are tri3, tri6, quad4, quad9, "
+             "tet4, tet10, hex8, hex27",
              r->file, entity, dim, name);
   }
 }
@@ -424,7 +441,8 @@ static PetscErrorCode ReadBlockElements(Reader *r, GmshBlock *block)
       PetscInt tag = ReadTag(r), node = NodeIndex(r->mesh, tag);
 
       if (node < 0)
-        Complain(r->complaint, "%s: element %" PetscInt_FMT " has node %" PetscInt_FMT ", which is not in the file", r->file, block->tag[i], tag);
+        Complain(r->complaint, "%s: element %" PetscInt_FMT " has node %" PetscInt_FMT ", which is not in the file",
+                 r->file, block->tag[i], tag);
       else
         r->used[node] = PETSC_TRUE;
       block->connectivity[i * block->nodes + k] = node;
@@ -466,7 +484,8 @@ static PetscErrorCode ReadElements(Reader *r)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ------------------------------------------------------------------------------------------------------ the whole file */
+/* ------------------------------------------------------------------------------------------------------ the whole file
+ */
 
 /* Goes to what follows $EndSECTION. anywhere: after a section that is not read; else it must come next. */
 static void ReadClosing(Reader *r, PetscBool anywhere)
@@ -476,7 +495,8 @@ static void ReadClosing(Reader *r, PetscBool anywhere)
 
   snprintf(closing, sizeof(closing), "$End%s", r->section + 1);
   SkipSpace(r);
-  end = memmem(r->data + r->at, anywhere ? r->size - r->at : PetscMin(r->size - r->at, strlen(closing)), closing, strlen(closing));
+  end = memmem(r->data + r->at, anywhere ? r->size - r->at : PetscMin(r->size - r->at, strlen(closing)), closing,
+               strlen(closing));
   if (!end)
     ReaderDamaged(r);
   else
@@ -505,8 +525,10 @@ static PetscErrorCode ReadSection(Reader *r, unsigned *seen)
   for (int i = 0; i < (int)(sizeof(Sections) / sizeof(*Sections)); i++)
     if (!strcmp(r->section, Sections[i].name)) known = i;
   if (!strcmp(r->section, "$PartitionedEntities"))
-    Complain(r->complaint, "%s: the mesh is partitioned already; write it without partitions, ranks are given out here", r->file);
-  if ((known != 0) != (*seen & SEEN_FORMAT)) Complain(r->complaint, "%s: this is no gmsh mesh file (.msh, format 4.1)", r->file);
+    Complain(r->complaint, "%s: the mesh is partitioned already; write it without partitions, ranks are given out here",
+             r->file);
+  if ((known != 0) != (*seen & SEEN_FORMAT))
+    Complain(r->complaint, "%s: this is no gmsh mesh file (.msh, format 4.1)", r->file);
   if (ReaderFailed(r)) PetscFunctionReturn(PETSC_SUCCESS);
   if (known >= 0) {
     if (*seen & (1u << known)) ReaderDamaged(r); /* twice */
@@ -551,9 +573,13 @@ static void CheckContents(Reader *r, unsigned seen)
   if (!(seen & SEEN_NODES)) Complain(r->complaint, "%s: the file has no nodes", r->file);
   if (!(seen & SEEN_ELEMENTS)) Complain(r->complaint, "%s: the file has no elements", r->file);
   if (!(seen & SEEN_NAMES))
-    Complain(r->complaint, "%s: the file has no physical names; name volumes and surfaces in gmsh: Physical Volume(\"NAME\") = {...};", r->file);
+    Complain(
+      r->complaint,
+      "%s: the file has no physical names; name volumes and surfaces in gmsh: Physical Volume(\"NAME\") = {...};",
+      r->file);
   for (PetscInt i = 0; i < r->mesh->n_nodes && !ReaderFailed(r); i++)
-    if (!r->used[i]) Complain(r->complaint, "%s: node %" PetscInt_FMT " belongs to no element", r->file, r->mesh->node_tag[i]);
+    if (!r->used[i])
+      Complain(r->complaint, "%s: node %" PetscInt_FMT " belongs to no element", r->file, r->mesh->node_tag[i]);
 }
 
 /*
@@ -565,9 +591,10 @@ static void CheckContents(Reader *r, unsigned seen)
 . file - path
 
   Output Parameters:
-+ mesh      - nodes by ascending tag, elements of the physical groups, groups; to be freed with GmshReset(), also after a mistake
-- complaint - what is wrong with the file, if anything: missing, truncated, other format, no physical names, elements that are not
-              available, nodes without elements
++ mesh      - nodes by ascending tag, elements of the physical groups, groups; to be freed with GmshReset(), also after
+a mistake
+- complaint - what is wrong with the file, if anything: missing, truncated, other format, no physical names, elements
+that are not available, nodes without elements
 
   Note:
   Format: the gmsh reference manual, "MSH file format, version 4.1".

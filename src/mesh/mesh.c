@@ -36,7 +36,8 @@ PetscErrorCode MeshGenerate(MPI_Comm comm, Scene scene, const char *directory, c
   *seconds = 0;
   PetscCallMPI(MPI_Comm_rank(comm, &rank));
   if (!ending || (strcmp(ending, ".geo") && strcmp(ending, ".msh"))) {
-    PetscCall(RefuseInput(comm, "%s: '%s' is neither a .geo nor a .msh file", SceneWhere(scene, "mesh", "file"), scene->mesh_file));
+    PetscCall(RefuseInput(comm, "%s: '%s' is neither a .geo nor a .msh file", SceneWhere(scene, "mesh", "file"),
+                          scene->mesh_file));
   }
   if (!strcmp(ending, ".msh"))
     PetscCall(PetscStrncpy(file, scene->mesh_file, PETSC_MAX_PATH_LEN));
@@ -48,7 +49,8 @@ PetscErrorCode MeshGenerate(MPI_Comm comm, Scene scene, const char *directory, c
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ------------------------------------------------------------------------------------------------------------ creation */
+/* ------------------------------------------------------------------------------------------------------------ creation
+ */
 
 /* Rank 0's findings that all need */
 static PetscErrorCode ShareFrame(Mesh mesh)
@@ -143,14 +145,15 @@ static PetscErrorCode FreeAllDofs(Mesh mesh)
 - file  - a .msh file, format 4.1
 
   Output Parameter:
-. mesh - to be destroyed with MeshDestroy(). The local section holds every dof as free until MeshSetConstraints() is called.
+. mesh - to be destroyed with MeshDestroy(). The local section holds every dof as free until MeshSetConstraints() is
+called.
 
   Options Database Key:
 . -mesh_dm_view - views the DMPlex
 
   Note:
-  Refuses damaged files, elements that are not available, bodies without cells, cells without a body, mixed orders, a two-dimensional mesh
-  out of its plane, and loads or contact on surfaces that are rigid or lie between cells.
+  Refuses damaged files, elements that are not available, bodies without cells, cells without a body, mixed orders, a
+two-dimensional mesh out of its plane, and loads or contact on surfaces that are rigid or lie between cells.
 */
 PetscErrorCode MeshCreate(MPI_Comm comm, Scene scene, const char *file, Mesh *created)
 {
@@ -195,8 +198,10 @@ PetscErrorCode MeshDestroy(Mesh *destroyed)
   }
   PetscCall(PetscFree(mesh->groups));
   PetscCall(RootRigidDestroy(mesh));
-  PetscCall(PetscFree6(mesh->node_id, mesh->node_tag, mesh->node_owner, mesh->node_owner_local, mesh->node_point, mesh->coords));
-  PetscCall(PetscFree6(mesh->cell_id, mesh->cell_type, mesh->cell_ptr, mesh->cell_nodes, mesh->cell_body, mesh->cell_tag));
+  PetscCall(PetscFree6(mesh->node_id, mesh->node_tag, mesh->node_owner, mesh->node_owner_local, mesh->node_point,
+                       mesh->coords));
+  PetscCall(
+    PetscFree6(mesh->cell_id, mesh->cell_type, mesh->cell_ptr, mesh->cell_nodes, mesh->cell_body, mesh->cell_tag));
   PetscCall(PetscFree(mesh->global_dofs));
   PetscCall(PetscFree(mesh->work));
   PetscCall(PetscSFDestroy(&mesh->node_sf));
@@ -205,7 +210,8 @@ PetscErrorCode MeshDestroy(Mesh *destroyed)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* --------------------------------------------------------------------------------------------------------- coordinates */
+/* --------------------------------------------------------------------------------------------------------- coordinates
+ */
 
 /*
   MeshGatherNodes - a nodal field's values at some nodes, for an element kernel

@@ -1,9 +1,10 @@
 /* What a mesh consists of: the arrays, groups and rigid tools that every part of it works on. Its users include mesh.h.
 
-   A node is a local degree-of-freedom carrier on a Plex point (vertex; for order 2 also edge, face or cell centre). Local nodes are
-   numbered 0..n_nodes-1 in the order of the local section, so that node n has local dofs n*dim .. n*dim+dim-1 (supports included: the
-   local section holds every dof, the global section only the free ones). Cells are not overlapped: each belongs to one rank; local cell c
-   is Plex point c. No node order of Plex is used anywhere: cells keep gmsh's. */
+   A node is a local degree-of-freedom carrier on a Plex point (vertex; for order 2 also edge, face or cell centre).
+   Local nodes are numbered 0..n_nodes-1 in the order of the local section, so that node n has local dofs n*dim ..
+   n*dim+dim-1 (supports included: the local section holds every dof, the global section only the free ones). Cells are
+   not overlapped: each belongs to one rank; local cell c is Plex point c. No node order of Plex is used anywhere: cells
+   keep gmsh's. */
 #pragma once
 #include "base/petsccompat.h"
 #include "kernels/element.h"
@@ -37,16 +38,18 @@ typedef struct {
 } MeshRigid;
 
 typedef struct {
-  MPI_Comm     comm;
-  DM           dm; /* DMPlex; its local section is the displacement's */
-  int          dim, order;
-  PetscInt     n_nodes, n_owned, n_global;
-  PetscInt    *node_id;          /* 0..n_global-1 in the order of gmsh's tags: the same on any number of ranks */
-  PetscInt    *node_tag;         /* gmsh's */
-  PetscInt    *node_owner;       /* rank */
-  PetscInt    *node_owner_local; /* the node's local number there */
-  PetscReal   *coords;           /* n_nodes*dim, relative to centre; axisymmetric: the first is the radius itself, since centre[0] = 0 */
-  PetscReal    centre[3], size;  /* of the bodies' bounding box, without rigid tools; size: its diagonal; axisymmetric: centre[0] = 0 */
+  MPI_Comm  comm;
+  DM        dm; /* DMPlex; its local section is the displacement's */
+  int       dim, order;
+  PetscInt  n_nodes, n_owned, n_global;
+  PetscInt *node_id;          /* 0..n_global-1 in the order of gmsh's tags: the same on any number of ranks */
+  PetscInt *node_tag;         /* gmsh's */
+  PetscInt *node_owner;       /* rank */
+  PetscInt *node_owner_local; /* the node's local number there */
+  PetscReal
+    *coords; /* n_nodes*dim, relative to centre; axisymmetric: the first is the radius itself, since centre[0] = 0 */
+  PetscReal centre[3],
+    size; /* of the bodies' bounding box, without rigid tools; size: its diagonal; axisymmetric: centre[0] = 0 */
   PetscInt     n_cells, n_cells_global;
   PetscInt    *cell_id; /* 0..n_cells_global-1 in the order of gmsh's tags */
   ElementType *cell_type;
@@ -63,4 +66,4 @@ typedef struct {
   PetscSF    node_sf;     /* ghost nodes to their owners' nodes */
   PetscInt  *global_dofs; /* NULL until MeshSetConstraints() */
   PetscReal *work;        /* n_nodes*dim */
-} * Mesh;
+} *Mesh;

@@ -12,7 +12,8 @@ typedef struct {
   PetscInt    *cell;               /* records of cells */
 } Cargo;
 
-/* ------------------------------------------------------------------------------------------------------------ packing */
+/* ------------------------------------------------------------------------------------------------------------ packing
+ */
 
 static PetscErrorCode SectionCreate(DM dm, PetscSection *section)
 {
@@ -39,7 +40,9 @@ static PetscErrorCode CargoAllocate(DM dm, int dim, const RootMesh *root, Cargo 
     PetscCall(PetscSectionSetDof(cargo->places, root->point[i], dim));
   }
   for (PetscInt c = 0; root && c < root->n_cells; c++)
-    PetscCall(PetscSectionSetDof(cargo->cells, c, CELL_HEADER + root->cell_block[c]->nodes + FACE_ENTRIES * (root->face_ptr[c + 1] - root->face_ptr[c])));
+    PetscCall(PetscSectionSetDof(cargo->cells, c,
+                                 CELL_HEADER + root->cell_block[c]->nodes +
+                                   FACE_ENTRIES * (root->face_ptr[c + 1] - root->face_ptr[c])));
   PetscCall(PetscSectionSetUp(cargo->ids));
   PetscCall(PetscSectionSetUp(cargo->places));
   PetscCall(PetscSectionSetUp(cargo->cells));
@@ -80,7 +83,8 @@ static PetscErrorCode CargoLoad(Mesh mesh, const RootMesh *root, Cargo *cargo)
     cargo->id[offset]     = i;
     cargo->id[offset + 1] = root->gmsh.node_tag[root->node[i]];
     PetscCall(PetscSectionGetOffset(cargo->places, root->point[i], &offset));
-    for (int k = 0; k < mesh->dim; k++) cargo->place[offset + k] = root->gmsh.coords[3 * root->node[i] + k] - mesh->centre[k];
+    for (int k = 0; k < mesh->dim; k++)
+      cargo->place[offset + k] = root->gmsh.coords[3 * root->node[i] + k] - mesh->centre[k];
   }
   for (PetscInt c = 0; c < root->n_cells; c++) {
     PetscCall(PetscSectionGetOffset(cargo->cells, c, &offset));
@@ -136,7 +140,8 @@ static PetscErrorCode CargoFree(Cargo *cargo)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ---------------------------------------------------------------------------------------------------------- unpacking */
+/* ---------------------------------------------------------------------------------------------------------- unpacking
+ */
 
 /* Values of a point, none outside the section's chart */
 static PetscErrorCode SectionRange(PetscSection section, PetscInt point, PetscInt *n, PetscInt *offset)
@@ -164,8 +169,9 @@ static PetscErrorCode CreateNodes(Mesh mesh, const Cargo *cargo, PetscInt **poin
     PetscCall(SectionRange(cargo->ids, p, &n, &offset));
     (*point_node)[p] = n ? mesh->n_nodes++ : -1;
   }
-  PetscCall(PetscMalloc6(mesh->n_nodes, &mesh->node_id, mesh->n_nodes, &mesh->node_tag, mesh->n_nodes, &mesh->node_owner, mesh->n_nodes,
-                         &mesh->node_owner_local, mesh->n_nodes, &mesh->node_point, mesh->n_nodes * mesh->dim, &mesh->coords));
+  PetscCall(PetscMalloc6(mesh->n_nodes, &mesh->node_id, mesh->n_nodes, &mesh->node_tag, mesh->n_nodes,
+                         &mesh->node_owner, mesh->n_nodes, &mesh->node_owner_local, mesh->n_nodes, &mesh->node_point,
+                         mesh->n_nodes * mesh->dim, &mesh->coords));
   PetscCall(PetscMalloc1(mesh->n_nodes * mesh->dim, &mesh->work));
   for (PetscInt p = 0; p < end; p++) {
     const PetscInt node = (*point_node)[p];
@@ -182,7 +188,8 @@ static PetscErrorCode CreateNodes(Mesh mesh, const Cargo *cargo, PetscInt **poin
 }
 
 /* The owner's number of each point's node, from the point's owner; -1 without node */
-static PetscErrorCode OwnersNumbers(PetscSF point_sf, PetscInt n_points, const PetscInt point_node[], PetscInt owner_node[])
+static PetscErrorCode OwnersNumbers(PetscSF point_sf, PetscInt n_points, const PetscInt point_node[],
+                                    PetscInt owner_node[])
 {
   PetscInt n_roots;
 
@@ -231,14 +238,16 @@ static PetscErrorCode CreateOwners(Mesh mesh, const PetscInt point_node[])
   }
   mesh->n_owned = mesh->n_nodes - n_ghosts;
   PetscCall(PetscSFCreate(mesh->comm, &mesh->node_sf));
-  PetscCall(PetscSFSetGraph(mesh->node_sf, mesh->n_nodes, n_ghosts, leaf, PETSC_OWN_POINTER, remote, PETSC_OWN_POINTER));
+  PetscCall(
+    PetscSFSetGraph(mesh->node_sf, mesh->n_nodes, n_ghosts, leaf, PETSC_OWN_POINTER, remote, PETSC_OWN_POINTER));
   PetscCall(PetscSFSetUp(mesh->node_sf));
   PetscCall(PetscFree(owner_node));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* A cell's record, the faces behind it, and how many there are */
-static PetscErrorCode CellRecord(const Cargo *cargo, PetscInt c, const PetscInt **record, const PetscInt **faces, PetscInt *n_faces)
+static PetscErrorCode CellRecord(const Cargo *cargo, PetscInt c, const PetscInt **record, const PetscInt **faces,
+                                 PetscInt *n_faces)
 {
   PetscInt n, offset;
 
@@ -269,23 +278,27 @@ static PetscErrorCode AllocateCells(Mesh mesh, const Cargo *cargo)
   for (int g = 0; g < mesh->n_groups; g++) {
     MeshGroup *group = &mesh->groups[g];
 
-    PetscCall(PetscMalloc3(n_faces[g], &group->face_cell, n_faces[g], &group->face_number, n_faces[g], &group->face_tag));
+    PetscCall(
+      PetscMalloc3(n_faces[g], &group->face_cell, n_faces[g], &group->face_number, n_faces[g], &group->face_tag));
   }
-  PetscCall(PetscMalloc6(mesh->n_cells, &mesh->cell_id, mesh->n_cells, &mesh->cell_type, mesh->n_cells + 1, &mesh->cell_ptr, n_entries, &mesh->cell_nodes,
-                         mesh->n_cells, &mesh->cell_body, mesh->n_cells, &mesh->cell_tag));
+  PetscCall(PetscMalloc6(mesh->n_cells, &mesh->cell_id, mesh->n_cells, &mesh->cell_type, mesh->n_cells + 1,
+                         &mesh->cell_ptr, n_entries, &mesh->cell_nodes, mesh->n_cells, &mesh->cell_body, mesh->n_cells,
+                         &mesh->cell_tag));
   PetscCall(PetscFree(n_faces));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* Local nodes of cell c by their ids; ids: all local ones, ascending, with their local nodes */
-static PetscErrorCode CreateCellNodes(Mesh mesh, PetscInt c, const PetscInt *record, const PetscInt ids[], const PetscInt nodes[])
+static PetscErrorCode CreateCellNodes(Mesh mesh, PetscInt c, const PetscInt *record, const PetscInt ids[],
+                                      const PetscInt nodes[])
 {
   PetscFunctionBeginUser;
   for (PetscInt k = 0; k < record[CELL_NODES]; k++) {
     PetscInt place;
 
     PetscCall(PetscFindInt(record[CELL_HEADER + k], mesh->n_nodes, ids, &place));
-    PetscCheck(place >= 0, PETSC_COMM_SELF, PETSC_ERR_PLIB, "Node %" PetscInt_FMT " of cell %" PetscInt_FMT " did not come with it", record[CELL_HEADER + k],
+    PetscCheck(place >= 0, PETSC_COMM_SELF, PETSC_ERR_PLIB,
+               "Node %" PetscInt_FMT " of cell %" PetscInt_FMT " did not come with it", record[CELL_HEADER + k],
                record[CELL_ID]);
     mesh->cell_nodes[mesh->cell_ptr[c] + k] = nodes[place];
   }
@@ -355,8 +368,8 @@ static PetscErrorCode CreateGroupNodes(Mesh mesh, MeshGroup *group, const PetscI
 
   Input Parameters:
 + root - on rank 0, with points and faces; reset as soon as it is packed. NULL elsewhere
-- mesh - dm, with its partitioner and the groups' labels, centre and groups are read; the DM is replaced by the distributed one, and all
-         arrays of nodes, cells and groups' nodes and faces are set
+- mesh - dm, with its partitioner and the groups' labels, centre and groups are read; the DM is replaced by the
+distributed one, and all arrays of nodes, cells and groups' nodes and faces are set
 
   Note:
   Cells are not overlapped. A node belongs to the rank to which the DM's point SF gives its point.

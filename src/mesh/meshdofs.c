@@ -34,8 +34,9 @@ static PetscErrorCode CreateSection(Mesh mesh, const PetscBool constrained[], Pe
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* block values of a node as one unit of communication, to be given back. Real values only: two 64-bit integers would be taken for MPI's
-   pair type. One value is the basic type itself: a contiguous type of one is none that PetscSF can sum. */
+/* block values of a node as one unit of communication, to be given back. Real values only: two 64-bit integers would be
+   taken for MPI's pair type. One value is the basic type itself: a contiguous type of one is none that PetscSF can sum.
+ */
 static PetscErrorCode NodeTypeCreate(PetscInt block, MPI_Datatype *type)
 {
   PetscMPIInt count;
@@ -95,7 +96,8 @@ static PetscErrorCode NumberDofs(Mesh mesh, const PetscBool constrained[])
   for (PetscInt i = 0; i < mesh->n_nodes; i++) {
     PetscCall(PetscSectionGetOffset(global, mesh->node_point[i], &offset));
     if (offset < 0) offset = -(offset + 1);
-    for (int k = 0; k < mesh->dim; k++) mesh->global_dofs[i * mesh->dim + k] = constrained[i * mesh->dim + k] ? -1 : offset++;
+    for (int k = 0; k < mesh->dim; k++)
+      mesh->global_dofs[i * mesh->dim + k] = constrained[i * mesh->dim + k] ? -1 : offset++;
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -138,7 +140,8 @@ PetscErrorCode MeshSetConstraints(Mesh mesh, const PetscBool *constrained)
   Not Collective
 
   Output Parameter:
-. dofs - n_nodes*dim, -1 where constrained; also for nodes of other ranks. Belongs to the mesh; a new array after each MeshSetConstraints().
+. dofs - n_nodes*dim, -1 where constrained; also for nodes of other ranks. Belongs to the mesh; a new array after each
+MeshSetConstraints().
 */
 PetscErrorCode MeshGetGlobalDofs(Mesh mesh, const PetscInt **dofs)
 {

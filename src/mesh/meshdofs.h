@@ -2,7 +2,8 @@
 #pragma once
 #include "mesh/meshdata.h"
 
-/* Marks constrained local dofs (n_nodes*dim; OR-ed over the ranks that share a node), makes the sections. Before any vector. Collective. */
+/* Marks constrained local dofs (n_nodes*dim; OR-ed over the ranks that share a node), makes the sections. Before any
+ * vector. Collective. */
 PetscErrorCode MeshSetConstraints(Mesh, const PetscBool *constrained);
 /* Global number of every local dof (n_nodes*dim), -1 where constrained; belongs to the mesh. Not collective. */
 PetscErrorCode MeshGetGlobalDofs(Mesh, const PetscInt **dofs);

@@ -80,7 +80,8 @@ static void ListGroups(Mesh mesh, int dim, char list[MESH_TEXT])
 
   snprintf(list, MESH_TEXT, "none");
   for (int g = 0; g < mesh->n_groups && used < MESH_TEXT; g++)
-    if (mesh->groups[g].dim <= dim) used += (size_t)snprintf(list + used, MESH_TEXT - used, "%s%s", used ? ", " : "", mesh->groups[g].name);
+    if (mesh->groups[g].dim <= dim)
+      used += (size_t)snprintf(list + used, MESH_TEXT - used, "%s%s", used ? ", " : "", mesh->groups[g].name);
 }
 
 /*
@@ -94,14 +95,15 @@ static void ListGroups(Mesh mesh, int dim, char list[MESH_TEXT])
 . path  - for example "contact.0"
 . key   - for example "slave"
 . name  - of the group
-- dim   - largest dimension allowed: mesh->dim for volumes, mesh->dim - 1 for surfaces. Of groups of one name the one of the largest
-          dimension is taken.
+- dim   - largest dimension allowed: mesh->dim for volumes, mesh->dim - 1 for surfaces. Of groups of one name the one of
+the largest dimension is taken.
 
   Output Parameter:
-. found - belongs to the mesh. A rigid tool is returned too (not attached, without nodes and faces; see MeshFindRigid()); any other
-          group of which some elements do not lie on a body is refused.
+. found - belongs to the mesh. A rigid tool is returned too (not attached, without nodes and faces; see
+MeshFindRigid()); any other group of which some elements do not lie on a body is refused.
 */
-PetscErrorCode MeshGetGroup(Mesh mesh, Scene scene, const char *path, const char *key, const char *name, int dim, MeshGroup **found)
+PetscErrorCode MeshGetGroup(Mesh mesh, Scene scene, const char *path, const char *key, const char *name, int dim,
+                            MeshGroup **found)
 {
   char list[MESH_TEXT];
   int  g = -1, higher = -1;
@@ -116,12 +118,14 @@ PetscErrorCode MeshGetGroup(Mesh mesh, Scene scene, const char *path, const char
                           DimensionName(mesh->dim, mesh->groups[higher].dim), DimensionName(mesh->dim, dim), list));
   }
   if (g < 0)
-    PetscCall(RefuseInput(mesh->comm, "%s: the mesh has no %s '%s'; it has: %s", SceneWhere(scene, path, key), DimensionName(mesh->dim, dim), name, list));
+    PetscCall(RefuseInput(mesh->comm, "%s: the mesh has no %s '%s'; it has: %s", SceneWhere(scene, path, key),
+                          DimensionName(mesh->dim, dim), name, list));
   if (mesh->groups[g].n_loose) {
-    PetscCall(RefuseInput(mesh->comm,
-                          "%s: %" PetscInt_FMT " of the %" PetscInt_FMT
-                          " elements of '%s' do not lie on any body; a surface of its own is a rigid tool: list it in bodies with `rigid`",
-                          SceneWhere(scene, path, key), mesh->groups[g].n_loose, mesh->groups[g].n_elements, name));
+    PetscCall(RefuseInput(
+      mesh->comm,
+      "%s: %" PetscInt_FMT " of the %" PetscInt_FMT
+      " elements of '%s' do not lie on any body; a surface of its own is a rigid tool: list it in bodies with `rigid`",
+      SceneWhere(scene, path, key), mesh->groups[g].n_loose, mesh->groups[g].n_elements, name));
   }
   *found = &mesh->groups[g];
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -147,6 +151,7 @@ ElementType MeshFaceNodes(Mesh mesh, const MeshGroup *group, PetscInt f, PetscIn
   const PetscInt cell    = group->face_cell[f];
   const Element *element = ElementGet(mesh->cell_type[cell]), *face = ElementGet((ElementType)element->face_type);
 
-  for (int k = 0; k < face->nodes; k++) nodes[k] = mesh->cell_nodes[mesh->cell_ptr[cell] + element->face_nodes[group->face_number[f]][k]];
+  for (int k = 0; k < face->nodes; k++)
+    nodes[k] = mesh->cell_nodes[mesh->cell_ptr[cell] + element->face_nodes[group->face_number[f]][k]];
   return face->type;
 }

@@ -2,7 +2,8 @@
 #pragma once
 #include "mesh/meshdata.h"
 
-/* The group of that name and at most that dimension, or refuses: names the key, says which groups there are. Collective. */
+/* The group of that name and at most that dimension, or refuses: names the key, says which groups there are.
+ * Collective. */
 PetscErrorCode MeshGetGroup(Mesh, Scene, const char *path, const char *key, const char *name, int dim, MeshGroup **);
 /* Index of the group of exactly that dimension, or -1 */
 int MeshFindGroup(Mesh, int dim, const char *name);

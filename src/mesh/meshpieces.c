@@ -1,6 +1,7 @@
 #include "mesh/meshpieces.h"
 
-/* The lowest label of a cell's nodes on all of them, over and over until nothing changes on this rank; forth and back, as labels run along cells. */
+/* The lowest label of a cell's nodes on all of them, over and over until nothing changes on this rank; forth and back,
+ * as labels run along cells. */
 static PetscBool SpreadInCells(Mesh mesh, PetscInt label[])
 {
   PetscBool any = PETSC_FALSE, changed = PETSC_TRUE;
@@ -11,7 +12,8 @@ static PetscBool SpreadInCells(Mesh mesh, PetscInt label[])
       const PetscInt c   = k < mesh->n_cells ? k : 2 * mesh->n_cells - 1 - k;
       PetscInt       low = label[mesh->cell_nodes[mesh->cell_ptr[c]]];
 
-      for (PetscInt i = mesh->cell_ptr[c]; i < mesh->cell_ptr[c + 1]; i++) low = PetscMin(low, label[mesh->cell_nodes[i]]);
+      for (PetscInt i = mesh->cell_ptr[c]; i < mesh->cell_ptr[c + 1]; i++)
+        low = PetscMin(low, label[mesh->cell_nodes[i]]);
       for (PetscInt i = mesh->cell_ptr[c]; i < mesh->cell_ptr[c + 1]; i++) {
         if (label[mesh->cell_nodes[i]] == low) continue;
         label[mesh->cell_nodes[i]] = low;
@@ -57,7 +59,8 @@ static PetscErrorCode NextLabel(Mesh mesh, const PetscInt label[], PetscInt last
 
   Output Parameters:
 + n     - how many there are, on all ranks together
-- piece - n_nodes (room given): the piece of each local node; pieces count in the order of their lowest gmsh node tag, the same on any number of ranks
+- piece - n_nodes (room given): the piece of each local node; pieces count in the order of their lowest gmsh node tag,
+the same on any number of ranks
 */
 PetscErrorCode MeshFindPieces(Mesh mesh, PetscInt *n, PetscInt piece[])
 {

@@ -4,7 +4,8 @@
 #include "mesh/mesh.h"
 #include <string.h>
 
-/* -------------------------------------------------------------------------------------------------------------- quality */
+/* --------------------------------------------------------------------------------------------------------------
+ * quality */
 
 /* A cell is inverted if its Jacobian changes sign, or has the wrong sign all over (then its volume is negative). */
 static PetscBool CellInverted(Mesh mesh, PetscInt c, double *quality)
@@ -13,7 +14,8 @@ static PetscBool CellInverted(Mesh mesh, PetscInt c, double *quality)
 
   MeshCellCoordinates(mesh, c, X);
   *quality = ElementQuality(mesh->cell_type[c], mesh->dim, X);
-  return !(*quality > 0) || !(CellVolume(mesh->cell_type[c], mesh->dim, GEOMETRY_PLANE_STRAIN, X) > 0) ? PETSC_TRUE : PETSC_FALSE;
+  return !(*quality > 0) || !(CellVolume(mesh->cell_type[c], mesh->dim, GEOMETRY_PLANE_STRAIN, X) > 0) ? PETSC_TRUE
+                                                                                                       : PETSC_FALSE;
 }
 
 /*
@@ -43,10 +45,12 @@ PetscErrorCode MeshCheckQuality(Mesh mesh, Scene scene)
   PetscCallMPI(MPI_Allreduce(&tag, &lowest, 1, MPIU_INT, MPI_MIN, mesh->comm));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &count, 1, MPIU_INT, MPI_SUM, mesh->comm));
   if (first >= 0 && tag == lowest) {
-    Complain(&complaint,
-             "%s: cell %" PetscInt_FMT " of body '%s' is inverted (smallest over mean Jacobian determinant %g); inverted cells in all: %" PetscInt_FMT
-             "; turn the entity round in gmsh, or mesh more finely where it is curved",
-             SceneWhere(scene, "mesh", "file"), tag, scene->bodies[mesh->cell_body[first]].name, its_quality, count);
+    Complain(
+      &complaint,
+      "%s: cell %" PetscInt_FMT
+      " of body '%s' is inverted (smallest over mean Jacobian determinant %g); inverted cells in all: %" PetscInt_FMT
+      "; turn the entity round in gmsh, or mesh more finely where it is curved",
+      SceneWhere(scene, "mesh", "file"), tag, scene->bodies[mesh->cell_body[first]].name, its_quality, count);
   }
   PetscCall(ComplaintRefuse(mesh->comm, &complaint));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -69,16 +73,21 @@ PetscErrorCode MeshCheckFormulations(Mesh mesh, Scene scene)
   for (PetscInt c = 0; c < mesh->n_cells; c++) {
     const SceneBody *body = &scene->bodies[mesh->cell_body[c]];
 
-    if (ElementKernelExists(&(KernelCase){.type = mesh->cell_type[c], .geometry = scene->geometry, .formulation = body->formulation})) continue;
-    Complain(&complaint, "%s: %s is for quad4 and hex8 only; cell %" PetscInt_FMT " of body '%s' is %s, which needs formulation: full",
-             SceneWhere(scene, body->path, "formulation"), Formulations[body->formulation], mesh->cell_tag[c], body->name,
-             ElementGet(mesh->cell_type[c])->name);
+    if (ElementKernelExists(
+          &(KernelCase){.type = mesh->cell_type[c], .geometry = scene->geometry, .formulation = body->formulation}))
+      continue;
+    Complain(&complaint,
+             "%s: %s is for quad4 and hex8 only; cell %" PetscInt_FMT
+             " of body '%s' is %s, which needs formulation: full",
+             SceneWhere(scene, body->path, "formulation"), Formulations[body->formulation], mesh->cell_tag[c],
+             body->name, ElementGet(mesh->cell_type[c])->name);
   }
   PetscCall(ComplaintRefuse(mesh->comm, &complaint));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* --------------------------------------------------------------------------------------------------------------- report */
+/* ---------------------------------------------------------------------------------------------------------------
+ * report */
 
 /* A line of the report: a body, a surface, or a rigid tool; all ranks' */
 typedef struct {
@@ -98,7 +107,8 @@ static void ListCells(const PetscReal cells[ELEMENT_TYPES], char list[MESH_TEXT]
   list[0] = '\0';
   for (int type = 0; type < ELEMENT_TYPES && used < MESH_TEXT; type++)
     if (cells[type] > 0)
-      used += (size_t)snprintf(list + used, MESH_TEXT - used, "%s%.0f %s", used ? ", " : "", cells[type], ElementGet((ElementType)type)->name);
+      used += (size_t)snprintf(list + used, MESH_TEXT - used, "%s%.0f %s", used ? ", " : "", cells[type],
+                               ElementGet((ElementType)type)->name);
 }
 
 /* Nodes of a group, each counted by its owner */
@@ -171,14 +181,16 @@ static PetscErrorCode MeasureSurface(Mesh mesh, Scene scene, const MeshGroup *gr
 }
 
 /* Rows of the bodies and of the surfaces on them; bodies has room for all of the scene's, surfaces for all groups */
-static PetscErrorCode Measure(Mesh mesh, Scene scene, int *n_bodies, ReportRow bodies[], int *n_surfaces, ReportRow surfaces[])
+static PetscErrorCode Measure(Mesh mesh, Scene scene, int *n_bodies, ReportRow bodies[], int *n_surfaces,
+                              ReportRow surfaces[])
 {
   PetscFunctionBeginUser;
   *n_bodies = *n_surfaces = 0;
   for (int b = 0; b < scene->n_bodies; b++)
     if (!scene->bodies[b].rigid) PetscCall(MeasureBody(mesh, scene, b, &bodies[(*n_bodies)++]));
   for (int g = 0; g < mesh->n_groups; g++)
-    if (mesh->groups[g].dim == mesh->dim - 1 && mesh->groups[g].attached) PetscCall(MeasureSurface(mesh, scene, &mesh->groups[g], &surfaces[(*n_surfaces)++]));
+    if (mesh->groups[g].dim == mesh->dim - 1 && mesh->groups[g].attached)
+      PetscCall(MeasureSurface(mesh, scene, &mesh->groups[g], &surfaces[(*n_surfaces)++]));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -189,27 +201,32 @@ static int Width(int width, const char *text)
 }
 
 /* By stdio, not by PetscFPrintf(), which writes whole numbers with a point behind them */
-static void PrintReport(Mesh mesh, int n_bodies, const ReportRow bodies[], int n_surfaces, const ReportRow surfaces[], FILE *stream)
+static void PrintReport(Mesh mesh, int n_bodies, const ReportRow bodies[], int n_surfaces, const ReportRow surfaces[],
+                        FILE *stream)
 {
   int name = Width(0, "rigid tool");
 
   for (int b = 0; b < n_bodies; b++) name = Width(name, bodies[b].name);
   for (int s = 0; s < n_surfaces; s++) name = Width(name, surfaces[s].name);
   for (int r = 0; r < mesh->n_rigid; r++) name = Width(name, mesh->rigid[r].name);
-  fprintf(stream, "mesh     %" PetscInt_FMT " cells of order %d, %" PetscInt_FMT " nodes, diagonal %g\n", mesh->n_cells_global, mesh->order, mesh->n_global,
-          (double)mesh->size);
-  fprintf(stream, "         %-*s %9s %11s  %7s %7s %9s  %s\n", name, "body", "nodes", "volume", "quality", "least", "in cell", "cells");
+  fprintf(stream, "mesh     %" PetscInt_FMT " cells of order %d, %" PetscInt_FMT " nodes, diagonal %g\n",
+          mesh->n_cells_global, mesh->order, mesh->n_global, (double)mesh->size);
+  fprintf(stream, "         %-*s %9s %11s  %7s %7s %9s  %s\n", name, "body", "nodes", "volume", "quality", "least",
+          "in cell", "cells");
   for (int b = 0; b < n_bodies; b++)
-    fprintf(stream, "         %-*s %9.0f %11g  %7.3f %7.3f %9" PetscInt_FMT "  %s\n", name, bodies[b].name, bodies[b].count, bodies[b].measure, bodies[b].mean,
-            bodies[b].least, bodies[b].worst, bodies[b].cells);
+    fprintf(stream, "         %-*s %9.0f %11g  %7.3f %7.3f %9" PetscInt_FMT "  %s\n", name, bodies[b].name,
+            bodies[b].count, bodies[b].measure, bodies[b].mean, bodies[b].least, bodies[b].worst, bodies[b].cells);
   if (n_surfaces) fprintf(stream, "         %-*s %9s %11s\n", name, "surface", "faces", "area");
-  for (int s = 0; s < n_surfaces; s++) fprintf(stream, "         %-*s %9.0f %11g\n", name, surfaces[s].name, surfaces[s].count, surfaces[s].measure);
+  for (int s = 0; s < n_surfaces; s++)
+    fprintf(stream, "         %-*s %9.0f %11g\n", name, surfaces[s].name, surfaces[s].count, surfaces[s].measure);
   if (mesh->n_rigid) fprintf(stream, "         %-*s %9s %11s\n", name, "rigid tool", "faces", "nodes");
   for (int r = 0; r < mesh->n_rigid; r++)
-    fprintf(stream, "         %-*s %9" PetscInt_FMT " %11" PetscInt_FMT "\n", name, mesh->rigid[r].name, mesh->rigid[r].n_faces, mesh->rigid[r].n_nodes);
+    fprintf(stream, "         %-*s %9" PetscInt_FMT " %11" PetscInt_FMT "\n", name, mesh->rigid[r].name,
+            mesh->rigid[r].n_faces, mesh->rigid[r].n_nodes);
   if (strcmp(mesh->partition.tool, "none")) {
-    fprintf(stream, "parts    %s: edge cut %" PetscInt_FMT ", largest over mean %.2f (cells in contact %.2f)\n", mesh->partition.tool, mesh->partition.edge_cut,
-            (double)mesh->partition.imbalance_cells, (double)mesh->partition.imbalance_contact);
+    fprintf(stream, "parts    %s: edge cut %" PetscInt_FMT ", largest over mean %.2f (cells in contact %.2f)\n",
+            mesh->partition.tool, mesh->partition.edge_cut, (double)mesh->partition.imbalance_cells,
+            (double)mesh->partition.imbalance_contact);
   }
 }
 
@@ -224,8 +241,8 @@ static void PrintReport(Mesh mesh, int n_bodies, const ReportRow bodies[], int n
 - stream - of rank 0
 
   Note:
-  Quality: mean and least scaled Jacobian (ElementQuality()), 1 is a parallelepiped. Areas and volumes are over 360 degrees if
-  axisymmetric. A surface between cells counts once.
+  Quality: mean and least scaled Jacobian (ElementQuality()), 1 is a parallelepiped. Areas and volumes are over 360
+degrees if axisymmetric. A surface between cells counts once.
 */
 PetscErrorCode MeshReport(Mesh mesh, Scene scene, FILE *stream)
 {

@@ -3,19 +3,20 @@
 
 enum { METIS_SEED = 1 }; /* any fixed number: the same mesh and ranks give the same partition */
 
-/* How far parts may exceed the mean: cells decide the cost of every Newton iteration, contact cells a small part of it */
+/* How far parts may exceed the mean: cells decide the cost of every Newton iteration, contact cells a small part of it
+ */
 static const real_t CELL_TOLERANCE = 1.03f, CONTACT_TOLERANCE = 1.10f;
 
-/* Cutting a link costs as much as so many faces between cells: a slave node is coupled to some twenty nodes of the master, a node of a face to nine beyond it,
-   and what couples ranks is sent in every tangent and every sweep. */
+/* Cutting a link costs as much as so many faces between cells: a slave node is coupled to some twenty nodes of the
+   master, a node of a face to nine beyond it, and what couples ranks is sent in every tangent and every sweep. */
 enum { LINK_WEIGHT = 4 };
 
 static PetscErrorCode IndexCast(PetscInt value, idx_t *index)
 {
   PetscFunctionBeginUser;
   *index = (idx_t)value;
-  PetscCheck((PetscInt)*index == value, PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE, "%" PetscInt_FMT " does not fit into METIS' index type of %zu bytes", value,
-             sizeof(idx_t));
+  PetscCheck((PetscInt)*index == value, PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE,
+             "%" PetscInt_FMT " does not fit into METIS' index type of %zu bytes", value, sizeof(idx_t));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -24,7 +25,8 @@ typedef struct {
   idx_t *offsets, *neighbours, *weights;
 } Graph;
 
-static PetscErrorCode GraphCreate(PetscInt n, const PetscInt offsets[], const PetscInt adjacency[], const CellLinks *links, Graph *graph)
+static PetscErrorCode GraphCreate(PetscInt n, const PetscInt offsets[], const PetscInt adjacency[],
+                                  const CellLinks *links, Graph *graph)
 {
   const PetscInt ends  = 2 * links->n;
   idx_t          edges = 0, *next;
@@ -87,7 +89,8 @@ static PetscInt CountCut(PetscInt n, const PetscInt offsets[], const PetscInt ad
   Output Parameter:
 . count - cells counted, per part
 */
-PetscReal PartitionImbalance(PetscInt n, const PetscInt part[], const PetscBool counted[], PetscInt parts, PetscInt count[])
+PetscReal PartitionImbalance(PetscInt n, const PetscInt part[], const PetscBool counted[], PetscInt parts,
+                             PetscInt count[])
 {
   PetscInt total = 0, largest = 0;
 
@@ -118,8 +121,9 @@ PetscReal PartitionImbalance(PetscInt n, const PetscInt part[], const PetscBool 
 + part     - per cell
 - edge_cut - pairs of neighbours in different parts
 */
-PetscErrorCode PartitionGraph(PetscInt n, const PetscInt offsets[], const PetscInt adjacency[], const PetscBool contact[], const CellLinks *links,
-                              PetscInt parts, PetscInt part[], PetscInt *edge_cut)
+PetscErrorCode PartitionGraph(PetscInt n, const PetscInt offsets[], const PetscInt adjacency[],
+                              const PetscBool contact[], const CellLinks *links, PetscInt parts, PetscInt part[],
+                              PetscInt *edge_cut)
 {
   Graph  graph;
   idx_t *weights, *found, options[METIS_NOPTIONS], n_vertices, n_constraints = 1, n_parts, cut = 0;
@@ -140,8 +144,8 @@ PetscErrorCode PartitionGraph(PetscInt n, const PetscInt offsets[], const PetscI
   METIS_SetDefaultOptions(options);
   options[METIS_OPTION_SEED]      = METIS_SEED;
   options[METIS_OPTION_NUMBERING] = 0;
-  status = METIS_PartGraphKway(&n_vertices, &n_constraints, graph.offsets, graph.neighbours, weights, NULL, graph.weights, &n_parts, NULL, tolerance, options,
-                               &cut, found);
+  status = METIS_PartGraphKway(&n_vertices, &n_constraints, graph.offsets, graph.neighbours, weights, NULL,
+                               graph.weights, &n_parts, NULL, tolerance, options, &cut, found);
   PetscCheck(status == METIS_OK, PETSC_COMM_SELF, PETSC_ERR_LIB, "METIS failed with status %d", status);
   for (PetscInt c = 0; c < n; c++) part[c] = (PetscInt)found[c];
   *edge_cut = CountCut(n, offsets, adjacency, part);
@@ -151,7 +155,8 @@ PetscErrorCode PartitionGraph(PetscInt n, const PetscInt offsets[], const PetscI
 }
 
 /* Cells by part, as PETSCPARTITIONERSHELL wants them */
-static PetscErrorCode PartitionSort(PetscInt n, const PetscInt part[], PetscMPIInt parts, const PetscInt sizes[], PetscInt cells[])
+static PetscErrorCode PartitionSort(PetscInt n, const PetscInt part[], PetscMPIInt parts, const PetscInt sizes[],
+                                    PetscInt cells[])
 {
   PetscInt *next;
 
@@ -172,7 +177,8 @@ static PetscErrorCode PartitionSort(PetscInt n, const PetscInt part[], PetscMPII
 + dm        - DMPlex, all its cells on rank 0
 . offsets   - on rank 0: where each cell's neighbours start in adjacency
 . adjacency - on rank 0: neighbours across faces
-. contact   - on rank 0: per cell, whether it has a face in contact (a second weight, so that contact work is shared out too)
+. contact   - on rank 0: per cell, whether it has a face in contact (a second weight, so that contact work is shared out
+too)
 - links     - on rank 0: cells that face each other across contact, which are kept on one rank where that is cheap
 
   Output Parameter:
@@ -181,8 +187,8 @@ static PetscErrorCode PartitionSort(PetscInt n, const PetscInt part[], PetscMPII
   Note:
   DMPlexDistribute() follows the partition afterwards.
 */
-PetscErrorCode PartitionCells(DM dm, const PetscInt offsets[], const PetscInt adjacency[], const PetscBool contact[], const CellLinks *links,
-                              Partition *partition)
+PetscErrorCode PartitionCells(DM dm, const PetscInt offsets[], const PetscInt adjacency[], const PetscBool contact[],
+                              const CellLinks *links, Partition *partition)
 {
   MPI_Comm         comm = PetscObjectComm((PetscObject)dm);
   PetscPartitioner partitioner;

@@ -85,8 +85,10 @@ static void FindFace(const RootMesh *root, const GmshBlock *block, PetscInt item
   *interior    = n_cells > 1 ? PETSC_TRUE : PETSC_FALSE;
 }
 
-/* One element of a deformable body's group: its face, if the group is a surface, and its nodes' points into the label. loose: it does not lie on a body. */
-static PetscErrorCode AddElement(RootMesh *root, const GmshBlock *block, PetscInt item, int g, PetscBool surface, DMLabel label, PetscBool *loose)
+/* One element of a deformable body's group: its face, if the group is a surface, and its nodes' points into the label.
+ * loose: it does not lie on a body. */
+static PetscErrorCode AddElement(RootMesh *root, const GmshBlock *block, PetscInt item, int g, PetscBool surface,
+                                 DMLabel label, PetscBool *loose)
 {
   RootFace  face     = {.group = g};
   PetscBool interior = PETSC_FALSE;
@@ -99,12 +101,14 @@ static PetscErrorCode AddElement(RootMesh *root, const GmshBlock *block, PetscIn
     root->faces[root->n_faces++] = face;
     root->interior[g] += interior;
   }
-  for (int k = 0; k < block->nodes; k++) PetscCall(DMLabelSetValue(label, root->point[root->id[block->connectivity[item * block->nodes + k]]], 1));
+  for (int k = 0; k < block->nodes; k++)
+    PetscCall(DMLabelSetValue(label, root->point[root->id[block->connectivity[item * block->nodes + k]]], 1));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* A rigid tool has no faces of a body. */
-static void CheckRigidBlock(Scene scene, const char *file, const RootMesh *root, const GmshBlock *block, const char *name, Complaint *complaint)
+static void CheckRigidBlock(Scene scene, const char *file, const RootMesh *root, const GmshBlock *block,
+                            const char *name, Complaint *complaint)
 {
   for (PetscInt item = 0; item < block->n; item++) {
     RootFace  face;
@@ -112,8 +116,11 @@ static void CheckRigidBlock(Scene scene, const char *file, const RootMesh *root,
 
     FindFace(root, block, item, &face, &interior);
     if (face.cell < 0) continue;
-    Complain(complaint, "%s: element %" PetscInt_FMT " of the rigid surface '%s' is a face of a deformable body in '%s'; a rigid tool has a mesh of its own",
-             SceneWhere(scene, scene->bodies[MeshFindBody(scene, name, PETSC_TRUE)].path, "surface"), block->tag[item], name, file);
+    Complain(complaint,
+             "%s: element %" PetscInt_FMT
+             " of the rigid surface '%s' is a face of a deformable body in '%s'; a rigid tool has a mesh of its own",
+             SceneWhere(scene, scene->bodies[MeshFindBody(scene, name, PETSC_TRUE)].path, "surface"), block->tag[item],
+             name, file);
   }
 }
 
@@ -227,12 +234,15 @@ PetscErrorCode RootGroupsShareCounts(Scene scene, Mesh mesh)
 /* ------------------------------------------------------------------------------------------------------------- uses */
 
 /* A surface that the scene loads or brings into contact lies on the boundary; supports and probes may be anywhere. */
-static void CheckBoundary(Scene scene, const RootMesh *root, Mesh mesh, const char *path, const char *key, const char *name, Complaint *complaint)
+static void CheckBoundary(Scene scene, const RootMesh *root, Mesh mesh, const char *path, const char *key,
+                          const char *name, Complaint *complaint)
 {
   const int g = name ? MeshFindGroup(mesh, scene->dim - 1, name) : -1;
 
   if (g >= 0 && root->interior[g]) {
-    Complain(complaint, "%s: %" PetscInt_FMT " of the %" PetscInt_FMT " faces of '%s' lie between two cells; allowed: a surface on the boundary",
+    Complain(complaint,
+             "%s: %" PetscInt_FMT " of the %" PetscInt_FMT
+             " faces of '%s' lie between two cells; allowed: a surface on the boundary",
              SceneWhere(scene, path, key), root->interior[g], mesh->groups[g].n_elements, name);
   }
 }
@@ -255,11 +265,13 @@ void RootGroupsCheckUses(Scene scene, const RootMesh *root, Mesh mesh, Complaint
   for (int i = 0; i < scene->n_loads; i++) {
     const SceneLoad *load = &scene->loads[i];
 
-    if (load->kind == LOAD_PRESSURE || load->kind == LOAD_TRACTION) CheckBoundary(scene, root, mesh, load->path, "surface", load->region, complaint);
+    if (load->kind == LOAD_PRESSURE || load->kind == LOAD_TRACTION)
+      CheckBoundary(scene, root, mesh, load->path, "surface", load->region, complaint);
   }
   for (int i = 0; i < scene->n_contacts; i++) {
     CheckBoundary(scene, root, mesh, scene->contacts[i].path, "slave", scene->contacts[i].slave, complaint);
-    if (scene->contacts[i].master) CheckBoundary(scene, root, mesh, scene->contacts[i].path, "master", scene->contacts[i].master, complaint);
+    if (scene->contacts[i].master)
+      CheckBoundary(scene, root, mesh, scene->contacts[i].path, "master", scene->contacts[i].master, complaint);
   }
 }
 

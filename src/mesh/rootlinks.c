@@ -2,8 +2,8 @@
 #include "mesh/meshgroup.h"
 #include "base/boxtree.h"
 
-/* Cells whose centres are farther apart than so many times the slave cell's size are not linked: they may never touch, and all of a surface that looks at an
-   edge from afar would hang on one cell. */
+/* Cells whose centres are farther apart than so many times the slave cell's size are not linked: they may never touch,
+   and all of a surface that looks at an edge from afar would hang on one cell. */
 #define LINK_REACH 4
 
 /* The cells of a surface, with the centres of their nodes */
@@ -40,7 +40,8 @@ static PetscReal CellSize(const RootMesh *root, PetscInt cell, const PetscReal c
   const PetscInt *nodes = RootMeshCellNodes(root, cell);
   PetscReal       size  = 0;
 
-  for (int k = 0; k < root->cell_block[cell]->nodes; k++) size = PetscMax(size, 2 * FaceDistance(centre, &root->gmsh.coords[3 * nodes[k]]));
+  for (int k = 0; k < root->cell_block[cell]->nodes; k++)
+    size = PetscMax(size, 2 * FaceDistance(centre, &root->gmsh.coords[3 * nodes[k]]));
   return size;
 }
 
@@ -79,13 +80,13 @@ static void VisitCentre(void *context, int i, double *bound)
 static PetscErrorCode LinkPair(const RootMesh *root, int slave_group, int master_group, CellLinks *links)
 {
   SurfaceCells slave, master;
-  BoxTree         tree;
+  BoxTree      tree;
 
   PetscFunctionBeginUser;
   PetscCall(FindCells(root, slave_group, &slave));
   PetscCall(FindCells(root, master_group, &master));
-  PetscCheck(!BoxTreeBuild(3, (int)master.n, master.centre, master.centre, &tree), PETSC_COMM_SELF, PETSC_ERR_MEM, "no memory for %" PetscInt_FMT " cells",
-             master.n);
+  PetscCheck(!BoxTreeBuild(3, (int)master.n, master.centre, master.centre, &tree), PETSC_COMM_SELF, PETSC_ERR_MEM,
+             "no memory for %" PetscInt_FMT " cells", master.n);
   PetscCall(PetscRealloc((links->n + slave.n) * 2 * sizeof(PetscInt), &links->cell));
   for (PetscInt i = 0; i < slave.n; i++) {
     Nearest   nearest = {.cells = &master, .point = &slave.centre[3 * i], .closest = -1};

@@ -2,7 +2,8 @@
 #include "mesh/meshgroup.h"
 #include <string.h>
 
-static const PetscReal PLANE_TOLERANCE = 1e-9; /* of the mesh's size: what counts as on the plane z = 0, or on the axis */
+static const PetscReal PLANE_TOLERANCE =
+  1e-9; /* of the mesh's size: what counts as on the plane z = 0, or on the axis */
 
 /*
   RootMeshCellNodes - the nodes of a cell
@@ -20,7 +21,8 @@ const PetscInt *RootMeshCellNodes(const RootMesh *root, PetscInt c)
   return root->cell_block[c]->connectivity + root->cell_item[c] * root->cell_block[c]->nodes;
 }
 
-/* ---------------------------------------------------------------------------------------------------- bodies and order */
+/* ---------------------------------------------------------------------------------------------------- bodies and order
+ */
 
 /* "a, b, c": the names of one dimension, cut off where the text is full */
 static void ListPhysicals(const GmshMesh *gmsh, int dim, char list[MESH_TEXT])
@@ -29,10 +31,12 @@ static void ListPhysicals(const GmshMesh *gmsh, int dim, char list[MESH_TEXT])
 
   snprintf(list, MESH_TEXT, "none");
   for (int i = 0; i < gmsh->n_physicals && used < MESH_TEXT; i++)
-    if (gmsh->physicals[i].dim == dim) used += (size_t)snprintf(list + used, MESH_TEXT - used, "%s%s", used ? ", " : "", gmsh->physicals[i].name);
+    if (gmsh->physicals[i].dim == dim)
+      used += (size_t)snprintf(list + used, MESH_TEXT - used, "%s%s", used ? ", " : "", gmsh->physicals[i].name);
 }
 
-/* Every deformable body is a volume group of the mesh: asked first, because a misspelt name also leaves a group without a body */
+/* Every deformable body is a volume group of the mesh: asked first, because a misspelt name also leaves a group without
+ * a body */
 static void CheckBodyNames(Scene scene, const char *file, const RootMesh *root, Complaint *complaint)
 {
   char list[MESH_TEXT];
@@ -42,10 +46,11 @@ static void CheckBodyNames(Scene scene, const char *file, const RootMesh *root, 
     PetscBool there = PETSC_FALSE;
 
     for (int i = 0; i < root->gmsh.n_physicals; i++)
-      if (root->gmsh.physicals[i].dim == scene->dim && !strcmp(root->gmsh.physicals[i].name, scene->bodies[b].name)) there = PETSC_TRUE;
+      if (root->gmsh.physicals[i].dim == scene->dim && !strcmp(root->gmsh.physicals[i].name, scene->bodies[b].name))
+        there = PETSC_TRUE;
     if (scene->bodies[b].rigid || there) continue;
-    Complain(complaint, "%s: the mesh '%s' has no volume group '%s'; its volume groups: %s", SceneWhere(scene, scene->bodies[b].path, "volume"), file,
-             scene->bodies[b].name, list);
+    Complain(complaint, "%s: the mesh '%s' has no volume group '%s'; its volume groups: %s",
+             SceneWhere(scene, scene->bodies[b].path, "volume"), file, scene->bodies[b].name, list);
   }
 }
 
@@ -59,11 +64,12 @@ static int BlockBody(Scene scene, const char *file, const RootMesh *root, const 
     const int   found = MeshFindBody(scene, name, PETSC_FALSE);
 
     if (found < 0) {
-      Complain(complaint, "%s: the mesh '%s' has a volume group '%s' that is no body of the scene; list it with its material",
+      Complain(complaint,
+               "%s: the mesh '%s' has a volume group '%s' that is no body of the scene; list it with its material",
                SceneWhere(scene, "bodies", NULL), file, name);
     } else if (body >= 0) {
-      Complain(complaint, "%s: cell %" PetscInt_FMT " is in two bodies, '%s' and '%s'", file, block->n ? block->tag[0] : 0, scene->bodies[body].name,
-               scene->bodies[found].name);
+      Complain(complaint, "%s: cell %" PetscInt_FMT " is in two bodies, '%s' and '%s'", file,
+               block->n ? block->tag[0] : 0, scene->bodies[body].name, scene->bodies[found].name);
     }
     body = found;
   }
@@ -81,25 +87,26 @@ static void CheckOrder(Scene scene, const char *file, const RootMesh *root, Comp
     if (!block->element || !block->n) continue;
     if (!first) first = block;
     if (block->element->order != first->element->order) {
-      Complain(complaint, "%s: elements of two orders: %" PetscInt_FMT " is %s, %" PetscInt_FMT " is %s", file, first->tag[0], first->element->name,
-               block->tag[0], block->element->name);
+      Complain(complaint, "%s: elements of two orders: %" PetscInt_FMT " is %s, %" PetscInt_FMT " is %s", file,
+               first->tag[0], first->element->name, block->tag[0], block->element->name);
     }
   }
   if (first && scene->order && first->element->order != scene->order) {
-    Complain(complaint, "%s: order is %d, but the elements of '%s' (%s) are of order %d", SceneWhere(scene, "mesh", "order"), scene->order, file,
-             first->element->name, first->element->order);
+    Complain(complaint, "%s: order is %d, but the elements of '%s' (%s) are of order %d",
+             SceneWhere(scene, "mesh", "order"), scene->order, file, first->element->name, first->element->order);
   }
 }
 
-static void CheckBodies(Scene scene, const char *file, const RootMesh *root, const PetscInt cells[], Complaint *complaint)
+static void CheckBodies(Scene scene, const char *file, const RootMesh *root, const PetscInt cells[],
+                        Complaint *complaint)
 {
   char list[MESH_TEXT];
 
   ListPhysicals(&root->gmsh, scene->dim, list);
   for (int b = 0; b < scene->n_bodies; b++) {
     if (scene->bodies[b].rigid || cells[b]) continue;
-    Complain(complaint, "%s: the mesh '%s' has no cells of a volume group '%s'; its volume groups: %s", SceneWhere(scene, scene->bodies[b].path, "volume"),
-             file, scene->bodies[b].name, list);
+    Complain(complaint, "%s: the mesh '%s' has no cells of a volume group '%s'; its volume groups: %s",
+             SceneWhere(scene, scene->bodies[b].path, "volume"), file, scene->bodies[b].name, list);
   }
 }
 
@@ -112,7 +119,8 @@ static PetscInt CountCells(Scene scene, const char *file, const GmshMesh *gmsh, 
 
   for (int b = 0; b < gmsh->n_blocks; b++) {
     if (gmsh->blocks[b].dim > scene->dim)
-      Complain(complaint, "%s: the mesh '%s' has volumes; a two-dimensional one is needed", SceneWhere(scene, "geometry", NULL), file);
+      Complain(complaint, "%s: the mesh '%s' has volumes; a two-dimensional one is needed",
+               SceneWhere(scene, "geometry", NULL), file);
     if (gmsh->blocks[b].dim == scene->dim) n += gmsh->blocks[b].n;
   }
   return n;
@@ -161,7 +169,8 @@ static PetscErrorCode NumberCells(Scene scene, const char *file, RootMesh *root,
     root->cell_item[c]  = item[order[c]];
     root->cell_block[c] = &gmsh->blocks[block[order[c]]];
     root->cell_body[c]  = body[block[order[c]]];
-    if (c && tag[order[c]] == tag[order[c - 1]]) Complain(complaint, "%s: two cells have the tag %" PetscInt_FMT, file, tag[order[c]]);
+    if (c && tag[order[c]] == tag[order[c - 1]])
+      Complain(complaint, "%s: two cells have the tag %" PetscInt_FMT, file, tag[order[c]]);
   }
   root->n_cells = n;
   PetscCall(PetscFree5(order, tag, item, block, body));
@@ -184,7 +193,8 @@ static PetscErrorCode RootMeshNumberNodes(RootMesh *root)
     root->id[i]               = root->n_nodes++;
   }
   for (PetscInt c = 0; c < root->n_cells; c++)
-    for (int k = 0; k < root->cell_block[c]->element->corners; k++) root->vertex[root->id[RootMeshCellNodes(root, c)[k]]] = 0;
+    for (int k = 0; k < root->cell_block[c]->element->corners; k++)
+      root->vertex[root->id[RootMeshCellNodes(root, c)[k]]] = 0;
   for (PetscInt i = 0; i < root->n_nodes; i++)
     if (!root->vertex[i]) root->vertex[i] = root->n_vertices++;
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -195,7 +205,8 @@ static PetscErrorCode RootMeshNumberNodes(RootMesh *root)
 /* Centre and diagonal of the bodies' bounding box */
 static void FindBox(Scene scene, const RootMesh *root, Mesh mesh)
 {
-  PetscReal lower[3] = {PETSC_MAX_REAL, PETSC_MAX_REAL, PETSC_MAX_REAL}, upper[3] = {PETSC_MIN_REAL, PETSC_MIN_REAL, PETSC_MIN_REAL}, square = 0;
+  PetscReal lower[3] = {PETSC_MAX_REAL, PETSC_MAX_REAL, PETSC_MAX_REAL},
+            upper[3] = {PETSC_MIN_REAL, PETSC_MIN_REAL, PETSC_MIN_REAL}, square = 0;
 
   for (PetscInt i = 0; i < root->n_nodes; i++) {
     for (int k = 0; k < 3; k++) {
@@ -220,9 +231,11 @@ static void CheckPlane(Scene scene, const char *file, const RootMesh *root, Pets
     const PetscInt   tag = root->gmsh.node_tag[root->node[i]];
 
     if (PetscAbsReal(x[2]) > PLANE_TOLERANCE * size)
-      Complain(complaint, "%s: node %" PetscInt_FMT " has z = %g; a two-dimensional mesh lies in the plane z = 0", file, tag, (double)x[2]);
+      Complain(complaint, "%s: node %" PetscInt_FMT " has z = %g; a two-dimensional mesh lies in the plane z = 0", file,
+               tag, (double)x[2]);
     if (scene->geometry == GEOMETRY_AXISYMMETRIC && x[0] < -PLANE_TOLERANCE * size) {
-      Complain(complaint, "%s: node %" PetscInt_FMT " has x = %g; an axisymmetric mesh has no negative radius x", file, tag, (double)x[0]);
+      Complain(complaint, "%s: node %" PetscInt_FMT " has x = %g; an axisymmetric mesh has no negative radius x", file,
+               tag, (double)x[0]);
     }
   }
 }
@@ -240,10 +253,11 @@ static void CheckPlane(Scene scene, const char *file, const RootMesh *root, Pets
   Output Parameters:
 + root      - to be freed with RootMeshReset(), also after a complaint
 . mesh      - its order, centre and size are set
-- complaint - what GmshRead() found, two orders or another one than the scene's, a body without cells, a cell without a body or in two,
-              equal tags, a two-dimensional mesh out of its plane or with negative radii, fewer cells than ranks
+- complaint - what GmshRead() found, two orders or another one than the scene's, a body without cells, a cell without a
+body or in two, equal tags, a two-dimensional mesh out of its plane or with negative radii, fewer cells than ranks
 */
-PetscErrorCode RootMeshRead(Scene scene, const char *file, PetscMPIInt ranks, RootMesh *root, Mesh mesh, Complaint *complaint)
+PetscErrorCode RootMeshRead(Scene scene, const char *file, PetscMPIInt ranks, RootMesh *root, Mesh mesh,
+                            Complaint *complaint)
 {
   PetscFunctionBeginUser;
   *root = (RootMesh){.n_cells = 0};
@@ -253,7 +267,9 @@ PetscErrorCode RootMeshRead(Scene scene, const char *file, PetscMPIInt ranks, Ro
   CheckOrder(scene, file, root, complaint);
   PetscCall(NumberCells(scene, file, root, complaint));
   if (complaint->text[0]) PetscFunctionReturn(PETSC_SUCCESS);
-  if (root->n_cells < ranks) Complain(complaint, "%s: %" PetscInt_FMT " cells cannot be shared out to %d ranks; run with fewer", file, root->n_cells, ranks);
+  if (root->n_cells < ranks)
+    Complain(complaint, "%s: %" PetscInt_FMT " cells cannot be shared out to %d ranks; run with fewer", file,
+             root->n_cells, ranks);
   PetscCall(RootMeshNumberNodes(root));
   FindBox(scene, root, mesh);
   CheckPlane(scene, file, root, mesh->size, complaint);

@@ -2,7 +2,8 @@
 #include "mesh/meshgroup.h"
 #include "base/refusal.h"
 
-/* Node k of a face that is turned over: corners in the other sense of rotation from the first (a curve: ends swapped), edges with them */
+/* Node k of a face that is turned over: corners in the other sense of rotation from the first (a curve: ends swapped),
+ * edges with them */
 static int ReversedNode(const Element *face, int k)
 {
   const int corners = face->corners;
@@ -20,7 +21,8 @@ static int BlockSign(const GmshBlock *block, int g)
   return 0;
 }
 
-/* Counts the tool's faces and nodes; local: its nodes by ascending tag, -1 for other nodes of the file. Returns the length of face_nodes. */
+/* Counts the tool's faces and nodes; local: its nodes by ascending tag, -1 for other nodes of the file. Returns the
+ * length of face_nodes. */
 static PetscInt RigidCount(const GmshMesh *gmsh, int g, MeshRigid *rigid, PetscInt local[])
 {
   PetscInt n_entries = 0;
@@ -53,7 +55,8 @@ static void RigidFaces(const GmshMesh *gmsh, int g, const PetscInt local[], Mesh
 
       rigid->face_type[f] = block->element->type;
       rigid->face_tag[f]  = block->tag[item];
-      for (int k = 0; k < block->nodes; k++) rigid->face_nodes[n++] = local[nodes[sign < 0 ? ReversedNode(block->element, k) : k]];
+      for (int k = 0; k < block->nodes; k++)
+        rigid->face_nodes[n++] = local[nodes[sign < 0 ? ReversedNode(block->element, k) : k]];
       rigid->face_ptr[++f] = n;
     }
   }
@@ -68,13 +71,14 @@ static PetscErrorCode RigidGather(const RootMesh *root, int g, Mesh mesh, MeshRi
   PetscCall(PetscMalloc1(gmsh->n_nodes, &local));
   n_entries = RigidCount(gmsh, g, rigid, local);
   PetscCall(PetscMalloc2(rigid->n_nodes * mesh->dim, &rigid->coords, rigid->n_nodes, &rigid->node_tag));
-  PetscCall(
-    PetscMalloc4(rigid->n_faces, &rigid->face_type, rigid->n_faces + 1, &rigid->face_ptr, n_entries, &rigid->face_nodes, rigid->n_faces, &rigid->face_tag));
+  PetscCall(PetscMalloc4(rigid->n_faces, &rigid->face_type, rigid->n_faces + 1, &rigid->face_ptr, n_entries,
+                         &rigid->face_nodes, rigid->n_faces, &rigid->face_tag));
   RigidFaces(gmsh, g, local, rigid);
   for (PetscInt i = 0; i < gmsh->n_nodes; i++) {
     if (local[i] < 0) continue;
     rigid->node_tag[local[i]] = gmsh->node_tag[i];
-    for (int k = 0; k < mesh->dim; k++) rigid->coords[local[i] * mesh->dim + k] = gmsh->coords[3 * i + k] - mesh->centre[k];
+    for (int k = 0; k < mesh->dim; k++)
+      rigid->coords[local[i] * mesh->dim + k] = gmsh->coords[3 * i + k] - mesh->centre[k];
   }
   PetscCall(PetscFree(local));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -97,7 +101,8 @@ static PetscErrorCode RigidShare(Mesh mesh, MeshRigid *rigid)
     rigid->n_nodes = sizes[0];
     rigid->n_faces = sizes[1];
     PetscCall(PetscMalloc2(sizes[0] * mesh->dim, &rigid->coords, sizes[0], &rigid->node_tag));
-    PetscCall(PetscMalloc4(sizes[1], &rigid->face_type, sizes[1] + 1, &rigid->face_ptr, sizes[2], &rigid->face_nodes, sizes[1], &rigid->face_tag));
+    PetscCall(PetscMalloc4(sizes[1], &rigid->face_type, sizes[1] + 1, &rigid->face_ptr, sizes[2], &rigid->face_nodes,
+                           sizes[1], &rigid->face_tag));
   }
   PetscCall(PetscMPIIntCast(sizes[0] * mesh->dim, &nodes));
   PetscCall(PetscMPIIntCast(sizes[1], &faces));
@@ -133,8 +138,8 @@ PetscErrorCode RootRigidCreate(Scene scene, const RootMesh *root, Mesh mesh)
 
     if (!scene->bodies[b].rigid) continue;
     if (g < 0) {
-      PetscCall(RefuseInput(mesh->comm, "%s: the mesh has no surface group '%s' for this rigid tool", SceneWhere(scene, scene->bodies[b].path, "surface"),
-                            scene->bodies[b].name));
+      PetscCall(RefuseInput(mesh->comm, "%s: the mesh has no surface group '%s' for this rigid tool",
+                            SceneWhere(scene, scene->bodies[b].path, "surface"), scene->bodies[b].name));
     }
     MeshRigid *rigid = &mesh->rigid[mesh->n_rigid++];
 

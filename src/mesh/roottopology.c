@@ -35,8 +35,8 @@ static int PlexCorner(ElementType type, int i)
 - root  - on rank 0; NULL elsewhere
 
   Output Parameter:
-. dm - cells have their ids as points; edges and faces are points only where nodes sit on them: of first-order elements, where none does, they take half
-       the time that there is before the first unknown
+. dm - cells have their ids as points; edges and faces are points only where nodes sit on them: of first-order elements,
+where none does, they take half the time that there is before the first unknown
 */
 PetscErrorCode RootTopologyCreate(MPI_Comm comm, int dim, int order, const RootMesh *root, DM *dm)
 {
@@ -55,7 +55,8 @@ PetscErrorCode RootTopologyCreate(MPI_Comm comm, int dim, int order, const RootM
   for (PetscInt c = 0; c < n_cells; c++) {
     const Element *element = root->cell_block[c]->element;
 
-    for (int i = 0; i < element->corners; i++) cone[i] = n_cells + root->vertex[root->id[RootMeshCellNodes(root, c)[PlexCorner(element->type, i)]]];
+    for (int i = 0; i < element->corners; i++)
+      cone[i] = n_cells + root->vertex[root->id[RootMeshCellNodes(root, c)[PlexCorner(element->type, i)]]];
     PetscCall(DMPlexSetCone(cells, c, cone));
     PetscCall(DMPlexSetCellType(cells, c, CellPolytope(element->type)));
   }
@@ -114,7 +115,8 @@ PetscErrorCode RootTopologySetCoordinates(DM dm, int dim, const RootMesh *root)
   PetscCall(VecSetType(coordinates, VECSTANDARD));
   PetscCall(VecGetArray(coordinates, &x));
   for (PetscInt i = 0; i < n_nodes; i++) {
-    for (int k = 0; k < dim && root->vertex[i] >= 0; k++) x[root->vertex[i] * dim + k] = root->gmsh.coords[3 * root->node[i] + k];
+    for (int k = 0; k < dim && root->vertex[i] >= 0; k++)
+      x[root->vertex[i] * dim + k] = root->gmsh.coords[3 * root->node[i] + k];
   }
   PetscCall(VecRestoreArray(coordinates, &x));
   PetscCall(DMSetCoordinatesLocal(dm, coordinates));
@@ -180,8 +182,8 @@ static PetscErrorCode CheckPlaces(DM dm, const char *file, const RootMesh *root,
     PetscInt *other = &taken[root->point[i]];
 
     if (*other >= 0) {
-      Complain(complaint, "%s: nodes %" PetscInt_FMT " and %" PetscInt_FMT " are both the middle of one edge or face", file,
-               root->gmsh.node_tag[root->node[*other]], root->gmsh.node_tag[root->node[i]]);
+      Complain(complaint, "%s: nodes %" PetscInt_FMT " and %" PetscInt_FMT " are both the middle of one edge or face",
+               file, root->gmsh.node_tag[root->node[*other]], root->gmsh.node_tag[root->node[i]]);
     }
     *other = i;
   }
@@ -215,7 +217,8 @@ PetscErrorCode RootTopologyPlaceNodes(DM dm, const char *file, RootMesh *root, C
       PetscInt *point = &root->point[root->id[RootMeshCellNodes(root, c)[k]]];
 
       if (*point < 0) PetscCall(NodePoint(dm, root, c, k, point));
-      PetscCheck(*point >= 0, PETSC_COMM_SELF, PETSC_ERR_PLIB, "No Plex point for node %d of cell %" PetscInt_FMT, k, c);
+      PetscCheck(*point >= 0, PETSC_COMM_SELF, PETSC_ERR_PLIB, "No Plex point for node %d of cell %" PetscInt_FMT, k,
+                 c);
     }
   }
   PetscCall(CheckPlaces(dm, file, root, complaint));

@@ -12,10 +12,11 @@ struct _n_Checkpoint {
   MPI_Comm    comm;
   PetscMPIInt rank, size;
   char        name[PETSC_MAX_PATH_LEN]; /* of the file */
-  PetscInt64  n_mesh;                   /* this rank's part of the mesh file: the file itself may be gone or another one when it is wanted */
-  char       *mesh;
-  Scene       scene;
-  Model       model;
+  PetscInt64
+        n_mesh; /* this rank's part of the mesh file: the file itself may be gone or another one when it is wanted */
+  char *mesh;
+  Scene scene;
+  Model model;
   LoadStepper stepper;
   Results     results;
   Archive     archive; /* while it is being loaded */
@@ -49,12 +50,13 @@ static PetscErrorCode ShareOut(Checkpoint c, FILE *stream)
     char             *part;
 
     if (c->rank && c->rank != to) continue;
-    PetscCheck(total * (to + 1) / c->size - first <= PETSC_MPI_INT_MAX, PETSC_COMM_SELF, PETSC_ERR_SUP, "The mesh file is too long for so few ranks");
+    PetscCheck(total * (to + 1) / c->size - first <= PETSC_MPI_INT_MAX, PETSC_COMM_SELF, PETSC_ERR_SUP,
+               "The mesh file is too long for so few ranks");
     n = (PetscMPIInt)(total * (to + 1) / c->size - first);
     PetscCall(PetscMalloc1(n, &part));
     if (c->rank == 0)
-      PetscCheck(!fseeko(stream, first, SEEK_SET) && fread(part, 1, (size_t)n, stream) == (size_t)n, PETSC_COMM_SELF, PETSC_ERR_FILE_READ,
-                 "Cannot read the mesh file: %s", strerror(errno));
+      PetscCheck(!fseeko(stream, first, SEEK_SET) && fread(part, 1, (size_t)n, stream) == (size_t)n, PETSC_COMM_SELF,
+                 PETSC_ERR_FILE_READ, "Cannot read the mesh file: %s", strerror(errno));
     if (c->rank == 0 && to) PetscCallMPI(MPI_Send(part, n, MPI_CHAR, to, 0, c->comm));
     if (c->rank == to && to) PetscCallMPI(MPI_Recv(part, n, MPI_CHAR, 0, 0, c->comm, MPI_STATUS_IGNORE));
     if (c->rank == to) {
@@ -69,7 +71,8 @@ static PetscErrorCode ShareOut(Checkpoint c, FILE *stream)
 /*
   CheckpointCreate - The checkpoints of a run that begins; none is written yet. Collective.
 
-  Input: directory of the results, mesh_file (read on rank 0, its bytes are kept, shared out over the ranks). Errors: PETSC_ERR_FILE_OPEN, PETSC_ERR_FILE_READ.
+  Input: directory of the results, mesh_file (read on rank 0, its bytes are kept, shared out over the ranks). Errors:
+  PETSC_ERR_FILE_OPEN, PETSC_ERR_FILE_READ.
 */
 PetscErrorCode CheckpointCreate(MPI_Comm comm, const char *directory, const char *mesh_file, Checkpoint *checkpoint)
 {
@@ -87,7 +90,8 @@ PetscErrorCode CheckpointCreate(MPI_Comm comm, const char *directory, const char
 }
 
 /*
-  CheckpointOpen - The checkpoint that a run left in its directory. Collective. Refuses (exit 1) a missing, truncated or foreign one; nothing is touched.
+  CheckpointOpen - The checkpoint that a run left in its directory. Collective. Refuses (exit 1) a missing, truncated or
+  foreign one; nothing is touched.
 */
 PetscErrorCode CheckpointOpen(MPI_Comm comm, const char *directory, Checkpoint *checkpoint)
 {
@@ -110,8 +114,8 @@ PetscErrorCode CheckpointDestroy(Checkpoint *checkpoint)
 }
 
 /*
-  CheckpointReadScene - The scene of the run, with edits. Collective. After CheckpointOpen(). Refuses (exit 1) edits of anything but solver, output and
-  stepping.
+  CheckpointReadScene - The scene of the run, with edits. Collective. After CheckpointOpen(). Refuses (exit 1) edits of
+  anything but solver, output and stepping.
 */
 PetscErrorCode CheckpointReadScene(Checkpoint checkpoint, int n_set, char *const *set, Scene *scene)
 {
@@ -127,7 +131,8 @@ PetscErrorCode CheckpointReadScene(Checkpoint checkpoint, int n_set, char *const
 }
 
 /*
-  CheckpointMeshFile - Where MeshCreate() finds the mesh: in memory, by a name that is only rank 0's. Collective. Errors: PETSC_ERR_MEM.
+  CheckpointMeshFile - Where MeshCreate() finds the mesh: in memory, by a name that is only rank 0's. Collective.
+  Errors: PETSC_ERR_MEM.
 */
 PetscErrorCode CheckpointMeshFile(Checkpoint checkpoint, char *file)
 {
@@ -144,7 +149,8 @@ PetscErrorCode CheckpointMeshFile(Checkpoint checkpoint, char *file)
     PetscCall(PetscSNPrintf(file, PETSC_MAX_PATH_LEN, "/proc/self/fd/%d", memory));
   }
   PetscCall(ArchiveExtract(c->archive, MESH_NAME, c->stream));
-  if (c->rank == 0) PetscCheck(!fflush(c->stream), PETSC_COMM_SELF, PETSC_ERR_MEM, "No memory for the mesh file: %s", strerror(errno));
+  if (c->rank == 0)
+    PetscCheck(!fflush(c->stream), PETSC_COMM_SELF, PETSC_ERR_MEM, "No memory for the mesh file: %s", strerror(errno));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -180,8 +186,8 @@ static PetscErrorCode CheckpointSave(Checkpoint c, Archive archive)
 }
 
 /*
-  CheckpointRead - The saved state into the model, the stepper and the results, all fresh. Collective. Refuses (exit 1) a checkpoint that does not fit them;
-  no file is touched, ResultsStart() does that.
+  CheckpointRead - The saved state into the model, the stepper and the results, all fresh. Collective. Refuses (exit 1)
+  a checkpoint that does not fit them; no file is touched, ResultsStart() does that.
 */
 PetscErrorCode CheckpointRead(Checkpoint checkpoint)
 {
@@ -194,7 +200,8 @@ PetscErrorCode CheckpointRead(Checkpoint checkpoint)
 }
 
 /*
-  CheckpointWrite - The state of the last accepted step, under a temporary name until it is whole and on the disk. Collective.
+  CheckpointWrite - The state of the last accepted step, under a temporary name until it is whole and on the disk.
+  Collective.
 
   Errors: PETSC_ERR_FILE_WRITE, where there is no room for instance; the checkpoint before is intact then.
 */

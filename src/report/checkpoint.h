@@ -1,13 +1,14 @@
-/* checkpoint.h5: a run as it stands after a step, from which it goes on with any number of ranks. Knows which objects a run consists of, not what is in
-   them (archive.h).
+/* checkpoint.h5: a run as it stands after a step, from which it goes on with any number of ranks. Knows which objects a
+   run consists of, not what is in them (archive.h).
 
      scene/     file: its name; text: the document after -set
      mesh/file  the .msh file, gmsh's tags included: a restart needs no gmsh and no other file
-     model/     displacements by node, load parameter, scales;  path/  the last states;  contact/  state by pair and slave node
-     stepper/   step size and counts;  results/  last step, probes, what steps.csv and results.h5 held
+     model/     displacements by node, load parameter, scales;  path/  the last states;  contact/  state by pair and
+   slave node stepper/   step size and counts;  results/  last step, probes, what steps.csv and results.h5 held
 
-   A run: CheckpointCreate(), CheckpointSetRun(), CheckpointWrite() whenever the state is to be kept. A restart: CheckpointOpen(), CheckpointReadScene(),
-   CheckpointMeshFile(), then the same objects as ever, CheckpointSetRun(), CheckpointRead() in the place of ModelSetUp(). */
+   A run: CheckpointCreate(), CheckpointSetRun(), CheckpointWrite() whenever the state is to be kept. A restart:
+   CheckpointOpen(), CheckpointReadScene(), CheckpointMeshFile(), then the same objects as ever, CheckpointSetRun(),
+   CheckpointRead() in the place of ModelSetUp(). */
 #pragma once
 #include "report/results.h"
 
@@ -19,7 +20,8 @@ PetscErrorCode CheckpointOpen(MPI_Comm, const char *directory, Checkpoint *);
 PetscErrorCode CheckpointDestroy(Checkpoint *);
 /* The scene as the run had it, with edits of solver, output and stepping. Collective. */
 PetscErrorCode CheckpointReadScene(Checkpoint, int n_set, char *const *set, Scene *);
-/* A file that holds the mesh, on rank 0; it goes with CheckpointDestroy(). file has room for PETSC_MAX_PATH_LEN. Collective. */
+/* A file that holds the mesh, on rank 0; it goes with CheckpointDestroy(). file has room for PETSC_MAX_PATH_LEN.
+ * Collective. */
 PetscErrorCode CheckpointMeshFile(Checkpoint, char *file);
 /* What is saved and restored; borrowed. Not collective. */
 PetscErrorCode CheckpointSetRun(Checkpoint, Scene, Model, LoadStepper, Results);

@@ -17,14 +17,16 @@ static void PrintTime(const RunFigures *figures, FILE *stream)
   double       rest = wall - (double)figures->run->mesh_s;
 
   fprintf(stream, "time    ");
-  if ((double)figures->run->mesh_s >= 0.005 * wall) fprintf(stream, " gmsh %.0f %%,", 100 * (double)figures->run->mesh_s / wall);
+  if ((double)figures->run->mesh_s >= 0.005 * wall)
+    fprintf(stream, " gmsh %.0f %%,", 100 * (double)figures->run->mesh_s / wall);
   for (int k = 0; k < TIMING_KINDS; k++) {
     const double part = wall > 0 ? 100 * (double)figures->usage.seconds[k] / wall : 0;
 
     rest -= (double)figures->usage.seconds[k];
     if (part >= 0.5) fprintf(stream, " %s %.0f %%,", purposes[k], part);
   }
-  fprintf(stream, " other %.0f %% of %.3g s; CPU %.3g s, largest rank %.0f MB\n", wall > 0 ? fmax(0, 100 * rest / wall) : 0, wall, (double)figures->usage.cpu_s,
+  fprintf(stream, " other %.0f %% of %.3g s; CPU %.3g s, largest rank %.0f MB\n",
+          wall > 0 ? fmax(0, 100 * rest / wall) : 0, wall, (double)figures->usage.cpu_s,
           (double)figures->usage.peak_rss_mb);
 }
 
@@ -32,13 +34,14 @@ static void PrintPair(const PairFigures *pair, FILE *stream)
 {
   const ContactQuality *quality = &pair->quality;
 
-  fprintf(stream, "contact  %s: %lld nodes, penetration up to %.3g (%.2g of a face)", pair->name, (long long)quality->nodes, (double)quality->max_penetration,
-          (double)quality->max_penetration_over_h);
+  fprintf(stream, "contact  %s: %lld nodes, penetration up to %.3g (%.2g of a face)", pair->name,
+          (long long)quality->nodes, (double)quality->max_penetration, (double)quality->max_penetration_over_h);
   if (quality->deepest.tag >= 0)
-    fprintf(stream, " at node %lld (%.5g, %.5g, %.5g)", (long long)quality->deepest.tag, (double)quality->deepest.X[0], (double)quality->deepest.X[1],
-            (double)quality->deepest.X[2]);
+    fprintf(stream, " at node %lld (%.5g, %.5g, %.5g)", (long long)quality->deepest.tag, (double)quality->deepest.X[0],
+            (double)quality->deepest.X[1], (double)quality->deepest.X[2]);
   if (pair->fits.points)
-    fprintf(stream, "; facet error %.2g, smoothing error %.2g", (double)pair->fits.facet_error, (double)pair->fits.smoothing_error);
+    fprintf(stream, "; facet error %.2g, smoothing error %.2g", (double)pair->fits.facet_error,
+            (double)pair->fits.smoothing_error);
   else if (quality->sagitta > 0)
     fprintf(stream, "; facet error about %.2g", (double)quality->sagitta);
   fprintf(stream, "\n");
@@ -78,20 +81,24 @@ static void PrintFailure(const RunFigures *figures, FILE *stream)
   const StepperReport *way     = figures->run->way;
   const Failure       *failure = &way->failed.solve.failure;
 
-  fprintf(stream, "failed   on the way from t = %.6g to %.6g: %s\n", (double)way->t, (double)way->failed.t, SolveResults[way->failed.solve.result]);
-  if (failure->inverted >= 0) fprintf(stream, "where    element %lld was turned inside out\n", (long long)failure->inverted);
+  fprintf(stream, "failed   on the way from t = %.6g to %.6g: %s\n", (double)way->t, (double)way->failed.t,
+          SolveResults[way->failed.solve.result]);
+  if (failure->inverted >= 0)
+    fprintf(stream, "where    element %lld was turned inside out\n", (long long)failure->inverted);
   for (int i = 0; i < failure->n; i++) {
     const FailureNode *node = &failure->node[i];
 
-    fprintf(stream, "where    node %lld (%.6g, %.6g, %.6g): residual %.3g", (long long)node->place.tag, (double)node->place.X[0], (double)node->place.X[1],
-            (double)node->place.X[2], (double)node->residual);
+    fprintf(stream, "where    node %lld (%.6g, %.6g, %.6g): residual %.3g", (long long)node->place.tag,
+            (double)node->place.X[0], (double)node->place.X[1], (double)node->place.X[2], (double)node->residual);
     if (isfinite((double)node->gap)) fprintf(stream, ", gap %.3g", (double)node->gap);
     fprintf(stream, "\n");
   }
   if (way->failed.solve.result == SOLVE_WINDOW) fprintf(stream, "where    %s\n", way->failed.solve.detail);
-  fprintf(stream, "tried    %lld times, dt from %.3g down to %.3g (dt_min %.3g), the last time %lld iterations to a residual of %.2g\n",
-          (long long)way->failed.attempts, (double)way->failed.first, (double)way->failed.last, figures->scene->stepping.dt_min,
-          (long long)way->failed.solve.newton, (double)way->failed.solve.residual);
+  fprintf(stream,
+          "tried    %lld times, dt from %.3g down to %.3g (dt_min %.3g), the last time %lld iterations to a residual "
+          "of %.2g\n",
+          (long long)way->failed.attempts, (double)way->failed.first, (double)way->failed.last,
+          figures->scene->stepping.dt_min, (long long)way->failed.solve.newton, (double)way->failed.solve.residual);
   fprintf(stream, "try      %s\n", AdviceForFailure(way->failed.solve.result));
 }
 
@@ -100,14 +107,17 @@ static void PrintAdvice(const char *line, void *stream)
   fprintf(stream, "advice   %s\n", line);
 }
 
-/* EndReportPrint - the last screen but for probes and the closing line. Contact: of the last accepted state. Not collective. */
+/* EndReportPrint - the last screen but for probes and the closing line. Contact: of the last accepted state. Not
+ * collective. */
 void EndReportPrint(const RunFigures *figures, FILE *stream)
 {
   const StepperReport *way = figures->run->way;
 
-  fprintf(stream, "\neffects  %s; %lld dofs on %d rank%s\n", figures->effects, (long long)figures->dofs, figures->ranks, figures->ranks > 1 ? "s" : "");
-  fprintf(stream, "steps    %lld, failed %lld, repeated %lld; iterations %lld, of these %lld in accepted steps\n", (long long)way->steps,
-          (long long)way->steps_failed, (long long)way->steps_repeated, (long long)way->newton_iterations, (long long)way->newton_accepted);
+  fprintf(stream, "\neffects  %s; %lld dofs on %d rank%s\n", figures->effects, (long long)figures->dofs, figures->ranks,
+          figures->ranks > 1 ? "s" : "");
+  fprintf(stream, "steps    %lld, failed %lld, repeated %lld; iterations %lld, of these %lld in accepted steps\n",
+          (long long)way->steps, (long long)way->steps_failed, (long long)way->steps_repeated,
+          (long long)way->newton_iterations, (long long)way->newton_accepted);
   PrintTime(figures, stream);
   for (int p = 0; p < figures->n_pairs && figures->last; p++) PrintPair(&figures->pairs[p], stream);
   PrintGuards(figures, stream);

@@ -3,12 +3,14 @@
 #include <sys/resource.h>
 #include <time.h>
 
-/* Order of the matrices that measure what the BLAS does, and for how long: fits a level-2 cache, like the blocks of a front. */
+/* Order of the matrices that measure what the BLAS does, and for how long: fits a level-2 cache, like the blocks of a
+ * front. */
 enum { ESTIMATE_ORDER = 128 };
 #define ESTIMATE_PRODUCT_S 0.01
-/* MUMPS's speed in large fronts, as a part of that; what each entry of a factor costs however large the fronts (assembly of fronts, the two triangular
-   solves); and what a factorisation costs at least, sharing out the matrix. Chosen on pipe_pinch, cup_flattening and ring_in_ring_3d, whose CPU time an
-   iteration they give to a quarter, their memory to 30 %. */
+/* MUMPS's speed in large fronts, as a part of that; what each entry of a factor costs however large the fronts
+   (assembly of fronts, the two triangular solves); and what a factorisation costs at least, sharing out the matrix.
+   Chosen on pipe_pinch, cup_flattening and ring_in_ring_3d, whose CPU time an iteration they give to a quarter, their
+   memory to 30 %. */
 #define ESTIMATE_EFFICIENCY 0.6
 #define ESTIMATE_ENTRY_S    2.5e-8
 #define ESTIMATE_CALL_S     3e-3
@@ -26,7 +28,8 @@ static double CpuSeconds(void)
   return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
 }
 
-/* Operations per second of one core, all ranks at work; the slowest rank's. By dense matrices of PETSc, which has the BLAS. */
+/* Operations per second of one core, all ranks at work; the slowest rank's. By dense matrices of PETSc, which has the
+ * BLAS. */
 static PetscErrorCode MeasureProduct(MPI_Comm comm, PetscReal *rate)
 {
   const PetscInt n = ESTIMATE_ORDER;
@@ -106,7 +109,8 @@ static PetscErrorCode MeasureMemory(MPI_Comm comm, PetscReal mb[2])
   Collective, after ModelPlace(). The tangent of that state is left in the model's.
 
   Note:
-  Operations over the speed of a matrix product, entries of the factor times a constant, and the assembly as measured: good to about a factor of two.
+  Operations over the speed of a matrix product, entries of the factor times a constant, and the assembly as measured:
+  good to about a factor of two.
 */
 PetscErrorCode EstimateModel(Model model, Estimate *estimate)
 {
@@ -132,7 +136,8 @@ PetscErrorCode EstimateModel(Model model, Estimate *estimate)
   PetscCall(MeasureProduct(comm, &rate));
   PetscCall(MeasureMemory(comm, estimate->memory_mb));
   for (int k = 0; k < 2; k++) estimate->memory_mb[k] += estimate->solver_mb[k];
-  estimate->factor_s    = ESTIMATE_CALL_S + (estimate->flops / (ESTIMATE_EFFICIENCY * rate) + ESTIMATE_ENTRY_S * estimate->entries) / size;
+  estimate->factor_s =
+    ESTIMATE_CALL_S + (estimate->flops / (ESTIMATE_EFFICIENCY * rate) + ESTIMATE_ENTRY_S * estimate->entries) / size;
   estimate->iteration_s = (1 + ESTIMATE_RESIDUALS) * estimate->assembly_s + estimate->factor_s;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -149,15 +154,17 @@ PetscErrorCode EstimatePrint(Model model, FILE *stream)
   PetscCall(EstimateModel(model, &estimate));
   if (rank) PetscFunctionReturn(PETSC_SUCCESS);
   if (!estimate.known) {
-    fprintf(stream, "cost     not estimated: PETSc's options replace the direct solver, it cannot order the tangent, or no dof is free\n");
+    fprintf(stream, "cost     not estimated: PETSc's options replace the direct solver, it cannot order the tangent, "
+                    "or no dof is free\n");
     PetscFunctionReturn(PETSC_SUCCESS);
   }
-  fprintf(stream, "cost     tangent of %.3g nonzeros at the start, its factor %.3g entries in %.3g operations\n", (double)estimate.nonzeros,
-          (double)estimate.entries, (double)estimate.flops);
-  fprintf(stream, "         on %d rank%s about %.0f MB in all, %.0f MB the largest rank; contact that grows adds to it\n", size, size > 1 ? "s" : "",
-          (double)estimate.memory_mb[1], (double)estimate.memory_mb[0]);
-  fprintf(stream, "         about %.2g s an iteration (tangent %.2g, factor and solve %.2g), %.2g s a step of %d\n", (double)estimate.iteration_s,
-          (double)estimate.assembly_s, (double)estimate.factor_s, (double)estimate.analysis_s + ESTIMATE_ITERATIONS * (double)estimate.iteration_s,
-          ESTIMATE_ITERATIONS);
+  fprintf(stream, "cost     tangent of %.3g nonzeros at the start, its factor %.3g entries in %.3g operations\n",
+          (double)estimate.nonzeros, (double)estimate.entries, (double)estimate.flops);
+  fprintf(stream,
+          "         on %d rank%s about %.0f MB in all, %.0f MB the largest rank; contact that grows adds to it\n", size,
+          size > 1 ? "s" : "", (double)estimate.memory_mb[1], (double)estimate.memory_mb[0]);
+  fprintf(stream, "         about %.2g s an iteration (tangent %.2g, factor and solve %.2g), %.2g s a step of %d\n",
+          (double)estimate.iteration_s, (double)estimate.assembly_s, (double)estimate.factor_s,
+          (double)estimate.analysis_s + ESTIMATE_ITERATIONS * (double)estimate.iteration_s, ESTIMATE_ITERATIONS);
   PetscFunctionReturn(PETSC_SUCCESS);
 }

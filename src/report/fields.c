@@ -11,9 +11,9 @@ struct _n_Fields {
   Scene      scene;
   char       directory[PETSC_MAX_PATH_LEN], file[PETSC_MAX_PATH_LEN];
   PetscInt  *owned; /* local nodes that this rank owns */
-  Hdf5Table       nodes;
+  Hdf5Table  nodes;
   int        n_pairs;
-  Hdf5Table      *pairs;                /* slave nodes, per contact pair */
+  Hdf5Table *pairs;                /* slave nodes, per contact pair */
   PetscInt   cells[ELEMENT_TYPES]; /* rows of /mesh/cells_TYPE */
   PetscInt   n_written, room;
   PetscReal *t;     /* of the written steps */
@@ -36,7 +36,15 @@ static const XdmfArray shown[] = {
 };
 
 /* Contact values of one node: columns of the nodal array that FieldsWriteContact() forms */
-enum { COLUMN_GAP, COLUMN_PENETRATION, COLUMN_PENALTY, COLUMN_PRESSURE, COLUMN_NORMAL, COLUMN_PRESENT = COLUMN_NORMAL + 3, COLUMNS };
+enum {
+  COLUMN_GAP,
+  COLUMN_PENETRATION,
+  COLUMN_PENALTY,
+  COLUMN_PRESSURE,
+  COLUMN_NORMAL,
+  COLUMN_PRESENT = COLUMN_NORMAL + 3,
+  COLUMNS
+};
 static const struct {
   const char *name;
   int         column, width;
@@ -93,20 +101,22 @@ static PetscErrorCode FieldsWriteNodes(Fields fields, hid_t file)
   PetscFunctionBeginUser;
   PetscCall(PetscCalloc1(mesh->n_owned * 3, &items));
   for (PetscInt k = 0; k < mesh->n_owned; k++)
-    for (int i = 0; i < mesh->dim; i++) items[k * 3 + i] = mesh->coords[fields->owned[k] * mesh->dim + i] + mesh->centre[i];
+    for (int i = 0; i < mesh->dim; i++)
+      items[k * 3 + i] = mesh->coords[fields->owned[k] * mesh->dim + i] + mesh->centre[i];
   PetscCall(Hdf5TableWriteReals(file, "/mesh/nodes", &fields->nodes, 3, items));
   PetscCall(PetscFree(items));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The row of every local cell in the table of its type, by body and then cell_id. All ranks count their part of the cell_ids by body and type. */
+/* The row of every local cell in the table of its type, by body and then cell_id. All ranks count their part of the
+ * cell_ids by body and type. */
 static PetscErrorCode FieldsNumberCells(Fields fields, PetscInt *row)
 {
   const Mesh mesh   = fields->model->mesh;
   const int  n_keys = fields->scene->n_bodies * ELEMENT_TYPES;
   Xdmf      *xdmf   = &fields->xdmf;
   PetscInt  *key, *keys, *rows, *count, *before;
-  Hdf5Table       by_id;
+  Hdf5Table  by_id;
 
   PetscFunctionBeginUser;
   PetscCall(Hdf5TableCreate(mesh->comm, mesh->n_cells_global, mesh->n_cells, mesh->cell_id, &by_id));
@@ -122,7 +132,10 @@ static PetscErrorCode FieldsNumberCells(Fields fields, PetscInt *row)
     PetscInt         *cells = &fields->cells[type];
 
     if (count[k])
-      xdmf->blocks[xdmf->n_blocks++] = (XdmfBlock){.body = fields->scene->bodies[k / ELEMENT_TYPES].name, .type = type, .first = *cells, .n = count[k]};
+      xdmf->blocks[xdmf->n_blocks++] = (XdmfBlock){.body  = fields->scene->bodies[k / ELEMENT_TYPES].name,
+                                                   .type  = type,
+                                                   .first = *cells,
+                                                   .n     = count[k]};
     before[k] += *cells;
     *cells += count[k];
   }
@@ -135,22 +148,24 @@ static PetscErrorCode FieldsNumberCells(Fields fields, PetscInt *row)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Rows first .. first+total-1 of the cells of a type as a table of their nodes at `path` and, where asked for, one of their bodies at `body_path` */
-static PetscErrorCode FieldsWriteCellTable(Fields fields, hid_t file, ElementType type, const PetscInt *cell_row, PetscInt first, PetscInt total,
-                                           const char *path, const char *body_path)
+/* Rows first .. first+total-1 of the cells of a type as a table of their nodes at `path` and, where asked for, one of
+ * their bodies at `body_path` */
+static PetscErrorCode FieldsWriteCellTable(Fields fields, hid_t file, ElementType type, const PetscInt *cell_row,
+                                           PetscInt first, PetscInt total, const char *path, const char *body_path)
 {
   const Mesh     mesh    = fields->model->mesh;
   const Element *element = ElementGet(type);
   const int      nodes   = element->nodes;
   int64_t       *ids, *body;
   PetscInt      *row, n = 0;
-  Hdf5Table           rows;
+  Hdf5Table      rows;
 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc3(mesh->n_cells * nodes, &ids, mesh->n_cells, &body, mesh->n_cells, &row));
   for (PetscInt c = 0; c < mesh->n_cells; c++) {
     if (mesh->cell_type[c] != type || cell_row[c] < first || cell_row[c] >= first + total) continue;
-    for (int i = 0; i < nodes; i++) ids[n * nodes + i] = mesh->node_id[mesh->cell_nodes[mesh->cell_ptr[c] + element->xdmf_order[i]]];
+    for (int i = 0; i < nodes; i++)
+      ids[n * nodes + i] = mesh->node_id[mesh->cell_nodes[mesh->cell_ptr[c] + element->xdmf_order[i]]];
     body[n]  = mesh->cell_body[c];
     row[n++] = cell_row[c] - first;
   }
@@ -179,7 +194,8 @@ static PetscErrorCode FieldsWriteCells(Fields fields, hid_t file)
   }
   for (int b = 0; b < xdmf->n_blocks; b++) {
     PetscCall(PetscSNPrintf(path, sizeof(path), "/mesh/block_%d", b));
-    PetscCall(FieldsWriteCellTable(fields, file, xdmf->blocks[b].type, row, xdmf->blocks[b].first, xdmf->blocks[b].n, path, NULL));
+    PetscCall(FieldsWriteCellTable(fields, file, xdmf->blocks[b].type, row, xdmf->blocks[b].first, xdmf->blocks[b].n,
+                                   path, NULL));
   }
   PetscCall(PetscFree(row));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -233,7 +249,8 @@ static PetscErrorCode FieldsWriteMesh(Fields fields, hid_t file)
 }
 
 /* Columns first .. first+width-1 of a nodal array (stride columns, local nodes) as one dataset */
-static PetscErrorCode FieldsWriteNodal(Fields fields, hid_t file, const char *name, const PetscReal *values, int stride, int first, int width)
+static PetscErrorCode FieldsWriteNodal(Fields fields, hid_t file, const char *name, const PetscReal *values, int stride,
+                                       int first, int width)
 {
   const PetscInt n = fields->model->mesh->n_owned;
   PetscReal     *items;
@@ -292,14 +309,15 @@ static PetscErrorCode FieldsWriteStress(Fields fields, hid_t file)
 /* Where an analytic master is at this step: no mesh shows it */
 static PetscErrorCode FieldsWriteMaster(Fields fields, hid_t file, int pair)
 {
-  static const char *const names[] = {[ANALYTIC_PLANE] = "plane", [ANALYTIC_CYLINDER] = "cylinder", [ANALYTIC_SPHERE] = "sphere"};
-  const SceneContact      *contact = &fields->scene->contacts[pair];
-  const AnalyticSurface    *master  = &contact->analytic;
-  const double             t       = (double)fields->model->t;
-  double                   values[7]; /* point, then axis or normal, then radius */
-  int                      n = 3;
-  char                     path[EXTRAPOLATION_SIZE];
-  hid_t                    group;
+  static const char *const names[] =
+    {[ANALYTIC_PLANE] = "plane", [ANALYTIC_CYLINDER] = "cylinder", [ANALYTIC_SPHERE] = "sphere"};
+  const SceneContact    *contact = &fields->scene->contacts[pair];
+  const AnalyticSurface *master  = &contact->analytic;
+  const double           t       = (double)fields->model->t;
+  double                 values[7]; /* point, then axis or normal, then radius */
+  int                    n = 3;
+  char                   path[EXTRAPOLATION_SIZE];
+  hid_t                  group;
 
   PetscFunctionBeginUser;
   if (contact->master) PetscFunctionReturn(PETSC_SUCCESS);
@@ -316,8 +334,8 @@ static PetscErrorCode FieldsWriteMaster(Fields fields, hid_t file, int pair)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* One pair's tables; its values also go to the nodal array (COLUMNS per local node, owned nodes only). Where pairs share a slave node
-   the larger pressure counts. */
+/* One pair's tables; its values also go to the nodal array (COLUMNS per local node, owned nodes only). Where pairs
+   share a slave node the larger pressure counts. */
 static PetscErrorCode FieldsWritePair(Fields fields, hid_t file, int pair, PetscReal *nodal)
 {
   ContactNodes slaves;
@@ -336,23 +354,24 @@ static PetscErrorCode FieldsWritePair(Fields fields, hid_t file, int pair, Petsc
     value[COLUMN_PRESSURE]    = slaves.pressure[k];
     for (int i = 0; i < 3; i++) value[COLUMN_NORMAL + i] = slaves.normal[k * 3 + i];
     value[COLUMN_PRESENT] = 1.0;
-    if (node[COLUMN_PRESENT] == 0.0 || value[COLUMN_PRESSURE] > node[COLUMN_PRESSURE]) PetscCall(PetscArraycpy(node, value, COLUMNS));
+    if (node[COLUMN_PRESENT] == 0.0 || value[COLUMN_PRESSURE] > node[COLUMN_PRESSURE])
+      PetscCall(PetscArraycpy(node, value, COLUMNS));
   }
   for (int f = 0; f < COUNT(contact_fields); f++) {
     const int width = contact_fields[f].width;
 
     for (PetscInt k = 0; k < slaves.n; k++)
       for (int i = 0; i < width; i++) items[k * width + i] = values[k * COLUMNS + contact_fields[f].column + i];
-    PetscCall(PetscSNPrintf(path, sizeof(path), "/steps/%04d/contact/%s/%s", (int)fields->n_written, ContactPairName(fields->model->contact, pair),
-                            contact_fields[f].name));
+    PetscCall(PetscSNPrintf(path, sizeof(path), "/steps/%04d/contact/%s/%s", (int)fields->n_written,
+                            ContactPairName(fields->model->contact, pair), contact_fields[f].name));
     PetscCall(Hdf5TableWriteReals(file, path, &fields->pairs[pair], width, items));
   }
   PetscCall(PetscFree2(values, items));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Corners of a slave surface's second-order triangles carry no area, so they have no contact values of their own: for the eye they get the
-   mean of the mid-side nodes beside them. nodal: complete on every copy of a node. */
+/* Corners of a slave surface's second-order triangles carry no area, so they have no contact values of their own: for
+   the eye they get the mean of the mid-side nodes beside them. nodal: complete on every copy of a node. */
 static PetscErrorCode FieldsFillCorners(Fields fields, int pair, const PetscReal *nodal, PetscReal *fill)
 {
   const Mesh       mesh = fields->model->mesh;
@@ -403,7 +422,8 @@ static PetscErrorCode FieldsWriteContact(Fields fields, hid_t file)
         value[i] = weight > 0.0 ? fill[n * COLUMNS + i] / weight : contact_fields[f].absent;
   }
   for (int f = 0; f < COUNT(contact_fields); f++)
-    PetscCall(FieldsWriteNodal(fields, file, contact_fields[f].name, nodal, COLUMNS, contact_fields[f].column, contact_fields[f].width));
+    PetscCall(FieldsWriteNodal(fields, file, contact_fields[f].name, nodal, COLUMNS, contact_fields[f].column,
+                               contact_fields[f].width));
   PetscCall(PetscFree2(nodal, fill));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -458,7 +478,8 @@ static PetscErrorCode FieldsPrepareXdmf(Fields fields)
 /*
   FieldsCreate - Prepares results.h5 and results.xdmf in a directory; no file is touched yet. Collective.
 
-  Input: model (its elasticity, contact and displacements are read at each write), scene (output.fields chooses), directory (must exist at the first write).
+  Input: model (its elasticity, contact and displacements are read at each write), scene (output.fields chooses),
+  directory (must exist at the first write).
 */
 PetscErrorCode FieldsCreate(Model model, Scene scene, const char *directory, Fields *result)
 {
@@ -578,7 +599,8 @@ PetscErrorCode FieldsArchive(Fields fields, Archive archive)
 }
 
 /*
-  FieldsResume - Brings results.h5 and results.xdmf back to the states of the loaded checkpoint. Collective. Errors: PETSC_ERR_FILE_WRITE.
+  FieldsResume - Brings results.h5 and results.xdmf back to the states of the loaded checkpoint. Collective. Errors:
+  PETSC_ERR_FILE_WRITE.
 */
 PetscErrorCode FieldsResume(Fields fields, PetscBool *lost)
 {

@@ -7,14 +7,23 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* A probe's point is a node's reference coordinate to within this part of the model's size: what hand-written scene files can be expected to meet. */
+/* A probe's point is a node's reference coordinate to within this part of the model's size: what hand-written scene
+ * files can be expected to meet. */
 static const PetscReal POINT_TOLERANCE = 1e-6;
-/* A node n face sizes from an edge counts as within n of it, whatever the rounding of the mesh generator, as part of a face size. */
+/* A node n face sizes from an edge counts as within n of it, whatever the rounding of the mesh generator, as part of a
+ * face size. */
 static const PetscReal RING_TOLERANCE = 1e-6;
 enum { MESSAGE_SIZE = 2048 };
 
 /* Slave nodes of a pair, by node_id */
-enum { SLAVE_ID, SLAVE_REFERENCE, SLAVE_POSITION = SLAVE_REFERENCE + 3, SLAVE_AREA = SLAVE_POSITION + 3, SLAVE_PRESSURE, SLAVE_COLUMNS };
+enum {
+  SLAVE_ID,
+  SLAVE_REFERENCE,
+  SLAVE_POSITION = SLAVE_REFERENCE + 3,
+  SLAVE_AREA     = SLAVE_POSITION + 3,
+  SLAVE_PRESSURE,
+  SLAVE_COLUMNS
+};
 
 typedef struct {
   const SceneProbe *scene;
@@ -28,10 +37,10 @@ typedef struct {
 } Probe;
 
 struct _n_Probes {
-  Model  model;
-  Scene  scene;
-  int   *node_body; /* index into scene->bodies, during the preparation */
-  Probe *probe;
+  Model        model;
+  Scene        scene;
+  int         *node_body; /* index into scene->bodies, during the preparation */
+  Probe       *probe;
   GatherTable *slaves; /* per pair, of the evaluation under way; row NULL: not asked for yet */
 };
 
@@ -94,7 +103,8 @@ typedef struct {
 } Nearby;
 
 /* Looks through the local nodes (of a group, or all), of one body or any (-1); at[body] counts nodes at the point. */
-static void ProbesLookAround(Probes probes, const PetscReal point[3], const MeshGroup *within, int body, Nearby *nearby, PetscInt *at)
+static void ProbesLookAround(Probes probes, const PetscReal point[3], const MeshGroup *within, int body, Nearby *nearby,
+                             PetscInt *at)
 {
   const Mesh     mesh = probes->model->mesh;
   const PetscInt n    = within ? within->n_nodes : mesh->n_nodes;
@@ -105,7 +115,8 @@ static void ProbesLookAround(Probes probes, const PetscReal point[3], const Mesh
     PetscReal      square = 0.0, distance;
 
     if (body >= 0 && probes->node_body[node] != body) continue;
-    for (int i = 0; i < mesh->dim; i++) square += PetscSqr(mesh->coords[node * mesh->dim + i] + mesh->centre[i] - point[i]);
+    for (int i = 0; i < mesh->dim; i++)
+      square += PetscSqr(mesh->coords[node * mesh->dim + i] + mesh->centre[i] - point[i]);
     distance = PetscSqrtReal(square);
     if (distance < nearby->distance || (distance == nearby->distance && mesh->node_id[node] < nearby->nearest)) {
       nearby->distance = distance;
@@ -118,7 +129,8 @@ static void ProbesLookAround(Probes probes, const PetscReal point[3], const Mesh
 }
 
 /* No node at the point: names the nearest one. Does not return. Collective. */
-static PetscErrorCode ProbesRefusePoint(Probes probes, const Probe *probe, const char *key, const PetscReal point[3], const Nearby *nearby)
+static PetscErrorCode ProbesRefusePoint(Probes probes, const Probe *probe, const char *key, const PetscReal point[3],
+                                        const Nearby *nearby)
 {
   const Mesh mesh    = probes->model->mesh;
   PetscReal  mine[4] = {0}, shared[4];
@@ -132,15 +144,18 @@ static PetscErrorCode ProbesRefusePoint(Probes probes, const Probe *probe, const
     mine[3] = (PetscReal)mesh->node_tag[local];
   }
   PetscCall(ProbesShare(probes, local, 4, mine, shared));
-  PetscCall(RefuseInput(
-    mesh->comm, "%s: no node at %s%s; allowed: reference coordinates of a node, to within %g of the model's size; the nearest is node %.0f at %s, %.3g away",
-    SceneWhere(probes->scene, probe->scene->path, key), PointText(mesh->dim, point, asked), probe->scene->target ? " on the slave surface" : "",
-    (double)POINT_TOLERANCE, (double)shared[3], PointText(mesh->dim, shared, found), (double)nearby->distance));
+  PetscCall(RefuseInput(mesh->comm,
+                        "%s: no node at %s%s; allowed: reference coordinates of a node, to within %g of the model's "
+                        "size; the nearest is node %.0f at %s, %.3g away",
+                        SceneWhere(probes->scene, probe->scene->path, key), PointText(mesh->dim, point, asked),
+                        probe->scene->target ? " on the slave surface" : "", (double)POINT_TOLERANCE, (double)shared[3],
+                        PointText(mesh->dim, shared, found), (double)nearby->distance));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* Two bodies have a node at the point and the scene does not say which is meant. Does not return. Collective. */
-static PetscErrorCode ProbesRefuseBodies(Probes probes, const Probe *probe, const char *key, const PetscReal point[3], const PetscInt *at)
+static PetscErrorCode ProbesRefuseBodies(Probes probes, const Probe *probe, const char *key, const PetscReal point[3],
+                                         const PetscInt *at)
 {
   char names[MESSAGE_SIZE] = "", asked[128];
 
@@ -150,12 +165,14 @@ static PetscErrorCode ProbesRefuseBodies(Probes probes, const Probe *probe, cons
     PetscCall(PetscStrlcat(names, *names ? ", " : "", sizeof(names)));
     PetscCall(PetscStrlcat(names, probes->scene->bodies[b].name, sizeof(names)));
   }
-  PetscCall(RefuseInput(probes->model->mesh->comm, "%s: several bodies have a node at %s; \"body\" must say which; allowed: %s",
-                        SceneWhere(probes->scene, probe->scene->path, key), PointText(probes->model->mesh->dim, point, asked), names));
+  PetscCall(RefuseInput(
+    probes->model->mesh->comm, "%s: several bodies have a node at %s; \"body\" must say which; allowed: %s",
+    SceneWhere(probes->scene, probe->scene->path, key), PointText(probes->model->mesh->dim, point, asked), names));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The node at point number `which` of a probe, of all nodes or of a group's. Refuses a point without node and one where the body is left open. Collective. */
+/* The node at point number `which` of a probe, of all nodes or of a group's. Refuses a point without node and one where
+ * the body is left open. Collective. */
 static PetscErrorCode ProbesFindNode(Probes probes, Probe *probe, const char *key, int which, const MeshGroup *within)
 {
   const MPI_Comm   comm  = probes->model->mesh->comm;
@@ -210,8 +227,10 @@ static PetscErrorCode ProbesCheckAt(Probes probes, const Probe *probe)
     const PetscReal nearest = asked + (sides[0] < sides[1] ? -sides[0] : sides[1]);
 
     PetscCall(RefuseInput(mesh->comm,
-                          "%s: no node of the slave surface \"%s\" has the reference coordinate %c = %.9g; allowed: a node's coordinate, the nearest is %.9g",
-                          SceneWhere(probes->scene, probe->scene->path, "at"), probe->group->name, "xyz"[axis], (double)asked, (double)nearest));
+                          "%s: no node of the slave surface \"%s\" has the reference coordinate %c = %.9g; allowed: a "
+                          "node's coordinate, the nearest is %.9g",
+                          SceneWhere(probes->scene, probe->scene->path, "at"), probe->group->name, "xyz"[axis],
+                          (double)asked, (double)nearest));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -252,8 +271,10 @@ static PetscBool ProbeKeeps(const Probe *probe, const PetscReal *slave)
   PetscBool near;
 
   if (!probe->free_edges) return PETSC_TRUE;
-  near =
-    FreeEdgesDistance(probe->free_edges, &slave[SLAVE_REFERENCE]) <= (probe->scene->edge_faces + RING_TOLERANCE) * probe->face_size ? PETSC_TRUE : PETSC_FALSE;
+  near = FreeEdgesDistance(probe->free_edges, &slave[SLAVE_REFERENCE]) <=
+             (probe->scene->edge_faces + RING_TOLERANCE) * probe->face_size
+           ? PETSC_TRUE
+           : PETSC_FALSE;
   return (probe->scene->edge_filter == 2) == near ? PETSC_TRUE : PETSC_FALSE;
 }
 
@@ -282,7 +303,8 @@ static PetscErrorCode EvaluateDisplacement(Probes probes, Probe *probe, PetscRea
   const Model model = probes->model;
 
   PetscFunctionBeginUser;
-  PetscCall(ProbesShare(probes, probe->node[0], 1, &model->u[PetscMax(probe->node[0], 0) * model->mesh->dim + probe->scene->component], value));
+  PetscCall(ProbesShare(probes, probe->node[0], 1,
+                        &model->u[PetscMax(probe->node[0], 0) * model->mesh->dim + probe->scene->component], value));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -318,7 +340,8 @@ static PetscErrorCode EvaluateGap(Probes probes, Probe *probe, PetscReal *value)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Where the slave surface ends along a contact edge's axis, min and max, on the line of nodes that `at` picks. Collective. */
+/* Where the slave surface ends along a contact edge's axis, min and max, on the line of nodes that `at` picks.
+ * Collective. */
 static PetscErrorCode ProbesLineEnds(Probes probes, const Probe *probe, PetscReal ends[2])
 {
   const Mesh        mesh  = probes->model->mesh;
@@ -328,9 +351,11 @@ static PetscErrorCode ProbesLineEnds(Probes probes, const Probe *probe, PetscRea
   ends[0] = ends[1] = -PETSC_MAX_REAL; /* of -x and x */
   for (PetscInt k = 0; k < probe->group->n_nodes; k++) {
     const PetscInt  node = probe->group->nodes[k] * mesh->dim;
-    const PetscReal x    = mesh->coords[node + scene->axis] + mesh->centre[scene->axis] + probes->model->u[node + scene->axis];
+    const PetscReal x =
+      mesh->coords[node + scene->axis] + mesh->centre[scene->axis] + probes->model->u[node + scene->axis];
 
-    if (scene->has_at && !ProbeIsAt(probes, probe, mesh->coords[node + scene->at_axis] + mesh->centre[scene->at_axis])) continue;
+    if (scene->has_at && !ProbeIsAt(probes, probe, mesh->coords[node + scene->at_axis] + mesh->centre[scene->at_axis]))
+      continue;
     ends[0] = PetscMax(ends[0], -x);
     ends[1] = PetscMax(ends[1], x);
   }
@@ -339,14 +364,14 @@ static PetscErrorCode ProbesLineEnds(Probes probes, const Probe *probe, PetscRea
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Second-order nodes at the end of the line may carry no area (corners of triangles, the node on the axis of revolution): they have no
-   pressure of their own and go with the last node that has one. */
+/* Second-order nodes at the end of the line may carry no area (corners of triangles, the node on the axis of
+   revolution): they have no pressure of their own and go with the last node that has one. */
 static PetscErrorCode EvaluateContactEdge(Probes probes, Probe *probe, PetscReal *value)
 {
   const GatherTable *slaves;
-  PetscReal   *line, ends[2]; /* line: position and pressure of the nodes on it, from row 1 on */
-  double      *x, *p;
-  int          n = 0, first = 1;
+  PetscReal         *line, ends[2]; /* line: position and pressure of the nodes on it, from row 1 on */
+  double            *x, *p;
+  int                n = 0, first = 1;
 
   PetscFunctionBeginUser;
   PetscCall(ProbesGetSlaves(probes, probe->pair, &slaves));
@@ -376,8 +401,10 @@ static PetscErrorCode EvaluateContactEdge(Probes probes, Probe *probe, PetscReal
     x[k] = line[2 * (first + k)];
     p[k] = line[2 * (first + k) + 1];
   }
-  *value = ContactEdge(ContactPairScene(probes->model->contact, probe->pair)->formulation == CONTACT_SURFACE_TO_SURFACE ? EDGE_OF_HATS : EDGE_AT_NODES, n, x, p,
-                       probe->scene->max_side, &probe->spacing);
+  *value = ContactEdge(ContactPairScene(probes->model->contact, probe->pair)->formulation == CONTACT_SURFACE_TO_SURFACE
+                         ? EDGE_OF_HATS
+                         : EDGE_AT_NODES,
+                       n, x, p, probe->scene->max_side, &probe->spacing);
   PetscCall(PetscFree3(line, x, p));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -385,7 +412,7 @@ static PetscErrorCode EvaluateContactEdge(Probes probes, Probe *probe, PetscReal
 static PetscErrorCode EvaluatePressureMax(Probes probes, Probe *probe, PetscReal *value)
 {
   const GatherTable *slaves;
-  PetscReal    most = 0.0;
+  PetscReal          most = 0.0;
 
   PetscFunctionBeginUser;
   PetscCall(ProbesGetSlaves(probes, probe->pair, &slaves));
@@ -399,7 +426,8 @@ static PetscErrorCode EvaluatePressureMax(Probes probes, Probe *probe, PetscReal
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Area-weighted mean pressure over the slave nodes that the probe keeps, and their area; NaN without contact or without a node */
+/* Area-weighted mean pressure over the slave nodes that the probe keeps, and their area; NaN without contact or without
+ * a node */
 static PetscReal MeanPressure(const Probe *probe, const GatherTable *slaves, PetscReal *area)
 {
   PetscReal force = 0.0;
@@ -418,7 +446,7 @@ static PetscReal MeanPressure(const Probe *probe, const GatherTable *slaves, Pet
 static PetscErrorCode EvaluatePressureMean(Probes probes, Probe *probe, PetscReal *value)
 {
   const GatherTable *slaves;
-  PetscReal    area;
+  PetscReal          area;
 
   PetscFunctionBeginUser;
   PetscCall(ProbesGetSlaves(probes, probe->pair, &slaves));
@@ -429,7 +457,7 @@ static PetscErrorCode EvaluatePressureMean(Probes probes, Probe *probe, PetscRea
 static PetscErrorCode EvaluatePressureDeviation(Probes probes, Probe *probe, PetscReal *value)
 {
   const GatherTable *slaves;
-  PetscReal    area, mean, most = 0.0, square = 0.0;
+  PetscReal          area, mean, most = 0.0, square = 0.0;
 
   PetscFunctionBeginUser;
   PetscCall(ProbesGetSlaves(probes, probe->pair, &slaves));
@@ -471,12 +499,16 @@ static PetscErrorCode ProbesPrepare(Probes probes, Probe *probe)
     PetscCall(MeshGetGroup(mesh, probes->scene, scene->path, type->key, scene->target, mesh->dim, &surface));
     probe->group = surface;
   } else if (type->names == NAMES_PAIR) {
-    probe->pair = ContactFindPair(probes->model->contact, scene->target); /* the scene has made sure that there is one */
+    probe->pair =
+      ContactFindPair(probes->model->contact, scene->target); /* the scene has made sure that there is one */
     PetscCall(ContactPairSurface(probes->model->contact, probe->pair, &probe->group, &probe->face_size));
     PetscCall(ProbesCheckAt(probes, probe));
-    if (scene->edge_filter) PetscCall(FreeEdgesCreate(mesh, probes->scene, &probes->scene->contacts[probe->pair], probe->group, &probe->free_edges));
+    if (scene->edge_filter)
+      PetscCall(
+        FreeEdgesCreate(mesh, probes->scene, &probes->scene->contacts[probe->pair], probe->group, &probe->free_edges));
   }
-  for (int i = 0; i < type->points; i++) PetscCall(ProbesFindNode(probes, probe, type->points_key, i, type->names == NAMES_PAIR ? probe->group : NULL));
+  for (int i = 0; i < type->points; i++)
+    PetscCall(ProbesFindNode(probes, probe, type->points_key, i, type->names == NAMES_PAIR ? probe->group : NULL));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -489,15 +521,16 @@ static PetscErrorCode ProbesFindNodeBodies(Probes probes)
   PetscCall(PetscMalloc1(mesh->n_nodes, &probes->node_body));
   for (PetscInt n = 0; n < mesh->n_nodes; n++) probes->node_body[n] = -1;
   for (PetscInt c = 0; c < mesh->n_cells; c++)
-    for (PetscInt k = mesh->cell_ptr[c]; k < mesh->cell_ptr[c + 1]; k++) probes->node_body[mesh->cell_nodes[k]] = mesh->cell_body[c];
+    for (PetscInt k = mesh->cell_ptr[c]; k < mesh->cell_ptr[c + 1]; k++)
+      probes->node_body[mesh->cell_nodes[k]] = mesh->cell_body[c];
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /*
   ProbesCreate - Resolves the scene's probes in a model. Collective.
 
-  Input: model (with its mesh and contact), scene. Errors: refuses (exit 1) surfaces, pairs and volumes that do not exist, points without a
-  node and points where several bodies have one and none is named.
+  Input: model (with its mesh and contact), scene. Errors: refuses (exit 1) surfaces, pairs and volumes that do not
+  exist, points without a node and points where several bodies have one and none is named.
 */
 PetscErrorCode ProbesCreate(Model model, Scene scene, Probes *result)
 {
@@ -532,9 +565,11 @@ PetscErrorCode ProbesDestroy(Probes *probes)
 }
 
 /*
-  ProbesEvaluate - Values of all probes in the model's present state, the same on all ranks and on any number of them. Collective.
+  ProbesEvaluate - Values of all probes in the model's present state, the same on all ranks and on any number of them.
+  Collective.
 
-  Output: values[scene->n_probes]: forces, lengths, pressures or per cent by kind, after `absolute` and `factor`; NaN where there is no value.
+  Output: values[scene->n_probes]: forces, lengths, pressures or per cent by kind, after `absolute` and `factor`; NaN
+  where there is no value.
 */
 PetscErrorCode ProbesEvaluate(Probes probes, PetscReal values[])
 {
@@ -550,7 +585,8 @@ PetscErrorCode ProbesEvaluate(Probes probes, PetscReal values[])
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ProbesGetSpacing - Node spacing (length) around the contact edge of probe i at the last evaluation, NaN if there is none. Not collective. */
+/* ProbesGetSpacing - Node spacing (length) around the contact edge of probe i at the last evaluation, NaN if there is
+ * none. Not collective. */
 PetscErrorCode ProbesGetSpacing(Probes probes, int i, PetscReal *spacing)
 {
   PetscFunctionBeginUser;

@@ -16,7 +16,11 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-enum { MESSAGE_SIZE = 2 * PETSC_MAX_PATH_LEN, LINE_SIZE = 160, EXTRAPOLATION_SIZE = PETSC_MAX_PATH_LEN + 32 /* a directory and one of our names */ };
+enum {
+  MESSAGE_SIZE       = 2 * PETSC_MAX_PATH_LEN,
+  LINE_SIZE          = 160,
+  EXTRAPOLATION_SIZE = PETSC_MAX_PATH_LEN + 32 /* a directory and one of our names */
+};
 
 struct _n_Results {
   Model       model;
@@ -34,9 +38,9 @@ struct _n_Results {
   PetscBool   stepped, written; /* there is an accepted step; results.h5 holds it */
   double      started;
   PetscReal   t_started;
-  RunUsage    before;        /* of the parts of the run before this one */
-  PetscInt    restarts;      /* how many they are */
-  PetscInt    csv_length[2]; /* of steps.csv at the loaded checkpoint: bytes, in two parts as integers may have 32 bits */
+  RunUsage    before;     /* of the parts of the run before this one */
+  PetscInt    restarts;   /* how many they are */
+  PetscInt csv_length[2]; /* of steps.csv at the loaded checkpoint: bytes, in two parts as integers may have 32 bits */
 };
 
 /* From this on elements of first order lock: at 0.49 the bulk modulus is fifty times the shear modulus. */
@@ -79,7 +83,8 @@ static char *FileRead(const char *directory, const char *name)
 }
 
 /*
-  ResultsReplaceFile - Writes a text file under a temporary name and renames it, so that readers find it whole or not at all. Not collective.
+  ResultsReplaceFile - Writes a text file under a temporary name and renames it, so that readers find it whole or not at
+  all. Not collective.
 
   Input: directory, name of the file in it, text. Errors: PETSC_ERR_FILE_WRITE.
 */
@@ -96,7 +101,8 @@ PetscErrorCode ResultsReplaceFile(const char *directory, const char *name, const
   PetscCheck(file, PETSC_COMM_SELF, PETSC_ERR_FILE_OPEN, "Cannot write %s: %s", temporary, strerror(errno));
   failed = fputs(text, file) < 0;
   failed = fclose(file) || failed;
-  PetscCheck(!failed && !rename(temporary, path), PETSC_COMM_SELF, PETSC_ERR_FILE_WRITE, "Cannot write %s: %s", path, strerror(errno));
+  PetscCheck(!failed && !rename(temporary, path), PETSC_COMM_SELF, PETSC_ERR_FILE_WRITE, "Cannot write %s: %s", path,
+             strerror(errno));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -140,13 +146,16 @@ static void DirectoryComplaint(Scene scene, const char *directory, PetscBool ove
 
   *message = '\0';
   if (PathLength(directory) > LONGEST_DIRECTORY) {
-    snprintf(message, MESSAGE_SIZE, "-o %s: the path has %zu characters from the root; allowed: at most %d, as MPI's files take no longer ones", directory,
-             PathLength(directory), LONGEST_DIRECTORY);
+    snprintf(
+      message, MESSAGE_SIZE,
+      "-o %s: the path has %zu characters from the root; allowed: at most %d, as MPI's files take no longer ones",
+      directory, PathLength(directory), LONGEST_DIRECTORY);
     return;
   }
   if (stat(directory, &status)) return;
   if (!S_ISDIR(status.st_mode)) {
-    snprintf(message, MESSAGE_SIZE, "-o %s: a file of that name is in the way; allowed: a directory, or a name that is free", directory);
+    snprintf(message, MESSAGE_SIZE,
+             "-o %s: a file of that name is in the way; allowed: a directory, or a name that is free", directory);
     return;
   }
   if (overwrite) return;
@@ -159,21 +168,26 @@ static void DirectoryComplaint(Scene scene, const char *directory, PetscBool ove
     if (strcmp(text, scene->text)) {
       FirstDifference(text, scene->text, line_there, line_here);
       snprintf(message, MESSAGE_SIZE,
-               "%s holds the results of another scene: of %s, not of %s (first difference: \"%s\" there, \"%s\" here); allowed: another directory (-o DIR), or "
+               "%s holds the results of another scene: of %s, not of %s (first difference: \"%s\" there, \"%s\" here); "
+               "allowed: another directory (-o DIR), or "
                "-overwrite",
                directory, there, scene->file, line_there, line_here);
     }
   } else if (record || FileExists(directory, "summary.json") || FileExists(directory, "steps.csv")) {
-    snprintf(message, MESSAGE_SIZE, "%s holds results of an unknown scene, not of %s: it has no %s of ours; allowed: another directory (-o DIR), or -overwrite",
+    snprintf(message, MESSAGE_SIZE,
+             "%s holds results of an unknown scene, not of %s: it has no %s of ours; allowed: another directory (-o "
+             "DIR), or -overwrite",
              directory, scene->file, record_name);
   }
   free(record);
 }
 
 /*
-  ResultsCheckDirectory - Refuses (exit 1) a directory that holds another scene's results, unless they may be overwritten. Collective.
+  ResultsCheckDirectory - Refuses (exit 1) a directory that holds another scene's results, unless they may be
+  overwritten. Collective.
 
-  Input: scene, directory (need not exist), overwrite. Nothing is written; the same scene's results are overwritten without a word.
+  Input: scene, directory (need not exist), overwrite. Nothing is written; the same scene's results are overwritten
+  without a word.
 */
 PetscErrorCode ResultsCheckDirectory(MPI_Comm comm, Scene scene, const char *directory, PetscBool overwrite)
 {
@@ -188,7 +202,8 @@ PetscErrorCode ResultsCheckDirectory(MPI_Comm comm, Scene scene, const char *dir
 }
 
 /*
-  ResultsCheckRestart - Refuses (exit 1) to go on in a directory that holds the results of another scene than its checkpoint's. Collective.
+  ResultsCheckRestart - Refuses (exit 1) to go on in a directory that holds the results of another scene than its
+  checkpoint's. Collective.
 
   Input: scene (of the checkpoint), directory. One without a record is fine: a checkpoint may be taken elsewhere.
 */
@@ -202,7 +217,9 @@ PetscErrorCode ResultsCheckRestart(MPI_Comm comm, Scene scene, const char *direc
   if (rank == 0) record = FileRead(directory, record_name);
   text = record ? strchr(record, '\n') : NULL;
   if (text && !SceneSameProblem(text + 1, scene->text))
-    snprintf(message, MESSAGE_SIZE, "%s holds the results of another scene than checkpoint.h5 there, which is of %s; allowed: the checkpoint of these results",
+    snprintf(message, MESSAGE_SIZE,
+             "%s holds the results of another scene than checkpoint.h5 there, which is of %s; allowed: the checkpoint "
+             "of these results",
              directory, scene->file);
   free(record);
   PetscCall(RefuseInputAnywhere(comm, *message ? message : NULL));
@@ -222,7 +239,8 @@ static void DirectoryMake(const char *directory, char message[MESSAGE_SIZE])
     *slash = '/';
   }
   if (mkdir(path, 0777) && errno != EEXIST)
-    snprintf(message, MESSAGE_SIZE, "-o %s: the directory cannot be made: %s; allowed: a place that can be written", directory, strerror(errno));
+    snprintf(message, MESSAGE_SIZE, "-o %s: the directory cannot be made: %s; allowed: a place that can be written",
+             directory, strerror(errno));
   else if (access(path, W_OK | X_OK))
     snprintf(message, MESSAGE_SIZE, "-o %s: %s; allowed: a directory that can be written", directory, strerror(errno));
 }
@@ -230,7 +248,8 @@ static void DirectoryMake(const char *directory, char message[MESSAGE_SIZE])
 /* Rank 0: takes away what an earlier run left, so that a killed run shows no file of another one */
 static void DirectoryClear(const char *directory)
 {
-  static const char *const names[] = {"summary.json", "results.xdmf", "results.h5", "checkpoint.h5", "checkpoint.h5.tmp"};
+  static const char *const names[] = {"summary.json", "results.xdmf", "results.h5", "checkpoint.h5",
+                                      "checkpoint.h5.tmp"};
   char                     path[EXTRAPOLATION_SIZE];
 
   for (size_t i = 0; i < sizeof(names) / sizeof(names[0]); i++) {
@@ -292,7 +311,8 @@ static PetscErrorCode ResultsReopenCsv(Results results, PetscBool *lost)
   KeyPathJoin(path, results->directory, "steps.csv");
   *lost = stat(path, &status) || status.st_size < length ? PETSC_TRUE : PETSC_FALSE;
   if (*lost) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCheck(!truncate(path, length) && (results->csv = fopen(path, "a")), PETSC_COMM_SELF, PETSC_ERR_FILE_OPEN, "Cannot write %s: %s", path, strerror(errno));
+  PetscCheck(!truncate(path, length) && (results->csv = fopen(path, "a")), PETSC_COMM_SELF, PETSC_ERR_FILE_OPEN,
+             "Cannot write %s: %s", path, strerror(errno));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -310,7 +330,8 @@ static PetscErrorCode ResultsOpenCsv(Results results)
     CsvPrintText(results->csv, results->scene->probes[i].name);
   }
   fputc('\n', results->csv);
-  PetscCheck(!fflush(results->csv), PETSC_COMM_SELF, PETSC_ERR_FILE_WRITE, "Cannot write %s: %s", path, strerror(errno));
+  PetscCheck(!fflush(results->csv), PETSC_COMM_SELF, PETSC_ERR_FILE_WRITE, "Cannot write %s: %s", path,
+             strerror(errno));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -358,7 +379,8 @@ static PetscErrorCode ResultsPrintCsv(Results results, const StepRecord *step)
     CsvPrintReal(csv, results->values[i]);
   }
   fputc('\n', csv);
-  PetscCheck(!fflush(csv), PETSC_COMM_SELF, PETSC_ERR_FILE_WRITE, "Cannot write %s/steps.csv: %s", results->directory, strerror(errno));
+  PetscCheck(!fflush(csv), PETSC_COMM_SELF, PETSC_ERR_FILE_WRITE, "Cannot write %s/steps.csv: %s", results->directory,
+             strerror(errno));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -370,7 +392,8 @@ static void ResultsPrintBlas(void)
   printf("BLAS     ");
   BlasPrint(&blas, stdout);
   if (blas.reference)
-    printf("warning: this is the reference BLAS; the direct solver is 6 to 7 times faster with OpenBLAS (Debian: apt install libopenblas0-serial)\n");
+    printf("warning: this is the reference BLAS; the direct solver is 6 to 7 times faster with OpenBLAS (Debian: apt "
+           "install libopenblas0-serial)\n");
 }
 
 static PetscErrorCode ResultsPrintSolver(Results results)
@@ -392,8 +415,8 @@ static PetscErrorCode ResultsPrintSolver(Results results)
   if (conditioner) PetscCall(PetscObjectTypeCompare((PetscObject)pc, PCSHELL, &own));
   if (own) PetscCall(PCShellGetName(pc, &conditioner));
   if (results->talks)
-    printf("solver   %s, %s%s%s\n", method ? method : "PETSc's default", conditioner ? conditioner : "PETSc's default", package ? ", " : "",
-           package ? package : "");
+    printf("solver   %s, %s%s%s\n", method ? method : "PETSc's default", conditioner ? conditioner : "PETSc's default",
+           package ? ", " : "", package ? package : "");
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -407,18 +430,19 @@ static PetscErrorCode ResultsPrintHead(Results results)
   PetscCall(ModelDofs(results->model, &dofs));
   if (results->talks) {
     printf("burnish %s: %s (%s)\n", BURNISH_VERSION, results->scene->name, results->scene->file);
-    printf("machine  %d rank%s, PETSc %d.%d.%d, %d-bit indices\n", results->size, results->size > 1 ? "s" : "", PETSC_VERSION_MAJOR, PETSC_VERSION_MINOR,
-           PETSC_VERSION_SUBMINOR, (int)(8 * sizeof(PetscInt)));
+    printf("machine  %d rank%s, PETSc %d.%d.%d, %d-bit indices\n", results->size, results->size > 1 ? "s" : "",
+           PETSC_VERSION_MAJOR, PETSC_VERSION_MINOR, PETSC_VERSION_SUBMINOR, (int)(8 * sizeof(PetscInt)));
     ResultsPrintBlas();
   }
-  if (results->talks && results->restarts) printf("restart  after step %lld, t = %g\n", (long long)results->last.step, (double)results->model->t);
+  if (results->talks && results->restarts)
+    printf("restart  after step %lld, t = %g\n", (long long)results->last.step, (double)results->model->t);
   PetscCall(ResultsPrintSolver(results));
   if (!results->quiet) PetscCall(MeshReport(results->model->mesh, results->scene, stdout));
   if (results->talks) printf("dofs     %lld free\neffects  %s\n", (long long)dofs, *effects ? effects : "none");
   if (!results->quiet) PetscCall(PrecheckMotions(results->model, stdout));
   if (results->talks) {
-    printf("\n%5s %9s %9s %10s %10s %5s %5s %8s %12s %8s %8s\n", "step", "t", "dt", "iterations", "in contact", "in", "out", "beta", "penetration", "spent",
-           "left");
+    printf("\n%5s %9s %9s %10s %10s %5s %5s %8s %12s %8s %8s\n", "step", "t", "dt", "iterations", "in contact", "in",
+           "out", "beta", "penetration", "spent", "left");
     fflush(stdout);
   }
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -445,7 +469,8 @@ static void ResultsPrintStep(Results results, const StepRecord *step)
 
   printf("%5lld %9.5g %9.3g %10lld", (long long)step->step, (double)step->t, (double)step->dt, (long long)step->newton);
   if (results->model->contact) {
-    printf(" %10lld %5lld %5lld", (long long)step->contact.nodes, (long long)step->contact.in, (long long)step->contact.out);
+    printf(" %10lld %5lld %5lld", (long long)step->contact.nodes, (long long)step->contact.in,
+           (long long)step->contact.out);
     if (isfinite((double)step->beta))
       printf(" %8.3g", (double)step->beta);
     else
@@ -453,8 +478,10 @@ static void ResultsPrintStep(Results results, const StepRecord *step)
     printf(" %12.3e", (double)step->contact.max_penetration);
   } else
     printf(" %10s %5s %5s %8s %12s", "-", "-", "-", "-", "-");
-  printf(" %8s %8s\n", DurationText(spent, spent_text), way > 0.0 ? DurationText(spent * (1.0 - (double)step->t) / way, left_text) : "-");
-  if (step->tied) printf("      %lld nodes come into contact together: no step above dt_min separates them\n", (long long)step->tied);
+  printf(" %8s %8s\n", DurationText(spent, spent_text),
+         way > 0.0 ? DurationText(spent * (1.0 - (double)step->t) / way, left_text) : "-");
+  if (step->tied)
+    printf("      %lld nodes come into contact together: no step above dt_min separates them\n", (long long)step->tied);
   fflush(stdout);
 }
 
@@ -463,7 +490,8 @@ static void ResultsPrintStep(Results results, const StepRecord *step)
 
   Input: model, probes (of that model), scene, directory, quiet (nothing on the terminal but errors).
 */
-PetscErrorCode ResultsCreate(Model model, Probes probes, Scene scene, const char *directory, PetscBool quiet, Results *result)
+PetscErrorCode ResultsCreate(Model model, Probes probes, Scene scene, const char *directory, PetscBool quiet,
+                             Results *result)
 {
   const MPI_Comm comm = model->mesh->comm;
   Results        results;
@@ -500,8 +528,8 @@ PetscErrorCode ResultsDestroy(Results *results)
 static void ResultsPrintLost(Results results, const char *name)
 {
   if (results->rank == 0)
-    fprintf(stderr, "burnish: warning: %s/%s is not what the checkpoint left: it begins anew after step %lld\n", results->directory, name,
-            (long long)results->last.step);
+    fprintf(stderr, "burnish: warning: %s/%s is not what the checkpoint left: it begins anew after step %lld\n",
+            results->directory, name, (long long)results->last.step);
 }
 
 /* The directory as it was at the loaded checkpoint. */
@@ -525,19 +553,25 @@ static PetscErrorCode ResultsResume(Results results)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Elements of first order with full integration keep their volume at every quadrature point where nu is near a half, and so hardly deform. */
+/* Elements of first order with full integration keep their volume at every quadrature point where nu is near a half,
+ * and so hardly deform. */
 static void ResultsPrintLocking(Results results)
 {
   const Scene scene = results->scene;
 
   for (int b = 0; b < scene->n_bodies && !results->rank && results->model->mesh->order == 1; b++) {
-    if (scene->bodies[b].rigid || scene->bodies[b].formulation != FORMULATION_FULL || scene->bodies[b].material.nu < LOCKING_NU) continue;
-    fprintf(stderr, "burnish: warning: %s: nu = %g with elements of first order and full integration: they lock (too stiff); mesh.order: 2 does not\n",
+    if (scene->bodies[b].rigid || scene->bodies[b].formulation != FORMULATION_FULL ||
+        scene->bodies[b].material.nu < LOCKING_NU)
+      continue;
+    fprintf(stderr,
+            "burnish: warning: %s: nu = %g with elements of first order and full integration: they lock (too stiff); "
+            "mesh.order: 2 does not\n",
             SceneWhere(scene, scene->bodies[b].path, "material.nu"), scene->bodies[b].material.nu);
   }
 }
 
-/* A mesher that merges the points in which two bodies touch has joined them: no load would part them, and no gap say so. */
+/* A mesher that merges the points in which two bodies touch has joined them: no load would part them, and no gap say
+ * so. */
 static PetscErrorCode ResultsPrintJoined(Results results)
 {
   const Scene  scene = results->scene;
@@ -551,16 +585,18 @@ static PetscErrorCode ResultsPrintJoined(Results results)
     PetscCall(ContactPairJoined(results->model->contact, p, &nodes, &place));
     if (results->rank || !nodes) continue;
     fprintf(stderr,
-            "burnish: warning: contact '%s': '%s' and '%s' have %" PetscInt_FMT " node%s in common, as node %" PetscInt_FMT
-            " (%.6g, %.6g, %.6g): there they are one body and never part\n",
-            contact->name, contact->slave, contact->master, nodes, nodes > 1 ? "s" : "", place.tag, (double)place.X[0], (double)place.X[1], (double)place.X[2]);
+            "burnish: warning: contact '%s': '%s' and '%s' have %" PetscInt_FMT
+            " node%s in common, as node %" PetscInt_FMT " (%.6g, %.6g, %.6g): there they are one body and never part\n",
+            contact->name, contact->slave, contact->master, nodes, nodes > 1 ? "s" : "", place.tag, (double)place.X[0],
+            (double)place.X[1], (double)place.X[2]);
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /*
-  ResultsStart - Makes the directory with the record of the scene and the head of steps.csv, and prints the run's first lines. The time
-  spent counts from here. Collective. Errors: refuses (exit 1) a directory that cannot be made or written.
+  ResultsStart - Makes the directory with the record of the scene and the head of steps.csv, and prints the run's first
+  lines. The time spent counts from here. Collective. Errors: refuses (exit 1) a directory that cannot be made or
+  written.
 */
 PetscErrorCode ResultsStart(Results results)
 {
@@ -613,8 +649,8 @@ static PetscErrorCode ResultsWatchContact(Results results)
 }
 
 /*
-  ResultsStep - An accepted step, while the model is in its state: probes, a row of steps.csv, a line on the terminal, and fields at every
-  output.every-th step. Collective.
+  ResultsStep - An accepted step, while the model is in its state: probes, a row of steps.csv, a line on the terminal,
+  and fields at every output.every-th step. Collective.
 */
 PetscErrorCode ResultsStep(Results results, const StepRecord *step)
 {
@@ -678,8 +714,8 @@ static PetscErrorCode ResultsArchiveStep(Results results, Archive archive)
 /*
   ResultsArchive - Saves or takes over what the directory holds up to the last accepted step. Collective.
 
-  Saving also sends steps.csv to the disk. Loading comes between ResultsCreate() and ResultsStart(), which then takes the directory's files back to this
-  step; nothing is touched before.
+  Saving also sends steps.csv to the disk. Loading comes between ResultsCreate() and ResultsStart(), which then takes
+  the directory's files back to this step; nothing is touched before.
 */
 PetscErrorCode ResultsArchive(Results results, Archive archive)
 {
@@ -745,7 +781,8 @@ static PetscErrorCode ResultsPrintUnused(Results results)
   PetscFunctionBeginUser;
   if (results->rank) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscOptionsLeftGet(NULL, &n, &names, &values));
-  for (PetscInt i = 0; i < n; i++) fprintf(stderr, "burnish: warning: nothing used the PETSc option -%s; is it misspelt?\n", names[i]);
+  for (PetscInt i = 0; i < n; i++)
+    fprintf(stderr, "burnish: warning: nothing used the PETSc option -%s; is it misspelt?\n", names[i]);
   PetscCall(PetscOptionsLeftRestore(NULL, &n, &names, &values));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -762,15 +799,18 @@ static PetscErrorCode ResultsPrintWindows(Results results)
     if (!results->scene->contacts[p].adjust && !results->scene->contacts[p].augment) continue;
     PetscCall(ContactPairWindow(contact, p, &window));
     if (results->talks && results->scene->contacts[p].augment)
-      printf("penalty of %s: augmented %lld times, %lld steps beyond g_max all the same; at the end %lld of %lld nodes in contact, largest penetration or "
+      printf("penalty of %s: augmented %lld times, %lld steps beyond g_max all the same; at the end %lld of %lld nodes "
+             "in contact, largest penetration or "
              "opening %.3g g_max\n",
-             ContactPairName(contact, p), (long long)window.augmented, (long long)window.missed, (long long)window.outside, (long long)window.loaded,
-             (double)window.excess);
-    else if (results->talks)
-      printf("penalty of %s: raised %lld times, lowered %lld, cut short %lld, light nodes spared %lld; at the end %lld of %lld loaded nodes outside the "
-             "window, largest penetration %.3g g_max\n",
-             ContactPairName(contact, p), (long long)window.raised, (long long)window.lowered, (long long)window.clamped, (long long)window.light,
+             ContactPairName(contact, p), (long long)window.augmented, (long long)window.missed,
              (long long)window.outside, (long long)window.loaded, (double)window.excess);
+    else if (results->talks)
+      printf("penalty of %s: raised %lld times, lowered %lld, cut short %lld, light nodes spared %lld; at the end %lld "
+             "of %lld loaded nodes outside the "
+             "window, largest penetration %.3g g_max\n",
+             ContactPairName(contact, p), (long long)window.raised, (long long)window.lowered,
+             (long long)window.clamped, (long long)window.light, (long long)window.outside, (long long)window.loaded,
+             (double)window.excess);
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -785,7 +825,9 @@ static void ResultsPrintUnmet(Results results)
     const SceneContact *contact = &scene->contacts[p];
 
     if (results->met[p]) continue;
-    fprintf(stderr, "burnish: warning: contact '%s': no node of '%s' met '%s' in this run; if it should have: do the master's normals point to the slave?\n",
+    fprintf(stderr,
+            "burnish: warning: contact '%s': no node of '%s' met '%s' in this run; if it should have: do the master's "
+            "normals point to the slave?\n",
             contact->name, contact->slave, contact->master);
   }
 }
@@ -794,7 +836,9 @@ static void ResultsPrintUnmet(Results results)
 static void ResultsPrintDeep(Results results)
 {
   if (results->rank || !(results->deepest > 1)) return;
-  fprintf(stderr, "burnish: warning: a slave node was up to %.3g face sizes behind its master: the penalty is too soft for what presses\n",
+  fprintf(stderr,
+          "burnish: warning: a slave node was up to %.3g face sizes behind its master: the penalty is too soft for "
+          "what presses\n",
           (double)results->deepest);
 }
 
@@ -805,13 +849,15 @@ static void ResultsPrintLinear(Results results, const RunRecord *run)
 
   LinearCheckGetCounts(results->model->linear, &counts);
   if (results->talks && counts.refined)
-    printf("linear solves: %lld of %lld refined, in %lld steps\n", (long long)counts.refined, (long long)counts.solves, (long long)counts.steps);
+    printf("linear solves: %lld of %lld refined, in %lld steps\n", (long long)counts.refined, (long long)counts.solves,
+           (long long)counts.steps);
   if (results->rank || !counts.inaccurate) return;
-  fprintf(
-    stderr,
-    "burnish: warning: %lld of %lld linear solves left a relative residual of up to %.2g, more than 100 times the tolerance, and refinement could not lower "
-    "it; %sthe system is badly conditioned: is a penalty too large?\n",
-    (long long)counts.inaccurate, (long long)counts.solves, (double)counts.worst, run->message ? "" : "Newton's method converged all the same, but ");
+  fprintf(stderr,
+          "burnish: warning: %lld of %lld linear solves left a relative residual of up to %.2g, more than 100 times "
+          "the tolerance, and refinement could not lower "
+          "it; %sthe system is badly conditioned: is a penalty too large?\n",
+          (long long)counts.inaccurate, (long long)counts.solves, (double)counts.worst,
+          run->message ? "" : "Newton's method converged all the same, but ");
 }
 
 static void ResultsPrintEnd(Results results, const RunRecord *run)
@@ -821,20 +867,22 @@ static void ResultsPrintEnd(Results results, const RunRecord *run)
   if (results->rank == 0 && run->message) fprintf(stderr, "burnish: %s: %s\n", run->status, run->message);
   if (!results->talks) return;
   if (run->way->relaxed)
-    printf("stabilised pairs: springs relaxed %lld times, took out an energy of %.3g, hold at most %.2g of an accepted state's\n", (long long)run->way->relaxed,
-           (double)run->way->taken, (double)run->way->left);
+    printf("stabilised pairs: springs relaxed %lld times, took out an energy of %.3g, hold at most %.2g of an accepted "
+           "state's\n",
+           (long long)run->way->relaxed, (double)run->way->taken, (double)run->way->left);
   if (run->way->cycles)
-    printf("contact sets that repeated themselves: %lld, steps cut for it %lld; the last time %s\n", (long long)run->way->cycles,
-           (long long)run->way->cycles_cut, run->way->cycle);
-  printf("%s: %lld steps (%lld failed, %lld repeated), %lld iterations, %s; results in %s\n", run->status, (long long)run->way->steps,
-         (long long)run->way->steps_failed, (long long)run->way->steps_repeated, (long long)run->way->newton_iterations,
-         DurationText((double)run->wall_s, text), results->directory);
+    printf("contact sets that repeated themselves: %lld, steps cut for it %lld; the last time %s\n",
+           (long long)run->way->cycles, (long long)run->way->cycles_cut, run->way->cycle);
+  printf("%s: %lld steps (%lld failed, %lld repeated), %lld iterations, %s; results in %s\n", run->status,
+         (long long)run->way->steps, (long long)run->way->steps_failed, (long long)run->way->steps_repeated,
+         (long long)run->way->newton_iterations, DurationText((double)run->wall_s, text), results->directory);
   fflush(stdout);
 }
 
 /*
-  ResultsFinish - The last accepted state into results.h5 unless it is there, summary.json, and the last lines on the terminal. To be called
-  however the run ended, with the model in its last accepted state. A message in the record goes to stderr, also when quiet. Collective.
+  ResultsFinish - The last accepted state into results.h5 unless it is there, summary.json, and the last lines on the
+  terminal. To be called however the run ended, with the model in its last accepted state. A message in the record goes
+  to stderr, also when quiet. Collective.
 */
 PetscErrorCode ResultsFinish(Results results, const RunRecord *run)
 {
@@ -847,7 +895,8 @@ PetscErrorCode ResultsFinish(Results results, const RunRecord *run)
   TimingEnd(TIMING_OUTPUT);
   PetscCall(ResultsUsage(results, &usage));
   usage.wall_s = results->before.wall_s + run->wall_s;
-  PetscCall(RunFiguresCollect(results->model, results->scene, run, &usage, results->restarts, results->stepped ? &results->last : NULL, &figures));
+  PetscCall(RunFiguresCollect(results->model, results->scene, run, &usage, results->restarts,
+                              results->stepped ? &results->last : NULL, &figures));
   if (!results->rank) PetscCall(SummaryWrite(results->model->mesh, &figures, results->directory, results->values));
   PetscCall(ResultsPrintProbes(results));
   PetscCall(ResultsPrintWindows(results));

@@ -2,7 +2,8 @@
 #include "linear/directsolver.h"
 #include <sys/resource.h>
 
-/* RunUsageCollect - what this program has used since it started, the same on all ranks; wall_s is left alone. Collective. */
+/* RunUsageCollect - what this program has used since it started, the same on all ranks; wall_s is left alone.
+ * Collective. */
 PetscErrorCode RunUsageCollect(MPI_Comm comm, RunUsage *usage)
 {
   struct rusage self;
@@ -10,7 +11,8 @@ PetscErrorCode RunUsageCollect(MPI_Comm comm, RunUsage *usage)
   PetscFunctionBeginUser;
   PetscCheck(!getrusage(RUSAGE_SELF, &self), PETSC_COMM_SELF, PETSC_ERR_SYS, "getrusage failed");
   for (int k = 0; k < TIMING_KINDS; k++) usage->seconds[k] = TimingSeconds((TimingKind)k);
-  usage->cpu_s       = (PetscReal)(self.ru_utime.tv_sec + self.ru_stime.tv_sec) + 1e-6 * (PetscReal)(self.ru_utime.tv_usec + self.ru_stime.tv_usec);
+  usage->cpu_s = (PetscReal)(self.ru_utime.tv_sec + self.ru_stime.tv_sec) +
+                 1e-6 * (PetscReal)(self.ru_utime.tv_usec + self.ru_stime.tv_usec);
   usage->peak_rss_mb = (PetscReal)self.ru_maxrss / 1024.0; /* Linux counts kilobytes */
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, usage->seconds, TIMING_KINDS, MPIU_REAL, MPI_MAX, comm));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &usage->cpu_s, 1, MPIU_REAL, MPI_SUM, comm));
@@ -30,17 +32,23 @@ static PetscErrorCode CollectPair(Contact contact, int p, PairFigures *pair)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* RunFiguresCollect - what there is to say of a run, the same on all ranks; with the model in its last accepted state. Collective. */
-PetscErrorCode RunFiguresCollect(Model model, Scene scene, const RunRecord *run, const RunUsage *usage, PetscInt restarts, const StepRecord *last,
-                                 RunFigures *figures)
+/* RunFiguresCollect - what there is to say of a run, the same on all ranks; with the model in its last accepted state.
+ * Collective. */
+PetscErrorCode RunFiguresCollect(Model model, Scene scene, const RunRecord *run, const RunUsage *usage,
+                                 PetscInt restarts, const StepRecord *last, RunFigures *figures)
 {
   PetscMPIInt ranks;
   KSP         ksp;
 
   PetscFunctionBeginUser;
   PetscCallMPI(MPI_Comm_size(model->mesh->comm, &ranks));
-  *figures =
-    (RunFigures){.scene = scene, .run = run, .usage = *usage, .restarts = restarts, .last = last, .ranks = ranks, .n_pairs = ContactPairs(model->contact)};
+  *figures = (RunFigures){.scene    = scene,
+                          .run      = run,
+                          .usage    = *usage,
+                          .restarts = restarts,
+                          .last     = last,
+                          .ranks    = ranks,
+                          .n_pairs  = ContactPairs(model->contact)};
   PetscCall(ModelDofs(model, &figures->dofs));
   PetscCall(ModelEffects(model, figures->effects, sizeof(figures->effects)));
   LinearCheckGetCounts(model->linear, &figures->linear);
@@ -60,7 +68,8 @@ PetscErrorCode RunFiguresDestroy(RunFigures *figures)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* PairSurfaceError - how far the surface that contact is solved on lies off the one that is meant, as far as the run knows. Not collective. */
+/* PairSurfaceError - how far the surface that contact is solved on lies off the one that is meant, as far as the run
+ * knows. Not collective. */
 PetscReal PairSurfaceError(const PairFigures *pair)
 {
   return pair->fits.points ? pair->fits.smoothing_error : pair->quality.sagitta;

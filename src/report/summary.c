@@ -39,7 +39,8 @@ static PetscErrorCode AddOptions(cJSON *json, Scene scene)
   cJSON_AddStringToObject(options, "petsc", all);
   PetscCall(PetscFree(all));
   map = cJSON_AddObjectToObject(options, "scene");
-  for (int i = 0; i < scene->n_petsc; i++) cJSON_AddStringToObject(map, scene->petsc[i].key, scene->petsc[i].value ? scene->petsc[i].value : "");
+  for (int i = 0; i < scene->n_petsc; i++)
+    cJSON_AddStringToObject(map, scene->petsc[i].key, scene->petsc[i].value ? scene->petsc[i].value : "");
   unused = cJSON_AddArrayToObject(options, "unused");
   PetscCall(PetscOptionsLeftGet(NULL, &n, &names, &values));
   for (PetscInt i = 0; i < n; i++) cJSON_AddItemToArray(unused, cJSON_CreateString(names[i]));
@@ -197,8 +198,8 @@ static void AddContact(cJSON *json, const RunFigures *figures)
 /*
   SummaryWrite - Writes summary.json under a temporary name and renames it. Not collective; for one rank.
 
-  Input: mesh, figures, directory (exists), probes[n_probes of the scene] (final values, NaN: none). Errors: PETSC_ERR_FILE_OPEN,
-  PETSC_ERR_FILE_WRITE, PETSC_ERR_MEM.
+  Input: mesh, figures, directory (exists), probes[n_probes of the scene] (final values, NaN: none). Errors:
+  PETSC_ERR_FILE_OPEN, PETSC_ERR_FILE_WRITE, PETSC_ERR_MEM.
 */
 PetscErrorCode SummaryWrite(const Mesh mesh, const RunFigures *figures, const char *directory, const PetscReal *probes)
 {

@@ -6,8 +6,9 @@
 enum { EXTRAPOLATION_SIZE = 512 };
 
 static const char *const topology[ELEMENT_TYPES] = {
-  [ELEMENT_TRI3] = "Triangle",    [ELEMENT_TRI6] = "Triangle_6",      [ELEMENT_QUAD4] = "Quadrilateral", [ELEMENT_QUAD9] = "Quadrilateral_9",
-  [ELEMENT_TET4] = "Tetrahedron", [ELEMENT_TET10] = "Tetrahedron_10", [ELEMENT_HEX8] = "Hexahedron",     [ELEMENT_HEX27] = "Hexahedron_27",
+  [ELEMENT_TRI3] = "Triangle",         [ELEMENT_TRI6] = "Triangle_6",     [ELEMENT_QUAD4] = "Quadrilateral",
+  [ELEMENT_QUAD9] = "Quadrilateral_9", [ELEMENT_TET4] = "Tetrahedron",    [ELEMENT_TET10] = "Tetrahedron_10",
+  [ELEMENT_HEX8] = "Hexahedron",       [ELEMENT_HEX27] = "Hexahedron_27",
 };
 
 static const char *const attribute_type[] = {[1] = "Scalar", [3] = "Vector", [6] = "Matrix"}; /* by width */
@@ -32,14 +33,15 @@ static void XdmfPrintDataset(FILE *out, const char *type, PetscInt n, int width,
   fprintf(out, "\">results.h5:%s</DataItem>", path);
 }
 
-/* Six components go as a matrix: ParaView's readers do not agree on the order of a symmetric tensor. It names the columns of such a
-   matrix XX YY ZZ XY YZ XZ, which is our order. */
+/* Six components go as a matrix: ParaView's readers do not agree on the order of a symmetric tensor. It names the
+   columns of such a matrix XX YY ZZ XY YZ XZ, which is our order. */
 static void XdmfPrintAttribute(FILE *out, const XdmfArray *array, PetscInt n, PetscInt step)
 {
   char path[EXTRAPOLATION_SIZE];
 
   snprintf(path, sizeof(path), "/steps/%04d/%s", (int)step, array->name);
-  fprintf(out, "    <Attribute Name=\"%s\" AttributeType=\"%s\" Center=\"Node\">", array->name, attribute_type[array->width]);
+  fprintf(out, "    <Attribute Name=\"%s\" AttributeType=\"%s\" Center=\"Node\">", array->name,
+          attribute_type[array->width]);
   XdmfPrintDataset(out, "Float", n, array->width, path);
   fprintf(out, "</Attribute>\n");
 }
@@ -53,7 +55,8 @@ static void XdmfPrintGrid(const Xdmf *xdmf, FILE *out, int b, PetscInt step)
 
   fprintf(out, "   <Grid Name=\"");
   XdmfPrintText(out, block->body);
-  fprintf(out, " %s\">\n    <Topology TopologyType=\"%s\" NumberOfElements=\"%lld\">", element->name, topology[block->type], (long long)block->n);
+  fprintf(out, " %s\">\n    <Topology TopologyType=\"%s\" NumberOfElements=\"%lld\">", element->name,
+          topology[block->type], (long long)block->n);
   snprintf(path, sizeof(path), "/mesh/block_%d", b);
   XdmfPrintDataset(out, "Int", block->n, element->nodes, path);
   fprintf(out, "</Topology>\n    <Geometry GeometryType=\"XYZ\">");
@@ -81,7 +84,9 @@ PetscErrorCode XdmfWrite(const Xdmf *xdmf, const char *directory)
   XdmfPrintText(out, xdmf->name);
   fprintf(out, "\" GridType=\"Collection\" CollectionType=\"Temporal\">\n");
   for (PetscInt s = 0; s < xdmf->n_steps; s++) {
-    fprintf(out, "  <Grid Name=\"%04d\" GridType=\"Collection\" CollectionType=\"Spatial\">\n   <Time Value=\"%.15g\"/>\n", (int)s, (double)xdmf->t[s]);
+    fprintf(out,
+            "  <Grid Name=\"%04d\" GridType=\"Collection\" CollectionType=\"Spatial\">\n   <Time Value=\"%.15g\"/>\n",
+            (int)s, (double)xdmf->t[s]);
     for (int b = 0; b < xdmf->n_blocks; b++) XdmfPrintGrid(xdmf, out, b, s);
     fprintf(out, "  </Grid>\n");
   }

@@ -4,9 +4,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const char Usage[] = "usage: burnish [-check | -mesh] SCENE.yaml [-o DIR] [-set KEY=VALUE]... [-overwrite] [-quiet] [PETSc options]\n"
-                            "       burnish -restart DIR [-set KEY=VALUE]... [-quiet] [PETSc options]\n"
-                            "       burnish -help | -version";
+static const char Usage[] =
+  "usage: burnish [-check | -mesh] SCENE.yaml [-o DIR] [-set KEY=VALUE]... [-overwrite] [-quiet] [PETSc options]\n"
+  "       burnish -restart DIR [-set KEY=VALUE]... [-quiet] [PETSc options]\n"
+  "       burnish -help | -version";
 
 static void CommandLineComplain(CommandLine *line, const char *what, const char *about)
 {
@@ -64,10 +65,15 @@ static void CommandLineSetLimit(CommandLine *line, const char *value)
 /* What goes with what */
 static void CommandLineCheck(CommandLine *line)
 {
-  if (line->restart && line->scene) CommandLineComplain(line, "-restart goes on with the scene of its checkpoint; leave the scene file out", line->scene);
-  if (line->restart && line->directory) CommandLineComplain(line, "-restart goes on in its own directory; leave -o out", line->directory);
-  if (line->restart && line->overwrite) CommandLineComplain(line, "goes without -restart, which overwrites nothing", "-overwrite");
-  if (line->restart && line->mode != COMMAND_RUN) CommandLineComplain(line, "goes without -check and -mesh", "-restart");
+  if (line->restart && line->scene)
+    CommandLineComplain(line, "-restart goes on with the scene of its checkpoint; leave the scene file out",
+                        line->scene);
+  if (line->restart && line->directory)
+    CommandLineComplain(line, "-restart goes on in its own directory; leave -o out", line->directory);
+  if (line->restart && line->overwrite)
+    CommandLineComplain(line, "goes without -restart, which overwrites nothing", "-overwrite");
+  if (line->restart && line->mode != COMMAND_RUN)
+    CommandLineComplain(line, "goes without -check and -mesh", "-restart");
   if (!line->restart && !line->scene) CommandLineComplain(line, "no scene file", "command line");
 }
 
@@ -82,7 +88,8 @@ static int CommandLineOption(CommandLine *line, int argc, char **argv, int *i)
     line->directory = CommandLineValue(line, argc, argv, i, "needs a directory");
   } else if (!strcmp(word, "-set")) {
     value = CommandLineValue(line, argc, argv, i, "needs KEY=VALUE, such as contact.0.smoother=facet");
-    if (value && (value[0] == '=' || !strchr(value, '='))) CommandLineComplain(line, "-set needs KEY=VALUE, such as contact.0.smoother=facet", value);
+    if (value && (value[0] == '=' || !strchr(value, '=')))
+      CommandLineComplain(line, "-set needs KEY=VALUE, such as contact.0.smoother=facet", value);
     line->set[line->n_set++] = value;
   } else if (!strcmp(word, "-check") || !strcmp(word, "-mesh")) {
     CommandLineSetMode(line, word[1] == 'c' ? COMMAND_CHECK : COMMAND_MESH, word);
@@ -102,9 +109,10 @@ static int CommandLineOption(CommandLine *line, int argc, char **argv, int *i)
 
 /* CommandLineParse - sorts the arguments into ours and PETSc's.
 
-   Not collective, before MPI starts. A bare word that ends in .yaml or .yml and follows no PETSc option is the scene file; one that follows a
-   PETSc option is the scene only where there is no other, since it may be that option's value. Other bare words after a PETSc option are
-   its values and stay in line->argv. Never prints; a mistake is told in line->complaint. Free with CommandLineDestroy(). */
+   Not collective, before MPI starts. A bare word that ends in .yaml or .yml and follows no PETSc option is the scene
+   file; one that follows a PETSc option is the scene only where there is no other, since it may be that option's value.
+   Other bare words after a PETSc option are its values and stay in line->argv. Never prints; a mistake is told in
+   line->complaint. Free with CommandLineDestroy(). */
 void CommandLineParse(int argc, char **argv, CommandLine *line)
 {
   int maybe = 0; /* place in line->argv of a word that is the scene or the value of the option before it */
@@ -150,7 +158,8 @@ void CommandLineParse(int argc, char **argv, CommandLine *line)
   }
 }
 
-/* CommandLineDestroy - frees what CommandLineParse() made. Not collective; after PetscFinalize(), which still looks at argv. */
+/* CommandLineDestroy - frees what CommandLineParse() made. Not collective; after PetscFinalize(), which still looks at
+ * argv. */
 void CommandLineDestroy(CommandLine *line)
 {
   free(line->set);
@@ -169,15 +178,19 @@ void CommandLineHelp(FILE *file)
         "  burnish -help | -version\n\n"
         "  -o DIR           where results go (default out/NAME)\n"
         "  -set KEY=VALUE   overrides or adds one value of the scene by its path, such as contact.0.smoother=facet or\n"
-        "                   'loads.0={surface: top, uy: -1}'; repeatable, the last one wins; with -restart only of output,\n"
+        "                   'loads.0={surface: top, uy: -1}'; repeatable, the last one wins; with -restart only of "
+        "output,\n"
         "                   solver and stepping\n"
         "  -overwrite       lets DIR hold another scene's results\n"
         "  -quiet           no progress on the terminal\n"
-        "  -time_limit S    ends the run after the step that leaves just the time to write a checkpoint, S seconds from its start\n"
+        "  -time_limit S    ends the run after the step that leaves just the time to write a checkpoint, S seconds "
+        "from its start\n"
         "All other options are PETSc's.\n\n"
-        "A run writes DIR/checkpoint.h5 every output.checkpoint steps, when it fails, and when SIGUSR1 (to mpirun, which passes it\n"
+        "A run writes DIR/checkpoint.h5 every output.checkpoint steps, when it fails, and when SIGUSR1 (to mpirun, "
+        "which passes it\n"
         "on, or to any rank), SIGTERM (to any rank) or -time_limit ends it after the current step.\n\n"
-        "Exit status: 0 done, 1 wrong input, 2 did not converge, 3 stopped after a checkpoint, 4 machine or internal error.\n\n"
+        "Exit status: 0 done, 1 wrong input, 2 did not converge, 3 stopped after a checkpoint, 4 machine or internal "
+        "error.\n\n"
         "Scene file (YAML; file names in it start at its own folder):\n\n",
         file);
   SchemaReference(file);
@@ -189,7 +202,8 @@ void CommandLineVersion(FILE *file)
   Blas blas;
 
   BlasFind(&blas);
-  fprintf(file, "burnish %s, PETSc %d.%d.%d\n", BURNISH_VERSION, PETSC_VERSION_MAJOR, PETSC_VERSION_MINOR, PETSC_VERSION_SUBMINOR);
+  fprintf(file, "burnish %s, PETSc %d.%d.%d\n", BURNISH_VERSION, PETSC_VERSION_MAJOR, PETSC_VERSION_MINOR,
+          PETSC_VERSION_SUBMINOR);
   fprintf(file, "BLAS ");
   BlasPrint(&blas, file);
 }

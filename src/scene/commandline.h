@@ -1,5 +1,6 @@
-/* What the user typed: ours of the arguments, and the rest for PETSc. Parsed before PetscInitialize(), because -help, -version and a repeated
-   -set are ours; plain C that prints nothing, so that main can start MPI first and then print once, on rank 0. */
+/* What the user typed: ours of the arguments, and the rest for PETSc. Parsed before PetscInitialize(), because -help,
+   -version and a repeated -set are ours; plain C that prints nothing, so that main can start MPI first and then print
+   once, on rank 0. */
 #pragma once
 #include <stdio.h>
 

@@ -31,7 +31,8 @@ int KeyPathComponentIsIndex(const char *path)
 /* KeyPathJoin - parent.key, or key alone below the root, into path[EXTRAPOLATION_LENGTH]. Not collective. */
 void KeyPathJoin(char path[EXTRAPOLATION_LENGTH], const char *parent, const char *key)
 {
-  snprintf(path, EXTRAPOLATION_LENGTH, "%.*s%s%.*s", EXTRAPOLATION_LENGTH / 2, parent, *parent ? "." : "", EXTRAPOLATION_LENGTH / 2 - 2, key);
+  snprintf(path, EXTRAPOLATION_LENGTH, "%.*s%s%.*s", EXTRAPOLATION_LENGTH / 2, parent, *parent ? "." : "",
+           EXTRAPOLATION_LENGTH / 2 - 2, key);
 }
 
 /* KeyPathJoinIndex - parent.index into path[EXTRAPOLATION_LENGTH]. Not collective. */
@@ -45,7 +46,8 @@ void KeyPathJoinIndex(char path[EXTRAPOLATION_LENGTH], const char *parent, int i
 
 /* ---- nodes ---- */
 
-/* NodeChild - the child of a list or map that the first component of path names; NULL if there is none. Not collective. */
+/* NodeChild - the child of a list or map that the first component of path names; NULL if there is none. Not collective.
+ */
 Node NodeChild(Node node, const char *path)
 {
   const size_t n = KeyPathComponent(path);
@@ -68,30 +70,35 @@ Node NodeFind(Node node, const char *path)
   return node;
 }
 
-/* NodeReal - the value of a scalar that is a number in decimal notation, from its first character to its last; no hexadecimal, nan, inf.
+/* NodeReal - the value of a scalar that is a number in decimal notation, from its first character to its last; no
+   hexadecimal, nan, inf.
 
    Not collective. Returns 0 where it is not one (or too large for a double). The C locale is the program's. */
 int NodeReal(Node node, double *value)
 {
   char *end;
 
-  if (node->kind != NODE_SCALAR || !node->plain || !*node->text || node->text[strspn(node->text, "0123456789+-.eE")]) return 0;
+  if (node->kind != NODE_SCALAR || !node->plain || !*node->text || node->text[strspn(node->text, "0123456789+-.eE")])
+    return 0;
   *value = strtod(node->text, &end);
   return !*end && isfinite(*value);
 }
 
-/* NodeInteger - the value of a scalar that is a whole number in decimal notation. Not collective. Returns 0 where it is not one. */
+/* NodeInteger - the value of a scalar that is a whole number in decimal notation. Not collective. Returns 0 where it is
+ * not one. */
 int NodeInteger(Node node, long *value)
 {
   char *end;
 
-  if (node->kind != NODE_SCALAR || !node->plain || !*node->text || node->text[strspn(node->text, "0123456789+-")]) return 0;
+  if (node->kind != NODE_SCALAR || !node->plain || !*node->text || node->text[strspn(node->text, "0123456789+-")])
+    return 0;
   errno  = 0;
   *value = strtol(node->text, &end, 10);
   return !*end && !errno;
 }
 
-/* NodeBoolean - the value of a scalar that is true or false, in these words. Not collective. Returns 0 where it is not one. */
+/* NodeBoolean - the value of a scalar that is true or false, in these words. Not collective. Returns 0 where it is not
+ * one. */
 int NodeBoolean(Node node, int *value)
 {
   *value = node->kind == NODE_SCALAR && node->plain && !strcmp(node->text, "true");
@@ -103,7 +110,8 @@ int NodeBoolean(Node node, int *value)
 static const char *DocumentWhereNode(Document *document, Node node, const char *path)
 {
   if (!node->set)
-    snprintf(document->where, sizeof document->where, "%.400s:%d%s%s", document->file, node->line, *path ? ": " : "", path);
+    snprintf(document->where, sizeof document->where, "%.400s:%d%s%s", document->file, node->line, *path ? ": " : "",
+             path);
   else if (!strcmp(node->set, path))
     snprintf(document->where, sizeof document->where, "-set %s", path);
   else
@@ -111,8 +119,8 @@ static const char *DocumentWhereNode(Document *document, Node node, const char *
   return document->where;
 }
 
-/* DocumentWhere - "FILE:LINE: PATH", the line being that of the path or of its nearest ancestor in the file; "-set KEY" in place of file and
-   line if it came from there. Valid until the next call. Not collective. */
+/* DocumentWhere - "FILE:LINE: PATH", the line being that of the path or of its nearest ancestor in the file; "-set KEY"
+   in place of file and line if it came from there. Valid until the next call. Not collective. */
 const char *DocumentWhere(Document *document, const char *path)
 {
   Node        node = document->root, next = node;
@@ -126,7 +134,8 @@ const char *DocumentWhere(Document *document, const char *path)
   return DocumentWhereNode(document, node, path);
 }
 
-static void DocumentRefuseList(Document *document, const char *where, const char *format, va_list arguments) __attribute__((noreturn));
+static void DocumentRefuseList(Document *document, const char *where, const char *format, va_list arguments)
+  __attribute__((noreturn));
 static void DocumentRefuseList(Document *document, const char *where, const char *format, va_list arguments)
 {
   char text[1024];
@@ -136,7 +145,8 @@ static void DocumentRefuseList(Document *document, const char *where, const char
   exit(EXIT_WRONG_INPUT);
 }
 
-/* DocumentRefuse - refuses the value at a path, which need not be there. Collective, does not return; printf's format. */
+/* DocumentRefuse - refuses the value at a path, which need not be there. Collective, does not return; printf's format.
+ */
 void DocumentRefuse(Document *document, const char *path, const char *format, ...)
 {
   va_list arguments;
@@ -224,12 +234,14 @@ static PetscErrorCode TreeReadMap(TreeReader *reader, const yaml_node_t *yaml, c
     const int          line = (int)key->start_mark.line + 1;
     const char        *text = (const char *)key->data.scalar.value;
 
-    if (key->type != YAML_SCALAR_NODE) DocumentRefuseNode(reader->document, map, path, "a key is a list or a map (line %d); allowed: names", line);
+    if (key->type != YAML_SCALAR_NODE)
+      DocumentRefuseNode(reader->document, map, path, "a key is a list or a map (line %d); allowed: names", line);
     KeyPathJoin(below, path, text);
     for (int i = 0; i < map->n; i++) {
       if (strcmp(map->key[i], text)) continue;
       PetscCall(NodeCreate(NODE_SCALAR, line, reader->set, &child));
-      DocumentRefuseNode(reader->document, child, below, "duplicate key, first in line %d; allowed: once", map->child[i]->line);
+      DocumentRefuseNode(reader->document, child, below, "duplicate key, first in line %d; allowed: once",
+                         map->child[i]->line);
     }
     PetscCall(TreeRead(reader, pair->value, line, below, depth + 1, &child));
     PetscCall(NodeAppend(map, text, child));
@@ -242,20 +254,26 @@ static PetscErrorCode TreeRead(TreeReader *reader, int id, int line, const char 
 {
   static const char *const Tags[] = {YAML_DEFAULT_SCALAR_TAG, YAML_DEFAULT_SEQUENCE_TAG, YAML_DEFAULT_MAPPING_TAG};
   const yaml_node_t       *yaml   = yaml_document_get_node(reader->yaml, id);
-  const NodeKind           kind   = yaml->type == YAML_SCALAR_NODE ? NODE_SCALAR : yaml->type == YAML_SEQUENCE_NODE ? NODE_LIST : NODE_MAP;
+  const NodeKind           kind   = yaml->type == YAML_SCALAR_NODE     ? NODE_SCALAR
+                                    : yaml->type == YAML_SEQUENCE_NODE ? NODE_LIST
+                                                                       : NODE_MAP;
   char                     below[EXTRAPOLATION_LENGTH], index[16];
   Node                     child;
 
   PetscFunctionBeginUser;
   PetscCall(NodeCreate(kind, line ? line : (int)yaml->start_mark.line + 1, reader->set, node));
-  if (depth > SCENE_MAX_DEPTH) DocumentRefuseNode(reader->document, *node, path, "is nested too deeply; allowed: %d levels", SCENE_MAX_DEPTH);
-  if (reader->visited[id]) DocumentRefuseNode(reader->document, *node, path, "is a YAML alias; allowed: the value written out");
+  if (depth > SCENE_MAX_DEPTH)
+    DocumentRefuseNode(reader->document, *node, path, "is nested too deeply; allowed: %d levels", SCENE_MAX_DEPTH);
+  if (reader->visited[id])
+    DocumentRefuseNode(reader->document, *node, path, "is a YAML alias; allowed: the value written out");
   reader->visited[id] = PETSC_TRUE;
-  if (strcmp((const char *)yaml->tag, Tags[kind])) DocumentRefuseNode(reader->document, *node, path, "has a YAML tag; allowed: plain values");
+  if (strcmp((const char *)yaml->tag, Tags[kind]))
+    DocumentRefuseNode(reader->document, *node, path, "has a YAML tag; allowed: plain values");
   if (kind == NODE_SCALAR) {
     (*node)->plain = yaml->data.scalar.style == YAML_PLAIN_SCALAR_STYLE;
     PetscCall(PetscStrallocpy((const char *)yaml->data.scalar.value, &(*node)->text));
-    if (strlen((*node)->text) != yaml->data.scalar.length) DocumentRefuseNode(reader->document, *node, path, "has a zero character; allowed: text");
+    if (strlen((*node)->text) != yaml->data.scalar.length)
+      DocumentRefuseNode(reader->document, *node, path, "has a zero character; allowed: text");
   } else if (kind == NODE_MAP) {
     PetscCall(TreeReadMap(reader, yaml, path, depth, *node));
   } else {
@@ -280,7 +298,8 @@ static PetscBool LineStartsWithTab(const char *text, size_t length, size_t line)
 }
 
 /* Ends with libyaml's own complaint. A tab is named, because it cannot be seen in an editor. */
-static PetscErrorCode DocumentRefuseYaml(Document *document, const yaml_parser_t *parser, const char *text, size_t length, const char *set)
+static PetscErrorCode DocumentRefuseYaml(Document *document, const yaml_parser_t *parser, const char *text,
+                                         size_t length, const char *set)
 {
   const yaml_mark_t mark = parser->problem_mark;
   int               line = (int)mark.line + 1;
@@ -294,12 +313,13 @@ static PetscErrorCode DocumentRefuseYaml(Document *document, const yaml_parser_t
   PetscCall(NodeCreate(NODE_SCALAR, line, set, &place));
   if (parser->error != YAML_READER_ERROR && LineStartsWithTab(text, length, mark.line))
     DocumentRefuseNode(document, place, set ? set : "", "a tab; allowed: spaces");
-  DocumentRefuseNode(document, place, set ? set : "", "malformed YAML: %s%s%s; allowed: one YAML document", parser->problem, parser->context ? " " : "",
-                     parser->context ? parser->context : "");
+  DocumentRefuseNode(document, place, set ? set : "", "malformed YAML: %s%s%s; allowed: one YAML document",
+                     parser->problem, parser->context ? " " : "", parser->context ? parser->context : "");
 }
 
 /* The tree of a text: one YAML document. path: where the tree belongs. set: the -set that it came from, or NULL. */
-static PetscErrorCode DocumentParse(Document *document, const char *text, size_t length, const char *path, const char *set, Node *root)
+static PetscErrorCode DocumentParse(Document *document, const char *text, size_t length, const char *path,
+                                    const char *set, Node *root)
 {
   yaml_parser_t   parser;
   yaml_document_t yaml, second;
@@ -312,7 +332,8 @@ static PetscErrorCode DocumentParse(Document *document, const char *text, size_t
   yaml_parser_set_input_string(&parser, (const unsigned char *)text, length);
   if (!yaml_parser_load(&parser, &yaml)) PetscCall(DocumentRefuseYaml(document, &parser, text, length, set));
   PetscCall(NodeCreate(NODE_SCALAR, 1, set, &place));
-  if (!yaml_document_get_root_node(&yaml)) DocumentRefuseNode(document, place, path, "has no value; allowed: %s", set ? "a YAML value" : "a scene");
+  if (!yaml_document_get_root_node(&yaml))
+    DocumentRefuseNode(document, place, path, "has no value; allowed: %s", set ? "a YAML value" : "a scene");
   PetscCall(PetscCalloc1((yaml.nodes.top - yaml.nodes.start) + 1, &reader.visited));
   PetscCall(TreeRead(&reader, 1, 0, path, 0, root));
   if (!yaml_parser_load(&parser, &second)) PetscCall(DocumentRefuseYaml(document, &parser, text, length, set));
@@ -354,7 +375,8 @@ static PetscErrorCode FileBroadcast(MPI_Comm comm, const char *name, char **text
   }
   PetscCallMPI(MPI_Bcast(size, 2, MPI_INT, 0, comm));
   if (size[1]) PetscCall(RefuseInput(comm, "%s: cannot be read (%s); allowed: a scene file", name, strerror(size[1])));
-  if (size[0] > SCENE_MAX_BYTES) PetscCall(RefuseInput(comm, "%s: is too large for a scene; allowed: %d bytes", name, SCENE_MAX_BYTES));
+  if (size[0] > SCENE_MAX_BYTES)
+    PetscCall(RefuseInput(comm, "%s: is too large for a scene; allowed: %d bytes", name, SCENE_MAX_BYTES));
   if (rank) {
     PetscCall(PetscFree(*text));
     PetscCall(PetscMalloc1(size[0] + 1, text));
@@ -375,7 +397,8 @@ static PetscErrorCode NodeSlot(Document *document, Node place, Node node, const 
 
   PetscFunctionBeginUser;
   if (node->kind == NODE_SCALAR)
-    DocumentRefuseNode(document, place, place->set, "'%s' is below a single value; allowed: keys of a map, indices of a list", key);
+    DocumentRefuseNode(document, place, place->set,
+                       "'%s' is below a single value; allowed: keys of a map, indices of a list", key);
   if (node->kind == NODE_LIST) {
     index = strtol(key, &end, 10);
     if (*end || strspn(key, "0123456789") != strlen(key) || index > node->n)
@@ -407,12 +430,15 @@ static PetscErrorCode DocumentSet(Document *document, const char *set, const cha
     const size_t n = strcspn(rest, ".");
 
     if (!n || n >= sizeof key)
-      DocumentRefuseNode(document, &place, set, "is no path; allowed: keys and indices with dots between them, such as contact.0.slave");
+      DocumentRefuseNode(document, &place, set,
+                         "is no path; allowed: keys and indices with dots between them, such as contact.0.slave");
     snprintf(key, sizeof key, "%.*s", (int)n, rest);
     rest = rest[n] ? rest + n + 1 : NULL;
     PetscCall(NodeSlot(document, &place, node, key, &slot));
     if (rest && !*slot)
-      PetscCall(NodeCreate(rest[strspn(rest, "0123456789")] == '.' || !rest[strspn(rest, "0123456789")] ? NODE_LIST : NODE_MAP, 0, set, slot));
+      PetscCall(
+        NodeCreate(rest[strspn(rest, "0123456789")] == '.' || !rest[strspn(rest, "0123456789")] ? NODE_LIST : NODE_MAP,
+                   0, set, slot));
     node = *slot;
   }
   PetscCall(NodeDestroy(slot));
@@ -440,9 +466,11 @@ static PetscErrorCode NodeToYaml(Node node, yaml_document_t *yaml, int *id)
 
   PetscFunctionBeginUser;
   if (node->kind == NODE_SCALAR) {
-    *id = yaml_document_add_scalar(yaml, NULL, (yaml_char_t *)node->text, -1, node->plain ? YAML_PLAIN_SCALAR_STYLE : YAML_DOUBLE_QUOTED_SCALAR_STYLE);
+    *id = yaml_document_add_scalar(yaml, NULL, (yaml_char_t *)node->text, -1,
+                                   node->plain ? YAML_PLAIN_SCALAR_STYLE : YAML_DOUBLE_QUOTED_SCALAR_STYLE);
   } else if (node->kind == NODE_LIST) {
-    *id = yaml_document_add_sequence(yaml, NULL, node->n && node->child[0]->kind == NODE_MAP ? YAML_BLOCK_SEQUENCE_STYLE : YAML_FLOW_SEQUENCE_STYLE);
+    *id = yaml_document_add_sequence(
+      yaml, NULL, node->n && node->child[0]->kind == NODE_MAP ? YAML_BLOCK_SEQUENCE_STYLE : YAML_FLOW_SEQUENCE_STYLE);
     for (int i = 0; i < node->n; i++) {
       PetscCall(NodeToYaml(node->child[i], yaml, &value));
       yaml_document_append_sequence_item(yaml, *id, value);
@@ -463,7 +491,8 @@ static PetscErrorCode NodeToYaml(Node node, yaml_document_t *yaml, int *id)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* DocumentText - the document as one YAML text that depends on its keys and values alone: not on comments, layout, order of keys, file or -set.
+/* DocumentText - the document as one YAML text that depends on its keys and values alone: not on comments, layout,
+   order of keys, file or -set.
 
    Not collective. text: free with PetscFree(). */
 PetscErrorCode DocumentText(Document *document, char **text)
@@ -476,8 +505,8 @@ PetscErrorCode DocumentText(Document *document, char **text)
   int             root;
 
   PetscFunctionBeginUser;
-  PetscCheck(stream && yaml_emitter_initialize(&emitter) && yaml_document_initialize(&yaml, NULL, NULL, NULL, 1, 1), PETSC_COMM_SELF, PETSC_ERR_MEM,
-             "No memory for the scene's text");
+  PetscCheck(stream && yaml_emitter_initialize(&emitter) && yaml_document_initialize(&yaml, NULL, NULL, NULL, 1, 1),
+             PETSC_COMM_SELF, PETSC_ERR_MEM, "No memory for the scene's text");
   PetscCall(NodeToYaml(document->root, &yaml, &root));
   yaml_emitter_set_output_file(&emitter, stream);
   yaml_emitter_set_unicode(&emitter, 1);
@@ -510,8 +539,10 @@ static PetscErrorCode DocumentEdit(Document *document, int n_set, char *const *s
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* DocumentReadText - a document whose text stands in memory, the same on all ranks; name: stands for the file in messages. As DocumentRead() else. */
-PetscErrorCode DocumentReadText(MPI_Comm comm, const char *name, const char *text, int n_set, char *const *set, Document **document)
+/* DocumentReadText - a document whose text stands in memory, the same on all ranks; name: stands for the file in
+ * messages. As DocumentRead() else. */
+PetscErrorCode DocumentReadText(MPI_Comm comm, const char *name, const char *text, int n_set, char *const *set,
+                                Document **document)
 {
   PetscFunctionBeginUser;
   PetscCall(PetscNew(document));
@@ -524,8 +555,8 @@ PetscErrorCode DocumentReadText(MPI_Comm comm, const char *name, const char *tex
 
 /* DocumentRead - reads a file and applies edits to it.
 
-   Collective. file: as the process can open it on rank 0. set[n_set]: KEY=VALUE, in order. Refuses (exit status 1) what cannot be read or is no
-   plain YAML. document: free with DocumentDestroy(). */
+   Collective. file: as the process can open it on rank 0. set[n_set]: KEY=VALUE, in order. Refuses (exit status 1) what
+   cannot be read or is no plain YAML. document: free with DocumentDestroy(). */
 PetscErrorCode DocumentRead(MPI_Comm comm, const char *file, int n_set, char *const *set, Document **document)
 {
   char  *text;

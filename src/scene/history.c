@@ -17,7 +17,8 @@ int HistoryBreaks(const History *history, double t)
   return i >= 0 && t == history->t[i];
 }
 
-/* HistoryValue - the factor at load parameter t: linear between breakpoints, the end values beyond them. Exact at breakpoints.
+/* HistoryValue - the factor at load parameter t: linear between breakpoints, the end values beyond them. Exact at
+   breakpoints.
 
    Not collective. t: load parameter. Returns the factor (no unit). */
 double HistoryValue(const History *history, double t)
@@ -26,5 +27,6 @@ double HistoryValue(const History *history, double t)
 
   if (i < 0) return history->v[0];
   if (i == history->n - 1) return history->v[i];
-  return history->v[i] + (history->v[i + 1] - history->v[i]) / (history->t[i + 1] - history->t[i]) * (t - history->t[i]);
+  return history->v[i] +
+         (history->v[i + 1] - history->v[i]) / (history->t[i + 1] - history->t[i]) * (t - history->t[i]);
 }

@@ -24,10 +24,12 @@ static void RotatePoint(const double turn[3], const double V[3], double v[3])
 
   for (int d = 0; d < 3 && angle > 0; d++) a[d] = turn[d] / angle;
   for (int d = 0; d < 3; d++) along += a[d] * V[d];
-  for (int d = 0; d < 3; d++) v[d] = c * V[d] + s * (a[(d + 1) % 3] * V[(d + 2) % 3] - a[(d + 2) % 3] * V[(d + 1) % 3]) + (1 - c) * along * a[d];
+  for (int d = 0; d < 3; d++)
+    v[d] = c * V[d] + s * (a[(d + 1) % 3] * V[(d + 2) % 3] - a[(d + 2) % 3] * V[(d + 1) % 3]) + (1 - c) * along * a[d];
 }
 
-/* MotionPlace - where the point of the body that was at X is at load parameter t. X, x: lengths, in the coordinates of motion->point. Not collective. */
+/* MotionPlace - where the point of the body that was at X is at load parameter t. X, x: lengths, in the coordinates of
+ * motion->point. Not collective. */
 void MotionPlace(const Motion *motion, double t, const double X[3], double x[3])
 {
   double shift[3], turn[3], arm[3], turned[3];

@@ -66,7 +66,8 @@ void SceneRefuse(Scene scene, const char *path, const char *key, const char *wha
   DocumentRefuse(SceneDocument(scene), *key ? text : path, "%s%s%s", about ? about : "", about ? " " : "", what);
 }
 
-/* SceneFindBody - the body of that name, among the rigid tools or the deformable ones read so far; NULL if there is none. Not collective. */
+/* SceneFindBody - the body of that name, among the rigid tools or the deformable ones read so far; NULL if there is
+ * none. Not collective. */
 const SceneBody *SceneFindBody(Scene scene, const char *name, int rigid)
 {
   for (int i = 0; i < scene->n_bodies; i++) {
@@ -104,7 +105,9 @@ static PetscErrorCode SceneReadPairs(Scene scene, const char *key, int *n, Scene
     const Node value = map->child[i];
 
     PetscCall(PetscStrallocpy(map->key[i] + (map->key[i][0] == '-'), &(*pairs)[i].key));
-    PetscCall(PetscStrallocpy(value->plain && (!strcmp(value->text, "null") || !strcmp(value->text, "~")) ? "" : value->text, &(*pairs)[i].value));
+    PetscCall(
+      PetscStrallocpy(value->plain && (!strcmp(value->text, "null") || !strcmp(value->text, "~")) ? "" : value->text,
+                      &(*pairs)[i].value));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -116,14 +119,19 @@ static PetscErrorCode SceneReadMesh(Scene scene)
   char        path[PETSC_MAX_PATH_LEN];
 
   PetscFunctionBeginUser;
-  if (!geo && (!dot || strcmp(dot, ".msh"))) SceneRefuse(scene, "mesh", "file", "is no mesh file; allowed: a .geo or a .msh file", file);
-  if (snprintf(path, sizeof path, "%s%s%s", file[0] == '/' ? "" : scene->directory, file[0] == '/' ? "" : "/", file) >= (int)sizeof path)
+  if (!geo && (!dot || strcmp(dot, ".msh")))
+    SceneRefuse(scene, "mesh", "file", "is no mesh file; allowed: a .geo or a .msh file", file);
+  if (snprintf(path, sizeof path, "%s%s%s", file[0] == '/' ? "" : scene->directory, file[0] == '/' ? "" : "/", file) >=
+      (int)sizeof path)
     SceneRefuse(scene, "mesh", "file", "the path is too long", NULL);
   PetscCall(PetscStrallocpy(path, &scene->mesh_file));
-  scene->order = SchemaHas(SceneDocument(scene), "mesh.order") ? SchemaInteger(SceneDocument(scene), "mesh.order") : geo;
+  scene->order =
+    SchemaHas(SceneDocument(scene), "mesh.order") ? SchemaInteger(SceneDocument(scene), "mesh.order") : geo;
   PetscCall(SceneReadPairs(scene, "mesh.parameters", &scene->n_parameters, &scene->parameters));
   for (int i = 0; i < scene->n_parameters; i++) {
-    if (!scene->parameters[i].value[0]) SceneRefuse(scene, "mesh.parameters", scene->parameters[i].key, "has no value; allowed: a number or a text", NULL);
+    if (!scene->parameters[i].value[0])
+      SceneRefuse(scene, "mesh.parameters", scene->parameters[i].key, "has no value; allowed: a number or a text",
+                  NULL);
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -131,7 +139,8 @@ static PetscErrorCode SceneReadMesh(Scene scene)
 static PetscErrorCode MotionFree(Motion *motion)
 {
   PetscFunctionBeginUser;
-  for (int k = 0; k < motion->n; k++) PetscCall(PetscFree2(motion->components[k].history.t, motion->components[k].history.v));
+  for (int k = 0; k < motion->n; k++)
+    PetscCall(PetscFree2(motion->components[k].history.t, motion->components[k].history.v));
   PetscCall(PetscFree(motion->components));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -152,12 +161,15 @@ static PetscErrorCode SceneReadMotion(Scene scene, const char *tool, Motion *mot
       const char *key = k < 3 ? Displacements[k] : Rotations[k - 3];
 
       if (!SceneHas(scene, path, key)) continue;
-      if (scene->geometry == GEOMETRY_AXISYMMETRIC && k != 1) SceneRefuse(scene, path, key, "would break the symmetry about the axis; allowed: uy", NULL);
+      if (scene->geometry == GEOMETRY_AXISYMMETRIC && k != 1)
+        SceneRefuse(scene, path, key, "would break the symmetry about the axis; allowed: uy", NULL);
       motion->components[motion->n].component = k;
       motion->components[motion->n].value     = SchemaReal(SceneDocument(scene), "%s.%s", path, key);
       PetscCall(SceneReadHistory(scene, path, &motion->components[motion->n++].history));
     }
-    if (motion->n == before) SceneRefuse(scene, path, "", "moves nothing; allowed: at least one displacement (ux ...) or rotation (rz ...)", NULL);
+    if (motion->n == before)
+      SceneRefuse(scene, path, "", "moves nothing; allowed: at least one displacement (ux ...) or rotation (rz ...)",
+                  NULL);
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -169,7 +181,9 @@ static PetscErrorCode SceneReadBody(Scene scene, SceneBody *body)
   PetscFunctionBeginUser;
   body->rigid = SceneHas(scene, body->path, "surface");
   if (body->rigid == SceneHas(scene, body->path, "volume"))
-    SceneRefuse(scene, body->path, "", body->rigid ? "has both a volume and a surface; allowed:" : "has neither a volume nor a surface; allowed:", NULL);
+    SceneRefuse(
+      scene, body->path, "",
+      body->rigid ? "has both a volume and a surface; allowed:" : "has neither a volume nor a surface; allowed:", NULL);
   if (!SceneHas(scene, body->path, body->rigid ? "rigid" : "material"))
     SceneRefuse(scene, body->path, body->rigid ? "rigid" : "material", Needs, "is missing; allowed:");
   if (SceneHas(scene, body->path, body->rigid ? "material" : "rigid"))
@@ -187,10 +201,12 @@ static PetscErrorCode SceneReadBody(Scene scene, SceneBody *body)
   body->material.E   = SchemaReal(SceneDocument(scene), "%s.material.E", body->path);
   body->material.nu  = SchemaReal(SceneDocument(scene), "%s.material.nu", body->path);
   if (body->material.law == MATERIAL_LINEAR && scene->kinematics == KINEMATICS_FINITE)
-    SceneRefuse(scene, body->path, "material.law", "linear needs kinematics: small; allowed with finite: svk | neo_hookean", NULL);
+    SceneRefuse(scene, body->path, "material.law",
+                "linear needs kinematics: small; allowed with finite: svk | neo_hookean", NULL);
   body->formulation = (Formulation)SchemaChoice(SceneDocument(scene), "%s.formulation", body->path);
   if (body->formulation != FORMULATION_FULL && scene->order == 2)
-    SceneRefuse(scene, body->path, "formulation", "is for first-order elements; allowed with mesh.order: 2: full", Formulations[body->formulation]);
+    SceneRefuse(scene, body->path, "formulation", "is for first-order elements; allowed with mesh.order: 2: full",
+                Formulations[body->formulation]);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -206,18 +222,21 @@ static PetscErrorCode SceneReadBodies(Scene scene)
     PetscCall(ScenePath(&body->path, "bodies", i));
     PetscCall(SceneReadBody(scene, body));
     if (SceneFindBody(scene, body->name, body->rigid))
-      SceneRefuse(scene, body->path, body->rigid ? "surface" : "volume", "is a body already; allowed: once", body->name);
+      SceneRefuse(scene, body->path, body->rigid ? "surface" : "volume", "is a body already; allowed: once",
+                  body->name);
     scene->n_bodies++;
     deformable += !body->rigid;
   }
-  if (!deformable) SceneRefuse(scene, "bodies", "", "has only rigid tools; allowed: at least one volume with material", NULL);
+  if (!deformable)
+    SceneRefuse(scene, "bodies", "", "has only rigid tools; allowed: at least one volume with material", NULL);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 static void SceneRefuseRigid(Scene scene, const char *path, const char *key, const char *surface)
 {
   if (surface && SceneFindBody(scene, surface, 1))
-    SceneRefuse(scene, path, key, "is a rigid tool, moved by its own motion; allowed: a surface of a deformable body", surface);
+    SceneRefuse(scene, path, key, "is a rigid tool, moved by its own motion; allowed: a surface of a deformable body",
+                surface);
 }
 
 static PetscErrorCode SceneReadSupports(Scene scene)
@@ -235,11 +254,13 @@ static PetscErrorCode SceneReadSupports(Scene scene)
     for (int k = 0; k < 3; k++) {
       if (!SceneHas(scene, support->path, Displacements[k])) continue;
       if (SchemaReal(SceneDocument(scene), "%s.%s", support->path, Displacements[k]) != 0)
-        SceneRefuse(scene, support->path, Displacements[k], "a support holds at 0; allowed: 0 (an imposed displacement is a load, under loads:)", NULL);
+        SceneRefuse(scene, support->path, Displacements[k],
+                    "a support holds at 0; allowed: 0 (an imposed displacement is a load, under loads:)", NULL);
       support->fixed[k] = 1;
       held++;
     }
-    if (!held) SceneRefuse(scene, support->path, "", "holds nothing; allowed: at least one of ux: 0, uy: 0, uz: 0 (3D)", NULL);
+    if (!held)
+      SceneRefuse(scene, support->path, "", "holds nothing; allowed: at least one of ux: 0, uy: 0, uz: 0 (3D)", NULL);
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -253,17 +274,22 @@ static PetscErrorCode SceneReadLoad(Scene scene, SceneLoad *load)
   PetscFunctionBeginUser;
   for (int k = 0; k < 3; k++) load->has[k] = SceneHas(scene, load->path, Displacements[k]);
   for (int kind = LOAD_DISPLACEMENT; kind <= LOAD_BODY_FORCE; kind++) {
-    if (kind == LOAD_DISPLACEMENT ? !(load->has[0] || load->has[1] || load->has[2]) : !SceneHas(scene, load->path, Kinds[kind])) continue;
+    if (kind == LOAD_DISPLACEMENT ? !(load->has[0] || load->has[1] || load->has[2])
+                                  : !SceneHas(scene, load->path, Kinds[kind]))
+      continue;
     load->kind = (LoadKind)kind;
     kinds++;
   }
   if (kinds != 1)
-    SceneRefuse(scene, load->path, "", "allowed: exactly one of displacement (ux, uy, uz), pressure, traction, body_force",
+    SceneRefuse(scene, load->path, "",
+                "allowed: exactly one of displacement (ux, uy, uz), pressure, traction, body_force",
                 kinds ? "has more than one kind;" : "has no kind;");
   region = load->kind == LOAD_BODY_FORCE ? "volume" : "surface";
-  if (!SceneHas(scene, load->path, region)) SceneRefuse(scene, load->path, region, Kinds[load->kind], "is missing; allowed: where it acts, for a");
+  if (!SceneHas(scene, load->path, region))
+    SceneRefuse(scene, load->path, region, Kinds[load->kind], "is missing; allowed: where it acts, for a");
   if (SceneHas(scene, load->path, "surface") && SceneHas(scene, load->path, "volume"))
-    SceneRefuse(scene, load->path, load->kind == LOAD_BODY_FORCE ? "surface" : "volume", region, "has no place here; allowed: only");
+    SceneRefuse(scene, load->path, load->kind == LOAD_BODY_FORCE ? "surface" : "volume", region,
+                "has no place here; allowed: only");
   PetscCall(SceneReadText(scene, load->path, region, &load->region));
   if (load->kind == LOAD_BODY_FORCE && !SceneFindBody(scene, load->region, 0))
     SceneRefuse(scene, load->path, region, "is no deformable body; allowed: a volume under bodies:", load->region);
@@ -316,10 +342,12 @@ static PetscErrorCode SceneReadAnalytic(Scene scene, SceneContact *contact)
                 NULL);
   snprintf(tool, sizeof tool, "%s.master.%s", contact->path, shapes[contact->analytic.shape]);
   (void)SceneReals(scene, tool, contact->analytic.shape == ANALYTIC_SPHERE ? "centre" : "point", contact->motion.point);
-  contact->analytic.axis[scene->geometry == GEOMETRY_AXISYMMETRIC ? 1 : 2] = 1; /* a cylinder in 2D: a circle; axisymmetric: about the axis */
+  contact->analytic.axis[scene->geometry == GEOMETRY_AXISYMMETRIC ? 1 : 2] =
+    1; /* a cylinder in 2D: a circle; axisymmetric: about the axis */
   if (contact->analytic.shape == ANALYTIC_PLANE || scene->dim == 3) {
     contact->analytic.axis[1] = contact->analytic.axis[2] = 0;
-    (void)SceneReals(scene, tool, contact->analytic.shape == ANALYTIC_PLANE ? "normal" : "axis", contact->analytic.axis);
+    (void)SceneReals(scene, tool, contact->analytic.shape == ANALYTIC_PLANE ? "normal" : "axis",
+                     contact->analytic.axis);
   }
   if (contact->analytic.shape != ANALYTIC_PLANE) {
     contact->analytic.radius = SchemaReal(SceneDocument(scene), "%s.radius", tool);
@@ -327,11 +355,14 @@ static PetscErrorCode SceneReadAnalytic(Scene scene, SceneContact *contact)
   }
   for (int d = 0; d < 3; d++) length += contact->analytic.axis[d] * contact->analytic.axis[d];
   if (contact->analytic.shape != ANALYTIC_SPHERE && length == 0)
-    SceneRefuse(scene, tool, contact->analytic.shape == ANALYTIC_PLANE ? "normal" : "axis", "has no direction; allowed: any vector but zero", NULL);
-  if (scene->geometry == GEOMETRY_AXISYMMETRIC && contact->analytic.shape != ANALYTIC_PLANE && contact->motion.point[0] != 0)
+    SceneRefuse(scene, tool, contact->analytic.shape == ANALYTIC_PLANE ? "normal" : "axis",
+                "has no direction; allowed: any vector but zero", NULL);
+  if (scene->geometry == GEOMETRY_AXISYMMETRIC && contact->analytic.shape != ANALYTIC_PLANE &&
+      contact->motion.point[0] != 0)
     SceneRefuse(scene, tool, contact->analytic.shape == ANALYTIC_SPHERE ? "centre" : "point",
                 "is off the axis, where it would be no body of revolution of that name; allowed: x = 0", NULL);
-  if (scene->geometry == GEOMETRY_AXISYMMETRIC && contact->analytic.shape == ANALYTIC_PLANE && contact->analytic.axis[0] != 0)
+  if (scene->geometry == GEOMETRY_AXISYMMETRIC && contact->analytic.shape == ANALYTIC_PLANE &&
+      contact->analytic.axis[0] != 0)
     SceneRefuse(scene, tool, "normal", "is oblique to the axis: that is a cone, not a plane; allowed: [0, y]", NULL);
   PetscCall(SceneReadMotion(scene, tool, &contact->motion));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -345,10 +376,12 @@ static void SceneReadAugmentation(Scene scene, SceneContact *contact)
   contact->augment     = SchemaBoolean(SceneDocument(scene), "%s.penalty.augment", contact->path);
   contact->max_updates = SchemaInteger(SceneDocument(scene), "%s.penalty.max_updates", contact->path);
   if (contact->augment && contact->adjust)
-    SceneRefuse(scene, contact->path, "penalty.augment", "is true beside adjust: true; allowed: one of them (augment keeps the penalty, adjust changes it)",
+    SceneRefuse(scene, contact->path, "penalty.augment",
+                "is true beside adjust: true; allowed: one of them (augment keeps the penalty, adjust changes it)",
                 NULL);
   for (size_t k = 0; contact->augment && k < PETSC_STATIC_ARRAY_LENGTH(needs); k++)
-    if (!SceneHas(scene, contact->path, needs[k])) SceneRefuse(scene, contact->path, needs[k], "is missing; allowed with augment: g_max and unit", NULL);
+    if (!SceneHas(scene, contact->path, needs[k]))
+      SceneRefuse(scene, contact->path, needs[k], "is missing; allowed with augment: g_max and unit", NULL);
 }
 
 /* How the penalty follows the penetration */
@@ -358,13 +391,17 @@ static void SceneReadAdjustment(Scene scene, SceneContact *contact)
 
   contact->adjust = SchemaBoolean(SceneDocument(scene), "%s.penalty.adjust", contact->path);
   for (size_t k = 0; contact->adjust && k < PETSC_STATIC_ARRAY_LENGTH(needs); k++)
-    if (!SceneHas(scene, contact->path, needs[k])) SceneRefuse(scene, contact->path, needs[k], "is missing; allowed with adjust: g_min, g_max and unit", NULL);
+    if (!SceneHas(scene, contact->path, needs[k]))
+      SceneRefuse(scene, contact->path, needs[k], "is missing; allowed with adjust: g_min, g_max and unit", NULL);
   contact->adjust_converged = SchemaChoice(SceneDocument(scene), "%s.penalty.when", contact->path);
   contact->clamp            = SchemaReal(SceneDocument(scene), "%s.penalty.clamp", contact->path);
   contact->range            = SchemaReal(SceneDocument(scene), "%s.penalty.range", contact->path);
-  if (SceneHas(scene, contact->path, "penalty.unit")) contact->window_in_spacings = SchemaChoice(SceneDocument(scene), "%s.penalty.unit", contact->path);
-  if (SceneHas(scene, contact->path, "penalty.g_min")) contact->g_min = SchemaReal(SceneDocument(scene), "%s.penalty.g_min", contact->path);
-  if (SceneHas(scene, contact->path, "penalty.g_max")) contact->g_max = SchemaReal(SceneDocument(scene), "%s.penalty.g_max", contact->path);
+  if (SceneHas(scene, contact->path, "penalty.unit"))
+    contact->window_in_spacings = SchemaChoice(SceneDocument(scene), "%s.penalty.unit", contact->path);
+  if (SceneHas(scene, contact->path, "penalty.g_min"))
+    contact->g_min = SchemaReal(SceneDocument(scene), "%s.penalty.g_min", contact->path);
+  if (SceneHas(scene, contact->path, "penalty.g_max"))
+    contact->g_max = SchemaReal(SceneDocument(scene), "%s.penalty.g_max", contact->path);
   if (contact->g_min > 0 && contact->g_max > 0 && contact->g_min >= contact->g_max)
     SceneRefuse(scene, contact->path, "penalty.g_min", "is not below g_max; allowed: g_min < g_max", NULL);
 }
@@ -380,26 +417,30 @@ static PetscErrorCode SceneReadContact(Scene scene, SceneContact *contact)
   if (!contact->master) PetscCall(SceneReadAnalytic(scene, contact));
   SceneRefuseRigid(scene, contact->path, "slave", contact->slave);
   if (contact->master && !strcmp(contact->slave, contact->master))
-    SceneRefuse(scene, contact->path, "master", "is the slave too; allowed: another surface (self contact is not available yet)", contact->master);
-  contact->smoother            = (SmootherKind)SchemaChoice(SceneDocument(scene), "%s.smoother", contact->path);
-  contact->formulation         = (ContactFormulation)SchemaChoice(SceneDocument(scene), "%s.formulation", contact->path);
-  contact->live_offset         = SchemaChoice(SceneDocument(scene), "%s.offset", contact->path);
-  contact->degree              = SchemaChoice(SceneDocument(scene), "%s.degree", contact->path) == 0 ? 4 : 2;
-  contact->support             = SceneHas(scene, contact->path, "support") ? SchemaReal(SceneDocument(scene), "%s.support", contact->path) : 0;
-  contact->weight              = SceneHas(scene, contact->path, "weight") ? SchemaReal(SceneDocument(scene), "%s.weight", contact->path) : 0;
+    SceneRefuse(scene, contact->path, "master",
+                "is the slave too; allowed: another surface (self contact is not available yet)", contact->master);
+  contact->smoother    = (SmootherKind)SchemaChoice(SceneDocument(scene), "%s.smoother", contact->path);
+  contact->formulation = (ContactFormulation)SchemaChoice(SceneDocument(scene), "%s.formulation", contact->path);
+  contact->live_offset = SchemaChoice(SceneDocument(scene), "%s.offset", contact->path);
+  contact->degree      = SchemaChoice(SceneDocument(scene), "%s.degree", contact->path) == 0 ? 4 : 2;
+  contact->support =
+    SceneHas(scene, contact->path, "support") ? SchemaReal(SceneDocument(scene), "%s.support", contact->path) : 0;
+  contact->weight =
+    SceneHas(scene, contact->path, "weight") ? SchemaReal(SceneDocument(scene), "%s.weight", contact->path) : 0;
   contact->global_frame        = SchemaChoice(SceneDocument(scene), "%s.frame", contact->path);
   contact->diffuse_derivatives = SchemaChoice(SceneDocument(scene), "%s.derivatives", contact->path);
-  contact->initial_overlap     = (InitialOverlap)SchemaChoice(SceneDocument(scene), "%s.initial_overlap", contact->path);
-  contact->stabilise           = SchemaBoolean(SceneDocument(scene), "%s.stabilise", contact->path);
-  contact->feature_angle       = SchemaReal(SceneDocument(scene), "%s.feature_angle", contact->path);
-  contact->penalty_auto        = SchemaChoice(SceneDocument(scene), "%s.penalty.initial", contact->path) == 0;
-  contact->penalty             = contact->penalty_auto ? 0 : SchemaReal(SceneDocument(scene), "%s.penalty.initial", contact->path);
-  contact->penalty_scale       = SchemaReal(SceneDocument(scene), "%s.penalty.scale", contact->path);
+  contact->initial_overlap = (InitialOverlap)SchemaChoice(SceneDocument(scene), "%s.initial_overlap", contact->path);
+  contact->stabilise       = SchemaBoolean(SceneDocument(scene), "%s.stabilise", contact->path);
+  contact->feature_angle   = SchemaReal(SceneDocument(scene), "%s.feature_angle", contact->path);
+  contact->penalty_auto    = SchemaChoice(SceneDocument(scene), "%s.penalty.initial", contact->path) == 0;
+  contact->penalty = contact->penalty_auto ? 0 : SchemaReal(SceneDocument(scene), "%s.penalty.initial", contact->path);
+  contact->penalty_scale = SchemaReal(SceneDocument(scene), "%s.penalty.scale", contact->path);
   SceneReadAdjustment(scene, contact);
   SceneReadAugmentation(scene, contact);
   contact->n_symmetry = symmetry ? symmetry->n : 0;
   PetscCall(PetscCalloc1(contact->n_symmetry, &contact->symmetry));
-  for (int i = 0; i < contact->n_symmetry; i++) PetscCall(PetscStrallocpy(symmetry->child[i]->text, &contact->symmetry[i]));
+  for (int i = 0; i < contact->n_symmetry; i++)
+    PetscCall(PetscStrallocpy(symmetry->child[i]->text, &contact->symmetry[i]));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -412,7 +453,8 @@ static PetscErrorCode SceneReadContacts(Scene scene)
     PetscCall(SceneReadContact(scene, &scene->contacts[i]));
     for (int j = 0; j < i; j++) {
       if (!strcmp(scene->contacts[i].name, scene->contacts[j].name))
-        SceneRefuse(scene, scene->contacts[i].path, "name", "names another pair already; allowed: names used once", scene->contacts[i].name);
+        SceneRefuse(scene, scene->contacts[i].path, "name", "names another pair already; allowed: names used once",
+                    scene->contacts[i].name);
     }
     scene->n_contacts++;
   }
@@ -428,17 +470,22 @@ static PetscErrorCode SceneReadStepping(Scene scene)
     SceneRefuse(scene, "stepping", "N_c_fraction", "stands beside N_c; allowed: one of them", NULL);
   scene->stepping.control = (StepControlKind)SchemaChoice(document, "stepping.control");
   if (SchemaHas(document, "stepping.N_c")) scene->stepping.N_c = SchemaInteger(document, "stepping.N_c");
-  if (SchemaHas(document, "stepping.N_c_fraction")) scene->stepping.N_c_fraction = SchemaReal(document, "stepping.N_c_fraction");
+  if (SchemaHas(document, "stepping.N_c_fraction"))
+    scene->stepping.N_c_fraction = SchemaReal(document, "stepping.N_c_fraction");
   if (scene->stepping.control == STEP_CONTACT && !scene->stepping.N_c && !(scene->stepping.N_c_fraction > 0))
-    SceneRefuse(scene, "stepping", "control", "contact needs N_c (nodes) or N_c_fraction (of the slave area); allowed: one of them", NULL);
+    SceneRefuse(scene, "stepping", "control",
+                "contact needs N_c (nodes) or N_c_fraction (of the slave area); allowed: one of them", NULL);
   scene->stepping.predict_linearly = SchemaChoice(document, "stepping.prediction");
   scene->stepping.initial          = SchemaReal(document, "stepping.initial");
   scene->stepping.dt_min           = SchemaReal(document, "stepping.dt_min");
   scene->stepping.dt_max           = SchemaReal(document, "stepping.dt_max");
   scene->stepping.growth           = SchemaReal(document, "stepping.growth");
-  if (scene->stepping.dt_min > scene->stepping.dt_max) SceneRefuse(scene, "stepping", "dt_min", "is above dt_max; allowed: dt_min <= initial <= dt_max", NULL);
-  if (SchemaHas(document, "stepping.initial") && (scene->stepping.initial < scene->stepping.dt_min || scene->stepping.initial > scene->stepping.dt_max))
-    SceneRefuse(scene, "stepping", "initial", "is not between dt_min and dt_max; allowed: dt_min <= initial <= dt_max", NULL);
+  if (scene->stepping.dt_min > scene->stepping.dt_max)
+    SceneRefuse(scene, "stepping", "dt_min", "is above dt_max; allowed: dt_min <= initial <= dt_max", NULL);
+  if (SchemaHas(document, "stepping.initial") &&
+      (scene->stepping.initial < scene->stepping.dt_min || scene->stepping.initial > scene->stepping.dt_max))
+    SceneRefuse(scene, "stepping", "initial", "is not between dt_min and dt_max; allowed: dt_min <= initial <= dt_max",
+                NULL);
   scene->stepping.initial = PetscMin(PetscMax(scene->stepping.initial, scene->stepping.dt_min), scene->stepping.dt_max);
   scene->stepping.n_at    = SchemaCount(document, "stepping.at");
   PetscCall(PetscCalloc1(scene->stepping.n_at, &scene->stepping.at));
@@ -477,7 +524,8 @@ static PetscErrorCode SceneReadNames(Scene scene, const char *file)
   PetscCall(PetscStrallocpy(file, &scene->file));
   PetscCall(PetscStrallocpy(slash ? file : ".", &scene->directory));
   if (slash) scene->directory[PetscMax(1, slash - file)] = 0;
-  PetscCall(PetscStrallocpy(SchemaHas(SceneDocument(scene), "name") ? SchemaText(SceneDocument(scene), "name") : stem, &scene->name));
+  PetscCall(PetscStrallocpy(SchemaHas(SceneDocument(scene), "name") ? SchemaText(SceneDocument(scene), "name") : stem,
+                            &scene->name));
   dot = strrchr(scene->name, '.');
   if (!SchemaHas(SceneDocument(scene), "name") && dot && dot > scene->name) *dot = 0;
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -508,8 +556,8 @@ static PetscErrorCode SceneCreate(Document *document, const char *file, Scene *s
 
 /* SceneRead - reads, edits, validates and converts a scene file.
 
-   Collective. file: as the process can open it on rank 0. set[n_set]: KEY=VALUE edits, in order, the last of a key wins. scene: free with
-   SceneDestroy(). Refuses (exit status 1) the first mistake; see schemakeys.c for the keys. */
+   Collective. file: as the process can open it on rank 0. set[n_set]: KEY=VALUE edits, in order, the last of a key
+   wins. scene: free with SceneDestroy(). Refuses (exit status 1) the first mistake; see schemakeys.c for the keys. */
 PetscErrorCode SceneRead(MPI_Comm comm, const char *file, int n_set, char *const *set, Scene *scene)
 {
   Document *document;
@@ -534,7 +582,8 @@ static PetscBool IsChangeable(const char *path, const char *end)
   return PETSC_FALSE;
 }
 
-/* The next line of a text that belongs to the problem: the others are parts that may change, a key and what stands below it. */
+/* The next line of a text that belongs to the problem: the others are parts that may change, a key and what stands
+ * below it. */
 static const char *ProblemLine(const char *text)
 {
   PetscBool skips = PETSC_FALSE;
@@ -561,9 +610,11 @@ PetscBool SceneSameProblem(const char *a, const char *b)
   return !*a && !*b ? PETSC_TRUE : PETSC_FALSE;
 }
 
-/* SceneReadAgain - as SceneRead(), from the text that a run has kept. Collective. Refuses (exit status 1) edits that make it another problem; those that
-   change nothing are fine, so that a command may be given again with the edits it began with. */
-PetscErrorCode SceneReadAgain(MPI_Comm comm, const char *file, const char *where, const char *text, int n_set, char *const *set, Scene *scene)
+/* SceneReadAgain - as SceneRead(), from the text that a run has kept. Collective. Refuses (exit status 1) edits that
+   make it another problem; those that change nothing are fine, so that a command may be given again with the edits it
+   began with. */
+PetscErrorCode SceneReadAgain(MPI_Comm comm, const char *file, const char *where, const char *text, int n_set,
+                              char *const *set, Scene *scene)
 {
   Document *document;
   char     *edited;
@@ -573,7 +624,9 @@ PetscErrorCode SceneReadAgain(MPI_Comm comm, const char *file, const char *where
   PetscCall(DocumentText(document, &edited));
   for (int i = 0; i < n_set && !SceneSameProblem(text, edited); i++) {
     if (!IsChangeable(set[i], ".="))
-      PetscCall(RefuseInput(comm, "-set %s: a restart goes on with the scene as it is; allowed: keys of output, solver and stepping", set[i]));
+      PetscCall(RefuseInput(
+        comm, "-set %s: a restart goes on with the scene as it is; allowed: keys of output, solver and stepping",
+        set[i]));
   }
   PetscCall(PetscFree(edited));
   PetscCall(SceneCreate(document, file, scene));
@@ -663,10 +716,11 @@ PetscErrorCode SceneDestroy(Scene *scene)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* SceneWhere - "FILE:LINE: PATH.KEY" for the start of a message about the value at path.key; the line of its nearest ancestor if the file
-   lacks it, "-set ..." if it came from there.
+/* SceneWhere - "FILE:LINE: PATH.KEY" for the start of a message about the value at path.key; the line of its nearest
+   ancestor if the file lacks it, "-set ..." if it came from there.
 
-   Not collective. path: of a scene's part ("contact.0"), or ""; key: below it, or "". The text is valid until the next call. */
+   Not collective. path: of a scene's part ("contact.0"), or ""; key: below it, or "". The text is valid until the next
+   call. */
 const char *SceneWhere(Scene scene, const char *path, const char *key)
 {
   char text[EXTRAPOLATION_LENGTH];
@@ -676,7 +730,8 @@ const char *SceneWhere(Scene scene, const char *path, const char *key)
   return DocumentWhere(SceneDocument(scene), text);
 }
 
-/* SceneReference - prints the scene reference: every key with type, range, unit, default and help. Not collective: for one rank. */
+/* SceneReference - prints the scene reference: every key with type, range, unit, default and help. Not collective: for
+ * one rank. */
 PetscErrorCode SceneReference(FILE *file)
 {
   PetscFunctionBeginUser;
@@ -691,8 +746,8 @@ static PetscBool MotionBreaks(const Motion *motion, PetscReal t)
   return PETSC_FALSE;
 }
 
-/* SceneBreaks - whether some load, imposed displacement or motion changes its rate at load parameter t: what went before says nothing of what comes.
-   Not collective. */
+/* SceneBreaks - whether some load, imposed displacement or motion changes its rate at load parameter t: what went
+   before says nothing of what comes. Not collective. */
 PetscBool SceneBreaks(Scene scene, PetscReal t)
 {
   for (int l = 0; l < scene->n_loads; l++)

@@ -1,8 +1,9 @@
-/* Every value a user can write, validated, with defaults; the only reader of YAML. Knows no PETSc objects but the communicator.
+/* Every value a user can write, validated, with defaults; the only reader of YAML. Knows no PETSc objects but the
+   communicator.
 
-   SceneRead() reads the file on rank 0, applies the -set overrides, validates every key against the one table of schemakeys.c and refuses
-   the first mistake (file, line, key, what is wrong, what is allowed). Checks that need the mesh are made later by the part that owns
-   them; their messages start with SceneWhere(). */
+   SceneRead() reads the file on rank 0, applies the -set overrides, validates every key against the one table of
+   schemakeys.c and refuses the first mistake (file, line, key, what is wrong, what is allowed). Checks that need the
+   mesh are made later by the part that owns them; their messages start with SceneWhere(). */
 #pragma once
 #include <petscsys.h>
 #include "smooth/analyticsurface.h"
@@ -44,7 +45,7 @@ typedef struct {
 
 typedef struct {
   char              *path, *name, *slave, *master; /* master: physical surface, or NULL: analytic */
-  AnalyticSurface     analytic;                     /* with motion.point: on the plane, on the axis, the centre */
+  AnalyticSurface    analytic;                     /* with motion.point: on the plane, on the axis, the centre */
   Motion             motion;
   SmootherKind       smoother;
   ContactFormulation formulation;
@@ -58,12 +59,13 @@ typedef struct {
   InitialOverlap     initial_overlap;
   int                stabilise; /* springs hold its bodies until contact does */
   int                penalty_auto;
-  double             penalty, penalty_scale; /* force per length and area; the automatic value is multiplied by penalty_scale */
-  int                adjust;                 /* the penalty follows the penetration */
-  int                adjust_converged;       /* within the step, until the window holds; 0: from one step to the next */
-  int                window_in_spacings;     /* g_min and g_max are multiples of the slave node's face size, not lengths */
-  double             g_min, g_max, clamp, range;
-  int                augment, max_updates; /* pressures become multipliers, up to so often in a step, until penetrations are within g_max */
+  double penalty, penalty_scale; /* force per length and area; the automatic value is multiplied by penalty_scale */
+  int    adjust;                 /* the penalty follows the penetration */
+  int    adjust_converged;       /* within the step, until the window holds; 0: from one step to the next */
+  int    window_in_spacings;     /* g_min and g_max are multiples of the slave node's face size, not lengths */
+  double g_min, g_max, clamp, range;
+  int    augment,
+    max_updates; /* pressures become multipliers, up to so often in a step, until penetrations are within g_max */
 } SceneContact;
 
 typedef enum {
@@ -87,15 +89,16 @@ typedef struct {
   double    point[2][3]; /* reference coordinates: displacement, distance, gap */
   int       axis;        /* contact_edge: 0..2 */
   int       max_side;    /* contact_edge: 1 max, 0 min */
-  int       has_at;      /* contact_edge, pressure_max: restricted to nodes whose reference coordinate at_axis equals at_value */
-  int       at_axis;
-  double    at_value;
-  int       rms;         /* pressure_deviation: 1 rms, 0 max */
-  int       edge_filter; /* pressure_deviation: 0 none, 1 excluding, 2 only, within edge_faces mean face sizes of a free edge */
-  double    edge_faces;
-  int       change; /* distance: minus the reference distance */
-  int       absolute;
-  double    factor;
+  int has_at; /* contact_edge, pressure_max: restricted to nodes whose reference coordinate at_axis equals at_value */
+  int at_axis;
+  double at_value;
+  int    rms; /* pressure_deviation: 1 rms, 0 max */
+  int
+    edge_filter; /* pressure_deviation: 0 none, 1 excluding, 2 only, within edge_faces mean face sizes of a free edge */
+  double edge_faces;
+  int    change; /* distance: minus the reference distance */
+  int    absolute;
+  double factor;
 } SceneProbe;
 
 typedef struct {
@@ -104,7 +107,7 @@ typedef struct {
 
 typedef struct {
   char         *file, *directory; /* as given; the directory relative paths start at */
-  char         *text;             /* the document after -set, as one canonical YAML text: to recognise another scene's results */
+  char         *text; /* the document after -set, as one canonical YAML text: to recognise another scene's results */
   char         *name;
   char         *mesh_file; /* path as the process can open it */
   int           order;     /* 1, 2; 0: take the .msh file's own */
@@ -145,16 +148,18 @@ typedef struct {
   int        n_petsc;
   ScenePair *petsc;    /* PETSc options of the scene */
   void      *document; /* private: the document's tree with its marks (document.h), for SceneWhere() */
-} * Scene;
+} *Scene;
 
 PetscErrorCode SceneRead(MPI_Comm, const char *file, int n_set, char *const *set, Scene *);
-/* The scene of a checkpoint: file: its name then; where: stands for it in messages; text: Scene.text of then. Only solver, output and stepping may be set. */
-PetscErrorCode SceneReadAgain(MPI_Comm, const char *file, const char *where, const char *text, int n_set, char *const *set, Scene *);
+/* The scene of a checkpoint: file: its name then; where: stands for it in messages; text: Scene.text of then. Only
+ * solver, output and stepping may be set. */
+PetscErrorCode SceneReadAgain(MPI_Comm, const char *file, const char *where, const char *text, int n_set,
+                              char *const *set, Scene *);
 PetscErrorCode SceneDestroy(Scene *);
 /* Do two texts (Scene.text) differ in nothing but what a restart may change? */
 PetscBool SceneSameProblem(const char *a, const char *b);
-/* "runs/a.yaml:12: contact.0.slave": the place of a key (or of its nearest ancestor that the file has; "-set KEY" if it came from there).
-   Returned text belongs to the scene and is valid until the next call. */
+/* "runs/a.yaml:12: contact.0.slave": the place of a key (or of its nearest ancestor that the file has; "-set KEY" if it
+   came from there). Returned text belongs to the scene and is valid until the next call. */
 const char *SceneWhere(Scene, const char *path, const char *key);
 /* Does some history have a breakpoint at t? */
 PetscBool SceneBreaks(Scene, PetscReal t);

@@ -33,7 +33,8 @@ static int ProbeHasWord(const char *words, const char *word)
 /* Exactly one kind, what it needs, and nothing that it does not take. */
 static void SceneProbeKind(Scene scene, SceneProbe *probe)
 {
-  static const char *const Optional[] = {"component", "body", "change", "at", "axis", "side", "measure", "excluding", "only"};
+  static const char *const Optional[] = {"component", "body",    "change",    "at",  "axis",
+                                         "side",      "measure", "excluding", "only"};
   Node                     node       = NodeFind(SceneDocument(scene)->root, probe->path);
   int                      kinds      = 0;
   char                     allowed[200];
@@ -45,16 +46,20 @@ static void SceneProbeKind(Scene scene, SceneProbe *probe)
   }
   if (kinds != 1) {
     allowed[0] = 0;
-    for (int k = 0; k < PROBE_KINDS; k++) snprintf(allowed + strlen(allowed), sizeof allowed - strlen(allowed), "%s%s", k ? ", " : "", ProbeForms[k].kind);
-    SceneRefuse(scene, probe->path, "", allowed, kinds ? "has more than one kind; allowed: exactly one of" : "has no kind; allowed: exactly one of");
+    for (int k = 0; k < PROBE_KINDS; k++)
+      snprintf(allowed + strlen(allowed), sizeof allowed - strlen(allowed), "%s%s", k ? ", " : "", ProbeForms[k].kind);
+    SceneRefuse(scene, probe->path, "", allowed,
+                kinds ? "has more than one kind; allowed: exactly one of" : "has no kind; allowed: exactly one of");
   }
-  snprintf(allowed, sizeof allowed, "%s %s %s %s", ProbeForms[probe->kind].kind, ProbeForms[probe->kind].needs, ProbeForms[probe->kind].takes, ProbeCommon);
+  snprintf(allowed, sizeof allowed, "%s %s %s %s", ProbeForms[probe->kind].kind, ProbeForms[probe->kind].needs,
+           ProbeForms[probe->kind].takes, ProbeCommon);
   for (size_t i = 0; i < sizeof Optional / sizeof Optional[0]; i++) {
     if (ProbeHasWord(ProbeForms[probe->kind].needs, Optional[i]) && !SceneHas(scene, probe->path, Optional[i]))
       SceneRefuse(scene, probe->path, Optional[i], ProbeForms[probe->kind].kind, "is missing; needed by");
   }
   for (int i = 0; i < node->n; i++) {
-    if (!ProbeHasWord(allowed, node->key[i])) SceneRefuse(scene, probe->path, node->key[i], allowed, "has no place in this kind of probe; allowed:");
+    if (!ProbeHasWord(allowed, node->key[i]))
+      SceneRefuse(scene, probe->path, node->key[i], allowed, "has no place in this kind of probe; allowed:");
   }
 }
 
@@ -75,21 +80,24 @@ static void SceneReadProbeAt(Scene scene, SceneProbe *probe)
   Node at = SceneNode(scene, probe->path, "at");
 
   if (probe->kind == PROBE_GAP) {
-    if (at->kind != NODE_LIST) SceneRefuse(scene, probe->path, "at", "has the wrong type; allowed: the point of a slave node", NULL);
+    if (at->kind != NODE_LIST)
+      SceneRefuse(scene, probe->path, "at", "has the wrong type; allowed: the point of a slave node", NULL);
     (void)SceneReals(scene, probe->path, "at", probe->point[0]);
     return;
   }
   if (!at && probe->kind == PROBE_CONTACT_EDGE && scene->dim == 3)
     SceneRefuse(scene, probe->path, "at", "is missing; needed by contact_edge in 3D, such as {z: 100}", NULL);
   if (!at) return;
-  if (at->kind != NODE_MAP || at->n != 1) SceneRefuse(scene, probe->path, "at", "is not one coordinate; allowed: one of {x: }, {y: }, {z: }", NULL);
+  if (at->kind != NODE_MAP || at->n != 1)
+    SceneRefuse(scene, probe->path, "at", "is not one coordinate; allowed: one of {x: }, {y: }, {z: }", NULL);
   probe->has_at = 1;
   for (int k = 0; k < 3; k++) {
     if (!strcmp(at->key[0], Axes[k])) probe->at_axis = k;
   }
   (void)NodeReal(at->child[0], &probe->at_value);
   if (probe->kind == PROBE_CONTACT_EDGE && probe->at_axis == probe->axis)
-    SceneRefuse(scene, probe->path, "at", "fixes the axis along which the edge is sought; allowed: another coordinate", NULL);
+    SceneRefuse(scene, probe->path, "at", "fixes the axis along which the edge is sought; allowed: another coordinate",
+                NULL);
 }
 
 /* A probe's name is a column of steps.csv and a key of the summary: it stands there once. */
@@ -100,7 +108,8 @@ static void SceneCheckProbeName(Scene scene, const SceneProbe *probe)
       SceneRefuse(scene, probe->path, "name", "is a column of steps.csv already; allowed: another name", probe->name);
   }
   for (const SceneProbe *other = scene->probes; other < probe; other++) {
-    if (!strcmp(probe->name, other->name)) SceneRefuse(scene, probe->path, "name", "names another probe already; allowed: names used once", probe->name);
+    if (!strcmp(probe->name, other->name))
+      SceneRefuse(scene, probe->path, "name", "names another probe already; allowed: names used once", probe->name);
   }
 }
 
@@ -134,7 +143,8 @@ static PetscErrorCode SceneReadProbe(Scene scene, SceneProbe *probe)
   probe->change      = SchemaBoolean(document, "%s.change", path);
   probe->rms         = SchemaChoice(document, "%s.measure", path) == 1;
   probe->edge_filter = SceneHas(scene, path, "excluding") ? 1 : SceneHas(scene, path, "only") ? 2 : 0;
-  probe->edge_faces  = probe->edge_filter ? SchemaReal(document, "%s.%s", path, probe->edge_filter == 1 ? "excluding" : "only") : 0;
+  probe->edge_faces =
+    probe->edge_filter ? SchemaReal(document, "%s.%s", path, probe->edge_filter == 1 ? "excluding" : "only") : 0;
   if (SceneHas(scene, path, "excluding") && SceneHas(scene, path, "only"))
     SceneRefuse(scene, path, "only", "stands beside excluding; allowed: one of them", NULL);
   probe->absolute = SchemaBoolean(document, "%s.absolute", path);

@@ -48,16 +48,19 @@ static void SchemaAllowed(const SchemaKey *key, char *text, size_t size)
   if (key->unit) Append(text, size, ", ", key->unit);
 }
 
-static void SchemaRefuse(Document *document, const SchemaKey *key, Node node, const char *path, const char *wrong) __attribute__((noreturn));
+static void SchemaRefuse(Document *document, const SchemaKey *key, Node node, const char *path, const char *wrong)
+  __attribute__((noreturn));
 static void SchemaRefuse(Document *document, const SchemaKey *key, Node node, const char *path, const char *wrong)
 {
   static const char *const Kinds[] = {"", "this list ", "this map "};
   char                     allowed[400];
 
   SchemaAllowed(key, allowed, sizeof allowed);
-  if (node->kind == NODE_SCALAR && node->plain && !*node->text) DocumentRefuseNode(document, node, path, "has no value; allowed: %s", allowed);
+  if (node->kind == NODE_SCALAR && node->plain && !*node->text)
+    DocumentRefuseNode(document, node, path, "has no value; allowed: %s", allowed);
   if (node->kind == NODE_SCALAR)
-    DocumentRefuseNode(document, node, path, "%s%.100s%s %s; allowed: %s", node->plain ? "" : "\"", node->text, node->plain ? "" : "\"", wrong, allowed);
+    DocumentRefuseNode(document, node, path, "%s%.100s%s %s; allowed: %s", node->plain ? "" : "\"", node->text,
+                       node->plain ? "" : "\"", wrong, allowed);
   DocumentRefuseNode(document, node, path, "%s%s; allowed: %s", Kinds[node->kind], wrong, allowed);
 }
 
@@ -96,8 +99,10 @@ static const char *CheckName(Node node)
 {
   const char *text = node->text;
 
-  return *text && *text != '.' && *text != '-' && !text[strspn(text, "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_-.")] ? NULL
-                                                                                                                                           : "is no name";
+  return *text && *text != '.' && *text != '-' &&
+             !text[strspn(text, "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_-.")]
+           ? NULL
+           : "is no name";
 }
 
 static const char *CheckText(Node node)
@@ -146,7 +151,8 @@ static const char *CheckHistory(Node node)
   for (int i = 0; i < node->n; i++) {
     Node pair = node->child[i];
 
-    if (pair->kind != NODE_LIST || pair->n != 2 || !NodeReal(pair->child[0], &t) || !NodeReal(pair->child[1], &factor)) return WrongType;
+    if (pair->kind != NODE_LIST || pair->n != 2 || !NodeReal(pair->child[0], &t) || !NodeReal(pair->child[1], &factor))
+      return WrongType;
     if (t < 0 || t > 1) return "has a t outside [0, 1]";
     if (!i && t != 0) return "does not start at t = 0";
     if (i && t <= before) return "is not increasing in t";
@@ -180,7 +186,8 @@ static const char *CheckEntries(const SchemaKey *key, Node node)
 static const char *CheckList(const SchemaKey *key, Node node)
 {
   if (key->type & POINT) return CheckPoint(node, key->range);
-  if (key->type & POINTS) return node->n == 2 && !CheckPoint(node->child[0], NULL) && !CheckPoint(node->child[1], NULL) ? NULL : WrongType;
+  if (key->type & POINTS)
+    return node->n == 2 && !CheckPoint(node->child[0], NULL) && !CheckPoint(node->child[1], NULL) ? NULL : WrongType;
   if (key->type & HISTORY) return CheckHistory(node);
   if (key->type & (REALS | TEXTS | CHOICES)) return CheckEntries(key, node);
   return WrongType;
@@ -211,8 +218,10 @@ static int WordDistance(const char *a, size_t na, const char *b, size_t nb)
   return row[nb];
 }
 
-static void SchemaRefuseUnknown(Document *document, Node node, const char *parent, const char *path, const char *unknown) __attribute__((noreturn));
-static void SchemaRefuseUnknown(Document *document, Node node, const char *parent, const char *path, const char *unknown)
+static void SchemaRefuseUnknown(Document *document, Node node, const char *parent, const char *path,
+                                const char *unknown) __attribute__((noreturn));
+static void SchemaRefuseUnknown(Document *document, Node node, const char *parent, const char *path,
+                                const char *unknown)
 {
   char        allowed[600] = "", word[80];
   const char *nearest      = "";
@@ -253,8 +262,10 @@ static void SchemaCheckFree(Document *document, Node node, const char *path)
   for (int i = 0; i < node->n; i++) {
     KeyPathJoin(below, path, node->key[i]);
     if (!*node->key[i] || strpbrk(node->key[i], " \t\n="))
-      DocumentRefuseNode(document, node->child[i], below, "is no name of a parameter or option; allowed: no blanks, no =");
-    if (node->child[i]->kind != NODE_SCALAR) DocumentRefuseNode(document, node->child[i], below, "has the wrong type; allowed: a number or a text");
+      DocumentRefuseNode(document, node->child[i], below,
+                         "is no name of a parameter or option; allowed: no blanks, no =");
+    if (node->child[i]->kind != NODE_SCALAR)
+      DocumentRefuseNode(document, node->child[i], below, "has the wrong type; allowed: a number or a text");
   }
 }
 
@@ -265,7 +276,8 @@ static void SchemaCheckKeys(Document *document, Node node, const char *path)
 
   for (int i = 0; i < node->n; i++) {
     KeyPathJoin(below, path, node->key[i]);
-    if (strchr(node->key[i], '.') || !SchemaKeyFind(below)) SchemaRefuseUnknown(document, node->child[i], path, below, node->key[i]);
+    if (strchr(node->key[i], '.') || !SchemaKeyFind(below))
+      SchemaRefuseUnknown(document, node->child[i], path, below, node->key[i]);
   }
 }
 
@@ -291,7 +303,9 @@ static void SchemaWalk(Document *document, Node node, const char *path, NodeVisi
 static void SchemaVisitMissing(Document *document, Node node, const char *path)
 {
   for (int i = 0; i < SchemaKeysCount; i++) {
-    if (!(SchemaKeys[i].flags & REQUIRED) || !SchemaKeyIsChild(&SchemaKeys[i], path) || NodeChild(node, SchemaKeyName(&SchemaKeys[i]))) continue;
+    if (!(SchemaKeys[i].flags & REQUIRED) || !SchemaKeyIsChild(&SchemaKeys[i], path) ||
+        NodeChild(node, SchemaKeyName(&SchemaKeys[i])))
+      continue;
     if (SchemaKeys[i].flags & SOLID && document->dim == 2) continue;
     SchemaRefuseMissing(document, &SchemaKeys[i], node, path);
   }
@@ -338,17 +352,19 @@ static void SchemaVisitDimension(Document *document, const SchemaKey *key, Node 
 {
   static const char Solid[] = "geometry: solid";
 
-  if (document->dim == 2 && key->flags & SOLID) DocumentRefuseNode(document, node, path, "has no meaning in 2D; allowed: only with %s", Solid);
+  if (document->dim == 2 && key->flags & SOLID)
+    DocumentRefuseNode(document, node, path, "has no meaning in 2D; allowed: only with %s", Solid);
   if (document->dim == 2 && key->type & CHOICE && node->kind == NODE_SCALAR && !strcmp(node->text, "z"))
     DocumentRefuseNode(document, node, path, "z has no meaning in 2D; allowed: x | y, z only with %s", Solid);
   for (int i = 0; node->kind == NODE_LIST && i < (key->type & POINTS ? 2 : key->type & POINT ? 1 : 0); i++) {
     if ((key->type & POINTS ? node->child[i] : node)->n != document->dim)
-      DocumentRefuseNode(document, node, path, "has not as many coordinates as the scene; allowed: %d numbers", document->dim);
+      DocumentRefuseNode(document, node, path, "has not as many coordinates as the scene; allowed: %d numbers",
+                         document->dim);
   }
 }
 
-/* SchemaCheck - validates the document against the table: unknown and missing keys, types and ranges, then what is not available yet, then
-   what a 2D scene cannot have. Collective; refuses the first mistake. Sets document->dim. */
+/* SchemaCheck - validates the document against the table: unknown and missing keys, types and ranges, then what is not
+   available yet, then what a 2D scene cannot have. Collective; refuses the first mistake. Sets document->dim. */
 void SchemaCheck(Document *document)
 {
   Node geometry;
@@ -444,7 +460,8 @@ int SchemaBoolean(Document *document, const char *format, ...)
   return text && !strcmp(text, "true");
 }
 
-/* SchemaChoice - which of the table's values stands at a path, counted from 0; -1 where neither value nor default is one of them. */
+/* SchemaChoice - which of the table's values stands at a path, counted from 0; -1 where neither value nor default is
+ * one of them. */
 int SchemaChoice(Document *document, const char *format, ...)
 {
   const SchemaKey *key;
@@ -464,8 +481,8 @@ const char *SchemaText(Document *document, const char *format, ...)
   return text;
 }
 
-/* SchemaReference - prints every key, by the path that -set takes, with what it allows, its default and what it means; N stands for an index
-   into a list. Not collective. */
+/* SchemaReference - prints every key, by the path that -set takes, with what it allows, its default and what it means;
+   N stands for an index into a list. Not collective. */
 void SchemaReference(FILE *file)
 {
   char allowed[400];

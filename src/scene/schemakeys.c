@@ -142,7 +142,8 @@ const SchemaKey SchemaKeys[] = {
 
 const int SchemaKeysCount = sizeof SchemaKeys / sizeof SchemaKeys[0];
 
-/* WordFind - place from 0, or -1, of the n characters at text among the words of a list (apart by the characters of apart). Not collective. */
+/* WordFind - place from 0, or -1, of the n characters at text among the words of a list (apart by the characters of
+ * apart). Not collective. */
 int WordFind(const char *words, const char *apart, const char *text, size_t n)
 {
   for (int i = 0; words && *words; i++) {

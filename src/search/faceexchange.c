@@ -43,7 +43,9 @@ static void FacePointPositions(ContactSearch s, PetscInt f, const PetscReal *u, 
     PetscReal y[3];
 
     if (s->master->rigid) SearchRigidPosition(s, facet->nodes[a], t, y);
-    for (int d = 0; d < dim; d++) x[a * dim + d] = s->master->rigid ? y[d] : s->mesh->coords[facet->nodes[a] * dim + d] + u[facet->nodes[a] * dim + d];
+    for (int d = 0; d < dim; d++)
+      x[a * dim + d] =
+        s->master->rigid ? y[d] : s->mesh->coords[facet->nodes[a] * dim + d] + u[facet->nodes[a] * dim + d];
   }
 }
 
@@ -107,12 +109,15 @@ static PetscBool ReachesBox(const void *context, PetscInt f, PetscMPIInt r)
   PetscReal    x[FACE_MAX_NODES * 3];
 
   FacePointPositions(reach->s, f, reach->u, 0, x);
-  return SomeImageMeets(reach->s, ElementGet(reach->s->master->faces[f].type)->nodes, x, &reach->boxes[6 * r], reach->distance);
+  return SomeImageMeets(reach->s, ElementGet(reach->s->master->faces[f].type)->nodes, x, &reach->boxes[6 * r],
+                        reach->distance);
 }
 
-/* Sends this rank's faces of a deformable master to every rank whose box they may reach; returns what arrived (itself included). */
-PetscErrorCode SearchExchangeFaces(ContactSearch s, const NodeGeometry *geometry, const PetscReal *u, const PetscReal *boxes, PetscReal distance,
-                                   PetscInt *n_records, FaceRecord **records)
+/* Sends this rank's faces of a deformable master to every rank whose box they may reach; returns what arrived (itself
+ * included). */
+PetscErrorCode SearchExchangeFaces(ContactSearch s, const NodeGeometry *geometry, const PetscReal *u,
+                                   const PetscReal *boxes, PetscReal distance, PetscInt *n_records,
+                                   FaceRecord **records)
 {
   const Reach reach = {s, u, boxes, distance};
 
@@ -122,8 +127,8 @@ PetscErrorCode SearchExchangeFaces(ContactSearch s, const NodeGeometry *geometry
 }
 
 /* The faces of a rigid tool that come near a box; every rank has them all. */
-PetscErrorCode SearchPickRigidFaces(ContactSearch s, const NodeGeometry *geometry, PetscReal t, const PetscReal box[6], PetscReal distance, PetscInt *n_records,
-                                    FaceRecord **records)
+PetscErrorCode SearchPickRigidFaces(ContactSearch s, const NodeGeometry *geometry, PetscReal t, const PetscReal box[6],
+                                    PetscReal distance, PetscInt *n_records, FaceRecord **records)
 {
   PetscFunctionBeginUser;
   *n_records = 0;

@@ -14,8 +14,10 @@ static PetscErrorCode Broadcast(PetscSF sf, size_t size, const void *roots, void
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The forest of the faces' entries: each leaf's follow one another as its root's do. start[leaf]: first entry of the root. */
-static PetscErrorCode CreateEntryForest(PetscSF faces, const FaceMaps *home, const PetscInt start[], const FaceMaps *maps, PetscSF *sf)
+/* The forest of the faces' entries: each leaf's follow one another as its root's do. start[leaf]: first entry of the
+ * root. */
+static PetscErrorCode CreateEntryForest(PetscSF faces, const FaceMaps *home, const PetscInt start[],
+                                        const FaceMaps *maps, PetscSF *sf)
 {
   const PetscSFNode *root;
   PetscSFNode       *remote;
@@ -24,17 +26,19 @@ static PetscErrorCode CreateEntryForest(PetscSF faces, const FaceMaps *home, con
   PetscCall(PetscSFGetGraph(faces, NULL, NULL, NULL, &root));
   PetscCall(PetscMalloc1(maps->ptr[maps->n], &remote));
   for (PetscInt f = 0; f < maps->n; f++)
-    for (PetscInt k = maps->ptr[f]; k < maps->ptr[f + 1]; k++) remote[k] = (PetscSFNode){root[f].rank, start[f] + k - maps->ptr[f]};
+    for (PetscInt k = maps->ptr[f]; k < maps->ptr[f + 1]; k++)
+      remote[k] = (PetscSFNode){root[f].rank, start[f] + k - maps->ptr[f]};
   PetscCall(PetscSFCreate(PetscObjectComm((PetscObject)faces), sf));
-  PetscCall(PetscSFSetGraph(*sf, home->ptr[home->n], maps->ptr[maps->n], NULL, PETSC_OWN_POINTER, remote, PETSC_OWN_POINTER));
+  PetscCall(
+    PetscSFSetGraph(*sf, home->ptr[home->n], maps->ptr[maps->n], NULL, PETSC_OWN_POINTER, remote, PETSC_OWN_POINTER));
   PetscCall(PetscSFSetUp(*sf));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* FaceMapsFetch - the maps of faces wherever they live.
 
-   Collective. faces: roots are the faces of home, in their order, leaves those wanted, without gaps; home: of this rank's faces; maps: empty. To be freed with
-   FaceMapsDestroy(). */
+   Collective. faces: roots are the faces of home, in their order, leaves those wanted, without gaps; home: of this
+   rank's faces; maps: empty. To be freed with FaceMapsDestroy(). */
 PetscErrorCode FaceMapsFetch(PetscSF faces, const FaceMaps *home, FaceMaps *maps)
 {
   PetscInt *start, *end, n;

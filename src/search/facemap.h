@@ -1,5 +1,6 @@
-/* Quadrature points of faces as fixed combinations of nodes, those of the face and those around it: x = sum S (image of x_node). So a point may
-   lie off its face, where the surface through the nodes around is (offset.h), and follow them. */
+/* Quadrature points of faces as fixed combinations of nodes, those of the face and those around it: x = sum S (image of
+   x_node). So a point may lie off its face, where the surface through the nodes around is (offset.h), and follow them.
+ */
 #pragma once
 #include "search/facerecord.h"
 
@@ -11,7 +12,7 @@ typedef struct {
 
 /* Maps of some faces; ptr NULL: there are none, the faces' shape functions serve */
 typedef struct {
-  PetscInt      n, *ptr; /* faces; entries of face f are ptr[f] to ptr[f + 1] - 1, first its own nodes, in their order */
+  PetscInt n, *ptr; /* faces; entries of face f are ptr[f] to ptr[f + 1] - 1, first its own nodes, in their order */
   FaceMapEntry *entry;
 } FaceMaps;
 

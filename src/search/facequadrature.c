@@ -16,8 +16,8 @@ static const struct {
          {0.23692688505618908751, 0.47862867049936646804, 128. / 225, 0.47862867049936646804, 0.23692688505618908751}                   }
 };
 
-/* Orbits of symmetric points of a triangle: barycentric coordinates (a, b, 1 - a - b) in all their orders, weights as shares of the area.
-   Degrees 2, 4 and 6: Dunavant, Int. J. Numer. Meth. Engng. 21 (1985), 1129. */
+/* Orbits of symmetric points of a triangle: barycentric coordinates (a, b, 1 - a - b) in all their orders, weights as
+   shares of the area. Degrees 2, 4 and 6: Dunavant, Int. J. Numer. Meth. Engng. 21 (1985), 1129. */
 typedef struct {
   double a, b, weight;
 } Orbit;
@@ -58,13 +58,17 @@ static void AddOrbits(FaceRule *rule, const Orbit *orbit)
 
 static void MakeRule(const Element *e, int finer, FaceRule *rule)
 {
-  const int n = e->order + 1 + finer + (e->dim == 1); /* on edges points cost little, and one more leaves a third of the noise of curved second-order ones */
+  const int n =
+    e->order + 1 + finer +
+    (e->dim ==
+     1); /* on edges points cost little, and one more leaves a third of the noise of curved second-order ones */
 
   if (e->corners == 3)
     AddOrbits(rule, n == 2 ? triangle3 : n == 3 ? triangle6 : triangle12);
   else {
     for (int j = 0; j < (e->dim > 1 ? n : 1); j++)
-      for (int i = 0; i < n; i++) AddPoint(rule, gauss[n].x[i], e->dim > 1 ? gauss[n].x[j] : 0, gauss[n].w[i] * (e->dim > 1 ? gauss[n].w[j] : 1));
+      for (int i = 0; i < n; i++)
+        AddPoint(rule, gauss[n].x[i], e->dim > 1 ? gauss[n].x[j] : 0, gauss[n].w[i] * (e->dim > 1 ? gauss[n].w[j] : 1));
   }
   for (int q = 0; q < rule->n; q++) {
     double dN[FACE_MAX_NODES * 2];
@@ -85,7 +89,8 @@ const FaceRule *FaceRuleGet(ElementType type, int finer)
   return rule;
 }
 
-/* Hat functions of a 6-node triangle: its four small triangles by the barycentric coordinates l; node 3 + i is the middle of corners i and i + 1. */
+/* Hat functions of a 6-node triangle: its four small triangles by the barycentric coordinates l; node 3 + i is the
+ * middle of corners i and i + 1. */
 static void HatTriangle(const double l[3], double *psi)
 {
   for (int i = 0; i < 3; i++) {
@@ -98,8 +103,8 @@ static void HatTriangle(const double l[3], double *psi)
   for (int i = 0; i < 3; i++) psi[3 + i] = 1 - 2 * l[(i + 2) % 3];
 }
 
-/* FaceHat - positive weighting functions of a face's nodes: every node gets area on every element, which second-order shape functions deny to
-   corners of triangles. Not collective.
+/* FaceHat - positive weighting functions of a face's nodes: every node gets area on every element, which second-order
+   shape functions deny to corners of triangles. Not collective.
 
    Input: type; xi - reference coordinates. Output: psi[nodes], sum 1 */
 void FaceHat(ElementType type, const double *xi, double *psi)
@@ -125,9 +130,10 @@ void FaceHat(ElementType type, const double *xi, double *psi)
 
 /* FaceRuleAreas - what part of the face's area each point of the rule stands for. Not collective.
 
-   Input: rule, type; dim, geometry - axisymmetric: times 2 pi R, over 360 degrees; X[nodes][dim] - reference or current coordinates
-   Output: area[n]; normal[n][3] - unit, out of the body; may be NULL */
-void FaceRuleAreas(const FaceRule *rule, ElementType type, int dim, Geometry geometry, const double *X, double *area, double *normal)
+   Input: rule, type; dim, geometry - axisymmetric: times 2 pi R, over 360 degrees; X[nodes][dim] - reference or current
+   coordinates Output: area[n]; normal[n][3] - unit, out of the body; may be NULL */
+void FaceRuleAreas(const FaceRule *rule, ElementType type, int dim, Geometry geometry, const double *X, double *area,
+                   double *normal)
 {
   const double two_pi = 6.28318530717958647693;
   const int    nodes  = ElementGet(type)->nodes;

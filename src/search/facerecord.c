@@ -2,8 +2,10 @@
 
 /* FaceRecordFromSurface - face f of a surface with its nodes' keys and reference positions. Not collective.
 
-   geometry: by local node of the mesh or the tool, or NULL; offset[faces][FACE_RULE_POINTS*dim]: lengths, or NULL. home is left 0. */
-void FaceRecordFromSurface(ContactSurface surface, const NodeGeometry *geometry, const PetscReal *offset, PetscInt f, FaceRecord *record)
+   geometry: by local node of the mesh or the tool, or NULL; offset[faces][FACE_RULE_POINTS*dim]: lengths, or NULL. home
+   is left 0. */
+void FaceRecordFromSurface(ContactSurface surface, const NodeGeometry *geometry, const PetscReal *offset, PetscInt f,
+                           FaceRecord *record)
 {
   Mesh         mesh  = surface->mesh;
   const int    dim   = mesh->dim;
@@ -23,8 +25,10 @@ void FaceRecordFromSurface(ContactSurface surface, const NodeGeometry *geometry,
   for (int i = 0; offset && i < FACE_RULE_POINTS * dim; i++) record->offset[i] = offset[f * FACE_RULE_POINTS * dim + i];
 }
 
-/* Sends count[r] records to each rank r, one rank after the other in send; what arrives is in the order of the ranks it comes from. */
-static PetscErrorCode ExchangeRecords(MPI_Comm comm, const PetscInt count[], const FaceRecord *send, PetscInt *n, FaceRecord **received)
+/* Sends count[r] records to each rank r, one rank after the other in send; what arrives is in the order of the ranks it
+ * comes from. */
+static PetscErrorCode ExchangeRecords(MPI_Comm comm, const PetscInt count[], const FaceRecord *send, PetscInt *n,
+                                      FaceRecord **received)
 {
   PetscMPIInt  size, *send_count, *send_start, *receive_count, *receive_start;
   PetscInt     total = 0;
@@ -53,12 +57,13 @@ static PetscErrorCode ExchangeRecords(MPI_Comm comm, const PetscInt count[], con
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* FaceRecordsShare - sends the faces of a surface, whose home is this rank, to every rank that wants them, itself included.
+/* FaceRecordsShare - sends the faces of a surface, whose home is this rank, to every rank that wants them, itself
+   included.
 
-   Collective. geometry, offset: as of FaceRecordFromSurface(); wanted(context, f, r): does rank r want face f of this rank? received[*n]: in the
-   order of the ranks they come from; to be freed with PetscFree(). */
-PetscErrorCode FaceRecordsShare(ContactSurface surface, const NodeGeometry *geometry, const PetscReal *offset, FaceWantedFn wanted, const void *context,
-                                PetscInt *n, FaceRecord **received)
+   Collective. geometry, offset: as of FaceRecordFromSurface(); wanted(context, f, r): does rank r want face f of this
+   rank? received[*n]: in the order of the ranks they come from; to be freed with PetscFree(). */
+PetscErrorCode FaceRecordsShare(ContactSurface surface, const NodeGeometry *geometry, const PetscReal *offset,
+                                FaceWantedFn wanted, const void *context, PetscInt *n, FaceRecord **received)
 {
   const MPI_Comm comm = surface->mesh->comm;
   PetscMPIInt    size, rank;
@@ -106,7 +111,8 @@ static int NodeKeyCompare(const void *a, const void *b)
   return p->id < q->id ? -1 : p->id > q->id;
 }
 
-/* NodeKeysUnique - Not collective. keys[n] is sorted in place by id; returns how many are left once each id stands once. */
+/* NodeKeysUnique - Not collective. keys[n] is sorted in place by id; returns how many are left once each id stands
+ * once. */
 PetscInt NodeKeysUnique(PetscInt n, NodeKey *keys)
 {
   PetscInt kept = 0;

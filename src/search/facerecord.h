@@ -1,5 +1,5 @@
-/* A face of a contact surface with its nodes' keys and positions, on its way to a rank that needs it. Plain bytes: the ranks of one run have
-   one architecture. */
+/* A face of a contact surface with its nodes' keys and positions, on its way to a rank that needs it. Plain bytes: the
+   ranks of one run have one architecture. */
 #pragma once
 #include "search/facequadrature.h"
 #include "search/nodegeometry.h"
@@ -20,13 +20,15 @@ typedef struct {
   PetscReal X[3];
 } NodeKey;
 
-/* Face f of the surface as a record. geometry: by local node, or NULL; offset: [faces][FACE_RULE_POINTS*dim], or NULL. Not collective. */
-void FaceRecordFromSurface(ContactSurface, const NodeGeometry *geometry, const PetscReal *offset, PetscInt f, FaceRecord *);
+/* Face f of the surface as a record. geometry: by local node, or NULL; offset: [faces][FACE_RULE_POINTS*dim], or NULL.
+ * Not collective. */
+void FaceRecordFromSurface(ContactSurface, const NodeGeometry *geometry, const PetscReal *offset, PetscInt f,
+                           FaceRecord *);
 /* Does rank r want face f of this rank? */
 typedef PetscBool (*FaceWantedFn)(const void *context, PetscInt f, PetscMPIInt r);
 /* Sends this rank's faces to the ranks that want them; what arrives is the caller's to free. Collective. */
-PetscErrorCode FaceRecordsShare(ContactSurface, const NodeGeometry *, const PetscReal *offset, FaceWantedFn, const void *context, PetscInt *n,
-                                FaceRecord **received);
+PetscErrorCode FaceRecordsShare(ContactSurface, const NodeGeometry *, const PetscReal *offset, FaceWantedFn,
+                                const void *context, PetscInt *n, FaceRecord **received);
 /* Sorts by the faces' tags. */
 void FaceRecordsSort(PetscInt n, FaceRecord *);
 /* The keys of a record's nodes, [nodes] */

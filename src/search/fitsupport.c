@@ -2,9 +2,11 @@
 #include "searchimpl.h"
 #include "base/timing.h"
 
-/* Points are gathered a little beyond the support (rho^2 up to this), so that those which enter while a solve lasts are in the list. */
+/* Points are gathered a little beyond the support (rho^2 up to this), so that those which enter while a solve lasts are
+ * in the list. */
 #define SEARCH_FIT_MARGIN PetscSqr(1 + NEIGHBOUR_LISTS_MARGIN)
-/* On regular meshes points lie exactly on the border of the support; this much beyond still counts as inside, and round-off decides nothing. */
+/* On regular meshes points lie exactly on the border of the support; this much beyond still counts as inside, and
+ * round-off decides nothing. */
 #define SEARCH_FIT_TIE 1e-6
 
 /* The ladder: wider supports, then lower degrees, until every guard holds. Degree 0: the scene's. */
@@ -75,7 +77,8 @@ PetscErrorCode FitSupportCreate(ContactSearch s, NeighbourLists lists, const Sea
 
   PetscFunctionBeginUser;
   *fit = (FitSupport){.s = s, .lists = lists};
-  PetscCall(PetscMalloc5(3 * n, &fit->normals, 3 * n, &fit->reference, lists->n_points, &fit->geometry, n, &facets, lists->n_points * lists->dim, &x));
+  PetscCall(PetscMalloc5(3 * n, &fit->normals, 3 * n, &fit->reference, lists->n_points, &fit->geometry, n, &facets,
+                         lists->n_points * lists->dim, &x));
   PetscCall(PetscCalloc1(lists->n_nodes, &node_geometry));
   NeighbourListsPointGeometry(s, lists, field, node_geometry, fit->geometry);
   PetscCall(PetscFree(node_geometry));
@@ -87,11 +90,21 @@ PetscErrorCode FitSupportCreate(ContactSearch s, NeighbourLists lists, const Sea
     if (first) first[i] = candidates[i].first;
   }
   for (PetscInt i = 0; i < lists->n_points * lists->dim; i++) x[i] = lists->point_X[i] + lists->point_u[i];
-  fit->view = (SurfaceView){lists->dim, n, lists->n_points, facets, fit->normals, fit->reference, x, fit->geometry, PetscCosReal(s->fit->feature_angle), first};
+  fit->view = (SurfaceView){lists->dim,
+                            n,
+                            lists->n_points,
+                            facets,
+                            fit->normals,
+                            fit->reference,
+                            x,
+                            fit->geometry,
+                            PetscCosReal(s->fit->feature_angle),
+                            first};
   for (PetscInt i = 0; i < n && first; i++) FaceSpacing(fit, i);
   PetscCall(NeighbourhoodsCreate(&fit->view, &fit->neighbourhoods));
-  PetscCall(PetscMalloc6(FIT_MAX_POINTS, &fit->points, FIT_MAX_POINTS * 3, &fit->x, FIT_MAX_POINTS, &fit->multiplier, FIT_MAX_POINTS, &fit->taper,
-                         FitWorkspace(lists->dim, s->fit->degree, FIT_MAX_POINTS), &fit->workspace, FIT_MAX_POINTS, &fit->used));
+  PetscCall(PetscMalloc6(FIT_MAX_POINTS, &fit->points, FIT_MAX_POINTS * 3, &fit->x, FIT_MAX_POINTS, &fit->multiplier,
+                         FIT_MAX_POINTS, &fit->taper, FitWorkspace(lists->dim, s->fit->degree, FIT_MAX_POINTS),
+                         &fit->workspace, FIT_MAX_POINTS, &fit->used));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -129,8 +142,9 @@ static void AddCovariance(double factor, const NodeGeometry *g, double covarianc
   }
 }
 
-/* Spacing of the points at a foot. Shape: the nodes' covariances, between the nodes by the shape functions, so that the support does not jump
-   from facet to facet and keeps the symmetry of a ring around a node. Size: the mean over the facet's nodes, as those on a cut see one side only. */
+/* Spacing of the points at a foot. Shape: the nodes' covariances, between the nodes by the shape functions, so that the
+   support does not jump from facet to facet and keeps the symmetry of a ring around a node. Size: the mean over the
+   facet's nodes, as those on a cut see one side only. */
 static void FootSpacing(const FitSupport *fit, PetscInt f, const double *xi, double covariance[3][3], double *area)
 {
   const Facet *facet = &fit->view.facets[f];
@@ -151,8 +165,9 @@ static void FootSpacing(const FitSupport *fit, PetscInt f, const double *xi, dou
   }
 }
 
-/* Spacing for a fit through quadrature points: the mean over the faces that it sees. Forces spread by the fit are consistent nodal loads as far as
-   neighbouring slave points share one support; its change from face to face by the local spacing costs 2 to 10 times the error of the patch test. */
+/* Spacing for a fit through quadrature points: the mean over the faces that it sees. Forces spread by the fit are
+   consistent nodal loads as far as neighbouring slave points share one support; its change from face to face by the
+   local spacing costs 2 to 10 times the error of the patch test. */
 static void WindowSpacing(const FitSupport *fit, PetscInt n, double covariance[3][3], double *area)
 {
   double sum = 0, faces = 0;
@@ -170,13 +185,13 @@ static void WindowSpacing(const FitSupport *fit, PetscInt n, double covariance[3
   *area = sum / faces;
 }
 
-/* Weights of n points and their positions relative to the fit's origin, as of NeighbourListsRelative(); returns how many are inside the support. dim constant where this
-   is called. */
+/* Weights of n points and their positions relative to the fit's origin, as of NeighbourListsRelative(); returns how
+   many are inside the support. dim constant where this is called. */
 static inline PetscInt TakePoints(const int dim, FitSupport *fit, const FitFoot *at, PetscInt n, const PetscReal *rho2)
 {
   const NeighbourLists lists = fit->lists;
-  const PetscReal   *X = lists->point_X, *u = lists->point_u;
-  PetscInt           inside = 0;
+  const PetscReal     *X = lists->point_X, *u = lists->point_u;
+  PetscInt             inside = 0;
 
   for (PetscInt i = 0; i < n; i++) {
     const PetscInt  p      = fit->points[i];
@@ -190,29 +205,36 @@ static inline PetscInt TakePoints(const int dim, FitSupport *fit, const FitFoot 
   return inside;
 }
 
-/* Tries one rung at a foot: points, frame, metric into fit and problem; true when every guard holds. Quadrature points come in clusters, whose
-   number says nothing: the pivot does. */
-static PetscErrorCode FitRung(FitSupport *fit, const FitFoot *at, int rung, FitProblem *problem, FitResult *result, PetscBool *holds)
+/* Tries one rung at a foot: points, frame, metric into fit and problem; true when every guard holds. Quadrature points
+   come in clusters, whose number says nothing: the pivot does. */
+static PetscErrorCode FitRung(FitSupport *fit, const FitFoot *at, int rung, FitProblem *problem, FitResult *result,
+                              PetscBool *holds)
 {
   const FitSettings *settings = fit->s->fit;
-  const int          dim = fit->lists->dim, degree = Ladder[rung].degree ? PetscMin(Ladder[rung].degree, settings->degree) : settings->degree;
-  const int          wanted = settings->integral ? FitTerms(dim, degree) : FitPointsWanted(dim, degree);
-  double             covariance[3][3], area;
-  const PetscReal   *rho2;
-  PetscReal          space[9];
-  PetscInt           n, found, inside;
+  const int          dim      = fit->lists->dim,
+            degree        = Ladder[rung].degree ? PetscMin(Ladder[rung].degree, settings->degree) : settings->degree;
+  const int        wanted = settings->integral ? FitTerms(dim, degree) : FitPointsWanted(dim, degree);
+  double           covariance[3][3], area;
+  const PetscReal *rho2;
+  PetscReal        space[9];
+  PetscInt         n, found, inside;
 
   PetscFunctionBeginUser;
   *holds   = PETSC_FALSE;
   *result  = (FitResult){.points = fit->used};
-  *problem = (FitProblem){.dim = dim, .degree = degree, .exponent = settings->exponent, .x = fit->x, .multiplier = fit->multiplier};
+  *problem = (FitProblem){.dim        = dim,
+                          .degree     = degree,
+                          .exponent   = settings->exponent,
+                          .x          = fit->x,
+                          .multiplier = fit->multiplier};
   FootSpacing(fit, at->facet, at->xi, covariance, &area);
   FitFrameFromNormal(dim, settings->global_frame ? fit->plane : at->outward, problem->frame);
   for (int pass = 0; pass < 2; pass++) { /* first seen along the facet's normal, then along the points' own */
-    FitMetricFromCovariance(dim, problem->frame, covariance, area, settings->support * Ladder[rung].widen, problem->metric);
+    FitMetricFromCovariance(dim, problem->frame, covariance, area, settings->support * Ladder[rung].widen,
+                            problem->metric);
     MetricInSpace(dim, problem->frame, problem->metric, space);
-    PetscCall(NeighbourhoodGather(fit->neighbourhoods, at->facet, at->foot, problem->frame[dim - 1], space, SEARCH_FIT_MARGIN, FIT_MAX_POINTS, fit->points,
-                                  &rho2, &n, &found));
+    PetscCall(NeighbourhoodGather(fit->neighbourhoods, at->facet, at->foot, problem->frame[dim - 1], space,
+                                  SEARCH_FIT_MARGIN, FIT_MAX_POINTS, fit->points, &rho2, &n, &found));
     inside     = dim == 3 ? TakePoints(3, fit, at, n, rho2) : TakePoints(2, fit, at, n, rho2);
     problem->n = (int)n;
     if (inside < wanted) PetscFunctionReturn(PETSC_SUCCESS);
@@ -221,13 +243,18 @@ static PetscErrorCode FitRung(FitSupport *fit, const FitFoot *at, int rung, FitP
       if (settings->integral) continue;
       break;
     }
-    if (pass == 0 && !FitFrame(dim, problem->n, fit->x, fit->taper, at->outward, problem->frame)) PetscFunctionReturn(PETSC_SUCCESS);
+    if (pass == 0 && !FitFrame(dim, problem->n, fit->x, fit->taper, at->outward, problem->frame))
+      PetscFunctionReturn(PETSC_SUCCESS);
   }
-  *holds = DiffuseFitEvaluate(problem, FIT_GAP, fit->workspace, result) && (result->guards & ~FIT_FEW_POINTS) == FIT_HOLDS ? PETSC_TRUE : PETSC_FALSE;
+  *holds =
+    DiffuseFitEvaluate(problem, FIT_GAP, fit->workspace, result) && (result->guards & ~FIT_FEW_POINTS) == FIT_HOLDS
+      ? PETSC_TRUE
+      : PETSC_FALSE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Climbs down the ladder until a fit holds; *rung is where it stands, RUNG_FACET: nowhere. problem and result speak of fit's arrays. */
+/* Climbs down the ladder until a fit holds; *rung is where it stands, RUNG_FACET: nowhere. problem and result speak of
+ * fit's arrays. */
 PetscErrorCode FitSupportClimb(FitSupport *fit, const FitFoot *at, FitProblem *problem, FitResult *result, int *rung)
 {
   PetscBool holds = PETSC_FALSE;
@@ -241,7 +268,8 @@ PetscErrorCode FitSupportClimb(FitSupport *fit, const FitFoot *at, FitProblem *p
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* How far the points in the inner half of the support lie from the fit: what the smoothing itself costs. dim constant where this is called. */
+/* How far the points in the inner half of the support lie from the fit: what the smoothing itself costs. dim constant
+ * where this is called. */
 static inline PetscReal FitResidual(const int dim, const FitProblem *problem, const FitResult *result)
 {
   const double Q[3] = {problem->metric[0][0], 2 * problem->metric[0][1], problem->metric[1][1]};
@@ -263,7 +291,7 @@ static inline PetscReal FitResidual(const int dim, const FitProblem *problem, co
 /* Fits the surface for one slave point and writes what holds into its list, which starts at first. */
 PetscErrorCode FitSupportSlave(FitSupport *fit, const Nearest *look, PetscInt q, PetscInt first, ListBuffer *buffer)
 {
-  NeighbourLists     lists = fit->lists;
+  NeighbourLists   lists = fit->lists;
   const Candidate *best  = &look->candidates[look->best];
   FitFoot          at    = {
                 .facet = look->best,
@@ -273,7 +301,8 @@ PetscErrorCode FitSupportSlave(FitSupport *fit, const Nearest *look, PetscInt q,
   FitResult  result;
 
   PetscFunctionBeginUser;
-  for (int d = 0; d < 3; d++) at.outward[d] = best->normal[d]; /* the foot's own may lie along the surface when the foot is on an edge */
+  for (int d = 0; d < 3; d++)
+    at.outward[d] = best->normal[d]; /* the foot's own may lie along the surface when the foot is on an edge */
   for (int d = 0; d < lists->dim; d++) {
     at.X[d]    = lists->slave_X[q * lists->dim + d];
     at.u[d]    = lists->slave_u[q * lists->dim + d];
@@ -296,8 +325,11 @@ PetscErrorCode FitSupportSlave(FitSupport *fit, const Nearest *look, PetscInt q,
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* How far from a slave point the points of its fit may lie: the widest support with its margin, along the longest face where it is drawn out. */
+/* How far from a slave point the points of its fit may lie: the widest support with its margin, along the longest face
+ * where it is drawn out. */
 PetscReal SearchFitReach(ContactSearch s)
 {
-  return s->fit->degree ? PetscSqrtReal(SEARCH_FIT_MARGIN) * Ladder[RUNG_WIDER].widen * s->fit->support * s->master->max_extent / s->master->order : 0;
+  return s->fit->degree ? PetscSqrtReal(SEARCH_FIT_MARGIN) * Ladder[RUNG_WIDER].widen * s->fit->support *
+                            s->master->max_extent / s->master->order
+                        : 0;
 }

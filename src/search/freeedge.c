@@ -11,10 +11,11 @@ struct _n_FreeEdges {
   Mesh                mesh;
   Scene               scene;
   const SceneContact *contact;
-  GatherTable               table; /* EDGE_COLUMNS */
+  GatherTable         table; /* EDGE_COLUMNS */
 };
 
-/* Are all the corners on one of the planes beyond which the pair continues as its mirror image (the axis of revolution is one)? */
+/* Are all the corners on one of the planes beyond which the pair continues as its mirror image (the axis of revolution
+ * is one)? */
 static PetscErrorCode OnSymmetry(FreeEdges edges, int n, const PetscInt *nodes, PetscBool *on)
 {
   const Mesh          mesh    = edges->mesh;
@@ -24,7 +25,8 @@ static PetscErrorCode OnSymmetry(FreeEdges edges, int n, const PetscInt *nodes, 
   PetscFunctionBeginUser;
   *on = edges->scene->geometry == GEOMETRY_AXISYMMETRIC ? PETSC_TRUE : PETSC_FALSE;
   for (int i = 0; i < n && *on; i++)
-    if (PetscAbsReal(mesh->coords[nodes[i] * mesh->dim] + mesh->centre[0]) > AXIS_TOLERANCE * mesh->size) *on = PETSC_FALSE;
+    if (PetscAbsReal(mesh->coords[nodes[i] * mesh->dim] + mesh->centre[0]) > AXIS_TOLERANCE * mesh->size)
+      *on = PETSC_FALSE;
   for (int s = 0; s < contact->n_symmetry && !*on; s++) {
     PetscCall(MeshGetGroup(mesh, edges->scene, contact->path, "symmetry", contact->symmetry[s], mesh->dim - 1, &plane));
     *on = PETSC_TRUE;
@@ -86,16 +88,18 @@ static PetscErrorCode GatherEdges(FreeEdges edges, const MeshGroup *surface)
 }
 
 /*
-  FreeEdgesCreate - Finds the edges that belong to one face of a surface only and are on no plane of symmetry. Collective.
+  FreeEdgesCreate - Finds the edges that belong to one face of a surface only and are on no plane of symmetry.
+  Collective.
 
-  Input: mesh, scene, contact (its planes of symmetry), surface (of the deformable mesh). Output: edges, the same on all ranks. Errors: refuses
-  (exit 1) a plane of symmetry that the mesh does not have.
+  Input: mesh, scene, contact (its planes of symmetry), surface (of the deformable mesh). Output: edges, the same on all
+  ranks. Errors: refuses (exit 1) a plane of symmetry that the mesh does not have.
 */
-PetscErrorCode FreeEdgesCreate(Mesh mesh, Scene scene, const SceneContact *contact, const MeshGroup *surface, FreeEdges *result)
+PetscErrorCode FreeEdgesCreate(Mesh mesh, Scene scene, const SceneContact *contact, const MeshGroup *surface,
+                               FreeEdges *result)
 {
-  FreeEdges edges;
-  PetscInt  kept = 0;
-  GatherTable    *table;
+  FreeEdges    edges;
+  PetscInt     kept = 0;
+  GatherTable *table;
 
   PetscFunctionBeginUser;
   PetscCall(PetscNew(&edges));
@@ -139,7 +143,8 @@ static PetscReal DistanceToEdge(const PetscReal *x, const PetscReal *a, const Pe
   return PetscSqrtReal(square);
 }
 
-/* FreeEdgesDistance - Distance (length) of a point in reference coordinates to the nearest free edge, PETSC_MAX_REAL if there is none. Not collective. */
+/* FreeEdgesDistance - Distance (length) of a point in reference coordinates to the nearest free edge, PETSC_MAX_REAL if
+ * there is none. Not collective. */
 PetscReal FreeEdgesDistance(FreeEdges edges, const PetscReal x[3])
 {
   PetscReal least = PETSC_MAX_REAL;

@@ -39,7 +39,8 @@ static PetscInt ListEdges(const SurfaceView *view, SharedEdge *edges)
     const Element *e     = ElementGet(facet->type);
 
     for (int k = 0; k < (e->dim == 1 ? 2 : e->edges); k++) {
-      const PetscInt a = facet->nodes[e->dim == 1 ? k : e->edge_corners[k][0]], b = facet->nodes[e->dim == 1 ? k : e->edge_corners[k][1]];
+      const PetscInt a = facet->nodes[e->dim == 1 ? k : e->edge_corners[k][0]],
+                     b = facet->nodes[e->dim == 1 ? k : e->edge_corners[k][1]];
 
       if (edges) edges[n] = (SharedEdge){PetscMin(a, b), PetscMax(a, b), f};
       n++;
@@ -71,7 +72,8 @@ static PetscInt LinkFacets(const SurfaceView *view, PetscInt n, const SharedEdge
   return count;
 }
 
-/* NeighbourhoodsCreate - links the facets of a view across their edges. view is borrowed and must outlive the object. Not collective. */
+/* NeighbourhoodsCreate - links the facets of a view across their edges. view is borrowed and must outlive the object.
+ * Not collective. */
 PetscErrorCode NeighbourhoodsCreate(const SurfaceView *view, Neighbourhoods *out)
 {
   Neighbourhoods nb;
@@ -88,11 +90,13 @@ PetscErrorCode NeighbourhoodsCreate(const SurfaceView *view, Neighbourhoods *out
   PetscCall(PetscMalloc1(2 * LinkFacets(view, n, edges, nb->link_ptr, NULL), &nb->link));
   for (PetscInt f = 0; f < view->n_facets; f++) nb->link_ptr[f + 1] += nb->link_ptr[f];
   LinkFacets(view, n, edges, nb->link_ptr, nb->link);
-  for (PetscInt f = view->n_facets; f > 0; f--) nb->link_ptr[f] = nb->link_ptr[f - 1]; /* filling moved every start to the next one's */
+  for (PetscInt f = view->n_facets; f > 0; f--)
+    nb->link_ptr[f] = nb->link_ptr[f - 1]; /* filling moved every start to the next one's */
   nb->link_ptr[0] = 0;
   PetscCall(PetscFree(edges));
   PetscCall(PetscCalloc2(view->n_facets, &nb->seen_facet, view->n_points, &nb->seen_point));
-  PetscCall(PetscMalloc4(view->n_facets, &nb->queue, view->n_points, &nb->reach, view->n_points, &nb->rho2, view->n_points, &nb->point_rho2));
+  PetscCall(PetscMalloc4(view->n_facets, &nb->queue, view->n_points, &nb->reach, view->n_points, &nb->rho2,
+                         view->n_points, &nb->point_rho2));
   *out = nb;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -112,9 +116,11 @@ PetscErrorCode NeighbourhoodsDestroy(Neighbourhoods *nb)
 
 static inline PetscReal Rho2(const SurfaceView *view, PetscInt p, const PetscReal x0[3], const PetscReal metric[9])
 {
-  const PetscReal *x = &view->x[p * view->dim], a = x[0] - x0[0], b = x[1] - x0[1], c = view->dim == 3 ? x[2] - x0[2] : 0;
+  const PetscReal *x = &view->x[p * view->dim], a = x[0] - x0[0], b = x[1] - x0[1],
+                  c = view->dim == 3 ? x[2] - x0[2] : 0;
 
-  return metric[0] * a * a + metric[4] * b * b + metric[8] * c * c + 2 * (metric[1] * a * b + metric[2] * a * c + metric[5] * b * c);
+  return metric[0] * a * a + metric[4] * b * b + metric[8] * c * c +
+         2 * (metric[1] * a * b + metric[2] * a * c + metric[5] * b * c);
 }
 
 /* Nearest first; of those equally near, by number. */
@@ -136,8 +142,9 @@ static void ReachAdd(Neighbourhoods nb, PetscInt *count, PetscReal rho2, PetscIn
   nb->reach[(*count)++] = point;
 }
 
-PetscErrorCode NeighbourhoodGather(Neighbourhoods nb, PetscInt start, const PetscReal x0[3], const PetscReal e3[3], const PetscReal metric[9], PetscReal limit,
-                                   PetscInt max, PetscInt *points, const PetscReal **rho2, PetscInt *n, PetscInt *found)
+PetscErrorCode NeighbourhoodGather(Neighbourhoods nb, PetscInt start, const PetscReal x0[3], const PetscReal e3[3],
+                                   const PetscReal metric[9], PetscReal limit, PetscInt max, PetscInt *points,
+                                   const PetscReal **rho2, PetscInt *n, PetscInt *found)
 {
   const SurfaceView *view = nb->view;
   PetscInt           head = 0, tail = 0, count = 0;
@@ -157,13 +164,15 @@ PetscErrorCode NeighbourhoodGather(Neighbourhoods nb, PetscInt start, const Pets
       inside = (PetscBool)(inside || own <= limit);
       if (own <= limit) ReachAdd(nb, &count, own, view->first[f] + q);
     }
-    for (int a = 0, nodes = view->first && inside ? 0 : ElementGet(facet->type)->nodes; a < nodes; a++) { /* a quadrature point inside tells as much */
+    for (int a = 0, nodes = view->first && inside ? 0 : ElementGet(facet->type)->nodes; a < nodes;
+         a++) { /* a quadrature point inside tells as much */
       const PetscInt p = facet->nodes[a];
 
       if (nb->seen_point[p] != nb->stamp) {
         nb->seen_point[p] = nb->stamp;
         nb->point_rho2[p] = Rho2(view, p, x0, metric);
-        if (!view->first && nb->point_rho2[p] <= limit && view->geometry[p].weight > 0 && Dot(view->geometry[p].normal, e3) >= NEIGHBOURHOOD_COSINE)
+        if (!view->first && nb->point_rho2[p] <= limit && view->geometry[p].weight > 0 &&
+            Dot(view->geometry[p].normal, e3) >= NEIGHBOURHOOD_COSINE)
           ReachAdd(nb, &count, nb->point_rho2[p], p);
       }
       inside = (PetscBool)(inside || nb->point_rho2[p] <= limit);

@@ -1,7 +1,7 @@
 #include "searchimpl.h"
 
-/* Numbers the contact nodes (slave nodes and nodes of the listed faces), makes the star forest to their owners, and rewrites the records'
-   facets in these numbers. */
+/* Numbers the contact nodes (slave nodes and nodes of the listed faces), makes the star forest to their owners, and
+   rewrites the records' facets in these numbers. */
 PetscErrorCode NeighbourListsCreateNodes(ContactSearch s, SearchField *field, NeighbourLists lists)
 {
   Mesh            mesh      = s->mesh;
@@ -34,9 +34,11 @@ PetscErrorCode NeighbourListsCreateNodes(ContactSearch s, SearchField *field, Ne
   lists->n_nodes      = n + n_rigid;
   for (PetscInt r = 0; r < n_records; r++)
     for (int a = 0; a < ElementGet(records[r].facet.type)->nodes; a++)
-      records[r].facet.nodes[a] = rigid ? (int)n + NodeKeysFind(n_rigid, tool, records[r].id[a]) : NodeKeysFind(n, keys, records[r].id[a]);
+      records[r].facet.nodes[a] =
+        rigid ? (int)n + NodeKeysFind(n_rigid, tool, records[r].id[a]) : NodeKeysFind(n, keys, records[r].id[a]);
 
-  PetscCall(PetscMalloc4(lists->n_nodes, &lists->node_id, lists->n_nodes * dim, &lists->X, lists->n_nodes * dim, &lists->u, lists->n_nodes * dim, &lists->dof));
+  PetscCall(PetscMalloc4(lists->n_nodes, &lists->node_id, lists->n_nodes * dim, &lists->X, lists->n_nodes * dim,
+                         &lists->u, lists->n_nodes * dim, &lists->dof));
   PetscCall(PetscMalloc1(n, &remote));
   for (PetscInt i = 0; i < n; i++) {
     lists->node_id[i] = keys[i].id;
@@ -67,9 +69,10 @@ PetscErrorCode NeighbourListsCreateNodes(ContactSearch s, SearchField *field, Ne
 
 /* NeighbourListsBroadcast - values of the contact nodes from those of the mesh's nodes.
 
-   Collective. x[mesh n_nodes*dim]: local, read at owned nodes; values[lists n_nodes*dim]: nodes of a rigid tool get their motion (length)
-   from load parameter t to t_next. */
-PetscErrorCode NeighbourListsBroadcast(ContactSearch s, NeighbourLists lists, const PetscReal *x, PetscReal t, PetscReal t_next, PetscReal *values)
+   Collective. x[mesh n_nodes*dim]: local, read at owned nodes; values[lists n_nodes*dim]: nodes of a rigid tool get
+   their motion (length) from load parameter t to t_next. */
+PetscErrorCode NeighbourListsBroadcast(ContactSearch s, NeighbourLists lists, const PetscReal *x, PetscReal t,
+                                       PetscReal t_next, PetscReal *values)
 {
   PetscFunctionBeginUser;
   PetscCall(PetscSFBcastBegin(lists->sf, lists->block, x, values, MPI_REPLACE));
@@ -84,7 +87,8 @@ PetscErrorCode NeighbourListsBroadcast(ContactSearch s, NeighbourLists lists, co
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* NeighbourListsReduce - the transpose of NeighbourListsBroadcast(): adds values[lists n_nodes*dim] to y[mesh n_nodes*dim] at the owners of the nodes.
+/* NeighbourListsReduce - the transpose of NeighbourListsBroadcast(): adds values[lists n_nodes*dim] to y[mesh
+   n_nodes*dim] at the owners of the nodes.
 
    Collective. Values of nodes of a rigid tool go nowhere. */
 PetscErrorCode NeighbourListsReduce(NeighbourLists lists, const PetscReal *values, PetscReal *y)
@@ -110,7 +114,8 @@ PetscErrorCode NeighbourListsUpdateNodes(ContactSearch s, NeighbourLists lists, 
 }
 
 /* y = sum S sign x, the linear part of a map. */
-static void Map(ContactSearch s, int dim, PetscInt n, const PetscInt *node, const int *side, const PetscReal *S, const PetscReal *x, PetscReal *y)
+static void Map(ContactSearch s, int dim, PetscInt n, const PetscInt *node, const int *side, const PetscReal *S,
+                const PetscReal *x, PetscReal *y)
 {
   for (int d = 0; d < dim; d++) y[d] = 0;
   for (PetscInt k = 0; k < n; k++) {
@@ -124,7 +129,8 @@ static void PointMap(ContactSearch s, NeighbourLists lists, PetscInt p, const Pe
 {
   const PetscInt first = lists->point_ptr[p];
 
-  Map(s, lists->dim, lists->point_ptr[p + 1] - first, &lists->point_node[first], &lists->point_side[first], &lists->point_S[first], x, y);
+  Map(s, lists->dim, lists->point_ptr[p + 1] - first, &lists->point_node[first], &lists->point_side[first],
+      &lists->point_S[first], x, y);
   for (int d = 0; d < lists->dim; d++) y[d] *= s->images[lists->point_image[p]].sign[d];
 }
 
@@ -132,7 +138,8 @@ static void SlaveMap(ContactSearch s, NeighbourLists lists, PetscInt q, const Pe
 {
   const PetscInt first = lists->slave_ptr[q];
 
-  Map(s, lists->dim, lists->slave_ptr[q + 1] - first, &lists->slave_node[first], &lists->slave_side[first], &lists->slave_S[first], x, y);
+  Map(s, lists->dim, lists->slave_ptr[q + 1] - first, &lists->slave_node[first], &lists->slave_side[first],
+      &lists->slave_S[first], x, y);
 }
 
 /* On a rigid tool the offsets, which are those of its first position, turn with it. */
@@ -154,9 +161,10 @@ static void TurnOffsets(ContactSearch s, NeighbourLists lists, PetscReal t)
 
 /* NeighbourListsUpdate - moves contact nodes, fit points and slave points to (u, t); what is listed stays.
 
-   Collective. u[mesh n_nodes*dim]: local displacements (length), read at owned nodes. *moved: this rank's are not where they were, or t is another;
-   may be NULL. */
-PetscErrorCode NeighbourListsUpdate(ContactSearch s, NeighbourLists lists, const PetscReal *u, PetscReal t, PetscBool *moved)
+   Collective. u[mesh n_nodes*dim]: local displacements (length), read at owned nodes. *moved: this rank's are not where
+   they were, or t is another; may be NULL. */
+PetscErrorCode NeighbourListsUpdate(ContactSearch s, NeighbourLists lists, const PetscReal *u, PetscReal t,
+                                    PetscBool *moved)
 {
   const PetscInt  n     = lists->n_nodes * lists->dim;
   const PetscBool turns = (PetscBool)(s->fit->integral && s->master && s->master->rigid);
@@ -169,7 +177,8 @@ PetscErrorCode NeighbourListsUpdate(ContactSearch s, NeighbourLists lists, const
   PetscCall(NeighbourListsUpdateNodes(s, lists, u, t));
   PetscCall(PetscArraycmp(before, lists->u, n, &same));
   PetscCall(PetscFree(before));
-  lists->made = (PetscBool)(same && !turns && (lists->made || PetscIsNanReal(lists->t))); /* t: the lists are being made */
+  lists->made =
+    (PetscBool)(same && !turns && (lists->made || PetscIsNanReal(lists->t))); /* t: the lists are being made */
   if (moved) *moved = same && lists->t == t ? PETSC_FALSE : PETSC_TRUE;
   if (same && lists->t == t) PetscFunctionReturn(PETSC_SUCCESS);
   lists->t = t;
@@ -179,15 +188,16 @@ PetscErrorCode NeighbourListsUpdate(ContactSearch s, NeighbourLists lists, const
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The image that a node really has: planes that it lies on do not move it. Image m is the product of the planes whose bits are set in m.
- *planes: how many planes the node lies on. */
+/* The image that a node really has: planes that it lies on do not move it. Image m is the product of the planes whose
+ *bits are set in m. planes: how many planes the node lies on. */
 static int CanonicalImage(ContactSearch s, const PetscReal *X, int image, int *planes)
 {
   *planes = 0;
   for (int bit = 1; bit < s->n_images; bit <<= 1) {
     PetscReal distance = 0;
 
-    for (int d = 0; d < s->mesh->dim; d++) distance = PetscMax(distance, PetscAbsReal(s->images[bit].sign[d] * X[d] + s->images[bit].shift[d] - X[d]));
+    for (int d = 0; d < s->mesh->dim; d++)
+      distance = PetscMax(distance, PetscAbsReal(s->images[bit].sign[d] * X[d] + s->images[bit].shift[d] - X[d]));
     if (distance > SEARCH_ON_PLANE * s->mesh->size) continue;
     image &= ~bit;
     (*planes)++;
@@ -200,8 +210,9 @@ static PetscErrorCode NeighbourListsAllocatePoints(NeighbourLists lists, PetscIn
   const int dim = lists->dim;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc7(room + 1, &lists->point_ptr, entries, &lists->point_node, entries, &lists->point_S, room * dim, &lists->point_offset, room,
-                         &lists->point_weight, room, &lists->point_image, room, &lists->point_key));
+  PetscCall(PetscMalloc7(room + 1, &lists->point_ptr, entries, &lists->point_node, entries, &lists->point_S, room * dim,
+                         &lists->point_offset, room, &lists->point_weight, room, &lists->point_image, room,
+                         &lists->point_key));
   PetscCall(PetscMalloc1(entries, &lists->point_side));
   PetscCall(PetscArrayzero(lists->point_offset, room * dim));
   lists->n_points     = 0;
@@ -209,7 +220,8 @@ static PetscErrorCode NeighbourListsAllocatePoints(NeighbourLists lists, PetscIn
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static void NeighbourListsAddPoint(NeighbourLists lists, int n, const int *nodes, const double *S, int image, PetscReal weight, long key)
+static void NeighbourListsAddPoint(NeighbourLists lists, int n, const int *nodes, const double *S, int image,
+                                   PetscReal weight, long key)
 {
   const PetscInt p = lists->n_points++;
   PetscInt       k = lists->point_ptr[p];
@@ -225,8 +237,8 @@ static void NeighbourListsAddPoint(NeighbourLists lists, int n, const int *nodes
   lists->point_key[p]     = key;
 }
 
-/* The points that are nodes or images of nodes: those that the facets stand on. Candidates are left in numbers of contact nodes; number[]: point of
-   an image of a node, or -1. */
+/* The points that are nodes or images of nodes: those that the facets stand on. Candidates are left in numbers of
+   contact nodes; number[]: point of an image of a node, or -1. */
 static void NeighbourListsAddNodePoints(ContactSearch s, NeighbourLists lists, SearchField *field, PetscInt *number)
 {
   for (PetscInt c = 0; c < field->n_candidates; c++) {
@@ -240,14 +252,17 @@ static void NeighbourListsAddNodePoints(ContactSearch s, NeighbourLists lists, S
 
       if (*p < 0) {
         *p = lists->n_points; /* what the faces on this side give to a node on a plane is half of its whole */
-        NeighbourListsAddPoint(lists, 1, &node, NULL, image, 1 << planes, (2L * lists->node_id[node] + (node >= lists->n_deformable)) * SURFACE_MAX_IMAGES + image);
+        NeighbourListsAddPoint(lists, 1, &node, NULL, image, 1 << planes,
+                               (2L * lists->node_id[node] + (node >= lists->n_deformable)) * SURFACE_MAX_IMAGES +
+                                 image);
       }
     }
   }
 }
 
 /* Writes the entries of a face's map for one of its points: number of the node in the lists, image, share. */
-static PetscErrorCode TakeMap(NeighbourLists lists, const FaceMaps *maps, PetscInt face, int point, PetscInt *node, int *side, PetscReal *S)
+static PetscErrorCode TakeMap(NeighbourLists lists, const FaceMaps *maps, PetscInt face, int point, PetscInt *node,
+                              int *side, PetscReal *S)
 {
   PetscFunctionBeginUser;
   for (PetscInt k = maps->ptr[face]; k < maps->ptr[face + 1]; k++) {
@@ -260,14 +275,17 @@ static PetscErrorCode TakeMap(NeighbourLists lists, const FaceMaps *maps, PetscI
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The point added last gets a map instead of shape functions, and the part of it that stands still instead of an offset. */
-static PetscErrorCode NeighbourListsMapPoint(ContactSearch s, NeighbourLists lists, const SearchField *field, const Candidate *candidate, int q)
+/* The point added last gets a map instead of shape functions, and the part of it that stands still instead of an
+ * offset. */
+static PetscErrorCode NeighbourListsMapPoint(ContactSearch s, NeighbourLists lists, const SearchField *field,
+                                             const Candidate *candidate, int q)
 {
   const PetscInt p = lists->n_points - 1, first = lists->point_ptr[p], r = candidate->record;
   PetscReal     *shift = &lists->point_offset[p * lists->dim];
 
   PetscFunctionBeginUser;
-  PetscCall(TakeMap(lists, &field->maps, r, q, &lists->point_node[first], &lists->point_side[first], &lists->point_S[first]));
+  PetscCall(
+    TakeMap(lists, &field->maps, r, q, &lists->point_node[first], &lists->point_side[first], &lists->point_S[first]));
   lists->point_ptr[p + 1] = first + field->maps.ptr[r + 1] - field->maps.ptr[r];
   FaceMapShift(&field->maps, r, q, lists->dim, s->images, shift);
   for (int d = 0; d < lists->dim; d++) shift[d] *= s->images[candidate->image].sign[d];
@@ -283,8 +301,8 @@ static PetscErrorCode NeighbourListsAddQuadraturePoints(ContactSearch s, Neighbo
   for (PetscInt c = 0; c < field->n_candidates; c++) {
     Candidate        *candidate = &field->candidates[c];
     const FaceRecord *record    = &field->records[candidate->record];
-    const Facet      *facet     = &record->facet; /* as its body sees it: the rule's points are the same on every image */
-    const FaceRule   *rule      = FaceRuleGet(facet->type, 0);
+    const Facet      *facet = &record->facet; /* as its body sees it: the rule's points are the same on every image */
+    const FaceRule   *rule  = FaceRuleGet(facet->type, 0);
     double            X[FACE_MAX_NODES * 3], area[FACE_RULE_POINTS];
 
     candidate->first = lists->n_points;
@@ -292,9 +310,12 @@ static PetscErrorCode NeighbourListsAddQuadraturePoints(ContactSearch s, Neighbo
       for (int d = 0; d < dim; d++) X[a * dim + d] = lists->X[facet->nodes[a] * dim + d];
     FaceRuleAreas(rule, facet->type, dim, GEOMETRY_SOLID, X, area, NULL);
     for (int q = 0; q < rule->n; q++) {
-      for (int d = 0; d < dim; d++) lists->point_offset[lists->n_points * dim + d] = s->images[candidate->image].sign[d] * record->offset[q * dim + d];
-      NeighbourListsAddPoint(lists, ElementGet(facet->type)->nodes, facet->nodes, rule->N[q], candidate->image, area[q] / PetscPowRealInt(s->master->mean_size, dim - 1),
-                    candidate->facet.tag * FACE_RULE_POINTS + q);
+      for (int d = 0; d < dim; d++)
+        lists->point_offset[lists->n_points * dim + d] =
+          s->images[candidate->image].sign[d] * record->offset[q * dim + d];
+      NeighbourListsAddPoint(lists, ElementGet(facet->type)->nodes, facet->nodes, rule->N[q], candidate->image,
+                             area[q] / PetscPowRealInt(s->master->mean_size, dim - 1),
+                             candidate->facet.tag * FACE_RULE_POINTS + q);
       if (field->maps.n) PetscCall(NeighbourListsMapPoint(s, lists, field, candidate, q));
     }
   }
@@ -313,7 +334,8 @@ PetscErrorCode NeighbourListsCreatePoints(ContactSearch s, NeighbourLists lists,
     const PetscInt    r    = field->candidates[c].record;
 
     points += FaceRuleGet(type, 0)->n;
-    entries += FaceRuleGet(type, 0)->n * (field->maps.n ? field->maps.ptr[r + 1] - field->maps.ptr[r] : ElementGet(type)->nodes);
+    entries +=
+      FaceRuleGet(type, 0)->n * (field->maps.n ? field->maps.ptr[r + 1] - field->maps.ptr[r] : ElementGet(type)->nodes);
   }
   PetscCall(PetscMalloc1(nodes, &number));
   for (PetscInt k = 0; k < nodes; k++) number[k] = -1;
@@ -327,7 +349,8 @@ PetscErrorCode NeighbourListsCreatePoints(ContactSearch s, NeighbourLists lists,
       const PetscInt node = candidate->facet.nodes[a];
       int            planes;
 
-      candidate->facet.nodes[a] = (int)number[CanonicalImage(s, &lists->X[node * dim], candidate->image, &planes) * lists->n_nodes + node];
+      candidate->facet.nodes[a] =
+        (int)number[CanonicalImage(s, &lists->X[node * dim], candidate->image, &planes) * lists->n_nodes + node];
     }
   }
   PetscCall(PetscMalloc2(lists->n_points * dim, &lists->point_X, lists->n_points * dim, &lists->point_u));
@@ -343,12 +366,14 @@ PetscErrorCode NeighbourListsCreatePoints(ContactSearch s, NeighbourLists lists,
 }
 
 /* Normal, spacing and weight of the points: those of their nodes, reflected with them. */
-void NeighbourListsPointGeometry(ContactSearch s, NeighbourLists lists, const SearchField *field, NodeGeometry *node_geometry, NodeGeometry *geometry)
+void NeighbourListsPointGeometry(ContactSearch s, NeighbourLists lists, const SearchField *field,
+                                 NodeGeometry *node_geometry, NodeGeometry *geometry)
 {
   for (PetscInt r = 0; r < field->n_records; r++) {
     const FaceRecord *record = &field->records[r];
 
-    for (int a = 0; a < ElementGet(record->facet.type)->nodes; a++) node_geometry[record->facet.nodes[a]] = record->geometry[a];
+    for (int a = 0; a < ElementGet(record->facet.type)->nodes; a++)
+      node_geometry[record->facet.nodes[a]] = record->geometry[a];
   }
   for (PetscInt p = 0; p < lists->n_points; p++) {
     const PetscReal *sign   = s->images[lists->point_image[p]].sign;
@@ -362,7 +387,8 @@ void NeighbourListsPointGeometry(ContactSearch s, NeighbourLists lists, const Se
         PetscReal distance;
 
         if (d >= lists->dim || s->images[bit].sign[d] > 0) continue;
-        distance = PetscAbsReal(-lists->X[lists->point_node[p] * lists->dim + d] + s->images[bit].shift[d] - lists->X[lists->point_node[p] * lists->dim + d]);
+        distance = PetscAbsReal(-lists->X[lists->point_node[p] * lists->dim + d] + s->images[bit].shift[d] -
+                                lists->X[lists->point_node[p] * lists->dim + d]);
         if (distance > SEARCH_ON_PLANE * s->mesh->size) continue;
         g->normal[d]                   = 0;
         g->covariance[3 + d]           = 0; /* xy yz zx: the two products with axis d */
@@ -393,7 +419,8 @@ static PetscErrorCode TakeSlaveShapes(NeighbourLists lists, SlavePoints slaves)
   PetscCall(PetscArrayzero(lists->slave_side, entries));
   PetscCall(PetscArraycpy(lists->slave_offset, slaves->offset, n * lists->dim));
   PetscCall(PetscMalloc1(slaves->n_nodes, &number));
-  for (PetscInt i = 0; i < slaves->n_nodes; i++) PetscCall(PetscFindInt(slaves->nodes[i].id, lists->n_deformable, lists->node_id, &number[i]));
+  for (PetscInt i = 0; i < slaves->n_nodes; i++)
+    PetscCall(PetscFindInt(slaves->nodes[i].id, lists->n_deformable, lists->node_id, &number[i]));
   for (PetscInt k = 0; k < entries; k++) lists->slave_node[k] = number[slaves->node[k]];
   PetscCall(PetscFree(number));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -411,7 +438,8 @@ static PetscErrorCode TakeSlaveMaps(ContactSearch s, NeighbourLists lists)
       const int point = (int)(q - slaves->first[f]);
 
       lists->slave_ptr[q] = end;
-      PetscCall(TakeMap(lists, &slaves->maps, f, point, &lists->slave_node[end], &lists->slave_side[end], &lists->slave_S[end]));
+      PetscCall(TakeMap(lists, &slaves->maps, f, point, &lists->slave_node[end], &lists->slave_side[end],
+                        &lists->slave_S[end]));
       FaceMapShift(&slaves->maps, f, point, lists->dim, s->images, &lists->slave_offset[q * lists->dim]);
       end += slaves->maps.ptr[f + 1] - slaves->maps.ptr[f];
     }
@@ -430,12 +458,14 @@ PetscErrorCode NeighbourListsCreateSlaves(ContactSearch s, NeighbourLists lists)
   lists->n_slaves = n;
   for (PetscInt f = 0; slaves->maps.ptr && f < slaves->n_faces; f++)
     entries += (slaves->first[f + 1] - slaves->first[f]) * (slaves->maps.ptr[f + 1] - slaves->maps.ptr[f]);
-  PetscCall(
-    PetscMalloc5(n + 1, &lists->slave_ptr, entries, &lists->slave_node, entries, &lists->slave_side, entries, &lists->slave_S, n * dim, &lists->slave_offset));
+  PetscCall(PetscMalloc5(n + 1, &lists->slave_ptr, entries, &lists->slave_node, entries, &lists->slave_side, entries,
+                         &lists->slave_S, n * dim, &lists->slave_offset));
   PetscCall(PetscMalloc2(n * dim, &lists->slave_X, n * dim, &lists->slave_u));
   PetscCall(PetscMalloc4(n + 1, &lists->list_ptr, n + 1, &lists->facet_ptr, n, &lists->kappa, n, &lists->nearest));
-  PetscCall(PetscCalloc5(n, &lists->fit_n, n, &lists->rung, n, &lists->degree, 9 * n, &lists->frame, 4 * n, &lists->metric));
-  PetscCall(PetscCalloc6(n, &lists->pivot, n, &lists->amplified, n, &lists->residual, 2 * n, &lists->centre, n, &lists->gap, 3 * n, &lists->normal));
+  PetscCall(
+    PetscCalloc5(n, &lists->fit_n, n, &lists->rung, n, &lists->degree, 9 * n, &lists->frame, 4 * n, &lists->metric));
+  PetscCall(PetscCalloc6(n, &lists->pivot, n, &lists->amplified, n, &lists->residual, 2 * n, &lists->centre, n,
+                         &lists->gap, 3 * n, &lists->normal));
   if (slaves->maps.ptr)
     PetscCall(TakeSlaveMaps(s, lists));
   else
@@ -448,14 +478,15 @@ PetscErrorCode NeighbourListsCreateSlaves(ContactSearch s, NeighbourLists lists)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* NeighbourListsRelative - position x[dim] (length) of point p seen from slave point q: a difference of differences, so that a gap keeps its digits far from
-   the origin. Not collective. */
+/* NeighbourListsRelative - position x[dim] (length) of point p seen from slave point q: a difference of differences, so
+   that a gap keeps its digits far from the origin. Not collective. */
 void NeighbourListsRelative(NeighbourLists lists, PetscInt q, PetscInt p, PetscReal *x)
 {
   const int dim = lists->dim;
 
   for (int d = 0; d < dim; d++)
-    x[d] = (lists->point_X[p * dim + d] - lists->slave_X[q * dim + d]) + (lists->point_u[p * dim + d] - lists->slave_u[q * dim + d]);
+    x[d] = (lists->point_X[p * dim + d] - lists->slave_X[q * dim + d]) +
+           (lists->point_u[p * dim + d] - lists->slave_u[q * dim + d]);
 }
 
 /* NeighbourListsAlikeEnd - Not collective. */
@@ -464,17 +495,22 @@ PetscInt NeighbourListsAlikeEnd(NeighbourLists lists, PetscInt p)
   const PetscInt first = lists->point_ptr[p], n = lists->point_ptr[p + 1] - first;
   PetscInt       end = p + 1;
 
-  for (; end < lists->n_points && lists->point_ptr[end + 1] - lists->point_ptr[end] == n && lists->point_image[end] == lists->point_image[p]; end++) {
+  for (; end < lists->n_points && lists->point_ptr[end + 1] - lists->point_ptr[end] == n &&
+         lists->point_image[end] == lists->point_image[p];
+       end++) {
     for (PetscInt k = 0; k < n; k++) {
       const PetscInt other = lists->point_ptr[end] + k;
 
-      if (lists->point_node[other] != lists->point_node[first + k] || lists->point_side[other] != lists->point_side[first + k]) return end;
+      if (lists->point_node[other] != lists->point_node[first + k] ||
+          lists->point_side[other] != lists->point_side[first + k])
+        return end;
     }
   }
   return end;
 }
 
-/* NeighbourListsNearestSize - size (length) of the facet nearest to slave point q when the lists were made, 0 without any. Not collective. */
+/* NeighbourListsNearestSize - size (length) of the facet nearest to slave point q when the lists were made, 0 without
+ * any. Not collective. */
 PetscReal NeighbourListsNearestSize(NeighbourLists lists, PetscInt q)
 {
   return lists->nearest[q] < 0 ? 0 : lists->facet_size[lists->facet_ptr[q] + lists->nearest[q]];
@@ -483,8 +519,9 @@ PetscReal NeighbourListsNearestSize(NeighbourLists lists, PetscInt q)
 /* Sum of the fit points of a slave point, seen from it; dim constant where this is called. */
 static inline void SumPoints(const int dim, NeighbourLists lists, PetscInt q, PetscReal sum[3])
 {
-  const PetscReal *X = lists->point_X, *u = lists->point_u, *X_0 = &lists->slave_X[q * dim], *u_0 = &lists->slave_u[q * dim];
-  PetscReal        total[3] = {0, 0, 0};
+  const PetscReal *X = lists->point_X, *u = lists->point_u, *X_0 = &lists->slave_X[q * dim],
+                  *u_0 = &lists->slave_u[q * dim];
+  PetscReal total[3]   = {0, 0, 0};
 
   for (PetscInt i = lists->list_ptr[q]; i < lists->list_ptr[q] + lists->fit_n[q]; i++) {
     const PetscInt p = lists->list_point[i];
@@ -494,7 +531,8 @@ static inline void SumPoints(const int dim, NeighbourLists lists, PetscInt q, Pe
   for (int d = 0; d < 3; d++) sum[d] = total[d];
 }
 
-/* NeighbourListsCentre - mean of the fit points of slave point q in the tangents of its frame, relative to it, in the present position (lengths).
+/* NeighbourListsCentre - mean of the fit points of slave point q in the tangents of its frame, relative to it, in the
+   present position (lengths).
 
    Not collective. centre[2]: dim - 1 entries are used. */
 void NeighbourListsCentre(NeighbourLists lists, PetscInt q, PetscReal centre[2])
@@ -536,7 +574,8 @@ PetscErrorCode NeighbourListsDestroy(NeighbourLists *lists)
   PetscCall(PetscFree4(l->node_id, l->X, l->u, l->dof));
   PetscCall(PetscSFDestroy(&l->sf));
   PetscCallMPI(MPI_Type_free(&l->block));
-  PetscCall(PetscFree7(l->point_ptr, l->point_node, l->point_S, l->point_offset, l->point_weight, l->point_image, l->point_key));
+  PetscCall(PetscFree7(l->point_ptr, l->point_node, l->point_S, l->point_offset, l->point_weight, l->point_image,
+                       l->point_key));
   PetscCall(PetscFree(l->point_side));
   PetscCall(PetscFree2(l->point_X, l->point_u));
   PetscCall(PetscFree5(l->slave_ptr, l->slave_node, l->slave_side, l->slave_S, l->slave_offset));

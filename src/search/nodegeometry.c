@@ -2,7 +2,15 @@
 #include "search/nodegeometry.h"
 
 /* Entries of a node's sums, in the order they are summed over ranks */
-enum { SUM_NORMAL = 0, SUM_COVARIANCE = 3, SUM_PAIRS = 9, SUM_AREA = 10, SUM_FACES = 11, SUM_TRIBUTARY = 12, SUMS = 13 };
+enum {
+  SUM_NORMAL     = 0,
+  SUM_COVARIANCE = 3,
+  SUM_PAIRS      = 9,
+  SUM_AREA       = 10,
+  SUM_FACES      = 11,
+  SUM_TRIBUTARY  = 12,
+  SUMS           = 13
+};
 
 /* SurfaceNodesPerFace - how many nodes a face of this type brings to the surface when many tile it. Not collective. */
 PetscReal SurfaceNodesPerFace(ElementType type)
@@ -19,7 +27,8 @@ PetscReal SurfaceNodesPerFace(ElementType type)
 static PetscErrorCode SumOverRanks(ContactSurface surface, PetscInt block, PetscReal *values)
 {
   PetscFunctionBeginUser;
-  if (surface->group) PetscCall(MeshSumNodes(surface->mesh, block, values)); /* a rigid tool stands whole on every rank */
+  if (surface->group)
+    PetscCall(MeshSumNodes(surface->mesh, block, values)); /* a rigid tool stands whole on every rank */
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -32,11 +41,13 @@ static void FaceNodePositions(ContactSurface surface, const Facet *face, const P
 }
 
 /* Adds a face to the sums of its nodes: normal, distances to the other nodes, area. */
-static void AddFace(ContactSurface surface, const Facet *face, const PetscReal *x, const PetscReal *reference, PetscReal *sums)
+static void AddFace(ContactSurface surface, const Facet *face, const PetscReal *x, const PetscReal *reference,
+                    PetscReal *sums)
 {
   const int      dim = surface->mesh->dim, n = ElementGet(face->type)->nodes;
   const Geometry plane = dim == 3 ? GEOMETRY_SOLID : GEOMETRY_PLANE_STRAIN;
-  double         X[FACE_MAX_NODES * 3], area[FACE_MAX_NODES] = {0}, tributary[FACE_MAX_NODES] = {0}, normal[FACE_MAX_NODES * 3] = {0}, total = 0;
+  double         X[FACE_MAX_NODES * 3], area[FACE_MAX_NODES] = {0}, tributary[FACE_MAX_NODES] = {0},
+                                normal[FACE_MAX_NODES * 3] = {0}, total = 0;
 
   FaceNodePositions(surface, face, reference, X);
   FaceAreaKernel(face->type, dim, plane, X, tributary, NULL);
@@ -86,7 +97,8 @@ static PetscErrorCode AverageOverRing(ContactSurface surface, PetscInt n, const 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode Positions(ContactSurface surface, Loads loads, const PetscReal *u, PetscReal t, PetscInt n, PetscReal *x)
+static PetscErrorCode Positions(ContactSurface surface, Loads loads, const PetscReal *u, PetscReal t, PetscInt n,
+                                PetscReal *x)
 {
   const int dim = surface->mesh->dim;
 
@@ -116,10 +128,11 @@ static PetscErrorCode Positions(ContactSurface surface, Loads loads, const Petsc
 . u, t    - local displacements (n_nodes*dim) and load parameter
 - nodes   - one for each local node of the mesh, or of the rigid tool; those off the surface are zero
 
-  The shape of the spacing comes from the covariance of the one-ring averaged over the ring's nodes, its size from the mean area of the
-  faces: so a support of s spacings holds about pi s^2 nodes on any mesh.
+  The shape of the spacing comes from the covariance of the one-ring averaged over the ring's nodes, its size from the
+mean area of the faces: so a support of s spacings holds about pi s^2 nodes on any mesh.
 */
-PetscErrorCode SurfaceNodeGeometry(ContactSurface surface, Loads loads, const PetscReal *u, PetscReal t, NodeGeometry *nodes)
+PetscErrorCode SurfaceNodeGeometry(ContactSurface surface, Loads loads, const PetscReal *u, PetscReal t,
+                                   NodeGeometry *nodes)
 {
   const int        dim       = surface->mesh->dim;
   const PetscInt   n         = surface->group ? surface->mesh->n_nodes : surface->rigid->n_nodes;
@@ -138,8 +151,9 @@ PetscErrorCode SurfaceNodeGeometry(ContactSurface surface, Loads loads, const Pe
     const PetscReal *sum  = &sums[i * SUMS];
     PetscReal        area = sum[SUM_FACES] > 0 ? sum[SUM_AREA] / sum[SUM_FACES] : 0, length = 0;
 
-    nodes[i] = (NodeGeometry){.spacing = dim == 3 ? PetscSqrtReal(area) : area,
-                              .weight  = weighted ? sum[SUM_TRIBUTARY] / (dim == 3 ? PetscSqr(surface->mean_size) : surface->mean_size) : 1};
+    nodes[i] = (NodeGeometry){
+      .spacing = dim == 3 ? PetscSqrtReal(area) : area,
+      .weight  = weighted ? sum[SUM_TRIBUTARY] / (dim == 3 ? PetscSqr(surface->mean_size) : surface->mean_size) : 1};
     for (int d = 0; d < 3; d++) length += PetscSqr(sum[SUM_NORMAL + d]);
     length = PetscSqrtReal(length);
     for (int d = 0; d < 3 && length > 0; d++) nodes[i].normal[d] = sum[SUM_NORMAL + d] / length;
@@ -168,7 +182,8 @@ static PetscReal VectorLength(const PetscReal v[3])
 }
 
 /*
-  SurfaceMeanNormal - the normal of the one reference plane of a surface and its mirror images, and how far its faces turn from it
+  SurfaceMeanNormal - the normal of the one reference plane of a surface and its mirror images, and how far its faces
+turn from it
 
   Collective
 
@@ -178,8 +193,8 @@ static PetscReal VectorLength(const PetscReal v[3])
 . normal - unit; for a surface that closes upon itself (0, 0, 0)
 - cosine - smallest cosine of a face's normal with it, all ranks; may be NULL
 */
-PetscErrorCode SurfaceMeanNormal(ContactSurface surface, Loads loads, int n_images, const SurfaceImage *images, const PetscReal *u, PetscReal t,
-                                 PetscReal normal[3], PetscReal *cosine)
+PetscErrorCode SurfaceMeanNormal(ContactSurface surface, Loads loads, int n_images, const SurfaceImage *images,
+                                 const PetscReal *u, PetscReal t, PetscReal normal[3], PetscReal *cosine)
 {
   const PetscInt n = surface->group ? surface->mesh->n_nodes : surface->rigid->n_nodes;
   PetscReal     *x, vector[3], length;
@@ -202,7 +217,8 @@ PetscErrorCode SurfaceMeanNormal(ContactSurface surface, Loads loads, int n_imag
     *cosine = 1;
     for (PetscInt f = 0; f < surface->n_faces; f++) {
       FaceVector(surface, &surface->faces[f], x, vector);
-      *cosine = PetscMin(*cosine, (vector[0] * normal[0] + vector[1] * normal[1] + vector[2] * normal[2]) / VectorLength(vector));
+      *cosine = PetscMin(*cosine, (vector[0] * normal[0] + vector[1] * normal[1] + vector[2] * normal[2]) /
+                                    VectorLength(vector));
     }
     if (surface->group) PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, cosine, 1, MPIU_REAL, MPI_MIN, surface->mesh->comm));
   }

@@ -16,8 +16,9 @@ struct _n_Offsets {
 };
 
 /* OffsetsCreate - offsets of a surface, 0 until they are taken. Collective. feature_angle: radians. */
-PetscErrorCode OffsetsCreate(Mesh mesh, Scene scene, Loads loads, ContactSurface surface, int n_images, const SurfaceImage *images, PetscReal feature_angle,
-                             int finer, OffsetsKind kind, Offsets *out)
+PetscErrorCode OffsetsCreate(Mesh mesh, Scene scene, Loads loads, ContactSurface surface, int n_images,
+                             const SurfaceImage *images, PetscReal feature_angle, int finer, OffsetsKind kind,
+                             Offsets *out)
 {
   Offsets o;
 
@@ -29,11 +30,16 @@ PetscErrorCode OffsetsCreate(Mesh mesh, Scene scene, Loads loads, ContactSurface
   o->once    = (PetscBool)(surface->rigid || scene->kinematics == KINEMATICS_SMALL);
   o->t_now = o->t_before = -1;
   /* the nodal fit's own defaults: the smoothest whose guards hold on jittered meshes */
-  o->fit    = (FitSettings){.degree = 4, .support = mesh->dim == 2 ? 4.5 : 3.5, .exponent = mesh->dim == 2 ? 6 : 3, .feature_angle = feature_angle};
+  o->fit    = (FitSettings){.degree        = 4,
+                            .support       = mesh->dim == 2 ? 4.5 : 3.5,
+                            .exponent      = mesh->dim == 2 ? 6 : 3,
+                            .feature_angle = feature_angle};
   o->n      = surface->n_faces * FACE_RULE_POINTS * mesh->dim;
   o->t_last = NAN;
-  PetscCall(PetscCalloc5(o->n, &o->used, o->n, &o->now, o->n, &o->before, o->n, &o->last, mesh->n_nodes * mesh->dim, &o->u_last));
-  PetscCall(SearchCreate(mesh, scene, loads, surface, surface->max_size, n_images, images, &o->fit, NULL, NULL, NULL, &o->search));
+  PetscCall(PetscCalloc5(o->n, &o->used, o->n, &o->now, o->n, &o->before, o->n, &o->last, mesh->n_nodes * mesh->dim,
+                         &o->u_last));
+  PetscCall(SearchCreate(mesh, scene, loads, surface, surface->max_size, n_images, images, &o->fit, NULL, NULL, NULL,
+                         &o->search));
   *out = o;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -58,8 +64,10 @@ typedef struct {
   double          x[FACE_MAX_NODES * 3], normal[FACE_RULE_POINTS * 3];
 } OffsetFace;
 
-/* The surface's own nodal fit about point q of a face, in the face's frame; nodes[a]: the face's nodes there. *rung: RUNG_FACET without one. */
-static PetscErrorCode FitAt(FitSupport *fit, const OffsetFace *face, int q, FitProblem *problem, FitResult *result, int *rung, double (*nodes)[2])
+/* The surface's own nodal fit about point q of a face, in the face's frame; nodes[a]: the face's nodes there. *rung:
+ * RUNG_FACET without one. */
+static PetscErrorCode FitAt(FitSupport *fit, const OffsetFace *face, int q, FitProblem *problem, FitResult *result,
+                            int *rung, double (*nodes)[2])
 {
   const int dim = fit->lists->dim, n = ElementGet(face->facet->type)->nodes;
   FitFoot   at = {
@@ -85,7 +93,8 @@ static PetscErrorCode FitAt(FitSupport *fit, const OffsetFace *face, int q, FitP
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* b = (f(0) - sum_a N_a f(s_a)) n at one quadrature point: f the fit about it in the face's frame, s_a the face's nodes there. */
+/* b = (f(0) - sum_a N_a f(s_a)) n at one quadrature point: f the fit about it in the face's frame, s_a the face's nodes
+ * there. */
 static PetscErrorCode OffsetAt(FitSupport *fit, const OffsetFace *face, int q, PetscReal *b)
 {
   const int  dim = fit->lists->dim;
@@ -99,13 +108,14 @@ static PetscErrorCode OffsetAt(FitSupport *fit, const OffsetFace *face, int q, P
   PetscCall(FitAt(fit, face, q, &problem, &result, &rung, nodes));
   if (rung == RUNG_FACET) PetscFunctionReturn(PETSC_SUCCESS);
   sagitta = FitSurfaceHeight(&result.surface, zero, NULL);
-  for (int a = 0; a < ElementGet(face->facet->type)->nodes; a++) sagitta -= face->rule->N[q][a] * FitSurfaceHeight(&result.surface, nodes[a], NULL);
+  for (int a = 0; a < ElementGet(face->facet->type)->nodes; a++)
+    sagitta -= face->rule->N[q][a] * FitSurfaceHeight(&result.surface, nodes[a], NULL);
   for (int d = 0; d < dim; d++) b[d] = sagitta * face->normal[3 * q + d];
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The same sagitta as a combination of the fit's points, *n of them, in fit->points: shape[*n]. It vanishes where these lie on a plane, so that taken of their
-   whole positions it is along the normal and turns with the surface. */
+/* The same sagitta as a combination of the fit's points, *n of them, in fit->points: shape[*n]. It vanishes where these
+   lie on a plane, so that taken of their whole positions it is along the normal and turns with the surface. */
 static PetscErrorCode SagittaShape(FitSupport *fit, const OffsetFace *face, int q, double *shape, PetscInt *n)
 {
   const int  dim = fit->lists->dim, corners = ElementGet(face->facet->type)->nodes;
@@ -139,12 +149,12 @@ typedef PetscErrorCode (*OffsetFaceFn)(Offsets, FitSupport *, const OffsetFace *
 /* Visits all own faces with the surface at (u, t). */
 static PetscErrorCode OffsetsVisit(Offsets o, const PetscReal *u, PetscReal t, OffsetFaceFn visit, void *context)
 {
-  ContactSearch s   = o->search;
-  const int     dim = s->mesh->dim;
-  NeighbourLists  lists;
-  SearchField   field;
-  FitSupport       fit;
-  PetscReal     box[6];
+  ContactSearch  s   = o->search;
+  const int      dim = s->mesh->dim;
+  NeighbourLists lists;
+  SearchField    field;
+  FitSupport     fit;
+  PetscReal      box[6];
 
   PetscFunctionBeginUser;
   PetscCall(PetscNew(&lists));
@@ -154,8 +164,8 @@ static PetscErrorCode OffsetsVisit(Offsets o, const PetscReal *u, PetscReal t, O
   for (PetscInt f = 0; f < o->surface->n_faces; f++) {
     const Facet    *facet  = &o->surface->faces[f];
     const Candidate wanted = {.facet = {.tag = facet->tag * SURFACE_MAX_IMAGES}},
-                    *own   = bsearch(&wanted, field.candidates, field.n_candidates, sizeof(Candidate), CandidateCompare);
-    OffsetFace face        = {.candidate = own - field.candidates, .facet = facet, .rule = FaceRuleGet(facet->type, o->finer)};
+                    *own = bsearch(&wanted, field.candidates, field.n_candidates, sizeof(Candidate), CandidateCompare);
+    OffsetFace face = {.candidate = own - field.candidates, .facet = facet, .rule = FaceRuleGet(facet->type, o->finer)};
     double     area[FACE_RULE_POINTS];
 
     for (int a = 0; a < ElementGet(facet->type)->nodes; a++)
@@ -174,18 +184,21 @@ static PetscErrorCode TakeFace(Offsets o, FitSupport *fit, const OffsetFace *fac
   PetscReal *offset = context;
 
   PetscFunctionBeginUser;
-  for (int q = 0; q < face->rule->n; q++) PetscCall(OffsetAt(fit, face, q, &offset[(f * FACE_RULE_POINTS + q) * o->search->mesh->dim]));
+  for (int q = 0; q < face->rule->n; q++)
+    PetscCall(OffsetAt(fit, face, q, &offset[(f * FACE_RULE_POINTS + q) * o->search->mesh->dim]));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* Maps growing face by face */
 typedef struct {
-  PetscInt  room;
-  PetscInt *place; /* of each point of the fitting's lists among the entries; those of other faces are below the face's first */
+  PetscInt room;
+  PetscInt *
+    place; /* of each point of the fitting's lists among the entries; those of other faces are below the face's first */
 } MapsInMaking;
 
 /* Adds S of point q of the face at hand at a point of the lists, which is an image of a node. */
-static PetscErrorCode AddEntry(FaceMaps *maps, MapsInMaking *making, NeighbourLists lists, PetscInt point, int q, double S)
+static PetscErrorCode AddEntry(FaceMaps *maps, MapsInMaking *making, NeighbourLists lists, PetscInt point, int q,
+                               double S)
 {
   PetscInt          *end  = &maps->ptr[maps->n + 1];
   const PetscInt     node = lists->point_node[lists->point_ptr[point]];
@@ -193,7 +206,8 @@ static PetscErrorCode AddEntry(FaceMaps *maps, MapsInMaking *making, NeighbourLi
 
   PetscFunctionBeginUser;
   if (making->place[point] < maps->ptr[maps->n]) {
-    if (*end == making->room) PetscCall(PetscRealloc((making->room = 2 * making->room + 1024) * sizeof(FaceMapEntry), &maps->entry));
+    if (*end == making->room)
+      PetscCall(PetscRealloc((making->room = 2 * making->room + 1024) * sizeof(FaceMapEntry), &maps->entry));
     PetscCall(PetscSFGetGraph(lists->sf, NULL, NULL, NULL, &owner));
     maps->entry[*end] = (FaceMapEntry){
       .node  = {.id = lists->node_id[node], .owner = owner[node].rank, .local = owner[node].index},
@@ -209,11 +223,11 @@ static PetscErrorCode AddEntry(FaceMaps *maps, MapsInMaking *making, NeighbourLi
 /* The map of a face: its shape functions and the coefficients of the sagittas. Nodes: first its own. */
 static PetscErrorCode MapFace(Offsets o, FitSupport *fit, const OffsetFace *face, PetscInt f, void *context)
 {
-  FaceMaps     *maps   = &o->maps;
-  MapsInMaking *making = context;
-  NeighbourLists  lists  = fit->lists;
-  double        shape[FIT_MAX_POINTS];
-  PetscInt      n;
+  FaceMaps      *maps   = &o->maps;
+  MapsInMaking  *making = context;
+  NeighbourLists lists  = fit->lists;
+  double         shape[FIT_MAX_POINTS];
+  PetscInt       n;
 
   PetscFunctionBeginUser;
   if (!making->place) {
@@ -223,7 +237,8 @@ static PetscErrorCode MapFace(Offsets o, FitSupport *fit, const OffsetFace *face
   maps->n          = f;
   maps->ptr[f + 1] = maps->ptr[f];
   for (int a = 0; a < ElementGet(face->facet->type)->nodes; a++)
-    for (int q = 0; q < face->rule->n; q++) PetscCall(AddEntry(maps, making, lists, fit->view.facets[face->candidate].nodes[a], q, face->rule->N[q][a]));
+    for (int q = 0; q < face->rule->n; q++)
+      PetscCall(AddEntry(maps, making, lists, fit->view.facets[face->candidate].nodes[a], q, face->rule->N[q][a]));
   for (int q = 0; q < face->rule->n; q++) {
     PetscCall(SagittaShape(fit, face, q, shape, &n));
     for (PetscInt i = 0; i < n; i++)
@@ -284,8 +299,9 @@ static PetscErrorCode OffsetsAt(Offsets o, const PetscReal *u, PetscReal t, Pets
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* OffsetsExtrapolate - Collective. u[n_nodes*dim]: local displacements, ghosts included, of the accepted state at t; t_next: where the step goes. A step that
-   is tried again starts from the same t and finds the same offsets. *changed: set where those in force were others, on this rank. */
+/* OffsetsExtrapolate - Collective. u[n_nodes*dim]: local displacements, ghosts included, of the accepted state at t;
+   t_next: where the step goes. A step that is tried again starts from the same t and finds the same offsets. *changed:
+   set where those in force were others, on this rank. */
 PetscErrorCode OffsetsExtrapolate(Offsets o, const PetscReal *u, PetscReal t, PetscReal t_next, PetscBool *changed)
 {
   PetscReal ahead = 0;
@@ -304,7 +320,8 @@ PetscErrorCode OffsetsExtrapolate(Offsets o, const PetscReal *u, PetscReal t, Pe
     o->t_now    = t;
   }
   PetscCall(OffsetsAt(o, u, t, o->now));
-  if (o->t_before >= 0 && !SceneBreaks(o->search->scene, t)) ahead = (t_next - t) / (t - o->t_before); /* past a breakpoint things go another way */
+  if (o->t_before >= 0 && !SceneBreaks(o->search->scene, t))
+    ahead = (t_next - t) / (t - o->t_before); /* past a breakpoint things go another way */
   for (PetscInt i = 0; i < o->n; i++) {
     const PetscReal value = o->now[i] + ahead * (o->now[i] - o->before[i]);
 
@@ -345,7 +362,7 @@ PetscErrorCode OffsetsArchive(Offsets o, Archive archive, const char *name)
   const char *names[] = {"now", "before"};
   PetscInt   *tag;
   char        path[PETSC_MAX_PATH_LEN];
-  Hdf5Table        faces;
+  Hdf5Table   faces;
 
   PetscFunctionBeginUser;
   if (o->once || o->kind != OFFSETS_HELD) PetscFunctionReturn(PETSC_SUCCESS);

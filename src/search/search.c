@@ -1,18 +1,24 @@
 #include "searchimpl.h"
 #include "base/boxtree.h"
 
-/* Reach of the search beyond the asked motion, in face sizes: the nearest facet of a slave point that is no farther than this is listed. */
+/* Reach of the search beyond the asked motion, in face sizes: the nearest facet of a slave point that is no farther
+ * than this is listed. */
 #define SEARCH_REACH 2.0
-/* A list holds every facet within this many face sizes (plus the motion) of the nearest one, so that a solve may slide the point there. */
+/* A list holds every facet within this many face sizes (plus the motion) of the nearest one, so that a solve may slide
+ * the point there. */
 #define SEARCH_MARGIN 1.5
-/* Facets are listed only if they face the slave: cosine between the two outward normals below this. 0: any opposed pair. */
+/* Facets are listed only if they face the slave: cosine between the two outward normals below this. 0: any opposed
+ * pair. */
 #define SEARCH_OPPOSED 0.0
-/* Boxes of curved facets are widened by this fraction of the face size: the bulge of a quadratic face beyond its nodes is at most 1/8 of its chord. */
+/* Boxes of curved facets are widened by this fraction of the face size: the bulge of a quadratic face beyond its nodes
+ * is at most 1/8 of its chord. */
 #define SEARCH_BULGE 0.15
 
-/* SearchCreate - what stands still for the run: surfaces, images, slave points. Collective. slave_size: largest face of the slave (length). */
-PetscErrorCode SearchCreate(Mesh mesh, Scene scene, Loads loads, ContactSurface master, PetscReal slave_size, int n_images, const SurfaceImage *images,
-                            const FitSettings *fit, SlavePoints slaves, const PetscReal *offset, const FaceMaps *maps, ContactSearch *out)
+/* SearchCreate - what stands still for the run: surfaces, images, slave points. Collective. slave_size: largest face of
+ * the slave (length). */
+PetscErrorCode SearchCreate(Mesh mesh, Scene scene, Loads loads, ContactSurface master, PetscReal slave_size,
+                            int n_images, const SurfaceImage *images, const FitSettings *fit, SlavePoints slaves,
+                            const PetscReal *offset, const FaceMaps *maps, ContactSearch *out)
 {
   ContactSearch   s;
   const PetscReal size = master ? PetscMax(slave_size, master->max_size) : slave_size;
@@ -69,7 +75,8 @@ void SearchCandidatePlace(int dim, const PetscReal *x, PetscReal size, Candidate
     c->normal[1] = -t[0][0];
     c->normal[2] = 0;
   } else {
-    for (int d = 0; d < 3; d++) c->normal[d] = t[0][(d + 1) % 3] * t[1][(d + 2) % 3] - t[0][(d + 2) % 3] * t[1][(d + 1) % 3];
+    for (int d = 0; d < 3; d++)
+      c->normal[d] = t[0][(d + 1) % 3] * t[1][(d + 2) % 3] - t[0][(d + 2) % 3] * t[1][(d + 1) % 3];
   }
   for (int d = 0; d < 3; d++) length += PetscSqr(c->normal[d]);
   length = PetscSqrtReal(length);
@@ -99,11 +106,13 @@ static void CandidatePositions(NeighbourLists lists, const Candidate *c, PetscRe
   const int dim = lists->dim;
 
   for (int a = 0; a < ElementGet(c->facet.type)->nodes; a++)
-    for (int d = 0; d < dim; d++) x[a * dim + d] = lists->point_X[c->facet.nodes[a] * dim + d] + lists->point_u[c->facet.nodes[a] * dim + d];
+    for (int d = 0; d < dim; d++)
+      x[a * dim + d] = lists->point_X[c->facet.nodes[a] * dim + d] + lists->point_u[c->facet.nodes[a] * dim + d];
 }
 
 /* All faces and mirror images near a box, in an order that does not depend on the ranks. */
-static PetscErrorCode MakeCandidates(ContactSearch s, NeighbourLists lists, const PetscReal box[6], PetscReal distance, SearchField *field)
+static PetscErrorCode MakeCandidates(ContactSearch s, NeighbourLists lists, const PetscReal box[6], PetscReal distance,
+                                     SearchField *field)
 {
   const int dim = lists->dim;
   PetscReal x[FACE_MAX_NODES * 3];
@@ -141,17 +150,19 @@ static PetscErrorCode FetchMaps(ContactSearch s, SearchField *field)
 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(field->n_records, &remote));
-  for (PetscInt r = 0; r < field->n_records; r++) remote[r] = (PetscSFNode){field->records[r].home, field->records[r].home_face};
+  for (PetscInt r = 0; r < field->n_records; r++)
+    remote[r] = (PetscSFNode){field->records[r].home, field->records[r].home_face};
   PetscCall(PetscSFCreate(s->mesh->comm, &faces));
-  PetscCall(PetscSFSetGraph(faces, s->master->n_faces, field->n_records, NULL, PETSC_OWN_POINTER, remote, PETSC_OWN_POINTER));
+  PetscCall(
+    PetscSFSetGraph(faces, s->master->n_faces, field->n_records, NULL, PETSC_OWN_POINTER, remote, PETSC_OWN_POINTER));
   PetscCall(PetscSFSetUp(faces));
   PetscCall(FaceMapsFetch(faces, s->maps, &field->maps));
   PetscCall(PetscSFDestroy(&faces));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode SearchFieldCreate(ContactSearch s, const PetscReal *u, PetscReal t, const PetscReal box[6], PetscReal distance, NeighbourLists lists,
-                                 SearchField *field)
+PetscErrorCode SearchFieldCreate(ContactSearch s, const PetscReal *u, PetscReal t, const PetscReal box[6],
+                                 PetscReal distance, NeighbourLists lists, SearchField *field)
 {
   Mesh          mesh = s->mesh;
   PetscMPIInt   size;
@@ -203,13 +214,14 @@ static PetscBool CandidateFaces(const Nearest *look, const Candidate *c)
   if (cosine >= SEARCH_OPPOSED) return PETSC_FALSE;
   for (int a = 0; a < ElementGet(c->facet.type)->nodes; a++)
     for (PetscInt k = 0; k < look->own; k++)
-      if (look->lists->point_node[look->lists->point_ptr[c->facet.nodes[a]]] == look->lists->slave_node[look->lists->slave_ptr[look->q] + k])
+      if (look->lists->point_node[look->lists->point_ptr[c->facet.nodes[a]]] ==
+          look->lists->slave_node[look->lists->slave_ptr[look->q] + k])
         return PETSC_FALSE;
   return PETSC_TRUE;
 }
 
-/* Two facets share the foot on the edge between them; there, as wherever facets are equally near, the smaller tag counts and not round-off, which fits would
-   show: they start from the nearest facet and its normal. */
+/* Two facets share the foot on the edge between them; there, as wherever facets are equally near, the smaller tag
+   counts and not round-off, which fits would show: they start from the nearest facet and its normal. */
 static void NearestVisit(void *context, int index, double *bound)
 {
   Nearest         *look = context;
@@ -237,7 +249,8 @@ static void NearestVisit(void *context, int index, double *bound)
   look->foot     = foot;
 }
 
-/* Curvature of the master around its nearest facet: turn of the normals of the facets that touch it over the distance of their centres. */
+/* Curvature of the master around its nearest facet: turn of the normals of the facets that touch it over the distance
+ * of their centres. */
 static PetscReal ListCurvature(const Nearest *look, PetscInt n, const int *found)
 {
   const Candidate *c     = &look->candidates[look->best];
@@ -249,12 +262,14 @@ static PetscReal ListCurvature(const Nearest *look, PetscInt n, const int *found
     PetscBool        touch = PETSC_FALSE;
 
     for (int a = 0; a < ElementGet(c->facet.type)->corners; a++)
-      for (int b = 0; b < ElementGet(o->facet.type)->corners; b++) touch = (PetscBool)(touch || c->facet.nodes[a] == o->facet.nodes[b]);
+      for (int b = 0; b < ElementGet(o->facet.type)->corners; b++)
+        touch = (PetscBool)(touch || c->facet.nodes[a] == o->facet.nodes[b]);
     for (int d = 0; d < 3; d++) {
       cosine += c->normal[d] * o->normal[d];
       distance += PetscSqr(c->centre[d] - o->centre[d]);
     }
-    if (touch && distance > 0) kappa = PetscMax(kappa, PetscAcosReal(PetscMax(-1, PetscMin(1, cosine))) / PetscSqrtReal(distance));
+    if (touch && distance > 0)
+      kappa = PetscMax(kappa, PetscAcosReal(PetscMax(-1, PetscMin(1, cosine))) / PetscSqrtReal(distance));
   }
   return kappa;
 }
@@ -270,8 +285,10 @@ PetscErrorCode ListBufferAddPoint(ListBuffer *buffer, PetscInt first, PetscInt p
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Appends the found candidates to the slave point's list, which starts at first; facets' nodes become positions in it. */
-static PetscErrorCode ListAddFacets(const Nearest *look, PetscInt n, const int *found, const FaceRecord *records, PetscInt first, ListBuffer *buffer)
+/* Appends the found candidates to the slave point's list, which starts at first; facets' nodes become positions in it.
+ */
+static PetscErrorCode ListAddFacets(const Nearest *look, PetscInt n, const int *found, const FaceRecord *records,
+                                    PetscInt first, ListBuffer *buffer)
 {
   PetscFunctionBeginUser;
   for (PetscInt i = 0; i < n; i++) {
@@ -304,18 +321,20 @@ static int KeepFacing(const Nearest *look, int n, int *found)
 }
 
 /* Looks for the nearest facet of every slave point, lists it with what surrounds it, and fits the surface there. */
-static PetscErrorCode NeighbourListsFill(ContactSearch s, NeighbourLists lists, const PetscReal *normals, const SearchField *field, FitSupport *fit, PetscReal motion)
+static PetscErrorCode NeighbourListsFill(ContactSearch s, NeighbourLists lists, const PetscReal *normals,
+                                         const SearchField *field, FitSupport *fit, PetscReal motion)
 {
   const int        dim          = lists->dim;
   const PetscInt   n_candidates = field->n_candidates;
   const Candidate *candidates   = field->candidates;
-  BoxTree             tree;
+  BoxTree          tree;
   double          *lower, *upper;
   int             *found, count;
   ListBuffer       buffer = {0};
 
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc4(n_candidates * dim, &lower, n_candidates * dim, &upper, n_candidates, &found, lists->n_points, &buffer.position));
+  PetscCall(PetscMalloc4(n_candidates * dim, &lower, n_candidates * dim, &upper, n_candidates, &found, lists->n_points,
+                         &buffer.position));
   for (PetscInt i = 0; i < n_candidates; i++) {
     for (int d = 0; d < dim; d++) {
       lower[i * dim + d] = candidates[i].lower[d];
@@ -323,7 +342,8 @@ static PetscErrorCode NeighbourListsFill(ContactSearch s, NeighbourLists lists, 
     }
   }
   for (PetscInt p = 0; p < lists->n_points; p++) buffer.position[p] = -1;
-  PetscCheck(!BoxTreeBuild(dim, (int)n_candidates, lower, upper, &tree), PETSC_COMM_SELF, PETSC_ERR_MEM, "no memory for the search tree");
+  PetscCheck(!BoxTreeBuild(dim, (int)n_candidates, lower, upper, &tree), PETSC_COMM_SELF, PETSC_ERR_MEM,
+             "no memory for the search tree");
   for (PetscInt q = 0; q < lists->n_slaves; q++) {
     const PetscInt first = buffer.n_points;
     Nearest        look  = {.lists      = lists,
@@ -361,18 +381,20 @@ static PetscErrorCode NeighbourListsFill(ContactSearch s, NeighbourLists lists, 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* SearchLists - for every slave point of this rank the facets near it and the points these stand on, from whatever rank.
+/* SearchLists - for every slave point of this rank the facets near it and the points these stand on, from whatever
+   rank.
 
-   Collective. u[mesh n_nodes*dim]: local displacements (length), ghosts included; t: load parameter, for rigid tools; motion: relative
-   motion (length) the lists must be good for. Listed is what faces the slave within SEARCH_MARGIN of the nearest facet, if that is within
-   SEARCH_REACH; order and content do not depend on the ranks. The caller destroys the lists with NeighbourListsDestroy(). */
+   Collective. u[mesh n_nodes*dim]: local displacements (length), ghosts included; t: load parameter, for rigid tools;
+   motion: relative motion (length) the lists must be good for. Listed is what faces the slave within SEARCH_MARGIN of
+   the nearest facet, if that is within SEARCH_REACH; order and content do not depend on the ranks. The caller destroys
+   the lists with NeighbourListsDestroy(). */
 PetscErrorCode SearchLists(ContactSearch s, const PetscReal *u, PetscReal t, PetscReal motion, NeighbourLists *out)
 {
   const PetscReal distance = s->reach + PetscMax(s->margin, SearchFitReach(s)) + 2 * motion;
   PetscReal       box[6], *normals;
   SearchField     field;
-  NeighbourLists    lists;
-  FitSupport         fit;
+  NeighbourLists  lists;
+  FitSupport      fit;
 
   PetscFunctionBeginUser;
   PetscCall(PetscNew(&lists));
@@ -384,7 +406,8 @@ PetscErrorCode SearchLists(ContactSearch s, const PetscReal *u, PetscReal t, Pet
   PetscCall(PetscMalloc1(3 * lists->n_slaves, &normals));
   PetscCall(SlavePointsNormals(s->slaves, u, normals));
   if (s->fit->degree) PetscCall(FitSupportCreate(s, lists, &field, &fit));
-  if (s->fit->degree && s->fit->global_frame) PetscCall(SurfaceMeanNormal(s->master, s->loads, s->n_images, s->images, u, t, fit.plane, NULL));
+  if (s->fit->degree && s->fit->global_frame)
+    PetscCall(SurfaceMeanNormal(s->master, s->loads, s->n_images, s->images, u, t, fit.plane, NULL));
   PetscCall(NeighbourListsFill(s, lists, normals, &field, s->fit->degree ? &fit : NULL, motion));
   if (s->fit->degree) PetscCall(FitSupportDestroy(&fit));
   PetscCall(NeighbourListsUpdate(s, lists, u, t, NULL));
@@ -395,9 +418,11 @@ PetscErrorCode SearchLists(ContactSearch s, const PetscReal *u, PetscReal t, Pet
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* SearchDistance - signed distance (length) of a point to the whole master, the same on all ranks; mirror images are left out.
+/* SearchDistance - signed distance (length) of a point to the whole master, the same on all ranks; mirror images are
+   left out.
 
-   Collective. u[mesh n_nodes*dim]: local displacements (length), ghosts included; x: the point's position relative to the mesh's centre. */
+   Collective. u[mesh n_nodes*dim]: local displacements (length), ghosts included; x: the point's position relative to
+   the mesh's centre. */
 PetscErrorCode SearchDistance(ContactSearch s, const PetscReal *u, PetscReal t, const PetscReal x[3], PetscReal *gap)
 {
   Mesh      mesh = s->mesh;
@@ -417,7 +442,8 @@ PetscErrorCode SearchDistance(ContactSearch s, const PetscReal *u, PetscReal t, 
     PetscReal y[3] = {0, 0, 0};
 
     if (s->master->rigid) SearchRigidPosition(s, i, t, y);
-    for (int d = 0; d < dim; d++) relative[i * dim + d] = (s->master->rigid ? y[d] : mesh->coords[i * dim + d] + u[i * dim + d]) - x[d];
+    for (int d = 0; d < dim; d++)
+      relative[i * dim + d] = (s->master->rigid ? y[d] : mesh->coords[i * dim + d] + u[i * dim + d]) - x[d];
   }
   if (FacetClosest(dim, (int)s->master->n_faces, s->master->faces, relative, -1, &foot)) {
     mine.distance = PetscSqrtReal(PetscSqr(foot.gap) + PetscSqr(foot.beyond));

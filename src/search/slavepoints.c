@@ -8,9 +8,11 @@ static PetscErrorCode CreateForest(SlavePoints points)
 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(points->n_nodes, &remote));
-  for (PetscInt i = 0; i < points->n_nodes; i++) remote[i] = (PetscSFNode){points->nodes[i].owner, points->nodes[i].local};
+  for (PetscInt i = 0; i < points->n_nodes; i++)
+    remote[i] = (PetscSFNode){points->nodes[i].owner, points->nodes[i].local};
   PetscCall(PetscSFCreate(points->mesh->comm, &points->sf));
-  PetscCall(PetscSFSetGraph(points->sf, points->mesh->n_nodes, points->n_nodes, NULL, PETSC_OWN_POINTER, remote, PETSC_OWN_POINTER));
+  PetscCall(PetscSFSetGraph(points->sf, points->mesh->n_nodes, points->n_nodes, NULL, PETSC_OWN_POINTER, remote,
+                            PETSC_OWN_POINTER));
   PetscCall(PetscSFSetUp(points->sf));
   PetscCallMPI(MPI_Type_contiguous(dim, MPIU_REAL, &points->block));
   PetscCallMPI(MPI_Type_commit(&points->block));
@@ -30,10 +32,13 @@ PetscErrorCode SlavePointsCreateNodes(ContactSurface surface, PetscInt n, const 
   points->surface = surface;
   points->n_nodes = points->n = n;
   PetscCall(PetscMalloc1(n, &points->nodes));
-  PetscCall(PetscMalloc6(n + 1, &points->ptr, n, &points->node, n, &points->S, n, &points->hat, n, &points->weight, n * mesh->dim, &points->offset));
+  PetscCall(PetscMalloc6(n + 1, &points->ptr, n, &points->node, n, &points->S, n, &points->hat, n, &points->weight,
+                         n * mesh->dim, &points->offset));
   PetscCall(PetscArrayzero(points->offset, n * mesh->dim));
   for (PetscInt i = 0; i < n; i++) {
-    points->nodes[i] = (NodeKey){.id = mesh->node_id[nodes[i]], .owner = mesh->node_owner[nodes[i]], .local = mesh->node_owner_local[nodes[i]]};
+    points->nodes[i] = (NodeKey){.id    = mesh->node_id[nodes[i]],
+                                 .owner = mesh->node_owner[nodes[i]],
+                                 .local = mesh->node_owner_local[nodes[i]]};
     for (int d = 0; d < mesh->dim; d++) points->nodes[i].X[d] = mesh->coords[nodes[i] * mesh->dim + d];
   }
   n = NodeKeysUnique(n, points->nodes);
@@ -81,14 +86,16 @@ static PetscErrorCode TakeRecords(SlavePoints points, PetscInt n_records, FaceRe
     remote[f] = (PetscSFNode){records[f].home, records[f].home_face};
   }
   PetscCall(PetscSFCreate(points->mesh->comm, &points->face_sf));
-  PetscCall(PetscSFSetGraph(points->face_sf, points->surface->n_faces, n_records, NULL, PETSC_OWN_POINTER, remote, PETSC_OWN_POINTER));
+  PetscCall(PetscSFSetGraph(points->face_sf, points->surface->n_faces, n_records, NULL, PETSC_OWN_POINTER, remote,
+                            PETSC_OWN_POINTER));
   PetscCall(PetscSFSetUp(points->face_sf));
   PetscCallMPI(MPI_Type_contiguous(FACE_RULE_POINTS * points->mesh->dim, MPIU_REAL, &points->face_block));
   PetscCallMPI(MPI_Type_commit(&points->face_block));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* SlavePointsCreateQuadrature - the points of surface contact, on this rank those of every face that touches one of its nodes; offsets 0.
+/* SlavePointsCreateQuadrature - the points of surface contact, on this rank those of every face that touches one of its
+   nodes; offsets 0.
 
    Collective. geometry: axisymmetric weights are over 360 degrees; finer: quadrature of one order more. */
 PetscErrorCode SlavePointsCreateQuadrature(ContactSurface surface, Geometry geometry, int finer, SlavePoints *out)
@@ -112,8 +119,8 @@ PetscErrorCode SlavePointsCreateQuadrature(ContactSurface surface, Geometry geom
     entries += FaceRuleGet(records[f].facet.type, finer)->n * ElementGet(records[f].facet.type)->nodes;
   }
   points->first[n_records] = points->n = n;
-  PetscCall(
-    PetscMalloc6(n + 1, &points->ptr, entries, &points->node, entries, &points->S, entries, &points->hat, n, &points->weight, n * dim, &points->offset));
+  PetscCall(PetscMalloc6(n + 1, &points->ptr, entries, &points->node, entries, &points->S, entries, &points->hat, n,
+                         &points->weight, n * dim, &points->offset));
   PetscCall(PetscArrayzero(points->offset, n * dim));
   entries = 0;
   for (PetscInt f = 0; f < n_records; f++) {
@@ -141,7 +148,8 @@ PetscErrorCode SlavePointsCreateQuadrature(ContactSurface surface, Geometry geom
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* SlavePointIsOwn - of the ranks that hold point q, the owner of its first node is the one to count it. Not collective. */
+/* SlavePointIsOwn - of the ranks that hold point q, the owner of its first node is the one to count it. Not collective.
+ */
 PetscBool SlavePointIsOwn(SlavePoints points, PetscInt q, PetscMPIInt rank)
 {
   return points->nodes[points->node[points->ptr[q]]].owner == rank ? PETSC_TRUE : PETSC_FALSE;
@@ -185,7 +193,8 @@ void SlavePointsPosition(SlavePoints points, PetscInt q, PetscReal *x)
 
   for (int d = 0; d < dim; d++) x[d] = 0;
   for (PetscInt k = points->ptr[q]; k < points->ptr[q + 1]; k++)
-    for (int d = 0; d < dim; d++) x[d] += points->S[k] * (points->nodes[points->node[k]].X[d] + points->u[points->node[k] * dim + d]);
+    for (int d = 0; d < dim; d++)
+      x[d] += points->S[k] * (points->nodes[points->node[k]].X[d] + points->u[points->node[k] * dim + d]);
 }
 
 /* Nodes: the area-weighted mean normal of the faces around. */
@@ -205,7 +214,8 @@ static PetscErrorCode NodeNormals(SlavePoints points, const PetscReal *u, PetscR
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* SlavePointsNormals - Collective. u[mesh n_nodes*dim]: that of the last SlavePointsMove(); normals[n*3]: out of the slave's body, of any length. */
+/* SlavePointsNormals - Collective. u[mesh n_nodes*dim]: that of the last SlavePointsMove(); normals[n*3]: out of the
+ * slave's body, of any length. */
 PetscErrorCode SlavePointsNormals(SlavePoints points, const PetscReal *u, PetscReal *normals)
 {
   const int dim = points->mesh->dim;
@@ -217,8 +227,10 @@ PetscErrorCode SlavePointsNormals(SlavePoints points, const PetscReal *u, PetscR
     double       x[FACE_MAX_NODES * 3], area[FACE_RULE_POINTS];
 
     for (int a = 0; a < ElementGet(facet->type)->nodes; a++)
-      for (int d = 0; d < dim; d++) x[a * dim + d] = points->nodes[facet->nodes[a]].X[d] + points->u[facet->nodes[a] * dim + d];
-    FaceRuleAreas(FaceRuleGet(facet->type, points->finer), facet->type, dim, GEOMETRY_SOLID, x, area, &normals[3 * points->first[f]]);
+      for (int d = 0; d < dim; d++)
+        x[a * dim + d] = points->nodes[facet->nodes[a]].X[d] + points->u[facet->nodes[a] * dim + d];
+    FaceRuleAreas(FaceRuleGet(facet->type, points->finer), facet->type, dim, GEOMETRY_SOLID, x, area,
+                  &normals[3 * points->first[f]]);
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -234,7 +246,8 @@ PetscErrorCode SlavePointsSetOffsets(SlavePoints points, const PetscReal *offset
   PetscCall(PetscSFBcastBegin(points->face_sf, points->face_block, offset, arrived, MPI_REPLACE));
   PetscCall(PetscSFBcastEnd(points->face_sf, points->face_block, offset, arrived, MPI_REPLACE));
   for (PetscInt f = 0; f < points->n_faces; f++)
-    PetscCall(PetscArraycpy(&points->offset[points->first[f] * dim], &arrived[f * FACE_RULE_POINTS * dim], (points->first[f + 1] - points->first[f]) * dim));
+    PetscCall(PetscArraycpy(&points->offset[points->first[f] * dim], &arrived[f * FACE_RULE_POINTS * dim],
+                            (points->first[f + 1] - points->first[f]) * dim));
   PetscCall(PetscFree(arrived));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -247,7 +260,8 @@ PetscErrorCode SlavePointsSetMaps(SlavePoints points, const FaceMaps *maps)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* SlavePointsHatAreas - Collective. geometry: axisymmetric areas are over 360 degrees; u[n_nodes*dim]: local displacements, ghosts included. */
+/* SlavePointsHatAreas - Collective. geometry: axisymmetric areas are over 360 degrees; u[n_nodes*dim]: local
+ * displacements, ghosts included. */
 PetscErrorCode SlavePointsHatAreas(SlavePoints points, Geometry geometry, const PetscReal *u, PetscReal *area)
 {
   Mesh      mesh = points->mesh;
@@ -262,7 +276,8 @@ PetscErrorCode SlavePointsHatAreas(SlavePoints points, Geometry geometry, const 
     double          x[FACE_MAX_NODES * 3], parts[FACE_RULE_POINTS];
 
     for (int a = 0; a < nodes; a++)
-      for (int d = 0; d < dim; d++) x[a * dim + d] = mesh->coords[facet->nodes[a] * dim + d] + (u ? u[facet->nodes[a] * dim + d] : 0);
+      for (int d = 0; d < dim; d++)
+        x[a * dim + d] = mesh->coords[facet->nodes[a] * dim + d] + (u ? u[facet->nodes[a] * dim + d] : 0);
     FaceRuleAreas(rule, facet->type, dim, geometry, x, parts, NULL);
     for (int q = 0; q < rule->n; q++)
       for (int a = 0; a < nodes; a++) area[facet->nodes[a]] += parts[q] * rule->hat[q][a];

@@ -1,6 +1,7 @@
-/* Where a slave surface is measured: points that are fixed combinations of slave nodes, plus an offset. Node to surface: the nodes themselves.
-   Surface to surface: the quadrature points of the faces around this rank's nodes, whichever rank the faces live on, with area weights and the
-   hat functions by which a slave node weighs them. Knows no master. */
+/* Where a slave surface is measured: points that are fixed combinations of slave nodes, plus an offset. Node to
+   surface: the nodes themselves. Surface to surface: the quadrature points of the faces around this rank's nodes,
+   whichever rank the faces live on, with area weights and the hat functions by which a slave node weighs them. Knows no
+   master. */
 #pragma once
 #include "search/facemap.h"
 
@@ -23,7 +24,7 @@ typedef struct {
   PetscSF      face_sf;    /* roots: faces where they live */
   MPI_Datatype face_block; /* FACE_RULE_POINTS*dim reals */
   FaceMaps     maps;       /* of the faces, where offsets are live: the points instead of shape functions */
-} * SlavePoints;
+} *SlavePoints;
 
 /* n local nodes as slave points. Collective. */
 PetscErrorCode SlavePointsCreateNodes(ContactSurface, PetscInt n, const PetscInt nodes[], SlavePoints *);
@@ -38,7 +39,8 @@ PetscBool SlavePointIsOwn(SlavePoints, PetscInt q, PetscMPIInt rank);
 void SlavePointsPosition(SlavePoints, PetscInt q, PetscReal *x);
 /* Normals out of the slave at the points (n*3, any length) after the last move to u. Collective. */
 PetscErrorCode SlavePointsNormals(SlavePoints, const PetscReal *u, PetscReal *normals);
-/* Takes the offsets of this rank's own faces [faces of the surface][FACE_RULE_POINTS*dim] to the points of whatever rank. Collective. */
+/* Takes the offsets of this rank's own faces [faces of the surface][FACE_RULE_POINTS*dim] to the points of whatever
+ * rank. Collective. */
 PetscErrorCode SlavePointsSetOffsets(SlavePoints, const PetscReal *offset);
 /* Takes maps of this rank's own faces to the points of whatever rank, once. Collective. */
 PetscErrorCode SlavePointsSetMaps(SlavePoints, const FaceMaps *);

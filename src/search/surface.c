@@ -2,10 +2,11 @@
 #include "base/refusal.h"
 #include "search/surface.h"
 
-/* A plane of symmetry may deviate from flatness, and its normal from an axis, by this fraction of the model's size: round-off of a CAD kernel. */
+/* A plane of symmetry may deviate from flatness, and its normal from an axis, by this fraction of the model's size:
+ * round-off of a CAD kernel. */
 #define SURFACE_FLATNESS 1e-6
-/* Directions are told apart by the cells of a cube's faces, so many along an edge; a cell is some 20 degrees wide, so normals count as opposed
-   up to this cosine. */
+/* Directions are told apart by the cells of a cube's faces, so many along an edge; a cell is some 20 degrees wide, so
+   normals count as opposed up to this cosine. */
 enum { SURFACE_CELLS = 4, SURFACE_DIRECTIONS = 6 * SURFACE_CELLS * SURFACE_CELLS };
 #define SURFACE_OPPOSED 0.25
 
@@ -15,7 +16,9 @@ static void FaceCoordinates(ContactSurface surface, const Facet *face, const Pet
   const PetscReal *coords = surface->rigid ? surface->rigid->coords : mesh->coords;
 
   for (int a = 0; a < ElementGet(face->type)->nodes; a++) {
-    for (int d = 0; d < mesh->dim; d++) { X[a * mesh->dim + d] = coords[face->nodes[a] * mesh->dim + d] + (u ? u[face->nodes[a] * mesh->dim + d] : 0); }
+    for (int d = 0; d < mesh->dim; d++) {
+      X[a * mesh->dim + d] = coords[face->nodes[a] * mesh->dim + d] + (u ? u[face->nodes[a] * mesh->dim + d] : 0);
+    }
   }
 }
 
@@ -60,12 +63,14 @@ static PetscErrorCode SurfaceFacesFromRigid(ContactSurface surface)
 
     face->type = rigid->face_type[f];
     face->tag  = (long)rigid->face_tag[f];
-    for (int a = 0; a < ElementGet(face->type)->nodes; a++) face->nodes[a] = (int)rigid->face_nodes[rigid->face_ptr[f] + a];
+    for (int a = 0; a < ElementGet(face->type)->nodes; a++)
+      face->nodes[a] = (int)rigid->face_nodes[rigid->face_ptr[f] + a];
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Stiffness of the layer of elements below a face: E over element height, height = volume over area (simplices: dim times that). */
+/* Stiffness of the layer of elements below a face: E over element height, height = volume over area (simplices: dim
+ * times that). */
 static PetscReal FaceStiffness(ContactSurface surface, Elasticity elasticity, PetscInt f, PetscReal area)
 {
   Mesh           mesh = surface->mesh;
@@ -129,7 +134,8 @@ static PetscErrorCode SurfaceMeasure(ContactSurface surface, Elasticity elastici
 /* SurfaceCreate - the contact surface of that name: a surface of a deformable body or of a meshed rigid tool.
 
    path, key: the scene's key that names it, for messages. Refuses unknown and empty surfaces. Collective. */
-PetscErrorCode SurfaceCreate(Mesh mesh, Scene scene, Elasticity elasticity, const char *path, const char *key, const char *name, ContactSurface *out)
+PetscErrorCode SurfaceCreate(Mesh mesh, Scene scene, Elasticity elasticity, const char *path, const char *key,
+                             const char *name, ContactSurface *out)
 {
   ContactSurface surface;
   PetscInt       faces;
@@ -152,8 +158,9 @@ PetscErrorCode SurfaceCreate(Mesh mesh, Scene scene, Elasticity elasticity, cons
     PetscCallMPI(MPI_Allreduce(&surface->n_faces, &faces, 1, MPIU_INT, MPI_SUM, mesh->comm));
   }
   if (!faces)
-    PetscCall(RefuseInput(mesh->comm, "%s: the contact surface '%s' has no faces; allowed: a physical surface with at least one face",
-                          SceneWhere(scene, path, key), name));
+    PetscCall(RefuseInput(
+      mesh->comm, "%s: the contact surface '%s' has no faces; allowed: a physical surface with at least one face",
+      SceneWhere(scene, path, key), name));
   PetscCall(SurfaceMeasure(surface, elasticity));
   *out = surface;
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -230,14 +237,16 @@ static PetscBool EdgeOnSymmetry(ContactSurface surface, const FaceEdge *edge, in
     for (int i = 0; i < n; i++) {
       const PetscReal *x = &coords[face->nodes[corners[i]] * dim];
 
-      for (int d = 0; d < dim; d++) distance = PetscMax(distance, PetscAbsReal(images[plane].sign[d] * x[d] + images[plane].shift[d] - x[d]));
+      for (int d = 0; d < dim; d++)
+        distance = PetscMax(distance, PetscAbsReal(images[plane].sign[d] * x[d] + images[plane].shift[d] - x[d]));
     }
     if (distance <= SURFACE_FLATNESS * surface->mesh->size) return PETSC_TRUE;
   }
   return PETSC_FALSE;
 }
 
-/* Of the edges that stand alone on this rank, those that another rank holds too are partition borders, not ends of the surface. */
+/* Of the edges that stand alone on this rank, those that another rank holds too are partition borders, not ends of the
+ * surface. */
 static PetscErrorCode DropPartitionBorders(MPI_Comm comm, PetscInt *n, FaceEdge *edges)
 {
   PetscMPIInt size, mine, *counts, *starts;
@@ -272,10 +281,11 @@ static PetscErrorCode DropPartitionBorders(MPI_Comm comm, PetscInt *n, FaceEdge 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* SurfaceFindFreeEdges - marks the edges (ends in 2D) that one face alone holds, over all ranks, unless they lie on a plane of symmetry.
+/* SurfaceFindFreeEdges - marks the edges (ends in 2D) that one face alone holds, over all ranks, unless they lie on a
+   plane of symmetry.
 
-   Collective. images[n_images]: the pair's, SurfaceImages(); by their planes the test is the same for bodies, tools and the axis. Sets bits
-   of free_edges. */
+   Collective. images[n_images]: the pair's, SurfaceImages(); by their planes the test is the same for bodies, tools and
+   the axis. Sets bits of free_edges. */
 PetscErrorCode SurfaceFindFreeEdges(ContactSurface surface, int n_images, const SurfaceImage *images)
 {
   Mesh      mesh = surface->mesh;
@@ -313,11 +323,14 @@ PetscErrorCode SurfaceFindFreeEdges(ContactSurface surface, int n_images, const 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* SurfaceNodeAreas - tributary areas int N_a dA and normals int N_a n dA of all local nodes, summed over the faces of all ranks.
+/* SurfaceNodeAreas - tributary areas int N_a dA and normals int N_a n dA of all local nodes, summed over the faces of
+   all ranks.
 
-   Collective. Deformable surfaces only. geometry: axisymmetric areas are over 360 degrees; u[n_nodes*dim]: local displacements (length),
-   NULL: reference. area[n_nodes], normal[n_nodes*3] (NULL: not asked for; its length is an area): complete on every copy, 0 off the surface. */
-PetscErrorCode SurfaceNodeAreas(ContactSurface surface, Geometry geometry, const PetscReal *u, PetscReal *area, PetscReal *normal)
+   Collective. Deformable surfaces only. geometry: axisymmetric areas are over 360 degrees; u[n_nodes*dim]: local
+   displacements (length), NULL: reference. area[n_nodes], normal[n_nodes*3] (NULL: not asked for; its length is an
+   area): complete on every copy, 0 off the surface. */
+PetscErrorCode SurfaceNodeAreas(ContactSurface surface, Geometry geometry, const PetscReal *u, PetscReal *area,
+                                PetscReal *normal)
 {
   Mesh      mesh = surface->mesh;
   const int dim  = mesh->dim;
@@ -344,9 +357,11 @@ PetscErrorCode SurfaceNodeAreas(ContactSurface surface, Geometry geometry, const
 
 /* SurfaceNodeSizes - what the faces around each local node are like in the reference configuration.
 
-   Collective. Deformable surfaces only. size[n_nodes]: mean face size (length); turn[n_nodes]: how far the faces turn from their mean normal
-   (radians), from the resultant of their areas; share[n_nodes]: tributary area over the area of the faces. 0 off the surface. */
-PetscErrorCode SurfaceNodeSizes(ContactSurface surface, Geometry geometry, PetscReal *size, PetscReal *turn, PetscReal *share)
+   Collective. Deformable surfaces only. size[n_nodes]: mean face size (length); turn[n_nodes]: how far the faces turn
+   from their mean normal (radians), from the resultant of their areas; share[n_nodes]: tributary area over the area of
+   the faces. 0 off the surface. */
+PetscErrorCode SurfaceNodeSizes(ContactSurface surface, Geometry geometry, PetscReal *size, PetscReal *turn,
+                                PetscReal *share)
 {
   enum { SIZE, FACES, AREA, SUMS };
   Mesh           mesh  = surface->mesh;
@@ -383,7 +398,8 @@ PetscErrorCode SurfaceNodeSizes(ContactSurface surface, Geometry geometry, Petsc
   for (PetscInt n = 0; n < mesh->n_nodes; n++) {
     const PetscReal *m = &normal[3 * n], length = PetscSqrtReal(m[0] * m[0] + m[1] * m[1] + m[2] * m[2]);
 
-    turn[n] = area[n] > 0 ? PetscAcosReal(PetscMin(1, length / area[n])) : 0; /* the resultant of faces that turn by +-a is cos a of their area */
+    turn[n] = area[n] > 0 ? PetscAcosReal(PetscMin(1, length / area[n]))
+                          : 0; /* the resultant of faces that turn by +-a is cos a of their area */
   }
   PetscCall(PetscFree3(sum, normal, area));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -425,7 +441,8 @@ static PetscBool SupportHolds(Scene scene, const char *surface, int component)
 static PetscBool ImagesHavePlane(int axis, PetscReal position, PetscReal size, int n, const SurfaceImage *images)
 {
   for (int bit = 1; bit < n; bit <<= 1)
-    if (images[bit].sign[axis] < 0 && PetscAbsReal(images[bit].shift[axis] - 2 * position) <= SURFACE_FLATNESS * size) return PETSC_TRUE;
+    if (images[bit].sign[axis] < 0 && PetscAbsReal(images[bit].shift[axis] - 2 * position) <= SURFACE_FLATNESS * size)
+      return PETSC_TRUE;
   return PETSC_FALSE;
 }
 
@@ -444,11 +461,14 @@ static void ImagesAddPlane(int axis, PetscReal position, int *n, SurfaceImage *i
   *n *= 2;
 }
 
-/* SurfaceImages - mirror images of a pair's master: identity, each plane of symmetry, all their products; the axis r = 0 is always one.
+/* SurfaceImages - mirror images of a pair's master: identity, each plane of symmetry, all their products; the axis r =
+   0 is always one.
 
-   Collective. images[SURFACE_MAX_IMAGES]: in coordinates relative to the mesh's centre. Refuses (exit 1) surfaces that are not planar and
-   normal to an axis, that no support holds in that direction, and a third plane normal to one axis. */
-PetscErrorCode SurfaceImages(Mesh mesh, Scene scene, const SceneContact *contact, int *n_images, SurfaceImage images[SURFACE_MAX_IMAGES])
+   Collective. images[SURFACE_MAX_IMAGES]: in coordinates relative to the mesh's centre. Refuses (exit 1) surfaces that
+   are not planar and normal to an axis, that no support holds in that direction, and a third plane normal to one axis.
+ */
+PetscErrorCode SurfaceImages(Mesh mesh, Scene scene, const SceneContact *contact, int *n_images,
+                             SurfaceImage images[SURFACE_MAX_IMAGES])
 {
   int taken[3] = {0, 0, 0};
 
@@ -470,17 +490,21 @@ PetscErrorCode SurfaceImages(Mesh mesh, Scene scene, const SceneContact *contact
     PetscCall(MeshGetGroup(mesh, scene, contact->path, "symmetry", name, mesh->dim - 1, &group));
     PetscCall(GroupPlane(mesh, group, &axis, &position));
     if (axis < 0)
-      PetscCall(RefuseInput(mesh->comm, "%s: '%s' is not a plane normal to a coordinate axis; allowed: planar surfaces x, y or z = constant",
-                            SceneWhere(scene, contact->path, "symmetry"), name));
+      PetscCall(RefuseInput(
+        mesh->comm,
+        "%s: '%s' is not a plane normal to a coordinate axis; allowed: planar surfaces x, y or z = constant",
+        SceneWhere(scene, contact->path, "symmetry"), name));
     if (!SupportHolds(scene, name, axis)) {
       PetscCall(RefuseInput(mesh->comm,
-                            "%s: no support holds u%c on '%s', so it is no plane of symmetry; allowed: surfaces whose normal displacement a support fixes",
+                            "%s: no support holds u%c on '%s', so it is no plane of symmetry; allowed: surfaces whose "
+                            "normal displacement a support fixes",
                             SceneWhere(scene, contact->path, "symmetry"), "xyz"[axis], name));
     }
     if (ImagesHavePlane(axis, position, mesh->size, *n_images, images)) continue;
     if (taken[axis] == SURFACE_AXIS_PLANES)
-      PetscCall(RefuseInput(mesh->comm, "%s: '%s' is a third plane normal to %c; allowed: two planes for each axis (the axis r = 0 is one)",
-                            SceneWhere(scene, contact->path, "symmetry"), name, "xyz"[axis]));
+      PetscCall(RefuseInput(
+        mesh->comm, "%s: '%s' is a third plane normal to %c; allowed: two planes for each axis (the axis r = 0 is one)",
+        SceneWhere(scene, contact->path, "symmetry"), name, "xyz"[axis]));
     taken[axis]++;
     ImagesAddPlane(axis, position, n_images, images);
   }
@@ -493,8 +517,8 @@ void SurfaceReflect(const SurfaceImage *image, int dim, const PetscReal *x, Pets
   for (int d = 0; d < dim; d++) y[d] = image->sign[d] * x[d] + image->shift[d];
 }
 
-/* SurfaceImageFacet - a facet as one of its images sees it: turned over where the image reverses orientation, so that its normal points
-   out of the image again; free edges go along. Not collective. */
+/* SurfaceImageFacet - a facet as one of its images sees it: turned over where the image reverses orientation, so that
+   its normal points out of the image again; free edges go along. Not collective. */
 Facet SurfaceImageFacet(const Facet *facet, const SurfaceImage *image)
 {
   const Element *e     = ElementGet(facet->type);
@@ -503,7 +527,8 @@ Facet SurfaceImageFacet(const Facet *facet, const SurfaceImage *image)
 
   if (!image->reverses) return out;
   for (int c = 0; c < e->corners; c++) out.nodes[c] = facet->nodes[e->dim == 1 ? 1 - c : (e->corners - c) % e->corners];
-  for (int m = 0; e->order == 2 && m < middles; m++) out.nodes[e->corners + m] = facet->nodes[e->corners + middles - 1 - m];
+  for (int m = 0; e->order == 2 && m < middles; m++)
+    out.nodes[e->corners + m] = facet->nodes[e->corners + middles - 1 - m];
   out.free_edges = 0;
   for (int k = 0; k < edges; k++)
     if (facet->free_edges >> k & 1) out.free_edges |= 1 << (edges - 1 - k);
@@ -517,13 +542,16 @@ static int DirectionCell(const PetscReal v[3])
 
   for (int d = 1; d < 3; d++)
     if (PetscAbsReal(v[d]) > PetscAbsReal(v[axis])) axis = d;
-  for (int k = 0; k < 2; k++) cell[k] = PetscMin(SURFACE_CELLS - 1, (int)((v[(axis + 1 + k) % 3] / PetscAbsReal(v[axis]) + 1) / 2 * SURFACE_CELLS));
+  for (int k = 0; k < 2; k++)
+    cell[k] =
+      PetscMin(SURFACE_CELLS - 1, (int)((v[(axis + 1 + k) % 3] / PetscAbsReal(v[axis]) + 1) / 2 * SURFACE_CELLS));
   return ((2 * axis + (v[axis] < 0)) * SURFACE_CELLS + cell[0]) * SURFACE_CELLS + cell[1];
 }
 
 static void DirectionMiddle(int index, PetscReal v[3])
 {
-  const int cell[2] = {index / SURFACE_CELLS % SURFACE_CELLS, index % SURFACE_CELLS}, side = index / (SURFACE_CELLS * SURFACE_CELLS), axis = side / 2;
+  const int cell[2] = {index / SURFACE_CELLS % SURFACE_CELLS, index % SURFACE_CELLS},
+            side = index / (SURFACE_CELLS * SURFACE_CELLS), axis = side / 2;
 
   v[axis] = side % 2 ? -1 : 1;
   for (int k = 0; k < 2; k++) v[(axis + 1 + k) % 3] = (2 * cell[k] + 1.0) / SURFACE_CELLS - 1;
@@ -531,9 +559,10 @@ static void DirectionMiddle(int index, PetscReal v[3])
 
 /* SurfaceFaces - is there any face of the master whose normal is opposed to that of any of these nodes?
 
-   Collective. n, nodes: this rank's; normals[3*local node]. The faces' directions are gathered by cells of about 20 degrees, so that ranks
-   exchange a fixed, small table. *facing: the same on all ranks. */
-PetscErrorCode SurfaceFaces(ContactSurface master, PetscInt n, const PetscInt nodes[], const PetscReal normals[], PetscBool *facing)
+   Collective. n, nodes: this rank's; normals[3*local node]. The faces' directions are gathered by cells of about 20
+   degrees, so that ranks exchange a fixed, small table. *facing: the same on all ranks. */
+PetscErrorCode SurfaceFaces(ContactSurface master, PetscInt n, const PetscInt nodes[], const PetscReal normals[],
+                            PetscBool *facing)
 {
   const int dim                       = master->mesh->dim;
   int       there[SURFACE_DIRECTIONS] = {0}, found = 0;

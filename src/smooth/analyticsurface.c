@@ -19,7 +19,8 @@ static void EvaluatePlane(const double x[3], const double axis[3], AnalyticResul
   }
 }
 
-static int EvaluateRound(const AnalyticSurface *master, int dim, const double x[3], const double axis[3], AnalyticResult *out)
+static int EvaluateRound(const AnalyticSurface *master, int dim, const double x[3], const double axis[3],
+                         AnalyticResult *out)
 {
   const double side = master->inside ? -1 : 1;
   double       P[3][3], r[3] = {0}, length;
@@ -41,12 +42,14 @@ static int EvaluateRound(const AnalyticSurface *master, int dim, const double x[
   return 1;
 }
 
-/* AnalyticSurfaceEvaluate - gap of a slave point to a rigid plane, cylinder or sphere, with first and second variation. Not collective.
+/* AnalyticSurfaceEvaluate - gap of a slave point to a rigid plane, cylinder or sphere, with first and second variation.
+   Not collective.
 
    Input: master - its shape; dim - 2 or 3; x[dim] - slave point relative to the master's point
    Output: out - gap, normal, N[dim], M[dim*dim], curvature
 
-   Returns 0, with nothing valid in out, on the axis of a cylinder or at the centre of a sphere, or where the axis has no length. */
+   Returns 0, with nothing valid in out, on the axis of a cylinder or at the centre of a sphere, or where the axis has
+   no length. */
 int AnalyticSurfaceEvaluate(const AnalyticSurface *master, int dim, const double *x, AnalyticResult *out)
 {
   const double length      = VectorLength(master->axis);

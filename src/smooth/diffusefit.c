@@ -1,15 +1,18 @@
-/* The diffuse fit: surface, foot and gap. One always-inline function, instantiated with constant dimension and degree, so that its loops unroll; LANES points
-   at a time.
+/* The diffuse fit: surface, foot and gap. One always-inline function, instantiated with constant dimension and degree,
+   so that its loops unroll; LANES points at a time.
 
-   QR. Modified Gram-Schmidt of the scaled monomials in the product sum_i w_i a_i b_i, the QR of sqrt(W) P: row i of P becomes p^ = R^-T p, for
-   which A = 1; the heights as last column end as e_i = z_i - p_i.alpha, their projections are alpha^ = R alpha. Everything below is said in this
-   basis, where the formulas need no solve: dalpha/dd_i = dr_i/dd_i and lambda = G_a.
+   QR. Modified Gram-Schmidt of the scaled monomials in the product sum_i w_i a_i b_i, the QR of sqrt(W) P: row i of P
+   becomes p^ = R^-T p, for which A = 1; the heights as last column end as e_i = z_i - p_i.alpha, their projections are
+   alpha^ = R alpha. Everything below is said in this basis, where the formulas need no solve: dalpha/dd_i = dr_i/dd_i
+   and lambda = G_a.
 
    Foot. y* + q grad q = 0 and the envelope theorem: with G_a = dg/dalpha = -nu_3 p, J = I + grad q grad q^T + q Hess q,
        dy* = -J^-1 (grad q p^T + q Dp),  dgrad q = Dp + Hess q dy*,  dnu_3 = -nu_3^3 grad q^T dgrad q,
-       G_aa = -(p dnu_3^T + nu_3 sum_k Dp_k dy*_k)        all at the foot; dy* and dgrad q are rows over the terms, combinations of F = [p; Dp]
+       G_aa = -(p dnu_3^T + nu_3 sum_k Dp_k dy*_k)        all at the foot; dy* and dgrad q are rows over the terms,
+   combinations of F = [p; Dp]
 
-   Coordinates. d = (eta, z) = G (x_i - x_c), G = [B, 0; 0, 1] E^T with B = Q^(1/2): derivatives are taken by d and returned to space by G^T. */
+   Coordinates. d = (eta, z) = G (x_i - x_c), G = [B, 0; 0, 1] E^T with B = Q^(1/2): derivatives are taken by d and
+   returned to space by G^T. */
 #include "fitkernel.h"
 #include "symmetricproduct.h"
 #include <math.h>
@@ -105,7 +108,8 @@ LANES_INLINE void Collect(const int dim, const int terms, const FitProblem *in, 
   }
 }
 
-/* Sums of the lanes of each of `vectors` vectors, 1 or BLOCK: pairs of vectors become one, then the last one's halves. */
+/* Sums of the lanes of each of `vectors` vectors, 1 or BLOCK: pairs of vectors become one, then the last one's halves.
+ */
 LANES_INLINE void SumEach(const int vectors, Lanes *a, double *sum)
 {
   for (int stage = 0, count = vectors; stage < SWAP_STAGES; stage++, count = (count + 1) / 2) {
@@ -119,7 +123,8 @@ LANES_INLINE void SumEach(const int vectors, Lanes *a, double *sum)
 }
 
 /* Weights and monomials of the points inside; square[terms]: of the weighted columns' norms. */
-LANES_INLINE void Assemble(const int m, const int degree, const int terms, double exponent, FitArrays *a, double *square)
+LANES_INLINE void Assemble(const int m, const int degree, const int terms, double exponent, FitArrays *a,
+                           double *square)
 {
   Lanes squares[FIT_MAX_TERMS + BLOCK] = {{0}};
 
@@ -138,9 +143,10 @@ LANES_INLINE void Assemble(const int m, const int degree, const int terms, doubl
   for (int k = 0; k < terms; k += BLOCK) SumEach(BLOCK, squares + k, square + k);
 }
 
-/* The shares of column k in `width` columns from j on, whose products with it are summed: its weighted values are in scratch. Where `take`, the shares of
-   the column before, which are known, are taken out of them first. */
-LANES_INLINE void ProjectOnPlane(const int take, const int width, const FitArrays *a, int k, int j, double inverse, FitState *s)
+/* The shares of column k in `width` columns from j on, whose products with it are summed: its weighted values are in
+   scratch. Where `take`, the shares of the column before, which are known, are taken out of them first. */
+LANES_INLINE void ProjectOnPlane(const int take, const int width, const FitArrays *a, int k, int j, double inverse,
+                                 FitState *s)
 {
   Lanes *const       column     = a->basis + j * a->capacity;
   const Lanes *const before     = column - (take ? j - k + 1 : 0) * a->capacity;
@@ -174,8 +180,9 @@ LANES_INLINE void ProjectAll(const int take, const int terms, const FitArrays *a
   }
 }
 
-/* Gram-Schmidt without roots; returns the smallest |R_kk| of unit columns. Below FIT_SINGULAR it stops. length2[terms]: squares of the columns' norms.
-   A column goes out of those behind it while these are multiplied with the next one: they are read once for both. */
+/* Gram-Schmidt without roots; returns the smallest |R_kk| of unit columns. Below FIT_SINGULAR it stops. length2[terms]:
+   squares of the columns' norms. A column goes out of those behind it while these are multiplied with the next one:
+   they are read once for both. */
 LANES_INLINE double Orthogonalise(const int terms, const double *length2, FitArrays *a, FitState *s)
 {
   double pivot2 = 1;
@@ -218,7 +225,8 @@ LANES_INLINE void Normalise(const int terms, FitArrays *a, FitState *s)
 }
 
 /* The polynomial through the points inside; returns 0 without one. */
-LANES_INLINE int MakeSurface(const int dim, const int degree, const int terms, const FitProblem *in, FitArrays *a, FitState *s, FitResult *out)
+LANES_INLINE int MakeSurface(const int dim, const int degree, const int terms, const FitProblem *in, FitArrays *a,
+                             FitState *s, FitResult *out)
 {
   FitSurface *const surface = &out->surface;
   double            length2[FIT_MAX_TERMS + BLOCK];
@@ -230,7 +238,9 @@ LANES_INLINE int MakeSurface(const int dim, const int degree, const int terms, c
   out->pivot      = 0;
   if (!ScaleFromMetric(dim - 1, in->metric, surface->scale)) return 0;
   for (int k = 0; k < dim - 1; k++) {
-    for (int c = 0; c < dim; c++) { s->G[k][c] = surface->scale[k][0] * in->frame[0][c] + (dim == 3 ? surface->scale[k][1] * in->frame[1][c] : 0); }
+    for (int c = 0; c < dim; c++) {
+      s->G[k][c] = surface->scale[k][0] * in->frame[0][c] + (dim == 3 ? surface->scale[k][1] * in->frame[1][c] : 0);
+    }
   }
   memcpy(s->G[dim - 1], in->frame[dim - 1], sizeof(s->G[0]));
   Collect(dim, terms, in, s->G, a);
@@ -243,11 +253,13 @@ LANES_INLINE int MakeSurface(const int dim, const int degree, const int terms, c
   for (int k = 0; k < terms; k++) s->alpha[k] = Broadcast(s->R[k][terms]);
   ToMonomials(terms, s, s->alpha);
   for (int k = 0; k < terms; k++) surface->coefficient[k] = s->alpha[k][0];
-  out->guards = (a->n < FitPointsWanted(dim, degree) ? FIT_FEW_POINTS : 0) | (out->pivot < FIT_PIVOT ? FIT_LOW_PIVOT : 0);
+  out->guards =
+    (a->n < FitPointsWanted(dim, degree) ? FIT_FEW_POINTS : 0) | (out->pivot < FIT_PIVOT ? FIT_LOW_PIVOT : 0);
   return 1;
 }
 
-LANES_INLINE void SurfaceAt(const int m, const int degree, const int terms, const FitSurface *surface, const Lanes *alpha, const double *y, FitLocal *at)
+LANES_INLINE void SurfaceAt(const int m, const int degree, const int terms, const FitSurface *surface,
+                            const Lanes *alpha, const double *y, FitLocal *at)
 {
   const double(*const B)[2] = surface->scale;
   Lanes  eta[MAX_TANGENTS], gradient[2], hessian[3];
@@ -263,11 +275,15 @@ LANES_INLINE void SurfaceAt(const int m, const int degree, const int terms, cons
   h[1][1]           = hessian[2][0];
   for (int c = 0; c < 2; c++) {
     at->g[c] = B[0][c] * gradient[0][0] + B[1][c] * gradient[1][0];
-    for (int d = 0; d < 2; d++) { at->h[c][d] = B[0][c] * (h[0][0] * B[0][d] + h[0][1] * B[1][d]) + B[1][c] * (h[1][0] * B[0][d] + h[1][1] * B[1][d]); }
+    for (int d = 0; d < 2; d++) {
+      at->h[c][d] =
+        B[0][c] * (h[0][0] * B[0][d] + h[0][1] * B[1][d]) + B[1][c] * (h[1][0] * B[0][d] + h[1][1] * B[1][d]);
+    }
   }
 }
 
-/* Length of a vector in supports, or of what is as far from the ends of the numbers: hypot() guards against these, at many times the cost. */
+/* Length of a vector in supports, or of what is as far from the ends of the numbers: hypot() guards against these, at
+ * many times the cost. */
 LANES_INLINE double VectorLength(double a, double b)
 {
   return sqrt(a * a + b * b);
@@ -287,8 +303,10 @@ static void InvertMetric(double (*a)[2], double (*inverse)[2])
   inverse[0][1] = inverse[1][0] = -a[0][1] / determinant;
 }
 
-/* Newton from the slave point for y + q grad q = 0; returns 0 if it does not end or ends where the distance is no minimum. */
-LANES_INLINE int FindFoot(const int m, const int degree, const int terms, const FitState *s, FitLocal *at, FitResult *out)
+/* Newton from the slave point for y + q grad q = 0; returns 0 if it does not end or ends where the distance is no
+ * minimum. */
+LANES_INLINE int FindFoot(const int m, const int degree, const int terms, const FitState *s, FitLocal *at,
+                          FitResult *out)
 {
   const double(*const B)[2] = out->surface.scale;
   double *const y           = out->foot;
@@ -303,11 +321,14 @@ LANES_INLINE int FindFoot(const int m, const int degree, const int terms, const 
     if (size <= FIT_FOOT) break;
     if (iteration == FIT_ITERATIONS) return 0;
     InvertMetric(out->J, inverse);
-    for (int c = 0; c < 2; c++) step[c] = -inverse[c][0] * (y[0] + at->q * at->g[0]) - inverse[c][1] * (y[1] + at->q * at->g[1]);
+    for (int c = 0; c < 2; c++)
+      step[c] = -inverse[c][0] * (y[0] + at->q * at->g[0]) - inverse[c][1] * (y[1] + at->q * at->g[1]);
     for (int c = 0; c < m; c++) y[c] += step[c];
-    size = m == 1 ? fabs(B[0][0] * step[0]) : VectorLength(B[0][0] * step[0] + B[0][1] * step[1], B[1][0] * step[0] + B[1][1] * step[1]);
+    size = m == 1 ? fabs(B[0][0] * step[0])
+                  : VectorLength(B[0][0] * step[0] + B[0][1] * step[1], B[1][0] * step[0] + B[1][1] * step[1]);
   }
-  out->reach = m == 1 ? fabs(B[0][0] * y[0]) : VectorLength(B[0][0] * y[0] + B[0][1] * y[1], B[1][0] * y[0] + B[1][1] * y[1]);
+  out->reach =
+    m == 1 ? fabs(B[0][0] * y[0]) : VectorLength(B[0][0] * y[0] + B[0][1] * y[1], B[1][0] * y[0] + B[1][1] * y[1]);
   return SmallestEigenvalue(out->J) > FIT_FOCAL;
 }
 
@@ -316,8 +337,9 @@ static void Describe(int dim, const FitProblem *in, const FitLocal *at, FitResul
 {
   const double l           = sqrt(1 + at->g[0] * at->g[0] + at->g[1] * at->g[1]);
   const double determinant = (at->h[0][0] * at->h[1][1] - at->h[0][1] * at->h[0][1]) / (l * l * l * l);
-  const double mean =
-    ((1 + at->g[1] * at->g[1]) * at->h[0][0] - 2 * at->g[0] * at->g[1] * at->h[0][1] + (1 + at->g[0] * at->g[0]) * at->h[1][1]) / (2 * l * l * l);
+  const double mean        = ((1 + at->g[1] * at->g[1]) * at->h[0][0] - 2 * at->g[0] * at->g[1] * at->h[0][1] +
+                       (1 + at->g[0] * at->g[0]) * at->h[1][1]) /
+                      (2 * l * l * l);
 
   memset(out->normal, 0, sizeof(out->normal));
   memset(out->tangent, 0, sizeof(out->tangent));
@@ -333,7 +355,8 @@ static void Describe(int dim, const FitProblem *in, const FitLocal *at, FitResul
 }
 
 /* F and S of G_aa = F^T S F, and lambda, from the surface at the foot. dy[c][r]: dy*_c by the rows of F. */
-LANES_INLINE void FootVariation(const int m, const int degree, const int terms, const FitLocal *at, const FitResult *out, FitState *s)
+LANES_INLINE void FootVariation(const int m, const int degree, const int terms, const FitLocal *at,
+                                const FitResult *out, FitState *s)
 {
   double dy[2][ROWS] = {{0}}, inverse[2][2], J[2][2];
   Lanes  dp[MAX_TANGENTS][FIT_MAX_TERMS];
@@ -380,7 +403,8 @@ LANES_INLINE double Shapes(const int terms, FitArrays *a, const Lanes *foot)
   return sum;
 }
 
-LANES_INLINE int Evaluate(const int dim, const int degree, const int terms, const FitProblem *in, FitWant want, double *workspace, FitResult *out)
+LANES_INLINE int Evaluate(const int dim, const int degree, const int terms, const FitProblem *in, FitWant want,
+                          double *workspace, FitResult *out)
 {
   FitArrays a;
   FitState  s;
@@ -417,8 +441,8 @@ int FitTerms(int dim, int degree)
   return dim == 2 ? degree + 1 : (degree + 1) * (degree + 2) / 2;
 }
 
-/* FitPointsWanted - least number of nodes inside the support, where nodes are the fit points: two per term in 3D; over a line the terms and
-   half of them more. Not collective.
+/* FitPointsWanted - least number of nodes inside the support, where nodes are the fit points: two per term in 3D; over
+   a line the terms and half of them more. Not collective.
 
    Input: dim - 2 or 3; degree - of the polynomial */
 int FitPointsWanted(int dim, int degree)
@@ -440,13 +464,15 @@ long FitWorkspace(int dim, int degree, int n)
   return ALIGNMENT / (long)sizeof(double) + (ARRAYS + terms + 2) * points + (product > factors ? product : factors);
 }
 
-/* DiffuseFitEvaluate - gap, first and second variation of one slave point against the diffuse surface through its fit points. Not collective.
+/* DiffuseFitEvaluate - gap, first and second variation of one slave point against the diffuse surface through its fit
+   points. Not collective.
 
-   Input: in - the problem; want - surface only, gap, and Lambda with the shape values, and N, and M; workspace - FitWorkspace() doubles of any contents
-   Output: out - see FitResult; arrays as its comment says
+   Input: in - the problem; want - surface only, gap, and Lambda with the shape values, and N, and M; workspace -
+   FitWorkspace() doubles of any contents Output: out - see FitResult; arrays as its comment says
 
-   Returns 1 if all that was wanted is there, 0 if there is no surface (FIT_NO_SURFACE) or no foot (FIT_NO_FOOT). Never NaN for finite input.
-   Source: Chamoret et al. 2004, eqs 1 to 14; the closed forms of N and M are derived by the envelope theorem from g(alpha(x)). */
+   Returns 1 if all that was wanted is there, 0 if there is no surface (FIT_NO_SURFACE) or no foot (FIT_NO_FOOT). Never
+   NaN for finite input. Source: Chamoret et al. 2004, eqs 1 to 14; the closed forms of N and M are derived by the
+   envelope theorem from g(alpha(x)). */
 int DiffuseFitEvaluate(const FitProblem *in, FitWant want, double *workspace, FitResult *out)
 {
 #define EVALUATE(dim, degree, terms) return Evaluate(dim, degree, terms, in, want, workspace, out)
@@ -470,7 +496,8 @@ int DiffuseFitEvaluateBatch(int n, const FitProblem *in, FitWant want, double *w
   return whole;
 }
 
-LANES_INLINE double HeightOnly(const int m, const int degree, const int terms, const FitSurface *surface, const Lanes *alpha, const double *y)
+LANES_INLINE double HeightOnly(const int m, const int degree, const int terms, const FitSurface *surface,
+                               const Lanes *alpha, const double *y)
 {
   const double(*const B)[2] = surface->scale;
   Lanes eta[MAX_TANGENTS], p[FIT_MAX_TERMS];
@@ -480,7 +507,8 @@ LANES_INLINE double HeightOnly(const int m, const int degree, const int terms, c
   return DotTerms(terms, p, alpha)[0];
 }
 
-LANES_INLINE double HeightAt(const int m, const int degree, const int terms, const FitSurface *surface, const double *y, double *gradient)
+LANES_INLINE double HeightAt(const int m, const int degree, const int terms, const FitSurface *surface, const double *y,
+                             double *gradient)
 {
   Lanes    alpha[FIT_MAX_TERMS];
   FitLocal at;
@@ -504,8 +532,8 @@ double FitSurfaceHeight(const FitSurface *surface, const double *y, double *grad
   return 0;
 }
 
-LANES_INLINE int FitShapeValues(const int dim, const int degree, const int terms, const FitProblem *in, int n, const double *y, const double *factor, double *workspace,
-                       double *shape)
+LANES_INLINE int FitShapeValues(const int dim, const int degree, const int terms, const FitProblem *in, int n,
+                                const double *y, const double *factor, double *workspace, double *shape)
 {
   FitArrays a;
   FitState  s;
@@ -527,8 +555,8 @@ LANES_INLINE int FitShapeValues(const int dim, const int degree, const int terms
   return 1;
 }
 
-/* FitShape - how a combination of heights, sum_a factor_a q(y_a), depends on the points' heights z_i: the coefficients of an offset that follows
-   the points. Not collective.
+/* FitShape - how a combination of heights, sum_a factor_a q(y_a), depends on the points' heights z_i: the coefficients
+   of an offset that follows the points. Not collective.
 
    Input: in - the problem; n, y[n][dim - 1], factor[n] - the combination; workspace - FitWorkspace() doubles
    Output: shape[number of points of the problem] - 0 outside the support

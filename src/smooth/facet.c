@@ -1,20 +1,24 @@
 /* Signed distance to a union of facets: their competition for the foot point, gap, first and second variation.
 
-   Sign. Interior: the facet's own normal. Edge and corner: the sum of the normals of all facets that have this closest point, weighted by
-   their angles there (Baerentzen and Aanaes, "Signed distance computation using the angle weighted pseudonormal", 2005).
+   Sign. Interior: the facet's own normal. Edge and corner: the sum of the normals of all facets that have this closest
+   point, weighted by their angles there (Baerentzen and Aanaes, "Signed distance computation using the angle weighted
+   pseudonormal", 2005).
 
-   Variations. With r = x_slave - x(xi), D = dr / d(positions) at fixed xi, F = min |r|^2 / 2 = g^2 / 2 over the free parameters xi_a, the
-   envelope theorem gives dg = n.D and d2F = D^T D - (T + g S)_a (H^-1)_ab (T + g S)_b^T with T_a = D^T x_,a, S_a the shape functions'
-   derivatives times n, H = a - g kappa, a the metric and kappa = n.x_,ab. As d2F = dg dg^T + g d2g and D^T D = D^T (n n^T + x_,a a^ab x_,b^T + W) D,
-       d2g = - T_a (a^-1 kappa H^-1)_ab T_b^T - (H^-1)_ab (T_a S_b^T + S_a T_b^T) - g S_a (H^-1)_ab S_b^T + D^T W D / g
-   with W the projection on what is neither n nor tangent: 0 in the interior, one direction at an edge, two at a corner. In the interior these
-   are the expressions of Laursen and Simo 1993 and of Wriggers, "Computational Contact Mechanics". The last term alone is singular as g -> 0
-   at an edge or corner; times g it is bounded but without a limit, as the direction n is, and it is left out within FACET_TOUCHING.
+   Variations. With r = x_slave - x(xi), D = dr / d(positions) at fixed xi, F = min |r|^2 / 2 = g^2 / 2 over the free
+   parameters xi_a, the envelope theorem gives dg = n.D and d2F = D^T D - (T + g S)_a (H^-1)_ab (T + g S)_b^T with T_a =
+   D^T x_,a, S_a the shape functions' derivatives times n, H = a - g kappa, a the metric and kappa = n.x_,ab. As d2F =
+   dg dg^T + g d2g and D^T D = D^T (n n^T + x_,a a^ab x_,b^T + W) D, d2g = - T_a (a^-1 kappa H^-1)_ab T_b^T - (H^-1)_ab
+   (T_a S_b^T + S_a T_b^T) - g S_a (H^-1)_ab S_b^T + D^T W D / g with W the projection on what is neither n nor tangent:
+   0 in the interior, one direction at an edge, two at a corner. In the interior these are the expressions of Laursen
+   and Simo 1993 and of Wriggers, "Computational Contact Mechanics". The last term alone is singular as g -> 0 at an
+   edge or corner; times g it is bounded but without a limit, as the direction n is, and it is left out within
+   FACET_TOUCHING.
 
-   Extension. Beyond a free edge x(xi) is the same polynomial outside its polygon, so nothing else changes. A foot on the inside of a free edge
-   may leave it with its lateral sides released: on a flat facet that is the normal projection. A foot in a corner keeps the sides that are not
-   free: the crease between two facets is continued, and both agree on it. The gap is continuous where the edge lies on a flat part of the
-   surface or runs square to the creases; past other corners it may jump by the angle of the crease times `beyond`. */
+   Extension. Beyond a free edge x(xi) is the same polynomial outside its polygon, so nothing else changes. A foot on
+   the inside of a free edge may leave it with its lateral sides released: on a flat facet that is the normal
+   projection. A foot in a corner keeps the sides that are not free: the crease between two facets is continued, and
+   both agree on it. The gap is continuous where the edge lies on a flat part of the surface or runs square to the
+   creases; past other corners it may jump by the angle of the crease times `beyond`. */
 #include "facetpolynomial.h"
 #include <math.h>
 #include <string.h>
@@ -23,11 +27,11 @@ enum { MAX_DOFS = 3 * (1 + FACE_MAX_NODES) };
 
 /* A facet that may hold the closest point */
 typedef struct {
-  const Facet *facet;
-  int          index, feature;
-  FootRegion   region;
-  double       size, distance;
-  FacetPolynomialPoint   point;
+  const Facet         *facet;
+  int                  index, feature;
+  FootRegion           region;
+  double               size, distance;
+  FacetPolynomialPoint point;
 } Candidate;
 
 static double FacetDistance(const double a[3], const double b[3])
@@ -63,14 +67,15 @@ static unsigned FreeSides(const Candidate *candidate)
 /* Lets the foot of a candidate leave its facet across its free sides; *ended: it reached the end of the extension. */
 static void Extend(int dim, const double *x, Candidate *candidate, int *ended)
 {
-  const unsigned free_sides = FreeSides(candidate), active = candidate->point.active;
-  double         limit[FACET_POLYNOMIAL_MAX_SIDES] = {0};
-  FacetPolynomial          patch;
+  const unsigned  free_sides = FreeSides(candidate), active = candidate->point.active;
+  double          limit[FACET_POLYNOMIAL_MAX_SIDES] = {0};
+  FacetPolynomial patch;
 
   FacetPolynomialOfFacet(dim, candidate->facet, x, &patch);
   for (int s = 0; s < patch.domain->sides; ++s) {
-    const int opposite = patch.domain->sides != 3 && active == 1u << (s + patch.domain->sides / 2) % patch.domain->sides;
-    const int lateral  = !(active & (active - 1)) && !opposite;
+    const int opposite = patch.domain->sides != 3 && active == 1u
+                                                                 << (s + patch.domain->sides / 2) % patch.domain->sides;
+    const int lateral = !(active & (active - 1)) && !opposite;
 
     if (!(free_sides & (1u << s) || lateral)) continue;
     limit[s] = -FACET_EXTENSION * patch.domain->width;
@@ -83,12 +88,13 @@ static void Extend(int dim, const double *x, Candidate *candidate, int *ended)
     if (candidate->region != FOOT_INTERIOR && candidate->point.active & (1u << s) && limit[s] < 0) *ended = 1;
 }
 
-/* Gap and normal of a foot. pseudo: direction that tells outside from inside where the foot has no normal of its own. */
+/* Gap and normal of a foot. pseudo: direction that tells outside from inside where the foot has no normal of its own.
+ */
 static void SetGap(int dim, const double *x, const Candidate *candidate, const double pseudo[3], Foot *foot)
 {
-  const double *at = candidate->point.x, length = sqrt(Dot(pseudo, pseudo));
-  double        own[3], sign;
-  FacetPolynomial         patch;
+  const double   *at = candidate->point.x, length = sqrt(Dot(pseudo, pseudo));
+  double          own[3], sign;
+  FacetPolynomial patch;
 
   foot->facet     = candidate->index;
   foot->region    = candidate->region;
@@ -116,8 +122,8 @@ static void SetGap(int dim, const double *x, const Candidate *candidate, const d
 /* Adds the normal of a candidate at its foot, times its angle there or 1 */
 static void AddNormal(int dim, const double *x, const Candidate *candidate, int weighted, double pseudo[3])
 {
-  FacetPolynomial  patch;
-  double normal[3], weight;
+  FacetPolynomial patch;
+  double          normal[3], weight;
 
   FacetPolynomialOfFacet(dim, candidate->facet, x, &patch);
   FacetPolynomialNormal(&patch, candidate->point.xi, normal);
@@ -203,9 +209,9 @@ static int NearestCentre(int dim, int n, const Facet facets[], const double *x)
 }
 
 /* Closest point over a list of facets, its signed distance and normal.
-   Not collective, plain C. dim: 2 or 3; n: length of the list; x[node][dim]: positions of the nodes relative to the slave point (a length);
-   seed: index into the list to try first (the last foot's facet) or -1; the result does not depend on it.
-   Returns 1, or 0 if the list is empty (foot untouched). */
+   Not collective, plain C. dim: 2 or 3; n: length of the list; x[node][dim]: positions of the nodes relative to the
+   slave point (a length); seed: index into the list to try first (the last foot's facet) or -1; the result does not
+   depend on it. Returns 1, or 0 if the list is empty (foot untouched). */
 int FacetClosest(int dim, int n, const Facet *facets, const double *x, int seed, Foot *foot)
 {
   Candidate candidates[FACET_TIES];
@@ -215,15 +221,16 @@ int FacetClosest(int dim, int n, const Facet *facets, const double *x, int seed,
   if (n <= 0) return 0;
   if (seed < 0 || seed >= n) seed = NearestCentre(dim, n, facets, x);
   for (int k = 0; k < n; ++k) {
-    const int   i = k == 0 ? seed : k <= seed ? k - 1 : k;
-    double      X[FACE_MAX_NODES][3];
-    Candidate   candidate = {.facet = &facets[i], .index = i};
+    const int             i = k == 0 ? seed : k <= seed ? k - 1 : k;
+    double                X[FACE_MAX_NODES][3];
+    Candidate             candidate = {.facet = &facets[i], .index = i};
     FacetPolynomialSphere sphere;
     FacetPolynomial       patch;
 
     FacetPolynomialGather(dim, &facets[i], x, X);
     FacetPolynomialBound(facets[i].type, X, &sphere);
-    if (sqrt(Dot(sphere.centre, sphere.centre)) - sphere.radius > least + 2 * FACET_COINCIDENT * sphere.radius) continue;
+    if (sqrt(Dot(sphere.centre, sphere.centre)) - sphere.radius > least + 2 * FACET_COINCIDENT * sphere.radius)
+      continue;
     FacetPolynomialCreate(facets[i].type, X, 2 * sphere.radius, &patch);
     FacetPolynomialClosest(&patch, &candidate.point);
     Consider(&patch, &candidate);
@@ -245,7 +252,7 @@ void FacetProject(int dim, const Facet *facet, const double *x, Foot *foot)
    Not collective, plain C. Arguments as of FacetClosest(); returns a length. */
 double FacetSize(int dim, const Facet *facet, const double *x)
 {
-  double      X[FACE_MAX_NODES][3];
+  double                X[FACE_MAX_NODES][3];
   FacetPolynomialSphere sphere;
 
   FacetPolynomialGather(dim, facet, x, X);
@@ -254,7 +261,8 @@ double FacetSize(int dim, const Facet *facet, const double *x)
 }
 
 /* First variation of the gap: dg = N.d(positions), in every region (n, -phi_a n).
-   Not collective, plain C. x and foot as given to and by FacetClosest(); N[(1+nodes)*dim]: slave point, then the facet's nodes (no unit). */
+   Not collective, plain C. x and foot as given to and by FacetClosest(); N[(1+nodes)*dim]: slave point, then the
+   facet's nodes (no unit). */
 void FacetFirstVariation(int dim, const Facet *facet, const double *x, const Foot *foot, double *N)
 {
   const int nodes = ElementGet(facet->type)->nodes;
@@ -290,7 +298,9 @@ typedef struct {
 
 static void ChartCreate(int dim, const Facet *facet, const double *x, const Foot *foot, Chart *chart)
 {
-  const int nodes = ElementGet(facet->type)->nodes, m = foot->region == FOOT_INTERIOR ? (dim == 3 ? 2 : 1) : foot->region == FOOT_EDGE ? 1 : 0;
+  const int nodes = ElementGet(facet->type)->nodes, m = foot->region == FOOT_INTERIOR ? (dim == 3 ? 2 : 1)
+                                                        : foot->region == FOOT_EDGE   ? 1
+                                                                                      : 0;
   double    d[FACE_MAX_NODES * 2],
     direction[2][2] =
       {
@@ -318,8 +328,9 @@ static void ChartCreate(int dim, const Facet *facet, const double *x, const Foot
     for (int q = 0; q < m; ++q) {
       const double *t = direction[p], *u = direction[q];
 
-      metric[p][q]  = Dot(chart->tangent[p], chart->tangent[q]);
-      kappa[p][q]   = t[0] * u[0] * Dot(foot->normal, l.x11) + (t[0] * u[1] + t[1] * u[0]) * Dot(foot->normal, l.x12) + t[1] * u[1] * Dot(foot->normal, l.x22);
+      metric[p][q] = Dot(chart->tangent[p], chart->tangent[q]);
+      kappa[p][q]  = t[0] * u[0] * Dot(foot->normal, l.x11) + (t[0] * u[1] + t[1] * u[0]) * Dot(foot->normal, l.x12) +
+                    t[1] * u[1] * Dot(foot->normal, l.x22);
       hessian[p][q] = metric[p][q] - foot->gap * kappa[p][q];
     }
   }
@@ -331,22 +342,27 @@ static void ChartCreate(int dim, const Facet *facet, const double *x, const Foot
   for (int p = 0; p < m; ++p)
     for (int q = 0; q < m; ++q)
       for (int i = 0; i < m; ++i)
-        for (int j = 0; j < m; ++j) chart->curvature[p][q] += chart->inverse_metric[p][i] * kappa[i][j] * chart->inverse_hessian[j][q];
+        for (int j = 0; j < m; ++j)
+          chart->curvature[p][q] += chart->inverse_metric[p][i] * kappa[i][j] * chart->inverse_hessian[j][q];
 }
 
-/* W / g: the projection on what is neither normal nor tangent, over the gap; 0 in the interior and within FACET_TOUCHING of the foot */
-static void SingularPart(int dim, const Facet *facet, const double *x, const Foot *foot, const Chart *chart, double W[3][3])
+/* W / g: the projection on what is neither normal nor tangent, over the gap; 0 in the interior and within
+ * FACET_TOUCHING of the foot */
+static void SingularPart(int dim, const Facet *facet, const double *x, const Foot *foot, const Chart *chart,
+                         double W[3][3])
 {
   const double *n = foot->normal, *t = chart->tangent[0];
   const int     none = chart->m == dim - 1 || fabs(foot->gap) <= FACET_TOUCHING * FacetSize(dim, facet, x);
 
   for (int j = 0; j < 3; ++j)
-    for (int k = 0; k < 3; ++k) W[j][k] = none ? 0 : ((j == k) - n[j] * n[k] - t[j] * t[k] * chart->inverse_metric[0][0]) / foot->gap;
+    for (int k = 0; k < 3; ++k)
+      W[j][k] = none ? 0 : ((j == k) - n[j] * n[k] - t[j] * t[k] * chart->inverse_metric[0][0]) / foot->gap;
 }
 
 /* Second variation of the gap, exact for the region of the foot: expression at the head of this file.
-   Not collective, plain C. x and foot as given to and by FacetClosest(); M[((1+nodes)*dim)^2], symmetric (1/length). At a centre of curvature,
-   where the foot is not unique, the Hessian is replaced by the metric; within FACET_TOUCHING of an edge or corner the term in 1/gap is 0. */
+   Not collective, plain C. x and foot as given to and by FacetClosest(); M[((1+nodes)*dim)^2], symmetric (1/length). At
+   a centre of curvature, where the foot is not unique, the Hessian is replaced by the metric; within FACET_TOUCHING of
+   an edge or corner the term in 1/gap is 0. */
 void FacetSecondVariation(int dim, const Facet *facet, const double *x, const Foot *foot, double *M)
 {
   const int size = (1 + ElementGet(facet->type)->nodes) * dim;

@@ -1,19 +1,21 @@
 /* Projection of the origin onto one facet.
 
-   Foot. A facet is a polynomial map x(xi) over a reference polygon (line, triangle, square), positions relative to the slave point, so that
-   the foot minimises f = |x|^2 / 2. Newton with the full Hessian x_,a.x_,b + x.x_,ab, the metric alone where that is not positive, runs on
-   the interior, an edge or a corner: a set of at most two active sides, taken in when a step meets a side and released when Newton's step
-   points inward. It starts from every local minimum over a grid of samples, since a curved facet can have several.
+   Foot. A facet is a polynomial map x(xi) over a reference polygon (line, triangle, square), positions relative to the
+   slave point, so that the foot minimises f = |x|^2 / 2. Newton with the full Hessian x_,a.x_,b + x.x_,ab, the metric
+   alone where that is not positive, runs on the interior, an edge or a corner: a set of at most two active sides, taken
+   in when a step meets a side and released when Newton's step points inward. It starts from every local minimum over a
+   grid of samples, since a curved facet can have several.
 
-   Region. A foot on the border at which the residual has no tangential part is the limit of interior feet and counts as interior; likewise
-   corner and edge. So a node that sits over a node of a flat master has the interior's second variation and not that of a hinge. */
+   Region. A foot on the border at which the residual has no tangential part is the limit of interior feet and counts as
+   interior; likewise corner and edge. So a node that sits over a node of a flat master has the interior's second
+   variation and not that of a hinge. */
 #include "facetpolynomial.h"
 #include <float.h>
 #include <math.h>
 #include <string.h>
 
-/* SAMPLES per direction: of 2000 QUAD9 with nodes moved at random by up to 10 % of the width 4 hide their nearest point (with 3 samples 12); at
-   5 % none does. */
+/* SAMPLES per direction: of 2000 QUAD9 with nodes moved at random by up to 10 % of the width 4 hide their nearest point
+   (with 3 samples 12); at 5 % none does. */
 enum { SAMPLES = 5 };
 
 static const FacetPolynomialDomain line = {
@@ -28,10 +30,10 @@ static const FacetPolynomialDomain triangle = {
   .sides   = 3,
   .low     = 0,
   .width   = 1,
-  .centre  = {1. / 3,    1. / 3 },
-  .offset  = { 0,        1,       0},
-  .normal  = { {0, 1}, {-1, -1},  {1, 0}},
-  .tangent = { {1, 0},  {-1, 1}, {0, -1}}
+  .centre  = {1. / 3, 1. / 3},
+  .offset  = {0, 1, 0},
+  .normal  = {{0, 1}, {-1, -1}, {1, 0}},
+  .tangent = {{1, 0}, {-1, 1}, {0, -1}}
 };
 static const FacetPolynomialDomain square = {
   .sides   = 4,
@@ -47,7 +49,8 @@ static double Dot2(const double a[2], const double b[2])
   return a[0] * b[0] + a[1] * b[1];
 }
 
-/* Nodes of a facet as points in space; returns how many. Not collective, plain C. x[node][dim]: positions (a length), X: room for FACE_MAX_NODES. */
+/* Nodes of a facet as points in space; returns how many. Not collective, plain C. x[node][dim]: positions (a length),
+ * X: room for FACE_MAX_NODES. */
 int FacetPolynomialGather(int dim, const Facet *facet, const double *x, double X[FACE_MAX_NODES][3])
 {
   const int nodes = ElementGet(facet->type)->nodes;
@@ -59,8 +62,8 @@ int FacetPolynomialGather(int dim, const Facet *facet, const double *x, double X
   return nodes;
 }
 
-/* A sphere around the control points of the facet as a Bezier patch, which hold the patch in their convex hull. Not collective, plain C.
-   X[node]: positions (a length). */
+/* A sphere around the control points of the facet as a Bezier patch, which hold the patch in their convex hull. Not
+   collective, plain C. X[node]: positions (a length). */
 void FacetPolynomialBound(ElementType type, double (*X)[3], FacetPolynomialSphere *sphere)
 {
   const Element *element = ElementGet(type);
@@ -84,7 +87,8 @@ void FacetPolynomialBound(ElementType type, double (*X)[3], FacetPolynomialSpher
     }
   }
   for (int a = 0; a < element->nodes; ++a) {
-    const double d[3] = {control[a][0] - sphere->centre[0], control[a][1] - sphere->centre[1], control[a][2] - sphere->centre[2]};
+    const double d[3] = {control[a][0] - sphere->centre[0], control[a][1] - sphere->centre[1],
+                         control[a][2] - sphere->centre[2]};
 
     radius2 = fmax(radius2, Dot(d, d));
   }
@@ -116,13 +120,15 @@ static void PatchQuad9(double (*X)[3], int k, FacetPolynomial *patch)
   }
 }
 
-/* The polynomial through the nodes of a facet. Not collective, plain C. X[node]: positions (a length); size: the facet's extent (a length),
-   which scales the guards and the extruded direction of a 2D facet. */
+/* The polynomial through the nodes of a facet. Not collective, plain C. X[node]: positions (a length); size: the
+   facet's extent (a length), which scales the guards and the extruded direction of a 2D facet. */
 void FacetPolynomialCreate(ElementType type, double (*X)[3], double size, FacetPolynomial *patch)
 {
   memset(patch->c, 0, sizeof(patch->c));
   patch->size   = size;
-  patch->domain = type == ELEMENT_EDGE2 || type == ELEMENT_EDGE3 ? &line : type == ELEMENT_TRI3 || type == ELEMENT_TRI6 ? &triangle : &square;
+  patch->domain = type == ELEMENT_EDGE2 || type == ELEMENT_EDGE3 ? &line
+                  : type == ELEMENT_TRI3 || type == ELEMENT_TRI6 ? &triangle
+                                                                 : &square;
   patch->flat   = type == ELEMENT_EDGE2 || type == ELEMENT_TRI3;
   for (int k = 0; k < 3; ++k) {
     double(*c)[3][3] = patch->c, quadratic[3];
@@ -160,10 +166,11 @@ void FacetPolynomialCreate(ElementType type, double (*X)[3], double size, FacetP
   if (patch->domain == &line) patch->c[0][1][2] = 0.5 * size;
 }
 
-/* The polynomial of a facet of a list. Not collective, plain C. x[node][dim]: positions of the list's nodes (a length). */
+/* The polynomial of a facet of a list. Not collective, plain C. x[node][dim]: positions of the list's nodes (a length).
+ */
 void FacetPolynomialOfFacet(int dim, const Facet *facet, const double *x, FacetPolynomial *patch)
 {
-  double      X[FACE_MAX_NODES][3];
+  double                X[FACE_MAX_NODES][3];
   FacetPolynomialSphere sphere;
 
   FacetPolynomialGather(dim, facet, x, X);
@@ -215,7 +222,8 @@ static void Sample(const FacetPolynomial *patch, double value[SAMPLES][SAMPLES])
 
     SamplePoint(patch->domain, i, 0, xi);
     for (int j = 0; j < 3; ++j)
-      for (int k = 0; k < 3; ++k) row[j][k] = patch->c[0][j][k] + xi[0] * (patch->c[1][j][k] + xi[0] * patch->c[2][j][k]);
+      for (int k = 0; k < 3; ++k)
+        row[j][k] = patch->c[0][j][k] + xi[0] * (patch->c[1][j][k] + xi[0] * patch->c[2][j][k]);
     for (int j = 0; j < SampleColumns(patch->domain, i); ++j) {
       double x[3];
 
@@ -245,7 +253,7 @@ void FacetPolynomialNormal(const FacetPolynomial *patch, const double xi[2], dou
 
   for (int attempt = 0; attempt < 2; ++attempt) {
     FacetPolynomialLocal l;
-    double     length;
+    double               length;
 
     FacetPolynomialEvaluate(patch, at[attempt], &l);
     if (Degenerate(&l, patch->size, normal)) continue;
@@ -260,8 +268,8 @@ void FacetPolynomialNormal(const FacetPolynomial *patch, const double xi[2], dou
 double FacetPolynomialAngle(const FacetPolynomial *patch, const FacetPolynomialPoint *point)
 {
   FacetPolynomialLocal l;
-  double     t[2][3];
-  int        sides = 0;
+  double               t[2][3];
+  int                  sides = 0;
 
   if (!(point->active & (point->active - 1))) return M_PI;
   FacetPolynomialEvaluate(patch, point->xi, &l);
@@ -299,11 +307,13 @@ static void SlopeAt(const FacetPolynomial *patch, const FacetPolynomialLocal *l,
   }
 }
 
-/* Newton's step along a reference direction t; returns by how much it lowers the quadratic model (0: t does not descend). */
+/* Newton's step along a reference direction t; returns by how much it lowers the quadratic model (0: t does not
+ * descend). */
 static double StepAlong(const Slope *slope, const double t[2], double d[2])
 {
-  const double *H = slope->hessian, *a = slope->metric, along = Dot2(slope->G, t), stretch = a[0] * t[0] * t[0] + 2 * a[1] * t[0] * t[1] + a[2] * t[1] * t[1];
-  double        curvature = H[0] * t[0] * t[0] + 2 * H[1] * t[0] * t[1] + H[2] * t[1] * t[1];
+  const double *H = slope->hessian, *a = slope->metric, along = Dot2(slope->G, t),
+               stretch = a[0] * t[0] * t[0] + 2 * a[1] * t[0] * t[1] + a[2] * t[1] * t[1];
+  double curvature     = H[0] * t[0] * t[0] + 2 * H[1] * t[0] * t[1] + H[2] * t[1] * t[1];
 
   if (curvature <= FACET_FOCAL * stretch) curvature = stretch;
   for (int k = 0; k < 2; ++k) d[k] = -along / curvature * t[k];
@@ -370,13 +380,15 @@ static void Snap(const FacetPolynomialDomain *domain, const double limit[], int 
 }
 
 /* The part of the step d up to the first side in its way; *hit: that side or -1. */
-static double Reach(const FacetPolynomialDomain *domain, const double limit[], const FacetPolynomialPoint *point, const double d[2], int *hit)
+static double Reach(const FacetPolynomialDomain *domain, const double limit[], const FacetPolynomialPoint *point,
+                    const double d[2], int *hit)
 {
   double reach = 1;
 
   *hit = -1;
   for (int s = 0; s < domain->sides; ++s) {
-    const double speed = Dot2(domain->normal[s], d), room = domain->offset[s] + Dot2(domain->normal[s], point->xi) - limit[s];
+    const double speed = Dot2(domain->normal[s], d),
+                 room  = domain->offset[s] + Dot2(domain->normal[s], point->xi) - limit[s];
 
     if (point->active & (1u << s) || speed >= 0 || room + reach * speed > 0) continue;
     reach = fmax(0, room / -speed);
@@ -385,8 +397,8 @@ static double Reach(const FacetPolynomialDomain *domain, const double limit[], c
   return reach;
 }
 
-/* From a point to a local minimum of the distance over the polygon with the given limits of its sides (0, or negative where extended).
-   Not collective, plain C. point: start, then result; its active sides are those it is held at. */
+/* From a point to a local minimum of the distance over the polygon with the given limits of its sides (0, or negative
+   where extended). Not collective, plain C. point: start, then result; its active sides are those it is held at. */
 void FacetPolynomialDescend(const FacetPolynomial *patch, const double limit[], FacetPolynomialPoint *point)
 {
   const FacetPolynomialDomain *domain = patch->domain;
@@ -445,15 +457,17 @@ static int LocalMinimum(const FacetPolynomialDomain *domain, double value[SAMPLE
 static void Activate(const FacetPolynomialDomain *domain, FacetPolynomialPoint *point)
 {
   for (int s = 0; s < domain->sides; ++s)
-    if (domain->offset[s] + Dot2(domain->normal[s], point->xi) <= FACET_COINCIDENT * domain->width) point->active |= 1u << s;
+    if (domain->offset[s] + Dot2(domain->normal[s], point->xi) <= FACET_COINCIDENT * domain->width)
+      point->active |= 1u << s;
 }
 
-/* Closest point of the unextended patch: the best of the descents from all local minima of the samples. Not collective, plain C. */
+/* Closest point of the unextended patch: the best of the descents from all local minima of the samples. Not collective,
+ * plain C. */
 void FacetPolynomialClosest(const FacetPolynomial *patch, FacetPolynomialPoint *best)
 {
-  static const double inside[FACET_POLYNOMIAL_MAX_SIDES] = {0};
-  const FacetPolynomialDomain  *domain                  = patch->domain;
-  double              value[SAMPLES][SAMPLES], least = INFINITY;
+  static const double          inside[FACET_POLYNOMIAL_MAX_SIDES] = {0};
+  const FacetPolynomialDomain *domain                             = patch->domain;
+  double                       value[SAMPLES][SAMPLES], least = INFINITY;
 
   if (patch->flat) {
     memcpy(best->xi, domain->centre, sizeof(best->xi));
@@ -466,7 +480,7 @@ void FacetPolynomialClosest(const FacetPolynomial *patch, FacetPolynomialPoint *
   for (int i = 0; i < SAMPLES; ++i) {
     for (int j = 0; j < SampleColumns(domain, i); ++j) {
       FacetPolynomialPoint point = {.active = 0};
-      double     distance2;
+      double               distance2;
 
       if (!LocalMinimum(domain, value, i, j)) continue;
       SamplePoint(domain, i, j, point.xi);
@@ -483,14 +497,15 @@ void FacetPolynomialClosest(const FacetPolynomial *patch, FacetPolynomialPoint *
 
 /* Which region a point is in, by its active sides and by what is left of the residual's tangential part.
    Not collective, plain C. feature: the edge or corner, -1 in the interior. */
-void FacetPolynomialClassify(const FacetPolynomial *patch, const FacetPolynomialPoint *point, FootRegion *region, int *feature)
+void FacetPolynomialClassify(const FacetPolynomial *patch, const FacetPolynomialPoint *point, FootRegion *region,
+                             int *feature)
 {
-  const FacetPolynomialDomain *domain   = patch->domain;
-  const double       distance = sqrt(Dot(point->x, point->x)), tolerance = FACET_TIE * (patch->size + distance);
-  const int          apart = distance > FACET_TOUCHING * patch->size, last = domain->sides - 1;
-  const int          two_sides = (point->active & (point->active - 1)) != 0;
-  FacetPolynomialLocal         l;
-  double             cross[3], G[2], tangential2, area2;
+  const FacetPolynomialDomain *domain = patch->domain;
+  const double         distance = sqrt(Dot(point->x, point->x)), tolerance = FACET_TIE * (patch->size + distance);
+  const int            apart = distance > FACET_TOUCHING * patch->size, last = domain->sides - 1;
+  const int            two_sides = (point->active & (point->active - 1)) != 0;
+  FacetPolynomialLocal l;
+  double               cross[3], G[2], tangential2, area2;
 
   FacetPolynomialEvaluate(patch, point->xi, &l);
   *region  = FOOT_VERTEX;
@@ -500,19 +515,23 @@ void FacetPolynomialClassify(const FacetPolynomial *patch, const FacetPolynomial
   else if (point->active && !two_sides)
     *feature = __builtin_ctz(point->active);
   if (Degenerate(&l, patch->size, cross)) return;
-  G[0]        = Dot(l.x, l.x1);
-  G[1]        = Dot(l.x, l.x2);
-  area2       = Dot(cross, cross);
-  tangential2 = (Dot(l.x2, l.x2) * G[0] * G[0] - 2 * Dot(l.x1, l.x2) * G[0] * G[1] + Dot(l.x1, l.x1) * G[1] * G[1]) / area2;
-  if (!point->active ? point->converged || tangential2 <= tolerance * tolerance : apart && tangential2 <= tolerance * tolerance) {
+  G[0]  = Dot(l.x, l.x1);
+  G[1]  = Dot(l.x, l.x2);
+  area2 = Dot(cross, cross);
+  tangential2 =
+    (Dot(l.x2, l.x2) * G[0] * G[0] - 2 * Dot(l.x1, l.x2) * G[0] * G[1] + Dot(l.x1, l.x1) * G[1] * G[1]) / area2;
+  if (!point->active ? point->converged || tangential2 <= tolerance * tolerance
+                     : apart && tangential2 <= tolerance * tolerance) {
     *region  = FOOT_INTERIOR;
     *feature = -1;
   } else if (point->active && domain != &line) {
     for (int s = 0; s <= last; ++s) {
       const double *t    = domain->tangent[s];
-      const double  v[3] = {t[0] * l.x1[0] + t[1] * l.x2[0], t[0] * l.x1[1] + t[1] * l.x2[1], t[0] * l.x1[2] + t[1] * l.x2[2]};
+      const double  v[3] = {t[0] * l.x1[0] + t[1] * l.x2[0], t[0] * l.x1[1] + t[1] * l.x2[1],
+                            t[0] * l.x1[2] + t[1] * l.x2[2]};
 
-      if (!(point->active & (1u << s)) || (two_sides && !(apart && fabs(Dot2(G, t)) <= tolerance * sqrt(Dot(v, v))))) continue;
+      if (!(point->active & (1u << s)) || (two_sides && !(apart && fabs(Dot2(G, t)) <= tolerance * sqrt(Dot(v, v)))))
+        continue;
       *region  = FOOT_EDGE;
       *feature = s;
       return;

@@ -1,10 +1,11 @@
 /* First and second variation of the diffuse gap over nodes. With rows K_i, J_i, H_i of the points and x_i = S_i x,
-       S^T M S = Kbar^T Jbar + Jbar^T Kbar + sum_i (S_i - S_c)^T H_i (S_i - S_c),   Kbar = sum_i K_i S_i,  Jbar likewise.
-   In the last sum the points' own part goes to pairs of nodes of one row: it is summed by FitDerivativesAddOwn(), for a single slave point or, as slave points near
-   each other see the same points, over many of them before it goes to the nodes. What couples them to the slave point is again such a product,
-       sum_i -S_i^T H_i S_c - S_c^T H_i S_i + S_c^T H_c S_c = B^T S_c + S_c^T B,   B = 1/2 H_c S_c - sum_i H_i S_i,  H_c = sum H_i,
-   so B and S_c are dim more rows of the factors. The rows of many slave points over the same nodes stand below each other: one product, which writes the
-   large M once, serves them all. */
+       S^T M S = Kbar^T Jbar + Jbar^T Kbar + sum_i (S_i - S_c)^T H_i (S_i - S_c),   Kbar = sum_i K_i S_i,  Jbar
+   likewise. In the last sum the points' own part goes to pairs of nodes of one row: it is summed by
+   FitDerivativesAddOwn(), for a single slave point or, as slave points near each other see the same points, over many
+   of them before it goes to the nodes. What couples them to the slave point is again such a product, sum_i -S_i^T H_i
+   S_c - S_c^T H_i S_i + S_c^T H_c S_c = B^T S_c + S_c^T B,   B = 1/2 H_c S_c - sum_i H_i S_i,  H_c = sum H_i, so B and
+   S_c are dim more rows of the factors. The rows of many slave points over the same nodes stand below each other: one
+   product, which writes the large M once, serves them all. */
 #include "smooth/fitderivatives.h"
 #include "fitkernel.h"
 #include "symmetricproduct.h"
@@ -13,7 +14,8 @@
 /* What is summed in registers at a time: vectors of a row, for that many entries of a run */
 enum { ROW_VECTORS = 4, ROW_ENTRIES = LANES == 8 ? 4 : 2 };
 
-/* Rows first to end - 1 of the map, which have the same nodes and signs: entry k of row r is S[(r - first)*entries + k], its signs are sign[3*k]. */
+/* Rows first to end - 1 of the map, which have the same nodes and signs: entry k of row r is S[(r - first)*entries +
+ * k], its signs are sign[3*k]. */
 typedef struct {
   int           first, end, entries;
   const int    *node;
@@ -22,7 +24,8 @@ typedef struct {
 
 /* The factors of one slave point over nodes */
 typedef struct {
-  Lanes  *rows;  /* [stride + dim][vectors of a row of FitFactors]: by node and component; the last dim are those of left out nodes */
+  Lanes *rows; /* [stride + dim][vectors of a row of FitFactors]: by node and component; the last dim are those of left
+                  out nodes */
   double *K, *J; /* [terms + dim][stride] */
   int     stride;
   double  factor; /* of this slave point in the sum; K carries it */
@@ -50,9 +53,10 @@ static FitRun NextRun(const FitDerivatives *map, int rows, int first)
   return (FitRun){first, end, map->ptr[first + 1] - start, map->node + start, map->S + start, map->sign + 3 * start};
 }
 
-/* Adds some vectors of a run's rows of K and J, of component c, to those of some of its nodes. A node may be among them twice. */
-LANES_INLINE void AddTile(const int dim, const int vectors, const int entries, const int count, const FitFactors *factors, const FitRun *run, int c, int k,
-                          int v, FitNodal *nodal)
+/* Adds some vectors of a run's rows of K and J, of component c, to those of some of its nodes. A node may be among them
+ * twice. */
+LANES_INLINE void AddTile(const int dim, const int vectors, const int entries, const int count,
+                          const FitFactors *factors, const FitRun *run, int c, int k, int v, FitNodal *nodal)
 {
   const double *S                             = run->S + k;
   const Lanes  *row                           = (const Lanes *)factors->rows + (run->first * dim + c) * vectors + v;
@@ -72,16 +76,20 @@ LANES_INLINE void AddTile(const int dim, const int vectors, const int entries, c
   }
 }
 
-LANES_INLINE void AddTiles(const int dim, const int vectors, const int entries, const FitFactors *factors, const FitRun *run, int k, FitNodal *nodal)
+LANES_INLINE void AddTiles(const int dim, const int vectors, const int entries, const FitFactors *factors,
+                           const FitRun *run, int k, FitNodal *nodal)
 {
   for (int c = 0; c < dim; c++) {
-    for (int v = 0; v + ROW_VECTORS <= vectors; v += ROW_VECTORS) AddTile(dim, vectors, entries, ROW_VECTORS, factors, run, c, k, v, nodal);
-    if (vectors % ROW_VECTORS) AddTile(dim, vectors, entries, vectors % ROW_VECTORS, factors, run, c, k, vectors - vectors % ROW_VECTORS, nodal);
+    for (int v = 0; v + ROW_VECTORS <= vectors; v += ROW_VECTORS)
+      AddTile(dim, vectors, entries, ROW_VECTORS, factors, run, c, k, v, nodal);
+    if (vectors % ROW_VECTORS)
+      AddTile(dim, vectors, entries, vectors % ROW_VECTORS, factors, run, c, k, vectors - vectors % ROW_VECTORS, nodal);
   }
 }
 
 /* Adds a run's rows of K and J to those of its nodes. */
-LANES_INLINE void AddRows(const int dim, const int vectors, const FitFactors *factors, const FitRun *run, FitNodal *nodal)
+LANES_INLINE void AddRows(const int dim, const int vectors, const FitFactors *factors, const FitRun *run,
+                          FitNodal *nodal)
 {
   int k = 0;
 
@@ -127,7 +135,8 @@ LANES_INLINE int HessianEntry(const int c, const int d)
 }
 
 /* Adds `share` times the run's part of H_i S_i to B, the last dim rows of K. */
-LANES_INLINE void AddSumCoupling(const int dim, const int terms, const FitFactors *factors, const FitRun *run, double share, FitNodal *nodal)
+LANES_INLINE void AddSumCoupling(const int dim, const int terms, const FitFactors *factors, const FitRun *run,
+                                 double share, FitNodal *nodal)
 {
   const int vectors = HessianStride(dim) / LANES;
 
@@ -152,12 +161,14 @@ LANES_INLINE void AddSlave(const int dim, const int terms, const FitRun *slave, 
 {
   for (int k = 0; k < slave->entries; k++) {
     if (slave->node[k] < 0) continue;
-    for (int c = 0; c < dim; c++) nodal->J[(terms + c) * nodal->stride + slave->node[k] * dim + c] += slave->sign[3 * k + c] * slave->S[k];
+    for (int c = 0; c < dim; c++)
+      nodal->J[(terms + c) * nodal->stride + slave->node[k] * dim + c] += slave->sign[3 * k + c] * slave->S[k];
   }
 }
 
 /* Adds an H between entries of these signs to a block of M. */
-LANES_INLINE void AddSumBlock(const int dim, const double *h, const double *row_sign, const double *column_sign, long size, double *block)
+LANES_INLINE void AddSumBlock(const int dim, const double *h, const double *row_sign, const double *column_sign,
+                              long size, double *block)
 {
   for (int c = 0; c < dim; c++) {
     for (int d = 0; d < dim; d++) block[c * size + d] += row_sign[c] * column_sign[d] * h[HessianEntry(c, d)];
@@ -165,7 +176,8 @@ LANES_INLINE void AddSumBlock(const int dim, const double *h, const double *row_
 }
 
 /* Adds sum_r S_r^T H_r S_r over a run's rows to each pair of its nodes, above the diagonal. own: of row `first`. */
-LANES_INLINE void AddPairs(const int dim, int first, const double (*own)[FIT_DERIVATIVES_OWN], const FitRun *run, long size, double *M)
+LANES_INLINE void AddPairs(const int dim, int first, const double (*own)[FIT_DERIVATIVES_OWN], const FitRun *run,
+                           long size, double *M)
 {
   for (int k = 0; k < run->entries; k++) {
     const long          i        = (long)run->node[k] * dim;
@@ -186,7 +198,8 @@ LANES_INLINE void AddPairs(const int dim, int first, const double (*own)[FIT_DER
   }
 }
 
-LANES_INLINE void Own(const int dim, int first, int end, const double (*own)[FIT_DERIVATIVES_OWN], const FitDerivatives *map, double *M)
+LANES_INLINE void Own(const int dim, int first, int end, const double (*own)[FIT_DERIVATIVES_OWN],
+                      const FitDerivatives *map, double *M)
 {
   for (FitRun run = {.end = first}; run.end < end;) {
     run = NextRun(map, end, run.end);
@@ -194,12 +207,17 @@ LANES_INLINE void Own(const int dim, int first, int end, const double (*own)[FIT
   }
 }
 
-LANES_INLINE void Second(const int dim, const int terms, double factor, const FitFactors *factors, const FitDerivatives *map, FitDerivativesSum *sum)
+LANES_INLINE void Second(const int dim, const int terms, double factor, const FitFactors *factors,
+                         const FitDerivatives *map, FitDerivativesSum *sum)
 {
   const int    vectors = FactorStride(terms) / LANES, rows = 1 + factors->n;
   const FitRun slave = NextRun(map, 1, 0);
   const long   first = (long)sum->depth * sum->stride;
-  FitNodal     nodal = {.rows = (Lanes *)sum->rows, .K = sum->K + first, .J = sum->J + first, .stride = sum->stride, .factor = factor};
+  FitNodal     nodal = {.rows   = (Lanes *)sum->rows,
+                        .K      = sum->K + first,
+                        .J      = sum->J + first,
+                        .stride = sum->stride,
+                        .factor = factor};
 
   memset(nodal.rows, 0, (size_t)(nodal.stride + dim) * vectors * sizeof(Lanes));
   memset(nodal.K + terms * nodal.stride, 0, (size_t)dim * nodal.stride * sizeof(double));
@@ -225,7 +243,8 @@ LANES_INLINE void AddSelection(const int dim, const FitDerivatives *map, int r, 
 }
 
 /* S^T M S = 1/2 (M S)^T S + S^T 1/2 (M S): a row of M S and of S for each component of each point */
-LANES_INLINE void Dense(const int dim, int n, double factor, const double *M, const FitDerivatives *map, FitDerivativesSum *sum)
+LANES_INLINE void Dense(const int dim, int n, double factor, const double *M, const FitDerivatives *map,
+                        FitDerivativesSum *sum)
 {
   const int     m     = (1 + n) * dim;
   const long    first = (long)sum->depth * sum->stride;
@@ -235,7 +254,8 @@ LANES_INLINE void Dense(const int dim, int n, double factor, const double *M, co
   memset(J, 0, (size_t)m * sum->stride * sizeof(double));
   for (int i = 0; i < m; i++) {
     AddSelection(dim, map, i / dim, i % dim, 1, J + (long)i * sum->stride);
-    for (int j = 0; j < m; j++) AddSelection(dim, map, j / dim, j % dim, 0.5 * factor * M[i * m + j], K + (long)i * sum->stride);
+    for (int j = 0; j < m; j++)
+      AddSelection(dim, map, j / dim, j % dim, 0.5 * factor * M[i * m + j], K + (long)i * sum->stride);
   }
   sum->depth += m;
 }
@@ -260,13 +280,15 @@ int FitDerivativesDepth(int dim, int degree)
 
 /* FitDerivativesWorkspace - doubles of workspace for a sum of second variations. Not collective.
 
-   Input: dim, degree - the highest of the fits; n_nodes - of the maps; depth - most rows of K and J in all: FitDerivativesDepth() for each FitDerivativesAdd(),
-   dim*(1 + n) for each FitDerivativesAddDense(), 1 for each FitDerivativesAddOuter() */
+   Input: dim, degree - the highest of the fits; n_nodes - of the maps; depth - most rows of K and J in all:
+   FitDerivativesDepth() for each FitDerivativesAdd(), dim*(1 + n) for each FitDerivativesAddDense(), 1 for each
+   FitDerivativesAddOuter() */
 long FitDerivativesWorkspace(int dim, int degree, int n_nodes, int depth)
 {
   const int stride = SymmetricProductStride(n_nodes * dim);
 
-  return ALIGNMENT / (long)sizeof(double) + (long)(stride + dim) * FactorStride(FitTerms(dim, degree)) + 2L * depth * stride;
+  return ALIGNMENT / (long)sizeof(double) + (long)(stride + dim) * FactorStride(FitTerms(dim, degree)) +
+         2L * depth * stride;
 }
 
 /* FitDerivativesFirst - the first variation over nodes, S^T N. Not collective.
@@ -284,7 +306,8 @@ void FitDerivativesFirst(int dim, int n, const double *N, const FitDerivatives *
 
 /* FitDerivativesBegin - begins a sum of second variations over the same nodes. Not collective.
 
-   Input: dim, degree, n_nodes, depth - as of FitDerivativesWorkspace(); workspace - that many doubles of any contents, to be left alone until FitDerivativesEnd() */
+   Input: dim, degree, n_nodes, depth - as of FitDerivativesWorkspace(); workspace - that many doubles of any contents,
+   to be left alone until FitDerivativesEnd() */
 void FitDerivativesBegin(FitDerivativesSum *sum, int dim, int degree, int n_nodes, int depth, double *workspace)
 {
   const int stride = SymmetricProductStride(n_nodes * dim);
@@ -295,8 +318,8 @@ void FitDerivativesBegin(FitDerivativesSum *sum, int dim, int degree, int n_node
   sum->J    = sum->K + (long)depth * stride;
 }
 
-/* FitDerivativesAdd - adds factor times the second variation over nodes, S^T M S, of one slave point, without M; the points' own H are left to FitDerivativesAddOwn().
-   Not collective.
+/* FitDerivativesAdd - adds factor times the second variation over nodes, S^T M S, of one slave point, without M; the
+   points' own H are left to FitDerivativesAddOwn(). Not collective.
 
    Input: factors - of M, as DiffuseFitEvaluate() leaves them in its workspace; map - nodes below the sum's n_nodes
 
@@ -346,9 +369,10 @@ void FitDerivativesOwn(double factor, const FitFactors *factors, int i, double o
 
 /* FitDerivativesAddOwn - M += sum_r S_r^T own_r S_r, the points' own part of second variations. Not collective.
 
-   Input: dim; rows first to end - 1 of the map; own[end - first] - of these rows' points, from FitDerivativesOwn(). M[n_nodes*dim][n_nodes*dim] - its upper
-   triangle, in whole blocks on the diagonal */
-void FitDerivativesAddOwn(int dim, int first, int end, const double (*own)[FIT_DERIVATIVES_OWN], const FitDerivatives *map, double *M)
+   Input: dim; rows first to end - 1 of the map; own[end - first] - of these rows' points, from FitDerivativesOwn().
+   M[n_nodes*dim][n_nodes*dim] - its upper triangle, in whole blocks on the diagonal */
+void FitDerivativesAddOwn(int dim, int first, int end, const double (*own)[FIT_DERIVATIVES_OWN],
+                          const FitDerivatives *map, double *M)
 {
   if (dim == 3)
     Own(3, first, end, own, map, M);
@@ -356,7 +380,8 @@ void FitDerivativesAddOwn(int dim, int first, int end, const double (*own)[FIT_D
     Own(2, first, end, own, map, M);
 }
 
-/* FitDerivativesEnd - the sum into the upper triangle of M[n_nodes*dim][n_nodes*dim]; what is below is left alone. Not collective. */
+/* FitDerivativesEnd - the sum into the upper triangle of M[n_nodes*dim][n_nodes*dim]; what is below is left alone. Not
+ * collective. */
 void FitDerivativesEnd(FitDerivativesSum *sum, double *M)
 {
   SymmetricProductUpper(sum->n_nodes * sum->dim, sum->depth, sum->stride, sum->K, sum->J, M);

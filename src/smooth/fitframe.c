@@ -9,7 +9,8 @@ enum { SWEEPS = 16 }; /* cyclic Jacobi of a 3 x 3 matrix ends within 6; the rest
 /* Turns row and column p against q so that a[p][q] vanishes. */
 static void JacobiRotate(double a[3][3], double v[3][3], int p, int q)
 {
-  const double theta = 0.5 * (a[q][q] - a[p][p]) / a[p][q], t = (theta >= 0 ? 1 : -1) / (fabs(theta) + sqrt(theta * theta + 1));
+  const double theta = 0.5 * (a[q][q] - a[p][p]) / a[p][q],
+               t     = (theta >= 0 ? 1 : -1) / (fabs(theta) + sqrt(theta * theta + 1));
   const double c = 1 / sqrt(t * t + 1), s = t * c;
 
   for (int k = 0; k < 3; k++) {
@@ -58,8 +59,8 @@ static void Eigen(double a[3][3], double value[3], double v[3][3])
   }
 }
 
-/* FitFrameFromNormal - a right-handed orthonormal frame about a direction; its tangents jump only where the normal passes between coordinate
-   axes, and the fit does not depend on them. Not collective.
+/* FitFrameFromNormal - a right-handed orthonormal frame about a direction; its tangents jump only where the normal
+   passes between coordinate axes, and the fit does not depend on them. Not collective.
 
    Input: dim; normal[dim] - of any length but 0
    Output: frame[k] - tangents, then the normal; 2D: third components 0 */
@@ -86,11 +87,11 @@ void FitFrameFromNormal(int dim, const double *normal, double frame[3][3])
 
 /* FitFrame - the frame of the least-squares plane of weighted points. Not collective.
 
-   Input: dim; n, x[n][dim], multiplier[n] - points and weights; outward[dim] - roughly the normal out of the master, of any length but 0
-   Output: frame[k] - tangents, then the normal; 2D: third components 0
+   Input: dim; n, x[n][dim], multiplier[n] - points and weights; outward[dim] - roughly the normal out of the master, of
+   any length but 0 Output: frame[k] - tangents, then the normal; 2D: third components 0
 
-   Returns 0, with the frame about `outward`, where points have no plane (on a line, a heap) or one seen edge-on from `outward`.
-   Source: Chamoret et al. 2004, eq. 3 (reference plane of the slave point). */
+   Returns 0, with the frame about `outward`, where points have no plane (on a line, a heap) or one seen edge-on from
+   `outward`. Source: Chamoret et al. 2004, eq. 3 (reference plane of the slave point). */
 int FitFrame(int dim, int n, const double *x, const double *multiplier, const double *outward, double frame[3][3])
 {
   double    sum = 0, centre[3] = {0}, covariance[3][3] = {{0}}, value[3], vector[3][3], cosine = 0, length = 0;
@@ -106,7 +107,8 @@ int FitFrame(int dim, int n, const double *x, const double *multiplier, const do
   for (int c = 0; c < dim; c++) centre[c] /= sum;
   for (int i = 0; i < n; i++) {
     for (int c = 0; c < dim; c++) {
-      for (int d = 0; d <= c; d++) covariance[c][d] += multiplier[i] * (x[i * dim + c] - centre[c]) * (x[i * dim + d] - centre[d]);
+      for (int d = 0; d <= c; d++)
+        covariance[c][d] += multiplier[i] * (x[i * dim + c] - centre[c]) * (x[i * dim + d] - centre[d]);
     }
   }
   for (int c = 0; c < dim; c++) {
@@ -126,13 +128,15 @@ int FitFrame(int dim, int n, const double *x, const double *multiplier, const do
   return 1;
 }
 
-/* FitMetricFromCovariance - the metric of the support. Its shape is that of the one-ring seen along the normal, round where the ring is flatter
-   than METRIC_FLAT; its size follows from the area per node alone, so that the support holds as many nodes on any mesh. Not collective.
+/* FitMetricFromCovariance - the metric of the support. Its shape is that of the one-ring seen along the normal, round
+   where the ring is flatter than METRIC_FLAT; its size follows from the area per node alone, so that the support holds
+   as many nodes on any mesh. Not collective.
 
-   Input: dim; frame - of FitFrame(); covariance[3][3] - of the one-ring's nodes (any scale, 2D: not read); area - mean facet area per node:
-   over 1 (4-node face), 1/2 (triangle), 4 (9-node face), 2 (6-node triangle); 2D: mean length per node; support - in spacings
-   Output: metric[2][2] - Q, per length squared; 2D: [0][0] */
-void FitMetricFromCovariance(int dim, double (*frame)[3], double (*covariance)[3], double area, double support, double metric[2][2])
+   Input: dim; frame - of FitFrame(); covariance[3][3] - of the one-ring's nodes (any scale, 2D: not read); area - mean
+   facet area per node: over 1 (4-node face), 1/2 (triangle), 4 (9-node face), 2 (6-node triangle); 2D: mean length per
+   node; support - in spacings Output: metric[2][2] - Q, per length squared; 2D: [0][0] */
+void FitMetricFromCovariance(int dim, double (*frame)[3], double (*covariance)[3], double area, double support,
+                             double metric[2][2])
 {
   double C[2][2] = {{0}}, determinant, mean, spread, root;
 

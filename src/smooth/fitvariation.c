@@ -1,23 +1,23 @@
 /* First and second variation of the diffuse gap, in the orthonormal basis and the scaled coordinates of fit.c.
 
-Second variation. G_aa = F^T S F with the rows F = [p; Dp] at the foot and a symmetric S of their size, so that with J_i = dalpha/dd_i,
-   C_i = d2 phi_i/dd_i dalpha, H_i = d2 phi_i/dd_i dd_i, phi_i = w_i e_i (lambda.p_i)
-       M_ij = K_i J_j + J_i^T K_j^T + delta_ij H_i,   K_i = C_i + 1/2 (F J_i)^T S F
-   and the slave point's rows are those of one more point with J_c = -sum J_i, K_c = -sum K_i. */
+Second variation. G_aa = F^T S F with the rows F = [p; Dp] at the foot and a symmetric S of their size, so that with J_i
+= dalpha/dd_i, C_i = d2 phi_i/dd_i dalpha, H_i = d2 phi_i/dd_i dd_i, phi_i = w_i e_i (lambda.p_i) M_ij = K_i J_j + J_i^T
+K_j^T + delta_ij H_i,   K_i = C_i + 1/2 (F J_i)^T S F and the slave point's rows are those of one more point with J_c =
+-sum J_i, K_c = -sum K_i. */
 #include "fitkernel.h"
 #include "symmetricproduct.h"
 
 /* LANES points: what the variations are made of */
 typedef struct {
   Lanes p[FIT_MAX_TERMS], dp[MAX_TANGENTS][FIT_MAX_TERMS]; /* monomials and their gradients */
-  Lanes eta[MAX_TANGENTS], w, w1, w2, e;                   /* w1, w2: derivatives of the weight by rho^2, times 2 and 4 */
-  Lanes q[MAX_TANGENTS], l, dl[MAX_TANGENTS];              /* gradient of q; l = lambda.p and its gradient */
-  Lanes c[MAX_TANGENTS], a[MAX_TANGENTS];                  /* gradients of w e and w l */
+  Lanes eta[MAX_TANGENTS], w, w1, w2, e;      /* w1, w2: derivatives of the weight by rho^2, times 2 and 4 */
+  Lanes q[MAX_TANGENTS], l, dl[MAX_TANGENTS]; /* gradient of q; l = lambda.p and its gradient */
+  Lanes c[MAX_TANGENTS], a[MAX_TANGENTS];     /* gradients of w e and w l */
 } FitBundle;
 
 /* With derivatives == FIT_DIFFUSE the weights count as constants. */
-LANES_INLINE void Bundle(const int m, const int degree, const int terms, const FitArrays *a, const FitState *s, double exponent, FitDerivativeKind derivatives,
-                         int g, FitBundle *b)
+LANES_INLINE void Bundle(const int m, const int degree, const int terms, const FitArrays *a, const FitState *s,
+                         double exponent, FitDerivativeKind derivatives, int g, FitBundle *b)
 {
   for (int k = 0; k < m; k++) b->eta[k] = a->eta[k][g];
   Monomials(m, degree, b->eta, b->p);
@@ -48,7 +48,8 @@ LANES_INLINE void StoreVectors(const int dim, int count, const Lanes *v, double 
 }
 
 /* N_i = G^T J_i^T G_a, N_c = -sum N_i */
-LANES_INLINE void FirstVariation(const int dim, const int degree, const int terms, const FitProblem *in, const FitArrays *a, const FitState *s, double *N)
+LANES_INLINE void FirstVariation(const int dim, const int degree, const int terms, const FitProblem *in,
+                                 const FitArrays *a, const FitState *s, double *N)
 {
   Lanes total[3] = {{0}};
 
@@ -80,7 +81,8 @@ LANES_INLINE void PointHessian(const int dim, const int degree, const FitState *
     for (int j = 0; j <= k; j++) {
       const Lanes w2 = b->w2 * b->eta[k] * b->eta[j] + (j == k ? b->w1 : Broadcast(0));
 
-      h[k][j] = h[j][k] = w2 * b->e * b->l + b->w1 * b->eta[k] * (b->e * b->dl[j] - b->q[j] * b->l) + b->w1 * b->eta[j] * (b->e * b->dl[k] - b->q[k] * b->l) +
+      h[k][j] = h[j][k] = w2 * b->e * b->l + b->w1 * b->eta[k] * (b->e * b->dl[j] - b->q[j] * b->l) +
+                          b->w1 * b->eta[j] * (b->e * b->dl[k] - b->q[k] * b->l) +
                           b->w * (b->e * l[k + j] - b->q[k] * b->dl[j] - b->q[j] * b->dl[k] - b->l * q[k + j]);
     }
     h[m][k] = h[k][m] = b->a[k];
@@ -95,7 +97,8 @@ typedef struct {
 } FitBlock;
 
 /* J^ = A p^ + B Dp^ and C likewise, with coefficients already turned into space. */
-LANES_INLINE void PointFactors(const int dim, const int terms, const FitArrays *a, const FitState *s, FitBundle *b, int g, FitBlock *out)
+LANES_INLINE void PointFactors(const int dim, const int terms, const FitArrays *a, const FitState *s, FitBundle *b,
+                               int g, FitBlock *out)
 {
   const int   m  = dim - 1;
   const Lanes we = b->w * b->e, wl = b->w * b->l;
@@ -155,7 +158,8 @@ LANES_INLINE void TurnHessian(const int dim, const FitState *s, Lanes (*h)[3], L
   for (int entry = dim * (dim + 1) / 2; entry < HessianStride(dim); entry++) out[entry] = Broadcast(0);
 }
 
-LANES_INLINE void Block(const int dim, const int degree, const int terms, const FitProblem *in, const FitArrays *a, const FitState *s, int g, FitBlock *out)
+LANES_INLINE void Block(const int dim, const int degree, const int terms, const FitProblem *in, const FitArrays *a,
+                        const FitState *s, int g, FitBlock *out)
 {
   FitBundle b;
   Lanes     h[3][3];
@@ -173,8 +177,9 @@ LANES_INLINE void AddPointHessians(const int dim, const FitArrays *a, double *M)
 
   for (int c = 0; c < dim; c++) {
     for (int d = 0; d < dim; d++) {
-      const double *const h     = (const double *)(a->H + (c > d ? c * (c + 1) / 2 + d : d * (d + 1) / 2 + c) * a->capacity);
-      double              total = 0;
+      const double *const h =
+        (const double *)(a->H + (c > d ? c * (c + 1) / 2 + d : d * (d + 1) / 2 + c) * a->capacity);
+      double total = 0;
 
       for (int i = 0; i < a->n; i++) {
         const long row = dim * (1 + i) + c, column = dim * (1 + i) + d;
@@ -189,7 +194,8 @@ LANES_INLINE void AddPointHessians(const int dim, const FitArrays *a, double *M)
   }
 }
 
-LANES_INLINE void SecondVariation(const int dim, const int degree, const int terms, const FitProblem *in, FitArrays *a, const FitState *s, double *M)
+LANES_INLINE void SecondVariation(const int dim, const int degree, const int terms, const FitProblem *in, FitArrays *a,
+                                  const FitState *s, double *M)
 {
   Lanes     total[3][2 * FIT_MAX_TERMS] = {{{0}}};
   const int used                        = dim * (1 + a->groups * LANES);
@@ -219,7 +225,8 @@ LANES_INLINE void SecondVariation(const int dim, const int degree, const int ter
   AddPointHessians(dim, a, M);
 }
 
-/* Writes `count` vectors of LANES points as a row for each point, `distance` vectors from one point's to the next; adds the rows to `total`. */
+/* Writes `count` vectors of LANES points as a row for each point, `distance` vectors from one point's to the next; adds
+ * the rows to `total`. */
 LANES_INLINE void StoreRows(const int count, const int distance, const Lanes *v, Lanes *rows, Lanes *total)
 {
   for (int k = 0; k < count; k += LANES) {
@@ -234,7 +241,8 @@ LANES_INLINE void StoreRows(const int count, const int distance, const Lanes *v,
   }
 }
 
-LANES_INLINE void Factors(const int dim, const int degree, const int terms, const FitProblem *in, const FitArrays *a, const FitState *s, FitFactors *out)
+LANES_INLINE void Factors(const int dim, const int degree, const int terms, const FitProblem *in, const FitArrays *a,
+                          const FitState *s, FitFactors *out)
 {
   const int stride = FactorStride(terms) / LANES, hessianstride = HessianStride(dim) / LANES;
   Lanes     total[3][FACTORS / LANES] = {{{0}}}, hessian[FIT_HESSIAN] = {{0}};
@@ -245,7 +253,8 @@ LANES_INLINE void Factors(const int dim, const int degree, const int terms, cons
     FitBlock  block;
 
     Block(dim, degree, terms, in, a, s, g, &block);
-    for (int c = 0; c < dim; c++) StoreRows(stride * LANES, dim * stride, block.factor[c], rows + (first * dim + c) * stride, total[c]);
+    for (int c = 0; c < dim; c++)
+      StoreRows(stride * LANES, dim * stride, block.factor[c], rows + (first * dim + c) * stride, total[c]);
     StoreRows(hessianstride * LANES, hessianstride, block.hessian, hessians + first * hessianstride, hessian);
   }
   for (int c = 0; c < dim; c++) {
@@ -293,8 +302,8 @@ void FitVariationSecond(const FitProblem *in, FitArrays *a, const FitState *s, d
 
 /* FitVariationFactors - what M is made of, without M. Not collective.
 
-   Input: in, a, s - problem, arrays and state as the evaluation left them; the place of the arrays K and J is overwritten
-   Output: factors - see FitFactors */
+   Input: in, a, s - problem, arrays and state as the evaluation left them; the place of the arrays K and J is
+   overwritten Output: factors - see FitFactors */
 void FitVariationFactors(const FitProblem *in, const FitArrays *a, const FitState *s, FitFactors *factors)
 {
 #define FACTORISE(dim, degree, terms)             \

@@ -1,7 +1,8 @@
 #include <string.h>
 #include "smooth/smoother.h"
 
-/* SmootherEvaluate_Facet - gap and variations against the closest facet of the list. Returns 0 when the list holds none. Not collective. */
+/* SmootherEvaluate_Facet - gap and variations against the closest facet of the list. Returns 0 when the list holds
+ * none. Not collective. */
 int SmootherEvaluate_Facet(const SmootherInput *in, SmootherWant want, SmootherResult *out)
 {
   const Facet *facet;
@@ -24,11 +25,19 @@ int SmootherEvaluate_Facet(const SmootherInput *in, SmootherWant want, SmootherR
 /* The fit where there is one, the facets on the last rung of the ladder or where the fit has no foot. */
 static int SmootherEvaluate_Diffuse(const SmootherInput *in, SmootherWant want, SmootherResult *out)
 {
-  static const FitWant wants[] =
-    {[SMOOTHER_GAP] = FIT_GAP_ONLY, [SMOOTHER_FIRST_VARIATION] = FIT_FIRST_VARIATION, [SMOOTHER_SECOND_VARIATION] = FIT_SECOND_VARIATION};
-  FitProblem problem =
-    {.dim = in->dim, .degree = in->degree, .exponent = in->exponent, .n = in->n_fit, .x = in->x, .multiplier = in->multiplier, .derivatives = in->derivatives};
-  FitResult fit = {.points = out->points, .N = want == SMOOTHER_FIRST_VARIATION ? out->N : NULL, .factors = &out->factors};
+  static const FitWant wants[] = {[SMOOTHER_GAP]              = FIT_GAP_ONLY,
+                                  [SMOOTHER_FIRST_VARIATION]  = FIT_FIRST_VARIATION,
+                                  [SMOOTHER_SECOND_VARIATION] = FIT_SECOND_VARIATION};
+  FitProblem           problem = {.dim         = in->dim,
+                                  .degree      = in->degree,
+                                  .exponent    = in->exponent,
+                                  .n           = in->n_fit,
+                                  .x           = in->x,
+                                  .multiplier  = in->multiplier,
+                                  .derivatives = in->derivatives};
+  FitResult            fit     = {.points  = out->points,
+                                  .N       = want == SMOOTHER_FIRST_VARIATION ? out->N : NULL,
+                                  .factors = &out->factors};
 
   out->facet_served = 0;
   if (in->n_fit) {

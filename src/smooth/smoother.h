@@ -1,8 +1,8 @@
-/* What a contact surface looks like from one slave point: gap, first and second variation. Plain C, chosen by name; a new smoother is a
-   file that defines a Smoother and a line in choices.h.
+/* What a contact surface looks like from one slave point: gap, first and second variation. Plain C, chosen by name; a
+   new smoother is a file that defines a Smoother and a line in choices.h.
 
-   A smoother sees points, never elements or nodes: x is relative to the slave point, and what a point is made of (nodes with weights, an
-   offset, a mirror image) is the caller's business. Lists are frozen while a solve lasts. */
+   A smoother sees points, never elements or nodes: x is relative to the slave point, and what a point is made of (nodes
+   with weights, an offset, a mirror image) is the caller's business. Lists are frozen while a solve lasts. */
 #pragma once
 #include "base/choices.h"
 #include "smooth/facet.h"
@@ -14,12 +14,12 @@ typedef struct {
   const Facet  *facets; /* nodes index the points */
   int           seed;   /* the facet of last time, or -1 */
   /* smooth surfaces: the first n_fit points carry the fit; 0: the facets serve */
-  int            n_fit, degree;
-  double         exponent;
-  const double  *multiplier;     /* of the fit points' weights */
-  const double  *frame, *metric; /* 9 and 4, held in a solve */
+  int               n_fit, degree;
+  double            exponent;
+  const double     *multiplier;     /* of the fit points' weights */
+  const double     *frame, *metric; /* 9 and 4, held in a solve */
   FitDerivativeKind derivatives;
-  double        *workspace; /* FitWorkspace(dim, degree, n_fit) */
+  double           *workspace; /* FitWorkspace(dim, degree, n_fit) */
 } SmootherInput;
 
 /* Arrays belong to the caller, sized for the smoother's capacity of points. */
@@ -51,4 +51,5 @@ SMOOTHERS(SMOOTHER_DECLARE)
 #undef SMOOTHER_DECLARE
 extern const Smoother *const Smoothers[]; /* by SmootherKind */
 extern const char *const     SmootherNames[];
-int                          SmootherEvaluate_Facet(const SmootherInput *, SmootherWant, SmootherResult *); /* what a smooth surface falls back on */
+int                          SmootherEvaluate_Facet(const SmootherInput *, SmootherWant,
+                                                    SmootherResult *); /* what a smooth surface falls back on */

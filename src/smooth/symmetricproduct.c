@@ -1,5 +1,5 @@
-/* M = K^T J + J^T K in tiles of LANES rows that stay in registers while the depth is summed; the mirror image of a tile is turned over in
-   registers too, since a scalar copy would cost as much as the product. */
+/* M = K^T J + J^T K in tiles of LANES rows that stay in registers while the depth is summed; the mirror image of a tile
+   is turned over in registers too, since a scalar copy would cost as much as the product. */
 #include "symmetricproduct.h"
 #include "fitkernel.h"
 
@@ -13,7 +13,8 @@ int SymmetricProductStride(int n)
   return (n + TILE_COLUMNS - 1) / TILE_COLUMNS * TILE_COLUMNS;
 }
 
-LANES_INLINE void AddOuterProducts(const int vectors, int depth, int stride, const double *left, const double *right, Lanes (*tile)[PRODUCT_VECTORS])
+LANES_INLINE void AddOuterProducts(const int vectors, int depth, int stride, const double *left, const double *right,
+                                   Lanes (*tile)[PRODUCT_VECTORS])
 {
   for (int k = 0; k < depth; k++, left += stride, right += stride) {
     const Lanes *b = (const Lanes *)right;
@@ -45,7 +46,8 @@ LANES_INLINE void StorePart(const int full, int n, int row, int column, Lanes sq
 }
 
 /* The tile at (row, column), a whole number of vectors wide, and, of a full M, its image */
-LANES_INLINE void ProductTile(const int full, const int vectors, int n, int depth, int stride, const double *K, const double *J, int row, int column, double *M)
+LANES_INLINE void ProductTile(const int full, const int vectors, int n, int depth, int stride, const double *K,
+                              const double *J, int row, int column, double *M)
 {
   Lanes tile[TILE_ROWS][PRODUCT_VECTORS] = {{{0}}};
 
@@ -63,7 +65,8 @@ LANES_INLINE void ProductTile(const int full, const int vectors, int n, int dept
   }
 }
 
-LANES_INLINE void SymmetricProductTile(const int full, int n, int depth, int stride, const double *K, const double *J, double *M)
+LANES_INLINE void SymmetricProductTile(const int full, int n, int depth, int stride, const double *K, const double *J,
+                                       double *M)
 {
   for (int column = 0; column < n; column += TILE_COLUMNS) {
     const int end = LanesGroups(n) * LANES < column + TILE_COLUMNS ? LanesGroups(n) * LANES : column + TILE_COLUMNS;
@@ -82,9 +85,9 @@ LANES_INLINE void SymmetricProductTile(const int full, int n, int depth, int str
 
 /* SymmetricProduct - M = K^T J + J^T K. Not collective.
 
-   Input: n - rows of the product; depth - rows of the factors; stride - length of a row, at least SymmetricProductStride(n) and a whole
-   number of vectors; K, J - [depth][stride], aligned to a vector
-   Output: M - [n][n], symmetric to the last bit */
+   Input: n - rows of the product; depth - rows of the factors; stride - length of a row, at least
+   SymmetricProductStride(n) and a whole number of vectors; K, J - [depth][stride], aligned to a vector Output: M -
+   [n][n], symmetric to the last bit */
 void SymmetricProduct(int n, int depth, int stride, const double *K, const double *J, double *M)
 {
   SymmetricProductTile(1, n, depth, stride, K, J, M);

@@ -2,13 +2,14 @@
 #include "bodies/loosebody.h"
 #include "base/timing.h"
 
-/* Of these, so many may be spent at a breakpoint of the scene's histories on offsets of surface contact that lag behind by little: each takes a lag to a
-   twentieth, and from the next step on it would show as a jump. */
+/* Of these, so many may be spent at a breakpoint of the scene's histories on offsets of surface contact that lag behind
+   by little: each takes a lag to a twentieth, and from the next step on it would show as a jump. */
 #define MODEL_MAX_OFFSET_UPDATES 4
-/* Lists are made for this multiple of the motion that the last step's rate predicts; those that check a step too, so that an equal step takes them. */
+/* Lists are made for this multiple of the motion that the last step's rate predicts; those that check a step too, so
+ * that an equal step takes them. */
 #define MODEL_MOTION_SAFETY 1.5
-/* Times that the springs of stabilised pairs are relaxed. A body at rest needs two or three; one that flies covers its penetration at rest, times a
-   thousand, in each. */
+/* Times that the springs of stabilised pairs are relaxed. A body at rest needs two or three; one that flies covers its
+   penetration at rest, times a thousand, in each. */
 #define MODEL_MAX_RELAX 30
 
 /* Largest displacement of a node, or of a rigid tool, between the accepted state and (u, t). */
@@ -25,7 +26,8 @@ PetscErrorCode ModelMotion(Model model, const PetscReal *u, PetscReal t, PetscRe
     *motion = PetscMax(*motion, PetscSqrtReal(square));
   }
   for (int b = 0; b < model->scene->n_bodies; b++)
-    if (model->scene->bodies[b].rigid) *motion = PetscMax(*motion, LoadsRigidTravel(model->loads, b, model->work->accepted_t, t));
+    if (model->scene->bodies[b].rigid)
+      *motion = PetscMax(*motion, LoadsRigidTravel(model->loads, b, model->work->accepted_t, t));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, motion, 1, MPIU_REAL, MPI_MAX, model->mesh->comm));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -54,9 +56,11 @@ static PetscErrorCode ModelBlameFacets(Model model, char *text, size_t size, Pet
   PetscCall(ModelLocateEdge(model, found, &place));
   PetscCall(PetscStrlen(text, &used));
   if (*found)
-    PetscCall(PetscSNPrintf(text + used, size - used,
-                            "; node %" PetscInt_FMT " rests on an edge between two facets, which push it there from either side: no equilibrium is near",
-                            place.tag));
+    PetscCall(PetscSNPrintf(
+      text + used, size - used,
+      "; node %" PetscInt_FMT
+      " rests on an edge between two facets, which push it there from either side: no equilibrium is near",
+      place.tag));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -72,8 +76,10 @@ static PetscErrorCode ModelBlamePenalty(Model model, char *text, size_t size)
   PetscCall(ContactRoundOff(model->contact, &force));
   PetscCall(PetscStrlen(text, &used));
   if (force > MODEL_ROUND_OFF * allowed)
-    PetscCall(PetscSNPrintf(text + used, size - used, "; the penalty is too stiff: rounding of positions alone is a force of %.2g, the tolerance is %.2g",
-                            (double)force, (double)allowed));
+    PetscCall(
+      PetscSNPrintf(text + used, size - used,
+                    "; the penalty is too stiff: rounding of positions alone is a force of %.2g, the tolerance is %.2g",
+                    (double)force, (double)allowed));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -85,17 +91,21 @@ static PetscErrorCode ModelExplainFailure(Model model, SolveReport *report)
   PetscBool       edge = PETSC_FALSE;
 
   PetscFunctionBeginUser;
-  PetscCall(FailureLocate(model->mesh, model->loads, model->contact, model->work->f, model->work->inverted, &report->failure));
+  PetscCall(
+    FailureLocate(model->mesh, model->loads, model->contact, model->work->f, model->work->inverted, &report->failure));
   report->failure.enhanced = ModelHasFormulation(model->scene, FORMULATION_ENHANCED);
-  if (report->result == SOLVE_WINDOW || report->result == SOLVE_LOST) PetscFunctionReturn(PETSC_SUCCESS); /* known already */
+  if (report->result == SOLVE_WINDOW || report->result == SOLVE_LOST)
+    PetscFunctionReturn(PETSC_SUCCESS); /* known already */
   if (report->result == SOLVE_CYCLE) {
     PetscCall(PetscStrncpy(report->detail, report->cycle, sizeof(report->detail)));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   if (adrift) PetscCall(LooseBodies(model->mesh, model->scene, model->loads, loose, sizeof(loose)));
   if (adrift && loose[0])
-    PetscCall(PetscSNPrintf(report->detail, sizeof(report->detail), "no support and no imposed displacement holds %s%s", loose,
-                            !model->contact || report->result == SOLVE_ADRIFT ? "" : " (contact may, from the start or with stabilise: true)"));
+    PetscCall(PetscSNPrintf(
+      report->detail, sizeof(report->detail), "no support and no imposed displacement holds %s%s", loose,
+      !model->contact || report->result == SOLVE_ADRIFT ? ""
+                                                        : " (contact may, from the start or with stabilise: true)"));
   else {
     FailureText(&report->failure, report->detail, sizeof(report->detail));
     if (report->result == SOLVE_LINE_SEARCH || report->result == SOLVE_ITERATIONS)
@@ -131,7 +141,8 @@ static PetscErrorCode ModelDepart(Model model, PetscReal t)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* A part of the way to the forecast, where that came from the path: on the path, with so much of what its end was off. made: that is possible. */
+/* A part of the way to the forecast, where that came from the path: on the path, with so much of what its end was off.
+ * made: that is possible. */
 static PetscErrorCode ModelTakeExtrapolatedPart(Model model, PetscReal part, PetscBool *made)
 {
   ModelWork *work = model->work;
@@ -179,7 +190,8 @@ static PetscErrorCode ModelStart(Model model, SolveReport *report)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* New lists after a solve, for the next one: in the middle of the way where it left the old ones, or because they do not hold. */
+/* New lists after a solve, for the next one: in the middle of the way where it left the old ones, or because they do
+ * not hold. */
 PetscErrorCode ModelRenewLists(Model model, PetscBool update_offsets, PetscBool *hold)
 {
   ModelWork *work = model->work;
@@ -188,14 +200,16 @@ PetscErrorCode ModelRenewLists(Model model, PetscBool update_offsets, PetscBool 
   PetscFunctionBeginUser;
   PetscCall(ModelMotion(model, work->trial, model->t, &motion));
   next = MODEL_MOTION_SAFETY * motion;
-  if (motion > work->expected) motion *= 2; /* two bodies that the lists at the start did not let meet may have passed through each other */
+  if (motion > work->expected)
+    motion *= 2; /* two bodies that the lists at the start did not let meet may have passed through each other */
   TimingBegin(TIMING_SEARCH);
   *hold = PETSC_FALSE;
   if (work->left) {
     work->renewed++;
     PetscCall(ContactListsRenew(model->contact, work->trial, model->t, motion));
   } else
-    PetscCall(ContactListsHold(model->contact, work->trial, model->t, motion, PetscMax(motion, next), update_offsets, hold));
+    PetscCall(
+      ContactListsHold(model->contact, work->trial, model->t, motion, PetscMax(motion, next), update_offsets, hold));
   TimingEnd(TIMING_SEARCH);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -212,7 +226,9 @@ static PetscErrorCode ModelSolveLists(Model model, SolveReport *report)
     model->work->left = PETSC_FALSE;
     PetscCall(ModelNewton(model, report));
     if (report->result != SOLVE_CONVERGED || !model->contact) break;
-    PetscCall(ModelRenewLists(model, (PetscBool)(times < MODEL_MAX_OFFSET_UPDATES && model->t < 1 && SceneBreaks(model->scene, model->t)), &hold));
+    PetscCall(ModelRenewLists(
+      model, (PetscBool)(times < MODEL_MAX_OFFSET_UPDATES && model->t < 1 && SceneBreaks(model->scene, model->t)),
+      &hold));
     PetscCall(ContactLocateLost(model->contact, &lost, report->detail, sizeof(report->detail)));
     if (lost) report->result = SOLVE_LOST;
     if (hold || lost) break;
@@ -266,9 +282,10 @@ static PetscErrorCode ModelSolveHeld(Model model, SolveReport *report)
 
 /* ModelSolve - equilibrium at load parameter t, from the accepted state.
 
-   Collective. On success model->u, model->x and the contact state are the solution (not yet accepted); on failure call ModelRestore().
-   Contact lists are made before, frozen in each Newton solve, and made anew after it until they hold (at most MODEL_MAX_REGATHER times); then
-   penalties that are adjusted within the step, and all is solved on from there, until their window holds or no more can be done for it. */
+   Collective. On success model->u, model->x and the contact state are the solution (not yet accepted); on failure call
+   ModelRestore(). Contact lists are made before, frozen in each Newton solve, and made anew after it until they hold
+   (at most MODEL_MAX_REGATHER times); then penalties that are adjusted within the step, and all is solved on from
+   there, until their window holds or no more can be done for it. */
 PetscErrorCode ModelSolve(Model model, PetscReal t, SolveReport *report)
 {
   ModelWork         *work   = model->work;
@@ -298,11 +315,12 @@ PetscErrorCode ModelSolve(Model model, PetscReal t, SolveReport *report)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ModelLookAhead - displacements at t by one linear solve with the accepted state's contact set, as a guess of what will touch.
+/* ModelLookAhead - displacements at t by one linear solve with the accepted state's contact set, as a guess of what
+   will touch.
 
-   Collective. u[n_nodes*dim]: local displacements (length), prescribed ones included. Costs and failures are added to the report; the state is
-   the accepted one afterwards, the contact lists are made for the way to t. The next ModelSolve() starts from the forecast instead of a
-   prediction of its own, so that the solve is paid once. */
+   Collective. u[n_nodes*dim]: local displacements (length), prescribed ones included. Costs and failures are added to
+   the report; the state is the accepted one afterwards, the contact lists are made for the way to t. The next
+   ModelSolve() starts from the forecast instead of a prediction of its own, so that the solve is paid once. */
 PetscErrorCode ModelLookAhead(Model model, PetscReal t, PetscReal *u, SolveReport *report)
 {
   PetscFunctionBeginUser;
@@ -312,9 +330,9 @@ PetscErrorCode ModelLookAhead(Model model, PetscReal t, PetscReal *u, SolveRepor
   PetscCall(PetscArraycpy(u, model->work->trial, model->mesh->n_nodes * model->mesh->dim));
   PetscCall(VecCopy(model->x, model->work->look_ahead));
   PetscCall(VecCopy(model->work->accepted_x, model->x));
-  model->work->look_ahead_t        = t;
+  model->work->look_ahead_t            = t;
   model->work->look_ahead_extrapolated = model->work->extrapolated;
-  model->work->looked_ahead        = report->result == SOLVE_CONVERGED ? PETSC_TRUE : PETSC_FALSE;
-  model->t                       = model->work->accepted_t;
+  model->work->looked_ahead            = report->result == SOLVE_CONVERGED ? PETSC_TRUE : PETSC_FALSE;
+  model->t                             = model->work->accepted_t;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

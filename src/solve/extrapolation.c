@@ -1,18 +1,20 @@
 #include "extrapolation.h"
 
-/* Highest degree of the polynomials in t. A ring that is pinched in 10 steps takes 31 iterations with 3, 37 with 2; on other scenes they are the same. */
+/* Highest degree of the polynomials in t. A ring that is pinched in 10 steps takes 31 iterations with 3, 37 with 2; on
+ * other scenes they are the same. */
 #define EXTRAPOLATION_DEGREE 3
 /* States that are remembered: those of a polynomial, and the last one, by which it is judged */
 #define EXTRAPOLATION_STATES (EXTRAPOLATION_DEGREE + 2)
-/* A path is smooth where the last state was foretold to this part of the last step. With 0.03 a cup in 40 steps takes 103 iterations, with 0.1 86; with 0.3 a
-   pipe in four long steps takes 40 instead of 21. */
+/* A path is smooth where the last state was foretold to this part of the last step. With 0.03 a cup in 40 steps takes
+   103 iterations, with 0.1 86; with 0.3 a pipe in four long steps takes 40 instead of 21. */
 #define EXTRAPOLATION_SMOOTH 0.1
-/* A higher degree is preferred where its error is less than this part of a lower one's: round-off does not decide, which may be another on more ranks. */
+/* A higher degree is preferred where its error is less than this part of a lower one's: round-off does not decide,
+ * which may be another on more ranks. */
 #define EXTRAPOLATION_BETTER 0.99
 
 struct _n_Path {
   Mesh       mesh;
-  PetscInt   known;          /* states, the last one first */
+  PetscInt   known;                   /* states, the last one first */
   PetscReal *u[EXTRAPOLATION_STATES]; /* local displacements (length) */
   PetscReal  t[EXTRAPOLATION_STATES];
 };
@@ -25,7 +27,8 @@ PetscErrorCode ExtrapolationCreate(Mesh mesh, Extrapolation *out)
   PetscFunctionBeginUser;
   PetscCall(PetscNew(&extrapolation));
   extrapolation->mesh = mesh;
-  for (int i = 0; i < EXTRAPOLATION_STATES; i++) PetscCall(PetscCalloc1(mesh->n_nodes * mesh->dim, &extrapolation->u[i]));
+  for (int i = 0; i < EXTRAPOLATION_STATES; i++)
+    PetscCall(PetscCalloc1(mesh->n_nodes * mesh->dim, &extrapolation->u[i]));
   *out = extrapolation;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -46,7 +49,8 @@ PetscErrorCode ExtrapolationAdd(Extrapolation extrapolation, const PetscReal *u,
   PetscReal *oldest = extrapolation->u[EXTRAPOLATION_STATES - 1];
 
   PetscFunctionBeginUser;
-  PetscCheck(!extrapolation->known || t > extrapolation->t[0], extrapolation->mesh->comm, PETSC_ERR_ARG_OUTOFRANGE, "a state at t = %g follows one at %g", (double)t, (double)extrapolation->t[0]);
+  PetscCheck(!extrapolation->known || t > extrapolation->t[0], extrapolation->mesh->comm, PETSC_ERR_ARG_OUTOFRANGE,
+             "a state at t = %g follows one at %g", (double)t, (double)extrapolation->t[0]);
   for (int i = EXTRAPOLATION_STATES - 1; i > 0; i--) {
     extrapolation->u[i] = extrapolation->u[i - 1];
     extrapolation->t[i] = extrapolation->t[i - 1];
@@ -82,11 +86,13 @@ static void Extrapolate(Extrapolation extrapolation, int first, int degree, Pets
 }
 
 /* Largest difference of two displacements, all ranks */
-static PetscErrorCode StateDistance(Extrapolation extrapolation, const PetscReal *u, const PetscReal *v, PetscReal *distance)
+static PetscErrorCode StateDistance(Extrapolation extrapolation, const PetscReal *u, const PetscReal *v,
+                                    PetscReal *distance)
 {
   PetscFunctionBeginUser;
   *distance = 0;
-  for (PetscInt k = 0; k < extrapolation->mesh->n_nodes * extrapolation->mesh->dim; k++) *distance = PetscMax(*distance, PetscAbsReal(u[k] - v[k]));
+  for (PetscInt k = 0; k < extrapolation->mesh->n_nodes * extrapolation->mesh->dim; k++)
+    *distance = PetscMax(*distance, PetscAbsReal(u[k] - v[k]));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, distance, 1, MPIU_REAL, MPI_MAX, extrapolation->mesh->comm));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -96,13 +102,16 @@ static PetscReal Growth(Extrapolation extrapolation, int degree, PetscReal t)
 {
   PetscReal growth = 1;
 
-  for (int i = 0; i <= degree; i++) growth *= (t - extrapolation->t[i]) / (extrapolation->t[0] - extrapolation->t[i + 1]);
+  for (int i = 0; i <= degree; i++)
+    growth *= (t - extrapolation->t[i]) / (extrapolation->t[0] - extrapolation->t[i + 1]);
   return growth;
 }
 
-/* ExtrapolationEvaluate - Collective. u[n_nodes*dim]: local displacements (length), those that are prescribed are guesses as well.
+/* ExtrapolationEvaluate - Collective. u[n_nodes*dim]: local displacements (length), those that are prescribed are
+   guesses as well.
 
-   By the polynomial through the last states whose degree would have foretold the last one so well that it is to be trusted the most at t. */
+   By the polynomial through the last states whose degree would have foretold the last one so well that it is to be
+   trusted the most at t. */
 PetscErrorCode ExtrapolationEvaluate(Extrapolation extrapolation, PetscReal t, PetscReal *u, PetscBool *smooth)
 {
   PetscReal step, error, least = PETSC_MAX_REAL;
@@ -127,13 +136,15 @@ PetscErrorCode ExtrapolationEvaluate(Extrapolation extrapolation, PetscReal t, P
 }
 
 /* ExtrapolationArchive - Collective. */
-PetscErrorCode ExtrapolationArchive(Extrapolation extrapolation, Archive archive, const Hdf5Table *nodes, const PetscReal *u)
+PetscErrorCode ExtrapolationArchive(Extrapolation extrapolation, Archive archive, const Hdf5Table *nodes,
+                                    const PetscReal *u)
 {
   char name[PETSC_MAX_PATH_LEN];
 
   PetscFunctionBeginUser;
   PetscCall(ArchiveIntegers(archive, "path/known", 1, &extrapolation->known));
-  PetscCheck(extrapolation->known >= 0 && extrapolation->known <= EXTRAPOLATION_STATES, extrapolation->mesh->comm, PETSC_ERR_FILE_UNEXPECTED, "%" PetscInt_FMT " states of a path", extrapolation->known);
+  PetscCheck(extrapolation->known >= 0 && extrapolation->known <= EXTRAPOLATION_STATES, extrapolation->mesh->comm,
+             PETSC_ERR_FILE_UNEXPECTED, "%" PetscInt_FMT " states of a path", extrapolation->known);
   PetscCall(ArchiveReals(archive, "path/t", EXTRAPOLATION_STATES, extrapolation->t));
   PetscCall(PetscArraycpy(extrapolation->u[0], u, extrapolation->mesh->n_nodes * extrapolation->mesh->dim));
   for (PetscInt i = 1; i < extrapolation->known; i++) {

@@ -71,7 +71,8 @@ static PetscErrorCode TakeLargest(Mesh mesh, Contact contact, PetscReal *square,
   Output Parameter:
 . failure - the same on all ranks
 */
-PetscErrorCode FailureLocate(Mesh mesh, Loads loads, Contact contact, const PetscReal *f, PetscInt inverted, Failure *failure)
+PetscErrorCode FailureLocate(Mesh mesh, Loads loads, Contact contact, const PetscReal *f, PetscInt inverted,
+                             Failure *failure)
 {
   PetscReal *square;
   PetscBool  found = PETSC_TRUE;
@@ -99,8 +100,8 @@ void FailureText(const Failure *failure, char *text, size_t size)
     snprintf(element, sizeof(element), "element %lld was inverted%s on the way%s", (long long)failure->inverted,
              failure->enhanced ? ", or its enhanced strains found no equilibrium," : "", failure->n ? "; " : "");
   if (failure->n)
-    snprintf(text, size, "%slargest residual at node %lld (%g, %g, %g)", element, (long long)place->tag, (double)place->X[0], (double)place->X[1],
-             (double)place->X[2]);
+    snprintf(text, size, "%slargest residual at node %lld (%g, %g, %g)", element, (long long)place->tag,
+             (double)place->X[0], (double)place->X[1], (double)place->X[2]);
   else
     snprintf(text, size, "%s", element[0] ? element : "no node is out of balance");
 }

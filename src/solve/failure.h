@@ -1,4 +1,5 @@
-/* Where a solve failed: the nodes with the largest residuals, in gmsh's tags and reference coordinates, and an element turned inside out. */
+/* Where a solve failed: the nodes with the largest residuals, in gmsh's tags and reference coordinates, and an element
+ * turned inside out. */
 #pragma once
 #include "contact/contact.h"
 #include "bodies/loads.h"
@@ -18,7 +19,8 @@ typedef struct {
   PetscBool   enhanced;            /* it may be that its enhanced strains found no equilibrium */
 } Failure;
 
-/* f: n_nodes*dim local residuals of the failed iterate; inverted: an element of this rank, or -1; contact may be NULL. Collective. */
+/* f: n_nodes*dim local residuals of the failed iterate; inverted: an element of this rank, or -1; contact may be NULL.
+ * Collective. */
 PetscErrorCode FailureLocate(Mesh, Loads, Contact, const PetscReal *f, PetscInt inverted, Failure *);
 /* "largest residual at node 17 (1, 2, 3)", for a message. Not collective. */
 void FailureText(const Failure *, char *text, size_t size);

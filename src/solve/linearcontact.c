@@ -2,8 +2,9 @@
 #include "modelimpl.h"
 #include "base/timing.h"
 
-/* Terms that change in one step, at most. As many solves at once cost about as much as two or three factors, and save as many iterations; with half as many a
-   pipe between plates has steps that are left alone, and takes 69 iterations instead of 63. */
+/* Terms that change in one step, at most. As many solves at once cost about as much as two or three factors, and save
+   as many iterations; with half as many a pipe between plates has steps that are left alone, and takes 69 iterations
+   instead of 63. */
 #define LINEAR_CONTACT_TERMS 256
 /* Numbers in all columns, at most: 0.4 GB */
 #define LINEAR_CONTACT_VALUES 5e7
@@ -13,10 +14,11 @@
 /* A linear step on the way to its end */
 typedef struct {
   ContactStep contact;
-  ActiveSet    pressing;
+  ActiveSet   pressing;
   PetscInt    n, m, rounds;     /* terms near, those that change */
-  Mat         Z[LINEAR_CONTACT_ROUNDS]; /* what a pressure of 1 on each of these, in their order, does to the free displacements */
-  PetscReal  *du, *travel;
+  Mat Z[LINEAR_CONTACT_ROUNDS]; /* what a pressure of 1 on each of these, in their order, does to the free displacements
+                                 */
+  PetscReal *du, *travel;
 } LinearContact;
 
 /* Local displacements: those carried along, if any, and scale times a global vector. */
@@ -31,7 +33,8 @@ static PetscErrorCode LocalChange(Model model, Vec x, PetscReal scale, const Pet
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode LinearContactBegin(Model model, const PetscReal *u, const PetscReal *carried, PetscReal t, Vec y, LinearContact *s)
+static PetscErrorCode LinearContactBegin(Model model, const PetscReal *u, const PetscReal *carried, PetscReal t, Vec y,
+                                         LinearContact *s)
 {
   const ActiveSetTerm *terms;
 
@@ -59,7 +62,8 @@ static PetscErrorCode LinearContactEnd(LinearContact *s)
 }
 
 /* What the terms which[m] do to the step. *able: it could be found. */
-static PetscErrorCode LinearContactAdd(Model model, LinearContact *s, PetscInt m, const PetscInt *which, PetscBool *able)
+static PetscErrorCode LinearContactAdd(Model model, LinearContact *s, PetscInt m, const PetscInt *which,
+                                       PetscBool *able)
 {
   PetscInt   rows, n;
   PetscReal *G;
@@ -68,7 +72,8 @@ static PetscErrorCode LinearContactAdd(Model model, LinearContact *s, PetscInt m
 
   PetscFunctionBeginUser;
   PetscCall(VecGetSize(model->x, &n));
-  *able = (PetscBool)(s->rounds < LINEAR_CONTACT_ROUNDS && s->m + m <= LINEAR_CONTACT_TERMS && (PetscReal)(s->m + m) * n <= LINEAR_CONTACT_VALUES);
+  *able = (PetscBool)(s->rounds < LINEAR_CONTACT_ROUNDS && s->m + m <= LINEAR_CONTACT_TERMS &&
+                      (PetscReal)(s->m + m) * n <= LINEAR_CONTACT_VALUES);
   if (!*able) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(VecGetLocalSize(model->x, &rows));
   PetscCall(ContactStepForces(s->contact, rows, m, which, &B));
@@ -92,8 +97,10 @@ static PetscErrorCode LinearContactAdd(Model model, LinearContact *s, PetscInt m
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Goes on as far as the columns at hand allow, on the first rank: what each would find by itself may differ in the last bits, and the ranks go on together. */
-static PetscErrorCode LinearContactSolve(Model model, LinearContact *s, PetscInt *m, PetscInt *which, PetscBool *converged)
+/* Goes on as far as the columns at hand allow, on the first rank: what each would find by itself may differ in the last
+ * bits, and the ranks go on together. */
+static PetscErrorCode LinearContactSolve(Model model, LinearContact *s, PetscInt *m, PetscInt *which,
+                                         PetscBool *converged)
 {
   MPI_Comm    comm = model->mesh->comm;
   PetscMPIInt rank, n;
@@ -128,8 +135,10 @@ static PetscErrorCode LinearContactGet(Model model, const LinearContact *s, Pets
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The step with what presses in the end; y stays where that goes further than what is near was looked for, as that of a body that has lost its hold. */
-static PetscErrorCode LinearContactTake(Model model, const PetscReal *carried, PetscReal t, LinearContact *s, Vec y, PetscBool *taken)
+/* The step with what presses in the end; y stays where that goes further than what is near was looked for, as that of a
+ * body that has lost its hold. */
+static PetscErrorCode LinearContactTake(Model model, const PetscReal *carried, PetscReal t, LinearContact *s, Vec y,
+                                        PetscBool *taken)
 {
   PetscReal *excess;
   PetscBool *pressed;
@@ -159,17 +168,18 @@ static PetscErrorCode LinearContactTake(Model model, const PetscReal *carried, P
 
 /* ModelSolveLinearContact - a linear step whose contact is right where it ends.
 
-   Collective. y: the step from free displacements x to x - y by the last tangent, at local displacements u and t; carried (may be NULL): local displacements
-   that go with it. The tangent holds terms that the step opens, and lacks those that it closes; Newton's method finds that out one iteration later, and so on
-   until the set is right: most of its iterations. Here the step's own problem, linear but for its contact conditions, is solved to its end, with the factor at
-   hand. Where that is not had, y stays.
+   Collective. y: the step from free displacements x to x - y by the last tangent, at local displacements u and t;
+   carried (may be NULL): local displacements that go with it. The tangent holds terms that the step opens, and lacks
+   those that it closes; Newton's method finds that out one iteration later, and so on until the set is right: most of
+   its iterations. Here the step's own problem, linear but for its contact conditions, is solved to its end, with the
+   factor at hand. Where that is not had, y stays.
 
    Source: Josephy, Newton's method for generalized equations, 1979: of second order, whatever opens or closes. */
 PetscErrorCode ModelSolveLinearContact(Model model, const PetscReal *u, const PetscReal *carried, PetscReal t, Vec y)
 {
-  PetscBool able, converged = PETSC_FALSE;
-  PetscInt *which, m      = 1;
-  LinearContact  s;
+  PetscBool     able, converged = PETSC_FALSE;
+  PetscInt     *which, m        = 1;
+  LinearContact s;
 
   PetscFunctionBeginUser;
   if (!model->contact || LinearCheckLost(model->linear)) PetscFunctionReturn(PETSC_SUCCESS);
@@ -183,8 +193,8 @@ PetscErrorCode ModelSolveLinearContact(Model model, const PetscReal *u, const Pe
     if (m) PetscCall(LinearContactAdd(model, &s, m, which, &able));
   }
   if (converged) PetscCall(LinearContactTake(model, carried, t, &s, y, &converged));
-  PetscCall(
-    PetscInfo(model->snes, "of %" PetscInt_FMT " terms near %" PetscInt_FMT " change: %s\n", s.n, s.m, converged ? "settled" : "left to the next iteration"));
+  PetscCall(PetscInfo(model->snes, "of %" PetscInt_FMT " terms near %" PetscInt_FMT " change: %s\n", s.n, s.m,
+                      converged ? "settled" : "left to the next iteration"));
   PetscCall(PetscFree(which));
   PetscCall(LinearContactEnd(&s));
   TimingEnd(TIMING_ASSEMBLY_CONTACT);

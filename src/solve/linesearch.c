@@ -1,18 +1,20 @@
 #include "modelimpl.h"
 #include "base/timing.h"
 
-/* A step that backtracking cut is looked at up to this many times its length: the last length that failed was at most ten times as long. */
+/* A step that backtracking cut is looked at up to this many times its length: the last length that failed was at most
+ * ten times as long. */
 #define LINE_AHEAD 10
 /* Longer than this part of the full one a step is the full one: backtracking cuts by a half or more. */
 #define LINE_UNCUT 0.75
-/* A part of Newton's step that counts as none but for what jumps, and the energy that rises over it, in machine epsilons of the energy. */
+/* A part of Newton's step that counts as none but for what jumps, and the energy that rises over it, in machine
+ * epsilons of the energy. */
 #define LINE_TRIFLE 1e-3
 #define LINE_RISE   64
 /* Bisections of that stretch: a stiff penalty bends the energy within a small part of it. */
 #define LINE_BISECTIONS 50
 
-/* Before the search: Newton's step with the contact that it ends in; how long Newton's step is; and whether energies can tell whether it leads downwards, which
-   where penalties are stiff ends long before the residual is small. */
+/* Before the search: Newton's step with the contact that it ends in; how long Newton's step is; and whether energies
+   can tell whether it leads downwards, which where penalties are stiff ends long before the residual is small. */
 static PetscErrorCode ModelMeasureStep(SNESLineSearch search, Vec x, Vec y, PetscBool *changed, void *context)
 {
   Model     model = context;
@@ -27,14 +29,17 @@ static PetscErrorCode ModelMeasureStep(SNESLineSearch search, Vec x, Vec y, Pets
   PetscCall(VecNorm(y, NORM_2, &model->work->step));
   if (model->work->near || !LoadsConservative(model->loads)) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(SNESLineSearchGetSNES(search, &snes));
-  if (model->work->energy == 0) PetscCall(SNESComputeObjective(snes, x, &energy)); /* none was evaluated since the step began */
+  if (model->work->energy == 0)
+    PetscCall(SNESComputeObjective(snes, x, &energy)); /* none was evaluated since the step began */
   PetscCall(SNESLineSearchGetVecs(search, NULL, &F, NULL, NULL, NULL));
   PetscCall(VecDotRealPart(F, y, &slope));
-  if (PetscAbsReal(slope) <= LINE_RISE * PETSC_MACHINE_EPSILON * PetscAbsReal(model->work->energy)) model->work->near = PETSC_TRUE;
+  if (PetscAbsReal(slope) <= LINE_RISE * PETSC_MACHINE_EPSILON * PetscAbsReal(model->work->energy))
+    model->work->near = PETSC_TRUE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* After it: w is x - cut y, and x - full y is where Newton's step ends. Releases of PETSc differ in whether y is the whole step by now or what is left of it.
+/* After it: w is x - cut y, and x - full y is where Newton's step ends. Releases of PETSc differ in whether y is the
+ * whole step by now or what is left of it.
  */
 static PetscErrorCode StepLength(Model model, Vec x, Vec y, Vec w, PetscReal *cut, PetscReal *full)
 {
@@ -61,8 +66,8 @@ static PetscErrorCode LinePlace(Model model, int place, PetscReal lambda, Vec x,
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Where on the line up to `to` the energy is least: contact by its gaps, all else by its tangent at 0, where the slope of the sum is `slope` and its curvature
-   by the whole tangent `curvature`. */
+/* Where on the line up to `to` the energy is least: contact by its gaps, all else by its tangent at 0, where the slope
+   of the sum is `slope` and its curvature by the whole tangent `curvature`. */
 static PetscErrorCode LineLeast(Model model, PetscReal slope, PetscReal curvature, PetscReal to, PetscReal *least)
 {
   PetscReal from = 0, start[2], here;
@@ -96,11 +101,13 @@ static PetscErrorCode Curvature(Model model, Vec y, PetscReal *curvature)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Where backtracking cut a step: the place on it where the energy is least, if that is lower. Backtracking stops before the first kink that a term which closes
-   puts into the energy, as far from it as its factors will have it; the tangent there knows nothing of that term, the next step runs into the same kink, and
-   with stiff penalties the iterates creep up to it. The least place is behind the kink. (Sun 1997, Math. Program. 76, 451-467: with exact line searches
+/* Where backtracking cut a step: the place on it where the energy is least, if that is lower. Backtracking stops before
+   the first kink that a term which closes puts into the energy, as far from it as its factors will have it; the tangent
+   there knows nothing of that term, the next step runs into the same kink, and with stiff penalties the iterates creep
+   up to it. The least place is behind the kink. (Sun 1997, Math. Program. 76, 451-467: with exact line searches
    Newton's method for convex piecewise quadratic functions ends after finitely many steps.) */
-static PetscErrorCode ModelLengthenStep(SNESLineSearch search, Vec x, Vec y, Vec w, PetscBool *changed_y, PetscBool *changed_w, void *context)
+static PetscErrorCode ModelLengthenStep(SNESLineSearch search, Vec x, Vec y, Vec w, PetscBool *changed_y,
+                                        PetscBool *changed_w, void *context)
 {
   Model     model = context;
   SNES      snes;
@@ -124,8 +131,8 @@ static PetscErrorCode ModelLengthenStep(SNESLineSearch search, Vec x, Vec y, Vec
   PetscCall(LineLeast(model, -slope, curvature, ahead, &least));
   PetscCall(VecWAXPY(w, -least, y, x));
   PetscCall(SNESComputeObjective(snes, w, &after));
-  PetscCall(PetscInfo(snes, "%g of the step instead of %g: energy %.16g instead of %.16g\n", (double)(least / full), (double)(cut / full), (double)after,
-                      (double)before));
+  PetscCall(PetscInfo(snes, "%g of the step instead of %g: energy %.16g instead of %.16g\n", (double)(least / full),
+                      (double)(cut / full), (double)after, (double)before));
   *changed_w = PETSC_TRUE;
   if (after < before) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(VecWAXPY(w, -cut, y, x));
@@ -133,9 +140,9 @@ static PetscErrorCode ModelLengthenStep(SNESLineSearch search, Vec x, Vec y, Vec
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ModelLocateEdge - does the failed iterate rest on an edge between facets? Newton's step is to lower the energy, yet it rises from the first trifle on, while
-   the normal of a slave point in contact jumps: the edge is the lowest place, the forces of the facets on either side push to the edge, and no equilibrium is
-   near.
+/* ModelLocateEdge - does the failed iterate rest on an edge between facets? Newton's step is to lower the energy, yet
+   it rises from the first trifle on, while the normal of a slave point in contact jumps: the edge is the lowest place,
+   the forces of the facets on either side push to the edge, and no equilibrium is near.
 
    Collective, after a failed SNESSolve(). place: a slave node there. */
 PetscErrorCode ModelLocateEdge(Model model, PetscBool *found, ContactPlace *place)

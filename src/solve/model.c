@@ -3,18 +3,19 @@
 #include "matrix/sumoperator.h"
 #include "base/timing.h"
 
-const char *const SolveResults[] = {"converged",
-                                    "Newton's method did not converge within solver.max_iterations",
-                                    "the line search found no lower energy",
-                                    "an element turned inside out",
-                                    "the linear system is singular (is a body free to move?) or its solver failed",
-                                    "the direct solver ran out of workspace (PETSc option mat_mumps_icntl_14 gives it more)",
-                                    "the contact lists did not settle",
-                                    "the contact set repeats itself",
-                                    "contact was lost behind a master",
-                                    "a body that is held by springs only (stabilise) does not come to rest",
-                                    "the penetrations did not come into the window of the adjusted penalty",
-                                    "not-a-number in the residual"};
+const char *const SolveResults[] = {
+  "converged",
+  "Newton's method did not converge within solver.max_iterations",
+  "the line search found no lower energy",
+  "an element turned inside out",
+  "the linear system is singular (is a body free to move?) or its solver failed",
+  "the direct solver ran out of workspace (PETSc option mat_mumps_icntl_14 gives it more)",
+  "the contact lists did not settle",
+  "the contact set repeats itself",
+  "contact was lost behind a master",
+  "a body that is held by springs only (stabilise) does not come to rest",
+  "the penetrations did not come into the window of the adjusted penalty",
+  "not-a-number in the residual"};
 
 /* ModelCreate - joins elasticity, loads, contact and the nonlinear solver.
 
@@ -80,7 +81,8 @@ PetscErrorCode ModelDestroy(Model *model)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ModelPlace - displacements, contact lists and gaps at t = 0, as they are: to be looked at before ModelSetUp() judges them.
+/* ModelPlace - displacements, contact lists and gaps at t = 0, as they are: to be looked at before ModelSetUp() judges
+   them.
 
    Collective. t: load parameter where the first step goes, whose lists these are then; 0: no step follows. */
 PetscErrorCode ModelPlace(Model model, PetscReal t)
@@ -123,11 +125,13 @@ PetscBool ModelHasFormulation(Scene scene, Formulation formulation)
 {
   PetscBool has = PETSC_FALSE;
 
-  for (int b = 0; b < scene->n_bodies; b++) has = (PetscBool)(has || (!scene->bodies[b].rigid && scene->bodies[b].formulation == formulation));
+  for (int b = 0; b < scene->n_bodies; b++)
+    has = (PetscBool)(has || (!scene->bodies[b].rigid && scene->bodies[b].formulation == formulation));
   return has;
 }
 
-/* ModelGetAccepted - local displacements (length, n_nodes*dim, the model's) and load parameter of the accepted state. Not collective. */
+/* ModelGetAccepted - local displacements (length, n_nodes*dim, the model's) and load parameter of the accepted state.
+ * Not collective. */
 PetscErrorCode ModelGetAccepted(Model model, const PetscReal **u, PetscReal *t)
 {
   PetscFunctionBeginUser;
@@ -145,7 +149,8 @@ PetscErrorCode ModelAccept(Model model)
   PetscBool       ok;
 
   PetscFunctionBeginUser;
-  PetscCall(ModelResidual(model, model->u, model->t, model->t, &ok)); /* reactions, gaps and forces of exactly this state */
+  PetscCall(
+    ModelResidual(model, model->u, model->t, model->t, &ok)); /* reactions, gaps and forces of exactly this state */
   PetscCall(ModelMotion(model, model->u, model->t, &motion));
   if (stepped) work->rate = motion / (model->t - work->accepted_t);
   model->force_scale = PetscMax(model->force_scale, work->scale);
@@ -185,15 +190,16 @@ PetscErrorCode ModelRestore(Model model)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ModelArchive - saves or takes over the accepted state: displacements and the way there, load parameter, scales, contact.
+/* ModelArchive - saves or takes over the accepted state: displacements and the way there, load parameter, scales,
+   contact.
 
-   Collective. To be saved between steps; to be loaded into a model fresh from ModelCreate(), in the place of ModelSetUp(). The model then stands as
-   after the ModelAccept() of that step, forces and gaps included. */
+   Collective. To be saved between steps; to be loaded into a model fresh from ModelCreate(), in the place of
+   ModelSetUp(). The model then stands as after the ModelAccept() of that step, forces and gaps included. */
 PetscErrorCode ModelArchive(Model model, Archive archive)
 {
   const Mesh mesh = model->mesh;
   ModelWork *work = model->work;
-  Hdf5Table       nodes;
+  Hdf5Table  nodes;
   PetscBool  ok;
 
   PetscFunctionBeginUser;
@@ -218,10 +224,11 @@ PetscErrorCode ModelArchive(Model model, Archive archive)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ModelReaction - the force that supports and imposed displacements put on a group's nodes in the accepted state, the same on all ranks.
+/* ModelReaction - the force that supports and imposed displacements put on a group's nodes in the accepted state, the
+   same on all ranks.
 
-   Collective. Sums the residual over the group's prescribed dofs, those of its edges that it shares with other prescribed surfaces too;
-   axisymmetric: over 360 degrees. force[dim..2] are 0. */
+   Collective. Sums the residual over the group's prescribed dofs, those of its edges that it shares with other
+   prescribed surfaces too; axisymmetric: over 360 degrees. force[dim..2] are 0. */
 PetscErrorCode ModelReaction(Model model, const MeshGroup *group, PetscReal force[3])
 {
   const int dim = model->mesh->dim;
@@ -254,26 +261,33 @@ static PetscErrorCode ModelContactEffects(Scene scene, char *text, size_t size)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ModelEffects - what the scene calls for, in words with commas between, into text[size]. Not collective, same on all ranks. */
+/* ModelEffects - what the scene calls for, in words with commas between, into text[size]. Not collective, same on all
+ * ranks. */
 PetscErrorCode ModelEffects(Model model, char *text, size_t size)
 {
   Scene     scene  = model->scene;
-  PetscBool moving = PETSC_FALSE, body_force = PETSC_FALSE, adjusted = PETSC_FALSE, augmented = PETSC_FALSE, surface = PETSC_FALSE;
-  size_t    start;
+  PetscBool moving = PETSC_FALSE, body_force = PETSC_FALSE, adjusted = PETSC_FALSE, augmented = PETSC_FALSE,
+            surface = PETSC_FALSE;
+  size_t start;
 
   PetscFunctionBeginUser;
-  for (int b = 0; b < scene->n_bodies; b++) moving = (PetscBool)(moving || (scene->bodies[b].rigid && scene->bodies[b].motion.n));
+  for (int b = 0; b < scene->n_bodies; b++)
+    moving = (PetscBool)(moving || (scene->bodies[b].rigid && scene->bodies[b].motion.n));
   for (int c = 0; c < scene->n_contacts; c++) adjusted = (PetscBool)(adjusted || scene->contacts[c].adjust);
   for (int c = 0; c < scene->n_contacts; c++) augmented = (PetscBool)(augmented || scene->contacts[c].augment);
-  for (int l = 0; l < scene->n_loads; l++) body_force = (PetscBool)(body_force || scene->loads[l].kind == LOAD_BODY_FORCE);
-  for (int c = 0; c < scene->n_contacts; c++) surface = (PetscBool)(surface || scene->contacts[c].formulation == CONTACT_SURFACE_TO_SURFACE);
-  PetscCall(PetscSNPrintf(text, size, "%s%s%s", scene->kinematics == KINEMATICS_FINITE ? "finite strain" : "small strain",
+  for (int l = 0; l < scene->n_loads; l++)
+    body_force = (PetscBool)(body_force || scene->loads[l].kind == LOAD_BODY_FORCE);
+  for (int c = 0; c < scene->n_contacts; c++)
+    surface = (PetscBool)(surface || scene->contacts[c].formulation == CONTACT_SURFACE_TO_SURFACE);
+  PetscCall(PetscSNPrintf(text, size, "%s%s%s",
+                          scene->kinematics == KINEMATICS_FINITE ? "finite strain" : "small strain",
                           ModelHasFormulation(scene, FORMULATION_ENHANCED) ? ", enhanced strains" : "",
                           ModelHasFormulation(scene, FORMULATION_FBAR) ? ", mean dilatation" : ""));
   PetscCall(ModelContactEffects(scene, text, size));
   PetscCall(PetscStrlen(text, &start));
-  PetscCall(PetscSNPrintf(text + start, size - start, "%s%s%s%s%s%s", surface ? ", surface to surface" : "", adjusted ? ", adjusted penalty" : "",
-                          augmented ? ", augmented penalty" : "", LoadsConservative(model->loads) ? "" : ", follower load", body_force ? ", body force" : "",
+  PetscCall(PetscSNPrintf(text + start, size - start, "%s%s%s%s%s%s", surface ? ", surface to surface" : "",
+                          adjusted ? ", adjusted penalty" : "", augmented ? ", augmented penalty" : "",
+                          LoadsConservative(model->loads) ? "" : ", follower load", body_force ? ", body force" : "",
                           moving ? ", rigid motion" : ""));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -1,7 +1,8 @@
-/* The discrete problem: elasticity, loads and contact behind SNES callbacks, and the state that a step accepts or takes back.
+/* The discrete problem: elasticity, loads and contact behind SNES callbacks, and the state that a step accepts or takes
+   back.
 
-   ModelPlace() and ModelSetUp() once, then ModelSolve() finds equilibrium at a load parameter; ModelAccept() makes it the state that ModelRestore() returns
-   to. The model knows nothing of step sizes. */
+   ModelPlace() and ModelSetUp() once, then ModelSolve() finds equilibrium at a load parameter; ModelAccept() makes it
+   the state that ModelRestore() returns to. The model knows nothing of step sizes. */
 #pragma once
 #include "contact/contact.h"
 #include "bodies/elasticity.h"
@@ -35,29 +36,31 @@ typedef struct {
   PetscInt    cuts;        /* iterations that the line search shortened */
   PetscReal   residual;    /* |R|_2 / F_ref at the end */
   PetscInt    relaxed;     /* times the springs of stabilised pairs were relaxed and the step solved on */
-  PetscReal   taken, left; /* energy that the springs took out on the way; what is left in them at the end, as a part of that in elements and contact */
-  PetscInt    cycles;      /* times the contact set repeated itself and Newton's steps were shortened */
-  char        cycle[256];  /* the last of these: its period and nodes, in gmsh's tags */
-  char        detail[256]; /* where it failed, in gmsh's tags */
-  Failure     failure;     /* and more of that, if it did */
+  PetscReal   taken, left; /* energy that the springs took out on the way; what is left in them at the end, as a part of
+                              that in elements and contact */
+  PetscInt cycles;         /* times the contact set repeated itself and Newton's steps were shortened */
+  char     cycle[256];     /* the last of these: its period and nodes, in gmsh's tags */
+  char     detail[256];    /* where it failed, in gmsh's tags */
+  Failure  failure;        /* and more of that, if it did */
 } SolveReport;
 
 typedef struct _n_Model {
-  Scene                scene;
-  Mesh                 mesh;
-  Elasticity           elasticity;
-  Loads                loads;
-  Contact              contact; /* NULL: the scene has none */
-  SNES                 snes;
-  LinearCheck          linear; /* of the solver's KSP */
-  Vec                  x;      /* free displacements */
-  Mat                  A;      /* K + C: P, or an operator of its own where factors take contact as a border */
-  Mat                  P;      /* K + C or K; the elasticity's */
-  PetscReal           *u;      /* n_nodes*dim local displacements, prescribed ones included, at load parameter t */
-  PetscReal            t;
-  PetscReal            force_scale; /* F_ref of the accepted states: the largest norm so far of the unassembled internal, contact and external forces */
+  Scene       scene;
+  Mesh        mesh;
+  Elasticity  elasticity;
+  Loads       loads;
+  Contact     contact; /* NULL: the scene has none */
+  SNES        snes;
+  LinearCheck linear; /* of the solver's KSP */
+  Vec         x;      /* free displacements */
+  Mat         A;      /* K + C: P, or an operator of its own where factors take contact as a border */
+  Mat         P;      /* K + C or K; the elasticity's */
+  PetscReal  *u;      /* n_nodes*dim local displacements, prescribed ones included, at load parameter t */
+  PetscReal   t;
+  PetscReal   force_scale; /* F_ref of the accepted states: the largest norm so far of the unassembled internal, contact
+                              and external forces */
   struct _n_ModelWork *work;
-} * Model;
+} *Model;
 
 PetscErrorCode ModelCreate(Scene, Mesh, Model *);
 PetscErrorCode ModelDestroy(Model *);
@@ -68,13 +71,14 @@ PetscErrorCode ModelAssemble(Model);
 /* Refusal of initial overlaps, the state at t = 0 accepted. Collective. */
 PetscErrorCode ModelSetUp(Model);
 PetscErrorCode ModelSolve(Model, PetscReal t, SolveReport *);
-/* Where one linear solve, for which the accepted state's contact stays as it is, leads at t: u[n_nodes*dim], the state is not changed.
-   Its solve is added to the report. The contact lists are those of the way to t. */
+/* Where one linear solve, for which the accepted state's contact stays as it is, leads at t: u[n_nodes*dim], the state
+   is not changed. Its solve is added to the report. The contact lists are those of the way to t. */
 PetscErrorCode ModelLookAhead(Model, PetscReal t, PetscReal *u, SolveReport *);
 PetscErrorCode ModelGetAccepted(Model, const PetscReal **u, PetscReal *t);
 PetscErrorCode ModelAccept(Model);
 PetscErrorCode ModelRestore(Model);
-/* The accepted state and all else that the next steps depend on; loading takes the place of ModelSetUp(). Collective. */
+/* The accepted state and all else that the next steps depend on; loading takes the place of ModelSetUp(). Collective.
+ */
 PetscErrorCode ModelArchive(Model, Archive);
 /* The force that supports and imposed displacements put on the nodes of a group, at the accepted state. Collective. */
 PetscErrorCode ModelReaction(Model, const MeshGroup *, PetscReal force[3]);

@@ -4,12 +4,14 @@
 #include "matrix/sumoperator.h"
 #include "base/timing.h"
 
-/* Energy of a state with an inverted element: above any other, yet its square is a number, which the line search takes. */
+/* Energy of a state with an inverted element: above any other, yet its square is a number, which the line search takes.
+ */
 #define MODEL_INVERTED 1e100
-/* Below this residual (relative to F_ref) the energies that the line search compares differ by round-off only (their differences go with the
-   square of the residual); from there on it compares residuals. */
+/* Below this residual (relative to F_ref) the energies that the line search compares differ by round-off only (their
+   differences go with the square of the residual); from there on it compares residuals. */
 #define MODEL_ENERGY_ROUND_OFF 1e-6
-/* Residuals compared as if they were energies: times this, so that any decrease beats the slope the line search expects. */
+/* Residuals compared as if they were energies: times this, so that any decrease beats the slope the line search
+ * expects. */
 #define MODEL_RESIDUAL_WEIGHT 1e30
 /* Each time the contact set repeats itself Newton's steps become this much shorter, ... */
 #define MODEL_DAMPING 0.5
@@ -17,18 +19,19 @@
 #define MODEL_MAX_DAMPED 3
 /* Iterations without any change of the set after which steps have their full length again. */
 #define MODEL_STEADY 2
-/* The last tangent serves once more where it should end the solve: the next residual is then about twice this one times the last contraction
-   (Deuflhard, Newton Methods for Nonlinear Problems, 2004, sec. 2.2, simplified Newton), with a factor two for what that does not know. Not that from a first
-   residual, which is mostly stiff motions that any tangent takes away: on a plate on a cylinder it promises 200 times too much. */
+/* The last tangent serves once more where it should end the solve: the next residual is then about twice this one times
+   the last contraction (Deuflhard, Newton Methods for Nonlinear Problems, 2004, sec. 2.2, simplified Newton), with a
+   factor two for what that does not know. Not that from a first residual, which is mostly stiff motions that any
+   tangent takes away: on a plate on a cylinder it promises 200 times too much. */
 #define MODEL_TANGENT_REUSE 4
-/* With softened penalties a solve is to find what touches, not more: this residual (relative to F_ref) is enough. Ten times less or three times more cost a
-   pipe between plates more iterations. */
+/* With softened penalties a solve is to find what touches, not more: this residual (relative to F_ref) is enough. Ten
+   times less or three times more cost a pipe between plates more iterations. */
 #define MODEL_SOFT_ENOUGH 0.1
 /* Newton is limited by its iterations, not by the line search's evaluations. */
 #define MODEL_MAX_FUNCTIONS 1000000
 
-/* Residual at local displacements u into work->f, contact at t_contact, loads at t. ok: every element is in order, on all ranks: a line search that
-   hears of a domain error on one rank alone leaves the others waiting. */
+/* Residual at local displacements u into work->f, contact at t_contact, loads at t. ok: every element is in order, on
+   all ranks: a line search that hears of a domain error on one rank alone leaves the others waiting. */
 PetscErrorCode ModelResidual(Model model, const PetscReal *u, PetscReal t, PetscReal t_contact, PetscBool *ok)
 {
   ModelWork *work   = model->work;
@@ -50,7 +53,7 @@ PetscErrorCode ModelResidual(Model model, const PetscReal *u, PetscReal t, Petsc
   sum[3] = mine ? 0 : 1;
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sum, 4, MPIU_REAL, MPI_SUM, model->mesh->comm));
   work->scale = PetscSqrtReal(PetscMax(sum[0], PetscMax(sum[1], sum[2])));
-  *ok         = sum[3] > 0 ? PETSC_FALSE : PETSC_TRUE; /* on all ranks: line searches act on it without asking the others */
+  *ok = sum[3] > 0 ? PETSC_FALSE : PETSC_TRUE; /* on all ranks: line searches act on it without asking the others */
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -122,7 +125,8 @@ static PetscErrorCode ModelObjective(SNES snes, Vec x, PetscReal *objective, voi
 }
 
 /* The contact part C of the tangent at (u, t), with its place in the matrix; how many of its terms are other ones. */
-static PetscErrorCode ModelContactTangent(Model model, const PetscReal *u, PetscReal t, Mat *C, PetscBool *changed, PetscInt *terms)
+static PetscErrorCode ModelContactTangent(Model model, const PetscReal *u, PetscReal t, Mat *C, PetscBool *changed,
+                                          PetscInt *terms)
 {
   PetscFunctionBeginUser;
   TimingBegin(TIMING_ASSEMBLY_CONTACT);
@@ -150,11 +154,12 @@ static PetscErrorCode ModelUpdateFactor(Model model, PetscInt terms)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Does contact couple so many unknowns that factors of bodies and contact have much more fill than those of bodies? On lines it does not. Where PETSc is to
-   test the tangent, or to make its own, all of it is to be in the matrix. */
+/* Does contact couple so many unknowns that factors of bodies and contact have much more fill than those of bodies? On
+   lines it does not. Where PETSc is to test the tangent, or to make its own, all of it is to be in the matrix. */
 static PetscErrorCode ModelCouples(Model model, PetscBool *couples)
 {
-  static const char *const options[] = {"-snes_test_jacobian", "-snes_fd", "-snes_fd_color", "-snes_mf", "-snes_mf_operator"};
+  static const char *const options[] = {"-snes_test_jacobian", "-snes_fd", "-snes_fd_color", "-snes_mf",
+                                        "-snes_mf_operator"};
 
   PetscFunctionBeginUser;
   *couples = (PetscBool)(model->contact && model->mesh->dim == 3 && ContactHasFits(model->contact));
@@ -173,7 +178,8 @@ static PetscErrorCode ModelOrder(Model model)
   PetscBool couples = PETSC_FALSE;
 
   PetscFunctionBeginUser;
-  if (model->work->ordered || ModelIsLinear(model)) PetscFunctionReturn(PETSC_SUCCESS); /* a single solve is done sooner with any */
+  if (model->work->ordered || ModelIsLinear(model))
+    PetscFunctionReturn(PETSC_SUCCESS); /* a single solve is done sooner with any */
   model->work->ordered = PETSC_TRUE;
   PetscCall(ModelCouples(model, &couples));
   PetscCall(LinearSolverOrder(model->work->solver, model->P, couples));
@@ -243,13 +249,15 @@ PetscErrorCode ModelRoundOff(Model model, PetscReal *force)
   PetscReal most = 0;
 
   PetscFunctionBeginUser;
-  for (PetscInt i = 0; i < model->mesh->n_nodes * model->mesh->dim; i++) most = PetscMax(most, PetscAbsReal(model->work->trial[i]));
+  for (PetscInt i = 0; i < model->mesh->n_nodes * model->mesh->dim; i++)
+    most = PetscMax(most, PetscAbsReal(model->work->trial[i]));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &most, 1, MPIU_REAL, MPI_MAX, model->mesh->comm));
   *force = MODEL_ROUND_OFF * PETSC_MACHINE_EPSILON * model->work->stiffness * most;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Ends the solve, without being a failure, when a slave point has left its lists, if new ones may still be made in this step. */
+/* Ends the solve, without being a failure, when a slave point has left its lists, if new ones may still be made in this
+ * step. */
 static PetscErrorCode ModelLeaveLists(Model model, SNESConvergedReason *reason)
 {
   PetscBool within;
@@ -262,7 +270,8 @@ static PetscErrorCode ModelLeaveLists(Model model, SNESConvergedReason *reason)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* A contact set that repeats itself: shorter steps leave the cycle, as the iterates then stop between its states; if not, the solve ends. */
+/* A contact set that repeats itself: shorter steps leave the cycle, as the iterates then stop between its states; if
+ * not, the solve ends. */
 static PetscErrorCode ModelBreakCycle(Model model, PetscReal fnorm, SNESConvergedReason *reason)
 {
   ModelWork     *work = model->work;
@@ -284,10 +293,12 @@ static PetscErrorCode ModelBreakCycle(Model model, PetscReal fnorm, SNESConverge
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Keeps the tangent and its factors for the next iteration where that will be the last one anyway. norm: of this iterate, allowed: of the last. */
+/* Keeps the tangent and its factors for the next iteration where that will be the last one anyway. norm: of this
+ * iterate, allowed: of the last. */
 static PetscErrorCode ModelReuseTangent(Model model, PetscInt it, PetscReal norm, PetscReal allowed)
 {
-  const PetscBool reuse = it > 1 && MODEL_TANGENT_REUSE * norm * norm <= allowed * model->work->norm ? PETSC_TRUE : PETSC_FALSE;
+  const PetscBool reuse =
+    it > 1 && MODEL_TANGENT_REUSE * norm * norm <= allowed * model->work->norm ? PETSC_TRUE : PETSC_FALSE;
 
   PetscFunctionBeginUser;
   PetscCall(SNESSetLagJacobian(model->snes, reuse ? -1 : 1));
@@ -309,9 +320,10 @@ static PetscErrorCode ModelCountCut(Model model, PetscInt it)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Converged when the residual is small against the forces that balance in it, never against its own first value; or is nothing but round-off.
-   Where penalties follow the penetrations, these must have settled too. */
-static PetscErrorCode ModelConverged(SNES snes, PetscInt it, PetscReal xnorm, PetscReal snorm, PetscReal fnorm, SNESConvergedReason *reason, void *context)
+/* Converged when the residual is small against the forces that balance in it, never against its own first value; or is
+   nothing but round-off. Where penalties follow the penetrations, these must have settled too. */
+static PetscErrorCode ModelConverged(SNES snes, PetscInt it, PetscReal xnorm, PetscReal snorm, PetscReal fnorm,
+                                     SNESConvergedReason *reason, void *context)
 {
   Model           model = context;
   const PetscReal scale = PetscMax(model->force_scale, model->work->scale);
@@ -325,9 +337,9 @@ static PetscErrorCode ModelConverged(SNES snes, PetscInt it, PetscReal xnorm, Pe
   PetscCall(ModelCountCut(model, it));
   PetscCall(ModelRoundOff(model, &round_off));
   if (model->contact) PetscCall(ContactGapsConverged(model->contact, &converged));
-  *reason               = SNES_CONVERGED_ITERATING;
-  model->work->near     = fnorm <= MODEL_ENERGY_ROUND_OFF * scale ? PETSC_TRUE : PETSC_FALSE;
-  allowed               = PetscMax((model->work->soft ? MODEL_SOFT_ENOUGH : model->scene->solver.tolerance) * scale, round_off);
+  *reason           = SNES_CONVERGED_ITERATING;
+  model->work->near = fnorm <= MODEL_ENERGY_ROUND_OFF * scale ? PETSC_TRUE : PETSC_FALSE;
+  allowed = PetscMax((model->work->soft ? MODEL_SOFT_ENOUGH : model->scene->solver.tolerance) * scale, round_off);
   model->work->balanced = fnorm <= allowed ? PETSC_TRUE : PETSC_FALSE;
   PetscCall(ModelReuseTangent(model, it, fnorm, allowed));
   if (!it && model->work->start == 0 && !model->work->soft) model->work->start = fnorm;
@@ -345,8 +357,8 @@ static PetscErrorCode ModelConverged(SNES snes, PetscInt it, PetscReal xnorm, Pe
 }
 
 /* Keeps the first message of an error instead of printing its trace; context: char[256]. */
-static PetscErrorCode KeepMessage(MPI_Comm comm, int line, const char *function, const char *file, PetscErrorCode code, PetscErrorType type,
-                                  const char *message, void *context)
+static PetscErrorCode KeepMessage(MPI_Comm comm, int line, const char *function, const char *file, PetscErrorCode code,
+                                  PetscErrorType type, const char *message, void *context)
 {
   char *kept = context;
 
@@ -375,7 +387,9 @@ static PetscErrorCode ModelReadOptions(Model model, PetscErrorCode (*read)(SNES)
   PetscCall(PetscPushErrorHandler(KeepMessage, message));
   code = read(model->snes);
   PetscCall(PetscPopErrorHandler());
-  if (code) PetscCall(RefuseInput(model->mesh->comm, "a PETSc option (command line, environment or the scene's petsc) was refused: %s", message));
+  if (code)
+    PetscCall(RefuseInput(model->mesh->comm,
+                          "a PETSc option (command line, environment or the scene's petsc) was refused: %s", message));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -401,7 +415,8 @@ PetscErrorCode ModelCreateSNES(Model model)
   PetscCall(ModelReadOptions(model, CheckFactorOptions));
   PetscCall(LinearSolverCreate(ksp, model->mesh, model->scene, symmetric, &model->work->solver));
   PetscCall(ModelReadOptions(model, SNESSetFromOptions));
-  PetscCall(LinearCheckCreate(ksp, model->scene->solver.tolerance, LinearSolverKept(model->work->solver), &model->linear));
+  PetscCall(
+    LinearCheckCreate(ksp, model->scene->solver.tolerance, LinearSolverKept(model->work->solver), &model->linear));
   PetscCall(SNESLineSearchGetDamping(search, &model->work->damping));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -458,8 +473,10 @@ PetscErrorCode ModelNewton(Model model, SolveReport *report)
   report->cuts += model->work->cuts;
   report->result = ResultFromReason(reason);
   if (model->work->cycling) report->result = SOLVE_CYCLE;
-  if (report->result == SOLVE_LINE_SEARCH && model->work->balanced) report->result = SOLVE_CONVERGED; /* gaps as settled as round-off lets them be */
-  if (report->result == SOLVE_LINEAR || (report->result != SOLVE_CONVERGED && its > 0 && LinearCheckLost(model->linear)))
+  if (report->result == SOLVE_LINE_SEARCH && model->work->balanced)
+    report->result = SOLVE_CONVERGED; /* gaps as settled as round-off lets them be */
+  if (report->result == SOLVE_LINEAR ||
+      (report->result != SOLVE_CONVERGED && its > 0 && LinearCheckLost(model->linear)))
     PetscCall(ModelLinearFailure(model, &report->result));
   PetscCall(ModelTrial(model, model->x)); /* whatever SNES looked at last */
   report->residual = model->work->scale > 0 ? norm / PetscMax(model->force_scale, model->work->scale) : 0;

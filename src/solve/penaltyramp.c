@@ -1,17 +1,20 @@
 #include "modelimpl.h"
 
-/* Penalties are softened where contact that the prediction did not count on stores, before Newton's method starts, this part of the elastic energy that the
-   step brings. On a pipe between plates Newton's method takes three to five iterations below 0.15, seven to twenty, and most of its failures, above 0.2; a
-   plate on a cylinder is better off without below 0.15. */
+/* Penalties are softened where contact that the prediction did not count on stores, before Newton's method starts, this
+   part of the elastic energy that the step brings. On a pipe between plates Newton's method takes three to five
+   iterations below 0.15, seven to twenty, and most of its failures, above 0.2; a plate on a cylinder is better off
+   without below 0.15. */
 #define RAMP_UNPREDICTED 0.15
 /* That energy is not asked to be less than this part of the elastic energy: a step may bring none at all. */
 #define RAMP_NEGLIGIBLE 0.003
-/* Penalties are raised until contact, where the last ones left it, would store this part of the elastic energy. With 0.1 a pipe between plates that takes its
-   whole load in one step needs 16 to 20 iterations instead of 9 to 17. */
+/* Penalties are raised until contact, where the last ones left it, would store this part of the elastic energy. With
+   0.1 a pipe between plates that takes its whole load in one step needs 16 to 20 iterations instead of 9 to 17. */
 #define RAMP_RAISED 0.03
-/* Each soft solve's penalties are this many times those before, at least: where the next ones begin, contact then stores up to ten times the energy. */
+/* Each soft solve's penalties are this many times those before, at least: where the next ones begin, contact then
+ * stores up to ten times the energy. */
 #define RAMP_FACTOR 10
-/* No softer than this part of the automatic penalty, which is the stiffness of the elements below the surface: bodies would pass through each other. */
+/* No softer than this part of the automatic penalty, which is the stiffness of the elements below the surface: bodies
+ * would pass through each other. */
 #define RAMP_LEAST 0.1
 
 /* Elastic energy (all ranks) at model->x, and what it is more than in the accepted state, or less */
@@ -30,9 +33,10 @@ static PetscErrorCode ModelElasticEnergy(Model model, PetscReal *energy, PetscRe
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The stiffest penalties, a power of RAMP_FACTOR below the full ones and not below `least`, whose energy at model->x is small. unforeseen: only that of terms
-   which the prediction took for open counts. All in automatic penalties. */
-static PetscErrorCode ModelChooseSoftness(Model model, PetscBool unpredicted, PetscReal least, PetscReal full, PetscReal *most)
+/* The stiffest penalties, a power of RAMP_FACTOR below the full ones and not below `least`, whose energy at model->x is
+   small. unforeseen: only that of terms which the prediction took for open counts. All in automatic penalties. */
+static PetscErrorCode ModelChooseSoftness(Model model, PetscBool unpredicted, PetscReal least, PetscReal full,
+                                          PetscReal *most)
 {
   PetscReal elastic = 0, change = 0, allowed, energy;
 
@@ -65,15 +69,18 @@ static PetscErrorCode ModelSolveSoft(Model model, PetscReal most, SolveReport *r
   PetscCall(ModelNewton(model, report));
   PetscCall(ContactSoften(model->contact, PETSC_MAX_REAL));
   work->soft = PETSC_FALSE;
-  PetscCall(PetscInfo(model->snes, "penalties softened to %g automatic ones: %" PetscInt_FMT " iterations\n", (double)most, report->newton - spent));
+  PetscCall(PetscInfo(model->snes, "penalties softened to %g automatic ones: %" PetscInt_FMT " iterations\n",
+                      (double)most, report->newton - spent));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ModelRampPenalty - from the prediction to where it is known what touches, where the prediction ran into contact that it did not count on.
+/* ModelRampPenalty - from the prediction to where it is known what touches, where the prediction ran into contact that
+   it did not count on.
 
-   Collective. With stiff penalties every node that comes into contact puts a kink into the energy, and the line search goes from one to the next; with soft
-   ones the nodes share the load at once. Each solve is made with stiffer ones from where the last one ended, none to its end; the next one, with the full
-   penalties, is the caller's. model->x is where it ended; costs and failures are added to the report. */
+   Collective. With stiff penalties every node that comes into contact puts a kink into the energy, and the line search
+   goes from one to the next; with soft ones the nodes share the load at once. Each solve is made with stiffer ones from
+   where the last one ended, none to its end; the next one, with the full penalties, is the caller's. model->x is where
+   it ended; costs and failures are added to the report. */
 PetscErrorCode ModelRampPenalty(Model model, SolveReport *report)
 {
   PetscReal full, most;

@@ -1,16 +1,20 @@
 #include "modelimpl.h"
 #include "base/timing.h"
 
-/* A linear step that moves the ends of a cell's edge against each other by more than this part of its length is taken in pieces: a rotation by as much comes
-   out as a stretch by a sixth. On a pipe between plates 0.5 to 0.75 serve; shorter pieces, each of which may leave the contact, cost more than they save. */
+/* A linear step that moves the ends of a cell's edge against each other by more than this part of its length is taken
+   in pieces: a rotation by as much comes out as a stretch by a sixth. On a pipe between plates 0.5 to 0.75 serve;
+   shorter pieces, each of which may leave the contact, cost more than they save. */
 #define PREDICTION_FARTHEST 0.6
 /* Pieces of one prediction; what is left is then taken at once. */
 #define PREDICTION_PIECES 8
-/* Contact that is met on the way is to turn the bodies back, not to hold them exactly: automatic penalties, as in softstart.c. */
+/* Contact that is met on the way is to turn the bodies back, not to hold them exactly: automatic penalties, as in
+ * softstart.c. */
 #define PREDICTION_SOFT 0.1
 
-/* One linear solve with the present tangent, at (u, t), and the forces in work->f moves model->x; carried: displacements that go with it. */
-static PetscErrorCode ModelStepLinear(Model model, const PetscReal *u, const PetscReal *carried, PetscReal t, SolveReport *report)
+/* One linear solve with the present tangent, at (u, t), and the forces in work->f moves model->x; carried:
+ * displacements that go with it. */
+static PetscErrorCode ModelStepLinear(Model model, const PetscReal *u, const PetscReal *carried, PetscReal t,
+                                      SolveReport *report)
 {
   Vec      b, dx;
   KSP      ksp;
@@ -37,9 +41,11 @@ static PetscErrorCode ModelStepLinear(Model model, const PetscReal *u, const Pet
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* One linear solve with the tangent at (u, t) for the loads, imposed displacements and tool motions at model->t moves model->x, which stands there. It is a
-   Newton iteration, written so that what is prescribed moves with the whole body and not through it. holding: contact that is there stays. */
-static PetscErrorCode ModelStepLoads(Model model, const PetscReal *u, PetscReal t, PetscBool holding, SolveReport *report)
+/* One linear solve with the tangent at (u, t) for the loads, imposed displacements and tool motions at model->t moves
+   model->x, which stands there. It is a Newton iteration, written so that what is prescribed moves with the whole body
+   and not through it. holding: contact that is there stays. */
+static PetscErrorCode ModelStepLoads(Model model, const PetscReal *u, PetscReal t, PetscBool holding,
+                                     SolveReport *report)
 {
   ModelWork     *work = model->work;
   const PetscInt n    = model->mesh->n_nodes * model->mesh->dim;
@@ -51,7 +57,9 @@ static PetscErrorCode ModelStepLoads(Model model, const PetscReal *u, PetscReal 
   PetscCall(PetscArraycpy(step, u, n));
   PetscCall(LoadsPrescribe(model->loads, model->t, step));
   for (PetscInt i = 0; i < n; i++) step[i] -= u[i];
-  if (holding) PetscCall(ContactHoldActiveSet(model->contact, PETSC_TRUE, (PetscBool)(t == 0))); /* touching: a body that only contact holds */
+  if (holding)
+    PetscCall(ContactHoldActiveSet(model->contact, PETSC_TRUE,
+                                   (PetscBool)(t == 0))); /* touching: a body that only contact holds */
   PetscCall(LinearSolverRenew(work->solver));
   PetscCall(LinearSolverSetStart(work->solver, work->accepted_start));
   if (model->contact) PetscCall(ContactMultiplyBegin(model->contact, step, t, model->t));
@@ -78,8 +86,9 @@ static PetscErrorCode ModelLargestTurn(Model model, const PetscReal *u, const Pe
     const PetscInt *nodes   = &mesh->cell_nodes[mesh->cell_ptr[c]];
 
     for (int e = 0; e < element->edges; e++) {
-      const PetscInt a = nodes[element->edge_corners[e][0]] * mesh->dim, b = nodes[element->edge_corners[e][1]] * mesh->dim;
-      PetscReal      motion = 0, length = 0;
+      const PetscInt a = nodes[element->edge_corners[e][0]] * mesh->dim,
+                     b = nodes[element->edge_corners[e][1]] * mesh->dim;
+      PetscReal motion = 0, length = 0;
 
       for (int d = 0; d < mesh->dim; d++) {
         motion += PetscSqr((v[b + d] - v[a + d]) - (u[b + d] - u[a + d]));
@@ -101,7 +110,8 @@ static PetscErrorCode ModelLocal(Model model, Vec x, PetscReal t, PetscReal *u)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ModelExtrapolate - the displacements at t that the way so far leads to expect, prescribed ones included: local ones u[n_nodes*dim], and the free ones among them.
+/* ModelExtrapolate - the displacements at t that the way so far leads to expect, prescribed ones included: local ones
+   u[n_nodes*dim], and the free ones among them.
 
    Collective. smooth: the way has been such that this is worth more than what the tangent says; x is set then only. */
 PetscErrorCode ModelExtrapolate(Model model, PetscReal t, PetscReal *u, Vec x, PetscBool *smooth)
@@ -115,7 +125,8 @@ PetscErrorCode ModelExtrapolate(Model model, PetscReal t, PetscReal *u, Vec x, P
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ModelInOrder - is no element turned inside out at local displacements u, on any rank, and do the lists reach so far? Collective. */
+/* ModelInOrder - is no element turned inside out at local displacements u, on any rank, and do the lists reach so far?
+ * Collective. */
 PetscErrorCode ModelInOrder(Model model, const PetscReal *u, PetscBool *ok)
 {
   PetscReal motion = 0;
@@ -131,7 +142,8 @@ PetscErrorCode ModelInOrder(Model model, const PetscReal *u, PetscBool *ok)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* A step from where the way so far leads to: Newton's first iteration from there. work->foreseen: it has been made, and did not lead far away. */
+/* A step from where the way so far leads to: Newton's first iteration from there. work->foreseen: it has been made, and
+ * did not lead far away. */
 static PetscErrorCode ModelPredictFromExtrapolation(Model model, SolveReport *report)
 {
   ModelWork     *work = model->work;
@@ -152,7 +164,8 @@ static PetscErrorCode ModelPredictFromExtrapolation(Model model, SolveReport *re
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ModelPredict - displacements at model->t by one linear solve, into model->x. Collective. Costs and failures are added to the report.
+/* ModelPredict - displacements at model->t by one linear solve, into model->x. Collective. Costs and failures are added
+   to the report.
 
    From the accepted state; where the way was smooth, from where it leads to. */
 PetscErrorCode ModelPredict(Model model, SolveReport *report)
@@ -164,7 +177,8 @@ PetscErrorCode ModelPredict(Model model, SolveReport *report)
   if (model->work->extrapolated) PetscFunctionReturn(PETSC_SUCCESS);
   *report = before; /* a singular tangent there says nothing of the one here */
   PetscCall(VecCopy(model->work->accepted_x, model->x));
-  PetscCall(ModelStepLoads(model, model->work->accepted_u, model->work->accepted_t, (PetscBool)(model->contact != NULL), report));
+  PetscCall(ModelStepLoads(model, model->work->accepted_u, model->work->accepted_t, (PetscBool)(model->contact != NULL),
+                           report));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -186,7 +200,8 @@ static PetscErrorCode ModelReachOn(Model model, const PetscReal *u, PetscReal t,
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ModelPredictFar - where the prediction in model->x is too far for one linear step, goes a part of the way and on from there.
+/* ModelPredictFar - where the prediction in model->x is too far for one linear step, goes a part of the way and on from
+   there.
 
    Collective. Costs and failures are added to the report; none of the states on the way is in equilibrium. */
 PetscErrorCode ModelPredictFar(Model model, SolveReport *report)
@@ -223,7 +238,8 @@ PetscErrorCode ModelPredictFar(Model model, SolveReport *report)
 /* ModelFollowLists - the first iteration after lists have been replaced at a solution: what is in contact stays so.
 
    Collective. Other lists, and the offsets that come with them, move the
-   surfaces by more than a stiff penalty lets them overlap; nodes that this would open let go of the bodies, which then fly apart. */
+   surfaces by more than a stiff penalty lets them overlap; nodes that this would open let go of the bodies, which then
+   fly apart. */
 PetscErrorCode ModelFollowLists(Model model, SolveReport *report)
 {
   PetscBool ok;

@@ -1,26 +1,30 @@
 #include "stepcontrol.h"
 #include <math.h>
 
-/* A converged step that brings up to this many times the nodes wanted in or out is kept: to repeat it costs more than it saves (on a pipe between
-   plates, whose nodes come in rows: 96 iterations with 2, 148 with 1.5). */
+/* A converged step that brings up to this many times the nodes wanted in or out is kept: to repeat it costs more than
+   it saves (on a pipe between plates, whose nodes come in rows: 96 iterations with 2, 148 with 1.5). */
 #define STEP_CHANGES_KEPT 2.0
-/* The next step is no longer than would bring this many times the nodes wanted, if as many change their status per dt as in the last step, ... */
+/* The next step is no longer than would bring this many times the nodes wanted, if as many change their status per dt
+ * as in the last step, ... */
 #define STEP_CHANGES_AIM 1.25
-/* ... nor longer than this many times the way after which the wanted nodes touch if all goes on in a straight line. They come later, as those
-   before them are held once they have touched: on a cup that is flattened four times as late. */
+/* ... nor longer than this many times the way after which the wanted nodes touch if all goes on in a straight line.
+   They come later, as those before them are held once they have touched: on a cup that is flattened four times as late.
+ */
 #define STEP_REACH 6.0
 /* ... but never shorter than this part of the last step, as nodes may lie as close as they please. */
 #define STEP_LEAST_REACH 0.25
-/* A step taken back is tried again with at least this part of its dt: the change of status is not proportional to dt. */
+/* A step taken back is tried again with at least this part of its dt: the change of status is not proportional to dt.
+ */
 #define STEP_LEAST_PART 0.1
 /* A linear forecast goes this far past the touch, so that the node is in. */
 #define STEP_PAST_TOUCH 1.02
-/* A linear forecast holds the contact set, so that nodes behind the edge of contact come nearer than they do once those before them have
-   touched: fewer come than it promises. What the last step brought corrects the next forecast, by no more than the first factor at a time, and
-   the second in all. */
+/* A linear forecast holds the contact set, so that nodes behind the edge of contact come nearer than they do once those
+   before them have touched: fewer come than it promises. What the last step brought corrects the next forecast, by no
+   more than the first factor at a time, and the second in all. */
 #define STEP_CORRECTION 2.0
 #define STEP_SHORTFALL  8.0
-/* A step is as long as planned if it differs by less than this part: the end of a step, less its start, is not exactly dt. */
+/* A step is as long as planned if it differs by less than this part: the end of a step, less its start, is not exactly
+ * dt. */
 #define STEP_AS_PLANNED 1e-6
 /* Factors on dt keep so many binary digits: the last ones differ with the number of ranks, steps must not. */
 #define STEP_DIGITS 10
@@ -47,7 +51,8 @@ static PetscErrorCode Changes(Model model, const StepSize *size, PetscReal *chan
 }
 
 /* beta_{N_c} from the accepted state to (u, t), dt apart. Source: Chamoret et al. 2004, eqs 17 to 20. */
-static PetscErrorCode Choose(Model model, const PetscReal *u, PetscReal t, PetscBool still_open, PetscReal factor, StepSize *size, TouchStepChoice *choice)
+static PetscErrorCode Choose(Model model, const PetscReal *u, PetscReal t, PetscBool still_open, PetscReal factor,
+                             StepSize *size, TouchStepChoice *choice)
 {
   const PetscReal *u_0;
   PetscReal        t_0, changed, wanted;
@@ -65,13 +70,13 @@ static PetscErrorCode Choose(Model model, const PetscReal *u, PetscReal t, Petsc
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* StepControlPredict_Contact - the paper's order, for `prediction: tangent`: one linear solve over the present dt says when nodes touch, and dt
-   is made so that the wanted ones do. Collective. */
+/* StepControlPredict_Contact - the paper's order, for `prediction: tangent`: one linear solve over the present dt says
+   when nodes touch, and dt is made so that the wanted ones do. Collective. */
 static PetscErrorCode StepControlPredict_Contact(Model model, PetscReal remaining, StepSize *size, SolveReport *report)
 {
   const PetscReal dt = PetscMin(size->dt, remaining);
   PetscReal      *u;
-  TouchStepChoice     choice;
+  TouchStepChoice choice;
 
   PetscFunctionBeginUser;
   if (!size->linearly || !model->contact) PetscFunctionReturn(PETSC_SUCCESS);
@@ -80,7 +85,8 @@ static PetscErrorCode StepControlPredict_Contact(Model model, PetscReal remainin
   if (report->result == SOLVE_CONVERGED) {
     PetscCall(Choose(model, u, model->t + dt, PETSC_FALSE, size->shortfall, size, &choice));
     size->tied    = choice.tied ? choice.nodes : 0;
-    size->dt      = isnan(choice.beta) ? size->growth * size->dt : PetscMin(size->growth * size->dt, Round(STEP_PAST_TOUCH * choice.beta) * dt);
+    size->dt      = isnan(choice.beta) ? size->growth * size->dt
+                                       : PetscMin(size->growth * size->dt, Round(STEP_PAST_TOUCH * choice.beta) * dt);
     size->dt      = PetscMax(size->dt_min, PetscMin(size->dt_max, size->dt));
     size->planned = isnan(choice.beta) ? 0 : Round(STEP_PAST_TOUCH * choice.beta) * dt;
   }
@@ -88,8 +94,8 @@ static PetscErrorCode StepControlPredict_Contact(Model model, PetscReal remainin
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* StepControlJudge_Contact - for `prediction: converged`: a step in which too many nodes came into contact or left it is taken back, unless they
-   tie. Collective. */
+/* StepControlJudge_Contact - for `prediction: converged`: a step in which too many nodes came into contact or left it
+   is taken back, unless they tie. Collective. */
 static PetscErrorCode StepControlJudge_Contact(Model model, PetscReal dt, StepSize *size, PetscBool *accepted)
 {
   const PetscReal *u;
@@ -120,7 +126,8 @@ static PetscErrorCode Learn(Model model, PetscReal dt, StepSize *size)
   PetscFunctionBeginUser;
   if (PetscAbsReal(dt - size->planned) > STEP_AS_PLANNED * dt) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(Changes(model, size, &changed, &wanted));
-  size->shortfall *= Round(PetscMin(STEP_CORRECTION, PetscMax(1 / STEP_CORRECTION, wanted / PetscMax(changed, wanted / STEP_CORRECTION))));
+  size->shortfall *= Round(
+    PetscMin(STEP_CORRECTION, PetscMax(1 / STEP_CORRECTION, wanted / PetscMax(changed, wanted / STEP_CORRECTION))));
   size->shortfall = PetscMax(1, PetscMin(STEP_SHORTFALL, size->shortfall));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -139,12 +146,14 @@ static PetscErrorCode Longest(Model model, PetscReal dt, PetscReal beta, const S
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* StepControlNext_Contact - dt by the nodes that are still open and approach, and by how many came or left. A beta above 1 enlarges the next step;
-   the paper repeats the present one, whose solution is good as it is. `prediction: tangent` decides before the next step. Collective. */
-static PetscErrorCode StepControlNext_Contact(Model model, PetscReal dt, PetscBool clipped, PetscInt newton, StepSize *size)
+/* StepControlNext_Contact - dt by the nodes that are still open and approach, and by how many came or left. A beta
+   above 1 enlarges the next step; the paper repeats the present one, whose solution is good as it is. `prediction:
+   tangent` decides before the next step. Collective. */
+static PetscErrorCode StepControlNext_Contact(Model model, PetscReal dt, PetscBool clipped, PetscInt newton,
+                                              StepSize *size)
 {
   TouchStepChoice choice;
-  PetscReal   longest = dt;
+  PetscReal       longest = dt;
 
   PetscFunctionBeginUser;
   (void)newton;

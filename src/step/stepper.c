@@ -5,7 +5,8 @@
 #define STEPPER_SAME_T 1e-12
 /* A failed step is tried again with this part of its dt. */
 #define STEPPER_CUT 0.5
-/* Up to this many dt short of a landing point the step stretches to it: sqrt(2), where one step is as many times longer than dt as two would be shorter, ... */
+/* Up to this many dt short of a landing point the step stretches to it: sqrt(2), where one step is as many times longer
+ * than dt as two would be shorter, ... */
 #define STEPPER_STRETCH 1.4142135623730951
 /* ... up to this many the rest is halved, so that no sliver of a step remains. */
 #define STEPPER_HALVE 2.0
@@ -94,13 +95,15 @@ static PetscErrorCode LoadStepperSetLandings(LoadStepper stepper, Scene scene)
   PetscCall(PetscSortReal(n, stepper->landings));
   for (PetscInt i = 0; i < n; i++) {
     if (stepper->landings[i] <= STEPPER_SAME_T) continue;
-    if (!kept || stepper->landings[i] > stepper->landings[kept - 1] + STEPPER_SAME_T) stepper->landings[kept++] = stepper->landings[i];
+    if (!kept || stepper->landings[i] > stepper->landings[kept - 1] + STEPPER_SAME_T)
+      stepper->landings[kept++] = stepper->landings[i];
   }
   stepper->n_landings = kept;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* LoadStepperSetFromScene - control, dt and its bounds, landing points. The only source of these values. Not collective. */
+/* LoadStepperSetFromScene - control, dt and its bounds, landing points. The only source of these values. Not
+ * collective. */
 PetscErrorCode LoadStepperSetFromScene(LoadStepper stepper, Scene scene)
 {
   PetscFunctionBeginUser;
@@ -146,24 +149,27 @@ PetscErrorCode LoadStepperMonitorSet(LoadStepper stepper, LoadStepperMonitorFn m
 PetscErrorCode LoadStepperView(LoadStepper stepper, PetscViewer viewer)
 {
   PetscFunctionBeginUser;
-  PetscCall(PetscViewerASCIIPrintf(viewer, "LoadStepper: control %s, initial %g, dt_min %g, dt_max %g, growth %g\n", StepControlNames[stepper->kind],
-                                   (double)stepper->size.initial, (double)stepper->size.dt_min, (double)stepper->size.dt_max, (double)stepper->size.growth));
+  PetscCall(PetscViewerASCIIPrintf(viewer, "LoadStepper: control %s, initial %g, dt_min %g, dt_max %g, growth %g\n",
+                                   StepControlNames[stepper->kind], (double)stepper->size.initial,
+                                   (double)stepper->size.dt_min, (double)stepper->size.dt_max,
+                                   (double)stepper->size.growth));
   PetscCall(PetscViewerASCIIPrintf(viewer, "  lands on"));
-  for (PetscInt i = 0; i < stepper->n_landings; i++) PetscCall(PetscViewerASCIIPrintf(viewer, " %g", (double)stepper->landings[i]));
+  for (PetscInt i = 0; i < stepper->n_landings; i++)
+    PetscCall(PetscViewerASCIIPrintf(viewer, " %g", (double)stepper->landings[i]));
   PetscCall(PetscViewerASCIIPrintf(viewer, "\n"));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The end of a step of about dt from t: exactly the next landing point where it is near. *clipped: dt was shortened for it, so its size says nothing of what
- * the model can take. */
+/* The end of a step of about dt from t: exactly the next landing point where it is near. *clipped: dt was shortened for
+ * it, so its size says nothing of what the model can take. */
 static PetscReal StepEnd(LoadStepper stepper, PetscReal t, PetscReal dt, PetscBool *clipped)
 {
   PetscReal landing, remaining;
 
   while (stepper->landings[stepper->next_landing] <= t + STEPPER_SAME_T) stepper->next_landing++;
-  landing  = stepper->landings[stepper->next_landing];
-  remaining     = landing - t;
-  *clipped = PETSC_FALSE;
+  landing   = stepper->landings[stepper->next_landing];
+  remaining = landing - t;
+  *clipped  = PETSC_FALSE;
   if (remaining <= PetscMax(dt, PetscMin(STEPPER_STRETCH * dt, stepper->size.dt_max)) + STEPPER_SAME_T) {
     *clipped = remaining < dt - STEPPER_SAME_T ? PETSC_TRUE : PETSC_FALSE;
     return landing;
@@ -180,7 +186,8 @@ static void CountSolve(PetscReal t, const SolveReport *solve, StepRecord *record
   report->relaxed += solve->relaxed;
   report->cycles += solve->cycles;
   report->cycles_cut += solve->result == SOLVE_CYCLE;
-  if (solve->cycles) snprintf(report->cycle, sizeof(report->cycle), "on the way to t = %.6g %s", (double)t, solve->cycle);
+  if (solve->cycles)
+    snprintf(report->cycle, sizeof(report->cycle), "on the way to t = %.6g %s", (double)t, solve->cycle);
   record->newton += solve->newton;
   record->krylov += solve->krylov;
   report->newton_iterations += solve->newton;
@@ -199,13 +206,15 @@ static PetscErrorCode LoadStepperPredict(LoadStepper stepper, StepRecord *record
   PetscFunctionBeginUser;
   if (!stepper->control->predict) PetscFunctionReturn(PETSC_SUCCESS);
   (void)StepEnd(stepper, stepper->model->t, stepper->size.dt, &clipped); /* finds the landing point ahead */
-  PetscCall(stepper->control->predict(stepper->model, stepper->landings[stepper->next_landing] - stepper->model->t, &stepper->size, &solve));
+  PetscCall(stepper->control->predict(stepper->model, stepper->landings[stepper->next_landing] - stepper->model->t,
+                                      &stepper->size, &solve));
   CountSolve(stepper->model->t, &solve, record, &stepper->report);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* A converged step of dt that is to stay: the record, the accepted state, the next dt. */
-static PetscErrorCode LoadStepperAccept(LoadStepper stepper, PetscReal dt, PetscBool clipped, const SolveReport *solve, StepRecord *record)
+static PetscErrorCode LoadStepperAccept(LoadStepper stepper, PetscReal dt, PetscBool clipped, const SolveReport *solve,
+                                        StepRecord *record)
 {
   Model model = stepper->model;
 
@@ -258,15 +267,18 @@ static PetscErrorCode LoadStepperAdvance(LoadStepper stepper, StepRecord *record
       report->steps_repeated++;
       continue;
     }
-    PetscCall(PetscInfo(model->snes, "step to t = %g failed: %s; %s\n", (double)end, SolveResults[solve.result], solve.detail));
+    PetscCall(
+      PetscInfo(model->snes, "step to t = %g failed: %s; %s\n", (double)end, SolveResults[solve.result], solve.detail));
     PetscCall(ModelRestore(model));
     report->steps_failed++;
     stepper->size.dt = STEPPER_CUT * dt;
-    if (stepper->size.dt < stepper->size.dt_min || (solve.result == SOLVE_LINEAR && solve.newton == 1)) { /* a tangent singular at the start is so for any dt */
+    if (stepper->size.dt < stepper->size.dt_min ||
+        (solve.result == SOLVE_LINEAR && solve.newton == 1)) { /* a tangent singular at the start is so for any dt */
       PetscCall(PetscSNPrintf(report->message, sizeof(report->message),
-                              "no equilibrium from t = %.6g to %.6g: %s; %s; tried %" PetscInt_FMT " steps, dt from %.3g down to %.3g (dt_min %.3g)", (double)t,
-                              (double)end, SolveResults[solve.result], solve.detail, record->attempts, (double)first, (double)dt,
-                              (double)stepper->size.dt_min));
+                              "no equilibrium from t = %.6g to %.6g: %s; %s; tried %" PetscInt_FMT
+                              " steps, dt from %.3g down to %.3g (dt_min %.3g)",
+                              (double)t, (double)end, SolveResults[solve.result], solve.detail, record->attempts,
+                              (double)first, (double)dt, (double)stepper->size.dt_min));
       report->failed.solve    = solve;
       report->failed.attempts = record->attempts;
       report->failed.t        = end;
@@ -285,7 +297,8 @@ PetscErrorCode LoadStepperStop(LoadStepper stepper)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* LoadStepperSolve - steps the model from its t to 1, or until no step above dt_min converges; then the model stands at the last good state.
+/* LoadStepperSolve - steps the model from its t to 1, or until no step above dt_min converges; then the model stands at
+   the last good state.
 
    Collective. The monitor is called after each accepted step. */
 PetscErrorCode LoadStepperSolve(LoadStepper stepper, StepperReport *report)
@@ -294,7 +307,8 @@ PetscErrorCode LoadStepperSolve(LoadStepper stepper, StepperReport *report)
   StepRecord record;
 
   PetscFunctionBeginUser;
-  if (ModelIsLinear(stepper->model)) stepper->size.dt = stepper->size.initial = stepper->size.dt_max = 1; /* the answer at any t is one solve away */
+  if (ModelIsLinear(stepper->model))
+    stepper->size.dt = stepper->size.initial = stepper->size.dt_max = 1; /* the answer at any t is one solve away */
   stepper->start        = stepper->size;
   stepper->report.t     = stepper->model->t;
   stepper->next_landing = 0;
@@ -311,18 +325,29 @@ PetscErrorCode LoadStepperSolve(LoadStepper stepper, StepperReport *report)
 
 /* LoadStepperArchive - saves or takes over the size of the next step and the counts.
 
-   Collective. A failed step is not part of it: it is tried again from its first dt, with the solver or stepping that has been changed. Loading comes after
-   LoadStepperSetFromScene(), whose dt_max holds; so does its `initial` if that is another one than the run had. */
+   Collective. A failed step is not part of it: it is tried again from its first dt, with the solver or stepping that
+   has been changed. Loading comes after LoadStepperSetFromScene(), whose dt_max holds; so does its `initial` if that is
+   another one than the run had. */
 PetscErrorCode LoadStepperArchive(LoadStepper stepper, Archive archive)
 {
   StepperReport *report  = &stepper->report;
   StepSize       size    = ArchiveLoads(archive) ? stepper->size : stepper->start;
   PetscReal      initial = size.initial, dt = size.dt;
-  PetscReal     *real[]    = {&initial, &dt, &size.beta, &size.together, &size.shortfall, &size.planned, &report->taken, &report->left};
-  PetscInt      *integer[] = {
-         &report->steps,      &report->steps_failed, &report->steps_repeated, &report->newton_iterations, &report->newton_accepted, &report->krylov_iterations,
-         &report->regathered, &report->adjusted,     &report->cuts,           &report->relaxed,           &report->cycles,          &report->cycles_cut,
-         &size.tied};
+  PetscReal     *real[]    = {&initial,        &dt,           &size.beta,     &size.together,
+                              &size.shortfall, &size.planned, &report->taken, &report->left};
+  PetscInt      *integer[] = {&report->steps,
+                              &report->steps_failed,
+                              &report->steps_repeated,
+                              &report->newton_iterations,
+                              &report->newton_accepted,
+                              &report->krylov_iterations,
+                              &report->regathered,
+                              &report->adjusted,
+                              &report->cuts,
+                              &report->relaxed,
+                              &report->cycles,
+                              &report->cycles_cut,
+                              &size.tied};
 
   PetscFunctionBeginUser;
   PetscCall(ArchiveRealsAt(archive, "stepper/size", PETSC_STATIC_ARRAY_LENGTH(real), real));

@@ -1,8 +1,10 @@
-/* The load stepper: takes a model from t = 0 to t = 1. An object in the manner of TS (Create, Set..., Solve, Monitor, View), with what a
-   quasi-static contact problem needs: a step is accepted or taken back whole, and steps land exactly on 1, on every `at` of the scene and on
-   every breakpoint of a history. How dt follows from what happened is a step control, chosen by name (stepcontrol.h).
+/* The load stepper: takes a model from t = 0 to t = 1. An object in the manner of TS (Create, Set..., Solve, Monitor,
+   View), with what a quasi-static contact problem needs: a step is accepted or taken back whole, and steps land exactly
+   on 1, on every `at` of the scene and on every breakpoint of a history. How dt follows from what happened is a step
+   control, chosen by name (stepcontrol.h).
 
-     LoadStepperCreate(); LoadStepperSetModel(); LoadStepperSetFromScene(); LoadStepperSetFromOptions(); LoadStepperMonitorSet(); LoadStepperSolve()
+     LoadStepperCreate(); LoadStepperSetModel(); LoadStepperSetFromScene(); LoadStepperSetFromOptions();
+   LoadStepperMonitorSet(); LoadStepperSolve()
 
    A stepper that has loaded its state goes on from there. */
 #pragma once
@@ -22,8 +24,9 @@ typedef struct {
   PetscBool done, stopped;                       /* t = 1 was reached; LoadStepperStop() ended it before */
   PetscInt  steps, steps_failed, steps_repeated; /* repeated: converged, but taken back by the control */
   PetscInt  newton_iterations, newton_accepted, krylov_iterations;
-  PetscInt  relaxed;                    /* times that the springs of stabilised pairs were relaxed */
-  PetscReal taken, left;                /* energy that they took out; the largest part of an accepted state's energy that was left in them */
+  PetscInt  relaxed; /* times that the springs of stabilised pairs were relaxed */
+  PetscReal taken,
+    left; /* energy that they took out; the largest part of an accepted state's energy that was left in them */
   PetscInt  cycles, cycles_cut;         /* times a contact set repeated itself; steps that failed for it */
   char      cycle[512];                 /* the last time: load parameter, period, nodes */
   PetscInt  regathered, adjusted, cuts; /* of SolveReport, all solves */
@@ -47,6 +50,7 @@ PetscErrorCode LoadStepperSetFromOptions(LoadStepper);
 PetscErrorCode LoadStepperMonitorSet(LoadStepper, LoadStepperMonitorFn, void *);
 PetscErrorCode LoadStepperStop(LoadStepper); /* from the monitor: no step after this one. Logically collective */
 PetscErrorCode LoadStepperSolve(LoadStepper, StepperReport *);
-/* Step size and counts, as they were at the last accepted step: from the monitor, after LoadStepperSolve(), or loading before it. Collective. */
+/* Step size and counts, as they were at the last accepted step: from the monitor, after LoadStepperSolve(), or loading
+ * before it. Collective. */
 PetscErrorCode LoadStepperArchive(LoadStepper, Archive);
 PetscErrorCode LoadStepperView(LoadStepper, PetscViewer);

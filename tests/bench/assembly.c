@@ -1,5 +1,6 @@
-/* CPU microseconds per element of elastic assembly on one rank (lines: row, column, value; # heads a table), PetscFE beside it with the same quadrature on a
-   small mesh. kernel-*: one batch in cache; residual, tangent, insertion: a mesh of some ten thousand dofs; total: their sum. */
+/* CPU microseconds per element of elastic assembly on one rank (lines: row, column, value; # heads a table), PetscFE
+   beside it with the same quadrature on a small mesh. kernel-*: one batch in cache; residual, tangent, insertion: a
+   mesh of some ten thousand dofs; total: their sum. */
 #include "../box.h"
 #include <time.h>
 
@@ -106,7 +107,8 @@ static PetscErrorCode CreateBatch(Work *w)
   const PetscInt dofs = e->nodes * 3;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc4(dofs * KERNEL_LANES, &w->X, dofs * KERNEL_LANES, &w->u, dofs * KERNEL_LANES, &w->batch_f, dofs * dofs * KERNEL_LANES, &w->K));
+  PetscCall(PetscMalloc4(dofs * KERNEL_LANES, &w->X, dofs * KERNEL_LANES, &w->u, dofs * KERNEL_LANES, &w->batch_f,
+                         dofs * dofs * KERNEL_LANES, &w->K));
   for (PetscInt lane = 0; lane < KERNEL_LANES; lane++) {
     for (PetscInt k = 0; k < dofs; k++) {
       const PetscInt dof = w->box->mesh->cell_nodes[lane * e->nodes + k / 3] * 3 + k % 3;
@@ -163,8 +165,9 @@ static PetscErrorCode TimeOurs(ElementType type, PetscInt n)
 
 static PetscErrorCode TimePetsc(ElementType type, PetscInt n)
 {
-  PetscErrorCode (*displacement[1])(PetscInt, PetscReal, const PetscReal[], PetscInt, PetscScalar[], void *) = {BoxDisplacement};
-  double microseconds                                                                                        = 0;
+  PetscErrorCode (*displacement[1])(PetscInt, PetscReal, const PetscReal[], PetscInt, PetscScalar[],
+                                    void *) = {BoxDisplacement};
+  double microseconds                       = 0;
   Box    box;
   Work   w = {.box = &box};
 
@@ -200,7 +203,9 @@ int main(int argc, char **argv)
   };
 
   PetscCall(PetscInitialize(&argc, &argv, NULL, NULL));
-  PetscCall(PetscPrintf(PETSC_COMM_SELF, "# assembly, CPU microseconds per element: kernels alone, a whole mesh and its sum, PetscFE beside it\n"));
+  PetscCall(PetscPrintf(
+    PETSC_COMM_SELF,
+    "# assembly, CPU microseconds per element: kernels alone, a whole mesh and its sum, PetscFE beside it\n"));
   for (size_t k = 0; k < PETSC_STATIC_ARRAY_LENGTH(rows); k++) {
     PetscCall(TimeOurs(rows[k].type, rows[k].n));
     PetscCall(TimePetsc(rows[k].type, rows[k].petsc_n));

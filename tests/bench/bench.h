@@ -1,4 +1,5 @@
-/* What the kernels' benches share: CPU seconds, which other work on the machine does not lengthen, and random numbers. */
+/* What the kernels' benches share: CPU seconds, which other work on the machine does not lengthen, and random numbers.
+ */
 #pragma once
 #include <stdlib.h>
 #include <time.h>

@@ -1,5 +1,5 @@
-/* Microseconds per slave point of the diffuse fit, by dimension, degree and points inside the support: gap, with N, with N and M. Lists hold the
-   margin's points too. Raw record, one "name value unit" per line. */
+/* Microseconds per slave point of the diffuse fit, by dimension, degree and points inside the support: gap, with N,
+   with N and M. Lists hold the margin's points too. Raw record, one "name value unit" per line. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -28,7 +28,8 @@ static void Fill(Neighbourhoods *all)
 
     for (int i = -reach; i <= reach; i++) {
       for (int j = dim == 3 ? -reach : 0; j <= (dim == 3 ? reach : 0); j++) {
-        const double y[2] = {i + shift[0] + Random(-0.2, 0.2), dim == 3 ? j + shift[1] + Random(-0.2, 0.2) : 0}, r2 = y[0] * y[0] + y[1] * y[1];
+        const double y[2] = {i + shift[0] + Random(-0.2, 0.2), dim == 3 ? j + shift[1] + Random(-0.2, 0.2) : 0},
+                     r2   = y[0] * y[0] + y[1] * y[1];
 
         if (r2 > margin * all->support * all->support || n == MAX_LIST) continue;
         for (int k = 0; k < dim - 1; k++) all->x[s][n * dim + k] = y[k];
@@ -81,7 +82,8 @@ static double Time(const Neighbourhoods *all, FitWant want, double *points)
 static void BenchProduct(int points)
 {
   const int size = 3 * (1 + points), stride = SymmetricProductStride(size), terms = FitTerms(3, 4);
-  double   *K = aligned_alloc(64, terms * stride * sizeof(double)), *M = malloc((long)size * size * sizeof(double)), best = INFINITY;
+  double   *K = aligned_alloc(64, terms * stride * sizeof(double)), *M = malloc((long)size * size * sizeof(double)),
+         best = INFINITY;
 
   if (!K || !M) exit(1);
   for (int i = 0; i < terms * stride; i++) K[i] = Random(-1, 1);

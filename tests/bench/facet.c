@@ -1,5 +1,5 @@
-/* CPU microseconds per slave point of the facet smoother, by facet type: closest point in a list of 9 and of 25, one projection, N and M; and of
-   the search tree. Lines: row, column, value; # heads a table. */
+/* CPU microseconds per slave point of the facet smoother, by facet type: closest point in a list of 9 and of 25, one
+   projection, N and M; and of the search tree. Lines: row, column, value; # heads a table. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -7,9 +7,16 @@
 #include "smooth/facet.h"
 #include "base/boxtree.h"
 
-enum { POINTS = 2000, REPEATS = 20, MAX_DOFS = 3 * (1 + FACE_MAX_NODES), MAX_SIDE = 5, MAX_POSITIONS = 25 * FACE_MAX_NODES };
+enum {
+  POINTS        = 2000,
+  REPEATS       = 20,
+  MAX_DOFS      = 3 * (1 + FACE_MAX_NODES),
+  MAX_SIDE      = 5,
+  MAX_POSITIONS = 25 * FACE_MAX_NODES
+};
 
-/* side by side facets (strips of them in 2D, pairs for triangles) of width 1 on a sphere or circle of radius 8, each with its own nodes */
+/* side by side facets (strips of them in 2D, pairs for triangles) of width 1 on a sphere or circle of radius 8, each
+ * with its own nodes */
 static int Patchwork(ElementType type, int side, Facet *facets, double *x)
 {
   const Element *element = ElementGet(type);
@@ -78,9 +85,11 @@ static void Print(const char *row, const char *column, double value)
 
 static void BenchFacets(void)
 {
-  static const ElementType types[] = {ELEMENT_EDGE2, ELEMENT_EDGE3, ELEMENT_TRI3, ELEMENT_TRI6, ELEMENT_QUAD4, ELEMENT_QUAD9};
+  static const ElementType types[] = {ELEMENT_EDGE2, ELEMENT_EDGE3, ELEMENT_TRI3,
+                                      ELEMENT_TRI6,  ELEMENT_QUAD4, ELEMENT_QUAD9};
 
-  puts("# facet smoother, CPU microseconds per slave point: closest point in a list, again from the last one (seeded), first and second variation");
+  puts("# facet smoother, CPU microseconds per slave point: closest point in a list, again from the last one (seeded), "
+       "first and second variation");
   for (int t = 0; t < 6; ++t) {
     double us[3][2], N = 0, M = 0;
 
@@ -124,11 +133,11 @@ static void VisitCentre(void *context, int index, double *bound)
 /* n boxes on a sheet, as a contact surface's facets are */
 static int BenchTree(int n)
 {
-  const int side  = (int)sqrt(n);
-  double   *lower = malloc(sizeof(double) * 3 * n), *upper = malloc(sizeof(double) * 3 * n), begin, build, near, closest;
-  int       found[64], total                               = 0;
-  char      row[16];
-  BoxTree      tree;
+  const int side = (int)sqrt(n);
+  double *lower = malloc(sizeof(double) * 3 * n), *upper = malloc(sizeof(double) * 3 * n), begin, build, near, closest;
+  int     found[64], total                               = 0;
+  char    row[16];
+  BoxTree tree;
 
   if (!lower || !upper) return 1;
   for (int i = 0; i < n; ++i) {
@@ -141,7 +150,8 @@ static int BenchTree(int n)
   if (BoxTreeBuild(3, n, lower, upper, &tree)) return 1;
   build = Seconds() - begin;
   begin = Seconds();
-  for (int p = 0; p < POINTS; ++p) total += BoxTreeNear(tree, (double[3]){Random(0, side), Random(0, side), 0.1}, 1.2, 64, found);
+  for (int p = 0; p < POINTS; ++p)
+    total += BoxTreeNear(tree, (double[3]){Random(0, side), Random(0, side), 0.1}, 1.2, 64, found);
   near  = Seconds() - begin;
   begin = Seconds();
   for (int p = 0; p < POINTS; ++p) {
@@ -166,6 +176,7 @@ static int BenchTree(int n)
 int main(void)
 {
   BenchFacets();
-  puts("# search tree, by its number of boxes: CPU microseconds per box (build) and per point (near, closest); boxes found near a point");
+  puts("# search tree, by its number of boxes: CPU microseconds per box (build) and per point (near, closest); boxes "
+       "found near a point");
   return BenchTree(100) || BenchTree(10000) || BenchTree(250000);
 }

@@ -1,5 +1,5 @@
-/* Microseconds per slave quadrature point of the diffuse fit over nodes, surface to surface: fit points are quadrature points of master faces, the
-   slave point is one of a slave face. Lines: row, column, value; # heads a table. */
+/* Microseconds per slave quadrature point of the diffuse fit over nodes, surface to surface: fit points are quadrature
+   points of master faces, the slave point is one of a slave face. Lines: row, column, value; # heads a table. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -9,7 +9,15 @@
 #include "smooth/fitderivatives.h"
 #include "symmetricproduct.h"
 
-enum { SLAVES = 48, REPEATS = 60, SIDE = 7, MAX_ORDER = 2, MAX_LINE = SIDE * MAX_ORDER + 1, MAX_FACE = 9, MAX_POINTS = SIDE * SIDE * MAX_FACE };
+enum {
+  SLAVES     = 48,
+  REPEATS    = 60,
+  SIDE       = 7,
+  MAX_ORDER  = 2,
+  MAX_LINE   = SIDE * MAX_ORDER + 1,
+  MAX_FACE   = 9,
+  MAX_POINTS = SIDE * SIDE * MAX_FACE
+};
 enum { MAX_NODES = MAX_LINE * MAX_LINE + MAX_FACE, MAX_SIZE = 3 * MAX_NODES };
 static const double radius = 15; /* of the master's sphere, in face sizes */
 
@@ -28,8 +36,8 @@ typedef struct {
 /* Points inside with the nodes behind them */
 typedef struct {
   FitDerivatives map;
-  int    ptr[MAX_POINTS + 2], node[(MAX_POINTS + 1) * MAX_FACE];
-  double S[(MAX_POINTS + 1) * MAX_FACE], sign[3 * (MAX_POINTS + 1) * MAX_FACE];
+  int            ptr[MAX_POINTS + 2], node[(MAX_POINTS + 1) * MAX_FACE];
+  double         S[(MAX_POINTS + 1) * MAX_FACE], sign[3 * (MAX_POINTS + 1) * MAX_FACE];
 } Map;
 
 static double LineShape(int order, int a, double s)
@@ -71,7 +79,8 @@ static void Fill(const Kind *kind, List *list)
       for (int c = 0; c < kind->dim; c++) at[c] = 0;
       for (int a = 0; a < list->entries; a++) {
         const int    entry = list->n * list->entries + a, i = a % q, j = a / q;
-        const double S = LineShape(order, i, gauss[order - 1][p % q]) * (kind->dim == 3 ? LineShape(order, j, gauss[order - 1][p / q]) : 1);
+        const double S = LineShape(order, i, gauss[order - 1][p % q]) *
+                         (kind->dim == 3 ? LineShape(order, j, gauss[order - 1][p / q]) : 1);
 
         list->node[entry] = origin + i * line + j;
         list->S[entry]    = S;
@@ -87,7 +96,8 @@ static void MakeMap(const List *list, int n, const int *points, Map *map)
 {
   int number[MAX_LINE * MAX_LINE], entries = list->entries;
 
-  map->map = (FitDerivatives){.n_nodes = list->entries, .ptr = map->ptr, .node = map->node, .S = map->S, .sign = map->sign};
+  map->map =
+    (FitDerivatives){.n_nodes = list->entries, .ptr = map->ptr, .node = map->node, .S = map->S, .sign = map->sign};
   for (int i = 0; i < MAX_LINE * MAX_LINE; i++) number[i] = -1;
   for (int i = 0; i < 3 * (1 + n) * list->entries; i++) map->sign[i] = 1;
   for (int k = 0; k < entries; k++) {
@@ -125,16 +135,23 @@ static double nodal[MAX_SIZE], own[MAX_POINTS][FIT_DERIVATIVES_OWN], M[(long)MAX
 
 static void Do(Part part, Slave *s)
 {
-  const int terms = FitTerms(s->problem.dim, s->problem.degree), size = s->map.map.n_nodes * s->problem.dim, stride = SymmetricProductStride(size);
+  const int terms = FitTerms(s->problem.dim, s->problem.degree), size = s->map.map.n_nodes * s->problem.dim,
+            stride = SymmetricProductStride(size);
   FitDerivativesSum sum;
 
   s->result.factors = part == FACTORS || part == ALL ? &s->factors : NULL;
   if (part <= FACTORS || part == ALL) {
-    if (!DiffuseFitEvaluate(&s->problem, part == GAP ? FIT_GAP : part == GAP_N ? FIT_FIRST_VARIATION : FIT_SECOND_VARIATION, s->workspace, &s->result)) exit(1);
+    if (!DiffuseFitEvaluate(&s->problem,
+                            part == GAP     ? FIT_GAP
+                            : part == GAP_N ? FIT_FIRST_VARIATION
+                                            : FIT_SECOND_VARIATION,
+                            s->workspace, &s->result))
+      exit(1);
   }
   if (part == NODAL_N || part == ALL) FitDerivativesFirst(s->problem.dim, s->result.n, s->N, &s->map.map, nodal);
   if (part == NODAL_M || part == ALL) {
-    FitDerivativesBegin(&sum, s->problem.dim, s->problem.degree, s->map.map.n_nodes, FitDerivativesDepth(s->problem.dim, s->problem.degree), scratch);
+    FitDerivativesBegin(&sum, s->problem.dim, s->problem.degree, s->map.map.n_nodes,
+                        FitDerivativesDepth(s->problem.dim, s->problem.degree), scratch);
     FitDerivativesAdd(&sum, 1, &s->factors, &s->map.map);
     FitDerivativesEnd(&sum, M);
     memset(own, 0, s->result.n * sizeof(own[0]));
@@ -156,9 +173,13 @@ static void Setup(const Kind *kind, Slave *s)
 
   up[kind->dim - 1] = 1;
   Fill(kind, &s->list);
-  s->problem =
-    (FitProblem){.dim = kind->dim, .degree = kind->degree, .exponent = kind->exponent, .n = s->list.n, .x = s->list.x, .multiplier = s->list.multiplier};
-  s->result = (FitResult){.points = s->points, .N = s->N};
+  s->problem = (FitProblem){.dim        = kind->dim,
+                            .degree     = kind->degree,
+                            .exponent   = kind->exponent,
+                            .n          = s->list.n,
+                            .x          = s->list.x,
+                            .multiplier = s->list.multiplier};
+  s->result  = (FitResult){.points = s->points, .N = s->N};
   FitFrameFromNormal(kind->dim, up, s->problem.frame);
   FitMetricFromCovariance(kind->dim, s->problem.frame, round, 1, kind->support, s->problem.metric);
   s->workspace = malloc(FitWorkspace(kind->dim, kind->degree, s->list.n) * sizeof(double));

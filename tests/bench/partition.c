@@ -1,5 +1,6 @@
-/* What partitions of a scene's mesh would cost on 2 to 4096 ranks, from the partition alone (lines: row, column, value; # heads a table): cells and contact
-   cells balanced as in a run, and cells alone. Arguments: SCENE.yaml KEY=VALUE ...; without, two rings with 1e5 unknowns. */
+/* What partitions of a scene's mesh would cost on 2 to 4096 ranks, from the partition alone (lines: row, column, value;
+   # heads a table): cells and contact cells balanced as in a run, and cells alone. Arguments: SCENE.yaml KEY=VALUE ...;
+   without, two rings with 1e5 unknowns. */
 #include <float.h>
 #include "mesh/mesh.h"
 #include "base/boxtree.h"
@@ -8,13 +9,15 @@ enum { MOST_PARTS = 4096, LEAST_CELLS = 16 /* in a part: fewer than a rank would
 
 typedef struct {
   Mesh       mesh;
-  PetscInt  *offsets, *adjacency;         /* of cells */
-  PetscBool *contact;                     /* per cell */
-  PetscInt   n_slaves, *slave, *opposite; /* cells of the slave faces, and of the master face whose centre is nearest to each one's */
-  PetscInt   parts, *part, *count;        /* per cell; per part */
+  PetscInt  *offsets, *adjacency; /* of cells */
+  PetscBool *contact;             /* per cell */
+  PetscInt   n_slaves, *slave,
+    *opposite; /* cells of the slave faces, and of the master face whose centre is nearest to each one's */
+  PetscInt parts, *part, *count; /* per cell; per part */
 } Study;
 
-/* ----------------------------------------------------------------------------------------------------------- the mesh */
+/* ----------------------------------------------------------------------------------------------------------- the mesh
+ */
 
 static PetscErrorCode FaceCentres(Mesh mesh, const MeshGroup *group, PetscReal **centres)
 {
@@ -40,7 +43,8 @@ static void VisitCentre(void *context, int index, double *bound)
   Nearest  *nearest = context;
   PetscReal square  = 0;
 
-  for (int k = 0; k < nearest->dim; k++) square += PetscSqr(nearest->centres[index * nearest->dim + k] - nearest->point[k]);
+  for (int k = 0; k < nearest->dim; k++)
+    square += PetscSqr(nearest->centres[index * nearest->dim + k] - nearest->point[k]);
   if (PetscSqrtReal(square) > *bound) return;
   *bound           = PetscSqrtReal(square);
   nearest->closest = index;
@@ -51,12 +55,13 @@ static PetscErrorCode AddPair(Study *study, const MeshGroup *slave, const MeshGr
 {
   const int  dim = study->mesh->dim;
   PetscReal *slaves, *masters;
-  BoxTree       tree;
+  BoxTree    tree;
 
   PetscFunctionBeginUser;
   PetscCall(FaceCentres(study->mesh, slave, &slaves));
   PetscCall(FaceCentres(study->mesh, master, &masters));
-  PetscCheck(!BoxTreeBuild(dim, (int)master->n_faces, masters, masters, &tree), PETSC_COMM_SELF, PETSC_ERR_MEM, "no memory for the tree");
+  PetscCheck(!BoxTreeBuild(dim, (int)master->n_faces, masters, masters, &tree), PETSC_COMM_SELF, PETSC_ERR_MEM,
+             "no memory for the tree");
   for (PetscInt f = 0; f < slave->n_faces; f++) {
     Nearest nearest = {.dim = dim, .centres = masters, .point = slaves + f * dim};
     double  bound   = DBL_MAX;
@@ -87,12 +92,14 @@ static PetscErrorCode AddPairs(Scene scene, Study *study)
     const int           slave  = MeshFindGroup(study->mesh, scene->dim - 1, pair->slave);
     const int           master = pair->master ? MeshFindGroup(study->mesh, scene->dim - 1, pair->master) : -1;
 
-    if (slave >= 0 && master >= 0 && study->mesh->groups[master].n_faces) PetscCall(AddPair(study, &study->mesh->groups[slave], &study->mesh->groups[master]));
+    if (slave >= 0 && master >= 0 && study->mesh->groups[master].n_faces)
+      PetscCall(AddPair(study, &study->mesh->groups[slave], &study->mesh->groups[master]));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ------------------------------------------------------------------------------------------------------ what parts cost */
+/* ------------------------------------------------------------------------------------------------------ what parts
+ * cost */
 
 /* The distinct ones of n pairs (a, b), packed into numbers: how many, and the largest number of them with the same a */
 static PetscErrorCode CountPairs(PetscInt n, PetscInt64 pairs[], PetscInt *distinct, PetscInt *most)
@@ -126,7 +133,8 @@ static PetscErrorCode PrintGhosts(const Study *study)
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(n, &touched));
   for (PetscInt c = 0; c < mesh->n_cells; c++)
-    for (PetscInt k = mesh->cell_ptr[c]; k < mesh->cell_ptr[c + 1]; k++) touched[k] = (PetscInt64)mesh->cell_nodes[k] * MOST_PARTS + study->part[c];
+    for (PetscInt k = mesh->cell_ptr[c]; k < mesh->cell_ptr[c + 1]; k++)
+      touched[k] = (PetscInt64)mesh->cell_nodes[k] * MOST_PARTS + study->part[c];
   PetscCall(PetscSortInt64(n, touched));
   PetscCall(PetscMalloc1(n, &shared)); /* a node of k cells has at most k parts, one of which owns it */
   distinct = 0;
@@ -177,7 +185,8 @@ static PetscErrorCode PrintPartitions(Study *study, PetscBool two_weights)
   PetscCall(PetscMalloc1(2 * links.n, &links.cell));
   for (PetscInt e = 0; e < 2 * links.n; e++) links.cell[e] = e % 2 ? study->opposite[e / 2] : study->slave[e / 2];
   for (study->parts = 2; study->parts <= MOST_PARTS && n / study->parts >= LEAST_CELLS; study->parts *= 2) {
-    PetscCall(PartitionGraph(n, study->offsets, study->adjacency, two_weights ? study->contact : NULL, &links, study->parts, study->part, &edge_cut));
+    PetscCall(PartitionGraph(n, study->offsets, study->adjacency, two_weights ? study->contact : NULL, &links,
+                             study->parts, study->part, &edge_cut));
     PetscCall(Print(study, "cells", PartitionImbalance(n, study->part, NULL, study->parts, study->count)));
     PetscCall(Print(study, "contact", PartitionImbalance(n, study->part, study->contact, study->parts, study->count)));
     PetscCall(PrintGhosts(study));
@@ -208,8 +217,9 @@ int main(int argc, char **argv)
   PetscCall(DMPlexCreatePartitionerGraph(study.mesh->dm, 0, &n, &study.offsets, &study.adjacency, NULL));
   PetscCall(PetscMalloc2(n, &study.part, MOST_PARTS, &study.count));
   for (int two = 1; two >= 0; two--) {
-    PetscCall(PetscPrintf(PETSC_COMM_SELF, "# parts of %s, %" PetscInt_FMT " cells, %s: imbalances (largest over mean), ghosts, messages\n", scene->name, n,
-                          two ? "cells and contact cells balanced" : "cells alone balanced"));
+    PetscCall(PetscPrintf(
+      PETSC_COMM_SELF, "# parts of %s, %" PetscInt_FMT " cells, %s: imbalances (largest over mean), ghosts, messages\n",
+      scene->name, n, two ? "cells and contact cells balanced" : "cells alone balanced"));
     PetscCall(PrintPartitions(&study, two ? PETSC_TRUE : PETSC_FALSE));
   }
   PetscCall(PetscFree2(study.part, study.count));

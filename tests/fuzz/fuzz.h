@@ -1,5 +1,6 @@
-/* What the fuzzers of the readers share: the input as a file that never touches a disk, and a main() that replays files where there is no fuzzer. A fuzzer is
-   LLVMFuzzerInitialize() and LLVMFuzzerTestOneInput(), for libFuzzer (make fuzz, with FUZZER defined) and for AFL++'s driver. */
+/* What the fuzzers of the readers share: the input as a file that never touches a disk, and a main() that replays files
+   where there is no fuzzer. A fuzzer is LLVMFuzzerInitialize() and LLVMFuzzerTestOneInput(), for libFuzzer (make fuzz,
+   with FUZZER defined) and for AFL++'s driver. */
 #define _GNU_SOURCE /* memfd_create() */
 #include <dirent.h>
 #include <stdint.h>

@@ -1,4 +1,5 @@
-/* Whatever bytes stand in a scene file, its reader reads a scene or refuses it by a message, and frees a scene that it read. */
+/* Whatever bytes stand in a scene file, its reader reads a scene or refuses it by a message, and frees a scene that it
+ * read. */
 #include "fuzz.h"
 #include <setjmp.h>
 #include <stdarg.h>
@@ -15,7 +16,8 @@ typedef struct _n_Allocation {
 static Allocation Allocations = {&Allocations, &Allocations};
 enum { HEAD = 64 }; /* before each allocation, aligned as PETSc wants it */
 
-static PetscErrorCode Allocate(size_t size, PetscBool clear, int line, const char *function, const char *file, void **result)
+static PetscErrorCode Allocate(size_t size, PetscBool clear, int line, const char *function, const char *file,
+                               void **result)
 {
   Allocation *a;
 

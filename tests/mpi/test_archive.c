@@ -1,4 +1,5 @@
-/* What goes into an archive comes out of it, whole, on the same ranks; a file that is given up leaves the one before alone. */
+/* What goes into an archive comes out of it, whole, on the same ranks; a file that is given up leaves the one before
+ * alone. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -32,7 +33,7 @@ static void StateArchive(State *state, Archive archive)
 {
   PetscMPIInt size;
   PetscInt    key[ROWS];
-  Hdf5Table        rows;
+  Hdf5Table   rows;
 
   MPI_Comm_size(PETSC_COMM_WORLD, &size);
   for (int i = 0; i < ROWS; i++) key[i] = 10 * (size - Rank()) - i;

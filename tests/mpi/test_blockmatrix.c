@@ -1,4 +1,5 @@
-/* Blocks assembled on any number of ranks give the same product as the blocks themselves; the pattern is kept while it serves, and goes back to a marked one.
+/* Blocks assembled on any number of ranks give the same product as the blocks themselves; the pattern is kept while it
+ * serves, and goes back to a marked one.
  */
 #include <setjmp.h>
 #include <stdarg.h>
@@ -9,9 +10,10 @@
 
 enum { ROWS = 6 }; /* of each rank */
 
-/* Each rank adds two blocks, one a vector's product with itself, over two of its own dofs, one of the next rank, and one entry without a dof: in the blocks'
-   order. */
-static void AddBlocks(BlockMatrix blocks, int node, const PetscInt *dof, PetscReal scale, const PetscReal *in, PetscReal *out, Mat *matrix, PetscBool *changed)
+/* Each rank adds two blocks, one a vector's product with itself, over two of its own dofs, one of the next rank, and
+   one entry without a dof: in the blocks' order. */
+static void AddBlocks(BlockMatrix blocks, int node, const PetscInt *dof, PetscReal scale, const PetscReal *in,
+                      PetscReal *out, Mat *matrix, PetscBool *changed)
 {
   const PetscInt        n = 4 / node, *nodes;
   PetscInt              count;
@@ -20,7 +22,8 @@ static void AddBlocks(BlockMatrix blocks, int node, const PetscInt *dof, PetscRe
 
   for (int i = 0; i < BLOCK_PADDING; i++) value[16 + i] = vector[4 + i] = NAN;
   assert_int_equal(BlockMatrixBegin(blocks, 1, &n, lists), 0);
-  assert_int_equal(BlockMatrixName(blocks, 0, n, node == 1 ? (PetscInt[]){3, 1, 2, 0} : (PetscInt[]){1, 0}, PETSC_TRUE), 0);
+  assert_int_equal(BlockMatrixName(blocks, 0, n, node == 1 ? (PetscInt[]){3, 1, 2, 0} : (PetscInt[]){1, 0}, PETSC_TRUE),
+                   0);
   assert_int_equal(BlockMatrixPlace(blocks, ROWS, changed), 0);
   BlockMatrixGetNodes(blocks, 0, &count, &nodes);
   assert_int_equal(count, n);
@@ -96,9 +99,10 @@ static void CreateOwn(BlockMatrix *blocks, PetscInt mine[ROWS])
   assert_int_equal(BlockMatrixCreate(PETSC_COMM_WORLD, 1, blocks), 0);
 }
 
-/* Assembles blocks of ones of the given sizes, each over its own dofs from `first` on, one after the other on every rank's dofs; returns whether the matrix is
-   new, and checks the sum of its values. */
-static PetscBool AssembleOwn(BlockMatrix blocks, PetscInt n, const PetscInt first[], const PetscInt m[], const PetscInt *const dof[])
+/* Assembles blocks of ones of the given sizes, each over its own dofs from `first` on, one after the other on every
+   rank's dofs; returns whether the matrix is new, and checks the sum of its values. */
+static PetscBool AssembleOwn(BlockMatrix blocks, PetscInt n, const PetscInt first[], const PetscInt m[],
+                             const PetscInt *const dof[])
 {
   const PetscInt nodes[] = {0, 1, 2, 3, 4, 5}, rows = ROWS;
   Mat            matrix;
@@ -138,8 +142,10 @@ static void test_pattern_is_kept_while_it_holds(void **state)
   assert_true(AssembleOwn(blocks, 2, (const PetscInt[]){0, 3}, (const PetscInt[]){4, 3}, dof));
   assert_false(AssembleOwn(blocks, 2, (const PetscInt[]){3, 0}, (const PetscInt[]){3, 4}, dof)); /* another order */
   assert_false(AssembleOwn(blocks, 1, (const PetscInt[]){0}, (const PetscInt[]){4}, dof));       /* a part */
-  assert_true(AssembleOwn(blocks, 1, (const PetscInt[]){0}, (const PetscInt[]){2}, dof));        /* a small part: too many zeros */
-  assert_true(AssembleOwn(blocks, 1, (const PetscInt[]){1}, (const PetscInt[]){2}, dof));        /* the same dofs, and one more */
+  assert_true(
+    AssembleOwn(blocks, 1, (const PetscInt[]){0}, (const PetscInt[]){2}, dof)); /* a small part: too many zeros */
+  assert_true(
+    AssembleOwn(blocks, 1, (const PetscInt[]){1}, (const PetscInt[]){2}, dof)); /* the same dofs, and one more */
   assert_int_equal(BlockMatrixDestroy(&blocks), 0);
 }
 
@@ -161,7 +167,8 @@ static void test_returns_to_the_marked_pattern(void **state)
   assert_true(AssembleOwn(blocks, 1, (const PetscInt[]){0}, (const PetscInt[]){ROWS}, dof));
   assert_true(AssembleOwn(blocks, 1, (const PetscInt[]){0}, (const PetscInt[]){2}, dof));
   assert_int_equal(BlockMatrixReturn(blocks, ROWS), 0);
-  assert_true(AssembleOwn(blocks, 1, (const PetscInt[]){0}, (const PetscInt[]){4}, dof)); /* in the marked one, whose matrix is new */
+  assert_true(AssembleOwn(blocks, 1, (const PetscInt[]){0}, (const PetscInt[]){4},
+                          dof)); /* in the marked one, whose matrix is new */
   assert_false(AssembleOwn(blocks, 2, (const PetscInt[]){0, 3}, (const PetscInt[]){4, 3}, dof));
   assert_int_equal(BlockMatrixDestroy(&blocks), 0);
 }
@@ -183,7 +190,8 @@ static void test_no_blocks(void **state)
   assert_int_equal(BlockMatrixDestroy(&blocks), 0);
 }
 
-/* What the pattern couples a node with: all of its blocks, ascending, blocks of the past too while the pattern is kept */
+/* What the pattern couples a node with: all of its blocks, ascending, blocks of the past too while the pattern is kept
+ */
 static void test_coupled_nodes(void **state)
 {
   BlockMatrix     blocks;
@@ -213,9 +221,10 @@ static void test_coupled_nodes(void **state)
 
 int main(int argc, char **argv)
 {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_assembled_equals_blocks), cmocka_unit_test(test_pattern_is_kept_while_it_holds),
-                                     cmocka_unit_test(test_returns_to_the_marked_pattern), cmocka_unit_test(test_no_blocks),
-                                     cmocka_unit_test(test_coupled_nodes)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_assembled_equals_blocks),
+                                     cmocka_unit_test(test_pattern_is_kept_while_it_holds),
+                                     cmocka_unit_test(test_returns_to_the_marked_pattern),
+                                     cmocka_unit_test(test_no_blocks), cmocka_unit_test(test_coupled_nodes)};
   int                     failed;
 
   if (PetscInitialize(&argc, &argv, NULL, NULL)) return 1;

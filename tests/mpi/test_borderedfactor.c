@@ -1,4 +1,5 @@
-/* Factors with a border: two plates of springs, K, and links from nodes of one to many of the other, C, which is a sum of v v^T. */
+/* Factors with a border: two plates of springs, K, and links from nodes of one to many of the other, C, which is a sum
+ * of v v^T. */
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdint.h>
@@ -12,7 +13,15 @@
 #include "solution.h"
 #include "matrix/sumoperator.h"
 
-enum { EDGE = 24, DOFS = 2, PLATE = EDGE * EDGE, NODES = 2 * PLATE, REACH = 2, LINKED = 1 + (2 * REACH + 1) * (2 * REACH + 1), MOST = 3 * EDGE };
+enum {
+  EDGE   = 24,
+  DOFS   = 2,
+  PLATE  = EDGE * EDGE,
+  NODES  = 2 * PLATE,
+  REACH  = 2,
+  LINKED = 1 + (2 * REACH + 1) * (2 * REACH + 1),
+  MOST   = 3 * EDGE
+};
 
 /* Links of this rank, which may be between rows of others. */
 typedef struct {
@@ -29,7 +38,8 @@ typedef struct {
 static PetscErrorCode NewMatrix(PetscInt row, Mat *A)
 {
   PetscFunctionBeginUser;
-  PetscCall(MatCreateAIJ(PETSC_COMM_WORLD, PETSC_DECIDE, PETSC_DECIDE, NODES * DOFS, NODES * DOFS, row, NULL, row, NULL, A));
+  PetscCall(
+    MatCreateAIJ(PETSC_COMM_WORLD, PETSC_DECIDE, PETSC_DECIDE, NODES * DOFS, NODES * DOFS, row, NULL, row, NULL, A));
   PetscCall(MatSetOption(*A, MAT_NEW_NONZERO_ALLOCATION_ERR, PETSC_FALSE));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -128,7 +138,8 @@ static PetscErrorCode Sum(Plates *plates)
     const PetscReal *value = &links->value[links->ptr[v]];
 
     for (PetscInt i = 0; i < n; i++)
-      for (PetscInt j = 0; j < n; j++) PetscCall(MatSetValue(plates->C, row[i], row[j], value[i] * value[j], ADD_VALUES));
+      for (PetscInt j = 0; j < n; j++)
+        PetscCall(MatSetValue(plates->C, row[i], row[j], value[i] * value[j], ADD_VALUES));
   }
   PetscCall(Assemble(plates->C));
   PetscCall(MatDuplicate(plates->K, MAT_COPY_VALUES, &plates->A));
@@ -205,7 +216,8 @@ static PetscReal Operations(Factor factor)
   return cost.operations;
 }
 
-/* The same solutions as with the sum, for other values, more links, other ones and none; and with the sum in between. */
+/* The same solutions as with the sum, for other values, more links, other ones and none; and with the sum in between.
+ */
 static void test_links(void **state)
 {
   static Plates plates;
@@ -309,7 +321,8 @@ static void test_sum_of_terms(void **state)
   PlatesDestroy(&plates);
 }
 
-/* A solver of K and C that is told of the first `told` links of each rank, their stiffness taken `times` as large: relative residual, and what it took */
+/* A solver of K and C that is told of the first `told` links of each rank, their stiffness taken `times` as large:
+ * relative residual, and what it took */
 static void SolveTold(Plates *plates, PetscInt told, PetscReal times, PetscReal *miss, LinearCounts *counts)
 {
   Links         *links  = &plates->links;
@@ -318,7 +331,7 @@ static void SolveTold(Plates *plates, PetscInt told, PetscReal times, PetscReal 
   PCFailedReason reason;
   PetscBool      serves;
   LinearCheck    check;
-  ReusedFactor     kept;
+  ReusedFactor   kept;
   Factor         factor;
   Mat            sum;
   Vec            b, x, r;
@@ -357,7 +370,8 @@ static void SolveTold(Plates *plates, PetscInt told, PetscReal times, PetscReal 
   assert_int_equal(ReusedFactorDestroy(&kept), 0);
 }
 
-/* What the border leaves out of C is made up for by iterations where it is small, else by a factor of the whole; so is a bordered factor that cannot be. */
+/* What the border leaves out of C is made up for by iterations where it is small, else by a factor of the whole; so is
+ * a bordered factor that cannot be. */
 static void test_solver_makes_up_for_what_is_left_out(void **state)
 {
   const PetscInt loose = (PLATE + EDGE + 4) * DOFS; /* held by a link only */
@@ -387,7 +401,8 @@ static void test_solver_makes_up_for_what_is_left_out(void **state)
 
 int main(int argc, char **argv)
 {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_links), cmocka_unit_test(test_plate_held_by_links), cmocka_unit_test(test_sum_of_terms),
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_links), cmocka_unit_test(test_plate_held_by_links),
+                                     cmocka_unit_test(test_sum_of_terms),
                                      cmocka_unit_test(test_solver_makes_up_for_what_is_left_out)};
   int                     failed;
 

@@ -1,5 +1,5 @@
-/* A body that is turned as a whole takes vectors along at every node, those of held nodes in the plane in which they are free, whatever the cells and ranks;
- * back again they are what they were; from a new beginning they stay. */
+/* A body that is turned as a whole takes vectors along at every node, those of held nodes in the plane in which they
+ * are free, whatever the cells and ranks; back again they are what they were; from a new beginning they stay. */
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdint.h>
@@ -17,18 +17,21 @@ static PetscMPIInt rank;
 static const char *const files[][2] = {
   {"block.geo",
    "Point(1) = {0, 0, 0}; Point(2) = {3, 0, 0}; Point(3) = {3, 1, 0}; Point(4) = {0, 1, 0};\n"
-   "Line(1) = {1, 2}; Line(2) = {2, 3}; Line(3) = {3, 4}; Line(4) = {4, 1}; Curve Loop(1) = {1, 2, 3, 4}; Plane Surface(1) = {1};\n"
+   "Line(1) = {1, 2}; Line(2) = {2, 3}; Line(3) = {3, 4}; Line(4) = {4, 1}; Curve Loop(1) = {1, 2, 3, 4}; Plane "
+   "Surface(1) = {1};\n"
    "Transfinite Curve{1, 3} = 4; Transfinite Curve{2, 4} = 2; Transfinite Surface{1}; Recombine Surface{1};\n"
-   "If(solid) v[] = Extrude{0, 0, solid / 2} { Surface{1}; Layers{1}; Recombine; }; Physical Volume(\"block\") = {v[1]}; Physical Surface(\"end\") = {1};\n"
+   "If(solid) v[] = Extrude{0, 0, solid / 2} { Surface{1}; Layers{1}; Recombine; }; Physical Volume(\"block\") = "
+   "{v[1]}; Physical Surface(\"end\") = {1};\n"
    "Else Physical Surface(\"block\") = {1}; Physical Curve(\"end\") = {4}; EndIf\n"},
-  {"solid.yaml", "mesh: {file: block.geo, order: 2, parameters: {solid: 1}}\ngeometry: solid\nbodies: [{volume: block, material: {law: svk, E: 1, nu: 0.3}}]\n"
-                 "supports: [{surface: end, uz: 0}]\n"             },
-  {"sheet.yaml",
-   "mesh: {file: block.geo, order: 1, parameters: {solid: 0.01}}\ngeometry: solid\nbodies: [{volume: block, material: {law: svk, E: 1, nu: 0.3}}]\n"
-   "supports: [{surface: end, uz: 0}]\n"                                           },
-  {"plane.yaml",
-   "mesh: {file: block.geo, order: 1, parameters: {solid: 0}}\ngeometry: plane_strain\nbodies: [{volume: block, material: {law: svk, E: 1, nu: 0.3}}]\n"
-   "supports: [{surface: end, ux: 0}]\n"                                           }
+  {"solid.yaml",                                        "mesh: {file: block.geo, order: 2, parameters: {solid: 1}}\ngeometry: solid\nbodies: [{volume: block, "
+   "material: {law: svk, E: 1, nu: 0.3}}]\n"
+                 "supports: [{surface: end, uz: 0}]\n"                                                                   },
+  {"sheet.yaml", "mesh: {file: block.geo, order: 1, parameters: {solid: 0.01}}\ngeometry: solid\nbodies: [{volume: "
+   "block, material: {law: svk, E: 1, nu: 0.3}}]\n"
+                 "supports: [{surface: end, uz: 0}]\n"},
+  {"plane.yaml", "mesh: {file: block.geo, order: 1, parameters: {solid: 0}}\ngeometry: plane_strain\nbodies: [{volume: "
+   "block, material: {law: svk, E: 1, nu: 0.3}}]\n"
+                 "supports: [{surface: end, ux: 0}]\n"                            }
 };
 
 static Mesh MakeMesh(const char *name, Scene *scene)
@@ -79,7 +82,8 @@ static double Miss(Mesh mesh, Vec x, const double *R)
     double         wanted = R ? 0 : Value(mesh, node, (int)k);
 
     if (dof[i] < first || dof[i] >= end) continue;
-    for (int l = 0; l < mesh->dim && R; l++) wanted += dof[node * mesh->dim + l] >= 0 ? R[3 * k + l] * Value(mesh, node, l) : 0;
+    for (int l = 0; l < mesh->dim && R; l++)
+      wanted += dof[node * mesh->dim + l] >= 0 ? R[3 * k + l] * Value(mesh, node, l) : 0;
     most = PetscMax(most, fabs(PetscRealPart(a[dof[i] - first]) - wanted));
   }
   assert_int_equal(VecRestoreArrayRead(x, &a), 0);
@@ -98,13 +102,15 @@ static void Turn(const char *name, int held, const double axis[3], double angle)
   const PetscInt *dof;
   PetscInt        first, end;
   double          R[9];
-  Corotation        turn;
+  Corotation      turn;
   Vec             x;
 
   Rotation(axis, angle, R);
-  assert_int_equal(PetscCalloc3(mesh->n_nodes * dim, &u, mesh->n_nodes * dim, &from, mesh->n_nodes * dim, &constrained), 0);
+  assert_int_equal(PetscCalloc3(mesh->n_nodes * dim, &u, mesh->n_nodes * dim, &from, mesh->n_nodes * dim, &constrained),
+                   0);
   for (PetscInt n = 0; n < mesh->n_nodes; n++) {
-    constrained[n * dim + PetscMax(held, 0)] = (PetscBool)(held >= 0 && fabs(mesh->coords[n * dim + held] + mesh->centre[held]) < 1e-9);
+    constrained[n * dim + PetscMax(held, 0)] =
+      (PetscBool)(held >= 0 && fabs(mesh->coords[n * dim + held] + mesh->centre[held]) < 1e-9);
     for (int k = 0; k < dim; k++) from[n * dim + k] = 0.3 * (k + 1); /* a shift turns nothing */
     for (int k = 0; k < dim; k++)
       for (int l = 0; l < dim; l++) u[n * dim + k] += (R[3 * k + l] - (k == l)) * mesh->coords[n * dim + l];
@@ -114,7 +120,8 @@ static void Turn(const char *name, int held, const double axis[3], double angle)
   assert_int_equal(DMCreateGlobalVector(mesh->dm, &x), 0);
   assert_int_equal(VecGetOwnershipRange(x, &first, &end), 0);
   for (PetscInt i = 0; i < mesh->n_nodes * dim; i++)
-    if (dof[i] >= first && dof[i] < end) assert_int_equal(VecSetValue(x, dof[i], Value(mesh, i / dim, (int)(i % dim)), INSERT_VALUES), 0);
+    if (dof[i] >= first && dof[i] < end)
+      assert_int_equal(VecSetValue(x, dof[i], Value(mesh, i / dim, (int)(i % dim)), INSERT_VALUES), 0);
   assert_int_equal(VecAssemblyBegin(x), 0);
   assert_int_equal(VecAssemblyEnd(x), 0);
   assert_int_equal(CorotationCreate(mesh, &turn), 0);
@@ -157,7 +164,8 @@ static void test_held_nodes_turn_in_their_plane(void **state)
 
 int main(int argc, char **argv)
 {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_body_turns_as_a_whole), cmocka_unit_test(test_held_nodes_turn_in_their_plane)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_body_turns_as_a_whole),
+                                     cmocka_unit_test(test_held_nodes_turn_in_their_plane)};
   char                    name[128];
   int                     failed;
 

@@ -27,7 +27,8 @@ static PetscErrorCode Chain(Mat *A)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Force on unknown i: of column 0 on both ends, of column 1 on the one in the middle, of column 2 on none, of column 3 on all of them */
+/* Force on unknown i: of column 0 on both ends, of column 1 on the one in the middle, of column 2 on none, of column 3
+ * on all of them */
 static PetscScalar Force(PetscInt i, PetscInt column)
 {
   return column == 0 ? (i == 0) - 2 * (i == SIZE - 1) : column == 1 ? i == SIZE / 2 : column == 3 ? 1 + i : 0;
@@ -41,7 +42,8 @@ static PetscErrorCode Forces(Mat A, PetscInt columns, Mat *B)
   PetscCall(MatGetOwnershipRange(A, &first, &end));
   PetscCall(MatCreateDense(PETSC_COMM_WORLD, end - first, PETSC_DECIDE, SIZE, columns, NULL, B));
   for (PetscInt j = 0; j < columns; j++)
-    for (PetscInt i = first; i < end; i++) PetscCall(MatSetValue(*B, i, j, Force(i, columns == 1 ? 2 : j), INSERT_VALUES));
+    for (PetscInt i = first; i < end; i++)
+      PetscCall(MatSetValue(*B, i, j, Force(i, columns == 1 ? 2 : j), INSERT_VALUES));
   PetscCall(MatAssemblyBegin(*B, MAT_FINAL_ASSEMBLY));
   PetscCall(MatAssemblyEnd(*B, MAT_FINAL_ASSEMBLY));
   PetscFunctionReturn(PETSC_SUCCESS);

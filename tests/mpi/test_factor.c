@@ -1,4 +1,5 @@
-/* Factors of grids: each ordering, symmetric or not, other values, other patterns and singular ones; and what dissection costs. */
+/* Factors of grids: each ordering, symmetric or not, other values, other patterns and singular ones; and what
+ * dissection costs. */
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdint.h>
@@ -32,7 +33,8 @@ static PetscErrorCode Grid(PetscReal ground, PetscReal skew, Mat *A)
   const PetscInt n = EDGE * EDGE * EDGE, step[] = {1, EDGE, EDGE * EDGE};
 
   PetscFunctionBeginUser;
-  PetscCall(MatCreateAIJ(PETSC_COMM_WORLD, PETSC_DECIDE, PETSC_DECIDE, n * DOFS, n * DOFS, 7 * DOFS, NULL, 7 * DOFS, NULL, A));
+  PetscCall(
+    MatCreateAIJ(PETSC_COMM_WORLD, PETSC_DECIDE, PETSC_DECIDE, n * DOFS, n * DOFS, 7 * DOFS, NULL, 7 * DOFS, NULL, A));
   for (PetscInt i = 0; i < n; i++) {
     PetscCall(AddBlock(*A, i, i, ground, 0));
     for (int d = 0; d < 3; d++) {
@@ -108,7 +110,8 @@ static void test_other_values_and_patterns(void **state)
   assert_int_equal(MatDestroy(&other), 0);
 }
 
-/* A matrix of zeros has no factor: that is told, solutions are infinite, and the next matrix is solved with all the same. */
+/* A matrix of zeros has no factor: that is told, solutions are infinite, and the next matrix is solved with all the
+ * same. */
 static void test_singular(void **state)
 {
   PCFailedReason reason;
@@ -192,8 +195,9 @@ static void test_other_ordering(void **state)
 
 int main(int argc, char **argv)
 {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_orderings), cmocka_unit_test(test_other_values_and_patterns), cmocka_unit_test(test_singular),
-                                     cmocka_unit_test(test_dissection_costs), cmocka_unit_test(test_other_ordering)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_orderings), cmocka_unit_test(test_other_values_and_patterns),
+                                     cmocka_unit_test(test_singular), cmocka_unit_test(test_dissection_costs),
+                                     cmocka_unit_test(test_other_ordering)};
   int                     failed;
 
   if (PetscInitialize(&argc, &argv, NULL, NULL)) return 1;

@@ -1,5 +1,6 @@
-/* A sweep of Gauss-Seidel's method across ranks is symmetric and leaves no eigenvalue of the operator above 1, which sweeps of each rank for itself do; one
- * rank's is PETSc's to single precision, values that change are taken over, and the smoother with its residual is Chebyshev's iterations with sweeps. */
+/* A sweep of Gauss-Seidel's method across ranks is symmetric and leaves no eigenvalue of the operator above 1, which
+ * sweeps of each rank for itself do; one rank's is PETSc's to single precision, values that change are taken over, and
+ * the smoother with its residual is Chebyshev's iterations with sweeps. */
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdint.h>
@@ -11,7 +12,8 @@ enum { SIDE = 12, DOFS = 2, MOST = 3, POWERS = 300 };
 
 static const PetscReal EXACT = 1e-12, SINGLE = 1e-6, LEAST = 0.1, LARGEST = 1.1;
 
-/* Springs between the neighbours of a square of nodes, diagonals too, and a stiff one between every node and the opposite one, whose rank is another. */
+/* Springs between the neighbours of a square of nodes, diagonals too, and a stiff one between every node and the
+ * opposite one, whose rank is another. */
 static PetscErrorCode Square(int dofs, PetscReal stiff, Mat *A)
 {
   const PetscReal spring[MOST][MOST] = {
@@ -31,7 +33,8 @@ static PetscErrorCode Square(int dofs, PetscReal stiff, Mat *A)
   PetscCall(MatSetUp(*A));
   PetscCall(MatSetOption(*A, MAT_NEW_NONZERO_ALLOCATION_ERR, PETSC_FALSE));
   for (PetscInt a = 0; a < n && !rank; a++) {
-    const PetscInt others[] = {(a + 1) % SIDE ? a + 1 : -1, a + SIDE < n ? a + SIDE : -1, (a + 1) % SIDE && a + SIDE < n ? a + SIDE + 1 : -1, n - 1 - a};
+    const PetscInt others[] = {(a + 1) % SIDE ? a + 1 : -1, a + SIDE < n ? a + SIDE : -1,
+                               (a + 1) % SIDE && a + SIDE < n ? a + SIDE + 1 : -1, n - 1 - a};
 
     for (int k = 0; k < 4; k++) {
       const PetscInt  b      = others[k];
@@ -71,7 +74,8 @@ static PetscErrorCode Fill(Vec v, PetscInt seed)
 
   PetscFunctionBeginUser;
   PetscCall(VecGetOwnershipRange(v, &begin, &end));
-  for (PetscInt i = begin; i < end; i++) PetscCall(VecSetValue(v, i, PetscSinReal((PetscReal)(seed * (i + 1) * (i + 3))), INSERT_VALUES));
+  for (PetscInt i = begin; i < end; i++)
+    PetscCall(VecSetValue(v, i, PetscSinReal((PetscReal)(seed * (i + 1) * (i + 3))), INSERT_VALUES));
   PetscCall(VecAssemblyBegin(v));
   PetscCall(VecAssemblyEnd(v));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -248,8 +252,8 @@ static void test_smooths(void **state)
 
 int main(int argc, char **argv)
 {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_no_eigenvalue_above_one), cmocka_unit_test(test_symmetric), cmocka_unit_test(test_follows_values),
-                                     cmocka_unit_test(test_smooths)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_no_eigenvalue_above_one), cmocka_unit_test(test_symmetric),
+                                     cmocka_unit_test(test_follows_values), cmocka_unit_test(test_smooths)};
   int                     failed;
 
   if (PetscInitialize(&argc, &argv, NULL, NULL)) return 1;

@@ -1,5 +1,5 @@
-/* Linear solves by a factor that is not quite the matrix's are refined and counted; what refinement cannot help is counted apart or lost; good ones are left
- * alone. */
+/* Linear solves by a factor that is not quite the matrix's are refined and counted; what refinement cannot help is
+ * counted apart or lost; good ones are left alone. */
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdint.h>
@@ -23,7 +23,8 @@ static PetscErrorCode Diagonal(PetscReal wrong, Mat *A)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* One solve with a tolerance of 1e-8: its counts, whether it was lost, and the largest error of the solution, which is 1 */
+/* One solve with a tolerance of 1e-8: its counts, whether it was lost, and the largest error of the solution, which is
+ * 1 */
 static PetscErrorCode Solve(PetscReal wrong, LinearCounts *counts, PetscBool *lost, PetscReal *error)
 {
   Mat         A, P;
@@ -92,7 +93,8 @@ static void test_slow_refinement_is_told(void **state)
   PetscReal    error;
 
   (void)state;
-  assert_int_equal(Solve(0.4, &counts, &lost, &error), 0); /* leaves 0.4/1.4 in each step: eight of them leave 1.3e-5 of the first 0.29 */
+  assert_int_equal(Solve(0.4, &counts, &lost, &error),
+                   0); /* leaves 0.4/1.4 in each step: eight of them leave 1.3e-5 of the first 0.29 */
   assert_false(lost);
   assert_true(counts.refined == 1 && counts.steps == 8 && counts.inaccurate == 1);
   assert_true(counts.worst > 1e-6 && counts.worst < 1e-4);
@@ -113,9 +115,10 @@ static void test_hopeless_solve_is_lost(void **state)
 
 int main(int argc, char **argv)
 {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_good_solve_is_left_alone), cmocka_unit_test(test_refinement_helps),
-                                     cmocka_unit_test(test_slow_refinement_is_told), cmocka_unit_test(test_hopeless_solve_is_lost)};
-  int                     failed;
+  const struct CMUnitTest tests[] = {
+    cmocka_unit_test(test_good_solve_is_left_alone), cmocka_unit_test(test_refinement_helps),
+    cmocka_unit_test(test_slow_refinement_is_told), cmocka_unit_test(test_hopeless_solve_is_lost)};
+  int failed;
 
   if (PetscInitialize(&argc, &argv, NULL, NULL)) return 1;
   failed = cmocka_run_group_tests(tests, NULL, NULL);

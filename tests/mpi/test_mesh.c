@@ -1,5 +1,5 @@
-/* The distributed mesh is the file's mesh: every element type on a curved body, nodes, faces, groups, dofs and sums on any number of ranks; wrong meshes are
- * refused in words. */
+/* The distributed mesh is the file's mesh: every element type on a curved body, nodes, faces, groups, dofs and sums on
+ * any number of ranks; wrong meshes are refused in words. */
 #include "mesh/mesh.h"
 #include "kernels/elementkernel.h"
 #include "gmshfile.h"
@@ -42,7 +42,8 @@ PetscErrorCode RefuseInput(MPI_Comm comm, const char *format, ...)
   return RefuseInputAnywhere(comm, text);
 }
 
-/* ------------------------------------------------------------------------------------------------------------- scenes */
+/* ------------------------------------------------------------------------------------------------------------- scenes
+ */
 
 static void WriteText(const char *name, const char *text, char path[PETSC_MAX_PATH_LEN])
 {
@@ -82,12 +83,14 @@ static const char *const ring =
   "  Else v[] = Extrude{0, 0, 0.5} { Surface{1}; Layers{1}; };\n"
   "  EndIf\n"
   "  Physical Volume(\"ring\") = {v[1]}; Physical Surface(\"bottom\") = {1}; Physical Surface(\"top\") = {v[0]};\n"
-  "  Physical Surface(\"cut_y\") = {v[2]}; Physical Surface(\"outer\") = {v[3]}; Physical Surface(\"cut_x\") = {v[4]}; Physical Surface(\"inner\") = {v[5]};\n"
+  "  Physical Surface(\"cut_y\") = {v[2]}; Physical Surface(\"outer\") = {v[3]}; Physical Surface(\"cut_x\") = {v[4]}; "
+  "Physical Surface(\"inner\") = {v[5]};\n"
   "  Physical Surface(\"cuts\") = {v[2], v[4]};\n"
   "  Physical Curve(\"edge\") = {2}; Physical Point(\"corner\") = {2};\n"
   "Else\n"
   "  Physical Surface(\"ring\") = {1};\n"
-  "  Physical Curve(\"cut_y\") = {1}; Physical Curve(\"outer\") = {2}; Physical Curve(\"cut_x\") = {3}; Physical Curve(\"inner\") = {4};\n"
+  "  Physical Curve(\"cut_y\") = {1}; Physical Curve(\"outer\") = {2}; Physical Curve(\"cut_x\") = {3}; Physical "
+  "Curve(\"inner\") = {4};\n"
   "  Physical Curve(\"cuts\") = {1, 3}; Physical Point(\"corner\") = {2};\n"
   "EndIf\n";
 
@@ -101,11 +104,11 @@ static Scene RingScene(const Case *test)
   char text[1024], path[PETSC_MAX_PATH_LEN];
 
   WriteText("ring.geo", ring, path);
-  snprintf(
-    text, sizeof(text),
-    "mesh: {file: ring.geo, order: %d, parameters: {blocks: %d, solid: %d}}\ngeometry: %s\nbodies: [{volume: ring, material: {law: svk, E: 1, nu: 0.3}}]\n"
-    "supports: [{surface: cut_x, ux: 0}]\nloads: [{surface: inner, pressure: 1}]\n",
-    test->order, test->blocks, test->solid, test->solid ? "solid" : "plane_strain");
+  snprintf(text, sizeof(text),
+           "mesh: {file: ring.geo, order: %d, parameters: {blocks: %d, solid: %d}}\ngeometry: %s\nbodies: [{volume: "
+           "ring, material: {law: svk, E: 1, nu: 0.3}}]\n"
+           "supports: [{surface: cut_x, ux: 0}]\nloads: [{surface: inner, pressure: 1}]\n",
+           test->order, test->blocks, test->solid, test->solid ? "solid" : "plane_strain");
   return MakeScene(text);
 }
 
@@ -136,7 +139,8 @@ static double Sum(double value)
   return value;
 }
 
-/* ------------------------------------------------------------------------------------------------------------- checks */
+/* ------------------------------------------------------------------------------------------------------------- checks
+ */
 
 /* Nodes and cells carry the tags, places and node order of the file, ids go by tags, owners know their nodes. */
 static void CheckAgainstFile(Mesh mesh, const char *file)
@@ -151,7 +155,8 @@ static void CheckAgainstFile(Mesh mesh, const char *file)
 
     assert_int_equal(PetscFindInt(mesh->node_tag[i], gmsh.n_nodes, gmsh.node_tag, &at), 0);
     assert_int_equal(at, mesh->node_id[i]); /* every node of the file is a cell's */
-    for (int k = 0; k < mesh->dim; k++) assert_true(mesh->coords[i * mesh->dim + k] == gmsh.coords[3 * at + k] - mesh->centre[k]);
+    for (int k = 0; k < mesh->dim; k++)
+      assert_true(mesh->coords[i * mesh->dim + k] == gmsh.coords[3 * at + k] - mesh->centre[k]);
     if (mesh->node_owner[i] == rank) {
       assert_int_equal(mesh->node_owner_local[i], i);
       ids += mesh->node_id[i];
@@ -171,7 +176,8 @@ static void CheckAgainstFile(Mesh mesh, const char *file)
         found = PETSC_TRUE;
         assert_int_equal(block->element->type, mesh->cell_type[c]);
         for (int k = 0; k < block->nodes; k++)
-          assert_int_equal(gmsh.node_tag[block->connectivity[item * block->nodes + k]], mesh->node_tag[mesh->cell_nodes[mesh->cell_ptr[c] + k]]);
+          assert_int_equal(gmsh.node_tag[block->connectivity[item * block->nodes + k]],
+                           mesh->node_tag[mesh->cell_nodes[mesh->cell_ptr[c] + k]]);
       }
     }
     assert_true(found);
@@ -189,7 +195,8 @@ static void CheckOwners(Mesh mesh)
   assert_int_equal(PetscCalloc2(most, &mine, most * size, &all), 0);
   memcpy(mine, mesh->node_id, (size_t)mesh->n_nodes * sizeof(PetscInt));
   assert_int_equal(MPI_Allgather(mine, most, MPIU_INT, all, most, MPIU_INT, PETSC_COMM_WORLD), MPI_SUCCESS);
-  for (PetscInt i = 0; i < mesh->n_nodes; i++) assert_int_equal(all[mesh->node_owner[i] * most + mesh->node_owner_local[i]], mesh->node_id[i]);
+  for (PetscInt i = 0; i < mesh->n_nodes; i++)
+    assert_int_equal(all[mesh->node_owner[i] * most + mesh->node_owner_local[i]], mesh->node_id[i]);
   assert_int_equal(PetscFree2(mine, all), 0);
 }
 
@@ -211,13 +218,14 @@ static PetscBool OnGroup(const char *name, const double x[3])
   if (!strcmp(name, "hexes")) return x[0] < 1.25;
   if (!strcmp(name, "tets")) return x[0] > 1.25;
   if (!strcmp(name, "outside")) {
-    return fabs(x[0] - 1) < near || fabs(x[0] - 1.5) < near || fabs(x[0] - 2.5) < near || fabs(x[1]) < near || fabs(x[1] - 1) < near || fabs(x[2]) < near ||
-           fabs(x[2] - 1) < near;
+    return fabs(x[0] - 1) < near || fabs(x[0] - 1.5) < near || fabs(x[0] - 2.5) < near || fabs(x[1]) < near ||
+           fabs(x[1] - 1) < near || fabs(x[2]) < near || fabs(x[2] - 1) < near;
   }
   return !strcmp(name, "ring") || !strcmp(name, "both");
 }
 
-/* Every rank lists exactly the nodes that lie on the group, also those whose face of the group is another rank's; middle nodes lie on the arc. */
+/* Every rank lists exactly the nodes that lie on the group, also those whose face of the group is another rank's;
+ * middle nodes lie on the arc. */
 static void CheckGroupNodes(Mesh mesh)
 {
   for (int g = 0; g < mesh->n_groups; g++) {
@@ -250,7 +258,8 @@ static double Volume(Mesh mesh)
   return Sum(volume);
 }
 
-/* Divergence theorem: the flux of x through the boundary, normals outward, is dim times the volume; "cuts" repeats two surfaces, "middle" is inside. */
+/* Divergence theorem: the flux of x through the boundary, normals outward, is dim times the volume; "cuts" repeats two
+ * surfaces, "middle" is inside. */
 static double Flux(Mesh mesh, PetscInt *n_faces)
 {
   double flux = 0;
@@ -294,7 +303,8 @@ static double NodeValue(Mesh mesh, PetscInt i, int k)
   return (double)(mesh->node_id[i] * mesh->dim + k + 1);
 }
 
-/* The lowest rank alone says which dofs are supported; all must agree, number each free dof once, and exchange values without loss. */
+/* The lowest rank alone says which dofs are supported; all must agree, number each free dof once, and exchange values
+ * without loss. */
 static void CheckDofs(Mesh mesh, Scene scene)
 {
   const PetscInt   n    = mesh->n_nodes * mesh->dim;
@@ -325,18 +335,21 @@ static void CheckDofs(Mesh mesh, Scene scene)
   for (PetscInt i = 0; i < n; i++) {
     u[i]    = -7;
     ones[i] = 1;
-    if (dofs[i] >= first && dofs[i] < last) values[dofs[i] - first] = NodeValue(mesh, i / mesh->dim, (int)(i % mesh->dim));
+    if (dofs[i] >= first && dofs[i] < last)
+      values[dofs[i] - first] = NodeValue(mesh, i / mesh->dim, (int)(i % mesh->dim));
   }
   for (PetscInt i = 0; i < last - first; i++) assert_true(PetscRealPart(values[i]) > 0); /* every entry has its dof */
   assert_int_equal(VecRestoreArray(x, &values), 0);
   assert_int_equal(MeshGlobalToLocal(mesh, x, u), 0);
-  for (PetscInt i = 0; i < n; i++) assert_true(u[i] == (dofs[i] < 0 ? -7 : NodeValue(mesh, i / mesh->dim, (int)(i % mesh->dim))));
+  for (PetscInt i = 0; i < n; i++)
+    assert_true(u[i] == (dofs[i] < 0 ? -7 : NodeValue(mesh, i / mesh->dim, (int)(i % mesh->dim))));
 
   /* a 1 from every copy: the number of copies, in the vector and as nodal sum, which agree */
   assert_int_equal(MeshLocalToGlobal(mesh, ones, F), 0);
   assert_int_equal(MeshSumNodes(mesh, mesh->dim, ones), 0);
   assert_int_equal(MeshGlobalToLocal(mesh, F, u), 0);
-  for (PetscInt i = 0; i < n; i++) assert_true(ones[i] >= (mesh->node_owner[i / mesh->dim] == rank ? 1 : 2) && (dofs[i] < 0 || u[i] == ones[i]));
+  for (PetscInt i = 0; i < n; i++)
+    assert_true(ones[i] >= (mesh->node_owner[i / mesh->dim] == rank ? 1 : 2) && (dofs[i] < 0 || u[i] == ones[i]));
   double copies = 0;
 
   for (PetscInt i = 0; i < mesh->n_nodes; i++) copies += mesh->node_owner[i] == rank ? ones[i * mesh->dim] : 0;
@@ -347,7 +360,8 @@ static void CheckDofs(Mesh mesh, Scene scene)
   assert_int_equal(PetscFree2(u, ones), 0);
 }
 
-/* The report has these words, on rank 0 only, and its columns stand in line: every number of a column ends where the heading ends. */
+/* The report has these words, on rank 0 only, and its columns stand in line: every number of a column ends where the
+ * heading ends. */
 static void CheckReport(Mesh mesh, Scene scene, const char *body, const char *cells)
 {
   char  text[2048] = "";
@@ -359,7 +373,8 @@ static void CheckReport(Mesh mesh, Scene scene, const char *body, const char *ce
   if (fread(text, 1, sizeof(text) - 1, stream) && rank) fail_msg("rank %d printed", rank);
   fclose(stream);
   if (rank) return;
-  const char *heading = strstr(text, "         body"), *line = strstr(text, body), *faces = strstr(text, "         surface");
+  const char *heading = strstr(text, "         body"), *line = strstr(text, body),
+             *faces = strstr(text, "         surface");
 
   assert_true(heading && line && faces && strstr(line, cells));
   for (const char *start = line; line > text && line[-1] != '\n';) line = --start;
@@ -389,12 +404,18 @@ static void test_elements(void **state)
     Scene       scene = RingScene(test);
     char        file[PETSC_MAX_PATH_LEN], cells_text[64];
     Mesh        mesh = MakeMesh(scene, file);
-    const int   n = ROUND * test->order + 1, m = ACROSS * test->order + 1, cells = ROUND * ACROSS * (test->blocks ? 1 : test->solid ? 6 : 2);
-    const int   around = 2 * (ROUND + ACROSS) * (test->solid && !test->blocks ? 2 : 1), plane = test->solid ? 2 * ROUND * ACROSS * (test->blocks ? 1 : 2) : 0;
-    PetscInt    n_faces;
-    double      flux = Flux(mesh, &n_faces);
+    const int   n = ROUND * test->order + 1, m = ACROSS * test->order + 1,
+              cells = ROUND * ACROSS *
+                      (test->blocks  ? 1
+                       : test->solid ? 6
+                                     : 2);
+    const int around = 2 * (ROUND + ACROSS) * (test->solid && !test->blocks ? 2 : 1),
+              plane  = test->solid ? 2 * ROUND * ACROSS * (test->blocks ? 1 : 2) : 0;
+    PetscInt n_faces;
+    double   flux = Flux(mesh, &n_faces);
 
-    for (PetscInt c = 0; c < mesh->n_cells; c++) assert_string_equal(ElementGet(mesh->cell_type[c])->name, test->element);
+    for (PetscInt c = 0; c < mesh->n_cells; c++)
+      assert_string_equal(ElementGet(mesh->cell_type[c])->name, test->element);
     assert_int_equal(mesh->order, test->order);
     assert_int_equal(mesh->n_cells_global, cells);
     assert_int_equal(mesh->n_global, n * m * (test->solid ? test->order + 1 : 1));
@@ -419,8 +440,10 @@ static void test_elements(void **state)
 
 /* Two squares of one body, quadrangles and triangles, that share their middle: 3 cells along each side */
 static const char *const quads_and_triangles =
-  "Point(1) = {0, 0, 0}; Point(2) = {1, 0, 0}; Point(3) = {2, 0, 0}; Point(4) = {2, 1, 0}; Point(5) = {1, 1, 0}; Point(6) = {0, 1, 0};\n"
-  "Line(1) = {1, 2}; Line(2) = {2, 3}; Line(3) = {3, 4}; Line(4) = {4, 5}; Line(5) = {5, 6}; Line(6) = {6, 1}; Line(7) = {2, 5};\n"
+  "Point(1) = {0, 0, 0}; Point(2) = {1, 0, 0}; Point(3) = {2, 0, 0}; Point(4) = {2, 1, 0}; Point(5) = {1, 1, 0}; "
+  "Point(6) = {0, 1, 0};\n"
+  "Line(1) = {1, 2}; Line(2) = {2, 3}; Line(3) = {3, 4}; Line(4) = {4, 5}; Line(5) = {5, 6}; Line(6) = {6, 1}; Line(7) "
+  "= {2, 5};\n"
   "Curve Loop(1) = {1, 7, 5, 6}; Plane Surface(1) = {1}; Curve Loop(2) = {2, 3, 4, -7}; Plane Surface(2) = {2};\n"
   "Transfinite Curve{1:7} = 4; Transfinite Surface{1:2}; Recombine Surface{1};\n"
   "Physical Surface(\"both\") = {1, 2};\n"
@@ -431,7 +454,8 @@ static const char *const hexes_and_tets =
   "For k In {0:1}\n"
   "  a = 10 * k; x = 1.5 * k;\n"
   "  Point(a + 1) = {x, 0, 0}; Point(a + 2) = {x + 1, 0, 0}; Point(a + 3) = {x + 1, 1, 0}; Point(a + 4) = {x, 1, 0};\n"
-  "  Line(a + 1) = {a + 1, a + 2}; Line(a + 2) = {a + 2, a + 3}; Line(a + 3) = {a + 3, a + 4}; Line(a + 4) = {a + 4, a + 1};\n"
+  "  Line(a + 1) = {a + 1, a + 2}; Line(a + 2) = {a + 2, a + 3}; Line(a + 3) = {a + 3, a + 4}; Line(a + 4) = {a + 4, a "
+  "+ 1};\n"
   "  Curve Loop(a + 1) = {a + 1, a + 2, a + 3, a + 4}; Plane Surface(a + 1) = {a + 1};\n"
   "  Transfinite Curve{a + 1, a + 2, a + 3, a + 4} = 3; Transfinite Surface{a + 1};\n"
   "EndFor\n"
@@ -455,8 +479,9 @@ static Scene MixedScene(const Mixed *test)
 
   WriteText(test->name, test->geo, path);
   snprintf(text, sizeof(text),
-           "mesh: {file: %s, order: %d}\ngeometry: %s\nbodies: [%s]\nsupports: [{surface: cut_x, ux: 0}]\nloads: [{surface: %s, pressure: 1}]\n", test->name,
-           test->order, test->geometry, test->bodies, test->loaded);
+           "mesh: {file: %s, order: %d}\ngeometry: %s\nbodies: [%s]\nsupports: [{surface: cut_x, ux: 0}]\nloads: "
+           "[{surface: %s, pressure: 1}]\n",
+           test->name, test->order, test->geometry, test->bodies, test->loaded);
   return MakeScene(text);
 }
 
@@ -478,7 +503,8 @@ static void CheckTypes(Mesh mesh, const Mixed *test)
 #define MATERIAL "material: {law: svk, E: 1, nu: 0.3}"
 static void test_mixed_types(void **state)
 {
-  static const char *const one = "{volume: both, " MATERIAL "}", *const two = "{volume: hexes, " MATERIAL "}, {volume: tets, " MATERIAL "}";
+  static const char *const one = "{volume: both, " MATERIAL "}", *const two = "{volume: hexes, " MATERIAL
+                                                                              "}, {volume: tets, " MATERIAL "}";
   const Mixed cases[] = {
     {"plane.geo",
      "plane_strain", quads_and_triangles,
@@ -543,7 +569,8 @@ static void test_mixed_types(void **state)
 }
 #undef MATERIAL
 
-/* Each rank gives 2^rank: a node's sum says on which ranks it is, whatever else a block holds; on one rank nothing is added. */
+/* Each rank gives 2^rank: a node's sum says on which ranks it is, whatever else a block holds; on one rank nothing is
+ * added. */
 static void test_sum_nodes(void **state)
 {
   const Case ring_case = {"hex27", 1, 1, 2};
@@ -555,14 +582,17 @@ static void test_sum_nodes(void **state)
   (void)state;
   assert_int_equal(PetscCalloc1(mesh->n_global, &ranks), 0);
   for (PetscInt i = 0; i < mesh->n_nodes; i++) ranks[mesh->node_id[i]] = 1 << rank;
-  assert_int_equal(MPI_Allreduce(MPI_IN_PLACE, ranks, (PetscMPIInt)mesh->n_global, MPI_DOUBLE, MPI_SUM, PETSC_COMM_WORLD), MPI_SUCCESS);
+  assert_int_equal(
+    MPI_Allreduce(MPI_IN_PLACE, ranks, (PetscMPIInt)mesh->n_global, MPI_DOUBLE, MPI_SUM, PETSC_COMM_WORLD),
+    MPI_SUCCESS);
   for (int block = 1; block <= 3; block++) {
     PetscReal *values;
 
     assert_int_equal(PetscMalloc1(mesh->n_nodes * block, &values), 0);
     for (PetscInt i = 0; i < mesh->n_nodes * block; i++) values[i] = (1 << rank) * (double)(1 + i % block);
     assert_int_equal(MeshSumNodes(mesh, block, values), 0);
-    for (PetscInt i = 0; i < mesh->n_nodes * block; i++) assert_true(values[i] == ranks[mesh->node_id[i / block]] * (double)(1 + i % block));
+    for (PetscInt i = 0; i < mesh->n_nodes * block; i++)
+      assert_true(values[i] == ranks[mesh->node_id[i / block]] * (double)(1 + i % block));
     assert_int_equal(PetscFree(values), 0);
   }
   for (PetscInt i = 0; i < mesh->n_nodes; i++) shared += ranks[mesh->node_id[i]] != 1 << rank;
@@ -572,19 +602,24 @@ static void test_sum_nodes(void **state)
   assert_int_equal(SceneDestroy(&scene), 0);
 }
 
-/* ------------------------------------------------------------------------------------------------------- wrong meshes */
+/* ------------------------------------------------------------------------------------------------------- wrong meshes
+ */
 
-/* Three squares in a row, body a and two of body b, that share the nodes of "middle"; "tool" is a surface of its own above them, its group turned over. */
+/* Three squares in a row, body a and two of body b, that share the nodes of "middle"; "tool" is a surface of its own
+ * above them, its group turned over. */
 static const char *const squares =
   "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n"
   "$PhysicalNames\n5\n1 1 \"left\"\n1 4 \"middle\"\n1 5 \"tool\"\n2 2 \"a\"\n2 3 \"b\"\n$EndPhysicalNames\n"
-  "$Entities\n0 3 2 0\n1 0 0 0 0 1 0 1 1 0\n2 1 0 0 1 1 0 1 4 0\n3 0 2 0 2 2 0 1 -5 0\n1 0 0 0 1 1 0 1 2 0\n2 1 0 0 3 1 0 1 3 0\n$EndEntities\n"
+  "$Entities\n0 3 2 0\n1 0 0 0 0 1 0 1 1 0\n2 1 0 0 1 1 0 1 4 0\n3 0 2 0 2 2 0 1 -5 0\n1 0 0 0 1 1 0 1 2 0\n2 1 0 0 3 "
+  "1 0 1 3 0\n$EndEntities\n"
   "$Nodes\n1 11 10 21\n2 1 0 11\n10\n11\n12\n13\n14\n15\n16\n17\n19\n20\n21\n"
   "0 0 0\n1 0 0\n2 0 0\n0 1 0\n1 1 0\n2 1 0\n3 0 0\n3 1 0\n0 2 0\n1 2 0\n2 2 0\n$EndNodes\n"
-  "$Elements\n5 7 1 7\n1 1 1 1\n1 10 13\n1 2 1 1\n2 11 14\n1 3 1 2\n5 19 20\n6 20 21\n2 1 3 1\n3 10 11 14 13\n2 2 3 2\n4 11 12 15 14\n7 12 16 17 "
+  "$Elements\n5 7 1 7\n1 1 1 1\n1 10 13\n1 2 1 1\n2 11 14\n1 3 1 2\n5 19 20\n6 20 21\n2 1 3 1\n3 10 11 14 13\n2 2 3 "
+  "2\n4 11 12 15 14\n7 12 16 17 "
   "15\n$EndElements\n";
 static const char *const two_bodies = "mesh: {file: two.msh}\ngeometry: plane_strain\n"
-                                      "bodies:\n  - {volume: a, material: {law: svk, E: 1, nu: 0.3}}\n  - {volume: b, material: {law: svk, E: 1, nu: 0.3}}\n"
+                                      "bodies:\n  - {volume: a, material: {law: svk, E: 1, nu: 0.3}}\n  - {volume: b, "
+                                      "material: {law: svk, E: 1, nu: 0.3}}\n"
                                       "  - {surface: tool, rigid: {point: [0, 0]}}\n"
                                       "loads: [{surface: left, ux: 0}]\n";
 
@@ -604,39 +639,55 @@ typedef struct {
 } Wrong;
 
 static const Wrong wrong[] = {
-  {"4.1 0 8",                                                                                                  "2.2 0 8",                                "",                                                                             "",                               {"two.msh: file format 2.2 is not read", "gmsh"}                              },
-  {"$MeshFormat\n4.1",                                                                                         "$Junk\n4.1",                             "",                                                                             "",                               {"is no gmsh mesh", ""}                                                       },
+  {"4.1 0 8",                                                                                                  "2.2 0 8",                                "",                                                                             "",                       {"two.msh: file format 2.2 is not read", "gmsh"}                              },
+  {"$MeshFormat\n4.1",                                                                                         "$Junk\n4.1",                             "",                                                                             "",                       {"is no gmsh mesh", ""}                                                       },
   {"$PhysicalNames\n5\n1 1 \"left\"\n1 4 \"middle\"\n1 5 \"tool\"\n2 2 \"a\"\n2 3 \"b\"\n$EndPhysicalNames\n",
    "",                                                                                                                                                   "",
-   "",                                                                                                                                                                                                                                                                     {"no physical names", "Physical Volume"}                                      },
-  {"\n4 11 12 15 14\n7 12 16 17 15\n$EndElements\n",                                                           "\n4 11 12",                              "",                                                                             "",                               {"two.msh:", "truncated or damaged in section $Elements"}                     },
-  {"4 11 12 15 14",                                                                                            "4 11 12 15 99",                          "",                                                                             "",                               {"element 4 has node 99", "not in the file"}                                  },
-  {"2 1 3 1\n3 10 11 14 13",                                                                                   "2 1 16 1\n3 10 11 14 13 10 10 10 10",    "",                                                                             "",                               {"serendipity", "-setnumber Mesh.SecondOrderIncomplete 0"}                    },
-  {"2 1 3 1\n3 10 11 14 13",                                                                                   "2 1 7 1\n3 10 11 14 13 10",              "",                                                                             "",                               {"5-node pyramid", "hex27"}                                                   },
-  {"2 1 3 1\n3 10 11 14 13",                                                                                   "2 1 21 1\n3 10 11 14 13 10",             "",                                                                             "",                               {"of order 3 or higher", ""}                                                  },
-  {"2 1 3 1\n3 10 11 14 13",                                                                                   "2 1 10 1\n3 10 11 14 13 10 10 10 10 10", "",                                                                             "",                               {"elements of two orders", "quad9"}                                           },
-  {"",                                                                                                         "",                                       "two.msh}",                                                                     "two.msh, order: 2}",             {"mesh.order", "of order 1"}                                                  },
-  {"1 0 0 0 1 1 0 1 2 0",                                                                                      "1 0 0 0 1 1 0 2 2 3 0",                  "",                                                                             "",                               {"cell 3 is in two bodies, 'a' and 'b'", ""}                                  },
-  {"2 2 \"a\"",                                                                                                "2 2 \"c\"",                              "",                                                                             "",                               {"bodies.0.volume: ", "no volume group 'a'; its volume groups: c, b"}         },
-  {"",                                                                                                         "",                                       "  - {volume: b, material: {law: svk, E: 1, nu: 0.3}}\n",                       "",                               {"bodies: ", "volume group 'b' that is no body"}                              },
-  {"2 1 0 0 3 1 0 1 3 0",                                                                                      "2 1 0 0 3 1 0 1 2 0",                    "",                                                                             "",                               {"bodies.1.volume", "no cells of a volume group 'b'; its volume groups: a, b"}},
-  {"6 20 21",                                                                                                  "6 19 20",                                "",                                                                             "",                               {"node 21 belongs to no element", ""}                                         },
-  {"\n1 0 0\n2 0 0",                                                                                           "\n1 0 0.5\n2 0 0",                       "",                                                                             "",                               {"node 11 has z = 0.5", "z = 0"}                                              },
-  {"\n1 0 0\n2 0 0",                                                                                           "\n-1 0 0\n2 0 0",                        "geometry: plane_strain",                                                       "geometry: axisymmetric",         {"node 11 has x = -1", "radius"}                                              },
-  {"3 10 11 14 13",                                                                                            "3 10 13 14 11",                          "",                                                                             "",                               {"cell 3 of body 'a' is inverted", "inverted cells in all: 1"}                },
-  {"1 0 0 0 0 1 0 1 1 0",                                                                                      "1 0 0 0 0 1 0 2 1 5 0",                  "",                                                                             "",                               {"bodies.2.surface", "is a face of a deformable body"}                        },
-  {"",                                                                                                         "",                                       "surface: tool",                                                                "surface: tol",                   {"bodies.2.surface", "no surface group 'tol'"}                                },
-  {"",                                                                                                         "",                                       "{surface: left, ux: 0}",                                                       "{surface: middle, pressure: 1}", {"loads.0.surface", "1 of the 1 faces of 'middle' lie between two cells"}     },
-  {"",                                                                                                         "",                                       "{surface: left, ux: 0}",                                                       "{surface: tool, ux: 0}",         {"loads.0.surface", "is a rigid tool"}                                        },
-  {"",                                                                                                         "",                                       "{surface: left, ux: 0}",                                                       "{surface: lefft, ux: 0}",        {"loads.0.surface", "no surface 'lefft'; it has: left, middle, tool"}         },
-  {"",                                                                                                         "",                                       "{surface: left, ux: 0}",                                                       "{surface: a, ux: 0}",            {"loads.0.surface", "'a' is a volume; a surface is needed"}                   },
+   "",                                                                                                                                                                                                                                                             {"no physical names", "Physical Volume"}                                      },
+  {"\n4 11 12 15 14\n7 12 16 17 15\n$EndElements\n",
+   "\n4 11 12",                                                                                                                                          "",
+   "",                                                                                                                                                                                                                                                             {"two.msh:", "truncated or damaged in section $Elements"}                     },
+  {"4 11 12 15 14",                                                                                            "4 11 12 15 99",                          "",                                                                             "",                       {"element 4 has node 99", "not in the file"}                                  },
+  {"2 1 3 1\n3 10 11 14 13",
+   "2 1 16 1\n3 10 11 14 13 10 10 10 10",                                                                                                                "",
+   "",                                                                                                                                                                                                                                                             {"serendipity", "-setnumber Mesh.SecondOrderIncomplete 0"}                    },
+  {"2 1 3 1\n3 10 11 14 13",                                                                                   "2 1 7 1\n3 10 11 14 13 10",              "",                                                                             "",                       {"5-node pyramid", "hex27"}                                                   },
+  {"2 1 3 1\n3 10 11 14 13",                                                                                   "2 1 21 1\n3 10 11 14 13 10",             "",                                                                             "",                       {"of order 3 or higher", ""}                                                  },
+  {"2 1 3 1\n3 10 11 14 13",                                                                                   "2 1 10 1\n3 10 11 14 13 10 10 10 10 10", "",                                                                             "",                       {"elements of two orders", "quad9"}                                           },
+  {"",                                                                                                         "",                                       "two.msh}",                                                                     "two.msh, order: 2}",     {"mesh.order", "of order 1"}                                                  },
+  {"1 0 0 0 1 1 0 1 2 0",                                                                                      "1 0 0 0 1 1 0 2 2 3 0",                  "",                                                                             "",                       {"cell 3 is in two bodies, 'a' and 'b'", ""}                                  },
+  {"2 2 \"a\"",                                                                                                "2 2 \"c\"",                              "",                                                                             "",                       {"bodies.0.volume: ", "no volume group 'a'; its volume groups: c, b"}         },
+  {"",
+   "",                                                                                                                                                   "  - {volume: b, material: {law: svk, E: 1, nu: 0.3}}\n",
+   "",                                                                                                                                                                                                                                                             {"bodies: ", "volume group 'b' that is no body"}                              },
+  {"2 1 0 0 3 1 0 1 3 0",
+   "2 1 0 0 3 1 0 1 2 0",                                                                                                                                "",
+   "",                                                                                                                                                                                                                                                             {"bodies.1.volume", "no cells of a volume group 'b'; its volume groups: a, b"}},
+  {"6 20 21",                                                                                                  "6 19 20",                                "",                                                                             "",                       {"node 21 belongs to no element", ""}                                         },
+  {"\n1 0 0\n2 0 0",                                                                                           "\n1 0 0.5\n2 0 0",                       "",                                                                             "",                       {"node 11 has z = 0.5", "z = 0"}                                              },
+  {"\n1 0 0\n2 0 0",
+   "\n-1 0 0\n2 0 0",                                                                                                                                    "geometry: plane_strain",
+   "geometry: axisymmetric",                                                                                                                                                                                                                                       {"node 11 has x = -1", "radius"}                                              },
+  {"3 10 11 14 13",                                                                                            "3 10 13 14 11",                          "",                                                                             "",                       {"cell 3 of body 'a' is inverted", "inverted cells in all: 1"}                },
+  {"1 0 0 0 0 1 0 1 1 0",                                                                                      "1 0 0 0 0 1 0 2 1 5 0",                  "",                                                                             "",                       {"bodies.2.surface", "is a face of a deformable body"}                        },
+  {"",                                                                                                         "",                                       "surface: tool",                                                                "surface: tol",           {"bodies.2.surface", "no surface group 'tol'"}                                },
+  {"",
+   "",                                                                                                                                                   "{surface: left, ux: 0}",
+   "{surface: middle, pressure: 1}",                                                                                                                                                                                                                               {"loads.0.surface", "1 of the 1 faces of 'middle' lie between two cells"}     },
+  {"",                                                                                                         "",                                       "{surface: left, ux: 0}",                                                       "{surface: tool, ux: 0}", {"loads.0.surface", "is a rigid tool"}                                        },
+  {"",
+   "",                                                                                                                                                   "{surface: left, ux: 0}",
+   "{surface: lefft, ux: 0}",                                                                                                                                                                                                                                      {"loads.0.surface", "no surface 'lefft'; it has: left, middle, tool"}         },
+  {"",
+   "",                                                                                                                                                   "{surface: left, ux: 0}",
+   "{surface: a, ux: 0}",                                                                                                                                                                                                                                          {"loads.0.surface", "'a' is a volume; a surface is needed"}                   },
   {"",
    "",                                                                                                                                                   "  - {surface: tool, rigid: {point: [0, 0]}}\nloads: [{surface: left, ux: 0}]",
-   "loads: [{surface: tool, ux: 0}]",                                                                                                                                                                                                                                      {"loads.0.surface", "2 of the 2 elements of 'tool' do not lie on any body"}   },
-  {"\n11\n",                                                                                                   "\n10\n",                                 "",                                                                             "",                               {"node 10 occurs twice", ""}                                                  },
-  {"\n4 11 12 15 14",                                                                                          "\n3 11 12 15 14",                        "",                                                                             "",                               {"two cells have the tag 3", ""}                                              },
-  {"$Entities",                                                                                                "$PartitionedEntities",                   "",                                                                             "",                               {"partitioned already", ""}                                                   },
-  {"",                                                                                                         "",                                       "two.msh",                                                                      "none.msh",                       {"none.msh: there is no such file", ""}                                       },
+   "loads: [{surface: tool, ux: 0}]",                                                                                                                                                                                                                              {"loads.0.surface", "2 of the 2 elements of 'tool' do not lie on any body"}   },
+  {"\n11\n",                                                                                                   "\n10\n",                                 "",                                                                             "",                       {"node 10 occurs twice", ""}                                                  },
+  {"\n4 11 12 15 14",                                                                                          "\n3 11 12 15 14",                        "",                                                                             "",                       {"two cells have the tag 3", ""}                                              },
+  {"$Entities",                                                                                                "$PartitionedEntities",                   "",                                                                             "",                       {"partitioned already", ""}                                                   },
+  {"",                                                                                                         "",                                       "two.msh",                                                                      "none.msh",               {"none.msh: there is no such file", ""}                                       },
 };
 
 static void TryWrong(const Wrong *test)
@@ -708,7 +759,8 @@ static void test_wrong_meshes(void **state)
   for (size_t t = 0; t < sizeof(wrong) / sizeof(*wrong); t++) {
     TryWrong(&wrong[t]);
     for (int k = 0; k < 2; k++)
-      if (!strstr(refused, wrong[t].message[k]) || !refused[0]) fail_msg("case %zu: expected '%s', got '%s'", t, wrong[t].message[k], refused);
+      if (!strstr(refused, wrong[t].message[k]) || !refused[0])
+        fail_msg("case %zu: expected '%s', got '%s'", t, wrong[t].message[k], refused);
   }
 }
 
@@ -721,8 +773,9 @@ const char *__asan_default_options(void)
 
 int main(int argc, char **argv)
 {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_elements), cmocka_unit_test(test_mixed_types), cmocka_unit_test(test_sum_nodes),
-                                     cmocka_unit_test(test_rigid_tool), cmocka_unit_test(test_wrong_meshes)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_elements), cmocka_unit_test(test_mixed_types),
+                                     cmocka_unit_test(test_sum_nodes), cmocka_unit_test(test_rigid_tool),
+                                     cmocka_unit_test(test_wrong_meshes)};
   char                    command[128];
   int                     failed;
 

@@ -1,4 +1,5 @@
-/* A matrix made of the ranks' blocks of nodes equals the sum of what they put in, on any number of ranks, also where another matrix has joined its pattern. */
+/* A matrix made of the ranks' blocks of nodes equals the sum of what they put in, on any number of ranks, also where
+ * another matrix has joined its pattern. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -8,7 +9,8 @@
 
 enum { SIZE = 2, NODES = 4, ROWS = SIZE * NODES - 1 }; /* of each rank; its first node lacks one dof */
 
-/* What a rank lists: its own nodes, backwards, and the first two of the next rank; a node is coupled to itself and to its neighbours in the list. */
+/* What a rank lists: its own nodes, backwards, and the first two of the next rank; a node is coupled to itself and to
+ * its neighbours in the list. */
 typedef struct {
   PetscInt  dof[(NODES + 2) * SIZE], ptr[NODES + 3], column[3 * (NODES + 2)];
   PetscReal value[3 * (NODES + 2) * SIZE * SIZE];
@@ -29,7 +31,8 @@ static void MakeList(List *list)
   MPI_Comm_size(PETSC_COMM_WORLD, &size);
   list->pairs = (NodePairs){SIZE, size > 1 ? NODES + 2 : NODES, list->dof, list->ptr, list->column};
   for (PetscInt i = 0; i < list->pairs.n; i++)
-    for (PetscInt d = 0; d < SIZE; d++) list->dof[i * SIZE + d] = i < NODES ? Dof(rank, NODES - 1 - i, d) : Dof((rank + 1) % size, i - NODES, d);
+    for (PetscInt d = 0; d < SIZE; d++)
+      list->dof[i * SIZE + d] = i < NODES ? Dof(rank, NODES - 1 - i, d) : Dof((rank + 1) % size, i - NODES, d);
   for (PetscInt i = 0; i < list->pairs.n; i++) {
     list->ptr[i] = n;
     for (PetscInt j = PetscMax(0, i - 1); j <= PetscMin(list->pairs.n - 1, i + 1); j++) list->column[n++] = j;
@@ -50,7 +53,9 @@ static Mat Expected(const List *list)
   assert_int_equal(MatSetOption(mat, MAT_NEW_NONZERO_ALLOCATION_ERR, PETSC_FALSE), 0);
   for (PetscInt i = 0; i < list->pairs.n; i++)
     for (PetscInt k = list->ptr[i]; k < list->ptr[i + 1]; k++)
-      assert_int_equal(MatSetValues(mat, SIZE, &list->dof[i * SIZE], SIZE, &list->dof[list->column[k] * SIZE], &list->value[k * SIZE * SIZE], ADD_VALUES), 0);
+      assert_int_equal(MatSetValues(mat, SIZE, &list->dof[i * SIZE], SIZE, &list->dof[list->column[k] * SIZE],
+                                    &list->value[k * SIZE * SIZE], ADD_VALUES),
+                       0);
   assert_int_equal(MatAssemblyBegin(mat, MAT_FINAL_ASSEMBLY), 0);
   assert_int_equal(MatAssemblyEnd(mat, MAT_FINAL_ASSEMBLY), 0);
   return mat;

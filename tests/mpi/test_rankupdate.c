@@ -1,5 +1,5 @@
-/* A factor with an update solves with the changed matrix; changes that come one after another add up, opposite ones cancel, and one that leaves the matrix
- * singular leaves the solution of the old one. */
+/* A factor with an update solves with the changed matrix; changes that come one after another add up, opposite ones
+ * cancel, and one that leaves the matrix singular leaves the solution of the old one. */
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdint.h>
@@ -10,7 +10,8 @@
 
 enum { SIZE = 40, CHANGES = 3 };
 
-/* A chain of springs, the first row held; some others by springs of s that act on the difference to their neighbour's neighbour. */
+/* A chain of springs, the first row held; some others by springs of s that act on the difference to their neighbour's
+ * neighbour. */
 static PetscErrorCode Chain(PetscInt n, const PetscReal *s, Mat *A)
 {
   const PetscReal   spring[]  = {1, -1, -1, 1};
@@ -152,13 +153,15 @@ static void test_singular_sum_is_left_alone(void **state)
   (void)state;
   Begin(&t);
   Add(&t, 0, 1, s);
-  assert_true(Residual(&t, 0, NULL) < 1e-11 || !(Residual(&t, 1, s) < 1e-3)); /* the core's pivot may be round-off instead of zero */
+  assert_true(Residual(&t, 0, NULL) < 1e-11 ||
+              !(Residual(&t, 1, s) < 1e-3)); /* the core's pivot may be round-off instead of zero */
   End(&t);
 }
 
 int main(int argc, char **argv)
 {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_changes_add_up), cmocka_unit_test(test_opposite_changes_cancel),
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_changes_add_up),
+                                     cmocka_unit_test(test_opposite_changes_cancel),
                                      cmocka_unit_test(test_singular_sum_is_left_alone)};
   int                     failed;
 

@@ -1,5 +1,6 @@
-/* A factor serves later operators while few contact terms have changed, to the residual asked for, sooner if it is told of them; after too many changes, a new
- * step, or where GMRES does not get there, a new one is made, of new patterns too. */
+/* A factor serves later operators while few contact terms have changed, to the residual asked for, sooner if it is told
+ * of them; after too many changes, a new step, or where GMRES does not get there, a new one is made, of new patterns
+ * too. */
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdint.h>
@@ -11,12 +12,13 @@
 enum { SIZE = 60 };
 
 typedef struct {
-  KSP         ksp;
-  ReusedFactor  kept;
-  LinearCheck check;
+  KSP          ksp;
+  ReusedFactor kept;
+  LinearCheck  check;
 } Solver;
 
-/* A chain of springs held at both ends; some rows get another one to the ground. far: couples the ends of the chain, which is another pattern */
+/* A chain of springs held at both ends; some rows get another one to the ground. far: couples the ends of the chain,
+ * which is another pattern */
 static PetscErrorCode Chain(PetscInt stiff, PetscReal by, PetscBool far, Mat *A)
 {
   PetscInt first, last;
@@ -25,7 +27,8 @@ static PetscErrorCode Chain(PetscInt stiff, PetscReal by, PetscBool far, Mat *A)
   PetscCall(MatCreateAIJ(PETSC_COMM_WORLD, PETSC_DECIDE, PETSC_DECIDE, SIZE, SIZE, 4, NULL, 4, NULL, A));
   PetscCall(MatGetOwnershipRange(*A, &first, &last));
   for (PetscInt i = first; i < last; i++) {
-    PetscCall(MatSetValue(*A, i, i, 2 + (i % 7 == 0 && i / 7 < stiff ? by : 0) + (far && i % (SIZE - 1) == 0), INSERT_VALUES));
+    PetscCall(
+      MatSetValue(*A, i, i, 2 + (i % 7 == 0 && i / 7 < stiff ? by : 0) + (far && i % (SIZE - 1) == 0), INSERT_VALUES));
     if (i > 0) PetscCall(MatSetValue(*A, i, i - 1, -1, INSERT_VALUES));
     if (i < SIZE - 1) PetscCall(MatSetValue(*A, i, i + 1, -1, INSERT_VALUES));
     if (far && i % (SIZE - 1) == 0) PetscCall(MatSetValue(*A, i, SIZE - 1 - i, -1, INSERT_VALUES));
@@ -76,8 +79,10 @@ static PetscErrorCode SolverDestroy(Solver *s)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* One solve with the next operator: its relative residual. told: of the springs from which on the factor is told of them, -1: not at all */
-static PetscReal SolveTold(Solver *s, PetscInt stiff, PetscReal by, PetscBool far, PetscInt changes, PetscBool pattern, PetscInt told)
+/* One solve with the next operator: its relative residual. told: of the springs from which on the factor is told of
+ * them, -1: not at all */
+static PetscReal SolveTold(Solver *s, PetscInt stiff, PetscReal by, PetscBool far, PetscInt changes, PetscBool pattern,
+                           PetscInt told)
 {
   PetscBool serves;
   Mat       A;
@@ -209,9 +214,12 @@ static void test_no_more_than_enough(void **state)
 
 int main(int argc, char **argv)
 {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_factor_serves_until_much_has_changed), cmocka_unit_test(test_told_of_changes_it_needs_no_iterations),
-                                     cmocka_unit_test(test_new_step_has_its_own_factor),          cmocka_unit_test(test_gives_up_and_factors),
-                                     cmocka_unit_test(test_new_pattern_is_served_and_factored),   cmocka_unit_test(test_no_more_than_enough)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_factor_serves_until_much_has_changed),
+                                     cmocka_unit_test(test_told_of_changes_it_needs_no_iterations),
+                                     cmocka_unit_test(test_new_step_has_its_own_factor),
+                                     cmocka_unit_test(test_gives_up_and_factors),
+                                     cmocka_unit_test(test_new_pattern_is_served_and_factored),
+                                     cmocka_unit_test(test_no_more_than_enough)};
   int                     failed;
 
   if (PetscInitialize(&argc, &argv, NULL, NULL)) return 1;

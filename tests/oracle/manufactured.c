@@ -1,8 +1,10 @@
-/* Shows that every element converges to an exact field at the rate of its order, p + 1 in the L2 norm, on curved and unstructured meshes: small strains for
-   all elements and geometries, finite strains for some; on more than one rank, that the error does not depend on the number of ranks.
+/* Shows that every element converges to an exact field at the rate of its order, p + 1 in the L2 norm, on curved and
+   unstructured meshes: small strains for all elements and geometries, finite strains for some; on more than one rank,
+   that the error does not depend on the number of ranks.
 
-   The field is chosen, its stress and body force follow from the laws as a textbook writes them; the library only gets nodal values of the field on the
-   boundary and the nodal forces, and gives back the interior. Argument: the folder of the meshes (default: meshes). */
+   The field is chosen, its stress and body force follow from the laws as a textbook writes them; the library only gets
+   nodal values of the field on the boundary and the nodal forces, and gives back the interior. Argument: the folder of
+   the meshes (default: meshes). */
 #include "bodies/elasticity.h"
 #include <petscdt.h>
 #include <petscksp.h>
@@ -17,9 +19,11 @@
 /* MAX_NEWTON: twice what quadratic convergence from the nodal values of the field needs */
 enum { LEVELS = 3, RULE_POINTS = 64, STENCIL = 3, MAX_NEWTON = 6 };
 
-static const PetscReal rate_margin    = 0.2;   /* the rate over all meshes of a case (least squares: unstructured meshes scatter) must exceed p + 1 less this */
+static const PetscReal rate_margin =
+  0.2; /* the rate over all meshes of a case (least squares: unstructured meshes scatter) must exceed p + 1 less this */
 static const PetscReal rank_agreement = 1e-10; /* of errors on different numbers of ranks, relative */
-static const PetscReal newton_done    = 1e-12; /* residual over the norm of the unassembled internal forces: rounding is 1e-15 */
+static const PetscReal newton_done =
+  1e-12; /* residual over the norm of the unassembled internal forces: rounding is 1e-15 */
 static const PetscReal young = 200, poisson = 0.3;
 static const PetscReal offset_radius = 0.5; /* of an axisymmetric box away from the axis; box sides are 1 */
 
@@ -79,15 +83,17 @@ static const Case cases[] = {
 enum { CASES = sizeof(cases) / sizeof(*cases) };
 
 /* The same on any number of ranks */
-static const Case parallel_case = {ELEMENT_TET10, GEOMETRY_SOLID, PETSC_FALSE, MATERIAL_NEO_HOOKEAN, FORMULATION_FULL, 1, {4}};
+static const Case parallel_case = {
+  ELEMENT_TET10, GEOMETRY_SOLID, PETSC_FALSE, MATERIAL_NEO_HOOKEAN, FORMULATION_FULL, 1, {4}};
 
 static PetscMPIInt rank;
 static char        folder[64], meshes[PATH_MAX];
 
-/* ------------------------------------------------------------------------------------------------------------- the exact field */
+/* ------------------------------------------------------------------------------------------------------------- the
+ * exact field */
 
-/* u_i = a sin(k_i . s + p_i) with s = x; axisymmetric s = (r^2, z) and u_r times r, which makes the field smooth on the axis. H: its gradient, at 3 i + I,
-   x = r and y = z, with the hoop strain at 8 */
+/* u_i = a sin(k_i . s + p_i) with s = x; axisymmetric s = (r^2, z) and u_r times r, which makes the field smooth on the
+   axis. H: its gradient, at 3 i + I, x = r and y = z, with the hoop strain at 8 */
 static void Exact(Geometry geometry, const PetscReal x[3], PetscReal u[3], PetscReal H[9])
 {
   static const PetscReal k[3][3] = {
@@ -95,8 +101,9 @@ static void Exact(Geometry geometry, const PetscReal x[3], PetscReal u[3], Petsc
     {-1.3, 2.1, 0.9 },
     {0.8,  1.2, 1.7 }
   };
-  static const PetscReal phase[3] = {0.4, 1.1, -0.6}, amplitude = 0.06; /* above 0.075 svk loses its ellipticity in compression */
-  const int              dim = geometry == GEOMETRY_SOLID ? 3 : 2, axisymmetric = geometry == GEOMETRY_AXISYMMETRIC;
+  static const PetscReal phase[3]  = {0.4, 1.1, -0.6},
+                         amplitude = 0.06; /* above 0.075 svk loses its ellipticity in compression */
+  const int dim = geometry == GEOMETRY_SOLID ? 3 : 2, axisymmetric = geometry == GEOMETRY_AXISYMMETRIC;
 
   for (int r = 0; r < 9; r++) H[r] = 0;
   for (int i = 0; i < dim; i++) {
@@ -104,7 +111,8 @@ static void Exact(Geometry geometry, const PetscReal x[3], PetscReal u[3], Petsc
 
     for (int j = 0; j < dim; j++) angle += k[i][j] * (axisymmetric && j == 0 ? x[0] * x[0] : x[j]);
     u[i] = amplitude * PetscSinReal(angle);
-    for (int j = 0; j < dim; j++) H[3 * i + j] = amplitude * PetscCosReal(angle) * k[i][j] * (axisymmetric && j == 0 ? 2 * x[0] : 1);
+    for (int j = 0; j < dim; j++)
+      H[3 * i + j] = amplitude * PetscCosReal(angle) * k[i][j] * (axisymmetric && j == 0 ? 2 * x[0] : 1);
   }
   if (axisymmetric) {
     H[8] = u[0];
@@ -153,7 +161,8 @@ static void ExactStress(const Case *test, const PetscReal x[3], PetscReal P[9])
   Stress(test->law, H, P);
 }
 
-/* Body force -Div P by central differences of order 6; the field has wavelengths above 2, so that both their errors are below 1e-11 of the force */
+/* Body force -Div P by central differences of order 6; the field has wavelengths above 2, so that both their errors are
+ * below 1e-11 of the force */
 static void ExactForce(const Case *test, const PetscReal x[3], PetscReal b[3])
 {
   static const PetscReal weight[STENCIL] = {3. / 4, -3. / 20, 1. / 60}, step = 0.01;
@@ -178,9 +187,11 @@ static void ExactForce(const Case *test, const PetscReal x[3], PetscReal b[3])
   }
 }
 
-/* ------------------------------------------------------------------------------------------------------------- the mesh */
+/* ------------------------------------------------------------------------------------------------------------- the
+ * mesh */
 
-/* Bends the box, so that cells are no parallelepipeds and those of second order have curved sides. Keeps r = 0 where it is. */
+/* Bends the box, so that cells are no parallelepipeds and those of second order have curved sides. Keeps r = 0 where it
+ * is. */
 static void Bend(const Case *test, PetscReal x[3])
 {
   const PetscReal s[3] = {x[0], x[1], x[2]};
@@ -193,9 +204,10 @@ static void Bend(const Case *test, PetscReal x[3])
 
 static PetscErrorCode SceneCreate(MPI_Comm comm, const Case *test, int n, Scene *scene)
 {
-  static const char *const names[] = {[GEOMETRY_SOLID] = "solid", [GEOMETRY_PLANE_STRAIN] = "plane_strain", [GEOMETRY_AXISYMMETRIC] = "axisymmetric"};
-  const Element           *e       = ElementGet(test->type);
-  char                     file[PETSC_MAX_PATH_LEN];
+  static const char *const names[] =
+    {[GEOMETRY_SOLID] = "solid", [GEOMETRY_PLANE_STRAIN] = "plane_strain", [GEOMETRY_AXISYMMETRIC] = "axisymmetric"};
+  const Element *e = ElementGet(test->type);
+  char           file[PETSC_MAX_PATH_LEN];
 
   PetscFunctionBeginUser;
   PetscCall(PetscSNPrintf(file, sizeof(file), "%s/scene.yaml", folder));
@@ -203,9 +215,13 @@ static PetscErrorCode SceneCreate(MPI_Comm comm, const Case *test, int n, Scene 
     FILE *stream = fopen(file, "w");
 
     PetscCheck(stream, PETSC_COMM_SELF, PETSC_ERR_FILE_OPEN, "cannot write %s", file);
-    fprintf(stream, "geometry: %s\nkinematics: %s\nbodies: [{volume: block, formulation: %s, material: {law: %s, E: %g, nu: %g}}]\n", names[test->geometry],
-            test->law == MATERIAL_LINEAR ? "small" : "finite", Formulations[test->formulation], MaterialLaws[test->law], young, poisson);
-    fprintf(stream, "mesh: {file: %s/%s.geo, order: %d, parameters: {nx: %d, ny: %d", meshes, e->dim == 3 ? "block" : "square", e->order, n, n);
+    fprintf(
+      stream,
+      "geometry: %s\nkinematics: %s\nbodies: [{volume: block, formulation: %s, material: {law: %s, E: %g, nu: %g}}]\n",
+      names[test->geometry], test->law == MATERIAL_LINEAR ? "small" : "finite", Formulations[test->formulation],
+      MaterialLaws[test->law], young, poisson);
+    fprintf(stream, "mesh: {file: %s/%s.geo, order: %d, parameters: {nx: %d, ny: %d", meshes,
+            e->dim == 3 ? "block" : "square", e->order, n, n);
     if (e->dim == 3) fprintf(stream, ", nz: %d", n);
     fprintf(stream, ", %s: %d}}\n", e->dim == 3 ? "tet" : "tri", e->corners == e->dim + 1);
     fclose(stream);
@@ -229,7 +245,8 @@ static PetscErrorCode Constrain(const Case *test, Scene scene, Mesh mesh)
 
     PetscCall(MeshGetGroup(mesh, scene, "supports.0", "surface", sides[side], mesh->dim - 1, &group));
     for (PetscInt k = 0; k < group->n_nodes; k++) {
-      for (int i = 0; i < (test->axis && side == 0 ? 1 : mesh->dim); i++) constrained[group->nodes[k] * mesh->dim + i] = PETSC_TRUE;
+      for (int i = 0; i < (test->axis && side == 0 ? 1 : mesh->dim); i++)
+        constrained[group->nodes[k] * mesh->dim + i] = PETSC_TRUE;
     }
   }
   PetscCall(MeshSetConstraints(mesh, constrained));
@@ -237,7 +254,8 @@ static PetscErrorCode Constrain(const Case *test, Scene scene, Mesh mesh)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Coordinates are taken as they stand in the mesh, relative to its centre: the field's origin is there. u: the nodal values of the field */
+/* Coordinates are taken as they stand in the mesh, relative to its centre: the field's origin is there. u: the nodal
+ * values of the field */
 static PetscErrorCode CreateMesh(MPI_Comm comm, const Case *test, int n, Scene *scene, Mesh *mesh, PetscReal **u)
 {
   char        file[PETSC_MAX_PATH_LEN];
@@ -249,7 +267,8 @@ static PetscErrorCode CreateMesh(MPI_Comm comm, const Case *test, int n, Scene *
   PetscCall(MeshGenerate(comm, *scene, folder, file, &seconds));
   PetscCall(MeshCreate(comm, *scene, file, mesh));
   PetscCallMPI(MPI_Comm_size(comm, &size));
-  PetscCheck(size == 1 || (*mesh)->n_cells < (*mesh)->n_cells_global, PETSC_COMM_SELF, PETSC_ERR_PLIB, "one rank has all the cells");
+  PetscCheck(size == 1 || (*mesh)->n_cells < (*mesh)->n_cells_global, PETSC_COMM_SELF, PETSC_ERR_PLIB,
+             "one rank has all the cells");
   PetscCall(PetscMalloc1((*mesh)->n_nodes * (*mesh)->dim, u));
   for (PetscInt k = 0; k < (*mesh)->n_nodes; k++) {
     const int  dim  = (*mesh)->dim;
@@ -266,7 +285,8 @@ static PetscErrorCode CreateMesh(MPI_Comm comm, const Case *test, int n, Scene *
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ------------------------------------------------------------------------------------------------------------- integrals */
+/* -------------------------------------------------------------------------------------------------------------
+ * integrals */
 
 /* Quadrature of order p + 2 per direction, more than the elements' own */
 typedef struct {
@@ -322,7 +342,8 @@ static PetscReal RulePoint(const Rule *rule, int q, const Case *test, Mesh mesh,
       for (PetscInt a = 0; a < n; a++) J[i][k] += rule->dN[q][a * dim + k] * mesh->coords[nodes[a] * dim + i];
     }
   }
-  for (int k = 0; k < 3; k++) volume += J[0][k] * (J[1][(k + 1) % 3] * J[2][(k + 2) % 3] - J[1][(k + 2) % 3] * J[2][(k + 1) % 3]);
+  for (int k = 0; k < 3; k++)
+    volume += J[0][k] * (J[1][(k + 1) % 3] * J[2][(k + 2) % 3] - J[1][(k + 2) % 3] * J[2][(k + 1) % 3]);
   return volume * rule->weight[q] * (test->geometry == GEOMETRY_AXISYMMETRIC ? 2 * PETSC_PI * x[0] : 1);
 }
 
@@ -336,7 +357,8 @@ static void SubtractForce(const Rule *rule, const Case *test, Mesh mesh, PetscRe
 
       ExactForce(test, x, b);
       for (PetscInt k = mesh->cell_ptr[c]; k < mesh->cell_ptr[c + 1]; k++) {
-        for (int i = 0; i < mesh->dim; i++) f[mesh->cell_nodes[k] * mesh->dim + i] -= volume * rule->N[q][k - mesh->cell_ptr[c]] * b[i];
+        for (int i = 0; i < mesh->dim; i++)
+          f[mesh->cell_nodes[k] * mesh->dim + i] -= volume * rule->N[q][k - mesh->cell_ptr[c]] * b[i];
       }
     }
   }
@@ -369,9 +391,11 @@ static PetscErrorCode L2Error(const Rule *rule, const Case *test, Mesh mesh, con
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ------------------------------------------------------------------------------------------------------------- the solution */
+/* ------------------------------------------------------------------------------------------------------------- the
+ * solution */
 
-/* Newton from the nodal values of the exact field; load: minus the external forces. Small strains need one step. Collective. */
+/* Newton from the nodal values of the exact field; load: minus the external forces. Small strains need one step.
+ * Collective. */
 static PetscErrorCode Newton(Mesh mesh, Elasticity e, const PetscReal *load, PetscReal *u, PetscInt *steps)
 {
   const PetscInt n = mesh->n_nodes * mesh->dim;
@@ -416,7 +440,8 @@ static PetscErrorCode Newton(Mesh mesh, Elasticity e, const PetscReal *load, Pet
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* One mesh: h, the side of a cube of the mean size of a cell of a unit box, the error and the number of Newton steps. Collective. */
+/* One mesh: h, the side of a cube of the mean size of a cell of a unit box, the error and the number of Newton steps.
+ * Collective. */
 static PetscErrorCode Solve(MPI_Comm comm, const Case *test, int n, PetscReal *h, PetscReal *error, PetscInt *steps)
 {
   static Rule rule;
@@ -478,8 +503,8 @@ static void Converges(void **state)
     PetscInt steps;
 
     CHECK(Solve(PETSC_COMM_WORLD, test, test->n[k], &h[k], &error[k], &steps));
-    print_message("%-6s %-19s %-12s %-9s %8.4f %12.4e %7d", e->name, GeometryText(test), MaterialLaws[test->law], Formulations[test->formulation], h[k],
-                  error[k], (int)steps);
+    print_message("%-6s %-19s %-12s %-9s %8.4f %12.4e %7d", e->name, GeometryText(test), MaterialLaws[test->law],
+                  Formulations[test->formulation], h[k], error[k], (int)steps);
     if (k) print_message(" %6.2f", Rate(2, &h[k - 1], &error[k - 1]));
     if (k == test->levels - 1) print_message(" %6.2f > %.1f", Rate(test->levels, h, error), bound);
     print_message("\n");
@@ -496,7 +521,9 @@ static void SameOnAllRanks(void **state)
   (void)state;
   CHECK(Solve(PETSC_COMM_WORLD, &parallel_case, parallel_case.n[0], &h, &error, &steps));
   CHECK(Solve(PETSC_COMM_SELF, &parallel_case, parallel_case.n[0], &h, &alone, &steps_alone));
-  if (!rank) print_message("relative L2 error %.4e, on one rank different by %.1e of it\n", error, PetscAbsReal(error - alone) / alone);
+  if (!rank)
+    print_message("relative L2 error %.4e, on one rank different by %.1e of it\n", error,
+                  PetscAbsReal(error - alone) / alone);
   assert_true(PetscAbsReal(error - alone) < rank_agreement * alone);
   assert_int_equal(steps, steps_alone);
 }
@@ -512,7 +539,8 @@ int main(int argc, char **argv)
   PetscCall(PetscInitialize(&argc, &argv, NULL, NULL));
   PetscCallMPI(MPI_Comm_rank(PETSC_COMM_WORLD, &rank));
   PetscCallMPI(MPI_Comm_size(PETSC_COMM_WORLD, &size));
-  PetscCheck(realpath(argc > 1 ? argv[1] : "meshes", meshes), PETSC_COMM_WORLD, PETSC_ERR_FILE_OPEN, "there is no folder of meshes; name it as the argument");
+  PetscCheck(realpath(argc > 1 ? argv[1] : "meshes", meshes), PETSC_COMM_WORLD, PETSC_ERR_FILE_OPEN,
+             "there is no folder of meshes; name it as the argument");
   PetscCall(PetscSNPrintf(folder, sizeof(folder), "/tmp/burnish_manufactured_XXXXXX"));
   PetscCheck(rank || mkdtemp(folder), PETSC_COMM_SELF, PETSC_ERR_FILE_OPEN, "cannot make %s", folder);
   PetscCallMPI(MPI_Bcast(folder, sizeof(folder), MPI_CHAR, 0, PETSC_COMM_WORLD));
@@ -523,7 +551,8 @@ int main(int argc, char **argv)
   if (size > 1)
     failed = cmocka_run_group_tests(parallel, NULL, NULL);
   else {
-    print_message("%-6s %-19s %-12s %-9s %8s %12s %7s %6s %6s\n", "element", "geometry", "law", "strains", "h", "L2 error", "Newton", "rate", "all");
+    print_message("%-6s %-19s %-12s %-9s %8s %12s %7s %6s %6s\n", "element", "geometry", "law", "strains", "h",
+                  "L2 error", "Newton", "rate", "all");
     failed = cmocka_run_group_tests(tests, NULL, NULL);
   }
   PetscCall(PetscSNPrintf(command, sizeof(command), "rm -r %s", folder));

@@ -1,4 +1,5 @@
-/* Shows that assembled forces and tangents agree with PetscFE's, entry by entry, on distorted cells with finite strains. */
+/* Shows that assembled forces and tangents agree with PetscFE's, entry by entry, on distorted cells with finite
+ * strains. */
 #include <stdarg.h>
 #include <stddef.h>
 #include <setjmp.h>
@@ -12,8 +13,9 @@ static const PetscReal agreement = 1e-10; /* relative to the largest entry */
 /* place[k]: our node of PETSc's local dofs 3 k, 3 k + 1, 3 k + 2, found by its coordinates */
 static PetscErrorCode MatchNodes(const Box *box, DM dm, PetscInt *place)
 {
-  PetscErrorCode (*identity[1])(PetscInt, PetscReal, const PetscReal[], PetscInt, PetscScalar[], void *) = {BoxIdentity};
-  const PetscReal    tolerance                                                                           = 1e-8; /* of a unit box: nodes are 0.1 apart */
+  PetscErrorCode (*identity[1])(PetscInt, PetscReal, const PetscReal[], PetscInt, PetscScalar[],
+                                void *) = {BoxIdentity};
+  const PetscReal    tolerance          = 1e-8; /* of a unit box: nodes are 0.1 apart */
   const PetscScalar *x;
   Vec                coords;
 
@@ -26,7 +28,8 @@ static PetscErrorCode MatchNodes(const Box *box, DM dm, PetscInt *place)
     for (PetscInt n = 0; n < box->mesh->n_nodes && place[k] < 0; n++) {
       PetscReal distance = 0;
 
-      for (int i = 0; i < 3; i++) distance = PetscMax(distance, PetscAbsReal(x[3 * k + i] - box->mesh->coords[3 * n + i]));
+      for (int i = 0; i < 3; i++)
+        distance = PetscMax(distance, PetscAbsReal(x[3 * k + i] - box->mesh->coords[3 * n + i]));
       if (distance < tolerance) place[k] = n;
     }
     PetscCheck(place[k] >= 0, PETSC_COMM_SELF, PETSC_ERR_PLIB, "PETSc's node %" PetscInt_FMT " is none of ours", k);
@@ -37,7 +40,8 @@ static PetscErrorCode MatchNodes(const Box *box, DM dm, PetscInt *place)
 }
 
 /* Largest difference of the forces over the largest force */
-static PetscErrorCode CompareResiduals(const Box *box, DM dm, Elasticity e, const PetscInt *place, Vec u, PetscReal *difference)
+static PetscErrorCode CompareResiduals(const Box *box, DM dm, Elasticity e, const PetscInt *place, Vec u,
+                                       PetscReal *difference)
 {
   PetscReal         *f, largest = 0;
   const PetscScalar *petsc_f;
@@ -67,7 +71,8 @@ static PetscErrorCode CompareResiduals(const Box *box, DM dm, Elasticity e, cons
 }
 
 /* Largest difference of the entries over the largest entry; every entry of either matrix is in the other's pattern */
-static PetscErrorCode CompareTangents(const Box *box, DM dm, Elasticity e, const PetscInt *place, Vec u, PetscReal *difference)
+static PetscErrorCode CompareTangents(const Box *box, DM dm, Elasticity e, const PetscInt *place, Vec u,
+                                      PetscReal *difference)
 {
   PetscReal largest = 0;
   PetscInt  rows;
@@ -88,8 +93,9 @@ static PetscErrorCode CompareTangents(const Box *box, DM dm, Elasticity e, const
 
     PetscCall(MatGetRow(J, row, &count, &columns, &values));
     PetscCall(MatGetRow(K, our_row, &our_count, NULL, NULL));
-    PetscCheck(count == our_count, PETSC_COMM_SELF, PETSC_ERR_PLIB, "row %" PetscInt_FMT " has %" PetscInt_FMT " entries, PETSc's %" PetscInt_FMT, our_row,
-               our_count, count);
+    PetscCheck(count == our_count, PETSC_COMM_SELF, PETSC_ERR_PLIB,
+               "row %" PetscInt_FMT " has %" PetscInt_FMT " entries, PETSc's %" PetscInt_FMT, our_row, our_count,
+               count);
     PetscCall(MatRestoreRow(K, our_row, &our_count, NULL, NULL));
     for (PetscInt k = 0; k < count; k++) {
       PetscScalar ours;
@@ -107,7 +113,8 @@ static PetscErrorCode CompareTangents(const Box *box, DM dm, Elasticity e, const
 
 static void Compare(ElementType type, PetscInt n)
 {
-  PetscErrorCode (*displacement[1])(PetscInt, PetscReal, const PetscReal[], PetscInt, PetscScalar[], void *) = {BoxDisplacement};
+  PetscErrorCode (*displacement[1])(PetscInt, PetscReal, const PetscReal[], PetscInt, PetscScalar[],
+                                    void *) = {BoxDisplacement};
   PetscReal  residual, tangent;
   PetscInt  *place;
   Elasticity e;
@@ -124,8 +131,8 @@ static void Compare(ElementType type, PetscInt n)
   CHECK(DMProjectFunctionLocal(dm, 0, displacement, NULL, INSERT_ALL_VALUES, u));
   CHECK(CompareResiduals(&box, dm, e, place, u, &residual));
   CHECK(CompareTangents(&box, dm, e, place, u, &tangent));
-  print_message("%s, %d cells: largest relative difference of forces %.1e, of tangents %.1e\n", ElementGet(type)->name, (int)box.mesh->n_cells, residual,
-                tangent);
+  print_message("%s, %d cells: largest relative difference of forces %.1e, of tangents %.1e\n", ElementGet(type)->name,
+                (int)box.mesh->n_cells, residual, tangent);
   assert_true(residual < agreement);
   assert_true(tangent < agreement);
   CHECK(DMRestoreLocalVector(dm, &u));
@@ -161,7 +168,8 @@ static void Hex27(void **state)
 
 int main(int argc, char **argv)
 {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(Tet4), cmocka_unit_test(Tet10), cmocka_unit_test(Hex8), cmocka_unit_test(Hex27)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(Tet4), cmocka_unit_test(Tet10), cmocka_unit_test(Hex8),
+                                     cmocka_unit_test(Hex27)};
   int                     failed;
 
   PetscCall(PetscInitialize(&argc, &argv, NULL, NULL));

@@ -7,7 +7,8 @@ static const double eigenvalue_accuracy = 1e-30; /* square of what may be left o
 /* Turns rows and columns p and q so that A[p][q] becomes 0 */
 static inline void EigenvaluesRotate(int n, double *A, int p, int q)
 {
-  const double tau = (A[q * n + q] - A[p * n + p]) / (2 * A[p * n + q]), t = (tau < 0 ? -1 : 1) / (fabs(tau) + sqrt(1 + tau * tau));
+  const double tau = (A[q * n + q] - A[p * n + p]) / (2 * A[p * n + q]),
+               t   = (tau < 0 ? -1 : 1) / (fabs(tau) + sqrt(1 + tau * tau));
   const double c = 1 / sqrt(1 + t * t), s = t * c;
 
   for (int k = 0; k < n; k++) {

@@ -99,7 +99,8 @@ static inline void AddPoint(Case *c, double s, double t, double z, double v)
   c->v[c->in.n++]  = v;
 }
 
-/* Jittered nodes one spacing apart as far as `reach`, on a bowl with bumps; no node close to the end of a round support. */
+/* Jittered nodes one spacing apart as far as `reach`, on a bowl with bumps; no node close to the end of a round
+ * support. */
 static inline void AddBowl(Case *c, double reach, double support)
 {
   const int    dim = c->in.dim, cells = (int)reach + 1;
@@ -107,9 +108,11 @@ static inline void AddBowl(Case *c, double reach, double support)
 
   for (int i = -cells; i <= cells; i++) {
     for (int j = dim == 3 ? -cells : 0; j <= (dim == 3 ? cells : 0); j++) {
-      const double s = i + shift[0] + Random(-0.25, 0.25), t = dim == 3 ? j + shift[1] + Random(-0.25, 0.25) : 0, r = hypot(s, t);
+      const double s = i + shift[0] + Random(-0.25, 0.25), t = dim == 3 ? j + shift[1] + Random(-0.25, 0.25) : 0,
+                   r = hypot(s, t);
 
-      if (r < reach && fabs(r - support) > 0.02 * support) AddPoint(c, s, t, -(s * s + 0.5 * t * t) / 14 - 0.3 + Random(-0.05, 0.05), Random(0.5, 1.5));
+      if (r < reach && fabs(r - support) > 0.02 * support)
+        AddPoint(c, s, t, -(s * s + 0.5 * t * t) / 14 - 0.3 + Random(-0.05, 0.05), Random(0.5, 1.5));
     }
   }
 }

@@ -1,5 +1,6 @@
-/* A linear step with the wrong terms in its tangent ends in equilibrium with the right ones: bodies that overlap or open on the way, terms that share their
- * neighbours, pulled ones; where nothing holds a body once its term has opened, the step is left alone. */
+/* A linear step with the wrong terms in its tangent ends in equilibrium with the right ones: bodies that overlap or
+ * open on the way, terms that share their neighbours, pulled ones; where nothing holds a body once its term has opened,
+ * the step is left alone. */
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdint.h>
@@ -11,8 +12,8 @@ enum { N = 8 };
 
 /* A chain held at both ends under loads, and terms between it and a floor */
 typedef struct {
-  double       spring[N + 1], load[N];
-  double       hat; /* share of a node's neighbours in its term */
+  double        spring[N + 1], load[N];
+  double        hat; /* share of a node's neighbours in its term */
   ActiveSetTerm term[N];
 } Case;
 
@@ -75,7 +76,7 @@ static double Step(const Case *t, PetscBool *settled)
   PetscInt         which[N], order[N], m, n = 0;
   const PetscReal *excess;
   const PetscBool *pressed;
-  ActiveSet         pressing;
+  ActiveSet        pressing;
 
   for (int i = 0; i < N; i++) {
     b[i] = t->load[i];
@@ -84,7 +85,8 @@ static double Step(const Case *t, PetscBool *settled)
   SolveTangent(t, b, x);
   for (int c = 0; c < N; c++) travel[c] = Gap(t, c, x);
   assert_int_equal(ActiveSetCreate(N, t->term, travel, &pressing), 0);
-  for (assert_int_equal(ActiveSetSolve(pressing, &m, which, settled), 0); m; assert_int_equal(ActiveSetSolve(pressing, &m, which, settled), 0)) {
+  for (assert_int_equal(ActiveSetSolve(pressing, &m, which, settled), 0); m;
+       assert_int_equal(ActiveSetSolve(pressing, &m, which, settled), 0)) {
     for (int j = 0; j < m; j++) {
       for (int i = 0; i < N; i++) b[i] = Share(t, (int)which[j], i);
       SolveTangent(t, b, column[n]);
@@ -100,7 +102,8 @@ static double Step(const Case *t, PetscBool *settled)
     double force = t->load[i];
 
     for (int j = 0; j < N; j++) force -= Elastic(t, i, j) * x[j];
-    for (int c = 0; c < N; c++) force += Share(t, c, i) * t->term[c].penalty * PetscMax(0, -t->term[c].opening - Gap(t, c, x));
+    for (int c = 0; c < N; c++)
+      force += Share(t, c, i) * t->term[c].penalty * PetscMax(0, -t->term[c].opening - Gap(t, c, x));
     worst = PetscMax(worst, PetscAbsReal(force));
   }
   for (int c = 0; c < N && *settled; c++) assert_int_equal(pressed[c], t->term[c].opening + Gap(t, c, x) < 0);
@@ -142,14 +145,14 @@ static void test_ends_in_equilibrium(void **state)
 /* The tangent has the right ones: nothing is asked for. */
 static void test_right_set_needs_nothing(void **state)
 {
-  PetscReal    travel[2] = {-0.3, 0.1};
+  PetscReal     travel[2] = {-0.3, 0.1};
   ActiveSetTerm term[2]   = {
-      {-0.1, 0.1 * 7, 7, 7},
-      {0.2,  0,       0, 7}
+    {-0.1, 0.1 * 7, 7, 7},
+    {0.2,  0,       0, 7}
   };
   PetscInt  m, which[2];
   PetscBool settled;
-  ActiveSet  pressing;
+  ActiveSet pressing;
 
   (void)state;
   assert_int_equal(ActiveSetCreate(2, term, travel, &pressing), 0);
@@ -161,10 +164,10 @@ static void test_right_set_needs_nothing(void **state)
 
 static void test_loose_body_is_left_alone(void **state)
 {
-  PetscReal    travel = 0.5, influence = 1.0 / 8;
+  PetscReal     travel = 0.5, influence = 1.0 / 8;
   ActiveSetTerm term = {-0.1, 0.8, 8, 8};
-  PetscInt     m, which;
-  PetscBool    settled;
+  PetscInt      m, which;
+  PetscBool     settled;
   ActiveSet     pressing;
 
   (void)state;

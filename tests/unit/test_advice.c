@@ -1,5 +1,5 @@
-/* Advice is given for figures that are bad and only for those: penetration against the surface's error, coarse facets, fits that fall back, steps that fail,
- * old kernels. */
+/* Advice is given for figures that are bad and only for those: penetration against the surface's error, coarse facets,
+ * fits that fall back, steps that fail, old kernels. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -65,7 +65,7 @@ static void test_pairs(void **state)
   Expect(&c, NULL);
   Good(&c);
   c.pair.quality.max_penetration = c.pair.quality.max_penetration_over_h = 5e-3;
-  c.pair.fits                                                            = (ContactFits){.points = 20, .plain = 20, .smoothing_error = 1e-2};
+  c.pair.fits = (ContactFits){.points = 20, .plain = 20, .smoothing_error = 1e-2};
   Expect(&c, NULL); /* the surface is not known any better */
   c.pair.fits.plain  = 17;
   c.pair.fits.linear = 3;
@@ -124,7 +124,8 @@ static void test_kernels(void **state)
   c.figures.blas                        = (Blas){.kernels = "SkylakeX", .can_choose = 1};
   Expect(&c, NULL);
   c.figures.blas = (Blas){.kernels = "Prescott", .faster_kernels = "SkylakeX", .can_choose = 1};
-  Expect(&c, "50 % of the time, with OpenBLAS's kernels for older processors (Prescott): in the environment OPENBLAS_CORETYPE=SkylakeX");
+  Expect(&c, "50 % of the time, with OpenBLAS's kernels for older processors (Prescott): in the environment "
+             "OPENBLAS_CORETYPE=SkylakeX");
   c.figures.blas.can_choose = 0;
   Expect(&c, "an OpenBLAS made with DYNAMIC_ARCH=1, or TARGET=SkylakeX");
   c.figures.direct = PETSC_FALSE; /* little of its work is the BLAS's */
@@ -138,7 +139,8 @@ static void test_kernels(void **state)
 
 int main(void)
 {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_pairs), cmocka_unit_test(test_steps), cmocka_unit_test(test_kernels)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_pairs), cmocka_unit_test(test_steps),
+                                     cmocka_unit_test(test_kernels)};
 
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,4 +1,5 @@
-/* Gaps to planes, cylinders and spheres, outside and inside, have the right sign and size, and their N and M are the derivatives of the gap. */
+/* Gaps to planes, cylinders and spheres, outside and inside, have the right sign and size, and their N and M are the
+ * derivatives of the gap. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -46,7 +47,7 @@ static void TestValues(void **state)
   };
   const AnalyticSurface sphere = {.shape = ANALYTIC_SPHERE, .radius = 5};
   const AnalyticSurface socket = {.shape = ANALYTIC_SPHERE, .inside = 1, .radius = 5};
-  AnalyticResult       out;
+  AnalyticResult        out;
 
   (void)state;
   assert_true(AnalyticSurfaceEvaluate(&plane, 3, (double[3]){7, 8, -0.25}, &out));
@@ -76,7 +77,7 @@ static void TestNoClosestPoint(void **state)
   };
   const AnalyticSurface sphere = {.shape = ANALYTIC_SPHERE, .radius = 2};
   const AnalyticSurface plane  = {.shape = ANALYTIC_PLANE};
-  AnalyticResult       out;
+  AnalyticResult        out;
 
   (void)state;
   assert_false(AnalyticSurfaceEvaluate(&cylinder, 3, (double[3]){0, 0, 5}, &out));
@@ -166,8 +167,8 @@ static void TestAxisymmetricCylinder(void **state)
 
 int main(void)
 {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(TestValues), cmocka_unit_test(TestNoClosestPoint), cmocka_unit_test(TestVariations),
-                                     cmocka_unit_test(TestAxisymmetricCylinder)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(TestValues), cmocka_unit_test(TestNoClosestPoint),
+                                     cmocka_unit_test(TestVariations), cmocka_unit_test(TestAxisymmetricCylinder)};
 
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

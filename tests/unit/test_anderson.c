@@ -1,4 +1,5 @@
-/* Anderson ends a linear iteration with three slow modes in four results, weights or not, and leaves one result alone after a start. */
+/* Anderson ends a linear iteration with three slow modes in four results, weights or not, and leaves one result alone
+ * after a start. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -19,7 +20,7 @@ static void iterate(const PetscReal *x, PetscReal *g)
 static void check_linear(const PetscReal weight[N])
 {
   PetscReal x[N] = {0}, g[N];
-  Anderson    mixing;
+  Anderson  mixing;
 
   assert_int_equal(AndersonCreate(PETSC_COMM_SELF, N, weight, &mixing), 0);
   for (int run = 0; run < 2; run++) {

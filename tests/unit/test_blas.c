@@ -1,5 +1,5 @@
-/* Kernels for lesser processors are recognised by OpenBLAS's names for them, in either spelling; what serves better is a name that it knows and that the
-   processor can run. */
+/* Kernels for lesser processors are recognised by OpenBLAS's names for them, in either spelling; what serves better is
+   a name that it knows and that the processor can run. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -11,7 +11,8 @@
 
 static void test_old_kernels(void **state)
 {
-  static const char *const old[] = {"Prescott", "PRESCOTT", "Core2", "Penryn", "Nehalem", "Opteron_SSE3", "Barcelona", "Bobcat", "generic"};
+  static const char *const old[] = {"Prescott",     "PRESCOTT",  "Core2",  "Penryn", "Nehalem",
+                                    "Opteron_SSE3", "Barcelona", "Bobcat", "generic"};
 
   (void)state;
   for (size_t i = 0; i < sizeof(old) / sizeof(old[0]); i++) {
@@ -23,11 +24,13 @@ static void test_old_kernels(void **state)
 
 static void test_good_kernels(void **state)
 {
-  static const char *const good[] = {"Haswell", "HASWELL", "Zen", "Excavator", "SkylakeX", "Cooperlake", "SapphireRapids", "neoversen1", "a later one"};
+  static const char *const good[] = {"Haswell",    "HASWELL",        "Zen",        "Excavator",  "SkylakeX",
+                                     "Cooperlake", "SapphireRapids", "neoversen1", "a later one"};
 
   (void)state;
   for (size_t i = 0; i < sizeof(good) / sizeof(good[0]); i++)
-    for (ProcessorVectors vectors = PROCESSOR_OTHER; vectors <= PROCESSOR_AVX512; vectors++) assert_null(BlasFasterKernels(good[i], vectors));
+    for (ProcessorVectors vectors = PROCESSOR_OTHER; vectors <= PROCESSOR_AVX512; vectors++)
+      assert_null(BlasFasterKernels(good[i], vectors));
   assert_null(BlasFasterKernels(NULL, PROCESSOR_AVX512)); /* another BLAS */
 }
 
@@ -53,7 +56,8 @@ static void test_here(void **state)
 
 int main(void)
 {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_old_kernels), cmocka_unit_test(test_good_kernels), cmocka_unit_test(test_here)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_old_kernels), cmocka_unit_test(test_good_kernels),
+                                     cmocka_unit_test(test_here)};
 
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

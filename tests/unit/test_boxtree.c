@@ -26,7 +26,8 @@ static double BoxDistance(int dim, int i, const double *point)
 {
   double sum = 0;
 
-  for (int k = 0; k < dim; ++k) sum += pow(fmax(0, fmax(lower[i * dim + k] - point[k], point[k] - upper[i * dim + k])), 2);
+  for (int k = 0; k < dim; ++k)
+    sum += pow(fmax(0, fmax(lower[i * dim + k] - point[k], point[k] - upper[i * dim + k])), 2);
   return sqrt(sum);
 }
 
@@ -83,7 +84,8 @@ typedef struct {
   double        distance, least;
 } Search;
 
-/* Checks the order of the visits; shrinks the bound to the least distance of a thing inside the box, here its centre. */
+/* Checks the order of the visits; shrinks the bound to the least distance of a thing inside the box, here its centre.
+ */
 static void Visit(void *context, int index, double *bound)
 {
   Search      *search   = context;
@@ -96,7 +98,8 @@ static void Visit(void *context, int index, double *bound)
   search->distance = distance;
   search->last     = index;
   ++search->visited;
-  for (int k = 0; k < search->dim; ++k) centre += pow(0.5 * (lower[index * search->dim + k] + upper[index * search->dim + k]) - search->point[k], 2);
+  for (int k = 0; k < search->dim; ++k)
+    centre += pow(0.5 * (lower[index * search->dim + k] + upper[index * search->dim + k]) - search->point[k], 2);
   centre = sqrt(centre);
   if (centre < search->least) {
     search->least = centre;
@@ -111,14 +114,15 @@ static void TestClosest(void **state)
   for (int dim = 2; dim <= 3; ++dim) {
     const int n       = 3000;
     int       visited = 0;
-    BoxTree      tree;
+    BoxTree   tree;
 
     RandomBoxes(dim, n, 0.02);
     assert_int_equal(BoxTreeBuild(dim, n, lower, upper, &tree), 0);
     for (int trial = 0; trial < 100; ++trial) {
       const double point[3] = {Random(0, 1), Random(0, 1), Random(0, 1)};
-      Search       all = {.dim = dim, .point = point, .least = INFINITY}, search = {.dim = dim, .point = point, .least = INFINITY, .shrink = 1};
-      double       bound = INFINITY;
+      Search       all      = {.dim = dim, .point = point, .least = INFINITY},
+             search         = {.dim = dim, .point = point, .least = INFINITY, .shrink = 1};
+      double bound          = INFINITY;
 
       BoxTreeClosest(tree, point, &bound, Visit, &all);
       assert_int_equal(all.visited, n);
@@ -144,7 +148,7 @@ static void TestEqualBoxes(void **state)
   const double point[2] = {2, 2};
   double       bound    = INFINITY;
   Search       search   = {.dim = 2, .point = point, .least = INFINITY};
-  BoxTree         tree;
+  BoxTree      tree;
 
   (void)state;
   for (int i = 0; i < 2 * n; ++i) {
@@ -166,7 +170,7 @@ static void TestEmpty(void **state)
   const double point[2] = {0, 0};
   double       bound    = INFINITY;
   Search       search   = {.dim = 2, .point = point, .least = INFINITY};
-  BoxTree         tree;
+  BoxTree      tree;
 
   (void)state;
   assert_int_equal(BoxTreeBuild(2, 0, NULL, NULL, &tree), 0);
@@ -178,7 +182,8 @@ static void TestEmpty(void **state)
 
 int main(void)
 {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(TestNear), cmocka_unit_test(TestClosest), cmocka_unit_test(TestEqualBoxes), cmocka_unit_test(TestEmpty)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(TestNear), cmocka_unit_test(TestClosest),
+                                     cmocka_unit_test(TestEqualBoxes), cmocka_unit_test(TestEmpty)};
 
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

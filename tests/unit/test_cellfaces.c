@@ -1,4 +1,5 @@
-/* Cells that share a face are found by its corners in any order, the one with the lower id first; a row of bricks has the neighbours that one sees. */
+/* Cells that share a face are found by its corners in any order, the one with the lower id first; a row of bricks has
+ * the neighbours that one sees. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -20,8 +21,18 @@ static void MakeRow(GmshBlock *block, RootMesh *root)
     of_cell[c] = block;
   }
   for (PetscInt i = 0; i < NODES; i++) id[i] = vertex[i] = i;
-  *block = (GmshBlock){.dim = 3, .element = ElementGet(ELEMENT_HEX8), .nodes = CORNERS, .n = CELLS, .connectivity = connectivity};
-  *root  = (RootMesh){.n_nodes = NODES, .id = id, .vertex = vertex, .n_vertices = NODES, .n_cells = CELLS, .cell_item = item, .cell_block = of_cell};
+  *block = (GmshBlock){.dim          = 3,
+                       .element      = ElementGet(ELEMENT_HEX8),
+                       .nodes        = CORNERS,
+                       .n            = CELLS,
+                       .connectivity = connectivity};
+  *root  = (RootMesh){.n_nodes    = NODES,
+                      .id         = id,
+                      .vertex     = vertex,
+                      .n_vertices = NODES,
+                      .n_cells    = CELLS,
+                      .cell_item  = item,
+                      .cell_block = of_cell};
   assert_int_equal(CellFacesCreate(root), PETSC_SUCCESS);
 }
 
@@ -37,7 +48,8 @@ static void ExpectFace(const CellFace *face, PetscInt cell, PetscInt first_layer
   const Element *brick = ElementGet(ELEMENT_HEX8);
 
   assert_int_equal(face->cell, cell);
-  for (int k = 0; k < LAYER; k++) assert_int_equal((cell * LAYER + brick->face_nodes[face->number][k]) / LAYER, first_layer_node / LAYER);
+  for (int k = 0; k < LAYER; k++)
+    assert_int_equal((cell * LAYER + brick->face_nodes[face->number][k]) / LAYER, first_layer_node / LAYER);
 }
 
 static void TestFind(void **state)

@@ -1,4 +1,5 @@
-/* Shows that the contact edge is that of the root with the nodal forces' moments, exact for a root's, and never beyond the next open node. */
+/* Shows that the contact edge is that of the root with the nodal forces' moments, exact for a root's, and never beyond
+ * the next open node. */
 #include <stdarg.h>
 #include <stddef.h>
 #include <setjmp.h>
@@ -11,7 +12,8 @@
 
 enum { MAX_NODES = 64 };
 static const double TOLERANCE = 1e-12;
-static const double OF_FORCES = 0.45, OF_VALUES = 0.45; /* of an element: bounds, the first over the elements along a half-width */
+static const double OF_FORCES = 0.45,
+                    OF_VALUES = 0.45; /* of an element: bounds, the first over the elements along a half-width */
 
 /* Moments about x of the pressure beyond it: of the root sqrt(2 - s), and of Hertz's ellipse of half-width 1 */
 static double MomentOfRoot(double x)
@@ -25,15 +27,17 @@ static double MomentOfEllipse(double x)
   return x < 1 ? pow(1 - x * x, 1.5) / 3 - 0.5 * x * (acos(x) - x * sqrt(1 - x * x)) : 0;
 }
 
-/* Pressures of nodes whose forces are the integrals of the pressure times functions linear between the nodes: second differences of those moments. The
-   first and the last node are open, and what lies beyond -1. */
+/* Pressures of nodes whose forces are the integrals of the pressure times functions linear between the nodes: second
+   differences of those moments. The first and the last node are open, and what lies beyond -1. */
 static void PressuresOfHats(int n, const double *x, double (*moment)(double), double *p)
 {
   p[0] = p[n - 1] = 0;
   for (int i = 1; i < n - 1; i++) {
     const double before = x[i] - x[i - 1], after = x[i + 1] - x[i];
 
-    p[i] = x[i + 1] > -1 ? ((moment(x[i - 1]) - moment(x[i])) / before - (moment(x[i]) - moment(x[i + 1])) / after) * 2 / (before + after) : 0;
+    p[i] = x[i + 1] > -1 ? ((moment(x[i - 1]) - moment(x[i])) / before - (moment(x[i]) - moment(x[i + 1])) / after) *
+                             2 / (before + after)
+                         : 0;
   }
 }
 
@@ -46,7 +50,8 @@ static void Mirror(int n, const double *x, const double *p, double *mirror_x, do
   }
 }
 
-/* Forces of a root: its end must come out exactly wherever the nodes are, on both sides; with nodes that touch never before the last of them */
+/* Forces of a root: its end must come out exactly wherever the nodes are, on both sides; with nodes that touch never
+ * before the last of them */
 static void test_exact_for_root(void **state)
 {
   (void)state;
@@ -66,7 +71,8 @@ static void test_exact_for_root(void **state)
   }
 }
 
-/* Hertz's ellipse, from fine to four elements across: the error stays well within an element, with forces and with the pressure's values at the nodes */
+/* Hertz's ellipse, from fine to four elements across: the error stays well within an element, with forces and with the
+ * pressure's values at the nodes */
 static void test_ellipse(void **state)
 {
   (void)state;
@@ -79,9 +85,11 @@ static void test_ellipse(void **state)
 
       for (int i = 0; i < n; i++) x[i] = (i - elements - 2 + 0.1 * shift - 0.45) * spacing;
       PressuresOfHats(n, x, MomentOfEllipse, p);
-      for (int side = 0; side < 2; side++) assert_near(ContactEdge(EDGE_OF_HATS, n, x, p, side, &found), side ? 1 : -1, OF_FORCES / elements * spacing);
+      for (int side = 0; side < 2; side++)
+        assert_near(ContactEdge(EDGE_OF_HATS, n, x, p, side, &found), side ? 1 : -1, OF_FORCES / elements * spacing);
       for (int i = 0; i < n; i++) p[i] = sqrt(fmax(0.0, 1.0 - x[i] * x[i]));
-      for (int side = 0; side < 2; side++) assert_near(ContactEdge(EDGE_AT_NODES, n, x, p, side, &found), side ? 1 : -1, OF_VALUES * spacing);
+      for (int side = 0; side < 2; side++)
+        assert_near(ContactEdge(EDGE_AT_NODES, n, x, p, side, &found), side ? 1 : -1, OF_VALUES * spacing);
     }
   }
 }
@@ -97,7 +105,8 @@ static void test_bounded_by_open_node(void **state)
   assert_near(spacing, 1.0, 0.0);
 }
 
-/* A punch's pressure rises to its end: the edge stays between the last loaded nodes and the open one, whatever the zone's pressures are */
+/* A punch's pressure rises to its end: the edge stays between the last loaded nodes and the open one, whatever the
+ * zone's pressures are */
 static void test_punch(void **state)
 {
   const double x[] = {0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0};
@@ -124,7 +133,8 @@ static void test_shell(void **state)
   double       spacing;
 
   (void)state;
-  for (int hats = 0; hats < 2; hats++) assert_near(ContactEdge(hats ? EDGE_OF_HATS : EDGE_AT_NODES, 7, x, p, 1, &spacing), 5.0 + 9.0 / 16, TOLERANCE);
+  for (int hats = 0; hats < 2; hats++)
+    assert_near(ContactEdge(hats ? EDGE_OF_HATS : EDGE_AT_NODES, 7, x, p, 1, &spacing), 5.0 + 9.0 / 16, TOLERANCE);
 }
 
 static void test_end_of_line(void **state)
@@ -163,8 +173,14 @@ static void test_no_contact(void **state)
 int main(void)
 {
   const struct CMUnitTest tests[] = {
-    cmocka_unit_test(test_exact_for_root), cmocka_unit_test(test_ellipse),     cmocka_unit_test(test_bounded_by_open_node), cmocka_unit_test(test_punch),
-    cmocka_unit_test(test_shell),          cmocka_unit_test(test_end_of_line), cmocka_unit_test(test_two_strips),           cmocka_unit_test(test_no_contact),
+    cmocka_unit_test(test_exact_for_root),
+    cmocka_unit_test(test_ellipse),
+    cmocka_unit_test(test_bounded_by_open_node),
+    cmocka_unit_test(test_punch),
+    cmocka_unit_test(test_shell),
+    cmocka_unit_test(test_end_of_line),
+    cmocka_unit_test(test_two_strips),
+    cmocka_unit_test(test_no_contact),
   };
 
   return cmocka_run_group_tests(tests, NULL, NULL);

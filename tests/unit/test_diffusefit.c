@@ -27,7 +27,8 @@ static void TestPolynomials(void **state)
     for (int k = 0, term = 0; k <= degree; k++) {
       for (int b = 0; b <= k; b++, term++) coefficient[term] = Random(-0.3, 0.3) * pow(support, -k);
     }
-    for (int p = 0; p < c.in.n; p++) c.x[p * dim + dim - 1] = Polynomial(coefficient, degree, c.x[p * dim], dim == 3 ? c.x[p * dim + 1] : 0);
+    for (int p = 0; p < c.in.n; p++)
+      c.x[p * dim + dim - 1] = Polynomial(coefficient, degree, c.x[p * dim], dim == 3 ? c.x[p * dim + 1] : 0);
     assert_true(Evaluate(&c, FIT_GAP));
     for (int trial = 0; trial < 20; trial++) {
       const double y[2] = {Random(-1, 1), dim == 3 ? Random(-1, 1) : 0};
@@ -66,7 +67,8 @@ static void TestPlaneEqualsSpace(void **state)
       for (int p = 0; p < c->in.n; p++) {
         double *x = c->x + p * dim;
 
-        for (int k = degree, first = 1; k >= 0; k--, first = 0) x[dim - 1] = (first ? 0 : x[dim - 1] * x[0]) + coefficient[k];
+        for (int k = degree, first = 1; k >= 0; k--, first = 0)
+          x[dim - 1] = (first ? 0 : x[dim - 1] * x[0]) + coefficient[k];
       }
       assert_true(Evaluate(c, FIT_GAP));
     }
@@ -77,7 +79,8 @@ static void TestPlaneEqualsSpace(void **state)
   }
 }
 
-/* Nodes of a sphere, h apart, seen from a point close to it: accuracy of gap and curvature, and angular momentum to the lever arm */
+/* Nodes of a sphere, h apart, seen from a point close to it: accuracy of gap and curvature, and angular momentum to the
+ * lever arm */
 static void TestSphere(void **state)
 {
   static const double support = 3.5, R = 20, h = 1.309;
@@ -103,7 +106,8 @@ static void TestSphere(void **state)
       AssertNear(c.out.curvature * R, 1, degree == 2 ? 3e-2 : 3e-3);
       for (int i = 0; i < c.out.n; i++) {
         for (int k = 0; k < 3; k++)
-          arm[k] += c.x[3 * c.points[i] + (k + 1) % 3] * c.N[3 * (1 + i) + (k + 2) % 3] - c.x[3 * c.points[i] + (k + 2) % 3] * c.N[3 * (1 + i) + (k + 1) % 3];
+          arm[k] += c.x[3 * c.points[i] + (k + 1) % 3] * c.N[3 * (1 + i) + (k + 2) % 3] -
+                    c.x[3 * c.points[i] + (k + 2) % 3] * c.N[3 * (1 + i) + (k + 1) % 3];
       }
       AssertNear(MaxAbs(3, arm), 0, (degree == 2 ? 1e-3 : 1e-5) * h);
     }
@@ -157,7 +161,8 @@ static void TestSupportEnd(void **state)
   AssertNear(N[0], N[1], 1e-11);
 }
 
-/* Shape values: at the foot they sum to 1 and are N along the normal for a flat surface; a combination's are its derivatives. */
+/* Shape values: at the foot they sum to 1 and are N along the normal for a flat surface; a combination's are its
+ * derivatives. */
 static void TestShape(void **state)
 {
   static Case  c;
@@ -178,7 +183,8 @@ static void TestShape(void **state)
     for (int s = 0; s < 2; s++) {
       for (int k = 0; k < 3; k++) c.x[3 * i + k] += (s ? 2 : -1) * 0.5 * c.in.frame[2][k];
       Evaluate(&c, FIT_SURFACE);
-      height[s] = factor[0] * FitSurfaceHeight(&c.out.surface, y, NULL) + factor[1] * FitSurfaceHeight(&c.out.surface, y + 2, NULL);
+      height[s] = factor[0] * FitSurfaceHeight(&c.out.surface, y, NULL) +
+                  factor[1] * FitSurfaceHeight(&c.out.surface, y + 2, NULL);
     }
     for (int k = 0; k < 3; k++) c.x[3 * i + k] -= 0.5 * c.in.frame[2][k];
     AssertNear(shape[i], height[1] - height[0], 1e-13); /* linear in the heights */
@@ -253,7 +259,9 @@ static void TestNeverNaN(void **state)
 
     Straight(&c, dim, degree, 2, 3);
     for (int i = 0; i < n; i++) {
-      const double s = grid ? (int)Random(-3, 3) : Random(-2, 2), t = dim == 2 ? 0 : grid ? (int)Random(-3, 3) : Random(-2, 2);
+      const double s = grid ? (int)Random(-3, 3) : Random(-2, 2), t = dim == 2 ? 0
+                                                                      : grid   ? (int)Random(-3, 3)
+                                                                               : Random(-2, 2);
 
       AddPoint(&c, s, t, Random(-bend, bend), 1);
     }
@@ -265,7 +273,8 @@ static void TestNeverNaN(void **state)
     }
     whole++;
     assert_true(isfinite(c.out.gap) && isfinite(c.out.curvature) && isfinite(c.out.amplified) && isfinite(c.out.pivot));
-    assert_true(isfinite(MaxAbs(dim * (1 + c.out.n), c.N)) && isfinite(MaxAbs((long)dim * dim * (1 + c.out.n) * (1 + c.out.n), c.M)));
+    assert_true(isfinite(MaxAbs(dim * (1 + c.out.n), c.N)) &&
+                isfinite(MaxAbs((long)dim * dim * (1 + c.out.n) * (1 + c.out.n), c.M)));
   }
   assert_true(whole > 1000);
 }
@@ -314,7 +323,8 @@ static void TestLargeAndBatch(void **state)
     out[i] = (FitResult){.points = batch[i].points};
   }
   assert_int_equal(DiffuseFitEvaluateBatch(3, in, FIT_GAP, work, out), 2);
-  for (int i = 0; i < 3; i++) assert_true(out[i].guards == batch[i].out.guards && (i == 1 || out[i].gap == batch[i].out.gap));
+  for (int i = 0; i < 3; i++)
+    assert_true(out[i].guards == batch[i].out.guards && (i == 1 || out[i].gap == batch[i].out.gap));
 }
 
 int main(void)

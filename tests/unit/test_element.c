@@ -11,8 +11,10 @@
 /* int x^i y^j z^k over the reference element: a simplex has i! j! k! / (i + j + k + dim)! */
 static double Monomial(const Element *e, int i, int j, int k)
 {
-  if (e->corners == e->dim + 1 && e->dim > 1) return tgamma(i + 1) * tgamma(j + 1) * tgamma(k + 1) / tgamma(i + j + k + e->dim + 1);
-  return (i % 2 || j % 2 || k % 2) ? 0 : 2. / (i + 1) * (e->dim > 1 ? 2. / (j + 1) : 1) * (e->dim > 2 ? 2. / (k + 1) : 1);
+  if (e->corners == e->dim + 1 && e->dim > 1)
+    return tgamma(i + 1) * tgamma(j + 1) * tgamma(k + 1) / tgamma(i + j + k + e->dim + 1);
+  return (i % 2 || j % 2 || k % 2) ? 0
+                                   : 2. / (i + 1) * (e->dim > 1 ? 2. / (j + 1) : 1) * (e->dim > 2 ? 2. / (k + 1) : 1);
 }
 
 static int IsSimplex(const Element *e)
@@ -67,7 +69,8 @@ static void DerivativesAreDifferences(void **state)
     ElementShape(type, inside, NULL, dN, d2N);
     for (int k = 0; k < e->dim; k++) {
       double plus[3] = {inside[0], inside[1], inside[2]}, minus[3] = {inside[0], inside[1], inside[2]};
-      double N_plus[ELEMENT_MAX_NODES], N_minus[ELEMENT_MAX_NODES], dN_plus[ELEMENT_MAX_NODES * 3], dN_minus[ELEMENT_MAX_NODES * 3];
+      double N_plus[ELEMENT_MAX_NODES], N_minus[ELEMENT_MAX_NODES], dN_plus[ELEMENT_MAX_NODES * 3],
+        dN_minus[ELEMENT_MAX_NODES * 3];
 
       plus[k] += h;
       minus[k] -= h;
@@ -75,7 +78,9 @@ static void DerivativesAreDifferences(void **state)
       ElementShape(type, minus, N_minus, dN_minus, NULL);
       for (int a = 0; a < e->nodes; a++) {
         assert_near(dN[a * e->dim + k], (N_plus[a] - N_minus[a]) / (2 * h), 1e-9);
-        for (int l = 0; l < e->dim; l++) assert_near(d2N[(a * e->dim + l) * e->dim + k], (dN_plus[a * e->dim + l] - dN_minus[a * e->dim + l]) / (2 * h), 1e-9);
+        for (int l = 0; l < e->dim; l++)
+          assert_near(d2N[(a * e->dim + l) * e->dim + k],
+                      (dN_plus[a * e->dim + l] - dN_minus[a * e->dim + l]) / (2 * h), 1e-9);
       }
     }
   }
@@ -85,8 +90,9 @@ static void QuadratureIsExact(void **state)
 {
   (void)state;
   for (int type = 0; type <= ELEMENT_TYPES; type++) {
-    const Element *e      = type < ELEMENT_TYPES ? ElementGet(type) : ElementGetFace(ELEMENT_TRI3);
-    const int      degree = IsSimplex(e) ? (e->points == 1 ? 1 : 2) : 2 * e->order + 1; /* total degree; per direction for tensor products */
+    const Element *e = type < ELEMENT_TYPES ? ElementGet(type) : ElementGetFace(ELEMENT_TRI3);
+    const int      degree =
+      IsSimplex(e) ? (e->points == 1 ? 1 : 2) : 2 * e->order + 1; /* total degree; per direction for tensor products */
 
     for (int i = 0; i <= degree; i++) {
       for (int j = 0; j <= (e->dim > 1 ? degree : 0); j++) {
@@ -94,7 +100,8 @@ static void QuadratureIsExact(void **state)
           double sum = 0;
 
           if (IsSimplex(e) && i + j + k > degree) continue;
-          for (int p = 0; p < e->points; p++) sum += e->weight[p] * pow(e->point[p][0], i) * pow(e->point[p][1], j) * pow(e->point[p][2], k);
+          for (int p = 0; p < e->points; p++)
+            sum += e->weight[p] * pow(e->point[p][0], i) * pow(e->point[p][1], j) * pow(e->point[p][2], k);
           assert_near(sum, Monomial(e, i, j, k), 1e-14);
         }
       }
@@ -197,7 +204,9 @@ static void MiddleNodesLieOnTheirEdges(void **state)
     const Element *e = ElementGet(type);
 
     for (int i = 0; i < e->edges && e->order == 2; i++) {
-      for (int k = 0; k < 3; k++) assert_near(e->node[e->corners + i][k], (e->node[e->edge_corners[i][0]][k] + e->node[e->edge_corners[i][1]][k]) / 2, 1e-16);
+      for (int k = 0; k < 3; k++)
+        assert_near(e->node[e->corners + i][k],
+                    (e->node[e->edge_corners[i][0]][k] + e->node[e->edge_corners[i][1]][k]) / 2, 1e-16);
     }
   }
 }
@@ -245,7 +254,8 @@ static void Hex27FollowsTheManuals(void **state)
     }
   }
   for (int i = 0; i < 12; i++) {
-    for (int k = 0; k < 3; k++) assert_near(e->node[e->xdmf_order[8 + i]][k], (e->node[vtk_edges[i][0]][k] + e->node[vtk_edges[i][1]][k]) / 2, 0);
+    for (int k = 0; k < 3; k++)
+      assert_near(e->node[e->xdmf_order[8 + i]][k], (e->node[vtk_edges[i][0]][k] + e->node[vtk_edges[i][1]][k]) / 2, 0);
   }
 }
 
@@ -283,7 +293,8 @@ static void FitReproducesLinearFields(void **state)
 static void GmshNumbersAreFound(void **state)
 {
   (void)state;
-  for (int type = 0; type < ELEMENT_TYPES; type++) assert_ptr_equal(ElementFromGmsh(ElementGet(type)->gmsh), ElementGet(type));
+  for (int type = 0; type < ELEMENT_TYPES; type++)
+    assert_ptr_equal(ElementFromGmsh(ElementGet(type)->gmsh), ElementGet(type));
   assert_null(ElementFromGmsh(17)); /* hex20 */
 }
 

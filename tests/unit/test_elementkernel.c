@@ -1,4 +1,5 @@
-/* Shows that every element's force and tangent are derivatives of its energy, and that uniform strains and rigid motions are exact. */
+/* Shows that every element's force and tangent are derivatives of its energy, and that uniform strains and rigid
+ * motions are exact. */
 #include <stdarg.h>
 #include <stddef.h>
 #include <setjmp.h>
@@ -17,8 +18,9 @@ typedef struct {
   KernelCase     kernel;
   const Element *e;
   int            dim, dofs;
-  double         X[MAX_DOFS * KERNEL_LANES], u[MAX_DOFS * KERNEL_LANES], E[KERNEL_LANES], nu[KERNEL_LANES]; /* of a batch of different elements */
-  double         W[KERNEL_LANES], f[MAX_DOFS * KERNEL_LANES], J[KERNEL_LANES], *K;
+  double         X[MAX_DOFS * KERNEL_LANES], u[MAX_DOFS * KERNEL_LANES], E[KERNEL_LANES],
+    nu[KERNEL_LANES]; /* of a batch of different elements */
+  double W[KERNEL_LANES], f[MAX_DOFS * KERNEL_LANES], J[KERNEL_LANES], *K;
 } Batch;
 
 static double Random(void)
@@ -29,7 +31,8 @@ static double Random(void)
   return (double)(state >> 8) / (1 << 24) - 0.5;
 }
 
-/* Elements with random corners (radius about 3), middle nodes moved off their straight places by `curved`; random displacements */
+/* Elements with random corners (radius about 3), middle nodes moved off their straight places by `curved`; random
+ * displacements */
 static void BatchCreate(Batch *b, KernelCase kernel, double curved)
 {
   const Element *e = ElementGet(kernel.type);
@@ -80,7 +83,8 @@ static void SetGradient(Batch *b, const double H[9])
     for (int i = 0; i < b->dim; i++) {
       for (int lane = 0; lane < KERNEL_LANES; lane++) {
         b->u[(a * b->dim + i) * KERNEL_LANES + lane] = 0;
-        for (int m = 0; m < b->dim; m++) b->u[(a * b->dim + i) * KERNEL_LANES + lane] += H[3 * i + m] * b->X[(a * b->dim + m) * KERNEL_LANES + lane];
+        for (int m = 0; m < b->dim; m++)
+          b->u[(a * b->dim + i) * KERNEL_LANES + lane] += H[3 * i + m] * b->X[(a * b->dim + m) * KERNEL_LANES + lane];
       }
     }
   }
@@ -97,7 +101,8 @@ static void TakeLane(const Batch *b, int lane, double *X, double *u)
 /* All elements x geometries x formulations x (small, each finite law) */
 static int NextCase(KernelCase *kernel)
 {
-  static const KernelCase first = {ELEMENT_TRI3, GEOMETRY_PLANE_STRAIN, KINEMATICS_SMALL, MATERIAL_LINEAR, FORMULATION_FULL};
+  static const KernelCase first = {ELEMENT_TRI3, GEOMETRY_PLANE_STRAIN, KINEMATICS_SMALL, MATERIAL_LINEAR,
+                                   FORMULATION_FULL};
 
   if (kernel->type == ELEMENT_TYPES) {
     *kernel = first;
@@ -116,7 +121,8 @@ static int NextCase(KernelCase *kernel)
     return 1;
   }
   kernel->type++;
-  if (kernel->type < ELEMENT_TYPES) kernel->geometry = ElementGet(kernel->type)->dim == 3 ? GEOMETRY_SOLID : GEOMETRY_PLANE_STRAIN;
+  if (kernel->type < ELEMENT_TYPES)
+    kernel->geometry = ElementGet(kernel->type)->dim == 3 ? GEOMETRY_SOLID : GEOMETRY_PLANE_STRAIN;
   return kernel->type < ELEMENT_TYPES;
 }
 
@@ -129,7 +135,8 @@ static void ForceAndTangentAreDerivatives(void **state)
   (void)state;
   for (KernelCase kernel = before_first; NextCase(&kernel);) {
     Batch  b;
-    double W_plus[KERNEL_LANES], W_minus[KERNEL_LANES], f_plus[MAX_DOFS * KERNEL_LANES], f_minus[MAX_DOFS * KERNEL_LANES], J[KERNEL_LANES], scale = 0;
+    double W_plus[KERNEL_LANES], W_minus[KERNEL_LANES], f_plus[MAX_DOFS * KERNEL_LANES],
+      f_minus[MAX_DOFS * KERNEL_LANES], J[KERNEL_LANES], scale = 0;
 
     BatchCreate(&b, kernel, 0.1);
     Evaluate(&b);
@@ -143,8 +150,8 @@ static void ForceAndTangentAreDerivatives(void **state)
         b.u[j * KERNEL_LANES + lane] += h;
         assert_near(b.f[j * KERNEL_LANES + lane], (W_plus[lane] - W_minus[lane]) / (2 * h), 1e-8 * scale);
         for (int i = 0; i < b.dofs; i++)
-          assert_near(b.K[(i * b.dofs + j) * KERNEL_LANES + lane], (f_plus[i * KERNEL_LANES + lane] - f_minus[i * KERNEL_LANES + lane]) / (2 * h),
-                      1e-8 * scale);
+          assert_near(b.K[(i * b.dofs + j) * KERNEL_LANES + lane],
+                      (f_plus[i * KERNEL_LANES + lane] - f_minus[i * KERNEL_LANES + lane]) / (2 * h), 1e-8 * scale);
       }
     }
     BatchDestroy(&b);
@@ -164,7 +171,8 @@ static void TangentIsSymmetric(void **state)
     for (int i = 0; i < b.dofs; i++) {
       for (int j = 0; j < b.dofs; j++) {
         for (int lane = 0; lane < KERNEL_LANES; lane++)
-          assert_near(b.K[(i * b.dofs + j) * KERNEL_LANES + lane], b.K[(j * b.dofs + i) * KERNEL_LANES + lane], 1e-14 * scale);
+          assert_near(b.K[(i * b.dofs + j) * KERNEL_LANES + lane], b.K[(j * b.dofs + i) * KERNEL_LANES + lane],
+                      1e-14 * scale);
       }
     }
     BatchDestroy(&b);
@@ -200,7 +208,8 @@ static void LanesAreIndependentAndUnaligned(void **state)
   (void)state;
   for (KernelCase kernel = before_first; NextCase(&kernel);) {
     Batch  b;
-    double X[MAX_DOFS * KERNEL_LANES + 1], u[MAX_DOFS * KERNEL_LANES + 1], E[KERNEL_LANES], nu[KERNEL_LANES], f[MAX_DOFS * KERNEL_LANES + 1], J[KERNEL_LANES];
+    double X[MAX_DOFS * KERNEL_LANES + 1], u[MAX_DOFS * KERNEL_LANES + 1], E[KERNEL_LANES], nu[KERNEL_LANES],
+      f[MAX_DOFS * KERNEL_LANES + 1], J[KERNEL_LANES];
 
     BatchCreate(&b, kernel, 0.1);
     Evaluate(&b);
@@ -214,7 +223,8 @@ static void LanesAreIndependentAndUnaligned(void **state)
     }
     ElementKernel(&kernel, X + 1, u + 1, E, nu, NULL, f + 1, NULL, J);
     for (int k = 0; k < b.dofs; k++) {
-      for (int lane = 0; lane < KERNEL_LANES; lane++) assert_true(f[1 + k * KERNEL_LANES + lane] == b.f[k * KERNEL_LANES + 5]);
+      for (int lane = 0; lane < KERNEL_LANES; lane++)
+        assert_true(f[1 + k * KERNEL_LANES + lane] == b.f[k * KERNEL_LANES + 5]);
     }
     BatchDestroy(&b);
   }
@@ -222,13 +232,15 @@ static void LanesAreIndependentAndUnaligned(void **state)
 
 static void RigidMotionCausesNoForce(void **state)
 {
-  const double c = cos(0.9), s = sin(0.9), finite[9] = {c - 1, -s, 0, s, c - 1, 0, 0, 0, 0}, small[9] = {0, -0.1, 0, 0.1, 0, 0, 0, 0, 0};
+  const double c = cos(0.9), s = sin(0.9), finite[9] = {c - 1, -s, 0, s, c - 1, 0, 0, 0, 0},
+               small[9] = {0, -0.1, 0, 0.1, 0, 0, 0, 0, 0};
 
   (void)state;
   for (KernelCase kernel = before_first; NextCase(&kernel);) {
     Batch b;
 
-    if (kernel.kinematics == KINEMATICS_FINITE && kernel.law == MATERIAL_LINEAR) continue; /* not objective, refused by the scene */
+    if (kernel.kinematics == KINEMATICS_FINITE && kernel.law == MATERIAL_LINEAR)
+      continue; /* not objective, refused by the scene */
     BatchCreate(&b, kernel, 0.1);
     if (kernel.geometry == GEOMETRY_AXISYMMETRIC)
       SetGradient(&b, (double[9]){0});
@@ -250,14 +262,17 @@ static void RigidMotionCausesNoForce(void **state)
 /* A rotation after any deformation leaves the energy and turns the forces */
 static void RotationTurnsForces(void **state)
 {
-  const double c = cos(0.9), s = sin(0.9), plane[9] = {c, -s, 0, s, c, 0, 0, 0, 1}, space[9] = {c, -s, 0, 0.6 * s, 0.6 * c, -0.8, 0.8 * s, 0.8 * c, 0.6};
+  const double c = cos(0.9), s = sin(0.9), plane[9] = {c, -s, 0, s, c, 0, 0, 0, 1},
+               space[9] = {c, -s, 0, 0.6 * s, 0.6 * c, -0.8, 0.8 * s, 0.8 * c, 0.6};
 
   (void)state;
   for (KernelCase kernel = before_first; NextCase(&kernel);) {
     const double *Q = kernel.geometry == GEOMETRY_SOLID ? space : plane;
     Batch         b, turned;
 
-    if (kernel.kinematics == KINEMATICS_SMALL || kernel.law == MATERIAL_LINEAR || kernel.geometry == GEOMETRY_AXISYMMETRIC) continue;
+    if (kernel.kinematics == KINEMATICS_SMALL || kernel.law == MATERIAL_LINEAR ||
+        kernel.geometry == GEOMETRY_AXISYMMETRIC)
+      continue;
     BatchCreate(&b, kernel, 0.1);
     Evaluate(&b);
     turned = b;
@@ -267,7 +282,9 @@ static void RotationTurnsForces(void **state)
           double *u = &turned.u[(a * b.dim + i) * KERNEL_LANES + lane];
 
           *u = -b.X[(a * b.dim + i) * KERNEL_LANES + lane];
-          for (int m = 0; m < b.dim; m++) *u += Q[3 * i + m] * (b.X[(a * b.dim + m) * KERNEL_LANES + lane] + b.u[(a * b.dim + m) * KERNEL_LANES + lane]);
+          for (int m = 0; m < b.dim; m++)
+            *u +=
+              Q[3 * i + m] * (b.X[(a * b.dim + m) * KERNEL_LANES + lane] + b.u[(a * b.dim + m) * KERNEL_LANES + lane]);
         }
       }
     }
@@ -284,8 +301,8 @@ static void RotationTurnsForces(void **state)
   }
 }
 
-/* The undeformed element resists everything but its rigid motions: no hourglass is without energy. The one point of an axisymmetric tri3 does not see a
-   rotation about itself. */
+/* The undeformed element resists everything but its rigid motions: no hourglass is without energy. The one point of an
+   axisymmetric tri3 does not see a rotation about itself. */
 static void OnlyRigidMotionsAreFree(void **state)
 {
   const int rigid[] = {[GEOMETRY_SOLID] = 6, [GEOMETRY_PLANE_STRAIN] = 3, [GEOMETRY_AXISYMMETRIC] = 1};
@@ -305,7 +322,8 @@ static void OnlyRigidMotionsAreFree(void **state)
       assert_true(value[k] > -1e-12 * value[b.dofs - 1]);
       free_motions += value[k] < 1e-8 * value[b.dofs - 1];
     }
-    assert_int_equal(free_motions, rigid[kernel.geometry] + (kernel.type == ELEMENT_TRI3 && kernel.geometry == GEOMETRY_AXISYMMETRIC));
+    assert_int_equal(free_motions, rigid[kernel.geometry] +
+                                     (kernel.type == ELEMENT_TRI3 && kernel.geometry == GEOMETRY_AXISYMMETRIC));
     BatchDestroy(&b);
   }
 }
@@ -320,7 +338,8 @@ static void SurfaceNormals(const Batch *b, int lane, double *normals)
     double X[FACE_MAX_NODES * 3], area[FACE_MAX_NODES] = {0}, normal[FACE_MAX_NODES * 3] = {0};
 
     for (int a = 0; a < face->nodes; a++) {
-      for (int i = 0; i < b->dim; i++) X[a * b->dim + i] = b->X[(b->e->face_nodes[f][a] * b->dim + i) * KERNEL_LANES + lane];
+      for (int i = 0; i < b->dim; i++)
+        X[a * b->dim + i] = b->X[(b->e->face_nodes[f][a] * b->dim + i) * KERNEL_LANES + lane];
     }
     FaceAreaKernel(face->type, b->dim, b->kernel.geometry, X, area, normal);
     for (int a = 0; a < face->nodes; a++) {
@@ -329,10 +348,12 @@ static void SurfaceNormals(const Batch *b, int lane, double *normals)
   }
 }
 
-/* A uniform gradient: the force of a node is the stress on its share of the surface, f_a = P int N_a n dA, by Gauss's theorem */
+/* A uniform gradient: the force of a node is the stress on its share of the surface, f_a = P int N_a n dA, by Gauss's
+ * theorem */
 static void UniformStrainGivesExactForces(void **state)
 {
-  const double solid[9] = {0.05, -0.02, 0.03, 0.04, -0.06, 0.01, 0.02, 0.05, 0.08}, plane[9] = {0.05, -0.02, 0, 0.04, -0.06, 0, 0, 0, 0};
+  const double solid[9] = {0.05, -0.02, 0.03, 0.04, -0.06, 0.01, 0.02, 0.05, 0.08},
+               plane[9] = {0.05, -0.02, 0, 0.04, -0.06, 0, 0, 0, 0};
 
   (void)state;
   for (KernelCase kernel = before_first; NextCase(&kernel);) {
@@ -363,7 +384,8 @@ static void UniformStrainGivesExactForces(void **state)
   }
 }
 
-/* u = 0.1 X is a uniform gradient in every geometry: energy = density times volume, J = det F, Cauchy stress = P F^T / J */
+/* u = 0.1 X is a uniform gradient in every geometry: energy = density times volume, J = det F, Cauchy stress = P F^T /
+ * J */
 static void UniformExpansionIsExact(void **state)
 {
   const double solid[9] = {0.1, 0, 0, 0, 0.1, 0, 0, 0, 0.1}, plane[9] = {0.1, 0, 0, 0, 0.1, 0, 0, 0, 0};
@@ -459,7 +481,8 @@ static void AxisymmetricVolumeIsThatOfARing(void **state)
   assert_near(CellVolume(ELEMENT_QUAD9, 2, GEOMETRY_AXISYMMETRIC, X), M_PI * (36 - 16) * 4, 1e-11);
 }
 
-/* The resultant is volume times value, and in straight cells its moment is that of the centre of volume of linear shapes */
+/* The resultant is volume times value, and in straight cells its moment is that of the centre of volume of linear
+ * shapes */
 static void BodyForceHasItsResultant(void **state)
 {
   const double value[3] = {0.3, -9.8, 1.7};
@@ -476,7 +499,8 @@ static void BodyForceHasItsResultant(void **state)
       TakeLane(&b, lane, X, u);
       BodyForceKernel(kernel.type, b.dim, kernel.geometry, X, value, f);
       for (int k = 0; k < b.dofs; k++) sum[k % b.dim] += f[k];
-      for (int i = 0; i < b.dim; i++) assert_near(sum[i], value[i] * CellVolume(kernel.type, b.dim, kernel.geometry, X), 1e-11);
+      for (int i = 0; i < b.dim; i++)
+        assert_near(sum[i], value[i] * CellVolume(kernel.type, b.dim, kernel.geometry, X), 1e-11);
     }
     BatchDestroy(&b);
   }

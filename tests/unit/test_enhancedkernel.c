@@ -1,4 +1,5 @@
-/* Shows that enhanced elements bend like beams, do not hourglass under compression, and report a state in which their modes find no rest. */
+/* Shows that enhanced elements bend like beams, do not hourglass under compression, and report a state in which their
+ * modes find no rest. */
 #include <stdarg.h>
 #include <stddef.h>
 #include <setjmp.h>
@@ -21,7 +22,8 @@ typedef struct {
 
 static void Evaluate(const KernelCase *kernel, const double *X, const double *u, double nu, Result *result)
 {
-  static double  lanes_X[MAX_DOFS * KERNEL_LANES], lanes_u[MAX_DOFS * KERNEL_LANES], f[MAX_DOFS * KERNEL_LANES], K[MAX_DOFS * MAX_DOFS * KERNEL_LANES];
+  static double lanes_X[MAX_DOFS * KERNEL_LANES], lanes_u[MAX_DOFS * KERNEL_LANES], f[MAX_DOFS * KERNEL_LANES],
+    K[MAX_DOFS * MAX_DOFS * KERNEL_LANES];
   double         E[KERNEL_LANES], lanes_nu[KERNEL_LANES], W[KERNEL_LANES], J[KERNEL_LANES];
   const Element *e = ElementGet(kernel->type);
 
@@ -51,7 +53,8 @@ static void Box(ElementType type, double height, double *X)
   }
 }
 
-/* u_x = c x y, and in space u_z = -nu c y z: the energy is a beam's, E I c^2 L / 2, with E / (1 - nu^2) in plane strain */
+/* u_x = c x y, and in space u_z = -nu c y z: the energy is a beam's, E I c^2 L / 2, with E / (1 - nu^2) in plane strain
+ */
 static void BendingEnergyIsABeams(void **state)
 {
   const double curvature = 1e-3;
@@ -59,12 +62,12 @@ static void BendingEnergyIsABeams(void **state)
   (void)state;
   for (int solid = 0; solid < 2; solid++) {
     for (double height = 0.01; height < 2; height *= 10) {
-      const KernelCase kernel = {solid ? ELEMENT_HEX8 : ELEMENT_QUAD4, solid ? GEOMETRY_SOLID : GEOMETRY_PLANE_STRAIN, KINEMATICS_SMALL, MATERIAL_LINEAR,
-                                 FORMULATION_ENHANCED};
-      const int        dim    = solid ? 3 : 2;
-      const double     moment = 2 * height * height * height / 3 * (solid ? 2 : 1 / (1 - poisson * poisson));
-      double           X[MAX_DOFS], u[MAX_DOFS] = {0};
-      Result           result;
+      const KernelCase kernel = {solid ? ELEMENT_HEX8 : ELEMENT_QUAD4, solid ? GEOMETRY_SOLID : GEOMETRY_PLANE_STRAIN,
+                                 KINEMATICS_SMALL, MATERIAL_LINEAR, FORMULATION_ENHANCED};
+      const int    dim    = solid ? 3 : 2;
+      const double moment = 2 * height * height * height / 3 * (solid ? 2 : 1 / (1 - poisson * poisson));
+      double       X[MAX_DOFS], u[MAX_DOFS] = {0};
+      Result       result;
 
       Box(kernel.type, height, X);
       for (int a = 0; a < (solid ? 8 : 4); a++) {
@@ -84,8 +87,9 @@ static double FreeStretch(MaterialLaw law, double nu, int dim, double stretch)
   double         low = 0.2, high = 3;
 
   while (high - low > 1e-14) {
-    const double middle = (low + high) / 2, H[9] = {middle - 1, 0, 0, 0, stretch - 1, 0, 0, 0, dim == 3 ? middle - 1 : 0};
-    double       P[9];
+    const double middle = (low + high) / 2,
+                 H[9]   = {middle - 1, 0, 0, 0, stretch - 1, 0, 0, 0, dim == 3 ? middle - 1 : 0};
+    double P[9];
 
     MaterialPoint(&material, 1, H, NULL, P, NULL);
     if (P[0] > 0)
@@ -96,7 +100,8 @@ static double FreeStretch(MaterialLaw law, double nu, int dim, double stretch)
   return low;
 }
 
-/* Least eigenvalue of the tangent over the hourglass displacements alone (products of two or three reference coordinates), of a compressed box */
+/* Least eigenvalue of the tangent over the hourglass displacements alone (products of two or three reference
+ * coordinates), of a compressed box */
 static double LeastHourglass(const KernelCase *kernel, double nu, double height, double stretch)
 {
   const Element *e      = ElementGet(kernel->type);
@@ -121,15 +126,17 @@ static double LeastHourglass(const KernelCase *kernel, double nu, double height,
   for (int r = 0; r < n; r++) {
     for (int s = 0; s < n; s++) {
       A[r * n + s] = 0;
-      for (int k = 0; k < result.dofs * result.dofs; k++) A[r * n + s] += hourglass[r][k / result.dofs] * result.K[k] * hourglass[s][k % result.dofs];
+      for (int k = 0; k < result.dofs * result.dofs; k++)
+        A[r * n + s] += hourglass[r][k / result.dofs] * result.K[k] * hourglass[s][k % result.dofs];
     }
   }
   Eigenvalues(n, A, value);
   return value[0] / young;
 }
 
-/* Flat, square and upright boxes, down to half their height with neo-Hooke; St. Venant-Kirchhoff has no more resistance itself below 0.58. A brick
-   has hourglasses that are bending of a flat plate, which buckles: there it is only never less stable than the plain brick. */
+/* Flat, square and upright boxes, down to half their height with neo-Hooke; St. Venant-Kirchhoff has no more resistance
+   itself below 0.58. A brick has hourglasses that are bending of a flat plate, which buckles: there it is only never
+   less stable than the plain brick. */
 static void CompressedElementsDoNotHourglass(void **state)
 {
   const double heights[] = {0.2, 1, 5}, ratios[] = {0.3, 0.49};
@@ -138,7 +145,8 @@ static void CompressedElementsDoNotHourglass(void **state)
   for (int law = MATERIAL_SVK; law <= MATERIAL_NEO_HOOKEAN; law++) {
     for (int i = 0; i < 6; i++) {
       for (double stretch = 0.95; stretch > (law == MATERIAL_SVK ? 0.6 : 0.45); stretch -= 0.05) {
-        KernelCase   kernel = {ELEMENT_QUAD4, GEOMETRY_PLANE_STRAIN, KINEMATICS_FINITE, (MaterialLaw)law, FORMULATION_ENHANCED};
+        KernelCase   kernel = {ELEMENT_QUAD4, GEOMETRY_PLANE_STRAIN, KINEMATICS_FINITE, (MaterialLaw)law,
+                               FORMULATION_ENHANCED};
         const double plane  = LeastHourglass(&kernel, ratios[i % 2], heights[i / 2], stretch);
         double       solid, plain;
 
@@ -156,7 +164,8 @@ static void CompressedElementsDoNotHourglass(void **state)
 
 static void ModesWithoutRestAreReported(void **state)
 {
-  const KernelCase kernel = {ELEMENT_QUAD4, GEOMETRY_PLANE_STRAIN, KINEMATICS_FINITE, MATERIAL_SVK, FORMULATION_ENHANCED};
+  const KernelCase kernel = {ELEMENT_QUAD4, GEOMETRY_PLANE_STRAIN, KINEMATICS_FINITE, MATERIAL_SVK,
+                             FORMULATION_ENHANCED};
   double           X[MAX_DOFS], u[MAX_DOFS] = {0};
   Result           result;
 

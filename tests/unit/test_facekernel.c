@@ -1,4 +1,5 @@
-/* Shows that loads on faces have the right resultants, that follower tangents are derivatives, and that areas and normals are right. */
+/* Shows that loads on faces have the right resultants, that follower tangents are derivatives, and that areas and
+ * normals are right. */
 #include <stdarg.h>
 #include <stddef.h>
 #include <setjmp.h>
@@ -60,15 +61,18 @@ static void FollowerTangentIsTheDerivative(void **state)
     double    X[MAX_DOFS], u[MAX_DOFS], f[MAX_DOFS] = {0}, K[MAX_DOFS * MAX_DOFS] = {0}, energy = 0;
 
     MakeFace(&cases[k], X, u);
-    FaceLoadKernel(cases[k].type, cases[k].dim, cases[k].geometry, FACE_FOLLOWER_PRESSURE, X, u, &pressure, f, K, &energy);
+    FaceLoadKernel(cases[k].type, cases[k].dim, cases[k].geometry, FACE_FOLLOWER_PRESSURE, X, u, &pressure, f, K,
+                   &energy);
     assert_true(energy == 0);
     for (int j = 0; j < dofs; j++) {
       double plus[MAX_DOFS] = {0}, minus[MAX_DOFS] = {0};
 
       u[j] += h;
-      FaceLoadKernel(cases[k].type, cases[k].dim, cases[k].geometry, FACE_FOLLOWER_PRESSURE, X, u, &pressure, plus, NULL, NULL);
+      FaceLoadKernel(cases[k].type, cases[k].dim, cases[k].geometry, FACE_FOLLOWER_PRESSURE, X, u, &pressure, plus,
+                     NULL, NULL);
       u[j] -= 2 * h;
-      FaceLoadKernel(cases[k].type, cases[k].dim, cases[k].geometry, FACE_FOLLOWER_PRESSURE, X, u, &pressure, minus, NULL, NULL);
+      FaceLoadKernel(cases[k].type, cases[k].dim, cases[k].geometry, FACE_FOLLOWER_PRESSURE, X, u, &pressure, minus,
+                     NULL, NULL);
       u[j] += h;
       for (int i = 0; i < dofs; i++) assert_near(K[i * dofs + j], -(plus[i] - minus[i]) / (2 * h), 1e-8);
     }
@@ -102,7 +106,8 @@ static void DeadLoadsHaveAPotential(void **state)
   }
 }
 
-/* Cells with all nodes displaced at random: pressure on the closed surface has no resultant, dead or follower. Axisymmetric: only its axial part */
+/* Cells with all nodes displaced at random: pressure on the closed surface has no resultant, dead or follower.
+ * Axisymmetric: only its axial part */
 static void PressureOnAClosedSurfaceHasNoResultant(void **state)
 {
   const double pressure = 3;
@@ -111,8 +116,8 @@ static void PressureOnAClosedSurfaceHasNoResultant(void **state)
   for (int type = ELEMENT_TRI3; type < ELEMENT_TYPES; type++) {
     const Element *e = ElementGet(type), *face = ElementGet(e->face_type);
 
-    for (Geometry geometry = e->dim == 3 ? GEOMETRY_SOLID : GEOMETRY_PLANE_STRAIN; geometry <= (e->dim == 3 ? GEOMETRY_SOLID : GEOMETRY_AXISYMMETRIC);
-         geometry++) {
+    for (Geometry geometry = e->dim == 3 ? GEOMETRY_SOLID : GEOMETRY_PLANE_STRAIN;
+         geometry <= (e->dim == 3 ? GEOMETRY_SOLID : GEOMETRY_AXISYMMETRIC); geometry++) {
       double X[ELEMENT_MAX_NODES][3], u[ELEMENT_MAX_NODES][3];
 
       for (int a = 0; a < e->nodes; a++) {
@@ -153,7 +158,8 @@ static void PressureActsInward(void **state)
 
   (void)state;
   FaceLoadKernel(ELEMENT_QUAD4, 3, GEOMETRY_SOLID, FACE_DEAD_PRESSURE, square, zero, &pressure, f, NULL, NULL);
-  FaceLoadKernel(ELEMENT_QUAD4, 3, GEOMETRY_SOLID, FACE_FOLLOWER_PRESSURE, square, zero, &pressure, follower, NULL, NULL);
+  FaceLoadKernel(ELEMENT_QUAD4, 3, GEOMETRY_SOLID, FACE_FOLLOWER_PRESSURE, square, zero, &pressure, follower, NULL,
+                 NULL);
   for (int a = 0; a < 4; a++) {
     assert_near(f[3 * a + 2], -0.5, 1e-15);
     for (int i = 0; i < 3; i++) assert_true(f[3 * a + i] == follower[3 * a + i]);

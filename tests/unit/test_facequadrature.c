@@ -1,4 +1,5 @@
-/* The face rules integrate what they should, the hat functions are positive and sum to one, and every node of a face gets area. */
+/* The face rules integrate what they should, the hat functions are positive and sum to one, and every node of a face
+ * gets area. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -6,7 +7,8 @@
 #include <math.h>
 #include "search/facequadrature.h"
 
-static const ElementType types[] = {ELEMENT_EDGE2, ELEMENT_EDGE3, ELEMENT_TRI3, ELEMENT_TRI6, ELEMENT_QUAD4, ELEMENT_QUAD9};
+static const ElementType types[] = {ELEMENT_EDGE2, ELEMENT_EDGE3, ELEMENT_TRI3,
+                                    ELEMENT_TRI6,  ELEMENT_QUAD4, ELEMENT_QUAD9};
 enum { TYPES = sizeof(types) / sizeof(types[0]) };
 
 static double Factorial(int n)
@@ -34,7 +36,8 @@ static void test_degree(void **state)
 
     for (int finer = 0; finer < 2; finer++) {
       const FaceRule *rule   = FaceRuleGet(types[t], finer);
-      const int       tensor = 2 * (e->order + 1 + finer) - 1, degree = e->corners == 3 ? triangle[e->order - 1][finer] : tensor;
+      const int       tensor = 2 * (e->order + 1 + finer) - 1,
+                degree       = e->corners == 3 ? triangle[e->order - 1][finer] : tensor;
 
       for (int i = 0; i <= degree; i++) {
         for (int j = 0; j <= (e->dim == 1 ? 0 : e->corners == 3 ? degree - i : degree); j++) {
@@ -90,7 +93,8 @@ static void test_areas(void **state)
   FaceRuleAreas(rule, ELEMENT_QUAD4, 3, GEOMETRY_SOLID, square, area, normal);
   for (int q = 0; q < rule->n; q++) {
     sum += area[q];
-    assert_true(fabs(normal[3 * q] + 1 / sqrt(5)) < 1e-14 && fabs(normal[3 * q + 1]) < 1e-14 && fabs(normal[3 * q + 2] - 2 / sqrt(5)) < 1e-14);
+    assert_true(fabs(normal[3 * q] + 1 / sqrt(5)) < 1e-14 && fabs(normal[3 * q + 1]) < 1e-14 &&
+                fabs(normal[3 * q + 2] - 2 / sqrt(5)) < 1e-14);
   }
   assert_true(fabs(sum - 2 * sqrt(5)) < 1e-13);
   rule = FaceRuleGet(ELEMENT_EDGE2, 0);
@@ -103,6 +107,7 @@ static void test_areas(void **state)
 
 int main(void)
 {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_degree), cmocka_unit_test(test_hats), cmocka_unit_test(test_areas)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_degree), cmocka_unit_test(test_hats),
+                                     cmocka_unit_test(test_areas)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

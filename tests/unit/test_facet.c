@@ -1,4 +1,5 @@
-/* The gap to facets is the signed distance, continuous across edges and vertices, with exact first and second variations in every region. */
+/* The gap to facets is the signed distance, continuous across edges and vertices, with exact first and second
+ * variations in every region. */
 #include <float.h>
 #include <math.h>
 #include <setjmp.h>
@@ -11,7 +12,8 @@
 
 enum { MAX_DOFS = 3 * (1 + FACE_MAX_NODES), MAX_NODES = 128, MAX_FACETS = 32 };
 
-static const ElementType types[] = {ELEMENT_EDGE2, ELEMENT_EDGE3, ELEMENT_TRI3, ELEMENT_TRI6, ELEMENT_QUAD4, ELEMENT_QUAD9};
+static const ElementType types[] = {ELEMENT_EDGE2, ELEMENT_EDGE3, ELEMENT_TRI3,
+                                    ELEMENT_TRI6,  ELEMENT_QUAD4, ELEMENT_QUAD9};
 
 static double Random(double low, double high)
 {
@@ -37,7 +39,8 @@ static void RandomFacet(ElementType type, double bend, Facet *facet, double *x)
   facet->type = type;
   for (int a = 0; a < element->nodes; ++a) {
     facet->nodes[a] = a;
-    for (int k = 0; k < Dim(type); ++k) x[a * Dim(type) + k] = (k < element->dim ? element->node[a][k] : 0) + Random(-bend, bend);
+    for (int k = 0; k < Dim(type); ++k)
+      x[a * Dim(type) + k] = (k < element->dim ? element->node[a][k] : 0) + Random(-bend, bend);
   }
 }
 
@@ -91,7 +94,8 @@ static void At(int dim, const Facet *facet, const double *x, const double *xi, d
 }
 
 /* Moves one of the dofs (slave point first) and evaluates gap and N; 0 if the foot changed its region. */
-static int Probe(int dim, const Facet *facet, const double *x, const Foot *foot, int dof, double by, double *gap, double *N)
+static int Probe(int dim, const Facet *facet, const double *x, const Foot *foot, int dof, double by, double *gap,
+                 double *N)
 {
   const int nodes = ElementGet(facet->type)->nodes;
   double    moved[MAX_DOFS];
@@ -105,7 +109,8 @@ static int Probe(int dim, const Facet *facet, const double *x, const Foot *foot,
   FacetProject(dim, facet, moved, &there);
   *gap = there.gap;
   FacetFirstVariation(dim, facet, moved, &there, N);
-  return there.region == foot->region && there.feature == foot->feature && fabs(there.xi[0] - foot->xi[0]) + fabs(there.xi[1] - foot->xi[1]) < 0.1;
+  return there.region == foot->region && there.feature == foot->feature &&
+         fabs(there.xi[0] - foot->xi[0]) + fabs(there.xi[1] - foot->xi[1]) < 0.1;
 }
 
 /* Central differences of fourth order: N from gap, M from N. Returns 0 where a region ends nearby. */
@@ -135,9 +140,10 @@ static void VariationsOf(ElementType type, int free_edges)
   double    worst_N = 0, worst_M = 0;
 
   for (int trial = 0; trial < 600; ++trial) {
-    double X[MAX_DOFS], x[MAX_DOFS], slave[3], N[MAX_DOFS], M[MAX_DOFS * MAX_DOFS], N_differences[MAX_DOFS], M_differences[MAX_DOFS * MAX_DOFS], scale;
-    Facet  facet;
-    Foot   foot;
+    double X[MAX_DOFS], x[MAX_DOFS], slave[3], N[MAX_DOFS], M[MAX_DOFS * MAX_DOFS], N_differences[MAX_DOFS],
+      M_differences[MAX_DOFS * MAX_DOFS], scale;
+    Facet facet;
+    Foot  foot;
 
     RandomFacet(type, 0.15, &facet, X);
     facet.free_edges = free_edges;
@@ -170,8 +176,9 @@ static void VariationsOf(ElementType type, int free_edges)
     outside += foot.beyond > 0;
     ++tested[foot.region][foot.gap < 0];
   }
-  print_message("%-5s free %d: N %.1e M %.1e, interior %d+%d edge %d+%d vertex %d+%d beyond %d\n", ElementGet(type)->name, free_edges, worst_N, worst_M,
-                tested[0][0], tested[0][1], tested[1][0], tested[1][1], tested[2][0], tested[2][1], outside);
+  print_message("%-5s free %d: N %.1e M %.1e, interior %d+%d edge %d+%d vertex %d+%d beyond %d\n",
+                ElementGet(type)->name, free_edges, worst_N, worst_M, tested[0][0], tested[0][1], tested[1][0],
+                tested[1][1], tested[2][0], tested[2][1], outside);
   assert_true(worst_N <= 1e-8);
   assert_true(worst_M <= 1e-7);
   for (int sign = 0; sign < 2; ++sign) {
@@ -197,9 +204,10 @@ static void TestRigidMotion(void **state)
   for (int trial = 0; trial < 300; ++trial) {
     const ElementType type = types[trial % 6];
     const int         dim = Dim(type), nodes = ElementGet(type)->nodes, size = (1 + nodes) * dim;
-    double            x[MAX_DOFS], turned[MAX_DOFS] = {0}, slave[3], N[MAX_DOFS], expected[MAX_DOFS] = {0}, there[MAX_DOFS], R[3][3];
-    Facet             facet;
-    Foot              foot, foot_turned;
+    double x[MAX_DOFS], turned[MAX_DOFS] = {0}, slave[3], N[MAX_DOFS], expected[MAX_DOFS] = {0}, there[MAX_DOFS],
+                        R[3][3];
+    Facet facet;
+    Foot  foot, foot_turned;
 
     RandomFacet(type, 0.15, &facet, x);
     for (int k = 0; k < dim; ++k) slave[k] = Random(-1.5, 1.5);
@@ -256,10 +264,11 @@ static void TestDistance(void **state)
 
     for (int trial = 0; trial < 1200; ++trial) {
       const ElementType type = types[trial % 6];
-      const int         dim = Dim(type), nodes = ElementGet(type)->nodes, simplex = type == ELEMENT_TRI3 || type == ELEMENT_TRI6;
-      double            x[MAX_DOFS], slave[3], at[3], sampled;
-      Facet             facet;
-      Foot              foot;
+      const int         dim = Dim(type), nodes = ElementGet(type)->nodes,
+                simplex = type == ELEMENT_TRI3 || type == ELEMENT_TRI6;
+      double x[MAX_DOFS], slave[3], at[3], sampled;
+      Facet  facet;
+      Foot   foot;
 
       RandomFacet(type, simplex ? 0.5 * bends[b] : bends[b], &facet, x);
       for (int k = 0; k < dim; ++k) slave[k] = Random(-1.5, 1.5);
@@ -275,7 +284,8 @@ static void TestDistance(void **state)
       unconverged += !foot.converged;
       ++trials;
     }
-    print_message("nodes moved by up to %g of half the width: %d of %d feet are not the nearest, %d did not converge\n", bends[b], missed, trials, unconverged);
+    print_message("nodes moved by up to %g of half the width: %d of %d feet are not the nearest, %d did not converge\n",
+                  bends[b], missed, trials, unconverged);
     assert_true(missed <= (b ? 3 : 0)); /* hidden between the samples of wrinkled facets */
     assert_true(unconverged <= (b == 2));
   }
@@ -304,8 +314,8 @@ static void Closest(const Surface *surface, const double *slave, Foot *foot)
   assert_int_equal(FacetClosest(surface->dim, surface->facets, surface->facet, x, -1, foot), 1);
 }
 
-/* Largest jump of the gap on the way from p to q: wherever facet or region changes, the place is bisected. A signed distance can change no
-   faster than the point moves. */
+/* Largest jump of the gap on the way from p to q: wherever facet or region changes, the place is bisected. A signed
+   distance can change no faster than the point moves. */
 static double LargestJump(const Surface *surface, const double *p, const double *q, int steps, int *changes)
 {
   const int dim  = surface->dim;
@@ -375,18 +385,23 @@ static void Roof(ElementType type, double turn, Surface *surface)
     const int      simplex = type == ELEMENT_TRI3 || type == ELEMENT_TRI6;
 
     for (int a = 0; a < element->nodes; ++a) {
-      double along = simplex ? element->node[a][1] : (element->node[a][0] + 1) / 2, across = simplex ? element->node[a][0] : (element->node[a][1] + 1) / 2;
-      const double bulge = element->order == 2 ? 0.05 * across * (1 - across) * (1 + along) + 0.1 * along * (1 - along) : 0;
+      double along  = simplex ? element->node[a][1] : (element->node[a][0] + 1) / 2,
+             across = simplex ? element->node[a][0] : (element->node[a][1] + 1) / 2;
+      const double bulge =
+        element->order == 2 ? 0.05 * across * (1 - across) * (1 + along) + 0.1 * along * (1 - along) : 0;
 
       /* the right facet in its own order (edge x = 0 along y), the left one its image by half a turn about z */
       nodes[a] = surface->nodes;
       if (side == 0)
-        memcpy(&surface->x[3 * surface->nodes++], (double[3]){across * c, along, -across * s + bulge}, 3 * sizeof(double));
+        memcpy(&surface->x[3 * surface->nodes++], (double[3]){across * c, along, -across * s + bulge},
+               3 * sizeof(double));
       else
-        memcpy(
-          &surface->x[3 * surface->nodes++],
-          (double[3]){-across * c, 1 - along, -across * s + (element->order == 2 ? 0.05 * across * (1 - across) * (2 - along) + 0.1 * along * (1 - along) : 0)},
-          3 * sizeof(double));
+        memcpy(&surface->x[3 * surface->nodes++],
+               (double[3]){-across * c, 1 - along,
+                           -across * s + (element->order == 2
+                                            ? 0.05 * across * (1 - across) * (2 - along) + 0.1 * along * (1 - along)
+                                            : 0)},
+               3 * sizeof(double));
     }
     if (!simplex) {
       /* square facets run along y first: turn them over so that outward is up */
@@ -411,12 +426,13 @@ static void TestEdges(void **state)
 
       Roof(types[t], turns[k], &surface);
       for (int level = -2; level <= 2; ++level) {
-        const double height = level * 0.04, p2[2] = {-0.3, height}, q2[2] = {0.35, height + 0.01}, p3[3] = {-0.3, 0.3, height},
-                     q3[3] = {0.35, 0.45, height + 0.01};
+        const double height = level * 0.04, p2[2] = {-0.3, height}, q2[2] = {0.35, height + 0.01},
+                     p3[3] = {-0.3, 0.3, height}, q3[3] = {0.35, 0.45, height + 0.01};
         int  changes;
         Foot foot;
 
-        assert_true(LargestJump(&surface, surface.dim == 2 ? p2 : p3, surface.dim == 2 ? q2 : q3, 200, &changes) <= 1e-9);
+        assert_true(LargestJump(&surface, surface.dim == 2 ? p2 : p3, surface.dim == 2 ? q2 : q3, 200, &changes) <=
+                    1e-9);
         assert_true(changes >= 1);
         /* above the ridge: outside; below it: inside, and never lost */
         if (level) {
@@ -439,7 +455,8 @@ static void Fan(const double z[5], Surface *surface)
   for (int i = 0; i < 5; ++i) {
     const int nodes[] = {0, 1 + i, 1 + (i + 1) % 5};
 
-    memcpy(&surface->x[3 * (1 + i)], (double[3]){cos(2 * M_PI * i / 5), sin(2 * M_PI * i / 5), z[i]}, 3 * sizeof(double));
+    memcpy(&surface->x[3 * (1 + i)], (double[3]){cos(2 * M_PI * i / 5), sin(2 * M_PI * i / 5), z[i]},
+           3 * sizeof(double));
     AddFacet(surface, ELEMENT_TRI3, 0, nodes);
   }
 }
@@ -459,7 +476,8 @@ static void TestFan(void **state)
 
     Fan(rims[r], &surface);
     for (int trial = 0; trial < 40; ++trial) {
-      const double height = Random(-0.25, 0.25), angle = Random(0, 6.28), p[3] = {0.4 * cos(angle), 0.4 * sin(angle), height},
+      const double height = Random(-0.25, 0.25), angle = Random(0, 6.28),
+                   p[3] = {0.4 * cos(angle), 0.4 * sin(angle), height},
                    q[3] = {-p[0] + Random(-0.1, 0.1), -p[1], height};
       int changes;
 
@@ -468,12 +486,14 @@ static void TestFan(void **state)
     }
     for (int trial = 0; trial < 400; ++trial) {
       const double slave[3] = {Random(-0.2, 0.2), Random(-0.2, 0.2), Random(-0.2, 0.2)},
-                   turn     = atan2(slave[1], slave[0]) < 0 ? atan2(slave[1], slave[0]) + 2 * M_PI : atan2(slave[1], slave[0]);
+                   turn =
+                     atan2(slave[1], slave[0]) < 0 ? atan2(slave[1], slave[0]) + 2 * M_PI : atan2(slave[1], slave[0]);
       const int     i = (int)(turn / (2 * M_PI / 5)) % 5, j = (i + 1) % 5;
       const double *a = &surface.x[3 * (1 + i)], *b = &surface.x[3 * (1 + j)], det = a[0] * b[1] - a[1] * b[0];
       /* the surface is a graph: its height over the slave point tells the side */
-      const double height = (a[2] * (slave[0] * b[1] - slave[1] * b[0]) + b[2] * (a[0] * slave[1] - a[1] * slave[0])) / det;
-      Foot         foot;
+      const double height =
+        (a[2] * (slave[0] * b[1] - slave[1] * b[0]) + b[2] * (a[0] * slave[1] - a[1] * slave[0])) / det;
+      Foot foot;
 
       Closest(&surface, slave, &foot);
       assert_true(foot.gap * (slave[2] - height) >= 0);
@@ -534,7 +554,8 @@ static void TestTouching(void **state)
   }
 }
 
-/* Nodes and square facets of a grid of nx by ny faces on a cylinder of that curvature about the y axis (0: flat); all borders free */
+/* Nodes and square facets of a grid of nx by ny faces on a cylinder of that curvature about the y axis (0: flat); all
+ * borders free */
 static void Grid(int nx, int ny, double curvature, Surface *surface)
 {
   memset(surface, 0, sizeof(*surface));
@@ -544,14 +565,17 @@ static void Grid(int nx, int ny, double curvature, Surface *surface)
       const double s = i - 0.5 * nx;
 
       memcpy(&surface->x[3 * surface->nodes++],
-             (double[3]){curvature ? sin(s * curvature) / curvature : s, j, curvature ? (cos(s * curvature) - 1) / curvature : 0}, 3 * sizeof(double));
+             (double[3]){curvature ? sin(s * curvature) / curvature : s, j,
+                         curvature ? (cos(s * curvature) - 1) / curvature : 0},
+             3 * sizeof(double));
     }
   }
   for (int j = 0; j < ny; ++j) {
     for (int i = 0; i < nx; ++i) {
       const int a = j * (nx + 1) + i;
 
-      AddFacet(surface, ELEMENT_QUAD4, (j == 0) | (i == nx - 1) << 1 | (j == ny - 1) << 2 | (i == 0) << 3, (int[]){a, a + 1, a + nx + 2, a + nx + 1});
+      AddFacet(surface, ELEMENT_QUAD4, (j == 0) | (i == nx - 1) << 1 | (j == ny - 1) << 2 | (i == 0) << 3,
+               (int[]){a, a + 1, a + nx + 2, a + nx + 1});
     }
   }
 }
@@ -603,8 +627,8 @@ static void TestFreeEdges(void **state)
   for (int sign = -1; sign <= 1; sign += 2) {
     Grid(6, 3, sign * 0.3, &surface);
     for (int trial = 0; trial < 30; ++trial) {
-      const double height = Random(-0.15, 0.15), past = Random(-0.3, 0), p[3] = {-1.2, past, height}, q[3] = {1.2, past, height}, r[3] = {p[0], -0.3, height},
-                   s[3] = {p[0] + 0.2, 0.4, height};
+      const double height = Random(-0.15, 0.15), past = Random(-0.3, 0), p[3] = {-1.2, past, height},
+                   q[3] = {1.2, past, height}, r[3] = {p[0], -0.3, height}, s[3] = {p[0] + 0.2, 0.4, height};
 
       assert_true(LargestJump(&surface, p, q, 120, &changes) <= 1e-9);
       assert_true(changes >= 1);
@@ -617,17 +641,20 @@ static void TestFreeEdges(void **state)
   Roof(ELEMENT_QUAD4, 2.2, &surface);
   for (int f = 0; f < 2; ++f)
     for (int e = 0; e < 4; ++e)
-      if (surface.x[3 * surface.facet[f].nodes[e] + 1] == surface.x[3 * surface.facet[f].nodes[(e + 1) % 4] + 1]) surface.facet[f].free_edges |= 1 << e;
+      if (surface.x[3 * surface.facet[f].nodes[e] + 1] == surface.x[3 * surface.facet[f].nodes[(e + 1) % 4] + 1])
+        surface.facet[f].free_edges |= 1 << e;
   for (int trial = 0; trial < 40; ++trial) {
     const double across = Random(-0.5, 0.5), past = Random(0.1, 0.4);
 
     Closest(&surface, (double[3]){across, -past, 0.5}, &foot);
-    assert_true(foot.region == FOOT_EDGE && fabs(foot.gap - hypot(across, 0.5)) <= 1e-12 && fabs(foot.beyond - past) <= 1e-12);
+    assert_true(foot.region == FOOT_EDGE && fabs(foot.gap - hypot(across, 0.5)) <= 1e-12 &&
+                fabs(foot.beyond - past) <= 1e-12);
   }
   /* a facet that is really there wins over another one's extension */
   Grid(1, 1, 0, &surface);
   for (int i = 0; i < 4; ++i)
-    memcpy(&surface.x[3 * (4 + i)], (double[3]){surface.x[3 * i] + 1.05, surface.x[3 * i + 1], surface.x[3 * i + 2] + 0.3}, 3 * sizeof(double));
+    memcpy(&surface.x[3 * (4 + i)],
+           (double[3]){surface.x[3 * i] + 1.05, surface.x[3 * i + 1], surface.x[3 * i + 2] + 0.3}, 3 * sizeof(double));
   surface.nodes = 8;
   AddFacet(&surface, ELEMENT_QUAD4, 15, (int[]){4, 5, 7, 6});
   Closest(&surface, (double[3]){0.8, 0.5, 0.01}, &foot);
@@ -692,7 +719,8 @@ static void TestFarAndDegenerate(void **state)
         FacetSecondVariation(dim, &facet, x, &foot, M);
         assert_true(isfinite(foot.gap) && fabs(Norm(3, foot.normal) - 1) <= 1e-12);
         assert_true(facet.free_edges ||
-                    fabs(foot.gap) <= 1.1 * Sampled(dim, &facet, x, 10) + 1e-12); /* an edge folded onto itself has a false stationary point */
+                    fabs(foot.gap) <= 1.1 * Sampled(dim, &facet, x, 10) +
+                                        1e-12); /* an edge folded onto itself has a false stationary point */
         for (int i = 0; i < size; ++i) assert_true(isfinite(N[i]));
         for (int i = 0; i < size * size; ++i) assert_true(isfinite(M[i]));
       }
@@ -787,7 +815,8 @@ static void TestFeatures(void **state)
 
       RandomFacet(types[t], 0, &facet, x);
       for (int k = 0; k < 2; ++k) {
-        middle[k] = 0.5 * (element->node[element->edge_corners[e][0]][k] + element->node[element->edge_corners[e][1]][k]);
+        middle[k] =
+          0.5 * (element->node[element->edge_corners[e][0]][k] + element->node[element->edge_corners[e][1]][k]);
         middle[k] += 0.1 * (middle[k] - simplex);
         corner[k] = element->node[e][k] + 0.1 * (element->node[e][k] - simplex);
       }
@@ -804,10 +833,11 @@ static void TestFeatures(void **state)
 
 int main(void)
 {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(TestFeatures),         cmocka_unit_test(TestVariations), cmocka_unit_test(TestRigidMotion),
-                                     cmocka_unit_test(TestDistance),         cmocka_unit_test(TestEdges),      cmocka_unit_test(TestFan),
-                                     cmocka_unit_test(TestTouching),         cmocka_unit_test(TestFreeEdges),  cmocka_unit_test(TestFreeEnds),
-                                     cmocka_unit_test(TestFarAndDegenerate), cmocka_unit_test(TestExtruded),   cmocka_unit_test(TestOrder)};
+  const struct CMUnitTest tests[] = {
+    cmocka_unit_test(TestFeatures),         cmocka_unit_test(TestVariations), cmocka_unit_test(TestRigidMotion),
+    cmocka_unit_test(TestDistance),         cmocka_unit_test(TestEdges),      cmocka_unit_test(TestFan),
+    cmocka_unit_test(TestTouching),         cmocka_unit_test(TestFreeEdges),  cmocka_unit_test(TestFreeEnds),
+    cmocka_unit_test(TestFarAndDegenerate), cmocka_unit_test(TestExtruded),   cmocka_unit_test(TestOrder)};
 
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

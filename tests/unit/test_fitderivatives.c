@@ -7,8 +7,8 @@ enum { MAX_ENTRIES = 12, NODES = 1 + FEW, SIZE = 3 * NODES, MAP_WORK = 200000 };
 /* A map with its arrays */
 typedef struct {
   FitDerivatives map;
-  int    ptr[2 + FEW], node[(1 + FEW) * MAX_ENTRIES];
-  double S[(1 + FEW) * MAX_ENTRIES], sign[3 * (1 + FEW) * MAX_ENTRIES];
+  int            ptr[2 + FEW], node[(1 + FEW) * MAX_ENTRIES];
+  double         S[(1 + FEW) * MAX_ENTRIES], sign[3 * (1 + FEW) * MAX_ENTRIES];
 } Map;
 
 static int Whole(int low, int high)
@@ -22,8 +22,9 @@ static void Empty(Map *m, int n_nodes)
   m->ptr[0] = 0;
 }
 
-/* Runs of rows with the same 1 to 9 nodes and signs, as faces give them, and rows that differ in signs only; the signs are the row's or, as where an offset's
-   nodes lie on both sides of a mirror, those of each entry; nodes are shared with other runs and the slave point, occur twice in a row, or are left out. */
+/* Runs of rows with the same 1 to 9 nodes and signs, as faces give them, and rows that differ in signs only; the signs
+   are the row's or, as where an offset's nodes lie on both sides of a mirror, those of each entry; nodes are shared
+   with other runs and the slave point, occur twice in a row, or are left out. */
 static void RandomMap(Map *m, int n, int n_nodes)
 {
   int    entries = 0, node[9];
@@ -38,7 +39,8 @@ static void RandomMap(Map *m, int n, int n_nodes)
       entries = Whole(1, 9);
       for (int k = 0; k < entries; k++) node[k] = Whole(-1, n_nodes - 1);
     }
-    for (int k = 0, mixed = Whole(0, 1); k < 3 * entries && !same; k++) sign[k] = k >= 3 && !mixed ? sign[k - 3] : Whole(0, 1) ? -1 : 1;
+    for (int k = 0, mixed = Whole(0, 1); k < 3 * entries && !same; k++)
+      sign[k] = k >= 3 && !mixed ? sign[k - 3] : Whole(0, 1) ? -1 : 1;
     for (int k = 0; k < entries; k++) {
       m->node[at + k] = node[k];
       m->S[at + k]    = Random(-0.5, 1);
@@ -56,7 +58,8 @@ static void Dense(int dim, int n, const FitDerivatives *map, double *S)
   memset(S, 0, (size_t)map->n_nodes * dim * own * sizeof(double));
   for (int r = 0; r <= n; r++) {
     for (int e = map->ptr[r]; e < map->ptr[r + 1]; e++) {
-      for (int c = 0; c < dim && map->node[e] >= 0; c++) S[(map->node[e] * dim + c) * own + r * dim + c] += map->sign[3 * e + c] * map->S[e];
+      for (int c = 0; c < dim && map->node[e] >= 0; c++)
+        S[(map->node[e] * dim + c) * own + r * dim + c] += map->sign[3 * e + c] * map->S[e];
     }
   }
 }
@@ -86,17 +89,19 @@ static void Reference(const Case *c, const FitDerivatives *map, double *N, doubl
   }
 }
 
-/* N and M over nodes by the kernel, M as a sum of shares, one of them dense, and a vector's product with itself taken away again; nothing written past the ends
+/* N and M over nodes by the kernel, M as a sum of shares, one of them dense, and a vector's product with itself taken
+ * away again; nothing written past the ends
  */
 static void Mapped(Case *c, const FitDerivatives *map, double *N, double *M)
 {
   static double scratch[MAP_WORK], own[FEW][FIT_DERIVATIVES_OWN];
-  const int     depth  = 2 * FitDerivativesDepth(c->in.dim, c->in.degree) + c->in.dim * (1 + c->out.n) + 2;
-  const long    length = FitWorkspace(c->in.dim, c->in.degree, c->in.n), need = FitDerivativesWorkspace(c->in.dim, c->in.degree, map->n_nodes, depth);
-  const int     size = c->in.dim * map->n_nodes;
-  FitFactors    factors;
-  FitDerivativesSum     sum;
-  FitResult     out = {.points = c->points, .N = c->N, .factors = &factors};
+  const int     depth    = 2 * FitDerivativesDepth(c->in.dim, c->in.degree) + c->in.dim * (1 + c->out.n) + 2;
+  const long    length   = FitWorkspace(c->in.dim, c->in.degree, c->in.n),
+             need        = FitDerivativesWorkspace(c->in.dim, c->in.degree, map->n_nodes, depth);
+  const int         size = c->in.dim * map->n_nodes;
+  FitFactors        factors;
+  FitDerivativesSum sum;
+  FitResult         out = {.points = c->points, .N = c->N, .factors = &factors};
 
   assert_true(1 + need < MAP_WORK && 1 + length < WORK);
   for (int i = 0; i < MAP_WORK; i++) scratch[i] = NAN;
@@ -189,7 +194,8 @@ static void Move(Case *c, const FitDerivatives *map, int column, double step)
   double    by[1 + FEW] = {0};
 
   for (int r = 0; r <= c->out.n; r++) {
-    for (int e = map->ptr[r]; e < map->ptr[r + 1]; e++) by[r] += map->node[e] == column / dim ? step * map->sign[3 * e + k] * map->S[e] : 0;
+    for (int e = map->ptr[r]; e < map->ptr[r + 1]; e++)
+      by[r] += map->node[e] == column / dim ? step * map->sign[3 * e + k] * map->S[e] : 0;
   }
   for (int i = 0; i < c->in.n; i++) c->x[i * dim + k] -= by[0];
   for (int i = 0; i < c->out.n; i++) c->x[c->points[i] * dim + k] += by[1 + i];
@@ -233,7 +239,9 @@ static void TestDerivatives(void **state)
       }
       AssertNear(N[column], Difference(gap, h), 1e-7 * MaxAbs(size, N));
       for (int row = 0; row < size; row++) {
-        AssertNear(M[row * size + column], Difference((double[4]){moved_N[0][row], moved_N[1][row], moved_N[2][row], moved_N[3][row]}, h), 1e-7 * most);
+        AssertNear(M[row * size + column],
+                   Difference((double[4]){moved_N[0][row], moved_N[1][row], moved_N[2][row], moved_N[3][row]}, h),
+                   1e-7 * most);
       }
     }
   }
@@ -241,7 +249,8 @@ static void TestDerivatives(void **state)
 
 int main(void)
 {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(TestSums), cmocka_unit_test(TestOwnNodes), cmocka_unit_test(TestDerivatives)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(TestSums), cmocka_unit_test(TestOwnNodes),
+                                     cmocka_unit_test(TestDerivatives)};
 
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,4 +1,5 @@
-/* Frames are those of the points' plane, turned outwards, refused where there is none; supports hold pi s^2 nodes on any mesh. */
+/* Frames are those of the points' plane, turned outwards, refused where there is none; supports hold pi s^2 nodes on
+ * any mesh. */
 #include <math.h>
 #include <string.h>
 #include "fitcase.h"
@@ -6,7 +7,8 @@
 static void CheckOrthonormal(int dim, double (*frame)[3])
 {
   for (int a = 0; a < dim; a++) {
-    for (int b = 0; b < dim; b++) AssertNear(frame[a][0] * frame[b][0] + frame[a][1] * frame[b][1] + frame[a][2] * frame[b][2], a == b, 1e-14);
+    for (int b = 0; b < dim; b++)
+      AssertNear(frame[a][0] * frame[b][0] + frame[a][1] * frame[b][1] + frame[a][2] * frame[b][2], a == b, 1e-14);
   }
 }
 
@@ -69,7 +71,8 @@ static int CountInside(double ratio, double shear, double support)
   for (int i = -1; i <= 1; i++) {
     for (int j = -1; j <= 1; j++) {
       for (int k = 0; k < 9; k++) {
-        const double a = ratio * i + shear * j, x = a * frame[0][k / 3] + j * frame[1][k / 3], y = a * frame[0][k % 3] + j * frame[1][k % 3];
+        const double a = ratio * i + shear * j, x = a * frame[0][k / 3] + j * frame[1][k / 3],
+                     y = a * frame[0][k % 3] + j * frame[1][k % 3];
 
         covariance[k / 3][k % 3] += x * y;
       }
@@ -93,7 +96,8 @@ static void TestMetric(void **state)
 
   (void)state;
   for (int i = 0; i < 3; i++) {
-    for (int shear = 0; shear < 2; shear++) AssertNear(CountInside(ratios[i], 0.5 * shear, support) / (3.14159265 * support * support), 1, 0.02);
+    for (int shear = 0; shear < 2; shear++)
+      AssertNear(CountInside(ratios[i], 0.5 * shear, support) / (3.14159265 * support * support), 1, 0.02);
   }
   FitFrameFromNormal(2, (double[2]){0, 1}, frame);
   FitMetricFromCovariance(2, frame, NULL, 0.5, 4, Q);
@@ -108,7 +112,8 @@ static void TestMetric(void **state)
 
 int main(void)
 {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(TestPlane), cmocka_unit_test(TestNoPlane), cmocka_unit_test(TestMetric)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(TestPlane), cmocka_unit_test(TestNoPlane),
+                                     cmocka_unit_test(TestMetric)};
 
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

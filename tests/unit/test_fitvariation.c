@@ -1,4 +1,5 @@
-/* N and M of the diffuse fit are the derivatives of its gap; they balance, turn with the points, and add up over mirror images. */
+/* N and M of the diffuse fit are the derivatives of its gap; they balance, turn with the points, and add up over mirror
+ * images. */
 #include "fitcase.h"
 
 /* Fourth-order central difference from the values at -2h, -h, h, 2h */
@@ -102,7 +103,8 @@ static void TestBalance(void **state)
   }
 }
 
-/* Diffuse derivatives leave gap and N untouched; they are the full ones where the weights are constant: in a support that is far too large. */
+/* Diffuse derivatives leave gap and N untouched; they are the full ones where the weights are constant: in a support
+ * that is far too large. */
 static void TestDiffuseDerivatives(void **state)
 {
   static Case full, diffuse;
@@ -158,7 +160,8 @@ static void TestInvariance(void **state)
     Rotation(dim, R);
     Turn(dim, 1, R, up, outward);
     Turn(dim, c.in.n, R, c.x, x);
-    for (int k = 0; k < c.in.n * dim; k++) { /* nodes and slave point far from the origin, to the grid of numbers there */
+    for (int k = 0; k < c.in.n * dim;
+         k++) { /* nodes and slave point far from the origin, to the grid of numbers there */
       const double far = shift + slave[k % dim] + x[k];
 
       turned.x[k] = far - (shift + slave[k % dim]);
@@ -166,7 +169,8 @@ static void TestInvariance(void **state)
     for (int a = 0; a < 9; a++) {
       for (int b = 0; b < 9; b++) RC[a / 3][a % 3] += R[a / 3][b / 3] * C[b / 3][b % 3] * R[a % 3][b % 3];
     }
-    assert_true(FitFrame(dim, c.in.n, c.x, c.v, up, c.in.frame) && FitFrame(dim, c.in.n, turned.x, c.v, outward, turned.in.frame));
+    assert_true(FitFrame(dim, c.in.n, c.x, c.v, up, c.in.frame) &&
+                FitFrame(dim, c.in.n, turned.x, c.v, outward, turned.in.frame));
     FitMetricFromCovariance(dim, c.in.frame, C, 1, support, c.in.metric);
     FitMetricFromCovariance(dim, turned.in.frame, RC, 1, support, turned.in.metric);
     assert_true(Evaluate(&c, FIT_SECOND_VARIATION) && Evaluate(&turned, FIT_SECOND_VARIATION));
@@ -180,7 +184,8 @@ static void TestInvariance(void **state)
         for (int k = 0; k < dim * dim; k++) {
           double sum = 0;
 
-          for (int l = 0; l < dim * dim; l++) sum += R[k / dim][l / dim] * c.M[(a * dim + l / dim) * size + b * dim + l % dim] * R[k % dim][l % dim];
+          for (int l = 0; l < dim * dim; l++)
+            sum += R[k / dim][l / dim] * c.M[(a * dim + l / dim) * size + b * dim + l % dim] * R[k % dim][l % dim];
           AssertNear(turned.M[(a * dim + k / dim) * size + b * dim + k % dim], sum, 1e-12);
         }
       }
@@ -188,7 +193,8 @@ static void TestInvariance(void **state)
   }
 }
 
-/* Half a bowl, mirrored at x = 0: points carried with reflection maps, nodes on the plane once and with twice their half area */
+/* Half a bowl, mirrored at x = 0: points carried with reflection maps, nodes on the plane once and with twice their
+ * half area */
 typedef struct {
   int    nodes, node[MAX], image[MAX]; /* per point: its node, and whether it is the image */
   double x[3 * MAX], v[MAX];           /* nodes */
@@ -203,7 +209,8 @@ static void Mirror(const Half *half, const double slave[3], Case *c, Half *map)
     for (int image = 0; image < (on ? 1 : 2); image++) {
       map->node[c->in.n]  = a;
       map->image[c->in.n] = image;
-      AddPoint(c, (image ? -1 : 1) * half->x[3 * a] - slave[0], half->x[3 * a + 1] - slave[1], half->x[3 * a + 2] - slave[2], (on ? 2 : 1) * half->v[a]);
+      AddPoint(c, (image ? -1 : 1) * half->x[3 * a] - slave[0], half->x[3 * a + 1] - slave[1],
+               half->x[3 * a + 2] - slave[2], (on ? 2 : 1) * half->v[a]);
     }
   }
 }
@@ -233,14 +240,16 @@ static void TestMirror(void **state)
 {
   static Case   c, full;
   static Half   half, map;
-  static double N[3 * (1 + FEW)], M[9 * (1 + FEW) * (1 + FEW)], moved[4][3 * (1 + FEW)], scratch[9 * (1 + FEW) * (1 + FEW)];
-  const double  h = 2e-4, support = 4.2;
+  static double N[3 * (1 + FEW)], M[9 * (1 + FEW) * (1 + FEW)], moved[4][3 * (1 + FEW)],
+    scratch[9 * (1 + FEW) * (1 + FEW)];
+  const double h = 2e-4, support = 4.2;
 
   (void)state;
   memset(&half, 0, sizeof(half));
   for (int i = 0; i <= 5; i++) {
     for (int j = -5; j <= 5; j++) {
-      const double s = i == 0 ? 0 : i + Random(-0.2, 0.2), t = j + Random(-0.2, 0.2), z = -(s * s + t * t) / 15 + Random(-0.03, 0.03);
+      const double s = i == 0 ? 0 : i + Random(-0.2, 0.2), t = j + Random(-0.2, 0.2),
+                   z = -(s * s + t * t) / 15 + Random(-0.03, 0.03);
 
       if (hypot(s, t) > 5.2) continue;
       memcpy(half.x + 3 * half.nodes, (double[3]){s, t, z}, 3 * sizeof(double));
@@ -282,7 +291,8 @@ static void TestMirror(void **state)
       *position = value;
       AssertNear(N[column], Difference(gap, h), 1e-7);
       for (int row = 0; row < size; row++) {
-        AssertNear(M[row * size + column], Difference((double[4]){moved[0][row], moved[1][row], moved[2][row], moved[3][row]}, h), 1e-7 * most);
+        AssertNear(M[row * size + column],
+                   Difference((double[4]){moved[0][row], moved[1][row], moved[2][row], moved[3][row]}, h), 1e-7 * most);
       }
     }
   }
@@ -290,8 +300,9 @@ static void TestMirror(void **state)
 
 int main(void)
 {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(TestVariations), cmocka_unit_test(TestBalance), cmocka_unit_test(TestDiffuseDerivatives),
-                                     cmocka_unit_test(TestInvariance), cmocka_unit_test(TestMirror)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(TestVariations), cmocka_unit_test(TestBalance),
+                                     cmocka_unit_test(TestDiffuseDerivatives), cmocka_unit_test(TestInvariance),
+                                     cmocka_unit_test(TestMirror)};
 
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

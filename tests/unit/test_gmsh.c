@@ -1,4 +1,5 @@
-/* A .geo is meshed once for each content, gmsh's complaints reach the user, text and binary files read the same, and a damaged file is refused. */
+/* A .geo is meshed once for each content, gmsh's complaints reach the user, text and binary files read the same, and a
+ * damaged file is refused. */
 #include "gmsh.h"
 #include "gmshfile.h"
 #include <setjmp.h>
@@ -19,7 +20,8 @@ static const char *const geometry =
   "Line(1) = {1, 2}; Line(2) = {2, 3}; Line(3) = {3, 4}; Line(4) = {4, 1};\n"
   "Curve Loop(1) = {1, 2, 3, 4}; Plane Surface(1) = {1};\n"
   "Transfinite Curve{1, 2, 3, 4} = n + 1; Transfinite Surface{1}; Recombine Surface{1};\n"
-  "Physical Surface(\"block one\", 7) = {1}; Physical Curve(\"left\", 7) = {-4}; Physical Curve(3) = {2}; Physical Point(\"corner\") = {1};\n";
+  "Physical Surface(\"block one\", 7) = {1}; Physical Curve(\"left\", 7) = {-4}; Physical Curve(3) = {2}; Physical "
+  "Point(\"corner\") = {1};\n";
 
 static void WriteText(const char *name, const char *text, size_t size, char path[PETSC_MAX_PATH_LEN])
 {
@@ -52,7 +54,8 @@ static Scene MakeScene(const char *parameters)
   WriteText("size.geo", "length = 2;\n", 12, path);
   WriteText("block.geo", geometry, strlen(geometry), path);
   snprintf(text, sizeof(text),
-           "mesh: {file: block.geo, order: 2, parameters: %s}\ngeometry: plane_strain\nbodies: [{volume: block one, material: {law: svk, E: 1, nu: 0.3}}]\n",
+           "mesh: {file: block.geo, order: 2, parameters: %s}\ngeometry: plane_strain\nbodies: [{volume: block one, "
+           "material: {law: svk, E: 1, nu: 0.3}}]\n",
            parameters);
   WriteText("scene.yaml", text, strlen(text), path);
   assert_int_equal(SceneRead(PETSC_COMM_SELF, path, 0, NULL, &scene), 0);
@@ -210,7 +213,8 @@ static void test_binary_equals_text(void **state)
   assert_int_equal(GmshReset(&b), 0);
 }
 
-/* Cut off anywhere before the end of the elements, a file is refused; with one byte changed anywhere it is read or refused, never worse. */
+/* Cut off anywhere before the end of the elements, a file is refused; with one byte changed anywhere it is read or
+ * refused, never worse. */
 static void test_damaged(void **state)
 {
   static char copy[1 << 16];
@@ -247,8 +251,9 @@ static void test_damaged(void **state)
 
 int main(int argc, char **argv)
 {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_meshed_once),     cmocka_unit_test(test_names_differ),       cmocka_unit_test(test_without_gmsh),
-                                     cmocka_unit_test(test_mistakes_in_geo), cmocka_unit_test(test_binary_equals_text), cmocka_unit_test(test_damaged)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_meshed_once),        cmocka_unit_test(test_names_differ),
+                                     cmocka_unit_test(test_without_gmsh),       cmocka_unit_test(test_mistakes_in_geo),
+                                     cmocka_unit_test(test_binary_equals_text), cmocka_unit_test(test_damaged)};
   char                    command[128];
   int                     failed;
 

@@ -1,4 +1,5 @@
-/* The penalty law, with and without a multiplier, is the derivative of its potential, never pulls and is zero when open. */
+/* The penalty law, with and without a multiplier, is the derivative of its potential, never pulls and is zero when
+ * open. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -61,7 +62,8 @@ static void test_open_is_nothing(void **state)
 
 int main(void)
 {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_derivatives), cmocka_unit_test(test_multiplier), cmocka_unit_test(test_open_is_nothing)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_derivatives), cmocka_unit_test(test_multiplier),
+                                     cmocka_unit_test(test_open_is_nothing)};
 
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

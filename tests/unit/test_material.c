@@ -1,4 +1,5 @@
-/* Shows that every law's stress and tangent are derivatives of its energy, and that its linearisation is Hooke's law. */
+/* Shows that every law's stress and tangent are derivatives of its energy, and that its linearisation is Hooke's law.
+ */
 #include <stdarg.h>
 #include <stddef.h>
 #include <setjmp.h>

@@ -1,4 +1,5 @@
-/* Shows that the law sees one dilatation all over an element of formulation fbar, and that bending it keeps a finite stiffness as solids become incompressible.
+/* Shows that the law sees one dilatation all over an element of formulation fbar, and that bending it keeps a finite
+ * stiffness as solids become incompressible.
  */
 #include <stdarg.h>
 #include <stddef.h>
@@ -55,7 +56,8 @@ static void LawSeesOneDilatation(void **state)
       double        J = 1 + h[0] + h[4] + h[8];
 
       if (kernel.kinematics == KINEMATICS_FINITE)
-        J = (1 + h[0]) * ((1 + h[4]) * (1 + h[8]) - h[5] * h[7]) - h[1] * (h[3] * (1 + h[8]) - h[5] * h[6]) + h[2] * (h[3] * h[7] - (1 + h[4]) * h[6]);
+        J = (1 + h[0]) * ((1 + h[4]) * (1 + h[8]) - h[5] * h[7]) - h[1] * (h[3] * (1 + h[8]) - h[5] * h[6]) +
+            h[2] * (h[3] * h[7] - (1 + h[4]) * h[6]);
       if (p == 0) first = J;
       assert_near(J, first, 1e-14);
     }
@@ -65,7 +67,8 @@ static void LawSeesOneDilatation(void **state)
 static double Energy(const KernelCase *kernel, const double *X, const double *u, double nu)
 {
   const int dofs = ElementGet(kernel->type)->nodes * ElementGet(kernel->type)->dim;
-  double    lanes_X[MAX_DOFS * KERNEL_LANES], lanes_u[MAX_DOFS * KERNEL_LANES], E[KERNEL_LANES], lanes_nu[KERNEL_LANES], W[KERNEL_LANES], J[KERNEL_LANES];
+  double    lanes_X[MAX_DOFS * KERNEL_LANES], lanes_u[MAX_DOFS * KERNEL_LANES], E[KERNEL_LANES], lanes_nu[KERNEL_LANES],
+    W[KERNEL_LANES], J[KERNEL_LANES];
 
   for (int lane = 0; lane < KERNEL_LANES; lane++) {
     E[lane]        = 1 + nu; /* shear modulus 1/2 */
@@ -79,8 +82,9 @@ static double Energy(const KernelCase *kernel, const double *X, const double *u,
   return W[0];
 }
 
-/* A box is bent, at constant volume on the whole: at equal shear modulus the energy settles as the bulk modulus grows, that of the plain element does not.
-   St. Venant-Kirchhoff resists the trace of Green's strain, which a constant J does not hold: that law is incompressible in small strains only. */
+/* A box is bent, at constant volume on the whole: at equal shear modulus the energy settles as the bulk modulus grows,
+   that of the plain element does not. St. Venant-Kirchhoff resists the trace of Green's strain, which a constant J does
+   not hold: that law is incompressible in small strains only. */
 static void BendingDoesNotLock(void **state)
 {
   (void)state;
@@ -88,7 +92,8 @@ static void BendingDoesNotLock(void **state)
     const Element *e = ElementGet(kernel.type);
     double         X[MAX_DOFS], u[MAX_DOFS] = {0};
 
-    if (kernel.geometry == GEOMETRY_AXISYMMETRIC || kernel.law == MATERIAL_SVK) continue; /* bending moves the one along the radius */
+    if (kernel.geometry == GEOMETRY_AXISYMMETRIC || kernel.law == MATERIAL_SVK)
+      continue; /* bending moves the one along the radius */
     for (int a = 0; a < e->nodes; a++) {
       for (int i = 0; i < e->dim; i++) X[a * e->dim + i] = e->node[a][i];
       u[a * e->dim] = 0.1 * X[a * e->dim] * X[a * e->dim + 1];

@@ -1,4 +1,5 @@
-/* Fits never see past a sharp edge, nor the far side of a thin wall, and do see across a blunt edge; points beyond the support stay out. */
+/* Fits never see past a sharp edge, nor the far side of a thin wall, and do see across a blunt edge; points beyond the
+ * support stay out. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -8,7 +9,8 @@
 
 enum { SIDE = 6, FACETS = 2 * SIDE, POINTS = 2 * (2 * SIDE + 2) };
 
-/* A strip of 2D edges along x that bends up by `angle` at x = 0, then a second strip below it at a distance, which looks down: the wall's far side. */
+/* A strip of 2D edges along x that bends up by `angle` at x = 0, then a second strip below it at a distance, which
+ * looks down: the wall's far side. */
 typedef struct {
   Facet        facets[FACETS + SIDE];
   PetscReal    normals[3 * (FACETS + SIDE)], x[2 * POINTS];
@@ -60,10 +62,12 @@ static void MakeStrip(Strip *s, PetscReal angle, PetscReal wall, SurfaceView *vi
                         .feature_cosine = cos(45 * PETSC_PI / 180)};
 }
 
-/* Gathers around (1.5, 0) within `radius`: how many points of the flat, of the bent flank (the edge's own node apart) and of the far side. */
+/* Gathers around (1.5, 0) within `radius`: how many points of the flat, of the bent flank (the edge's own node apart)
+ * and of the far side. */
 static void Count(PetscReal angle, PetscReal wall, PetscReal radius, int count[3])
 {
-  const PetscReal  foot[3] = {1.5, 0, 0}, up[3] = {0, 1, 0}, metric[9] = {1 / (radius * radius), 0, 0, 0, 1 / (radius * radius), 0, 0, 0, 0};
+  const PetscReal foot[3] = {1.5, 0, 0}, up[3] = {0, 1, 0},
+                  metric[9] = {1 / (radius * radius), 0, 0, 0, 1 / (radius * radius), 0, 0, 0, 0};
   Strip            strip;
   SurfaceView      view;
   Neighbourhoods   nb;
@@ -72,7 +76,8 @@ static void Count(PetscReal angle, PetscReal wall, PetscReal radius, int count[3
 
   MakeStrip(&strip, angle, wall, &view);
   assert_int_equal(NeighbourhoodsCreate(&view, &nb), PETSC_SUCCESS);
-  assert_int_equal(NeighbourhoodGather(nb, SIDE - 2, foot, up, metric, 1, POINTS, points, &rho2, &n, &found), PETSC_SUCCESS);
+  assert_int_equal(NeighbourhoodGather(nb, SIDE - 2, foot, up, metric, 1, POINTS, points, &rho2, &n, &found),
+                   PETSC_SUCCESS);
   assert_int_equal(n, found);
   count[0] = count[1] = count[2] = 0;
   for (PetscInt i = 0; i < n; i++) count[points[i] <= SIDE ? 0 : points[i] <= 2 * SIDE ? 1 : 2]++;
@@ -121,7 +126,7 @@ static void test_support(void **state)
 
 int main(void)
 {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_sharp_edge), cmocka_unit_test(test_blunt_edge), cmocka_unit_test(test_thin_wall),
-                                     cmocka_unit_test(test_support)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_sharp_edge), cmocka_unit_test(test_blunt_edge),
+                                     cmocka_unit_test(test_thin_wall), cmocka_unit_test(test_support)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

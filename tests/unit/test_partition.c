@@ -1,4 +1,5 @@
-/* Two strips of cells that face each other across contact are cut across both, not apart, and the faces cut are counted without the links. */
+/* Two strips of cells that face each other across contact are cut across both, not apart, and the faces cut are counted
+ * without the links. */
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdint.h>

@@ -1,4 +1,5 @@
-/* The penalty follows the penetration as eq. 16 says, and its guards hold: nothing at rest or apart, light nodes, clamp, range, narrow windows. */
+/* The penalty follows the penetration as eq. 16 says, and its guards hold: nothing at rest or apart, light nodes,
+ * clamp, range, narrow windows. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -47,7 +48,8 @@ static void test_factor(void **state)
   }
 }
 
-/* The force stays and the penalty changes: the penetration is on the edge of the window after one update, or where the update aims. */
+/* The force stays and the penalty changes: the penetration is on the edge of the window after one update, or where the
+ * update aims. */
 static void test_constant_force_lands_on_the_edge(void **state)
 {
   const double start[] =
@@ -64,7 +66,8 @@ static void test_constant_force_lands_on_the_edge(void **state)
       const double found = force / Adjust(inside, start[i], 1, Automatic).penalty;
 
       assert_near(found, edge[inside][i]);
-      for (int round = -1; round <= 1; round++) assert_true(Adjust(inside, found * (1 + 1e-14 * round), 1, Automatic).change == PENALTY_KEPT);
+      for (int round = -1; round <= 1; round++)
+        assert_true(Adjust(inside, found * (1 + 1e-14 * round), 1, Automatic).change == PENALTY_KEPT);
     }
   }
 }

@@ -1,4 +1,5 @@
-/* The null space of constraints on rigid motions is found whole and told in one way: points, lines and planes held, and a direction that is none of the axes.
+/* The null space of constraints on rigid motions is found whole and told in one way: points, lines and planes held, and
+ * a direction that is none of the axes.
  */
 #include <setjmp.h>
 #include <stdarg.h>
@@ -53,7 +54,8 @@ static void test_point(void **state)
   for (int d = 0; d < 3; d++) Hold(x, (const double[3]){d == 0, d == 1, d == 2}, gram);
   assert_int_equal(Free(gram, free), 3);
   ExpectRow(&free[0], (const double[N]){1, 0, 0, 0, 0, 0});
-  ExpectRow(&free[N], (const double[N]){0, 1, 0, 0, 0, 0.5}); /* u = omega cross (X - x): at the centre, -y cross x/2 = z/2 */
+  ExpectRow(&free[N],
+            (const double[N]){0, 1, 0, 0, 0, 0.5}); /* u = omega cross (X - x): at the centre, -y cross x/2 = z/2 */
   ExpectRow(&free[2 * N], (const double[N]){0, 0, 1, 0, -0.5, 0});
 }
 
@@ -63,7 +65,8 @@ static void test_line(void **state)
 
   (void)state;
   for (int p = 0; p < 3; p++)
-    for (int d = 0; d < 3; d++) Hold((const double[3]){0, 0.3, 0.2 * p}, (const double[3]){d == 0, d == 1, d == 2}, gram);
+    for (int d = 0; d < 3; d++)
+      Hold((const double[3]){0, 0.3, 0.2 * p}, (const double[3]){d == 0, d == 1, d == 2}, gram);
   assert_int_equal(Free(gram, free), 1);
   ExpectRow(free, (const double[N]){0, 0, 1, 0.3, 0, 0});
 }
@@ -74,7 +77,8 @@ static void test_oblique_plane(void **state)
   double       gram[N * N] = {0}, free[N * N];
 
   (void)state;
-  for (int p = 0; p < 9; p++) Hold((const double[3]){0.8 * (p % 3 - 1), -0.6 * (p % 3 - 1), 0.5 * (p / 3 - 1)}, n, gram);
+  for (int p = 0; p < 9; p++)
+    Hold((const double[3]){0.8 * (p % 3 - 1), -0.6 * (p % 3 - 1), 0.5 * (p / 3 - 1)}, n, gram);
   assert_int_equal(Free(gram, free), 3);
   ExpectRow(&free[0], (const double[N]){1, 4.0 / 3, 0, 0, 0, 0}); /* about the normal */
   ExpectRow(&free[N], (const double[N]){0, 0, 0, 1, -0.75, 0});   /* along the plane */
@@ -87,14 +91,16 @@ static void test_all_held(void **state)
 
   (void)state;
   for (int p = 0; p < 3; p++)
-    for (int d = 0; d < 3; d++) Hold((const double[3]){1e-4 * (p == 0), 1e-4 * (p == 1), 0}, (const double[3]){d == 0, d == 1, d == 2}, gram);
+    for (int d = 0; d < 3; d++)
+      Hold((const double[3]){1e-4 * (p == 0), 1e-4 * (p == 1), 0}, (const double[3]){d == 0, d == 1, d == 2}, gram);
   assert_int_equal(Free(gram, free), 0);
 }
 
 int main(void)
 {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_nothing), cmocka_unit_test(test_point), cmocka_unit_test(test_line),
-                                     cmocka_unit_test(test_oblique_plane), cmocka_unit_test(test_all_held)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_nothing), cmocka_unit_test(test_point),
+                                     cmocka_unit_test(test_line), cmocka_unit_test(test_oblique_plane),
+                                     cmocka_unit_test(test_all_held)};
 
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,4 +1,5 @@
-/* Every key of a scene file, its default and -set arrive in the scene's fields; places, canonical text and the command line are as promised. */
+/* Every key of a scene file, its default and -set arrive in the scene's fields; places, canonical text and the command
+ * line are as promised. */
 #include "base/petsccompat.h"
 #include "scene/scene.h"
 #include "schema.h"
@@ -26,7 +27,8 @@ static const char Everything[] =
   "  - {volume: block, material: {law: linear, E: 200, nu: -0.25}, formulation: full}\n"
   "  - volume: plate\n"
   "    material: {law: neo_hookean, E: 3e5, nu: 0.49}\n"
-  "  - {surface: die, rigid: {point: [1, 2, 3], motion: [{ux: 1, uy: 2, uz: 3, history: [[0, 0], [0.2, 1], [1, 1]]}, {rx: 4, ry: 5, rz: 6}]}}\n"
+  "  - {surface: die, rigid: {point: [1, 2, 3], motion: [{ux: 1, uy: 2, uz: 3, history: [[0, 0], [0.2, 1], [1, 1]]}, "
+  "{rx: 4, ry: 5, rz: 6}]}}\n"
   "supports:\n"
   "  - {surface: bottom, ux: 0, uz: 0.0}\n"
   "loads:\n"
@@ -51,9 +53,11 @@ static const char Everything[] =
   "    symmetry: [symmetry_x, symmetry_z]\n"
   "    initial_overlap: refuse\n"
   "    stabilise: true\n"
-  "    penalty: {initial: 1e5, scale: 10, adjust: true, when: step, g_min: 1e-6, g_max: 5e-6, unit: spacing, clamp: 10, range: 100}\n"
+  "    penalty: {initial: 1e5, scale: 10, adjust: true, when: step, g_min: 1e-6, g_max: 5e-6, unit: spacing, clamp: "
+  "10, range: 100}\n"
   "  - {name: other, slave: block_top, master: plate_top}\n"
-  "stepping: {control: contact, initial: 0.04, N_c_fraction: 0.05, prediction: tangent, dt_min: 1e-4, dt_max: 0.5, growth: 2, at: [0.25, 0.5]}\n"
+  "stepping: {control: contact, initial: 0.04, N_c_fraction: 0.05, prediction: tangent, dt_min: 1e-4, dt_max: 0.5, "
+  "growth: 2, at: [0.25, 0.5]}\n"
   "solver: {type: direct, tolerance: 1e-9, max_iterations: 12}\n"
   "probes:\n"
   "  - {name: p0, reaction: top, component: y, absolute: true}\n"
@@ -115,9 +119,11 @@ static void SmallestSceneHasDefaults(void **state)
   assert_int_equal(scene->kinematics, KINEMATICS_FINITE);
   assert_int_equal(scene->dim, 3);
   assert_int_equal(scene->n_bodies, 1);
-  assert_int_equal(scene->n_supports + scene->n_loads + scene->n_contacts + scene->n_probes + scene->n_petsc + scene->n_parameters, 0);
+  assert_int_equal(
+    scene->n_supports + scene->n_loads + scene->n_contacts + scene->n_probes + scene->n_petsc + scene->n_parameters, 0);
   assert_int_equal(scene->stepping.control, STEP_ITERATIONS);
-  assert_true(scene->stepping.initial == 0.1 && scene->stepping.dt_min == 1e-5 && scene->stepping.dt_max == 1 && scene->stepping.growth == 4);
+  assert_true(scene->stepping.initial == 0.1 && scene->stepping.dt_min == 1e-5 && scene->stepping.dt_max == 1 &&
+              scene->stepping.growth == 4);
   assert_true(scene->solver.tolerance == 1e-8);
   assert_int_equal(scene->solver.max_iterations, 30);
   assert_true(scene->output.every == 1 && scene->output.displacement && scene->output.stress && scene->output.contact);
@@ -197,14 +203,17 @@ static void ContactsArrive(void **state)
   assert_string_equal(contact->master, "die");
   assert_int_equal(contact->n_symmetry, 2);
   assert_string_equal(contact->symmetry[1], "symmetry_z");
-  assert_true(contact->feature_angle == 30 && contact->stabilise && !contact->penalty_auto && contact->penalty == 1e5 && contact->penalty_scale == 10);
-  assert_true(contact->adjust && !contact->adjust_converged && contact->window_in_spacings && contact->g_min == 1e-6 && contact->g_max == 5e-6);
+  assert_true(contact->feature_angle == 30 && contact->stabilise && !contact->penalty_auto && contact->penalty == 1e5 &&
+              contact->penalty_scale == 10);
+  assert_true(contact->adjust && !contact->adjust_converged && contact->window_in_spacings && contact->g_min == 1e-6 &&
+              contact->g_max == 5e-6);
   assert_true(contact->clamp == 10 && contact->range == 100);
   contact = &scene->contacts[1];
   assert_true(!contact->adjust && contact->adjust_converged && contact->clamp == 100 && contact->range == 1e4);
   assert_int_equal(contact->smoother, SMOOTHER_FACET);
   assert_int_equal(contact->formulation, CONTACT_NODE_TO_SURFACE);
-  assert_true(contact->n_symmetry == 0 && contact->feature_angle == 45 && !contact->stabilise && contact->penalty_auto && contact->penalty_scale == 1);
+  assert_true(contact->n_symmetry == 0 && contact->feature_angle == 45 && !contact->stabilise &&
+              contact->penalty_auto && contact->penalty_scale == 1);
   Free(&scene);
 }
 
@@ -230,7 +239,8 @@ static void ProbesOfEveryKindArrive(void **state)
   assert_true(probe[3].change);
   AssertPoint(probe[4].point[0], 1, 2, 3);
   assert_false(probe[4].has_at);
-  assert_true(probe[5].axis == 0 && probe[5].max_side && probe[5].has_at && probe[5].at_axis == 2 && probe[5].at_value == 100);
+  assert_true(probe[5].axis == 0 && probe[5].max_side && probe[5].has_at && probe[5].at_axis == 2 &&
+              probe[5].at_value == 100);
   assert_true(probe[6].has_at && probe[6].at_axis == 1 && probe[6].at_value == 10);
   assert_false(probe[7].has_at);
   assert_true(probe[8].rms && probe[8].edge_filter == 1 && probe[8].edge_faces == 2);
@@ -253,7 +263,8 @@ static void TheRestArrives(void **state)
   assert_int_equal(scene->kinematics, KINEMATICS_SMALL);
   assert_int_equal(scene->stepping.control, STEP_CONTACT);
   assert_true(scene->stepping.N_c == 0 && scene->stepping.N_c_fraction == 0.05 && scene->stepping.predict_linearly);
-  assert_true(scene->stepping.initial == 0.04 && scene->stepping.dt_min == 1e-4 && scene->stepping.dt_max == 0.5 && scene->stepping.growth == 2);
+  assert_true(scene->stepping.initial == 0.04 && scene->stepping.dt_min == 1e-4 && scene->stepping.dt_max == 0.5 &&
+              scene->stepping.growth == 2);
   assert_true(scene->stepping.n_at == 2 && scene->stepping.at[1] == 0.5);
   assert_true(scene->solver.tolerance == 1e-9 && scene->solver.max_iterations == 12);
   assert_true(scene->output.every == 0 && !scene->output.displacement && scene->output.stress && scene->output.contact);
@@ -267,12 +278,13 @@ static void TheRestArrives(void **state)
 
 static void TwoDimensionalScenesHaveTwoCoordinates(void **state)
 {
-  static const char Flat[] = "mesh: {file: a.msh}\ngeometry: axisymmetric\nbodies:\n"
-                             "  - {volume: cap, material: {law: svk, E: 5, nu: 0}}\n"
-                             "  - {surface: tool, rigid: {point: [1, 2], motion: [{uy: 1}]}}\n"
-                             "contact: [{name: c, slave: s, master: tool}]\n"
-                             "probes: [{name: edge, contact_edge: c, axis: x, side: max}, {name: d, distance: [[0, 1], [2, 3]]}]\n";
-  Scene             scene;
+  static const char Flat[] =
+    "mesh: {file: a.msh}\ngeometry: axisymmetric\nbodies:\n"
+    "  - {volume: cap, material: {law: svk, E: 5, nu: 0}}\n"
+    "  - {surface: tool, rigid: {point: [1, 2], motion: [{uy: 1}]}}\n"
+    "contact: [{name: c, slave: s, master: tool}]\n"
+    "probes: [{name: edge, contact_edge: c, axis: x, side: max}, {name: d, distance: [[0, 1], [2, 3]]}]\n";
+  Scene scene;
 
   (void)state;
   ReadOrFail(Flat, 0, NULL, &scene);
@@ -338,8 +350,10 @@ static void PlacesNameTheNearestLine(void **state)
 
 static void TextDependsOnValuesAlone(void **state)
 {
-  static const char Same[] = "# another layout\nbodies:\n- material:\n    nu: 0.3\n    law: svk\n    E: 200\n  volume: block\nmesh:\n  file: block.geo\n";
-  char *const change[] = {"bodies.0.material.E=201"}, *const back[] = {"bodies.0.material.E=201", "bodies.0.material.E=200"};
+  static const char Same[] = "# another layout\nbodies:\n- material:\n    nu: 0.3\n    law: svk\n    E: 200\n  volume: "
+                             "block\nmesh:\n  file: block.geo\n";
+  char *const change[] = {"bodies.0.material.E=201"}, *const back[] = {"bodies.0.material.E=201",
+                                                                       "bodies.0.material.E=200"};
   Scene a, b;
   char *text;
 
@@ -392,15 +406,16 @@ static void ReferenceNamesKeysRangesAndDefaults(void **state)
   assert_int_equal(SceneReference(file), PETSC_SUCCESS);
   fclose(file);
   assert_non_null(strstr(text, "  bodies.N.material.nu: a number in (-1, 0.5); required - Poisson's ratio\n"));
-  assert_non_null(strstr(text, "  contact.N.formulation: node_to_surface | surface_to_surface; default node_to_surface"));
+  assert_non_null(
+    strstr(text, "  contact.N.formulation: node_to_surface | surface_to_surface; default node_to_surface"));
   assert_non_null(strstr(text, "  probes.N.contact_edge: "));
   free(text);
 }
 
 static void CommandLineKeepsPetscOptions(void **state)
 {
-  char       *argv[] = {"burnish", "-pc_type", "lu",     "-set",       "a=1", "-snes_monitor", "runs/a.yaml", "-o", "out/x",
-                        "-set",    "b=-2",     "-quiet", "-snes_stol", "-1",  "-overwrite"};
+  char *argv[] = {"burnish", "-pc_type", "lu",     "-set",       "a=1", "-snes_monitor", "runs/a.yaml", "-o", "out/x",
+                  "-set",    "b=-2",     "-quiet", "-snes_stol", "-1",  "-overwrite"};
   CommandLine line;
 
   (void)state;

@@ -11,7 +11,8 @@ enum { MAX = 80, MAX_DEPTH = 15, STRIDE = 120 };
 
 static void TestProduct(void **state)
 {
-  static double K[MAX_DEPTH * STRIDE] __attribute__((aligned(64))), J[MAX_DEPTH * STRIDE] __attribute__((aligned(64))), M[MAX * MAX + 1], upper[MAX * MAX + 1];
+  static double K[MAX_DEPTH * STRIDE] __attribute__((aligned(64))), J[MAX_DEPTH * STRIDE] __attribute__((aligned(64))),
+    M[MAX * MAX + 1], upper[MAX * MAX + 1];
 
   (void)state;
   for (int i = 0; i < MAX_DEPTH * STRIDE; i++) {
@@ -28,7 +29,8 @@ static void TestProduct(void **state)
         for (int c = 0; c < n; c++) {
           double sum = 0;
 
-          for (int k = 0; k < depth; k++) sum += K[k * STRIDE + r] * J[k * STRIDE + c] + J[k * STRIDE + r] * K[k * STRIDE + c];
+          for (int k = 0; k < depth; k++)
+            sum += K[k * STRIDE + r] * J[k * STRIDE + c] + J[k * STRIDE + r] * K[k * STRIDE + c];
           assert_true(fabs(M[r * n + c] - sum) <= 1e-14 * depth);
           assert_true(M[r * n + c] == M[c * n + r]);
           assert_true(upper[r * n + c] == (c < r ? 7 : M[r * n + c]));

@@ -1,4 +1,5 @@
-/* beta_k and beta_{N_c} are those of eqs 17 to 20: by count and by area, with fewer candidates than wanted, at rest, apart, and with ties. */
+/* beta_k and beta_{N_c} are those of eqs 17 to 20: by count and by area, with fewer candidates than wanted, at rest,
+ * apart, and with ties. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -37,7 +38,8 @@ static void test_by_count(void **state)
   (void)state;
   for (int wanted = 1; wanted <= 4; wanted++) {
     TouchStepChoose(4, touch, wanted, 1e-3, &choice);
-    assert_true(choice.beta == touch[wanted - 1].beta && choice.nodes == wanted && choice.met == wanted && choice.tied == 0);
+    assert_true(choice.beta == touch[wanted - 1].beta && choice.nodes == wanted && choice.met == wanted &&
+                choice.tied == 0);
   }
 }
 
@@ -96,8 +98,9 @@ static void test_ties(void **state)
 
 int main(void)
 {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_beta), cmocka_unit_test(test_by_count), cmocka_unit_test(test_fewer_than_wanted),
-                                     cmocka_unit_test(test_by_area), cmocka_unit_test(test_ties)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_beta), cmocka_unit_test(test_by_count),
+                                     cmocka_unit_test(test_fewer_than_wanted), cmocka_unit_test(test_by_area),
+                                     cmocka_unit_test(test_ties)};
 
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,4 +1,5 @@
-/* Anderson mixing: a fixed-point iteration x <- G(x) that makes use of its last results. The vectors are spread over ranks; entries have weights. */
+/* Anderson mixing: a fixed-point iteration x <- G(x) that makes use of its last results. The vectors are spread over
+ * ranks; entries have weights. */
 #pragma once
 #include "base/petsccompat.h"
 

@@ -1,6 +1,6 @@
-/* The contact law: from the (weighted) gap of a slave node and its state to the potential per area and its derivatives. Plain C.
-   A new law is one function in law.c and one line in its table. Where a term presses its pressure is -penalty (gap - LawOnsetGap()), as linear steps count on
-   (pressing.h): a law of another shape must be left out there. */
+/* The contact law: from the (weighted) gap of a slave node and its state to the potential per area and its derivatives.
+   Plain C. A new law is one function in law.c and one line in its table. Where a term presses its pressure is -penalty
+   (gap - LawOnsetGap()), as linear steps count on (pressing.h): a law of another shape must be left out there. */
 #pragma once
 
 typedef struct {
@@ -21,4 +21,5 @@ typedef struct {
 
 extern const Law Laws[]; /* terminated by a NULL name */
 const Law       *LawFind(const char *name);
-double           LawOnsetGap(const LawState *); /* gap below which there is pressure: the offset, plus what the multiplier presses before the surfaces meet */
+double LawOnsetGap(const LawState *); /* gap below which there is pressure: the offset, plus what the multiplier presses
+                                         before the surfaces meet */

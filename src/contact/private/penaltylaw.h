@@ -1,14 +1,16 @@
-/* The penalty parameter of one slave node: its automatic start value, and how it follows the penetration (Chamoret et al. 2004, section 3).
-   Plain C.
+/* The penalty parameter of one slave node: its automatic start value, and how it follows the penetration (Chamoret et
+   al. 2004, section 3). Plain C.
 
-   PenaltyAutomatic() once for each pair, PenaltyMakeRule() once for each node, PenaltyAdjust() after each converged solve. */
+   PenaltyAutomatic() once for each pair, PenaltyMakeRule() once for each node, PenaltyAdjust() after each converged
+   solve. */
 #pragma once
 
-/* Nodes below this share of the largest nodal force do not count as loaded: at the border of a contact zone forces go to zero, and penalties
-   that followed them would go to zero too. */
+/* Nodes below this share of the largest nodal force do not count as loaded: at the border of a contact zone forces go
+   to zero, and penalties that followed them would go to zero too. */
 #define PENALTY_LOADED 1e-3
-/* Where an update aims that is followed by another solve of the same step: inside the window, as forces move a little when penalties do and an
-   update that aims at the edge approaches it from outside. Parts of g_max and multiples of g_min. */
+/* Where an update aims that is followed by another solve of the same step: inside the window, as forces move a little
+   when penalties do and an update that aims at the edge approaches it from outside. Parts of g_max and multiples of
+   g_min. */
 #define PENALTY_AIM_HIGH 0.6
 #define PENALTY_AIM_LOW  1.6
 /* An update that aims at the edge lands there but for round-off, which is not outside. */

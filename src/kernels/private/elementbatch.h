@@ -1,22 +1,25 @@
-/* What the element kernels of all formulations share, plain C: always-inline functions, instantiated with constant sizes for each element,
-   so that their inner loops unroll; every arithmetic operation acts on LANES elements, all of a batch or part of it.
+/* What the element kernels of all formulations share, plain C: always-inline functions, instantiated with constant
+   sizes for each element, so that their inner loops unroll; every arithmetic operation acts on LANES elements, all of a
+   batch or part of it.
 
-   The tangent of a pair of nodes is g_a . A . g_b with the law's 9 x 9 tangent A (symmetric) and reference gradients g: as cheap as the
-   closed forms of special laws, and the same for all. T = A . g_b is formed once per node b and point. */
+   The tangent of a pair of nodes is g_a . A . g_b with the law's 9 x 9 tangent A (symmetric) and reference gradients g:
+   as cheap as the closed forms of special laws, and the same for all. T = A . g_b is formed once per node b and point.
+ */
 #pragma once
 #include "kernels/elementkernel.h"
 
-/* Points treated together: A, T and g of a chunk stay in the first-level cache, while the blocks of K (which do not, for hex27) are
-   loaded and stored once per chunk only. */
+/* Points treated together: A, T and g of a chunk stay in the first-level cache, while the blocks of K (which do not,
+   for hex27) are loaded and stored once per chunk only. */
 enum { CHUNK = 9, TENSOR_HOOP = 8, MAX_ROWS = 9 };
 
 _Static_assert(KERNEL_LANES % LANES == 0, "a batch consists of whole vectors");
 
 /* A vector of the batch's arrays of doubles, which need not be aligned */
-#define LANE(array, index)       (*(LanesInArray *)((array) + (index)*KERNEL_LANES))
-#define CONST_LANE(array, index) (*(const LanesInArray *)((array) + (index)*KERNEL_LANES))
+#define LANE(array, index)       (*(LanesInArray *)((array) + (index) * KERNEL_LANES))
+#define CONST_LANE(array, index) (*(const LanesInArray *)((array) + (index) * KERNEL_LANES))
 
-/* Row r of the gradient operator as a component of a 3 x 3 tensor: 2D has 4 in-plane rows and, axisymmetric, the hoop */
+/* Row r of the gradient operator as a component of a 3 x 3 tensor: 2D has 4 in-plane rows and, axisymmetric, the hoop
+ */
 #define TENSOR_ROW(dim, r) ((dim) == 3 ? (r) : (r) == 4 ? TENSOR_HOOP : 3 * ((r) / 2) + (r) % 2)
 #define TANGENT(A, r, s)   ((A)[(r) <= (s) ? MATERIAL_TANGENT_INDEX(r, s) : MATERIAL_TANGENT_INDEX(s, r)])
 
@@ -27,7 +30,8 @@ typedef struct {
   Lanes A[CHUNK][MATERIAL_TANGENT_SIZE]; /* times weight and volume */
 } ChunkPoints;
 
-/* One call: LANES elements of a batch. H[points][9]: displacement gradient that the law is evaluated at; W, f, K, H may be NULL (elementkernel.h) */
+/* One call: LANES elements of a batch. H[points][9]: displacement gradient that the law is evaluated at; W, f, K, H may
+ * be NULL (elementkernel.h) */
 typedef struct {
   const Element *e;
   MaterialLawFn *law;
@@ -37,9 +41,10 @@ typedef struct {
   double        *W, *f, *K, *J, *H;
 } BatchCall;
 
-/* Reference gradients of all nodes, at a point with shape functions N and dN, as number q of the chunk; volume: the reference volume of the point */
-LANES_INLINE void PointGradients(const int n, const int dim, const int hoop, const double *N, const double (*dN)[3], double weight, int q, const double *X,
-                                 ChunkPoints *c, Lanes *volume)
+/* Reference gradients of all nodes, at a point with shape functions N and dN, as number q of the chunk; volume: the
+ * reference volume of the point */
+LANES_INLINE void PointGradients(const int n, const int dim, const int hoop, const double *N, const double (*dN)[3],
+                                 double weight, int q, const double *X, ChunkPoints *c, Lanes *volume)
 {
   Lanes G[3][3] = {{{0}}}, B[3][3], inverse;
 
@@ -52,7 +57,8 @@ LANES_INLINE void PointGradients(const int n, const int dim, const int hoop, con
     for (int k = 0; k < 3; k++) {
       const int k1 = (k + 1) % 3, k2 = (k + 2) % 3;
 
-      for (int m = 0; m < 3; m++) B[k][m] = G[k1][(m + 1) % 3] * G[k2][(m + 2) % 3] - G[k1][(m + 2) % 3] * G[k2][(m + 1) % 3];
+      for (int m = 0; m < 3; m++)
+        B[k][m] = G[k1][(m + 1) % 3] * G[k2][(m + 2) % 3] - G[k1][(m + 2) % 3] * G[k2][(m + 1) % 3];
     }
     *volume = G[0][0] * B[0][0] + G[0][1] * B[0][1] + G[0][2] * B[0][2];
   } else {
@@ -82,7 +88,8 @@ LANES_INLINE void PointGradients(const int n, const int dim, const int hoop, con
   }
 }
 
-LANES_INLINE void PointDisplacementGradient(const int n, const int dim, const int hoop, int q, const double *u, const ChunkPoints *c, Lanes H[9])
+LANES_INLINE void PointDisplacementGradient(const int n, const int dim, const int hoop, int q, const double *u,
+                                            const ChunkPoints *c, Lanes H[9])
 {
   for (int r = 0; r < 9; r++) H[r] = (Lanes){0};
   for (int a = 0; a < n; a++) {
@@ -93,7 +100,8 @@ LANES_INLINE void PointDisplacementGradient(const int n, const int dim, const in
   }
 }
 
-LANES_INLINE void AddForce(const int n, const int dim, const int hoop, int q, const ChunkPoints *c, const Lanes P[9], double *f)
+LANES_INLINE void AddForce(const int n, const int dim, const int hoop, int q, const ChunkPoints *c, const Lanes P[9],
+                           double *f)
 {
   for (int a = 0; a < n; a++) {
     for (int i = 0; i < dim; i++) {
@@ -107,7 +115,8 @@ LANES_INLINE void AddForce(const int n, const int dim, const int hoop, int q, co
 }
 
 /* Adds the chunk's points to the blocks (a, b), a <= b, of K; the last chunk also writes their mirror images */
-LANES_INLINE void AddTangent(const int n, const int dim, const int hoop, const int count, const int first, const int last, const ChunkPoints *c, double *K)
+LANES_INLINE void AddTangent(const int n, const int dim, const int hoop, const int count, const int first,
+                             const int last, const ChunkPoints *c, double *K)
 {
   const int rows = dim * dim + hoop;
 
@@ -161,7 +170,8 @@ LANES_INLINE void StartLeastJ(const BatchCall *call)
 LANES_INLINE void KeepLeastJ(const BatchCall *call, const Lanes *dilatation)
 {
   for (int lane = 0; lane < LANES && call->finite; lane++) {
-    if (!(1 + (*dilatation)[lane] >= call->J[lane])) call->J[lane] = 1 + (*dilatation)[lane]; /* written so that NaN gets through */
+    if (!(1 + (*dilatation)[lane] >= call->J[lane]))
+      call->J[lane] = 1 + (*dilatation)[lane]; /* written so that NaN gets through */
   }
 }
 

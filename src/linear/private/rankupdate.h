@@ -4,8 +4,8 @@
 
 typedef struct _n_RankUpdate *RankUpdate;
 
-/* More columns; the first ones make the update, until then NULL. factored: with the factor of A (DirectSolverColumns()); N: dense; s[columns of N]: the same on
- * all ranks. Collective. */
+/* More columns; the first ones make the update, until then NULL. factored: with the factor of A
+ * (DirectSolverColumns()); N: dense; s[columns of N]: the same on all ranks. Collective. */
 PetscErrorCode RankUpdateAdd(RankUpdate *, PC factored, Mat N, const PetscReal *s);
 PetscErrorCode RankUpdateDestroy(RankUpdate *);
 /* x = A^-1 b becomes (A + N diag(s) N^T)^-1 b; it stays where that sum is singular. Collective. */

@@ -1,7 +1,8 @@
-/* gmsh's .msh files (format 4.1, text and binary) as plain arrays, read by one rank. Knows nothing of scenes and bodies.
+/* gmsh's .msh files (format 4.1, text and binary) as plain arrays, read by one rank. Knows nothing of scenes and
+   bodies.
 
-   An own reader instead of DMPlex's: it keeps gmsh's tags (the rank-independent keys), second-order nodes in gmsh's order, groups of every
-   dimension, and says in words what is wrong with a file. */
+   An own reader instead of DMPlex's: it keeps gmsh's tags (the rank-independent keys), second-order nodes in gmsh's
+   order, groups of every dimension, and says in words what is wrong with a file. */
 #pragma once
 #include "base/complaint.h"
 #include "kernels/element.h"
@@ -20,7 +21,8 @@ typedef struct {
   PetscInt       n, *tag;
   PetscInt      *connectivity;           /* n*nodes indices into the node arrays, gmsh's node order */
   int            n_physicals, *physical; /* indices into GmshMesh.physicals */
-  int           *sign;                   /* -1: the group names the entity with a minus sign, which turns its normals over (the elements are not turned) */
+  int *sign; /* -1: the group names the entity with a minus sign, which turns its normals over (the elements are not
+                turned) */
 } GmshBlock;
 
 typedef struct {

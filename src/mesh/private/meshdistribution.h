@@ -2,6 +2,6 @@
 #pragma once
 #include "rootmesh.h"
 
-/* Distributes mesh->dm as its partitioner says, then fills the mesh's node, cell and group arrays. Rank 0's mesh is reset on the way,
-   as soon as it is packed. Collective. */
+/* Distributes mesh->dm as its partitioner says, then fills the mesh's node, cell and group arrays. Rank 0's mesh is
+   reset on the way, as soon as it is packed. Collective. */
 PetscErrorCode MeshDistribute(RootMesh *, Mesh);

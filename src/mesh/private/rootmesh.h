@@ -1,5 +1,5 @@
-/* What rank 0 knows of the mesh before it is distributed: the bodies' cells and nodes, numbered by gmsh's tags and checked against the
-   scene. Elsewhere a RootMesh pointer is NULL. */
+/* What rank 0 knows of the mesh before it is distributed: the bodies' cells and nodes, numbered by gmsh's tags and
+   checked against the scene. Elsewhere a RootMesh pointer is NULL. */
 #pragma once
 #include "gmshfile.h"
 #include "mesh/meshdata.h"
@@ -29,12 +29,13 @@ typedef struct {
   PetscInt          n_vertices, *point; /* id -> Plex point; by RootTopologyPlaceNodes() */
   PetscInt          n_faces, *face_ptr; /* cell -> its faces in groups; by RootGroupsFind() */
   RootFace         *faces;
-  PetscInt         *corner_faces; /* vertex -> the cells' faces of which it is the lowest corner; by CellFacesCreate() */
-  CellFace         *cell_faces;
-  PetscInt         *interior; /* per group: faces between two cells */
+  PetscInt *corner_faces; /* vertex -> the cells' faces of which it is the lowest corner; by CellFacesCreate() */
+  CellFace *cell_faces;
+  PetscInt *interior; /* per group: faces between two cells */
 } RootMesh;
 
-/* Reads and checks the file; the mesh gets its order and the bodies' box. To be reset also after a complaint. Not collective. */
+/* Reads and checks the file; the mesh gets its order and the bodies' box. To be reset also after a complaint. Not
+ * collective. */
 PetscErrorCode RootMeshRead(Scene, const char *file, PetscMPIInt ranks, RootMesh *, Mesh, Complaint *);
 /* Frees all of it. Not collective. */
 PetscErrorCode RootMeshReset(RootMesh *);

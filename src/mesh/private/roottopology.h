@@ -1,4 +1,5 @@
-/* The DMPlex of the whole mesh on rank 0, made by hand from gmsh's cells, and the Plex point on which every node sits. */
+/* The DMPlex of the whole mesh on rank 0, made by hand from gmsh's cells, and the Plex point on which every node sits.
+ */
 #pragma once
 #include "rootmesh.h"
 

@@ -1,4 +1,5 @@
-/* What to do about a bad figure of a run, one line each. A new rule is one function and one line in a table of advice.c. */
+/* What to do about a bad figure of a run, one line each. A new rule is one function and one line in a table of
+ * advice.c. */
 #pragma once
 #include "runfigures.h"
 

@@ -1,4 +1,5 @@
-/* The last screen of a run: effects, time, contact quality, guards that acted and advice; after a failure cause, place, what was tried and what to try. */
+/* The last screen of a run: effects, time, contact quality, guards that acted and advice; after a failure cause, place,
+ * what was tried and what to try. */
 #pragma once
 #include <stdio.h>
 #include "runfigures.h"

@@ -1,4 +1,5 @@
-/* The figures of a finished run, collected once: summary.json writes them, the last screen prints them, advice judges them. */
+/* The figures of a finished run, collected once: summary.json writes them, the last screen prints them, advice judges
+ * them. */
 #pragma once
 #include "base/blas.h"
 #include "report/results.h"
@@ -33,7 +34,8 @@ typedef struct {
 /* What this program has used since it started, over all ranks; wall_s is left alone. Collective. */
 PetscErrorCode RunUsageCollect(MPI_Comm, RunUsage *);
 /* Borrows scene, run and last. Collective. */
-PetscErrorCode RunFiguresCollect(Model, Scene, const RunRecord *, const RunUsage *, PetscInt restarts, const StepRecord *last, RunFigures *);
+PetscErrorCode RunFiguresCollect(Model, Scene, const RunRecord *, const RunUsage *, PetscInt restarts,
+                                 const StepRecord *last, RunFigures *);
 PetscErrorCode RunFiguresDestroy(RunFigures *);
 /* The error of the surface that a pair is solved with (length): of the fits, or of the facets; 0: analytic or flat */
 PetscReal PairSurfaceError(const PairFigures *);

@@ -1,9 +1,11 @@
-/* results.xdmf: the text through which ParaView reads results.h5. Knows the file's datasets (fields.h), no mesh and no model. */
+/* results.xdmf: the text through which ParaView reads results.h5. Knows the file's datasets (fields.h), no mesh and no
+ * model. */
 #pragma once
 #include "base/petsccompat.h"
 #include "kernels/element.h"
 
-/* Cells of one body and type: rows first .. first+n-1 of /mesh/cells_TYPE; block b is also a table of its own, /mesh/block_b */
+/* Cells of one body and type: rows first .. first+n-1 of /mesh/cells_TYPE; block b is also a table of its own,
+ * /mesh/block_b */
 typedef struct {
   const char *body;
   ElementType type;

@@ -1,11 +1,15 @@
-/* The scene as a YAML tree with its marks: every value knows the line or the -set it came from. Knows no key of a scene: that is schema.h.
+/* The scene as a YAML tree with its marks: every value knows the line or the -set it came from. Knows no key of a
+   scene: that is schema.h.
 
-   DocumentRead() reads the file on rank 0, parses it on every rank and applies the -set edits in order. A value is found by its path, keys of
-   maps and indices of lists with dots between them ("contact.0.penalty.scale"). Every refusal names file and line (or -set) and path. */
+   DocumentRead() reads the file on rank 0, parses it on every rank and applies the -set edits in order. A value is
+   found by its path, keys of maps and indices of lists with dots between them ("contact.0.penalty.scale"). Every
+   refusal names file and line (or -set) and path. */
 #pragma once
 #include <petscsys.h>
 
-enum { EXTRAPOLATION_LENGTH = 512 }; /* longest path in a message; the schema's own paths have less than 80 characters */
+enum {
+  EXTRAPOLATION_LENGTH = 512
+}; /* longest path in a message; the schema's own paths have less than 80 characters */
 
 typedef enum { NODE_SCALAR, NODE_LIST, NODE_MAP } NodeKind;
 
@@ -18,25 +22,28 @@ typedef struct _n_Node {
   int              n;     /* list, map */
   struct _n_Node **child;
   char           **key; /* map */
-} * Node;
+} *Node;
 
 typedef struct {
   MPI_Comm comm;
   char    *file;
   Node     root;
   int      n_set;
-  char   **set_key;                /* keys of the -set options, for messages */
-  int      dim;                    /* 3 for geometry solid, else 2; set by SchemaCheck() */
+  char   **set_key;                         /* keys of the -set options, for messages */
+  int      dim;                             /* 3 for geometry solid, else 2; set by SchemaCheck() */
   char     where[2 * EXTRAPOLATION_LENGTH]; /* last text of DocumentWhere() */
 } Document;
 
 PetscErrorCode DocumentRead(MPI_Comm, const char *file, int n_set, char *const *set, Document **);
-PetscErrorCode DocumentReadText(MPI_Comm, const char *name, const char *text, int n_set, char *const *set, Document **); /* name: for messages */
+PetscErrorCode DocumentReadText(MPI_Comm, const char *name, const char *text, int n_set, char *const *set,
+                                Document **); /* name: for messages */
 PetscErrorCode DocumentDestroy(Document *);
-PetscErrorCode DocumentText(Document *, char **text); /* one canonical YAML text: the same for the same keys and values */
+PetscErrorCode DocumentText(Document *,
+                            char **text); /* one canonical YAML text: the same for the same keys and values */
 const char    *DocumentWhere(Document *, const char *path);
-void           DocumentRefuse(Document *, const char *path, const char *, ...) __attribute__((noreturn, format(printf, 3, 4)));
-void           DocumentRefuseNode(Document *, Node, const char *path, const char *, ...) __attribute__((noreturn, format(printf, 4, 5)));
+void DocumentRefuse(Document *, const char *path, const char *, ...) __attribute__((noreturn, format(printf, 3, 4)));
+void DocumentRefuseNode(Document *, Node, const char *path, const char *, ...)
+  __attribute__((noreturn, format(printf, 4, 5)));
 
 Node NodeChild(Node, const char *path); /* the child that the path's first component names, or NULL */
 Node NodeFind(Node, const char *path);  /* NULL: the document has no such value */

@@ -1,4 +1,5 @@
-/* What the readers of a scene share: scene.c, which reads the whole, and sceneprobe.c, which reads the probes. For these two only.
+/* What the readers of a scene share: scene.c, which reads the whole, and sceneprobe.c, which reads the probes. For
+   these two only.
 
    path is that of a scene's part ("contact.0"), key a value below it. */
 #pragma once
@@ -11,8 +12,10 @@ PetscErrorCode SceneReadProbes(Scene); /* after the bodies and contacts, whose n
 Document        *SceneDocument(Scene);
 Node             SceneNode(Scene, const char *path, const char *key); /* NULL: the document has none */
 int              SceneHas(Scene, const char *path, const char *key);
-int              SceneReals(Scene, const char *path, const char *key, double *);   /* a list's numbers; returns how many, 0 if absent */
+int              SceneReals(Scene, const char *path, const char *key,
+                            double *); /* a list's numbers; returns how many, 0 if absent */
 PetscErrorCode   SceneReadText(Scene, const char *path, const char *key, char **); /* a copy, or NULL */
 PetscErrorCode   ScenePath(char **path, const char *list, int i);                  /* "list.i" */
 const SceneBody *SceneFindBody(Scene, const char *name, int rigid);                /* NULL: none */
-void             SceneRefuse(Scene, const char *path, const char *key, const char *what, const char *about) __attribute__((noreturn));
+void             SceneRefuse(Scene, const char *path, const char *key, const char *what, const char *about)
+  __attribute__((noreturn));

@@ -1,5 +1,5 @@
-/* The one table of what a scene may say, a line per key: validation, -set, the scene reference and "not available yet" all come from it.
-   For schema.c; the other parts ask schema.h. */
+/* The one table of what a scene may say, a line per key: validation, -set, the scene reference and "not available yet"
+   all come from it. For schema.c; the other parts ask schema.h. */
 #pragma once
 #include <stddef.h>
 
@@ -27,8 +27,9 @@ enum { REQUIRED = 1, SOLID = 2 /* only in 3D scenes */ };
 typedef struct {
   const char *path; /* "*": any index of a list; "a|b": key a or key b */
   int         type, flags;
-  const char *values; /* CHOICE, CHOICES: words apart by " | ", in the order of the enumeration that scene.h has for them */
-  const char *range;  /* REAL, INTEGER, REALS: interval of a value; LIST: of the number of entries */
+  const char
+    *values; /* CHOICE, CHOICES: words apart by " | ", in the order of the enumeration that scene.h has for them */
+  const char *range; /* REAL, INTEGER, REALS: interval of a value; LIST: of the number of entries */
   const char *unit;
   const char *preset; /* default */
   const char *now;    /* the only values available yet, as .values; "": none */
@@ -40,5 +41,5 @@ extern const int       SchemaKeysCount;
 
 const SchemaKey *SchemaKeyFind(const char *path);                       /* NULL: no key of ours */
 int              SchemaKeyIsChild(const SchemaKey *, const char *path); /* belongs to the map at path */
-const char      *SchemaKeyName(const SchemaKey *);                      /* last component of its path, "a|b" where that stands for two */
+const char      *SchemaKeyName(const SchemaKey *); /* last component of its path, "a|b" where that stands for two */
 int              WordFind(const char *words, const char *apart, const char *text, size_t n);

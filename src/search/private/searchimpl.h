@@ -1,4 +1,5 @@
-/* What the files of the search share and nobody else sees: faces on their way between ranks, candidates, growing lists, fits in the making. */
+/* What the files of the search share and nobody else sees: faces on their way between ranks, candidates, growing lists,
+ * fits in the making. */
 #pragma once
 #include "neighbourhood.h"
 #include "search/search.h"
@@ -15,8 +16,8 @@ struct _n_ContactSearch {
   const SurfaceImage *images;
   const FitSettings  *fit;
   SlavePoints         slaves;
-  const PetscReal    *offset;        /* of the quadrature points of this rank's master faces, where fits go through these */
-  const FaceMaps     *maps;          /* or what these are made of */
+  const PetscReal    *offset; /* of the quadrature points of this rank's master faces, where fits go through these */
+  const FaceMaps     *maps;   /* or what these are made of */
   PetscReal           reach, margin; /* lengths, without the motion */
 };
 
@@ -39,14 +40,16 @@ typedef struct {
 
 /* One slave point looking for its nearest facet. */
 typedef struct {
-  NeighbourLists     lists;
+  NeighbourLists   lists;
   const Candidate *candidates;
   PetscReal        x[3], normal[3];
-  PetscInt         q, own; /* the slave point, and of how many nodes its own face is: a face with one of these is not its master */
-  PetscInt         best;
-  PetscReal        distance;   /* of the best */
-  PetscReal        least, tie; /* of all, or as far as is looked; distances (lengths) that differ by less than the tie are equal */
-  Foot             foot;       /* on the best */
+  PetscInt         q,
+    own; /* the slave point, and of how many nodes its own face is: a face with one of these is not its master */
+  PetscInt  best;
+  PetscReal distance; /* of the best */
+  PetscReal least,
+    tie;     /* of all, or as far as is looked; distances (lengths) that differ by less than the tie are equal */
+  Foot foot; /* on the best */
 } Nearest;
 
 /* Lists of all slave points, growing. */
@@ -70,15 +73,16 @@ typedef struct {
 /* The fits of a pair's slave points in the making. */
 typedef struct {
   ContactSearch  s;
-  NeighbourLists   lists;
+  NeighbourLists lists;
   SurfaceView    view;
   Neighbourhoods neighbourhoods;
   PetscReal     *normals, *reference;
   NodeGeometry  *geometry;
-  PetscInt      *points;                             /* of the slave point at hand, FIT_MAX_POINTS */
-  double        *x, *multiplier, *taper, *workspace; /* taper: weights of the frame, which fall to nothing where the list ends */
-  int           *used;
-  PetscReal      plane[3]; /* normal of the one reference plane of a global frame */
+  PetscInt      *points; /* of the slave point at hand, FIT_MAX_POINTS */
+  double        *x, *multiplier, *taper,
+    *workspace; /* taper: weights of the frame, which fall to nothing where the list ends */
+  int      *used;
+  PetscReal plane[3]; /* normal of the one reference plane of a global frame */
 } FitSupport;
 
 /* faceexchange.c */
@@ -86,14 +90,16 @@ void           SearchSlaveBox(ContactSearch, PetscReal box[6]);
 void           SearchMasterBox(ContactSearch, const PetscReal *u, PetscReal t, PetscReal box[6]);
 PetscBool      SearchBoxesMeet(const PetscReal *a, const PetscReal *b, int dim, PetscReal distance);
 void           SearchRigidPosition(ContactSearch, PetscInt n, PetscReal t, PetscReal x[3]);
-PetscErrorCode SearchExchangeFaces(ContactSearch, const NodeGeometry *, const PetscReal *u, const PetscReal *boxes, PetscReal distance, PetscInt *n,
-                                   FaceRecord **);
-PetscErrorCode SearchPickRigidFaces(ContactSearch, const NodeGeometry *, PetscReal t, const PetscReal box[6], PetscReal distance, PetscInt *n, FaceRecord **);
+PetscErrorCode SearchExchangeFaces(ContactSearch, const NodeGeometry *, const PetscReal *u, const PetscReal *boxes,
+                                   PetscReal distance, PetscInt *n, FaceRecord **);
+PetscErrorCode SearchPickRigidFaces(ContactSearch, const NodeGeometry *, PetscReal t, const PetscReal box[6],
+                                    PetscReal distance, PetscInt *n, FaceRecord **);
 /* lists.c */
 PetscErrorCode NeighbourListsCreateNodes(ContactSearch, SearchField *, NeighbourLists);
 PetscErrorCode NeighbourListsCreatePoints(ContactSearch, NeighbourLists, SearchField *);
 PetscErrorCode NeighbourListsCreateSlaves(ContactSearch, NeighbourLists);
-void           NeighbourListsPointGeometry(ContactSearch, NeighbourLists, const SearchField *, NodeGeometry *of_nodes, NodeGeometry *of_points);
+void           NeighbourListsPointGeometry(ContactSearch, NeighbourLists, const SearchField *, NodeGeometry *of_nodes,
+                                           NodeGeometry *of_points);
 PetscErrorCode NeighbourListsUpdateNodes(ContactSearch, NeighbourLists, const PetscReal *u, PetscReal t);
 void           NeighbourListsCentre(NeighbourLists, PetscInt q, PetscReal centre[2]);
 /* fitting.c */
@@ -104,7 +110,8 @@ PetscErrorCode FitSupportSlave(FitSupport *, const Nearest *, PetscInt q, PetscI
 PetscErrorCode FitSupportClimb(FitSupport *, const FitFoot *, FitProblem *, FitResult *, int *rung);
 /* search.c */
 /* The faces around a box with nodes, images and points in lists, whose slave points are not yet there. Collective. */
-PetscErrorCode SearchFieldCreate(ContactSearch, const PetscReal *u, PetscReal t, const PetscReal box[6], PetscReal distance, NeighbourLists, SearchField *);
+PetscErrorCode SearchFieldCreate(ContactSearch, const PetscReal *u, PetscReal t, const PetscReal box[6],
+                                 PetscReal distance, NeighbourLists, SearchField *);
 PetscErrorCode SearchFieldDestroy(SearchField *);
 void           SearchCandidatePlace(int dim, const PetscReal *x, PetscReal size, Candidate *);
 PetscErrorCode ListBufferAddPoint(ListBuffer *, PetscInt first, PetscInt point);

@@ -1,5 +1,5 @@
-/* What the files of the diffuse fit share: fit.c makes surface and foot, fitvariation.c the variations N and M over points, fitmap.c those over
-   nodes. Private to these; symmetricproduct.c turns its squares over by Transpose(). */
+/* What the files of the diffuse fit share: fit.c makes surface and foot, fitvariation.c the variations N and M over
+   points, fitmap.c those over nodes. Private to these; symmetricproduct.c turns its squares over by Transpose(). */
 #pragma once
 #include "smooth/diffusefit.h"
 #include "base/lanes.h"
@@ -8,28 +8,32 @@
 enum {
   MAX_TANGENTS = 2,
   ROWS         = 1 + MAX_TANGENTS, /* of F */
-  BLOCK        = 4,                /* columns orthogonalised together, so that their sums do not wait for each other: no more than 8 */
-  ALIGNMENT    = 64,               /* bytes: a cache line, and the widest vector */
+  BLOCK        = 4, /* columns orthogonalised together, so that their sums do not wait for each other: no more than 8 */
+  ALIGNMENT    = 64,                                                /* bytes: a cache line, and the widest vector */
   FACTORS      = LANES * ((2 * FIT_MAX_TERMS + LANES - 1) / LANES), /* most entries of a row of factors */
-  FIT_HESSIAN  = 8,                                                 /* most entries of a point's H, filled up to whole vectors */
-  ARRAYS       = 13 /* vectors per LANES points besides the basis: eta (2), multiplier, inside, power, weight, scratch, H (6) */
+  FIT_HESSIAN  = 8, /* most entries of a point's H, filled up to whole vectors */
+  ARRAYS =
+    13 /* vectors per LANES points besides the basis: eta (2), multiplier, inside, power, weight, scratch, H (6) */
 };
 
-/* Arrays over the points inside the support, in vectors of LANES points; the last one is filled up with points of no weight. */
+/* Arrays over the points inside the support, in vectors of LANES points; the last one is filled up with points of no
+ * weight. */
 typedef struct {
-  int    n, groups;                                                          /* points inside, vectors that hold them */
-  int    capacity;                                                           /* vectors that hold all points of the problem: length of an array */
-  int    stride;                                                             /* vectors per row of K and J */
-  Lanes *eta[MAX_TANGENTS], *multiplier, *inside, *power, *weight, *scratch; /* inside: 1 - rho^2, power: v inside^(exponent - 2) */
-  Lanes *H;                                                                  /* [6][capacity]: xx xy yy xz yz zz */
-  Lanes *basis;                                                              /* [terms + 1][capacity]: orthonormal basis, residual e */
-  Lanes *K, *J;                                                              /* [terms][stride]: entry (1 + i)*dim + c of a row */
+  int    n, groups; /* points inside, vectors that hold them */
+  int    capacity;  /* vectors that hold all points of the problem: length of an array */
+  int    stride;    /* vectors per row of K and J */
+  Lanes *eta[MAX_TANGENTS], *multiplier, *inside, *power, *weight,
+    *scratch;   /* inside: 1 - rho^2, power: v inside^(exponent - 2) */
+  Lanes *H;     /* [6][capacity]: xx xy yy xz yz zz */
+  Lanes *basis; /* [terms + 1][capacity]: orthonormal basis, residual e */
+  Lanes *K, *J; /* [terms][stride]: entry (1 + i)*dim + c of a row */
   int   *points;
 } FitArrays;
 
 /* The fit and its foot; Lanes: broadcast to all */
 typedef struct {
-  double R[FIT_MAX_TERMS][FIT_MAX_TERMS + 1 + BLOCK];   /* over its diagonal: above that only, and of the heights at the end */
+  double R[FIT_MAX_TERMS]
+          [FIT_MAX_TERMS + 1 + BLOCK]; /* over its diagonal: above that only, and of the heights at the end */
   double square[FIT_MAX_TERMS], inverse[FIT_MAX_TERMS]; /* of the diagonal */
   Lanes  alpha[FIT_MAX_TERMS], lambda[FIT_MAX_TERMS];   /* of the monomials */
   Lanes  foot[ROWS][FIT_MAX_TERMS];                     /* F = p^, Dp^ at the foot, D with respect to y */

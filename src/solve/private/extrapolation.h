@@ -1,4 +1,5 @@
-/* Where a run has come along, from which the next step is foretold: bodies that turn go on turning, which a tangent takes for a straight line. */
+/* Where a run has come along, from which the next step is foretold: bodies that turn go on turning, which a tangent
+ * takes for a straight line. */
 #pragma once
 #include "files/archive.h"
 #include "mesh/mesh.h"
