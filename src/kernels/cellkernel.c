@@ -1,12 +1,12 @@
-/* Integrals over one cell at a time: volume, quality, body force, stress. What is called once per step or per run, not
- * per iteration. */
+/* Integrals over one cell at a time: volume, quality, body force and stress. They are called once for each step or run,
+   not for each iteration, so they are not batched. */
 #include "kernels/elementkernel.h"
 #include <float.h>
 #include <math.h>
 
 static const double two_pi = 6.28318530717958647693;
 
-/* J[k][m] = dX_m/dxi_k; returns its determinant */
+/* J[k][m] = dX_m/dxi_k; returns its determinant. */
 static double Jacobian(int nodes, int dim, const double *dN, int stride, const double *X, double J[3][3])
 {
   for (int k = 0; k < dim; k++) {
@@ -28,7 +28,7 @@ static double Radius(const Element *e, int p, int dim, const double *X)
   return radius;
 }
 
-/* Reference volume that quadrature point p stands for */
+/* Reference volume of quadrature point p */
 static double PointVolume(const Element *e, int p, int dim, Geometry geometry, const double *X, double J[3][3])
 {
   const double volume = e->weight[p] * Jacobian(e->nodes, dim, e->dN[p][0], 3, X, J);
@@ -59,21 +59,21 @@ static void CauchyStress(const double H[9], const double P[9], int finite, doubl
   }
 }
 
-/*
-  ElementPointStress - Cauchy stress at the quadrature points of one element
+/*@
+  ElementPointStress - computes the Cauchy stress at the quadrature points of one element.
 
   Not collective
 
-  Input:
+  Input Parameters:
 + kernel - element type, geometry, kinematics and law
 . X      - reference coordinates (length) [nodes][dim]; axisymmetric: X[.][0] is the radius
 . u      - displacements (length) [nodes][dim]
 - E, nu  - Young's modulus (stress) and Poisson's ratio
 
-  Output:
+  Output Parameters:
 + stress - xx yy zz xy yz xz at each point [points][6]; axisymmetric: rr zz hoop rz 0 0
 - volume - reference volume of each point [points]
-*/
+@*/
 void ElementPointStress(const KernelCase *kernel, const double *X, const double *u, double E, double nu, double *stress,
                         double *volume)
 {
@@ -92,21 +92,21 @@ void ElementPointStress(const KernelCase *kernel, const double *X, const double 
   }
 }
 
-/*
-  ElementStress - Cauchy stress of one element, averaged over its volume
+/*@
+  ElementStress - computes the Cauchy stress of one element, averaged over its volume.
 
   Not collective
 
-  Input:
+  Input Parameters:
 + kernel - element type, geometry, kinematics and law
 . X      - reference coordinates (length) [nodes][dim]; axisymmetric: X[.][0] is the radius
 . u      - displacements (length) [nodes][dim]
 - E, nu  - Young's modulus (stress) and Poisson's ratio
 
-  Output:
+  Output Parameters:
 + stress - xx yy zz xy yz xz; axisymmetric: rr zz hoop rz 0 0
 - volume - reference volume; axisymmetric: over 360 degrees
-*/
+@*/
 void ElementStress(const KernelCase *kernel, const double *X, const double *u, double E, double nu, double stress[6],
                    double *volume)
 {
@@ -123,20 +123,22 @@ void ElementStress(const KernelCase *kernel, const double *X, const double *u, d
   for (int c = 0; c < 6; c++) stress[c] /= *volume;
 }
 
-/*
-  ElementQuality - Scaled Jacobian of one cell: how far it is from a parallelepiped, and whether it is inverted
+/*@
+  ElementQuality - computes the scaled Jacobian of one cell, which says how far it is from a parallelepiped.
 
   Not collective
 
-  Input:
+  Input Parameters:
 + type - element type of a cell
 . dim  - its dimension
 - X    - reference coordinates (length) [nodes][dim]
 
-  Output:
-. quality - smallest determinant of dX/dxi at nodes and quadrature points over its mean: 1 parallelepiped, <= 0
-inverted; -1 if the mean itself is not positive
-*/
+  Output Parameter:
+. quality - smallest determinant of dX/dxi at nodes and quadrature points, divided by its mean
+
+  Note:
+  The value is 1 for a parallelepiped and not positive for an inverted cell. It is -1 if the mean is not positive.
+@*/
 double ElementQuality(ElementType type, int dim, const double *X)
 {
   const Element *e     = ElementGet(type);
@@ -156,21 +158,21 @@ double ElementQuality(ElementType type, int dim, const double *X)
   return mean > 0 ? least * total / mean : -1;
 }
 
-/*
-  BodyForceKernel - External force of a constant body force on one cell
+/*@
+  BodyForceKernel - adds the external force of a constant body force on one cell.
 
   Not collective
 
-  Input:
+  Input Parameters:
 + type     - element type of a cell
 . dim      - its dimension
 . geometry - axisymmetric: forces over 360 degrees
 . X        - reference coordinates (length) [nodes][dim]
 - value    - force per reference volume [dim]
 
-  Output:
+  Output Parameter:
 . f - nodal forces [nodes][dim], added to
-*/
+@*/
 void BodyForceKernel(ElementType type, int dim, Geometry geometry, const double *X, const double *value, double *f)
 {
   const Element *e = ElementGet(type);
@@ -185,17 +187,18 @@ void BodyForceKernel(ElementType type, int dim, Geometry geometry, const double 
   }
 }
 
-/*
-  CellVolume - Volume of one cell by its quadrature; 2D: its area; axisymmetric: volume over 360 degrees
+/*@
+  CellVolume - returns the volume of one cell by its quadrature. In 2D this is the area, or the volume over 360 degrees
+  if axisymmetric.
 
   Not collective
 
-  Input:
+  Input Parameters:
 + type     - element type of a cell
 . dim      - its dimension
 . geometry - solid, plane strain or axisymmetric
 - X        - reference coordinates (length) [nodes][dim]
-*/
+@*/
 double CellVolume(ElementType type, int dim, Geometry geometry, const double *X)
 {
   const Element *e      = ElementGet(type);

@@ -1,5 +1,5 @@
-/* Reference elements. What a manual lists (corners, edges, faces, orders) stands in the table below; all the rest
-   (middle nodes, shape functions, quadrature tables, fits) is derived from it once, on first use. */
+/* Reference elements. The table below holds what a manual lists: corners, edges, faces and orders. Middle nodes, shape
+   functions at quadrature points and fits are derived from it once, on first use. */
 #include "kernels/element.h"
 #include <stddef.h>
 #include <string.h>
@@ -20,7 +20,7 @@ enum { MAX_CORNERS = 8 };
 #define FACES_TET    {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {3, 1, 2}}
 #define FACES_HEX    {{0, 3, 2, 1}, {0, 1, 5, 4}, {0, 4, 7, 3}, {1, 2, 6, 5}, {2, 3, 7, 6}, {4, 5, 6, 7}}
 
-/* XDMF numbers and orders are those of its readers in ParaView, which pass connectivity on as VTK's without reordering. */
+/* XDMF numbers and orders are those of its reader in ParaView. The reader passes the connectivity on to VTK as it is. */
 static Element element_table[ELEMENT_TYPES] = {
   [ELEMENT_EDGE2] = {.type = ELEMENT_EDGE2, .name = "edge2", .gmsh = 1, .xdmf = 2, .dim = 1, .order = 1, .nodes = 2, .corners = 2, .edges = 1, .edge_corners = EDGES_EDGE,
                      .xdmf_order = {0, 1}, .node = CORNERS_EDGE},
@@ -60,7 +60,7 @@ static int IsTensor(const Element *e)
   return !IsSimplex(e);
 }
 
-/* Lagrange polynomial of a line through -1, (0,) 1 that is 1 at c, with its first and second derivative */
+/* Lagrange polynomial on the nodes -1 and 1 (order 2: -1, 0 and 1) that is 1 at node c, with two derivatives. */
 static void ShapeLine(int order, double c, double x, double value[3])
 {
   if (order == 1) {
@@ -100,7 +100,7 @@ static void ShapeTensor(const Element *e, const double *xi, double *N, double *d
   }
 }
 
-/* Barycentric coordinates L: corners L_a (2 L_a - 1) and edges 4 L_a L_b, or L_a in first order */
+/* With barycentric coordinates L, a corner has L_a (2 L_a - 1) and an edge 4 L_a L_b. First order: a corner has L_a. */
 static void ShapeSimplex(const Element *e, const double *xi, double *N, double *dN, double *d2N)
 {
   const int dim = e->dim;
@@ -117,7 +117,7 @@ static void ShapeSimplex(const Element *e, const double *xi, double *N, double *
   for (int n = 0; n < e->nodes; n++) {
     const int edge = n >= e->corners, a = edge ? e->edge_corners[n - e->corners][0] : n,
               b         = edge ? e->edge_corners[n - e->corners][1] : n;
-    const double factor = edge ? 4 : 2; /* of L_a L_b; at a corner L_a is taken off */
+    const double factor = edge ? 4 : 2; /* of L_a L_b; a corner subtracts L_a */
 
     if (N) N[n] = e->order == 1 ? L[n] : factor * L[a] * L[b] - (edge ? 0 : L[n]);
     for (int k = 0; k < dim && dN; k++)
@@ -137,7 +137,7 @@ static void ElementShapeOf(const Element *e, const double *xi, double *N, double
     ShapeSimplex(e, xi, N, dN, d2N);
 }
 
-/* Middles of edges and faces, and the centre, as means of the corners they lie between */
+/* Nodes in the middle of edges, faces and the cell are means of the corners around them. */
 static void CompleteNodes(Element *e)
 {
   int n = e->corners;
@@ -162,7 +162,7 @@ static int FindEdge(const Element *e, int a, int b)
   return -1;
 }
 
-/* Middle nodes of the faces in the order of the face's own element, whose table need not be complete yet */
+/* Middle nodes of the faces, in the order of the face's element. The table of that element may still be incomplete. */
 static void CompleteFaces(Element *e)
 {
   const Element *face = &element_table[e->face_type];
@@ -202,8 +202,8 @@ static void QuadratureTensor(Element *e)
   }
 }
 
-/* One point in the middle, or one towards each corner (exact to degree 2; Zienkiewicz and Taylor, tables 5.3 and 5.4)
- */
+/* One point in the middle, or one near each corner, which is exact to degree 2. Source: Zienkiewicz and Taylor, The
+   Finite Element Method, tables 5.3 and 5.4. */
 static void QuadratureSimplex(Element *e, int points)
 {
   const double volume = e->dim == 2 ? 1. / 2 : 1. / 6;
@@ -222,7 +222,7 @@ static void QuadratureSimplex(Element *e, int points)
   }
 }
 
-/* Solves the symmetric positive definite n x n system A X = B for m right-hand sides in place, without pivoting */
+/* Solves the symmetric positive definite n x n system A X = B for m right-hand sides in place, without pivoting. */
 static void SolveSmall(int n, double A[][MAX_CORNERS], int m, double B[][ELEMENT_MAX_POINTS])
 {
   for (int k = 0; k < n; k++) {
@@ -238,8 +238,8 @@ static void SolveSmall(int n, double A[][MAX_CORNERS], int m, double B[][ELEMENT
   }
 }
 
-/* Normal equations of the fit by the shape functions C of the first-order element: c = (C^T C)^-1 C^T v, nodal values
- * C(node) c */
+/* Least-squares fit by the shape functions C of the first-order element: c = (C^T C)^-1 C^T v. The nodal values are
+   C(node) c. */
 static void Fit(Element *e)
 {
   Element linear = *e;
@@ -307,53 +307,57 @@ static void CompleteTable(void)
   Tabulate(&face_tri3);
 }
 
-/*
-  ElementGet - The table of a reference element
+/*@
+  ElementGet - returns the table of a reference element.
 
   Not collective
 
-  Input:
+  Input Parameter:
 . type - the element type
 
-  Output:
-. element - its table; belongs to this part
+  Output Parameter:
+. element - its table, which the caller must not free
 
-  Source: gmsh reference manual, "Node ordering"
-*/
+  Source:
+  gmsh reference manual, "Node ordering"
+@*/
 const Element *ElementGet(ElementType type)
 {
   CompleteTable();
   return &element_table[type];
 }
 
-/*
-  ElementGetFace - The table of a reference element as the face of a cell: ElementGet() but for its quadrature
+/*@
+  ElementGetFace - returns the table of a reference element that is the face of a cell.
 
   Not collective
 
-  Input:
+  Input Parameter:
 . type - an element of dimension 1 or 2
 
-  Output:
-. element - its table; tri3 has three points, because integrals over faces hold products of its shape functions
-*/
+  Output Parameter:
+. element - its table, as ElementGet() gives it; tri3 has three quadrature points instead of one
+
+  Note:
+  Integrals over faces have products of two shape functions, which one point does not integrate.
+@*/
 const Element *ElementGetFace(ElementType type)
 {
   CompleteTable();
   return type == ELEMENT_TRI3 ? &face_tri3 : &element_table[type];
 }
 
-/*
-  ElementFromGmsh - The reference element of one of gmsh's element types
+/*@
+  ElementFromGmsh - returns the reference element of one of gmsh's element types.
 
   Not collective
 
-  Input:
-. gmsh_type - gmsh's number, as in its mesh files
+  Input Parameter:
+. gmsh_type - gmsh's number in its mesh files
 
-  Output:
-. element - the table, or NULL if it is not one of ours
-*/
+  Output Parameter:
+. element - the table, or NULL if the type is not supported
+@*/
 const Element *ElementFromGmsh(int gmsh_type)
 {
   CompleteTable();
@@ -363,20 +367,20 @@ const Element *ElementFromGmsh(int gmsh_type)
   return NULL;
 }
 
-/*
-  ElementShape - Shape functions and their derivatives at any reference point, also outside the element
+/*@
+  ElementShape - evaluates shape functions and derivatives at any reference point, inside or outside the element.
 
   Not collective
 
-  Input:
+  Input Parameters:
 + type - the element type
 - xi   - reference coordinates [dim]
 
-  Output (each may be NULL):
+  Output Parameters (each may be NULL):
 + N   - values [nodes]
 . dN  - derivatives by the reference coordinates [nodes][dim]
 - d2N - second derivatives [nodes][dim][dim]
-*/
+@*/
 void ElementShape(ElementType type, const double *xi, double *N, double *dN, double *d2N)
 {
   ElementShapeOf(ElementGet(type), xi, N, dN, d2N);

@@ -1,7 +1,11 @@
-/* Reference elements: nodes, faces, shape functions, quadrature. Plain C. Node order is gmsh's (its manual, "Node
-   ordering"), for every element and face; faces are listed with their nodes so that the face's own normal (from its
-   node order, right-hand rule; in 2D (t_y, -t_x) for tangent t: to the right of the direction of travel) points out of
-   the cell. */
+/* Reference elements: nodes, faces, shape functions and quadrature. Plain C.
+
+   ElementGet() gives the table of a cell, ElementGetFace() that of a face, ElementFromGmsh() translates gmsh's number
+   of an element type. ElementShape() evaluates shape functions at any point.
+
+   The order of nodes is gmsh's for every element and face (gmsh's manual, "Node ordering"). The nodes of a face are
+   listed so that its normal points out of the cell. The normal follows from the order of the nodes by the right-hand
+   rule. In 2D the normal of an edge with tangent t is (t_y, -t_x), which is to the right of the direction of travel. */
 #pragma once
 
 enum { ELEMENT_MAX_NODES = 27, FACE_MAX_NODES = 9, ELEMENT_MAX_POINTS = 27, FACE_MAX_POINTS = 9 };
@@ -26,25 +30,23 @@ typedef struct {
   int         gmsh; /* gmsh's element type number */
   int         xdmf; /* XDMF's topology number */
   int         dim, order, nodes, corners;
-  int         faces, face_type; /* facets of dimension dim - 1 (0 for edges' end points: faces = 0) */
+  int         faces, face_type; /* faces of dimension dim - 1; edges have none (faces = 0) */
   int         face_nodes[6][FACE_MAX_NODES];
   int         edges, edge_corners[12][2];    /* order 2: node corners + e is the middle of edge e, as in gmsh */
   int         xdmf_order[ELEMENT_MAX_NODES]; /* node i of XDMF is our node xdmf_order[i] */
   double      node[ELEMENT_MAX_NODES][3];    /* reference coordinates of the nodes: [-1, 1]^d, or the unit simplex */
-  int points; /* quadrature: full integration of the element stiffness (tri3 1, tri6 3, quad4 4, quad9 9, tet4 1, tet10
-                 4, hex8 8, hex27 27; edges and faces as the element of that name, tri3 as a face 3 points) */
+  /* Quadrature points for the full integration of the stiffness: tri3 1, tri6 3, quad4 4, quad9 9, tet4 1, tet10 4,
+     hex8 8, hex27 27. Edges and faces have the points of the element of that name, but tri3 as a face has 3. */
+  int    points;
   double point[ELEMENT_MAX_POINTS][3], weight[ELEMENT_MAX_POINTS];
   double N[ELEMENT_MAX_POINTS][ELEMENT_MAX_NODES];     /* at the quadrature points */
   double dN[ELEMENT_MAX_POINTS][ELEMENT_MAX_NODES][3]; /* d/d(reference coordinate) */
-  double fit[ELEMENT_MAX_NODES][ELEMENT_MAX_POINTS]; /* nodal value of the least-squares fit to values at the quadrature
-                                                        points, by the corner shape functions (one point: a constant) */
+  /* Values at the quadrature points times this matrix are nodal values: a least-squares fit by the shape functions of
+     the corners. With one point the fit is a constant. */
+  double fit[ELEMENT_MAX_NODES][ELEMENT_MAX_POINTS];
 } Element;
 
 const Element *ElementGet(ElementType);
-const Element *ElementGetFace(
-  ElementType); /* the same with the quadrature of a face: tri3 with 3 points instead of 1 */
-const Element *ElementFromGmsh(int gmsh_type); /* NULL: not one of ours */
-
-/* Shape functions at any reference point. N[nodes], dN[nodes*dim] (node major) and d2N[nodes*dim*dim] may each be NULL.
- */
-void ElementShape(ElementType, const double *xi, double *N, double *dN, double *d2N);
+const Element *ElementGetFace(ElementType);
+const Element *ElementFromGmsh(int gmsh_type);
+void           ElementShape(ElementType, const double *xi, double *N, double *dN, double *d2N);

@@ -2,7 +2,8 @@
 #include "elementbatch.h"
 #include <stddef.h>
 
-/* Everything of the first LANES elements that the arrays show; n, points, dim and hoop are constants of the instance */
+/* Computes energy, force and tangent of the first LANES elements of the arrays. n, points, dim and hoop are constants
+   of the instance. */
 LANES_INLINE void Batch(const BatchCall *call, const int n, const int points, const int dim, const int hoop)
 {
   const Element *e = call->e;
@@ -75,17 +76,17 @@ static BatchFn *GetBatch(const KernelCase *kernel)
   }
 }
 
-/*
-  ElementKernelExists - Whether there is a kernel: the formulations other than full are for quad4 and hex8
+/*@
+  ElementKernelExists - says whether there is a kernel. The formulations other than full exist for quad4 and hex8 only.
 
   Not collective
-*/
+@*/
 int ElementKernelExists(const KernelCase *kernel)
 {
   return GetBatch(kernel) != NULL;
 }
 
-/* What all parts of a batch have in common */
+/* Sets what all parts of a batch have in common. */
 static BatchCall StartCall(const KernelCase *kernel)
 {
   const int finite = kernel->kinematics == KINEMATICS_FINITE;
@@ -104,31 +105,32 @@ static void SetMaterial(BatchCall *call, const double *E, const double *nu)
   }
 }
 
-/*
-  ElementKernel - Energy, internal force and tangent of a batch of KERNEL_LANES elements, total Lagrangian
+/*@
+  ElementKernel - computes energy, internal force and tangent of a batch of KERNEL_LANES elements, total Lagrangian.
 
   Not collective
 
-  Input:
+  Input Parameters:
 + kernel - element type, geometry, kinematics, law and formulation of the batch
 . X      - reference coordinates (length) [nodes][dim][lanes]; axisymmetric: X[.][0] is the radius
 . u      - displacements (length) [nodes][dim][lanes]
 - E, nu  - Young's modulus (stress) and Poisson's ratio [lanes]
 
-  Output:
+  Output Parameters:
 + W - strain energy [lanes], or NULL
 . f - internal force [nodes][dim][lanes], or NULL
 . K - tangent [nodes*dim][nodes*dim][lanes], or NULL
 - J - smallest determinant of F over the quadrature points [lanes]; 1 for small kinematics
 
-  Notes:
-  2D solids have unit thickness; axisymmetric quantities are over 360 degrees. J <= 0, or NaN, means that the state is
-not admissible; all arrays hold finite numbers all the same if X and u do. Every formulation has an energy, of which f
-and K are the derivatives.
+  Note:
+  Solids in plane strain have unit thickness. Axisymmetric quantities are over 360 degrees. A state with J <= 0 or NaN
+is not admissible, but all arrays hold finite numbers if X and u do. Every formulation has an energy; f and K are its
+  derivatives. K is full and symmetric.
 
-  Source: Bonet and Wood, "Nonlinear Continuum Mechanics for Finite Element Analysis", sections 8.4 and 8.5 (reference
-configuration)
-*/
+  Source:
+  Bonet and Wood, "Nonlinear Continuum Mechanics for Finite Element Analysis", sections 8.4 and 8.5
+  (reference configuration)
+@*/
 void ElementKernel(const KernelCase *kernel, const double *X, const double *u, const double *E, const double *nu,
                    double *W, double *f, double *K, double *J)
 {
@@ -147,21 +149,21 @@ void ElementKernel(const KernelCase *kernel, const double *X, const double *u, c
   }
 }
 
-/*
-  ElementPointGradient - The displacement gradient that an element's formulation hands to the law, at its quadrature
-points
+/*@
+  ElementPointGradient - computes the displacement gradient at which an element evaluates the law, at its quadrature
+  points.
 
   Not collective
 
-  Input:
+  Input Parameters:
 + kernel - element type, geometry, kinematics, law and formulation
 . X      - reference coordinates (length) [nodes][dim]; axisymmetric: X[.][0] is the radius
 . u      - displacements (length) [nodes][dim]
 - E, nu  - Young's modulus (stress) and Poisson's ratio
 
-  Output:
+  Output Parameter:
 . H - F - 1 at 3 i + I (i: space, I: reference) [points][9]
-*/
+@*/
 void ElementPointGradient(const KernelCase *kernel, const double *X, const double *u, double E, double nu, double *H)
 {
   BatchCall call = StartCall(kernel);

@@ -1,47 +1,51 @@
-/* Enhanced assumed strains: F = F(u) + F_0 sum_I w_I G_I (x) b_I with free vectors b_I in every element. G_I is the
-   gradient of reference coordinate I at the element's centre, F_0 = F(u) there, w_I = xi_I times the ratio of the
-   volume elements at the centre and at the point: orthogonal to constants, so that the patch test holds. These are
-   Wilson's incompatible modes transposed: in small strains the element of Taylor, Beresford and Wilson (QM6) and its
-   brick, in large ones without the hourglasses that Wilson's own modes have under compression (Glaser and Armero, "On
-   the formulation of enhanced strain finite elements in finite deformations", Engineering Computations 14, 1997; F_0
-   and the constant gradients: Pfefferkorn and Betsch, "On transformations and shape functions for enhanced assumed
-   strain elements", International Journal for Numerical Methods in Engineering 120, 2019). Axisymmetric elements have a
-   mode of the hoop strain besides, w = xi eta (Simo and Rifai 1990).
+/* Enhanced assumed strains, the formulation `enhanced`: F = F(u) + F_0 sum_I w_I G_I (x) b_I with free vectors b_I in
+   every element. G_I is the gradient of reference coordinate I at the element's centre. F_0 is F(u) at the centre. w_I
+   is xi_I times the ratio of the volume elements at the centre and at the point. It is orthogonal to constants, so the
+   patch test holds.
 
-   The b_I are solved for at every call, by Newton's method in the element from b = 0, and condensed: energy, force and
-   tangent are functions of u alone, and a state that is returned to is returned to exactly. */
+   These are Wilson's incompatible modes, transposed. In small strains the element is that of Taylor, Beresford and
+   Wilson (QM6) and its brick. In large strains it lacks the hourglass modes that Wilson's modes have under compression.
+   Sources: Glaser and Armero, "On the formulation of enhanced strain finite elements in finite deformations",
+   Engineering Computations 14, 1997. For F_0 and the constant gradients: Pfefferkorn and Betsch, "On transformations
+   and shape functions for enhanced assumed strain elements", International Journal for Numerical Methods in Engineering
+   120, 2019. Axisymmetric elements have one more mode for the hoop strain, w = xi eta (Simo and Rifai 1990).
+
+   Every call solves for the b_I by Newton's method in the element, from b = 0, and condenses them. Energy, force and
+   tangent are thus functions of u alone. A state that is returned to after a cutback gives the same numbers. */
 #include "elementbatch.h"
 #include <math.h>
 #include <stddef.h>
 
 enum { MAX_NODES = 8, MAX_POINTS = 8, MAX_MODES = 9 };
-_Static_assert((int)MAX_POINTS < (int)CHUNK, "the centre stands behind the points in a chunk");
+_Static_assert((int)MAX_POINTS < (int)CHUNK, "the centre follows the points in a chunk");
 
-/* Newton's method in an element takes 3 to 6 iterations in bending; where it takes more than this it is lost */
+/* Iterations of Newton's method in an element. Bending takes 3 to 6; an element that needs more than this has failed.
+ */
 enum { MAX_ITERATIONS = 40 };
-/* Their tangent is renewed in the first iterations, serves in the next, and is renewed again in what has not found rest
-   by then: always the same ones, so that no element sees the others of its batch */
+/* The tangent of the modes is computed in the first RENEWED_FIRST iterations and again from iteration RENEWED_AGAIN on.
+   In between the last one is used. The rule depends on the iteration alone, so that the result of an element does not
+   depend on the other elements of its batch. */
 enum { RENEWED_FIRST = 2, RENEWED_AGAIN = 5 };
-/* What follows a correction whose energy is this part of the element's is a small part of it: too small to matter */
+/* Newton's method has converged when the energy of a correction is below this part of the element's energy. */
 static const double converged_energy = 1e-16;
-/* Relative error of an energy that is a sum over the points: a lower one is not told from a higher one below it */
+/* Relative round-off error of an energy that is a sum over the points. Two energies this close count as equal. */
 static const double energy_round_off = 1e-13;
-/* The same for elements that have no energy: square of a strain, far above rounding of displacements and far below what
- * its square could spoil */
+/* Square of a strain that is negligible, for elements that have no energy. It is far above the round-off of
+   displacements and far below any strain of interest. */
 static const double converged_strain2 = 1e-20;
 
-/* Mode k is component J of vector I; the hoop mode stands alone in the third direction. It acts on the space components
- * from FIRST to END. */
+/* Mode k is component J of vector I. The hoop mode is the only one in the third direction. A mode acts on the space
+   components from FIRST to END. */
 #define MODE_IS_HOOP(dim, k)   ((dim) == 2 && (k) == 4)
 #define MODE_VECTOR(dim, k)    (MODE_IS_HOOP(dim, k) ? 2 : (k) / (dim))
 #define MODE_COMPONENT(dim, k) (MODE_IS_HOOP(dim, k) ? 2 : (k) % (dim))
 #define MODE_FIRST(dim, k)     (MODE_IS_HOOP(dim, k) ? 2 : 0)
 #define MODE_END(dim, k)       (MODE_IS_HOOP(dim, k) ? 3 : (dim))
-/* Row of the gradient operator that tensor component (i, J) is */
+/* Row of the gradient operator that belongs to tensor component (i, J) */
 #define OPERATOR_ROW(dim, i, J) ((dim) == 2 && (i) == 2 ? 4 : (dim) * (i) + (J))
 
 typedef struct {
-  ChunkPoints c; /* the centre stands behind the points */
+  ChunkPoints c; /* the centre follows the points */
   Lanes       volume[MAX_POINTS];
   Lanes       H[MAX_POINTS][9]; /* of the displacements alone */
   Lanes       w[MAX_POINTS][3];
@@ -50,7 +54,7 @@ typedef struct {
   Lanes       b[MAX_MODES];
 } Enhanced;
 
-/* Gradients at points and centre, modes, displacement gradients without modes */
+/* Computes gradients at the points and the centre, the modes, and displacement gradients without the modes. */
 LANES_INLINE void Prepare(const BatchCall *call, const int n, const int points, const int dim, const int hoop,
                           Enhanced *x)
 {
@@ -106,8 +110,8 @@ LANES_INLINE void PointGradient(const int dim, const int hoop, const Enhanced *x
   }
 }
 
-/* The law's tangent (times volume) applied to the modes without their w: T[row of the operator][mode]; adds the modes'
- * own tangent to K, upper triangle */
+/* T[row of the operator][mode] is the law's tangent times volume, applied to the modes without their factors w. Adds
+   the tangent of the modes to the upper triangle of K. */
 LANES_INLINE void AddModeTangent(const int dim, const int hoop, const Enhanced *x, int q, Lanes T[MAX_ROWS][MAX_MODES],
                                  Lanes K[MAX_MODES][MAX_MODES])
 {
@@ -152,7 +156,7 @@ LANES_INLINE void AddModeForce(const int dim, const int hoop, const Enhanced *x,
   }
 }
 
-/* K = U^T D U from its upper triangle: U above the diagonal, 1 / D on it */
+/* Factors K = U^T D U from its upper triangle. U is stored above the diagonal and 1 / D on it. */
 LANES_INLINE void Factor(const int modes, Lanes K[MAX_MODES][MAX_MODES])
 {
 #pragma GCC unroll 9
@@ -189,7 +193,7 @@ LANES_INLINE void SolveModesSystem(const int modes, Lanes K[MAX_MODES][MAX_MODES
   }
 }
 
-/* Energy of the element, force of the modes and, if it is to be renewed, their tangent, factorised */
+/* Computes the element's energy W and the force f of the modes. If renew, also computes and factors their tangent K. */
 LANES_INLINE void ModeSystem(const BatchCall *call, const int points, const int dim, const int hoop, const int renew,
                              Enhanced *x, Lanes *W, Lanes f[MAX_MODES], Lanes K[MAX_MODES][MAX_MODES])
 {
@@ -216,23 +220,23 @@ LANES_INLINE void ModeSystem(const BatchCall *call, const int points, const int 
   if (renew) Factor(modes, K);
 }
 
-/* What Newton's method knows of each lane's modes */
+/* State of Newton's method for the modes of each lane */
 typedef struct {
   Lanes W;               /* energy at the last point that was better than the one before */
-  Lanes gone[MAX_MODES]; /* from there to b */
-  Lanes active;          /* 1: not at rest yet, else 0 */
-  Lanes scale;           /* energy of a strain too small to matter */
+  Lanes gone[MAX_MODES]; /* step from that point to b */
+  Lanes active;          /* 1 while the lane has not converged, else 0 */
+  Lanes scale;           /* energy of a negligible strain */
 } ModesState;
 
-/* The correction d, from the force f, that lanes at a lower energy than before make; the others go half of their way
-   back. A lane at rest stays as it is, whatever the others do. Returns how many are not at rest. */
+/* A lane whose energy fell takes the correction d, which was computed from the force f. A lane whose energy rose goes
+   back by half of its last step. A lane that has converged does not change. Returns how many have not converged. */
 LANES_INLINE int Advance(const int modes, const Lanes *W, const Lanes *f, const Lanes *d, ModesState *modes_state,
                          Enhanced *x)
 {
   int left = 0;
 
   for (int lane = 0; lane < LANES; lane++) {
-    double work = 0; /* twice the energy that the correction sets free */
+    double work = 0; /* twice the energy that the correction releases */
 
     if (modes_state->active[lane] == 0) continue;
     if ((*W)[lane] > modes_state->W[lane] * (1 + energy_round_off) + modes_state->scale[lane]) {
@@ -255,8 +259,8 @@ LANES_INLINE int Advance(const int modes, const Lanes *W, const Lanes *f, const 
   return left;
 }
 
-/* The modes of each lane at rest. A lane that does not get there is given J = NaN, and no modes; small strains are
- * there after one step. */
+/* Solves for the modes of each lane. A lane that does not converge gets J = NaN and no modes. With small strains one
+   step is enough. */
 LANES_INLINE void SolveModes(const BatchCall *call, const int points, const int dim, const int hoop, Enhanced *x)
 {
   const int  modes       = dim * dim + hoop;
@@ -279,7 +283,7 @@ LANES_INLINE void SolveModes(const BatchCall *call, const int points, const int 
   }
 }
 
-/* dF / du at a point is du (x) (g + C w b): the modes turn and stretch with F_0 */
+/* Adds C w b to the gradients g: dF/du at a point is du (x) (g + C w b), because the modes move with F_0. */
 LANES_INLINE void CarryModes(const int n, const int dim, const int hoop, int q, Enhanced *x)
 {
   for (int k = 0; k < dim * dim + hoop; k++) {
@@ -290,7 +294,7 @@ LANES_INLINE void CarryModes(const int n, const int dim, const int hoop, int q, 
   }
 }
 
-/* Adds a point to the tangent between displacements and modes, K[n*dim][modes]; P times volume */
+/* Adds a point to the tangent between displacements and modes, K[n*dim][modes]. P is multiplied by the volume. */
 LANES_INLINE void AddModeCoupling(const int n, const int dim, const int hoop, int finite, int q, const Enhanced *x,
                                   const Lanes P[9], Lanes T[MAX_ROWS][MAX_MODES], Lanes K[MAX_NODES * 3][MAX_MODES])
 {
@@ -333,7 +337,8 @@ LANES_INLINE void Condense(const int dofs, const int modes, Lanes Kbb[MAX_MODES]
   }
 }
 
-/* Energy, force, tangent before condensation; n, points, dim and hoop are constants of the instance */
+/* Computes energy, force and tangent, and condenses the modes. n, points, dim and hoop are constants of the instance.
+ */
 LANES_INLINE void Batch(const BatchCall *call, const int n, const int points, const int dim, const int hoop)
 {
   double *const W = call->W, *const f = call->f, *const K = call->K;

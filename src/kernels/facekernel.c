@@ -1,5 +1,5 @@
 /* Integrals over one face at a time: tractions, dead and follower pressure with their tangent, tributary areas and
- * normals. */
+   normals. */
 #include "kernels/elementkernel.h"
 #include <math.h>
 #include <stddef.h>
@@ -9,7 +9,7 @@ static const double two_pi = 6.28318530717958647693;
 /* A quadrature point of a face in one configuration */
 typedef struct {
   double tangent[2][3]; /* dx/dxi_k; 2D: only k = 0 */
-  double normal[3];     /* normal per reference face: its length is the area of the point, without weight and radius */
+  double normal[3];     /* its length is the area of the point without weight and radius */
   double radius;        /* x[0] */
 } FacePoint;
 
@@ -36,7 +36,7 @@ static void FacePointAt(const Element *e, int p, int dim, const double *X, const
   }
 }
 
-/* d(normal)/d(displacement j of node b) of a point */
+/* Derivative of the normal by displacement j of node b */
 static void NormalVariation(const Element *e, int p, int dim, const FacePoint *point, int b, int j, double variation[3])
 {
   if (dim == 2) {
@@ -53,8 +53,8 @@ static void NormalVariation(const Element *e, int p, int dim, const FacePoint *p
   }
 }
 
-/* K += pressure int N_a d(n da)/du_b, minus the derivative of the follower pressure's force (Bonet and Wood,
- * section 8.5.2, before it is made symmetric) */
+/* Adds pressure int N_a d(n da)/du_b to K, which is minus the derivative of the follower pressure's force. Source:
+   Bonet and Wood, section 8.5.2, before their step that makes it symmetric. */
 static void AddFollowerTangent(const Element *e, int p, int dim, int axisymmetric, const FacePoint *point,
                                double pressure, double *K)
 {
@@ -75,28 +75,32 @@ static void AddFollowerTangent(const Element *e, int p, int dim, int axisymmetri
   }
 }
 
-/*
-  FaceLoadKernel - External force, tangent and potential of a load on one face
+/*@
+  FaceLoadKernel - adds external force, tangent and potential of a load on one face.
 
   Not collective
 
-  Input:
+  Input Parameters:
 + type     - element type of the face, nodes in the order that makes its normal point outward
 . dim      - dimension of the space, 2 or 3
 . geometry - axisymmetric: forces over 360 degrees, X[.][0] is the radius
 . load     - traction, dead pressure or follower pressure
 . X        - reference coordinates (length) [nodes][dim]
 . u        - displacements (length) [nodes][dim]
-- value    - traction (force per reference area) [dim], or the pressure (positive: pushes against the face)
+- value    - traction (force per reference area) [dim], or the pressure, which is positive if it pushes on the face
 
-  Output:
+  Output Parameters:
 + f      - external force [nodes][dim], added to
-. K      - minus its derivative by u [nodes*dim][nodes*dim], added to, or NULL; zero unless the load follows, else
-unsymmetric
-- energy - potential of the load, added to, or NULL; nothing is added for a follower pressure, which has none
+. K      - minus its derivative by u [nodes*dim][nodes*dim], added to, or NULL
+- energy - potential -int t.u of the load, added to, or NULL
 
-  Source: Bonet and Wood, "Nonlinear Continuum Mechanics for Finite Element Analysis", section 8.5.2
-*/
+  Note:
+  K is zero for dead loads and unsymmetric for a follower pressure. A follower pressure has no potential, so nothing is
+  added to energy.
+
+  Source:
+  Bonet and Wood, "Nonlinear Continuum Mechanics for Finite Element Analysis", section 8.5.2
+@*/
 void FaceLoadKernel(ElementType type, int dim, Geometry geometry, FaceLoad load, const double *X, const double *u,
                     const double *value, double *f, double *K, double *energy)
 {
@@ -127,21 +131,21 @@ void FaceLoadKernel(ElementType type, int dim, Geometry geometry, FaceLoad load,
   }
 }
 
-/*
-  FaceAreaKernel - Tributary areas and normals of the nodes of one face
+/*@
+  FaceAreaKernel - adds tributary areas and normals of the nodes of one face.
 
   Not collective
 
-  Input:
+  Input Parameters:
 + type     - element type of the face, nodes in the order that makes its normal point outward
 . dim      - dimension of the space, 2 or 3
 . geometry - axisymmetric: areas over 360 degrees, X[.][0] is the radius
 - X        - coordinates (length) [nodes][dim], reference or current
 
-  Output:
+  Output Parameters:
 + area   - int N_a dA [nodes], added to; negative or zero at corners of second-order triangles
 - normal - int N_a n dA [nodes][dim], added to, or NULL
-*/
+@*/
 void FaceAreaKernel(ElementType type, int dim, Geometry geometry, const double *X, double *area, double *normal)
 {
   const Element *e = ElementGetFace(type);

@@ -3,11 +3,12 @@
 #include <math.h>
 #include <stddef.h>
 
-/* Below this determinant neo-Hooke's energy is evaluated as at it: no state with J <= 0 is accepted, but a line search
-   looks at such states and must see finite numbers. Far below any J that an accepted state has. */
+/* Smallest determinant of F at which the neo-Hookean energy is evaluated; smaller ones are replaced by it. No state
+   with J <= 0 is accepted, but a line search evaluates such states and needs finite numbers. The value is far below any
+   J of an accepted state. */
 static const double jacobian_floor = 1e-8;
 
-/* Hooke: P = lambda tr(e) 1 + 2 mu e with e = sym H */
+/* Hooke's law: P = lambda tr(e) 1 + 2 mu e with e = sym H. */
 void MaterialLaw_Linear(const Lanes H[9], const Lanes *dilatation, const Lanes *lambda, const Lanes *mu, Lanes *W,
                         Lanes P[9], Lanes A[MATERIAL_TANGENT_SIZE])
 {
@@ -32,7 +33,8 @@ void MaterialLaw_Linear(const Lanes H[9], const Lanes *dilatation, const Lanes *
   }
 }
 
-/* St. Venant-Kirchhoff: S = lambda tr(E) 1 + 2 mu E with Green's strain E, P = F S (Bonet and Wood, section 6.4) */
+/* St. Venant-Kirchhoff's law: S = lambda tr(E) 1 + 2 mu E with Green's strain E, P = F S. Source: Bonet and Wood,
+   section 6.4. */
 void MaterialLaw_Svk(const Lanes H[9], const Lanes *dilatation, const Lanes *lambda, const Lanes *mu, Lanes *W,
                      Lanes P[9], Lanes A[MATERIAL_TANGENT_SIZE])
 {
@@ -77,7 +79,8 @@ void MaterialLaw_Svk(const Lanes H[9], const Lanes *dilatation, const Lanes *lam
   }
 }
 
-/* Compressible neo-Hooke: W = mu/2 (I1 - 3) - mu ln J + lambda/2 (ln J)^2 (Bonet and Wood, section 6.4.3) */
+/* Compressible neo-Hookean law: W = mu/2 (I1 - 3) - mu ln J + lambda/2 (ln J)^2. Source: Bonet and Wood,
+   section 6.4.3. */
 void MaterialLaw_NeoHookean(const Lanes H[9], const Lanes *dilatation, const Lanes *lambda, const Lanes *mu, Lanes *W,
                             Lanes P[9], Lanes A[MATERIAL_TANGENT_SIZE])
 {
@@ -133,60 +136,60 @@ void MaterialLaw_NeoHookean(const Lanes H[9], const Lanes *dilatation, const Lan
 const char *const           MaterialLaws[MATERIAL_LAWS + 1] = {ELASTIC_LAWS(CHOICE_NAME) NULL};
 static MaterialLawFn *const law_functions[MATERIAL_LAWS]    = {ELASTIC_LAWS(LAW_FUNCTION)};
 
-/*
-  MaterialGetLaw - The batched function of a law
+/*@
+  MaterialGetLaw - returns the function of a law.
 
   Not collective
 
-  Input:
+  Input Parameters:
 + law    - the law
-- finite - 0: its linearisation (small strains), else the law itself
+- finite - 0 for the linearisation (small strains), else the law itself
 
-  Output:
+  Output Parameter:
 . function - energy, stress and tangent of LANES points
 
   Note:
-  Every law must linearise to Hooke's with E and nu, so that small kinematics needs no second function.
-*/
+  Every law must linearise to Hooke's law with E and nu. Small kinematics then needs no second function.
+@*/
 MaterialLawFn *MaterialGetLaw(MaterialLaw law, int finite)
 {
   return finite ? law_functions[law] : MaterialLaw_Linear;
 }
 
-/*
-  MaterialLame - Lame's constants
+/*@
+  MaterialLame - computes Lame's constants.
 
   Not collective
 
-  Input:
+  Input Parameters:
 + E  - Young's modulus (stress)
 - nu - Poisson's ratio, -1 < nu < 1/2
 
-  Output:
+  Output Parameters:
 + lambda - first constant (stress)
 - mu     - shear modulus (stress)
-*/
+@*/
 void MaterialLame(double E, double nu, double *lambda, double *mu)
 {
   *lambda = E * nu / ((1 + nu) * (1 - 2 * nu));
   *mu     = E / (2 * (1 + nu));
 }
 
-/*
-  MaterialPoint - Energy, stress and tangent of one point
+/*@
+  MaterialPoint - computes energy, stress and tangent of one point.
 
   Not collective
 
-  Input:
+  Input Parameters:
 + material - law, Young's modulus (stress), Poisson's ratio
-. finite   - 0: small strains, else the law itself
+. finite   - 0 for small strains, else the law itself
 - H        - displacement gradient du_i/dX_I at 3 i + I
 
-  Output:
+  Output Parameters:
 + W - energy per reference volume, or NULL
-. P - first Piola-Kirchhoff stress; small strains: the stress
+. P - first Piola-Kirchhoff stress; with small strains the stress
 - A - tangent dP_r/dH_s at MATERIAL_TANGENT_INDEX(r, s), r <= s, or NULL
-*/
+@*/
 void MaterialPoint(const Material *material, int finite, const double H[9], double *W, double P[9],
                    double A[MATERIAL_TANGENT_SIZE])
 {

@@ -1,11 +1,13 @@
-/* Mean dilatation, the formulation `fbar`: the law sees F' = (J'/J)^(1/3) F, J' being the element's mean of J = det F,
-   so that nearly incompressible solids do not lock. Energy, force and tangent are those of the energy W(F'): with a law
-   that splits volume and shape they are the mean dilatation method (Nagtegaal, Parks and Rice 1974; Bonet and Wood,
-   "Nonlinear Continuum Mechanics for Finite Element Analysis", section 8.6.5), in small strains the B-bar element
-   (Hughes 1980). The F-bar element of de Souza Neto et al. (1996) uses the same F' but not its variation, and has no
-   energy. St. Venant-Kirchhoff's law is nearly incompressible for small strains only: it resists the trace of Green's
-   strain, not J, and locks a little at large ones.
- */
+/* Mean dilatation, the formulation `fbar`. The law is evaluated at F' = (J'/J)^(1/3) F, where J' is the element's mean
+   of J = det F. Nearly incompressible solids then do not lock.
+
+   Energy, force and tangent are those of the energy W(F'). With a law that splits volume and shape this is the mean
+   dilatation method (Nagtegaal, Parks and Rice 1974; Bonet and Wood, "Nonlinear Continuum Mechanics for Finite Element
+   Analysis", section 8.6.5). In small strains it is the B-bar element (Hughes 1980). The F-bar element of de Souza Neto
+   et al. (1996) uses the same F' without its variation and has no energy.
+
+   St. Venant-Kirchhoff's law is nearly incompressible in small strains only. It resists the trace of Green's strain
+   instead of J, and locks a little at large strains. */
 #include "elementbatch.h"
 #include <math.h>
 #include <stddef.h>
@@ -13,15 +15,15 @@
 enum { MAX_NODES = 8, MAX_POINTS = 8 };
 _Static_assert((int)MAX_POINTS <= (int)CHUNK, "all points in one chunk");
 
-/* Below this determinant its logarithm and inverse are evaluated as at it: no state with J <= 0 is accepted, but a line
-   search looks at such states and must see finite numbers. */
+/* Smallest determinant whose logarithm and inverse are evaluated; smaller ones are replaced by it. No state with J <= 0
+   is accepted, but a line search evaluates such states and needs finite numbers. */
 static const double jacobian_floor = 1e-8;
 
 typedef struct {
   ChunkPoints c;
   Lanes       volume[MAX_POINTS];
   Lanes       H[MAX_POINTS][9];
-  Lanes       dilatation[MAX_POINTS]; /* J - 1; small strains: the trace */
+  Lanes       dilatation[MAX_POINTS]; /* J - 1; with small strains the trace */
   Lanes       mean;                   /* of the dilatation over the reference volume */
   Lanes       P[MAX_POINTS][9];       /* of the law, at F' */
   Lanes       total;                  /* reference volume */
@@ -52,7 +54,7 @@ static inline double Floored(double dilatation)
   return dilatation > jacobian_floor - 1 ? dilatation : jacobian_floor - 1;
 }
 
-/* F' - 1 at a point, and the factor of F less 1; small strains: the same to first order */
+/* Computes F' - 1 at a point and factor = (J'/J)^(1/3) - 1. With small strains both are linearised. */
 LANES_INLINE void MeanGradient(const BatchCall *call, int q, const MeanDilatation *x, Lanes H[9], Lanes *factor)
 {
   Lanes stretch;
@@ -65,7 +67,7 @@ LANES_INLINE void MeanGradient(const BatchCall *call, int q, const MeanDilatatio
   for (int i = 0; i < 3; i++) H[4 * i] += stretch;
 }
 
-/* F, G = F^-T and J; small strains: those of no motion */
+/* Computes F, G = F^-T and J. With small strains they are those of the undeformed state. */
 LANES_INLINE void PointMotion(const BatchCall *call, int q, const MeanDilatation *x, Lanes F[9], Lanes G[9], Lanes *J)
 {
   for (int r = 0; r < 9; r++) F[r] = x->H[q][r] * (double)call->finite + (double)(r % 4 == 0);
@@ -87,9 +89,9 @@ LANES_INLINE Lanes Contract(const Lanes A[9], const Lanes B[9])
   return sum;
 }
 
-/* The second variation of W(F') in dF at a point into A (in place: the law's tangent, becomes that times volume), what
-   couples dF to the variation of ln J' into Q, and the factor of the square of the latter; P of the law, pressure: of
-   the element. The terms of `geometry` vanish in small strains. */
+/* Second variation of W(F') at a point. A holds the law's tangent on entry and the part quadratic in dF on return. Q is
+   the part that couples dF to the variation of ln J'. square is the factor of the square of that variation. P is the
+   law's stress and pressure that of the element. The terms with `geometry` vanish in small strains. */
 LANES_INLINE void PointTangent(const Lanes F[9], const Lanes G[9], const Lanes *J, const Lanes *factor,
                                const Lanes *pressure, double geometry, const Lanes P[9], Lanes A[MATERIAL_TANGENT_SIZE],
                                Lanes Q[9], Lanes *square)
@@ -113,7 +115,7 @@ LANES_INLINE void PointTangent(const Lanes F[9], const Lanes G[9], const Lanes *
   }
 }
 
-/* K += q m^T + m q^T + square m m^T */
+/* Adds q m^T + m q^T + square m m^T to K. */
 LANES_INLINE void AddMeanTangent(const int dofs, const double *q, const double *m, const Lanes *square, double *K)
 {
   for (int r = 0; r < dofs; r++) {
@@ -128,14 +130,14 @@ LANES_INLINE void AddMeanTangent(const int dofs, const double *q, const double *
   }
 }
 
-/* n, points, dim and hoop are constants of the instance */
+/* Computes energy, force and tangent. n, points, dim and hoop are constants of the instance. */
 LANES_INLINE void Batch(const BatchCall *call, const int n, const int points, const int dim, const int hoop)
 {
   double *const W = call->W, *const f = call->f, *const K = call->K;
   const double geometry = call->finite;
   const Lanes  zero     = {0};
   double       m[MAX_NODES * 3 * KERNEL_LANES],
-    q_force[MAX_NODES * 3 * KERNEL_LANES]; /* variation of ln J'; what couples to it */
+    q_force[MAX_NODES * 3 * KERNEL_LANES]; /* m: variation of ln J'; q_force: what it is coupled to */
   Lanes          pressure = {0}, deformed = {0}, square = {0}, factor[MAX_POINTS];
   MeanDilatation x;
 

@@ -1,11 +1,23 @@
+/* Rigid motions that constraints leave free: Gram matrix, null space, reduced basis. */
 #include "kernels/rigidkernel.h"
 #include <math.h>
 
-/* Entries of unit scale that round-off leaves; far below any motion, far above machine precision times the number of
- * bodies. */
+/* Entries up to this size are round-off and become 0. Entries have unit scale. The value is far below any motion and
+   far above machine precision times the number of bodies. */
 static const double ROUND_OFF = 1e-9;
 
-/* RigidRow - the velocity along n of each of the six motions at x (relative to the centre, in sizes). */
+/*@
+  RigidRow - computes the velocity of each of the six motions at a point along a direction.
+
+  Not collective
+
+  Input Parameters:
++ x - position relative to the body's centre, divided by the body's size
+- n - the direction, a unit vector
+
+  Output Parameter:
+. row - velocity along n of each motion
+@*/
 void RigidRow(const double x[3], const double n[3], double row[RIGID_MODES])
 {
   for (int d = 0; d < 3; d++) {
@@ -16,7 +28,19 @@ void RigidRow(const double x[3], const double n[3], double row[RIGID_MODES])
   }
 }
 
-/* RigidAddRow - adds a constraint to the sum of squares. */
+/*@
+  RigidAddRow - adds weight * row row^T to a Gram matrix.
+
+  Not collective
+
+  Input Parameters:
++ n      - entries of the row
+. row    - velocities that the constraint forbids [n]
+- weight - of the constraint, without unit
+
+  Output Parameter:
+. gram - Gram matrix [n][n], added to
+@*/
 void RigidAddRow(int n, const double row[], double weight, double gram[])
 {
   for (int i = 0; i < n; i++) {
@@ -33,7 +57,7 @@ static void SwapEntries(double *a, double *b)
   *b = kept;
 }
 
-/* Rows and columns a and b change places. */
+/* Exchanges rows and columns a and b. */
 static void SwapBoth(int n, int a, int b, double gram[], int place[])
 {
   const int kept = place[a];
@@ -44,7 +68,7 @@ static void SwapBoth(int n, int a, int b, double gram[], int place[])
   place[b] = kept;
 }
 
-/* Gauss-Jordan elimination by row p of the rows 0..n-1 */
+/* Gauss-Jordan elimination of a column by row p. */
 static void ClearColumn(int m, int n, int p, int column, double rows[])
 {
   const double pivot = rows[p * n + column];
@@ -58,11 +82,24 @@ static void ClearColumn(int m, int n, int p, int column, double rows[])
   }
 }
 
-/* RigidFree - the null space of a positive semidefinite matrix.
+/*@
+  RigidFree - computes the null space of a positive semidefinite matrix.
 
-   Elimination with the largest diagonal entry as pivot, until none exceeds tolerance times the largest entry
-   (absolutely tolerance if that is below 1): what is left over is free. The basis is that of the elimination;
-   RigidReduce() makes it unique. */
+  Not collective
+
+  Input Parameters:
++ n         - size of the matrix
+. gram      - the matrix [n][n], overwritten
+- tolerance - smallest pivot, relative to the largest diagonal entry, or absolute if that entry is below 1
+
+  Output Parameter:
+. free - basis of the null space, rows of n; room for [n][n]
+
+  Note:
+  Returns the number of rows. The largest diagonal entry is the pivot of each elimination. Elimination ends when no
+pivot exceeds the tolerance; the columns that are left are free. The basis depends on the order of elimination;
+  RigidReduce() makes it unique.
+@*/
 int RigidFree(int n, double gram[], double tolerance, double free[])
 {
   int    place[n > 0 ? n : 1], rank = 0;
@@ -91,7 +128,21 @@ int RigidFree(int n, double gram[], double tolerance, double free[])
   return n - rank;
 }
 
-/* RigidReduce - reduced row echelon form, columns cleared in the given order; what round-off leaves becomes 0. */
+/*@
+  RigidReduce - brings rows to reduced row echelon form, which is the one basis of their span that depends on nothing
+  else.
+
+  Not collective
+
+  Input Parameters:
++ m       - number of rows
+. n       - entries of a row
+. columns - order in which columns are cleared [n]
+- rows    - the rows [m][n], overwritten
+
+  Note:
+  Entries that are round-off become 0.
+@*/
 void RigidReduce(int m, int n, const int columns[], double rows[])
 {
   int p = 0;

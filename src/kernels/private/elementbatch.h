@@ -1,25 +1,26 @@
-/* What the element kernels of all formulations share, plain C: always-inline functions, instantiated with constant
-   sizes for each element, so that their inner loops unroll; every arithmetic operation acts on LANES elements, all of a
-   batch or part of it.
+/* Functions that the element kernels of all formulations share. Plain C. They are always inlined with constant sizes
+   for each element, so that the compiler unrolls the inner loops. Every arithmetic operation acts on LANES elements,
+   which are a whole batch or a part of it.
 
-   The tangent of a pair of nodes is g_a . A . g_b with the law's 9 x 9 tangent A (symmetric) and reference gradients g:
-   as cheap as the closed forms of special laws, and the same for all. T = A . g_b is formed once per node b and point.
- */
+   The tangent of a pair of nodes is g_a . A . g_b with the law's symmetric 9 x 9 tangent A and reference gradients g.
+   This costs as much as the closed forms of special laws, and it is the same code for all laws. T = A . g_b is formed
+   once for each node b and point. */
 #pragma once
 #include "kernels/elementkernel.h"
 
-/* Points treated together: A, T and g of a chunk stay in the first-level cache, while the blocks of K (which do not,
-   for hex27) are loaded and stored once per chunk only. */
+/* CHUNK: number of points that are treated together. A, T and g of a chunk stay in the first-level cache. The blocks of
+   K of a hex27 do not fit there; they are loaded and stored once for each chunk.
+   TENSOR_HOOP: place of the hoop component in a 3 x 3 tensor. MAX_ROWS: rows of the gradient operator in 3D. */
 enum { CHUNK = 9, TENSOR_HOOP = 8, MAX_ROWS = 9 };
 
 _Static_assert(KERNEL_LANES % LANES == 0, "a batch consists of whole vectors");
 
-/* A vector of the batch's arrays of doubles, which need not be aligned */
+/* Vector number index of an array of the batch. The array need not be aligned. */
 #define LANE(array, index)       (*(LanesInArray *)((array) + (index) * KERNEL_LANES))
 #define CONST_LANE(array, index) (*(const LanesInArray *)((array) + (index) * KERNEL_LANES))
 
-/* Row r of the gradient operator as a component of a 3 x 3 tensor: 2D has 4 in-plane rows and, axisymmetric, the hoop
- */
+/* Component of a 3 x 3 tensor that is row r of the gradient operator. In 2D there are 4 rows in the plane. Axisymmetric
+   elements have a fifth row, the hoop component. */
 #define TENSOR_ROW(dim, r) ((dim) == 3 ? (r) : (r) == 4 ? TENSOR_HOOP : 3 * ((r) / 2) + (r) % 2)
 #define TANGENT(A, r, s)   ((A)[(r) <= (s) ? MATERIAL_TANGENT_INDEX(r, s) : MATERIAL_TANGENT_INDEX(s, r)])
 
@@ -30,8 +31,8 @@ typedef struct {
   Lanes A[CHUNK][MATERIAL_TANGENT_SIZE]; /* times weight and volume */
 } ChunkPoints;
 
-/* One call: LANES elements of a batch. H[points][9]: displacement gradient that the law is evaluated at; W, f, K, H may
- * be NULL (elementkernel.h) */
+/* One call treats LANES elements of a batch. H[points][9] is the displacement gradient at which the law is evaluated.
+   W, f, K and H may be NULL; ElementKernel() explains them. */
 typedef struct {
   const Element *e;
   MaterialLawFn *law;
@@ -41,8 +42,8 @@ typedef struct {
   double        *W, *f, *K, *J, *H;
 } BatchCall;
 
-/* Reference gradients of all nodes, at a point with shape functions N and dN, as number q of the chunk; volume: the
- * reference volume of the point */
+/* Computes the reference gradients of all nodes at a point with shape functions N and dN. They become point q of the
+   chunk. volume is the reference volume of the point. */
 LANES_INLINE void PointGradients(const int n, const int dim, const int hoop, const double *N, const double (*dN)[3],
                                  double weight, int q, const double *X, ChunkPoints *c, Lanes *volume)
 {
@@ -53,7 +54,7 @@ LANES_INLINE void PointGradients(const int n, const int dim, const int hoop, con
       for (int m = 0; m < dim; m++) G[k][m] += dN[a][k] * CONST_LANE(X, a * dim + m);
     }
   }
-  if (dim == 3) { /* B: cofactors of G */
+  if (dim == 3) { /* B holds the cofactors of G */
     for (int k = 0; k < 3; k++) {
       const int k1 = (k + 1) % 3, k2 = (k + 2) % 3;
 
@@ -114,7 +115,7 @@ LANES_INLINE void AddForce(const int n, const int dim, const int hoop, int q, co
   }
 }
 
-/* Adds the chunk's points to the blocks (a, b), a <= b, of K; the last chunk also writes their mirror images */
+/* Adds the chunk's points to the blocks (a, b), a <= b, of K. The last chunk also writes the blocks (b, a). */
 LANES_INLINE void AddTangent(const int n, const int dim, const int hoop, const int count, const int first,
                              const int last, const ChunkPoints *c, double *K)
 {
@@ -161,7 +162,7 @@ LANES_INLINE void AddTangent(const int n, const int dim, const int hoop, const i
   }
 }
 
-/* J starts above any determinant, small kinematics: at 1 */
+/* The smallest determinant starts above any determinant. In small kinematics it is 1. */
 LANES_INLINE void StartLeastJ(const BatchCall *call)
 {
   for (int lane = 0; lane < LANES; lane++) call->J[lane] = call->finite ? __DBL_MAX__ : 1;
@@ -171,7 +172,7 @@ LANES_INLINE void KeepLeastJ(const BatchCall *call, const Lanes *dilatation)
 {
   for (int lane = 0; lane < LANES && call->finite; lane++) {
     if (!(1 + (*dilatation)[lane] >= call->J[lane]))
-      call->J[lane] = 1 + (*dilatation)[lane]; /* written so that NaN gets through */
+      call->J[lane] = 1 + (*dilatation)[lane]; /* the negated comparison lets NaN through */
   }
 }
 
@@ -182,6 +183,6 @@ LANES_INLINE void StorePoint(const BatchCall *call, int p, const Lanes H[9])
 
 typedef void BatchFn(const BatchCall *);
 
-/* Instances by element and geometry (1: axisymmetric), NULL where a formulation has none */
+/* Instances by element and geometry (1 is axisymmetric), NULL where a formulation has none */
 extern BatchFn *const enhanced_batches[ELEMENT_TYPES][2];
 extern BatchFn *const mean_dilatation_batches[ELEMENT_TYPES][2];
