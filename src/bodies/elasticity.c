@@ -337,8 +337,8 @@ static void ScatterForce(Elasticity e, const CellGroup *g, PetscInt batch, Petsc
 
   Output (each but ok may be NULL):
 + f      - internal forces [n_nodes*dim], added to; not summed over ranks
-. energy - strain energy of this rank's cells
-. force2 - sum of the squares of the element forces before assembly
+. energy - strain energy of this rank's cells, added to
+. force2 - sum of the squares of the element forces before assembly, added to
 - ok     - PETSC_FALSE: det F <= 0, or not a number, somewhere; f is filled all the same
 */
 PetscErrorCode ElasticityResidual(Elasticity e, const PetscReal *u, PetscReal *f, PetscReal *energy, PetscReal *force2,
@@ -349,8 +349,6 @@ PetscErrorCode ElasticityResidual(Elasticity e, const PetscReal *u, PetscReal *f
 
   PetscFunctionBeginUser;
   PetscCall(PetscLogEventBegin(event_residual, 0, 0, 0, 0));
-  if (energy) *energy = 0;
-  if (force2) *force2 = 0;
   *ok         = PETSC_TRUE;
   e->inverted = -1;
   for (int k = 0; k < e->n_groups; k++) {

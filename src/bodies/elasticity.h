@@ -10,9 +10,9 @@ typedef struct _n_Elasticity *Elasticity;
 
 PetscErrorCode ElasticityCreate(Mesh, Scene, Elasticity *);
 PetscErrorCode ElasticityDestroy(Elasticity *);
-/* u: n_nodes*dim local displacements. Adds internal forces to f (n_nodes*dim, without summation across ranks). energy,
-   force2 (the sum of the squares of the unassembled element forces) and ok are this rank's; any of f, energy, force2
-   may be NULL. ok = PETSC_FALSE: some determinant of F is not positive (f is filled all the same). Not collective. */
+/* u: n_nodes*dim local displacements. Adds internal forces to f (n_nodes*dim, without summation across ranks), the
+   strain energy to energy and the squares of the unassembled element forces to force2; any of these may be NULL. All
+   are this rank's, and so is ok. ok = PETSC_FALSE: some determinant of F is not positive (f is filled all the same). Not collective. */
 PetscErrorCode ElasticityResidual(Elasticity, const PetscReal *u, PetscReal *f, PetscReal *energy, PetscReal *force2,
                                   PetscBool *ok);
 /* The tangent at u into the local block CSR, zeroed first. Not collective. */

@@ -419,6 +419,7 @@ static PetscErrorCode Newton(Mesh mesh, Elasticity e, const PetscReal *load, Pet
     Mat       K;
 
     PetscCall(PetscArraycpy(f, load, n));
+    scale = 0;
     PetscCall(ElasticityResidual(e, u, f, NULL, &scale, &ok));
     PetscCheck(ok, PETSC_COMM_SELF, PETSC_ERR_PLIB, "the solution turns cells inside out");
     PetscCall(MeshLocalToGlobal(mesh, f, R));
