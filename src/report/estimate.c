@@ -77,7 +77,7 @@ static PetscErrorCode AnalyseFactor(Model model, Factor factor, Estimate *estima
   PCFailedReason reason;
 
   PetscFunctionBeginUser;
-  PetscCall(FactorAnalyse(factor, model->P, &reason));
+  PetscCall(FactorAnalyse(factor, model->problem->P, &reason));
   if (reason) PetscFunctionReturn(PETSC_SUCCESS);
   FactorGetCost(factor, &cost);
   estimate->known        = PETSC_TRUE;
@@ -127,7 +127,7 @@ PetscErrorCode EstimateModel(Model model, Estimate *estimate)
   PetscCall(ModelDofs(model, &estimate->dofs));
   if (!estimate->dofs) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(MeasureAssembly(model, &estimate->assembly_s));
-  PetscCall(MatGetInfo(model->P, MAT_GLOBAL_SUM, &info));
+  PetscCall(MatGetInfo(model->problem->P, MAT_GLOBAL_SUM, &info));
   estimate->nonzeros = info.nz_used;
   PetscCall(SNESGetKSP(model->snes, &ksp));
   PetscCall(DirectSolverFactor(ksp, &factor));

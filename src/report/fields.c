@@ -293,7 +293,7 @@ static PetscErrorCode FieldsWriteStress(Fields fields, hid_t file)
 
   PetscFunctionBeginUser;
   PetscCall(PetscCalloc3(mesh->n_nodes * 6, &stress, mesh->n_nodes, &weight, mesh->n_nodes, &equivalent));
-  PetscCall(ElasticityNodalStress(fields->model->elasticity, fields->model->u, stress, weight));
+  PetscCall(ElasticityNodalStress(fields->model->problem->elasticity, fields->model->u, stress, weight));
   PetscCall(MeshSumNodes(mesh, 6, stress));
   PetscCall(MeshSumNodes(mesh, 1, weight));
   for (PetscInt n = 0; n < mesh->n_nodes; n++) {

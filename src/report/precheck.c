@@ -35,7 +35,7 @@ PetscErrorCode PrecheckModel(Model model, PetscBool report, FILE *stream)
   FreeModes modes;
 
   PetscFunctionBeginUser;
-  PetscCall(FreeModesCreate(model->mesh, model->scene, model->loads, &modes));
+  PetscCall(FreeModesCreate(model->mesh, model->scene, model->problem->loads, &modes));
   if (report) {
     PetscCall(PrintEffects(model, stream));
     PetscCall(FreeModesReport(modes, PETSC_TRUE, stream));
@@ -53,7 +53,7 @@ PetscErrorCode PrecheckMotions(Model model, FILE *stream)
   FreeModes modes;
 
   PetscFunctionBeginUser;
-  PetscCall(FreeModesCreate(model->mesh, model->scene, model->loads, &modes));
+  PetscCall(FreeModesCreate(model->mesh, model->scene, model->problem->loads, &modes));
   PetscCall(FreeModesReport(modes, PETSC_FALSE, stream));
   PetscCall(FreeModesDestroy(&modes));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -283,7 +283,7 @@ static PetscErrorCode EvaluateReaction(Probes probes, Probe *probe, PetscReal *v
   PetscReal force[3];
 
   PetscFunctionBeginUser;
-  PetscCall(ModelReaction(probes->model, probe->group, force));
+  PetscCall(ProblemReaction(probes->model->problem, probe->group, force));
   *value = force[probe->scene->component];
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -1,50 +1,16 @@
-#include "modelimpl.h"
-#include "bodies/loosebody.h"
+/* Equilibrium at a load parameter: from the accepted state by prediction, Newton's method and new contact lists, until
+   lists, springs and penalties hold. */
 #include "base/timing.h"
+#include "bodies/loosebody.h"
+#include "modelimpl.h"
 
-/* Of these, so many may be spent at a breakpoint of the scene's histories on offsets of surface contact that lag behind
-   by little: each takes a lag to a twentieth, and from the next step on it would show as a jump. */
-#define MODEL_MAX_OFFSET_UPDATES 4
-/* Lists are made for this multiple of the motion that the last step's rate predicts; those that check a step too, so
- * that an equal step takes them. */
-#define MODEL_MOTION_SAFETY 1.5
-/* Times that the springs of stabilised pairs are relaxed. A body at rest needs two or three; one that flies covers its
-   penetration at rest, times a thousand, in each. */
-#define MODEL_MAX_RELAX 30
-
-/* Largest displacement of a node, or of a rigid tool, between the accepted state and (u, t). */
-PetscErrorCode ModelMotion(Model model, const PetscReal *u, PetscReal t, PetscReal *motion)
-{
-  const int dim = model->mesh->dim;
-
-  PetscFunctionBeginUser;
-  *motion = 0;
-  for (PetscInt n = 0; n < model->mesh->n_nodes; n++) {
-    PetscReal square = 0;
-
-    for (int d = 0; d < dim; d++) square += PetscSqr(u[n * dim + d] - model->work->accepted_u[n * dim + d]);
-    *motion = PetscMax(*motion, PetscSqrtReal(square));
-  }
-  for (int b = 0; b < model->scene->n_bodies; b++)
-    if (model->scene->bodies[b].rigid)
-      *motion = PetscMax(*motion, LoadsRigidTravel(model->loads, b, model->work->accepted_t, t));
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, motion, 1, MPIU_REAL, MPI_MAX, model->mesh->comm));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Of that, what is imposed on the way to t. */
-PetscErrorCode ModelImposedMotion(Model model, PetscReal t, PetscReal *motion)
-{
-  PetscReal *u;
-
-  PetscFunctionBeginUser;
-  PetscCall(PetscMalloc1(model->mesh->n_nodes * model->mesh->dim, &u));
-  PetscCall(PetscArraycpy(u, model->work->accepted_u, model->mesh->n_nodes * model->mesh->dim));
-  PetscCall(LoadsPrescribe(model->loads, t, u));
-  PetscCall(ModelMotion(model, u, t, motion));
-  PetscCall(PetscFree(u));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
+/* At a breakpoint of the scene's histories the lists are renewed at most this many times for offsets of surface contact
+   that lag behind by little. Each time a lag shrinks to a twentieth. A lag that is left would show as a jump in the
+   next step. */
+#define EQUILIBRIUM_MAX_OFFSET_UPDATES 4
+/* The springs of stabilised pairs are relaxed at most this many times. A body at rest needs two or three. In each pass
+   a body that flies freely covers a thousand times its penetration at rest. */
+#define EQUILIBRIUM_MAX_RELAX 30
 
 /* Adds that a slave node rests on an edge between facets, where it does. */
 static PetscErrorCode ModelBlameFacets(Model model, char *text, size_t size, PetscBool *found)
@@ -67,7 +33,7 @@ static PetscErrorCode ModelBlameFacets(Model model, char *text, size_t size, Pet
 /* Adds that the penalty is so stiff that rounding alone may keep the residual above the tolerance, where it is. */
 static PetscErrorCode ModelBlamePenalty(Model model, char *text, size_t size)
 {
-  const PetscReal allowed = model->scene->solver.tolerance * PetscMax(model->force_scale, model->work->scale);
+  const PetscReal allowed = model->scene->solver.tolerance * ProblemForceScale(model->problem);
   PetscReal       force;
   size_t          used;
 
@@ -75,7 +41,7 @@ static PetscErrorCode ModelBlamePenalty(Model model, char *text, size_t size)
   if (!model->contact) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(ContactRoundOff(model->contact, &force));
   PetscCall(PetscStrlen(text, &used));
-  if (force > MODEL_ROUND_OFF * allowed)
+  if (force > PROBLEM_ROUND_OFF * allowed)
     PetscCall(
       PetscSNPrintf(text + used, size - used,
                     "; the penalty is too stiff: rounding of positions alone is a force of %.2g, the tolerance is %.2g",
@@ -91,16 +57,16 @@ static PetscErrorCode ModelExplainFailure(Model model, SolveReport *report)
   PetscBool       edge = PETSC_FALSE;
 
   PetscFunctionBeginUser;
-  PetscCall(
-    FailureLocate(model->mesh, model->loads, model->contact, model->work->f, model->work->inverted, &report->failure));
-  report->failure.enhanced = ModelHasFormulation(model->scene, FORMULATION_ENHANCED);
+  PetscCall(FailureLocate(model->mesh, model->problem->loads, model->contact, model->problem->f,
+                          model->problem->inverted, &report->failure));
+  report->failure.enhanced = ProblemHasFormulation(model->problem, FORMULATION_ENHANCED);
   if (report->result == SOLVE_WINDOW || report->result == SOLVE_LOST)
     PetscFunctionReturn(PETSC_SUCCESS); /* known already */
   if (report->result == SOLVE_CYCLE) {
     PetscCall(PetscStrncpy(report->detail, report->cycle, sizeof(report->detail)));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
-  if (adrift) PetscCall(LooseBodies(model->mesh, model->scene, model->loads, loose, sizeof(loose)));
+  if (adrift) PetscCall(LooseBodies(model->mesh, model->scene, model->problem->loads, loose, sizeof(loose)));
   if (adrift && loose[0])
     PetscCall(PetscSNPrintf(
       report->detail, sizeof(report->detail), "no support and no imposed displacement holds %s%s", loose,
@@ -122,22 +88,19 @@ static PetscErrorCode ModelDepart(Model model, PetscReal t)
   PetscReal  motion;
 
   PetscFunctionBeginUser;
-  PetscCall(ContactSpringsRelax(work->stabiliser, work->accepted_x));
-  model->t       = t;
-  work->inverted = -1;
-  work->start    = 0;
-  work->cycling  = PETSC_FALSE;
-  work->cycles   = 0;
-  work->cycle[0] = '\0';
-  work->energy   = 0;
+  PetscCall(ContactSpringsRelax(model->problem->springs, work->accepted_x));
+  model->t                 = t;
+  model->problem->inverted = -1;
+  work->start              = 0;
+  work->cycling            = PETSC_FALSE;
+  work->cycles             = 0;
+  work->cycle[0]           = '\0';
+  work->energy             = 0;
   if (!model->contact) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(ModelImposedMotion(model, t, &motion));
-  motion = PetscMax(motion, MODEL_MOTION_SAFETY * work->rate * (t - work->accepted_t));
+  PetscCall(ProblemImposedMotion(model->problem, work->accepted_u, work->accepted_t, t, &motion));
+  motion = PetscMax(motion, PROBLEM_MOTION_SAFETY * work->rate * (t - work->accepted_t));
   PetscCall(ContactRestore(model->contact));
-  work->expected = motion;
-  TimingBegin(TIMING_SEARCH);
-  PetscCall(ContactGather(model->contact, work->accepted_u, work->accepted_t, t, motion));
-  TimingEnd(TIMING_SEARCH);
+  PetscCall(ProblemGatherLists(model->problem, work->accepted_u, work->accepted_t, t, motion));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -158,8 +121,9 @@ static PetscErrorCode ModelTakeExtrapolatedPart(Model model, PetscReal part, Pet
   if (*made) PetscCall(ModelExtrapolate(model, model->t, u, model->x, made));
   if (*made) {
     PetscCall(VecAXPBYPCZ(model->x, part, -part, 1, work->look_ahead, end));
-    PetscCall(ModelTrial(model, model->x));
-    PetscCall(ModelInOrder(model, work->trial, made));
+    PetscCall(ProblemSetTrial(model->problem, model->x, model->t));
+    PetscCall(
+      ProblemInOrder(model->problem, work->accepted_u, work->accepted_t, model->problem->trial, model->t, made));
   }
   PetscCall(VecDestroy(&end));
   PetscCall(PetscFree(u));
@@ -190,91 +154,57 @@ static PetscErrorCode ModelStart(Model model, SolveReport *report)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* New lists after a solve, for the next one: in the middle of the way where it left the old ones, or because they do
- * not hold. */
-PetscErrorCode ModelRenewLists(Model model, PetscBool update_offsets, PetscBool *hold)
-{
-  ModelWork *work = model->work;
-  PetscReal  motion, next;
-
-  PetscFunctionBeginUser;
-  PetscCall(ModelMotion(model, work->trial, model->t, &motion));
-  next = MODEL_MOTION_SAFETY * motion;
-  if (motion > work->expected)
-    motion *= 2; /* two bodies that the lists at the start did not let meet may have passed through each other */
-  TimingBegin(TIMING_SEARCH);
-  *hold = PETSC_FALSE;
-  if (work->left) {
-    work->renewed++;
-    PetscCall(ContactListsRenew(model->contact, work->trial, model->t, motion));
-  } else
-    PetscCall(
-      ContactListsHold(model->contact, work->trial, model->t, motion, PetscMax(motion, next), update_offsets, hold));
-  TimingEnd(TIMING_SEARCH);
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Solves with frozen lists until they hold. */
+/* Solves with frozen contact lists until the lists hold at the solution. */
 static PetscErrorCode ModelSolveLists(Model model, SolveReport *report)
 {
-  PetscBool hold = PETSC_FALSE, lost = PETSC_FALSE;
-  PetscInt  times = 0;
+  ModelWork *work = model->work;
+  PetscBool  hold = PETSC_FALSE, lost = PETSC_FALSE, update;
+  PetscInt   times = 0;
 
   PetscFunctionBeginUser;
-  model->work->renewed = 0;
+  work->renewed = 0;
   while (!hold && report->result == SOLVE_CONVERGED) {
-    model->work->left = PETSC_FALSE;
+    work->left = PETSC_FALSE;
     PetscCall(ModelNewton(model, report));
     if (report->result != SOLVE_CONVERGED || !model->contact) break;
-    PetscCall(ModelRenewLists(
-      model, (PetscBool)(times < MODEL_MAX_OFFSET_UPDATES && model->t < 1 && SceneBreaks(model->scene, model->t)),
-      &hold));
+    work->renewed += work->left;
+    update = (PetscBool)(times < EQUILIBRIUM_MAX_OFFSET_UPDATES && model->t < 1 && SceneBreaks(model->scene, model->t));
+    PetscCall(
+      ProblemRenewLists(model->problem, work->accepted_u, work->accepted_t, model->t, work->left, update, &hold));
     PetscCall(ContactLocateLost(model->contact, &lost, report->detail, sizeof(report->detail)));
     if (lost) report->result = SOLVE_LOST;
     if (hold || lost) break;
     report->regathered++;
-    if (!model->work->left && times++ == MODEL_MAX_REGATHER) report->result = SOLVE_LISTS;
-    if (!model->work->left && report->result == SOLVE_CONVERGED) PetscCall(ModelFollowLists(model, report));
+    if (!work->left && times++ == MODEL_MAX_REGATHER) report->result = SOLVE_LISTS;
+    if (!work->left && report->result == SOLVE_CONVERGED) PetscCall(ModelFollowLists(model, report));
   }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Energy in elements and contact at the trial displacements, all ranks */
-static PetscErrorCode ModelStoredEnergy(Model model, PetscReal *energy)
-{
-  PetscBool ok;
-
-  PetscFunctionBeginUser;
-  *energy = 0;
-  PetscCall(ElasticityResidual(model->elasticity, model->work->trial, NULL, energy, NULL, &ok));
-  PetscCall(ContactResidual(model->contact, model->work->trial, model->t, NULL, energy, NULL));
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, energy, 1, MPIU_REAL, MPI_SUM, model->mesh->comm));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* Solves, with springs where pairs are stabilised; these are relaxed and all is solved on until they carry nothing. */
 static PetscErrorCode ModelSolveHeld(Model model, SolveReport *report)
 {
-  ModelWork *work = model->work;
-  PetscReal  force, energy, stored, allowed;
-  PetscInt   times = 0;
+  PetscReal force, energy, stored, allowed;
+  PetscBool ok;
+  PetscInt  times = 0;
 
   PetscFunctionBeginUser;
   PetscCall(ModelSolveLists(model, report));
-  while (work->stabiliser && report->result == SOLVE_CONVERGED) {
-    PetscCall(ContactSpringsLoad(work->stabiliser, model->x, &force, &energy));
-    PetscCall(ModelStoredEnergy(model, &stored));
+  while (model->problem->springs && report->result == SOLVE_CONVERGED) {
+    PetscCall(ContactSpringsLoad(model->problem->springs, model->x, &force, &energy));
+    PetscCall(
+      ProblemEnergy(model->problem, model->problem->trial, model->t, ENERGY_ELASTIC | ENERGY_CONTACT, &stored, &ok));
     report->taken += energy;
     report->left = stored > 0 ? energy / stored : 0;
-    PetscCall(ModelRoundOff(model, &allowed));
-    allowed = PetscMax(allowed, model->scene->solver.tolerance * PetscMax(model->force_scale, work->scale));
+    PetscCall(ProblemRoundOff(model->problem, &allowed));
+    allowed = PetscMax(allowed, model->scene->solver.tolerance * ProblemForceScale(model->problem));
     if (force <= allowed) break;
-    if (times++ == MODEL_MAX_RELAX) {
+    if (times++ == EQUILIBRIUM_MAX_RELAX) {
       report->result = SOLVE_ADRIFT;
       break;
     }
     report->relaxed++;
-    PetscCall(ContactSpringsRelax(work->stabiliser, model->x));
+    PetscCall(ContactSpringsRelax(model->problem->springs, model->x));
     PetscCall(ModelSolveLists(model, report));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -309,7 +239,7 @@ PetscErrorCode ModelSolve(Model model, PetscReal t, SolveReport *report)
   report->cycles = work->cycles;
   PetscCall(PetscStrncpy(report->cycle, work->cycle, sizeof(report->cycle)));
   if (report->result == SOLVE_CONVERGED)
-    PetscCall(PetscArraycpy(model->u, work->trial, model->mesh->n_nodes * model->mesh->dim));
+    PetscCall(PetscArraycpy(model->u, model->problem->trial, model->mesh->n_nodes * model->mesh->dim));
   else
     PetscCall(ModelExplainFailure(model, report));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -326,8 +256,8 @@ PetscErrorCode ModelLookAhead(Model model, PetscReal t, PetscReal *u, SolveRepor
   PetscFunctionBeginUser;
   PetscCall(ModelDepart(model, t));
   PetscCall(ModelPredict(model, report));
-  PetscCall(ModelTrial(model, model->x));
-  PetscCall(PetscArraycpy(u, model->work->trial, model->mesh->n_nodes * model->mesh->dim));
+  PetscCall(ProblemSetTrial(model->problem, model->x, model->t));
+  PetscCall(PetscArraycpy(u, model->problem->trial, model->mesh->n_nodes * model->mesh->dim));
   PetscCall(VecCopy(model->x, model->work->look_ahead));
   PetscCall(VecCopy(model->work->accepted_x, model->x));
   model->work->look_ahead_t            = t;

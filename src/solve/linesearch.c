@@ -1,17 +1,96 @@
+/* The line search of Newton's method: what it compares, and longer steps where contact cuts them. */
 #include "modelimpl.h"
 #include "base/timing.h"
 
-/* A step that backtracking cut is looked at up to this many times its length: the last length that failed was at most
- * ten times as long. */
+/* Energy of a state with an inverted element. It is above that of any other state, and its square, which the line
+   search forms, is still a number. */
+#define LINE_INVERTED 1e100
+/* Below this residual, relative to F_ref, the energies that the line search compares differ by round-off only, because
+   their differences go with the square of the residual. From there on residuals are compared. */
+#define LINE_ENERGY_ROUND_OFF 1e-6
+/* The line search expects an energy that falls by a part of its slope. A residual is multiplied by this weight, so that
+   any decrease of it is enough. */
+#define LINE_RESIDUAL_WEIGHT 1e30
+/* The least energy is sought on up to this many times the length to which backtracking cut the step. The last length
+   that backtracking refused was at most ten times as long. */
 #define LINE_AHEAD 10
-/* Longer than this part of the full one a step is the full one: backtracking cuts by a half or more. */
+/* A step longer than this part of the full one has not been cut, because backtracking cuts by a half or more. */
 #define LINE_UNCUT 0.75
-/* A part of Newton's step that counts as none but for what jumps, and the energy that rises over it, in machine
- * epsilons of the energy. */
+/* Over this part of Newton's step nothing changes but what jumps. */
 #define LINE_TRIFLE 1e-3
-#define LINE_RISE   64
-/* Bisections of that stretch: a stiff penalty bends the energy within a small part of it. */
+/* Energies that differ by less than this many machine epsilons of the energy differ by round-off only. */
+#define LINE_RISE 64
+/* Bisections for the least energy. There are that many because a stiff penalty bends the energy within a small part of
+   the step. */
 #define LINE_BISECTIONS 50
+
+/* Potential energy at x with that of the contact springs; LINE_INVERTED where an element is inverted. */
+static PetscErrorCode ObjectiveEnergy(Model model, Vec x, PetscReal *objective)
+{
+  PetscBool ok;
+
+  PetscFunctionBeginUser;
+  PetscCall(ProblemSetTrial(model->problem, x, model->t));
+  PetscCall(ProblemEnergy(model->problem, model->problem->trial, model->t, ENERGY_POTENTIAL, objective, &ok));
+  if (ok)
+    model->work->energy = *objective;
+  else
+    *objective = LINE_INVERTED;
+  PetscCall(ContactSpringsEnergy(model->problem->springs, x, objective));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Norm of the residual at x, times LINE_RESIDUAL_WEIGHT. */
+static PetscErrorCode ObjectiveResidual(Model model, Vec x, PetscReal *objective)
+{
+  PetscBool ok;
+
+  PetscFunctionBeginUser;
+  PetscCall(ProblemSetTrial(model->problem, x, model->t));
+  PetscCall(ProblemResidual(model->problem, model->problem->trial, model->t, model->t, &ok));
+  PetscCall(ProblemCollectResidual(model->problem, x, model->work->residual));
+  PetscCall(VecNorm(model->work->residual, NORM_2, objective));
+  *objective *= LINE_RESIDUAL_WEIGHT;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The objective of SNES: the one that ModelChooseObjective() chose last. */
+static PetscErrorCode ModelObjective(SNES snes, Vec x, PetscReal *objective, void *context)
+{
+  Model model = context;
+
+  PetscFunctionBeginUser;
+  (void)snes;
+  if (model->work->objective == OBJECTIVE_ENERGY)
+    PetscCall(ObjectiveEnergy(model, x, objective));
+  else
+    PetscCall(ObjectiveResidual(model, x, objective));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ModelChooseObjective - chooses what the next line search compares: energies or residuals.
+
+  Not collective
+
+  Input Parameters:
++ model    - the model
+. residual - norm of the residual at the iterate (force); NaN: not known
+- slope    - of the energy along Newton's step; NaN: not known
+
+  Note:
+  Newton's convergence test calls this for each iterate with its residual. The line search calls it once more with the
+  slope, which may find that energies cannot tell whether the step leads downwards. Where penalties are stiff, that
+  happens long before the residual is small.
+@*/
+void ModelChooseObjective(Model model, PetscReal residual, PetscReal slope)
+{
+  const PetscBool small = (PetscBool)(residual <= LINE_ENERGY_ROUND_OFF * ProblemForceScale(model->problem));
+  const PetscBool flat =
+    (PetscBool)(PetscAbsReal(slope) <= LINE_RISE * PETSC_MACHINE_EPSILON * PetscAbsReal(model->work->energy));
+
+  model->work->objective = small || flat ? OBJECTIVE_RESIDUAL : OBJECTIVE_ENERGY;
+}
 
 /* Before the search: Newton's step with the contact that it ends in; how long Newton's step is; and whether energies
    can tell whether it leads downwards, which where penalties are stiff ends long before the residual is small. */
@@ -23,18 +102,18 @@ static PetscErrorCode ModelMeasureStep(SNESLineSearch search, Vec x, Vec y, Pets
   PetscReal slope, energy;
 
   PetscFunctionBeginUser;
-  PetscCall(ModelTrial(model, x));
-  PetscCall(ModelSolveLinearContact(model, model->work->trial, NULL, model->t, y));
+  PetscCall(ProblemSetTrial(model->problem, x, model->t));
+  PetscCall(ModelSolveLinearContact(model, model->problem->trial, NULL, model->t, y));
   *changed = PETSC_TRUE;
   PetscCall(VecNorm(y, NORM_2, &model->work->step));
-  if (model->work->near || !LoadsConservative(model->loads)) PetscFunctionReturn(PETSC_SUCCESS);
+  if (model->work->objective == OBJECTIVE_RESIDUAL || !LoadsConservative(model->problem->loads))
+    PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(SNESLineSearchGetSNES(search, &snes));
   if (model->work->energy == 0)
     PetscCall(SNESComputeObjective(snes, x, &energy)); /* none was evaluated since the step began */
   PetscCall(SNESLineSearchGetVecs(search, NULL, &F, NULL, NULL, NULL));
   PetscCall(VecDotRealPart(F, y, &slope));
-  if (PetscAbsReal(slope) <= LINE_RISE * PETSC_MACHINE_EPSILON * PetscAbsReal(model->work->energy))
-    model->work->near = PETSC_TRUE;
+  ModelChooseObjective(model, NAN, slope);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -59,9 +138,9 @@ static PetscErrorCode LinePlace(Model model, int place, PetscReal lambda, Vec x,
 {
   PetscFunctionBeginUser;
   PetscCall(VecWAXPY(w, -lambda, y, x));
-  PetscCall(ModelTrial(model, w));
+  PetscCall(ProblemSetTrial(model->problem, w, model->t));
   TimingBegin(TIMING_ASSEMBLY_CONTACT);
-  PetscCall(ContactLineSet(model->work->line, place, lambda, model->work->trial, model->t));
+  PetscCall(ContactLineSet(model->work->line, place, lambda, model->problem->trial, model->t));
   TimingEnd(TIMING_ASSEMBLY_CONTACT);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -95,7 +174,7 @@ static PetscErrorCode Curvature(Model model, Vec y, PetscReal *curvature)
 
   PetscFunctionBeginUser;
   PetscCall(VecDuplicate(y, &Ay));
-  PetscCall(MatMult(model->A, y, Ay));
+  PetscCall(MatMult(model->problem->A, y, Ay));
   PetscCall(VecDotRealPart(y, Ay, curvature));
   PetscCall(VecDestroy(&Ay));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -118,7 +197,8 @@ static PetscErrorCode ModelLengthenStep(SNESLineSearch search, Vec x, Vec y, Vec
   *changed_y = *changed_w = PETSC_FALSE;
   PetscCall(SNESLineSearchGetDamping(search, &damping));
   PetscCall(StepLength(model, x, y, w, &cut, &full));
-  if (cut > LINE_UNCUT * damping * full || model->work->near) PetscFunctionReturn(PETSC_SUCCESS);
+  if (cut > LINE_UNCUT * damping * full || model->work->objective == OBJECTIVE_RESIDUAL)
+    PetscFunctionReturn(PETSC_SUCCESS);
   ahead = PetscMin(LINE_AHEAD * cut, damping * full);
   PetscCall(SNESLineSearchGetSNES(search, &snes));
   PetscCall(SNESLineSearchGetVecs(search, NULL, &F, NULL, NULL, NULL));
@@ -154,7 +234,7 @@ PetscErrorCode ModelLocateEdge(Model model, PetscBool *found, ContactPlace *plac
   PetscFunctionBeginUser;
   *found = PETSC_FALSE;
   PetscCall(SNESGetSolutionUpdate(model->snes, &y));
-  if (!work->line || !y || work->near) PetscFunctionReturn(PETSC_SUCCESS);
+  if (!work->line || !y || work->objective == OBJECTIVE_RESIDUAL) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(SNESGetFunction(model->snes, &F, NULL, NULL));
   PetscCall(VecDotRealPart(F, y, &slope));
   if (!(slope > 0)) PetscFunctionReturn(PETSC_SUCCESS);
@@ -163,11 +243,11 @@ PetscErrorCode ModelLocateEdge(Model model, PetscBool *found, ContactPlace *plac
   PetscCall(SNESComputeObjective(model->snes, w, &after));
   PetscCall(SNESComputeObjective(model->snes, model->x, &before));
   PetscCall(PetscMalloc1(model->mesh->n_nodes * model->mesh->dim, &here));
-  PetscCall(PetscArraycpy(here, work->trial, model->mesh->n_nodes * model->mesh->dim));
-  PetscCall(ModelTrial(model, w));
+  PetscCall(PetscArraycpy(here, model->problem->trial, model->mesh->n_nodes * model->mesh->dim));
+  PetscCall(ProblemSetTrial(model->problem, w, model->t));
   if (after - before > LINE_RISE * PETSC_MACHINE_EPSILON * PetscAbsReal(before))
-    PetscCall(ContactLocateTurn(model->contact, here, work->trial, model->t, found, place));
-  PetscCall(ModelTrial(model, model->x));
+    PetscCall(ContactLocateTurn(model->contact, here, model->problem->trial, model->t, found, place));
+  PetscCall(ProblemSetTrial(model->problem, model->x, model->t));
   PetscCall(PetscFree(here));
   PetscCall(VecDestroy(&w));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -179,10 +259,11 @@ PetscErrorCode ModelCreateLineSearch(Model model)
   SNESLineSearch search;
 
   PetscFunctionBeginUser;
+  if (LoadsConservative(model->problem->loads)) PetscCall(SNESSetObjective(model->snes, ModelObjective, model));
   if (!model->contact) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(SNESGetLineSearch(model->snes, &search));
   PetscCall(SNESLineSearchSetPreCheck(search, ModelMeasureStep, model));
-  if (!LoadsConservative(model->loads)) PetscFunctionReturn(PETSC_SUCCESS);
+  if (!LoadsConservative(model->problem->loads)) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(ContactLineCreate(model->contact, &model->work->line));
   PetscCall(SNESLineSearchSetPostCheck(search, ModelLengthenStep, model));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -1,7 +1,6 @@
+/* The accepted state of a model: set-up, acceptance, return, and its place in an archive. */
 #include "modelimpl.h"
 #include "smooth/smoother.h"
-#include "matrix/sumoperator.h"
-#include "base/timing.h"
 
 const char *const SolveResults[] = {
   "converged",
@@ -17,9 +16,18 @@ const char *const SolveResults[] = {
   "the penetrations did not come into the window of the adjusted penalty",
   "not-a-number in the residual"};
 
-/* ModelCreate - joins elasticity, loads, contact and the nonlinear solver.
+/*@
+  ModelCreate - creates the problem of a scene and its nonlinear solver.
 
-   Collective. scene and mesh are borrowed. The loads come first: they settle which dofs are free. */
+  Collective
+
+  Input Parameters:
++ scene - borrowed
+- mesh  - borrowed
+
+  Output Parameter:
+. out - the model; ModelPlace() comes next
+@*/
 PetscErrorCode ModelCreate(Scene scene, Mesh mesh, Model *out)
 {
   Model          model;
@@ -28,32 +36,30 @@ PetscErrorCode ModelCreate(Scene scene, Mesh mesh, Model *out)
   PetscFunctionBeginUser;
   PetscCall(PetscNew(&model));
   PetscCall(PetscNew(&model->work));
-  model->scene = scene;
-  model->mesh  = mesh;
-  PetscCall(LoadsCreate(mesh, scene, &model->loads));
-  PetscCall(ElasticityCreate(mesh, scene, &model->elasticity));
-  PetscCall(ElasticitySetSymmetric(model->elasticity, LoadsConservative(model->loads)));
-  if (scene->n_contacts) PetscCall(ContactCreate(mesh, scene, model->elasticity, model->loads, &model->contact));
-  PetscCall(PetscCalloc4(n, &model->u, n, &model->work->f, n, &model->work->trial, n, &model->work->accepted_u));
-  PetscCall(ElasticityTangent(model->elasticity, model->u));
-  PetscCall(ElasticityMatrix(model->elasticity, NULL, NULL, &model->P));
-  model->A = model->P;
-  PetscCall(PetscObjectReference((PetscObject)model->A));
-  PetscCall(MatCreateVecs(model->A, &model->x, NULL));
+  PetscCall(ProblemCreate(scene, mesh, &model->problem));
+  model->scene   = scene;
+  model->mesh    = mesh;
+  model->contact = model->problem->contact;
+  PetscCall(PetscCalloc2(n, &model->u, n, &model->work->accepted_u));
+  PetscCall(MatCreateVecs(model->problem->A, &model->x, NULL));
   PetscCall(VecDuplicate(model->x, &model->work->accepted_x));
   PetscCall(VecDuplicate(model->x, &model->work->look_ahead));
   PetscCall(VecDuplicate(model->x, &model->work->residual));
   if (scene->kinematics != KINEMATICS_SMALL) PetscCall(ExtrapolationCreate(mesh, &model->work->extrapolation));
   PetscCall(ModelCreateSNES(model));
-  if (model->contact) {
-    PetscCall(ContactCycleCreate(model->contact, &model->work->watch));
-    PetscCall(ContactSpringsCreate(model->contact, model->x, &model->work->stabiliser));
-  }
+  if (model->contact) PetscCall(ContactCycleCreate(model->contact, &model->work->watch));
   *out = model;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ModelDestroy - Collective. The scene and the mesh remain. */
+/*@
+  ModelDestroy - destroys the model and its problem; the scene and the mesh remain.
+
+  Collective
+
+  Input Parameter:
+. model - set to NULL; may be NULL already
+@*/
 PetscErrorCode ModelDestroy(Model *model)
 {
   Model m = *model;
@@ -65,17 +71,13 @@ PetscErrorCode ModelDestroy(Model *model)
   PetscCall(LinearCheckDestroy(&m->linear));
   PetscCall(ContactCycleDestroy(&m->work->watch));
   PetscCall(ContactLineDestroy(&m->work->line));
-  PetscCall(ContactSpringsDestroy(&m->work->stabiliser));
   PetscCall(ExtrapolationDestroy(&m->work->extrapolation));
-  PetscCall(MatDestroy(&m->A));
   PetscCall(VecDestroy(&m->x));
   PetscCall(VecDestroy(&m->work->accepted_x));
   PetscCall(VecDestroy(&m->work->look_ahead));
   PetscCall(VecDestroy(&m->work->residual));
-  PetscCall(ContactDestroy(&m->contact));
-  PetscCall(ElasticityDestroy(&m->elasticity));
-  PetscCall(LoadsDestroy(&m->loads));
-  PetscCall(PetscFree4(m->u, m->work->f, m->work->trial, m->work->accepted_u));
+  PetscCall(ProblemDestroy(&m->problem));
+  PetscCall(PetscFree2(m->u, m->work->accepted_u));
   PetscCall(PetscFree(m->work));
   PetscCall(PetscFree(*model));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -91,12 +93,12 @@ PetscErrorCode ModelPlace(Model model, PetscReal t)
   PetscBool ok;
 
   PetscFunctionBeginUser;
-  PetscCall(LoadsPrescribe(model->loads, 0, model->u));
+  PetscCall(LoadsPrescribe(model->problem->loads, 0, model->u));
   if (!model->contact) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscArraycpy(model->work->accepted_u, model->u, model->mesh->n_nodes * model->mesh->dim));
-  PetscCall(ModelImposedMotion(model, t, &motion));
-  PetscCall(ContactGather(model->contact, model->u, 0, 0, motion));
-  PetscCall(ModelResidual(model, model->u, 0, 0, &ok));
+  PetscCall(ProblemImposedMotion(model->problem, model->work->accepted_u, model->work->accepted_t, t, &motion));
+  PetscCall(ProblemGatherLists(model->problem, model->u, 0, 0, motion));
+  PetscCall(ProblemResidual(model->problem, model->u, 0, 0, &ok));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -120,16 +122,6 @@ PetscErrorCode ModelSetUp(Model model)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Has some body elements of that formulation? Rigid tools have none. */
-PetscBool ModelHasFormulation(Scene scene, Formulation formulation)
-{
-  PetscBool has = PETSC_FALSE;
-
-  for (int b = 0; b < scene->n_bodies; b++)
-    has = (PetscBool)(has || (!scene->bodies[b].rigid && scene->bodies[b].formulation == formulation));
-  return has;
-}
-
 /* ModelGetAccepted - local displacements (length, n_nodes*dim, the model's) and load parameter of the accepted state.
  * Not collective. */
 PetscErrorCode ModelGetAccepted(Model model, const PetscReal **u, PetscReal *t)
@@ -149,11 +141,10 @@ PetscErrorCode ModelAccept(Model model)
   PetscBool       ok;
 
   PetscFunctionBeginUser;
-  PetscCall(
-    ModelResidual(model, model->u, model->t, model->t, &ok)); /* reactions, gaps and forces of exactly this state */
-  PetscCall(ModelMotion(model, model->u, model->t, &motion));
+  PetscCall(ProblemResidual(model->problem, model->u, model->t, model->t, &ok)); /* for reactions, gaps and forces */
+  PetscCall(ProblemMotion(model->problem, work->accepted_u, work->accepted_t, model->u, model->t, &motion));
   if (stepped) work->rate = motion / (model->t - work->accepted_t);
-  model->force_scale = PetscMax(model->force_scale, work->scale);
+  model->problem->force_so_far = ProblemForceScale(model->problem);
   PetscCall(PetscArraycpy(work->accepted_u, model->u, model->mesh->n_nodes * model->mesh->dim));
   PetscCall(VecCopy(model->x, work->accepted_x));
   work->accepted_t = model->t;
@@ -181,11 +172,10 @@ PetscErrorCode ModelRestore(Model model)
   model->t = work->accepted_t;
   if (model->contact) {
     PetscCall(ContactRestore(model->contact));
-    if (model->A != model->P) PetscCall(SumOperatorSet(model->A, NULL));
-    PetscCall(ContactTangentRestore(model->contact));
-    PetscCall(ContactGather(model->contact, model->u, model->t, model->t, 0));
+    PetscCall(ProblemRestoreTangent(model->problem));
+    PetscCall(ProblemGatherLists(model->problem, model->u, model->t, model->t, 0));
   }
-  PetscCall(ModelResidual(model, model->u, model->t, model->t, &ok));
+  PetscCall(ProblemResidual(model->problem, model->u, model->t, model->t, &ok));
   if (model->contact) PetscCall(ContactRestore(model->contact));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -210,7 +200,7 @@ PetscErrorCode ModelArchive(Model model, Archive archive)
   PetscCall(ArchiveReals(archive, "model/t", 1, &work->accepted_t));
   PetscCall(ArchiveReals(archive, "model/rate", 1, &work->rate));
   PetscCall(ArchiveReals(archive, "model/start", 1, &work->accepted_start));
-  PetscCall(ArchiveReals(archive, "model/force_scale", 1, &model->force_scale));
+  PetscCall(ArchiveReals(archive, "model/force_scale", 1, &model->problem->force_so_far));
   if (ArchiveLoads(archive)) {
     PetscCall(PetscArraycpy(model->u, work->accepted_u, mesh->n_nodes * mesh->dim));
     PetscCall(MeshCollectFree(mesh, model->u, model->x));
@@ -219,29 +209,8 @@ PetscErrorCode ModelArchive(Model model, Archive archive)
   }
   if (model->contact) PetscCall(ContactArchive(model->contact, archive, model->u, model->t));
   if (!ArchiveLoads(archive)) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(ModelResidual(model, model->u, model->t, model->t, &ok));
+  PetscCall(ProblemResidual(model->problem, model->u, model->t, model->t, &ok));
   if (model->contact) PetscCall(ContactRestore(model->contact));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* ModelReaction - the force that supports and imposed displacements put on a group's nodes in the accepted state, the
-   same on all ranks.
-
-   Collective. Sums the residual over the group's prescribed dofs, those of its edges that it shares with other
-   prescribed surfaces too; axisymmetric: over 360 degrees. force[dim..2] are 0. */
-PetscErrorCode ModelReaction(Model model, const MeshGroup *group, PetscReal force[3])
-{
-  const int dim = model->mesh->dim;
-
-  PetscFunctionBeginUser;
-  force[0] = force[1] = force[2] = 0;
-  for (PetscInt i = 0; i < group->n_nodes; i++) {
-    for (int d = 0; d < dim; d++) {
-      const PetscInt dof = group->nodes[i] * dim + d;
-      if (LoadsPrescribed(model->loads, dof)) force[d] += model->work->f[dof];
-    }
-  }
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, force, 3, MPIU_REAL, MPI_SUM, model->mesh->comm));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -281,14 +250,14 @@ PetscErrorCode ModelEffects(Model model, char *text, size_t size)
     surface = (PetscBool)(surface || scene->contacts[c].formulation == CONTACT_SURFACE_TO_SURFACE);
   PetscCall(PetscSNPrintf(text, size, "%s%s%s",
                           scene->kinematics == KINEMATICS_FINITE ? "finite strain" : "small strain",
-                          ModelHasFormulation(scene, FORMULATION_ENHANCED) ? ", enhanced strains" : "",
-                          ModelHasFormulation(scene, FORMULATION_FBAR) ? ", mean dilatation" : ""));
+                          ProblemHasFormulation(model->problem, FORMULATION_ENHANCED) ? ", enhanced strains" : "",
+                          ProblemHasFormulation(model->problem, FORMULATION_FBAR) ? ", mean dilatation" : ""));
   PetscCall(ModelContactEffects(scene, text, size));
   PetscCall(PetscStrlen(text, &start));
   PetscCall(PetscSNPrintf(text + start, size - start, "%s%s%s%s%s%s", surface ? ", surface to surface" : "",
                           adjusted ? ", adjusted penalty" : "", augmented ? ", augmented penalty" : "",
-                          LoadsConservative(model->loads) ? "" : ", follower load", body_force ? ", body force" : "",
-                          moving ? ", rigid motion" : ""));
+                          LoadsConservative(model->problem->loads) ? "" : ", follower load",
+                          body_force ? ", body force" : "", moving ? ", rigid motion" : ""));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -298,10 +267,4 @@ PetscErrorCode ModelDofs(Model model, PetscInt *free_dofs)
   PetscFunctionBeginUser;
   PetscCall(VecGetSize(model->x, free_dofs));
   PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* ModelIsLinear - is one linear solve the answer at any t? Not collective, same on all ranks. */
-PetscBool ModelIsLinear(Model model)
-{
-  return model->scene->kinematics == KINEMATICS_SMALL && !model->contact ? PETSC_TRUE : PETSC_FALSE;
 }

@@ -1,69 +1,26 @@
+/* Newton's method with the present contact lists: SNES, its convergence test, and the tangent for its linear solver. */
+#include "base/refusal.h"
+#include "base/timing.h"
 #include "linear/factor.h"
 #include "modelimpl.h"
-#include "base/refusal.h"
-#include "matrix/sumoperator.h"
-#include "base/timing.h"
 
-/* Energy of a state with an inverted element: above any other, yet its square is a number, which the line search takes.
- */
-#define MODEL_INVERTED 1e100
-/* Below this residual (relative to F_ref) the energies that the line search compares differ by round-off only (their
-   differences go with the square of the residual); from there on it compares residuals. */
-#define MODEL_ENERGY_ROUND_OFF 1e-6
-/* Residuals compared as if they were energies: times this, so that any decrease beats the slope the line search
- * expects. */
-#define MODEL_RESIDUAL_WEIGHT 1e30
-/* Each time the contact set repeats itself Newton's steps become this much shorter, ... */
-#define MODEL_DAMPING 0.5
-/* ... so often in one load step; a set that repeats itself once more ends it. */
-#define MODEL_MAX_DAMPED 3
-/* Iterations without any change of the set after which steps have their full length again. */
-#define MODEL_STEADY 2
-/* The last tangent serves once more where it should end the solve: the next residual is then about twice this one times
-   the last contraction (Deuflhard, Newton Methods for Nonlinear Problems, 2004, sec. 2.2, simplified Newton), with a
-   factor two for what that does not know. Not that from a first residual, which is mostly stiff motions that any
-   tangent takes away: on a plate on a cylinder it promises 200 times too much. */
-#define MODEL_TANGENT_REUSE 4
-/* With softened penalties a solve is to find what touches, not more: this residual (relative to F_ref) is enough. Ten
-   times less or three times more cost a pipe between plates more iterations. */
-#define MODEL_SOFT_ENOUGH 0.1
-/* Newton is limited by its iterations, not by the line search's evaluations. */
-#define MODEL_MAX_FUNCTIONS 1000000
-
-/* Residual at local displacements u into work->f, contact at t_contact, loads at t. ok: every element is in order, on
-   all ranks: a line search that hears of a domain error on one rank alone leaves the others waiting. */
-PetscErrorCode ModelResidual(Model model, const PetscReal *u, PetscReal t, PetscReal t_contact, PetscBool *ok)
-{
-  ModelWork *work   = model->work;
-  PetscReal  sum[4] = {0, 0, 0, 0}; /* squares of forces in elements, loads, contact; ranks with an inverted element */
-  PetscBool  mine;
-
-  PetscFunctionBeginUser;
-  PetscCall(PetscArrayzero(work->f, model->mesh->n_nodes * model->mesh->dim));
-  TimingBegin(TIMING_ASSEMBLY_ELASTIC);
-  PetscCall(ElasticityResidual(model->elasticity, u, work->f, NULL, &sum[0], &mine));
-  PetscCall(LoadsResidual(model->loads, t, u, work->f, NULL, &sum[1]));
-  TimingEnd(TIMING_ASSEMBLY_ELASTIC);
-  if (!mine) work->inverted = model->mesh->cell_tag[ElasticityInvertedCell(model->elasticity)];
-  if (model->contact) {
-    TimingBegin(TIMING_ASSEMBLY_CONTACT);
-    PetscCall(ContactResidual(model->contact, u, t_contact, work->f, NULL, &sum[2]));
-    TimingEnd(TIMING_ASSEMBLY_CONTACT);
-  }
-  sum[3] = mine ? 0 : 1;
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sum, 4, MPIU_REAL, MPI_SUM, model->mesh->comm));
-  work->scale = PetscSqrtReal(PetscMax(sum[0], PetscMax(sum[1], sum[2])));
-  *ok = sum[3] > 0 ? PETSC_FALSE : PETSC_TRUE; /* on all ranks: line searches act on it without asking the others */
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-PetscErrorCode ModelTrial(Model model, Vec x)
-{
-  PetscFunctionBeginUser;
-  PetscCall(LoadsPrescribe(model->loads, model->t, model->work->trial));
-  PetscCall(MeshGlobalToLocal(model->mesh, x, model->work->trial));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
+/* Each time the contact set repeats itself, Newton's steps are shortened by this factor. */
+#define NEWTON_DAMPING 0.5
+/* Steps are shortened this many times in one load step. A contact set that repeats itself once more ends the solve. */
+#define NEWTON_MAX_DAMPED 3
+/* After this many iterations without a change of the contact set, steps have their full length again. */
+#define NEWTON_STEADY 2
+/* The last tangent serves for one more iteration where that iteration should end the solve. The next residual is
+   estimated as twice this residual times the last contraction (Deuflhard, Newton Methods for Nonlinear Problems, 2004,
+   sec. 2.2, simplified Newton). The factor is that two, times two for what the estimate does not know. The estimate is
+   not made from a first residual: that comes mostly from stiff motions, which any tangent removes. On a plate on a
+   cylinder the estimate from it is 200 times too small. */
+#define NEWTON_TANGENT_REUSE 4
+/* With softened penalties a solve only has to find which nodes touch. This residual, relative to F_ref, is enough. A
+   value ten times smaller or three times larger cost a pipe between plates more iterations. */
+#define NEWTON_SOFT_ENOUGH 0.1
+/* Newton's method is limited by its iterations, not by this number of evaluations in the line search. */
+#define NEWTON_MAX_FUNCTIONS 1000000
 
 static PetscErrorCode ModelFunction(SNES snes, Vec x, Vec F, void *context)
 {
@@ -71,69 +28,10 @@ static PetscErrorCode ModelFunction(SNES snes, Vec x, Vec F, void *context)
   PetscBool ok;
 
   PetscFunctionBeginUser;
-  PetscCall(ModelTrial(model, x));
-  PetscCall(ModelResidual(model, model->work->trial, model->t, model->t, &ok));
-  PetscCall(MeshLocalToGlobal(model->mesh, model->work->f, F));
-  PetscCall(ContactSpringsResidual(model->work->stabiliser, x, F));
+  PetscCall(ProblemSetTrial(model->problem, x, model->t));
+  PetscCall(ProblemResidual(model->problem, model->problem->trial, model->t, model->t, &ok));
+  PetscCall(ProblemCollectResidual(model->problem, x, F));
   if (!ok) PetscCall(SNESSetFunctionDomainError(snes));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Potential energy at the trial displacements, all ranks; out of reach where an element is inverted. */
-static PetscErrorCode ModelEnergy(Model model, PetscReal *energy)
-{
-  PetscReal sum[2] = {0, 0}; /* energy, ranks with an inverted element */
-  PetscBool ok;
-
-  PetscFunctionBeginUser;
-  TimingBegin(TIMING_ASSEMBLY_ELASTIC);
-  PetscCall(ElasticityResidual(model->elasticity, model->work->trial, NULL, &sum[0], NULL, &ok));
-  PetscCall(LoadsResidual(model->loads, model->t, model->work->trial, NULL, &sum[0], NULL));
-  TimingEnd(TIMING_ASSEMBLY_ELASTIC);
-  if (model->contact) {
-    TimingBegin(TIMING_ASSEMBLY_CONTACT);
-    PetscCall(ContactResidual(model->contact, model->work->trial, model->t, NULL, &sum[0], NULL));
-    TimingEnd(TIMING_ASSEMBLY_CONTACT);
-  }
-  sum[1] = ok ? 0 : 1;
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sum, 2, MPIU_REAL, MPI_SUM, model->mesh->comm));
-  *energy = sum[1] > 0 ? MODEL_INVERTED : sum[0];
-  if (!(sum[1] > 0)) model->work->energy = sum[0];
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-static PetscErrorCode ModelObjective(SNES snes, Vec x, PetscReal *objective, void *context)
-{
-  Model      model = context;
-  ModelWork *work  = model->work;
-  PetscBool  ok;
-
-  PetscFunctionBeginUser;
-  (void)snes;
-  PetscCall(ModelTrial(model, x));
-  if (!work->near) {
-    PetscCall(ModelEnergy(model, objective));
-    PetscCall(ContactSpringsEnergy(work->stabiliser, x, objective));
-    PetscFunctionReturn(PETSC_SUCCESS);
-  }
-  PetscCall(ModelResidual(model, work->trial, model->t, model->t, &ok));
-  PetscCall(MeshLocalToGlobal(model->mesh, work->f, work->residual));
-  PetscCall(ContactSpringsResidual(work->stabiliser, x, work->residual));
-  PetscCall(VecNorm(work->residual, NORM_2, objective));
-  *objective *= MODEL_RESIDUAL_WEIGHT;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* The contact part C of the tangent at (u, t), with its place in the matrix; how many of its terms are other ones. */
-static PetscErrorCode ModelContactTangent(Model model, const PetscReal *u, PetscReal t, Mat *C, PetscBool *changed,
-                                          PetscInt *terms)
-{
-  PetscFunctionBeginUser;
-  TimingBegin(TIMING_ASSEMBLY_CONTACT);
-  PetscCall(ContactTangent(model->contact, u, t, C, changed));
-  if (*changed && model->A == model->P) PetscCall(ElasticityMatrixJoin(model->elasticity, *C));
-  PetscCall(ContactTangentChanges(model->contact, terms));
-  TimingEnd(TIMING_ASSEMBLY_CONTACT);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -178,55 +76,57 @@ static PetscErrorCode ModelOrder(Model model)
   PetscBool couples = PETSC_FALSE;
 
   PetscFunctionBeginUser;
-  if (model->work->ordered || ModelIsLinear(model))
+  if (model->work->ordered || ProblemIsLinear(model->problem))
     PetscFunctionReturn(PETSC_SUCCESS); /* a single solve is done sooner with any */
   model->work->ordered = PETSC_TRUE;
   PetscCall(ModelCouples(model, &couples));
-  PetscCall(LinearSolverOrder(model->work->solver, model->P, couples));
+  PetscCall(LinearSolverOrder(model->work->solver, model->problem->P, couples));
   if (!LinearSolverBorders(model->work->solver)) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(MatDestroy(&model->A));
-  PetscCall(SumOperatorCreate(model->P, &model->A));
-  PetscCall(SNESSetJacobian(model->snes, model->A, model->P, NULL, NULL)); /* NULL: as it is */
+  PetscCall(ProblemSetForm(model->problem, TANGENT_BORDERED));
+  PetscCall(SNESSetJacobian(model->snes, model->problem->A, model->problem->P, NULL, NULL)); /* NULL: as it is */
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* What contact adds to the tangent stays apart from it: C for products, its terms for the factor. */
-static PetscErrorCode ModelBorder(Model model, Mat C)
+/* Gives the linear solver the contact terms that the matrix P does not hold. */
+static PetscErrorCode ModelBorder(Model model)
 {
   Border border;
 
   PetscFunctionBeginUser;
-  if (model->A == model->P) PetscFunctionReturn(PETSC_SUCCESS);
+  if (model->problem->form == TANGENT_JOINED) PetscFunctionReturn(PETSC_SUCCESS);
   TimingBegin(TIMING_ASSEMBLY_CONTACT);
-  PetscCall(SumOperatorSet(model->A, C));
   PetscCall(ContactGetBorder(model->contact, &border));
   PetscCall(LinearSolverSetBorder(model->work->solver, &border));
   TimingEnd(TIMING_ASSEMBLY_CONTACT);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The tangent at (u, t) into model->A and model->P. */
+/*@
+  ModelTangent - computes the tangent at (u, t) and prepares the linear solver for it.
+
+  Collective
+
+  Input Parameters:
++ model - the model
+. u     - local displacements u[n_nodes*dim] (length)
+- t     - load parameter
+
+  Note:
+  The first call lets the linear solver order its unknowns. Where the factor of an earlier tangent still serves, SNES is
+  told to keep the preconditioner, and the factor is updated for the contact terms that came and went.
+@*/
 PetscErrorCode ModelTangent(Model model, const PetscReal *u, PetscReal t)
 {
-  Mat       C       = NULL;
-  PetscBool changed = PETSC_FALSE, older, joined;
-  PetscInt  terms   = 0;
+  TangentChange change;
+  PetscBool     older;
 
   PetscFunctionBeginUser;
   PetscCall(ModelOrder(model));
-  joined = (PetscBool)(model->A == model->P);
-  if (model->contact) PetscCall(ModelContactTangent(model, u, t, &C, &changed, &terms));
-  TimingBegin(TIMING_ASSEMBLY_ELASTIC);
-  PetscCall(ElasticityTangent(model->elasticity, u));
-  PetscCall(LoadsTangent(model->loads, t, u, model->elasticity));
-  PetscCall(ElasticityMatrix(model->elasticity, joined ? C : NULL, model->work->residual, &model->P));
-  PetscCall(VecNorm(model->work->residual, NORM_2, &model->work->stiffness));
-  TimingEnd(TIMING_ASSEMBLY_ELASTIC);
-  PetscCall(ContactSpringsTangent(model->work->stabiliser, model->P));
-  PetscCall(ModelBorder(model, C));
-  PetscCall(LinearSolverNext(model->work->solver, u, C, (PetscBool)(changed && joined), terms, &older));
-  PetscCall(SNESSetLagPreconditioner(model->snes, older ? -1 : 1)); /* after each tangent SNES tells the KSP so */
-  if (older && terms > 0) PetscCall(ModelUpdateFactor(model, terms));
+  PetscCall(ProblemTangent(model->problem, u, t, &change));
+  PetscCall(ModelBorder(model));
+  PetscCall(LinearSolverNext(model->work->solver, u, change.C, change.pattern, change.terms, &older));
+  PetscCall(SNESSetLagPreconditioner(model->snes, older ? -1 : 1)); /* SNES tells the KSP so after each tangent */
+  if (older && change.terms > 0) PetscCall(ModelUpdateFactor(model, change.terms));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -238,21 +138,8 @@ static PetscErrorCode ModelJacobian(SNES snes, Vec x, Mat J, Mat P, void *contex
   (void)snes;
   (void)J;
   (void)P;
-  PetscCall(ModelTrial(model, x));
-  PetscCall(ModelTangent(model, model->work->trial, model->t));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* What round-off leaves of the residual at the trial displacements. */
-PetscErrorCode ModelRoundOff(Model model, PetscReal *force)
-{
-  PetscReal most = 0;
-
-  PetscFunctionBeginUser;
-  for (PetscInt i = 0; i < model->mesh->n_nodes * model->mesh->dim; i++)
-    most = PetscMax(most, PetscAbsReal(model->work->trial[i]));
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &most, 1, MPIU_REAL, MPI_MAX, model->mesh->comm));
-  *force = MODEL_ROUND_OFF * PETSC_MACHINE_EPSILON * model->work->stiffness * most;
+  PetscCall(ProblemSetTrial(model->problem, x, model->t));
+  PetscCall(ModelTangent(model, model->problem->trial, model->t));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -281,13 +168,13 @@ static PetscErrorCode ModelBreakCycle(Model model, PetscReal fnorm, SNESConverge
   PetscFunctionBeginUser;
   PetscCall(ContactCycleLook(work->watch, fnorm, &period, &steady));
   PetscCall(SNESGetLineSearch(model->snes, &search));
-  if (steady >= MODEL_STEADY) PetscCall(SNESLineSearchSetDamping(search, work->damping));
+  if (steady >= NEWTON_STEADY) PetscCall(SNESLineSearchSetDamping(search, work->damping));
   if (!period) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(ContactCycleLocate(work->watch, period, work->cycle, sizeof(work->cycle)));
   PetscCall(PetscInfo(model->snes, "%s\n", work->cycle));
   PetscCall(ContactCycleStart(work->watch));
-  PetscCall(SNESLineSearchSetDamping(search, work->damping * PetscPowRealInt(MODEL_DAMPING, ++work->cycles)));
-  if (work->cycles <= MODEL_MAX_DAMPED) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(SNESLineSearchSetDamping(search, work->damping * PetscPowRealInt(NEWTON_DAMPING, ++work->cycles)));
+  if (work->cycles <= NEWTON_MAX_DAMPED) PetscFunctionReturn(PETSC_SUCCESS);
   work->cycling = PETSC_TRUE;
   *reason       = SNES_DIVERGED_LINE_SEARCH;
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -298,7 +185,7 @@ static PetscErrorCode ModelBreakCycle(Model model, PetscReal fnorm, SNESConverge
 static PetscErrorCode ModelReuseTangent(Model model, PetscInt it, PetscReal norm, PetscReal allowed)
 {
   const PetscBool reuse =
-    it > 1 && MODEL_TANGENT_REUSE * norm * norm <= allowed * model->work->norm ? PETSC_TRUE : PETSC_FALSE;
+    it > 1 && NEWTON_TANGENT_REUSE * norm * norm <= allowed * model->work->norm ? PETSC_TRUE : PETSC_FALSE;
 
   PetscFunctionBeginUser;
   PetscCall(SNESSetLagJacobian(model->snes, reuse ? -1 : 1));
@@ -326,7 +213,7 @@ static PetscErrorCode ModelConverged(SNES snes, PetscInt it, PetscReal xnorm, Pe
                                      SNESConvergedReason *reason, void *context)
 {
   Model           model = context;
-  const PetscReal scale = PetscMax(model->force_scale, model->work->scale);
+  const PetscReal scale = ProblemForceScale(model->problem);
   PetscReal       round_off, allowed;
   PetscBool       converged = PETSC_TRUE;
 
@@ -335,11 +222,11 @@ static PetscErrorCode ModelConverged(SNES snes, PetscInt it, PetscReal xnorm, Pe
   (void)xnorm;
   (void)snorm;
   PetscCall(ModelCountCut(model, it));
-  PetscCall(ModelRoundOff(model, &round_off));
+  PetscCall(ProblemRoundOff(model->problem, &round_off));
   if (model->contact) PetscCall(ContactGapsConverged(model->contact, &converged));
-  *reason           = SNES_CONVERGED_ITERATING;
-  model->work->near = fnorm <= MODEL_ENERGY_ROUND_OFF * scale ? PETSC_TRUE : PETSC_FALSE;
-  allowed = PetscMax((model->work->soft ? MODEL_SOFT_ENOUGH : model->scene->solver.tolerance) * scale, round_off);
+  *reason = SNES_CONVERGED_ITERATING;
+  ModelChooseObjective(model, fnorm, NAN);
+  allowed = PetscMax((model->work->soft ? NEWTON_SOFT_ENOUGH : model->scene->solver.tolerance) * scale, round_off);
   model->work->balanced = fnorm <= allowed ? PETSC_TRUE : PETSC_FALSE;
   PetscCall(ModelReuseTangent(model, it, fnorm, allowed));
   if (!it && model->work->start == 0 && !model->work->soft) model->work->start = fnorm;
@@ -395,7 +282,7 @@ static PetscErrorCode ModelReadOptions(Model model, PetscErrorCode (*read)(SNES)
 
 PetscErrorCode ModelCreateSNES(Model model)
 {
-  const PetscBool symmetric = LoadsConservative(model->loads);
+  const PetscBool symmetric = LoadsConservative(model->problem->loads);
   SNESLineSearch  search;
   KSP             ksp;
 
@@ -403,9 +290,8 @@ PetscErrorCode ModelCreateSNES(Model model)
   PetscCall(SNESCreate(model->mesh->comm, &model->snes));
   PetscCall(SNESSetType(model->snes, SNESNEWTONLS));
   PetscCall(SNESSetFunction(model->snes, NULL, ModelFunction, model));
-  PetscCall(SNESSetJacobian(model->snes, model->A, model->P, ModelJacobian, model));
-  if (symmetric) PetscCall(SNESSetObjective(model->snes, ModelObjective, model));
-  PetscCall(SNESSetTolerances(model->snes, 0, 0, 0, model->scene->solver.max_iterations, MODEL_MAX_FUNCTIONS));
+  PetscCall(SNESSetJacobian(model->snes, model->problem->A, model->problem->P, ModelJacobian, model));
+  PetscCall(SNESSetTolerances(model->snes, 0, 0, 0, model->scene->solver.max_iterations, NEWTON_MAX_FUNCTIONS));
   PetscCall(SNESSetConvergenceTest(model->snes, ModelConverged, model, NULL));
   PetscCall(SNESSetErrorIfNotConverged(model->snes, PETSC_FALSE));
   PetscCall(SNESGetLineSearch(model->snes, &search));
@@ -478,7 +364,7 @@ PetscErrorCode ModelNewton(Model model, SolveReport *report)
   if (report->result == SOLVE_LINEAR ||
       (report->result != SOLVE_CONVERGED && its > 0 && LinearCheckLost(model->linear)))
     PetscCall(ModelLinearFailure(model, &report->result));
-  PetscCall(ModelTrial(model, model->x)); /* whatever SNES looked at last */
-  report->residual = model->work->scale > 0 ? norm / PetscMax(model->force_scale, model->work->scale) : 0;
+  PetscCall(ProblemSetTrial(model->problem, model->x, model->t)); /* whatever SNES looked at last */
+  report->residual = model->problem->force > 0 ? norm / ProblemForceScale(model->problem) : 0;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -17,19 +17,13 @@
  * would pass through each other. */
 #define RAMP_LEAST 0.1
 
-/* Elastic energy (all ranks) at model->x, and what it is more than in the accepted state, or less */
-static PetscErrorCode ModelElasticEnergy(Model model, PetscReal *energy, PetscReal *change)
+/* Energy (all ranks) at the trial displacements of the contact that the prediction did not count on. */
+static PetscErrorCode ModelUnpredictedEnergy(Model model, PetscReal *energy)
 {
-  PetscReal sum[2] = {0, 0};
-  PetscBool ok;
-
   PetscFunctionBeginUser;
-  PetscCall(ModelTrial(model, model->x));
-  PetscCall(ElasticityResidual(model->elasticity, model->work->trial, NULL, &sum[0], NULL, &ok));
-  PetscCall(ElasticityResidual(model->elasticity, model->work->accepted_u, NULL, &sum[1], NULL, &ok));
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sum, 2, MPIU_REAL, MPI_SUM, model->mesh->comm));
-  *energy = sum[0];
-  *change = PetscAbsReal(sum[0] - sum[1]);
+  *energy = 0;
+  PetscCall(ContactUnpredictedEnergy(model->contact, model->problem->trial, model->t, energy));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, energy, 1, MPIU_REAL, MPI_SUM, model->mesh->comm));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -38,19 +32,22 @@ static PetscErrorCode ModelElasticEnergy(Model model, PetscReal *energy, PetscRe
 static PetscErrorCode ModelChooseSoftness(Model model, PetscBool unpredicted, PetscReal least, PetscReal full,
                                           PetscReal *most)
 {
-  PetscReal elastic = 0, change = 0, allowed, energy;
+  const Problem problem = model->problem;
+  PetscReal     elastic, accepted, allowed, energy;
+  PetscBool     ok;
 
   PetscFunctionBeginUser;
-  PetscCall(ModelElasticEnergy(model, &elastic, &change));
-  allowed = unpredicted ? PetscMax(RAMP_UNPREDICTED * change, RAMP_NEGLIGIBLE * elastic) : RAMP_RAISED * elastic;
+  PetscCall(ProblemSetTrial(problem, model->x, model->t));
+  PetscCall(ProblemEnergy(problem, problem->trial, model->t, ENERGY_ELASTIC, &elastic, &ok));
+  PetscCall(ProblemEnergy(problem, model->work->accepted_u, model->work->accepted_t, ENERGY_ELASTIC, &accepted, &ok));
+  allowed = unpredicted ? PetscMax(RAMP_UNPREDICTED * PetscAbsReal(elastic - accepted), RAMP_NEGLIGIBLE * elastic)
+                        : RAMP_RAISED * elastic;
   for (*most = full;; *most = PetscMax(least, *most / RAMP_FACTOR)) {
-    energy = 0;
     PetscCall(ContactSoften(model->contact, *most));
     if (unpredicted)
-      PetscCall(ContactUnpredictedEnergy(model->contact, model->work->trial, model->t, &energy));
+      PetscCall(ModelUnpredictedEnergy(model, &energy));
     else
-      PetscCall(ContactResidual(model->contact, model->work->trial, model->t, NULL, &energy, NULL));
-    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &energy, 1, MPIU_REAL, MPI_SUM, model->mesh->comm));
+      PetscCall(ProblemEnergy(problem, problem->trial, model->t, ENERGY_CONTACT, &energy, &ok));
     if (energy <= allowed || *most <= least) break;
   }
   PetscCall(ContactSoften(model->contact, PETSC_MAX_REAL));
@@ -95,7 +92,9 @@ PetscErrorCode ModelRampPenalty(Model model, SolveReport *report)
     PetscCall(ModelSolveSoft(model, most, report));
     if (report->result != SOLVE_CONVERGED) break;
     if (model->work->left) {
-      PetscCall(ModelRenewLists(model, PETSC_FALSE, &hold));
+      model->work->renewed++;
+      PetscCall(ProblemRenewLists(model->problem, model->work->accepted_u, model->work->accepted_t, model->t,
+                                  PETSC_TRUE, PETSC_FALSE, &hold));
       report->regathered++;
     } else
       PetscCall(ModelChooseSoftness(model, PETSC_FALSE, RAMP_FACTOR * most, full, &most));

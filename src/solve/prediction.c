@@ -23,10 +23,9 @@ static PetscErrorCode ModelStepLinear(Model model, const PetscReal *u, const Pet
   PetscFunctionBeginUser;
   PetscCall(VecDuplicate(model->x, &b));
   PetscCall(VecDuplicate(model->x, &dx));
-  PetscCall(MeshLocalToGlobal(model->mesh, model->work->f, b));
-  PetscCall(ContactSpringsResidual(model->work->stabiliser, model->x, b));
+  PetscCall(ProblemCollectResidual(model->problem, model->x, b));
   PetscCall(SNESGetKSP(model->snes, &ksp));
-  PetscCall(KSPSetOperators(ksp, model->A, model->P));
+  PetscCall(KSPSetOperators(ksp, model->problem->A, model->problem->P));
   if (!model->work->extrapolated) PetscCall(LinearSolverSetPrediction(model->work->solver, PETSC_TRUE));
   PetscCall(KSPSolve(ksp, b, dx));
   if (!model->work->extrapolated) PetscCall(LinearSolverSetPrediction(model->work->solver, PETSC_FALSE));
@@ -55,7 +54,7 @@ static PetscErrorCode ModelStepLoads(Model model, const PetscReal *u, PetscReal 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(n, &step));
   PetscCall(PetscArraycpy(step, u, n));
-  PetscCall(LoadsPrescribe(model->loads, model->t, step));
+  PetscCall(LoadsPrescribe(model->problem->loads, model->t, step));
   for (PetscInt i = 0; i < n; i++) step[i] -= u[i];
   if (holding)
     PetscCall(ContactHoldActiveSet(model->contact, PETSC_TRUE,
@@ -64,10 +63,10 @@ static PetscErrorCode ModelStepLoads(Model model, const PetscReal *u, PetscReal 
   PetscCall(LinearSolverSetStart(work->solver, work->accepted_start));
   if (model->contact) PetscCall(ContactMultiplyBegin(model->contact, step, t, model->t));
   PetscCall(ModelTangent(model, u, t));
-  PetscCall(ModelResidual(model, u, model->t, t, &ok));
+  PetscCall(ProblemResidual(model->problem, u, model->t, t, &ok));
   if (holding) PetscCall(ContactMarkPredicted(model->contact));
-  PetscCall(ElasticityMultiplyLocal(model->elasticity, step, work->f));
-  if (model->contact) PetscCall(ContactMultiplyEnd(model->contact, work->f));
+  PetscCall(ElasticityMultiplyLocal(model->problem->elasticity, step, model->problem->f));
+  if (model->contact) PetscCall(ContactMultiplyEnd(model->contact, model->problem->f));
   PetscCall(ModelStepLinear(model, u, step, t, report));
   if (holding) PetscCall(ContactHoldActiveSet(model->contact, PETSC_FALSE, PETSC_FALSE));
   PetscCall(PetscFree(step));
@@ -101,15 +100,6 @@ static PetscErrorCode ModelLargestTurn(Model model, const PetscReal *u, const Pe
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Local displacements at (x, t) into u. */
-static PetscErrorCode ModelLocal(Model model, Vec x, PetscReal t, PetscReal *u)
-{
-  PetscFunctionBeginUser;
-  PetscCall(LoadsPrescribe(model->loads, t, u));
-  PetscCall(MeshGlobalToLocal(model->mesh, x, u));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* ModelExtrapolate - the displacements at t that the way so far leads to expect, prescribed ones included: local ones
    u[n_nodes*dim], and the free ones among them.
 
@@ -120,25 +110,8 @@ PetscErrorCode ModelExtrapolate(Model model, PetscReal t, PetscReal *u, Vec x, P
   *smooth = PETSC_FALSE;
   if (model->work->extrapolation) PetscCall(ExtrapolationEvaluate(model->work->extrapolation, t, u, smooth));
   if (!*smooth) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(LoadsPrescribe(model->loads, t, u));
+  PetscCall(LoadsPrescribe(model->problem->loads, t, u));
   PetscCall(MeshCollectFree(model->mesh, u, x));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* ModelInOrder - is no element turned inside out at local displacements u, on any rank, and do the lists reach so far?
- * Collective. */
-PetscErrorCode ModelInOrder(Model model, const PetscReal *u, PetscBool *ok)
-{
-  PetscReal motion = 0;
-  PetscBool mine;
-
-  PetscFunctionBeginUser;
-  TimingBegin(TIMING_ASSEMBLY_ELASTIC);
-  PetscCall(ElasticityResidual(model->elasticity, u, NULL, NULL, NULL, &mine));
-  TimingEnd(TIMING_ASSEMBLY_ELASTIC);
-  PetscCallMPI(MPI_Allreduce(&mine, ok, sizeof(PetscBool), MPI_BYTE, MPI_BAND, model->mesh->comm));
-  if (model->contact) PetscCall(ModelMotion(model, u, model->t, &motion));
-  *ok = (PetscBool)(*ok && motion <= model->work->expected);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -153,10 +126,11 @@ static PetscErrorCode ModelPredictFromExtrapolation(Model model, SolveReport *re
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc2(n, &u, n, &v));
   PetscCall(ModelExtrapolate(model, model->t, u, model->x, &work->extrapolated));
-  if (work->extrapolated) PetscCall(ModelInOrder(model, u, &work->extrapolated));
+  if (work->extrapolated)
+    PetscCall(ProblemInOrder(model->problem, work->accepted_u, work->accepted_t, u, model->t, &work->extrapolated));
   if (work->extrapolated) {
     PetscCall(ModelStepLoads(model, u, model->t, (PetscBool)(model->contact != NULL), report));
-    PetscCall(ModelLocal(model, model->x, model->t, v));
+    PetscCall(ProblemDisplacements(model->problem, model->x, model->t, v));
     PetscCall(ModelLargestTurn(model, u, v, &turn));
     work->extrapolated = (PetscBool)(report->result == SOLVE_CONVERGED && turn <= PREDICTION_FARTHEST);
   }
@@ -189,12 +163,12 @@ static PetscErrorCode ModelReachOn(Model model, const PetscReal *u, PetscReal t,
   PetscBool ok, within;
 
   PetscFunctionBeginUser;
-  PetscCall(ModelResidual(model, u, t, t, &ok));
+  PetscCall(ProblemResidual(model->problem, u, t, t, &ok));
   PetscCall(ContactListsReach(model->contact, &within));
   if (within) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(ModelMotion(model, u, t, &motion));
+  PetscCall(ProblemMotion(model->problem, model->work->accepted_u, model->work->accepted_t, u, t, &motion));
   TimingBegin(TIMING_SEARCH);
-  PetscCall(ContactListsRenew(model->contact, u, t, PetscMax(motion, model->work->expected)));
+  PetscCall(ContactListsRenew(model->contact, u, t, PetscMax(motion, model->problem->expected)));
   TimingEnd(TIMING_SEARCH);
   report->regathered++;
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -218,14 +192,14 @@ PetscErrorCode ModelPredictFar(Model model, SolveReport *report)
   PetscCall(PetscArraycpy(u, model->work->accepted_u, n));
   if (model->contact) PetscCall(ContactSoften(model->contact, PREDICTION_SOFT));
   for (PetscInt piece = 0; piece < PREDICTION_PIECES && report->result == SOLVE_CONVERGED; piece++) {
-    PetscCall(ModelLocal(model, model->x, model->t, v));
+    PetscCall(ProblemDisplacements(model->problem, model->x, model->t, v));
     PetscCall(ModelLargestTurn(model, u, v, &turn));
     if (turn <= PREDICTION_FARTHEST) break;
     part = PREDICTION_FARTHEST / turn;
     t += part * (model->t - t);
     PetscCall(VecAXPBY(model->x, 1 - part, part, from));
     PetscCall(VecCopy(model->x, from));
-    PetscCall(ModelLocal(model, from, t, u));
+    PetscCall(ProblemDisplacements(model->problem, from, t, u));
     if (model->contact) PetscCall(ModelReachOn(model, u, t, report));
     PetscCall(ModelStepLoads(model, u, t, PETSC_FALSE, report));
   }
@@ -246,9 +220,9 @@ PetscErrorCode ModelFollowLists(Model model, SolveReport *report)
 
   PetscFunctionBeginUser;
   PetscCall(ContactHoldActiveSet(model->contact, PETSC_TRUE, PETSC_FALSE));
-  PetscCall(ModelTangent(model, model->work->trial, model->t));
-  PetscCall(ModelResidual(model, model->work->trial, model->t, model->t, &ok));
-  PetscCall(ModelStepLinear(model, model->work->trial, NULL, model->t, report));
+  PetscCall(ModelTangent(model, model->problem->trial, model->t));
+  PetscCall(ProblemResidual(model->problem, model->problem->trial, model->t, model->t, &ok));
+  PetscCall(ModelStepLinear(model, model->problem->trial, NULL, model->t, report));
   PetscCall(ContactHoldActiveSet(model->contact, PETSC_FALSE, PETSC_FALSE));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -307,7 +307,7 @@ PetscErrorCode LoadStepperSolve(LoadStepper stepper, StepperReport *report)
   StepRecord record;
 
   PetscFunctionBeginUser;
-  if (ModelIsLinear(stepper->model))
+  if (ProblemIsLinear(stepper->model->problem))
     stepper->size.dt = stepper->size.initial = stepper->size.dt_max = 1; /* the answer at any t is one solve away */
   stepper->start        = stepper->size;
   stepper->report.t     = stepper->model->t;

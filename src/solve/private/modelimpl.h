@@ -1,93 +1,82 @@
-/* What the files of the model share and nobody else sees: model.c holds the state, newton.c finds equilibrium with the
-   lists that are there, equilibrium.c is the way from an accepted state to the next one, prediction.c and softstart.c
-   parts of it; settle.c makes the contact of their linear steps right. */
+/* What the solvers share and no other folder sees: the working state of a model, and the functions that one solver
+   offers to those above it.
+
+   problem.c is below all of them. linearcontact.c finds the contact that is right at the end of a linear step.
+   linesearch.c chooses what the line search compares, and lengthens steps that contact cuts. newton.c runs SNES once
+   with the present contact lists. prediction.c finds a first iterate, penaltyramp.c improves it on softened penalties.
+   equilibrium.c goes from an accepted state to the next one. model.c holds the accepted state. Each file calls only
+   those named before it. */
 #pragma once
 #include "contact/contactcycle.h"
 #include "contact/contactline.h"
+#include "extrapolation.h"
 #include "linear/linearsolver.h"
 #include "solve/model.h"
-#include "extrapolation.h"
-#include "contact/contactsprings.h"
 
-/* Times that contact lists are replaced and the step solved on before it counts as unsettled. */
+/* Contact lists may be replaced this many times in one solve before the solve counts as failed because its lists do not
+   settle. */
 #define MODEL_MAX_REGATHER 8
-/* Round-off of the residual, in machine epsilons times stiffness times displacement: a body that is moved without any
-   force has nothing else to be measured against. Measured: 0.1 to 1.5. */
-#define MODEL_ROUND_OFF 16
+
+/* What the line search compares. Energy is the potential energy; it needs conservative loads. Residual is the norm of
+   the residual, for iterates so close to equilibrium that energies differ by round-off only. */
+typedef enum { OBJECTIVE_ENERGY, OBJECTIVE_RESIDUAL } Objective;
 
 typedef struct _n_ModelWork {
-  LinearSolver   solver;
-  PetscBool      ordered; /* it has chosen its ordering */
-  PetscReal     *f;       /* local residual of the last evaluation, all dofs */
-  PetscReal     *trial;   /* local displacements of the last evaluation */
-  PetscReal     *accepted_u;
-  Extrapolation  extrapolation; /* NULL: small kinematics, whose bodies go straight */
-  Vec            accepted_x;
-  PetscReal      accepted_t;
-  Vec            look_ahead; /* x at look_ahead_t by ModelLookAhead() */
-  PetscReal      look_ahead_t;
-  PetscBool      looked_ahead; /* and is one from the accepted state */
-  PetscBool      extrapolated; /* the last prediction, or the way to a forecast, started from where the path leads to */
-  PetscBool      look_ahead_extrapolated; /* so did the forecast */
-  PetscReal      expected;                /* motion that the lists of this step were made for */
-  PetscReal      rate;                    /* largest displacement per unit of t in the last accepted step */
-  PetscReal      scale;                   /* force norm of the last evaluation */
-  PetscReal      stiffness;               /* norm of the elastic tangent's diagonal */
-  PetscInt       inverted;       /* gmsh's tag of a cell of this rank that was turned inside out in this solve, or -1 */
-  PetscBool      near;           /* the iterate is so close that energies differ by round-off only */
-  PetscBool      soft;           /* penalties are softened: a residual within MODEL_SOFT_ENOUGH will do */
-  PetscReal      energy;         /* the last one that was evaluated in this step, 0: none was */
-  PetscReal      step;           /* norm of Newton's last step, before the line search */
-  PetscReal      norm;           /* residual of the iterate before */
-  PetscReal      start;          /* residual where Newton started in this step, 0: it has not yet */
-  PetscReal      accepted_start; /* the same in the last accepted step, 0: unknown */
-  PetscBool      balanced;       /* the residual of the iterate is within the tolerance */
-  PetscInt       renewed;        /* how often that happened in this step */
-  PetscBool      cycling;        /* the contact set repeats itself whatever the steps: the solve ended */
-  PetscInt       cycles;         /* times it repeated itself in this load step */
-  char           cycle[256];     /* the last one in words */
-  PetscReal      damping;        /* of the line search when nothing repeats */
-  PetscBool      left;           /* a slave point slid out of its lists: the solve ended for new ones */
-  PetscInt       cuts;           /* iterations of the last Newton solve that the line search shortened */
-  Vec            residual;       /* of a trial point, while near; the tangent's diagonal for a moment */
-  ContactSprings stabiliser;     /* NULL: no pair asks for it */
-  ContactCycle   watch;          /* of the contact set; NULL: no contact */
-  ContactLine    line;           /* contact along a Newton step; NULL: no contact */
+  LinearSolver  solver;
+  PetscBool     ordered;       /* the linear solver has chosen the order of its unknowns */
+  Vec           residual;      /* of a trial point, for OBJECTIVE_RESIDUAL */
+  ContactCycle  watch;         /* of the contact set; NULL without contact */
+  ContactLine   line;          /* contact along a Newton step; NULL without contact or with follower loads */
+  Extrapolation extrapolation; /* NULL with small kinematics, where bodies move along straight lines */
+  PetscReal     damping;       /* of the line search while no contact set repeats itself */
+
+  /* The accepted state */
+  PetscReal *accepted_u; /* local displacements (length) */
+  Vec        accepted_x; /* free displacements (length) */
+  PetscReal  accepted_t;
+  PetscReal  accepted_start; /* residual norm where Newton's method started in that step; 0: unknown */
+  PetscReal  rate;           /* largest displacement per unit of t in that step */
+
+  /* A look-ahead from the accepted state */
+  Vec       look_ahead; /* free displacements at look_ahead_t by ModelLookAhead() */
+  PetscReal look_ahead_t;
+  PetscBool looked_ahead; /* the look-ahead belongs to the accepted state */
+  PetscBool look_ahead_extrapolated;
+
+  /* The load step at hand */
+  PetscBool extrapolated; /* the prediction started from the extrapolated state */
+  PetscReal start;        /* residual norm where Newton's method started; 0: it has not started */
+  PetscReal energy;       /* the last energy that the line search evaluated; 0: none */
+  PetscInt  renewed;      /* times that a slave point slid out of its lists and new lists were made */
+  PetscInt  cycles;       /* times that the contact set repeated itself */
+  char      cycle[256];   /* the last repetition in words */
+
+  /* One solve by SNES */
+  Objective objective;
+  PetscBool soft;     /* penalties are softened: NEWTON_SOFT_ENOUGH is the tolerance */
+  PetscReal norm;     /* residual norm of the iterate before; 0: its tangent must not serve once more */
+  PetscReal step;     /* norm of Newton's last step, before the line search */
+  PetscBool balanced; /* the residual of the iterate is within the tolerance */
+  PetscBool left;     /* the solve ended because a slave point slid out of its lists */
+  PetscBool cycling;  /* the solve ended because the contact set repeats itself with shorter steps too */
+  PetscInt  cuts;     /* iterations that the line search shortened */
 } ModelWork;
 
-/* model.c */
-PetscBool ModelHasFormulation(Scene, Formulation); /* has some deformable body elements of that kind? */
-/* newton.c */
-PetscErrorCode ModelResidual(Model, const PetscReal *u, PetscReal t, PetscReal t_contact, PetscBool *ok);
-PetscErrorCode ModelTrial(Model, Vec x); /* free displacements x and the prescribed ones into work->trial */
-PetscErrorCode ModelTangent(Model, const PetscReal *u, PetscReal t);
-PetscErrorCode ModelRoundOff(Model,
-                             PetscReal *force); /* what round-off leaves of the residual at the trial displacements */
-PetscErrorCode ModelCreateSNES(Model);
-PetscErrorCode ModelLinearFailure(Model, SolveResult *); /* why the last linear solve failed */
-PetscErrorCode ModelNewton(Model, SolveReport *);        /* SNES once, from model->x; adds what it cost */
+/* linearcontact.c */
+PetscErrorCode ModelSolveLinearContact(Model, const PetscReal *u, const PetscReal *carried, PetscReal t, Vec y);
 /* linesearch.c */
-PetscErrorCode ModelCreateLineSearch(Model); /* what the SNES's line search does where contact cuts a step */
-PetscErrorCode ModelLocateEdge(Model, PetscBool *found,
-                               ContactPlace *); /* does a failed iterate rest on an edge between facets? */
-/* settle.c */
-PetscErrorCode ModelSolveLinearContact(Model, const PetscReal *u, const PetscReal *carried, PetscReal t,
-                                       Vec y); /* a linear step y whose contact is right where it ends */
+PetscErrorCode ModelCreateLineSearch(Model);
+void           ModelChooseObjective(Model, PetscReal residual, PetscReal slope);
+PetscErrorCode ModelLocateEdge(Model, PetscBool *found, ContactPlace *);
+/* newton.c */
+PetscErrorCode ModelCreateSNES(Model);
+PetscErrorCode ModelTangent(Model, const PetscReal *u, PetscReal t);
+PetscErrorCode ModelLinearFailure(Model, SolveResult *);
+PetscErrorCode ModelNewton(Model, SolveReport *);
 /* prediction.c */
-PetscErrorCode ModelExtrapolate(Model, PetscReal t, PetscReal *u, Vec x,
-                                PetscBool *smooth);                    /* where the way so far leads to */
-PetscErrorCode ModelInOrder(Model, const PetscReal *u, PetscBool *ok); /* can elements and contact lists be there? */
-PetscErrorCode ModelPredict(Model, SolveReport *);                     /* model->x at model->t by one linear solve */
-PetscErrorCode ModelPredictFar(Model, SolveReport *);                  /* in pieces, where that is too far */
-PetscErrorCode ModelFollowLists(Model,
-                                SolveReport *); /* a linear step that holds contact while its lists are other ones */
-/* softstart.c */
-PetscErrorCode ModelRampPenalty(
-  Model, SolveReport *); /* from the prediction to where what touches is known, on softened penalties */
-/* equilibrium.c */
-PetscErrorCode ModelRenewLists(Model, PetscBool update_offsets,
-                               PetscBool *hold); /* new lists after a solve, for the next one */
-PetscErrorCode ModelMotion(Model, const PetscReal *u, PetscReal t,
-                           PetscReal *motion); /* largest one between the accepted state and (u, t) */
-PetscErrorCode ModelImposedMotion(Model, PetscReal t,
-                                  PetscReal *motion); /* of what is prescribed, and of rigid tools */
+PetscErrorCode ModelExtrapolate(Model, PetscReal t, PetscReal *u, Vec x, PetscBool *smooth);
+PetscErrorCode ModelPredict(Model, SolveReport *);
+PetscErrorCode ModelPredictFar(Model, SolveReport *);
+PetscErrorCode ModelFollowLists(Model, SolveReport *);
+/* penaltyramp.c */
+PetscErrorCode ModelRampPenalty(Model, SolveReport *);
