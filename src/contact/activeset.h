@@ -7,7 +7,7 @@
      ActiveSetCreate(); then ActiveSetSolve() until it asks for no more columns, ActiveSetAddColumns() for those that it
    asks for
 
-   The same on all ranks; no MPI. */
+   No MPI; one rank needs it. */
 #pragma once
 #include "base/petsccompat.h"
 

@@ -1,27 +1,32 @@
+/* The contact that is right at the end of a linear step, from columns of the factor. */
+#include "base/timing.h"
 #include "contact/contactstep.h"
 #include "modelimpl.h"
-#include "base/timing.h"
 
-/* Terms that change in one step, at most. As many solves at once cost about as much as two or three factors, and save
-   as many iterations; with half as many a pipe between plates has steps that are left alone, and takes 69 iterations
-   instead of 63. */
+/* At most this many terms may change in one step. As many solves at once cost about as much as two or three factors and
+   save as many iterations. With half as many a pipe between plates has steps that stay as they are, and takes 69
+   iterations instead of 63. */
 #define LINEAR_CONTACT_TERMS 256
-/* Numbers in all columns, at most: 0.4 GB */
+/* All columns Z together have at most this many numbers on all ranks, which is 0.4 GB. */
 #define LINEAR_CONTACT_VALUES 5e7
-/* Times that terms are found to change which did not seem to. */
+/* At most this many times terms are found to change that did not seem to change before. */
 #define LINEAR_CONTACT_ROUNDS 16
 
-/* A linear step on the way to its end */
+/* The contact problem of a linear step. The first rank alone solves it and keeps the influence of the terms on each
+   other; results differ in their last bits between ranks, and the ranks must go on together. */
 typedef struct {
   ContactStep contact;
-  ActiveSet   pressing;
-  PetscInt    n, m, rounds;     /* terms near, those that change */
-  Mat Z[LINEAR_CONTACT_ROUNDS]; /* what a pressure of 1 on each of these, in their order, does to the free displacements
-                                 */
-  PetscReal *du, *travel;
+  ActiveSet   active;           /* NULL on the other ranks */
+  PetscInt    n;                /* terms near the contact */
+  PetscInt    m;                /* terms that change */
+  PetscInt    rounds;           /* times that such terms were added */
+  Mat Z[LINEAR_CONTACT_ROUNDS]; /* free displacements under a pressure of 1 on each of these terms, in their order */
+  PetscReal  *du;               /* n_nodes*dim (length) */
+  PetscReal  *travel;           /* n: change of the gaps in the step at hand (length) */
+  PetscMPIInt rank;
 } LinearContact;
 
-/* Local displacements: those carried along, if any, and scale times a global vector. */
+/* Sets du to the carried local displacements, if there are any, plus scale times a global vector. */
 static PetscErrorCode LocalChange(Model model, Vec x, PetscReal scale, const PetscReal *carried, PetscReal *du)
 {
   const PetscInt n = model->mesh->n_nodes * model->mesh->dim;
@@ -33,6 +38,7 @@ static PetscErrorCode LocalChange(Model model, Vec x, PetscReal scale, const Pet
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Finds the terms that may change in the step y and the travel of their gaps. */
 static PetscErrorCode LinearContactBegin(Model model, const PetscReal *u, const PetscReal *carried, PetscReal t, Vec y,
                                          LinearContact *s)
 {
@@ -40,13 +46,14 @@ static PetscErrorCode LinearContactBegin(Model model, const PetscReal *u, const 
 
   PetscFunctionBeginUser;
   *s = (LinearContact){.n = 0};
+  PetscCallMPI(MPI_Comm_rank(model->mesh->comm, &s->rank));
   PetscCall(PetscMalloc1(model->mesh->n_nodes * model->mesh->dim, &s->du));
   PetscCall(LocalChange(model, y, -1, carried, s->du));
   PetscCall(ContactStepCreate(model->contact, u, s->du, t, model->t, &s->contact));
   PetscCall(ContactStepGetTerms(s->contact, &s->n, &terms));
   PetscCall(PetscMalloc1(s->n, &s->travel));
   PetscCall(ContactStepTravel(s->contact, s->du, t, model->t, s->travel));
-  PetscCall(ActiveSetCreate(s->n, terms, s->travel, &s->pressing));
+  if (!s->rank) PetscCall(ActiveSetCreate(s->n, terms, s->travel, &s->active));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -54,21 +61,39 @@ static PetscErrorCode LinearContactEnd(LinearContact *s)
 {
   PetscFunctionBeginUser;
   for (PetscInt r = 0; r < s->rounds; r++) PetscCall(MatDestroy(&s->Z[r]));
-  PetscCall(ActiveSetDestroy(&s->pressing));
+  if (s->active) PetscCall(ActiveSetDestroy(&s->active));
   PetscCall(ContactStepDestroy(&s->contact));
   PetscCall(PetscFree(s->travel));
   PetscCall(PetscFree(s->du));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* What the terms which[m] do to the step. *able: it could be found. */
+/* Adds to the first rank's contact problem how a pressure of 1 on each term which[m] closes all gaps; Z has a column of
+   free displacements for each. The other ranks keep one column at a time, of which they compute their part. */
+static PetscErrorCode LinearContactAddColumns(Model model, LinearContact *s, PetscInt m, const PetscInt *which, Mat Z)
+{
+  PetscReal *G;
+  Vec        z;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1((s->rank ? 1 : m) * s->n, &G));
+  for (PetscInt j = 0; j < m; j++) {
+    PetscCall(MatDenseGetColumnVecRead(Z, j, &z));
+    PetscCall(LocalChange(model, z, 1, NULL, s->du));
+    PetscCall(MatDenseRestoreColumnVecRead(Z, j, &z));
+    PetscCall(ContactStepTravel(s->contact, s->du, model->t, model->t, &G[s->rank ? 0 : j * s->n]));
+  }
+  if (!s->rank) PetscCall(ActiveSetAddColumns(s->active, m, which, G));
+  PetscCall(PetscFree(G));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Solves for the free displacements under a pressure of 1 on each term which[m]. *able: that could be done. */
 static PetscErrorCode LinearContactAdd(Model model, LinearContact *s, PetscInt m, const PetscInt *which,
                                        PetscBool *able)
 {
-  PetscInt   rows, n;
-  PetscReal *G;
-  Mat        B, Z;
-  Vec        z;
+  PetscInt rows, n;
+  Mat      B, Z;
 
   PetscFunctionBeginUser;
   PetscCall(VecGetSize(model->x, &n));
@@ -84,30 +109,20 @@ static PetscErrorCode LinearContactAdd(Model model, LinearContact *s, PetscInt m
   PetscCall(MatDestroy(&B));
   s->Z[s->rounds++] = Z;
   s->m += m;
-  if (!*able) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PetscMalloc1(m * s->n, &G));
-  for (PetscInt j = 0; j < m; j++) {
-    PetscCall(MatDenseGetColumnVecRead(Z, j, &z));
-    PetscCall(LocalChange(model, z, 1, NULL, s->du));
-    PetscCall(MatDenseRestoreColumnVecRead(Z, j, &z));
-    PetscCall(ContactStepTravel(s->contact, s->du, model->t, model->t, &G[j * s->n]));
-  }
-  PetscCall(ActiveSetAddColumns(s->pressing, m, which, G));
-  PetscCall(PetscFree(G));
+  if (*able) PetscCall(LinearContactAddColumns(model, s, m, which, Z));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Goes on as far as the columns at hand allow, on the first rank: what each would find by itself may differ in the last
- * bits, and the ranks go on together. */
+/* Continues on the first rank as far as the columns that are known allow; the other ranks receive the terms which[m]
+   whose columns are missing. */
 static PetscErrorCode LinearContactSolve(Model model, LinearContact *s, PetscInt *m, PetscInt *which,
                                          PetscBool *converged)
 {
   MPI_Comm    comm = model->mesh->comm;
-  PetscMPIInt rank, n;
+  PetscMPIInt n;
 
   PetscFunctionBeginUser;
-  PetscCallMPI(MPI_Comm_rank(comm, &rank));
-  if (!rank) PetscCall(ActiveSetSolve(s->pressing, m, which, converged));
+  if (!s->rank) PetscCall(ActiveSetSolve(s->active, m, which, converged));
   PetscCallMPI(MPI_Bcast(m, 1, MPIU_INT, 0, comm));
   PetscCallMPI(MPI_Bcast(converged, sizeof(PetscBool), MPI_BYTE, 0, comm));
   PetscCall(PetscMPIIntCast(*m, &n));
@@ -115,19 +130,22 @@ static PetscErrorCode LinearContactSolve(Model model, LinearContact *s, PetscInt
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* What the first rank has found: the caller frees excess[m] and pressed[n]. */
+/* Gives all ranks the solution of the first: the excess pressure of each changed term, and which terms are in contact.
+   The caller frees excess[m] and pressed[n] with PetscFree2(). */
 static PetscErrorCode LinearContactGet(Model model, const LinearContact *s, PetscReal **excess, PetscBool **pressed)
 {
   MPI_Comm         comm = model->mesh->comm;
   const PetscReal *found;
-  const PetscBool *presses;
+  const PetscBool *in_contact;
   PetscMPIInt      m, n;
 
   PetscFunctionBeginUser;
-  ActiveSetGet(s->pressing, &found, &presses);
   PetscCall(PetscMalloc2(s->m, excess, s->n, pressed));
-  PetscCall(PetscArraycpy(*excess, found, s->m));
-  PetscCall(PetscArraycpy(*pressed, presses, s->n));
+  if (!s->rank) {
+    ActiveSetGet(s->active, &found, &in_contact);
+    PetscCall(PetscArraycpy(*excess, found, s->m));
+    PetscCall(PetscArraycpy(*pressed, in_contact, s->n));
+  }
   PetscCall(PetscMPIIntCast(s->m, &m));
   PetscCall(PetscMPIIntCast(s->n * (PetscInt)sizeof(PetscBool), &n));
   PetscCallMPI(MPI_Bcast(*excess, m, MPIU_REAL, 0, comm));
@@ -135,8 +153,8 @@ static PetscErrorCode LinearContactGet(Model model, const LinearContact *s, Pets
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The step with what presses in the end; y stays where that goes further than what is near was looked for, as that of a
- * body that has lost its hold. */
+/* Changes the step y by the excess pressures, which makes its contact right. *taken: that was done. It is not where the
+   changed step moves the surfaces further than the terms were chosen for, as with a body that has lost its support. */
 static PetscErrorCode LinearContactTake(Model model, const PetscReal *carried, PetscReal t, LinearContact *s, Vec y,
                                         PetscBool *taken)
 {
@@ -166,15 +184,30 @@ static PetscErrorCode LinearContactTake(Model model, const PetscReal *carried, P
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ModelSolveLinearContact - a linear step whose contact is right where it ends.
+/*@
+  ModelSolveLinearContact - changes a linear step so that its contact is right where it ends.
 
-   Collective. y: the step from free displacements x to x - y by the last tangent, at local displacements u and t;
-   carried (may be NULL): local displacements that go with it. The tangent holds terms that the step opens, and lacks
-   those that it closes; Newton's method finds that out one iteration later, and so on until the set is right: most of
-   its iterations. Here the step's own problem, linear but for its contact conditions, is solved to its end, with the
-   factor at hand. Where that is not had, y stays.
+  Collective
 
-   Source: Josephy, Newton's method for generalized equations, 1979: of second order, whatever opens or closes. */
+  Input Parameters:
++ model   - after a solve with the tangent at (u, t)
+. u       - local displacements u[n_nodes*dim] (length) where the step begins
+. carried - local displacements that belong to the step besides y (length); may be NULL
+. t       - load parameter where the step begins; it ends at model->t
+- y       - the step: free displacements go from x to x - y (length)
+
+  Output Parameter:
+. y - the changed step; unchanged without contact, with an iterative solver, or where the contact problem has no
+      solution within the bounds at the top of this file
+
+  Notes:
+  The tangent holds terms that the step opens, and lacks terms that the step closes. Newton's method alone finds that
+  out one iteration later, and repeats it until the set is right, which takes most of its iterations. Here the problem
+  of the step, linear but for its contact conditions, is solved to its end with the factor that is known.
+
+  Source: Josephy, Newton's method for generalized equations, 1979. The convergence is of second order, whatever opens
+  or closes.
+@*/
 PetscErrorCode ModelSolveLinearContact(Model model, const PetscReal *u, const PetscReal *carried, PetscReal t, Vec y)
 {
   PetscBool     able, converged = PETSC_FALSE;
