@@ -12,7 +12,7 @@
    a body that flies freely covers a thousand times its penetration at rest. */
 #define EQUILIBRIUM_MAX_RELAX 30
 
-/* Adds that a slave node rests on an edge between facets, where it does. */
+/* Adds to the text that a slave node rests on an edge between facets. *found: such a node exists. */
 static PetscErrorCode ModelBlameFacets(Model model, char *text, size_t size, PetscBool *found)
 {
   ContactPlace place;
@@ -30,7 +30,7 @@ static PetscErrorCode ModelBlameFacets(Model model, char *text, size_t size, Pet
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Adds that the penalty is so stiff that rounding alone may keep the residual above the tolerance, where it is. */
+/* Adds to the text that the penalty is too stiff, where rounding alone may keep the residual above the tolerance. */
 static PetscErrorCode ModelBlamePenalty(Model model, char *text, size_t size)
 {
   const PetscReal allowed = model->scene->solver.tolerance * ProblemForceScale(model->problem);
@@ -49,7 +49,8 @@ static PetscErrorCode ModelBlamePenalty(Model model, char *text, size_t size)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* What is known of a failed solve: the bodies that nothing holds where the system is singular, else where to look. */
+/* Writes into the report what is known of a failed solve: the bodies that nothing holds where the system is singular,
+   otherwise the nodes with the largest residuals. */
 static PetscErrorCode ModelExplainFailure(Model model, SolveReport *report)
 {
   const PetscBool adrift = (PetscBool)(report->result == SOLVE_LINEAR || report->result == SOLVE_ADRIFT);
@@ -61,7 +62,7 @@ static PetscErrorCode ModelExplainFailure(Model model, SolveReport *report)
                           model->problem->inverted, &report->failure));
   report->failure.enhanced = ProblemHasFormulation(model->problem, FORMULATION_ENHANCED);
   if (report->result == SOLVE_WINDOW || report->result == SOLVE_LOST)
-    PetscFunctionReturn(PETSC_SUCCESS); /* known already */
+    PetscFunctionReturn(PETSC_SUCCESS); /* the report has its detail already */
   if (report->result == SOLVE_CYCLE) {
     PetscCall(PetscStrncpy(report->detail, report->cycle, sizeof(report->detail)));
     PetscFunctionReturn(PETSC_SUCCESS);
@@ -81,7 +82,8 @@ static PetscErrorCode ModelExplainFailure(Model model, SolveReport *report)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* From the accepted state on the way to t: its contact state, and lists for the motion to be expected. */
+/* Starts a load step from the accepted state to t: restores its contact state and makes lists for the expected motion.
+   That motion is the imposed one, or the one that the rate of the last step predicts if that is larger. */
 static PetscErrorCode ModelDepart(Model model, PetscReal t)
 {
   ModelWork *work = model->work;
@@ -104,8 +106,9 @@ static PetscErrorCode ModelDepart(Model model, PetscReal t)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* A part of the way to the forecast, where that came from the path: on the path, with so much of what its end was off.
- * made: that is possible. */
+/* Sets model->x to a part of the way to the look-ahead, where the look-ahead started from the extrapolated state: the
+   extrapolated state at model->t, plus this part of the difference between the look-ahead and the extrapolated state at
+   its end. *made: that was possible. */
 static PetscErrorCode ModelTakeExtrapolatedPart(Model model, PetscReal part, PetscBool *made)
 {
   ModelWork *work = model->work;
@@ -130,7 +133,7 @@ static PetscErrorCode ModelTakeExtrapolatedPart(Model model, PetscReal part, Pet
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* A part of the way to the forecast. */
+/* Sets model->x to the part of the way to the look-ahead that belongs to model->t. */
 static PetscErrorCode ModelTakePart(Model model)
 {
   ModelWork      *work = model->work;
@@ -142,7 +145,7 @@ static PetscErrorCode ModelTakePart(Model model)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Where Newton's method starts: at a forecast that has been made, or on the way to it; else it is made now. */
+/* Sets model->x to the first iterate of Newton's method: from a look-ahead where there is one, else by a prediction. */
 static PetscErrorCode ModelStart(Model model, SolveReport *report)
 {
   PetscFunctionBeginUser;
@@ -181,7 +184,8 @@ static PetscErrorCode ModelSolveLists(Model model, SolveReport *report)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Solves, with springs where pairs are stabilised; these are relaxed and all is solved on until they carry nothing. */
+/* Solves with the springs of stabilised pairs. The springs are relaxed and the step is solved on until the springs
+   carry no force. */
 static PetscErrorCode ModelSolveHeld(Model model, SolveReport *report)
 {
   PetscReal force, energy, stored, allowed;
@@ -210,12 +214,26 @@ static PetscErrorCode ModelSolveHeld(Model model, SolveReport *report)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ModelSolve - equilibrium at load parameter t, from the accepted state.
+/*@
+  ModelSolve - finds equilibrium at a load parameter, starting from the accepted state.
 
-   Collective. On success model->u, model->x and the contact state are the solution (not yet accepted); on failure call
-   ModelRestore(). Contact lists are made before, frozen in each Newton solve, and made anew after it until they hold
-   (at most MODEL_MAX_REGATHER times); then penalties that are adjusted within the step, and all is solved on from
-   there, until their window holds or no more can be done for it. */
+  Collective
+
+  Input Parameters:
++ model - it has an accepted state
+- t     - load parameter
+
+  Output Parameter:
+. report - whether equilibrium was found, what the solve cost, and where a failed solve failed
+
+  Notes:
+  On success model->u, model->x and the contact state are the solution, which is not accepted yet. On failure the caller
+  must call ModelRestore().
+
+  Contact lists are made before the first solve and are frozen in each solve by Newton's method. After each solve they
+  are checked and made anew, at most MODEL_MAX_REGATHER times. Then penalties that are adjusted within the step are
+  changed, and the step is solved on from there, until the penetrations are in their window or no more can be done.
+@*/
 PetscErrorCode ModelSolve(Model model, PetscReal t, SolveReport *report)
 {
   ModelWork         *work   = model->work;
@@ -245,12 +263,24 @@ PetscErrorCode ModelSolve(Model model, PetscReal t, SolveReport *report)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ModelLookAhead - displacements at t by one linear solve with the accepted state's contact set, as a guess of what
-   will touch.
+/*@
+  ModelLookAhead - computes displacements at t by one linear solve with the contact set of the accepted state.
 
-   Collective. u[n_nodes*dim]: local displacements (length), prescribed ones included. Costs and failures are added to
-   the report; the state is the accepted one afterwards, the contact lists are made for the way to t. The next
-   ModelSolve() starts from the forecast instead of a prediction of its own, so that the solve is paid once. */
+  Collective
+
+  Input Parameters:
++ model - it has an accepted state, at which it stands
+- t     - load parameter
+
+  Output Parameters:
++ u      - local displacements u[n_nodes*dim] (length), prescribed ones included
+- report - the solve's costs and failures are added to it
+
+  Notes:
+  The result is a guess from which the caller may see what will touch. The state is the accepted one afterwards, and the
+  contact lists are those for the way to t. The next ModelSolve() starts from this result instead of a prediction of its
+  own, so that the linear solve is made only once.
+@*/
 PetscErrorCode ModelLookAhead(Model model, PetscReal t, PetscReal *u, SolveReport *report)
 {
   PetscFunctionBeginUser;

@@ -1,25 +1,37 @@
+/* Extrapolation of accepted states in the load parameter by polynomials, whose degree follows from the last state. */
 #include "extrapolation.h"
 
-/* Highest degree of the polynomials in t. A ring that is pinched in 10 steps takes 31 iterations with 3, 37 with 2; on
- * other scenes they are the same. */
+/* Highest degree of the polynomials in t. A ring that is pinched in 10 steps takes 31 iterations with 3 and 37 with 2.
+   On other scenes the iterations are the same. */
 #define EXTRAPOLATION_DEGREE 3
-/* States that are remembered: those of a polynomial, and the last one, by which it is judged */
+/* Number of states that are kept: those of a polynomial, and the last one, by which the polynomial is judged. */
 #define EXTRAPOLATION_STATES (EXTRAPOLATION_DEGREE + 2)
-/* A path is smooth where the last state was foretold to this part of the last step. With 0.03 a cup in 40 steps takes
-   103 iterations, with 0.1 86; with 0.3 a pipe in four long steps takes 40 instead of 21. */
+/* The states are smooth where the error that is expected at t is below this part of the step that is expected. With
+   0.03 a cup in 40 steps takes 103 iterations, with 0.1 86. With 0.3 a pipe in four long steps takes 40 instead of 21.
+ */
 #define EXTRAPOLATION_SMOOTH 0.1
-/* A higher degree is preferred where its error is less than this part of a lower one's: round-off does not decide,
- * which may be another on more ranks. */
+/* A higher degree is preferred where its error is below this part of a lower degree's error. Round-off, which depends
+   on the number of ranks, must not decide. */
 #define EXTRAPOLATION_BETTER 0.99
 
-struct _n_Path {
+struct _n_Extrapolation {
   Mesh       mesh;
-  PetscInt   known;                   /* states, the last one first */
+  PetscInt   known;                   /* number of states that are known; the last one comes first */
   PetscReal *u[EXTRAPOLATION_STATES]; /* local displacements (length) */
   PetscReal  t[EXTRAPOLATION_STATES];
 };
 
-/* ExtrapolationCreate - Not collective. */
+/*@
+  ExtrapolationCreate - creates an extrapolation that knows no state.
+
+  Not collective
+
+  Input Parameter:
+. mesh - borrowed
+
+  Output Parameter:
+. out - the extrapolation
+@*/
 PetscErrorCode ExtrapolationCreate(Mesh mesh, Extrapolation *out)
 {
   Extrapolation extrapolation;
@@ -33,7 +45,14 @@ PetscErrorCode ExtrapolationCreate(Mesh mesh, Extrapolation *out)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ExtrapolationDestroy - Not collective. */
+/*@
+  ExtrapolationDestroy - destroys the extrapolation.
+
+  Not collective
+
+  Input Parameter:
+. extrapolation - set to NULL; may be NULL already
+@*/
 PetscErrorCode ExtrapolationDestroy(Extrapolation *extrapolation)
 {
   PetscFunctionBeginUser;
@@ -43,7 +62,16 @@ PetscErrorCode ExtrapolationDestroy(Extrapolation *extrapolation)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ExtrapolationAdd - Not collective. u[n_nodes*dim]: local displacements, prescribed ones included (length). */
+/*@
+  ExtrapolationAdd - adds an accepted state.
+
+  Not collective
+
+  Input Parameters:
++ extrapolation - the extrapolation
+. u             - local displacements u[n_nodes*dim] (length), prescribed ones included; copied
+- t             - load parameter, larger than that of the state before
+@*/
 PetscErrorCode ExtrapolationAdd(Extrapolation extrapolation, const PetscReal *u, PetscReal t)
 {
   PetscReal *oldest = extrapolation->u[EXTRAPOLATION_STATES - 1];
@@ -62,7 +90,14 @@ PetscErrorCode ExtrapolationAdd(Extrapolation extrapolation, const PetscReal *u,
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ExtrapolationForget - Not collective. */
+/*@
+  ExtrapolationForget - removes all states but the last one, where the loads change their direction or rate.
+
+  Not collective
+
+  Input Parameter:
+. extrapolation - the extrapolation
+@*/
 PetscErrorCode ExtrapolationForget(Extrapolation extrapolation)
 {
   PetscFunctionBeginUser;
@@ -70,7 +105,7 @@ PetscErrorCode ExtrapolationForget(Extrapolation extrapolation)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Lagrange's polynomial of a degree through the states from `first` on, at t */
+/* Evaluates at t Lagrange's polynomial of a degree through the states from `first` on. */
 static void Extrapolate(Extrapolation extrapolation, int first, int degree, PetscReal t, PetscReal *u)
 {
   const PetscInt n = extrapolation->mesh->n_nodes * extrapolation->mesh->dim;
@@ -85,7 +120,7 @@ static void Extrapolate(Extrapolation extrapolation, int first, int degree, Pets
   }
 }
 
-/* Largest difference of two displacements, all ranks */
+/* Largest difference of a component of two displacements, of all ranks. */
 static PetscErrorCode StateDistance(Extrapolation extrapolation, const PetscReal *u, const PetscReal *v,
                                     PetscReal *distance)
 {
@@ -97,7 +132,7 @@ static PetscErrorCode StateDistance(Extrapolation extrapolation, const PetscReal
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The error of a degree, one that the last state shows, as it grows on the way to t: by Lagrange's remainder. */
+/* Factor by which the error of a degree, which is known at the last state, grows until t: by Lagrange's remainder. */
 static PetscReal Growth(Extrapolation extrapolation, int degree, PetscReal t)
 {
   PetscReal growth = 1;
@@ -107,11 +142,23 @@ static PetscReal Growth(Extrapolation extrapolation, int degree, PetscReal t)
   return growth;
 }
 
-/* ExtrapolationEvaluate - Collective. u[n_nodes*dim]: local displacements (length), those that are prescribed are
-   guesses as well.
+/*@
+  ExtrapolationEvaluate - computes the displacements that are expected at a load parameter.
 
-   By the polynomial through the last states whose degree would have foretold the last one so well that it is to be
-   trusted the most at t. */
+  Collective
+
+  Input Parameters:
++ extrapolation - the extrapolation
+- t             - load parameter, beyond that of the last state
+
+  Output Parameters:
++ u      - local displacements u[n_nodes*dim] (length); prescribed ones are guesses as well
+- smooth - the expected error is small; never with less than three states, where u is not set
+
+  Note:
+  Each degree is judged by how well the states before the last one predict the last one. The degree with the least
+  expected error at t is taken.
+@*/
 PetscErrorCode ExtrapolationEvaluate(Extrapolation extrapolation, PetscReal t, PetscReal *u, PetscBool *smooth)
 {
   PetscReal step, error, least = PETSC_MAX_REAL;
@@ -135,7 +182,17 @@ PetscErrorCode ExtrapolationEvaluate(Extrapolation extrapolation, PetscReal t, P
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ExtrapolationArchive - Collective. */
+/*@
+  ExtrapolationArchive - saves or loads the states other than the last one.
+
+  Collective
+
+  Input Parameters:
++ extrapolation - the extrapolation
+. archive       - decides whether they are saved or loaded
+. nodes         - rows of the local nodes in the archive
+- u             - local displacements u[n_nodes*dim] (length) of the last state
+@*/
 PetscErrorCode ExtrapolationArchive(Extrapolation extrapolation, Archive archive, const Hdf5Table *nodes,
                                     const PetscReal *u)
 {

@@ -1,6 +1,7 @@
+/* Where a solve failed: the nodes with the largest residuals. */
 #include "solve/failure.h"
 
-/* Squares of the residual's free components, by owned node; 0 elsewhere and where it is no number */
+/* Square of the residual's free components at each owned node. It is 0 at other nodes and where it is not a number. */
 static PetscErrorCode NodeSquares(Mesh mesh, Loads loads, const PetscReal *f, PetscReal *square)
 {
   const int   dim = mesh->dim;
@@ -22,7 +23,7 @@ static PetscErrorCode NodeSquares(Mesh mesh, Loads loads, const PetscReal *f, Pe
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The node of the largest square of all ranks, which is then taken out; *found: there was one */
+/* Finds the node with the largest square of all ranks and sets its square to 0. *found: there was one. */
 static PetscErrorCode TakeLargest(Mesh mesh, Contact contact, PetscReal *square, FailureNode *node, PetscBool *found)
 {
   PetscReal values[6] = {0, 0, 0, 0, 0, NAN}; /* tag, X, residual, gap */
@@ -57,20 +58,21 @@ static PetscErrorCode TakeLargest(Mesh mesh, Contact contact, PetscReal *square,
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*
-  FailureLocate - the nodes that are farthest from equilibrium
+/*@
+  FailureLocate - finds the nodes that are farthest from equilibrium.
 
   Collective
 
   Input Parameters:
-+ mesh, loads - what is prescribed has no residual
-. contact     - for the gaps of these nodes, or NULL
-. f           - n_nodes*dim: this rank's contributions to the residual (forces)
-- inverted    - gmsh's tag of an element of this rank that was turned inside out, or -1
++ mesh     - the mesh
+. loads    - prescribed dofs have no residual
+. contact  - for the gaps of these nodes; may be NULL
+. f        - contributions of this rank to the residual (force) of the failed iterate, f[n_nodes*dim]
+- inverted - gmsh's tag of an element of this rank that was turned inside out, or -1
 
   Output Parameter:
 . failure - the same on all ranks
-*/
+@*/
 PetscErrorCode FailureLocate(Mesh mesh, Loads loads, Contact contact, const PetscReal *f, PetscInt inverted,
                              Failure *failure)
 {
@@ -90,7 +92,18 @@ PetscErrorCode FailureLocate(Mesh mesh, Loads loads, Contact contact, const Pets
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* FailureText - element and first node in one phrase, into text[size]. Not collective. */
+/*@
+  FailureText - writes the inverted element and the first node in one phrase, for a message.
+
+  Not collective
+
+  Input Parameters:
++ failure - from FailureLocate()
+- size    - of the text
+
+  Output Parameter:
+. text - for example "largest residual at node 17 (1, 2, 3)"
+@*/
 void FailureText(const Failure *failure, char *text, size_t size)
 {
   const ContactPlace *place        = &failure->node[0].place;

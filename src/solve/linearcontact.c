@@ -57,6 +57,7 @@ static PetscErrorCode LinearContactBegin(Model model, const PetscReal *u, const 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Frees what LinearContactBegin() and the rounds have made. */
 static PetscErrorCode LinearContactEnd(LinearContact *s)
 {
   PetscFunctionBeginUser;

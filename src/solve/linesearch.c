@@ -92,8 +92,8 @@ void ModelChooseObjective(Model model, PetscReal residual, PetscReal slope)
   model->work->objective = small || flat ? OBJECTIVE_RESIDUAL : OBJECTIVE_ENERGY;
 }
 
-/* Before the search: Newton's step with the contact that it ends in; how long Newton's step is; and whether energies
-   can tell whether it leads downwards, which where penalties are stiff ends long before the residual is small. */
+/* Before the search: changes Newton's step so that its contact is right at its end, measures its length, and chooses
+   the objective anew from the slope of the energy. */
 static PetscErrorCode ModelMeasureStep(SNESLineSearch search, Vec x, Vec y, PetscBool *changed, void *context)
 {
   Model     model = context;
@@ -110,16 +110,15 @@ static PetscErrorCode ModelMeasureStep(SNESLineSearch search, Vec x, Vec y, Pets
     PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(SNESLineSearchGetSNES(search, &snes));
   if (model->work->energy == 0)
-    PetscCall(SNESComputeObjective(snes, x, &energy)); /* none was evaluated since the step began */
+    PetscCall(SNESComputeObjective(snes, x, &energy)); /* none was evaluated in this load step */
   PetscCall(SNESLineSearchGetVecs(search, NULL, &F, NULL, NULL, NULL));
   PetscCall(VecDotRealPart(F, y, &slope));
   ModelChooseObjective(model, NAN, slope);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* After it: w is x - cut y, and x - full y is where Newton's step ends. Releases of PETSc differ in whether y is the
- * whole step by now or what is left of it.
- */
+/* After the search: w is x - cut y, and Newton's step ends at x - full y. PETSc's releases differ in whether y is now
+   the whole step or what is left of it. */
 static PetscErrorCode StepLength(Model model, Vec x, Vec y, Vec w, PetscReal *cut, PetscReal *full)
 {
   PetscReal xy, wy, yy;
@@ -133,7 +132,7 @@ static PetscErrorCode StepLength(Model model, Vec x, Vec y, Vec w, PetscReal *cu
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Gaps at x - lambda y, for the line. */
+/* Gives the line the gaps at x - lambda y. */
 static PetscErrorCode LinePlace(Model model, int place, PetscReal lambda, Vec x, Vec y, Vec w)
 {
   PetscFunctionBeginUser;
@@ -145,8 +144,8 @@ static PetscErrorCode LinePlace(Model model, int place, PetscReal lambda, Vec x,
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Where on the line up to `to` the energy is least: contact by its gaps, all else by its tangent at 0, where the slope
-   of the sum is `slope` and its curvature by the whole tangent `curvature`. */
+/* Finds the place on the line, between 0 and `to`, where the energy is least. The contact energy is taken from the gaps
+   on the line, all other energy from its tangent at 0. slope and curvature are those of the whole energy at 0. */
 static PetscErrorCode LineLeast(Model model, PetscReal slope, PetscReal curvature, PetscReal to, PetscReal *least)
 {
   PetscReal from = 0, start[2], here;
@@ -167,7 +166,7 @@ static PetscErrorCode LineLeast(Model model, PetscReal slope, PetscReal curvatur
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The curvature of the energy along y by the last tangent. */
+/* Second derivative of the energy along y, by the last tangent. */
 static PetscErrorCode Curvature(Model model, Vec y, PetscReal *curvature)
 {
   Vec Ay;
@@ -180,11 +179,13 @@ static PetscErrorCode Curvature(Model model, Vec y, PetscReal *curvature)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Where backtracking cut a step: the place on it where the energy is least, if that is lower. Backtracking stops before
-   the first kink that a term which closes puts into the energy, as far from it as its factors will have it; the tangent
-   there knows nothing of that term, the next step runs into the same kink, and with stiff penalties the iterates creep
-   up to it. The least place is behind the kink. (Sun 1997, Math. Program. 76, 451-467: with exact line searches
-   Newton's method for convex piecewise quadratic functions ends after finitely many steps.) */
+/* After backtracking has cut a step: goes to the place on it where the energy is least, if the energy is lower there.
+
+   A term that closes puts a kink into the energy. Backtracking stops before the first kink, at a distance that follows
+   from its factors. The tangent there does not contain that term, so that the next step meets the same kink, and with
+   stiff penalties the iterates approach it very slowly. The place of least energy is behind the kink. Source: Sun 1997,
+   Math. Program. 76, 451-467: with exact line searches Newton's method for convex piecewise quadratic functions ends
+   after finitely many steps. */
 static PetscErrorCode ModelLengthenStep(SNESLineSearch search, Vec x, Vec y, Vec w, PetscBool *changed_y,
                                         PetscBool *changed_w, void *context)
 {
@@ -220,11 +221,23 @@ static PetscErrorCode ModelLengthenStep(SNESLineSearch search, Vec x, Vec y, Vec
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ModelLocateEdge - does the failed iterate rest on an edge between facets? Newton's step is to lower the energy, yet
-   it rises from the first trifle on, while the normal of a slave point in contact jumps: the edge is the lowest place,
-   the forces of the facets on either side push to the edge, and no equilibrium is near.
+/*@
+  ModelLocateEdge - finds out whether a failed iterate rests on an edge between facets.
 
-   Collective, after a failed SNESSolve(). place: a slave node there. */
+  Collective
+
+  Input Parameter:
+. model - after a failed SNESSolve()
+
+  Output Parameters:
++ found - it does
+- place - a slave node on such an edge, where found
+
+  Note:
+  At such an iterate Newton's step should lower the energy, yet the energy rises over the first LINE_TRIFLE of the step,
+  while the normal of a slave point in contact jumps. The edge is then the place of least energy. The facets on both
+  sides push the node to the edge, and no equilibrium is near.
+@*/
 PetscErrorCode ModelLocateEdge(Model model, PetscBool *found, ContactPlace *place)
 {
   ModelWork *work = model->work;
@@ -253,7 +266,18 @@ PetscErrorCode ModelLocateEdge(Model model, PetscBool *found, ContactPlace *plac
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ModelCreateLineSearch - what the line search of the model's SNES does where contact cuts a step. Collective. */
+/*@
+  ModelCreateLineSearch - gives the line search of the model's SNES its objective and what it does where contact cuts a
+  step.
+
+  Collective
+
+  Input Parameter:
+. model - its SNES has its line search
+
+  Note:
+  With follower loads there is no energy. SNES then compares residuals by itself, and steps are not lengthened.
+@*/
 PetscErrorCode ModelCreateLineSearch(Model model)
 {
   SNESLineSearch search;

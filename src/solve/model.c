@@ -83,10 +83,15 @@ PetscErrorCode ModelDestroy(Model *model)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ModelPlace - displacements, contact lists and gaps at t = 0, as they are: to be looked at before ModelSetUp() judges
-   them.
+/*@
+  ModelPlace - sets displacements, contact lists and gaps at t = 0, for reports that come before ModelSetUp().
 
-   Collective. t: load parameter where the first step goes, whose lists these are then; 0: no step follows. */
+  Collective
+
+  Input Parameters:
++ model - fresh from ModelCreate()
+- t     - load parameter at the end of the first step, for which the contact lists are made; 0: no step follows
+@*/
 PetscErrorCode ModelPlace(Model model, PetscReal t)
 {
   PetscReal motion;
@@ -102,7 +107,14 @@ PetscErrorCode ModelPlace(Model model, PetscReal t)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ModelAssemble - the tangent of the present state: to see its pattern and its cost without a solve. Collective. */
+/*@
+  ModelAssemble - computes the tangent of the present state, to show its pattern and its cost without a solve.
+
+  Collective
+
+  Input Parameter:
+. model - after ModelPlace()
+@*/
 PetscErrorCode ModelAssemble(Model model)
 {
   PetscFunctionBeginUser;
@@ -110,9 +122,18 @@ PetscErrorCode ModelAssemble(Model model)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ModelSetUp - the state that ModelPlace() made as the first accepted one.
+/*@
+  ModelSetUp - makes the state of ModelPlace() the first accepted one.
 
-   Collective. Refuses (exit 1) initial overlaps, ContactTakeOverlap(). */
+  Collective
+
+  Input Parameter:
+. model - after ModelPlace()
+
+  Note:
+  Initial overlaps that the scene does not allow are refused, see ContactTakeOverlap(); the program then ends with exit
+  status 1.
+@*/
 PetscErrorCode ModelSetUp(Model model)
 {
   PetscFunctionBeginUser;
@@ -122,8 +143,18 @@ PetscErrorCode ModelSetUp(Model model)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ModelGetAccepted - local displacements (length, n_nodes*dim, the model's) and load parameter of the accepted state.
- * Not collective. */
+/*@
+  ModelGetAccepted - returns the accepted state.
+
+  Not collective
+
+  Input Parameter:
+. model - the model
+
+  Output Parameters:
++ u - local displacements u[n_nodes*dim] (length); they belong to the model
+- t - load parameter
+@*/
 PetscErrorCode ModelGetAccepted(Model model, const PetscReal **u, PetscReal *t)
 {
   PetscFunctionBeginUser;
@@ -132,7 +163,18 @@ PetscErrorCode ModelGetAccepted(Model model, const PetscReal **u, PetscReal *t)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ModelAccept - the present solution is the state to go on from and to return to. Collective. */
+/*@
+  ModelAccept - makes the present solution the accepted state.
+
+  Collective
+
+  Input Parameter:
+. model - after a ModelSolve() that converged
+
+  Note:
+  Reactions, gaps and contact forces are those of exactly this state afterwards. Penalties that are adjusted for the
+  next step are adjusted here.
+@*/
 PetscErrorCode ModelAccept(Model model)
 {
   ModelWork      *work    = model->work;
@@ -141,7 +183,7 @@ PetscErrorCode ModelAccept(Model model)
   PetscBool       ok;
 
   PetscFunctionBeginUser;
-  PetscCall(ProblemResidual(model->problem, model->u, model->t, model->t, &ok)); /* for reactions, gaps and forces */
+  PetscCall(ProblemResidual(model->problem, model->u, model->t, model->t, &ok));
   PetscCall(ProblemMotion(model->problem, work->accepted_u, work->accepted_t, model->u, model->t, &motion));
   if (stepped) work->rate = motion / (model->t - work->accepted_t);
   model->problem->force_so_far = ProblemForceScale(model->problem);
@@ -159,7 +201,17 @@ PetscErrorCode ModelAccept(Model model)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ModelRestore - takes back everything since the last ModelAccept(). Collective. */
+/*@
+  ModelRestore - returns to the accepted state.
+
+  Collective
+
+  Input Parameter:
+. model - after a ModelSolve() that failed or whose solution is not wanted
+
+  Note:
+  The result of ModelLookAhead() stays valid, and its linear solve is not repeated.
+@*/
 PetscErrorCode ModelRestore(Model model)
 {
   ModelWork *work = model->work;
@@ -168,7 +220,7 @@ PetscErrorCode ModelRestore(Model model)
   PetscFunctionBeginUser;
   PetscCall(PetscArraycpy(model->u, work->accepted_u, model->mesh->n_nodes * model->mesh->dim));
   PetscCall(VecCopy(work->accepted_x, model->x));
-  PetscCall(LinearSolverRenew(work->solver)); /* a forecast may stand ready, and its solve is not repeated */
+  PetscCall(LinearSolverRenew(work->solver)); /* a step that starts from a look-ahead would not do so itself */
   model->t = work->accepted_t;
   if (model->contact) {
     PetscCall(ContactRestore(model->contact));
@@ -180,11 +232,19 @@ PetscErrorCode ModelRestore(Model model)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ModelArchive - saves or takes over the accepted state: displacements and the way there, load parameter, scales,
-   contact.
+/*@
+  ModelArchive - saves or loads the accepted state: displacements, states for the extrapolation, load parameter, scales
+  and contact.
 
-   Collective. To be saved between steps; to be loaded into a model fresh from ModelCreate(), in the place of
-   ModelSetUp(). The model then stands as after the ModelAccept() of that step, forces and gaps included. */
+  Collective
+
+  Input Parameters:
++ model   - between two steps to save; fresh from ModelCreate() to load, in the place of ModelSetUp()
+- archive - decides whether the state is saved or loaded
+
+  Note:
+  After loading the model stands as after the ModelAccept() of that step, forces and gaps included.
+@*/
 PetscErrorCode ModelArchive(Model model, Archive archive)
 {
   const Mesh mesh = model->mesh;
@@ -214,7 +274,7 @@ PetscErrorCode ModelArchive(Model model, Archive archive)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ", NAME contact" for each smoother that some pair has */
+/* Adds ", NAME contact" to the text for each smoother that some pair has. */
 static PetscErrorCode ModelContactEffects(Scene scene, char *text, size_t size)
 {
   PetscFunctionBeginUser;
@@ -230,8 +290,18 @@ static PetscErrorCode ModelContactEffects(Scene scene, char *text, size_t size)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ModelEffects - what the scene calls for, in words with commas between, into text[size]. Not collective, same on all
- * ranks. */
+/*@
+  ModelEffects - writes what the scene calls for in words with commas between them.
+
+  Not collective, the same on all ranks
+
+  Input Parameters:
++ model - the model
+- size  - of the text
+
+  Output Parameter:
+. text - for example "finite strain, facet contact"
+@*/
 PetscErrorCode ModelEffects(Model model, char *text, size_t size)
 {
   Scene     scene  = model->scene;
@@ -261,7 +331,17 @@ PetscErrorCode ModelEffects(Model model, char *text, size_t size)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ModelDofs - number of free dofs on all ranks. Not collective. */
+/*@
+  ModelDofs - returns the number of free dofs of all ranks.
+
+  Not collective
+
+  Input Parameter:
+. model - the model
+
+  Output Parameter:
+. free_dofs - their number
+@*/
 PetscErrorCode ModelDofs(Model model, PetscInt *free_dofs)
 {
   PetscFunctionBeginUser;

@@ -66,5 +66,5 @@ PetscErrorCode ModelGetAccepted(Model, const PetscReal **u, PetscReal *t);
 PetscErrorCode ModelAccept(Model);
 PetscErrorCode ModelRestore(Model);
 PetscErrorCode ModelArchive(Model, Archive);
-PetscErrorCode ModelEffects(Model, char *text, size_t size); /* "finite strain, facet contact" */
+PetscErrorCode ModelEffects(Model, char *text, size_t size);
 PetscErrorCode ModelDofs(Model, PetscInt *free_dofs);

@@ -22,6 +22,7 @@
 /* Newton's method is limited by its iterations, not by this number of evaluations in the line search. */
 #define NEWTON_MAX_FUNCTIONS 1000000
 
+/* The function of SNES: the residual F of the free dofs at x. */
 static PetscErrorCode ModelFunction(SNES snes, Vec x, Vec F, void *context)
 {
   Model     model = context;
@@ -35,7 +36,7 @@ static PetscErrorCode ModelFunction(SNES snes, Vec x, Vec F, void *context)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Tells an older factor which contact terms have come and gone. */
+/* Updates the factor of an earlier tangent for the contact terms that have come and gone since. */
 static PetscErrorCode ModelUpdateFactor(Model model, PetscInt terms)
 {
   PetscInt   rows;
@@ -52,8 +53,9 @@ static PetscErrorCode ModelUpdateFactor(Model model, PetscInt terms)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Does contact couple so many unknowns that factors of bodies and contact have much more fill than those of bodies? On
-   lines it does not. Where PETSc is to test the tangent, or to make its own, all of it is to be in the matrix. */
+/* Finds out whether contact couples so many unknowns that factors of bodies and contact have much more fill than those
+   of bodies alone. In two dimensions contact is on lines, and it does not. Where PETSc is to test the tangent or to
+   make its own, the matrix must hold all of it, and the answer is no. */
 static PetscErrorCode ModelCouples(Model model, PetscBool *couples)
 {
   static const char *const options[] = {"-snes_test_jacobian", "-snes_fd", "-snes_fd_color", "-snes_mf",
@@ -70,14 +72,14 @@ static PetscErrorCode ModelCouples(Model model, PetscBool *couples)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* At the first tangent: how the solver orders its unknowns, and whether it wants contact apart from the bodies. */
+/* At the first tangent: lets the linear solver order its unknowns, and keeps contact apart from the bodies if the
+   solver asks for that. A problem with a single solve is done sooner with any order. */
 static PetscErrorCode ModelOrder(Model model)
 {
   PetscBool couples = PETSC_FALSE;
 
   PetscFunctionBeginUser;
-  if (model->work->ordered || ProblemIsLinear(model->problem))
-    PetscFunctionReturn(PETSC_SUCCESS); /* a single solve is done sooner with any */
+  if (model->work->ordered || ProblemIsLinear(model->problem)) PetscFunctionReturn(PETSC_SUCCESS);
   model->work->ordered = PETSC_TRUE;
   PetscCall(ModelCouples(model, &couples));
   PetscCall(LinearSolverOrder(model->work->solver, model->problem->P, couples));
@@ -130,6 +132,7 @@ PetscErrorCode ModelTangent(Model model, const PetscReal *u, PetscReal t)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* The Jacobian of SNES: the tangent at x. */
 static PetscErrorCode ModelJacobian(SNES snes, Vec x, Mat J, Mat P, void *context)
 {
   Model model = context;
@@ -143,8 +146,8 @@ static PetscErrorCode ModelJacobian(SNES snes, Vec x, Mat J, Mat P, void *contex
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Ends the solve, without being a failure, when a slave point has left its lists, if new ones may still be made in this
- * step. */
+/* Ends the solve when a slave point has left its lists, if new lists may still be made in this step. That is not a
+   failure. */
 static PetscErrorCode ModelLeaveLists(Model model, SNESConvergedReason *reason)
 {
   PetscBool within;
@@ -157,8 +160,8 @@ static PetscErrorCode ModelLeaveLists(Model model, SNESConvergedReason *reason)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* A contact set that repeats itself: shorter steps leave the cycle, as the iterates then stop between its states; if
- * not, the solve ends. */
+/* Shortens Newton's steps when the contact set repeats itself. The iterates then stop between the states of the cycle
+   and leave it. If they do not, the solve ends. */
 static PetscErrorCode ModelBreakCycle(Model model, PetscReal fnorm, SNESConvergedReason *reason)
 {
   ModelWork     *work = model->work;
@@ -180,8 +183,8 @@ static PetscErrorCode ModelBreakCycle(Model model, PetscReal fnorm, SNESConverge
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Keeps the tangent and its factors for the next iteration where that will be the last one anyway. norm: of this
- * iterate, allowed: of the last. */
+/* Keeps the tangent and its factor for the next iteration where that will be the last one anyway. norm: residual of
+   this iterate; allowed: residual at which the solve ends. */
 static PetscErrorCode ModelReuseTangent(Model model, PetscInt it, PetscReal norm, PetscReal allowed)
 {
   const PetscBool reuse =
@@ -189,7 +192,7 @@ static PetscErrorCode ModelReuseTangent(Model model, PetscInt it, PetscReal norm
 
   PetscFunctionBeginUser;
   PetscCall(SNESSetLagJacobian(model->snes, reuse ? -1 : 1));
-  model->work->norm = reuse ? 0 : norm; /* 0: never twice */
+  model->work->norm = reuse ? 0 : norm; /* 0: not for a second iteration */
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -207,8 +210,9 @@ static PetscErrorCode ModelCountCut(Model model, PetscInt it)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Converged when the residual is small against the forces that balance in it, never against its own first value; or is
-   nothing but round-off. Where penalties follow the penetrations, these must have settled too. */
+/* The convergence test of SNES. A solve has converged when its residual is small against the forces that balance in it,
+   or is round-off only. It is never measured against its own first value. Where penalties follow the penetrations, the
+   penetrations must have settled too. */
 static PetscErrorCode ModelConverged(SNES snes, PetscInt it, PetscReal xnorm, PetscReal snorm, PetscReal fnorm,
                                      SNESConvergedReason *reason, void *context)
 {
@@ -243,7 +247,7 @@ static PetscErrorCode ModelConverged(SNES snes, PetscInt it, PetscReal xnorm, Pe
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Keeps the first message of an error instead of printing its trace; context: char[256]. */
+/* Keeps the first message of an error, in context: char[256], instead of printing its trace. */
 static PetscErrorCode KeepMessage(MPI_Comm comm, int line, const char *function, const char *file, PetscErrorCode code,
                                   PetscErrorType type, const char *message, void *context)
 {
@@ -258,13 +262,14 @@ static PetscErrorCode KeepMessage(MPI_Comm comm, int line, const char *function,
   return code;
 }
 
+/* FactorCheckOptions() in the form that ModelReadOptions() calls. */
 static PetscErrorCode CheckFactorOptions(SNES snes)
 {
   (void)snes;
   return FactorCheckOptions();
 }
 
-/* Reads some of PETSc's options; a value that PETSc refuses is the user's mistake. */
+/* Reads some of PETSc's options. A value that PETSc refuses is wrong input and is refused as such. */
 static PetscErrorCode ModelReadOptions(Model model, PetscErrorCode (*read)(SNES))
 {
   char           message[256] = "";
@@ -280,6 +285,17 @@ static PetscErrorCode ModelReadOptions(Model model, PetscErrorCode (*read)(SNES)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/*@
+  ModelCreateSNES - creates Newton's method with its line search, its linear solver and the check of linear solves.
+
+  Collective
+
+  Input Parameter:
+. model - it has its problem
+
+  Note:
+  PETSc's options are read here and override the scene. Refused options end the program with exit status 1.
+@*/
 PetscErrorCode ModelCreateSNES(Model model)
 {
   const PetscBool symmetric = LoadsConservative(model->problem->loads);
@@ -307,7 +323,17 @@ PetscErrorCode ModelCreateSNES(Model model)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Why the linear solve failed */
+/*@
+  ModelLinearFailure - finds out why the last linear solve failed.
+
+  Not collective, the same on all ranks
+
+  Input Parameter:
+. model - after a failed linear solve
+
+  Output Parameter:
+. result - SOLVE_WORKSPACE where the direct solver ran out of memory, else SOLVE_LINEAR
+@*/
 PetscErrorCode ModelLinearFailure(Model model, SolveResult *result)
 {
   KSP            ksp;
@@ -322,6 +348,7 @@ PetscErrorCode ModelLinearFailure(Model model, SolveResult *result)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* PETSc's reason for the end of a solve in the model's words. */
 static SolveResult ResultFromReason(SNESConvergedReason reason)
 {
   if (reason > 0) return SOLVE_CONVERGED;
@@ -334,7 +361,24 @@ static SolveResult ResultFromReason(SNESConvergedReason reason)
   }
 }
 
-/* Runs SNES once from model->x and adds what it cost. */
+/*@
+  ModelNewton - runs Newton's method once, from model->x, with the present contact lists.
+
+  Collective
+
+  Input Parameters:
++ model  - with a first iterate in model->x
+- report - costs and failures are added to it
+
+  Output Parameters:
++ model  - model->x and problem->trial are the last iterate
+- report - report->result says how the solve ended
+
+  Note:
+  A solve that ended because a slave point left its lists counts as converged, with work->left set. So does a line
+  search without success whose residual is within the tolerance: the gaps have then settled as far as round-off lets
+  them.
+@*/
 PetscErrorCode ModelNewton(Model model, SolveReport *report)
 {
   SNESConvergedReason reason;
@@ -359,12 +403,11 @@ PetscErrorCode ModelNewton(Model model, SolveReport *report)
   report->cuts += model->work->cuts;
   report->result = ResultFromReason(reason);
   if (model->work->cycling) report->result = SOLVE_CYCLE;
-  if (report->result == SOLVE_LINE_SEARCH && model->work->balanced)
-    report->result = SOLVE_CONVERGED; /* gaps as settled as round-off lets them be */
+  if (report->result == SOLVE_LINE_SEARCH && model->work->balanced) report->result = SOLVE_CONVERGED;
   if (report->result == SOLVE_LINEAR ||
       (report->result != SOLVE_CONVERGED && its > 0 && LinearCheckLost(model->linear)))
     PetscCall(ModelLinearFailure(model, &report->result));
-  PetscCall(ProblemSetTrial(model->problem, model->x, model->t)); /* whatever SNES looked at last */
+  PetscCall(ProblemSetTrial(model->problem, model->x, model->t)); /* SNES may have evaluated another point last */
   report->residual = model->problem->force > 0 ? norm / ProblemForceScale(model->problem) : 0;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -1,23 +1,24 @@
+/* Softened penalties between the prediction and Newton's method with the full ones. */
 #include "modelimpl.h"
 
-/* Penalties are softened where contact that the prediction did not count on stores, before Newton's method starts, this
-   part of the elastic energy that the step brings. On a pipe between plates Newton's method takes three to five
-   iterations below 0.15, seven to twenty, and most of its failures, above 0.2; a plate on a cylinder is better off
-   without below 0.15. */
+/* Penalties are softened where contact that the prediction did not count on stores, before Newton's method starts, more
+   than this part of the elastic energy that the step brings. On a pipe between plates Newton's method takes three to
+   five iterations below 0.15. Above 0.2 it takes seven to twenty and has most of its failures. A plate on a cylinder is
+   better off without softened penalties below 0.15. */
 #define RAMP_UNPREDICTED 0.15
-/* That energy is not asked to be less than this part of the elastic energy: a step may bring none at all. */
+/* That bound on the energy is at least this part of the whole elastic energy, because a step may bring none at all. */
 #define RAMP_NEGLIGIBLE 0.003
-/* Penalties are raised until contact, where the last ones left it, would store this part of the elastic energy. With
-   0.1 a pipe between plates that takes its whole load in one step needs 16 to 20 iterations instead of 9 to 17. */
+/* Penalties are raised until contact, at the end of the last soft solve, would store this part of the elastic energy.
+   With 0.1 a pipe between plates that takes its whole load in one step needs 16 to 20 iterations instead of 9 to 17. */
 #define RAMP_RAISED 0.03
-/* Each soft solve's penalties are this many times those before, at least: where the next ones begin, contact then
- * stores up to ten times the energy. */
+/* The penalties of each soft solve are at least this many times those of the one before. At its start contact then
+   stores up to ten times the energy. */
 #define RAMP_FACTOR 10
-/* No softer than this part of the automatic penalty, which is the stiffness of the elements below the surface: bodies
- * would pass through each other. */
+/* Penalties are never softer than this part of the automatic penalty, which is the stiffness of the elements below the
+   surface. With softer ones bodies would pass through each other. */
 #define RAMP_LEAST 0.1
 
-/* Energy (all ranks) at the trial displacements of the contact that the prediction did not count on. */
+/* Energy at the trial displacements of the contact terms that the prediction found open; of all ranks. */
 static PetscErrorCode ModelUnpredictedEnergy(Model model, PetscReal *energy)
 {
   PetscFunctionBeginUser;
@@ -27,8 +28,9 @@ static PetscErrorCode ModelUnpredictedEnergy(Model model, PetscReal *energy)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The stiffest penalties, a power of RAMP_FACTOR below the full ones and not below `least`, whose energy at model->x is
-   small. unforeseen: only that of terms which the prediction took for open counts. All in automatic penalties. */
+/* Chooses the stiffest penalties whose energy at model->x is small: a power of RAMP_FACTOR below the full ones, and not
+   below `least`. unpredicted: only the energy of terms that the prediction found open counts. All three penalties are
+   in automatic penalties. */
 static PetscErrorCode ModelChooseSoftness(Model model, PetscBool unpredicted, PetscReal least, PetscReal full,
                                           PetscReal *most)
 {
@@ -54,6 +56,7 @@ static PetscErrorCode ModelChooseSoftness(Model model, PetscBool unpredicted, Pe
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Runs Newton's method once with penalties of at most `most` automatic ones. */
 static PetscErrorCode ModelSolveSoft(Model model, PetscReal most, SolveReport *report)
 {
   ModelWork     *work  = model->work;
@@ -71,13 +74,24 @@ static PetscErrorCode ModelSolveSoft(Model model, PetscReal most, SolveReport *r
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ModelRampPenalty - from the prediction to where it is known what touches, where the prediction ran into contact that
-   it did not count on.
+/*@
+  ModelRampPenalty - improves the first iterate by solves with softened penalties, where the prediction met contact that
+  it did not count on.
 
-   Collective. With stiff penalties every node that comes into contact puts a kink into the energy, and the line search
-   goes from one to the next; with soft ones the nodes share the load at once. Each solve is made with stiffer ones from
-   where the last one ended, none to its end; the next one, with the full penalties, is the caller's. model->x is where
-   it ended; costs and failures are added to the report. */
+  Collective
+
+  Input Parameters:
++ model  - after the prediction
+- report - costs and failures are added to it
+
+  Output Parameter:
+. model - model->x is where the last of these solves ended
+
+  Note:
+  With stiff penalties every node that comes into contact puts a kink into the energy, and the line search goes from one
+  kink to the next. With soft ones the nodes share the load at once. Each solve starts from the end of the one before,
+  has stiffer penalties and is not solved to its end. The solve with the full penalties is the caller's.
+@*/
 PetscErrorCode ModelRampPenalty(Model model, SolveReport *report)
 {
   PetscReal full, most;

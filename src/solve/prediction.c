@@ -1,18 +1,20 @@
-#include "modelimpl.h"
+/* The first iterate of Newton's method: a linear step from the accepted or the extrapolated state. */
 #include "base/timing.h"
+#include "modelimpl.h"
 
-/* A linear step that moves the ends of a cell's edge against each other by more than this part of its length is taken
-   in pieces: a rotation by as much comes out as a stretch by a sixth. On a pipe between plates 0.5 to 0.75 serve;
-   shorter pieces, each of which may leave the contact, cost more than they save. */
+/* A linear step is taken in pieces where it moves the two ends of a cell's edge against each other by more than this
+   part of the edge's length. A linear step turns a rotation by as much into a stretch by a sixth. On a pipe between
+   plates values from 0.5 to 0.75 serve. Shorter pieces, each of which may leave the contact, cost more than they save.
+ */
 #define PREDICTION_FARTHEST 0.6
-/* Pieces of one prediction; what is left is then taken at once. */
+/* A prediction has at most this many pieces. The rest of the way is then taken at once. */
 #define PREDICTION_PIECES 8
-/* Contact that is met on the way is to turn the bodies back, not to hold them exactly: automatic penalties, as in
- * softstart.c. */
+/* Penalties during a prediction in pieces, in automatic penalties. The contact that is met must turn the bodies back;
+   it need not hold them exactly. penaltyramp.c has the same bound. */
 #define PREDICTION_SOFT 0.1
 
-/* One linear solve with the present tangent, at (u, t), and the forces in work->f moves model->x; carried:
- * displacements that go with it. */
+/* Moves model->x by one linear solve with the present tangent, which is that at (u, t), and the residual in problem->f.
+   carried: local displacements that belong to the step besides the free ones; may be NULL. */
 static PetscErrorCode ModelStepLinear(Model model, const PetscReal *u, const PetscReal *carried, PetscReal t,
                                       SolveReport *report)
 {
@@ -40,9 +42,9 @@ static PetscErrorCode ModelStepLinear(Model model, const PetscReal *u, const Pet
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* One linear solve with the tangent at (u, t) for the loads, imposed displacements and tool motions at model->t moves
-   model->x, which stands there. It is a Newton iteration, written so that what is prescribed moves with the whole body
-   and not through it. holding: contact that is there stays. */
+/* Moves model->x, which stands at (u, t), by one linear solve with the tangent there, for the loads, imposed
+   displacements and tool motions at model->t. It is a Newton iteration in a form in which prescribed displacements move
+   with the whole body and not through it. holding: what is in contact stays in contact. */
 static PetscErrorCode ModelStepLoads(Model model, const PetscReal *u, PetscReal t, PetscBool holding,
                                      SolveReport *report)
 {
@@ -57,8 +59,9 @@ static PetscErrorCode ModelStepLoads(Model model, const PetscReal *u, PetscReal 
   PetscCall(LoadsPrescribe(model->problem->loads, model->t, step));
   for (PetscInt i = 0; i < n; i++) step[i] -= u[i];
   if (holding)
-    PetscCall(ContactHoldActiveSet(model->contact, PETSC_TRUE,
-                                   (PetscBool)(t == 0))); /* touching: a body that only contact holds */
+    PetscCall(ContactHoldActiveSet(
+      model->contact, PETSC_TRUE,
+      (PetscBool)(t == 0))); /* at t = 0 touching nodes count too, as contact alone may hold a body */
   PetscCall(LinearSolverRenew(work->solver));
   PetscCall(LinearSolverSetStart(work->solver, work->accepted_start));
   if (model->contact) PetscCall(ContactMultiplyBegin(model->contact, step, t, model->t));
@@ -73,7 +76,8 @@ static PetscErrorCode ModelStepLoads(Model model, const PetscReal *u, PetscReal 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Largest motion of the ends of a cell's edge against each other from displacements u to v, by its length, all ranks */
+/* Largest motion of the two ends of a cell's edge against each other, from displacements u to v, over the length of the
+   edge; of all ranks. */
 static PetscErrorCode ModelLargestTurn(Model model, const PetscReal *u, const PetscReal *v, PetscReal *turn)
 {
   const Mesh mesh = model->mesh;
@@ -100,10 +104,20 @@ static PetscErrorCode ModelLargestTurn(Model model, const PetscReal *u, const Pe
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ModelExtrapolate - the displacements at t that the way so far leads to expect, prescribed ones included: local ones
-   u[n_nodes*dim], and the free ones among them.
+/*@
+  ModelExtrapolate - extrapolates the accepted states to a load parameter.
 
-   Collective. smooth: the way has been such that this is worth more than what the tangent says; x is set then only. */
+  Collective
+
+  Input Parameters:
++ model - the model
+- t     - load parameter
+
+  Output Parameters:
++ u      - local displacements u[n_nodes*dim] (length), prescribed ones included
+. x      - the free ones of these; set only where smooth
+- smooth - the accepted states are so smooth that the extrapolation is better than a step with the tangent
+@*/
 PetscErrorCode ModelExtrapolate(Model model, PetscReal t, PetscReal *u, Vec x, PetscBool *smooth)
 {
   PetscFunctionBeginUser;
@@ -115,8 +129,8 @@ PetscErrorCode ModelExtrapolate(Model model, PetscReal t, PetscReal *u, Vec x, P
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* A step from where the way so far leads to: Newton's first iteration from there. work->foreseen: it has been made, and
- * did not lead far away. */
+/* A linear step from the extrapolated state, which is Newton's first iteration from there. work->extrapolated: the step
+   was made and did not go far. */
 static PetscErrorCode ModelPredictFromExtrapolation(Model model, SolveReport *report)
 {
   ModelWork     *work = model->work;
@@ -138,10 +152,20 @@ static PetscErrorCode ModelPredictFromExtrapolation(Model model, SolveReport *re
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ModelPredict - displacements at model->t by one linear solve, into model->x. Collective. Costs and failures are added
-   to the report.
+/*@
+  ModelPredict - computes displacements at model->t by one linear solve, into model->x.
 
-   From the accepted state; where the way was smooth, from where it leads to. */
+  Collective
+
+  Input Parameters:
++ model  - it stands at the accepted state; the contact lists are those for the way to model->t
+- report - costs and failures are added to it
+
+  Note:
+  The step starts from the extrapolated state where the accepted states are smooth, else from the accepted state. A
+  failure at the extrapolated state is not reported, because a singular tangent there says nothing of the tangent at the
+  accepted state.
+@*/
 PetscErrorCode ModelPredict(Model model, SolveReport *report)
 {
   const SolveReport before = *report;
@@ -149,14 +173,14 @@ PetscErrorCode ModelPredict(Model model, SolveReport *report)
   PetscFunctionBeginUser;
   PetscCall(ModelPredictFromExtrapolation(model, report));
   if (model->work->extrapolated) PetscFunctionReturn(PETSC_SUCCESS);
-  *report = before; /* a singular tangent there says nothing of the one here */
+  *report = before;
   PetscCall(VecCopy(model->work->accepted_x, model->x));
   PetscCall(ModelStepLoads(model, model->work->accepted_u, model->work->accepted_t, (PetscBool)(model->contact != NULL),
                            report));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* New lists at (u, t) on the way, if these do not reach so far. */
+/* Makes new contact lists at (u, t) on the way, if the present ones do not reach there. */
 static PetscErrorCode ModelReachOn(Model model, const PetscReal *u, PetscReal t, SolveReport *report)
 {
   PetscReal motion;
@@ -174,10 +198,19 @@ static PetscErrorCode ModelReachOn(Model model, const PetscReal *u, PetscReal t,
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ModelPredictFar - where the prediction in model->x is too far for one linear step, goes a part of the way and on from
-   there.
+/*@
+  ModelPredictFar - repeats the prediction in pieces, where it went too far for one linear step.
 
-   Collective. Costs and failures are added to the report; none of the states on the way is in equilibrium. */
+  Collective
+
+  Input Parameters:
++ model  - after ModelPredict()
+- report - costs and failures are added to it
+
+  Note:
+  Each piece is a part of the way, from which the next linear step continues with the tangent there. None of the states
+  on the way is in equilibrium.
+@*/
 PetscErrorCode ModelPredictFar(Model model, SolveReport *report)
 {
   const PetscInt n = model->mesh->n_nodes * model->mesh->dim;
@@ -209,11 +242,19 @@ PetscErrorCode ModelPredictFar(Model model, SolveReport *report)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ModelFollowLists - the first iteration after lists have been replaced at a solution: what is in contact stays so.
+/*@
+  ModelFollowLists - makes the first iteration after lists have been replaced at a solution, in which contact is held.
 
-   Collective. Other lists, and the offsets that come with them, move the
-   surfaces by more than a stiff penalty lets them overlap; nodes that this would open let go of the bodies, which then
-   fly apart. */
+  Collective
+
+  Input Parameters:
++ model  - after ProblemRenewLists()
+- report - costs and failures are added to it
+
+  Note:
+  New lists and their offsets move the surfaces by more than a stiff penalty lets them overlap. Nodes that this would
+  open would release the bodies, which would then fly apart.
+@*/
 PetscErrorCode ModelFollowLists(Model model, SolveReport *report)
 {
   PetscBool ok;

@@ -16,8 +16,7 @@
    force has no other scale for its residual. The measured factor is 0.1 to 1.5. */
 #define PROBLEM_ROUND_OFF 16
 /* Contact lists are made for this multiple of the expected motion, which follows from the rate of the last step. Lists
-   that replace others after a step are made for the same multiple, so that they serve a next step of the same length.
- */
+   that replace others after a step are made for the same multiple, so that they serve an equal next step. */
 #define PROBLEM_MOTION_SAFETY 1.5
 
 /* How the tangent K + C of elements and contact is kept. Joined: in the one matrix P, which is A too. Bordered: P holds

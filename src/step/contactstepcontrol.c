@@ -1,34 +1,39 @@
+/* Control of the load step by contact: dt such that a wanted number of nodes comes into contact in each step. */
 #include "stepcontrol.h"
 #include <math.h>
 
-/* A converged step that brings up to this many times the nodes wanted in or out is kept: to repeat it costs more than
-   it saves (on a pipe between plates, whose nodes come in rows: 96 iterations with 2, 148 with 1.5). */
+/* A converged step that changes the status of up to this many times the wanted nodes is kept, because to repeat it
+   costs more than it saves. On a pipe between plates, whose nodes come in rows, 2 takes 96 iterations and 1.5 takes
+   148. */
 #define STEP_CHANGES_KEPT 2.0
-/* The next step is no longer than would bring this many times the nodes wanted, if as many change their status per dt
- * as in the last step, ... */
+/* The next step should bring at most this many times the wanted nodes, if as many nodes change their status per dt as
+   in the last step. */
 #define STEP_CHANGES_AIM 1.25
-/* ... nor longer than this many times the way after which the wanted nodes touch if all goes on in a straight line.
-   They come later, as those before them are held once they have touched: on a cup that is flattened four times as late.
- */
+/* The next step is at most this many times the dt after which the wanted nodes touch if everything moves on along
+   straight lines. The nodes touch later than that, because those before them are held once they have touched. On a cup
+   that is flattened they touch four times as late. */
 #define STEP_REACH 6.0
-/* ... but never shorter than this part of the last step, as nodes may lie as close as they please. */
+/* That bound is never below this part of the last dt, because open nodes may be as close to the master as they like. */
 #define STEP_LEAST_REACH 0.25
-/* A step taken back is tried again with at least this part of its dt: the change of status is not proportional to dt.
- */
+/* A step that is taken back is repeated with at least this part of its dt, because the change of status is not
+   proportional to dt. */
 #define STEP_LEAST_PART 0.1
-/* A linear forecast goes this far past the touch, so that the node is in. */
+/* With `prediction: tangent` a step goes this far past the predicted touch, so that the node is in contact at its end.
+ */
 #define STEP_PAST_TOUCH 1.02
-/* A linear forecast holds the contact set, so that nodes behind the edge of contact come nearer than they do once those
-   before them have touched: fewer come than it promises. What the last step brought corrects the next forecast, by no
-   more than the first factor at a time, and the second in all. */
+/* A prediction by the tangent holds the contact set, so that open nodes come nearer than they do once the nodes before
+   them have touched. Fewer nodes touch than it promises. What the last step brought corrects the next prediction, by at
+   most this factor at a time. */
 #define STEP_CORRECTION 2.0
-#define STEP_SHORTFALL  8.0
-/* A step is as long as planned if it differs by less than this part: the end of a step, less its start, is not exactly
- * dt. */
+/* All these corrections together are at most this factor. */
+#define STEP_SHORTFALL 8.0
+/* A step has its planned length if it differs by less than this part. The end of a step minus its start is not exactly
+   dt. */
 #define STEP_AS_PLANNED 1e-6
-/* Factors on dt keep so many binary digits: the last ones differ with the number of ranks, steps must not. */
+/* Factors on dt keep this many binary digits. Their last digits depend on the number of ranks, which steps must not. */
 #define STEP_DIGITS 10
 
+/* Rounds a factor on dt to STEP_DIGITS binary digits. */
 static PetscReal Round(PetscReal factor)
 {
   int       exponent;
@@ -37,7 +42,7 @@ static PetscReal Round(PetscReal factor)
   return ldexp(rint(ldexp(digits, STEP_DIGITS)), exponent - STEP_DIGITS);
 }
 
-/* How many nodes, or how much area, changed their status against the accepted state, and how many are wanted to. */
+/* Nodes, or area, whose status differs from that in the accepted state, and how many the scene wants per step. */
 static PetscErrorCode Changes(Model model, const StepSize *size, PetscReal *changed, PetscReal *wanted)
 {
   const PetscReal *u;
@@ -50,7 +55,8 @@ static PetscErrorCode Changes(Model model, const StepSize *size, PetscReal *chan
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* beta_{N_c} from the accepted state to (u, t), dt apart. Source: Chamoret et al. 2004, eqs 17 to 20. */
+/* Computes beta_{N_c} from the step between the accepted state and (u, t). Source: Chamoret et al. 2004, eqs 17 to 20.
+ */
 static PetscErrorCode Choose(Model model, const PetscReal *u, PetscReal t, PetscBool still_open, PetscReal factor,
                              StepSize *size, TouchStepChoice *choice)
 {
@@ -70,8 +76,8 @@ static PetscErrorCode Choose(Model model, const PetscReal *u, PetscReal t, Petsc
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* StepControlPredict_Contact - the paper's order, for `prediction: tangent`: one linear solve over the present dt says
-   when nodes touch, and dt is made so that the wanted ones do. Collective. */
+/* The order of the paper, for `prediction: tangent`: one linear solve over the present dt says when nodes touch, and dt
+   is chosen so that the wanted nodes do. Collective. */
 static PetscErrorCode StepControlPredict_Contact(Model model, PetscReal remaining, StepSize *size, SolveReport *report)
 {
   const PetscReal dt = PetscMin(size->dt, remaining);
@@ -94,8 +100,8 @@ static PetscErrorCode StepControlPredict_Contact(Model model, PetscReal remainin
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* StepControlJudge_Contact - for `prediction: converged`: a step in which too many nodes came into contact or left it
-   is taken back, unless they tie. Collective. */
+/* For `prediction: converged`: a step in which too many nodes changed their status is taken back, unless they change it
+   at the same time. Collective. */
 static PetscErrorCode StepControlJudge_Contact(Model model, PetscReal dt, StepSize *size, PetscBool *accepted)
 {
   const PetscReal *u;
@@ -118,7 +124,7 @@ static PetscErrorCode StepControlJudge_Contact(Model model, PetscReal dt, StepSi
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Compares what a step of its planned length brought with what the forecast promised. */
+/* Corrects the next prediction by what a step of its planned length brought. */
 static PetscErrorCode Learn(Model model, PetscReal dt, StepSize *size)
 {
   PetscReal changed, wanted;
@@ -132,7 +138,7 @@ static PetscErrorCode Learn(Model model, PetscReal dt, StepSize *size)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The longest dt that the last step, of dt, lets hope to bring no more nodes than wanted. */
+/* The longest dt that should bring no more than the wanted nodes, judged by the last step, which had the given dt. */
 static PetscErrorCode Longest(Model model, PetscReal dt, PetscReal beta, const StepSize *size, PetscReal *longest)
 {
   PetscReal changed, wanted;
@@ -146,9 +152,9 @@ static PetscErrorCode Longest(Model model, PetscReal dt, PetscReal beta, const S
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* StepControlNext_Contact - dt by the nodes that are still open and approach, and by how many came or left. A beta
-   above 1 enlarges the next step; the paper repeats the present one, whose solution is good as it is. `prediction:
-   tangent` decides before the next step. Collective. */
+/* Chooses dt by the open nodes that approach and by the nodes that changed their status. A beta above 1 enlarges the
+   next step; the paper repeats the present step instead, whose solution is good as it is. With `prediction: tangent` dt
+   is chosen before the next step. Collective. */
 static PetscErrorCode StepControlNext_Contact(Model model, PetscReal dt, PetscBool clipped, PetscInt newton,
                                               StepSize *size)
 {

@@ -1,13 +1,15 @@
+/* The controls of the load step without contact, and the table of all controls. */
 #include "stepcontrol.h"
 
-/* iterations: the Newton iterations that a step should take; fewer let dt grow, more let it shrink by the square root
- * of the ratio. */
+/* control: iterations. The Newton iterations that a step should take. With fewer dt grows and with more it shrinks, by
+   the square root of the ratio. */
 #define STEP_TARGET_ITERATIONS 6.0
-/* iterations: the most an accepted step lets dt shrink. */
+/* control: iterations. An accepted step shrinks dt by at most this factor. */
 #define STEP_SHRINK 0.5
-/* fixed: after a cut dt returns to the scene's value by this factor each step. */
+/* control: fixed. After a cut dt grows by this factor in each step until it has the value of the scene again. */
 #define STEP_RECOVER 2.0
 
+/* The dt of the scene, to which it returns after a cut. */
 static PetscErrorCode StepControlNext_Fixed(Model model, PetscReal dt, PetscBool clipped, PetscInt newton,
                                             StepSize *size)
 {
@@ -18,6 +20,7 @@ static PetscErrorCode StepControlNext_Fixed(Model model, PetscReal dt, PetscBool
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* dt by the Newton iterations of the last step. */
 static PetscErrorCode StepControlNext_Iterations(Model model, PetscReal dt, PetscBool clipped, PetscInt newton,
                                                  StepSize *size)
 {

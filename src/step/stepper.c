@@ -1,31 +1,43 @@
+/* The load stepper: tries load steps, lets them land on required load parameters, accepts them or takes them back. */
 #include "step/stepper.h"
 #include "stepcontrol.h"
 
-/* Load parameters closer than this are the same point of the way (t runs from 0 to 1). */
+/* Load parameters that are closer than this are the same one; t runs from 0 to 1. */
 #define STEPPER_SAME_T 1e-12
 /* A failed step is tried again with this part of its dt. */
 #define STEPPER_CUT 0.5
-/* Up to this many dt short of a landing point the step stretches to it: sqrt(2), where one step is as many times longer
- * than dt as two would be shorter, ... */
+/* A step stretches to the next landing point if that is at most this many dt away. At sqrt(2) the one longer step
+   differs from dt by the same factor as two shorter ones. */
 #define STEPPER_STRETCH 1.4142135623730951
-/* ... up to this many the rest is halved, so that no sliver of a step remains. */
+/* If the landing point is at most this many dt away, the way to it is halved, so that no very short step remains. */
 #define STEPPER_HALVE 2.0
 
 struct _n_LoadStepper {
   MPI_Comm             comm;
   Model                model;
   StepControlKind      kind;
-  const StepControl   *control;     /* that of the kind */
-  StepSize             size, start; /* start: at the last accepted step */
+  const StepControl   *control; /* of this kind */
+  StepSize             size;
+  StepSize             start; /* size at the last accepted step */
   StepperReport        report;
-  PetscInt             n_landings, next_landing; /* load parameters to be met exactly, ascending, the last one 1 */
-  PetscReal           *landings;
+  PetscInt             n_landings, next_landing;
+  PetscReal           *landings; /* load parameters that steps must end on, ascending; the last one is 1 */
   LoadStepperMonitorFn monitor;
   void                *monitor_context;
   PetscBool            view;
 };
 
-/* LoadStepperCreate - Collective. */
+/*@
+  LoadStepperCreate - creates a load stepper without a model.
+
+  Collective
+
+  Input Parameter:
+. comm - the ranks of the model
+
+  Output Parameter:
+. stepper - the stepper
+@*/
 PetscErrorCode LoadStepperCreate(MPI_Comm comm, LoadStepper *stepper)
 {
   PetscFunctionBeginUser;
@@ -34,7 +46,14 @@ PetscErrorCode LoadStepperCreate(MPI_Comm comm, LoadStepper *stepper)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* LoadStepperDestroy - Collective. The model remains. */
+/*@
+  LoadStepperDestroy - destroys the stepper; the model remains.
+
+  Collective
+
+  Input Parameter:
+. stepper - set to NULL; may be NULL already
+@*/
 PetscErrorCode LoadStepperDestroy(LoadStepper *stepper)
 {
   PetscFunctionBeginUser;
@@ -44,7 +63,15 @@ PetscErrorCode LoadStepperDestroy(LoadStepper *stepper)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* LoadStepperSetModel - the model to be stepped; borrowed, set up (ModelSetUp()) by the caller. Not collective. */
+/*@
+  LoadStepperSetModel - gives the stepper its model.
+
+  Not collective
+
+  Input Parameters:
++ stepper - the stepper
+- model   - borrowed, after ModelSetUp()
+@*/
 PetscErrorCode LoadStepperSetModel(LoadStepper stepper, Model model)
 {
   PetscFunctionBeginUser;
@@ -52,6 +79,7 @@ PetscErrorCode LoadStepperSetModel(LoadStepper stepper, Model model)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Adds the breakpoints of a history between 0 and 1. */
 static PetscErrorCode AddHistory(const History *history, PetscInt *n, PetscReal *landings)
 {
   PetscFunctionBeginUser;
@@ -60,6 +88,7 @@ static PetscErrorCode AddHistory(const History *history, PetscInt *n, PetscReal 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Adds the breakpoints of all histories of a motion. */
 static PetscErrorCode AddMotion(const Motion *motion, PetscInt *n, PetscReal *landings)
 {
   PetscFunctionBeginUser;
@@ -67,6 +96,7 @@ static PetscErrorCode AddMotion(const Motion *motion, PetscInt *n, PetscReal *la
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Number of breakpoints of a motion, for the length of the array. */
 static PetscInt MotionBreakpoints(const Motion *motion)
 {
   PetscInt n = 0;
@@ -75,7 +105,7 @@ static PetscInt MotionBreakpoints(const Motion *motion)
   return n;
 }
 
-/* Every load parameter that a step must end on: `at`, the breakpoints of all histories, 1. */
+/* Collects every load parameter that a step must end on: `at` of the scene, the breakpoints of all histories, and 1. */
 static PetscErrorCode LoadStepperSetLandings(LoadStepper stepper, Scene scene)
 {
   PetscInt n = scene->stepping.n_at + 1, kept = 0;
@@ -102,8 +132,15 @@ static PetscErrorCode LoadStepperSetLandings(LoadStepper stepper, Scene scene)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* LoadStepperSetFromScene - control, dt and its bounds, landing points. The only source of these values. Not
- * collective. */
+/*@
+  LoadStepperSetFromScene - takes control, dt with its bounds, and landing points from the scene.
+
+  Not collective
+
+  Input Parameters:
++ stepper - the stepper
+- scene   - the only source of these values
+@*/
 PetscErrorCode LoadStepperSetFromScene(LoadStepper stepper, Scene scene)
 {
   PetscFunctionBeginUser;
@@ -123,12 +160,17 @@ PetscErrorCode LoadStepperSetFromScene(LoadStepper stepper, Scene scene)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* LoadStepperSetFromOptions - what is no physics and no stepping value, and so may come from PETSc's options.
+/*@
+  LoadStepperSetFromOptions - reads from PETSc's options what is neither physics nor a value of the stepping.
 
-   Options Database Key:
-   -load_stepper_view - print the stepper before it starts
+  Collective
 
-   Collective. */
+  Input Parameter:
+. stepper - the stepper
+
+  Options Database Key:
+. -load_stepper_view - print the stepper before it starts
+@*/
 PetscErrorCode LoadStepperSetFromOptions(LoadStepper stepper)
 {
   PetscFunctionBeginUser;
@@ -136,7 +178,16 @@ PetscErrorCode LoadStepperSetFromOptions(LoadStepper stepper)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* LoadStepperMonitorSet - a function called after each accepted step. Logically collective. */
+/*@
+  LoadStepperMonitorSet - sets a function that is called after each accepted step.
+
+  Logically collective
+
+  Input Parameters:
++ stepper - the stepper
+. monitor - the function
+- context - handed to it; borrowed
+@*/
 PetscErrorCode LoadStepperMonitorSet(LoadStepper stepper, LoadStepperMonitorFn monitor, void *context)
 {
   PetscFunctionBeginUser;
@@ -145,7 +196,15 @@ PetscErrorCode LoadStepperMonitorSet(LoadStepper stepper, LoadStepperMonitorFn m
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* LoadStepperView - prints control, dt, bounds and landing points. Collective on the viewer. */
+/*@
+  LoadStepperView - prints control, dt, its bounds and the landing points.
+
+  Collective on the viewer
+
+  Input Parameters:
++ stepper - after LoadStepperSetFromScene()
+- viewer  - of type ASCII
+@*/
 PetscErrorCode LoadStepperView(LoadStepper stepper, PetscViewer viewer)
 {
   PetscFunctionBeginUser;
@@ -160,8 +219,8 @@ PetscErrorCode LoadStepperView(LoadStepper stepper, PetscViewer viewer)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The end of a step of about dt from t: exactly the next landing point where it is near. *clipped: dt was shortened for
- * it, so its size says nothing of what the model can take. */
+/* Returns the end of a step of about dt from t: exactly the next landing point, where that is near. *clipped: the step
+   was shortened for it, so that its dt says nothing about what the model can take. */
 static PetscReal StepEnd(LoadStepper stepper, PetscReal t, PetscReal dt, PetscBool *clipped)
 {
   PetscReal landing, remaining;
@@ -181,6 +240,7 @@ static PetscReal StepEnd(LoadStepper stepper, PetscReal t, PetscReal dt, PetscBo
   return t + dt;
 }
 
+/* Adds the costs of a solve to the record of its step and to the report. */
 static void CountSolve(PetscReal t, const SolveReport *solve, StepRecord *record, StepperReport *report)
 {
   report->relaxed += solve->relaxed;
@@ -197,7 +257,7 @@ static void CountSolve(PetscReal t, const SolveReport *solve, StepRecord *record
   report->cuts += solve->cuts;
 }
 
-/* The control's prediction, once for each step */
+/* Calls the control's prediction, once for each step. */
 static PetscErrorCode LoadStepperPredict(LoadStepper stepper, StepRecord *record)
 {
   SolveReport solve = {.result = SOLVE_CONVERGED};
@@ -205,14 +265,14 @@ static PetscErrorCode LoadStepperPredict(LoadStepper stepper, StepRecord *record
 
   PetscFunctionBeginUser;
   if (!stepper->control->predict) PetscFunctionReturn(PETSC_SUCCESS);
-  (void)StepEnd(stepper, stepper->model->t, stepper->size.dt, &clipped); /* finds the landing point ahead */
+  (void)StepEnd(stepper, stepper->model->t, stepper->size.dt, &clipped); /* sets stepper->next_landing */
   PetscCall(stepper->control->predict(stepper->model, stepper->landings[stepper->next_landing] - stepper->model->t,
                                       &stepper->size, &solve));
   CountSolve(stepper->model->t, &solve, record, &stepper->report);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* A converged step of dt that is to stay: the record, the accepted state, the next dt. */
+/* Accepts a converged step of dt: fills its record, lets the control choose the next dt, and accepts the state. */
 static PetscErrorCode LoadStepperAccept(LoadStepper stepper, PetscReal dt, PetscBool clipped, const SolveReport *solve,
                                         StepRecord *record)
 {
@@ -237,7 +297,28 @@ static PetscErrorCode LoadStepperAccept(LoadStepper stepper, PetscReal dt, Petsc
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Tries one step, smaller and smaller until it converges and the control is content, or it falls below the floor. */
+/* Writes into the report that the step from t to `end` failed for good. first, dt: of its first and its last attempt.
+ */
+static PetscErrorCode ReportFailure(StepperReport *report, PetscReal t, PetscReal end, PetscReal first, PetscReal dt,
+                                    PetscReal dt_min, PetscInt attempts, const SolveReport *solve)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscSNPrintf(report->message, sizeof(report->message),
+                          "no equilibrium from t = %.6g to %.6g: %s; %s; tried %" PetscInt_FMT
+                          " steps, dt from %.3g down to %.3g (dt_min %.3g)",
+                          (double)t, (double)end, SolveResults[solve->result], solve->detail, attempts, (double)first,
+                          (double)dt, (double)dt_min));
+  report->failed.solve    = *solve;
+  report->failed.attempts = attempts;
+  report->failed.t        = end;
+  report->failed.first    = first;
+  report->failed.last     = dt;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Tries one step, and repeats it with smaller dt until it converges and the control accepts it, or dt falls below
+   dt_min. A step whose first linear solve is singular is not repeated, because the tangent at its start is singular for
+   any dt. */
 static PetscErrorCode LoadStepperAdvance(LoadStepper stepper, StepRecord *record, PetscBool *advanced)
 {
   Model           model  = stepper->model;
@@ -272,24 +353,21 @@ static PetscErrorCode LoadStepperAdvance(LoadStepper stepper, StepRecord *record
     PetscCall(ModelRestore(model));
     report->steps_failed++;
     stepper->size.dt = STEPPER_CUT * dt;
-    if (stepper->size.dt < stepper->size.dt_min ||
-        (solve.result == SOLVE_LINEAR && solve.newton == 1)) { /* a tangent singular at the start is so for any dt */
-      PetscCall(PetscSNPrintf(report->message, sizeof(report->message),
-                              "no equilibrium from t = %.6g to %.6g: %s; %s; tried %" PetscInt_FMT
-                              " steps, dt from %.3g down to %.3g (dt_min %.3g)",
-                              (double)t, (double)end, SolveResults[solve.result], solve.detail, record->attempts,
-                              (double)first, (double)dt, (double)stepper->size.dt_min));
-      report->failed.solve    = solve;
-      report->failed.attempts = record->attempts;
-      report->failed.t        = end;
-      report->failed.first    = first;
-      report->failed.last     = dt;
+    if (stepper->size.dt < stepper->size.dt_min || (solve.result == SOLVE_LINEAR && solve.newton == 1)) {
+      PetscCall(ReportFailure(report, t, end, first, dt, stepper->size.dt_min, record->attempts, &solve));
       PetscFunctionReturn(PETSC_SUCCESS);
     }
   }
 }
 
-/* LoadStepperStop - ends LoadStepperSolve() before its next step. Logically collective; for the monitor. */
+/*@
+  LoadStepperStop - ends LoadStepperSolve() before its next step.
+
+  Logically collective
+
+  Input Parameter:
+. stepper - called from its monitor
+@*/
 PetscErrorCode LoadStepperStop(LoadStepper stepper)
 {
   PetscFunctionBeginUser;
@@ -297,18 +375,28 @@ PetscErrorCode LoadStepperStop(LoadStepper stepper)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* LoadStepperSolve - steps the model from its t to 1, or until no step above dt_min converges; then the model stands at
-   the last good state.
+/*@
+  LoadStepperSolve - steps the model from its t to 1, or until no step above dt_min converges.
 
-   Collective. The monitor is called after each accepted step. */
+  Collective
+
+  Input Parameter:
+. stepper - it has its model and the values of the scene
+
+  Output Parameter:
+. report - how it ended and what it cost
+
+  Note:
+  The monitor is called after each accepted step. Where a step fails for good, the model is at the last accepted state
+  afterwards. A linear problem is solved in one step between landing points.
+@*/
 PetscErrorCode LoadStepperSolve(LoadStepper stepper, StepperReport *report)
 {
   PetscBool  advanced = PETSC_TRUE;
   StepRecord record;
 
   PetscFunctionBeginUser;
-  if (ProblemIsLinear(stepper->model->problem))
-    stepper->size.dt = stepper->size.initial = stepper->size.dt_max = 1; /* the answer at any t is one solve away */
+  if (ProblemIsLinear(stepper->model->problem)) stepper->size.dt = stepper->size.initial = stepper->size.dt_max = 1;
   stepper->start        = stepper->size;
   stepper->report.t     = stepper->model->t;
   stepper->next_landing = 0;
@@ -323,11 +411,20 @@ PetscErrorCode LoadStepperSolve(LoadStepper stepper, StepperReport *report)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* LoadStepperArchive - saves or takes over the size of the next step and the counts.
+/*@
+  LoadStepperArchive - saves or loads the size of the next step and the counts, as they were at the last accepted step.
 
-   Collective. A failed step is not part of it: it is tried again from its first dt, with the solver or stepping that
-   has been changed. Loading comes after LoadStepperSetFromScene(), whose dt_max holds; so does its `initial` if that is
-   another one than the run had. */
+  Collective
+
+  Input Parameters:
++ stepper - to save: from the monitor or after LoadStepperSolve(); to load: after LoadStepperSetFromScene()
+- archive - decides whether they are saved or loaded
+
+  Notes:
+  A failed step is not part of what is saved. After loading it is tried again from its first dt, with the solver or the
+  stepping that the user has changed. dt_max of the scene bounds the dt that is loaded. Where `initial` of the scene
+  differs from that of the saved run, dt is that of the scene.
+@*/
 PetscErrorCode LoadStepperArchive(LoadStepper stepper, Archive archive)
 {
   StepperReport *report  = &stepper->report;

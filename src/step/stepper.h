@@ -1,42 +1,46 @@
-/* The load stepper: takes a model from t = 0 to t = 1. An object in the manner of TS (Create, Set..., Solve, Monitor,
-   View), with what a quasi-static contact problem needs: a step is accepted or taken back whole, and steps land exactly
-   on 1, on every `at` of the scene and on every breakpoint of a history. How dt follows from what happened is a step
-   control, chosen by name (stepcontrol.h).
+/* The load stepper: it takes a model from its load parameter t to 1, in steps that are accepted or taken back whole.
 
-     LoadStepperCreate(); LoadStepperSetModel(); LoadStepperSetFromScene(); LoadStepperSetFromOptions();
-   LoadStepperMonitorSet(); LoadStepperSolve()
-
-   A stepper that has loaded its state goes on from there. */
+   It is an object in the manner of PETSc's TS. The calls are LoadStepperCreate(), LoadStepperSetModel(),
+   LoadStepperSetFromScene(), LoadStepperSetFromOptions(), LoadStepperMonitorSet() and LoadStepperSolve(), in this
+   order. Steps end exactly on 1, on every `at` of the scene and on every breakpoint of a history. A step control, which
+   the scene chooses by name (stepcontrol.h), decides how dt follows from what happened. A stepper that has loaded its
+   state by LoadStepperArchive() goes on from there. */
 #pragma once
 #include "solve/model.h"
 
-/* One accepted step */
+/* One accepted step. */
 typedef struct {
-  PetscInt       step, attempts, newton, krylov; /* newton and krylov: failed attempts before it included */
-  PetscReal      t, dt, residual;
-  PetscReal      beta; /* beta_{N_c}; NaN: not the control by contact, or no node approached */
-  PetscInt       tied; /* nodes that touched together beyond those wanted, as no step separates them */
+  PetscInt       step;
+  PetscInt       attempts;       /* solves that were tried for this step */
+  PetscInt       newton, krylov; /* iterations, those of failed attempts before it included */
+  PetscReal      t, dt;
+  PetscReal      residual; /* |R|_2 / F_ref */
+  PetscReal      beta;     /* beta_{N_c}; NaN: another control than that by contact, or no node approached */
+  PetscInt       tied;     /* nodes beyond those wanted that touched together, so that no step separates them */
   ContactSummary contact;
 } StepRecord;
 
-/* The way so far */
+/* All steps so far. */
 typedef struct {
-  PetscBool done, stopped;                       /* t = 1 was reached; LoadStepperStop() ended it before */
+  PetscBool done;                                /* t = 1 was reached */
+  PetscBool stopped;                             /* LoadStepperStop() ended it before */
   PetscInt  steps, steps_failed, steps_repeated; /* repeated: converged, but taken back by the control */
   PetscInt  newton_iterations, newton_accepted, krylov_iterations;
-  PetscInt  relaxed; /* times that the springs of stabilised pairs were relaxed */
-  PetscReal taken,
-    left; /* energy that they took out; the largest part of an accepted state's energy that was left in them */
-  PetscInt  cycles, cycles_cut;         /* times a contact set repeated itself; steps that failed for it */
-  char      cycle[512];                 /* the last time: load parameter, period, nodes */
-  PetscInt  regathered, adjusted, cuts; /* of SolveReport, all solves */
-  PetscReal t;                          /* of the last good state */
+  PetscInt  relaxed;                    /* times that the contact springs were relaxed */
+  PetscReal taken;                      /* energy that the contact springs took out of the bodies */
+  PetscReal left;                       /* largest part of an accepted state's energy that was left in them */
+  PetscInt  cycles;                     /* times that a contact set repeated itself */
+  PetscInt  cycles_cut;                 /* steps that failed because of that */
+  char      cycle[512];                 /* the last repetition: load parameter, period, nodes */
+  PetscInt  regathered, adjusted, cuts; /* of SolveReport, for all solves */
+  PetscReal t;                          /* of the last accepted state */
   char      message[1024];              /* why it ended early: cause, load parameter, nodes, what was tried */
   struct {
-    SolveReport solve;          /* the last attempt */
-    PetscInt    attempts;       /* of that step */
-    PetscReal   t, first, last; /* load parameter that was not reached; dt tried */
-  } failed;                     /* if it is not done */
+    SolveReport solve;       /* of the last attempt */
+    PetscInt    attempts;    /* of that step */
+    PetscReal   t;           /* load parameter that was not reached */
+    PetscReal   first, last; /* dt of the first and of the last attempt */
+  } failed;                  /* the step that failed, if done and stopped are false */
 } StepperReport;
 
 typedef struct _n_LoadStepper *LoadStepper;
@@ -48,9 +52,7 @@ PetscErrorCode LoadStepperSetModel(LoadStepper, Model);
 PetscErrorCode LoadStepperSetFromScene(LoadStepper, Scene);
 PetscErrorCode LoadStepperSetFromOptions(LoadStepper);
 PetscErrorCode LoadStepperMonitorSet(LoadStepper, LoadStepperMonitorFn, void *);
-PetscErrorCode LoadStepperStop(LoadStepper); /* from the monitor: no step after this one. Logically collective */
+PetscErrorCode LoadStepperStop(LoadStepper);
 PetscErrorCode LoadStepperSolve(LoadStepper, StepperReport *);
-/* Step size and counts, as they were at the last accepted step: from the monitor, after LoadStepperSolve(), or loading
- * before it. Collective. */
 PetscErrorCode LoadStepperArchive(LoadStepper, Archive);
 PetscErrorCode LoadStepperView(LoadStepper, PetscViewer);

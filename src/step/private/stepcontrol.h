@@ -1,36 +1,35 @@
-/* How large the next load step is: the step controls, chosen by name. For stepper.c, which tries the steps and lets
-   them land.
+/* Controls of the load step: how dt follows from what happened in the last step.
 
-   A new control is a file that defines a StepControl and a line in choices.h. */
+   stepper.c tries the steps and lets them land on the load parameters that the scene asks for. It calls the three
+   functions of the control that the scene chooses by name, in the order predict, judge, next. A new control is a file
+   that defines a StepControl, and a line in STEP_CONTROLS (choices.h). */
 #pragma once
 #include "solve/model.h"
 
-/* What a control knows and decides */
+/* What a control knows and decides. */
 typedef struct {
+  PetscReal dt;                              /* of the next step, before it lands anywhere */
   PetscReal initial, dt_min, dt_max, growth; /* of the scene */
-  PetscReal wanted;                          /* contact: nodes, or part of the slave area, that may touch in one step */
-  PetscBool by_area,
-    linearly;     /* contact: what is counted; predicted by one linear solve, not by the step's own solution */
-  PetscReal dt;   /* of the next step, before it lands anywhere */
-  PetscReal beta; /* contact: beta_{N_c} of the last choice, NaN: no node approached */
-  PetscReal
-    together; /* contact: nodes (area) that the last choice found to touch at one time, 0: no more than wanted */
-  PetscReal
-    shortfall; /* contact: how many times more nodes the last linear forecasts promised than came; 1 to begin with */
-  PetscReal planned; /* contact: dt of the last linear forecast, 0: none */
-  PetscInt
-    tied; /* contact: nodes of this step that come together, more than wanted, as no step separates them; 0: none */
+
+  /* The control by contact alone */
+  PetscReal wanted;    /* nodes, or part of the slave area, that may change their status in one step */
+  PetscBool by_area;   /* wanted is a part of the slave area */
+  PetscBool linearly;  /* touches are predicted by one linear solve, not by the solution of the step */
+  PetscReal beta;      /* beta_{N_c} of the last choice; NaN: no node approached */
+  PetscReal together;  /* nodes (area) that the last choice found to touch at one time; 0: not more than wanted */
+  PetscReal shortfall; /* nodes that the last linear predictions promised, over those that touched; 1 at the start */
+  PetscReal planned;   /* dt of the last linear prediction; 0: none */
+  PetscInt  tied; /* nodes of this step beyond those wanted that touch at one time, so that no step separates them */
 } StepSize;
 
+/* A control; functions that are NULL have nothing to do. */
 typedef struct {
-  /* before a step that may be as long as `rest`: may change dt; its solves are added to the report. NULL: nothing to be
-   * done */
+  /* Before a step that may be as long as `remaining`: may change size->dt; its solves are added to the report. */
   PetscErrorCode (*predict)(Model, PetscReal remaining, StepSize *, SolveReport *);
-  /* after a converged step of dt: is it to be accepted? If not it is taken back and tried with the new size->dt. NULL:
-   * always */
+  /* After a converged step of dt: decides whether it is accepted. A step that is not is repeated with size->dt. */
   PetscErrorCode (*judge)(Model, PetscReal dt, StepSize *, PetscBool *accepted);
-  /* after a step of dt that took `newton` iterations, before it is accepted: the next dt, from size->dt. clipped: dt
-     was shortened to land on a load parameter and says nothing of what the model can take */
+  /* After a step of dt that is to be accepted and took `newton` iterations: sets size->dt. clipped: dt was shortened to
+     land on a load parameter and says nothing about what the model can take. */
   PetscErrorCode (*next)(Model, PetscReal dt, PetscBool clipped, PetscInt newton, StepSize *);
 } StepControl;
 
