@@ -217,6 +217,7 @@ PetscErrorCode ModelArchive(Model model, Archive archive)
     PetscCall(VecCopy(model->x, work->accepted_x));
     model->t = work->accepted_t;
   }
+  PetscCall(LinearCheckArchive(model->linear, archive));
   if (model->contact) PetscCall(ContactArchive(model->contact, archive, model->u, model->t));
   if (!ArchiveLoads(archive)) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(ModelResidual(model, model->u, model->t, model->t, &ok));
