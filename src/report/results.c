@@ -24,23 +24,23 @@ enum {
 };
 
 struct _n_Results {
-  Model        model;
-  Probes       probes;
-  Scene        scene;
-  char         directory[PETSC_MAX_PATH_LEN];
-  PetscBool    quiet, talks; /* talks: rank 0 of a run that is not quiet */
-  PetscMPIInt  rank, size;
-  FILE        *csv; /* rank 0 */
-  Fields       fields;
-  PetscReal   *values; /* of the probes, at the last accepted step */
-  PetscBool   *met;    /* per contact pair: some slave node has met its master */
-  StepRecord   last;
-  PetscReal    deepest;          /* largest penetration so far, in face sizes */
-  PetscBool    stepped, written; /* there is an accepted step; results.h5 holds it */
-  double       started;
-  PetscReal    t_started;
-  RunUsage     before;   /* of the parts of the run before this one */
-  PetscInt     restarts; /* how many they are */
+  Model       model;
+  Probes      probes;
+  Scene       scene;
+  char        directory[PETSC_MAX_PATH_LEN];
+  PetscBool   quiet, talks; /* talks: rank 0 of a run that is not quiet */
+  PetscMPIInt rank, size;
+  FILE       *csv; /* rank 0 */
+  Fields      fields;
+  PetscReal  *values; /* of the probes, at the last accepted step */
+  PetscBool  *met;    /* per contact pair: some slave node has met its master */
+  StepRecord  last;
+  PetscReal   deepest;          /* largest penetration so far, in face sizes */
+  PetscBool   stepped, written; /* there is an accepted step; results.h5 holds it */
+  double      started;
+  PetscReal   t_started;
+  RunUsage    before;     /* of the parts of the run before this one */
+  PetscInt    restarts;   /* how many they are */
   PetscInt csv_length[2]; /* of steps.csv at the loaded checkpoint: bytes, in two parts as integers may have 32 bits */
 
   OptionRecord options; /* PETSc's, and how they changed at restarts */

@@ -335,9 +335,9 @@ STATES = {  # scene and what makes it short; a checkpoint lies before the last s
     "multipliers": ("cup_flattening", 3, ["stepping={control: fixed, initial: 0.125}", "contact.0.penalty={scale: 1, augment: true, g_max: 1e-4, unit: length}"]),
     "offsets": ("slide_facets", 4, ["stepping.initial=0.1", "contact.0.smoother=diffuse", "contact.0.formulation=surface_to_surface",
                                     "probes=[{name: force, contact_force: sole, component: y}]"]),
-    "live offsets": ("pipe_pinch", 2, ["mesh.order=1", "mesh.parameters={n_arc: 8, n_wall: 1, n_len: 3}", "contact.0.smoother=diffuse", "contact.0.formulation=surface_to_surface",
+    "live offsets": ("pipe_pinch", 3, ["mesh.order=1", "mesh.parameters={n_arc: 8, n_wall: 1, n_len: 3}", "contact.0.smoother=diffuse", "contact.0.formulation=surface_to_surface",
                                        "contact.0.offset=live", "loads.0.uy=-20", "stepping={control: fixed, initial: 0.25}", "probes=[{name: force, reaction: plate_top, component: y}]"]),
-    "factors with a border": ("pipe_pinch", 2, ["mesh.parameters={n_arc: 18, n_wall: 1, n_len: 8}", "contact.0.smoother=diffuse", "contact.0.degree=2", "loads.0.uy=-20",
+    "factors with a border": ("pipe_pinch", 3, ["mesh.parameters={n_arc: 18, n_wall: 1, n_len: 8}", "contact.0.smoother=diffuse", "contact.0.degree=2", "loads.0.uy=-20",
                                                 "stepping={control: fixed, initial: 0.25}", "probes=[{name: force, reaction: plate_top, component: y}]"]),
     "kept pattern": ("slide_flat", 7, ["contact.0.smoother=diffuse", "probes=[{name: force, contact_force: sole, component: y}]"]),
 }
