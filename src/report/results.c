@@ -148,13 +148,6 @@ static void DirectoryComplaint(Scene scene, const char *directory, PetscBool ove
   char       *record, there[LINE_SIZE] = "unknown", line_there[LINE_SIZE], line_here[LINE_SIZE];
 
   *message = '\0';
-  if (PathLength(directory) > LONGEST_DIRECTORY) {
-    snprintf(
-      message, MESSAGE_SIZE,
-      "-o %s: the path has %zu characters from the root; allowed: at most %d, as MPI's files take no longer ones",
-      directory, PathLength(directory), LONGEST_DIRECTORY);
-    return;
-  }
   if (stat(directory, &status)) return;
   if (!S_ISDIR(status.st_mode)) {
     snprintf(message, MESSAGE_SIZE,
@@ -183,6 +176,31 @@ static void DirectoryComplaint(Scene scene, const char *directory, PetscBool ove
              directory, scene->file, record_name);
   }
   free(record);
+}
+
+/*@
+  ResultsCheckPath - refuses (exit 1) a directory whose path is too long for the files in it.
+
+  Collective
+
+  Input Parameters:
++ comm      - all ranks
+- directory - of the results; it need not exist
+@*/
+PetscErrorCode ResultsCheckPath(MPI_Comm comm, const char *directory)
+{
+  char        message[MESSAGE_SIZE] = "";
+  PetscMPIInt rank;
+
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Comm_rank(comm, &rank));
+  if (!rank && PathLength(directory) > LONGEST_DIRECTORY)
+    snprintf(
+      message, sizeof(message),
+      "-o %s: the path has %zu characters from the root; allowed: at most %d, as MPI's files take no longer ones",
+      directory, PathLength(directory), LONGEST_DIRECTORY);
+  PetscCall(RefuseInputAnywhere(comm, *message ? message : NULL));
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /*
