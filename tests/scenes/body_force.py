@@ -1,6 +1,7 @@
-"""A bar that hangs from its upper end under its own weight: with Poisson's ratio 0 the displacement is (f / E) (y^2 - L^2) / 2, the lower end goes down
-by f L^2 / 2E, and the support carries the weight (Timoshenko and Goodier, Theory of Elasticity, article 86). Elements of second order hold such a
-displacement exactly, on any mesh with straight edges."""
+"""A bar that hangs from its upper end under its own weight: with Poisson's ratio 0 the displacement is (f / E) (y^2 -
+L^2) / 2, the lower end goes down by f L^2 / 2E, and the support carries the weight (Timoshenko and Goodier, Theory
+of Elasticity, article 86). Elements of second order hold such a displacement exactly, on any mesh with straight
+edges."""
 import math
 
 from harness import Check, arguments, run, SCENES

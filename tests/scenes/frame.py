@@ -1,6 +1,7 @@
-"""contact.frame: global fits the whole master over one reference plane. On a flat master that plane is the local one of every slave point, so that
-all fields agree. On the cap of a sphere, which turns by 19 degrees, the two frames fit the same surface with other polynomials: pressure and radius
-of the contact agree to a small part of what the mesh leaves to Hertz's answer."""
+"""contact.frame: global fits the whole master over one reference plane. On a flat master that plane is the local one
+of every slave point, so that all fields agree. On the cap of a sphere, which turns by 19 degrees, the two frames
+fit the same surface with other polynomials: pressure and radius of the contact agree to a small part of what the
+mesh leaves to Hertz's answer."""
 import math
 
 import numpy
@@ -12,7 +13,8 @@ DIFFUSE = ["contact.0.smoother=diffuse"]
 FORCE, RADIUS, STIFFNESS = 4 * 1.5024 * 16**2, 50.0, 1 / ((1 - 0.3**2) * (1 / 210000 + 1 / 70000))
 A = (3 * FORCE * RADIUS / (4 * STIFFNESS)) ** (1 / 3)
 PEAK = 3 * FORCE / (2 * math.pi * A**2)
-OF_MESH, OF_FRAME = 0.06, 1e-4  # relative errors: measured 0.05 for two elements on the contact's radius, and 1e-5 of one frame against the other
+# Relative errors: measured 0.05 for two elements on the contact's radius, and 1e-5 of one frame against the other.
+OF_MESH, OF_FRAME = 0.06, 1e-4
 
 args = arguments()
 check = Check()
