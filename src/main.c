@@ -110,6 +110,7 @@ static PetscErrorCode OpenScene(MPI_Comm comm, const CommandLine *command, char 
   PetscCall(InsertSceneOptions(*scene));
   PetscCall(PetscSNPrintf(directory, PETSC_MAX_PATH_LEN, "%s%s", command->directory ? command->directory : "out/",
                           command->directory ? "" : (*scene)->name));
+  if (command->mode != COMMAND_MESH) PetscCall(ResultsCheckPath(comm, directory));
   PetscCall(ErrorLogOpen(directory));
   if (command->mode == COMMAND_RUN)
     PetscCall(ResultsCheckDirectory(comm, *scene, directory, command->overwrite ? PETSC_TRUE : PETSC_FALSE));
@@ -124,6 +125,7 @@ static PetscErrorCode ReopenScene(MPI_Comm comm, const CommandLine *command, cha
   PetscFunctionBeginUser;
   *mesh_s = 0;
   PetscCall(PetscStrncpy(directory, command->restart, PETSC_MAX_PATH_LEN));
+  PetscCall(ResultsCheckPath(comm, directory));
   PetscCall(ErrorLogOpen(directory));
   PetscCall(CheckpointOpen(comm, directory, checkpoint));
   PetscCall(CheckpointReadScene(*checkpoint, command->n_set, command->set, scene));

@@ -1,28 +1,40 @@
+/* Values on their way to a checkpoint file or back. The file begins with a head of ARCHIVE_HEAD bytes: a text of
+   version, length and checksum with zeros behind it. HDF5 data follow. The head is written last, when all else is on
+   the disk, and read first, before HDF5 opens the file. HDF5 crashes or hangs on some damaged files, so it must never
+   see one. */
 #define _GNU_SOURCE /* fallocate() */
 #include "files/archive.h"
 #include "base/refusal.h"
+#include "checksum.h"
 #include <errno.h>
 #include <fcntl.h>
+#include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
-/* The layout of the state; to be raised whenever a value gets another name, shape or meaning. */
-#define ARCHIVE_VERSION 4
-/* The attribute by which the file is known. */
-#define ARCHIVE_MARK "burnish_checkpoint"
-/* What HDF5 itself may need: for every dataset and for the file, bytes. Measured: under 1 kB and 4 kB. */
+/* The layout of the state. It must be raised whenever a value gets another name, shape or meaning. */
+#define ARCHIVE_VERSION 5
+/* The first bytes of the file, by which it is known. */
+#define ARCHIVE_MARK "burnish checkpoint\nversion "
+/* The length of the head in bytes, the least that HDF5 leaves alone at the start of a file. */
+#define ARCHIVE_HEAD 512
+/* Bytes that HDF5 itself may need for every dataset and for the file. Measured: under 1 kB and 4 kB. */
 #define ARCHIVE_DATASET_BYTES 2048
 #define ARCHIVE_FILE_BYTES    65536
-
-enum { ARCHIVE_PIECE = 1 << 24 /* bytes that ArchiveExtract() holds at a time */, NAME_SIZE = PETSC_MAX_PATH_LEN + 32 };
+/* Bytes that ArchiveExtract() holds at a time. */
+#define ARCHIVE_PIECE (1 << 24)
+/* Room for the temporary name, which is longer than the file's own. */
+#define ARCHIVE_NAME (PETSC_MAX_PATH_LEN + 32)
+/* Room for a message that names the file. */
+#define ARCHIVE_MESSAGE (2 * PETSC_MAX_PATH_LEN)
 
 struct _n_Archive {
   MPI_Comm    comm;
   PetscMPIInt rank;
-  char        name[PETSC_MAX_PATH_LEN], temporary[NAME_SIZE];
+  char        name[PETSC_MAX_PATH_LEN], temporary[ARCHIVE_NAME];
   hid_t       file;
   PetscBool   loads, measures;
-  PetscInt64  bytes;
+  PetscInt64  bytes; /* counted so far, while it measures */
 };
 
 static PetscErrorCode ArchiveNew(MPI_Comm comm, const char *name, Archive *archive)
@@ -36,7 +48,17 @@ static PetscErrorCode ArchiveNew(MPI_Comm comm, const char *name, Archive *archi
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ArchiveMeasure - an archive that only counts. Not collective. */
+/*@
+  ArchiveMeasure - creates an archive that saves nothing and counts bytes.
+
+  Collective
+
+  Input Parameter:
+. comm - the ranks that have parts of the values
+
+  Output Parameter:
+. archive - to be closed with ArchiveClose()
+@*/
 PetscErrorCode ArchiveMeasure(MPI_Comm comm, Archive *archive)
 {
   PetscFunctionBeginUser;
@@ -45,7 +67,17 @@ PetscErrorCode ArchiveMeasure(MPI_Comm comm, Archive *archive)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ArchiveSize - bytes that the file will have at most, after ArchiveMeasure() and all values. Collective. */
+/*@
+  ArchiveSize - returns how many bytes the file will have at most.
+
+  Collective
+
+  Input Parameter:
+. archive - from ArchiveMeasure(), after all values have been named
+
+  Output Parameter:
+. bytes - of all ranks together
+@*/
 PetscErrorCode ArchiveSize(Archive archive, PetscInt64 *bytes)
 {
   PetscFunctionBeginUser;
@@ -55,7 +87,7 @@ PetscErrorCode ArchiveSize(Archive archive, PetscInt64 *bytes)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Rank 0: why a file of that size cannot be written, or 0. File systems that cannot reserve room are not asked. */
+/* Returns why rank 0 cannot write a file of that size, or 0. File systems that cannot reserve room pass. */
 static int ReserveRoom(const char *name, PetscInt64 bytes)
 {
   const int file = open(name, O_WRONLY | O_CREAT | O_TRUNC, 0666);
@@ -68,15 +100,25 @@ static int ReserveRoom(const char *name, PetscInt64 bytes)
   return cause == EOPNOTSUPP || cause == ENOSYS ? 0 : cause;
 }
 
-/* ArchiveCreate - a new file under its temporary name.
+/*@
+  ArchiveCreate - creates an archive that saves values in a new file, under a temporary name until ArchiveClose().
 
-   Collective. bytes: ArchiveSize(). Errors: PETSC_ERR_FILE_WRITE with its cause where there is no room for so many; the
-   file `name` is not touched. */
+  Collective
+
+  Input Parameters:
++ comm  - the ranks that have parts of the values
+. name  - of the file
+- bytes - that it will have at most, from ArchiveSize()
+
+  Output Parameter:
+. archive - to be closed with ArchiveClose()
+
+  Note:
+  Errors: PETSC_ERR_FILE_WRITE with its cause where there is no room for so many bytes. The file `name` is not touched.
+@*/
 PetscErrorCode ArchiveCreate(MPI_Comm comm, const char *name, PetscInt64 bytes, Archive *archive)
 {
-  const int64_t version = ARCHIVE_VERSION;
-  int           cause   = 0;
-  hid_t         space, attribute;
+  int cause = 0;
 
   PetscFunctionBeginUser;
   PetscCall(ArchiveNew(comm, name, archive));
@@ -86,86 +128,127 @@ PetscErrorCode ArchiveCreate(MPI_Comm comm, const char *name, PetscInt64 bytes, 
              "cannot write %s (%.3g MB): %s; what stood there before is intact", name, 1e-6 * (double)bytes,
              strerror(cause));
   PetscCallMPI(MPI_Barrier(comm));
-  PetscCall(Hdf5TableCreateFile(comm, (*archive)->temporary, &(*archive)->file));
-  CallHDF5(space = H5Screate(H5S_SCALAR));
-  CallHDF5(attribute = H5Acreate2((*archive)->file, ARCHIVE_MARK, H5T_NATIVE_INT64, space, H5P_DEFAULT, H5P_DEFAULT));
-  CallHDF5(H5Awrite(attribute, H5T_NATIVE_INT64, &version));
-  CallHDF5(H5Aclose(attribute));
-  CallHDF5(H5Sclose(space));
+  PetscCall(Hdf5TableCreateFileBehind(comm, (*archive)->temporary, ARCHIVE_HEAD, &(*archive)->file));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* HDF5 says nothing of its own while a file is looked at that may be anything. */
-static herr_t QuietAttribute(hid_t file, int64_t *version)
-{
-  hid_t  attribute = H5Aexists(file, ARCHIVE_MARK) > 0 ? H5Aopen(file, ARCHIVE_MARK, H5P_DEFAULT) : -1;
-  herr_t status    = -1;
+/* ------------------------------------------------------------------------------------------------------ the head */
 
-  if (attribute >= 0) {
-    status = H5Aread(attribute, H5T_NATIVE_INT64, version);
-    H5Aclose(attribute);
-  }
-  return status;
+/* The head of a file of this version. */
+static void HeadFill(PetscInt64 bytes, uint64_t checksum, char head[ARCHIVE_HEAD])
+{
+  memset(head, 0, ARCHIVE_HEAD);
+  snprintf(head, ARCHIVE_HEAD, ARCHIVE_MARK "%d\nbytes %lld\nchecksum %016llx\n", ARCHIVE_VERSION, (long long)bytes,
+           (unsigned long long)checksum);
 }
 
-/* Rank 0: why the file is no archive of ours, or an empty message */
-static void FileComplaint(const char *name, char *message, size_t size)
+/* Reads the head of a file on rank 0 and says why the file is no archive of this version, or nothing. */
+static void HeadComplaint(const char *name, char head[ARCHIVE_HEAD], char *message, size_t size)
 {
-  int64_t     version = -1;
-  H5E_auto2_t report;
-  void       *context;
-  hid_t       file;
+  const size_t mark   = strlen(ARCHIVE_MARK);
+  FILE        *stream = fopen(name, "rb");
+  size_t       n;
 
   *message = '\0';
-  if (access(name, R_OK)) {
+  if (!stream) {
     snprintf(message, size,
              "%s: %s; allowed: -restart with a directory whose run has written a checkpoint (output.checkpoint, or a "
              "stopped run)",
              name, strerror(errno));
     return;
   }
-  H5Eget_auto2(H5E_DEFAULT, &report, &context);
-  H5Eset_auto2(H5E_DEFAULT, NULL, NULL);
-  file = H5Fopen(name, H5F_ACC_RDONLY, H5P_DEFAULT);
-  if (file < 0)
-    snprintf(message, size, "%s is no HDF5 file, or a part of it is missing; allowed: a whole checkpoint of burnish",
+  n = fread(head, 1, ARCHIVE_HEAD, stream);
+  fclose(stream);
+  if (n < mark || memcmp(head, ARCHIVE_MARK, mark))
+    snprintf(message, size,
+             "%s was not written by burnish, or by an older version of it, or its first bytes are damaged; allowed: a "
+             "checkpoint of this burnish",
              name);
-  else if (QuietAttribute(file, &version) < 0)
-    snprintf(message, size, "%s was not written by burnish; allowed: a checkpoint of burnish", name);
-  else if (version != ARCHIVE_VERSION)
-    snprintf(message, size, "%s is a checkpoint of version %lld; allowed: version %d, of this burnish", name,
-             (long long)version, ARCHIVE_VERSION);
-  if (file >= 0) H5Fclose(file);
-  H5Eset_auto2(H5E_DEFAULT, report, context);
+  else if (n < ARCHIVE_HEAD)
+    snprintf(message, size, "%s is damaged: a part of it is missing; allowed: a whole checkpoint", name);
+  else if (atoi(head + mark) != ARCHIVE_VERSION)
+    snprintf(message, size, "%s is a checkpoint of version %d; allowed: version %d, of this burnish", name,
+             atoi(head + mark), ARCHIVE_VERSION);
 }
 
-/* ArchiveOpen - a file to load from.
+/* Compares the head with the one that belongs to the length and the checksum of the file on rank 0. */
+static void BodyComplaint(const char *name, PetscInt64 bytes, uint64_t checksum, const char head[ARCHIVE_HEAD],
+                          char *message, size_t size)
+{
+  long long length = -1;
+  char      belongs[ARCHIVE_HEAD];
 
-   Collective. Refuses (exit 1) a file that is missing, truncated, foreign or of another version. */
+  *message = '\0';
+  HeadFill(bytes, checksum, belongs);
+  if (!memcmp(head, belongs, ARCHIVE_HEAD)) return;
+  if (sscanf(head, ARCHIVE_MARK "%*d\nbytes %lld", &length) == 1 && length > (long long)bytes)
+    snprintf(message, size,
+             "%s is damaged: it has %lld bytes of %lld, a part of it is missing; allowed: a whole checkpoint", name,
+             (long long)bytes, length);
+  else
+    snprintf(message, size,
+             "%s is damaged: its bytes do not match its checksum, so they have changed since it was written; allowed: "
+             "a whole checkpoint",
+             name);
+}
+
+/*@
+  ArchiveOpen - opens a file from which values are loaded.
+
+  Collective
+
+  Input Parameters:
++ comm - the ranks that want parts of the values
+- name - of the file
+
+  Output Parameter:
+. archive - to be closed with ArchiveClose()
+
+  Note:
+  A file that is missing, truncated, foreign, of another version, or of which a single bit has changed is refused
+  (exit 1). All ranks read the whole file once for that.
+@*/
 PetscErrorCode ArchiveOpen(MPI_Comm comm, const char *name, Archive *archive)
 {
-  char message[2 * PETSC_MAX_PATH_LEN] = "";
+  char       message[ARCHIVE_MESSAGE] = "", head[ARCHIVE_HEAD + 1] = ""; /* the last byte ends the text */
+  PetscInt64 bytes;
+  uint64_t   checksum;
 
   PetscFunctionBeginUser;
   PetscCall(ArchiveNew(comm, name, archive));
-  if (!(*archive)->rank) FileComplaint(name, message, sizeof(message));
+  if (!(*archive)->rank) HeadComplaint(name, head, message, sizeof(message));
+  PetscCall(RefuseInputAnywhere(comm, *message ? message : NULL));
+  PetscCall(ChecksumFile(comm, name, ARCHIVE_HEAD, &bytes, &checksum));
+  if (!(*archive)->rank) BodyComplaint(name, bytes, checksum, head, message, sizeof(message));
   PetscCall(RefuseInputAnywhere(comm, *message ? message : NULL));
   PetscCall(Hdf5TableOpenFile(comm, name, H5F_ACC_RDONLY, &(*archive)->file));
   (*archive)->loads = PETSC_TRUE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Rank 0: everything to the disk, then the final name; the cause of a failure, or 0 */
+/* ------------------------------------------------------------------------------------------------------- closing */
+
+/* Writes the head on rank 0 and sends everything to the disk. Returns the cause of a failure, or 0. */
+static int WriteHead(const char *name, const char head[ARCHIVE_HEAD])
+{
+  const int file  = open(name, O_WRONLY);
+  int       cause = 0;
+
+  if (file < 0) return errno;
+  errno = EIO; /* where the write is short */
+  if (pwrite(file, head, ARCHIVE_HEAD, 0) != ARCHIVE_HEAD || fsync(file)) cause = errno;
+  close(file);
+  return cause;
+}
+
+/* Gives the file its final name on rank 0. Returns the cause of a failure, or 0. */
 static int MoveInPlace(const char *temporary, const char *name)
 {
   char  directory[PETSC_MAX_PATH_LEN];
   char *slash;
-  int   file = open(temporary, O_RDONLY), cause = 0;
+  int   file;
 
-  if (file < 0) return errno;
-  if (fsync(file)) cause = errno;
-  close(file);
-  if (cause || rename(temporary, name)) return cause ? cause : errno;
+  if (rename(temporary, name)) return errno;
   snprintf(directory, sizeof(directory), "%s", name);
   slash = strrchr(directory, '/');
   if (slash) *slash = '\0';
@@ -177,39 +260,69 @@ static int MoveInPlace(const char *temporary, const char *name)
   return 0;
 }
 
-/* ArchiveClose - ends it; a saved file takes the place of the one before.
+/* Completes a saved file and puts it in the place of the one before. */
+static PetscErrorCode ArchiveFinish(Archive a)
+{
+  char       head[ARCHIVE_HEAD];
+  PetscInt64 bytes;
+  uint64_t   checksum;
+  int        cause = 0;
 
-   Collective. Errors: PETSC_ERR_FILE_WRITE, with the file before intact. */
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Barrier(a->comm)); /* every rank has written its part */
+  PetscCall(ChecksumFile(a->comm, a->temporary, ARCHIVE_HEAD, &bytes, &checksum));
+  HeadFill(bytes, checksum, head);
+  if (!a->rank) cause = WriteHead(a->temporary, head);
+  if (!a->rank && !cause) cause = MoveInPlace(a->temporary, a->name);
+  PetscCheck(!cause, PETSC_COMM_SELF, PETSC_ERR_FILE_WRITE, "cannot write %s: %s; what stood there before is intact",
+             a->name, strerror(cause));
+  PetscCallMPI(MPI_Barrier(a->comm)); /* the file is there when any rank goes on */
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ArchiveClose - ends an archive. A saved file takes the place of the one before.
+
+  Collective
+
+  Input Parameter:
+. archive - from ArchiveMeasure(), ArchiveCreate() or ArchiveOpen(); NULL does nothing
+
+  Note:
+  Errors: PETSC_ERR_FILE_WRITE; the file before is intact then.
+@*/
 PetscErrorCode ArchiveClose(Archive *archive)
 {
-  Archive a     = *archive;
-  int     cause = 0;
+  Archive a = *archive;
 
   PetscFunctionBeginUser;
   if (!a) PetscFunctionReturn(PETSC_SUCCESS);
   if (!a->measures) {
-    if (!a->loads) CallHDF5(H5Fflush(a->file, H5F_SCOPE_GLOBAL)); /* every rank syncs what it wrote */
+    if (!a->loads) CallHDF5(H5Fflush(a->file, H5F_SCOPE_GLOBAL)); /* every rank sends to the disk what it wrote */
     CallHDF5(H5Fclose(a->file));
-  }
-  if (!a->measures && !a->loads) {
-    PetscCallMPI(MPI_Barrier(a->comm));
-    if (!a->rank) cause = MoveInPlace(a->temporary, a->name);
-    PetscCheck(!cause, PETSC_COMM_SELF, PETSC_ERR_FILE_WRITE, "cannot write %s: %s; what stood there before is intact",
-               a->name, strerror(cause));
-    PetscCallMPI(MPI_Barrier(a->comm)); /* it is there when any rank goes on */
+    if (!a->loads) PetscCall(ArchiveFinish(a));
   }
   PetscCall(PetscFree(*archive));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ArchiveLoads - do values come from the file, to be taken over? Not collective. */
+/*@
+  ArchiveLoads - tells whether values come from the file and are to be taken over.
+
+  Not collective
+
+  Input Parameter:
+. archive - any
+@*/
 PetscBool ArchiveLoads(Archive archive)
 {
   return archive->loads;
 }
 
-/* Opens a dataset to be read and refuses one that is missing or has another number of values than wanted; < 0: any
- * number. */
+/* ------------------------------------------------------------------------------------------------------- reading */
+
+/* Opens a dataset for reading. Refuses one that is missing or has another number of values than wanted. A negative
+   number allows any. */
 static PetscErrorCode OpenDataset(Archive a, const char *name, hssize_t values, hid_t *data, hsize_t *size)
 {
   hid_t     space;
@@ -234,16 +347,26 @@ static PetscErrorCode OpenDataset(Archive a, const char *name, hssize_t values, 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ArchiveHas - does the file hold such a value? Loading only. Collective. */
+/*@
+  ArchiveHas - tells whether the file holds a value of that name.
+
+  Collective
+
+  Input Parameters:
++ a    - from ArchiveOpen()
+- name - of the value
+
+  Output Parameter:
+. there - whether it does
+@*/
 PetscErrorCode ArchiveHas(Archive a, const char *name, PetscBool *there)
 {
   char path[PETSC_MAX_PATH_LEN];
 
   PetscFunctionBeginUser;
   *there = PETSC_TRUE;
-  for (const char *end = name; *there && end;
-       end             = strchr(end + 1, '/')) { /* H5Lexists() wants every group on the way to be there */
-    if (end == name) continue;
+  /* H5Lexists() wants every group on the way to be there. */
+  for (const char *end = strchr(name + 1, '/'); *there && end; end = strchr(end + 1, '/')) {
     snprintf(path, sizeof(path), "%.*s", (int)(end - name), name);
     *there = H5Lexists(a->file, path, H5P_DEFAULT) > 0 ? PETSC_TRUE : PETSC_FALSE;
   }
@@ -251,7 +374,7 @@ PetscErrorCode ArchiveHas(Archive a, const char *name, PetscBool *there)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Reads rows first to first + n - 1 of `width` values. */
+/* Reads the rows first to first + n - 1, each of `width` values. */
 static PetscErrorCode ReadPart(hid_t data, hsize_t first, hsize_t n, int width, hid_t type, void *values)
 {
   const hsize_t start[2] = {first, 0}, count[2] = {n, (hsize_t)width};
@@ -267,7 +390,7 @@ static PetscErrorCode ReadPart(hid_t data, hsize_t first, hsize_t n, int width, 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* n values of one HDF5 type, `size` bytes each, the same on all ranks. */
+/* Saves or loads n values of one HDF5 type, `size` bytes each, the same on all ranks. */
 static PetscErrorCode ArchiveShared(Archive a, const char *name, PetscInt n, hid_t type, size_t size, void *values)
 {
   hid_t   data;
@@ -285,7 +408,21 @@ static PetscErrorCode ArchiveShared(Archive a, const char *name, PetscInt n, hid
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ArchiveReals - n numbers that all ranks share. Collective. */
+/* ------------------------------------------------------------------------------------------------------ the values */
+
+/*@
+  ArchiveReals - saves or loads numbers that all ranks share.
+
+  Collective
+
+  Input Parameters:
++ a    - the archive
+. name - of the value, its groups with slashes between them
+- n    - how many numbers there are; a file with another number is refused (exit 1)
+
+  Input/Output Parameter:
+. values - rank 0's are saved, all ranks get the loaded ones
+@*/
 PetscErrorCode ArchiveReals(Archive a, const char *name, PetscInt n, PetscReal *values)
 {
   PetscFunctionBeginUser;
@@ -293,7 +430,19 @@ PetscErrorCode ArchiveReals(Archive a, const char *name, PetscInt n, PetscReal *
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ArchiveIntegers - n whole numbers that all ranks share. Collective. */
+/*@
+  ArchiveIntegers - saves or loads whole numbers that all ranks share.
+
+  Collective
+
+  Input Parameters:
++ a    - the archive
+. name - of the value
+- n    - how many numbers there are; a file with another number is refused (exit 1)
+
+  Input/Output Parameter:
+. values - rank 0's are saved, all ranks get the loaded ones
+@*/
 PetscErrorCode ArchiveIntegers(Archive a, const char *name, PetscInt n, PetscInt *values)
 {
   int64_t *wide;
@@ -307,7 +456,17 @@ PetscErrorCode ArchiveIntegers(Archive a, const char *name, PetscInt n, PetscInt
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ArchiveRealsAt - n numbers that all ranks share, each in its own place. Collective. */
+/*@
+  ArchiveRealsAt - saves or loads numbers that all ranks share, each in a place of its own.
+
+  Collective
+
+  Input Parameters:
++ a     - the archive
+. name  - of the value
+. n     - how many numbers there are
+- place - place[i] points to number i, which is saved or overwritten
+@*/
 PetscErrorCode ArchiveRealsAt(Archive a, const char *name, PetscInt n, PetscReal *const *place)
 {
   PetscReal *values;
@@ -321,7 +480,17 @@ PetscErrorCode ArchiveRealsAt(Archive a, const char *name, PetscInt n, PetscReal
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ArchiveIntegersAt - n whole numbers that all ranks share, each in its own place. Collective. */
+/*@
+  ArchiveIntegersAt - saves or loads whole numbers that all ranks share, each in a place of its own.
+
+  Collective
+
+  Input Parameters:
++ a     - the archive
+. name  - of the value
+. n     - how many numbers there are
+- place - place[i] points to number i, which is saved or overwritten
+@*/
 PetscErrorCode ArchiveIntegersAt(Archive a, const char *name, PetscInt n, PetscInt *const *place)
 {
   PetscInt *values;
@@ -335,7 +504,18 @@ PetscErrorCode ArchiveIntegersAt(Archive a, const char *name, PetscInt n, PetscI
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ArchiveBoolean - Collective. */
+/*@
+  ArchiveBoolean - saves or loads a truth value that all ranks share.
+
+  Collective
+
+  Input Parameters:
++ a    - the archive
+- name - of the value
+
+  Input/Output Parameter:
+. value - is saved or overwritten
+@*/
 PetscErrorCode ArchiveBoolean(Archive a, const char *name, PetscBool *value)
 {
   PetscInt number = *value;
@@ -346,7 +526,7 @@ PetscErrorCode ArchiveBoolean(Archive a, const char *name, PetscBool *value)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The length of what is loaded next. */
+/* How many values a dataset has. */
 static PetscErrorCode LoadedLength(Archive a, const char *name, PetscInt *n)
 {
   hid_t   data;
@@ -359,7 +539,19 @@ static PetscErrorCode LoadedLength(Archive a, const char *name, PetscInt *n)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ArchiveIntegerList - any number of whole numbers that all ranks share; loaded, free with PetscFree(). Collective. */
+/*@
+  ArchiveIntegerList - saves or loads any number of whole numbers that all ranks share.
+
+  Collective
+
+  Input Parameters:
++ a    - the archive
+- name - of the value
+
+  Input/Output Parameters:
++ n    - how many numbers there are
+- list - is saved; a loaded one is new, to be freed with PetscFree()
+@*/
 PetscErrorCode ArchiveIntegerList(Archive a, const char *name, PetscInt *n, PetscInt **list)
 {
   PetscFunctionBeginUser;
@@ -371,7 +563,18 @@ PetscErrorCode ArchiveIntegerList(Archive a, const char *name, PetscInt *n, Pets
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ArchiveText - a text that all ranks share; loaded, free with PetscFree(). Collective. */
+/*@
+  ArchiveText - saves or loads a text of any length that all ranks share.
+
+  Collective
+
+  Input Parameters:
++ a    - the archive
+- name - of the value
+
+  Input/Output Parameter:
+. text - is saved; a loaded one is new, to be freed with PetscFree()
+@*/
 PetscErrorCode ArchiveText(Archive a, const char *name, char **text)
 {
   PetscInt n;
@@ -386,7 +589,45 @@ PetscErrorCode ArchiveText(Archive a, const char *name, char **text)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ArchiveRows - items[rows->items * width], by their rows. Collective. */
+/*@
+  ArchiveString - saves or loads a text in an array that all ranks share.
+
+  Collective
+
+  Input Parameters:
++ a    - the archive
+. name - of the value
+- size - of the array; a loaded text that is longer is cut
+
+  Input/Output Parameter:
+. text - is saved or overwritten
+@*/
+PetscErrorCode ArchiveString(Archive a, const char *name, size_t size, char *text)
+{
+  char *copy = text;
+
+  PetscFunctionBeginUser;
+  PetscCall(ArchiveText(a, name, &copy));
+  if (!a->loads) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscStrncpy(text, copy, size));
+  PetscCall(PetscFree(copy));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ArchiveRows - saves or loads items of which each rank has a part, by their rows in a table.
+
+  Collective
+
+  Input Parameters:
++ a     - the archive
+. name  - of the value
+. rows  - the row of each of this rank's items
+- width - numbers of one item
+
+  Input/Output Parameter:
+. items - items[rows->items*width] are saved or overwritten
+@*/
 PetscErrorCode ArchiveRows(Archive a, const char *name, const Hdf5Table *rows, int width, PetscReal *items)
 {
   PetscReal *values;
@@ -408,8 +649,20 @@ PetscErrorCode ArchiveRows(Archive a, const char *name, const Hdf5Table *rows, i
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ArchiveBytes - *n bytes of this rank, behind those of the ranks before it; loaded, each rank gets an equal share, to
-   be freed with PetscFree(). Collective. */
+/*@
+  ArchiveBytes - saves or loads bytes of which each rank has a part.
+
+  Collective
+
+  Input Parameters:
++ a    - the archive
+- name - of the value
+
+  Input/Output Parameters:
++ n     - number of bytes of this rank
+- bytes - are saved behind those of the ranks before; loaded, each rank gets an equal share, to be freed with
+PetscFree()
+@*/
 PetscErrorCode ArchiveBytes(Archive a, const char *name, PetscInt64 *n, char **bytes)
 {
   PetscInt64  first = 0, total;
@@ -438,8 +691,19 @@ PetscErrorCode ArchiveBytes(Archive a, const char *name, PetscInt64 *n, char **b
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ArchiveExtract - all bytes of ArchiveBytes() to a stream of rank 0's. Collective; loading only. Errors:
- * PETSC_ERR_FILE_WRITE. */
+/*@
+  ArchiveExtract - writes all bytes that ArchiveBytes() has saved to a stream on rank 0.
+
+  Collective
+
+  Input Parameters:
++ a      - from ArchiveOpen()
+. name   - of the value
+- stream - on rank 0, other ranks may pass NULL
+
+  Note:
+  Rank 0 holds 16 MB of them at a time. Errors: PETSC_ERR_FILE_WRITE.
+@*/
 PetscErrorCode ArchiveExtract(Archive a, const char *name, FILE *stream)
 {
   hid_t   data;

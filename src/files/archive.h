@@ -1,39 +1,38 @@
-/* The state of a run on its way to a file or back. Every object names its values in one function, NameArchive(object,
-   archive), which saves them or takes them over, so that what is saved is what is restored. The file is the same on any
-   number of ranks and serves any.
+/* An archive is the state of a run on its way to a file or back. Every object names its values in one function,
+   NameArchive(object, archive). That function saves the values or takes them over, so that what is saved is what is
+   restored. The file is the same on any number of ranks and serves any number.
 
-     ArchiveMeasure() for the size; ArchiveCreate(), the objects' functions, ArchiveClose(); ArchiveOpen(), the same
-   functions, ArchiveClose()
+     to save: ArchiveMeasure(), the objects' functions, ArchiveSize(), ArchiveClose() for the size of the file; then
+              ArchiveCreate(), the objects' functions, ArchiveClose()
+     to load: ArchiveOpen(), the objects' functions, ArchiveClose()
 
-   A new file is written under a temporary name, synced, and renamed when it is whole: the one before stays until then.
- */
+   A new file is written under a temporary name, goes to the disk, and is renamed when it is whole. The file before it
+   stays until then. The file begins with a text that holds version, length and checksum, and HDF5 data follow.
+   ArchiveOpen() refuses a file of which a single bit has changed. */
 #pragma once
 #include "files/hdf5table.h"
 #include <stdio.h>
 
 typedef struct _n_Archive *Archive;
 
-PetscErrorCode ArchiveMeasure(MPI_Comm, Archive *);     /* saves nowhere, counts bytes */
-PetscErrorCode ArchiveSize(Archive, PetscInt64 *bytes); /* all ranks together */
+PetscErrorCode ArchiveMeasure(MPI_Comm, Archive *);
+PetscErrorCode ArchiveSize(Archive, PetscInt64 *bytes);
 PetscErrorCode ArchiveCreate(MPI_Comm, const char *file, PetscInt64 bytes, Archive *);
-PetscErrorCode ArchiveOpen(MPI_Comm, const char *file,
-                           Archive *); /* refuses what is no whole archive of this version */
+PetscErrorCode ArchiveOpen(MPI_Comm, const char *file, Archive *);
 PetscErrorCode ArchiveClose(Archive *);
-PetscBool      ArchiveLoads(Archive); /* values come from the file */
+PetscBool      ArchiveLoads(Archive);
 PetscErrorCode ArchiveHas(Archive, const char *name, PetscBool *);
-/* Values that all ranks share: rank 0's are saved. Collective. */
+/* Values that all ranks share: those of rank 0 are saved. */
 PetscErrorCode ArchiveReals(Archive, const char *name, PetscInt n, PetscReal *values);
 PetscErrorCode ArchiveIntegers(Archive, const char *name, PetscInt n, PetscInt *values);
-/* The same, value i at *place[i] */
 PetscErrorCode ArchiveRealsAt(Archive, const char *name, PetscInt n, PetscReal *const *place);
 PetscErrorCode ArchiveIntegersAt(Archive, const char *name, PetscInt n, PetscInt *const *place);
 PetscErrorCode ArchiveBoolean(Archive, const char *name, PetscBool *value);
-/* The same of any length; loaded, they are new and the caller's. Collective. */
+PetscErrorCode ArchiveString(Archive, const char *name, size_t size, char *text);
+/* The same of any length: what is loaded is new and the caller's. */
 PetscErrorCode ArchiveIntegerList(Archive, const char *name, PetscInt *n, PetscInt **list);
 PetscErrorCode ArchiveText(Archive, const char *name, char **text);
-/* Items that ranks hold parts of, by the rows of a table. Collective. */
+/* Values of which each rank has a part. */
 PetscErrorCode ArchiveRows(Archive, const char *name, const Hdf5Table *, int width, PetscReal *items);
-/* Bytes, one rank's after the other's; loaded, they are shared out anew and the caller's. Collective. */
 PetscErrorCode ArchiveBytes(Archive, const char *name, PetscInt64 *n, char **bytes);
-/* All of these bytes to a stream on rank 0, loading only. Collective. */
 PetscErrorCode ArchiveExtract(Archive, const char *name, FILE *);

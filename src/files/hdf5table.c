@@ -161,17 +161,43 @@ static PetscErrorCode FileAccess(MPI_Comm comm, hid_t *access)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/*@
+  Hdf5TableCreateFileBehind - creates an HDF5 file behind bytes that are the caller's, in the place of any old file.
+
+  Collective
+
+  Input Parameters:
++ comm - the ranks on which it is open
+. name - of the file
+- own  - number of bytes at the start that HDF5 leaves alone (its "user block"): 0, or a power of 2 from 512 on
+
+  Output Parameter:
+. file - to be closed with H5Fclose()
+
+  Note:
+  Errors: PETSC_ERR_FILE_OPEN.
+@*/
+PetscErrorCode Hdf5TableCreateFileBehind(MPI_Comm comm, const char *name, hsize_t own, hid_t *file)
+{
+  hid_t access, creation;
+
+  PetscFunctionBeginUser;
+  PetscCall(FileAccess(comm, &access));
+  CallHDF5(creation = H5Pcreate(H5P_FILE_CREATE));
+  CallHDF5(H5Pset_userblock(creation, own));
+  *file = H5Fcreate(name, H5F_ACC_TRUNC, creation, access);
+  PetscCheck(*file >= 0, PETSC_COMM_SELF, PETSC_ERR_FILE_OPEN, "HDF5 could not make %s", name);
+  CallHDF5(H5Pclose(creation));
+  CallHDF5(H5Pclose(access));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Hdf5TableCreateFile - a new HDF5 file in the place of any old one, open on all ranks. Collective. Errors:
  * PETSC_ERR_FILE_OPEN. */
 PetscErrorCode Hdf5TableCreateFile(MPI_Comm comm, const char *name, hid_t *file)
 {
-  hid_t access;
-
   PetscFunctionBeginUser;
-  PetscCall(FileAccess(comm, &access));
-  *file = H5Fcreate(name, H5F_ACC_TRUNC, H5P_DEFAULT, access);
-  PetscCheck(*file >= 0, PETSC_COMM_SELF, PETSC_ERR_FILE_OPEN, "HDF5 could not make %s", name);
-  CallHDF5(H5Pclose(access));
+  PetscCall(Hdf5TableCreateFileBehind(comm, name, 0, file));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -34,4 +34,5 @@ PetscErrorCode Hdf5TableWriteReals(hid_t file, const char *path, const Hdf5Table
 PetscErrorCode Hdf5TableWriteIntegers(hid_t file, const char *path, const Hdf5Table *, int width, const int64_t *items);
 /* A file on all ranks: made anew, or opened with access H5F_ACC_RDWR or H5F_ACC_RDONLY. Collective. */
 PetscErrorCode Hdf5TableCreateFile(MPI_Comm, const char *name, hid_t *file);
+PetscErrorCode Hdf5TableCreateFileBehind(MPI_Comm, const char *name, hsize_t own, hid_t *file);
 PetscErrorCode Hdf5TableOpenFile(MPI_Comm, const char *name, unsigned access, hid_t *file);

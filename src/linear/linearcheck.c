@@ -17,6 +17,7 @@ struct _n_LinearCheck {
   ReusedFactor kept;
   PetscBool    lost;
   LinearCounts counts;
+  KeptCounts   before; /* of the parts of the run before a restart */
 };
 
 static PetscErrorCode SolveBegins(KSP ksp, Vec b, Vec x, void *context)
@@ -157,9 +158,39 @@ PetscBool LinearCheckLost(LinearCheck check)
   return check->lost;
 }
 
-/* LinearCheckGetCounts - what was done so far. Not collective, the same on all ranks. */
+/* LinearCheckGetCounts - what was done so far, before a restart too. Not collective, the same on all ranks. */
 void LinearCheckGetCounts(LinearCheck check, LinearCounts *counts)
 {
   *counts = check->counts;
   if (check->kept) ReusedFactorGetCounts(check->kept, &counts->kept);
+  counts->kept.made += check->before.made;
+  counts->kept.served += check->before.served;
+  counts->kept.iterations += check->before.iterations;
+  counts->kept.finishing += check->before.finishing;
+}
+
+/*@
+  LinearCheckArchive - saves or takes over the counts.
+
+  Collective
+
+  Input Parameters:
++ check   - whose counts go on from the loaded ones
+- archive - the archive
+@*/
+PetscErrorCode LinearCheckArchive(LinearCheck check, Archive archive)
+{
+  LinearCounts counts;
+  PetscInt    *number[] = {&counts.solves,    &counts.refined,     &counts.steps,           &counts.inaccurate,
+                           &counts.kept.made, &counts.kept.served, &counts.kept.iterations, &counts.kept.finishing};
+
+  PetscFunctionBeginUser;
+  LinearCheckGetCounts(check, &counts);
+  PetscCall(ArchiveIntegersAt(archive, "linear/counts", PETSC_STATIC_ARRAY_LENGTH(number), number));
+  PetscCall(ArchiveReals(archive, "linear/worst", 1, &counts.worst));
+  if (!ArchiveLoads(archive)) PetscFunctionReturn(PETSC_SUCCESS);
+  check->before      = counts.kept;
+  check->counts      = counts;
+  check->counts.kept = (KeptCounts){0};
+  PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -3,6 +3,7 @@
    success whatever its round-off has left. The residual of a solve that iterations have finished (keptfactor.h) is
    theirs. */
 #pragma once
+#include "files/archive.h"
 #include "linear/reusedfactor.h"
 
 typedef struct {
@@ -23,3 +24,5 @@ PetscErrorCode LinearCheckDestroy(LinearCheck *);
  * collective, the same on all ranks. */
 PetscBool LinearCheckLost(LinearCheck);
 void      LinearCheckGetCounts(LinearCheck, LinearCounts *);
+/* The counts of the run so far, those of the parts before a restart included. Collective. */
+PetscErrorCode LinearCheckArchive(LinearCheck, Archive);

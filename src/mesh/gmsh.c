@@ -1,5 +1,8 @@
+/* A scene's .geo becomes a .msh file: gmsh runs as a program of its own, once for each content of the .geo and its
+   parameters. */
 #define _GNU_SOURCE 1 /* execvpe */
 #include "gmsh.h"
+#include "geoparameters.h"
 #include "gmshfile.h"
 #include <ctype.h>
 #include <dirent.h>
@@ -13,19 +16,27 @@
 
 extern char **environ;
 
-enum {
-  NO_PROGRAM         = 127, /* exit status as the shell's: there is no such program */
-  INCLUDE_DEPTH      = 16,  /* a .geo that includes itself must not recurse for ever */
-  ERROR_LINES        = 6,   /* of gmsh that a message repeats: one mistake makes it print dozens */
-  CONTENT_DIGITS     = 12,  /* of the file name's hash: what is meshed ... */
-  VERSION_DIGITS     = 4,   /* ... and by which gmsh, so that a machine without gmsh can still find the mesh */
-  TEXT_PARTS_IN_NAME = 64   /* room in a path for "/mesh-", hash, process number and ending */
-};
+/* The exit status for a program that is not there, the same as the shell's. */
+#define NO_PROGRAM 127
+/* The exit status for a gmsh that a signal has ended. */
+#define KILLED 128
+/* A .geo that includes itself must not recurse for ever. */
+#define INCLUDE_DEPTH 16
+/* A message repeats so many error lines of gmsh at most. One mistake makes gmsh print dozens. */
+#define ERROR_LINES 6
+/* Hexadecimal digits in the name of the mesh file for what is meshed. */
+#define CONTENT_DIGITS 12
+/* The digits behind these stand for the version of gmsh. They are apart so that a machine without gmsh finds a mesh of
+   the same content. */
+#define VERSION_DIGITS 4
+/* Room in a path, in bytes, for "/mesh-", hash, process number and ending. */
+#define TEXT_PARTS_IN_NAME 64
 
 /* ------------------------------------------------------------------------------------------------------ running gmsh
  */
 
-/* Is this variable Open MPI's? A gmsh that is linked with MPI would take itself for a rank of ours. */
+/* Tells whether an environment variable belongs to MPI. A gmsh that is linked with MPI would take itself for one of our
+   ranks. */
 static PetscBool EnvironmentIsMPI(const char *entry)
 {
   const char *const prefixes[] = {"OMPI_", "PMIX_", "ORTE_", "PRTE_", "PMI_", "HYDRA_", "MPIR_"};
@@ -35,8 +46,8 @@ static PetscBool EnvironmentIsMPI(const char *entry)
   return PETSC_FALSE;
 }
 
-/* The child's environment, to be freed by PetscFree(): ours without MPI's, and without the user's own gmsh options, so
-   that the same scene gives the same mesh everywhere */
+/* The environment of gmsh, to be freed with PetscFree(). It is ours without MPI's variables and without the user's own
+   gmsh options, so that the same scene gives the same mesh everywhere. */
 static PetscErrorCode ChildEnvironment(char ***environment)
 {
   int n = 0, kept = 0;
@@ -51,7 +62,7 @@ static PetscErrorCode ChildEnvironment(char ***environment)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The child's half of GmshExecute(): never returns */
+/* Becomes gmsh in the child process of GmshExecute(). It never returns. */
 static void ChildExecute(char *const arguments[], char *const environment[], int output)
 {
   int input = open("/dev/null", O_RDONLY);
@@ -63,7 +74,7 @@ static void ChildExecute(char *const arguments[], char *const environment[], int
   _exit(NO_PROGRAM);
 }
 
-/* All that comes through a pipe, closed by a zero */
+/* Reads all that comes through a pipe and closes it with a zero. */
 static PetscErrorCode ReadPipe(int end, char **text)
 {
   char   part[4096];
@@ -81,8 +92,8 @@ static PetscErrorCode ReadPipe(int end, char **text)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Runs gmsh without a shell; output: all that it printed (to be freed by PetscFree()), status NO_PROGRAM: there is no
- * gmsh. */
+/* Runs gmsh without a shell. *output is all that it printed, to be freed with PetscFree(). *status is NO_PROGRAM where
+   there is no gmsh. */
 static PetscErrorCode GmshExecute(char *const arguments[], char **output, int *status)
 {
   char **environment;
@@ -99,12 +110,12 @@ static PetscErrorCode GmshExecute(char *const arguments[], char **output, int *s
   PetscCall(ReadPipe(ends[0], output));
   close(ends[0]);
   while (waitpid(child, status, 0) < 0 && errno == EINTR) continue;
-  *status = WIFEXITED(*status) ? WEXITSTATUS(*status) : 128;
+  *status = WIFEXITED(*status) ? WEXITSTATUS(*status) : KILLED;
   PetscCall(PetscFree(environment));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The first error lines of gmsh's output into text; all of them are of the form "Error   : ..." */
+/* Copies the first error lines of gmsh's output into text. All of them have the form "Error   : ...". */
 static void ErrorLines(const char *output, char *text, size_t size)
 {
   int lines = 0;
@@ -122,12 +133,12 @@ static void ErrorLines(const char *output, char *text, size_t size)
 /* ------------------------------------------------------------------------------------------------------- fingerprint
  */
 
-/* What goes into a mesh: hashed by FNV-1a (64 bits; Fowler, Noll, Vo), which needs no library and spreads well enough
- * for a file name */
+/* What goes into a mesh. The content is hashed by FNV-1a (64 bits; Fowler, Noll, Vo), which needs no library and
+   spreads well enough for a file name. */
 typedef struct {
-  Scene      scene;
-  uint64_t   content;
-  PetscBool *used; /* per parameter: some file speaks of it */
+  uint64_t      content;
+  GeoParameters declared; /* by the .geo and the files that it includes */
+  PetscBool     open;     /* some file cannot be followed, so that it may declare other parameters */
 } Fingerprint;
 
 static const uint64_t FNV_BASIS = 14695981039346656037ull, FNV_PRIME = 1099511628211ull;
@@ -138,8 +149,9 @@ static uint64_t Hash(uint64_t hash, const char *data, size_t size)
   return hash;
 }
 
-/* Every bit of a hash depends on every other (the last step of MurmurHash3; Appleby). Values that differ in one digit
-   have FNV hashes that differ by a small multiple of one constant, and sums of them coincide: 3 + 4 is 4 + 3. */
+/* Makes every bit of a hash depend on every other (the last step of MurmurHash3, Appleby). Values that differ in one
+   digit have FNV hashes that differ by a small multiple of one constant. Sums of such hashes coincide: 3 + 4 is 4 + 3.
+ */
 static uint64_t HashFinish(uint64_t hash)
 {
   hash = (hash ^ (hash >> 33)) * 0xff51afd7ed558ccdull;
@@ -147,39 +159,34 @@ static uint64_t HashFinish(uint64_t hash)
   return hash ^ (hash >> 33);
 }
 
-static PetscBool OptionHasWord(const char *text, const char *word)
-{
-  size_t length = strlen(word);
-
-  for (const char *at = text; (at = strstr(at, word)); at += length) {
-    int before = at > text ? (unsigned char)at[-1] : ' ', after = (unsigned char)at[length];
-    if (!isalnum(before) && before != '_' && !isalnum(after) && after != '_') return PETSC_TRUE;
-  }
-  return PETSC_FALSE;
-}
-
 static PetscErrorCode FingerprintFile(Fingerprint *, const char *, int);
 
-/* Follows every Include "FILE" and Merge "FILE"; a name that gmsh computes cannot be followed. */
+/* Follows every Include "FILE" and Merge "FILE". A name that gmsh computes cannot be followed. */
 static PetscErrorCode FingerprintIncludes(Fingerprint *print, const char *file, const char *text, int depth)
 {
   const char *const commands[] = {"Include", "Merge"};
   const char       *slash      = strrchr(file, '/');
   int               directory  = slash ? (int)(slash - file) + 1 : 0;
+  char             *code;
 
   PetscFunctionBeginUser;
+  PetscCall(GeoTextStrip(text, PETSC_FALSE, &code));
   for (int i = 0; i < 2; i++) {
-    for (const char *at = text; (at = strstr(at, commands[i]));) {
+    for (const char *at = code; (at = strstr(at, commands[i]));) {
       char path[PETSC_MAX_PATH_LEN];
 
       at += strlen(commands[i]);
       at += strspn(at, " \t");
-      if (*at != '"') continue;
+      if (*at != '"') {
+        print->open = PETSC_TRUE;
+        continue;
+      }
       at++;
       snprintf(path, sizeof(path), "%.*s%.*s", *at == '/' ? 0 : directory, file, (int)strcspn(at, "\"\n"), at);
       PetscCall(FingerprintFile(print, path, depth + 1));
     }
   }
+  PetscCall(PetscFree(code));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -193,41 +200,57 @@ static PetscErrorCode FingerprintFile(Fingerprint *print, const char *file, int 
   PetscCall(GmshFileLoad(file, &text, &size));
   if (!text) PetscFunctionReturn(PETSC_SUCCESS); /* gmsh complains if it matters */
   print->content = Hash(print->content, text, size + 1);
-  for (int i = 0; i < print->scene->n_parameters; i++)
-    if (OptionHasWord(text, print->scene->parameters[i].key)) print->used[i] = PETSC_TRUE;
+  PetscCall(GeoParametersAdd(text, &print->declared));
   PetscCall(FingerprintIncludes(print, file, text, depth));
   PetscCall(PetscFree(text));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The order of parameters in the scene does not matter: each is hashed apart and the hashes are added. */
+/* Refuses parameters that the .geo does not declare: gmsh would ignore them. A name with a dot is one of gmsh's own
+   options. */
+static PetscErrorCode CheckParameters(Scene scene, const Fingerprint *print, Complaint *complaint)
+{
+  char *names;
+
+  PetscFunctionBeginUser;
+  PetscCall(GeoParametersText(&print->declared, &names));
+  for (int i = 0; i < scene->n_parameters && !print->open; i++) {
+    const char *key = scene->parameters[i].key;
+
+    if (strchr(key, '.') || GeoParametersFind(&print->declared, key)) continue;
+    Complain(complaint, "%s: '%s' declares no parameter of this name; allowed: %s",
+             SceneWhere(scene, "mesh.parameters", key), scene->mesh_file, names);
+  }
+  PetscCall(PetscFree(names));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Hashes all that the mesh depends on. The order of parameters in the scene does not matter, as each is hashed apart
+   and the hashes are added. */
 static PetscErrorCode FingerprintScene(Scene scene, uint64_t *content, Complaint *complaint)
 {
-  Fingerprint print = {.scene = scene, .content = FNV_BASIS};
+  Fingerprint print = {.content = FNV_BASIS};
   char        text[64];
   uint64_t    sum = 0;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscCalloc1(scene->n_parameters, &print.used));
   PetscCall(FingerprintFile(&print, scene->mesh_file, 0));
+  PetscCall(CheckParameters(scene, &print, complaint));
   for (int i = 0; i < scene->n_parameters; i++) {
     const ScenePair *pair = &scene->parameters[i];
-    /* a name with a dot is one of gmsh's own options */
-    if (!print.used[i] && !strchr(pair->key, '.'))
-      Complain(complaint, "%s: '%s' has no parameter of this name", SceneWhere(scene, "mesh.parameters", pair->key),
-               scene->mesh_file);
+
     sum += HashFinish(Hash(Hash(FNV_BASIS, pair->key, strlen(pair->key) + 1), pair->value, strlen(pair->value) + 1));
   }
   snprintf(text, sizeof(text), "%016llx %d %d", (unsigned long long)sum, scene->dim, scene->order);
   *content = Hash(print.content, text, strlen(text));
-  PetscCall(PetscFree(print.used));
+  PetscCall(GeoParametersReset(&print.declared));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* ------------------------------------------------------------------------------------------------------------ meshes
  */
 
-/* The newest mesh of this content in the directory, whichever gmsh made it */
+/* Finds the newest mesh of this content in the directory, whichever gmsh made it. */
 static PetscErrorCode FindMesh(const char *directory, const char *prefix, char *file, PetscBool *found)
 {
   DIR        *entries = opendir(directory);
@@ -262,7 +285,8 @@ static PetscBool IsNumber(const char *text)
   return *text && !*end ? PETSC_TRUE : PETSC_FALSE;
 }
 
-/* Does the file end as gmsh ends one? On a full disk gmsh leaves a part of it, or nothing, and reports success. */
+/* Tells whether the file ends as gmsh ends one. On a full disk gmsh leaves a part of it, or nothing, and reports
+ * success. */
 static PetscErrorCode MeshIsWhole(const char *file, PetscBool *whole)
 {
   char  *text, *line;
@@ -281,6 +305,7 @@ static PetscErrorCode MeshIsWhole(const char *file, PetscBool *whole)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Runs gmsh on the .geo. The mesh gets its name when it is whole. */
 static PetscErrorCode MeshGeometry(Scene scene, const char *file, Complaint *complaint)
 {
   char         temporary[PETSC_MAX_PATH_LEN + TEXT_PARTS_IN_NAME], dim[16], order[16], errors[1024], *output;
@@ -335,6 +360,7 @@ static PetscErrorCode MeshGeometry(Scene scene, const char *file, Complaint *com
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Makes the directory for meshes and those above it. */
 static PetscErrorCode MakeDirectories(const char *directory, Complaint *complaint)
 {
   char path[PETSC_MAX_PATH_LEN];
@@ -352,25 +378,26 @@ static PetscErrorCode MakeDirectories(const char *directory, Complaint *complain
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*
-  GmshGenerate - makes the scene's mesh file from its .geo, once
+/*@
+  GmshGenerate - makes the scene's mesh file from its .geo, once.
 
-  Not Collective; meant for one rank
+  Not collective
 
   Input Parameters:
-+ scene     - file, parameters, order and dimension are read
-- directory - where mesh files are kept (made if it is not there)
++ scene     - its mesh file, parameters, order and dimension are read
+- directory - where mesh files are kept; it is made if it is not there
 
   Output Parameters:
-+ file    - the mesh file, DIRECTORY/mesh-HASH.msh (PETSC_MAX_PATH_LEN characters)
-. seconds - wall time of gmsh, 0 if the file was there already
++ file      - the mesh file, DIRECTORY/mesh-HASH.msh (PETSC_MAX_PATH_LEN characters)
+. seconds   - wall time of gmsh, 0 if the file was there already
 - complaint - what was wrong, if anything
 
   Note:
-  HASH stands for the contents of the .geo and of what it includes, the parameters, dimension and order (first
-CONTENT_DIGITS digits) and gmsh's version (the rest). Where there is no gmsh, a mesh of the same contents is taken
-whichever version made it.
-*/
+  This is meant for one rank. The first CONTENT_DIGITS digits of HASH stand for the contents of the .geo and of what it
+  includes, the parameters, dimension and order. The other digits stand for gmsh's version. Where there is no gmsh, a
+  mesh of the same contents is taken whichever version made it. A parameter that the .geo does not declare is a
+  complaint that lists those that it declares (geoparameters.h).
+@*/
 PetscErrorCode GmshGenerate(Scene scene, const char *directory, char *file, PetscReal *seconds, Complaint *complaint)
 {
   char *const    ask[] = {(char *)"gmsh", (char *)"--version", NULL};
@@ -396,7 +423,7 @@ PetscErrorCode GmshGenerate(Scene scene, const char *directory, char *file, Pets
   snprintf(prefix, sizeof(prefix), "mesh-%0*llx", CONTENT_DIGITS,
            (unsigned long long)(content >> (64 - 4 * CONTENT_DIGITS)));
   PetscCall(GmshExecute(ask, &version, &status));
-  if (status == 127) {
+  if (status == NO_PROGRAM) {
     PetscCall(FindMesh(directory, prefix, file, &found));
     if (!found) {
       Complain(complaint,

@@ -1,3 +1,4 @@
+/* A checkpoint is the archive of all objects of a run, with the scene and the mesh file that it began with. */
 #define _GNU_SOURCE /* memfd_create() */
 #include "report/checkpoint.h"
 #include "base/timing.h"
@@ -12,11 +13,11 @@ struct _n_Checkpoint {
   MPI_Comm    comm;
   PetscMPIInt rank, size;
   char        name[PETSC_MAX_PATH_LEN]; /* of the file */
-  PetscInt64
-        n_mesh; /* this rank's part of the mesh file: the file itself may be gone or another one when it is wanted */
-  char *mesh;
-  Scene scene;
-  Model model;
+  /* This rank's part of the mesh file. The file itself may be gone or changed when the checkpoint is written. */
+  PetscInt64  n_mesh;
+  char       *mesh;
+  Scene       scene;
+  Model       model;
   LoadStepper stepper;
   Results     results;
   Archive     archive; /* while it is being loaded */
@@ -34,7 +35,8 @@ static PetscErrorCode CheckpointNew(MPI_Comm comm, const char *directory, Checkp
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Rank 0 reads the file part by part; a part stays on its rank. */
+/* Rank 0 reads the mesh file part by part and sends each rank its part. Its own part comes last, so that it holds one
+   part at a time. */
 static PetscErrorCode ShareOut(Checkpoint c, FILE *stream)
 {
   PetscInt64  total = 0;
@@ -44,7 +46,7 @@ static PetscErrorCode ShareOut(Checkpoint c, FILE *stream)
   if (c->rank == 0 && !fseeko(stream, 0, SEEK_END)) total = (PetscInt64)ftello(stream);
   if (c->rank == 0) rewind(stream);
   PetscCallMPI(MPI_Bcast(&total, 1, MPIU_INT64, 0, c->comm));
-  for (PetscMPIInt r = 0; r < c->size; r++) { /* rank 0's own comes last, so that it holds one part at a time */
+  for (PetscMPIInt r = 0; r < c->size; r++) {
     const PetscMPIInt to    = (r + 1) % c->size;
     const PetscInt64  first = total * to / c->size;
     char             *part;
@@ -68,12 +70,22 @@ static PetscErrorCode ShareOut(Checkpoint c, FILE *stream)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*
-  CheckpointCreate - The checkpoints of a run that begins; none is written yet. Collective.
+/*@
+  CheckpointCreate - prepares the checkpoints of a run that begins; none is written yet.
 
-  Input: directory of the results, mesh_file (read on rank 0, its bytes are kept, shared out over the ranks). Errors:
-  PETSC_ERR_FILE_OPEN, PETSC_ERR_FILE_READ.
-*/
+  Collective
+
+  Input Parameters:
++ comm      - all ranks
+. directory - of the results
+- mesh_file - its bytes are kept, each rank has a part of them
+
+  Output Parameter:
+. checkpoint - to be freed with CheckpointDestroy()
+
+  Note:
+  Errors: PETSC_ERR_FILE_OPEN, PETSC_ERR_FILE_READ.
+@*/
 PetscErrorCode CheckpointCreate(MPI_Comm comm, const char *directory, const char *mesh_file, Checkpoint *checkpoint)
 {
   FILE *stream = NULL;
@@ -89,10 +101,22 @@ PetscErrorCode CheckpointCreate(MPI_Comm comm, const char *directory, const char
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*
-  CheckpointOpen - The checkpoint that a run left in its directory. Collective. Refuses (exit 1) a missing, truncated or
-  foreign one; nothing is touched.
-*/
+/*@
+  CheckpointOpen - opens the checkpoint that a run left in its directory.
+
+  Collective
+
+  Input Parameters:
++ comm      - all ranks
+- directory - of the results
+
+  Output Parameter:
+. checkpoint - to be freed with CheckpointDestroy()
+
+  Note:
+  A checkpoint that is missing, truncated, foreign, or of which a bit has changed is refused (exit 1). No file is
+  touched.
+@*/
 PetscErrorCode CheckpointOpen(MPI_Comm comm, const char *directory, Checkpoint *checkpoint)
 {
   PetscFunctionBeginUser;
@@ -101,7 +125,14 @@ PetscErrorCode CheckpointOpen(MPI_Comm comm, const char *directory, Checkpoint *
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* CheckpointDestroy - Frees the checkpoint; its file stays. Collective. */
+/*@
+  CheckpointDestroy - frees the checkpoint; its file stays.
+
+  Collective
+
+  Input Parameter:
+. checkpoint - from CheckpointCreate() or CheckpointOpen()
+@*/
 PetscErrorCode CheckpointDestroy(Checkpoint *checkpoint)
 {
   PetscFunctionBeginUser;
@@ -113,10 +144,22 @@ PetscErrorCode CheckpointDestroy(Checkpoint *checkpoint)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*
-  CheckpointReadScene - The scene of the run, with edits. Collective. After CheckpointOpen(). Refuses (exit 1) edits of
-  anything but solver, output and stepping.
-*/
+/*@
+  CheckpointReadScene - returns the scene as the run had it, with edits.
+
+  Collective
+
+  Input Parameters:
++ checkpoint - from CheckpointOpen()
+. n_set      - number of edits
+- set        - edits KEY=VALUE
+
+  Output Parameter:
+. scene - to be freed with SceneDestroy()
+
+  Note:
+  Edits of anything but solver, output and stepping are refused (exit 1).
+@*/
 PetscErrorCode CheckpointReadScene(Checkpoint checkpoint, int n_set, char *const *set, Scene *scene)
 {
   char *file, *text;
@@ -130,10 +173,20 @@ PetscErrorCode CheckpointReadScene(Checkpoint checkpoint, int n_set, char *const
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*
-  CheckpointMeshFile - Where MeshCreate() finds the mesh: in memory, by a name that is only rank 0's. Collective.
-  Errors: PETSC_ERR_MEM.
-*/
+/*@
+  CheckpointMeshFile - returns where MeshCreate() finds the mesh.
+
+  Collective
+
+  Input Parameter:
+. checkpoint - from CheckpointOpen()
+
+  Output Parameter:
+. file - name of a file in the memory of rank 0, empty on the others (PETSC_MAX_PATH_LEN characters)
+
+  Note:
+  The file goes with CheckpointRead() or CheckpointDestroy(). Errors: PETSC_ERR_MEM.
+@*/
 PetscErrorCode CheckpointMeshFile(Checkpoint checkpoint, char *file)
 {
   Checkpoint c = checkpoint;
@@ -154,7 +207,18 @@ PetscErrorCode CheckpointMeshFile(Checkpoint checkpoint, char *file)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* CheckpointSetRun - Not collective. */
+/*@
+  CheckpointSetRun - says which objects are saved and restored.
+
+  Not collective
+
+  Input Parameters:
++ checkpoint - borrows the others until it is destroyed
+. scene      - as it was read, with its edits
+. model      - of that scene
+. stepper    - of that model
+- results    - of that model
+@*/
 PetscErrorCode CheckpointSetRun(Checkpoint checkpoint, Scene scene, Model model, LoadStepper stepper, Results results)
 {
   PetscFunctionBeginUser;
@@ -165,7 +229,7 @@ PetscErrorCode CheckpointSetRun(Checkpoint checkpoint, Scene scene, Model model,
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* What changes from step to step */
+/* Saves or loads what changes from step to step. */
 static PetscErrorCode CheckpointState(Checkpoint c, Archive archive)
 {
   PetscFunctionBeginUser;
@@ -175,6 +239,7 @@ static PetscErrorCode CheckpointState(Checkpoint c, Archive archive)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Names all values of a checkpoint, for the size or for the file. */
 static PetscErrorCode CheckpointSave(Checkpoint c, Archive archive)
 {
   PetscFunctionBeginUser;
@@ -185,10 +250,17 @@ static PetscErrorCode CheckpointSave(Checkpoint c, Archive archive)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*
-  CheckpointRead - The saved state into the model, the stepper and the results, all fresh. Collective. Refuses (exit 1)
-  a checkpoint that does not fit them; no file is touched, ResultsStart() does that.
-*/
+/*@
+  CheckpointRead - loads the saved state into the model, the stepper and the results.
+
+  Collective
+
+  Input Parameter:
+. checkpoint - from CheckpointOpen(), after CheckpointSetRun() with fresh objects
+
+  Note:
+  A checkpoint that does not fit the objects is refused (exit 1). No file is touched, ResultsStart() does that.
+@*/
 PetscErrorCode CheckpointRead(Checkpoint checkpoint)
 {
   PetscFunctionBeginUser;
@@ -199,12 +271,18 @@ PetscErrorCode CheckpointRead(Checkpoint checkpoint)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*
-  CheckpointWrite - The state of the last accepted step, under a temporary name until it is whole and on the disk.
-  Collective.
+/*@
+  CheckpointWrite - writes the state of the last accepted step, under a temporary name until it is whole and on the
+disk.
 
-  Errors: PETSC_ERR_FILE_WRITE, where there is no room for instance; the checkpoint before is intact then.
-*/
+  Collective
+
+  Input Parameter:
+. checkpoint - after CheckpointSetRun()
+
+  Note:
+  Errors: PETSC_ERR_FILE_WRITE, where there is no room for instance. The checkpoint before is intact then.
+@*/
 PetscErrorCode CheckpointWrite(Checkpoint checkpoint)
 {
   Archive    archive;

@@ -1,29 +1,25 @@
-/* checkpoint.h5: a run as it stands after a step, from which it goes on with any number of ranks. Knows which objects a
-   run consists of, not what is in them (archive.h).
+/* A checkpoint is the file checkpoint.h5: a run as it stands after a step, from which it goes on with any number of
+   ranks. This part knows which objects a run consists of, and archive.h writes and checks the file.
 
-     scene/     file: its name; text: the document after -set
-     mesh/file  the .msh file, gmsh's tags included: a restart needs no gmsh and no other file
-     model/     displacements by node, load parameter, scales;  path/  the last states;  contact/  state by pair and
-   slave node stepper/   step size and counts;  results/  last step, probes, what steps.csv and results.h5 held
+     scene/     file: name of the scene file; text: the document after -set
+     mesh/file  the .msh file with gmsh's tags, so that a restart needs no gmsh and no other file
+     model/     displacements by node, load parameter, scales;  path/  the last states;  linear/  counts of solves
+     contact/   state by pair and slave node;  stepper/  step size and counts
+     results/   last step, probes, what steps.csv and results.h5 held;  options/  PETSc's options
 
-   A run: CheckpointCreate(), CheckpointSetRun(), CheckpointWrite() whenever the state is to be kept. A restart:
-   CheckpointOpen(), CheckpointReadScene(), CheckpointMeshFile(), then the same objects as ever, CheckpointSetRun(),
-   CheckpointRead() in the place of ModelSetUp(). */
+   A run calls CheckpointCreate(), CheckpointSetRun(), and CheckpointWrite() whenever the state is to be kept. A restart
+   calls CheckpointOpen(), CheckpointReadScene() and CheckpointMeshFile(), makes the same objects as any run, and calls
+   CheckpointSetRun() and CheckpointRead() in the place of ModelSetUp(). */
 #pragma once
 #include "report/results.h"
 
 typedef struct _n_Checkpoint *Checkpoint;
 
 PetscErrorCode CheckpointCreate(MPI_Comm, const char *directory, const char *mesh_file, Checkpoint *);
-/* Refuses what is no whole checkpoint of ours. Collective. */
 PetscErrorCode CheckpointOpen(MPI_Comm, const char *directory, Checkpoint *);
 PetscErrorCode CheckpointDestroy(Checkpoint *);
-/* The scene as the run had it, with edits of solver, output and stepping. Collective. */
 PetscErrorCode CheckpointReadScene(Checkpoint, int n_set, char *const *set, Scene *);
-/* A file that holds the mesh, on rank 0; it goes with CheckpointDestroy(). file has room for PETSC_MAX_PATH_LEN.
- * Collective. */
 PetscErrorCode CheckpointMeshFile(Checkpoint, char *file);
-/* What is saved and restored; borrowed. Not collective. */
 PetscErrorCode CheckpointSetRun(Checkpoint, Scene, Model, LoadStepper, Results);
-PetscErrorCode CheckpointRead(Checkpoint);  /* the state into them; no file is touched. Collective */
-PetscErrorCode CheckpointWrite(Checkpoint); /* their state, whole or not at all. Collective */
+PetscErrorCode CheckpointRead(Checkpoint);
+PetscErrorCode CheckpointWrite(Checkpoint);

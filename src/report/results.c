@@ -4,6 +4,7 @@
 #include "scene/commandline.h"
 #include "endreport.h"
 #include "fields.h"
+#include "optionrecord.h"
 #include "report/precheck.h"
 #include "base/refusal.h"
 #include "summary.h"
@@ -41,6 +42,8 @@ struct _n_Results {
   RunUsage    before;     /* of the parts of the run before this one */
   PetscInt    restarts;   /* how many they are */
   PetscInt csv_length[2]; /* of steps.csv at the loaded checkpoint: bytes, in two parts as integers may have 32 bits */
+
+  OptionRecord options; /* PETSc's, and how they changed at restarts */
 };
 
 /* From this on elements of first order lock: at 0.49 the bulk modulus is fifty times the shear modulus. */
@@ -145,13 +148,6 @@ static void DirectoryComplaint(Scene scene, const char *directory, PetscBool ove
   char       *record, there[LINE_SIZE] = "unknown", line_there[LINE_SIZE], line_here[LINE_SIZE];
 
   *message = '\0';
-  if (PathLength(directory) > LONGEST_DIRECTORY) {
-    snprintf(
-      message, MESSAGE_SIZE,
-      "-o %s: the path has %zu characters from the root; allowed: at most %d, as MPI's files take no longer ones",
-      directory, PathLength(directory), LONGEST_DIRECTORY);
-    return;
-  }
   if (stat(directory, &status)) return;
   if (!S_ISDIR(status.st_mode)) {
     snprintf(message, MESSAGE_SIZE,
@@ -180,6 +176,31 @@ static void DirectoryComplaint(Scene scene, const char *directory, PetscBool ove
              directory, scene->file, record_name);
   }
   free(record);
+}
+
+/*@
+  ResultsCheckPath - refuses (exit 1) a directory whose path is too long for the files in it.
+
+  Collective
+
+  Input Parameters:
++ comm      - all ranks
+- directory - of the results; it need not exist
+@*/
+PetscErrorCode ResultsCheckPath(MPI_Comm comm, const char *directory)
+{
+  char        message[MESSAGE_SIZE] = "";
+  PetscMPIInt rank;
+
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Comm_rank(comm, &rank));
+  if (!rank && PathLength(directory) > LONGEST_DIRECTORY)
+    snprintf(
+      message, sizeof(message),
+      "-o %s: the path has %zu characters from the root; allowed: at most %d, as MPI's files take no longer ones",
+      directory, PathLength(directory), LONGEST_DIRECTORY);
+  PetscCall(RefuseInputAnywhere(comm, *message ? message : NULL));
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /*
@@ -436,6 +457,7 @@ static PetscErrorCode ResultsPrintHead(Results results)
   }
   if (results->talks && results->restarts)
     printf("restart  after step %lld, t = %g\n", (long long)results->last.step, (double)results->model->t);
+  if (results->talks) OptionRecordPrint(&results->options, stdout);
   PetscCall(ResultsPrintSolver(results));
   if (!results->quiet) PetscCall(MeshReport(results->model->mesh, results->scene, stdout));
   if (results->talks) printf("dofs     %lld free\neffects  %s\n", (long long)dofs, *effects ? effects : "none");
@@ -508,6 +530,7 @@ PetscErrorCode ResultsCreate(Model model, Probes probes, Scene scene, const char
   results->talks = results->rank == 0 && !quiet ? PETSC_TRUE : PETSC_FALSE;
   PetscCall(PetscCalloc2(scene->n_probes, &results->values, scene->n_contacts, &results->met));
   PetscCall(FieldsCreate(model, scene, directory, &results->fields));
+  PetscCall(OptionRecordCreate(&results->options));
   *result = results;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -519,6 +542,7 @@ PetscErrorCode ResultsDestroy(Results *results)
   if (!*results) PetscFunctionReturn(PETSC_SUCCESS);
   if ((*results)->csv) fclose((*results)->csv);
   PetscCall(FieldsDestroy(&(*results)->fields));
+  PetscCall(OptionRecordDestroy(&(*results)->options));
   PetscCall(PetscFree2((*results)->values, (*results)->met));
   PetscCall(PetscFree(*results));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -694,6 +718,7 @@ static PetscErrorCode ResultsArchiveStep(Results results, Archive archive)
                                &last->dt,
                                &last->residual,
                                &last->beta,
+                               &results->deepest,
                                &contact->max_penetration,
                                &contact->min_penetration,
                                &contact->max_penetration_over_h,
@@ -733,6 +758,7 @@ PetscErrorCode ResultsArchive(Results results, Archive archive)
     results->csv_length[1] = (PetscInt)(length & ((1LL << LENGTH_BITS) - 1));
   }
   PetscCall(ResultsArchiveStep(results, archive));
+  PetscCall(OptionRecordArchive(&results->options, results->last.step, archive));
   PetscCall(ArchiveReals(archive, "results/probes", results->scene->n_probes, results->values));
   for (int p = 0; p < results->scene->n_contacts; p++) {
     char name[LINE_SIZE];
@@ -897,6 +923,7 @@ PetscErrorCode ResultsFinish(Results results, const RunRecord *run)
   usage.wall_s = results->before.wall_s + run->wall_s;
   PetscCall(RunFiguresCollect(results->model, results->scene, run, &usage, results->restarts,
                               results->stepped ? &results->last : NULL, &figures));
+  figures.options_changed = results->options.changes;
   if (!results->rank) PetscCall(SummaryWrite(results->model->mesh, &figures, results->directory, results->values));
   PetscCall(ResultsPrintProbes(results));
   PetscCall(ResultsPrintWindows(results));

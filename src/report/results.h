@@ -30,6 +30,8 @@ typedef struct {
 /* Refuses a directory that holds another scene's results unless overwrite. To be called before anything is written or
  * solved. Collective. */
 PetscErrorCode ResultsCheckDirectory(MPI_Comm, Scene, const char *directory, PetscBool overwrite);
+/* Refuses (exit 1) a path that is too long for the results, whether or not the directory is there. Collective. */
+PetscErrorCode ResultsCheckPath(MPI_Comm, const char *directory);
 /* Refuses a directory whose record is of another problem than the checkpoint in it. Collective. */
 PetscErrorCode ResultsCheckRestart(MPI_Comm, Scene, const char *directory);
 PetscErrorCode ResultsCreate(Model, Probes, Scene, const char *directory, PetscBool quiet, Results *);

@@ -5,13 +5,13 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* The parts of a text between commas, without the blanks around them */
-static void AddList(cJSON *json, const char *key, char *text)
+/* The parts of a text between separators, without the blanks around them */
+static void AddList(cJSON *json, const char *key, char *text, const char *separators)
 {
   cJSON *list = cJSON_AddArrayToObject(json, key);
   char  *rest = NULL;
 
-  for (char *part = strtok_r(text, ",", &rest); part; part = strtok_r(NULL, ",", &rest)) {
+  for (char *part = strtok_r(text, separators, &rest); part; part = strtok_r(NULL, separators, &rest)) {
     part += strspn(part, " ");
     for (size_t n = strlen(part); n && part[n - 1] == ' '; n--) part[n - 1] = '\0';
     if (*part) cJSON_AddItemToArray(list, cJSON_CreateString(part));
@@ -27,8 +27,9 @@ static void AddReal(cJSON *json, const char *key, PetscReal value)
     cJSON_AddNullToObject(json, key);
 }
 
-/* PETSc's options as they are now, the scene's own, and those that nothing has asked for */
-static PetscErrorCode AddOptions(cJSON *json, Scene scene)
+/* PETSc's options as they are now, the scene's own, those that nothing has asked for, and those that a restart has
+ * changed */
+static PetscErrorCode AddOptions(cJSON *json, Scene scene, const char *changed)
 {
   cJSON   *options = cJSON_AddObjectToObject(json, "options"), *map, *unused;
   char    *all, **names, **values;
@@ -45,6 +46,9 @@ static PetscErrorCode AddOptions(cJSON *json, Scene scene)
   PetscCall(PetscOptionsLeftGet(NULL, &n, &names, &values));
   for (PetscInt i = 0; i < n; i++) cJSON_AddItemToArray(unused, cJSON_CreateString(names[i]));
   PetscCall(PetscOptionsLeftRestore(NULL, &n, &names, &values));
+  PetscCall(PetscStrallocpy(changed, &all));
+  AddList(options, "changed", all, "\n");
+  PetscCall(PetscFree(all));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -214,8 +218,8 @@ PetscErrorCode SummaryWrite(const Mesh mesh, const RunFigures *figures, const ch
   cJSON_AddNumberToObject(json, "ranks", figures->ranks);
   cJSON_AddNumberToObject(json, "dofs", (double)figures->dofs);
   cJSON_AddNumberToObject(json, "elements", (double)mesh->n_cells_global);
-  AddList(json, "effects", effects);
-  PetscCall(AddOptions(json, figures->scene));
+  AddList(json, "effects", effects, ",");
+  PetscCall(AddOptions(json, figures->scene, figures->options_changed));
   AddBlas(json, &figures->blas);
   AddRun(json, run);
   cJSON_AddNumberToObject(json, "restarts", (double)figures->restarts);

@@ -22,20 +22,21 @@ static void SchemaAllowed(const SchemaKey *key, char *text, size_t size)
     int         type;
     const char *words;
   } Types[] = {
-    {REAL,    "a number"                                                           },
-    {INTEGER, "an integer"                                                         },
-    {BOOLEAN, "true | false"                                                       },
-    {TEXT,    "a name"                                                             },
-    {NAME,    "a name (letters, digits, _ - .)"                                    },
-    {POINT,   "[x, y, z] (2D: [x, y])"                                             },
-    {POINTS,  "[[x, y, z], [x, y, z]] (2D: [[x, y], [x, y]])"                      },
-    {REALS,   "an increasing list of numbers"                                      },
-    {TEXTS,   "a list of names"                                                    },
-    {CHOICES, "a list of"                                                          },
-    {HISTORY, "[[t, factor], ...], at least two, t increasing from 0 within [0, 1]"},
-    {MAP,     "a map"                                                              },
-    {LIST,    "a list of maps"                                                     },
-    {FREE,    "a map of plain values"                                              },
+    {REAL,     "a number"                                                           },
+    {INTEGER,  "an integer"                                                         },
+    {BOOLEAN,  "true | false"                                                       },
+    {TEXT,     "a name (at most 127 characters)"                                    },
+    {FILENAME, "a file name"                                                        },
+    {NAME,     "a name (letters, digits, _ - ., at most 100 characters)"            },
+    {POINT,    "[x, y, z] (2D: [x, y])"                                             },
+    {POINTS,   "[[x, y, z], [x, y, z]] (2D: [[x, y], [x, y]])"                      },
+    {REALS,    "an increasing list of numbers"                                      },
+    {TEXTS,    "a list of names"                                                    },
+    {CHOICES,  "a list of"                                                          },
+    {HISTORY,  "[[t, factor], ...], at least two, t increasing from 0 within [0, 1]"},
+    {MAP,      "a map"                                                              },
+    {LIST,     "a list of maps"                                                     },
+    {FREE,     "a map of plain values"                                              },
   };
 
   text[0] = 0;
@@ -99,17 +100,19 @@ static const char *CheckName(Node node)
 {
   const char *text = node->text;
 
+  if (strlen(text) > SCHEMA_LONGEST_NAME) return "is too long";
   return *text && *text != '.' && *text != '-' &&
              !text[strspn(text, "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_-.")]
            ? NULL
            : "is no name";
 }
 
-static const char *CheckText(Node node)
+static const char *CheckText(Node node, size_t longest)
 {
   const int null = node->plain && (!*node->text || !strcmp(node->text, "~") || !strcmp(node->text, "null"));
 
   if (null || !*node->text) return "is empty";
+  if (strlen(node->text) > longest) return "is too long";
   for (const char *c = node->text; *c; c++) {
     if ((unsigned char)*c < ' ') return "has a control character";
   }
@@ -128,7 +131,8 @@ static const char *CheckScalar(const SchemaKey *key, int type, Node node)
   if (type & REAL) wrong = CheckReal(node, key->range);
   if (type & INTEGER) wrong = CheckInteger(node, key->range);
   if (type & NAME) wrong = CheckName(node);
-  if (type & TEXT) wrong = CheckText(node);
+  if (type & TEXT) wrong = CheckText(node, SCHEMA_LONGEST_GROUP);
+  if (type & FILENAME) wrong = CheckText(node, PETSC_MAX_PATH_LEN - 1);
   return wrong;
 }
 

@@ -18,7 +18,7 @@
 const SchemaKey SchemaKeys[] = {
   {"name", NAME, .help = "of the run and its results; default: the scene file's name"},
   {"mesh", MAP, REQUIRED, .help = "where the mesh comes from"},
-  {"mesh.file", TEXT, REQUIRED, .help = ".geo (gmsh makes the mesh) or .msh (version 4.1)"},
+  {"mesh.file", FILENAME, REQUIRED, .help = ".geo (gmsh makes the mesh) or .msh (version 4.1)"},
   {"mesh.order", INTEGER, .range = "[1, 2]", .help = "of the elements; default: 1 for a .geo, its own for a .msh"},
   {"mesh.parameters", FREE, .help = "numbers and texts handed to the .geo"},
   {"geometry", CHOICE, .values = "solid | plane_strain | axisymmetric", .preset = "solid", .help = "axisymmetric: x = r, y = z"},

@@ -267,6 +267,7 @@ PetscErrorCode ModelArchive(Model model, Archive archive)
     PetscCall(VecCopy(model->x, work->accepted_x));
     model->t = work->accepted_t;
   }
+  PetscCall(LinearCheckArchive(model->linear, archive));
   if (model->contact) PetscCall(ContactArchive(model->contact, archive, model->u, model->t));
   if (!ArchiveLoads(archive)) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(ProblemResidual(model->problem, model->u, model->t, model->t, &ok));

@@ -449,6 +449,7 @@ PetscErrorCode LoadStepperArchive(LoadStepper stepper, Archive archive)
   PetscFunctionBeginUser;
   PetscCall(ArchiveRealsAt(archive, "stepper/size", PETSC_STATIC_ARRAY_LENGTH(real), real));
   PetscCall(ArchiveIntegersAt(archive, "stepper/counts", PETSC_STATIC_ARRAY_LENGTH(integer), integer));
+  PetscCall(ArchiveString(archive, "stepper/cycle", sizeof(report->cycle), report->cycle));
   if (!ArchiveLoads(archive)) PetscFunctionReturn(PETSC_SUCCESS);
   if (initial == stepper->size.initial) size.dt = PetscMin(size.dt_max, dt);
   stepper->size = size;

@@ -23,6 +23,12 @@ static const char *const geometry =
   "Physical Surface(\"block one\", 7) = {1}; Physical Curve(\"left\", 7) = {-4}; Physical Curve(3) = {2}; Physical "
   "Point(\"corner\") = {1};\n";
 
+/* length is a parameter, width is none: gmsh assigns it whatever is asked for */
+static const char *const sizes  = "If (!Exists(length)) length = 2; EndIf\nwidth = 4;\n";
+static const char *const longer = "If (!Exists(length)) length = 3; EndIf\nwidth = 4;\n";
+
+static const char *const wrong = "DefineConstant[n = 1];\nFoo(1);\n";
+
 static void WriteText(const char *name, const char *text, size_t size, char path[PETSC_MAX_PATH_LEN])
 {
   FILE *stream;
@@ -51,7 +57,7 @@ static Scene MakeScene(const char *parameters)
   char  path[PETSC_MAX_PATH_LEN], text[1024];
   Scene scene;
 
-  WriteText("size.geo", "length = 2;\n", 12, path);
+  WriteText("size.geo", sizes, strlen(sizes), path);
   WriteText("block.geo", geometry, strlen(geometry), path);
   snprintf(text, sizeof(text),
            "mesh: {file: block.geo, order: 2, parameters: %s}\ngeometry: plane_strain\nbodies: [{volume: block one, "
@@ -100,7 +106,7 @@ static void test_meshed_once(void **state)
   /* an included file counts: change it behind the scene's back */
   Scene scene = MakeScene("{n: 3}");
 
-  WriteText("size.geo", "length = 3;\n", 12, path);
+  WriteText("size.geo", longer, strlen(longer), path);
   snprintf(path, sizeof(path), "%s/out/meshes", folder);
   assert_int_equal(GmshGenerate(scene, path, other, &seconds, &complaint), 0);
   assert_string_equal(complaint.text, "");
@@ -150,10 +156,14 @@ static void test_mistakes_in_geo(void **state)
   (void)state;
   Generate("{nn: 3}", file, &complaint);
   assert_non_null(strstr(complaint.text, "scene.yaml:1: mesh.parameters.nn: "));
-  assert_non_null(strstr(complaint.text, "no parameter of this name"));
+  assert_non_null(strstr(complaint.text, "no parameter of this name; allowed: n, length"));
+  Generate("{n: 3, width: 5}", file, &complaint);
+  assert_non_null(strstr(complaint.text, "mesh.parameters.width: "));
+  Generate("{n: 3, Mesh.Algorithm: 6}", file, &complaint);
+  assert_string_equal(complaint.text, "");
 
   scene = MakeScene("{n: 3}");
-  WriteText("block.geo", "n = 1;\nFoo(1);\n", 15, path);
+  WriteText("block.geo", wrong, strlen(wrong), path);
   snprintf(directory, sizeof(directory), "%s/out/meshes", folder);
   complaint.text[0] = '\0';
   assert_int_equal(GmshGenerate(scene, directory, file, &seconds, &complaint), 0);

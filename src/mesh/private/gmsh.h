@@ -1,9 +1,7 @@
-/* Running gmsh on a .geo file: once for each content, parameters and gmsh version, into a file named by their hash. One
- * rank does it. */
+/* gmsh runs on a .geo file once for each content of the file, parameters and gmsh version. The mesh file has a name
+   from the hash of these. One rank calls GmshGenerate(), and all ranks then read the file. */
 #pragma once
 #include "base/complaint.h"
 #include "scene/scene.h"
 
-/* Makes the scene's .msh from its .geo, or finds the one made before. file has room for PETSC_MAX_PATH_LEN. Not
- * collective. */
 PetscErrorCode GmshGenerate(Scene, const char *directory, char *file, PetscReal *seconds, Complaint *);

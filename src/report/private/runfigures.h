@@ -25,8 +25,9 @@ typedef struct {
   RunUsage          usage;    /* of all parts of the run */
   PetscInt          restarts; /* their number less one */
   LinearCounts      linear;
-  PetscBool         direct; /* the solver factors each tangent, which is the BLAS's work */
-  Blas              blas;   /* of this rank */
+  const char       *options_changed; /* lines, see optionrecord.h */
+  PetscBool         direct;          /* the solver factors each tangent, which is the BLAS's work */
+  Blas              blas;            /* of this rank */
   int               n_pairs;
   PairFigures      *pairs;
 } RunFigures;
