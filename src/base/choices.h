@@ -1,7 +1,8 @@
-/* What a scene chooses by name and the program grows by: elastic laws, smoothers, step controls. Plain C.
+/* What a scene chooses by name and the program grows by: elastic laws, smoothers, contact laws, step controls.
+   Plain C.
 
    A new one is a file of its own that defines the object, and a line here. Enumerations, tables, the scene's key and
-   its reference follow from the lists; what the object is, material.h, smoother.h and stepcontrol.h tell.
+   its reference follow from the lists; what the object is, material.h, smoother.h, law.h and stepcontrol.h tell.
 
      LINE(enumerator, word of the scene, object) */
 #pragma once
@@ -15,6 +16,8 @@
   LINE(SMOOTHER_FACET, "facet", Smoother_Facet) \
   LINE(SMOOTHER_DIFFUSE, "diffuse", Smoother_Diffuse)
 
+#define CONTACT_LAWS(LINE) LINE(LAW_PENALTY, "penalty", Law_Penalty)
+
 #define STEP_CONTROLS(LINE)                                   \
   LINE(STEP_FIXED, "fixed", StepControl_Fixed)                \
   LINE(STEP_ITERATIONS, "iterations", StepControl_Iterations) \
@@ -23,6 +26,7 @@
 #define CHOICE_ENUMERATOR(kind, word, object) kind,
 typedef enum { ELASTIC_LAWS(CHOICE_ENUMERATOR) MATERIAL_LAWS } MaterialLaw;
 typedef enum { SMOOTHERS(CHOICE_ENUMERATOR) SMOOTHER_KINDS } SmootherKind;
+typedef enum { CONTACT_LAWS(CHOICE_ENUMERATOR) CONTACT_LAW_KINDS } ContactLawKind;
 typedef enum { STEP_CONTROLS(CHOICE_ENUMERATOR) STEP_CONTROL_KINDS } StepControlKind;
 
 /* For tables by kind */

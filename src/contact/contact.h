@@ -183,5 +183,6 @@ PetscErrorCode ContactPairQuality(Contact, int pair, ContactQuality *);
 PetscErrorCode ContactPairJoined(Contact, int pair, PetscInt *nodes, ContactPlace *);
 PetscReal      ContactNodeGap(Contact,
                               PetscInt node); /* smallest gap of a local node of this rank, NaN: none. Not collective */
-const char    *ContactPairText(Contact, int pair); /* what touches what, and how; valid until the next call */
+PetscErrorCode ContactPairText(Contact, int pair, char *text, size_t size);
+PetscBool      ContactPairIsSurface(Contact, int pair);
 MPI_Comm       ContactComm(Contact);

@@ -86,7 +86,7 @@ void ContactLineSlope(ContactLine line, PetscReal lambda, PetscReal *slope, Pets
     const ContactPair *pair = &line->contact->pairs[p];
 
     for (PetscInt c = 0; c < pair->n; c++, n++) {
-      const LawState  state = ContactTermState(pair, c, line->t);
+      const LawState  state = ContactTermState(pair, c, line->t, pair->most);
       PetscReal       rate;
       const PetscReal gap = LineGap(line, n, lambda, &rate);
       LawValue        value;
@@ -145,7 +145,7 @@ PetscErrorCode ContactLocateTurn(Contact contact, const PetscReal *u, const Pets
   for (int p = 0; p < contact->n_pairs; p++) {
     ContactPair *pair = &contact->pairs[p];
 
-    if (pair->master && !pair->smoother->smooth) PetscCall(PairTurn(contact, pair, u, u_ahead, t, &mine.value, &node));
+    if (pair->master && !pair->fit.fitted) PetscCall(PairTurn(contact, pair, u, u_ahead, t, &mine.value, &node));
   }
   PetscCallMPI(MPI_Comm_rank(mesh->comm, &mine.rank));
   PetscCallMPI(MPI_Allreduce(&mine, &most, 1, MPI_DOUBLE_INT, MPI_MAXLOC, mesh->comm));

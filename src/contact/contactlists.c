@@ -214,7 +214,7 @@ static PetscBool TermAgrees(const ContactPair *pair, NeighbourLists fresh, Petsc
     if (fitted && old - rest < 0 && !FitHolds(pair->lists, fresh, q)) return PETSC_FALSE;
   }
   if (!fitted || old - rest >= 0) return (PetscBool)(PetscAbsReal(gap - old) <= tolerance);
-  return (PetscBool)(!PetscIsNanReal(gap) && (!pair->lags || PetscAbsReal(gap - old) <= drift));
+  return (PetscBool)(!PetscIsNanReal(gap) && (!pair->formulation.lags || PetscAbsReal(gap - old) <= drift));
 }
 
 /* Do the pair's next lists say the same of each of this rank's terms as the last residual? */
@@ -225,13 +225,13 @@ static PetscErrorCode PairNextAgrees(Contact contact, ContactPair *pair, PetscRe
 
   PetscFunctionBeginUser;
   PetscCall(PairDepth(contact, pair, t, &depth, &pressure));
-  drift = pair->lags ? CONTACT_OFFSET_AGREES * pressure / pair->automatic : 0;
+  drift = pair->formulation.lags ? CONTACT_OFFSET_AGREES * pressure / pair->automatic : 0;
   if (update_offsets) drift *= CONTACT_OFFSET_CURRENT;
   *agrees = PETSC_TRUE;
   PetscCall(PetscMalloc1(pair->next->n_slaves, &gaps));
-  if (pair->fit.degree) TimingBegin(TIMING_FIT);
+  if (pair->fit.fitted) TimingBegin(TIMING_FIT);
   PetscCall(ContactPointGaps(pair, pair->next, pair->next_factor, NULL, NULL, gaps, NULL));
-  if (pair->fit.degree) TimingEnd(TIMING_FIT);
+  if (pair->fit.fitted) TimingEnd(TIMING_FIT);
   for (PetscInt c = 0; c < pair->n && *agrees; c++)
     *agrees = TermAgrees(pair, pair->next, c, ContactTermGap(pair, pair->next_factor, gaps, c, NULL), pair->next_factor,
                          t, depth, drift);
@@ -252,8 +252,8 @@ PetscErrorCode ContactListsReach(Contact contact, PetscBool *within)
   for (int p = 0; p < contact->n_pairs; p++) {
     const ContactPair *pair = &contact->pairs[p];
 
-    fits += pair->fit.degree > 0;
-    for (PetscInt q = 0; q < pair->lists->n_slaves && pair->fit.degree; q++)
+    fits += pair->fit.fitted;
+    for (PetscInt q = 0; q < pair->lists->n_slaves && pair->fit.fitted; q++)
       if (pair->point_gap[q] <= pair->slave->max_size && NeighbourListsSlip(pair->lists, q) > NEIGHBOUR_LISTS_MARGIN)
         all = 0;
   }

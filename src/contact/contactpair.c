@@ -7,14 +7,14 @@
    triangles and the axis node of second-order axisymmetric edges, whose areas are zero on flat faces and small, of
    either sign, on curved ones. Corners of 9-node faces have 1/36, all others more. */
 #define CONTACT_SHARE_FLOOR 5e-3
+
 /* A surface that turns more than this from its one reference plane cannot be written over it: cos 60 degrees. */
 #define CONTACT_GLOBAL_COSINE 0.5
-/* Touching start: a gap within this fraction of the face size is no gap, whatever the curvature. */
-#define CONTACT_TOUCH 1e-6
 
 /* Surface contact on faces at least this much coarser than the master's takes a finer quadrature: its points would skip
    facets. Below 2, so that round-off does not decide on a mesh of half the size. */
 #define CONTACT_COARSE 1.9
+
 /* Surface contact: a node with less of this share of the mean hat area has none: an axis node where R vanishes. */
 #define CONTACT_HAT_FLOOR 1e-8
 
@@ -22,7 +22,7 @@
 static PetscErrorCode PairChooseNodes(Mesh mesh, Scene scene, ContactPair *pair)
 {
   const MeshGroup *group = pair->slave->group;
-  const PetscBool  hats  = (PetscBool)(pair->scene->formulation == CONTACT_SURFACE_TO_SURFACE);
+  const PetscBool  hats  = pair->formulation.surface;
   PetscReal       *area, *size, *turn, *share, sum[2] = {0, 0};
   PetscMPIInt      rank;
 
@@ -85,7 +85,7 @@ static PetscErrorCode PairCreateTerms(Mesh mesh, ContactPair *pair)
       if (c < 0 || slaves->hat[k] == 0) continue;
       at                    = pair->term_ptr[c + 1]++; /* ends as the start of the next */
       pair->term_point[at]  = q;
-      pair->term_weight[at] = slaves->face_sf ? slaves->weight[q] * slaves->hat[k] : pair->area[c];
+      pair->term_weight[at] = pair->formulation.surface ? slaves->weight[q] * slaves->hat[k] : pair->area[c];
     }
   }
   PetscCall(PetscFree(term));
@@ -100,21 +100,17 @@ static PetscErrorCode PairCreateTerms(Mesh mesh, ContactPair *pair)
 /* Slave points, terms and offsets, by formulation. */
 static PetscErrorCode PairCreatePoints(Mesh mesh, Scene scene, Loads loads, ContactPair *pair)
 {
-  const OffsetsKind kind  = !pair->smoother->smooth    ? OFFSETS_NONE
-                            : pair->scene->live_offset ? OFFSETS_LIVE
-                                                       : OFFSETS_HELD;
-  const int         finer = pair->master && pair->slave->mean_size >= CONTACT_COARSE * pair->master->mean_size;
+  const int finer = pair->master && pair->slave->mean_size >= CONTACT_COARSE * pair->master->mean_size;
 
   PetscFunctionBeginUser;
-  if (pair->scene->formulation == CONTACT_SURFACE_TO_SURFACE) {
+  if (pair->formulation.surface) {
     PetscCall(SlavePointsCreateQuadrature(pair->slave, scene->geometry, finer, &pair->slaves));
     PetscCall(PairChooseNodes(mesh, scene, pair));
     PetscCall(OffsetsCreate(mesh, scene, loads, pair->slave, pair->n_images, pair->images, pair->fit.feature_angle,
-                            finer, kind, &pair->slave_offsets));
+                            finer, pair->formulation.offsets, &pair->slave_offsets));
     if (pair->master)
       PetscCall(OffsetsCreate(mesh, scene, loads, pair->master, pair->n_images, pair->images, pair->fit.feature_angle,
-                              0, kind, &pair->master_offsets));
-    pair->lags = kind != OFFSETS_LIVE ? PETSC_TRUE : PETSC_FALSE;
+                              0, pair->formulation.offsets, &pair->master_offsets));
   } else {
     PetscCall(PairChooseNodes(mesh, scene, pair));
     PetscCall(SlavePointsCreateNodes(pair->slave, pair->n, pair->node, &pair->slaves));
@@ -127,13 +123,13 @@ static PetscErrorCode PairCreatePoints(Mesh mesh, Scene scene, Loads loads, Cont
    spacings, the smoothest fits whose guards hold on jittered meshes (3D: some 40 nodes; 2D: 9); in 3D between 3.5
    and 3.65, 3 and 4 rings, spheres and their three-valent nodes are quiet at once. Quadrature points: in face sizes,
    some 113 of them in 3D. */
-static FitSettings PairFitSettings(Scene scene, const SceneContact *contact, const Smoother *smoother, int order)
+static FitSettings PairFitSettings(Scene scene, const ContactPair *pair, int order)
 {
-  FitSettings fit = {.degree   = smoother->smooth ? contact->degree : 0,
-                     .support  = contact->support,
-                     .exponent = contact->weight};
+  const SceneContact *contact = pair->scene;
+  FitSettings         fit     = {.degree = contact->degree, .support = contact->support, .exponent = contact->weight};
 
-  fit.integral = (PetscBool)(fit.degree && contact->formulation == CONTACT_SURFACE_TO_SURFACE);
+  fit.fitted   = (PetscBool)(pair->smoother->fitted && contact->master);
+  fit.integral = (PetscBool)(fit.fitted && pair->formulation.surface);
   if (fit.integral) {
     if (fit.support == 0) fit.support = order == 2 ? (scene->dim == 2 ? 1.75 : 2.25) : 3;
     if (fit.exponent == 0) fit.exponent = 3;
@@ -145,6 +141,16 @@ static FitSettings PairFitSettings(Scene scene, const SceneContact *contact, con
   fit.global_frame  = contact->global_frame ? PETSC_TRUE : PETSC_FALSE;
   fit.feature_angle = contact->feature_angle * PETSC_PI / 180;
   return fit;
+}
+
+/* The one place that asks the scene for the formulation of a pair. */
+static void PairSetFormulation(ContactPair *pair)
+{
+  pair->formulation.surface = (PetscBool)(pair->scene->formulation == CONTACT_SURFACE_TO_SURFACE);
+  pair->formulation.offsets = !pair->smoother->fitted    ? OFFSETS_NONE
+                              : pair->scene->live_offset ? OFFSETS_LIVE
+                                                         : OFFSETS_HELD;
+  pair->formulation.lags    = (PetscBool)(pair->formulation.surface && pair->formulation.offsets != OFFSETS_LIVE);
 }
 
 static PetscErrorCode PairCheckGlobalFrame(Mesh mesh, Scene scene, Loads loads, const ContactPair *pair)
@@ -175,11 +181,12 @@ PetscErrorCode ContactPairCreate(Mesh mesh, Scene scene, Elasticity elasticity, 
   PetscFunctionBeginUser;
   pair->mesh     = mesh;
   pair->scene    = contact;
-  pair->facets   = Smoothers[SMOOTHER_FACET];
+  pair->facets   = &Smoother_Facet;
   pair->smoother = Smoothers[contact->smoother];
+  pair->law      = Laws[contact->law];
   pair->geometry = scene->geometry;
-  pair->fit      = PairFitSettings(scene, contact, pair->smoother, mesh->order);
-  pair->law      = LawFind("penalty");
+  PairSetFormulation(pair);
+  pair->fit = PairFitSettings(scene, pair, mesh->order);
   if (contact->master && !strcmp(contact->slave, contact->master))
     PetscCall(RefuseInput(mesh->comm,
                           "%s: slave and master are both '%s'; allowed: two different surfaces (a surface in contact "
@@ -193,12 +200,9 @@ PetscErrorCode ContactPairCreate(Mesh mesh, Scene scene, Elasticity elasticity, 
   PetscCall(SurfaceCreate(mesh, scene, elasticity, contact->path, "slave", contact->slave, &pair->slave));
   if (contact->master)
     PetscCall(SurfaceCreate(mesh, scene, elasticity, contact->path, "master", contact->master, &pair->master));
-  else
-    pair->fit.degree = 0;
   PetscCall(SurfaceImages(mesh, scene, contact, &pair->n_images, pair->images));
   if (pair->master) PetscCall(SurfaceFindFreeEdges(pair->master, pair->n_images, pair->images));
-  if (pair->master && pair->fit.degree && pair->fit.global_frame)
-    PetscCall(PairCheckGlobalFrame(mesh, scene, loads, pair));
+  if (pair->fit.fitted && pair->fit.global_frame) PetscCall(PairCheckGlobalFrame(mesh, scene, loads, pair));
   PetscCall(PairCreatePoints(mesh, scene, loads, pair));
   pair->automatic = PenaltyAutomatic(pair->slave->stiffness, pair->master ? pair->master->stiffness : 0);
   pair->most      = PETSC_MAX_REAL;
@@ -241,54 +245,49 @@ PetscErrorCode ContactPairDestroy(ContactPair *pair)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* What is left at t of the gap that the surfaces had before any load: all of an ignored overlap, a shrinking part of a
- * ramped one. */
-PetscReal ContactTermOffset(const ContactPair *pair, PetscInt c, PetscReal t)
+/* ContactPairs - how many pairs there are; 0 for NULL. Not collective. */
+int ContactPairs(Contact contact)
 {
-  return pair->now.offset[c] * (pair->scene->initial_overlap == OVERLAP_RAMP ? 1 - t : 1);
+  return contact ? contact->n_pairs : 0;
 }
 
-/* The gap below which a term presses: where it would have its multiplier's pressure, the surfaces meet at its offset.
- */
-PetscReal ContactTermOnsetGap(const ContactPair *pair, PetscInt c, PetscReal t)
+/* ContactPairName - the scene's name of a pair. Not collective. */
+const char *ContactPairName(Contact contact, int pair)
 {
-  return LawOnsetGap(&(LawState){pair->now.penalty[c], ContactTermOffset(pair, c, t), pair->now.multiplier[c]});
+  return contact->pairs[pair].scene->name;
 }
 
-/* Relative curvature of slave and master at a term. */
-static PetscReal TermCurvature(const ContactPair *pair, PetscInt c)
+/* ContactPairScene - what the scene says of a pair. Not collective. */
+const SceneContact *ContactPairScene(Contact contact, int pair)
 {
-  const PetscReal radius = pair->scene->analytic.radius;
-  PetscReal       kappa  = 0;
-
-  for (PetscInt k = pair->term_ptr[c]; k < pair->term_ptr[c + 1]; k++)
-    kappa = PetscMax(kappa, pair->lists->kappa[pair->term_point[k]]);
-  return kappa + 2 * pair->turn[c] / pair->size[c] + (radius > 0 ? 1 / radius : 0);
+  return contact->pairs[pair].scene;
 }
 
-/* Size of the master's faces at a term. */
-static PetscReal TermMasterSize(const ContactPair *pair, PetscInt c)
+/* ContactFindPair - number of the pair of that name, -1: none. Not collective. */
+int ContactFindPair(Contact contact, const char *name)
 {
-  PetscReal size = 0;
-
-  for (PetscInt k = pair->term_ptr[c]; k < pair->term_ptr[c + 1]; k++)
-    size = PetscMax(size, NeighbourListsNearestSize(pair->lists, pair->term_point[k]));
-  return size;
+  for (int p = 0; p < ContactPairs(contact); p++)
+    if (!strcmp(contact->pairs[p].scene->name, name)) return p;
+  return -1;
 }
 
-/* Opening up to which a node counts as touching: what round-off and the facets' own sagitta leave between surfaces that
- * touch. */
-PetscReal ContactTouchTolerance(const ContactPair *pair, PetscInt c)
+/* ContactComm - the communicator. Not collective. */
+MPI_Comm ContactComm(Contact contact)
 {
-  const PetscReal h = pair->size[c];
-
-  return CONTACT_TOUCH * h + TermCurvature(pair, c) * (PetscSqr(h) + PetscSqr(TermMasterSize(pair, c))) / 8;
+  return contact ? contact->mesh->comm : MPI_COMM_NULL;
 }
 
-/* Opening of a term of surface contact whose node touches: the mean over the faces around it, where the surfaces bend
-   away from each other. Hat functions of width h weigh x^2 by h^2/6, so the mean of kappa x^2/2 is kappa h^2/12 for
-   each direction; half as much again for faces of unlike size. */
-PetscReal ContactMeanOpening(const ContactPair *pair, PetscInt c)
+/*@
+  ContactPairIsSurface - says whether a pair is surface to surface: each slave node then has hat functions over its
+faces.
+
+  Not collective
+
+  Input Parameters:
++ contact - the contact
+- pair    - number of the pair
+@*/
+PetscBool ContactPairIsSurface(Contact contact, int pair)
 {
-  return CONTACT_TOUCH * pair->size[c] + (pair->mesh->dim - 1) * TermCurvature(pair, c) * PetscSqr(pair->size[c]) / 8;
+  return contact->pairs[pair].formulation.surface;
 }

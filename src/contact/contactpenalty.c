@@ -3,6 +3,7 @@
 
 /* A penetration is known well enough to be judged when the last iterate moved it by no more than this part of g_min. */
 #define CONTACT_GAPS_CONVERGED 0.1
+
 /* Times in one step that the penalties of a pair are adjusted until their window holds. A penalty that starts 1e8 times
    too small needs four with the default clamp, neighbours that share the load two or three more. */
 #define CONTACT_MAX_ADJUST 12
@@ -31,6 +32,84 @@ static PenaltyUpdate TermUpdate(const ContactPair *pair, PetscInt c, PetscReal l
   PenaltyAdjust(&rule, TermPenetration(pair, c), largest > 0 ? ContactTermForce(pair, c) / largest : 0,
                 pair->now.penalty[c], &update);
   return update;
+}
+
+/* PairBeyond - how the penetrations of an augmented pair stand to their bound in the present state, all ranks.
+
+   Collective. A multiplier may press across an opening as well: what is open by more than the bound and pressed is
+   beyond it too. */
+static PetscErrorCode PairBeyond(const ContactPair *pair, ContactWindow *window)
+{
+  PetscInt  count[4] = {0, 0, pair->now.augmented, pair->now.missed};
+  PetscReal excess   = 0;
+
+  PetscFunctionBeginUser;
+  for (PetscInt c = 0; c < pair->n; c++) {
+    const PetscReal distance =
+      PetscAbsReal(pair->now.gap[c] - ContactTermOffset(pair, c, pair->t)) / ContactTermBound(pair, c);
+
+    if (pair->now.status[c] != CONTACT_CLOSED) continue;
+    count[0]++;
+    count[1] += distance > 1;
+    excess = PetscMax(excess, distance);
+  }
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, count, 4, MPIU_INT, MPI_SUM, pair->mesh->comm));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &excess, 1, MPIU_REAL, MPI_MAX, pair->mesh->comm));
+  *window = (ContactWindow){.loaded    = count[0],
+                            .outside   = count[1],
+                            .excess    = excess,
+                            .augmented = count[2],
+                            .missed    = count[3]};
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscReal TermPressure(const ContactPair *pair, PetscInt c)
+{
+  const LawState state = ContactTermState(pair, c, pair->t, PETSC_MAX_REAL);
+  LawValue       value = {0, 0, 0};
+
+  if (!PetscIsNanReal(pair->now.gap[c])) pair->law->evaluate(pair->now.gap[c], &state, &value);
+  return value.pressure;
+}
+
+/* PairAugment - the pressures of a pair become its multipliers, if one of its terms is beyond the bound and they
+   may once more in this step.
+
+   Collective, after a converged solve, in the state of its last ContactResidual(). WINDOW_MISSED: the step is to be
+   solved again; WINDOW_HOLDS: the state is as it was: only terms that do not press lose their multipliers. A stiff body
+   changes its forces little in a solve with a soft penalty; from the second update of a step on, the pressures are
+   mixed with those of the updates before. Steps that end beyond the bound are counted.
+
+   Source: Simo and Laursen 1992, Computers & Structures 42, 97-116, Uzawa's update. */
+static PetscErrorCode PairAugment(ContactPair *pair, ContactWindowState *state)
+{
+  ContactWindow window;
+  PetscReal    *pressure;
+  PetscMPIInt   rank;
+
+  PetscFunctionBeginUser;
+  PetscCall(PairBeyond(pair, &window));
+  PetscCall(PetscInfo(NULL,
+                      "contact '%s' after %" PetscInt_FMT " updates: %" PetscInt_FMT " of %" PetscInt_FMT
+                      " nodes beyond g_max, up to %g times\n",
+                      pair->scene->name, pair->updates, window.outside, window.loaded, (double)window.excess));
+  PetscCallMPI(MPI_Comm_rank(pair->mesh->comm, &rank));
+  *state = window.outside && pair->updates < pair->scene->max_updates ? WINDOW_MISSED : WINDOW_HOLDS;
+  if (!rank) pair->now.augmented += *state == WINDOW_MISSED; /* counts of all ranks are added up */
+  if (!rank) pair->now.missed += window.outside && pair->updates == pair->scene->max_updates;
+  if (!pair->updates) AndersonStart(pair->mixing);
+  pair->updates += window.outside > 0;
+  PetscCall(PetscMalloc1(pair->n, &pressure));
+  for (PetscInt c = 0; c < pair->n; c++) pressure[c] = TermPressure(pair, c);
+  if (*state == WINDOW_MISSED) PetscCall(AndersonNext(pair->mixing, pair->now.multiplier, pressure));
+  for (PetscInt c = 0; c < pair->n; c++) {
+    if (pair->now.status[c] == CONTACT_OPEN)
+      pair->now.multiplier[c] = 0;
+    else if (*state == WINDOW_MISSED)
+      pair->now.multiplier[c] = PetscMax(0, pressure[c]);
+  }
+  PetscCall(PetscFree(pressure));
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 static PetscBool AnyAdjusts(Contact contact, int converged)
@@ -107,7 +186,7 @@ PetscErrorCode ContactAdjustPenalty(Contact contact, ContactWindowState *state)
     ContactWindowState one  = WINDOW_HOLDS;
 
     if (pair->scene->adjust && pair->scene->adjust_converged) PetscCall(PairAdjust(pair, largest, &pair->now, &one));
-    if (pair->scene->augment) PetscCall(ContactPairAugment(pair, &one));
+    if (pair->scene->augment) PetscCall(PairAugment(pair, &one));
     if (one == WINDOW_MISSED || *state == WINDOW_HOLDS)
       *state = one; /* what changes for one pair may bring the others inside */
   }
@@ -176,7 +255,7 @@ PetscErrorCode ContactPairWindow(Contact contact, int p, ContactWindow *window)
 
   PetscFunctionBeginUser;
   if (pair->scene->augment) {
-    PetscCall(ContactPairBeyond(pair, window));
+    PetscCall(PairBeyond(pair, window));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   PetscCall(LargestForce(contact, &largest));

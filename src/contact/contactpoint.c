@@ -90,44 +90,6 @@ PetscErrorCode ContactPointEvaluate(const ContactPair *pair, const Smoother *smo
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode WorkReserveSlots(ContactWork *work, NeighbourLists lists)
-{
-  PetscFunctionBeginUser;
-  if (lists->n_nodes <= work->slot_room) PetscFunctionReturn(PETSC_SUCCESS);
-  work->slot_room = 2 * lists->n_nodes;
-  PetscCall(PetscFree(work->slot));
-  PetscCall(PetscMalloc1(work->slot_room, &work->slot));
-  for (PetscInt i = 0; i < work->slot_room; i++) work->slot[i] = -1;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-static PetscErrorCode WorkReserveMap(ContactWork *work, NeighbourLists lists, int rows, PetscInt entries)
-{
-  PetscFunctionBeginUser;
-  PetscCall(WorkReserveSlots(work, lists));
-  if (rows <= work->map.rows_room && entries <= work->map.entries_room) PetscFunctionReturn(PETSC_SUCCESS);
-  work->map.rows_room    = PetscMax(work->map.rows_room, 2 * rows);
-  work->map.entries_room = PetscMax(work->map.entries_room, 2 * (int)entries);
-  PetscCall(PetscFree5(work->map.ptr, work->map.node, work->map.S, work->map.sign, work->number));
-  PetscCall(PetscMalloc5(work->map.rows_room + 1, &work->map.ptr, work->map.entries_room, &work->map.node,
-                         work->map.entries_room, &work->map.S, 3 * work->map.entries_room, &work->map.sign,
-                         work->map.entries_room, &work->number));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* ContactWorkDestroy - Not collective. */
-PetscErrorCode ContactWorkDestroy(ContactWork *work)
-{
-  PetscFunctionBeginUser;
-  PetscCall(PetscFree2(work->x, work->multiplier));
-  PetscCall(PetscFree5(work->map.ptr, work->map.node, work->map.S, work->map.sign, work->number));
-  PetscCall(PetscFree(work->N));
-  PetscCall(PetscFree(work->sum_workspace));
-  PetscCall(PetscFree(work->M));
-  PetscCall(PetscFree(work->slot));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* A row of n images of nodes, side[n], on image `image`. */
 static void MapAddRow(const ContactPair *pair, int row, int image, PetscInt n, const PetscInt *nodes, const int *side,
                       const PetscReal *S)
@@ -180,40 +142,12 @@ static PetscInt MapEntries(const ContactPair *pair, NeighbourLists lists, PetscI
   return entries;
 }
 
-/* ContactNodesBegin - begins a list of contact nodes in the work's number, of up to `room` mentions. Not collective. */
-PetscErrorCode ContactNodesBegin(const ContactPair *pair, PetscInt room)
-{
-  PetscFunctionBeginUser;
-  PetscCall(WorkReserveMap(pair->work, pair->lists, 0, room));
-  pair->work->count = 0;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* ContactNodesAdd - nodes that are not in the list yet get its next places as their slots. Not collective. */
-void ContactNodesAdd(const ContactPair *pair, PetscInt n, const PetscInt nodes[])
-{
-  ContactWork *work = pair->work;
-
-  for (PetscInt a = 0; a < n; a++) {
-    int *slot = &work->slot[nodes[a]];
-
-    if (*slot >= 0) continue;
-    *slot                       = (int)work->count;
-    work->number[work->count++] = nodes[a];
-  }
-}
-
-/* ContactNodesEnd - the list is complete, slots are given back. Not collective. */
-void ContactNodesEnd(const ContactPair *pair)
-{
-  ContactBlockEnd(pair, pair->work->count, pair->work->number);
-}
-
 static void NodesAddPoint(const ContactPair *pair, PetscInt p)
 {
   const NeighbourLists lists = pair->lists;
 
-  ContactNodesAdd(pair, lists->point_ptr[p + 1] - lists->point_ptr[p], &lists->point_node[lists->point_ptr[p]]);
+  ContactWorkNodesAdd(pair->work, lists->point_ptr[p + 1] - lists->point_ptr[p],
+                      &lists->point_node[lists->point_ptr[p]]);
 }
 
 /* ContactPointToNodes - carries N of the last evaluation from points to contact nodes, each of which occurs once.
@@ -225,13 +159,14 @@ PetscErrorCode ContactPointToNodes(const ContactPair *pair, NeighbourLists lists
   FitDerivatives map;
 
   PetscFunctionBeginUser;
-  PetscCall(WorkReserveMap(work, lists, 1 + work->result.n, MapEntries(pair, lists, q)));
+  PetscCall(ContactWorkReserveMap(work, lists->n_nodes, 1 + work->result.n, MapEntries(pair, lists, q)));
   work->count = 0;
-  ContactNodesAdd(pair, lists->slave_ptr[q + 1] - lists->slave_ptr[q], &lists->slave_node[lists->slave_ptr[q]]);
+  ContactWorkNodesAdd(pair->work, lists->slave_ptr[q + 1] - lists->slave_ptr[q],
+                      &lists->slave_node[lists->slave_ptr[q]]);
   for (int i = 0; i < work->result.n; i++)
     NodesAddPoint(pair, lists->list_point[lists->list_ptr[q] + work->result.points[i]]);
   MapFill(pair, lists, q);
-  ContactNodesEnd(pair);
+  ContactWorkNodesEnd(pair->work);
   if (work->count > work->room) {
     work->room = 2 * work->count;
     PetscCall(PetscFree(work->N));
@@ -239,33 +174,6 @@ PetscErrorCode ContactPointToNodes(const ContactPair *pair, NeighbourLists lists
   }
   map = (FitDerivatives){(int)work->count, work->map.ptr, work->map.node, work->map.S, work->map.sign};
   FitDerivativesFirst(lists->dim, work->result.n, work->result.N, &map, work->N);
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* ContactBlockBegin - the nodes' places in the block at hand become their slots; contact nodes that are not among them
- * take no part in it. Not collective. */
-PetscErrorCode ContactBlockBegin(const ContactPair *pair, PetscInt n, const PetscInt nodes[])
-{
-  PetscFunctionBeginUser;
-  PetscCall(WorkReserveSlots(pair->work, pair->lists));
-  for (PetscInt i = 0; i < n; i++) pair->work->slot[nodes[i]] = (int)i;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* ContactBlockEnd - Not collective. */
-void ContactBlockEnd(const ContactPair *pair, PetscInt n, const PetscInt nodes[])
-{
-  for (PetscInt i = 0; i < n; i++) pair->work->slot[nodes[i]] = -1;
-}
-
-/* Room for the M of a block. */
-static PetscErrorCode WorkReserveBlock(ContactWork *work, PetscInt m)
-{
-  PetscFunctionBeginUser;
-  if (m * m + BLOCK_PADDING <= work->M_room) PetscFunctionReturn(PETSC_SUCCESS);
-  work->M_room = 2 * m * m + BLOCK_PADDING;
-  PetscCall(PetscFree(work->M));
-  PetscCall(PetscMalloc1(work->M_room, &work->M));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -278,8 +186,9 @@ PetscErrorCode ContactSecondBegin(const ContactPair *pair, PetscInt nodes, Petsc
 {
   ContactWork *work   = pair->work;
   const int    dim    = pair->mesh->dim;
-  const int    degree = PetscMax(pair->fit.degree, 1); /* facets need no more than the sum's head */
-  const int    depth  = (int)points * (1 + PetscMax(FitDerivativesDepth(dim, degree), dim * (1 + FACE_MAX_NODES)));
+  const int    degree = pair->fit.fitted ? pair->fit.degree : 1; /* facets need no more than the sum's head */
+  const int    dense  = PetscMax(pair->smoother->dense_capacity, pair->facets->dense_capacity);
+  const int    depth  = (int)points * (1 + PetscMax(FitDerivativesDepth(dim, degree), dim * (1 + dense)));
   const long   room   = FitDerivativesWorkspace(dim, degree, (int)nodes, depth);
 
   PetscFunctionBeginUser;
@@ -288,7 +197,7 @@ PetscErrorCode ContactSecondBegin(const ContactPair *pair, PetscInt nodes, Petsc
     PetscCall(PetscFree(work->sum_workspace));
     PetscCall(PetscMalloc1(work->sum_room, &work->sum_workspace));
   }
-  PetscCall(WorkReserveBlock(work, nodes * dim));
+  PetscCall(ContactWorkReserveBlock(work, nodes * dim));
   FitDerivativesBegin(&work->sum, dim, degree, (int)nodes, depth, work->sum_workspace);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -306,11 +215,11 @@ PetscErrorCode ContactSecondAdd(const ContactPair *pair, PetscInt q, PetscReal f
   FitDerivatives fit;
 
   PetscFunctionBeginUser;
-  if (pair->fit.degree) TimingBegin(TIMING_FIT);
+  if (pair->fit.fitted) TimingBegin(TIMING_FIT);
   PetscCall(ContactPointEvaluate(pair, pair->smoother, lists, q, pair->seed[q], SMOOTHER_SECOND_VARIATION, &found));
-  if (pair->fit.degree) TimingEnd(TIMING_FIT);
+  if (pair->fit.fitted) TimingEnd(TIMING_FIT);
   if (!found) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(WorkReserveMap(work, lists, 1 + work->result.n, MapEntries(pair, lists, q)));
+  PetscCall(ContactWorkReserveMap(work, lists->n_nodes, 1 + work->result.n, MapEntries(pair, lists, q)));
   MapFill(pair, lists, q);
   fit = (FitDerivatives){work->sum.n_nodes, map->ptr, map->node, map->S, map->sign};
   if (work->result.factored) {
@@ -333,11 +242,11 @@ void ContactSecondEnd(const ContactPair *pair)
 PetscErrorCode ContactPointsToNodes(const ContactPair *pair, PetscInt first, PetscInt end)
 {
   PetscFunctionBeginUser;
-  PetscCall(WorkReserveMap(pair->work, pair->lists, (int)(end - first),
-                           pair->lists->point_ptr[end] - pair->lists->point_ptr[first]));
+  PetscCall(ContactWorkReserveMap(pair->work, pair->lists->n_nodes, (int)(end - first),
+                                  pair->lists->point_ptr[end] - pair->lists->point_ptr[first]));
   pair->work->count = 0;
   for (PetscInt p = first; p < end; p++) NodesAddPoint(pair, p);
-  ContactNodesEnd(pair);
+  ContactWorkNodesEnd(pair->work);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -353,75 +262,11 @@ PetscErrorCode ContactOwnToNodes(const ContactPair *pair, PetscInt nodes, PetscI
   FitDerivatives map;
 
   PetscFunctionBeginUser;
-  PetscCall(WorkReserveBlock(work, nodes * dim));
+  PetscCall(ContactWorkReserveBlock(work, nodes * dim));
   PetscCall(PetscArrayzero(work->M, PetscSqr(nodes * dim)));
   work->map.ptr[0] = 0;
   for (PetscInt p = first; p < end; p++) MapAddPoint(pair, pair->lists, (int)(p - first), p);
   map = (FitDerivatives){(int)nodes, work->map.ptr, work->map.node, work->map.S, work->map.sign};
   FitDerivativesAddOwn(dim, 0, (int)(end - first), &own[first], &map, work->M);
   PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* The gap of a slave point, with its first variation where `vary`; where nothing has moved since its fit was made, that
- * tells it. */
-static PetscErrorCode PointGap(const ContactPair *pair, NeighbourLists lists, PetscInt q, int seed, PetscBool vary,
-                               PetscBool *found)
-{
-  SmootherResult *result = &pair->work->result;
-
-  PetscFunctionBeginUser;
-  if (vary || !lists->made || !lists->fit_n[q])
-    PetscCall(ContactPointEvaluate(pair, pair->smoother, lists, q, seed, vary ? SMOOTHER_FIRST_VARIATION : SMOOTHER_GAP,
-                                   found));
-  else {
-    *found       = PETSC_TRUE;
-    result->gap  = lists->gap[q]; /* facet_served, points and factors are those of the point before */
-    result->seed = seed;
-    for (int d = 0; d < 3; d++) result->normal[d] = lists->normal[3 * q + d];
-  }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* ContactPointGaps - gaps (lengths) of the slave points of this rank, positions as the lists were last updated.
-
-   Not collective. factor[n_slaves]: points of factor 0 are not asked for; seed[n_slaves]: the facets of last time,
-   rewritten, or NULL; gap[n_slaves]: NaN where there is none; normals[3*n_slaves]: out of the master at the feet, or
-   NULL. force[n_slaves]: points with one, of last time, will most likely have one again, and their first variations are
-   taken among the pair's, whose lists these are; or NULL. */
-PetscErrorCode ContactPointGaps(const ContactPair *pair, NeighbourLists lists, const PetscReal *factor,
-                                const PetscReal *force, int *seed, PetscReal *gap, PetscReal *normals)
-{
-  PetscFunctionBeginUser;
-  for (PetscInt q = 0; q < lists->n_slaves; q++) {
-    const PetscBool vary  = (PetscBool)(force && force[q] != 0 && factor[q] > 0);
-    PetscBool       found = PETSC_FALSE;
-
-    if (factor[q] > 0) PetscCall(PointGap(pair, lists, q, seed ? seed[q] : -1, vary, &found));
-    if (vary) PetscCall(ContactVariationsKeep(pair, q, found));
-    gap[q] = found ? pair->work->result.gap : NAN;
-    if (found && seed) seed[q] = pair->work->result.seed;
-    for (int d = 0; normals && d < 3; d++)
-      normals[3 * q + d] = found && d < lists->dim ? pair->work->result.normal[d] : 0;
-  }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* ContactTermGap - the weighted gap sum W f g / sum W f (length) of a term over its points with a gap; NaN without any.
-
-   Not collective. factor, point_gap[n_slaves]: of ContactPointGaps(). *area: sum W f, or NULL. */
-PetscReal ContactTermGap(const ContactPair *pair, const PetscReal *factor, const PetscReal *point_gap, PetscInt c,
-                         PetscReal *area)
-{
-  PetscReal sum = 0, total = 0;
-
-  for (PetscInt k = pair->term_ptr[c]; k < pair->term_ptr[c + 1]; k++) {
-    const PetscInt  q      = pair->term_point[k];
-    const PetscReal weight = pair->term_weight[k] * factor[q];
-
-    if (PetscIsNanReal(point_gap[q]) || weight == 0) continue;
-    sum += weight * point_gap[q];
-    total += weight;
-  }
-  if (area) *area = total;
-  return total > 0 ? sum / total : NAN;
 }

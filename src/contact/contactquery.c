@@ -87,32 +87,6 @@ PetscErrorCode ContactRoundOff(Contact contact, PetscReal *force)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ContactPairs - how many pairs there are; 0 for NULL. Not collective. */
-int ContactPairs(Contact contact)
-{
-  return contact ? contact->n_pairs : 0;
-}
-
-/* ContactPairName - the scene's name of a pair. Not collective. */
-const char *ContactPairName(Contact contact, int pair)
-{
-  return contact->pairs[pair].scene->name;
-}
-
-/* ContactPairScene - what the scene says of a pair. Not collective. */
-const SceneContact *ContactPairScene(Contact contact, int pair)
-{
-  return contact->pairs[pair].scene;
-}
-
-/* ContactFindPair - number of the pair of that name, -1: none. Not collective. */
-int ContactFindPair(Contact contact, const char *name)
-{
-  for (int p = 0; p < ContactPairs(contact); p++)
-    if (!strcmp(contact->pairs[p].scene->name, name)) return p;
-  return -1;
-}
-
 /* ContactGetNodes - what this rank's slave nodes of pair p show: areas, gaps, forces, pressures, normals.
 
    Collective. u[n_nodes*dim]: local displacements (length), for the current tributary areas (finite kinematics; else
@@ -125,7 +99,7 @@ PetscErrorCode ContactGetNodes(Contact contact, int p, const PetscReal *u, Conta
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(contact->mesh->n_nodes, &area));
   if (contact->scene->kinematics == KINEMATICS_SMALL) u = NULL;
-  if (pair->slave_offsets)
+  if (pair->formulation.surface)
     PetscCall(SlavePointsHatAreas(pair->slaves, pair->geometry, u, area));
   else
     PetscCall(SurfaceNodeAreas(pair->slave, pair->geometry, u, area, NULL));
@@ -238,7 +212,7 @@ PetscErrorCode ContactPairFits(Contact contact, int p, ContactFits *fits)
     PetscReal gap;
     PetscBool found;
 
-    if (!pair->fit.degree || lists->facet_ptr[q] == lists->facet_ptr[q + 1] || !SlavePointIsOwn(pair->slaves, q, rank))
+    if (!pair->fit.fitted || lists->facet_ptr[q] == lists->facet_ptr[q + 1] || !SlavePointIsOwn(pair->slaves, q, rank))
       continue;
     count[RUNGS + 1]++;
     count[lists->fit_n[q] ? lists->rung[q] : RUNGS]++;
@@ -274,29 +248,39 @@ PetscErrorCode ContactPairFits(Contact contact, int p, ContactFits *fits)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ContactComm - the communicator. Not collective. */
-MPI_Comm ContactComm(Contact contact)
-{
-  return contact ? contact->mesh->comm : MPI_COMM_NULL;
-}
+/*@
+  ContactPairText - writes what touches what, and how, into the caller's buffer, such as "plate_bottom on pipe_outer,
+  diffuse, degree 4, support 3.6, weight 3.5".
 
-/* ContactPairText - "plate_bottom on pipe_outer, diffuse, degree 4"; valid until the next call. Not collective. */
-const char *ContactPairText(Contact contact, int p)
+  Not collective
+
+  Input Parameters:
++ contact - the contact
+. p       - number of the pair
+- size    - characters that the buffer holds
+
+  Output Parameter:
+. text - the text, cut where the buffer ends
+@*/
+PetscErrorCode ContactPairText(Contact contact, int p, char *text, size_t size)
 {
   static const char *const shapes[] = {"plane", "cylinder", "sphere"};
-  static char              text[512];
-  const ContactPair       *pair  = &contact->pairs[p];
-  const SceneContact      *scene = pair->scene;
-  const PetscBool          live  = (PetscBool)(pair->slave_offsets && OffsetsMaps(pair->slave_offsets));
-  const char *how = live ? ", surface to surface with live offsets" : pair->slave_offsets ? ", surface to surface" : "";
+  const ContactPair       *pair     = &contact->pairs[p];
+  const SceneContact      *scene    = pair->scene;
+  const char              *how      = "";
 
+  PetscFunctionBeginUser;
+  if (pair->formulation.surface) how = ", surface to surface";
+  if (pair->formulation.surface && OffsetsMaps(pair->slave_offsets)) how = ", surface to surface with live offsets";
   if (!pair->master)
-    snprintf(text, sizeof(text), "%s on an analytic %s%s", scene->slave, shapes[scene->analytic.shape], how);
-  else if (!pair->fit.degree)
-    snprintf(text, sizeof(text), "%s on %s, facets%s", scene->slave, scene->master, how);
+    snprintf(text, size, "%s on an analytic %s%s", scene->slave, shapes[scene->analytic.shape], how);
+  else if (!pair->fit.fitted)
+    snprintf(text, size, "%s on %s, %s%s", scene->slave, scene->master,
+             pair->smoother == pair->facets ? "facets" : SmootherNames[scene->smoother], how);
   else
-    snprintf(text, sizeof(text), "%s on %s, diffuse%s, degree %d, support %g, weight %g", scene->slave, scene->master,
-             how, pair->fit.degree, pair->fit.integral ? pair->fit.support / pair->master->order : pair->fit.support,
-             pair->fit.exponent);
-  return text;
+    snprintf(text, size, "%s on %s, %s%s, degree %d, support %g, weight %g", scene->slave, scene->master,
+             SmootherNames[scene->smoother], how, pair->fit.degree,
+             (double)(pair->fit.integral ? pair->fit.support / pair->master->order : pair->fit.support),
+             (double)pair->fit.exponent);
+  PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -56,7 +56,7 @@ static PetscErrorCode PairStepMotion(Contact contact, ContactPair *pair, const P
 static void AddTerm(ContactStep step, int p, PetscInt c, PetscReal t)
 {
   const ContactPair *pair  = &step->contact->pairs[p];
-  const LawState     state = ContactTermState(pair, c, t);
+  const LawState     state = ContactTermState(pair, c, t, pair->most);
   LawValue           value;
   PetscReal          opening;
 
@@ -92,9 +92,9 @@ static PetscErrorCode AddVariations(ContactStep step, int p, PetscInt from)
     PetscCall(PetscRealloc((first + n) * dim * sizeof(PetscReal), &step->N));
     PetscCall(PetscArraycpy(&step->node[first], nodes, n));
     PetscCall(PetscArrayzero(&step->N[first * dim], n * dim));
-    PetscCall(ContactBlockBegin(pair, n, nodes));
+    PetscCall(ContactWorkBlockBegin(pair->work, pair->lists->n_nodes, n, nodes));
     ContactTermVary(pair, c, 1 / step->area[i], &step->N[first * dim]);
-    ContactBlockEnd(pair, n, nodes);
+    ContactWorkBlockEnd(pair->work, n, nodes);
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

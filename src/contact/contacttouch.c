@@ -28,8 +28,8 @@ static PetscErrorCode PairMeasure(ContactPair *pair, const PetscReal *u, PetscRe
     PetscCall(ContactPointEvaluate(pair, pair->smoother, pair->lists, q, -1, SMOOTHER_GAP, &found));
     if (!found) continue;
     out->gap[q]    = pair->work->result.gap;
-    out->fitted[q] = (PetscBool)(pair->master && pair->fit.degree && !pair->work->result.facet_served);
-    if (!pair->master || !pair->fit.degree) continue;
+    out->fitted[q] = (PetscBool)(pair->fit.fitted && !pair->work->result.facet_served);
+    if (!pair->fit.fitted) continue;
     PetscCall(ContactPointEvaluate(pair, pair->facets, pair->lists, q, -1, SMOOTHER_GAP, &found));
     if (found) out->facet[q] = pair->work->result.gap;
   }

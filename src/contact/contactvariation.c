@@ -68,11 +68,11 @@ PetscErrorCode ContactVariationsNeed(const ContactPair *pair, PetscInt q)
 
   PetscFunctionBeginUser;
   if (pair->variations->first[q] >= 0) PetscFunctionReturn(PETSC_SUCCESS);
-  if (pair->fit.degree) TimingBegin(TIMING_FIT);
+  if (pair->fit.fitted) TimingBegin(TIMING_FIT);
   PetscCall(
     ContactPointEvaluate(pair, pair->smoother, pair->lists, q, pair->seed[q], SMOOTHER_FIRST_VARIATION, &found));
   PetscCall(ContactVariationsKeep(pair, q, found));
-  if (pair->fit.degree) TimingEnd(TIMING_FIT);
+  if (pair->fit.fitted) TimingEnd(TIMING_FIT);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -89,11 +89,11 @@ PetscErrorCode ContactVariationsNodes(const ContactPair *pair, PetscInt n, const
     PetscCall(ContactVariationsNeed(pair, points[k]));
     nodes += v->end[points[k]] - v->first[points[k]];
   }
-  PetscCall(ContactNodesBegin(pair, nodes));
+  PetscCall(ContactWorkNodesBegin(pair->work, pair->lists->n_nodes, nodes));
   for (PetscInt k = 0; k < n; k++)
     if (pair->factor[points[k]] != 0)
-      ContactNodesAdd(pair, v->end[points[k]] - v->first[points[k]], &v->number[v->first[points[k]]]);
-  ContactNodesEnd(pair);
+      ContactWorkNodesAdd(pair->work, v->end[points[k]] - v->first[points[k]], &v->number[v->first[points[k]]]);
+  ContactWorkNodesEnd(pair->work);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -114,83 +114,4 @@ void ContactTermVary(const ContactPair *pair, PetscInt c, PetscReal scale, Petsc
       for (int d = 0; place >= 0 && d < dim; d++) v[place * dim + d] += weight * all->N[i * dim + d];
     }
   }
-}
-
-/* Room for one vector more, of so many entries at most. */
-static PetscErrorCode VectorsReserve(ContactVectors *vectors, PetscInt entries)
-{
-  const PetscInt used = vectors->n ? vectors->ptr[vectors->n] : 0;
-
-  PetscFunctionBeginUser;
-  if (vectors->n + 2 > vectors->vectors_room) {
-    vectors->vectors_room = 2 * (vectors->n + 2);
-    PetscCall(PetscRealloc(vectors->vectors_room * sizeof(PetscInt), &vectors->ptr));
-  }
-  if (used + entries > vectors->room) {
-    vectors->room = 2 * (used + entries);
-    PetscCall(PetscRealloc(vectors->room * sizeof(PetscInt), &vectors->row));
-    PetscCall(PetscRealloc(vectors->room * sizeof(PetscScalar), &vectors->value));
-  }
-  vectors->ptr[vectors->n] = used;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* ContactVectorsAdd - scale times the sum of a term's points' variations, weighted by their areas, over the free dofs,
- * as one vector more. Not collective. */
-PetscErrorCode ContactVectorsAdd(ContactVectors *vectors, const ContactPair *pair, PetscInt c, PetscReal scale)
-{
-  const int                dim = pair->mesh->dim;
-  const ContactVariations *all = pair->variations;
-  const PetscInt          *dof = pair->lists->dof;
-  PetscInt                 n   = 0;
-
-  PetscFunctionBeginUser;
-  for (PetscInt k = pair->term_ptr[c]; k < pair->term_ptr[c + 1]; k++) {
-    const PetscInt q = pair->term_point[k];
-
-    if (pair->factor[q] == 0) continue;
-    PetscCall(ContactVariationsNeed(pair, q));
-    n += (all->end[q] - all->first[q]) * dim;
-  }
-  PetscCall(VectorsReserve(vectors, n));
-  n = vectors->ptr[vectors->n];
-  for (PetscInt k = pair->term_ptr[c]; k < pair->term_ptr[c + 1]; k++) {
-    const PetscInt  q      = pair->term_point[k];
-    const PetscReal weight = scale * pair->term_weight[k] * pair->factor[q];
-
-    for (PetscInt i = all->first[q] * dim; weight != 0 && i < all->end[q] * dim; i++) {
-      const PetscInt row = dof[all->number[i / dim] * dim + i % dim];
-
-      if (row < 0) continue;
-      vectors->row[n]     = row;
-      vectors->value[n++] = weight * all->N[i];
-    }
-  }
-  vectors->ptr[++vectors->n] = n;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* ContactVectorsAddZeros - Not collective. */
-PetscErrorCode ContactVectorsAddZeros(ContactVectors *vectors, PetscInt n, const PetscInt row[])
-{
-  PetscInt first;
-
-  PetscFunctionBeginUser;
-  PetscCall(VectorsReserve(vectors, n));
-  first = vectors->ptr[vectors->n];
-  PetscCall(PetscArraycpy(&vectors->row[first], row, n));
-  PetscCall(PetscArrayzero(&vectors->value[first], n));
-  vectors->ptr[++vectors->n] = first + n;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* ContactVectorsFree - Not collective. There are none afterwards. */
-PetscErrorCode ContactVectorsFree(ContactVectors *vectors)
-{
-  PetscFunctionBeginUser;
-  PetscCall(PetscFree(vectors->ptr));
-  PetscCall(PetscFree(vectors->row));
-  PetscCall(PetscFree(vectors->value));
-  *vectors = (ContactVectors){.n = 0};
-  PetscFunctionReturn(PETSC_SUCCESS);
 }

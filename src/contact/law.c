@@ -1,15 +1,27 @@
+/* The table of contact laws, and the penalty law. */
 #include <string.h>
 #include "law.h"
 
-/* LawOnsetGap - the gap below which there is pressure (length). Not collective. */
+/*@
+  LawOnsetGap - returns the gap below which there is pressure.
+
+  Not collective
+
+  Input Parameter:
+. state - penalty, offset and multiplier of a term
+
+  Note:
+  It is the offset, plus the distance over which the multiplier presses before the surfaces meet (length). Plain C.
+@*/
 double LawOnsetGap(const LawState *state)
 {
   return state->offset + state->multiplier / state->penalty;
 }
 
-/* Chamoret et al. 2004, eq. 15, written as the derivative of psi = eps/2 min(g, 0)^2 so that the tangent (eq. 14) is
-   symmetric. With a multiplier lambda the pressure is max(0, lambda - eps g): the same law over the gap less lambda/eps
-   (Simo and Laursen 1992, Computers & Structures 42, 97-116; its potential but for a constant). */
+/* Chamoret et al. (2004), eq. 15, written as the derivative of psi = eps/2 min(g, 0)^2, so that the tangent (eq. 14) is
+   symmetric. With a multiplier lambda the pressure is max(0, lambda - eps g). This is the same law over the gap less
+   lambda/eps, and its potential differs by a constant only (Simo and Laursen 1992, Computers & Structures 42, 97-116).
+ */
 static void LawPenalty(double gap, const LawState *state, LawValue *value)
 {
   const double g = gap - LawOnsetGap(state);
@@ -20,15 +32,25 @@ static void LawPenalty(double gap, const LawState *state, LawValue *value)
     *value = (LawValue){0, 0, 0};
 }
 
-const Law Laws[] = {
-  {"penalty", 1, LawPenalty},
-  {NULL,      0, NULL      }
-};
+const Law Law_Penalty = {.symmetric = 1, .evaluate = LawPenalty};
 
-/* LawFind - the law of that name, or NULL. Not collective. */
+const Law *const         Laws[]     = {CONTACT_LAWS(CHOICE_POINTER)};
+static const char *const LawNames[] = {CONTACT_LAWS(CHOICE_NAME)};
+
+/*@
+  LawFind - returns the law of a name, or NULL.
+
+  Not collective
+
+  Input Parameter:
+. name - the word of the scene
+
+  Note:
+  Plain C.
+@*/
 const Law *LawFind(const char *name)
 {
-  for (const Law *law = Laws; law->name; law++)
-    if (!strcmp(law->name, name)) return law;
+  for (int kind = 0; kind < CONTACT_LAW_KINDS; kind++)
+    if (!strcmp(LawNames[kind], name)) return Laws[kind];
   return NULL;
 }

@@ -79,6 +79,7 @@ PetscErrorCode ContactReport(Contact contact, FILE *file)
     ContactQuality   quality;
     PetscInt         joined;
     ContactPlace     place;
+    char             text[512];
 
     PetscCallMPI(MPI_Comm_rank(ContactComm(contact), &rank));
     PetscCall(ContactPairPenalty(contact, p, &least, &most));
@@ -88,7 +89,8 @@ PetscErrorCode ContactReport(Contact contact, FILE *file)
     PetscCall(ContactPairJoined(contact, p, &joined, &place));
     PetscCall(ContactPairSurface(contact, p, &slave, &size));
     if (rank) continue;
-    fprintf(file, "contact  %s: %s\n", ContactPairName(contact, p), ContactPairText(contact, p));
+    PetscCall(ContactPairText(contact, p, text, sizeof(text)));
+    fprintf(file, "contact  %s: %s\n", ContactPairName(contact, p), text);
     PrintPenalty(ContactPairScene(contact, p), most, file);
     PrintGaps(&gaps, file);
     PrintJoined(joined, &place, file);

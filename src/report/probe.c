@@ -401,10 +401,8 @@ static PetscErrorCode EvaluateContactEdge(Probes probes, Probe *probe, PetscReal
     x[k] = line[2 * (first + k)];
     p[k] = line[2 * (first + k) + 1];
   }
-  *value = ContactEdge(ContactPairScene(probes->model->contact, probe->pair)->formulation == CONTACT_SURFACE_TO_SURFACE
-                         ? EDGE_OF_HATS
-                         : EDGE_AT_NODES,
-                       n, x, p, probe->scene->max_side, &probe->spacing);
+  *value = ContactEdge(ContactPairIsSurface(probes->model->contact, probe->pair) ? EDGE_OF_HATS : EDGE_AT_NODES, n, x,
+                       p, probe->scene->max_side, &probe->spacing);
   PetscCall(PetscFree3(line, x, p));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -419,7 +419,8 @@ static PetscErrorCode SceneReadContact(Scene scene, SceneContact *contact)
   if (contact->master && !strcmp(contact->slave, contact->master))
     SceneRefuse(scene, contact->path, "master",
                 "is the slave too; allowed: another surface (self contact is not available yet)", contact->master);
-  contact->smoother    = (SmootherKind)SchemaChoice(SceneDocument(scene), "%s.smoother", contact->path);
+  contact->law         = (ContactLawKind)SchemaChoice(SceneDocument(scene), "%s.law", contact->path);
+  contact->smoother    = SchemaChoice(SceneDocument(scene), "%s.smoother", contact->path);
   contact->formulation = (ContactFormulation)SchemaChoice(SceneDocument(scene), "%s.formulation", contact->path);
   contact->live_offset = SchemaChoice(SceneDocument(scene), "%s.offset", contact->path);
   contact->degree      = SchemaChoice(SceneDocument(scene), "%s.degree", contact->path) == 0 ? 4 : 2;

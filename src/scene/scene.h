@@ -47,7 +47,7 @@ typedef struct {
   char              *path, *name, *slave, *master; /* master: physical surface, or NULL: analytic */
   AnalyticSurface    analytic;                     /* with motion.point: on the plane, on the axis, the centre */
   Motion             motion;
-  SmootherKind       smoother;
+  int                smoother; /* index of Smoothers[] */
   ContactFormulation formulation;
   int                live_offset; /* of surface_to_surface: offsets follow the nodes within a solve */
   int                n_symmetry;
@@ -58,6 +58,7 @@ typedef struct {
   double             feature_angle; /* degrees */
   InitialOverlap     initial_overlap;
   int                stabilise; /* springs hold its bodies until contact does */
+  ContactLawKind     law;
   int                penalty_auto;
   double penalty, penalty_scale; /* force per length and area; the automatic value is multiplied by penalty_scale */
   int    adjust;                 /* the penalty follows the penetration */

@@ -1,6 +1,7 @@
 #include "schemakeys.h"
 #include "base/choices.h"
 #include "document.h"
+#include "smooth/smoother.h"
 #include <stdio.h>
 #include <string.h>
 
@@ -65,7 +66,7 @@ const SchemaKey SchemaKeys[] = {
   {"contact.*.master.cylinder|sphere.radius", REAL, REQUIRED, .range = "(0, inf)", .unit = "length"},
   {"contact.*.master.cylinder|sphere.side", CHOICE, .values = "outside | inside", .preset = "outside", .help = "where the slave is"},
   MOTION_KEYS("contact.*.master.plane|cylinder|sphere"),
-  {"contact.*.smoother", CHOICE, .values = CHOICE_WORDS(SMOOTHERS), .preset = "facet", .help = "the master's surface: its faces, or a smooth one near them"},
+  {"contact.*.smoother", CHOICE, .values = SMOOTHER_CHOICES, .preset = "facet", .help = "the master's surface: its faces, or a smooth one near them"},
   {"contact.*.formulation", CHOICE, .values = "node_to_surface | surface_to_surface", .preset = "node_to_surface",
    .help = "where the gap is measured: at the slave's nodes, or all over its faces"},
   {"contact.*.offset", CHOICE, .values = "held | live", .preset = "held", .help = "of surface_to_surface: taken before each solve; or moving with the nodes in it"},
@@ -79,6 +80,7 @@ const SchemaKey SchemaKeys[] = {
   {"contact.*.initial_overlap", CHOICE, .values = "refuse | resolve | ramp | ignore", .preset = "refuse",
    .help = "of the meshes: wrong input; pushed out at once; by and by until t = 1; counted as no gap"},
   {"contact.*.stabilise", BOOLEAN, .preset = "false", .help = "springs that vanish hold bodies that only contact holds, until it does"},
+  {"contact.*.law", CHOICE, .values = CHOICE_WORDS(CONTACT_LAWS), .preset = "penalty", .help = "pressure over the gap"},
   {"contact.*.penalty", MAP, .help = "force per penetration and area, and its adjustment"},
   {"contact.*.penalty.initial", REAL | CHOICE, .values = "auto", .range = "(0, inf)", .unit = "force per length and area", .preset = "auto"},
   {"contact.*.penalty.scale", REAL, .range = "(0, inf)", .preset = "1", .help = "factor on the automatic penalty"},

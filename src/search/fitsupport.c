@@ -32,7 +32,7 @@ static void ReferenceNormal(NeighbourLists lists, const Candidate *c, PetscReal 
 
   for (int a = 0; a < ElementGet(c->facet.type)->nodes; a++)
     for (int d = 0; d < lists->dim; d++) x[a * lists->dim + d] = lists->point_X[c->facet.nodes[a] * lists->dim + d];
-  SearchCandidatePlace(lists->dim, x, 0, &at_rest);
+  CandidatePlace(lists->dim, x, 0, &at_rest);
   for (int d = 0; d < 3; d++) normal[d] = at_rest.normal[d];
 }
 
@@ -329,7 +329,7 @@ PetscErrorCode FitSupportSlave(FitSupport *fit, const Nearest *look, PetscInt q,
  * where it is drawn out. */
 PetscReal SearchFitReach(ContactSearch s)
 {
-  return s->fit->degree ? PetscSqrtReal(SEARCH_FIT_MARGIN) * Ladder[RUNG_WIDER].widen * s->fit->support *
+  return s->fit->fitted ? PetscSqrtReal(SEARCH_FIT_MARGIN) * Ladder[RUNG_WIDER].widen * s->fit->support *
                             s->master->max_extent / s->master->order
                         : 0;
 }

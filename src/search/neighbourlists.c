@@ -1,69 +1,96 @@
 #include "searchimpl.h"
 
-/* Numbers the contact nodes (slave nodes and nodes of the listed faces), makes the star forest to their owners, and
-   rewrites the records' facets in these numbers. */
-PetscErrorCode NeighbourListsCreateNodes(ContactSearch s, SearchField *field, NeighbourLists lists)
+/* Keys of all contact nodes, each once and in ascending order: those of deformable bodies, then those of a rigid tool.
+ */
+typedef struct {
+  PetscInt n, n_rigid;
+  NodeKey *keys, *tool;
+} ContactKeys;
+
+/* Collects the keys of the slave nodes, of the records' nodes and of the nodes that live offsets are made of. */
+static PetscErrorCode CollectKeys(ContactSearch s, const SearchField *field, ContactKeys *all)
 {
-  Mesh            mesh      = s->mesh;
-  const int       dim       = mesh->dim;
   const PetscBool rigid     = (PetscBool)(s->master && s->master->rigid);
   const PetscInt  n_records = field->n_records, n_slaves = s->slaves ? s->slaves->n_nodes : 0;
-  FaceRecord     *records = field->records;
   const FaceMaps  none = {0}, *maps[] = {&field->maps, s->slaves ? &s->slaves->maps : &none};
   PetscInt        n = n_slaves, n_rigid = 0, n_mapped = 0;
-  NodeKey        *keys, *tool;
+
+  PetscFunctionBeginUser;
+  for (int m = 0; m < 2; m++) n_mapped += maps[m]->n ? maps[m]->ptr[maps[m]->n] : 0;
+  PetscCall(
+    PetscMalloc2(n_slaves + n_mapped + FACE_MAX_NODES * n_records, &all->keys, FACE_MAX_NODES * n_records, &all->tool));
+  for (PetscInt i = 0; i < n_slaves; i++) all->keys[i] = s->slaves->nodes[i];
+  for (PetscInt r = 0; r < n_records; r++) {
+    PetscInt *count = rigid ? &n_rigid : &n;
+
+    FaceRecordKeys(&field->records[r], rigid ? &all->tool[n_rigid] : &all->keys[n]);
+    *count += ElementGet(field->records[r].facet.type)->nodes;
+  }
+  for (int m = 0; m < 2; m++)
+    for (PetscInt k = 0; maps[m]->n && k < maps[m]->ptr[maps[m]->n]; k++) all->keys[n++] = maps[m]->entry[k].node;
+  all->n       = NodeKeysUnique(n, all->keys);
+  all->n_rigid = NodeKeysUnique(n_rigid, all->tool);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Makes the star forest from the contact nodes of deformable bodies to their owners, and fetches the dofs over it. */
+static PetscErrorCode LinkNodes(Mesh mesh, const ContactKeys *all, NeighbourLists lists)
+{
   PetscSFNode    *remote;
   const PetscInt *dofs;
   MPI_Datatype    integers;
 
   PetscFunctionBeginUser;
-  for (int m = 0; m < 2; m++) n_mapped += maps[m]->n ? maps[m]->ptr[maps[m]->n] : 0;
-  PetscCall(PetscMalloc2(n_slaves + n_mapped + FACE_MAX_NODES * n_records, &keys, FACE_MAX_NODES * n_records, &tool));
-  for (PetscInt i = 0; i < n_slaves; i++) keys[i] = s->slaves->nodes[i];
-  for (PetscInt r = 0; r < n_records; r++) {
-    PetscInt *count = rigid ? &n_rigid : &n;
-
-    FaceRecordKeys(&records[r], rigid ? &tool[n_rigid] : &keys[n]);
-    *count += ElementGet(records[r].facet.type)->nodes;
-  }
-  for (int m = 0; m < 2; m++)
-    for (PetscInt k = 0; maps[m]->n && k < maps[m]->ptr[maps[m]->n]; k++) keys[n++] = maps[m]->entry[k].node;
-  n                   = NodeKeysUnique(n, keys);
-  n_rigid             = NodeKeysUnique(n_rigid, tool);
-  lists->n_deformable = n;
-  lists->n_nodes      = n + n_rigid;
-  for (PetscInt r = 0; r < n_records; r++)
-    for (int a = 0; a < ElementGet(records[r].facet.type)->nodes; a++)
-      records[r].facet.nodes[a] =
-        rigid ? (int)n + NodeKeysFind(n_rigid, tool, records[r].id[a]) : NodeKeysFind(n, keys, records[r].id[a]);
-
-  PetscCall(PetscMalloc4(lists->n_nodes, &lists->node_id, lists->n_nodes * dim, &lists->X, lists->n_nodes * dim,
-                         &lists->u, lists->n_nodes * dim, &lists->dof));
-  PetscCall(PetscMalloc1(n, &remote));
-  for (PetscInt i = 0; i < n; i++) {
-    lists->node_id[i] = keys[i].id;
-    remote[i]         = (PetscSFNode){keys[i].owner, keys[i].local};
-    for (int d = 0; d < dim; d++) lists->X[i * dim + d] = keys[i].X[d];
-  }
-  for (PetscInt i = 0; i < n_rigid; i++) {
-    lists->node_id[n + i] = tool[i].id;
-    for (int d = 0; d < dim; d++) {
-      lists->X[(n + i) * dim + d]   = s->master->rigid->coords[tool[i].id * dim + d];
-      lists->dof[(n + i) * dim + d] = -1;
-    }
-  }
+  PetscCall(PetscMalloc1(all->n, &remote));
+  for (PetscInt i = 0; i < all->n; i++) remote[i] = (PetscSFNode){all->keys[i].owner, all->keys[i].local};
   PetscCall(PetscSFCreate(mesh->comm, &lists->sf));
-  PetscCall(PetscSFSetGraph(lists->sf, mesh->n_nodes, n, NULL, PETSC_OWN_POINTER, remote, PETSC_OWN_POINTER));
+  PetscCall(PetscSFSetGraph(lists->sf, mesh->n_nodes, all->n, NULL, PETSC_OWN_POINTER, remote, PETSC_OWN_POINTER));
   PetscCall(PetscSFSetUp(lists->sf));
-  PetscCallMPI(MPI_Type_contiguous(dim, MPIU_REAL, &lists->block));
+  PetscCallMPI(MPI_Type_contiguous(mesh->dim, MPIU_REAL, &lists->block));
   PetscCallMPI(MPI_Type_commit(&lists->block));
-  PetscCallMPI(MPI_Type_contiguous(dim, MPIU_INT, &integers));
+  PetscCallMPI(MPI_Type_contiguous(mesh->dim, MPIU_INT, &integers));
   PetscCallMPI(MPI_Type_commit(&integers));
   PetscCall(MeshGetGlobalDofs(mesh, &dofs));
   PetscCall(PetscSFBcastBegin(lists->sf, integers, dofs, lists->dof, MPI_REPLACE));
   PetscCall(PetscSFBcastEnd(lists->sf, integers, dofs, lists->dof, MPI_REPLACE));
   PetscCallMPI(MPI_Type_free(&integers));
-  PetscCall(PetscFree2(keys, tool));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Numbers the contact nodes (slave nodes and nodes of the listed faces), makes the star forest to their owners, and
+   rewrites the records' facets in these numbers. */
+PetscErrorCode NeighbourListsCreateNodes(ContactSearch s, SearchField *field, NeighbourLists lists)
+{
+  const int       dim   = s->mesh->dim;
+  const PetscBool rigid = (PetscBool)(s->master && s->master->rigid);
+  ContactKeys     all;
+
+  PetscFunctionBeginUser;
+  PetscCall(CollectKeys(s, field, &all));
+  lists->n_deformable = all.n;
+  lists->n_nodes      = all.n + all.n_rigid;
+  for (PetscInt r = 0; r < field->n_records; r++) {
+    FaceRecord *record = &field->records[r];
+
+    for (int a = 0; a < ElementGet(record->facet.type)->nodes; a++)
+      record->facet.nodes[a] = rigid ? (int)all.n + NodeKeysFind(all.n_rigid, all.tool, record->id[a])
+                                     : NodeKeysFind(all.n, all.keys, record->id[a]);
+  }
+  PetscCall(PetscMalloc4(lists->n_nodes, &lists->node_id, lists->n_nodes * dim, &lists->X, lists->n_nodes * dim,
+                         &lists->u, lists->n_nodes * dim, &lists->dof));
+  for (PetscInt i = 0; i < all.n; i++) {
+    lists->node_id[i] = all.keys[i].id;
+    for (int d = 0; d < dim; d++) lists->X[i * dim + d] = all.keys[i].X[d];
+  }
+  for (PetscInt i = 0, k = all.n; i < all.n_rigid; i++, k++) {
+    lists->node_id[k] = all.tool[i].id;
+    for (int d = 0; d < dim; d++) {
+      lists->X[k * dim + d]   = s->master->rigid->coords[all.tool[i].id * dim + d];
+      lists->dof[k * dim + d] = -1;
+    }
+  }
+  PetscCall(LinkNodes(s->mesh, &all, lists));
+  PetscCall(PetscFree2(all.keys, all.tool));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -30,7 +30,8 @@ PetscErrorCode OffsetsCreate(Mesh mesh, Scene scene, Loads loads, ContactSurface
   o->once    = (PetscBool)(surface->rigid || scene->kinematics == KINEMATICS_SMALL);
   o->t_now = o->t_before = -1;
   /* the nodal fit's own defaults: the smoothest whose guards hold on jittered meshes */
-  o->fit    = (FitSettings){.degree        = 4,
+  o->fit    = (FitSettings){.fitted        = PETSC_TRUE,
+                            .degree        = 4,
                             .support       = mesh->dim == 2 ? 4.5 : 3.5,
                             .exponent      = mesh->dim == 2 ? 6 : 3,
                             .feature_angle = feature_angle};

@@ -10,10 +10,6 @@
 /* Facets are listed only if they face the slave: cosine between the two outward normals below this. 0: any opposed
  * pair. */
 #define SEARCH_OPPOSED 0.0
-/* Boxes of curved facets are widened by this fraction of the face size: the bulge of a quadratic face beyond its nodes
- * is at most 1/8 of its chord. */
-#define SEARCH_BULGE 0.15
-
 /* SearchCreate - what stands still for the run: surfaces, images, slave points. Collective. slave_size: largest face of
  * the slave (length). */
 PetscErrorCode SearchCreate(Mesh mesh, Scene scene, Loads loads, ContactSurface master, PetscReal slave_size,
@@ -47,44 +43,6 @@ PetscErrorCode SearchDestroy(ContactSearch *s)
   PetscFunctionBeginUser;
   PetscCall(PetscFree(*s));
   PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Centre and unit normal of a candidate from the current positions of its nodes. */
-void SearchCandidatePlace(int dim, const PetscReal *x, PetscReal size, Candidate *c)
-{
-  const Element *e     = ElementGet(c->facet.type);
-  double         xi[2] = {0, 0}, N[FACE_MAX_NODES], dN[FACE_MAX_NODES * 2], t[2][3] = {{0}}, length = 0;
-
-  if (e->corners == 3) xi[0] = xi[1] = 1.0 / 3;
-  ElementShape(e->type, xi, N, dN, NULL);
-  for (int d = 0; d < 3; d++) {
-    c->centre[d] = 0;
-    c->lower[d]  = PETSC_MAX_REAL;
-    c->upper[d]  = PETSC_MIN_REAL;
-  }
-  for (int a = 0; a < e->nodes; a++) {
-    for (int d = 0; d < dim; d++) {
-      c->centre[d] += N[a] * x[a * dim + d];
-      c->lower[d] = PetscMin(c->lower[d], x[a * dim + d]);
-      c->upper[d] = PetscMax(c->upper[d], x[a * dim + d]);
-      for (int k = 0; k < e->dim; k++) t[k][d] += dN[a * e->dim + k] * x[a * dim + d];
-    }
-  }
-  if (dim == 2) {
-    c->normal[0] = t[0][1];
-    c->normal[1] = -t[0][0];
-    c->normal[2] = 0;
-  } else {
-    for (int d = 0; d < 3; d++)
-      c->normal[d] = t[0][(d + 1) % 3] * t[1][(d + 2) % 3] - t[0][(d + 2) % 3] * t[1][(d + 1) % 3];
-  }
-  for (int d = 0; d < 3; d++) length += PetscSqr(c->normal[d]);
-  length = PetscSqrtReal(length);
-  for (int d = 0; d < 3; d++) {
-    if (length > 0) c->normal[d] /= length;
-    c->lower[d] -= e->order == 2 ? SEARCH_BULGE * size : 0;
-    c->upper[d] += e->order == 2 ? SEARCH_BULGE * size : 0;
-  }
 }
 
 /* Positions of a candidate's nodes while they are contact nodes still. */
@@ -131,7 +89,7 @@ static PetscErrorCode MakeCandidates(ContactSearch s, NeighbourLists lists, cons
       *c           = (Candidate){.record = r, .image = m, .facet = SurfaceImageFacet(&record->facet, &s->images[m])};
       c->facet.tag = record->facet.tag * SURFACE_MAX_IMAGES + m;
       ImagePositions(s, lists, c, x);
-      SearchCandidatePlace(dim, x, record->size, c);
+      CandidatePlace(dim, x, record->size, c);
       for (int d = 0; d < 3; d++) {
         own[d]     = c->lower[d];
         own[3 + d] = c->upper[d];
@@ -172,7 +130,7 @@ PetscErrorCode SearchFieldCreate(ContactSearch s, const PetscReal *u, PetscReal 
   PetscFunctionBeginUser;
   *field     = (SearchField){0};
   lists->dim = mesh->dim;
-  if (s->fit->degree) {
+  if (s->fit->fitted) {
     PetscCall(PetscMalloc1(s->master->rigid ? s->master->rigid->n_nodes : mesh->n_nodes, &geometry));
     PetscCall(SurfaceNodeGeometry(s->master, s->loads, u, t, geometry));
   }
@@ -272,17 +230,6 @@ static PetscReal ListCurvature(const Nearest *look, PetscInt n, const int *found
       kappa = PetscMax(kappa, PetscAcosReal(PetscMax(-1, PetscMin(1, cosine))) / PetscSqrtReal(distance));
   }
   return kappa;
-}
-
-PetscErrorCode ListBufferAddPoint(ListBuffer *buffer, PetscInt first, PetscInt point)
-{
-  PetscFunctionBeginUser;
-  if (buffer->position[point] >= first) PetscFunctionReturn(PETSC_SUCCESS);
-  if (buffer->n_points == buffer->points_room)
-    PetscCall(PetscRealloc((buffer->points_room = 2 * buffer->points_room + 1024) * sizeof(PetscInt), &buffer->point));
-  buffer->position[point]           = buffer->n_points;
-  buffer->point[buffer->n_points++] = point;
-  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* Appends the found candidates to the slave point's list, which starts at first; facets' nodes become positions in it.
@@ -405,11 +352,11 @@ PetscErrorCode SearchLists(ContactSearch s, const PetscReal *u, PetscReal t, Pet
   PetscCall(NeighbourListsCreateSlaves(s, lists));
   PetscCall(PetscMalloc1(3 * lists->n_slaves, &normals));
   PetscCall(SlavePointsNormals(s->slaves, u, normals));
-  if (s->fit->degree) PetscCall(FitSupportCreate(s, lists, &field, &fit));
-  if (s->fit->degree && s->fit->global_frame)
+  if (s->fit->fitted) PetscCall(FitSupportCreate(s, lists, &field, &fit));
+  if (s->fit->fitted && s->fit->global_frame)
     PetscCall(SurfaceMeanNormal(s->master, s->loads, s->n_images, s->images, u, t, fit.plane, NULL));
-  PetscCall(NeighbourListsFill(s, lists, normals, &field, s->fit->degree ? &fit : NULL, motion));
-  if (s->fit->degree) PetscCall(FitSupportDestroy(&fit));
+  PetscCall(NeighbourListsFill(s, lists, normals, &field, s->fit->fitted ? &fit : NULL, motion));
+  if (s->fit->fitted) PetscCall(FitSupportDestroy(&fit));
   PetscCall(NeighbourListsUpdate(s, lists, u, t, NULL));
   for (PetscInt q = 0; q < lists->n_slaves; q++) NeighbourListsCentre(lists, q, &lists->centre[2 * q]);
   PetscCall(PetscFree(normals));

@@ -10,9 +10,10 @@
 #include "bodies/loads.h"
 #include "search/slavepoints.h"
 
-/* How a master surface is fitted; degree 0: not at all, its facets serve. */
+/* How a master surface is fitted. */
 typedef struct {
-  int               degree;   /* 0, 2 or 4 */
+  PetscBool         fitted;   /* lists come with fits; PETSC_FALSE: the facets serve and nothing below is asked for */
+  int               degree;   /* 2 or 4 */
   PetscBool         integral; /* through the quadrature points of the faces, weighted by area, instead of the nodes */
   double            support;  /* in spacings of the master's nodes */
   double            exponent; /* of the weight */

@@ -1,8 +1,22 @@
+/* The table of smoothers, and the two that are built in: the facets, and the diffuse fit with the facets behind it. */
 #include <string.h>
 #include "smooth/smoother.h"
 
-/* SmootherEvaluate_Facet - gap and variations against the closest facet of the list. Returns 0 when the list holds
- * none. Not collective. */
+/*@
+  SmootherEvaluate_Facet - finds gap and variations against the closest facet of the list.
+
+  Not collective
+
+  Input Parameters:
++ in   - the list of a slave point; fits are not looked at
+- want - the variation that is wanted
+
+  Output Parameter:
+. out - gap, normal, points that take part, and the variation
+
+  Note:
+  Returns 0 when the list holds no facet. Plain C. Other smoothers call it where they have no surface of their own.
+@*/
 int SmootherEvaluate_Facet(const SmootherInput *in, SmootherWant want, SmootherResult *out)
 {
   const Facet *facet;
@@ -57,8 +71,53 @@ static int SmootherEvaluate_Diffuse(const SmootherInput *in, SmootherWant want, 
   return SmootherEvaluate_Facet(in, want, out);
 }
 
-const Smoother Smoother_Facet   = {FACE_MAX_NODES, 0, SmootherEvaluate_Facet};
-const Smoother Smoother_Diffuse = {FIT_MAX_POINTS, 1, SmootherEvaluate_Diffuse};
+/* Numbers of workspace for the diffuse fit: for its highest degree and the longest list, as one workspace serves all
+ * pairs. */
+static long SmootherWorkspace_Diffuse(int dim)
+{
+  return FitWorkspace(dim, 4, FIT_MAX_POINTS);
+}
 
-const Smoother *const Smoothers[]     = {SMOOTHERS(CHOICE_POINTER)};
-const char *const     SmootherNames[] = {SMOOTHERS(CHOICE_NAME)};
+const Smoother Smoother_Facet   = {.capacity       = FACE_MAX_NODES,
+                                   .dense_capacity = FACE_MAX_NODES,
+                                   .evaluate       = SmootherEvaluate_Facet};
+const Smoother Smoother_Diffuse = {.capacity       = FIT_MAX_POINTS,
+                                   .dense_capacity = FACE_MAX_NODES,
+                                   .fitted         = 1,
+                                   .search_gap     = 1,
+                                   .workspace      = SmootherWorkspace_Diffuse,
+                                   .evaluate       = SmootherEvaluate_Diffuse};
+
+const Smoother *Smoothers[SMOOTHER_MAX + 1]     = {SMOOTHERS(CHOICE_POINTER)};
+const char     *SmootherNames[SMOOTHER_MAX + 1] = {SMOOTHERS(CHOICE_NAME)};
+char            SmootherWords[SMOOTHER_WORDS]   = SMOOTHERS(CHOICE_BAR);
+
+/*@
+  SmootherRegister - adds a smoother to the table, so that scenes can choose it by name.
+
+  Not collective
+
+  Input Parameters:
++ name     - the word of the scene: letters, digits and underscores; it is not copied
+- smoother - what it needs and how it is evaluated; it is not copied
+
+  Note:
+  Returns 1 when the smoother was added. Returns 0 when the name is empty, taken or holds other characters, or when
+  SMOOTHER_MAX or SMOOTHER_WORDS leaves no room. To be called before the scene is read, with the same smoothers in the
+  same order on all ranks. Plain C.
+@*/
+int SmootherRegister(const char *name, const Smoother *smoother)
+{
+  const size_t length = strlen(name), used = strlen(SmootherWords), bar = sizeof " | " - 1;
+  int          n = 0;
+
+  for (; SmootherNames[n]; n++)
+    if (!strcmp(SmootherNames[n], name)) return 0;
+  if (n == SMOOTHER_MAX || used + bar + length + 1 > SMOOTHER_WORDS) return 0;
+  if (!length || strspn(name, "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_") != length) return 0;
+  memcpy(&SmootherWords[used], " | ", bar);
+  memcpy(&SmootherWords[used + bar], name, length + 1);
+  SmootherNames[n] = name;
+  Smoothers[n]     = smoother;
+  return 1;
+}

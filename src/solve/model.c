@@ -279,10 +279,10 @@ PetscErrorCode ModelArchive(Model model, Archive archive)
 static PetscErrorCode ModelContactEffects(Scene scene, char *text, size_t size)
 {
   PetscFunctionBeginUser;
-  for (int kind = 0; kind < SMOOTHER_KINDS; kind++) {
+  for (int kind = 0; SmootherNames[kind]; kind++) {
     PetscBool used = PETSC_FALSE;
 
-    for (int c = 0; c < scene->n_contacts; c++) used = (PetscBool)(used || (int)scene->contacts[c].smoother == kind);
+    for (int c = 0; c < scene->n_contacts; c++) used = (PetscBool)(used || scene->contacts[c].smoother == kind);
     if (!used) continue;
     PetscCall(PetscStrlcat(text, ", ", size));
     PetscCall(PetscStrlcat(text, SmootherNames[kind], size));

@@ -1,25 +1,34 @@
-/* The contact law: from the (weighted) gap of a slave node and its state to the potential per area and its derivatives.
-   Plain C. A new law is one function in law.c and one line in its table. Where a term presses its pressure is -penalty
-   (gap - LawOnsetGap()), as linear steps count on (pressing.h): a law of another shape must be left out there. */
+/* Contact laws: from the gap of a slave node and its state to the potential per area and its derivatives. Plain C.
+
+   A pair has one Law, which the scene chooses by name. A law is a file in this folder that defines a Law and a line in
+   base/choices.h, from which the table Laws[], the names and the scene's key follow.
+
+   Where a term presses, its pressure is -penalty (gap - LawOnsetGap()). Linear steps count on this (activeset.h), so a
+   law of another shape must be left out there. */
 #pragma once
+#include "base/choices.h"
 
 typedef struct {
   double penalty;    /* force per length and area */
-  double offset;     /* g_0, subtracted from the gap */
-  double multiplier; /* pressure at no penetration, 0 without augmentation */
+  double offset;     /* g_0, subtracted from the gap (length) */
+  double multiplier; /* pressure where the gap is at its offset; 0 without augmentation */
 } LawState;
 
 typedef struct {
-  double psi, pressure, stiffness; /* psi, -psi' >= 0 in compression, psi'' */
+  double psi;       /* potential (energy per area) */
+  double pressure;  /* -psi', not negative (force per area) */
+  double stiffness; /* psi'' (force per length and area) */
 } LawValue;
 
 typedef struct {
-  const char *name;
-  int         symmetric; /* has a potential: Cholesky and the energy line search are right */
+  int symmetric; /* has a potential: Cholesky's factor and a line search on the energy are right */
   void (*evaluate)(double gap, const LawState *state, LawValue *value);
 } Law;
 
-extern const Law Laws[]; /* terminated by a NULL name */
-const Law       *LawFind(const char *name);
-double LawOnsetGap(const LawState *); /* gap below which there is pressure: the offset, plus what the multiplier presses
-                                         before the surfaces meet */
+#define LAW_DECLARE(kind, word, object) extern const Law object;
+CONTACT_LAWS(LAW_DECLARE)
+#undef LAW_DECLARE
+extern const Law *const Laws[]; /* by ContactLawKind */
+
+const Law *LawFind(const char *name);
+double     LawOnsetGap(const LawState *);

@@ -85,6 +85,9 @@ typedef struct {
   PetscReal plane[3]; /* normal of the one reference plane of a global frame */
 } FitSupport;
 
+/* candidate.c */
+void           CandidatePlace(int dim, const PetscReal *x, PetscReal size, Candidate *);
+PetscErrorCode ListBufferAddPoint(ListBuffer *, PetscInt first, PetscInt point);
 /* faceexchange.c */
 void           SearchSlaveBox(ContactSearch, PetscReal box[6]);
 void           SearchMasterBox(ContactSearch, const PetscReal *u, PetscReal t, PetscReal box[6]);
@@ -94,7 +97,7 @@ PetscErrorCode SearchExchangeFaces(ContactSearch, const NodeGeometry *, const Pe
                                    PetscReal distance, PetscInt *n, FaceRecord **);
 PetscErrorCode SearchPickRigidFaces(ContactSearch, const NodeGeometry *, PetscReal t, const PetscReal box[6],
                                     PetscReal distance, PetscInt *n, FaceRecord **);
-/* lists.c */
+/* neighbourlists.c */
 PetscErrorCode NeighbourListsCreateNodes(ContactSearch, SearchField *, NeighbourLists);
 PetscErrorCode NeighbourListsCreatePoints(ContactSearch, NeighbourLists, SearchField *);
 PetscErrorCode NeighbourListsCreateSlaves(ContactSearch, NeighbourLists);
@@ -102,7 +105,7 @@ void           NeighbourListsPointGeometry(ContactSearch, NeighbourLists, const 
                                            NodeGeometry *of_points);
 PetscErrorCode NeighbourListsUpdateNodes(ContactSearch, NeighbourLists, const PetscReal *u, PetscReal t);
 void           NeighbourListsCentre(NeighbourLists, PetscInt q, PetscReal centre[2]);
-/* fitting.c */
+/* fitsupport.c */
 PetscReal      SearchFitReach(ContactSearch);
 PetscErrorCode FitSupportCreate(ContactSearch, NeighbourLists, const SearchField *, FitSupport *);
 PetscErrorCode FitSupportDestroy(FitSupport *);
@@ -113,5 +116,3 @@ PetscErrorCode FitSupportClimb(FitSupport *, const FitFoot *, FitProblem *, FitR
 PetscErrorCode SearchFieldCreate(ContactSearch, const PetscReal *u, PetscReal t, const PetscReal box[6],
                                  PetscReal distance, NeighbourLists, SearchField *);
 PetscErrorCode SearchFieldDestroy(SearchField *);
-void           SearchCandidatePlace(int dim, const PetscReal *x, PetscReal size, Candidate *);
-PetscErrorCode ListBufferAddPoint(ListBuffer *, PetscInt first, PetscInt point);

@@ -1,0 +1,250 @@
+/* The tangent of the contact forces, and its product with a vector. */
+#include "contactimpl.h"
+
+/* Pressure whose turning with the surface counts in a tangent: in a linear step that of the accepted state, not what
+   pulls a term to its place. The state before any load is in no equilibrium: its overlaps pull, and their pressure
+   grows with the penalty until the tangent is indefinite. */
+static PetscReal TermTurningPressure(const ContactPair *pair, PetscInt c, PetscReal t, const LawValue *value)
+{
+  const ContactState *accepted = &pair->accepted;
+
+  if (!pair->holding) return value->pressure;
+  if (pair->touching) return 0;
+  return accepted->status[c] == CONTACT_CLOSED
+           ? accepted->multiplier[c] + accepted->penalty[c] * (ContactTermOffset(pair, c, t) - accepted->gap[c])
+           : 0;
+}
+
+/* Stiffness of the terms, 0 where they take no part, and the forces of slave points that turn with the surface. */
+static PetscErrorCode PairStiffness(Contact contact, ContactPair *pair, const PetscReal *u, PetscReal t)
+{
+  PetscFunctionBeginUser;
+  PetscCall(ContactPairProject(contact, pair, u, t));
+  PetscCall(PetscArrayzero(pair->point_force, pair->lists->n_slaves));
+  for (PetscInt c = 0; c < pair->n; c++) {
+    LawValue  value;
+    PetscReal area;
+
+    ContactTermLaw(pair, c, t, &value, NULL, &area);
+    pair->stiffness_before[c] = pair->stiffness[c];
+    pair->stiffness[c]        = value.stiffness;
+    if (value.stiffness > 0) ContactTermPress(pair, c, TermTurningPressure(pair, c, t, &value));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Names the block over the nodes of some slave points, unless there are none. */
+static PetscErrorCode NameBlock(Contact contact, const ContactPair *pair, int p, PetscInt n, const PetscInt *points)
+{
+  PetscFunctionBeginUser;
+  PetscCall(ContactVariationsNodes(pair, n, points));
+  PetscCall(
+    BlockMatrixName(contact->blocks, p, pair->work->count, pair->work->number, (PetscBool)(contact->product != NULL)));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The loaded points of a face, which share most of their nodes */
+static PetscInt FacePoints(const ContactPair *pair, PetscInt face, PetscInt points[FACE_RULE_POINTS])
+{
+  PetscInt n = 0;
+
+  for (PetscInt q = pair->slaves->first[face]; q < pair->slaves->first[face + 1]; q++)
+    if (pair->point_force[q] != 0) points[n++] = q;
+  return n;
+}
+
+/* Names the blocks of a pair: one for each active term, and where terms share their points one for each loaded face. */
+static PetscErrorCode PairName(Contact contact, const ContactPair *pair, int p)
+{
+  PetscInt points[FACE_RULE_POINTS];
+
+  PetscFunctionBeginUser;
+  for (PetscInt c = 0; c < pair->n; c++)
+    if (pair->stiffness[c] > 0)
+      PetscCall(
+        NameBlock(contact, pair, p, pair->term_ptr[c + 1] - pair->term_ptr[c], &pair->term_point[pair->term_ptr[c]]));
+  for (PetscInt face = 0; pair->formulation.surface && face < pair->slaves->n_faces; face++)
+    PetscCall(NameBlock(contact, pair, p, FacePoints(pair, face, points), points));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The block A psi'' Nbar Nbar^T of a term, which stands alone where it shares its points; else with -p M of its one
+ * point. */
+static PetscErrorCode TermBlock(Contact contact, const ContactPair *pair, int p, PetscInt c, PetscInt n,
+                                const PetscInt *nodes, double (*own)[FIT_DERIVATIVES_OWN])
+{
+  const PetscInt q = pair->term_point[pair->term_ptr[c]];
+  PetscReal     *v, area;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc1(n * contact->mesh->dim + BLOCK_PADDING, &v));
+  ContactTermGap(pair, pair->factor, pair->point_gap, c, &area);
+  ContactTermVary(pair, c, PetscSqrtReal(pair->stiffness[c] / area), v);
+  if (pair->formulation.surface)
+    PetscCall(BlockMatrixAddOuter(contact->blocks, p, n, nodes, v));
+  else {
+    PetscCall(ContactSecondBegin(pair, n, 1));
+    FitDerivativesAddOuter(&pair->work->sum, 1, v);
+    if (pair->point_force[q] != 0) PetscCall(ContactSecondAdd(pair, q, -pair->point_force[q], own));
+    ContactSecondEnd(pair);
+    PetscCall(BlockMatrixAdd(contact->blocks, p, n, nodes, pair->work->M));
+  }
+  PetscCall(PetscFree(v));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The block -sum p M of the points of one face: their second variations are summed before they are taken apart. */
+static PetscErrorCode FaceBlock(Contact contact, const ContactPair *pair, int p, PetscInt face, PetscInt n,
+                                const PetscInt *nodes, double (*own)[FIT_DERIVATIVES_OWN])
+{
+  PetscInt       points[FACE_RULE_POINTS];
+  const PetscInt loaded = FacePoints(pair, face, points);
+
+  PetscFunctionBeginUser;
+  PetscCall(ContactSecondBegin(pair, n, loaded));
+  for (PetscInt k = 0; k < loaded; k++)
+    PetscCall(ContactSecondAdd(pair, points[k], -pair->point_force[points[k]], own));
+  ContactSecondEnd(pair);
+  PetscCall(BlockMatrixAdd(contact->blocks, p, n, nodes, pair->work->M));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Blocks of what belongs to the fit points one by one, for all slave points at once: one for the points of a face,
+ * which are made of the same nodes. */
+static PetscErrorCode OwnBlocks(Contact contact, const ContactPair *pair, int p,
+                                const double (*own)[FIT_DERIVATIVES_OWN])
+{
+  NeighbourLists lists = pair->lists;
+
+  PetscFunctionBeginUser;
+  for (PetscInt first = 0, end; first < lists->n_points; first = end) {
+    PetscInt  n, with, *nodes;
+    PetscReal most = 0;
+
+    end = NeighbourListsAlikeEnd(lists, first);
+    for (PetscInt k = first; k < end; k++)
+      for (int e = 0; e < FIT_DERIVATIVES_OWN; e++) most = PetscMax(most, PetscAbsReal(own[k][e]));
+    if (most == 0) continue;
+    PetscCall(ContactPointsToNodes(pair, first, end));
+    nodes = pair->work->number;
+    PetscCall(BlockMatrixSort(contact->blocks, p, pair->work->count, nodes, &with));
+    n = contact->product ? pair->work->count : with;
+    PetscCall(ContactWorkBlockBegin(pair->work, pair->lists->n_nodes, n, nodes));
+    PetscCall(ContactOwnToNodes(pair, n, first, end, own));
+    PetscCall(BlockMatrixAdd(contact->blocks, p, n, nodes, pair->work->M));
+    ContactWorkBlockEnd(pair->work, n, nodes);
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Adds the blocks of a pair as PairName() named them, from block number *block on. */
+static PetscErrorCode PairBlocks(Contact contact, ContactPair *pair, int p, PetscInt *block)
+{
+  const PetscInt  faces = pair->formulation.surface ? pair->slaves->n_faces : 0;
+  const PetscInt *nodes;
+  PetscInt        n;
+  double(*own)[FIT_DERIVATIVES_OWN] = NULL;
+
+  PetscFunctionBeginUser;
+  if (pair->fit.fitted) PetscCall(PetscCalloc1(pair->lists->n_points, &own));
+  for (PetscInt k = 0; k < pair->n + faces; k++) {
+    if (k < pair->n && pair->stiffness[k] <= 0) continue;
+    BlockMatrixGetNodes(contact->blocks, (*block)++, &n, &nodes);
+    if (!n) continue;
+    PetscCall(ContactWorkBlockBegin(pair->work, pair->lists->n_nodes, n, nodes));
+    if (k < pair->n)
+      PetscCall(TermBlock(contact, pair, p, k, n, nodes, own));
+    else
+      PetscCall(FaceBlock(contact, pair, p, k - pair->n, n, nodes, own));
+    ContactWorkBlockEnd(pair->work, n, nodes);
+  }
+  if (pair->fit.fitted) PetscCall(OwnBlocks(contact, pair, p, own));
+  PetscCall(PetscFree(own));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Rows of the contact matrix on this rank: the free dofs that it owns */
+PetscErrorCode ContactMatrixRows(Contact contact, PetscInt *rows)
+{
+  PetscSection section;
+
+  PetscFunctionBeginUser;
+  PetscCall(DMGetGlobalSection(contact->mesh->dm, &section));
+  PetscCall(PetscSectionGetConstrainedStorageSize(section, rows));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Names all blocks and finds their places. */
+static PetscErrorCode PlaceBlocks(Contact contact, PetscBool *changed)
+{
+  const PetscInt **dof;
+  PetscInt        *n, rows;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc2(contact->n_pairs, &dof, contact->n_pairs, &n));
+  for (int p = 0; p < contact->n_pairs; p++) {
+    dof[p] = contact->pairs[p].lists->dof;
+    n[p]   = contact->pairs[p].lists->n_nodes;
+  }
+  PetscCall(BlockMatrixBegin(contact->blocks, contact->n_pairs, n, dof));
+  PetscCall(PetscFree2(dof, n));
+  for (int p = 0; p < contact->n_pairs; p++) PetscCall(PairName(contact, &contact->pairs[p], p));
+  PetscCall(ContactMatrixRows(contact, &rows));
+  PetscCall(BlockMatrixPlace(contact->blocks, rows, changed));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* ContactTangent - the derivative of ContactResidual()'s forces by the free displacements: A (psi'' N N^T - p M) for
+   each closed term, p its pressure.
+
+   Collective. u, t: as of ContactResidual(). *C: over the global free dofs, the contact's own; *changed: its pattern is
+   new. Source: Chamoret et al. 2004, eq. 14. */
+PetscErrorCode ContactTangent(Contact contact, const PetscReal *u, PetscReal t, Mat *C, PetscBool *changed)
+{
+  PetscInt block = 0;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscLogEventBegin(contact->event_tangent, 0, 0, 0, 0));
+  for (int p = 0; p < contact->n_pairs; p++) PetscCall(PairStiffness(contact, &contact->pairs[p], u, t));
+  PetscCall(PlaceBlocks(contact, changed));
+  for (int p = 0; p < contact->n_pairs; p++) {
+    if (contact->product) BlockMatrixMultiply(contact->blocks, contact->product[p].x, contact->product[p].y);
+    PetscCall(PairBlocks(contact, &contact->pairs[p], p, &block));
+  }
+  PetscCall(BlockMatrixEnd(contact->blocks, C));
+  PetscCall(PetscLogEventEnd(contact->event_tangent, 0, 0, 0, 0));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* ContactMultiplyBegin - the next ContactTangent() is multiplied with x, prescribed dofs included.
+
+   Collective. x[n_nodes*dim]: local displacements (length), ghosts included, to which the rigid tools' motion from t to
+   t_next is joined. Lists stay until ContactMultiplyEnd(). */
+PetscErrorCode ContactMultiplyBegin(Contact contact, const PetscReal *x, PetscReal t, PetscReal t_next)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(contact->n_pairs, &contact->product));
+  for (int p = 0; p < contact->n_pairs; p++) {
+    ContactPair    *pair    = &contact->pairs[p];
+    ContactProduct *product = &contact->product[p];
+    const PetscInt  n       = pair->lists->n_nodes * contact->mesh->dim;
+
+    PetscCall(PetscCalloc2(n, &product->x, n, &product->y));
+    PetscCall(ContactPairMove(contact, pair, x, t, t_next, product->x));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* ContactMultiplyEnd - y += C x of the tangent since ContactMultiplyBegin().
+
+   Collective. y[n_nodes*dim]: local forces, complete at owned nodes. */
+PetscErrorCode ContactMultiplyEnd(Contact contact, PetscReal *y)
+{
+  PetscFunctionBeginUser;
+  for (int p = 0; p < contact->n_pairs; p++) {
+    PetscCall(NeighbourListsReduce(contact->pairs[p].lists, contact->product[p].y, y));
+    PetscCall(PetscFree2(contact->product[p].x, contact->product[p].y));
+  }
+  PetscCall(PetscFree(contact->product));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

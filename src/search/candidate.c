@@ -1,0 +1,77 @@
+/* Candidates of a search, and the growing lists that they are written into: below the search and the fits. */
+#include "searchimpl.h"
+
+/* Boxes of curved facets are widened by this fraction of the face size. A quadratic face bulges beyond its nodes by at
+ * most 1/8 of its chord. */
+#define SEARCH_BULGE 0.15
+
+/*@
+  CandidatePlace - computes centre, unit normal and bounding box of a candidate from positions of its nodes.
+
+  Not collective
+
+  Input Parameters:
++ dim  - dimension
+. x    - positions of the facet's nodes (length), dim components each
+- size - face size (length), by which the box of a curved facet is widened
+
+  Input/Output Parameter:
+. c - the candidate, whose facet is set
+@*/
+void CandidatePlace(int dim, const PetscReal *x, PetscReal size, Candidate *c)
+{
+  const Element *e     = ElementGet(c->facet.type);
+  double         xi[2] = {0, 0}, N[FACE_MAX_NODES], dN[FACE_MAX_NODES * 2], t[2][3] = {{0}}, length = 0;
+
+  if (e->corners == 3) xi[0] = xi[1] = 1.0 / 3;
+  ElementShape(e->type, xi, N, dN, NULL);
+  for (int d = 0; d < 3; d++) {
+    c->centre[d] = 0;
+    c->lower[d]  = PETSC_MAX_REAL;
+    c->upper[d]  = PETSC_MIN_REAL;
+  }
+  for (int a = 0; a < e->nodes; a++) {
+    for (int d = 0; d < dim; d++) {
+      c->centre[d] += N[a] * x[a * dim + d];
+      c->lower[d] = PetscMin(c->lower[d], x[a * dim + d]);
+      c->upper[d] = PetscMax(c->upper[d], x[a * dim + d]);
+      for (int k = 0; k < e->dim; k++) t[k][d] += dN[a * e->dim + k] * x[a * dim + d];
+    }
+  }
+  if (dim == 2) {
+    c->normal[0] = t[0][1];
+    c->normal[1] = -t[0][0];
+    c->normal[2] = 0;
+  } else {
+    for (int d = 0; d < 3; d++)
+      c->normal[d] = t[0][(d + 1) % 3] * t[1][(d + 2) % 3] - t[0][(d + 2) % 3] * t[1][(d + 1) % 3];
+  }
+  for (int d = 0; d < 3; d++) length += PetscSqr(c->normal[d]);
+  length = PetscSqrtReal(length);
+  for (int d = 0; d < 3; d++) {
+    if (length > 0) c->normal[d] /= length;
+    c->lower[d] -= e->order == 2 ? SEARCH_BULGE * size : 0;
+    c->upper[d] += e->order == 2 ? SEARCH_BULGE * size : 0;
+  }
+}
+
+/*@
+  ListBufferAddPoint - adds a point to the list of the present slave point, unless it is there.
+
+  Not collective
+
+  Input Parameters:
++ buffer - the growing lists
+. first  - place where the list of the present slave point starts
+- point  - the point; its place in all lists is in the buffer's position[] afterwards
+@*/
+PetscErrorCode ListBufferAddPoint(ListBuffer *buffer, PetscInt first, PetscInt point)
+{
+  PetscFunctionBeginUser;
+  if (buffer->position[point] >= first) PetscFunctionReturn(PETSC_SUCCESS);
+  if (buffer->n_points == buffer->points_room)
+    PetscCall(PetscRealloc((buffer->points_room = 2 * buffer->points_room + 1024) * sizeof(PetscInt), &buffer->point));
+  buffer->position[point]           = buffer->n_points;
+  buffer->point[buffer->n_points++] = point;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
