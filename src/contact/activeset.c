@@ -1,9 +1,11 @@
+/* Which contact terms press at the end of a linear step: Newton's method on the step's own contact problem. */
 #include "contact/activeset.h"
 
-/* Sets tried with the columns at hand. Each follows from the gaps that the one before leads to; what is not settled by
- * then goes in circles. */
+/* Sets that are tried with the columns at hand. Each follows from the gaps that the one before leads to. What has not
+   converged by then repeats itself. */
 #define ACTIVE_SET_MAX_SETS 30
-/* Rounding of a pressure, by itself */
+
+/* Rounding of a pressure, as a part of it. */
 #define ACTIVE_SET_ROUND_OFF 1e-12
 
 struct _n_Pressing {
@@ -16,7 +18,19 @@ struct _n_Pressing {
   PetscReal     *G, *excess;   /* m*n, m */
 };
 
-/* ActiveSetCreate - Not collective. */
+/*@
+  ActiveSetCreate - begins with the terms that the step as it is would press.
+
+  Not collective
+
+  Input Parameters:
++ n      - number of terms
+. terms  - their state where the step begins; copied
+- travel - by how much the step opens the gaps, travel[n] (length); copied
+
+  Output Parameter:
+. out - the active set
+@*/
 PetscErrorCode ActiveSetCreate(PetscInt n, const ActiveSetTerm *terms, const PetscReal *travel, ActiveSet *out)
 {
   ActiveSet p;
@@ -36,7 +50,14 @@ PetscErrorCode ActiveSetCreate(PetscInt n, const ActiveSetTerm *terms, const Pet
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ActiveSetDestroy - Not collective. */
+/*@
+  ActiveSetDestroy - frees an active set.
+
+  Not collective
+
+  Input Parameter:
+. pressing - the active set; set to NULL
+@*/
 PetscErrorCode ActiveSetDestroy(ActiveSet *pressing)
 {
   ActiveSet p = *pressing;
@@ -51,7 +72,17 @@ PetscErrorCode ActiveSetDestroy(ActiveSet *pressing)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ActiveSetAddColumns - Not collective. */
+/*@
+  ActiveSetAddColumns - adds the columns of some terms.
+
+  Not collective
+
+  Input Parameters:
++ p     - the active set
+. m     - number of terms
+. which - their numbers, which[m]
+- G     - G[m][n]: by how much an excess of 1 of a term closes all gaps
+@*/
 PetscErrorCode ActiveSetAddColumns(ActiveSet p, PetscInt m, const PetscInt *which, const PetscReal *G)
 {
   PetscFunctionBeginUser;
@@ -67,8 +98,8 @@ PetscErrorCode ActiveSetAddColumns(ActiveSet p, PetscInt m, const PetscInt *whic
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The pressure of residual and tangent at a travel, less the law's, is start + rate travel; both vanish where these
- * know the term as it is. */
+/* The pressure of residual and tangent at a travel, less the law's, is start + rate travel. Both vanish where
+   residual and tangent have the term as the law has it. */
 static void Excess(const ActiveSetTerm *term, PetscBool pressed, PetscReal *start, PetscReal *rate)
 {
   *start = term->pressure + (pressed ? term->penalty * term->opening : 0);
@@ -76,7 +107,7 @@ static void Excess(const ActiveSetTerm *term, PetscBool pressed, PetscReal *star
   if (PetscAbsReal(*start) <= ACTIVE_SET_ROUND_OFF * PetscAbsReal(term->pressure)) *start = 0;
 }
 
-/* Terms of the set at hand that need a column and have none */
+/* Terms of the set at hand that need a column and have none. */
 static PetscInt Missing(ActiveSet p, PetscInt *which)
 {
   PetscInt m = 0;
@@ -90,7 +121,7 @@ static PetscInt Missing(ActiveSet p, PetscInt *which)
   return m;
 }
 
-/* The excess of the set at hand: e - rate (travel - G e) = start. regular: it can be had. */
+/* Solves for the excess of the set at hand: e - rate (travel - G e) = start. regular: the matrix is not singular. */
 static PetscErrorCode Balance(ActiveSet p, PetscBool *regular)
 {
   const PetscInt m = p->m;
@@ -115,7 +146,7 @@ static PetscErrorCode Balance(ActiveSet p, PetscBool *regular)
   }
   PetscCall(VecRestoreArray(right, &b));
   PetscCall(MatDenseRestoreArray(matrix, &a));
-  PetscCall(PetscPushErrorHandler(PetscReturnErrorHandler, NULL)); /* a pivot of exactly zero is an error to PETSc */
+  PetscCall(PetscPushErrorHandler(PetscReturnErrorHandler, NULL)); /* to PETSc a pivot of exactly zero is an error */
   code = MatLUFactor(matrix, NULL, NULL, NULL);
   PetscCall(PetscPopErrorHandler());
   *regular = code ? PETSC_FALSE : PETSC_TRUE;
@@ -134,7 +165,7 @@ static PetscErrorCode Balance(ActiveSet p, PetscBool *regular)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The set that the excess at hand leads to; is it another one? */
+/* Finds the set that the excess at hand leads to, and says whether it is another one. */
 static PetscBool Follow(ActiveSet p)
 {
   PetscBool changed = PETSC_FALSE;
@@ -151,12 +182,24 @@ static PetscBool Follow(ActiveSet p)
   return changed;
 }
 
-/* ActiveSetSolve - Not collective. The linear step's contact problem by Newton's method, which here is that of its
-   active sets.
+/*@
+  ActiveSetSolve - goes on with the contact problem of the step as far as the columns at hand allow.
 
-   Source: Josephy, Newton's method for generalized equations, 1979 (the problem linearised but for its contact
-   conditions); Hintermueller, Ito, Kunisch, The primal-dual active set strategy as a semismooth Newton method, SIAM J.
-   Optim. 13 (2003) 865-888. */
+  Not collective
+
+  Input Parameter:
+. p - the active set
+
+  Output Parameters:
++ m         - number of terms whose columns are missing; 0: it ended
+. which     - their numbers; room for n
+- converged - where it ended: with a set of terms that is right
+
+  Note:
+  Newton's method is here that of active sets. Sources: Josephy, Newton's method for generalized equations, 1979 (the
+  problem linearised except for its contact conditions); Hintermueller, Ito, Kunisch, The primal-dual active set
+  strategy as a semismooth Newton method, SIAM J. Optim. 13 (2003) 865-888.
+@*/
 PetscErrorCode ActiveSetSolve(ActiveSet p, PetscInt *m, PetscInt *which, PetscBool *converged)
 {
   PetscBool regular = PETSC_TRUE, changed = PETSC_TRUE;
@@ -173,7 +216,19 @@ PetscErrorCode ActiveSetSolve(ActiveSet p, PetscInt *m, PetscInt *which, PetscBo
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ActiveSetGet - Not collective. */
+/*@
+  ActiveSetGet - gets the result.
+
+  Not collective
+
+  Input Parameter:
+. p - the active set
+
+  Output Parameters:
++ excess  - for each column its term's excess: the pressure in residual and tangent, less the law's; belongs to the
+            object
+- pressed - which terms press at the end, pressed[n]; belongs to the object
+@*/
 void ActiveSetGet(ActiveSet p, const PetscReal **excess, const PetscBool **pressed)
 {
   *excess  = p->excess;

@@ -1,10 +1,12 @@
+/* Anderson mixing: a fixed-point iteration x <- G(x) that makes use of its last results. */
 #include "anderson.h"
 
-/* Differences of results that are kept. On a cylinder pressed on a block, whose contact set changes on the way, 3 need
-   33 iterations where 5 need 40 and more than 5 do not always end. */
+/* Differences of results that are kept. For a cylinder pressed on a block, whose contact set changes during the
+   iteration, 3 need 33 iterations, 5 need 40, and more than 5 do not always converge. */
 #define ANDERSON_DEPTH 3
-/* Of a difference that the others nearly combine to, the least part of its square that counts as its own: round-off
- * beyond. */
+
+/* Least part of its square that a difference keeps for itself where the others nearly combine to it. The rest is
+   round-off. */
 #define ANDERSON_RIDGE 1e-10
 
 struct _n_Mixing {
@@ -15,7 +17,19 @@ struct _n_Mixing {
   PetscReal       *dg[ANDERSON_DEPTH], *df[ANDERSON_DEPTH]; /* their differences, newest over oldest */
 };
 
-/* AndersonCreate - Collective. n: entries of this rank; weight[n]: of inner products, above 0. */
+/*@
+  AndersonCreate - makes a mixing of vectors that are spread over ranks.
+
+  Collective
+
+  Input Parameters:
++ comm   - the ranks
+. n      - entries of this rank
+- weight - weight[n] of the entries in inner products, above 0; borrowed
+
+  Output Parameter:
+. mixing - the mixing
+@*/
 PetscErrorCode AndersonCreate(MPI_Comm comm, PetscInt n, const PetscReal *weight, Anderson *mixing)
 {
   Anderson m;
@@ -31,7 +45,14 @@ PetscErrorCode AndersonCreate(MPI_Comm comm, PetscInt n, const PetscReal *weight
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* AndersonDestroy - Collective. */
+/*@
+  AndersonDestroy - frees a mixing.
+
+  Collective
+
+  Input Parameter:
+. mixing - the mixing; set to NULL
+@*/
 PetscErrorCode AndersonDestroy(Anderson *mixing)
 {
   PetscFunctionBeginUser;
@@ -42,14 +63,21 @@ PetscErrorCode AndersonDestroy(Anderson *mixing)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* AndersonStart - Not collective. The next result stands alone. */
+/*@
+  AndersonStart - begins another iteration, so that the next result stands alone.
+
+  Not collective
+
+  Input Parameter:
+. m - the mixing
+@*/
 void AndersonStart(Anderson m)
 {
   m->results = 0;
 }
 
-/* A gamma = b by Cholesky's method, in place of b; A[n][n] is a Gram matrix, symmetric and never quite singular with
- * the ridge. */
+/* Solves A gamma = b by Cholesky's method, in place of b. A[n][n] is a Gram matrix: symmetric and, with the ridge,
+   never quite singular. */
 static void SolveGram(int n, PetscReal A[][ANDERSON_DEPTH], PetscReal b[])
 {
   for (int k = 0; k < n; k++) {
@@ -70,11 +98,23 @@ static void SolveGram(int n, PetscReal A[][ANDERSON_DEPTH], PetscReal b[])
   }
 }
 
-/* AndersonNext - what to put in next, of all combinations of the last results that whose residuals cancel best; after a
-   start the result itself.
+/*@
+  AndersonNext - computes what to put in next: of all combinations of the last results the one whose residuals cancel
+  best.
 
-   Collective. x[n]: what was put in; g[n]: what came out, replaced. Source: Walker and Ni 2011, SIAM J. Numer. Anal.
-   49, 1715-1735, eq. 1.1. */
+  Collective
+
+  Input Parameters:
++ m - the mixing
+- x - what was put in, x[n]
+
+  Input/Output Parameter:
+. g - what came out, G(x), g[n]; replaced by what is to be put in next
+
+  Note:
+  After AndersonStart() it is the result itself. Source: Walker and Ni (2011), SIAM J. Numer. Anal. 49, 1715-1735, eq.
+  1.1.
+@*/
 PetscErrorCode AndersonNext(Anderson m, const PetscReal *x, PetscReal *g)
 {
   const int depth                                   = (int)PetscMin(m->results, ANDERSON_DEPTH),

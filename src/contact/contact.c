@@ -1,7 +1,8 @@
+/* The contact object: all pairs of a scene, their accepted state, and what a checkpoint keeps of them. */
 #include "contactimpl.h"
 #include "base/refusal.h"
 
-/* Two pairs of the same surfaces would press twice. */
+/* Refuses two pairs of the same two surfaces, because their forces would add up. */
 static PetscErrorCode RefuseRepeatedPairs(Mesh mesh, Scene scene)
 {
   PetscFunctionBeginUser;
@@ -22,10 +23,26 @@ static PetscErrorCode RefuseRepeatedPairs(Mesh mesh, Scene scene)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ContactCreate - all pairs of the scene, without lists yet.
+/*@
+  ContactCreate - creates all pairs of the scene, without lists.
 
-   Collective. Refuses what the mesh shows to be wrong: missing or empty surfaces, a rigid slave, planes of symmetry
-   that are none. */
+  Collective
+
+  Input Parameters:
++ mesh       - the mesh, borrowed
+. scene      - the scene, borrowed
+. elasticity - the bodies, for the automatic penalty
+- loads      - prescribed motions of bodies and tools, borrowed
+
+  Output Parameter:
+. out - the contact
+
+  Notes:
+  Refuses what the mesh shows to be wrong: surfaces that are missing or empty, a rigid slave, two pairs of the same
+  surfaces, planes of symmetry that are none.
+
+  ContactGather() makes the first lists.
+@*/
 PetscErrorCode ContactCreate(Mesh mesh, Scene scene, Elasticity elasticity, Loads loads, Contact *out)
 {
   Contact         contact;
@@ -63,7 +80,14 @@ PetscErrorCode ContactCreate(Mesh mesh, Scene scene, Elasticity elasticity, Load
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ContactDestroy - Collective. */
+/*@
+  ContactDestroy - frees the contact and its tangent.
+
+  Collective
+
+  Input Parameter:
+. contact - the contact; set to NULL
+@*/
 PetscErrorCode ContactDestroy(Contact *contact)
 {
   Contact c = *contact;
@@ -80,7 +104,14 @@ PetscErrorCode ContactDestroy(Contact *contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ContactAccept - the present state becomes the one that ContactRestore() returns to. Not collective. */
+/*@
+  ContactAccept - takes the present state as the accepted one, to which ContactRestore() returns.
+
+  Not collective
+
+  Input Parameter:
+. contact - the contact, after ContactResidual() with forces at the solution
+@*/
 PetscErrorCode ContactAccept(Contact contact)
 {
   PetscFunctionBeginUser;
@@ -90,8 +121,17 @@ PetscErrorCode ContactAccept(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ContactRestore - takes the state back to the last ContactAccept(); the lists are not part of it: ContactGather(). Not
- * collective. */
+/*@
+  ContactRestore - takes the present state back to the last ContactAccept().
+
+  Not collective
+
+  Input Parameter:
+. contact - the contact
+
+  Note:
+  Lists are not part of the state: ContactGather() makes them.
+@*/
 PetscErrorCode ContactRestore(Contact contact)
 {
   PetscFunctionBeginUser;
@@ -104,8 +144,17 @@ PetscErrorCode ContactRestore(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ContactTangentRestore - the tangent's pattern is again that of the last ContactAccept(): it orders the solver's sums.
- * Collective. */
+/*@
+  ContactTangentRestore - takes the pattern of the tangent back to that of the last ContactAccept().
+
+  Collective
+
+  Input Parameter:
+. contact - the contact
+
+  Note:
+  The pattern sets the order in which a solver sums, so results after a cutback are those of a run without it.
+@*/
 PetscErrorCode ContactTangentRestore(Contact contact)
 {
   PetscInt rows;
@@ -116,6 +165,7 @@ PetscErrorCode ContactTangentRestore(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Saves or loads the accepted state of a pair by node, and the offsets of its sides by face. */
 static PetscErrorCode PairArchive(ContactPair *pair, int p, Archive archive)
 {
   PetscInt *id;
@@ -137,11 +187,22 @@ static PetscErrorCode PairArchive(ContactPair *pair, int p, Archive archive)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ContactArchive - saves or takes over the accepted state by node and face, with what else the next steps depend on to
-   the last bit: offsets to extrapolate from, lists that stand ready, the kept pattern of the matrix.
+/*@
+  ContactArchive - saves or loads the accepted state, with all else that the next steps depend on to the last bit.
 
-   Collective. u[n_nodes*dim], t: the accepted state of the model. Loaded, it is the present state too;
-   ContactResidual() gives its forces. */
+  Collective
+
+  Input Parameters:
++ contact - the contact
+. archive - says whether it saves or loads
+. u       - local displacements of the accepted state, u[n_nodes*dim] (length), ghosts included
+- t       - its load parameter
+
+  Note:
+  Besides the state these are the offsets to extrapolate from, the lists that are ready for the next step, and the
+  kept pattern of the matrix. After loading, the accepted state is the present one too, and ContactResidual() gives
+  its forces.
+@*/
 PetscErrorCode ContactArchive(Contact contact, Archive archive, const PetscReal *u, PetscReal t)
 {
   PetscInt rows;

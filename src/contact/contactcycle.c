@@ -1,13 +1,17 @@
+/* Finds out whether the set of nodes in contact repeats itself from iterate to iterate. */
 #include "contact/contactcycle.h"
 #include "contactimpl.h"
 #include "base/gathertable.h"
 #include <stdint.h>
 
-/* Longest period looked for; those seen have 2 or 3. Two of the longest fit into the default number of iterations. */
+/* Longest period that is looked for. Those seen in runs have 2 or 3. Two of the longest fit into the default number
+   of iterations. */
 #define CYCLE_LONGEST 8
-/* A residual that falls below this part of what it was a period before is progress. */
+
+/* A residual below this part of what it was a period before is progress, and no cycle. */
 #define CYCLE_PROGRESS 0.5
-/* Nodes named in a message. */
+
+/* Nodes that a message names at most. */
 #define CYCLE_NAMED 8
 
 enum { CYCLE_ITERATES = 2 * CYCLE_LONGEST + 1 };
@@ -21,7 +25,17 @@ struct _n_ContactCycle {
   unsigned char *closed; /* [CYCLE_ITERATES][n] */
 };
 
-/* ContactCycleCreate - Not collective. The contact is borrowed. */
+/*@
+  ContactCycleCreate - makes room for the sets of a solve.
+
+  Not collective
+
+  Input Parameter:
+. contact - the contact, borrowed
+
+  Output Parameter:
+. out - the watch for cycles
+@*/
 PetscErrorCode ContactCycleCreate(Contact contact, ContactCycle *out)
 {
   ContactCycle cycle;
@@ -35,7 +49,14 @@ PetscErrorCode ContactCycleCreate(Contact contact, ContactCycle *out)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ContactCycleDestroy - Not collective. */
+/*@
+  ContactCycleDestroy - frees the watch.
+
+  Not collective
+
+  Input Parameter:
+. cycle - the watch; set to NULL
+@*/
 PetscErrorCode ContactCycleDestroy(ContactCycle *cycle)
 {
   PetscFunctionBeginUser;
@@ -45,7 +66,14 @@ PetscErrorCode ContactCycleDestroy(ContactCycle *cycle)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ContactCycleStart - forgets the iterates so far. Not collective. */
+/*@
+  ContactCycleStart - begins a solve and forgets the iterates before.
+
+  Not collective
+
+  Input Parameter:
+. cycle - the watch
+@*/
 PetscErrorCode ContactCycleStart(ContactCycle cycle)
 {
   PetscFunctionBeginUser;
@@ -53,8 +81,8 @@ PetscErrorCode ContactCycleStart(ContactCycle cycle)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Spreads a node's number over 64 bits, so that sums of them tell sets apart (the finaliser of Steele, Lea and Flood's
- * SplitMix, 2014). */
+/* Spreads a node's number over 64 bits, so that sums of such numbers tell sets apart (the finaliser of Steele, Lea
+   and Flood's SplitMix, 2014). */
 static uint64_t HashFinish(uint64_t x)
 {
   x += 0x9e3779b97f4a7c15;
@@ -63,7 +91,7 @@ static uint64_t HashFinish(uint64_t x)
   return x ^ (x >> 31);
 }
 
-/* The present set: its number, the same on all ranks, and this rank's part of it. */
+/* Takes the present set: its number, which is the same on all ranks, and this rank's part of it. */
 static PetscErrorCode TakeSet(ContactCycle cycle, PetscInt slot)
 {
   const Contact  contact = cycle->contact;
@@ -85,13 +113,13 @@ static PetscErrorCode TakeSet(ContactCycle cycle, PetscInt slot)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Place of the iterate `back` looks ago */
+/* Place of the iterate `back` iterates ago. */
 static PetscInt Slot(ContactCycle cycle, PetscInt back)
 {
   return (cycle->looks - 1 - back) % CYCLE_ITERATES;
 }
 
-/* Have the last `period` sets come in the same order before, and has the residual stayed? */
+/* Says whether the last `period` sets came in the same order before, without progress of the residual. */
 static PetscBool Repeats(ContactCycle cycle, PetscInt period)
 {
   for (PetscInt i = 0; i < period; i++)
@@ -99,11 +127,19 @@ static PetscBool Repeats(ContactCycle cycle, PetscInt period)
   return (PetscBool)(cycle->residual[Slot(cycle, 0)] > CYCLE_PROGRESS * cycle->residual[Slot(cycle, period)]);
 }
 
-/* ContactCycleLook - whether the sets in contact of the last iterates repeat those before.
+/*@
+  ContactCycleLook - takes an iterate, and says whether the sets in contact of the last iterates repeat those before.
 
-   Collective; once for each iterate, after its ContactResidual() with forces. residual: a norm of it, the same on all
-   ranks. *period: of the cycle that ends here, at least 2, or 0; *steady: how many iterates before this one had the
-   same set. */
+  Collective
+
+  Input Parameters:
++ cycle    - the watch, once for each iterate, after its ContactResidual() with forces
+- residual - a norm of the iterate's residual, the same on all ranks
+
+  Output Parameters:
++ period - of the cycle that ends here, at least 2; 0: there is none
+- steady - iterates before this one that had the same set
+@*/
 PetscErrorCode ContactCycleLook(ContactCycle cycle, PetscReal residual, PetscInt *period, PetscInt *steady)
 {
   PetscInt known;
@@ -121,10 +157,20 @@ PetscErrorCode ContactCycleLook(ContactCycle cycle, PetscReal residual, PetscInt
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ContactCycleLocate - "the contact set repeats every 3 iterations: 2 nodes come and go, of the pair 'crown' node 17,
-   node 21", into text[size].
+/*@
+  ContactCycleLocate - writes the nodes (gmsh's tags) that come and go in a cycle, such as "the contact set repeats
+  every 3 iterations, 2 nodes come and go: node 17 of 'crown', node 21 of 'crown'".
 
-   Collective; after ContactCycleLook() has found that period. */
+  Collective
+
+  Input Parameters:
++ cycle  - the watch, after ContactCycleLook() has found the period
+. period - of the cycle
+- size   - characters that the text holds
+
+  Output Parameter:
+. text - the message
+@*/
 PetscErrorCode ContactCycleLocate(ContactCycle cycle, PetscInt period, char *text, size_t size)
 {
   const Contact contact = cycle->contact;

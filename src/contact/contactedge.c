@@ -1,14 +1,17 @@
+/* The end of contact along a line of nodes, from their pressures. */
 #include "contact/contactedge.h"
 #include <math.h>
 
-/* Nodes from the one that moments are taken about to the last loaded one, and between the two they are taken about:
-   nearer to the edge the answer jumps as nodes come into contact, farther from it the pressure is no root. */
+/* Nodes from the one that moments are taken about to the last loaded one, and nodes between the two that they are
+   taken about. Nearer to the edge the answer jumps as nodes come into contact; farther from it the pressure is no
+   root. */
 enum { NODES_BEYOND = 2, NODES_APART = 2 };
-/* A root p = c sqrt(d - y) from y = 0 to d has the moment 4/15 c d^(5/2) about y = 0. */
+
+/* A root p = c sqrt(d - y) from y = 0 to d has the moment 4/15 c d^(5/2) about y = 0: the power of d. */
 #define POWER_OF_MOMENT 2.5
 
-/* Nodes in a row inwards from the node `last` over which the pressure rises, in the outer half of the zone, or all of
-   it where it ends with the line: there may be a plane of symmetry */
+/* Counts nodes in a row, inwards from the node `last`, over which the pressure rises. It looks at the outer half of
+   the zone, or at all of it where the zone ends with the line, as a plane of symmetry may be there. */
 static int RisingNodes(int n, const double *p, int last, int outward)
 {
   int loaded = 0, rising = 0, most, node = last - outward;
@@ -21,8 +24,8 @@ static int RisingNodes(int n, const double *p, int last, int outward)
   return rising < most ? rising : most;
 }
 
-/* Moment about node k of the forces from there to the node `last`: pressures times half the lengths to the neighbours
- */
+/* Moment about node k of the forces from there to the node `last`; a force is a pressure times half the lengths to
+   the neighbours. */
 static double MomentAbout(int k, const double *x, const double *p, int last, int outward)
 {
   double moment = 0.0;
@@ -32,8 +35,8 @@ static double MomentAbout(int k, const double *x, const double *p, int last, int
   return moment;
 }
 
-/* Distance from the node `last` to the zero of the root through its pressure and its inner neighbour's; infinite where
- * none falls so */
+/* Distance from the node `last` to the zero of the root through its pressure and its inner neighbour's; infinite
+   where the pressure does not fall. */
 static double RootOfPressures(const double *x, const double *p, int last, int inner)
 {
   const double fall = p[inner] * p[inner] - p[last] * p[last];
@@ -41,8 +44,8 @@ static double RootOfPressures(const double *x, const double *p, int last, int in
   return fall > 0.0 ? p[last] * p[last] / fall * fabs(x[last] - x[inner]) : INFINITY;
 }
 
-/* Distance from the node `last` to the end of the root with the moments of the nodal forces about two nodes farther in
- */
+/* Distance from the node `last` to the end of the root whose moments about two nodes farther in are those of the
+   nodal forces. */
 static double RootOfMoments(const double *x, const double *p, int last, int near, int far, int outward)
 {
   const double ratio =
@@ -51,20 +54,37 @@ static double RootOfMoments(const double *x, const double *p, int last, int near
   return fabs(x[near] - x[far]) / (ratio - 1) - fabs(x[last] - x[near]);
 }
 
-/*
-  ContactEdge - Coordinate at which contact ends along a line of nodes. Plain C, not collective.
+/*@
+  ContactEdge - finds the coordinate at which contact ends along a line of nodes.
 
-  Input: what loaded nodes say; n nodes, x[n] ascending coordinates (length), p[n] nodal pressures (p > 0: loaded),
-  max_side (1: the end at large x, 0: at small x). Output: spacing (length) between the last loaded and the next open
-  node: the resolution of the answer. Source: Hertz's pressure is p_0 sqrt(1 - (x/a)^2) (Johnson, "Contact Mechanics",
-  ch. 4), near its edge the root of the distance d. Forces at nodes keep the moment that the pressure beyond a node has
-  about it, where functions linear between nodes carry it; a root's goes as d^(5/2): two of them give d.
-*/
+  Not collective
+
+  Input Parameters:
++ reach    - what a loaded node says of the contact around it
+. n        - number of nodes
+. x        - ascending coordinates, x[n] (length)
+. p        - nodal pressures, p[n], normal force over area; a node is loaded where p > 0
+- max_side - 1: the end at large x; 0: at small x
+
+  Output Parameter:
+. spacing - distance of the last loaded and the open node (length), which is the resolution of the answer; 0 at the
+            line's end
+
+  Notes:
+  Hertz's pressure is p_0 sqrt(1 - (x/a)^2) (Johnson, "Contact Mechanics", ch. 4), which near its edge is the root of
+  the distance d. Forces at nodes keep the moment that the pressure beyond a node has about it, where functions that
+  are linear between nodes carry it. The moment of a root is proportional to d^(5/2), so two moments give d. Where
+  only one node falls, as in a shell whose highest pressure is at the edge, the root through two pressures serves. The
+  next open node bounds the answer.
+
+  The answer is half way to the open node where only one node is loaded, the last node of the line where that is
+  loaded, and NaN where no node is. Plain C.
+@*/
 double ContactEdge(EdgeReach reach, int n, const double *x, const double *p, int max_side, double *spacing)
 {
   const int outward = max_side ? 1 : -1, end = max_side ? n - 1 : 0;
   int       last = end, rising, near, far;
-  double    beyond, least; /* of the last loaded node */
+  double    beyond, least; /* distances past the last loaded node */
 
   *spacing = NAN;
   while (last >= 0 && last < n && !(p[last] > 0.0)) last -= outward;

@@ -1,8 +1,12 @@
+/* Contact energy along a line of displacements, and slave points whose normal turns at once. */
 #include "contact/contactline.h"
 #include "contactimpl.h"
 
+/* Places on the line at which gaps are known: a parabola needs three. */
 #define PLACES 3
-/* Over a trifle of a step a normal that turns by more than this (a sine) goes over an edge between two facets. */
+
+/* A normal that turns by more than this (a sine) over a very small part of a step goes over an edge between two
+   facets. */
 #define TURN_AT_ONCE 1e-4
 
 struct _n_ContactLine {
@@ -12,7 +16,17 @@ struct _n_ContactLine {
   PetscReal *area;        /* at the first place */
 };
 
-/* ContactLineCreate - Not collective. */
+/*@
+  ContactLineCreate - makes room for the gaps along a line.
+
+  Not collective
+
+  Input Parameter:
+. contact - the contact, borrowed
+
+  Output Parameter:
+. out - the line
+@*/
 PetscErrorCode ContactLineCreate(Contact contact, ContactLine *out)
 {
   ContactLine line;
@@ -27,7 +41,14 @@ PetscErrorCode ContactLineCreate(Contact contact, ContactLine *out)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ContactLineDestroy - Not collective. */
+/*@
+  ContactLineDestroy - frees a line.
+
+  Not collective
+
+  Input Parameter:
+. line - the line; set to NULL
+@*/
 PetscErrorCode ContactLineDestroy(ContactLine *line)
 {
   PetscFunctionBeginUser;
@@ -37,9 +58,18 @@ PetscErrorCode ContactLineDestroy(ContactLine *line)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ContactLineSet - gaps at one of the three places of a line.
+/*@
+  ContactLineSet - finds the gaps at one of the three places of a line.
 
-   Collective. u[n_nodes*dim]: local displacements (length) at `lambda` on the line. */
+  Collective
+
+  Input Parameters:
++ line   - the line
+. place  - 0, 1 or 2
+. lambda - position of the place on the line
+. u      - local displacements there, u[n_nodes*dim] (length), ghosts included
+- t      - load parameter
+@*/
 PetscErrorCode ContactLineSet(ContactLine line, int place, PetscReal lambda, const PetscReal *u, PetscReal t)
 {
   Contact  contact = line->contact;
@@ -72,10 +102,19 @@ static PetscReal LineGap(ContactLine line, PetscInt n, PetscReal lambda, PetscRe
   return a + (lambda - l[0]) * (first + second * (lambda - l[1]));
 }
 
-/* ContactLineSlope - derivative of the contact energy of this rank's terms with lambda (energy), and the second one
-   (may be NULL).
+/*@
+  ContactLineSlope - computes the derivative of this rank's contact energy with respect to lambda, and the second one.
 
-   Not collective. After ContactLineSet() of all places, which must differ. */
+  Not collective
+
+  Input Parameters:
++ line   - the line, with ContactLineSet() of all places, which must differ
+- lambda - position on the line
+
+  Output Parameters:
++ slope     - first derivative (energy)
+- stiffness - second derivative; may be NULL
+@*/
 void ContactLineSlope(ContactLine line, PetscReal lambda, PetscReal *slope, PetscReal *stiffness)
 {
   PetscInt n = 0;
@@ -99,7 +138,7 @@ void ContactLineSlope(ContactLine line, PetscReal lambda, PetscReal *slope, Pets
   }
 }
 
-/* The point of a pair whose normal turns most from u to u_ahead, of those that its term's pressure acts on. */
+/* Finds the point of a pair whose normal turns most from u to u_ahead, among those that its term's pressure acts on. */
 static PetscErrorCode PairTurn(Contact contact, ContactPair *pair, const PetscReal *u, const PetscReal *u_ahead,
                                PetscReal t, PetscReal *most, PetscInt *node)
 {
@@ -126,10 +165,22 @@ static PetscErrorCode PairTurn(Contact contact, ContactPair *pair, const PetscRe
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ContactLocateTurn - a slave node in contact with a point that goes over an edge between facets from u to u_ahead.
+/*@
+  ContactLocateTurn - looks for a slave node in contact with a point that goes over an edge between facets from u to
+  u_ahead.
 
-   Collective. u, u_ahead[n_nodes*dim]: local displacements (length) that differ by a trifle; after ContactResidual()
-   with forces. place: where *found, the same on all ranks. */
+  Collective
+
+  Input Parameters:
++ contact - the contact, after ContactResidual() with forces
+. u       - local displacements, u[n_nodes*dim] (length), ghosts included
+. u_ahead - displacements that differ from u by very little
+- t       - load parameter
+
+  Output Parameters:
++ found - the same on all ranks
+- place - the node, where found is PETSC_TRUE
+@*/
 PetscErrorCode ContactLocateTurn(Contact contact, const PetscReal *u, const PetscReal *u_ahead, PetscReal t,
                                  PetscBool *found, ContactPlace *place)
 {

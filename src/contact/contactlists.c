@@ -1,25 +1,37 @@
+/* Lists of a pair's neighbours over a step: when they are made, whether a fresh search agrees with them, and what
+   happens where it does not. */
 #include "contactimpl.h"
 #include "base/timing.h"
 
-/* A gap from fresh lists agrees with the solve's when it differs by less than this fraction of itself, or of the face
-   size (round-off of a closest-point projection). */
-#define CONTACT_GAP_AGREES    1e-6
+/* A gap from fresh lists agrees with the solve's where the two differ by less than this fraction of the gap, plus the
+   next figure. */
+#define CONTACT_GAP_AGREES 1e-6
+
+/* Part of the face size by which two gaps may differ besides: the round-off of a closest-point projection. */
 #define CONTACT_GAP_ROUND_OFF 1e-11
-/* A fit's frame may turn by 5 degrees before the step is solved again with a new one. */
+
+/* A fit's frame may turn by 5 degrees before the step is solved again with a new one: cosine of that angle. */
 #define CONTACT_FRAME_COSINE 0.9962
-/* An open node whose fresh fit finds it this much of the largest penetration behind the master was open by mistake. */
+
+/* Part of the largest penetration. An open node that its fresh fit finds farther than that behind the master was open
+   by mistake. */
 #define CONTACT_FIT_AGREES 0.1
-/* Offsets of surface contact are frozen in a solve; gaps may drift with them by this part of what the largest pressure
- * presses the automatic penalty in. */
+
+/* Offsets of surface to surface contact are frozen in a solve. Gaps may drift with them by this part of the
+   penetration that the largest pressure causes at the automatic penalty. */
 #define CONTACT_OFFSET_AGREES 0.1
-/* Where histories break offsets are not carried on to the next step: what they lag behind would come as a jump in it,
- * so they have to agree so much better. */
+
+/* Where histories break, offsets are not carried on to the next step. The distance by which they lag would appear as
+   a jump in it, so the drift must be smaller by this factor. */
 #define CONTACT_OFFSET_CURRENT 1e-5
-/* The area factor past a free edge is frozen in a solve; a change above this makes the step solve again. */
+
+/* The area factor past a free edge is frozen in a solve. A larger change than this makes the step solve again. */
 #define CONTACT_FACTOR_AGREES 1e-2
+
 /* Motions that differ by less than this fraction differ by round-off. */
 #define CONTACT_SAME_MOTION 1e-9
 
+/* Rises from 0 to 1 between 0 and 1, with zero slope at both ends. */
 static PetscReal SmoothStep(PetscReal x)
 {
   x = PetscMax(0, PetscMin(1, x));
@@ -44,7 +56,7 @@ static PetscErrorCode PairFactors(const ContactPair *pair, NeighbourLists lists,
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Fresh lists and area factors become the pair's next ones. */
+/* Makes fresh lists and area factors, which become the pair's next ones. */
 static PetscErrorCode PairSearch(ContactPair *pair, const PetscReal *u, PetscReal t, PetscReal motion)
 {
   PetscFunctionBeginUser;
@@ -59,8 +71,8 @@ static PetscErrorCode PairSearch(ContactPair *pair, const PetscReal *u, PetscRea
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Are there lists that were made for these positions and for that much motion: the next ones, or those in force? The
- * same on all ranks. */
+/* Says whether there are lists that were made for these positions and for at least this motion: the next ones, or
+   those in force. The answer is the same on all ranks. */
 static PetscErrorCode PairListsServe(ContactPair *pair, const PetscReal *u, PetscReal t, PetscReal motion,
                                      PetscBool changed, PetscBool *serve)
 {
@@ -78,7 +90,7 @@ static PetscErrorCode PairListsServe(ContactPair *pair, const PetscReal *u, Pets
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The next lists replace those that serve. */
+/* The next lists replace those in force. */
 static PetscErrorCode PairTakeNext(ContactPair *pair)
 {
   PetscFunctionBeginUser;
@@ -93,7 +105,7 @@ static PetscErrorCode PairTakeNext(ContactPair *pair)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Largest penetration of the pair and largest pressure, all ranks, at the last residual. */
+/* Largest penetration and largest pressure of the pair at the last residual, over all ranks. */
 static PetscErrorCode PairDepth(Contact contact, const ContactPair *pair, PetscReal t, PetscReal *depth,
                                 PetscReal *pressure)
 {
@@ -114,8 +126,8 @@ static PetscErrorCode PairDepth(Contact contact, const ContactPair *pair, PetscR
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* A soft penalty's contact may lie deeper than the search reaches: then lists are made for as much motion as leads back
- * out. */
+/* Contact of a soft penalty may lie deeper than the search reaches. Lists are then made for as much motion as leads
+   back out. */
 static PetscErrorCode PairListsMotion(Contact contact, const ContactPair *pair, PetscReal t, PetscReal *motion)
 {
   PetscReal depth, pressure;
@@ -126,12 +138,22 @@ static PetscErrorCode PairListsMotion(Contact contact, const ContactPair *pair, 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ContactGather - new lists, and with them new offsets and area factors, for all pairs.
+/*@
+  ContactGather - makes new lists, with new offsets and area factors, for all pairs.
 
-   Collective. u[n_nodes*dim]: local displacements (length) of the accepted state, ghosts included; t: its load
-   parameter; t_next: where the step goes; motion: relative motion (length) that the lists must be good for. Those that
-   ContactListsHold() made at the same place for as much motion are taken as they are, and so are those in force. The
-   contact state is not touched. */
+  Collective
+
+  Input Parameters:
++ contact - the contact; its state is not touched
+. u       - local displacements of the accepted state, u[n_nodes*dim] (length), ghosts included
+. t       - its load parameter
+. t_next  - load parameter to which the step goes, for the extrapolation of offsets
+- motion  - relative motion that the lists must be good for (length)
+
+  Note:
+  Lists that ContactListsHold() made at the same place for as much motion are taken as they are, and so are those in
+  force.
+@*/
 PetscErrorCode ContactGather(Contact contact, const PetscReal *u, PetscReal t, PetscReal t_next, PetscReal motion)
 {
   PetscFunctionBeginUser;
@@ -156,8 +178,8 @@ PetscErrorCode ContactGather(Contact contact, const PetscReal *u, PetscReal t, P
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Is every point that now lies inside the support of the old fit of slave point q in its list, and has the frame
- * stayed? */
+/* Says whether every point that now lies inside the support of the old fit of slave point q is in its list, and
+   whether the frame has stayed. */
 static PetscBool FitHolds(NeighbourLists old, NeighbourLists fresh, PetscInt q)
 {
   const int        dim   = old->dim;
@@ -180,7 +202,7 @@ static PetscBool FitHolds(NeighbourLists old, NeighbourLists fresh, PetscInt q)
     for (int a = 0; a < dim - 1; a++)
       for (int b = 0; b < dim - 1; b++) rho2 += y[a] * metric[2 * a + b] * y[b];
     if (rho2 >= 1) continue;
-    for (PetscInt k = 0; !known && k < n; k++) { /* most points have the places that they had */
+    for (PetscInt k = 0; !known && k < n; k++) { /* most points have the same place in the list as before */
       const PetscInt place = (at + k) % n;
 
       known = old->point_key[old->list_point[old->list_ptr[q] + place]] == key ? PETSC_TRUE : PETSC_FALSE;
@@ -191,10 +213,10 @@ static PetscBool FitHolds(NeighbourLists old, NeighbourLists fresh, PetscInt q)
   return PETSC_TRUE;
 }
 
-/* Do fresh lists say the same of this term as the solve did? Open is open. On facets a closed gap must agree; on fits,
-   whose gap changes a little with their frames, frames and points must, and with offsets the gap within `drift`. The
-   area factors must agree on both. depth: the largest penetration of the pair; where it is augmented down to nothing,
-   what it may be counts. */
+/* Says whether fresh lists find the same of this term as the solve did. An open term must be open. On facets a closed
+   gap must agree. On fits the gap changes a little with their frames, so frames and points must agree, and with
+   offsets the gap must agree within `drift`. Area factors must agree on both. depth is the largest penetration of the
+   pair; where the pair is augmented and penetrations go to zero, the bound on them counts instead. */
 static PetscBool TermAgrees(const ContactPair *pair, NeighbourLists fresh, PetscInt c, PetscReal gap,
                             const PetscReal *factor, PetscReal t, PetscReal depth, PetscReal drift)
 {
@@ -217,7 +239,7 @@ static PetscBool TermAgrees(const ContactPair *pair, NeighbourLists fresh, Petsc
   return (PetscBool)(!PetscIsNanReal(gap) && (!pair->formulation.lags || PetscAbsReal(gap - old) <= drift));
 }
 
-/* Do the pair's next lists say the same of each of this rank's terms as the last residual? */
+/* Says whether the pair's next lists find the same of each of this rank's terms as the last residual did. */
 static PetscErrorCode PairNextAgrees(Contact contact, ContactPair *pair, PetscReal t, PetscBool update_offsets,
                                      PetscBool *agrees)
 {
@@ -239,11 +261,22 @@ static PetscErrorCode PairNextAgrees(Contact contact, ContactPair *pair, PetscRe
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ContactListsReach - whether lists still hold every point that the fits of slave points near contact may ask for: a
-   point that slides further than the lists' margin would be fitted by a part of its neighbours, and nothing would show
-   it.
+/*@
+  ContactListsReach - says whether lists still hold every point that the fits of slave points near contact may ask
+  for.
 
-   Collective. To be called after ContactResidual(). *within: the same on all ranks. */
+  Collective
+
+  Input Parameter:
+. contact - the contact, after ContactResidual()
+
+  Output Parameter:
+. within - the same on all ranks
+
+  Note:
+  A point that slides farther than the margin of its list would be fitted by a part of its neighbours, and nothing
+  else would show it.
+@*/
 PetscErrorCode ContactListsReach(Contact contact, PetscBool *within)
 {
   int all = 1, fits = 0;
@@ -262,9 +295,18 @@ PetscErrorCode ContactListsReach(Contact contact, PetscBool *within)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ContactListsRenew - new lists and area factors for all pairs in the middle of a step; offsets are those of the step.
+/*@
+  ContactListsRenew - makes new lists and area factors for all pairs in the middle of a step; offsets remain those of
+  the step.
 
-   Collective. u, t, motion: as of ContactGather(). */
+  Collective
+
+  Input Parameters:
++ contact - the contact
+. u       - local displacements, u[n_nodes*dim] (length), ghosts included
+. t       - load parameter
+- motion  - relative motion that the lists must be good for (length)
+@*/
 PetscErrorCode ContactListsRenew(Contact contact, const PetscReal *u, PetscReal t, PetscReal motion)
 {
   PetscFunctionBeginUser;
@@ -282,12 +324,29 @@ PetscErrorCode ContactListsRenew(Contact contact, const PetscReal *u, PetscReal 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ContactListsHold - whether lists made afresh at the solution say the same of every term as those it was found with.
+/*@
+  ContactListsHold - says whether lists that are made afresh at the solution find the same of every term as those it
+  was found with.
 
-   Collective. u, t: of the last ContactResidual() with forces; motion: since the accepted state (length); next: that
-   the fresh lists must be good for, as ContactGather() may take them for the next step. *hold: the same on all ranks;
-   if it is PETSC_FALSE the fresh lists of all pairs, and fresh offsets, have replaced the old, and the problem is to be
-   solved again. */
+  Collective
+
+  Input Parameters:
++ contact        - the contact
+. u              - local displacements of the last ContactResidual() with forces, u[n_nodes*dim] (length), ghosts
+                   included
+. t              - its load parameter
+. motion         - largest motion since the accepted state (length)
+. next           - motion that the fresh lists must be good for, as ContactGather() may take them for the next step
+                   (length)
+- update_offsets - offsets must not lag, as no later step will carry them on
+
+  Output Parameter:
+. hold - the same on all ranks
+
+  Note:
+  Where hold is PETSC_FALSE, the fresh lists of all pairs and fresh offsets have replaced the old ones, and the
+  problem must be solved again.
+@*/
 PetscErrorCode ContactListsHold(Contact contact, const PetscReal *u, PetscReal t, PetscReal motion, PetscReal next,
                                 PetscBool update_offsets, PetscBool *hold)
 {
@@ -318,11 +377,22 @@ PetscErrorCode ContactListsHold(Contact contact, const PetscReal *u, PetscReal t
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ContactListsArchive - the fresh lists that stand ready for the next step, by the motion they were made for; loading:
-   lists at the accepted state (u, t), and the same fresh ones. Other lists would list as much, in another order of
-   sums.
+/*@
+  ContactListsArchive - saves or loads the lists that are ready for the next step, by the motion that they were made
+  for.
 
-   Collective. u, t: as of ContactGather(). */
+  Collective
+
+  Input Parameters:
++ contact - the contact, with the accepted state
+. archive - says whether it saves or loads
+. u       - local displacements of the accepted state, u[n_nodes*dim] (length), ghosts included
+- t       - its load parameter
+
+  Note:
+  Loading makes lists at the accepted state, and the same fresh ones. Lists for another motion would hold the same
+  neighbours in another order of sums.
+@*/
 PetscErrorCode ContactListsArchive(Contact contact, Archive archive, const PetscReal *u, PetscReal t)
 {
   PetscReal *motion;

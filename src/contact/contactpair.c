@@ -1,24 +1,28 @@
+/* Pairs: surfaces, terms, slave points, offsets and search of each, and what the scene says of it. */
 #include "contactimpl.h"
 #include "search/nodegeometry.h"
 #include "penaltylaw.h"
 #include "base/refusal.h"
 
-/* Slave nodes whose tributary area is below this share of the faces around them carry no force: corners of 6-node
-   triangles and the axis node of second-order axisymmetric edges, whose areas are zero on flat faces and small, of
-   either sign, on curved ones. Corners of 9-node faces have 1/36, all others more. */
+/* Slave nodes whose tributary area is below this share of the faces around them carry no force. These are the corners
+   of 6-node triangles and the axis node of second-order axisymmetric edges. Their areas are zero on flat faces, and
+   small and of either sign on curved ones. Corners of 9-node faces have 1/36, all others have more. */
 #define CONTACT_SHARE_FLOOR 5e-3
 
-/* A surface that turns more than this from its one reference plane cannot be written over it: cos 60 degrees. */
+/* A surface that turns by more than this angle from its one reference plane cannot be written over that plane: cosine
+   of 60 degrees. */
 #define CONTACT_GLOBAL_COSINE 0.5
 
-/* Surface contact on faces at least this much coarser than the master's takes a finer quadrature: its points would skip
-   facets. Below 2, so that round-off does not decide on a mesh of half the size. */
+/* In surface to surface, a slave whose faces are at least this many times coarser than the master's takes a finer
+   quadrature, as its points would skip facets. The figure is below 2, so that round-off does not decide on a mesh of
+   half the size. */
 #define CONTACT_COARSE 1.9
 
-/* Surface contact: a node with less of this share of the mean hat area has none: an axis node where R vanishes. */
+/* In surface to surface, a node with less than this share of the mean hat area has no term. This is an axis node,
+   where the radius vanishes. */
 #define CONTACT_HAT_FLOOR 1e-8
 
-/* Which of the slave's nodes carry a term: owned ones with area. */
+/* Chooses the slave nodes that carry a term: those with area that this rank owns. */
 static PetscErrorCode PairChooseNodes(Mesh mesh, Scene scene, ContactPair *pair)
 {
   const MeshGroup *group = pair->slave->group;
@@ -58,14 +62,15 @@ static PetscErrorCode PairChooseNodes(Mesh mesh, Scene scene, ContactPair *pair)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Which slave points a term weighs, and with what area: w_q psi_c(xi_q). */
+/* Lists the slave points of each term with their areas in it, w_q psi_c(xi_q), and makes room for what terms and
+   points hold. */
 static PetscErrorCode PairCreateTerms(Mesh mesh, ContactPair *pair)
 {
   SlavePoints slaves = pair->slaves;
   PetscInt   *term, n = 0;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc1(slaves->n_nodes, &term)); /* of each node of the points */
+  PetscCall(PetscMalloc1(slaves->n_nodes, &term)); /* of each node that the points are made of; -1: none */
   for (PetscInt i = 0; i < slaves->n_nodes; i++) term[i] = -1;
   for (PetscInt c = 0; c < pair->n; c++)
     term[NodeKeysFind(slaves->n_nodes, slaves->nodes, mesh->node_id[pair->node[c]])] = c;
@@ -83,7 +88,7 @@ static PetscErrorCode PairCreateTerms(Mesh mesh, ContactPair *pair)
       PetscInt       at;
 
       if (c < 0 || slaves->hat[k] == 0) continue;
-      at                    = pair->term_ptr[c + 1]++; /* ends as the start of the next */
+      at                    = pair->term_ptr[c + 1]++; /* after the loop it is the start of the next term */
       pair->term_point[at]  = q;
       pair->term_weight[at] = pair->formulation.surface ? slaves->weight[q] * slaves->hat[k] : pair->area[c];
     }
@@ -97,7 +102,7 @@ static PetscErrorCode PairCreateTerms(Mesh mesh, ContactPair *pair)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Slave points, terms and offsets, by formulation. */
+/* Creates slave points, terms and offsets, as the formulation asks for. */
 static PetscErrorCode PairCreatePoints(Mesh mesh, Scene scene, Loads loads, ContactPair *pair)
 {
   const int finer = pair->master && pair->slave->mean_size >= CONTACT_COARSE * pair->master->mean_size;
@@ -119,10 +124,11 @@ static PetscErrorCode PairCreatePoints(Mesh mesh, Scene scene, Loads loads, Cont
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Support and exponent of the weight where the scene leaves them open, by dimension and degree. Nodes as fit points: in
-   spacings, the smoothest fits whose guards hold on jittered meshes (3D: some 40 nodes; 2D: 9); in 3D between 3.5
-   and 3.65, 3 and 4 rings, spheres and their three-valent nodes are quiet at once. Quadrature points: in face sizes,
-   some 113 of them in 3D. */
+/* Settings of the fit. Where the scene leaves support and exponent of the weight open, they follow from dimension and
+   degree. With nodes as fit points the support is in spacings, and the figures give the smoothest fits whose guards
+   hold on jittered meshes (3D: some 40 nodes, 2D: 9 nodes). In 3D, values between 3.5 and 3.65 suit 3 rings of nodes,
+   4 rings, and spheres with three-valent nodes at the same time. With quadrature points the support is in face sizes,
+   and holds some 113 of them in 3D. */
 static FitSettings PairFitSettings(Scene scene, const ContactPair *pair, int order)
 {
   const SceneContact *contact = pair->scene;
@@ -143,7 +149,7 @@ static FitSettings PairFitSettings(Scene scene, const ContactPair *pair, int ord
   return fit;
 }
 
-/* The one place that asks the scene for the formulation of a pair. */
+/* Fills what the formulation means. This is the one place that asks the scene for it. */
 static void PairSetFormulation(ContactPair *pair)
 {
   pair->formulation.surface = (PetscBool)(pair->scene->formulation == CONTACT_SURFACE_TO_SURFACE);
@@ -153,6 +159,7 @@ static void PairSetFormulation(ContactPair *pair)
   pair->formulation.lags    = (PetscBool)(pair->formulation.surface && pair->formulation.offsets != OFFSETS_LIVE);
 }
 
+/* Refuses one reference plane for a master that turns too far from it. */
 static PetscErrorCode PairCheckGlobalFrame(Mesh mesh, Scene scene, Loads loads, const ContactPair *pair)
 {
   PetscReal normal[3], cosine, *zero;
@@ -171,8 +178,24 @@ static PetscErrorCode PairCheckGlobalFrame(Mesh mesh, Scene scene, Loads loads, 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ContactPairCreate - surfaces, terms, state and search of one pair of the scene, without lists yet. Collective.
- * Refuses what the mesh shows to be wrong. */
+/*@
+  ContactPairCreate - creates surfaces, terms, state and search of one pair of the scene, without lists.
+
+  Collective
+
+  Input Parameters:
++ mesh       - the mesh, borrowed
+. scene      - the scene, borrowed
+. elasticity - the bodies, for the automatic penalty
+. loads      - prescribed motions, borrowed
+- contact    - what the scene says of the pair, borrowed
+
+  Output Parameter:
+. pair - the pair; all members must be zero before the call
+
+  Note:
+  Refuses what the mesh shows to be wrong.
+@*/
 PetscErrorCode ContactPairCreate(Mesh mesh, Scene scene, Elasticity elasticity, Loads loads,
                                  const SceneContact *contact, ContactPair *pair)
 {
@@ -218,7 +241,14 @@ PetscErrorCode ContactPairCreate(Mesh mesh, Scene scene, Elasticity elasticity, 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ContactPairDestroy - Collective. */
+/*@
+  ContactPairDestroy - frees what a pair holds.
+
+  Collective
+
+  Input Parameter:
+. pair - the pair; the structure itself belongs to the caller
+@*/
 PetscErrorCode ContactPairDestroy(ContactPair *pair)
 {
   PetscFunctionBeginUser;
@@ -245,25 +275,56 @@ PetscErrorCode ContactPairDestroy(ContactPair *pair)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ContactPairs - how many pairs there are; 0 for NULL. Not collective. */
+/*@
+  ContactPairs - returns the number of pairs, 0 for NULL.
+
+  Not collective
+
+  Input Parameter:
+. contact - the contact, or NULL
+@*/
 int ContactPairs(Contact contact)
 {
   return contact ? contact->n_pairs : 0;
 }
 
-/* ContactPairName - the scene's name of a pair. Not collective. */
+/*@
+  ContactPairName - returns the scene's name of a pair.
+
+  Not collective
+
+  Input Parameters:
++ contact - the contact
+- pair    - number of the pair
+@*/
 const char *ContactPairName(Contact contact, int pair)
 {
   return contact->pairs[pair].scene->name;
 }
 
-/* ContactPairScene - what the scene says of a pair. Not collective. */
+/*@
+  ContactPairScene - returns what the scene says of a pair.
+
+  Not collective
+
+  Input Parameters:
++ contact - the contact
+- pair    - number of the pair
+@*/
 const SceneContact *ContactPairScene(Contact contact, int pair)
 {
   return contact->pairs[pair].scene;
 }
 
-/* ContactFindPair - number of the pair of that name, -1: none. Not collective. */
+/*@
+  ContactFindPair - returns the number of the pair of a name, or -1.
+
+  Not collective
+
+  Input Parameters:
++ contact - the contact
+- name    - the scene's name
+@*/
 int ContactFindPair(Contact contact, const char *name)
 {
   for (int p = 0; p < ContactPairs(contact); p++)
@@ -271,15 +332,22 @@ int ContactFindPair(Contact contact, const char *name)
   return -1;
 }
 
-/* ContactComm - the communicator. Not collective. */
+/*@
+  ContactComm - returns the communicator of the contact.
+
+  Not collective
+
+  Input Parameter:
+. contact - the contact; NULL gives MPI_COMM_NULL
+@*/
 MPI_Comm ContactComm(Contact contact)
 {
   return contact ? contact->mesh->comm : MPI_COMM_NULL;
 }
 
 /*@
-  ContactPairIsSurface - says whether a pair is surface to surface: each slave node then has hat functions over its
-faces.
+  ContactPairIsSurface - says whether a pair is surface to surface, so that forces reach its slave nodes by hat
+  functions over their faces.
 
   Not collective
 

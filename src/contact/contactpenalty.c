@@ -1,13 +1,17 @@
+/* Penalties and multipliers of a pair over the steps: how they follow the penetrations, and how penetrations relate
+   to their window. */
 #include "contactimpl.h"
 #include "penaltylaw.h"
 
 /* A penetration is known well enough to be judged when the last iterate moved it by no more than this part of g_min. */
 #define CONTACT_GAPS_CONVERGED 0.1
 
-/* Times in one step that the penalties of a pair are adjusted until their window holds. A penalty that starts 1e8 times
-   too small needs four with the default clamp, neighbours that share the load two or three more. */
+/* Number of times in one step that the penalties of a pair are adjusted until their window holds. A penalty that
+   starts 1e8 times too small needs four with the default clamp. Neighbours that share the load need two or three
+   more. */
 #define CONTACT_MAX_ADJUST 12
 
+/* The rule of Chamoret et al. for a term: its window, bounds and clamp. */
 static PenaltyRule TermRule(const ContactPair *pair, PetscInt c)
 {
   const SceneContact *scene = pair->scene;
@@ -17,7 +21,7 @@ static PenaltyRule TermRule(const ContactPair *pair, PetscInt c)
                          pair->automatic, scene->range);
 }
 
-/* Negative: apart; NaN: no master near */
+/* Penetration of a term in the present state (length). Negative: apart; NaN: no master is near. */
 static PetscReal TermPenetration(const ContactPair *pair, PetscInt c)
 {
   return ContactTermOffset(pair, c, pair->t) - pair->now.gap[c];
@@ -34,10 +38,8 @@ static PenaltyUpdate TermUpdate(const ContactPair *pair, PetscInt c, PetscReal l
   return update;
 }
 
-/* PairBeyond - how the penetrations of an augmented pair stand to their bound in the present state, all ranks.
-
-   Collective. A multiplier may press across an opening as well: what is open by more than the bound and pressed is
-   beyond it too. */
+/* How the penetrations of an augmented pair relate to their bound in the present state, over all ranks. A multiplier
+   may also press across an opening, so that a term that is open by more than the bound and presses is beyond it too. */
 static PetscErrorCode PairBeyond(const ContactPair *pair, ContactWindow *window)
 {
   PetscInt  count[4] = {0, 0, pair->now.augmented, pair->now.missed};
@@ -63,6 +65,7 @@ static PetscErrorCode PairBeyond(const ContactPair *pair, ContactWindow *window)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Pressure of a term in the present state with its whole penalty: the next multiplier. */
 static PetscReal TermPressure(const ContactPair *pair, PetscInt c)
 {
   const LawState state = ContactTermState(pair, c, pair->t, PETSC_MAX_REAL);
@@ -72,15 +75,12 @@ static PetscReal TermPressure(const ContactPair *pair, PetscInt c)
   return value.pressure;
 }
 
-/* PairAugment - the pressures of a pair become its multipliers, if one of its terms is beyond the bound and they
-   may once more in this step.
-
-   Collective, after a converged solve, in the state of its last ContactResidual(). WINDOW_MISSED: the step is to be
-   solved again; WINDOW_HOLDS: the state is as it was: only terms that do not press lose their multipliers. A stiff body
-   changes its forces little in a solve with a soft penalty; from the second update of a step on, the pressures are
-   mixed with those of the updates before. Steps that end beyond the bound are counted.
-
-   Source: Simo and Laursen 1992, Computers & Structures 42, 97-116, Uzawa's update. */
+/* The pressures of a pair become its multipliers, if one of its terms is beyond the bound and updates are left in
+   this step. Collective, after a converged solve, in the state of its last ContactResidual(). WINDOW_MISSED: the step
+   must be solved again. WINDOW_HOLDS: the state is as it was, and only terms that do not press lose their
+   multipliers. A stiff body changes its forces little in a solve with a soft penalty, so from the second update of a
+   step on, the pressures are mixed with those of the updates before. Steps that end beyond the bound are counted.
+   Source: Simo and Laursen (1992), Computers & Structures 42, 97-116, Uzawa's update. */
 static PetscErrorCode PairAugment(ContactPair *pair, ContactWindowState *state)
 {
   ContactWindow window;
@@ -112,6 +112,7 @@ static PetscErrorCode PairAugment(ContactPair *pair, ContactWindowState *state)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Says whether some pair adjusts its penalty within the step (converged 1) or from step to step (0). */
 static PetscBool AnyAdjusts(Contact contact, int converged)
 {
   for (int p = 0; p < contact->n_pairs; p++)
@@ -119,6 +120,7 @@ static PetscBool AnyAdjusts(Contact contact, int converged)
   return PETSC_FALSE;
 }
 
+/* Says whether some pair is augmented. */
 static PetscBool AnyAugments(Contact contact)
 {
   for (int p = 0; p < contact->n_pairs; p++)
@@ -126,7 +128,7 @@ static PetscBool AnyAugments(Contact contact)
   return PETSC_FALSE;
 }
 
-/* Largest force of a term of all pairs in the present state. */
+/* Largest force of a term of all pairs in the present state, over all ranks. */
 static PetscErrorCode LargestForce(Contact contact, PetscReal *largest)
 {
   PetscFunctionBeginUser;
@@ -138,9 +140,9 @@ static PetscErrorCode LargestForce(Contact contact, PetscReal *largest)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Penalties and counts of `to` follow the present penetrations, if they may once more. count[0]: terms that miss the
-   window, but for those whose penalty would have to fall below its bound (a penetration that is too small is no error);
-   count[1]: penalties that changed. */
+/* Penalties and counts of `to` follow the present penetrations, unless they did so too often in this step. count[0]
+   is the number of terms that miss the window, without those whose penalty would have to fall below its bound, as a
+   penetration that is too small is no error. count[1] is the number of penalties that changed. */
 static PetscErrorCode PairAdjust(ContactPair *pair, PetscReal largest, ContactState *to, ContactWindowState *state)
 {
   const PetscBool may      = (PetscBool)(pair->updates < CONTACT_MAX_ADJUST);
@@ -158,7 +160,7 @@ static PetscErrorCode PairAdjust(ContactPair *pair, PetscReal largest, ContactSt
     to->lowered += update.change == PENALTY_LOWERED;
     to->clamped += update.clamped;
     to->light += update.light;
-    if (update.change != PENALTY_KEPT) pair->before[c] = NAN; /* its gap is to be found anew */
+    if (update.change != PENALTY_KEPT) pair->before[c] = NAN; /* no change of its gap is known with this penalty */
   }
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, count, 2, MPIU_INT, MPI_SUM, pair->mesh->comm));
   *state = !count[0] ? WINDOW_HOLDS : count[1] ? WINDOW_MISSED : WINDOW_AT_BOUND;
@@ -166,12 +168,22 @@ static PetscErrorCode PairAdjust(ContactPair *pair, PetscReal largest, ContactSt
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ContactAdjustPenalty - new penalties for the nodes outside the window, or multipliers, of the pairs that are solved
-   until it holds.
+/*@
+  ContactAdjustPenalty - finds new penalties for the nodes outside their window, or new multipliers, for pairs that
+  are solved until the window holds.
 
-   Collective. To be called after a converged solve, in the state of its last ContactResidual(). WINDOW_HOLDS: nothing
-   was changed; WINDOW_MISSED: the step is to be solved again; WINDOW_AT_BOUND: nodes are outside, and no penalty could
-   be changed, or they were too often. Source: Chamoret et al. 2004, eq. 16. */
+  Collective
+
+  Input Parameter:
+. contact - the contact after a converged solve, in the state of its last ContactResidual()
+
+  Output Parameter:
+. state - WINDOW_HOLDS: nothing was changed; WINDOW_MISSED: the step must be solved again; WINDOW_AT_BOUND: nodes are
+          outside, and no penalty could be changed, or they were changed too often
+
+  Note:
+  Only pairs whose scene asks for it take part. Source: Chamoret et al. (2004), eq. 16.
+@*/
 PetscErrorCode ContactAdjustPenalty(Contact contact, ContactWindowState *state)
 {
   PetscReal largest;
@@ -194,10 +206,18 @@ PetscErrorCode ContactAdjustPenalty(Contact contact, ContactWindowState *state)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ContactAdjustNextPenalty - new penalties for the next step, of the pairs that are adjusted from step to step.
+/*@
+  ContactAdjustNextPenalty - finds new penalties for the next step, for pairs that are adjusted from step to step.
 
-   Collective, after ContactAccept(): the present state keeps the penalties it was solved with, ContactRestore() brings
-   the new ones. Source: Chamoret et al. 2004, eq. 16. */
+  Collective
+
+  Input Parameter:
+. contact - the contact, after ContactAccept()
+
+  Note:
+  The present state keeps the penalties that it was solved with; ContactRestore() brings the new ones. Source:
+  Chamoret et al. (2004), eq. 16.
+@*/
 PetscErrorCode ContactAdjustNextPenalty(Contact contact)
 {
   ContactWindowState ignored;
@@ -217,11 +237,21 @@ PetscErrorCode ContactAdjustNextPenalty(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ContactGapsConverged - whether every closed node of the pairs that adjust moved by no more than a tenth of g_min
-   since the last call.
+/*@
+  ContactGapsConverged - says whether every closed node of the pairs that adjust moved by no more than a tenth of
+  g_min since the last call.
 
-   Collective; once for each iterate, after its ContactResidual() with forces. The first call in a solve compares with
-   the accepted state. */
+  Collective
+
+  Input Parameter:
+. contact - the contact, once for each iterate, after its ContactResidual() with forces
+
+  Output Parameter:
+. converged - the same on all ranks
+
+  Note:
+  The first call in a solve compares with the accepted state.
+@*/
 PetscErrorCode ContactGapsConverged(Contact contact, PetscBool *converged)
 {
   int yes = 1, any = 0;
@@ -245,8 +275,19 @@ PetscErrorCode ContactGapsConverged(Contact contact, PetscBool *converged)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ContactPairWindow - how the present penetrations of pair p stand to the window, and what the adjustment did so far,
- * over all ranks. Collective. */
+/*@
+  ContactPairWindow - counts how the present penetrations of a pair relate to their window, and what the adjustment
+  did so far, over all ranks.
+
+  Collective
+
+  Input Parameters:
++ contact - the contact
+- p       - number of the pair
+
+  Output Parameter:
+. window - the counts
+@*/
 PetscErrorCode ContactPairWindow(Contact contact, int p, ContactWindow *window)
 {
   const ContactPair *pair     = &contact->pairs[p];
@@ -277,8 +318,19 @@ PetscErrorCode ContactPairWindow(Contact contact, int p, ContactWindow *window)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ContactLocateOutside - the pair and node (gmsh's tag) that misses its window by the largest factor, with its
-   penetration and penalty, into text[size]. Collective. */
+/*@
+  ContactLocateOutside - writes the pair and the node (gmsh's tag) that misses its window by the largest factor, with
+  penetration and penalty.
+
+  Collective
+
+  Input Parameters:
++ contact - the contact
+- size    - characters that the text holds
+
+  Output Parameter:
+. text - the message
+@*/
 PetscErrorCode ContactLocateOutside(Contact contact, char *text, size_t size)
 {
   PetscReal largest,
@@ -318,10 +370,18 @@ PetscErrorCode ContactLocateOutside(Contact contact, char *text, size_t size)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ContactSoften - until the next call no penalty counts for more than `most` times its pair's automatic one, in energy,
-   force and tangent.
+/*@
+  ContactSoften - limits what a penalty counts for in energy, force and tangent, until the next call.
 
-   Not collective, the same on all ranks. PETSC_MAX_REAL: all count for what they are. The penalties themselves stay. */
+  Not collective
+
+  Input Parameters:
++ contact - the contact
+- most    - multiple of a pair's automatic penalty, the same on all ranks; PETSC_MAX_REAL ends the limit
+
+  Note:
+  The penalties themselves do not change.
+@*/
 PetscErrorCode ContactSoften(Contact contact, PetscReal most)
 {
   PetscFunctionBeginUser;
@@ -330,7 +390,17 @@ PetscErrorCode ContactSoften(Contact contact, PetscReal most)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ContactStiffest - the largest penalty, in automatic ones of its pair. Collective, the same on all ranks. */
+/*@
+  ContactStiffest - finds the largest penalty, as a multiple of its pair's automatic one.
+
+  Collective
+
+  Input Parameter:
+. contact - the contact
+
+  Output Parameter:
+. most - the same on all ranks
+@*/
 PetscErrorCode ContactStiffest(Contact contact, PetscReal *most)
 {
   PetscFunctionBeginUser;

@@ -1,8 +1,10 @@
+/* One slave point: its gap and variations over fit points, and how these are carried to the contact nodes that the
+   points are made of. */
 #include "contactimpl.h"
 #include "base/lanes.h"
 #include "base/timing.h"
 
-/* The gap and its variations against an analytic master, which has no points. */
+/* Gap and variations against an analytic master, which has no points. */
 static PetscBool PointEvaluateAnalytic(const ContactPair *pair, NeighbourLists lists, PetscInt q)
 {
   const int        dim    = lists->dim;
@@ -29,7 +31,8 @@ static PetscBool PointEvaluateAnalytic(const ContactPair *pair, NeighbourLists l
   return PETSC_TRUE;
 }
 
-/* Positions relative to slave point q, as of NeighbourListsRelative(), and weights of the points in its list */
+/* Positions relative to slave point q, as of NeighbourListsRelative(), and weights of the points in its list. dim is
+   a constant where this is called, so that the inner loops unroll. */
 LANES_INLINE void GatherPoints(const int dim, NeighbourLists lists, PetscInt q, PetscReal *x, PetscReal *multiplier)
 {
   const PetscInt  *point = &lists->list_point[lists->list_ptr[q]], n = lists->list_ptr[q + 1] - lists->list_ptr[q];
@@ -48,8 +51,23 @@ LANES_INLINE void GatherPoints(const int dim, NeighbourLists lists, PetscInt q, 
   }
 }
 
-/* ContactPointEvaluate - gap (and variations over the fit points) of slave point q of the lists; *found is PETSC_FALSE
- * where no master is near. */
+/*@
+  ContactPointEvaluate - evaluates gap and, if wanted, a variation over the fit points of one slave point, into the
+  work's result.
+
+  Not collective
+
+  Input Parameters:
++ pair     - the pair
+. smoother - the pair's own, or its facets
+. lists    - lists with the present positions
+. q        - the slave point
+. seed     - facet of the previous evaluation, or -1
+- want     - the variation that is wanted
+
+  Output Parameter:
+. found - PETSC_FALSE where no master is near
+@*/
 PetscErrorCode ContactPointEvaluate(const ContactPair *pair, const Smoother *smoother, NeighbourLists lists, PetscInt q,
                                     int seed, SmootherWant want, PetscBool *found)
 {
@@ -90,7 +108,7 @@ PetscErrorCode ContactPointEvaluate(const ContactPair *pair, const Smoother *smo
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* A row of n images of nodes, side[n], on image `image`. */
+/* Adds a row of n nodes to the map; node a lies on image side[a], and all of them on `image`. */
 static void MapAddRow(const ContactPair *pair, int row, int image, PetscInt n, const PetscInt *nodes, const int *side,
                       const PetscReal *S)
 {
@@ -107,7 +125,7 @@ static void MapAddRow(const ContactPair *pair, int row, int image, PetscInt n, c
   map->ptr[row + 1] = k;
 }
 
-/* A row for fit point p. */
+/* Adds the row of fit point p. */
 static void MapAddPoint(const ContactPair *pair, NeighbourLists lists, int row, PetscInt p)
 {
   const PetscInt first = lists->point_ptr[p];
@@ -116,7 +134,7 @@ static void MapAddPoint(const ContactPair *pair, NeighbourLists lists, int row, 
             &lists->point_side[first], &lists->point_S[first]);
 }
 
-/* The map of the last evaluation, to where the nodes' slots are. */
+/* Fills the map of the last evaluation with the nodes' slots. */
 static void MapFill(const ContactPair *pair, NeighbourLists lists, PetscInt q)
 {
   ContactWork   *work = pair->work;
@@ -129,7 +147,7 @@ static void MapFill(const ContactPair *pair, NeighbourLists lists, PetscInt q)
     MapAddPoint(pair, lists, 1 + i, lists->list_point[lists->list_ptr[q] + work->result.points[i]]);
 }
 
-/* How many entries the map of the last evaluation has. */
+/* Number of entries that the map of the last evaluation has. */
 static PetscInt MapEntries(const ContactPair *pair, NeighbourLists lists, PetscInt q)
 {
   PetscInt entries = lists->slave_ptr[q + 1] - lists->slave_ptr[q];
@@ -142,6 +160,7 @@ static PetscInt MapEntries(const ContactPair *pair, NeighbourLists lists, PetscI
   return entries;
 }
 
+/* Adds the nodes of fit point p to the list of nodes. */
 static void NodesAddPoint(const ContactPair *pair, PetscInt p)
 {
   const NeighbourLists lists = pair->lists;
@@ -150,9 +169,20 @@ static void NodesAddPoint(const ContactPair *pair, PetscInt p)
                       &lists->point_node[lists->point_ptr[p]]);
 }
 
-/* ContactPointToNodes - carries N of the last evaluation from points to contact nodes, each of which occurs once.
+/*@
+  ContactPointToNodes - carries the first variation of the last evaluation from points to contact nodes, into the
+  work's number and N.
 
-   Not collective. q: the slave point that was evaluated. */
+  Not collective
+
+  Input Parameters:
++ pair  - the pair
+. lists - lists that the point was evaluated with
+- q     - the slave point that was evaluated
+
+  Note:
+  Each node occurs once.
+@*/
 PetscErrorCode ContactPointToNodes(const ContactPair *pair, NeighbourLists lists, PetscInt q)
 {
   ContactWork   *work = pair->work;
@@ -177,11 +207,16 @@ PetscErrorCode ContactPointToNodes(const ContactPair *pair, NeighbourLists lists
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ContactSecondBegin - begins a sum of second variations over the nodes of a block, after ContactBlockBegin(). Not
-   collective.
+/*@
+  ContactSecondBegin - begins a sum of second variations over the nodes of a block.
 
-   nodes: of the block; points: how many slave points are added at most, and as many vectors with
-   FitDerivativesAddOuter(). */
+  Not collective
+
+  Input Parameters:
++ pair   - the pair, after ContactWorkBlockBegin()
+. nodes  - nodes of the block
+- points - slave points that are added at most; as many vectors may be added with FitDerivativesAddOuter()
+@*/
 PetscErrorCode ContactSecondBegin(const ContactPair *pair, PetscInt nodes, PetscInt points)
 {
   ContactWork *work   = pair->work;
@@ -202,9 +237,20 @@ PetscErrorCode ContactSecondBegin(const ContactPair *pair, PetscInt nodes, Petsc
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ContactSecondAdd - evaluates slave point q and adds factor times its second variation. Not collective.
+/*@
+  ContactSecondAdd - evaluates a slave point and adds factor times its second variation to the sum.
 
-   own[n_points]: takes what belongs to the fit points one by one, for ContactOwnToNodes(). */
+  Not collective
+
+  Input Parameters:
++ pair   - the pair, after ContactSecondBegin()
+. q      - the slave point
+- factor - for example minus the point's force
+
+  Input/Output Parameter:
+. own - own[n_points] of all fit points: the parts that belong to fit points one by one are added here, for
+        ContactOwnToNodes(); not used where the master is not fitted
+@*/
 PetscErrorCode ContactSecondAdd(const ContactPair *pair, PetscInt q, PetscReal factor,
                                 double (*own)[FIT_DERIVATIVES_OWN])
 {
@@ -232,13 +278,29 @@ PetscErrorCode ContactSecondAdd(const ContactPair *pair, PetscInt q, PetscReal f
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ContactSecondEnd - the work's M is the sum. Not collective. */
+/*@
+  ContactSecondEnd - writes the sum into the work's M.
+
+  Not collective
+
+  Input Parameter:
+. pair - the pair, after ContactSecondBegin()
+@*/
 void ContactSecondEnd(const ContactPair *pair)
 {
   FitDerivativesEnd(&pair->work->sum, pair->work->M);
 }
 
-/* ContactPointsToNodes - the contact nodes of fit points first to end - 1, into the work's number. Not collective. */
+/*@
+  ContactPointsToNodes - lists the contact nodes of fit points first to end - 1, into the work's number.
+
+  Not collective
+
+  Input Parameters:
++ pair  - the pair
+. first - first fit point
+- end   - one past the last
+@*/
 PetscErrorCode ContactPointsToNodes(const ContactPair *pair, PetscInt first, PetscInt end)
 {
   PetscFunctionBeginUser;
@@ -250,10 +312,19 @@ PetscErrorCode ContactPointsToNodes(const ContactPair *pair, PetscInt first, Pet
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ContactOwnToNodes - the second variations that belong to fit points first to end - 1, summed over slave points, into
-   the work's M. Not collective.
+/*@
+  ContactOwnToNodes - sums the second variations that belong to fit points first to end - 1 over a block, into the
+  work's M.
 
-   nodes: of the block at hand, which are these points'; own: of all fit points. */
+  Not collective
+
+  Input Parameters:
++ pair  - the pair, after ContactWorkBlockBegin() with the nodes of these points
+. nodes - nodes of the block
+. first - first fit point
+. end   - one past the last
+- own   - of all fit points, summed over slave points by ContactSecondAdd()
+@*/
 PetscErrorCode ContactOwnToNodes(const ContactPair *pair, PetscInt nodes, PetscInt first, PetscInt end,
                                  const double (*own)[FIT_DERIVATIVES_OWN])
 {

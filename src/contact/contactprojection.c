@@ -2,8 +2,9 @@
 #include "contactimpl.h"
 #include "base/timing.h"
 
-/* The gap of a slave point, with its first variation where `vary`; where nothing has moved since its fit was made, that
- * tells it. */
+/* Finds the gap of a slave point, with its first variation where `vary`. Where nothing has moved since the lists were
+   made, the gap of the search's fit is taken, if it is the smoother's own; the work's points and factors are then
+   those of an earlier evaluation. */
 static PetscErrorCode PointGap(const ContactPair *pair, NeighbourLists lists, PetscInt q, int seed, PetscBool vary,
                                PetscBool *found)
 {
@@ -15,19 +16,32 @@ static PetscErrorCode PointGap(const ContactPair *pair, NeighbourLists lists, Pe
                                    found));
   else {
     *found       = PETSC_TRUE;
-    result->gap  = lists->gap[q]; /* facet_served, points and factors are those of the point before */
+    result->gap  = lists->gap[q];
     result->seed = seed;
     for (int d = 0; d < 3; d++) result->normal[d] = lists->normal[3 * q + d];
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ContactPointGaps - gaps (lengths) of the slave points of this rank, positions as the lists were last updated.
+/*@
+  ContactPointGaps - finds the gaps of all slave points of this rank, at the positions of the lists' last update.
 
-   Not collective. factor[n_slaves]: points of factor 0 are not asked for; seed[n_slaves]: the facets of last time,
-   rewritten, or NULL; gap[n_slaves]: NaN where there is none; normals[3*n_slaves]: out of the master at the feet, or
-   NULL. force[n_slaves]: points with one, of last time, will most likely have one again, and their first variations are
-   taken among the pair's, whose lists these are; or NULL. */
+  Not collective
+
+  Input Parameters:
++ pair   - the pair
+. lists  - the lists, in force or next
+. factor - area factors; points of factor 0 are not asked for
+- force  - forces of the previous projection, or NULL; a point with one will most likely have one again, so that its
+           first variation is kept at once; the lists must be those in force
+
+  Input/Output Parameter:
+. seed - facets of the previous projection, rewritten; or NULL
+
+  Output Parameters:
++ gap     - gaps (length), NaN where there is none
+- normals - three components for each point, out of the master at the foot; or NULL
+@*/
 PetscErrorCode ContactPointGaps(const ContactPair *pair, NeighbourLists lists, const PetscReal *factor,
                                 const PetscReal *force, int *seed, PetscReal *gap, PetscReal *normals)
 {
@@ -46,9 +60,21 @@ PetscErrorCode ContactPointGaps(const ContactPair *pair, NeighbourLists lists, c
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Moves the lists' points to (u, t) and projects every slave point. The gaps stand already where the last evaluation
-   was at the same place: three in four, as the solver asks for residual, energy and tangent of each iterate one by one.
- */
+/*@
+  ContactPairProject - moves the points of a pair's lists to (u, t) and projects every slave point.
+
+  Collective
+
+  Input Parameters:
++ contact - the contact
+. pair    - the pair
+. u       - local displacements, u[n_nodes*dim] (length)
+- t       - load parameter
+
+  Note:
+  Nothing is done where the last projection was at the same place. This is so three times in four, as the solver asks
+  for residual, energy and tangent of each iterate one by one.
+@*/
 PetscErrorCode ContactPairProject(Contact contact, ContactPair *pair, const PetscReal *u, PetscReal t)
 {
   PetscBool moved;
@@ -70,7 +96,7 @@ PetscErrorCode ContactPairProject(Contact contact, ContactPair *pair, const Pets
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* An analytic master that moves by d is to the slave nodes as if they had moved by -d. */
+/* An analytic master that moves by d has the same effect as slave nodes that move by -d. */
 static void AnalyticTravel(Contact contact, const ContactPair *pair, PetscReal t, PetscReal t_next, PetscReal *values)
 {
   const int dim = contact->mesh->dim;
@@ -81,8 +107,22 @@ static void AnalyticTravel(Contact contact, const ContactPair *pair, PetscReal t
   for (PetscInt i = 0; i < pair->lists->n_nodes * dim; i++) values[i] -= to[i % dim] - from[i % dim];
 }
 
-/* ContactPairMove - how the contact nodes of a pair move with local displacements x, tools and an analytic master from
-   t to t_next: values[lists n_nodes*dim]. Collective. */
+/*@
+  ContactPairMove - computes how the contact nodes of a pair move with local displacements, with tools and an analytic
+  master.
+
+  Collective
+
+  Input Parameters:
++ contact - the contact
+. pair    - the pair
+. x       - local displacements, x[n_nodes*dim] (length)
+. t       - load parameter where the motion of tools begins
+- t_next  - load parameter where it ends
+
+  Output Parameter:
+. values - values[contact nodes*dim] (length)
+@*/
 PetscErrorCode ContactPairMove(Contact contact, ContactPair *pair, const PetscReal *x, PetscReal t, PetscReal t_next,
                                PetscReal *values)
 {

@@ -1,3 +1,5 @@
+/* How well the surfaces of the pairs lie on each other: overlaps before any load, gaps and penetrations, nodes that
+   both surfaces have. */
 #include "contactimpl.h"
 #include "base/refusal.h"
 #include "mesh/meshdofs.h"
@@ -5,8 +7,8 @@
 /* Gaps below this part of a face size are round-off of coordinates and projections. */
 #define QUALITY_ROUND_OFF 1e-9
 
-/* The place of the node of this value, largest of all ranks: of those that differ by round-off the one of lowest tag.
-   value[c] of each term; tag -1: none has any. */
+/* Finds the node whose value is the largest of all ranks; of nodes that differ by round-off it is the one of lowest
+   tag. value[c] is of each term. Tag -1: no node has any. */
 static PetscErrorCode FindPlace(Mesh mesh, const ContactPair *pair, const PetscReal value[], PetscReal largest,
                                 ContactPlace *place)
 {
@@ -28,9 +30,19 @@ static PetscErrorCode FindPlace(Mesh mesh, const ContactPair *pair, const PetscR
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ContactPairGaps - how the surfaces of pair p lie to each other in the present state.
+/*@
+  ContactPairGaps - measures how the surfaces of a pair lie to each other in the present state; offsets (g_0) do not
+  count.
 
-   Collective, after ContactResidual(); meant for the state before any load. Offsets (g_0) do not count. */
+  Collective
+
+  Input Parameters:
++ contact - the contact, after ContactResidual(); meant for the state before any load
+- p       - number of the pair
+
+  Output Parameter:
+. gaps - counts, gaps and overlaps
+@*/
 PetscErrorCode ContactPairGaps(Contact contact, int p, ContactGaps *gaps)
 {
   const ContactPair *pair     = &contact->pairs[p];
@@ -66,8 +78,8 @@ PetscErrorCode ContactPairGaps(Contact contact, int p, ContactGaps *gaps)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* How far first-order facets lie off the curved surface whose normals turn as theirs do; this rank's sum and number of
- * slave points */
+/* How far first-order facets lie off the curved surface whose normals turn as theirs do: this rank's sum, and its
+   number of slave points. */
 static void SumSagitta(const ContactPair *pair, PetscMPIInt rank, PetscReal sum[2])
 {
   if (!pair->master || pair->master->order > 1) return;
@@ -78,8 +90,19 @@ static void SumSagitta(const ContactPair *pair, PetscMPIInt rank, PetscReal sum[
   }
 }
 
-/* ContactPairQuality - penetrations of pair p in the present state, against the size of its faces and of what facets
- * leave out. Collective. */
+/*@
+  ContactPairQuality - measures the penetrations of a pair in the present state, against the size of its faces and
+  against what facets leave out.
+
+  Collective
+
+  Input Parameters:
++ contact - the contact, after ContactResidual()
+- p       - number of the pair
+
+  Output Parameter:
+. quality - penetrations, sagitta of the facets
+@*/
 PetscErrorCode ContactPairQuality(Contact contact, int p, ContactQuality *quality)
 {
   const ContactPair *pair  = &contact->pairs[p];
@@ -113,8 +136,20 @@ PetscErrorCode ContactPairQuality(Contact contact, int p, ContactQuality *qualit
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ContactPairJoined - how many slave nodes of pair p are nodes of its master as well: there the surfaces are one and
- * never part. Collective. */
+/*@
+  ContactPairJoined - counts the slave nodes of a pair that are nodes of its master as well, where the surfaces are
+  one and never part.
+
+  Collective
+
+  Input Parameters:
++ contact - the contact
+- p       - number of the pair
+
+  Output Parameters:
++ nodes - their number
+- place - one of them, where there is any
+@*/
 PetscErrorCode ContactPairJoined(Contact contact, int p, PetscInt *nodes, ContactPlace *place)
 {
   const ContactPair *pair = &contact->pairs[p];
@@ -142,8 +177,19 @@ PetscErrorCode ContactPairJoined(Contact contact, int p, PetscInt *nodes, Contac
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ContactNodeGap - smallest gap of a local node among all pairs that it is a slave of, in the present state; NaN: of
-   none, no master near, or another rank's node. Not collective. */
+/*@
+  ContactNodeGap - returns the smallest gap of a local node among all pairs that it is a slave of, in the present
+  state (length).
+
+  Not collective
+
+  Input Parameters:
++ contact - the contact
+- node    - local node
+
+  Note:
+  NaN: the node is no slave, no master is near, or it is another rank's.
+@*/
 PetscReal ContactNodeGap(Contact contact, PetscInt node)
 {
   PetscReal gap = NAN;
@@ -178,10 +224,18 @@ static PetscErrorCode PairCheckFacing(Contact contact, const ContactPair *pair)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ContactTakeOverlap - what the scene says of surfaces that overlap before any load: refuses (exit 1) the deepest
-   overlap of each pair that is more than the facets' own sagitta explains, or keeps the overlaps as g_0.
+/*@
+  ContactTakeOverlap - treats surfaces that overlap before any load as the scene asks for.
 
-   Collective; after ContactResidual() with forces, at the undeformed state. The message names pair, node and depth. */
+  Collective
+
+  Input Parameter:
+. contact - the contact, after ContactResidual() with forces at the undeformed state
+
+  Note:
+  With initial_overlap: refuse, it refuses the deepest overlap of each pair that is more than the sagitta of the
+  facets explains; the message names pair, node and depth. With ramp and ignore it keeps the overlaps as g_0.
+@*/
 PetscErrorCode ContactTakeOverlap(Contact contact)
 {
   Mesh mesh = contact->mesh;

@@ -1,7 +1,8 @@
+/* What contact shows to reports, probes and results. Nothing here changes the state. */
 #include "contactimpl.h"
 #include "penaltylaw.h"
 
-/* Nodes outside the window of their penalty, all pairs; -1: no pair has one. */
+/* Nodes outside the window of their penalty, all pairs; -1: no pair has a window. */
 static PetscErrorCode CountOutside(Contact contact, PetscInt *outside)
 {
   PetscFunctionBeginUser;
@@ -16,16 +17,42 @@ static PetscErrorCode CountOutside(Contact contact, PetscInt *outside)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ContactSummarise - counts, penetrations (lengths), penalties and total force of all pairs in the present state, the
-   same on all ranks.
+/* Smallest penetration of the loaded terms of all pairs, all ranks; PETSC_MAX_REAL: none is loaded. largest: force of a
+   term. */
+static PetscErrorCode LeastPenetration(Contact contact, PetscReal largest, PetscReal *least)
+{
+  PetscFunctionBeginUser;
+  *least = PETSC_MAX_REAL;
+  for (int p = 0; p < contact->n_pairs; p++) {
+    const ContactPair *pair = &contact->pairs[p];
 
-   Collective. in and out count against the accepted state: to be called before ContactAccept(). */
+    for (PetscInt c = 0; c < pair->n; c++)
+      if (pair->now.status[c] == CONTACT_CLOSED && ContactTermForce(pair, c) > PENALTY_LOADED * largest)
+        *least = PetscMin(*least, ContactTermOffset(pair, c, pair->t) - pair->now.gap[c]);
+  }
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, least, 1, MPIU_REAL, MPI_MIN, contact->mesh->comm));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ContactSummarise - counts contact and collects penetrations (length), penalties and the total force of all pairs in
+  the present state.
+
+  Collective
+
+  Input Parameter:
+. contact - the contact, before ContactAccept(): changes count against the accepted state
+
+  Output Parameter:
+. summary - the same on all ranks
+@*/
 PetscErrorCode ContactSummarise(Contact contact, ContactSummary *summary)
 {
   PetscInt  count[3] = {0, 0, 0};
-  PetscReal most[5] = {0, 0, PETSC_MIN_REAL, PETSC_MIN_REAL, 0}, total[3] = {0, 0, 0},
-            least = PETSC_MAX_REAL; /* most: penetration, over h, -penalty_min, penalty_max, force of a term */
-  PetscInt outside;
+  PetscReal most[5]  = {0, 0, PETSC_MIN_REAL, PETSC_MIN_REAL, 0}; /* penetration, over h, -penalty_min, penalty_max,
+                                                                     force of a term */
+  PetscReal total[3] = {0, 0, 0}, least;
+  PetscInt  outside;
 
   PetscFunctionBeginUser;
   for (int p = 0; p < contact->n_pairs; p++) {
@@ -49,14 +76,7 @@ PetscErrorCode ContactSummarise(Contact contact, ContactSummary *summary)
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, count, 3, MPIU_INT, MPI_SUM, contact->mesh->comm));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, most, 5, MPIU_REAL, MPI_MAX, contact->mesh->comm));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, total, 3, MPIU_REAL, MPI_SUM, contact->mesh->comm));
-  for (int p = 0; p < contact->n_pairs; p++) {
-    const ContactPair *pair = &contact->pairs[p];
-
-    for (PetscInt c = 0; c < pair->n; c++)
-      if (pair->now.status[c] == CONTACT_CLOSED && ContactTermForce(pair, c) > PENALTY_LOADED * most[4])
-        least = PetscMin(least, ContactTermOffset(pair, c, pair->t) - pair->now.gap[c]);
-  }
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &least, 1, MPIU_REAL, MPI_MIN, contact->mesh->comm));
+  PetscCall(LeastPenetration(contact, most[4], &least));
   PetscCall(CountOutside(contact, &outside));
   *summary = (ContactSummary){.nodes                  = count[0],
                               .in                     = count[1],
@@ -71,10 +91,18 @@ PetscErrorCode ContactSummarise(Contact contact, ContactSummary *summary)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ContactRoundOff - what rounding of positions leaves of the residual where the penalty is largest: penalty times area
-   times machine epsilon times model size.
+/*@
+  ContactRoundOff - estimates what rounding of positions leaves of the residual where the penalty is largest: penalty
+  times area times machine epsilon times model size.
 
-   Collective. *force: the same on all ranks. */
+  Collective
+
+  Input Parameter:
+. contact - the contact
+
+  Output Parameter:
+. force - the same on all ranks
+@*/
 PetscErrorCode ContactRoundOff(Contact contact, PetscReal *force)
 {
   PetscFunctionBeginUser;
@@ -87,10 +115,20 @@ PetscErrorCode ContactRoundOff(Contact contact, PetscReal *force)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ContactGetNodes - what this rank's slave nodes of pair p show: areas, gaps, forces, pressures, normals.
+/*@
+  ContactGetNodes - gets what this rank's slave nodes of a pair show: areas, gaps, forces, pressures, normals.
 
-   Collective. u[n_nodes*dim]: local displacements (length), for the current tributary areas (finite kinematics; else
-   the reference's). The arrays belong to the contact and stand until its next call. */
+  Collective
+
+  Input Parameters:
++ contact - the contact
+. p       - number of the pair
+- u       - local displacements, u[n_nodes*dim] (length), for present tributary areas; with small kinematics those of
+            the reference are taken
+
+  Output Parameter:
+. nodes - arrays of the contact, valid until its next call
+@*/
 PetscErrorCode ContactGetNodes(Contact contact, int p, const PetscReal *u, ContactNodes *nodes)
 {
   ContactPair *pair = &contact->pairs[p];
@@ -110,10 +148,18 @@ PetscErrorCode ContactGetNodes(Contact contact, int p, const PetscReal *u, Conta
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ContactMasterForce - total force of pair p on its master in the present state, the same on all ranks; axisymmetric:
-   over 360 degrees.
+/*@
+  ContactMasterForce - sums the force of a pair on its master in the present state; axisymmetric: over 360 degrees.
 
-   Collective. */
+  Collective
+
+  Input Parameters:
++ contact - the contact
+- p       - number of the pair
+
+  Output Parameter:
+. force - the same on all ranks
+@*/
 PetscErrorCode ContactMasterForce(Contact contact, int p, PetscReal force[3])
 {
   const ContactPair *pair = &contact->pairs[p];
@@ -124,11 +170,22 @@ PetscErrorCode ContactMasterForce(Contact contact, int p, PetscReal force[3])
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ContactGapAt - gap (length) of pair p at a slave node, the same on all ranks.
+/*@
+  ContactGapAt - finds the gap of a pair at a slave node (length), the same on all ranks.
 
-   Collective. u[n_nodes*dim], t: the present state; node_id: the mesh's rank-independent number. The state's own gap
-   where there is one; else the signed distance to the whole master without its mirror images (SearchDistance()). NaN:
-   no node of the slave surface. */
+  Collective
+
+  Input Parameters:
++ contact - the contact
+. p       - number of the pair
+. u       - local displacements of the present state, u[n_nodes*dim] (length)
+. t       - its load parameter
+- node_id - the mesh's number of the node, which does not depend on the ranks
+
+  Output Parameter:
+. gap - the state's own gap where there is one; else the signed distance to the whole master without its mirror
+        images, SearchDistance(); NaN where the node is none of the slave surface
+@*/
 PetscErrorCode ContactGapAt(Contact contact, int p, const PetscReal *u, PetscReal t, PetscInt node_id, PetscReal *gap)
 {
   Mesh               mesh = contact->mesh;
@@ -163,8 +220,20 @@ PetscErrorCode ContactGapAt(Contact contact, int p, const PetscReal *u, PetscRea
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ContactPairPenalty - smallest and largest penalty (force per length and area) of pair p over all ranks. Collective.
- */
+/*@
+  ContactPairPenalty - finds the smallest and the largest penalty of a pair over all ranks (force per length and
+  area).
+
+  Collective
+
+  Input Parameters:
++ contact - the contact
+- p       - number of the pair
+
+  Output Parameters:
++ least - smallest penalty
+- most  - largest penalty
+@*/
 PetscErrorCode ContactPairPenalty(Contact contact, int p, PetscReal *least, PetscReal *most)
 {
   const ContactPair *pair     = &contact->pairs[p];
@@ -181,8 +250,19 @@ PetscErrorCode ContactPairPenalty(Contact contact, int p, PetscReal *least, Pets
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ContactPairSurface - the group of the slave surface of pair p (the mesh's) and its mean face size (length). Not
- * collective. */
+/*@
+  ContactPairSurface - gets the slave surface of a pair.
+
+  Not collective
+
+  Input Parameters:
++ contact - the contact
+- p       - number of the pair
+
+  Output Parameters:
++ slave          - its group, the mesh's
+- mean_face_size - mean size of its faces (length)
+@*/
 PetscErrorCode ContactPairSurface(Contact contact, int p, const MeshGroup **slave, PetscReal *mean_face_size)
 {
   PetscFunctionBeginUser;
@@ -191,76 +271,123 @@ PetscErrorCode ContactPairSurface(Contact contact, int p, const MeshGroup **slav
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ContactPairFits - how the fits of a pair stand: counts by rung, neighbours, guards, and the two errors of the
- * surface. Collective. */
+/* What is counted of the fits of a pair, so that one sum and one maximum over the ranks complete it. */
+typedef struct {
+  PetscInt  rung[RUNGS + 1]; /* slave points by rung, then those that only facets serve */
+  PetscInt  points, neighbours;
+  PetscReal least_neighbours, least_pivot; /* negative, as a maximum is taken */
+  PetscReal most_neighbours, amplified, residual, facets;
+} FitTally;
+
+/* Adds slave point q, which has a master near, to the counts. */
+static PetscErrorCode TallyPoint(const ContactPair *pair, PetscInt q, FitTally *tally)
+{
+  NeighbourLists        lists  = pair->lists;
+  const SmootherResult *result = &pair->work->result;
+  PetscReal             gap;
+  PetscBool             found;
+
+  PetscFunctionBeginUser;
+  tally->points++;
+  tally->rung[lists->fit_n[q] ? lists->rung[q] : RUNGS]++;
+  if (!lists->fit_n[q]) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(ContactPointEvaluate(pair, pair->smoother, lists, q, -1, SMOOTHER_GAP, &found));
+  if (!found || result->facet_served) PetscFunctionReturn(PETSC_SUCCESS);
+  gap = result->gap;
+  tally->neighbours += result->n;
+  tally->least_neighbours = PetscMax(tally->least_neighbours, -(PetscReal)result->n);
+  tally->most_neighbours  = PetscMax(tally->most_neighbours, (PetscReal)result->n);
+  tally->least_pivot      = PetscMax(tally->least_pivot, -lists->pivot[q]);
+  tally->amplified        = PetscMax(tally->amplified, lists->amplified[q]);
+  tally->residual         = PetscMax(tally->residual, lists->residual[q]);
+  PetscCall(ContactPointEvaluate(pair, pair->facets, lists, q, -1, SMOOTHER_GAP, &found));
+  if (result->beyond == 0) tally->facets = PetscMax(tally->facets, PetscAbsReal(result->gap - gap));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Sums and maxima over all ranks. */
+static PetscErrorCode TallyReduce(MPI_Comm comm, FitTally *tally)
+{
+  PetscInt  count[RUNGS + 3];
+  PetscReal most[] = {tally->least_neighbours, tally->least_pivot, tally->most_neighbours,
+                      tally->amplified,        tally->residual,    tally->facets};
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscArraycpy(count, tally->rung, RUNGS + 1));
+  count[RUNGS + 1] = tally->points;
+  count[RUNGS + 2] = tally->neighbours;
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, count, RUNGS + 3, MPIU_INT, MPI_SUM, comm));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, most, 6, MPIU_REAL, MPI_MAX, comm));
+  PetscCall(PetscArraycpy(tally->rung, count, RUNGS + 1));
+  tally->points           = count[RUNGS + 1];
+  tally->neighbours       = count[RUNGS + 2];
+  tally->least_neighbours = most[0];
+  tally->least_pivot      = most[1];
+  tally->most_neighbours  = most[2];
+  tally->amplified        = most[3];
+  tally->residual         = most[4];
+  tally->facets           = most[5];
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ContactPairFits - counts how the fits of a pair turned out: by rung of the ladder, neighbours, guards, and the two
+  errors of the surface.
+
+  Collective
+
+  Input Parameters:
++ contact - the contact
+- p       - number of the pair
+
+  Output Parameter:
+. fits - the same on all ranks; zeros where the master is not fitted
+@*/
 PetscErrorCode ContactPairFits(Contact contact, int p, ContactFits *fits)
 {
-  ContactPair   *pair             = &contact->pairs[p];
-  NeighbourLists lists            = pair->lists;
-  PetscInt       count[RUNGS + 3] = {0}; /* by rung, facets, points, neighbours */
-  PetscReal      most[6]          = {PETSC_MIN_REAL,
-                                     PETSC_MIN_REAL,
-                                     PETSC_MIN_REAL,
-                                     0,
-                                     0,
-                                     0}; /* -fewest, most neighbours, -pivot, Lambda, smoothing, facets */
-  PetscMPIInt    rank;
+  const ContactPair *pair  = &contact->pairs[p];
+  NeighbourLists     lists = pair->lists;
+  FitTally           tally = {.least_neighbours = PETSC_MIN_REAL,
+                              .most_neighbours  = PETSC_MIN_REAL,
+                              .least_pivot      = PETSC_MIN_REAL};
+  PetscMPIInt        rank;
 
   PetscFunctionBeginUser;
   PetscCallMPI(MPI_Comm_rank(contact->mesh->comm, &rank));
-  for (PetscInt q = 0; q < lists->n_slaves; q++) {
-    PetscReal gap;
-    PetscBool found;
-
-    if (!pair->fit.fitted || lists->facet_ptr[q] == lists->facet_ptr[q + 1] || !SlavePointIsOwn(pair->slaves, q, rank))
-      continue;
-    count[RUNGS + 1]++;
-    count[lists->fit_n[q] ? lists->rung[q] : RUNGS]++;
-    if (!lists->fit_n[q]) continue;
-    PetscCall(ContactPointEvaluate(pair, pair->smoother, lists, q, -1, SMOOTHER_GAP, &found));
-    if (!found || pair->work->result.facet_served) continue;
-    gap = pair->work->result.gap;
-    count[RUNGS + 2] += pair->work->result.n;
-    most[0] = PetscMax(most[0], -(PetscReal)pair->work->result.n);
-    most[1] = PetscMax(most[1], (PetscReal)pair->work->result.n);
-    most[2] = PetscMax(most[2], -lists->pivot[q]);
-    most[3] = PetscMax(most[3], lists->amplified[q]);
-    most[4] = PetscMax(most[4], lists->residual[q]);
-    PetscCall(ContactPointEvaluate(pair, pair->facets, lists, q, -1, SMOOTHER_GAP, &found));
-    if (pair->work->result.beyond == 0) most[5] = PetscMax(most[5], PetscAbsReal(pair->work->result.gap - gap));
-  }
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, count, RUNGS + 3, MPIU_INT, MPI_SUM, contact->mesh->comm));
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, most, 6, MPIU_REAL, MPI_MAX, contact->mesh->comm));
-  *fits = (ContactFits){.points          = count[RUNGS + 1],
-                        .plain           = count[0],
-                        .facets          = count[RUNGS],
-                        .amplified       = most[3],
-                        .smoothing_error = most[4],
-                        .facet_error     = most[5]};
+  for (PetscInt q = 0; q < lists->n_slaves && pair->fit.fitted; q++)
+    if (lists->facet_ptr[q] < lists->facet_ptr[q + 1] && SlavePointIsOwn(pair->slaves, q, rank))
+      PetscCall(TallyPoint(pair, q, &tally));
+  PetscCall(TallyReduce(contact->mesh->comm, &tally));
+  *fits = (ContactFits){.points          = tally.points,
+                        .plain           = tally.rung[0],
+                        .facets          = tally.rung[RUNGS],
+                        .amplified       = tally.amplified,
+                        .smoothing_error = tally.residual,
+                        .facet_error     = tally.facets};
   for (int r = 1; r < RUNGS; r++)
-    *(r <= RUNG_WIDER ? &fits->wider : r <= RUNG_DEGREE_2 ? &fits->degree_2 : &fits->linear) += count[r];
+    *(r <= RUNG_WIDER ? &fits->wider : r <= RUNG_DEGREE_2 ? &fits->degree_2 : &fits->linear) += tally.rung[r];
   if (fits->points > fits->facets) {
-    fits->neighbours_min  = (PetscInt)-most[0];
-    fits->neighbours_max  = (PetscInt)most[1];
-    fits->neighbours_mean = (PetscReal)count[RUNGS + 2] / (fits->points - fits->facets);
-    fits->pivot           = -most[2];
+    fits->neighbours_min  = (PetscInt)-tally.least_neighbours;
+    fits->neighbours_max  = (PetscInt)tally.most_neighbours;
+    fits->neighbours_mean = (PetscReal)tally.neighbours / (fits->points - fits->facets);
+    fits->pivot           = -tally.least_pivot;
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /*@
-  ContactPairText - writes what touches what, and how, into the caller's buffer, such as "plate_bottom on pipe_outer,
-  diffuse, degree 4, support 3.6, weight 3.5".
+  ContactPairText - writes what touches what, and how, such as "plate_bottom on pipe_outer, diffuse, degree 4, support
+  3.6, weight 3.5".
 
   Not collective
 
   Input Parameters:
 + contact - the contact
 . p       - number of the pair
-- size    - characters that the buffer holds
+- size    - characters that the text holds
 
   Output Parameter:
-. text - the text, cut where the buffer ends
+. text - the caller's buffer; the text is cut where it ends
 @*/
 PetscErrorCode ContactPairText(Contact contact, int p, char *text, size_t size)
 {

@@ -1,7 +1,7 @@
 /* Forces and energy of contact, and what a linear step or a prediction counts on. */
 #include "contactimpl.h"
 
-/* Direction of a term's contact: the mean of its points'. */
+/* Direction of a term's contact: the mean of its points' normals. */
 static void TermNormal(ContactPair *pair, PetscInt c)
 {
   PetscReal *normal = &pair->normal[3 * c], length = 0;
@@ -15,7 +15,7 @@ static void TermNormal(ContactPair *pair, PetscInt c)
   for (int d = 0; d < 3 && length > 0; d++) normal[d] /= PetscSqrtReal(length);
 }
 
-/* Adds the forces of the loaded slave points to the contact nodes' values. */
+/* Adds the forces of the loaded slave points to the values of the contact nodes. */
 static PetscErrorCode PairForces(ContactPair *pair, PetscReal *values)
 {
   const int                dim = pair->mesh->dim;
@@ -34,8 +34,8 @@ static PetscErrorCode PairForces(ContactPair *pair, PetscReal *values)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Normal nodal forces of terms that share their points: the points' forces by the hat functions, those of terms on
- * other ranks too. */
+/* Normal nodal forces of terms that share their points. The hat functions distribute the points' forces, also to
+   terms of other ranks. */
 static PetscErrorCode PairSharedForces(ContactPair *pair)
 {
   const int      dim   = pair->mesh->dim;
@@ -53,6 +53,7 @@ static PetscErrorCode PairSharedForces(ContactPair *pair)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Forces, energy and squared forces of one pair. */
 static PetscErrorCode PairResidual(Contact contact, ContactPair *pair, const PetscReal *u, PetscReal t, PetscReal *f,
                                    PetscReal *energy, PetscReal *force2)
 {
@@ -87,12 +88,22 @@ static PetscErrorCode PairResidual(Contact contact, ContactPair *pair, const Pet
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ContactHoldActiveSet - between the two calls what is in contact at the first one stays so, pressed or pulled, in
-   residual and tangent.
+/*@
+  ContactHoldActiveSet - begins or ends a linear step, in which what is in contact stays so, pressed or pulled, in
+  residual and tangent.
 
-   Not collective. For a linear step from a solution: fresh lists and offsets move the surfaces a little, which is a
-   load of the step, not an opening. touching: what is open within ContactTouchTolerance() is closed too (Chamoret et
-   al. start from surfaces that touch). */
+  Not collective
+
+  Input Parameters:
++ contact  - the contact
+. holding  - PETSC_TRUE begins the step at the present state, PETSC_FALSE ends it
+- touching - what is open within ContactTouchTolerance() is closed too; Chamoret et al. (2004) start from surfaces
+             that touch
+
+  Note:
+  Fresh lists and offsets move the surfaces a little. In a linear step from a solution this is a load of the step, not
+  an opening.
+@*/
 PetscErrorCode ContactHoldActiveSet(Contact contact, PetscBool holding, PetscBool touching)
 {
   PetscFunctionBeginUser;
@@ -107,14 +118,27 @@ PetscErrorCode ContactHoldActiveSet(Contact contact, PetscBool holding, PetscBoo
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ContactResidual - contact forces, energy and their unassembled norm at (u, t).
+/*@
+  ContactResidual - computes contact forces, energy and the sum of squared forces at (u, t).
 
-   Collective, with the same arguments NULL on all ranks. u[n_nodes*dim]: local displacements (length). f[n_nodes*dim]:
-   contact forces are subtracted as external ones are, complete at owned nodes; with f gaps, status and nodal forces
-   become the present state. energy, force2 (sum of the squared forces of the terms on either side): this rank's, added
-   to. Each of the three may be NULL.
+  Collective
 
-   Source: Chamoret et al. 2004, eq. 12 and 15. */
+  Input Parameters:
++ contact - the contact, with lists
+. u       - local displacements, u[n_nodes*dim] (length), ghosts included
+- t       - load parameter
+
+  Input/Output Parameters:
++ f      - contact forces are subtracted as external ones are, f[n_nodes*dim], complete at owned nodes; or NULL
+. energy - this rank's energy is added; or NULL
+- force2 - the sum of the squared forces of this rank's terms, on either side, is added; or NULL
+
+  Notes:
+  With f, the gaps, status and nodal forces become the present state. Each of the three is NULL on all ranks or on
+  none.
+
+  Source: Chamoret et al. (2004), eqs 12 and 15.
+@*/
 PetscErrorCode ContactResidual(Contact contact, const PetscReal *u, PetscReal t, PetscReal *f, PetscReal *energy,
                                PetscReal *force2)
 {
@@ -126,8 +150,14 @@ PetscErrorCode ContactResidual(Contact contact, const PetscReal *u, PetscReal t,
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ContactMarkPredicted - what is in contact now is what ContactUnpredictedEnergy() takes for foreseen. Not collective.
- */
+/*@
+  ContactMarkPredicted - notes what is in contact now as what a prediction counts on.
+
+  Not collective
+
+  Input Parameter:
+. contact - the contact
+@*/
 PetscErrorCode ContactMarkPredicted(Contact contact)
 {
   PetscFunctionBeginUser;
@@ -139,10 +169,19 @@ PetscErrorCode ContactMarkPredicted(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ContactUnpredictedEnergy - energy of the terms in contact at (u, t) that ContactMarkPredicted() found open, of this
-   rank, added to.
+/*@
+  ContactUnpredictedEnergy - adds the energy of those terms in contact at (u, t) that the prediction did not count on.
 
-   Collective. u[n_nodes*dim]: local displacements (length). */
+  Collective
+
+  Input Parameters:
++ contact - the contact
+. u       - local displacements, u[n_nodes*dim] (length), ghosts included
+- t       - load parameter
+
+  Input/Output Parameter:
+. energy - this rank's energy is added
+@*/
 PetscErrorCode ContactUnpredictedEnergy(Contact contact, const PetscReal *u, PetscReal t, PetscReal *energy)
 {
   PetscFunctionBeginUser;

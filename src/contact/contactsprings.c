@@ -1,9 +1,10 @@
+/* Weak springs that hold bodies until contact does. */
 #include "contact/contactsprings.h"
 #include "contactimpl.h"
 
 /* Stiffness of the springs as a part of the automatic penalty, which is the stiffness of the elements at the surface.
-   Each pass leaves about this part (times the elements through a body) of the force of the pass before; a body that
-   flies covers its penetration at rest divided by this in one pass. */
+   Each pass leaves about this part, times the number of elements through a body, of the force of the pass before. A
+   body that nothing holds moves in one pass by its penetration at rest divided by this part. */
 #define CONTACT_SPRINGS_STIFFNESS 1e-3
 
 struct _n_Stabiliser {
@@ -31,12 +32,21 @@ static PetscErrorCode AddSurface(ContactSurface surface, Geometry geometry, Pets
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ContactSpringsCreate - springs on the deformable surfaces of all pairs that ask for it, slave and master.
+/*@
+  ContactSpringsCreate - makes springs on the deformable surfaces of all pairs that ask for it, slave and master.
 
-   Collective. The contact is borrowed for the call. like: vector of the free dofs, whose layout is taken; the anchor is
-   0.
+  Collective
 
-   Source: the proximal point method (Rockafellar 1976) on the potential energy. */
+  Input Parameters:
++ contact - the contact, borrowed for the call
+- like    - a vector of the free dofs, whose layout is taken
+
+  Output Parameter:
+. out - the springs, without force at displacements of 0; NULL where no pair asks for them
+
+  Note:
+  Source: the proximal point method (Rockafellar 1976) on the potential energy.
+@*/
 PetscErrorCode ContactSpringsCreate(Contact contact, Vec like, ContactSprings *out)
 {
   ContactSprings s;
@@ -67,7 +77,14 @@ PetscErrorCode ContactSpringsCreate(Contact contact, Vec like, ContactSprings *o
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ContactSpringsDestroy - Collective. */
+/*@
+  ContactSpringsDestroy - frees the springs.
+
+  Collective
+
+  Input Parameter:
+. s - the springs; set to NULL
+@*/
 PetscErrorCode ContactSpringsDestroy(ContactSprings *s)
 {
   PetscFunctionBeginUser;
@@ -79,7 +96,15 @@ PetscErrorCode ContactSpringsDestroy(ContactSprings *s)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ContactSpringsRelax - the springs' ends follow to x (free displacements), where their force is 0. Collective. */
+/*@
+  ContactSpringsRelax - moves the anchors of all springs, so that they are without force at x.
+
+  Collective
+
+  Input Parameters:
++ s - the springs, or NULL
+- x - free displacements (length)
+@*/
 PetscErrorCode ContactSpringsRelax(ContactSprings s, Vec x)
 {
   PetscFunctionBeginUser;
@@ -87,7 +112,7 @@ PetscErrorCode ContactSpringsRelax(ContactSprings s, Vec x)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Their forces at x, into the work vector */
+/* The springs' forces at x, into the work vector. */
 static PetscErrorCode SpringForces(ContactSprings s, Vec x)
 {
   PetscFunctionBeginUser;
@@ -96,7 +121,18 @@ static PetscErrorCode SpringForces(ContactSprings s, Vec x)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ContactSpringsResidual - F += the springs' forces at x. Collective. */
+/*@
+  ContactSpringsResidual - adds the springs' forces to the residual.
+
+  Collective
+
+  Input Parameters:
++ s - the springs, or NULL: nothing is added
+- x - free displacements (length)
+
+  Input/Output Parameter:
+. F - residual
+@*/
 PetscErrorCode ContactSpringsResidual(ContactSprings s, Vec x, Vec F)
 {
   PetscFunctionBeginUser;
@@ -106,7 +142,19 @@ PetscErrorCode ContactSpringsResidual(ContactSprings s, Vec x, Vec F)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ContactSpringsLoad - norm of the springs' forces and their energy at x; 0 without springs. Collective. */
+/*@
+  ContactSpringsLoad - finds the norm of the springs' forces and the energy in them.
+
+  Collective
+
+  Input Parameters:
++ s - the springs, or NULL
+- x - free displacements (length)
+
+  Output Parameters:
++ force  - norm of the forces
+- energy - of all springs
+@*/
 PetscErrorCode ContactSpringsLoad(ContactSprings s, Vec x, PetscReal *force, PetscReal *energy)
 {
   PetscScalar work[2] = {0, 0};
@@ -122,7 +170,18 @@ PetscErrorCode ContactSpringsLoad(ContactSprings s, Vec x, PetscReal *force, Pet
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ContactSpringsEnergy - adds the springs' energy at x. Collective. */
+/*@
+  ContactSpringsEnergy - adds the springs' energy, the sum over all ranks.
+
+  Collective
+
+  Input Parameters:
++ s - the springs, or NULL
+- x - free displacements (length)
+
+  Input/Output Parameter:
+. energy - the energy
+@*/
 PetscErrorCode ContactSpringsEnergy(ContactSprings s, Vec x, PetscReal *energy)
 {
   PetscReal force, mine;
@@ -133,7 +192,17 @@ PetscErrorCode ContactSpringsEnergy(ContactSprings s, Vec x, PetscReal *energy)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ContactSpringsTangent - A += the springs' stiffness, on the diagonal. Collective. */
+/*@
+  ContactSpringsTangent - adds the springs' stiffness to the diagonal of a matrix.
+
+  Collective
+
+  Input Parameter:
+. s - the springs, or NULL
+
+  Input/Output Parameter:
+. A - the tangent
+@*/
 PetscErrorCode ContactSpringsTangent(ContactSprings s, Mat A)
 {
   PetscFunctionBeginUser;

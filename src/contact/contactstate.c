@@ -1,7 +1,18 @@
+/* What a contact pair remembers from step to step: memory, copies, and a place in a checkpoint. */
 #include "contact/contactstate.h"
 
-/* ContactStateCreate - open, unstressed, gaps unknown. Not collective. n: slave nodes; penalty: force per length and
- * area. */
+/*@
+  ContactStateCreate - makes a state in which all nodes are open, without force, and their gaps unknown.
+
+  Not collective
+
+  Input Parameters:
++ n       - slave nodes of this rank
+- penalty - of every node (force per length and area)
+
+  Output Parameter:
+. state - the state
+@*/
 PetscErrorCode ContactStateCreate(PetscInt n, PetscReal penalty, ContactState *state)
 {
   PetscFunctionBeginUser;
@@ -15,7 +26,17 @@ PetscErrorCode ContactStateCreate(PetscInt n, PetscReal penalty, ContactState *s
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ContactStateCopy - everything, between states of one size. Not collective. */
+/*@
+  ContactStateCopy - copies a state to another one of the same size.
+
+  Not collective
+
+  Input Parameter:
+. from - the state
+
+  Output Parameter:
+. to - the copy
+@*/
 PetscErrorCode ContactStateCopy(const ContactState *from, ContactState *to)
 {
   PetscFunctionBeginUser;
@@ -33,7 +54,14 @@ PetscErrorCode ContactStateCopy(const ContactState *from, ContactState *to)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ContactStateDestroy - Not collective. */
+/*@
+  ContactStateDestroy - frees the arrays of a state.
+
+  Not collective
+
+  Input Parameter:
+. state - the state
+@*/
 PetscErrorCode ContactStateDestroy(ContactState *state)
 {
   PetscFunctionBeginUser;
@@ -41,8 +69,22 @@ PetscErrorCode ContactStateDestroy(ContactState *state)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ContactStateArchive - Collective. name: where it stands in the archive; nodes: the rows of the state's n slave nodes.
- */
+/*@
+  ContactStateArchive - saves or loads a state by node.
+
+  Collective
+
+  Input Parameters:
++ archive - says whether it saves or loads
+. name    - place in the archive
+- nodes   - rows of the state's slave nodes
+
+  Input/Output Parameter:
+. state - the state
+
+  Note:
+  Counts are stored as sums over all ranks. Loaded, they are on rank 0, as only their sums matter.
+@*/
 PetscErrorCode ContactStateArchive(ContactState *state, Archive archive, const char *name, const Hdf5Table *nodes)
 {
   PetscReal *const   values[]  = {state->penalty, NULL, state->gap, state->offset, state->multiplier};
@@ -70,6 +112,6 @@ PetscErrorCode ContactStateArchive(ContactState *state, Archive archive, const c
   PetscCall(PetscSNPrintf(path, sizeof(path), "%s/updates", name));
   PetscCall(ArchiveIntegers(archive, path, PETSC_STATIC_ARRAY_LENGTH(updates), all));
   for (size_t k = 0; k < PETSC_STATIC_ARRAY_LENGTH(updates) && ArchiveLoads(archive); k++)
-    *updates[k] = rank ? 0 : all[k]; /* counts of all ranks together: where they stand does not matter */
+    *updates[k] = rank ? 0 : all[k];
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -1,10 +1,12 @@
+/* Contact along a linear step: the terms that may open or close on it, and their first variations. */
 #include "contact/contactstep.h"
 #include "contactimpl.h"
 
-/* Gaps change by the motions of two bodies; and as what opens or closes changes the step, by more than the step as it
- * is says. */
+/* Multiple of the longest motion of a step up to which gaps may be reached by it. Gaps change by the motions of two
+   bodies, and by more than the first solution of the step says, because what opens or closes changes the step. */
 #define STEP_REACH 3
-/* Numbers of a ActiveSetTerm */
+
+/* Numbers of an ActiveSetTerm, as they are sent between ranks. */
 #define STEP_TERM 4
 
 struct _n_ContactStep {
@@ -19,8 +21,8 @@ struct _n_ContactStep {
   PetscReal     *N;          /* dim for each of these */
 };
 
-/* How contact nodes of a pair move with du, tools and an analytic master included: values[lists n_nodes*dim], the
- * caller's. */
+/* How the contact nodes of a pair move with du, tools and an analytic master included: values[contact nodes*dim], to
+   be freed by the caller. */
 static PetscErrorCode PairMove(Contact contact, ContactPair *pair, const PetscReal *du, PetscReal t, PetscReal t_next,
                                PetscReal **values)
 {
@@ -30,7 +32,7 @@ static PetscErrorCode PairMove(Contact contact, ContactPair *pair, const PetscRe
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Longest motion of a pair's contact nodes, all ranks */
+/* Longest motion of a pair's contact nodes, over all ranks. */
 static PetscErrorCode PairStepMotion(Contact contact, ContactPair *pair, const PetscReal *du, PetscReal t,
                                      PetscReal t_next, PetscReal *motion)
 {
@@ -51,8 +53,8 @@ static PetscErrorCode PairStepMotion(Contact contact, ContactPair *pair, const P
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Adds a term of a pair, in its state at the last projection and without its variation, if the step may reach its gap.
- */
+/* Adds a term of a pair, in its state at the last projection and without its variation, if the step may reach its
+   gap. */
 static void AddTerm(ContactStep step, int p, PetscInt c, PetscReal t)
 {
   const ContactPair *pair  = &step->contact->pairs[p];
@@ -62,7 +64,7 @@ static void AddTerm(ContactStep step, int p, PetscInt c, PetscReal t)
 
   ContactTermLaw(pair, c, t, &value, &opening, &step->area[step->mine]);
   opening -= LawOnsetGap(&state);
-  if (!(PetscAbsReal(opening) <= step->reach[p])) return; /* nor where no master is near */
+  if (!(PetscAbsReal(opening) <= step->reach[p])) return; /* also where no master is near: NaN */
   step->terms[step->mine]  = (ActiveSetTerm){.opening   = opening,
                                              .pressure  = value.pressure,
                                              .stiffness = pair->stiffness[c],
@@ -71,7 +73,7 @@ static void AddTerm(ContactStep step, int p, PetscInt c, PetscReal t)
   step->term[step->mine++] = c;
 }
 
-/* Adds the variations of a pair's terms, the last ones from `from` on. */
+/* Adds the variations of those terms of a pair that were added from number `from` on. */
 static PetscErrorCode AddVariations(ContactStep step, int p, PetscInt from)
 {
   const ContactPair *pair = &step->contact->pairs[p];
@@ -99,7 +101,7 @@ static PetscErrorCode AddVariations(ContactStep step, int p, PetscInt from)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The terms of a pair whose gaps the step may reach. */
+/* Adds the terms of a pair whose gaps the step may reach. */
 static PetscErrorCode AddPair(ContactStep step, int p, const PetscReal *u, PetscReal t)
 {
   ContactPair   *pair = &step->contact->pairs[p];
@@ -112,7 +114,7 @@ static PetscErrorCode AddPair(ContactStep step, int p, const PetscReal *u, Petsc
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* size values of each of my terms in their places among those of all ranks. */
+/* Gathers `size` values of each of my terms into their places among those of all ranks. */
 static PetscErrorCode Gather(ContactStep step, PetscInt size, const PetscReal *mine, PetscReal *all)
 {
   MPI_Comm     comm = step->contact->mesh->comm;
@@ -126,7 +128,7 @@ static PetscErrorCode Gather(ContactStep step, PetscInt size, const PetscReal *m
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* My terms become those of all ranks. */
+/* The list of my terms becomes that of all ranks. */
 static PetscErrorCode GatherTerms(ContactStep step)
 {
   MPI_Comm       comm = step->contact->mesh->comm;
@@ -159,11 +161,22 @@ static PetscErrorCode GatherTerms(ContactStep step)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ContactStepCreate - the terms whose gaps the step may reach.
+/*@
+  ContactStepCreate - chooses the terms whose gaps a linear step may reach.
 
-   Collective. u, du[n_nodes*dim]: local displacements and their change (length), ghosts included.
-   ContactHoldActiveSet() holds what it does until the step is taken.
- */
+  Collective
+
+  Input Parameters:
++ contact - the contact, with the last residual and tangent at (u, t); what ContactHoldActiveSet() holds must stay
+            until the step is taken
+. u       - local displacements, u[n_nodes*dim] (length), ghosts included
+. du      - their change in the step, du[n_nodes*dim] (length), ghosts included
+. t       - load parameter where the step begins
+- t_next  - load parameter to which tools move
+
+  Output Parameter:
+. out - the step
+@*/
 PetscErrorCode ContactStepCreate(Contact contact, const PetscReal *u, const PetscReal *du, PetscReal t,
                                  PetscReal t_next, ContactStep *out)
 {
@@ -188,7 +201,14 @@ PetscErrorCode ContactStepCreate(Contact contact, const PetscReal *u, const Pets
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ContactStepDestroy - Not collective. */
+/*@
+  ContactStepDestroy - frees a step.
+
+  Not collective
+
+  Input Parameter:
+. step - the step; set to NULL
+@*/
 PetscErrorCode ContactStepDestroy(ContactStep *step)
 {
   ContactStep s = *step;
@@ -205,7 +225,18 @@ PetscErrorCode ContactStepDestroy(ContactStep *step)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ContactStepGetTerms - Not collective. */
+/*@
+  ContactStepGetTerms - gets the terms of all ranks.
+
+  Not collective
+
+  Input Parameter:
+. step - the step
+
+  Output Parameters:
++ n     - number of terms, the same on all ranks
+- terms - they belong to the step
+@*/
 PetscErrorCode ContactStepGetTerms(ContactStep step, PetscInt *n, const ActiveSetTerm **terms)
 {
   PetscFunctionBeginUser;
@@ -214,7 +245,7 @@ PetscErrorCode ContactStepGetTerms(ContactStep step, PetscInt *n, const ActiveSe
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The change of a term's gap, summed by components so that a product does not wait for the one before it. */
+/* Change of a term's gap. It is summed by components, so that no product waits for the one before it. */
 static inline PetscReal TermTravel(const int dim, const PetscReal *N, PetscInt n, const PetscInt *node,
                                    const PetscReal *values)
 {
@@ -225,7 +256,20 @@ static inline PetscReal TermTravel(const int dim, const PetscReal *N, PetscInt n
   return sum[0] + sum[1] + sum[2];
 }
 
-/* ContactStepTravel - change of the gaps (length) with du, to first order. Collective. */
+/*@
+  ContactStepTravel - computes how local displacements change the gaps, to first order.
+
+  Collective
+
+  Input Parameters:
++ step   - the step
+. du     - local displacements, du[n_nodes*dim] (length), prescribed ones included
+. t      - load parameter where the motion of tools begins
+- t_next - load parameter where it ends
+
+  Output Parameter:
+. travel - travel[n] of the terms of all ranks (length)
+@*/
 PetscErrorCode ContactStepTravel(ContactStep step, const PetscReal *du, PetscReal t, PetscReal t_next,
                                  PetscReal *travel)
 {
@@ -250,7 +294,20 @@ PetscErrorCode ContactStepTravel(ContactStep step, const PetscReal *du, PetscRea
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ContactStepWithin - Collective. du, t, t_next: as of ContactStepCreate(). */
+/*@
+  ContactStepWithin - says whether local displacements go no farther than the terms were chosen for.
+
+  Collective
+
+  Input Parameters:
++ step   - the step
+. du     - local displacements, du[n_nodes*dim] (length)
+. t      - load parameter where the motion of tools begins
+- t_next - load parameter where it ends
+
+  Output Parameter:
+. within - the same on all ranks
+@*/
 PetscErrorCode ContactStepWithin(ContactStep step, const PetscReal *du, PetscReal t, PetscReal t_next,
                                  PetscBool *within)
 {
@@ -265,7 +322,21 @@ PetscErrorCode ContactStepWithin(ContactStep step, const PetscReal *du, PetscRea
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ContactStepForces - Collective. which[m]: numbers of terms, the same on all ranks. */
+/*@
+  ContactStepForces - computes the forces of a pressure of 1 on each of some terms, against the opening of its gap,
+  over the free dofs.
+
+  Collective
+
+  Input Parameters:
++ step  - the step
+. rows  - rows of the matrix on this rank
+. m     - number of terms
+- which - numbers of the terms, the same on all ranks
+
+  Output Parameter:
+. B - dense matrix with m columns; the caller destroys it
+@*/
 PetscErrorCode ContactStepForces(ContactStep step, PetscInt rows, PetscInt m, const PetscInt *which, Mat *B)
 {
   const int dim = step->contact->mesh->dim;
@@ -285,7 +356,15 @@ PetscErrorCode ContactStepForces(ContactStep step, PetscInt rows, PetscInt m, co
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ContactStepMarkPredicted - Not collective. */
+/*@
+  ContactStepMarkPredicted - notes what presses at the end of a step that predicts, for ContactUnpredictedEnergy().
+
+  Not collective
+
+  Input Parameters:
++ step    - the step
+- pressed - pressed[n] of the terms of all ranks
+@*/
 PetscErrorCode ContactStepMarkPredicted(ContactStep step, const PetscBool *pressed)
 {
   PetscFunctionBeginUser;

@@ -1,9 +1,9 @@
 /* The tangent of the contact forces, and its product with a vector. */
 #include "contactimpl.h"
 
-/* Pressure whose turning with the surface counts in a tangent: in a linear step that of the accepted state, not what
-   pulls a term to its place. The state before any load is in no equilibrium: its overlaps pull, and their pressure
-   grows with the penalty until the tangent is indefinite. */
+/* Pressure whose turning with the surface counts in a tangent. In a linear step this is the pressure of the accepted
+   state, not what pulls a term to its place. The state before any load is in no equilibrium: its overlaps pull, and
+   their pressure grows with the penalty until the tangent is indefinite. It therefore counts for nothing there. */
 static PetscReal TermTurningPressure(const ContactPair *pair, PetscInt c, PetscReal t, const LawValue *value)
 {
   const ContactState *accepted = &pair->accepted;
@@ -15,7 +15,8 @@ static PetscReal TermTurningPressure(const ContactPair *pair, PetscInt c, PetscR
            : 0;
 }
 
-/* Stiffness of the terms, 0 where they take no part, and the forces of slave points that turn with the surface. */
+/* Finds the stiffness of the terms, 0 where they take no part, and the forces of slave points that turn with the
+   surface. */
 static PetscErrorCode PairStiffness(Contact contact, ContactPair *pair, const PetscReal *u, PetscReal t)
 {
   PetscFunctionBeginUser;
@@ -43,7 +44,7 @@ static PetscErrorCode NameBlock(Contact contact, const ContactPair *pair, int p,
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The loaded points of a face, which share most of their nodes */
+/* Lists the loaded points of a face, which share most of their nodes. */
 static PetscInt FacePoints(const ContactPair *pair, PetscInt face, PetscInt points[FACE_RULE_POINTS])
 {
   PetscInt n = 0;
@@ -53,7 +54,8 @@ static PetscInt FacePoints(const ContactPair *pair, PetscInt face, PetscInt poin
   return n;
 }
 
-/* Names the blocks of a pair: one for each active term, and where terms share their points one for each loaded face. */
+/* Names the blocks of a pair: one for each active term and, where terms share their points, one for each loaded face.
+ */
 static PetscErrorCode PairName(Contact contact, const ContactPair *pair, int p)
 {
   PetscInt points[FACE_RULE_POINTS];
@@ -68,8 +70,8 @@ static PetscErrorCode PairName(Contact contact, const ContactPair *pair, int p)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The block A psi'' Nbar Nbar^T of a term, which stands alone where it shares its points; else with -p M of its one
- * point. */
+/* Adds the block A psi'' Nbar Nbar^T of a term. It stands alone where the term shares its points; else it comes with
+   -p M of its one point. */
 static PetscErrorCode TermBlock(Contact contact, const ContactPair *pair, int p, PetscInt c, PetscInt n,
                                 const PetscInt *nodes, double (*own)[FIT_DERIVATIVES_OWN])
 {
@@ -93,7 +95,8 @@ static PetscErrorCode TermBlock(Contact contact, const ContactPair *pair, int p,
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The block -sum p M of the points of one face: their second variations are summed before they are taken apart. */
+/* Adds the block -sum p M of the points of one face, whose second variations are summed before they are carried to
+   nodes. */
 static PetscErrorCode FaceBlock(Contact contact, const ContactPair *pair, int p, PetscInt face, PetscInt n,
                                 const PetscInt *nodes, double (*own)[FIT_DERIVATIVES_OWN])
 {
@@ -109,8 +112,8 @@ static PetscErrorCode FaceBlock(Contact contact, const ContactPair *pair, int p,
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Blocks of what belongs to the fit points one by one, for all slave points at once: one for the points of a face,
- * which are made of the same nodes. */
+/* Adds what belongs to the fit points one by one, for all slave points at once. Points of one face are made of the
+   same nodes and share a block. */
 static PetscErrorCode OwnBlocks(Contact contact, const ContactPair *pair, int p,
                                 const double (*own)[FIT_DERIVATIVES_OWN])
 {
@@ -137,7 +140,7 @@ static PetscErrorCode OwnBlocks(Contact contact, const ContactPair *pair, int p,
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Adds the blocks of a pair as PairName() named them, from block number *block on. */
+/* Adds the blocks of a pair in the order in which PairName() named them, from block number *block on. */
 static PetscErrorCode PairBlocks(Contact contact, ContactPair *pair, int p, PetscInt *block)
 {
   const PetscInt  faces = pair->formulation.surface ? pair->slaves->n_faces : 0;
@@ -163,7 +166,17 @@ static PetscErrorCode PairBlocks(Contact contact, ContactPair *pair, int p, Pets
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Rows of the contact matrix on this rank: the free dofs that it owns */
+/*@
+  ContactMatrixRows - counts the rows of the contact matrix on this rank: the free dofs that it owns.
+
+  Not collective
+
+  Input Parameter:
+. contact - the contact
+
+  Output Parameter:
+. rows - their number
+@*/
 PetscErrorCode ContactMatrixRows(Contact contact, PetscInt *rows)
 {
   PetscSection section;
@@ -174,7 +187,7 @@ PetscErrorCode ContactMatrixRows(Contact contact, PetscInt *rows)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Names all blocks and finds their places. */
+/* Names all blocks and finds their places in the matrix. */
 static PetscErrorCode PlaceBlocks(Contact contact, PetscBool *changed)
 {
   const PetscInt **dof;
@@ -194,11 +207,24 @@ static PetscErrorCode PlaceBlocks(Contact contact, PetscBool *changed)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ContactTangent - the derivative of ContactResidual()'s forces by the free displacements: A (psi'' N N^T - p M) for
-   each closed term, p its pressure.
+/*@
+  ContactTangent - computes the derivative of ContactResidual()'s forces with respect to the free displacements.
 
-   Collective. u, t: as of ContactResidual(). *C: over the global free dofs, the contact's own; *changed: its pattern is
-   new. Source: Chamoret et al. 2004, eq. 14. */
+  Collective
+
+  Input Parameters:
++ contact - the contact, with lists
+. u       - local displacements, u[n_nodes*dim] (length), ghosts included
+- t       - load parameter
+
+  Output Parameters:
++ C       - matrix over the global free dofs; it belongs to the contact
+- changed - PETSC_TRUE where its pattern is new
+
+  Note:
+  It is the sum of A (psi'' N N^T - p M) over the closed terms, p being the pressure. Source: Chamoret et al. (2004),
+  eq. 14.
+@*/
 PetscErrorCode ContactTangent(Contact contact, const PetscReal *u, PetscReal t, Mat *C, PetscBool *changed)
 {
   PetscInt block = 0;
@@ -216,10 +242,17 @@ PetscErrorCode ContactTangent(Contact contact, const PetscReal *u, PetscReal t, 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ContactMultiplyBegin - the next ContactTangent() is multiplied with x, prescribed dofs included.
+/*@
+  ContactMultiplyBegin - begins a product: the next ContactTangent() is multiplied with x, prescribed dofs included.
 
-   Collective. x[n_nodes*dim]: local displacements (length), ghosts included, to which the rigid tools' motion from t to
-   t_next is joined. Lists stay until ContactMultiplyEnd(). */
+  Collective
+
+  Input Parameters:
++ contact - the contact; its lists must stay until ContactMultiplyEnd()
+. x       - local displacements, x[n_nodes*dim] (length), ghosts included
+. t       - load parameter where the motion of rigid tools begins, which is joined to x
+- t_next  - load parameter where it ends
+@*/
 PetscErrorCode ContactMultiplyBegin(Contact contact, const PetscReal *x, PetscReal t, PetscReal t_next)
 {
   PetscFunctionBeginUser;
@@ -235,9 +268,17 @@ PetscErrorCode ContactMultiplyBegin(Contact contact, const PetscReal *x, PetscRe
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ContactMultiplyEnd - y += C x of the tangent since ContactMultiplyBegin().
+/*@
+  ContactMultiplyEnd - adds C x of the tangent since ContactMultiplyBegin().
 
-   Collective. y[n_nodes*dim]: local forces, complete at owned nodes. */
+  Collective
+
+  Input Parameter:
+. contact - the contact
+
+  Input/Output Parameter:
+. y - local forces, y[n_nodes*dim], complete at owned nodes
+@*/
 PetscErrorCode ContactMultiplyEnd(Contact contact, PetscReal *y)
 {
   PetscFunctionBeginUser;

@@ -1,18 +1,40 @@
 /* One contact term: its gap, its state for the law, what the law says of it, and its tolerances. */
 #include "contactimpl.h"
 
-/* Touching start: a gap within this fraction of the face size is no gap, whatever the curvature. */
+/* Two surfaces that are apart by no more than this fraction of the face size touch, whatever their curvature. */
 #define CONTACT_TOUCH 1e-6
 
-/* What is left at t of the gap that the surfaces had before any load: all of an ignored overlap, a shrinking part of a
- * ramped one. */
+/*@
+  ContactTermOffset - returns g_0 of a term: what is left at t of the gap that the surfaces had before any load.
+
+  Not collective
+
+  Input Parameters:
++ pair - the pair
+. c    - the term
+- t    - load parameter
+
+  Note:
+  All of an ignored overlap is left, and a shrinking part of a ramped one (length).
+@*/
 PetscReal ContactTermOffset(const ContactPair *pair, PetscInt c, PetscReal t)
 {
   return pair->now.offset[c] * (pair->scene->initial_overlap == OVERLAP_RAMP ? 1 - t : 1);
 }
 
-/* The gap below which a term presses: where it would have its multiplier's pressure, the surfaces meet at its offset.
- */
+/*@
+  ContactTermOnsetGap - returns the gap below which a term presses, with its whole penalty (length).
+
+  Not collective
+
+  Input Parameters:
++ pair - the pair
+. c    - the term
+- t    - load parameter
+
+  Note:
+  There the multiplier alone would press; the surfaces meet at the term's offset.
+@*/
 PetscReal ContactTermOnsetGap(const ContactPair *pair, PetscInt c, PetscReal t)
 {
   const LawState state = ContactTermState(pair, c, t, PETSC_MAX_REAL);
@@ -20,9 +42,21 @@ PetscReal ContactTermOnsetGap(const ContactPair *pair, PetscInt c, PetscReal t)
   return LawOnsetGap(&state);
 }
 
-/* ContactTermGap - the weighted gap sum W f g / sum W f (length) of a term over its points with a gap; NaN without any.
+/*@
+  ContactTermGap - returns the weighted gap of a term over its slave points with a gap, sum W f g / sum W f (length);
+  NaN without any.
 
-   Not collective. factor, point_gap[n_slaves]: of ContactPointGaps(). *area: sum W f, or NULL. */
+  Not collective
+
+  Input Parameters:
++ pair      - the pair
+. factor    - area factors f of the slave points
+. point_gap - gaps g of the slave points, of ContactPointGaps()
+- c         - the term
+
+  Output Parameter:
+. area - sum W f; may be NULL
+@*/
 PetscReal ContactTermGap(const ContactPair *pair, const PetscReal *factor, const PetscReal *point_gap, PetscInt c,
                          PetscReal *area)
 {
@@ -40,15 +74,23 @@ PetscReal ContactTermGap(const ContactPair *pair, const PetscReal *factor, const
   return total > 0 ? sum / total : NAN;
 }
 
-/* ContactTermBound - how far a term in contact may be from its master, on either side (length); 0 where its pair is not
- * augmented. Not collective. */
+/*@
+  ContactTermBound - returns how far a term in contact may be from its master, on either side (length); 0 where its
+  pair is not augmented.
+
+  Not collective
+
+  Input Parameters:
++ pair - the pair
+- c    - the term
+@*/
 PetscReal ContactTermBound(const ContactPair *pair, PetscInt c)
 {
   if (!pair->scene->augment) return 0;
   return pair->scene->g_max * (pair->scene->window_in_spacings ? pair->size[c] : 1);
 }
 
-/* Relative curvature of slave and master at a term. */
+/* Relative curvature of slave and master at a term (one over length). */
 static PetscReal TermCurvature(const ContactPair *pair, PetscInt c)
 {
   const PetscReal radius = pair->scene->analytic.radius;
@@ -59,7 +101,7 @@ static PetscReal TermCurvature(const ContactPair *pair, PetscInt c)
   return kappa + 2 * pair->turn[c] / pair->size[c] + (radius > 0 ? 1 / radius : 0);
 }
 
-/* Size of the master's faces at a term. */
+/* Size of the master's faces at a term (length). */
 static PetscReal TermMasterSize(const ContactPair *pair, PetscInt c)
 {
   PetscReal size = 0;
@@ -69,8 +111,18 @@ static PetscReal TermMasterSize(const ContactPair *pair, PetscInt c)
   return size;
 }
 
-/* Opening up to which a node counts as touching: what round-off and the facets' own sagitta leave between surfaces that
- * touch. */
+/*@
+  ContactTouchTolerance - returns the opening up to which a node counts as touching (length).
+
+  Not collective
+
+  Input Parameters:
++ pair - the pair
+- c    - the term
+
+  Note:
+  It is what round-off and the sagitta of the facets leave between surfaces that touch.
+@*/
 PetscReal ContactTouchTolerance(const ContactPair *pair, PetscInt c)
 {
   const PetscReal h = pair->size[c];
@@ -78,15 +130,37 @@ PetscReal ContactTouchTolerance(const ContactPair *pair, PetscInt c)
   return CONTACT_TOUCH * h + TermCurvature(pair, c) * (PetscSqr(h) + PetscSqr(TermMasterSize(pair, c))) / 8;
 }
 
-/* Opening of a term of surface contact whose node touches: the mean over the faces around it, where the surfaces bend
-   away from each other. Hat functions of width h weigh x^2 by h^2/6, so the mean of kappa x^2/2 is kappa h^2/12 for
-   each direction; half as much again for faces of unlike size. */
+/*@
+  ContactMeanOpening - returns the opening of a term of surface to surface contact whose node touches (length).
+
+  Not collective
+
+  Input Parameters:
++ pair - the pair
+- c    - the term
+
+  Note:
+  It is the mean opening over the faces around the node, where the surfaces bend away from each other. Hat functions
+  of width h weigh x^2 by h^2/6, so the mean of kappa x^2/2 is kappa h^2/12 for each direction. Half as much again is
+  added for faces of unlike size.
+@*/
 PetscReal ContactMeanOpening(const ContactPair *pair, PetscInt c)
 {
   return CONTACT_TOUCH * pair->size[c] + (pair->mesh->dim - 1) * TermCurvature(pair, c) * PetscSqr(pair->size[c]) / 8;
 }
 
-/* What the law is to know of a term. */
+/*@
+  ContactTermState - builds what the law is to know of a term. Nobody else builds a LawState.
+
+  Not collective
+
+  Input Parameters:
++ pair - the pair
+. c    - the term
+. t    - load parameter, for the offset
+- most - largest penalty that counts (force per length and area): pair->most for energy, forces and tangent, which
+         ContactSoften() may limit; PETSC_MAX_REAL for the penalty as it is
+@*/
 LawState ContactTermState(const ContactPair *pair, PetscInt c, PetscReal t, PetscReal most)
 {
   return (LawState){.penalty    = PetscMin(most, pair->now.penalty[c]),
@@ -94,10 +168,10 @@ LawState ContactTermState(const ContactPair *pair, PetscInt c, PetscReal t, Pets
                     .multiplier = pair->now.multiplier[c]};
 }
 
-/* What a linear step counts on of an open term: what was closed stays so, pressed or pulled; what touches at the start
-   of a run resists, for a body that only contact holds. In surface contact the mean over the faces around a node that
-   touches is open by their curvature: such terms are pulled, all of them, as those that only resist would hold the
-   others open. */
+/* Sets what a linear step counts on of an open term. What was closed stays closed, pressed or pulled. What touches at
+   the start of a run resists, for a body that only contact holds. In surface to surface contact the mean over the
+   faces around a node that touches is open by their curvature. All such terms are pulled, because those that only
+   resist would hold the others open. */
 static void TermHold(const ContactPair *pair, PetscInt c, const LawState *state, PetscReal gap, LawValue *value)
 {
   const PetscBool closed = pair->held[c], means = (PetscBool)(pair->formulation.surface && pair->fit.fitted);
@@ -109,9 +183,22 @@ static void TermHold(const ContactPair *pair, PetscInt c, const LawState *state,
   if (closed || pair->formulation.surface) value->pressure = -value->stiffness * opening;
 }
 
-/* ContactTermLaw - law, gap (length; may be NULL) and area of a term in the state of the last projection; in a linear
- * step what it counts on. Not collective.
- */
+/*@
+  ContactTermLaw - evaluates the law for a term in the state of the last projection; in a linear step, what that step
+  counts on.
+
+  Not collective
+
+  Input Parameters:
++ pair - the pair, projected
+. c    - the term
+- t    - load parameter
+
+  Output Parameters:
++ value - potential, pressure and stiffness; zeros where no master is near
+. gap   - the term's gap (length); may be NULL
+- area  - its present area
+@*/
 void ContactTermLaw(const ContactPair *pair, PetscInt c, PetscReal t, LawValue *value, PetscReal *gap, PetscReal *area)
 {
   const LawState  state = ContactTermState(pair, c, t, pair->most);
@@ -124,10 +211,19 @@ void ContactTermLaw(const ContactPair *pair, PetscInt c, PetscReal t, LawValue *
   if (pair->holding && value->stiffness == 0) TermHold(pair, c, &state, found, value);
 }
 
-/* ContactTermForce - what a term's own gap, of the last projection, presses with (force). Not collective.
+/*@
+  ContactTermForce - returns the force that a term's own gap of the last projection causes.
 
-   In surface contact it is not the nodal force, most of which may be the neighbours': they press on the faces that they
-   share with it. */
+  Not collective
+
+  Input Parameters:
++ pair - the pair, after ContactResidual() with forces
+- c    - the term
+
+  Note:
+  In surface to surface contact this is not the nodal force. Most of the nodal force may come from the neighbours,
+  whose pressures act on the faces that they share with the node.
+@*/
 PetscReal ContactTermForce(const ContactPair *pair, PetscInt c)
 {
   LawValue  value;
@@ -138,7 +234,16 @@ PetscReal ContactTermForce(const ContactPair *pair, PetscInt c)
   return value.pressure * area;
 }
 
-/* A pressure of a term presses on all of its points. */
+/*@
+  ContactTermPress - adds the forces of a term's pressure to all of its slave points.
+
+  Not collective
+
+  Input Parameters:
++ pair     - the pair
+. c        - the term
+- pressure - force per area; 0 adds nothing
+@*/
 void ContactTermPress(ContactPair *pair, PetscInt c, PetscReal pressure)
 {
   if (pressure == 0) return;

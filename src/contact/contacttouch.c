@@ -1,3 +1,4 @@
+/* Contact along a load step: when open slave nodes will touch, and how many changed their status. */
 #include "contactimpl.h"
 #include "base/gathertable.h"
 
@@ -5,12 +6,14 @@
  */
 #define CONTACT_RESTING 1e-9
 
-/* What is known of the slave points at one time; NaN: no master near */
+/* What is known of the slave points at one time: gaps by the pair's smoother and by its facets (NaN: no master is
+   near), and whether the gap is that of a fit. */
 typedef struct {
   PetscReal *gap, *facet; /* by the pair's smoother; by facets */
   PetscBool *fitted;
 } Distances;
 
+/* Measures all slave points of a pair at (u, t). */
 static PetscErrorCode PairMeasure(ContactPair *pair, const PetscReal *u, PetscReal t, Distances *out)
 {
   const PetscInt n = pair->lists->n_slaves;
@@ -43,8 +46,9 @@ static PetscErrorCode DistancesDestroy(Distances *d)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Weighted gaps of a term at both times, from the points known at both; a point that is fitted at only one of them is
-   measured to the facets at both: fit and facets lie apart, and their difference is no approach. NaN: no point. */
+/* Weighted gaps of a term at both times, from the points that are known at both. A point that is fitted at only one
+   of them is measured to the facets at both, because fit and facets lie apart and their difference is no approach.
+   NaN: there is no such point. */
 static void TermGaps(const ContactPair *pair, PetscInt c, const Distances *before, const Distances *after,
                      PetscReal gap[2])
 {
@@ -63,7 +67,7 @@ static void TermGaps(const ContactPair *pair, PetscInt c, const Distances *befor
   for (int k = 0; k < 2; k++) gap[k] = area > 0 ? gap[k] / area : NAN;
 }
 
-/* Room for the touches of all pairs on this rank, three columns each */
+/* Room for the touches of all pairs on this rank, three columns each. */
 static PetscErrorCode TouchStepRows(Contact contact, PetscReal **rows)
 {
   PetscInt n = 0;
@@ -74,12 +78,27 @@ static PetscErrorCode TouchStepRows(Contact contact, PetscReal **rows)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ContactTouches - beta_k of the open slave nodes that approach their masters from (u_0, t_0) to (u, t), sorted, on all
-   ranks.
+/*@
+  ContactTouches - finds when the open slave nodes will touch, beta_k, if all goes on as from (u_0, t_0) to (u, t).
 
-   Collective. u_0, u [n_nodes*dim]: local displacements (length) within the reach of the present lists; by_area: a node
-   weighs its reference area (else 1); still_open: only nodes that are open at (u, t). *touch: to be freed with
-   PetscFree(). Source: Chamoret et al. 2004, eqs 17, 18. */
+  Collective
+
+  Input Parameters:
++ contact    - the contact
+. u_0        - local displacements at the start, u_0[n_nodes*dim] (length), within the reach of the present lists
+. t_0        - load parameter at the start
+. u          - local displacements at the end, likewise
+. t          - load parameter at the end
+. by_area    - a node weighs its reference area; else it weighs 1
+- still_open - only nodes that are open at (u, t) are listed
+
+  Output Parameters:
++ n     - number of touches
+- touch - the touches of all ranks, sorted, the same on all ranks; to be freed with PetscFree()
+
+  Note:
+  Source: Chamoret et al. (2004), eqs 17 and 18.
+@*/
 PetscErrorCode ContactTouches(Contact contact, const PetscReal *u_0, PetscReal t_0, const PetscReal *u, PetscReal t,
                               PetscBool by_area, PetscBool still_open, int *n, Touch **touch)
 {
@@ -123,10 +142,23 @@ PetscErrorCode ContactTouches(Contact contact, const PetscReal *u_0, PetscReal t
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ContactChanges - how much came into contact or left it since the accepted state: nodes, or their reference area. A
-   node that touched already is no change: no load step makes it touch later.
+/*@
+  ContactChanges - sums how much came into contact or left it since the accepted state.
 
-   Collective. t_0: load parameter of the accepted state; *all: the same of all slave nodes. */
+  Collective
+
+  Input Parameters:
++ contact - the contact
+. t_0     - load parameter of the accepted state
+- by_area - sums reference areas; else numbers of nodes
+
+  Output Parameters:
++ changed - the sum over nodes whose status is another one
+- all     - the sum over all slave nodes
+
+  Note:
+  A node that touched already is no change, as no load step makes it touch later.
+@*/
 PetscErrorCode ContactChanges(Contact contact, PetscReal t_0, PetscBool by_area, PetscReal *changed, PetscReal *all)
 {
   PetscReal sum[2] = {0, 0};

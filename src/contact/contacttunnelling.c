@@ -1,12 +1,12 @@
+/* Slave points that were lost behind their master, passed through it or jumped out of it since the step began. */
 #include "contactimpl.h"
 
-/* A foot this little past the edge of a facet, in face sizes, is on it: nodes over nodes are no exception. */
+/* A foot that is this little past the edge of a facet is on it, in face sizes. Nodes often lie exactly over nodes. */
 #define LOST_ON_FACET 1e-6
 
-/* Is slave point q of a term, which the present lists find behind the master by more than the term's face size, away
-   from it or in front of it by the next lists, without having left past a free edge? Then the search has lost it: its
-   term would go, and nothing would hold the bodies apart. *depth: how far behind.
- */
+/* Says whether the search has lost slave point q of a term. That is so where the present lists find it behind the
+   master by more than the term's face size, the next lists find it away from the master or in front of it, and it has
+   not left past a free edge. Its term would vanish, and nothing would hold the bodies apart. */
 static PetscBool PointLost(const ContactPair *pair, PetscInt c, PetscInt q, PetscReal t, ContactLost *lost)
 {
   const NeighbourLists next   = pair->next;
@@ -22,16 +22,21 @@ static PetscBool PointLost(const ContactPair *pair, PetscInt c, PetscInt q, Pets
   return (PetscBool)(!(lost->gap < 0));
 }
 
+/* Keeps the deeper one of two lost points. */
 static void KeepDeepest(ContactPair *pair, const ContactLost *lost)
 {
   if (lost->depth > pair->lost.depth) pair->lost = *lost;
 }
 
-/* ContactNoteLost - remembers the slave point of a pair that is the farthest behind its master and that the next lists
-   have lost.
+/*@
+  ContactNoteLost - notes the slave point that is the farthest behind its master and that the next lists have lost.
 
-   Not collective; after ContactResidual() with forces at (u, t), while the next lists wait to replace those it was
-   found with. */
+  Not collective
+
+  Input Parameters:
++ pair - the pair, after ContactResidual() with forces at (u, t), before its next lists replace those in force
+- t    - load parameter
+@*/
 PetscErrorCode ContactNoteLost(ContactPair *pair, PetscReal t)
 {
   PetscFunctionBeginUser;
@@ -45,8 +50,8 @@ PetscErrorCode ContactNoteLost(ContactPair *pair, PetscReal t)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Is slave point q, which is open, behind the very facet that was nearest when the lists were made? It has passed
-   through the master, and another part of it is nearer now. */
+/* Says whether slave point q, which is open, is behind the very facet that was nearest to it when the lists were
+   made. It has then passed through the master, and another part of it is nearer now. */
 static PetscBool PointTunnelled(const ContactPair *pair, PetscInt c, PetscInt q, PetscReal t, ContactLost *lost)
 {
   const NeighbourLists lists  = pair->lists;
@@ -62,18 +67,27 @@ static PetscBool PointTunnelled(const ContactPair *pair, PetscInt c, PetscInt q,
     NeighbourListsRelative(lists, q, lists->list_point[lists->list_ptr[q] + facet.nodes[a]], &x[a * dim]);
     facet.nodes[a] = a;
   }
-  facet.free_edges = (1 << ElementGet(facet.type)->corners) -
-                     1; /* else a foot on an edge would be no more over the facet than one beyond it */
+  facet.free_edges =
+    (1 << ElementGet(facet.type)->corners) - 1; /* only a free edge tells a foot past it from one on it */
   FacetProject(dim, &facet, x, &foot);
   *lost = (ContactLost){offset - foot.gap, pair->point_gap[q] - offset, pair->size[c], pair->node[c]};
   return (PetscBool)(foot.beyond <= LOST_ON_FACET * lost->size && lost->depth > lost->size);
 }
 
-/* ContactNoteTunnelled - remembers the open slave point that has passed the farthest through its master since the lists
-   were made, by more than a face size.
+/*@
+  ContactNoteTunnelled - notes the open slave point that has passed the farthest through its master since the lists
+  were made, by more than a face size.
 
-   Not collective; after ContactResidual() with forces at (u, t). Known is what was near when the lists were made: what
-   a step leaps over from farther away, and what is thinner than it is passed through, is not seen. */
+  Not collective
+
+  Input Parameters:
++ pair - the pair, after ContactResidual() with forces at (u, t)
+- t    - load parameter
+
+  Note:
+  Only what was near when the lists were made is known. A point that starts farther away and leaps over the master in
+  one step is not seen, nor is a passage through something thinner than a face size.
+@*/
 void ContactNoteTunnelled(ContactPair *pair, PetscReal t)
 {
   for (PetscInt c = 0; c < pair->n; c++) {
@@ -85,12 +99,19 @@ void ContactNoteTunnelled(ContactPair *pair, PetscReal t)
   }
 }
 
-/* ContactNoteJumps - remembers the term that was closed, is open, and came out of its master faster than anything
-   moved: another part of the master, in front of the node, has become the nearest one, and the node is still behind the
-   first.
+/*@
+  ContactNoteJumps - notes the term that was closed, is open, and came out of its master faster than anything moved.
 
-   Not collective; after ContactResidual() with forces. motion: of any node or tool since the accepted state (length).
- */
+  Not collective
+
+  Input Parameters:
++ pair   - the pair, after ContactResidual() with forces
+- motion - of any node or tool since the accepted state (length)
+
+  Note:
+  Another part of the master, in front of the node, has become the nearest one, and the node is still behind the
+  first.
+@*/
 void ContactNoteJumps(ContactPair *pair, PetscReal motion)
 {
   for (PetscInt c = 0; c < pair->n; c++) {
@@ -103,11 +124,23 @@ void ContactNoteJumps(ContactPair *pair, PetscReal motion)
   }
 }
 
-/* ContactLocateLost - whether a slave point was lost since the last ContactGather(): pair, node (gmsh's tag) and depth
-   of the worst, into text[size].
+/*@
+  ContactLocateLost - says whether a slave point was lost since the last ContactGather(), and writes pair, node
+  (gmsh's tag) and depth of the worst.
 
-   Collective. *lost: the same on all ranks. A solution with such a point is none: contact is gone where it should
-   press. */
+  Collective
+
+  Input Parameters:
++ contact - the contact
+- size    - characters that the text holds
+
+  Output Parameters:
++ lost - the same on all ranks
+- text - the message, where lost is PETSC_TRUE
+
+  Note:
+  A solution with such a point is no solution: contact is missing where it should press.
+@*/
 PetscErrorCode ContactLocateLost(Contact contact, PetscBool *lost, char *text, size_t size)
 {
   PetscReal worst[5] = {0, 0, 0, 0, 0}; /* depth, gap, face size, tag, pair */

@@ -1,8 +1,19 @@
+/* First variations of slave points that are kept from one projection to the next. */
 #include "contactimpl.h"
 #include "base/timing.h"
 
-/* ContactVariationsCreate - room for the first variations of so many slave points, none of them known. Not collective.
- */
+/*@
+  ContactVariationsCreate - makes room for the first variations of some slave points, none of which is known.
+
+  Not collective
+
+  Input Parameters:
++ dim      - dimension
+- n_points - number of slave points
+
+  Output Parameter:
+. variations - the room
+@*/
 PetscErrorCode ContactVariationsCreate(int dim, PetscInt n_points, ContactVariations **variations)
 {
   ContactVariations *v;
@@ -16,7 +27,14 @@ PetscErrorCode ContactVariationsCreate(int dim, PetscInt n_points, ContactVariat
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ContactVariationsDestroy - Not collective. */
+/*@
+  ContactVariationsDestroy - frees the variations.
+
+  Not collective
+
+  Input Parameter:
+. variations - the variations; set to NULL
+@*/
 PetscErrorCode ContactVariationsDestroy(ContactVariations **variations)
 {
   ContactVariations *v = *variations;
@@ -29,15 +47,30 @@ PetscErrorCode ContactVariationsDestroy(ContactVariations **variations)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ContactVariationsReset - none is known: the points have moved, or their lists are new. Not collective. */
+/*@
+  ContactVariationsReset - forgets all variations, because the points have moved or their lists are new.
+
+  Not collective
+
+  Input Parameter:
+. v - the variations
+@*/
 void ContactVariationsReset(ContactVariations *v)
 {
   v->n = 0;
   for (PetscInt q = 0; q < v->n_points; q++) v->first[q] = -1;
 }
 
-/* ContactVariationsKeep - takes that of point q from the pair's work, where it was evaluated last. Not collective.
- * found: a master is near. */
+/*@
+  ContactVariationsKeep - keeps the first variation of a slave point that was evaluated last.
+
+  Not collective
+
+  Input Parameters:
++ pair  - the pair
+. q     - the slave point
+- found - whether a master is near
+@*/
 PetscErrorCode ContactVariationsKeep(const ContactPair *pair, PetscInt q, PetscBool found)
 {
   const int          dim  = pair->mesh->dim;
@@ -61,7 +94,15 @@ PetscErrorCode ContactVariationsKeep(const ContactPair *pair, PetscInt q, PetscB
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ContactVariationsNeed - sees that the first variation of point q is among the pair's. Not collective. */
+/*@
+  ContactVariationsNeed - evaluates the first variation of a slave point, unless it is kept.
+
+  Not collective
+
+  Input Parameters:
++ pair - the pair
+- q    - the slave point
+@*/
 PetscErrorCode ContactVariationsNeed(const ContactPair *pair, PetscInt q)
 {
   PetscBool found;
@@ -76,8 +117,17 @@ PetscErrorCode ContactVariationsNeed(const ContactPair *pair, PetscInt q)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ContactVariationsNodes - the nodes of the first variations of some slave points, each once, into the work's number;
-   points without area have none. Not collective. */
+/*@
+  ContactVariationsNodes - lists the nodes of the first variations of some slave points, each once, into the work's
+  number.
+
+  Not collective
+
+  Input Parameters:
++ pair   - the pair
+. n      - number of slave points
+- points - the slave points; those without area have no nodes
+@*/
 PetscErrorCode ContactVariationsNodes(const ContactPair *pair, PetscInt n, const PetscInt points[])
 {
   const ContactVariations *v     = pair->variations;
@@ -97,8 +147,20 @@ PetscErrorCode ContactVariationsNodes(const ContactPair *pair, PetscInt n, const
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ContactTermVary - v[] += scale times the sum of a term's points' variations, weighted by their areas, over the nodes
-   of the block at hand; they are there (ContactVariationsNodes()). Not collective. */
+/*@
+  ContactTermVary - adds scale times a term's first variation, weighted by the areas of its points, over the nodes of
+  the block at hand.
+
+  Not collective
+
+  Input Parameters:
++ pair  - the pair, after ContactWorkBlockBegin(); the term's variations are kept, ContactVariationsNodes()
+. c     - the term
+- scale - factor
+
+  Input/Output Parameter:
+. v - dim entries for each node of the block
+@*/
 void ContactTermVary(const ContactPair *pair, PetscInt c, PetscReal scale, PetscReal *v)
 {
   const int                dim = pair->mesh->dim;

@@ -1,7 +1,7 @@
 /* First variations of gaps over the free dofs: as vectors of the tangent, and for its changes. */
 #include "contactimpl.h"
 
-/* Room for one vector more, of so many entries at most. */
+/* Makes room for one vector more, of so many entries at most. */
 static PetscErrorCode VectorsReserve(ContactVectors *vectors, PetscInt entries)
 {
   const PetscInt used = vectors->n ? vectors->ptr[vectors->n] : 0;
@@ -20,8 +20,18 @@ static PetscErrorCode VectorsReserve(ContactVectors *vectors, PetscInt entries)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ContactVectorsAdd - scale times the sum of a term's points' variations, weighted by their areas, over the free dofs,
- * as one vector more. Not collective. */
+/*@
+  ContactVectorsAdd - adds as one vector more: scale times the first variation of a term's gap, weighted by the areas
+  of its points, over the free dofs.
+
+  Not collective
+
+  Input Parameters:
++ vectors - the vectors
+. pair    - the pair, projected
+. c       - the term
+- scale   - factor
+@*/
 PetscErrorCode ContactVectorsAdd(ContactVectors *vectors, const ContactPair *pair, PetscInt c, PetscReal scale)
 {
   const int                dim = pair->mesh->dim;
@@ -55,7 +65,16 @@ PetscErrorCode ContactVectorsAdd(ContactVectors *vectors, const ContactPair *pai
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ContactVectorsAddZeros - Not collective. */
+/*@
+  ContactVectorsAddZeros - adds as one vector more: zeros in some rows.
+
+  Not collective
+
+  Input Parameters:
++ vectors - the vectors
+. n       - number of rows
+- row     - the rows
+@*/
 PetscErrorCode ContactVectorsAddZeros(ContactVectors *vectors, PetscInt n, const PetscInt row[])
 {
   PetscInt first;
@@ -69,7 +88,14 @@ PetscErrorCode ContactVectorsAddZeros(ContactVectors *vectors, PetscInt n, const
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ContactVectorsFree - Not collective. There are none afterwards. */
+/*@
+  ContactVectorsFree - frees the vectors; there are none afterwards.
+
+  Not collective
+
+  Input Parameter:
+. vectors - the vectors
+@*/
 PetscErrorCode ContactVectorsFree(ContactVectors *vectors)
 {
   PetscFunctionBeginUser;
@@ -80,8 +106,8 @@ PetscErrorCode ContactVectorsFree(ContactVectors *vectors)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* A vector more, of zeros in the rows that the kept pattern of the tangent couples a slave node with; *n: how many
- * these are, 0: it has none of the node. */
+/* Adds a vector of zeros in the rows that the kept pattern of the tangent couples with a slave node. *n is their
+   number; 0: the pattern has none of the node. */
 static PetscErrorCode AddZeros(Contact contact, PetscInt node, PetscInt *n)
 {
   const int       dim = contact->mesh->dim;
@@ -96,7 +122,7 @@ static PetscErrorCode AddZeros(Contact contact, PetscInt node, PetscInt *n)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The values of a term into the vector at hand. */
+/* Adds the values of a term to the vector that was added last. */
 static PetscErrorCode FillTerm(Contact contact, const ContactPair *pair, PetscInt c, PetscReal scale)
 {
   ContactVectors *border = &contact->border, *one = &contact->one;
@@ -115,12 +141,23 @@ static PetscErrorCode FillTerm(Contact contact, const ContactPair *pair, PetscIn
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ContactGetBorder - what the terms of the last ContactTangent() add to it as a sum of v v^T, but for pressures that
-   turn with the surface: of each the first variation of its gap times the root of its stiffness. Vectors have the
-   entries that the tangent's kept pattern leaves them, those of open terms that it still has are zero, so that they
-   seldom have others than before.
+/*@
+  ContactGetBorder - gets what the terms of the last ContactTangent() add to it as a sum of v v^T, without pressures
+  that turn with the surface.
 
-   Not collective. The arrays are the contact's, until the next call. */
+  Not collective
+
+  Input Parameter:
+. contact - the contact
+
+  Output Parameter:
+. out - arrays of the contact, valid until its next call
+
+  Note:
+  The vector of a term is the first variation of its gap times the root of its stiffness. Vectors have the entries
+  that the tangent's kept pattern leaves them, and vectors of open terms that the pattern still has are zero. So their
+  entries seldom differ from those of the call before.
+@*/
 PetscErrorCode ContactGetBorder(Contact contact, Border *out)
 {
   ContactVectors *border = &contact->border;
@@ -136,7 +173,7 @@ PetscErrorCode ContactGetBorder(Contact contact, Border *out)
       PetscInt        n;
 
       if (PetscIsNanReal(ContactTermGap(pair, pair->factor, pair->point_gap, c, &area)))
-        continue; /* far from the master, but maybe in another pair */
+        continue; /* far from the master; another pair may have the node */
       if (acts) scale = PetscSqrtReal(pair->stiffness[c] / area);
       PetscCall(AddZeros(contact, pair->node[c], &n));
       if (acts) PetscCall(n ? FillTerm(contact, pair, c, scale) : ContactVectorsAdd(border, pair, c, scale));
@@ -146,8 +183,15 @@ PetscErrorCode ContactGetBorder(Contact contact, Border *out)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ContactHasFits - does a surface of some pair couple many nodes to each slave node? Not collective, the same on all
- * ranks. */
+/*@
+  ContactHasFits - says whether a surface of some pair couples many nodes to each slave node: a fitted master that is
+  no rigid tool.
+
+  Not collective
+
+  Input Parameter:
+. contact - the contact
+@*/
 PetscBool ContactHasFits(Contact contact)
 {
   for (int p = 0; p < contact->n_pairs; p++)
@@ -156,6 +200,7 @@ PetscBool ContactHasFits(Contact contact)
   return PETSC_FALSE;
 }
 
+/* Terms of this rank whose stiffness differs between the last two tangents. */
 static PetscInt CountMine(Contact contact)
 {
   PetscInt n = 0;
@@ -166,8 +211,18 @@ static PetscInt CountMine(Contact contact)
   return n;
 }
 
-/* ContactTangentChanges - terms of all ranks that came, went or changed their stiffness between the last two calls of
- * ContactTangent(). Collective. */
+/*@
+  ContactTangentChanges - counts the terms of all ranks that came, went or changed their stiffness between the last
+  two calls of ContactTangent().
+
+  Collective
+
+  Input Parameter:
+. contact - the contact
+
+  Output Parameter:
+. terms - their number
+@*/
 PetscErrorCode ContactTangentChanges(Contact contact, PetscInt *terms)
 {
   PetscFunctionBeginUser;
@@ -176,11 +231,21 @@ PetscErrorCode ContactTangentChanges(Contact contact, PetscInt *terms)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ContactChangeVectors - what ContactTangentChanges() counts, as N diag(s) N^T: by that much the last tangent is more
-   than the one before, but for the motion in between and pressures that turn with the surface.
+/*@
+  ContactChangeVectors - writes what ContactTangentChanges() counts as N diag(s) N^T: by this the last tangent exceeds
+  the one before, without the motion in between and without pressures that turn with the surface.
 
-   Collective. rows: of this rank, as of the matrix; n: of ContactTangentChanges(); s[n]: stiffness over area (force per
-   length and area squared), the same on all ranks; N: dense, n columns, the caller's. */
+  Collective
+
+  Input Parameters:
++ contact - the contact
+. rows    - rows of the matrix on this rank
+- n       - number of terms, of ContactTangentChanges()
+
+  Output Parameters:
++ s - stiffness over area (force per length and area squared), s[n], the same on all ranks
+- N - dense matrix with n columns; the caller destroys it
+@*/
 PetscErrorCode ContactChangeVectors(Contact contact, PetscInt rows, PetscInt n, PetscReal *s, Mat *N)
 {
   PetscInt       mine = CountMine(contact), column = 0;

@@ -2,7 +2,7 @@
    et al. 2004, section 4). Plain C. */
 #pragma once
 
-/* One open node on its way to the master */
+/* One open node that approaches the master. */
 typedef struct {
   double beta;   /* part of the step at whose end it touches; above 1: only after the step */
   double key;    /* number that is the same on any number of ranks */

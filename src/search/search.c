@@ -267,56 +267,76 @@ static int KeepFacing(const Nearest *look, int n, int *found)
   return kept;
 }
 
-/* Looks for the nearest facet of every slave point, lists it with what surrounds it, and fits the surface there. */
-static PetscErrorCode NeighbourListsFill(ContactSearch s, NeighbourLists lists, const PetscReal *normals,
-                                         const SearchField *field, FitSupport *fit, PetscReal motion)
+/* The tree over the boxes of the candidates. */
+static PetscErrorCode BuildTree(int dim, PetscInt n, const Candidate *candidates, BoxTree *tree)
 {
-  const int        dim          = lists->dim;
-  const PetscInt   n_candidates = field->n_candidates;
-  const Candidate *candidates   = field->candidates;
-  BoxTree          tree;
-  double          *lower, *upper;
-  int             *found, count;
-  ListBuffer       buffer = {0};
+  double *lower, *upper;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc4(n_candidates * dim, &lower, n_candidates * dim, &upper, n_candidates, &found, lists->n_points,
-                         &buffer.position));
-  for (PetscInt i = 0; i < n_candidates; i++) {
+  PetscCall(PetscMalloc2(n * dim, &lower, n * dim, &upper));
+  for (PetscInt i = 0; i < n; i++) {
     for (int d = 0; d < dim; d++) {
       lower[i * dim + d] = candidates[i].lower[d];
       upper[i * dim + d] = candidates[i].upper[d];
     }
   }
-  for (PetscInt p = 0; p < lists->n_points; p++) buffer.position[p] = -1;
-  PetscCheck(!BoxTreeBuild(dim, (int)n_candidates, lower, upper, &tree), PETSC_COMM_SELF, PETSC_ERR_MEM,
+  PetscCheck(!BoxTreeBuild(dim, (int)n, lower, upper, tree), PETSC_COMM_SELF, PETSC_ERR_MEM,
              "no memory for the search tree");
+  PetscCall(PetscFree2(lower, upper));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Looks for the nearest facet of one slave point, lists it with all facets within margin and motion of it, and fits the
+   surface there. look: the slave point and how far it looks; found: room for all candidates. */
+static PetscErrorCode FillSlave(NeighbourLists lists, const SearchField *field, BoxTree tree, FitSupport *fit,
+                                PetscReal margin, PetscReal motion, Nearest *look, int *found, ListBuffer *buffer)
+{
+  const PetscInt q = look->q, first = buffer->n_points;
+  double         bound = look->least + look->tie;
+  int            count;
+
+  PetscFunctionBeginUser;
+  lists->list_ptr[q]  = first;
+  lists->facet_ptr[q] = buffer->n;
+  lists->kappa[q]     = 0;
+  lists->nearest[q]   = -1;
+  BoxTreeClosest(tree, look->x, &bound, NearestVisit, look);
+  if (look->best < 0) PetscFunctionReturn(PETSC_SUCCESS);
+  count           = BoxTreeNear(tree, look->x, look->least + margin + motion, (int)field->n_candidates, found);
+  count           = KeepFacing(look, count, found);
+  lists->kappa[q] = ListCurvature(look, count, found);
+  for (int i = 0; i < count; i++)
+    if (found[i] == look->best) lists->nearest[q] = i;
+  if (fit) PetscCall(FitSupportSlave(fit, look, q, first, buffer));
+  PetscCall(ListAddFacets(look, count, found, field->records, first, buffer));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Fills the lists of all slave points. fit: NULL where the facets serve. */
+static PetscErrorCode NeighbourListsFill(ContactSearch s, NeighbourLists lists, const PetscReal *normals,
+                                         const SearchField *field, FitSupport *fit, PetscReal motion)
+{
+  const int  dim = lists->dim;
+  BoxTree    tree;
+  int       *found;
+  ListBuffer buffer = {0};
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc2(field->n_candidates, &found, lists->n_points, &buffer.position));
+  for (PetscInt p = 0; p < lists->n_points; p++) buffer.position[p] = -1;
+  PetscCall(BuildTree(dim, field->n_candidates, field->candidates, &tree));
   for (PetscInt q = 0; q < lists->n_slaves; q++) {
-    const PetscInt first = buffer.n_points;
-    Nearest        look  = {.lists      = lists,
-                            .candidates = candidates,
-                            .q          = q,
-                            .own        = s->slaves->ptr[q + 1] - s->slaves->ptr[q],
-                            .best       = -1,
-                            .least      = s->reach + motion,
-                            .tie        = FACET_TIE * (s->reach + motion)};
-    double         bound = look.least + look.tie;
+    Nearest look = {.lists      = lists,
+                    .candidates = field->candidates,
+                    .q          = q,
+                    .own        = s->slaves->ptr[q + 1] - s->slaves->ptr[q],
+                    .best       = -1,
+                    .least      = s->reach + motion,
+                    .tie        = FACET_TIE * (s->reach + motion)};
 
     for (int d = 0; d < dim; d++) look.x[d] = lists->slave_X[q * dim + d] + lists->slave_u[q * dim + d];
     for (int d = 0; d < 3; d++) look.normal[d] = normals[3 * q + d];
-    lists->list_ptr[q]  = first;
-    lists->facet_ptr[q] = buffer.n;
-    lists->kappa[q]     = 0;
-    lists->nearest[q]   = -1;
-    BoxTreeClosest(tree, look.x, &bound, NearestVisit, &look);
-    if (look.best < 0) continue;
-    count           = BoxTreeNear(tree, look.x, look.least + s->margin + motion, (int)n_candidates, found);
-    count           = KeepFacing(&look, count, found);
-    lists->kappa[q] = ListCurvature(&look, count, found);
-    for (int i = 0; i < count; i++)
-      if (found[i] == look.best) lists->nearest[q] = i;
-    if (fit) PetscCall(FitSupportSlave(fit, &look, q, first, &buffer));
-    PetscCall(ListAddFacets(&look, count, found, field->records, first, &buffer));
+    PetscCall(FillSlave(lists, field, tree, fit, s->margin, motion, &look, found, &buffer));
   }
   lists->list_ptr[lists->n_slaves]  = buffer.n_points;
   lists->facet_ptr[lists->n_slaves] = buffer.n;
@@ -324,7 +344,7 @@ static PetscErrorCode NeighbourListsFill(ContactSearch s, NeighbourLists lists, 
   lists->facet                      = buffer.facet;
   lists->facet_size                 = buffer.size;
   BoxTreeDestroy(&tree);
-  PetscCall(PetscFree4(lower, upper, found, buffer.position));
+  PetscCall(PetscFree2(found, buffer.position));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -1,5 +1,6 @@
 /* A program that links the library can register a smoother of its own: a scene chooses it by name, and contact
- * evaluates it as it does the built-in ones. The smoother here is the facets pushed outward by a constant distance. */
+ * evaluates it as it does the built-in ones. The smoothers here are the facets and the diffuse fit, pushed outward by a
+ * constant distance. */
 #include "contact/contact.h"
 #include "mesh/mesh.h"
 #include "smooth/smoother.h"
@@ -27,6 +28,16 @@ static int EvaluatePushed(const SmootherInput *in, SmootherWant want, SmootherRe
 static const Smoother pushed = {.capacity       = FACE_MAX_NODES,
                                 .dense_capacity = FACE_MAX_NODES,
                                 .evaluate       = EvaluatePushed};
+
+static int EvaluatePushedFit(const SmootherInput *in, SmootherWant want, SmootherResult *out)
+{
+  if (!Smoother_Diffuse.evaluate(in, want, out)) return 0;
+  out->gap -= PUSH;
+  return 1;
+}
+
+/* The gap that the search finds with its fit is not the gap of this smoother: search_gap is 0. */
+static Smoother pushed_fit = {.fitted = 1, .evaluate = EvaluatePushedFit};
 
 static const char blocks[] =
   "For k In {0:1}\n"
@@ -125,6 +136,8 @@ static void test_evaluated(void **state)
   CheckBlocks("diffuse", "node_to_surface", APART, "slave on master, diffuse, degree 4, support 4.5, weight 6");
   CheckBlocks("pushed", "node_to_surface", APART - PUSH, "slave on master, pushed");
   CheckBlocks("pushed", "surface_to_surface", APART - PUSH, "slave on master, pushed, surface to surface");
+  CheckBlocks("pushed_fit", "node_to_surface", APART - PUSH,
+              "slave on master, pushed_fit, degree 4, support 4.5, weight 6");
 }
 
 /* Names that a scene could not write, or that are taken, leave the table as it was; so does one too many. */
@@ -137,8 +150,8 @@ static void test_refused(void **state)
   assert_int_equal(SmootherRegister("pushed", &pushed), 0);
   assert_int_equal(SmootherRegister("", &pushed), 0);
   assert_int_equal(SmootherRegister("two words", &pushed), 0);
-  assert_string_equal(SMOOTHER_CHOICES, "facet | diffuse | pushed");
-  for (int k = 3; k < SMOOTHER_MAX; k++) {
+  assert_string_equal(SMOOTHER_CHOICES, "facet | diffuse | pushed | pushed_fit");
+  for (int k = 4; k < SMOOTHER_MAX; k++) {
     snprintf(names[k], sizeof(names[k]), "more%d", k);
     assert_int_equal(SmootherRegister(names[k], &pushed), 1);
   }
@@ -156,7 +169,10 @@ int main(int argc, char **argv)
   if (PetscInitialize(&argc, &argv, NULL, NULL)) return 1;
   snprintf(folder, sizeof(folder), "/tmp/burnish_smoother_XXXXXX");
   if (!mkdtemp(folder)) return 1;
-  if (!SmootherRegister("pushed", &pushed)) return 1;
+  pushed_fit.capacity       = Smoother_Diffuse.capacity;
+  pushed_fit.dense_capacity = Smoother_Diffuse.dense_capacity;
+  pushed_fit.workspace      = Smoother_Diffuse.workspace;
+  if (!SmootherRegister("pushed", &pushed) || !SmootherRegister("pushed_fit", &pushed_fit)) return 1;
   failed = cmocka_run_group_tests(tests, NULL, NULL);
   snprintf(command, sizeof(command), "rm -r %s", folder);
   if (system(command)) failed++;
