@@ -16,13 +16,13 @@ WINDOW = ["contact.0.penalty.g_min=1e-9", "contact.0.penalty.g_max=1e-5", "conta
 NO_CONTACT = ["contact=[]", "probes=[]"]
 # An effect: what switches it on, what only it logs, whose functions only it lets allocate.
 EFFECTS = {
-    "contact": ([], "Contact", "contact|contact.*|search|searchimpl|lists|surface|slavepoints|facet|patch|fit.*|offset|touch"),
+    "contact": ([], "Contact", "contact.*|search|candidate|neighbourlists|neighbourhood|surface|slavepoints|facet.*|fit.*|offset|touchstep|anderson"),
     "diffuse": (["contact.0.smoother=diffuse"], "ContactFit", "fit.*"),
     "surface to surface": (["contact.0.smoother=diffuse", "contact.0.formulation=surface_to_surface"], "ContactOffset", "offset|facequadrature"),
     "live offsets": (["contact.0.smoother=diffuse", "contact.0.formulation=surface_to_surface", "contact.0.offset=live"], "ContactOffset", "facemap"),
     "adjusted penalty": (["contact.0.penalty.adjust=true", *WINDOW], "ContactAdjust", ""),
-    "augmented penalty": (["contact.0.penalty.augment=true", *WINDOW], "ContactAdjust", "contactaugment|mixing"),
-    "control by contact": (["stepping={control: contact, initial: 0.5, N_c: 5}"], "ContactTouch", "contacttouch|touch"),
+    "augmented penalty": (["contact.0.penalty.augment=true", *WINDOW], "ContactAdjust", "contactpenalty|anderson"),
+    "control by contact": (["stepping={control: contact, initial: 0.5, N_c: 5}"], "ContactTouch", "contacttouch|touchstep"),
     "follower load": (["loads.0.follower=true"], "LoadsFollower", ""),
 }
 # Keys that are there and off
