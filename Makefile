@@ -126,24 +126,22 @@ install: all ## installs program, library, man page and examples into PREFIX (de
 	install -D -m 755 $(BURNISH) $(DESTDIR)$(PREFIX)/bin/burnish
 	install -D -m 644 include/burnish.h $(DESTDIR)$(PREFIX)/include/burnish.h
 	install -D -m 644 $(LIBRARY) $(DESTDIR)$(PREFIX)/lib/libburnish.a
-	@mkdir -p $(DESTDIR)$(PREFIX)/lib/pkgconfig
-	$(file >$(DESTDIR)$(PREFIX)/lib/pkgconfig/burnish.pc,$(PKGCONFIG_FILE))
+	$(file >$(BUILD)/burnish.pc,$(PKGCONFIG_FILE))install -D -m 644 $(BUILD)/burnish.pc $(DESTDIR)$(PREFIX)/lib/pkgconfig/burnish.pc
 	install -D -m 644 doc/burnish.1 $(DESTDIR)$(PREFIX)/share/man/man1/burnish.1
 	install -D -m 644 doc/burnish.bash $(DESTDIR)$(PREFIX)/share/bash-completion/completions/burnish
 	install -D -m 644 -t $(DESTDIR)$(PREFIX)/share/doc/burnish README.md REFERENCE.md
 	install -D -m 644 -t $(DESTDIR)$(PREFIX)/share/burnish/runs $(wildcard runs/*.yaml)
 	install -D -m 644 -t $(DESTDIR)$(PREFIX)/share/burnish/meshes $(wildcard meshes/*.geo)
 
-# The library is static, so that a program that links it links what it stands on too.
+# The library is static, so that a program that links it also links the libraries that it calls.
 define PKGCONFIG_FILE
 prefix=$(PREFIX)
 
 Name: burnish
 Description: Contact of deformable bodies, from a scene file to results, in parallel
 Version: $(shell sed -n 's/.*BURNISH_VERSION "\(.*\)"/\1/p' src/scene/commandline.h)
-Requires: PETSc
-Cflags: -I$${prefix}/include
-Libs: -L$${prefix}/lib -lburnish $(strip $(LIBRARIES))
+Cflags: -I$${prefix}/include $(call pkgconfig,--cflags-only-I PETSc)
+Libs: -L$${prefix}/lib -lburnish $(strip $(LIBRARIES)) $(filter -fsanitize%,$(CFLAGS))
 endef
 
 help: ## this list
@@ -153,6 +151,6 @@ format: ## formats the C sources
 	$(VENV)/bin/clang-format -i $(wildcard include/*.h src/*.c src/*/*.[ch] src/*/private/*.h tests/*.h tests/*/*.[ch])
 
 clean: ## removes what was built (out/ and the Python environment stay)
-	rm -rf $(BUILD)/obj $(BUILD)/tests $(BUILD)/bench $(BUILD)/ctest $(BUILD)/flags $(LIBRARY) $(BURNISH)
+	rm -rf $(BUILD)/obj $(BUILD)/tests $(BUILD)/bench $(BUILD)/ctest $(BUILD)/flags $(BUILD)/burnish.pc $(LIBRARY) $(BURNISH)
 
 -include $(wildcard $(BUILD)/obj/*.d $(BUILD)/obj/*/*.d $(BUILD)/tests/*.d $(BUILD)/bench/*.d)
