@@ -16,7 +16,7 @@ endif
 ifdef SANITIZE
   BUILD  := build/sanitize
   CFLAGS := -O1 -g -fno-omit-frame-pointer -fsanitize=address,undefined -fno-sanitize-recover=undefined
-  LDLIBS = tests/sanitize.c -Isrc $(call pkgconfig,--cflags-only-I PETSc) -rdynamic
+  LDLIBS = tests/sanitize.c -rdynamic
 endif
 
 # PETSc is the one of PETSC_DIR and PETSC_ARCH, else the one that pkg-config knows; HDF5 is the one PETSc was built with.

@@ -34,6 +34,7 @@ PetscErrorCode ContactCreate(Mesh mesh, Scene scene, Elasticity elasticity, Load
 
   PetscFunctionBeginUser;
   PetscCall(PetscNew(&contact));
+  *out             = contact; /* ContactDestroy() frees what a refusal leaves */
   contact->mesh    = mesh;
   contact->scene   = scene;
   contact->loads   = loads;
@@ -47,8 +48,8 @@ PetscErrorCode ContactCreate(Mesh mesh, Scene scene, Elasticity elasticity, Load
   PetscCall(PetscLogEventRegister("ContactAdjust", SNES_CLASSID, &contact->event_adjust));
   PetscCall(PetscLogEventRegister("ContactTouch", SNES_CLASSID, &contact->event_touch));
   PetscCall(BlockMatrixCreate(mesh->comm, mesh->dim, &contact->blocks));
-  PetscCall(RefuseRepeatedPairs(mesh, scene));
   PetscCall(PetscCalloc1(contact->n_pairs, &contact->pairs));
+  PetscCall(RefuseRepeatedPairs(mesh, scene));
   for (int p = 0; p < contact->n_pairs; p++) {
     PetscCall(ContactPairCreate(mesh, scene, elasticity, loads, &scene->contacts[p], &contact->pairs[p]));
     contact->pairs[p].work = &contact->work;
@@ -58,7 +59,6 @@ PetscErrorCode ContactCreate(Mesh mesh, Scene scene, Elasticity elasticity, Load
   if (fits) PetscCall(PetscMalloc1(FitWorkspace(mesh->dim, 4, FIT_MAX_POINTS), &contact->work.workspace));
   PetscCall(PetscMalloc3(capacity, &contact->work.result.points, 3 * (capacity + 1), &contact->work.result.N,
                          PetscSqr(3 * (capacity + 1)), &contact->work.result.M));
-  *out = contact;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
