@@ -16,7 +16,7 @@ endif
 ifdef SANITIZE
   BUILD  := build/sanitize
   CFLAGS := -O1 -g -fno-omit-frame-pointer -fsanitize=address,undefined -fno-sanitize-recover=undefined
-  LDLIBS = tests/sanitize.c -Isrc $(call pkgconfig,--cflags-only-I PETSc) -rdynamic
+  LDLIBS = tests/sanitize.c -rdynamic
 endif
 
 # PETSc is the one of PETSC_DIR and PETSC_ARCH, else the one that pkg-config knows; HDF5 is the one PETSc was built with.
@@ -50,7 +50,7 @@ OBJECTS   := $(SOURCES:src/%.c=$(BUILD)/obj/%.o)
 PRIVATES  := $(patsubst %,-iquote %,$(wildcard src/*/private))
 LIBRARY   := $(BUILD)/libburnish.a
 BURNISH   := $(BUILD)/burnish
-TESTS     := $(patsubst %.c,$(BUILD)/tests/%,$(notdir $(wildcard tests/unit/test_*.c tests/mpi/test_*.c tests/oracle/*.c tests/fuzz/*.c)))
+TESTS     := $(patsubst %.c,$(BUILD)/tests/%,$(notdir $(wildcard tests/unit/test_*.c tests/mpi/test_*.c tests/oracle/*.c tests/fuzz/*.c tests/library/*.c)))
 BENCHES   := $(patsubst tests/bench/%.c,$(BUILD)/bench/%,$(wildcard tests/bench/*.c))
 
 .PHONY: all tests deps demo check test study bench fuzz valgrind install help format clean FORCE
@@ -79,6 +79,11 @@ $(eval $(call program,tests/mpi,$(BUILD)/tests))
 $(eval $(call program,tests/oracle,$(BUILD)/tests))
 $(eval $(call program,tests/fuzz,$(BUILD)/tests))
 $(eval $(call program,tests/bench,$(BUILD)/bench))
+
+# A user of the library sees include/ and nothing of src.
+$(BUILD)/tests/%: tests/library/%.c $(LIBRARY) $(BUILD)/flags
+	@mkdir -p $(@D)
+	$(CC) $(ALL_CFLAGS) $(CPPFLAGS) -Iinclude $(call pkgconfig,--cflags-only-I PETSc) -MMD -MP -o $@ $< $(LIBRARY) $(LINK)
 
 # Everything is compiled again when the compile or link line changes, with another PETSc for instance. What is asked for together with
 # deps or clean waits for them, under make -j too.
@@ -117,13 +122,27 @@ fuzz: ## looks for files that break the readers, SECONDS=600 for each, with clan
 valgrind: ## runs the unit tests of the plain C kernels under valgrind
 	@scripts/valgrind.sh
 
-install: all ## installs program, man page and examples into PREFIX (default /usr/local)
+install: all ## installs program, library, man page and examples into PREFIX (default /usr/local)
 	install -D -m 755 $(BURNISH) $(DESTDIR)$(PREFIX)/bin/burnish
+	install -D -m 644 include/burnish.h $(DESTDIR)$(PREFIX)/include/burnish.h
+	install -D -m 644 $(LIBRARY) $(DESTDIR)$(PREFIX)/lib/libburnish.a
+	$(file >$(BUILD)/burnish.pc,$(PKGCONFIG_FILE))install -D -m 644 $(BUILD)/burnish.pc $(DESTDIR)$(PREFIX)/lib/pkgconfig/burnish.pc
 	install -D -m 644 doc/burnish.1 $(DESTDIR)$(PREFIX)/share/man/man1/burnish.1
 	install -D -m 644 doc/burnish.bash $(DESTDIR)$(PREFIX)/share/bash-completion/completions/burnish
 	install -D -m 644 -t $(DESTDIR)$(PREFIX)/share/doc/burnish README.md REFERENCE.md
 	install -D -m 644 -t $(DESTDIR)$(PREFIX)/share/burnish/runs $(wildcard runs/*.yaml)
 	install -D -m 644 -t $(DESTDIR)$(PREFIX)/share/burnish/meshes $(wildcard meshes/*.geo)
+
+# The library is static, so that a program that links it also links the libraries that it calls.
+define PKGCONFIG_FILE
+prefix=$(PREFIX)
+
+Name: burnish
+Description: Contact of deformable bodies, from a scene file to results, in parallel
+Version: $(shell sed -n 's/.*BURNISH_VERSION "\(.*\)"/\1/p' src/scene/commandline.h)
+Cflags: -I$${prefix}/include $(call pkgconfig,--cflags-only-I PETSc)
+Libs: -L$${prefix}/lib -lburnish $(strip $(LIBRARIES)) $(filter -fsanitize%,$(CFLAGS))
+endef
 
 help: ## this list
 	@sed -n 's/^\([a-z]*\):.*## \(.*\)/make \1\t\2/p' Makefile | expand -t 16
@@ -132,6 +151,6 @@ format: ## formats the C sources
 	$(VENV)/bin/clang-format -i $(wildcard include/*.h src/*.c src/*/*.[ch] src/*/private/*.h tests/*.h tests/*/*.[ch])
 
 clean: ## removes what was built (out/ and the Python environment stay)
-	rm -rf $(BUILD)/obj $(BUILD)/tests $(BUILD)/bench $(BUILD)/ctest $(BUILD)/flags $(LIBRARY) $(BURNISH)
+	rm -rf $(BUILD)/obj $(BUILD)/tests $(BUILD)/bench $(BUILD)/ctest $(BUILD)/flags $(BUILD)/burnish.pc $(LIBRARY) $(BURNISH)
 
 -include $(wildcard $(BUILD)/obj/*.d $(BUILD)/obj/*/*.d $(BUILD)/tests/*.d $(BUILD)/bench/*.d)

@@ -5,10 +5,9 @@ set -euo pipefail
 seconds=$1 build=build/fuzz status=0
 shift
 [ $# -gt 0 ] || set -- scene mesh
-SLICE=60 # seconds in one process: refusals free nothing, which adds up to 4 GB
 command -v clang >/dev/null || { echo "make fuzz: clang is missing (Debian: apt install clang)" >&2; exit 1; }
 # -O0: clang takes many minutes over the element kernels' vectors otherwise, and the readers do without
-export OMPI_CC=clang MPICH_CC=clang ASAN_OPTIONS=detect_leaks=0:allocator_may_return_null=1 # what a refusal leaves behind is not freed: it ends the program
+export OMPI_CC=clang MPICH_CC=clang ASAN_OPTIONS=detect_leaks=0:allocator_may_return_null=1 # the readers' own leaks are counted by the fuzzers; MPI's are not ours
 make -s -j "$(env -u OMP_NUM_THREADS nproc)" BUILD="$build" CPPFLAGS=-DFUZZER CFLAGS='-O0 -g -fno-omit-frame-pointer -fsanitize=fuzzer-no-link,address,undefined -fno-sanitize-recover=undefined' \
   LDLIBS=-fsanitize=fuzzer "$build"/tests/fuzz_scene "$build"/tests/fuzz_mesh
 for reader in "$@"; do
@@ -17,9 +16,7 @@ for reader in "$@"; do
   [ "$reader" = scene ] && seeds+=(tests/input tests/scenes runs)
   # every word in quotes of the table of keys or of the reader
   grep -ohE '"[A-Za-z_$][A-Za-z_]*"' src/scene/schemakeys.c src/mesh/gmshfile.c | sort -u >out/fuzz/words
-  for ((left = seconds; left > 0; left -= SLICE)); do
-    timeout $((SLICE + 120)) "$build"/tests/fuzz_"$reader" -max_total_time=$((left < SLICE ? left : SLICE)) -timeout=10 -rss_limit_mb=8192 -max_len=16384 \
-      -dict=out/fuzz/words -artifact_prefix=out/fuzz/"$reader"- -print_final_stats=1 out/fuzz/"$reader" "${seeds[@]}" || status=1
-  done
+  timeout $((seconds + 120)) "$build"/tests/fuzz_"$reader" -max_total_time="$seconds" -timeout=10 -rss_limit_mb=8192 -max_len=16384 \
+    -dict=out/fuzz/words -artifact_prefix=out/fuzz/"$reader"- -print_final_stats=1 out/fuzz/"$reader" "${seeds[@]}" || status=1
 done
 exit $status

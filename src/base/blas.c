@@ -1,3 +1,4 @@
+/* The BLAS in use, asked of the dynamic linker and of OpenBLAS itself. */
 #define _GNU_SOURCE /* dladdr() */
 #include "base/blas.h"
 #include <dlfcn.h>
@@ -6,14 +7,18 @@
 #include <string.h>
 #include <strings.h>
 
-/* OpenBLAS's kernels for processors that have no more than SSE. Later ones are chosen where they are right (Zen on a
-   processor of AMD), where somebody has asked for them, or where OpenBLAS was made without those for AVX-512. */
+/* OpenBLAS's kernels for processors that have no more than SSE. Later kernels are not listed: OpenBLAS chooses them
+   only where they are right (Zen on a processor of AMD), where somebody has asked for them, or where it was built
+   without those for AVX-512. */
 static const char *const sse_kernels[] = {"Generic", "Katmai", "Coppermine",   "Northwood", "Prescott",   "Banias",
                                           "Atom",    "Core2",  "Penryn",       "Nehalem",   "Dunnington", "Athlon",
                                           "Opteron", "Nano",   "Opteron_SSE3", "Barcelona", "Bobcat"};
 
-/* ProcessorGetVectors - of the processor this runs on, as far as the operating system lets programs use them. Not
- * collective. */
+/*@
+  ProcessorGetVectors - returns the widest vectors of the processor that the operating system lets programs use
+
+  Not collective, plain C
+@*/
 ProcessorVectors ProcessorGetVectors(void)
 {
 #if defined(__x86_64__) && defined(__GNUC__)
@@ -26,8 +31,18 @@ ProcessorVectors ProcessorGetVectors(void)
   return PROCESSOR_OTHER;
 }
 
-/* BlasFasterKernels - the name of kernels that would be much faster than these (NULL: of no OpenBLAS) on a processor
-   with these vectors; NULL: there are none. Not collective. */
+/*@
+  BlasFasterKernels - returns the name of OpenBLAS's kernels that would be much faster than those in use
+
+  Not collective, plain C
+
+  Input Parameters:
++ kernels - OpenBLAS's name for the kernels in use; NULL where the BLAS is another library
+- vectors - of the processor
+
+  Note:
+  Returns NULL if there are no faster ones.
+@*/
 const char *BlasFasterKernels(const char *kernels, ProcessorVectors vectors)
 {
   static const char *const made_for[] =
@@ -38,7 +53,7 @@ const char *BlasFasterKernels(const char *kernels, ProcessorVectors vectors)
   return NULL;
 }
 
-/* The text that a function of the libraries at hand returns; NULL where there is no such function */
+/* The text that a function of the loaded libraries returns; NULL if there is no such function. */
 static const char *LibraryText(const char *function)
 {
   char *(*text)(void);
@@ -63,7 +78,14 @@ static void BlasFindFile(Blas *blas)
   free(real);
 }
 
-/* BlasFind - what there is to say of the BLAS in use. Not collective. */
+/*@
+  BlasFind - finds out which BLAS is in use and which kernels it has chosen
+
+  Not collective, plain C
+
+  Output Parameter:
+. blas - what was found
+@*/
 void BlasFind(Blas *blas)
 {
   const char *made = LibraryText("openblas_get_config");
@@ -71,12 +93,19 @@ void BlasFind(Blas *blas)
   *blas = (Blas){.can_choose = made && strstr(made, "DYNAMIC_ARCH")};
   BlasFindFile(blas);
   if (strcasestr(blas->file, "openblas"))
-    blas->kernels = LibraryText("openblas_get_corename"); /* OpenBLAS may be there for another library's sake */
+    blas->kernels = LibraryText("openblas_get_corename"); /* another library may have loaded OpenBLAS */
   blas->faster_kernels = BlasFasterKernels(blas->kernels, ProcessorGetVectors());
 }
 
-/* BlasPrint - the file, the kernels where they are known, and how to have faster ones where that takes no other
- * library. Not collective. */
+/*@
+  BlasPrint - prints the rest of a line: the file, the kernels, and how to have faster ones of the same library
+
+  Not collective, plain C
+
+  Input Parameters:
++ blas   - from BlasFind()
+- stream - where to print
+@*/
 void BlasPrint(const Blas *blas, FILE *stream)
 {
   fprintf(stream, "%s", blas->file);

@@ -1,15 +1,17 @@
-/* A balanced binary tree over the boxes, halved at the median centre of the widest direction until one box is left. The
-   nodes stand in one array in preorder: below node i with n boxes come the left half's n/2 boxes at node i + 1 and the
-   rest at node i + 2 (n/2), so that neither children nor ranges need be stored. Halving by position, not by value,
-   keeps the depth at log2 n for any boxes, equal ones too. */
+/* A balanced binary tree over the boxes. Each node is halved at the median centre along its widest direction until one
+   box is left. The nodes are in one array in preorder: node i with n boxes has its left half of n/2 boxes at node i + 1
+   and the rest at node i + 2 (n/2), so that neither children nor ranges are stored. The boxes are halved by their
+   number and not by their place, which keeps the depth at log2 n for any boxes, also for equal ones. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 #include "base/boxtree.h"
 
-enum { MAX_DIM = 3, MAX_DEPTH = 64 };
+enum { MAX_DIM = 3 };
+/* Size of the stack of a search. The depth of the tree is log2 n, and n is an int. */
+enum { MAX_DEPTH = 64 };
 
-/* A subtree: its node and the range of `order` it holds; distance: squared, from the point of the search. */
+/* A subtree: its node and its range of `order`. distance is the squared distance from the point of the search. */
 typedef struct {
   double distance;
   int    node, first, count;
@@ -22,7 +24,7 @@ struct _n_Tree {
   Range  *queue; /* [n + 1]: heap of BoxTreeClosest(), nearest first */
 };
 
-/* What the halving needs of the boxes */
+/* The boxes while the tree is built */
 typedef struct {
   int           dim;
   const double *lower, *upper;
@@ -33,7 +35,8 @@ static double Centre(const Boxes *boxes, int box, int k)
   return 0.5 * boxes->lower[(size_t)box * boxes->dim + k] + 0.5 * boxes->upper[(size_t)box * boxes->dim + k];
 }
 
-/* Does box a come before box b along direction k? Equal centres by number: the tree is the same for the same boxes. */
+/* Whether box a comes before box b along direction k. Boxes of equal centres are ordered by number, so that the same
+   boxes always give the same tree. */
 static int Before(const Boxes *boxes, int k, int a, int b)
 {
   const double p = Centre(boxes, a, k), q = Centre(boxes, b, k);
@@ -84,7 +87,7 @@ static Range Right(const Range *range)
   return (Range){0, range->node + 2 * half, range->first + half, range->count - half};
 }
 
-/* Boxes and order of a subtree */
+/* Sets the boxes and the order of a subtree. */
 static void BuildRange(BoxTree tree, const Boxes *boxes, Range range)
 {
   const int dim   = tree->dim;
@@ -114,8 +117,23 @@ static void BuildRange(BoxTree tree, const Boxes *boxes, Range range)
   BuildRange(tree, boxes, Right(&range));
 }
 
-/* Builds the tree. Not collective, plain C. dim: 1 to 3; n: boxes, 0 allowed; lower, upper: [n][dim] corners (lengths),
-   not kept. Returns 0, or 1 without memory (*tree is NULL then). To be freed by BoxTreeDestroy(). */
+/*@
+  BoxTreeBuild - builds the tree of some boxes
+
+  Not collective, plain C
+
+  Input Parameters:
++ dim   - 1 to 3
+. n     - number of boxes, which may be 0
+. lower - [n][dim] lower corners (length), not kept
+- upper - [n][dim] upper corners (length), not kept
+
+  Output Parameter:
+. tree - freed with BoxTreeDestroy(); NULL without memory
+
+  Note:
+  Returns 0, or 1 if there is not enough memory.
+@*/
 int BoxTreeBuild(int dim, int n, const double *lower, const double *upper, BoxTree *tree)
 {
   const Boxes boxes = {dim, lower, upper};
@@ -137,7 +155,14 @@ int BoxTreeBuild(int dim, int n, const double *lower, const double *upper, BoxTr
   return 0;
 }
 
-/* Frees the tree, NULL allowed, and sets it to NULL. Not collective, plain C. */
+/*@
+  BoxTreeDestroy - frees the tree and sets it to NULL
+
+  Not collective, plain C
+
+  Input Parameter:
+. tree - may be NULL already
+@*/
 void BoxTreeDestroy(BoxTree *tree)
 {
   if (!*tree) return;
@@ -148,7 +173,7 @@ void BoxTreeDestroy(BoxTree *tree)
   *tree = NULL;
 }
 
-/* Squared distance of a node's box from a point, 0 inside */
+/* Squared distance of a node's box from a point; 0 inside of the box. */
 static double SquaredDistance(BoxTree tree, int node, const double *point)
 {
   const double *lower = tree->box + (size_t)node * 2 * tree->dim, *upper = lower + tree->dim;
@@ -162,7 +187,8 @@ static double SquaredDistance(BoxTree tree, int node, const double *point)
   return sum;
 }
 
-/* Puts a number into an ascending list of at most max, the largest falling out; returns the new length. */
+/* Puts a number into an ascending list of at most max numbers and returns the new length. The largest number is dropped
+   if the list is full. */
 static int InsertAscending(int value, int max, int n, int *list)
 {
   int low = 0, high = n;
@@ -182,8 +208,23 @@ static int InsertAscending(int value, int max, int n, int *list)
   return n + 1;
 }
 
-/* All boxes nearer to a point than radius. Not collective, plain C. point[dim], radius: lengths; found[max]: their
-   numbers, ascending, the first max of them. Returns how many there are, which may exceed max. */
+/*@
+  BoxTreeNear - finds all boxes that are nearer to a point than a radius
+
+  Not collective, plain C
+
+  Input Parameters:
++ tree   - the tree
+. point  - [dim] coordinates (length)
+. radius - a length
+- max    - room in found
+
+  Output Parameter:
+. found - numbers of the boxes in ascending order, the first max of them
+
+  Note:
+  Returns how many boxes there are, which may be more than max.
+@*/
 int BoxTreeNear(BoxTree tree, const double *point, double radius, int max, int *found)
 {
   Range stack[MAX_DEPTH];
@@ -206,7 +247,8 @@ int BoxTreeNear(BoxTree tree, const double *point, double radius, int max, int *
   return count;
 }
 
-/* Order of the queue: distance; subtrees before boxes, as they may hold one just as near; then number. */
+/* Order of the queue: by distance, then subtrees before boxes, because a subtree may hold a box that is as near, then
+   by number. */
 static int Nearer(BoxTree tree, const Range *a, const Range *b)
 {
   if (a->distance != b->distance) return a->distance < b->distance;
@@ -214,7 +256,7 @@ static int Nearer(BoxTree tree, const Range *a, const Range *b)
   return a->count == 1 ? tree->order[a->first] < tree->order[b->first] : a->node < b->node;
 }
 
-/* Adds a subtree to the queue; returns the new length. */
+/* Adds a subtree to the queue and returns the new length. */
 static int Push(BoxTree tree, Range range, const double *point, int length)
 {
   Range *queue = tree->queue;
@@ -226,7 +268,7 @@ static int Push(BoxTree tree, Range range, const double *point, int length)
   return length + 1;
 }
 
-/* Takes the nearest subtree out of the queue of that length */
+/* Takes the nearest subtree out of the queue of that length. */
 static Range Pop(BoxTree tree, int length)
 {
   Range      *queue = tree->queue;
@@ -243,9 +285,22 @@ static Range Pop(BoxTree tree, int length)
   return top;
 }
 
-/* Visits boxes in order of their distance from a point, of equal distances by number, while that is at most *bound.
-   Not collective, plain C; not to be called from visit. point[dim], *bound: lengths, *bound may be INFINITY;
-   visit(context, box, bound) may lower *bound. */
+/*@
+  BoxTreeClosest - visits boxes in the order of their distance from a point, as long as that is at most a bound
+
+  Not collective, plain C
+
+  Input Parameters:
++ tree    - the tree
+. point   - [dim] coordinates (length)
+. bound   - largest distance (length), which may be INFINITY
+. visit   - is called with the context, the number of a box and the bound, which it may lower
+- context - for visit
+
+  Note:
+  Boxes of equal distance are visited by number. A box whose distance equals the bound is visited too, so that of two
+  equally near facets both are seen. visit must not call BoxTreeClosest() on the same tree, which keeps the queue.
+@*/
 void BoxTreeClosest(BoxTree tree, const double *point, double *bound,
                     void (*visit)(void *context, int index, double *bound), void *context)
 {

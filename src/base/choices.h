@@ -1,10 +1,11 @@
-/* What a scene chooses by name and the program grows by: elastic laws, smoothers, contact laws, step controls.
-   Plain C.
+/* Lists of the objects that a scene chooses by name: elastic laws, smoothers, contact laws, step controls. Plain C.
 
-   A new one is a file of its own that defines the object, and a line here. Enumerations, tables, the scene's key and
-   its reference follow from the lists; what the object is, material.h, smoother.h, law.h and stepcontrol.h tell.
+   A new object is a file of its own that defines it, and one line here:
 
-     LINE(enumerator, word of the scene, object) */
+     LINE(enumerator, word of the scene, object)
+
+   The enumerations, the tables, the key of the scene and its reference follow from these lists. material.h, smoother.h,
+   law.h and stepcontrol.h say what each object holds. */
 #pragma once
 
 #define ELASTIC_LAWS(LINE)                            \
@@ -29,9 +30,9 @@ typedef enum { SMOOTHERS(CHOICE_ENUMERATOR) SMOOTHER_KINDS } SmootherKind;
 typedef enum { CONTACT_LAWS(CHOICE_ENUMERATOR) CONTACT_LAW_KINDS } ContactLawKind;
 typedef enum { STEP_CONTROLS(CHOICE_ENUMERATOR) STEP_CONTROL_KINDS } StepControlKind;
 
-/* For tables by kind */
+/* For tables that are indexed by the kind */
 #define CHOICE_NAME(kind, word, object)    [kind] = word,
 #define CHOICE_POINTER(kind, word, object) [kind] = &object,
 #define CHOICE_BAR(kind, word, object)     " | " word
-/* "word | word": as schemakeys.h wants them */
+/* "word | word", as schemakeys.h needs them */
 #define CHOICE_WORDS(LIST) (&LIST(CHOICE_BAR)[sizeof " | " - 1])

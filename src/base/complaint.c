@@ -1,16 +1,18 @@
+/* The first mistake that one rank finds, and its refusal by all ranks. */
 #include "base/complaint.h"
 #include "base/refusal.h"
 #include <stdarg.h>
 
-/*
-  Complain - writes down a mistake unless an earlier one stands there already
+/*@
+  Complain - writes a mistake down unless there is an earlier one
 
-  Not Collective
+  Not collective
 
   Input Parameters:
-+ complaint - where the first mistake is kept
-- format    - and its arguments, as for printf
-*/
++ complaint - keeps the first mistake
+. format    - of the message, as for printf()
+- ...       - arguments of the format
+@*/
 void Complain(Complaint *complaint, const char *format, ...)
 {
   va_list arguments;
@@ -21,15 +23,18 @@ void Complain(Complaint *complaint, const char *format, ...)
   va_end(arguments);
 }
 
-/*
-  ComplaintRefuse - ends the program if any rank has a complaint
+/*@
+  ComplaintRefuse - refuses the input if any rank has a complaint
 
   Collective
 
   Input Parameters:
 + comm      - all ranks
-- complaint - this rank's; empty if it has none
-*/
+- complaint - of this rank; empty if it has none
+
+  Note:
+  Returns REFUSED on all ranks if there is a complaint, see RefuseInputAnywhere().
+@*/
 PetscErrorCode ComplaintRefuse(MPI_Comm comm, const Complaint *complaint)
 {
   PetscFunctionBeginUser;

@@ -1,13 +1,14 @@
-/* The first mistake found, in words, on the one rank that looked: all ranks then refuse together (RefuseInputAnywhere()
-   of refusal.h). What is found later is mostly a consequence of the first. */
+/* The first mistake that one rank finds in the user's input, in words.
+
+   A rank that looks at its part of the input calls Complain() for each mistake. Afterwards all ranks call
+   ComplaintRefuse(), which refuses together what any rank has found. Only the first mistake of a rank is kept, because
+   later ones are mostly its consequences. */
 #pragma once
 #include "base/petsccompat.h"
 
 typedef struct {
-  char text[2048]; /* empty: none */
+  char text[2048]; /* empty: no mistake */
 } Complaint;
 
-/* Writes down a mistake unless an earlier one stands there already. Not collective. */
-void Complain(Complaint *, const char *, ...) __attribute__((format(printf, 2, 3)));
-/* Refuses what any rank has complained of. Collective. */
+void           Complain(Complaint *, const char *, ...) __attribute__((format(printf, 2, 3)));
 PetscErrorCode ComplaintRefuse(MPI_Comm, const Complaint *);

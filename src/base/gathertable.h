@@ -1,17 +1,16 @@
-/* A table of reals that stands whole on every rank, put together from the ranks' rows: for what is small beside the
-   mesh, such as the slave nodes of a contact pair, and must come out the same on any number of ranks. */
+/* A table of reals that is whole on every rank, put together from the rows of all ranks.
+
+   It is for data that is small beside the mesh, such as the slave nodes of a contact pair, and that must be the same on
+   any number of ranks. GatherTableCreate() joins and sorts the rows, GatherTableDestroy() frees the table. */
 #pragma once
 #include "base/petsccompat.h"
 
-/* Rows of `width` reals, ascending by their first two columns. .row NULL: no table yet */
 typedef struct {
-  PetscInt   n;
-  int        width;
-  PetscReal *row;
+  PetscInt   n;     /* rows, ascending by their first two columns */
+  int        width; /* columns */
+  PetscReal *row;   /* NULL: there is no table yet */
 } GatherTable;
 
-/* rows[n*width] of this rank. Collective. */
 PetscErrorCode GatherTableCreate(MPI_Comm, int width, PetscInt n, const PetscReal *rows, GatherTable *);
 PetscErrorCode GatherTableDestroy(GatherTable *);
-/* Negative, 0 or positive as row a comes before, with or after row b, for qsort() */
-int GatherTableCompare(const void *a, const void *b);
+int            GatherTableCompare(const void *a, const void *b);

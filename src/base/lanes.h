@@ -1,8 +1,8 @@
-/* Vectors of doubles as wide as the machine's registers, for kernels that treat several points at a time. Plain C with
- * GNU vector extensions. */
+/* Vectors of doubles that are as wide as the registers of the processor, for kernels that treat several points at once.
+   Plain C with GNU's vector extensions. */
 #pragma once
 
-/* Wider vectors than the machine's are taken apart by the compiler at many times the cost. */
+/* Doubles in a vector. The compiler splits wider vectors than the processor has, which costs many times more. */
 #if defined(__AVX512F__)
 enum { LANES = 8 };
 #elif defined(__AVX__)
@@ -13,12 +13,12 @@ enum { LANES = 2 };
 
 typedef double    Lanes __attribute__((vector_size(LANES * sizeof(double))));
 typedef long long LaneMask __attribute__((vector_size(LANES * sizeof(long long))));
-/* The same within an array of doubles, which need not be aligned */
+/* A vector within an array of doubles, which need not be aligned */
 typedef double LanesInArray __attribute__((vector_size(LANES * sizeof(double)), aligned(sizeof(double)), may_alias));
 
 #define LANES_INLINE static inline __attribute__((always_inline))
 
-/* How many vectors hold n doubles */
+/* Number of vectors that hold n doubles */
 static inline int LanesGroups(int n)
 {
   return (n + LANES - 1) / LANES;

@@ -1,5 +1,5 @@
-/* What lets one source build against PETSc 3.18 and the newest release, with 32- and 64-bit indices. Nothing else
- * belongs here. */
+/* Names that PETSc 3.18 or the newest release lacks, so that one source builds against both, with 32-bit and with
+   64-bit indices. Nothing else belongs here. */
 #pragma once
 #include <petscsnes.h>
 #include <petscdmplex.h>

@@ -1,59 +1,60 @@
+/* Wrong input as an error code with a message. */
 #include "base/refusal.h"
 #include <stdarg.h>
-#include <stdlib.h>
 
-/* Ends MPI and PETSc in order and leaves with status 1. All ranks come here together: MPI_Finalize waits for the rank
-   that printed, so that a launcher which ends the job at the first non-zero status finds the message already written.
- */
-static PetscErrorCode RefusalLeave(void)
-{
-  int finalized;
+/* The message of the refusal that is on its way up; NULL where there is none. */
+static char *refusal_message;
 
-  PetscFunctionBeginUser;
-  /* builds of PETSc for debugging list options that were not looked at yet; here that would be noise beside the message
-   */
-  PetscCall(PetscOptionsSetValue(NULL, "-options_left", "0"));
-  PetscCall(PetscFinalize());
-  PetscCallMPI(MPI_Finalized(&finalized));
-  if (!finalized) PetscCallMPI(MPI_Finalize());
-  exit(EXIT_WRONG_INPUT);
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
+/*@
+  RefuseInput - keeps the message about a mistake that every rank knows and returns the code of refusals
 
-/* RefuseInput - one message about a mistake that every rank knows, then the end of the program with status 1.
+  Collective
 
-   Collective on all ranks of the program; rank 0 of comm prints. format: printf's, without name and newline: both are
-   added. Does not return. */
+  Input Parameters:
++ comm   - all ranks of the run
+. format - of the message, as for printf(), without a newline at its end
+- ...    - arguments of the format
+
+  Note:
+  Returns REFUSED on all ranks. A message that is kept already stays, since it is the first mistake.
+@*/
 PetscErrorCode RefuseInput(MPI_Comm comm, const char *format, ...)
 {
-  va_list     arguments;
-  PetscMPIInt rank;
+  va_list arguments;
+  int     length;
 
   PetscFunctionBeginUser;
-  PetscCallMPI(MPI_Comm_rank(comm, &rank));
-  if (!rank) {
-    va_start(arguments, format);
-    fflush(stdout);
-    fputs("burnish: ", stderr);
-    vfprintf(stderr, format, arguments);
-    fputc('\n', stderr);
-    fflush(stderr);
-    va_end(arguments);
-  }
-  PetscCall(RefusalLeave());
-  PetscFunctionReturn(PETSC_SUCCESS);
+  (void)comm;
+  if (refusal_message) PetscFunctionReturn(REFUSED);
+  va_start(arguments, format);
+  length = vsnprintf(NULL, 0, format, arguments);
+  va_end(arguments);
+  PetscCheck(length >= 0, PETSC_COMM_SELF, PETSC_ERR_LIB, "vsnprintf() cannot write a message");
+  PetscCall(PetscMalloc1(length + 1, &refusal_message));
+  va_start(arguments, format);
+  vsnprintf(refusal_message, (size_t)length + 1, format, arguments);
+  va_end(arguments);
+  PetscFunctionReturn(REFUSED);
 }
 
-/* RefuseInputAnywhere - as RefuseInput() for a mistake that only some ranks know: the text of the lowest complaining
-   rank is printed.
+/*@
+  RefuseInputAnywhere - refuses a mistake that only some ranks know; the message of the lowest of them is kept
 
-   Collective on all ranks of the program. text: this rank's complaint, or NULL. Returns only where no rank complains.
- */
+  Collective
+
+  Input Parameters:
++ comm - all ranks of the run
+- text - message of this rank, or NULL where it has none
+
+  Note:
+  Returns REFUSED on all ranks if any rank has a message, and 0 otherwise.
+@*/
 PetscErrorCode RefuseInputAnywhere(MPI_Comm comm, const char *text)
 {
-  PetscMPIInt rank, size, complaining, length = 0;
-  size_t      bytes;
-  char       *message;
+  PetscMPIInt    rank, size, complaining, length = 0;
+  size_t         bytes;
+  char          *message;
+  PetscErrorCode code;
 
   PetscFunctionBeginUser;
   PetscCallMPI(MPI_Comm_rank(comm, &rank));
@@ -69,6 +70,33 @@ PetscErrorCode RefuseInputAnywhere(MPI_Comm comm, const char *text)
   PetscCall(PetscCalloc1((size_t)length + 1, &message));
   if (rank == complaining) PetscCall(PetscArraycpy(message, text, (size_t)length));
   PetscCallMPI(MPI_Bcast(message, length, MPI_CHAR, complaining, comm));
-  PetscCall(RefuseInput(comm, "%s", message));
+  code = RefuseInput(comm, "%s", message);
+  PetscCall(PetscFree(message));
+  PetscFunctionReturn(code);
+}
+
+/*@
+  RefusalIsPending - tells whether a refusal has been made whose message nobody has taken yet
+
+  Not collective
+@*/
+PetscBool RefusalIsPending(void)
+{
+  return refusal_message ? PETSC_TRUE : PETSC_FALSE;
+}
+
+/*@
+  RefusalTake - hands the message of a refusal over and so ends the refusal
+
+  Not collective
+
+  Output Parameter:
+. message - the caller frees it with PetscFree(); NULL where there is no refusal
+@*/
+PetscErrorCode RefusalTake(char **message)
+{
+  PetscFunctionBeginUser;
+  *message        = refusal_message;
+  refusal_message = NULL;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

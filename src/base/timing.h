@@ -1,5 +1,11 @@
-/* Wall seconds by purpose, for summary.json; -log_view tells more. Pairs of Begin and End nest: while an inner purpose
-   runs the outer one stands still, so that no second counts twice (the search of the set-up is search, not set-up). */
+/* Wall seconds of a run by purpose, for summary.json. -log_view of PETSc tells more.
+
+   TimingReset() begins a run. TimingBegin() and TimingEnd() stand around the work for one purpose and may be nested:
+   while an inner purpose runs, the clock of the outer one stops, so that no second counts twice (the search within the
+   set-up is search, not set-up). TimingSeconds() gives the sum.
+
+   The clocks belong to the process as a whole, like those of PETSc's log, because every part of the program uses them.
+ */
 #pragma once
 
 typedef enum {
@@ -14,6 +20,7 @@ typedef enum {
 } TimingKind;
 extern const char *const TimingNames[];
 
+void   TimingReset(void);
 void   TimingBegin(TimingKind);
-void   TimingEnd(TimingKind);     /* also ends what was begun after it and never ended */
-double TimingSeconds(TimingKind); /* of what has ended or stood still so far */
+void   TimingEnd(TimingKind);
+double TimingSeconds(TimingKind);

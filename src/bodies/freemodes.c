@@ -542,8 +542,8 @@ PetscErrorCode FreeModesReport(FreeModes modes, PetscBool held, FILE *stream)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* FreeModesRefuse - ends the program (exit 1) where a body can move that is in no contact pair: nothing could make its
-   system regular.
+/* FreeModesRefuse - refuses a scene in which a body can move that is in no contact pair: nothing could make its system
+   regular.
 
    Collective. The message names the body and all such motions. */
 PetscErrorCode FreeModesRefuse(FreeModes modes)

@@ -40,6 +40,8 @@ struct _n_Loads {
   DeadLoad     *dead;
   FollowerLoad *follower;
   PetscLogEvent event_follower; /* where there is a follower load */
+  PetscInt     *owner;          /* while it is made: by dof, who prescribes it */
+  PetscReal    *dense;          /* while it is made: nodal forces of one load */
 };
 
 static PetscReal HistoryFactor(const History *history, PetscReal t)
@@ -105,27 +107,27 @@ static PetscErrorCode LoadsCreatePrescribed(Loads loads)
 {
   Mesh       mesh  = loads->mesh;
   Scene      scene = loads->scene;
-  PetscInt   n     = mesh->n_nodes * mesh->dim, *owner;
+  PetscInt   n     = mesh->n_nodes * mesh->dim;
   MeshGroup *group;
   char       complaint[512] = "";
 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc2(n, &loads->constrained, n, &loads->prescribed));
-  PetscCall(PetscMalloc1(n, &owner));
+  PetscCall(PetscMalloc1(n, &loads->owner));
   for (PetscInt i = 0; i < n; i++) {
     loads->constrained[i] = PETSC_FALSE;
-    owner[i]              = -1;
+    loads->owner[i]       = -1;
   }
   for (PetscInt node = 0; node < mesh->n_nodes && scene->geometry == GEOMETRY_AXISYMMETRIC; node++)
     if (mesh->coords[node * mesh->dim] + mesh->centre[0] <= LOADS_ON_AXIS * mesh->size)
-      PetscCall(LoadsAddDof(loads, node * mesh->dim, 0, NULL, LOADS_AXIS, owner, complaint, sizeof(complaint)));
+      PetscCall(LoadsAddDof(loads, node * mesh->dim, 0, NULL, LOADS_AXIS, loads->owner, complaint, sizeof(complaint)));
   for (int s = 0; s < scene->n_supports; s++) {
     const SceneSupport *support = &scene->supports[s];
 
     PetscCall(MeshGetGroup(mesh, scene, support->path, "surface", support->surface, mesh->dim - 1, &group));
     for (int c = 0; c < mesh->dim; c++)
       if (support->fixed[c])
-        PetscCall(LoadsAddPrescribed(loads, group, c, 0, NULL, -1 - s, owner, complaint, sizeof(complaint)));
+        PetscCall(LoadsAddPrescribed(loads, group, c, 0, NULL, -1 - s, loads->owner, complaint, sizeof(complaint)));
   }
   for (int l = 0; l < scene->n_loads; l++) {
     const SceneLoad *load = &scene->loads[l];
@@ -134,10 +136,10 @@ static PetscErrorCode LoadsCreatePrescribed(Loads loads)
     PetscCall(MeshGetGroup(mesh, scene, load->path, "surface", load->region, mesh->dim - 1, &group));
     for (int c = 0; c < mesh->dim; c++)
       if (load->has[c])
-        PetscCall(
-          LoadsAddPrescribed(loads, group, c, load->value[c], &load->history, l, owner, complaint, sizeof(complaint)));
+        PetscCall(LoadsAddPrescribed(loads, group, c, load->value[c], &load->history, l, loads->owner, complaint,
+                                     sizeof(complaint)));
   }
-  PetscCall(PetscFree(owner));
+  PetscCall(PetscFree(loads->owner));
   PetscCall(RefuseInputAnywhere(mesh->comm, complaint[0] ? complaint : NULL));
   PetscCall(MeshSetConstraints(mesh, loads->constrained));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -226,14 +228,13 @@ static PetscErrorCode LoadsCreateForces(Loads loads)
   Mesh       mesh  = loads->mesh;
   Scene      scene = loads->scene;
   PetscInt   n = mesh->n_nodes * mesh->dim, followers = 0;
-  PetscReal *dense;
   MeshGroup *group;
 
   PetscFunctionBeginUser;
   for (int l = 0; l < scene->n_loads; l++) followers += LoadFollows(scene, &scene->loads[l]);
   if (followers) PetscCall(PetscLogEventRegister("LoadsFollower", SNES_CLASSID, &loads->event_follower));
   PetscCall(PetscCalloc2(scene->n_loads, &loads->dead, followers, &loads->follower));
-  PetscCall(PetscMalloc1(n, &dense));
+  PetscCall(PetscMalloc1(n, &loads->dense));
   for (int l = 0; l < scene->n_loads; l++) {
     const SceneLoad *load = &scene->loads[l];
     DeadLoad        *dead = &loads->dead[loads->n_dead];
@@ -245,16 +246,16 @@ static PetscErrorCode LoadsCreateForces(Loads loads)
       loads->follower[loads->n_follower++] = (FollowerLoad){group, load->value[0], &load->history};
       continue;
     }
-    PetscCall(PetscArrayzero(dense, n));
+    PetscCall(PetscArrayzero(loads->dense, n));
     if (load->kind == LOAD_BODY_FORCE)
-      PetscCall(DeadLoadVolume(loads, load, dense, &dead->force2));
+      PetscCall(DeadLoadVolume(loads, load, loads->dense, &dead->force2));
     else
-      PetscCall(DeadLoadSurface(loads, load, group, dense, &dead->force2));
-    PetscCall(DeadLoadPack(dense, n, dead));
+      PetscCall(DeadLoadSurface(loads, load, group, loads->dense, &dead->force2));
+    PetscCall(DeadLoadPack(loads->dense, n, dead));
     dead->history = &load->history;
     loads->n_dead++;
   }
-  PetscCall(PetscFree(dense));
+  PetscCall(PetscFree(loads->dense));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -268,11 +269,11 @@ PetscErrorCode LoadsCreate(Mesh mesh, Scene scene, Loads *out)
 
   PetscFunctionBeginUser;
   PetscCall(PetscNew(&loads));
+  *out         = loads; /* LoadsDestroy() frees what a refusal leaves */
   loads->mesh  = mesh;
   loads->scene = scene;
   PetscCall(LoadsCreatePrescribed(loads));
   PetscCall(LoadsCreateForces(loads));
-  *out = loads;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -284,6 +285,8 @@ PetscErrorCode LoadsDestroy(Loads *loads)
   for (PetscInt l = 0; l < (*loads)->n_dead; l++) PetscCall(PetscFree2((*loads)->dead[l].dof, (*loads)->dead[l].force));
   PetscCall(PetscFree2((*loads)->dead, (*loads)->follower));
   PetscCall(PetscFree2((*loads)->constrained, (*loads)->prescribed));
+  PetscCall(PetscFree((*loads)->owner));
+  PetscCall(PetscFree((*loads)->dense));
   PetscCall(PetscFree(*loads));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -52,6 +52,7 @@ PetscErrorCode ContactCreate(Mesh mesh, Scene scene, Elasticity elasticity, Load
 
   PetscFunctionBeginUser;
   PetscCall(PetscNew(&contact));
+  *out             = contact; /* ContactDestroy() frees what a refusal leaves */
   contact->mesh    = mesh;
   contact->scene   = scene;
   contact->loads   = loads;
@@ -65,8 +66,8 @@ PetscErrorCode ContactCreate(Mesh mesh, Scene scene, Elasticity elasticity, Load
   PetscCall(PetscLogEventRegister("ContactAdjust", SNES_CLASSID, &contact->event_adjust));
   PetscCall(PetscLogEventRegister("ContactTouch", SNES_CLASSID, &contact->event_touch));
   PetscCall(BlockMatrixCreate(mesh->comm, mesh->dim, &contact->blocks));
-  PetscCall(RefuseRepeatedPairs(mesh, scene));
   PetscCall(PetscCalloc1(contact->n_pairs, &contact->pairs));
+  PetscCall(RefuseRepeatedPairs(mesh, scene));
   for (int p = 0; p < contact->n_pairs; p++) {
     PetscCall(ContactPairCreate(mesh, scene, elasticity, loads, &scene->contacts[p], &contact->pairs[p]));
     contact->pairs[p].work = &contact->work;
@@ -76,7 +77,6 @@ PetscErrorCode ContactCreate(Mesh mesh, Scene scene, Elasticity elasticity, Load
     if (smoother->workspace) workspace = PetscMax(workspace, smoother->workspace(mesh->dim));
   }
   PetscCall(ContactWorkCreate(capacity, dense, workspace, &contact->work));
-  *out = contact;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -40,6 +40,7 @@ PetscErrorCode ContactVariationsDestroy(ContactVariations **variations)
   ContactVariations *v = *variations;
 
   PetscFunctionBeginUser;
+  if (!v) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscFree3(v->first, v->end, v->own));
   PetscCall(PetscFree(v->number));
   PetscCall(PetscFree(v->N));

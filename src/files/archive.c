@@ -210,17 +210,19 @@ static void BodyComplaint(const char *name, PetscInt64 bytes, uint64_t checksum,
 @*/
 PetscErrorCode ArchiveOpen(MPI_Comm comm, const char *name, Archive *archive)
 {
-  char       message[ARCHIVE_MESSAGE] = "", head[ARCHIVE_HEAD + 1] = ""; /* the last byte ends the text */
-  PetscInt64 bytes;
-  uint64_t   checksum;
+  char        message[ARCHIVE_MESSAGE] = "", head[ARCHIVE_HEAD + 1] = ""; /* the last byte ends the text */
+  PetscInt64  bytes;
+  uint64_t    checksum;
+  PetscMPIInt rank;
 
   PetscFunctionBeginUser;
-  PetscCall(ArchiveNew(comm, name, archive));
-  if (!(*archive)->rank) HeadComplaint(name, head, message, sizeof(message));
+  PetscCallMPI(MPI_Comm_rank(comm, &rank));
+  if (!rank) HeadComplaint(name, head, message, sizeof(message));
   PetscCall(RefuseInputAnywhere(comm, *message ? message : NULL));
   PetscCall(ChecksumFile(comm, name, ARCHIVE_HEAD, &bytes, &checksum));
-  if (!(*archive)->rank) BodyComplaint(name, bytes, checksum, head, message, sizeof(message));
+  if (!rank) BodyComplaint(name, bytes, checksum, head, message, sizeof(message));
   PetscCall(RefuseInputAnywhere(comm, *message ? message : NULL));
+  PetscCall(ArchiveNew(comm, name, archive));
   PetscCall(Hdf5TableOpenFile(comm, name, H5F_ACC_RDONLY, &(*archive)->file));
   (*archive)->loads = PETSC_TRUE;
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -339,10 +341,12 @@ static PetscErrorCode OpenDataset(Archive a, const char *name, hssize_t values, 
     found = H5Sget_simple_extent_npoints(space);
     CallHDF5(H5Sclose(space));
   }
-  if (found < 0 || (values >= 0 && found != values))
+  if (found < 0 || (values >= 0 && found != values)) {
+    if (*data >= 0) CallHDF5(H5Dclose(*data));
     PetscCall(RefuseInput(
       a->comm, "%s is damaged: /%s has %lld values where %lld belong; allowed: a whole checkpoint of this scene",
       a->name, name, (long long)PetscMax(found, 0), (long long)values));
+  }
   *size = (hsize_t)found;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -134,6 +134,22 @@ static PetscErrorCode FreeAllDofs(Mesh mesh)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* All of the mesh, from its file. root: NULL on other ranks than 0. */
+static PetscErrorCode MeshBuild(Scene scene, const char *file, RootMesh *root, Mesh mesh)
+{
+  PetscFunctionBeginUser;
+  PetscCall(ReadFile(scene, file, root, mesh));
+  PetscCall(CreateTopology(scene, file, root, mesh));
+  PetscCall(RootRigidCreate(scene, root, mesh));
+  PetscCall(PartitionBodies(scene, root, mesh));
+  PetscCall(MeshDistribute(root, mesh));
+  PetscCall(FreeAllDofs(mesh));
+  PetscCall(DMSetOptionsPrefix(mesh->dm, "mesh_"));
+  PetscCall(PetscObjectSetName((PetscObject)mesh->dm, "mesh"));
+  PetscCall(DMViewFromOptions(mesh->dm, NULL, "-dm_view"));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /*
   MeshCreate - the distributed mesh from a .msh file
 
@@ -153,29 +169,29 @@ called.
 
   Note:
   Refuses damaged files, elements that are not available, bodies without cells, cells without a body, mixed orders, a
-two-dimensional mesh out of its plane, and loads or contact on surfaces that are rigid or lie between cells.
+two-dimensional mesh out of its plane, and loads or contact on surfaces that are rigid or lie between cells. After a
+refusal there is no mesh, and all memory is free.
 */
 PetscErrorCode MeshCreate(MPI_Comm comm, Scene scene, const char *file, Mesh *created)
 {
-  RootMesh    storage, *root;
-  Mesh        mesh;
-  PetscMPIInt rank;
+  RootMesh       storage = {.n_cells = 0}, *root;
+  Mesh           mesh;
+  PetscMPIInt    rank;
+  PetscErrorCode code;
 
   PetscFunctionBeginUser;
+  *created = NULL;
   PetscCallMPI(MPI_Comm_rank(comm, &rank));
   root = rank ? NULL : &storage;
   PetscCall(PetscNew(&mesh));
   mesh->comm = comm;
   mesh->dim  = scene->dim;
-  PetscCall(ReadFile(scene, file, root, mesh));
-  PetscCall(CreateTopology(scene, file, root, mesh));
-  PetscCall(RootRigidCreate(scene, root, mesh));
-  PetscCall(PartitionBodies(scene, root, mesh));
-  PetscCall(MeshDistribute(root, mesh));
-  PetscCall(FreeAllDofs(mesh));
-  PetscCall(DMSetOptionsPrefix(mesh->dm, "mesh_"));
-  PetscCall(PetscObjectSetName((PetscObject)mesh->dm, "mesh"));
-  PetscCall(DMViewFromOptions(mesh->dm, NULL, "-dm_view"));
+  code       = MeshBuild(scene, file, root, mesh);
+  if (code == REFUSED) { /* on all ranks, before the mesh was distributed */
+    if (root) PetscCall(RootMeshReset(root));
+    PetscCall(MeshDestroy(&mesh));
+  }
+  PetscCall(code);
   *created = mesh;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

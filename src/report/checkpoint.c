@@ -162,14 +162,16 @@ PetscErrorCode CheckpointDestroy(Checkpoint *checkpoint)
 @*/
 PetscErrorCode CheckpointReadScene(Checkpoint checkpoint, int n_set, char *const *set, Scene *scene)
 {
-  char *file, *text;
+  char          *file, *text;
+  PetscErrorCode code;
 
   PetscFunctionBeginUser;
   PetscCall(ArchiveText(checkpoint->archive, "scene/file", &file));
   PetscCall(ArchiveText(checkpoint->archive, "scene/text", &text));
-  PetscCall(SceneReadAgain(checkpoint->comm, file, checkpoint->name, text, n_set, set, scene));
+  code = SceneReadAgain(checkpoint->comm, file, checkpoint->name, text, n_set, set, scene);
   PetscCall(PetscFree(file));
   PetscCall(PetscFree(text));
+  PetscCall(code);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -32,7 +32,8 @@ static PetscErrorCode PrintEffects(Model model, FILE *stream)
 */
 PetscErrorCode PrecheckModel(Model model, PetscBool report, FILE *stream)
 {
-  FreeModes modes;
+  FreeModes      modes;
+  PetscErrorCode code;
 
   PetscFunctionBeginUser;
   PetscCall(FreeModesCreate(model->mesh, model->scene, model->problem->loads, &modes));
@@ -42,8 +43,9 @@ PetscErrorCode PrecheckModel(Model model, PetscBool report, FILE *stream)
     PetscCall(ContactReport(model->contact, stream));
     PetscCall(EstimatePrint(model, stream));
   }
-  PetscCall(FreeModesRefuse(modes));
+  code = FreeModesRefuse(modes);
   PetscCall(FreeModesDestroy(&modes));
+  PetscCall(code);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -128,7 +128,7 @@ static void ProbesLookAround(Probes probes, const PetscReal point[3], const Mesh
   }
 }
 
-/* No node at the point: names the nearest one. Does not return. Collective. */
+/* No node at the point: names the nearest one. Returns REFUSED. Collective. */
 static PetscErrorCode ProbesRefusePoint(Probes probes, const Probe *probe, const char *key, const PetscReal point[3],
                                         const Nearby *nearby)
 {
@@ -153,7 +153,7 @@ static PetscErrorCode ProbesRefusePoint(Probes probes, const Probe *probe, const
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Two bodies have a node at the point and the scene does not say which is meant. Does not return. Collective. */
+/* Two bodies have a node at the point and the scene does not say which is meant. Returns REFUSED. Collective. */
 static PetscErrorCode ProbesRefuseBodies(Probes probes, const Probe *probe, const char *key, const PetscReal point[3],
                                          const PetscInt *at)
 {
@@ -178,6 +178,7 @@ static PetscErrorCode ProbesFindNode(Probes probes, Probe *probe, const char *ke
   const MPI_Comm   comm  = probes->model->mesh->comm;
   const PetscReal *point = probe->scene->point[which];
   PetscInt        *at, bodies = 0;
+  PetscErrorCode   code = PETSC_SUCCESS;
   PetscReal        least;
   Nearby           nearby;
 
@@ -190,10 +191,13 @@ static PetscErrorCode ProbesFindNode(Probes probes, Probe *probe, const char *ke
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &nearby.nearest, 1, MPIU_INT, MPI_MIN, comm));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &nearby.id, 1, MPIU_INT, MPI_MIN, comm));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, at, probes->scene->n_bodies, MPIU_INT, MPI_MAX, comm));
-  if (nearby.id == PETSC_MAX_INT) PetscCall(ProbesRefusePoint(probes, probe, key, point, &nearby));
   for (int b = 0; b < probes->scene->n_bodies; b++) bodies += at[b];
-  if (bodies > 1) PetscCall(ProbesRefuseBodies(probes, probe, key, point, at));
+  if (nearby.id == PETSC_MAX_INT)
+    code = ProbesRefusePoint(probes, probe, key, point, &nearby);
+  else if (bodies > 1)
+    code = ProbesRefuseBodies(probes, probe, key, point, at);
   PetscCall(PetscFree(at));
+  PetscCall(code);
   probe->id[which] = nearby.id;
   PetscCall(ProbesLocalNode(probes, nearby.id, &probe->node[which]));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -536,6 +540,7 @@ PetscErrorCode ProbesCreate(Model model, Scene scene, Probes *result)
 
   PetscFunctionBeginUser;
   PetscCall(PetscNew(&probes));
+  *result       = probes; /* ProbesDestroy() frees what a refusal leaves */
   probes->model = model;
   probes->scene = scene;
   PetscCall(PetscCalloc1(scene->n_probes, &probes->probe));
@@ -546,7 +551,6 @@ PetscErrorCode ProbesCreate(Model model, Scene scene, Probes *result)
     PetscCall(ProbesPrepare(probes, &probes->probe[i]));
   }
   PetscCall(PetscFree(probes->node_body));
-  *result = probes;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -558,6 +562,7 @@ PetscErrorCode ProbesDestroy(Probes *probes)
   for (int i = 0; i < (*probes)->scene->n_probes; i++) PetscCall(FreeEdgesDestroy(&(*probes)->probe[i].free_edges));
   PetscCall(PetscFree((*probes)->probe));
   PetscCall(PetscFree((*probes)->slaves));
+  PetscCall(PetscFree((*probes)->node_body));
   PetscCall(PetscFree(*probes));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

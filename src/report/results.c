@@ -548,6 +548,24 @@ PetscErrorCode ResultsDestroy(Results *results)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/*@
+  ResultsGetProbes - gives the values of the probes at the last accepted step
+
+  Not collective
+
+  Input Parameter:
+. results - the results
+
+  Output Parameter:
+. values - scene->n_probes, which belong to the results; NULL before the first accepted step
+@*/
+PetscErrorCode ResultsGetProbes(Results results, const PetscReal **values)
+{
+  PetscFunctionBeginUser;
+  *values = results->stepped ? results->values : NULL;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Rank 0 tells of a file that was there when the loaded checkpoint was written. */
 static void ResultsPrintLost(Results results, const char *name)
 {

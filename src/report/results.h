@@ -40,6 +40,7 @@ PetscErrorCode ResultsStart(Results); /* the first lines: version, ranks, BLAS, 
 /* Results up to the last accepted step. Loaded, ResultsStart() takes the directory back to them instead of clearing it.
  * Collective. */
 PetscErrorCode ResultsArchive(Results, Archive);
+PetscErrorCode ResultsGetProbes(Results, const PetscReal **values);
 PetscErrorCode ResultsStep(Results, const StepRecord *);  /* an accepted step: CSV row, progress line, fields if due */
 PetscErrorCode ResultsFinish(Results, const RunRecord *); /* last fields, summary.json, last line on the terminal */
 /* Writes a text file of the directory under a temporary name, then renames it: it is there whole or not at all. Not

@@ -134,34 +134,68 @@ const char *DocumentWhere(Document *document, const char *path)
   return DocumentWhereNode(document, node, path);
 }
 
-static void DocumentRefuseList(Document *document, const char *where, const char *format, va_list arguments)
-  __attribute__((noreturn));
-static void DocumentRefuseList(Document *document, const char *where, const char *format, va_list arguments)
+/* Refuses "where: text". */
+static PetscErrorCode DocumentRefuseList(Document *document, const char *where, const char *format, va_list arguments)
 {
   char text[1024];
 
+  PetscFunctionBeginUser;
   vsnprintf(text, sizeof text, format, arguments);
-  (void)!RefuseInput(document->comm, "%s: %s", where, text);
-  exit(EXIT_WRONG_INPUT);
+  PetscCall(RefuseInput(document->comm, "%s: %s", where, text));
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* DocumentRefuse - refuses the value at a path, which need not be there. Collective, does not return; printf's format.
- */
-void DocumentRefuse(Document *document, const char *path, const char *format, ...)
-{
-  va_list arguments;
+/*@
+  DocumentRefuse - refuses the value at a path, which need not be in the document
 
+  Collective
+
+  Input Parameters:
++ document - the document
+. path     - of the value
+. format   - of the message, as for printf()
+- ...      - arguments of the format
+
+  Note:
+  Returns REFUSED, see RefuseInput().
+@*/
+PetscErrorCode DocumentRefuse(Document *document, const char *path, const char *format, ...)
+{
+  va_list        arguments;
+  PetscErrorCode code;
+
+  PetscFunctionBeginUser;
   va_start(arguments, format);
-  DocumentRefuseList(document, DocumentWhere(document, path), format, arguments);
+  code = DocumentRefuseList(document, DocumentWhere(document, path), format, arguments);
+  va_end(arguments);
+  PetscFunctionReturn(code);
 }
 
-/* DocumentRefuseNode - as DocumentRefuse(), of a node that need not be in the tree yet. */
-void DocumentRefuseNode(Document *document, Node node, const char *path, const char *format, ...)
-{
-  va_list arguments;
+/*@
+  DocumentRefuseNode - refuses a node, which need not be in the tree yet
 
+  Collective
+
+  Input Parameters:
++ document - the document
+. node     - its line or its -set is named in the message
+. path     - of the node
+. format   - of the message, as for printf()
+- ...      - arguments of the format
+
+  Note:
+  Returns REFUSED, see RefuseInput().
+@*/
+PetscErrorCode DocumentRefuseNode(Document *document, Node node, const char *path, const char *format, ...)
+{
+  va_list        arguments;
+  PetscErrorCode code;
+
+  PetscFunctionBeginUser;
   va_start(arguments, format);
-  DocumentRefuseList(document, DocumentWhereNode(document, node, path), format, arguments);
+  code = DocumentRefuseList(document, DocumentWhereNode(document, node, path), format, arguments);
+  va_end(arguments);
+  PetscFunctionReturn(code);
 }
 
 /* ---- text to tree ---- */
@@ -198,7 +232,7 @@ static PetscErrorCode NodeCreate(NodeKind kind, int line, const char *set, Node 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Adds a child; key is copied (NULL for a list). */
+/* Adds a child, which may be NULL; key is copied (NULL for a list). */
 static PetscErrorCode NodeAppend(Node node, const char *key, Node child)
 {
   Node  *children;
@@ -223,33 +257,48 @@ static PetscErrorCode NodeAppend(Node node, const char *key, Node child)
 
 static PetscErrorCode TreeRead(TreeReader *, int id, int line, const char *path, int depth, Node *);
 
+/* Each child is in the map before it is read, so that a refusal leaves nothing outside of the tree. */
 static PetscErrorCode TreeReadMap(TreeReader *reader, const yaml_node_t *yaml, const char *path, int depth, Node map)
 {
   char below[EXTRAPOLATION_LENGTH];
-  Node child;
 
   PetscFunctionBeginUser;
   for (yaml_node_pair_t *pair = yaml->data.mapping.pairs.start; pair < yaml->data.mapping.pairs.top; pair++) {
-    const yaml_node_t *key  = yaml_document_get_node(reader->yaml, pair->key);
-    const int          line = (int)key->start_mark.line + 1;
-    const char        *text = (const char *)key->data.scalar.value;
+    const yaml_node_t *key   = yaml_document_get_node(reader->yaml, pair->key);
+    const int          line  = (int)key->start_mark.line + 1;
+    const char        *text  = (const char *)key->data.scalar.value;
+    struct _n_Node     again = {.line = line, .set = reader->set};
 
     if (key->type != YAML_SCALAR_NODE)
-      DocumentRefuseNode(reader->document, map, path, "a key is a list or a map (line %d); allowed: names", line);
+      PetscCall(
+        DocumentRefuseNode(reader->document, map, path, "a key is a list or a map (line %d); allowed: names", line));
     KeyPathJoin(below, path, text);
     for (int i = 0; i < map->n; i++) {
-      if (strcmp(map->key[i], text)) continue;
-      PetscCall(NodeCreate(NODE_SCALAR, line, reader->set, &child));
-      DocumentRefuseNode(reader->document, child, below, "duplicate key, first in line %d; allowed: once",
-                         map->child[i]->line);
+      if (!strcmp(map->key[i], text))
+        PetscCall(DocumentRefuseNode(reader->document, &again, below, "duplicate key, first in line %d; allowed: once",
+                                     map->child[i]->line));
     }
-    PetscCall(TreeRead(reader, pair->value, line, below, depth + 1, &child));
-    PetscCall(NodeAppend(map, text, child));
+    PetscCall(NodeAppend(map, text, NULL));
+    PetscCall(TreeRead(reader, pair->value, line, below, depth + 1, &map->child[map->n - 1]));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* line: of the key of a map's value; 0: where the value itself starts */
+static PetscErrorCode TreeReadList(TreeReader *reader, const yaml_node_t *yaml, const char *path, int depth, Node list)
+{
+  char below[EXTRAPOLATION_LENGTH];
+
+  PetscFunctionBeginUser;
+  for (yaml_node_item_t *item = yaml->data.sequence.items.start; item < yaml->data.sequence.items.top; item++) {
+    KeyPathJoinIndex(below, path, list->n);
+    PetscCall(NodeAppend(list, NULL, NULL));
+    PetscCall(TreeRead(reader, *item, 0, below, depth + 1, &list->child[list->n - 1]));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Reads one libyaml node with all below it into *node. line: of the key of a map's value; 0: where the value itself
+   starts. */
 static PetscErrorCode TreeRead(TreeReader *reader, int id, int line, const char *path, int depth, Node *node)
 {
   static const char *const Tags[] = {YAML_DEFAULT_SCALAR_TAG, YAML_DEFAULT_SEQUENCE_TAG, YAML_DEFAULT_MAPPING_TAG};
@@ -257,33 +306,26 @@ static PetscErrorCode TreeRead(TreeReader *reader, int id, int line, const char 
   const NodeKind           kind   = yaml->type == YAML_SCALAR_NODE     ? NODE_SCALAR
                                     : yaml->type == YAML_SEQUENCE_NODE ? NODE_LIST
                                                                        : NODE_MAP;
-  char                     below[EXTRAPOLATION_LENGTH], index[16];
-  Node                     child;
 
   PetscFunctionBeginUser;
   PetscCall(NodeCreate(kind, line ? line : (int)yaml->start_mark.line + 1, reader->set, node));
   if (depth > SCENE_MAX_DEPTH)
-    DocumentRefuseNode(reader->document, *node, path, "is nested too deeply; allowed: %d levels", SCENE_MAX_DEPTH);
+    PetscCall(
+      DocumentRefuseNode(reader->document, *node, path, "is nested too deeply; allowed: %d levels", SCENE_MAX_DEPTH));
   if (reader->visited[id])
-    DocumentRefuseNode(reader->document, *node, path, "is a YAML alias; allowed: the value written out");
+    PetscCall(DocumentRefuseNode(reader->document, *node, path, "is a YAML alias; allowed: the value written out"));
   reader->visited[id] = PETSC_TRUE;
   if (strcmp((const char *)yaml->tag, Tags[kind]))
-    DocumentRefuseNode(reader->document, *node, path, "has a YAML tag; allowed: plain values");
+    PetscCall(DocumentRefuseNode(reader->document, *node, path, "has a YAML tag; allowed: plain values"));
   if (kind == NODE_SCALAR) {
     (*node)->plain = yaml->data.scalar.style == YAML_PLAIN_SCALAR_STYLE;
     PetscCall(PetscStrallocpy((const char *)yaml->data.scalar.value, &(*node)->text));
     if (strlen((*node)->text) != yaml->data.scalar.length)
-      DocumentRefuseNode(reader->document, *node, path, "has a zero character; allowed: text");
-  } else if (kind == NODE_MAP) {
+      PetscCall(DocumentRefuseNode(reader->document, *node, path, "has a zero character; allowed: text"));
+  } else if (kind == NODE_MAP)
     PetscCall(TreeReadMap(reader, yaml, path, depth, *node));
-  } else {
-    for (yaml_node_item_t *item = yaml->data.sequence.items.start; item < yaml->data.sequence.items.top; item++) {
-      snprintf(index, sizeof index, "%d", (*node)->n);
-      KeyPathJoin(below, path, index);
-      PetscCall(TreeRead(reader, *item, 0, below, depth + 1, &child));
-      PetscCall(NodeAppend(*node, NULL, child));
-    }
-  }
+  else
+    PetscCall(TreeReadList(reader, yaml, path, depth, *node));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -297,58 +339,83 @@ static PetscBool LineStartsWithTab(const char *text, size_t length, size_t line)
   return i < length && text[i] == '\t' ? PETSC_TRUE : PETSC_FALSE;
 }
 
-/* Ends with libyaml's own complaint. A tab is named, because it cannot be seen in an editor. */
+/* Refuses with libyaml's own words. A tab is named, because it cannot be seen in an editor. */
 static PetscErrorCode DocumentRefuseYaml(Document *document, const yaml_parser_t *parser, const char *text,
                                          size_t length, const char *set)
 {
-  const yaml_mark_t mark = parser->problem_mark;
-  int               line = (int)mark.line + 1;
-  Node              place;
+  const yaml_mark_t mark  = parser->problem_mark;
+  struct _n_Node    place = {.line = (int)mark.line + 1, .set = set};
 
   PetscFunctionBeginUser;
   if (parser->error == YAML_READER_ERROR) {
-    line = 1;
-    for (size_t i = 0; i < parser->problem_offset && i < length; i++) line += text[i] == '\n';
+    place.line = 1;
+    for (size_t i = 0; i < parser->problem_offset && i < length; i++) place.line += text[i] == '\n';
   }
-  PetscCall(NodeCreate(NODE_SCALAR, line, set, &place));
   if (parser->error != YAML_READER_ERROR && LineStartsWithTab(text, length, mark.line))
-    DocumentRefuseNode(document, place, set ? set : "", "a tab; allowed: spaces");
-  DocumentRefuseNode(document, place, set ? set : "", "malformed YAML: %s%s%s; allowed: one YAML document",
-                     parser->problem, parser->context ? " " : "", parser->context ? parser->context : "");
+    PetscCall(DocumentRefuseNode(document, &place, set ? set : "", "a tab; allowed: spaces"));
+  PetscCall(DocumentRefuseNode(document, &place, set ? set : "", "malformed YAML: %s%s%s; allowed: one YAML document",
+                               parser->problem, parser->context ? " " : "", parser->context ? parser->context : ""));
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The tree of a text: one YAML document. path: where the tree belongs. set: the -set that it came from, or NULL. */
+/* The tree of a libyaml document. The libyaml document stays the caller's. */
+static PetscErrorCode DocumentReadTree(Document *document, yaml_document_t *yaml, const char *path, const char *set,
+                                       Node *root)
+{
+  struct _n_Node place  = {.line = 1, .set = set};
+  TreeReader     reader = {document, set, yaml, NULL};
+  PetscErrorCode code;
+
+  PetscFunctionBeginUser;
+  if (!yaml_document_get_root_node(yaml))
+    PetscCall(
+      DocumentRefuseNode(document, &place, path, "has no value; allowed: %s", set ? "a YAML value" : "a scene"));
+  PetscCall(PetscCalloc1((yaml->nodes.top - yaml->nodes.start) + 1, &reader.visited));
+  code = TreeRead(&reader, 1, 0, path, 0, root);
+  PetscCall(PetscFree(reader.visited));
+  PetscCall(code);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Refuses a second YAML document in the text. */
+static PetscErrorCode DocumentCheckSingle(Document *document, yaml_document_t *second, const char *path,
+                                          const char *set)
+{
+  struct _n_Node place = {.line = (int)second->start_mark.line + 1, .set = set};
+
+  PetscFunctionBeginUser;
+  if (yaml_document_get_root_node(second))
+    PetscCall(DocumentRefuseNode(document, &place, path, "a second YAML document; allowed: one"));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The tree of a text: one YAML document. path: where the tree belongs. set: the -set that it came from, or NULL. After
+   a refusal *root holds what was read so far, and libyaml's memory is free. */
 static PetscErrorCode DocumentParse(Document *document, const char *text, size_t length, const char *path,
                                     const char *set, Node *root)
 {
   yaml_parser_t   parser;
-  yaml_document_t yaml, second;
-  TreeReader      reader = {document, set, &yaml, NULL};
-  Node            place;
-  PetscBool       more;
+  yaml_document_t yaml;
+  PetscErrorCode  code = PETSC_SUCCESS;
 
   PetscFunctionBeginUser;
   PetscCheck(yaml_parser_initialize(&parser), PETSC_COMM_SELF, PETSC_ERR_MEM, "libyaml has no memory for a parser");
   yaml_parser_set_input_string(&parser, (const unsigned char *)text, length);
-  if (!yaml_parser_load(&parser, &yaml)) PetscCall(DocumentRefuseYaml(document, &parser, text, length, set));
-  PetscCall(NodeCreate(NODE_SCALAR, 1, set, &place));
-  if (!yaml_document_get_root_node(&yaml))
-    DocumentRefuseNode(document, place, path, "has no value; allowed: %s", set ? "a YAML value" : "a scene");
-  PetscCall(PetscCalloc1((yaml.nodes.top - yaml.nodes.start) + 1, &reader.visited));
-  PetscCall(TreeRead(&reader, 1, 0, path, 0, root));
-  if (!yaml_parser_load(&parser, &second)) PetscCall(DocumentRefuseYaml(document, &parser, text, length, set));
-  more        = yaml_document_get_root_node(&second) ? PETSC_TRUE : PETSC_FALSE;
-  place->line = (int)second.start_mark.line + 1;
-  if (more) DocumentRefuseNode(document, place, path, "a second YAML document; allowed: one");
-  yaml_document_delete(&second);
-  yaml_document_delete(&yaml);
+  for (int k = 0; !code && k < 2; k++) {
+    if (!yaml_parser_load(&parser, &yaml)) {
+      code = DocumentRefuseYaml(document, &parser, text, length, set);
+      break;
+    }
+    code = k ? DocumentCheckSingle(document, &yaml, path, set) : DocumentReadTree(document, &yaml, path, set, root);
+    yaml_document_delete(&yaml);
+  }
   yaml_parser_delete(&parser);
-  PetscCall(PetscFree(reader.visited));
-  PetscCall(NodeDestroy(&place));
+  PetscCall(code);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Rank 0 reads, all get the text: every rank then parses, and refuses, the same. */
+/* Rank 0 reads and all ranks get the text, so that every rank parses, and refuses, the same. The caller frees text,
+   also after a refusal. */
 static PetscErrorCode FileBroadcast(MPI_Comm comm, const char *name, char **text, size_t *length)
 {
   PetscMPIInt rank;
@@ -397,12 +464,13 @@ static PetscErrorCode NodeSlot(Document *document, Node place, Node node, const 
 
   PetscFunctionBeginUser;
   if (node->kind == NODE_SCALAR)
-    DocumentRefuseNode(document, place, place->set,
-                       "'%s' is below a single value; allowed: keys of a map, indices of a list", key);
+    PetscCall(DocumentRefuseNode(document, place, place->set,
+                                 "'%s' is below a single value; allowed: keys of a map, indices of a list", key));
   if (node->kind == NODE_LIST) {
     index = strtol(key, &end, 10);
     if (*end || strspn(key, "0123456789") != strlen(key) || index > node->n)
-      DocumentRefuseNode(document, place, place->set, "'%s' is no index of this list; allowed: 0 to %d", key, node->n);
+      PetscCall(DocumentRefuseNode(document, place, place->set, "'%s' is no index of this list; allowed: 0 to %d", key,
+                                   node->n));
   }
   if (!child) {
     PetscCall(NodeAppend(node, node->kind == NODE_MAP ? key : NULL, NULL));
@@ -415,23 +483,23 @@ static PetscErrorCode NodeSlot(Document *document, Node place, Node node, const 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* One -set: replaces or adds the value at the path, with the maps and lists that lead to it. */
-static PetscErrorCode DocumentSet(Document *document, const char *set, const char *text)
+/* Puts *value at the path of a -set, with the maps and lists that lead to it. *value is NULL once it is in the tree. */
+static PetscErrorCode DocumentPut(Document *document, const char *set, Node *value)
 {
   struct _n_Node place = {.set = set};
-  Node           node = document->root, value, *slot = NULL;
+  Node           node = document->root, *slot = NULL;
   char           key[EXTRAPOLATION_LENGTH];
   const char    *rest = set;
 
   PetscFunctionBeginUser;
-  PetscCall(DocumentParse(document, text, strlen(text), set, set, &value));
-  if (node->kind != NODE_MAP) DocumentRefuse(document, "", "a scene is a map; allowed: KEY: VALUE lines");
+  if (node->kind != NODE_MAP) PetscCall(DocumentRefuse(document, "", "a scene is a map; allowed: KEY: VALUE lines"));
   while (rest) {
     const size_t n = strcspn(rest, ".");
 
     if (!n || n >= sizeof key)
-      DocumentRefuseNode(document, &place, set,
-                         "is no path; allowed: keys and indices with dots between them, such as contact.0.slave");
+      PetscCall(
+        DocumentRefuseNode(document, &place, set,
+                           "is no path; allowed: keys and indices with dots between them, such as contact.0.slave"));
     snprintf(key, sizeof key, "%.*s", (int)n, rest);
     rest = rest[n] ? rest + n + 1 : NULL;
     PetscCall(NodeSlot(document, &place, node, key, &slot));
@@ -442,7 +510,22 @@ static PetscErrorCode DocumentSet(Document *document, const char *set, const cha
     node = *slot;
   }
   PetscCall(NodeDestroy(slot));
-  *slot = value;
+  *slot  = *value;
+  *value = NULL;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* One -set: replaces or adds the value at the path. */
+static PetscErrorCode DocumentSet(Document *document, const char *set, const char *text)
+{
+  Node           value = NULL;
+  PetscErrorCode code;
+
+  PetscFunctionBeginUser;
+  code = DocumentParse(document, text, strlen(text), set, set, &value);
+  if (!code) code = DocumentPut(document, set, &value);
+  PetscCall(NodeDestroy(&value));
+  PetscCall(code);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -539,37 +622,78 @@ static PetscErrorCode DocumentEdit(Document *document, int n_set, char *const *s
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* DocumentReadText - a document whose text stands in memory, the same on all ranks; name: stands for the file in
- * messages. As DocumentRead() else. */
-PetscErrorCode DocumentReadText(MPI_Comm comm, const char *name, const char *text, int n_set, char *const *set,
-                                Document **document)
+static PetscErrorCode DocumentCreate(MPI_Comm comm, const char *file, Document **document)
 {
-  PetscFunctionBeginUser;
-  PetscCall(PetscNew(document));
-  (*document)->comm = comm;
-  PetscCall(PetscStrallocpy(name, &(*document)->file));
-  PetscCall(DocumentParse(*document, text, strlen(text), "", NULL, &(*document)->root));
-  PetscCall(DocumentEdit(*document, n_set, set));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* DocumentRead - reads a file and applies edits to it.
-
-   Collective. file: as the process can open it on rank 0. set[n_set]: KEY=VALUE, in order. Refuses (exit status 1) what
-   cannot be read or is no plain YAML. document: free with DocumentDestroy(). */
-PetscErrorCode DocumentRead(MPI_Comm comm, const char *file, int n_set, char *const *set, Document **document)
-{
-  char  *text;
-  size_t length;
-
   PetscFunctionBeginUser;
   PetscCall(PetscNew(document));
   (*document)->comm = comm;
   PetscCall(PetscStrallocpy(file, &(*document)->file));
-  PetscCall(FileBroadcast(comm, file, &text, &length));
-  PetscCall(DocumentParse(*document, text, length, "", NULL, &(*document)->root));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  DocumentReadText - reads a document from a text in memory, the same on all ranks, and applies edits to it
+
+  Collective
+
+  Input Parameters:
++ comm  - all ranks
+. name  - stands for the file in messages
+. text  - the document
+. n_set - number of edits
+- set   - KEY=VALUE, in order
+
+  Output Parameter:
+. document - free it with DocumentDestroy()
+
+  Note:
+  As DocumentRead() otherwise.
+@*/
+PetscErrorCode DocumentReadText(MPI_Comm comm, const char *name, const char *text, int n_set, char *const *set,
+                                Document **document)
+{
+  PetscErrorCode code;
+
+  PetscFunctionBeginUser;
+  PetscCall(DocumentCreate(comm, name, document));
+  code = DocumentParse(*document, text, strlen(text), "", NULL, &(*document)->root);
+  if (!code) code = DocumentEdit(*document, n_set, set);
+  if (code) PetscCall(DocumentDestroy(*document));
+  PetscCall(code);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  DocumentRead - reads a document from a file and applies edits to it
+
+  Collective
+
+  Input Parameters:
++ comm  - all ranks
+. file  - as the process can open it on rank 0
+. n_set - number of edits
+- set   - KEY=VALUE, in order
+
+  Output Parameter:
+. document - free it with DocumentDestroy()
+
+  Note:
+  Refuses what cannot be read or is no plain YAML. After a refusal there is no document, and all memory is free.
+@*/
+PetscErrorCode DocumentRead(MPI_Comm comm, const char *file, int n_set, char *const *set, Document **document)
+{
+  PetscErrorCode code;
+  char          *text = NULL;
+  size_t         length;
+
+  PetscFunctionBeginUser;
+  PetscCall(DocumentCreate(comm, file, document));
+  code = FileBroadcast(comm, file, &text, &length);
+  if (!code) code = DocumentParse(*document, text, length, "", NULL, &(*document)->root);
   PetscCall(PetscFree(text));
-  PetscCall(DocumentEdit(*document, n_set, set));
+  if (!code) code = DocumentEdit(*document, n_set, set);
+  if (code) PetscCall(DocumentDestroy(*document));
+  PetscCall(code);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

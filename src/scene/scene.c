@@ -57,13 +57,16 @@ int SceneHas(Scene scene, const char *path, const char *key)
   return SceneNode(scene, path, key) != NULL;
 }
 
-/* SceneRefuse - refuses the value at path.key: "about what", about may be NULL. Collective, does not return. */
-void SceneRefuse(Scene scene, const char *path, const char *key, const char *what, const char *about)
+/* SceneRefuse - refuses the value at path.key: "about what", about may be NULL. Collective. Returns REFUSED. */
+PetscErrorCode SceneRefuse(Scene scene, const char *path, const char *key, const char *what, const char *about)
 {
   char text[EXTRAPOLATION_LENGTH];
 
+  PetscFunctionBeginUser;
   KeyPathJoin(text, path, key);
-  DocumentRefuse(SceneDocument(scene), *key ? text : path, "%s%s%s", about ? about : "", about ? " " : "", what);
+  PetscCall(
+    DocumentRefuse(SceneDocument(scene), *key ? text : path, "%s%s%s", about ? about : "", about ? " " : "", what));
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* SceneFindBody - the body of that name, among the rigid tools or the deformable ones read so far; NULL if there is
@@ -71,7 +74,9 @@ void SceneRefuse(Scene scene, const char *path, const char *key, const char *wha
 const SceneBody *SceneFindBody(Scene scene, const char *name, int rigid)
 {
   for (int i = 0; i < scene->n_bodies; i++) {
-    if (scene->bodies[i].rigid == rigid && !strcmp(scene->bodies[i].name, name)) return &scene->bodies[i];
+    const SceneBody *body = &scene->bodies[i];
+
+    if (body->name && body->rigid == rigid && !strcmp(body->name, name)) return body;
   }
   return NULL;
 }
@@ -120,18 +125,18 @@ static PetscErrorCode SceneReadMesh(Scene scene)
 
   PetscFunctionBeginUser;
   if (!geo && (!dot || strcmp(dot, ".msh")))
-    SceneRefuse(scene, "mesh", "file", "is no mesh file; allowed: a .geo or a .msh file", file);
+    PetscCall(SceneRefuse(scene, "mesh", "file", "is no mesh file; allowed: a .geo or a .msh file", file));
   if (snprintf(path, sizeof path, "%s%s%s", file[0] == '/' ? "" : scene->directory, file[0] == '/' ? "" : "/", file) >=
       (int)sizeof path)
-    SceneRefuse(scene, "mesh", "file", "the path is too long", NULL);
+    PetscCall(SceneRefuse(scene, "mesh", "file", "the path is too long", NULL));
   PetscCall(PetscStrallocpy(path, &scene->mesh_file));
   scene->order =
     SchemaHas(SceneDocument(scene), "mesh.order") ? SchemaInteger(SceneDocument(scene), "mesh.order") : geo;
   PetscCall(SceneReadPairs(scene, "mesh.parameters", &scene->n_parameters, &scene->parameters));
   for (int i = 0; i < scene->n_parameters; i++) {
     if (!scene->parameters[i].value[0])
-      SceneRefuse(scene, "mesh.parameters", scene->parameters[i].key, "has no value; allowed: a number or a text",
-                  NULL);
+      PetscCall(SceneRefuse(scene, "mesh.parameters", scene->parameters[i].key,
+                            "has no value; allowed: a number or a text", NULL));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -162,14 +167,14 @@ static PetscErrorCode SceneReadMotion(Scene scene, const char *tool, Motion *mot
 
       if (!SceneHas(scene, path, key)) continue;
       if (scene->geometry == GEOMETRY_AXISYMMETRIC && k != 1)
-        SceneRefuse(scene, path, key, "would break the symmetry about the axis; allowed: uy", NULL);
+        PetscCall(SceneRefuse(scene, path, key, "would break the symmetry about the axis; allowed: uy", NULL));
       motion->components[motion->n].component = k;
       motion->components[motion->n].value     = SchemaReal(SceneDocument(scene), "%s.%s", path, key);
       PetscCall(SceneReadHistory(scene, path, &motion->components[motion->n++].history));
     }
     if (motion->n == before)
-      SceneRefuse(scene, path, "", "moves nothing; allowed: at least one displacement (ux ...) or rotation (rz ...)",
-                  NULL);
+      PetscCall(SceneRefuse(scene, path, "",
+                            "moves nothing; allowed: at least one displacement (ux ...) or rotation (rz ...)", NULL));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -181,13 +186,14 @@ static PetscErrorCode SceneReadBody(Scene scene, SceneBody *body)
   PetscFunctionBeginUser;
   body->rigid = SceneHas(scene, body->path, "surface");
   if (body->rigid == SceneHas(scene, body->path, "volume"))
-    SceneRefuse(
-      scene, body->path, "",
-      body->rigid ? "has both a volume and a surface; allowed:" : "has neither a volume nor a surface; allowed:", NULL);
+    PetscCall(SceneRefuse(scene, body->path, "",
+                          body->rigid ? "has both a volume and a surface; allowed:"
+                                      : "has neither a volume nor a surface; allowed:",
+                          NULL));
   if (!SceneHas(scene, body->path, body->rigid ? "rigid" : "material"))
-    SceneRefuse(scene, body->path, body->rigid ? "rigid" : "material", Needs, "is missing; allowed:");
+    PetscCall(SceneRefuse(scene, body->path, body->rigid ? "rigid" : "material", Needs, "is missing; allowed:"));
   if (SceneHas(scene, body->path, body->rigid ? "material" : "rigid"))
-    SceneRefuse(scene, body->path, body->rigid ? "material" : "rigid", Needs, "has no place here; allowed:");
+    PetscCall(SceneRefuse(scene, body->path, body->rigid ? "material" : "rigid", Needs, "has no place here; allowed:"));
   PetscCall(SceneReadText(scene, body->path, body->rigid ? "surface" : "volume", &body->name));
   if (body->rigid) {
     char tool[EXTRAPOLATION_LENGTH];
@@ -201,12 +207,13 @@ static PetscErrorCode SceneReadBody(Scene scene, SceneBody *body)
   body->material.E   = SchemaReal(SceneDocument(scene), "%s.material.E", body->path);
   body->material.nu  = SchemaReal(SceneDocument(scene), "%s.material.nu", body->path);
   if (body->material.law == MATERIAL_LINEAR && scene->kinematics == KINEMATICS_FINITE)
-    SceneRefuse(scene, body->path, "material.law",
-                "linear needs kinematics: small; allowed with finite: svk | neo_hookean", NULL);
+    PetscCall(SceneRefuse(scene, body->path, "material.law",
+                          "linear needs kinematics: small; allowed with finite: svk | neo_hookean", NULL));
   body->formulation = (Formulation)SchemaChoice(SceneDocument(scene), "%s.formulation", body->path);
   if (body->formulation != FORMULATION_FULL && scene->order == 2)
-    SceneRefuse(scene, body->path, "formulation", "is for first-order elements; allowed with mesh.order: 2: full",
-                Formulations[body->formulation]);
+    PetscCall(SceneRefuse(scene, body->path, "formulation",
+                          "is for first-order elements; allowed with mesh.order: 2: full",
+                          Formulations[body->formulation]));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -215,28 +222,31 @@ static PetscErrorCode SceneReadBodies(Scene scene)
   int deformable = 0;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscCalloc1(SchemaCount(SceneDocument(scene), "bodies"), &scene->bodies));
-  for (int i = 0; i < SchemaCount(SceneDocument(scene), "bodies"); i++) {
+  scene->n_bodies = SchemaCount(SceneDocument(scene), "bodies");
+  PetscCall(PetscCalloc1(scene->n_bodies, &scene->bodies));
+  for (int i = 0; i < scene->n_bodies; i++) {
     SceneBody *body = &scene->bodies[i];
 
     PetscCall(ScenePath(&body->path, "bodies", i));
     PetscCall(SceneReadBody(scene, body));
-    if (SceneFindBody(scene, body->name, body->rigid))
-      SceneRefuse(scene, body->path, body->rigid ? "surface" : "volume", "is a body already; allowed: once",
-                  body->name);
-    scene->n_bodies++;
+    if (SceneFindBody(scene, body->name, body->rigid) != body)
+      PetscCall(SceneRefuse(scene, body->path, body->rigid ? "surface" : "volume", "is a body already; allowed: once",
+                            body->name));
     deformable += !body->rigid;
   }
   if (!deformable)
-    SceneRefuse(scene, "bodies", "", "has only rigid tools; allowed: at least one volume with material", NULL);
+    PetscCall(
+      SceneRefuse(scene, "bodies", "", "has only rigid tools; allowed: at least one volume with material", NULL));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static void SceneRefuseRigid(Scene scene, const char *path, const char *key, const char *surface)
+static PetscErrorCode SceneRefuseRigid(Scene scene, const char *path, const char *key, const char *surface)
 {
+  PetscFunctionBeginUser;
   if (surface && SceneFindBody(scene, surface, 1))
-    SceneRefuse(scene, path, key, "is a rigid tool, moved by its own motion; allowed: a surface of a deformable body",
-                surface);
+    PetscCall(SceneRefuse(
+      scene, path, key, "is a rigid tool, moved by its own motion; allowed: a surface of a deformable body", surface));
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 static PetscErrorCode SceneReadSupports(Scene scene)
@@ -250,17 +260,19 @@ static PetscErrorCode SceneReadSupports(Scene scene)
 
     PetscCall(ScenePath(&support->path, "supports", i));
     PetscCall(SceneReadText(scene, support->path, "surface", &support->surface));
-    SceneRefuseRigid(scene, support->path, "surface", support->surface);
+    PetscCall(SceneRefuseRigid(scene, support->path, "surface", support->surface));
     for (int k = 0; k < 3; k++) {
       if (!SceneHas(scene, support->path, Displacements[k])) continue;
       if (SchemaReal(SceneDocument(scene), "%s.%s", support->path, Displacements[k]) != 0)
-        SceneRefuse(scene, support->path, Displacements[k],
-                    "a support holds at 0; allowed: 0 (an imposed displacement is a load, under loads:)", NULL);
+        PetscCall(SceneRefuse(scene, support->path, Displacements[k],
+                              "a support holds at 0; allowed: 0 (an imposed displacement is a load, under loads:)",
+                              NULL));
       support->fixed[k] = 1;
       held++;
     }
     if (!held)
-      SceneRefuse(scene, support->path, "", "holds nothing; allowed: at least one of ux: 0, uy: 0, uz: 0 (3D)", NULL);
+      PetscCall(SceneRefuse(scene, support->path, "",
+                            "holds nothing; allowed: at least one of ux: 0, uy: 0, uz: 0 (3D)", NULL));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -281,22 +293,24 @@ static PetscErrorCode SceneReadLoad(Scene scene, SceneLoad *load)
     kinds++;
   }
   if (kinds != 1)
-    SceneRefuse(scene, load->path, "",
-                "allowed: exactly one of displacement (ux, uy, uz), pressure, traction, body_force",
-                kinds ? "has more than one kind;" : "has no kind;");
+    PetscCall(SceneRefuse(scene, load->path, "",
+                          "allowed: exactly one of displacement (ux, uy, uz), pressure, traction, body_force",
+                          kinds ? "has more than one kind;" : "has no kind;"));
   region = load->kind == LOAD_BODY_FORCE ? "volume" : "surface";
   if (!SceneHas(scene, load->path, region))
-    SceneRefuse(scene, load->path, region, Kinds[load->kind], "is missing; allowed: where it acts, for a");
+    PetscCall(SceneRefuse(scene, load->path, region, Kinds[load->kind], "is missing; allowed: where it acts, for a"));
   if (SceneHas(scene, load->path, "surface") && SceneHas(scene, load->path, "volume"))
-    SceneRefuse(scene, load->path, load->kind == LOAD_BODY_FORCE ? "surface" : "volume", region,
-                "has no place here; allowed: only");
+    PetscCall(SceneRefuse(scene, load->path, load->kind == LOAD_BODY_FORCE ? "surface" : "volume", region,
+                          "has no place here; allowed: only"));
   PetscCall(SceneReadText(scene, load->path, region, &load->region));
   if (load->kind == LOAD_BODY_FORCE && !SceneFindBody(scene, load->region, 0))
-    SceneRefuse(scene, load->path, region, "is no deformable body; allowed: a volume under bodies:", load->region);
-  if (load->kind != LOAD_BODY_FORCE) SceneRefuseRigid(scene, load->path, region, load->region);
+    PetscCall(
+      SceneRefuse(scene, load->path, region, "is no deformable body; allowed: a volume under bodies:", load->region));
+  if (load->kind != LOAD_BODY_FORCE) PetscCall(SceneRefuseRigid(scene, load->path, region, load->region));
   load->follower = SchemaBoolean(SceneDocument(scene), "%s.follower", load->path);
   if (load->follower && load->kind != LOAD_PRESSURE)
-    SceneRefuse(scene, load->path, "follower", "only a pressure follows the face; allowed: with pressure", NULL);
+    PetscCall(
+      SceneRefuse(scene, load->path, "follower", "only a pressure follows the face; allowed: with pressure", NULL));
   if (load->kind == LOAD_PRESSURE)
     load->value[0] = SchemaReal(SceneDocument(scene), "%s.pressure", load->path);
   else if (load->kind != LOAD_DISPLACEMENT)
@@ -336,10 +350,10 @@ static PetscErrorCode SceneReadAnalytic(Scene scene, SceneContact *contact)
     count++;
   }
   if (count != 1)
-    SceneRefuse(scene, contact->path, "master",
-                count ? "names several shapes; allowed: a surface, or one of plane, cylinder, sphere"
-                      : "is empty; allowed: a surface, or one of plane, cylinder, sphere",
-                NULL);
+    PetscCall(SceneRefuse(scene, contact->path, "master",
+                          count ? "names several shapes; allowed: a surface, or one of plane, cylinder, sphere"
+                                : "is empty; allowed: a surface, or one of plane, cylinder, sphere",
+                          NULL));
   snprintf(tool, sizeof tool, "%s.master.%s", contact->path, shapes[contact->analytic.shape]);
   (void)SceneReals(scene, tool, contact->analytic.shape == ANALYTIC_SPHERE ? "centre" : "point", contact->motion.point);
   contact->analytic.axis[scene->geometry == GEOMETRY_AXISYMMETRIC ? 1 : 2] =
@@ -355,44 +369,50 @@ static PetscErrorCode SceneReadAnalytic(Scene scene, SceneContact *contact)
   }
   for (int d = 0; d < 3; d++) length += contact->analytic.axis[d] * contact->analytic.axis[d];
   if (contact->analytic.shape != ANALYTIC_SPHERE && length == 0)
-    SceneRefuse(scene, tool, contact->analytic.shape == ANALYTIC_PLANE ? "normal" : "axis",
-                "has no direction; allowed: any vector but zero", NULL);
+    PetscCall(SceneRefuse(scene, tool, contact->analytic.shape == ANALYTIC_PLANE ? "normal" : "axis",
+                          "has no direction; allowed: any vector but zero", NULL));
   if (scene->geometry == GEOMETRY_AXISYMMETRIC && contact->analytic.shape != ANALYTIC_PLANE &&
       contact->motion.point[0] != 0)
-    SceneRefuse(scene, tool, contact->analytic.shape == ANALYTIC_SPHERE ? "centre" : "point",
-                "is off the axis, where it would be no body of revolution of that name; allowed: x = 0", NULL);
+    PetscCall(SceneRefuse(scene, tool, contact->analytic.shape == ANALYTIC_SPHERE ? "centre" : "point",
+                          "is off the axis, where it would be no body of revolution of that name; allowed: x = 0",
+                          NULL));
   if (scene->geometry == GEOMETRY_AXISYMMETRIC && contact->analytic.shape == ANALYTIC_PLANE &&
       contact->analytic.axis[0] != 0)
-    SceneRefuse(scene, tool, "normal", "is oblique to the axis: that is a cone, not a plane; allowed: [0, y]", NULL);
+    PetscCall(
+      SceneRefuse(scene, tool, "normal", "is oblique to the axis: that is a cone, not a plane; allowed: [0, y]", NULL));
   PetscCall(SceneReadMotion(scene, tool, &contact->motion));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* How pressures carry over as multipliers; g_max and its unit are those of the adjustment. */
-static void SceneReadAugmentation(Scene scene, SceneContact *contact)
+static PetscErrorCode SceneReadAugmentation(Scene scene, SceneContact *contact)
 {
   static const char *const needs[] = {"penalty.g_max", "penalty.unit"};
 
+  PetscFunctionBeginUser;
   contact->augment     = SchemaBoolean(SceneDocument(scene), "%s.penalty.augment", contact->path);
   contact->max_updates = SchemaInteger(SceneDocument(scene), "%s.penalty.max_updates", contact->path);
   if (contact->augment && contact->adjust)
-    SceneRefuse(scene, contact->path, "penalty.augment",
-                "is true beside adjust: true; allowed: one of them (augment keeps the penalty, adjust changes it)",
-                NULL);
+    PetscCall(SceneRefuse(
+      scene, contact->path, "penalty.augment",
+      "is true beside adjust: true; allowed: one of them (augment keeps the penalty, adjust changes it)", NULL));
   for (size_t k = 0; contact->augment && k < PETSC_STATIC_ARRAY_LENGTH(needs); k++)
     if (!SceneHas(scene, contact->path, needs[k]))
-      SceneRefuse(scene, contact->path, needs[k], "is missing; allowed with augment: g_max and unit", NULL);
+      PetscCall(SceneRefuse(scene, contact->path, needs[k], "is missing; allowed with augment: g_max and unit", NULL));
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* How the penalty follows the penetration */
-static void SceneReadAdjustment(Scene scene, SceneContact *contact)
+static PetscErrorCode SceneReadAdjustment(Scene scene, SceneContact *contact)
 {
   static const char *const needs[] = {"penalty.g_min", "penalty.g_max", "penalty.unit"};
 
+  PetscFunctionBeginUser;
   contact->adjust = SchemaBoolean(SceneDocument(scene), "%s.penalty.adjust", contact->path);
   for (size_t k = 0; contact->adjust && k < PETSC_STATIC_ARRAY_LENGTH(needs); k++)
     if (!SceneHas(scene, contact->path, needs[k]))
-      SceneRefuse(scene, contact->path, needs[k], "is missing; allowed with adjust: g_min, g_max and unit", NULL);
+      PetscCall(
+        SceneRefuse(scene, contact->path, needs[k], "is missing; allowed with adjust: g_min, g_max and unit", NULL));
   contact->adjust_converged = SchemaChoice(SceneDocument(scene), "%s.penalty.when", contact->path);
   contact->clamp            = SchemaReal(SceneDocument(scene), "%s.penalty.clamp", contact->path);
   contact->range            = SchemaReal(SceneDocument(scene), "%s.penalty.range", contact->path);
@@ -403,7 +423,8 @@ static void SceneReadAdjustment(Scene scene, SceneContact *contact)
   if (SceneHas(scene, contact->path, "penalty.g_max"))
     contact->g_max = SchemaReal(SceneDocument(scene), "%s.penalty.g_max", contact->path);
   if (contact->g_min > 0 && contact->g_max > 0 && contact->g_min >= contact->g_max)
-    SceneRefuse(scene, contact->path, "penalty.g_min", "is not below g_max; allowed: g_min < g_max", NULL);
+    PetscCall(SceneRefuse(scene, contact->path, "penalty.g_min", "is not below g_max; allowed: g_min < g_max", NULL));
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 static PetscErrorCode SceneReadContact(Scene scene, SceneContact *contact)
@@ -415,10 +436,11 @@ static PetscErrorCode SceneReadContact(Scene scene, SceneContact *contact)
   PetscCall(SceneReadText(scene, contact->path, "slave", &contact->slave));
   PetscCall(SceneReadText(scene, contact->path, "master", &contact->master));
   if (!contact->master) PetscCall(SceneReadAnalytic(scene, contact));
-  SceneRefuseRigid(scene, contact->path, "slave", contact->slave);
+  PetscCall(SceneRefuseRigid(scene, contact->path, "slave", contact->slave));
   if (contact->master && !strcmp(contact->slave, contact->master))
-    SceneRefuse(scene, contact->path, "master",
-                "is the slave too; allowed: another surface (self contact is not available yet)", contact->master);
+    PetscCall(SceneRefuse(scene, contact->path, "master",
+                          "is the slave too; allowed: another surface (self contact is not available yet)",
+                          contact->master));
   contact->law         = (ContactLawKind)SchemaChoice(SceneDocument(scene), "%s.law", contact->path);
   contact->smoother    = SchemaChoice(SceneDocument(scene), "%s.smoother", contact->path);
   contact->formulation = (ContactFormulation)SchemaChoice(SceneDocument(scene), "%s.formulation", contact->path);
@@ -436,8 +458,8 @@ static PetscErrorCode SceneReadContact(Scene scene, SceneContact *contact)
   contact->penalty_auto    = SchemaChoice(SceneDocument(scene), "%s.penalty.initial", contact->path) == 0;
   contact->penalty = contact->penalty_auto ? 0 : SchemaReal(SceneDocument(scene), "%s.penalty.initial", contact->path);
   contact->penalty_scale = SchemaReal(SceneDocument(scene), "%s.penalty.scale", contact->path);
-  SceneReadAdjustment(scene, contact);
-  SceneReadAugmentation(scene, contact);
+  PetscCall(SceneReadAdjustment(scene, contact));
+  PetscCall(SceneReadAugmentation(scene, contact));
   contact->n_symmetry = symmetry ? symmetry->n : 0;
   PetscCall(PetscCalloc1(contact->n_symmetry, &contact->symmetry));
   for (int i = 0; i < contact->n_symmetry; i++)
@@ -448,16 +470,16 @@ static PetscErrorCode SceneReadContact(Scene scene, SceneContact *contact)
 static PetscErrorCode SceneReadContacts(Scene scene)
 {
   PetscFunctionBeginUser;
-  PetscCall(PetscCalloc1(SchemaCount(SceneDocument(scene), "contact"), &scene->contacts));
-  for (int i = 0; i < SchemaCount(SceneDocument(scene), "contact"); i++) {
+  scene->n_contacts = SchemaCount(SceneDocument(scene), "contact");
+  PetscCall(PetscCalloc1(scene->n_contacts, &scene->contacts));
+  for (int i = 0; i < scene->n_contacts; i++) {
     PetscCall(ScenePath(&scene->contacts[i].path, "contact", i));
     PetscCall(SceneReadContact(scene, &scene->contacts[i]));
     for (int j = 0; j < i; j++) {
       if (!strcmp(scene->contacts[i].name, scene->contacts[j].name))
-        SceneRefuse(scene, scene->contacts[i].path, "name", "names another pair already; allowed: names used once",
-                    scene->contacts[i].name);
+        PetscCall(SceneRefuse(scene, scene->contacts[i].path, "name",
+                              "names another pair already; allowed: names used once", scene->contacts[i].name));
     }
-    scene->n_contacts++;
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -468,25 +490,25 @@ static PetscErrorCode SceneReadStepping(Scene scene)
 
   PetscFunctionBeginUser;
   if (SchemaHas(document, "stepping.N_c") && SchemaHas(document, "stepping.N_c_fraction"))
-    SceneRefuse(scene, "stepping", "N_c_fraction", "stands beside N_c; allowed: one of them", NULL);
+    PetscCall(SceneRefuse(scene, "stepping", "N_c_fraction", "stands beside N_c; allowed: one of them", NULL));
   scene->stepping.control = (StepControlKind)SchemaChoice(document, "stepping.control");
   if (SchemaHas(document, "stepping.N_c")) scene->stepping.N_c = SchemaInteger(document, "stepping.N_c");
   if (SchemaHas(document, "stepping.N_c_fraction"))
     scene->stepping.N_c_fraction = SchemaReal(document, "stepping.N_c_fraction");
   if (scene->stepping.control == STEP_CONTACT && !scene->stepping.N_c && !(scene->stepping.N_c_fraction > 0))
-    SceneRefuse(scene, "stepping", "control",
-                "contact needs N_c (nodes) or N_c_fraction (of the slave area); allowed: one of them", NULL);
+    PetscCall(SceneRefuse(scene, "stepping", "control",
+                          "contact needs N_c (nodes) or N_c_fraction (of the slave area); allowed: one of them", NULL));
   scene->stepping.predict_linearly = SchemaChoice(document, "stepping.prediction");
   scene->stepping.initial          = SchemaReal(document, "stepping.initial");
   scene->stepping.dt_min           = SchemaReal(document, "stepping.dt_min");
   scene->stepping.dt_max           = SchemaReal(document, "stepping.dt_max");
   scene->stepping.growth           = SchemaReal(document, "stepping.growth");
   if (scene->stepping.dt_min > scene->stepping.dt_max)
-    SceneRefuse(scene, "stepping", "dt_min", "is above dt_max; allowed: dt_min <= initial <= dt_max", NULL);
+    PetscCall(SceneRefuse(scene, "stepping", "dt_min", "is above dt_max; allowed: dt_min <= initial <= dt_max", NULL));
   if (SchemaHas(document, "stepping.initial") &&
       (scene->stepping.initial < scene->stepping.dt_min || scene->stepping.initial > scene->stepping.dt_max))
-    SceneRefuse(scene, "stepping", "initial", "is not between dt_min and dt_max; allowed: dt_min <= initial <= dt_max",
-                NULL);
+    PetscCall(SceneRefuse(scene, "stepping", "initial",
+                          "is not between dt_min and dt_max; allowed: dt_min <= initial <= dt_max", NULL));
   scene->stepping.initial = PetscMin(PetscMax(scene->stepping.initial, scene->stepping.dt_min), scene->stepping.dt_max);
   scene->stepping.n_at    = SchemaCount(document, "stepping.at");
   PetscCall(PetscCalloc1(scene->stepping.n_at, &scene->stepping.at));
@@ -532,38 +554,66 @@ static PetscErrorCode SceneReadNames(Scene scene, const char *file)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The scene of a document, which is its own from now on. */
-static PetscErrorCode SceneCreate(Document *document, const char *file, Scene *scene)
+/* Everything from the document, in the order in which mistakes are named. */
+static PetscErrorCode SceneReadAll(Scene scene, const char *file)
 {
+  Document *document = SceneDocument(scene);
+
   PetscFunctionBeginUser;
-  SchemaCheck(document);
-  PetscCall(PetscNew(scene));
-  (*scene)->document = document;
-  PetscCall(SceneReadNames(*scene, file));
-  PetscCall(DocumentText(document, &(*scene)->text));
-  (*scene)->geometry   = (Geometry)SchemaChoice(document, "geometry");
-  (*scene)->kinematics = (Kinematics)SchemaChoice(document, "kinematics");
-  (*scene)->dim        = document->dim;
-  PetscCall(SceneReadMesh(*scene));
-  PetscCall(SceneReadBodies(*scene));
-  PetscCall(SceneReadSupports(*scene));
-  PetscCall(SceneReadLoads(*scene));
-  PetscCall(SceneReadContacts(*scene));
-  PetscCall(SceneReadStepping(*scene));
-  PetscCall(SceneReadProbes(*scene));
-  PetscCall(SceneReadOutput(*scene));
+  PetscCall(SchemaCheck(document));
+  PetscCall(SceneReadNames(scene, file));
+  PetscCall(DocumentText(document, &scene->text));
+  scene->geometry   = (Geometry)SchemaChoice(document, "geometry");
+  scene->kinematics = (Kinematics)SchemaChoice(document, "kinematics");
+  scene->dim        = document->dim;
+  PetscCall(SceneReadMesh(scene));
+  PetscCall(SceneReadBodies(scene));
+  PetscCall(SceneReadSupports(scene));
+  PetscCall(SceneReadLoads(scene));
+  PetscCall(SceneReadContacts(scene));
+  PetscCall(SceneReadStepping(scene));
+  PetscCall(SceneReadProbes(scene));
+  PetscCall(SceneReadOutput(scene));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* SceneRead - reads, edits, validates and converts a scene file.
+/* The scene of a document, which is its own from now on. A refusal frees both. */
+static PetscErrorCode SceneCreate(Document *document, const char *file, Scene *scene)
+{
+  PetscErrorCode code;
 
-   Collective. file: as the process can open it on rank 0. set[n_set]: KEY=VALUE edits, in order, the last of a key
-   wins. scene: free with SceneDestroy(). Refuses (exit status 1) the first mistake; see schemakeys.c for the keys. */
+  PetscFunctionBeginUser;
+  PetscCall(PetscNew(scene));
+  (*scene)->document = document;
+  code               = SceneReadAll(*scene, file);
+  if (code) PetscCall(SceneDestroy(scene));
+  PetscCall(code);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  SceneRead - reads, edits, validates and converts a scene file
+
+  Collective
+
+  Input Parameters:
++ comm  - all ranks
+. file  - as the process can open it on rank 0
+. n_set - number of edits
+- set   - KEY=VALUE edits, in order; the last one of a key wins
+
+  Output Parameter:
+. scene - free it with SceneDestroy()
+
+  Note:
+  Refuses the first mistake; see schemakeys.c for the keys. After a refusal there is no scene, and all memory is free.
+@*/
 PetscErrorCode SceneRead(MPI_Comm comm, const char *file, int n_set, char *const *set, Scene *scene)
 {
   Document *document;
 
   PetscFunctionBeginUser;
+  *scene = NULL;
   PetscCall(DocumentRead(comm, file, n_set, set, &document));
   PetscCall(SceneCreate(document, file, scene));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -611,25 +661,57 @@ PetscBool SceneSameProblem(const char *a, const char *b)
   return !*a && !*b ? PETSC_TRUE : PETSC_FALSE;
 }
 
-/* SceneReadAgain - as SceneRead(), from the text that a run has kept. Collective. Refuses (exit status 1) edits that
-   make it another problem; those that change nothing are fine, so that a command may be given again with the edits it
-   began with. */
+/* Refuses edits that make another problem of the text. Edits that change nothing are fine, so that a command may be
+   given again with the edits it began with. */
+static PetscErrorCode CheckEdits(Document *document, const char *text, int n_set, char *const *set)
+{
+  char     *edited;
+  PetscBool same;
+
+  PetscFunctionBeginUser;
+  PetscCall(DocumentText(document, &edited));
+  same = SceneSameProblem(text, edited);
+  PetscCall(PetscFree(edited));
+  for (int i = 0; i < n_set && !same; i++) {
+    if (!IsChangeable(set[i], ".="))
+      PetscCall(RefuseInput(
+        document->comm,
+        "-set %s: a restart goes on with the scene as it is; allowed: keys of output, solver and stepping", set[i]));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  SceneReadAgain - reads a scene from the text that a run has kept
+
+  Collective
+
+  Input Parameters:
++ comm  - all ranks
+. file  - name of the scene file then
+. where - stands for the file in messages
+. text  - Scene.text of the run
+. n_set - number of edits
+- set   - KEY=VALUE edits, in order
+
+  Output Parameter:
+. scene - free it with SceneDestroy()
+
+  Note:
+  Refuses edits that make another problem of it. After a refusal there is no scene, and all memory is free.
+@*/
 PetscErrorCode SceneReadAgain(MPI_Comm comm, const char *file, const char *where, const char *text, int n_set,
                               char *const *set, Scene *scene)
 {
-  Document *document;
-  char     *edited;
+  Document      *document;
+  PetscErrorCode code;
 
   PetscFunctionBeginUser;
+  *scene = NULL;
   PetscCall(DocumentReadText(comm, where, text, n_set, set, &document));
-  PetscCall(DocumentText(document, &edited));
-  for (int i = 0; i < n_set && !SceneSameProblem(text, edited); i++) {
-    if (!IsChangeable(set[i], ".="))
-      PetscCall(RefuseInput(
-        comm, "-set %s: a restart goes on with the scene as it is; allowed: keys of output, solver and stepping",
-        set[i]));
-  }
-  PetscCall(PetscFree(edited));
+  code = CheckEdits(document, text, n_set, set);
+  if (code) PetscCall(DocumentDestroy(document));
+  PetscCall(code);
   PetscCall(SceneCreate(document, file, scene));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -31,7 +31,7 @@ static int ProbeHasWord(const char *words, const char *word)
 }
 
 /* Exactly one kind, what it needs, and nothing that it does not take. */
-static void SceneProbeKind(Scene scene, SceneProbe *probe)
+static PetscErrorCode SceneProbeKind(Scene scene, SceneProbe *probe)
 {
   static const char *const Optional[] = {"component", "body",    "change",    "at",  "axis",
                                          "side",      "measure", "excluding", "only"};
@@ -39,6 +39,7 @@ static void SceneProbeKind(Scene scene, SceneProbe *probe)
   int                      kinds      = 0;
   char                     allowed[200];
 
+  PetscFunctionBeginUser;
   for (int k = 0; k < PROBE_KINDS; k++) {
     if (!SceneHas(scene, probe->path, ProbeForms[k].kind)) continue;
     probe->kind = (ProbeKind)k;
@@ -48,69 +49,82 @@ static void SceneProbeKind(Scene scene, SceneProbe *probe)
     allowed[0] = 0;
     for (int k = 0; k < PROBE_KINDS; k++)
       snprintf(allowed + strlen(allowed), sizeof allowed - strlen(allowed), "%s%s", k ? ", " : "", ProbeForms[k].kind);
-    SceneRefuse(scene, probe->path, "", allowed,
-                kinds ? "has more than one kind; allowed: exactly one of" : "has no kind; allowed: exactly one of");
+    PetscCall(
+      SceneRefuse(scene, probe->path, "", allowed,
+                  kinds ? "has more than one kind; allowed: exactly one of" : "has no kind; allowed: exactly one of"));
   }
   snprintf(allowed, sizeof allowed, "%s %s %s %s", ProbeForms[probe->kind].kind, ProbeForms[probe->kind].needs,
            ProbeForms[probe->kind].takes, ProbeCommon);
   for (size_t i = 0; i < sizeof Optional / sizeof Optional[0]; i++) {
     if (ProbeHasWord(ProbeForms[probe->kind].needs, Optional[i]) && !SceneHas(scene, probe->path, Optional[i]))
-      SceneRefuse(scene, probe->path, Optional[i], ProbeForms[probe->kind].kind, "is missing; needed by");
+      PetscCall(SceneRefuse(scene, probe->path, Optional[i], ProbeForms[probe->kind].kind, "is missing; needed by"));
   }
   for (int i = 0; i < node->n; i++) {
     if (!ProbeHasWord(allowed, node->key[i]))
-      SceneRefuse(scene, probe->path, node->key[i], allowed, "has no place in this kind of probe; allowed:");
+      PetscCall(SceneRefuse(scene, probe->path, node->key[i], allowed, "has no place in this kind of probe; allowed:"));
   }
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static void SceneRefuseProbeTarget(Scene scene, SceneProbe *probe)
+static PetscErrorCode SceneRefuseProbeTarget(Scene scene, SceneProbe *probe)
 {
   char pairs[400] = "allowed: the name of a pair under contact:";
 
+  PetscFunctionBeginUser;
   for (int i = 0; i < scene->n_contacts; i++) {
-    if (!strcmp(scene->contacts[i].name, probe->target)) return;
+    if (!strcmp(scene->contacts[i].name, probe->target)) PetscFunctionReturn(PETSC_SUCCESS);
     snprintf(pairs + strlen(pairs), sizeof pairs - strlen(pairs), "%s %s", i ? "," : "", scene->contacts[i].name);
   }
-  SceneRefuse(scene, probe->path, ProbeForms[probe->kind].kind, pairs, "there is no contact pair of this name;");
+  PetscCall(
+    SceneRefuse(scene, probe->path, ProbeForms[probe->kind].kind, pairs, "there is no contact pair of this name;"));
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* at: a point for a gap, else one reference coordinate. */
-static void SceneReadProbeAt(Scene scene, SceneProbe *probe)
+static PetscErrorCode SceneReadProbeAt(Scene scene, SceneProbe *probe)
 {
   Node at = SceneNode(scene, probe->path, "at");
 
+  PetscFunctionBeginUser;
   if (probe->kind == PROBE_GAP) {
     if (at->kind != NODE_LIST)
-      SceneRefuse(scene, probe->path, "at", "has the wrong type; allowed: the point of a slave node", NULL);
+      PetscCall(SceneRefuse(scene, probe->path, "at", "has the wrong type; allowed: the point of a slave node", NULL));
     (void)SceneReals(scene, probe->path, "at", probe->point[0]);
-    return;
+    PetscFunctionReturn(PETSC_SUCCESS);
   }
   if (!at && probe->kind == PROBE_CONTACT_EDGE && scene->dim == 3)
-    SceneRefuse(scene, probe->path, "at", "is missing; needed by contact_edge in 3D, such as {z: 100}", NULL);
-  if (!at) return;
+    PetscCall(
+      SceneRefuse(scene, probe->path, "at", "is missing; needed by contact_edge in 3D, such as {z: 100}", NULL));
+  if (!at) PetscFunctionReturn(PETSC_SUCCESS);
   if (at->kind != NODE_MAP || at->n != 1)
-    SceneRefuse(scene, probe->path, "at", "is not one coordinate; allowed: one of {x: }, {y: }, {z: }", NULL);
+    PetscCall(
+      SceneRefuse(scene, probe->path, "at", "is not one coordinate; allowed: one of {x: }, {y: }, {z: }", NULL));
   probe->has_at = 1;
   for (int k = 0; k < 3; k++) {
     if (!strcmp(at->key[0], Axes[k])) probe->at_axis = k;
   }
   (void)NodeReal(at->child[0], &probe->at_value);
   if (probe->kind == PROBE_CONTACT_EDGE && probe->at_axis == probe->axis)
-    SceneRefuse(scene, probe->path, "at", "fixes the axis along which the edge is sought; allowed: another coordinate",
-                NULL);
+    PetscCall(SceneRefuse(scene, probe->path, "at",
+                          "fixes the axis along which the edge is sought; allowed: another coordinate", NULL));
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* A probe's name is a column of steps.csv and a key of the summary: it stands there once. */
-static void SceneCheckProbeName(Scene scene, const SceneProbe *probe)
+static PetscErrorCode SceneCheckProbeName(Scene scene, const SceneProbe *probe)
 {
+  PetscFunctionBeginUser;
   for (int k = 0; k < STEP_COLUMNS; k++) {
     if (!strcmp(probe->name, StepColumnNames[k]))
-      SceneRefuse(scene, probe->path, "name", "is a column of steps.csv already; allowed: another name", probe->name);
+      PetscCall(SceneRefuse(scene, probe->path, "name", "is a column of steps.csv already; allowed: another name",
+                            probe->name));
   }
   for (const SceneProbe *other = scene->probes; other < probe; other++) {
     if (!strcmp(probe->name, other->name))
-      SceneRefuse(scene, probe->path, "name", "names another probe already; allowed: names used once", probe->name);
+      PetscCall(
+        SceneRefuse(scene, probe->path, "name", "names another probe already; allowed: names used once", probe->name));
   }
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 static PetscErrorCode SceneReadProbe(Scene scene, SceneProbe *probe)
@@ -121,7 +135,7 @@ static PetscErrorCode SceneReadProbe(Scene scene, SceneProbe *probe)
 
   PetscFunctionBeginUser;
   PetscCall(SceneReadText(scene, path, "name", &probe->name));
-  SceneProbeKind(scene, probe);
+  PetscCall(SceneProbeKind(scene, probe));
   if (probe->kind == PROBE_DISPLACEMENT) {
     (void)SceneReals(scene, path, "displacement", probe->point[0]);
   } else if (probe->kind == PROBE_DISTANCE) {
@@ -131,22 +145,22 @@ static PetscErrorCode SceneReadProbe(Scene scene, SceneProbe *probe)
     }
   } else {
     PetscCall(SceneReadText(scene, path, ProbeForms[probe->kind].kind, &probe->target));
-    if (probe->kind != PROBE_REACTION) SceneRefuseProbeTarget(scene, probe);
+    if (probe->kind != PROBE_REACTION) PetscCall(SceneRefuseProbeTarget(scene, probe));
   }
   probe->component = PetscMax(0, SchemaChoice(document, "%s.component", path));
   probe->axis      = PetscMax(0, SchemaChoice(document, "%s.axis", path));
   probe->max_side  = SchemaChoice(document, "%s.side", path) == 1;
-  SceneReadProbeAt(scene, probe);
+  PetscCall(SceneReadProbeAt(scene, probe));
   PetscCall(SceneReadText(scene, path, "body", &probe->body));
   if (probe->body && !SceneFindBody(scene, probe->body, 0))
-    SceneRefuse(scene, path, "body", "is no deformable body; allowed: a volume under bodies:", probe->body);
+    PetscCall(SceneRefuse(scene, path, "body", "is no deformable body; allowed: a volume under bodies:", probe->body));
   probe->change      = SchemaBoolean(document, "%s.change", path);
   probe->rms         = SchemaChoice(document, "%s.measure", path) == 1;
   probe->edge_filter = SceneHas(scene, path, "excluding") ? 1 : SceneHas(scene, path, "only") ? 2 : 0;
   probe->edge_faces =
     probe->edge_filter ? SchemaReal(document, "%s.%s", path, probe->edge_filter == 1 ? "excluding" : "only") : 0;
   if (SceneHas(scene, path, "excluding") && SceneHas(scene, path, "only"))
-    SceneRefuse(scene, path, "only", "stands beside excluding; allowed: one of them", NULL);
+    PetscCall(SceneRefuse(scene, path, "only", "stands beside excluding; allowed: one of them", NULL));
   probe->absolute = SchemaBoolean(document, "%s.absolute", path);
   probe->factor   = SchemaReal(document, "%s.factor", path);
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -161,7 +175,7 @@ PetscErrorCode SceneReadProbes(Scene scene)
   for (int i = 0; i < scene->n_probes; i++) {
     PetscCall(ScenePath(&scene->probes[i].path, "probes", i));
     PetscCall(SceneReadProbe(scene, &scene->probes[i]));
-    SceneCheckProbeName(scene, &scene->probes[i]);
+    PetscCall(SceneCheckProbeName(scene, &scene->probes[i]));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -49,20 +49,21 @@ static void SchemaAllowed(const SchemaKey *key, char *text, size_t size)
   if (key->unit) Append(text, size, ", ", key->unit);
 }
 
-static void SchemaRefuse(Document *document, const SchemaKey *key, Node node, const char *path, const char *wrong)
-  __attribute__((noreturn));
-static void SchemaRefuse(Document *document, const SchemaKey *key, Node node, const char *path, const char *wrong)
+static PetscErrorCode SchemaRefuse(Document *document, const SchemaKey *key, Node node, const char *path,
+                                   const char *wrong)
 {
   static const char *const Kinds[] = {"", "this list ", "this map "};
   char                     allowed[400];
 
+  PetscFunctionBeginUser;
   SchemaAllowed(key, allowed, sizeof allowed);
   if (node->kind == NODE_SCALAR && node->plain && !*node->text)
-    DocumentRefuseNode(document, node, path, "has no value; allowed: %s", allowed);
+    PetscCall(DocumentRefuseNode(document, node, path, "has no value; allowed: %s", allowed));
   if (node->kind == NODE_SCALAR)
-    DocumentRefuseNode(document, node, path, "%s%.100s%s %s; allowed: %s", node->plain ? "" : "\"", node->text,
-                       node->plain ? "" : "\"", wrong, allowed);
-  DocumentRefuseNode(document, node, path, "%s%s; allowed: %s", Kinds[node->kind], wrong, allowed);
+    PetscCall(DocumentRefuseNode(document, node, path, "%s%.100s%s %s; allowed: %s", node->plain ? "" : "\"",
+                                 node->text, node->plain ? "" : "\"", wrong, allowed));
+  PetscCall(DocumentRefuseNode(document, node, path, "%s%s; allowed: %s", Kinds[node->kind], wrong, allowed));
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* ---- checks of one value: NULL, or what is wrong with it ---- */
@@ -222,15 +223,14 @@ static int WordDistance(const char *a, size_t na, const char *b, size_t nb)
   return row[nb];
 }
 
-static void SchemaRefuseUnknown(Document *document, Node node, const char *parent, const char *path,
-                                const char *unknown) __attribute__((noreturn));
-static void SchemaRefuseUnknown(Document *document, Node node, const char *parent, const char *path,
-                                const char *unknown)
+static PetscErrorCode SchemaRefuseUnknown(Document *document, Node node, const char *parent, const char *path,
+                                          const char *unknown)
 {
   char        allowed[600] = "", word[80];
   const char *nearest      = "";
   int         least = 1000, length = 0;
 
+  PetscFunctionBeginUser;
   for (int i = 0; i < SchemaKeysCount; i++) {
     if (!SchemaKeyIsChild(&SchemaKeys[i], parent)) continue;
     for (const char *key = SchemaKeyName(&SchemaKeys[i]); *key;) {
@@ -247,84 +247,97 @@ static void SchemaRefuseUnknown(Document *document, Node node, const char *paren
       key += n + (key[n] == '|');
     }
   }
-  DocumentRefuseNode(document, node, path, "unknown key, did you mean %.*s? allowed: %s", length, nearest, allowed);
+  PetscCall(
+    DocumentRefuseNode(document, node, path, "unknown key, did you mean %.*s? allowed: %s", length, nearest, allowed));
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static void SchemaRefuseMissing(Document *document, const SchemaKey *key, Node node, const char *path)
+static PetscErrorCode SchemaRefuseMissing(Document *document, const SchemaKey *key, Node node, const char *path)
 {
   char allowed[400], missing[EXTRAPOLATION_LENGTH];
 
+  PetscFunctionBeginUser;
   SchemaAllowed(key, allowed, sizeof allowed);
   KeyPathJoin(missing, path, SchemaKeyName(key));
-  DocumentRefuseNode(document, node, missing, "is missing; allowed: %s", allowed);
+  PetscCall(DocumentRefuseNode(document, node, missing, "is missing; allowed: %s", allowed));
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static void SchemaCheckFree(Document *document, Node node, const char *path)
+static PetscErrorCode SchemaCheckFree(Document *document, Node node, const char *path)
 {
   char below[EXTRAPOLATION_LENGTH];
 
+  PetscFunctionBeginUser;
   for (int i = 0; i < node->n; i++) {
     KeyPathJoin(below, path, node->key[i]);
     if (!*node->key[i] || strpbrk(node->key[i], " \t\n="))
-      DocumentRefuseNode(document, node->child[i], below,
-                         "is no name of a parameter or option; allowed: no blanks, no =");
+      PetscCall(DocumentRefuseNode(document, node->child[i], below,
+                                   "is no name of a parameter or option; allowed: no blanks, no ="));
     if (node->child[i]->kind != NODE_SCALAR)
-      DocumentRefuseNode(document, node->child[i], below, "has the wrong type; allowed: a number or a text");
+      PetscCall(DocumentRefuseNode(document, node->child[i], below, "has the wrong type; allowed: a number or a text"));
   }
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* Before anything else is said about a map: a misspelt key is not a missing one. */
-static void SchemaCheckKeys(Document *document, Node node, const char *path)
+static PetscErrorCode SchemaCheckKeys(Document *document, Node node, const char *path)
 {
   char below[EXTRAPOLATION_LENGTH];
 
+  PetscFunctionBeginUser;
   for (int i = 0; i < node->n; i++) {
     KeyPathJoin(below, path, node->key[i]);
     if (strchr(node->key[i], '.') || !SchemaKeyFind(below))
-      SchemaRefuseUnknown(document, node->child[i], path, below, node->key[i]);
+      PetscCall(SchemaRefuseUnknown(document, node->child[i], path, below, node->key[i]));
   }
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-typedef void (*NodeVisit)(Document *, const SchemaKey *, Node, const char *path);
+typedef PetscErrorCode (*NodeVisit)(Document *, const SchemaKey *, Node, const char *path);
 
-static void SchemaWalk(Document *document, Node node, const char *path, NodeVisit visit)
+static PetscErrorCode SchemaWalk(Document *document, Node node, const char *path, NodeVisit visit)
 {
   const SchemaKey *key = SchemaKeyFind(path);
   char             below[EXTRAPOLATION_LENGTH];
 
-  if (node->kind == NODE_MAP && (!key || key->type & MAP)) SchemaCheckKeys(document, node, path);
-  if (key) visit(document, key, node, path);
-  if (key && !(key->type & (node->kind == NODE_MAP ? MAP : LIST))) return;
+  PetscFunctionBeginUser;
+  if (node->kind == NODE_MAP && (!key || key->type & MAP)) PetscCall(SchemaCheckKeys(document, node, path));
+  if (key) PetscCall(visit(document, key, node, path));
+  if (key && !(key->type & (node->kind == NODE_MAP ? MAP : LIST))) PetscFunctionReturn(PETSC_SUCCESS);
   for (int i = 0; i < node->n; i++) {
     if (node->kind == NODE_MAP)
       KeyPathJoin(below, path, node->key[i]);
     else
       KeyPathJoinIndex(below, path, i);
-    SchemaWalk(document, node->child[i], below, visit);
+    PetscCall(SchemaWalk(document, node->child[i], below, visit));
   }
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static void SchemaVisitMissing(Document *document, Node node, const char *path)
+static PetscErrorCode SchemaVisitMissing(Document *document, Node node, const char *path)
 {
+  PetscFunctionBeginUser;
   for (int i = 0; i < SchemaKeysCount; i++) {
     if (!(SchemaKeys[i].flags & REQUIRED) || !SchemaKeyIsChild(&SchemaKeys[i], path) ||
         NodeChild(node, SchemaKeyName(&SchemaKeys[i])))
       continue;
     if (SchemaKeys[i].flags & SOLID && document->dim == 2) continue;
-    SchemaRefuseMissing(document, &SchemaKeys[i], node, path);
+    PetscCall(SchemaRefuseMissing(document, &SchemaKeys[i], node, path));
   }
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* Type and range; required keys of a map. */
-static void SchemaVisitValue(Document *document, const SchemaKey *key, Node node, const char *path)
+static PetscErrorCode SchemaVisitValue(Document *document, const SchemaKey *key, Node node, const char *path)
 {
   const char *wrong = NULL;
 
+  PetscFunctionBeginUser;
   if (node->kind == NODE_MAP) {
     if (key->type & FREE)
-      SchemaCheckFree(document, node, path);
+      PetscCall(SchemaCheckFree(document, node, path));
     else if (key->type & MAP)
-      SchemaVisitMissing(document, node, path);
+      PetscCall(SchemaVisitMissing(document, node, path));
     else
       wrong = WrongType;
   } else if (node->kind == NODE_LIST) {
@@ -334,52 +347,61 @@ static void SchemaVisitValue(Document *document, const SchemaKey *key, Node node
       wrong = CheckList(key, node);
   } else
     wrong = CheckScalar(key, key->type, node);
-  if (wrong) SchemaRefuse(document, key, node, path, wrong);
+  if (wrong) PetscCall(SchemaRefuse(document, key, node, path, wrong));
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* Values that call for what a later release brings. */
-static void SchemaVisitAvailable(Document *document, const SchemaKey *key, Node node, const char *path)
+static PetscErrorCode SchemaVisitAvailable(Document *document, const SchemaKey *key, Node node, const char *path)
 {
   double value, now;
   char  *end;
 
-  if (!key->now) return;
-  if (!*key->now) DocumentRefuseNode(document, node, path, "not available yet");
-  if (WordFind(key->now, " |", node->text, strlen(node->text)) >= 0) return;
+  PetscFunctionBeginUser;
+  if (!key->now) PetscFunctionReturn(PETSC_SUCCESS);
+  if (!*key->now) PetscCall(DocumentRefuseNode(document, node, path, "not available yet"));
+  if (WordFind(key->now, " |", node->text, strlen(node->text)) >= 0) PetscFunctionReturn(PETSC_SUCCESS);
   now = strtod(key->now, &end);
-  if (key->type & INTEGER && NodeReal(node, &value) && !*end && value == now) return;
-  DocumentRefuseNode(document, node, path, "%s is not available yet; available: %s", node->text, key->now);
+  if (key->type & INTEGER && NodeReal(node, &value) && !*end && value == now) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(DocumentRefuseNode(document, node, path, "%s is not available yet; available: %s", node->text, key->now));
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* A 2D scene has no third direction: no such keys, no such component, points of two coordinates. */
-static void SchemaVisitDimension(Document *document, const SchemaKey *key, Node node, const char *path)
+static PetscErrorCode SchemaVisitDimension(Document *document, const SchemaKey *key, Node node, const char *path)
 {
   static const char Solid[] = "geometry: solid";
 
+  PetscFunctionBeginUser;
   if (document->dim == 2 && key->flags & SOLID)
-    DocumentRefuseNode(document, node, path, "has no meaning in 2D; allowed: only with %s", Solid);
+    PetscCall(DocumentRefuseNode(document, node, path, "has no meaning in 2D; allowed: only with %s", Solid));
   if (document->dim == 2 && key->type & CHOICE && node->kind == NODE_SCALAR && !strcmp(node->text, "z"))
-    DocumentRefuseNode(document, node, path, "z has no meaning in 2D; allowed: x | y, z only with %s", Solid);
+    PetscCall(
+      DocumentRefuseNode(document, node, path, "z has no meaning in 2D; allowed: x | y, z only with %s", Solid));
   for (int i = 0; node->kind == NODE_LIST && i < (key->type & POINTS ? 2 : key->type & POINT ? 1 : 0); i++) {
     if ((key->type & POINTS ? node->child[i] : node)->n != document->dim)
-      DocumentRefuseNode(document, node, path, "has not as many coordinates as the scene; allowed: %d numbers",
-                         document->dim);
+      PetscCall(DocumentRefuseNode(document, node, path,
+                                   "has not as many coordinates as the scene; allowed: %d numbers", document->dim));
   }
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* SchemaCheck - validates the document against the table: unknown and missing keys, types and ranges, then what is not
    available yet, then what a 2D scene cannot have. Collective; refuses the first mistake. Sets document->dim. */
-void SchemaCheck(Document *document)
+PetscErrorCode SchemaCheck(Document *document)
 {
   Node geometry;
 
-  if (document->root->kind != NODE_MAP) DocumentRefuse(document, "", "a scene is a map; allowed: KEY: VALUE lines");
+  PetscFunctionBeginUser;
+  if (document->root->kind != NODE_MAP)
+    PetscCall(DocumentRefuse(document, "", "a scene is a map; allowed: KEY: VALUE lines"));
   geometry      = NodeFind(document->root, "geometry");
   document->dim = geometry && geometry->kind == NODE_SCALAR && strcmp(geometry->text, "solid") ? 2 : 3;
-  SchemaWalk(document, document->root, "", SchemaVisitValue);
-  SchemaVisitMissing(document, document->root, "");
-  SchemaWalk(document, document->root, "", SchemaVisitAvailable);
-  SchemaWalk(document, document->root, "", SchemaVisitDimension);
+  PetscCall(SchemaWalk(document, document->root, "", SchemaVisitValue));
+  PetscCall(SchemaVisitMissing(document, document->root, ""));
+  PetscCall(SchemaWalk(document, document->root, "", SchemaVisitAvailable));
+  PetscCall(SchemaWalk(document, document->root, "", SchemaVisitDimension));
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* ---- accessors, after SchemaCheck() ---- */

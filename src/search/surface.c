@@ -142,6 +142,7 @@ PetscErrorCode SurfaceCreate(Mesh mesh, Scene scene, Elasticity elasticity, cons
 
   PetscFunctionBeginUser;
   PetscCall(PetscNew(&surface));
+  *out           = surface; /* SurfaceDestroy() frees what a refusal leaves */
   surface->mesh  = mesh;
   surface->body  = -1;
   surface->rigid = MeshFindRigid(mesh, name);
@@ -162,7 +163,6 @@ PetscErrorCode SurfaceCreate(Mesh mesh, Scene scene, Elasticity elasticity, cons
       mesh->comm, "%s: the contact surface '%s' has no faces; allowed: a physical surface with at least one face",
       SceneWhere(scene, path, key), name));
   PetscCall(SurfaceMeasure(surface, elasticity));
-  *out = surface;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -36,6 +36,7 @@ PetscErrorCode ModelCreate(Scene scene, Mesh mesh, Model *out)
   PetscFunctionBeginUser;
   PetscCall(PetscNew(&model));
   PetscCall(PetscNew(&model->work));
+  *out = model; /* ModelDestroy() frees what a refusal leaves */
   PetscCall(ProblemCreate(scene, mesh, &model->problem));
   model->scene   = scene;
   model->mesh    = mesh;
@@ -48,7 +49,6 @@ PetscErrorCode ModelCreate(Scene scene, Mesh mesh, Model *out)
   if (scene->kinematics != KINEMATICS_SMALL) PetscCall(ExtrapolationCreate(mesh, &model->work->extrapolation));
   PetscCall(ModelCreateSNES(model));
   if (model->contact) PetscCall(ContactCycleCreate(model->contact, &model->work->watch));
-  *out = model;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

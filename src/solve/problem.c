@@ -26,6 +26,7 @@ PetscErrorCode ProblemCreate(Scene scene, Mesh mesh, Problem *out)
 
   PetscFunctionBeginUser;
   PetscCall(PetscNew(&problem));
+  *out              = problem; /* ProblemDestroy() frees what a refusal leaves */
   problem->scene    = scene;
   problem->mesh     = mesh;
   problem->form     = TANGENT_JOINED;
@@ -41,7 +42,6 @@ PetscErrorCode ProblemCreate(Scene scene, Mesh mesh, Problem *out)
   PetscCall(PetscObjectReference((PetscObject)problem->A));
   PetscCall(MatCreateVecs(problem->A, &problem->diagonal, NULL));
   if (problem->contact) PetscCall(ContactSpringsCreate(problem->contact, problem->diagonal, &problem->springs));
-  *out = problem;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

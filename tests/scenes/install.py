@@ -1,4 +1,5 @@
-"""make install puts program, man page, completion and examples where they run from; the man page is well formed and tells every option."""
+"""make install puts program, library, man page, completion and examples where they run from; a program outside of the source tree links the
+library; the man page is well formed and tells every option."""
 import os
 import pathlib
 import re
@@ -28,6 +29,13 @@ example = prefix / "share/burnish/runs/cup_flattening.yaml"
 finished = run("mpirun", "-n", args.ranks, prefix / "bin/burnish", example, "-set", "mesh.parameters.n_arc=30", "-set", "loads.0.pressure=20", cwd=work)
 good = finished.returncode == 0 and (work / "out/cup_flattening/summary.json").exists()
 check.holds("an example runs from there", good, "" if good else finished.stdout[-1000:])
+
+check.holds("public headers", [header.name for header in (prefix / "include").iterdir()] == ["burnish.h"])
+flags = run("pkg-config", "--cflags", "--libs", "burnish", env={**os.environ, "PKG_CONFIG_PATH": str(prefix / "lib/pkgconfig")}, cwd=work).stdout.split()
+finished = run("mpicc", ROOT / "tests/library/library.c", *flags, "-o", "library", cwd=work)
+check.holds("a program links the library", finished.returncode == 0, finished.stdout if finished.returncode else "")
+finished = run("mpirun", "-n", args.ranks, work / "library", SCENES / "probes.yaml", cwd=work)
+check.holds("and runs", finished.returncode == 0, finished.stdout[-1000:] if finished.returncode else "")
 
 page = prefix / "share/man/man1/burnish.1"
 text = page.read_text()

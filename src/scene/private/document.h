@@ -3,7 +3,11 @@
 
    DocumentRead() reads the file on rank 0, parses it on every rank and applies the -set edits in order. A value is
    found by its path, keys of maps and indices of lists with dots between them ("contact.0.penalty.scale"). Every
-   refusal names file and line (or -set) and path. */
+   refusal names file and line (or -set) and path.
+
+   DocumentRefuse() and DocumentRefuseNode() return REFUSED of refusal.h, and every reader above them hands it up by
+   PetscCall(). A longjmp() out of the readers would be shorter, but it would skip libyaml's destructors and PETSc's
+   function stack, and everything allocated on the way would need a list of its own to be freed. */
 #pragma once
 #include <petscsys.h>
 
@@ -41,9 +45,9 @@ PetscErrorCode DocumentDestroy(Document *);
 PetscErrorCode DocumentText(Document *,
                             char **text); /* one canonical YAML text: the same for the same keys and values */
 const char    *DocumentWhere(Document *, const char *path);
-void DocumentRefuse(Document *, const char *path, const char *, ...) __attribute__((noreturn, format(printf, 3, 4)));
-void DocumentRefuseNode(Document *, Node, const char *path, const char *, ...)
-  __attribute__((noreturn, format(printf, 4, 5)));
+PetscErrorCode DocumentRefuse(Document *, const char *path, const char *, ...) __attribute__((format(printf, 3, 4)));
+PetscErrorCode DocumentRefuseNode(Document *, Node, const char *path, const char *, ...)
+  __attribute__((format(printf, 4, 5)));
 
 Node NodeChild(Node, const char *path); /* the child that the path's first component names, or NULL */
 Node NodeFind(Node, const char *path);  /* NULL: the document has no such value */

@@ -17,5 +17,4 @@ int              SceneReals(Scene, const char *path, const char *key,
 PetscErrorCode   SceneReadText(Scene, const char *path, const char *key, char **); /* a copy, or NULL */
 PetscErrorCode   ScenePath(char **path, const char *list, int i);                  /* "list.i" */
 const SceneBody *SceneFindBody(Scene, const char *name, int rigid);                /* NULL: none */
-void             SceneRefuse(Scene, const char *path, const char *key, const char *what, const char *about)
-  __attribute__((noreturn));
+PetscErrorCode   SceneRefuse(Scene, const char *path, const char *key, const char *what, const char *about);

@@ -8,9 +8,9 @@
 #include "document.h"
 #include <stdio.h>
 
-void SchemaCheck(Document *); /* also sets document->dim */
-int  SchemaHas(Document *, const char *, ...) __attribute__((format(printf, 2, 3)));
-int  SchemaCount(Document *, const char *, ...)
+PetscErrorCode SchemaCheck(Document *); /* also sets document->dim */
+int            SchemaHas(Document *, const char *, ...) __attribute__((format(printf, 2, 3)));
+int            SchemaCount(Document *, const char *, ...)
   __attribute__((format(printf, 2, 3))); /* entries of a list or map, 0 if absent */
 double SchemaReal(Document *, const char *, ...) __attribute__((format(printf, 2, 3)));
 int    SchemaInteger(Document *, const char *, ...) __attribute__((format(printf, 2, 3)));

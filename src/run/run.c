@@ -1,0 +1,212 @@
+/* Scene, mesh, model, load steps, results: one after the other. */
+#include "run.h"
+#include <petsctime.h>
+#include "base/errorlog.h"
+#include "base/interruption.h"
+#include "base/refusal.h"
+#include "report/precheck.h"
+
+/* Puts the scene's PETSc options into PETSc's database, below those of the environment and of the command line: only
+   options that nobody has set. The database belongs to the process, so that RunDestroy() takes them out again. */
+static PetscErrorCode RunInsertOptions(Run *run)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc1(run->scene->n_petsc, &run->options));
+  for (int i = 0; i < run->scene->n_petsc; i++) {
+    char      key[256];
+    PetscBool set;
+
+    PetscCall(PetscSNPrintf(key, sizeof(key), "-%s", run->scene->petsc[i].key));
+    PetscCall(PetscOptionsHasName(NULL, NULL, key, &set));
+    if (set) continue;
+    PetscCall(PetscOptionsSetValue(NULL, key, run->scene->petsc[i].value));
+    PetscCall(PetscStrallocpy(key, &run->options[run->n_options++]));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Reads the scene file, chooses the directory and makes the mesh file. */
+static PetscErrorCode RunOpen(Run *run, const RunInput *input)
+{
+  PetscFunctionBeginUser;
+  if (!input->scene) PetscCall(RefuseInput(run->comm, "no scene file"));
+  PetscCall(SceneRead(run->comm, input->scene, input->n_set, input->set, &run->scene));
+  PetscCall(RunInsertOptions(run));
+  PetscCall(PetscSNPrintf(run->directory, sizeof(run->directory), "%s%s", input->directory ? input->directory : "out/",
+                          input->directory ? "" : run->scene->name));
+  if (input->task != RUN_MESH) PetscCall(ResultsCheckPath(run->comm, run->directory));
+  PetscCall(ErrorLogSetDirectory(run->directory));
+  if (input->task == RUN_SOLVE)
+    PetscCall(ResultsCheckDirectory(run->comm, run->scene, run->directory, input->overwrite));
+  PetscCall(MeshGenerate(run->comm, run->scene, "out", run->mesh_file, &run->mesh_s));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Takes the scene and the mesh file out of the checkpoint of an earlier run. */
+static PetscErrorCode RunReopen(Run *run, const RunInput *input)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscStrncpy(run->directory, input->restart, sizeof(run->directory)));
+  PetscCall(ResultsCheckPath(run->comm, run->directory));
+  PetscCall(ErrorLogSetDirectory(run->directory));
+  PetscCall(CheckpointOpen(run->comm, run->directory, &run->checkpoint));
+  PetscCall(CheckpointReadScene(run->checkpoint, input->n_set, input->set, &run->scene));
+  PetscCall(RunInsertOptions(run));
+  PetscCall(ResultsCheckRestart(run->comm, run->scene, run->directory));
+  PetscCall(CheckpointMeshFile(run->checkpoint, run->mesh_file));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Makes mesh, model and probes. A new run is checked, and its state at t = 0 becomes the first accepted one. */
+static PetscErrorCode RunSetUp(Run *run, const RunInput *input)
+{
+  PetscFunctionBeginUser;
+  TimingBegin(TIMING_SETUP);
+  PetscCall(MeshCreate(run->comm, run->scene, run->mesh_file, &run->mesh));
+  if (input->task == RUN_CHECK) PetscCall(MeshReport(run->mesh, run->scene, stdout));
+  PetscCall(MeshCheckQuality(run->mesh, run->scene));
+  if (input->task == RUN_SOLVE && !run->checkpoint)
+    PetscCall(CheckpointCreate(run->comm, run->directory, run->mesh_file, &run->checkpoint));
+  PetscCall(MeshCheckFormulations(run->mesh, run->scene));
+  PetscCall(ModelCreate(run->scene, run->mesh, &run->model));
+  PetscCall(ProbesCreate(run->model, run->scene, &run->probes));
+  if (!input->restart) {
+    PetscCall(ModelPlace(run->model, input->task == RUN_SOLVE ? run->scene->stepping.initial : 0));
+    TimingEnd(TIMING_SETUP);
+    PetscCall(PrecheckModel(run->model, input->task == RUN_CHECK ? PETSC_TRUE : PETSC_FALSE, stdout));
+    TimingBegin(TIMING_SETUP);
+    PetscCall(ModelSetUp(run->model));
+  }
+  TimingEnd(TIMING_SETUP);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Between two steps: results, a checkpoint if one is due, and the end of the run if somebody asks for it. */
+static PetscErrorCode RunMonitor(LoadStepper stepper, const StepRecord *record, void *context)
+{
+  Run        *run   = context;
+  const int   every = run->scene->output.checkpoint;
+  const char *why;
+
+  PetscFunctionBeginUser;
+  PetscCall(ResultsStep(run->results, record));
+  PetscCall(InterruptionAsked(run->comm, &why));
+  if (why || (every && record->step % every == 0)) {
+    PetscCall(CheckpointWrite(run->checkpoint));
+    run->kept = record->step;
+  }
+  if (!why) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscSNPrintf(run->message, sizeof(run->message), "%s: ended after step %" PetscInt_FMT ", t = %g", why,
+                          record->step, (double)record->t));
+  PetscCall(LoadStepperStop(stepper));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Makes results and stepper, ready for the first step. */
+static PetscErrorCode RunCreateStepper(Run *run, const RunInput *input)
+{
+  PetscFunctionBeginUser;
+  PetscCall(ResultsCreate(run->model, run->probes, run->scene, run->directory, input->quiet, &run->results));
+  PetscCall(LoadStepperCreate(run->comm, &run->stepper));
+  PetscCall(LoadStepperSetModel(run->stepper, run->model));
+  PetscCall(LoadStepperSetFromScene(run->stepper, run->scene));
+  PetscCall(LoadStepperSetFromOptions(run->stepper));
+  PetscCall(LoadStepperMonitorSet(run->stepper, RunMonitor, run));
+  PetscCall(CheckpointSetRun(run->checkpoint, run->scene, run->model, run->stepper, run->results));
+  if (input->restart) PetscCall(CheckpointRead(run->checkpoint));
+  PetscCall(ResultsStart(run->results));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The load steps as a stage of -log_view. PETSc keeps stages for the process and refuses a second one of the same
+   name. */
+static PetscErrorCode RunSolveSteps(Run *run, StepperReport *report)
+{
+  PetscLogStage stage;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscLogStageGetId("Load steps", &stage));
+  if (stage < 0) PetscCall(PetscLogStageRegister("Load steps", &stage));
+  PetscCall(PetscLogStagePush(stage));
+  InterruptionBegin();
+  PetscCall(LoadStepperSolve(run->stepper, report));
+  PetscCall(PetscLogStagePop());
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Steps the model to t = 1 and writes what is to be written. */
+static PetscErrorCode RunSolve(Run *run, const RunInput *input, BurnishStatus *status)
+{
+  static const char *const names[] =
+    {[BURNISH_DONE] = "done", [BURNISH_NOT_CONVERGED] = "not converged", [BURNISH_STOPPED] = "stopped"};
+  StepperReport  report;
+  RunRecord      record;
+  PetscLogDouble now;
+
+  PetscFunctionBeginUser;
+  PetscCall(RunCreateStepper(run, input));
+  PetscCall(RunSolveSteps(run, &report));
+  if (!report.done && run->kept != report.steps) PetscCall(CheckpointWrite(run->checkpoint));
+  *status = report.done ? BURNISH_DONE : report.stopped ? BURNISH_STOPPED : BURNISH_NOT_CONVERGED;
+  if (*status == BURNISH_DONE) run->message[0] = '\0';
+  if (*status == BURNISH_NOT_CONVERGED) PetscCall(PetscStrncpy(run->message, report.message, sizeof(run->message)));
+  PetscCall(PetscTime(&now));
+  record = (RunRecord){.status  = names[*status],
+                       .message = *status == BURNISH_DONE ? NULL : run->message,
+                       .wall_s  = now - run->start,
+                       .mesh_s  = run->mesh_s,
+                       .way     = &report};
+  PetscCall(ResultsFinish(run->results, &record));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  RunScene - takes a scene from its file to its results
+
+  Collective
+
+  Input Parameters:
++ run   - all zero but for its communicator
+- input - what the user asks for
+
+  Output Parameter:
+. status - BURNISH_DONE, BURNISH_NOT_CONVERGED or BURNISH_STOPPED
+
+  Note:
+  Returns REFUSED for wrong input (refusal.h). The caller calls RunDestroy() after REFUSED too. After other errors it
+  does not, because other ranks may not have failed.
+@*/
+PetscErrorCode RunScene(Run *run, const RunInput *input, BurnishStatus *status)
+{
+  PetscFunctionBeginUser;
+  run->kept = -1;
+  *status   = BURNISH_DONE;
+  PetscCall(PetscTime(&run->start));
+  PetscCall((input->restart ? RunReopen : RunOpen)(run, input));
+  if (input->task != RUN_MESH) PetscCall(RunSetUp(run, input));
+  if (input->task == RUN_SOLVE) PetscCall(RunSolve(run, input, status));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  RunDestroy - frees all objects of a run and takes the scene's options out of PETSc's database
+
+  Collective
+@*/
+PetscErrorCode RunDestroy(Run *run)
+{
+  PetscFunctionBeginUser;
+  PetscCall(LoadStepperDestroy(&run->stepper));
+  PetscCall(ResultsDestroy(&run->results));
+  PetscCall(ProbesDestroy(&run->probes));
+  PetscCall(ModelDestroy(&run->model));
+  PetscCall(MeshDestroy(&run->mesh));
+  PetscCall(CheckpointDestroy(&run->checkpoint));
+  for (int i = 0; i < run->n_options; i++) {
+    PetscCall(PetscOptionsClearValue(NULL, run->options[i]));
+    PetscCall(PetscFree(run->options[i]));
+  }
+  PetscCall(PetscFree(run->options));
+  PetscCall(SceneDestroy(&run->scene));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
