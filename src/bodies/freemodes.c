@@ -573,3 +573,43 @@ PetscErrorCode FreeModesRefuse(FreeModes modes)
                           SceneWhere(modes->scene, modes->scene->bodies[body].path, "volume"), message));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
+
+/*@
+  FreeModesUnheld - names the deformable bodies none of whose displacements is prescribed.
+
+  Collective
+
+  Input Parameters:
++ mesh  - the mesh
+. scene - the scene
+. loads - the loads and supports
+- size  - room of the text in characters
+
+  Output Parameter:
+. text - "'ring', 'shaft'", or empty
+
+  Note:
+  A body that is held in one direction only is not among the names: this is a hint for a message about a singular
+  system, not a proof.
+@*/
+PetscErrorCode FreeModesUnheld(Mesh mesh, Scene scene, Loads loads, size_t size, char *text)
+{
+  PetscInt *held;
+  size_t    used;
+
+  PetscFunctionBeginUser;
+  text[0] = '\0';
+  PetscCall(PetscCalloc1(scene->n_bodies, &held));
+  for (PetscInt c = 0; c < mesh->n_cells; c++)
+    for (PetscInt k = mesh->cell_ptr[c]; k < mesh->cell_ptr[c + 1]; k++)
+      for (int d = 0; d < mesh->dim; d++)
+        held[mesh->cell_body[c]] += LoadsPrescribed(loads, mesh->cell_nodes[k] * mesh->dim + d) ? 1 : 0;
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, held, scene->n_bodies, MPIU_INT, MPI_SUM, mesh->comm));
+  for (int b = 0; b < scene->n_bodies; b++) {
+    if (held[b] || scene->bodies[b].rigid) continue;
+    PetscCall(PetscStrlen(text, &used));
+    PetscCall(PetscSNPrintf(text + used, size - used, "%s'%s'", used ? ", " : "", scene->bodies[b].name));
+  }
+  PetscCall(PetscFree(held));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

@@ -15,3 +15,5 @@ PetscErrorCode FreeModesDestroy(FreeModes *);
 PetscErrorCode FreeModesReport(FreeModes, PetscBool held, FILE *);
 /* Refuses (exit 1) a body that can move and that no contact pair knows. Collective. */
 PetscErrorCode FreeModesRefuse(FreeModes);
+/* "'ring', 'shaft'": bodies that no support and no imposed displacement holds. Collective. */
+PetscErrorCode FreeModesUnheld(Mesh, Scene, Loads, size_t size, char *text);

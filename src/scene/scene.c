@@ -3,8 +3,6 @@
 #include "base/refusal.h"
 #include <string.h>
 
-const char *const Formulations[] = {"full", "enhanced", "fbar", NULL};
-
 static const char *const Displacements[] = {"ux", "uy", "uz"}, *const Rotations[] = {"rx", "ry", "rz"};
 
 /* path's history, or the load parameter itself. */
