@@ -8,6 +8,7 @@
 #include "report/precheck.h"
 #include "base/refusal.h"
 #include "report/results.h"
+#include "report/rundirectory.h"
 #include "step/stepper.h"
 #include "base/timing.h"
 
@@ -110,10 +111,10 @@ static PetscErrorCode OpenScene(MPI_Comm comm, const CommandLine *command, char 
   PetscCall(InsertSceneOptions(*scene));
   PetscCall(PetscSNPrintf(directory, PETSC_MAX_PATH_LEN, "%s%s", command->directory ? command->directory : "out/",
                           command->directory ? "" : (*scene)->name));
-  if (command->mode != COMMAND_MESH) PetscCall(ResultsCheckPath(comm, directory));
+  if (command->mode != COMMAND_MESH) PetscCall(RunDirectoryCheckPath(comm, directory));
   PetscCall(ErrorLogOpen(directory));
   if (command->mode == COMMAND_RUN)
-    PetscCall(ResultsCheckDirectory(comm, *scene, directory, command->overwrite ? PETSC_TRUE : PETSC_FALSE));
+    PetscCall(RunDirectoryCheck(comm, *scene, directory, command->overwrite ? PETSC_TRUE : PETSC_FALSE));
   PetscCall(MeshGenerate(comm, *scene, "out", mesh_file, mesh_s));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -125,12 +126,12 @@ static PetscErrorCode ReopenScene(MPI_Comm comm, const CommandLine *command, cha
   PetscFunctionBeginUser;
   *mesh_s = 0;
   PetscCall(PetscStrncpy(directory, command->restart, PETSC_MAX_PATH_LEN));
-  PetscCall(ResultsCheckPath(comm, directory));
+  PetscCall(RunDirectoryCheckPath(comm, directory));
   PetscCall(ErrorLogOpen(directory));
   PetscCall(CheckpointOpen(comm, directory, checkpoint));
   PetscCall(CheckpointReadScene(*checkpoint, command->n_set, command->set, scene));
   PetscCall(InsertSceneOptions(*scene));
-  PetscCall(ResultsCheckRestart(comm, *scene, directory));
+  PetscCall(RunDirectoryCheckRestart(comm, *scene, directory));
   PetscCall(CheckpointMeshFile(*checkpoint, mesh_file));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

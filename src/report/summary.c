@@ -1,4 +1,5 @@
 #include "summary.h"
+#include "files/textfile.h"
 #include "scene/commandline.h"
 #include <cJSON.h>
 #include <math.h>
@@ -233,7 +234,7 @@ PetscErrorCode SummaryWrite(const Mesh mesh, const RunFigures *figures, const ch
   AddContact(json, figures);
   text = cJSON_Print(json);
   PetscCheck(text, PETSC_COMM_SELF, PETSC_ERR_MEM, "No memory for summary.json");
-  PetscCall(ResultsReplaceFile(directory, "summary.json", text));
+  PetscCall(TextFileReplace(directory, "summary.json", text));
   cJSON_free(text);
   cJSON_Delete(json);
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -1,5 +1,5 @@
 #include "xdmf.h"
-#include "report/results.h"
+#include "files/textfile.h"
 #include <stdio.h>
 #include <stdlib.h>
 
@@ -92,7 +92,7 @@ PetscErrorCode XdmfWrite(const Xdmf *xdmf, const char *directory)
   }
   fprintf(out, " </Grid>\n</Domain>\n</Xdmf>\n");
   PetscCheck(!fclose(out), PETSC_COMM_SELF, PETSC_ERR_MEM, "No memory for results.xdmf");
-  PetscCall(ResultsReplaceFile(directory, "results.xdmf", text));
+  PetscCall(TextFileReplace(directory, "results.xdmf", text));
   free(text);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
