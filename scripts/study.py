@@ -6,9 +6,9 @@ run, and makes of them a table and a plot of the error against CPU seconds.
 The last --vary (or --case) runs along a line of the plot, usually the mesh from coarse to fine. The others make one
 line for each combination.
 In DIR (--out): NAME.jsonl raw records, one JSON line per run; NAME.csv, NAME.md tables; NAME.png plot. A run whose
-scene, keys, ranks and program are those of a record is not made again, so that an interrupted study goes on where it was.
-On a cluster, jobs 0 to N-1 of an array each take --job-array $INDEX,N; the same line without it gathers them. A run that
-fails is a row with its cause."""
+scene, keys, ranks and program are those of a record is not made again, so that an interrupted study goes on where it
+was. On a cluster, jobs 0 to N-1 of an array each take --job-array $INDEX,N; the same line without it gathers them. A
+run that fails is a row with its cause."""
 
 import argparse
 import csv
