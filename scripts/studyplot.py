@@ -1,4 +1,5 @@
-"""The plots of study.py: error against CPU seconds, or against the values of the last axis with the iterations beside."""
+"""The plots of study.py: the error against CPU seconds, or against the values of the last axis with the iterations."""
+
 import math
 
 import matplotlib
@@ -7,9 +8,16 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 from matplotlib.ticker import FuncFormatter
 
-from study import enough, front, number
+from studyline import enough, front, number
 
-COLOURS = ("#0072b2", "#d55e00", "#009e73", "#aa4499", "#b8860b", "#555555")  # told apart by the colour-blind too; by the first axis
+COLOURS = (
+    "#0072b2",
+    "#d55e00",
+    "#009e73",
+    "#aa4499",
+    "#b8860b",
+    "#555555",
+)  # told apart by the colour-blind too; by the first axis
 STYLES = ((0, ()), (0, (5, 2)), (0, (1, 1.5)), (0, (5, 1.5, 1, 1.5)))  # by the second
 MARKERS = "osD^v"  # by the third
 WIDTH, HEIGHT, DPI = 5.6, 4.4, 72  # of a panel
@@ -20,7 +28,11 @@ LABEL_HEIGHT = 0.043  # of a direct label, in heights of a panel
 def style(study, row):
     """Colour, dashes and marker of a row's line."""
     place = [list(study.axes[name]).index(row["case"][name]) for name in study.lines] + [0, 0, 0]
-    return {"color": COLOURS[place[0] % len(COLOURS)], "linestyle": STYLES[place[1] % len(STYLES)], "marker": MARKERS[place[2] % len(MARKERS)]}
+    return {
+        "color": COLOURS[place[0] % len(COLOURS)],
+        "linestyle": STYLES[place[1] % len(STYLES)],
+        "marker": MARKERS[place[2] % len(MARKERS)],
+    }
 
 
 def label_ends(axes, ends):
@@ -36,8 +48,17 @@ def label_ends(axes, ends):
     for k in reversed(range(len(heights))):  # those pushed out at the top push back
         heights[k] = min(heights[k], 1 - (len(heights) - 1 - k) * LABEL_HEIGHT) if over else heights[k]
     for (x, y, text, colour), height in zip(placed, heights):
-        axes.annotate(text, (x, y), (1.02, height), xycoords="axes fraction", textcoords="axes fraction", color=colour, fontsize=8, va="center",
-                      arrowprops={"arrowstyle": "-", "color": colour, "lw": 0.5, "alpha": 0.5, "shrinkA": 0, "shrinkB": 3})
+        axes.annotate(
+            text,
+            (x, y),
+            (1.02, height),
+            xycoords="axes fraction",
+            textcoords="axes fraction",
+            color=colour,
+            fontsize=8,
+            va="center",
+            arrowprops={"arrowstyle": "-", "color": colour, "lw": 0.5, "alpha": 0.5, "shrinkA": 0, "shrinkB": 3},
+        )
 
 
 def plain(value, _):
@@ -94,7 +115,9 @@ def draw_cost(study, rows, grid):
 
 
 def draw_against(study, rows, grid):
-    """Over the values of the last axis: the errors, with the value marked beyond which nothing is gained, then iterations."""
+    """Over the values of the last axis: the errors, then the iterations. The value beyond which nothing is gained is
+    marked."""
+
     def abscissa(row):
         return next((v for v in (number(word) for word in row["case"][study.along].split()) if not math.isnan(v)), None)
 
@@ -102,7 +125,9 @@ def draw_against(study, rows, grid):
         for series in study.series(rows).values():
             row, _ = enough(series, measure.name)
             if row:
-                axes.plot(abscissa(row), row["errors"][measure.name], "o", ms=12, mfc="none", mec="black", mew=1.2, zorder=4)
+                axes.plot(
+                    abscissa(row), row["errors"][measure.name], "o", ms=12, mfc="none", mec="black", mew=1.2, zorder=4
+                )
         yield draw_lines(axes, study, rows, abscissa, lambda row: row["errors"].get(measure.name))
         axes.set_ylabel(f"error in {measure.name}, %")
     for axes, name, text in zip(grid.flat[-2:], ("newton_iterations", "cpu_s"), ("Newton iterations", "CPU seconds")):
@@ -117,11 +142,17 @@ def draw(study, rows, path):
     against = study.options.against
     measures = len(study.measures)
     down, across = (2, max(2, measures)) if against else (measures, len(study.axes.get(study.options.panels, [0])))
-    figure, grid = plt.subplots(down, across, figsize=(WIDTH * 1.35 * across, HEIGHT * down), squeeze=False, sharey="none" if against else "row")
+    figure, grid = plt.subplots(
+        down, across, figsize=(WIDTH * 1.35 * across, HEIGHT * down), squeeze=False, sharey="none" if against else "row"
+    )
     figure.subplots_adjust(wspace=0.62, hspace=0.32)
     for ends in list((draw_against if against else draw_cost)(study, rows, grid)):
         label_ends(*ends)
-    note = "ringed: beyond it the error that stays dominates" if against else "ringed on grey: cheapest for its error (Pareto front)"
+    note = (
+        "ringed: beyond it the error that stays dominates"
+        if against
+        else "ringed on grey: cheapest for its error (Pareto front)"
+    )
     figure.suptitle(f"{study.options.title or study.name}  ({note})", fontsize=11, y=0.97 if down > 1 else 1.02)
     figure.savefig(path, dpi=DPI, bbox_inches="tight")
     plt.close(figure)

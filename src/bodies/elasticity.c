@@ -3,21 +3,25 @@
 #include "kernels/elementkernel.h"
 #include "matrix/nodematrix.h"
 
-/* PREFETCH_PAIRS: how many pairs of nodes ahead blocks are asked for; the scattered blocks come from main memory, 4
- * hides most of the wait */
-enum { MAX_DOFS = ELEMENT_MAX_NODES * 3, BYTES_OF_CACHE_LINE = 64, PREFETCH_PAIRS = 4 };
+enum {
+  MAX_DOFS            = ELEMENT_MAX_NODES * 3, /* of a cell */
+  BYTES_OF_CACHE_LINE = 64,                    /* of the usual processors; arrays of a batch are aligned to it */
+  /* Blocks are fetched this many pairs of nodes ahead. They are scattered in main memory, and 4 hides most of the wait.
+   */
+  PREFETCH_PAIRS = 4
+};
 
-/* Cells of one type and law, KERNEL_LANES to a batch; the last batch repeats its last cell. Arrays are those of a
-   batch, one batch after the other. */
+/* Cells of one type and law, KERNEL_LANES to a batch. The last batch repeats its last cell. The arrays have one batch
+   after the other. */
 typedef struct {
   KernelCase kernel;
   int        nodes; /* of one cell */
   PetscInt   n_cells, n_batches;
   PetscInt  *cell; /* [lanes] */
   PetscInt  *node; /* [nodes][lanes] */
-  PetscInt *block; /* [nodes][nodes][lanes]: where the pair of nodes stands in the block CSR; PREFETCH_PAIRS of zeros at
-                      the end */
-  PetscReal *X;    /* [nodes][dim][lanes] */
+  PetscInt
+    *block;     /* [nodes][nodes][lanes]: place of the pair of nodes in the block CSR; then PREFETCH_PAIRS of zeros */
+  PetscReal *X; /* [nodes][dim][lanes] */
   PetscReal *E, *nu; /* [lanes] */
 } CellGroup;
 
@@ -59,13 +63,13 @@ static KernelCase BodyKernel(Scene scene, PetscInt body, ElementType type)
                       scene->kinematics == KINEMATICS_SMALL ? MATERIAL_LINEAR : b->material.law, b->formulation};
 }
 
-/* Of one scene: geometry and kinematics are the same */
+/* Compares two kernels of one scene, whose geometry and kinematics are the same. */
 static PetscBool SameKernel(const KernelCase *a, const KernelCase *b)
 {
   return a->type == b->type && a->law == b->law && a->formulation == b->formulation ? PETSC_TRUE : PETSC_FALSE;
 }
 
-/* Sorts the cells into groups in the order in which new kinds appear: cell_group and cell_slot */
+/* Sorts the cells into groups, in the order in which new kinds appear: sets cell_group and cell_slot. */
 static PetscErrorCode GroupCells(Elasticity e, Scene scene)
 {
   const Mesh mesh = e->mesh;
@@ -101,7 +105,7 @@ static PetscErrorCode AllocateGroup(CellGroup *g, int dim)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Fills slot (and, for the last cell, the rest of its batch) of a group with a cell */
+/* Fills a slot of a group with a cell. The last cell also fills the rest of its batch. */
 static void SetCell(Elasticity e, Scene scene, CellGroup *g, PetscInt slot, PetscInt c)
 {
   const Mesh      mesh     = e->mesh;
@@ -123,7 +127,7 @@ static void SetCell(Elasticity e, Scene scene, CellGroup *g, PetscInt slot, Pets
   }
 }
 
-/* The cells around every node as a CSR */
+/* Lists the cells around every node as a CSR. */
 static PetscErrorCode NodeCells(Mesh mesh, PetscInt **ptr, PetscInt **cells)
 {
   PetscInt *p, *list;
@@ -143,7 +147,8 @@ static PetscErrorCode NodeCells(Mesh mesh, PetscInt **ptr, PetscInt **cells)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Nodes that share a cell with a node, ascending; mark[] holds the last node each one was counted for. */
+/* Lists the nodes that share a cell with a node, ascending. mark[] holds the last node for which each one was counted.
+ */
 static PetscErrorCode NodeNeighbours(Mesh mesh, PetscInt node, const PetscInt *ptr, const PetscInt *cells,
                                      PetscInt *mark, PetscInt *neighbours, PetscInt *count)
 {
@@ -162,7 +167,7 @@ static PetscErrorCode NodeNeighbours(Mesh mesh, PetscInt node, const PetscInt *p
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Scatter map of all pairs (node, b) of the cells around a node; place[n] is where column n stands in its row */
+/* Sets the scatter map for all pairs (node, b) of the cells around a node. place[n] is where column n is in its row. */
 static void SetBlocks(Elasticity e, PetscInt node, const PetscInt *ptr, const PetscInt *cells, const PetscInt *place)
 {
   for (PetscInt k = ptr[node]; k < ptr[node + 1]; k++) {
@@ -182,7 +187,7 @@ static void SetBlocks(Elasticity e, PetscInt node, const PetscInt *ptr, const Pe
   }
 }
 
-/* Pattern of the block CSR and the scatter maps into it */
+/* Makes the pattern of the block CSR and the scatter maps into it. */
 static PetscErrorCode CreateBlocks(Elasticity e)
 {
   const Mesh mesh = e->mesh;
@@ -232,18 +237,18 @@ static PetscErrorCode CreateBuffers(Elasticity e)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*
-  ElasticityCreate - Prepares the assembly of all local cells: batches, pattern of the local tangent, scatter maps
+/*@
+  ElasticityCreate - prepares the assembly of all local cells: batches, pattern of the local tangent, scatter maps.
 
   Not collective
 
-  Input:
-+ mesh  - the mesh; must outlive the elasticity
+  Input Parameters:
++ mesh  - the mesh; it must outlive the elasticity
 - scene - geometry, kinematics and the bodies' materials
 
-  Output:
-. elasticity - the object, destroyed by ElasticityDestroy()
-*/
+  Output Parameter:
+. elasticity - free it with ElasticityDestroy()
+@*/
 PetscErrorCode ElasticityCreate(Mesh mesh, Scene scene, Elasticity *elasticity)
 {
   Elasticity e;
@@ -263,11 +268,17 @@ PetscErrorCode ElasticityCreate(Mesh mesh, Scene scene, Elasticity *elasticity)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*
-  ElasticityDestroy - Frees the object and its matrix
+/*@
+  ElasticityDestroy - frees the object and its matrix.
 
-  Collective, if ElasticityMatrix() was called
-*/
+  Collective
+
+  Input Parameter:
+. elasticity - set to NULL
+
+  Note:
+  Not collective if ElasticityMatrix() was never called.
+@*/
 PetscErrorCode ElasticityDestroy(Elasticity *elasticity)
 {
   Elasticity e = *elasticity;
@@ -301,7 +312,7 @@ static void GatherBatch(Elasticity e, const CellGroup *g, PetscInt batch, const 
   }
 }
 
-/* Cells of a batch that are no repetition */
+/* Counts the cells of a batch that are not repetitions. */
 static int BatchCells(const CellGroup *g, PetscInt batch)
 {
   return (int)PetscMin(KERNEL_LANES, g->n_cells - batch * KERNEL_LANES);
@@ -326,21 +337,24 @@ static void ScatterForce(Elasticity e, const CellGroup *g, PetscInt batch, Petsc
   if (force2) *force2 += sum;
 }
 
-/*
-  ElasticityResidual - Internal forces and strain energy of this rank's cells
+/*@
+  ElasticityResidual - computes internal forces and strain energy of this rank's cells.
 
   Not collective
 
-  Input:
+  Input Parameters:
 + e - the elasticity
 - u - local displacements (length) [n_nodes*dim]
 
-  Output (each but ok may be NULL):
+  Output Parameters:
 + f      - internal forces [n_nodes*dim], added to; not summed over ranks
 . energy - strain energy of this rank's cells, added to
 . force2 - sum of the squares of the element forces before assembly, added to
-- ok     - PETSC_FALSE: det F <= 0, or not a number, somewhere; f is filled all the same
-*/
+- ok     - PETSC_FALSE where some det F is not positive, or not a number; f is filled all the same
+
+  Note:
+  f, energy and force2 may be NULL. ElasticityInvertedCell() then tells which cell it was.
+@*/
 PetscErrorCode ElasticityResidual(Elasticity e, const PetscReal *u, PetscReal *f, PetscReal *energy, PetscReal *force2,
                                   PetscBool *ok)
 {
@@ -374,8 +388,8 @@ PetscErrorCode ElasticityResidual(Elasticity e, const PetscReal *u, PetscReal *f
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Adds the batch's K into the block CSR, pair of nodes by pair of nodes: its lanes are read once, each block is
-   contiguous. dim and count are constants where this is inlined. */
+/* Adds K of a batch to the block CSR, pair of nodes by pair of nodes: the lanes of a pair are read once, and each
+   block is contiguous. dim and count are constants where this is inlined. */
 static inline __attribute__((always_inline)) void ScatterTangent(Elasticity e, const CellGroup *g, PetscInt batch,
                                                                  const int dim, const int count)
 {
@@ -386,7 +400,7 @@ static inline __attribute__((always_inline)) void ScatterTangent(Elasticity e, c
     for (int b = 0; b < n; b++, block += KERNEL_LANES) {
       const PetscReal *K = &e->K[((size_t)a * dim * n + b) * dim * KERNEL_LANES];
 
-      for (int lane = 0; lane < count; lane++) { /* a block of 3 x 3 doubles lies on two cache lines */
+      for (int lane = 0; lane < count; lane++) { /* a block of 3 x 3 doubles is on two cache lines */
         const PetscReal *ahead = &e->value[(size_t)block[PREFETCH_PAIRS * KERNEL_LANES + lane] * dim * dim];
 
         __builtin_prefetch(ahead, 1);
@@ -403,15 +417,15 @@ static inline __attribute__((always_inline)) void ScatterTangent(Elasticity e, c
   }
 }
 
-/*
-  ElasticityTangent - The tangent of this rank's cells into the local block CSR, which is zeroed first
+/*@
+  ElasticityTangent - assembles the tangent of this rank's cells into the local block CSR, which is zeroed first.
 
   Not collective
 
-  Input:
+  Input Parameters:
 + e - the elasticity
 - u - local displacements (length) [n_nodes*dim]
-*/
+@*/
 PetscErrorCode ElasticityTangent(Elasticity e, const PetscReal *u)
 {
   PetscReal J[KERNEL_LANES];
@@ -441,20 +455,21 @@ PetscErrorCode ElasticityTangent(Elasticity e, const PetscReal *u)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*
-  ElasticityAddBlock - Adds a dense block of dofs into the local block CSR
+/*@
+  ElasticityAddBlock - adds a dense block of dofs to the local block CSR.
 
   Not collective
 
-  Input:
+  Input Parameters:
 + e     - the elasticity
 . n     - number of nodes
 . nodes - local nodes, all of one local cell
 - k     - [n*dim][n*dim], row-major, dofs node by node
 
   Note:
-  If the block is not symmetric, ElasticitySetSymmetric() must have said so.
-*/
+  For follower loads on the faces of local cells. If the block is not symmetric, ElasticitySetSymmetric() must have
+  been told so.
+@*/
 PetscErrorCode ElasticityAddBlock(Elasticity e, PetscInt n, const PetscInt nodes[], const PetscReal k[])
 {
   const int dim = e->dim;
@@ -479,18 +494,18 @@ PetscErrorCode ElasticityAddBlock(Elasticity e, PetscInt n, const PetscInt nodes
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*
-  ElasticityMultiplyLocal - Product with the local block CSR, supported and imposed dofs included: y += K x
+/*@
+  ElasticityMultiplyLocal - multiplies by the local block CSR, supported and imposed dofs included: y += K x.
 
   Not collective
 
-  Input:
+  Input Parameters:
 + e - the elasticity
 - x - local vector [n_nodes*dim]
 
-  Output:
+  Output Parameter:
 . y - local vector [n_nodes*dim], added to; not summed over ranks
-*/
+@*/
 PetscErrorCode ElasticityMultiplyLocal(Elasticity e, const PetscReal *x, PetscReal *y)
 {
   const int dim = e->dim;
@@ -508,15 +523,18 @@ PetscErrorCode ElasticityMultiplyLocal(Elasticity e, const PetscReal *x, PetscRe
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*
-  ElasticitySetSymmetric - Says whether the tangent, with the blocks that others add, is symmetric
+/*@
+  ElasticitySetSymmetric - sets whether the tangent is symmetric, with the blocks that others add.
 
-  Logically collective; before the first ElasticityMatrix()
+  Logically collective
 
-  Input:
+  Input Parameters:
 + e         - the elasticity
 - symmetric - PETSC_TRUE is the default
-*/
+
+  Note:
+  Call it before the first ElasticityMatrix().
+@*/
 PetscErrorCode ElasticitySetSymmetric(Elasticity e, PetscBool symmetric)
 {
   PetscFunctionBeginUser;
@@ -525,7 +543,7 @@ PetscErrorCode ElasticitySetSymmetric(Elasticity e, PetscBool symmetric)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Free dofs that this rank owns */
+/* Counts the free dofs that this rank owns. */
 static PetscErrorCode CountOwnedDofs(Mesh mesh, const PetscInt *dofs, PetscInt *count)
 {
   PetscMPIInt rank;
@@ -539,7 +557,7 @@ static PetscErrorCode CountOwnedDofs(Mesh mesh, const PetscInt *dofs, PetscInt *
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* A pattern joined with that of another matrix (NULL: none). */
+/* Joins the pattern with that of another matrix (NULL: none). */
 static PetscErrorCode JoinPattern(Elasticity e, Mat other)
 {
   PetscFunctionBeginUser;
@@ -564,19 +582,22 @@ static PetscErrorCode ElasticityCreateMatrix(Elasticity e)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*
-  ElasticityMatrix - The tangent over the global free dofs, from the local block CSRs of all ranks
+/*@
+  ElasticityMatrix - gives the tangent over the global free dofs, from the local block CSRs of all ranks.
 
   Collective
 
-  Input:
+  Input Parameters:
 + e - the elasticity
 - C - the last matrix of ElasticityMatrixJoin(), which is added; NULL: nothing is
 
-  Output:
-+ diagonal - of the tangent without C, over the global free dofs; NULL: it is not asked for
-- matrix   - a parallel AIJ matrix, always the same one; belongs to the elasticity
-*/
+  Output Parameters:
++ diagonal - of the tangent without C, over the global free dofs; NULL: not wanted
+- matrix   - a parallel AIJ matrix, always the same one; it belongs to the elasticity
+
+  Note:
+  The first call creates the matrix.
+@*/
 PetscErrorCode ElasticityMatrix(Elasticity e, Mat C, Vec diagonal, Mat *matrix)
 {
   PetscFunctionBeginUser;
@@ -588,15 +609,18 @@ PetscErrorCode ElasticityMatrix(Elasticity e, Mat C, Vec diagonal, Mat *matrix)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*
-  ElasticityMatrixJoin - Makes room in the matrix for what another one adds to it
+/*@
+  ElasticityMatrixJoin - makes room in the matrix for what another one adds to it.
 
-  Collective; after the first ElasticityMatrix(). Values are undefined until the next one
+  Collective
 
-  Input:
-+ e - the elasticity
+  Input Parameters:
++ e - the elasticity, after the first ElasticityMatrix()
 - C - an AIJ matrix over the global free dofs, in which all dofs of a node are coupled to the same ones
-*/
+
+  Note:
+  The values of the matrix are undefined until the next ElasticityMatrix().
+@*/
 PetscErrorCode ElasticityMatrixJoin(Elasticity e, Mat C)
 {
   PetscFunctionBeginUser;
@@ -604,7 +628,7 @@ PetscErrorCode ElasticityMatrixJoin(Elasticity e, Mat C)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Adds one cell's share to its nodes */
+/* Adds the share of one cell to its nodes. */
 static void AddCellStress(Elasticity e, const CellGroup *g, PetscInt slot, const PetscReal *u, PetscReal *stress,
                           PetscReal *weight)
 {
@@ -630,25 +654,26 @@ static void AddCellStress(Elasticity e, const CellGroup *g, PetscInt slot, const
   }
 }
 
-/*
-  ElasticityNodalStress - Cauchy stress at the nodes, this rank's share
+/*@
+  ElasticityNodalStress - computes this rank's share of the Cauchy stress at the nodes.
 
   Not collective
 
-  Input:
+  Input Parameters:
 + e - the elasticity
 - u - local displacements (length) [n_nodes*dim]
 
-  Output:
+  Output Parameters:
 + stress - volume of the cells around a node times their stress there [n_nodes*6]: xx yy zz xy yz xz; axisymmetric: rr
-zz hoop rz 0 0
+           zz hoop rz 0 0
 - weight - volume of the cells around a node [n_nodes]
 
-  Notes:
-  The caller sums both over the ranks and divides. Inside a cell the stress is the least-squares fit of the corner shape
-functions (one point: a constant) to the quadrature points, so that second-order cells reproduce linear stress fields at
-every node, on boundaries too.
-*/
+  Note:
+  The caller sums both over the ranks and divides. Inside a cell the stress is the least-squares fit of the corner
+  shape functions (with one point: a constant) to the stress at the quadrature points, so that second-order cells
+  reproduce linear stress fields at every node, on boundaries too. The cells around a node are averaged by their
+  volume; they all are of one body, because bodies share no nodes.
+@*/
 PetscErrorCode ElasticityNodalStress(Elasticity e, const PetscReal *u, PetscReal *stress, PetscReal *weight)
 {
   PetscFunctionBeginUser;
@@ -661,22 +686,29 @@ PetscErrorCode ElasticityNodalStress(Elasticity e, const PetscReal *u, PetscReal
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*
-  ElasticityCellModulus - Young's modulus (stress) of a local cell: the stiffness that the automatic penalty is measured
-  by
+/*@
+  ElasticityCellModulus - returns Young's modulus (stress) of a local cell, from which the automatic penalty is
+  computed.
 
   Not collective
-*/
+
+  Input Parameters:
++ e    - the elasticity
+- cell - a local cell
+@*/
 PetscReal ElasticityCellModulus(Elasticity e, PetscInt cell)
 {
   return e->cell_modulus[cell];
 }
 
-/*
-  ElasticityInvertedCell - a local cell that the last ElasticityResidual() found with det F <= 0, or -1
+/*@
+  ElasticityInvertedCell - returns a local cell that the last ElasticityResidual() found with det F <= 0, or -1.
 
   Not collective
-*/
+
+  Input Parameter:
+. e - the elasticity
+@*/
 PetscInt ElasticityInvertedCell(Elasticity e)
 {
   return e->inverted;

@@ -1,23 +1,26 @@
+/* Rigid motions that a scene leaves its bodies, see freemodes.h. */
 #include "bodies/freemodes.h"
 #include "kernels/elementkernel.h"
 #include "mesh/meshpieces.h"
 #include "base/refusal.h"
 #include "kernels/rigidkernel.h"
 
-/* Supports whose lever arm is below a millionth of a body's size do not count as holding a rotation: its square.
- * Round-off is some 1e-16 times their number. */
+/* Supports hold a rotation if their lever arm is more than a millionth of the body's size; this is the square of it.
+   Round-off is some 1e-16 times the number of supports. */
 #define FREE_SUPPORT 1e-12
-/* A contact pair holds a motion if the normal part of it, root mean square over the surface, is above this part of the
-   motion: less is the slope that facets of a coarse round surface leave to a rotation about its own axis. */
+/* A contact pair holds a motion if the normal part of the motion, root mean square over the surface, is above this
+   part of the motion. Less is the slope that the facets of a coarse round surface leave to a rotation about its own
+   axis. */
 #define FREE_CONTACT 3e-3
-/* Directions nearer than this to a coordinate axis are called by its name, screw motions of less pitch rotations: what
- * FREE_CONTACT leaves uncertain. */
+/* Directions nearer than this to a coordinate axis get the axis's name, and screw motions of less pitch are called
+   rotations: FREE_CONTACT leaves such differences uncertain. */
 #define FREE_ALIGNED 1e-2
 
-/* Above so many connected pieces their joint motions are not looked for: elimination of 6 times as many unknowns, and
- * no screen that could tell of them. */
+/* With more connected pieces than this their joint motions are not looked for: the elimination has 6 times as many
+   unknowns, and no screen could show the result. */
 enum { FREE_PIECES = 100 };
 
+/* Characters of the text of one motion or name, and of a message with several. */
 enum { FREE_TEXT = 320, FREE_MESSAGE = 1400 };
 
 /* A connected piece of the mesh. Its motions are measured at its own centre, in units of its size (rigidkernel.h). */
@@ -43,7 +46,7 @@ struct _n_FreeModes {
 
 /* ---------- pieces ---------- */
 
-/* Bounding boxes: the same numbers on any number of ranks */
+/* Measures the bounding box of each piece: the same numbers on any number of ranks. */
 static PetscErrorCode MeasurePieces(FreeModes modes)
 {
   Mesh       mesh = modes->mesh;
@@ -76,7 +79,8 @@ static PetscErrorCode MeasurePieces(FreeModes modes)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* "pipe", "pipe + plate" where they share nodes, "pipe (its part with node 17)" where a body is several pieces */
+/* Names the pieces: "pipe"; "pipe + plate" where they share nodes; "pipe (its part with node 17)" where a body is
+   several pieces. */
 static PetscErrorCode NamePieces(FreeModes modes)
 {
   Mesh      mesh  = modes->mesh;
@@ -117,7 +121,7 @@ static PetscErrorCode NamePieces(FreeModes modes)
 
 /* ---------- supports ---------- */
 
-/* Motions that the geometry does not have count as held. */
+/* Marks motions that the geometry does not have as held. */
 static void HoldImpossible(Geometry geometry, double gram[])
 {
   static const int possible[][RIGID_MODES] = {
@@ -130,7 +134,8 @@ static void HoldImpossible(Geometry geometry, double gram[])
     if (!possible[geometry][i]) gram[i * RIGID_MODES + i] += 1;
 }
 
-/* The order of the columns of all pieces: rotations first, so that what needs none is told as translations */
+/* Gives the order of the columns of all pieces. Rotations come first, so that a motion that needs no rotation is
+   described by translations. */
 static PetscErrorCode ColumnOrder(PetscInt n_pieces, int columns[])
 {
   int c = 0;
@@ -142,12 +147,13 @@ static PetscErrorCode ColumnOrder(PetscInt n_pieces, int columns[])
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Gives the coordinates of a point from the centre of a piece, in units of the piece's size. */
 static void PlaceInPiece(const Piece *piece, int dim, const PetscReal *X, double x[3])
 {
   for (int d = 0; d < 3; d++) x[d] = d < dim ? (X[d] - piece->centre[d]) / piece->size : 0;
 }
 
-/* What supports and imposed displacements leave to each piece */
+/* Finds the motions that supports and imposed displacements leave to each piece. */
 static PetscErrorCode FindSupported(FreeModes modes, Loads loads)
 {
   Mesh        mesh = modes->mesh;
@@ -185,7 +191,7 @@ static PetscErrorCode FindSupported(FreeModes modes, Loads loads)
 
 /* ---------- contact ---------- */
 
-/* Which pieces a surface is part of; none of a rigid tool or an analytic master */
+/* Marks the pieces that a surface is part of. A rigid tool and an analytic master are part of none. */
 static PetscErrorCode PiecesOfSurface(FreeModes modes, const char *name, int on[])
 {
   const int g = name ? MeshFindGroup(modes->mesh, modes->mesh->dim - 1, name) : -1;
@@ -198,7 +204,7 @@ static PetscErrorCode PiecesOfSurface(FreeModes modes, const char *name, int on[
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Which pieces some contact pair knows */
+/* Marks the pieces that some contact pair knows. */
 static PetscErrorCode MarkPaired(FreeModes modes)
 {
   int *on;
@@ -216,7 +222,7 @@ static PetscErrorCode MarkPaired(FreeModes modes)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Centre, unit normal and area of a face in the reference configuration */
+/* Gives centre, unit normal and area (the return value) of a face in the reference configuration. */
 static double FacePlace(Mesh mesh, const MeshGroup *group, PetscInt f, PetscReal centre[3], double normal[3],
                         PetscInt *node)
 {
@@ -238,8 +244,9 @@ static double FacePlace(Mesh mesh, const MeshGroup *group, PetscInt f, PetscReal
   return size;
 }
 
-/* Normal motion between slave and master over the slave's faces, mean square. Master pieces are those that the pair's
-   surface lies on, all of them, as where they meet is not known before; gaps are small against the bodies. */
+/* Adds up the mean square of the normal motion between slave and master over the slave's faces. All pieces that the
+   master surface lies on count as masters, because it is not known before where the surfaces meet. Gaps are assumed to
+   be small against the bodies. */
 static PetscErrorCode MeasurePair(FreeModes modes, const SceneContact *contact, double gram[])
 {
   Mesh             mesh  = modes->mesh;
@@ -282,7 +289,7 @@ static PetscErrorCode MeasurePair(FreeModes modes, const SceneContact *contact, 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* a gram b */
+/* Returns a^T gram b. */
 static double VectorProduct(int n, const double gram[], const double a[], const double b[])
 {
   double sum = 0;
@@ -294,14 +301,14 @@ static double VectorProduct(int n, const double gram[], const double a[], const 
   return sum;
 }
 
-/* A motion of one piece among those of all */
+/* Writes a motion of one piece as a motion of all pieces. */
 static void Embed(FreeModes modes, PetscInt p, int mode, double all[])
 {
   for (int i = 0; i < RIGID_MODES * modes->n_pieces; i++) all[i] = 0;
   for (int i = 0; i < RIGID_MODES; i++) all[RIGID_MODES * p + i] = modes->pieces[p].free[mode * RIGID_MODES + i];
 }
 
-/* Which of the motions that supports leave, of all pieces together, no pair holds either */
+/* Finds which of the motions that supports leave, of all pieces together, no pair holds either. */
 static PetscErrorCode FindLoose(FreeModes modes)
 {
   const int n = RIGID_MODES * (int)modes->n_pieces;
@@ -330,22 +337,25 @@ static PetscErrorCode FindLoose(FreeModes modes)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*
+/*@
   FreeModesCreate - finds the rigid motions that supports leave to every connected piece of the mesh, and those that
-contact does not hold either
+  contact does not hold either.
 
   Collective
 
   Input Parameters:
 + mesh  - with its groups
-. scene - its contact pairs: frictionless, so that they hold what moves along their surfaces' normals, were they closed
-all over
+. scene - its contact pairs are frictionless: each, if it were closed all over, would hold what moves along the normals
+          of its surfaces
 - loads - which displacements are prescribed (supports, imposed displacements, the axis of an axisymmetric scene)
 
+  Output Parameter:
+. out - free it with FreeModesDestroy()
+
   Note:
-  A rigid motion is free if no prescribed component of any node sees it: null space of the constraints on 6 motions (3
-in plane strain, 1 axisymmetric). With more than FREE_PIECES pieces contact is not looked at.
-*/
+  A rigid motion is free if no prescribed component of any node sees it: it is in the null space of the constraints on
+  6 motions (3 in plane strain, 1 axisymmetric). With more than FREE_PIECES pieces contact is not looked at.
+@*/
 PetscErrorCode FreeModesCreate(Mesh mesh, Scene scene, Loads loads, FreeModes *out)
 {
   FreeModes modes;
@@ -372,7 +382,14 @@ PetscErrorCode FreeModesCreate(Mesh mesh, Scene scene, Loads loads, FreeModes *o
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* FreeModesDestroy - Not collective. */
+/*@
+  FreeModesDestroy - frees the motions that were found.
+
+  Not collective
+
+  Input Parameter:
+. modes - set to NULL
+@*/
 PetscErrorCode FreeModesDestroy(FreeModes *modes)
 {
   PetscFunctionBeginUser;
@@ -392,20 +409,21 @@ static double VectorLength(const double v[3])
   return sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
 }
 
-/* What is below the uncertainty of a component is 0 */
+/* Replaces a component by 0 where it is below its own uncertainty. */
 static double RoundToZero(double value, double scale)
 {
   return fabs(value) <= 1e-6 * scale ? 0 : value;
 }
 
-/* "(0, 1, 0)": dim components of a vector, times factor */
+/* Writes dim components of a vector, times a factor, as "(0, 1, 0)". */
 static void VectorText(int dim, const double v[3], double factor, double scale, char text[FREE_TEXT])
 {
   snprintf(text, FREE_TEXT, dim == 3 ? "(%.4g, %.4g, %.4g)" : "(%.4g, %.4g)", RoundToZero(factor * v[0], scale),
            RoundToZero(factor * v[1], scale), RoundToZero(factor * v[2], scale));
 }
 
-/* "y, (0, 1, 0)", or the vector alone; pointing to the positive side */
+/* Writes a direction as "y, (0, 1, 0)", or the vector alone where it is along no axis. It points to the positive side.
+ */
 static void DirectionText(int dim, const double v[3], char text[FREE_TEXT])
 {
   const double length = VectorLength(v);
@@ -425,7 +443,8 @@ static void DirectionText(int dim, const double v[3], char text[FREE_TEXT])
     snprintf(text, FREE_TEXT, "%.*s", FREE_TEXT - 8, vector);
 }
 
-/* "translation along y, (0, 1, 0)", "rotation about z, (0, 0, 1), through (10, 0, 5)": motion[6] of a piece */
+/* Writes the motion of a piece as "translation along y, (0, 1, 0)" or "rotation about z, (0, 0, 1), through (10, 0,
+   5)". */
 static void MotionText(FreeModes modes, const Piece *piece, const double motion[RIGID_MODES], char text[FREE_TEXT])
 {
   const double *rotation = motion, *translation = motion + 3, square = PetscSqr(VectorLength(rotation));
@@ -454,7 +473,7 @@ static void MotionText(FreeModes modes, const Piece *piece, const double motion[
              FREE_TEXT / 4, direction, FREE_TEXT / 4, place);
 }
 
-/* The pairs that would hold a motion if they were closed: "crown, sole"; empty: none. all: whatever they hold */
+/* Lists the pairs that would hold a motion if they were closed, as "crown, sole"; empty where there is none. */
 static void PairsText(FreeModes modes, PetscInt p, int mode, char text[FREE_TEXT])
 {
   const int n = RIGID_MODES * (int)modes->n_pieces;
@@ -468,6 +487,7 @@ static void PairsText(FreeModes modes, PetscInt p, int mode, char text[FREE_TEXT
       used += (size_t)snprintf(text + used, FREE_TEXT - used, "%s%s", used ? ", " : "", modes->scene->contacts[c].name);
 }
 
+/* Tells whether a loose motion moves a piece. */
 static PetscBool Moves(FreeModes modes, int loose, PetscInt p)
 {
   return VectorLength(&modes->loose[(loose * modes->n_pieces + p) * RIGID_MODES]) > FREE_ALIGNED ||
@@ -476,8 +496,8 @@ static PetscBool Moves(FreeModes modes, int loose, PetscInt p)
            : PETSC_FALSE;
 }
 
-/* A motion that nothing holds: "upper: translation along y, (0, 1); lower: ..."; *paired: some of the pieces is in a
- * contact pair */
+/* Writes a motion that nothing holds as "upper: translation along y, (0, 1); with it lower: ..." and tells whether one
+   of its pieces is in a contact pair. */
 static void LooseText(FreeModes modes, int loose, char text[FREE_MESSAGE], PetscBool *paired)
 {
   size_t used = 0;
@@ -506,9 +526,19 @@ static void PrintHeld(FreeModes modes, FILE *stream)
   if (n) fprintf(stream, "\n");
 }
 
-/* FreeModesReport - what each body is held by, in lines of the first screen.
+/*@
+  FreeModesReport - prints what holds each body, in lines of the first screen.
 
-   Collective; rank 0 prints. held: also those that supports hold. */
+  Collective
+
+  Input Parameters:
++ modes  - the motions
+. held   - also print a line that names the bodies that supports hold
+- stream - of rank 0, which prints
+
+  Note:
+  There is one line for each motion, by body and direction: held by contact only, or by nothing.
+@*/
 PetscErrorCode FreeModesReport(FreeModes modes, PetscBool held, FILE *stream)
 {
   PetscMPIInt rank;
@@ -542,10 +572,17 @@ PetscErrorCode FreeModesReport(FreeModes modes, PetscBool held, FILE *stream)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* FreeModesRefuse - refuses a scene in which a body can move that is in no contact pair: nothing could make its system
-   regular.
+/*@
+  FreeModesRefuse - refuses a scene in which a body that is in no contact pair can move.
 
-   Collective. The message names the body and all such motions. */
+  Collective
+
+  Input Parameter:
+. modes - the motions
+
+  Note:
+  Nothing could make the system of such a body regular. The message names the body and all of its free motions.
+@*/
 PetscErrorCode FreeModesRefuse(FreeModes modes)
 {
   char   message[FREE_MESSAGE] = "";
@@ -571,5 +608,45 @@ PetscErrorCode FreeModesRefuse(FreeModes modes)
                           "%s: %s; no support, imposed displacement or contact pair holds it; allowed: bodies that "
                           "something holds in every direction",
                           SceneWhere(modes->scene, modes->scene->bodies[body].path, "volume"), message));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  FreeModesUnheld - names the deformable bodies none of whose displacements is prescribed.
+
+  Collective
+
+  Input Parameters:
++ mesh  - the mesh
+. scene - the scene
+. loads - the loads and supports
+- size  - room of the text in characters
+
+  Output Parameter:
+. text - "'ring', 'shaft'", or empty
+
+  Note:
+  A body that is held in one direction only is not among the names: this is a hint for a message about a singular
+  system, not a proof.
+@*/
+PetscErrorCode FreeModesUnheld(Mesh mesh, Scene scene, Loads loads, size_t size, char *text)
+{
+  PetscInt *held;
+  size_t    used;
+
+  PetscFunctionBeginUser;
+  text[0] = '\0';
+  PetscCall(PetscCalloc1(scene->n_bodies, &held));
+  for (PetscInt c = 0; c < mesh->n_cells; c++)
+    for (PetscInt k = mesh->cell_ptr[c]; k < mesh->cell_ptr[c + 1]; k++)
+      for (int d = 0; d < mesh->dim; d++)
+        held[mesh->cell_body[c]] += LoadsPrescribed(loads, mesh->cell_nodes[k] * mesh->dim + d) ? 1 : 0;
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, held, scene->n_bodies, MPIU_INT, MPI_SUM, mesh->comm));
+  for (int b = 0; b < scene->n_bodies; b++) {
+    if (held[b] || scene->bodies[b].rigid) continue;
+    PetscCall(PetscStrlen(text, &used));
+    PetscCall(PetscSNPrintf(text + used, size - used, "%s'%s'", used ? ", " : "", scene->bodies[b].name));
+  }
+  PetscCall(PetscFree(held));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

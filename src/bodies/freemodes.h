@@ -1,8 +1,9 @@
-/* Rigid motions that a scene leaves its bodies, found from the mesh, the supports and the contact surfaces before
-   anything is solved: what only contact can hold, and what nothing holds (the tangent is singular then, whatever the
-   load).
+/* Rigid motions that a scene leaves its bodies: those that only contact can hold, and those that nothing holds, for
+   which the tangent is singular whatever the load. They are found from the mesh, the supports and the contact surfaces
+   before anything is solved.
 
-     FreeModesCreate(); FreeModesReport() or FreeModesRefuse(); FreeModesDestroy() */
+   FreeModesCreate() finds them; FreeModesReport() prints them, FreeModesRefuse() ends the program where a body can
+   never be held; FreeModesDestroy(). FreeModesUnheld() answers a simpler question without the object. */
 #pragma once
 #include "bodies/loads.h"
 
@@ -10,8 +11,6 @@ typedef struct _n_FreeModes *FreeModes;
 
 PetscErrorCode FreeModesCreate(Mesh, Scene, Loads, FreeModes *);
 PetscErrorCode FreeModesDestroy(FreeModes *);
-/* One line for each motion, by body and direction; held: also a line that names the bodies that supports hold. Rank 0
- * prints. Collective. */
 PetscErrorCode FreeModesReport(FreeModes, PetscBool held, FILE *);
-/* Refuses (exit 1) a body that can move and that no contact pair knows. Collective. */
 PetscErrorCode FreeModesRefuse(FreeModes);
+PetscErrorCode FreeModesUnheld(Mesh, Scene, Loads, size_t size, char *text);

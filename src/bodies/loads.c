@@ -1,15 +1,16 @@
+/* Loads, supports and imposed displacements, see loads.h. */
 #include <math.h>
 #include "kernels/elementkernel.h"
 #include "bodies/loads.h"
 #include "base/refusal.h"
 
-/* Who holds u_r on the axis of an axisymmetric scene: the geometry itself. */
+/* Stands in the place of a load's index where the axisymmetric geometry itself holds u_r on the axis. */
 enum { LOADS_AXIS = 0x7fffffff };
-/* A node within this fraction of the model's size from r = 0 is on the axis. */
+/* A node is on the axis if it is within this fraction of the model's size from r = 0. */
 #define LOADS_ON_AXIS 1e-9
 
-/* A dof that a support or an imposed displacement holds: u = value * history (a support's value is 0, its history
- * NULL). */
+/* A dof that a support or an imposed displacement holds: u = value * history. A support has the value 0 and no history.
+ */
 typedef struct {
   PetscInt       dof;
   PetscReal      value;
@@ -17,7 +18,7 @@ typedef struct {
   int            load; /* index into scene->loads, or -1 - index into scene->supports, or LOADS_AXIS: for messages */
 } Prescribed;
 
-/* A dead load: nodal forces for factor 1, assembled once. */
+/* A dead load: its nodal forces for factor 1, assembled once */
 typedef struct {
   PetscInt       n, *dof;
   PetscReal     *force, force2; /* force2: sum of squares of the unassembled nodal forces */
@@ -49,7 +50,7 @@ static PetscReal HistoryFactor(const History *history, PetscReal t)
   return history ? HistoryValue(history, t) : 0;
 }
 
-/* Same dof, two rules: harmless when they say the same at every t. */
+/* Tells whether two rules for one dof say the same at every t, so that having both does no harm. */
 static PetscBool PrescribedAgree(const Prescribed *a, const Prescribed *b)
 {
   if (a->value == 0 && b->value == 0) return PETSC_TRUE;
@@ -65,12 +66,13 @@ static const char *PrescribedPath(Scene scene, const Prescribed *p)
   return p->load >= 0 ? scene->loads[p->load].path : scene->supports[-1 - p->load].path;
 }
 
-/* The rule for one dof; a second rule for it must say the same, else the complaint says who disagrees. */
+/* Adds the rule for one dof. A second rule for the dof must say the same, else the complaint names both. */
 static PetscErrorCode LoadsAddDof(Loads loads, PetscInt dof, PetscReal value, const History *history, int load,
                                   PetscInt *owner, char *complaint, size_t size)
 {
-  const int        dim = loads->mesh->dim;
-  const Prescribed p   = {dof, value, history, load};
+  const Mesh       mesh = loads->mesh;
+  const int        dim  = mesh->dim;
+  const Prescribed p    = {dof, value, history, load};
 
   PetscFunctionBeginUser;
   if (owner[dof] >= 0) {
@@ -82,7 +84,7 @@ static PetscErrorCode LoadsAddDof(Loads loads, PetscInt dof, PetscReal value, co
                               " is prescribed differently by %s; allowed: one value for each component of a node (part "
                               "the surfaces, or drop one of the two)",
                               SceneWhere(loads->scene, PrescribedPath(loads->scene, &p), NULL), "xyz"[dof % dim],
-                              loads -> mesh -> node_tag[dof / dim], PrescribedPath(loads->scene, q)));
+                              mesh -> node_tag[dof / dim], PrescribedPath(loads->scene, q)));
     }
     PetscFunctionReturn(PETSC_SUCCESS);
   }
@@ -145,7 +147,7 @@ static PetscErrorCode LoadsCreatePrescribed(Loads loads)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Adds one face's or cell's nodal forces for factor 1 to the dense work vector. */
+/* Adds the nodal forces of one face or cell for factor 1 to the dense work vector. */
 static void DeadLoadAdd(Mesh mesh, PetscInt n, const PetscInt *nodes, const double *fe, PetscReal *dense,
                         PetscReal *force2)
 {
@@ -259,10 +261,23 @@ static PetscErrorCode LoadsCreateForces(Loads loads)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* LoadsCreate - reads supports, loads and imposed displacements of the scene, refuses contradictions, and sets the
-   mesh's sections.
+/*@
+  LoadsCreate - reads supports, loads and imposed displacements of the scene, refuses contradictions, and sets the
+  mesh's sections.
 
-   Collective. mesh and scene are borrowed. */
+  Collective
+
+  Input Parameters:
++ mesh  - the mesh; borrowed
+- scene - the scene; borrowed
+
+  Output Parameter:
+. out - free it with LoadsDestroy()
+
+  Note:
+  Supported and imposed dofs become constraints of the mesh's local section. Call it before any matrix or vector is
+  made. It refuses (exit 1) two rules for one component of a node that do not agree.
+@*/
 PetscErrorCode LoadsCreate(Mesh mesh, Scene scene, Loads *out)
 {
   Loads loads;
@@ -277,7 +292,14 @@ PetscErrorCode LoadsCreate(Mesh mesh, Scene scene, Loads *out)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* LoadsDestroy - Collective. */
+/*@
+  LoadsDestroy - frees the loads.
+
+  Collective
+
+  Input Parameter:
+. loads - set to NULL
+@*/
 PetscErrorCode LoadsDestroy(Loads *loads)
 {
   PetscFunctionBeginUser;
@@ -291,8 +313,18 @@ PetscErrorCode LoadsDestroy(Loads *loads)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* LoadsPrescribe - writes the supported and imposed displacements at load parameter t into u[n_nodes*dim]. Not
- * collective. */
+/*@
+  LoadsPrescribe - writes the supported and imposed displacements at a load parameter into the displacements.
+
+  Not collective
+
+  Input Parameters:
++ loads - the loads
+- t     - load parameter
+
+  Output Parameter:
+. u - local displacements (length) [n_nodes*dim], of which only the prescribed ones are written
+@*/
 PetscErrorCode LoadsPrescribe(Loads loads, PetscReal t, PetscReal *u)
 {
   PetscFunctionBeginUser;
@@ -318,9 +350,24 @@ static PetscErrorCode FollowerFace(Loads loads, const FollowerLoad *load, PetscI
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* LoadsResidual - subtracts the external forces at (t, u) from f[n_nodes*dim], adds the potential of the dead loads to
-   energy and the squares of the unassembled forces to force2 (this rank's part each); any may be NULL. Not collective.
- */
+/*@
+  LoadsResidual - subtracts the external forces from the residual.
+
+  Not collective
+
+  Input Parameters:
++ loads - the loads
+. t     - load parameter
+- u     - local displacements (length) [n_nodes*dim]
+
+  Output Parameters:
++ f      - [n_nodes*dim], from which the external forces are subtracted
+. energy - the potential of the dead loads is added
+- force2 - the squares of the unassembled forces are added
+
+  Note:
+  f, energy and force2 may be NULL; each is this rank's part.
+@*/
 PetscErrorCode LoadsResidual(Loads loads, PetscReal t, const PetscReal *u, PetscReal *f, PetscReal *energy,
                              PetscReal *force2)
 {
@@ -355,7 +402,17 @@ PetscErrorCode LoadsResidual(Loads loads, PetscReal t, const PetscReal *u, Petsc
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* LoadsTangent - adds the follower loads' part of the tangent to the elasticity's local matrix. Not collective. */
+/*@
+  LoadsTangent - adds the follower loads' part of the tangent to the local block CSR of the elasticity.
+
+  Not collective
+
+  Input Parameters:
++ loads      - the loads
+. t          - load parameter
+. u          - local displacements (length) [n_nodes*dim]
+- elasticity - after ElasticityTangent()
+@*/
 PetscErrorCode LoadsTangent(Loads loads, PetscReal t, const PetscReal *u, Elasticity elasticity)
 {
   PetscInt nodes[FACE_MAX_NODES];
@@ -375,23 +432,57 @@ PetscErrorCode LoadsTangent(Loads loads, PetscReal t, const PetscReal *u, Elasti
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* LoadsConservative - is there a potential? Follower pressures have none in general. Not collective, same on all ranks.
- */
+/*@
+  LoadsConservative - tells whether the loads have a potential.
+
+  Not collective
+
+  Input Parameter:
+. loads - the loads
+
+  Note:
+  It returns the same on all ranks. Follower pressures have no potential in general.
+@*/
 PetscBool LoadsConservative(Loads loads)
 {
   return loads->n_follower ? PETSC_FALSE : PETSC_TRUE;
 }
 
-/* LoadsPrescribed - is this local dof supported or imposed (by a group that this rank sees)? Not collective. */
+/*@
+  LoadsPrescribed - tells whether a local dof is supported or imposed.
+
+  Not collective
+
+  Input Parameters:
++ loads     - the loads
+- local_dof - number of the dof, local node times dim plus component
+
+  Note:
+  A group counts if this rank sees it.
+@*/
 PetscBool LoadsPrescribed(Loads loads, PetscInt local_dof)
 {
   return loads->constrained[local_dof];
 }
 
-/* LoadsRigidMotion - where a point of a rigid body is at load parameter t.
+/*@
+  LoadsRigidMotion - gives the place of a point of a rigid body at a load parameter.
 
-   The motion is a translation of the body's point and a rotation about it by the vector (rx, ry, rz), each component a
-   value times its history. X, x: relative to the mesh's centre, 3 components (the third 0 in 2D). Not collective. */
+  Not collective
+
+  Input Parameters:
++ loads - the loads
+. body  - index into the scene's bodies
+. t     - load parameter
+- X     - the point at t = 0, relative to the mesh's centre, 3 components (the third is 0 in 2D)
+
+  Output Parameter:
+. x - its place at t, in the same coordinates
+
+  Note:
+  The motion is a translation of the body's point and a rotation about it by the vector (rx, ry, rz). Each component is
+  a value times its history.
+@*/
 void LoadsRigidMotion(Loads loads, int body, PetscReal t, const PetscReal X[3], PetscReal x[3])
 {
   const PetscReal *centre = loads->mesh->centre;
@@ -402,8 +493,20 @@ void LoadsRigidMotion(Loads loads, int body, PetscReal t, const PetscReal X[3], 
   for (int d = 0; d < 3; d++) x[d] = X[d] + (moved[d] - absolute[d]);
 }
 
-/* LoadsRigidTravel - the largest distance between the positions of the body's nodes at t0 and t1. Not collective, same
- * on all ranks. */
+/*@
+  LoadsRigidTravel - returns the largest distance between the positions of a rigid body's nodes at two load parameters.
+
+  Not collective
+
+  Input Parameters:
++ loads - the loads
+. body  - index into the scene's bodies
+. t0    - load parameter
+- t1    - load parameter
+
+  Note:
+  For the search distance. It is the same on all ranks.
+@*/
 PetscReal LoadsRigidTravel(Loads loads, int body, PetscReal t0, PetscReal t1)
 {
   const MeshRigid *rigid = MeshFindRigid(loads->mesh, loads->scene->bodies[body].name);

@@ -1,3 +1,4 @@
+/* What an HDF5 file that grows overwrites, see fileimage.h. */
 #include "files/fileimage.h"
 #include "files/hdf5table.h"
 #include <errno.h>
@@ -5,13 +6,14 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-/* A run of bytes of the file. An image is an array of runs, that of the values' runs inverted, each followed by its
-   bytes; the first one has no bytes, its `first` is the file's length and its `n` the number of runs. */
+/* A run of bytes of the file: its place and length. An image is an array of runs, which are everything between the
+   values of the datasets; each is followed by its bytes. The first run of an image has no bytes: its `first` is the
+   length of the file and its `n` is the number of runs that follow. */
 typedef struct {
   int64_t first, n;
 } Run;
 
-/* Where the values of the file's datasets stand */
+/* The runs of a file, first those with the values of its datasets */
 typedef struct {
   size_t n, room;
   Run   *run;
@@ -35,6 +37,7 @@ static PetscErrorCode RunsAdd(Runs *runs, int64_t first, int64_t n)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Adds the bytes of one dataset to the runs; for H5Lvisit(). */
 static herr_t VisitLink(hid_t file, const char *name, const H5L_info_t *info, void *runs)
 {
   hid_t   object = H5Oopen(file, name, H5P_DEFAULT);
@@ -46,7 +49,7 @@ static herr_t VisitLink(hid_t file, const char *name, const H5L_info_t *info, vo
   return H5Oclose(object);
 }
 
-/* Everything between the runs. */
+/* Replaces the runs by everything between them. */
 static PetscErrorCode RunsInvert(Runs *runs, int64_t length)
 {
   Runs    between = {0};
@@ -64,8 +67,22 @@ static PetscErrorCode RunsInvert(Runs *runs, int64_t length)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* FileImageTake - Not collective. The datasets must be contiguous, as rows.c makes them. Errors: PETSC_ERR_FILE_OPEN,
- * PETSC_ERR_FILE_READ. */
+/*@
+  FileImageTake - copies all bytes of an HDF5 file but the values of its datasets.
+
+  Not collective
+
+  Input Parameter:
+. name - of the file, which must be closed
+
+  Output Parameters:
++ data - the copy, to be freed with PetscFree()
+- size - its bytes
+
+  Note:
+  For one rank. The datasets must be contiguous, as Hdf5TableWrite() makes them. The file is also synced with the disk,
+  because the image is worth nothing without the values. Errors: PETSC_ERR_FILE_OPEN, PETSC_ERR_FILE_READ.
+@*/
 PetscErrorCode FileImageTake(const char *name, char **data, PetscInt64 *size)
 {
   Runs        runs = {0};
@@ -97,13 +114,27 @@ PetscErrorCode FileImageTake(const char *name, char **data, PetscInt64 *size)
                PETSC_COMM_SELF, PETSC_ERR_FILE_READ, "Cannot read %s: %s", name, strerror(errno));
     at += sizeof(Run) + n;
   }
-  fsync(fileno(stream)); /* the values too: the image speaks of them */
+  fsync(fileno(stream)); /* the values too, as the image is of no use without them */
   fclose(stream);
   PetscCall(PetscFree(runs.run));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* FileImagePutBack - Not collective. data: of FileImageTake(). Errors: PETSC_ERR_FILE_WRITE. */
+/*@
+  FileImagePutBack - puts the copied bytes back and cuts the file to the length that it had.
+
+  Not collective
+
+  Input Parameters:
++ name - of the file, which must be closed
+- data - from FileImageTake()
+
+  Output Parameter:
+. done - PETSC_FALSE if the file is missing or shorter than it was; it is left alone then
+
+  Note:
+  For one rank. Errors: PETSC_ERR_FILE_WRITE.
+@*/
 PetscErrorCode FileImagePutBack(const char *name, const char *data, PetscBool *done)
 {
   struct stat status;

@@ -1,9 +1,20 @@
+/* Tables in HDF5 files by rows that do not depend on the ranks, see hdf5table.h. */
 #include "files/hdf5table.h"
 
-/* Hdf5TableCreate - the rows of one table.
+/*@
+  Hdf5TableCreate - describes the rows of a table and which of them are items of this rank.
 
-   Collective. total: of the table; row[n]: that of each of this rank's items; of items that share a row any one is
-   written. Free with Hdf5TableDestroy(). */
+  Collective
+
+  Input Parameters:
++ comm  - of the run
+. total - rows of the table
+. n     - items of this rank
+- row   - row of each item; items that share a row must be equal, any one of them is written
+
+  Output Parameter:
+. rows - free it with Hdf5TableDestroy()
+@*/
 PetscErrorCode Hdf5TableCreate(MPI_Comm comm, PetscInt total, PetscInt n, const PetscInt *row, Hdf5Table *rows)
 {
   PetscLayout layout;
@@ -22,9 +33,22 @@ PetscErrorCode Hdf5TableCreate(MPI_Comm comm, PetscInt total, PetscInt n, const 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Hdf5TableCreateByKey - a table with one row for each key, in ascending order.
+/*@
+  Hdf5TableCreateByKey - describes a table with one row for each key, in ascending order.
 
-   Collective. key[n]: of this rank's items, each key on one rank once. Every rank sees all keys. */
+  Collective
+
+  Input Parameters:
++ comm - of the run
+. n    - items of this rank
+- key  - of each item; each key is on one rank once
+
+  Output Parameter:
+. rows - free it with Hdf5TableDestroy()
+
+  Note:
+  Every rank sees all keys: for tables that are small beside the mesh.
+@*/
 PetscErrorCode Hdf5TableCreateByKey(MPI_Comm comm, PetscInt n, const PetscInt *key, Hdf5Table *rows)
 {
   PetscMPIInt size, mine, total = 0, *counts, *starts;
@@ -49,7 +73,14 @@ PetscErrorCode Hdf5TableCreateByKey(MPI_Comm comm, PetscInt n, const PetscInt *k
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Hdf5TableDestroy - Collective. */
+/*@
+  Hdf5TableDestroy - frees the description of a table.
+
+  Collective
+
+  Input Parameter:
+. rows - the table
+@*/
 PetscErrorCode Hdf5TableDestroy(Hdf5Table *rows)
 {
   PetscFunctionBeginUser;
@@ -57,9 +88,20 @@ PetscErrorCode Hdf5TableDestroy(Hdf5Table *rows)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Hdf5TableCollect - brings items to the ranks that write their rows.
+/*@
+  Hdf5TableCollect - brings items to the ranks that write their rows.
 
-   Collective. items[rows->items * width], values[rows->n * width]: of one MPI type. */
+  Collective
+
+  Input Parameters:
++ rows  - the table
+. width - values of an item
+. type  - MPI type of a value
+- items - [rows->items * width]
+
+  Output Parameter:
+. values - [rows->n * width], in the order of the rows
+@*/
 PetscErrorCode Hdf5TableCollect(const Hdf5Table *rows, int width, MPI_Datatype type, const void *items, void *values)
 {
   MPI_Datatype unit;
@@ -73,7 +115,20 @@ PetscErrorCode Hdf5TableCollect(const Hdf5Table *rows, int width, MPI_Datatype t
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Hdf5TableSpread - the way back from Hdf5TableCollect(). Collective. */
+/*@
+  Hdf5TableSpread - brings rows to the ranks that have them as items: the reverse of Hdf5TableCollect().
+
+  Collective
+
+  Input Parameters:
++ rows   - the table
+. width  - values of an item
+. type   - MPI type of a value
+- values - [rows->n * width], in the order of the rows
+
+  Output Parameter:
+. items - [rows->items * width]
+@*/
 PetscErrorCode Hdf5TableSpread(const Hdf5Table *rows, int width, MPI_Datatype type, const void *values, void *items)
 {
   MPI_Datatype unit;
@@ -87,10 +142,21 @@ PetscErrorCode Hdf5TableSpread(const Hdf5Table *rows, int width, MPI_Datatype ty
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Hdf5TableWrite - a new dataset, with the groups above it.
+/*@
+  Hdf5TableWrite - makes a dataset, with the groups above it, of which every rank writes a part.
 
-   Collective. total: rows of all ranks; values[n * width]: rows first to first + n - 1; type: HDF5's native type of
-   them. */
+  Collective
+
+  Input Parameters:
++ file   - open on all ranks
+. path   - of the dataset
+. total  - rows of all ranks
+. first  - first row of this rank
+. n      - rows of this rank
+. width  - values of a row
+. type   - native HDF5 type of the values
+- values - [n * width]
+@*/
 PetscErrorCode Hdf5TableWrite(hid_t file, const char *path, hsize_t total, hsize_t first, hsize_t n, int width,
                               hid_t type, const void *values)
 {
@@ -111,7 +177,7 @@ PetscErrorCode Hdf5TableWrite(hid_t file, const char *path, hsize_t total, hsize
   CallHDF5(data = H5Dcreate2(file, path, type, space, links, H5P_DEFAULT, H5P_DEFAULT));
   CallHDF5(transfer = H5Pcreate(H5P_DATASET_XFER));
   CallHDF5(H5Pset_dxpl_mpio(transfer, H5FD_MPIO_COLLECTIVE));
-  if (total) CallHDF5(H5Dwrite(data, type, memory, space, transfer, values)); /* HDF5 has no place for nothing */
+  if (total) CallHDF5(H5Dwrite(data, type, memory, space, transfer, values)); /* HDF5 gives an empty dataset no place */
   CallHDF5(H5Dclose(data));
   CallHDF5(H5Pclose(transfer));
   CallHDF5(H5Pclose(links));
@@ -120,7 +186,7 @@ PetscErrorCode Hdf5TableWrite(hid_t file, const char *path, hsize_t total, hsize
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Items of a type as a dataset, `size` bytes a value. */
+/* Writes items of a type, `size` bytes a value, as a dataset. */
 static PetscErrorCode WriteItems(hid_t file, const char *path, const Hdf5Table *rows, int width, MPI_Datatype unit,
                                  hid_t type, size_t size, const void *items)
 {
@@ -135,7 +201,18 @@ static PetscErrorCode WriteItems(hid_t file, const char *path, const Hdf5Table *
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Hdf5TableWriteReals - items[rows->items * width] as a dataset of doubles. Collective. */
+/*@
+  Hdf5TableWriteReals - writes items as a dataset of doubles.
+
+  Collective
+
+  Input Parameters:
++ file  - open on all ranks
+. path  - of the dataset, which is made with the groups above it
+. rows  - the table
+. width - values of an item
+- items - [rows->items * width]
+@*/
 PetscErrorCode Hdf5TableWriteReals(hid_t file, const char *path, const Hdf5Table *rows, int width,
                                    const PetscReal *items)
 {
@@ -144,7 +221,18 @@ PetscErrorCode Hdf5TableWriteReals(hid_t file, const char *path, const Hdf5Table
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Hdf5TableWriteIntegers - items[rows->items * width] as a dataset of 64-bit integers. Collective. */
+/*@
+  Hdf5TableWriteIntegers - writes items as a dataset of 64-bit integers.
+
+  Collective
+
+  Input Parameters:
++ file  - open on all ranks
+. path  - of the dataset, which is made with the groups above it
+. rows  - the table
+. width - values of an item
+- items - [rows->items * width]
+@*/
 PetscErrorCode Hdf5TableWriteIntegers(hid_t file, const char *path, const Hdf5Table *rows, int width,
                                       const int64_t *items)
 {
@@ -192,8 +280,21 @@ PetscErrorCode Hdf5TableCreateFileBehind(MPI_Comm comm, const char *name, hsize_
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Hdf5TableCreateFile - a new HDF5 file in the place of any old one, open on all ranks. Collective. Errors:
- * PETSC_ERR_FILE_OPEN. */
+/*@
+  Hdf5TableCreateFile - makes a new HDF5 file in the place of any old one and opens it on all ranks.
+
+  Collective
+
+  Input Parameters:
++ comm - of the run
+- name - of the file
+
+  Output Parameter:
+. file - close it with H5Fclose()
+
+  Note:
+  Errors: PETSC_ERR_FILE_OPEN.
+@*/
 PetscErrorCode Hdf5TableCreateFile(MPI_Comm comm, const char *name, hid_t *file)
 {
   PetscFunctionBeginUser;
@@ -201,8 +302,22 @@ PetscErrorCode Hdf5TableCreateFile(MPI_Comm comm, const char *name, hid_t *file)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Hdf5TableOpenFile - an HDF5 file on all ranks; mode: H5F_ACC_RDWR or H5F_ACC_RDONLY. Collective. Errors:
- * PETSC_ERR_FILE_OPEN. */
+/*@
+  Hdf5TableOpenFile - opens an HDF5 file on all ranks.
+
+  Collective
+
+  Input Parameters:
++ comm - of the run
+. name - of the file
+- mode - H5F_ACC_RDWR or H5F_ACC_RDONLY
+
+  Output Parameter:
+. file - close it with H5Fclose()
+
+  Note:
+  Errors: PETSC_ERR_FILE_OPEN.
+@*/
 PetscErrorCode Hdf5TableOpenFile(MPI_Comm comm, const char *name, unsigned mode, hid_t *file)
 {
   hid_t access;

@@ -3,6 +3,7 @@
 #include "kernels/elementkernel.h"
 #include <float.h>
 #include <math.h>
+#include <stddef.h>
 
 static const double two_pi = 6.28318530717958647693;
 

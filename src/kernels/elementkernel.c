@@ -2,6 +2,8 @@
 #include "elementbatch.h"
 #include <stddef.h>
 
+const char *const Formulations[] = {"full", "enhanced", "fbar", NULL};
+
 /* Computes energy, force and tangent of the first LANES elements of the arrays. n, points, dim and hoop are constants
    of the instance. */
 LANES_INLINE void Batch(const BatchCall *call, const int n, const int points, const int dim, const int hoop)

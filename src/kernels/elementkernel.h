@@ -4,8 +4,8 @@
    Mechanics for Finite Element Analysis". */
 #pragma once
 #include "kernels/element.h"
+#include "kernels/formulation.h"
 #include "kernels/material.h"
-#include "scene/scene.h"
 
 enum { KERNEL_LANES = 8 };
 

@@ -1,5 +1,5 @@
 #include "linear/directsolver.h"
-#include "shell.h"
+#include "base/petsccompat.h"
 #include "matrix/sumoperator.h"
 
 /* Unknowns from which on orderings are compared: below, a factorisation is not what a run spends its time with. */
@@ -91,6 +91,21 @@ PetscErrorCode DirectSolverSet(KSP ksp, PetscBool symmetric)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Gives the factor of a PC that DirectSolverSet() has set up; NULL where options have put another in its place. */
+static PetscErrorCode FactorOfPC(PC pc, Factor *factor)
+{
+  const char *name = NULL;
+  PetscBool   is;
+
+  PetscFunctionBeginUser;
+  *factor = NULL;
+  PetscCall(PetscObjectTypeCompare((PetscObject)pc, PCSHELL, &is));
+  if (is) PetscCall(PCShellGetName(pc, &name));
+  if (is) PetscCall(PetscStrcmp(name, DIRECT_NAME, &is));
+  if (is) PetscCall(PCShellGetContext(pc, factor));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* DirectSolverServes - does a KSP still factor and solve once, whatever options have said? Not collective. */
 PetscErrorCode DirectSolverServes(KSP ksp, PetscBool *serves)
 {
@@ -101,7 +116,7 @@ PetscErrorCode DirectSolverServes(KSP ksp, PetscBool *serves)
   PetscCall(PetscObjectTypeCompare((PetscObject)ksp, KSPPREONLY, serves));
   if (!*serves) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(KSPGetPC(ksp, &pc));
-  PetscCall(ShellFind(pc, DIRECT_NAME, &factor));
+  PetscCall(FactorOfPC(pc, &factor));
   if (!factor) PetscCall(PetscObjectTypeCompareAny((PetscObject)pc, serves, PCCHOLESKY, PCLU, ""));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -113,7 +128,7 @@ PetscErrorCode DirectSolverFactor(KSP ksp, Factor *factor)
 
   PetscFunctionBeginUser;
   PetscCall(KSPGetPC(ksp, &pc));
-  PetscCall(ShellFind(pc, DIRECT_NAME, factor));
+  PetscCall(FactorOfPC(pc, factor));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -172,7 +187,7 @@ PetscErrorCode DirectSolverColumns(PC pc, Mat B, Mat X)
   Mat    factored;
 
   PetscFunctionBeginUser;
-  PetscCall(ShellFind(pc, DIRECT_NAME, &factor));
+  PetscCall(FactorOfPC(pc, &factor));
   if (factor)
     PetscCall(FactorSolveColumns(factor, B, X));
   else {

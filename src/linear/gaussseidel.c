@@ -1,7 +1,6 @@
 #include <float.h>
 #include "gaussseidel.h"
 #include "blockrows.h"
-#include "shell.h"
 
 /* A pivot that is this small beside the block's diagonal is what rounding to single precision has left of nothing. */
 #define SWEEP_PIVOT FLT_EPSILON
@@ -343,11 +342,13 @@ PetscErrorCode GaussSeidelGetMat(PC pc, Mat *mat)
   GaussSeidel g;
   Mat         A;
   PetscInt    n, all;
+  PetscBool   ours; /* after GaussSeidelSet() a shell is ours: options can only put another type in its place */
 
   PetscFunctionBeginUser;
   *mat = NULL;
-  PetscCall(ShellFind(pc, GAUSSSEIDEL_NAME, &g));
-  if (!g) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscObjectTypeCompare((PetscObject)pc, PCSHELL, &ours));
+  if (!ours) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PCShellGetContext(pc, &g));
   PetscCall(PCGetOperators(pc, NULL, &A));
   PetscCall(MatGetLocalSize(A, &n, NULL));
   PetscCall(MatGetSize(A, &all, NULL));

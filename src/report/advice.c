@@ -1,30 +1,32 @@
+/* Rules that turn the figures of a run into advice, see advice.h. */
 #include "advice.h"
 
 /* Penetrations and surface errors below this part of a face size are small whatever they are compared with. */
 #define ADVICE_SMALL 1e-3
-/* The facets' own error hides what contact resolves when it is this many penetrations. */
+/* The facets' own error hides what contact resolves if it is this many penetrations. */
 #define ADVICE_FACETS 10
-/* Part of the slave points that may stand on the lower rungs: free ends and corners of a surface put some there. */
+/* Part of the slave points that may be on the lower rungs. Free ends and corners of a surface put some points there. */
 #define ADVICE_FALL_BACKS 0.1
-/* Parts of the steps that may fail or be taken back, and re-gathered lists for each step, before another step size is
- * cheaper. */
+/* Parts of the steps that may fail or be taken back, and lists made anew for each step, before another step size is
+   cheaper. */
 #define ADVICE_FAILED     0.25
 #define ADVICE_REPEATED   0.5
 #define ADVICE_REGATHERED 1
-/* Iterations of an accepted step above which it is too long, part of them that the line search may shorten: Newton's
- * method far from its end. */
+/* Iterations of an accepted step above which the step is too long, and the part of them that the line search may
+   shorten. Above these Newton's method works far from its end. */
 #define ADVICE_ITERATIONS 12
 #define ADVICE_CUTS       0.34
-/* Part of the time that writing may take, in a run long enough to care (s). */
+/* Part of the time that writing may take, in a run that is long enough to matter (s). */
 #define ADVICE_OUTPUT   0.3
 #define ADVICE_OUTPUT_S 10
-/* The same of the direct solver, where the BLAS uses kernels for a lesser processor. The iterative one takes a
- * twentieth longer by them. */
+/* Part of the time that the direct solver may take where the BLAS uses kernels for an older processor, in a run that
+   is long enough to matter (s). The iterative solver takes a twentieth longer with such kernels. */
 #define ADVICE_SOLVER   0.3
 #define ADVICE_SOLVER_S 10
 
-typedef int (*RunRuleFn)(const RunFigures *, char *text); /* 1: applies, text[ADVICE_TEXT] says what to do */
-typedef int (*PairRuleFn)(const RunFigures *, const PairFigures *, char *text); /* the same for a pair */
+/* A rule writes into text[ADVICE_TEXT] what to do and returns 1 if it applies, else 0: for the run, and for a pair. */
+typedef int (*RunRuleFn)(const RunFigures *, char *text);
+typedef int (*PairRuleFn)(const RunFigures *, const PairFigures *, char *text);
 
 /* ---------- pairs ---------- */
 
@@ -187,7 +189,16 @@ static int KernelsAreOld(const RunFigures *figures, char *text)
 static const RunRuleFn run_rules[] = {StepsFail,    StepsRepeat,  NeighbourListsAreRemade, StepsAreLong, LineSearchCuts,
                                       OutputIsSlow, KernelsAreOld};
 
-/* AdviceGive - one line for each figure that is bad and can be helped. Not collective. */
+/*@
+  AdviceGive - passes on one line for each figure of a run that is bad and can be improved.
+
+  Not collective
+
+  Input Parameters:
++ figures - of the run
+. print   - called for each line
+- context - passed on to print
+@*/
 void AdviceGive(const RunFigures *figures, AdvicePrintFn print, void *context)
 {
   char text[ADVICE_TEXT];
@@ -199,8 +210,17 @@ void AdviceGive(const RunFigures *figures, AdvicePrintFn print, void *context)
     if (run_rules[r](figures, text)) print(text, context);
 }
 
-/* AdviceForFailure - what helps most often after each kind of failed solve; "" where there is nothing to try. Not
- * collective. */
+/*@
+  AdviceForFailure - returns what helps most often after each kind of failed solve.
+
+  Not collective
+
+  Input Parameter:
+. result - how the solve ended
+
+  Note:
+  The text is empty where there is nothing to try.
+@*/
 const char *AdviceForFailure(SolveResult result)
 {
   static const char *const tries[] = {

@@ -1,3 +1,4 @@
+/* What -check says of the contact pairs, see contactreport.h. */
 #include "contactreport.h"
 
 /* Errors below this part of a face size are round-off. */
@@ -63,10 +64,16 @@ static void PrintPenalty(const SceneContact *scene, PetscReal penalty, FILE *fil
             scene->window_in_spacings ? "face sizes of the slave node" : "(lengths)", scene->max_updates);
 }
 
-/* ContactReport - one block of lines for each pair: surfaces, penalty, gaps and overlaps, errors of the master's
-   surface, fits.
+/*@
+  ContactReport - prints one block of lines for each pair: surfaces, penalty, gaps and overlaps, errors of the master's
+  surface, fits.
 
-   Collective; rank 0 prints. In the state before any load. */
+  Collective
+
+  Input Parameters:
++ contact - in the state before any load
+- file    - of rank 0, which prints
+@*/
 PetscErrorCode ContactReport(Contact contact, FILE *file)
 {
   PetscFunctionBeginUser;

@@ -1,8 +1,9 @@
+/* The last screen of a run, see endreport.h. */
 #include "endreport.h"
 #include "advice.h"
 #include <math.h>
 
-/* Purposes of the time, as the screen calls them */
+/* Names of the purposes that time is spent on */
 static const char *const purposes[TIMING_KINDS] = {[TIMING_SETUP]            = "set-up",
                                                    [TIMING_SEARCH]           = "search",
                                                    [TIMING_FIT]              = "fits",
@@ -47,7 +48,7 @@ static void PrintPair(const PairFigures *pair, FILE *stream)
   fprintf(stream, "\n");
 }
 
-/* One guard that acted: separator before all but the first */
+/* Prints one guard that acted, with a separator before all but the first one. */
 static void PrintGuard(FILE *stream, int *n, long long times, const char *what)
 {
   if (!times) return;
@@ -107,8 +108,18 @@ static void PrintAdvice(const char *line, void *stream)
   fprintf(stream, "advice   %s\n", line);
 }
 
-/* EndReportPrint - the last screen but for probes and the closing line. Contact: of the last accepted state. Not
- * collective. */
+/*@
+  EndReportPrint - prints the last screen of a run but for probes and the closing line.
+
+  Not collective
+
+  Input Parameters:
++ figures - of the run; contact is that of the last accepted state
+- stream  - where to
+
+  Note:
+  For one rank.
+@*/
 void EndReportPrint(const RunFigures *figures, FILE *stream)
 {
   const StepperReport *way = figures->run->way;

@@ -1,25 +1,28 @@
+/* What a solve will cost, see estimate.h. */
 #include "estimate.h"
 #include "linear/directsolver.h"
 #include <sys/resource.h>
 #include <time.h>
 
-/* Order of the matrices that measure what the BLAS does, and for how long: fits a level-2 cache, like the blocks of a
- * front. */
+/* Order of the matrices whose product measures the BLAS. They fit into a level-2 cache, like the blocks of a front. */
 enum { ESTIMATE_ORDER = 128 };
+/* CPU time for which products are computed (s). */
 #define ESTIMATE_PRODUCT_S 0.01
-/* MUMPS's speed in large fronts, as a part of that; what each entry of a factor costs however large the fronts
-   (assembly of fronts, the two triangular solves); and what a factorisation costs at least, sharing out the matrix.
-   Chosen on pipe_pinch, cup_flattening and ring_in_ring_3d, whose CPU time an iteration they give to a quarter, their
-   memory to 30 %. */
+/* The next three constants were chosen on three 3D scenes: a thin pipe, a cup and thick rings. With them the estimate
+   of the CPU time of an iteration is right to a quarter, and that of the memory to 30 %. */
+/* Speed of MUMPS in large fronts, as a part of the speed of the product. */
 #define ESTIMATE_EFFICIENCY 0.6
-#define ESTIMATE_ENTRY_S    2.5e-8
-#define ESTIMATE_CALL_S     3e-3
-/* What evaluating residuals and energies adds to an iteration, in assemblies of the tangent. */
+/* CPU time for each entry of a factor, however large the fronts: assembly of fronts, the two triangular solves (s). */
+#define ESTIMATE_ENTRY_S 2.5e-8
+/* Least CPU time of a factorisation, in which the matrix is shared out (s). */
+#define ESTIMATE_CALL_S 3e-3
+/* Time that evaluating residuals and energies adds to an iteration, in assemblies of the tangent. */
 #define ESTIMATE_RESIDUALS 1
-/* Iterations of a load step, for the time of one: what the scenes in runs/ take with the default control. */
+/* Iterations of a load step, for the time of a step. The scenes in runs/ take so many with the default control. */
 #define ESTIMATE_ITERATIONS 5
 
-/* Of this process, its threads together; PetscGetCPUTime() counts clock ticks as microseconds on some systems */
+/* Returns the CPU time of this process, all its threads together. PetscGetCPUTime() counts clock ticks as microseconds
+   on some systems. */
 static double CpuSeconds(void)
 {
   struct timespec now;
@@ -28,8 +31,8 @@ static double CpuSeconds(void)
   return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
 }
 
-/* Operations per second of one core, all ranks at work; the slowest rank's. By dense matrices of PETSc, which has the
- * BLAS. */
+/* Measures the operations per second of one core while all ranks work, and takes the slowest rank's. It multiplies
+   dense matrices of PETSc, which calls the BLAS. */
 static PetscErrorCode MeasureProduct(MPI_Comm comm, PetscReal *rate)
 {
   const PetscInt n = ESTIMATE_ORDER;
@@ -40,7 +43,8 @@ static PetscErrorCode MeasureProduct(MPI_Comm comm, PetscReal *rate)
   PetscFunctionBeginUser;
   PetscCall(MatCreateSeqDense(PETSC_COMM_SELF, n, n, NULL, &a));
   PetscCall(MatShift(a, 1));
-  PetscCall(MatMatMult(a, a, MAT_INITIAL_MATRIX, 1, &c)); /* wakes the library up */
+  PetscCall(
+    MatMatMult(a, a, MAT_INITIAL_MATRIX, 1, &c)); /* the first call initialises the library and is not measured */
   start = CpuSeconds();
   do {
     PetscCall(MatMatMult(a, a, MAT_REUSE_MATRIX, 1, &c));
@@ -54,7 +58,8 @@ static PetscErrorCode MeasureProduct(MPI_Comm comm, PetscReal *rate)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* CPU seconds of one tangent, the slowest rank's; the first one makes patterns and does not count */
+/* Measures the CPU seconds of one tangent on the slowest rank. A first tangent, which makes patterns, does not count.
+ */
 static PetscErrorCode MeasureAssembly(Model model, PetscReal *seconds)
 {
   double start, end;
@@ -69,7 +74,7 @@ static PetscErrorCode MeasureAssembly(Model model, PetscReal *seconds)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* MUMPS's analysis of the tangent */
+/* Takes the figures of MUMPS's analysis of the tangent. */
 static PetscErrorCode AnalyseFactor(Model model, Factor factor, Estimate *estimate)
 {
   const double   start = CpuSeconds();
@@ -90,7 +95,7 @@ static PetscErrorCode AnalyseFactor(Model model, Factor factor, Estimate *estima
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* What the process holds now, largest rank and all ranks, in MB */
+/* Gives what the process holds now, on the largest rank and on all ranks (MB). */
 static PetscErrorCode MeasureMemory(MPI_Comm comm, PetscReal mb[2])
 {
   struct rusage self;
@@ -103,15 +108,22 @@ static PetscErrorCode MeasureMemory(MPI_Comm comm, PetscReal mb[2])
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*
-  EstimateModel - what one Newton iteration of the model will take, on these ranks and this machine
+/*@
+  EstimateModel - estimates what one Newton iteration of the model takes, on these ranks and this machine.
 
-  Collective, after ModelPlace(). The tangent of that state is left in the model's.
+  Collective
+
+  Input Parameter:
+. model - after ModelPlace()
+
+  Output Parameter:
+. estimate - memory and time
 
   Note:
-  Operations over the speed of a matrix product, entries of the factor times a constant, and the assembly as measured:
-  good to about a factor of two.
-*/
+  The time is the operations over the speed of a matrix product, plus the entries of the factor times a constant, plus
+  the assembly as measured: good to about a factor of two. The tangent of the present state is left in the model's
+  matrix.
+@*/
 PetscErrorCode EstimateModel(Model model, Estimate *estimate)
 {
   const MPI_Comm comm = model->mesh->comm;
@@ -142,7 +154,15 @@ PetscErrorCode EstimateModel(Model model, Estimate *estimate)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* EstimatePrint - Collective; rank 0 prints. */
+/*@
+  EstimatePrint - prints the estimate in three lines.
+
+  Collective
+
+  Input Parameters:
++ model  - after ModelPlace()
+- stream - of rank 0, which prints
+@*/
 PetscErrorCode EstimatePrint(Model model, FILE *stream)
 {
   Estimate    estimate;

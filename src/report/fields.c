@@ -1,10 +1,11 @@
+/* The states of a run in results.h5, see fields.h. */
 #include "fields.h"
 #include "files/fileimage.h"
 #include "files/hdf5table.h"
 #include "xdmf.h"
 #include <math.h>
 
-enum { EXTRAPOLATION_SIZE = 512 };
+enum { DATASET_PATH_SIZE = 512 /* characters of a path in results.h5 */ };
 
 struct _n_Fields {
   Model      model;
@@ -19,7 +20,7 @@ struct _n_Fields {
   PetscReal *t;     /* of the written steps */
   PetscInt  *shows; /* what they hold: bits by kind; a restart may change it */
   Xdmf       xdmf;  /* what they show */
-  char      *image; /* rank 0: of the file, between loading and FieldsResume() */
+  char      *image; /* rank 0: image of the file, between loading and FieldsResume() */
 };
 
 /* What output.fields may ask for, and what ParaView sees of it */
@@ -58,7 +59,7 @@ static const struct {
 };
 #define COUNT(array) ((int)(sizeof(array) / sizeof((array)[0])))
 
-/* A scalar, or n > 1 values */
+/* Writes an attribute: a scalar, or n > 1 values. */
 static PetscErrorCode FileWriteAttribute(hid_t object, const char *name, hid_t type, int n, const void *value)
 {
   const hsize_t size = (hsize_t)n;
@@ -82,7 +83,7 @@ static PetscBool FieldsShows(Fields fields, int kind)
   }
 }
 
-/* The file is opened for one step at a time: a run that is killed between two steps leaves a closed file. */
+/* Opens the file for one step. A run that is killed between two steps then leaves a closed file. */
 static PetscErrorCode FieldsOpenFile(Fields fields, hid_t *file)
 {
   PetscFunctionBeginUser;
@@ -108,8 +109,8 @@ static PetscErrorCode FieldsWriteNodes(Fields fields, hid_t file)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The row of every local cell in the table of its type, by body and then cell_id. All ranks count their part of the
- * cell_ids by body and type. */
+/* Gives the row of every local cell in the table of its type, by body and then cell_id. Each rank counts its part of
+   the cell_ids by body and type. */
 static PetscErrorCode FieldsNumberCells(Fields fields, PetscInt *row)
 {
   const Mesh mesh   = fields->model->mesh;
@@ -148,8 +149,8 @@ static PetscErrorCode FieldsNumberCells(Fields fields, PetscInt *row)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Rows first .. first+total-1 of the cells of a type as a table of their nodes at `path` and, where asked for, one of
- * their bodies at `body_path` */
+/* Writes rows first to first + total - 1 of the cells of a type: a table of their nodes at `path` and, unless
+   body_path is NULL, one of their bodies there. */
 static PetscErrorCode FieldsWriteCellTable(Fields fields, hid_t file, ElementType type, const PetscInt *cell_row,
                                            PetscInt first, PetscInt total, const char *path, const char *body_path)
 {
@@ -181,7 +182,7 @@ static PetscErrorCode FieldsWriteCells(Fields fields, hid_t file)
 {
   const Xdmf *xdmf = &fields->xdmf;
   PetscInt   *row;
-  char        path[EXTRAPOLATION_SIZE], body_path[EXTRAPOLATION_SIZE];
+  char        path[DATASET_PATH_SIZE], body_path[DATASET_PATH_SIZE];
 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(fields->model->mesh->n_cells, &row));
@@ -201,7 +202,7 @@ static PetscErrorCode FieldsWriteCells(Fields fields, hid_t file)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The rows of the pairs' slave nodes, ascending by id. */
+/* Numbers the rows of the pairs' slave nodes, ascending by id. */
 static PetscErrorCode FieldsListSlaveNodes(Fields fields)
 {
   const Mesh   mesh = fields->model->mesh;
@@ -224,7 +225,7 @@ static PetscErrorCode FieldsWriteSlaveNodes(Fields fields, hid_t file)
 {
   ContactNodes slaves;
   int64_t     *ids;
-  char         path[EXTRAPOLATION_SIZE];
+  char         path[DATASET_PATH_SIZE];
 
   PetscFunctionBeginUser;
   PetscCall(FieldsListSlaveNodes(fields));
@@ -239,7 +240,7 @@ static PetscErrorCode FieldsWriteSlaveNodes(Fields fields, hid_t file)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Everything that does not change from step to step */
+/* Writes everything that does not change from step to step. */
 static PetscErrorCode FieldsWriteMesh(Fields fields, hid_t file)
 {
   PetscFunctionBeginUser;
@@ -248,13 +249,13 @@ static PetscErrorCode FieldsWriteMesh(Fields fields, hid_t file)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Columns first .. first+width-1 of a nodal array (stride columns, local nodes) as one dataset */
+/* Writes columns first to first + width - 1 of a nodal array (of local nodes, `stride` columns) as one dataset. */
 static PetscErrorCode FieldsWriteNodal(Fields fields, hid_t file, const char *name, const PetscReal *values, int stride,
                                        int first, int width)
 {
   const PetscInt n = fields->model->mesh->n_owned;
   PetscReal     *items;
-  char           path[EXTRAPOLATION_SIZE];
+  char           path[DATASET_PATH_SIZE];
 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(n * width, &items));
@@ -306,7 +307,7 @@ static PetscErrorCode FieldsWriteStress(Fields fields, hid_t file)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Where an analytic master is at this step: no mesh shows it */
+/* Writes the place of an analytic master at this step, as no mesh shows it. */
 static PetscErrorCode FieldsWriteMaster(Fields fields, hid_t file, int pair)
 {
   static const char *const names[] =
@@ -316,7 +317,7 @@ static PetscErrorCode FieldsWriteMaster(Fields fields, hid_t file, int pair)
   const double           t       = (double)fields->model->t;
   double                 values[7]; /* point, then axis or normal, then radius */
   int                    n = 3;
-  char                   path[EXTRAPOLATION_SIZE];
+  char                   path[DATASET_PATH_SIZE];
   hid_t                  group;
 
   PetscFunctionBeginUser;
@@ -334,13 +335,13 @@ static PetscErrorCode FieldsWriteMaster(Fields fields, hid_t file, int pair)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* One pair's tables; its values also go to the nodal array (COLUMNS per local node, owned nodes only). Where pairs
-   share a slave node the larger pressure counts. */
+/* Writes the tables of one pair. Its values also go to the nodal array (COLUMNS per local node, owned nodes only),
+   where the larger pressure counts if pairs share a slave node. */
 static PetscErrorCode FieldsWritePair(Fields fields, hid_t file, int pair, PetscReal *nodal)
 {
   ContactNodes slaves;
   PetscReal   *values, *items;
-  char         path[EXTRAPOLATION_SIZE];
+  char         path[DATASET_PATH_SIZE];
 
   PetscFunctionBeginUser;
   PetscCall(ContactGetNodes(fields->model->contact, pair, fields->model->u, &slaves));
@@ -370,8 +371,9 @@ static PetscErrorCode FieldsWritePair(Fields fields, hid_t file, int pair, Petsc
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Corners of a slave surface's second-order triangles carry no area, so they have no contact values of their own: for
-   the eye they get the mean of the mid-side nodes beside them. nodal: complete on every copy of a node. */
+/* Fills in the corners of a slave surface's second-order triangles. They carry no area and so have no contact values
+   of their own. For display they get the mean of the mid-side nodes beside them. nodal is complete on every copy of a
+   node. */
 static PetscErrorCode FieldsFillCorners(Fields fields, int pair, const PetscReal *nodal, PetscReal *fill)
 {
   const Mesh       mesh = fields->model->mesh;
@@ -428,7 +430,7 @@ static PetscErrorCode FieldsWriteContact(Fields fields, hid_t file)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The kinds that a step written now holds, as bits */
+/* Returns the kinds that a step written now holds, as bits. */
 static PetscInt FieldsShown(Fields fields)
 {
   PetscInt shows = 0;
@@ -437,7 +439,7 @@ static PetscInt FieldsShown(Fields fields)
   return shows;
 }
 
-/* Does some written step hold contact fields? */
+/* Tells whether some written step holds contact fields. */
 static PetscBool FieldsHoldContact(Fields fields)
 {
   for (PetscInt s = 0; s < fields->n_written; s++)
@@ -461,7 +463,7 @@ static PetscErrorCode FieldsRemember(Fields fields, PetscReal t)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* What the text will show; cells are numbered when the file is made. */
+/* Prepares what the text will show. Cells are numbered when the file is made. */
 static PetscErrorCode FieldsPrepareXdmf(Fields fields)
 {
   Xdmf *xdmf = &fields->xdmf;
@@ -475,12 +477,19 @@ static PetscErrorCode FieldsPrepareXdmf(Fields fields)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*
-  FieldsCreate - Prepares results.h5 and results.xdmf in a directory; no file is touched yet. Collective.
+/*@
+  FieldsCreate - prepares results.h5 and results.xdmf in a directory; no file is touched yet.
 
-  Input: model (its elasticity, contact and displacements are read at each write), scene (output.fields chooses),
-  directory (must exist at the first write).
-*/
+  Collective
+
+  Input Parameters:
++ model     - its elasticity, contact and displacements are read at each write
+. scene     - output.fields chooses what is written
+- directory - must exist at the first write
+
+  Output Parameter:
+. result - free it with FieldsDestroy()
+@*/
 PetscErrorCode FieldsCreate(Model model, Scene scene, const char *directory, Fields *result)
 {
   const Mesh  mesh = model->mesh;
@@ -511,7 +520,14 @@ PetscErrorCode FieldsCreate(Model model, Scene scene, const char *directory, Fie
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* FieldsDestroy - Frees the fields; the files stay. Collective. */
+/*@
+  FieldsDestroy - frees the fields; the files stay.
+
+  Collective
+
+  Input Parameter:
+. fields - set to NULL
+@*/
 PetscErrorCode FieldsDestroy(Fields *fields)
 {
   PetscFunctionBeginUser;
@@ -528,16 +544,24 @@ PetscErrorCode FieldsDestroy(Fields *fields)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*
-  FieldsWrite - Adds the model's present state to results.h5 and writes results.xdmf anew. Collective.
+/*@
+  FieldsWrite - adds the model's present state to results.h5 and writes results.xdmf anew.
 
-  Input: step (number of the accepted step), t (load parameter). Errors: PETSC_ERR_FILE_OPEN, PETSC_ERR_FILE_WRITE.
-*/
+  Collective
+
+  Input Parameters:
++ fields - the fields
+. step   - number of the accepted step
+- t      - load parameter
+
+  Note:
+  Errors: PETSC_ERR_FILE_OPEN, PETSC_ERR_FILE_WRITE.
+@*/
 PetscErrorCode FieldsWrite(Fields fields, PetscInt step, PetscReal t)
 {
   const int64_t number = step;
   PetscMPIInt   rank;
-  char          path[EXTRAPOLATION_SIZE];
+  char          path[DATASET_PATH_SIZE];
   hid_t         file, group;
 
   PetscFunctionBeginUser;
@@ -563,9 +587,18 @@ PetscErrorCode FieldsWrite(Fields fields, PetscInt step, PetscReal t)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*
-  FieldsArchive - Saves or takes over which states are written, with an image of the file that holds them. Collective.
-*/
+/*@
+  FieldsArchive - saves or takes over which states are written, with an image of the file that holds them.
+
+  Collective
+
+  Input Parameters:
++ fields  - the fields
+- archive - the checkpoint
+
+  Note:
+  Loading touches no file: FieldsResume() does.
+@*/
 PetscErrorCode FieldsArchive(Fields fields, Archive archive)
 {
   PetscInt    n     = fields->n_written;
@@ -598,10 +631,20 @@ PetscErrorCode FieldsArchive(Fields fields, Archive archive)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*
-  FieldsResume - Brings results.h5 and results.xdmf back to the states of the loaded checkpoint. Collective. Errors:
-  PETSC_ERR_FILE_WRITE.
-*/
+/*@
+  FieldsResume - takes results.h5 and results.xdmf back to the states of the loaded checkpoint.
+
+  Collective
+
+  Input Parameter:
+. fields - the fields, after FieldsArchive() has loaded them
+
+  Output Parameter:
+. lost - the file is gone; a new one begins with the next state
+
+  Note:
+  What was written after the checkpoint, whole or in part, is removed. Errors: PETSC_ERR_FILE_WRITE.
+@*/
 PetscErrorCode FieldsResume(Fields fields, PetscBool *lost)
 {
   const Mesh  mesh = fields->model->mesh;
@@ -623,7 +666,7 @@ PetscErrorCode FieldsResume(Fields fields, PetscBool *lost)
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   PetscCall(PetscMalloc1(mesh->n_cells, &row));
-  PetscCall(FieldsNumberCells(fields, row)); /* the blocks that the text shows */
+  PetscCall(FieldsNumberCells(fields, row)); /* for the blocks that the text shows */
   PetscCall(PetscFree(row));
   PetscCall(FieldsListSlaveNodes(fields));
   if (rank == 0) PetscCall(XdmfWrite(&fields->xdmf, fields->directory));

@@ -1,3 +1,4 @@
+/* What is looked at before anything is solved, see precheck.h. */
 #include "report/precheck.h"
 #include "contactreport.h"
 #include "estimate.h"
@@ -17,19 +18,19 @@ static PetscErrorCode PrintEffects(Model model, FILE *stream)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*
-  PrecheckModel - looks for what makes a scene fail before anything is solved
+/*@
+  PrecheckModel - looks for what makes a scene fail before anything is solved.
 
   Collective
 
   Input Parameters:
-+ model  - after ModelPlace(), before ModelSetUp(), which refuses initial overlaps: they are reported here first
++ model  - after ModelPlace() and before ModelSetUp(), which refuses initial overlaps: they are reported here first
 . report - print what was found: dofs, effects, rigid motions, contact pairs, cost
-- stream - of rank 0
+- stream - of rank 0, which prints
 
   Note:
-  Refuses (exit 1) a body that nothing can hold, FreeModesRefuse().
-*/
+  It refuses (exit 1) a body that nothing can hold, see FreeModesRefuse().
+@*/
 PetscErrorCode PrecheckModel(Model model, PetscBool report, FILE *stream)
 {
   FreeModes      modes;
@@ -49,7 +50,15 @@ PetscErrorCode PrecheckModel(Model model, PetscBool report, FILE *stream)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* PrecheckMotions - prints the rigid motions that supports leave to the bodies, if any. Collective; rank 0 prints. */
+/*@
+  PrecheckMotions - prints the rigid motions that supports leave to the bodies, if there are any.
+
+  Collective
+
+  Input Parameters:
++ model  - after ModelPlace()
+- stream - of rank 0, which prints
+@*/
 PetscErrorCode PrecheckMotions(Model model, FILE *stream)
 {
   FreeModes modes;

@@ -1,3 +1,4 @@
+/* The scalars that a scene asks for, see probe.h. */
 #include "report/probe.h"
 #include "contact/contactedge.h"
 #include "search/freeedge.h"
@@ -7,15 +8,15 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* A probe's point is a node's reference coordinate to within this part of the model's size: what hand-written scene
- * files can be expected to meet. */
+/* A probe's point is at a node if it is within this part of the model's size from it: scene files that are written by
+   hand can be expected to meet this. */
 static const PetscReal POINT_TOLERANCE = 1e-6;
-/* A node n face sizes from an edge counts as within n of it, whatever the rounding of the mesh generator, as part of a
- * face size. */
+/* A node that is n face sizes from an edge counts as within n of it, whatever the rounding of the mesh generator: this
+   part of a face size is allowed beyond n. */
 static const PetscReal RING_TOLERANCE = 1e-6;
-enum { MESSAGE_SIZE = 2048 };
+enum { MESSAGE_SIZE = 2048 /* characters of a list of bodies in a refusal */ };
 
-/* Slave nodes of a pair, by node_id */
+/* Columns of the table of a pair's slave nodes, which is sorted by node_id */
 enum {
   SLAVE_ID,
   SLAVE_REFERENCE,
@@ -54,7 +55,7 @@ typedef struct {
   PetscErrorCode (*evaluate)(Probes, Probe *, PetscReal *);
 } ProbeType;
 
-/* "(1, 2, 3)" of dim coordinates; text belongs to the caller */
+/* Writes dim coordinates as "(1, 2, 3)". The text belongs to the caller. */
 static const char *PointText(int dim, const PetscReal *x, char text[128])
 {
   if (dim == 3)
@@ -64,7 +65,8 @@ static const char *PointText(int dim, const PetscReal *x, char text[128])
   return text;
 }
 
-/* Values that one rank knows of a node, on all ranks. local: the node on its owner, else -1. Collective. */
+/* Gives all ranks the values that one rank knows of a node. local is the node on its owner, and -1 elsewhere.
+   Collective. */
 static PetscErrorCode ProbesShare(Probes probes, PetscInt local, int n, const PetscReal *mine, PetscReal *shared)
 {
   PetscFunctionBeginUser;
@@ -73,7 +75,7 @@ static PetscErrorCode ProbesShare(Probes probes, PetscInt local, int n, const Pe
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The local node of a node_id where this rank owns it, else -1 */
+/* Gives the local node of a node_id on the rank that owns it, -1 elsewhere. */
 static PetscErrorCode ProbesLocalNode(Probes probes, PetscInt id, PetscInt *local)
 {
   const Mesh  mesh = probes->model->mesh;
@@ -87,7 +89,8 @@ static PetscErrorCode ProbesLocalNode(Probes probes, PetscInt id, PetscInt *loca
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Index of the body that a probe names, -1 if it names none. The scene has made sure that there is one. */
+/* Returns the index of the body that a probe names, -1 if it names none. The scene has made sure that there is such a
+   body. */
 static int ProbesFindBody(Probes probes, const Probe *probe)
 {
   for (int b = 0; probe->scene->body && b < probes->scene->n_bodies; b++)
@@ -95,14 +98,15 @@ static int ProbesFindBody(Probes probes, const Probe *probe)
   return -1;
 }
 
-/* What this rank, then all ranks, know of the nodes around a point */
+/* What this rank, and then all ranks, know of the nodes around a point */
 typedef struct {
   PetscReal distance; /* of the nearest node */
   PetscInt  nearest;  /* its node_id; the smallest where several are as near */
   PetscInt  id;       /* smallest node_id within the tolerance */
 } Nearby;
 
-/* Looks through the local nodes (of a group, or all), of one body or any (-1); at[body] counts nodes at the point. */
+/* Looks through the local nodes (of a group, or all), of one body or any (-1), for those near a point. at[body] tells
+   which bodies have a node at the point. */
 static void ProbesLookAround(Probes probes, const PetscReal point[3], const MeshGroup *within, int body, Nearby *nearby,
                              PetscInt *at)
 {
@@ -128,7 +132,7 @@ static void ProbesLookAround(Probes probes, const PetscReal point[3], const Mesh
   }
 }
 
-/* No node at the point: names the nearest one. Returns REFUSED. Collective. */
+/* Refuses a point without a node and names the nearest one. Returns REFUSED. Collective. */
 static PetscErrorCode ProbesRefusePoint(Probes probes, const Probe *probe, const char *key, const PetscReal point[3],
                                         const Nearby *nearby)
 {
@@ -153,7 +157,8 @@ static PetscErrorCode ProbesRefusePoint(Probes probes, const Probe *probe, const
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Two bodies have a node at the point and the scene does not say which is meant. Returns REFUSED. Collective. */
+/* Refuses a point at which two bodies have a node if the scene does not say which is meant. Returns REFUSED.
+   Collective. */
 static PetscErrorCode ProbesRefuseBodies(Probes probes, const Probe *probe, const char *key, const PetscReal point[3],
                                          const PetscInt *at)
 {
@@ -171,8 +176,8 @@ static PetscErrorCode ProbesRefuseBodies(Probes probes, const Probe *probe, cons
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The node at point number `which` of a probe, of all nodes or of a group's. Refuses a point without node and one where
- * the body is left open. Collective. */
+/* Finds the node at point number `which` of a probe, among all nodes or those of a group. Refuses a point without a
+   node and one where the body is left open. Collective. */
 static PetscErrorCode ProbesFindNode(Probes probes, Probe *probe, const char *key, int which, const MeshGroup *within)
 {
   const MPI_Comm   comm  = probes->model->mesh->comm;
@@ -203,7 +208,7 @@ static PetscErrorCode ProbesFindNode(Probes probes, Probe *probe, const char *ke
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Is a reference coordinate the one that `at` asks for? */
+/* Tells whether a reference coordinate is the one that `at` asks for. */
 static PetscBool ProbeIsAt(Probes probes, const Probe *probe, PetscReal coordinate)
 {
   const PetscReal distance = PetscAbsReal(coordinate - probe->scene->at_value);
@@ -211,7 +216,7 @@ static PetscBool ProbeIsAt(Probes probes, const Probe *probe, PetscReal coordina
   return distance <= POINT_TOLERANCE * probes->model->mesh->size ? PETSC_TRUE : PETSC_FALSE;
 }
 
-/* Refuses a value of `at` that no slave node has: names the nearest one. Collective. */
+/* Refuses a value of `at` that no slave node has, and names the nearest one. Collective. */
 static PetscErrorCode ProbesCheckAt(Probes probes, const Probe *probe)
 {
   const Mesh      mesh     = probes->model->mesh;
@@ -239,7 +244,7 @@ static PetscErrorCode ProbesCheckAt(Probes probes, const Probe *probe)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The slave nodes that carry area, of the present state. Collective. */
+/* Gives the slave nodes that carry area in the present state. Collective. */
 static PetscErrorCode ProbesGetSlaves(Probes probes, int pair, const GatherTable **table)
 {
   const Model  model = probes->model;
@@ -269,7 +274,7 @@ static PetscErrorCode ProbesGetSlaves(Probes probes, int pair, const GatherTable
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Does the probe keep this slave node? */
+/* Tells whether the probe counts a slave node. */
 static PetscBool ProbeKeeps(const Probe *probe, const PetscReal *slave)
 {
   PetscBool near;
@@ -344,8 +349,8 @@ static PetscErrorCode EvaluateGap(Probes probes, Probe *probe, PetscReal *value)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Where the slave surface ends along a contact edge's axis, min and max, on the line of nodes that `at` picks.
- * Collective. */
+/* Finds where the slave surface ends along a contact edge's axis, min and max, on the line of nodes that `at` picks.
+   Collective. */
 static PetscErrorCode ProbesLineEnds(Probes probes, const Probe *probe, PetscReal ends[2])
 {
   const Mesh        mesh  = probes->model->mesh;
@@ -368,8 +373,9 @@ static PetscErrorCode ProbesLineEnds(Probes probes, const Probe *probe, PetscRea
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Second-order nodes at the end of the line may carry no area (corners of triangles, the node on the axis of
-   revolution): they have no pressure of their own and go with the last node that has one. */
+/* Finds the end of the contact zone along an axis. Second-order nodes at the end of the line may carry no area
+   (corners of triangles, the node on the axis of revolution). They have no pressure of their own, and get that of the
+   last node that has one. */
 static PetscErrorCode EvaluateContactEdge(Probes probes, Probe *probe, PetscReal *value)
 {
   const GatherTable *slaves;
@@ -428,8 +434,8 @@ static PetscErrorCode EvaluatePressureMax(Probes probes, Probe *probe, PetscReal
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Area-weighted mean pressure over the slave nodes that the probe keeps, and their area; NaN without contact or without
- * a node */
+/* Returns the area-weighted mean pressure over the slave nodes that the probe counts, and their area. NaN without
+   contact or without a node. */
 static PetscReal MeanPressure(const Probe *probe, const GatherTable *slaves, PetscReal *area)
 {
   PetscReal force = 0.0;
@@ -514,7 +520,7 @@ static PetscErrorCode ProbesPrepare(Probes probes, Probe *probe)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The body of every local node, by its cells: bodies share no nodes */
+/* Finds the body of every local node by its cells. Bodies share no nodes. */
 static PetscErrorCode ProbesFindNodeBodies(Probes probes)
 {
   const Mesh mesh = probes->model->mesh;
@@ -528,12 +534,22 @@ static PetscErrorCode ProbesFindNodeBodies(Probes probes)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*
-  ProbesCreate - Resolves the scene's probes in a model. Collective.
+/*@
+  ProbesCreate - resolves the scene's probes in a model.
 
-  Input: model (with its mesh and contact), scene. Errors: refuses (exit 1) surfaces, pairs and volumes that do not
-  exist, points without a node and points where several bodies have one and none is named.
-*/
+  Collective
+
+  Input Parameters:
++ model - with its mesh and contact
+- scene - of the model
+
+  Output Parameter:
+. result - free it with ProbesDestroy()
+
+  Note:
+  It refuses (exit 1) surfaces, pairs and volumes that do not exist, points without a node (naming the nearest node),
+  and points where several bodies have a node and none is named.
+@*/
 PetscErrorCode ProbesCreate(Model model, Scene scene, Probes *result)
 {
   Probes probes;
@@ -554,7 +570,14 @@ PetscErrorCode ProbesCreate(Model model, Scene scene, Probes *result)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ProbesDestroy - Frees the probes. Not collective. */
+/*@
+  ProbesDestroy - frees the probes.
+
+  Not collective
+
+  Input Parameter:
+. probes - set to NULL
+@*/
 PetscErrorCode ProbesDestroy(Probes *probes)
 {
   PetscFunctionBeginUser;
@@ -567,13 +590,21 @@ PetscErrorCode ProbesDestroy(Probes *probes)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*
-  ProbesEvaluate - Values of all probes in the model's present state, the same on all ranks and on any number of them.
-  Collective.
+/*@
+  ProbesEvaluate - evaluates all probes in the model's present state.
 
-  Output: values[scene->n_probes]: forces, lengths, pressures or per cent by kind, after `absolute` and `factor`; NaN
-  where there is no value.
-*/
+  Collective
+
+  Input Parameter:
+. probes - the probes
+
+  Output Parameter:
+. values - of the scene's probes: forces, lengths, pressures or per cent by kind, after `absolute` and `factor`; NaN
+           where there is no value, for instance without contact
+
+  Note:
+  The values are the same on all ranks and on any number of them.
+@*/
 PetscErrorCode ProbesEvaluate(Probes probes, PetscReal values[])
 {
   PetscFunctionBeginUser;
@@ -588,8 +619,18 @@ PetscErrorCode ProbesEvaluate(Probes probes, PetscReal values[])
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ProbesGetSpacing - Node spacing (length) around the contact edge of probe i at the last evaluation, NaN if there is
- * none. Not collective. */
+/*@
+  ProbesGetSpacing - gives the node spacing (length) around the contact edge of a probe at the last evaluation.
+
+  Not collective
+
+  Input Parameters:
++ probes - the probes
+- i      - number of the probe
+
+  Output Parameter:
+. spacing - NaN for other kinds of probes and without contact
+@*/
 PetscErrorCode ProbesGetSpacing(Probes probes, int i, PetscReal *spacing)
 {
   PetscFunctionBeginUser;

@@ -1,9 +1,19 @@
+/* The figures of a finished run, see runfigures.h. */
 #include "runfigures.h"
 #include "linear/directsolver.h"
 #include <sys/resource.h>
 
-/* RunUsageCollect - what this program has used since it started, the same on all ranks; wall_s is left alone.
- * Collective. */
+/*@
+  RunUsageCollect - collects what this program has used since it started.
+
+  Collective
+
+  Input Parameter:
+. comm - of the run
+
+  Output Parameter:
+. usage - the same on all ranks; wall_s is left as it is
+@*/
 PetscErrorCode RunUsageCollect(MPI_Comm comm, RunUsage *usage)
 {
   struct rusage self;
@@ -32,8 +42,22 @@ static PetscErrorCode CollectPair(Contact contact, int p, PairFigures *pair)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* RunFiguresCollect - what there is to say of a run, the same on all ranks; with the model in its last accepted state.
- * Collective. */
+/*@
+  RunFiguresCollect - collects the figures of a run.
+
+  Collective
+
+  Input Parameters:
++ model    - in its last accepted state
+. scene    - of the model; borrowed
+. run      - how the run ended; borrowed
+. usage    - of all parts of the run
+. restarts - number of these parts less one
+- last     - the last accepted step, NULL where there is none; borrowed
+
+  Output Parameter:
+. figures - the same on all ranks; free it with RunFiguresDestroy()
+@*/
 PetscErrorCode RunFiguresCollect(Model model, Scene scene, const RunRecord *run, const RunUsage *usage,
                                  PetscInt restarts, const StepRecord *last, RunFigures *figures)
 {
@@ -60,7 +84,14 @@ PetscErrorCode RunFiguresCollect(Model model, Scene scene, const RunRecord *run,
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* RunFiguresDestroy - Not collective. */
+/*@
+  RunFiguresDestroy - frees the figures.
+
+  Not collective
+
+  Input Parameter:
+. figures - from RunFiguresCollect()
+@*/
 PetscErrorCode RunFiguresDestroy(RunFigures *figures)
 {
   PetscFunctionBeginUser;
@@ -68,8 +99,18 @@ PetscErrorCode RunFiguresDestroy(RunFigures *figures)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* PairSurfaceError - how far the surface that contact is solved on lies off the one that is meant, as far as the run
- * knows. Not collective. */
+/*@
+  PairSurfaceError - returns how far the surface that contact is solved on is from the one that is meant (length), as
+  far as the run knows.
+
+  Not collective
+
+  Input Parameter:
+. pair - figures of the pair
+
+  Note:
+  It is the error of the fits, or of the facets where there are no fits; 0 for an analytic or flat master.
+@*/
 PetscReal PairSurfaceError(const PairFigures *pair)
 {
   return pair->fits.points ? pair->fits.smoothing_error : pair->quality.sagitta;

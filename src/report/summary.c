@@ -1,11 +1,13 @@
+/* The run in one JSON file, see summary.h. */
 #include "summary.h"
+#include "files/textfile.h"
 #include "scene/commandline.h"
 #include <cJSON.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-/* The parts of a text between separators, without the blanks around them */
+/* Adds the parts of a text between separators, without the blanks around them. */
 static void AddList(cJSON *json, const char *key, char *text, const char *separators)
 {
   cJSON *list = cJSON_AddArrayToObject(json, key);
@@ -18,7 +20,7 @@ static void AddList(cJSON *json, const char *key, char *text, const char *separa
   }
 }
 
-/* null where there is no value */
+/* Adds a number, or null where there is no value. */
 static void AddReal(cJSON *json, const char *key, PetscReal value)
 {
   if (isfinite((double)value))
@@ -27,8 +29,8 @@ static void AddReal(cJSON *json, const char *key, PetscReal value)
     cJSON_AddNullToObject(json, key);
 }
 
-/* PETSc's options as they are now, the scene's own, those that nothing has asked for, and those that a restart has
- * changed */
+/* Adds PETSc's options as they are now, the scene's own, those that nothing has asked for, and those that a restart has
+   changed. */
 static PetscErrorCode AddOptions(cJSON *json, Scene scene, const char *changed)
 {
   cJSON   *options = cJSON_AddObjectToObject(json, "options"), *map, *unused;
@@ -52,7 +54,7 @@ static PetscErrorCode AddOptions(cJSON *json, Scene scene, const char *changed)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* What the linear algebra ran with; null: not known */
+/* Adds what the linear algebra ran with; null where it is not known. */
 static void AddBlas(cJSON *json, const Blas *blas)
 {
   cJSON *map = cJSON_AddObjectToObject(json, "blas");
@@ -100,7 +102,7 @@ static void AddGuards(cJSON *json, const StepperReport *way)
   cJSON_AddNumberToObject(map, "penalty_solves", (double)way->adjusted);
 }
 
-/* Contact sets that repeated themselves */
+/* Adds what is known of contact sets that repeated themselves. */
 static void AddCycles(cJSON *json, const StepperReport *way)
 {
   cJSON *map = cJSON_AddObjectToObject(json, "cycles");
@@ -113,7 +115,7 @@ static void AddCycles(cJSON *json, const StepperReport *way)
     cJSON_AddNullToObject(map, "last");
 }
 
-/* What the springs of stabilised pairs did, where there are any */
+/* Adds what the springs of stabilised pairs did, if there are any. */
 static void AddSprings(cJSON *json, Scene scene, const StepperReport *way)
 {
   cJSON *map;
@@ -127,7 +129,7 @@ static void AddSprings(cJSON *json, Scene scene, const StepperReport *way)
   AddReal(map, "largest_energy_share", way->left);
 }
 
-/* How the linear solves went */
+/* Adds how the linear solves went. */
 static void AddLinear(cJSON *json, const LinearCounts *counts)
 {
   cJSON *map = cJSON_AddObjectToObject(json, "linear");
@@ -144,7 +146,7 @@ static void AddLinear(cJSON *json, const LinearCounts *counts)
   cJSON_AddNumberToObject(map, "own_factor_iterations", (double)counts->kept.finishing);
 }
 
-/* The last accepted state */
+/* Adds the last accepted state. */
 static void AddState(cJSON *json, Scene scene, PetscBool has_contact, const StepRecord *last, const PetscReal *probes)
 {
   const PetscBool touches = has_contact && last ? PETSC_TRUE : PETSC_FALSE;
@@ -199,12 +201,20 @@ static void AddContact(cJSON *json, const RunFigures *figures)
   }
 }
 
-/*
-  SummaryWrite - Writes summary.json under a temporary name and renames it. Not collective; for one rank.
+/*@
+  SummaryWrite - writes summary.json.
 
-  Input: mesh, figures, directory (exists), probes[n_probes of the scene] (final values, NaN: none). Errors:
-  PETSC_ERR_FILE_OPEN, PETSC_ERR_FILE_WRITE, PETSC_ERR_MEM.
-*/
+  Not collective
+
+  Input Parameters:
++ mesh      - of the run
+. figures   - of the run
+. directory - of the results; exists
+- probes    - final values of the scene's probes, NaN where there is none
+
+  Note:
+  For one rank. Errors: those of TextFileReplace(), and PETSC_ERR_MEM.
+@*/
 PetscErrorCode SummaryWrite(const Mesh mesh, const RunFigures *figures, const char *directory, const PetscReal *probes)
 {
   const RunRecord *run  = figures->run;
@@ -233,7 +243,7 @@ PetscErrorCode SummaryWrite(const Mesh mesh, const RunFigures *figures, const ch
   AddContact(json, figures);
   text = cJSON_Print(json);
   PetscCheck(text, PETSC_COMM_SELF, PETSC_ERR_MEM, "No memory for summary.json");
-  PetscCall(ResultsReplaceFile(directory, "summary.json", text));
+  PetscCall(TextFileReplace(directory, "summary.json", text));
   cJSON_free(text);
   cJSON_Delete(json);
   PetscFunctionReturn(PETSC_SUCCESS);

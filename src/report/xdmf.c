@@ -1,9 +1,10 @@
+/* The text through which ParaView reads results.h5, see xdmf.h. */
 #include "xdmf.h"
-#include "report/results.h"
+#include "files/textfile.h"
 #include <stdio.h>
 #include <stdlib.h>
 
-enum { EXTRAPOLATION_SIZE = 512 };
+enum { DATASET_PATH_SIZE = 512 /* characters of a path in results.h5 */ };
 
 static const char *const topology[ELEMENT_TYPES] = {
   [ELEMENT_TRI3] = "Triangle",         [ELEMENT_TRI6] = "Triangle_6",     [ELEMENT_QUAD4] = "Quadrilateral",
@@ -25,7 +26,8 @@ static void XdmfPrintText(FILE *out, const char *text)
   }
 }
 
-/* A whole dataset, n x width; ParaView's readers agree on no part of one. */
+/* Prints a reference to a whole dataset of n x width values. ParaView's readers do not agree on how to take a part of
+   one. */
 static void XdmfPrintDataset(FILE *out, const char *type, PetscInt n, int width, const char *path)
 {
   fprintf(out, "<DataItem Format=\"HDF\" NumberType=\"%s\" Precision=\"8\" Dimensions=\"%lld", type, (long long)n);
@@ -33,11 +35,11 @@ static void XdmfPrintDataset(FILE *out, const char *type, PetscInt n, int width,
   fprintf(out, "\">results.h5:%s</DataItem>", path);
 }
 
-/* Six components go as a matrix: ParaView's readers do not agree on the order of a symmetric tensor. It names the
-   columns of such a matrix XX YY ZZ XY YZ XZ, which is our order. */
+/* Prints a nodal array. Six components go as a matrix, because ParaView's readers do not agree on the order of a
+   symmetric tensor. ParaView names the columns of such a matrix XX YY ZZ XY YZ XZ, which is our order. */
 static void XdmfPrintAttribute(FILE *out, const XdmfArray *array, PetscInt n, PetscInt step)
 {
-  char path[EXTRAPOLATION_SIZE];
+  char path[DATASET_PATH_SIZE];
 
   snprintf(path, sizeof(path), "/steps/%04d/%s", (int)step, array->name);
   fprintf(out, "    <Attribute Name=\"%s\" AttributeType=\"%s\" Center=\"Node\">", array->name,
@@ -46,12 +48,12 @@ static void XdmfPrintAttribute(FILE *out, const XdmfArray *array, PetscInt n, Pe
   fprintf(out, "</Attribute>\n");
 }
 
-/* One block of cells at one step */
+/* Prints one block of cells at one step. */
 static void XdmfPrintGrid(const Xdmf *xdmf, FILE *out, int b, PetscInt step)
 {
   const XdmfBlock *block   = &xdmf->blocks[b];
   const Element   *element = ElementGet(block->type);
-  char             path[EXTRAPOLATION_SIZE];
+  char             path[DATASET_PATH_SIZE];
 
   fprintf(out, "   <Grid Name=\"");
   XdmfPrintText(out, block->body);
@@ -67,11 +69,18 @@ static void XdmfPrintGrid(const Xdmf *xdmf, FILE *out, int b, PetscInt step)
   fprintf(out, "   </Grid>\n");
 }
 
-/*
-  XdmfWrite - Writes results.xdmf anew, for all steps that results.h5 holds. Not collective: for one rank.
+/*@
+  XdmfWrite - writes results.xdmf anew, for all steps that results.h5 holds.
 
-  Input: xdmf, directory (exists). Errors: PETSC_ERR_MEM, PETSC_ERR_FILE_OPEN, PETSC_ERR_FILE_WRITE.
-*/
+  Not collective
+
+  Input Parameters:
++ xdmf      - what it shows
+- directory - of the results; exists
+
+  Note:
+  For one rank. Errors: those of TextFileReplace(), and PETSC_ERR_MEM.
+@*/
 PetscErrorCode XdmfWrite(const Xdmf *xdmf, const char *directory)
 {
   char  *text;
@@ -92,7 +101,7 @@ PetscErrorCode XdmfWrite(const Xdmf *xdmf, const char *directory)
   }
   fprintf(out, " </Grid>\n</Domain>\n</Xdmf>\n");
   PetscCheck(!fclose(out), PETSC_COMM_SELF, PETSC_ERR_MEM, "No memory for results.xdmf");
-  PetscCall(ResultsReplaceFile(directory, "results.xdmf", text));
+  PetscCall(TextFileReplace(directory, "results.xdmf", text));
   free(text);
   PetscFunctionReturn(PETSC_SUCCESS);
 }

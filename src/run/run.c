@@ -5,6 +5,7 @@
 #include "base/interruption.h"
 #include "base/refusal.h"
 #include "report/precheck.h"
+#include "report/rundirectory.h"
 
 /* Puts the scene's PETSc options into PETSc's database, below those of the environment and of the command line: only
    options that nobody has set. The database belongs to the process, so that RunDestroy() takes them out again. */
@@ -34,10 +35,10 @@ static PetscErrorCode RunOpen(Run *run, const RunInput *input)
   PetscCall(RunInsertOptions(run));
   PetscCall(PetscSNPrintf(run->directory, sizeof(run->directory), "%s%s", input->directory ? input->directory : "out/",
                           input->directory ? "" : run->scene->name));
-  if (input->task != RUN_MESH) PetscCall(ResultsCheckPath(run->comm, run->directory));
+  if (input->task != RUN_MESH) PetscCall(RunDirectoryCheckPath(run->comm, run->directory));
   PetscCall(ErrorLogSetDirectory(run->directory));
   if (input->task == RUN_SOLVE)
-    PetscCall(ResultsCheckDirectory(run->comm, run->scene, run->directory, input->overwrite));
+    PetscCall(RunDirectoryCheck(run->comm, run->scene, run->directory, input->overwrite));
   PetscCall(MeshGenerate(run->comm, run->scene, "out", run->mesh_file, &run->mesh_s));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -47,12 +48,12 @@ static PetscErrorCode RunReopen(Run *run, const RunInput *input)
 {
   PetscFunctionBeginUser;
   PetscCall(PetscStrncpy(run->directory, input->restart, sizeof(run->directory)));
-  PetscCall(ResultsCheckPath(run->comm, run->directory));
+  PetscCall(RunDirectoryCheckPath(run->comm, run->directory));
   PetscCall(ErrorLogSetDirectory(run->directory));
   PetscCall(CheckpointOpen(run->comm, run->directory, &run->checkpoint));
   PetscCall(CheckpointReadScene(run->checkpoint, input->n_set, input->set, &run->scene));
   PetscCall(RunInsertOptions(run));
-  PetscCall(ResultsCheckRestart(run->comm, run->scene, run->directory));
+  PetscCall(RunDirectoryCheckRestart(run->comm, run->scene, run->directory));
   PetscCall(CheckpointMeshFile(run->checkpoint, run->mesh_file));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

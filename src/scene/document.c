@@ -28,15 +28,15 @@ int KeyPathComponentIsIndex(const char *path)
   return n > 0 && n < 10 && strspn(path, "0123456789") >= n;
 }
 
-/* KeyPathJoin - parent.key, or key alone below the root, into path[EXTRAPOLATION_LENGTH]. Not collective. */
-void KeyPathJoin(char path[EXTRAPOLATION_LENGTH], const char *parent, const char *key)
+/* KeyPathJoin - parent.key, or key alone below the root, into path[KEY_PATH_LENGTH]. Not collective. */
+void KeyPathJoin(char path[KEY_PATH_LENGTH], const char *parent, const char *key)
 {
-  snprintf(path, EXTRAPOLATION_LENGTH, "%.*s%s%.*s", EXTRAPOLATION_LENGTH / 2, parent, *parent ? "." : "",
-           EXTRAPOLATION_LENGTH / 2 - 2, key);
+  snprintf(path, KEY_PATH_LENGTH, "%.*s%s%.*s", KEY_PATH_LENGTH / 2, parent, *parent ? "." : "",
+           KEY_PATH_LENGTH / 2 - 2, key);
 }
 
-/* KeyPathJoinIndex - parent.index into path[EXTRAPOLATION_LENGTH]. Not collective. */
-void KeyPathJoinIndex(char path[EXTRAPOLATION_LENGTH], const char *parent, int index)
+/* KeyPathJoinIndex - parent.index into path[KEY_PATH_LENGTH]. Not collective. */
+void KeyPathJoinIndex(char path[KEY_PATH_LENGTH], const char *parent, int index)
 {
   char key[16];
 
@@ -260,7 +260,7 @@ static PetscErrorCode TreeRead(TreeReader *, int id, int line, const char *path,
 /* Each child is in the map before it is read, so that a refusal leaves nothing outside of the tree. */
 static PetscErrorCode TreeReadMap(TreeReader *reader, const yaml_node_t *yaml, const char *path, int depth, Node map)
 {
-  char below[EXTRAPOLATION_LENGTH];
+  char below[KEY_PATH_LENGTH];
 
   PetscFunctionBeginUser;
   for (yaml_node_pair_t *pair = yaml->data.mapping.pairs.start; pair < yaml->data.mapping.pairs.top; pair++) {
@@ -286,7 +286,7 @@ static PetscErrorCode TreeReadMap(TreeReader *reader, const yaml_node_t *yaml, c
 
 static PetscErrorCode TreeReadList(TreeReader *reader, const yaml_node_t *yaml, const char *path, int depth, Node list)
 {
-  char below[EXTRAPOLATION_LENGTH];
+  char below[KEY_PATH_LENGTH];
 
   PetscFunctionBeginUser;
   for (yaml_node_item_t *item = yaml->data.sequence.items.start; item < yaml->data.sequence.items.top; item++) {
@@ -488,7 +488,7 @@ static PetscErrorCode DocumentPut(Document *document, const char *set, Node *val
 {
   struct _n_Node place = {.set = set};
   Node           node = document->root, *slot = NULL;
-  char           key[EXTRAPOLATION_LENGTH];
+  char           key[KEY_PATH_LENGTH];
   const char    *rest = set;
 
   PetscFunctionBeginUser;

@@ -1,87 +1,9 @@
+#include "sceneprobe.h"
 #include "sceneread.h"
 #include "base/refusal.h"
 #include <string.h>
 
-const char *const Formulations[] = {"full", "enhanced", "fbar", NULL};
-
 static const char *const Displacements[] = {"ux", "uy", "uz"}, *const Rotations[] = {"rx", "ry", "rz"};
-
-/* ---- for all readers ---- */
-
-/* SceneDocument - the tree that the scene was read from. Not collective. */
-Document *SceneDocument(Scene scene)
-{
-  return (Document *)scene->document;
-}
-
-/* ScenePath - "list.i" as a text of its own. Not collective. */
-PetscErrorCode ScenePath(char **path, const char *list, int i)
-{
-  char text[EXTRAPOLATION_LENGTH];
-
-  PetscFunctionBeginUser;
-  snprintf(text, sizeof text, "%s.%d", list, i);
-  PetscCall(PetscStrallocpy(text, path));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* SceneNode - the document's value at path.key, NULL if there is none. Not collective. */
-Node SceneNode(Scene scene, const char *path, const char *key)
-{
-  char text[EXTRAPOLATION_LENGTH];
-
-  KeyPathJoin(text, path, key);
-  return NodeFind(SceneDocument(scene)->root, text);
-}
-
-/* SceneReals - a list of numbers into v; absent: v stays as it is. Returns how many there are. Not collective. */
-int SceneReals(Scene scene, const char *path, const char *key, double *v)
-{
-  Node list = SceneNode(scene, path, key);
-
-  for (int i = 0; list && i < list->n; i++) (void)NodeReal(list->child[i], &v[i]);
-  return list ? list->n : 0;
-}
-
-/* SceneReadText - a copy of the text at path.key, or its default; NULL if there is neither. Not collective. */
-PetscErrorCode SceneReadText(Scene scene, const char *path, const char *key, char **text)
-{
-  PetscFunctionBeginUser;
-  PetscCall(PetscStrallocpy(SchemaText(SceneDocument(scene), "%s.%s", path, key), text));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* SceneHas - whether the document itself has a value at path.key. Not collective. */
-int SceneHas(Scene scene, const char *path, const char *key)
-{
-  return SceneNode(scene, path, key) != NULL;
-}
-
-/* SceneRefuse - refuses the value at path.key: "about what", about may be NULL. Collective. Returns REFUSED. */
-PetscErrorCode SceneRefuse(Scene scene, const char *path, const char *key, const char *what, const char *about)
-{
-  char text[EXTRAPOLATION_LENGTH];
-
-  PetscFunctionBeginUser;
-  KeyPathJoin(text, path, key);
-  PetscCall(
-    DocumentRefuse(SceneDocument(scene), *key ? text : path, "%s%s%s", about ? about : "", about ? " " : "", what));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* SceneFindBody - the body of that name, among the rigid tools or the deformable ones read so far; NULL if there is
- * none. Not collective. */
-const SceneBody *SceneFindBody(Scene scene, const char *name, int rigid)
-{
-  for (int i = 0; i < scene->n_bodies; i++) {
-    const SceneBody *body = &scene->bodies[i];
-
-    if (body->name && body->rigid == rigid && !strcmp(body->name, name)) return body;
-  }
-  return NULL;
-}
-
-/* ---- the parts ---- */
 
 /* path's history, or the load parameter itself. */
 static PetscErrorCode SceneReadHistory(Scene scene, const char *path, History *history)
@@ -154,7 +76,7 @@ static PetscErrorCode MotionFree(Motion *motion)
 static PetscErrorCode SceneReadMotion(Scene scene, const char *tool, Motion *motion)
 {
   const int n = SchemaCount(SceneDocument(scene), "%s.motion", tool);
-  char      path[EXTRAPOLATION_LENGTH];
+  char      path[KEY_PATH_LENGTH];
 
   PetscFunctionBeginUser;
   PetscCall(PetscCalloc1(6 * n, &motion->components));
@@ -196,7 +118,7 @@ static PetscErrorCode SceneReadBody(Scene scene, SceneBody *body)
     PetscCall(SceneRefuse(scene, body->path, body->rigid ? "material" : "rigid", Needs, "has no place here; allowed:"));
   PetscCall(SceneReadText(scene, body->path, body->rigid ? "surface" : "volume", &body->name));
   if (body->rigid) {
-    char tool[EXTRAPOLATION_LENGTH];
+    char tool[KEY_PATH_LENGTH];
 
     snprintf(tool, sizeof tool, "%s.rigid", body->path);
     (void)SceneReals(scene, body->path, "rigid.point", body->motion.point);
@@ -338,7 +260,7 @@ static PetscErrorCode SceneReadLoads(Scene scene)
 static PetscErrorCode SceneReadAnalytic(Scene scene, SceneContact *contact)
 {
   static const char *const shapes[] = {"plane", "cylinder", "sphere"};
-  char                     tool[EXTRAPOLATION_LENGTH];
+  char                     tool[KEY_PATH_LENGTH];
   double                   length = 0;
   int                      count  = 0;
 
@@ -806,7 +728,7 @@ PetscErrorCode SceneDestroy(Scene *scene)
    call. */
 const char *SceneWhere(Scene scene, const char *path, const char *key)
 {
-  char text[EXTRAPOLATION_LENGTH];
+  char text[KEY_PATH_LENGTH];
 
   KeyPathJoin(text, path ? path : "", key ? key : "");
   if (!key || !*key) snprintf(text, sizeof text, "%s", path ? path : "");

@@ -8,13 +8,10 @@
 #include <petscsys.h>
 #include "smooth/analyticsurface.h"
 #include "base/choices.h"
+#include "kernels/formulation.h"
 #include "kernels/material.h"
-#include "scene/motion.h"
+#include "scene/loadhistory.h"
 
-typedef enum { GEOMETRY_SOLID, GEOMETRY_PLANE_STRAIN, GEOMETRY_AXISYMMETRIC } Geometry;
-typedef enum { KINEMATICS_SMALL, KINEMATICS_FINITE } Kinematics;
-typedef enum { FORMULATION_FULL, FORMULATION_ENHANCED, FORMULATION_FBAR, FORMULATIONS } Formulation;
-extern const char *const Formulations[]; /* "full", "enhanced", "fbar", NULL-terminated */
 typedef enum { OVERLAP_REFUSE, OVERLAP_RESOLVE, OVERLAP_RAMP, OVERLAP_IGNORE } InitialOverlap;
 typedef enum { SOLVER_DIRECT, SOLVER_ITERATIVE, SOLVER_AUTO } SolverType;
 typedef enum { CONTACT_NODE_TO_SURFACE, CONTACT_SURFACE_TO_SURFACE } ContactFormulation;

@@ -1,3 +1,4 @@
+#include "sceneprobe.h"
 #include "sceneread.h"
 #include "scene/stepcolumns.h"
 #include <string.h>

@@ -254,7 +254,7 @@ static PetscErrorCode SchemaRefuseUnknown(Document *document, Node node, const c
 
 static PetscErrorCode SchemaRefuseMissing(Document *document, const SchemaKey *key, Node node, const char *path)
 {
-  char allowed[400], missing[EXTRAPOLATION_LENGTH];
+  char allowed[400], missing[KEY_PATH_LENGTH];
 
   PetscFunctionBeginUser;
   SchemaAllowed(key, allowed, sizeof allowed);
@@ -265,7 +265,7 @@ static PetscErrorCode SchemaRefuseMissing(Document *document, const SchemaKey *k
 
 static PetscErrorCode SchemaCheckFree(Document *document, Node node, const char *path)
 {
-  char below[EXTRAPOLATION_LENGTH];
+  char below[KEY_PATH_LENGTH];
 
   PetscFunctionBeginUser;
   for (int i = 0; i < node->n; i++) {
@@ -282,7 +282,7 @@ static PetscErrorCode SchemaCheckFree(Document *document, Node node, const char 
 /* Before anything else is said about a map: a misspelt key is not a missing one. */
 static PetscErrorCode SchemaCheckKeys(Document *document, Node node, const char *path)
 {
-  char below[EXTRAPOLATION_LENGTH];
+  char below[KEY_PATH_LENGTH];
 
   PetscFunctionBeginUser;
   for (int i = 0; i < node->n; i++) {
@@ -298,7 +298,7 @@ typedef PetscErrorCode (*NodeVisit)(Document *, const SchemaKey *, Node, const c
 static PetscErrorCode SchemaWalk(Document *document, Node node, const char *path, NodeVisit visit)
 {
   const SchemaKey *key = SchemaKeyFind(path);
-  char             below[EXTRAPOLATION_LENGTH];
+  char             below[KEY_PATH_LENGTH];
 
   PetscFunctionBeginUser;
   if (node->kind == NODE_MAP && (!key || key->type & MAP)) PetscCall(SchemaCheckKeys(document, node, path));
@@ -409,7 +409,7 @@ PetscErrorCode SchemaCheck(Document *document)
 /* The text of the scalar at a path, else the table's default, else NULL; *key is the table's line. */
 static const char *SchemaScalar(Document *document, const char *format, va_list arguments, const SchemaKey **key)
 {
-  char path[EXTRAPOLATION_LENGTH];
+  char path[KEY_PATH_LENGTH];
   Node node;
 
   vsnprintf(path, sizeof path, format, arguments);
@@ -425,7 +425,7 @@ static const char *SchemaScalar(Document *document, const char *format, va_list 
 /* SchemaHas - is there a value at this path in the document? printf's format. Not collective, as all accessors. */
 int SchemaHas(Document *document, const char *format, ...)
 {
-  char    path[EXTRAPOLATION_LENGTH];
+  char    path[KEY_PATH_LENGTH];
   va_list arguments;
 
   va_start(arguments, format);
@@ -437,7 +437,7 @@ int SchemaHas(Document *document, const char *format, ...)
 /* SchemaCount - number of entries of the list or map at a path; 0 if there is none. */
 int SchemaCount(Document *document, const char *format, ...)
 {
-  char    path[EXTRAPOLATION_LENGTH];
+  char    path[KEY_PATH_LENGTH];
   va_list arguments;
   Node    node;
 

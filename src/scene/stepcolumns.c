@@ -1,3 +1,4 @@
+/* Names of the fixed columns of steps.csv, see stepcolumns.h. */
 #include "scene/stepcolumns.h"
 
 const char *const StepColumnNames[STEP_COLUMNS] = {

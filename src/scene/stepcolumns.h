@@ -1,6 +1,6 @@
-/* The fixed columns of steps.csv, the one list of their names: results.c writes them, sceneprobe.c keeps them from
-   being names of probes, whose columns follow. Plain C. To add a column: a line here, its name in columns.c, its value
-   in results.c. */
+/* The fixed columns of steps.csv, the one list of their names. Plain C. stepscsv.c writes them. sceneprobe.c refuses a
+   probe of such a name, because the columns of the probes follow the fixed ones. To add a column: a line here, its name
+   in stepcolumns.c, its value in stepscsv.c. */
 #pragma once
 
 typedef enum {

@@ -1,7 +1,7 @@
 /* Equilibrium at a load parameter: from the accepted state by prediction, Newton's method and new contact lists, until
    lists, springs and penalties hold. */
 #include "base/timing.h"
-#include "bodies/loosebody.h"
+#include "bodies/freemodes.h"
 #include "modelimpl.h"
 
 /* At a breakpoint of the scene's histories the lists are renewed at most this many times for offsets of surface contact
@@ -67,7 +67,7 @@ static PetscErrorCode ModelExplainFailure(Model model, SolveReport *report)
     PetscCall(PetscStrncpy(report->detail, report->cycle, sizeof(report->detail)));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
-  if (adrift) PetscCall(LooseBodies(model->mesh, model->scene, model->problem->loads, loose, sizeof(loose)));
+  if (adrift) PetscCall(FreeModesUnheld(model->mesh, model->scene, model->problem->loads, sizeof(loose), loose));
   if (adrift && loose[0])
     PetscCall(PetscSNPrintf(
       report->detail, sizeof(report->detail), "no support and no imposed displacement holds %s%s", loose,

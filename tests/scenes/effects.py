@@ -28,7 +28,7 @@ EFFECTS = {
 # Keys that are there and off
 OFF = ["contact.0.degree=2", "contact.0.support=3", "contact.0.weight=4", "contact.0.frame=global", "contact.0.derivatives=diffuse", "contact.0.offset=live", "contact.0.penalty.adjust=false",
        "contact.0.penalty.when=step", "contact.0.penalty.clamp=10", "contact.0.penalty.augment=false", "contact.0.penalty.max_updates=5", *WINDOW, "loads.0.follower=false", "stepping.N_c=5", "stepping.prediction=tangent", "output.checkpoint=0"]
-READERS = "document|schema|schemakeys|scene|sceneprobe|commandline|gmsh|results"  # the scene's text and its record are as long as they are
+READERS = "document|schema|schemakeys|scene|sceneprobe|sceneread|commandline|gmsh|results|rundirectory"  # the scene's text and its record are as long as they are
 PETSC_TEXT = ("PetscStrallocpy", "PetscStrreplace", "PetscFunctionListCreateNode_Private", "PetscOptions", "PetscLogView", "PetscViewer")
 
 

@@ -1,12 +1,10 @@
-/* What to do about a bad figure of a run, one line each. A new rule is one function and one line in a table of
- * advice.c. */
+/* What to do about a bad figure of a run, one line each. AdviceGive() goes through the rules, AdviceForFailure()
+   answers for a solve that failed. A new rule is one function and one line in a table of advice.c. */
 #pragma once
 #include "runfigures.h"
 
-enum { ADVICE_TEXT = 400 };
+enum { ADVICE_TEXT = 400 /* characters of a line of advice */ };
 typedef void (*AdvicePrintFn)(const char *line, void *context);
 
-/* Calls print for every rule that applies. Not collective. */
-void AdviceGive(const RunFigures *, AdvicePrintFn, void *context);
-/* What to try after a solve that failed so. */
+void        AdviceGive(const RunFigures *, AdvicePrintFn, void *context);
 const char *AdviceForFailure(SolveResult);

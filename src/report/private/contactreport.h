@@ -1,8 +1,7 @@
-/* What -check says of the contact pairs. */
+/* What -check says of the contact pairs: one block for each, with surfaces, penalty, gaps and overlaps before any load;
+   for smooth masters also errors, neighbours, guards and fall-backs. */
 #pragma once
 #include <stdio.h>
 #include "contact/contact.h"
 
-/* One block for each pair: surfaces, penalty, gaps and overlaps before any load; for smooth masters errors, neighbours,
- * guards and fall-backs. Collective. */
 PetscErrorCode ContactReport(Contact, FILE *);

@@ -1,21 +1,25 @@
 /* results.h5 and results.xdmf: the states of a run, for ParaView and scripts. Does not know how values were computed.
 
-   FieldsCreate() touches no file; the first FieldsWrite() makes the file with the mesh, each one adds a step and writes
-   the XDMF text anew, so that a killed run can be opened. Rows are ordered by mesh->node_id, cells by body and cell_id:
-   the same on any number of ranks.
+   FieldsCreate() touches no file. The first FieldsWrite() makes the file with the mesh; each one adds a step and writes
+   the XDMF text anew, so that the results of a killed run can be opened. FieldsArchive() and FieldsResume() take the
+   files back to a checkpoint. Rows are ordered by mesh->node_id, cells by body and cell_id: the same on any number of
+   ranks.
 
      /mesh/nodes             N x 3, reference coordinates (not relative to the mesh's centre)
      /mesh/cells_TYPE        n x nodes of the element, 0-based node ids, in XDMF's node order; TYPE: tri3 ... hex27
      /mesh/cells_TYPE_body   n, index into the scene's bodies
-     /mesh/block_0           the same cells again, a table for each body and type, for ParaView: two of its three
-   readers take no part of a table /contact/PAIR/nodes     n, ids of the slave nodes that carry area, ascending
+     /mesh/block_0           the same cells again, a table for each body and type: for ParaView, two of whose three
+                             readers cannot read a part of a table
+     /contact/PAIR/nodes     n, ids of the slave nodes that carry area, ascending
      /steps/0000             one group per written step, attributes t and step
        displacement          N x 3 (third component 0 in 2D)
        stress, von_mises     N x 6 (xx yy zz xy yz xz, Cauchy), N
        contact/PAIR/         gap, penetration, penalty, pressure: n; normal: n x 3; rows as /contact/PAIR/nodes;
                              attribute plane (point, normal), cylinder (point, axis, radius) or sphere (centre, radius)
-   where the master is one gap, penetration, penalty, pressure, normal the same for all pairs over the whole mesh, for
-   ParaView: off the slave surfaces gap and penalty are NaN, the others 0 */
+                             where the master is one
+       gap, penetration, penalty, pressure, normal
+                             the same for all pairs over the whole mesh, for ParaView: off the slave surfaces gap and
+                             penalty are NaN, the others 0 */
 #pragma once
 #include "files/archive.h"
 #include "solve/model.h"
@@ -24,12 +28,6 @@ typedef struct _n_Fields *Fields;
 
 PetscErrorCode FieldsCreate(Model, Scene, const char *directory, Fields *);
 PetscErrorCode FieldsDestroy(Fields *);
-/* The model's present state as accepted step `step` at load parameter t. Collective. */
 PetscErrorCode FieldsWrite(Fields, PetscInt step, PetscReal t);
-
-/* Which states are written, and what brings results.h5 back to them. Loading touches no file: FieldsResume() does.
- * Collective. */
 PetscErrorCode FieldsArchive(Fields, Archive);
-/* Takes back what was written after the loaded checkpoint, whole or in part; *lost: the file is gone, a new one begins
- * with the next state. Collective. */
 PetscErrorCode FieldsResume(Fields, PetscBool *lost);

@@ -1,5 +1,5 @@
-/* The figures of a finished run, collected once: summary.json writes them, the last screen prints them, advice judges
- * them. */
+/* The figures of a finished run, collected once by RunFiguresCollect(). summary.json writes them, the last screen
+   prints them, and advice judges them. RunUsageCollect() is also used between steps, for a checkpoint. */
 #pragma once
 #include "base/blas.h"
 #include "report/results.h"
@@ -26,17 +26,14 @@ typedef struct {
   PetscInt          restarts; /* their number less one */
   LinearCounts      linear;
   const char       *options_changed; /* lines, see optionrecord.h */
-  PetscBool         direct;          /* the solver factors each tangent, which is the BLAS's work */
+  PetscBool         direct;          /* the solver factors each tangent, for which it uses the BLAS */
   Blas              blas;            /* of this rank */
   int               n_pairs;
   PairFigures      *pairs;
 } RunFigures;
 
-/* What this program has used since it started, over all ranks; wall_s is left alone. Collective. */
 PetscErrorCode RunUsageCollect(MPI_Comm, RunUsage *);
-/* Borrows scene, run and last. Collective. */
 PetscErrorCode RunFiguresCollect(Model, Scene, const RunRecord *, const RunUsage *, PetscInt restarts,
                                  const StepRecord *last, RunFigures *);
 PetscErrorCode RunFiguresDestroy(RunFigures *);
-/* The error of the surface that a pair is solved with (length): of the fits, or of the facets; 0: analytic or flat */
-PetscReal PairSurfaceError(const PairFigures *);
+PetscReal      PairSurfaceError(const PairFigures *);

@@ -1,11 +1,11 @@
-/* results.xdmf: the text through which ParaView reads results.h5. Knows the file's datasets (fields.h), no mesh and no
- * model. */
+/* results.xdmf: the text through which ParaView reads results.h5. XdmfWrite() writes it anew for all steps so far.
+   Knows the datasets of the file (fields.h), no mesh and no model. */
 #pragma once
 #include "base/petsccompat.h"
 #include "kernels/element.h"
 
-/* Cells of one body and type: rows first .. first+n-1 of /mesh/cells_TYPE; block b is also a table of its own,
- * /mesh/block_b */
+/* Cells of one body and type: rows first to first + n - 1 of /mesh/cells_TYPE. Block b is also a table of its own,
+   /mesh/block_b. */
 typedef struct {
   const char *body;
   ElementType type;
@@ -29,5 +29,4 @@ typedef struct {
   const XdmfArray *arrays;
 } Xdmf;
 
-/* Writes the text for all steps so far into a directory, whole or not at all. Not collective: for one rank. */
 PetscErrorCode XdmfWrite(const Xdmf *, const char *directory);

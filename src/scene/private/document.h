@@ -12,7 +12,7 @@
 #include <petscsys.h>
 
 enum {
-  EXTRAPOLATION_LENGTH = 512
+  KEY_PATH_LENGTH = 512
 }; /* longest path in a message; the schema's own paths have less than 80 characters */
 
 typedef enum { NODE_SCALAR, NODE_LIST, NODE_MAP } NodeKind;
@@ -35,7 +35,7 @@ typedef struct {
   int      n_set;
   char   **set_key;                         /* keys of the -set options, for messages */
   int      dim;                             /* 3 for geometry solid, else 2; set by SchemaCheck() */
-  char     where[2 * EXTRAPOLATION_LENGTH]; /* last text of DocumentWhere() */
+  char     where[2 * KEY_PATH_LENGTH]; /* last text of DocumentWhere() */
 } Document;
 
 PetscErrorCode DocumentRead(MPI_Comm, const char *file, int n_set, char *const *set, Document **);
@@ -56,7 +56,7 @@ int NodeReal(Node, double *value);
 int NodeInteger(Node, long *value);
 int NodeBoolean(Node, int *value);
 
-void   KeyPathJoin(char path[EXTRAPOLATION_LENGTH], const char *parent, const char *key);
-void   KeyPathJoinIndex(char path[EXTRAPOLATION_LENGTH], const char *parent, int index);
+void   KeyPathJoin(char path[KEY_PATH_LENGTH], const char *parent, const char *key);
+void   KeyPathJoinIndex(char path[KEY_PATH_LENGTH], const char *parent, int index);
 size_t KeyPathComponent(const char *path);        /* length of its first component */
 int    KeyPathComponentIsIndex(const char *path); /* 1: that is an index of a list */

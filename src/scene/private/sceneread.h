@@ -1,13 +1,10 @@
-/* What the readers of a scene share: scene.c, which reads the whole, and sceneprobe.c, which reads the probes. For
-   these two only.
-
-   path is that of a scene's part ("contact.0"), key a value below it. */
+/* What the readers of a scene share: values of the document by the path of a scene's part ("contact.0") and a key below
+   it, and refusals of such a value. scene.c reads the whole scene with them, sceneprobe.c the probes; nothing else
+   needs this header. */
 #pragma once
 #include "base/petsccompat.h"
 #include "scene/scene.h"
 #include "schema.h"
-
-PetscErrorCode SceneReadProbes(Scene); /* after the bodies and contacts, whose names they may use */
 
 Document        *SceneDocument(Scene);
 Node             SceneNode(Scene, const char *path, const char *key); /* NULL: the document has none */

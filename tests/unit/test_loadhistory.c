@@ -1,5 +1,5 @@
 /* A history is linear between its breakpoints, exact at them, and constant beyond them. */
-#include "scene/history.h"
+#include "scene/loadhistory.h"
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdint.h>

@@ -1,0 +1,25 @@
+/* What a run says while it goes on: first lines, a line for each accepted step, last lines, and warnings.
+
+   TerminalBegin() prints the first lines and warns of what is already known then. TerminalStep() comes after each
+   accepted step, TerminalEnd() once when the run ends. Progress goes to stdout of rank 0 and is left out by -quiet;
+   warnings and the cause of a failure go to stderr of rank 0 in any case. Writes no file and changes nothing. */
+#pragma once
+#include "optionrecord.h"
+#include "runfigures.h"
+
+typedef struct _n_Terminal *Terminal;
+
+/* What TerminalEnd() says of the run besides its figures */
+typedef struct {
+  const RunFigures *figures;
+  const PetscReal  *probes;  /* final values, NaN where there is none */
+  const PetscBool  *met;     /* per contact pair: some slave node has met its master */
+  PetscReal         deepest; /* largest penetration of the run, in face sizes */
+} TerminalLast;
+
+PetscErrorCode TerminalCreate(Model, Probes, Scene, const char *directory, PetscBool quiet, Terminal *);
+PetscErrorCode TerminalDestroy(Terminal *);
+PetscErrorCode TerminalBegin(Terminal, PetscInt restarts, PetscInt last_step, const OptionRecord *);
+void           TerminalWarnLost(Terminal, const char *name, PetscInt last_step);
+void           TerminalStep(Terminal, const StepRecord *, PetscReal spent);
+PetscErrorCode TerminalEnd(Terminal, const TerminalLast *);

@@ -1,0 +1,449 @@
+/* Progress and warnings of a run on the terminal, see terminal.h. */
+#include "terminal.h"
+#include "endreport.h"
+#include "report/precheck.h"
+#include "scene/commandline.h"
+#include <math.h>
+#include <stdio.h>
+
+/* From this Poisson's ratio on, elements of first order with full integration lock: at 0.49 the bulk modulus is fifty
+   times the shear modulus. */
+#define LOCKING_NU 0.49
+
+enum {
+  EFFECTS_SIZE  = 2 * PETSC_MAX_PATH_LEN, /* characters of the list of a run's effects */
+  DURATION_SIZE = 32                      /* characters of a duration */
+};
+
+struct _n_Terminal {
+  Model       model;
+  Probes      probes;
+  Scene       scene;
+  char        directory[PETSC_MAX_PATH_LEN];
+  PetscBool   quiet, talks; /* talks: rank 0 of a run that is not quiet */
+  PetscMPIInt rank, size;
+  PetscReal   t_began; /* load parameter at which this part of the run began */
+};
+
+/*@
+  TerminalCreate - prepares what a run prints; nothing is printed yet.
+
+  Collective
+
+  Input Parameters:
++ model     - of the run
+. probes    - of that model
+. scene     - of that model
+. directory - of the results, named in the last line
+- quiet     - nothing but warnings and errors is printed
+
+  Output Parameter:
+. result - free it with TerminalDestroy()
+@*/
+PetscErrorCode TerminalCreate(Model model, Probes probes, Scene scene, const char *directory, PetscBool quiet,
+                              Terminal *result)
+{
+  const MPI_Comm comm = model->mesh->comm;
+  Terminal       terminal;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscNew(&terminal));
+  terminal->model  = model;
+  terminal->probes = probes;
+  terminal->scene  = scene;
+  PetscCall(PetscStrncpy(terminal->directory, directory, sizeof(terminal->directory)));
+  PetscCallMPI(MPI_Comm_rank(comm, &terminal->rank));
+  PetscCallMPI(MPI_Comm_size(comm, &terminal->size));
+  terminal->quiet = quiet;
+  terminal->talks = terminal->rank == 0 && !quiet ? PETSC_TRUE : PETSC_FALSE;
+  *result         = terminal;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  TerminalDestroy - frees the object.
+
+  Not collective
+
+  Input Parameter:
+. terminal - set to NULL
+@*/
+PetscErrorCode TerminalDestroy(Terminal *terminal)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscFree(*terminal));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static void PrintBlas(void)
+{
+  Blas blas;
+
+  BlasFind(&blas);
+  printf("BLAS     ");
+  BlasPrint(&blas, stdout);
+  if (blas.reference)
+    printf("warning: this is the reference BLAS; the direct solver is 6 to 7 times faster with OpenBLAS (Debian: apt "
+           "install libopenblas0-serial)\n");
+}
+
+/* Names the linear solver as the options have left it. */
+static PetscErrorCode PrintSolver(Terminal terminal)
+{
+  KSP           ksp;
+  PC            pc;
+  KSPType       method;
+  PCType        conditioner;
+  MatSolverType package = NULL;
+  PetscBool     factors = PETSC_FALSE, own = PETSC_FALSE;
+
+  PetscFunctionBeginUser;
+  PetscCall(SNESGetKSP(terminal->model->snes, &ksp));
+  PetscCall(KSPGetType(ksp, &method));
+  PetscCall(KSPGetPC(ksp, &pc));
+  PetscCall(PCGetType(pc, &conditioner));
+  if (conditioner) PetscCall(PetscObjectTypeCompareAny((PetscObject)pc, &factors, PCLU, PCCHOLESKY, PCILU, PCICC, ""));
+  if (factors) PetscCall(PCFactorGetMatSolverType(pc, &package));
+  if (conditioner) PetscCall(PetscObjectTypeCompare((PetscObject)pc, PCSHELL, &own));
+  if (own) PetscCall(PCShellGetName(pc, &conditioner));
+  if (terminal->talks)
+    printf("solver   %s, %s%s%s\n", method ? method : "PETSc's default", conditioner ? conditioner : "PETSc's default",
+           package ? ", " : "", package ? package : "");
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Prints program, scene and machine. */
+static void PrintProgram(Terminal terminal)
+{
+  printf("burnish %s: %s (%s)\n", BURNISH_VERSION, terminal->scene->name, terminal->scene->file);
+  printf("machine  %d rank%s, PETSc %d.%d.%d, %d-bit indices\n", terminal->size, terminal->size > 1 ? "s" : "",
+         PETSC_VERSION_MAJOR, PETSC_VERSION_MINOR, PETSC_VERSION_SUBMINOR, (int)(8 * sizeof(PetscInt)));
+  PrintBlas();
+}
+
+static PetscErrorCode PrintHead(Terminal terminal, PetscInt restarts, PetscInt last_step, const OptionRecord *options)
+{
+  char     effects[EFFECTS_SIZE];
+  PetscInt dofs;
+
+  PetscFunctionBeginUser;
+  PetscCall(ModelEffects(terminal->model, effects, sizeof(effects)));
+  PetscCall(ModelDofs(terminal->model, &dofs));
+  if (terminal->talks) PrintProgram(terminal);
+  if (terminal->talks && restarts)
+    printf("restart  after step %lld, t = %g\n", (long long)last_step, (double)terminal->model->t);
+  if (terminal->talks) OptionRecordPrint(options, stdout);
+  PetscCall(PrintSolver(terminal));
+  if (!terminal->quiet) PetscCall(MeshReport(terminal->model->mesh, terminal->scene, stdout));
+  if (terminal->talks) printf("dofs     %lld free\neffects  %s\n", (long long)dofs, *effects ? effects : "none");
+  if (!terminal->quiet) PetscCall(PrecheckMotions(terminal->model, stdout));
+  if (terminal->talks) {
+    printf("\n%5s %9s %9s %10s %10s %5s %5s %8s %12s %8s %8s\n", "step", "t", "dt", "iterations", "in contact", "in",
+           "out", "beta", "penetration", "spent", "left");
+    fflush(stdout);
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Warns of bodies that lock. Where nu is near a half, elements of first order with full integration keep their volume
+   at every quadrature point, and so they hardly deform. */
+static void WarnLocking(Terminal terminal)
+{
+  const Scene scene = terminal->scene;
+
+  for (int b = 0; b < scene->n_bodies && !terminal->rank && terminal->model->mesh->order == 1; b++) {
+    if (scene->bodies[b].rigid || scene->bodies[b].formulation != FORMULATION_FULL ||
+        scene->bodies[b].material.nu < LOCKING_NU)
+      continue;
+    fprintf(stderr,
+            "burnish: warning: %s: nu = %g with elements of first order and full integration: they lock (too stiff); "
+            "mesh.order: 2 does not\n",
+            SceneWhere(scene, scene->bodies[b].path, "material.nu"), scene->bodies[b].material.nu);
+  }
+}
+
+/* Warns of pairs whose surfaces share nodes. A mesh generator that merges the points in which two bodies touch joins
+   the bodies: no load separates them, and no gap shows it. */
+static PetscErrorCode WarnJoined(Terminal terminal)
+{
+  const Scene  scene = terminal->scene;
+  PetscInt     nodes;
+  ContactPlace place;
+
+  PetscFunctionBeginUser;
+  for (int p = 0; p < scene->n_contacts; p++) {
+    const SceneContact *contact = &scene->contacts[p];
+
+    PetscCall(ContactPairJoined(terminal->model->contact, p, &nodes, &place));
+    if (terminal->rank || !nodes) continue;
+    fprintf(stderr,
+            "burnish: warning: contact '%s': '%s' and '%s' have %" PetscInt_FMT
+            " node%s in common, as node %" PetscInt_FMT " (%.6g, %.6g, %.6g): there they are one body and never part\n",
+            contact->name, contact->slave, contact->master, nodes, nodes > 1 ? "s" : "", place.tag, (double)place.X[0],
+            (double)place.X[1], (double)place.X[2]);
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  TerminalBegin - prints the first lines of a run and warns of bodies that lock and of pairs that are joined.
+
+  Collective
+
+  Input Parameters:
++ terminal  - of the run
+. restarts  - how many parts the run had before this one
+. last_step - the last accepted step of those parts
+- options   - PETSc's options, of which those are printed that the last restart changed
+
+  Note:
+  The model is in the state from which this part of the run begins. The first lines name version, ranks, BLAS, solver,
+  mesh, effects and the rigid motions that only contact holds.
+@*/
+PetscErrorCode TerminalBegin(Terminal terminal, PetscInt restarts, PetscInt last_step, const OptionRecord *options)
+{
+  PetscFunctionBeginUser;
+  terminal->t_began = terminal->model->t;
+  PetscCall(PrintHead(terminal, restarts, last_step, options));
+  WarnLocking(terminal);
+  PetscCall(WarnJoined(terminal));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  TerminalWarnLost - warns that a file is not the one that the loaded checkpoint belongs to.
+
+  Not collective
+
+  Input Parameters:
++ terminal  - of the run
+. name      - of the file in the directory
+- last_step - step of the checkpoint
+@*/
+void TerminalWarnLost(Terminal terminal, const char *name, PetscInt last_step)
+{
+  if (terminal->rank == 0)
+    fprintf(stderr, "burnish: warning: %s/%s is not what the checkpoint left: it begins anew after step %lld\n",
+            terminal->directory, name, (long long)last_step);
+}
+
+/* Writes a duration as "12.3 s", "4:05 min" or "2:07 h". */
+static const char *DurationText(double seconds, char text[DURATION_SIZE])
+{
+  const long s = (long)seconds;
+
+  if (s < 60)
+    snprintf(text, DURATION_SIZE, "%.1f s", seconds);
+  else if (s < 3600)
+    snprintf(text, DURATION_SIZE, "%ld:%02ld min", s / 60, s % 60);
+  else
+    snprintf(text, DURATION_SIZE, "%ld:%02ld h", s / 3600, s / 60 % 60);
+  return text;
+}
+
+/* Prints the columns that only a run with contact has. */
+static void PrintStepContact(const StepRecord *step)
+{
+  printf(" %10lld %5lld %5lld", (long long)step->contact.nodes, (long long)step->contact.in,
+         (long long)step->contact.out);
+  if (isfinite((double)step->beta))
+    printf(" %8.3g", (double)step->beta);
+  else
+    printf(" %8s", "-");
+  printf(" %12.3e", (double)step->contact.max_penetration);
+}
+
+/*@
+  TerminalStep - prints the line of an accepted step.
+
+  Not collective
+
+  Input Parameters:
++ terminal - of the run
+. step     - the step
+- spent    - wall time since this part of the run began (s)
+
+  Note:
+  The time that is left is estimated from the time spent for each unit of the load parameter.
+@*/
+void TerminalStep(Terminal terminal, const StepRecord *step, PetscReal spent)
+{
+  const double seconds = (double)spent, covered = (double)(step->t - terminal->t_began);
+  char         spent_text[DURATION_SIZE], left_text[DURATION_SIZE];
+
+  if (!terminal->talks) return;
+  printf("%5lld %9.5g %9.3g %10lld", (long long)step->step, (double)step->t, (double)step->dt, (long long)step->newton);
+  if (terminal->model->contact)
+    PrintStepContact(step);
+  else
+    printf(" %10s %5s %5s %8s %12s", "-", "-", "-", "-", "-");
+  printf(" %8s %8s\n", DurationText(seconds, spent_text),
+         covered > 0.0 ? DurationText(seconds * (1.0 - (double)step->t) / covered, left_text) : "-");
+  if (step->tied)
+    printf("      %lld nodes come into contact together: no step above dt_min separates them\n", (long long)step->tied);
+  fflush(stdout);
+}
+
+/* Prints the final values of the probes; a contact edge with the node spacing that is its resolution. */
+static PetscErrorCode PrintProbes(Terminal terminal, const PetscReal *values)
+{
+  PetscFunctionBeginUser;
+  printf("\n");
+  for (int i = 0; i < terminal->scene->n_probes; i++) {
+    PetscReal spacing;
+
+    PetscCall(ProbesGetSpacing(terminal->probes, i, &spacing));
+    printf("%-20s ", terminal->scene->probes[i].name);
+    if (isfinite((double)values[i]))
+      printf("%.9g", (double)values[i]);
+    else
+      printf("no value");
+    if (isfinite((double)spacing)) printf(" (node spacing %.3g)", (double)spacing);
+    printf("\n");
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static void PrintAugmented(const PairFigures *pair)
+{
+  const ContactWindow *window = &pair->window;
+
+  printf("penalty of %s: augmented %lld times, %lld steps beyond g_max all the same; at the end %lld of %lld nodes "
+         "in contact, largest penetration or "
+         "opening %.3g g_max\n",
+         pair->name, (long long)window->augmented, (long long)window->missed, (long long)window->outside,
+         (long long)window->loaded, (double)window->excess);
+}
+
+static void PrintAdjusted(const PairFigures *pair)
+{
+  const ContactWindow *window = &pair->window;
+
+  printf("penalty of %s: raised %lld times, lowered %lld, cut short %lld, light nodes spared %lld; at the end %lld "
+         "of %lld loaded nodes outside the "
+         "window, largest penetration %.3g g_max\n",
+         pair->name, (long long)window->raised, (long long)window->lowered, (long long)window->clamped,
+         (long long)window->light, (long long)window->outside, (long long)window->loaded, (double)window->excess);
+}
+
+/* Prints what the penalties' adjustment and augmentation did, with the window at the last accepted step. */
+static void PrintWindows(const RunFigures *figures)
+{
+  for (int p = 0; p < figures->n_pairs; p++) {
+    const PairFigures *pair = &figures->pairs[p];
+
+    if (pair->scene->augment)
+      PrintAugmented(pair);
+    else if (pair->scene->adjust)
+      PrintAdjusted(pair);
+  }
+}
+
+/* Warns of PETSc options that nothing used. PETSc asks for the options that it knows and never looks at the others, so
+   that a misspelt one would go unnoticed. */
+static PetscErrorCode WarnUnused(void)
+{
+  PetscInt n;
+  char   **names, **values;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscOptionsLeftGet(NULL, &n, &names, &values));
+  for (PetscInt i = 0; i < n; i++)
+    fprintf(stderr, "burnish: warning: nothing used the PETSc option -%s; is it misspelt?\n", names[i]);
+  PetscCall(PetscOptionsLeftRestore(NULL, &n, &names, &values));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Warns of pairs without contact. A tool whose normals point the wrong way is never met, and the run would end well
+   without contact. */
+static void WarnUnmet(Scene scene, const PetscBool *met)
+{
+  for (int p = 0; p < scene->n_contacts; p++) {
+    const SceneContact *contact = &scene->contacts[p];
+
+    if (met[p]) continue;
+    fprintf(stderr,
+            "burnish: warning: contact '%s': no node of '%s' met '%s' in this run; if it should have: do the master's "
+            "normals point to the slave?\n",
+            contact->name, contact->slave, contact->master);
+  }
+}
+
+/* Warns of penetrations of more than a face size, whose results are those of no contact. */
+static void WarnDeep(PetscReal deepest)
+{
+  if (deepest > 1)
+    fprintf(stderr,
+            "burnish: warning: a slave node was up to %.3g face sizes behind its master: the penalty is too soft for "
+            "what presses\n",
+            (double)deepest);
+}
+
+/* Warns of linear solves that did not become as accurate as they should be. */
+static void WarnInaccurate(const RunFigures *figures)
+{
+  const LinearCounts *counts = &figures->linear;
+
+  if (!counts->inaccurate) return;
+  fprintf(stderr,
+          "burnish: warning: %lld of %lld linear solves left a relative residual of up to %.2g, more than 100 times "
+          "the tolerance, and refinement could not lower "
+          "it; %sthe system is badly conditioned: is a penalty too large?\n",
+          (long long)counts->inaccurate, (long long)counts->solves, (double)counts->worst,
+          figures->run->message ? "" : "Newton's method converged all the same, but ");
+}
+
+static void PrintLast(Terminal terminal, const RunRecord *run)
+{
+  const StepperReport *report = run->way;
+  char                 text[DURATION_SIZE];
+
+  if (report->relaxed)
+    printf("stabilised pairs: springs relaxed %lld times, took out an energy of %.3g, hold at most %.2g of an accepted "
+           "state's\n",
+           (long long)report->relaxed, (double)report->taken, (double)report->left);
+  if (report->cycles)
+    printf("contact sets that repeated themselves: %lld, steps cut for it %lld; the last time %s\n",
+           (long long)report->cycles, (long long)report->cycles_cut, report->cycle);
+  printf("%s: %lld steps (%lld failed, %lld repeated), %lld iterations, %s; results in %s\n", run->status,
+         (long long)report->steps, (long long)report->steps_failed, (long long)report->steps_repeated,
+         (long long)report->newton_iterations, DurationText((double)run->wall_s, text), terminal->directory);
+  fflush(stdout);
+}
+
+/*@
+  TerminalEnd - prints the last lines of a run and warns of what its figures show.
+
+  Not collective
+
+  Input Parameters:
++ terminal - of the run
+- last     - figures of the run and final values
+
+  Note:
+  To be called however the run ended. Without an accepted step there are no probes and no unmet pairs to speak of.
+@*/
+PetscErrorCode TerminalEnd(Terminal terminal, const TerminalLast *last)
+{
+  const RunFigures   *figures = last->figures;
+  const LinearCounts *counts  = &figures->linear;
+  const RunRecord    *run     = figures->run;
+
+  PetscFunctionBeginUser;
+  if (terminal->talks && figures->last) PetscCall(PrintProbes(terminal, last->probes));
+  if (terminal->talks) {
+    PrintWindows(figures);
+    EndReportPrint(figures, stdout);
+  }
+  if (terminal->rank) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(WarnUnused());
+  if (figures->last) WarnUnmet(terminal->scene, last->met);
+  WarnDeep(last->deepest);
+  if (terminal->talks && counts->refined)
+    printf("linear solves: %lld of %lld refined, in %lld steps\n", (long long)counts->refined,
+           (long long)counts->solves, (long long)counts->steps);
+  WarnInaccurate(figures);
+  if (run->message) fprintf(stderr, "burnish: %s: %s\n", run->status, run->message);
+  if (terminal->talks) PrintLast(terminal, run);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

@@ -1,0 +1,130 @@
+/* Factors over the load parameter and the prescribed motions that are built from them, see loadhistory.h. */
+#include "scene/loadhistory.h"
+#include <math.h>
+
+/* Returns the interval i with t[i] <= t < t[i + 1]: -1 before the first breakpoint, n - 1 from the last one on. */
+static int HistoryInterval(const History *history, double t)
+{
+  int i = -1;
+
+  while (i + 1 < history->n && t >= history->t[i + 1]) i++;
+  return i;
+}
+
+/*@
+  HistoryBreaks - tells whether the load parameter t is a breakpoint of a history, at which its slope may change.
+
+  Not collective
+
+  Input Parameters:
++ history - the factor over the load parameter
+- t       - load parameter
+
+  Note:
+  Plain C. It returns 1 at a breakpoint, else 0. The comparison is exact.
+@*/
+int HistoryBreaks(const History *history, double t)
+{
+  const int i = HistoryInterval(history, t);
+
+  return i >= 0 && t == history->t[i];
+}
+
+/*@
+  HistoryValue - returns the factor of a history at the load parameter t (no unit).
+
+  Not collective
+
+  Input Parameters:
++ history - the factor over the load parameter
+- t       - load parameter
+
+  Note:
+  Plain C. The factor is linear between the breakpoints, exact at them, and has the end values beyond them.
+@*/
+double HistoryValue(const History *history, double t)
+{
+  const int i = HistoryInterval(history, t);
+
+  if (i < 0) return history->v[0];
+  if (i == history->n - 1) return history->v[i];
+  return history->v[i] +
+         (history->v[i + 1] - history->v[i]) / (history->t[i + 1] - history->t[i]) * (t - history->t[i]);
+}
+
+/* Gives the translation (length) and the rotation vector (radians) at t. */
+static void MotionAt(const Motion *motion, double t, double shift[3], double turn[3])
+{
+  for (int d = 0; d < 3; d++) shift[d] = turn[d] = 0;
+  for (int m = 0; m < motion->n; m++) {
+    const MotionComponent *c     = &motion->components[m];
+    const double           value = c->value * HistoryValue(&c->history, t);
+
+    if (c->component < 3)
+      shift[c->component] += value;
+    else
+      turn[c->component - 3] += value * M_PI / 180;
+  }
+}
+
+/* Computes v = R(turn) V by Rodrigues' formula. */
+static void RotatePoint(const double turn[3], const double V[3], double v[3])
+{
+  const double angle = sqrt(turn[0] * turn[0] + turn[1] * turn[1] + turn[2] * turn[2]), s = sin(angle), c = cos(angle);
+  double       a[3] = {0, 0, 0}, along = 0;
+
+  for (int d = 0; d < 3 && angle > 0; d++) a[d] = turn[d] / angle;
+  for (int d = 0; d < 3; d++) along += a[d] * V[d];
+  for (int d = 0; d < 3; d++)
+    v[d] = c * V[d] + s * (a[(d + 1) % 3] * V[(d + 2) % 3] - a[(d + 2) % 3] * V[(d + 1) % 3]) + (1 - c) * along * a[d];
+}
+
+/*@
+  MotionPlace - gives the place at load parameter t of a point that moves with a rigid body.
+
+  Not collective
+
+  Input Parameters:
++ motion - of the body
+. t      - load parameter
+- X      - the point's place at t = 0 (length), in the coordinates of motion->point
+
+  Output Parameter:
+. x - its place at t (length)
+
+  Note:
+  Plain C. Where nothing moves, x is X to the last bit.
+@*/
+void MotionPlace(const Motion *motion, double t, const double X[3], double x[3])
+{
+  double shift[3], turn[3], arm[3], turned[3];
+
+  MotionAt(motion, t, shift, turn);
+  for (int d = 0; d < 3; d++) arm[d] = X[d] - motion->point[d];
+  RotatePoint(turn, arm, turned);
+  for (int d = 0; d < 3; d++) x[d] = X[d] + shift[d] + (turned[d] - arm[d]);
+}
+
+/*@
+  MotionTurn - turns a direction that is fixed to a rigid body to the load parameter t.
+
+  Not collective
+
+  Input Parameters:
++ motion - of the body
+. t      - load parameter
+- V      - the direction at t = 0
+
+  Output Parameter:
+. v - the direction at t, as long as V
+
+  Note:
+  Plain C.
+@*/
+void MotionTurn(const Motion *motion, double t, const double V[3], double v[3])
+{
+  double shift[3], turn[3];
+
+  MotionAt(motion, t, shift, turn);
+  RotatePoint(turn, V, v);
+}
