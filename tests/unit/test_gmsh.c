@@ -23,7 +23,7 @@ static const char *const geometry =
   "Physical Surface(\"block one\", 7) = {1}; Physical Curve(\"left\", 7) = {-4}; Physical Curve(3) = {2}; Physical "
   "Point(\"corner\") = {1};\n";
 
-/* length is a parameter, width is none: gmsh assigns it whatever is asked for */
+/* length is a parameter. width is not one, because the file assigns its value without declaring it. */
 static const char *const sizes  = "If (!Exists(length)) length = 2; EndIf\nwidth = 4;\n";
 static const char *const longer = "If (!Exists(length)) length = 3; EndIf\nwidth = 4;\n";
 
