@@ -1,64 +1,86 @@
+/* Block matrix: lists the pairs of nodes that blocks couple, adds the blocks into one sum for each pair, and hands the
+   sums to a NodeMatrix. Only sums on and above the diagonal are stored, because every block is symmetric. */
 #include "matrix/blockmatrix.h"
 #include "matrix/nodematrix.h"
 
-/* A pattern is kept while it holds what the blocks need, with zeros elsewhere, and is at most this many times as large:
-   a new one costs the sum with other matrices and the solver's analysis (half of a factorisation at 10,000 dofs), a
-   zero costs fill. Contact that moves on seldom reaches it. */
+/* Largest pattern that is kept, as a multiple of the pattern that the blocks need. A pattern that holds all blocks is
+   kept, with zeros where no block has an entry. A new pattern costs the sum with other matrices and the solver's
+   analysis, which is half of a factorisation at 10,000 dofs. A zero costs fill. Contact that moves on seldom reaches
+   this limit. */
 #define BLOCK_SLACK 1.5
 
-/* Number of a node while nodes are listed */
+/* Mark in list_number of a node that has been listed but has no number yet. */
 enum { BLOCK_LISTED = -2 };
 
-/* A row of a pair's sum, filled up to a vector of the machine's; what is beyond the pair's own columns is not used */
+/* Numbers in one row of a pair's sum. A row is filled up to the length of one of the machine's vectors. What is beyond
+   the pair's own columns is not used. */
 enum { ROW = BLOCK_PADDING + 1 };
-typedef double SumRow __attribute__((vector_size(ROW * sizeof(double)), aligned(sizeof(double)),
-                                     may_alias)); /* as PetscMalloc() aligns, and within arrays */
+/* One row of a sum as a vector. It is aligned only to a double, because PetscMalloc() and places within arrays
+   guarantee no more. */
+typedef double SumRow __attribute__((vector_size(ROW * sizeof(double)), aligned(sizeof(double)), may_alias));
 
-/* One row of nodes of a block: where the block starts in the pattern, which of its rows it is */
+/* One row of nodes of a block: at is the position of the block's first node in the pattern, node says which of its
+   nodes the row belongs to. */
 typedef struct {
   PetscInt at, node;
 } BlockRow;
 
-/* Nodes by ascending keys with their dofs (n_nodes*size); blocks overlap: every pair of nodes once, row by row,
- * ascending; pair_ptr NULL: there is no matrix */
+/* Nodes by ascending keys with their dofs (n_nodes*size), and the pairs of nodes that blocks couple. Blocks overlap,
+   but each pair is listed once, row by row, columns ascending. pair_ptr is NULL where there is no matrix. */
 typedef struct {
   PetscInt n_nodes, *key, *dof, *pair_ptr, *pair;
 } BlockPattern;
 
 struct _n_BlockMatrix {
-  MPI_Comm  comm;
-  int       size;                   /* of a node: its dofs */
-  PetscInt  n_listed, *list;        /* nodes of all lists, one list after another; where each starts */
-  PetscInt *list_key, *list_number; /* of every node of the lists: its key, -1 without any; its place among those of the
-                                       matrix, -1 elsewhere */
-  PetscInt *list_dof;               /* size for each of these nodes */
-  PetscInt  n, room, *ptr, *of;     /* named blocks: where their nodes start; their lists */
-  PetscInt  nodes_room,
-    *node; /* of the blocks one after another, by ascending key, those without one last: place in the list */
+  MPI_Comm comm;
+  int      size;            /* dofs of a node */
+  PetscInt n_listed, *list; /* nodes of all lists, one list after another; start of each list */
+  /* For every node of the lists: its key (-1: it has no free dof), and its number among the nodes of the matrix (-1: it
+     is not among them). */
+  PetscInt *list_key, *list_number;
+  PetscInt *list_dof;           /* dofs of these nodes, size for each */
+  PetscInt  n, room, *ptr, *of; /* named blocks: start of their nodes, and their lists */
+  /* Nodes of the blocks, one block after another, as places in the block's list. They ascend by key; nodes without a
+     key come last. */
+  PetscInt   nodes_room, *node;
   NodeMatrix matrix;
-  PetscInt   n_pattern,
-    *pattern; /* of the blocks: number of nodes with keys and these keys of block after block; key: the first dof */
-  BlockPattern own; /* of the matrix */
-  PetscInt    *diagonal,
-    *above; /* of each row: its first pair that is not below the diagonal; which of those of all rows that is */
-  PetscInt *of_pair; /* the sum of each pair: its own, below the diagonal that of its mirror image */
-  PetscInt *row_ptr; /* of each node, its rows in the blocks */
+  /* Pattern that the blocks need, block after block: the number of nodes with keys, then these keys. A key is the
+     node's first free global dof. */
+  PetscInt     n_pattern, *pattern;
+  BlockPattern own; /* nodes and pairs of the matrix */
+  /* For each row: its first pair that is not below the diagonal, and the number of such pairs in the rows before it. */
+  PetscInt *diagonal, *above;
+  PetscInt *of_pair; /* sum of each pair; a pair below the diagonal has the sum of its mirror image */
+  PetscInt *row_ptr; /* for each node, the start of its rows in row */
   BlockRow *row;
-  PetscInt *seen,
-    *at; /* of each node of the matrix: the last sum in whose column it stood; at: numbers of the block at hand */
+  /* seen: for each node of the matrix, the sum of the last row in which it is a column. at: numbers of the nodes of the
+     block that is being added. */
+  PetscInt        *seen, *at;
   SumRow          *sum;     /* [pairs not below the diagonal][size] */
-  PetscInt        *coupled; /* room for what BlockMatrixGetCoupled() shows */
-  const PetscReal *along;   /* what blocks are multiplied with as they are added, or NULL */
+  PetscInt        *coupled; /* room for the result of BlockMatrixGetCoupled() */
+  const PetscReal *along;   /* vector that blocks are multiplied by when they are added, or NULL */
   PetscReal       *product;
   PetscBool        restored; /* the matrix is not the one that its user knows */
-  PetscBool        replaced; /* the pattern is not the one of BlockMatrixMark(), which is put aside */
+  PetscBool        replaced; /* the pattern has changed since BlockMatrixMark(); marked holds the old one */
   BlockPattern     marked;
 };
 
-/* BlockMatrixCreate - an empty one.
+/*@
+  BlockMatrixCreate - creates an empty block matrix.
 
-   Collective. size: dofs of a node, up to 4, which stand next to each other in blocks in an order of their own; 1: one
-   by one. */
+  Collective
+
+  Input Parameters:
++ comm - all ranks
+- size - dofs of a node, 1 to 4; with 1, dofs are treated one by one
+
+  Output Parameter:
+. blocks - destroyed with BlockMatrixDestroy()
+
+  Note:
+  The dofs of a node are next to each other in every block. Blocks have an order of nodes of their own, see
+  BlockMatrixSort().
+@*/
 PetscErrorCode BlockMatrixCreate(MPI_Comm comm, int size, BlockMatrix *blocks)
 {
   PetscFunctionBeginUser;
@@ -86,7 +108,14 @@ static PetscErrorCode DestroyPattern(BlockPattern *pattern)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* BlockMatrixDestroy - Collective. */
+/*@
+  BlockMatrixDestroy - frees a block matrix and its matrix.
+
+  Collective
+
+  Input Parameter:
+. blocks - may be NULL; set to NULL
+@*/
 PetscErrorCode BlockMatrixDestroy(BlockMatrix *blocks)
 {
   PetscFunctionBeginUser;
@@ -110,10 +139,20 @@ PetscErrorCode BlockMatrixDestroy(BlockMatrix *blocks)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* BlockMatrixBegin - a new sum: without blocks, over the nodes of new lists; the assembled matrix and its pattern stay.
+/*@
+  BlockMatrixBegin - begins a new sum without blocks, over the nodes of new lists.
 
-   Not collective. n_lists: rank-local vectors (contact: one for each pair); n[list]: their nodes; dof[list][n*size]:
-   global dofs, -1: none (its rows and columns are left out). */
+  Not collective
+
+  Input Parameters:
++ blocks  - the block matrix
+. n_lists - number of rank-local vectors, in contact one for each pair
+. n       - number of nodes of each list
+- dof     - global dofs of each list [n*size]; -1 for a dof that is left out with its row and column
+
+  Note:
+  The matrix that was assembled before and its pattern remain.
+@*/
 PetscErrorCode BlockMatrixBegin(BlockMatrix blocks, int n_lists, const PetscInt n[], const PetscInt *const dof[])
 {
   const int size  = blocks->size;
@@ -140,8 +179,20 @@ PetscErrorCode BlockMatrixBegin(BlockMatrix blocks, int n_lists, const PetscInt 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* BlockMatrixSort - brings nodes of a list into the order in which blocks have them; *with: how many of them have dofs,
- * which come first. Not collective. */
+/*@
+  BlockMatrixSort - brings nodes of a list into the order that they have in blocks.
+
+  Not collective
+
+  Input Parameters:
++ blocks - the block matrix, after BlockMatrixBegin()
+. list   - number of the list
+. n      - number of nodes
+- node   - places in the list, reordered
+
+  Output Parameter:
+. with - number of nodes that have dofs; these come first
+@*/
 PetscErrorCode BlockMatrixSort(BlockMatrix blocks, int list, PetscInt n, PetscInt node[], PetscInt *with)
 {
   const PetscInt *key = &blocks->list_key[blocks->list[list]];
@@ -159,10 +210,21 @@ PetscErrorCode BlockMatrixSort(BlockMatrix blocks, int list, PetscInt n, PetscIn
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* BlockMatrixName - announces a block over nodes of list `list`, or, with fewer of them, blocks within it.
+/*@
+  BlockMatrixName - announces a block over nodes of a list.
 
-   Not collective, before BlockMatrixPlace(). whole: its nodes without dofs, too, are wanted by BlockMatrixGetNodes().
- */
+  Not collective
+
+  Input Parameters:
++ blocks - the block matrix, before BlockMatrixPlace()
+. list   - number of the list
+. n      - number of nodes
+. node   - places in the list, in any order
+- whole  - PETSC_TRUE: BlockMatrixGetNodes() returns the nodes without dofs too
+
+  Note:
+  Blocks over some of these nodes need not be announced.
+@*/
 PetscErrorCode BlockMatrixName(BlockMatrix blocks, int list, PetscInt n, const PetscInt node[], PetscBool whole)
 {
   PetscInt first, with;
@@ -184,15 +246,26 @@ PetscErrorCode BlockMatrixName(BlockMatrix blocks, int list, PetscInt n, const P
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* BlockMatrixGetNodes - the nodes of the b-th block that was named, in its order; borrowed until BlockMatrixBegin().
- * Not collective. */
+/*@
+  BlockMatrixGetNodes - returns the nodes of a named block, in the order of BlockMatrixSort().
+
+  Not collective
+
+  Input Parameters:
++ blocks - the block matrix
+- b      - number of the block, counted from 0 in the order of BlockMatrixName()
+
+  Output Parameters:
++ n    - number of nodes
+- node - places in the block's list, borrowed until the next BlockMatrixBegin()
+@*/
 void BlockMatrixGetNodes(BlockMatrix blocks, PetscInt b, PetscInt *n, const PetscInt **node)
 {
   *n    = blocks->ptr[b + 1] - blocks->ptr[b];
   *node = &blocks->node[blocks->ptr[b]];
 }
 
-/* The pattern that the named blocks need. */
+/* Lists the pattern that the named blocks need. */
 static PetscErrorCode BlocksPattern(BlockMatrix blocks, PetscInt *n, PetscInt **pattern)
 {
   PetscFunctionBeginUser;
@@ -208,7 +281,7 @@ static PetscErrorCode BlocksPattern(BlockMatrix blocks, PetscInt *n, PetscInt **
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The nodes that blocks have, ascending, each once, with room for their dofs. */
+/* Lists the nodes of all blocks, ascending, each once, and makes room for their dofs. */
 static PetscErrorCode ListNodes(BlockMatrix blocks)
 {
   PetscInt n = 0;
@@ -225,15 +298,15 @@ static PetscErrorCode ListNodes(BlockMatrix blocks)
       blocks->own.key[n++]      = blocks->list_key[node];
     }
   }
-  PetscCall(PetscSortRemoveDupsInt(&n, blocks->own.key)); /* of several lists */
+  PetscCall(PetscSortRemoveDupsInt(&n, blocks->own.key)); /* nodes of several lists */
   blocks->own.n_nodes = n;
   PetscCall(PetscFree(blocks->own.dof));
   PetscCall(PetscMalloc1(n * blocks->size, &blocks->own.dof));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Which node of the matrix each node of the lists is that a block has; *known: all of them are listed there. fresh: it
- * gets its dofs from there. */
+/* Finds the number in the matrix of every node that a block has. known: all of them are among the matrix' nodes. With
+   fresh, the matrix' nodes get their dofs from the lists. */
 static PetscErrorCode BlockMatrixNumberNodes(BlockMatrix blocks, PetscBool fresh, PetscBool *known)
 {
   const int size = blocks->size;
@@ -259,8 +332,8 @@ static PetscErrorCode BlockMatrixNumberNodes(BlockMatrix blocks, PetscBool fresh
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The rows of all blocks, those of one node together, in the blocks' order. number[n_pattern]: out, the nodes of the
- * pattern in the matrix. */
+/* Lists the rows of all blocks by node; rows of one node keep the order of the blocks. number[n_pattern] returns the
+   numbers in the matrix of the pattern's nodes. */
 static PetscErrorCode GroupRows(BlockMatrix blocks, PetscInt *number)
 {
   PetscInt *ptr, block = 0;
@@ -278,14 +351,14 @@ static PetscErrorCode GroupRows(BlockMatrix blocks, PetscInt *number)
   }
   for (PetscInt r = 0; r < blocks->own.n_nodes; r++) ptr[r + 2] += ptr[r + 1];
   for (PetscInt at = 0; at < blocks->n_pattern; at += 1 + blocks->pattern[at])
-    for (PetscInt i = 0; i < blocks->pattern[at]; i++) /* moves ptr[r + 1] from the start of r's to their end */
+    for (PetscInt i = 0; i < blocks->pattern[at]; i++) /* moves ptr[r + 1] from the start of r's rows to their end */
       blocks->row[ptr[number[at + 1 + i] + 1]++] = (BlockRow){.at = at + 1, .node = i};
   blocks->row_ptr = ptr;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The pairs on and above the diagonal that some block couples, each once, row by row, in no order. ptr[n_nodes + 1]:
- * out; *pair: out, to be freed. */
+/* Lists the pairs on and above the diagonal that blocks couple, each once, row by row, in no order. ptr[n_nodes + 1]
+   returns the start of each row; the caller frees pair. */
 static PetscErrorCode ListUpper(BlockMatrix blocks, const PetscInt *number, PetscInt *ptr, PetscInt **pair)
 {
   const BlockRow *row  = blocks->row;
@@ -314,9 +387,9 @@ static PetscErrorCode ListUpper(BlockMatrix blocks, const PetscInt *number, Pets
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The pairs of nodes that some block couples, each once, row by row, ascending. Blocks overlap several times over, so
-   this spares the parallel matrix most of the entries. Nothing is sorted: who has a node in its row is found in
-   ascending order. */
+/* Lists the pairs of nodes that blocks couple, each once, row by row, columns ascending. Blocks overlap several times
+   over, so this saves the parallel matrix most of the entries. Nothing is sorted: the rows that contain a node are
+   found in ascending order. */
 static PetscErrorCode ListPairs(BlockMatrix blocks, const PetscInt *number)
 {
   const PetscInt n = blocks->own.n_nodes;
@@ -335,10 +408,10 @@ static PetscErrorCode ListPairs(BlockMatrix blocks, const PetscInt *number)
   for (PetscInt r = 0; r < n; r++) ptr[r + 1] += ptr[r];
   PetscCall(PetscArraycpy(next, ptr, n));
   PetscCall(PetscMalloc1(ptr[n], &pair));
-  for (PetscInt r = 0; r < n; r++) /* below the diagonal */
+  for (PetscInt r = 0; r < n; r++) /* pairs below the diagonal */
     for (PetscInt k = upper_ptr[r]; k < upper_ptr[r + 1]; k++)
       if (upper[k] > r) pair[next[upper[k]]++] = r;
-  for (PetscInt r = 0; r < n; r++) { /* and the rest */
+  for (PetscInt r = 0; r < n; r++) { /* diagonal and pairs above it */
     const PetscInt diagonal = next[r]++;
 
     pair[diagonal] = r;
@@ -351,7 +424,7 @@ static PetscErrorCode ListPairs(BlockMatrix blocks, const PetscInt *number)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Finds the diagonal, and the sum of each pair: there is one for it and its mirror image. */
+/* Finds the diagonal of each row and the sum of each pair. A pair and its mirror image have one sum. */
 static PetscErrorCode ListSums(BlockMatrix blocks)
 {
   const PetscInt *ptr = blocks->own.pair_ptr, n = ptr[blocks->own.n_nodes];
@@ -365,9 +438,9 @@ static PetscErrorCode ListSums(BlockMatrix blocks)
   blocks->above[0] = 0;
   PetscCall(PetscMalloc1(n, &blocks->of_pair));
   PetscCall(PetscMalloc2(blocks->own.n_nodes, &blocks->seen, blocks->own.n_nodes, &blocks->at));
-  PetscCall(PetscMalloc1(
-    blocks->own.n_nodes,
-    &next)); /* of each row: the pair below the diagonal whose image comes next; images come in the order of rows */
+  /* next: for each row, the pair below the diagonal whose mirror image comes next. The mirror images come in the order
+     of rows. */
+  PetscCall(PetscMalloc1(blocks->own.n_nodes, &next));
   for (PetscInt r = 0; r < blocks->own.n_nodes; r++) {
     next[r] = ptr[r];
     for (blocks->diagonal[r] = ptr[r]; blocks->diagonal[r] < ptr[r + 1] && blocks->own.pair[blocks->diagonal[r]] < r;)
@@ -381,10 +454,10 @@ static PetscErrorCode ListSums(BlockMatrix blocks)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* How many of the matrix' pairs the pattern needs, -1: one is missing. */
+/* Counts how many of the matrix' pairs the blocks need; -1 if one of them is missing. */
 static PetscErrorCode CountPairs(BlockMatrix blocks, const PetscInt *number, PetscInt *used)
 {
-  PetscInt *seen = blocks->seen, *met = blocks->at; /* met: the last row in which a column was asked for */
+  PetscInt *seen = blocks->seen, *met = blocks->at; /* met: the last row in which a column was needed */
 
   PetscFunctionBeginUser;
   *used = 0;
@@ -409,8 +482,8 @@ static PetscErrorCode CountPairs(BlockMatrix blocks, const PetscInt *number, Pet
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Finds a place for every pair. fresh: among pairs listed anew; else among those that are there, if these hold all and
- * are not far too many: *placed. */
+/* Finds a place for every pair. With fresh, the pairs are listed anew. Without it, the present pairs are used if they
+   contain all that are needed and are at most BLOCK_SLACK times as many; placed says whether. */
 static PetscErrorCode PlacePattern(BlockMatrix blocks, PetscBool fresh, PetscBool *placed)
 {
   PetscInt *number, used;
@@ -432,7 +505,7 @@ static PetscErrorCode PlacePattern(BlockMatrix blocks, PetscBool fresh, PetscBoo
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* A matrix of `rows` rows on this rank with the pairs that are listed. */
+/* Creates a matrix of `rows` rows on this rank with the pairs that are listed. */
 static PetscErrorCode BlockMatrixCreateMat(BlockMatrix blocks, PetscInt rows)
 {
   const NodePairs pairs = {blocks->size, blocks->own.n_nodes, blocks->own.dof, blocks->own.pair_ptr, blocks->own.pair};
@@ -447,11 +520,23 @@ static PetscErrorCode BlockMatrixCreateMat(BlockMatrix blocks, PetscInt rows)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* BlockMatrixPlace - the places of all named blocks in a parallel AIJ matrix over the global dofs, which stays the
-   block matrix's; the sum is 0.
+/*@
+  BlockMatrixPlace - finds the places of all named blocks in the matrix and sets the sum to 0.
 
-   Collective. rows: of this rank. *changed: the matrix is a new one, as the last one's pattern did not hold some rank's
-   blocks or was far larger; else only its values are, with zeros where no block asks for an entry. */
+  Collective
+
+  Input Parameters:
++ blocks - the block matrix, after BlockMatrixName() for each block
+- rows   - rows of the matrix on this rank
+
+  Output Parameter:
+. changed - PETSC_TRUE: the matrix is a new one; PETSC_FALSE: only its values change
+
+  Note:
+  The matrix is a parallel AIJ matrix over the global dofs and belongs to the block matrix. It is a new one if the last
+  pattern did not contain some rank's blocks or was more than BLOCK_SLACK times as large as needed. A matrix that is
+  kept has zeros where no block has an entry.
+@*/
 PetscErrorCode BlockMatrixPlace(BlockMatrix blocks, PetscInt rows, PetscBool *changed)
 {
   PetscInt  n = 0, *pattern = NULL;
@@ -488,7 +573,7 @@ PetscErrorCode BlockMatrixPlace(BlockMatrix blocks, PetscInt rows, PetscBool *ch
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Notes where the sums of a row stand. */
+/* Notes the places of the sums of row r. */
 static inline void LookAlong(BlockMatrix blocks, PetscInt r)
 {
   const PetscInt *pair = &blocks->own.pair[blocks->diagonal[r]], first = blocks->above[r],
@@ -497,13 +582,14 @@ static inline void LookAlong(BlockMatrix blocks, PetscInt r)
   for (PetscInt k = 0; k < n; k++) blocks->seen[pair[k]] = first + k;
 }
 
-/* Adds the upper triangle of a block to the sums; size and outer constants where this is called, so that the loop over
- * a node's rows unrolls. */
+/* Adds the upper triangle of a block to the sums. size and outer are constants in each call, so that the compiler
+   unrolls the loop over a node's rows. */
 static inline PetscErrorCode Sum(const int size, const PetscBool outer, BlockMatrix blocks, PetscInt n, PetscInt m,
                                  const PetscReal *value)
 {
   const PetscInt *at = blocks->at, *seen = blocks->seen;
-  SumRow *const   sums = blocks->sum; /* else it would be read again after every sum, which may be anything */
+  SumRow *const   sums =
+    blocks->sum; /* SumRow may alias anything: the compiler would read blocks->sum again after every sum */
 
   PetscFunctionBeginUser;
   for (PetscInt i = 0; i < n; i++) {
@@ -529,7 +615,7 @@ static inline PetscErrorCode Sum(const int size, const PetscBool outer, BlockMat
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* y += A x from the upper triangle. */
+/* y += A x, from the upper triangle of A. */
 static void MultiplyUpper(PetscInt m, const PetscReal *A, const PetscReal *x, PetscReal *y)
 {
   for (PetscInt i = 0; i < m; i++) {
@@ -544,7 +630,7 @@ static void MultiplyUpper(PetscInt m, const PetscReal *A, const PetscReal *x, Pe
   }
 }
 
-/* y += v v^T x */
+/* y += v v^T x. */
 static void MultiplyOuter(PetscInt m, const PetscReal *v, const PetscReal *x, PetscReal *y)
 {
   PetscReal along = 0;
@@ -553,7 +639,8 @@ static void MultiplyOuter(PetscInt m, const PetscReal *v, const PetscReal *x, Pe
   for (PetscInt i = 0; i < m; i++) y[i] += along * v[i];
 }
 
-/* product += block along; most blocks are far from all that moves. */
+/* product += block * along. Most blocks have only zeros in along, because most are far from everything that moves;
+   these are skipped. */
 static PetscErrorCode BlockMatrixMultiplyRows(BlockMatrix blocks, PetscInt n, const PetscInt *node, PetscBool outer,
                                               const PetscReal *value)
 {
@@ -599,11 +686,21 @@ static PetscErrorCode Add(BlockMatrix blocks, int list, PetscInt n, const PetscI
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* BlockMatrixAdd - adds a block over nodes of list `list`, in the order of BlockMatrixSort(), all pairs of which some
-   named block has.
+/*@
+  BlockMatrixAdd - adds a block to the sum.
 
-   Not collective, after BlockMatrixPlace(). value[(n*size)^2 + BLOCK_PADDING]: symmetric, row-major (force per length);
-   what is below the diagonal, and the padding, is not used. */
+  Not collective
+
+  Input Parameters:
++ blocks - the block matrix, after BlockMatrixPlace()
+. list   - number of the list
+. n      - number of nodes
+. node   - places in the list, in the order of BlockMatrixSort(); each pair of them belongs to some named block
+- value  - [(n*size)^2 + BLOCK_PADDING], symmetric, row-major (force per length); only the upper triangle is used
+
+  Note:
+  The values are added at once and not kept. Fails if a pair belongs to no named block.
+@*/
 PetscErrorCode BlockMatrixAdd(BlockMatrix blocks, int list, PetscInt n, const PetscInt node[], const PetscReal value[])
 {
   PetscFunctionBeginUser;
@@ -611,8 +708,18 @@ PetscErrorCode BlockMatrixAdd(BlockMatrix blocks, int list, PetscInt n, const Pe
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* BlockMatrixAddOuter - as BlockMatrixAdd() for a block v v^T, which is never written out: value[n*size +
- * BLOCK_PADDING] is v. Not collective. */
+/*@
+  BlockMatrixAddOuter - adds a block v v^T to the sum, without forming it.
+
+  Not collective
+
+  Input Parameters:
++ blocks - the block matrix, after BlockMatrixPlace()
+. list   - number of the list
+. n      - number of nodes
+. node   - as for BlockMatrixAdd()
+- value  - the vector v [n*size + BLOCK_PADDING]
+@*/
 PetscErrorCode BlockMatrixAddOuter(BlockMatrix blocks, int list, PetscInt n, const PetscInt node[],
                                    const PetscReal value[])
 {
@@ -621,17 +728,26 @@ PetscErrorCode BlockMatrixAddOuter(BlockMatrix blocks, int list, PetscInt n, con
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* BlockMatrixMultiply - from now on blocks are multiplied as they are added: y += block x, entries without a global dof
-   included.
+/*@
+  BlockMatrixMultiply - sets vectors with which blocks are multiplied when they are added: y += block * x.
 
-   Not collective. x, y: over the nodes of the blocks' list, borrowed; NULL: not any more. */
+  Not collective
+
+  Input Parameters:
++ blocks - the block matrix
+. x      - over the nodes of the blocks' list, borrowed; NULL ends the multiplication
+- y      - over the same nodes, borrowed; added to
+
+  Note:
+  Entries without a global dof are included. BlockMatrixBegin() ends the multiplication too.
+@*/
 void BlockMatrixMultiply(BlockMatrix blocks, const PetscReal *x, PetscReal *y)
 {
   blocks->along   = x;
   blocks->product = y;
 }
 
-/* Fills the sums on the diagonal, of which blocks have the upper triangle. */
+/* Fills the lower triangle of the sums on the diagonal. Blocks only add to the upper one. */
 static void FillDiagonal(BlockMatrix blocks)
 {
   for (PetscInt r = 0; r < blocks->own.n_nodes; r++) {
@@ -642,7 +758,17 @@ static void FillDiagonal(BlockMatrix blocks)
   }
 }
 
-/* BlockMatrixEnd - the sum of all ranks' blocks. Collective. */
+/*@
+  BlockMatrixEnd - assembles the sum of all ranks' blocks.
+
+  Collective
+
+  Input Parameter:
+. blocks - the block matrix
+
+  Output Parameter:
+. matrix - parallel AIJ matrix that belongs to the block matrix
+@*/
 PetscErrorCode BlockMatrixEnd(BlockMatrix blocks, Mat *matrix)
 {
   const NodeUpper values = {(const PetscReal *)blocks->sum, ROW, blocks->of_pair, blocks->diagonal};
@@ -654,7 +780,19 @@ PetscErrorCode BlockMatrixEnd(BlockMatrix blocks, Mat *matrix)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* BlockMatrixGetCoupled - Not collective. dof: its node's first one that is free, -1: none is. */
+/*@
+  BlockMatrixGetCoupled - returns the dofs that the pattern couples with a node.
+
+  Not collective
+
+  Input Parameters:
++ blocks - the block matrix
+- dof    - the node's first free dof; -1 if it has none
+
+  Output Parameters:
++ n       - number of dofs; 0 if the pattern does not contain the node
+- coupled - global dofs, ascending, borrowed until the next call for this block matrix
+@*/
 PetscErrorCode BlockMatrixGetCoupled(BlockMatrix blocks, PetscInt dof, PetscInt *n, const PetscInt **coupled)
 {
   const BlockPattern *own  = &blocks->own;
@@ -677,18 +815,25 @@ PetscErrorCode BlockMatrixGetCoupled(BlockMatrix blocks, PetscInt dof, PetscInt 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The pattern that has been put back gets its matrix, which is a new one to its user. */
+/* Creates the matrix of a pattern that has been restored. To its user it is a new matrix. */
 static PetscErrorCode RestoreMatrix(BlockMatrix blocks, PetscInt rows)
 {
   PetscFunctionBeginUser;
   PetscCall(ListSums(blocks));
-  blocks->n_pattern = -1; /* no blocks' as yet: where the next ones stand in it is found then */
+  blocks->n_pattern = -1; /* belongs to no blocks yet; BlockMatrixPlace() finds the next ones in it */
   PetscCall(BlockMatrixCreateMat(blocks, rows));
   blocks->restored = PETSC_TRUE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* BlockMatrixMark - Not collective. */
+/*@
+  BlockMatrixMark - marks the present pattern as the one that BlockMatrixReturn() restores.
+
+  Not collective
+
+  Input Parameter:
+. blocks - the block matrix
+@*/
 PetscErrorCode BlockMatrixMark(BlockMatrix blocks)
 {
   PetscFunctionBeginUser;
@@ -697,11 +842,19 @@ PetscErrorCode BlockMatrixMark(BlockMatrix blocks)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* BlockMatrixReturn - the pattern is again the one of the last BlockMatrixMark(): what is assembled from now on does
-   not depend on what was since.
+/*@
+  BlockMatrixReturn - restores the pattern of the last BlockMatrixMark().
 
-   Collective. rows: of this rank, as for BlockMatrixPlace(). The matrix of BlockMatrixEnd() is gone if the pattern was
-   another one. */
+  Collective
+
+  Input Parameters:
++ blocks - the block matrix
+- rows   - rows of the matrix on this rank, as for BlockMatrixPlace()
+
+  Note:
+  What is assembled afterwards does not depend on what was assembled since the mark. If the pattern was another one, the
+  matrix of BlockMatrixEnd() is destroyed.
+@*/
 PetscErrorCode BlockMatrixReturn(BlockMatrix blocks, PetscInt rows)
 {
   PetscFunctionBeginUser;
@@ -717,11 +870,22 @@ PetscErrorCode BlockMatrixReturn(BlockMatrix blocks, PetscInt rows)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* BlockMatrixArchive - saves or takes over the pattern of the last assembled matrix.
+/*@
+  BlockMatrixArchive - saves or loads the pattern of the last assembled matrix.
 
-   Collective. name: where it stands in the archive; rows: of this rank, as for BlockMatrixPlace(). A pattern that is
-   kept depends on what was assembled before. Dofs are numbered by rank, so that it serves on one rank only, where runs
-   repeat to the last bit. */
+  Collective
+
+  Input Parameters:
++ blocks  - the block matrix
+. archive - archive that saves or loads
+. name    - place of the pattern in the archive
+- rows    - rows of the matrix on this rank, as for BlockMatrixPlace()
+
+  Note:
+  A pattern that is kept depends on what was assembled before, and another pattern orders the solver's sums in another
+  way. With the pattern, runs on one rank repeat to the last bit. On several ranks the function does nothing, because
+  dofs are numbered by rank; the pattern is found anew.
+@*/
 PetscErrorCode BlockMatrixArchive(BlockMatrix blocks, Archive archive, const char *name, PetscInt rows)
 {
   static const char *names[] = {"key", "dof", "pair_ptr", "pair"};

@@ -1,7 +1,18 @@
+/* Rows of an assembled AIJ matrix, read in place. */
 #include "matrix/matrixrows.h"
 
-/* MatrixRowsGet - the rows of block MATRIX_OWN or MATRIX_OTHERS of an assembled AIJ matrix, to be given back with
- * MatrixRowsRestore(). Not collective. */
+/*@
+  MatrixRowsGet - returns the rows of one block of an assembled AIJ matrix.
+
+  Not collective
+
+  Input Parameters:
++ mat   - sequential or parallel AIJ matrix
+- block - MATRIX_OWN or MATRIX_OTHERS
+
+  Output Parameter:
+. rows - the rows, to be returned with MatrixRowsRestore(); rows->mat is NULL where there is no such block
+@*/
 PetscErrorCode MatrixRowsGet(Mat mat, int block, MatrixRows *rows)
 {
   PetscBool parallel, done;
@@ -20,7 +31,14 @@ PetscErrorCode MatrixRowsGet(Mat mat, int block, MatrixRows *rows)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* MatrixRowsRestore - Not collective. */
+/*@
+  MatrixRowsRestore - returns the rows to the matrix.
+
+  Not collective
+
+  Input Parameter:
+. rows - from MatrixRowsGet()
+@*/
 PetscErrorCode MatrixRowsRestore(MatrixRows *rows)
 {
   PetscBool done;
@@ -32,7 +50,7 @@ PetscErrorCode MatrixRowsRestore(MatrixRows *rows)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Do two rows have the same columns? */
+/* Whether two rows have the same columns. */
 static PetscBool AreAlike(const MatrixRows rows[MATRIX_BLOCKS], PetscInt r, PetscInt s)
 {
   for (int b = 0; b < MATRIX_BLOCKS; b++) {
@@ -46,8 +64,18 @@ static PetscBool AreAlike(const MatrixRows rows[MATRIX_BLOCKS], PetscInt r, Pets
   return PETSC_TRUE;
 }
 
-/* MatrixRowsAlike - rows next to each other with the same columns, from `row` on, at most MATRIX_NODE_ROWS. Not
- * collective. */
+/*@
+  MatrixRowsAlike - counts how many rows, from one row on, have the same columns in all blocks: the rows of one node.
+
+  Not collective
+
+  Input Parameters:
++ rows - both blocks
+- row  - first row
+
+  Note:
+  Returns at least 1 and at most MATRIX_NODE_ROWS.
+@*/
 PetscInt MatrixRowsAlike(const MatrixRows rows[MATRIX_BLOCKS], PetscInt row)
 {
   PetscInt n = 1;

@@ -1,40 +1,43 @@
+/* Node matrix: the pattern of the sum, the places of pairs and of other matrices' entries in it, and its values. */
 #include "matrix/nodematrix.h"
 #include "matrix/matrixrows.h"
 
-/* Room for entries over what a pattern needs, for the next one: memory that is new costs more than what is written
-   there. It is not touched before it is needed. */
+/* Memory that is allocated for entries, as a multiple of what a pattern needs, so that the next pattern fits too. New
+   memory costs more than writing the entries. Memory that is not needed yet is not touched. */
 #define NODE_MATRIX_ROOM 1.25
-/* Place of a dof that is left out */
+/* Place of a dof that is left out. */
 #define NODE_MATRIX_NONE PETSC_MIN_INT
-/* Matrices that the pattern is joined with: of other ranks' blocks, and what NodeMatrixJoin() is given */
+/* Matrices that the pattern is joined with: TERM_FOREIGN has the blocks of other ranks, TERM_OTHER is the argument of
+   NodeMatrixJoin(). */
 enum { TERM_FOREIGN, TERM_OTHER, TERMS };
 
-/* The arrays of one block of the matrix: columns of the rank itself, or of others; alone: entries that the pairs take
- * without other terms */
+/* Arrays of one block of the matrix: columns of the rank itself, or of others. alone is the number of entries that the
+   pairs need without other terms. */
 typedef struct {
   PetscInt    *ptr, *column, room, alone;
   PetscScalar *value;
 } NodeBlock;
 
-/* Columns of one row in one block as they are gathered, ascending, and room for more */
+/* Columns of one row in one block while they are gathered, ascending, and room for merging. */
 typedef struct {
   PetscInt *column, *room, n;
 } NodeRow;
 
-/* A matrix that the pattern was joined with, by its number; place: of each of its entries in a first row of a node, in
-   the row of the sum. Other rows of the node are alike. */
+/* A matrix that the pattern was joined with, by PETSc's object id. place: for each of its entries in the first row of a
+   node, the place in that row of the sum. The other rows of the node have the same places. */
 typedef struct {
   PetscObjectId matrix;
   PetscInt      n[MATRIX_BLOCKS], room[MATRIX_BLOCKS], *place[MATRIX_BLOCKS];
 } NodeTerm;
 
-/* The values of pairs: all blocks, in the order of the pairs, or (not NULL) those of a symmetric matrix */
+/* Values of the pairs: all blocks, in the order of the pairs, or, if upper is not NULL, the blocks of a symmetric
+   matrix. */
 typedef struct {
   const PetscReal *all;
   const NodeUpper *upper;
 } NodeValues;
 
-/* One row of a block: its first value and the distance to the next */
+/* One row of a block: its first value and the distance to the next. */
 typedef struct {
   const PetscReal *value;
   PetscInt         step;
@@ -44,16 +47,18 @@ struct _n_NodeMatrix {
   MPI_Comm   comm;
   NodePairs  pairs;
   PetscInt   rows, first; /* of this rank */
-  PetscInt  *node;        /* of each row, -1: this rank has no pairs for it */
-  PetscBool *inner;       /* of each node: its pairs' columns are all of this rank, in ascending order */
-  PetscBool *placed;      /* and its places are those of a row without other terms */
-  PetscInt   longest;     /* entries of a row without other terms */
-  PetscInt
-    *place; /* of each pair and dof of its column in the row: k: in the rank's own block, -1 - k: in the other ranks' */
-  NodeBlock    block[MATRIX_BLOCKS];
-  NodeTerm     term[TERMS];
-  PetscInt    *diagonal;        /* of each row, the place of its diagonal in its own block, -1: it has none */
-  Mat          matrix, foreign; /* foreign: sum of what ranks have for rows of others; NULL: there is one rank */
+  PetscInt  *node;        /* for each row, its node; -1: this rank has no pairs for it */
+  PetscBool *inner;       /* for each node: all columns of its pairs belong to this rank and ascend */
+  PetscBool *placed;      /* for each node: the places of its pairs are those of a row without other terms */
+  PetscInt   longest;     /* entries of the longest row without other terms */
+  /* For each pair and each dof of its column, the place in the row: k in the rank's own block, -1 - k in the block of
+     others. */
+  PetscInt *place;
+  NodeBlock block[MATRIX_BLOCKS];
+  NodeTerm  term[TERMS];
+  PetscInt *diagonal; /* for each row, the place of its diagonal in the rank's own block; -1: it has none */
+  /* foreign: sum of what ranks have for rows of other ranks; NULL on one rank. */
+  Mat          matrix, foreign;
   PetscInt     n_foreign, *foreign_node, foreign_pairs;
   PetscScalar *foreign_value;
 };
@@ -68,7 +73,7 @@ static inline PetscBool IsSymmetric(const NodeValues *values)
   return values->upper ? PETSC_TRUE : PETSC_FALSE;
 }
 
-/* Row d of pair k of a node; size and symmetric constants where loops are to unroll */
+/* Returns row d of pair k of a node. size and symmetric are constants where the compiler is to unroll loops. */
 static inline ValueRow FindValues(const int size, const PetscBool symmetric, const NodeValues *values, PetscInt node,
                                   PetscInt k, int d)
 {
@@ -80,9 +85,9 @@ static inline ValueRow FindValues(const int size, const PetscBool symmetric, con
   return k < upper->diagonal[node] ? (ValueRow){&block[d], upper->width} : (ValueRow){&block[d * upper->width], 1};
 }
 
-/* ---------- rows of other ranks ---------- */
+/* Rows of other ranks */
 
-/* The rows of nodes of other ranks in PETSc's COO format, which leaves negative dofs out. */
+/* Creates the matrix for rows of other ranks in PETSc's COO format, which ignores negative dofs. */
 static PetscErrorCode CreateForeign(NodeMatrix m)
 {
   const NodePairs *p    = &m->pairs;
@@ -131,9 +136,9 @@ static PetscErrorCode SetForeign(NodeMatrix m, const NodeValues *values)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ---------- pattern ---------- */
+/* Pattern of the matrix */
 
-/* Finds the node of every row of this rank; nodes with rows of others are listed. */
+/* Finds the node of every row of this rank and lists the nodes with rows of other ranks. */
 static PetscErrorCode NodeMatrixFindNodes(NodeMatrix m)
 {
   const NodePairs *p = &m->pairs;
@@ -159,8 +164,8 @@ static PetscErrorCode NodeMatrixFindNodes(NodeMatrix m)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Counts the columns of a node's pairs that are of this rank, or of others; are they all of this rank and in ascending
- * order? */
+/* Counts the columns of a node's pairs that belong to this rank and to others. Returns whether all belong to this rank
+   and ascend. */
 static PetscBool LookAtNode(NodeMatrix m, PetscInt node, PetscInt count[MATRIX_BLOCKS])
 {
   const NodePairs *p      = &m->pairs;
@@ -181,7 +186,7 @@ static PetscBool LookAtNode(NodeMatrix m, PetscInt node, PetscInt count[MATRIX_B
   return (PetscBool)(rising && !count[MATRIX_OTHERS]);
 }
 
-/* What the rows of this rank need for its pairs alone, without other terms. */
+/* Counts the entries that the rows of this rank need for its pairs alone, without other terms. */
 static void LookAtRows(NodeMatrix m)
 {
   PetscInt count[MATRIX_BLOCKS] = {0, 0};
@@ -196,9 +201,19 @@ static void LookAtRows(NodeMatrix m)
   }
 }
 
-/* NodeMatrixCreate - what the ranks' pairs need; the matrix itself is made by NodeMatrixJoin().
+/*@
+  NodeMatrixCreate - prepares a node matrix; NodeMatrixJoin() creates the matrix itself.
 
-   Collective. rows: of this rank; pairs: their arrays are borrowed. Destroy with NodeMatrixDestroy(). */
+  Collective
+
+  Input Parameters:
++ comm  - all ranks
+. rows  - rows on this rank
+- pairs - pairs of this rank; the arrays are borrowed
+
+  Output Parameter:
+. out - destroyed with NodeMatrixDestroy()
+@*/
 PetscErrorCode NodeMatrixCreate(MPI_Comm comm, PetscInt rows, const NodePairs *pairs, NodeMatrix *out)
 {
   NodeMatrix  m;
@@ -221,7 +236,14 @@ PetscErrorCode NodeMatrixCreate(MPI_Comm comm, PetscInt rows, const NodePairs *p
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* NodeMatrixDestroy - Collective. */
+/*@
+  NodeMatrixDestroy - frees a node matrix and its matrix.
+
+  Collective
+
+  Input Parameter:
+. matrix - may be NULL; set to NULL
+@*/
 PetscErrorCode NodeMatrixDestroy(NodeMatrix *matrix)
 {
   NodeMatrix m = *matrix;
@@ -242,7 +264,7 @@ PetscErrorCode NodeMatrixDestroy(NodeMatrix *matrix)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Makes room for the pattern; *longest: room that a row needs. */
+/* Allocates the pattern. longest returns the number of columns that one row may have while it is gathered. */
 static PetscErrorCode TakeRoom(NodeMatrix m, MatrixRows terms[TERMS][MATRIX_BLOCKS], PetscInt *longest)
 {
   PetscInt need[MATRIX_BLOCKS] = {m->block[MATRIX_OWN].alone, m->block[MATRIX_OTHERS].alone}, most = 0;
@@ -262,14 +284,14 @@ static PetscErrorCode TakeRoom(NodeMatrix m, MatrixRows terms[TERMS][MATRIX_BLOC
 
     if (!block->ptr) PetscCall(PetscMalloc1(m->rows + 1, &block->ptr));
     if (need[b] <= block->room && block->column) continue;
-    block->room = 1 + (PetscInt)(NODE_MATRIX_ROOM * need[b]); /* none would be no array */
+    block->room = 1 + (PetscInt)(NODE_MATRIX_ROOM * need[b]); /* one more, because an allocation of 0 gives no array */
     PetscCall(PetscFree2(block->column, block->value));
     PetscCall(PetscMalloc2(block->room, &block->column, block->room, &block->value));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The columns of a row's pairs in one block; each occurs once. */
+/* Gathers the columns of a row's pairs in one block, ascending; each occurs once. */
 static PetscErrorCode GatherPairs(NodeMatrix m, PetscInt node, int block, NodeRow *row)
 {
   const NodePairs *p     = &m->pairs;
@@ -292,7 +314,7 @@ static PetscErrorCode GatherPairs(NodeMatrix m, PetscInt node, int block, NodeRo
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Merges the columns of a term's row into those gathered, both ascending. */
+/* Merges the columns of a term's row into the gathered columns; both ascend. */
 static void MergeRow(const MatrixRows *term, PetscInt r, NodeRow *row)
 {
   const PetscInt end = term->ptr[r + 1];
@@ -312,7 +334,7 @@ static void MergeRow(const MatrixRows *term, PetscInt r, NodeRow *row)
   row->n      = n;
 }
 
-/* Tells the pairs of a node their places in its row r. at: of the columns of this rank in that row. */
+/* Stores the places of a node's pairs in its row r. at: place in that row of each column of this rank. */
 static PetscErrorCode PlacePairs(NodeMatrix m, PetscInt node, PetscInt r, const PetscInt *at)
 {
   const NodePairs *p      = &m->pairs;
@@ -339,7 +361,7 @@ static PetscErrorCode PlacePairs(NodeMatrix m, PetscInt node, PetscInt r, const 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Notes where the entries of a term's row are in row r of the matrix. at: as of PlacePairs(). */
+/* Stores the places of the entries of a term's row in row r of the matrix. at: as for PlacePairs(). */
 static void PlaceTerm(NodeMatrix m, PetscInt r, int t, MatrixRows term[MATRIX_BLOCKS], const PetscInt *at)
 {
   const MatrixRows *own = &term[MATRIX_OWN], *others = &term[MATRIX_OTHERS];
@@ -353,8 +375,8 @@ static void PlaceTerm(NodeMatrix m, PetscInt r, int t, MatrixRows term[MATRIX_BL
   }
 }
 
-/* A row of any kind, after those before it; the columns in the numbering that PETSc wants, its own from 0. at[rows]:
- * room. */
+/* Appends a row of any kind. Columns have the numbering that PETSc requires: the rank's own columns start at 0.
+   at[rows] is work space. */
 static PetscErrorCode AppendRow(NodeMatrix m, PetscInt r, MatrixRows terms[TERMS][MATRIX_BLOCKS], NodeRow *row,
                                 PetscInt *at)
 {
@@ -375,7 +397,8 @@ static PetscErrorCode AppendRow(NodeMatrix m, PetscInt r, MatrixRows terms[TERMS
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* A row of an inner node that no term shares, most rows of a large matrix: nothing to be sorted or looked for. */
+/* Appends a row of an inner node in which no term has entries. Most rows of a large matrix are such rows. Nothing is
+   sorted or searched. */
 static void AppendInner(NodeMatrix m, PetscInt r)
 {
   const NodePairs *p   = &m->pairs;
@@ -396,7 +419,7 @@ static void AppendInner(NodeMatrix m, PetscInt r)
   others->ptr[r + 1] = others->ptr[r];
 }
 
-/* A row as the one before it, of the same node. */
+/* Appends a row with the columns of the row before it, which belongs to the same node. */
 static PetscErrorCode AppendSame(NodeMatrix m, PetscInt r)
 {
   PetscFunctionBeginUser;
@@ -410,13 +433,13 @@ static PetscErrorCode AppendSame(NodeMatrix m, PetscInt r)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* A row without entries */
+/* Appends a row without entries. */
 static void AppendNone(NodeMatrix m, PetscInt r)
 {
   for (int b = 0; b < MATRIX_BLOCKS; b++) m->block[b].ptr[r + 1] = m->block[b].ptr[r];
 }
 
-/* Does some term have entries in this row? */
+/* Whether some term has entries in this row. */
 static PetscBool IsShared(PetscInt r, MatrixRows terms[TERMS][MATRIX_BLOCKS])
 {
   for (int t = 0; t < TERMS; t++)
@@ -425,7 +448,7 @@ static PetscBool IsShared(PetscInt r, MatrixRows terms[TERMS][MATRIX_BLOCKS])
   return PETSC_FALSE;
 }
 
-/* The rows of terms, NULL: none */
+/* Gets the rows of the terms; a term that is NULL has none. */
 static PetscErrorCode NodeMatrixGetTerms(const Mat mats[TERMS], MatrixRows terms[TERMS][MATRIX_BLOCKS])
 {
   PetscFunctionBeginUser;
@@ -446,7 +469,7 @@ static PetscErrorCode RestoreTerms(MatrixRows terms[TERMS][MATRIX_BLOCKS])
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Makes room for the places of a term. */
+/* Allocates the places of a term's entries. */
 static PetscErrorCode TakeTerm(Mat mat, const MatrixRows rows[MATRIX_BLOCKS], NodeTerm *term)
 {
   PetscFunctionBeginUser;
@@ -462,27 +485,27 @@ static PetscErrorCode TakeTerm(Mat mat, const MatrixRows rows[MATRIX_BLOCKS], No
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Is this row of the same node as the one before it? */
+/* Whether this row belongs to the same node as the row before it. */
 static inline PetscBool IsSame(NodeMatrix m, PetscInt r)
 {
   return (PetscBool)(r && m->node[r] >= 0 && m->node[r] == m->node[r - 1]);
 }
 
-/* Finds the diagonal of a row of the pattern. */
+/* Finds the place of the diagonal in row r of the pattern. */
 static PetscErrorCode FindDiagonal(NodeMatrix m, PetscInt r)
 {
   const NodeBlock *own = &m->block[MATRIX_OWN];
 
   PetscFunctionBeginUser;
   if (IsSame(m, r) && m->diagonal[r - 1] >= 0)
-    m->diagonal[r] = m->diagonal[r - 1] + 1; /* both are columns of either */
+    m->diagonal[r] = m->diagonal[r - 1] + 1; /* both dofs are columns of both rows */
   else
     PetscCall(PetscFindInt(r, own->ptr[r + 1] - own->ptr[r], &own->column[own->ptr[r]], &m->diagonal[r]));
   m->diagonal[r] = PetscMax(m->diagonal[r], -1);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The arrays become the matrix, under the handle that is known. */
+/* Creates the matrix from the arrays and keeps the handle that users know. */
 static PetscErrorCode MakeMatrix(NodeMatrix m)
 {
   NodeBlock *own = &m->block[MATRIX_OWN], *others = &m->block[MATRIX_OTHERS];
@@ -502,9 +525,19 @@ static PetscErrorCode MakeMatrix(NodeMatrix m)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* NodeMatrixJoin - a new pattern, in the memory of the last one where that does; the values are undefined.
+/*@
+  NodeMatrixJoin - makes the pattern of the pairs and of another matrix; the values are undefined.
 
-   Collective. other: an AIJ matrix of the same rows, in which all rows of a node have the same columns; NULL: none. */
+  Collective
+
+  Input Parameters:
++ m     - the node matrix
+- other - AIJ matrix of the same rows, in which all rows of a node have the same columns; NULL: no other matrix
+
+  Note:
+  The pattern uses the memory of the last one if that suffices. The places of the other matrix' entries are stored for
+  NodeMatrixSet(). Call it again when the other matrix has a new pattern.
+@*/
 PetscErrorCode NodeMatrixJoin(NodeMatrix m, Mat other)
 {
   const Mat  mats[TERMS] = {[TERM_FOREIGN] = m->foreign, [TERM_OTHER] = other};
@@ -536,17 +569,17 @@ PetscErrorCode NodeMatrixJoin(NodeMatrix m, Mat other)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ---------- values ---------- */
+/* Values of the matrix */
 
-/* One row of a node's blocks where all columns stand as the pairs do */
+/* Copies one row of a node's blocks where all columns are in the order of the pairs. */
 static inline void CopyRow(const int size, PetscInt n, const PetscReal *from, PetscScalar *to)
 {
   for (PetscInt k = 0; k < n; k++)
     for (int c = 0; c < size; c++) to[k * size + c] = from[k * size * size + c];
 }
 
-/* One row of a node's blocks, or zeros; size and symmetric constants where this is called, so that the loop over a
- * node's dofs unrolls. */
+/* Writes one row of a node's blocks, and zeros elsewhere. size and symmetric are constants in each call, so that the
+   compiler unrolls the loop over a node's dofs. */
 static inline void SetRow(const int size, const PetscBool symmetric, NodeMatrix m, PetscInt r, const NodeValues *values)
 {
   const NodePairs *p    = &m->pairs;
@@ -580,7 +613,7 @@ static inline void SetRow(const int size, const PetscBool symmetric, NodeMatrix 
   }
 }
 
-/* Adds row r of a term, where its entries are in the sum as those of row `first` of the same node. */
+/* Adds row r of a term. The places of its entries are those of row `first` of the same node. */
 static inline void AddRow(NodeMatrix m, PetscInt r, PetscInt first, const NodeTerm *term,
                           const MatrixRows rows[MATRIX_BLOCKS])
 {
@@ -593,7 +626,7 @@ static inline void AddRow(NodeMatrix m, PetscInt r, PetscInt first, const NodeTe
   }
 }
 
-/* Nothing moves: it tells the matrix' users that its values are new. */
+/* Tells users of the matrix that its values have changed. Nothing is communicated. */
 static PetscErrorCode TellChange(NodeMatrix m)
 {
   PetscFunctionBeginUser;
@@ -602,7 +635,7 @@ static PetscErrorCode TellChange(NodeMatrix m)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Is this the matrix that the pattern was joined with? */
+/* Checks that this is the matrix that the pattern was joined with. */
 static PetscErrorCode CheckTerm(NodeMatrix m, Mat other, const MatrixRows rows[MATRIX_BLOCKS])
 {
   const NodeTerm *term = &m->term[TERM_OTHER];
@@ -616,7 +649,7 @@ static PetscErrorCode CheckTerm(NodeMatrix m, Mat other, const MatrixRows rows[M
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Row by row, so that a row is still at hand where something is added to it; diagonal NULL: not asked for. */
+/* Sets all rows one by one, so that a row is still in the cache when terms are added to it. diagonal may be NULL. */
 static void SetRows(NodeMatrix m, const NodeValues *values, MatrixRows terms[TERMS][MATRIX_BLOCKS],
                     PetscScalar *diagonal)
 {
@@ -653,19 +686,22 @@ static PetscErrorCode SetValues(NodeMatrix m, const NodeValues *values, Mat othe
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*
-  NodeMatrixSet - The sum of the ranks' blocks and of another matrix; what the pattern holds besides becomes 0
+/*@
+  NodeMatrixSet - computes the sum of all ranks' blocks and of another matrix.
 
   Collective
 
-  Input:
-+ m     - the matrix, after NodeMatrixJoin()
-. value - blocks of this rank, row-major, in the order of its pairs [pairs*size*size]
-- other - the one that the pattern was joined with, of the same pattern as then; NULL: nothing is added
+  Input Parameters:
++ m     - the node matrix, after NodeMatrixJoin()
+. value - blocks of this rank in the order of its pairs, row-major [pairs*size*size]
+- other - the matrix of the last NodeMatrixJoin(), with the pattern that it had then; NULL: nothing is added
 
-  Output:
-. diagonal - that of the ranks' blocks alone, over the rows; NULL: it is not asked for
-*/
+  Output Parameter:
+. diagonal - diagonal of the ranks' blocks alone; may be NULL
+
+  Note:
+  Entries of the pattern that neither the blocks nor the other matrix have become 0.
+@*/
 PetscErrorCode NodeMatrixSet(NodeMatrix m, const PetscReal *value, Mat other, Vec diagonal)
 {
   PetscFunctionBeginUser;
@@ -673,8 +709,15 @@ PetscErrorCode NodeMatrixSet(NodeMatrix m, const PetscReal *value, Mat other, Ve
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* NodeMatrixSetUpper - the sum of the ranks' blocks, which is symmetric on every rank; of blocks on the diagonal both
- * triangles are used. Collective. */
+/*@
+  NodeMatrixSetUpper - computes the sum of all ranks' blocks if it is symmetric on every rank.
+
+  Collective
+
+  Input Parameters:
++ m     - the node matrix, after NodeMatrixJoin()
+- upper - blocks on and above the diagonal; of blocks on the diagonal both triangles are used
+@*/
 PetscErrorCode NodeMatrixSetUpper(NodeMatrix m, const NodeUpper *upper)
 {
   PetscFunctionBeginUser;
@@ -682,7 +725,17 @@ PetscErrorCode NodeMatrixSetUpper(NodeMatrix m, const NodeUpper *upper)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* NodeMatrixGet - the matrix, undefined before the first NodeMatrixJoin(). Not collective; borrowed. */
+/*@
+  NodeMatrixGet - returns the matrix.
+
+  Not collective
+
+  Input Parameter:
+. m - the node matrix
+
+  Note:
+  The matrix is borrowed, and its handle is the same all the time. It is undefined before the first NodeMatrixJoin().
+@*/
 Mat NodeMatrixGet(NodeMatrix m)
 {
   return m->matrix;

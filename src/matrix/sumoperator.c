@@ -1,6 +1,8 @@
+/* Sum of two matrices as a shell matrix, which holds both as composed objects. */
 #include "matrix/sumoperator.h"
 
-/* What the terms are called among the objects composed with the operator, which holds them so */
+/* Names of the terms among the objects that are composed with the operator. The operator keeps references to them in
+   this way. */
 #define SUM_K "K"
 #define SUM_C "C"
 
@@ -23,7 +25,17 @@ static PetscErrorCode SumOperatorMultiply(Mat A, Vec x, Vec y)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* SumOperatorCreate - Collective. Destroy it with MatDestroy(). */
+/*@
+  SumOperatorCreate - creates the operator A = K + C, at first without C.
+
+  Collective
+
+  Input Parameter:
+. K - AIJ matrix; its values may change later
+
+  Output Parameter:
+. A - shell matrix, destroyed with MatDestroy()
+@*/
 PetscErrorCode SumOperatorCreate(Mat K, Mat *A)
 {
   PetscInt rows, columns;
@@ -36,7 +48,15 @@ PetscErrorCode SumOperatorCreate(Mat K, Mat *A)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* SumOperatorSet - Logically collective. */
+/*@
+  SumOperatorSet - sets the other term of the operator.
+
+  Logically collective
+
+  Input Parameters:
++ A - the operator, from SumOperatorCreate()
+- C - matrix of the layout of K, used with the values that it has when the operator is applied; NULL: no other term
+@*/
 PetscErrorCode SumOperatorSet(Mat A, Mat C)
 {
   PetscFunctionBeginUser;
@@ -44,7 +64,17 @@ PetscErrorCode SumOperatorSet(Mat A, Mat C)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* SumOperatorMerge - Collective. */
+/*@
+  SumOperatorMerge - computes K + C as one AIJ matrix.
+
+  Collective
+
+  Input Parameter:
+. A - the operator, or any other matrix
+
+  Output Parameter:
+. whole - destroyed by the caller; NULL if A is not such an operator
+@*/
 PetscErrorCode SumOperatorMerge(Mat A, Mat *whole)
 {
   PetscBool shell;

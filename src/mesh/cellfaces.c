@@ -1,6 +1,7 @@
+/* Faces of all cells on rank 0, sorted by their corners, and the graph of cells that share faces. */
 #include "cellfaces.h"
 
-/* Corners ascending, PETSC_MAX_INT where there are fewer */
+/* Sorts the corners in ascending order and fills up with PETSC_MAX_INT where there are fewer. */
 static void SortCorners(int n, const PetscInt vertices[], PetscInt corner[CELL_FACE_CORNERS])
 {
   for (int k = 0; k < CELL_FACE_CORNERS; k++) {
@@ -32,8 +33,8 @@ static void LoadFace(const RootMesh *root, PetscInt c, int number, CellFace *fac
   SortCorners(corners, vertices, face->corner);
 }
 
-/* Faces of one lowest corner by the others; those of equal corners stay in the order of their cells. A corner has few,
- * so they are inserted one by one. */
+/* Sorts faces that have the same lowest corner by their other corners. Faces with equal corners keep the order of their
+   cells. A corner has few faces, so they are sorted by insertion. */
 static void SortCellFaces(PetscInt n, CellFace faces[])
 {
   for (PetscInt f = 1; f < n; f++) {
@@ -46,22 +47,22 @@ static void SortCellFaces(PetscInt n, CellFace faces[])
   }
 }
 
-/*
-  CellFacesCreate - lists the faces of all cells
+/*@
+  CellFacesCreate - lists the faces of all cells.
 
-  Not Collective; rank 0
+  Not collective, on rank 0
 
   Input Parameter:
 . root - after RootMeshRead()
 
   Output Parameter:
-. root - cell_faces, one for each cell that has the face: those whose lowest corner is vertex v from corner_faces[v] on,
-the same faces next to each other
+. root - cell_faces has each face once for each cell that has it; faces whose lowest corner is vertex v start at
+  corner_faces[v], and equal faces are adjacent
 
   Note:
-  A DMPlex would do after DMPlexInterpolate(), which takes twenty times as long and makes edges and orientations that
-nobody asks for.
-*/
+  DMPlexInterpolate() would give the same information, but takes twenty times as long and makes edges and orientations
+  that are not needed.
+@*/
 PetscErrorCode CellFacesCreate(RootMesh *root)
 {
   PetscInt *next;
@@ -91,7 +92,7 @@ PetscErrorCode CellFacesCreate(RootMesh *root)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* How many cells have the same face as the first of these */
+/* Counts the cells that have the same face as the first of these. */
 static PetscInt CountSame(const CellFace face[], const CellFace *end)
 {
   PetscInt n = 1;
@@ -100,21 +101,22 @@ static PetscInt CountSame(const CellFace face[], const CellFace *end)
   return n;
 }
 
-/*
-  CellFacesFind - the cells that have a face
+/*@
+  CellFacesFind - finds the cells that have a face.
 
-  Not Collective; rank 0, after CellFacesCreate()
+  Not collective, on rank 0
 
   Input Parameters:
-+ root     - its faces
++ root     - after CellFacesCreate()
 . n        - number of corners
-- vertices - the corners' vertex numbers, in any order; -1: not a cell's corner
+- vertices - vertex numbers of the corners, in any order; -1: not a corner of a cell
 
   Output Parameter:
-. face - of the first cell, those of the others behind it; cells ascending
+. face - the face of the first cell, followed by those of the other cells, by ascending cell; NULL if there is none
 
-  Returns how many cells there are.
-*/
+  Note:
+  Returns the number of cells that have the face.
+@*/
 PetscInt CellFacesFind(const RootMesh *root, int n, const PetscInt vertices[], const CellFace **face)
 {
   PetscInt corner[CELL_FACE_CORNERS];
@@ -131,18 +133,21 @@ PetscInt CellFacesFind(const RootMesh *root, int n, const PetscInt vertices[], c
   return 0;
 }
 
-/*
-  CellFacesNeighbours - the graph of cells that share faces
+/*@
+  CellFacesNeighbours - computes the graph of cells that share faces.
 
-  Not Collective; rank 0, after CellFacesCreate()
+  Not collective, on rank 0
 
   Input Parameter:
-. root - its faces
+. root - after CellFacesCreate()
 
   Output Parameters:
-+ offsets   - n_cells + 1: where each cell's neighbours start
-- adjacency - neighbours
-*/
++ offsets   - start of each cell's neighbours in adjacency [n_cells + 1]
+- adjacency - neighbours across faces
+
+  Note:
+  The caller frees both arrays with PetscFree().
+@*/
 PetscErrorCode CellFacesNeighbours(const RootMesh *root, PetscInt **offsets, PetscInt **adjacency)
 {
   const CellFace *end = root->cell_faces + root->corner_faces[root->n_vertices];

@@ -1,4 +1,4 @@
-/* Declarations of parameters in the text of a .geo file, gmsh's own language. */
+/* Finds the declarations of parameters in the text of a .geo file, which is written in gmsh's own language. */
 #include "geoparameters.h"
 #include <ctype.h>
 #include <string.h>
@@ -9,16 +9,16 @@ static PetscBool IsNameCharacter(char c)
 }
 
 /*@
-  GeoTextStrip - copies the text of a .geo file with blanks in the place of its comments.
+  GeoTextStrip - copies the text of a .geo file and replaces its comments by blanks.
 
   Not collective
 
   Input Parameters:
-+ text    - of the file
-- strings - whether what stands between double quotes becomes blank too
++ text    - text of the file
+- strings - PETSC_TRUE: the text between double quotes becomes blank too
 
   Output Parameter:
-. stripped - of the same length, to be freed with PetscFree()
+. stripped - copy of the same length, to be freed with PetscFree()
 @*/
 PetscErrorCode GeoTextStrip(const char *text, PetscBool strings, char **stripped)
 {
@@ -45,7 +45,7 @@ PetscErrorCode GeoTextStrip(const char *text, PetscBool strings, char **stripped
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Adds the name at `at` unless it is there. Where no name begins, nothing happens. */
+/* Adds the name at `at` unless the list has it. Does nothing if no name begins there. */
 static PetscErrorCode AddName(const char *at, GeoParameters *parameters)
 {
   char  *name;
@@ -71,7 +71,7 @@ static PetscErrorCode AddName(const char *at, GeoParameters *parameters)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Adds the names of the list behind DefineConstant: "[name = value, name = {value, ...}, name]". */
+/* Adds the names of the list after DefineConstant: "[name = value, name = {value, ...}, name]". */
 static PetscErrorCode AddList(const char *at, GeoParameters *parameters)
 {
   int depth = 0;
@@ -87,7 +87,7 @@ static PetscErrorCode AddList(const char *at, GeoParameters *parameters)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Finds the next place behind a whole word, NULL if there is none. */
+/* Returns the position after the next occurrence of a whole word, NULL if there is none. */
 static const char *BehindWord(const char *start, const char *at, const char *word)
 {
   const size_t n = strlen(word);
@@ -103,10 +103,13 @@ static const char *BehindWord(const char *start, const char *at, const char *wor
   Not collective
 
   Input Parameter:
-. text - of the file; files that it includes are added by calls of their own
+. text - text of the file
 
   Input/Output Parameter:
-. parameters - zero at the start, to be freed with GeoParametersReset()
+. parameters - zero before the first call, to be freed with GeoParametersReset()
+
+  Note:
+  Files that this one includes are not followed. Call the function for each of them.
 @*/
 PetscErrorCode GeoParametersAdd(const char *text, GeoParameters *parameters)
 {
@@ -125,13 +128,16 @@ PetscErrorCode GeoParametersAdd(const char *text, GeoParameters *parameters)
 }
 
 /*@
-  GeoParametersFind - tells whether a name is a parameter.
+  GeoParametersFind - determines whether a name is a parameter.
 
   Not collective
 
   Input Parameters:
-+ parameters - of all files
-- name       - that the scene gives
++ parameters - from GeoParametersAdd() for all files
+- name       - name that the scene gives
+
+  Note:
+  Returns PETSC_TRUE if the files declare the name, also by a name that ends with "*".
 @*/
 PetscBool GeoParametersFind(const GeoParameters *parameters, const char *name)
 {
@@ -150,10 +156,11 @@ PetscBool GeoParametersFind(const GeoParameters *parameters, const char *name)
   Not collective
 
   Input Parameter:
-. parameters - of all files
+. parameters - from GeoParametersAdd() for all files
 
   Output Parameter:
-. text - the names with commas between them, or a word on how to declare one; to be freed with PetscFree()
+. text - the names, separated by commas; if there are none, a text that says how to declare one; to be freed with
+  PetscFree()
 @*/
 PetscErrorCode GeoParametersText(const GeoParameters *parameters, char **text)
 {
@@ -177,7 +184,7 @@ PetscErrorCode GeoParametersText(const GeoParameters *parameters, char **text)
   Not collective
 
   Input Parameter:
-. parameters - is zero afterwards
+. parameters - zero afterwards
 @*/
 PetscErrorCode GeoParametersReset(GeoParameters *parameters)
 {

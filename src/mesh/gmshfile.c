@@ -1,4 +1,5 @@
-#define _GNU_SOURCE 1 /* memmem */
+/* Reader for gmsh's file format 4.1, text and binary. The file is loaded as a whole and read section by section. */
+#define _GNU_SOURCE 1 /* for memmem() */
 #include "gmshfile.h"
 #include <ctype.h>
 #include <stdint.h>
@@ -9,9 +10,9 @@
 
 enum {
   GMSH_POINT   = 15, /* gmsh's type number of a point */
-  GMSH_QUAD8   = 16, /* serendipity elements */
+  GMSH_QUAD8   = 16, /* gmsh's type numbers of the serendipity elements */
   GMSH_HEX20   = 17,
-  GMSH_POLYGON = 34 /* from here on gmsh's numbers are for elements without a fixed shape */
+  GMSH_POLYGON = 34 /* elements from this number on have no fixed shape */
 };
 
 static const char *const RefusedElements[] = {[6]          = "6-node prism",
@@ -23,12 +24,12 @@ static const char *const RefusedElements[] = {[6]          = "6-node prism",
                                               [18]         = "15-node prism",
                                               [19]         = "13-node pyramid"};
 
-/* An entity of the geometry and the physical groups it is in (signed tags) */
+/* An entity of the geometry and the signed tags of the physical groups that contain it. */
 typedef struct {
   int dim, tag, n, *physical;
 } Entity;
 
-/* A cursor over the file in memory. After the first mistake every read returns 0, so that loops come to their end. */
+/* A cursor over the file in memory. After the first mistake every read returns 0, so that loops end. */
 typedef struct {
   const char *file;
   char       *data;
@@ -39,21 +40,22 @@ typedef struct {
   GmshMesh   *mesh;
   PetscInt    n_entities;
   Entity     *entities;
-  PetscBool  *used; /* node -> some element has it */
+  PetscBool  *used; /* for each node: some element has it */
 } Reader;
 
-/*
-  GmshFileLoad - a whole file of gmsh's in memory, .geo or .msh
+/*@
+  GmshFileLoad - loads a whole .geo or .msh file into memory.
 
-  Not Collective
+  Not collective
 
   Input Parameter:
 . file - path
 
   Output Parameters:
-+ data - its bytes and a zero behind them, to be freed by PetscFree(); NULL: there is no such file, or it cannot be read
-- size - bytes, without the zero
-*/
++ data - bytes of the file, followed by a zero, to be freed with PetscFree(); NULL: there is no such file, or it cannot
+  be read
+- size - number of bytes without the zero
+@*/
 PetscErrorCode GmshFileLoad(const char *file, char **data, size_t *size)
 {
   FILE       *stream = fopen(file, "rb");
@@ -75,15 +77,14 @@ PetscErrorCode GmshFileLoad(const char *file, char **data, size_t *size)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ----------------------------------------------------------------------------------------------------- single values
- */
+/* Single values */
 
 static PetscBool ReaderFailed(const Reader *r)
 {
   return r->complaint->text[0] ? PETSC_TRUE : PETSC_FALSE;
 }
 
-/* The file ends or makes no sense: says in which section and where. */
+/* Complains that the file is truncated or damaged, with the section and the place. */
 static void ReaderDamaged(Reader *r)
 {
   size_t line = 1;
@@ -141,8 +142,8 @@ static long long ReadSize(Reader *r)
   return value;
 }
 
-/* A number of things that follow: each takes at least one byte, so that a damaged count cannot ask for more memory than
- * the file has */
+/* Reads the number of items that follow. Each item takes at least one byte, so that a damaged count cannot ask for more
+   memory than the size of the file. */
 static PetscInt ReadCount(Reader *r)
 {
   long long value = ReadSize(r);
@@ -160,7 +161,7 @@ static PetscInt ReadTag(Reader *r)
 
   if (value >= 0 && value <= PETSC_MAX_INT) return (PetscInt)value;
   Complain(r->complaint, "%s: tag %lld does not fit into this build's index type", r->file, value);
-  return 0; /* differences of tags stay numbers */
+  return 0; /* 0, so that differences of tags remain valid numbers */
 }
 
 static double ReadDouble(Reader *r)
@@ -186,7 +187,7 @@ static void SkipSpace(Reader *r)
   while (r->at < r->size && isspace((unsigned char)r->data[r->at])) r->at++;
 }
 
-/* The rest of the line, without the end of line */
+/* Reads the rest of the line, without the end of line. */
 static void ReadLine(Reader *r, char *line, size_t size)
 {
   size_t length = strcspn(r->data + r->at, "\r\n");
@@ -198,8 +199,7 @@ static void ReadLine(Reader *r, char *line, size_t size)
   }
 }
 
-/* ---------------------------------------------------------------------------------------------------------- sections
- */
+/* Sections */
 
 static PetscErrorCode ReadFormat(Reader *r)
 {
@@ -228,7 +228,7 @@ static PetscErrorCode ReadFormat(Reader *r)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Names are text in binary files too. */
+/* Reads the names of physical groups, which are text in binary files too. */
 static PetscErrorCode ReadPhysicalNames(Reader *r)
 {
   PetscBool binary = r->binary;
@@ -276,18 +276,18 @@ static PetscErrorCode ReadEntities(Reader *r)
 
       entity->dim = dim;
       entity->tag = ReadInt(r);
-      for (int k = 0; k < (dim ? 6 : 3); k++) (void)ReadDouble(r); /* its point or bounding box */
+      for (int k = 0; k < (dim ? 6 : 3); k++) (void)ReadDouble(r); /* coordinates of a point, or bounding box */
       entity->n = (int)ReadCount(r);
       PetscCall(PetscMalloc1(entity->n, &entity->physical));
       for (int k = 0; k < entity->n; k++) entity->physical[k] = ReadInt(r);
       if (!dim) continue;
-      for (PetscInt k = ReadCount(r); k > 0; k--) (void)ReadInt(r); /* what bounds it */
+      for (PetscInt k = ReadCount(r); k > 0; k--) (void)ReadInt(r); /* bounding entities */
     }
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Nodes by ascending tag, whatever their order in the file */
+/* Sorts the nodes by ascending tag, because their order in the file is arbitrary. */
 static PetscErrorCode SortNodes(Reader *r)
 {
   GmshMesh  *mesh   = r->mesh;
@@ -325,14 +325,14 @@ static PetscErrorCode ReadNodes(Reader *r)
   PetscCall(PetscMalloc2(n, &mesh->node_tag, 3 * n, &mesh->coords));
   for (PetscInt b = 0; b < blocks && !ReaderFailed(r); b++) {
     int      dim        = ReadInt(r);
-    int      parametric = (ReadInt(r), ReadInt(r)); /* the entity's tag is not needed */
+    int      parametric = (ReadInt(r), ReadInt(r)); /* skips the entity's tag */
     PetscInt in_block   = ReadCount(r);
 
     if (in_block > n - done || dim < 0 || dim > 3) ReaderDamaged(r);
     for (PetscInt i = 0; i < in_block && !ReaderFailed(r); i++) mesh->node_tag[done + i] = ReadTag(r);
     for (PetscInt i = 0; i < in_block && !ReaderFailed(r); i++) {
       for (int k = 0; k < 3; k++) mesh->coords[3 * (done + i) + k] = ReadDouble(r);
-      for (int k = 0; parametric && k < dim; k++) (void)ReadDouble(r); /* position on the entity */
+      for (int k = 0; parametric && k < dim; k++) (void)ReadDouble(r); /* parametric coordinates on the entity */
     }
     done += in_block;
   }
@@ -368,7 +368,8 @@ static void RefuseElement(Reader *r, int type, int dim, int entity)
   }
 }
 
-/* Index of a node's tag, -1: there is none. Tags are mostly without gaps, so the first guess is right. */
+/* Returns the index of a node from its tag, -1 if there is no such node. Tags mostly have no gaps, so that the first
+   guess is mostly right. */
 static PetscInt NodeIndex(const GmshMesh *mesh, PetscInt tag)
 {
   PetscInt guess = mesh->n_nodes ? tag - mesh->node_tag[0] : -1;
@@ -385,7 +386,7 @@ static int PhysicalIndex(const GmshMesh *mesh, int dim, PetscInt tag)
   return -1;
 }
 
-/* A group that has no name in the file goes by its number. */
+/* Adds a group that has no name in the file; its number becomes its name. */
 static PetscErrorCode AddPhysical(GmshMesh *mesh, int dim, PetscInt tag, int *index)
 {
   char name[24];
@@ -399,7 +400,7 @@ static PetscErrorCode AddPhysical(GmshMesh *mesh, int dim, PetscInt tag, int *in
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The groups of the entity a block lies on */
+/* Finds the groups of the entity on which a block lies. */
 static PetscErrorCode BlockPhysicals(Reader *r, int dim, int tag, GmshBlock *block)
 {
   const Entity *entity = NULL;
@@ -429,7 +430,7 @@ static PetscErrorCode BlockFree(GmshBlock *block)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Tags and nodes of a block's elements */
+/* Reads the tags and nodes of a block's elements. */
 static PetscErrorCode ReadBlockElements(Reader *r, GmshBlock *block)
 {
   PetscFunctionBeginUser;
@@ -478,16 +479,16 @@ static PetscErrorCode ReadElements(Reader *r)
   PetscInt blocks = ReadCount(r);
 
   PetscFunctionBeginUser;
-  if (!r->mesh->node_tag) ReaderDamaged(r);      /* nodes come first */
+  if (!r->mesh->node_tag) ReaderDamaged(r);      /* the section of nodes must come first */
   for (int i = 0; i < 3; i++) (void)ReadSize(r); /* number of elements, smallest and largest tag */
   for (PetscInt b = 0; b < blocks && !ReaderFailed(r); b++) PetscCall(ReadBlock(r));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ------------------------------------------------------------------------------------------------------ the whole file
- */
+/* The whole file */
 
-/* Goes to what follows $EndSECTION. anywhere: after a section that is not read; else it must come next. */
+/* Moves behind $EndSECTION. With anywhere, a section that is not read is skipped; without it, $EndSECTION must come
+   next. */
 static void ReadClosing(Reader *r, PetscBool anywhere)
 {
   char        closing[72];
@@ -513,7 +514,8 @@ static const struct {
   {"$Nodes",         ReadNodes        },
   {"$Elements",      ReadElements     }
 };
-enum { SEEN_FORMAT = 1, SEEN_NAMES = 2, SEEN_NODES = 8, SEEN_ELEMENTS = 16 }; /* a bit for each of them */
+/* One bit for each section, by its place in Sections. */
+enum { SEEN_FORMAT = 1, SEEN_NAMES = 2, SEEN_NODES = 8, SEEN_ELEMENTS = 16 };
 
 static PetscErrorCode ReadSection(Reader *r, unsigned *seen)
 {
@@ -531,7 +533,7 @@ static PetscErrorCode ReadSection(Reader *r, unsigned *seen)
     Complain(r->complaint, "%s: this is no gmsh mesh file (.msh, format 4.1)", r->file);
   if (ReaderFailed(r)) PetscFunctionReturn(PETSC_SUCCESS);
   if (known >= 0) {
-    if (*seen & (1u << known)) ReaderDamaged(r); /* twice */
+    if (*seen & (1u << known)) ReaderDamaged(r); /* the section occurs twice */
     *seen |= 1u << known;
     if (!ReaderFailed(r)) PetscCall(Sections[known].read(r));
   }
@@ -547,7 +549,7 @@ static int ComparePhysicals(const void *a, const void *b)
   return p->tag < q->tag ? -1 : p->tag > q->tag;
 }
 
-/* Groups by descending dimension, then tag; blocks follow. */
+/* Sorts the groups by descending dimension, then by tag, and updates the groups of the blocks. */
 static PetscErrorCode SortPhysicals(GmshMesh *mesh)
 {
   GmshPhysical *old;
@@ -567,7 +569,7 @@ static PetscErrorCode SortPhysicals(GmshMesh *mesh)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Is all there that a mesh needs? */
+/* Checks that the file contains all that a mesh needs. */
 static void CheckContents(Reader *r, unsigned seen)
 {
   if (!(seen & SEEN_NODES)) Complain(r->complaint, "%s: the file has no nodes", r->file);
@@ -582,23 +584,24 @@ static void CheckContents(Reader *r, unsigned seen)
       Complain(r->complaint, "%s: node %" PetscInt_FMT " belongs to no element", r->file, r->mesh->node_tag[i]);
 }
 
-/*
-  GmshRead - reads a gmsh file of format 4.1, text or binary
+/*@
+  GmshRead - reads a gmsh file of format 4.1, text or binary.
 
-  Not Collective; meant for one rank
+  Not collective, meant for one rank
 
   Input Parameter:
 . file - path
 
   Output Parameters:
-+ mesh      - nodes by ascending tag, elements of the physical groups, groups; to be freed with GmshReset(), also after
-a mistake
-- complaint - what is wrong with the file, if anything: missing, truncated, other format, no physical names, elements
-that are not available, nodes without elements
++ mesh      - nodes by ascending tag, elements of the physical groups, and groups; to be freed with GmshReset(), also
+  after a mistake
+- complaint - says what is wrong with the file, if anything
 
   Note:
-  Format: the gmsh reference manual, "MSH file format, version 4.1".
-*/
+  The complaint names a missing or truncated file, another format, missing physical names, elements that are not
+  available, or nodes without elements. The format is described in the gmsh reference manual, "MSH file format, version
+  4.1".
+@*/
 PetscErrorCode GmshRead(const char *file, GmshMesh *mesh, Complaint *complaint)
 {
   Reader   r    = {.file = file, .complaint = complaint, .mesh = mesh};
@@ -621,11 +624,14 @@ PetscErrorCode GmshRead(const char *file, GmshMesh *mesh, Complaint *complaint)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*
-  GmshReset - frees what GmshRead() made
+/*@
+  GmshReset - frees what GmshRead() made.
 
-  Not Collective
-*/
+  Not collective
+
+  Input Parameter:
+. mesh - emptied
+@*/
 PetscErrorCode GmshReset(GmshMesh *mesh)
 {
   PetscFunctionBeginUser;

@@ -1,3 +1,4 @@
+/* Creation of the distributed mesh from gmsh's file, and coordinates of its nodes. */
 #include "mesh/mesh.h"
 #include "cellfaces.h"
 #include "gmsh.h"
@@ -9,23 +10,27 @@
 #include "roottopology.h"
 #include <string.h>
 
-/*
-  MeshGenerate - the scene's mesh file, made from its .geo by gmsh if need be
+/* Coordinates below this part of the model's size are round-off of the mesh generator. */
+#define PLACE_ROUND_OFF 1e-9
+
+/*@
+  MeshGenerate - makes the scene's mesh file from a .geo with gmsh, or returns the scene's .msh file.
 
   Collective
 
   Input Parameters:
 + comm      - all ranks; rank 0 runs gmsh
-. scene     - mesh file, order, parameters
-- directory - where made meshes are kept
+. scene     - mesh file, order and parameters
+- directory - where meshes are kept
 
   Output Parameters:
-+ file    - path of the .msh (PETSC_MAX_PATH_LEN characters)
-- seconds - wall time of gmsh, 0 if nothing was made
++ file    - path of the .msh file [PETSC_MAX_PATH_LEN]
+- seconds - wall time of gmsh (s); 0 if gmsh did not run
 
   Note:
-  Refuses a file that is neither .geo nor .msh, and what gmsh refuses.
-*/
+  A mesh is made once for each content and kept as mesh-HASH.msh. Refuses a file that is neither .geo nor .msh, and a
+  file that gmsh refuses.
+@*/
 PetscErrorCode MeshGenerate(MPI_Comm comm, Scene scene, const char *directory, char *file, PetscReal *seconds)
 {
   const char *ending    = strrchr(scene->mesh_file, '.');
@@ -49,10 +54,9 @@ PetscErrorCode MeshGenerate(MPI_Comm comm, Scene scene, const char *directory, c
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ------------------------------------------------------------------------------------------------------------ creation
- */
+/* Creation */
 
-/* Rank 0's findings that all need */
+/* Sends the bounding box and the order, which rank 0 found, to all ranks. */
 static PetscErrorCode ShareFrame(Mesh mesh)
 {
   PetscReal frame[4] = {mesh->centre[0], mesh->centre[1], mesh->centre[2], mesh->size};
@@ -65,7 +69,7 @@ static PetscErrorCode ShareFrame(Mesh mesh)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* File -> root: cells and nodes on rank 0, order and frame on all ranks */
+/* Reads the file into root on rank 0; all ranks get the order and the bounding box. */
 static PetscErrorCode ReadFile(Scene scene, const char *file, RootMesh *root, Mesh mesh)
 {
   Complaint   complaint = {""};
@@ -79,7 +83,7 @@ static PetscErrorCode ReadFile(Scene scene, const char *file, RootMesh *root, Me
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Root -> DM, whole on rank 0, with points for the nodes, and faces and labels of the groups */
+/* Makes the DM from root, whole on rank 0, with points for the nodes and with faces and labels of the groups. */
 static PetscErrorCode CreateTopology(Scene scene, const char *file, RootMesh *root, Mesh mesh)
 {
   Complaint complaint = {""};
@@ -99,7 +103,7 @@ static PetscErrorCode CreateTopology(Scene scene, const char *file, RootMesh *ro
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* DM on rank 0 -> parts for all ranks */
+/* Partitions the DM, whose cells are all on rank 0, into one part for each rank. */
 static PetscErrorCode PartitionBodies(Scene scene, const RootMesh *root, Mesh mesh)
 {
   PetscBool  *contact = NULL;
@@ -122,7 +126,7 @@ static PetscErrorCode PartitionBodies(Scene scene, const RootMesh *root, Mesh me
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Until supports are known every dof is free. */
+/* Declares every dof free until the supports are known. */
 static PetscErrorCode FreeAllDofs(Mesh mesh)
 {
   PetscBool *constrained;
@@ -134,7 +138,7 @@ static PetscErrorCode FreeAllDofs(Mesh mesh)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* All of the mesh, from its file. root: NULL on other ranks than 0. */
+/* Creates the whole mesh from its file. root is NULL on ranks other than 0. */
 static PetscErrorCode MeshBuild(Scene scene, const char *file, RootMesh *root, Mesh mesh)
 {
   PetscFunctionBeginUser;
@@ -150,28 +154,28 @@ static PetscErrorCode MeshBuild(Scene scene, const char *file, RootMesh *root, M
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*
-  MeshCreate - the distributed mesh from a .msh file
+/*@
+  MeshCreate - creates the distributed mesh from a .msh file.
 
   Collective
 
   Input Parameters:
-+ comm  - all ranks; rank 0 reads
-. scene - bodies, dimension, and which surfaces are loaded or in contact
-- file  - a .msh file, format 4.1
++ comm  - all ranks; rank 0 reads the file
+. scene - bodies, dimension, and the surfaces that are loaded or in contact
+- file  - path of a .msh file, format 4.1
 
   Output Parameter:
-. mesh - to be destroyed with MeshDestroy(). The local section holds every dof as free until MeshSetConstraints() is
-called.
+. created - to be destroyed with MeshDestroy()
 
   Options Database Key:
 . -mesh_dm_view - views the DMPlex
 
   Note:
-  Refuses damaged files, elements that are not available, bodies without cells, cells without a body, mixed orders, a
-two-dimensional mesh out of its plane, and loads or contact on surfaces that are rigid or lie between cells. After a
-refusal there is no mesh, and all memory is free.
-*/
+  The local section treats every dof as free until MeshSetConstraints() is called. Refuses damaged files, elements that
+  are not available, bodies without cells, cells without a body, mixed orders, a two-dimensional mesh that is not in its
+  plane, and loads or contact on surfaces that are rigid or lie between cells. After a refusal there is no mesh, and its
+  memory is free.
+@*/
 PetscErrorCode MeshCreate(MPI_Comm comm, Scene scene, const char *file, Mesh *created)
 {
   RootMesh       storage = {.n_cells = 0}, *root;
@@ -187,7 +191,7 @@ PetscErrorCode MeshCreate(MPI_Comm comm, Scene scene, const char *file, Mesh *cr
   mesh->comm = comm;
   mesh->dim  = scene->dim;
   code       = MeshBuild(scene, file, root, mesh);
-  if (code == REFUSED) { /* on all ranks, before the mesh was distributed */
+  if (code == REFUSED) { /* a refusal occurs on all ranks, before the mesh is distributed */
     if (root) PetscCall(RootMeshReset(root));
     PetscCall(MeshDestroy(&mesh));
   }
@@ -196,11 +200,14 @@ PetscErrorCode MeshCreate(MPI_Comm comm, Scene scene, const char *file, Mesh *cr
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*
-  MeshDestroy - frees a mesh
+/*@
+  MeshDestroy - frees a mesh.
 
   Collective
-*/
+
+  Input Parameter:
+. destroyed - may be NULL; set to NULL
+@*/
 PetscErrorCode MeshDestroy(Mesh *destroyed)
 {
   Mesh mesh = *destroyed;
@@ -226,41 +233,43 @@ PetscErrorCode MeshDestroy(Mesh *destroyed)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* --------------------------------------------------------------------------------------------------------- coordinates
- */
+/* Coordinates */
 
-/*
-  MeshGatherNodes - a nodal field's values at some nodes, for an element kernel
+/*@
+  MeshGatherNodes - gathers a nodal field at some nodes, for an element kernel.
 
-  Not Collective
+  Not collective
 
   Input Parameters:
-+ mesh   - its dimension is read
++ mesh   - only its dimension is read
 . n      - number of nodes
 . nodes  - local nodes
-- values - n_nodes*dim: mesh->coords, or displacements
+- values - nodal field [n_nodes*dim], such as mesh->coords or displacements
 
   Output Parameter:
-. gathered - n*dim
-*/
+. gathered - values at the nodes, one node after the other [n*dim]
+@*/
 void MeshGatherNodes(Mesh mesh, PetscInt n, const PetscInt nodes[], const PetscReal *values, PetscReal *gathered)
 {
   for (PetscInt a = 0; a < n; a++)
     for (int k = 0; k < mesh->dim; k++) gathered[a * mesh->dim + k] = values[nodes[a] * mesh->dim + k];
 }
 
-/*
-  MeshCellCoordinates - reference coordinates of a cell's nodes
+/*@
+  MeshCellCoordinates - gathers the reference coordinates of a cell's nodes, for an element kernel.
 
-  Not Collective
+  Not collective
 
   Input Parameters:
 + mesh - the mesh
 - cell - local cell
 
   Output Parameter:
-. X - nodes*dim, in gmsh's node order, relative to mesh->centre (axisymmetric: the first is the radius itself)
-*/
+. X - coordinates relative to mesh->centre, in gmsh's node order [nodes*dim]
+
+  Note:
+  In an axisymmetric mesh the first coordinate is the radius itself.
+@*/
 void MeshCellCoordinates(Mesh mesh, PetscInt cell, PetscReal *X)
 {
   const PetscInt first = mesh->cell_ptr[cell];
@@ -268,10 +277,18 @@ void MeshCellCoordinates(Mesh mesh, PetscInt cell, PetscReal *X)
   MeshGatherNodes(mesh, mesh->cell_ptr[cell + 1] - first, &mesh->cell_nodes[first], mesh->coords, X);
 }
 
-/* Coordinates below this part of the model's size are round-off of the mesh generator. */
-#define PLACE_ROUND_OFF 1e-9
+/*@
+  MeshNodePlace - returns the reference coordinates of a node in the user's frame, for messages.
 
-/* MeshNodePlace - where a local node lies, for messages. Not collective. */
+  Not collective
+
+  Input Parameters:
++ mesh - the mesh
+- node - local node
+
+  Output Parameter:
+. X - three coordinates; values that are round-off become 0
+@*/
 void MeshNodePlace(Mesh mesh, PetscInt node, PetscReal X[3])
 {
   for (int d = 0; d < 3; d++) {

@@ -1,19 +1,21 @@
+/* Distribution of the mesh: rank 0 packs nodes and cells into sections over the Plex, the sections follow the points to
+   their ranks, and each rank unpacks its arrays. */
 #include "meshdistribution.h"
 #include "mesh/meshgroup.h"
 
-/* A cell's record: id, tag, type, body, n_nodes, node ids, then (group, number, tag) of each face in a group */
+/* Entries of a cell's record: id, tag, type, body and number of nodes, then the ids of the nodes, then FACE_ENTRIES
+   numbers (group, number, tag) for each face in a group. */
 enum { CELL_ID, CELL_TAG, CELL_TYPE, CELL_BODY, CELL_NODES, CELL_HEADER, FACE_ENTRIES = 3 };
 
-/* What travels with the points: sections over the Plex's chart with their values */
+/* Data that travel with the points: sections over the Plex' chart, and their values. */
 typedef struct {
-  PetscSection ids, places, cells; /* on points with a node; on cells */
-  PetscInt    *id;                 /* node: id, tag */
-  PetscReal   *place;              /* node: coordinates relative to the centre */
-  PetscInt    *cell;               /* records of cells */
+  PetscSection ids, places, cells; /* ids and places are on points with a node, cells on cells */
+  PetscInt    *id;                 /* for each node: id and tag */
+  PetscReal   *place;              /* for each node: coordinates relative to the centre */
+  PetscInt    *cell;               /* records of the cells */
 } Cargo;
 
-/* ------------------------------------------------------------------------------------------------------------ packing
- */
+/* Packing */
 
 static PetscErrorCode SectionCreate(DM dm, PetscSection *section)
 {
@@ -26,7 +28,7 @@ static PetscErrorCode SectionCreate(DM dm, PetscSection *section)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Sections and room for the values; nothing where there is no root */
+/* Creates the sections and allocates their values. Ranks without root have none. */
 static PetscErrorCode CargoAllocate(DM dm, int dim, const RootMesh *root, Cargo *cargo)
 {
   PetscInt n_ids, n_places, n_cells;
@@ -93,7 +95,7 @@ static PetscErrorCode CargoLoad(Mesh mesh, const RootMesh *root, Cargo *cargo)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Moves one section's values along the migration of points */
+/* Moves one section's values along the migration of points. */
 static PetscErrorCode MoveData(DM dm, PetscSF migration, MPI_Datatype type, PetscSection *section, void **values)
 {
   PetscSection moved;
@@ -109,7 +111,7 @@ static PetscErrorCode MoveData(DM dm, PetscSF migration, MPI_Datatype type, Pets
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Gives cells to ranks; *dm is replaced, the cargo follows. On one rank nothing moves. */
+/* Gives cells to ranks; *dm is replaced and the cargo follows. On one rank nothing moves. */
 static PetscErrorCode Distribute(DM *dm, Cargo *cargo)
 {
   PetscSF migration;
@@ -140,10 +142,9 @@ static PetscErrorCode CargoFree(Cargo *cargo)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ---------------------------------------------------------------------------------------------------------- unpacking
- */
+/* Unpacking */
 
-/* Values of a point, none outside the section's chart */
+/* Returns the range of a point's values; a point outside the section's chart has none. */
 static PetscErrorCode SectionRange(PetscSection section, PetscInt point, PetscInt *n, PetscInt *offset)
 {
   PetscInt start, end;
@@ -157,7 +158,8 @@ static PetscErrorCode SectionRange(PetscSection section, PetscInt point, PetscIn
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Local nodes: the points that carry one, in the order of the points. point_node: back, -1 without node */
+/* Numbers the local nodes in the order of their points and fills their arrays. point_node returns the node of each
+   point, -1 if it has none. */
 static PetscErrorCode CreateNodes(Mesh mesh, const Cargo *cargo, PetscInt **point_node)
 {
   PetscInt start, end, n, offset;
@@ -187,7 +189,7 @@ static PetscErrorCode CreateNodes(Mesh mesh, const Cargo *cargo, PetscInt **poin
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The owner's number of each point's node, from the point's owner; -1 without node */
+/* Gets the number that each point's node has on the rank that owns the point; -1 if the point has no node. */
 static PetscErrorCode OwnersNumbers(PetscSF point_sf, PetscInt n_points, const PetscInt point_node[],
                                     PetscInt owner_node[])
 {
@@ -196,13 +198,13 @@ static PetscErrorCode OwnersNumbers(PetscSF point_sf, PetscInt n_points, const P
   PetscFunctionBeginUser;
   PetscCall(PetscArraycpy(owner_node, point_node, n_points));
   PetscCall(PetscSFGetGraph(point_sf, &n_roots, NULL, NULL, NULL));
-  if (n_roots < 0) PetscFunctionReturn(PETSC_SUCCESS); /* no graph: one rank */
+  if (n_roots < 0) PetscFunctionReturn(PETSC_SUCCESS); /* no graph, because there is one rank */
   PetscCall(PetscSFBcastBegin(point_sf, MPIU_INT, point_node, owner_node, MPI_REPLACE));
   PetscCall(PetscSFBcastEnd(point_sf, MPIU_INT, point_node, owner_node, MPI_REPLACE));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Owners of the nodes from those of their points, and the SF between copies of a node */
+/* Derives owners of nodes from owners of points, and creates the SF between the copies of a node. */
 static PetscErrorCode CreateOwners(Mesh mesh, const PetscInt point_node[])
 {
   PetscSF            point_sf;
@@ -245,7 +247,7 @@ static PetscErrorCode CreateOwners(Mesh mesh, const PetscInt point_node[])
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* A cell's record, the faces behind it, and how many there are */
+/* Returns a cell's record, the faces that follow it, and their number. */
 static PetscErrorCode CellRecord(const Cargo *cargo, PetscInt c, const PetscInt **record, const PetscInt **faces,
                                  PetscInt *n_faces)
 {
@@ -261,7 +263,7 @@ static PetscErrorCode CellRecord(const Cargo *cargo, PetscInt c, const PetscInt 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Room for the cells, and for the groups' faces that their records bring along */
+/* Allocates the cells, and the faces of groups that are in the cells' records. */
 static PetscErrorCode AllocateCells(Mesh mesh, const Cargo *cargo)
 {
   PetscInt        n_entries = 0, n, *n_faces;
@@ -288,7 +290,7 @@ static PetscErrorCode AllocateCells(Mesh mesh, const Cargo *cargo)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Local nodes of cell c by their ids; ids: all local ones, ascending, with their local nodes */
+/* Finds the local nodes of cell c by their ids. ids: of all local nodes, ascending; nodes: their local numbers. */
 static PetscErrorCode CreateCellNodes(Mesh mesh, PetscInt c, const PetscInt *record, const PetscInt ids[],
                                       const PetscInt nodes[])
 {
@@ -305,7 +307,7 @@ static PetscErrorCode CreateCellNodes(Mesh mesh, PetscInt c, const PetscInt *rec
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Local cells, and the groups' faces */
+/* Fills the local cells and the groups' faces. */
 static PetscErrorCode CreateCells(Mesh mesh, const Cargo *cargo)
 {
   PetscInt        n_faces, *ids, *nodes;
@@ -338,7 +340,7 @@ static PetscErrorCode CreateCells(Mesh mesh, const Cargo *cargo)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* A group's nodes from its label: also those that only another rank's face touches */
+/* Gets a group's nodes from its label, which includes nodes that only another rank's face touches. */
 static PetscErrorCode CreateGroupNodes(Mesh mesh, MeshGroup *group, const PetscInt point_node[])
 {
   char            name[MESH_TEXT];
@@ -361,19 +363,19 @@ static PetscErrorCode CreateGroupNodes(Mesh mesh, MeshGroup *group, const PetscI
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*
-  MeshDistribute - moves nodes, cells and faces of groups to the ranks of their points
+/*@
+  MeshDistribute - moves nodes, cells and faces of groups to the ranks of their points.
 
   Collective
 
   Input Parameters:
-+ root - on rank 0, with points and faces; reset as soon as it is packed. NULL elsewhere
-- mesh - dm, with its partitioner and the groups' labels, centre and groups are read; the DM is replaced by the
-distributed one, and all arrays of nodes, cells and groups' nodes and faces are set
++ root - on rank 0, with points and faces; reset as soon as it is packed. NULL on other ranks
+- mesh - dm with its partitioner and the groups' labels, centre, and groups are read
 
   Note:
-  Cells are not overlapped. A node belongs to the rank to which the DM's point SF gives its point.
-*/
+  The DM is replaced by the distributed one. All arrays of nodes and cells, and the groups' nodes and faces, are set.
+  Cells do not overlap. A node belongs to the rank to which the DM's point SF gives its point.
+@*/
 PetscErrorCode MeshDistribute(RootMesh *root, Mesh mesh)
 {
   Cargo     cargo;

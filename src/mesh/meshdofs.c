@@ -1,6 +1,7 @@
+/* Unknowns of a mesh: sections, global numbers, and exchange of nodal values through the SF of the nodes. */
 #include "mesh/meshdofs.h"
 
-/* The displacement's section: dim dofs on each point with a node */
+/* Creates the displacement's section with dim dofs on each point with a node. */
 static PetscErrorCode CreateSection(Mesh mesh, const PetscBool constrained[], PetscSection *section)
 {
   PetscInt which[3], start, end;
@@ -34,9 +35,9 @@ static PetscErrorCode CreateSection(Mesh mesh, const PetscBool constrained[], Pe
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* block values of a node as one unit of communication, to be given back. Real values only: two 64-bit integers would be
-   taken for MPI's pair type. One value is the basic type itself: a contiguous type of one is none that PetscSF can sum.
- */
+/* Creates the MPI type of a node's values, `block` reals, to be freed with NodeTypeFree(). The values are reals,
+   because MPI would treat two 64-bit integers as its pair type. One value is the basic type itself: PetscSF cannot sum
+   with a contiguous type of one. */
 static PetscErrorCode NodeTypeCreate(PetscInt block, MPI_Datatype *type)
 {
   PetscMPIInt count;
@@ -57,7 +58,7 @@ static PetscErrorCode NodeTypeFree(MPI_Datatype *type)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Owners' values to the copies */
+/* Copies the owners' values to the other copies of a node. */
 static PetscErrorCode CopyNodes(Mesh mesh, PetscInt block, PetscReal *values)
 {
   MPI_Datatype type;
@@ -70,7 +71,7 @@ static PetscErrorCode CopyNodes(Mesh mesh, PetscInt block, PetscReal *values)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Adds the copies' values (which may be those of sums) to their owners' sums */
+/* Adds the copies' values to their owners' sums. values and sums may be the same array. */
 static PetscErrorCode AddNodes(Mesh mesh, PetscInt block, const PetscReal *values, PetscReal *sums)
 {
   MPI_Datatype type;
@@ -83,7 +84,7 @@ static PetscErrorCode AddNodes(Mesh mesh, PetscInt block, const PetscReal *value
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Global numbers of the free dofs, from the global section (which stores -(x + 1) for points of other ranks) */
+/* Numbers the free dofs globally. The global section stores -(x + 1) for points of other ranks. */
 static PetscErrorCode NumberDofs(Mesh mesh, const PetscBool constrained[])
 {
   PetscSection global;
@@ -102,18 +103,18 @@ static PetscErrorCode NumberDofs(Mesh mesh, const PetscBool constrained[])
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*
-  MeshSetConstraints - says which dofs are prescribed, and numbers the free ones
+/*@
+  MeshSetConstraints - sets which dofs are prescribed and numbers the free ones.
 
   Collective
 
   Input Parameters:
 + mesh        - the mesh
-- constrained - n_nodes*dim: this rank's local dofs; a dof is prescribed if any rank that has its node says so
+- constrained - for each local dof [n_nodes*dim]; a dof is prescribed if any rank that has its node says so
 
   Note:
-  Sets the DM's local section; vectors and matrices made before do not fit any more.
-*/
+  Sets the DM's local section. Call it before vectors and matrices are created, because older ones do not fit any more.
+@*/
 PetscErrorCode MeshSetConstraints(Mesh mesh, const PetscBool *constrained)
 {
   const PetscInt n = mesh->n_nodes * mesh->dim;
@@ -134,15 +135,20 @@ PetscErrorCode MeshSetConstraints(Mesh mesh, const PetscBool *constrained)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*
-  MeshGetGlobalDofs - global numbers of the local dofs
+/*@
+  MeshGetGlobalDofs - returns the global numbers of the local dofs.
 
-  Not Collective
+  Not collective
+
+  Input Parameter:
+. mesh - the mesh, after MeshSetConstraints()
 
   Output Parameter:
-. dofs - n_nodes*dim, -1 where constrained; also for nodes of other ranks. Belongs to the mesh; a new array after each
-MeshSetConstraints().
-*/
+. dofs - global numbers [n_nodes*dim], also for nodes of other ranks; -1 where constrained
+
+  Note:
+  The array belongs to the mesh. Each MeshSetConstraints() makes a new one.
+@*/
 PetscErrorCode MeshGetGlobalDofs(Mesh mesh, const PetscInt **dofs)
 {
   PetscFunctionBeginUser;
@@ -150,18 +156,18 @@ PetscErrorCode MeshGetGlobalDofs(Mesh mesh, const PetscInt **dofs)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*
-  MeshGlobalToLocal - free displacements from a global vector to the local array, ghost nodes included
+/*@
+  MeshGlobalToLocal - copies free displacements from a global vector to the local array, ghost nodes included.
 
   Collective
 
   Input Parameters:
 + mesh - the mesh, after MeshSetConstraints()
-- x    - made by DMCreateGlobalVector()
+- x    - from DMCreateGlobalVector()
 
   Output Parameter:
-. u - n_nodes*dim; constrained entries are left alone
-*/
+. u - local values [n_nodes*dim]; constrained entries are not changed
+@*/
 PetscErrorCode MeshGlobalToLocal(Mesh mesh, Vec x, PetscReal *u)
 {
   const PetscInt     n = mesh->n_nodes * mesh->dim;
@@ -183,18 +189,18 @@ PetscErrorCode MeshGlobalToLocal(Mesh mesh, Vec x, PetscReal *u)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*
-  MeshCollectFree - the free values among local ones, each from the rank that owns it
+/*@
+  MeshCollectFree - copies the free values from the local array to a global vector, each from the rank that owns it.
 
   Not collective
 
   Input Parameters:
 + mesh - the mesh, after MeshSetConstraints()
-- u    - n_nodes*dim
+- u    - local values [n_nodes*dim]; those of ghost nodes are ignored
 
   Output Parameter:
-. x - made by DMCreateGlobalVector(); overwritten
-*/
+. x - from DMCreateGlobalVector(), overwritten
+@*/
 PetscErrorCode MeshCollectFree(Mesh mesh, const PetscReal *u, Vec x)
 {
   PetscScalar *values;
@@ -212,18 +218,18 @@ PetscErrorCode MeshCollectFree(Mesh mesh, const PetscReal *u, Vec x)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*
-  MeshLocalToGlobal - sums local contributions of all ranks into a global vector over the free dofs
+/*@
+  MeshLocalToGlobal - sums local contributions of all ranks into a global vector over the free dofs.
 
   Collective
 
   Input Parameters:
 + mesh - the mesh, after MeshSetConstraints()
-- f    - n_nodes*dim: this rank's contributions, not changed
+- f    - contributions of this rank [n_nodes*dim]
 
   Output Parameter:
-. F - made by DMCreateGlobalVector(); overwritten
-*/
+. F - from DMCreateGlobalVector(), overwritten
+@*/
 PetscErrorCode MeshLocalToGlobal(Mesh mesh, const PetscReal *f, Vec F)
 {
   PetscFunctionBeginUser;
@@ -233,16 +239,16 @@ PetscErrorCode MeshLocalToGlobal(Mesh mesh, const PetscReal *f, Vec F)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*
-  MeshSumNodes - sums nodal values over all ranks' copies of a node
+/*@
+  MeshSumNodes - sums nodal values over all ranks' copies of a node.
 
   Collective
 
   Input Parameters:
 + mesh   - the mesh
 . block  - values per node
-- values - n_nodes*block; on return every copy holds the same sum
-*/
+- values - nodal values [n_nodes*block]; replaced by the sums, the same on every copy
+@*/
 PetscErrorCode MeshSumNodes(Mesh mesh, PetscInt block, PetscReal *values)
 {
   PetscFunctionBeginUser;

@@ -1,8 +1,9 @@
+/* Access to physical groups, rigid tools and bodies by their names. */
 #include "mesh/meshgroup.h"
 #include "base/refusal.h"
 #include <string.h>
 
-/* In two dimensions a body is still called a volume, its boundary a surface. */
+/* Returns the word for a dimension. In two dimensions a body is still called a volume and its boundary a surface. */
 static const char *DimensionName(int mesh_dim, int dim)
 {
   if (dim == mesh_dim) return "volume";
@@ -10,35 +11,39 @@ static const char *DimensionName(int mesh_dim, int dim)
   return dim == 1 ? "curve" : "point";
 }
 
-/*
-  MeshGroupLabel - the DM's label of a group
+/*@
+  MeshGroupLabel - returns the name of the DM's label that marks a group.
 
-  Not Collective
+  Not collective
 
   Input Parameters:
-+ mesh  - its dimension is read
-- group - its name and dimension are read
++ mesh  - only its dimension is read
+- group - only its name and dimension are read
 
   Output Parameter:
-. label - its name; value 1 marks the points that carry the group's nodes
-*/
+. label - name of the label
+
+  Note:
+  The label has the value 1 on the points of the group's nodes.
+@*/
 void MeshGroupLabel(Mesh mesh, const MeshGroup *group, char label[MESH_TEXT])
 {
   snprintf(label, MESH_TEXT, "%s %s", DimensionName(mesh->dim, group->dim), group->name);
 }
 
-/*
-  MeshFindBody - a body of the scene by its name
+/*@
+  MeshFindBody - finds a body of the scene by its name.
 
-  Not Collective
+  Not collective
 
   Input Parameters:
 + scene - the scene
-. name  - of the volume group, or of the tool's surface group
-- rigid - whether a rigid tool is meant or a deformable body
+. name  - name of the volume group, or of the tool's surface group
+- rigid - PETSC_TRUE for a rigid tool, PETSC_FALSE for a deformable body
 
-  Returns its index, -1 if there is none.
-*/
+  Note:
+  Returns the index into scene->bodies, -1 if there is none.
+@*/
 int MeshFindBody(Scene scene, const char *name, PetscBool rigid)
 {
   for (int b = 0; b < scene->n_bodies; b++)
@@ -46,13 +51,19 @@ int MeshFindBody(Scene scene, const char *name, PetscBool rigid)
   return -1;
 }
 
-/*
-  MeshFindGroup - a physical group by its name and dimension
+/*@
+  MeshFindGroup - finds a physical group by its name and dimension.
 
-  Not Collective
+  Not collective
 
-  Returns its index, -1 if the mesh has none.
-*/
+  Input Parameters:
++ mesh - the mesh
+. dim  - dimension of the group
+- name - name of the group
+
+  Note:
+  Returns the index into mesh->groups, -1 if there is none.
+@*/
 int MeshFindGroup(Mesh mesh, int dim, const char *name)
 {
   for (int g = 0; g < mesh->n_groups; g++)
@@ -60,13 +71,18 @@ int MeshFindGroup(Mesh mesh, int dim, const char *name)
   return -1;
 }
 
-/*
-  MeshFindRigid - a meshed rigid tool by the name of its surface group
+/*@
+  MeshFindRigid - finds a meshed rigid tool by the name of its surface group.
 
-  Not Collective
+  Not collective
 
-  Returns NULL if the scene has no such tool.
-*/
+  Input Parameters:
++ mesh - the mesh
+- name - name of the surface group
+
+  Note:
+  Returns NULL if there is no such tool.
+@*/
 MeshRigid *MeshFindRigid(Mesh mesh, const char *name)
 {
   for (int r = 0; r < mesh->n_rigid; r++)
@@ -84,24 +100,27 @@ static void ListGroups(Mesh mesh, int dim, char list[MESH_TEXT])
       used += (size_t)snprintf(list + used, MESH_TEXT - used, "%s%s", used ? ", " : "", mesh->groups[g].name);
 }
 
-/*
-  MeshGetGroup - a physical group by its name, or refuses
+/*@
+  MeshGetGroup - finds a physical group by its name, or refuses.
 
   Collective
 
   Input Parameters:
 + mesh  - the mesh
-. scene - with path and key: the place in the scene file that names the group
+. scene - with path and key: the place in the scene file that names the group, for the refusal
 . path  - for example "contact.0"
 . key   - for example "slave"
-. name  - of the group
-- dim   - largest dimension allowed: mesh->dim for volumes, mesh->dim - 1 for surfaces. Of groups of one name the one of
-the largest dimension is taken.
+. name  - name of the group
+- dim   - largest dimension allowed: mesh->dim for volumes, mesh->dim - 1 for surfaces
 
   Output Parameter:
-. found - belongs to the mesh. A rigid tool is returned too (not attached, without nodes and faces; see
-MeshFindRigid()); any other group of which some elements do not lie on a body is refused.
-*/
+. found - belongs to the mesh
+
+  Note:
+  Of several groups with the name, the one of the largest dimension is returned. The refusal says which groups there
+  are. A rigid tool is returned too; it is not attached and has no nodes and faces, see MeshFindRigid(). Any other group
+  is refused if some of its elements do not lie on a body.
+@*/
 PetscErrorCode MeshGetGroup(Mesh mesh, Scene scene, const char *path, const char *key, const char *name, int dim,
                             MeshGroup **found)
 {
@@ -131,10 +150,10 @@ PetscErrorCode MeshGetGroup(Mesh mesh, Scene scene, const char *path, const char
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*
-  MeshFaceNodes - nodes of one face of a group
+/*@
+  MeshFaceNodes - returns the nodes of one face of a group.
 
-  Not Collective
+  Not collective
 
   Input Parameters:
 + mesh  - the mesh
@@ -142,10 +161,11 @@ PetscErrorCode MeshGetGroup(Mesh mesh, Scene scene, const char *path, const char
 - f     - 0 to group->n_faces - 1
 
   Output Parameter:
-. nodes - local nodes in the order of the face's own element, normal out of the cell
+. nodes - local nodes in the order of the face's own element; the normal points out of the cell
 
+  Note:
   Returns the face's element type.
-*/
+@*/
 ElementType MeshFaceNodes(Mesh mesh, const MeshGroup *group, PetscInt f, PetscInt nodes[FACE_MAX_NODES])
 {
   const PetscInt cell    = group->face_cell[f];

@@ -1,7 +1,10 @@
+/* Connected pieces of the mesh. Every node begins with its id as a label, and the lowest label spreads over cells and
+   ranks until nothing changes. */
 #include "mesh/meshpieces.h"
 
-/* The lowest label of a cell's nodes on all of them, over and over until nothing changes on this rank; forth and back,
- * as labels run along cells. */
+/* Gives all nodes of a cell the lowest of their labels, and repeats this until nothing changes on this rank. Cells are
+   visited forwards and backwards, because labels then spread along rows of cells quickly. Returns whether any label
+   changed. */
 static PetscBool SpreadInCells(Mesh mesh, PetscInt label[])
 {
   PetscBool any = PETSC_FALSE, changed = PETSC_TRUE;
@@ -24,7 +27,7 @@ static PetscBool SpreadInCells(Mesh mesh, PetscInt label[])
   return any;
 }
 
-/* The lowest label of a node's copies on all of them */
+/* Gives all copies of a node the lowest of their labels. */
 static PetscErrorCode SpreadOverRanks(Mesh mesh, PetscInt label[])
 {
   PetscInt *low;
@@ -41,7 +44,7 @@ static PetscErrorCode SpreadOverRanks(Mesh mesh, PetscInt label[])
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Lowest label that is above the last, over all ranks; PETSC_MAX_INT: none */
+/* Finds the lowest label above the last one, over all ranks; PETSC_MAX_INT if there is none. */
 static PetscErrorCode NextLabel(Mesh mesh, const PetscInt label[], PetscInt last, PetscInt *next)
 {
   PetscFunctionBeginUser;
@@ -52,16 +55,22 @@ static PetscErrorCode NextLabel(Mesh mesh, const PetscInt label[], PetscInt last
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*
-  MeshFindPieces - the connected pieces of the mesh
+/*@
+  MeshFindPieces - finds the connected pieces of the mesh.
 
   Collective
 
+  Input Parameter:
+. mesh - the mesh
+
   Output Parameters:
-+ n     - how many there are, on all ranks together
-- piece - n_nodes (room given): the piece of each local node; pieces count in the order of their lowest gmsh node tag,
-the same on any number of ranks
-*/
++ n     - number of pieces on all ranks together
+- piece - piece of each local node [n_nodes]
+
+  Note:
+  Pieces are numbered in the order of their lowest gmsh node tag, so that the numbers are the same on any number of
+  ranks.
+@*/
 PetscErrorCode MeshFindPieces(Mesh mesh, PetscInt *n, PetscInt piece[])
 {
   PetscInt   *label, last = -1;

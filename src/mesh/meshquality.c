@@ -1,13 +1,14 @@
+/* Checks of the cells' quality and formulations, and the report on bodies, surfaces and partition. */
 #include "mesh/meshquality.h"
 #include "base/complaint.h"
 #include "kernels/elementkernel.h"
 #include "mesh/mesh.h"
 #include <string.h>
 
-/* --------------------------------------------------------------------------------------------------------------
- * quality */
+/* Quality */
 
-/* A cell is inverted if its Jacobian changes sign, or has the wrong sign all over (then its volume is negative). */
+/* Computes the quality of a cell and whether it is inverted. A cell is inverted if its Jacobian changes sign, or has
+   the wrong sign everywhere, so that its volume is negative. */
 static PetscBool CellInverted(Mesh mesh, PetscInt c, double *quality)
 {
   double X[ELEMENT_MAX_NODES * 3];
@@ -18,20 +19,25 @@ static PetscBool CellInverted(Mesh mesh, PetscInt c, double *quality)
                                                                                                        : PETSC_FALSE;
 }
 
-/*
-  MeshCheckQuality - refuses inverted cells
+/*@
+  MeshCheckQuality - refuses inverted cells.
 
   Collective
 
   Input Parameters:
 + mesh  - the mesh
 - scene - for the names of its bodies
-*/
+
+  Note:
+  The refusal names the inverted cell of lowest tag, its body, its smallest Jacobian determinant over the mean, and the
+  number of inverted cells.
+@*/
 PetscErrorCode MeshCheckQuality(Mesh mesh, Scene scene)
 {
   Complaint complaint = {""};
   double    quality, its_quality = 0;
-  PetscInt  first = -1, tag = PETSC_MAX_INT, lowest, count = 0; /* first: this rank's inverted cell of lowest tag */
+  /* first: the inverted cell of lowest tag on this rank */
+  PetscInt first = -1, tag = PETSC_MAX_INT, lowest, count = 0;
 
   PetscFunctionBeginUser;
   for (PetscInt c = 0; c < mesh->n_cells; c++) {
@@ -56,15 +62,18 @@ PetscErrorCode MeshCheckQuality(Mesh mesh, Scene scene)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*
-  MeshCheckFormulations - refuses cells that their body's formulation has no kernel for
+/*@
+  MeshCheckFormulations - refuses cells for which their body's formulation has no kernel.
 
   Collective
 
   Input Parameters:
 + mesh  - the mesh
 - scene - its bodies
-*/
+
+  Note:
+  The refusal names the cell's tag, its body and its element.
+@*/
 PetscErrorCode MeshCheckFormulations(Mesh mesh, Scene scene)
 {
   Complaint complaint = {""};
@@ -86,20 +95,19 @@ PetscErrorCode MeshCheckFormulations(Mesh mesh, Scene scene)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ---------------------------------------------------------------------------------------------------------------
- * report */
+/* Report */
 
-/* A line of the report: a body, a surface, or a rigid tool; all ranks' */
+/* A line of the report, for a body, a surface or a rigid tool, with the values of all ranks together. */
 typedef struct {
   const char *name;
-  char        cells[MESH_TEXT]; /* body: "240 hex27" */
-  double      count;            /* body, tool: nodes; surface: faces */
-  double      measure;          /* volume, area */
+  char        cells[MESH_TEXT]; /* body: for example "240 hex27" */
+  double      count;            /* body and tool: nodes; surface: faces */
+  double      measure;          /* volume or area */
   double      mean, least;      /* body: quality */
   PetscInt    worst;            /* tag of the cell of least quality */
 } ReportRow;
 
-/* "240 hex27, 12 tet10" */
+/* Lists the cells by type, as in "240 hex27, 12 tet10". */
 static void ListCells(const PetscReal cells[ELEMENT_TYPES], char list[MESH_TEXT])
 {
   size_t used = 0;
@@ -111,7 +119,7 @@ static void ListCells(const PetscReal cells[ELEMENT_TYPES], char list[MESH_TEXT]
                                ElementGet((ElementType)type)->name);
 }
 
-/* Nodes of a group, each counted by its owner */
+/* Counts the nodes of a group that this rank owns. */
 static PetscErrorCode CountNodes(Mesh mesh, const MeshGroup *group, PetscReal *count)
 {
   PetscMPIInt rank;
@@ -126,7 +134,7 @@ static PetscErrorCode CountNodes(Mesh mesh, const MeshGroup *group, PetscReal *c
 static PetscErrorCode MeasureBody(Mesh mesh, Scene scene, int b, ReportRow *row)
 {
   enum { NODES = ELEMENT_TYPES, VOLUME, QUALITY, CELLS, SUMS };
-  PetscReal sums[SUMS] = {0}; /* the first: cells by type */
+  PetscReal sums[SUMS] = {0}; /* the first entries are cells by type */
   PetscReal least      = PETSC_MAX_REAL, here;
   PetscInt  worst      = PETSC_MAX_INT;
 
@@ -180,7 +188,8 @@ static PetscErrorCode MeasureSurface(Mesh mesh, Scene scene, const MeshGroup *gr
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Rows of the bodies and of the surfaces on them; bodies has room for all of the scene's, surfaces for all groups */
+/* Computes the rows of the bodies and of the surfaces on them. bodies has room for all bodies of the scene, surfaces
+   for all groups. */
 static PetscErrorCode Measure(Mesh mesh, Scene scene, int *n_bodies, ReportRow bodies[], int *n_surfaces,
                               ReportRow surfaces[])
 {
@@ -194,13 +203,13 @@ static PetscErrorCode Measure(Mesh mesh, Scene scene, int *n_bodies, ReportRow b
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Of a column that holds the text too */
+/* Returns the width of a column that must also hold the text. */
 static int Width(int width, const char *text)
 {
   return PetscMax(width, (int)strlen(text));
 }
 
-/* By stdio, not by PetscFPrintf(), which writes whole numbers with a point behind them */
+/* Prints the report with stdio, because PetscFPrintf() writes whole numbers with a decimal point. */
 static void PrintReport(Mesh mesh, int n_bodies, const ReportRow bodies[], int n_surfaces, const ReportRow surfaces[],
                         FILE *stream)
 {
@@ -230,20 +239,20 @@ static void PrintReport(Mesh mesh, int n_bodies, const ReportRow bodies[], int n
   }
 }
 
-/*
-  MeshReport - prints bodies, surfaces, rigid tools and the partition
+/*@
+  MeshReport - prints a table of bodies, surfaces, rigid tools and the partition.
 
-  Collective; rank 0 prints
+  Collective
 
   Input Parameters:
 + mesh   - the mesh
 . scene  - for its bodies
-- stream - of rank 0
+- stream - output on rank 0, which prints
 
   Note:
-  Quality: mean and least scaled Jacobian (ElementQuality()), 1 is a parallelepiped. Areas and volumes are over 360
-degrees if axisymmetric. A surface between cells counts once.
-*/
+  The quality of a body is the mean and the least scaled Jacobian, see ElementQuality(); 1 is a parallelepiped. In
+  axisymmetric problems areas and volumes are over 360 degrees. A surface between cells counts once.
+@*/
 PetscErrorCode MeshReport(Mesh mesh, Scene scene, FILE *stream)
 {
   ReportRow  *bodies, *surfaces;

@@ -1,14 +1,17 @@
+/* Partition of the cells by METIS. */
 #include "mesh/partition.h"
 #include <metis.h>
 
-enum { METIS_SEED = 1 }; /* any fixed number: the same mesh and ranks give the same partition */
+/* Seed of METIS' random numbers. Any fixed number serves: the same mesh and number of ranks then give the same
+   partition. */
+enum { METIS_SEED = 1 };
 
-/* How far parts may exceed the mean: cells decide the cost of every Newton iteration, contact cells a small part of it
- */
+/* How far the largest part may exceed the mean, as a factor. Cells decide the cost of every Newton iteration, contact
+   cells decide a small part of it. */
 static const real_t CELL_TOLERANCE = 1.03f, CONTACT_TOLERANCE = 1.10f;
 
-/* Cutting a link costs as much as so many faces between cells: a slave node is coupled to some twenty nodes of the
-   master, a node of a face to nine beyond it, and what couples ranks is sent in every tangent and every sweep. */
+/* Weight of a link relative to a face between cells. A slave node is coupled to about twenty nodes of the master, a
+   node of a face to nine nodes beyond it. What couples ranks is sent in every tangent and every sweep. */
 enum { LINK_WEIGHT = 4 };
 
 static PetscErrorCode IndexCast(PetscInt value, idx_t *index)
@@ -20,7 +23,7 @@ static PetscErrorCode IndexCast(PetscInt value, idx_t *index)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Cells, and edges between them: faces and, heavier, links */
+/* Cells and the edges between them. Edges are faces, and links with a larger weight. */
 typedef struct {
   idx_t *offsets, *neighbours, *weights;
 } Graph;
@@ -65,7 +68,7 @@ static PetscErrorCode PartitionFreeGraph(Graph *graph)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Pairs of neighbours, links apart, in different parts */
+/* Counts pairs of neighbours in different parts, without links. */
 static PetscInt CountCut(PetscInt n, const PetscInt offsets[], const PetscInt adjacency[], const PetscInt part[])
 {
   PetscInt ends = 0;
@@ -75,20 +78,23 @@ static PetscInt CountCut(PetscInt n, const PetscInt offsets[], const PetscInt ad
   return ends / 2;
 }
 
-/*
-  PartitionImbalance - the largest part over the mean; 1 where there is nothing to share out
+/*@
+  PartitionImbalance - computes the ratio of the largest part to the mean.
 
-  Not Collective
+  Not collective
 
   Input Parameters:
 + n       - number of cells
-. part    - per cell
-. counted - per cell, or NULL: all of them
+. part    - part of each cell
+. counted - for each cell, whether it counts; NULL: all cells count
 - parts   - number of parts
 
   Output Parameter:
-. count - cells counted, per part
-*/
+. count - number of cells that count in each part [parts]
+
+  Note:
+  Returns 1 if no cell counts.
+@*/
 PetscReal PartitionImbalance(PetscInt n, const PetscInt part[], const PetscBool counted[], PetscInt parts,
                              PetscInt count[])
 {
@@ -104,23 +110,23 @@ PetscReal PartitionImbalance(PetscInt n, const PetscInt part[], const PetscBool 
   return total ? (PetscReal)largest * parts / (PetscReal)total : 1;
 }
 
-/*
-  PartitionGraph - METIS' k-way partition of a graph of cells
+/*@
+  PartitionGraph - partitions a graph of cells with METIS' k-way method.
 
-  Not Collective
+  Not collective
 
   Input Parameters:
 + n         - number of cells
-. offsets   - where each cell's neighbours start in adjacency, n + 1
+. offsets   - start of each cell's neighbours in adjacency [n + 1]
 . adjacency - neighbours
-. contact   - per cell, whether it has a face in contact (a second weight), or NULL: cells alone are balanced
-. links     - pairs of cells that had better be of one part
+. contact   - for each cell, whether it has a face in contact, which is a second weight; NULL: only cells are balanced
+. links     - pairs of cells that should be in one part
 - parts     - number of parts, at least 2
 
   Output Parameters:
-+ part     - per cell
++ part     - part of each cell [n]
 - edge_cut - pairs of neighbours in different parts
-*/
+@*/
 PetscErrorCode PartitionGraph(PetscInt n, const PetscInt offsets[], const PetscInt adjacency[],
                               const PetscBool contact[], const CellLinks *links, PetscInt parts, PetscInt part[],
                               PetscInt *edge_cut)
@@ -132,7 +138,7 @@ PetscErrorCode PartitionGraph(PetscInt n, const PetscInt offsets[], const PetscI
 
   PetscFunctionBeginUser;
   for (PetscInt c = 0; contact && c < n; c++)
-    if (contact[c]) n_constraints = 2; /* a constraint whose weights are all zero cannot be balanced */
+    if (contact[c]) n_constraints = 2; /* METIS cannot balance weights that are all zero */
   PetscCall(IndexCast(n, &n_vertices));
   PetscCall(IndexCast(parts, &n_parts));
   PetscCall(GraphCreate(n, offsets, adjacency, links, &graph));
@@ -154,7 +160,7 @@ PetscErrorCode PartitionGraph(PetscInt n, const PetscInt offsets[], const PetscI
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Cells by part, as PETSCPARTITIONERSHELL wants them */
+/* Lists the cells by part, as PETSCPARTITIONERSHELL requires. */
 static PetscErrorCode PartitionSort(PetscInt n, const PetscInt part[], PetscMPIInt parts, const PetscInt sizes[],
                                     PetscInt cells[])
 {
@@ -168,25 +174,25 @@ static PetscErrorCode PartitionSort(PetscInt n, const PetscInt part[], PetscMPII
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*
-  PartitionCells - decides which rank gets which cell
+/*@
+  PartitionCells - decides which rank gets which cell.
 
   Collective
 
   Input Parameters:
 + dm        - DMPlex, all its cells on rank 0
-. offsets   - on rank 0: where each cell's neighbours start in adjacency
+. offsets   - on rank 0: start of each cell's neighbours in adjacency
 . adjacency - on rank 0: neighbours across faces
-. contact   - on rank 0: per cell, whether it has a face in contact (a second weight, so that contact work is shared out
-too)
+. contact   - on rank 0: for each cell, whether it has a face in contact; a second weight, so that contact work is
+  balanced too
 - links     - on rank 0: cells that face each other across contact, which are kept on one rank where that is cheap
 
   Output Parameter:
 . partition - tool, edge cut and imbalances, the same on all ranks
 
   Note:
-  DMPlexDistribute() follows the partition afterwards.
-*/
+  The DM gets a partitioner that holds the result. DMPlexDistribute() follows it afterwards.
+@*/
 PetscErrorCode PartitionCells(DM dm, const PetscInt offsets[], const PetscInt adjacency[], const PetscBool contact[],
                               const CellLinks *links, Partition *partition)
 {

@@ -1,3 +1,4 @@
+/* Physical groups before distribution: faces, labels and the checks of how the scene uses groups. */
 #include "rootgroups.h"
 #include "cellfaces.h"
 #include "mesh/meshgroup.h"
@@ -8,7 +9,7 @@ static PetscBool IsRigidGroup(Scene scene, int dim, const char *name)
   return dim == scene->dim - 1 && MeshFindBody(scene, name, PETSC_TRUE) >= 0 ? PETSC_TRUE : PETSC_FALSE;
 }
 
-/* A group's head from rank 0 to all */
+/* Sends a group's name, tag and dimension from rank 0 to all ranks. */
 static PetscErrorCode ShareGroup(Mesh mesh, const GmshPhysical *physical, MeshGroup *group)
 {
   PetscInt    numbers[3] = {0, 0, 0};
@@ -30,16 +31,16 @@ static PetscErrorCode ShareGroup(Mesh mesh, const GmshPhysical *physical, MeshGr
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*
-  RootGroupsShare - makes mesh->groups, without nodes and faces, and their labels
+/*@
+  RootGroupsShare - makes mesh->groups on all ranks, without nodes and faces, and the groups' empty labels.
 
   Collective
 
   Input Parameters:
-+ dm   - by RootTopologyCreate()
++ dm   - from RootTopologyCreate()
 . mesh - its groups are set
-- root - on rank 0; NULL elsewhere
-*/
+- root - on rank 0; NULL on other ranks
+@*/
 PetscErrorCode RootGroupsShare(DM dm, Mesh mesh, const RootMesh *root)
 {
   char label[MESH_TEXT];
@@ -56,9 +57,9 @@ PetscErrorCode RootGroupsShare(DM dm, Mesh mesh, const RootMesh *root)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ------------------------------------------------------------------------------------------------------------ faces */
+/* Faces of groups */
 
-/* Does the element have a node that no cell uses? */
+/* Whether the element has a node that no cell uses. */
 static PetscBool IsLoose(const RootMesh *root, const GmshBlock *block, PetscInt item)
 {
   for (int k = 0; k < block->nodes; k++)
@@ -66,7 +67,8 @@ static PetscBool IsLoose(const RootMesh *root, const GmshBlock *block, PetscInt 
   return PETSC_FALSE;
 }
 
-/* The cell that an element of dimension dim - 1 is a face of: the one with the lower id of two. face->cell -1: none */
+/* Finds the cell of which an element of dimension dim - 1 is a face; of two cells the one with the lower id. face->cell
+   is -1 if there is none. interior: the face lies between two cells. */
 static void FindFace(const RootMesh *root, const GmshBlock *block, PetscInt item, RootFace *face, PetscBool *interior)
 {
   const PetscInt *nodes = &block->connectivity[item * block->nodes];
@@ -85,8 +87,8 @@ static void FindFace(const RootMesh *root, const GmshBlock *block, PetscInt item
   *interior    = n_cells > 1 ? PETSC_TRUE : PETSC_FALSE;
 }
 
-/* One element of a deformable body's group: its face, if the group is a surface, and its nodes' points into the label.
- * loose: it does not lie on a body. */
+/* Adds one element of a deformable body's group: its face, if the group is a surface, and its nodes' points to the
+   label. loose: the element does not lie on a body. */
 static PetscErrorCode AddElement(RootMesh *root, const GmshBlock *block, PetscInt item, int g, PetscBool surface,
                                  DMLabel label, PetscBool *loose)
 {
@@ -106,7 +108,7 @@ static PetscErrorCode AddElement(RootMesh *root, const GmshBlock *block, PetscIn
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* A rigid tool has no faces of a body. */
+/* Complains if an element of a rigid tool is a face of a body. */
 static void CheckRigidBlock(Scene scene, const char *file, const RootMesh *root, const GmshBlock *block,
                             const char *name, Complaint *complaint)
 {
@@ -124,7 +126,7 @@ static void CheckRigidBlock(Scene scene, const char *file, const RootMesh *root,
   }
 }
 
-/* The elements of one block in one of its groups */
+/* Adds the elements of one block to one of its groups. */
 static PetscErrorCode AddCellBlock(DM dm, Scene scene, RootMesh *root, const GmshBlock *block, int g, Mesh mesh)
 {
   MeshGroup      *group   = &mesh->groups[g];
@@ -144,7 +146,7 @@ static PetscErrorCode AddCellBlock(DM dm, Scene scene, RootMesh *root, const Gms
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Faces by cell, in the order in which they were found */
+/* Sorts the faces by cell; faces of one cell keep their order. */
 static PetscErrorCode SortGroupFaces(RootMesh *root)
 {
   RootFace *sorted;
@@ -164,22 +166,22 @@ static PetscErrorCode SortGroupFaces(RootMesh *root)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*
-  RootGroupsFind - the groups' faces by cell, and the points of their nodes in the groups' labels
+/*@
+  RootGroupsFind - finds the groups' faces, sorted by cell, and labels the points of their nodes.
 
-  Not Collective; rank 0
+  Not collective, on rank 0
 
   Input Parameters:
-+ dm    - by RootTopologyCreate()
-. scene - which groups are rigid tools
-. file  - the mesh's name, for the complaint
++ dm    - from RootTopologyCreate()
+. scene - says which groups are rigid tools
+. file  - name of the mesh, for the complaint
 - root  - after CellFacesCreate() and RootTopologyPlaceNodes()
 
   Output Parameters:
 + root      - its faces are set
-. mesh      - the groups' counts of elements are set, not yet on other ranks
+. mesh      - the groups' numbers of elements are set, on rank 0 only
 - complaint - a rigid tool that shares faces with a body
-*/
+@*/
 PetscErrorCode RootGroupsFind(DM dm, Scene scene, const char *file, RootMesh *root, Mesh mesh, Complaint *complaint)
 {
   const GmshMesh *gmsh      = &root->gmsh;
@@ -207,15 +209,15 @@ PetscErrorCode RootGroupsFind(DM dm, Scene scene, const char *file, RootMesh *ro
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*
-  RootGroupsShareCounts - tells all ranks what RootGroupsFind() counted, and which groups lie on bodies
+/*@
+  RootGroupsShareCounts - sends to all ranks what RootGroupsFind() counted, and sets which groups lie on bodies.
 
   Collective
 
   Input Parameters:
-+ scene - which groups are rigid tools
++ scene - says which groups are rigid tools
 - mesh  - n_elements, n_loose and attached of its groups are set
-*/
+@*/
 PetscErrorCode RootGroupsShareCounts(Scene scene, Mesh mesh)
 {
   PetscFunctionBeginUser;
@@ -231,9 +233,9 @@ PetscErrorCode RootGroupsShareCounts(Scene scene, Mesh mesh)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ------------------------------------------------------------------------------------------------------------- uses */
+/* Checks of how the scene uses groups */
 
-/* A surface that the scene loads or brings into contact lies on the boundary; supports and probes may be anywhere. */
+/* Complains if a surface that the scene loads or brings into contact is not on the boundary. */
 static void CheckBoundary(Scene scene, const RootMesh *root, Mesh mesh, const char *path, const char *key,
                           const char *name, Complaint *complaint)
 {
@@ -247,19 +249,19 @@ static void CheckBoundary(Scene scene, const RootMesh *root, Mesh mesh, const ch
   }
 }
 
-/*
-  RootGroupsCheckUses - are the surfaces that the scene loads or brings into contact on the boundary?
+/*@
+  RootGroupsCheckUses - checks that surfaces which the scene loads or brings into contact are on the boundary.
 
-  Not Collective; rank 0, after RootGroupsFind()
+  Not collective, on rank 0
 
   Input Parameters:
-+ scene - its pressures, tractions and contact pairs are looked at: supports and probes may be anywhere
-. root  - which groups have faces between cells
++ scene - its pressures, tractions and contact pairs are checked; supports and probes may be anywhere
+. root  - after RootGroupsFind()
 - mesh  - names of the groups
 
   Output Parameter:
-. complaint - the first that is not
-*/
+. complaint - the first surface that has faces between two cells
+@*/
 void RootGroupsCheckUses(Scene scene, const RootMesh *root, Mesh mesh, Complaint *complaint)
 {
   for (int i = 0; i < scene->n_loads; i++) {
@@ -275,19 +277,19 @@ void RootGroupsCheckUses(Scene scene, const RootMesh *root, Mesh mesh, Complaint
   }
 }
 
-/*
-  RootGroupsContactCells - cells with a face in contact, for the partition
+/*@
+  RootGroupsContactCells - finds the cells with a face in contact, for the partition.
 
-  Not Collective; rank 0, after RootGroupsFind()
+  Not collective, on rank 0
 
   Input Parameters:
-+ scene - its contact pairs are looked at
-. root  - faces of the groups
++ scene - its contact pairs
+. root  - after RootGroupsFind()
 - mesh  - names of the groups
 
   Output Parameter:
-. contact - per cell; to be freed by PetscFree()
-*/
+. contact - for each cell; to be freed with PetscFree()
+@*/
 PetscErrorCode RootGroupsContactCells(Scene scene, const RootMesh *root, Mesh mesh, PetscBool **contact)
 {
   PetscBool *in_contact;

@@ -1,12 +1,14 @@
+/* Links between slave and master cells, found by a box tree of cell centres. */
 #include "rootlinks.h"
 #include "mesh/meshgroup.h"
 #include "base/boxtree.h"
 
-/* Cells whose centres are farther apart than so many times the slave cell's size are not linked: they may never touch,
-   and all of a surface that looks at an edge from afar would hang on one cell. */
+/* Largest distance of the centres of linked cells, as a multiple of the slave cell's size. Cells farther apart may
+   never touch. Without this limit, all cells of a surface that faces an edge from a distance would be linked to one
+   cell. */
 #define LINK_REACH 4
 
-/* The cells of a surface, with the centres of their nodes */
+/* The cells of a surface, with the centres of their nodes. */
 typedef struct {
   PetscInt   n, *cell;
   PetscReal *centre; /* n*3 */
@@ -34,7 +36,7 @@ static void CellCentre(const RootMesh *root, PetscInt cell, PetscReal centre[3])
   }
 }
 
-/* Largest distance of a node from the centre, twice */
+/* Returns twice the largest distance of a node from the centre. */
 static PetscReal CellSize(const RootMesh *root, PetscInt cell, const PetscReal centre[3])
 {
   const PetscInt *nodes = RootMeshCellNodes(root, cell);
@@ -66,7 +68,7 @@ static PetscErrorCode FreeCells(SurfaceCells *cells)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* BoxTreeClosest()'s visitor; of equally near centres the first counts. */
+/* Visitor for BoxTreeClosest(). Of centres at equal distance the first one counts. */
 static void VisitCentre(void *context, int i, double *bound)
 {
   Nearest        *nearest  = context;
@@ -103,19 +105,22 @@ static PetscErrorCode LinkPair(const RootMesh *root, int slave_group, int master
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*
-  RootLinksFind - cells that face each other across contact in the reference configuration
+/*@
+  RootLinksFind - finds cells that face each other across contact in the reference configuration.
 
-  Not Collective; rank 0, after RootGroupsFind()
+  Not collective, on rank 0
 
   Input Parameters:
-+ scene - its contact pairs are looked at; analytic masters and rigid tools have no cells
-. root  - faces of the groups
++ scene - its contact pairs; analytic masters and rigid tools have no cells
+. root  - after RootGroupsFind()
 - mesh  - names of the groups
 
   Output Parameter:
-. links - of each pair every cell of the slave with the master's nearest, by the distance of their centres
-*/
+. links - each cell of a slave with the nearest cell of its master, by the distance of their centres
+
+  Note:
+  The caller frees links->cell with PetscFree().
+@*/
 PetscErrorCode RootLinksFind(Scene scene, const RootMesh *root, Mesh mesh, CellLinks *links)
 {
   PetscFunctionBeginUser;

@@ -1,30 +1,31 @@
+/* Reads the mesh on rank 0, checks it against the scene, and numbers cells and nodes. */
 #include "rootmesh.h"
 #include "mesh/meshgroup.h"
 #include <string.h>
 
-static const PetscReal PLANE_TOLERANCE =
-  1e-9; /* of the mesh's size: what counts as on the plane z = 0, or on the axis */
+/* Distance from the plane z = 0, or from the axis, that is treated as round-off, as a part of the mesh's size. */
+static const PetscReal PLANE_TOLERANCE = 1e-9;
 
-/*
-  RootMeshCellNodes - the nodes of a cell
+/*@
+  RootMeshCellNodes - returns the nodes of a cell.
 
-  Not Collective; rank 0
+  Not collective, on rank 0
 
   Input Parameters:
 + root - after RootMeshRead()
-- cell - its id
+- c    - id of the cell
 
-  Returns indices into root->gmsh's nodes, in gmsh's order.
-*/
+  Note:
+  Returns indices into the nodes of root->gmsh, in gmsh's order.
+@*/
 const PetscInt *RootMeshCellNodes(const RootMesh *root, PetscInt c)
 {
   return root->cell_block[c]->connectivity + root->cell_item[c] * root->cell_block[c]->nodes;
 }
 
-/* ---------------------------------------------------------------------------------------------------- bodies and order
- */
+/* Bodies and order */
 
-/* "a, b, c": the names of one dimension, cut off where the text is full */
+/* Lists the names of the groups of one dimension, as in "a, b, c", cut off where the text is full. */
 static void ListPhysicals(const GmshMesh *gmsh, int dim, char list[MESH_TEXT])
 {
   size_t used = 0;
@@ -35,8 +36,8 @@ static void ListPhysicals(const GmshMesh *gmsh, int dim, char list[MESH_TEXT])
       used += (size_t)snprintf(list + used, MESH_TEXT - used, "%s%s", used ? ", " : "", gmsh->physicals[i].name);
 }
 
-/* Every deformable body is a volume group of the mesh: asked first, because a misspelt name also leaves a group without
- * a body */
+/* Checks that every deformable body is a volume group of the mesh. This comes first, because a misspelt name also
+   leaves a group without a body. */
 static void CheckBodyNames(Scene scene, const char *file, const RootMesh *root, Complaint *complaint)
 {
   char list[MESH_TEXT];
@@ -54,7 +55,7 @@ static void CheckBodyNames(Scene scene, const char *file, const RootMesh *root, 
   }
 }
 
-/* The one body whose volume group a block is in; -1 after a mistake */
+/* Returns the one body whose volume group contains the block, -1 after a mistake. */
 static int BlockBody(Scene scene, const char *file, const RootMesh *root, const GmshBlock *block, Complaint *complaint)
 {
   int body = -1;
@@ -76,7 +77,7 @@ static int BlockBody(Scene scene, const char *file, const RootMesh *root, const 
   return body;
 }
 
-/* All elements of one order, that of the scene */
+/* Checks that all elements have one order, which is that of the scene. */
 static void CheckOrder(Scene scene, const char *file, const RootMesh *root, Complaint *complaint)
 {
   const GmshBlock *first = NULL;
@@ -110,9 +111,9 @@ static void CheckBodies(Scene scene, const char *file, const RootMesh *root, con
   }
 }
 
-/* -------------------------------------------------------------------------------------------------------- numbering */
+/* Numbering */
 
-/* Cells of the scene's dimension; complains of higher ones */
+/* Counts the cells of the scene's dimension and complains of elements of a higher dimension. */
 static PetscInt CountCells(Scene scene, const char *file, const GmshMesh *gmsh, Complaint *complaint)
 {
   PetscInt n = 0;
@@ -126,7 +127,7 @@ static PetscInt CountCells(Scene scene, const char *file, const GmshMesh *gmsh, 
   return n;
 }
 
-/* Cells in the order of the file: those of block b from start[b] on, all of body body[b] (-1: no cells) */
+/* Finds the body of each block, -1 for a block without cells, and checks that every body has cells. */
 static PetscErrorCode BlockBodies(Scene scene, const char *file, const RootMesh *root, int body[], Complaint *complaint)
 {
   PetscInt *per_body;
@@ -144,7 +145,7 @@ static PetscErrorCode BlockBodies(Scene scene, const char *file, const RootMesh 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Cells by ascending tag, each in one body */
+/* Numbers the cells by ascending tag and finds the body of each. */
 static PetscErrorCode NumberCells(Scene scene, const char *file, RootMesh *root, Complaint *complaint)
 {
   const GmshMesh *gmsh = &root->gmsh;
@@ -177,7 +178,7 @@ static PetscErrorCode NumberCells(Scene scene, const char *file, RootMesh *root,
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Numbers the nodes that cells use by ascending tag, and the corners among them */
+/* Numbers the nodes that cells use, by ascending tag, and the corners among them. */
 static PetscErrorCode RootMeshNumberNodes(RootMesh *root)
 {
   const PetscInt n = root->gmsh.n_nodes;
@@ -200,9 +201,9 @@ static PetscErrorCode RootMeshNumberNodes(RootMesh *root)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ------------------------------------------------------------------------------------------------------------ place */
+/* Bounding box and plane */
 
-/* Centre and diagonal of the bodies' bounding box */
+/* Computes the centre and the diagonal of the bodies' bounding box. */
 static void FindBox(Scene scene, const RootMesh *root, Mesh mesh)
 {
   PetscReal lower[3] = {PETSC_MAX_REAL, PETSC_MAX_REAL, PETSC_MAX_REAL},
@@ -240,22 +241,26 @@ static void CheckPlane(Scene scene, const char *file, const RootMesh *root, Pets
   }
 }
 
-/*
-  RootMeshRead - the scene's mesh from its file, checked
+/*@
+  RootMeshRead - reads the scene's mesh from its file and checks it.
 
-  Not Collective; rank 0
+  Not collective, on rank 0
 
   Input Parameters:
-+ scene - bodies, dimension, order
-. file  - a .msh file, format 4.1
-- ranks - there must be a cell for each
++ scene - bodies, dimension and order
+. file  - path of a .msh file, format 4.1
+- ranks - number of ranks; each must get a cell
 
   Output Parameters:
 + root      - to be freed with RootMeshReset(), also after a complaint
 . mesh      - its order, centre and size are set
-- complaint - what GmshRead() found, two orders or another one than the scene's, a body without cells, a cell without a
-body or in two, equal tags, a two-dimensional mesh out of its plane or with negative radii, fewer cells than ranks
-*/
+- complaint - says what is wrong with the file, if anything
+
+  Note:
+  Complains of what GmshRead() found, two orders or an order that is not the scene's, a body without cells, a cell
+  without a body or in two, equal tags, a two-dimensional mesh that is not in its plane or has negative radii, and fewer
+  cells than ranks.
+@*/
 PetscErrorCode RootMeshRead(Scene scene, const char *file, PetscMPIInt ranks, RootMesh *root, Mesh mesh,
                             Complaint *complaint)
 {
@@ -277,11 +282,14 @@ PetscErrorCode RootMeshRead(Scene scene, const char *file, PetscMPIInt ranks, Ro
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*
-  RootMeshReset - frees what the root mesh holds
+/*@
+  RootMeshReset - frees the contents of the root mesh.
 
-  Not Collective; rank 0
-*/
+  Not collective, on rank 0
+
+  Input Parameter:
+. root - from RootMeshRead()
+@*/
 PetscErrorCode RootMeshReset(RootMesh *root)
 {
   PetscFunctionBeginUser;

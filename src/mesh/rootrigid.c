@@ -1,9 +1,10 @@
+/* Meshed rigid tools: rank 0 gathers their faces and nodes and sends them to all ranks. */
 #include "rootrigid.h"
 #include "mesh/meshgroup.h"
 #include "base/refusal.h"
 
-/* Node k of a face that is turned over: corners in the other sense of rotation from the first (a curve: ends swapped),
- * edges with them */
+/* Returns the node at place k of a face whose normal is reversed: the corners follow in the opposite sense of rotation
+   from the first one, and the edges with them. The ends of a curve are swapped. */
 static int ReversedNode(const Element *face, int k)
 {
   const int corners = face->corners;
@@ -13,7 +14,7 @@ static int ReversedNode(const Element *face, int k)
   return k < 2 * corners ? corners + (2 * corners - 1 - k) : k;
 }
 
-/* Is the block in group g, and which way round? 0: it is not in it */
+/* Returns the sign with which group g contains the block, 0 if it does not contain it. */
 static int BlockSign(const GmshBlock *block, int g)
 {
   for (int i = 0; i < block->n_physicals; i++)
@@ -21,8 +22,8 @@ static int BlockSign(const GmshBlock *block, int g)
   return 0;
 }
 
-/* Counts the tool's faces and nodes; local: its nodes by ascending tag, -1 for other nodes of the file. Returns the
- * length of face_nodes. */
+/* Counts the tool's faces and nodes. local returns the tool's nodes by ascending tag, -1 for other nodes of the file.
+   Returns the length of face_nodes. */
 static PetscInt RigidCount(const GmshMesh *gmsh, int g, MeshRigid *rigid, PetscInt local[])
 {
   PetscInt n_entries = 0;
@@ -116,19 +117,20 @@ static PetscErrorCode RigidShare(Mesh mesh, MeshRigid *rigid)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*
-  RootRigidCreate - the scene's meshed rigid tools, whole on every rank
+/*@
+  RootRigidCreate - creates the scene's meshed rigid tools, whole on every rank.
 
   Collective
 
   Input Parameters:
 + scene - its rigid bodies
-. root  - on rank 0; NULL elsewhere
+. root  - on rank 0; NULL on other ranks
 - mesh  - with groups, centre and dimension; its rigid tools are set
 
   Note:
-  Refuses a tool whose surface group the mesh does not have. A group with a minus sign turns its faces over.
-*/
+  Refuses a tool whose surface group is not in the mesh. A minus sign in front of an entity in the group reverses the
+  normals of its faces.
+@*/
 PetscErrorCode RootRigidCreate(Scene scene, const RootMesh *root, Mesh mesh)
 {
   PetscFunctionBeginUser;
@@ -150,11 +152,14 @@ PetscErrorCode RootRigidCreate(Scene scene, const RootMesh *root, Mesh mesh)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*
-  RootRigidDestroy - frees the rigid tools of a mesh
+/*@
+  RootRigidDestroy - frees the rigid tools of a mesh.
 
-  Not Collective
-*/
+  Not collective
+
+  Input Parameter:
+. mesh - the mesh
+@*/
 PetscErrorCode RootRigidDestroy(Mesh mesh)
 {
   PetscFunctionBeginUser;

@@ -1,3 +1,4 @@
+/* DMPlex of the whole mesh on rank 0, from gmsh's cells. */
 #include "roottopology.h"
 
 static DMPolytopeType CellPolytope(ElementType type)
@@ -13,7 +14,8 @@ static DMPolytopeType CellPolytope(ElementType type)
   }
 }
 
-/* Corner of gmsh's element that stands at place i of Plex's cone: there the first face of a solid points inwards */
+/* Returns the corner of gmsh's element at place i of Plex' cone. In Plex, the normal of the first face of a solid
+   points inwards. */
 static int PlexCorner(ElementType type, int i)
 {
   static const int tet[] = {1, 0, 2, 3}, hex[] = {0, 3, 2, 1, 4, 5, 6, 7};
@@ -23,21 +25,24 @@ static int PlexCorner(ElementType type, int i)
   return i;
 }
 
-/*
-  RootTopologyCreate - the cells' DMPlex, all on rank 0
+/*@
+  RootTopologyCreate - creates the DMPlex of the cells, all on rank 0.
 
   Collective
 
   Input Parameters:
 + comm  - all ranks
-. dim   - of the cells
-. order - of the elements
-- root  - on rank 0; NULL elsewhere
+. dim   - dimension of the cells
+. order - order of the elements
+- root  - on rank 0; NULL on other ranks
 
   Output Parameter:
-. dm - cells have their ids as points; edges and faces are points only where nodes sit on them: of first-order elements,
-where none does, they take half the time that there is before the first unknown
-*/
+. dm - points are the cells, by their ids, the vertices and, for second order, faces and edges
+
+  Note:
+  Edges and faces are points only where nodes sit on them. With first-order elements no nodes do, and to make these
+  points would take half of the time before the first unknown.
+@*/
 PetscErrorCode RootTopologyCreate(MPI_Comm comm, int dim, int order, const RootMesh *root, DM *dm)
 {
   const PetscInt n_cells = root ? root->n_cells : 0, n_points = n_cells + (root ? root->n_vertices : 0);
@@ -71,7 +76,7 @@ PetscErrorCode RootTopologyCreate(MPI_Comm comm, int dim, int order, const RootM
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* A section of dim values on each vertex */
+/* Creates a section with dim values on each vertex. */
 static PetscErrorCode SetCoordinateSection(PetscSection section, PetscInt start, PetscInt end, int dim)
 {
   PetscFunctionBeginUser;
@@ -86,16 +91,16 @@ static PetscErrorCode SetCoordinateSection(PetscSection section, PetscInt start,
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*
-  RootTopologySetCoordinates - puts the vertices' coordinates on the DM: for viewers only
+/*@
+  RootTopologySetCoordinates - sets the vertices' coordinates of the DM, for viewers only.
 
   Collective
 
   Input Parameters:
-+ dm   - by RootTopologyCreate()
++ dm   - from RootTopologyCreate()
 . dim  - components
-- root - on rank 0; NULL elsewhere
-*/
+- root - on rank 0; NULL on other ranks
+@*/
 PetscErrorCode RootTopologySetCoordinates(DM dm, int dim, const RootMesh *root)
 {
   PetscSection section;
@@ -124,7 +129,7 @@ PetscErrorCode RootTopologySetCoordinates(DM dm, int dim, const RootMesh *root)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The edge (depth 1) or face (2) that has exactly these vertices in its closure; -1: there is none */
+/* Finds the edge (depth 1) or face (depth 2) that has exactly these vertices in its closure; -1 if there is none. */
 static PetscErrorCode FindPoint(DM dm, int depth, PetscInt n, const PetscInt vertices[], PetscInt *point)
 {
   const PetscInt *covered;
@@ -140,7 +145,7 @@ static PetscErrorCode FindPoint(DM dm, int depth, PetscInt n, const PetscInt ver
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Plex point of node k of cell c: an edge or face by its corners, or the cell itself */
+/* Finds the Plex point of node k of cell c: a vertex, an edge or face by its corners, or the cell itself. */
 static PetscErrorCode NodePoint(DM dm, const RootMesh *root, PetscInt c, int k, PetscInt *point)
 {
   const Element  *element = root->cell_block[c]->element;
@@ -169,7 +174,7 @@ static PetscErrorCode NodePoint(DM dm, const RootMesh *root, PetscInt c, int k, 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Two nodes in one place mean cells that share an edge or face but not its middle node. */
+/* Complains of two nodes on one point. This occurs where cells share an edge or face but not its middle node. */
 static PetscErrorCode CheckPlaces(DM dm, const char *file, const RootMesh *root, Complaint *complaint)
 {
   PetscInt end, *taken;
@@ -191,19 +196,19 @@ static PetscErrorCode CheckPlaces(DM dm, const char *file, const RootMesh *root,
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*
-  RootTopologyPlaceNodes - where every node sits
+/*@
+  RootTopologyPlaceNodes - finds the Plex point of every node.
 
-  Not Collective; rank 0
+  Not collective, on rank 0
 
   Input Parameters:
-+ dm   - by RootTopologyCreate()
-- file - the mesh's name, for the complaint
++ dm   - from RootTopologyCreate()
+- file - name of the mesh, for the complaint
 
   Output Parameters:
 + root      - point of each node is set
-- complaint - two nodes in one place
-*/
+- complaint - cells that share an edge or face but not its middle node
+@*/
 PetscErrorCode RootTopologyPlaceNodes(DM dm, const char *file, RootMesh *root, Complaint *complaint)
 {
   PetscInt start;

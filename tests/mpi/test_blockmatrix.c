@@ -1,6 +1,5 @@
-/* Blocks assembled on any number of ranks give the same product as the blocks themselves; the pattern is kept while it
- * serves, and goes back to a marked one.
- */
+/* Block matrix: blocks that are assembled on any number of ranks give the same product as the blocks themselves. The
+   pattern is kept while it contains the blocks, and can be restored to a marked one. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -8,10 +7,10 @@
 #include <cmocka.h>
 #include "matrix/blockmatrix.h"
 
-enum { ROWS = 6 }; /* of each rank */
+enum { ROWS = 6 }; /* rows of each rank */
 
-/* Each rank adds two blocks, one a vector's product with itself, over two of its own dofs, one of the next rank, and
-   one entry without a dof: in the blocks' order. */
+/* Each rank adds two blocks, the second of them v v^T, over two of its own dofs, one dof of the next rank, and one
+   entry without a dof, in the order of the blocks. */
 static void AddBlocks(BlockMatrix blocks, int node, const PetscInt *dof, PetscReal scale, const PetscReal *in,
                       PetscReal *out, Mat *matrix, PetscBool *changed)
 {
@@ -81,7 +80,7 @@ static void AssembledEqualsBlocks(int node)
   assert_int_equal(BlockMatrixDestroy(&blocks), 0);
 }
 
-/* A node's dofs one by one or together, the last one without a dof */
+/* Tests a node's dofs one by one and together; the last one has no dof. */
 static void test_assembled_equals_blocks(void **state)
 {
   (void)state;
@@ -89,7 +88,7 @@ static void test_assembled_equals_blocks(void **state)
   AssembledEqualsBlocks(2);
 }
 
-/* A block matrix over single dofs, and those of this rank */
+/* Creates a block matrix over single dofs, and returns the dofs of this rank. */
 static void CreateOwn(BlockMatrix *blocks, PetscInt mine[ROWS])
 {
   PetscMPIInt rank;
@@ -99,8 +98,8 @@ static void CreateOwn(BlockMatrix *blocks, PetscInt mine[ROWS])
   assert_int_equal(BlockMatrixCreate(PETSC_COMM_WORLD, 1, blocks), 0);
 }
 
-/* Assembles blocks of ones of the given sizes, each over its own dofs from `first` on, one after the other on every
-   rank's dofs; returns whether the matrix is new, and checks the sum of its values. */
+/* Assembles blocks of ones of the given sizes. Each is over its own dofs, which start at `first`, on every rank.
+   Returns whether the matrix is new, and checks the sum of its values. */
 static PetscBool AssembleOwn(BlockMatrix blocks, PetscInt n, const PetscInt first[], const PetscInt m[],
                              const PetscInt *const dof[])
 {
@@ -145,7 +144,7 @@ static void test_pattern_is_kept_while_it_holds(void **state)
   assert_true(
     AssembleOwn(blocks, 1, (const PetscInt[]){0}, (const PetscInt[]){2}, dof)); /* a small part: too many zeros */
   assert_true(
-    AssembleOwn(blocks, 1, (const PetscInt[]){1}, (const PetscInt[]){2}, dof)); /* the same dofs, and one more */
+    AssembleOwn(blocks, 1, (const PetscInt[]){1}, (const PetscInt[]){2}, dof)); /* the same dofs and one more */
   assert_int_equal(BlockMatrixDestroy(&blocks), 0);
 }
 
@@ -159,16 +158,16 @@ static void test_returns_to_the_marked_pattern(void **state)
   CreateOwn(&blocks, mine);
   assert_int_equal(BlockMatrixMark(blocks), 0);
   assert_true(AssembleOwn(blocks, 1, (const PetscInt[]){0}, (const PetscInt[]){ROWS}, dof));
-  assert_int_equal(BlockMatrixReturn(blocks, ROWS), 0); /* to none */
+  assert_int_equal(BlockMatrixReturn(blocks, ROWS), 0); /* no pattern was marked */
   assert_true(AssembleOwn(blocks, 2, (const PetscInt[]){0, 3}, (const PetscInt[]){4, 3}, dof));
   assert_int_equal(BlockMatrixMark(blocks), 0);
-  assert_int_equal(BlockMatrixReturn(blocks, ROWS), 0); /* to the same */
+  assert_int_equal(BlockMatrixReturn(blocks, ROWS), 0); /* the same pattern */
   assert_false(AssembleOwn(blocks, 2, (const PetscInt[]){0, 3}, (const PetscInt[]){4, 3}, dof));
   assert_true(AssembleOwn(blocks, 1, (const PetscInt[]){0}, (const PetscInt[]){ROWS}, dof));
   assert_true(AssembleOwn(blocks, 1, (const PetscInt[]){0}, (const PetscInt[]){2}, dof));
   assert_int_equal(BlockMatrixReturn(blocks, ROWS), 0);
-  assert_true(AssembleOwn(blocks, 1, (const PetscInt[]){0}, (const PetscInt[]){4},
-                          dof)); /* in the marked one, whose matrix is new */
+  /* in the marked pattern, whose matrix is new */
+  assert_true(AssembleOwn(blocks, 1, (const PetscInt[]){0}, (const PetscInt[]){4}, dof));
   assert_false(AssembleOwn(blocks, 2, (const PetscInt[]){0, 3}, (const PetscInt[]){4, 3}, dof));
   assert_int_equal(BlockMatrixDestroy(&blocks), 0);
 }
@@ -190,8 +189,8 @@ static void test_no_blocks(void **state)
   assert_int_equal(BlockMatrixDestroy(&blocks), 0);
 }
 
-/* What the pattern couples a node with: all of its blocks, ascending, blocks of the past too while the pattern is kept
- */
+/* The pattern couples a node with all nodes of its blocks, ascending. While the pattern is kept, this includes earlier
+   blocks. */
 static void test_coupled_nodes(void **state)
 {
   BlockMatrix     blocks;
@@ -213,7 +212,7 @@ static void test_coupled_nodes(void **state)
     if (pass == 0) assert_false(AssembleOwn(blocks, 2, (const PetscInt[]){0, 2}, (const PetscInt[]){3, 2}, dof));
   }
   assert_int_equal(BlockMatrixGetCoupled(blocks, mine[5], &n, &coupled), 0);
-  assert_int_equal(n, 0); /* in no block */
+  assert_int_equal(n, 0); /* the node is in no block */
   assert_int_equal(BlockMatrixGetCoupled(blocks, -1, &n, &coupled), 0);
   assert_int_equal(n, 0);
   assert_int_equal(BlockMatrixDestroy(&blocks), 0);

@@ -1,5 +1,5 @@
-/* The distributed mesh is the file's mesh: every element type on a curved body, nodes, faces, groups, dofs and sums on
- * any number of ranks; wrong meshes are refused in words. */
+/* Distributed mesh: it is the mesh of the file. Tested are every element type on a curved body, nodes, faces, groups,
+   dofs and sums on any number of ranks, and the refusals of wrong meshes. */
 #include "mesh/mesh.h"
 #include "kernels/elementkernel.h"
 #include "gmshfile.h"
@@ -17,10 +17,10 @@
 static char        folder[64];
 static PetscMPIInt rank, size;
 
-/* The message of the last refusal, empty if there was none */
+/* The message of the last refusal, empty if there was none. */
 static char refused[4096];
 
-/* Whether a code is that of a refusal; its message is kept in refused[]. Any other code must be 0. */
+/* Returns whether a code is that of a refusal, and keeps its message in refused[]. Any other code must be 0. */
 static int Refused(PetscErrorCode code)
 {
   char *message;
@@ -34,8 +34,7 @@ static int Refused(PetscErrorCode code)
   return 1;
 }
 
-/* ------------------------------------------------------------------------------------------------------------- scenes
- */
+/* Scenes */
 
 static void WriteText(const char *name, const char *text, char path[PETSC_MAX_PATH_LEN])
 {
@@ -60,7 +59,8 @@ static Scene MakeScene(const char *text)
   return scene;
 }
 
-/* Quarter of a ring, radii 1 and 2, n cells round and m across, in three dimensions of height 0.5 in one layer */
+/* A quarter of a ring with radii 1 and 2, ROUND cells around and ACROSS cells across; in three dimensions its height is
+   0.5 and it has one layer of cells. */
 enum { ROUND = 6, ACROSS = 2 };
 static const double      height = 0.5;
 static const char *const ring =
@@ -128,10 +128,10 @@ static double Sum(double value)
   return value;
 }
 
-/* ------------------------------------------------------------------------------------------------------------- checks
- */
+/* Checks */
 
-/* Nodes and cells carry the tags, places and node order of the file, ids go by tags, owners know their nodes. */
+/* Nodes and cells have the tags, places and node order of the file. Ids follow the order of tags. Owners know their
+   nodes. */
 static void CheckAgainstFile(Mesh mesh, const char *file)
 {
   GmshMesh  gmsh;
@@ -143,7 +143,7 @@ static void CheckAgainstFile(Mesh mesh, const char *file)
     PetscInt at;
 
     assert_int_equal(PetscFindInt(mesh->node_tag[i], gmsh.n_nodes, gmsh.node_tag, &at), 0);
-    assert_int_equal(at, mesh->node_id[i]); /* every node of the file is a cell's */
+    assert_int_equal(at, mesh->node_id[i]); /* every node of the file belongs to a cell */
     for (int k = 0; k < mesh->dim; k++)
       assert_true(mesh->coords[i * mesh->dim + k] == gmsh.coords[3 * at + k] - mesh->centre[k]);
     if (mesh->node_owner[i] == rank) {
@@ -174,7 +174,7 @@ static void CheckAgainstFile(Mesh mesh, const char *file)
   assert_int_equal(GmshReset(&gmsh), 0);
 }
 
-/* A ghost's owner has the same id at node_owner_local. */
+/* The owner of a ghost node has the same id at node_owner_local. */
 static void CheckOwners(Mesh mesh)
 {
   PetscMPIInt most = (PetscMPIInt)mesh->n_nodes;
@@ -213,8 +213,8 @@ static PetscBool OnGroup(const char *name, const double x[3])
   return !strcmp(name, "ring") || !strcmp(name, "both");
 }
 
-/* Every rank lists exactly the nodes that lie on the group, also those whose face of the group is another rank's;
- * middle nodes lie on the arc. */
+/* Every rank lists exactly the nodes that lie on the group, also nodes whose face of the group is on another rank.
+   Middle nodes lie on the arc. */
 static void CheckGroupNodes(Mesh mesh)
 {
   for (int g = 0; g < mesh->n_groups; g++) {
@@ -247,8 +247,8 @@ static double Volume(Mesh mesh)
   return Sum(volume);
 }
 
-/* Divergence theorem: the flux of x through the boundary, normals outward, is dim times the volume; "cuts" repeats two
- * surfaces, "middle" is inside. */
+/* Computes the flux of x through the boundary with normals outward, which is dim times the volume by the divergence
+   theorem. "cuts" repeats two surfaces, and "middle" is inside. */
 static double Flux(Mesh mesh, PetscInt *n_faces)
 {
   double flux = 0;
@@ -273,7 +273,8 @@ static double Flux(Mesh mesh, PetscInt *n_faces)
   return Sum(flux) / mesh->dim;
 }
 
-/* Exact for straight edges, and for the parabolas of second order (area of a segment: 2/3 chord times height) */
+/* Returns the exact volume for straight edges, and for the parabolas of second order, where the area of a segment is
+   2/3 of chord times height. */
 static double RingVolume(const Case *test)
 {
   const double angle = acos(-1.) / 2 / ROUND, thickness = test->solid ? height : 1;
@@ -292,8 +293,8 @@ static double NodeValue(Mesh mesh, PetscInt i, int k)
   return (double)(mesh->node_id[i] * mesh->dim + k + 1);
 }
 
-/* The lowest rank alone says which dofs are supported; all must agree, number each free dof once, and exchange values
- * without loss. */
+/* Only the lowest rank says which dofs are supported. All ranks must agree, number each free dof once, and exchange
+   values without loss. */
 static void CheckDofs(Mesh mesh, Scene scene)
 {
   const PetscInt   n    = mesh->n_nodes * mesh->dim;
@@ -333,7 +334,7 @@ static void CheckDofs(Mesh mesh, Scene scene)
   for (PetscInt i = 0; i < n; i++)
     assert_true(u[i] == (dofs[i] < 0 ? -7 : NodeValue(mesh, i / mesh->dim, (int)(i % mesh->dim))));
 
-  /* a 1 from every copy: the number of copies, in the vector and as nodal sum, which agree */
+  /* a 1 from every copy gives the number of copies, in the vector and as nodal sum, and both agree */
   assert_int_equal(MeshLocalToGlobal(mesh, ones, F), 0);
   assert_int_equal(MeshSumNodes(mesh, mesh->dim, ones), 0);
   assert_int_equal(MeshGlobalToLocal(mesh, F, u), 0);
@@ -349,8 +350,8 @@ static void CheckDofs(Mesh mesh, Scene scene)
   assert_int_equal(PetscFree2(u, ones), 0);
 }
 
-/* The report has these words, on rank 0 only, and its columns stand in line: every number of a column ends where the
- * heading ends. */
+/* The report has these words, on rank 0 only, and its columns are aligned: every number of a column ends where the
+   heading ends. */
 static void CheckReport(Mesh mesh, Scene scene, const char *body, const char *cells)
 {
   char  text[2048] = "";
@@ -425,9 +426,10 @@ static void test_elements(void **state)
   }
 }
 
-/* ------------------------------------------------------------------------------------------- cell types in one mesh */
+/* Cell types in one mesh */
 
-/* Two squares of one body, quadrangles and triangles, that share their middle: 3 cells along each side */
+/* Two squares of one body, one of quadrangles and one of triangles, which share their middle, with 3 cells along each
+   side. */
 static const char *const quads_and_triangles =
   "Point(1) = {0, 0, 0}; Point(2) = {1, 0, 0}; Point(3) = {2, 0, 0}; Point(4) = {2, 1, 0}; Point(5) = {1, 1, 0}; "
   "Point(6) = {0, 1, 0};\n"
@@ -438,7 +440,7 @@ static const char *const quads_and_triangles =
   "Physical Surface(\"both\") = {1, 2};\n"
   "Physical Curve(\"cut_x\") = {6}; Physical Curve(\"boundary\") = {1:5}; Physical Curve(\"middle\") = {7};\n";
 
-/* Two cubes, bodies that touch nowhere: hexahedra and tetrahedra, 2 layers of 2 x 2 */
+/* Two cubes, which are bodies that touch nowhere, one of hexahedra and one of tetrahedra, in 2 layers of 2 x 2. */
 static const char *const hexes_and_tets =
   "For k In {0:1}\n"
   "  a = 10 * k; x = 1.5 * k;\n"
@@ -558,8 +560,8 @@ static void test_mixed_types(void **state)
 }
 #undef MATERIAL
 
-/* Each rank gives 2^rank: a node's sum says on which ranks it is, whatever else a block holds; on one rank nothing is
- * added. */
+/* Each rank gives 2^rank. The sum of a node shows on which ranks it is, for any other values in the block. On one rank
+   nothing is added. */
 static void test_sum_nodes(void **state)
 {
   const Case ring_case = {"hex27", 1, 1, 2};
@@ -591,11 +593,10 @@ static void test_sum_nodes(void **state)
   assert_int_equal(SceneDestroy(&scene), 0);
 }
 
-/* ------------------------------------------------------------------------------------------------------- wrong meshes
- */
+/* Wrong meshes */
 
-/* Three squares in a row, body a and two of body b, that share the nodes of "middle"; "tool" is a surface of its own
- * above them, its group turned over. */
+/* Three squares in a row, body a and two squares of body b, which share the nodes of "middle". "tool" is a separate
+   surface above them, and its group has a minus sign. */
 static const char *const squares =
   "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n"
   "$PhysicalNames\n5\n1 1 \"left\"\n1 4 \"middle\"\n1 5 \"tool\"\n2 2 \"a\"\n2 3 \"b\"\n$EndPhysicalNames\n"
@@ -612,7 +613,7 @@ static const char *const two_bodies = "mesh: {file: two.msh}\ngeometry: plane_st
                                       "  - {surface: tool, rigid: {point: [0, 0]}}\n"
                                       "loads: [{surface: left, ux: 0}]\n";
 
-/* text with the first `from` replaced by `to` */
+/* Copies text with the first `from` replaced by `to`. */
 static void Edit(const char *text, const char *from, const char *to, char *edited, size_t room)
 {
   const char *at = strstr(text, from);
@@ -624,7 +625,7 @@ static void Edit(const char *text, const char *from, const char *to, char *edite
 typedef struct {
   const char *from, *to;             /* edit of the mesh */
   const char *scene_from, *scene_to; /* edit of the scene */
-  const char *message[2];            /* what the refusal must say */
+  const char *message[2];            /* text that the refusal must contain */
 } Wrong;
 
 static const Wrong wrong[] = {
@@ -702,7 +703,8 @@ static void TryWrong(const Wrong *test)
   assert_int_equal(SceneDestroy(&scene), 0);
 }
 
-/* The tool is whole on every rank, turned over by its negative group; the bodies' box is the frame. */
+/* The tool is whole on every rank, and its normals are reversed, because its group has a minus sign. The frame is the
+   bodies' bounding box. */
 static void test_rigid_tool(void **state)
 {
   char       path[PETSC_MAX_PATH_LEN];
@@ -734,7 +736,7 @@ static void test_rigid_tool(void **state)
   assert_int_equal(mesh->n_global, 8);
   assert_true(fabs(mesh->size - sqrt(10.)) < 1e-15);
 
-  /* a surface between cells is one cell's, on one rank; its nodes are there wherever they are needed */
+  /* a surface between cells belongs to one cell, on one rank; its nodes are on every rank that needs them */
   middle = Group(mesh, scene, "middle");
   assert_true(Sum((double)middle->n_faces) == 1);
   for (PetscInt f = 0; f < middle->n_faces; f++) assert_int_equal(mesh->cell_tag[middle->face_cell[f]], 3);
@@ -768,7 +770,7 @@ int main(int argc, char **argv)
   snprintf(folder, sizeof(folder), "/tmp/burnish_mesh_XXXXXX");
   if (!rank && !mkdtemp(folder)) return 1;
   assert_int_equal(MPI_Bcast(folder, sizeof(folder), MPI_CHAR, 0, PETSC_COMM_WORLD), MPI_SUCCESS);
-  if (ErrorLogBegin()) return 1; /* refusals leave no trace */
+  if (ErrorLogBegin()) return 1; /* refusals do not print a stack trace */
   failed = cmocka_run_group_tests(tests, NULL, NULL);
   if (ErrorLogEnd()) return 1;
   snprintf(command, sizeof(command), "rm -r %s", folder);

@@ -1,5 +1,5 @@
-/* A matrix made of the ranks' blocks of nodes equals the sum of what they put in, on any number of ranks, also where
- * another matrix has joined its pattern. */
+/* Node matrix: the matrix equals the sum of the ranks' blocks of nodes, on any number of ranks, also where another
+   matrix has joined its pattern. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -7,10 +7,11 @@
 #include <cmocka.h>
 #include "matrix/nodematrix.h"
 
-enum { SIZE = 2, NODES = 4, ROWS = SIZE * NODES - 1 }; /* of each rank; its first node lacks one dof */
+/* ROWS: rows of each rank, whose first node lacks one dof */
+enum { SIZE = 2, NODES = 4, ROWS = SIZE * NODES - 1 };
 
-/* What a rank lists: its own nodes, backwards, and the first two of the next rank; a node is coupled to itself and to
- * its neighbours in the list. */
+/* Nodes of a rank: its own nodes, in reverse order, and the first two of the next rank. A node is coupled to itself and
+   to its neighbours in the list. */
 typedef struct {
   PetscInt  dof[(NODES + 2) * SIZE], ptr[NODES + 3], column[3 * (NODES + 2)];
   PetscReal value[3 * (NODES + 2) * SIZE * SIZE];
@@ -41,7 +42,7 @@ static void MakeList(List *list)
   for (PetscInt k = 0; k < n * SIZE * SIZE; k++) list->value[k] = 1 + k + 100 * rank;
 }
 
-/* The same sum by MatSetValues(). */
+/* Computes the same sum with MatSetValues(). */
 static Mat Expected(const List *list)
 {
   Mat mat;
@@ -61,7 +62,7 @@ static Mat Expected(const List *list)
   return mat;
 }
 
-/* mat is a + b; b NULL: a alone. */
+/* Asserts that mat is a + b; with b NULL, that it is a. */
 static void AssertSum(Mat mat, Mat a, Mat b)
 {
   Mat       rest;
@@ -97,7 +98,7 @@ static void test_sum(void **state)
   (void)state;
   MakeList(&narrow);
   MakeList(&wide);
-  wide.column[0] = 3; /* a pair more than `narrow` has, in no order */
+  wide.column[0] = 3; /* one pair that `narrow` does not have, out of order */
   a              = Expected(&narrow);
   b              = Expected(&wide);
   assert_int_equal(NodeMatrixCreate(PETSC_COMM_WORLD, ROWS, &narrow.pairs, &matrix), 0);
@@ -131,7 +132,7 @@ static void test_sum(void **state)
   assert_int_equal(VecDestroy(&diagonal), 0);
 }
 
-/* A factorisation's symbolic part is kept as long as the pattern is the same. */
+/* The symbolic part of a factorisation is kept as long as the pattern is the same. */
 static void test_pattern_stays(void **state)
 {
   List             list;

@@ -1,5 +1,5 @@
-/* Cells that share a face are found by its corners in any order, the one with the lower id first; a row of bricks has
- * the neighbours that one sees. */
+/* Cell faces: cells that share a face are found by its corners in any order, the one with the lower id first. A row of
+   bricks has the expected neighbours. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -9,7 +9,7 @@
 
 enum { CELLS = 3, LAYERS = CELLS + 1, LAYER = 4, NODES = LAYERS * LAYER, CORNERS = 8 };
 
-/* Bricks in a row: brick c stands between layers c and c + 1, whose nodes go around. */
+/* Makes bricks in a row: brick c is between layers c and c + 1, whose nodes are numbered around the layer. */
 static void MakeRow(GmshBlock *block, RootMesh *root)
 {
   static PetscInt         connectivity[CELLS * CORNERS], item[CELLS], id[NODES], vertex[NODES];
@@ -42,7 +42,7 @@ static void FreeRow(RootMesh *root)
   assert_int_equal(PetscFree(root->cell_faces), PETSC_SUCCESS);
 }
 
-/* The face's number is that of the element table: it has these nodes. */
+/* Expects that the face has the given cell and nodes; its number is that of the element table. */
 static void ExpectFace(const CellFace *face, PetscInt cell, PetscInt first_layer_node)
 {
   const Element *brick = ElementGet(ELEMENT_HEX8);

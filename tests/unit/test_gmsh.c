@@ -1,5 +1,5 @@
-/* A .geo is meshed once for each content, gmsh's complaints reach the user, text and binary files read the same, and a
- * damaged file is refused. */
+/* gmsh: a .geo file is meshed once for each content, gmsh's errors reach the user, text and binary files give the same
+   mesh, and a damaged file is refused. */
 #include "gmsh.h"
 #include "gmshfile.h"
 #include <setjmp.h>
@@ -23,7 +23,7 @@ static const char *const geometry =
   "Physical Surface(\"block one\", 7) = {1}; Physical Curve(\"left\", 7) = {-4}; Physical Curve(3) = {2}; Physical "
   "Point(\"corner\") = {1};\n";
 
-/* length is a parameter, width is none: gmsh assigns it whatever is asked for */
+/* length is a parameter. width is not one, because the file assigns its value without declaring it. */
 static const char *const sizes  = "If (!Exists(length)) length = 2; EndIf\nwidth = 4;\n";
 static const char *const longer = "If (!Exists(length)) length = 3; EndIf\nwidth = 4;\n";
 
@@ -68,7 +68,7 @@ static Scene MakeScene(const char *parameters)
   return scene;
 }
 
-/* Meshes in folder/out: the file, or the complaint if there is one */
+/* Meshes in folder/out; returns the file, or the complaint if there is one. */
 static PetscReal Generate(const char *parameters, char *file, Complaint *complaint)
 {
   Scene     scene = MakeScene(parameters);
@@ -103,7 +103,7 @@ static void test_meshed_once(void **state)
   assert_int_equal(mesh.n_nodes, 7 * 7);
   assert_int_equal(GmshReset(&mesh), 0);
 
-  /* an included file counts: change it behind the scene's back */
+  /* an included file counts: it is changed without a change of the scene */
   Scene scene = MakeScene("{n: 3}");
 
   WriteText("size.geo", longer, strlen(longer), path);
@@ -114,7 +114,7 @@ static void test_meshed_once(void **state)
   assert_int_equal(SceneDestroy(&scene), 0);
 }
 
-/* Two parameters that change by one digit each: a sum of their plain FNV hashes would be the same. */
+/* Two parameters change by one digit each. A sum of their plain FNV hashes would not change. */
 static void test_names_differ(void **state)
 {
   const char *const parameters[] = {"{n: 3, length: 2}", "{n: 2, length: 3}", "{length: 3, n: 2}"};
@@ -205,7 +205,7 @@ static void test_binary_equals_text(void **state)
   assert_int_equal(a.n_physicals, 4);
   assert_int_equal(b.n_physicals, 4);
   assert_string_equal(a.physicals[0].name, "block one");
-  assert_string_equal(a.physicals[1].name, "3"); /* a group without a name goes by its number */
+  assert_string_equal(a.physicals[1].name, "3"); /* the number of a group without a name is its name */
   assert_string_equal(a.physicals[2].name, "left");
   assert_string_equal(a.physicals[3].name, "corner");
   assert_int_equal(a.n_blocks, b.n_blocks);
@@ -223,8 +223,8 @@ static void test_binary_equals_text(void **state)
   assert_int_equal(GmshReset(&b), 0);
 }
 
-/* Cut off anywhere before the end of the elements, a file is refused; with one byte changed anywhere it is read or
- * refused, never worse. */
+/* A file that is cut off anywhere before the end of the elements is refused. A file with one byte changed anywhere is
+   read or refused, without a crash. */
 static void test_damaged(void **state)
 {
   static char copy[1 << 16];

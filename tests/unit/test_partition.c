@@ -1,5 +1,5 @@
-/* Two strips of cells that face each other across contact are cut across both, not apart, and the faces cut are counted
- * without the links. */
+/* Partition: two strips of cells that face each other across contact are cut across both strips, not separated from
+   each other. The number of faces that are cut does not include links. */
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdint.h>
@@ -14,7 +14,7 @@ static PetscInt Cell(int strip, int along, int across)
   return (strip * LENGTH + along) * WIDTH + across;
 }
 
-/* Neighbours by faces: strips of LENGTH by WIDTH cells that share none */
+/* Sets the neighbours across faces: strips of LENGTH by WIDTH cells, which share no faces. */
 static void Strips(PetscInt offsets[CELLS + 1], PetscInt adjacency[4 * CELLS])
 {
   PetscInt n = 0;
@@ -33,7 +33,7 @@ static void Strips(PetscInt offsets[CELLS + 1], PetscInt adjacency[4 * CELLS])
   offsets[CELLS] = n;
 }
 
-/* Links between the strips whose ends are in different parts, and the faces cut */
+/* Counts the links between the strips whose ends are in different parts, and the faces that are cut. */
 static void Cut(PetscInt n_links, PetscInt *links_cut, PetscInt *faces_cut)
 {
   PetscInt  offsets[CELLS + 1], adjacency[4 * CELLS], part[CELLS], link[2 * LENGTH], count[STRIPS];

@@ -1,15 +1,17 @@
-/* The parameters that a .geo file declares: the names that -setnumber and -setstring of gmsh can change.
+/* The parameters that a .geo file declares: the names that gmsh's options -setnumber and -setstring can change.
 
-   gmsh takes any name and ignores those that the file does not ask for. It also ignores a name that the file assigns
-   without asking (n = 4;). A file asks by DefineConstant[n = {4}], or by If (!Exists(n)). GeoParametersAdd() collects
-   these names from the text of each file in turn. GeoParametersFind() and GeoParametersText() then tell which names
-   there are. */
+   gmsh accepts any name and ignores names that the file does not declare. It also ignores a name to which the file
+   assigns a value without declaring it (n = 4;). A file declares a parameter by DefineConstant[n = {4}] or by If
+   (!Exists(n)). GeoParametersAdd() collects these names; call it for the text of each file. GeoParametersFind() then
+   determines whether a name is a parameter, and GeoParametersText() lists them all. GeoParametersReset() frees the
+   list. */
 #pragma once
 #include "base/petsccompat.h"
 
 typedef struct {
-  int    n, room;
-  char **name; /* an end "*" stands for any characters: of DefineConstant[n~{i} = 4] only n_ is known */
+  int n, room;
+  /* A "*" at the end stands for any characters: of DefineConstant[n~{i} = 4] only n_ is known. */
+  char **name;
 } GeoParameters;
 
 PetscErrorCode GeoParametersAdd(const char *text, GeoParameters *);

@@ -1,43 +1,42 @@
-/* What rank 0 knows of the mesh before it is distributed: the bodies' cells and nodes, numbered by gmsh's tags and
-   checked against the scene. Elsewhere a RootMesh pointer is NULL. */
+/* What rank 0 knows of the mesh before distribution: the bodies' cells and nodes, numbered by gmsh's tags and checked
+   against the scene. On other ranks a pointer to a RootMesh is NULL. RootMeshRead() fills it; CellFacesCreate(),
+   RootTopologyPlaceNodes() and RootGroupsFind() add faces, points and groups; RootMeshReset() frees it. */
 #pragma once
 #include "gmshfile.h"
 #include "mesh/meshdata.h"
 
-/* One element of a dim - 1 group that is a face of a cell */
+/* Most corners of a face of a cell: those of a quadrangle. */
+enum { CELL_FACE_CORNERS = 4 };
+
+/* One element of a group of dimension dim - 1 that is a face of a cell. */
 typedef struct {
   PetscInt cell, group, tag;
   int      number;
 } RootFace;
 
-enum { CELL_FACE_CORNERS = 4 };
-
-/* One face of a cell: its corners' vertex numbers, ascending */
+/* One face of a cell: vertex numbers of its corners, ascending. */
 typedef struct {
   PetscInt corner[CELL_FACE_CORNERS], cell;
   int      number;
 } CellFace;
 
-/* Cells and nodes go by their ids: the order of gmsh's tags. */
+/* Cells and nodes are numbered by their ids, in the order of gmsh's tags. */
 typedef struct {
   GmshMesh          gmsh;
-  PetscInt          n_nodes, *node, *id; /* id -> gmsh's node, and back (-1: not a body's) */
-  PetscInt          n_cells, *cell_item; /* cell: item of a block */
+  PetscInt          n_nodes, *node, *id; /* gmsh's node of each id; id of each gmsh node, -1: it belongs to no body */
+  PetscInt          n_cells, *cell_item; /* place of each cell in its block */
   const GmshBlock **cell_block;
   int              *cell_body;
-  PetscInt         *vertex;             /* id -> vertex number, -1: no corner */
-  PetscInt          n_vertices, *point; /* id -> Plex point; by RootTopologyPlaceNodes() */
-  PetscInt          n_faces, *face_ptr; /* cell -> its faces in groups; by RootGroupsFind() */
+  PetscInt         *vertex;             /* vertex number of each id, -1: it is no corner */
+  PetscInt          n_vertices, *point; /* Plex point of each id, from RootTopologyPlaceNodes() */
+  PetscInt          n_faces, *face_ptr; /* start of each cell's faces in groups, from RootGroupsFind() */
   RootFace         *faces;
-  PetscInt *corner_faces; /* vertex -> the cells' faces of which it is the lowest corner; by CellFacesCreate() */
+  /* For each vertex, the start of the cells' faces of which it is the lowest corner, from CellFacesCreate(). */
+  PetscInt *corner_faces;
   CellFace *cell_faces;
-  PetscInt *interior; /* per group: faces between two cells */
+  PetscInt *interior; /* for each group, faces between two cells */
 } RootMesh;
 
-/* Reads and checks the file; the mesh gets its order and the bodies' box. To be reset also after a complaint. Not
- * collective. */
-PetscErrorCode RootMeshRead(Scene, const char *file, PetscMPIInt ranks, RootMesh *, Mesh, Complaint *);
-/* Frees all of it. Not collective. */
-PetscErrorCode RootMeshReset(RootMesh *);
-/* The cell's nodes as indices of gmsh's, in gmsh's order */
+PetscErrorCode  RootMeshRead(Scene, const char *file, PetscMPIInt ranks, RootMesh *, Mesh, Complaint *);
+PetscErrorCode  RootMeshReset(RootMesh *);
 const PetscInt *RootMeshCellNodes(const RootMesh *, PetscInt cell);

@@ -1,8 +1,7 @@
-/* Meshed rigid tools: from rank 0's file, whole, to all ranks. */
+/* Meshed rigid tools, which rank 0 reads and every rank gets as a whole. RootRigidCreate() fills mesh->rigid after the
+   groups are known, RootRigidDestroy() frees it. */
 #pragma once
 #include "rootmesh.h"
 
-/* Fills mesh->rigid; refuses a tool whose surface the mesh does not have. Collective. */
 PetscErrorCode RootRigidCreate(Scene, const RootMesh *, Mesh);
-/* Frees mesh->rigid. Not collective. */
 PetscErrorCode RootRigidDestroy(Mesh);
