@@ -70,7 +70,6 @@ PetscErrorCode ModelDestroy(Model *model)
   PetscCall(LinearSolverDestroy(&m->work->solver));
   PetscCall(LinearCheckDestroy(&m->linear));
   PetscCall(ContactCycleDestroy(&m->work->watch));
-  PetscCall(ContactLineDestroy(&m->work->line));
   PetscCall(ExtrapolationDestroy(&m->work->extrapolation));
   PetscCall(VecDestroy(&m->x));
   PetscCall(VecDestroy(&m->work->accepted_x));

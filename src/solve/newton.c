@@ -10,12 +10,6 @@
 #define NEWTON_MAX_DAMPED 3
 /* After this many iterations without a change of the contact set, steps have their full length again. */
 #define NEWTON_STEADY 2
-/* The last tangent serves for one more iteration where that iteration should end the solve. The next residual is
-   estimated as twice this residual times the last contraction (Deuflhard, Newton Methods for Nonlinear Problems, 2004,
-   sec. 2.2, simplified Newton). The factor is that two, times two for what the estimate does not know. The estimate is
-   not made from a first residual: that comes mostly from stiff motions, which any tangent removes. On a plate on a
-   cylinder the estimate from it is 200 times too small. */
-#define NEWTON_TANGENT_REUSE 4
 /* With softened penalties a solve only has to find which nodes touch. This residual, relative to F_ref, is enough. A
    value ten times smaller or three times larger cost a pipe between plates more iterations. */
 #define NEWTON_SOFT_ENOUGH 0.1
@@ -183,19 +177,6 @@ static PetscErrorCode ModelBreakCycle(Model model, PetscReal fnorm, SNESConverge
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Keeps the tangent and its factor for the next iteration where that will be the last one anyway. norm: residual of
-   this iterate; allowed: residual at which the solve ends. */
-static PetscErrorCode ModelReuseTangent(Model model, PetscInt it, PetscReal norm, PetscReal allowed)
-{
-  const PetscBool reuse =
-    it > 1 && NEWTON_TANGENT_REUSE * norm * norm <= allowed * model->work->norm ? PETSC_TRUE : PETSC_FALSE;
-
-  PetscFunctionBeginUser;
-  PetscCall(SNESSetLagJacobian(model->snes, reuse ? -1 : 1));
-  model->work->norm = reuse ? 0 : norm; /* 0: not for a second iteration */
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* Counts an iteration that the line search shortened. */
 static PetscErrorCode ModelCountCut(Model model, PetscInt it)
 {
@@ -232,7 +213,6 @@ static PetscErrorCode ModelConverged(SNES snes, PetscInt it, PetscReal xnorm, Pe
   ModelChooseObjective(model, fnorm, NAN);
   allowed = PetscMax((model->work->soft ? NEWTON_SOFT_ENOUGH : model->scene->solver.tolerance) * scale, round_off);
   model->work->balanced = fnorm <= allowed ? PETSC_TRUE : PETSC_FALSE;
-  PetscCall(ModelReuseTangent(model, it, fnorm, allowed));
   if (!it && model->work->start == 0 && !model->work->soft) model->work->start = fnorm;
   PetscCall(LinearSolverSetEnough(model->work->solver, allowed));
   if (it > 0 && LinearCheckLost(model->linear))

@@ -2,13 +2,12 @@
    offers to those above it.
 
    problem.c is below all of them. linearcontact.c finds the contact that is right at the end of a linear step.
-   linesearch.c chooses what the line search compares, and lengthens steps that contact cuts. newton.c runs SNES once
+   linesearch.c chooses what the line search compares, and corrects steps for contact. newton.c runs SNES once
    with the present contact lists. prediction.c finds a first iterate, penaltyramp.c improves it on softened penalties.
    equilibrium.c goes from an accepted state to the next one. model.c holds the accepted state. Each file calls only
    those named before it. */
 #pragma once
 #include "contact/contactcycle.h"
-#include "contact/contactline.h"
 #include "extrapolation.h"
 #include "linear/linearsolver.h"
 #include "solve/model.h"
@@ -26,7 +25,6 @@ typedef struct _n_ModelWork {
   PetscBool     ordered;       /* the linear solver has chosen the order of its unknowns */
   Vec           residual;      /* of a trial point, for OBJECTIVE_RESIDUAL */
   ContactCycle  watch;         /* of the contact set; NULL without contact */
-  ContactLine   line;          /* contact along a Newton step; NULL without contact or with follower loads */
   Extrapolation extrapolation; /* NULL with small kinematics, where bodies move along straight lines */
   PetscReal     damping;       /* of the line search while no contact set repeats itself */
 
@@ -54,8 +52,6 @@ typedef struct _n_ModelWork {
   /* One solve by SNES */
   Objective objective;
   PetscBool soft;     /* penalties are softened: NEWTON_SOFT_ENOUGH is the tolerance */
-  PetscReal norm;     /* residual norm of the iterate before; 0: its tangent must not serve once more */
-  PetscReal step;     /* norm of Newton's last step, before the line search */
   PetscBool balanced; /* the residual of the iterate is within the tolerance */
   PetscBool left;     /* the solve ended because a slave point slid out of its lists */
   PetscBool cycling;  /* the solve ended because the contact set repeats itself with shorter steps too */
