@@ -25,7 +25,8 @@ def keys(burnish):
             stated, meaning = (re.split(MEANING, match["rest"], maxsplit=1) + [""])[:2]
             allowed, *remarks = stated.split("; ")
             default = next((remark.removeprefix("default ") for remark in remarks if remark.startswith("default ")), "")
-            yield match["path"], allowed, [remark for remark in remarks if not remark.startswith("default ")], default, meaning
+            others = [remark for remark in remarks if not remark.startswith("default ")]
+            yield match["path"], allowed, others, default, meaning
 
 
 def cell(text):
@@ -61,7 +62,7 @@ def main():
     before, after = there[: there.index(BEGIN) + len(BEGIN)], there[there.index(END) :]
     wanted = before + sections(options.burnish) + after
     if options.check and wanted != there:
-        sys.exit("doc/pages/scene.md differs from the program; build/venv/bin/python scripts/reference.py writes it anew")
+        sys.exit("doc/pages/scene.md differs from the program: build/venv/bin/python scripts/reference.py writes it")
     if not options.check:
         FILE.write_text(wanted)
 

@@ -1,5 +1,5 @@
-"""MkDocs hooks of doc/mkdocs.yml: README.md becomes the home page, and the figures that pages show come from runs/records.
-Links in the files are those that work in the repository; here they become links of the site."""
+"""MkDocs hooks of doc/mkdocs.yml: README.md becomes the home page, and the figures that pages show come from
+runs/records. Links in the files are those that work in the repository; here they become links of the site."""
 import pathlib
 import re
 

@@ -1,4 +1,5 @@
-"""make install puts program, man page, completion and examples where they run from; the man page is well formed and tells every option."""
+"""make install puts program, man page, completion and examples where they run from, and the pages where their links and
+pictures are found; the man page is well formed and lists every option."""
 import os
 import pathlib
 import re
@@ -28,6 +29,11 @@ example = prefix / "share/burnish/runs/cup_flattening.yaml"
 finished = run("mpirun", "-n", args.ranks, prefix / "bin/burnish", example, "-set", "mesh.parameters.n_arc=30", "-set", "loads.0.pressure=20", cwd=work)
 good = finished.returncode == 0 and (work / "out/cup_flattening/summary.json").exists()
 check.holds("an example runs from there", good, "" if good else finished.stdout[-1000:])
+
+documents = prefix / "share/doc/burnish"
+broken = [f"{path.name}: {link}" for path in [documents / "README.md", *(documents / "doc/pages").glob("*.md")]
+          for link in re.findall(r"\]\(([\w/.]+\.(?:md|png))", path.read_text()) if not (path.parent / link).exists()]
+check.holds("links of the pages", (documents / "doc/pages/theory.md").exists() and not broken, " ".join(broken))
 
 page = prefix / "share/man/man1/burnish.1"
 text = page.read_text()

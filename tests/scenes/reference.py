@@ -41,7 +41,8 @@ check.holds("summary.json", not untold, f"not told: {sorted(untold)}")
 with open(finished.directory / "steps.csv", newline="") as file:
     columns = set(next(csv.reader(file))) - set(finished.summary()["probes"])
 extra = told[1] - columns
-check.holds("steps.csv", columns <= told[1] and extra <= {"control: contact", "g_min", "g_max"}, f"{sorted(columns ^ told[1])}")
+known = columns <= told[1] and extra <= {"control: contact", "g_min", "g_max"}
+check.holds("steps.csv", known, f"{sorted(columns ^ told[1])}")
 datasets = set()
 with h5py.File(finished.directory / "results.h5", "r") as file:
     file.visititems(lambda name, item: isinstance(item, h5py.Dataset) and datasets.add("/" + name) or None)
