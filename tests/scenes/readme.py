@@ -2,9 +2,9 @@
 output that comes.
 
 Commands are the lines of blocks marked `sh`, the lines behind `$` in blocks marked `console`, whose output follows, and
-inline code that begins with a program and has an argument. readme_commands.py lists those that run in the full set only,
-with other settings, or not at all; every other command runs as it stands, in both sets. The test also fails on a command
-in a block of another kind, on a command in the lists that no page shows, and on a path that does not exist.
+inline code that begins with a program and has an argument. readme_commands.py lists those that run in the full set
+only, with other settings, or not at all; every other command runs as it stands, in both sets. The test also fails on a
+command in a block of another kind, on a command in the lists that no page shows, and on a path that does not exist.
 
     readme.py ... --part quick        commands that take no more than a second or two
     readme.py ... --part full         all of them
@@ -198,13 +198,17 @@ def run_page(path, work, files):
         check.holds(f"{path.name}: a command in a block marked sh or console", False, line)
     for command, shown in commands(text):
         came = work.run(command)
+        if came and " --table " in command:
+            missing = [row for row in came.splitlines() if row.startswith("| ") and row not in text]
+            check.holds(f"{path.name} has the rows of {command}", not missing, "\n".join(missing))
         if shown is None or came is None:
             continue
         whole = not shown or shown.split()[0] == came.split()[0]
         lines = came.splitlines()[0 if whole else -len(shown.splitlines()) :]
         written = written.replace(f"$ {command}\n{shown}", f"$ {command}\n" + "".join(f"{line}\n" for line in lines))
         if work.args.update == "no" and not same(shown, came):
-            check.holds(f"output of {command}", False, f"is\n{came}\n{path.name} shows\n{shown}\n(--update yes writes it)")
+            note = f"is\n{came}\n{path.name} shows\n{shown}\n(--update yes writes it anew)"
+            check.holds(f"output of {command}", False, note)
     if work.args.part == "full":
         check_tables(text, work.folder, check)
     check_paths(path, text, work)
