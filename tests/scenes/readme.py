@@ -184,9 +184,12 @@ def check_tables(text, folder, check):
 
 def check_paths(path, text, work):
     """Files that a page names in code are in the repository, or are files of the user's that the page shows."""
-    for code in INLINE.findall(text):
+    for code in sorted({*INLINE.findall(text)}):
         for name in PATH.findall(code) if PATH.match(code) else ():
             work.check.holds(f"{path.name}: {name}", name in NOT_YET or (work.folder / name).exists())
+        if re.fullmatch(r"\w+\.py", code):
+            there = any((work.folder / folder / code).exists() for folder in ("tests/scenes", "tests/hard", "scripts"))
+            work.check.holds(f"{path.name}: {code}", there)
 
 
 def run_page(path, work, files):
