@@ -53,7 +53,7 @@ BURNISH   := $(BUILD)/burnish
 TESTS     := $(patsubst %.c,$(BUILD)/tests/%,$(notdir $(wildcard tests/unit/test_*.c tests/mpi/test_*.c tests/oracle/*.c tests/fuzz/*.c tests/library/*.c)))
 BENCHES   := $(patsubst tests/bench/%.c,$(BUILD)/bench/%,$(wildcard tests/bench/*.c))
 
-.PHONY: all tests deps demo check test study bench fuzz valgrind install help format clean FORCE
+.PHONY: all tests deps demo check test study bench fuzz valgrind site install help format clean FORCE
 all: $(BURNISH) ## builds build/burnish
 
 $(BURNISH): $(BUILD)/obj/main.o $(LIBRARY)
@@ -122,14 +122,21 @@ fuzz: ## looks for files that break the readers, SECONDS=600 for each, with clan
 valgrind: ## runs the unit tests of the plain C kernels under valgrind
 	@scripts/valgrind.sh
 
-install: all ## installs program, library, man page and examples into PREFIX (default /usr/local)
+site: ## builds the documentation with search in out/site; warnings are errors
+	@[ -x $(VENV)/bin/mkdocs ] || { echo "no MkDocs in $(VENV): run make deps" >&2; exit 1; }
+	@PYTHONDONTWRITEBYTECODE=1 $(VENV)/bin/mkdocs --quiet build --strict -f doc/mkdocs.yml -d $(CURDIR)/out/site
+
+install: all ## installs program, library, pages and examples into PREFIX (default /usr/local)
 	install -D -m 755 $(BURNISH) $(DESTDIR)$(PREFIX)/bin/burnish
 	install -D -m 644 include/burnish.h $(DESTDIR)$(PREFIX)/include/burnish.h
 	install -D -m 644 $(LIBRARY) $(DESTDIR)$(PREFIX)/lib/libburnish.a
 	$(file >$(BUILD)/burnish.pc,$(PKGCONFIG_FILE))install -D -m 644 $(BUILD)/burnish.pc $(DESTDIR)$(PREFIX)/lib/pkgconfig/burnish.pc
 	install -D -m 644 doc/burnish.1 $(DESTDIR)$(PREFIX)/share/man/man1/burnish.1
 	install -D -m 644 doc/burnish.bash $(DESTDIR)$(PREFIX)/share/bash-completion/completions/burnish
-	install -D -m 644 -t $(DESTDIR)$(PREFIX)/share/doc/burnish README.md REFERENCE.md
+	install -D -m 644 -t $(DESTDIR)$(PREFIX)/share/doc/burnish README.md
+	install -D -m 644 -t $(DESTDIR)$(PREFIX)/share/doc/burnish/doc/pages $(wildcard doc/pages/*.md)
+	for picture in $(wildcard runs/records/*.png runs/records/*/*.png); do \
+	  install -D -m 644 $$picture $(DESTDIR)$(PREFIX)/share/doc/burnish/$$picture || exit 1; done
 	install -D -m 644 -t $(DESTDIR)$(PREFIX)/share/burnish/runs $(wildcard runs/*.yaml)
 	install -D -m 644 -t $(DESTDIR)$(PREFIX)/share/burnish/meshes $(wildcard meshes/*.geo)
 

@@ -60,7 +60,7 @@ def table(name):
 
 
 def record(path):
-    """The runs side by side as CSV: what README quotes."""
+    """The runs side by side as CSV, which doc/pages/running.md shows."""
     summaries, steps = {name: read_summary(directory(name)) for name in RUNS}, {name: read_steps(directory(name)) for name in RUNS}
     rows = [("plate_force_halfway", "N", FORCE_HALFWAY, 52, *(steps[name]["plate_force"][numpy.argmin(numpy.abs(steps[name]["t"] - 0.5))] for name in RUNS))]
     rows += [(probe, unit, reference, error, *(summaries[name]["probes"][probe] for name in RUNS)) for probe, unit, reference, error in REFERENCE]
@@ -110,7 +110,7 @@ def curve():
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--burnish", default="build/burnish")
-    parser.add_argument("--record", type=pathlib.Path, default=OUT / "pipe_pinch.csv", help="where the table goes (README quotes runs/records/pipe_pinch.csv)")
+    parser.add_argument("--record", type=pathlib.Path, default=OUT / "pipe_pinch.csv", help="where the table goes")
     arguments = parser.parse_args()
     burnish = arguments.burnish
     OUT.mkdir(exist_ok=True)

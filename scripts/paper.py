@@ -84,7 +84,7 @@ class Study:
         self.text.append(f"### {title} ({name}.csv)\n\n" + "\n".join(lines) + ("\n\n" + note if note else "") + "\n")
 
     def picture(self, name, draw, *arguments, recorded=False):
-        """A picture; recorded: the README shows it."""
+        """A picture; recorded: doc/pages/paper.md shows it."""
         figure = draw(*arguments)
         figure.savefig(self.args.out / f"{name}.png", dpi=150, bbox_inches="tight")
         if recorded and self.args.record:
@@ -356,7 +356,7 @@ def main():
     parser.add_argument("-j", "--ranks", type=int, default=2)
     parser.add_argument("--burnish", type=pathlib.Path, default=ROOT / "build/burnish")
     parser.add_argument("--out", type=pathlib.Path, default=ROOT / "out/paper")
-    parser.add_argument("--record", type=pathlib.Path, help="a second place for the tables and what the README shows (runs/records/paper)")
+    parser.add_argument("--record", type=pathlib.Path, help="a second place for the tables and the pictures of doc/pages/paper.md (runs/records/paper)")
     parser.add_argument("--quick", action="store_true", help="coarse meshes: shows that everything runs, its figures mean nothing")
     parser.add_argument("--again", action="store_true", help="repeats runs that are there")
     args = parser.parse_args()

@@ -1,7 +1,7 @@
-"""The scene reference in REFERENCE.md, from the program's own table of keys (`burnish -help`).
+"""Writes the tables of doc/pages/scene.md from the program's own table of keys (`burnish -help`).
 
-    build/venv/bin/python scripts/reference.py            # writes it anew
-    build/venv/bin/python scripts/reference.py --check    # exit 1 where it is not what the program says
+    build/venv/bin/python scripts/reference.py            # writes them anew
+    build/venv/bin/python scripts/reference.py --check    # exit status 1 where they differ from what the program says
 """
 import argparse
 import pathlib
@@ -9,15 +9,15 @@ import re
 import subprocess
 import sys
 
-FILE = pathlib.Path(__file__).resolve().parent.parent / "REFERENCE.md"
+FILE = pathlib.Path(__file__).resolve().parent.parent / "doc/pages/scene.md"
 BEGIN, END = "<!-- begin: scripts/reference.py -->\n", "<!-- end: scripts/reference.py -->\n"
 LINE = re.compile(r"^  (?P<path>[A-Za-z_][\w.|]*): (?P<rest>.*)$")
 
-MEANING = r" - (?![^(]*\))"  # what stands between the allowed values and the meaning; not within parentheses
+MEANING = r" - (?![^(]*\))"  # separates the allowed values from the meaning, but not within parentheses
 
 
 def keys(burnish):
-    """Path, what is allowed, remarks, default and meaning of every key, in the program's order."""
+    """Path, allowed values, remarks, default and meaning of every key, in the program's order."""
     text = subprocess.run([burnish, "-help"], stdout=subprocess.PIPE, text=True, check=True).stdout
     for line in text[text.index("Scene file (YAML") :].splitlines():
         match = LINE.match(line)
@@ -25,7 +25,8 @@ def keys(burnish):
             stated, meaning = (re.split(MEANING, match["rest"], maxsplit=1) + [""])[:2]
             allowed, *remarks = stated.split("; ")
             default = next((remark.removeprefix("default ") for remark in remarks if remark.startswith("default ")), "")
-            yield match["path"], allowed, [remark for remark in remarks if not remark.startswith("default ")], default, meaning
+            others = [remark for remark in remarks if not remark.startswith("default ")]
+            yield match["path"], allowed, others, default, meaning
 
 
 def cell(text):
@@ -37,17 +38,18 @@ def code(text):
 
 
 def sections(burnish):
-    """One table for each key at the top that has keys below it, one for those that have none."""
+    """One table for each top-level key that has keys below it, and one table for all that have none."""
     tables = {}
     for path, allowed, remarks, default, meaning in keys(burnish):
         top = path.split(".")[0]
-        tables.setdefault(top, []).append(f"| {code(path)} | {cell(allowed)} | {code(default)} | {cell('; '.join(filter(None, [meaning, *remarks])))} |")
+        text = cell("; ".join(filter(None, [meaning, *remarks])))
+        tables.setdefault(top, []).append(f"| {code(path)} | {cell(allowed)} | {code(default)} | {text} |")
     single = [rows[0] for rows in tables.values() if len(rows) == 1]
     head = "| key | allowed | default | meaning |\n| --- | --- | --- | --- |\n"
-    text = "### Single keys\n\n" + head + "\n".join(single) + "\n"
+    text = "## Single keys\n\n" + head + "\n".join(single) + "\n"
     for top, rows in tables.items():
         if len(rows) > 1:
-            text += f"\n### {top}\n\n" + head + "\n".join(rows) + "\n"
+            text += f"\n## {top}\n\n" + head + "\n".join(rows) + "\n"
     return text
 
 
@@ -60,7 +62,7 @@ def main():
     before, after = there[: there.index(BEGIN) + len(BEGIN)], there[there.index(END) :]
     wanted = before + sections(options.burnish) + after
     if options.check and wanted != there:
-        sys.exit("REFERENCE.md is not what the program says; build/venv/bin/python scripts/reference.py writes it anew")
+        sys.exit("doc/pages/scene.md differs from the program: build/venv/bin/python scripts/reference.py writes it")
     if not options.check:
         FILE.write_text(wanted)
 

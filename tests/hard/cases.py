@@ -91,7 +91,7 @@ CASES = [
          All(Balance(*FORCES), Same(*mesh(n_lower=12, n_upper=10), probes=("force",), bound=0.1))),
     Case("geometry", "five nodes", "fewer than a fit of degree 4 needs: the ladder of fall-backs", SQUEEZE, mesh(n_lower=4),
          Uniform(1, (0.08, 0.01, 0.15, 0.05))),
-    Case("geometry", "collinear or repeated points", "no plane through them, no fit", None, expected="a guard fires (unit test_fit)"),
+    Case("geometry", "collinear or repeated points", "no plane through them, no fit", None, expected="a guard fires (unit test_diffusefit)"),
     Case("geometry", "duplicated nodes", "the master is two bodies side by side that share no nodes", SQUEEZE,
          SEAM + mesh(n_lower=14) + ["contact.0.master=tops"], Uniform(1, (0.7, 0.006, 0.7, 0.005))),
     Case("geometry", "jittered nodes", "every interface node moved by up to a quarter of a face", SOLID, mesh(jitter=0.25),

@@ -1,7 +1,7 @@
 """Runs the hard cases of cases.py: each with facets and diffuse, node to surface and surface to surface, on 1 and 3 ranks, and compares with the
 outcome written down there. A row for each case; ends with status 0 when every one is as expected.
     run.py [--burnish BINARY] [--out DIR] [--group GROUP] [--case TEXT] [--ranks 1 3] [--record FILE.csv]
-    run.py --table FILE.csv    prints a record as README has it
+    run.py --table FILE.csv    prints a record as doc/pages/hardcases.md has it
 No run may take longer than LIMIT: an endless loop is a failure like any other."""
 import argparse
 import csv
@@ -87,7 +87,7 @@ def cell(rows):
 
 
 def table(rows):
-    """The record as a table of README: a figure is node to surface / surface to surface."""
+    """The record as a table of doc/pages/hardcases.md: a figure is node to surface / surface to surface."""
     print("| case | what makes it hard | facet | diffuse |\n| --- | --- | --- | --- |")
     for name in dict.fromkeys(row["case"] for row in rows):
         mine = [row for row in rows if row["case"] == name]

@@ -1,4 +1,5 @@
-"""scripts/compare_calculix.py: README's rows are those of the committed record, a missing ccx is one message, and where ccx is there it solves the input."""
+"""scripts/compare_calculix.py: the rows of doc/pages/performance.md are those of the committed record, a missing ccx is
+one message, and where ccx is there it solves the input."""
 import csv
 import pathlib
 import shutil
@@ -20,9 +21,10 @@ args, check = arguments(), Check()
 out = pathlib.Path(args.out)
 shutil.rmtree(out, ignore_errors=True)
 printed = set(call("--table", RECORD).stdout.splitlines())
-readme = [line for line in (ROOT / "README.md").read_text().splitlines() if "| calculix |" in line or "| burnish |" in line]
-wrong = [line for line in readme if line not in printed]
-check.holds(f"{len(readme)} rows of README are the record's", readme and not wrong, "\n".join(wrong))
+page = (ROOT / "doc/pages/performance.md").read_text().splitlines()
+rows = [line for line in page if "| calculix |" in line or "| burnish |" in line]
+wrong = [line for line in rows if line not in printed]
+check.holds(f"{len(rows)} rows of the page are the record's", rows and not wrong, "\n".join(wrong))
 missing = call("--ccx", "no-such-program", "--out", out)
 check.holds("a missing ccx: exit 1, one message", missing.returncode == 1 and len(missing.stderr.splitlines()) == 1 and "calculix-ccx" in missing.stderr, missing.stderr)
 if shutil.which("ccx"):

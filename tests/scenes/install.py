@@ -1,5 +1,6 @@
-"""make install puts program, library, man page, completion and examples where they run from; a program outside of the source tree links the
-library; the man page is well formed and tells every option."""
+"""make install puts program, library, man page, completion and examples where they run from, and the pages where their
+links and pictures are found; a program outside of the source tree links the library; the man page is well formed and
+lists every option."""
 import os
 import pathlib
 import re
@@ -31,11 +32,17 @@ good = finished.returncode == 0 and (work / "out/cup_flattening/summary.json").e
 check.holds("an example runs from there", good, "" if good else finished.stdout[-1000:])
 
 check.holds("public headers", [header.name for header in (prefix / "include").iterdir()] == ["burnish.h"])
-flags = run("pkg-config", "--cflags", "--libs", "burnish", env={**os.environ, "PKG_CONFIG_PATH": str(prefix / "lib/pkgconfig")}, cwd=work).stdout.split()
+environment = {**os.environ, "PKG_CONFIG_PATH": str(prefix / "lib/pkgconfig")}
+flags = run("pkg-config", "--cflags", "--libs", "burnish", env=environment, cwd=work).stdout.split()
 finished = run("mpicc", ROOT / "tests/library/library.c", *flags, "-o", "library", cwd=work)
 check.holds("a program links the library", finished.returncode == 0, finished.stdout if finished.returncode else "")
 finished = run("mpirun", "-n", args.ranks, work / "library", SCENES / "probes.yaml", cwd=work)
 check.holds("and runs", finished.returncode == 0, finished.stdout[-1000:] if finished.returncode else "")
+
+documents = prefix / "share/doc/burnish"
+broken = [f"{path.name}: {link}" for path in [documents / "README.md", *(documents / "doc/pages").glob("*.md")]
+          for link in re.findall(r"\]\(([\w/.]+\.(?:md|png))", path.read_text()) if not (path.parent / link).exists()]
+check.holds("links of the pages", (documents / "doc/pages/theory.md").exists() and not broken, " ".join(broken))
 
 page = prefix / "share/man/man1/burnish.1"
 text = page.read_text()

@@ -1,4 +1,5 @@
-"""REFERENCE.md tells every key of a scene as the program has it, and every key, column and dataset that a run leaves."""
+"""doc/pages/scene.md lists every key of a scene as the program has it, and doc/pages/results.md lists every key, column
+and dataset that a run leaves."""
 import csv
 import re
 import subprocess
@@ -9,7 +10,8 @@ import h5py
 from harness import Check, arguments, run, SCENES
 
 ROOT = SCENES.parent.parent
-PARTS = ("/steps/0000/contact/joint/", "/steps/0000/", "/contact/joint/")  # what the tables leave out, or write with other names
+PARTS = ("/steps/0000/contact/joint/", "/steps/0000/", "/contact/joint/")  # left out or named otherwise in the tables
+FILES = ("summary.json", "steps.csv", "results.h5")
 
 args = arguments()
 check = Check()
@@ -17,9 +19,10 @@ line = [sys.executable, str(ROOT / "scripts" / "reference.py"), "--check", "--bu
 finished = subprocess.run(line, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
 check.holds("scene keys", finished.returncode == 0, finished.stdout)
 
-text = (ROOT / "REFERENCE.md").read_text()
-told = [set(re.findall(r"`([^`]+)`", text.split(f"### {name}")[1].split("\n### ")[0])) for name in ("summary.json", "steps.csv", "results.h5")]
-plane = ["geometry=plane_strain", "mesh.parameters.solid=0", "supports=[{surface: lower_bottom, uy: 0}, {surface: symmetry_x, ux: 0}]",
+text = (ROOT / "doc/pages/results.md").read_text()
+told = [set(re.findall(r"`([^`]+)`", text.split(f"\n## {name}")[1].split("\n## ")[0])) for name in FILES]
+plane = ["geometry=plane_strain", "mesh.parameters.solid=0",
+         "supports=[{surface: lower_bottom, uy: 0}, {surface: symmetry_x, ux: 0}]",
          "contact.0.penalty={adjust: true, g_min: 1e-4, g_max: 1e-2, unit: length}"]
 finished = run(args, SCENES / "contact_patch.yaml", "-quiet", overrides=plane)
 
@@ -37,10 +40,12 @@ untold = set(keys(finished.summary())) - told[0]
 check.holds("summary.json", not untold, f"not told: {sorted(untold)}")
 with open(finished.directory / "steps.csv", newline="") as file:
     columns = set(next(csv.reader(file))) - set(finished.summary()["probes"])
-check.holds("steps.csv", columns == told[1] & columns and told[1] - columns <= {"control: contact", "g_min", "g_max"}, f"{sorted(columns ^ told[1])}")
+extra = told[1] - columns
+known = columns <= told[1] and extra <= {"control: contact", "g_min", "g_max"}
+check.holds("steps.csv", known, f"{sorted(columns ^ told[1])}")
 datasets = set()
 with h5py.File(finished.directory / "results.h5", "r") as file:
-    file.visititems(lambda name, item: datasets.add("/" + name) if isinstance(item, h5py.Dataset) else None)
+    file.visititems(lambda name, item: isinstance(item, h5py.Dataset) and datasets.add("/" + name) or None)
 for dataset in sorted(datasets):
     name = next((dataset.removeprefix(part) for part in PARTS if dataset.startswith(part)), dataset)
     name = {"nodes": "/contact/PAIR/nodes"}.get(name, re.sub(r"cells_[a-z]+\d+", "cells_TYPE", name))

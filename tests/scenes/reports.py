@@ -1,4 +1,5 @@
-"""-check says the same on 1, 2 and 3 ranks, overlaps before they are refused; the last screen has the figures of summary.json, after a failure cause, place and what to try; README shows them as they come."""
+"""-check says the same on 1, 2 and 3 ranks, overlaps before they are refused; the last screen has the figures of
+summary.json, and after a failure cause, place and what to try."""
 import re
 
 from harness import Check, arguments, run, SCENES
@@ -61,16 +62,4 @@ check.holds("failure: three nodes with their residuals", len(re.findall(r"^where
 check.holds("failure: what was tried, what to try", re.search(r"^tried    \d+ times, dt from 0.1 .*\ntry      \S+", stuck.text, re.MULTILINE) is not None, line(stuck.text, "tried"))
 held = run(args, RUNS / "slide_flat.yaml", out="held", overrides=["stepping.initial=1"], must=None).text
 check.holds("what contact alone holds is said in the first lines", "motion   block: translation along y, (0, 1, 0): held by contact only (sole)" in held.split("\n\n")[0])
-
-# 4. README shows what comes: the same lines but for figures; of the line of times only its head, small shares are left out.
-if EVERY:
-    readme = (SCENES.parent.parent / "README.md").read_text()
-
-    def shape(text):
-        return [re.sub(r"-?\d[\d.]*(e[+-]?\d+)?", "#", line) for line in re.sub(r"^(time|done).*$", r"\1", text, flags=re.MULTILINE).splitlines()]
-
-    for options in (["-check"], []):
-        shown = re.search(rf"\$ build/burnish {' '.join(options + ['runs/hertz_line.yaml'])}\n(.*?)```", readme, re.DOTALL)[1]
-        comes = run(args, RUNS / "hertz_line.yaml", *options, out="readme", ranks=1).text.rstrip() + "\n"
-        check.holds(f"README {options}", shape(shown) == shape(comes)[-len(shown.splitlines()):], "\n".join(shape(comes)))
 check.finish()

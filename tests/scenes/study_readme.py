@@ -1,5 +1,6 @@
-"""README.md's section on what accuracy costs shows the committed records: each row of its tables is one of theirs, each number of its text stands there or in
-the studies' own files, and the tables beside the records are made of them."""
+"""The section of doc/pages/performance.md on what accuracy costs shows the committed records: each row of its tables is
+one of theirs, each number of its text stands there or in the studies' own files, and the tables beside the records are
+made of them."""
 import re
 import sys
 
@@ -24,8 +25,8 @@ def is_part(row, line):
 
 
 def section(title):
-    text = (ROOT / "README.md").read_text()
-    return text[text.index(f"## {title}") :].split("\n## ")[0].splitlines()
+    text = (ROOT / "doc/pages/performance.md").read_text()
+    return text[text.index(f"\n## {title}") + 1 :].split("\n## ")[0].splitlines()
 
 
 arguments()
@@ -35,7 +36,8 @@ for path in STUDIES:
     records = study.read_records(one)
     told.append(study.tell(one, study.tabulate(one, records)))
     runs = len(one.cases) * one.options.repeats
-    check.holds(f"{path.name}: a record of each run", len(records) == runs and all(record["case"] in one.cases for record in records), f"{len(records)} of {runs}")
+    complete = len(records) == runs and all(record["case"] in one.cases for record in records)
+    check.holds(f"{path.name}: a record of each run", complete, f"{len(records)} of {runs}")
     check.holds(f"{path.name}: the tables beside it are its own", (RECORDS / f"{one.name}.md").read_text() == told[-1])
 text = "\n".join([*told, *(path.read_text() for path in STUDIES)])
 rows, numbers = [line for line in text.splitlines() if line.startswith("|")], set(re.findall(NUMBER, text))
@@ -43,6 +45,7 @@ for line in section("What accuracy costs"):
     if line.startswith("| "):
         check.holds(f"a row of the records: {line}", "![" in line or any(is_part(cells(line), row) for row in rows))
     else:
-        missing = [number for number in re.findall(NUMBER, re.sub(r"`[^`]*`|\(runs[^)]*\)", "", line)) if number not in numbers]
+        words = re.sub(r"`[^`]*`|\]\([^)]*\)|\(runs[^)]*\)", "", line)
+        missing = [number for number in re.findall(NUMBER, words) if number not in numbers]
         check.holds(f"numbers of the records: {line[:80]}", not missing, ", ".join(missing))
 check.finish()
