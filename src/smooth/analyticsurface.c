@@ -1,5 +1,9 @@
-/* With the projection P across a cylinder's axis (sphere: P = 1), r = P x, n = r/|r|, s = 1 outside, -1 inside:
-   g = s(|r| - R), N = s n, M = s(P - n n^T)/|r|. Plane: g = n.x, N = n, M = 0. */
+/* Gap and variations against a rigid plane, cylinder or sphere.
+
+   P is the projection normal to the axis of a cylinder; for a sphere P = 1. With r = P x, n = r/|r| and s = 1 outside,
+   s = -1 inside:
+       g = s (|r| - R),   N = s n,   M = s (P - n n^T)/|r|
+   For a plane g = n.x, N = n, M = 0. */
 #include "smooth/analyticsurface.h"
 #include <math.h>
 #include <string.h>
@@ -42,14 +46,25 @@ static int EvaluateRound(const AnalyticSurface *master, int dim, const double x[
   return 1;
 }
 
-/* AnalyticSurfaceEvaluate - gap of a slave point to a rigid plane, cylinder or sphere, with first and second variation.
-   Not collective.
+/*@
+  AnalyticSurfaceEvaluate - computes the gap of a slave point to a rigid plane, cylinder or sphere, with first and
+  second variation.
 
-   Input: master - its shape; dim - 2 or 3; x[dim] - slave point relative to the master's point
-   Output: out - gap, normal, N[dim], M[dim*dim], curvature
+  Not collective
 
-   Returns 0, with nothing valid in out, on the axis of a cylinder or at the centre of a sphere, or where the axis has
-   no length. */
+  Input Parameters:
++ master - shape of the rigid body
+. dim    - 2 or 3
+- x      - position of the slave point relative to the master's point (length), x[dim]; that point lies on the plane, on
+           the cylinder's axis, or is the sphere's centre
+
+  Output Parameter:
+. out - gap, normal, N[dim], M[dim*dim] and curvature
+
+  Note:
+  Returns 0, with nothing valid in out, on the axis of a cylinder, at the centre of a sphere, or where the axis has no
+  length. Plain C.
+@*/
 int AnalyticSurfaceEvaluate(const AnalyticSurface *master, int dim, const double *x, AnalyticResult *out)
 {
   const double length      = VectorLength(master->axis);

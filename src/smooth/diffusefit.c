@@ -1,37 +1,38 @@
-/* The diffuse fit: surface, foot and gap. One always-inline function, instantiated with constant dimension and degree,
-   so that its loops unroll; LANES points at a time.
+/* The diffuse fit: surface, foot and gap. It is one always-inline function, instantiated with constant dimension and
+   degree, so that its loops unroll. It handles LANES points at a time.
 
-   QR. Modified Gram-Schmidt of the scaled monomials in the product sum_i w_i a_i b_i, the QR of sqrt(W) P: row i of P
-   becomes p^ = R^-T p, for which A = 1; the heights as last column end as e_i = z_i - p_i.alpha, their projections are
-   alpha^ = R alpha. Everything below is said in this basis, where the formulas need no solve: dalpha/dd_i = dr_i/dd_i
-   and lambda = G_a.
+   QR decomposition. The scaled monomials are orthogonalised by modified Gram-Schmidt in the product sum_i w_i a_i b_i,
+   which is the QR of sqrt(W) P. Row i of P becomes p^ = R^-T p, for which A = 1. The heights are the last column and
+   end as e_i = z_i - p_i.alpha. Their projections are alpha^ = R alpha. All formulas below are written in this basis,
+   where they need no solve: dalpha/dd_i = dr_i/dd_i and lambda = G_a.
 
-   Foot. y* + q grad q = 0 and the envelope theorem: with G_a = dg/dalpha = -nu_3 p, J = I + grad q grad q^T + q Hess q,
-       dy* = -J^-1 (grad q p^T + q Dp),  dgrad q = Dp + Hess q dy*,  dnu_3 = -nu_3^3 grad q^T dgrad q,
-       G_aa = -(p dnu_3^T + nu_3 sum_k Dp_k dy*_k)        all at the foot; dy* and dgrad q are rows over the terms,
-   combinations of F = [p; Dp]
+   Foot. It satisfies y* + q grad q = 0. With the envelope theorem, G_a = dg/dalpha = -nu_3 p and J = I + grad q grad
+   q^T + q Hess q,
+       dy* = -J^-1 (grad q p^T + q Dp),   dgrad q = Dp + Hess q dy*,   dnu_3 = -nu_3^3 grad q^T dgrad q,
+       G_aa = -(p dnu_3^T + nu_3 sum_k Dp_k dy*_k)
+   all at the foot. dy* and dgrad q are rows over the terms: combinations of F = [p; Dp].
 
-   Coordinates. d = (eta, z) = G (x_i - x_c), G = [B, 0; 0, 1] E^T with B = Q^(1/2): derivatives are taken by d and
-   returned to space by G^T. */
+   Coordinates. d = (eta, z) = G (x_i - x_c) with G = [B, 0; 0, 1] E^T and B = Q^(1/2). Derivatives are taken with
+   respect to d and returned to space by G^T. */
 #include "fitkernel.h"
 #include "symmetricproduct.h"
 #include <math.h>
 #include <stdint.h>
 
-/* The surface at tangent coordinates y; without second tangent its components are 0. */
+/* The surface at tangent coordinates y. Without a second tangent its components are 0. */
 typedef struct {
-  Lanes  p[FIT_MAX_TERMS]; /* of the scaled coordinates */
+  Lanes  p[FIT_MAX_TERMS]; /* monomials of the scaled coordinates */
   double q, g[2], h[2][2];
 } FitLocal;
 
-/* c := R^-1 c, R over its diagonal; column by column, as above */
+/* c := R^-1 c with the strictly upper part of R, column by column as in ToOrthonormal(). */
 LANES_INLINE void ToMonomials(const int terms, const FitState *s, Lanes *c)
 {
   for (int l = terms - 1; l > 0; l--)
     for (int k = 0; k < l; k++) c[k] -= s->R[k][l] * c[l];
 }
 
-/* base^exponent: by products where the exponent is whole */
+/* base^exponent, by products where the exponent is whole or half. */
 LANES_INLINE Lanes Power(Lanes base, double exponent)
 {
   Lanes power = Broadcast(1);
@@ -46,7 +47,7 @@ LANES_INLINE Lanes Power(Lanes base, double exponent)
   return power;
 }
 
-/* The symmetric square root of the metric; returns 0 if it is not positive definite. */
+/* The symmetric square root of the metric. Returns 0 if the metric is not positive definite. */
 LANES_INLINE int ScaleFromMetric(const int m, const double Q[2][2], double B[2][2])
 {
   const double determinant = m == 1 ? Q[0][0] * Q[0][0] : Q[0][0] * Q[1][1] - Q[0][1] * Q[0][1];
@@ -59,7 +60,7 @@ LANES_INLINE int ScaleFromMetric(const int m, const double Q[2][2], double B[2][
   return 1;
 }
 
-/* Lays the arrays out in the workspace. */
+/* Places the arrays in the workspace. */
 LANES_INLINE void Layout(const int terms, int n, double *workspace, FitArrays *a)
 {
   Lanes *at = (Lanes *)(((uintptr_t)workspace + ALIGNMENT - 1) / ALIGNMENT * ALIGNMENT);
@@ -78,7 +79,7 @@ LANES_INLINE void Layout(const int terms, int n, double *workspace, FitArrays *a
   a->K          = a->basis + (terms + 2) * a->capacity;
 }
 
-/* Takes the points inside the support into the arrays, their heights into the basis's last column. */
+/* Writes the points inside the support into the arrays, and their heights into the last column of the basis. */
 LANES_INLINE void Collect(const int dim, const int terms, const FitProblem *in, double (*G)[3], FitArrays *a)
 {
   double *const z = (double *)(a->basis + terms * a->capacity);
@@ -108,8 +109,7 @@ LANES_INLINE void Collect(const int dim, const int terms, const FitProblem *in, 
   }
 }
 
-/* Sums of the lanes of each of `vectors` vectors, 1 or BLOCK: pairs of vectors become one, then the last one's halves.
- */
+/* Sums the lanes of each of 1 or BLOCK vectors. Pairs of vectors become one vector, then its halves are added. */
 LANES_INLINE void SumEach(const int vectors, Lanes *a, double *sum)
 {
   for (int stage = 0, count = vectors; stage < SWAP_STAGES; stage++, count = (count + 1) / 2) {
@@ -122,7 +122,8 @@ LANES_INLINE void SumEach(const int vectors, Lanes *a, double *sum)
   memcpy(sum, a, vectors * sizeof(double));
 }
 
-/* Weights and monomials of the points inside; square[terms]: of the weighted columns' norms. */
+/* Computes weights and monomials of the points inside. square[terms] holds the squared norms of the weighted
+   columns. */
 LANES_INLINE void Assemble(const int m, const int degree, const int terms, double exponent, FitArrays *a,
                            double *square)
 {
@@ -143,8 +144,9 @@ LANES_INLINE void Assemble(const int m, const int degree, const int terms, doubl
   for (int k = 0; k < terms; k += BLOCK) SumEach(BLOCK, squares + k, square + k);
 }
 
-/* The shares of column k in `width` columns from j on, whose products with it are summed: its weighted values are in
-   scratch. Where `take`, the shares of the column before, which are known, are taken out of them first. */
+/* Computes the shares of column k in `width` columns from j on and sums their products with it; the weighted values
+   of column k are in scratch. If `take` is set, the shares of the column before, which are known, are subtracted
+   first. */
 LANES_INLINE void ProjectOnPlane(const int take, const int width, const FitArrays *a, int k, int j, double inverse,
                                  FitState *s)
 {
@@ -167,7 +169,7 @@ LANES_INLINE void ProjectOnPlane(const int take, const int width, const FitArray
   SumEach(BLOCK, sum, s->R[k] + j);
 }
 
-/* The shares of column k in all columns after it */
+/* Computes the shares of column k in all columns after it. */
 LANES_INLINE void ProjectAll(const int take, const int terms, const FitArrays *a, int k, double inverse, FitState *s)
 {
   int j = k + 1;
@@ -180,9 +182,9 @@ LANES_INLINE void ProjectAll(const int take, const int terms, const FitArrays *a
   }
 }
 
-/* Gram-Schmidt without roots; returns the smallest |R_kk| of unit columns. Below FIT_SINGULAR it stops. length2[terms]:
-   squares of the columns' norms. A column goes out of those behind it while these are multiplied with the next one:
-   they are read once for both. */
+/* Gram-Schmidt without roots. Returns the smallest |R_kk| of unit columns and stops where this falls below
+   FIT_SINGULAR. length2[terms] are the squared norms of the columns. A column is subtracted from those behind it
+   while these are multiplied with the next one, so that they are read once for both. */
 LANES_INLINE double Orthogonalise(const int terms, const double *length2, FitArrays *a, FitState *s)
 {
   double pivot2 = 1;
@@ -212,7 +214,7 @@ LANES_INLINE double Orthogonalise(const int terms, const double *length2, FitArr
   return sqrt(pivot2);
 }
 
-/* What is left to do of the heights, and of the columns: they become unit ones. */
+/* Subtracts the last column from the heights and scales the columns to unit length. */
 LANES_INLINE void Normalise(const int terms, FitArrays *a, FitState *s)
 {
   Lanes *const residual = a->basis + terms * a->capacity;
@@ -224,7 +226,7 @@ LANES_INLINE void Normalise(const int terms, FitArrays *a, FitState *s)
   }
 }
 
-/* The polynomial through the points inside; returns 0 without one. */
+/* Makes the polynomial through the points inside. Returns 0 if there is none. */
 LANES_INLINE int MakeSurface(const int dim, const int degree, const int terms, const FitProblem *in, FitArrays *a,
                              FitState *s, FitResult *out)
 {
@@ -258,6 +260,7 @@ LANES_INLINE int MakeSurface(const int dim, const int degree, const int terms, c
   return 1;
 }
 
+/* Computes monomials, height, gradient and Hessian of the surface at tangent coordinates y. */
 LANES_INLINE void SurfaceAt(const int m, const int degree, const int terms, const FitSurface *surface,
                             const Lanes *alpha, const double *y, FitLocal *at)
 {
@@ -282,8 +285,8 @@ LANES_INLINE void SurfaceAt(const int m, const int degree, const int terms, cons
   }
 }
 
-/* Length of a vector in supports, or of what is as far from the ends of the numbers: hypot() guards against these, at
- * many times the cost. */
+/* Length of a vector in supports, or of another vector whose size is far from the limits of the number range.
+   hypot() guards against these limits, at many times the cost. */
 LANES_INLINE double VectorLength(double a, double b)
 {
   return sqrt(a * a + b * b);
@@ -303,8 +306,8 @@ static void InvertMetric(double (*a)[2], double (*inverse)[2])
   inverse[0][1] = inverse[1][0] = -a[0][1] / determinant;
 }
 
-/* Newton from the slave point for y + q grad q = 0; returns 0 if it does not end or ends where the distance is no
- * minimum. */
+/* Newton's method from the slave point for y + q grad q = 0. Returns 0 if it does not converge, or converges where
+   the distance has no minimum. */
 LANES_INLINE int FindFoot(const int m, const int degree, const int terms, const FitState *s, FitLocal *at,
                           FitResult *out)
 {
@@ -332,7 +335,7 @@ LANES_INLINE int FindFoot(const int m, const int degree, const int terms, const 
   return SmallestEigenvalue(out->J) > FIT_FOCAL;
 }
 
-/* Gap, normal, tangents and curvature from the surface at the foot */
+/* Computes gap, normal, tangents and curvature from the surface at the foot. */
 static void Describe(int dim, const FitProblem *in, const FitLocal *at, FitResult *out)
 {
   const double l           = sqrt(1 + at->g[0] * at->g[0] + at->g[1] * at->g[1]);
@@ -354,7 +357,8 @@ static void Describe(int dim, const FitProblem *in, const FitLocal *at, FitResul
   out->curvature = fabs(mean) + sqrt(fmax(mean * mean - determinant, 0));
 }
 
-/* F and S of G_aa = F^T S F, and lambda, from the surface at the foot. dy[c][r]: dy*_c by the rows of F. */
+/* Computes F and S of G_aa = F^T S F, and lambda, from the surface at the foot. dy[c][r] is the share of row r of F
+   in dy*_c. */
 LANES_INLINE void FootVariation(const int m, const int degree, const int terms, const FitLocal *at,
                                 const FitResult *out, FitState *s)
 {
@@ -388,7 +392,7 @@ LANES_INLINE void FootVariation(const int m, const int degree, const int terms, 
   ToMonomials(terms, s, s->lambda);
 }
 
-/* Shape values dq(y*)/dz_i = w_i p^_i.p^(y*) into scratch; returns the sum of their magnitudes. */
+/* Writes the shape values dq(y*)/dz_i = w_i p^_i.p^(y*) into scratch. Returns the sum of their absolute values. */
 LANES_INLINE double Shapes(const int terms, FitArrays *a, const Lanes *foot)
 {
   double sum = 0;
@@ -403,6 +407,7 @@ LANES_INLINE double Shapes(const int terms, FitArrays *a, const Lanes *foot)
   return sum;
 }
 
+/* Evaluates one problem as far as it is wanted: surface, foot and gap, shape values, variations. */
 LANES_INLINE int Evaluate(const int dim, const int degree, const int terms, const FitProblem *in, FitWant want,
                           double *workspace, FitResult *out)
 {
@@ -433,18 +438,35 @@ LANES_INLINE int Evaluate(const int dim, const int degree, const int terms, cons
   return 1;
 }
 
-/* FitTerms - number of monomials. Not collective.
+/*@
+  FitTerms - gives the number of monomials of the fit's polynomial.
 
-   Input: dim - 2 or 3; degree - of the polynomial over the dim - 1 tangents */
+  Not collective
+
+  Input Parameters:
++ dim    - 2 or 3
+- degree - of the polynomial over the dim - 1 tangents
+
+  Note:
+  Plain C.
+@*/
 int FitTerms(int dim, int degree)
 {
   return dim == 2 ? degree + 1 : (degree + 1) * (degree + 2) / 2;
 }
 
-/* FitPointsWanted - least number of nodes inside the support, where nodes are the fit points: two per term in 3D; over
-   a line the terms and half of them more. Not collective.
+/*@
+  FitPointsWanted - gives the least number of nodes inside the support, where nodes are the fit points.
 
-   Input: dim - 2 or 3; degree - of the polynomial */
+  Not collective
+
+  Input Parameters:
++ dim    - 2 or 3
+- degree - of the polynomial
+
+  Note:
+  The number is two per term in 3D, and one and a half per term in 2D. Plain C.
+@*/
 int FitPointsWanted(int dim, int degree)
 {
   const int terms = FitTerms(dim, degree);
@@ -452,9 +474,19 @@ int FitPointsWanted(int dim, int degree)
   return dim == 3 ? 2 * terms : (3 * terms) / 2;
 }
 
-/* FitWorkspace - doubles of workspace for one evaluation. Not collective.
+/*@
+  FitWorkspace - gives the length of the workspace for one evaluation, in doubles.
 
-   Input: dim, degree - as in the problem; n - its number of points */
+  Not collective
+
+  Input Parameters:
++ dim    - 2 or 3
+. degree - of the polynomial
+- n      - number of points of the problem
+
+  Note:
+  Plain C.
+@*/
 long FitWorkspace(int dim, int degree, int n)
 {
   const long terms = FitTerms(dim, degree), points = (long)LanesGroups(n) * LANES;
@@ -464,15 +496,26 @@ long FitWorkspace(int dim, int degree, int n)
   return ALIGNMENT / (long)sizeof(double) + (ARRAYS + terms + 2) * points + (product > factors ? product : factors);
 }
 
-/* DiffuseFitEvaluate - gap, first and second variation of one slave point against the diffuse surface through its fit
-   points. Not collective.
+/*@
+  DiffuseFitEvaluate - computes gap, first and second variation of one slave point against the diffuse surface through
+  its fit points, eqs 1 to 14 of Chamoret et al. (2004).
 
-   Input: in - the problem; want - surface only, gap, and Lambda with the shape values, and N, and M; workspace -
-   FitWorkspace() doubles of any contents Output: out - see FitResult; arrays as its comment says
+  Not collective
 
-   Returns 1 if all that was wanted is there, 0 if there is no surface (FIT_NO_SURFACE) or no foot (FIT_NO_FOOT). Never
-   NaN for finite input. Source: Chamoret et al. 2004, eqs 1 to 14; the closed forms of N and M are derived by the
-   envelope theorem from g(alpha(x)). */
+  Input Parameters:
++ in        - the problem
+. want      - how far the evaluation goes: the surface, the gap, Lambda with the shape values, N, or M; each includes
+              those before it
+- workspace - FitWorkspace() doubles of any contents
+
+  Output Parameter:
+. out - the result, with arrays as FitResult describes them
+
+  Note:
+  Returns 1 if everything wanted was computed; other guards may still be set. Returns 0 if there is no surface
+  (FIT_NO_SURFACE) or no foot (FIT_NO_FOOT). The result is never NaN for finite input. The closed forms of N and M are
+  derived by the envelope theorem from g(alpha(x)). Plain C.
+@*/
 int DiffuseFitEvaluate(const FitProblem *in, FitWant want, double *workspace, FitResult *out)
 {
 #define EVALUATE(dim, degree, terms) return Evaluate(dim, degree, terms, in, want, workspace, out)
@@ -482,12 +525,23 @@ int DiffuseFitEvaluate(const FitProblem *in, FitWant want, double *workspace, Fi
   return 0;
 }
 
-/* DiffuseFitEvaluateBatch - DiffuseFitEvaluate() for n slave points. Not collective.
+/*@
+  DiffuseFitEvaluateBatch - calls DiffuseFitEvaluate() for several slave points with one workspace.
 
-   Input: n - slave points; in[n], want - as there; workspace - FitWorkspace() doubles for the largest of them
-   Output: out[n] - as there; guards tell what is missing
+  Not collective
 
-   Returns how many have all that was wanted. */
+  Input Parameters:
++ n         - number of slave points
+. in        - the problems, in[n]
+. want      - how far the evaluation goes
+- workspace - FitWorkspace() doubles for the largest of the problems
+
+  Output Parameter:
+. out - the results, out[n]; their guards tell what is missing
+
+  Note:
+  Returns the number of slave points for which everything wanted was computed. Plain C.
+@*/
 int DiffuseFitEvaluateBatch(int n, const FitProblem *in, FitWant want, double *workspace, FitResult *out)
 {
   int whole = 0;
@@ -496,6 +550,7 @@ int DiffuseFitEvaluateBatch(int n, const FitProblem *in, FitWant want, double *w
   return whole;
 }
 
+/* Height of the surface at y without its derivatives. */
 LANES_INLINE double HeightOnly(const int m, const int degree, const int terms, const FitSurface *surface,
                                const Lanes *alpha, const double *y)
 {
@@ -520,10 +575,21 @@ LANES_INLINE double HeightAt(const int m, const int degree, const int terms, con
   return at.q;
 }
 
-/* FitSurfaceHeight - height of the fitted surface over the slave point's tangent plane. Not collective.
+/*@
+  FitSurfaceHeight - computes the height of the fitted surface over the slave point's tangent plane (length).
 
-   Input: surface - of an evaluation; y[dim - 1] - tangent coordinates, relative to the slave point
-   Output: gradient[dim - 1] - with respect to y; may be NULL */
+  Not collective
+
+  Input Parameters:
++ surface - of an evaluation
+- y       - tangent coordinates relative to the slave point, y[dim - 1] (length)
+
+  Output Parameter:
+. gradient - gradient[dim - 1] with respect to y; may be NULL
+
+  Note:
+  Plain C.
+@*/
 double FitSurfaceHeight(const FitSurface *surface, const double *y, double *gradient)
 {
 #define HEIGHT(dim, degree, terms) return HeightAt(dim - 1, degree, terms, surface, y, gradient)
@@ -532,6 +598,7 @@ double FitSurfaceHeight(const FitSurface *surface, const double *y, double *grad
   return 0;
 }
 
+/* FitShape() for one dimension and degree. */
 LANES_INLINE int FitShapeValues(const int dim, const int degree, const int terms, const FitProblem *in, int n,
                                 const double *y, const double *factor, double *workspace, double *shape)
 {
@@ -555,13 +622,25 @@ LANES_INLINE int FitShapeValues(const int dim, const int degree, const int terms
   return 1;
 }
 
-/* FitShape - how a combination of heights, sum_a factor_a q(y_a), depends on the points' heights z_i: the coefficients
-   of an offset that follows the points. Not collective.
+/*@
+  FitShape - computes how a combination of heights, sum_a factor_a q(y_a), depends on the points' heights z_i.
 
-   Input: in - the problem; n, y[n][dim - 1], factor[n] - the combination; workspace - FitWorkspace() doubles
-   Output: shape[number of points of the problem] - 0 outside the support
+  Not collective
 
-   Returns 0, with all shape values 0, if there is no surface. */
+  Input Parameters:
++ in        - the problem
+. n         - number of heights in the combination
+. y         - their tangent coordinates, y[n][dim - 1]
+. factor    - their factors, factor[n]
+- workspace - FitWorkspace() doubles
+
+  Output Parameter:
+. shape - sum_a factor_a dq(y_a)/dz_i with the weights held, for each point of the problem; 0 outside the support
+
+  Note:
+  These are the coefficients of an offset that follows the points. Returns 0, with all shape values 0, if there is no
+  surface. Plain C.
+@*/
 int FitShape(const FitProblem *in, int n, const double *y, const double *factor, double *workspace, double *shape)
 {
 #define SHAPE(dim, degree, terms) return FitShapeValues(dim, degree, terms, in, n, y, factor, workspace, shape)

@@ -1,31 +1,34 @@
-/* Signed distance to a union of facets: their competition for the foot point, gap, first and second variation.
+/* Signed distance to a union of facets: choice of the foot among the facets, gap, first and second variation.
 
-   Sign. Interior: the facet's own normal. Edge and corner: the sum of the normals of all facets that have this closest
-   point, weighted by their angles there (Baerentzen and Aanaes, "Signed distance computation using the angle weighted
-   pseudonormal", 2005).
+   Sign. In the interior of a facet the facet's own normal decides. At an edge or a corner the sum of the normals of all
+   facets that have this closest point decides, weighted by their angles there (Baerentzen and Aanaes, "Signed distance
+   computation using the angle weighted pseudonormal", 2005).
 
-   Variations. With r = x_slave - x(xi), D = dr / d(positions) at fixed xi, F = min |r|^2 / 2 = g^2 / 2 over the free
-   parameters xi_a, the envelope theorem gives dg = n.D and d2F = D^T D - (T + g S)_a (H^-1)_ab (T + g S)_b^T with T_a =
-   D^T x_,a, S_a the shape functions' derivatives times n, H = a - g kappa, a the metric and kappa = n.x_,ab. As d2F =
-   dg dg^T + g d2g and D^T D = D^T (n n^T + x_,a a^ab x_,b^T + W) D, d2g = - T_a (a^-1 kappa H^-1)_ab T_b^T - (H^-1)_ab
-   (T_a S_b^T + S_a T_b^T) - g S_a (H^-1)_ab S_b^T + D^T W D / g with W the projection on what is neither n nor tangent:
-   0 in the interior, one direction at an edge, two at a corner. In the interior these are the expressions of Laursen
-   and Simo 1993 and of Wriggers, "Computational Contact Mechanics". The last term alone is singular as g -> 0 at an
-   edge or corner; times g it is bounded but without a limit, as the direction n is, and it is left out within
-   FACET_TOUCHING.
+   Variations. Let r = x_slave - x(xi), D = dr / d(positions) at fixed xi, and F = min |r|^2 / 2 = g^2 / 2 over the free
+   parameters xi_a. The envelope theorem gives
+       dg  = n.D
+       d2F = D^T D - (T + g S)_a (H^-1)_ab (T + g S)_b^T
+   with T_a = D^T x_,a, S_a the derivatives of the shape functions times n, H = a - g kappa, a the metric and kappa =
+   n.x_,ab. From d2F = dg dg^T + g d2g and D^T D = D^T (n n^T + x_,a a^ab x_,b^T + W) D follows
+       d2g = - T_a (a^-1 kappa H^-1)_ab T_b^T - (H^-1)_ab (T_a S_b^T + S_a T_b^T)
+             - g S_a (H^-1)_ab S_b^T + D^T W D / g
+   W is the projection on the directions that are neither normal nor tangent: none in the interior, one at an edge, two
+   at a corner. In the interior these are the expressions of Laursen and Simo (1993) and of Wriggers, "Computational
+   Contact Mechanics". The last term alone is singular for g -> 0 at an edge or corner. Times g it is bounded but has no
+   limit, like the direction n. It is therefore left out within FACET_TOUCHING.
 
-   Extension. Beyond a free edge x(xi) is the same polynomial outside its polygon, so nothing else changes. A foot on
-   the inside of a free edge may leave it with its lateral sides released: on a flat facet that is the normal
-   projection. A foot in a corner keeps the sides that are not free: the crease between two facets is continued, and
-   both agree on it. The gap is continuous where the edge lies on a flat part of the surface or runs square to the
-   creases; past other corners it may jump by the angle of the crease times `beyond`. */
+   Extension. Beyond a free edge x(xi) is the same polynomial outside its polygon, so that nothing else changes. A
+   foot on a free edge, away from its corners, may leave it, and the lateral sides are released. On a flat facet this
+   is the normal projection. A foot in a corner keeps the sides that are not free: the crease between two facets is
+   continued, and both facets agree on it. The gap is continuous where the edge lies on a flat part of the surface or
+   runs square to the creases. Past other corners it may jump by the angle of the crease times `beyond`. */
 #include "facetpolynomial.h"
 #include <math.h>
 #include <string.h>
 
 enum { MAX_DOFS = 3 * (1 + FACE_MAX_NODES) };
 
-/* A facet that may hold the closest point */
+/* A facet that may hold the closest point. */
 typedef struct {
   const Facet         *facet;
   int                  index, feature;
@@ -41,7 +44,8 @@ static double FacetDistance(const double a[3], const double b[3])
   return sqrt(Dot(d, d));
 }
 
-/* Is candidate a to be preferred to b? Nearer, then the better defined region, then the smaller tag. */
+/* Is candidate a preferred to b? The nearer one is preferred, then the one with the better defined region, then the
+   one with the smaller tag. */
 static int Preferred(const Candidate *a, const Candidate *b)
 {
   const double tie = FACET_TIE * (fmax(a->size, b->size) + fmin(a->distance, b->distance));
@@ -51,6 +55,7 @@ static int Preferred(const Candidate *a, const Candidate *b)
   return a->facet->tag < b->facet->tag;
 }
 
+/* Completes a candidate whose closest point is known. */
 static void Consider(const FacetPolynomial *patch, Candidate *candidate)
 {
   candidate->size     = patch->size;
@@ -58,13 +63,14 @@ static void Consider(const FacetPolynomial *patch, Candidate *candidate)
   FacetPolynomialClassify(patch, &candidate->point, &candidate->region, &candidate->feature);
 }
 
-/* Sides of a candidate that its foot is on and that are free */
+/* Free sides of a candidate on which its foot lies. */
 static unsigned FreeSides(const Candidate *candidate)
 {
   return candidate->region == FOOT_INTERIOR ? 0 : candidate->point.active & (unsigned)candidate->facet->free_edges;
 }
 
-/* Lets the foot of a candidate leave its facet across its free sides; *ended: it reached the end of the extension. */
+/* Lets the foot of a candidate leave its facet across its free sides. *ended is set where the foot reached the end
+   of the extension. */
 static void Extend(int dim, const double *x, Candidate *candidate, int *ended)
 {
   const unsigned  free_sides = FreeSides(candidate), active = candidate->point.active;
@@ -88,8 +94,8 @@ static void Extend(int dim, const double *x, Candidate *candidate, int *ended)
     if (candidate->region != FOOT_INTERIOR && candidate->point.active & (1u << s) && limit[s] < 0) *ended = 1;
 }
 
-/* Gap and normal of a foot. pseudo: direction that tells outside from inside where the foot has no normal of its own.
- */
+/* Gap and normal of a foot. The direction pseudo distinguishes outside from inside where the foot has no normal of
+   its own. */
 static void SetGap(int dim, const double *x, const Candidate *candidate, const double pseudo[3], Foot *foot)
 {
   const double   *at = candidate->point.x, length = sqrt(Dot(pseudo, pseudo));
@@ -116,10 +122,10 @@ static void SetGap(int dim, const double *x, const Candidate *candidate, const d
     else
       foot->normal[k] = length > 0 ? pseudo[k] / length : own[k];
   }
-  if (Dot(foot->normal, foot->normal) == 0) foot->normal[dim - 1] = 1; /* on a facet without area: any direction */
+  if (Dot(foot->normal, foot->normal) == 0) foot->normal[dim - 1] = 1; /* the facet has no area: any direction serves */
 }
 
-/* Adds the normal of a candidate at its foot, times its angle there or 1 */
+/* Adds the normal of a candidate at its foot, weighted by its angle there or by 1. */
 static void AddNormal(int dim, const double *x, const Candidate *candidate, int weighted, double pseudo[3])
 {
   FacetPolynomial patch;
@@ -131,7 +137,7 @@ static void AddNormal(int dim, const double *x, const Candidate *candidate, int 
   for (int k = 0; k < 3; ++k) pseudo[k] += weight * normal[k];
 }
 
-/* The foot from the candidates that hold the closest point */
+/* Determines the foot from the candidates that hold the closest point. */
 static void Decide(int dim, const double *x, int n, const Candidate candidates[], Foot *foot)
 {
   const Candidate *best = &candidates[0], *edge = NULL;
@@ -174,7 +180,7 @@ static void Decide(int dim, const double *x, int n, const Candidate candidates[]
   }
 }
 
-/* Adds a candidate, drops those that can no longer coincide with the closest point; returns the new count. */
+/* Adds a candidate and drops those that can no longer coincide with the closest point. Returns the new count. */
 static int Insert(const Candidate *candidate, double least, int n, Candidate candidates[])
 {
   int kept = 0;
@@ -187,7 +193,7 @@ static int Insert(const Candidate *candidate, double least, int n, Candidate can
   return kept;
 }
 
-/* The facet whose centre is nearest */
+/* The facet whose centre is nearest to the slave point. */
 static int NearestCentre(int dim, int n, const Facet facets[], const double *x)
 {
   double least   = INFINITY;
@@ -208,10 +214,24 @@ static int NearestCentre(int dim, int n, const Facet facets[], const double *x)
   return nearest;
 }
 
-/* Closest point over a list of facets, its signed distance and normal.
-   Not collective, plain C. dim: 2 or 3; n: length of the list; x[node][dim]: positions of the nodes relative to the
-   slave point (a length); seed: index into the list to try first (the last foot's facet) or -1; the result does not
-   depend on it. Returns 1, or 0 if the list is empty (foot untouched). */
+/*@
+  FacetClosest - finds the closest point over a list of facets, with its signed distance and normal.
+
+  Not collective
+
+  Input Parameters:
++ dim    - 2 or 3
+. n      - number of facets
+. facets - the list
+. x      - positions of the nodes relative to the slave point, x[node][dim] (length)
+- seed   - index of the facet to be tried first (that of the last foot), or -1; the result does not depend on it
+
+  Output Parameter:
+. foot - facet, foot point, gap and normal
+
+  Note:
+  Returns 1, or 0 if the list is empty; foot is then left as it is. Plain C.
+@*/
 int FacetClosest(int dim, int n, const Facet *facets, const double *x, int seed, Foot *foot)
 {
   Candidate candidates[FACET_TIES];
@@ -241,15 +261,41 @@ int FacetClosest(int dim, int n, const Facet *facets, const double *x, int seed,
   return 1;
 }
 
-/* Closest point of one facet, without neighbours to tell the side of an edge: there its own normal does.
-   Not collective, plain C. Arguments as of FacetClosest(). */
+/*@
+  FacetProject - finds the closest point of one facet.
+
+  Not collective
+
+  Input Parameters:
++ dim   - 2 or 3
+. facet - the facet
+- x     - positions of the nodes, as in FacetClosest()
+
+  Output Parameter:
+. foot - foot point, gap and normal
+
+  Note:
+  There are no neighbours that decide the side of an edge. The facet's own normal decides it. Plain C.
+@*/
 void FacetProject(int dim, const Facet *facet, const double *x, Foot *foot)
 {
   FacetClosest(dim, 1, facet, x, 0, foot);
 }
 
-/* Largest extent of a facet: the diameter of a sphere that holds it, also between its nodes.
-   Not collective, plain C. Arguments as of FacetClosest(); returns a length. */
+/*@
+  FacetSize - computes the largest extent of a facet (length): the diameter of a sphere that holds it, also between its
+  nodes.
+
+  Not collective
+
+  Input Parameters:
++ dim   - 2 or 3
+. facet - the facet
+- x     - positions of the nodes, as in FacetClosest()
+
+  Note:
+  Plain C.
+@*/
 double FacetSize(int dim, const Facet *facet, const double *x)
 {
   double                X[FACE_MAX_NODES][3];
@@ -260,9 +306,23 @@ double FacetSize(int dim, const Facet *facet, const double *x)
   return 2 * sphere.radius;
 }
 
-/* First variation of the gap: dg = N.d(positions), in every region (n, -phi_a n).
-   Not collective, plain C. x and foot as given to and by FacetClosest(); N[(1+nodes)*dim]: slave point, then the
-   facet's nodes (no unit). */
+/*@
+  FacetFirstVariation - computes the first variation of the gap, dg = N.d(positions).
+
+  Not collective
+
+  Input Parameters:
++ dim   - 2 or 3
+. facet - the facet that holds the foot
+. x     - positions of the nodes, as in FacetClosest()
+- foot  - of FacetClosest()
+
+  Output Parameter:
+. N - N[(1+nodes)*dim], without unit: the slave point first, then the facet's nodes in its order
+
+  Note:
+  N is (n, -phi_a n) in every region. Plain C.
+@*/
 void FacetFirstVariation(int dim, const Facet *facet, const double *x, const Foot *foot, double *N)
 {
   const int nodes = ElementGet(facet->type)->nodes;
@@ -276,7 +336,7 @@ void FacetFirstVariation(int dim, const Facet *facet, const double *x, const Foo
   }
 }
 
-/* Inverse of a symmetric 2x2 matrix over its first m rows; 0 where it is singular. */
+/* Inverse of the first m rows and columns of a symmetric 2x2 matrix; 0 where it is singular. */
 static void FacetInvert2(int m, double a[2][2], double inverse[2][2])
 {
   const double det = m == 2 ? a[0][0] * a[1][1] - a[0][1] * a[1][0] : a[0][0];
@@ -289,13 +349,14 @@ static void FacetInvert2(int m, double a[2][2], double inverse[2][2])
   inverse[1][1]                 = a[0][0] / det;
 }
 
-/* The facet along its m free parameters at the foot: m = dim - 1 in the interior, 1 on an edge, 0 at a corner */
+/* The facet along its m free parameters at the foot: m = dim - 1 in the interior, 1 on an edge, 0 at a corner. */
 typedef struct {
   int    m;
   double tangent[2][3], dphi[2][FACE_MAX_NODES];
   double inverse_metric[2][2], inverse_hessian[2][2], curvature[2][2]; /* curvature: a^-1 kappa H^-1 */
 } Chart;
 
+/* Tangents, metric, curvature and Hessian of the facet along its free parameters at the foot. */
 static void ChartCreate(int dim, const Facet *facet, const double *x, const Foot *foot, Chart *chart)
 {
   const int nodes = ElementGet(facet->type)->nodes, m = foot->region == FOOT_INTERIOR ? (dim == 3 ? 2 : 1)
@@ -346,8 +407,8 @@ static void ChartCreate(int dim, const Facet *facet, const double *x, const Foot
           chart->curvature[p][q] += chart->inverse_metric[p][i] * kappa[i][j] * chart->inverse_hessian[j][q];
 }
 
-/* W / g: the projection on what is neither normal nor tangent, over the gap; 0 in the interior and within
- * FACET_TOUCHING of the foot */
+/* W / g: the projection on the directions that are neither normal nor tangent, over the gap. It is 0 in the
+   interior, and within FACET_TOUCHING of the foot. */
 static void SingularPart(int dim, const Facet *facet, const double *x, const Foot *foot, const Chart *chart,
                          double W[3][3])
 {
@@ -359,10 +420,24 @@ static void SingularPart(int dim, const Facet *facet, const double *x, const Foo
       W[j][k] = none ? 0 : ((j == k) - n[j] * n[k] - t[j] * t[k] * chart->inverse_metric[0][0]) / foot->gap;
 }
 
-/* Second variation of the gap, exact for the region of the foot: expression at the head of this file.
-   Not collective, plain C. x and foot as given to and by FacetClosest(); M[((1+nodes)*dim)^2], symmetric (1/length). At
-   a centre of curvature, where the foot is not unique, the Hessian is replaced by the metric; within FACET_TOUCHING of
-   an edge or corner the term in 1/gap is 0. */
+/*@
+  FacetSecondVariation - computes the second variation of the gap, exact for the region of the foot.
+
+  Not collective
+
+  Input Parameters:
++ dim   - 2 or 3
+. facet - the facet that holds the foot
+. x     - positions of the nodes, as in FacetClosest()
+- foot  - of FacetClosest()
+
+  Output Parameter:
+. M - M[((1+nodes)*dim)^2], symmetric (1/length)
+
+  Note:
+  The expression is given at the head of this file. At a centre of curvature, where the foot is not unique, the metric
+  replaces the Hessian. Within FACET_TOUCHING of an edge or corner the term in 1/gap is 0. Plain C.
+@*/
 void FacetSecondVariation(int dim, const Facet *facet, const double *x, const Foot *foot, double *M)
 {
   const int size = (1 + ElementGet(facet->type)->nodes) * dim;

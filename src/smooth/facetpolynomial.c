@@ -1,21 +1,22 @@
 /* Projection of the origin onto one facet.
 
-   Foot. A facet is a polynomial map x(xi) over a reference polygon (line, triangle, square), positions relative to the
-   slave point, so that the foot minimises f = |x|^2 / 2. Newton with the full Hessian x_,a.x_,b + x.x_,ab, the metric
-   alone where that is not positive, runs on the interior, an edge or a corner: a set of at most two active sides, taken
-   in when a step meets a side and released when Newton's step points inward. It starts from every local minimum over a
-   grid of samples, since a curved facet can have several.
+   Foot. A facet is a polynomial map x(xi) over a reference polygon (line, triangle, square). Positions are relative to
+   the slave point, so that the foot minimises f = |x|^2 / 2. Newton's method uses the full Hessian x_,a.x_,b + x.x_,ab,
+   and the metric alone where the Hessian is not positive. It runs in the interior, on an edge or at a corner, which is
+   a set of at most two active sides. A side becomes active when a step meets it, and it is released when Newton's step
+   points inward. The method starts from every local minimum over a grid of samples, because a curved facet can have
+   several minima.
 
-   Region. A foot on the border at which the residual has no tangential part is the limit of interior feet and counts as
-   interior; likewise corner and edge. So a node that sits over a node of a flat master has the interior's second
-   variation and not that of a hinge. */
+   Region. A foot on the border at which the residual has no tangential part is the limit of interior feet and counts
+   as interior. The same holds for corners and edges. So a node that lies over a node of a flat master has the
+   interior's second variation and not that of a hinge. */
 #include "facetpolynomial.h"
 #include <float.h>
 #include <math.h>
 #include <string.h>
 
-/* SAMPLES per direction: of 2000 QUAD9 with nodes moved at random by up to 10 % of the width 4 hide their nearest point
-   (with 3 samples 12); at 5 % none does. */
+/* Samples in each direction. Of 2000 QUAD9 with nodes moved at random by up to 10 % of the width, 4 hide their
+   nearest point with 5 samples and 12 with 3 samples. At 5 % none hides it. */
 enum { SAMPLES = 5 };
 
 static const FacetPolynomialDomain line = {
@@ -49,8 +50,22 @@ static double Dot2(const double a[2], const double b[2])
   return a[0] * b[0] + a[1] * b[1];
 }
 
-/* Nodes of a facet as points in space; returns how many. Not collective, plain C. x[node][dim]: positions (a length),
- * X: room for FACE_MAX_NODES. */
+/*@
+  FacetPolynomialGather - collects the nodes of a facet as points in space.
+
+  Not collective
+
+  Input Parameters:
++ dim   - 2 or 3
+. facet - the facet
+- x     - positions of the list's nodes, x[node][dim] (length)
+
+  Output Parameter:
+. X - positions of the facet's nodes, with room for FACE_MAX_NODES; third components are 0 in 2D
+
+  Note:
+  Returns the number of nodes. Plain C.
+@*/
 int FacetPolynomialGather(int dim, const Facet *facet, const double *x, double X[FACE_MAX_NODES][3])
 {
   const int nodes = ElementGet(facet->type)->nodes;
@@ -62,8 +77,21 @@ int FacetPolynomialGather(int dim, const Facet *facet, const double *x, double X
   return nodes;
 }
 
-/* A sphere around the control points of the facet as a Bezier patch, which hold the patch in their convex hull. Not
-   collective, plain C. X[node]: positions (a length). */
+/*@
+  FacetPolynomialBound - computes a sphere that holds a facet, also between its nodes.
+
+  Not collective
+
+  Input Parameters:
++ type - of the facet
+- X    - positions of its nodes (length)
+
+  Output Parameter:
+. sphere - centre and radius
+
+  Note:
+  The sphere holds the control points of the facet as a Bezier patch. Their convex hull holds the patch. Plain C.
+@*/
 void FacetPolynomialBound(ElementType type, double (*X)[3], FacetPolynomialSphere *sphere)
 {
   const Element *element = ElementGet(type);
@@ -95,7 +123,7 @@ void FacetPolynomialBound(ElementType type, double (*X)[3], FacetPolynomialSpher
   sphere->radius = sqrt(radius2);
 }
 
-/* Quadratic through the values at -1, 0, 1 */
+/* Coefficients of the quadratic through the values at -1, 0 and 1. */
 static void Quadratic(double left, double middle, double right, double c[3])
 {
   c[0] = middle;
@@ -103,7 +131,7 @@ static void Quadratic(double left, double middle, double right, double c[3])
   c[2] = 0.5 * (left + right) - middle;
 }
 
-/* The polynomial of a QUAD9 in one component */
+/* The polynomial of a QUAD9 in one component. */
 static void PatchQuad9(double (*X)[3], int k, FacetPolynomial *patch)
 {
   static const int grid[3][3] = {
@@ -120,8 +148,23 @@ static void PatchQuad9(double (*X)[3], int k, FacetPolynomial *patch)
   }
 }
 
-/* The polynomial through the nodes of a facet. Not collective, plain C. X[node]: positions (a length); size: the
-   facet's extent (a length), which scales the guards and the extruded direction of a 2D facet. */
+/*@
+  FacetPolynomialCreate - makes the polynomial through the nodes of a facet.
+
+  Not collective
+
+  Input Parameters:
++ type - of the facet
+. X    - positions of its nodes (length)
+- size - extent of the facet (length), twice the radius of FacetPolynomialBound(); it scales the guards and the extruded
+         direction of a 2D facet
+
+  Output Parameter:
+. patch - the polynomial
+
+  Note:
+  Plain C.
+@*/
 void FacetPolynomialCreate(ElementType type, double (*X)[3], double size, FacetPolynomial *patch)
 {
   memset(patch->c, 0, sizeof(patch->c));
@@ -166,8 +209,22 @@ void FacetPolynomialCreate(ElementType type, double (*X)[3], double size, FacetP
   if (patch->domain == &line) patch->c[0][1][2] = 0.5 * size;
 }
 
-/* The polynomial of a facet of a list. Not collective, plain C. x[node][dim]: positions of the list's nodes (a length).
- */
+/*@
+  FacetPolynomialOfFacet - makes the polynomial of a facet of a list.
+
+  Not collective
+
+  Input Parameters:
++ dim   - 2 or 3
+. facet - the facet
+- x     - positions of the list's nodes, x[node][dim] (length)
+
+  Output Parameter:
+. patch - the polynomial
+
+  Note:
+  Plain C.
+@*/
 void FacetPolynomialOfFacet(int dim, const Facet *facet, const double *x, FacetPolynomial *patch)
 {
   double                X[FACE_MAX_NODES][3];
@@ -178,7 +235,21 @@ void FacetPolynomialOfFacet(int dim, const Facet *facet, const double *x, FacetP
   FacetPolynomialCreate(facet->type, X, 2 * sphere.radius, patch);
 }
 
-/* Position, tangents and second derivatives at xi. Not collective, plain C. */
+/*@
+  FacetPolynomialEvaluate - computes position, tangents and second derivatives at a point.
+
+  Not collective
+
+  Input Parameters:
++ patch - the polynomial
+- xi    - reference coordinates
+
+  Output Parameter:
+. l - position and derivatives
+
+  Note:
+  Plain C.
+@*/
 void FacetPolynomialEvaluate(const FacetPolynomial *patch, const double xi[2], FacetPolynomialLocal *l)
 {
   const double s = xi[0], t = xi[1];
@@ -202,7 +273,7 @@ void FacetPolynomialEvaluate(const FacetPolynomial *patch, const double xi[2], F
   }
 }
 
-/* Columns of samples (second index) that a row of the grid has */
+/* Number of columns of samples (second index) in row i of the grid. */
 static int SampleColumns(const FacetPolynomialDomain *domain, int i)
 {
   return domain->sides == 2 ? 1 : domain->sides == 3 ? SAMPLES - i : SAMPLES;
@@ -214,7 +285,7 @@ static void SamplePoint(const FacetPolynomialDomain *domain, int i, int j, doubl
   xi[1] = domain->sides == 2 ? 0 : domain->low + domain->width * j / (SAMPLES - 1);
 }
 
-/* Squared distances of a grid of points */
+/* Squared distances of the points of the grid. */
 static void Sample(const FacetPolynomial *patch, double value[SAMPLES][SAMPLES])
 {
   for (int i = 0; i < SAMPLES; ++i) {
@@ -234,7 +305,7 @@ static void Sample(const FacetPolynomial *patch, double value[SAMPLES][SAMPLES])
   }
 }
 
-/* No tangent plane here: a tangent vanishes, or they are parallel. cross: x_,1 times x_,2. */
+/* Is there no tangent plane here? A tangent vanishes, or both are parallel. cross is x_,1 times x_,2. */
 static int Degenerate(const FacetPolynomialLocal *l, double size, double cross[3])
 {
   const double a = Dot(l->x1, l->x1), b = Dot(l->x2, l->x2);
@@ -245,8 +316,22 @@ static int Degenerate(const FacetPolynomialLocal *l, double size, double cross[3
   return fmin(a, b) <= FACET_FLAT * size * size || Dot(cross, cross) <= FACET_FLAT * a * b;
 }
 
-/* Unit normal at xi, or at the facet's centre where there is none at xi (a collapsed side); 0 if there is none at all.
-   Not collective, plain C. */
+/*@
+  FacetPolynomialNormal - computes the unit normal at a point.
+
+  Not collective
+
+  Input Parameters:
++ patch - the polynomial
+- xi    - reference coordinates
+
+  Output Parameter:
+. normal - unit normal at xi
+
+  Note:
+  Where there is no normal at xi (a collapsed side), the normal is that of the facet's centre. It is 0 if there is none
+  at all. Plain C.
+@*/
 void FacetPolynomialNormal(const FacetPolynomial *patch, const double xi[2], double normal[3])
 {
   const double *at[2] = {xi, patch->domain->centre};
@@ -264,7 +349,18 @@ void FacetPolynomialNormal(const FacetPolynomial *patch, const double xi[2], dou
   for (int k = 0; k < 3; ++k) normal[k] = 0;
 }
 
-/* Angle of the facet at a point (radians): of the corner, or half a turn. Not collective, plain C. */
+/*@
+  FacetPolynomialAngle - computes the angle of the facet at a point (radians): the angle of the corner, or pi elsewhere.
+
+  Not collective
+
+  Input Parameters:
++ patch - the polynomial
+- point - the point with its active sides
+
+  Note:
+  Plain C.
+@*/
 double FacetPolynomialAngle(const FacetPolynomial *patch, const FacetPolynomialPoint *point)
 {
   FacetPolynomialLocal l;
@@ -280,11 +376,11 @@ double FacetPolynomialAngle(const FacetPolynomial *patch, const FacetPolynomialP
       for (int k = 0; k < 3; ++k) t[sides & 1][k] = tangent[0] * l.x1[k] + tangent[1] * l.x2[k];
     sides += point->active >> s & 1;
   }
-  /* one side runs into the corner, the other out of it */
+  /* one side runs into the corner, the other one out of it */
   return acos(fmax(-1, fmin(1, -Dot(t[0], t[1]) / fmax(sqrt(Dot(t[0], t[0]) * Dot(t[1], t[1])), DBL_MIN))));
 }
 
-/* Gradient, metric and Hessian (11, 12, 22) of half the squared distance */
+/* Gradient, metric and Hessian (11, 12, 22) of half the squared distance. */
 typedef struct {
   double G[2], metric[3], hessian[3];
 } Slope;
@@ -307,8 +403,8 @@ static void SlopeAt(const FacetPolynomial *patch, const FacetPolynomialLocal *l,
   }
 }
 
-/* Newton's step along a reference direction t; returns by how much it lowers the quadratic model (0: t does not
- * descend). */
+/* Newton's step along a reference direction t. Returns by how much it lowers the quadratic model; 0 if t is no
+   direction of descent. */
 static double StepAlong(const Slope *slope, const double t[2], double d[2])
 {
   const double *H = slope->hessian, *a = slope->metric, along = Dot2(slope->G, t),
@@ -320,7 +416,7 @@ static double StepAlong(const Slope *slope, const double t[2], double d[2])
   return along < 0 ? along * along / curvature : 0;
 }
 
-/* Newton's step in the plane, with the metric where the Hessian is not positive */
+/* Newton's step in the plane, with the metric where the Hessian is not positive. */
 static void StepFree(const Slope *slope, double d[2])
 {
   const double *H = slope->hessian, *a = slope->metric, *G = slope->G;
@@ -334,7 +430,8 @@ static void StepFree(const Slope *slope, double d[2])
   d[1] = (H[1] * G[0] - H[0] * G[1]) / det;
 }
 
-/* Descent direction d that respects the active sides, releasing those it leaves; 0 at a stationary corner. */
+/* Finds a direction of descent d that respects the active sides, and releases the sides that it leaves. Returns 0 at
+   a stationary corner. */
 static int Direction(const FacetPolynomialDomain *domain, const Slope *slope, unsigned *active, double d[2])
 {
   unsigned keep = 0, best = 0;
@@ -370,7 +467,7 @@ static int Direction(const FacetPolynomialDomain *domain, const Slope *slope, un
   return best != 0;
 }
 
-/* Puts the point on side s */
+/* Puts the point exactly on side s. */
 static void Snap(const FacetPolynomialDomain *domain, const double limit[], int s, double xi[2])
 {
   const double *n   = domain->normal[s];
@@ -379,7 +476,7 @@ static void Snap(const FacetPolynomialDomain *domain, const double limit[], int 
   for (int k = 0; k < 2; ++k) xi[k] -= off * n[k];
 }
 
-/* The part of the step d up to the first side in its way; *hit: that side or -1. */
+/* The fraction of the step d up to the first side in its way. *hit is that side, or -1. */
 static double Reach(const FacetPolynomialDomain *domain, const double limit[], const FacetPolynomialPoint *point,
                     const double d[2], int *hit)
 {
@@ -397,8 +494,21 @@ static double Reach(const FacetPolynomialDomain *domain, const double limit[], c
   return reach;
 }
 
-/* From a point to a local minimum of the distance over the polygon with the given limits of its sides (0, or negative
-   where extended). Not collective, plain C. point: start, then result; its active sides are those it is held at. */
+/*@
+  FacetPolynomialDescend - goes from a point to a local minimum of the distance over the polygon.
+
+  Not collective
+
+  Input Parameters:
++ patch - the polynomial
+- limit - limits of the sides: 0, or negative where the facet is extended
+
+  Input/Output Parameter:
+. point - on entry the start; on return the minimum, with the sides at which it is held
+
+  Note:
+  Plain C.
+@*/
 void FacetPolynomialDescend(const FacetPolynomial *patch, const double limit[], FacetPolynomialPoint *point)
 {
   const FacetPolynomialDomain *domain = patch->domain;
@@ -439,21 +549,21 @@ void FacetPolynomialDescend(const FacetPolynomial *patch, const double limit[], 
   memcpy(point->x, l.x, sizeof(l.x));
 }
 
-/* Is sample i, j nearer than its neighbours on the grid? */
+/* Is sample (i, j) nearer than its neighbours on the grid? */
 static int LocalMinimum(const FacetPolynomialDomain *domain, double value[SAMPLES][SAMPLES], int i, int j)
 {
   for (int p = i > 0 ? i - 1 : 0; p <= i + 1 && p < SAMPLES; ++p) {
     for (int q = j > 0 ? j - 1 : 0; q <= j + 1 && q < SampleColumns(domain, p); ++q) {
       const int earlier = p < i || (p == i && q < j);
 
-      if (domain->sides == 3 && p - i == q - j) continue; /* across a triangle of the grid */
+      if (domain->sides == 3 && p - i == q - j) continue; /* these lie across a triangle of the grid */
       if (value[p][q] < value[i][j] || (earlier && value[p][q] == value[i][j])) return 0;
     }
   }
   return 1;
 }
 
-/* Adds the sides that the point is on */
+/* Adds the sides on which the point lies. */
 static void Activate(const FacetPolynomialDomain *domain, FacetPolynomialPoint *point)
 {
   for (int s = 0; s < domain->sides; ++s)
@@ -461,8 +571,20 @@ static void Activate(const FacetPolynomialDomain *domain, FacetPolynomialPoint *
       point->active |= 1u << s;
 }
 
-/* Closest point of the unextended patch: the best of the descents from all local minima of the samples. Not collective,
- * plain C. */
+/*@
+  FacetPolynomialClosest - finds the closest point of the polygon without extension.
+
+  Not collective
+
+  Input Parameter:
+. patch - the polynomial
+
+  Output Parameter:
+. best - the best result of the descents from all local minima of the samples
+
+  Note:
+  Plain C.
+@*/
 void FacetPolynomialClosest(const FacetPolynomial *patch, FacetPolynomialPoint *best)
 {
   static const double          inside[FACET_POLYNOMIAL_MAX_SIDES] = {0};
@@ -495,8 +617,22 @@ void FacetPolynomialClosest(const FacetPolynomial *patch, FacetPolynomialPoint *
   Activate(domain, best);
 }
 
-/* Which region a point is in, by its active sides and by what is left of the residual's tangential part.
-   Not collective, plain C. feature: the edge or corner, -1 in the interior. */
+/*@
+  FacetPolynomialClassify - determines in which region a point lies.
+
+  Not collective
+
+  Input Parameters:
++ patch - the polynomial
+- point - the point with its active sides
+
+  Output Parameters:
++ region  - interior, edge or vertex
+- feature - number of the edge or corner; -1 in the interior
+
+  Note:
+  The region follows from the active sides and from the remaining tangential part of the residual. Plain C.
+@*/
 void FacetPolynomialClassify(const FacetPolynomial *patch, const FacetPolynomialPoint *point, FootRegion *region,
                              int *feature)
 {

@@ -1,36 +1,43 @@
-/* First and second variation of the diffuse gap over nodes. With rows K_i, J_i, H_i of the points and x_i = S_i x,
-       S^T M S = Kbar^T Jbar + Jbar^T Kbar + sum_i (S_i - S_c)^T H_i (S_i - S_c),   Kbar = sum_i K_i S_i,  Jbar
-   likewise. In the last sum the points' own part goes to pairs of nodes of one row: it is summed by
-   FitDerivativesAddOwn(), for a single slave point or, as slave points near each other see the same points, over many
-   of them before it goes to the nodes. What couples them to the slave point is again such a product, sum_i -S_i^T H_i
-   S_c - S_c^T H_i S_i + S_c^T H_c S_c = B^T S_c + S_c^T B,   B = 1/2 H_c S_c - sum_i H_i S_i,  H_c = sum H_i, so B and
-   S_c are dim more rows of the factors. The rows of many slave points over the same nodes stand below each other: one
-   product, which writes the large M once, serves them all. */
+/* First and second variation of the diffuse gap over nodes. With the rows K_i, J_i, H_i of the points and x_i = S_i x,
+       S^T M S = Kbar^T Jbar + Jbar^T Kbar + sum_i (S_i - S_c)^T H_i (S_i - S_c)
+   with Kbar = sum_i K_i S_i and Jbar likewise.
+
+   In the last sum the points' own part S_i^T H_i S_i couples pairs of nodes of one row. FitDerivativesAddOwn() adds it,
+   for a single slave point or for many. Slave points near each other see the same points, so that their H are summed
+   before they go to the nodes.
+
+   The part that couples the points to the slave point is again such a product:
+       sum_i -S_i^T H_i S_c - S_c^T H_i S_i + S_c^T H_c S_c = B^T S_c + S_c^T B
+   with B = 1/2 H_c S_c - sum_i H_i S_i and H_c = sum H_i. So B and S_c are dim more rows of the factors. The rows of
+   many slave points over the same nodes stand below each other. One product, which writes the large M once, serves
+   all of them. */
 #include "smooth/fitderivatives.h"
 #include "fitkernel.h"
 #include "symmetricproduct.h"
 #include <stdint.h>
 
-/* What is summed in registers at a time: vectors of a row, for that many entries of a run */
+/* Size of the sums that are held in registers: so many vectors of a row for so many entries of a run. */
 enum { ROW_VECTORS = 4, ROW_ENTRIES = LANES == 8 ? 4 : 2 };
 
-/* Rows first to end - 1 of the map, which have the same nodes and signs: entry k of row r is S[(r - first)*entries +
- * k], its signs are sign[3*k]. */
+/* A run: the rows first to end - 1 of the map, which have the same nodes and signs. Entry k of row r is S[(r -
+   first)*entries + k], and its signs are sign[3*k]. */
 typedef struct {
   int           first, end, entries;
   const int    *node;
   const double *S, *sign;
 } FitRun;
 
-/* The factors of one slave point over nodes */
+/* The factors of one slave point over nodes. */
 typedef struct {
-  Lanes *rows; /* [stride + dim][vectors of a row of FitFactors]: by node and component; the last dim are those of left
-                  out nodes */
+  /* [stride + dim][vectors of a row of FitFactors], by node and component. The last dim rows are those of nodes that
+     are left out. */
+  Lanes  *rows;
   double *K, *J; /* [terms + dim][stride] */
   int     stride;
-  double  factor; /* of this slave point in the sum; K carries it */
+  double  factor; /* of this slave point in the sum; it is applied to K */
 } FitNodal;
 
+/* Do rows a and b of the map have the same nodes and signs? */
 static int SameNodes(const FitDerivatives *map, int a, int b)
 {
   const int *const ptr = map->ptr, entries = ptr[a + 1] - ptr[a];
@@ -43,7 +50,7 @@ static int SameNodes(const FitDerivatives *map, int a, int b)
   return 1;
 }
 
-/* The rows that belong together from `first` on. */
+/* The run of rows that starts at `first`. */
 static FitRun NextRun(const FitDerivatives *map, int rows, int first)
 {
   const int start = map->ptr[first];
@@ -53,8 +60,8 @@ static FitRun NextRun(const FitDerivatives *map, int rows, int first)
   return (FitRun){first, end, map->ptr[first + 1] - start, map->node + start, map->S + start, map->sign + 3 * start};
 }
 
-/* Adds some vectors of a run's rows of K and J, of component c, to those of some of its nodes. A node may be among them
- * twice. */
+/* Adds some vectors of a run's rows of K and J, in component c, to the rows of some of its nodes. A node may be
+   among them twice. */
 LANES_INLINE void AddTile(const int dim, const int vectors, const int entries, const int count,
                           const FitFactors *factors, const FitRun *run, int c, int k, int v, FitNodal *nodal)
 {
@@ -76,6 +83,7 @@ LANES_INLINE void AddTile(const int dim, const int vectors, const int entries, c
   }
 }
 
+/* Adds all vectors of some entries of a run to the rows of their nodes, tile by tile. */
 LANES_INLINE void AddTiles(const int dim, const int vectors, const int entries, const FitFactors *factors,
                            const FitRun *run, int k, FitNodal *nodal)
 {
@@ -87,7 +95,7 @@ LANES_INLINE void AddTiles(const int dim, const int vectors, const int entries, 
   }
 }
 
-/* Adds a run's rows of K and J to those of its nodes. */
+/* Adds a run's rows of K and J to the rows of its nodes. */
 LANES_INLINE void AddRows(const int dim, const int vectors, const FitFactors *factors, const FitRun *run,
                           FitNodal *nodal)
 {
@@ -97,7 +105,7 @@ LANES_INLINE void AddRows(const int dim, const int vectors, const FitFactors *fa
   for (; k < run->entries; k++) AddTiles(dim, vectors, 1, factors, run, k, nodal);
 }
 
-/* Turns the nodes' rows into columns of K and J. */
+/* Transposes the nodes' rows into columns of K and J. */
 LANES_INLINE void TurnBack(const int terms, const int vectors, FitNodal *nodal)
 {
   for (int i = 0; i < nodal->stride; i += LANES) {
@@ -116,7 +124,7 @@ LANES_INLINE void TurnBack(const int terms, const int vectors, FitNodal *nodal)
   }
 }
 
-/* sum_r S_rk H_r over a run's rows */
+/* sum_r S_rk H_r over the rows of a run. */
 LANES_INLINE void SumHessians(const int vectors, const FitFactors *factors, const FitRun *run, int k, Lanes *sum)
 {
   const double *S = run->S;
@@ -128,13 +136,13 @@ LANES_INLINE void SumHessians(const int vectors, const FitFactors *factors, cons
   }
 }
 
-/* Place of component (c, d) in an H */
+/* Position of component (c, d) in an H. */
 LANES_INLINE int HessianEntry(const int c, const int d)
 {
   return c > d ? c * (c + 1) / 2 + d : d * (d + 1) / 2 + c;
 }
 
-/* Adds `share` times the run's part of H_i S_i to B, the last dim rows of K. */
+/* Adds `share` times the run's part of H_i S_i to B, which is the last dim rows of K. */
 LANES_INLINE void AddSumCoupling(const int dim, const int terms, const FitFactors *factors, const FitRun *run,
                                  double share, FitNodal *nodal)
 {
@@ -156,7 +164,7 @@ LANES_INLINE void AddSumCoupling(const int dim, const int terms, const FitFactor
   }
 }
 
-/* S_c, the last dim rows of J */
+/* Adds S_c to the last dim rows of J. */
 LANES_INLINE void AddSlave(const int dim, const int terms, const FitRun *slave, FitNodal *nodal)
 {
   for (int k = 0; k < slave->entries; k++) {
@@ -166,7 +174,7 @@ LANES_INLINE void AddSlave(const int dim, const int terms, const FitRun *slave, 
   }
 }
 
-/* Adds an H between entries of these signs to a block of M. */
+/* Adds an H between entries with these signs to a block of M. */
 LANES_INLINE void AddSumBlock(const int dim, const double *h, const double *row_sign, const double *column_sign,
                               long size, double *block)
 {
@@ -175,7 +183,8 @@ LANES_INLINE void AddSumBlock(const int dim, const double *h, const double *row_
   }
 }
 
-/* Adds sum_r S_r^T H_r S_r over a run's rows to each pair of its nodes, above the diagonal. own: of row `first`. */
+/* Adds sum_r S_r^T H_r S_r over the rows of a run to each pair of its nodes, above the diagonal. own starts with row
+   `first`. */
 LANES_INLINE void AddPairs(const int dim, int first, const double (*own)[FIT_DERIVATIVES_OWN], const FitRun *run,
                            long size, double *M)
 {
@@ -198,6 +207,7 @@ LANES_INLINE void AddPairs(const int dim, int first, const double (*own)[FIT_DER
   }
 }
 
+/* Adds the points' own H of the rows first to end - 1, run by run. */
 LANES_INLINE void Own(const int dim, int first, int end, const double (*own)[FIT_DERIVATIVES_OWN],
                       const FitDerivatives *map, double *M)
 {
@@ -207,6 +217,7 @@ LANES_INLINE void Own(const int dim, int first, int end, const double (*own)[FIT
   }
 }
 
+/* Appends the rows of K and J of one slave point over nodes, with those of its coupling, to the sum. */
 LANES_INLINE void Second(const int dim, const int terms, double factor, const FitFactors *factors,
                          const FitDerivatives *map, FitDerivativesSum *sum)
 {
@@ -234,7 +245,7 @@ LANES_INLINE void Second(const int dim, const int terms, double factor, const Fi
   sum->depth += terms + dim;
 }
 
-/* Row i of S: component c of point r */
+/* Adds scale times row i of S, which belongs to component c of point r. */
 LANES_INLINE void AddSelection(const int dim, const FitDerivatives *map, int r, int c, double scale, double *row)
 {
   for (int e = map->ptr[r]; e < map->ptr[r + 1]; e++) {
@@ -242,7 +253,7 @@ LANES_INLINE void AddSelection(const int dim, const FitDerivatives *map, int r, 
   }
 }
 
-/* S^T M S = 1/2 (M S)^T S + S^T 1/2 (M S): a row of M S and of S for each component of each point */
+/* S^T M S = 1/2 (M S)^T S + S^T 1/2 (M S). Each component of each point gives a row of M S and a row of S. */
 LANES_INLINE void Dense(const int dim, int n, double factor, const double *M, const FitDerivatives *map,
                         FitDerivativesSum *sum)
 {
@@ -260,6 +271,7 @@ LANES_INLINE void Dense(const int dim, int n, double factor, const double *M, co
   sum->depth += m;
 }
 
+/* Adds S^T N to nodal. */
 LANES_INLINE void First(const int dim, int n, const double *N, const FitDerivatives *map, double *nodal)
 {
   for (int r = 0; r < 1 + n; r++) {
@@ -270,19 +282,38 @@ LANES_INLINE void First(const int dim, int n, const double *N, const FitDerivati
   }
 }
 
-/* FitDerivativesDepth - rows of K and J for one slave point by its factors. Not collective.
+/*@
+  FitDerivativesDepth - gives the number of rows of K and J for one slave point that is added by its factors.
 
-   Input: dim, degree - of the fit */
+  Not collective
+
+  Input Parameters:
++ dim    - 2 or 3
+- degree - of the fit
+
+  Note:
+  Plain C.
+@*/
 int FitDerivativesDepth(int dim, int degree)
 {
   return FitTerms(dim, degree) + dim;
 }
 
-/* FitDerivativesWorkspace - doubles of workspace for a sum of second variations. Not collective.
+/*@
+  FitDerivativesWorkspace - gives the length of the workspace for a sum of second variations, in doubles.
 
-   Input: dim, degree - the highest of the fits; n_nodes - of the maps; depth - most rows of K and J in all:
-   FitDerivativesDepth() for each FitDerivativesAdd(), dim*(1 + n) for each FitDerivativesAddDense(), 1 for each
-   FitDerivativesAddOuter() */
+  Not collective
+
+  Input Parameters:
++ dim     - 2 or 3
+. degree  - highest degree of the fits
+. n_nodes - of the maps
+- depth   - most rows of K and J in all: FitDerivativesDepth() for each FitDerivativesAdd(), dim*(1 + n) for each
+            FitDerivativesAddDense(), 1 for each FitDerivativesAddOuter()
+
+  Note:
+  Plain C.
+@*/
 long FitDerivativesWorkspace(int dim, int degree, int n_nodes, int depth)
 {
   const int stride = SymmetricProductStride(n_nodes * dim);
@@ -291,10 +322,23 @@ long FitDerivativesWorkspace(int dim, int degree, int n_nodes, int depth)
          2L * depth * stride;
 }
 
-/* FitDerivativesFirst - the first variation over nodes, S^T N. Not collective.
+/*@
+  FitDerivativesFirst - computes the first variation over nodes, S^T N.
 
-   Input: dim; n - points inside; N[(1 + n)*dim] - over slave point and points, as DiffuseFitEvaluate() makes it; map
-   Output: nodal[n_nodes*dim] */
+  Not collective
+
+  Input Parameters:
++ dim - 2 or 3
+. n   - number of points inside
+. N   - N[(1 + n)*dim] over slave point and points, of DiffuseFitEvaluate()
+- map - from these to nodes
+
+  Output Parameter:
+. nodal - S^T N, nodal[n_nodes*dim]
+
+  Note:
+  Plain C.
+@*/
 void FitDerivativesFirst(int dim, int n, const double *N, const FitDerivatives *map, double *nodal)
 {
   memset(nodal, 0, (size_t)map->n_nodes * dim * sizeof(double));
@@ -304,10 +348,24 @@ void FitDerivativesFirst(int dim, int n, const double *N, const FitDerivatives *
     First(2, n, N, map, nodal);
 }
 
-/* FitDerivativesBegin - begins a sum of second variations over the same nodes. Not collective.
+/*@
+  FitDerivativesBegin - begins a sum of second variations over the same nodes.
 
-   Input: dim, degree, n_nodes, depth - as of FitDerivativesWorkspace(); workspace - that many doubles of any contents,
-   to be left alone until FitDerivativesEnd() */
+  Not collective
+
+  Input Parameters:
++ dim       - 2 or 3
+. degree    - as in FitDerivativesWorkspace()
+. n_nodes   - as in FitDerivativesWorkspace()
+. depth     - as in FitDerivativesWorkspace()
+- workspace - FitDerivativesWorkspace() doubles of any contents, which the sum uses until FitDerivativesEnd()
+
+  Output Parameter:
+. sum - the empty sum
+
+  Note:
+  Plain C.
+@*/
 void FitDerivativesBegin(FitDerivativesSum *sum, int dim, int degree, int n_nodes, int depth, double *workspace)
 {
   const int stride = SymmetricProductStride(n_nodes * dim);
@@ -318,12 +376,23 @@ void FitDerivativesBegin(FitDerivativesSum *sum, int dim, int degree, int n_node
   sum->J    = sum->K + (long)depth * stride;
 }
 
-/* FitDerivativesAdd - adds factor times the second variation over nodes, S^T M S, of one slave point, without M; the
-   points' own H are left to FitDerivativesAddOwn(). Not collective.
+/*@
+  FitDerivativesAdd - adds factor times the second variation over nodes, S^T M S, of one slave point, without forming M.
 
-   Input: factors - of M, as DiffuseFitEvaluate() leaves them in its workspace; map - nodes below the sum's n_nodes
+  Not collective
 
-   Source: Chamoret et al. 2004, eqs 13 and 14, for points that are combinations of nodes. */
+  Input Parameters:
++ factor  - of this slave point
+. factors - of M, as DiffuseFitEvaluate() leaves them in its workspace
+- map     - its nodes are below the sum's n_nodes
+
+  Input/Output Parameter:
+. sum - the sum
+
+  Note:
+  The points' own H are left to FitDerivativesAddOwn(). Source: eqs 13 and 14 of Chamoret et al. (2004), for points that
+  are combinations of nodes. Plain C.
+@*/
 void FitDerivativesAdd(FitDerivativesSum *sum, double factor, const FitFactors *factors, const FitDerivatives *map)
 {
 #define SECOND(dim, degree, terms)               \
@@ -333,9 +402,23 @@ void FitDerivativesAdd(FitDerivativesSum *sum, double factor, const FitFactors *
 #undef SECOND
 }
 
-/* FitDerivativesAddDense - adds factor S^T M S. Not collective.
+/*@
+  FitDerivativesAddDense - adds factor S^T M S, where M itself is given.
 
-   Input: n - points that take part; M[((1 + n)*dim)^2] - symmetric; map - nodes below the sum's n_nodes */
+  Not collective
+
+  Input Parameters:
++ factor - of this slave point
+. n      - number of points that take part
+. M      - M[((1 + n)*dim)^2], symmetric
+- map    - its nodes are below the sum's n_nodes
+
+  Input/Output Parameter:
+. sum - the sum
+
+  Note:
+  Plain C.
+@*/
 void FitDerivativesAddDense(FitDerivativesSum *sum, double factor, int n, const double *M, const FitDerivatives *map)
 {
   if (sum->dim == 3)
@@ -344,9 +427,21 @@ void FitDerivativesAddDense(FitDerivativesSum *sum, double factor, int n, const 
     Dense(2, n, factor, M, map, sum);
 }
 
-/* FitDerivativesAddOuter - adds factor v v^T. Not collective.
+/*@
+  FitDerivativesAddOuter - adds factor v v^T.
 
-   Input: v[n_nodes*dim] */
+  Not collective
+
+  Input Parameters:
++ factor - of the product
+- v      - v[n_nodes*dim]
+
+  Input/Output Parameter:
+. sum - the sum
+
+  Note:
+  Plain C.
+@*/
 void FitDerivativesAddOuter(FitDerivativesSum *sum, double factor, const double *v)
 {
   const int     n     = sum->n_nodes * sum->dim;
@@ -359,7 +454,22 @@ void FitDerivativesAddOuter(FitDerivativesSum *sum, double factor, const double 
   }
 }
 
-/* FitDerivativesOwn - own += factor H, for point i of those inside. Not collective. */
+/*@
+  FitDerivativesOwn - adds factor H of one point to the sum of that point's own H.
+
+  Not collective
+
+  Input Parameters:
++ factor  - of this slave point
+. factors - of M
+- i       - number of the point among those inside
+
+  Input/Output Parameter:
+. own - own += factor H_i
+
+  Note:
+  Plain C.
+@*/
 void FitDerivativesOwn(double factor, const FitFactors *factors, int i, double own[FIT_DERIVATIVES_OWN])
 {
   const double *const h = factors->hessians + (1 + i) * factors->hessianstride;
@@ -367,10 +477,24 @@ void FitDerivativesOwn(double factor, const FitFactors *factors, int i, double o
   for (int e = 0; e < factors->dim * (factors->dim + 1) / 2; e++) own[e] += factor * h[e];
 }
 
-/* FitDerivativesAddOwn - M += sum_r S_r^T own_r S_r, the points' own part of second variations. Not collective.
+/*@
+  FitDerivativesAddOwn - adds sum_r S_r^T own_r S_r, the points' own part of second variations, to M.
 
-   Input: dim; rows first to end - 1 of the map; own[end - first] - of these rows' points, from FitDerivativesOwn().
-   M[n_nodes*dim][n_nodes*dim] - its upper triangle, in whole blocks on the diagonal */
+  Not collective
+
+  Input Parameters:
++ dim   - 2 or 3
+. first - first row of the map
+. end   - last row of the map plus 1
+. own   - own[end - first] of these rows' points, from FitDerivativesOwn()
+- map   - its rows may belong to points of many slave points
+
+  Input/Output Parameter:
+. M - M[n_nodes*dim][n_nodes*dim]: its upper triangle, in whole blocks on the diagonal
+
+  Note:
+  Plain C.
+@*/
 void FitDerivativesAddOwn(int dim, int first, int end, const double (*own)[FIT_DERIVATIVES_OWN],
                           const FitDerivatives *map, double *M)
 {
@@ -380,8 +504,20 @@ void FitDerivativesAddOwn(int dim, int first, int end, const double (*own)[FIT_D
     Own(2, first, end, own, map, M);
 }
 
-/* FitDerivativesEnd - the sum into the upper triangle of M[n_nodes*dim][n_nodes*dim]; what is below is left alone. Not
- * collective. */
+/*@
+  FitDerivativesEnd - writes the sum into the upper triangle of M.
+
+  Not collective
+
+  Input Parameter:
+. sum - the sum
+
+  Output Parameter:
+. M - M[n_nodes*dim][n_nodes*dim]; the entries below the diagonal are left as they are
+
+  Note:
+  Plain C.
+@*/
 void FitDerivativesEnd(FitDerivativesSum *sum, double *M)
 {
   SymmetricProductUpper(sum->n_nodes * sum->dim, sum->depth, sum->stride, sum->K, sum->J, M);

@@ -1,12 +1,13 @@
-/* Least-squares plane by the eigenvectors of a 3 x 3 covariance, and the metric of the fit's support. */
+/* The least-squares plane from the eigenvectors of a 3 x 3 covariance, and the metric of the fit's support. */
 #include "smooth/fitframe.h"
 #include <float.h>
 #include <math.h>
 #include <string.h>
 
-enum { SWEEPS = 16 }; /* cyclic Jacobi of a 3 x 3 matrix ends within 6; the rest is never reached */
+/* Most sweeps of Jacobi's method. A cyclic one for a 3 x 3 matrix ends within 6, so this bound is never reached. */
+enum { SWEEPS = 16 };
 
-/* Turns row and column p against q so that a[p][q] vanishes. */
+/* Rotates rows and columns p and q so that a[p][q] vanishes. */
 static void JacobiRotate(double a[3][3], double v[3][3], int p, int q)
 {
   const double theta = 0.5 * (a[q][q] - a[p][p]) / a[p][q],
@@ -29,7 +30,7 @@ static void JacobiRotate(double a[3][3], double v[3][3], int p, int q)
   }
 }
 
-/* Eigenvalues and eigenvectors v[k] of a symmetric matrix by Jacobi's method, ascending */
+/* Eigenvalues of a symmetric matrix in ascending order, with eigenvectors v[k], by Jacobi's method. */
 static void Eigen(double a[3][3], double value[3], double v[3][3])
 {
   for (int i = 0; i < 3; i++) {
@@ -59,11 +60,21 @@ static void Eigen(double a[3][3], double value[3], double v[3][3])
   }
 }
 
-/* FitFrameFromNormal - a right-handed orthonormal frame about a direction; its tangents jump only where the normal
-   passes between coordinate axes, and the fit does not depend on them. Not collective.
+/*@
+  FitFrameFromNormal - makes a right-handed orthonormal frame about a direction.
 
-   Input: dim; normal[dim] - of any length but 0
-   Output: frame[k] - tangents, then the normal; 2D: third components 0 */
+  Not collective
+
+  Input Parameters:
++ dim    - 2 or 3
+- normal - the direction, normal[dim], of any length except 0
+
+  Output Parameter:
+. frame - frame[k]: the tangents, then the normal; third components are 0 in 2D
+
+  Note:
+  The tangents jump only where the normal passes between coordinate axes. The fit does not depend on them. Plain C.
+@*/
 void FitFrameFromNormal(int dim, const double *normal, double frame[3][3])
 {
   double *const n = frame[dim - 1], *const t = frame[0], length = 0;
@@ -85,17 +96,30 @@ void FitFrameFromNormal(int dim, const double *normal, double frame[3][3])
   for (int c = 0; c < 3; c++) frame[1][c] = n[(c + 1) % 3] * t[(c + 2) % 3] - n[(c + 2) % 3] * t[(c + 1) % 3];
 }
 
-/* FitFrame - the frame of the least-squares plane of weighted points. Not collective.
+/*@
+  FitFrame - finds the frame of the least-squares plane (2D: line) of weighted points, eq. 3 of Chamoret et al. (2004)
+  (reference plane of the slave point).
 
-   Input: dim; n, x[n][dim], multiplier[n] - points and weights; outward[dim] - roughly the normal out of the master, of
-   any length but 0 Output: frame[k] - tangents, then the normal; 2D: third components 0
+  Not collective
 
-   Returns 0, with the frame about `outward`, where points have no plane (on a line, a heap) or one seen edge-on from
-   `outward`. Source: Chamoret et al. 2004, eq. 3 (reference plane of the slave point). */
+  Input Parameters:
++ dim        - 2 or 3
+. n          - number of points
+. x          - the points, x[n][dim] (length)
+. multiplier - their weights, multiplier[n]
+- outward    - roughly the normal out of the master, outward[dim], of any length except 0
+
+  Output Parameter:
+. frame - frame[k]: the tangents, then the normal on the side of outward; third components are 0 in 2D
+
+  Note:
+  Returns 0, with the frame about outward itself, where the points have no plane (they lie on a line or form a heap) or
+  where outward sees their plane edge-on. Plain C.
+@*/
 int FitFrame(int dim, int n, const double *x, const double *multiplier, const double *outward, double frame[3][3])
 {
   double    sum = 0, centre[3] = {0}, covariance[3][3] = {{0}}, value[3], vector[3][3], cosine = 0, length = 0;
-  const int last = 2, first = 3 - dim; /* 2D: the third direction has no extent and comes first */
+  const int last = 2, first = 3 - dim; /* in 2D the third direction has no extent and comes first */
   double   *normal;
 
   for (int i = 0; i < n; i++) {
@@ -128,13 +152,28 @@ int FitFrame(int dim, int n, const double *x, const double *multiplier, const do
   return 1;
 }
 
-/* FitMetricFromCovariance - the metric of the support. Its shape is that of the one-ring seen along the normal, round
-   where the ring is flatter than METRIC_FLAT; its size follows from the area per node alone, so that the support holds
-   as many nodes on any mesh. Not collective.
+/*@
+  FitMetricFromCovariance - makes the metric of the support, so that a support of s spacings holds about pi s^2 nodes
+  (2D: 2 s) on any mesh.
 
-   Input: dim; frame - of FitFrame(); covariance[3][3] - of the one-ring's nodes (any scale, 2D: not read); area - mean
-   facet area per node: over 1 (4-node face), 1/2 (triangle), 4 (9-node face), 2 (6-node triangle); 2D: mean length per
-   node; support - in spacings Output: metric[2][2] - Q, per length squared; 2D: [0][0] */
+  Not collective
+
+  Input Parameters:
++ dim        - 2 or 3
+. frame      - of FitFrame()
+. covariance - covariance[3][3] of the one-ring's nodes in space, averaged over the ring's nodes; of any scale; not read
+               in 2D
+. area       - mean reference area of the faces per node, which is the spacing^(dim - 1); a face's area is divided by 1
+               (4-node face), 1/2 (triangle), 4 (9-node face) or 2 (6-node triangle); 2D: mean length per node
+- support    - radius of the support in spacings
+
+  Output Parameter:
+. metric - Q over the frame's tangents, metric[2][2], per length squared; 2D: only [0][0]
+
+  Note:
+  The shape of Q is that of the one-ring seen along the normal. It is round where the ring is flatter than METRIC_FLAT.
+  The size of Q follows from the area per node alone, so that the support holds as many nodes on any mesh. Plain C.
+@*/
 void FitMetricFromCovariance(int dim, double (*frame)[3], double (*covariance)[3], double area, double support,
                              double metric[2][2])
 {

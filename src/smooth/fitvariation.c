@@ -1,21 +1,25 @@
-/* First and second variation of the diffuse gap, in the orthonormal basis and the scaled coordinates of fit.c.
+/* First and second variation of the diffuse gap, in the orthonormal basis and the scaled coordinates of diffusefit.c.
 
-Second variation. G_aa = F^T S F with the rows F = [p; Dp] at the foot and a symmetric S of their size, so that with J_i
-= dalpha/dd_i, C_i = d2 phi_i/dd_i dalpha, H_i = d2 phi_i/dd_i dd_i, phi_i = w_i e_i (lambda.p_i) M_ij = K_i J_j + J_i^T
-K_j^T + delta_ij H_i,   K_i = C_i + 1/2 (F J_i)^T S F and the slave point's rows are those of one more point with J_c =
--sum J_i, K_c = -sum K_i. */
+   First variation. N_i = G^T J_i^T G_a and N_c = -sum N_i, with J_i = dalpha/dd_i.
+
+   Second variation. G_aa = F^T S F with the rows F = [p; Dp] at the foot and a symmetric S of their number. With phi_i
+   = w_i e_i (lambda.p_i), C_i = d2 phi_i/dd_i dalpha and H_i = d2 phi_i/dd_i dd_i,
+       M_ij = K_i J_j + J_i^T K_j^T + delta_ij H_i,   K_i = C_i + 1/2 (F J_i)^T S F
+   The rows of the slave point are those of one more point with J_c = -sum J_i, K_c = -sum K_i. */
 #include "fitkernel.h"
 #include "symmetricproduct.h"
 
-/* LANES points: what the variations are made of */
+/* The quantities of LANES points from which the variations are made. */
 typedef struct {
   Lanes p[FIT_MAX_TERMS], dp[MAX_TANGENTS][FIT_MAX_TERMS]; /* monomials and their gradients */
-  Lanes eta[MAX_TANGENTS], w, w1, w2, e;      /* w1, w2: derivatives of the weight by rho^2, times 2 and 4 */
-  Lanes q[MAX_TANGENTS], l, dl[MAX_TANGENTS]; /* gradient of q; l = lambda.p and its gradient */
-  Lanes c[MAX_TANGENTS], a[MAX_TANGENTS];     /* gradients of w e and w l */
+  /* w1, w2: derivatives of the weight by rho^2, times 2 and 4. */
+  Lanes eta[MAX_TANGENTS], w, w1, w2, e;
+  /* q: gradient of the height; l = lambda.p and dl its gradient. */
+  Lanes q[MAX_TANGENTS], l, dl[MAX_TANGENTS];
+  Lanes c[MAX_TANGENTS], a[MAX_TANGENTS]; /* gradients of w e and w l */
 } FitBundle;
 
-/* With derivatives == FIT_DIFFUSE the weights count as constants. */
+/* Fills a bundle. With derivatives == FIT_DIFFUSE the weights count as constants. */
 LANES_INLINE void Bundle(const int m, const int degree, const int terms, const FitArrays *a, const FitState *s,
                          double exponent, FitDerivativeKind derivatives, int g, FitBundle *b)
 {
@@ -39,7 +43,7 @@ LANES_INLINE void Bundle(const int m, const int degree, const int terms, const F
   }
 }
 
-/* Writes the first `count` of LANES points' vectors one after the other. */
+/* Writes the vectors of the first `count` of LANES points one after the other. */
 LANES_INLINE void StoreVectors(const int dim, int count, const Lanes *v, double *out)
 {
   for (int i = 0; i < count; i++) {
@@ -47,7 +51,7 @@ LANES_INLINE void StoreVectors(const int dim, int count, const Lanes *v, double 
   }
 }
 
-/* N_i = G^T J_i^T G_a, N_c = -sum N_i */
+/* N_i = G^T J_i^T G_a and N_c = -sum N_i. */
 LANES_INLINE void FirstVariation(const int dim, const int degree, const int terms, const FitProblem *in,
                                  const FitArrays *a, const FitState *s, double *N)
 {
@@ -69,7 +73,7 @@ LANES_INLINE void FirstVariation(const int dim, const int degree, const int term
   for (int c = 0; c < dim; c++) N[c] = -LanesSum(total[c]);
 }
 
-/* H_i in the scaled frame: h[k][l] */
+/* H_i in the scaled frame, h[k][l]. */
 LANES_INLINE void PointHessian(const int dim, const int degree, const FitState *s, const FitBundle *b, Lanes (*h)[3])
 {
   const int m = dim - 1;
@@ -90,13 +94,13 @@ LANES_INLINE void PointHessian(const int dim, const int degree, const FitState *
   h[m][m] = Broadcast(0);
 }
 
-/* What LANES points give to K, J and H, turned into space */
+/* The contributions of LANES points to K, J and H, in space. */
 typedef struct {
   Lanes factor[3][FACTORS]; /* [component]: terms of K, terms of J, zeros */
   Lanes hessian[FIT_HESSIAN];
 } FitBlock;
 
-/* J^ = A p^ + B Dp^ and C likewise, with coefficients already turned into space. */
+/* J^ = A p^ + B Dp^, and C likewise. The coefficients are in space already. */
 LANES_INLINE void PointFactors(const int dim, const int terms, const FitArrays *a, const FitState *s, FitBundle *b,
                                int g, FitBlock *out)
 {
@@ -144,7 +148,7 @@ LANES_INLINE void PointFactors(const int dim, const int terms, const FitArrays *
   }
 }
 
-/* H of LANES points in space */
+/* H of LANES points in space. */
 LANES_INLINE void TurnHessian(const int dim, const FitState *s, Lanes (*h)[3], Lanes *out)
 {
   for (int c = 0, entry = 0; c < dim; c++) {
@@ -158,6 +162,7 @@ LANES_INLINE void TurnHessian(const int dim, const FitState *s, Lanes (*h)[3], L
   for (int entry = dim * (dim + 1) / 2; entry < HessianStride(dim); entry++) out[entry] = Broadcast(0);
 }
 
+/* Computes the contributions of vector g of points to K, J and H. */
 LANES_INLINE void Block(const int dim, const int degree, const int terms, const FitProblem *in, const FitArrays *a,
                         const FitState *s, int g, FitBlock *out)
 {
@@ -170,7 +175,8 @@ LANES_INLINE void Block(const int dim, const int degree, const int terms, const 
   PointFactors(dim, terms, a, s, &b, g, out);
 }
 
-/* Adds the points' own second variations H, turned into space, to point, slave point and both couplings. */
+/* Adds the points' own second variations H, in space, to the blocks of the point, of the slave point and of both
+   couplings. */
 LANES_INLINE void AddPointHessians(const int dim, const FitArrays *a, double *M)
 {
   const int size = dim * (1 + a->n);
@@ -194,6 +200,7 @@ LANES_INLINE void AddPointHessians(const int dim, const FitArrays *a, double *M)
   }
 }
 
+/* Fills K, J and H of all points and of the slave point and multiplies them to M. */
 LANES_INLINE void SecondVariation(const int dim, const int degree, const int terms, const FitProblem *in, FitArrays *a,
                                   const FitState *s, double *M)
 {
@@ -225,8 +232,8 @@ LANES_INLINE void SecondVariation(const int dim, const int degree, const int ter
   AddPointHessians(dim, a, M);
 }
 
-/* Writes `count` vectors of LANES points as a row for each point, `distance` vectors from one point's to the next; adds
- * the rows to `total`. */
+/* Writes `count` vectors of LANES points as one row for each point; the rows of two points are `distance` vectors
+   apart. Adds the rows to `total`. */
 LANES_INLINE void StoreRows(const int count, const int distance, const Lanes *v, Lanes *rows, Lanes *total)
 {
   for (int k = 0; k < count; k += LANES) {
@@ -241,6 +248,7 @@ LANES_INLINE void StoreRows(const int count, const int distance, const Lanes *v,
   }
 }
 
+/* Writes the rows of K, J and H of the slave point and of all points, without multiplying them. */
 LANES_INLINE void Factors(const int dim, const int degree, const int terms, const FitProblem *in, const FitArrays *a,
                           const FitState *s, FitFactors *out)
 {
@@ -270,12 +278,22 @@ LANES_INLINE void Factors(const int dim, const int degree, const int terms, cons
                       .hessians      = (const double *)hessians};
 }
 
-/* FitVariationFirst - N. Not collective.
+/*@
+  FitVariationFirst - computes the first variation N, eqs 11 and 12 of Chamoret et al. (2004).
 
-   Input: in, a, s - problem, arrays and state as the evaluation left them
-   Output: N - [(1 + points inside)*dim], the slave point first
+  Not collective
 
-   Source: Chamoret et al. 2004, eqs 11 and 12. */
+  Input Parameters:
++ in - the problem
+. a  - arrays as the evaluation left them
+- s  - state as the evaluation left it
+
+  Output Parameter:
+. N - N[(1 + points inside)*dim], the slave point first
+
+  Note:
+  Plain C.
+@*/
 void FitVariationFirst(const FitProblem *in, const FitArrays *a, const FitState *s, double *N)
 {
 #define FIRST(dim, degree, terms)                  \
@@ -285,12 +303,24 @@ void FitVariationFirst(const FitProblem *in, const FitArrays *a, const FitState 
 #undef FIRST
 }
 
-/* FitVariationSecond - M. Not collective.
+/*@
+  FitVariationSecond - computes the second variation M, eqs 13 and 14 of Chamoret et al. (2004).
 
-   Input: in, a, s - problem, arrays and state as the evaluation left them; the arrays K, J and H are overwritten
-   Output: M - [((1 + points inside)*dim)^2], symmetric
+  Not collective
 
-   Source: Chamoret et al. 2004, eqs 13 and 14. */
+  Input Parameters:
++ in - the problem
+- s  - state as the evaluation left it
+
+  Input/Output Parameter:
+. a - arrays as the evaluation left them; K, J and H are overwritten
+
+  Output Parameter:
+. M - M[((1 + points inside)*dim)^2], symmetric
+
+  Note:
+  Plain C.
+@*/
 void FitVariationSecond(const FitProblem *in, FitArrays *a, const FitState *s, double *M)
 {
 #define SECOND(dim, degree, terms)                  \
@@ -300,10 +330,22 @@ void FitVariationSecond(const FitProblem *in, FitArrays *a, const FitState *s, d
 #undef SECOND
 }
 
-/* FitVariationFactors - what M is made of, without M. Not collective.
+/*@
+  FitVariationFactors - computes the factors of M without M itself.
 
-   Input: in, a, s - problem, arrays and state as the evaluation left them; the place of the arrays K and J is
-   overwritten Output: factors - see FitFactors */
+  Not collective
+
+  Input Parameters:
++ in - the problem
+. a  - arrays as the evaluation left them; the place of K and J in the workspace is overwritten
+- s  - state as the evaluation left it
+
+  Output Parameter:
+. factors - see FitFactors
+
+  Note:
+  Plain C.
+@*/
 void FitVariationFactors(const FitProblem *in, const FitArrays *a, const FitState *s, FitFactors *factors)
 {
 #define FACTORISE(dim, degree, terms)             \

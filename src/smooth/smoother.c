@@ -1,4 +1,4 @@
-/* The table of smoothers, and the two that are built in: the facets, and the diffuse fit with the facets behind it. */
+/* The table of smoothers and the two built-in ones: the facets, and the diffuse fit, which falls back on the facets. */
 #include <string.h>
 #include "smooth/smoother.h"
 
@@ -8,14 +8,14 @@
   Not collective
 
   Input Parameters:
-+ in   - the list of a slave point; fits are not looked at
++ in   - list of a slave point; the fit in it is not read
 - want - the variation that is wanted
 
   Output Parameter:
 . out - gap, normal, points that take part, and the variation
 
   Note:
-  Returns 0 when the list holds no facet. Plain C. Other smoothers call it where they have no surface of their own.
+  Returns 0 when the list holds no facet. Other smoothers call it where they have no surface of their own. Plain C.
 @*/
 int SmootherEvaluate_Facet(const SmootherInput *in, SmootherWant want, SmootherResult *out)
 {
@@ -36,7 +36,8 @@ int SmootherEvaluate_Facet(const SmootherInput *in, SmootherWant want, SmootherR
   return 1;
 }
 
-/* The fit where there is one, the facets on the last rung of the ladder or where the fit has no foot. */
+/* Uses the fit where there is one. The facets are used where every fit failed its guards when the lists were made,
+   or where the fit has no foot. */
 static int SmootherEvaluate_Diffuse(const SmootherInput *in, SmootherWant want, SmootherResult *out)
 {
   static const FitWant wants[] = {[SMOOTHER_GAP]              = FIT_GAP_ONLY,
@@ -60,7 +61,7 @@ static int SmootherEvaluate_Diffuse(const SmootherInput *in, SmootherWant want, 
     if (DiffuseFitEvaluate(&problem, wants[want], in->workspace, &fit) && !(fit.guards & FIT_FAR_FOOT)) {
       out->gap      = fit.gap;
       out->factored = 1;
-      out->beyond   = 0; /* faded by the facets' free edges when lists are made */
+      out->beyond   = 0; /* the caller fades the contact by the facets' free edges when lists are made */
       out->seed     = in->seed;
       out->n        = fit.n;
       memcpy(out->normal, fit.normal, sizeof(out->normal));
@@ -71,8 +72,8 @@ static int SmootherEvaluate_Diffuse(const SmootherInput *in, SmootherWant want, 
   return SmootherEvaluate_Facet(in, want, out);
 }
 
-/* Numbers of workspace for the diffuse fit: for its highest degree and the longest list, as one workspace serves all
- * pairs. */
+/* Length of the workspace for the diffuse fit, in doubles. It holds the highest degree and the longest list, because
+   one workspace serves all pairs. */
 static long SmootherWorkspace_Diffuse(int dim)
 {
   return FitWorkspace(dim, 4, FIT_MAX_POINTS);
@@ -98,13 +99,13 @@ char            SmootherWords[SMOOTHER_WORDS]   = SMOOTHERS(CHOICE_BAR);
   Not collective
 
   Input Parameters:
-+ name     - the word of the scene: letters, digits and underscores; it is not copied
-- smoother - what it needs and how it is evaluated; it is not copied
++ name     - the word in the scene: letters, digits and underscores; it is not copied
+- smoother - its needs and its evaluation; it is not copied
 
   Note:
   Returns 1 when the smoother was added. Returns 0 when the name is empty, taken or holds other characters, or when
-  SMOOTHER_MAX or SMOOTHER_WORDS leaves no room. To be called before the scene is read, with the same smoothers in the
-  same order on all ranks. Plain C.
+  SMOOTHER_MAX or SMOOTHER_WORDS leaves no room. It must be called before the scene is read, with the same smoothers in
+  the same order on all ranks. Plain C.
 @*/
 int SmootherRegister(const char *name, const Smoother *smoother)
 {

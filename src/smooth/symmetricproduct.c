@@ -1,13 +1,21 @@
-/* M = K^T J + J^T K in tiles of LANES rows that stay in registers while the depth is summed; the mirror image of a tile
-   is turned over in registers too, since a scalar copy would cost as much as the product. */
+/* The product M = K^T J + J^T K in tiles of LANES rows. A tile stays in registers while the depth is summed. Its
+   mirror image is transposed in registers too, because a scalar copy would cost as much as the product. */
 #include "symmetricproduct.h"
 #include "fitkernel.h"
 
 enum { TILE_ROWS = LANES, TILE_COLUMNS = PRODUCT_VECTORS * LANES };
 
-/* SymmetricProductStride - least length of a row of the factors, a whole number of tiles. Not collective.
+/*@
+  SymmetricProductStride - gives the least length of a row of the factors, which is a whole number of tiles.
 
-   Input: n - rows of the product */
+  Not collective
+
+  Input Parameter:
+. n - rows of the product
+
+  Note:
+  Plain C.
+@*/
 int SymmetricProductStride(int n)
 {
   return (n + TILE_COLUMNS - 1) / TILE_COLUMNS * TILE_COLUMNS;
@@ -25,7 +33,8 @@ LANES_INLINE void AddOuterProducts(const int vectors, int depth, int stride, con
   }
 }
 
-/* A square above the diagonal that lies wholly within M, and, of a full M, its image */
+/* Stores a square that lies above the diagonal and wholly within M. If M is wanted in full, stores the mirror image
+   too. */
 LANES_INLINE void StoreInside(const int full, int n, int row, int column, Lanes square[LANES], double *M)
 {
   for (int r = 0; r < LANES; r++) *(LanesInArray *)(M + (long)(row + r) * n + column) = square[r];
@@ -34,7 +43,7 @@ LANES_INLINE void StoreInside(const int full, int n, int row, int column, Lanes 
   for (int r = 0; r < LANES; r++) *(LanesInArray *)(M + (long)(column + r) * n + row) = square[r];
 }
 
-/* A square on the diagonal or across the end of M */
+/* Stores a square that lies on the diagonal or reaches past the end of M. */
 LANES_INLINE void StorePart(const int full, int n, int row, int column, Lanes square[LANES], double *M)
 {
   for (int r = row; r < row + LANES && r < n; r++) {
@@ -45,7 +54,8 @@ LANES_INLINE void StorePart(const int full, int n, int row, int column, Lanes sq
   }
 }
 
-/* The tile at (row, column), a whole number of vectors wide, and, of a full M, its image */
+/* Computes the tile at (row, column), which is a whole number of vectors wide. If M is wanted in full, its mirror
+   image is stored too. */
 LANES_INLINE void ProductTile(const int full, const int vectors, int n, int depth, int stride, const double *K,
                               const double *J, int row, int column, double *M)
 {
@@ -83,17 +93,48 @@ LANES_INLINE void SymmetricProductTile(const int full, int n, int depth, int str
   }
 }
 
-/* SymmetricProduct - M = K^T J + J^T K. Not collective.
+/*@
+  SymmetricProduct - computes M = K^T J + J^T K.
 
-   Input: n - rows of the product; depth - rows of the factors; stride - length of a row, at least
-   SymmetricProductStride(n) and a whole number of vectors; K, J - [depth][stride], aligned to a vector Output: M -
-   [n][n], symmetric to the last bit */
+  Not collective
+
+  Input Parameters:
++ n      - rows of the product
+. depth  - rows of the factors
+. stride - length of a row of the factors: at least SymmetricProductStride(n) and a whole number of vectors
+. K      - first factor, K[depth][stride], aligned to a vector
+- J      - second factor, J[depth][stride], aligned to a vector
+
+  Output Parameter:
+. M - the product, M[n][n], symmetric to the last bit
+
+  Note:
+  The entries of K and J past n must be finite, because they are read, although they are not used. Plain C.
+@*/
 void SymmetricProduct(int n, int depth, int stride, const double *K, const double *J, double *M)
 {
   SymmetricProductTile(1, n, depth, stride, K, J, M);
 }
 
-/* SymmetricProductUpper - as SymmetricProduct(), but the triangle below the diagonal is left alone. Not collective. */
+/*@
+  SymmetricProductUpper - computes the upper triangle of M = K^T J + J^T K and leaves the triangle below the diagonal as
+  it is.
+
+  Not collective
+
+  Input Parameters:
++ n      - rows of the product
+. depth  - rows of the factors
+. stride - as in SymmetricProduct()
+. K      - first factor, as in SymmetricProduct()
+- J      - second factor, as in SymmetricProduct()
+
+  Output Parameter:
+. M - the product, M[n][n], of which the upper triangle is written
+
+  Note:
+  Plain C.
+@*/
 void SymmetricProductUpper(int n, int depth, int stride, const double *K, const double *J, double *M)
 {
   SymmetricProductTile(0, n, depth, stride, K, J, M);

@@ -1,5 +1,10 @@
-/* What the files of the diffuse fit share: fit.c makes surface and foot, fitvariation.c the variations N and M over
-   points, fitmap.c those over nodes. Private to these; symmetricproduct.c turns its squares over by Transpose(). */
+/* The internals that the files of the diffuse fit share, and nobody else. diffusefit.c makes surface and foot,
+   fitvariation.c the variations N and M over points, and fitderivatives.c those over nodes. symmetricproduct.c
+   transposes its squares with Transpose().
+
+   FitVariationFirst(), FitVariationSecond() and FitVariationFactors() are called by the evaluation once FitArrays
+   and FitState describe fit and foot. The inline functions handle LANES points at a time. INSTANTIATE() calls a
+   function with constant dimension and degree. */
 #pragma once
 #include "smooth/diffusefit.h"
 #include "base/lanes.h"
@@ -7,33 +12,37 @@
 
 enum {
   MAX_TANGENTS = 2,
-  ROWS         = 1 + MAX_TANGENTS, /* of F */
-  BLOCK        = 4, /* columns orthogonalised together, so that their sums do not wait for each other: no more than 8 */
-  ALIGNMENT    = 64,                                                /* bytes: a cache line, and the widest vector */
-  FACTORS      = LANES * ((2 * FIT_MAX_TERMS + LANES - 1) / LANES), /* most entries of a row of factors */
-  FIT_HESSIAN  = 8, /* most entries of a point's H, filled up to whole vectors */
-  ARRAYS =
-    13 /* vectors per LANES points besides the basis: eta (2), multiplier, inside, power, weight, scratch, H (6) */
+  ROWS         = 1 + MAX_TANGENTS, /* rows of F */
+  /* Columns that are orthogonalised together, so that their sums do not wait for each other; at most 8. */
+  BLOCK = 4,
+  /* Alignment of the arrays in bytes: a cache line, and the widest vector. */
+  ALIGNMENT = 64,
+  /* Most entries of a row of factors. */
+  FACTORS = LANES * ((2 * FIT_MAX_TERMS + LANES - 1) / LANES),
+  /* Most entries of a point's H, filled up to whole vectors. */
+  FIT_HESSIAN = 8,
+  /* Vectors per LANES points besides the basis: eta (2), multiplier, inside, power, weight, scratch, H (6). */
+  ARRAYS = 13
 };
 
-/* Arrays over the points inside the support, in vectors of LANES points; the last one is filled up with points of no
- * weight. */
+/* Arrays over the points inside the support, in vectors of LANES points. The last vector is filled up with points of
+   weight 0. */
 typedef struct {
-  int    n, groups; /* points inside, vectors that hold them */
-  int    capacity;  /* vectors that hold all points of the problem: length of an array */
-  int    stride;    /* vectors per row of K and J */
-  Lanes *eta[MAX_TANGENTS], *multiplier, *inside, *power, *weight,
-    *scratch;   /* inside: 1 - rho^2, power: v inside^(exponent - 2) */
+  int n, groups; /* points inside, and vectors that hold them */
+  int capacity;  /* length of an array: vectors that hold all points of the problem */
+  int stride;    /* vectors per row of K and J */
+  /* inside: 1 - rho^2; power: v inside^(exponent - 2). */
+  Lanes *eta[MAX_TANGENTS], *multiplier, *inside, *power, *weight, *scratch;
   Lanes *H;     /* [6][capacity]: xx xy yy xz yz zz */
-  Lanes *basis; /* [terms + 1][capacity]: orthonormal basis, residual e */
+  Lanes *basis; /* [terms + 1][capacity]: orthonormal basis, then the residual e */
   Lanes *K, *J; /* [terms][stride]: entry (1 + i)*dim + c of a row */
   int   *points;
 } FitArrays;
 
-/* The fit and its foot; Lanes: broadcast to all */
+/* The fit and its foot. Quantities of type Lanes are the same in all lanes. */
 typedef struct {
-  double R[FIT_MAX_TERMS]
-          [FIT_MAX_TERMS + 1 + BLOCK]; /* over its diagonal: above that only, and of the heights at the end */
+  /* Only the entries above the diagonal, with those of the heights at the end. */
+  double R[FIT_MAX_TERMS][FIT_MAX_TERMS + 1 + BLOCK];
   double square[FIT_MAX_TERMS], inverse[FIT_MAX_TERMS]; /* of the diagonal */
   Lanes  alpha[FIT_MAX_TERMS], lambda[FIT_MAX_TERMS];   /* of the monomials */
   Lanes  foot[ROWS][FIT_MAX_TERMS];                     /* F = p^, Dp^ at the foot, D with respect to y */
@@ -73,7 +82,7 @@ static const LaneMask swap_high[SWAP_STAGES] = {
 };
 #endif
 
-#ifdef __clang__ /* has no __builtin_shuffle() */
+#ifdef __clang__ /* clang has no __builtin_shuffle() */
 LANES_INLINE Lanes Shuffle(Lanes a, Lanes b, LaneMask from)
 {
   Lanes mixed = a;
@@ -85,7 +94,7 @@ LANES_INLINE Lanes Shuffle(Lanes a, Lanes b, LaneMask from)
   #define Shuffle __builtin_shuffle
 #endif
 
-/* Turns a square of LANES vectors over, by swapping ever larger off-diagonal blocks. */
+/* Transposes a square of LANES vectors by swapping ever larger off-diagonal blocks. */
 LANES_INLINE void Transpose(Lanes a[LANES])
 {
   for (int stage = 0; stage < SWAP_STAGES; stage++) {
@@ -109,7 +118,7 @@ LANES_INLINE Lanes Broadcast(double a)
   return (Lanes){0} + a;
 }
 
-/* Place of s^(k-b) t^b among the monomials */
+/* Position of s^(k-b) t^b among the monomials. */
 LANES_INLINE int Term(const int tangents, const int k, const int b)
 {
   return tangents == 1 ? k : k * (k + 1) / 2 + b;
@@ -137,7 +146,7 @@ LANES_INLINE void MonomialGradients(const int m, const int degree, const Lanes *
   }
 }
 
-/* Derivatives (s, t) of the polynomial c where the monomials are p */
+/* Derivatives (s, t) of the polynomial with coefficients c, where the monomials have the values p. */
 LANES_INLINE void PolynomialGradient(const int m, const int degree, const Lanes *p, const Lanes *c, Lanes gradient[2])
 {
   gradient[0] = gradient[1] = Broadcast(0);
@@ -148,7 +157,7 @@ LANES_INLINE void PolynomialGradient(const int m, const int degree, const Lanes 
   }
 }
 
-/* Second derivatives (ss, st, tt) of the polynomial c where the monomials are p */
+/* Second derivatives (ss, st, tt) of the polynomial with coefficients c, where the monomials have the values p. */
 LANES_INLINE void PolynomialHessian(const int m, const int degree, const Lanes *p, const Lanes *c, Lanes hessian[3])
 {
   hessian[0] = hessian[1] = hessian[2] = Broadcast(0);
@@ -162,14 +171,14 @@ LANES_INLINE void PolynomialHessian(const int m, const int degree, const Lanes *
 
 LANES_INLINE Lanes DotTerms(const int terms, const Lanes *a, const Lanes *b)
 {
-  Lanes even = a[0] * b[0], odd = a[1] * b[1]; /* neither waits for the other */
+  Lanes even = a[0] * b[0], odd = a[1] * b[1]; /* the two sums do not wait for each other */
 
   for (int k = 2; k < terms; k += 2) even += a[k] * b[k];
   for (int k = 3; k < terms; k += 2) odd += a[k] * b[k];
   return even + odd;
 }
 
-/* p := R^-T p, column by column: row by row each operation would wait for the one before */
+/* p := R^-T p, column by column. Row by row each operation would wait for the one before. */
 LANES_INLINE void ToOrthonormal(const int terms, const FitState *s, Lanes *p)
 {
   for (int l = 0; l < terms; l++)
@@ -188,20 +197,18 @@ LANES_INLINE void ToOrthonormal(const int terms, const FitState *s, Lanes *p)
   case 34: body(3, 4, 15);                 \
   }
 
-/* Length of a row of FitFactors: terms of K, terms of J, filled up with zeros */
+/* Length of a row of FitFactors: terms of K, terms of J, filled up with zeros. */
 LANES_INLINE int FactorStride(const int terms)
 {
   return LanesGroups(2 * terms) * LANES;
 }
 
-/* Length of a point's H in FitFactors: xx xy yy | xz yz zz, filled up with zeros */
+/* Length of a point's H in FitFactors: xx xy yy | xz yz zz, filled up with zeros. */
 LANES_INLINE int HessianStride(const int dim)
 {
   return LanesGroups(dim * (dim + 1) / 2) * LANES;
 }
 
-/* N[(1 + points inside)*dim] and M[its square] from fit and foot; workspace of the arrays is used up. */
 void FitVariationFirst(const FitProblem *, const FitArrays *, const FitState *, double *N);
 void FitVariationSecond(const FitProblem *, FitArrays *, const FitState *, double *M);
-/* What M is made of, in the place of the arrays K and J */
 void FitVariationFactors(const FitProblem *, const FitArrays *, const FitState *, FitFactors *);
