@@ -1,8 +1,8 @@
-/* Candidates of a search, and the growing lists that they are written into: below the search and the fits. */
+/* Candidates of a search, and the growing lists into which they are written. */
 #include "searchimpl.h"
 
-/* Boxes of curved facets are widened by this fraction of the face size. A quadratic face bulges beyond its nodes by at
- * most 1/8 of its chord. */
+/* Boxes of curved facets are widened by this fraction of the face size. A quadratic face bulges beyond its nodes by
+   at most 1/8 of its chord. */
 #define SEARCH_BULGE 0.15
 
 /*@
@@ -56,14 +56,16 @@ void CandidatePlace(int dim, const PetscReal *x, PetscReal size, Candidate *c)
 }
 
 /*@
-  ListBufferAddPoint - adds a point to the list of the present slave point, unless it is there.
+  ListBufferAddPoint - adds a point to the list of the present slave point, unless the list already holds it.
 
   Not collective
 
   Input Parameters:
-+ buffer - the growing lists
-. first  - place where the list of the present slave point starts
-- point  - the point; its place in all lists is in the buffer's position[] afterwards
++ first - start of the list of the present slave point
+- point - the point
+
+  Input/Output Parameter:
+. buffer - the growing lists; position[point] is the point's place in all lists afterwards
 @*/
 PetscErrorCode ListBufferAddPoint(ListBuffer *buffer, PetscInt first, PetscInt point)
 {

@@ -1,3 +1,4 @@
+/* The exchange of master faces: boxes of the ranks, and the faces that may reach them. */
 #include "searchimpl.h"
 
 static void BoxEmpty(PetscReal box[6])
@@ -16,6 +17,17 @@ static void BoxAdd(PetscReal box[6], int dim, const PetscReal *x)
   }
 }
 
+/*@
+  SearchBoxesMeet - tests whether two boxes are within a distance of each other.
+
+  Not collective
+
+  Input Parameters:
++ a        - box, lower then upper corner
+. b        - another box
+. dim      - 2 or 3
+- distance - the distance (length)
+@*/
 PetscBool SearchBoxesMeet(const PetscReal *a, const PetscReal *b, int dim, PetscReal distance)
 {
   for (int d = 0; d < dim; d++)
@@ -23,7 +35,19 @@ PetscBool SearchBoxesMeet(const PetscReal *a, const PetscReal *b, int dim, Petsc
   return PETSC_TRUE;
 }
 
-/* Where node n of the rigid tool is at t, relative to the mesh's centre. */
+/*@
+  SearchRigidPosition - computes the position of a node of the rigid tool at load parameter t.
+
+  Not collective
+
+  Input Parameters:
++ s - the search
+. n - node of the tool
+- t - load parameter
+
+  Output Parameter:
+. x - position relative to the mesh's centre (length)
+@*/
 void SearchRigidPosition(ContactSearch s, PetscInt n, PetscReal t, PetscReal x[3])
 {
   const int dim  = s->mesh->dim;
@@ -33,7 +57,7 @@ void SearchRigidPosition(ContactSearch s, PetscInt n, PetscReal t, PetscReal x[3
   LoadsRigidMotion(s->loads, s->master->body, t, X, x);
 }
 
-/* Where the nodes of a master face are. */
+/* Positions of the nodes of a master face. */
 static void FacePointPositions(ContactSearch s, PetscInt f, const PetscReal *u, PetscReal t, PetscReal *x)
 {
   const int    dim   = s->mesh->dim;
@@ -49,7 +73,17 @@ static void FacePointPositions(ContactSearch s, PetscInt f, const PetscReal *u, 
   }
 }
 
-/* Box of the slave points of this rank after their last move. */
+/*@
+  SearchSlaveBox - computes the box of this rank's slave points after their last move.
+
+  Not collective
+
+  Input Parameter:
+. s - the search
+
+  Output Parameter:
+. box - lower then upper corner
+@*/
 void SearchSlaveBox(ContactSearch s, PetscReal box[6])
 {
   const int dim = s->mesh->dim;
@@ -63,7 +97,22 @@ void SearchSlaveBox(ContactSearch s, PetscReal box[6])
   }
 }
 
-/* Box of this rank's own faces of the master; a rigid tool has them all on every rank. */
+/*@
+  SearchMasterBox - computes the box of this rank's own faces of the master.
+
+  Not collective
+
+  Input Parameters:
++ s - the search
+. u - local displacements (length)
+- t - load parameter, for rigid tools
+
+  Output Parameter:
+. box - lower then upper corner
+
+  Note:
+  A rigid tool has all its faces on every rank.
+@*/
 void SearchMasterBox(ContactSearch s, const PetscReal *u, PetscReal t, PetscReal box[6])
 {
   const int dim = s->mesh->dim;
@@ -77,6 +126,7 @@ void SearchMasterBox(ContactSearch s, const PetscReal *u, PetscReal t, PetscReal
   }
 }
 
+/* Does any mirror image of a face come within the distance of a box? */
 static PetscBool SomeImageMeets(ContactSearch s, int n, const PetscReal *x, const PetscReal box[6], PetscReal distance)
 {
   const int dim = s->mesh->dim;
@@ -95,7 +145,7 @@ static PetscBool SomeImageMeets(ContactSearch s, int n, const PetscReal *x, cons
   return PETSC_FALSE;
 }
 
-/* Which boxes of the ranks the faces are held against */
+/* The boxes of the ranks with which the faces are compared. */
 typedef struct {
   ContactSearch    s;
   const PetscReal *u, *boxes;
@@ -113,8 +163,23 @@ static PetscBool ReachesBox(const void *context, PetscInt f, PetscMPIInt r)
                         reach->distance);
 }
 
-/* Sends this rank's faces of a deformable master to every rank whose box they may reach; returns what arrived (itself
- * included). */
+/*@
+  SearchExchangeFaces - sends this rank's faces of a deformable master to every rank whose box they may reach, itself
+  included.
+
+  Collective
+
+  Input Parameters:
++ s        - the search
+. geometry - geometry of the nodes, or NULL
+. u        - local displacements (length)
+. boxes    - boxes of all ranks, 6 entries each
+- distance - reach of the faces (length)
+
+  Output Parameters:
++ n_records - number of faces that arrived
+- records   - these faces, to be freed with PetscFree()
+@*/
 PetscErrorCode SearchExchangeFaces(ContactSearch s, const NodeGeometry *geometry, const PetscReal *u,
                                    const PetscReal *boxes, PetscReal distance, PetscInt *n_records,
                                    FaceRecord **records)
@@ -126,7 +191,22 @@ PetscErrorCode SearchExchangeFaces(ContactSearch s, const NodeGeometry *geometry
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The faces of a rigid tool that come near a box; every rank has them all. */
+/*@
+  SearchPickRigidFaces - picks the faces of a rigid tool that come near a box; every rank has all of them.
+
+  Not collective
+
+  Input Parameters:
++ s        - the search
+. geometry - geometry of the tool's nodes, or NULL
+. t        - load parameter
+. box      - box of this rank
+- distance - reach of the faces (length)
+
+  Output Parameters:
++ n_records - number of faces
+- records   - these faces, to be freed with PetscFree()
+@*/
 PetscErrorCode SearchPickRigidFaces(ContactSearch s, const NodeGeometry *geometry, PetscReal t, const PetscReal box[6],
                                     PetscReal distance, PetscInt *n_records, FaceRecord **records)
 {

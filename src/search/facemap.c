@@ -1,6 +1,7 @@
+/* Maps of faces on their way between ranks. */
 #include "search/facemap.h"
 
-/* Sends n blocks of `size` bytes from roots to leaves. */
+/* Sends blocks of `size` bytes from roots to leaves. */
 static PetscErrorCode Broadcast(PetscSF sf, size_t size, const void *roots, void *leaves)
 {
   MPI_Datatype block;
@@ -14,8 +15,8 @@ static PetscErrorCode Broadcast(PetscSF sf, size_t size, const void *roots, void
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The forest of the faces' entries: each leaf's follow one another as its root's do. start[leaf]: first entry of the
- * root. */
+/* Makes the star forest of the faces' entries. The entries of each leaf follow one another as those of its root do.
+   start[leaf] is the first entry of the root. */
 static PetscErrorCode CreateEntryForest(PetscSF faces, const FaceMaps *home, const PetscInt start[],
                                         const FaceMaps *maps, PetscSF *sf)
 {
@@ -35,10 +36,22 @@ static PetscErrorCode CreateEntryForest(PetscSF faces, const FaceMaps *home, con
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* FaceMapsFetch - the maps of faces wherever they live.
+/*@
+  FaceMapsFetch - fetches the maps of faces from the ranks where the faces live.
 
-   Collective. faces: roots are the faces of home, in their order, leaves those wanted, without gaps; home: of this
-   rank's faces; maps: empty. To be freed with FaceMapsDestroy(). */
+  Collective
+
+  Input Parameters:
++ faces - star forest: its roots are the faces of home, in their order, and its leaves are the faces that are wanted,
+          without gaps
+- home  - maps of this rank's faces
+
+  Output Parameter:
+. maps - maps of the leaves
+
+  Note:
+  The caller frees the maps with FaceMapsDestroy().
+@*/
 PetscErrorCode FaceMapsFetch(PetscSF faces, const FaceMaps *home, FaceMaps *maps)
 {
   PetscInt *start, *end, n;
@@ -61,7 +74,14 @@ PetscErrorCode FaceMapsFetch(PetscSF faces, const FaceMaps *home, FaceMaps *maps
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* FaceMapsDestroy - Not collective. */
+/*@
+  FaceMapsDestroy - frees maps of faces.
+
+  Not collective
+
+  Input/Output Parameter:
+. maps - the maps, empty on return
+@*/
 PetscErrorCode FaceMapsDestroy(FaceMaps *maps)
 {
   PetscFunctionBeginUser;
@@ -71,7 +91,21 @@ PetscErrorCode FaceMapsDestroy(FaceMaps *maps)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* FaceMapShift - Not collective. point: of the face's rule; images: that the entries speak of; shift[dim]: length. */
+/*@
+  FaceMapShift - computes the constant part of a point's position, which is the sum of the shifts of its nodes' images.
+
+  Not collective
+
+  Input Parameters:
++ maps   - maps of faces
+. face   - number of the face among them
+. point  - point of the face's rule
+. dim    - 2 or 3
+- images - the mirror images to which the entries refer
+
+  Output Parameter:
+. shift - shift[dim] (length)
+@*/
 void FaceMapShift(const FaceMaps *maps, PetscInt face, int point, int dim, const SurfaceImage *images, PetscReal *shift)
 {
   for (int d = 0; d < dim; d++) shift[d] = 0;

@@ -1,23 +1,28 @@
+/* Quadrature rules of faces, hat functions, and areas of quadrature points. */
 #include <math.h>
 #include <string.h>
 #include "search/facequadrature.h"
 
 static FaceRule rules[2][ELEMENT_TYPES];
 
-/* Gauss and Legendre's points on [-1, 1], n of them */
+/* Gauss-Legendre points and weights on [-1, 1], indexed by the number of points. */
+// clang-format off
 static const struct {
   double x[5], w[5];
 } gauss[6] = {
-  [2] = {{-0.57735026918962576451, 0.57735026918962576451},                                                     {1, 1}                  },
-  [3] = {{-0.77459666924148337704, 0, 0.77459666924148337704},                                                  {5. / 9, 8. / 9, 5. / 9}},
+  [2] = {{-0.57735026918962576451, 0.57735026918962576451},
+         {1, 1}},
+  [3] = {{-0.77459666924148337704, 0, 0.77459666924148337704},
+         {5. / 9, 8. / 9, 5. / 9}},
   [4] = {{-0.86113631159405257522, -0.33998104358485626480, 0.33998104358485626480, 0.86113631159405257522},
-         {0.34785484513745385737, 0.65214515486254614263, 0.65214515486254614263, 0.34785484513745385737}                               },
+         {0.34785484513745385737, 0.65214515486254614263, 0.65214515486254614263, 0.34785484513745385737}},
   [5] = {{-0.90617984593866399280, -0.53846931010568309104, 0, 0.53846931010568309104, 0.90617984593866399280},
-         {0.23692688505618908751, 0.47862867049936646804, 128. / 225, 0.47862867049936646804, 0.23692688505618908751}                   }
+         {0.23692688505618908751, 0.47862867049936646804, 128. / 225, 0.47862867049936646804, 0.23692688505618908751}}
 };
+// clang-format on
 
-/* Orbits of symmetric points of a triangle: barycentric coordinates (a, b, 1 - a - b) in all their orders, weights as
-   shares of the area. Degrees 2, 4 and 6: Dunavant, Int. J. Numer. Meth. Engng. 21 (1985), 1129. */
+/* Orbits of symmetric points of a triangle: barycentric coordinates (a, b, 1 - a - b) in all their orders, with
+   weights as shares of the area. Degrees 2, 4 and 6 from Dunavant, Int. J. Numer. Meth. Engng. 21 (1985), 1129. */
 typedef struct {
   double a, b, weight;
 } Orbit;
@@ -44,6 +49,7 @@ static void AddPoint(FaceRule *rule, double x, double y, double weight)
   rule->weight[rule->n++] = weight;
 }
 
+/* Adds the points of a list of orbits, which ends with weight 0. */
 static void AddOrbits(FaceRule *rule, const Orbit *orbit)
 {
   for (; orbit->weight > 0; orbit++) {
@@ -56,12 +62,11 @@ static void AddOrbits(FaceRule *rule, const Orbit *orbit)
   }
 }
 
+/* Tabulates the points of a rule with shape functions, derivatives and hat functions. Edges have one more point,
+   because points cost little there and the additional one leaves a third of the noise of curved second-order edges. */
 static void MakeRule(const Element *e, int finer, FaceRule *rule)
 {
-  const int n =
-    e->order + 1 + finer +
-    (e->dim ==
-     1); /* on edges points cost little, and one more leaves a third of the noise of curved second-order ones */
+  const int n = e->order + 1 + finer + (e->dim == 1);
 
   if (e->corners == 3)
     AddOrbits(rule, n == 2 ? triangle3 : n == 3 ? triangle6 : triangle12);
@@ -80,7 +85,19 @@ static void MakeRule(const Element *e, int finer, FaceRule *rule)
   }
 }
 
-/* FaceRuleGet - the quadrature rule of a type of face, tabulated on first use. Not collective. finer: 0 or 1. */
+/*@
+  FaceRuleGet - returns the quadrature rule of a type of face, which is tabulated on first use.
+
+  Not collective
+
+  Input Parameters:
++ type  - of the face
+- finer - 0, or 1 for one order more
+
+  Note:
+  Number of points, finer = 0 | finer = 1: EDGE2 3 | 4, EDGE3 4 | 5, TRI3 3 | 6, TRI6 6 | 12, QUAD4 4 | 9, QUAD9 9 | 16.
+  Plain C.
+@*/
 const FaceRule *FaceRuleGet(ElementType type, int finer)
 {
   FaceRule *rule = &rules[finer][type];
@@ -89,8 +106,8 @@ const FaceRule *FaceRuleGet(ElementType type, int finer)
   return rule;
 }
 
-/* Hat functions of a 6-node triangle: its four small triangles by the barycentric coordinates l; node 3 + i is the
- * middle of corners i and i + 1. */
+/* Hat functions of a 6-node triangle, which is split into four small triangles by the barycentric coordinates l.
+   Node 3 + i is the middle of corners i and i + 1. */
 static void HatTriangle(const double l[3], double *psi)
 {
   for (int i = 0; i < 3; i++) {
@@ -103,10 +120,22 @@ static void HatTriangle(const double l[3], double *psi)
   for (int i = 0; i < 3; i++) psi[3 + i] = 1 - 2 * l[(i + 2) % 3];
 }
 
-/* FaceHat - positive weighting functions of a face's nodes: every node gets area on every element, which second-order
-   shape functions deny to corners of triangles. Not collective.
+/*@
+  FaceHat - evaluates the positive weighting functions of a face's nodes, whose sum is 1.
 
-   Input: type; xi - reference coordinates. Output: psi[nodes], sum 1 */
+  Not collective
+
+  Input Parameters:
++ type - of the face
+- xi   - reference coordinates
+
+  Output Parameter:
+. psi - the functions, psi[nodes]
+
+  Note:
+  First order: the shape functions. Second order: linear on the face, which is split at its mid-side nodes. So every
+  node has area on every element; with second-order shape functions the corners of triangles would have none. Plain C.
+@*/
 void FaceHat(ElementType type, const double *xi, double *psi)
 {
   const Element *e = ElementGet(type);
@@ -122,16 +151,31 @@ void FaceHat(ElementType type, const double *xi, double *psi)
     HatTriangle(l, psi);
     return;
   }
-  for (int a = 0; a < e->nodes; a++) { /* nodes at -1, 0, 1: the distance between them is 1 */
+  for (int a = 0; a < e->nodes; a++) { /* nodes are at -1, 0, 1: the distance between them is 1 */
     psi[a] = 1;
     for (int k = 0; k < e->dim; k++) psi[a] *= fmax(0, 1 - fabs(xi[k] - e->node[a][k]));
   }
 }
 
-/* FaceRuleAreas - what part of the face's area each point of the rule stands for. Not collective.
+/*@
+  FaceRuleAreas - computes the part of a face's area that each point of a rule represents, and the normals there.
 
-   Input: rule, type; dim, geometry - axisymmetric: times 2 pi R, over 360 degrees; X[nodes][dim] - reference or current
-   coordinates Output: area[n]; normal[n][3] - unit, out of the body; may be NULL */
+  Not collective
+
+  Input Parameters:
++ rule     - of FaceRuleGet()
+. type     - of the face
+. dim      - 2 or 3
+. geometry - axisymmetric areas are multiplied by 2 pi R, over 360 degrees
+- X        - reference or current coordinates of the nodes, X[nodes][dim]
+
+  Output Parameters:
++ area   - area[n] of the rule's n points
+- normal - normal[n][3], unit, out of the body; may be NULL
+
+  Note:
+  Plain C.
+@*/
 void FaceRuleAreas(const FaceRule *rule, ElementType type, int dim, Geometry geometry, const double *X, double *area,
                    double *normal)
 {

@@ -1,9 +1,20 @@
+/* Faces and node keys: making, sending and sorting them. */
 #include "search/facerecord.h"
 
-/* FaceRecordFromSurface - face f of a surface with its nodes' keys and reference positions. Not collective.
+/*@
+  FaceRecordFromSurface - makes a record of a face of a surface, with its nodes' keys and reference positions.
 
-   geometry: by local node of the mesh or the tool, or NULL; offset[faces][FACE_RULE_POINTS*dim]: lengths, or NULL. home
-   is left 0. */
+  Not collective
+
+  Input Parameters:
++ surface  - the surface
+. geometry - by local node of the mesh or the tool, or NULL
+. offset   - offset[faces][FACE_RULE_POINTS*dim] (length), or NULL
+- f        - number of the face on this rank
+
+  Output Parameter:
+. record - the record, whose home is left 0
+@*/
 void FaceRecordFromSurface(ContactSurface surface, const NodeGeometry *geometry, const PetscReal *offset, PetscInt f,
                            FaceRecord *record)
 {
@@ -25,8 +36,8 @@ void FaceRecordFromSurface(ContactSurface surface, const NodeGeometry *geometry,
   for (int i = 0; offset && i < FACE_RULE_POINTS * dim; i++) record->offset[i] = offset[f * FACE_RULE_POINTS * dim + i];
 }
 
-/* Sends count[r] records to each rank r, one rank after the other in send; what arrives is in the order of the ranks it
- * comes from. */
+/* Sends count[r] records to each rank r; send holds them rank after rank. The records that arrive are in the order
+   of the ranks from which they come. */
 static PetscErrorCode ExchangeRecords(MPI_Comm comm, const PetscInt count[], const FaceRecord *send, PetscInt *n,
                                       FaceRecord **received)
 {
@@ -57,11 +68,25 @@ static PetscErrorCode ExchangeRecords(MPI_Comm comm, const PetscInt count[], con
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* FaceRecordsShare - sends the faces of a surface, whose home is this rank, to every rank that wants them, itself
-   included.
+/*@
+  FaceRecordsShare - sends the faces of this rank to every rank that wants them, itself included.
 
-   Collective. geometry, offset: as of FaceRecordFromSurface(); wanted(context, f, r): does rank r want face f of this
-   rank? received[*n]: in the order of the ranks they come from; to be freed with PetscFree(). */
+  Collective
+
+  Input Parameters:
++ surface  - the surface
+. geometry - as in FaceRecordFromSurface()
+. offset   - as in FaceRecordFromSurface()
+. wanted   - wanted(context, f, r): does rank r want face f of this rank?
+- context  - passed to wanted()
+
+  Output Parameters:
++ n        - number of records that arrived
+- received - the records, in the order of the ranks from which they come
+
+  Note:
+  The caller frees received with PetscFree().
+@*/
 PetscErrorCode FaceRecordsShare(ContactSurface surface, const NodeGeometry *geometry, const PetscReal *offset,
                                 FaceWantedFn wanted, const void *context, PetscInt *n, FaceRecord **received)
 {
@@ -90,7 +115,17 @@ PetscErrorCode FaceRecordsShare(ContactSurface surface, const NodeGeometry *geom
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* FaceRecordKeys - keys[nodes of the face], in its order. Not collective. */
+/*@
+  FaceRecordKeys - writes the keys of a record's nodes.
+
+  Not collective
+
+  Input Parameter:
+. record - the record
+
+  Output Parameter:
+. keys - keys[nodes of the face], in the face's order
+@*/
 void FaceRecordKeys(const FaceRecord *record, NodeKey *keys)
 {
   for (int a = 0; a < ElementGet(record->facet.type)->nodes; a++) {
@@ -111,8 +146,20 @@ static int NodeKeyCompare(const void *a, const void *b)
   return p->id < q->id ? -1 : p->id > q->id;
 }
 
-/* NodeKeysUnique - Not collective. keys[n] is sorted in place by id; returns how many are left once each id stands
- * once. */
+/*@
+  NodeKeysUnique - sorts keys by id and drops repeated ones.
+
+  Not collective
+
+  Input Parameter:
+. n - number of keys
+
+  Input/Output Parameter:
+. keys - keys[n], sorted in place
+
+  Note:
+  Returns the number of keys that remain.
+@*/
 PetscInt NodeKeysUnique(PetscInt n, NodeKey *keys)
 {
   PetscInt kept = 0;
@@ -123,13 +170,32 @@ PetscInt NodeKeysUnique(PetscInt n, NodeKey *keys)
   return kept;
 }
 
-/* FaceRecordsSort - by the faces' tags: an order that does not depend on the ranks. Not collective. */
+/*@
+  FaceRecordsSort - sorts records by the faces' tags, an order that does not depend on the ranks.
+
+  Not collective
+
+  Input Parameter:
+. n - number of records
+
+  Input/Output Parameter:
+. records - the records
+@*/
 void FaceRecordsSort(PetscInt n, FaceRecord *records)
 {
   if (n) qsort(records, n, sizeof(*records), FaceRecordCompare);
 }
 
-/* NodeKeysFind - Not collective. keys[n]: of NodeKeysUnique(); id is among them. */
+/*@
+  NodeKeysFind - finds the position of an id among sorted keys.
+
+  Not collective
+
+  Input Parameters:
++ n    - number of keys
+. keys - of NodeKeysUnique()
+- id   - an id that is among them
+@*/
 int NodeKeysFind(PetscInt n, const NodeKey *keys, PetscInt id)
 {
   const NodeKey  wanted = {.id = id};

@@ -1,15 +1,17 @@
+/* Fits of a pair's slave points: spacing, support, and the ladder of fall-backs until every guard of the fit holds. */
 #include "smooth/fitframe.h"
 #include "searchimpl.h"
 #include "base/timing.h"
 
-/* Points are gathered a little beyond the support (rho^2 up to this), so that those which enter while a solve lasts are
- * in the list. */
+/* Points are gathered a little beyond the support, up to this rho^2, so that points which enter during a solve are
+   in the list. */
 #define SEARCH_FIT_MARGIN PetscSqr(1 + NEIGHBOUR_LISTS_MARGIN)
-/* On regular meshes points lie exactly on the border of the support; this much beyond still counts as inside, and
- * round-off decides nothing. */
+/* On regular meshes points lie exactly on the border of the support. Points that are beyond it by no more than this
+   still count as inside, so that round-off decides nothing. */
 #define SEARCH_FIT_TIE 1e-6
 
-/* The ladder: wider supports, then lower degrees, until every guard holds. Degree 0: the scene's. */
+/* The ladder of fall-backs: wider supports, then lower degrees, until every guard holds. Degree 0 means the degree
+   of the scene. */
 static const struct {
   int    degree;
   double widen;
@@ -36,7 +38,7 @@ static void ReferenceNormal(NeighbourLists lists, const Candidate *c, PetscReal 
   for (int d = 0; d < 3; d++) normal[d] = at_rest.normal[d];
 }
 
-/* What the quadrature points of a candidate know of the spacing: area and second moments of their face. */
+/* Computes the spacing at the quadrature points of a candidate from area and second moments of its face. */
 static void FaceSpacing(FitSupport *fit, PetscInt candidate)
 {
   const Facet    *facet = &fit->view.facets[candidate];
@@ -66,6 +68,19 @@ static void FaceSpacing(FitSupport *fit, PetscInt candidate)
   for (int q = 0; q < rule->n; q++) first[q] = of_face;
 }
 
+/*@
+  FitSupportCreate - prepares the fits of a pair's slave points: a view of the facets, their links and the workspace.
+
+  Not collective
+
+  Input Parameters:
++ s     - the search
+. lists - the lists, whose points are there
+- field - the candidates
+
+  Output Parameter:
+. fit - the prepared fits
+@*/
 PetscErrorCode FitSupportCreate(ContactSearch s, NeighbourLists lists, const SearchField *field, FitSupport *fit)
 {
   const PetscInt   n          = field->n_candidates;
@@ -108,6 +123,14 @@ PetscErrorCode FitSupportCreate(ContactSearch s, NeighbourLists lists, const Sea
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/*@
+  FitSupportDestroy - frees the prepared fits.
+
+  Not collective
+
+  Input/Output Parameter:
+. fit - the prepared fits
+@*/
 PetscErrorCode FitSupportDestroy(FitSupport *fit)
 {
   Facet     *facets = (Facet *)fit->view.facets;
@@ -121,7 +144,7 @@ PetscErrorCode FitSupportDestroy(FitSupport *fit)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The metric over a frame's tangents as a tensor in space: inverse squared lengths. */
+/* The metric over a frame's tangents as a tensor in space (inverse squared lengths). */
 static void MetricInSpace(int dim, double (*frame)[3], double metric[2][2], PetscReal space[9])
 {
   for (int i = 0; i < 3; i++) {
@@ -133,6 +156,7 @@ static void MetricInSpace(int dim, double (*frame)[3], double metric[2][2], Pets
   }
 }
 
+/* Adds factor times the covariance of a node to a full matrix. */
 static void AddCovariance(double factor, const NodeGeometry *g, double covariance[3][3])
 {
   for (int d = 0; d < 3; d++) {
@@ -142,9 +166,9 @@ static void AddCovariance(double factor, const NodeGeometry *g, double covarianc
   }
 }
 
-/* Spacing of the points at a foot. Shape: the nodes' covariances, between the nodes by the shape functions, so that the
-   support does not jump from facet to facet and keeps the symmetry of a ring around a node. Size: the mean over the
-   facet's nodes, as those on a cut see one side only. */
+/* Spacing of the points at a foot. Its shape comes from the nodes' covariances, interpolated between the nodes by
+   the shape functions, so that the support does not jump from facet to facet and keeps the symmetry of a ring around
+   a node. Its size is the mean over the facet's nodes, because nodes on a cut see one side only. */
 static void FootSpacing(const FitSupport *fit, PetscInt f, const double *xi, double covariance[3][3], double *area)
 {
   const Facet *facet = &fit->view.facets[f];
@@ -152,7 +176,8 @@ static void FootSpacing(const FitSupport *fit, PetscInt f, const double *xi, dou
   double       share[FACE_MAX_NODES], total            = 0;
 
   ElementShape(facet->type, xi, share, NULL, NULL);
-  for (int a = 0; a < n; a++) total += share[a] = PetscMax(share[a], 0); /* second-order ones are negative in places */
+  /* Second-order shape functions are negative in places. */
+  for (int a = 0; a < n; a++) total += share[a] = PetscMax(share[a], 0);
   *area = 0;
   for (int i = 0; i < 3; i++)
     for (int j = 0; j < 3; j++) covariance[i][j] = 0;
@@ -165,9 +190,9 @@ static void FootSpacing(const FitSupport *fit, PetscInt f, const double *xi, dou
   }
 }
 
-/* Spacing for a fit through quadrature points: the mean over the faces that it sees. Forces spread by the fit are
-   consistent nodal loads as far as neighbouring slave points share one support; its change from face to face by the
-   local spacing costs 2 to 10 times the error of the patch test. */
+/* Spacing for a fit through quadrature points: the mean over the faces that it sees. The forces that such a fit
+   distributes are consistent nodal loads as far as neighbouring slave points share one support. A support that
+   changed from face to face with the local spacing would increase the error of the patch test 2 to 10 times. */
 static void WindowSpacing(const FitSupport *fit, PetscInt n, double covariance[3][3], double *area)
 {
   double sum = 0, faces = 0;
@@ -185,8 +210,8 @@ static void WindowSpacing(const FitSupport *fit, PetscInt n, double covariance[3
   *area = sum / faces;
 }
 
-/* Weights of n points and their positions relative to the fit's origin, as of NeighbourListsRelative(); returns how
-   many are inside the support. dim constant where this is called. */
+/* Computes weights of n points and their positions relative to the fit's origin, as NeighbourListsRelative() does.
+   Returns how many are inside the support. dim is a constant where this is called. */
 static inline PetscInt TakePoints(const int dim, FitSupport *fit, const FitFoot *at, PetscInt n, const PetscReal *rho2)
 {
   const NeighbourLists lists = fit->lists;
@@ -205,8 +230,9 @@ static inline PetscInt TakePoints(const int dim, FitSupport *fit, const FitFoot 
   return inside;
 }
 
-/* Tries one rung at a foot: points, frame, metric into fit and problem; true when every guard holds. Quadrature points
-   come in clusters, whose number says nothing: the pivot does. */
+/* Tries one rung of the ladder at a foot and writes points, frame and metric into fit and problem. *holds is true if
+   every guard holds. Quadrature points come in clusters, so that their number tells nothing; the pivot is the guard
+   for them. */
 static PetscErrorCode FitRung(FitSupport *fit, const FitFoot *at, int rung, FitProblem *problem, FitResult *result,
                               PetscBool *holds)
 {
@@ -229,7 +255,8 @@ static PetscErrorCode FitRung(FitSupport *fit, const FitFoot *at, int rung, FitP
                           .multiplier = fit->multiplier};
   FootSpacing(fit, at->facet, at->xi, covariance, &area);
   FitFrameFromNormal(dim, settings->global_frame ? fit->plane : at->outward, problem->frame);
-  for (int pass = 0; pass < 2; pass++) { /* first seen along the facet's normal, then along the points' own */
+  /* The first pass sees the points along the facet's normal, the second one along the normal of their own plane. */
+  for (int pass = 0; pass < 2; pass++) {
     FitMetricFromCovariance(dim, problem->frame, covariance, area, settings->support * Ladder[rung].widen,
                             problem->metric);
     MetricInSpace(dim, problem->frame, problem->metric, space);
@@ -253,8 +280,20 @@ static PetscErrorCode FitRung(FitSupport *fit, const FitFoot *at, int rung, FitP
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Climbs down the ladder until a fit holds; *rung is where it stands, RUNG_FACET: nowhere. problem and result speak of
- * fit's arrays. */
+/*@
+  FitSupportClimb - goes down the ladder of fall-backs until a fit holds.
+
+  Not collective
+
+  Input Parameters:
++ fit - the prepared fits
+- at  - where the fit is made
+
+  Output Parameters:
++ problem - the fit, with arrays that belong to fit
+. result  - its surface and guards, likewise
+- rung    - the rung on which the fit holds; RUNG_FACET if none does
+@*/
 PetscErrorCode FitSupportClimb(FitSupport *fit, const FitFoot *at, FitProblem *problem, FitResult *result, int *rung)
 {
   PetscBool holds = PETSC_FALSE;
@@ -268,8 +307,8 @@ PetscErrorCode FitSupportClimb(FitSupport *fit, const FitFoot *at, FitProblem *p
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* How far the points in the inner half of the support lie from the fit: what the smoothing itself costs. dim constant
- * where this is called. */
+/* Largest distance to the fit of the points in the inner half of the support, which is the error of the smoothing
+   itself. dim is a constant where this is called. */
 static inline PetscReal FitResidual(const int dim, const FitProblem *problem, const FitResult *result)
 {
   const double Q[3] = {problem->metric[0][0], 2 * problem->metric[0][1], problem->metric[1][1]};
@@ -288,7 +327,23 @@ static inline PetscReal FitResidual(const int dim, const FitProblem *problem, co
   return most;
 }
 
-/* Fits the surface for one slave point and writes what holds into its list, which starts at first. */
+/*@
+  FitSupportSlave - fits the surface for one slave point and writes a fit that holds into its list.
+
+  Not collective
+
+  Input Parameters:
++ fit   - the prepared fits
+. look  - the slave point's nearest facet and foot
+. q     - the slave point
+- first - start of its list of points
+
+  Input/Output Parameter:
+. buffer - the growing lists
+
+  Note:
+  Without a fit the rung of the slave point is RUNG_FACET, and its list is left as it is.
+@*/
 PetscErrorCode FitSupportSlave(FitSupport *fit, const Nearest *look, PetscInt q, PetscInt first, ListBuffer *buffer)
 {
   NeighbourLists   lists = fit->lists;
@@ -301,14 +356,14 @@ PetscErrorCode FitSupportSlave(FitSupport *fit, const Nearest *look, PetscInt q,
   FitResult  result;
 
   PetscFunctionBeginUser;
-  for (int d = 0; d < 3; d++)
-    at.outward[d] = best->normal[d]; /* the foot's own may lie along the surface when the foot is on an edge */
+  /* The foot's own normal may lie along the surface where the foot is on an edge. */
+  for (int d = 0; d < 3; d++) at.outward[d] = best->normal[d];
   for (int d = 0; d < lists->dim; d++) {
     at.X[d]    = lists->slave_X[q * lists->dim + d];
     at.u[d]    = lists->slave_u[q * lists->dim + d];
     at.foot[d] = look->x[d] - look->foot.gap * look->foot.normal[d];
   }
-  TimingBegin(TIMING_FIT); /* two looks at the clock, 0.1 % of a ladder */
+  TimingBegin(TIMING_FIT); /* these two readings of the clock cost 0.1 % of a ladder */
   PetscCall(FitSupportClimb(fit, &at, &problem, &result, &lists->rung[q]));
   TimingEnd(TIMING_FIT);
   if (lists->rung[q] == RUNG_FACET) PetscFunctionReturn(PETSC_SUCCESS);
@@ -325,8 +380,18 @@ PetscErrorCode FitSupportSlave(FitSupport *fit, const Nearest *look, PetscInt q,
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* How far from a slave point the points of its fit may lie: the widest support with its margin, along the longest face
- * where it is drawn out. */
+/*@
+  SearchFitReach - returns how far from a slave point the points of its fit may lie (length).
+
+  Not collective
+
+  Input Parameter:
+. s - the search
+
+  Note:
+  It is the widest support with its margin, along the longest face where faces are elongated. It is 0 where there are no
+  fits.
+@*/
 PetscReal SearchFitReach(ContactSearch s)
 {
   return s->fit->fitted ? PetscSqrtReal(SEARCH_FIT_MARGIN) * Ladder[RUNG_WIDER].widen * s->fit->support *

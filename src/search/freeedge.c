@@ -1,21 +1,25 @@
+/* The free edges of a slave surface: one table of all face edges, the same on all ranks, from which the shared ones
+   are dropped. */
 #include "search/freeedge.h"
 #include "base/gathertable.h"
 
-/* A node is on the axis of revolution to within this part of the model's size: the rounding of the mesh generator. */
+/* A node is on the axis of revolution if its distance from it is within this part of the model's size, which is the
+   rounding of the mesh generator. */
 static const PetscReal AXIS_TOLERANCE = 1e-6;
 
-/* Edges of slave faces, by the node_ids of their ends */
+/* Columns of the table of face edges: node_ids of the two ends, their coordinates, and whether the edge lies on a
+   plane of symmetry. */
 enum { EDGE_LOW, EDGE_HIGH, EDGE_A, EDGE_B = EDGE_A + 3, EDGE_SYMMETRIC = EDGE_B + 3, EDGE_COLUMNS };
 
 struct _n_FreeEdges {
   Mesh                mesh;
   Scene               scene;
   const SceneContact *contact;
-  GatherTable         table; /* EDGE_COLUMNS */
+  GatherTable         table; /* with EDGE_COLUMNS columns */
 };
 
-/* Are all the corners on one of the planes beyond which the pair continues as its mirror image (the axis of revolution
- * is one)? */
+/* Are all the nodes on one of the planes beyond which the pair continues as its mirror image? The axis of revolution
+   counts as such a plane. */
 static PetscErrorCode OnSymmetry(FreeEdges edges, int n, const PetscInt *nodes, PetscBool *on)
 {
   const Mesh          mesh    = edges->mesh;
@@ -40,7 +44,8 @@ static PetscErrorCode OnSymmetry(FreeEdges edges, int n, const PetscInt *nodes, 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* One row of the table of face edges: in 3D an edge by its two ends, in 2D an end of the face (twice the same node) */
+/* Fills a row of the table of face edges. In 3D it is an edge with its two ends, in 2D an end of the face (twice the
+   same node). */
 static PetscErrorCode FillEdge(FreeEdges edges, PetscInt a, PetscInt b, PetscReal *row)
 {
   const Mesh     mesh     = edges->mesh;
@@ -59,11 +64,11 @@ static PetscErrorCode FillEdge(FreeEdges edges, PetscInt a, PetscInt b, PetscRea
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* All edges of the slave faces, once per face they belong to. Collective. */
+/* Gathers all edges of the slave faces, once for each face to which they belong. Collective. */
 static PetscErrorCode GatherEdges(FreeEdges edges, const MeshGroup *surface)
 {
   const Mesh     mesh = edges->mesh;
-  const PetscInt room = surface->n_faces * 4; /* a quadrilateral's */
+  const PetscInt room = surface->n_faces * 4; /* a quadrilateral has 4 edges */
   PetscInt       nodes[FACE_MAX_NODES], n = 0;
   PetscReal     *rows;
 
@@ -87,13 +92,23 @@ static PetscErrorCode GatherEdges(FreeEdges edges, const MeshGroup *surface)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*
-  FreeEdgesCreate - Finds the edges that belong to one face of a surface only and are on no plane of symmetry.
-  Collective.
+/*@
+  FreeEdgesCreate - finds the edges that belong to only one face of a surface and lie on no plane of symmetry.
 
-  Input: mesh, scene, contact (its planes of symmetry), surface (of the deformable mesh). Output: edges, the same on all
-  ranks. Errors: refuses (exit 1) a plane of symmetry that the mesh does not have.
-*/
+  Collective
+
+  Input Parameters:
++ mesh    - the mesh
+. scene   - the scene
+. contact - gives the planes of symmetry
+- surface - slave surface of the deformable mesh
+
+  Output Parameter:
+. result - the edges, the same on all ranks
+
+  Note:
+  Refuses (exit 1) a plane of symmetry that the mesh does not have.
+@*/
 PetscErrorCode FreeEdgesCreate(Mesh mesh, Scene scene, const SceneContact *contact, const MeshGroup *surface,
                                FreeEdges *result)
 {
@@ -120,7 +135,14 @@ PetscErrorCode FreeEdgesCreate(Mesh mesh, Scene scene, const SceneContact *conta
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* FreeEdgesDestroy - Frees the edges. Not collective. */
+/*@
+  FreeEdgesDestroy - frees the edges.
+
+  Not collective
+
+  Input/Output Parameter:
+. edges - the edges, NULL on return
+@*/
 PetscErrorCode FreeEdgesDestroy(FreeEdges *edges)
 {
   PetscFunctionBeginUser;
@@ -130,6 +152,7 @@ PetscErrorCode FreeEdgesDestroy(FreeEdges *edges)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Distance of x to the edge from a to b. */
 static PetscReal DistanceToEdge(const PetscReal *x, const PetscReal *a, const PetscReal *b)
 {
   PetscReal along = 0.0, length = 0.0, square = 0.0;
@@ -143,8 +166,18 @@ static PetscReal DistanceToEdge(const PetscReal *x, const PetscReal *a, const Pe
   return PetscSqrtReal(square);
 }
 
-/* FreeEdgesDistance - Distance (length) of a point in reference coordinates to the nearest free edge, PETSC_MAX_REAL if
- * there is none. Not collective. */
+/*@
+  FreeEdgesDistance - computes the distance (length) of a point to the nearest free edge.
+
+  Not collective
+
+  Input Parameters:
++ edges - the edges
+- x     - the point in reference coordinates; components beyond the mesh's dimension are 0
+
+  Note:
+  Returns PETSC_MAX_REAL if the surface has no free edge.
+@*/
 PetscReal FreeEdgesDistance(FreeEdges edges, const PetscReal x[3])
 {
   PetscReal least = PETSC_MAX_REAL;

@@ -1,14 +1,13 @@
-/* The free edges of a slave surface (its free ends in 2D) in the reference configuration, and the distance to them:
-   where a contact surface really ends and pressures may be singular. Edges on a plane of symmetry of the pair, or on
-   the axis of revolution, are not free. */
+/* The free edges of a slave surface (in 2D its free ends) in the reference configuration, and the distance to them. At
+   a free edge the contact surface really ends, and pressures may be singular there. Edges on a plane of symmetry of the
+   pair, or on the axis of revolution, are not free.
+
+   FreeEdgesCreate() finds the edges once, and FreeEdgesDistance() is then called for any point. */
 #pragma once
 #include "mesh/mesh.h"
 
 typedef struct _n_FreeEdges *FreeEdges;
 
-/* The contact gives the planes of symmetry. Collective. */
 PetscErrorCode FreeEdgesCreate(Mesh, Scene, const SceneContact *, const MeshGroup *surface, FreeEdges *);
 PetscErrorCode FreeEdgesDestroy(FreeEdges *);
-/* From a point in reference coordinates, components beyond the mesh's dimension 0; PETSC_MAX_REAL: the surface has no
- * free edge. Not collective. */
-PetscReal FreeEdgesDistance(FreeEdges, const PetscReal x[3]);
+PetscReal      FreeEdgesDistance(FreeEdges, const PetscReal x[3]);

@@ -1,18 +1,20 @@
+/* Walks from facet to facet around a foot and gathers the fit points within the support. */
 #include "neighbourhood.h"
 
-/* Facets and points whose normal is farther than this from the frame's belong to another flank: cos 60 degrees. */
+/* Facets and points whose normal makes a larger angle with that of the frame belong to another flank: cos 60
+   degrees. */
 #define NEIGHBOURHOOD_COSINE 0.5
 
 typedef struct {
-  PetscInt a, b, facet; /* the edge's points, a < b (2D: the end twice) */
+  PetscInt a, b, facet; /* points of the edge, a < b (2D: the end twice) */
 } SharedEdge;
 
 struct _n_Neighbourhoods {
   const SurfaceView *view;
-  PetscInt          *link_ptr, *link; /* facets across the edges that are not sharp, CSR */
+  PetscInt          *link_ptr, *link; /* facets across the edges that are not sharp, as compressed rows */
   PetscInt          *seen_facet, *seen_point, stamp;
   PetscInt          *queue;
-  PetscReal         *rho2, *point_rho2; /* of the points found; of every point that was seen */
+  PetscReal         *rho2, *point_rho2; /* of the points found; of every point that was visited */
   PetscInt          *reach;
 };
 
@@ -30,6 +32,7 @@ static PetscReal Dot(const PetscReal *a, const PetscReal *b)
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
+/* Lists the edges of all facets; edges NULL: only counts them. */
 static PetscInt ListEdges(const SurfaceView *view, SharedEdge *edges)
 {
   PetscInt n = 0;
@@ -49,7 +52,8 @@ static PetscInt ListEdges(const SurfaceView *view, SharedEdge *edges)
   return n;
 }
 
-/* Calls back on every pair of facets that share an edge which is not sharp in the reference configuration. */
+/* Links every pair of facets that share an edge which is not sharp in the reference configuration. With link NULL it
+   only counts the links. Returns the number of pairs. */
 static PetscInt LinkFacets(const SurfaceView *view, PetscInt n, const SharedEdge *edges, PetscInt *ptr, PetscInt *link)
 {
   PetscInt count = 0;
@@ -72,8 +76,17 @@ static PetscInt LinkFacets(const SurfaceView *view, PetscInt n, const SharedEdge
   return count;
 }
 
-/* NeighbourhoodsCreate - links the facets of a view across their edges. view is borrowed and must outlive the object.
- * Not collective. */
+/*@
+  NeighbourhoodsCreate - links the facets of a view across their edges.
+
+  Not collective
+
+  Input Parameter:
+. view - the facets, borrowed; they must outlive the object
+
+  Output Parameter:
+. out - the object
+@*/
 PetscErrorCode NeighbourhoodsCreate(const SurfaceView *view, Neighbourhoods *out)
 {
   Neighbourhoods nb;
@@ -90,8 +103,8 @@ PetscErrorCode NeighbourhoodsCreate(const SurfaceView *view, Neighbourhoods *out
   PetscCall(PetscMalloc1(2 * LinkFacets(view, n, edges, nb->link_ptr, NULL), &nb->link));
   for (PetscInt f = 0; f < view->n_facets; f++) nb->link_ptr[f + 1] += nb->link_ptr[f];
   LinkFacets(view, n, edges, nb->link_ptr, nb->link);
-  for (PetscInt f = view->n_facets; f > 0; f--)
-    nb->link_ptr[f] = nb->link_ptr[f - 1]; /* filling moved every start to the next one's */
+  /* Filling has moved every start to the next one's. */
+  for (PetscInt f = view->n_facets; f > 0; f--) nb->link_ptr[f] = nb->link_ptr[f - 1];
   nb->link_ptr[0] = 0;
   PetscCall(PetscFree(edges));
   PetscCall(PetscCalloc2(view->n_facets, &nb->seen_facet, view->n_points, &nb->seen_point));
@@ -101,7 +114,14 @@ PetscErrorCode NeighbourhoodsCreate(const SurfaceView *view, Neighbourhoods *out
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* NeighbourhoodsDestroy - Not collective. */
+/*@
+  NeighbourhoodsDestroy - frees the links.
+
+  Not collective
+
+  Input/Output Parameter:
+. nb - the object, NULL on return
+@*/
 PetscErrorCode NeighbourhoodsDestroy(Neighbourhoods *nb)
 {
   PetscFunctionBeginUser;
@@ -114,6 +134,7 @@ PetscErrorCode NeighbourhoodsDestroy(Neighbourhoods *nb)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Squared distance of point p from x0 in the metric. */
 static inline PetscReal Rho2(const SurfaceView *view, PetscInt p, const PetscReal x0[3], const PetscReal metric[9])
 {
   const PetscReal *x = &view->x[p * view->dim], a = x[0] - x0[0], b = x[1] - x0[1],
@@ -123,7 +144,7 @@ static inline PetscReal Rho2(const SurfaceView *view, PetscInt p, const PetscRea
          2 * (metric[1] * a * b + metric[2] * a * c + metric[5] * b * c);
 }
 
-/* Nearest first; of those equally near, by number. */
+/* Sorts the points by distance, and points at equal distance by number. */
 static PetscErrorCode SortReach(Neighbourhoods nb, PetscInt n)
 {
   PetscFunctionBeginUser;
@@ -135,13 +156,33 @@ static PetscErrorCode SortReach(Neighbourhoods nb, PetscInt n)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Notes a point. */
+/* Adds a point to those that were found. */
 static void ReachAdd(Neighbourhoods nb, PetscInt *count, PetscReal rho2, PetscInt point)
 {
   nb->rho2[*count]      = rho2;
   nb->reach[(*count)++] = point;
 }
 
+/*@
+  NeighbourhoodGather - gathers the points around a foot that a fit may use.
+
+  Not collective
+
+  Input Parameters:
++ nb     - the object
+. start  - facet of the foot
+. x0     - the foot (length)
+. e3     - normal there
+. metric - dim x dim, row-major 3x3, symmetric, inverse squared lengths
+. limit  - largest rho^2 in the metric
+- max    - most points that are returned
+
+  Output Parameters:
++ points - the points; if not all are returned, the nearest ones by distance, else those of a facet together
+. rho2   - rho^2 of these points, valid until the next call
+. n      - number of points returned
+- found  - number of points within the limit
+@*/
 PetscErrorCode NeighbourhoodGather(Neighbourhoods nb, PetscInt start, const PetscReal x0[3], const PetscReal e3[3],
                                    const PetscReal metric[9], PetscReal limit, PetscInt max, PetscInt *points,
                                    const PetscReal **rho2, PetscInt *n, PetscInt *found)
@@ -164,8 +205,9 @@ PetscErrorCode NeighbourhoodGather(Neighbourhoods nb, PetscInt start, const Pets
       inside = (PetscBool)(inside || own <= limit);
       if (own <= limit) ReachAdd(nb, &count, own, view->first[f] + q);
     }
-    for (int a = 0, nodes = view->first && inside ? 0 : ElementGet(facet->type)->nodes; a < nodes;
-         a++) { /* a quadrature point inside tells as much */
+    /* A quadrature point inside shows that the facet reaches into the support, so that its nodes need not be
+       examined. */
+    for (int a = 0, nodes = view->first && inside ? 0 : ElementGet(facet->type)->nodes; a < nodes; a++) {
       const PetscInt p = facet->nodes[a];
 
       if (nb->seen_point[p] != nb->stamp) {

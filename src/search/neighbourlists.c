@@ -1,13 +1,15 @@
+/* Lists of a pair: contact nodes and their owners, points and slave points as combinations of nodes, and their
+   motion. */
 #include "searchimpl.h"
 
-/* Keys of all contact nodes, each once and in ascending order: those of deformable bodies, then those of a rigid tool.
- */
+/* Keys of all contact nodes, each once and in ascending order: nodes of deformable bodies, then nodes of a rigid
+   tool. */
 typedef struct {
   PetscInt n, n_rigid;
   NodeKey *keys, *tool;
 } ContactKeys;
 
-/* Collects the keys of the slave nodes, of the records' nodes and of the nodes that live offsets are made of. */
+/* Collects the keys of the slave nodes, of the records' nodes and of the nodes of which live offsets are made. */
 static PetscErrorCode CollectKeys(ContactSearch s, const SearchField *field, ContactKeys *all)
 {
   const PetscBool rigid     = (PetscBool)(s->master && s->master->rigid);
@@ -57,8 +59,21 @@ static PetscErrorCode LinkNodes(Mesh mesh, const ContactKeys *all, NeighbourList
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Numbers the contact nodes (slave nodes and nodes of the listed faces), makes the star forest to their owners, and
-   rewrites the records' facets in these numbers. */
+/*@
+  NeighbourListsCreateNodes - numbers the contact nodes and makes the star forest to their owners.
+
+  Collective
+
+  Input Parameter:
+. s - the search
+
+  Input/Output Parameters:
++ field - its records' facets are rewritten in numbers of contact nodes
+- lists - the lists, whose nodes are set
+
+  Note:
+  Contact nodes are the slave nodes, the nodes of the listed faces, and the nodes of which live offsets are made.
+@*/
 PetscErrorCode NeighbourListsCreateNodes(ContactSearch s, SearchField *field, NeighbourLists lists)
 {
   const int       dim   = s->mesh->dim;
@@ -94,10 +109,21 @@ PetscErrorCode NeighbourListsCreateNodes(ContactSearch s, SearchField *field, Ne
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* NeighbourListsBroadcast - values of the contact nodes from those of the mesh's nodes.
+/*@
+  NeighbourListsBroadcast - fetches values of the contact nodes from those of the mesh's nodes.
 
-   Collective. x[mesh n_nodes*dim]: local, read at owned nodes; values[lists n_nodes*dim]: nodes of a rigid tool get
-   their motion (length) from load parameter t to t_next. */
+  Collective
+
+  Input Parameters:
++ s      - the search
+. lists  - the lists
+. x      - local values x[mesh n_nodes*dim], read at owned nodes
+. t      - load parameter from which the motion of a rigid tool is counted
+- t_next - load parameter to which it is counted
+
+  Output Parameter:
+. values - values[lists n_nodes*dim]; nodes of a rigid tool get their motion (length) from t to t_next
+@*/
 PetscErrorCode NeighbourListsBroadcast(ContactSearch s, NeighbourLists lists, const PetscReal *x, PetscReal t,
                                        PetscReal t_next, PetscReal *values)
 {
@@ -114,10 +140,22 @@ PetscErrorCode NeighbourListsBroadcast(ContactSearch s, NeighbourLists lists, co
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* NeighbourListsReduce - the transpose of NeighbourListsBroadcast(): adds values[lists n_nodes*dim] to y[mesh
-   n_nodes*dim] at the owners of the nodes.
+/*@
+  NeighbourListsReduce - adds values of the contact nodes to those of the mesh's nodes; it is the transpose of
+  NeighbourListsBroadcast().
 
-   Collective. Values of nodes of a rigid tool go nowhere. */
+  Collective
+
+  Input Parameters:
++ lists  - the lists
+- values - values[lists n_nodes*dim]
+
+  Input/Output Parameter:
+. y - local values y[mesh n_nodes*dim], complete at owned nodes
+
+  Note:
+  Values of nodes of a rigid tool are left out.
+@*/
 PetscErrorCode NeighbourListsReduce(NeighbourLists lists, const PetscReal *values, PetscReal *y)
 {
   PetscFunctionBeginUser;
@@ -126,6 +164,17 @@ PetscErrorCode NeighbourListsReduce(NeighbourLists lists, const PetscReal *value
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/*@
+  NeighbourListsUpdateNodes - moves the contact nodes to (u, t), but not the points that are made of them.
+
+  Collective
+
+  Input Parameters:
++ s     - the search
+. lists - the lists
+. u     - local displacements u[mesh n_nodes*dim] (length), read at owned nodes
+- t     - load parameter, for rigid tools
+@*/
 PetscErrorCode NeighbourListsUpdateNodes(ContactSearch s, NeighbourLists lists, const PetscReal *u, PetscReal t)
 {
   PetscFunctionBeginUser;
@@ -152,6 +201,7 @@ static void Map(ContactSearch s, int dim, PetscInt n, const PetscInt *node, cons
   }
 }
 
+/* The linear part of the map of fit point p, with the reflection of its image. */
 static void PointMap(ContactSearch s, NeighbourLists lists, PetscInt p, const PetscReal *x, PetscReal *y)
 {
   const PetscInt first = lists->point_ptr[p];
@@ -161,6 +211,7 @@ static void PointMap(ContactSearch s, NeighbourLists lists, PetscInt p, const Pe
   for (int d = 0; d < lists->dim; d++) y[d] *= s->images[lists->point_image[p]].sign[d];
 }
 
+/* The linear part of the map of slave point q. */
 static void SlaveMap(ContactSearch s, NeighbourLists lists, PetscInt q, const PetscReal *x, PetscReal *y)
 {
   const PetscInt first = lists->slave_ptr[q];
@@ -169,7 +220,7 @@ static void SlaveMap(ContactSearch s, NeighbourLists lists, PetscInt q, const Pe
       &lists->slave_S[first], x, y);
 }
 
-/* On a rigid tool the offsets, which are those of its first position, turn with it. */
+/* Turns the offsets on a rigid tool, which are those of its first position, with the tool. */
 static void TurnOffsets(ContactSearch s, NeighbourLists lists, PetscReal t)
 {
   const int dim = lists->dim;
@@ -186,10 +237,20 @@ static void TurnOffsets(ContactSearch s, NeighbourLists lists, PetscReal t)
   }
 }
 
-/* NeighbourListsUpdate - moves contact nodes, fit points and slave points to (u, t); what is listed stays.
+/*@
+  NeighbourListsUpdate - moves contact nodes, fit points and slave points to (u, t), while the lists stay as they are.
 
-   Collective. u[mesh n_nodes*dim]: local displacements (length), read at owned nodes. *moved: this rank's are not where
-   they were, or t is another; may be NULL. */
+  Collective
+
+  Input Parameters:
++ s     - the search
+. lists - the lists
+. u     - local displacements u[mesh n_nodes*dim] (length), read at owned nodes
+- t     - load parameter, for rigid tools
+
+  Output Parameter:
+. moved - PETSC_TRUE if a contact node of this rank has moved or t is another; may be NULL
+@*/
 PetscErrorCode NeighbourListsUpdate(ContactSearch s, NeighbourLists lists, const PetscReal *u, PetscReal t,
                                     PetscBool *moved)
 {
@@ -204,8 +265,8 @@ PetscErrorCode NeighbourListsUpdate(ContactSearch s, NeighbourLists lists, const
   PetscCall(NeighbourListsUpdateNodes(s, lists, u, t));
   PetscCall(PetscArraycmp(before, lists->u, n, &same));
   PetscCall(PetscFree(before));
-  lists->made =
-    (PetscBool)(same && !turns && (lists->made || PetscIsNanReal(lists->t))); /* t: the lists are being made */
+  /* t is NaN while the lists are being made. */
+  lists->made = (PetscBool)(same && !turns && (lists->made || PetscIsNanReal(lists->t)));
   if (moved) *moved = same && lists->t == t ? PETSC_FALSE : PETSC_TRUE;
   if (same && lists->t == t) PetscFunctionReturn(PETSC_SUCCESS);
   lists->t = t;
@@ -215,8 +276,8 @@ PetscErrorCode NeighbourListsUpdate(ContactSearch s, NeighbourLists lists, const
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The image that a node really has: planes that it lies on do not move it. Image m is the product of the planes whose
- *bits are set in m. planes: how many planes the node lies on. */
+/* The image that a node really has: planes on which it lies do not move it. Image m is the product of the planes
+   whose bits are set in m. *planes is the number of planes on which the node lies. */
 static int CanonicalImage(ContactSearch s, const PetscReal *X, int image, int *planes)
 {
   *planes = 0;
@@ -232,6 +293,7 @@ static int CanonicalImage(ContactSearch s, const PetscReal *X, int image, int *p
   return image;
 }
 
+/* Allocates the points and their entries. */
 static PetscErrorCode NeighbourListsAllocatePoints(NeighbourLists lists, PetscInt room, PetscInt entries)
 {
   const int dim = lists->dim;
@@ -247,6 +309,7 @@ static PetscErrorCode NeighbourListsAllocatePoints(NeighbourLists lists, PetscIn
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Adds a point as a combination of contact nodes; S NULL: all shares are 1. */
 static void NeighbourListsAddPoint(NeighbourLists lists, int n, const int *nodes, const double *S, int image,
                                    PetscReal weight, long key)
 {
@@ -264,8 +327,8 @@ static void NeighbourListsAddPoint(NeighbourLists lists, int n, const int *nodes
   lists->point_key[p]     = key;
 }
 
-/* The points that are nodes or images of nodes: those that the facets stand on. Candidates are left in numbers of
-   contact nodes; number[]: point of an image of a node, or -1. */
+/* Adds the points that are nodes or images of nodes, of which the facets are made. The candidates stay in numbers of
+   contact nodes. number[] is the point of each image of a node, or -1. */
 static void NeighbourListsAddNodePoints(ContactSearch s, NeighbourLists lists, SearchField *field, PetscInt *number)
 {
   for (PetscInt c = 0; c < field->n_candidates; c++) {
@@ -278,7 +341,8 @@ static void NeighbourListsAddNodePoints(ContactSearch s, NeighbourLists lists, S
       PetscInt *p     = &number[image * lists->n_nodes + node];
 
       if (*p < 0) {
-        *p = lists->n_points; /* what the faces on this side give to a node on a plane is half of its whole */
+        /* The faces on this side of a plane give a node on it half of its whole weight. */
+        *p = lists->n_points;
         NeighbourListsAddPoint(lists, 1, &node, NULL, image, 1 << planes,
                                (2L * lists->node_id[node] + (node >= lists->n_deformable)) * SURFACE_MAX_IMAGES +
                                  image);
@@ -302,8 +366,7 @@ static PetscErrorCode TakeMap(NeighbourLists lists, const FaceMaps *maps, PetscI
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The point added last gets a map instead of shape functions, and the part of it that stands still instead of an
- * offset. */
+/* Replaces the shape functions of the last added point by a map, and its offset by the constant part of that map. */
 static PetscErrorCode NeighbourListsMapPoint(ContactSearch s, NeighbourLists lists, const SearchField *field,
                                              const Candidate *candidate, int q)
 {
@@ -319,7 +382,7 @@ static PetscErrorCode NeighbourListsMapPoint(ContactSearch s, NeighbourLists lis
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The quadrature points of the candidates, weighted by their reference area, with their offsets. */
+/* Adds the quadrature points of the candidates, weighted by their reference area, with their offsets. */
 static PetscErrorCode NeighbourListsAddQuadraturePoints(ContactSearch s, NeighbourLists lists, SearchField *field)
 {
   const int dim = lists->dim;
@@ -349,7 +412,18 @@ static PetscErrorCode NeighbourListsAddQuadraturePoints(ContactSearch s, Neighbo
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Numbers the points that the candidates use, writes their maps, and rewrites the candidates' nodes in them. */
+/*@
+  NeighbourListsCreatePoints - numbers the points that the candidates use and writes their maps.
+
+  Not collective
+
+  Input Parameter:
+. s - the search
+
+  Input/Output Parameters:
++ lists - the lists, whose points are set
+- field - its candidates' nodes are rewritten in numbers of points
+@*/
 PetscErrorCode NeighbourListsCreatePoints(ContactSearch s, NeighbourLists lists, SearchField *field)
 {
   const int dim = lists->dim;
@@ -392,7 +466,23 @@ PetscErrorCode NeighbourListsCreatePoints(ContactSearch s, NeighbourLists lists,
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Normal, spacing and weight of the points: those of their nodes, reflected with them. */
+/*@
+  NeighbourListsPointGeometry - computes normal, spacing and weight of the points: those of their nodes, reflected with
+  them.
+
+  Not collective
+
+  Input Parameters:
++ s     - the search
+- field - its records bring the geometry of their nodes
+
+  Input/Output Parameter:
+. lists - the lists, whose point weights are set
+
+  Output Parameters:
++ node_geometry - workspace for all contact nodes
+- geometry      - one for each point; that of quadrature points is not set
+@*/
 void NeighbourListsPointGeometry(ContactSearch s, NeighbourLists lists, const SearchField *field,
                                  NodeGeometry *node_geometry, NodeGeometry *geometry)
 {
@@ -406,10 +496,12 @@ void NeighbourListsPointGeometry(ContactSearch s, NeighbourLists lists, const Se
     const PetscReal *sign   = s->images[lists->point_image[p]].sign;
     NodeGeometry    *g      = &geometry[p];
     PetscReal        length = 0;
+    /* For a quadrature point the nodes of its facet are used. */
 
-    if (lists->point_ptr[p + 1] > lists->point_ptr[p] + 1) continue; /* a quadrature point: its facet's nodes tell */
+    if (lists->point_ptr[p + 1] > lists->point_ptr[p] + 1) continue;
     *g = node_geometry[lists->point_node[p]];
-    for (int bit = 1; bit < s->n_images; bit <<= 1) { /* on a plane the other half cancels what is odd in its axis */
+    /* On a plane of symmetry the other half cancels the components that are odd in its axis. */
+    for (int bit = 1; bit < s->n_images; bit <<= 1) {
       for (int d = 0; d < 3; d++) {
         PetscReal distance;
 
@@ -434,7 +526,7 @@ void NeighbourListsPointGeometry(ContactSearch s, NeighbourLists lists, const Se
   }
 }
 
-/* What the slave points are made of: nodes of their faces, with fixed offsets. */
+/* Makes the slave points as combinations of the nodes of their faces, with fixed offsets. */
 static PetscErrorCode TakeSlaveShapes(NeighbourLists lists, SlavePoints slaves)
 {
   const PetscInt n = slaves->n, entries = slaves->ptr[n];
@@ -453,7 +545,7 @@ static PetscErrorCode TakeSlaveShapes(NeighbourLists lists, SlavePoints slaves)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Or of the nodes of their faces' maps. */
+/* Makes the slave points as combinations of the nodes of their faces' maps. */
 static PetscErrorCode TakeSlaveMaps(ContactSearch s, NeighbourLists lists)
 {
   SlavePoints slaves = s->slaves;
@@ -475,6 +567,17 @@ static PetscErrorCode TakeSlaveMaps(ContactSearch s, NeighbourLists lists)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/*@
+  NeighbourListsCreateSlaves - makes the slave points of the lists and allocates what the lists hold for each of them.
+
+  Not collective
+
+  Input Parameter:
+. s - the search
+
+  Input/Output Parameter:
+. lists - the lists, whose contact nodes are there
+@*/
 PetscErrorCode NeighbourListsCreateSlaves(ContactSearch s, NeighbourLists lists)
 {
   const int   dim    = lists->dim;
@@ -505,8 +608,22 @@ PetscErrorCode NeighbourListsCreateSlaves(ContactSearch s, NeighbourLists lists)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* NeighbourListsRelative - position x[dim] (length) of point p seen from slave point q: a difference of differences, so
-   that a gap keeps its digits far from the origin. Not collective. */
+/*@
+  NeighbourListsRelative - computes the position of a point relative to a slave point at the last update.
+
+  Not collective
+
+  Input Parameters:
++ lists - the lists
+. q     - the slave point
+- p     - the point
+
+  Output Parameter:
+. x - x[dim] (length)
+
+  Note:
+  It is a difference of differences, so that a gap keeps its digits far from the origin.
+@*/
 void NeighbourListsRelative(NeighbourLists lists, PetscInt q, PetscInt p, PetscReal *x)
 {
   const int dim = lists->dim;
@@ -516,7 +633,19 @@ void NeighbourListsRelative(NeighbourLists lists, PetscInt q, PetscInt p, PetscR
            (lists->point_u[p * dim + d] - lists->slave_u[q * dim + d]);
 }
 
-/* NeighbourListsAlikeEnd - Not collective. */
+/*@
+  NeighbourListsAlikeEnd - finds the end of the run of points that are made of the same images of nodes as point p, like
+  those of a face.
+
+  Not collective
+
+  Input Parameters:
++ lists - the lists
+- p     - first point of the run
+
+  Note:
+  Returns the last point of the run plus 1.
+@*/
 PetscInt NeighbourListsAlikeEnd(NeighbourLists lists, PetscInt p)
 {
   const PetscInt first = lists->point_ptr[p], n = lists->point_ptr[p + 1] - first;
@@ -536,14 +665,25 @@ PetscInt NeighbourListsAlikeEnd(NeighbourLists lists, PetscInt p)
   return end;
 }
 
-/* NeighbourListsNearestSize - size (length) of the facet nearest to slave point q when the lists were made, 0 without
- * any. Not collective. */
+/*@
+  NeighbourListsNearestSize - returns the size (length) of the facet that was nearest to slave point q when the lists
+  were made.
+
+  Not collective
+
+  Input Parameters:
++ lists - the lists
+- q     - the slave point
+
+  Note:
+  Returns 0 if the slave point has no facet.
+@*/
 PetscReal NeighbourListsNearestSize(NeighbourLists lists, PetscInt q)
 {
   return lists->nearest[q] < 0 ? 0 : lists->facet_size[lists->facet_ptr[q] + lists->nearest[q]];
 }
 
-/* Sum of the fit points of a slave point, seen from it; dim constant where this is called. */
+/* Sum of the fit points of a slave point, relative to it. dim is a constant where this is called. */
 static inline void SumPoints(const int dim, NeighbourLists lists, PetscInt q, PetscReal sum[3])
 {
   const PetscReal *X = lists->point_X, *u = lists->point_u, *X_0 = &lists->slave_X[q * dim],
@@ -558,10 +698,18 @@ static inline void SumPoints(const int dim, NeighbourLists lists, PetscInt q, Pe
   for (int d = 0; d < 3; d++) sum[d] = total[d];
 }
 
-/* NeighbourListsCentre - mean of the fit points of slave point q in the tangents of its frame, relative to it, in the
-   present position (lengths).
+/*@
+  NeighbourListsCentre - computes the mean of the fit points of slave point q in the present position.
 
-   Not collective. centre[2]: dim - 1 entries are used. */
+  Not collective
+
+  Input Parameters:
++ lists - the lists
+- q     - the slave point
+
+  Output Parameter:
+. centre - centre[2] in the tangents of its frame, relative to it (length); dim - 1 entries are used
+@*/
 void NeighbourListsCentre(NeighbourLists lists, PetscInt q, PetscReal centre[2])
 {
   const int        dim   = lists->dim;
@@ -577,7 +725,19 @@ void NeighbourListsCentre(NeighbourLists lists, PetscInt q, PetscReal centre[2])
     for (int d = 0; d < dim; d++) centre[a] += frame[3 * a + d] * sum[d] / lists->fit_n[q];
 }
 
-/* NeighbourListsSlip - Not collective. */
+/*@
+  NeighbourListsSlip - computes how far slave point q has slid over its fit points since the lists were made, in
+  supports.
+
+  Not collective
+
+  Input Parameters:
++ lists - the lists
+- q     - the slave point
+
+  Note:
+  Returns 0 without a fit.
+@*/
 PetscReal NeighbourListsSlip(NeighbourLists lists, PetscInt q)
 {
   const PetscReal *metric = &lists->metric[4 * q];
@@ -591,7 +751,14 @@ PetscReal NeighbourListsSlip(NeighbourLists lists, PetscInt q)
   return PetscSqrtReal(square);
 }
 
-/* NeighbourListsDestroy - Collective. */
+/*@
+  NeighbourListsDestroy - frees the lists.
+
+  Collective
+
+  Input/Output Parameter:
+. lists - the lists, NULL on return
+@*/
 PetscErrorCode NeighbourListsDestroy(NeighbourLists *lists)
 {
   NeighbourLists l = *lists;

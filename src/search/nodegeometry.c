@@ -1,7 +1,8 @@
+/* Normals, spacing and fit weights of the nodes of a master surface, summed over faces and ranks. */
 #include "kernels/elementkernel.h"
 #include "search/nodegeometry.h"
 
-/* Entries of a node's sums, in the order they are summed over ranks */
+/* Entries of a node's sums, in the order in which they are summed over ranks. */
 enum {
   SUM_NORMAL     = 0,
   SUM_COVARIANCE = 3,
@@ -12,7 +13,17 @@ enum {
   SUMS           = 13
 };
 
-/* SurfaceNodesPerFace - how many nodes a face of this type brings to the surface when many tile it. Not collective. */
+/*@
+  SurfaceNodesPerFace - returns how many nodes a face of this type brings to a surface that many such faces tile.
+
+  Not collective
+
+  Input Parameter:
+. type - of the face
+
+  Note:
+  The area per node is the area of the face over this number.
+@*/
 PetscReal SurfaceNodesPerFace(ElementType type)
 {
   switch (type) {
@@ -28,7 +39,7 @@ static PetscErrorCode SumOverRanks(ContactSurface surface, PetscInt block, Petsc
 {
   PetscFunctionBeginUser;
   if (surface->group)
-    PetscCall(MeshSumNodes(surface->mesh, block, values)); /* a rigid tool stands whole on every rank */
+    PetscCall(MeshSumNodes(surface->mesh, block, values)); /* a rigid tool is complete on every rank */
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -97,6 +108,7 @@ static PetscErrorCode AverageOverRing(ContactSurface surface, PetscInt n, const 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Present positions of all nodes of the surface's mesh or tool. */
 static PetscErrorCode Positions(ContactSurface surface, Loads loads, const PetscReal *u, PetscReal t, PetscInt n,
                                 PetscReal *x)
 {
@@ -117,20 +129,25 @@ static PetscErrorCode Positions(ContactSurface surface, Loads loads, const Petsc
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*
-  SurfaceNodeGeometry - normals, spacing, its shape and fit weights of all nodes of a master surface
+/*@
+  SurfaceNodeGeometry - computes normals, spacing with its shape, and fit weights of all nodes of a master surface.
 
   Collective
 
   Input Parameters:
 + surface - the master
-. loads   - where rigid tools are
-. u, t    - local displacements (n_nodes*dim) and load parameter
-- nodes   - one for each local node of the mesh, or of the rigid tool; those off the surface are zero
+. loads   - gives the position of rigid tools
+. u       - local displacements u[n_nodes*dim] (length)
+- t       - load parameter
 
-  The shape of the spacing comes from the covariance of the one-ring averaged over the ring's nodes, its size from the
-mean area of the faces: so a support of s spacings holds about pi s^2 nodes on any mesh.
-*/
+  Output Parameter:
+. nodes - one for each local node of the mesh, or of the rigid tool, complete on every copy of a node; those off the
+          surface are 0
+
+  Note:
+  The shape of the spacing comes from the covariance of the one-ring, averaged over the ring's nodes. Its size comes
+  from the mean area of the faces. So a support of s spacings holds about pi s^2 nodes on any mesh.
+@*/
 PetscErrorCode SurfaceNodeGeometry(ContactSurface surface, Loads loads, const PetscReal *u, PetscReal t,
                                    NodeGeometry *nodes)
 {
@@ -181,18 +198,24 @@ static PetscReal VectorLength(const PetscReal v[3])
   return PetscSqrtReal(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
 }
 
-/*
-  SurfaceMeanNormal - the normal of the one reference plane of a surface and its mirror images, and how far its faces
-turn from it
+/*@
+  SurfaceMeanNormal - computes the normal of one reference plane for a surface with its mirror images, and how far the
+  faces turn from it.
 
   Collective
 
   Input Parameters:
-+ surface, loads, u, t - the surface and where it is
-. n_images, images - what mirrors it: along such an axis the normals of the whole cancel
-. normal - unit; for a surface that closes upon itself (0, 0, 0)
-- cosine - smallest cosine of a face's normal with it, all ranks; may be NULL
-*/
++ surface  - the surface
+. loads    - gives the position of rigid tools
+. n_images - number of mirror images
+. images   - the images; along an axis that they mirror the normals of the whole cancel
+. u        - local displacements u[n_nodes*dim] (length)
+- t        - load parameter
+
+  Output Parameters:
++ normal - area-weighted mean, unit; (0, 0, 0) for a closed surface
+- cosine - smallest cosine between a face's normal and it, over all ranks; may be NULL
+@*/
 PetscErrorCode SurfaceMeanNormal(ContactSurface surface, Loads loads, int n_images, const SurfaceImage *images,
                                  const PetscReal *u, PetscReal t, PetscReal normal[3], PetscReal *cosine)
 {

@@ -1,21 +1,43 @@
+/* Offsets of quadrature points: a nodal fit of the surface about each point, and its sagitta as a vector or as a
+   combination of nodes. */
 #include "search/offset.h"
 #include "searchimpl.h"
 
 struct _n_Offsets {
   ContactSurface surface;
-  ContactSearch  search; /* the surface looking at itself */
+  ContactSearch  search; /* searches the surface itself */
   FitSettings    fit;
   int            finer;
   OffsetsKind    kind;
   PetscBool      once, taken; /* once: held, but never taken again */
-  FaceMaps       maps;        /* live */
+  FaceMaps       maps;        /* of live offsets */
   PetscInt       n;
-  PetscReal     *used, *now, *before; /* now, before: of the last two accepted states */
-  PetscReal      t_now, t_before;
-  PetscReal     *last, *u_last, t_last; /* the last ones that were taken, and where; t_last NAN: none yet */
+  PetscReal *used, *now, *before; /* used: those of the present solve; now, before: of the last two accepted states */
+  PetscReal  t_now, t_before;
+  /* The offsets that were taken last, with the displacements and the load parameter there. t_last is NAN before the
+     first. */
+  PetscReal *last, *u_last, t_last;
 };
 
-/* OffsetsCreate - offsets of a surface, 0 until they are taken. Collective. feature_angle: radians. */
+/*@
+  OffsetsCreate - makes the offsets of a surface, which are 0 until they are taken.
+
+  Collective
+
+  Input Parameters:
++ mesh          - the mesh
+. scene         - the scene
+. loads         - gives the position of rigid tools
+. surface       - the surface, borrowed
+. n_images      - number of mirror images
+. images        - the images, borrowed
+. feature_angle - fits end at edges that are sharper (radians)
+. finer         - 1: quadrature of one order more
+- kind          - none, held or live; a rigid tool has held offsets instead of live ones
+
+  Output Parameter:
+. out - the offsets
+@*/
 PetscErrorCode OffsetsCreate(Mesh mesh, Scene scene, Loads loads, ContactSurface surface, int n_images,
                              const SurfaceImage *images, PetscReal feature_angle, int finer, OffsetsKind kind,
                              Offsets *out)
@@ -29,7 +51,7 @@ PetscErrorCode OffsetsCreate(Mesh mesh, Scene scene, Loads loads, ContactSurface
   o->kind    = kind == OFFSETS_LIVE && surface->rigid ? OFFSETS_HELD : kind;
   o->once    = (PetscBool)(surface->rigid || scene->kinematics == KINEMATICS_SMALL);
   o->t_now = o->t_before = -1;
-  /* the nodal fit's own defaults: the smoothest whose guards hold on jittered meshes */
+  /* These are the defaults of nodal fits: the smoothest ones whose guards hold on jittered meshes. */
   o->fit    = (FitSettings){.fitted        = PETSC_TRUE,
                             .degree        = 4,
                             .support       = mesh->dim == 2 ? 4.5 : 3.5,
@@ -45,7 +67,14 @@ PetscErrorCode OffsetsCreate(Mesh mesh, Scene scene, Loads loads, ContactSurface
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* OffsetsDestroy - Collective. */
+/*@
+  OffsetsDestroy - frees the offsets.
+
+  Collective
+
+  Input/Output Parameter:
+. offsets - the offsets, NULL on return
+@*/
 PetscErrorCode OffsetsDestroy(Offsets *offsets)
 {
   PetscFunctionBeginUser;
@@ -57,7 +86,7 @@ PetscErrorCode OffsetsDestroy(Offsets *offsets)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* A face of the surface with its place among the candidates, its rule and its nodes' positions */
+/* A face of the surface with its number among the candidates, its rule and its nodes' positions. */
 typedef struct {
   PetscInt        candidate;
   const Facet    *facet;
@@ -65,8 +94,8 @@ typedef struct {
   double          x[FACE_MAX_NODES * 3], normal[FACE_RULE_POINTS * 3];
 } OffsetFace;
 
-/* The surface's own nodal fit about point q of a face, in the face's frame; nodes[a]: the face's nodes there. *rung:
- * RUNG_FACET without one. */
+/* Makes the surface's own nodal fit about point q of a face, in the face's frame. nodes[a] are the tangent
+   coordinates of the face's nodes there. *rung is RUNG_FACET if there is no fit. */
 static PetscErrorCode FitAt(FitSupport *fit, const OffsetFace *face, int q, FitProblem *problem, FitResult *result,
                             int *rung, double (*nodes)[2])
 {
@@ -94,8 +123,8 @@ static PetscErrorCode FitAt(FitSupport *fit, const OffsetFace *face, int q, FitP
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* b = (f(0) - sum_a N_a f(s_a)) n at one quadrature point: f the fit about it in the face's frame, s_a the face's nodes
- * there. */
+/* b = (f(0) - sum_a N_a f(s_a)) n at one quadrature point. f is the fit about it in the face's frame, and s_a are
+   the face's nodes there. */
 static PetscErrorCode OffsetAt(FitSupport *fit, const OffsetFace *face, int q, PetscReal *b)
 {
   const int  dim = fit->lists->dim;
@@ -115,8 +144,9 @@ static PetscErrorCode OffsetAt(FitSupport *fit, const OffsetFace *face, int q, P
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The same sagitta as a combination of the fit's points, *n of them, in fit->points: shape[*n]. It vanishes where these
-   lie on a plane, so that taken of their whole positions it is along the normal and turns with the surface. */
+/* The same sagitta as a combination of the fit's *n points in fit->points, with the coefficients shape[*n]. It
+   vanishes where these points lie on a plane. Applied to their whole positions it is therefore along the normal and
+   turns with the surface. */
 static PetscErrorCode SagittaShape(FitSupport *fit, const OffsetFace *face, int q, double *shape, PetscInt *n)
 {
   const int  dim = fit->lists->dim, corners = ElementGet(face->facet->type)->nodes;
@@ -144,7 +174,7 @@ static int CandidateCompare(const void *a, const void *b)
   return p->facet.tag < q->facet.tag ? -1 : p->facet.tag > q->facet.tag;
 }
 
-/* What is done with a face while the fits about it can be made */
+/* Handles a face while fits about it can be made. */
 typedef PetscErrorCode (*OffsetFaceFn)(Offsets, FitSupport *, const OffsetFace *, PetscInt f, void *context);
 
 /* Visits all own faces with the surface at (u, t). */
@@ -180,6 +210,7 @@ static PetscErrorCode OffsetsVisit(Offsets o, const PetscReal *u, PetscReal t, O
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Takes the held offsets of a face. */
 static PetscErrorCode TakeFace(Offsets o, FitSupport *fit, const OffsetFace *face, PetscInt f, void *context)
 {
   PetscReal *offset = context;
@@ -190,14 +221,15 @@ static PetscErrorCode TakeFace(Offsets o, FitSupport *fit, const OffsetFace *fac
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Maps growing face by face */
+/* Maps that grow face by face. */
 typedef struct {
   PetscInt room;
-  PetscInt *
-    place; /* of each point of the fitting's lists among the entries; those of other faces are below the face's first */
+  /* Number of each point of the lists among the entries. Numbers of other faces are below the first entry of the
+     present face. */
+  PetscInt *place;
 } MapsInMaking;
 
-/* Adds S of point q of the face at hand at a point of the lists, which is an image of a node. */
+/* Adds the share S of point q of the present face at a point of the lists, which is an image of a node. */
 static PetscErrorCode AddEntry(FaceMaps *maps, MapsInMaking *making, NeighbourLists lists, PetscInt point, int q,
                                double S)
 {
@@ -221,7 +253,8 @@ static PetscErrorCode AddEntry(FaceMaps *maps, MapsInMaking *making, NeighbourLi
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The map of a face: its shape functions and the coefficients of the sagittas. Nodes: first its own. */
+/* Makes the map of a face from its shape functions and the coefficients of the sagittas. The face's own nodes come
+   first. */
 static PetscErrorCode MapFace(Offsets o, FitSupport *fit, const OffsetFace *face, PetscInt f, void *context)
 {
   FaceMaps      *maps   = &o->maps;
@@ -249,7 +282,7 @@ static PetscErrorCode MapFace(Offsets o, FitSupport *fit, const OffsetFace *face
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The maps of all own faces in the reference position. */
+/* Makes the maps of all own faces in the reference position. */
 static PetscErrorCode OffsetsMap(Offsets o, const PetscReal *zero)
 {
   MapsInMaking making = {0};
@@ -261,7 +294,7 @@ static PetscErrorCode OffsetsMap(Offsets o, const PetscReal *zero)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Offsets that are taken once. *done: they are there. */
+/* Takes offsets that are taken only once. *done is set if nothing remains to be done. */
 static PetscErrorCode TakeOnce(Offsets o, PetscBool *done)
 {
   PetscFunctionBeginUser;
@@ -280,7 +313,8 @@ static PetscErrorCode TakeOnce(Offsets o, PetscBool *done)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The offsets at (u, t). A solution is asked for twice: when its lists are checked, and where the next step begins. */
+/* The offsets at (u, t). They are asked for twice for each solution: when its lists are checked, and where the next
+   step begins. The second time the stored ones are used. */
 static PetscErrorCode OffsetsAt(Offsets o, const PetscReal *u, PetscReal t, PetscReal *values)
 {
   const PetscInt n = o->search->mesh->n_nodes * o->search->mesh->dim;
@@ -300,9 +334,25 @@ static PetscErrorCode OffsetsAt(Offsets o, const PetscReal *u, PetscReal t, Pets
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* OffsetsExtrapolate - Collective. u[n_nodes*dim]: local displacements, ghosts included, of the accepted state at t;
-   t_next: where the step goes. A step that is tried again starts from the same t and finds the same offsets. *changed:
-   set where those in force were others, on this rank. */
+/*@
+  OffsetsExtrapolate - takes the offsets at the accepted state (u, t) and extrapolates their change since the previous
+  accepted state to t_next.
+
+  Collective
+
+  Input Parameters:
++ o      - the offsets
+. u      - local displacements u[n_nodes*dim] of the accepted state (length), ghosts included
+. t      - its load parameter
+- t_next - load parameter at the end of the step
+
+  Output Parameter:
+. changed - set to PETSC_TRUE if the offsets of this rank were different before, else left as it is
+
+  Note:
+  A step that is tried again starts from the same t and finds the same offsets. There is no extrapolation past a
+  breakpoint of a load history.
+@*/
 PetscErrorCode OffsetsExtrapolate(Offsets o, const PetscReal *u, PetscReal t, PetscReal t_next, PetscBool *changed)
 {
   PetscReal ahead = 0;
@@ -321,8 +371,8 @@ PetscErrorCode OffsetsExtrapolate(Offsets o, const PetscReal *u, PetscReal t, Pe
     o->t_now    = t;
   }
   PetscCall(OffsetsAt(o, u, t, o->now));
-  if (o->t_before >= 0 && !SceneBreaks(o->search->scene, t))
-    ahead = (t_next - t) / (t - o->t_before); /* past a breakpoint things go another way */
+  /* Past a breakpoint the loads take another direction. */
+  if (o->t_before >= 0 && !SceneBreaks(o->search->scene, t)) ahead = (t_next - t) / (t - o->t_before);
   for (PetscInt i = 0; i < o->n; i++) {
     const PetscReal value = o->now[i] + ahead * (o->now[i] - o->before[i]);
 
@@ -333,7 +383,16 @@ PetscErrorCode OffsetsExtrapolate(Offsets o, const PetscReal *u, PetscReal t, Pe
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* OffsetsTake - Collective. */
+/*@
+  OffsetsTake - takes the offsets at (u, t) without extrapolation.
+
+  Collective
+
+  Input Parameters:
++ o - the offsets
+. u - local displacements u[n_nodes*dim] (length), ghosts included
+- t - load parameter
+@*/
 PetscErrorCode OffsetsTake(Offsets o, const PetscReal *u, PetscReal t)
 {
   PetscBool done;
@@ -344,19 +403,54 @@ PetscErrorCode OffsetsTake(Offsets o, const PetscReal *u, PetscReal t)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* OffsetsGet - the offsets in force, lengths along the normals of the time they were taken. Not collective. */
+/*@
+  OffsetsGet - returns the present offsets: vectors along the normals of the time when they were taken (length).
+
+  Not collective
+
+  Input Parameter:
+. o - the offsets
+
+  Note:
+  The array is [faces of the surface on this rank][FACE_RULE_POINTS*dim]. It stays the same array.
+@*/
 const PetscReal *OffsetsGet(Offsets o)
 {
   return o->used;
 }
 
-/* OffsetsMaps - the maps of live offsets, NULL for others. Not collective. */
+/*@
+  OffsetsMaps - returns the maps of live offsets, which make the points combinations of nodes.
+
+  Not collective
+
+  Input Parameter:
+. o - the offsets
+
+  Note:
+  Returns NULL if the offsets are not live. The maps, one for each face of the surface on this rank, are there once
+  offsets have been taken.
+@*/
 const FaceMaps *OffsetsMaps(Offsets o)
 {
   return o->kind == OFFSETS_LIVE ? &o->maps : NULL;
 }
 
-/* OffsetsArchive - Collective. name: where they stand in the archive. */
+/*@
+  OffsetsArchive - writes to or reads from an archive the values from which the next extrapolation starts.
+
+  Collective
+
+  Input Parameters:
++ archive - the archive
+- name    - where the values stand in the archive
+
+  Input/Output Parameter:
+. o - the offsets
+
+  Note:
+  Nothing is archived where offsets are taken once.
+@*/
 PetscErrorCode OffsetsArchive(Offsets o, Archive archive, const char *name)
 {
   PetscReal   time[] = {o->t_now, o->t_before}, *values[] = {o->now, o->before};

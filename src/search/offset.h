@@ -1,10 +1,16 @@
-/* Quadrature points of faces do not lie on the smooth surface that the faces stand for: each gets an offset b along the
-   face's normal, the sagitta of the surface's own nodal fit over its interpolant on the face.
+/* Offsets of quadrature points. These points do not lie on the smooth surface for which the faces stand. Each gets an
+   offset b along the face's normal: the sagitta of the surface's own nodal fit over the interpolant of that fit on the
+   face, b = (f(0) - sum_a N_a f(s_a)) n with the fit f and the face's nodes s_a.
 
-   Held: a vector that stands still in a solve, is extrapolated over the step and taken again when lists are made. Rigid
-   tools and small kinematics: once, in the reference position. Live: a fixed combination of the nodes that the fit
-   sees, by the coefficients of the reference position. It moves with the nodes, within a solve too, and is part of the
-   points' variations. A rigid tool's moves with the tool and is held. */
+   Held offsets are vectors that stand still in a solve. They are extrapolated over the step and taken again when lists
+   are made. On rigid tools and with small kinematics they are taken once, in the reference position. Live offsets are
+   fixed combinations of the nodes that the fit sees, with the coefficients of the reference position. They move with
+   the nodes, within a solve too, and are part of the points' variations. The offsets of a rigid tool move with the tool
+   and are always held ones.
+
+   OffsetsCreate() makes offsets of 0. OffsetsExtrapolate() is called at the beginning of a step and OffsetsTake()
+   when lists are made anew. OffsetsGet() and OffsetsMaps() give the result to the search, and OffsetsArchive()
+   writes or reads the state of the extrapolation. */
 #pragma once
 #include "files/archive.h"
 #include "search/facemap.h"
@@ -12,23 +18,14 @@
 
 typedef struct _n_Offsets *Offsets;
 
-/* What offsets there are: none at all, held ones, live ones */
+/* Kinds of offsets: none at all, held ones, live ones. */
 typedef enum { OFFSETS_NONE, OFFSETS_HELD, OFFSETS_LIVE } OffsetsKind;
 
-/* surface, images are borrowed; finer: quadrature of one order more. Collective. */
-PetscErrorCode OffsetsCreate(Mesh, Scene, Loads, ContactSurface, int n_images, const SurfaceImage *,
-                             PetscReal feature_angle, int finer, OffsetsKind, Offsets *);
-PetscErrorCode OffsetsDestroy(Offsets *);
-/* Takes the offsets at the accepted state (u, t) and carries their change since the one before on to t_next; *changed
-   is set if others were in force. Collective. */
-PetscErrorCode OffsetsExtrapolate(Offsets, const PetscReal *u, PetscReal t, PetscReal t_next, PetscBool *changed);
-/* Takes the offsets at u as they are. Collective. */
-PetscErrorCode OffsetsTake(Offsets, const PetscReal *u, PetscReal t);
-/* What the next extrapolation starts from; nothing where they are taken once. Collective. */
-PetscErrorCode OffsetsArchive(Offsets, Archive, const char *name);
-/* [faces of the surface on this rank][FACE_RULE_POINTS*dim]; the array stays the same. Not collective. */
+PetscErrorCode   OffsetsCreate(Mesh, Scene, Loads, ContactSurface, int n_images, const SurfaceImage *,
+                               PetscReal feature_angle, int finer, OffsetsKind, Offsets *);
+PetscErrorCode   OffsetsDestroy(Offsets *);
+PetscErrorCode   OffsetsExtrapolate(Offsets, const PetscReal *u, PetscReal t, PetscReal t_next, PetscBool *changed);
+PetscErrorCode   OffsetsTake(Offsets, const PetscReal *u, PetscReal t);
+PetscErrorCode   OffsetsArchive(Offsets, Archive, const char *name);
 const PetscReal *OffsetsGet(Offsets);
-/* Live offsets: the points as combinations of nodes, [faces of the surface on this rank]; there once offsets have been
- * taken. NULL: not live. Not collective.
- */
-const FaceMaps *OffsetsMaps(Offsets);
+const FaceMaps  *OffsetsMaps(Offsets);

@@ -1,17 +1,41 @@
+/* Search for contact partners: candidates around the slave points, the nearest facet of each, and the lists. */
 #include "searchimpl.h"
 #include "base/boxtree.h"
 
-/* Reach of the search beyond the asked motion, in face sizes: the nearest facet of a slave point that is no farther
- * than this is listed. */
+/* Reach of the search beyond the requested motion, in face sizes. The nearest facet of a slave point is listed if it
+   is not farther away than this. */
 #define SEARCH_REACH 2.0
-/* A list holds every facet within this many face sizes (plus the motion) of the nearest one, so that a solve may slide
- * the point there. */
+/* A list holds every facet whose distance exceeds that of the nearest one by at most this many face sizes (plus the
+   motion), so that the point may slide there within a solve. */
 #define SEARCH_MARGIN 1.5
-/* Facets are listed only if they face the slave: cosine between the two outward normals below this. 0: any opposed
- * pair. */
+/* Facets are listed only if they face the slave: the cosine between the two outward normals is below this. With 0
+   any opposed pair is listed. */
+
 #define SEARCH_OPPOSED 0.0
-/* SearchCreate - what stands still for the run: surfaces, images, slave points. Collective. slave_size: largest face of
- * the slave (length). */
+/*@
+  SearchCreate - holds what does not change in a run: surfaces, images, slave points.
+
+  Collective
+
+  Input Parameters:
++ mesh       - the mesh
+. scene      - the scene
+. loads      - gives the position of rigid tools
+. master     - the master surface; NULL: an analytic one, which needs no lists
+. slave_size - largest face of the slave (length)
+. n_images   - number of mirror images of the master
+. images     - the images
+. fit        - how the master is fitted
+. slaves     - the slave points; NULL: the surface is searched by itself (offset.h)
+. offset     - of the master's quadrature points for integral fits, [faces][FACE_RULE_POINTS*dim] (length), or NULL
+- maps       - these points as combinations of nodes instead, or NULL
+
+  Output Parameter:
+. out - the search
+
+  Note:
+  All arguments are borrowed. The values of offset and maps are read whenever lists are made.
+@*/
 PetscErrorCode SearchCreate(Mesh mesh, Scene scene, Loads loads, ContactSurface master, PetscReal slave_size,
                             int n_images, const SurfaceImage *images, const FitSettings *fit, SlavePoints slaves,
                             const PetscReal *offset, const FaceMaps *maps, ContactSearch *out)
@@ -37,7 +61,14 @@ PetscErrorCode SearchCreate(Mesh mesh, Scene scene, Loads loads, ContactSurface 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* SearchDestroy - Collective. */
+/*@
+  SearchDestroy - frees a search.
+
+  Collective
+
+  Input/Output Parameter:
+. s - the search, NULL on return
+@*/
 PetscErrorCode SearchDestroy(ContactSearch *s)
 {
   PetscFunctionBeginUser;
@@ -45,7 +76,7 @@ PetscErrorCode SearchDestroy(ContactSearch *s)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Positions of a candidate's nodes while they are contact nodes still. */
+/* Positions of a candidate's nodes as long as they are numbers of contact nodes. */
 static void ImagePositions(ContactSearch s, NeighbourLists lists, const Candidate *c, PetscReal *x)
 {
   const int dim = lists->dim;
@@ -58,7 +89,7 @@ static void ImagePositions(ContactSearch s, NeighbourLists lists, const Candidat
   }
 }
 
-/* Positions of a candidate's nodes once they are points. */
+/* Positions of a candidate's nodes once they are numbers of points. */
 static void CandidatePositions(NeighbourLists lists, const Candidate *c, PetscReal *x)
 {
   const int dim = lists->dim;
@@ -68,7 +99,7 @@ static void CandidatePositions(NeighbourLists lists, const Candidate *c, PetscRe
       x[a * dim + d] = lists->point_X[c->facet.nodes[a] * dim + d] + lists->point_u[c->facet.nodes[a] * dim + d];
 }
 
-/* All faces and mirror images near a box, in an order that does not depend on the ranks. */
+/* Makes candidates of all faces and mirror images near a box, in an order that does not depend on the ranks. */
 static PetscErrorCode MakeCandidates(ContactSearch s, NeighbourLists lists, const PetscReal box[6], PetscReal distance,
                                      SearchField *field)
 {
@@ -100,7 +131,7 @@ static PetscErrorCode MakeCandidates(ContactSearch s, NeighbourLists lists, cons
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The maps of the faces that arrived. */
+/* Fetches the maps of the faces that arrived. */
 static PetscErrorCode FetchMaps(ContactSearch s, SearchField *field)
 {
   PetscSFNode *remote;
@@ -119,6 +150,25 @@ static PetscErrorCode FetchMaps(ContactSearch s, SearchField *field)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/*@
+  SearchFieldCreate - collects the faces around a box, and puts their nodes, images and points into lists.
+
+  Collective
+
+  Input Parameters:
++ s        - the search
+. u        - local displacements u[mesh n_nodes*dim] (length), ghosts included
+. t        - load parameter, for rigid tools
+. box      - box of this rank, lower then upper corner
+- distance - faces within this distance of the box are collected (length)
+
+  Output Parameters:
++ lists - the lists, still without slave points
+- field - the faces as records and candidates
+
+  Note:
+  The caller frees the field with SearchFieldDestroy().
+@*/
 PetscErrorCode SearchFieldCreate(ContactSearch s, const PetscReal *u, PetscReal t, const PetscReal box[6],
                                  PetscReal distance, NeighbourLists lists, SearchField *field)
 {
@@ -155,6 +205,14 @@ PetscErrorCode SearchFieldCreate(ContactSearch s, const PetscReal *u, PetscReal 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/*@
+  SearchFieldDestroy - frees the faces that were collected.
+
+  Not collective
+
+  Input/Output Parameter:
+. field - the faces
+@*/
 PetscErrorCode SearchFieldDestroy(SearchField *field)
 {
   PetscFunctionBeginUser;
@@ -164,6 +222,8 @@ PetscErrorCode SearchFieldDestroy(SearchField *field)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Does a candidate face the slave point? It must be opposed and must not share a node with the slave point's own
+   face. */
 static PetscBool CandidateFaces(const Nearest *look, const Candidate *c)
 {
   PetscReal cosine = 0;
@@ -178,8 +238,9 @@ static PetscBool CandidateFaces(const Nearest *look, const Candidate *c)
   return PETSC_TRUE;
 }
 
-/* Two facets share the foot on the edge between them; there, as wherever facets are equally near, the smaller tag
-   counts and not round-off, which fits would show: they start from the nearest facet and its normal. */
+/* Compares a candidate with the nearest one so far. Two facets share the foot on the edge between them. Where facets
+   are equally near, the smaller tag decides and not round-off. Fits would show the difference, because they start
+   from the nearest facet and its normal. */
 static void NearestVisit(void *context, int index, double *bound)
 {
   Nearest         *look = context;
@@ -207,8 +268,8 @@ static void NearestVisit(void *context, int index, double *bound)
   look->foot     = foot;
 }
 
-/* Curvature of the master around its nearest facet: turn of the normals of the facets that touch it over the distance
- * of their centres. */
+/* Curvature of the master around its nearest facet: angle between the normals of the facets that touch it, over the
+   distance of their centres. */
 static PetscReal ListCurvature(const Nearest *look, PetscInt n, const int *found)
 {
   const Candidate *c     = &look->candidates[look->best];
@@ -232,8 +293,8 @@ static PetscReal ListCurvature(const Nearest *look, PetscInt n, const int *found
   return kappa;
 }
 
-/* Appends the found candidates to the slave point's list, which starts at first; facets' nodes become positions in it.
- */
+/* Appends the found candidates to the slave point's list, which starts at first. The nodes of the facets become
+   positions in that list. */
 static PetscErrorCode ListAddFacets(const Nearest *look, PetscInt n, const int *found, const FaceRecord *records,
                                     PetscInt first, ListBuffer *buffer)
 {
@@ -267,7 +328,7 @@ static int KeepFacing(const Nearest *look, int n, int *found)
   return kept;
 }
 
-/* The tree over the boxes of the candidates. */
+/* Builds the tree over the boxes of the candidates. */
 static PetscErrorCode BuildTree(int dim, PetscInt n, const Candidate *candidates, BoxTree *tree)
 {
   double *lower, *upper;
@@ -286,8 +347,9 @@ static PetscErrorCode BuildTree(int dim, PetscInt n, const Candidate *candidates
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Looks for the nearest facet of one slave point, lists it with all facets within margin and motion of it, and fits the
-   surface there. look: the slave point and how far it looks; found: room for all candidates. */
+/* Finds the nearest facet of one slave point, lists it with all facets within margin and motion of it, and fits the
+   surface there. look gives the slave point and the distance within which it is searched. found has room for all
+   candidates. */
 static PetscErrorCode FillSlave(NeighbourLists lists, const SearchField *field, BoxTree tree, FitSupport *fit,
                                 PetscReal margin, PetscReal motion, Nearest *look, int *found, ListBuffer *buffer)
 {
@@ -312,7 +374,7 @@ static PetscErrorCode FillSlave(NeighbourLists lists, const SearchField *field, 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Fills the lists of all slave points. fit: NULL where the facets serve. */
+/* Fills the lists of all slave points. fit is NULL where the facets are used. */
 static PetscErrorCode NeighbourListsFill(ContactSearch s, NeighbourLists lists, const PetscReal *normals,
                                          const SearchField *field, FitSupport *fit, PetscReal motion)
 {
@@ -348,13 +410,25 @@ static PetscErrorCode NeighbourListsFill(ContactSearch s, NeighbourLists lists, 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* SearchLists - for every slave point of this rank the facets near it and the points these stand on, from whatever
-   rank.
+/*@
+  SearchLists - lists for every slave point of this rank the facets near it and the points of which these are made, from
+  whatever rank.
 
-   Collective. u[mesh n_nodes*dim]: local displacements (length), ghosts included; t: load parameter, for rigid tools;
-   motion: relative motion (length) the lists must be good for. Listed is what faces the slave within SEARCH_MARGIN of
-   the nearest facet, if that is within SEARCH_REACH; order and content do not depend on the ranks. The caller destroys
-   the lists with NeighbourListsDestroy(). */
+  Collective
+
+  Input Parameters:
++ s      - the search
+. u      - local displacements u[mesh n_nodes*dim] (length), ghosts included
+. t      - load parameter, for rigid tools
+- motion - relative motion (length) for which the lists must be good
+
+  Output Parameter:
+. out - the lists, to be freed with NeighbourListsDestroy()
+
+  Note:
+  Facets are listed if they face the slave and lie within SEARCH_MARGIN of the nearest one, provided that this lies
+  within SEARCH_REACH. Order and content do not depend on the ranks.
+@*/
 PetscErrorCode SearchLists(ContactSearch s, const PetscReal *u, PetscReal t, PetscReal motion, NeighbourLists *out)
 {
   const PetscReal distance = s->reach + PetscMax(s->margin, SearchFitReach(s)) + 2 * motion;
@@ -385,11 +459,23 @@ PetscErrorCode SearchLists(ContactSearch s, const PetscReal *u, PetscReal t, Pet
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* SearchDistance - signed distance (length) of a point to the whole master, the same on all ranks; mirror images are
-   left out.
+/*@
+  SearchDistance - computes the signed distance (length) of any point to the whole master, without its mirror images.
 
-   Collective. u[mesh n_nodes*dim]: local displacements (length), ghosts included; x: the point's position relative to
-   the mesh's centre. */
+  Collective
+
+  Input Parameters:
++ s - the search
+. u - local displacements u[mesh n_nodes*dim] (length), ghosts included
+. t - load parameter, for rigid tools
+- x - the point, relative to the mesh's centre
+
+  Output Parameter:
+. gap - the distance, the same on all ranks
+
+  Note:
+  Every rank examines its own facets.
+@*/
 PetscErrorCode SearchDistance(ContactSearch s, const PetscReal *u, PetscReal t, const PetscReal x[3], PetscReal *gap)
 {
   Mesh      mesh = s->mesh;

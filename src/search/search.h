@@ -1,10 +1,14 @@
-/* Who may touch whom: for the slave points of this rank, the master facets near them, from whatever rank, with what is
-   needed to follow their nodes. Knows no gaps beyond the distance of candidates, no penalty.
+/* The search for contact partners: for the slave points of this rank it lists the master facets near them, from
+   whatever rank, with the data that are needed to follow their nodes. It knows no gaps beyond the distance of
+   candidates, and no penalty.
 
-   SearchLists() is called with the positions of the moment; the lists then stand still while the positions move
-   (NeighbourListsUpdate()). Search goes in two stages: boxes of the ranks' slave nodes against boxes of facets to find
-   the ranks, then a tree over the facets that arrived. There is no patch size to choose: the reach is two face sizes
-   plus the largest motion asked for. */
+   SearchCreate() holds the parts that do not change in a run. SearchLists() makes new lists at the present positions.
+   The lists then stand still while the positions move (NeighbourListsUpdate()). SearchDistance() gives the distance of
+   a single point to the master.
+
+   The search has two stages. The boxes of the ranks' slave nodes are compared with the boxes of facets to find the
+   ranks; then a tree is built over the facets that arrived. There is no patch size to choose: the reach is two face
+   sizes plus the largest motion for which the lists must be good. */
 #pragma once
 #include "search/neighbourlists.h"
 #include "bodies/loads.h"
@@ -12,26 +16,20 @@
 
 /* How a master surface is fitted. */
 typedef struct {
-  PetscBool         fitted;   /* lists come with fits; PETSC_FALSE: the facets serve and nothing below is asked for */
-  int               degree;   /* 2 or 4 */
-  PetscBool         integral; /* through the quadrature points of the faces, weighted by area, instead of the nodes */
+  PetscBool fitted; /* lists come with fits; PETSC_FALSE: the facets are used, and nothing below is read */
+  int       degree; /* 2 or 4 */
+  /* Fit through the quadrature points of the faces, weighted by area, instead of the nodes. */
+  PetscBool         integral;
   double            support;  /* in spacings of the master's nodes */
   double            exponent; /* of the weight */
   FitDerivativeKind derivatives;
   PetscBool         global_frame;  /* one reference plane for all slave points */
-  PetscReal         feature_angle; /* radians: lists end at sharper edges */
+  PetscReal         feature_angle; /* radians; fits end at edges that are sharper */
 } FitSettings;
 
-/* master NULL: an analytic one, which needs no lists. slaves NULL: the surface is to be looked at by itself (offset.h).
- * offset: of the master's quadrature points (integral fits), [faces][FACE_RULE_POINTS*dim], or NULL; maps: these points
- * as combinations of nodes instead, or NULL; what stands there when lists are made is taken. All are borrowed.
- * Collective. */
 PetscErrorCode SearchCreate(Mesh, Scene, Loads, ContactSurface master, PetscReal slave_size, int n_images,
                             const SurfaceImage *, const FitSettings *, SlavePoints slaves, const PetscReal *offset,
                             const FaceMaps *maps, ContactSearch *);
 PetscErrorCode SearchDestroy(ContactSearch *);
-/* New lists for local displacements u at load parameter t, good for a relative motion of `motion`. Collective. */
 PetscErrorCode SearchLists(ContactSearch, const PetscReal *u, PetscReal t, PetscReal motion, NeighbourLists *);
-/* The signed distance of any point to the whole master without its mirror images, by every rank looking at its own
- * facets. Collective. */
 PetscErrorCode SearchDistance(ContactSearch, const PetscReal *u, PetscReal t, const PetscReal x[3], PetscReal *gap);

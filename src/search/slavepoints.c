@@ -1,3 +1,4 @@
+/* Slave points of both formulations: where they are, their normals, weights and offsets. */
 #include "search/slavepoints.h"
 
 /* Makes the star forest from the owners to the nodes, whose keys are complete. */
@@ -20,7 +21,19 @@ static PetscErrorCode CreateForest(SlavePoints points)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* SlavePointsCreateNodes - slave points that are nodes: S = 1, no offset. Collective. n, nodes[n]: local nodes. */
+/*@
+  SlavePointsCreateNodes - makes slave points that are nodes: S = 1, no offset.
+
+  Collective
+
+  Input Parameters:
++ surface - the slave surface
+. n       - number of nodes
+- nodes   - local nodes, nodes[n]
+
+  Output Parameter:
+. out - the slave points
+@*/
 PetscErrorCode SlavePointsCreateNodes(ContactSurface surface, PetscInt n, const PetscInt nodes[], SlavePoints *out)
 {
   Mesh        mesh = surface->mesh;
@@ -64,7 +77,7 @@ static PetscBool OwnsNode(const void *context, PetscInt f, PetscMPIInt r)
   return PETSC_FALSE;
 }
 
-/* Nodes and faces of the points from the faces that arrived. */
+/* Makes the nodes and faces of the points from the faces that arrived. */
 static PetscErrorCode TakeRecords(SlavePoints points, PetscInt n_records, FaceRecord *records)
 {
   PetscSFNode *remote;
@@ -94,10 +107,20 @@ static PetscErrorCode TakeRecords(SlavePoints points, PetscInt n_records, FaceRe
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* SlavePointsCreateQuadrature - the points of surface contact, on this rank those of every face that touches one of its
-   nodes; offsets 0.
+/*@
+  SlavePointsCreateQuadrature - makes the slave points of surface-to-surface contact: the quadrature points of every
+  face that touches a node of this rank.
 
-   Collective. geometry: axisymmetric weights are over 360 degrees; finer: quadrature of one order more. */
+  Collective
+
+  Input Parameters:
++ surface  - the slave surface
+. geometry - axisymmetric weights are over 360 degrees
+- finer    - quadrature of one order more
+
+  Output Parameter:
+. out - the slave points, with offsets 0
+@*/
 PetscErrorCode SlavePointsCreateQuadrature(ContactSurface surface, Geometry geometry, int finer, SlavePoints *out)
 {
   const int   dim = surface->mesh->dim;
@@ -148,14 +171,32 @@ PetscErrorCode SlavePointsCreateQuadrature(ContactSurface surface, Geometry geom
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* SlavePointIsOwn - of the ranks that hold point q, the owner of its first node is the one to count it. Not collective.
- */
+/*@
+  SlavePointIsOwn - tells whether a rank is the one that counts point q.
+
+  Not collective
+
+  Input Parameters:
++ points - the slave points
+. q      - the point
+- rank   - the rank
+
+  Note:
+  Several ranks may hold a point. The owner of its first node counts it.
+@*/
 PetscBool SlavePointIsOwn(SlavePoints points, PetscInt q, PetscMPIInt rank)
 {
   return points->nodes[points->node[points->ptr[q]]].owner == rank ? PETSC_TRUE : PETSC_FALSE;
 }
 
-/* SlavePointsDestroy - Collective. */
+/*@
+  SlavePointsDestroy - frees slave points.
+
+  Collective
+
+  Input/Output Parameter:
+. points - the slave points, NULL on return
+@*/
 PetscErrorCode SlavePointsDestroy(SlavePoints *points)
 {
   SlavePoints p = *points;
@@ -177,7 +218,15 @@ PetscErrorCode SlavePointsDestroy(SlavePoints *points)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* SlavePointsMove - Collective. u[mesh n_nodes*dim]: local displacements (length), read at owned nodes. */
+/*@
+  SlavePointsMove - fetches the displacements of the nodes.
+
+  Collective
+
+  Input Parameters:
++ points - the slave points
+- u      - local displacements u[mesh n_nodes*dim] (length), read at owned nodes
+@*/
 PetscErrorCode SlavePointsMove(SlavePoints points, const PetscReal *u)
 {
   PetscFunctionBeginUser;
@@ -186,7 +235,18 @@ PetscErrorCode SlavePointsMove(SlavePoints points, const PetscReal *u)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* SlavePointsPosition - Not collective. x[dim]: relative to the mesh's centre (length). */
+/*@
+  SlavePointsPosition - computes the position of a point after the last move, without its offset.
+
+  Not collective
+
+  Input Parameters:
++ points - the slave points
+- q      - the point
+
+  Output Parameter:
+. x - x[dim], relative to the mesh's centre (length)
+@*/
 void SlavePointsPosition(SlavePoints points, PetscInt q, PetscReal *x)
 {
   const int dim = points->mesh->dim;
@@ -197,7 +257,7 @@ void SlavePointsPosition(SlavePoints points, PetscInt q, PetscReal *x)
       x[d] += points->S[k] * (points->nodes[points->node[k]].X[d] + points->u[points->node[k] * dim + d]);
 }
 
-/* Nodes: the area-weighted mean normal of the faces around. */
+/* Normals at nodes: the area-weighted mean normal of the faces around each node. */
 static PetscErrorCode NodeNormals(SlavePoints points, const PetscReal *u, PetscReal *normals)
 {
   Mesh       mesh = points->mesh;
@@ -214,8 +274,18 @@ static PetscErrorCode NodeNormals(SlavePoints points, const PetscReal *u, PetscR
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* SlavePointsNormals - Collective. u[mesh n_nodes*dim]: that of the last SlavePointsMove(); normals[n*3]: out of the
- * slave's body, of any length. */
+/*@
+  SlavePointsNormals - computes the normals at the points after the last move.
+
+  Collective
+
+  Input Parameters:
++ points - the slave points
+- u      - displacements u[mesh n_nodes*dim] of the last SlavePointsMove()
+
+  Output Parameter:
+. normals - normals[n*3], out of the slave's body, of any length
+@*/
 PetscErrorCode SlavePointsNormals(SlavePoints points, const PetscReal *u, PetscReal *normals)
 {
   const int dim = points->mesh->dim;
@@ -235,7 +305,15 @@ PetscErrorCode SlavePointsNormals(SlavePoints points, const PetscReal *u, PetscR
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* SlavePointsSetOffsets - Collective. offset: of this rank's faces (length). */
+/*@
+  SlavePointsSetOffsets - takes the offsets of this rank's own faces to the points on all ranks.
+
+  Collective
+
+  Input Parameters:
++ points - the slave points
+- offset - offset[faces of the surface][FACE_RULE_POINTS*dim] (length)
+@*/
 PetscErrorCode SlavePointsSetOffsets(SlavePoints points, const PetscReal *offset)
 {
   const int  dim = points->mesh->dim;
@@ -252,7 +330,18 @@ PetscErrorCode SlavePointsSetOffsets(SlavePoints points, const PetscReal *offset
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* SlavePointsSetMaps - Collective. maps: of this rank's faces. Once they are there nothing is done. */
+/*@
+  SlavePointsSetMaps - takes the maps of this rank's own faces to the points on all ranks.
+
+  Collective
+
+  Input Parameters:
++ points - the slave points
+- maps   - maps of this rank's faces
+
+  Note:
+  Later calls do nothing, because the maps do not change.
+@*/
 PetscErrorCode SlavePointsSetMaps(SlavePoints points, const FaceMaps *maps)
 {
   PetscFunctionBeginUser;
@@ -260,8 +349,19 @@ PetscErrorCode SlavePointsSetMaps(SlavePoints points, const FaceMaps *maps)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* SlavePointsHatAreas - Collective. geometry: axisymmetric areas are over 360 degrees; u[n_nodes*dim]: local
- * displacements, ghosts included. */
+/*@
+  SlavePointsHatAreas - computes the areas int psi dA of all local nodes of the mesh, with the hat functions psi.
+
+  Collective
+
+  Input Parameters:
++ points   - the slave points
+. geometry - axisymmetric areas are over 360 degrees
+- u        - local displacements u[n_nodes*dim], ghosts included; NULL: reference configuration
+
+  Output Parameter:
+. area - area[n_nodes], complete on every copy of a node
+@*/
 PetscErrorCode SlavePointsHatAreas(SlavePoints points, Geometry geometry, const PetscReal *u, PetscReal *area)
 {
   Mesh      mesh = points->mesh;

@@ -1,15 +1,17 @@
+/* Contact surfaces: faces, sizes, free edges, nodal areas, mirror images. */
 #include "kernels/elementkernel.h"
 #include "base/refusal.h"
 #include "search/surface.h"
 
-/* A plane of symmetry may deviate from flatness, and its normal from an axis, by this fraction of the model's size:
- * round-off of a CAD kernel. */
+/* The deviation of a plane of symmetry from flatness, and of its normal from an axis, may reach this fraction of the
+   model's size. It is the round-off of a CAD kernel. */
 #define SURFACE_FLATNESS 1e-6
-/* Directions are told apart by the cells of a cube's faces, so many along an edge; a cell is some 20 degrees wide, so
-   normals count as opposed up to this cosine. */
+/* Directions are distinguished by cells on the faces of a cube, with this many cells along an edge of the cube. A
+   cell is some 20 degrees wide, so that normals count as opposed up to the cosine SURFACE_OPPOSED. */
 enum { SURFACE_CELLS = 4, SURFACE_DIRECTIONS = 6 * SURFACE_CELLS * SURFACE_CELLS };
 #define SURFACE_OPPOSED 0.25
 
+/* Coordinates of a face's nodes, displaced by u unless u is NULL. */
 static void FaceCoordinates(ContactSurface surface, const Facet *face, const PetscReal *u, double *X)
 {
   Mesh             mesh   = surface->mesh;
@@ -69,8 +71,8 @@ static PetscErrorCode SurfaceFacesFromRigid(ContactSurface surface)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Stiffness of the layer of elements below a face: E over element height, height = volume over area (simplices: dim
- * times that). */
+/* Stiffness of the layer of elements below a face: E over element height, with height = volume over area (simplices:
+   dim times that). */
 static PetscReal FaceStiffness(ContactSurface surface, Elasticity elasticity, PetscInt f, PetscReal area)
 {
   Mesh           mesh = surface->mesh;
@@ -83,7 +85,7 @@ static PetscReal FaceStiffness(ContactSurface surface, Elasticity elasticity, Pe
   return ElasticityCellModulus(elasticity, c) * area / (volume * (e->corners == e->dim + 1 ? e->dim : 1));
 }
 
-/* Longest distance between two corners. */
+/* Longest distance between two corners of a face. */
 static PetscReal FaceExtent(int dim, const Facet *face, const double *X)
 {
   PetscReal most = 0;
@@ -99,10 +101,11 @@ static PetscReal FaceExtent(int dim, const Facet *face, const double *X)
   return most;
 }
 
+/* Measures sizes and stiffness of the faces, over all ranks. */
 static PetscErrorCode SurfaceMeasure(ContactSurface surface, Elasticity elasticity)
 {
   Mesh      mesh   = surface->mesh;
-  PetscReal sum[4] = {0, 0, 0, 0}, most[2] = {0, 0}; /* area, faces, size, stiffness * area; size, extent */
+  PetscReal sum[4] = {0, 0, 0, 0}, most[2] = {0, 0}; /* sum: area, faces, size, stiffness * area; most: size, extent */
   double    X[FACE_MAX_NODES * 3];
 
   PetscFunctionBeginUser;
@@ -131,9 +134,25 @@ static PetscErrorCode SurfaceMeasure(ContactSurface surface, Elasticity elastici
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* SurfaceCreate - the contact surface of that name: a surface of a deformable body or of a meshed rigid tool.
+/*@
+  SurfaceCreate - makes the contact surface of a name: a surface of a deformable body or of a meshed rigid tool.
 
-   path, key: the scene's key that names it, for messages. Refuses unknown and empty surfaces. Collective. */
+  Collective
+
+  Input Parameters:
++ mesh       - the mesh
+. scene      - the scene
+. elasticity - gives the moduli of the cells
+. path       - path of the scene's key that names the surface, for messages
+. key        - that key
+- name       - of the surface
+
+  Output Parameter:
+. out - the surface
+
+  Note:
+  Refuses unknown and empty surfaces.
+@*/
 PetscErrorCode SurfaceCreate(Mesh mesh, Scene scene, Elasticity elasticity, const char *path, const char *key,
                              const char *name, ContactSurface *out)
 {
@@ -166,7 +185,14 @@ PetscErrorCode SurfaceCreate(Mesh mesh, Scene scene, Elasticity elasticity, cons
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* SurfaceDestroy - Collective. */
+/*@
+  SurfaceDestroy - frees a surface.
+
+  Collective
+
+  Input/Output Parameter:
+. surface - the surface, NULL on return
+@*/
 PetscErrorCode SurfaceDestroy(ContactSurface *surface)
 {
   PetscFunctionBeginUser;
@@ -176,7 +202,7 @@ PetscErrorCode SurfaceDestroy(ContactSurface *surface)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* An edge of a face (an end in 2D) by the rank-independent numbers of its corners. */
+/* An edge of a face (an end in 2D) with the rank-independent numbers of its corners. */
 typedef struct {
   PetscInt id[2], face;
   int      edge;
@@ -191,12 +217,14 @@ static int FaceEdgeCompare(const void *a, const void *b)
   return 0;
 }
 
+/* Number of edges of a face; in 2D its two ends. */
 static int FaceEdges(const Facet *face)
 {
   const Element *e = ElementGet(face->type);
   return e->dim == 1 ? 2 : e->edges;
 }
 
+/* Numbers, within the face, of the nodes at the ends of an edge. Returns how many there are: 1 in 2D, else 2. */
 static int FaceEdgeNodes(const Facet *face, int edge, int corners[2])
 {
   const Element *e = ElementGet(face->type);
@@ -206,7 +234,7 @@ static int FaceEdgeNodes(const Facet *face, int edge, int corners[2])
   return e->dim == 1 ? 1 : 2;
 }
 
-/* Drops from a sorted list every edge that occurs more than once. */
+/* Drops every edge that occurs more than once. Sorts the list and returns the number of edges that remain. */
 static PetscInt KeepSingleEdges(PetscInt n, FaceEdge *edges)
 {
   PetscInt kept = 0;
@@ -222,7 +250,7 @@ static PetscInt KeepSingleEdges(PetscInt n, FaceEdge *edges)
   return kept;
 }
 
-/* Does some plane of symmetry hold all nodes of the edge? */
+/* Does a plane of symmetry hold all nodes of the edge? */
 static PetscBool EdgeOnSymmetry(ContactSurface surface, const FaceEdge *edge, int n_images, const SurfaceImage *images)
 {
   const int        dim    = surface->mesh->dim;
@@ -245,8 +273,8 @@ static PetscBool EdgeOnSymmetry(ContactSurface surface, const FaceEdge *edge, in
   return PETSC_FALSE;
 }
 
-/* Of the edges that stand alone on this rank, those that another rank holds too are partition borders, not ends of the
- * surface. */
+/* Drops those single edges of this rank that another rank holds too. They are partition borders, not ends of the
+   surface. */
 static PetscErrorCode DropPartitionBorders(MPI_Comm comm, PetscInt *n, FaceEdge *edges)
 {
   PetscMPIInt size, mine, *counts, *starts;
@@ -281,11 +309,19 @@ static PetscErrorCode DropPartitionBorders(MPI_Comm comm, PetscInt *n, FaceEdge 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* SurfaceFindFreeEdges - marks the edges (ends in 2D) that one face alone holds, over all ranks, unless they lie on a
-   plane of symmetry.
+/*@
+  SurfaceFindFreeEdges - marks the edges (ends in 2D) that belong to one face only, over all ranks, and do not lie on a
+  plane of symmetry.
 
-   Collective. images[n_images]: the pair's, SurfaceImages(); by their planes the test is the same for bodies, tools and
-   the axis. Sets bits of free_edges. */
+  Collective
+
+  Input Parameters:
++ n_images - number of images
+- images   - of SurfaceImages() for the pair; with their planes the test is the same for bodies, tools and the axis
+
+  Input/Output Parameter:
+. surface - the surface; the bits free_edges of its faces are set
+@*/
 PetscErrorCode SurfaceFindFreeEdges(ContactSurface surface, int n_images, const SurfaceImage *images)
 {
   Mesh      mesh = surface->mesh;
@@ -323,12 +359,21 @@ PetscErrorCode SurfaceFindFreeEdges(ContactSurface surface, int n_images, const 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* SurfaceNodeAreas - tributary areas int N_a dA and normals int N_a n dA of all local nodes, summed over the faces of
-   all ranks.
+/*@
+  SurfaceNodeAreas - computes tributary areas int N_a dA and normals int N_a n dA of all local nodes, summed over the
+  faces of all ranks.
 
-   Collective. Deformable surfaces only. geometry: axisymmetric areas are over 360 degrees; u[n_nodes*dim]: local
-   displacements (length), NULL: reference. area[n_nodes], normal[n_nodes*3] (NULL: not asked for; its length is an
-   area): complete on every copy, 0 off the surface. */
+  Collective
+
+  Input Parameters:
++ surface  - a deformable surface
+. geometry - axisymmetric areas are over 360 degrees
+- u        - local displacements u[n_nodes*dim] (length); NULL: reference configuration
+
+  Output Parameters:
++ area   - area[n_nodes], complete on every copy of a node, 0 off the surface
+- normal - normal[n_nodes*3], likewise, with an area as length; may be NULL
+@*/
 PetscErrorCode SurfaceNodeAreas(ContactSurface surface, Geometry geometry, const PetscReal *u, PetscReal *area,
                                 PetscReal *normal)
 {
@@ -355,11 +400,24 @@ PetscErrorCode SurfaceNodeAreas(ContactSurface surface, Geometry geometry, const
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* SurfaceNodeSizes - what the faces around each local node are like in the reference configuration.
+/*@
+  SurfaceNodeSizes - measures the faces around each local node in the reference configuration.
 
-   Collective. Deformable surfaces only. size[n_nodes]: mean face size (length); turn[n_nodes]: how far the faces turn
-   from their mean normal (radians), from the resultant of their areas; share[n_nodes]: tributary area over the area of
-   the faces. 0 off the surface. */
+  Collective
+
+  Input Parameters:
++ surface  - a deformable surface
+- geometry - of the scene
+
+  Output Parameters:
++ size  - size[n_nodes]: mean face size (length)
+. turn  - turn[n_nodes]: angle between the faces and their mean normal (radians), from the resultant of their areas
+- share - share[n_nodes]: tributary area over the whole area of the faces, which is 1/4 on 4-node faces and about 0 for
+          corners of 6-node triangles
+
+  Note:
+  All values are 0 off the surface.
+@*/
 PetscErrorCode SurfaceNodeSizes(ContactSurface surface, Geometry geometry, PetscReal *size, PetscReal *turn,
                                 PetscReal *share)
 {
@@ -398,17 +456,17 @@ PetscErrorCode SurfaceNodeSizes(ContactSurface surface, Geometry geometry, Petsc
   for (PetscInt n = 0; n < mesh->n_nodes; n++) {
     const PetscReal *m = &normal[3 * n], length = PetscSqrtReal(m[0] * m[0] + m[1] * m[1] + m[2] * m[2]);
 
-    turn[n] = area[n] > 0 ? PetscAcosReal(PetscMin(1, length / area[n]))
-                          : 0; /* the resultant of faces that turn by +-a is cos a of their area */
+    /* The resultant of faces that turn by +-a is cos a of their area. */
+    turn[n] = area[n] > 0 ? PetscAcosReal(PetscMin(1, length / area[n])) : 0;
   }
   PetscCall(PetscFree3(sum, normal, area));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The axis a planar group is normal to and its position, or axis -1. */
+/* Finds the axis to which a planar group is normal, and its position. The axis is -1 if there is none. */
 static PetscErrorCode GroupPlane(Mesh mesh, const MeshGroup *group, int *axis, PetscReal *position)
 {
-  PetscReal range[6]; /* -min, max of each component over all ranks */
+  PetscReal range[6]; /* -min and max of each component, over all ranks */
 
   PetscFunctionBeginUser;
   for (int k = 0; k < 6; k++) range[k] = PETSC_MIN_REAL;
@@ -430,6 +488,7 @@ static PetscErrorCode GroupPlane(Mesh mesh, const MeshGroup *group, int *axis, P
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Does a support fix this displacement component on the surface? */
 static PetscBool SupportHolds(Scene scene, const char *surface, int component)
 {
   for (int s = 0; s < scene->n_supports; s++)
@@ -437,7 +496,7 @@ static PetscBool SupportHolds(Scene scene, const char *surface, int component)
   return PETSC_FALSE;
 }
 
-/* Is the plane there already? Two surfaces may lie on one plane, and the axis r = 0 is always there. */
+/* Do the images contain this plane already? Two surfaces may lie on one plane, and the axis r = 0 is always there. */
 static PetscBool ImagesHavePlane(int axis, PetscReal position, PetscReal size, int n, const SurfaceImage *images)
 {
   for (int bit = 1; bit < n; bit <<= 1)
@@ -461,12 +520,25 @@ static void ImagesAddPlane(int axis, PetscReal position, int *n, SurfaceImage *i
   *n *= 2;
 }
 
-/* SurfaceImages - mirror images of a pair's master: identity, each plane of symmetry, all their products; the axis r =
-   0 is always one.
+/*@
+  SurfaceImages - makes the mirror images of a pair's master: the identity, each plane of symmetry and all their
+  products.
 
-   Collective. images[SURFACE_MAX_IMAGES]: in coordinates relative to the mesh's centre. Refuses (exit 1) surfaces that
-   are not planar and normal to an axis, that no support holds in that direction, and a third plane normal to one axis.
- */
+  Collective
+
+  Input Parameters:
++ mesh    - the mesh
+. scene   - the scene
+- contact - gives the planes of symmetry
+
+  Output Parameters:
++ n_images - number of images
+- images   - images[SURFACE_MAX_IMAGES], in coordinates relative to the mesh's centre
+
+  Note:
+  In axisymmetric scenes the axis r = 0 is always a plane of symmetry. Refuses (exit 1) surfaces that are not planar and
+  normal to an axis, surfaces that no support holds in that direction, and a third plane normal to one axis.
+@*/
 PetscErrorCode SurfaceImages(Mesh mesh, Scene scene, const SceneContact *contact, int *n_images,
                              SurfaceImage images[SURFACE_MAX_IMAGES])
 {
@@ -511,14 +583,37 @@ PetscErrorCode SurfaceImages(Mesh mesh, Scene scene, const SceneContact *contact
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* SurfaceReflect - the mirror image of a position. Not collective. x[dim], y[dim] (length) may be the same array. */
+/*@
+  SurfaceReflect - computes the mirror image of a position.
+
+  Not collective
+
+  Input Parameters:
++ image - the image
+. dim   - 2 or 3
+- x     - position x[dim] (length)
+
+  Output Parameter:
+. y - its mirror image y[dim]; may be the same array as x
+@*/
 void SurfaceReflect(const SurfaceImage *image, int dim, const PetscReal *x, PetscReal *y)
 {
   for (int d = 0; d < dim; d++) y[d] = image->sign[d] * x[d] + image->shift[d];
 }
 
-/* SurfaceImageFacet - a facet as one of its images sees it: turned over where the image reverses orientation, so that
-   its normal points out of the image again; free edges go along. Not collective. */
+/*@
+  SurfaceImageFacet - returns a facet as one of its mirror images.
+
+  Not collective
+
+  Input Parameters:
++ facet - the facet
+- image - the image
+
+  Note:
+  Where the image reverses the orientation, the order of the nodes is reversed too, so that the normal points out of the
+  image again. The bits of free edges follow.
+@*/
 Facet SurfaceImageFacet(const Facet *facet, const SurfaceImage *image)
 {
   const Element *e     = ElementGet(facet->type);
@@ -535,7 +630,7 @@ Facet SurfaceImageFacet(const Facet *facet, const SurfaceImage *image)
   return out;
 }
 
-/* The cell of the cube that a direction points into, and back to the cell's middle. */
+/* The cell of the cube into which a direction points. DirectionMiddle() gives the direction of a cell's middle. */
 static int DirectionCell(const PetscReal v[3])
 {
   int axis = 0, cell[2];
@@ -557,10 +652,25 @@ static void DirectionMiddle(int index, PetscReal v[3])
   for (int k = 0; k < 2; k++) v[(axis + 1 + k) % 3] = (2 * cell[k] + 1.0) / SURFACE_CELLS - 1;
 }
 
-/* SurfaceFaces - is there any face of the master whose normal is opposed to that of any of these nodes?
+/*@
+  SurfaceFaces - tests whether any face of the master has a normal opposed to that of any of these nodes, in the
+  reference configuration.
 
-   Collective. n, nodes: this rank's; normals[3*local node]. The faces' directions are gathered by cells of about 20
-   degrees, so that ranks exchange a fixed, small table. *facing: the same on all ranks. */
+  Collective
+
+  Input Parameters:
++ master  - the master surface
+. n       - number of nodes of this rank
+. nodes   - the nodes
+- normals - normals[3*local node], of any length
+
+  Output Parameter:
+. facing - the answer, the same on all ranks
+
+  Note:
+  The directions of the faces are gathered in cells of about 20 degrees, so that ranks exchange a small table of fixed
+  size.
+@*/
 PetscErrorCode SurfaceFaces(ContactSurface master, PetscInt n, const PetscInt nodes[], const PetscReal normals[],
                             PetscBool *facing)
 {

@@ -1,10 +1,16 @@
-/* What the files of the search share and nobody else sees: faces on their way between ranks, candidates, growing lists,
- * fits in the making. */
+/* Internals that the files of the search share and nobody else sees: faces on their way between ranks, candidates,
+   growing lists, fits that are being made.
+
+   SearchFieldCreate() (search.c) collects faces with faceexchange.c, makes candidates with candidate.c and numbers
+   nodes and points with neighbourlists.c. FitSupportCreate() (fitsupport.c) then prepares the fits, and
+   FitSupportSlave() makes one for each slave point. Offsets use the field and FitSupportClimb() for fits of the
+   surface itself. */
 #pragma once
 #include "neighbourhood.h"
 #include "search/search.h"
 
-/* A node this close to a plane of symmetry, as a fraction of the model's size, is on it and has no image. */
+/* A node whose distance to a plane of symmetry is below this fraction of the model's size lies on it and has no
+   image. */
 #define SEARCH_ON_PLANE 1e-9
 
 struct _n_ContactSearch {
@@ -16,21 +22,21 @@ struct _n_ContactSearch {
   const SurfaceImage *images;
   const FitSettings  *fit;
   SlavePoints         slaves;
-  const PetscReal    *offset; /* of the quadrature points of this rank's master faces, where fits go through these */
-  const FaceMaps     *maps;   /* or what these are made of */
+  const PetscReal    *offset; /* of the quadrature points of this rank's master faces, where fits use these points */
+  const FaceMaps     *maps;   /* or these points as combinations of nodes */
   PetscReal           reach, margin; /* lengths, without the motion */
 };
 
-/* A face or a mirror image of it, in the current position. */
+/* A face or a mirror image of it, in the present position. */
 typedef struct {
   PetscInt  record;
   int       image;
   Facet     facet; /* nodes: contact nodes until the points are numbered, then points */
-  PetscInt  first; /* fit point of its quadrature rule */
+  PetscInt  first; /* first fit point of its quadrature rule */
   PetscReal centre[3], normal[3], lower[3], upper[3];
 } Candidate;
 
-/* The master's faces that a rank holds for a while, with their mirror images */
+/* The master's faces that a rank holds temporarily, with their mirror images. */
 typedef struct {
   PetscInt    n_records, n_candidates;
   FaceRecord *records;
@@ -38,39 +44,40 @@ typedef struct {
   Candidate  *candidates;
 } SearchField;
 
-/* One slave point looking for its nearest facet. */
+/* Search for the nearest facet of one slave point. */
 typedef struct {
   NeighbourLists   lists;
   const Candidate *candidates;
   PetscReal        x[3], normal[3];
-  PetscInt         q,
-    own; /* the slave point, and of how many nodes its own face is: a face with one of these is not its master */
+  /* The slave point, and the number of nodes of its own face: a face with one of these nodes is not its master. */
+  PetscInt  q, own;
   PetscInt  best;
   PetscReal distance; /* of the best */
-  PetscReal least,
-    tie;     /* of all, or as far as is looked; distances (lengths) that differ by less than the tie are equal */
-  Foot foot; /* on the best */
+  /* Distance (length) of the nearest candidate of all, or the largest one that is searched. Distances that differ by
+     less than tie are equal. */
+  PetscReal least, tie;
+  Foot      foot; /* on the best candidate */
 } Nearest;
 
-/* Lists of all slave points, growing. */
+/* Growing lists of all slave points. */
 typedef struct {
   PetscInt   n, room;
   Facet     *facet;
   PetscReal *size;
   PetscInt   n_points, points_room, *point;
-  PetscInt  *position; /* of every point in the present slave point's list; older entries are below its start */
+  PetscInt  *position; /* of every point in the list of the present slave point; older entries are below its start */
 } ListBuffer;
 
-/* Where a fit is wanted: at the slave point's foot on the facets, or at a point of the surface itself */
+/* Where a fit is made: at the slave point's foot on the facets, or at a point of the surface itself. */
 typedef struct {
-  PetscInt  facet; /* candidate */
+  PetscInt  facet; /* number of the candidate */
   double    xi[2];
-  PetscReal X[3], u[3];          /* origin of the fit: their sum */
-  PetscReal foot[3], outward[3]; /* centre of the support; direction */
+  PetscReal X[3], u[3];          /* origin of the fit: their sum (length) */
+  PetscReal foot[3], outward[3]; /* centre of the support (length), and outward direction */
   PetscBool upright;             /* the frame's normal is `outward`, not that of the points' plane */
 } FitFoot;
 
-/* The fits of a pair's slave points in the making. */
+/* The data for making the fits of a pair's slave points. */
 typedef struct {
   ContactSearch  s;
   NeighbourLists lists;
@@ -78,11 +85,11 @@ typedef struct {
   Neighbourhoods neighbourhoods;
   PetscReal     *normals, *reference;
   NodeGeometry  *geometry;
-  PetscInt      *points; /* of the slave point at hand, FIT_MAX_POINTS */
-  double        *x, *multiplier, *taper,
-    *workspace; /* taper: weights of the frame, which fall to nothing where the list ends */
+  PetscInt      *points; /* of the present slave point, with room for FIT_MAX_POINTS */
+  /* taper: weights for the frame, which vanish where the list ends. */
+  double   *x, *multiplier, *taper, *workspace;
   int      *used;
-  PetscReal plane[3]; /* normal of the one reference plane of a global frame */
+  PetscReal plane[3]; /* normal of the single reference plane of a global frame */
 } FitSupport;
 
 /* candidate.c */
@@ -112,7 +119,6 @@ PetscErrorCode FitSupportDestroy(FitSupport *);
 PetscErrorCode FitSupportSlave(FitSupport *, const Nearest *, PetscInt q, PetscInt first, ListBuffer *);
 PetscErrorCode FitSupportClimb(FitSupport *, const FitFoot *, FitProblem *, FitResult *, int *rung);
 /* search.c */
-/* The faces around a box with nodes, images and points in lists, whose slave points are not yet there. Collective. */
 PetscErrorCode SearchFieldCreate(ContactSearch, const PetscReal *u, PetscReal t, const PetscReal box[6],
                                  PetscReal distance, NeighbourLists, SearchField *);
 PetscErrorCode SearchFieldDestroy(SearchField *);
