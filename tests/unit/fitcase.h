@@ -1,4 +1,5 @@
-/* Neighbourhoods for the tests of the diffuse fit: bowls of jittered nodes, straight or turned in space. */
+/* Neighbourhoods for the tests of the diffuse fit: bowls of jittered nodes, straight or turned in space. Straight()
+   and AddBowl() make a case step by step, RandomCase() makes a complete one, and Evaluate() computes it. */
 #pragma once
 #include <float.h>
 #include <math.h>
@@ -13,7 +14,7 @@
 
 enum { MAX = FIT_MAX_POINTS, FEW = 120, WORK = 400000 };
 
-/* One slave point with all its arrays */
+/* One slave point with all its arrays. */
 typedef struct {
   FitProblem in;
   FitResult  out;
@@ -41,7 +42,7 @@ static inline double Random(double low, double high)
   return low + (high - low) * (double)(state >> 11) / 9007199254740992.0;
 }
 
-/* assert_float_equal compares as float */
+/* Replaces assert_float_equal(), which compares as float. */
 static inline void AssertNear(double a, double b, double tolerance)
 {
   if (!(fabs(a - b) <= tolerance)) {
@@ -61,7 +62,7 @@ static inline double MaxAbs(long n, const double *a)
   return most;
 }
 
-/* The workspace is as long as asked for and need not be aligned. */
+/* Evaluates a case. The workspace has just the length that is asked for and need not be aligned. */
 static inline int Evaluate(Case *c, FitWant want)
 {
   const long size = FitWorkspace(c->in.dim, c->in.degree, c->in.n);
@@ -77,7 +78,7 @@ static inline int Evaluate(Case *c, FitWant want)
   return whole;
 }
 
-/* Frame e_1, e_2, e_3 and a round support */
+/* The frame e_1, e_2, e_3 and a round support. */
 static inline void Straight(Case *c, int dim, int degree, double support, double exponent)
 {
   memset(c, 0, sizeof(*c));
@@ -99,8 +100,8 @@ static inline void AddPoint(Case *c, double s, double t, double z, double v)
   c->v[c->in.n++]  = v;
 }
 
-/* Jittered nodes one spacing apart as far as `reach`, on a bowl with bumps; no node close to the end of a round
- * support. */
+/* Adds jittered nodes one spacing apart as far as `reach`, on a bowl with bumps. No node is close to the end of a
+   round support. */
 static inline void AddBowl(Case *c, double reach, double support)
 {
   const int    dim = c->in.dim, cells = (int)reach + 1;
@@ -117,7 +118,7 @@ static inline void AddBowl(Case *c, double reach, double support)
   }
 }
 
-/* A random rotation from the axis-angle form; 2D about z */
+/* A random rotation from the axis-angle form; in 2D about z. */
 static inline void Rotation(int dim, double R[3][3])
 {
   double       axis[3] = {Random(-1, 1), Random(-1, 1), Random(-1, 1)}, length;
@@ -133,7 +134,7 @@ static inline void Rotation(int dim, double R[3][3])
   }
 }
 
-/* out = R a for n vectors */
+/* out = R a for n vectors. */
 static inline void Turn(int dim, int n, double R[3][3], const double *a, double *out)
 {
   for (int i = 0; i < n; i++) {
@@ -144,7 +145,7 @@ static inline void Turn(int dim, int n, double R[3][3], const double *a, double 
   }
 }
 
-/* A bowl turned in space, with an elliptic support */
+/* A bowl turned in space, with an elliptic support. */
 static inline void RandomCase(Case *c, int dim, int degree, double exponent)
 {
   const double support = dim == 2 ? 6 : degree == 4 ? 4.2 : 3;

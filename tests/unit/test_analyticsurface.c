@@ -1,5 +1,5 @@
 /* Gaps to planes, cylinders and spheres, outside and inside, have the right sign and size, and their N and M are the
- * derivatives of the gap. */
+   derivatives of the gap. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -19,7 +19,7 @@ static double Random(double low, double high)
   return low + (high - low) * (double)(state >> 11) / 9007199254740992.0;
 }
 
-/* assert_float_equal compares as float */
+/* Replaces assert_float_equal(), which compares as float. */
 static void AssertNear(double a, double b, double tolerance)
 {
   if (!(fabs(a - b) <= tolerance)) {
@@ -85,13 +85,13 @@ static void TestNoClosestPoint(void **state)
   assert_false(AnalyticSurfaceEvaluate(&plane, 3, (double[3]){0, 0, 1}, &out));
 }
 
-/* Fourth-order central difference from the values at -2h, -h, h, 2h */
+/* Fourth-order central difference from the values at -2h, -h, h, 2h. */
 static double Difference(const double value[4], double h)
 {
   return (value[0] - 8 * value[1] + 8 * value[2] - value[3]) / (12 * h);
 }
 
-/* N and M against central differences of gap and N; M annihilates the normal. */
+/* N and M agree with central differences of gap and N, and M annihilates the normal. */
 static void CheckVariations(const AnalyticSurface *master, int dim)
 {
   const double   h = 1e-4;
@@ -119,7 +119,7 @@ static void CheckVariations(const AnalyticSurface *master, int dim)
       product += out.M[c * dim + d] * out.normal[d];
       size += fabs(out.M[c * dim + d]);
     }
-    AssertNear(product, 0, 1e-14 * size); /* rounding of M's entries */
+    AssertNear(product, 0, 1e-14 * size); /* the rounding of M's entries */
   }
 }
 

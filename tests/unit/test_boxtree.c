@@ -1,4 +1,4 @@
-/* The tree of boxes finds what looking at every box finds, and the search for the closest visits few. */
+/* The tree of boxes finds the same boxes as a loop over all of them, and the search for the closest one visits few. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -84,8 +84,8 @@ typedef struct {
   double        distance, least;
 } Search;
 
-/* Checks the order of the visits; shrinks the bound to the least distance of a thing inside the box, here its centre.
- */
+/* Checks the order of the visits. Shrinks the bound to the least distance of an object inside the box, which here is
+   its centre. */
 static void Visit(void *context, int index, double *bound)
 {
   Search      *search   = context;

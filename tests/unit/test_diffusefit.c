@@ -1,4 +1,4 @@
-/* The diffuse fit reproduces polynomials, follows spheres, and its guards fire before it fails. */
+/* The diffuse fit reproduces polynomials and follows spheres, and its guards are set before it fails. */
 #include "fitcase.h"
 
 static double Polynomial(const double *c, int degree, double s, double t)
@@ -11,7 +11,7 @@ static double Polynomial(const double *c, int degree, double s, double t)
   return sum;
 }
 
-/* Graphs of polynomials of the basis's degree come back exactly, and the foot is the closest point of them. */
+/* The fit reproduces graphs of polynomials of its degree exactly, and the foot is their closest point. */
 static void TestPolynomials(void **state)
 {
   static Case c;
@@ -47,7 +47,7 @@ static void TestPolynomials(void **state)
   }
 }
 
-/* A cylinder's section and the cylinder itself */
+/* The fit through the section of a cylinder agrees with the fit through the cylinder. */
 static void TestPlaneEqualsSpace(void **state)
 {
   static Case plane, space;
@@ -79,8 +79,8 @@ static void TestPlaneEqualsSpace(void **state)
   }
 }
 
-/* Nodes of a sphere, h apart, seen from a point close to it: accuracy of gap and curvature, and angular momentum to the
- * lever arm */
+/* Nodes of a sphere, h apart, seen from a point close to it: accuracy of gap and curvature, and angular momentum to
+   the lever arm. */
 static void TestSphere(void **state)
 {
   static const double support = 3.5, R = 20, h = 1.309;
@@ -114,7 +114,7 @@ static void TestSphere(void **state)
   }
 }
 
-/* The larger principal curvature of a saddle at its pass, and of a cylinder seen in a frame that leans */
+/* The larger principal curvature at the pass of a saddle, and of a cylinder in a frame that leans. */
 static void TestCurvature(void **state)
 {
   static Case  c;
@@ -142,7 +142,7 @@ static void TestCurvature(void **state)
   AssertNear(c.out.curvature * R, 1, 3e-3);
 }
 
-/* A point that leaves the support has no force when it goes. */
+/* A point has no force when it leaves the support. */
 static void TestSupportEnd(void **state)
 {
   static Case c;
@@ -161,8 +161,8 @@ static void TestSupportEnd(void **state)
   AssertNear(N[0], N[1], 1e-11);
 }
 
-/* Shape values: at the foot they sum to 1 and are N along the normal for a flat surface; a combination's are its
- * derivatives. */
+/* Shape values: at the foot their sum is 1, and for a flat surface they are N along the normal. Those of a
+   combination are its derivatives. */
 static void TestShape(void **state)
 {
   static Case  c;
@@ -196,35 +196,35 @@ static void TestGuards(void **state)
   static Case c;
 
   (void)state;
-  Straight(&c, 3, 2, 3, 3); /* collinear */
+  Straight(&c, 3, 2, 3, 3); /* the points are collinear */
   for (int i = -10; i <= 10; i++) AddPoint(&c, 0.25 * i, 0.1 * i, 0.01 * i * i, 1);
   assert_false(Evaluate(&c, FIT_SECOND_VARIATION));
   assert_int_equal(c.out.guards, FIT_NO_SURFACE);
-  for (int i = 0; i < c.in.n; i++) c.x[3 * i + 1] += 1e-4 * (i % 5); /* nearly so */
+  for (int i = 0; i < c.in.n; i++) c.x[3 * i + 1] += 1e-4 * (i % 5); /* nearly collinear */
   assert_true(Evaluate(&c, FIT_SURFACE));
   assert_true(c.out.guards & FIT_LOW_PIVOT);
   Straight(&c, 3, 2, 3, 3); /* five nodes, each four times */
   for (int i = 0; i < 20; i++) AddPoint(&c, i % 5 == 0 ? 0 : i % 5 < 3 ? 1 : -1, i % 5 == 0 ? 0 : i % 2 ? 1 : -1, 0, 1);
   assert_false(Evaluate(&c, FIT_SECOND_VARIATION));
   assert_int_equal(c.out.guards, FIT_NO_SURFACE);
-  Straight(&c, 3, 2, 3, 3); /* two by three nodes miss the second derivative across */
+  Straight(&c, 3, 2, 3, 3); /* two by three nodes do not determine the second derivative across */
   for (int i = 0; i < 6; i++) AddPoint(&c, i / 2 - 1, i % 2 - 0.4, 0, 1);
   assert_false(Evaluate(&c, FIT_SECOND_VARIATION));
   assert_int_equal(c.out.guards, FIT_NO_SURFACE);
-  c.in.degree = 1; /* enough for a plane */
+  c.in.degree = 1; /* they are enough for a plane */
   assert_true(Evaluate(&c, FIT_SECOND_VARIATION));
   assert_int_equal(c.out.guards, FIT_HOLDS);
-  Straight(&c, 3, 2, 2.5, 3); /* points on one side only: a far foot, or one that amplifies */
+  Straight(&c, 3, 2, 2.5, 3); /* points on one side only: the foot is far, or the fit amplifies errors */
   for (int i = 0; i < 30; i++) AddPoint(&c, 1.2 + 0.25 * (i % 5), 0.4 * (i / 5) - 1, 0.02 * (i % 3), 1);
   assert_true(Evaluate(&c, FIT_GAP));
   assert_true(c.out.guards & FIT_HIGH_SUM);
-  Straight(&c, 3, 1, 2, 3); /* a steep plane: the foot is far off */
+  Straight(&c, 3, 1, 2, 3); /* on a steep plane the foot is far away */
   AddBowl(&c, 2, 2);
   for (int i = 0; i < c.in.n; i++) c.x[3 * i + 2] = 3 + c.x[3 * i];
   assert_true(Evaluate(&c, FIT_GAP));
   AssertNear(c.out.reach, 0.75, 1e-12);
   assert_true(c.out.guards & FIT_FAR_FOOT);
-  Straight(&c, 2, 2, 4, 3); /* at the centre of curvature of a bore: J is singular */
+  Straight(&c, 2, 2, 4, 3); /* at the centre of curvature of a bore J is singular */
   for (int i = -3; i <= 3; i++) AddPoint(&c, i, -(5 - 0.1 * i * i), 0, 1);
   for (int i = 0; i < c.in.n; i++) c.x[2 * i + 1] = -5 + 0.1 * c.x[2 * i] * c.x[2 * i];
   assert_false(Evaluate(&c, FIT_SECOND_VARIATION));
@@ -246,7 +246,7 @@ static void TestGuards(void **state)
   assert_int_equal(FitPointsWanted(2, 2), 4);
 }
 
-/* Any neighbourhood: either nothing, said by a guard, or finite and balanced numbers. */
+/* For any neighbourhood the result is either nothing, with a guard set, or finite and balanced numbers. */
 static void TestNeverNaN(void **state)
 {
   static Case c;
@@ -265,7 +265,7 @@ static void TestNeverNaN(void **state)
 
       AddPoint(&c, s, t, Random(-bend, bend), 1);
     }
-    memset(c.N, -1, sizeof(c.N)); /* NaN */
+    memset(c.N, -1, sizeof(c.N)); /* fills N with NaN */
     memset(c.M, -1, sizeof(c.M));
     if (!Evaluate(&c, FIT_SECOND_VARIATION)) {
       assert_true(c.out.guards & (FIT_NO_SURFACE | FIT_NO_FOOT));
@@ -279,7 +279,7 @@ static void TestNeverNaN(void **state)
   assert_true(whole > 1000);
 }
 
-/* Other units of length change no guard and scale what has a length. */
+/* Other units of length change no guard, and they scale the quantities that have a length. */
 static void TestUnits(void **state)
 {
   static Case  c, scaled;
@@ -300,7 +300,7 @@ static void TestUnits(void **state)
   }
 }
 
-/* As many points as a list may hold, and many slave points at once */
+/* As many points as a list may hold, and many slave points in one call. */
 static void TestLargeAndBatch(void **state)
 {
   static Case c, batch[3];

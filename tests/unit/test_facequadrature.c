@@ -1,5 +1,5 @@
-/* The face rules integrate what they should, the hat functions are positive and sum to one, and every node of a face
- * gets area. */
+/* The face rules integrate polynomials up to their order, the hat functions are positive with sum one, and every
+   node of a face gets area. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -28,7 +28,7 @@ static void test_degree(void **state)
   static const int triangle[2][2] = {
     {2, 4},
     {4, 6}
-  }; /* by order, finer */
+  }; /* by order and finer */
 
   (void)state;
   for (int t = 0; t < TYPES; t++) {
@@ -57,7 +57,7 @@ static void test_hats(void **state)
   for (int t = 0; t < TYPES; t++) {
     const Element *e = ElementGet(types[t]);
 
-    for (int a = 0; a < e->nodes; a++) { /* one at its node, nothing at the others */
+    for (int a = 0; a < e->nodes; a++) { /* each is one at its node and zero at the others */
       double psi[FACE_MAX_NODES];
 
       FaceHat(types[t], e->node[a], psi);
@@ -82,7 +82,7 @@ static void test_hats(void **state)
   }
 }
 
-/* A tilted square, and an edge about the axis: areas and normals. */
+/* Areas and normals of a tilted square and of an edge about the axis. */
 static void test_areas(void **state)
 {
   const double    square[12] = {0, 0, 0, 2, 0, 1, 2, 2, 1, 0, 2, 0}, edge[4] = {1, 0, 3, 2};

@@ -1,5 +1,5 @@
-/* The gap to facets is the signed distance, continuous across edges and vertices, with exact first and second
- * variations in every region. */
+/* The gap to facets is the signed distance. It is continuous across edges and vertices and has exact first and
+   second variations in every region. */
 #include <float.h>
 #include <math.h>
 #include <setjmp.h>
@@ -30,7 +30,7 @@ static int Dim(ElementType type)
   return ElementGet(type)->dim + 1;
 }
 
-/* A facet about one unit wide with its nodes moved by up to `bend`, seen from `slave` */
+/* A facet about one unit wide, relative to `slave`. Its nodes are moved by up to `bend`. */
 static void RandomFacet(ElementType type, double bend, Facet *facet, double *x)
 {
   const Element *element = ElementGet(type);
@@ -49,7 +49,7 @@ static void Move(int dim, int nodes, const double *x, const double *slave, doubl
   for (int i = 0; i < nodes * dim; ++i) relative[i] = x[i] - slave[i % dim];
 }
 
-/* A rotation from a random axis and angle (3D), or about z (2D) */
+/* A rotation by a random angle about a random axis (3D), or about z (2D). */
 static void RandomRotation(int dim, double R[3][3])
 {
   double       axis[3] = {Random(-1, 1), Random(-1, 1), Random(-1, 1)}, length;
@@ -81,7 +81,7 @@ static double MaxDifference(int n, const double *a, const double *b)
   return most;
 }
 
-/* Position of a point of a facet */
+/* Position of a point of a facet. */
 static void At(int dim, const Facet *facet, const double *x, const double *xi, double *at)
 {
   double phi[FACE_MAX_NODES];
@@ -93,7 +93,7 @@ static void At(int dim, const Facet *facet, const double *x, const double *xi, d
   }
 }
 
-/* Moves one of the dofs (slave point first) and evaluates gap and N; 0 if the foot changed its region. */
+/* Moves one of the dofs (slave point first) and evaluates gap and N. Returns 0 if the foot has changed its region. */
 static int Probe(int dim, const Facet *facet, const double *x, const Foot *foot, int dof, double by, double *gap,
                  double *N)
 {
@@ -113,7 +113,7 @@ static int Probe(int dim, const Facet *facet, const double *x, const Foot *foot,
          fabs(there.xi[0] - foot->xi[0]) + fabs(there.xi[1] - foot->xi[1]) < 0.1;
 }
 
-/* Central differences of fourth order: N from gap, M from N. Returns 0 where a region ends nearby. */
+/* Fourth-order central differences: N from the gap, and M from N. Returns 0 where a region ends nearby. */
 static int Differences(int dim, const Facet *facet, const double *x, const Foot *foot, double *N, double *M)
 {
   const double step = 2e-4, at[4] = {-2, -1, 1, 2}, weight[4] = {1. / 12, -8. / 12, 8. / 12, -1. / 12};
@@ -223,7 +223,7 @@ static void TestRigidMotion(void **state)
       for (int k = 0; k < dim; ++k) expected[i] += R[i % dim][k] * N[i - i % dim + k];
     assert_true(fabs(foot.gap - foot_turned.gap) <= 1e-12);
     assert_true(MaxDifference(size, expected, there) <= 1e-8);
-    /* no moment: N is blind to rotations about the slave point */
+    /* There is no moment: N does not change under rotations about the slave point. */
     for (int k = 0; k < dim; ++k) {
       const int p = (k + 1) % dim, q = (k + 2) % dim;
       double    moment = 0;
@@ -236,7 +236,7 @@ static void TestRigidMotion(void **state)
   }
 }
 
-/* Smallest distance over a grid of samples of a facet */
+/* Smallest distance over a grid of samples of a facet. */
 static double Sampled(int dim, const Facet *facet, const double *x, int n)
 {
   const int simplex = facet->type == ELEMENT_TRI3 || facet->type == ELEMENT_TRI6;
@@ -286,12 +286,12 @@ static void TestDistance(void **state)
     }
     print_message("nodes moved by up to %g of half the width: %d of %d feet are not the nearest, %d did not converge\n",
                   bends[b], missed, trials, unconverged);
-    assert_true(missed <= (b ? 3 : 0)); /* hidden between the samples of wrinkled facets */
+    assert_true(missed <= (b ? 3 : 0)); /* they are hidden between the samples of wrinkled facets */
     assert_true(unconverged <= (b == 2));
   }
 }
 
-/* A surface of several facets */
+/* A surface of several facets. */
 typedef struct {
   int    dim, nodes, facets;
   double x[3 * MAX_NODES];
@@ -314,8 +314,8 @@ static void Closest(const Surface *surface, const double *slave, Foot *foot)
   assert_int_equal(FacetClosest(surface->dim, surface->facets, surface->facet, x, -1, foot), 1);
 }
 
-/* Largest jump of the gap on the way from p to q: wherever facet or region changes, the place is bisected. A signed
-   distance can change no faster than the point moves. */
+/* Largest jump of the gap on the way from p to q. Wherever facet or region changes, the place is found by bisection.
+   A signed distance can change no faster than the point moves. */
 static double LargestJump(const Surface *surface, const double *p, const double *q, int steps, int *changes)
 {
   const int dim  = surface->dim;
@@ -355,7 +355,7 @@ static double LargestJump(const Surface *surface, const double *p, const double 
   return most;
 }
 
-/* Two facets that meet along x = 0 at an angle; turn > 0: convex (a roof). Outward is up. */
+/* Two facets that meet along x = 0 at an angle. With turn > 0 they are convex (a roof). The outward direction is up. */
 static void Roof(ElementType type, double turn, Surface *surface)
 {
   const double c = cos(turn / 2), s = sin(turn / 2);
@@ -390,7 +390,7 @@ static void Roof(ElementType type, double turn, Surface *surface)
       const double bulge =
         element->order == 2 ? 0.05 * across * (1 - across) * (1 + along) + 0.1 * along * (1 - along) : 0;
 
-      /* the right facet in its own order (edge x = 0 along y), the left one its image by half a turn about z */
+      /* The right facet has its own order (edge x = 0 along y). The left one is its image by half a turn about z. */
       nodes[a] = surface->nodes;
       if (side == 0)
         memcpy(&surface->x[3 * surface->nodes++], (double[3]){across * c, along, -across * s + bulge},
@@ -404,7 +404,7 @@ static void Roof(ElementType type, double turn, Surface *surface)
                3 * sizeof(double));
     }
     if (!simplex) {
-      /* square facets run along y first: turn them over so that outward is up */
+      /* Square facets run along y first. They are turned over so that the outward direction is up. */
       static const int flipped[] = {1, 0, 3, 2, 4, 7, 6, 5, 8};
       int              copy[FACE_MAX_NODES];
 
@@ -434,7 +434,7 @@ static void TestEdges(void **state)
         assert_true(LargestJump(&surface, surface.dim == 2 ? p2 : p3, surface.dim == 2 ? q2 : q3, 200, &changes) <=
                     1e-9);
         assert_true(changes >= 1);
-        /* above the ridge: outside; below it: inside, and never lost */
+        /* A point above the ridge is outside. A point below it is inside, and contact is never lost. */
         if (level) {
           Closest(&surface, surface.dim == 2 ? (double[3]){0, level * 0.2} : (double[3]){0, 0.4, level * 0.2}, &foot);
           assert_true(foot.gap * level > 0);
@@ -446,7 +446,7 @@ static void TestEdges(void **state)
   }
 }
 
-/* Five triangles round a vertex at the origin; the rim at heights z[] */
+/* Five triangles around a vertex at the origin. z[] are the heights of the rim. */
 static void Fan(const double z[5], Surface *surface)
 {
   memset(surface, 0, sizeof(*surface));
@@ -490,7 +490,7 @@ static void TestFan(void **state)
                      atan2(slave[1], slave[0]) < 0 ? atan2(slave[1], slave[0]) + 2 * M_PI : atan2(slave[1], slave[0]);
       const int     i = (int)(turn / (2 * M_PI / 5)) % 5, j = (i + 1) % 5;
       const double *a = &surface.x[3 * (1 + i)], *b = &surface.x[3 * (1 + j)], det = a[0] * b[1] - a[1] * b[0];
-      /* the surface is a graph: its height over the slave point tells the side */
+      /* The surface is a graph, so that its height over the slave point tells the side. */
       const double height =
         (a[2] * (slave[0] * b[1] - slave[1] * b[0]) + b[2] * (a[0] * slave[1] - a[1] * slave[0])) / det;
       Foot foot;
@@ -501,7 +501,7 @@ static void TestFan(void **state)
   }
 }
 
-/* At an edge or vertex that holds the slave point the normal is the mean of its facets'. */
+/* At an edge or vertex that holds the slave point, the normal is the mean of the normals of its facets. */
 static void TestTouching(void **state)
 {
   Surface surface;
@@ -522,7 +522,7 @@ static void TestTouching(void **state)
   Closest(&surface, (double[3]){0, 0.5, 0}, &foot);
   assert_int_equal(foot.region, FOOT_EDGE);
   assert_true(fabs(foot.gap) <= 1e-15 && fabs(foot.normal[2] - 1) <= 1e-12);
-  /* the corner of a cube, one face of it cut in two: the cut does not turn the normal */
+  /* At the corner of a cube one face is cut in two. The cut does not turn the normal. */
   memset(&surface, 0, sizeof(surface));
   surface.dim   = 3;
   surface.nodes = 8;
@@ -544,7 +544,7 @@ static void TestTouching(void **state)
   Closest(&surface, (double[3]){0, 0, 0}, &foot);
   assert_int_equal(foot.region, FOOT_VERTEX);
   assert_true(MaxDifference(3, foot.normal, (double[3]){1 / sqrt(3), 1 / sqrt(3), 1 / sqrt(3)}) <= 1e-14);
-  /* over a node of a flat master the slave point does not stick: the second variation is the interior's */
+  /* Over a node of a flat master the slave point does not stick: the second variation is that of the interior. */
   Fan((double[5]){0, 0, 0, 0, 0}, &surface);
   for (int sign = -1; sign <= 1; sign += 2) {
     Closest(&surface, (double[3]){0, 0, sign * 1e-6}, &foot);
@@ -554,8 +554,8 @@ static void TestTouching(void **state)
   }
 }
 
-/* Nodes and square facets of a grid of nx by ny faces on a cylinder of that curvature about the y axis (0: flat); all
- * borders free */
+/* Nodes and square facets of a grid of nx by ny faces on a cylinder of the given curvature about the y axis (0:
+   flat). All borders are free. */
 static void Grid(int nx, int ny, double curvature, Surface *surface)
 {
   memset(surface, 0, sizeof(*surface));
@@ -587,7 +587,7 @@ static void TestFreeEdges(void **state)
   int     changes;
 
   (void)state;
-  /* flat plate: the gap is the height, however far the foot is past edges and corners */
+  /* On a flat plate the gap is the height, however far the foot is past edges and corners. */
   Grid(2, 2, 0, &surface);
   for (int trial = 0; trial < 500; ++trial) {
     const double slave[3] = {Random(-1.8, 1.8), Random(-0.8, 2.8), Random(-0.5, 0.5)};
@@ -600,7 +600,7 @@ static void TestFreeEdges(void **state)
   }
   Closest(&surface, (double[3]){2.5, 1.3, -0.1}, &foot);
   assert_true(foot.gap > 0 && foot.beyond >= 1);
-  /* triangles, one of which touches the border with a corner only, and an obtuse corner on the border */
+  /* Triangles, one of which touches the border only with a corner, and an obtuse corner on the border. */
   memset(&surface, 0, sizeof(surface));
   surface.dim   = 3;
   surface.nodes = 5;
@@ -623,7 +623,7 @@ static void TestFreeEdges(void **state)
     assert_true(fabs(foot.gap - slave[2]) <= 1e-12);
     assert_true(slave[1] > 0 || fabs(foot.beyond + slave[1]) <= 1e-12);
   }
-  /* the end of a faceted pipe, from outside and from inside the material, along the end and across it */
+  /* The end of a faceted pipe, from outside and from inside the material, along the end and across it. */
   for (int sign = -1; sign <= 1; sign += 2) {
     Grid(6, 3, sign * 0.3, &surface);
     for (int trial = 0; trial < 30; ++trial) {
@@ -637,7 +637,7 @@ static void TestFreeEdges(void **state)
       assert_true(fabs(foot.beyond + past) <= 1e-9);
     }
   }
-  /* past the end of a ridge sharper than a right angle */
+  /* A slave point past the end of a ridge that is sharper than a right angle. */
   Roof(ELEMENT_QUAD4, 2.2, &surface);
   for (int f = 0; f < 2; ++f)
     for (int e = 0; e < 4; ++e)
@@ -650,7 +650,7 @@ static void TestFreeEdges(void **state)
     assert_true(foot.region == FOOT_EDGE && fabs(foot.gap - hypot(across, 0.5)) <= 1e-12 &&
                 fabs(foot.beyond - past) <= 1e-12);
   }
-  /* a facet that is really there wins over another one's extension */
+  /* A facet that is really there wins over the extension of another one. */
   Grid(1, 1, 0, &surface);
   for (int i = 0; i < 4; ++i)
     memcpy(&surface.x[3 * (4 + i)],
@@ -720,7 +720,7 @@ static void TestFarAndDegenerate(void **state)
         assert_true(isfinite(foot.gap) && fabs(Norm(3, foot.normal) - 1) <= 1e-12);
         assert_true(facet.free_edges ||
                     fabs(foot.gap) <= 1.1 * Sampled(dim, &facet, x, 10) +
-                                        1e-12); /* an edge folded onto itself has a false stationary point */
+                                        1e-12); /* an edge that is folded onto itself has a false stationary point */
         for (int i = 0; i < size; ++i) assert_true(isfinite(N[i]));
         for (int i = 0; i < size * size; ++i) assert_true(isfinite(M[i]));
       }
@@ -789,7 +789,7 @@ static void TestOrder(void **state)
     assert_int_equal(surface.facet[foot.facet].tag, shuffled.facet[other.facet].tag);
     assert_true(foot.gap == other.gap && foot.region == other.region && foot.beyond == other.beyond);
     assert_true(MaxDifference(3, foot.normal, other.normal) <= 1e-13);
-    /* the list passes over no facet that is nearer */
+    /* The list leaves out no facet that is nearer. */
     for (int i = 0; i < surface.facets; ++i) shuffled.facet[i].free_edges = 0;
     FacetClosest(3, surface.facets, shuffled.facet, x, -1, &foot);
     for (int i = 0; i < surface.facets; ++i) {
@@ -800,7 +800,7 @@ static void TestOrder(void **state)
   }
 }
 
-/* Side e of a facet is edge e of its element, corner e its start. */
+/* Side e of a facet is edge e of its element, and corner e is the start of that side. */
 static void TestFeatures(void **state)
 {
   (void)state;

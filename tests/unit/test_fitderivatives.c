@@ -1,10 +1,11 @@
-/* Variations over nodes are those over points, summed by the map, and the derivatives of the gap as the nodes move. */
+/* Variations over nodes are those over points, summed by the map, and they are the derivatives of the gap when the
+   nodes move. */
 #include "fitcase.h"
 #include "smooth/fitderivatives.h"
 
 enum { MAX_ENTRIES = 12, NODES = 1 + FEW, SIZE = 3 * NODES, MAP_WORK = 200000 };
 
-/* A map with its arrays */
+/* A map with its arrays. */
 typedef struct {
   FitDerivatives map;
   int            ptr[2 + FEW], node[(1 + FEW) * MAX_ENTRIES];
@@ -22,9 +23,9 @@ static void Empty(Map *m, int n_nodes)
   m->ptr[0] = 0;
 }
 
-/* Runs of rows with the same 1 to 9 nodes and signs, as faces give them, and rows that differ in signs only; the signs
-   are the row's or, as where an offset's nodes lie on both sides of a mirror, those of each entry; nodes are shared
-   with other runs and the slave point, occur twice in a row, or are left out. */
+/* Makes runs of rows with the same 1 to 9 nodes and signs, like those of faces, and rows that differ only in their
+   signs. The signs are those of the row or, as for offsets whose nodes lie on both sides of a mirror plane, those of
+   each entry. Nodes are shared with other runs and with the slave point, occur twice in a row, or are left out. */
 static void RandomMap(Map *m, int n, int n_nodes)
 {
   int    entries = 0, node[9];
@@ -50,7 +51,7 @@ static void RandomMap(Map *m, int n, int n_nodes)
   }
 }
 
-/* S, dense: [size][points' components] */
+/* S as a dense matrix, [size][points' components]. */
 static void Dense(int dim, int n, const FitDerivatives *map, double *S)
 {
   const int own = dim * (1 + n);
@@ -64,7 +65,7 @@ static void Dense(int dim, int n, const FitDerivatives *map, double *S)
   }
 }
 
-/* S^T N and S^T M S */
+/* S^T N and S^T M S by dense products. */
 static void Reference(const Case *c, const FitDerivatives *map, double *N, double *M)
 {
   static double S[SIZE * SIZE], half[SIZE * SIZE];
@@ -89,9 +90,8 @@ static void Reference(const Case *c, const FitDerivatives *map, double *N, doubl
   }
 }
 
-/* N and M over nodes by the kernel, M as a sum of shares, one of them dense, and a vector's product with itself taken
- * away again; nothing written past the ends
- */
+/* N and M over nodes by the kernel. M is a sum of shares, one of them dense, and the outer product of a vector with
+   itself is added and subtracted again. Nothing is written past the ends. */
 static void Mapped(Case *c, const FitDerivatives *map, double *N, double *M)
 {
   static double scratch[MAP_WORK], own[FEW][FIT_DERIVATIVES_OWN];
@@ -160,7 +160,7 @@ static void TestSums(void **state)
   }
 }
 
-/* Each point its own node: nothing is summed. */
+/* Each point has its own node, so that nothing is summed. */
 static void TestOwnNodes(void **state)
 {
   static Case   c;
@@ -187,7 +187,7 @@ static void TestOwnNodes(void **state)
   }
 }
 
-/* Moves a component of a node: the points move by the map, relative to the slave point, which moves too. */
+/* Moves a component of a node. The points move by the map, relative to the slave point, which moves too. */
 static void Move(Case *c, const FitDerivatives *map, int column, double step)
 {
   const int dim = c->in.dim, k = column % dim;
@@ -201,7 +201,7 @@ static void Move(Case *c, const FitDerivatives *map, int column, double step)
   for (int i = 0; i < c->out.n; i++) c->x[c->points[i] * dim + k] += by[1 + i];
 }
 
-/* Fourth-order central difference from the values at -2h, -h, h, 2h */
+/* Fourth-order central difference from the values at -2h, -h, h, 2h. */
 static double Difference(const double value[4], double h)
 {
   return (value[0] - 8 * value[1] + 8 * value[2] - value[3]) / (12 * h);

@@ -1,5 +1,5 @@
-/* Frames are those of the points' plane, turned outwards, refused where there is none; supports hold pi s^2 nodes on
- * any mesh. */
+/* Frames are those of the points' plane, with the normal outwards, and are refused where there is no plane. Supports
+   hold pi s^2 nodes on any mesh. */
 #include <math.h>
 #include <string.h>
 #include "fitcase.h"
@@ -12,7 +12,7 @@ static void CheckOrthonormal(int dim, double (*frame)[3])
   }
 }
 
-/* Points of a tilted plane, and of one symmetric about it with multipliers that say so */
+/* Points of a tilted plane, and points that are symmetric about a plane only with their multipliers. */
 static void TestPlane(void **state)
 {
   static Case c;
@@ -25,7 +25,8 @@ static void TestPlane(void **state)
       Straight(&c, dim, 2, 4, 3);
       AddBowl(&c, 4, 4);
       for (int i = 0; i < c.in.n; i++) c.x[i * dim + dim - 1] = 2;
-      for (int i = 0, n = c.in.n; i < n; i++) { /* a pair one above, twice as heavy one half below */
+      /* One point of a pair lies above the plane. The other one is twice as heavy and lies half as far below it. */
+      for (int i = 0, n = c.in.n; i < n; i++) {
         AddPoint(&c, c.x[i * dim], dim == 3 ? c.x[i * dim + 1] : 0, 3, 1);
         AddPoint(&c, c.x[i * dim], dim == 3 ? c.x[i * dim + 1] : 0, 1.5, 2);
       }
@@ -47,20 +48,20 @@ static void TestNoPlane(void **state)
 
   (void)state;
   Straight(&c, 3, 2, 4, 3);
-  assert_false(FitFrame(3, 0, c.x, c.v, up, frame)); /* nothing */
+  assert_false(FitFrame(3, 0, c.x, c.v, up, frame)); /* no points */
   for (int i = 0; i < 9; i++) AddPoint(&c, i, 2 * i, 3 * i, 1);
-  assert_false(FitFrame(3, c.in.n, c.x, c.v, up, frame)); /* a line */
+  assert_false(FitFrame(3, c.in.n, c.x, c.v, up, frame)); /* points on a line */
   CheckOrthonormal(3, frame);
   AssertNear(frame[2][2], 1, 0);
   c.in.n = 0;
   for (int i = 0; i < 8; i++) AddPoint(&c, i & 1, (i >> 1) & 1, i >> 2, 1);
-  assert_false(FitFrame(3, c.in.n, c.x, c.v, up, frame)); /* a cube's corners */
+  assert_false(FitFrame(3, c.in.n, c.x, c.v, up, frame)); /* the corners of a cube */
   for (int i = 0; i < 8; i++) c.x[3 * i + 2] *= 0.2;
   assert_true(FitFrame(3, c.in.n, c.x, c.v, up, frame));
-  assert_false(FitFrame(3, c.in.n, c.x, c.v, aside, frame)); /* seen edge-on */
+  assert_false(FitFrame(3, c.in.n, c.x, c.v, aside, frame)); /* a plane seen edge-on */
 }
 
-/* Nodes of a sheared, stretched grid inside the support */
+/* Counts the nodes of a sheared and stretched grid inside the support. */
 static int CountInside(double ratio, double shear, double support)
 {
   double    frame[3][3], covariance[3][3] = {{0}}, Q[2][2];
@@ -103,7 +104,7 @@ static void TestMetric(void **state)
   FitMetricFromCovariance(2, frame, NULL, 0.5, 4, Q);
   AssertNear(Q[0][0], 0.25, 1e-15);
   FitFrameFromNormal(3, (double[3]){0, 0, 1}, frame);
-  line[0][0] = 1; /* a ring without width: a round support */
+  line[0][0] = 1; /* a ring without width gives a round support */
   FitMetricFromCovariance(3, frame, line, 2, 3, Q);
   AssertNear(Q[0][0], 1 / 18., 1e-15);
   AssertNear(Q[1][1], 1 / 18., 1e-15);

@@ -1,14 +1,14 @@
-/* N and M of the diffuse fit are the derivatives of its gap; they balance, turn with the points, and add up over mirror
- * images. */
+/* N and M of the diffuse fit are the derivatives of its gap. They balance, turn with the points, and add up over
+   mirror images. */
 #include "fitcase.h"
 
-/* Fourth-order central difference from the values at -2h, -h, h, 2h */
+/* Fourth-order central difference from the values at -2h, -h, h, 2h. */
 static double Difference(const double value[4], double h)
 {
   return (value[0] - 8 * value[1] + 8 * value[2] - value[3]) / (12 * h);
 }
 
-/* Moves the slave point (block 0) or a point inside in direction k; the slave point is the origin. */
+/* Moves the slave point (block 0) or a point inside in direction k. The slave point is the origin. */
 static void Move(Case *c, const int *points, int block, int k, double step)
 {
   const int dim = c->in.dim;
@@ -66,7 +66,7 @@ static void TestVariations(void **state)
   }
 }
 
-/* N of all blocks and every row of M sum to zero, M is symmetric to the last bit. */
+/* The sum over all blocks of N and of every row of M is zero, and M is symmetric to the last bit. */
 static void CheckBalance(const Case *c)
 {
   const int    dim = c->in.dim, size = dim * (1 + c->out.n);
@@ -103,8 +103,8 @@ static void TestBalance(void **state)
   }
 }
 
-/* Diffuse derivatives leave gap and N untouched; they are the full ones where the weights are constant: in a support
- * that is far too large. */
+/* Diffuse derivatives do not change gap and N. They are the full derivatives where the weights are constant, which
+   they are in a support that is far too large. */
 static void TestDiffuseDerivatives(void **state)
 {
   static Case full, diffuse;
@@ -134,7 +134,7 @@ static void TestDiffuseDerivatives(void **state)
   }
 }
 
-/* Turned and shifted points with a frame and metric made anew have the same gap; N and M turn with them. */
+/* Points that are turned and shifted, with a frame and metric made anew, have the same gap. N and M turn with them. */
 static void TestInvariance(void **state)
 {
   static Case c, turned;
@@ -160,8 +160,8 @@ static void TestInvariance(void **state)
     Rotation(dim, R);
     Turn(dim, 1, R, up, outward);
     Turn(dim, c.in.n, R, c.x, x);
-    for (int k = 0; k < c.in.n * dim;
-         k++) { /* nodes and slave point far from the origin, to the grid of numbers there */
+    /* Nodes and slave point lie far from the origin and are rounded to the spacing of numbers there. */
+    for (int k = 0; k < c.in.n * dim; k++) {
       const double far = shift + slave[k % dim] + x[k];
 
       turned.x[k] = far - (shift + slave[k % dim]);
@@ -193,11 +193,11 @@ static void TestInvariance(void **state)
   }
 }
 
-/* Half a bowl, mirrored at x = 0: points carried with reflection maps, nodes on the plane once and with twice their
- * half area */
+/* Half a bowl, mirrored at x = 0. Its points carry reflection maps. Nodes on the plane occur once, with twice their
+   half area. */
 typedef struct {
-  int    nodes, node[MAX], image[MAX]; /* per point: its node, and whether it is the image */
-  double x[3 * MAX], v[MAX];           /* nodes */
+  int    nodes, node[MAX], image[MAX]; /* of each point: its node, and whether the point is the image */
+  double x[3 * MAX], v[MAX];           /* of the nodes */
 } Half;
 
 static void Mirror(const Half *half, const double slave[3], Case *c, Half *map)
@@ -215,7 +215,7 @@ static void Mirror(const Half *half, const double slave[3], Case *c, Half *map)
   }
 }
 
-/* R^T N and R^T M R accumulated over the half model's nodes; slave point first */
+/* R^T N and R^T M R, accumulated over the nodes of the half model; the slave point comes first. */
 static void Accumulate(const Half *half, const Half *map, const Case *c, double *N, double *M)
 {
   const int size = 3 * (1 + half->nodes), own = 3 * (1 + c->out.n);
@@ -280,7 +280,7 @@ static void TestMirror(void **state)
     for (int column = 0; column < size; column++) {
       double *position = column < 3 ? slave + column : half.x + column - 3, value = *position, gap[4];
 
-      if (column >= 3 && column % 3 == 0 && value == 0) continue; /* fixed: a node stays on its plane */
+      if (column >= 3 && column % 3 == 0 && value == 0) continue; /* fixed, because a node stays on its plane */
       for (int s = 0; s < 4; s++) {
         *position = value + (s < 2 ? s - 2 : s - 1) * h;
         Mirror(&half, slave, &c, &map);

@@ -1,5 +1,5 @@
-/* Fits never see past a sharp edge, nor the far side of a thin wall, and do see across a blunt edge; points beyond the
- * support stay out. */
+/* Fits never use points past a sharp edge or on the far side of a thin wall. They use points across a blunt edge.
+   Points beyond the support are left out. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -9,8 +9,8 @@
 
 enum { SIDE = 6, FACETS = 2 * SIDE, POINTS = 2 * (2 * SIDE + 2) };
 
-/* A strip of 2D edges along x that bends up by `angle` at x = 0, then a second strip below it at a distance, which
- * looks down: the wall's far side. */
+/* A strip of 2D edges along x that bends up by `angle` at x = 0, and a second strip below it at a distance, which
+   faces down: the far side of the wall. */
 typedef struct {
   Facet        facets[FACETS + SIDE];
   PetscReal    normals[3 * (FACETS + SIDE)], x[2 * POINTS];
@@ -62,8 +62,8 @@ static void MakeStrip(Strip *s, PetscReal angle, PetscReal wall, SurfaceView *vi
                         .feature_cosine = cos(45 * PETSC_PI / 180)};
 }
 
-/* Gathers around (1.5, 0) within `radius`: how many points of the flat, of the bent flank (the edge's own node apart)
- * and of the far side. */
+/* Gathers around (1.5, 0) within `radius` and counts the points of the flat flank, of the bent flank (without the
+   node on the edge) and of the far side. */
 static void Count(PetscReal angle, PetscReal wall, PetscReal radius, int count[3])
 {
   const PetscReal foot[3] = {1.5, 0, 0}, up[3] = {0, 1, 0},
@@ -89,7 +89,7 @@ static void test_sharp_edge(void **state)
   int count[3];
 
   (void)state;
-  Count(60 * PETSC_PI / 180, 100, 4, count); /* sharper than the 45 degrees of a feature */
+  Count(60 * PETSC_PI / 180, 100, 4, count); /* sharper than the 45 degrees of a feature edge */
   assert_int_equal(count[0], 6);
   assert_int_equal(count[1], 0);
 }
@@ -120,7 +120,7 @@ static void test_support(void **state)
 
   (void)state;
   Count(0, 100, 1.6, count);
-  assert_int_equal(count[0], 4); /* 0, 1, 2, 3 */
+  assert_int_equal(count[0], 4); /* nodes 0, 1, 2, 3 */
   assert_int_equal(count[1], 0);
 }
 

@@ -1,4 +1,4 @@
-/* K^T J + J^T K comes out right and symmetric to the last bit, for every size around the tiles'. */
+/* K^T J + J^T K is correct and symmetric to the last bit for all sizes around those of the tiles. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
