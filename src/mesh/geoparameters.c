@@ -46,7 +46,7 @@ PetscErrorCode GeoTextStrip(const char *text, PetscBool strings, char **stripped
 }
 
 /* Adds the name at `at` unless the list has it. Does nothing if no name begins there. */
-static PetscErrorCode AddName(const char *at, GeoParameters *parameters)
+static PetscErrorCode AddName(const char *at, GeoNames *names)
 {
   char  *name;
   size_t n = 0;
@@ -58,21 +58,21 @@ static PetscErrorCode AddName(const char *at, GeoParameters *parameters)
   PetscCall(PetscCalloc1(n + 3, &name));
   memcpy(name, at, n);
   if (at[n] == '~') memcpy(name + n, "_*", 2);
-  for (int i = 0; i < parameters->n; i++) {
-    if (strcmp(parameters->name[i], name)) continue;
+  for (int i = 0; i < names->n; i++) {
+    if (strcmp(names->name[i], name)) continue;
     PetscCall(PetscFree(name));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
-  if (parameters->n == parameters->room) {
-    parameters->room = 2 * parameters->room + 16;
-    PetscCall(PetscRealloc((size_t)parameters->room * sizeof(char *), &parameters->name));
+  if (names->n == names->room) {
+    names->room = 2 * names->room + 16;
+    PetscCall(PetscRealloc((size_t)names->room * sizeof(char *), &names->name));
   }
-  parameters->name[parameters->n++] = name;
+  names->name[names->n++] = name;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* Adds the names of the list after DefineConstant: "[name = value, name = {value, ...}, name]". */
-static PetscErrorCode AddList(const char *at, GeoParameters *parameters)
+static PetscErrorCode AddList(const char *at, GeoNames *declared)
 {
   int depth = 0;
 
@@ -82,7 +82,7 @@ static PetscErrorCode AddList(const char *at, GeoParameters *parameters)
   for (; *at; at++) {
     depth += strchr("[({", *at) ? 1 : strchr("])}", *at) ? -1 : 0;
     if (!depth) break;
-    if (depth == 1 && strchr("[(,", *at)) PetscCall(AddName(at + 1, parameters));
+    if (depth == 1 && strchr("[(,", *at)) PetscCall(AddName(at + 1, declared));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -97,8 +97,47 @@ static const char *BehindWord(const char *start, const char *at, const char *wor
   return NULL;
 }
 
+/* Determines whether the name that ends at `at` gets a value there: "n = 4", "n[] = ...", "n += 1", "n++". */
+static PetscBool IsAssigned(const char *at)
+{
+  at += strspn(at, " \t");
+  if (!strncmp(at, "[]", 2) || !strncmp(at, "()", 2)) at += 2;
+  at += strspn(at, " \t");
+  if (*at && strchr("+-*/", *at) && (at[1] == '=' || at[1] == at[0])) return PETSC_TRUE;
+  return at[0] == '=' && at[1] != '=' ? PETSC_TRUE : PETSC_FALSE;
+}
+
+/* Sorts the names of a text into those that get a value from it and those that occur in its expressions. Names of
+   functions and of entities are followed by a bracket and are neither. */
+static PetscErrorCode AddNames(const char *text, GeoParameters *parameters)
+{
+  PetscFunctionBeginUser;
+  for (const char *at = text, *end; *at; at = end) {
+    const char *before = at;
+
+    for (end = at; IsNameCharacter(*end);) end++;
+    if (end == at) {
+      end++;
+      continue;
+    }
+    while (before > text && strchr(" \t", before[-1])) before--;
+    if (IsAssigned(end) || (before - text >= 3 && before < at && !strncmp(before - 3, "For", 3)))
+      PetscCall(AddName(at, &parameters->assigned));
+    else if (!strchr("([{", end[strspn(end, " \t")]))
+      PetscCall(AddName(at, &parameters->used));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscBool HasName(const GeoNames *names, const char *name)
+{
+  for (int i = 0; i < names->n; i++)
+    if (!strcmp(names->name[i], name)) return PETSC_TRUE;
+  return PETSC_FALSE;
+}
+
 /*@
-  GeoParametersAdd - adds the parameters that the text of a .geo file declares.
+  GeoParametersAdd - adds the names that the text of a .geo file declares, uses and gives values to.
 
   Not collective
 
@@ -117,12 +156,14 @@ PetscErrorCode GeoParametersAdd(const char *text, GeoParameters *parameters)
 
   PetscFunctionBeginUser;
   PetscCall(GeoTextStrip(text, PETSC_TRUE, &code));
-  for (const char *at = code; (at = BehindWord(code, at, "DefineConstant"));) PetscCall(AddList(at, parameters));
+  for (const char *at = code; (at = BehindWord(code, at, "DefineConstant"));)
+    PetscCall(AddList(at, &parameters->declared));
   for (const char *at = code; (at = BehindWord(code, at, "Exists"));) {
     const size_t blanks = strspn(at, " \t");
 
-    if (at[blanks] == '(' || at[blanks] == '[') PetscCall(AddName(at + blanks + 1, parameters));
+    if (at[blanks] == '(' || at[blanks] == '[') PetscCall(AddName(at + blanks + 1, &parameters->declared));
   }
+  PetscCall(AddNames(code, parameters));
   PetscCall(PetscFree(code));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -137,17 +178,18 @@ PetscErrorCode GeoParametersAdd(const char *text, GeoParameters *parameters)
 - name       - name that the scene gives
 
   Note:
-  Returns PETSC_TRUE if the files declare the name, also by a name that ends with "*".
+  Returns PETSC_TRUE if the files declare the name, also by a name that ends with "*", or if they use it without giving
+  it a value.
 @*/
 PetscBool GeoParametersFind(const GeoParameters *parameters, const char *name)
 {
-  for (int i = 0; i < parameters->n; i++) {
-    const char  *known = parameters->name[i];
+  for (int i = 0; i < parameters->declared.n; i++) {
+    const char  *known = parameters->declared.name[i];
     const size_t n     = strlen(known);
 
     if (!strcmp(known, name) || (known[n - 1] == '*' && !strncmp(known, name, n - 1))) return PETSC_TRUE;
   }
-  return PETSC_FALSE;
+  return HasName(&parameters->used, name) && !HasName(&parameters->assigned, name) ? PETSC_TRUE : PETSC_FALSE;
 }
 
 /*@
@@ -165,15 +207,16 @@ PetscBool GeoParametersFind(const GeoParameters *parameters, const char *name)
 PetscErrorCode GeoParametersText(const GeoParameters *parameters, char **text)
 {
   static const char none[] = "nothing, as it declares none by DefineConstant[name = value]";
+  const GeoNames   *names  = &parameters->declared;
   size_t            size   = sizeof(none);
 
   PetscFunctionBeginUser;
-  for (int i = 0; i < parameters->n; i++) size += strlen(parameters->name[i]) + 2;
+  for (int i = 0; i < names->n; i++) size += strlen(names->name[i]) + 2;
   PetscCall(PetscCalloc1(size, text));
-  if (!parameters->n) PetscCall(PetscStrncpy(*text, none, size));
-  for (int i = 0; i < parameters->n; i++) {
+  if (!names->n) PetscCall(PetscStrncpy(*text, none, size));
+  for (int i = 0; i < names->n; i++) {
     if (i) PetscCall(PetscStrlcat(*text, ", ", size));
-    PetscCall(PetscStrlcat(*text, parameters->name[i], size));
+    PetscCall(PetscStrlcat(*text, names->name[i], size));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -188,9 +231,13 @@ PetscErrorCode GeoParametersText(const GeoParameters *parameters, char **text)
 @*/
 PetscErrorCode GeoParametersReset(GeoParameters *parameters)
 {
+  GeoNames *const lists[] = {&parameters->declared, &parameters->used, &parameters->assigned};
+
   PetscFunctionBeginUser;
-  for (int i = 0; i < parameters->n; i++) PetscCall(PetscFree(parameters->name[i]));
-  PetscCall(PetscFree(parameters->name));
+  for (size_t k = 0; k < PETSC_STATIC_ARRAY_LENGTH(lists); k++) {
+    for (int i = 0; i < lists[k]->n; i++) PetscCall(PetscFree(lists[k]->name[i]));
+    PetscCall(PetscFree(lists[k]->name));
+  }
   *parameters = (GeoParameters){0};
   PetscFunctionReturn(PETSC_SUCCESS);
 }

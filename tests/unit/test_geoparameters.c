@@ -56,10 +56,33 @@ static void test_computed_names(void **state)
   assert_int_equal(GeoParametersReset(&parameters), 0);
 }
 
+/* A name that the file uses and never sets is wanted from outside; one that it sets is not. */
+static void test_names_without_value(void **state)
+{
+  GeoParameters parameters = {0};
+
+  (void)state;
+  assert_int_equal(GeoParametersAdd("draw = 1; k += 1; l[] = {1}; If(solid) x = 2 * width; EndIf\n"
+                                    "For j In {0 : many} Point(j) = {x, j == 1, 0}; EndFor",
+                                    &parameters),
+                   0);
+  assert_true(GeoParametersFind(&parameters, "solid"));
+  assert_true(GeoParametersFind(&parameters, "width"));
+  assert_true(GeoParametersFind(&parameters, "many"));
+  assert_false(GeoParametersFind(&parameters, "draw"));
+  assert_false(GeoParametersFind(&parameters, "k"));
+  assert_false(GeoParametersFind(&parameters, "l"));
+  assert_false(GeoParametersFind(&parameters, "x"));
+  assert_false(GeoParametersFind(&parameters, "j"));
+  assert_false(GeoParametersFind(&parameters, "Point"));
+  assert_false(GeoParametersFind(&parameters, "missing"));
+  assert_int_equal(GeoParametersReset(&parameters), 0);
+}
+
 int main(int argc, char **argv)
 {
   const struct CMUnitTest tests[] = {cmocka_unit_test(test_declarations), cmocka_unit_test(test_no_declarations),
-                                     cmocka_unit_test(test_computed_names)};
+                                     cmocka_unit_test(test_computed_names), cmocka_unit_test(test_names_without_value)};
   int                     failed;
 
   if (PetscInitialize(&argc, &argv, NULL, NULL)) return 1;
