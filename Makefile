@@ -1,5 +1,5 @@
-# Burnish: `make help` lists the targets. Variables: BUILD (folder), ARCH (-march), CFLAGS, PETSC_DIR and PETSC_ARCH, PREFIX, SANITIZE, JOBS (runs of a
-# study at a time).
+# Burnish: `make help` lists the targets. Variables: BUILD (folder), ARCH (-march), CFLAGS, PETSC_DIR, PETSC_ARCH,
+# PREFIX, SANITIZE and JOBS (number of runs of a study at a time).
 .DEFAULT_GOAL := all
 .DELETE_ON_ERROR:
 
@@ -12,30 +12,34 @@ VENV   := build/venv
 ifeq ($(origin CC),default)
   CC := mpicc
 endif
-# SANITIZE=1: a build beside the other that stops at the first bad address, leak or undefined behaviour; `make SANITIZE=1 check` runs the tests with it.
+# SANITIZE=1 makes a second build, which stops at the first bad address, leak or undefined behaviour.
+# `make SANITIZE=1 check` runs the tests with it.
 ifdef SANITIZE
   BUILD  := build/sanitize
   CFLAGS := -O1 -g -fno-omit-frame-pointer -fsanitize=address,undefined -fno-sanitize-recover=undefined
   LDLIBS = tests/sanitize.c -rdynamic
 endif
 
-# PETSc is the one of PETSC_DIR and PETSC_ARCH, else the one that pkg-config knows; HDF5 is the one PETSc was built with.
+# PETSc is found by PETSC_DIR and PETSC_ARCH, or else by pkg-config. HDF5 is the one that PETSc was built with.
 ifdef PETSC_DIR
   ifeq ($(wildcard $(PETSC_DIR)/$(PETSC_ARCH)/lib/pkgconfig/PETSc.pc $(PETSC_DIR)/lib/pkgconfig/PETSc.pc),)
     $(error PETSC_DIR=$(PETSC_DIR) PETSC_ARCH=$(PETSC_ARCH): no lib/pkgconfig/PETSc.pc there)
   endif
   export PKG_CONFIG_PATH := $(PETSC_DIR)/$(PETSC_ARCH)/lib/pkgconfig:$(PETSC_DIR)/lib/pkgconfig:$(PKG_CONFIG_PATH)
 endif
-# Asked for when used, not when read: `make deps all` installs first. Before GNU make 4.4 $(shell) does not see what is exported.
+# These are evaluated when they are used, because `make deps all` installs the packages first. Before GNU make 4.4
+# $(shell) does not see exported variables, so PKG_CONFIG_PATH is passed on.
 PACKAGES      := PETSc yaml-0.1 libcjson
 pkgconfig      = $(shell PKG_CONFIG_PATH='$(PKG_CONFIG_PATH)' pkg-config $(1) 2>/dev/null)
-petscvariable  = $(shell sed -n 's/^$(1) *= *//p' $(call pkgconfig,--variable=prefix PETSc)/lib/petsc/conf/petscvariables 2>/dev/null)
+petscconf      = $(call pkgconfig,--variable=prefix PETSc)/lib/petsc/conf/petscvariables
+petscvariable  = $(shell sed -n 's/^$(1) *= *//p' $(petscconf) 2>/dev/null)
 
-# -fno-math-errno: nobody asks errno about a root, for which each one of a vector would be taken by itself.
+# -fno-math-errno: no code reads errno after a square root. With errno the compiler cannot vectorise square roots.
 ALL_CFLAGS := -std=gnu11 -march=$(ARCH) $(CFLAGS) -Wall -Wextra -fno-math-errno
 INCLUDES    = -Iinclude -Isrc $(call pkgconfig,--cflags-only-I $(PACKAGES)) $(call petscvariable,HDF5_INCLUDE)
-LIBRARIES   = -lmetis $(call pkgconfig,--libs $(PACKAGES)) $(MUMPS) $(call petscvariable,HDF5_LIB) -Wl,-rpath,$(call pkgconfig,--variable=libdir PETSc) -ldl -lm
-# The MUMPS that PETSc was built with, under the name it was linked by
+LIBRARIES   = -lmetis $(call pkgconfig,--libs $(PACKAGES)) $(MUMPS) $(call petscvariable,HDF5_LIB) \
+  -Wl,-rpath,$(call pkgconfig,--variable=libdir PETSc) -ldl -lm
+# The MUMPS that PETSc was built with, with the flags that PETSc's own link line has for it
 PRIVATE     = $(call pkgconfig,--static --libs PETSc)
 COMMA      := ,
 MUMPS       = $(filter -L%,$(PRIVATE)) $(patsubst -L%,-Wl$(COMMA)-rpath$(COMMA)%,$(filter -L%,$(PRIVATE))) \
@@ -46,11 +50,12 @@ LINK        = $(LDFLAGS) $(LIBRARIES) $(LDLIBS)
 
 SOURCES   := $(filter-out src/main.c,$(wildcard src/*/*.c))
 OBJECTS   := $(SOURCES:src/%.c=$(BUILD)/obj/%.o)
-# Tests look inside; a source sees the private headers of its own folder only.
+# Tests may include all private headers. A source finds only those of its own folder.
 PRIVATES  := $(patsubst %,-iquote %,$(wildcard src/*/private))
 LIBRARY   := $(BUILD)/libburnish.a
 BURNISH   := $(BUILD)/burnish
-TESTS     := $(patsubst %.c,$(BUILD)/tests/%,$(notdir $(wildcard tests/unit/test_*.c tests/mpi/test_*.c tests/oracle/*.c tests/fuzz/*.c tests/library/*.c)))
+TESTS     := $(patsubst %.c,$(BUILD)/tests/%,$(notdir $(wildcard tests/unit/test_*.c tests/mpi/test_*.c \
+  tests/oracle/*.c tests/fuzz/*.c tests/library/*.c)))
 BENCHES   := $(patsubst tests/bench/%.c,$(BUILD)/bench/%,$(wildcard tests/bench/*.c))
 
 .PHONY: all tests deps demo check test study bench fuzz valgrind site install help format clean FORCE
@@ -80,15 +85,16 @@ $(eval $(call program,tests/oracle,$(BUILD)/tests))
 $(eval $(call program,tests/fuzz,$(BUILD)/tests))
 $(eval $(call program,tests/bench,$(BUILD)/bench))
 
-# A user of the library sees include/ and nothing of src.
+# A program that uses the library is compiled with include/ and without src/.
 $(BUILD)/tests/%: tests/library/%.c $(LIBRARY) $(BUILD)/flags
 	@mkdir -p $(@D)
 	$(CC) $(ALL_CFLAGS) $(CPPFLAGS) -Iinclude $(call pkgconfig,--cflags-only-I PETSc) -MMD -MP -o $@ $< $(LIBRARY) $(LINK)
 
-# Everything is compiled again when the compile or link line changes, with another PETSc for instance. What is asked for together with
-# deps or clean waits for them, under make -j too.
+# Everything is compiled again when the compile or link line changes, for example with another PETSc. Targets that are
+# asked for together with deps or clean wait for these, also with make -j.
 $(BUILD)/flags: FORCE | $(filter deps clean,$(MAKECMDGOALS))
-	@pkg-config --exists $(PACKAGES) 2>/dev/null || { echo "PETSc, libyaml or cJSON is missing: run make deps" >&2; exit 1; }
+	@pkg-config --exists $(PACKAGES) 2>/dev/null || \
+	  { echo "PETSc, libyaml or cJSON is missing: run make deps" >&2; exit 1; }
 	@mkdir -p $(@D)
 	@echo '$(COMPILE) $(LINK)' | cmp -s - $@ || echo '$(COMPILE) $(LINK)' >$@
 
@@ -107,13 +113,15 @@ test: all tests ## all tests
 
 study: all ## accuracy against time: tables and plots in out/study/ (QUICK=1: shows that it runs)
 	@[ -x $(VENV)/bin/python ] || { echo "no Python environment in $(VENV): run make deps" >&2; exit 1; }
-	@for study in runs/studies/*.args; do $(VENV)/bin/python scripts/study.py @$$study --burnish $(BURNISH) --jobs $(JOBS) \
+	@for study in runs/studies/*.args; do \
+	  $(VENV)/bin/python scripts/study.py @$$study --burnish $(BURNISH) --jobs $(JOBS) \
 	  $(if $(QUICK),--quick --out out/study/quick,--out out/study) || exit 1; done
 
 bench: all tests ## raw timing records, their tables and a plot in out/bench/ (LARGE=1: up to 1e6 unknowns)
 	@[ -x $(VENV)/bin/python ] || { echo "no Python environment in $(VENV): run make deps" >&2; exit 1; }
 	@scripts/bench.sh $(BUILD)
-	@$(VENV)/bin/python scripts/scaling.py --burnish $(BURNISH) $(if $(LARGE),--large) --out out/bench >out/bench/scaling.txt
+	@$(VENV)/bin/python scripts/scaling.py --burnish $(BURNISH) $(if $(LARGE),--large) --out out/bench \
+	  >out/bench/scaling.txt
 	@cat out/bench/scaling.txt
 
 fuzz: ## looks for files that break the readers, SECONDS=600 for each, with clang
@@ -130,7 +138,8 @@ install: all ## installs program, library, pages and examples into PREFIX (defau
 	install -D -m 755 $(BURNISH) $(DESTDIR)$(PREFIX)/bin/burnish
 	install -D -m 644 include/burnish.h $(DESTDIR)$(PREFIX)/include/burnish.h
 	install -D -m 644 $(LIBRARY) $(DESTDIR)$(PREFIX)/lib/libburnish.a
-	$(file >$(BUILD)/burnish.pc,$(PKGCONFIG_FILE))install -D -m 644 $(BUILD)/burnish.pc $(DESTDIR)$(PREFIX)/lib/pkgconfig/burnish.pc
+	$(file >$(BUILD)/burnish.pc,$(PKGCONFIG_FILE))install -D -m 644 $(BUILD)/burnish.pc \
+	  $(DESTDIR)$(PREFIX)/lib/pkgconfig/burnish.pc
 	install -D -m 644 doc/burnish.1 $(DESTDIR)$(PREFIX)/share/man/man1/burnish.1
 	install -D -m 644 doc/burnish.bash $(DESTDIR)$(PREFIX)/share/bash-completion/completions/burnish
 	install -D -m 644 -t $(DESTDIR)$(PREFIX)/share/doc/burnish README.md
@@ -158,6 +167,7 @@ format: ## formats the C sources
 	$(VENV)/bin/clang-format -i $(wildcard include/*.h src/*.c src/*/*.[ch] src/*/private/*.h tests/*.h tests/*/*.[ch])
 
 clean: ## removes what was built (out/ and the Python environment stay)
-	rm -rf $(BUILD)/obj $(BUILD)/tests $(BUILD)/bench $(BUILD)/ctest $(BUILD)/flags $(BUILD)/burnish.pc $(LIBRARY) $(BURNISH)
+	rm -rf $(BUILD)/obj $(BUILD)/tests $(BUILD)/bench $(BUILD)/ctest $(BUILD)/flags $(BUILD)/burnish.pc \
+	  $(LIBRARY) $(BURNISH)
 
 -include $(wildcard $(BUILD)/obj/*.d $(BUILD)/obj/*/*.d $(BUILD)/tests/*.d $(BUILD)/bench/*.d)

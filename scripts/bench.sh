@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# make bench: every program of tests/bench writes its raw record to out/bench/ (lines "row column value", # heads a table); the tables are
-# printed from there.
+# make bench: every program of tests/bench writes its raw record to out/bench/. A record has lines "row column value",
+# and a line that begins with # heads a table. The tables are printed from the records.
 set -euo pipefail
 build=$1 out=out/bench
 export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1
@@ -14,7 +14,7 @@ for source in tests/bench/*.c; do
   records+=("$out/$name.txt")
 done
 
-# One table for each heading: rows and columns in the order of their first line
+# Prints one table for each heading. Rows and columns keep the order of their first line.
 tables() {
   awk '
     function flush_table(  r, c) {
@@ -33,7 +33,9 @@ tables() {
     /^#/ { flush_table(); print "\n" substr($0, 3); next }
     NF == 3 {
       if (!($1 in seen_row)) { seen_row[$1]; row[++rows] = $1 }
-      if (!($2 in seen_column)) { seen_column[$2]; column[++columns] = $2; width[columns] = length($2) > 9 ? length($2) : 9 }
+      if (!($2 in seen_column)) {
+        seen_column[$2]; column[++columns] = $2; width[columns] = length($2) > 9 ? length($2) : 9
+      }
       value[$1, $2] = $3
     }
     END { flush_table() }' "$@"

@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
-# make check on three PETScs: Debian's, a newer one (its prefix as the argument or in PETSC_NEW) and Debian's with 64-bit indices, each in its
-# own build folder, made anew; a warning of the compiler (something deprecated) fails too. Usage: scripts/portability.sh PREFIX_OF_NEWER_PETSC
+# usage: scripts/portability.sh PREFIX_OF_NEWER_PETSC (or set PETSC_NEW)
+# Runs make check with three builds of PETSc: Debian's, a newer one, and Debian's with 64-bit indices. Each has its own
+# build folder, which is made anew. A warning of the compiler, for example of something deprecated, is a failure.
 set -uo pipefail
 cd "$(dirname "$0")/.."
 newer=${1:-${PETSC_NEW:-}}
@@ -23,7 +24,8 @@ check() { # name, PETSC_DIR
 
 if [ ! -e /usr/lib/petsc64 ] && [ "$(id -u)" = 0 ] && command -v apt-get >/dev/null; then
   mkdir -p build
-  DEBIAN_FRONTEND=noninteractive apt-get install -y --no-install-recommends libpetsc64-real-dev >build/petsc64.log 2>&1 || tail -n 5 build/petsc64.log >&2
+  DEBIAN_FRONTEND=noninteractive apt-get install -y --no-install-recommends libpetsc64-real-dev \
+    >build/petsc64.log 2>&1 || tail -n 5 build/petsc64.log >&2
 fi
 check debian "$(pkg-config --variable=prefix PETSc)"
 check newer "$newer"

@@ -1,9 +1,11 @@
 #!/usr/bin/env bash
-# Runs the unit tests that need neither MPI nor PETSc's start, which are those of the plain C kernels, under valgrind: scripts/valgrind.sh. Their build is for
-# processors that valgrind knows. Ends with status 1 after a bad access, a jump on an undefined value or a leak.
+# Runs the unit tests of the plain C kernels under valgrind. These are the tests that start neither MPI nor PETSc. They
+# are built for a processor that valgrind knows. The status is 1 after a bad access, a jump on an undefined value or a
+# leak.
 set -uo pipefail
 build=build/valgrind failed=0 tests=()
-command -v valgrind >/dev/null || { echo "make valgrind: valgrind is missing (Debian: apt install valgrind)" >&2; exit 1; }
+command -v valgrind >/dev/null ||
+  { echo "make valgrind: valgrind is missing (Debian: apt install valgrind)" >&2; exit 1; }
 for source in tests/unit/test_*.c; do
   grep -qE 'PetscInitialize|MPI_Init' "$source" || tests+=("$build/tests/$(basename "$source" .c)")
 done
