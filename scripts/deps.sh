@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# Installs or checks what Burnish needs. It prints nothing when nothing is missing. A package that is there in any form is
-# taken; PETSc is found by PETSC_DIR and PETSC_ARCH or by pkg-config. On Debian and Ubuntu apt installs what is missing,
-# as root or with sudo. Python packages go to build/venv.
+# Installs or checks what Burnish needs. It prints nothing when nothing is missing. A package that is there in any form
+# is taken; PETSc is found by PETSC_DIR and PETSC_ARCH or by pkg-config. On Debian and Ubuntu apt installs what is
+# missing, as root or with sudo. Python packages go to build/venv.
 set -uo pipefail
 cd "$(dirname "$0")/.."
 venv=build/venv log=build/deps.log
@@ -39,7 +39,9 @@ has_petsc() {
     #if defined(PETSC_USE_COMPLEX) || !defined(PETSC_USE_REAL_DOUBLE)\n#error\n#endif' "$(petsc_flags)"
 }
 has_blas() { ! reference_blas; }
-has_hdf5() { preprocesses '#include <hdf5.h>\n#ifndef H5_HAVE_PARALLEL\n#error\n#endif' "$(petsc_variable HDF5_INCLUDE)"; }
+has_hdf5() {
+  preprocesses '#include <hdf5.h>\n#ifndef H5_HAVE_PARALLEL\n#error\n#endif' "$(petsc_variable HDF5_INCLUDE)"
+}
 has_mumps() { preprocesses '#include <dmumps_c.h>' "$(petsc_flags)"; }
 has_metis() { preprocesses '#include <metis.h>' ''; }
 has_yaml() { pkg-config --exists yaml-0.1; }
@@ -53,9 +55,10 @@ has_python() { python_found; }
 declare -A packages=([compiler]="gcc libc6-dev" [pkgconfig]=pkg-config [mpi]=libopenmpi-dev [mpirun]=openmpi-bin
   [petsc]="petsc-dev libopenblas0-serial" [blas]=libopenblas0-serial [hdf5]=libhdf5-openmpi-dev
   [mumps]=libmumps-dev [metis]=libmetis-dev [yaml]=libyaml-dev
-  [cjson]=libcjson-dev [cmocka]=libcmocka-dev [gmsh]=gmsh [cmake]=cmake [h5dump]=hdf5-tools [python]="python3 python3-venv")
+  [cjson]=libcjson-dev [cmocka]=libcmocka-dev [gmsh]=gmsh [cmake]=cmake
+  [h5dump]=hdf5-tools [python]="python3 python3-venv")
 declare -A meaning=([compiler]="a C compiler" [pkgconfig]="pkg-config" [mpi]="MPI: mpicc" [mpirun]="MPI: mpirun"
-  [petsc]="PETSc 3.18 or newer, real double precision, with MUMPS and HDF5${PETSC_DIR:+ (PETSC_DIR=$PETSC_DIR has none)}"
+  [petsc]="PETSc 3.18 or newer, real double, with MUMPS and HDF5${PETSC_DIR:+ (PETSC_DIR=$PETSC_DIR has none)}"
   [blas]="an optimised BLAS (libblas.so.3 is the reference BLAS: MUMPS 6 times slower)"
   [hdf5]="parallel HDF5, the one of PETSc, with headers" [mumps]="MUMPS with its C header, the one of PETSc"
   [metis]="METIS" [yaml]="libyaml" [cjson]="cJSON" [cmocka]="cmocka" [gmsh]="gmsh" [cmake]="cmake and ctest"

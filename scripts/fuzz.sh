@@ -13,7 +13,8 @@ command -v clang >/dev/null || { echo "make fuzz: clang is missing (Debian: apt 
 export OMPI_CC=clang MPICH_CC=clang ASAN_OPTIONS=detect_leaks=0:allocator_may_return_null=1
 sanitizers="-fsanitize=fuzzer-no-link,address,undefined -fno-sanitize-recover=undefined"
 make -s -j "$(env -u OMP_NUM_THREADS nproc)" BUILD="$build" CPPFLAGS=-DFUZZER \
-  CFLAGS="-O0 -g -fno-omit-frame-pointer $sanitizers" LDLIBS=-fsanitize=fuzzer "$build"/tests/fuzz_scene "$build"/tests/fuzz_mesh
+  CFLAGS="-O0 -g -fno-omit-frame-pointer $sanitizers" LDLIBS=-fsanitize=fuzzer \
+  "$build"/tests/fuzz_scene "$build"/tests/fuzz_mesh
 for reader in "$@"; do
   mkdir -p out/fuzz/"$reader"
   seeds=(tests/fuzz/"$reader")
