@@ -1,102 +1,44 @@
-#include "linear/factor.h"
-#include "matrix/matrixrows.h"
+/* Analysis and factorisation by MUMPS. Each rank gives MUMPS the entries that it has. */
+#include "factorimpl.h"
+#include "mumpsoptions.h"
 #include "ordering.h"
-#include <dmumps_c.h>
 
-/* MUMPS's parameters have numbers, from 1. */
-#define MUMPS_ICNTL  60
-#define MUMPS_CNTL   15
-#define ICNTL(i)     icntl[(i) - 1]
-#define INFOG(i)     infog[(i) - 1]
-#define RINFOG(i)    rinfog[(i) - 1]
-#define MPI_MUMPSINT (sizeof(MUMPS_INT) == sizeof(int64_t) ? MPI_INT64_T : MPI_INT32_T)
-
-/* Its jobs */
-enum { MUMPS_BEGIN = -1, MUMPS_END = -2, MUMPS_ANALYSE = 1, MUMPS_FACTOR = 2, MUMPS_SOLVE = 3 };
-/* Its ICNTL(7) for an ordering that it is given, and for its own choice */
+/* Values of ICNTL(7): an ordering that MUMPS is given, and MUMPS's own choice. */
 enum { MUMPS_GIVEN = 1, MUMPS_OWN = 7 };
-/* Unknowns from which on rows are ordered by dissection: below, a factorisation is not what a run spends its time with.
- */
+/* Number of unknowns from which on rows are ordered by dissection. Below it a factorisation is not what a run spends
+   its time with. */
 enum { FACTOR_DISSECTED = 4000 };
-/* Workspace above its estimate, in per cent. Its own 20 is too little for symmetric systems of a few thousand dofs on
- * four ranks. */
+/* Workspace above MUMPS's estimate (per cent). MUMPS's own 20 is too little for symmetric systems of a few thousand
+   unknowns on four ranks. */
 enum { FACTOR_WORKSPACE = 100 };
-/* How often it may be doubled: to a multiple of the estimate that delayed pivots of regular systems never need */
+/* How often the workspace may be doubled. This leads to a multiple of the estimate that delayed pivots of regular
+   systems never need. */
 enum { FACTOR_MORE = 2 };
-/* How it scales symmetric systems: by the diagonal. Its own choice iterates over rows and columns, which costs a
-   seventh of a factorisation at 10,000 dofs; stiff penalties stand on the diagonal. */
+/* Scaling of symmetric systems (ICNTL(8)): by the diagonal. MUMPS's own choice iterates over rows and columns, which
+   costs a seventh of a factorisation at 10,000 unknowns. Stiff penalties are on the diagonal. */
 enum { FACTOR_SCALING = 1 };
-/* Columns that are solved for at a time: enough for products of matrices, few enough for the first rank's memory. */
-enum { FACTOR_COLUMNS = 128 };
-
-/* Memory for entries over what a pattern has, for the next one, which often has few more: new memory costs more than
- * what is written there. */
+/* Memory that is reserved for the entries of a pattern, in parts of what the pattern needs. The next pattern often has
+   few more entries, and new memory costs more than writing the entries does. */
 #define FACTOR_ROOM 1.25
-
-struct _n_Factor {
-  MPI_Comm         comm;
-  PetscMPIInt      rank, size, *count, *first; /* rows of each rank */
-  PetscBool        symmetric, exists;          /* there is a factor */
-  int              ordering;
-  PetscObjectId    matrix; /* whose entries' rows and columns stand below, 0: none's; and its pattern */
-  PetscObjectState pattern;
-  PetscBool        analysed;     /* and that, as it is ordered and bordered now */
-  PetscInt         n, rows;      /* rows of all ranks, of this one */
-  PetscInt         entries, own; /* of this rank: all, those of the matrix */
-  PetscInt *from[MATRIX_BLOCKS]; /* of each row and block, its first entry that is taken: of a symmetric matrix none
-                                    below the diagonal */
-  PetscInt       room;
-  MUMPS_INT     *row, *column; /* entries of this rank, from 1, in memory for `room` */
-  PetscScalar   *value;
-  BorderedFactor bordering; /* NULL: none was prepared */
-  PetscBool      bordered;  /* the next matrix is */
-  PetscBool      changed;   /* by another border than the one that was analysed */
-  MUMPS_INT      workspace; /* ICNTL(14) at first */
-  MUMPS_INT     *position;  /* of rows, where the ordering is given; on the first rank, as are: */
-  PetscScalar   *right;     /* room for right-hand sides and solutions */
-  DMUMPS_STRUC_C mumps;
-};
-
-static PetscErrorCode Call(Factor f, int job)
-{
-  PetscFunctionBeginUser;
-  f->mumps.job = job;
-  dmumps_c(&f->mumps);
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
 
 /* ---------- parameters ---------- */
 
-/* -mat_mumps_<kind>_<i> */
-static PetscErrorCode ReadOptions(MUMPS_INT *icntl, DMUMPS_REAL *cntl)
-{
-  char      name[64];
-  PetscInt  integer;
-  PetscReal real;
-  PetscBool given;
+/*@
+  FactorCheckOptions - checks MUMPS's parameters among PETSc's options.
 
-  PetscFunctionBeginUser;
-  for (int i = 1; i <= MUMPS_ICNTL; i++) {
-    PetscCall(PetscSNPrintf(name, sizeof(name), "-mat_mumps_icntl_%d", i));
-    PetscCall(PetscOptionsGetInt(NULL, NULL, name, &integer, &given));
-    if (given) ICNTL(i) = (MUMPS_INT)integer;
-  }
-  for (int i = 1; i <= MUMPS_CNTL; i++) {
-    PetscCall(PetscSNPrintf(name, sizeof(name), "-mat_mumps_cntl_%d", i));
-    PetscCall(PetscOptionsGetReal(NULL, NULL, name, &real, &given));
-    if (given) cntl[i - 1] = real;
-  }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
+  Not collective
 
-/* FactorCheckOptions - Not collective. */
+  Note:
+  The values must be numbers in the ranges that MUMPS documents (private/mumpsoptions.h). An error of PETSc's otherwise,
+  whose message names the option.
+@*/
 PetscErrorCode FactorCheckOptions(void)
 {
   MUMPS_INT   icntl[MUMPS_ICNTL];
   DMUMPS_REAL cntl[MUMPS_CNTL];
 
   PetscFunctionBeginUser;
-  PetscCall(ReadOptions(icntl, cntl));
+  PetscCall(MumpsOptionsRead(icntl, cntl));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -108,20 +50,35 @@ static PetscErrorCode FactorBegin(Factor f)
   mumps->comm_fortran = (MUMPS_INT)MPI_Comm_c2f(f->comm);
   mumps->par          = 1;                    /* the first rank works too */
   mumps->sym          = f->symmetric ? 2 : 0; /* 2: need not be positive definite */
-  PetscCall(Call(f, MUMPS_BEGIN));
+  PetscCall(FactorCall(f, MUMPS_BEGIN));
   PetscCheck(mumps->INFOG(1) >= 0, f->comm, PETSC_ERR_LIB, "MUMPS does not start: INFOG(1) = %d, INFOG(2) = %d",
              (int)mumps->INFOG(1), (int)mumps->INFOG(2));
-  for (int i = 1; i <= 4; i++) mumps->ICNTL(i) = 0; /* prints nothing */
-  mumps->ICNTL(6) = 0;                              /* nor brings large entries to the diagonal, where they are */
+  for (int i = 1; i <= 4; i++) mumps->ICNTL(i) = 0; /* MUMPS prints nothing */
+  mumps->ICNTL(6) = 0;                              /* large entries are on the diagonal already */
   if (f->symmetric) mumps->ICNTL(8) = FACTOR_SCALING;
   mumps->ICNTL(14) = FACTOR_WORKSPACE;
-  PetscCall(ReadOptions(mumps->icntl, mumps->cntl));
+  PetscCall(MumpsOptionsRead(mumps->icntl, mumps->cntl));
   f->workspace     = mumps->ICNTL(14);
-  mumps->ICNTL(18) = f->size > 1 ? 3 : 0; /* entries: of each rank where it has them */
+  mumps->ICNTL(18) = f->size > 1 ? 3 : 0; /* 3: each rank gives the entries that it has */
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* FactorCreate - Collective; destroy it with FactorDestroy(). */
+/*@
+  FactorCreate - creates a solver by factorisation, without a matrix.
+
+  Collective
+
+  Input Parameters:
++ comm      - ranks that share the factor
+- symmetric - all matrices will be symmetric; MUMPS then factors L D L^T, which need not be positive definite
+
+  Output Parameter:
+. out - the new object; destroy it with FactorDestroy()
+
+  Options Database Keys:
++ -mat_mumps_icntl_<number> <integer> - one of MUMPS's integer parameters, as of PETSc's interface
+- -mat_mumps_cntl_<number> <real>     - one of MUMPS's real parameters
+@*/
 PetscErrorCode FactorCreate(MPI_Comm comm, PetscBool symmetric, Factor *out)
 {
   Factor f;
@@ -131,7 +88,6 @@ PetscErrorCode FactorCreate(MPI_Comm comm, PetscBool symmetric, Factor *out)
   PetscCall(PetscCommDuplicate(comm, &f->comm, NULL));
   PetscCallMPI(MPI_Comm_rank(f->comm, &f->rank));
   PetscCallMPI(MPI_Comm_size(f->comm, &f->size));
-  PetscCall(PetscCalloc2(f->size, &f->count, f->size + 1, &f->first));
   f->symmetric = symmetric;
   PetscCall(FactorBegin(f));
   PetscCall(FactorSetOrdering(f, FACTOR_AUTOMATIC, NULL));
@@ -139,26 +95,45 @@ PetscErrorCode FactorCreate(MPI_Comm comm, PetscBool symmetric, Factor *out)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* FactorDestroy - Collective. */
+/*@
+  FactorDestroy - frees the factor and ends its instance of MUMPS.
+
+  Collective
+
+  Input Parameter:
+. factor - may be NULL inside
+@*/
 PetscErrorCode FactorDestroy(Factor *factor)
 {
   Factor f = *factor;
 
   PetscFunctionBeginUser;
   if (!f) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(Call(f, MUMPS_END));
+  PetscCall(FactorCall(f, MUMPS_END));
   PetscCall(PetscFree2(f->from[MATRIX_OWN], f->from[MATRIX_OTHERS]));
   PetscCall(PetscFree3(f->row, f->column, f->value));
   PetscCall(PetscFree(f->position));
-  PetscCall(PetscFree(f->right));
-  PetscCall(PetscFree2(f->count, f->first));
+  PetscCall(PetscFree(f->mine));
+  PetscCall(FactorSolutionFree(&f->solution));
   PetscCall(BorderedFactorDestroy(&f->bordering));
   PetscCall(PetscCommDestroy(&f->comm));
   PetscCall(PetscFree(*factor));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* FactorSetOrdering - Logically collective. */
+/*@
+  FactorSetOrdering - sets the ordering for the analyses to come.
+
+  Logically collective
+
+  Input Parameters:
++ f        - the factor
+- ordering - FACTOR_AUTOMATIC, FACTOR_METIS or another value of MUMPS's ICNTL(7)
+
+  Output Parameter:
+. chosen - the ordering is the one that was given here; PETSC_FALSE where the option -mat_mumps_icntl_7 has set another
+           one, which stays. May be NULL.
+@*/
 PetscErrorCode FactorSetOrdering(Factor f, int ordering, PetscBool *chosen)
 {
   PetscInt  asked;
@@ -173,7 +148,19 @@ PetscErrorCode FactorSetOrdering(Factor f, int ordering, PetscBool *chosen)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* FactorSetBorder - Collective. The factor that there is stays as it is. */
+/*@
+  FactorSetBorder - sets the border of the matrices to come.
+
+  Collective
+
+  Input Parameters:
++ f      - the factor, after FactorPrepareBorder()
+- border - vectors V; borrowed until the next call. NULL: no border
+
+  Note:
+  What is factored and solved with from the next FactorMake() on is K + V V^T, where K has the pattern that
+  FactorPrepareBorder() was given. The present factor stays as it is.
+@*/
 PetscErrorCode FactorSetBorder(Factor f, const Border *border)
 {
   const PetscBool bordered = border ? PETSC_TRUE : PETSC_FALSE;
@@ -186,7 +173,14 @@ PetscErrorCode FactorSetBorder(Factor f, const Border *border)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* FactorHasBorder - Not collective. */
+/*@
+  FactorHasBorder - tells whether the next factor has a border.
+
+  Not collective, the same on all ranks
+
+  Input Parameter:
+. f - the factor
+@*/
 PetscBool FactorHasBorder(Factor f)
 {
   return f->bordered;
@@ -194,7 +188,8 @@ PetscBool FactorHasBorder(Factor f)
 
 /* ---------- the matrix ---------- */
 
-/* The first entry of row r, start + r of all ranks, that is not below the diagonal, by bisection: columns ascend. */
+/* The first entry of local row r, of number start + r, that is not below the diagonal. Columns ascend, so bisection
+   finds it. */
 static PetscInt FirstEntry(const MatrixRows *rows, PetscInt start, PetscInt r)
 {
   PetscInt low = rows->ptr[r], high = rows->ptr[r + 1];
@@ -210,8 +205,8 @@ static PetscInt FirstEntry(const MatrixRows *rows, PetscInt start, PetscInt r)
   return low;
 }
 
-/* Finds and counts the entries of this rank that MUMPS is given. */
-static PetscErrorCode FindEntries(Factor f, Mat A, PetscInt start)
+/* Finds and counts the entries of this rank that MUMPS is given: of a symmetric matrix none below the diagonal. */
+static PetscErrorCode FindEntries(Factor f, Mat A)
 {
   PetscFunctionBeginUser;
   PetscCall(PetscFree2(f->from[MATRIX_OWN], f->from[MATRIX_OTHERS]));
@@ -222,7 +217,7 @@ static PetscErrorCode FindEntries(Factor f, Mat A, PetscInt start)
 
     PetscCall(MatrixRowsGet(A, block, &rows));
     for (PetscInt r = 0; rows.mat && r < rows.n; r++) {
-      f->from[block][r] = f->symmetric ? FirstEntry(&rows, start, r) : rows.ptr[r];
+      f->from[block][r] = f->symmetric ? FirstEntry(&rows, f->start, r) : rows.ptr[r];
       f->own += rows.ptr[r + 1] - f->from[block][r];
     }
     PetscCall(MatrixRowsRestore(&rows));
@@ -230,8 +225,8 @@ static PetscErrorCode FindEntries(Factor f, Mat A, PetscInt start)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Rows and columns of the entries, from 1 */
-static PetscErrorCode TakePlaces(Factor f, Mat A, PetscInt start)
+/* Writes rows and columns of the matrix's entries, from 1. */
+static PetscErrorCode TakePlaces(Factor f, Mat A)
 {
   MUMPS_INT *row = f->row, *column = f->column;
 
@@ -243,8 +238,8 @@ static PetscErrorCode TakePlaces(Factor f, Mat A, PetscInt start)
     for (PetscInt r = 0; rows.mat && r < rows.n; r++) {
       const PetscInt from = f->from[block][r], n = rows.ptr[r + 1] - from;
 
-      for (PetscInt k = 0; k < n; k++) row[k] = (MUMPS_INT)(start + r + 1);
-      for (PetscInt k = 0; k < n; k++) column[k] = (MUMPS_INT)(MatrixRowsColumn(&rows, start, from + k) + 1);
+      for (PetscInt k = 0; k < n; k++) row[k] = (MUMPS_INT)(f->start + r + 1);
+      for (PetscInt k = 0; k < n; k++) column[k] = (MUMPS_INT)(MatrixRowsColumn(&rows, f->start, from + k) + 1);
       row += n;
       column += n;
     }
@@ -274,19 +269,19 @@ static PetscErrorCode TakeValues(Factor f, Mat A)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Memory for the entries; *kept: what stood there stands there still. */
+/* Reserves memory for the entries. *kept: the arrays have not moved, so their contents are still there. */
 static PetscErrorCode FactorReserve(Factor f, PetscBool *kept)
 {
   PetscFunctionBeginUser;
   *kept = (PetscBool)(f->row && f->entries <= f->room);
   if (*kept) PetscFunctionReturn(PETSC_SUCCESS);
-  f->room = (PetscInt)(FACTOR_ROOM * f->entries);
+  f->room = (PetscInt)PetscMin(FACTOR_ROOM * (PetscReal)f->entries, (PetscReal)PETSC_MAX_INT);
   PetscCall(PetscFree3(f->row, f->column, f->value));
   PetscCall(PetscMalloc3(f->room, &f->row, f->room, &f->column, f->room, &f->value));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Rows and columns of the border's entries, from 1, behind those of the matrix */
+/* Writes rows and columns of the border's entries, from 1, behind those of the matrix. */
 static PetscErrorCode PlaceBorder(Factor f)
 {
   const PetscInt from = f->own, n = f->entries - from;
@@ -301,7 +296,7 @@ static PetscErrorCode PlaceBorder(Factor f)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Do the places of a matrix with this pattern stand there? */
+/* Finds whether the arrays hold the rows and columns of this matrix with its present pattern. */
 static PetscErrorCode IsPlaced(Factor f, Mat A, PetscBool *is)
 {
   PetscObjectId    matrix;
@@ -314,27 +309,25 @@ static PetscErrorCode IsPlaced(Factor f, Mat A, PetscBool *is)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Rows and columns of all entries; those of the matrix stand where they stood, if it is the same. */
+/* Writes rows and columns of all entries. Those of the matrix are kept if the matrix and its pattern are the same. */
 static PetscErrorCode PlaceEntries(Factor f, Mat A)
 {
-  PetscInt  start;
   PetscBool again, kept;
 
   PetscFunctionBeginUser;
-  PetscCall(MatGetOwnershipRange(A, &start, NULL));
   PetscCall(IsPlaced(f, A, &again));
-  if (!again) PetscCall(FindEntries(f, A, start));
+  if (!again) PetscCall(FindEntries(f, A));
   f->entries = f->own + (f->bordered ? BorderedFactorCountEntries(f->bordering) : 0);
   PetscCall(FactorReserve(f, &kept));
-  if (!again || !kept) PetscCall(TakePlaces(f, A, start));
+  if (!again || !kept) PetscCall(TakePlaces(f, A));
   if (f->bordered) PetscCall(PlaceBorder(f));
   PetscCall(PetscObjectGetId((PetscObject)A, &f->matrix));
   PetscCall(MatGetNonzeroState(A, &f->pattern));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* MUMPS is told where the entries are. */
-static PetscErrorCode ShowEntries(Factor f, Mat A)
+/* Gives MUMPS this rank's entries. */
+static PetscErrorCode SetEntries(Factor f, Mat A)
 {
   DMUMPS_STRUC_C *mumps = &f->mumps;
 
@@ -355,28 +348,22 @@ static PetscErrorCode ShowEntries(Factor f, Mat A)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Rows of all ranks */
-static PetscErrorCode ShowSize(Factor f, Mat A)
+/* Gives MUMPS the number of rows of all ranks, border included, and lists the rows of this one. All numbers of rows and
+   columns that MUMPS is given are at most the number that is checked here. */
+static PetscErrorCode SetSize(Factor f, Mat A)
 {
-  const PetscInt *ranges;
-  PetscInt        all;
-
   PetscFunctionBeginUser;
   PetscCall(MatGetSize(A, &f->n, NULL));
   PetscCall(MatGetLocalSize(A, &f->rows, NULL));
-  all        = f->n + (f->bordered ? BorderedFactorCount(f->bordering) : 0);
-  f->mumps.n = (MUMPS_INT)all;
-  PetscCheck(f->mumps.n == all, f->comm, PETSC_ERR_ARG_OUTOFRANGE,
-             "%" PetscInt_FMT " unknowns are more than MUMPS can count", all);
-  PetscCall(MatGetOwnershipRanges(A, &ranges));
-  for (PetscMPIInt r = 0; r < f->size; r++) {
-    PetscCall(PetscMPIIntCast(ranges[r + 1], &f->first[r + 1]));
-    f->count[r] = f->first[r + 1] - f->first[r];
-  }
+  PetscCall(MatGetOwnershipRange(A, &f->start, NULL));
+  PetscCall(FactorIntCast((int64_t)f->n + (f->bordered ? BorderedFactorCount(f->bordering) : 0), &f->mumps.n));
+  PetscCall(PetscFree(f->mine));
+  PetscCall(PetscMalloc1(f->rows, &f->mine));
+  for (PetscInt i = 0; i < f->rows; i++) f->mine[i] = (MUMPS_INT)(f->start + i + 1);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode ShowOrdering(Factor f, Mat A)
+static PetscErrorCode SetOrdering(Factor f, Mat A)
 {
   int       ordering = f->ordering;
   PetscInt *position;
@@ -397,7 +384,7 @@ static PetscErrorCode ShowOrdering(Factor f, Mat A)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Why a job failed, as PETSc's interface to MUMPS tells it. Source: MUMPS 5.5 Users' guide, section 8. */
+/* Why a job failed, in the terms of PETSc's interface to MUMPS. Source: MUMPS 5.5 Users' guide, section 8. */
 static PCFailedReason Reason(Factor f)
 {
   switch (f->mumps.INFOG(1)) {
@@ -420,7 +407,7 @@ static PCFailedReason Reason(Factor f)
   }
 }
 
-static PetscErrorCode Tell(Factor f, const char *job, PCFailedReason *reason)
+static PetscErrorCode FactorGetReason(Factor f, const char *job, PCFailedReason *reason)
 {
   PetscFunctionBeginUser;
   *reason = Reason(f);
@@ -430,7 +417,21 @@ static PetscErrorCode Tell(Factor f, const char *job, PCFailedReason *reason)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* FactorAnalyse - Collective. *reason: why there will be no factor; a matrix without rows has one. */
+/*@
+  FactorAnalyse - orders a matrix and counts what its factor will take.
+
+  Collective
+
+  Input Parameters:
++ f - the factor
+- A - AIJ matrix of symmetric pattern
+
+  Output Parameter:
+. reason - why there can be no factor; PC_NOERROR also for a matrix without rows
+
+  Note:
+  The present factor is lost.
+@*/
 PetscErrorCode FactorAnalyse(Factor f, Mat A, PCFailedReason *reason)
 {
   PetscFunctionBeginUser;
@@ -438,20 +439,20 @@ PetscErrorCode FactorAnalyse(Factor f, Mat A, PCFailedReason *reason)
   f->analysed        = PETSC_FALSE;
   f->mumps.ICNTL(14) = f->workspace;
   *reason            = PC_NOERROR;
-  PetscCall(ShowSize(f, A));
+  PetscCall(SetSize(f, A));
   if (!f->n) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(ShowEntries(f, A));
-  PetscCall(ShowOrdering(f, A));
-  PetscCall(PetscFree(f->right));
-  PetscCall(Call(f, MUMPS_ANALYSE));
-  PetscCall(Tell(f, "analysis", reason));
+  PetscCall(SetEntries(f, A));
+  PetscCall(SetOrdering(f, A));
+  PetscCall(FactorCall(f, MUMPS_ANALYSE));
+  PetscCall(FactorGetReason(f, "analysis", reason));
   if (*reason) PetscFunctionReturn(PETSC_SUCCESS);
   f->changed  = PETSC_FALSE;
   f->analysed = PETSC_TRUE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Has it another pattern than the last that was analysed? The same on all ranks. */
+/* Finds whether the matrix has another pattern, ordering or border than the one that was analysed last; the same on all
+   ranks. */
 static PetscErrorCode IsNew(Factor f, Mat A, PetscBool *is)
 {
   PetscBool placed;
@@ -465,8 +466,21 @@ static PetscErrorCode IsNew(Factor f, Mat A, PetscBool *is)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* FactorPrepareBorder - Collective. *reason: why K cannot be ordered; there are no borders then. An analysis of K that
- * there is serves. */
+/*@
+  FactorPrepareBorder - orders a symmetric matrix K such that borders can join it.
+
+  Collective
+
+  Input Parameters:
++ f - the factor, for symmetric matrices, without a border
+- K - matrix whose pattern the bordered matrices will have
+
+  Output Parameter:
+. reason - why K cannot be ordered; there can be no borders then
+
+  Note:
+  K is ordered by minimum fill, or by minimum degree if that was set. An analysis of K that was made before is used.
+@*/
 PetscErrorCode FactorPrepareBorder(Factor f, Mat K, PCFailedReason *reason)
 {
   const int ordering = f->ordering;
@@ -489,7 +503,7 @@ PetscErrorCode FactorPrepareBorder(Factor f, Mat K, PCFailedReason *reason)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Were workspace or the buffers of messages too short, which ICNTL(14) makes longer? */
+/* Finds whether the workspace or the message buffers were too short. ICNTL(14) makes both longer. */
 static PetscBool IsShort(Factor f)
 {
   switch (f->mumps.INFOG(1)) {
@@ -501,19 +515,34 @@ static PetscBool IsShort(Factor f)
   }
 }
 
-/* Factors; where the workspace was too short, with twice the surplus, and that once more. */
+/* Factors. Where the workspace was too short it is doubled, FACTOR_MORE times at most. */
 static PetscErrorCode CallFactor(Factor f)
 {
   PetscFunctionBeginUser;
-  PetscCall(Call(f, MUMPS_FACTOR));
+  PetscCall(FactorCall(f, MUMPS_FACTOR));
   for (int more = 0; more < FACTOR_MORE && IsShort(f); more++) {
     f->mumps.ICNTL(14) = PetscMax(2 * f->mumps.ICNTL(14), FACTOR_WORKSPACE);
-    PetscCall(Call(f, MUMPS_FACTOR));
+    PetscCall(FactorCall(f, MUMPS_FACTOR));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* FactorMake - Collective. *reason: as of FactorAnalyse(). A's values are copied. */
+/*@
+  FactorMake - factors a matrix.
+
+  Collective
+
+  Input Parameters:
++ f - the factor
+- A - AIJ matrix of symmetric pattern; its values are copied
+
+  Output Parameter:
+. reason - why there is no factor; PC_NOERROR also for a matrix without rows
+
+  Note:
+  The matrix is analysed before if its pattern is not that of the last analysis. MUMPS gets more workspace where it
+  finds its own too short.
+@*/
 PetscErrorCode FactorMake(Factor f, Mat A, PCFailedReason *reason)
 {
   PetscBool is_new;
@@ -525,14 +554,24 @@ PetscErrorCode FactorMake(Factor f, Mat A, PCFailedReason *reason)
   f->exists = PETSC_FALSE;
   if (*reason || !f->n) PetscFunctionReturn(PETSC_SUCCESS);
   if (!is_new) PetscCall(TakeValues(f, A));
+  PetscCall(FactorSolutionForget(&f->solution));
   PetscCall(CallFactor(f));
-  PetscCall(Tell(f, "factorisation", reason));
+  PetscCall(FactorGetReason(f, "factorisation", reason));
   f->exists = *reason ? PETSC_FALSE : PETSC_TRUE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* FactorGetCost - INFOG(16), INFOG(17): memory; INFOG(20): entries, negative: in millions; RINFOG(1): operations. Not
- * collective. */
+/*@
+  FactorGetCost - gets what the factor takes, by the last analysis.
+
+  Not collective, the same on all ranks
+
+  Input Parameter:
+. f - the factor
+
+  Output Parameter:
+. cost - operations (RINFOG(1)), entries (INFOG(20), negative: in millions) and memory (MB, INFOG(16) and INFOG(17))
+@*/
 void FactorGetCost(Factor f, FactorCost *cost)
 {
   const DMUMPS_STRUC_C *mumps   = &f->mumps;
@@ -543,196 +582,4 @@ void FactorGetCost(Factor f, FactorCost *cost)
     .entries    = entries < 0 ? -1e6 * entries : entries,
     .memory_mb  = {mumps->INFOG(16), mumps->INFOG(17)}
   };
-}
-
-/* ---------- solves ---------- */
-
-/* Solves for `columns` of them; the solutions stand in right. */
-static PetscErrorCode FactorSolveOnce(Factor f, PetscInt columns)
-{
-  DMUMPS_STRUC_C *mumps = &f->mumps;
-
-  PetscFunctionBeginUser;
-  mumps->nrhs      = (MUMPS_INT)columns;
-  mumps->lrhs      = mumps->n;
-  mumps->rhs       = f->right;
-  mumps->ICNTL(21) = 0; /* the solution: all of it on the first rank */
-  PetscCall(Call(f, MUMPS_SOLVE));
-  PetscCheck(mumps->INFOG(1) >= 0, f->comm, PETSC_ERR_LIB, "MUMPS does not solve: INFOG(1) = %d, INFOG(2) = %d",
-             (int)mumps->INFOG(1), (int)mumps->INFOG(2));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Room for `columns` on the first rank */
-static PetscErrorCode MakeRoom(Factor f, PetscInt columns)
-{
-  PetscFunctionBeginUser;
-  PetscCall(PetscFree(f->right));
-  if (!f->rank) PetscCall(PetscMalloc1((size_t)f->mumps.n * columns, &f->right));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* FactorSolve - Collective. Infinity where there is no factor. */
-PetscErrorCode FactorSolve(Factor f, Vec b, Vec x)
-{
-  const PetscScalar *from;
-  PetscScalar       *to;
-
-  PetscFunctionBeginUser;
-  if (!f->n) PetscFunctionReturn(PETSC_SUCCESS);
-  if (!f->exists) PetscCall(VecSet(x, INFINITY));
-  if (!f->exists) PetscFunctionReturn(PETSC_SUCCESS);
-  if (!f->right) PetscCall(MakeRoom(f, 1));
-  PetscCall(VecGetArrayRead(b, &from));
-  PetscCallMPI(
-    MPI_Gatherv(from, f->count[f->rank], MPIU_SCALAR, f->right, f->count, f->first, MPIU_SCALAR, 0, f->comm));
-  PetscCall(VecRestoreArrayRead(b, &from));
-  for (MUMPS_INT i = (MUMPS_INT)f->n; i < f->mumps.n && !f->rank; i++) f->right[i] = 0; /* the border's */
-  f->mumps.ICNTL(20) = 0;                                                               /* dense */
-  PetscCall(FactorSolveOnce(f, 1));
-  PetscCall(VecGetArrayWrite(x, &to));
-  PetscCallMPI(MPI_Scatterv(f->right, f->count, f->first, MPIU_SCALAR, to, f->count[f->rank], MPIU_SCALAR, 0, f->comm));
-  PetscCall(VecRestoreArrayWrite(x, &to));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Entries of right-hand sides that differ from zero: first each rank's, then all of them on the first rank */
-typedef struct {
-  PetscInt     columns;
-  MUMPS_INT   *ptr, *row; /* from 1 */
-  PetscScalar *value;
-} SparseColumns;
-
-static PetscErrorCode SparseCreate(PetscInt columns, PetscInt entries, SparseColumns *sparse)
-{
-  PetscFunctionBeginUser;
-  sparse->columns = columns;
-  PetscCall(PetscCalloc3(columns + 1, &sparse->ptr, entries, &sparse->row, entries, &sparse->value));
-  sparse->ptr[0] = 1;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-static PetscErrorCode SparseFree(SparseColumns *sparse)
-{
-  PetscFunctionBeginUser;
-  PetscCall(PetscFree3(sparse->ptr, sparse->row, sparse->value));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Of this rank's rows b[columns][rows] */
-static PetscErrorCode SparseFind(Factor f, PetscInt columns, const PetscScalar *b, SparseColumns *sparse)
-{
-  PetscInt n = 0;
-
-  PetscFunctionBeginUser;
-  for (PetscInt i = 0; i < columns * f->rows; i++) n += b[i] != 0;
-  PetscCall(SparseCreate(columns, n, sparse));
-  n = 0;
-  for (PetscInt j = 0; j < columns; j++) {
-    for (PetscInt i = 0; i < f->rows; i++) {
-      if (b[j * f->rows + i] == 0) continue;
-      sparse->row[n]     = (MUMPS_INT)(f->first[f->rank] + i + 1);
-      sparse->value[n++] = b[j * f->rows + i];
-    }
-    sparse->ptr[j + 1] = (MUMPS_INT)(n + 1);
-  }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Column by column, of each the ranks' one after the other; all: on the first rank */
-static PetscErrorCode SparseGather(Factor f, const SparseColumns *mine, SparseColumns *all)
-{
-  const PetscMPIInt width = (PetscMPIInt)mine->columns + 1, count = (PetscMPIInt)(mine->ptr[mine->columns] - 1);
-  PetscMPIInt      *counts, *first;
-  MUMPS_INT        *ptr, *row;
-  PetscScalar      *value;
-  PetscInt          n = 0;
-
-  PetscFunctionBeginUser;
-  PetscCall(PetscCalloc3(f->size, &counts, f->size + 1, &first, f->size * width, &ptr));
-  PetscCallMPI(MPI_Gather(&count, 1, MPI_INT, counts, 1, MPI_INT, 0, f->comm));
-  for (PetscMPIInt r = 0; r < f->size; r++) first[r + 1] = first[r] + counts[r];
-  PetscCall(PetscMalloc2(first[f->size], &row, first[f->size], &value));
-  PetscCallMPI(MPI_Gather(mine->ptr, width, MPI_MUMPSINT, ptr, width, MPI_MUMPSINT, 0, f->comm));
-  PetscCallMPI(MPI_Gatherv(mine->row, count, MPI_MUMPSINT, row, counts, first, MPI_MUMPSINT, 0, f->comm));
-  PetscCallMPI(MPI_Gatherv(mine->value, count, MPIU_SCALAR, value, counts, first, MPIU_SCALAR, 0, f->comm));
-  PetscCall(SparseCreate(mine->columns, first[f->size], all));
-  for (PetscInt j = 0; j < mine->columns; j++) {
-    for (PetscMPIInt r = 0; r < f->size; r++)
-      for (MUMPS_INT k = ptr[r * width + j]; k < ptr[r * width + j + 1]; k++, n++) {
-        all->row[n]   = row[first[r] + k - 1];
-        all->value[n] = value[first[r] + k - 1];
-      }
-    all->ptr[j + 1] = (MUMPS_INT)(n + 1);
-  }
-  PetscCall(PetscFree2(row, value));
-  PetscCall(PetscFree3(counts, first, ptr));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* MUMPS is told of right-hand sides on the first rank, and refuses any that others have. */
-static void ShowColumns(Factor f, SparseColumns *all)
-{
-  f->mumps.ICNTL(20) = 1; /* sparse */
-  if (f->rank) return;
-  f->mumps.nz_rhs      = all->ptr[all->columns] - 1;
-  f->mumps.irhs_ptr    = all->ptr;
-  f->mumps.irhs_sparse = all->row;
-  f->mumps.rhs_sparse  = all->value;
-}
-
-/* x = A^-1 b, `columns` of this rank's rows each */
-static PetscErrorCode SolveSparse(Factor f, PetscInt columns, const PetscScalar *b, PetscScalar *x)
-{
-  SparseColumns mine, all;
-  PetscMPIInt   entries;
-
-  PetscFunctionBeginUser;
-  PetscCall(SparseFind(f, columns, b, &mine));
-  PetscCall(SparseGather(f, &mine, &all));
-  entries = (PetscMPIInt)(all.ptr[columns] - 1);
-  PetscCallMPI(MPI_Bcast(&entries, 1, MPI_INT, 0, f->comm));
-  PetscCall(PetscArrayzero(x, columns * f->rows));
-  if (entries) {
-    PetscCall(MakeRoom(f, columns));
-    ShowColumns(f, &all);
-    PetscCall(FactorSolveOnce(f, columns));
-    for (PetscInt j = 0; j < columns; j++)
-      PetscCallMPI(MPI_Scatterv(f->rank ? NULL : &f->right[(size_t)j * f->mumps.n], f->count, f->first, MPIU_SCALAR,
-                                &x[j * f->rows], f->count[f->rank], MPIU_SCALAR, 0, f->comm));
-    PetscCall(PetscFree(f->right));
-  }
-  PetscCall(SparseFree(&all));
-  PetscCall(SparseFree(&mine));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/*
-  FactorSolveColumns - X = A^-1 B for dense B and X
-
-  Collective
-
-  Notes:
-  The last matrix must have been factored: an error otherwise. Columns of B and X stand next to each other (their
-  leading dimension is that of the rows).
-
-  MUMPS is given the entries of B that differ from zero, and eliminates only what they reach (its ICNTL(20)): for forces
-  on contact nodes, half of the time.
-*/
-PetscErrorCode FactorSolveColumns(Factor f, Mat B, Mat X)
-{
-  PetscInt           columns;
-  const PetscScalar *b;
-  PetscScalar       *x;
-
-  PetscFunctionBeginUser;
-  PetscCheck(f->exists, f->comm, PETSC_ERR_ARG_WRONGSTATE, "there is no factor");
-  PetscCall(MatGetSize(B, NULL, &columns));
-  PetscCall(MatDenseGetArrayRead(B, &b));
-  PetscCall(MatDenseGetArrayWrite(X, &x));
-  for (PetscInt j = 0; j < columns; j += FACTOR_COLUMNS)
-    PetscCall(SolveSparse(f, PetscMin(FACTOR_COLUMNS, columns - j), &b[j * f->rows], &x[j * f->rows]));
-  PetscCall(MatDenseRestoreArrayWrite(X, &x));
-  PetscCall(MatDenseRestoreArrayRead(B, &b));
-  PetscFunctionReturn(PETSC_SUCCESS);
 }
