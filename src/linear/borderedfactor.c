@@ -1,16 +1,29 @@
+/* Entries and elimination order of a bordered matrix. */
 #include "linear/borderedfactor.h"
 
-struct _n_Bordering {
+struct _n_BorderedFactor {
   MPI_Comm    comm;
   PetscMPIInt rank, size;
-  PetscInt    n;        /* rows of K */
-  PetscInt   *position; /* of these, on the first rank */
+  PetscInt    n;        /* rows of K on all ranks */
+  PetscInt   *position; /* place of each row in the elimination of K, from 0; on the first rank */
   Border      border;
-  PetscInt    before, count;                /* vectors of ranks before this one, of all ranks */
-  PetscInt    n_seen, *seen_ptr, *seen_row; /* the pattern of those that were ordered last */
+  PetscInt    before, count;                /* vectors of the ranks before this one, of all ranks */
+  PetscInt    n_seen, *seen_ptr, *seen_row; /* pattern of the vectors that were ordered last */
 };
 
-/* BorderedFactorCreate - Collective. */
+/*@
+  BorderedFactorCreate - creates the borders of a matrix K, without vectors.
+
+  Collective
+
+  Input Parameters:
++ comm     - ranks of K; borrowed
+. n        - rows of K on all ranks
+- position - position[n]: place of each row in the elimination of K, from 0; copied. On the first rank, NULL elsewhere.
+
+  Output Parameter:
+. out - the borders; destroy them with BorderedFactorDestroy()
+@*/
 PetscErrorCode BorderedFactorCreate(MPI_Comm comm, PetscInt n, const PetscInt *position, BorderedFactor *out)
 {
   BorderedFactor b;
@@ -27,7 +40,14 @@ PetscErrorCode BorderedFactorCreate(MPI_Comm comm, PetscInt n, const PetscInt *p
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* BorderedFactorDestroy - Not collective. */
+/*@
+  BorderedFactorDestroy - frees the borders.
+
+  Not collective
+
+  Input Parameter:
+. bordering - may be NULL inside
+@*/
 PetscErrorCode BorderedFactorDestroy(BorderedFactor *bordering)
 {
   BorderedFactor b = *bordering;
@@ -41,7 +61,7 @@ PetscErrorCode BorderedFactorDestroy(BorderedFactor *bordering)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Have the vectors of this rank the pattern that was noted? */
+/* Finds whether the vectors of this rank have the pattern that was noted. */
 static PetscErrorCode HavePattern(BorderedFactor b, PetscBool *same)
 {
   const Border *border = &b->border;
@@ -67,7 +87,18 @@ static PetscErrorCode NotePattern(BorderedFactor b)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* BorderedFactorSet - Collective. The arrays stay the caller's until the next call. */
+/*@
+  BorderedFactorSet - sets the vectors.
+
+  Collective
+
+  Input Parameters:
++ b      - the borders
+- border - this rank's vectors; the arrays are borrowed until the next call
+
+  Output Parameter:
+. changed - the vectors have other rows than those that BorderedFactorOrder() ordered last; the same on all ranks
+@*/
 PetscErrorCode BorderedFactorSet(BorderedFactor b, const Border *border, PetscBool *changed)
 {
   PetscBool same;
@@ -85,7 +116,14 @@ PetscErrorCode BorderedFactorSet(BorderedFactor b, const Border *border, PetscBo
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* BorderedFactorCount - Not collective. */
+/*@
+  BorderedFactorCount - counts the vectors of all ranks.
+
+  Not collective, the same on all ranks
+
+  Input Parameter:
+. b - the borders
+@*/
 PetscInt BorderedFactorCount(BorderedFactor b)
 {
   return b->count;
@@ -93,13 +131,37 @@ PetscInt BorderedFactorCount(BorderedFactor b)
 
 /* ---------- entries ---------- */
 
-/* BorderedFactorCountEntries - Not collective. */
+/*@
+  BorderedFactorCountEntries - counts the entries of this rank's vectors in the bordered matrix.
+
+  Not collective
+
+  Input Parameter:
+. b - the borders
+
+  Note:
+  Counted are the entries above the diagonal, and for each vector the -1 on the diagonal.
+@*/
 PetscInt BorderedFactorCountEntries(BorderedFactor b)
 {
   return b->border.n ? b->border.ptr[b->border.n] + b->border.n : 0;
 }
 
-/* BorderedFactorNumber - Not collective. row, column: as many as BorderedFactorCountEntries() says. */
+/*@
+  BorderedFactorNumber - writes rows and columns of this rank's vectors in the bordered matrix.
+
+  Not collective
+
+  Input Parameter:
+. b - the borders
+
+  Output Parameters:
++ row    - row[BorderedFactorCountEntries()], from 0
+- column - as many columns, from 0
+
+  Note:
+  The vectors' unknowns follow those of K. The -1 of each vector comes behind its entries.
+@*/
 void BorderedFactorNumber(BorderedFactor b, PetscInt *row, PetscInt *column)
 {
   const Border *border = &b->border;
@@ -115,7 +177,17 @@ void BorderedFactorNumber(BorderedFactor b, PetscInt *row, PetscInt *column)
   }
 }
 
-/* BorderedFactorTake - Not collective. value: as many as BorderedFactorCountEntries() says. */
+/*@
+  BorderedFactorTake - writes the values of this rank's vectors in the bordered matrix.
+
+  Not collective
+
+  Input Parameter:
+. b - the borders
+
+  Output Parameter:
+. value - value[BorderedFactorCountEntries()], in the order of BorderedFactorNumber()
+@*/
 void BorderedFactorTake(BorderedFactor b, PetscScalar *value)
 {
   const Border *border = &b->border;
@@ -128,7 +200,7 @@ void BorderedFactorTake(BorderedFactor b, PetscScalar *value)
 
 /* ---------- order ---------- */
 
-/* The last row that each vector of all ranks has in the order of K, on the first rank */
+/* Finds for each vector of all ranks the last of its rows in the elimination of K; on the first rank. */
 static PetscErrorCode FindLast(BorderedFactor b, PetscInt *last)
 {
   const Border *border = &b->border;
@@ -154,8 +226,22 @@ static PetscErrorCode FindLast(BorderedFactor b, PetscInt *last)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* BorderedFactorOrder - Collective. A vector's unknown follows the last of its rows: from there on it is all that is
-   left of them, and to eliminate it later would have it stand in every front up to there. */
+/*@
+  BorderedFactorOrder - orders the bordered matrix.
+
+  Collective
+
+  Input Parameter:
+. b - the borders with their vectors
+
+  Output Parameter:
+. position - place of each row of the bordered matrix in the elimination, from 0; on the first rank, NULL elsewhere. The
+             caller frees it.
+
+  Note:
+  The unknown of a vector follows the last of the vector's rows. After that row it is all that is left of them. If it
+  were eliminated later, it would be in every front until then.
+@*/
 PetscErrorCode BorderedFactorOrder(BorderedFactor b, PetscInt **position)
 {
   PetscInt *last, *follow;
@@ -168,7 +254,7 @@ PetscErrorCode BorderedFactorOrder(BorderedFactor b, PetscInt **position)
   if (!b->rank) {
     PetscCall(PetscMalloc1(b->n + b->count, position));
     for (PetscInt v = 0; v < b->count; v++) follow[last[v] + 1]++;
-    for (PetscInt p = 0; p < b->n; p++) follow[p + 1] += follow[p]; /* vectors that follow rows before p */
+    for (PetscInt p = 0; p < b->n; p++) follow[p + 1] += follow[p]; /* number of vectors that follow rows before p */
     for (PetscInt r = 0; r < b->n; r++) (*position)[r] = b->position[r] + follow[b->position[r]];
     for (PetscInt v = 0; v < b->count; v++) (*position)[b->n + v] = last[v] + 1 + follow[last[v]]++;
   }

@@ -1,34 +1,30 @@
-/* How a symmetric matrix K + C is factored where C couples many unknowns and is nearly a sum of v v^T over few vectors,
-   as contact is over its terms: K is bordered by them, (K V; V^T -1), whose factor solves with K + V V^T. K's pattern
-   stays, and with it its ordering; the vectors bring far less fill than the products of all their entries with each
-   other. What C is besides is left to iterations (keptfactor.h). */
+/* The border of a symmetric matrix K, for the factor of K + C where C couples many unknowns and is nearly a sum of v
+   v^T over few vectors v. Contact is such a C, with one vector for each contact term.
+
+   The bordered matrix (K V; V^T -1) is factored; its factor solves with K + V V^T. The pattern of K stays, and with it
+   the ordering of K. The vectors bring far less fill than the products of all their entries with each other would. What
+   else C has is left to iterations (reusedfactor.h).
+
+   The object does not factor. It gives the entries of the border and the order of elimination to factor.h. Call
+   BorderedFactorSet() for each new set of vectors, and BorderedFactorOrder() where that has found another pattern. */
 #pragma once
 #include "base/petsccompat.h"
 
-/* The vectors of this rank; borrowed */
+/* The vectors of this rank; the arrays are borrowed. Vector k has the entries ptr[k] to ptr[k + 1] - 1. */
 typedef struct {
-  PetscInt        n;
-  const PetscInt *ptr, *row; /* of vector k: row[ptr[k]] ... in the numbers of all ranks; a row may occur more than
-                                once, its values are summed */
+  PetscInt        n;         /* number of vectors */
+  const PetscInt *ptr, *row; /* row: number among the rows of all ranks. The values of a row that occurs more than once
+                                are summed. */
   const PetscScalar *value;
 } Border;
 
-typedef struct _n_Bordering *BorderedFactor;
+typedef struct _n_BorderedFactor *BorderedFactor;
 
-/* n: rows of K on all ranks; position: in which order to eliminate them, from 0, on the first rank (elsewhere NULL);
- * copied. Collective. */
 PetscErrorCode BorderedFactorCreate(MPI_Comm, PetscInt n, const PetscInt *position, BorderedFactor *);
 PetscErrorCode BorderedFactorDestroy(BorderedFactor *);
-/* The vectors from now on; *changed: they have other rows than those that BorderedFactorOrder() was asked about last.
- * Collective. */
 PetscErrorCode BorderedFactorSet(BorderedFactor, const Border *, PetscBool *changed);
-/* Vectors of all ranks. Not collective. */
-PetscInt BorderedFactorCount(BorderedFactor);
-/* Entries of this rank's vectors above the diagonal, each with a -1 behind it. Not collective. */
-PetscInt BorderedFactorCountEntries(BorderedFactor);
-/* Their rows and columns, from 0, where the vectors' unknowns follow K's. Not collective. */
-void BorderedFactorNumber(BorderedFactor, PetscInt *row, PetscInt *column);
-/* Their values. Not collective. */
-void BorderedFactorTake(BorderedFactor, PetscScalar *value);
-/* Where to eliminate each row, from 0, on the first rank; NULL on the others. The caller frees it. Collective. */
+PetscInt       BorderedFactorCount(BorderedFactor);
+PetscInt       BorderedFactorCountEntries(BorderedFactor);
+void           BorderedFactorNumber(BorderedFactor, PetscInt *row, PetscInt *column);
+void           BorderedFactorTake(BorderedFactor, PetscScalar *value);
 PetscErrorCode BorderedFactorOrder(BorderedFactor, PetscInt **position);

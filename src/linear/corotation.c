@@ -1,22 +1,33 @@
+/* Rotations of nodes as polar factors. */
 #include "linear/corotation.h"
 
-/* Newton's method for the polar factor doubles the digits in each iteration once it is near: turns and moderate strains
- * take three to five. */
+/* Most iterations of Newton's method for the polar factor. It doubles the number of correct digits in each iteration
+   once it is near the solution; rotations with moderate strains take three to five. */
 #define TURN_ITERATIONS 12
-/* A gradient with less of a determinant than this, of unit size, is that of a body that is squeezed flat or turned
- * inside out: no turn is read off it. */
+/* Least determinant of a gradient of unit size. A gradient with less is that of a body that is squeezed flat or turned
+   inside out, and no rotation can be found from it. */
 #define TURN_LEAST 1e-6
 
-enum { ENTRIES = 9 }; /* of a 3 x 3 matrix; in the plane the third row and column are those of the identity */
+enum { ENTRIES = 9 }; /* entries of a 3 x 3 matrix; in the plane its third row and column are those of the identity */
 
-struct _n_NodeTurn {
+struct _n_Corotation {
   Mesh       mesh;
-  PetscReal *from, *to; /* local displacements; from: where the turns begin */
-  PetscReal *turn;      /* [n_nodes][ENTRIES] */
-  PetscBool  turned;    /* some turn is not the identity */
+  PetscReal *from, *to; /* local displacements (length): where the rotations begin, and the present ones */
+  PetscReal *turn;      /* rotations, turn[n_nodes][ENTRIES] */
+  PetscBool  turned;    /* at least one rotation is not the identity */
 };
 
-/* CorotationCreate - Collective. */
+/*@
+  CorotationCreate - creates the rotations of a mesh's nodes, all of them the identity.
+
+  Not collective
+
+  Input Parameter:
+. mesh - borrowed; its constraints need not be set yet
+
+  Output Parameter:
+. turn - the rotations; destroy them with CorotationDestroy()
+@*/
 PetscErrorCode CorotationCreate(Mesh mesh, Corotation *turn)
 {
   PetscFunctionBeginUser;
@@ -27,7 +38,14 @@ PetscErrorCode CorotationCreate(Mesh mesh, Corotation *turn)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* CorotationDestroy - Collective. */
+/*@
+  CorotationDestroy - frees the rotations.
+
+  Not collective
+
+  Input Parameter:
+. turn - may be NULL inside
+@*/
 PetscErrorCode CorotationDestroy(Corotation *turn)
 {
   PetscFunctionBeginUser;
@@ -37,7 +55,15 @@ PetscErrorCode CorotationDestroy(Corotation *turn)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* CorotationMove - u[n_nodes*dim]: local displacements (length), ghosts included. Not collective. */
+/*@
+  CorotationMove - sets the present displacements.
+
+  Not collective
+
+  Input Parameters:
++ turn - the rotations
+- u    - u[n_nodes*dim]: local displacements, ghosts included (length); copied
+@*/
 PetscErrorCode CorotationMove(Corotation turn, const PetscReal *u)
 {
   PetscFunctionBeginUser;
@@ -45,7 +71,14 @@ PetscErrorCode CorotationMove(Corotation turn, const PetscReal *u)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* CorotationBegin - Not collective. */
+/*@
+  CorotationBegin - makes the present displacements those where rotations begin.
+
+  Not collective
+
+  Input Parameter:
+. turn - the rotations, the identity from now on
+@*/
 PetscErrorCode CorotationBegin(Corotation turn)
 {
   PetscFunctionBeginUser;
@@ -54,8 +87,8 @@ PetscErrorCode CorotationBegin(Corotation turn)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* A cell's nodes about their centre in the two states: sum of their products, of unit size, so that cells of all sizes
- * count alike. */
+/* Sums the products of a cell's nodes, each about the cell's centre, in the two states. The sum is scaled to unit size,
+   so that cells of all sizes have the same weight. */
 static void CellProduct(Corotation turn, PetscInt cell, PetscReal product[ENTRIES])
 {
   const Mesh      mesh = turn->mesh;
@@ -114,11 +147,9 @@ static PetscReal Norm(const PetscReal a[ENTRIES])
   return PetscSqrtReal(square);
 }
 
-/* The turn of a node with three free dofs: the polar factor of the sum, by Newton's method on scaled iterates: flat
-   cells' sums have singular values far apart.
-
-   Source: Higham, Computing the polar decomposition - with applications, SIAM J. Sci. Stat. Comput. 7 (1986) 1160-1174.
- */
+/* Finds the rotation of a node with three free dofs: the polar factor of the sum a. Newton's iterates are scaled,
+   because the sums of flat cells have singular values far apart. Source: Higham, Computing the polar decomposition -
+   with applications, SIAM J. Sci. Stat. Comput. 7 (1986) 1160-1174. */
 static void TurnInSpace(PetscReal a[ENTRIES])
 {
   const PetscReal size = Norm(a);
@@ -143,7 +174,8 @@ static void TurnInSpace(PetscReal a[ENTRIES])
   Identity(a);
 }
 
-/* The turn in the plane of components p and q, of a node that is free in these: nearest to the sum's part. */
+/* Finds the rotation of a node that is free in components p and q only: in their plane, the nearest to the sum's part.
+ */
 static void TurnInPlane(int p, int q, PetscReal a[ENTRIES])
 {
   const PetscReal c = a[4 * p] + a[4 * q], s = a[3 * q + p] - a[3 * p + q], length = PetscSqrtReal(c * c + s * s);
@@ -155,7 +187,7 @@ static void TurnInPlane(int p, int q, PetscReal a[ENTRIES])
   a[3 * p + q]        = -s / length;
 }
 
-/* A node's sum of its cells' products becomes its turn; what is held does not turn. */
+/* Turns the sum of a node's cells into the node's rotation. A node that is held does not rotate. */
 static void Corotations(int dim, const PetscInt dof[], PetscReal a[ENTRIES])
 {
   int free[3], n = 0;
@@ -170,7 +202,17 @@ static void Corotations(int dim, const PetscInt dof[], PetscReal a[ENTRIES])
     Identity(a);
 }
 
-/* CorotationFind - Collective. The turn of a node is that of the cells around it, on all ranks. */
+/*@
+  CorotationFind - finds the rotations from the state of CorotationBegin() to the present one.
+
+  Collective
+
+  Input Parameter:
+. turn - the rotations
+
+  Note:
+  The rotation of a node is that of all cells around it, on all ranks.
+@*/
 PetscErrorCode CorotationFind(Corotation turn)
 {
   const Mesh      mesh = turn->mesh;
@@ -191,7 +233,18 @@ PetscErrorCode CorotationFind(Corotation turn)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* CorotationApply - Not collective. x: over the free dofs. */
+/*@
+  CorotationApply - rotates a vector, node by node.
+
+  Not collective
+
+  Input Parameters:
++ turn - the rotations
+- back - rotate back, from the present state to the state of CorotationBegin()
+
+  Input and Output Parameter:
+. x - vector over the free dofs
+@*/
 PetscErrorCode CorotationApply(Corotation turn, PetscBool back, Vec x)
 {
   const int       dim = turn->mesh->dim;

@@ -1,19 +1,19 @@
-/* How the bodies have turned, node by node, since an earlier state. A body's tangent turns with it, and a slender one
-   turns by far more than it strains: what a factor of an older tangent makes of forces turned back, turned on again, is
-   a better solution than what it makes of the forces as they are. */
+/* The rotations of the bodies, node by node, since an earlier state.
+
+   The tangent of a body rotates with the body, and a slender body rotates by far more than it strains. An older
+   tangent's factor therefore finds a better solution if forces are rotated back before it is applied and displacements
+   are rotated forward after it (reusedfactor.h).
+
+   Call CorotationMove() with each new state, CorotationBegin() where rotations shall begin, CorotationFind() to compute
+   them, and CorotationApply() to rotate vectors. */
 #pragma once
 #include "mesh/mesh.h"
 
-typedef struct _n_NodeTurn *Corotation;
+typedef struct _n_Corotation *Corotation;
 
-/* Borrows the mesh, whose constraints need not be set yet. Collective. */
 PetscErrorCode CorotationCreate(Mesh, Corotation *);
 PetscErrorCode CorotationDestroy(Corotation *);
-/* The present state: local displacements u. Not collective. */
 PetscErrorCode CorotationMove(Corotation, const PetscReal *u);
-/* Turns count from the present state on. Not collective. */
 PetscErrorCode CorotationBegin(Corotation);
-/* Finds the turns from there to the present state. Collective. */
 PetscErrorCode CorotationFind(Corotation);
-/* Turns a vector over the free dofs along, or back. Not collective. */
 PetscErrorCode CorotationApply(Corotation, PetscBool back, Vec x);

@@ -1,23 +1,24 @@
+/* Nested dissection of the graph of a matrix's nodes, which is gathered on the first rank. */
 #include "ordering.h"
 #include "matrix/matrixrows.h"
 #include <metis.h>
 
-enum { ORDERING_SEED = 1 }; /* any fixed number: the same matrix gives the same order */
+enum { ORDERING_SEED = 1 }; /* any fixed number: the same matrix then gives the same order */
 #define MPI_IDX (sizeof(idx_t) == sizeof(int64_t) ? MPI_INT64_T : MPI_INT32_T)
 
-/* Rows next to each other with the same columns are a node's. */
+/* The nodes of a matrix. Rows that follow each other and have the same columns belong to one node. */
 typedef struct {
   MPI_Comm    comm;
   PetscMPIInt rank, size;
   MatrixRows  rows[MATRIX_BLOCKS];
-  PetscInt    n, *first; /* nodes of this rank; the first row of each, and where they end */
-  PetscInt   *node;      /* of each row, in all ranks' numbers */
-  PetscInt   *other;     /* of each column of other ranks; NULL: one rank */
+  PetscInt    n, *first; /* nodes of this rank; the first row of each, and behind the last the number of rows */
+  PetscInt   *node;      /* of each row, numbered over all ranks */
+  PetscInt   *other;     /* of each column that belongs to another rank; NULL: one rank */
 } Nodes;
 
-/* The graph of all nodes, on the first rank */
+/* The graph of all nodes, on the first rank. */
 typedef struct {
-  idx_t n, *rows, *offsets, *neighbours; /* rows: how many, of each node */
+  idx_t n, *rows, *offsets, *neighbours; /* rows: number of rows of each node */
 } Graph;
 
 static PetscErrorCode OrderingFindNodes(Nodes *nodes)
@@ -77,7 +78,7 @@ static PetscErrorCode NodesFree(Nodes *nodes)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Neighbours of this rank's i-th node, how many; those of one node are next to each other among the columns. */
+/* Lists the neighbours of this rank's i-th node and returns their number. Columns of one node follow each other. */
 static idx_t OrderingListNeighbours(const Nodes *nodes, PetscInt i, idx_t *neighbours)
 {
   const PetscInt *node[MATRIX_BLOCKS] = {nodes->node, nodes->other}, row = nodes->first[i];
@@ -97,7 +98,7 @@ static idx_t OrderingListNeighbours(const Nodes *nodes, PetscInt i, idx_t *neigh
   return n;
 }
 
-/* The numbers of all ranks, one rank's after the other's, on the first rank; elsewhere none. */
+/* Gathers numbers on the first rank, in the order of ranks. Other ranks get none. */
 static PetscErrorCode GatherNumbers(const Nodes *nodes, PetscInt n, const idx_t *mine, idx_t *n_all, idx_t **all)
 {
   PetscMPIInt count, *counts, *first;
@@ -150,7 +151,7 @@ static PetscErrorCode OrderingFreeGraph(Graph *graph)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Places of the nodes' rows, nodes dissected. */
+/* Finds the places of all rows by dissection of the nodes. */
 static PetscErrorCode Dissect(const Graph *graph, PetscInt **position)
 {
   idx_t    n      = graph->n, options[METIS_NOPTIONS], *node, *place;
@@ -164,7 +165,8 @@ static PetscErrorCode Dissect(const Graph *graph, PetscInt **position)
   options[METIS_OPTION_NUMBERING] = 0;
   for (idx_t i = 0; i < n; i++) node[i] = place[i] = i;
   if (graph->offsets[n] > 0)
-    status = METIS_NodeND(&n, graph->offsets, graph->neighbours, NULL, options, node, place); /* it wants an edge */
+    status = METIS_NodeND(&n, graph->offsets, graph->neighbours, NULL, options, node,
+                          place); /* METIS wants at least one edge */
   PetscCheck(status == METIS_OK, PETSC_COMM_SELF, PETSC_ERR_LIB, "METIS failed with status %d", status);
   for (idx_t k = 0; k < n; k++) {
     first[node[k]] = n_rows;
@@ -177,24 +179,23 @@ static PetscErrorCode Dissect(const Graph *graph, PetscInt **position)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*
-  OrderingFind - in which order to eliminate the rows of a sparse matrix: nested dissection of the graph of its nodes,
-whose rows stay together
+/*@
+  OrderingFind - finds the order in which to eliminate the rows of a sparse matrix, by nested dissection of its nodes.
 
   Collective
 
   Input Parameter:
-. A - AIJ, of symmetric pattern; a node's rows stand next to each other and have the same columns
+. A - AIJ, of symmetric pattern; the rows of a node follow each other and have the same columns
 
   Output Parameter:
-. position - of each global row, from 0, on the first rank; NULL on the others. The caller frees it.
+. position - place of each row of all ranks, from 0; on the first rank, NULL elsewhere. The caller frees it.
 
-  Note:
-  The graph has a third of the matrix's rows and a ninth of its entries. The order depends on the numbering, hence on
-the number of ranks.
+  Notes:
+  The rows of a node stay together. The graph of the nodes has a third of the matrix's rows and a ninth of its entries.
+  The order depends on the numbering of rows, and so on the number of ranks.
 
   Source: George, SIAM J. Numer. Anal. 10, 1973; Karypis and Kumar, SIAM J. Sci. Comput. 20, 1998 (METIS).
-*/
+@*/
 PetscErrorCode OrderingFind(Mat A, PetscInt **position)
 {
   Nodes nodes;

@@ -1,14 +1,15 @@
+/* Updates of an inverse by the formula of Sherman, Morrison and Woodbury. */
 #include "rankupdate.h"
 #include "linear/directsolver.h"
 
 struct _n_RankUpdate {
   MPI_Comm     comm;
-  PetscInt     m, n;      /* rows of this rank, columns */
-  PetscReal   *s;         /* n */
-  PetscInt    *ptr, *row; /* columns of N: few entries differ from zero */
-  PetscScalar *value, *Z; /* of these; Z = A^-1 N, n columns of m */
+  PetscInt     m, n;      /* rows of this rank, columns of N */
+  PetscReal   *s;         /* s[n] */
+  PetscInt    *ptr, *row; /* columns of N by their entries, as few differ from zero; row: local */
+  PetscScalar *value, *Z; /* values of these entries; Z = A^-1 N, n columns of m rows */
   PetscBool    regular;
-  Mat          core; /* diag(1/s) + N^T Z, factored; on each rank */
+  Mat          core; /* diag(1/s) + N^T Z, factored; all of it on each rank */
   Vec          y, share;
 };
 
@@ -26,7 +27,7 @@ static PetscErrorCode TakeColumns(RankUpdate update, Mat N, const PetscReal *s)
   PetscCall(PetscArraycpy(&update->s[n], s, more));
   PetscCall(MatDenseGetArrayRead(N, &from));
   for (PetscInt i = 0; i < more * m; i++) room += from[i] != 0;
-  PetscCall(PetscRealloc((room + 1) * sizeof(PetscInt), &update->row)); /* a rank may have none */
+  PetscCall(PetscRealloc((room + 1) * sizeof(PetscInt), &update->row)); /* a rank may have no entry */
   PetscCall(PetscRealloc((room + 1) * sizeof(PetscScalar), &update->value));
   for (PetscInt k = 0; k < more; k++) {
     update->ptr[n + k] = entries;
@@ -42,7 +43,7 @@ static PetscErrorCode TakeColumns(RankUpdate update, Mat N, const PetscReal *s)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The last columns of Z: one solve for all, which takes a fifth of the time of as many. */
+/* Finds the last columns of Z. One solve for all of them takes a fifth of the time of one solve for each. */
 static PetscErrorCode SolveColumns(RankUpdate update, PC factored, Mat N)
 {
   Mat                Z;
@@ -61,7 +62,7 @@ static PetscErrorCode SolveColumns(RankUpdate update, PC factored, Mat N)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* to[n] = N^T from, of this rank's rows */
+/* to[n] = N^T from, with this rank's rows only */
 static void ProjectOnUpdates(RankUpdate update, const PetscScalar *from, PetscScalar *to)
 {
   for (PetscInt j = 0; j < update->n; j++) {
@@ -87,16 +88,32 @@ static PetscErrorCode FactorCore(RankUpdate update)
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, core, (PetscMPIInt)(n * n), MPIU_SCALAR, MPIU_SUM, update->comm));
   for (PetscInt k = 0; k < n; k++) core[k * (n + 1)] += 1 / update->s[k];
   PetscCall(MatDenseRestoreArray(update->core, &core));
-  PetscCall(PetscPushErrorHandler(PetscReturnErrorHandler, NULL)); /* a pivot of exactly zero is an error to PETSc */
+  PetscCall(
+    PetscPushErrorHandler(PetscReturnErrorHandler, NULL)); /* PETSc takes a pivot of exactly zero for an error */
   code = MatLUFactor(update->core, NULL, NULL, NULL);
   PetscCall(PetscPopErrorHandler());
   update->regular = code ? PETSC_FALSE : PETSC_TRUE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* RankUpdateAdd - Collective. A column and its like with -s cancel each other.
+/*@
+  RankUpdateAdd - adds columns to an update, or makes the first update.
 
-   Source: Golub, Van Loan, Matrix Computations, sec. 2.1.4 (Sherman, Morrison, Woodbury). */
+  Collective
+
+  Input Parameters:
++ factored - preconditioner with the factor of A, as of DirectSolverColumns()
+. N        - new columns, dense
+- s        - s[columns of N]: their factors, the same on all ranks
+
+  Input and Output Parameter:
+. update - NULL inside: it is created; destroy it with RankUpdateDestroy()
+
+  Notes:
+  A column with s and the same column with -s cancel each other.
+
+  Source: Golub, Van Loan, Matrix Computations, sec. 2.1.4 (Sherman, Morrison, Woodbury).
+@*/
 PetscErrorCode RankUpdateAdd(RankUpdate *update, PC factored, Mat N, const PetscReal *s)
 {
   PetscFunctionBeginUser;
@@ -111,7 +128,14 @@ PetscErrorCode RankUpdateAdd(RankUpdate *update, PC factored, Mat N, const Petsc
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* RankUpdateDestroy - Not collective. */
+/*@
+  RankUpdateDestroy - frees an update.
+
+  Not collective
+
+  Input Parameter:
+. update - may be NULL inside
+@*/
 PetscErrorCode RankUpdateDestroy(RankUpdate *update)
 {
   PetscFunctionBeginUser;
@@ -128,7 +152,17 @@ PetscErrorCode RankUpdateDestroy(RankUpdate *update)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* RankUpdateApply - Collective. */
+/*@
+  RankUpdateApply - turns a solution with A into one with A + N diag(s) N^T.
+
+  Collective
+
+  Input Parameter:
+. update - the update
+
+  Input and Output Parameter:
+. x - A^-1 b becomes (A + N diag(s) N^T)^-1 b; it stays where that sum is singular
+@*/
 PetscErrorCode RankUpdateApply(RankUpdate update, Vec x)
 {
   const PetscScalar *share;

@@ -1,34 +1,36 @@
+/* Solves with an older factor by GMRES, with rotations and updates of low rank. */
 #include "linear/reusedfactor.h"
 #include "linear/directsolver.h"
 #include "rankupdate.h"
 
-/* A factor is kept while at most so many contact terms have come, gone or changed their stiffness since it was made.
-   Each is a change of rank one, for which its update takes a fifth of a solve. */
+/* Largest number of contact terms that may have opened, closed or changed their stiffness since the factor was made.
+   Each is a change of rank one; its update takes a fifth of the time of a solve. */
 #define REUSED_FACTOR_CHANGES 24
-/* A new factor costs as much as 8 (plane problems of some thousand unknowns) to 20 (blocks of 100,000) solves with one:
- * more iterations than these are given up. */
+/* Most iterations of a solve with an older factor. A new factor costs as much as 8 (plane problems of some thousand
+   unknowns) to 20 (blocks of 100,000) solves with one. */
 #define REUSED_FACTOR_ITERATIONS 8
-/* The residual asked for: this part of the right-hand side, which Newton's method does not notice as it contracts less
-   in an iteration that is not the last; with 3e-5 some runs take one more. A factor that leaves out pressures that turn
-   with the surface of a pipe between plates leaves 2e-3, an iteration with it 1e-5. */
+/* Residual that is asked for, in parts of the right-hand side. Newton's method does not notice a residual of this size,
+   as it contracts less in an iteration that is not the last; with 3e-5 some runs take one iteration more. A factor that
+   leaves out pressures that turn with the surface of a pipe between plates leaves 2e-3; an iteration with it leaves
+   1e-5. */
 #define REUSED_FACTOR_TOLERANCE 1e-5
-/* But not below this part of what is enough. */
+/* Least residual that is asked for, in parts of the residual of ReusedFactorSetEnough(). */
 #define REUSED_FACTOR_SHARE 0.1
 
-struct _n_KeptFactor {
+struct _n_ReusedFactor {
   KSP        ksp, gmres;
-  Corotation turn;    /* of the bodies since the factor was made; NULL: none */
-  Vec        turned;  /* forces turned back */
-  RankUpdate update;  /* of the factor to the present contact terms, turned back; NULL: none */
-  PetscBool  exists;  /* a factor of this step */
-  PetscBool  serves;  /* it is of an older operator than the present one */
-  PetscBool  stale;   /* and that one had another pattern */
-  PetscInt   changes; /* of contact terms since it was made */
+  Corotation turn;    /* rotations since the factor was made; NULL: none */
+  Vec        turned;  /* right-hand side, rotated back */
+  RankUpdate update;  /* from the factor to the present contact terms, rotated back; NULL: none */
+  PetscBool  exists;  /* there is a factor of this step */
+  PetscBool  serves;  /* the factor is that of an older operator */
+  PetscBool  stale;   /* that operator had another pattern */
+  PetscInt   changes; /* number of changes of contact terms since the factor was made */
   PetscReal  enough, target;
   KeptCounts counts;
 };
 
-/* Ends GMRES; its own test would take the first residual for the right-hand side. */
+/* Ends GMRES. GMRES's own test would compare with the first residual instead of the right-hand side. */
 static PetscErrorCode Converged(KSP gmres, PetscInt it, PetscReal norm, KSPConvergedReason *reason, void *context)
 {
   const ReusedFactor kept = context;
@@ -45,7 +47,8 @@ static PetscErrorCode Converged(KSP gmres, PetscInt it, PetscReal norm, KSPConve
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The factor and its update, for forces and displacements turned back to where it was made. */
+/* Applies the factor and its update to a right-hand side that is rotated back to the state of the factor; rotates the
+   result forward. */
 static PetscErrorCode Precondition(PC shell, Vec b, Vec x)
 {
   ReusedFactor kept;
@@ -65,7 +68,17 @@ static PetscErrorCode Precondition(PC shell, Vec b, Vec x)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ReusedFactorCreate - Collective. The KSP is borrowed; destroy what is kept after it. */
+/*@
+  ReusedFactorCreate - creates the reuse of a KSP's factor.
+
+  Collective
+
+  Input Parameter:
+. ksp - factors (KSPPREONLY); borrowed. If options have made it another solver it is left alone.
+
+  Output Parameter:
+. out - destroy it with ReusedFactorDestroy(), after the KSP
+@*/
 PetscErrorCode ReusedFactorCreate(KSP ksp, ReusedFactor *out)
 {
   ReusedFactor kept;
@@ -75,8 +88,8 @@ PetscErrorCode ReusedFactorCreate(KSP ksp, ReusedFactor *out)
   PetscCall(PetscNew(&kept));
   kept->ksp = ksp;
   PetscCall(KSPCreate(PetscObjectComm((PetscObject)ksp), &kept->gmres));
-  PetscCall(KSPSetType(kept->gmres,
-                       KSPFGMRES)); /* keeps what the factor has made of its directions: one solve less than GMRES */
+  PetscCall(
+    KSPSetType(kept->gmres, KSPFGMRES)); /* FGMRES keeps the preconditioned directions: one solve less than GMRES */
   PetscCall(KSPGMRESSetRestart(kept->gmres, REUSED_FACTOR_ITERATIONS));
   PetscCall(KSPSetTolerances(kept->gmres, PETSC_DEFAULT, PETSC_DEFAULT, PETSC_DEFAULT, REUSED_FACTOR_ITERATIONS));
   PetscCall(KSPSetConvergenceTest(kept->gmres, Converged, kept, NULL));
@@ -88,7 +101,14 @@ PetscErrorCode ReusedFactorCreate(KSP ksp, ReusedFactor *out)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ReusedFactorDestroy - Collective. */
+/*@
+  ReusedFactorDestroy - frees the reuse of a factor.
+
+  Collective
+
+  Input Parameter:
+. kept - may be NULL inside
+@*/
 PetscErrorCode ReusedFactorDestroy(ReusedFactor *kept)
 {
   PetscFunctionBeginUser;
@@ -100,7 +120,15 @@ PetscErrorCode ReusedFactorDestroy(ReusedFactor *kept)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ReusedFactorSetCorotation - Not collective. */
+/*@
+  ReusedFactorSetCorotation - tells that the operators are tangents of bodies that rotate.
+
+  Not collective
+
+  Input Parameters:
++ kept - the reuse of a factor
+- turn - the rotations; borrowed. CorotationMove() must give them each new state before ReusedFactorNext().
+@*/
 PetscErrorCode ReusedFactorSetCorotation(ReusedFactor kept, Corotation turn)
 {
   PetscFunctionBeginUser;
@@ -108,16 +136,31 @@ PetscErrorCode ReusedFactorSetCorotation(ReusedFactor kept, Corotation turn)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ReusedFactorRenew - Not collective. */
+/*@
+  ReusedFactorRenew - has the next operator factored, whatever has changed.
+
+  Not collective
+
+  Input Parameter:
+. kept - the reuse of a factor
+@*/
 PetscErrorCode ReusedFactorRenew(ReusedFactor kept)
 {
   PetscFunctionBeginUser;
   kept->exists = PETSC_FALSE;
-  kept->enough = 0; /* what the last step was content with */
+  kept->enough = 0; /* this was for the last step */
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ReusedFactorSetEnough - Logically collective. */
+/*@
+  ReusedFactorSetEnough - sets the residual that is enough for the caller.
+
+  Logically collective
+
+  Input Parameters:
++ kept     - the reuse of a factor
+- residual - 2-norm (a force), such as the one that ends Newton's method; solves may leave a small part of it
+@*/
 PetscErrorCode ReusedFactorSetEnough(ReusedFactor kept, PetscReal residual)
 {
   PetscFunctionBeginUser;
@@ -125,7 +168,7 @@ PetscErrorCode ReusedFactorSetEnough(ReusedFactor kept, PetscReal residual)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The factor is, or will be, the present operator's. */
+/* Notes that the factor is, or will be, that of the present operator. */
 static PetscErrorCode ReusedFactorBegin(ReusedFactor kept)
 {
   PetscFunctionBeginUser;
@@ -139,10 +182,24 @@ static PetscErrorCode ReusedFactorBegin(ReusedFactor kept)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ReusedFactorNext - decides whether the factor at hand serves the next operator.
+/*@
+  ReusedFactorNext - decides whether the present factor serves the next operator.
 
-   Collective. changes: the same on all ranks, since the operator before. A pattern that is new makes the solver forget
-   its symbolic factorisation, once there is a new factor to be made. */
+  Collective
+
+  Input Parameters:
++ kept    - the reuse of a factor
+. changes - contact terms that opened, closed or changed their stiffness since the last operator; the same on all ranks
+- pattern - the operator has a new pattern
+
+  Output Parameter:
+. serves - the factor serves, and the KSP makes no new one. If there are changes, ReusedFactorUpdate() must follow.
+
+  Notes:
+  Call it before each solve with a new operator.
+
+  With a new pattern the solver forgets its symbolic factorisation when the next factor is made.
+@*/
 PetscErrorCode ReusedFactorNext(ReusedFactor kept, PetscInt changes, PetscBool pattern, PetscBool *serves)
 {
   PetscBool direct;
@@ -160,8 +217,16 @@ PetscErrorCode ReusedFactorNext(ReusedFactor kept, PetscInt changes, PetscBool p
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ReusedFactorUpdate - Collective. N, which is turned back to where the factor was made, and s as of RankUpdateAdd().
- */
+/*@
+  ReusedFactorUpdate - tells the older factor what has changed of the contact terms.
+
+  Collective
+
+  Input Parameters:
++ kept - the reuse of a factor, after ReusedFactorNext() has found that the factor serves
+. N    - the changes are N diag(s) N^T; dense. It is overwritten with its columns rotated back to the factor's state.
+- s    - as of RankUpdateAdd()
+@*/
 PetscErrorCode ReusedFactorUpdate(ReusedFactor kept, Mat N, const PetscReal *s)
 {
   PetscInt n;
@@ -180,7 +245,7 @@ PetscErrorCode ReusedFactorUpdate(ReusedFactor kept, Mat N, const PetscReal *s)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* A new factor after all. */
+/* Makes a new factor after all. */
 static PetscErrorCode FactorAnew(ReusedFactor kept, PC pc, PetscBool *failed)
 {
   Mat            A, P;
@@ -188,7 +253,7 @@ static PetscErrorCode FactorAnew(ReusedFactor kept, PC pc, PetscBool *failed)
 
   PetscFunctionBeginUser;
   PetscCall(PCGetOperators(pc, &A, &P));
-  PetscCall(PetscObjectReference((PetscObject)A)); /* PCReset() lets go of them */
+  PetscCall(PetscObjectReference((PetscObject)A)); /* PCReset() releases the operators */
   PetscCall(PetscObjectReference((PetscObject)P));
   if (kept->stale) PetscCall(PCReset(pc));
   PetscCall(PCSetOperators(pc, A, P));
@@ -203,7 +268,20 @@ static PetscErrorCode FactorAnew(ReusedFactor kept, PC pc, PetscBool *failed)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ReusedFactorOwn - Collective. */
+/*@
+  ReusedFactorOwn - makes the factor that of the present operator, where it is an older one.
+
+  Collective
+
+  Input Parameter:
+. kept - the reuse of a factor, after ReusedFactorSolve()
+
+  Output Parameter:
+. failed - a factor had to be made and could not be
+
+  Note:
+  A factor with a border still leaves out a small part of the operator.
+@*/
 PetscErrorCode ReusedFactorOwn(ReusedFactor kept, PetscBool *failed)
 {
   PC pc;
@@ -216,8 +294,8 @@ PetscErrorCode ReusedFactorOwn(ReusedFactor kept, PetscBool *failed)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* r = b - A x and its norm. What the factor at hand makes of b, before it is turned, may be further from the solution
- * than nothing is: x = 0 then. */
+/* Computes r = b - A x and its norm. What the factor finds for b without rotations may be further from the solution
+   than x = 0; x is 0 then. */
 static PetscErrorCode Start(Mat A, Vec b, PetscReal right, Vec x, Vec r, PetscReal *left)
 {
   PetscFunctionBeginUser;
@@ -231,7 +309,7 @@ static PetscErrorCode Start(Mat A, Vec b, PetscReal right, Vec x, Vec r, PetscRe
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* x + A^-1 r by GMRES, if the residual r, of norm *left, is too large; *reached: it is no more. */
+/* Adds A^-1 r to x by GMRES if the residual r of norm *left is too large. *reached: it no longer is. */
 static PetscErrorCode Iterate(ReusedFactor kept, Mat A, Vec r, Vec x, PetscReal *left, PetscBool *reached)
 {
   KSPConvergedReason reason;
@@ -254,7 +332,8 @@ static PetscErrorCode Iterate(ReusedFactor kept, Mat A, Vec r, Vec x, PetscReal 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* x = A^-1 b with a new factor, a whole one where that at hand is A's own: what its border leaves out was not small. */
+/* Solves A x = b with a new factor. If the present factor is A's own already, the part that its border leaves out was
+   not small; the new factor then has no border. */
 static PetscErrorCode SolveAnew(ReusedFactor kept, Vec b, Vec x, PetscBool *failed)
 {
   Factor factor;
@@ -265,14 +344,14 @@ static PetscErrorCode SolveAnew(ReusedFactor kept, Vec b, Vec x, PetscBool *fail
   if (!kept->serves) {
     PetscCall(DirectSolverFactor(kept->ksp, &factor));
     PetscCall(FactorSetBorder(factor, NULL));
-    kept->stale = PETSC_TRUE; /* or the preconditioner takes it for the factor that it has */
+    kept->stale = PETSC_TRUE; /* otherwise the preconditioner would keep the factor that it has */
   }
   PetscCall(FactorAnew(kept, pc, failed));
   if (!*failed) PetscCall(PCApply(pc, b, x));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Is the factor at hand of an older operator, or does it leave a part of its own out, as those with a border do? */
+/* Finds whether the factor is only near A: that of an older operator, or one with a border, which leaves a part out. */
 static PetscErrorCode IsRough(ReusedFactor kept, PetscBool *rough)
 {
   Factor factor;
@@ -283,7 +362,27 @@ static PetscErrorCode IsRough(ReusedFactor kept, PetscBool *rough)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ReusedFactorSolve - Collective. x: what the factor at hand makes of b. */
+/*@
+  ReusedFactorSolve - finishes the KSP's solve of A x = b, if its factor is only near A.
+
+  Collective
+
+  Input Parameters:
++ kept - the reuse of a factor
+. A    - the operator
+- b    - right-hand side
+
+  Input and Output Parameters:
++ x         - what the KSP's factor has found for b; then the solution
+- tolerance - relative residual that was asked for; unchanged where the factor alone has solved
+
+  Output Parameters:
++ norm   - 2-norm of the residual; negative: not known
+- failed - a factor had to be made and could not be
+
+  Note:
+  Iterations start from x. Where they do not converge a new factor is made.
+@*/
 PetscErrorCode ReusedFactorSolve(ReusedFactor kept, Mat A, Vec b, Vec x, PetscReal *tolerance, PetscReal *norm,
                                  PetscBool *failed)
 {
@@ -313,7 +412,17 @@ PetscErrorCode ReusedFactorSolve(ReusedFactor kept, Mat A, Vec b, Vec x, PetscRe
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ReusedFactorGetCounts - what was done so far. Not collective, the same on all ranks. */
+/*@
+  ReusedFactorGetCounts - gets what was done so far.
+
+  Not collective, the same on all ranks
+
+  Input Parameter:
+. kept - the reuse of a factor
+
+  Output Parameter:
+. counts - since ReusedFactorCreate()
+@*/
 void ReusedFactorGetCounts(ReusedFactor kept, KeptCounts *counts)
 {
   *counts = kept->counts;

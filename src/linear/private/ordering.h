@@ -1,7 +1,6 @@
-/* The order in which a sparse matrix is eliminated: nested dissection by METIS, of the graph of its nodes. */
+/* The order in which a sparse matrix is eliminated: nested dissection by METIS. METIS gets the graph of the matrix's
+   nodes, not that of its rows. Call OrderingFind() once for each new pattern. */
 #pragma once
 #include "base/petsccompat.h"
 
-/* position[global rows of A] on the first rank, from 0; NULL on the others. A: AIJ, of symmetric pattern. The caller
- * frees it. Collective. */
 PetscErrorCode OrderingFind(Mat A, PetscInt **position);
