@@ -1,15 +1,18 @@
+/* True residuals of linear solves, and refinement of solutions that leave too much. */
 #include "linear/linearcheck.h"
 #include "base/timing.h"
 
-/* A residual up to this many times the tolerance asked for is the solver's own business: Newton's method contracts all
- * the same. */
+/* Residual, in multiples of the tolerance asked for, up to which a solution is left as it is. Newton's method contracts
+   all the same. */
 #define LINEAR_SLACK 100
-/* A direct solve of a regular system leaves a relative residual of 1e-12 to 1e-7, stiff penalties included; one that is
-   still above this after refinement is that of a singular system. */
+/* Relative residual above which a matrix is taken for singular. A direct solve of a regular system leaves 1e-12 to
+   1e-7, stiff penalties included; a residual that is still above this limit after refinement is that of a singular
+   system. */
 #define LINEAR_SINGULAR 1e-3
-/* Refinement contracts the residual by the same factor in each step; after these steps one that helps has helped. */
+/* Most steps of refinement. Each contracts the residual by the same factor; after these steps a refinement that helps
+   has helped. */
 #define LINEAR_MAX_REFINE 8
-/* A refinement step that leaves more than this of the residual does not help. */
+/* Part of the residual that a refinement step may leave. A step that leaves more does not help. */
 #define LINEAR_HELPS 0.5
 
 struct _n_LinearCheck {
@@ -31,7 +34,7 @@ static PetscErrorCode SolveBegins(KSP ksp, Vec b, Vec x, void *context)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* r = b - A x and its norm */
+/* Computes r = b - A x and its norm. */
 static PetscErrorCode TrueResidual(Mat A, Vec b, Vec x, Vec r, PetscReal *norm)
 {
   PetscFunctionBeginUser;
@@ -41,7 +44,7 @@ static PetscErrorCode TrueResidual(Mat A, Vec b, Vec x, Vec r, PetscReal *norm)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* x += A^-1 r with the factor at hand, as long as that helps, until the residual is at most `enough`. */
+/* Adds A^-1 r to x with the present factor, until the residual is at most `enough` or a step no longer helps. */
 static PetscErrorCode Refine(KSP ksp, Mat A, Vec b, Vec x, Vec r, PetscReal enough, PetscReal *norm, PetscInt *steps)
 {
   PetscReal before = PETSC_MAX_REAL;
@@ -51,7 +54,8 @@ static PetscErrorCode Refine(KSP ksp, Mat A, Vec b, Vec x, Vec r, PetscReal enou
   PetscFunctionBeginUser;
   PetscCall(KSPGetPC(ksp, &pc));
   PetscCall(VecDuplicate(x, &d));
-  for (PetscInt i = 0; i < LINEAR_MAX_REFINE && *norm > enough && *norm <= LINEAR_HELPS * before; i++) {
+  for (PetscInt i = 0; i < LINEAR_MAX_REFINE; i++) {
+    if (!(*norm > enough) || !(*norm <= LINEAR_HELPS * before)) break; /* also if a norm is not a number */
     before = *norm;
     PetscCall(PCApply(pc, r, d));
     PetscCall(VecAXPY(x, 1, d));
@@ -65,7 +69,8 @@ static PetscErrorCode Refine(KSP ksp, Mat A, Vec b, Vec x, Vec r, PetscReal enou
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The relative residual that the solver was asked for: its own where it iterates. right: norm of the right-hand side */
+/* The relative residual that the solver was asked for. An iterative solver has its own tolerances. right: norm of the
+   right-hand side */
 static PetscErrorCode AskedFor(LinearCheck check, KSP ksp, PetscReal right, PetscReal *tolerance)
 {
   PetscReal least;
@@ -100,15 +105,14 @@ static PetscErrorCode CheckSolution(LinearCheck check, KSP ksp, Vec b, Vec x)
   if (norm > LINEAR_SLACK * tolerance * right)
     PetscCall(Refine(ksp, A, b, x, r, LINEAR_SLACK * tolerance * right, &norm, &steps));
   PetscCall(VecDestroy(&r));
-  check->lost =
-    norm <= PetscMax(LINEAR_SINGULAR, tolerance) * right ? PETSC_FALSE : PETSC_TRUE; /* so is not-a-number */
+  /* A norm that is not a number is lost, too. */
+  check->lost = norm <= PetscMax(LINEAR_SINGULAR, tolerance) * right ? PETSC_FALSE : PETSC_TRUE;
   check->counts.refined += steps > 0;
   check->counts.steps += steps;
   if (check->lost || right == 0) PetscFunctionReturn(PETSC_SUCCESS);
   check->counts.inaccurate += norm > LINEAR_SLACK * tolerance * right;
-  if (tolerance == own)
-    check->counts.worst =
-      PetscMax(check->counts.worst, norm / right); /* not of solves that ended where it is enough for Newton's method */
+  /* Solves that ended where it is enough for Newton's method do not count. */
+  if (tolerance == own) check->counts.worst = PetscMax(check->counts.worst, norm / right);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -126,12 +130,24 @@ static PetscErrorCode SolveEnds(KSP ksp, Vec b, Vec x, void *context)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* LinearCheckCreate - looks at every solution of a KSP, and times its solves (TIMING_SOLVE).
+/*@
+  LinearCheckCreate - creates a check of every solution of a KSP.
 
-   Collective. tolerance: relative residual that is asked for of a direct solver; an iterative one has its own. A
-   solution that misses it by more than LINEAR_SLACK is refined. Destroy the check after the KSP.
+  Collective
 
-   Source: Higham, Accuracy and Stability of Numerical Algorithms, chapter 12 (refinement in fixed precision). */
+  Input Parameters:
++ ksp       - is watched from now on
+. tolerance - relative residual that is asked for of a direct solver; an iterative one has its own
+- kept      - finishes the KSP's solves; borrowed. NULL: nothing does.
+
+  Output Parameter:
+. check - destroy it with LinearCheckDestroy(), after the KSP
+
+  Notes:
+  A solution that misses the tolerance by more than LINEAR_SLACK is refined. The solves are timed (TIMING_SOLVE).
+
+  Source: Higham, Accuracy and Stability of Numerical Algorithms, chapter 12 (refinement in fixed precision).
+@*/
 PetscErrorCode LinearCheckCreate(KSP ksp, PetscReal tolerance, ReusedFactor kept, LinearCheck *check)
 {
   PetscFunctionBeginUser;
@@ -143,7 +159,14 @@ PetscErrorCode LinearCheckCreate(KSP ksp, PetscReal tolerance, ReusedFactor kept
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* LinearCheckDestroy - Not collective. */
+/*@
+  LinearCheckDestroy - frees the check.
+
+  Not collective
+
+  Input Parameter:
+. check - may be NULL inside
+@*/
 PetscErrorCode LinearCheckDestroy(LinearCheck *check)
 {
   PetscFunctionBeginUser;
@@ -151,14 +174,34 @@ PetscErrorCode LinearCheckDestroy(LinearCheck *check)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* LinearCheckLost - whether the last solve failed, or left a residual that only a singular matrix leaves. Not
- * collective, the same on all ranks. */
+/*@
+  LinearCheckLost - tells whether the last solve has failed.
+
+  Not collective, the same on all ranks
+
+  Input Parameter:
+. check - the check
+
+  Note:
+  A solve fails if the factorisation does, if the iterations do, or if the residual is one that only a singular matrix
+  leaves.
+@*/
 PetscBool LinearCheckLost(LinearCheck check)
 {
   return check->lost;
 }
 
-/* LinearCheckGetCounts - what was done so far, before a restart too. Not collective, the same on all ranks. */
+/*@
+  LinearCheckGetCounts - gets what was done in the whole run, before a restart too.
+
+  Not collective, the same on all ranks
+
+  Input Parameter:
+. check - the check
+
+  Output Parameter:
+. counts - of solves, refinements and factors
+@*/
 void LinearCheckGetCounts(LinearCheck check, LinearCounts *counts)
 {
   *counts = check->counts;
@@ -170,13 +213,13 @@ void LinearCheckGetCounts(LinearCheck check, LinearCounts *counts)
 }
 
 /*@
-  LinearCheckArchive - saves or takes over the counts.
+  LinearCheckArchive - saves the counts of the whole run, or loads them.
 
   Collective
 
   Input Parameters:
-+ check   - whose counts go on from the loaded ones
-- archive - the archive
++ check   - its counts go on from the loaded ones
+- archive - saves or loads
 @*/
 PetscErrorCode LinearCheckArchive(LinearCheck check, Archive archive)
 {

@@ -1,24 +1,27 @@
+/* The choice between the direct and the iterative solver, and its tolerances. */
 #include "linear/linearsolver.h"
 #include "linear/directsolver.h"
 #include "linear/reusedfactor.h"
 #include "multigrid.h"
 
-/* solver.type auto: iterative above this many unknowns in space. Two thick rings of first-order bricks: equal CPU time
-   at 16,000, at 120,000 a fifth of it and a third of the memory; thin walls of second-order bricks take three times the
-   iterations. */
+/* Number of unknowns in space above which solver.type auto iterates. Two thick rings of first-order bricks take equal
+   CPU time at 16,000 unknowns; at 120,000 iterations take a fifth of it and a third of the memory. Thin walls of
+   second-order bricks take three times the iterations. */
 #define LINEAR_DIRECT_DOFS 60000
-/* Unknowns from which on the factor of a tangent may serve later ones. With fewer a factorisation is worth few solves:
-   60 Newton iterations of cup_flattening (956) take no less time, 98 of pipe_pinch with enhanced elements (2065) the
-   same; 90 of pipe_pinch with second-order ones (3406) a tenth less. */
+/* Number of unknowns from which on the factor of a tangent may serve later ones. With fewer a factorisation is worth
+   few solves. Measured: 60 Newton iterations on a cup that is flattened (956 unknowns) take no less time, 98 on a pipe
+   between plates with enhanced elements (2065) take the same, 90 on that pipe with second-order elements (3406) a tenth
+   less. */
 #define LINEAR_KEPT_DOFS 3000
-/* The residual asked for: this part of the right-hand side, ... */
+/* Residual that is asked for of an iterative solver, in parts of the right-hand side. */
 #define LINEAR_TOLERANCE 1e-4
-/* ... and this part of that where the solution is a step's prediction: the contact that it finds open or closed by
-   mistake costs a Newton iteration more, and rings and spheres take up to a tenth fewer Krylov iterations in all. */
+/* Residual that is asked for where the solution is the prediction of a load step, in parts of LINEAR_TOLERANCE. Contact
+   that the prediction finds open or closed by mistake costs a Newton iteration more. With this value rings and spheres
+   take up to a tenth fewer Krylov iterations in all. */
 #define LINEAR_PREDICTION 0.01
-/* ... but not below this part of what ends Newton's method. */
+/* Least residual that is asked for, in parts of the residual that ends Newton's method. */
 #define LINEAR_SHARE 0.1
-/* Most iterations, and directions that are kept */
+/* Most Krylov iterations of a solve, and directions that GMRES keeps. */
 #define LINEAR_ITERATIONS 1000
 #define LINEAR_RESTART    100
 
@@ -26,14 +29,14 @@ struct _n_LinearSolver {
   KSP          ksp;
   Multigrid    multigrid; /* NULL: direct */
   ReusedFactor kept;      /* NULL: iterative, or each tangent is factored */
-  Corotation   turn;      /* of the bodies, for what is kept; NULL: they do not turn */
+  Corotation   turn;      /* rotations of the bodies for kept; NULL: none */
   PetscBool    symmetric, borders;
-  PetscReal    usual; /* tolerance, while a prediction is made */
+  PetscReal    usual; /* tolerance outside of predictions */
 };
 
-/* GMRES, as a tangent may be indefinite far from equilibrium; preconditioned from the right, so that its residual is
-   the true one. The flexible kind keeps the preconditioned directions, so that the solution needs no iteration more.
-   The preconditioner is not symmetric, whatever the tangent is. */
+/* Sets an iterative solver up. GMRES, as a tangent may be indefinite far from equilibrium, and as the preconditioner is
+   not symmetric, whatever the tangent is. The preconditioner is on the right, so that the residual is the true one. The
+   flexible kind keeps the preconditioned directions, so that the solution needs no iteration more. */
 static PetscErrorCode SetIterative(LinearSolver solver, Mesh mesh, PetscBool axisymmetric, PetscBool symmetric)
 {
   PetscFunctionBeginUser;
@@ -45,10 +48,25 @@ static PetscErrorCode SetIterative(LinearSolver solver, Mesh mesh, PetscBool axi
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* LinearSolverCreate - sets a KSP up as solver.type of the scene says.
+/*@
+  LinearSolverCreate - sets a KSP up as solver.type of the scene says.
 
-   Collective. mesh: borrowed, its constraints set. symmetric: every operator will be. Destroy the solver after the KSP.
-   Options Database Keys: those of the KSP; -bodies_..., -interface_... of the iterative solver (MultigridCreate()). */
+  Collective
+
+  Input Parameters:
++ ksp       - solver of the tangent systems
+. mesh      - borrowed, its constraints set
+. scene     - solver type, geometry and kinematics
+- symmetric - every operator will be symmetric
+
+  Output Parameter:
+. solver - destroy it with LinearSolverDestroy(), after the KSP
+
+  Options Database Keys:
++ -ksp_...       - those of the KSP, read by the caller later
+. -bodies_...    - multigrid of the iterative solver (MultigridCreate())
+- -interface_... - direct solve of the iterative solver
+@*/
 PetscErrorCode LinearSolverCreate(KSP ksp, Mesh mesh, Scene scene, PetscBool symmetric, LinearSolver *solver)
 {
   SolverType      type         = scene->solver.type;
@@ -70,7 +88,14 @@ PetscErrorCode LinearSolverCreate(KSP ksp, Mesh mesh, Scene scene, PetscBool sym
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* LinearSolverDestroy - Collective. The KSP, destroyed before, is the caller's. */
+/*@
+  LinearSolverDestroy - frees the linear solver.
+
+  Collective
+
+  Input Parameter:
+. solver - may be NULL inside; its KSP, which is the caller's, is destroyed before
+@*/
 PetscErrorCode LinearSolverDestroy(LinearSolver *solver)
 {
   PetscFunctionBeginUser;
@@ -82,7 +107,19 @@ PetscErrorCode LinearSolverDestroy(LinearSolver *solver)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* LinearSolverOrder - a direct solver's ordering for operators that are much like K. Collective; once. */
+/*@
+  LinearSolverOrder - chooses a direct solver's ordering for operators with a pattern much like that of K.
+
+  Collective; once
+
+  Input Parameters:
++ solver  - the linear solver
+. K       - elastic part of the first operator, which a restarted run has too
+- couples - contact couples many unknowns with each other
+
+  Note:
+  Call it where many operators are to come. An iterative solver has no ordering and ignores it.
+@*/
 PetscErrorCode LinearSolverOrder(LinearSolver solver, Mat K, PetscBool couples)
 {
   PCFailedReason reason;
@@ -91,7 +128,8 @@ PetscErrorCode LinearSolverOrder(LinearSolver solver, Mat K, PetscBool couples)
 
   PetscFunctionBeginUser;
   if (!solver->multigrid) PetscCall(DirectSolverOrder(solver->ksp, K, &thin));
-  PetscCall(DirectSolverServes(solver->ksp, &direct)); /* options may iterate with what factors */
+  PetscCall(
+    DirectSolverServes(solver->ksp, &direct)); /* options may have made the factor a preconditioner of iterations */
   if (!thin || !couples || !direct || !solver->symmetric || !solver->kept) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(DirectSolverFactor(solver->ksp, &factor));
   PetscCall(FactorPrepareBorder(factor, K, &reason));
@@ -99,13 +137,31 @@ PetscErrorCode LinearSolverOrder(LinearSolver solver, Mat K, PetscBool couples)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* LinearSolverBorders - Not collective. */
+/*@
+  LinearSolverBorders - tells whether LinearSolverSetBorder() must be called for each operator.
+
+  Not collective, the same on all ranks
+
+  Input Parameter:
+. solver - the linear solver
+@*/
 PetscBool LinearSolverBorders(LinearSolver solver)
 {
   return solver->borders;
 }
 
-/* LinearSolverSetBorder - Collective. What contact adds but for that sum, small beside it, is left to iterations. */
+/*@
+  LinearSolverSetBorder - sets what contact adds to the next operator as a sum of v v^T.
+
+  Collective
+
+  Input Parameters:
++ solver - the linear solver
+- border - the vectors v; borrowed until the next call
+
+  Note:
+  Call it before LinearSolverNext(). What contact adds besides that sum is small and is left to iterations.
+@*/
 PetscErrorCode LinearSolverSetBorder(LinearSolver solver, const Border *border)
 {
   Factor factor;
@@ -116,10 +172,21 @@ PetscErrorCode LinearSolverSetBorder(LinearSolver solver, const Border *border)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* LinearSolverNext - what is known of the next operator K + C before it is solved with.
+/*@
+  LinearSolverNext - tells what is known of the next operator K + C before it is solved with.
 
-   Collective. u[n_nodes*dim]: where it is the tangent (length); C: its contact part, NULL: none; pattern: what is
-   factored has a new one; changes, *older: see ReusedFactorNext(). */
+  Collective
+
+  Input Parameters:
++ solver  - the linear solver
+. u       - u[n_nodes*dim]: local displacements at which the operator is the tangent (length)
+. C       - contact part of the operator; NULL: none
+. pattern - the operator has a new pattern
+- changes - contact terms that opened, closed or changed their stiffness since the last operator
+
+  Output Parameter:
+. older - the factor of an older operator serves, and ReusedFactorUpdate() must tell it the changes
+@*/
 PetscErrorCode LinearSolverNext(LinearSolver solver, const PetscReal *u, Mat C, PetscBool pattern, PetscInt changes,
                                 PetscBool *older)
 {
@@ -132,21 +199,37 @@ PetscErrorCode LinearSolverNext(LinearSolver solver, const PetscReal *u, Mat C, 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* LinearSolverRenew - nothing made for operators of the past serves the next one, so that a step repeats itself to the
- * last bit. Not collective. */
+/*@
+  LinearSolverRenew - forgets everything that was made for past operators.
+
+  Not collective
+
+  Input Parameter:
+. solver - the linear solver
+
+  Note:
+  What follows does not depend on what was solved before, so that a step repeats itself to the last bit.
+@*/
 PetscErrorCode LinearSolverRenew(LinearSolver solver)
 {
   PetscFunctionBeginUser;
   if (solver->multigrid) PetscCall(MultigridRenew(solver->multigrid));
   if (solver->multigrid)
-    PetscCall(KSPSetTolerances(solver->ksp, PETSC_DEFAULT, 0, PETSC_DEFAULT,
-                               PETSC_DEFAULT)); /* what the last solve was content with */
+    PetscCall(
+      KSPSetTolerances(solver->ksp, PETSC_DEFAULT, 0, PETSC_DEFAULT, PETSC_DEFAULT)); /* this was for the last step */
   if (solver->kept) PetscCall(ReusedFactorRenew(solver->kept));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* LinearSolverSetEnough - residual: 2-norm (a force) that ends the nonlinear solver's iterations. Logically collective.
- */
+/*@
+  LinearSolverSetEnough - sets the residual with which the nonlinear solver will be content.
+
+  Logically collective
+
+  Input Parameters:
++ solver   - the linear solver
+- residual - 2-norm (a force) that ends the nonlinear solver's iterations; much smaller ones are not worth iterations
+@*/
 PetscErrorCode LinearSolverSetEnough(LinearSolver solver, PetscReal residual)
 {
   PetscFunctionBeginUser;
@@ -156,11 +239,20 @@ PetscErrorCode LinearSolverSetEnough(LinearSolver solver, PetscReal residual)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* LinearSolverSetStart - a prediction leaves a residual however precisely it is solved for, so a kept factor's solve
-   may leave a small part of that: on a pipe between plates half of the iterations that finish solves go, and none of
-   Newton's comes. Not for iterative solvers: LINEAR_PREDICTION.
+/*@
+  LinearSolverSetStart - tells the residual that the last step's prediction has left.
 
-   Logically collective. residual: 2-norm (a force) that Newton started from in the last step. */
+  Logically collective
+
+  Input Parameters:
++ solver   - the linear solver
+- residual - 2-norm (a force) that Newton's method started from in the last step; 0: unknown
+
+  Note:
+  A prediction leaves a residual however precisely it is solved for, so a solve with an older factor may leave a small
+  part of that. On a pipe between plates half of the iterations that finish solves disappear, and no Newton iteration is
+  added. Iterative solvers use LINEAR_PREDICTION instead.
+@*/
 PetscErrorCode LinearSolverSetStart(LinearSolver solver, PetscReal residual)
 {
   PetscFunctionBeginUser;
@@ -168,7 +260,17 @@ PetscErrorCode LinearSolverSetStart(LinearSolver solver, PetscReal residual)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* LinearSolverDirect - is the last operator factored? Not collective, the same on all ranks. */
+/*@
+  LinearSolverDirect - tells whether the last operator was factored, so that LinearSolverColumns() may be called.
+
+  Not collective, the same on all ranks
+
+  Input Parameter:
+. solver - the linear solver
+
+  Output Parameter:
+. direct - there is a factor
+@*/
 PetscErrorCode LinearSolverDirect(LinearSolver solver, PetscBool *direct)
 {
   PetscFunctionBeginUser;
@@ -176,10 +278,23 @@ PetscErrorCode LinearSolverDirect(LinearSolver solver, PetscBool *direct)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* LinearSolverColumns - X = A^-1 B for dense B and X, A the operator of the last solve, where that was a direct one.
+/*@
+  LinearSolverColumns - solves A X = B for dense B and X, with the operator A of the last solve.
 
-   Collective. *able: there is a factor, and it is A's; with a border but for what that leaves out, which columns that
-   settle contact may lack: the next iteration sees it. */
+  Collective
+
+  Input Parameters:
++ solver - the linear solver
+- B      - right-hand sides
+
+  Output Parameters:
++ X    - solutions
+- able - there is a factor of A; X is not set otherwise
+
+  Note:
+  A factor with a border leaves out a small part of A. Columns that predict contact may lack it, as the next iteration
+  takes it into account.
+@*/
 PetscErrorCode LinearSolverColumns(LinearSolver solver, Mat B, Mat X, PetscBool *able)
 {
   PetscBool failed = PETSC_FALSE;
@@ -195,8 +310,15 @@ PetscErrorCode LinearSolverColumns(LinearSolver solver, Mat B, Mat X, PetscBool 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* LinearSolverSetPrediction - whether the next solution is a prediction, which is asked for more precisely. Logically
- * collective; on, then off. */
+/*@
+  LinearSolverSetPrediction - tells whether the next solution is the prediction of a load step.
+
+  Logically collective; on before the solve, off after it
+
+  Input Parameters:
++ solver     - the linear solver
+- predicting - a prediction is solved for more precisely, as its guess of what is in contact should hold
+@*/
 PetscErrorCode LinearSolverSetPrediction(LinearSolver solver, PetscBool predicting)
 {
   PetscFunctionBeginUser;
@@ -207,8 +329,17 @@ PetscErrorCode LinearSolverSetPrediction(LinearSolver solver, PetscBool predicti
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* LinearSolverKept - the factor that may serve more than one operator; NULL: there is none. Not collective; borrowed.
- */
+/*@
+  LinearSolverKept - gets the factor that may serve more than one operator.
+
+  Not collective
+
+  Input Parameter:
+. solver - the linear solver
+
+  Note:
+  The result is borrowed. It is NULL where there is none.
+@*/
 ReusedFactor LinearSolverKept(LinearSolver solver)
 {
   return solver->kept;
