@@ -1,13 +1,15 @@
+/* Copies matrices into blocks of single precision. */
 #include "blockrows.h"
 #include "matrix/matrixrows.h"
 
-/* Where the blocks of the rows at hand are */
+/* Where the blocks of the present rows are. */
 typedef struct {
   PetscInt  count[BLOCKROWS_PARTS]; /* blocks so far */
-  PetscInt *last, *block;           /* of each other node: the place that saw it last, and as which block */
+  PetscInt *last, *block; /* of each other node: the place that has coupled to it last, and the number of that block */
 } Builder;
 
-/* The block of the node at a place with another one, made at first sight; values: as far as there is room for them */
+/* Finds the block that couples the node at a place with another node; a new one the first time. Values are written as
+   far as there is memory for them. */
 static PetscInt FindBlock(BlockRows rows, const SweepOrder order, Builder *builder, PetscInt place, PetscInt other,
                           int *part)
 {
@@ -20,7 +22,7 @@ static PetscInt FindBlock(BlockRows rows, const SweepOrder order, Builder *build
   return builder->block[other];
 }
 
-/* Adds the entries of a node's rows that one block of the matrix has. */
+/* Adds the entries that one block of the matrix has in a node's rows. */
 static void AddEntries(BlockRows rows, const SweepOrder order, Builder *builder, PetscInt place, const MatrixRows *from,
                        int block)
 {
@@ -39,7 +41,7 @@ static void AddEntries(BlockRows rows, const SweepOrder order, Builder *builder,
   }
 }
 
-/* Goes through all entries: counts blocks, or fills them in where there is room. */
+/* Goes through all entries. It counts blocks, or writes them where there is memory. */
 static PetscErrorCode AddAll(Mat mat, SweepOrder order, BlockRows rows, PetscInt count[BLOCKROWS_PARTS])
 {
   const PetscInt n       = order->n + order->n_ghosts;
@@ -54,7 +56,7 @@ static PetscErrorCode AddAll(Mat mat, SweepOrder order, BlockRows rows, PetscInt
     int part;
 
     for (int p = 0; p < BLOCKROWS_PARTS; p++) rows->part[p].first[place] = builder.count[p];
-    (void)FindBlock(rows, order, &builder, place, order->node[place], &part); /* itself comes first */
+    (void)FindBlock(rows, order, &builder, place, order->node[place], &part); /* the node itself comes first */
     for (int b = 0; b < MATRIX_BLOCKS; b++) AddEntries(rows, order, &builder, place, &from[b], b);
   }
   for (int p = 0; p < BLOCKROWS_PARTS; p++) rows->part[p].first[order->n] = count[p] = builder.count[p];
@@ -63,10 +65,21 @@ static PetscErrorCode AddAll(Mat mat, SweepOrder order, BlockRows rows, PetscInt
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* BlockRowsCreate - copies an assembled AIJ matrix; entries that it lacks within a block are zero.
+/*@
+  BlockRowsCreate - copies an assembled AIJ matrix.
 
-   Not collective. order: of its nodes; destroy the copy with BlockRowsDestroy(). Values beyond the range of single
-   precision become infinite. */
+  Not collective
+
+  Input Parameters:
++ mat   - blocks of up to BLOCKROWS_SIZE rows; entries that it lacks within a block are zero
+- order - order of its nodes
+
+  Output Parameter:
+. rows - the copy; destroy it with BlockRowsDestroy()
+
+  Note:
+  Values beyond the range of single precision become infinite.
+@*/
 PetscErrorCode BlockRowsCreate(Mat mat, SweepOrder order, BlockRows *rows)
 {
   const PetscInt size = order->size;
@@ -85,7 +98,14 @@ PetscErrorCode BlockRowsCreate(Mat mat, SweepOrder order, BlockRows *rows)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* BlockRowsDestroy - Not collective. */
+/*@
+  BlockRowsDestroy - frees the copy of a matrix.
+
+  Not collective
+
+  Input Parameter:
+. rows - may be NULL inside
+@*/
 PetscErrorCode BlockRowsDestroy(BlockRows *rows)
 {
   PetscFunctionBeginUser;

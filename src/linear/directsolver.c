@@ -1,26 +1,28 @@
+/* Factorisation by MUMPS as a shell preconditioner. */
 #include "linear/directsolver.h"
 #include "base/petsccompat.h"
 #include "matrix/sumoperator.h"
 
-/* Unknowns from which on orderings are compared: below, a factorisation is not what a run spends its time with. */
+/* Number of unknowns from which on orderings are compared. Below it a factorisation is not what a run spends its time
+   with. */
 #define DIRECT_COMPARED 3000
-/* Takes METIS's dissection unless another ordering needs less than this part of its operations: it cuts the work into
-   even parts, for ranks and for large fronts. */
+/* Part of METIS's operations that another ordering may need at most to be taken instead. METIS's dissection cuts the
+   work into even parts, for ranks and for large fronts, so it is preferred. */
 #define DIRECT_BETTER 0.9
 
-/* Where dissection of n unknowns takes more than this many n^2 operations they fill space (9 to 12 n^2 on rings and
-   spheres), and nothing does with fewer. On walls and in planes it goes with n^1.5 (1 to 2 n^2 at 15,000 and 60,000),
-   and others are looked at. Source: George, SIAM J. Numer. Anal. 10, 1973. */
+/* Operations of METIS's dissection, in parts of n^2 for n unknowns, above which bodies fill space. There it takes 9 to
+   12 n^2 on rings and spheres, and no ordering takes fewer. On walls and in planes operations grow with n^1.5 (1 to 2
+   n^2 at 15,000 and 60,000 unknowns), and other orderings are tried. Source: George, SIAM J. Numer. Anal. 10, 1973. */
 #define DIRECT_THICK 5
 
-/* What the factorisation is called, among preconditioners. */
+/* The name of the shell preconditioner, by which it is recognised. */
 #define DIRECT_NAME "mumps"
 
-/* Orderings that are compared with METIS's dissection: approximate minimum fill and degree take 0.67 to 0.8 of its
+/* Orderings that are compared with METIS's dissection. Approximate minimum fill and degree take 0.67 to 0.8 of its
    operations on thin walls of second-order bricks, and 1.5 times as many on thick blocks. */
 static const int DirectOthers[] = {FACTOR_MINIMUM_FILL, FACTOR_MINIMUM_DEGREE};
 
-/* Factors all of the operator: where it is a sum, P is but one term of it. */
+/* Factors the whole operator. Where it is a sum, P is but one term of it. */
 static PetscErrorCode MakeWhole(Factor factor, Mat A, Mat P, PCFailedReason *reason)
 {
   Mat whole;
@@ -32,7 +34,7 @@ static PetscErrorCode MakeWhole(Factor factor, Mat A, Mat P, PCFailedReason *rea
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Where a border makes up for what P lacks of A, and its factor fails, that of A is made. */
+/* Factors P with its border, where there is one: it makes up for what P lacks of A. Where that fails A is factored. */
 static PetscErrorCode DirectSolverSetUp(PC pc)
 {
   Factor         factor;
@@ -69,10 +71,19 @@ static PetscErrorCode DirectSolverDestroy(PC pc)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* DirectSolverSet - sets a KSP up to factor its operator.
+/*@
+  DirectSolverSet - sets a KSP up to factor its operator by MUMPS.
 
-   Collective. symmetric: every operator will be; MUMPS then factors L D L^T, which need not be positive definite.
-   Options Database Keys: those of the KSP, and MUMPS's own (-mat_mumps_icntl_...) for all direct solves. */
+  Collective
+
+  Input Parameters:
++ ksp       - the solver; options that are set on it later take precedence
+- symmetric - every operator will be symmetric; MUMPS then factors L D L^T, which need not be positive definite
+
+  Options Database Keys:
++ -mat_mumps_icntl_<number> <integer> - one of MUMPS's integer parameters, for all direct solves
+- -mat_mumps_cntl_<number> <real>     - one of MUMPS's real parameters, for all direct solves
+@*/
 PetscErrorCode DirectSolverSet(KSP ksp, PetscBool symmetric)
 {
   PC     pc;
@@ -106,7 +117,17 @@ static PetscErrorCode FactorOfPC(PC pc, Factor *factor)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* DirectSolverServes - does a KSP still factor and solve once, whatever options have said? Not collective. */
+/*@
+  DirectSolverServes - tells whether a KSP still factors its operator and solves once, whatever options have set.
+
+  Not collective
+
+  Input Parameter:
+. ksp - after DirectSolverSet() and KSPSetFromOptions()
+
+  Output Parameter:
+. serves - it does, by MUMPS or by another factorisation
+@*/
 PetscErrorCode DirectSolverServes(KSP ksp, PetscBool *serves)
 {
   PC     pc;
@@ -121,7 +142,17 @@ PetscErrorCode DirectSolverServes(KSP ksp, PetscBool *serves)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* DirectSolverFactor - Not collective; borrowed. */
+/*@
+  DirectSolverFactor - gets the factor of a KSP.
+
+  Not collective
+
+  Input Parameter:
+. ksp - after DirectSolverSet()
+
+  Output Parameter:
+. factor - borrowed; NULL: options have replaced it
+@*/
 PetscErrorCode DirectSolverFactor(KSP ksp, Factor *factor)
 {
   PC pc;
@@ -132,7 +163,7 @@ PetscErrorCode DirectSolverFactor(KSP ksp, Factor *factor)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Operations with an ordering; infinite where the analysis fails */
+/* Counts the operations with an ordering; infinite where the analysis fails. */
 static PetscErrorCode CountOperations(Factor factor, int ordering, Mat A, PetscReal *operations)
 {
   FactorCost     cost;
@@ -146,11 +177,22 @@ static PetscErrorCode CountOperations(Factor factor, int ordering, Mat A, PetscR
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* DirectSolverOrder - the KSP's factors from now on are ordered as needs the fewest operations for A.
+/*@
+  DirectSolverOrder - orders the KSP's factors from now on so that a matrix takes the fewest operations.
 
-   Collective. A: a matrix much like those to come; only its pattern counts. Costs one to three analyses, each about a
-   third of a factorisation at 10,000 unknowns and less above. One that the user has chosen (-mat_mumps_icntl_7) stays.
- */
+  Collective
+
+  Input Parameters:
++ ksp - after DirectSolverSet()
+- A   - a matrix much like those to come; only its pattern counts
+
+  Output Parameter:
+. thin - A is that of walls or planes, not of bodies that fill space, and is so large that orderings matter. PETSC_FALSE
+         where the user has chosen an ordering (-mat_mumps_icntl_7), which stays.
+
+  Note:
+  It takes one to three analyses. Each costs about a third of a factorisation at 10,000 unknowns, and less above.
+@*/
 PetscErrorCode DirectSolverOrder(KSP ksp, Mat A, PetscBool *thin)
 {
   int       ordering = FACTOR_METIS;
@@ -180,7 +222,18 @@ PetscErrorCode DirectSolverOrder(KSP ksp, Mat A, PetscBool *thin)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* DirectSolverColumns - X = A^-1 B for dense B and X. Collective. */
+/*@
+  DirectSolverColumns - solves A X = B for dense B and X.
+
+  Collective
+
+  Input Parameters:
++ pc - preconditioner with A's factor, of a KSP that DirectSolverServes() accepts
+- B  - right-hand sides; zeros in them save time
+
+  Output Parameter:
+. X - solutions
+@*/
 PetscErrorCode DirectSolverColumns(PC pc, Mat B, Mat X)
 {
   Factor factor;

@@ -1,34 +1,35 @@
+/* Symmetric sweeps of Gauss-Seidel's method, and Chebyshev's iterations with them. */
 #include <float.h>
 #include "gaussseidel.h"
 #include "blockrows.h"
 
-/* A pivot that is this small beside the block's diagonal is what rounding to single precision has left of nothing. */
+/* Largest pivot, in parts of the block's diagonal, that is taken for zero: what rounding to single precision leaves. */
 #define SWEEP_PIVOT FLT_EPSILON
 
 #define GAUSSSEIDEL_NAME "symmetric Gauss-Seidel sweep across all ranks"
 
-/* What must be done before the rest, right-hand side less A x, is known: nothing; A guess; A (a step) */
+/* What must be subtracted before the residual is known: nothing; A times a guess; A times the last step. */
 typedef enum { RESIDUAL_KNOWN, RESIDUAL_GUESS, RESIDUAL_STEP } ResidualKind;
 
 typedef enum { FORWARD, BACKWARD, REST_ONLY } Way;
 
-/* With A = L + D + U, in the order of the sweep, and a rest r: (L + D) y = r, (D + U) z = D y. So A z = r - L (y - z).
- */
+/* With A = L + D + U in the order of the sweep and a residual r, the sweeps solve (L + D) y = r and (D + U) z = D y.
+   Then A z = r - L (y - z), so the next residual needs the blocks of L only. */
 typedef struct _n_GaussSeidel {
   PetscReal    least, largest; /* eigenvalues that are smoothed */
   SweepOrder   order;
   BlockRows    rows;
   PetscReal   *inverse;                /* of the blocks on the diagonal, in the order of the sweep, column-major */
-  PetscReal   *residual, *step, *fall; /* fall: A step */
-  PetscReal   *x, *other;              /* with ghosts. x: y, then z; other: y - z, or a guess */
+  PetscReal   *residual, *step, *fall; /* fall: A times the step */
+  PetscReal   *x, *other;              /* with ghosts; x: y, then z; other: y - z, or a guess */
   ResidualKind what;
-  PetscReal    keep, add; /* step = keep (the last one) + add z */
+  PetscReal    keep, add; /* step = keep (last step) + add z */
 } *GaussSeidel;
 
 /* ---------- diagonal ---------- */
 
-/* The inverse of a block by Gauss and Jordan's method, 0 where it has none: what cannot be solved for stays as it is.
- * Both column-major */
+/* Inverts a block by the method of Gauss and Jordan. A singular block gets an inverse of zero, so that its unknowns
+   stay as they are. Both are column-major. */
 static void InvertBlock(int n, const float *block, PetscReal *inverse)
 {
   PetscReal a[BLOCKROWS_SIZE][BLOCKROWS_SIZE], scale = 0;
@@ -64,7 +65,7 @@ static void InvertBlock(int n, const float *block, PetscReal *inverse)
 
 /* ---------- sweeps ---------- */
 
-/* The rest of a node: rest -= A (a guess), or A (a step) = keep A (the last one) + add A z */
+/* Finds the residual of a node: it falls by A (guess), or by A (step) = keep A (last step) + add A z. */
 LANES_INLINE void GaussSeidelFindResidual(const int size, const ResidualKind what, GaussSeidel g, PetscInt place)
 {
   const BlockPart *before = &g->rows->part[BLOCKROWS_BEFORE], *after = &g->rows->part[BLOCKROWS_AFTER];
@@ -82,7 +83,7 @@ LANES_INLINE void GaussSeidelFindResidual(const int size, const ResidualKind wha
   }
 }
 
-/* Solves for a node with the block on the diagonal. */
+/* Solves for a node with its block on the diagonal. */
 LANES_INLINE BlockDoubles GaussSeidelSolve(const int size, GaussSeidel g, PetscInt place, BlockDoubles right)
 {
   const PetscReal *inverse = &g->inverse[place * size * size];
@@ -116,7 +117,7 @@ LANES_INLINE void SweepBackward(const int size, GaussSeidel g, PetscInt place)
   }
 }
 
-/* Places from..to-1, or from the last of them to the first. */
+/* Sweeps the places from..to-1, backward from the last to the first. */
 LANES_INLINE void SweepPlaces(const int size, const ResidualKind what, GaussSeidel g, PetscInt from, PetscInt to,
                               Way way)
 {
@@ -146,8 +147,8 @@ static void Sweep(GaussSeidel g, PetscInt from, PetscInt n, Way way)
   }
 }
 
-/* One way through all nodes. The ranks take turns at their borders, colour after colour; meanwhile, or before, they
- * sweep what is inside. */
+/* Sweeps once through all nodes. At their borders the ranks take turns, one colour after the other. Inner nodes are
+   swept while other ranks have their turn, or before. */
 static PetscErrorCode SweepAll(GaussSeidel g, Way way)
 {
   const SweepOrder o            = g->order;
@@ -167,7 +168,7 @@ static PetscErrorCode SweepAll(GaussSeidel g, Way way)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* z for the rest, which becomes known on the way */
+/* Finds z for the residual, which becomes known on the way. */
 static PetscErrorCode SweepBothWays(GaussSeidel g)
 {
   PetscFunctionBeginUser;
@@ -240,7 +241,7 @@ static PetscErrorCode GaussSeidelSetUp(PC pc)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* One sweep forward and back again from 0 */
+/* Sweeps forward and backward from 0. */
 static PetscErrorCode GaussSeidelApply(PC pc, Vec right, Vec left)
 {
   GaussSeidel g;
@@ -254,7 +255,7 @@ static PetscErrorCode GaussSeidelApply(PC pc, Vec right, Vec left)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* left += step; both from 0 at first */
+/* Adds the next step to `left`. zero: `left` is 0 so far; first: there was no step before */
 static PetscErrorCode AddStep(GaussSeidel g, PetscBool first, PetscBool zero, Vec left)
 {
   PetscScalar *x;
@@ -269,7 +270,7 @@ static PetscErrorCode AddStep(GaussSeidel g, PetscBool first, PetscBool zero, Ve
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Chebyshev's iterations for eigenvalues from least to largest. */
+/* Chebyshev's iterations for the eigenvalues from least to largest. */
 static PetscErrorCode Smooth(PC pc, Vec right, Vec left, Vec work, PetscReal rtol, PetscReal atol, PetscReal dtol,
                              PetscInt iterations, PetscBool zero, PetscInt *done, PCRichardsonConvergedReason *reason)
 {
@@ -311,12 +312,23 @@ static PetscErrorCode GaussSeidelDestroy(PC pc)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* GaussSeidelSet - makes a preconditioner one symmetric sweep of Gauss-Seidel's method over the nodes; as
-   KSPRICHARDSON's, Chebyshev's iterations with it.
+/*@
+  GaussSeidelSet - makes a preconditioner one symmetric sweep of Gauss-Seidel's method over the nodes.
 
-   Logically collective. pc: of AIJ matrices whose pattern and values are symmetric, of any number of ranks. least,
-   largest: eigenvalues to smooth; none is above 1. Source: Saad, Iterative Methods for Sparse Linear Systems, 4.1, 12.3
-   and 12.4; residuals from what sweeps leave: Eisenstat, SIAM J. Sci. Stat. Comput. 2, 1981. */
+  Logically collective
+
+  Input Parameters:
++ pc      - of AIJ matrices whose pattern and values are symmetric, on any number of ranks; the block size is that of
+            nodes, up to three
+. least   - smallest eigenvalue that is smoothed
+- largest - largest eigenvalue that is smoothed; none is above 1, except by rounding
+
+  Notes:
+  As the preconditioner of KSPRICHARDSON it does Chebyshev's iterations.
+
+  Source: Saad, Iterative Methods for Sparse Linear Systems, 4.1, 12.3 and 12.4; residuals from what sweeps leave:
+  Eisenstat, SIAM J. Sci. Stat. Comput. 2, 1981.
+@*/
 PetscErrorCode GaussSeidelSet(PC pc, PetscReal least, PetscReal largest)
 {
   GaussSeidel g;
@@ -335,8 +347,17 @@ PetscErrorCode GaussSeidelSet(PC pc, PetscReal least, PetscReal largest)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* GaussSeidelGetMat - a matrix that knows the preconditioner, for GaussSeidelResidual(). Collective. *mat: NULL where
- * options have replaced the method. */
+/*@
+  GaussSeidelGetMat - creates a matrix that stands for the preconditioner's, for GaussSeidelResidual().
+
+  Collective
+
+  Input Parameter:
+. pc - after GaussSeidelSet()
+
+  Output Parameter:
+. mat - the caller destroys it; NULL: options have replaced the preconditioner
+@*/
 PetscErrorCode GaussSeidelGetMat(PC pc, Mat *mat)
 {
   GaussSeidel g;
@@ -356,7 +377,19 @@ PetscErrorCode GaussSeidelGetMat(PC pc, Mat *mat)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* GaussSeidelResidual - rest = right - A x, with the copy of A. Collective. mat: of GaussSeidelGetMat(). */
+/*@
+  GaussSeidelResidual - computes residual = right - A x with the copy of A, in the form of PCMGSetResidual().
+
+  Collective
+
+  Input Parameters:
++ mat   - from GaussSeidelGetMat()
+. right - right-hand side
+- x     - iterate
+
+  Output Parameter:
+. residual - right - A x
+@*/
 PetscErrorCode GaussSeidelResidual(Mat mat, Vec right, Vec x, Vec residual)
 {
   GaussSeidel g;

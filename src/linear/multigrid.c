@@ -1,62 +1,64 @@
+/* Algebraic multigrid for the bodies and a direct solve for the contact interface, one after the other. */
 #include "multigrid.h"
 #include "linear/directsolver.h"
 #include "gaussseidel.h"
 #include "matrix/matrixrows.h"
 
-/* The parts have option names of their own: -bodies_... for multigrid, -interface_... for the direct solve */
+/* Prefixes of the parts' options: -bodies_... for multigrid, -interface_... for the direct solve. */
 #define MULTIGRID_BODIES    "bodies_"
 #define MULTIGRID_INTERFACE "interface_"
-/* Multigrid is made anew when the interface has become this many times as large, or as small. Contact that only moves
-   does without: how stiff it is on the coarse levels hardly matters (a hundredth costs one iteration more in 26), that
-   it is there does. */
+/* Multigrid is made anew when the interface has become this many times as large, or as small. It is not made anew for
+   contact that only moves: how stiff contact is on the coarse levels hardly matters (a hundredth of the stiffness costs
+   one iteration more in 26), but it does matter that contact is there. */
 #define MULTIGRID_CHANGE 1.5
-/* Multigrid made for an older operator serves until its effort, iterations for a power of ten in the residual, is this
-   many times the effort at first: its coarse matrices cost as much as some ten iterations. */
+/* Multigrid that was made for an older operator serves until its effort is this many times that of the first solve. The
+   effort is the number of iterations for a power of ten in the residual. Coarse matrices cost as much as some ten
+   iterations. */
 #define MULTIGRID_AGE 1.5
-/* What the finest level's smoother damps: eigenvalues of the operator after symmetric Gauss-Seidel sweeps, none of
- * which is above 1. */
+/* Eigenvalues that the finest level's smoother damps, of the operator after symmetric Gauss-Seidel sweeps. None of
+   these eigenvalues is above 1. */
 #define MULTIGRID_LARGEST 1.1
 #define MULTIGRID_LEAST   0.1
-/* Powers of ten in the residual that a solve must show for its effort to be told: the first iterations of any solve are
- * the fastest. */
+/* Powers of ten by which a solve must have reduced the residual before its effort is measured. The first iterations of
+   any solve are the fastest. */
 #define MULTIGRID_SHOWN 2
-/* Whatever its effort was at first, multigrid of an older operator is made anew after a solve of so many iterations. */
+/* Number of iterations after which multigrid of an older operator is made anew, whatever its effort was at first. */
 #define MULTIGRID_MOST 60
-/* How far across contact, in rows that it couples, a rank factors what others own of the interface. None takes five
-   times the iterations on two ranks; a second takes one in 25 less and half as much time again for the factors, more
-   than that saves. */
+/* Overlap of the ranks' parts of the interface, in rows that contact couples. Without overlap two ranks take five times
+   the iterations. An overlap of 2 takes one iteration in 25 less, but half as much time again for the factors, which is
+   more than that saves. */
 #define MULTIGRID_OVERLAP 1
-/* Most rigid-body modes there are */
+/* Largest number of rigid-body modes. */
 #define MULTIGRID_MODES 6
 
 struct _n_Multigrid {
-  Mesh      mesh;
-  PetscBool axisymmetric, symmetric;
-  PetscInt  n_free, n_all,
-    first; /* rows of this rank: free dofs, all dofs of nodes that have one; the latter's first number of all ranks */
-  PetscInt *row;             /* of each free dof of this rank: its row among all dofs, counted from first */
-  Vec       number;          /* of each free dof: its number among all dofs of all ranks */
-  Mat       nodes;           /* the operator with all dofs of a node */
-  PetscBool changed, renew;  /* the operator has another pattern than that; its values are wanted */
-  PetscInt  solves, applied; /* operators since multigrid was made; iterations for the last of them */
-  PetscReal usual;           /* effort of the first one long enough to tell, 0: none yet */
-  KSP       outer;           /* whose preconditioner this is */
-  PC        bodies;
-  Vec       nodes_right, nodes_left;
-  Mat       contact;   /* borrowed: that part of the operator */
-  IS        interface; /* rows of this rank that contact couples; NULL: no rank has any */
-  IS        reach;     /* these and near ones of other ranks, ascending: those that this one factors */
-  PetscInt  coupled;   /* how many there were, on all ranks, when multigrid was made */
-  KSP       direct;
-  Vec       interface_right, interface_left;
-  Vec       residual,
-    ghosts; /* what the bodies leave on the interface, 0 elsewhere; values of other ranks for it, NULL: one rank */
+  Mesh       mesh;
+  PetscBool  axisymmetric, symmetric;
+  PetscInt   n_free, n_all;   /* rows of this rank: free dofs, all dofs of nodes that have a free one */
+  PetscInt   first;           /* number of this rank's first dof of n_all among those of all ranks */
+  PetscInt  *row;             /* of each free dof of this rank: its row among all dofs, counted from first */
+  Vec        number;          /* of each free dof: its number among all dofs of all ranks */
+  Mat        nodes;           /* the operator with all dofs of a node */
+  PetscBool  changed, renew;  /* the operator has another pattern than nodes; nodes must get its values */
+  PetscInt   solves, applied; /* operators since multigrid was made; iterations for the last of them */
+  PetscReal  usual;           /* effort of the first solve that was long enough to measure it; 0: none yet */
+  KSP        outer;           /* whose preconditioner this is */
+  PC         bodies;
+  Vec        nodes_right, nodes_left;
+  Mat        contact;   /* contact part of the operator; borrowed */
+  IS         interface; /* rows of this rank that contact couples; NULL: no rank has any */
+  IS         reach;     /* interface, and near rows of other ranks, ascending: those that this rank factors */
+  PetscInt   coupled;   /* rows of the interface on all ranks when multigrid was made */
+  KSP        direct;
+  Vec        interface_right, interface_left;
+  Vec        residual; /* what multigrid leaves on the interface, 0 elsewhere */
+  Vec        ghosts;   /* values of other ranks for the residual; NULL: one rank */
   VecScatter to_interface, to_ghosts;
 };
 
 /* ---------- whole nodes ---------- */
 
-/* Numbers all dofs of the nodes of this rank that have a free one. */
+/* Numbers all dofs of this rank's nodes that have a free dof. */
 static PetscErrorCode MultigridNumberNodes(Multigrid m)
 {
   const int       dim = m->mesh->dim;
@@ -91,8 +93,8 @@ static PetscErrorCode MultigridNumberNodes(Multigrid m)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Rigid-body modes of a node at x: displacement in direction d of mode k. Translations first, then rotations;
- * axisymmetric: along the axis only. */
+/* Displacement in direction d of rigid-body mode k, of a node at x. Translations come first, then rotations. An
+   axisymmetric body can only move along the axis. */
 static PetscReal ModeValue(int dim, const PetscReal *x, int k, int d)
 {
   const int from = dim == 2 ? 0 : (k - dim + 1) % 3, to = dim == 2 ? 1 : (k - dim + 2) % 3;
@@ -101,7 +103,7 @@ static PetscReal ModeValue(int dim, const PetscReal *x, int k, int d)
   return d == from ? -x[to] : d == to ? x[from] : 0;
 }
 
-/* The modes of all bodies together, orthonormal; 0 where a dof is constrained. */
+/* Creates the modes of all bodies together. They are orthonormal, and 0 where a dof is constrained. */
 static PetscErrorCode ModesCreate(Multigrid m, MatNullSpace *modes)
 {
   const int dim = m->mesh->dim, first = m->axisymmetric ? 1 : 0, count = m->axisymmetric ? 1 : dim * (dim + 1) / 2;
@@ -131,7 +133,7 @@ static PetscErrorCode ModesCreate(Multigrid m, MatNullSpace *modes)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* How values of a matrix's columns of other ranks come: nothing where it has no block of them. */
+/* Creates what fetches the values of a matrix's columns of other ranks; nothing where the matrix has no such block. */
 static PetscErrorCode CreateGhosts(Multigrid m, Mat A, Vec *ghosts, VecScatter *scatter)
 {
   MatrixRows rows;
@@ -150,7 +152,7 @@ static PetscErrorCode CreateGhosts(Multigrid m, Mat A, Vec *ghosts, VecScatter *
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Numbers among all dofs of a matrix's columns of other ranks, in *ghost, which the caller frees. */
+/* Finds the numbers among all dofs of a matrix's columns of other ranks. The caller frees *ghost. */
 static PetscErrorCode NumberGhosts(Multigrid m, Mat A, PetscInt **ghost)
 {
   PetscInt           n;
@@ -174,7 +176,7 @@ static PetscErrorCode NumberGhosts(Multigrid m, Mat A, PetscInt **ghost)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* How many entries one block of the operator has in each row of all dofs. */
+/* Counts the entries of one block of the operator in each row of all dofs. */
 static PetscErrorCode CountRows(Multigrid m, Mat A, int block, PetscInt *count)
 {
   MatrixRows rows;
@@ -186,7 +188,7 @@ static PetscErrorCode CountRows(Multigrid m, Mat A, int block, PetscInt *count)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Sets the values of one block of the operator in m->nodes, or adds them, times a factor. */
+/* Sets the values of one block of the operator, times a factor, in m->nodes, or adds them. */
 static PetscErrorCode CopyBlock(Multigrid m, Mat A, int block, const PetscInt *ghost, PetscReal factor, InsertMode mode)
 {
   MatrixRows   rows;
@@ -223,11 +225,10 @@ static PetscErrorCode CopyRows(Multigrid m, Mat A, PetscReal factor, InsertMode 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* How stiff contact is to be for multigrid, of its full stiffness: at most as the bodies are where it is. *mean:
-   diagonal entry of the operator, so softened.
-
-   Stiffer contact makes smoothers diverge whose largest eigenvalue is estimated; the interface's solve does the rest,
-   and a hundredth costs no iteration. */
+/* Finds how stiff contact may be for multigrid, in parts of its full stiffness: at most as stiff as the bodies are
+   where contact is. *mean: mean diagonal entry of the operator with contact of that stiffness. With stiffer contact
+   smoothers diverge whose largest eigenvalue is estimated. The interface's solve makes up for the rest; a hundredth of
+   the stiffness costs no iteration. */
 static PetscErrorCode SoftenContact(Multigrid m, Mat A, PetscReal *softness, PetscScalar *mean)
 {
   PetscScalar sum[2] = {0, 0}, *contact;
@@ -264,7 +265,7 @@ static PetscErrorCode SoftenContact(Multigrid m, Mat A, PetscReal *softness, Pet
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* An empty matrix over all dofs with room for the operator's entries and the diagonal of constrained dofs. */
+/* Creates an empty matrix over all dofs with memory for the operator's entries and the diagonal of constrained dofs. */
 static PetscErrorCode CreateNodesMatrix(Multigrid m, Mat A)
 {
   PetscInt    *own, *others;
@@ -291,7 +292,7 @@ static PetscErrorCode CreateNodesMatrix(Multigrid m, Mat A)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Constrained dofs get the mean of the others on the diagonal, so that no coarse row mixes scales. */
+/* Sets the diagonal of constrained dofs to the mean of the others, so that no coarse row mixes scales. */
 static PetscErrorCode SetConstrainedRows(Multigrid m, PetscScalar mean)
 {
   PetscBool *free;
@@ -311,7 +312,7 @@ static PetscErrorCode SetConstrainedRows(Multigrid m, PetscScalar mean)
 static PetscErrorCode CreateBodies(Multigrid m)
 {
   PetscFunctionBeginUser;
-  PetscCall(PCDestroy(&m->bodies)); /* levels of other sizes survive a reset */
+  PetscCall(PCDestroy(&m->bodies)); /* levels of other sizes would survive a reset */
   PetscCall(PCCreate(m->mesh->comm, &m->bodies));
   PetscCall(PCSetOptionsPrefix(m->bodies, MULTIGRID_BODIES));
   PetscCall(PCSetType(m->bodies, PCGAMG));
@@ -320,9 +321,9 @@ static PetscErrorCode CreateBodies(Multigrid m)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The finest level is smoothed by Gauss-Seidel's method: half of Jacobi's iterations, and fewer more of them on finer
-   meshes. The coarse levels keep Jacobi's: aggregates of few nodes leave rotations without stiffness, which
-   Gauss-Seidel's method would divide by. */
+/* Has Gauss-Seidel's method smooth the finest level. It takes half of the iterations of Jacobi's, and on finer meshes
+   the number grows more slowly. The coarse levels keep Jacobi's method: aggregates of few nodes leave rotations without
+   stiffness, by which Gauss-Seidel's method would divide. */
 static PetscErrorCode SmoothFinest(Multigrid m)
 {
   KSP      ksp;
@@ -344,7 +345,7 @@ static PetscErrorCode SmoothFinest(Multigrid m)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Multigrid for the operator; its coarse spaces stay as long as the pattern does. */
+/* Makes multigrid for the operator. Its coarse spaces stay as long as the pattern does. */
 static PetscErrorCode SetUpBodies(Multigrid m, Mat A)
 {
   const PetscBool fresh = m->changed;
@@ -413,9 +414,9 @@ static PetscErrorCode ForgetInterface(Multigrid m)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* What each rank factors by itself: its rows of the interface with those of others that contact couples to them. Of its
-   solution it keeps its own rows: restricted additive Schwarz (Cai and Sarkis, SIAM J. Sci. Comput. 21, 1999). One
-   factor over all ranks has them wait for each other longer than they work. */
+/* Finds the rows that each rank factors: its rows of the interface, and those of other ranks that contact couples to
+   them. Of the solution the rank keeps its own rows: restricted additive Schwarz (Cai and Sarkis, SIAM J. Sci. Comput.
+   21, 1999). With one factor over all ranks they would wait for each other longer than they work. */
 static PetscErrorCode FindReach(Multigrid m)
 {
   PetscMPIInt     size;
@@ -434,9 +435,16 @@ static PetscErrorCode FindReach(Multigrid m)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* MultigridSetContact - the contact part C of the next operator K + C, whose non-zero rows are the interface.
+/*@
+  MultigridSetContact - sets the contact part of the next operator K + C.
 
-   Collective. changed: the operator has another pattern than the last one. */
+  Collective
+
+  Input Parameters:
++ m       - the preconditioner
+. C       - contact part; its non-zero rows are the interface. Borrowed until the next call.
+- changed - the operator has another pattern than the last one
+@*/
 PetscErrorCode MultigridSetContact(Multigrid m, Mat C, PetscBool changed)
 {
   PetscInt begin, end, n = 0, all, *rows;
@@ -467,8 +475,14 @@ PetscErrorCode MultigridSetContact(Multigrid m, Mat C, PetscBool changed)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* MultigridRenew - the next operator is a new beginning: multigrid is made for it, whatever was solved before. Not
- * collective. */
+/*@
+  MultigridRenew - has multigrid made for the next operator, so that nothing depends on what was solved before.
+
+  Not collective
+
+  Input Parameter:
+. m - the preconditioner
+@*/
 PetscErrorCode MultigridRenew(Multigrid m)
 {
   PetscFunctionBeginUser;
@@ -495,7 +509,7 @@ static PetscErrorCode CreateDirect(Multigrid m, Mat A)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Factors of the operator's rows and columns of the interface. */
+/* Factors the operator's rows and columns of the interface. */
 static PetscErrorCode SetUpInterface(Multigrid m, Mat A)
 {
   PetscInt n;
@@ -515,7 +529,7 @@ static PetscErrorCode SetUpInterface(Multigrid m, Mat A)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* rest -= (one block of the operator) x in rows of the interface; begin: first row of this rank */
+/* Subtracts (one block of the operator) x from the residual, in rows of the interface. begin: first row of this rank */
 static PetscErrorCode SubtractBlock(Mat A, int block, PetscInt n, const PetscInt *interface, PetscInt begin, Vec x,
                                     PetscScalar *residual)
 {
@@ -538,7 +552,7 @@ static PetscErrorCode SubtractBlock(Mat A, int block, PetscInt n, const PetscInt
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* m->rest = right - A left, where an interface is: its rows are few. */
+/* Computes m->residual = right - A left in the rows of the interface only, which are few. */
 static PetscErrorCode MultigridFindResidual(Multigrid m, Mat A, Vec right, Vec left)
 {
   PetscInt           n, begin;
@@ -563,7 +577,7 @@ static PetscErrorCode MultigridFindResidual(Multigrid m, Mat A, Vec right, Vec l
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* left += (interface solve of right) */
+/* Adds the interface's solution for `right` to `left`. */
 static PetscErrorCode AddInterface(Multigrid m, Vec right, Vec left)
 {
   PetscInt           n, n_own, first;
@@ -595,8 +609,9 @@ static PetscErrorCode AddInterface(Multigrid m, Vec right, Vec left)
 
 /* ---------- the preconditioner ---------- */
 
-/* Iterations of the last solve for each power of ten in the residual, 0: it was too short to tell. The first iteration
-   does not count: it is the interface's, whose stiff forces may be all there is at first. */
+/* Finds the effort of the last solve: iterations for each power of ten in the residual; 0 where the solve was too short
+   to measure it. The first iteration does not count. It is the interface's, whose stiff forces may be all that there is
+   at first. */
 static PetscErrorCode LastEffort(Multigrid m, PetscReal *effort)
 {
   const PetscReal *residual;
@@ -612,7 +627,7 @@ static PetscErrorCode LastEffort(Multigrid m, PetscReal *effort)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Has multigrid become too old for the operators of now? */
+/* Finds whether multigrid is too old for the present operators. */
 static PetscErrorCode IsAged(Multigrid m, PetscBool *aged)
 {
   PetscReal effort = 0;
@@ -642,7 +657,7 @@ static PetscErrorCode MultigridSetUp(PC pc)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Bodies first, then the interface for what they left. */
+/* Applies multigrid to the bodies, then solves on the interface for what that has left. */
 static PetscErrorCode MultigridApply(PC pc, Vec right, Vec left)
 {
   Multigrid m;
@@ -659,12 +674,24 @@ static PetscErrorCode MultigridApply(PC pc, Vec right, Vec left)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* MultigridCreate - makes itself the preconditioner of a KSP, which keeps its residuals for it; the caller destroys
-   *out after the KSP.
+/*@
+  MultigridCreate - creates the preconditioner and sets a KSP up with it.
 
-   Collective. mesh: borrowed, its constraints set. axisymmetric: the only rigid-body mode is the one along the axis.
-   symmetric: of the operators. Options Database Keys: -bodies_pc_..., -bodies_mg_... of multigrid; -interface_ksp_...,
-   -interface_pc_... of the direct solve. */
+  Collective
+
+  Input Parameters:
++ mesh         - borrowed, its constraints set
+. axisymmetric - the only rigid-body mode is the one along the axis
+. symmetric    - all operators are symmetric
+- ksp          - of matrices over the mesh's free dofs; it keeps its residuals for the preconditioner
+
+  Output Parameter:
+. out - destroy it with MultigridDestroy(), after the KSP
+
+  Options Database Keys:
++ -bodies_pc_..., -bodies_mg_...         - multigrid for the bodies
+- -interface_ksp_..., -interface_pc_... - direct solve for the interface
+@*/
 PetscErrorCode MultigridCreate(Mesh mesh, PetscBool axisymmetric, PetscBool symmetric, KSP ksp, Multigrid *out)
 {
   Multigrid m;
@@ -689,7 +716,14 @@ PetscErrorCode MultigridCreate(Mesh mesh, PetscBool axisymmetric, PetscBool symm
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* MultigridDestroy - Collective. */
+/*@
+  MultigridDestroy - frees the preconditioner.
+
+  Collective
+
+  Input Parameter:
+. multigrid - may be NULL inside
+@*/
 PetscErrorCode MultigridDestroy(Multigrid *multigrid)
 {
   Multigrid m = *multigrid;

@@ -112,10 +112,10 @@ static PetscErrorCode CheckReal(const char *name, int number, PetscReal value)
     const RealRange *range = &RealRanges[i];
 
     if (range->number != number) continue;
-    PetscCheck(value >= range->least, PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE, "%s %g; allowed: at least %g", name,
-               (double)value, (double)range->least);
-    PetscCheck(value <= range->most, PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE, "%s %g; allowed: at most %g", name,
-               (double)value, (double)range->most);
+    PetscCheck(value >= range->least, PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE, "%s %g; allowed: at least %d", name,
+               (double)value, (int)range->least);
+    PetscCheck(value <= range->most, PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE, "%s %g; allowed: at most %d", name,
+               (double)value, (int)range->most);
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

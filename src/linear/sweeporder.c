@@ -1,9 +1,10 @@
+/* Colours of ranks and places of nodes for sweeps across all ranks. */
 #include "sweeporder.h"
 #include "matrix/matrixrows.h"
 
 /* ---------- colours of ranks ---------- */
 
-/* Ranks that own ghosts of this one, ascending; ranks: room for all. */
+/* Lists the ranks that own ghosts of this one, ascending. ranks: room for all ranks */
 static void SweepOrderListNeighbours(PetscInt n, const PetscInt *row, const PetscInt *ranges, PetscMPIInt *ranks,
                                      PetscMPIInt *count)
 {
@@ -16,7 +17,8 @@ static void SweepOrderListNeighbours(PetscInt n, const PetscInt *row, const Pets
   }
 }
 
-/* The first colour that no neighbour before has, rank by rank: all ranks find the same. */
+/* Gives each rank, one after the other, the first colour that no neighbour before it has. All ranks find the same
+   colours. */
 static PetscErrorCode ColourRanks(MPI_Comm comm, const PetscMPIInt *mine, PetscMPIInt count, int *colour)
 {
   PetscMPIInt  size, *counts, *first, *all;
@@ -41,8 +43,8 @@ static PetscErrorCode ColourRanks(MPI_Comm comm, const PetscMPIInt *mine, PetscM
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Colours of this rank and its ghosts, whose places say whether they are swept before it or after it. row: first of
- * each ghost, ascending */
+/* Finds the colours of this rank and of its ghosts. The place of a ghost tells whether it is swept before this rank or
+   after it. row: first row of each ghost, ascending */
 static PetscErrorCode PlaceGhosts(SweepOrder o, Mat mat, const PetscInt *row)
 {
   const MPI_Comm  comm = PetscObjectComm((PetscObject)mat);
@@ -69,8 +71,8 @@ static PetscErrorCode PlaceGhosts(SweepOrder o, Mat mat, const PetscInt *row)
 
 /* ---------- nodes ---------- */
 
-/* Whole nodes of other ranks, some of whose rows may be no columns here, and how their values come. *row: the first of
- * each, which the caller frees */
+/* Finds the nodes of other ranks that are coupled to this one, and how their values come. Nodes are taken as a whole,
+   even where some of their rows are no columns here. *row: first row of each; the caller frees it. */
 static PetscErrorCode FindGhosts(SweepOrder o, Mat mat, const MatrixRows *others, PetscInt **row)
 {
   PetscInt    n = 0, *rows;
@@ -97,8 +99,8 @@ static PetscErrorCode FindGhosts(SweepOrder o, Mat mat, const MatrixRows *others
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Places, those without ghosts next to each other: ranks of even colours sweep their border first, those of odd ones
-   last; of two ranks none waits for the other. */
+/* Numbers the places; nodes without ghosts follow each other. Ranks of even colours sweep their border first, those of
+   odd colours last, so that of two ranks none waits for the other. */
 static PetscErrorCode PlaceNodes(SweepOrder o, const MatrixRows *others)
 {
   PetscInt n_border = 0, interface, inner;
@@ -119,10 +121,22 @@ static PetscErrorCode PlaceNodes(SweepOrder o, const MatrixRows *others)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* SweepOrderCreate - inner nodes of a rank in ascending order, and so its border.
+/*@
+  SweepOrderCreate - finds the order of a matrix's nodes.
 
-   Collective. mat: AIJ of symmetric pattern, square blocks of its block size all on one rank.
-   Source: Adams, A distributed memory unstructured Gauss-Seidel algorithm for multigrid smoothers, 2001. */
+  Collective
+
+  Input Parameter:
+. mat - AIJ of symmetric pattern; its blocks are square and each is on one rank
+
+  Output Parameter:
+. order - destroy it with SweepOrderDestroy()
+
+  Notes:
+  Inner nodes of a rank come in ascending order, and so do those of its border.
+
+  Source: Adams, A distributed memory unstructured Gauss-Seidel algorithm for multigrid smoothers, 2001.
+@*/
 PetscErrorCode SweepOrderCreate(Mat mat, SweepOrder *order)
 {
   SweepOrder o;
@@ -146,7 +160,14 @@ PetscErrorCode SweepOrderCreate(Mat mat, SweepOrder *order)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* SweepOrderDestroy - Collective. */
+/*@
+  SweepOrderDestroy - frees the order.
+
+  Collective
+
+  Input Parameter:
+. order - may be NULL inside
+@*/
 PetscErrorCode SweepOrderDestroy(SweepOrder *order)
 {
   SweepOrder o = *order;
@@ -161,7 +182,17 @@ PetscErrorCode SweepOrderDestroy(SweepOrder *order)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* SweepOrderShareBegin - fetches what follows the n*size values of this rank in x[(n + n_ghosts)*size]. Collective. */
+/*@
+  SweepOrderShareBegin - begins to fetch the values of ghosts.
+
+  Collective
+
+  Input Parameter:
+. o - the order
+
+  Input and Output Parameter:
+. x - x[(n + n_ghosts)*size]: the values of this rank's nodes, and behind them those of ghosts, which are fetched
+@*/
 PetscErrorCode SweepOrderShareBegin(SweepOrder o, PetscReal *x)
 {
   PetscFunctionBeginUser;
@@ -169,7 +200,17 @@ PetscErrorCode SweepOrderShareBegin(SweepOrder o, PetscReal *x)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* SweepOrderShareEnd - Collective. */
+/*@
+  SweepOrderShareEnd - ends what SweepOrderShareBegin() has begun.
+
+  Collective
+
+  Input Parameter:
+. o - the order
+
+  Input and Output Parameter:
+. x - the same array
+@*/
 PetscErrorCode SweepOrderShareEnd(SweepOrder o, PetscReal *x)
 {
   PetscFunctionBeginUser;

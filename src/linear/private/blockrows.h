@@ -1,26 +1,32 @@
-/* The rows of an AIJ matrix in single precision, block by block and in the order of a sweep: for products that memory
-   has to feed. A block takes 40 bytes of 3 x 3 values with their column, where AIJ takes 84 to 108. What is computed
-   with it is summed in double precision. */
+/* The rows of an AIJ matrix in single precision, block by block and in the order of a sweep.
+
+   Sweeps and products are limited by memory: a block of 3 x 3 values with its column takes 40 bytes here, where AIJ
+   takes 84 to 108. Products are summed in double precision. BlockRowsCreate() copies the matrix; BlockRowsProduct()
+   multiplies some blocks with a vector.
+
+   Measured: gaussseidel.h with this copy against PETSc's PCSOR, which reads AIJ, in the same multigrid (spheres of
+   962,000 unknowns, one rank, CPU time of the run): PCSOR takes 1.40 times as much, and 27 Krylov iterations instead
+   of 23. */
 #pragma once
 #include "base/lanes.h"
 #include "matrix/matrixrows.h"
 #include "sweeporder.h"
 
-enum { BLOCKROWS_SIZE = MATRIX_NODE_ROWS }; /* most rows of a block */
-enum {
-  BLOCKROWS_LANES = 4
-}; /* a column of a block is read as a vector of so many, of which the last ones are not used */
-enum {
-  BLOCKROWS_AHEAD = 1024
-}; /* values are fetched so far ahead: rows are too short for the processor to see where they go on; 1.4 times as fast
-    */
+/* Most rows of a block. */
+enum { BLOCKROWS_SIZE = MATRIX_NODE_ROWS };
+/* Numbers in the vector as which a column of a block is read. The last ones of them are not used. */
+enum { BLOCKROWS_LANES = 4 };
+/* Number of values by which memory is fetched ahead. Rows are too short for the processor to predict where they
+   continue; fetching ahead makes sweeps 1.4 times as fast. */
+enum { BLOCKROWS_AHEAD = 1024 };
 
-/* Of each node what is swept before it; itself, and what is swept after it */
+/* The parts of a row: blocks of nodes that are swept before the row's node; its own block, and those of nodes that are
+   swept after it. */
 enum { BLOCKROWS_BEFORE, BLOCKROWS_AFTER, BLOCKROWS_PARTS };
 
 typedef struct {
-  PetscInt *first;  /* block of each place */
-  PetscInt *column; /* first row of the other node of each block, those of this rank in the order of columns */
+  PetscInt *first;  /* first block of each place */
+  PetscInt *column; /* of each block: the first row of its other node */
   float    *value;  /* column-major */
 } BlockPart;
 
@@ -28,26 +34,26 @@ typedef struct {
   BlockPart part[BLOCKROWS_PARTS];
 } *BlockRows;
 
+/* Four numbers that are added and multiplied at once; in an array they need not be aligned. */
 typedef double BlockDoubles __attribute__((vector_size(BLOCKROWS_LANES * sizeof(double))));
 typedef double BlockDoublesInArray
   __attribute__((vector_size(BLOCKROWS_LANES * sizeof(double)), aligned(sizeof(double)), may_alias));
 
-/* Of a matrix with blocks of up to BLOCKROWS_SIZE rows. Not collective. */
 PetscErrorCode BlockRowsCreate(Mat, SweepOrder, BlockRows *);
 PetscErrorCode BlockRowsDestroy(BlockRows *);
 
-/* A column of a block; written so that it takes one instruction. */
+/* Reads a column of a block. It is written so that the compiler makes one instruction of it. */
 LANES_INLINE BlockDoubles BlockColumn(const float *value)
 {
   return (BlockDoubles){value[0], value[1], value[2], value[3]};
 }
 
-/* Blocks from, from + step, ... before to, times x; size, rows of a block, and step are constants where this is called.
- */
+/* Multiplies the blocks from, from + step and so on before `to` with x. size (rows of a block) and step are constants
+   where this is called. */
 LANES_INLINE BlockDoubles BlockRowsProduct(const int size, const BlockPart *part, PetscInt from, PetscInt to,
                                            const int step, const PetscReal *x)
 {
-  BlockDoubles sum[BLOCKROWS_SIZE] = {{0}}; /* one for each column: a single one would wait for itself */
+  BlockDoubles sum[BLOCKROWS_SIZE] = {{0}}; /* one for each column; a single sum would wait for itself */
 
   for (PetscInt k = from; k != to; k += step) {
     __builtin_prefetch(&part->value[k * size * size + step * BLOCKROWS_AHEAD]);

@@ -1,15 +1,19 @@
 /* Gauss-Seidel's method (symmetric sweeps over the nodes) as a preconditioner, and Chebyshev's iterations with it as a
-   smoother, the same method on any number of ranks (sweeporder.h): no eigenvalue of the preconditioned operator is
-   above 1, whoever has what; sweeps of each rank for itself go up to the number of colours, and take half as many
-   iterations more. It reads a copy of the matrix in single precision, once for each iteration with its residual. */
+   smoother. It is the same method on any number of ranks (sweeporder.h). No eigenvalue of the preconditioned operator
+   is above 1, whatever the partition is. With sweeps of each rank for itself eigenvalues go up to the number of colours
+   of ranks, and solves take 1.5 times as many iterations.
+
+   The method reads a copy of the matrix in single precision (blockrows.h), once for each iteration with its residual.
+   GaussSeidelSet() sets a preconditioner up; GaussSeidelGetMat() and GaussSeidelResidual() give multigrid its
+   residuals.
+
+   Measured: PETSc's smoothers on the finest level of the same multigrid, against this one (CPU time of the run, Krylov
+   iterations, one rank). On spheres of 109,000 unknowns KSPRICHARDSON with PCSOR takes 1.44 times as much and 22
+   iterations instead of 18, KSPCHEBYSHEV with PCSOR 1.55 times and 19, PCPBJACOBI 1.60 times and 35. On rings of
+   120,000 unknowns KSPRICHARDSON with PCSOR takes 1.44 times as much and 32 iterations instead of 25. */
 #pragma once
 #include "base/petsccompat.h"
 
-/* Makes a preconditioner of that kind, for AIJ matrices with symmetric pattern and values, whose block size is that of
-   nodes, up to three. As KSPRICHARDSON's it smooths: eigenvalues from least to largest, of which none is above 1 but by
-   rounding. Logically collective. */
 PetscErrorCode GaussSeidelSet(PC, PetscReal least, PetscReal largest);
-/* right - A x as PCMGSetResidual() wants it, for the matrix that stands for the preconditioner's; the caller destroys
-   that. NULL: options have replaced the preconditioner. Collective. */
 PetscErrorCode GaussSeidelGetMat(PC, Mat *);
 PetscErrorCode GaussSeidelResidual(Mat, Vec right, Vec x, Vec residual);

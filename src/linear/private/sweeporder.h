@@ -1,25 +1,30 @@
-/* The order in which Gauss-Seidel's method goes through the nodes of a matrix (blocks of rows), the same method on any
-   number of ranks: nodes that are coupled to other ranks are swept colour by colour of the ranks, with what the ranks
-   before have found, the others meanwhile. */
+/* The order in which Gauss-Seidel's method goes through the nodes of a matrix (blocks of rows). The method is the same
+   on any number of ranks. Nodes that are coupled to other ranks are swept in turns of colours of the ranks, with the
+   values that the ranks before have found; the other nodes are swept meanwhile.
+
+   SweepOrderCreate() makes the order. Between two turns the values of ghosts are exchanged with SweepOrderShareBegin()
+   and SweepOrderShareEnd().
+
+   Measured: gaussseidel.h with this order against PETSc's PCSOR, whose ranks sweep for themselves, in the same
+   multigrid on two ranks (CPU time of the run, Krylov iterations): PCSOR takes 1.38 to 1.42 times as much and 24
+   iterations instead of 20 on spheres of 109,000 unknowns; 1.54 times as much and 33 instead of 26 on rings of 120,000.
+ */
 #pragma once
 #include "base/petsccompat.h"
 
 typedef struct {
-  int       size;        /* rows of a node */
-  PetscInt  n, n_ghosts; /* nodes of this rank; of others that they are coupled to, numbered after them */
-  PetscInt *node;        /* of each place */
-  PetscInt *place;       /* of each node; ghosts: -1 when all of them are swept before, n: after */
-  PetscInt *ghost; /* of each column of other ranks, as the matrix has it: its number of [n_ghosts], times size, and
-                      which row */
-  PetscInt inner, interface; /* first place of the nodes without ghosts, and of the others ... */
-  PetscInt n_inner;          /* how many the former are */
-  int      colours, colour;  /* of the ranks; this one's */
-  PetscSF  sf;               /* from rows to those of ghosts; NULL: one rank */
+  int       size;             /* rows of a node */
+  PetscInt  n, n_ghosts;      /* nodes of this rank; ghosts, the nodes of others that they are coupled to */
+  PetscInt *node;             /* of each place */
+  PetscInt *place;            /* of each node; of a ghost -1 where it is swept before this rank, n where after it */
+  PetscInt *ghost;            /* of each of the matrix's columns of other ranks: its row among those of ghosts */
+  PetscInt  inner, interface; /* first place of the nodes without ghosts, of those with ghosts */
+  PetscInt  n_inner;          /* number of nodes without ghosts */
+  int       colours, colour;  /* number of colours of all ranks; the colour of this one */
+  PetscSF   sf;               /* from rows to those of ghosts; NULL: one rank */
 } *SweepOrder;
 
-/* The order for an AIJ matrix of symmetric pattern, whose block size is that of nodes. Collective. */
 PetscErrorCode SweepOrderCreate(Mat, SweepOrder *);
 PetscErrorCode SweepOrderDestroy(SweepOrder *);
-/* Values of other ranks; x[(n + n_ghosts)*size]. Collective. */
 PetscErrorCode SweepOrderShareBegin(SweepOrder, PetscReal *x);
 PetscErrorCode SweepOrderShareEnd(SweepOrder, PetscReal *x);
