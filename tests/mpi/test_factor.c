@@ -193,12 +193,70 @@ static void test_other_ordering(void **state)
   assert_int_equal(MatDestroy(&A), 0);
 }
 
+/* Two unknowns: from three ranks on at least one has none. */
+static void test_ranks_without_rows(void **state)
+{
+  PetscInt first, end;
+  Factor   factor;
+  Mat      A;
+
+  (void)state;
+  assert_int_equal(MatCreateAIJ(PETSC_COMM_WORLD, PETSC_DECIDE, PETSC_DECIDE, 2, 2, 2, NULL, 2, NULL, &A), 0);
+  assert_int_equal(MatGetOwnershipRange(A, &first, &end), 0);
+  for (PetscInt i = first; i < end; i++)
+    for (PetscInt j = 0; j < 2; j++) assert_int_equal(MatSetValue(A, i, j, i == j ? 2 : -1, INSERT_VALUES), 0);
+  assert_int_equal(MatAssemblyBegin(A, MAT_FINAL_ASSEMBLY), 0);
+  assert_int_equal(MatAssemblyEnd(A, MAT_FINAL_ASSEMBLY), 0);
+  assert_int_equal(FactorCreate(PETSC_COMM_WORLD, PETSC_TRUE, &factor), 0);
+  MakeAndSolve(factor, A);
+  MakeAndSolve(factor, A);
+  assert_int_equal(FactorDestroy(&factor), 0);
+  assert_int_equal(MatDestroy(&A), 0);
+}
+
+/* Whether a value of one of MUMPS's parameters is refused. */
+static PetscBool Refused(const char *name, const char *value)
+{
+  PetscErrorCode code;
+
+  assert_int_equal(PetscOptionsSetValue(NULL, name, value), 0);
+  assert_int_equal(PetscPushErrorHandler(PetscReturnErrorHandler, NULL), 0);
+  code = FactorCheckOptions();
+  assert_int_equal(PetscPopErrorHandler(), 0);
+  assert_int_equal(PetscOptionsClearValue(NULL, name), 0);
+  return code ? PETSC_TRUE : PETSC_FALSE;
+}
+
+/* MUMPS's parameters: ranges, more than one range, parameters of the program's own, and any value where MUMPS has no
+   range. */
+static void test_options(void **state)
+{
+  (void)state;
+  assert_false(Refused("-mat_mumps_icntl_7", "5"));
+  assert_true(Refused("-mat_mumps_icntl_7", "8"));
+  assert_true(Refused("-mat_mumps_icntl_7", "metis"));
+  assert_false(Refused("-mat_mumps_icntl_8", "77"));
+  assert_true(Refused("-mat_mumps_icntl_8", "-1"));
+  assert_true(Refused("-mat_mumps_icntl_8", "9"));
+  assert_true(Refused("-mat_mumps_icntl_14", "-1"));
+  assert_true(Refused("-mat_mumps_icntl_15", "1"));
+  assert_true(Refused("-mat_mumps_icntl_18", "0"));
+  assert_true(Refused("-mat_mumps_icntl_21", "1"));
+  assert_false(Refused("-mat_mumps_icntl_13", "-7"));
+  assert_false(Refused("-mat_mumps_cntl_1", "0.1"));
+  assert_true(Refused("-mat_mumps_cntl_1", "1.5"));
+  assert_true(Refused("-mat_mumps_cntl_7", "-1e-9"));
+  assert_true(Refused("-mat_mumps_cntl_3", "nan"));
+}
+
 int main(int argc, char **argv)
 {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_orderings), cmocka_unit_test(test_other_values_and_patterns),
-                                     cmocka_unit_test(test_singular), cmocka_unit_test(test_dissection_costs),
-                                     cmocka_unit_test(test_other_ordering)};
-  int                     failed;
+  const struct CMUnitTest tests[] = {
+    cmocka_unit_test(test_orderings),      cmocka_unit_test(test_other_values_and_patterns),
+    cmocka_unit_test(test_singular),       cmocka_unit_test(test_dissection_costs),
+    cmocka_unit_test(test_other_ordering), cmocka_unit_test(test_ranks_without_rows),
+    cmocka_unit_test(test_options)};
+  int failed;
 
   if (PetscInitialize(&argc, &argv, NULL, NULL)) return 1;
   failed = cmocka_run_group_tests(tests, NULL, NULL);
