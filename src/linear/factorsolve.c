@@ -138,7 +138,7 @@ static PetscErrorCode FactorSolveOnce(Factor f, PetscInt columns, PetscScalar *x
   MUMPS reads each rank's part of b where it is (ICNTL(20) = 10) and leaves b as it was. Rows that no rank gives, those
   of a border, have a right-hand side of zero.
 
-  MUMPS refines no solutions that stay distributed, so ICNTL(10) has no effect.
+  MUMPS refines no solutions that stay distributed, so ICNTL(10) is refused. linearcheck.h refines solutions.
 @*/
 PetscErrorCode FactorSolve(Factor f, Vec b, Vec x)
 {

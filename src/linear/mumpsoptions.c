@@ -25,7 +25,8 @@ static const IntegerRange IntegerRanges[] = {
   {8, 0, 8},
   {8, 77, 77},
   {9, 1, 1}, /* A x = b, not its transpose */
-  {11, 0, 2}, /* error analysis */
+  {10, 0, 0}, /* no iterative refinement: MUMPS has none for solutions that stay distributed; linearcheck.h refines */
+  {11, 0, 0}, /* no error analysis, for the same reason */
   {12, 0, 3}, /* ordering of symmetric matrices */
   {14, 0, INT_MAX}, /* workspace above the estimate (per cent) */
   {15, INT_MIN, 0}, /* analysis by blocks; a positive value would read blocks that are not given */

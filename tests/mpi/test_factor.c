@@ -238,6 +238,7 @@ static void test_options(void **state)
   assert_false(Refused("-mat_mumps_icntl_8", "77"));
   assert_true(Refused("-mat_mumps_icntl_8", "-1"));
   assert_true(Refused("-mat_mumps_icntl_8", "9"));
+  assert_true(Refused("-mat_mumps_icntl_10", "2"));
   assert_true(Refused("-mat_mumps_icntl_14", "-1"));
   assert_true(Refused("-mat_mumps_icntl_15", "1"));
   assert_true(Refused("-mat_mumps_icntl_18", "0"));
