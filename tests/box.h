@@ -1,27 +1,29 @@
-/* A box of distorted cells, once as our mesh (made by hand: one rank, no supports) and once as a PetscFE problem with
-   the same nodes, law (St. Venant-Kirchhoff) and quadrature: for the oracle and the bench of assembly. Each program
-   includes it once. */
+/* A box of distorted cells for the oracle and the bench of assembly. BoxCreate() makes it as a mesh of the library,
+   which is built by hand for one rank and has no supports. BoxCreatePetsc() makes it as a PetscFE problem with the same
+   nodes, law (St. Venant-Kirchhoff) and quadrature. Each program includes this file once. */
 #pragma once
 #include "bodies/elasticity.h"
 #include "kernels/elementkernel.h"
 #include <petscds.h>
 #include <math.h>
 
+/* A cube is divided into one tetrahedron for each order of the three axes. */
 enum { BOX_TETS_PER_CUBE = 6 };
 
 typedef struct {
   ElementType type;
-  PetscInt    n; /* cubes per side */
+  PetscInt    n; /* number of cubes per side */
   Mesh        mesh;
   Scene       scene;
   PetscReal  *u;       /* a smooth displacement with finite strains */
-  PetscInt   *corners; /* of each cell, numbered over the corners alone, in DMPlex's order */
+  PetscInt   *corners; /* corners of each cell in DMPlex's order; only nodes at corners are numbered */
 } Box;
 
+/* Young's modulus (stress) and Poisson's ratio of the box */
 static const PetscReal box_E = 200, box_nu = 0.3;
-static PetscInt       *box_dofs; /* what MeshGetGlobalDofs() hands out: every local dof */
+static PetscInt       *box_dofs; /* result of MeshGetGlobalDofs(), which is every local dof */
 
-/* Takes the place of the mesh's own, which knows only meshes read from files */
+/* Replaces the function of the mesh, which works only for meshes that were read from files. */
 PetscErrorCode MeshGetGlobalDofs(Mesh mesh, const PetscInt **dofs)
 {
   (void)mesh;
@@ -29,7 +31,7 @@ PetscErrorCode MeshGetGlobalDofs(Mesh mesh, const PetscInt **dofs)
   return PETSC_SUCCESS;
 }
 
-/* Smooth distortion of the unit cube: cells are not parallelepipeds */
+/* Distorts the unit cube smoothly, so that the cells are no parallelepipeds. */
 static inline void BoxPosition(const PetscReal s[3], PetscReal x[3])
 {
   x[0] = 2 * s[0] + 0.1 * PetscSinReal(3 * s[1]) - 0.05 * s[2] * s[2];
@@ -37,6 +39,7 @@ static inline void BoxPosition(const PetscReal s[3], PetscReal x[3])
   x[2] = s[2] + 0.08 * PetscCosReal(2 * s[0]) * s[1];
 }
 
+/* A smooth displacement with finite strains, as a function for DMProjectFunctionLocal() */
 static inline PetscErrorCode BoxDisplacement(PetscInt dim, PetscReal time, const PetscReal x[], PetscInt n,
                                              PetscScalar u[], void *context)
 {
@@ -50,6 +53,7 @@ static inline PetscErrorCode BoxDisplacement(PetscInt dim, PetscReal time, const
   return PETSC_SUCCESS;
 }
 
+/* The coordinates themselves, as a function for DMProjectFunctionLocal() */
 static inline PetscErrorCode BoxIdentity(PetscInt dim, PetscReal time, const PetscReal x[], PetscInt n, PetscScalar u[],
                                          void *context)
 {
@@ -60,7 +64,8 @@ static inline PetscErrorCode BoxIdentity(PetscInt dim, PetscReal time, const Pet
   return PETSC_SUCCESS;
 }
 
-/* Corner c of cell t of a cube, in {0, 1}^3: the only hexahedron, or the tetrahedron along one order of the axes */
+/* Gives corner c of cell t of a cube, in {0, 1}^3. The cell is the only hexahedron, or the tetrahedron that follows one
+   order of the axes. */
 static inline void BoxCorner(const Element *e, int t, int c, int corner[3])
 {
   static const int axes[BOX_TETS_PER_CUBE][3] = {
@@ -74,7 +79,7 @@ static inline void BoxCorner(const Element *e, int t, int c, int corner[3])
 
   for (int k = 0; k < 3; k++) corner[k] = e->corners == 8 && e->node[c][k] > 0;
   if (e->corners == 8) return;
-  if (t >= 3 && (c == 1 || c == 2)) c = 3 - c; /* odd orders of the axes would be left-handed */
+  if (t >= 3 && (c == 1 || c == 2)) c = 3 - c; /* With an odd order of the axes it would be left-handed. */
   for (int k = 0; k < c; k++) corner[axes[t][k]] = 1;
 }
 
@@ -83,15 +88,15 @@ static inline PetscInt BoxGridIndex(PetscInt side, const PetscInt at[3])
   return (at[2] * side + at[1]) * side + at[0];
 }
 
-/* Where DMPlex has gmsh's corner k: its tetrahedra have the first two swapped, its hexahedra the bottom face turned
- * over */
+/* Returns DMPlex's number of gmsh's corner k. DMPlex swaps the first two corners of a tetrahedron and lists the bottom
+   face of a hexahedron in the opposite direction. */
 static inline int BoxPlexPlace(const Element *e, int k)
 {
   if (e->corners == 4) return k < 2 ? 1 - k : k;
   return k == 1 ? 3 : k == 3 ? 1 : k;
 }
 
-/* Nodes and corners of cell t of the cube */
+/* Sets the nodes and corners of cell c, which is cell t of a cube. */
 static inline void BoxCell(Box *box, const PetscInt cube[3], int t, PetscInt c)
 {
   const Element    *e           = ElementGet(box->type);
@@ -197,6 +202,7 @@ static inline PetscErrorCode BoxDestroy(Box *box)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* The arguments of PETSc's pointwise functions, and the suppression of warnings about those that are not used */
 #define BOX_POINTWISE_ARGUMENTS                                                                                     \
   PetscInt dim, PetscInt Nf, PetscInt NfAux, const PetscInt uOff[], const PetscInt uOff_x[], const PetscScalar u[], \
     const PetscScalar u_t[], const PetscScalar u_x[], const PetscInt aOff[], const PetscInt aOff_x[],               \
@@ -206,7 +212,7 @@ static inline PetscErrorCode BoxDestroy(Box *box)
   (void)dim, (void)Nf, (void)NfAux, (void)uOff, (void)uOff_x, (void)u, (void)u_t, (void)aOff, (void)aOff_x, (void)a, \
     (void)a_t, (void)a_x, (void)t, (void)numConstants, (void)constants, (void)x
 
-/* F and S of the law, written as in a textbook */
+/* Computes the deformation gradient F and the second Piola-Kirchhoff stress S of the law, written as in a textbook. */
 static inline void BoxStress(const PetscScalar u_x[], PetscReal F[3][3], PetscReal S[3][3], PetscReal *lambda,
                              PetscReal *mu)
 {
@@ -261,7 +267,7 @@ static inline void BoxJacobian(BOX_POINTWISE_ARGUMENTS, PetscReal shift, const P
   }
 }
 
-/* Our points and weights on PETSc's reference cell, which is [-1, 1]^3 or the half of it */
+/* Makes the quadrature of the library's element on PETSc's reference cell, which is [-1, 1]^3 or a simplex in it. */
 static inline PetscErrorCode BoxQuadrature(const Element *e, PetscQuadrature *quadrature)
 {
   PetscReal *points, *weights;
@@ -278,7 +284,7 @@ static inline PetscErrorCode BoxQuadrature(const Element *e, PetscQuadrature *qu
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The same problem as a DMPlex with a PetscFE */
+/* Makes the same problem as a DMPlex with a PetscFE. */
 static inline PetscErrorCode BoxCreatePetsc(const Box *box, DM *dm)
 {
   const Element  *e        = ElementGet(box->type);

@@ -1,7 +1,7 @@
-/* Linked into builds with SANITIZE=1 only: what the leak sanitiser has to know about a program that uses MPI. */
+/* Support of the leak sanitiser for a program that uses MPI. This file is linked into builds with SANITIZE=1 only. */
 
-/* Libraries that a program loads stay loaded until its end, so that the sanitiser can say whose memory is whose: Open
-   MPI has many plugins, and it unloads them before that. */
+/* Replaces dlclose(), so that every loaded library stays loaded until the end of the program. The sanitiser can then
+   name the library that allocated a block. Open MPI has many plugins, and it would unload them earlier. */
 int dlclose(void *library)
 {
   (void)library;

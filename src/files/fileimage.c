@@ -1,4 +1,4 @@
-/* What an HDF5 file that grows overwrites, see fileimage.h. */
+/* An image of the bytes that a growing HDF5 file overwrites, see fileimage.h. */
 #include "files/fileimage.h"
 #include "files/hdf5table.h"
 #include <errno.h>
@@ -6,19 +6,20 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-/* A run of bytes of the file: its place and length. An image is an array of runs, which are everything between the
-   values of the datasets; each is followed by its bytes. The first run of an image has no bytes: its `first` is the
-   length of the file and its `n` is the number of runs that follow. */
+/* A run of bytes of the file, with its offset and its length in bytes. An image is an array of runs, which together are
+   all bytes between the values of the datasets. Each run is followed by its bytes. The first run of an image has no
+   bytes. Its `first` is the length of the file, and its `n` is the number of runs that follow. */
 typedef struct {
   int64_t first, n;
 } Run;
 
-/* The runs of a file, first those with the values of its datasets */
+/* A list of runs of a file. It holds the values of the datasets until RunsInvert() replaces them by the other bytes. */
 typedef struct {
   size_t n, room;
   Run   *run;
 } Runs;
 
+/* Orders runs by their offset, for qsort(). */
 static int RunCompare(const void *a, const void *b)
 {
   const Run *p = a, *q = b;
@@ -37,7 +38,7 @@ static PetscErrorCode RunsAdd(Runs *runs, int64_t first, int64_t n)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Adds the bytes of one dataset to the runs; for H5Lvisit(). */
+/* Adds the bytes of one dataset to the runs. H5Lvisit() calls this function for every link of the file. */
 static herr_t VisitLink(hid_t file, const char *name, const H5L_info_t *info, void *runs)
 {
   hid_t   object = H5Oopen(file, name, H5P_DEFAULT);
@@ -49,7 +50,7 @@ static herr_t VisitLink(hid_t file, const char *name, const H5L_info_t *info, vo
   return H5Oclose(object);
 }
 
-/* Replaces the runs by everything between them. */
+/* Replaces the runs by all bytes between them. */
 static PetscErrorCode RunsInvert(Runs *runs, int64_t length)
 {
   Runs    between = {0};
@@ -68,7 +69,7 @@ static PetscErrorCode RunsInvert(Runs *runs, int64_t length)
 }
 
 /*@
-  FileImageTake - copies all bytes of an HDF5 file but the values of its datasets.
+  FileImageTake - copies all bytes of an HDF5 file except the values of its datasets.
 
   Not collective
 
@@ -77,11 +78,11 @@ static PetscErrorCode RunsInvert(Runs *runs, int64_t length)
 
   Output Parameters:
 + data - the copy, to be freed with PetscFree()
-- size - its bytes
+- size - its size in bytes
 
   Note:
-  For one rank. The datasets must be contiguous, as Hdf5TableWrite() makes them. The file is also synced with the disk,
-  because the image is worth nothing without the values. Errors: PETSC_ERR_FILE_OPEN, PETSC_ERR_FILE_READ.
+  For one rank. The datasets must be contiguous, as Hdf5TableWrite() makes them. The file is also synchronised with the
+  disk, because the image is of no use without the values. Errors: PETSC_ERR_FILE_OPEN, PETSC_ERR_FILE_READ.
 @*/
 PetscErrorCode FileImageTake(const char *name, char **data, PetscInt64 *size)
 {
@@ -114,7 +115,7 @@ PetscErrorCode FileImageTake(const char *name, char **data, PetscInt64 *size)
                PETSC_COMM_SELF, PETSC_ERR_FILE_READ, "Cannot read %s: %s", name, strerror(errno));
     at += sizeof(Run) + n;
   }
-  fsync(fileno(stream)); /* the values too, as the image is of no use without them */
+  fsync(fileno(stream)); /* The image is of no use if the values are not on the disk. */
   fclose(stream);
   PetscCall(PetscFree(runs.run));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -127,10 +128,10 @@ PetscErrorCode FileImageTake(const char *name, char **data, PetscInt64 *size)
 
   Input Parameters:
 + name - of the file, which must be closed
-- data - from FileImageTake()
+- data - the copy from FileImageTake()
 
   Output Parameter:
-. done - PETSC_FALSE if the file is missing or shorter than it was; it is left alone then
+. done - PETSC_FALSE if the file is missing or shorter than it was; the file is then not changed
 
   Note:
   For one rank. Errors: PETSC_ERR_FILE_WRITE.

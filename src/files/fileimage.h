@@ -1,8 +1,8 @@
-/* An image of what an HDF5 file that grows overwrites: all of its bytes but the values of its datasets.
+/* An image of the bytes that a growing HDF5 file overwrites, which are all its bytes except the values of its datasets.
 
-   FileImageTake() copies these bytes. FileImagePutBack() puts them back and cuts the file to its old length. The file
-   is then what it was, however it was left. In this way a file is taken back to a checkpoint without a copy of its
-   data. */
+   FileImageTake() copies these bytes at a checkpoint. FileImagePutBack() puts them back and cuts the file to its old
+   length. The file then has its old content again, in whatever state the run has left it. A restart in this way sets a
+   file back to a checkpoint without a copy of its data. */
 #pragma once
 #include "base/petsccompat.h"
 

@@ -11,7 +11,8 @@ enum { MAX_CORNERS = 8 };
 #define CORNERS_TRI  {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}
 #define CORNERS_QUAD {{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}}
 #define CORNERS_TET  {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}
-#define CORNERS_HEX  {{-1, -1, -1}, {1, -1, -1}, {1, 1, -1}, {-1, 1, -1}, {-1, -1, 1}, {1, -1, 1}, {1, 1, 1}, {-1, 1, 1}}
+#define CORNERS_HEX  {{-1, -1, -1}, {1, -1, -1}, {1, 1, -1}, {-1, 1, -1}, \
+                      {-1, -1, 1}, {1, -1, 1}, {1, 1, 1}, {-1, 1, 1}}
 #define EDGES_EDGE   {{0, 1}}
 #define EDGES_TRI    {{0, 1}, {1, 2}, {2, 0}}
 #define EDGES_QUAD   {{0, 1}, {1, 2}, {2, 3}, {3, 0}}
@@ -20,29 +21,59 @@ enum { MAX_CORNERS = 8 };
 #define FACES_TET    {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {3, 1, 2}}
 #define FACES_HEX    {{0, 3, 2, 1}, {0, 1, 5, 4}, {0, 4, 7, 3}, {1, 2, 6, 5}, {2, 3, 7, 6}, {4, 5, 6, 7}}
 
-/* XDMF numbers and orders are those of its reader in ParaView. The reader passes the connectivity on to VTK as it is. */
+/* The numbers and orders of XDMF are those of its reader in ParaView. The reader passes the connectivity on to VTK
+   without a change. */
 static Element element_table[ELEMENT_TYPES] = {
-  [ELEMENT_EDGE2] = {.type = ELEMENT_EDGE2, .name = "edge2", .gmsh = 1, .xdmf = 2, .dim = 1, .order = 1, .nodes = 2, .corners = 2, .edges = 1, .edge_corners = EDGES_EDGE,
+  [ELEMENT_EDGE2] = {.type = ELEMENT_EDGE2, .name = "edge2", .gmsh = 1, .xdmf = 2,
+                     .dim = 1, .order = 1, .nodes = 2, .corners = 2,
+                     .edges = 1, .edge_corners = EDGES_EDGE,
                      .xdmf_order = {0, 1}, .node = CORNERS_EDGE},
-  [ELEMENT_EDGE3] = {.type = ELEMENT_EDGE3, .name = "edge3", .gmsh = 8, .xdmf = 34, .dim = 1, .order = 2, .nodes = 3, .corners = 2, .edges = 1, .edge_corners = EDGES_EDGE,
+  [ELEMENT_EDGE3] = {.type = ELEMENT_EDGE3, .name = "edge3", .gmsh = 8, .xdmf = 34,
+                     .dim = 1, .order = 2, .nodes = 3, .corners = 2,
+                     .edges = 1, .edge_corners = EDGES_EDGE,
                      .xdmf_order = {0, 1, 2}, .node = CORNERS_EDGE},
-  [ELEMENT_TRI3]  = {.type = ELEMENT_TRI3, .name = "tri3", .gmsh = 2, .xdmf = 4, .dim = 2, .order = 1, .nodes = 3, .corners = 3, .faces = 3, .face_type = ELEMENT_EDGE2,
-                     .face_nodes = EDGES_TRI, .edges = 3, .edge_corners = EDGES_TRI, .xdmf_order = {0, 1, 2}, .node = CORNERS_TRI},
-  [ELEMENT_TRI6]  = {.type = ELEMENT_TRI6, .name = "tri6", .gmsh = 9, .xdmf = 36, .dim = 2, .order = 2, .nodes = 6, .corners = 3, .faces = 3, .face_type = ELEMENT_EDGE3,
-                     .face_nodes = EDGES_TRI, .edges = 3, .edge_corners = EDGES_TRI, .xdmf_order = {0, 1, 2, 3, 4, 5}, .node = CORNERS_TRI},
-  [ELEMENT_QUAD4] = {.type = ELEMENT_QUAD4, .name = "quad4", .gmsh = 3, .xdmf = 5, .dim = 2, .order = 1, .nodes = 4, .corners = 4, .faces = 4, .face_type = ELEMENT_EDGE2,
-                     .face_nodes = EDGES_QUAD, .edges = 4, .edge_corners = EDGES_QUAD, .xdmf_order = {0, 1, 2, 3}, .node = CORNERS_QUAD},
-  [ELEMENT_QUAD9] = {.type = ELEMENT_QUAD9, .name = "quad9", .gmsh = 10, .xdmf = 35, .dim = 2, .order = 2, .nodes = 9, .corners = 4, .faces = 4, .face_type = ELEMENT_EDGE3,
-                     .face_nodes = EDGES_QUAD, .edges = 4, .edge_corners = EDGES_QUAD, .xdmf_order = {0, 1, 2, 3, 4, 5, 6, 7, 8}, .node = CORNERS_QUAD},
-  [ELEMENT_TET4]  = {.type = ELEMENT_TET4, .name = "tet4", .gmsh = 4, .xdmf = 6, .dim = 3, .order = 1, .nodes = 4, .corners = 4, .faces = 4, .face_type = ELEMENT_TRI3,
-                     .face_nodes = FACES_TET, .edges = 6, .edge_corners = EDGES_TET, .xdmf_order = {0, 1, 2, 3}, .node = CORNERS_TET},
-  [ELEMENT_TET10] = {.type = ELEMENT_TET10, .name = "tet10", .gmsh = 11, .xdmf = 38, .dim = 3, .order = 2, .nodes = 10, .corners = 4, .faces = 4, .face_type = ELEMENT_TRI6,
-                     .face_nodes = FACES_TET, .edges = 6, .edge_corners = EDGES_TET, .xdmf_order = {0, 1, 2, 3, 4, 5, 6, 7, 9, 8}, .node = CORNERS_TET},
-  [ELEMENT_HEX8]  = {.type = ELEMENT_HEX8, .name = "hex8", .gmsh = 5, .xdmf = 9, .dim = 3, .order = 1, .nodes = 8, .corners = 8, .faces = 6, .face_type = ELEMENT_QUAD4,
-                     .face_nodes = FACES_HEX, .edges = 12, .edge_corners = EDGES_HEX, .xdmf_order = {0, 1, 2, 3, 4, 5, 6, 7}, .node = CORNERS_HEX},
-  [ELEMENT_HEX27] = {.type = ELEMENT_HEX27, .name = "hex27", .gmsh = 12, .xdmf = 50, .dim = 3, .order = 2, .nodes = 27, .corners = 8, .faces = 6, .face_type = ELEMENT_QUAD9,
-                     .face_nodes = FACES_HEX, .edges = 12, .edge_corners = EDGES_HEX,
-                     .xdmf_order = {0, 1, 2, 3, 4, 5, 6, 7, 8, 11, 13, 9, 16, 18, 19, 17, 10, 12, 14, 15, 22, 23, 21, 24, 20, 25, 26}, .node = CORNERS_HEX},
+  [ELEMENT_TRI3]  = {.type = ELEMENT_TRI3, .name = "tri3", .gmsh = 2, .xdmf = 4,
+                     .dim = 2, .order = 1, .nodes = 3, .corners = 3,
+                     .faces = 3, .face_type = ELEMENT_EDGE2, .face_nodes = EDGES_TRI,
+                     .edges = 3, .edge_corners = EDGES_TRI,
+                     .xdmf_order = {0, 1, 2}, .node = CORNERS_TRI},
+  [ELEMENT_TRI6]  = {.type = ELEMENT_TRI6, .name = "tri6", .gmsh = 9, .xdmf = 36,
+                     .dim = 2, .order = 2, .nodes = 6, .corners = 3,
+                     .faces = 3, .face_type = ELEMENT_EDGE3, .face_nodes = EDGES_TRI,
+                     .edges = 3, .edge_corners = EDGES_TRI,
+                     .xdmf_order = {0, 1, 2, 3, 4, 5}, .node = CORNERS_TRI},
+  [ELEMENT_QUAD4] = {.type = ELEMENT_QUAD4, .name = "quad4", .gmsh = 3, .xdmf = 5,
+                     .dim = 2, .order = 1, .nodes = 4, .corners = 4,
+                     .faces = 4, .face_type = ELEMENT_EDGE2, .face_nodes = EDGES_QUAD,
+                     .edges = 4, .edge_corners = EDGES_QUAD,
+                     .xdmf_order = {0, 1, 2, 3}, .node = CORNERS_QUAD},
+  [ELEMENT_QUAD9] = {.type = ELEMENT_QUAD9, .name = "quad9", .gmsh = 10, .xdmf = 35,
+                     .dim = 2, .order = 2, .nodes = 9, .corners = 4,
+                     .faces = 4, .face_type = ELEMENT_EDGE3, .face_nodes = EDGES_QUAD,
+                     .edges = 4, .edge_corners = EDGES_QUAD,
+                     .xdmf_order = {0, 1, 2, 3, 4, 5, 6, 7, 8}, .node = CORNERS_QUAD},
+  [ELEMENT_TET4]  = {.type = ELEMENT_TET4, .name = "tet4", .gmsh = 4, .xdmf = 6,
+                     .dim = 3, .order = 1, .nodes = 4, .corners = 4,
+                     .faces = 4, .face_type = ELEMENT_TRI3, .face_nodes = FACES_TET,
+                     .edges = 6, .edge_corners = EDGES_TET,
+                     .xdmf_order = {0, 1, 2, 3}, .node = CORNERS_TET},
+  [ELEMENT_TET10] = {.type = ELEMENT_TET10, .name = "tet10", .gmsh = 11, .xdmf = 38,
+                     .dim = 3, .order = 2, .nodes = 10, .corners = 4,
+                     .faces = 4, .face_type = ELEMENT_TRI6, .face_nodes = FACES_TET,
+                     .edges = 6, .edge_corners = EDGES_TET,
+                     .xdmf_order = {0, 1, 2, 3, 4, 5, 6, 7, 9, 8}, .node = CORNERS_TET},
+  [ELEMENT_HEX8]  = {.type = ELEMENT_HEX8, .name = "hex8", .gmsh = 5, .xdmf = 9,
+                     .dim = 3, .order = 1, .nodes = 8, .corners = 8,
+                     .faces = 6, .face_type = ELEMENT_QUAD4, .face_nodes = FACES_HEX,
+                     .edges = 12, .edge_corners = EDGES_HEX,
+                     .xdmf_order = {0, 1, 2, 3, 4, 5, 6, 7}, .node = CORNERS_HEX},
+  [ELEMENT_HEX27] = {.type = ELEMENT_HEX27, .name = "hex27", .gmsh = 12, .xdmf = 50,
+                     .dim = 3, .order = 2, .nodes = 27, .corners = 8,
+                     .faces = 6, .face_type = ELEMENT_QUAD9, .face_nodes = FACES_HEX,
+                     .edges = 12, .edge_corners = EDGES_HEX,
+                     .xdmf_order = {0, 1, 2, 3, 4, 5, 6, 7, 8, 11, 13, 9, 16, 18, 19, 17, 10, 12, 14, 15, 22, 23, 21,
+                                    24, 20, 25, 26},
+                     .node = CORNERS_HEX},
 };
 /* clang-format on */
 static Element face_tri3; /* tri3 with the quadrature of a face */

@@ -8,6 +8,7 @@
    rule. In 2D the normal of an edge with tangent t is (t_y, -t_x), which is to the right of the direction of travel. */
 #pragma once
 
+/* The largest numbers of nodes and quadrature points: hex27 as a cell, quad9 as a face. */
 enum { ELEMENT_MAX_NODES = 27, FACE_MAX_NODES = 9, ELEMENT_MAX_POINTS = 27, FACE_MAX_POINTS = 9 };
 
 typedef enum {
@@ -30,17 +31,17 @@ typedef struct {
   int         gmsh; /* gmsh's element type number */
   int         xdmf; /* XDMF's topology number */
   int         dim, order, nodes, corners;
-  int         faces, face_type; /* faces of dimension dim - 1; edges have none (faces = 0) */
+  int         faces, face_type; /* faces have the dimension dim - 1; edges have no faces */
   int         face_nodes[6][FACE_MAX_NODES];
-  int         edges, edge_corners[12][2];    /* order 2: node corners + e is the middle of edge e, as in gmsh */
-  int         xdmf_order[ELEMENT_MAX_NODES]; /* node i of XDMF is our node xdmf_order[i] */
+  int         edges, edge_corners[12][2];    /* for order 2, node corners + e is the middle of edge e, as in gmsh */
+  int         xdmf_order[ELEMENT_MAX_NODES]; /* node i of XDMF is node xdmf_order[i] of this table */
   double      node[ELEMENT_MAX_NODES][3];    /* reference coordinates of the nodes: [-1, 1]^d, or the unit simplex */
   /* Quadrature points for the full integration of the stiffness: tri3 1, tri6 3, quad4 4, quad9 9, tet4 1, tet10 4,
      hex8 8, hex27 27. Edges and faces have the points of the element of that name, but tri3 as a face has 3. */
   int    points;
   double point[ELEMENT_MAX_POINTS][3], weight[ELEMENT_MAX_POINTS];
-  double N[ELEMENT_MAX_POINTS][ELEMENT_MAX_NODES];     /* at the quadrature points */
-  double dN[ELEMENT_MAX_POINTS][ELEMENT_MAX_NODES][3]; /* d/d(reference coordinate) */
+  double N[ELEMENT_MAX_POINTS][ELEMENT_MAX_NODES];     /* shape functions at the quadrature points */
+  double dN[ELEMENT_MAX_POINTS][ELEMENT_MAX_NODES][3]; /* their derivatives by the reference coordinates */
   /* Values at the quadrature points times this matrix are nodal values: a least-squares fit by the shape functions of
      the corners. With one point the fit is a constant. */
   double fit[ELEMENT_MAX_NODES][ELEMENT_MAX_POINTS];

@@ -1,12 +1,19 @@
-/* Batched element kernels, total Lagrangian, plain C: no PETSc, no MPI, no allocation. A batch is KERNEL_LANES elements
-   of one type, law, geometry, kinematics and formulation; arrays are [node][dim][lane], so that the inner loops
-   vectorise. A short batch repeats its last element. Sources of the forms: Bonet and Wood, "Nonlinear Continuum
-   Mechanics for Finite Element Analysis". */
+/* Element kernels: energy, internal force and tangent of cells, total Lagrangian, and the loads on faces and cells.
+   Plain C: no PETSc, no MPI, no allocation.
+
+   ElementKernel() treats a batch of KERNEL_LANES elements of one type, law, geometry, kinematics and formulation. Its
+   arrays are [node][dim][lane], so that the inner loops vectorise. A short batch repeats its last element.
+   ElementKernelExists() tells whether there is a kernel for a case. The other functions treat one cell or one face:
+   ElementPointGradient(), ElementPointStress() and ElementStress() evaluate a state, ElementQuality() and CellVolume()
+   a shape, FaceLoadKernel() and BodyForceKernel() the loads, FaceAreaKernel() the areas of a face's nodes.
+
+   Source of the forms: Bonet and Wood, "Nonlinear Continuum Mechanics for Finite Element Analysis". */
 #pragma once
 #include "kernels/element.h"
 #include "kernels/formulation.h"
 #include "kernels/material.h"
 
+/* Number of elements in a batch. It must be a multiple of LANES, which is 8 at most. */
 enum { KERNEL_LANES = 8 };
 
 typedef struct {
@@ -17,38 +24,22 @@ typedef struct {
   Formulation formulation;
 } KernelCase;
 
-/* X: reference coordinates, u: displacements, [nodes][dim][lanes]; material per lane E[], nu[]. Axisymmetric X[.][0] is
-   the radius itself. W[lanes]: strain energy, f[nodes][dim][lanes]: internal force, K[(nodes*dim)][(nodes*dim)][lanes]:
-   tangent (full, symmetric); each may be NULL. Axisymmetric quantities are over 360 degrees. Returns in J[lanes] the
-   smallest determinant of F over the points (small kinematics: 1); finite kinematics with J <= 0 still fills the arrays
-   with finite numbers. */
-void ElementKernel(const KernelCase *, const double *X, const double *u, const double *E, const double *nu, double *W,
-                   double *f, double *K, double *J);
-int  ElementKernelExists(const KernelCase *);
-/* One element: the displacement gradient that the law is evaluated at, at its quadrature points [points][9]. X, u:
- * [nodes][dim]. */
-void ElementPointGradient(const KernelCase *, const double *X, const double *u, double E, double nu, double *H);
-/* One element: Cauchy stress (xx yy zz xy yz xz; axisymmetric: x = r, y = z, z = hoop) at its quadrature points
-   [points][6] and their reference volumes [points]. X, u: [nodes][dim]. */
-void ElementPointStress(const KernelCase *, const double *X, const double *u, double E, double nu, double *stress,
-                        double *volume);
-/* The same averaged over the element's volume, and that volume (reference). */
-void ElementStress(const KernelCase *, const double *X, const double *u, double E, double nu, double stress[6],
-                   double *volume);
-/* Smallest determinant of dX/dxi at nodes and quadrature points over its mean: <= 0 inverted, 1 a parallelepiped
- * ("scaled Jacobian"). */
+void   ElementKernel(const KernelCase *, const double *X, const double *u, const double *E, const double *nu, double *W,
+                     double *f, double *K, double *J);
+int    ElementKernelExists(const KernelCase *);
+void   ElementPointGradient(const KernelCase *, const double *X, const double *u, double E, double nu, double *H);
+void   ElementPointStress(const KernelCase *, const double *X, const double *u, double E, double nu, double *stress,
+                          double *volume);
+void   ElementStress(const KernelCase *, const double *X, const double *u, double E, double nu, double stress[6],
+                     double *volume);
 double ElementQuality(ElementType, int dim, const double *X);
 
-/* One face, node order outward. X, u: [nodes][dim]. Traction (force per reference area), dead pressure (reference
-   normal) or follower pressure (current normal and area): adds the external force to f[nodes*dim]; K (nodes*dim
-   squared, may be NULL; unsymmetric for followers) receives -d(external force)/du added: the load's part of the
-   tangent. energy may be NULL: potential -int t.u for dead loads. */
+/* The loads on a face. A dead pressure acts along the reference normal on the reference area. A follower pressure acts
+   along the current normal on the current area. */
 typedef enum { FACE_TRACTION, FACE_DEAD_PRESSURE, FACE_FOLLOWER_PRESSURE } FaceLoad;
-void FaceLoadKernel(ElementType face, int dim, Geometry, FaceLoad, const double *X, const double *u,
-                    const double *value, double *f, double *K, double *energy);
-/* External force of a body force (force per reference volume) on one cell, added to f[nodes*dim]. */
-void BodyForceKernel(ElementType, int dim, Geometry, const double *X, const double *value, double *f);
-/* Tributary areas int N_a dA of one face (axisymmetric: 2 pi R dA), X: [nodes][dim] reference or current coordinates:
-   adds to area[nodes]; normal (may be NULL): adds int N_a n dA to normal[nodes*dim] */
+
+void   FaceLoadKernel(ElementType face, int dim, Geometry, FaceLoad, const double *X, const double *u,
+                      const double *value, double *f, double *K, double *energy);
+void   BodyForceKernel(ElementType, int dim, Geometry, const double *X, const double *value, double *f);
 void   FaceAreaKernel(ElementType face, int dim, Geometry, const double *X, double *area, double *normal);
 double CellVolume(ElementType, int dim, Geometry, const double *X);

@@ -1,9 +1,9 @@
-/* The choices that decide which kernel a body's cells need: geometry, kinematics and element formulation. Plain C. The
-   scene names them (scene.h), KernelCase (elementkernel.h) carries them to the kernels. */
+/* The choices that decide which kernel the cells of a body need: geometry, kinematics and element formulation. Plain C.
+   The user names them in the scene (scene.h). They reach the kernels in a KernelCase (elementkernel.h). */
 #pragma once
 
 typedef enum { GEOMETRY_SOLID, GEOMETRY_PLANE_STRAIN, GEOMETRY_AXISYMMETRIC } Geometry;
 typedef enum { KINEMATICS_SMALL, KINEMATICS_FINITE } Kinematics;
 typedef enum { FORMULATION_FULL, FORMULATION_ENHANCED, FORMULATION_FBAR, FORMULATIONS } Formulation;
 
-extern const char *const Formulations[]; /* their words in a scene, NULL-terminated */
+extern const char *const Formulations[]; /* words of the formulations in a scene, NULL-terminated */

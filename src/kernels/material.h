@@ -6,7 +6,7 @@
 #include "base/choices.h"
 #include "base/lanes.h"
 
-extern const char *const MaterialLaws[]; /* names in the scene, NULL-terminated */
+extern const char *const MaterialLaws[]; /* words of the laws in a scene, NULL-terminated */
 
 typedef struct {
   MaterialLaw law;
@@ -19,7 +19,7 @@ typedef struct {
 enum { MATERIAL_TANGENT_SIZE = 45 };
 #define MATERIAL_TANGENT_INDEX(r, s) ((r) * 9 - (r) * ((r) - 1) / 2 + (s) - (r))
 
-/* det(1 + H) - 1, formed so that small strains keep their digits */
+/* Computes det(1 + H) - 1 in a form in which small strains keep their digits. */
 static inline void MaterialDilatation(const Lanes H[9], Lanes *dilatation)
 {
   const Lanes m0 = H[4] * H[8] - H[5] * H[7], m1 = H[5] * H[6] - H[3] * H[8], m2 = H[3] * H[7] - H[4] * H[6];
@@ -28,9 +28,9 @@ static inline void MaterialDilatation(const Lanes H[9], Lanes *dilatation)
                 H[1] * m1 + H[2] * m2;
 }
 
-/* A law. Input: displacement gradient H = F - 1, dilatation det F - 1 by MaterialDilatation(), Lame's constants lambda
-   and mu. Output per reference volume: energy W, first Piola-Kirchhoff stress P[9] and tangent A[45]. W and A may be
-   NULL. The output is finite for every finite H. */
+/* A law. Its input is the displacement gradient H = F - 1, the dilatation det F - 1 from MaterialDilatation() and
+   Lame's constants lambda and mu. Its output per reference volume is the energy W, the first Piola-Kirchhoff stress
+   P[9] and the tangent A[45]. W and A may be NULL. The output is finite for every finite H. */
 typedef void MaterialLawFn(const Lanes H[9], const Lanes *dilatation, const Lanes *lambda, const Lanes *mu, Lanes *W,
                            Lanes P[9], Lanes A[MATERIAL_TANGENT_SIZE]);
 #define MATERIAL_DECLARE(law, word, function) MaterialLawFn function;

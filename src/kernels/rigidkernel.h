@@ -7,6 +7,7 @@
    of the null space unique. */
 #pragma once
 
+/* Number of rigid motions of a body in space */
 enum { RIGID_MODES = 6 };
 
 void RigidRow(const double x[3], const double n[3], double row[RIGID_MODES]);

@@ -1,3 +1,4 @@
+/* Arguments of the program, its help and its version, see commandline.h. */
 #include "scene/commandline.h"
 #include "base/blas.h"
 #include "schema.h"
@@ -9,6 +10,7 @@ static const char Usage[] =
   "       burnish -restart DIR [-set KEY=VALUE]... [-quiet] [PETSc options]\n"
   "       burnish -help | -version";
 
+/* Keeps a complaint with the usage, unless an earlier argument has caused one already. */
 static void CommandLineComplain(CommandLine *line, const char *what, const char *about)
 {
   if (!line->complaint[0]) snprintf(line->complaint, sizeof line->complaint, "%.300s: %s\n%s", about, what, Usage);
@@ -31,7 +33,7 @@ static int IsSceneFile(const char *word)
   return dot && (!strcmp(dot, ".yaml") || !strcmp(dot, ".yml"));
 }
 
-/* The value of option argv[*i]; NULL after a complaint. */
+/* Returns the value of option argv[*i] and advances *i to it. Returns NULL after a complaint. */
 static char *CommandLineValue(CommandLine *line, int argc, char **argv, int *i, const char *what)
 {
   if (*i + 1 < argc && argv[*i + 1][0] && !IsOption(argv[*i + 1])) return argv[++*i];
@@ -62,7 +64,7 @@ static void CommandLineSetLimit(CommandLine *line, const char *value)
   if (*end || !(line->time_limit > 0)) CommandLineComplain(line, "-time_limit needs seconds, more than 0", value);
 }
 
-/* What goes with what */
+/* Complains of options that exclude each other, and of a missing scene file. */
 static void CommandLineCheck(CommandLine *line)
 {
   if (line->restart && line->scene)
@@ -77,7 +79,7 @@ static void CommandLineCheck(CommandLine *line)
   if (!line->restart && !line->scene) CommandLineComplain(line, "no scene file", "command line");
 }
 
-/* Takes argv[*i] if it is one of our options, with its value. Returns 0 if it is not. */
+/* Takes argv[*i] with its value if it is an option of Burnish. Returns 0 if it is none. */
 static int CommandLineOption(CommandLine *line, int argc, char **argv, int *i)
 {
   const char *word = argv[*i];
@@ -107,15 +109,29 @@ static int CommandLineOption(CommandLine *line, int argc, char **argv, int *i)
   return 1;
 }
 
-/* CommandLineParse - sorts the arguments into ours and PETSc's.
+/*@
+  CommandLineParse - sorts the arguments into those of Burnish and those of PETSc.
 
-   Not collective, before MPI starts. A bare word that ends in .yaml or .yml and follows no PETSc option is the scene
-   file; one that follows a PETSc option is the scene only where there is no other, since it may be that option's value.
-   Other bare words after a PETSc option are its values and stay in line->argv. Never prints; a mistake is told in
-   line->complaint. Free with CommandLineDestroy(). */
+  Not collective
+
+  Input Parameters:
++ argc - number of arguments
+- argv - arguments, the program's name first; they must live longer than the result, which points into them
+
+  Output Parameter:
+. line - the sorted arguments, to be freed with CommandLineDestroy()
+
+  Note:
+  Plain C, to be called before MPI starts. It never prints. A mistake is described in line->complaint, and PETSc then
+  gets no argument but the program's name.
+
+  A bare word that ends in .yaml or .yml and follows no PETSc option is the scene file. If such a word follows a PETSc
+  option, it may be the value of that option. It is therefore the scene file only if there is no other one. Other bare
+  words after a PETSc option are its values and stay in line->argv.
+@*/
 void CommandLineParse(int argc, char **argv, CommandLine *line)
 {
-  int maybe = 0; /* place in line->argv of a word that is the scene or the value of the option before it */
+  int maybe = 0; /* index in line->argv of a word that is the scene file or the value of the option before it */
 
   memset(line, 0, sizeof *line);
   line->set  = calloc((size_t)argc + 1, sizeof *line->set);
@@ -158,8 +174,17 @@ void CommandLineParse(int argc, char **argv, CommandLine *line)
   }
 }
 
-/* CommandLineDestroy - frees what CommandLineParse() made. Not collective; after PetscFinalize(), which still looks at
- * argv. */
+/*@
+  CommandLineDestroy - frees the lists that CommandLineParse() has made.
+
+  Not collective
+
+  Input Parameter:
+. line - from CommandLineParse()
+
+  Note:
+  It must be called after PetscFinalize(), which still reads line->argv.
+@*/
 void CommandLineDestroy(CommandLine *line)
 {
   free(line->set);
@@ -167,7 +192,17 @@ void CommandLineDestroy(CommandLine *line)
   line->set = line->argv = NULL;
 }
 
-/* CommandLineHelp - prints commands, options and the scene reference. Not collective: for one rank. */
+/*@
+  CommandLineHelp - prints the commands, the options and the scene reference.
+
+  Not collective
+
+  Input Parameter:
+. file - the stream to print to
+
+  Note:
+  For one rank.
+@*/
 void CommandLineHelp(FILE *file)
 {
   fputs("Burnish: contact of deformable bodies, from a scene file to results, in parallel.\n\n"
@@ -196,7 +231,17 @@ void CommandLineHelp(FILE *file)
   SchemaReference(file);
 }
 
-/* CommandLineVersion - prints name, version, PETSc's version, and the BLAS. Not collective: for one rank. */
+/*@
+  CommandLineVersion - prints the program's name and version, the version of PETSc and the BLAS library.
+
+  Not collective
+
+  Input Parameter:
+. file - the stream to print to
+
+  Note:
+  For one rank.
+@*/
 void CommandLineVersion(FILE *file)
 {
   Blas blas;

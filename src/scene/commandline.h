@@ -1,6 +1,9 @@
-/* What the user typed: ours of the arguments, and the rest for PETSc. Parsed before PetscInitialize(), because -help,
-   -version and a repeated -set are ours; plain C that prints nothing, so that main can start MPI first and then print
-   once, on rank 0. */
+/* The command line: the arguments of Burnish, and the others for PETSc. Plain C.
+
+   CommandLineParse() sorts the arguments before PetscInitialize(), because -help, -version and a repeated -set belong
+   to Burnish and not to PETSc. It prints nothing, so that main can start MPI first and then print once, on rank 0. A
+   mistake is kept in `complaint`. CommandLineHelp() and CommandLineVersion() print what -help and -version ask for.
+   CommandLineDestroy() frees the result after PetscFinalize(). */
 #pragma once
 #include <stdio.h>
 
@@ -10,19 +13,21 @@ typedef enum { COMMAND_RUN, COMMAND_CHECK, COMMAND_MESH, COMMAND_HELP, COMMAND_V
 
 typedef struct {
   CommandMode mode;
-  char       *scene;      /* scene file */
-  char       *directory;  /* -o, or NULL */
-  char       *restart;    /* -restart, or NULL */
-  double      time_limit; /* seconds; 0: none */
+  char       *scene;      /* path of the scene file, or NULL */
+  char       *directory;  /* value of -o, or NULL */
+  char       *restart;    /* value of -restart, or NULL */
+  double      time_limit; /* value of -time_limit in seconds, or 0 for no limit */
   int         n_set;
-  char      **set; /* KEY=VALUE */
+  char      **set; /* values of -set, each KEY=VALUE */
   int         overwrite, quiet;
-  int         argc; /* what is left for PetscInitialize(), the program's name first */
-  char      **argv;
-  char        complaint[768]; /* empty, or why the command line is refused: for RefuseInput() once MPI runs */
+  /* The arguments that are left for PetscInitialize(). The first one is the program's name. */
+  int    argc;
+  char **argv;
+  /* Why the command line is refused, for RefuseInput() once MPI runs. It is empty if the command line is correct. */
+  char complaint[768];
 } CommandLine;
 
 void CommandLineParse(int argc, char **argv, CommandLine *);
 void CommandLineDestroy(CommandLine *);
-void CommandLineHelp(FILE *); /* commands, options, scene reference */
+void CommandLineHelp(FILE *);
 void CommandLineVersion(FILE *);

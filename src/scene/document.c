@@ -1,3 +1,4 @@
+/* The scene as a tree of YAML values: paths, nodes, refusals, reading, -set and the canonical text, see document.h. */
 #include "document.h"
 #include "base/refusal.h"
 #include <errno.h>
@@ -7,20 +8,39 @@
 #include <string.h>
 #include <yaml.h>
 
-/* A scene is a few kB of text. The bound keeps a wrong file (a mesh, a device) from being read whole by every rank. */
+/* The first buffer and the largest size of a scene file, in bytes. A scene is a text of a few kB. The bound prevents
+   every rank from reading the whole of a wrong file, such as a mesh or a device. */
 enum { SCENE_FIRST_BYTES = 64 << 10, SCENE_MAX_BYTES = 16 << 20 };
-/* The schema is 6 levels deep. The bound keeps the recursions over the tree from exhausting the stack. */
+/* The largest depth of the tree, in levels. The schema is 6 levels deep. The bound prevents the recursions over the
+   tree from exhausting the stack. */
 enum { SCENE_MAX_DEPTH = 32 };
 
-/* ---- paths ---- */
+/* Paths */
 
-/* KeyPathComponent - length of the component that a path starts with, up to the next dot or the end. Not collective. */
+/*@
+  KeyPathComponent - returns the length of the first component of a path, up to the next dot or the end.
+
+  Not collective
+
+  Input Parameter:
+. path - keys and indices with dots between them
+@*/
 size_t KeyPathComponent(const char *path)
 {
   return strcspn(path, ".");
 }
 
-/* KeyPathComponentIsIndex - whether the component that a path starts with is an index of a list. Not collective. */
+/*@
+  KeyPathComponentIsIndex - tells whether the first component of a path is an index of a list.
+
+  Not collective
+
+  Input Parameter:
+. path - keys and indices with dots between them
+
+  Note:
+  It returns 1 for an index, else 0. An index has at most 9 digits.
+@*/
 int KeyPathComponentIsIndex(const char *path)
 {
   const size_t n = KeyPathComponent(path);
@@ -28,14 +48,36 @@ int KeyPathComponentIsIndex(const char *path)
   return n > 0 && n < 10 && strspn(path, "0123456789") >= n;
 }
 
-/* KeyPathJoin - parent.key, or key alone below the root, into path[KEY_PATH_LENGTH]. Not collective. */
+/*@
+  KeyPathJoin - writes the path "parent.key".
+
+  Not collective
+
+  Input Parameters:
++ parent - path of the map, or "" for the root, below which the path is the key alone
+- key    - key in the map
+
+  Output Parameter:
+. path - the joined path [KEY_PATH_LENGTH]
+@*/
 void KeyPathJoin(char path[KEY_PATH_LENGTH], const char *parent, const char *key)
 {
   snprintf(path, KEY_PATH_LENGTH, "%.*s%s%.*s", KEY_PATH_LENGTH / 2, parent, *parent ? "." : "",
            KEY_PATH_LENGTH / 2 - 2, key);
 }
 
-/* KeyPathJoinIndex - parent.index into path[KEY_PATH_LENGTH]. Not collective. */
+/*@
+  KeyPathJoinIndex - writes the path "parent.index".
+
+  Not collective
+
+  Input Parameters:
++ parent - path of the list
+- index  - index in the list, counted from 0
+
+  Output Parameter:
+. path - the joined path [KEY_PATH_LENGTH]
+@*/
 void KeyPathJoinIndex(char path[KEY_PATH_LENGTH], const char *parent, int index)
 {
   char key[16];
@@ -44,10 +86,20 @@ void KeyPathJoinIndex(char path[KEY_PATH_LENGTH], const char *parent, int index)
   KeyPathJoin(path, parent, key);
 }
 
-/* ---- nodes ---- */
+/* Nodes */
 
-/* NodeChild - the child of a list or map that the first component of path names; NULL if there is none. Not collective.
- */
+/*@
+  NodeChild - returns the child of a list or a map that the first component of a path names.
+
+  Not collective
+
+  Input Parameters:
++ node - the list or map
+- path - path that begins with a key of the map or an index of the list
+
+  Note:
+  It returns NULL if there is no such child.
+@*/
 Node NodeChild(Node node, const char *path)
 {
   const size_t n = KeyPathComponent(path);
@@ -59,7 +111,18 @@ Node NodeChild(Node node, const char *path)
   return NULL;
 }
 
-/* NodeFind - the value at a path below a node, list indices included; NULL if there is none. Not collective. */
+/*@
+  NodeFind - returns the value at a path below a node.
+
+  Not collective
+
+  Input Parameters:
++ node - where the path begins
+- path - keys of maps and indices of lists, with dots between them
+
+  Note:
+  It returns NULL if there is no such value.
+@*/
 Node NodeFind(Node node, const char *path)
 {
   while (node && *path) {
@@ -70,10 +133,21 @@ Node NodeFind(Node node, const char *path)
   return node;
 }
 
-/* NodeReal - the value of a scalar that is a number in decimal notation, from its first character to its last; no
-   hexadecimal, nan, inf.
+/*@
+  NodeReal - gives the value of a scalar that is a finite number in decimal notation.
 
-   Not collective. Returns 0 where it is not one (or too large for a double). The C locale is the program's. */
+  Not collective
+
+  Input Parameter:
+. node - the scalar
+
+  Output Parameter:
+. value - its value
+
+  Note:
+  It returns 1 if the whole text is such a number without quotes, else 0. Hexadecimal numbers, nan, inf and numbers that
+  are too large for a double are refused in this way. The program must have the C locale.
+@*/
 int NodeReal(Node node, double *value)
 {
   char *end;
@@ -84,8 +158,20 @@ int NodeReal(Node node, double *value)
   return !*end && isfinite(*value);
 }
 
-/* NodeInteger - the value of a scalar that is a whole number in decimal notation. Not collective. Returns 0 where it is
- * not one. */
+/*@
+  NodeInteger - gives the value of a scalar that is a whole number in decimal notation.
+
+  Not collective
+
+  Input Parameter:
+. node - the scalar
+
+  Output Parameter:
+. value - its value
+
+  Note:
+  It returns 1 if the whole text is such a number without quotes, else 0.
+@*/
 int NodeInteger(Node node, long *value)
 {
   char *end;
@@ -97,16 +183,29 @@ int NodeInteger(Node node, long *value)
   return !*end && !errno;
 }
 
-/* NodeBoolean - the value of a scalar that is true or false, in these words. Not collective. Returns 0 where it is not
- * one. */
+/*@
+  NodeBoolean - gives the value of a scalar that is true or false.
+
+  Not collective
+
+  Input Parameter:
+. node - the scalar
+
+  Output Parameter:
+. value - 1 for true, 0 for false
+
+  Note:
+  It returns 1 if the text is one of these two words without quotes, else 0.
+@*/
 int NodeBoolean(Node node, int *value)
 {
   *value = node->kind == NODE_SCALAR && node->plain && !strcmp(node->text, "true");
   return *value || (node->kind == NODE_SCALAR && node->plain && !strcmp(node->text, "false"));
 }
 
-/* ---- refusals ---- */
+/* Refusals */
 
+/* Writes the place of a node for a message, see DocumentWhere(). */
 static const char *DocumentWhereNode(Document *document, Node node, const char *path)
 {
   if (!node->set)
@@ -119,8 +218,19 @@ static const char *DocumentWhereNode(Document *document, Node node, const char *
   return document->where;
 }
 
-/* DocumentWhere - "FILE:LINE: PATH", the line being that of the path or of its nearest ancestor in the file; "-set KEY"
-   in place of file and line if it came from there. Valid until the next call. Not collective. */
+/*@
+  DocumentWhere - returns the place of a value for a message, as "FILE:LINE: PATH".
+
+  Not collective
+
+  Input Parameters:
++ document - the document
+- path     - path of the value, which need not be in the document
+
+  Note:
+  The line is that of the value, or of its nearest ancestor that the document has. If that came from a -set, "-set KEY"
+  replaces file and line. The text is valid until the next call.
+@*/
 const char *DocumentWhere(Document *document, const char *path)
 {
   Node        node = document->root, next = node;
@@ -134,7 +244,7 @@ const char *DocumentWhere(Document *document, const char *path)
   return DocumentWhereNode(document, node, path);
 }
 
-/* Refuses "where: text". */
+/* Refuses the value at a place with a formatted message. */
 static PetscErrorCode DocumentRefuseList(Document *document, const char *where, const char *format, va_list arguments)
 {
   char text[1024];
@@ -146,18 +256,18 @@ static PetscErrorCode DocumentRefuseList(Document *document, const char *where, 
 }
 
 /*@
-  DocumentRefuse - refuses the value at a path, which need not be in the document
+  DocumentRefuse - refuses the value at a path.
 
   Collective
 
   Input Parameters:
 + document - the document
-. path     - of the value
-. format   - of the message, as for printf()
+. path     - path of the value, which need not be in the document
+. format   - format of the message, as for printf()
 - ...      - arguments of the format
 
   Note:
-  Returns REFUSED, see RefuseInput().
+  It returns REFUSED, see RefuseInput().
 @*/
 PetscErrorCode DocumentRefuse(Document *document, const char *path, const char *format, ...)
 {
@@ -172,19 +282,19 @@ PetscErrorCode DocumentRefuse(Document *document, const char *path, const char *
 }
 
 /*@
-  DocumentRefuseNode - refuses a node, which need not be in the tree yet
+  DocumentRefuseNode - refuses a node, which need not be in the tree yet.
 
   Collective
 
   Input Parameters:
 + document - the document
-. node     - its line or its -set is named in the message
-. path     - of the node
-. format   - of the message, as for printf()
+. node     - the node, whose line or -set the message names
+. path     - path of the node
+. format   - format of the message, as for printf()
 - ...      - arguments of the format
 
   Note:
-  Returns REFUSED, see RefuseInput().
+  It returns REFUSED, see RefuseInput().
 @*/
 PetscErrorCode DocumentRefuseNode(Document *document, Node node, const char *path, const char *format, ...)
 {
@@ -198,13 +308,14 @@ PetscErrorCode DocumentRefuseNode(Document *document, Node node, const char *pat
   PetscFunctionReturn(code);
 }
 
-/* ---- text to tree ---- */
+/* From the text to the tree */
 
+/* The reader of one libyaml document */
 typedef struct {
   Document        *document;
   const char      *set; /* key of the -set whose value is read, or NULL */
   yaml_document_t *yaml;
-  PetscBool       *visited; /* per libyaml node: a second visit is an alias */
+  PetscBool       *visited; /* whether a libyaml node has been read; a node that is read twice is a YAML alias */
 } TreeReader;
 
 static PetscErrorCode NodeDestroy(Node *node)
@@ -232,7 +343,7 @@ static PetscErrorCode NodeCreate(NodeKind kind, int line, const char *set, Node 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Adds a child, which may be NULL; key is copied (NULL for a list). */
+/* Adds a child, which may be NULL, to a list or a map. The key is copied. It is NULL for a list. */
 static PetscErrorCode NodeAppend(Node node, const char *key, Node child)
 {
   Node  *children;
@@ -257,7 +368,7 @@ static PetscErrorCode NodeAppend(Node node, const char *key, Node child)
 
 static PetscErrorCode TreeRead(TreeReader *, int id, int line, const char *path, int depth, Node *);
 
-/* Each child is in the map before it is read, so that a refusal leaves nothing outside of the tree. */
+/* Reads a map. Each child is added to the map before it is read, so that a refusal leaves no node outside the tree. */
 static PetscErrorCode TreeReadMap(TreeReader *reader, const yaml_node_t *yaml, const char *path, int depth, Node map)
 {
   char below[KEY_PATH_LENGTH];
@@ -284,6 +395,7 @@ static PetscErrorCode TreeReadMap(TreeReader *reader, const yaml_node_t *yaml, c
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Reads a list in the same way. */
 static PetscErrorCode TreeReadList(TreeReader *reader, const yaml_node_t *yaml, const char *path, int depth, Node list)
 {
   char below[KEY_PATH_LENGTH];
@@ -297,8 +409,8 @@ static PetscErrorCode TreeReadList(TreeReader *reader, const yaml_node_t *yaml, 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Reads one libyaml node with all below it into *node. line: of the key of a map's value; 0: where the value itself
-   starts. */
+/* Reads one libyaml node and all nodes below it. For the value of a map, `line` is the line of its key. If it is 0, the
+   line on which the value itself starts is taken. */
 static PetscErrorCode TreeRead(TreeReader *reader, int id, int line, const char *path, int depth, Node *node)
 {
   static const char *const Tags[] = {YAML_DEFAULT_SCALAR_TAG, YAML_DEFAULT_SEQUENCE_TAG, YAML_DEFAULT_MAPPING_TAG};
@@ -329,7 +441,7 @@ static PetscErrorCode TreeRead(TreeReader *reader, int id, int line, const char 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Is the first character of a line (from 0) that is no space a tab? */
+/* Tells whether the first character that is no space is a tab, on a line that is counted from 0. */
 static PetscBool LineStartsWithTab(const char *text, size_t length, size_t line)
 {
   size_t i = 0;
@@ -339,7 +451,8 @@ static PetscBool LineStartsWithTab(const char *text, size_t length, size_t line)
   return i < length && text[i] == '\t' ? PETSC_TRUE : PETSC_FALSE;
 }
 
-/* Refuses with libyaml's own words. A tab is named, because it cannot be seen in an editor. */
+/* Refuses malformed YAML with the message of libyaml. A tab has a message of its own, because it cannot be seen in an
+   editor. */
 static PetscErrorCode DocumentRefuseYaml(Document *document, const yaml_parser_t *parser, const char *text,
                                          size_t length, const char *set)
 {
@@ -358,7 +471,7 @@ static PetscErrorCode DocumentRefuseYaml(Document *document, const yaml_parser_t
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The tree of a libyaml document. The libyaml document stays the caller's. */
+/* Makes the tree of a libyaml document. The caller still owns the libyaml document. */
 static PetscErrorCode DocumentReadTree(Document *document, yaml_document_t *yaml, const char *path, const char *set,
                                        Node *root)
 {
@@ -389,8 +502,9 @@ static PetscErrorCode DocumentCheckSingle(Document *document, yaml_document_t *s
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The tree of a text: one YAML document. path: where the tree belongs. set: the -set that it came from, or NULL. After
-   a refusal *root holds what was read so far, and libyaml's memory is free. */
+/* Makes the tree of a text, which is one YAML document. `path` is the place of the tree in the scene. `set` is the key
+   of the -set that the text came from, or NULL. After a refusal *root holds the nodes that were read until then, and
+   the memory of libyaml is free. */
 static PetscErrorCode DocumentParse(Document *document, const char *text, size_t length, const char *path,
                                     const char *set, Node *root)
 {
@@ -414,12 +528,12 @@ static PetscErrorCode DocumentParse(Document *document, const char *text, size_t
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Rank 0 reads and all ranks get the text, so that every rank parses, and refuses, the same. The caller frees text,
-   also after a refusal. */
+/* Reads a file on rank 0 and gives its text to all ranks, so that every rank parses and refuses the same text. The
+   caller frees the text, also after a refusal. */
 static PetscErrorCode FileBroadcast(MPI_Comm comm, const char *name, char **text, size_t *length)
 {
   PetscMPIInt rank;
-  int         size[2] = {0, 0}; /* bytes, errno */
+  int         size[2] = {0, 0}; /* number of bytes, errno */
   FILE       *file;
 
   PetscFunctionBeginUser;
@@ -453,9 +567,10 @@ static PetscErrorCode FileBroadcast(MPI_Comm comm, const char *name, char **text
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ---- -set ---- */
+/* The edits of -set */
 
-/* The place of a child, made empty if the map lacks the key or if the index is the list's length. */
+/* Gives the slot of a child. A new empty slot is added if the map lacks the key or if the index is the list's length.
+ */
 static PetscErrorCode NodeSlot(Document *document, Node place, Node node, const char *key, Node **slot)
 {
   Node  child = NodeFind(node, key);
@@ -483,7 +598,8 @@ static PetscErrorCode NodeSlot(Document *document, Node place, Node node, const 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Puts *value at the path of a -set, with the maps and lists that lead to it. *value is NULL once it is in the tree. */
+/* Puts *value at the path of a -set and creates the missing maps and lists above it. *value is NULL as soon as the tree
+   owns it. */
 static PetscErrorCode DocumentPut(Document *document, const char *set, Node *value)
 {
   struct _n_Node place = {.set = set};
@@ -515,7 +631,7 @@ static PetscErrorCode DocumentPut(Document *document, const char *set, Node *val
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* One -set: replaces or adds the value at the path. */
+/* Applies one -set, which replaces or adds the value at a path. */
 static PetscErrorCode DocumentSet(Document *document, const char *set, const char *text)
 {
   Node           value = NULL;
@@ -529,8 +645,9 @@ static PetscErrorCode DocumentSet(Document *document, const char *set, const cha
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ---- canonical text ---- */
+/* Canonical text */
 
+/* An entry of a map, to be sorted by its key */
 typedef struct {
   char *key;
   Node  value;
@@ -541,7 +658,8 @@ static int NodeEntryCompare(const void *a, const void *b)
   return strcmp(((const NodeEntry *)a)->key, ((const NodeEntry *)b)->key);
 }
 
-/* Adds a copy of the tree to a libyaml document, keys in alphabetical order; *id is its root there. */
+/* Adds a copy of the tree to a libyaml document, with the keys in alphabetical order. *id is the number of its root in
+   that document. */
 static PetscErrorCode NodeToYaml(Node node, yaml_document_t *yaml, int *id)
 {
   NodeEntry *entries;
@@ -574,10 +692,20 @@ static PetscErrorCode NodeToYaml(Node node, yaml_document_t *yaml, int *id)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* DocumentText - the document as one YAML text that depends on its keys and values alone: not on comments, layout,
-   order of keys, file or -set.
+/*@
+  DocumentText - writes the document as one canonical YAML text.
 
-   Not collective. text: free with PetscFree(). */
+  Not collective
+
+  Input Parameter:
+. document - the document
+
+  Output Parameter:
+. text - the text, to be freed with PetscFree()
+
+  Note:
+  The text depends on the keys and values only. It does not depend on comments, layout, order of keys, file or -set.
+@*/
 PetscErrorCode DocumentText(Document *document, char **text)
 {
   yaml_document_t yaml;
@@ -603,8 +731,9 @@ PetscErrorCode DocumentText(Document *document, char **text)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ---- the whole ---- */
+/* Whole documents */
 
+/* Applies the edits in order and keeps their keys for messages. */
 static PetscErrorCode DocumentEdit(Document *document, int n_set, char *const *set)
 {
   PetscFunctionBeginUser;
@@ -632,22 +761,22 @@ static PetscErrorCode DocumentCreate(MPI_Comm comm, const char *file, Document *
 }
 
 /*@
-  DocumentReadText - reads a document from a text in memory, the same on all ranks, and applies edits to it
+  DocumentReadText - reads a document from a text in memory and applies edits to it.
 
   Collective
 
   Input Parameters:
-+ comm  - all ranks
-. name  - stands for the file in messages
-. text  - the document
++ comm  - communicator of all ranks
+. name  - name that replaces the file name in messages
+. text  - the document as a YAML text, the same on all ranks
 . n_set - number of edits
-- set   - KEY=VALUE, in order
+- set   - edits KEY=VALUE, in order
 
   Output Parameter:
-. document - free it with DocumentDestroy()
+. document - the document, to be freed with DocumentDestroy()
 
   Note:
-  As DocumentRead() otherwise.
+  It refuses a text that is no plain YAML. After a refusal there is no document, and all memory is free.
 @*/
 PetscErrorCode DocumentReadText(MPI_Comm comm, const char *name, const char *text, int n_set, char *const *set,
                                 Document **document)
@@ -664,21 +793,22 @@ PetscErrorCode DocumentReadText(MPI_Comm comm, const char *name, const char *tex
 }
 
 /*@
-  DocumentRead - reads a document from a file and applies edits to it
+  DocumentRead - reads a document from a file and applies edits to it.
 
   Collective
 
   Input Parameters:
-+ comm  - all ranks
-. file  - as the process can open it on rank 0
++ comm  - communicator of all ranks
+. file  - path with which rank 0 can open the file
 . n_set - number of edits
-- set   - KEY=VALUE, in order
+- set   - edits KEY=VALUE, in order
 
   Output Parameter:
-. document - free it with DocumentDestroy()
+. document - the document, to be freed with DocumentDestroy()
 
   Note:
-  Refuses what cannot be read or is no plain YAML. After a refusal there is no document, and all memory is free.
+  It refuses a file that cannot be read or is no plain YAML. After a refusal there is no document, and all memory is
+  free.
 @*/
 PetscErrorCode DocumentRead(MPI_Comm comm, const char *file, int n_set, char *const *set, Document **document)
 {
@@ -697,7 +827,14 @@ PetscErrorCode DocumentRead(MPI_Comm comm, const char *file, int n_set, char *co
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* DocumentDestroy - frees a document. Not collective. */
+/*@
+  DocumentDestroy - frees a document.
+
+  Not collective
+
+  Input Parameter:
+. document - from DocumentRead() or DocumentReadText()
+@*/
 PetscErrorCode DocumentDestroy(Document *document)
 {
   PetscFunctionBeginUser;

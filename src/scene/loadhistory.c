@@ -1,4 +1,4 @@
-/* Factors over the load parameter and the prescribed motions that are built from them, see loadhistory.h. */
+/* Factors over the load parameter, and the prescribed motions that are built from them, see loadhistory.h. */
 #include "scene/loadhistory.h"
 #include <math.h>
 

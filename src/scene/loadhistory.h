@@ -6,18 +6,18 @@
 #pragma once
 
 typedef struct {
-  int     n;     /* breakpoints, at least 2 */
-  double *t, *v; /* load parameter, strictly increasing, and factor at each breakpoint */
+  int     n;     /* number of breakpoints, at least 2 */
+  double *t, *v; /* load parameter (strictly increasing) and factor at each breakpoint [n] */
 } History;
 
 typedef struct {
-  int     component; /* 0 to 2: ux, uy, uz; 3 to 5: rx, ry, rz */
-  double  value;     /* length or degrees */
+  int     component; /* 0 to 2 for ux, uy, uz; 3 to 5 for rx, ry, rz */
+  double  value;     /* length for ux, uy, uz; degrees for rx, ry, rz */
   History history;
 } MotionComponent;
 
 typedef struct {
-  double           point[3];
+  double           point[3]; /* about which the body rotates (length) */
   int              n;
   MotionComponent *components;
 } Motion;

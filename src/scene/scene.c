@@ -1,3 +1,4 @@
+/* The reader of a scene: it fills the Scene from a validated document, see scene.h. */
 #include "sceneprobe.h"
 #include "sceneread.h"
 #include "base/refusal.h"
@@ -5,7 +6,7 @@
 
 static const char *const Displacements[] = {"ux", "uy", "uz"}, *const Rotations[] = {"rx", "ry", "rz"};
 
-/* path's history, or the load parameter itself. */
+/* Reads the history below a path. Without one, the factor is the load parameter itself. */
 static PetscErrorCode SceneReadHistory(Scene scene, const char *path, History *history)
 {
   Node list = SceneNode(scene, path, "history");
@@ -21,6 +22,7 @@ static PetscErrorCode SceneReadHistory(Scene scene, const char *path, History *h
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Reads a map of keys and values that are not in the schema. The value null becomes an empty text. */
 static PetscErrorCode SceneReadPairs(Scene scene, const char *key, int *n, ScenePair **pairs)
 {
   Node map = NodeFind(SceneDocument(scene)->root, key);
@@ -72,7 +74,7 @@ static PetscErrorCode MotionFree(Motion *motion)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The motion of a rigid tool or an analytic master; tool: its path. */
+/* Reads the motion of a rigid tool or an analytic master, whose path is `tool`. */
 static PetscErrorCode SceneReadMotion(Scene scene, const char *tool, Motion *motion)
 {
   const int n = SchemaCount(SceneDocument(scene), "%s.motion", tool);
@@ -162,6 +164,7 @@ static PetscErrorCode SceneReadBodies(Scene scene)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Refuses a surface that belongs to a rigid tool. */
 static PetscErrorCode SceneRefuseRigid(Scene scene, const char *path, const char *key, const char *surface)
 {
   PetscFunctionBeginUser;
@@ -256,7 +259,7 @@ static PetscErrorCode SceneReadLoads(Scene scene)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* plane, cylinder or sphere: which of them the master's map names */
+/* Reads an analytic master, which is a plane, a cylinder or a sphere. */
 static PetscErrorCode SceneReadAnalytic(Scene scene, SceneContact *contact)
 {
   static const char *const shapes[] = {"plane", "cylinder", "sphere"};
@@ -278,8 +281,9 @@ static PetscErrorCode SceneReadAnalytic(Scene scene, SceneContact *contact)
                           NULL));
   snprintf(tool, sizeof tool, "%s.master.%s", contact->path, shapes[contact->analytic.shape]);
   (void)SceneReals(scene, tool, contact->analytic.shape == ANALYTIC_SPHERE ? "centre" : "point", contact->motion.point);
-  contact->analytic.axis[scene->geometry == GEOMETRY_AXISYMMETRIC ? 1 : 2] =
-    1; /* a cylinder in 2D: a circle; axisymmetric: about the axis */
+  /* In 2D a cylinder is a circle, and its axis is normal to the plane. In an axisymmetric scene its axis is that of
+     revolution. */
+  contact->analytic.axis[scene->geometry == GEOMETRY_AXISYMMETRIC ? 1 : 2] = 1;
   if (contact->analytic.shape == ANALYTIC_PLANE || scene->dim == 3) {
     contact->analytic.axis[1] = contact->analytic.axis[2] = 0;
     (void)SceneReals(scene, tool, contact->analytic.shape == ANALYTIC_PLANE ? "normal" : "axis",
@@ -306,7 +310,7 @@ static PetscErrorCode SceneReadAnalytic(Scene scene, SceneContact *contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* How pressures carry over as multipliers; g_max and its unit are those of the adjustment. */
+/* Reads when pressures become multipliers. SceneReadAdjustment() reads g_max and its unit. */
 static PetscErrorCode SceneReadAugmentation(Scene scene, SceneContact *contact)
 {
   static const char *const needs[] = {"penalty.g_max", "penalty.unit"};
@@ -324,7 +328,7 @@ static PetscErrorCode SceneReadAugmentation(Scene scene, SceneContact *contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* How the penalty follows the penetration */
+/* Reads how the penalty follows the penetration, and the window of the penetration. */
 static PetscErrorCode SceneReadAdjustment(Scene scene, SceneContact *contact)
 {
   static const char *const needs[] = {"penalty.g_min", "penalty.g_max", "penalty.unit"};
@@ -458,8 +462,9 @@ static PetscErrorCode SceneReadOutput(Scene scene)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ---- the whole ---- */
+/* Whole scenes */
 
+/* Sets the names of the file, of its directory and of the scene. */
 static PetscErrorCode SceneReadNames(Scene scene, const char *file)
 {
   const char *slash = strrchr(file, '/'), *stem = slash ? slash + 1 : file;
@@ -476,7 +481,7 @@ static PetscErrorCode SceneReadNames(Scene scene, const char *file)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Everything from the document, in the order in which mistakes are named. */
+/* Reads all parts of the document, in the order in which mistakes are refused. */
 static PetscErrorCode SceneReadAll(Scene scene, const char *file)
 {
   Document *document = SceneDocument(scene);
@@ -499,7 +504,7 @@ static PetscErrorCode SceneReadAll(Scene scene, const char *file)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The scene of a document, which is its own from now on. A refusal frees both. */
+/* Makes the scene of a document. The scene owns the document from then on. A refusal frees both. */
 static PetscErrorCode SceneCreate(Document *document, const char *file, Scene *scene)
 {
   PetscErrorCode code;
@@ -514,21 +519,21 @@ static PetscErrorCode SceneCreate(Document *document, const char *file, Scene *s
 }
 
 /*@
-  SceneRead - reads, edits, validates and converts a scene file
+  SceneRead - reads a scene file, edits and validates it, and makes the scene.
 
   Collective
 
   Input Parameters:
-+ comm  - all ranks
-. file  - as the process can open it on rank 0
++ comm  - communicator of all ranks
+. file  - path with which rank 0 can open the file
 . n_set - number of edits
-- set   - KEY=VALUE edits, in order; the last one of a key wins
+- set   - edits KEY=VALUE, in order; the last one of a key counts
 
   Output Parameter:
-. scene - free it with SceneDestroy()
+. scene - the scene, to be freed with SceneDestroy()
 
   Note:
-  Refuses the first mistake; see schemakeys.c for the keys. After a refusal there is no scene, and all memory is free.
+  It refuses the first mistake. The keys are in schemakeys.c. After a refusal there is no scene, and all memory is free.
 @*/
 PetscErrorCode SceneRead(MPI_Comm comm, const char *file, int n_set, char *const *set, Scene *scene)
 {
@@ -541,10 +546,10 @@ PetscErrorCode SceneRead(MPI_Comm comm, const char *file, int n_set, char *const
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* What may be another in the rest of a run: parts of a scene that its state does not depend on. */
+/* The parts of a scene that a restart may change, because the state of the run does not depend on them. */
 static const char *const changeable[] = {"output", "solver", "stepping"};
 
-/* Is the first component of a path, which `end` follows, one of those? */
+/* Tells whether the first component of a path is one of these parts. One of the characters of `end` follows it. */
 static PetscBool IsChangeable(const char *path, const char *end)
 {
   for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(changeable); i++) {
@@ -555,8 +560,8 @@ static PetscBool IsChangeable(const char *path, const char *end)
   return PETSC_FALSE;
 }
 
-/* The next line of a text that belongs to the problem: the others are parts that may change, a key and what stands
- * below it. */
+/* Returns the next line of a text that belongs to the problem. The other lines are the parts that may change, each with
+   its key and all values below the key. */
 static const char *ProblemLine(const char *text)
 {
   PetscBool skips = PETSC_FALSE;
@@ -570,7 +575,18 @@ static const char *ProblemLine(const char *text)
   return text;
 }
 
-/* SceneSameProblem - Not collective. */
+/*@
+  SceneSameProblem - tells whether two scenes differ only in what a restart may change.
+
+  Not collective
+
+  Input Parameters:
++ a - Scene.text of one scene
+- b - Scene.text of the other scene
+
+  Note:
+  A restart may change output, solver and stepping, because the state of a run does not depend on them.
+@*/
 PetscBool SceneSameProblem(const char *a, const char *b)
 {
   for (a = ProblemLine(a), b = ProblemLine(b); *a && *b; a = ProblemLine(a), b = ProblemLine(b)) {
@@ -583,8 +599,8 @@ PetscBool SceneSameProblem(const char *a, const char *b)
   return !*a && !*b ? PETSC_TRUE : PETSC_FALSE;
 }
 
-/* Refuses edits that make another problem of the text. Edits that change nothing are fine, so that a command may be
-   given again with the edits it began with. */
+/* Refuses edits that make another problem of the text. Edits that change nothing are allowed, so that a command may be
+   repeated with the edits with which it was first given. */
 static PetscErrorCode CheckEdits(Document *document, const char *text, int n_set, char *const *set)
 {
   char     *edited;
@@ -604,23 +620,24 @@ static PetscErrorCode CheckEdits(Document *document, const char *text, int n_set
 }
 
 /*@
-  SceneReadAgain - reads a scene from the text that a run has kept
+  SceneReadAgain - reads the scene of a checkpoint from the text that the run has kept.
 
   Collective
 
   Input Parameters:
-+ comm  - all ranks
-. file  - name of the scene file then
-. where - stands for the file in messages
++ comm  - communicator of all ranks
+. file  - name of the scene file when the run began
+. where - name that replaces the file name in messages
 . text  - Scene.text of the run
 . n_set - number of edits
-- set   - KEY=VALUE edits, in order
+- set   - edits KEY=VALUE, in order
 
   Output Parameter:
-. scene - free it with SceneDestroy()
+. scene - the scene, to be freed with SceneDestroy()
 
   Note:
-  Refuses edits that make another problem of it. After a refusal there is no scene, and all memory is free.
+  It refuses edits that make another problem of the scene. Edits may change output, solver and stepping only. After a
+  refusal there is no scene, and all memory is free.
 @*/
 PetscErrorCode SceneReadAgain(MPI_Comm comm, const char *file, const char *where, const char *text, int n_set,
                               char *const *set, Scene *scene)
@@ -681,7 +698,14 @@ static PetscErrorCode SceneDestroyContacts(Scene scene)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* SceneDestroy - frees a scene. Not collective. */
+/*@
+  SceneDestroy - frees a scene.
+
+  Not collective
+
+  Input Parameter:
+. scene - the scene, which may be NULL; it is NULL afterwards
+@*/
 PetscErrorCode SceneDestroy(Scene *scene)
 {
   Scene s = *scene;
@@ -721,11 +745,21 @@ PetscErrorCode SceneDestroy(Scene *scene)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* SceneWhere - "FILE:LINE: PATH.KEY" for the start of a message about the value at path.key; the line of its nearest
-   ancestor if the file lacks it, "-set ..." if it came from there.
+/*@
+  SceneWhere - returns the place of a value for the start of a message, as "FILE:LINE: PATH.KEY".
 
-   Not collective. path: of a scene's part ("contact.0"), or ""; key: below it, or "". The text is valid until the next
-   call. */
+  Not collective
+
+  Input Parameters:
++ scene - the scene
+. path  - path of a part of the scene ("contact.0"), or "" or NULL
+- key   - key below the path, or "" or NULL
+
+  Note:
+  An example is "runs/a.yaml:12: contact.0.slave". The line is that of the value, or of its nearest ancestor that the
+  document has. If that came from a -set, "-set KEY" replaces file and line. The text belongs to the scene and is valid
+  until the next call.
+@*/
 const char *SceneWhere(Scene scene, const char *path, const char *key)
 {
   char text[KEY_PATH_LENGTH];
@@ -735,8 +769,17 @@ const char *SceneWhere(Scene scene, const char *path, const char *key)
   return DocumentWhere(SceneDocument(scene), text);
 }
 
-/* SceneReference - prints the scene reference: every key with type, range, unit, default and help. Not collective: for
- * one rank. */
+/*@
+  SceneReference - prints the scene reference, which is every key with its type, range, unit, default and help.
+
+  Not collective
+
+  Input Parameter:
+. file - the stream to print to
+
+  Note:
+  For one rank. The reference is made from the table of schemakeys.c.
+@*/
 PetscErrorCode SceneReference(FILE *file)
 {
   PetscFunctionBeginUser;
@@ -751,8 +794,19 @@ static PetscBool MotionBreaks(const Motion *motion, PetscReal t)
   return PETSC_FALSE;
 }
 
-/* SceneBreaks - whether some load, imposed displacement or motion changes its rate at load parameter t: what went
-   before says nothing of what comes. Not collective. */
+/*@
+  SceneBreaks - tells whether some load, imposed displacement or motion has a breakpoint at load parameter t.
+
+  Not collective
+
+  Input Parameters:
++ scene - the scene
+- t     - load parameter
+
+  Note:
+  At a breakpoint the rate of the load may change. The solution before it therefore predicts nothing about the solution
+  after it.
+@*/
 PetscBool SceneBreaks(Scene scene, PetscReal t)
 {
   for (int l = 0; l < scene->n_loads; l++)

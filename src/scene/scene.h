@@ -1,9 +1,11 @@
-/* Every value a user can write, validated, with defaults; the only reader of YAML. Knows no PETSc objects but the
-   communicator.
+/* The scene: every value that a user can write, validated and with its default. This is the only reader of YAML, and it
+   uses no PETSc object but the communicator.
 
-   SceneRead() reads the file on rank 0, applies the -set overrides, validates every key against the one table of
-   schemakeys.c and refuses the first mistake (file, line, key, what is wrong, what is allowed). Checks that need the
-   mesh are made later by the part that owns them; their messages start with SceneWhere(). */
+   SceneRead() reads the file on rank 0, applies the -set overrides and validates every key against the table of
+   schemakeys.c. It refuses the first mistake with file, line, key, what is wrong and what is allowed. SceneReadAgain()
+   reads the scene of a checkpoint, and SceneSameProblem() tells whether a restart may continue results of another text.
+   Checks that need the mesh are made later by the part that owns them. Their messages start with SceneWhere().
+   SceneBreaks() tells the step control where loads change their rate. SceneReference() prints the scene reference. */
 #pragma once
 #include <petscsys.h>
 #include "smooth/analyticsurface.h"
@@ -17,53 +19,61 @@ typedef enum { SOLVER_DIRECT, SOLVER_ITERATIVE, SOLVER_AUTO } SolverType;
 typedef enum { CONTACT_NODE_TO_SURFACE, CONTACT_SURFACE_TO_SURFACE } ContactFormulation;
 
 typedef struct {
-  char       *path;  /* "bodies.0": for SceneWhere() */
-  char       *name;  /* physical group: a volume, or for a rigid tool a surface */
-  int         rigid; /* a meshed rigid tool: no material */
-  Material    material;
-  Formulation formulation; /* other than full: quad4 and hex8 only */
-  Motion      motion;
+  char       *path;        /* such as "bodies.0", for SceneWhere() */
+  char       *name;        /* physical group, which is a volume, or a surface for a rigid tool */
+  int         rigid;       /* 1 for a meshed rigid tool, which has no material */
+  Material    material;    /* of a deformable body */
+  Formulation formulation; /* formulations other than full exist for quad4 and hex8 only */
+  Motion      motion;      /* of a rigid tool */
 } SceneBody;
 
 typedef struct {
   char *path, *surface;
-  int   fixed[3]; /* component held at 0 */
+  int   fixed[3]; /* whether a component of the displacement is held at 0 */
 } SceneSupport;
 
 typedef enum { LOAD_DISPLACEMENT, LOAD_PRESSURE, LOAD_TRACTION, LOAD_BODY_FORCE } LoadKind;
 typedef struct {
-  char    *path, *region; /* region: physical surface, for a body force physical volume */
+  char    *path, *region; /* the region is a physical surface, for a body force a physical volume */
   LoadKind kind;
-  int      has[3];   /* LOAD_DISPLACEMENT: which components are imposed */
-  double   value[3]; /* displacement, traction or body force; pressure in value[0] */
-  int      follower; /* pressure acts on the deformed face */
-  History  history;
+  int      has[3]; /* of LOAD_DISPLACEMENT: which components are imposed */
+  /* Displacement (length), traction (force per reference area) or body force (force per reference volume). A pressure
+     (stress) is value[0]. */
+  double  value[3];
+  int     follower; /* 1 if a pressure acts on the deformed face */
+  History history;  /* factor on the value over the load parameter */
 } SceneLoad;
 
 typedef struct {
-  char              *path, *name, *slave, *master; /* master: physical surface, or NULL: analytic */
-  AnalyticSurface    analytic;                     /* with motion.point: on the plane, on the axis, the centre */
-  Motion             motion;
-  int                smoother; /* index of Smoothers[] */
+  char              *path, *name, *slave, *master; /* the master is a physical surface, or NULL if it is analytic */
+  AnalyticSurface    analytic; /* motion.point is a point of the plane or of the axis, or the centre */
+  Motion             motion;   /* of an analytic master */
+  int                smoother; /* index in Smoothers[] */
   ContactFormulation formulation;
-  int                live_offset; /* of surface_to_surface: offsets follow the nodes within a solve */
+  int                live_offset; /* of surface_to_surface: 1 if the offsets follow the nodes within a solve */
   int                n_symmetry;
-  char             **symmetry;        /* planar surfaces beyond which the model continues as its mirror image */
-  int                degree;          /* of the fit: 4 or 2 */
-  double             support, weight; /* spacings, exponent; 0: the default of dimension and degree */
-  int                global_frame, diffuse_derivatives;
-  double             feature_angle; /* degrees */
-  InitialOverlap     initial_overlap;
-  int                stabilise; /* springs hold its bodies until contact does */
-  ContactLawKind     law;
-  int                penalty_auto;
-  double penalty, penalty_scale; /* force per length and area; the automatic value is multiplied by penalty_scale */
-  int    adjust;                 /* the penalty follows the penetration */
-  int    adjust_converged;       /* within the step, until the window holds; 0: from one step to the next */
-  int    window_in_spacings;     /* g_min and g_max are multiples of the slave node's face size, not lengths */
+  char             **symmetry; /* planar surfaces beyond which the model continues as its mirror image */
+  int                degree;   /* of the diffuse fit, 4 or 2 */
+  /* Radius of the support in spacings, and exponent of the weight. 0 stands for the default of dimension and degree. */
+  double         support, weight;
+  int            global_frame, diffuse_derivatives;
+  double         feature_angle; /* degrees */
+  InitialOverlap initial_overlap;
+  int            stabilise; /* 1 if springs hold the bodies of the pair until contact holds them */
+  ContactLawKind law;
+  int            penalty_auto; /* 1 if the penalty is the automatic one */
+  /* Penalty (force per length and area), 0 if it is automatic, and the factor on the automatic penalty. */
+  double penalty, penalty_scale;
+  int    adjust; /* 1 if the penalty follows the penetration */
+  /* When the penalty is adjusted: 1 within the step, until the window holds; 0 from one step to the next. */
+  int adjust_converged;
+  int window_in_spacings; /* 1 if g_min and g_max are multiples of the slave node's face size; 0 if lengths */
+  /* Window of the penetration, largest factor of one adjustment, and largest factor by which the penalty may differ
+     from the automatic one. */
   double g_min, g_max, clamp, range;
-  int    augment,
-    max_updates; /* pressures become multipliers, up to so often in a step, until penetrations are within g_max */
+  /* With augment, pressures become multipliers until all penetrations are within g_max, at most max_updates times in a
+     step. */
+  int augment, max_updates;
 } SceneContact;
 
 typedef enum {
@@ -81,36 +91,38 @@ typedef enum {
 typedef struct {
   char     *path, *name;
   ProbeKind kind;
-  char     *target;      /* surface (reaction) or pair (contact kinds), else NULL */
+  char     *target;      /* surface of a reaction, pair of a contact quantity, else NULL */
   char     *body;        /* volume, or NULL */
-  int       component;   /* 0..2 */
-  double    point[2][3]; /* reference coordinates: displacement, distance, gap */
-  int       axis;        /* contact_edge: 0..2 */
-  int       max_side;    /* contact_edge: 1 max, 0 min */
-  int has_at; /* contact_edge, pressure_max: restricted to nodes whose reference coordinate at_axis equals at_value */
-  int at_axis;
-  double at_value;
-  int    rms; /* pressure_deviation: 1 rms, 0 max */
-  int
-    edge_filter; /* pressure_deviation: 0 none, 1 excluding, 2 only, within edge_faces mean face sizes of a free edge */
+  int       component;   /* 0 to 2 */
+  double    point[2][3]; /* of displacement, distance and gap: reference coordinates (length) */
+  int       axis;        /* of contact_edge: 0 to 2 */
+  int       max_side;    /* of contact_edge: 1 for max, 0 for min */
+  /* Of contact_edge and pressure_max: 1 if only nodes count whose reference coordinate at_axis equals at_value. */
+  int    has_at;
+  int    at_axis;
+  double at_value; /* length */
+  int    rms;      /* of pressure_deviation: 1 for rms, 0 for max */
+  /* Of pressure_deviation: 0 takes all nodes; 1 (excluding) leaves out the nodes within edge_faces mean face sizes of a
+     free edge; 2 (only) takes only those nodes. */
+  int    edge_filter;
   double edge_faces;
-  int    change; /* distance: minus the reference distance */
-  int    absolute;
-  double factor;
+  int    change;   /* of distance: 1 if the reference distance is subtracted */
+  int    absolute; /* 1 if the absolute value is taken */
+  double factor;   /* on the value */
 } SceneProbe;
 
 typedef struct {
-  char *key, *value; /* key without the dash */
+  char *key, *value; /* the key has no dash */
 } ScenePair;
 
 typedef struct {
-  char         *file, *directory; /* as given; the directory relative paths start at */
-  char         *text; /* the document after -set, as one canonical YAML text: to recognise another scene's results */
+  char         *file, *directory; /* file as the user gave it; its directory, where relative paths start */
+  char         *text; /* the document after -set as one canonical YAML text, to recognise another scene's results */
   char         *name;
-  char         *mesh_file; /* path as the process can open it */
-  int           order;     /* 1, 2; 0: take the .msh file's own */
+  char         *mesh_file; /* path with which the process can open the file */
+  int           order;     /* of the elements, 1 or 2; 0 stands for that of the .msh file */
   int           n_parameters;
-  ScenePair    *parameters; /* of the .geo */
+  ScenePair    *parameters; /* of the .geo file */
   Geometry      geometry;
   Kinematics    kinematics;
   int           dim; /* 3 for solid, else 2 */
@@ -125,11 +137,11 @@ typedef struct {
   struct {
     StepControlKind control;
     double          initial, dt_min, dt_max, growth;
-    int             N_c;              /* contact: nodes per step; 0: N_c_fraction serves */
-    double          N_c_fraction;     /* contact: part of the slave area per step */
-    int             predict_linearly; /* contact: by one linear solve, not by the step's own solution */
+    int             N_c;              /* of control contact: new nodes per step, or 0 if N_c_fraction is given */
+    double          N_c_fraction;     /* of control contact: new part of the slave area per step */
+    int             predict_linearly; /* of control contact: 1 if one linear solve predicts, 0 if the solution does */
     int             n_at;
-    double         *at;
+    double         *at; /* load parameters at which a step must end [n_at] */
   } stepping;
   struct {
     SolverType type;
@@ -139,27 +151,20 @@ typedef struct {
   int         n_probes;
   SceneProbe *probes;
   struct {
-    int every;                         /* 0: only the last state */
-    int checkpoint;                    /* 0: only when the run ends early */
-    int displacement, stress, contact; /* fields */
+    int every;                         /* steps between two outputs, or 0 for the last state only */
+    int checkpoint;                    /* steps between two checkpoints, or 0 for one only when the run ends early */
+    int displacement, stress, contact; /* which fields are written */
   } output;
   int        n_petsc;
   ScenePair *petsc;    /* PETSc options of the scene */
-  void      *document; /* private: the document's tree with its marks (document.h), for SceneWhere() */
+  void      *document; /* private to this folder: the tree of the document (document.h), for SceneWhere() */
 } *Scene;
 
 PetscErrorCode SceneRead(MPI_Comm, const char *file, int n_set, char *const *set, Scene *);
-/* The scene of a checkpoint: file: its name then; where: stands for it in messages; text: Scene.text of then. Only
- * solver, output and stepping may be set. */
 PetscErrorCode SceneReadAgain(MPI_Comm, const char *file, const char *where, const char *text, int n_set,
                               char *const *set, Scene *);
 PetscErrorCode SceneDestroy(Scene *);
-/* Do two texts (Scene.text) differ in nothing but what a restart may change? */
-PetscBool SceneSameProblem(const char *a, const char *b);
-/* "runs/a.yaml:12: contact.0.slave": the place of a key (or of its nearest ancestor that the file has; "-set KEY" if it
-   came from there). Returned text belongs to the scene and is valid until the next call. */
-const char *SceneWhere(Scene, const char *path, const char *key);
-/* Does some history have a breakpoint at t? */
-PetscBool SceneBreaks(Scene, PetscReal t);
-/* the scene reference: every key with type, range, unit, default and help, generated from the table */
+PetscBool      SceneSameProblem(const char *a, const char *b);
+const char    *SceneWhere(Scene, const char *path, const char *key);
+PetscBool      SceneBreaks(Scene, PetscReal t);
 PetscErrorCode SceneReference(FILE *);

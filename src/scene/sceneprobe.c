@@ -1,3 +1,4 @@
+/* The reader of the probes of a scene, see sceneprobe.h. */
 #include "sceneprobe.h"
 #include "sceneread.h"
 #include "scene/stepcolumns.h"
@@ -5,7 +6,8 @@
 
 static const char *const Axes[] = {"x", "y", "z"};
 
-/* What a probe of each kind needs and may have beside name, absolute and factor; in the order of ProbeKind. */
+/* The key of each kind of probe, the keys that it needs and the keys that it may have, in the order of ProbeKind. Every
+   probe may also have the keys of ProbeCommon. */
 static const struct {
   const char *kind, *needs, *takes;
 } ProbeForms[PROBE_KINDS] = {
@@ -21,6 +23,7 @@ static const struct {
 };
 static const char ProbeCommon[] = "name absolute factor";
 
+/* Tells whether a word is among words with blanks between them. */
 static int ProbeHasWord(const char *words, const char *word)
 {
   const size_t n = strlen(word);
@@ -31,7 +34,8 @@ static int ProbeHasWord(const char *words, const char *word)
   return 0;
 }
 
-/* Exactly one kind, what it needs, and nothing that it does not take. */
+/* Finds the kind of a probe. Refuses a probe without exactly one kind, without a key that its kind needs, or with a key
+   that its kind does not take. */
 static PetscErrorCode SceneProbeKind(Scene scene, SceneProbe *probe)
 {
   static const char *const Optional[] = {"component", "body",    "change",    "at",  "axis",
@@ -67,6 +71,7 @@ static PetscErrorCode SceneProbeKind(Scene scene, SceneProbe *probe)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Refuses a probe whose target is not the name of a contact pair. */
 static PetscErrorCode SceneRefuseProbeTarget(Scene scene, SceneProbe *probe)
 {
   char pairs[400] = "allowed: the name of a pair under contact:";
@@ -81,7 +86,7 @@ static PetscErrorCode SceneRefuseProbeTarget(Scene scene, SceneProbe *probe)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* at: a point for a gap, else one reference coordinate. */
+/* Reads the key `at`. It is a point for a probe of the gap, and one reference coordinate for the other kinds. */
 static PetscErrorCode SceneReadProbeAt(Scene scene, SceneProbe *probe)
 {
   Node at = SceneNode(scene, probe->path, "at");
@@ -111,7 +116,7 @@ static PetscErrorCode SceneReadProbeAt(Scene scene, SceneProbe *probe)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* A probe's name is a column of steps.csv and a key of the summary: it stands there once. */
+/* Refuses a name that is not unique, because the name becomes a column of steps.csv and a key of the summary. */
 static PetscErrorCode SceneCheckProbeName(Scene scene, const SceneProbe *probe)
 {
   PetscFunctionBeginUser;
@@ -167,7 +172,17 @@ static PetscErrorCode SceneReadProbe(Scene scene, SceneProbe *probe)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* SceneReadProbes - the probes into the scene. Collective, since it may refuse. */
+/*@
+  SceneReadProbes - reads the probes of the document into the scene.
+
+  Collective
+
+  Input Parameter:
+. scene - the scene, whose bodies and contact pairs have been read
+
+  Note:
+  It refuses the first mistake.
+@*/
 PetscErrorCode SceneReadProbes(Scene scene)
 {
   PetscFunctionBeginUser;

@@ -1,14 +1,32 @@
-/* What all readers of a scene share, see sceneread.h. */
+/* Functions that all readers of a scene share, see sceneread.h. */
 #include "sceneread.h"
 #include <string.h>
 
-/* SceneDocument - the tree that the scene was read from. Not collective. */
+/*@
+  SceneDocument - returns the document from which the scene was read.
+
+  Not collective
+
+  Input Parameter:
+. scene - the scene
+@*/
 Document *SceneDocument(Scene scene)
 {
   return (Document *)scene->document;
 }
 
-/* ScenePath - "list.i" as a text of its own. Not collective. */
+/*@
+  ScenePath - makes the path "list.i" of an entry of a list.
+
+  Not collective
+
+  Input Parameters:
++ list - path of the list
+- i    - index of the entry, counted from 0
+
+  Output Parameter:
+. path - the path, to be freed with PetscFree()
+@*/
 PetscErrorCode ScenePath(char **path, const char *list, int i)
 {
   char text[KEY_PATH_LENGTH];
@@ -19,7 +37,19 @@ PetscErrorCode ScenePath(char **path, const char *list, int i)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* SceneNode - the document's value at path.key, NULL if there is none. Not collective. */
+/*@
+  SceneNode - returns the document's value at "path.key".
+
+  Not collective
+
+  Input Parameters:
++ scene - the scene
+. path  - path of the map
+- key   - key in the map
+
+  Note:
+  It returns NULL if the document has no such value.
+@*/
 Node SceneNode(Scene scene, const char *path, const char *key)
 {
   char text[KEY_PATH_LENGTH];
@@ -28,7 +58,22 @@ Node SceneNode(Scene scene, const char *path, const char *key)
   return NodeFind(SceneDocument(scene)->root, text);
 }
 
-/* SceneReals - a list of numbers into v; absent: v stays as it is. Returns how many there are. Not collective. */
+/*@
+  SceneReals - copies the numbers of the list at "path.key" and returns how many there are.
+
+  Not collective
+
+  Input Parameters:
++ scene - the scene
+. path  - path of the map
+- key   - key in the map
+
+  Output Parameter:
+. v - the numbers; it must have room for all of them
+
+  Note:
+  If the document has no such list, v is not changed and the result is 0.
+@*/
 int SceneReals(Scene scene, const char *path, const char *key, double *v)
 {
   Node list = SceneNode(scene, path, key);
@@ -37,7 +82,19 @@ int SceneReals(Scene scene, const char *path, const char *key, double *v)
   return list ? list->n : 0;
 }
 
-/* SceneReadText - a copy of the text at path.key, or its default; NULL if there is neither. Not collective. */
+/*@
+  SceneReadText - copies the text at "path.key" or its default.
+
+  Not collective
+
+  Input Parameters:
++ scene - the scene
+. path  - path of the map
+- key   - key in the map
+
+  Output Parameter:
+. text - the copy, to be freed with PetscFree(), or NULL if there is neither a text nor a default
+@*/
 PetscErrorCode SceneReadText(Scene scene, const char *path, const char *key, char **text)
 {
   PetscFunctionBeginUser;
@@ -45,26 +102,38 @@ PetscErrorCode SceneReadText(Scene scene, const char *path, const char *key, cha
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* SceneHas - whether the document itself has a value at path.key. Not collective. */
+/*@
+  SceneHas - tells whether the document itself has a value at "path.key".
+
+  Not collective
+
+  Input Parameters:
++ scene - the scene
+. path  - path of the map
+- key   - key in the map
+
+  Note:
+  It returns 1 or 0. A default does not count.
+@*/
 int SceneHas(Scene scene, const char *path, const char *key)
 {
   return SceneNode(scene, path, key) != NULL;
 }
 
 /*@
-  SceneRefuse - refuses the value at path.key with the text "about what".
+  SceneRefuse - refuses the value at "path.key" with the text "about what".
 
   Collective
 
   Input Parameters:
 + scene - the scene
-. path  - of the map
-. key   - in the map, or "" for the map itself
-. what  - what is wrong with the value; what is allowed
+. path  - path of the map
+. key   - key in the map, or "" for the map itself
+. what  - text that says what is wrong with the value and what is allowed
 - about - the value, or NULL
 
   Note:
-  Returns REFUSED.
+  It returns REFUSED, see RefuseInput().
 @*/
 PetscErrorCode SceneRefuse(Scene scene, const char *path, const char *key, const char *what, const char *about)
 {
@@ -77,8 +146,19 @@ PetscErrorCode SceneRefuse(Scene scene, const char *path, const char *key, const
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* SceneFindBody - the body of that name, among the rigid tools or the deformable ones read so far; NULL if there is
- * none. Not collective. */
+/*@
+  SceneFindBody - returns the body of a name, among the rigid tools or the deformable bodies that have been read.
+
+  Not collective
+
+  Input Parameters:
++ scene - the scene
+. name  - physical group of the body
+- rigid - 1 for a rigid tool, 0 for a deformable body
+
+  Note:
+  It returns NULL if there is no such body.
+@*/
 const SceneBody *SceneFindBody(Scene scene, const char *name, int rigid)
 {
   for (int i = 0; i < scene->n_bodies; i++) {

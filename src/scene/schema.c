@@ -1,3 +1,4 @@
+/* Validation of a document against the table of keys, values with their defaults, and the reference, see schema.h. */
 #include "schema.h"
 #include "schemakeys.h"
 #include "base/refusal.h"
@@ -7,8 +8,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* ---- what a key allows, in words ---- */
+/* What a key allows, in words */
 
+/* Appends a text, with `apart` before it if it is not the first. */
 static void Append(char *text, size_t size, const char *apart, const char *more)
 {
   const size_t n = strlen(text);
@@ -16,6 +18,7 @@ static void Append(char *text, size_t size, const char *apart, const char *more)
   snprintf(text + n, size - n, "%s%s", n ? apart : "", more);
 }
 
+/* Writes what a key allows: its types, its range and its unit. */
 static void SchemaAllowed(const SchemaKey *key, char *text, size_t size)
 {
   static const struct {
@@ -49,6 +52,7 @@ static void SchemaAllowed(const SchemaKey *key, char *text, size_t size)
   if (key->unit) Append(text, size, ", ", key->unit);
 }
 
+/* Refuses the value of a key, with what is wrong and what is allowed. */
 static PetscErrorCode SchemaRefuse(Document *document, const SchemaKey *key, Node node, const char *path,
                                    const char *wrong)
 {
@@ -66,10 +70,11 @@ static PetscErrorCode SchemaRefuse(Document *document, const SchemaKey *key, Nod
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ---- checks of one value: NULL, or what is wrong with it ---- */
+/* Checks of one value. Each returns NULL, or the words that say what is wrong with the value. */
 
 static const char WrongType[] = "has the wrong type", OutOfRange[] = "is out of range";
 
+/* Tells whether a value is in an interval such as "(0, inf)", or 1 if there is no interval. */
 static int RangeHolds(const char *range, double value)
 {
   char  *end;
@@ -120,7 +125,7 @@ static const char *CheckText(Node node, size_t longest)
   return NULL;
 }
 
-/* The reason of the last type that does not fit, unless one does. */
+/* Checks a scalar against all types that a key allows. If none fits, the reason is that of the last type. */
 static const char *CheckScalar(const SchemaKey *key, int type, Node node)
 {
   const char *wrong = WrongType;
@@ -187,7 +192,7 @@ static const char *CheckEntries(const SchemaKey *key, Node node)
   return NULL;
 }
 
-/* A list of plain values, pairs or points; lists of maps are SchemaCheckList()'s. */
+/* Checks a list of plain values, of pairs or of points. SchemaVisitValue() checks lists of maps. */
 static const char *CheckList(const SchemaKey *key, Node node)
 {
   if (key->type & POINT) return CheckPoint(node, key->range);
@@ -198,9 +203,10 @@ static const char *CheckList(const SchemaKey *key, Node node)
   return WrongType;
 }
 
-/* ---- the walk over the document ---- */
+/* The walk over the document */
 
-/* Edit distance with a bounded row: keys longer than that are not near to any of ours. */
+/* Returns the edit distance of two words. Its row is bounded, because a word longer than LONGEST characters resembles
+   no key of the schema. */
 static int WordDistance(const char *a, size_t na, const char *b, size_t nb)
 {
   enum { LONGEST = 40 };
@@ -223,6 +229,7 @@ static int WordDistance(const char *a, size_t na, const char *b, size_t nb)
   return row[nb];
 }
 
+/* Refuses an unknown key and names the most similar key and all keys that are allowed. */
 static PetscErrorCode SchemaRefuseUnknown(Document *document, Node node, const char *parent, const char *path,
                                           const char *unknown)
 {
@@ -263,6 +270,7 @@ static PetscErrorCode SchemaRefuseMissing(Document *document, const SchemaKey *k
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Checks a map whose keys are not in the schema. */
 static PetscErrorCode SchemaCheckFree(Document *document, Node node, const char *path)
 {
   char below[KEY_PATH_LENGTH];
@@ -279,7 +287,8 @@ static PetscErrorCode SchemaCheckFree(Document *document, Node node, const char 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Before anything else is said about a map: a misspelt key is not a missing one. */
+/* Refuses unknown keys of a map. This comes before all other checks of the map, so that a misspelt key is not reported
+   as a missing one. */
 static PetscErrorCode SchemaCheckKeys(Document *document, Node node, const char *path)
 {
   char below[KEY_PATH_LENGTH];
@@ -295,6 +304,7 @@ static PetscErrorCode SchemaCheckKeys(Document *document, Node node, const char 
 
 typedef PetscErrorCode (*NodeVisit)(Document *, const SchemaKey *, Node, const char *path);
 
+/* Visits a node and all nodes below it that the schema describes. */
 static PetscErrorCode SchemaWalk(Document *document, Node node, const char *path, NodeVisit visit)
 {
   const SchemaKey *key = SchemaKeyFind(path);
@@ -314,6 +324,7 @@ static PetscErrorCode SchemaWalk(Document *document, Node node, const char *path
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Refuses a map that lacks a required key. */
 static PetscErrorCode SchemaVisitMissing(Document *document, Node node, const char *path)
 {
   PetscFunctionBeginUser;
@@ -327,7 +338,7 @@ static PetscErrorCode SchemaVisitMissing(Document *document, Node node, const ch
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Type and range; required keys of a map. */
+/* Checks the type and the range of a value, and the required keys of a map. */
 static PetscErrorCode SchemaVisitValue(Document *document, const SchemaKey *key, Node node, const char *path)
 {
   const char *wrong = NULL;
@@ -351,7 +362,7 @@ static PetscErrorCode SchemaVisitValue(Document *document, const SchemaKey *key,
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Values that call for what a later release brings. */
+/* Refuses values that are not available yet. */
 static PetscErrorCode SchemaVisitAvailable(Document *document, const SchemaKey *key, Node node, const char *path)
 {
   double value, now;
@@ -367,7 +378,7 @@ static PetscErrorCode SchemaVisitAvailable(Document *document, const SchemaKey *
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* A 2D scene has no third direction: no such keys, no such component, points of two coordinates. */
+/* Refuses keys and components of the third direction in a 2D scene, and points with a wrong number of coordinates. */
 static PetscErrorCode SchemaVisitDimension(Document *document, const SchemaKey *key, Node node, const char *path)
 {
   static const char Solid[] = "geometry: solid";
@@ -386,8 +397,18 @@ static PetscErrorCode SchemaVisitDimension(Document *document, const SchemaKey *
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* SchemaCheck - validates the document against the table: unknown and missing keys, types and ranges, then what is not
-   available yet, then what a 2D scene cannot have. Collective; refuses the first mistake. Sets document->dim. */
+/*@
+  SchemaCheck - validates a document against the table of keys and sets document->dim.
+
+  Collective
+
+  Input Parameter:
+. document - the document
+
+  Note:
+  It refuses the first mistake. It checks unknown and missing keys, types and ranges first, then the values that are not
+  available yet, then the values that a 2D scene cannot have.
+@*/
 PetscErrorCode SchemaCheck(Document *document)
 {
   Node geometry;
@@ -404,9 +425,10 @@ PetscErrorCode SchemaCheck(Document *document)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ---- accessors, after SchemaCheck() ---- */
+/* Accessors, to be called after SchemaCheck() */
 
-/* The text of the scalar at a path, else the table's default, else NULL; *key is the table's line. */
+/* Returns the text of the scalar at a path, or the default of the table, or NULL if there is neither. *key is the entry
+   of the table. */
 static const char *SchemaScalar(Document *document, const char *format, va_list arguments, const SchemaKey **key)
 {
   char path[KEY_PATH_LENGTH];
@@ -422,7 +444,19 @@ static const char *SchemaScalar(Document *document, const char *format, va_list 
   return node ? node->text : (*key)->preset;
 }
 
-/* SchemaHas - is there a value at this path in the document? printf's format. Not collective, as all accessors. */
+/*@
+  SchemaHas - tells whether the document has a value at a path.
+
+  Not collective
+
+  Input Parameters:
++ document - the document
+. format   - format of the path, as for printf()
+- ...      - arguments of the format
+
+  Note:
+  It returns 1 or 0. A default does not count.
+@*/
 int SchemaHas(Document *document, const char *format, ...)
 {
   char    path[KEY_PATH_LENGTH];
@@ -434,7 +468,19 @@ int SchemaHas(Document *document, const char *format, ...)
   return NodeFind(document->root, path) != NULL;
 }
 
-/* SchemaCount - number of entries of the list or map at a path; 0 if there is none. */
+/*@
+  SchemaCount - returns the number of entries of the list or map at a path.
+
+  Not collective
+
+  Input Parameters:
++ document - the document
+. format   - format of the path, as for printf()
+- ...      - arguments of the format
+
+  Note:
+  It returns 0 if the document has no such value.
+@*/
 int SchemaCount(Document *document, const char *format, ...)
 {
   char    path[KEY_PATH_LENGTH];
@@ -448,6 +494,7 @@ int SchemaCount(Document *document, const char *format, ...)
   return node ? node->n : 0;
 }
 
+/* Sets text and key to the result of SchemaScalar() for the path of the calling accessor. */
 #define SCHEMA_SCALAR(text, key)                            \
   do {                                                      \
     va_list arguments;                                      \
@@ -456,7 +503,19 @@ int SchemaCount(Document *document, const char *format, ...)
     va_end(arguments);                                      \
   } while (0)
 
-/* SchemaReal - the number at a path, or its default; 0 where neither is. */
+/*@
+  SchemaReal - returns the number at a path, or its default.
+
+  Not collective
+
+  Input Parameters:
++ document - the document
+. format   - format of the path, as for printf()
+- ...      - arguments of the format
+
+  Note:
+  It returns 0 if there is neither a value nor a default.
+@*/
 double SchemaReal(Document *document, const char *format, ...)
 {
   const SchemaKey *key;
@@ -466,7 +525,19 @@ double SchemaReal(Document *document, const char *format, ...)
   return text ? strtod(text, NULL) : 0;
 }
 
-/* SchemaInteger - the integer at a path, or its default; 0 where neither is. */
+/*@
+  SchemaInteger - returns the integer at a path, or its default.
+
+  Not collective
+
+  Input Parameters:
++ document - the document
+. format   - format of the path, as for printf()
+- ...      - arguments of the format
+
+  Note:
+  It returns 0 if there is neither a value nor a default.
+@*/
 int SchemaInteger(Document *document, const char *format, ...)
 {
   const SchemaKey *key;
@@ -476,7 +547,19 @@ int SchemaInteger(Document *document, const char *format, ...)
   return text ? atoi(text) : 0;
 }
 
-/* SchemaBoolean - 1 for true, 0 for false, or the default. */
+/*@
+  SchemaBoolean - returns 1 if the value at a path, or its default, is true.
+
+  Not collective
+
+  Input Parameters:
++ document - the document
+. format   - format of the path, as for printf()
+- ...      - arguments of the format
+
+  Note:
+  It returns 0 if the value is false, or if there is neither a value nor a default.
+@*/
 int SchemaBoolean(Document *document, const char *format, ...)
 {
   const SchemaKey *key;
@@ -486,8 +569,19 @@ int SchemaBoolean(Document *document, const char *format, ...)
   return text && !strcmp(text, "true");
 }
 
-/* SchemaChoice - which of the table's values stands at a path, counted from 0; -1 where neither value nor default is
- * one of them. */
+/*@
+  SchemaChoice - returns the index of the word at a path, or of its default, among the words that the table allows.
+
+  Not collective
+
+  Input Parameters:
++ document - the document
+. format   - format of the path, as for printf()
+- ...      - arguments of the format
+
+  Note:
+  The index is counted from 0. It is -1 if neither the value nor the default is one of the words.
+@*/
 int SchemaChoice(Document *document, const char *format, ...)
 {
   const SchemaKey *key;
@@ -497,7 +591,19 @@ int SchemaChoice(Document *document, const char *format, ...)
   return text ? WordFind(key->values, " |", text, strlen(text)) : -1;
 }
 
-/* SchemaText - the text at a path, or its default, or NULL. It belongs to the document. */
+/*@
+  SchemaText - returns the text at a path, or its default.
+
+  Not collective
+
+  Input Parameters:
++ document - the document
+. format   - format of the path, as for printf()
+- ...      - arguments of the format
+
+  Note:
+  It returns NULL if there is neither a text nor a default. The text belongs to the document.
+@*/
 const char *SchemaText(Document *document, const char *format, ...)
 {
   const SchemaKey *key;
@@ -507,8 +613,17 @@ const char *SchemaText(Document *document, const char *format, ...)
   return text;
 }
 
-/* SchemaReference - prints every key, by the path that -set takes, with what it allows, its default and what it means;
-   N stands for an index into a list. Not collective. */
+/*@
+  SchemaReference - prints every key with its path, what it allows, its default and its meaning.
+
+  Not collective
+
+  Input Parameter:
+. file - the stream to print to
+
+  Note:
+  The path is written as -set takes it. N stands for an index of a list.
+@*/
 void SchemaReference(FILE *file)
 {
   char allowed[400];

@@ -1,13 +1,15 @@
-/* The fixed columns of steps.csv, the one list of their names. Plain C. stepscsv.c writes them. sceneprobe.c refuses a
-   probe of such a name, because the columns of the probes follow the fixed ones. To add a column: a line here, its name
-   in stepcolumns.c, its value in stepscsv.c. */
+/* The fixed columns of steps.csv and the only list of their names. Plain C.
+
+   stepscsv.c writes these columns. The columns of the probes follow the fixed ones, and sceneprobe.c therefore refuses
+   a probe that has the name of a fixed column. A new column needs a line here, its name in stepcolumns.c and its value
+   in stepscsv.c. */
 #pragma once
 
 typedef enum {
   COLUMN_STEP,
   COLUMN_T,
   COLUMN_DT,
-  COLUMN_BETA, /* only the control by contact has one */
+  COLUMN_BETA, /* only the step control by contact has a beta */
   COLUMN_NEWTON,
   COLUMN_KRYLOV,
   COLUMN_ATTEMPTS,

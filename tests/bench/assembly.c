@@ -1,13 +1,17 @@
-/* CPU microseconds per element of elastic assembly on one rank (lines: row, column, value; # heads a table), PetscFE
-   beside it with the same quadrature on a small mesh. kernel-*: one batch in cache; residual, tangent, insertion: a
-   mesh of some ten thousand dofs; total: their sum. */
+/* Measures the elastic assembly on one rank, in CPU microseconds per element, and that of PetscFE with the same
+   quadrature on a small mesh. A line is row, column and value; a line with # begins a table. The columns kernel-* are
+   for one batch in the cache. The columns residual, tangent and insertion are for a mesh of some ten thousand dofs, and
+   total is their sum. */
 #include "../box.h"
 #include <time.h>
 
-enum { ROUNDS = 3 }; /* the fastest round counts: others were disturbed */
+/* Number of rounds. The fastest one counts, because the others were disturbed. */
+enum { ROUNDS = 3 };
 
-static const double shortest_round = 0.1; /* seconds: long against the clock's resolution */
+/* Shortest duration of a round in seconds. It is long compared with the resolution of the clock. */
+static const double shortest_round = 0.1;
 
+/* The data of all measured functions */
 typedef struct {
   Box              *box;
   Elasticity        e;
@@ -80,12 +84,12 @@ static double Seconds(void)
   return t.tv_sec + 1e-9 * t.tv_nsec;
 }
 
-/* CPU microseconds of one call over the number of elements it does */
+/* Measures the CPU time of one call, in microseconds per element that the call treats. */
 static PetscErrorCode Time(PetscErrorCode (*call)(Work *), Work *w, PetscInt elements, double *microseconds)
 {
   PetscFunctionBeginUser;
   *microseconds = PETSC_MAX_REAL;
-  PetscCall(call(w)); /* first calls allocate and read memory for the first time */
+  PetscCall(call(w)); /* The first call allocates memory and touches it for the first time. */
   for (int round = 0; round < ROUNDS; round++) {
     double spent = 0;
 
@@ -100,7 +104,7 @@ static PetscErrorCode Time(PetscErrorCode (*call)(Work *), Work *w, PetscInt ele
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The first cells of the box as one batch */
+/* Copies the first cells of the box to one batch. */
 static PetscErrorCode CreateBatch(Work *w)
 {
   const Element *e    = ElementGet(w->kernel->type);
@@ -131,7 +135,7 @@ static PetscErrorCode TimeOurs(ElementType type, PetscInt n)
   const struct {
     const char *what;
     PetscErrorCode (*call)(Work *);
-    PetscBool whole; /* mesh */
+    PetscBool whole; /* whether a call treats the whole mesh, or one batch */
   } parts[] = {
     {"kernel-force",         KernelForce, PETSC_FALSE},
     {"kernel-force-tangent", KernelBoth,  PETSC_FALSE},
@@ -194,7 +198,7 @@ int main(int argc, char **argv)
 {
   const struct {
     ElementType type;
-    PetscInt    n, petsc_n; /* cubes per side */
+    PetscInt    n, petsc_n; /* number of cubes per side, and that for PetscFE */
   } rows[] = {
     {ELEMENT_TET4,  18, 4},
     {ELEMENT_TET10, 10, 2},

@@ -1,5 +1,5 @@
-/* What the kernels' benches share: CPU seconds, which other work on the machine does not lengthen, and random numbers.
- */
+/* Functions that the benches of the kernels share. Seconds() returns the CPU time of the process, which other work on
+   the machine does not lengthen. Random() returns a random number in an interval. */
 #pragma once
 #include <stdlib.h>
 #include <time.h>

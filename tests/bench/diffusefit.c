@@ -1,5 +1,6 @@
-/* Microseconds per slave point of the diffuse fit, by dimension, degree and points inside the support: gap, with N,
-   with N and M. Lists hold the margin's points too. Raw record, one "name value unit" per line. */
+/* Measures the diffuse fit in microseconds per slave point, by dimension, degree and number of points inside the
+   support. It measures the gap alone, the gap with N, and the gap with N and M. The lists also have the points of the
+   margin. A line of the output is "name value unit". */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -8,15 +9,19 @@
 #include "smooth/fitframe.h"
 #include "symmetricproduct.h"
 
+/* Numbers of slave points and of repetitions, largest number of points in a list, and largest size of N. */
 enum { SLAVES = 64, REPEATS = 40, MAX_LIST = 400, MAX_SIZE = 3 * (1 + MAX_LIST) };
-static const double margin = 1.7, radius = 15; /* of rho^2 in a list; of the master's sphere, in spacings */
+/* `margin` is the largest rho^2 of a point in a list, where rho = 1 is the boundary of the support. `radius` is that of
+   the master's sphere, in spacings. */
+static const double margin = 1.7, radius = 15;
 
+/* Slave points with their lists of master points, relative to the slave point */
 typedef struct {
   int    dim, degree, n[SLAVES];
   double support, exponent, x[SLAVES][3 * MAX_LIST], multiplier[MAX_LIST];
 } Neighbourhoods;
 
-/* Slave points over the jittered nodes, one spacing apart, of a sphere or circle */
+/* Puts slave points over the nodes of a sphere or circle, which are one spacing apart and randomly shifted. */
 static void Fill(Neighbourhoods *all)
 {
   const int dim = all->dim, reach = (int)(1.5 * all->support) + 1;
@@ -41,7 +46,8 @@ static void Fill(Neighbourhoods *all)
   }
 }
 
-/* Best of some repetitions; points: mean number inside the support */
+/* Returns the shortest time of some repetitions, in microseconds per slave point. *points is the mean number of points
+   inside the support. */
 static double Time(const Neighbourhoods *all, FitWant want, double *points)
 {
   static int    index[MAX_LIST];
@@ -78,7 +84,7 @@ static double Time(const Neighbourhoods *all, FitWant want, double *points)
   return best;
 }
 
-/* The product inside M alone, for what the machine can give */
+/* Measures only the product that M contains, as a bound of what the machine can reach. */
 static void BenchProduct(int points)
 {
   const int size = 3 * (1 + points), stride = SymmetricProductStride(size), terms = FitTerms(3, 4);

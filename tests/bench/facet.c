@@ -1,5 +1,6 @@
-/* CPU microseconds per slave point of the facet smoother, by facet type: closest point in a list of 9 and of 25, one
-   projection, N and M; and of the search tree. Lines: row, column, value; # heads a table. */
+/* Measures the facet smoother in CPU microseconds per slave point, by type of facet, and the search tree. Of the
+   smoother it measures one projection, the closest point in lists of 9 and of 25 facets, N and M. A line is row, column
+   and value; a line with # begins a table. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -7,6 +8,8 @@
 #include "smooth/facet.h"
 #include "base/boxtree.h"
 
+/* Numbers of slave points and of repetitions, largest number of dofs of a slave node and a facet, largest side of a
+   patchwork in facets, and largest number of its nodes. */
 enum {
   POINTS        = 2000,
   REPEATS       = 20,
@@ -15,8 +18,8 @@ enum {
   MAX_POSITIONS = 25 * FACE_MAX_NODES
 };
 
-/* side by side facets (strips of them in 2D, pairs for triangles) of width 1 on a sphere or circle of radius 8, each
- * with its own nodes */
+/* Makes side times side facets of width 1 on a sphere or circle of radius 8. Each facet has its own nodes. In 2D the
+   facets are a strip, and triangles are pairs that fill a square. Returns the number of nodes. */
 static int Patchwork(ElementType type, int side, Facet *facets, double *x)
 {
   const Element *element = ElementGet(type);
@@ -45,7 +48,9 @@ static int Patchwork(ElementType type, int side, Facet *facets, double *x)
   return nodes;
 }
 
-/* Best of some repetitions, in microseconds per point: the whole, with the variations up to `order` */
+/* Returns the shortest time of some repetitions, in microseconds per point. The time includes the projection and the
+   variations up to `order`; with order < 0 it includes only the preparation. If `seeded` is not 0, the closest point is
+   searched a second time from the facet that was found. */
 static double Time(ElementType type, int n, int nodes, const Facet *facets, const double *x, int order, int seeded)
 {
   const int dim  = ElementGet(type)->dim + 1;
@@ -130,7 +135,7 @@ static void VisitCentre(void *context, int index, double *bound)
   *bound = fmin(*bound, sqrt(sum));
 }
 
-/* n boxes on a sheet, as a contact surface's facets are */
+/* Measures the search tree of n boxes on a sheet, because the facets of a contact surface lie in the same way. */
 static int BenchTree(int n)
 {
   const int side = (int)sqrt(n);

@@ -1,5 +1,6 @@
-/* Microseconds per slave quadrature point of the diffuse fit over nodes, surface to surface: fit points are quadrature
-   points of master faces, the slave point is one of a slave face. Lines: row, column, value; # heads a table. */
+/* Measures the diffuse fit over nodes, as surface-to-surface contact needs it, in microseconds per slave quadrature
+   point. The points of the fit are quadrature points of master faces, and the slave point is a quadrature point of a
+   slave face. A line is row, column and value; a line with # begins a table. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -9,6 +10,8 @@
 #include "smooth/fitderivatives.h"
 #include "symmetricproduct.h"
 
+/* Numbers of slave points and of repetitions, faces along a side of the patch, largest order of an element, largest
+   numbers of nodes on a side and on a face, and largest number of points in a list. */
 enum {
   SLAVES     = 48,
   REPEATS    = 60,
@@ -18,35 +21,39 @@ enum {
   MAX_FACE   = 9,
   MAX_POINTS = SIDE * SIDE * MAX_FACE
 };
+/* Largest number of nodes of a list and of the slave face, and largest size of N */
 enum { MAX_NODES = MAX_LINE * MAX_LINE + MAX_FACE, MAX_SIZE = 3 * MAX_NODES };
-static const double radius = 15; /* of the master's sphere, in face sizes */
+/* Radius of the master's sphere, in face sizes */
+static const double radius = 15;
 
 typedef struct {
   int    dim, degree, order;
   double support, exponent;
 } Kind;
 
-/* One slave point: its list, and for every point of it the nodes */
+/* The list of one slave point, and the nodes of every point in the list */
 typedef struct {
-  int    n, entries; /* points in the list; nodes of a face */
+  int    n, entries; /* number of points in the list; number of nodes of a face */
   int    node[MAX_POINTS * MAX_FACE];
   double x[3 * MAX_POINTS], multiplier[MAX_POINTS], S[MAX_POINTS * MAX_FACE];
 } List;
 
-/* Points inside with the nodes behind them */
+/* The points inside the support, and the nodes on which they depend */
 typedef struct {
   FitDerivatives map;
   int            ptr[MAX_POINTS + 2], node[(MAX_POINTS + 1) * MAX_FACE];
   double         S[(MAX_POINTS + 1) * MAX_FACE], sign[3 * (MAX_POINTS + 1) * MAX_FACE];
 } Map;
 
+/* Returns shape function a of a line element at s in [0, 1]. */
 static double LineShape(int order, int a, double s)
 {
   if (order == 1) return a == 0 ? 1 - s : s;
   return a == 0 ? (1 - s) * (1 - 2 * s) : a == 1 ? 4 * s * (1 - s) : s * (2 * s - 1);
 }
 
-/* Jittered faces of a patch around the slave point, with order + 1 quadrature points in each direction */
+/* Makes a patch of faces around the slave point. Its nodes are randomly shifted, and its faces have order + 1
+   quadrature points in each direction. */
 static void Fill(const Kind *kind, List *list)
 {
   static const double gauss[2][3] = {
@@ -91,7 +98,7 @@ static void Fill(const Kind *kind, List *list)
   }
 }
 
-/* Numbers the nodes behind the points inside, after the slave point's own. */
+/* Numbers the nodes of the points inside the support, after the slave point's own nodes. */
 static void MakeMap(const List *list, int n, const int *points, Map *map)
 {
   int number[MAX_LINE * MAX_LINE], entries = list->entries;
@@ -118,6 +125,8 @@ static void MakeMap(const List *list, int n, const int *points, Map *map)
   }
 }
 
+/* The parts of the work that are measured: the gap, the gap and N, these and the factors K, J, H of M, N and M over the
+   nodes, the product that M contains, and all together. */
 typedef enum { GAP, GAP_N, FACTORS, NODAL_N, NODAL_M, PRODUCT, ALL, PARTS } Part;
 static const char *const names[] = {"gap", "gap,N", "..,K,J,H", "N_nodes", "M_nodes", "(product)", "all"};
 
@@ -133,6 +142,7 @@ typedef struct {
 
 static double nodal[MAX_SIZE], own[MAX_POINTS][FIT_DERIVATIVES_OWN], M[(long)MAX_SIZE * MAX_SIZE], *scratch;
 
+/* Does one part of the work for one slave point. */
 static void Do(Part part, Slave *s)
 {
   const int terms = FitTerms(s->problem.dim, s->problem.degree), size = s->map.map.n_nodes * s->problem.dim,
@@ -188,7 +198,7 @@ static void Setup(const Kind *kind, Slave *s)
   MakeMap(&s->list, s->result.n, s->points, &s->map);
 }
 
-/* Best of some repetitions */
+/* Prints the shortest time of some repetitions for every part, in microseconds per slave point. */
 static void Bench(const char *row, const Kind *kind)
 {
   static Slave slaves[SLAVES];

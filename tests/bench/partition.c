@@ -1,23 +1,25 @@
-/* What partitions of a scene's mesh would cost on 2 to 4096 ranks, from the partition alone (lines: row, column, value;
-   # heads a table): cells and contact cells balanced as in a run, and cells alone. Arguments: SCENE.yaml KEY=VALUE ...;
-   without, two rings with 1e5 unknowns. */
+/* Estimates the costs of partitions of a scene's mesh on 2 to 4096 ranks, from the partition alone. One table is for
+   partitions that balance cells and contact cells, as in a run, and one for partitions that balance cells alone. A line
+   is row, column and value; a line with # begins a table. The arguments are SCENE.yaml KEY=VALUE ... Without arguments
+   the scene is two rings with 1e5 unknowns. */
 #include <float.h>
 #include "mesh/mesh.h"
 #include "base/boxtree.h"
 
-enum { MOST_PARTS = 4096, LEAST_CELLS = 16 /* in a part: fewer than a rank would ever have */ };
+/* Largest number of parts, and smallest number of cells in a part. No rank of a run would have as few cells as that. */
+enum { MOST_PARTS = 4096, LEAST_CELLS = 16 };
 
 typedef struct {
   Mesh       mesh;
-  PetscInt  *offsets, *adjacency; /* of cells */
-  PetscBool *contact;             /* per cell */
-  PetscInt   n_slaves, *slave,
-    *opposite; /* cells of the slave faces, and of the master face whose centre is nearest to each one's */
-  PetscInt parts, *part, *count; /* per cell; per part */
+  PetscInt  *offsets, *adjacency; /* graph of the cells */
+  PetscBool *contact;             /* whether a cell has a face of a contact surface */
+  /* The cells of the slave faces, and for each the cell of the master face whose centre is nearest to that of the slave
+     face */
+  PetscInt n_slaves, *slave, *opposite;
+  PetscInt parts, *part, *count; /* number of parts, part of each cell, count for each part */
 } Study;
 
-/* ----------------------------------------------------------------------------------------------------------- the mesh
- */
+/* The mesh */
 
 static PetscErrorCode FaceCentres(Mesh mesh, const MeshGroup *group, PetscReal **centres)
 {
@@ -50,7 +52,7 @@ static void VisitCentre(void *context, int index, double *bound)
   nearest->closest = index;
 }
 
-/* Appends the pair's slave cells and what lies opposite */
+/* Appends the slave cells of a pair, and the master cells that are opposite to them. */
 static PetscErrorCode AddPair(Study *study, const MeshGroup *slave, const MeshGroup *master)
 {
   const int  dim = study->mesh->dim;
@@ -78,7 +80,7 @@ static PetscErrorCode AddPair(Study *study, const MeshGroup *slave, const MeshGr
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Pairs of meshed bodies; others have nothing on another rank */
+/* Appends all pairs of meshed bodies. Pairs with an analytic master need no data of another rank. */
 static PetscErrorCode AddPairs(Scene scene, Study *study)
 {
   PetscInt n = 0;
@@ -98,10 +100,10 @@ static PetscErrorCode AddPairs(Scene scene, Study *study)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ------------------------------------------------------------------------------------------------------ what parts
- * cost */
+/* The costs of parts */
 
-/* The distinct ones of n pairs (a, b), packed into numbers: how many, and the largest number of them with the same a */
+/* Counts the distinct ones of n pairs (a, b), which are packed into numbers. *most is the largest number of distinct
+   pairs with the same a. */
 static PetscErrorCode CountPairs(PetscInt n, PetscInt64 pairs[], PetscInt *distinct, PetscInt *most)
 {
   PetscInt of_one = 0;
@@ -123,7 +125,8 @@ static PetscErrorCode Print(const Study *study, const char *what, PetscReal valu
   return PetscPrintf(PETSC_COMM_SELF, "%" PetscInt_FMT " %s %.4g\n", study->parts, what, (double)value);
 }
 
-/* Nodes that a part needs and another (the lowest that touches them) owns; parts with which a part exchanges them */
+/* Prints the number of nodes that a part needs and another part owns, and the number of parts with which a part
+   exchanges them. The lowest part that touches a node owns it. */
 static PetscErrorCode PrintGhosts(const Study *study)
 {
   const Mesh  mesh = study->mesh;
@@ -136,7 +139,7 @@ static PetscErrorCode PrintGhosts(const Study *study)
     for (PetscInt k = mesh->cell_ptr[c]; k < mesh->cell_ptr[c + 1]; k++)
       touched[k] = (PetscInt64)mesh->cell_nodes[k] * MOST_PARTS + study->part[c];
   PetscCall(PetscSortInt64(n, touched));
-  PetscCall(PetscMalloc1(n, &shared)); /* a node of k cells has at most k parts, one of which owns it */
+  PetscCall(PetscMalloc1(n, &shared)); /* A node of k cells has at most k parts, one of which owns it. */
   distinct = 0;
   for (PetscInt k = 0, owner = 0; k < n; k++) {
     if (k && touched[k] == touched[k - 1]) continue;
@@ -155,7 +158,8 @@ static PetscErrorCode PrintGhosts(const Study *study)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Slave faces whose master is another part's; parts from which one that has slave faces needs master faces */
+/* Prints the share of slave faces whose master belongs to another part, and the largest number of parts from which one
+   part needs master faces. */
 static PetscErrorCode PrintContact(const Study *study)
 {
   PetscInt    n_pairs = 0, distinct, most;
@@ -175,6 +179,7 @@ static PetscErrorCode PrintContact(const Study *study)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Prints the costs of all numbers of parts. Contact cells have a weight of their own if two_weights is true. */
 static PetscErrorCode PrintPartitions(Study *study, PetscBool two_weights)
 {
   const PetscInt n     = study->mesh->n_cells;

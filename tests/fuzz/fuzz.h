@@ -1,6 +1,7 @@
-/* What the fuzzers of the readers share: the input as a file that never touches a disk, and a main() that replays files
-   where there is no fuzzer. A fuzzer is LLVMFuzzerInitialize() and LLVMFuzzerTestOneInput(), for libFuzzer (make fuzz,
-   with FUZZER defined) and for AFL++'s driver. */
+/* Functions that the fuzzers of the readers share. FuzzStart() starts PETSc. FuzzFile() gives the input as a file in
+   memory, so that nothing is written to a disk. A fuzzer consists of LLVMFuzzerInitialize() and
+   LLVMFuzzerTestOneInput(), for libFuzzer (make fuzz, with FUZZER defined) and for the driver of AFL++. If there is no
+   fuzzer, a main() replays files. */
 #define _GNU_SOURCE /* memfd_create() */
 #include <dirent.h>
 #include <stdint.h>
@@ -14,7 +15,7 @@
 int LLVMFuzzerInitialize(int *argc, char ***argv);
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 
-/* The path of a file in memory that holds the input, the same file each time */
+/* Returns the path of a file in memory that holds the input. It is the same file in each call. */
 static const char *FuzzFile(const uint8_t *data, size_t size)
 {
   static int  file = -1;
@@ -28,7 +29,7 @@ static const char *FuzzFile(const uint8_t *data, size_t size)
   return path;
 }
 
-/* PETSc without options of ours: the fuzzer's own are on the command line */
+/* Starts PETSc without the command line, which holds the options of the fuzzer. */
 static void FuzzStart(void)
 {
   if (PetscInitialize(NULL, NULL, NULL, NULL)) abort();
@@ -48,7 +49,7 @@ static int ReplayFile(const char *path)
   return 1;
 }
 
-/* Replays every file of the folders: a fuzzer's finds stay found. */
+/* Replays every file of the folders, so that an input that a fuzzer has found once is tested again each time. */
 int main(int argc, char **argv)
 {
   int n = 0;

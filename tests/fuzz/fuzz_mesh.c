@@ -1,4 +1,5 @@
-/* Whatever bytes stand in a .msh file, its reader reads a mesh or complains, and frees what it made. */
+/* Shows that the reader of .msh files reads a mesh or complains, whatever bytes the file has, and that all its memory
+   is freed. */
 #include "fuzz.h"
 #include "gmshfile.h"
 

@@ -1,10 +1,11 @@
-/* Whatever bytes stand in a scene file, its reader reads a scene or refuses it by a message, and frees all memory. */
+/* Shows that the reader of scene files reads a scene or refuses it with a message, whatever bytes the file has, and
+   that all its memory is freed. */
 #include "fuzz.h"
 #include "base/errorlog.h"
 #include "base/refusal.h"
 #include "scene/scene.h"
 
-/* Allocations of PETSc that are not freed yet */
+/* Number of allocations of PETSc that are not freed yet */
 static long Allocations;
 
 static PetscErrorCode Allocate(size_t size, PetscBool clear, int line, const char *function, const char *file,
@@ -45,7 +46,7 @@ int LLVMFuzzerInitialize(int *argc, char ***argv)
   (void)argv;
   if (PetscMallocSet(Allocate, Release, Reallocate)) abort();
   FuzzStart();
-  if (ErrorLogBegin()) abort(); /* refusals leave no trace */
+  if (ErrorLogBegin()) abort(); /* With its error handler, refusals print no trace. */
   return 0;
 }
 
@@ -57,8 +58,8 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
   const PetscErrorCode code    = SceneRead(PETSC_COMM_SELF, FuzzFile(data, size), 0, NULL, &scene);
 
   if (RefusalTake(&message)) abort();
-  if (code != (message ? REFUSED : 0) || (message && !message[0])) abort(); /* a refusal says something */
+  if (code != (message ? REFUSED : 0) || (message && !message[0])) abort(); /* A refusal must have a message. */
   if (PetscFree(message) || SceneDestroy(&scene)) abort();
-  if (Allocations != before) abort(); /* something was not freed */
+  if (Allocations != before) abort(); /* All memory must be free. */
   return 0;
 }

@@ -1,10 +1,10 @@
-/* Shows that every element converges to an exact field at the rate of its order, p + 1 in the L2 norm, on curved and
-   unstructured meshes: small strains for all elements and geometries, finite strains for some; on more than one rank,
-   that the error does not depend on the number of ranks.
+/* Shows that every element converges to an exact field at the rate of its order, which is p + 1 in the L2 norm, on
+   curved and unstructured meshes. Small strains are tested for all elements and geometries, finite strains for some of
+   them. On more than one rank, shows that the error does not depend on the number of ranks.
 
-   The field is chosen, its stress and body force follow from the laws as a textbook writes them; the library only gets
-   nodal values of the field on the boundary and the nodal forces, and gives back the interior. Argument: the folder of
-   the meshes (default: meshes). */
+   The field is chosen. Its stress and body force follow from the laws in the form of a textbook. The library gets only
+   the nodal values of the field on the boundary and the nodal forces, and it computes the displacement of the interior.
+   The argument is the folder of the meshes (default: meshes). */
 #include "bodies/elasticity.h"
 #include <petscdt.h>
 #include <petscksp.h>
@@ -16,24 +16,31 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* MAX_NEWTON: twice what quadratic convergence from the nodal values of the field needs */
+/* Largest number of meshes of a case, largest number of quadrature points of a cell, half width of the difference
+   stencil in steps, and largest number of Newton steps. MAX_NEWTON is twice the number that quadratic convergence from
+   the nodal values of the field needs. */
 enum { LEVELS = 3, RULE_POINTS = 64, STENCIL = 3, MAX_NEWTON = 6 };
 
-static const PetscReal rate_margin =
-  0.2; /* the rate over all meshes of a case (least squares: unstructured meshes scatter) must exceed p + 1 less this */
-static const PetscReal rank_agreement = 1e-10; /* of errors on different numbers of ranks, relative */
-static const PetscReal newton_done =
-  1e-12; /* residual over the norm of the unassembled internal forces: rounding is 1e-15 */
+/* The rate over all meshes of a case must exceed p + 1 minus this margin. The rate is a least-squares fit, because
+   unstructured meshes scatter. */
+static const PetscReal rate_margin = 0.2;
+/* Largest relative difference of the errors on different numbers of ranks */
+static const PetscReal rank_agreement = 1e-10;
+/* Residual over the norm of the unassembled internal forces at which Newton's method has converged. Rounding is 1e-15.
+ */
+static const PetscReal newton_done = 1e-12;
+/* Young's modulus (stress) and Poisson's ratio */
 static const PetscReal young = 200, poisson = 0.3;
-static const PetscReal offset_radius = 0.5; /* of an axisymmetric box away from the axis; box sides are 1 */
+/* Inner radius of an axisymmetric box away from the axis. The sides of the box are 1. */
+static const PetscReal offset_radius = 0.5;
 
 #define CHECK(call) assert_int_equal((call), PETSC_SUCCESS)
 
 typedef struct {
   ElementType type;
   Geometry    geometry;
-  PetscBool   axis; /* axisymmetric: the box touches the axis r = 0 */
-  MaterialLaw law;  /* linear: small strains */
+  PetscBool   axis; /* whether an axisymmetric box touches the axis r = 0 */
+  MaterialLaw law;  /* MATERIAL_LINEAR stands for small strains */
   Formulation formulation;
   int         levels, n[LEVELS];
 } Case;
@@ -82,18 +89,18 @@ static const Case cases[] = {
 };
 enum { CASES = sizeof(cases) / sizeof(*cases) };
 
-/* The same on any number of ranks */
+/* The case that is solved on any number of ranks */
 static const Case parallel_case = {
   ELEMENT_TET10, GEOMETRY_SOLID, PETSC_FALSE, MATERIAL_NEO_HOOKEAN, FORMULATION_FULL, 1, {4}};
 
 static PetscMPIInt rank;
 static char        folder[64], meshes[PATH_MAX];
 
-/* ------------------------------------------------------------------------------------------------------------- the
- * exact field */
+/* The exact field */
 
-/* u_i = a sin(k_i . s + p_i) with s = x; axisymmetric s = (r^2, z) and u_r times r, which makes the field smooth on the
-   axis. H: its gradient, at 3 i + I, x = r and y = z, with the hoop strain at 8 */
+/* Computes the field u_i = a sin(k_i . s + p_i) with s = x, and its gradient H at 3 i + I. In the axisymmetric case x =
+   r, y = z and s = (r^2, z), and u_r is multiplied by r, which makes the field smooth on the axis. H[8] is then the
+   hoop strain. */
 static void Exact(Geometry geometry, const PetscReal x[3], PetscReal u[3], PetscReal H[9])
 {
   static const PetscReal k[3][3] = {
@@ -101,9 +108,9 @@ static void Exact(Geometry geometry, const PetscReal x[3], PetscReal u[3], Petsc
     {-1.3, 2.1, 0.9 },
     {0.8,  1.2, 1.7 }
   };
-  static const PetscReal phase[3]  = {0.4, 1.1, -0.6},
-                         amplitude = 0.06; /* above 0.075 svk loses its ellipticity in compression */
-  const int dim = geometry == GEOMETRY_SOLID ? 3 : 2, axisymmetric = geometry == GEOMETRY_AXISYMMETRIC;
+  /* With an amplitude above 0.075, svk loses its ellipticity in compression. */
+  static const PetscReal phase[3] = {0.4, 1.1, -0.6}, amplitude = 0.06;
+  const int              dim = geometry == GEOMETRY_SOLID ? 3 : 2, axisymmetric = geometry == GEOMETRY_AXISYMMETRIC;
 
   for (int r = 0; r < 9; r++) H[r] = 0;
   for (int i = 0; i < dim; i++) {
@@ -122,14 +129,15 @@ static void Exact(Geometry geometry, const PetscReal x[3], PetscReal u[3], Petsc
   }
 }
 
-/* First Piola-Kirchhoff stress: Hooke; P = F (lambda tr(E) 1 + 2 mu E); P = mu (F - F^-T) + lambda ln J F^-T */
+/* Computes the first Piola-Kirchhoff stress P. The laws are Hooke's law, P = F (lambda tr(E) 1 + 2 mu E) for svk, and
+   P = mu (F - F^-T) + lambda ln J F^-T for neo_hookean. */
 static void Stress(MaterialLaw law, const PetscReal H[9], PetscReal P[9])
 {
   const PetscReal lambda = young * poisson / ((1 + poisson) * (1 - 2 * poisson)), mu = young / (2 * (1 + poisson));
   PetscReal       F[9], S[9], C[9], trace = 0, J = 0;
 
   for (int r = 0; r < 9; r++) F[r] = H[r] + (r % 4 == 0);
-  for (int i = 0; i < 3; i++) { /* S: strain; C: cofactors of F */
+  for (int i = 0; i < 3; i++) { /* S holds the strain, C the cofactors of F. */
     for (int j = 0; j < 3; j++) {
       const int i1 = 3 * ((i + 1) % 3), i2 = 3 * ((i + 2) % 3), j1 = (j + 1) % 3, j2 = (j + 2) % 3;
 
@@ -161,8 +169,8 @@ static void ExactStress(const Case *test, const PetscReal x[3], PetscReal P[9])
   Stress(test->law, H, P);
 }
 
-/* Body force -Div P by central differences of order 6; the field has wavelengths above 2, so that both their errors are
- * below 1e-11 of the force */
+/* Computes the body force -Div P by central differences of order 6. The field has wavelengths above 2, so that the
+   errors of truncation and of rounding are both below 1e-11 of the force. */
 static void ExactForce(const Case *test, const PetscReal x[3], PetscReal b[3])
 {
   static const PetscReal weight[STENCIL] = {3. / 4, -3. / 20, 1. / 60}, step = 0.01;
@@ -187,11 +195,10 @@ static void ExactForce(const Case *test, const PetscReal x[3], PetscReal b[3])
   }
 }
 
-/* ------------------------------------------------------------------------------------------------------------- the
- * mesh */
+/* The mesh */
 
-/* Bends the box, so that cells are no parallelepipeds and those of second order have curved sides. Keeps r = 0 where it
- * is. */
+/* Bends the box, so that cells are no parallelepipeds and cells of second order have curved sides. Points with r = 0
+   stay on the axis. */
 static void Bend(const Case *test, PetscReal x[3])
 {
   const PetscReal s[3] = {x[0], x[1], x[2]};
@@ -202,6 +209,7 @@ static void Bend(const Case *test, PetscReal x[3])
   if (test->geometry == GEOMETRY_AXISYMMETRIC && !test->axis) x[0] += offset_radius;
 }
 
+/* Writes the scene of a case to a file on rank 0 and reads it. */
 static PetscErrorCode SceneCreate(MPI_Comm comm, const Case *test, int n, Scene *scene)
 {
   static const char *const names[] =
@@ -232,7 +240,8 @@ static PetscErrorCode SceneCreate(MPI_Comm comm, const Case *test, int n, Scene 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Prescribes the displacement on the whole boundary; on the axis, which is none, only the radial one */
+/* Prescribes the displacement on the whole boundary. The axis is no boundary, and only the radial displacement is
+   prescribed there. */
 static PetscErrorCode Constrain(const Case *test, Scene scene, Mesh mesh)
 {
   static const char *const sides[] = {"x_min", "x_max", "y_min", "y_max", "z_min", "z_max"};
@@ -254,8 +263,8 @@ static PetscErrorCode Constrain(const Case *test, Scene scene, Mesh mesh)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Coordinates are taken as they stand in the mesh, relative to its centre: the field's origin is there. u: the nodal
- * values of the field */
+/* Makes the scene and the mesh, bends the mesh and computes the nodal values u of the field. The coordinates of the
+   mesh are relative to its centre, and the field has its origin there. */
 static PetscErrorCode CreateMesh(MPI_Comm comm, const Case *test, int n, Scene *scene, Mesh *mesh, PetscReal **u)
 {
   char        file[PETSC_MAX_PATH_LEN];
@@ -285,10 +294,9 @@ static PetscErrorCode CreateMesh(MPI_Comm comm, const Case *test, int n, Scene *
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* -------------------------------------------------------------------------------------------------------------
- * integrals */
+/* Integrals */
 
-/* Quadrature of order p + 2 per direction, more than the elements' own */
+/* A quadrature of order p + 2 in each direction, which is more than that of the elements */
 typedef struct {
   int       points;
   PetscReal weight[RULE_POINTS], N[RULE_POINTS][ELEMENT_MAX_NODES], dN[RULE_POINTS][ELEMENT_MAX_NODES * 3];
@@ -310,7 +318,7 @@ static PetscErrorCode RuleCreate(ElementType type, Rule *rule)
   PetscCall(PetscQuadratureGetData(quadrature, NULL, NULL, &n, &points, &weights));
   PetscCheck(n <= RULE_POINTS, PETSC_COMM_SELF, PETSC_ERR_PLIB, "%" PetscInt_FMT " quadrature points", n);
   rule->points = (int)n;
-  for (int q = 0; q < rule->points; q++) { /* PETSc's simplex is the half of [-1, 1]^dim */
+  for (int q = 0; q < rule->points; q++) { /* The sides of PETSc's simplex are 2. */
     PetscReal xi[3];
 
     rule->weight[q] = weights[q] / (simplex ? 1 << e->dim : 1);
@@ -321,7 +329,7 @@ static PetscErrorCode RuleCreate(ElementType type, Rule *rule)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Place of point q of a cell, and the volume it stands for (over 360 degrees) */
+/* Gives the place of point q of a cell. Returns the volume of the point, over 360 degrees if axisymmetric. */
 static PetscReal RulePoint(const Rule *rule, int q, const Case *test, Mesh mesh, PetscInt c, PetscReal x[3])
 {
   const int       dim   = mesh->dim;
@@ -347,7 +355,7 @@ static PetscReal RulePoint(const Rule *rule, int q, const Case *test, Mesh mesh,
   return volume * rule->weight[q] * (test->geometry == GEOMETRY_AXISYMMETRIC ? 2 * PETSC_PI * x[0] : 1);
 }
 
-/* f -= nodal forces of the exact body force */
+/* Subtracts the nodal forces of the exact body force from f. */
 static void SubtractForce(const Rule *rule, const Case *test, Mesh mesh, PetscReal *f)
 {
   for (PetscInt c = 0; c < mesh->n_cells; c++) {
@@ -364,7 +372,8 @@ static void SubtractForce(const Rule *rule, const Case *test, Mesh mesh, PetscRe
   }
 }
 
-/* L2 norm of u less the exact field, over the norm of the field. Collective. */
+/* Computes the L2 norm of the difference between u and the exact field, divided by the norm of the field. Collective.
+ */
 static PetscErrorCode L2Error(const Rule *rule, const Case *test, Mesh mesh, const PetscReal *u, PetscReal *error)
 {
   PetscReal sum[2] = {0, 0};
@@ -391,11 +400,10 @@ static PetscErrorCode L2Error(const Rule *rule, const Case *test, Mesh mesh, con
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ------------------------------------------------------------------------------------------------------------- the
- * solution */
+/* The solution */
 
-/* Newton from the nodal values of the exact field; load: minus the external forces. Small strains need one step.
- * Collective. */
+/* Solves by Newton's method from the nodal values of the exact field. `load` is minus the external forces. Small
+   strains need one step. Collective. */
 static PetscErrorCode Newton(Mesh mesh, Elasticity e, const PetscReal *load, PetscReal *u, PetscInt *steps)
 {
   const PetscInt n = mesh->n_nodes * mesh->dim;
@@ -441,8 +449,8 @@ static PetscErrorCode Newton(Mesh mesh, Elasticity e, const PetscReal *load, Pet
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* One mesh: h, the side of a cube of the mean size of a cell of a unit box, the error and the number of Newton steps.
- * Collective. */
+/* Solves on one mesh. Gives the error, the number of Newton steps and h, the side of a cube that has the mean size of a
+   cell of a unit box. Collective. */
 static PetscErrorCode Solve(MPI_Comm comm, const Case *test, int n, PetscReal *h, PetscReal *error, PetscInt *steps)
 {
   static Rule rule;
@@ -475,7 +483,7 @@ static const char *GeometryText(const Case *test)
   return test->axis ? "axisymmetric, axis" : "axisymmetric";
 }
 
-/* Slope of the least-squares line through log(error) over log(h) */
+/* Returns the slope of the least-squares line through log(error) over log(h). */
 static PetscReal Rate(int levels, const PetscReal h[], const PetscReal error[])
 {
   PetscReal mean[2] = {0, 0}, sum[2] = {0, 0};

@@ -6,16 +6,18 @@
 #include <cmocka.h>
 #include "../box.h"
 
-static const PetscReal agreement = 1e-10; /* relative to the largest entry */
+/* Largest allowed difference of an entry, relative to the largest entry */
+static const PetscReal agreement = 1e-10;
 
 #define CHECK(call) assert_int_equal((call), PETSC_SUCCESS)
 
-/* place[k]: our node of PETSc's local dofs 3 k, 3 k + 1, 3 k + 2, found by its coordinates */
+/* Finds the nodes of the library's mesh by their coordinates. place[k] is the node of PETSc's local dofs 3 k, 3 k + 1
+   and 3 k + 2. */
 static PetscErrorCode MatchNodes(const Box *box, DM dm, PetscInt *place)
 {
   PetscErrorCode (*identity[1])(PetscInt, PetscReal, const PetscReal[], PetscInt, PetscScalar[],
                                 void *) = {BoxIdentity};
-  const PetscReal    tolerance          = 1e-8; /* of a unit box: nodes are 0.1 apart */
+  const PetscReal    tolerance          = 1e-8; /* length; the nodes of the unit box are 0.1 apart */
   const PetscScalar *x;
   Vec                coords;
 
@@ -39,7 +41,7 @@ static PetscErrorCode MatchNodes(const Box *box, DM dm, PetscInt *place)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Largest difference of the forces over the largest force */
+/* Computes the largest difference of the forces, divided by the largest force. */
 static PetscErrorCode CompareResiduals(const Box *box, DM dm, Elasticity e, const PetscInt *place, Vec u,
                                        PetscReal *difference)
 {
@@ -70,7 +72,8 @@ static PetscErrorCode CompareResiduals(const Box *box, DM dm, Elasticity e, cons
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Largest difference of the entries over the largest entry; every entry of either matrix is in the other's pattern */
+/* Computes the largest difference of the entries, divided by the largest entry. Fails unless both matrices have the
+   same pattern. */
 static PetscErrorCode CompareTangents(const Box *box, DM dm, Elasticity e, const PetscInt *place, Vec u,
                                       PetscReal *difference)
 {

@@ -1,4 +1,4 @@
-/* A history is linear between its breakpoints, exact at them, and constant beyond them. */
+/* Shows that a history is linear between its breakpoints, exact at them and constant beyond them. */
 #include "scene/loadhistory.h"
 #include <stdarg.h>
 #include <stddef.h>

@@ -1,5 +1,5 @@
-/* Every key of a scene file, its default and -set arrive in the scene's fields; places, canonical text and the command
- * line are as promised. */
+/* Shows that the fields of the scene hold the value of every key of a scene file, its default and its -set. Shows that
+   the places of values in messages, the canonical text and the command line are as their manual comments say. */
 #include "base/petsccompat.h"
 #include "scene/scene.h"
 #include "schema.h"
@@ -17,7 +17,7 @@ static const char Smallest[] = "mesh: {file: block.geo}\n"
                                "bodies:\n"
                                "  - {volume: block, material: {law: svk, E: 200, nu: 0.3}}\n";
 
-/* Every key of the schema but those of analytic masters, which no release value lets through. */
+/* Every key of the schema except those of analytic masters, of the law and of augmented penalties */
 static const char Everything[] =
   "name: everything\n"
   "mesh: {file: /meshes/two.msh, order: 2, parameters: {n: 4, label: fine}}\n"
@@ -378,7 +378,7 @@ static void TextDependsOnValuesAlone(void **state)
   Free(&a);
 }
 
-/* The table's words stand in the order of the enumerations that they are read into. */
+/* The words of the table have the order of the enumerations into which they are read. */
 static void LawsOfTheTableAreTheMaterials(void **state)
 {
   char  text[64];

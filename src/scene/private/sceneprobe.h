@@ -1,5 +1,5 @@
-/* The reader of the probes of a scene. SceneReadProbes() comes after the bodies and the contact pairs have been read,
-   as a probe may name one of them. For scene.c only. */
+/* The reader of the probes of a scene, for scene.c only. SceneReadProbes() is called after the bodies and the contact
+   pairs have been read, because a probe may name one of them. It fills scene->probes and refuses the first mistake. */
 #pragma once
 #include "scene/scene.h"
 

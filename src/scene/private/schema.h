@@ -1,22 +1,21 @@
-/* What a scene may say: validation against the one table of keys, values with their defaults, the scene reference.
+/* The schema of a scene: validation against the table of keys, values with their defaults, and the scene reference.
 
-   SchemaCheck() validates a document as a whole; from then on the accessors below read any value by its path
-   ("contact.0.penalty.scale", the path in printf's manner), or the table's default where the document has none. To add
-   a key: one line in the table of schemakeys.c, one line in scene.c that reads it. Every refusal names file and line
-   (or -set), key, what is wrong and what is allowed. */
+   SchemaCheck() validates a whole document. Every refusal names the file and the line, or the -set, the key, the
+   mistake and what is allowed. After SchemaCheck() the accessors SchemaHas() to SchemaText() read any value by its path
+   ("contact.0.penalty.scale"). The path is given by a format and arguments, as for printf(). If the document has no
+   value there, they return the default of the table. SchemaReference() prints the reference.
+
+   A new key needs one line in the table of schemakeys.c and one line in scene.c, which reads it. */
 #pragma once
 #include "document.h"
 #include <stdio.h>
 
-PetscErrorCode SchemaCheck(Document *); /* also sets document->dim */
+PetscErrorCode SchemaCheck(Document *);
 int            SchemaHas(Document *, const char *, ...) __attribute__((format(printf, 2, 3)));
-int            SchemaCount(Document *, const char *, ...)
-  __attribute__((format(printf, 2, 3))); /* entries of a list or map, 0 if absent */
-double SchemaReal(Document *, const char *, ...) __attribute__((format(printf, 2, 3)));
-int    SchemaInteger(Document *, const char *, ...) __attribute__((format(printf, 2, 3)));
-int    SchemaBoolean(Document *, const char *, ...) __attribute__((format(printf, 2, 3)));
-int    SchemaChoice(Document *, const char *, ...)
-  __attribute__((format(printf, 2, 3))); /* position among the table's values */
-const char *SchemaText(Document *, const char *, ...)
-  __attribute__((format(printf, 2, 3))); /* NULL: absent and no default */
-void SchemaReference(FILE *);
+int            SchemaCount(Document *, const char *, ...) __attribute__((format(printf, 2, 3)));
+double         SchemaReal(Document *, const char *, ...) __attribute__((format(printf, 2, 3)));
+int            SchemaInteger(Document *, const char *, ...) __attribute__((format(printf, 2, 3)));
+int            SchemaBoolean(Document *, const char *, ...) __attribute__((format(printf, 2, 3)));
+int            SchemaChoice(Document *, const char *, ...) __attribute__((format(printf, 2, 3)));
+const char    *SchemaText(Document *, const char *, ...) __attribute__((format(printf, 2, 3)));
+void           SchemaReference(FILE *);

@@ -1,52 +1,58 @@
-/* The one table of what a scene may say, a line per key: validation, -set, the scene reference and "not available yet"
-   all come from it. For schema.c; the other parts ask schema.h. */
+/* The table of all keys of a scene, one entry per key. The validation, -set, the scene reference and the message "not
+   available yet" all come from this table. SchemaKeyFind() finds the entry of a path, SchemaKeyIsChild() tells whether
+   a key belongs to a map, SchemaKeyName() gives its last word, and WordFind() finds a word in a list of words. For
+   schema.c only; other parts use schema.h. */
 #pragma once
 #include <stddef.h>
 
-/* What a key may hold; a key that may hold one of several has several bits. */
+/* The types of a value. A key that allows several types has several bits. */
 typedef enum {
   REAL     = 1 << 0,
   INTEGER  = 1 << 1,
   BOOLEAN  = 1 << 2,
-  CHOICE   = 1 << 3, /* one of .values */
+  CHOICE   = 1 << 3, /* one word of .values */
   TEXT     = 1 << 4,
-  NAME     = 1 << 5, /* becomes part of file names and column heads */
+  NAME     = 1 << 5, /* a text that becomes part of file names and column heads */
   POINT    = 1 << 6, /* as many reals as the scene has dimensions */
   POINTS   = 1 << 7, /* two points */
-  REALS    = 1 << 8, /* strictly increasing */
+  REALS    = 1 << 8, /* a strictly increasing list of reals */
   TEXTS    = 1 << 9,
-  CHOICES  = 1 << 10,
-  HISTORY  = 1 << 11, /* [t, factor] pairs */
+  CHOICES  = 1 << 10, /* a list of words of .values */
+  HISTORY  = 1 << 11, /* a list of pairs [t, factor] */
   MAP      = 1 << 12,
-  LIST     = 1 << 13, /* of maps */
-  FREE     = 1 << 14, /* a map whose keys are not ours */
-  FILENAME = 1 << 15, /* a path */
+  LIST     = 1 << 13, /* a list of maps */
+  FREE     = 1 << 14, /* a map whose keys are not in the table */
+  FILENAME = 1 << 15, /* a path of a file */
 } ValueType;
 
-/* The longest name of the scene, a pair or a probe, in characters. Names of pairs are parts of paths in results.h5, for
-   which report/fields.c has 512 characters; a scene's name is one of a directory, of at most 255. */
+/* The longest name of the scene, a pair or a probe, in characters. The name of a pair becomes part of a path in
+   results.h5, for which report/fields.c has 512 characters. The name of the scene becomes the name of a directory,
+   which has at most 255 characters. */
 #define SCHEMA_LONGEST_NAME 100
-/* The longest name of a group of the mesh, in characters. gmsh 4.8 cuts longer ones off when it writes a mesh. */
+/* The longest name of a group of the mesh, in characters. gmsh 4.8 cuts longer names off when it writes a mesh. */
 #define SCHEMA_LONGEST_GROUP 127
 
-enum { REQUIRED = 1, SOLID = 2 /* only in 3D scenes */ };
+/* The flags of a key. A REQUIRED key must be in its map. A SOLID key is allowed in 3D scenes only. */
+enum { REQUIRED = 1, SOLID = 2 };
 
 typedef struct {
-  const char *path; /* "*": any index of a list; "a|b": key a or key b */
+  /* The path of the key. "*" stands for any index of a list, and "a|b" stands for key a or key b. */
+  const char *path;
   int         type, flags;
-  const char
-    *values; /* CHOICE, CHOICES: words apart by " | ", in the order of the enumeration that scene.h has for them */
-  const char *range; /* REAL, INTEGER, REALS: interval of a value; LIST: of the number of entries */
+  /* The allowed words of CHOICE and CHOICES, with " | " between them, in the order of the enumeration that scene.h has
+     for them. */
+  const char *values;
+  const char *range; /* the interval of a REAL, an INTEGER or each of REALS; of a LIST, that of its number of entries */
   const char *unit;
-  const char *preset; /* default */
-  const char *now;    /* the only values available yet, as .values; "": none */
+  const char *preset; /* the default */
+  const char *now;    /* the only values that are available yet, written as .values; "" if none is */
   const char *help;
 } SchemaKey;
 
 extern const SchemaKey SchemaKeys[];
 extern const int       SchemaKeysCount;
 
-const SchemaKey *SchemaKeyFind(const char *path);                       /* NULL: no key of ours */
-int              SchemaKeyIsChild(const SchemaKey *, const char *path); /* belongs to the map at path */
-const char      *SchemaKeyName(const SchemaKey *); /* last component of its path, "a|b" where that stands for two */
+const SchemaKey *SchemaKeyFind(const char *path);
+int              SchemaKeyIsChild(const SchemaKey *, const char *path);
+const char      *SchemaKeyName(const SchemaKey *);
 int              WordFind(const char *words, const char *apart, const char *text, size_t n);
