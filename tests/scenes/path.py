@@ -1,5 +1,6 @@
-"""Steps along a smooth path start from where it leads to: they take fewer iterations than the first ones and end where larger ones do; after a break of the
-load the next step starts afresh; forecasts of contact that are cut short go along the path too."""
+"""Steps along a smooth path start from where it leads to: they take fewer iterations than the first ones and end where
+larger ones do; after a break of the load the next step starts afresh; forecasts of contact that are cut short go along
+the path too."""
 from harness import Check, arguments, run, SCENES
 
 args = arguments()
@@ -27,9 +28,11 @@ for name, value in reference.items():
     check.near(f"ring with a break: {name}", ends[name], value, 1e-6 * abs(value))
 check.holds("ring with a break: before, at it and after", broken[9] <= 2 <= 3 <= broken[10], str(broken[9:13]))
 check.holds("cup in contact: 40 steps", sum(cup) <= 92, f"{sum(cup)}: {cup}")
-forecasts, radius = iterations("forecasts", "cup_flattening", "stepping={control: contact, initial: 0.01, N_c: 1, dt_max: 0.03, prediction: tangent}")
+forecasts, radius = iterations("forecasts", "cup_flattening",
+                               "stepping={control: contact, initial: 0.01, N_c: 1, dt_max: 0.03, prediction: tangent}")
 _, whole = iterations("whole", "cup_flattening")
-check.holds("cup, forecasts: iterations a step", sum(forecasts) <= 2.5 * len(forecasts), f"{sum(forecasts)} in {len(forecasts)}")
+check.holds("cup, forecasts: iterations a step",
+            sum(forecasts) <= 2.5 * len(forecasts), f"{sum(forecasts)} in {len(forecasts)}")
 for name, value in whole.items():
     check.near(f"cup, forecasts: {name}", radius[name], value, 1e-6 * abs(value))
 check.finish()

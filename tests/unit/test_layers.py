@@ -26,7 +26,8 @@ TREE = {
 
 CASES = {  # what is wrong: the files that are different, what the check must say; nothing: it must pass
     "nothing": ({}, ""),
-    "an include that runs up": ({"src/low/c.h": '#include "high/b.h"\nint C(void);\n'}, "include up: low/c.h -> high/b.h"),
+    "an include that runs up": ({"src/low/c.h": '#include "high/b.h"\nint C(void);\n'},
+                                "include up: low/c.h -> high/b.h"),
     "a call that runs up": ({"src/low/c.c": "int B(void);\nint C(void) { return B(); }\n"},
                             "call up: low/c.c -> high/b.c (B)"),
     "a circle of calls": ({"src/low/a.c": "int C(void);\nint A(void) { return C(); }\n",
