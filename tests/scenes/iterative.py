@@ -4,7 +4,10 @@ repeated."""
 from harness import Check, arguments, run, SCENES
 
 RUNS = SCENES.parent.parent / "runs"
-CASES = {  # scene, overrides, most Krylov iterations of a Newton iteration in the mean
+# Scene, overrides, and the largest mean number of Krylov iterations in a Newton iteration. The bounds guard the
+# multigrid preconditioner on each kind of problem. On 1 and 3 ranks rings take 8, blocks 8.8, the pipe 22, the plane 11,
+# the cup 52 and the cylinder 5, so that the bounds leave more than a quarter of room.
+CASES = {
     "rings": ("ring_in_ring_3d.yaml", ["mesh.parameters={n_inner: 10, n_outer: 12, n_len: 4, jitter: 0}"], 15),
     "blocks": ("patch_blocks.yaml",
                ["mesh.parameters={n_lower: 6, n_upper: 7, jitter: 0.25}", "stepping.initial=0.5"], 15),
@@ -34,6 +37,8 @@ for name, value in summary["direct"]["probes"].items():
                    1e-5 * (100 if "noise" in name or "deviation" in name else abs(value)))
 iterations = summary["iterative"]["krylov_iterations"] / summary["iterative"]["newton_iterations"]
 check.holds("Krylov iterations", 1 < iterations <= most, f"{iterations:.1f} in the mean, allowed {most}")
+# This guards the accuracy of the iterative solves: Newton's method takes a quarter more or less at most, or 3. Today
+# the difference is 6 of some 36 for the cup on 3 ranks and 0 to 2 otherwise.
 check.near("Newton iterations", summary["iterative"]["newton_iterations"], summary["direct"]["newton_iterations"],
            max(3, summary["direct"]["newton_iterations"] // 4))
 if args.ranks == 1:

@@ -1,5 +1,5 @@
-"""A pinched pipe takes its whole load in one step: no failure, at most 30 iterations and the force of eight steps, with
-either body as slave."""
+"""A pinched pipe takes its whole load in one step: without failure, in at most 15 iterations, with the force of eight
+steps, and with either body as slave."""
 from harness import Check, arguments, run, SCENES
 
 args = arguments(("cases", "facets and node to surface, or smoothed and surface to surface too", ("few", "all")))
@@ -21,6 +21,8 @@ for smoother, formulation in CONTACTS:
                    overrides=(*overrides, "stepping.initial=0.125")).summary()["probes"]["plate_force"]
         check.holds(f"{name}: one step", (one["steps"], one["steps_failed"]) == (1, 0),
                     f"{one['steps']}, {one['steps_failed']} failed")
-        check.holds(f"{name}: iterations", one["newton_iterations"] <= 30, str(one["newton_iterations"]))
+        # This guards that linear steps find their contact and that penalties are softened where the prediction met
+        # contact that it did not count on. Today 8 to 12 iterations are taken, and the bound leaves a quarter of room.
+        check.holds(f"{name}: iterations", one["newton_iterations"] <= 15, str(one["newton_iterations"]))
         check.near(f"{name}: plate force", one["probes"]["plate_force"], many, 0.002 * many)
 check.finish()

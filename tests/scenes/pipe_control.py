@@ -1,5 +1,5 @@
-"""A pipe is pinched under control by contact, smoothed: no step fails, and it takes fewer iterations than the scene's
-own fixed steps, to the same answer as fixed steps of its mean size."""
+"""A pipe is pinched under control by contact, with the diffuse smoother. No step fails, the run takes fewer iterations
+than the scene's own fixed steps, and its answer is that of fixed steps of its mean size."""
 from harness import Check, arguments, run, SCENES
 
 args = arguments()
@@ -16,6 +16,7 @@ fixed = run(
                f"stepping={{control: fixed, initial: {1 / summary['steps']}, at: [0.5]}}")).summary()
 own = run(args, pipe, out="own", overrides=("contact.0.smoother=diffuse",)).summary()
 check.holds("no failed step", summary["steps_failed"] == 0)
+# This guards the gain of the control. Today it takes 41 iterations in 10 steps, the fixed steps 54 in 20.
 check.holds(
     "fewer iterations", summary["newton_iterations"] < own["newton_iterations"],
     f"{summary['newton_iterations']} in {summary['steps']} steps, fixed {own['newton_iterations']} in {own['steps']}")
