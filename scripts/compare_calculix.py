@@ -1,10 +1,13 @@
-"""Burnish beside CalculiX (ccx, Debian's package calculix-ccx) on pipe_pinch and cup_flattening, one after the other in one run: CPU seconds, iterations,
-failed steps, and the force against its reference. CalculiX's input is written here from the same gmsh meshes: surface to surface penalty contact with
-Burnish's penalty, finite strain, the same law, loads and supports.
-    compare_calculix.py [--burnish BINARY] [--ccx BINARY] [--repeats N] [--out DIR] [--record FILE] [CASE ...]     runs and prints
-    compare_calculix.py --table FILE                                                                            prints only
-A CASE is a part of a row's name in the table: "pipe_pinch" or "pipe_pinch burnish enhanced". CPU seconds are user and system of the process that solves, one
-rank, one thread, meshing apart; the table has the medians over the repeats, which take turns, so that whatever else the machine does meets all."""
+"""Burnish beside CalculiX (ccx, Debian's package calculix-ccx) on pipe_pinch and cup_flattening, one after the other in
+one run: CPU seconds, iterations, failed steps, and the force against its reference. CalculiX's input is written here
+from the same gmsh meshes: surface to surface penalty contact with Burnish's penalty, finite strain, the same law, loads
+and supports.
+    compare_calculix.py [--burnish BINARY] [--ccx BINARY] [--repeats N] [--out DIR] [--record FILE] [CASE ...]     runs
+    and prints compare_calculix.py --table FILE
+    prints only
+A CASE is a part of a row's name in the table: "pipe_pinch" or "pipe_pinch burnish enhanced". CPU seconds are user and
+system of the process that solves, one rank, one thread, meshing apart; the table has the medians over the repeats,
+which take turns, so that whatever else the machine does meets all."""
 import argparse
 import csv
 import dataclasses
@@ -19,8 +22,10 @@ import sys
 from launch import environment, read_summary
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
-COLUMNS = ("scene", "code", "setting", "repeat", "status", "dofs", "steps", "steps_failed", "iterations", "cpu_s", "force", "error")
-BRICK_SIDES = ((0, 1, 2, 3), (4, 5, 6, 7), (0, 1, 5, 4), (1, 2, 6, 5), (2, 3, 7, 6), (3, 0, 4, 7))  # corners of CalculiX's faces S1 ...
+COLUMNS = ("scene", "code", "setting", "repeat", "status", "dofs", "steps", "steps_failed", "iterations", "cpu_s",
+           "force", "error")
+BRICK_SIDES = ((0, 1, 2, 3), (4, 5, 6, 7), (0, 1, 5, 4), (1, 2, 6, 5), (2, 3, 7, 6), (3, 0, 4, 7)
+               )  # corners of CalculiX's faces S1 ...
 PLANE_WIDTH, PLANE_ELEMENTS = 40, 20  # mm; the contact ends at 25
 QUAD_SIDES = ((0, 1), (1, 2), (2, 3), (3, 0))
 SWAPPED = ("contact.0.slave=pipe_outer", "contact.0.master=plate_bottom")
@@ -57,7 +62,10 @@ def pipe(name, n_arc, n_wall, n_len, n_plate_y, *overrides, order=1):
 
 
 def cup(name, order, n_arc, n_wall, *overrides):
-    return Setting("cup_flattening", "burnish", f"{name}, {n_arc}x{n_wall}", order, {"n_arc": n_arc, "n_wall": n_wall}, overrides)
+    return Setting("cup_flattening", "burnish", f"{name}, {n_arc}x{n_wall}", order, {
+        "n_arc": n_arc,
+        "n_wall": n_wall
+    }, overrides)
 
 
 def ccx_pipe(element, n_arc, n_wall, n_len, n_plate_y, increment, swapped=False):
@@ -65,15 +73,19 @@ def ccx_pipe(element, n_arc, n_wall, n_len, n_plate_y, increment, swapped=False)
     slave, master = ("pipe_outer", "plate_bottom") if swapped else ("plate_bottom", "pipe_outer")
     name = f"{element}, {round(1 / increment)} steps{', swapped' if swapped else ''}, {n_arc}x{n_wall}x{n_len}"
     mesh = {"n_arc": n_arc, "n_wall": n_wall, "n_len": n_len, "n_plate_y": n_plate_y}
-    return Setting("pipe_pinch", "calculix", name, 1, mesh, element=element, slave=slave, master=master, increment=increment)
+    return Setting("pipe_pinch", "calculix", name, 1, mesh, element=element, slave=slave, master=master,
+                   increment=increment)
 
 
 def ccx_cup(increment, scale=100.0, contact="SURFACE TO SURFACE"):
     """CalculiX on the cup; the penalty's scale is named where it is not the scene's."""
     words = [f"CAX4, {round(1 / increment)} steps" if increment < 1 else "CAX4, one step"]
-    words += (["node to surface"] if contact == "NODE TO SURFACE" else []) + ([f"scale {scale:g}"] if scale != 100 else [])
-    return Setting("cup_flattening", "calculix", f"{', '.join(words)}, 120x3", 1, {"n_arc": 120, "n_wall": 3}, element="CAX4", slave="outer",
-                   increment=increment, contact=contact, scale=scale)
+    words += (["node to surface"] if contact == "NODE TO SURFACE" else []) + ([f"scale {scale:g}"]
+                                                                              if scale != 100 else [])
+    return Setting("cup_flattening", "calculix", f"{', '.join(words)}, 120x3", 1, {
+        "n_arc": 120,
+        "n_wall": 3
+    }, element="CAX4", slave="outer", increment=increment, contact=contact, scale=scale)
 
 
 REFERENCES = {"pipe_pinch": 123920.0, "cup_flattening": 434500.0}  # N; several meshes, elements and penalties, 0.1 %
@@ -85,8 +97,10 @@ SETTINGS = [
     pipe("enhanced, 20 steps", 24, 2, 20, 2, "stepping.initial=0.05"),
     pipe("enhanced, 20 steps, diffuse", 24, 2, 20, 2, "stepping.initial=0.05", "contact.0.smoother=diffuse"),
     pipe("enhanced, 20 steps, swapped", 24, 2, 20, 2, "stepping.initial=0.05", *SWAPPED),
-    pipe("enhanced, 20 steps, swapped, diffuse", 24, 2, 20, 2, "stepping.initial=0.05", "contact.0.smoother=diffuse", *SWAPPED),
-    pipe("enhanced, 20 steps, surface to surface", 24, 2, 20, 2, "stepping.initial=0.05", "contact.0.formulation=surface_to_surface"),
+    pipe("enhanced, 20 steps, swapped, diffuse", 24, 2, 20, 2, "stepping.initial=0.05", "contact.0.smoother=diffuse",
+         *SWAPPED),
+    pipe("enhanced, 20 steps, surface to surface", 24, 2, 20, 2, "stepping.initial=0.05",
+         "contact.0.formulation=surface_to_surface"),
     pipe("enhanced, 4 steps", 24, 2, 20, 2, "stepping.initial=0.25"),
     pipe("enhanced, steps by iterations", 24, 2, 20, 2, *BY_ITERATIONS),
     pipe("enhanced, steps by iterations, swapped", 24, 2, 20, 2, *BY_ITERATIONS, *SWAPPED),
@@ -98,7 +112,8 @@ SETTINGS = [
     pipe("enhanced, 4 steps", 36, 1, 6, 1, "stepping.initial=0.25"),
     pipe("enhanced, 4 steps, diffuse", 36, 1, 6, 1, "stepping.initial=0.25", "contact.0.smoother=diffuse"),
     pipe("enhanced, 4 steps, swapped", 36, 1, 6, 1, "stepping.initial=0.25", *SWAPPED),
-    pipe("enhanced, 4 steps, swapped, diffuse", 36, 1, 6, 1, "stepping.initial=0.25", "contact.0.smoother=diffuse", *SWAPPED),
+    pipe("enhanced, 4 steps, swapped, diffuse", 36, 1, 6, 1, "stepping.initial=0.25", "contact.0.smoother=diffuse",
+         *SWAPPED),
     pipe("enhanced, steps by iterations", 36, 1, 6, 1, *BY_ITERATIONS),
     pipe("enhanced, one step", 36, 1, 6, 1, *AT_ONCE),
     pipe("second order, 20 steps", 24, 1, 10, 1, "stepping.initial=0.05", order=2),
@@ -122,7 +137,8 @@ SETTINGS = [
 
 
 class AbaqusMesh:
-    """What gmsh writes in Abaqus' format, whose element numbering CalculiX shares: nodes {id: line}, elements {id: (type, nodes)}, groups {name: elements}."""
+    """What gmsh writes in Abaqus' format, whose element numbering CalculiX shares: nodes {id: line}, elements {id:
+    (type, nodes)}, groups {name: elements}."""
 
     def __init__(self, path):
         self.nodes, self.elements, self.groups = {}, {}, {}
@@ -137,7 +153,8 @@ class AbaqusMesh:
             elif section[""] == "*ELEMENT":
                 self.add_element(section["type"], line)
             elif section[""] == "*ELSET":
-                self.groups.setdefault(section["ELSET"], []).extend(int(part) for part in line.split(",") if part.strip())
+                self.groups.setdefault(section["ELSET"],
+                                       []).extend(int(part) for part in line.split(",") if part.strip())
 
     def add_element(self, kind, line):
         number, *nodes = [int(part) for part in line.split(",") if part.strip()]
@@ -153,7 +170,10 @@ class AbaqusMesh:
         """(cell, side) of the faces in group; a face's first nodes are its corners."""
         corners = len(shapes[0])
         faces = {frozenset(self.elements[number][1][:corners]) for number in self.groups[group]}
-        sides = ((number, side + 1, frozenset(nodes[i] for i in shape)) for number, nodes in cells.items() for side, shape in enumerate(shapes))
+        sides = ((number, side + 1, frozenset(nodes[i]
+                                              for i in shape))
+                 for number, nodes in cells.items()
+                 for side, shape in enumerate(shapes))
         return [(number, side) for number, side, nodes in sides if nodes in faces]
 
 
@@ -169,7 +189,8 @@ def make_mesh(setting, directory):
 
 
 def call(*command):
-    finished = subprocess.run([str(part) for part in command], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+    finished = subprocess.run([str(part) for part in command], stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
+                              text=True)
     if finished.returncode:
         sys.exit(f"{' '.join(str(part) for part in command)}\n{finished.stdout}")
 
@@ -196,10 +217,12 @@ def surface(name, sides):
 
 
 def contact(setting, young, height):
-    """The penalty, a force per length and area, is what the scenes' `scale` makes of the modulus over the height of a slave element; for node to surface
-    CalculiX's default clearance stays."""
-    return ["*SURFACE INTERACTION, NAME=LAW", "*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=LINEAR", f"{setting.scale * young / height}",
-            f"*CONTACT PAIR, INTERACTION=LAW, TYPE={setting.contact}", "SLAVE, MASTER"]
+    """The penalty, a force per length and area, is what the scenes' `scale` makes of the modulus over the height of a
+    slave element; for node to surface CalculiX's default clearance stays."""
+    return [
+        "*SURFACE INTERACTION, NAME=LAW", "*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=LINEAR",
+        f"{setting.scale * young / height}", f"*CONTACT PAIR, INTERACTION=LAW, TYPE={setting.contact}", "SLAVE, MASTER"
+    ]
 
 
 def step(setting, loads, reaction):
@@ -218,29 +241,47 @@ def fixed(mesh, supports):
 
 def pipe_input(setting, mesh):
     cells = mesh.cells(("pipe", "plate"))
-    return ["*NODE", *mesh.nodes.values(), *element_lines(setting.element, "SOLID", cells), *material("SOLID", 20000),
-            *surface("SLAVE", mesh.sides(setting.slave, cells, BRICK_SIDES)), *surface("MASTER", mesh.sides(setting.master, cells, BRICK_SIDES)),
-            *contact(setting, 20000, 20 / setting.parameters["n_plate_y"]),
-            *fixed(mesh, {"symmetry_x": "1", "symmetry_z": "3", "pipe_cut": "2", "plate_top": ""}),
-            *step(setting, ["*BOUNDARY", "plate_top, 2, 2, -50"], "plate_top")]
+    return [
+        "*NODE", *mesh.nodes.values(), *element_lines(setting.element, "SOLID", cells), *material("SOLID", 20000),
+        *surface("SLAVE", mesh.sides(setting.slave, cells, BRICK_SIDES)),
+        *surface("MASTER", mesh.sides(setting.master, cells, BRICK_SIDES)),
+        *contact(setting, 20000, 20 / setting.parameters["n_plate_y"]), *fixed(mesh, {
+            "symmetry_x": "1",
+            "symmetry_z": "3",
+            "pipe_cut": "2",
+            "plate_top": ""
+        }), *step(setting, ["*BOUNDARY", "plate_top, 2, 2, -50"], "plate_top")
+    ]
 
 
 def cup_input(setting, mesh):
     """The plane is a row of fixed elements, whose reaction is the force."""
     cells = mesh.cells(("cup",))
     first, block = max(mesh.nodes) + 1, max(mesh.elements) + 1
-    nodes = {first + i: (PLANE_WIDTH * (i // 2) / PLANE_ELEMENTS, -101.2 - (i % 2)) for i in range(2 * PLANE_ELEMENTS + 2)}
+    nodes = {
+        first + i: (PLANE_WIDTH * (i // 2) / PLANE_ELEMENTS, -101.2 - (i % 2))
+        for i in range(2 * PLANE_ELEMENTS + 2)
+    }
     plane = {block + i: [first + 2 * i + j for j in (1, 3, 2, 0)] for i in range(PLANE_ELEMENTS)}
     pressure = [f"{number}, P{side}, 200" for number, side in mesh.sides("inner", cells, QUAD_SIDES)]
-    return ["*NODE", *mesh.nodes.values(), *(f"{node}, {r}, {z}, 0" for node, (r, z) in nodes.items()),
-            *element_lines(setting.element, "CUP", cells), *element_lines("CAX4", "PLANE", plane), *material("CUP", 50000), *material("PLANE", 50000),
-            *surface("SLAVE", mesh.sides(setting.slave, cells, QUAD_SIDES)), *surface("MASTER", [(number, 3) for number in plane]),
-            *contact(setting, 50000, 2 / setting.parameters["n_wall"]), *fixed(mesh, {"axis": "1", "cut": "12"}),
-            "*NSET, NSET=BASE", *numbered(nodes), "*BOUNDARY", "BASE, 1, 2", *step(setting, ["*DLOAD", *pressure], "BASE")]
+    return [
+        "*NODE", *mesh.nodes.values(), *(f"{node}, {r}, {z}, 0" for node, (r, z) in nodes.items()),
+        *element_lines(setting.element, "CUP", cells), *element_lines("CAX4", "PLANE", plane), *material("CUP", 50000),
+        *material("PLANE", 50000), *surface("SLAVE", mesh.sides(setting.slave, cells, QUAD_SIDES)),
+        *surface("MASTER", [(number, 3) for number in plane]),
+        *contact(setting, 50000, 2 / setting.parameters["n_wall"]), *fixed(mesh, {
+            "axis": "1",
+            "cut": "12"
+        }), "*NSET, NSET=BASE", *numbered(nodes), "*BOUNDARY", "BASE, 1, 2",
+        *step(setting, ["*DLOAD", *pressure], "BASE")
+    ]
 
 
 INPUTS = {"pipe_pinch": pipe_input, "cup_flattening": cup_input}
-WHOLE = {"pipe_pinch": 1, "cup_flattening": 180}  # reactions are those of the wedge of 2 degrees to which CalculiX expands axisymmetric elements
+WHOLE = {
+    "pipe_pinch": 1,
+    "cup_flattening": 180
+}  # reactions are those of the wedge of 2 degrees to which CalculiX expands axisymmetric elements
 
 
 # Runs
@@ -249,7 +290,8 @@ WHOLE = {"pipe_pinch": 1, "cup_flattening": 180}  # reactions are those of the w
 def timed(args, command, directory):
     """Exit status and CPU seconds of the one process; both codes have the same environment."""
     with open(directory / "output.txt", "w") as output:
-        process = subprocess.Popen([str(part) for part in command], cwd=directory, env=environment(args.burnish), stdout=output, stderr=subprocess.STDOUT)
+        process = subprocess.Popen([str(part) for part in command], cwd=directory, env=environment(args.burnish),
+                                   stdout=output, stderr=subprocess.STDOUT)
         _, status, usage = os.wait4(process.pid, 0)
     process.returncode = os.waitstatus_to_exitcode(status)
     return process.returncode, usage.ru_utime + usage.ru_stime
@@ -265,12 +307,21 @@ def run_calculix(args, setting, directory):
 
 
 def read_calculix(directory, setting):
-    """Increments from the .sta file, iterations (failed attempts included) from the .cvg file, the reaction's last sum from the .dat file."""
+    """Increments from the .sta file, iterations (failed attempts included) from the .cvg file, the reaction's last sum
+    from the .dat file."""
     output = (directory / "output.txt").read_text()
     if "number of equations" not in output:
         sys.exit(f"CalculiX: nothing solved\n{output[-2000:]}")
-    increments = [line.split() for line in (directory / "case.sta").read_text().splitlines() if line.split() and line.split()[0].isdigit()]
-    iterations = [line.split() for line in (directory / "case.cvg").read_text().splitlines() if line.split() and line.split()[0].isdigit()]
+    increments = [
+        line.split()
+        for line in (directory / "case.sta").read_text().splitlines()
+        if line.split() and line.split()[0].isdigit()
+    ]
+    iterations = [
+        line.split()
+        for line in (directory / "case.cvg").read_text().splitlines()
+        if line.split() and line.split()[0].isdigit()
+    ]
     attempts = {tuple(row[:3]) for row in iterations}
     accepted = len({row[1] for row in increments})
     unknowns = int(output.split("number of equations")[1].split()[0])
@@ -282,7 +333,9 @@ def read_calculix(directory, setting):
 
 
 def run_burnish(args, setting, directory):
-    command = [*args.launcher, args.burnish, ROOT / "runs" / f"{setting.scene}.yaml", "-quiet", "-o", directory / "results"]
+    command = [
+        *args.launcher, args.burnish, ROOT / "runs" / f"{setting.scene}.yaml", "-quiet", "-o", directory / "results"
+    ]
     mesh = "mesh={file: %s}" % make_mesh(setting, args.out)
     for override in (mesh, "output.every=0", *(part for part in setting.overrides if not part.startswith("mesh."))):
         command += ["-set", override]
@@ -291,8 +344,15 @@ def run_burnish(args, setting, directory):
         sys.exit(f"{' '.join(str(part) for part in command)}\n{(directory / 'output.txt').read_text()}")
     summary = read_summary(directory / "results")
     probe = {"pipe_pinch": "plate_force", "cup_flattening": "plane_force"}[setting.scene]
-    return {"status": summary["status"], "steps": summary["steps"], "steps_failed": summary["steps_failed"], "iterations": summary["newton_iterations"],
-            "dofs": summary["dofs"], "cpu_s": cpu, "force": summary["probes"][probe] if returned == 0 else None}
+    return {
+        "status": summary["status"],
+        "steps": summary["steps"],
+        "steps_failed": summary["steps_failed"],
+        "iterations": summary["newton_iterations"],
+        "dofs": summary["dofs"],
+        "cpu_s": cpu,
+        "force": summary["probes"][probe] if returned == 0 else None
+    }
 
 
 def record(args, setting, repeat):
@@ -317,7 +377,8 @@ def measure(args):
                 row = record(args, setting, repeat)
                 writer.writerow(row)
                 file.flush()
-                print(f"{setting}: {row['cpu_s']:.2f} s, {row['iterations']} iterations, {row['status']}", file=sys.stderr)
+                print(f"{setting}: {row['cpu_s']:.2f} s, {row['iterations']} iterations, {row['status']}",
+                      file=sys.stderr)
     return path
 
 
@@ -330,7 +391,8 @@ def table(path):
     """In Markdown; CPU seconds only as ratios to CalculiX's first row of the scene, whose own are printed below."""
     with open(path, newline="") as file:
         rows = list(csv.DictReader(file))
-    names = ("scene", "code", "elements, steps, mesh", "dofs", "steps, failed", "iterations", "CPU time", "force, kN", "error, %")
+    names = ("scene", "code", "elements, steps, mesh", "dofs", "steps, failed", "iterations", "CPU time", "force, kN",
+             "error, %")
     print(f"| {' | '.join(names)} |\n|{' --- |' * len(names)}")
     notes = []
     for scene in dict.fromkeys(row["scene"] for row in rows):
@@ -342,8 +404,13 @@ def table(path):
                 unit = cpu
                 notes.append(f"{scene}: 1 is {cpu:.1f} s ({code}, {name}), {len(runs)} runs")
             ratio = f"{cpu / unit:.2g}" if cpu < unit else f"{cpu / unit:.1f}"
-            end = f"| {force / 1000:.2f} | {round(median(runs, 'error'), 2) + 0:+.2f} |" if force is not None else f"| {first['status']} | |"
-            print(f"| {scene} | {code} | {name} | {first['dofs']} | {first['steps']}, {first['steps_failed']} | {first['iterations']} | {ratio}", end)
+            end = f"| {first['status']} | |"
+            if force is not None:
+                end = f"| {force / 1000:.2f} | {round(median(runs, 'error'), 2) + 0:+.2f} |"
+            print(
+                f"| {scene} | {code} | {name} | {first['dofs']} | {first['steps']}, {first['steps_failed']} | "
+                f"{first['iterations']} | {ratio}",
+                end)
     print("\n".join(notes))
 
 
@@ -354,7 +421,8 @@ parser.add_argument("--ccx", default="ccx")
 parser.add_argument("--repeats", type=int, default=2)
 parser.add_argument("--out", type=pathlib.Path, default=ROOT / "out" / "calculix")
 parser.add_argument("--record", type=pathlib.Path, help="raw records (default: calculix.csv in --out)")
-parser.add_argument("--launcher", type=shlex.split, default=[], help="command put before each of the runs: a queue, taskset, nice")
+parser.add_argument("--launcher", type=shlex.split, default=[],
+                    help="command put before each of the runs: a queue, taskset, nice")
 parser.add_argument("--table", type=pathlib.Path, help="raw records to print, nothing is run")
 args = parser.parse_args()
 if not args.table:

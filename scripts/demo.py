@@ -18,7 +18,8 @@ from meshview import read_mesh, read_states
 SCENE, RANKS, OUT = "runs/pipe_pinch.yaml", 2, pathlib.Path("out")
 RUNS = {"facet": ["contact.0.smoother=facet"], "diffuse": ["contact.0.smoother=diffuse"]}  # name -> overrides
 
-# Probe, unit, reference at t = 1 and its estimated error: CalculiX 2.20, extrapolated over meshes, elements and penalties
+# Probe, unit, reference at t = 1 and its estimated error: CalculiX 2.20, extrapolated over meshes, elements and
+# penalties
 REFERENCE = [
     ("plate_force", "N", 123920, 124),
     ("diameter_h_mid", "mm", 61.05, 0.02),
@@ -50,21 +51,37 @@ def table(name):
     halfway = steps["plate_force"][numpy.argmin(numpy.abs(steps["t"] - 0.5))]
     rows = [("plate_force, t=0.5", "N", halfway, FORCE_HALFWAY, 52)]
     rows += [(probe, unit, summary["probes"][probe], reference, error) for probe, unit, reference, error in REFERENCE]
-    print(f"\npipe_pinch, {name}{'':{max(0, 12 - len(name))}}{'computed':>12}{'reference':>12}{'+-':>8}{'difference':>12}")
+    print(
+        f"\npipe_pinch, {name}{'':{max(0, 12 - len(name))}}{'computed':>12}{'reference':>12}{'+-':>8}{'difference':>12}"
+    )
     for probe, unit, value, reference, error in rows:
         computed = "no value" if value is None else f"{value:.6g}"
         difference = "" if value is None else f"{value - reference:+.3g}"
         print(f"  {probe:<19}{unit:<3}{computed:>12}{reference:>12g}{error:>8g}{difference:>12}")
-    print(f"  {summary['steps']} steps, {summary['newton_iterations']} iterations, {summary['wall_s']:.1f} s on {summary['ranks']} ranks, "
-          f"largest penetration {summary['max_penetration']:.2e} mm\n")
+    print(
+        f"  {summary['steps']} steps, {summary['newton_iterations']} iterations, {summary['wall_s']:.1f} s on "
+        f"{summary['ranks']} ranks, "
+        f"largest penetration {summary['max_penetration']:.2e} mm\n")
 
 
 def record(path):
     """The runs side by side as CSV, which doc/pages/running.md shows."""
-    summaries, steps = {name: read_summary(directory(name)) for name in RUNS}, {name: read_steps(directory(name)) for name in RUNS}
-    rows = [("plate_force_halfway", "N", FORCE_HALFWAY, 52, *(steps[name]["plate_force"][numpy.argmin(numpy.abs(steps[name]["t"] - 0.5))] for name in RUNS))]
-    rows += [(probe, unit, reference, error, *(summaries[name]["probes"][probe] for name in RUNS)) for probe, unit, reference, error in REFERENCE]
-    rows += [(key, unit, "", "", *(summaries[name][key] for name in RUNS)) for key, unit in (("steps", ""), ("steps_failed", ""), ("newton_iterations", ""), ("max_penetration", "mm"))]
+    summaries, steps = {
+        name: read_summary(directory(name))
+        for name in RUNS
+    }, {
+        name: read_steps(directory(name))
+        for name in RUNS
+    }
+    rows = [("plate_force_halfway", "N", FORCE_HALFWAY, 52,
+             *(steps[name]["plate_force"][numpy.argmin(numpy.abs(steps[name]["t"] - 0.5))] for name in RUNS))]
+    rows += [(probe, unit, reference, error, *(summaries[name]["probes"][probe]
+                                               for name in RUNS))
+             for probe, unit, reference, error in REFERENCE]
+    rows += [(key, unit, "", "", *(summaries[name][key]
+                                   for name in RUNS))
+             for key, unit in (("steps", ""), ("steps_failed", ""), ("newton_iterations", ""), ("max_penetration",
+                                                                                                "mm"))]
     path.parent.mkdir(parents=True, exist_ok=True)
     with open(path, "w", newline="") as file:
         writer = csv.writer(file)
@@ -76,7 +93,8 @@ def picture(name):
     """The deformed mesh with von Mises stress, its mirror image in x beside it, halfway and at the end."""
     nodes, faces = read_mesh(directory(name) / "results.h5")
     written = read_states(directory(name) / "results.h5", "displacement", "von_mises")
-    states = [(t, nodes + u, stress) for t, u, stress in (min(written, key=lambda state: abs(state[0] - wanted)) for wanted in (0.5, 1))]
+    states = [(t, nodes + u, stress)
+              for t, u, stress in (min(written, key=lambda state: abs(state[0] - wanted)) for wanted in (0.5, 1))]
     largest = max(stress.max() for _, _, stress in states)
     figure = plt.figure(figsize=(14, 5))
     for place, (t, x, stress) in enumerate(states):
@@ -84,8 +102,10 @@ def picture(name):
         colours = plt.cm.viridis(stress[faces].mean(axis=1) / largest)
         for mirror in (1, -1):
             corners = (x * [mirror, 1, 1])[faces][:, :, [0, 2, 1]]  # y upwards
-            axes.add_collection3d(Poly3DCollection(corners, facecolors=colours, edgecolors=(0, 0, 0, 0.25), linewidths=0.3))
-        axes.set(xlim=(-140, 140), ylim=(0, 200), zlim=(0, 125), xlabel="x (mm)", ylabel="z (mm)", title=f"t = {t:g}, y upwards")
+            axes.add_collection3d(
+                Poly3DCollection(corners, facecolors=colours, edgecolors=(0, 0, 0, 0.25), linewidths=0.3))
+        axes.set(xlim=(-140, 140), ylim=(0, 200), zlim=(0, 125), xlabel="x (mm)", ylabel="z (mm)",
+                 title=f"t = {t:g}, y upwards")
         axes.set(xticks=(-100, 0, 100), yticks=(0, 100, 200), zticks=(0, 50, 100))
         axes.set_box_aspect((280, 200, 125), zoom=1.05)
         axes.view_init(elev=18, azim=-65)
@@ -100,7 +120,8 @@ def curve():
     for name in RUNS:
         steps = read_steps(directory(name))
         axes.plot(STROKE * steps["t"], steps["plate_force"] / 1000, marker=".", label=name)
-    axes.plot([STROKE / 2, STROKE], [FORCE_HALFWAY / 1000, REFERENCE[0][2] / 1000], "k+", markersize=12, label="reference")
+    axes.plot([STROKE / 2, STROKE], [FORCE_HALFWAY / 1000, REFERENCE[0][2] / 1000], "k+", markersize=12,
+              label="reference")
     axes.set(xlabel="stroke of the plate (mm)", ylabel="plate force (kN)", title="pipe_pinch")
     axes.grid(alpha=0.3)
     axes.legend()

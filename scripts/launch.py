@@ -1,4 +1,5 @@
-"""Runs of Burnish for the scripts here: the environment in which mpirun starts, and what a run leaves as Python values."""
+"""Runs of Burnish for the scripts here: the environment in which mpirun starts, and what a run leaves as Python
+values."""
 import argparse
 import csv
 import functools
@@ -27,9 +28,13 @@ MPI = {
 
 @functools.cache
 def kernels(burnish):
-    """OPENBLAS_CORETYPE, where the program says that its BLAS has faster kernels for this processor than those it chooses."""
+    """OPENBLAS_CORETYPE, where the program says that its BLAS has faster kernels for this processor than those it
+    chooses."""
     try:
-        said = subprocess.run([burnish, "-version"], env={**MPI, **os.environ}, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True).stdout
+        said = subprocess.run([burnish, "-version"], env={
+            **MPI,
+            **os.environ
+        }, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True).stdout
     except OSError:  # the run will say why
         return {}
     return dict(re.findall(r"(OPENBLAS_CORETYPE)=(\w+)", said))
@@ -65,7 +70,8 @@ def table_parser(description, name, record=None):
     parser.add_argument("--burnish", type=pathlib.Path, default=ROOT / "build/burnish")
     parser.add_argument("--out", type=pathlib.Path, default=ROOT / "out" / name)
     parser.add_argument("--record", type=pathlib.Path, default=ROOT / "out" / f"{record or name}.csv")
-    parser.add_argument("--print", dest="only_print", action="store_true", help="of the record that is there; runs nothing")
+    parser.add_argument("--print", dest="only_print", action="store_true",
+                        help="of the record that is there; runs nothing")
     return parser
 
 

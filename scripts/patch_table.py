@@ -1,9 +1,9 @@
-"""Contact patch test in 3D (runs/patch_blocks.yaml): by how much the slave nodes' pressure and the stress in the elements next to the interface
-differ from the load, which is exact everywhere. Runs formulations, elements, mesh pairs, jitters and strains, leaves one record per run and prints
-the tables; --print tables an existing record.
+"""Contact patch test in 3D (runs/patch_blocks.yaml): by how much the slave nodes' pressure and the stress in the
+elements next to the interface differ from the load, which is exact everywhere. Runs formulations, elements, mesh pairs,
+jitters and strains, leaves one record per run and prints the tables; --print tables an existing record.
     python scripts/patch_table.py [--burnish BINARY] [--jobs N] [--record FILE]
-Stress is the one along y in the elements that have a face on the interface, from the displacements in results.h5: the mean over an element's
-quadrature points, and in the record also the largest over the points themselves."""
+Stress is the one along y in the elements that have a face on the interface, from the displacements in results.h5: the
+mean over an element's quadrature points, and in the record also the largest over the points themselves."""
 import functools
 import itertools
 import json
@@ -19,11 +19,20 @@ from launch import ROOT, environment, read_records, table_parser, write_records
 SCENE = ROOT / "runs/patch_blocks.yaml"
 E, NU = 1000, 0.3
 STRAINS = {"small": (1.0, ["kinematics=small", "stepping.initial=1"]), "finite": (193.846153846, [])}  # load, how
-FORMS = {"bricks": (0, 0), "tetrahedra": (1, 1), "gmsh triangles/bricks": (2, 0), "bricks/gmsh triangles": (0, 2)}  # master/slave: parameters lower, upper
-PAIRS = {1: ((12, 15), (15, 12), (12, 24), (24, 12)), 2: ((6, 7), (7, 6), (6, 12), (12, 6))}  # faces per side, master/slave
+FORMS = {
+    "bricks": (0, 0),
+    "tetrahedra": (1, 1),
+    "gmsh triangles/bricks": (2, 0),
+    "bricks/gmsh triangles": (0, 2)
+}  # master/slave: parameters lower, upper
+PAIRS = {
+    1: ((12, 15), (15, 12), (12, 24), (24, 12)),
+    2: ((6, 7), (7, 6), (6, 12), (12, 6))
+}  # faces per side, master/slave
 FORMULATIONS = ("node_to_surface", "surface_to_surface")
-COLUMNS = ("strain", "elements", "order", "master", "slave", "jitter", "formulation", "status", "iterations", "fall_backs", "wall_s", "pressure_max", "pressure_rms", "stress_master",
-           "stress_slave", "point_master", "point_slave")
+COLUMNS = ("strain", "elements", "order", "master", "slave", "jitter", "formulation", "status", "iterations",
+           "fall_backs", "wall_s", "pressure_max", "pressure_rms", "stress_master", "stress_slave", "point_master",
+           "point_slave")
 CORNERS = {"tet": [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]],
            "hex": [[-1, -1, -1], [1, -1, -1], [1, 1, -1], [-1, 1, -1], [-1, -1, 1], [1, -1, 1], [1, 1, 1], [-1, 1, 1]]}
 EDGES = {"tet": [(0, 1), (1, 2), (2, 0), (0, 3), (1, 3), (2, 3)],  # XDMF's order
@@ -33,7 +42,8 @@ FACES = [(0, 3, 4, 7), (1, 2, 5, 6), (0, 1, 4, 5), (2, 3, 6, 7), (0, 1, 2, 3), (
 
 @functools.cache
 def derivatives(element):
-    """Derivatives of the shape functions at the element's quadrature points: points x 3 x nodes. From the monomials that span them."""
+    """Derivatives of the shape functions at the element's quadrature points: points x 3 x nodes. From the monomials
+    that span them."""
     kind, order = element[:3], 1 if element in ("tet4", "hex8") else 2
     corners = numpy.array(CORNERS[kind], dtype=float)
     nodes = list(corners)
@@ -47,14 +57,18 @@ def derivatives(element):
         points = [numpy.array(p) * (3 ** -0.5 if order == 1 else 0.6 ** 0.5) for p in itertools.product(line, repeat=3)]
     else:
         a, b = 0.1381966011250105, 0.5854101966249685
-        points = [numpy.full(3, 0.25)] if order == 1 else [numpy.array(p) for p in ((a, a, a), (b, a, a), (a, b, a), (a, a, b))]
+        points = [numpy.full(3, 0.25)
+                  ] if order == 1 else [numpy.array(p) for p in ((a, a, a), (b, a, a), (a, b, a), (a, a, b))]
 
     def slope(p, x, d):
         q = list(p)
         q[d] -= 1
         return p[d] * numpy.prod(x ** numpy.array(q)) if p[d] else 0
 
-    return numpy.array([[[slope(p, x, d) for d in range(3)] for p in powers] for x in points]).transpose(0, 2, 1) @ coefficients
+    return numpy.array([[[slope(p, x, d)
+                          for d in range(3)]
+                         for p in powers]
+                        for x in points]).transpose(0, 2, 1) @ coefficients
 
 
 def cauchy_yy(gradient, finite):
@@ -70,7 +84,8 @@ def cauchy_yy(gradient, finite):
 
 
 def layer_stress(directory, finite):
-    """Stress along y at the quadrature points of the elements with a face on the interface, a row for each: of the lower (master) and the upper body."""
+    """Stress along y at the quadrature points of the elements with a face on the interface, a row for each: of the
+    lower (master) and the upper body."""
     stresses = ([], [])
     with h5py.File(directory / "results.h5", "r") as file:
         nodes = file["mesh/nodes"][()]
@@ -94,12 +109,16 @@ def layer_stress(directory, finite):
 def overrides(strain, elements, order, pair, jitter, formulation):
     load, how = STRAINS[strain]
     lower, upper = FORMS[elements]
-    return [f"mesh.order={order}", f"mesh.parameters.n_lower={pair[0]}", f"mesh.parameters.n_upper={pair[1]}", f"mesh.parameters.jitter={jitter}", f"mesh.parameters.lower={lower}",
-            f"mesh.parameters.upper={upper}", f"contact.0.formulation={formulation}", f"loads.0.pressure={load}", *how]
+    return [
+        f"mesh.order={order}", f"mesh.parameters.n_lower={pair[0]}", f"mesh.parameters.n_upper={pair[1]}",
+        f"mesh.parameters.jitter={jitter}", f"mesh.parameters.lower={lower}", f"mesh.parameters.upper={upper}",
+        f"contact.0.formulation={formulation}", f"loads.0.pressure={load}", *how
+    ]
 
 
 def deviations(directory, strain):
-    """Largest and rms deviation of the nodal pressure, and largest of the elements' stress on both sides, from the load, in per cent."""
+    """Largest and rms deviation of the nodal pressure, and largest of the elements' stress on both sides, from the
+    load, in per cent."""
     load = STRAINS[strain][0]
     with h5py.File(directory / "results.h5", "r") as file:
         pressure = file["steps"][sorted(file["steps"])[-1]]["contact/joint/pressure"][()]
@@ -114,25 +133,42 @@ def deviations(directory, strain):
 def cases():
     """Strain, elements, order, pair, jitter, formulation of every run."""
     jitters = (0, 0.125, 0.25)
-    chosen = [("small", "bricks", order, pair, jitter, how) for order in (1, 2) for pair in PAIRS[order] for jitter in jitters for how in FORMULATIONS]
-    chosen += [("small", "tetrahedra", order, pair, jitter, how) for order in (1, 2) for pair in PAIRS[order] for jitter in (0, 0.25) for how in FORMULATIONS]
-    chosen += [("small", form, order, pair, 0, how) for form in list(FORMS)[2:] for order in (1, 2) for pair in PAIRS[order][:2] for how in FORMULATIONS]
-    return chosen + [("finite", "bricks", order, pair, 0.25, "surface_to_surface") for order in (1, 2) for pair in PAIRS[order]] + \
-        [("finite", "tetrahedra", order, PAIRS[order][0], 0.25, "surface_to_surface") for order in (1, 2)]
+    chosen = [("small", "bricks", order, pair, jitter, how)
+              for order in (1, 2)
+              for pair in PAIRS[order]
+              for jitter in jitters
+              for how in FORMULATIONS]
+    chosen += [("small", "tetrahedra", order, pair, jitter, how)
+               for order in (1, 2)
+               for pair in PAIRS[order]
+               for jitter in (0, 0.25)
+               for how in FORMULATIONS]
+    chosen += [("small", form, order, pair, 0, how)
+               for form in list(FORMS)[2:]
+               for order in (1, 2)
+               for pair in PAIRS[order][:2]
+               for how in FORMULATIONS]
+    chosen += [("finite", "bricks", order, pair, 0.25, "surface_to_surface")
+               for order in (1, 2)
+               for pair in PAIRS[order]]
+    return chosen + [("finite", "tetrahedra", order, PAIRS[order][0], 0.25, "surface_to_surface") for order in (1, 2)]
 
 
 def solve(case, args):
     strain, elements, order, pair, jitter, formulation = case
-    directory = args.out / "-".join(str(v) for v in (strain, elements.replace(" ", "_").replace("/", "_"), order, *pair, jitter, formulation))
+    directory = args.out / "-".join(
+        str(v) for v in (strain, elements.replace(" ", "_").replace("/", "_"), order, *pair, jitter, formulation))
     shutil.rmtree(directory, ignore_errors=True)
     command = [args.burnish, str(SCENE), "-o", str(directory), "-quiet"]
     for override in overrides(*case):
         command += ["-set", override]
-    finished = subprocess.run(command, env=environment(args.burnish), stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+    finished = subprocess.run(command, env=environment(args.burnish), stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
+                              text=True)
     record = dict(zip(COLUMNS, (strain, elements, order, *pair, jitter, formulation, finished.returncode)))
     if finished.returncode == 0:
         summary = json.loads((directory / "summary.json").read_text())
-        record.update(iterations=summary["newton_iterations"], fall_backs=json.dumps(summary["contact"][0]["fall_backs"]), wall_s=round(summary["wall_s"], 2))
+        record.update(iterations=summary["newton_iterations"],
+                      fall_backs=json.dumps(summary["contact"][0]["fall_backs"]), wall_s=round(summary["wall_s"], 2))
         record.update({name: f"{value:.4g}" for name, value in deviations(directory, strain).items()})
     else:
         print(case, finished.stdout)
@@ -141,18 +177,30 @@ def solve(case, args):
 
 
 def figure(record, name):
-    return "-" if not record or not record[name] else "0.00" if float(record[name]) < 0.005 else f"{float(record[name]):.2g}"
+    return "-" if not record or not record[name] else "0.00" if float(
+        record[name]) < 0.005 else f"{float(record[name]):.2g}"
 
 
 def print_tables(records):
-    print("Largest deviation from the load, per cent: pressure of the slave nodes; mean stress in the elements next to the interface, master / slave\n")
-    print("| strain | elements | order | master/slave | jitter | node to surface | surface to surface | iterations |\n|" + " --- |" * 8)
+    print(
+        "Largest deviation from the load, per cent: pressure of the slave nodes; mean stress in the elements next to "
+        "the interface, master / slave\n"
+    )
+    print(
+        "| strain | elements | order | master/slave | jitter | node to surface | surface to surface | iterations |\n|" +
+        " --- |" * 8)
     keys = dict.fromkeys(tuple(r[name] for name in COLUMNS[:6]) for r in records)
     for key in keys:
         found = {r["formulation"]: r for r in records if tuple(r[name] for name in COLUMNS[:6]) == key}
-        cells = [f"{figure(r, 'pressure_max')}; {figure(r, 'stress_master')} / {figure(r, 'stress_slave')}" if r else "-" for r in (found.get(name) for name in FORMULATIONS)]
+        cells = [
+            f"{figure(r, 'pressure_max')}; {figure(r, 'stress_master')} / {figure(r, 'stress_slave')}" if r else "-"
+            for r in (found.get(name) for name in FORMULATIONS)
+        ]
         iterations = " / ".join(found[name]["iterations"] if name in found else "-" for name in FORMULATIONS)
-        print(f"| {key[0]} | {key[1]} | {key[2]} | {key[3]}/{key[4]} | {key[5]} | {cells[0]} | {cells[1]} | {iterations} |")
+        print(
+            f"| {key[0]} | {key[1]} | {key[2]} | {key[3]}/{key[4]} | {key[5]} | {cells[0]} | {cells[1]} | {iterations} "
+            "|"
+        )
 
 
 def main():

@@ -1,7 +1,8 @@
-"""Curves of a run from its steps.csv, without a display: what the probes say, iterations, penetration and penalty, the load step.
+"""Curves of a run from its steps.csv, without a display: what the probes say, iterations, penetration and penalty, the
+load step.
 
-    build/venv/bin/python scripts/plot.py out/pipe_pinch              # steps.png in that folder
-    build/venv/bin/python scripts/plot.py out/pipe_pinch out/other    # several runs in one picture, steps.png in the first folder
+    build/venv/bin/python scripts/plot.py out/pipe_pinch              # steps.png in that folder build/venv/bin/python
+    scripts/plot.py out/pipe_pinch out/other    # several runs in one picture, steps.png in the first folder
 """
 import argparse
 import pathlib
@@ -23,7 +24,8 @@ def curve(axes, run, column, label=None, place=0, **style):
     steps = run["steps"]
     values = steps.get(column, numpy.full(len(steps["t"]), numpy.nan))
     if numpy.isfinite(values).any():
-        axes.plot(steps["t"], values, marker=MARKERS[place % len(MARKERS)], markersize=3.5, linewidth=1.2, label=label or column.replace("_", " "), **style)
+        axes.plot(steps["t"], values, marker=MARKERS[place % len(MARKERS)], markersize=3.5, linewidth=1.2, label=label
+                  or column.replace("_", " "), **style)
 
 
 def finish(axes, title, log=False):
@@ -46,7 +48,8 @@ def contact_panels(panels, run, name, place):
     curve(nodes, run, "contact_nodes", name("in contact"), place)
     curve(force, run, "contact_force", name("contact force"), place)
     for column in ("max_penetration", "min_penetration"):
-        curve(penetration, run, column, name(column.replace("_penetration", "imum" if column.startswith("max") else "imum, loaded nodes")), place)
+        curve(penetration, run, column,
+              name(column.replace("_penetration", "imum" if column.startswith("max") else "imum, loaded nodes")), place)
     for column in ("penalty_min", "penalty_max"):
         curve(penalty, run, column, name(column.replace("penalty_", "") + "imum"), place)
 
@@ -67,7 +70,8 @@ def read(directory):
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("directories", nargs="+", help="results of runs")
-    parser.add_argument("-o", dest="file", type=pathlib.Path, help="file to write; default: steps.png in the first folder")
+    parser.add_argument("-o", dest="file", type=pathlib.Path,
+                        help="file to write; default: steps.png in the first folder")
     options = parser.parse_args()
     runs = [read(directory) for directory in options.directories]
     probes = list(dict.fromkeys(probe for run in runs for probe in run["probes"]))
@@ -84,7 +88,8 @@ def main():
         curve(step, run, "dt", name("step"), place)
         contact_panels(contact, run, name, place)
     titles = [(probe, False) for probe in probes]
-    titles += [("Newton iterations of the step", False), ("load step", True), ("nodes in contact", False), ("contact force", False)]
+    titles += [("Newton iterations of the step", False), ("load step", True), ("nodes in contact", False),
+               ("contact force", False)]
     titles += [("penetration", True), ("penalty", True)]
     for axes, (title, log) in zip(panels, titles):
         finish(axes, title, log)

@@ -1,4 +1,5 @@
-"""Draws triangles and lines in space into an image: parallel projection, hidden surfaces by depth for each pixel, fields interpolated over the triangles."""
+"""Draws triangles and lines in space into an image: parallel projection, hidden surfaces by depth for each pixel,
+fields interpolated over the triangles."""
 import dataclasses
 
 import numpy
@@ -12,7 +13,8 @@ BATCH = 2_000_000  # pixels looked at together: bounds the memory
 
 @dataclasses.dataclass
 class View:
-    """Where the viewer is (degrees: azimuth about the upward axis from its neighbour, elevation), and the part of his plane in the picture."""
+    """Where the viewer is (degrees: azimuth about the upward axis from its neighbour, elevation), and the part of his
+    plane in the picture."""
 
     azimuth: float
     elevation: float
@@ -30,7 +32,8 @@ class View:
 
 
 class Canvas:
-    """An image of the rectangle lower..upper of the viewer's plane, with the depth of every pixel; drawn twice as fine as it is handed out."""
+    """An image of the rectangle lower..upper of the viewer's plane, with the depth of every pixel; drawn twice as fine
+    as it is handed out."""
 
     def __init__(self, view, lower, upper, width):
         self.view, self.lower, self.upper = view, numpy.asarray(lower[:2]), numpy.asarray(upper[:2])
@@ -46,7 +49,8 @@ class Canvas:
         return numpy.concatenate([(seen[..., :2] - self.lower) * self.fine - 0.5, seen[..., 2:]], axis=-1)
 
     def put(self, row, column, depth, colour):
-        """Of the points that meet at a pixel the nearest one stays: written last, as numpy keeps the last of several values."""
+        """Of the points that meet at a pixel the nearest one stays: written last, as numpy keeps the last of several
+        values."""
         inside = (row >= 0) & (row < self.size[1]) & (column >= 0) & (column < self.size[0])
         inside[inside] &= depth[inside] > self.depth[row[inside], column[inside]]
         order = numpy.flatnonzero(inside)[numpy.argsort(depth[inside], kind="stable")]
@@ -59,12 +63,15 @@ class Canvas:
         normal = numpy.cross(seen[:, 1] - seen[:, 0], seen[:, 2] - seen[:, 0])
         length = numpy.linalg.norm(normal, axis=1)
         facing = numpy.sign(normal[:, 2:])
-        brightness = AMBIENT + (1 - AMBIENT) * numpy.clip((normal * facing) @ LIGHT / numpy.linalg.norm(LIGHT) / numpy.where(length > 0, length, 1), 0, 1)
+        brightness = AMBIENT + (1 - AMBIENT) * numpy.clip(
+            (normal * facing) @ LIGHT / numpy.linalg.norm(LIGHT) / numpy.where(length > 0, length, 1), 0, 1)
         corners = self.pixels(x)[triangles]
         first = numpy.maximum(numpy.ceil(corners[:, :, :2].min(axis=1)).astype(int), 0)
-        extent = numpy.maximum(numpy.minimum(numpy.floor(corners[:, :, :2].max(axis=1)).astype(int), self.size - 1) - first + 1, 0)
+        extent = numpy.maximum(
+            numpy.minimum(numpy.floor(corners[:, :, :2].max(axis=1)).astype(int), self.size - 1) - first + 1, 0)
         count = extent.prod(axis=1)
-        for batch in numpy.split(numpy.arange(len(triangles)), numpy.flatnonzero(numpy.diff(numpy.cumsum(count) // BATCH)) + 1):
+        for batch in numpy.split(numpy.arange(len(triangles)),
+                                 numpy.flatnonzero(numpy.diff(numpy.cumsum(count) // BATCH)) + 1):
             self.fill(corners[batch], first[batch], extent[batch], brightness[batch], values[triangles[batch]], paint)
 
     def fill(self, corners, first, extent, brightness, values, paint):
@@ -82,7 +89,8 @@ class Canvas:
             inside = (wa >= -1e-9) & (wb >= -1e-9) & (wc >= -1e-9)
         owner, weights = owner[inside], numpy.stack([wa, wb, wc], axis=1)[inside]
         depth = (weights * corners[owner, :, 2]).sum(axis=1)
-        self.put(row[inside], column[inside], depth, paint((weights * values[owner]).sum(axis=1)) * brightness[owner, None])
+        self.put(row[inside], column[inside], depth,
+                 paint((weights * values[owner]).sum(axis=1)) * brightness[owner, None])
 
     def lines(self, x, lines):
         """Darkens the pixels along the lines where nothing is in front."""

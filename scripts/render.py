@@ -1,8 +1,9 @@
-"""Pictures of a run, without a display: the deformed bodies coloured by a field, and the contact pressure on the slave surfaces.
+"""Pictures of a run, without a display: the deformed bodies coloured by a field, and the contact pressure on the slave
+surfaces.
 
-    build/venv/bin/python scripts/render.py out/pipe_pinch                      # von_mises.png and pressure.png in that folder
-    build/venv/bin/python scripts/render.py out/pipe_pinch --animate            # the same as GIF over all written steps
-    build/venv/bin/python scripts/render.py out/pipe_pinch --field uy --step 10 --view 40,10 --mirror xz
+    build/venv/bin/python scripts/render.py out/pipe_pinch                      # von_mises.png and pressure.png in that
+    folder build/venv/bin/python scripts/render.py out/pipe_pinch --animate            # the same as GIF over all
+    written steps build/venv/bin/python scripts/render.py out/pipe_pinch --field uy --step 10 --view 40,10 --mirror xz
 """
 import argparse
 import pathlib
@@ -61,8 +62,12 @@ class Run:
                 values = u[:, DISPLACEMENT[field]] if field in DISPLACEMENT else numpy.linalg.norm(u, axis=1)
             else:
                 values = group[field][()]
-            slave, normal = (numpy.isfinite(group["gap"][()]), group["normal"][()]) if "gap" in group else (numpy.zeros(len(u), dtype=bool), None)
-            tools = [(kind, numpy.asarray(pair.attrs[kind])) for pair in group.get("contact", {}).values() for kind in TOOLS if kind in pair.attrs]
+            slave, normal = (numpy.isfinite(group["gap"][()]),
+                             group["normal"][()]) if "gap" in group else (numpy.zeros(len(u), dtype=bool), None)
+            tools = [(kind, numpy.asarray(pair.attrs[kind]))
+                     for pair in group.get("contact", {}).values()
+                     for kind in TOOLS
+                     if kind in pair.attrs]
             return float(group.attrs["t"]), self.skin.nodes + u, values, slave, normal, tools
 
 
@@ -70,7 +75,9 @@ def grid(points):
     """Triangles between the points of a rectangular table."""
     n = numpy.arange(points.shape[0] * points.shape[1]).reshape(points.shape[:2])
     a, b, c, d = n[:-1, :-1], n[1:, :-1], n[1:, 1:], n[:-1, 1:]
-    return points.reshape(-1, 3), numpy.concatenate([numpy.stack([a, b, c], axis=-1).reshape(-1, 3), numpy.stack([a, c, d], axis=-1).reshape(-1, 3)])
+    return points.reshape(-1, 3), numpy.concatenate(
+        [numpy.stack([a, b, c], axis=-1).reshape(-1, 3),
+         numpy.stack([a, c, d], axis=-1).reshape(-1, 3)])
 
 
 def across(axis):
@@ -86,13 +93,15 @@ def tool_surface(kind, values, x):
     turn = numpy.linspace(0, 2 * numpy.pi, ROUND + 1)[:, None, None]
     if kind == "sphere":
         polar = numpy.linspace(0, numpy.pi, ROUND // 2)[None, :, None]
-        ring = numpy.sin(polar) * (numpy.cos(turn) * [1, 0, 0] + numpy.sin(turn) * [0, 0, 1]) + numpy.cos(polar) * numpy.array([0, 1, 0])
+        ring = numpy.sin(polar) * (numpy.cos(turn) * [1, 0, 0] +
+                                   numpy.sin(turn) * [0, 0, 1]) + numpy.cos(polar) * numpy.array([0, 1, 0])
         return grid(point + values[3] * ring)
     axis = values[3:6] / numpy.linalg.norm(values[3:6])  # of the cylinder, closed at its ends; normal of the plane
     first, second = across(axis)
     along = (x - point) @ axis
     if kind == "cylinder":
-        radius, place = values[6] * numpy.array([0, 1, 1, 0])[None, :, None], along[[along.argmin()] * 2 + [along.argmax()] * 2][None, :, None]
+        radius, place = values[6] * numpy.array([0, 1, 1, 0])[None, :, None], along[[along.argmin()] * 2 +
+                                                                                    [along.argmax()] * 2][None, :, None]
         return grid(point + radius * (numpy.cos(turn) * first + numpy.sin(turn) * second) + place * axis)
     beside = [(x - point) @ direction for direction in (first, second)]
     low, high = [b.min() for b in beside], [b.max() for b in beside]
@@ -105,7 +114,8 @@ def tool_outline(kind, values, x):
     point, extent = values[:3], numpy.ptp(x, axis=0).max()
     turn = numpy.linspace(0, 2 * numpy.pi, ROUND + 1)[:, None]
     if kind == "sphere" or (kind == "cylinder" and abs(values[5]) > 0.5):
-        return point + values[3 if kind == "sphere" else 6] * (numpy.cos(turn) * [1, 0, 0] + numpy.sin(turn) * [0, 1, 0])
+        return point + values[3 if kind == "sphere" else 6] * (numpy.cos(turn) * [1, 0, 0] +
+                                                               numpy.sin(turn) * [0, 1, 0])
     direction = values[3:6] if kind == "cylinder" else numpy.cross(values[3:6], [0, 0, 1])
     direction = direction / numpy.linalg.norm(direction)
     centre = point + ((x.mean(axis=0) - point) @ direction) * direction
@@ -135,13 +145,15 @@ class Picture:
         self.lines = run.skin.lines[numpy.isin(run.skin.line_body, self.bodies)]
         self.coloured = numpy.zeros(len(run.skin.nodes), dtype=bool)
         self.coloured[self.triangles] = True
-        inked = numpy.concatenate([values[self.coloured & (slave | (not self.contact))] for _, _, values, slave, _, _ in states])
+        inked = numpy.concatenate(
+            [values[self.coloured & (slave | (not self.contact))] for _, _, values, slave, _, _ in states])
         low, high = numpy.nanmin(inked), numpy.nanmax(inked)
         low = min(low, 0) if self.contact or field == "von_mises" else low
         self.norm = plt.Normalize(low, high if high > low else low + 1)
         self.map = plt.get_cmap("YlOrRd" if self.contact else "viridis")
         self.view = View(0, 0) if run.skin.plane else View(*(options.view or self.facing(states[-1])), options.up)
-        corners = numpy.concatenate([self.view.project(copy[self.coloured]) for _, x, *_ in states for copy in mirrored(x, options.mirror)])
+        corners = numpy.concatenate(
+            [self.view.project(copy[self.coloured]) for _, x, *_ in states for copy in mirrored(x, options.mirror)])
         lower, upper = corners.min(axis=0), corners.max(axis=0)
         margin = MARGIN * (upper - lower)[:2].max() * numpy.array([1, 1, 0])
         if run.skin.plane and self.contact:
@@ -157,7 +169,8 @@ class Picture:
         return numpy.unique(skin.triangle_body[slave[skin.triangles].all(axis=1)])
 
     def facing(self, state):
-        """Azimuth and elevation from which a contact field is seen: against the masters' normals, a little from the side."""
+        """Azimuth and elevation from which a contact field is seen: against the masters' normals, a little from the
+        side."""
         _, _, _, slave, normal, _ = state
         out = -normal[slave].mean(axis=0) if self.contact else numpy.zeros(3)
         if numpy.linalg.norm(out) < 0.3:  # the surface goes around the body
@@ -170,16 +183,20 @@ class Picture:
     def canvas(self, state, width):
         _, x, values, slave, _, tools = state
         canvas = Canvas(self.view, self.lower, self.upper, width)
-        hot = slave[self.triangles].all(axis=1) if self.contact and not self.run.skin.plane else numpy.full(len(self.triangles), not self.contact)
+        hot = slave[self.triangles].all(
+            axis=1) if self.contact and not self.run.skin.plane else numpy.full(len(self.triangles), not self.contact)
         for copy in mirrored(x, self.options.mirror):
-            canvas.triangles(copy, self.triangles[hot], lambda v: self.map(self.norm(v))[:, :3], numpy.nan_to_num(values))
-            canvas.triangles(copy, self.triangles[~hot], lambda v: numpy.broadcast_to(GREY, (len(v), 3)), numpy.zeros(len(x)))
+            canvas.triangles(copy, self.triangles[hot], lambda v: self.map(self.norm(v))[:, :3],
+                             numpy.nan_to_num(values))
+            canvas.triangles(copy, self.triangles[~hot], lambda v: numpy.broadcast_to(GREY, (len(v), 3)),
+                             numpy.zeros(len(x)))
             canvas.lines(copy, self.lines)
         if not self.run.skin.plane and not self.contact:
             everything = numpy.concatenate(mirrored(x, self.options.mirror))
             for kind, where in tools:
                 points, triangles = tool_surface(kind, where, everything)
-                canvas.triangles(points, triangles, lambda v: numpy.broadcast_to(TOOL, (len(v), 3)), numpy.zeros(len(points)))
+                canvas.triangles(points, triangles, lambda v: numpy.broadcast_to(TOOL, (len(v), 3)),
+                                 numpy.zeros(len(points)))
         return canvas.image()
 
     def ridge(self, axes, state):
@@ -192,7 +209,8 @@ class Picture:
         for copy, flip in zip(mirrored(x, self.options.mirror), mirrored(normal, self.options.mirror)):
             crest = copy - height * values[:, None] * flip
             walls = numpy.concatenate([copy[lines], crest[lines][:, ::-1]], axis=1)[:, :, :2]
-            axes.add_collection(PolyCollection(walls, facecolors=colours, edgecolors=colours, linewidths=0.4, alpha=0.85))
+            axes.add_collection(
+                PolyCollection(walls, facecolors=colours, edgecolors=colours, linewidths=0.4, alpha=0.85))
             axes.add_collection(LineCollection(copy[lines][:, :, :2], colors="k", linewidths=1.2))
 
     def draw(self, figure, step, width):
@@ -214,7 +232,9 @@ class Picture:
             triad(figure, self.view)
         figure.canvas.draw()  # settles where the axes are
         place = axes.get_position()
-        low = place.y0 + 0.05 * place.height if self.run.skin.plane else 0.02 + TRIAD / figure.dpi / figure.get_size_inches()[1]
+        low = 0.02 + TRIAD / figure.dpi / figure.get_size_inches()[1]
+        if self.run.skin.plane:
+            low = place.y0 + 0.05 * place.height
         bar = figure.add_axes((place.x1 + 0.02, low, 0.02, place.y1 - 0.05 * place.height - low))
         figure.colorbar(plt.cm.ScalarMappable(self.norm, self.map), cax=bar)
 
@@ -245,13 +265,15 @@ def options():
     parser.add_argument("directory", help="results of a run")
     parser.add_argument("--field", choices=FIELDS, help="default: von_mises, and pressure where there is contact")
     parser.add_argument("--step", type=int, help="written step, from 0; negative: from the end; default: the last one")
-    parser.add_argument("--view", type=lambda text: tuple(float(word) for word in text.split(",")), metavar="AZIMUTH,ELEVATION",
-                        help="degrees; write --view=-35,20 if the first is negative")
+    parser.add_argument("--view", type=lambda text: tuple(float(word) for word in text.split(",")),
+                        metavar="AZIMUTH,ELEVATION", help="degrees; write --view=-35,20 if the first is negative")
     parser.add_argument("--up", choices=("y", "z"), default="y", help="axis that points upwards")
-    parser.add_argument("--mirror", default="", metavar="AXES", help="adds the mirror images across these axes, such as xz")
+    parser.add_argument("--mirror", default="", metavar="AXES",
+                        help="adds the mirror images across these axes, such as xz")
     parser.add_argument("--animate", action="store_true", help="all written steps as a GIF")
     parser.add_argument("--width", type=int, default=900, help="of the picture, in pixels")
-    parser.add_argument("-o", dest="file", type=pathlib.Path, help="file to write; default: FIELD.png or FIELD.gif in the run's folder")
+    parser.add_argument("-o", dest="file", type=pathlib.Path,
+                        help="file to write; default: FIELD.png or FIELD.gif in the run's folder")
     chosen = parser.parse_args()
     if set(chosen.mirror) - set("xyz"):
         parser.error("--mirror: allowed are x, y and z")
@@ -266,7 +288,10 @@ def main():
     fields = [chosen.field] if chosen.field else [field for field in ("von_mises", "pressure") if run.has(field)]
     for field in fields or ["displacement"]:
         if not run.has(field):
-            sys.exit(f"render.py: {run.path} has no {field}; it has {', '.join(sorted(run.fields)) or 'nothing'} (the scene's output.fields)")
+            sys.exit(
+                f"render.py: {run.path} has no {field}; it has {', '.join(sorted(run.fields)) or 'nothing'} (the "
+                "scene's output.fields)"
+            )
         step = len(run.steps) - 1 if chosen.step is None else chosen.step
         if not -len(run.steps) <= step < len(run.steps):
             sys.exit(f"render.py: --step {step}: {run.path} has steps 0 to {len(run.steps) - 1}")
@@ -275,7 +300,8 @@ def main():
         figure = picture.figure(chosen.width)
         file = chosen.file or pathlib.Path(chosen.directory) / f"{field}.{'gif' if chosen.animate else 'png'}"
         if chosen.animate:
-            FuncAnimation(figure, lambda frame: picture.draw(figure, frame, chosen.width), frames=steps).save(file, PillowWriter(fps=5))
+            FuncAnimation(figure, lambda frame: picture.draw(figure, frame, chosen.width),
+                          frames=steps).save(file, PillowWriter(fps=5))
         else:
             picture.draw(figure, step, chosen.width)
             figure.savefig(file)

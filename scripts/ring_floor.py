@@ -1,5 +1,6 @@
-"""What the elements themselves leave of a uniform pressure: the two rings of runs/ring_in_ring.yaml on meshes whose nodes face each other, tied
-along the radius with the interference as jump, by dense linear algebra and independent of Burnish's contact.
+"""What the elements themselves leave of a uniform pressure: the two rings of runs/ring_in_ring.yaml on meshes whose
+nodes face each other, tied along the radius with the interference as jump, by dense linear algebra and independent of
+Burnish's contact.
     floor(directory): directory of a finished run with mesh.parameters.matching=1"""
 import functools
 import itertools
@@ -14,8 +15,10 @@ CORNERS = numpy.array([[-1, -1], [1, -1], [1, 1], [-1, 1]], dtype=float)
 
 @functools.cache
 def shapes(order):
-    """Nodes of the square in XDMF's order, powers of the monomials and the coefficients of the shape functions in them."""
-    nodes = CORNERS if order == 1 else numpy.vstack([CORNERS, (CORNERS + numpy.roll(CORNERS, -1, axis=0)) / 2, [[0, 0]]])
+    """Nodes of the square in XDMF's order, powers of the monomials and the coefficients of the shape functions in
+    them."""
+    nodes = CORNERS if order == 1 else numpy.vstack(
+        [CORNERS, (CORNERS + numpy.roll(CORNERS, -1, axis=0)) / 2, [[0, 0]]])
     powers = list(itertools.product(range(order + 1), repeat=2))
     return powers, numpy.linalg.inv([[x[0] ** p * x[1] ** q for p, q in powers] for x in nodes])
 
@@ -69,7 +72,9 @@ def floor(directory):
         own = own[numpy.abs(radius[own] - RADIUS) < 2 * INTERFERENCE]
         sides.append(own[numpy.argsort(angle[own])])
     inner, outer = sides
-    held = numpy.concatenate([2 * numpy.flatnonzero(numpy.abs(nodes[:, 0]) < 1e-9), 2 * numpy.flatnonzero(numpy.abs(nodes[:, 1]) < 1e-9) + 1])
+    held = numpy.concatenate([
+        2 * numpy.flatnonzero(numpy.abs(nodes[:, 0]) < 1e-9), 2 * numpy.flatnonzero(numpy.abs(nodes[:, 1]) < 1e-9) + 1
+    ])
     m, n = len(inner), len(K)
     jump = numpy.zeros((m, n))
     for side, sign in ((outer, 1), (inner, -1)):
@@ -77,9 +82,14 @@ def floor(directory):
         jump[numpy.arange(m), 2 * side + 1] = sign * numpy.sin(angle[inner])
     free = numpy.setdiff1d(numpy.arange(n), held)
     system = numpy.block([[K[numpy.ix_(free, free)], jump[:, free].T], [jump[:, free], numpy.zeros((m, m))]])
-    force = -numpy.linalg.solve(system, numpy.concatenate([numpy.zeros(len(free)), numpy.full(m, INTERFERENCE)]))[len(free):]
+    force = -numpy.linalg.solve(system, numpy.concatenate([numpy.zeros(len(free)),
+                                                           numpy.full(m, INTERFERENCE)]))[len(free):]
     length = lengths(nodes, order, angle[inner])
     pressure = force / length
     mean = numpy.sum(length * pressure) / numpy.sum(length)
     error = 100 * (pressure / mean - 1)
-    return {"mean_pressure": mean, "noise_max": numpy.max(numpy.abs(error)), "noise_rms": numpy.sqrt(numpy.sum(length * error**2) / numpy.sum(length))}
+    return {
+        "mean_pressure": mean,
+        "noise_max": numpy.max(numpy.abs(error)),
+        "noise_rms": numpy.sqrt(numpy.sum(length * error**2) / numpy.sum(length))
+    }

@@ -1,10 +1,11 @@
-"""How time and memory grow: scenes with contact, meshes from 1e4 unknowns on, 1 and 2 ranks, direct and iterative solver. Raw records of every run go to
-a CSV file; tables and a plot are made from there (make bench).
+"""How time and memory grow: scenes with contact, meshes from 1e4 unknowns on, 1 and 2 ranks, direct and iterative
+solver. Raw records of every run go to a CSV file; tables and a plot are made from there (make bench).
     scaling.py [--burnish BINARY] [--large] [--out DIR] [--record FILE [--add]] [CASE ...]     runs, prints, plots
     scaling.py --table FILE                                                          prints and plots only
---large adds 3e5 unknowns, and 1e6 iterative. A CASE is a part of a run's name: "ring_in_ring_3d 30 iterative"; --add keeps the
-record's other runs. CPU seconds are summed over the ranks, meshing apart. Those of a phase are its share of the wall time: on a busy machine wall times mean
-little. Bandwidth: what as many processes as ranks together read and write in one array's sum of two others, just before the run."""
+--large adds 3e5 unknowns, and 1e6 iterative. A CASE is a part of a run's name: "ring_in_ring_3d 30 iterative"; --add
+keeps the record's other runs. CPU seconds are summed over the ranks, meshing apart. Those of a phase are its share of
+the wall time: on a busy machine wall times mean little. Bandwidth: what as many processes as ranks together read and
+write in one array's sum of two others, just before the run."""
 import argparse
 import csv
 import math
@@ -27,8 +28,9 @@ from launch import command, environment, read_summary
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 PHASES = ("setup", "search", "fit", "assembly_elastic", "assembly_contact", "solve", "output")
 CONTACT = ("search", "fit", "assembly_contact")
-COLUMNS = ("scene", "size", "solver", "ranks", "dofs", "status", "newton_iterations", "krylov_iterations", "cpu_s", "wall_s", "peak_rss_mb", "contact_nodes",
-           "imbalance_cells", "imbalance_contact", *(f"seconds_{phase}" for phase in PHASES), "bandwidth_gb_s")
+COLUMNS = ("scene", "size", "solver", "ranks", "dofs", "status", "newton_iterations", "krylov_iterations", "cpu_s",
+           "wall_s", "peak_rss_mb", "contact_nodes", "imbalance_cells", "imbalance_contact",
+           *(f"seconds_{phase}" for phase in PHASES), "bandwidth_gb_s")
 SMALL, LARGE = 3, 5  # sizes run without and with --large: 1e4, 3e4 and 1e5 unknowns, 3e5 and 1e6
 SOLVERS = ("direct", "iterative")
 RANKS = (1, 2)
@@ -82,8 +84,10 @@ def solve(args, scene, size, solver, ranks):
     speed = bandwidth(ranks)
     directory = args.out / "run"
     shutil.rmtree(directory, ignore_errors=True)
-    line = command(args.burnish, ranks, ROOT / "runs" / f"{scene}.yaml", directory, (*COMMON, mesh(size), f"solver.type={solver}"), "-quiet")
-    finished = subprocess.run([*args.launcher, *line], cwd=ROOT, env=environment(args.burnish), stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+    line = command(args.burnish, ranks, ROOT / "runs" / f"{scene}.yaml", directory,
+                   (*COMMON, mesh(size), f"solver.type={solver}"), "-quiet")
+    finished = subprocess.run([*args.launcher, *line], cwd=ROOT, env=environment(args.burnish), stdout=subprocess.PIPE,
+                              stderr=subprocess.STDOUT, text=True)
     if finished.returncode not in (0, 2):  # 2: did not converge; the summary says so
         print(f"{' '.join(line)}\n{finished.stdout}", file=sys.stderr)
         return {"scene": scene, "size": size, "solver": solver, "ranks": ranks, "status": f"exit {finished.returncode}"}
@@ -106,7 +110,8 @@ def cases(args):
             for solver in SOLVERS:
                 for ranks in RANKS:
                     name = f"{scene} {sizes[i]} {solver} {ranks}"
-                    if (solver == "iterative" or i < DIRECT_SIZES) and (not args.case or any(case in name for case in args.case)):
+                    if (solver == "iterative" or i < DIRECT_SIZES) and (not args.case or any(case in name
+                                                                                             for case in args.case)):
                         yield scene, sizes[i], solver, ranks
 
 
@@ -115,7 +120,10 @@ def measure(args):
     path, asked, kept = args.record or args.out / "scaling.csv", list(cases(args)), []
     if args.add and path.exists():
         with open(path, newline="") as file:
-            kept = [row for row in csv.DictReader(file) if (row["scene"], int(row["size"]), row["solver"], int(row["ranks"])) not in asked]
+            kept = [
+                row for row in csv.DictReader(file)
+                if (row["scene"], int(row["size"]), row["solver"], int(row["ranks"])) not in asked
+            ]
     with open(path, "w", newline="") as file:
         writer = csv.DictWriter(file, COLUMNS)
         writer.writeheader()
@@ -124,7 +132,8 @@ def measure(args):
             row = solve(args, *case)
             writer.writerow(row)
             file.flush()
-            print(f"{' '.join(map(str, case))}: {row['status']}, {row.get('dofs')} dofs, {row.get('cpu_s')} s", file=sys.stderr)
+            print(f"{' '.join(map(str, case))}: {row['status']}, {row.get('dofs')} dofs, {row.get('cpu_s')} s",
+                  file=sys.stderr)
     return path
 
 
@@ -185,44 +194,62 @@ def runs_table(lines):
         for row in rows:
             alone = [other for other in lines.get((scene, solver, 1), []) if other["dofs"] == row["dofs"]]
             speed = f"{wall(alone[0]) / wall(row):.2f}" if alone and ranks > 1 else ""
-            shares = (100 * seconds(row, *phases) / row["cpu_s"] for phases in (("setup",), ("assembly_elastic",), CONTACT, ("solve",), ("output",)))
-            print_row(scene, solver, ranks, f"{row['dofs']:.0f}", f"{row['newton_iterations']:.0f}", f"{krylov(row):.1f}", f"{row['cpu_s']:.1f}",
-                      f"{wall(row):.1f}", *(f"{share:.1f}" for share in shares), f"{row['peak_rss_mb']:.0f}",
-                      f"{row['imbalance_cells']:.2f}, {row['imbalance_contact']:.2f}", f"{row['bandwidth_gb_s']:.1f}", speed)
+            shares = (100 * seconds(row, *phases) / row["cpu_s"]
+                      for phases in (("setup",), ("assembly_elastic",), CONTACT, ("solve",), ("output",)))
+            print_row(scene, solver, ranks, f"{row['dofs']:.0f}", f"{row['newton_iterations']:.0f}",
+                      f"{krylov(row):.1f}", f"{row['cpu_s']:.1f}", f"{wall(row):.1f}",
+                      *(f"{share:.1f}" for share in shares), f"{row['peak_rss_mb']:.0f}",
+                      f"{row['imbalance_cells']:.2f}, {row['imbalance_contact']:.2f}", f"{row['bandwidth_gb_s']:.1f}",
+                      speed)
 
 
 def exponents_table(lines):
-    print(f"\nGrowth exponents of CPU seconds and memory over dofs, of all sizes and of those from {FROM:.0e} on; growth of contact's share (points) and of "
-          "the Krylov iterations of a solve from the first to the last\n")
-    head("scene", "solver", "ranks", "dofs", "whole run", "solver part", "set-up", "contact", "elastic", "all but the solver", "memory",
-         "contact's share", "Krylov")
-    costs = (lambda row: row["cpu_s"], lambda row: seconds(row, "solve"), lambda row: seconds(row, "setup"), lambda row: seconds(row, *CONTACT),
-             lambda row: seconds(row, "assembly_elastic"), lambda row: row["cpu_s"] - seconds(row, "solve"), lambda row: row["peak_rss_mb"])
+    print(
+        f"\nGrowth exponents of CPU seconds and memory over dofs, of all sizes and of those from {FROM:.0e} on; growth "
+        "of contact's share (points) and of "
+        "the Krylov iterations of a solve from the first to the last\n")
+    head("scene", "solver", "ranks", "dofs", "whole run", "solver part", "set-up", "contact", "elastic",
+         "all but the solver", "memory", "contact's share", "Krylov")
+    costs = (lambda row: row["cpu_s"], lambda row: seconds(row, "solve"), lambda row: seconds(row, "setup"),
+             lambda row: seconds(row, *CONTACT), lambda row: seconds(row, "assembly_elastic"),
+             lambda row: row["cpu_s"] - seconds(row, "solve"), lambda row: row["peak_rss_mb"])
     for (scene, solver, ranks), rows in lines.items():
         large = [row for row in rows if row["dofs"] >= FROM]
         for some in (rows, large) if len(large) < len(rows) else (rows,):
             if len(some) > 1:
-                print_row(scene, solver, ranks, f"{some[0]['dofs']:.0f} to {some[-1]['dofs']:.0f}", *(f"{exponent(some, cost):.2f}" for cost in costs),
+                print_row(scene, solver, ranks, f"{some[0]['dofs']:.0f} to {some[-1]['dofs']:.0f}",
+                          *(f"{exponent(some, cost):.2f}" for cost in costs),
                           *(f"{of(some[-1]) - of(some[0]):+.1f}" for of in (contact_share, krylov)))
 
 
 def speed_table(lines):
-    """Phases that gain from ranks: their CPU seconds over all ranks stay; those that grow are done by each rank, or wait."""
-    print("\nSpeed-up of the phases on several ranks (wall seconds of 1 rank over those of all: on an idle machine only), and of the memory's bandwidth\n")
+    """Phases that gain from ranks: their CPU seconds over all ranks stay; those that grow are done by each rank, or
+    wait."""
+    print(
+        "\nSpeed-up of the phases on several ranks (wall seconds of 1 rank over those of all: on an idle machine "
+        "only), and of the memory's bandwidth\n"
+    )
     head("scene", "solver", "ranks", "dofs", *PHASES, "whole run", "bandwidth")
     for (scene, solver, ranks), rows in lines.items():
         for row in rows if ranks > 1 else ():
             for alone in (other for other in lines.get((scene, solver, 1), []) if other["dofs"] == row["dofs"]):
-                gains = (alone[f"seconds_{phase}"] / row[f"seconds_{phase}"] if row[f"seconds_{phase}"] else 1 for phase in PHASES)
-                print_row(scene, solver, ranks, f"{row['dofs']:.0f}", *(f"{gain:.2f}" for gain in gains), f"{wall(alone) / wall(row):.2f}",
-                          f"{row['bandwidth_gb_s'] / alone['bandwidth_gb_s']:.2f}")
+                gains = (alone[f"seconds_{phase}"] / row[f"seconds_{phase}"] if row[f"seconds_{phase}"] else 1
+                         for phase in PHASES)
+                print_row(scene, solver, ranks, f"{row['dofs']:.0f}", *(f"{gain:.2f}" for gain in gains),
+                          f"{wall(alone) / wall(row):.2f}", f"{row['bandwidth_gb_s'] / alone['bandwidth_gb_s']:.2f}")
 
 
 def plot(lines, path):
     """Phases against dofs, one rank: a picture for each scene and solver."""
     kept = {(scene, solver): rows for (scene, solver, ranks), rows in lines.items() if ranks == 1}
     figure, axes = plt.subplots(1, len(kept), figsize=(4 * len(kept), 4), sharey=True, squeeze=False)
-    groups = {"solve": ("solve",), "contact": CONTACT, "elastic": ("assembly_elastic",), "setup": ("setup",), "output": ("output",)}
+    groups = {
+        "solve": ("solve",),
+        "contact": CONTACT,
+        "elastic": ("assembly_elastic",),
+        "setup": ("setup",),
+        "output": ("output",)
+    }
     for axis, ((scene, solver), rows) in zip(axes[0], kept.items()):
         dofs = [row["dofs"] for row in rows]
         axis.loglog(dofs, [row["cpu_s"] for row in rows], "k-", label="whole run")
@@ -243,7 +270,8 @@ parser.add_argument("--large", action="store_true")
 parser.add_argument("--out", type=pathlib.Path, default=ROOT / "out" / "bench" / "scaling")
 parser.add_argument("--record", type=pathlib.Path, help="raw records (default: scaling.csv in --out)")
 parser.add_argument("--add", action="store_true", help="keep what else is in the record")
-parser.add_argument("--launcher", type=shlex.split, default=[], help="command put before each run: a queue, taskset, nice")
+parser.add_argument("--launcher", type=shlex.split, default=[],
+                    help="command put before each run: a queue, taskset, nice")
 parser.add_argument("--table", type=pathlib.Path, help="raw records to print, nothing is run")
 args = parser.parse_args()
 args.burnish, args.out = args.burnish.resolve(), args.out.resolve()

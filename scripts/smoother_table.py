@@ -1,7 +1,7 @@
-"""pipe_pinch with facets and with the diffuse smoother: same mesh, same steps, three meshes. Raw records of every run go to a CSV file, the table
-(iterations, failed steps, CPU seconds) is printed from there:
-    smoother_table.py --burnish BINARY [--ranks N] [--repeats N] [--out DIR]     runs and prints
-    smoother_table.py --table FILE                                               prints only
+"""pipe_pinch with facets and with the diffuse smoother: same mesh, same steps, three meshes. Raw records of every run
+go to a CSV file, the table (iterations, failed steps, CPU seconds) is printed from there:
+    smoother_table.py --burnish BINARY [--ranks N] [--repeats N] [--out DIR]     runs and prints smoother_table.py
+    --table FILE                                               prints only
 Runs of the smoothers alternate, so that whatever else the machine does meets all of them; CPU seconds are medians."""
 import argparse
 import csv
@@ -21,7 +21,8 @@ SMOOTHERS = {
     "diffuse 4": ["contact.0.smoother=diffuse", "contact.0.degree=4"],
     "diffuse 2": ["contact.0.smoother=diffuse", "contact.0.degree=2"],
 }
-COLUMNS = ("mesh", "smoother", "repeat", "ranks", "dofs", "status", "steps", "steps_failed", "newton_iterations", "newton_accepted", "cpu_s", "wall_s", "seconds_search", "seconds_fit", "seconds_assembly_contact",
+COLUMNS = ("mesh", "smoother", "repeat", "ranks", "dofs", "status", "steps", "steps_failed", "newton_iterations",
+           "newton_accepted", "cpu_s", "wall_s", "seconds_search", "seconds_fit", "seconds_assembly_contact",
            "fall_backs", "plate_force", "contact_inner", "crown_gap")
 CONTACT_SECONDS = ("seconds_search", "seconds_fit", "seconds_assembly_contact")
 
@@ -32,13 +33,20 @@ def record(args, mesh, smoother, repeat):
     directory = args.out / f"{n_arc}x{n_len}_{smoother.replace(' ', '_')}"
     shutil.rmtree(directory, ignore_errors=True)
     command = ["mpirun", "-n", str(args.ranks), str(args.burnish), str(SCENE), "-quiet", "-o", str(directory)]
-    for override in (f"mesh.parameters.n_arc={n_arc}", f"mesh.parameters.n_len={n_len}", "output.every=0", *SMOOTHERS[smoother]):
+    for override in (f"mesh.parameters.n_arc={n_arc}", f"mesh.parameters.n_len={n_len}", "output.every=0",
+                     *SMOOTHERS[smoother]):
         command += ["-set", override]
-    finished = subprocess.run(command, env=environment(args.burnish), stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+    finished = subprocess.run(command, env=environment(args.burnish), stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
+                              text=True)
     if finished.returncode not in (0, 2):  # 2: did not converge; the summary says how far it came
         sys.exit(f"{' '.join(command)}\n{finished.stdout}")
     summary = json.loads((directory / "summary.json").read_text())
-    row = {"mesh": f"{n_arc}x{n_len}", "smoother": smoother, "repeat": repeat, "fall_backs": summary["contact"][0]["fall_backs"]}
+    row = {
+        "mesh": f"{n_arc}x{n_len}",
+        "smoother": smoother,
+        "repeat": repeat,
+        "fall_backs": summary["contact"][0]["fall_backs"]
+    }
     for name in COLUMNS:
         if name.startswith("seconds_"):
             row[name] = summary["seconds"][name.removeprefix("seconds_")]
@@ -67,7 +75,10 @@ def measure(args):
 def table(path):
     with open(path, newline="") as file:
         rows = list(csv.DictReader(file))
-    print(f"{'mesh':>8} {'dofs':>7} {'smoother':<10} {'steps':>5} {'failed':>6} {'iterations':>10} {'CPU s':>7} {'to facet':>8} {'contact':>7} {'wall s':>7} {'plate force':>11}")
+    print(
+        f"{'mesh':>8} {'dofs':>7} {'smoother':<10} {'steps':>5} {'failed':>6} {'iterations':>10} {'CPU s':>7} "
+        f"{'to facet':>8} {'contact':>7} {'wall s':>7} {'plate force':>11}"
+    )
     for mesh in dict.fromkeys(row["mesh"] for row in rows):
         base = None
         for smoother in SMOOTHERS:
@@ -75,10 +86,15 @@ def table(path):
             if not runs:
                 continue
             cpu, wall = (statistics.median(float(row[name]) for row in runs) for name in ("cpu_s", "wall_s"))
-            share = statistics.median(sum(float(row[name]) for name in CONTACT_SECONDS) / float(row["wall_s"]) for row in runs)
+            share = statistics.median(
+                sum(float(row[name]) for name in CONTACT_SECONDS) / float(row["wall_s"]) for row in runs)
             base = base or cpu
             first = runs[0]
-            print(f"{mesh:>8} {first['dofs']:>7} {smoother:<10} {first['steps']:>5} {first['steps_failed']:>6} {first['newton_iterations']:>10} {cpu:7.2f} {100 * (cpu / base - 1):+7.1f}% {100 * share:6.1f}% {wall:7.2f} {float(first['plate_force']):11.1f}")
+            print(
+                f"{mesh:>8} {first['dofs']:>7} {smoother:<10} {first['steps']:>5} {first['steps_failed']:>6} "
+                f"{first['newton_iterations']:>10} {cpu:7.2f} {100 * (cpu / base - 1):+7.1f}% {100 * share:6.1f}% "
+                f"{wall:7.2f} {float(first['plate_force']):11.1f}"
+            )
 
 
 parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)

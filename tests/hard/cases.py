@@ -1,5 +1,5 @@
-"""The hard cases as data: what is run, what makes it hard, and what must come of it. Figures are bounds, rounded up from what was measured; where facets
-fail and the diffuse surface does not, that is the outcome written down."""
+"""The hard cases as data: what is run, what makes it hard, and what must come of it. Figures are bounds, rounded up
+from what was measured; where facets fail and the diffuse surface does not, that is the outcome written down."""
 import cmath
 import pathlib
 from dataclasses import dataclass, field
@@ -29,38 +29,59 @@ def mesh(**parameters):
     return [f"mesh.parameters.{name}={value}" for name, value in parameters.items()]
 
 
-SQUEEZE, SOLID, PUNCH, ARCH = HERE / "squeeze.yaml", HERE / "squeeze_solid.yaml", HERE / "punch.yaml", HERE / "arch.yaml"
-SPHERES, PIPE, SLIDE, STACK = RUNS / "spheres.yaml", RUNS / "pipe_pinch.yaml", RUNS / "slide_flat.yaml", SCENES / "stack.yaml"
+SQUEEZE, SOLID = HERE / "squeeze.yaml", HERE / "squeeze_solid.yaml"
+PUNCH, ARCH = HERE / "punch.yaml", HERE / "arch.yaml"
+SPHERES, PIPE, SLIDE = RUNS / "spheres.yaml", RUNS / "pipe_pinch.yaml", RUNS / "slide_flat.yaml"
+STACK = SCENES / "stack.yaml"
 FORCES = ("force", "top", "bottom")  # of the punch: one force
 ANSWER = ("force", "sideways")
 VECTOR = ("sideways", "down")
-SWAPPED, UNSWAPPED = (["contact.0.slave=lower_contact", "contact.0.master=upper_contact"], ["contact.0.slave=upper_contact", "contact.0.master=lower_contact"])
+SWAPPED, UNSWAPPED = (["contact.0.slave=lower_contact", "contact.0.master=upper_contact"],
+                      ["contact.0.slave=upper_contact", "contact.0.master=lower_contact"])
 
-# The squeezed blocks drawn closer by an overlap between rollers: p = M overlap / (2 H + M / penalty), M the modulus without side strain.
+# The squeezed blocks drawn closer by an overlap between rollers: p = M overlap / (2 H + M / penalty), M the modulus
+# without side strain.
 OVERLAP, MODULUS = 0.002, 1000 * 0.7 / (1.3 * 0.4)
-CLOSED = ["supports=[{surface: lower_far, uy: 0}, {surface: upper_far, uy: 0}, {surface: lower_x_low, ux: 0}, {surface: upper_x_low, ux: 0}, "
-          "{surface: lower_x_high, ux: 0}, {surface: upper_x_high, ux: 0}]", "loads=[]"]
+CLOSED = [
+    "supports=[{surface: lower_far, uy: 0}, {surface: upper_far, uy: 0}, {surface: lower_x_low, ux: 0}, {surface: "
+    "upper_x_low, ux: 0}, "
+    "{surface: lower_x_high, ux: 0}, {surface: upper_x_high, ux: 0}]", "loads=[]"
+]
 # The punch as a flat block, and its solid form.
 FLAT = mesh(bulge=0) + ["loads.0.ux=0"]
 FLAT_SOLID = mesh(n_z=1, bulge=0) + [
-    "geometry=solid", "supports=[{surface: lower_far, ux: 0, uy: 0, uz: 0}]", "loads=[{surface: upper_far, ux: 0, uy: -0.05, uz: 0}]"]
+    "geometry=solid", "supports=[{surface: lower_far, ux: 0, uy: 0, uz: 0}]",
+    "loads=[{surface: upper_far, ux: 0, uy: -0.05, uz: 0}]"
+]
 # The squeezed blocks with a lower one in two halves.
 SEAM = mesh(seam=1) + [
-    "bodies.2={volume: right, material: {law: linear, E: 1000, nu: 0.3}}", "loads.3={surface: right_x_high, pressure: 1}",
-    "supports=[{surface: lower_far, uy: 0}, {surface: right_far, uy: 0}, {surface: lower_x_low, ux: 0}, {surface: right_x_low, ux: 0}, "
-    "{surface: upper_x_low, ux: 0}]"]
+    "bodies.2={volume: right, material: {law: linear, E: 1000, nu: 0.3}}",
+    "loads.3={surface: right_x_high, pressure: 1}",
+    "supports=[{surface: lower_far, uy: 0}, {surface: right_far, uy: 0}, {surface: lower_x_low, ux: 0}, {surface: "
+    "right_x_low, ux: 0}, "
+    "{surface: upper_x_low, ux: 0}]"
+]
 # Two rigid walls alone hold the upper block; the corner node is in both pairs.
-WALLS = ["contact=[{name: joint, slave: upper_contact, master: {plane: {point: [0, 0], normal: [0, 1]}}, penalty: {initial: auto, scale: 100}}, "
-         "{name: wall, slave: upper_x_low, master: {plane: {point: [0, 0], normal: [1, 0]}}, penalty: {initial: auto, scale: 100}}]",
-         "supports=[{surface: lower_far, ux: 0, uy: 0}]", "loads=[{surface: upper_far, pressure: 1}, {surface: upper_x_high, pressure: 1}]",
-         "probes.2={name: wall, contact_force: wall, component: x, absolute: true}"]
+WALLS = [
+    "contact=[{name: joint, slave: upper_contact, master: {plane: {point: [0, 0], normal: [0, 1]}}, penalty: {initial: "
+    "auto, scale: 100}}, "
+    "{name: wall, slave: upper_x_low, master: {plane: {point: [0, 0], normal: [1, 0]}}, penalty: {initial: auto, "
+    "scale: 100}}]",
+    "supports=[{surface: lower_far, ux: 0, uy: 0}]",
+    "loads=[{surface: upper_far, pressure: 1}, {surface: upper_x_high, pressure: 1}]",
+    "probes.2={name: wall, contact_force: wall, component: x, absolute: true}"
+]
 # Nothing but contact holds the upper block.
-HELD = mesh(n_lower=13, gap=0.01) + ["supports=[{surface: lower_far, ux: 0, uy: 0}]", "loads=[{surface: upper_far, pressure: 1}]"]
-# A block over a thin plate over a floor: the master is both their upper sides, 1.5 apart, and the penalty so soft that the block goes right into the plate.
+HELD = mesh(n_lower=13,
+            gap=0.01) + ["supports=[{surface: lower_far, ux: 0, uy: 0}]", "loads=[{surface: upper_far, pressure: 1}]"]
+# A block over a thin plate over a floor: the master is both their upper sides, 1.5 apart, and the penalty so soft that
+# the block goes right into the plate.
 SVK = "material: {law: svk, E: 1000, nu: 0.3}"
 PLATE = mesh(floor=1.5, thickness=0.1) + [
-    f"bodies=[{{volume: lower, {SVK}}}, {{volume: floor, {SVK}}}, {{volume: upper, {SVK}}}]", "contact.0.master=tops", "contact.0.penalty.scale=1e-4",
-    "supports=[{surface: lower_bottom, ux: 0, uy: 0}, {surface: floor_bottom, ux: 0, uy: 0}]", "loads.0.uy=-1.5"]
+    f"bodies=[{{volume: lower, {SVK}}}, {{volume: floor, {SVK}}}, {{volume: upper, {SVK}}}]", "contact.0.master=tops",
+    "contact.0.penalty.scale=1e-4",
+    "supports=[{surface: lower_bottom, ux: 0, uy: 0}, {surface: floor_bottom, ux: 0, uy: 0}]", "loads.0.uy=-1.5"
+]
 # A coarse pipe whose symmetry the contact does not know, by Newton steps that no line search shortens.
 PLAIN = ["mesh.order=1", "contact.0.symmetry=[]", "petsc={snes_linesearch_type: basic}",
          "probes=[{name: plate_force, reaction: plate_top, component: y, absolute: true}]"]
@@ -85,99 +106,151 @@ def units(length, stress):
 
 
 CASES = [
-    Case("geometry", "free edge", "half of the slave has no master below, lists are one-sided", PUNCH, FLAT + mesh(**{"from": 0.5, "to": 1.5}),
-         All(Balance(*FORCES), Same(*mesh(n_lower=48, n_upper=40), probes=("force",), bound=0.01))),
-    Case("geometry", "corner", "a quarter of the slave has a master below", PUNCH, FLAT_SOLID + mesh(n_lower=6, n_upper=5, **{"from": 0.5, "to": 1.5}),
-         All(Balance(*FORCES), Same(*mesh(n_lower=12, n_upper=10), probes=("force",), bound=0.1))),
-    Case("geometry", "five nodes", "fewer than a fit of degree 4 needs: the ladder of fall-backs", SQUEEZE, mesh(n_lower=4),
-         Uniform(1, (0.08, 0.01, 0.15, 0.05))),
-    Case("geometry", "collinear or repeated points", "no plane through them, no fit", None, expected="a guard fires (unit test_diffusefit)"),
+    Case("geometry", "free edge", "half of the slave has no master below, lists are one-sided", PUNCH,
+         FLAT + mesh(**{
+             "from": 0.5,
+             "to": 1.5
+         }), All(Balance(*FORCES), Same(*mesh(n_lower=48, n_upper=40), probes=("force",), bound=0.01))),
+    Case("geometry", "corner", "a quarter of the slave has a master below", PUNCH,
+         FLAT_SOLID + mesh(n_lower=6, n_upper=5, **{
+             "from": 0.5,
+             "to": 1.5
+         }), All(Balance(*FORCES), Same(*mesh(n_lower=12, n_upper=10), probes=("force",), bound=0.1))),
+    Case("geometry", "five nodes", "fewer than a fit of degree 4 needs: the ladder of fall-backs", SQUEEZE,
+         mesh(n_lower=4), Uniform(1, (0.08, 0.01, 0.15, 0.05))),
+    Case("geometry", "collinear or repeated points", "no plane through them, no fit", None,
+         expected="a guard fires (unit test_diffusefit)"),
     Case("geometry", "duplicated nodes", "the master is two bodies side by side that share no nodes", SQUEEZE,
          SEAM + mesh(n_lower=14) + ["contact.0.master=tops"], Uniform(1, (0.7, 0.006, 0.7, 0.005))),
-    Case("geometry", "jittered nodes", "every interface node moved by up to a quarter of a face", SOLID, mesh(jitter=0.25),
-         Uniform(1, (0.4, 0.07, 0.25, 0.04))),
-    Case("geometry", "spacing 1:20", "faces of one surface of very different length", SQUEEZE, mesh(n_lower=13, ratio=20), Uniform(1, (0.2, 0.02, 0.8, 0.02))),
-    Case("geometry", "sharp edge", "the surface turns by 90 degrees: a fit must not see past it", SQUEEZE, mesh(n_lower=14, shape=1, rise=0.5, height=1),
-         Uniform(1, (0.8, 0.01, 0.8, 0.005))),
-    Case("geometry", "saddle", "curvatures of both signs", SOLID, mesh(n_lower=10, n_upper=8, shape=3), Uniform(1, (inf, inf, 0.2, 0.6))),
-    Case("geometry", "sphere in a spherical seat", "closed surface, overlap 1/20 of the facets' sagitta", SPHERES, mesh(n_inner=5, n_outer=6),
-         Near("mean_pressure", 15.224, (inf, inf, 0.07, 0.05))),
-    Case("geometry", "the same, frame: global", "no one reference plane", SPHERES, mesh(n_inner=5, n_outer=6) + ["contact.0.frame=global"],
+    Case("geometry", "jittered nodes", "every interface node moved by up to a quarter of a face", SOLID,
+         mesh(jitter=0.25), Uniform(1, (0.4, 0.07, 0.25, 0.04))),
+    Case("geometry", "spacing 1:20", "faces of one surface of very different length", SQUEEZE,
+         mesh(n_lower=13, ratio=20), Uniform(1, (0.2, 0.02, 0.8, 0.02))),
+    Case("geometry", "sharp edge", "the surface turns by 90 degrees: a fit must not see past it", SQUEEZE,
+         mesh(n_lower=14, shape=1, rise=0.5, height=1), Uniform(1, (0.8, 0.01, 0.8, 0.005))),
+    Case("geometry", "saddle", "curvatures of both signs", SOLID, mesh(n_lower=10, n_upper=8, shape=3),
+         Uniform(1, (inf, inf, 0.2, 0.6))),
+    Case("geometry", "sphere in a spherical seat", "closed surface, overlap 1/20 of the facets' sagitta", SPHERES,
+         mesh(n_inner=5, n_outer=6), Near("mean_pressure", 15.224, (inf, inf, 0.07, 0.05))),
+    Case("geometry", "the same, frame: global", "no one reference plane", SPHERES,
+         mesh(n_inner=5, n_outer=6) + ["contact.0.frame=global"],
          (Done(), Done(), Refused("turns by 90 degrees"), Refused("turns by 90 degrees"))),
-    Case("geometry", "thin wall", "the master's far side is nearer than its next node", SQUEEZE,
-         mesh(n_lower=13, wall=0.005, n_height=1) + ["contact.0.master=skin"],
-         All(Uniform(1, (0.05, 0.001, 0.05, 0.002)), Same("contact.0.master=lower_contact", probes=("force", "deviation"), bound=1e-9))),
-    Case("geometry", "nodes on nodes", "every slave node exactly on a vertex of the master", SQUEEZE, mesh(n_upper=12), Uniform(1, (1e-9, 1e-9, 0.03, 0.01))),
-    Case("geometry", "nodes on middles", "slave nodes exactly on vertices and on middles of faces", SQUEEZE, mesh(n_upper=24),
-         Uniform(1, (1e-9, 1e-9, 0.5, 0.02))),
-    Case("geometry", "quadrature points on nodes", "the middle of a slave face exactly on a vertex that dents: facets have no normal there", SQUEEZE, [],
+    Case(
+        "geometry", "thin wall", "the master's far side is nearer than its next node", SQUEEZE,
+        mesh(n_lower=13, wall=0.005, n_height=1) + ["contact.0.master=skin"],
+        All(Uniform(1, (0.05, 0.001, 0.05, 0.002)),
+            Same("contact.0.master=lower_contact", probes=("force", "deviation"), bound=1e-9))),
+    Case("geometry", "nodes on nodes", "every slave node exactly on a vertex of the master", SQUEEZE, mesh(n_upper=12),
+         Uniform(1, (1e-9, 1e-9, 0.03, 0.01))),
+    Case("geometry", "nodes on middles", "slave nodes exactly on vertices and on middles of faces", SQUEEZE,
+         mesh(n_upper=24), Uniform(1, (1e-9, 1e-9, 0.5, 0.02))),
+    Case("geometry", "quadrature points on nodes",
+         "the middle of a slave face exactly on a vertex that dents: facets have no normal there", SQUEEZE, [],
          (Uniform(1, 0.12), Stops("line search|max_iterations"), Uniform(1, 0.07), Uniform(1, 0.01))),
-    Case("geometry", "master 8 times coarser", "a slave node in the middle of a large face", SQUEEZE, mesh(n_lower=3, n_upper=24),
-         Uniform(1, (1e-9, 1e-9, 0.8, 0.002))),
-    Case("geometry", "master 8 times finer", "most of the master's faces meet no slave node", SQUEEZE, mesh(n_lower=24, n_upper=3),
-         Uniform(1, (0.1, 0.001, 0.15, 0.002))),
-    Case("geometry", "one element thick", "thin plates bend at any error of the pressure", SQUEEZE, mesh(n_lower=13, n_height=1, height=0.05),
-         Uniform(1, (0.08, 0.002, 0.07, 0.005))),
-    Case("contact", "gap exactly 0", "contact alone holds a body that touches without force", SQUEEZE, mesh(n_lower=13), Uniform(1, (0.16, 0.008, 0.1, 0.008))),
-    Case("contact", "initial overlap", "the scene does not say what to do", PUNCH, mesh(gap=-0.01), Refused("initial_overlap")),
-    Case("contact", "initial overlap, ramp", "no load but the overlap, brought in with t", SQUEEZE,
-         mesh(n_lower=13, gap=-OVERLAP) + CLOSED + ["contact.0.initial_overlap=ramp", "contact.0.penalty={initial: 1e6}"],
-         All(Near("force", closed(1e6), 0.005), Same("contact.0.initial_overlap=resolve", probes=("force",), bound=1e-5))),
-    Case("contact", "lost and regained", "pressed, lifted off, pressed again", PUNCH, ["loads.0.history=[[0, 0], [0.3, 1], [0.5, -0.2], [1, 1]]"],
-         All(Most("contact_nodes", 0, t=0.5), Same("loads.0.history=[[0, 0], [1, 1]]", probes=ANSWER, bound=(1e-8, 1e-8, 1e-5, 0.005)))),
-    Case("contact", "large slip", "20 facets in 8 steps", SLIDE, ["stepping.initial=0.1"], All(Near("force_y", 160, 1e-9), Most("force_x", 160e-9))),
+    Case("geometry", "master 8 times coarser", "a slave node in the middle of a large face", SQUEEZE,
+         mesh(n_lower=3, n_upper=24), Uniform(1, (1e-9, 1e-9, 0.8, 0.002))),
+    Case("geometry", "master 8 times finer", "most of the master's faces meet no slave node", SQUEEZE,
+         mesh(n_lower=24, n_upper=3), Uniform(1, (0.1, 0.001, 0.15, 0.002))),
+    Case("geometry", "one element thick", "thin plates bend at any error of the pressure", SQUEEZE,
+         mesh(n_lower=13, n_height=1, height=0.05), Uniform(1, (0.08, 0.002, 0.07, 0.005))),
+    Case("contact", "gap exactly 0", "contact alone holds a body that touches without force", SQUEEZE, mesh(n_lower=13),
+         Uniform(1, (0.16, 0.008, 0.1, 0.008))),
+    Case("contact", "initial overlap", "the scene does not say what to do", PUNCH, mesh(gap=-0.01),
+         Refused("initial_overlap")),
+    Case(
+        "contact", "initial overlap, ramp", "no load but the overlap, brought in with t", SQUEEZE,
+        mesh(n_lower=13, gap=-OVERLAP) + CLOSED +
+        ["contact.0.initial_overlap=ramp", "contact.0.penalty={initial: 1e6}"],
+        All(Near("force", closed(1e6), 0.005), Same("contact.0.initial_overlap=resolve", probes=("force",),
+                                                    bound=1e-5))),
+    Case(
+        "contact", "lost and regained", "pressed, lifted off, pressed again", PUNCH,
+        ["loads.0.history=[[0, 0], [0.3, 1], [0.5, -0.2], [1, 1]]"],
+        All(Most("contact_nodes", 0, t=0.5),
+            Same("loads.0.history=[[0, 0], [1, 1]]", probes=ANSWER, bound=(1e-8, 1e-8, 1e-5, 0.005)))),
+    Case("contact", "large slip", "20 facets in 8 steps", SLIDE, ["stepping.initial=0.1"],
+         All(Near("force_y", 160, 1e-9), Most("force_x", 160e-9))),
     Case("contact", "edge on face", "a sharp edge pressed into a face", PUNCH, mesh(bulge=0, wedge=1),
          All(Balance(*FORCES), Same("stepping.initial=0.02", probes=ANSWER, bound=(1e-8, 1e-8, 2e-4, 2e-4)))),
-    Case("contact", "face on edge", "the edge is the master, where a fit must end", PUNCH, mesh(bulge=0, wedge=1) + SWAPPED,
+    Case("contact", "face on edge", "the edge is the master, where a fit must end", PUNCH,
+         mesh(bulge=0, wedge=1) + SWAPPED,
          All(Balance(*FORCES), Same("stepping.initial=0.02", probes=ANSWER, bound=(1e-8, 1e-8, 0.001, 0.0005)))),
-    *(Case("contact", f"penalty {scale:.0e}".replace("e-0", "e-"), "soft: nearly all of the overlap stays", SQUEEZE,
-           mesh(n_lower=13, gap=-OVERLAP) + CLOSED + ["contact.0.initial_overlap=resolve", f"contact.0.penalty={{initial: {6e3 * scale:g}}}"],
-           Near("force", closed(6e3 * scale), 0.001)) for scale in (1e-4, 1e-2)),
-    *(Case("contact", f"penalty {scale}", "stiff: the linear system is badly conditioned", PUNCH, [f"contact.0.penalty.scale={scale}"], STIFF)
-      for scale in ("1e2", "1e4")),
-    Case("contact", "penalty 1e6", "stiffer: where a slave point meets an edge between facets they push it there from either side", PUNCH, ["contact.0.penalty.scale=1e6"],
-         STIFF, ranks=1e-3),  # a failed step leaves another history of offsets
+    *(Case(
+        "contact", f"penalty {scale:.0e}".replace("e-0", "e-"), "soft: nearly all of the overlap stays", SQUEEZE,
+        mesh(n_lower=13, gap=-OVERLAP) + CLOSED +
+        ["contact.0.initial_overlap=resolve", f"contact.0.penalty={{initial: {6e3 * scale:g}}}"],
+        Near("force", closed(6e3 * scale), 0.001)) for scale in (1e-4, 1e-2)),
+    *(Case("contact", f"penalty {scale}", "stiff: the linear system is badly conditioned", PUNCH,
+           [f"contact.0.penalty.scale={scale}"], STIFF) for scale in ("1e2", "1e4")),
+    Case("contact", "penalty 1e6",
+         "stiffer: where a slave point meets an edge between facets they push it there from either side", PUNCH,
+         ["contact.0.penalty.scale=1e6"], STIFF, ranks=1e-3),  # a failed step leaves another history of offsets
     Case("contact", "nu = 0.499", "bulk modulus 500 times the shear modulus", SQUEEZE,
-         mesh(n_lower=13) + ["bodies.0.material.nu=0.499", "bodies.1.material.nu=0.499"], Uniform(1, (0.12, 0.006, 0.07, 0.005))),
-    Case("contact", "slave 8 times denser", "more conditions than the master can follow", PUNCH, mesh(n_lower=6, n_upper=40),
+         mesh(n_lower=13) + ["bodies.0.material.nu=0.499", "bodies.1.material.nu=0.499"],
+         Uniform(1, (0.12, 0.006, 0.07, 0.005))),
+    Case("contact", "slave 8 times denser", "more conditions than the master can follow", PUNCH,
+         mesh(n_lower=6, n_upper=40),
          All(Balance(*FORCES), Same(*mesh(n_lower=48, n_upper=40), probes=("force",), bound=0.1))),
     Case("contact", "master 8 times denser", "few slave points for the master", PUNCH, mesh(n_lower=48, n_upper=6),
          All(Balance(*FORCES), Same(*mesh(n_lower=48, n_upper=40), probes=("force",), bound=(0.2, 0.1, 0.2, 0.1)))),
     Case("contact", "slave and master swapped", "the answer should not depend on the choice", PUNCH, SWAPPED,
          All(Balance(*FORCES), Same(*UNSWAPPED, probes=("force",), bound=0.005))),
-    Case("contact", "two pairs that share nodes", "a slave node on the seam of two masters is in both pairs", SQUEEZE,
-         SEAM + ["contact.1={name: other, slave: upper_contact, master: right_contact, penalty: {initial: auto, scale: 100}}",
-                 "probes.1={name: other, contact_force: other, component: y, absolute: true}"], All(Near("force", 0.5, 0.1), Near("other", 0.5, 0.1)), pairs=2),
+    Case(
+        "contact", "two pairs that share nodes", "a slave node on the seam of two masters is in both pairs", SQUEEZE,
+        SEAM + [
+            "contact.1={name: other, slave: upper_contact, master: right_contact, "
+            "penalty: {initial: auto, scale: 100}}",
+            "probes.1={name: other, contact_force: other, component: y, absolute: true}"
+        ], All(Near("force", 0.5, 0.1), Near("other", 0.5, 0.1)), pairs=2),
     Case("contact", "corner of two walls", "the corner node is in two pairs, which alone hold the body", SQUEEZE, WALLS,
          All(Uniform(1, 1e-6), Near("wall", 0.5, 1e-6)), pairs=2),
     Case("guards", "held by contact only", "nothing holds a loaded body until it touches", SQUEEZE, HELD,
          Stops("singular", "holds 'upper'", "stabilise: true")),
-    Case("guards", "the same, stabilised", "springs hold it until it touches, and must leave no force behind", SQUEEZE, [*HELD, "contact.0.stabilise=true"],
+    Case("guards", "the same, stabilised", "springs hold it until it touches, and must leave no force behind", SQUEEZE,
+         [*HELD, "contact.0.stabilise=true"],
          All(Near("force", 1, 1e-9), Told("stabilisation.largest_energy_share", most=1e-15))),
     Case("guards", "chatter", "a pinched pipe without mirrored neighbours, no line search: nodes come and go", PIPE,
-         [*mesh(n_arc=16, n_wall=2, n_len=4), *PLAIN, "stepping.initial=0.04"], Same("petsc={}", probes=STROKE, bound=0.001)),
-    Case("guards", "cycle", "the same, coarser and with a stiffer penalty: where no step is settled the contact set repeats itself", PIPE,
-         [*mesh(n_arc=10, n_len=4), *PLAIN, "petsc={snes_linesearch_type: basic, ksp_type: gmres}", "contact.0.penalty.scale=1e4", "stepping.initial=0.1"],
-         All(Same("petsc={}", probes=STROKE, bound=(1e-8, 1e-8, 1e-5, 5e-4)), Told("cycles.found", least=1, last=r"repeats every \d .*: node \d+ of 'crown'"))),
-    Case("guards", "through a thin plate", "the floor below belongs to the master, and is nearer from t = 0.7 on", STACK, [*PLATE, "stepping.initial=0.1"],
-         Stops("lost behind a master", r"'joint': node \d+ was 0\.8 behind its master", "in front of another part of it", t=0.7, within=0.001)),
-    Case("guards", "over a thin plate at a leap", "in one step from above the plate to near the floor", STACK,
-         [*PLATE, "stepping={control: fixed, initial: 1, dt_min: 0.6}"],
-         Stops("lost behind a master", r"'joint': node \d+ was 1\.25 behind its master", "0.35 in front of another part of it", t=0)),
-    Case("guards", "penalty 1e10", "rounding of positions alone is a force above any tolerance", SQUEEZE, mesh(n_lower=13) + ["contact.0.penalty.scale=1e10"],
+         [*mesh(n_arc=16, n_wall=2, n_len=4), *PLAIN, "stepping.initial=0.04"],
+         Same("petsc={}", probes=STROKE, bound=0.001)),
+    Case(
+        "guards", "cycle",
+        "the same, coarser and with a stiffer penalty: where no step is settled the contact set repeats itself", PIPE, [
+            *mesh(n_arc=10, n_len=4), *PLAIN, "petsc={snes_linesearch_type: basic, ksp_type: gmres}",
+            "contact.0.penalty.scale=1e4", "stepping.initial=0.1"
+        ],
+        All(Same("petsc={}", probes=STROKE, bound=(1e-8, 1e-8, 1e-5, 5e-4)),
+            Told("cycles.found", least=1, last=r"repeats every \d .*: node \d+ of 'crown'"))),
+    Case(
+        "guards", "through a thin plate", "the floor below belongs to the master, and is nearer from t = 0.7 on", STACK,
+        [*PLATE, "stepping.initial=0.1"],
+        Stops("lost behind a master", r"'joint': node \d+ was 0\.8 behind its master", "in front of another part of it",
+              t=0.7, within=0.001)),
+    Case(
+        "guards", "over a thin plate at a leap", "in one step from above the plate to near the floor", STACK,
+        [*PLATE, "stepping={control: fixed, initial: 1, dt_min: 0.6}"],
+        Stops("lost behind a master", r"'joint': node \d+ was 1\.25 behind its master",
+              "0.35 in front of another part of it", t=0)),
+    Case("guards", "penalty 1e10", "rounding of positions alone is a force above any tolerance", SQUEEZE,
+         mesh(n_lower=13) + ["contact.0.penalty.scale=1e10"],
          All(Stops("penalty is too stiff: rounding of positions", r"node \d+"), Told("linear.inaccurate", least=1))),
-    Case("guards", "stiffness 1:1e9", "one body is as good as rigid: rounding in it hides the load, no refinement helps", SQUEEZE,
-         mesh(n_lower=13) + ["bodies.1.material.E=1e12"],
-         All(Same("bodies.1.material.E=1e9", probes=("force", "deviation"), bound=1e-4), Told("linear.refined", least=1), Told("linear.inaccurate", least=1))),
-    Case("steps", "dt 10 times too large", "half of the pipe's stroke at once", PIPE, PINCHED + ["stepping.initial=0.5"],
+    Case(
+        "guards", "stiffness 1:1e9", "one body is as good as rigid: rounding in it hides the load, no refinement helps",
+        SQUEEZE,
+        mesh(n_lower=13) + ["bodies.1.material.E=1e12"],
+        All(Same("bodies.1.material.E=1e9", probes=("force", "deviation"), bound=1e-4), Told("linear.refined", least=1),
+            Told("linear.inaccurate", least=1))),
+    Case("steps", "dt 10 times too large", "half of the pipe's stroke at once",
+         PIPE, PINCHED + ["stepping.initial=0.5"],
          Same("stepping.initial=0.05", probes=STROKE, bound=(1e-8, 1e-8, 2e-4, 5e-4))),
     Case("steps", "whole load in one step", "every node of the contact zone at once", PUNCH, ["stepping.initial=1"],
          Same("stepping.initial=0.1", probes=ANSWER, bound=(1e-8, 1e-8, 1e-5, 0.005))),
     Case("steps", "snap-through", "a plane presses a shallow arch past its limit load, at t = 0.165", ARCH, [],
          Stops("no equilibrium from t = 0.1", "dt_min", t=0.164, within=0.003)),
-    Case("steps", "N_c beyond all candidates", "fewer open nodes than the control asks for", PUNCH, ["stepping={control: contact, initial: 0.1, N_c: 10000}"],
+    Case("steps", "N_c beyond all candidates", "fewer open nodes than the control asks for", PUNCH,
+         ["stepping={control: contact, initial: 0.1, N_c: 10000}"],
          Same("stepping={control: fixed, initial: 0.1}", probes=ANSWER, bound=(1e-8, 1e-8, 1e-5, 0.005))),
-    Case("steps", "dt at the floor", "every step as small as allowed", PUNCH, ["stepping={control: iterations, initial: 0.05, dt_min: 0.05, dt_max: 0.05}"],
+    Case("steps", "dt at the floor", "every step as small as allowed", PUNCH,
+         ["stepping={control: iterations, initial: 0.05, dt_min: 0.05, dt_max: 0.05}"],
          Same("stepping={control: fixed, initial: 0.1}", probes=ANSWER, bound=(1e-8, 1e-8, 1e-5, 1e-4))),
     Case("steps", "no way on at the floor", "two iterations are too few and dt must not be smaller", PUNCH,
          ["stepping={control: fixed, initial: 0.5, dt_min: 0.5}", "solver.max_iterations=2"],
@@ -188,8 +261,16 @@ CASES = [
          Turned(*units(1, 1), probes=VECTOR, scale=1 / (PSI * INCH), bound=1e-8)),
     Case("numbers", "far from the origin", "coordinates of 1e4 lengths: gaps are differences", PUNCH, mesh(away=1e4),
          Turned(*mesh(away=0), probes=VECTOR, bound=1e-6)),
-    Case("numbers", "turned by 30 degrees", "nothing along an axis", PUNCH, mesh(angle=30) + [f"loads.0.ux={TURNED.real!r}", f"loads.0.uy={TURNED.imag!r}"],
+    Case("numbers", "turned by 30 degrees", "nothing along an axis", PUNCH,
+         mesh(angle=30) + [f"loads.0.ux={TURNED.real!r}", f"loads.0.uy={TURNED.imag!r}"],
          Turned(*mesh(angle=0), "loads.0.ux=0.01", "loads.0.uy=-0.05", probes=VECTOR, angle=30, bound=1e-6)),
-    Case("numbers", "mirrored", "left for right: the other order of every list", PUNCH, mesh(**{"from": 0.05, "to": 0.7}),
-         Same(*mesh(**{"from": 0.3, "to": 0.95}), "loads.0.ux=-0.01", probes=ANSWER, scale={"sideways": -1}, bound=1e-8)),
+    Case(
+        "numbers", "mirrored", "left for right: the other order of every list", PUNCH, mesh(**{
+            "from": 0.05,
+            "to": 0.7
+        }),
+        Same(*mesh(**{
+            "from": 0.3,
+            "to": 0.95
+        }), "loads.0.ux=-0.01", probes=ANSWER, scale={"sideways": -1}, bound=1e-8)),
 ]

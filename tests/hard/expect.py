@@ -1,10 +1,11 @@
-"""What a hard case must show. Each expectation judges a finished run of one variant and gives (holds, figure as text). A bound or an expectation that
-differs by variant is a tuple in the order of VARIANTS."""
+"""What a hard case must show. Each expectation judges a finished run of one variant and gives (holds, figure as text).
+A bound or an expectation that differs by variant is a tuple in the order of VARIANTS."""
 import re
 
 import numpy
 
-VARIANTS = (("facet", "node_to_surface"), ("facet", "surface_to_surface"), ("diffuse", "node_to_surface"), ("diffuse", "surface_to_surface"))
+VARIANTS = (("facet", "node_to_surface"), ("facet", "surface_to_surface"), ("diffuse", "node_to_surface"),
+            ("diffuse", "surface_to_surface"))
 
 
 def of_variant(value, variant):
@@ -37,7 +38,8 @@ class Near(Done):
     def judge(self, finished, variant, again):
         value = finished.summary()["probes"][self.probe]
         error = numpy.inf if value is None else abs(value / self.exact - 1)
-        return error <= of_variant(self.bound, variant), f"{self.probe.replace('_', ' ')} " + ("none" if value is None else figure(error))
+        return error <= of_variant(
+            self.bound, variant), f"{self.probe.replace('_', ' ')} " + ("none" if value is None else figure(error))
 
 
 class Most(Done):
@@ -76,7 +78,8 @@ class Balance(Done):
 
 
 class Same(Done):
-    """Probes are those of the same case made easy: with other overrides. bound: relative to the largest of them; scale: of a probe, over the other's."""
+    """Probes are those of the same case made easy: with other overrides. bound: relative to the largest of them; scale:
+    of a probe, over the other's."""
 
     def __init__(self, *overrides, probes, bound, scale=None):
         self.overrides, self.probes, self.bound, self.scale = list(overrides), probes, bound, scale or {}
@@ -89,19 +92,24 @@ class Same(Done):
 
 
 class Turned(Done):
-    """A force is that of the same case made easy, turned about z by so many degrees, and as many times as large. bound: relative."""
+    """A force is that of the same case made easy, turned about z by so many degrees, and as many times as large. bound:
+    relative."""
 
     def __init__(self, *overrides, probes, bound, angle=0, scale=1):
-        self.overrides, self.probes, self.bound, self.factor = list(overrides), probes, bound, scale * numpy.exp(1j * numpy.radians(angle))
+        self.overrides, self.probes, self.bound, self.factor = list(overrides), probes, bound, scale * numpy.exp(
+            1j * numpy.radians(angle))
 
     def judge(self, finished, variant, again):
-        ours, theirs = (complex(*(run.summary()["probes"][probe] for probe in self.probes)) for run in (finished, again(self.overrides)))
+        ours, theirs = (complex(*(run.summary()["probes"][probe]
+                                  for probe in self.probes))
+                        for run in (finished, again(self.overrides)))
         error = abs(ours / self.factor - theirs) / abs(theirs)
         return error <= of_variant(self.bound, variant), f"differs {figure(error)}"
 
 
 class Told(Done):
-    """A figure of summary.json, by its path there, lies between bounds; words: what another entry of the same map says, by its name."""
+    """A figure of summary.json, by its path there, lies between bounds; words: what another entry of the same map says,
+    by its name."""
 
     def __init__(self, path, least=-numpy.inf, most=numpy.inf, **words):
         self.path, self.least, self.most, self.words = path.split("."), least, most, words
@@ -127,7 +135,8 @@ class Refused:
 
 
 class Stops(Refused):
-    """Exit status 2 with a message that has these words, the last good state on disk, near a load parameter if one is known."""
+    """Exit status 2 with a message that has these words, the last good state on disk, near a load parameter if one is
+    known."""
 
     status = 2
 

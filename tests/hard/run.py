@@ -1,7 +1,8 @@
-"""Runs the hard cases of cases.py: each with facets and diffuse, node to surface and surface to surface, on 1 and 3 ranks, and compares with the
-outcome written down there. A row for each case; ends with status 0 when every one is as expected.
-    run.py [--burnish BINARY] [--out DIR] [--group GROUP] [--case TEXT] [--ranks 1 3] [--record FILE.csv]
-    run.py --table FILE.csv    prints a record as doc/pages/hardcases.md has it
+"""Runs the hard cases of cases.py: each with facets and diffuse, node to surface and surface to surface, on 1 and 3
+ranks, and compares with the outcome written down there. A row for each case; ends with status 0 when every one is as
+expected.
+    run.py [--burnish BINARY] [--out DIR] [--group GROUP] [--case TEXT] [--ranks 1 3] [--record FILE.csv] run.py --table
+    FILE.csv    prints a record as doc/pages/hardcases.md has it
 No run may take longer than LIMIT: an endless loop is a failure like any other."""
 import argparse
 import csv
@@ -17,14 +18,16 @@ import harness  # noqa: E402
 import launch  # noqa: E402
 
 LIMIT = 120  # s of one run
-COLUMNS = ("group", "case", "hard", "smoother", "formulation", "outcome", "as_expected", "steps", "failed", "iterations")
+COLUMNS = ("group", "case", "hard", "smoother", "formulation", "outcome", "as_expected", "steps", "failed",
+           "iterations")
 
 
 def same_probes(one, other, bound):
     """Whether two runs end with the same probes, relative to the largest."""
     ours, theirs = (run.summary()["probes"] for run in (one, other))
     scale = max((abs(value) for value in ours.values() if value is not None), default=1)
-    differ = max(((value is None) != (theirs[probe] is None) or abs((value or 0) - (theirs[probe] or 0)) / scale for probe, value in ours.items()), default=0)
+    differ = max(((value is None) != (theirs[probe] is None) or abs((value or 0) - (theirs[probe] or 0)) / scale
+                  for probe, value in ours.items()), default=0)
     return differ <= bound, f"probes differ by {differ:.1e}"
 
 
@@ -34,21 +37,29 @@ class Driver:
 
     def run(self, case, variant, ranks, overrides=(), name="run"):
         smoother, formulation = expect.VARIANTS[variant]
-        pair = [override for i in range(case.pairs) for override in (f"contact.{i}.smoother={smoother}", f"contact.{i}.formulation={formulation}")]
+        pair = [
+            override for i in range(case.pairs)
+            for override in (f"contact.{i}.smoother={smoother}", f"contact.{i}.formulation={formulation}")
+        ]
         out = "-".join((case.name.replace(" ", "_").replace("/", "_"), smoother, formulation, f"np{ranks}", name))
-        return harness.run(self.args, case.scene, out=out, ranks=ranks, overrides=[*case.overrides, *pair, *overrides], must=None, limit=LIMIT)
+        return harness.run(self.args, case.scene, out=out, ranks=ranks, overrides=[*case.overrides, *pair, *overrides],
+                           must=None, limit=LIMIT)
 
     def judge(self, case, variant):
-        """Runs a variant on every number of ranks: (as expected, text, first run). Beyond the first number only probes and messages are compared."""
+        """Runs a variant on every number of ranks: (as expected, text, first run). Beyond the first number only probes
+        and messages are compared."""
         expected = expect.of_variant(case.expected, variant)
         first = text = None
         for ranks in self.args.ranks:
             finished = self.run(case, variant, ranks)
             if finished.status != expected.status:
-                said = [line for line in finished.text.splitlines() if line.startswith("burnish: ")] or finished.text.splitlines()[-5:]
-                return False, f"exit status {finished.status} instead of {expected.status} on {ranks} ranks: {' '.join(said)[:300]}", first or finished
+                lines = finished.text.splitlines()
+                said = " ".join([line for line in lines if line.startswith("burnish: ")] or lines[-5:])[:300]
+                text = f"exit status {finished.status} instead of {expected.status} on {ranks} ranks: {said}"
+                return False, text, first or finished
             if first is None or expected.status != 0:
-                holds, said = expected.judge(finished, variant, lambda overrides, ranks=ranks: self.run(case, variant, ranks, overrides, "easy"))
+                holds, said = expected.judge(
+                    finished, variant, lambda overrides, ranks=ranks: self.run(case, variant, ranks, overrides, "easy"))
                 text = text or said
             else:
                 holds, said = same_probes(first, finished, case.ranks)
@@ -59,14 +70,15 @@ class Driver:
 
     def rows(self, case):
         if case.scene is None:  # a kernel test elsewhere
-            yield dict(group=case.group, case=case.name, hard=case.hard, smoother="both", formulation="both", outcome=case.expected, as_expected="yes")
+            yield dict(group=case.group, case=case.name, hard=case.hard, smoother="both", formulation="both",
+                       outcome=case.expected, as_expected="yes")
             return
         for variant, (smoother, formulation) in enumerate(expect.VARIANTS):
             holds, text, finished = self.judge(case, variant)
             summary = finished.summary() if (finished.directory / "summary.json").exists() else {}
             print(f"{'ok  ' if holds else 'FAIL'} {case.name}: {smoother}, {formulation}: {text}", flush=True)
-            yield dict(group=case.group, case=case.name, hard=case.hard, smoother=smoother, formulation=formulation, outcome=text,
-                       as_expected="yes" if holds else "no", steps=summary.get("steps"),
+            yield dict(group=case.group, case=case.name, hard=case.hard, smoother=smoother, formulation=formulation,
+                       outcome=text, as_expected="yes" if holds else "no", steps=summary.get("steps"),
                        failed=summary.get("steps_failed"), iterations=summary.get("newton_iterations"))
 
 
@@ -83,7 +95,8 @@ def cell(rows):
     """What a smoother did, node to surface then surface to surface."""
     texts = [row["outcome"] + ("" if row["as_expected"] == "yes" else " (not as expected)") for row in rows]
     parts = [text.split(", ") for text in texts]
-    return texts[0] if len(set(texts)) == 1 else ", ".join(map(pair, zip(*parts))) if len(parts[0]) == len(parts[1]) else " / ".join(texts)
+    return texts[0] if len(set(texts)) == 1 else ", ".join(map(pair, zip(
+        *parts))) if len(parts[0]) == len(parts[1]) else " / ".join(texts)
 
 
 def table(rows):
@@ -91,7 +104,10 @@ def table(rows):
     print("| case | what makes it hard | facet | diffuse |\n| --- | --- | --- | --- |")
     for name in dict.fromkeys(row["case"] for row in rows):
         mine = [row for row in rows if row["case"] == name]
-        smoothers = [[row for row in mine if row["smoother"] in (smoother, "both")] for smoother in ("facet", "diffuse")]
+        smoothers = [[row
+                      for row in mine
+                      if row["smoother"] in (smoother, "both")]
+                     for smoother in ("facet", "diffuse")]
         print(f"| {name} | {mine[0]['hard']} | {cell(smoothers[0])} | {cell(smoothers[1])} |")
 
 
@@ -110,7 +126,10 @@ def main():
         return 0
     os.environ.update(launch.environment(args.burnish))
     driver = Driver(args)
-    rows = [row for case in cases.CASES if args.group in (None, case.group) and (not args.case or args.case in case.name) for row in driver.rows(case)]
+    rows = [
+        row for case in cases.CASES if args.group in (None, case.group) and (not args.case or args.case in case.name)
+        for row in driver.rows(case)
+    ]
     if args.record:
         with open(args.record, "w", newline="") as file:
             writer = csv.DictWriter(file, COLUMNS, lineterminator="\n")

@@ -348,6 +348,29 @@ static void test_augment(void **state)
   PartsDestroy(&parts);
 }
 
+/* Softened penalties limit energy and force, as multiples of the automatic penalty of 1000, and leave the penalties as
+   they are. */
+static void test_soften(void **state)
+{
+  PetscReal most;
+
+  (void)state;
+  PartsCreate(2, Blocks, NULL, SceneText("finite", "penalty: {initial: auto, scale: 5}"), &parts);
+  Lower(-0.05, 0.02);
+  assert_near(Evaluate(), 5000 * 0.05 * 0.05 / 2 * Area, 1e-10);
+  OK(ContactStiffest(parts.problem->contact, &most));
+  assert_near(most, 5, 1e-12);
+  OK(ContactSoften(parts.problem->contact, 0.2));
+  assert_near(Evaluate(), 200 * 0.05 * 0.05 / 2 * Area, 1e-10);
+  assert_near(Show(LEFT, 0).force, 200 * 0.05 * Area, 1e-10);
+  assert_near(Show(LEFT, 0).penalty, 5000, 1e-9);
+  OK(ContactSoften(parts.problem->contact, 10)); /* above the penalty: no limit */
+  assert_near(Evaluate(), 5000 * 0.05 * 0.05 / 2 * Area, 1e-10);
+  OK(ContactSoften(parts.problem->contact, PETSC_MAX_REAL));
+  assert_near(Evaluate(), 5000 * 0.05 * 0.05 / 2 * Area, 1e-10);
+  PartsDestroy(&parts);
+}
+
 /* Pressure at load parameter t of surfaces whose meshes overlap by 0.01 */
 static double OverlapPressure(double t)
 {
@@ -390,10 +413,11 @@ static void test_overlap(void **state)
 
 int main(int argc, char **argv)
 {
-  const struct CMUnitTest tests[] = {
-    cmocka_unit_test(test_flat),    cmocka_unit_test(test_inclined), cmocka_unit_test(test_curved),
-    cmocka_unit_test(test_tangent), cmocka_unit_test(test_uniform),  cmocka_unit_test(test_window),
-    cmocka_unit_test(test_clamp),   cmocka_unit_test(test_augment),  cmocka_unit_test(test_overlap)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_flat),    cmocka_unit_test(test_inclined),
+                                     cmocka_unit_test(test_curved),  cmocka_unit_test(test_tangent),
+                                     cmocka_unit_test(test_uniform), cmocka_unit_test(test_window),
+                                     cmocka_unit_test(test_clamp),   cmocka_unit_test(test_augment),
+                                     cmocka_unit_test(test_soften),  cmocka_unit_test(test_overlap)};
 
   if (PartsStart(&argc, &argv)) return 1;
   return PartsEnd(cmocka_run_group_tests(tests, NULL, NULL));

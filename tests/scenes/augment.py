@@ -1,4 +1,5 @@
-"""An augmented penalty a hundred times softer than the automatic one gives the stiff answer: penetrations within the bound, pressures of closed forms, after cutbacks to the last bit; steps that miss the bound are told."""
+"""An augmented penalty a hundred times softer than the automatic one gives the stiff answer: penetrations within the
+bound, pressures of closed forms, after cutbacks to the last bit; steps that miss the bound are told."""
 import h5py
 import numpy
 
@@ -8,7 +9,8 @@ args = arguments(("cases", "few: quick ones", ("few", "all")))
 check = Check()
 BOUND = 1e-6
 BLOCK, RINGS = SCENES / "contact_patch.yaml", SCENES.parent.parent / "runs" / "ring_in_ring.yaml"
-PLANE = ("contact.0.master={plane: {point: [0, 1, 0], normal: [0, 1, 0]}}", "probes=[{name: pressure, pressure_mean: joint}, {name: noise, pressure_deviation: joint, measure: max}]")
+PLANE = ("contact.0.master={plane: {point: [0, 1, 0], normal: [0, 1, 0]}}",
+         "probes=[{name: pressure, pressure_mean: joint}, {name: noise, pressure_deviation: joint, measure: max}]")
 
 
 def penalty(keys="", scale=0.01):
@@ -25,50 +27,72 @@ def flat_block(formulation):
     check.near(f"block, {formulation}: augmented", (state["max_penetration"], state["min_penetration"]), 0, BOUND)
     check.near(f"block, {formulation}: pressure", figures["probes"]["pressure"], 10, 1e-6)
     check.near(f"block, {formulation}: noise, %", figures["probes"]["noise"], 0, 1e-5)
-    check.holds(f"block, {formulation}: one update, the same penalty", figures["contact"][0]["penalty"]["augmented"] == 1 and state["penalty_max"] == soft["penalty_max"], str(figures["contact"][0]["penalty"]))
+    check.holds(f"block, {formulation}: one update, the same penalty",
+                figures["contact"][0]["penalty"]["augmented"] == 1 and state["penalty_max"] == soft["penalty_max"],
+                str(figures["contact"][0]["penalty"]))
 
 
 def few_updates():
-    """Node to surface on nodes that do not match moves the forces from node to node, which soft penalties follow slowly."""
+    """Node to surface on nodes that do not match moves the forces from node to node, which soft penalties follow
+    slowly."""
     result = run(args, BLOCK, out="few", overrides=(penalty(", max_updates: 1"),))
     figures = result.summary()["contact"][0]["penalty"]
-    check.holds("few updates: counted", figures["missed"] == 1 and figures["augmented"] == 1 and figures["outside_window"] > 0 and figures["largest_excess"] > 1, str(figures))
-    check.holds("few updates: told", "beyond g_max after all updates: 1" in result.text and "advice   joint: 1 of 1 steps ended with nodes beyond g_max" in result.text)
+    check.holds(
+        "few updates: counted", figures["missed"] == 1 and figures["augmented"] == 1 and figures["outside_window"] > 0
+        and figures["largest_excess"] > 1, str(figures))
+    check.holds(
+        "few updates: told", "beyond g_max after all updates: 1" in result.text
+        and "advice   joint: 1 of 1 steps ended with nodes beyond g_max" in result.text)
     check.holds("few updates: in steps.csv", result.steps()[-1]["outside_window"] == figures["outside_window"])
 
 
 def lifted_off():
-    """Pressed, lifted off and pressed again: no multiplier pushes what has left, and the next touch starts from nothing."""
-    away = ("loads=[{surface: upper_top, uy: -0.001, history: [[0, 0], [0.25, 1], [0.5, -1], [1, 1]]}]", "stepping.initial=0.25", *PLANE)
+    """Pressed, lifted off and pressed again: no multiplier pushes what has left, and the next touch starts from
+    nothing."""
+    away = ("loads=[{surface: upper_top, uy: -0.001, history: [[0, 0], [0.25, 1], [0.5, -1], [1, 1]]}]",
+            "stepping.initial=0.25", *PLANE)
     first, lifted, *_, last = run(args, BLOCK, out="lifted", overrides=(*away, penalty())).steps()
-    check.holds("lifted off: no force", lifted["t"] == 0.5 and lifted["contact_nodes"] == 0 and lifted["contact_force"] == 0)
+    check.holds("lifted off: no force", lifted["t"] == 0.5 and lifted["contact_nodes"] == 0
+                and lifted["contact_force"] == 0)
     check.near("pressed again: force", last["contact_force"], first["contact_force"], 1e-6 * first["contact_force"])
     check.holds("pressed again: within the bound", last["max_penetration"] <= BOUND and last["outside_window"] == 0)
 
 
 def rings(formulation, overlap):
     """Shrunk into each other: Lame's mean pressure, and less noise than with a stiff penalty."""
-    common = ("mesh.parameters={n_inner: 24, n_outer: 30, jitter: 0}", f"contact.0.formulation={formulation}", f"contact.0.initial_overlap={overlap}", "stepping.initial=0.5")
+    common = ("mesh.parameters={n_inner: 24, n_outer: 30, jitter: 0}", f"contact.0.formulation={formulation}",
+              f"contact.0.initial_overlap={overlap}", "stepping.initial=0.5")
     stiff = run(args, RINGS, out=f"stiff_{formulation}_{overlap}", overrides=common).summary()["probes"]
     result = run(args, RINGS, out=f"rings_{formulation}_{overlap}", overrides=(*common, penalty()))
     probes = result.summary()["probes"]
     check.near(f"rings, {formulation}, {overlap}: mean pressure", probes["mean_pressure"], 6.439, 1e-3 * 6.439)
-    check.holds(f"rings, {formulation}, {overlap}: within the bound", all(row["outside_window"] == 0 and row["max_penetration"] <= BOUND for row in result.steps()))
-    check.holds(f"rings, {formulation}, {overlap}: noise", probes["noise_max"] <= 0.1 * stiff["noise_max"], f"{probes['noise_max']:.3g} %, stiff {stiff['noise_max']:.3g} %")
+    check.holds(f"rings, {formulation}, {overlap}: within the bound",
+                all(row["outside_window"] == 0 and row["max_penetration"] <= BOUND for row in result.steps()))
+    check.holds(f"rings, {formulation}, {overlap}: noise", probes["noise_max"] <= 0.1 * stiff["noise_max"],
+                f"{probes['noise_max']:.3g} %, stiff {stiff['noise_max']:.3g} %")
 
 
 def cut_back():
     """The same steps, found by cutbacks or given."""
-    common = ("loads=[{surface: upper_top, pressure: 150}]", "solver.max_iterations=3", "solver.tolerance=1e-8", penalty(", max_updates: 3", 1))
+    common = ("loads=[{surface: upper_top, pressure: 150}]", "solver.max_iterations=3", "solver.tolerance=1e-8",
+              penalty(", max_updates: 3", 1))
     cut = run(args, BLOCK, out="cut", overrides=(*common, "stepping={control: fixed, initial: 1}"))
-    given = run(args, BLOCK, out="given", overrides=(*common, f"stepping={{control: fixed, initial: 1, at: {[row['t'] for row in cut.steps()]}}}"))
-    check.holds("cutbacks: steps failed, the given ones did not", cut.summary()["steps_failed"] > 1 and given.summary()["steps_failed"] == 0)
-    for name in ("t", "residual", "contact_nodes", "max_penetration", "min_penetration", "outside_window", "contact_force", "force"):
+    given = run(
+        args, BLOCK, out="given",
+        overrides=(*common, f"stepping={{control: fixed, initial: 1, at: {[row['t'] for row in cut.steps()]}}}"))
+    check.holds("cutbacks: steps failed, the given ones did not",
+                cut.summary()["steps_failed"] > 1 and given.summary()["steps_failed"] == 0)
+    for name in ("t", "residual", "contact_nodes", "max_penetration", "min_penetration", "outside_window",
+                 "contact_force", "force"):
         check.holds(f"cutbacks: {name}", [row[name] for row in cut.steps()] == [row[name] for row in given.steps()])
-    check.holds("cutbacks: counts", cut.summary()["contact"] == given.summary()["contact"] and given.summary()["contact"][0]["penalty"]["augmented"] > 3)
+    check.holds(
+        "cutbacks: counts",
+        cut.summary()["contact"] == given.summary()["contact"]
+        and given.summary()["contact"][0]["penalty"]["augmented"] > 3)
     differ = []
     with h5py.File(cut.directory / "results.h5") as a, h5py.File(given.directory / "results.h5") as b:
-        a.visititems(lambda name, item: differ.append(name) if isinstance(item, h5py.Dataset) and not numpy.array_equal(item[()], b[name][()], equal_nan=item.dtype.kind == "f") else None)
+        a.visititems(lambda name, item: differ.append(name) if isinstance(item, h5py.Dataset) and not numpy.array_equal(
+            item[()], b[name][()], equal_nan=item.dtype.kind == "f") else None)
     check.holds("cutbacks: every field of every step", not differ, " ".join(differ))
 
 

@@ -18,13 +18,17 @@ BARS = {  # scene, parameters of its mesh, further supports, components of the f
 args = arguments()
 check = Check()
 for name, (scene, overrides, supports, zero, volume) in BARS.items():
-    finished = run(args, SCENES / scene, out=name.replace(", ", "_").replace(" ", "_"), overrides=[
-        *overrides, "mesh.order=2", "kinematics=small", f"bodies.0.material={{law: linear, E: {E}, nu: 0}}",
-        f"supports=[{{surface: y_max, uy: 0}}, {{surface: x_min, ux: 0}}{supports}]", f"loads=[{{volume: block, body_force: [0, {-F}{zero}]}}]",
-        "probes=[{name: carried, reaction: y_max, component: y}]"])
+    finished = run(
+        args, SCENES / scene, out=name.replace(", ", "_").replace(" ", "_"), overrides=[
+            *overrides, "mesh.order=2", "kinematics=small", f"bodies.0.material={{law: linear, E: {E}, nu: 0}}",
+            f"supports=[{{surface: y_max, uy: 0}}, {{surface: x_min, ux: 0}}{supports}]",
+            f"loads=[{{volume: block, body_force: [0, {-F}{zero}]}}]",
+            "probes=[{name: carried, reaction: y_max, component: y}]"
+        ])
     fields = finished.fields()
     y, largest = fields["nodes"][:, 1], F * LENGTH**2 / (2 * E)
-    check.near(f"{name}: displacement along y", fields["displacement"][:, 1], F / E * (y**2 - LENGTH**2) / 2, 1e-10 * largest)
+    check.near(f"{name}: displacement along y", fields["displacement"][:, 1], F / E * (y**2 - LENGTH**2) / 2,
+               1e-10 * largest)
     check.near(f"{name}: displacement along x", fields["displacement"][:, 0], 0, 1e-10 * largest)
     check.near(f"{name}: lower end", fields["displacement"][:, 1].min(), -largest, 1e-10 * largest)
     check.near(f"{name}: weight", finished.summary()["probes"]["carried"], F * volume, 1e-10 * F * volume)

@@ -26,10 +26,13 @@ rows = [line for line in page if "| calculix |" in line or "| burnish |" in line
 wrong = [line for line in rows if line not in printed]
 check.holds(f"{len(rows)} rows of the page are the record's", rows and not wrong, "\n".join(wrong))
 missing = call("--ccx", "no-such-program", "--out", out)
-check.holds("a missing ccx: exit 1, one message", missing.returncode == 1 and len(missing.stderr.splitlines()) == 1 and "calculix-ccx" in missing.stderr, missing.stderr)
+check.holds("a missing ccx: exit 1, one message", missing.returncode == 1 and len(missing.stderr.splitlines()) == 1
+            and "calculix-ccx" in missing.stderr, missing.stderr)
 if shutil.which("ccx"):
-    solved = call("--repeats", "1", "--out", out, "--record", out.parent / f"{out.name}.csv", "calculix CAX4, 10 steps", "burnish enhanced, steps by contact, 120x3")
+    solved = call("--repeats", "1", "--out", out, "--record", out.parent / f"{out.name}.csv", "calculix CAX4, 10 steps",
+                  "burnish enhanced, steps by contact, 120x3")
     check.holds("both codes solve the cup", solved.returncode == 0, solved.stderr)
     for row in csv.DictReader(open(out.parent / f"{out.name}.csv", newline="")):
-        check.holds(f"{row['code']}: within 0.2 % of the reference", row["status"] == "done" and abs(float(row["error"])) < 0.2, row["error"])
+        check.holds(f"{row['code']}: within 0.2 % of the reference", row["status"] == "done"
+                    and abs(float(row["error"])) < 0.2, row["error"])
 check.finish()

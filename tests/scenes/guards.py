@@ -1,4 +1,5 @@
-"""What must never end in silence: contact lost behind a master, a master passed through in one step, a body that nothing holds, contact sets that repeat themselves; and what stabilise does for bodies that only contact holds."""
+"""What must never end in silence: contact lost behind a master, a master passed through in one step, a body that
+nothing holds, contact sets that repeat themselves; and what stabilise does for bodies that only contact holds."""
 from harness import Check, arguments, run, SCENES
 
 args = arguments()
@@ -6,8 +7,10 @@ check = Check()
 stack = SCENES / "stack.yaml"
 pipe = SCENES.parent.parent / "runs" / "pipe_pinch.yaml"
 SVK = "material: {law: svk, E: 1000, nu: 0.3}"
-FLOOR = ("mesh.parameters={floor: 1.5, thickness: 0.1}", f"bodies=[{{volume: lower, {SVK}}}, {{volume: floor, {SVK}}}, {{volume: upper, {SVK}}}]",
-         "supports=[{surface: lower_bottom, ux: 0, uy: 0}, {surface: floor_bottom, ux: 0, uy: 0}]", "contact.0.master=tops", "contact.0.penalty.scale=1e-4")
+FLOOR = ("mesh.parameters={floor: 1.5, thickness: 0.1}",
+         f"bodies=[{{volume: lower, {SVK}}}, {{volume: floor, {SVK}}}, {{volume: upper, {SVK}}}]",
+         "supports=[{surface: lower_bottom, ux: 0, uy: 0}, {surface: floor_bottom, ux: 0, uy: 0}]",
+         "contact.0.master=tops", "contact.0.penalty.scale=1e-4")
 FREE = ("supports=[{surface: lower_bottom, ux: 0, uy: 0}]", "loads=[{surface: upper_top, pressure: 10}]")
 
 
@@ -19,32 +22,43 @@ def ends(name, run, status, *words):
 
 
 # A soft penalty: the body goes right through the other one, 6.5 faces deep, and contact still acts as the law says.
-soft = run(args, stack, out="soft", overrides=("contact.0.penalty.scale=1e-4", "loads.0.uy=-3.5", "stepping.initial=0.1"))
-check.near("soft: force over penetration", soft.summary()["probes"]["force"] / soft.summary()["max_penetration"], 0.4, 0.004)
+soft = run(args, stack, out="soft",
+           overrides=("contact.0.penalty.scale=1e-4", "loads.0.uy=-3.5", "stepping.initial=0.1"))
+check.near("soft: force over penetration",
+           soft.summary()["probes"]["force"] / soft.summary()["max_penetration"], 0.4, 0.004)
 check.holds("soft: warns of the depth", "6.5 face sizes behind its master" in soft.text)
 
 # The same over a floor that belongs to the master: below the middle between them the floor is nearer.
 lost = run(args, stack, out="lost", overrides=(*FLOOR, "loads.0.uy=-1.5", "stepping.initial=0.1"), must=None)
 ends("lost", lost, 2, "contact was lost behind a master", "'joint': node ", "0.8 behind its master")
 check.near("lost: t of the last good state", lost.summary()["t"], 0.7, 1e-3)
-leap = run(args, stack, out="leap", overrides=(*FLOOR, "loads.0.uy=-1.5", "stepping={control: fixed, initial: 1, dt_min: 0.6}"), must=None)
-ends("leap", leap, 2, "contact was lost behind a master", "1.25 behind its master and is found 0.35 in front of another part of it")
+leap = run(args, stack, out="leap",
+           overrides=(*FLOOR, "loads.0.uy=-1.5", "stepping={control: fixed, initial: 1, dt_min: 0.6}"), must=None)
+ends("leap", leap, 2, "contact was lost behind a master",
+     "1.25 behind its master and is found 0.35 in front of another part of it")
 
 loose = run(args, stack, out="loose", overrides=FREE, must=None)
 ends("loose", loose, 2, "singular", "holds 'upper'", "stabilise: true")
-for name, options in (("gap", ()), ("touching", ("mesh.parameters={gap: 0}",)), ("surface", ("contact.0.smoother=diffuse", "contact.0.formulation=surface_to_surface"))):
+for name, options in (("gap", ()), ("touching", ("mesh.parameters={gap: 0}",)),
+                      ("surface", ("contact.0.smoother=diffuse", "contact.0.formulation=surface_to_surface"))):
     held = run(args, stack, out=f"held_{name}", overrides=(*FREE, "contact.0.stabilise=true", *options))
     check.near(f"held, {name}: force", held.summary()["probes"]["force"], 20, 2e-6)
-    check.holds(f"held, {name}: nothing left in the springs", held.summary()["stabilisation"]["largest_energy_share"] < 1e-10)
-adrift = run(args, stack, out="adrift", overrides=(FREE[0], "loads=[{surface: upper_top, pressure: -10}]", "contact.0.stabilise=true", "stepping.dt_min=0.1"), must=None)
+    check.holds(f"held, {name}: nothing left in the springs",
+                held.summary()["stabilisation"]["largest_energy_share"] < 1e-10)
+adrift = run(
+    args, stack, out="adrift", overrides=(FREE[0], "loads=[{surface: upper_top, pressure: -10}]",
+                                          "contact.0.stabilise=true", "stepping.dt_min=0.1"), must=None)
 ends("adrift", adrift, 2, "does not come to rest", "holds 'upper'")
 
-# Plain Newton steps on facets repeat themselves where their contact is not settled, as with GMRES; with a factor, or with the line search, they do not.
-COARSE = ("mesh.order=1", "mesh.parameters={n_arc: 12, n_wall: 1, n_len: 4}", "contact.0.symmetry=[]", "stepping.initial=0.2", "probes=[]")
+# Plain Newton steps on facets repeat themselves where their contact is not settled, as with GMRES; with a factor, or
+# with the line search, they do not.
+COARSE = ("mesh.order=1", "mesh.parameters={n_arc: 12, n_wall: 1, n_len: 4}", "contact.0.symmetry=[]",
+          "stepping.initial=0.2", "probes=[]")
 plain = run(args, pipe, "-snes_linesearch_type", "basic", "-ksp_type", "gmres", out="plain", overrides=COARSE)
 cycles = plain.summary()["cycles"]
 check.holds("cycles: found", cycles["found"] >= 2, str(cycles["found"]))
-check.holds("cycles: named", "repeats every 3 iterations" in cycles["last"] and "of 'crown'" in cycles["last"], cycles["last"])
+check.holds("cycles: named", "repeats every 3 iterations" in cycles["last"] and "of 'crown'" in cycles["last"],
+            cycles["last"])
 settled = run(args, pipe, "-snes_linesearch_type", "basic", out="settled", overrides=COARSE)
 check.holds("cycles: none where steps are settled", settled.summary()["cycles"]["found"] == 0)
 searched = run(args, pipe, "-ksp_type", "gmres", out="searched", overrides=COARSE)

@@ -27,14 +27,19 @@ class Run:
     def steps(self):
         """steps.csv as a list of rows: column -> float, None where empty."""
         with open(self.directory / "steps.csv", newline="") as file:
-            return [{key: float(value) if value.strip() else None for key, value in row.items()} for row in csv.DictReader(file, skipinitialspace=True)]
+            return [{
+                key: float(value) if value.strip() else None
+                for key, value in row.items()
+            }
+                    for row in csv.DictReader(file, skipinitialspace=True)]
 
     def fields(self):
         """Node coordinates and every field of the last written step, contact fields as contact/PAIR/NAME."""
         fields = {}
         with h5py.File(self.directory / "results.h5", "r") as file:
             last = file["steps"][sorted(file["steps"])[-1]]
-            last.visititems(lambda name, item: fields.update({name: item[()]}) if isinstance(item, h5py.Dataset) else None)
+            last.visititems(lambda name, item: fields.update({name: item[()]})
+                            if isinstance(item, h5py.Dataset) else None)
             fields["nodes"] = file["mesh/nodes"][()]
             for pair in file.get("contact", {}):
                 fields[f"contact/{pair}/nodes"] = file["contact"][pair]["nodes"][()]
@@ -73,7 +78,8 @@ def arguments(*own):
 
 
 def run(args, scene, *options, out="run", ranks=None, overrides=(), keep=False, must=0, limit=None):
-    """Runs a scene on the ranks asked for. must: the exit status without which the script ends at once, None: any. limit: seconds, then status 124."""
+    """Runs a scene on the ranks asked for. must: the exit status without which the script ends at once, None: any.
+    limit: seconds, then status 124."""
     directory = pathlib.Path(args.out) / out
     if not keep:
         shutil.rmtree(directory, ignore_errors=True)

@@ -13,7 +13,8 @@ ROOT = SCENES.parent.parent
 
 
 def run(*words, **options):
-    return subprocess.run([str(word) for word in words], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, **options)
+    return subprocess.run([str(word) for word in words], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
+                          **options)
 
 
 args = arguments()
@@ -27,7 +28,8 @@ work.mkdir(parents=True)
 finished = run("make", "-C", ROOT, "-o", burnish, f"BUILD={burnish.parent}", f"PREFIX={prefix}", "install")
 check.holds("make install", finished.returncode == 0, finished.stdout if finished.returncode else "")
 example = prefix / "share/burnish/runs/cup_flattening.yaml"
-finished = run("mpirun", "-n", args.ranks, prefix / "bin/burnish", example, "-set", "mesh.parameters.n_arc=30", "-set", "loads.0.pressure=20", cwd=work)
+finished = run("mpirun", "-n", args.ranks, prefix / "bin/burnish", example, "-set", "mesh.parameters.n_arc=30", "-set",
+               "loads.0.pressure=20", cwd=work)
 good = finished.returncode == 0 and (work / "out/cup_flattening/summary.json").exists()
 check.holds("an example runs from there", good, "" if good else finished.stdout[-1000:])
 
@@ -47,19 +49,26 @@ check.holds("links of the pages", (documents / "doc/pages/theory.md").exists() a
 page = prefix / "share/man/man1/burnish.1"
 text = page.read_text()
 told = set(re.findall(r"Fl (\w+)", text)) | set(re.findall(r"\| (\w+)", text))
-usage = [line for line in run(prefix / "bin/burnish", "-help").stdout.split("Scene file (YAML")[0].splitlines() if "not available yet" not in line]
+usage = [
+    line for line in run(prefix / "bin/burnish", "-help").stdout.split("Scene file (YAML")[0].splitlines()
+    if "not available yet" not in line
+]
 untold = set(re.findall(r"(?:^|\s|\|)-([a-z]\w*)", "\n".join(usage))) - told
 check.holds("options of the man page", not untold, f"not told: {untold}" if untold else "")
 for line in (("mandoc", "-Tlint", "-Wwarning", page), ("man", "--warnings", "-l", page)):
     if shutil.which(line[0]):
-        finished = subprocess.run(list(map(str, line)), env={**os.environ, "LC_ALL": "C.UTF-8"}, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+        finished = subprocess.run(list(map(str, line)), env={
+            **os.environ, "LC_ALL": "C.UTF-8"
+        }, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
         said = finished.stderr if line[0] == "man" else finished.stdout  # man writes the page itself
         check.holds(" ".join(map(str, line[:-1])), finished.returncode == 0 and not said, said)
     else:
         print(f"     {line[0]} is not here")
 
-complete = (f"cd {work}; source {prefix}/share/bash-completion/completions/burnish; COMP_WORDS=({prefix}/bin/burnish %s); COMP_CWORD=%d; "
-            '_burnish 2>/dev/null; echo "${COMPREPLY[@]}"')
+complete = (
+    f"cd {work}; source {prefix}/share/bash-completion/completions/burnish; COMP_WORDS=({prefix}/bin/burnish %s); "
+    "COMP_CWORD=%d; "
+    '_burnish 2>/dev/null; echo "${COMPREPLY[@]}"')
 for words, place, expected in (("-set stepping.in", 2, "stepping.initial="), ("-ov", 1, "-overwrite")):
     check.holds(f"completion of {words}", run("bash", "-c", complete % (words, place)).stdout.split() == [expected])
 check.finish()

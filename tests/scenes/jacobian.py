@@ -1,41 +1,71 @@
-"""The tangent of the whole problem, contact closed or pressure following, against finite differences of its residual (-snes_test_jacobian), every iteration of the run."""
+"""The tangent of the whole problem, contact closed or pressure following, against finite differences of its residual
+(-snes_test_jacobian), every iteration of the run."""
 import re
 
 from harness import Check, arguments, run, SCENES
 
 BOUND = 1e-6
 RUNS = SCENES.parent.parent / "runs"
-COARSE_PIPE = ["mesh.parameters.n_arc=5", "mesh.parameters.n_len=2", "loads.0.uy=-10", "stepping={control: fixed, initial: 0.25}", "probes=[]"]
-FOLLOWER = ["kinematics=finite", "bodies.0.material.law=neo_hookean", "loads.0.pressure=200", "loads.0.follower=true", "stepping={control: fixed, initial: 0.5}", "mesh.parameters.n_arc=3", "mesh.parameters.n_wall=2"]
+COARSE_PIPE = [
+    "mesh.parameters.n_arc=5", "mesh.parameters.n_len=2", "loads.0.uy=-10", "stepping={control: fixed, initial: 0.25}",
+    "probes=[]"
+]
+FOLLOWER = [
+    "kinematics=finite", "bodies.0.material.law=neo_hookean", "loads.0.pressure=200", "loads.0.follower=true",
+    "stepping={control: fixed, initial: 0.5}", "mesh.parameters.n_arc=3", "mesh.parameters.n_wall=2"
+]
 HELD = "supports=[{surface: end_low, uy: 0}, {surface: end_high, uy: 0}]"
 CASES = {
-    "flat blocks, first order": (SCENES / "contact_patch.yaml", ["kinematics=finite", "bodies.0.material.law=svk", "bodies.1.material.law=svk", "stepping.initial=1"]),
-    "flat blocks, second order": (SCENES / "contact_patch.yaml", ["kinematics=finite", "bodies.0.material.law=svk", "bodies.1.material.law=svk", "stepping.initial=1", "mesh.order=2"]),
+    "flat blocks, first order":
+    (SCENES / "contact_patch.yaml",
+     ["kinematics=finite", "bodies.0.material.law=svk", "bodies.1.material.law=svk", "stepping.initial=1"]),
+    "flat blocks, second order": (SCENES / "contact_patch.yaml", [
+        "kinematics=finite", "bodies.0.material.law=svk", "bodies.1.material.law=svk", "stepping.initial=1",
+        "mesh.order=2"
+    ]),
     "coarse pinched pipe": (RUNS / "pipe_pinch.yaml", COARSE_PIPE),
     "meshed rigid cylinder": (RUNS / "slide_cylinder.yaml", ["stepping.initial=0.1"]),
     "follower pressure, plane strain": (SCENES / "lame.yaml", [*FOLLOWER]),
-    "follower pressure, axisymmetric": (SCENES / "lame.yaml", [*FOLLOWER, "geometry=axisymmetric", "mesh.parameters.form=2", "mesh.order=2", HELD]),
-    "follower pressure, solid": (SCENES / "lame.yaml", [*FOLLOWER, "geometry=solid", "mesh.parameters.form=1", "mesh.parameters.n_len=1", "mesh.parameters.len=0.5", "supports.2={surface: end_low, uz: 0}"]),
+    "follower pressure, axisymmetric":
+    (SCENES / "lame.yaml", [*FOLLOWER, "geometry=axisymmetric", "mesh.parameters.form=2", "mesh.order=2", HELD]),
+    "follower pressure, solid": (SCENES / "lame.yaml", [
+        *FOLLOWER, "geometry=solid", "mesh.parameters.form=1", "mesh.parameters.n_len=1", "mesh.parameters.len=0.5",
+        "supports.2={surface: end_low, uz: 0}"
+    ]),
 }
 for degree in (4, 2):
     diffuse = ["contact.0.smoother=diffuse", f"contact.0.degree={degree}"]
     CASES[f"coarse pinched pipe, degree {degree}"] = (RUNS / "pipe_pinch.yaml", COARSE_PIPE + diffuse)
-    CASES[f"turning rigid cylinder, degree {degree}"] = (RUNS / "slide_facets.yaml", ["mesh.parameters.n_x=4", "stepping.initial=0.1"] + diffuse)
-    CASES[f"line contact, degree {degree}"] = (RUNS / "hertz_line.yaml", ["mesh.parameters={h: 1, growth: 0.5}", "stepping.initial=0.25"] + diffuse)
+    CASES[f"turning rigid cylinder, degree {degree}"] = (RUNS / "slide_facets.yaml",
+                                                         ["mesh.parameters.n_x=4", "stepping.initial=0.1"] + diffuse)
+    CASES[f"line contact, degree {degree}"] = (RUNS / "hertz_line.yaml",
+                                               ["mesh.parameters={h: 1, growth: 0.5}", "stepping.initial=0.25"] +
+                                               diffuse)
 
 SURFACE = ["contact.0.formulation=surface_to_surface"]
 DIFFUSE = SURFACE + ["contact.0.smoother=diffuse"]
-CASES["flat blocks, surface to surface, facets"] = (SCENES / "contact_patch.yaml", ["kinematics=finite", "bodies.0.material.law=svk", "bodies.1.material.law=svk", "stepping.initial=1"] + SURFACE)
-CASES["line contact, surface to surface"] = (RUNS / "hertz_line.yaml", ["mesh.parameters={h: 1, growth: 0.5}", "stepping.initial=0.5"] + DIFFUSE)
-CASES["line contact, surface to surface, multipliers"] = (RUNS / "hertz_line.yaml", ["mesh.parameters={h: 1, growth: 0.5}", "stepping.initial=0.5",
-                                                          "contact.0.penalty={scale: 1, augment: true, g_max: 1e-3, unit: length}"] + DIFFUSE)
-CASES["coarse pinched pipe, surface to surface"] = (RUNS / "pipe_pinch.yaml", COARSE_PIPE + ["loads.0.uy=-2", "stepping.initial=0.5"] + DIFFUSE)
-CASES["turning rigid cylinder, surface to surface"] = (RUNS / "slide_facets.yaml", ["mesh.parameters.n_x=4", "stepping.initial=0.1"] + DIFFUSE)
+CASES["flat blocks, surface to surface, facets"] = (
+    SCENES / "contact_patch.yaml",
+    ["kinematics=finite", "bodies.0.material.law=svk", "bodies.1.material.law=svk", "stepping.initial=1"] + SURFACE)
+CASES["line contact, surface to surface"] = (RUNS / "hertz_line.yaml",
+                                             ["mesh.parameters={h: 1, growth: 0.5}", "stepping.initial=0.5"] + DIFFUSE)
+CASES["line contact, surface to surface, multipliers"] = (RUNS / "hertz_line.yaml", [
+    "mesh.parameters={h: 1, growth: 0.5}", "stepping.initial=0.5",
+    "contact.0.penalty={scale: 1, augment: true, g_max: 1e-3, unit: length}"
+] + DIFFUSE)
+CASES["coarse pinched pipe, surface to surface"] = (RUNS / "pipe_pinch.yaml",
+                                                    COARSE_PIPE + ["loads.0.uy=-2", "stepping.initial=0.5"] + DIFFUSE)
+CASES["turning rigid cylinder, surface to surface"] = (RUNS / "slide_facets.yaml",
+                                                       ["mesh.parameters.n_x=4", "stepping.initial=0.1"] + DIFFUSE)
 
 LIVE = DIFFUSE + ["contact.0.offset=live"]
-CASES["rings, live offsets, order 1"] = (RUNS / "ring_in_ring.yaml", ["mesh.parameters={n_inner: 6, n_outer: 8, jitter: 0.2}"] + LIVE)
-CASES["rings, live offsets, order 2"] = (RUNS / "ring_in_ring.yaml", ["kinematics=finite", "mesh.order=2", "mesh.parameters={n_inner: 4, n_outer: 5, jitter: 0.2}"] + LIVE)
-CASES["coarse pinched pipe, live offsets"] = (RUNS / "pipe_pinch.yaml", COARSE_PIPE + ["mesh.order=1", "loads.0.uy=-2", "stepping.initial=0.5"] + LIVE)
+CASES["rings, live offsets, order 1"] = (RUNS / "ring_in_ring.yaml",
+                                         ["mesh.parameters={n_inner: 6, n_outer: 8, jitter: 0.2}"] + LIVE)
+CASES["rings, live offsets, order 2"] = (
+    RUNS / "ring_in_ring.yaml",
+    ["kinematics=finite", "mesh.order=2", "mesh.parameters={n_inner: 4, n_outer: 5, jitter: 0.2}"] + LIVE)
+CASES["coarse pinched pipe, live offsets"] = (RUNS / "pipe_pinch.yaml", COARSE_PIPE +
+                                              ["mesh.order=1", "loads.0.uy=-2", "stepping.initial=0.5"] + LIVE)
 
 args = arguments()
 check = Check()
@@ -44,5 +74,7 @@ for name, (scene, overrides) in CASES.items():
     ratios = [float(ratio) for ratio in re.findall(r"\|\|J - Jfd\|\|_F/\|\|J\|\|_F = ([0-9.e+-]+)", finished.text)]
     if not name.startswith("follower"):
         check.holds(f"{name}: contact is closed", finished.summary()["contact_nodes"] > 0)
-    check.holds(name, ratios and max(ratios) <= BOUND, f"{len(ratios)} tangents, largest relative difference {max(ratios, default=0):.2e}, allowed {BOUND:.0e}")
+    check.holds(
+        name, ratios and max(ratios) <= BOUND,
+        f"{len(ratios)} tangents, largest relative difference {max(ratios, default=0):.2e}, allowed {BOUND:.0e}")
 check.finish()

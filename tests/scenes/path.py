@@ -1,5 +1,8 @@
-"""Steps along a smooth path start from where it leads to: they take fewer iterations than the first ones and end where larger ones do; after a break of the
-load the next step starts afresh; forecasts of contact that are cut short go along the path too."""
+"""Steps along a smooth history of states start from the extrapolated state. They take fewer iterations than the first
+steps and end where larger steps end. After a break of the load the next step starts from the accepted state.
+Predictions of contact use the extrapolated state too.
+
+The bounds on iterations leave a quarter of room over the figures of today, which stand beside them."""
 from harness import Check, arguments, run, SCENES
 
 args = arguments()
@@ -18,18 +21,25 @@ coarse, reference = iterations("coarse", "ring_pinch", "stepping.initial=0.1")
 fine, probes = iterations("fine", "ring_pinch", "stepping.initial=0.05")
 broken, ends = iterations("broken", "ring_pinch", "stepping.initial=0.05", BREAK)
 cup, _ = iterations("cup", "cup_flattening", "stepping={control: fixed, initial: 0.025}")
-check.holds("ring: the first two steps", min(fine[:2]) >= 4, str(fine[:2]))
-check.holds("ring: from the fifth on at most 2 iterations", max(fine[4:]) <= 2, str(fine[4:]))
-check.holds("ring: the last step needs one", fine[-1] == 1, str(fine[-1]))
-check.holds("ring: larger steps", sum(coarse) <= 33, str(coarse))
+# These guard the extrapolation. The first two steps have no history and take 4 iterations each. The 16 steps from the
+# fifth on take 30 together, the last one takes 1.
+check.holds("ring: from the fifth step on", sum(fine[4:]) <= 38, f"{sum(fine[4:])}: {fine}")
+check.holds("ring: the last step needs at most half of the first", 2 * fine[-1] <= fine[0], str(fine))
+# This guards the degree of the polynomials on larger steps: 31.
+check.holds("ring: larger steps", sum(coarse) <= 39, f"{sum(coarse)}: {coarse}")
 for name, value in reference.items():
     check.near(f"ring: {name}", probes[name], value, 1e-6 * abs(value))
     check.near(f"ring with a break: {name}", ends[name], value, 1e-6 * abs(value))
-check.holds("ring with a break: before, at it and after", broken[9] <= 2 <= 3 <= broken[10], str(broken[9:13]))
-check.holds("cup in contact: 40 steps", sum(cup) <= 92, f"{sum(cup)}: {cup}")
-forecasts, radius = iterations("forecasts", "cup_flattening", "stepping={control: contact, initial: 0.01, N_c: 1, dt_max: 0.03, prediction: tangent}")
+# The step after the break must not use the states before it, so it takes more iterations than the step before: 3 to 2.
+check.holds("ring with a break: the step after it starts afresh", broken[9] < broken[10], str(broken[9:13]))
+# This guards the judgement of when an extrapolation is smooth, with contact: 85; a stricter judgement took 103.
+check.holds("cup in contact: 40 steps", sum(cup) <= 106, f"{sum(cup)}: {cup}")
+forecasts, radius = iterations("forecasts", "cup_flattening",
+                               "stepping={control: contact, initial: 0.01, N_c: 1, dt_max: 0.03, prediction: tangent}")
 _, whole = iterations("whole", "cup_flattening")
-check.holds("cup, forecasts: iterations a step", sum(forecasts) <= 2.5 * len(forecasts), f"{sum(forecasts)} in {len(forecasts)}")
+# This guards predictions of contact from the extrapolated state: 2.4 iterations a step, the prediction included.
+check.holds("cup, forecasts: iterations a step",
+            sum(forecasts) <= 3 * len(forecasts), f"{sum(forecasts)} in {len(forecasts)}")
 for name, value in whole.items():
     check.near(f"cup, forecasts: {name}", radius[name], value, 1e-6 * abs(value))
 check.finish()

@@ -1,4 +1,5 @@
-"""scripts/render.py and scripts/plot.py draw every kind of run without a display: what is nearer hides what is behind, fields have their colours."""
+"""scripts/render.py and scripts/plot.py draw every kind of run without a display: what is nearer hides what is behind,
+fields have their colours."""
 import os
 import subprocess
 import sys
@@ -14,8 +15,14 @@ sys.path.insert(0, str(SCRIPTS))
 from meshview import read_skin  # noqa: E402
 from raster import Canvas, View  # noqa: E402
 
-PLANE = ["geometry=plane_strain", "mesh.parameters.solid=0", "supports=[{surface: lower_bottom, uy: 0}, {surface: symmetry_x, ux: 0}]"]
-BENT = ["supports=[{surface: x_min, ux: 0}, {surface: y_min, uy: 0}, {surface: z_min, uz: 0}]", "loads=[{surface: y_max, uy: -0.1}]"]
+PLANE = [
+    "geometry=plane_strain", "mesh.parameters.solid=0",
+    "supports=[{surface: lower_bottom, uy: 0}, {surface: symmetry_x, ux: 0}]"
+]
+BENT = [
+    "supports=[{surface: x_min, ux: 0}, {surface: y_min, uy: 0}, {surface: z_min, uz: 0}]",
+    "loads=[{surface: y_max, uy: -0.1}]"
+]
 STEPS = "stepping={control: fixed, initial: 0.5}"
 # Runs: scene, overrides, area of the outer faces' triangles before it deforms
 RUNS = {
@@ -34,9 +41,12 @@ def depth(check):
         view = View(azimuth, 0)
         canvas = Canvas(view, [-1, -1, -1], [1, 1, 1], 200)
         for corners, colour in ((near, [1, 0, 0]), (far, [0, 0, 1])):
-            canvas.triangles(corners, faces, lambda v, colour=colour: numpy.broadcast_to(numpy.array(colour, dtype=float), (len(v), 3)), numpy.zeros(4))
+            canvas.triangles(corners, faces,
+                             lambda v, colour=colour: numpy.broadcast_to(numpy.array(colour, dtype=float), (len(v), 3)),
+                             numpy.zeros(4))
         image = canvas.image()
-        check.near(f"share of the smaller square from {azimuth} degrees", numpy.mean(image[:, :, 0] > image[:, :, 2]), share, 0.01)
+        check.near(f"share of the smaller square from {azimuth} degrees", numpy.mean(image[:, :, 0] > image[:, :, 2]),
+                   share, 0.01)
 
 
 def script(name, *words):
@@ -65,14 +75,18 @@ for name in args.runs.split("-"):
     skin = read_skin(folder / "results.h5")
     a, b, c = (skin.nodes[skin.triangles[:, i]] for i in range(3))
     if area:
-        check.near(f"{name}: area of the skin", numpy.linalg.norm(numpy.cross(b - a, c - a), axis=1).sum() / 2, area, 1e-9 * area)
+        check.near(f"{name}: area of the skin",
+                   numpy.linalg.norm(numpy.cross(b - a, c - a), axis=1).sum() / 2, area, 1e-9 * area)
     small = ("--width", 300)
-    drawn(check, name, script("render.py", folder, *small), [folder / "von_mises.png"] + [folder / "pressure.png"] * contact, 100)
+    drawn(check, name, script("render.py", folder, *small),
+          [folder / "von_mises.png"] + [folder / "pressure.png"] * contact, 100)
     drawn(check, name, script("plot.py", folder), [folder / "steps.png"], 20)
     gif = folder / "uy.gif"
-    drawn(check, name, script("render.py", folder, "--field", "uy", "--mirror", "xz", "--animate", "-o", gif, *small), [gif], 50)
+    drawn(check, name, script("render.py", folder, "--field", "uy", "--mirror", "xz", "--animate", "-o", gif, *small),
+          [gif], 50)
     with PIL.Image.open(gif) as animation:
         check.holds(f"{name}: frames of uy.gif", animation.n_frames == 2, f"{animation.n_frames}")
     refused = script("render.py", folder, "--step", 2)
-    check.holds(f"{name}: a step that is not there", refused.returncode == 1 and "steps 0 to 1" in refused.stdout, refused.stdout[-200:])
+    check.holds(f"{name}: a step that is not there", refused.returncode == 1 and "steps 0 to 1" in refused.stdout,
+                refused.stdout[-200:])
 check.finish()

@@ -1,4 +1,5 @@
-"""Every kind of probe in two dimensions: on two blocks against exact values, on an arc pressed on a block against Hertz and against the fields."""
+"""Every kind of probe in two dimensions: on two blocks against exact values, on an arc pressed on a block against Hertz
+and against the fields."""
 import math
 
 import numpy
@@ -11,7 +12,8 @@ ARC_E, ARC_NU, R, N_ARC = 1000, 0.3, 10, 24
 
 
 def stretch():
-    """Of St. Venant-Kirchhoff's law without lateral strain under a pressure on the reference area: -P = E s (s^2 - 1) / 2, by Newton."""
+    """Of St. Venant-Kirchhoff's law without lateral strain under a pressure on the reference area: -P = E s (s^2 - 1) /
+    2, by Newton."""
     s = 1.0
     for _ in range(50):
         s -= (E * s * (s * s - 1) / 2 + P) / (E * (3 * s * s - 1) / 2)
@@ -54,14 +56,18 @@ def blocks(args, check, order):
     }
     check.holds("names of the probes", list(probes) == list(expected))
     for name, value in expected.items():
-        scale = force if name in ("support", "free", "push", "push_absolute", "push_x") else 100 if "deviation" in name else P if name in ("peak", "peak_at", "mean") else WIDTH
+        scale = force if name in ("support", "free", "push", "push_absolute",
+                                  "push_x") else 100 if "deviation" in name else P if name in ("peak", "peak_at",
+                                                                                               "mean") else WIDTH
         check.near(name, probes[name], value, TOLERANCE * scale)
     last = finished.steps()[-1]
-    check.holds("steps.csv has the summary's values", all(abs(last[name] - probes[name]) <= 1e-12 * max(1, abs(probes[name])) for name in probes))
+    check.holds("steps.csv has the summary's values",
+                all(abs(last[name] - probes[name]) <= 1e-12 * max(1, abs(probes[name])) for name in probes))
 
 
 def hertz(force, axisymmetric):
-    """Half width, or radius, of contact and largest pressure of two bodies of one material, one flat (Johnson, Contact Mechanics, ch. 4)."""
+    """Half width, or radius, of contact and largest pressure of two bodies of one material, one flat (Johnson, Contact
+    Mechanics, ch. 4)."""
     modulus = ARC_E / (2 * (1 - ARC_NU**2))
     if axisymmetric:
         a = (3 * force * R / (4 * modulus)) ** (1 / 3)
@@ -71,7 +77,8 @@ def hertz(force, axisymmetric):
 
 
 def edge(x, p):
-    """End of the root with the moments of the nodal forces about the second node before the last loaded one and another two before; between that and the next one."""
+    """End of the root with the moments of the nodal forces about the second node before the last loaded one and another
+    two before; between that and the next one."""
     last = max(i for i in range(len(p)) if p[i] > 0)
     force = p[: last + 1] * (x[1 : last + 2] - numpy.concatenate(([x[0]], x[:last]))) / 2
     near, far = (numpy.sum(force * numpy.maximum(x[: last + 1] - x[k], 0)) ** 0.4 for k in (last - 2, last - 4))
@@ -96,7 +103,8 @@ def arc(args, check):
     X, u = fields["nodes"][slaves[order]], fields["displacement"][slaves[order]]
     p, gaps = fields["contact/foot/pressure"][order], fields["contact/foot/gap"][order]
     check.holds("nodes on the foot", len(X) == N_ARC + 1)
-    # Tributary areas of two-node faces: half of each face; turned about the axis int N_a 2 pi r ds = 2 pi L (2 r_a + r_b) / 6
+    # Tributary areas of two-node faces: half of each face; turned about the axis int N_a 2 pi r ds = 2 pi L (2 r_a +
+    # r_b) / 6
     length = numpy.linalg.norm(numpy.diff(X, axis=0), axis=1)
     low, high = X[:-1, 0], X[1:, 0]
     area = numpy.zeros(len(X))
@@ -121,16 +129,23 @@ def arc(args, check):
     check.near("peak", probes["peak"], numpy.max(p), TOLERANCE * peak)
     check.near("peak_at", probes["peak_at"], p[0], TOLERANCE * peak)
     check.near("mean", probes["mean"], numpy.sum(p * area) / numpy.sum(area), TOLERANCE * peak)
-    for name, keep, rms in (("deviation", everywhere, False), ("deviation_rms", everywhere, True), ("deviation_excluding", faces > 16 + 1e-6, True),
-                            ("deviation_only", faces <= 19 + 1e-6, False)):
+    for name, keep, rms in (("deviation", everywhere, False), ("deviation_rms", everywhere, True),
+                            ("deviation_excluding", faces > 16 + 1e-6, True), ("deviation_only", faces
+                                                                               <= 19 + 1e-6, False)):
         check.near(f"{name}: {numpy.sum(keep)} nodes", probes[name], deviation(p, area, keep, rms), TOLERANCE * 1000)
-    print(f"     contact edge {probes['edge_max']:.4f}, Hertz {a:.4f}; largest pressure {probes['peak']:.2f}, Hertz {peak:.2f}")
-    if not axisymmetric:  # the contact of the first step ends before the nodes that deviation_only keeps: no mean, no value
+    print(
+        f"     contact edge {probes['edge_max']:.4f}, Hertz {a:.4f}; largest pressure {probes['peak']:.2f}, Hertz "
+        f"{peak:.2f}"
+    )
+    # the contact of the first step ends before the nodes that deviation_only keeps: no mean, no value
+    if not axisymmetric:
         first = finished.steps()[0]
-        check.holds("no value without contact there", [name for name in probes if first[name] is None] == ["deviation_only"])
+        check.holds("no value without contact there",
+                    [name for name in probes if first[name] is None] == ["deviation_only"])
 
 
-args = arguments(("form", "blocks or arc", ["blocks", "arc"]), ("geometry", "of the scene", ["plane_strain", "axisymmetric"]))
+args = arguments(("form", "blocks or arc", ["blocks", "arc"]),
+                 ("geometry", "of the scene", ["plane_strain", "axisymmetric"]))
 check = Check()
 if args.form == "blocks":
     for order in (1, 2):

@@ -1,4 +1,5 @@
-"""The same scene on 1, 2 and 3 ranks, and on 4 and 7 where --ranks says so: same steps, same iterations, same contact, probes and fields equal to 1e-9 of the largest, 1e-7 where penalties or multipliers follow the penetration."""
+"""The same scene on 1, 2 and 3 ranks, and on 4 and 7 where --ranks says so: same steps, same iterations, same contact,
+probes and fields equal to 1e-9 of the largest, 1e-7 where penalties or multipliers follow the penetration."""
 import re
 
 import numpy
@@ -15,7 +16,8 @@ TOLERANCE = 1e-7 if re.search("(adjust|augment): true", (SCENES / args.scene).re
 check = Check()
 one = runs[1].steps()
 probes = list(runs[1].summary()["probes"])
-# A pressure deviation is a pressure in per cent of the mean one: 100 is the scale to compare it on, however small it is.
+# A pressure deviation is a pressure in per cent of the mean one: 100 is the scale to compare it on, however small it
+# is.
 scales = {name: 100 for name in re.findall(r"name: (\w+), pressure_deviation:", (SCENES / args.scene).read_text())}
 fields = runs[1].fields()
 for n in numbers[1:]:
@@ -27,10 +29,13 @@ for n in numbers[1:]:
         a, b = ([row[name] for row in rows] for rows in (one, other))
         check.holds(f"{n} ranks: {name}: value or none", [v is None for v in a] == [v is None for v in b])
         pairs = numpy.array([(v, w) for v, w in zip(a, b) if v is not None and w is not None] or [(0, 0)])
-        check.near(f"{n} ranks: {name}", pairs[:, 1], pairs[:, 0], TOLERANCE * max(numpy.max(numpy.abs(pairs)), scales.get(name, 1e-300)))
+        check.near(f"{n} ranks: {name}", pairs[:, 1], pairs[:, 0],
+                   TOLERANCE * max(numpy.max(numpy.abs(pairs)), scales.get(name, 1e-300)))
     for name, value in runs[n].fields().items():
-        check.near(f"{n} ranks: {name}", numpy.nan_to_num(value), numpy.nan_to_num(fields[name]), TOLERANCE * max(numpy.nanmax(numpy.abs(fields[name])), 1e-300))
+        check.near(f"{n} ranks: {name}", numpy.nan_to_num(value), numpy.nan_to_num(fields[name]),
+                   TOLERANCE * max(numpy.nanmax(numpy.abs(fields[name])), 1e-300))
     ours, theirs = runs[1].summary(), runs[n].summary()
-    for name in ("name", "dofs", "elements", "status", "steps", "steps_failed", "newton_iterations", "newton_accepted", "contact_nodes"):
+    for name in ("name", "dofs", "elements", "status", "steps", "steps_failed", "newton_iterations", "newton_accepted",
+                 "contact_nodes"):
         check.holds(f"{n} ranks: summary {name}", ours[name] == theirs[name], f"{ours[name]} and {theirs[name]}")
 check.finish()

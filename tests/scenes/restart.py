@@ -1,4 +1,5 @@
-"""A run that is killed, stopped or out of disk goes on from its checkpoint, on any number of ranks, and ends as if nothing had happened; what is no checkpoint of it is refused and nothing is touched."""
+"""A run that is killed, stopped or out of disk goes on from its checkpoint, on any number of ranks, and ends as if
+nothing had happened; what is no checkpoint of it is refused and nothing is touched."""
 import os
 import pathlib
 import random
@@ -16,12 +17,13 @@ from harness import Check, Run, arguments, run, SCENES
 SCENE = SCENES / "../../runs/slide_cylinder.yaml"
 BATCH = pathlib.Path(__file__).resolve().parents[2] / "runs/batch"
 COUNTS = ("step", "newton", "attempts", "contact_nodes", "nodes_in", "nodes_out")
-# What summary.json may say differently of a run in parts: time, memory, and how often it went on. On other ranks also their
-# number, how the mesh lies on them, and the round-off of the linear solver.
+# What summary.json may say differently of a run in parts: time, memory, and how often it went on. On other ranks also
+# their number, how the mesh lies on them, and the round-off of the linear solver.
 OWN = ("wall_s", "cpu_s", "seconds", "peak_rss_mb", "restarts", "mesh_s")
 OF_RANKS = ("ranks", "partition", "linear.largest_residual")
 
-args = arguments(("part", "what is shown", ("kills", "signals", "refusals", "flips", "states", "options")), ("count", "how many kills, or flipped bits"))
+args = arguments(("part", "what is shown", ("kills", "signals", "refusals", "flips", "states", "options")),
+                 ("count", "how many kills, or flipped bits"))
 out = pathlib.Path(args.out)
 check = Check()
 
@@ -71,7 +73,8 @@ def same_files(what, directory, reference):
     ours, steps = written(directory)
     theirs, reference_steps = written(reference)
     check.holds(f"{what}: results.h5 has its steps", steps == reference_steps, f"{len(steps)}")
-    equal = ours.keys() == theirs.keys() and all(numpy.array_equal(ours[name], theirs[name], equal_nan=ours[name].dtype.kind == "f") for name in ours)
+    equal = ours.keys() == theirs.keys() and all(
+        numpy.array_equal(ours[name], theirs[name], equal_nan=ours[name].dtype.kind == "f") for name in ours)
     check.holds(f"{what}: results.h5 has its values, to the last bit", equal)
 
 
@@ -86,8 +89,12 @@ def same_results(what, directory, reference, tolerance=1e-9):
         a, b = (numpy.array([row[name] for row in part], dtype=float) for part in (one, other))
         check.near(f"{what}: {name}", b, a, tolerance * numpy.max(numpy.abs(a)))
     (ours, steps), (theirs, reference_steps) = written(directory), written(reference)
-    check.holds(f"{what}: results.h5 has its steps", steps == reference_steps and ours.keys() == theirs.keys(), f"{len(steps)}")
-    worst = max(numpy.max(numpy.abs(ours[name] - theirs[name])) / max(numpy.max(numpy.abs(theirs[name])), 1e-300) for name in theirs if name.endswith("displacement"))
+    check.holds(f"{what}: results.h5 has its steps", steps == reference_steps and ours.keys() == theirs.keys(),
+                f"{len(steps)}")
+    worst = max(
+        numpy.max(numpy.abs(ours[name] - theirs[name])) / max(numpy.max(numpy.abs(theirs[name])), 1e-300)
+        for name in theirs
+        if name.endswith("displacement"))
     check.near(f"{what}: displacements", worst, 0, tolerance)
 
 
@@ -113,14 +120,19 @@ def same_summary(what, directory, reference, tolerance=0, other=()):
     ours, theirs = (flat(Run(0, "", part).summary()) for part in (directory, reference))
     ranks = ours["ranks"] != theirs["ranks"]
     exceptions = OWN + (OF_RANKS if ranks or tolerance else ()) + tuple(other)
-    apart = [f"{key}: {ours.get(key, 'is not there')} instead of {theirs.get(key, 'nothing')}" for key in {**theirs, **ours}
-             if not any(key == name or key.startswith(name + ".") for name in exceptions)
-             and not (key in ours and key in theirs and same_value(ours[key], theirs[key], tolerance))]
+    apart = [
+        f"{key}: {ours.get(key, 'is not there')} instead of {theirs.get(key, 'nothing')}" for key in {
+            **theirs,
+            **ours
+        } if not any(key == name or key.startswith(name + ".") for name in exceptions)
+        and not (key in ours and key in theirs and same_value(ours[key], theirs[key], tolerance))
+    ]
     check.holds(f"{what}: summary.json is that of the whole run", not apart, "; ".join(apart))
 
 
 def wait_for_rows(process, directory, n):
-    while process.poll() is None and not ((directory / "steps.csv").exists() and len((directory / "steps.csv").read_text().splitlines()) > n):
+    while process.poll() is None and not ((directory / "steps.csv").exists() and len(
+        (directory / "steps.csv").read_text().splitlines()) > n):
         time.sleep(0.005)
 
 
@@ -148,23 +160,27 @@ def kills():
         what = f"kill {kill}, on {ranks} after step {reached}{', while writing' if part else ''}, again on {others}"
         check.holds(f"{what}: the launcher tells", killed.status != 0, f"status {killed.status}")
         begun += not left
-        again = go_on(directory, ranks=others) if left else finish(start(directory, ranks=others, overrides=overrides), directory)
+        again = go_on(directory, ranks=others) if left else finish(start(directory, ranks=others, overrides=overrides),
+                                                                   directory)
         check.holds(f"{what}: goes on to the end", again.status == 0, again.text if again.status else "")
         if again.status == 0 and (ranks, others) == (1, 1):
             same_files(what, directory, reference)
         if again.status == 0:
             same_results(what, directory, reference)
             same_summary(what, directory, reference, 0 if (ranks, others) == (1, 1) else 1e-7)
-    check.holds("most were killed after their first checkpoint", begun <= max(1, int(args.count) / 3), f"{begun} before")
+    check.holds("most were killed after their first checkpoint", begun <= max(1,
+                                                                              int(args.count) / 3), f"{begun} before")
 
 
 def stopped(what, ended, reference, status=3):
     """Ended early with a checkpoint; goes on to the same end on two ranks, or on one."""
-    check.holds(f"{what}: exit status 3", ended.status == status, f"{ended.status}\n{ended.text if ended.status != status else ''}")
+    check.holds(f"{what}: exit status 3", ended.status == status,
+                f"{ended.status}\n{ended.text if ended.status != status else ''}")
     if ended.status != status:
         return
     summary = ended.summary()
-    check.holds(f"{what}: status stopped, with its cause", summary["status"] == "stopped" and summary["steps"] < len(rows(reference)) - 1, summary["message"])
+    check.holds(f"{what}: status stopped, with its cause", summary["status"] == "stopped"
+                and summary["steps"] < len(rows(reference)) - 1, summary["message"])
     again = go_on(ended.directory, ranks=2)
     check.holds(f"{what}: goes on to the end", again.status == 0, again.text if again.status else "")
     if again.status == 0:
@@ -202,7 +218,8 @@ def signals():
 
 
 def time_limit(begin, reference):
-    """Half of what the whole run took; less where the machine has become faster since, so that the run ends before its limit."""
+    """Half of what the whole run took; less where the machine has become faster since, so that the run ends before its
+    limit."""
     limit = Run(0, "", reference).summary()["wall_s"]
     for _ in range(6):
         limit *= 0.5
@@ -215,12 +232,14 @@ def time_limit(begin, reference):
 
 def failed(reference, overrides):
     """A run that did not converge goes on from its last good step once the solver may try harder."""
-    ended = run(args, SCENE, out="failed", ranks=1, overrides=[*overrides, "stepping.dt_min=0.003", "solver.max_iterations=2"], must=2)
+    ended = run(args, SCENE, out="failed", ranks=1,
+                overrides=[*overrides, "stepping.dt_min=0.003", "solver.max_iterations=2"], must=2)
     steps = ended.summary()["steps"]
     again = go_on(ended.directory, overrides=["solver.max_iterations=30"])
     check.holds("not converged, then with more iterations: goes on to the end", again.status == 0, f"from step {steps}")
     last, whole = Run(0, "", ended.directory).steps()[-1], Run(0, "", reference).steps()[-1]
-    check.near("not converged, then with more iterations: force at the end", last["contact_force"], whole["contact_force"], 1e-6 * whole["contact_force"])
+    check.near("not converged, then with more iterations: force at the end", last["contact_force"],
+               whole["contact_force"], 1e-6 * whole["contact_force"])
 
 
 def batch(reference, overrides):
@@ -230,20 +249,25 @@ def batch(reference, overrides):
         shutil.rmtree(each, ignore_errors=True)
     scratch.mkdir(parents=True)
     for name in ("build", "runs", "meshes"):
-        (scratch / name).symlink_to(BATCH.parents[1] / name if name != "build" else pathlib.Path(args.burnish).resolve().parent)
+        (scratch / name).symlink_to(BATCH.parents[1] /
+                                    name if name != "build" else pathlib.Path(args.burnish).resolve().parent)
     (scratch / "scontrol").write_text(f'#!/bin/sh\necho "$@" >>{scratch}/queue\n')
     (scratch / "scontrol").chmod(0o755)
     options = [word for override in overrides for word in ("-set", override)]
-    environment = dict(os.environ, SLURM_SUBMIT_DIR=str(scratch), SLURM_JOB_ID="7", SLURM_NTASKS="2", PATH=f"{scratch}:{os.environ['PATH']}", LAUNCH="mpirun -n 2")
+    environment = dict(os.environ, SLURM_SUBMIT_DIR=str(scratch), SLURM_JOB_ID="7", SLURM_NTASKS="2",
+                       PATH=f"{scratch}:{os.environ['PATH']}", LAUNCH="mpirun -n 2")
     command = [str(scratch / "runs/batch/slurm.sh"), "runs/slide_cylinder.yaml", str(directory.resolve()), *options]
     process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, env=environment)
     wait_for_rows(process, directory, 3)
     process.send_signal(signal.SIGTERM)
     ended = finish(process, directory)
-    check.holds("job script: TERM ends it, and it is queued again", ended.status == 0 and (scratch / "queue").read_text() == "requeue 7\n", ended.text)
+    check.holds("job script: TERM ends it, and it is queued again", ended.status == 0
+                and (scratch / "queue").read_text() == "requeue 7\n", ended.text)
     check.holds("job script: stopped", ended.summary()["status"] == "stopped", ended.summary()["message"] or "")
-    again = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, env=environment, check=False)
-    check.holds("job script: the second time it ends the run", again.returncode == 0, again.stdout if again.returncode else "")
+    again = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, env=environment,
+                           check=False)
+    check.holds("job script: the second time it ends the run", again.returncode == 0,
+                again.stdout if again.returncode else "")
     same_results("job script", directory, reference)
 
 
@@ -252,7 +276,8 @@ def refused(what, directory, expected, *options, overrides=(), ranks=1, **more):
     before = {file.name: file.read_bytes() for file in directory.iterdir()}
     again = go_on(directory, *options, ranks=ranks, overrides=overrides, **more)
     told = [line for line in again.text.splitlines() if line.startswith("burnish: ")]
-    check.holds(f"{what}: refused", again.status == 1 and len(told) == 1 and expected in told[0], told[0] if told else again.text)
+    check.holds(f"{what}: refused", again.status == 1 and len(told) == 1 and expected in told[0],
+                told[0] if told else again.text)
     check.holds(f"{what}: nothing is touched", before == {file.name: file.read_bytes() for file in directory.iterdir()})
 
 
@@ -290,7 +315,8 @@ def places(path, count, generator):
     """Bytes of a checkpoint: in its head, in HDF5's first block, in datasets in turn, anywhere, and the last."""
     data = []
     with h5py.File(path, "r") as file:
-        file.visititems(lambda _, item: data.append((item.id.get_offset(), item.nbytes)) if isinstance(item, h5py.Dataset) and item.nbytes else None)
+        file.visititems(lambda _, item: data.append((item.id.get_offset(), item.nbytes)) if isinstance(
+            item, h5py.Dataset) and item.nbytes else None)
     length = path.stat().st_size
     found = [0, 19, 27, 40, 60, HEAD - 1, HEAD, HEAD + 8, HEAD + 20, HEAD + 40, HEAD + 96, length - 1]
     for first, size in generator.sample(data, min(len(data), count // 2)):
@@ -299,7 +325,8 @@ def places(path, count, generator):
 
 
 def flips():
-    """One bit of the checkpoint is another one: exit status 1 and one message that names the file, at once and with no file touched."""
+    """One bit of the checkpoint is another one: exit status 1 and one message that names the file, at once and with no
+    file touched."""
     overrides = ["stepping.initial=0.08", "output={every: 1, checkpoint: 4}"]
     directory = run(args, SCENE, out="flips", ranks=1, overrides=overrides).directory
     path = directory / "checkpoint.h5"
@@ -310,13 +337,16 @@ def flips():
         changed[place] ^= 1 << generator.randrange(8)
         path.write_bytes(changed)
         try:
-            ended = subprocess.run([args.burnish, "-restart", str(directory)], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, timeout=60, check=False)
+            ended = subprocess.run([args.burnish, "-restart", str(directory)], stdout=subprocess.PIPE,
+                                   stderr=subprocess.STDOUT, text=True, timeout=60, check=False)
             status, text = ended.returncode, ended.stdout
         except subprocess.TimeoutExpired:
             status, text = "none: it hangs", ""
         told = [line for line in text.splitlines() if line.startswith("burnish: ")]
-        check.holds(f"byte {place}: refused", status == 1 and len(told) == 1 and str(path) in told[0], f"status {status}: {told[0] if told else text}")
-        check.holds(f"byte {place}: nothing is touched", path.read_bytes() == changed and sorted(directory.iterdir()) == before)
+        check.holds(f"byte {place}: refused", status == 1 and len(told) == 1 and str(path) in told[0],
+                    f"status {status}: {told[0] if told else text}")
+        check.holds(f"byte {place}: nothing is touched",
+                    path.read_bytes() == changed and sorted(directory.iterdir()) == before)
     path.write_bytes(whole)
     again = go_on(directory)
     check.holds("all bits as they were: goes on", again.status == 0, again.text if again.status else "")
@@ -324,19 +354,28 @@ def flips():
 
 def options():
     """PETSc's options of both parts of a run, from the scene, the command line and the environment."""
-    overrides = ["petsc={ksp_type: preonly, snes_max_it: 40}", "stepping.initial=0.08", "output={every: 0, checkpoint: 4}"]
-    directory = run(args, SCENE, "-snes_divergence_tolerance", "-1", out="options", ranks=1, overrides=overrides).directory
+    overrides = [
+        "petsc={ksp_type: preonly, snes_max_it: 40}", "stepping.initial=0.08", "output={every: 0, checkpoint: 4}"
+    ]
+    directory = run(args, SCENE, "-snes_divergence_tolerance", "-1", out="options", ranks=1,
+                    overrides=overrides).directory
     kept = (directory / "checkpoint.h5").read_bytes()
     check.holds("a run without a restart: none changed", Run(0, "", directory).summary()["options"]["changed"] == [])
     same = go_on(directory, "-snes_divergence_tolerance", "-1")
     told = [line for line in same.text.splitlines() if line.startswith("options")]
-    check.holds("the same options: none changed", same.status == 0 and not told and same.summary()["options"]["changed"] == [], "; ".join(told))
+    check.holds("the same options: none changed", same.status == 0 and not told
+                and same.summary()["options"]["changed"] == [], "; ".join(told))
     (directory / "checkpoint.h5").write_bytes(kept)
     other = go_on(directory, "-snes_max_it", "50", env=dict(os.environ, PETSC_OPTIONS="-snes_stol 0"))
-    expected = ["-snes_max_it 50 instead of 40", "-snes_stol 0 is new", "-snes_divergence_tolerance -1 is no longer set"]
-    changed, text = other.summary()["options"]["changed"], [line for line in other.text.splitlines() if line.startswith("options")]
+    expected = [
+        "-snes_max_it 50 instead of 40", "-snes_stol 0 is new", "-snes_divergence_tolerance -1 is no longer set"
+    ]
+    changed, text = other.summary()["options"]["changed"], [
+        line for line in other.text.splitlines() if line.startswith("options")
+    ]
     for line in expected:
-        check.holds(f"other options: {line}", any(line in each for each in changed) and any(line in each for each in text))
+        check.holds(f"other options: {line}",
+                    any(line in each for each in changed) and any(line in each for each in text))
     check.holds("other options: no others", len(changed) == len(text) == len(expected), "; ".join(changed))
 
 
@@ -353,7 +392,8 @@ def refusals():
 
     whole = kept.read_bytes()
     for part in (0.999, 0.5, 0.01):
-        refused(f"{100 * part:g} % of the file", copy("truncated", whole[: int(part * len(whole))]), "a part of it is missing")
+        refused(f"{100 * part:g} % of the file", copy("truncated", whole[:int(part * len(whole))]),
+                "a part of it is missing")
     refused("on two ranks", copy("truncated", whole[: len(whole) // 2]), "a part of it is missing", ranks=2)
     refused("another file", copy("foreign", b"name: a scene\n"), "not written by burnish")
     refused("the end of another file behind it", copy("foreign", whole + b"more"), "do not match its checksum")
@@ -374,22 +414,27 @@ def refusals():
         refused(f"-set {override}", copy("set", whole), "output, solver and stepping", overrides=[override])
     refused("-o", reference, "leave -o out", "-o", "elsewhere")
 
-    changed = go_on(copy("changed", whole), overrides=["stepping.initial=0.02", "mesh.order=1", "solver.tolerance=1e-9", "output.checkpoint=0"])
-    check.holds("-set stepping, solver, output, and what the scene has: goes on", changed.status == 0, changed.text if changed.status else "")
+    changed = go_on(copy("changed", whole),
+                    overrides=["stepping.initial=0.02", "mesh.order=1", "solver.tolerance=1e-9", "output.checkpoint=0"])
+    check.holds("-set stepping, solver, output, and what the scene has: goes on", changed.status == 0,
+                changed.text if changed.status else "")
     check.near("-set stepping.initial: the next step's dt", changed.steps()[12]["dt"], 0.02, 1e-12)
 
     fields = copy("fields", whole)
     less = go_on(fields, overrides=["output={every: 1, fields: [displacement]}"])
     with h5py.File(fields / "results.h5", "r") as file:
         held = [sorted(file["steps"][group]) for group in sorted(file["steps"])]
-    check.holds("-set output.fields: from here on", less.status == 0 and held[-1] == ["displacement"] and "stress" in held[0] and len(held) == 13)
+    check.holds("-set output.fields: from here on", less.status == 0 and held[-1] == ["displacement"]
+                and "stress" in held[0] and len(held) == 13)
     text = (fields / "results.xdmf").read_text()
-    check.holds("-set output.fields: results.xdmf knows", text.count("Name=\"displacement\"") == 13 and text.count("Name=\"von_mises\"") == 12)
+    check.holds("-set output.fields: results.xdmf knows",
+                text.count("Name=\"displacement\"") == 13 and text.count("Name=\"von_mises\"") == 12)
     no_room(whole, reference)
 
 
 def no_room(whole, reference):
-    """A disk with room for one checkpoint and no second one beside it, where such a disk can be made: as root, seen by this run only."""
+    """A disk with room for one checkpoint and no second one beside it, where such a disk can be made: as root, seen by
+    this run only."""
     disk = out / "disk"
     shutil.rmtree(disk, ignore_errors=True)
     disk.mkdir()
@@ -398,7 +443,8 @@ def no_room(whole, reference):
         cp "$3"/* "$2"
         mpirun -n 2 "$4" -restart "$2" -set output.every=0 -set output.checkpoint=1 -quiet
         echo "status $?"
-        mpirun -n 1 "$4" -restart "$2" -set output.checkpoint=0 -quiet && rm -f "$2"/checkpoint.h5.tmp && cp "$2"/* "$3" """
+        mpirun -n 1 "$4" -restart "$2" -set output.checkpoint=0 -quiet &&
+          rm -f "$2"/checkpoint.h5.tmp && cp "$2"/* "$3" """
     full = out / "full"
     shutil.rmtree(full, ignore_errors=True)
     shutil.copytree(reference, full)
@@ -408,8 +454,10 @@ def no_room(whole, reference):
         print(f"no disk of its own can be made here, so a full one is not tried: {ended.stdout.strip()}")
         return
     told = [line for line in ended.stdout.splitlines() if "No space left on device" in line]
-    check.holds("full disk: exit status 4, told once", "status 4" in ended.stdout and len(told) == 1 and "is intact" in told[0], told[0] if told else ended.stdout)
-    check.holds("full disk: goes on from the old checkpoint once there is room", ended.returncode == 0, ended.stdout if ended.returncode else "")
+    check.holds("full disk: exit status 4, told once", "status 4" in ended.stdout and len(told) == 1
+                and "is intact" in told[0], told[0] if told else ended.stdout)
+    check.holds("full disk: goes on from the old checkpoint once there is room", ended.returncode == 0,
+                ended.stdout if ended.returncode else "")
     check.holds("full disk: the old checkpoint is intact", (full / "checkpoint.h5").read_bytes() == whole)
     same_files("full disk", full, reference)
 
@@ -417,17 +465,27 @@ def no_room(whole, reference):
 FOLLOWING = 1e-7  # penalties follow the penetration: round-off of a displacement is more of a penetration that small
 STATES = {  # scene and what makes it short; a checkpoint lies before the last steps
     "forecast": ("cup_flattening", 3, ["stepping={control: contact, initial: 0.025, N_c: 5, prediction: tangent}"]),
-    "steps by contact": ("cup_flattening", 4, ["stepping={control: contact, initial: 0.025, N_c: 5, prediction: converged}"]),
+    "steps by contact": ("cup_flattening", 4, ["stepping={control: contact, initial: 0.025, N_c: 5, prediction: "
+                                               "converged}"]),
     "penalties": ("plate_cylinder", 4, ["mesh.parameters={h_contact: 0.5, h_far: 8, n_thick: 3, n_width: 1}"]),
-    "penalties by step": ("plate_cylinder", 4, ["mesh.parameters={h_contact: 0.5, h_far: 8, n_thick: 3, n_width: 1}", "contact.0.penalty.when=step"]),
-    "multipliers": ("cup_flattening", 3, ["stepping={control: fixed, initial: 0.125}", "contact.0.penalty={scale: 1, augment: true, g_max: 1e-4, unit: length}"]),
-    "offsets": ("slide_facets", 4, ["stepping.initial=0.1", "contact.0.smoother=diffuse", "contact.0.formulation=surface_to_surface",
+    "penalties by step": ("plate_cylinder", 4, ["mesh.parameters={h_contact: 0.5, h_far: 8, n_thick: 3, n_width: 1}",
+                                                "contact.0.penalty.when=step"]),
+    "multipliers": ("cup_flattening", 3, ["stepping={control: fixed, initial: 0.125}",
+                                          "contact.0.penalty={scale: 1, augment: true, g_max: 1e-4, unit: length}"]),
+    "offsets": ("slide_facets", 4, ["stepping.initial=0.1", "contact.0.smoother=diffuse",
+                                    "contact.0.formulation=surface_to_surface",
                                     "probes=[{name: force, contact_force: sole, component: y}]"]),
-    "live offsets": ("pipe_pinch", 3, ["mesh.order=1", "mesh.parameters={n_arc: 8, n_wall: 1, n_len: 3}", "contact.0.smoother=diffuse", "contact.0.formulation=surface_to_surface",
-                                       "contact.0.offset=live", "loads.0.uy=-20", "stepping={control: fixed, initial: 0.25}", "probes=[{name: force, reaction: plate_top, component: y}]"]),
-    "factors with a border": ("pipe_pinch", 3, ["mesh.parameters={n_arc: 18, n_wall: 1, n_len: 8}", "contact.0.smoother=diffuse", "contact.0.degree=2", "loads.0.uy=-20",
-                                                "stepping={control: fixed, initial: 0.25}", "probes=[{name: force, reaction: plate_top, component: y}]"]),
-    "kept pattern": ("slide_flat", 7, ["contact.0.smoother=diffuse", "probes=[{name: force, contact_force: sole, component: y}]"]),
+    "live offsets": ("pipe_pinch", 3, ["mesh.order=1", "mesh.parameters={n_arc: 8, n_wall: 1, n_len: 3}",
+                                       "contact.0.smoother=diffuse", "contact.0.formulation=surface_to_surface",
+                                       "contact.0.offset=live", "loads.0.uy=-20",
+                                       "stepping={control: fixed, initial: 0.25}",
+                                       "probes=[{name: force, reaction: plate_top, component: y}]"]),
+    "factors with a border": ("pipe_pinch", 3, ["mesh.parameters={n_arc: 18, n_wall: 1, n_len: 8}",
+                                                "contact.0.smoother=diffuse", "contact.0.degree=2", "loads.0.uy=-20",
+                                                "stepping={control: fixed, initial: 0.25}",
+                                                "probes=[{name: force, reaction: plate_top, component: y}]"]),
+    "kept pattern": ("slide_flat", 7, ["contact.0.smoother=diffuse", "probes=[{name: force, contact_force: sole, "
+                                                                     "component: y}]"]),
 }
 
 
@@ -437,14 +495,24 @@ def states():
         path = SCENES / f"../../runs/{scene}.yaml"
         reference = run(args, path, out=f"whole {what}", ranks=1, overrides=overrides).directory
         for ranks in (1, 2):
-            directory = run(args, path, out=f"part {what}", ranks=1, overrides=[*overrides, f"output.checkpoint={every}"]).directory
+            directory = run(args, path, out=f"part {what}", ranks=1,
+                            overrides=[*overrides, f"output.checkpoint={every}"]).directory
             again = go_on(directory, ranks=ranks)
-            check.holds(f"{what}, on {ranks}: goes on", again.status == 0 and "restart  after step" in again.text, again.text if again.status else "")
+            check.holds(f"{what}, on {ranks}: goes on", again.status == 0 and "restart  after step" in again.text,
+                        again.text if again.status else "")
             if ranks == 1:
                 same_files(what, directory, reference)
-            same_results(f"{what}, on {ranks}", directory, reference, FOLLOWING if "adjust: true" in path.read_text() else 1e-9)
+            same_results(f"{what}, on {ranks}", directory, reference,
+                         FOLLOWING if "adjust: true" in path.read_text() else 1e-9)
             same_summary(f"{what}, on {ranks}", directory, reference, 0 if ranks == 1 else 1e-5)
 
 
-{"kills": kills, "signals": signals, "refusals": refusals, "flips": flips, "states": states, "options": options}[args.part]()
+{
+    "kills": kills,
+    "signals": signals,
+    "refusals": refusals,
+    "flips": flips,
+    "states": states,
+    "options": options
+}[args.part]()
 check.finish()

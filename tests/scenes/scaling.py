@@ -14,7 +14,8 @@ shutil.rmtree(out, ignore_errors=True)
 line = [sys.executable, ROOT / "scripts/scaling.py", "--burnish", args.burnish, "--out", out]
 finished = subprocess.run([*line, "patch_blocks 14 iterative"], cwd=ROOT, capture_output=True, text=True)
 rows = list(csv.DictReader(open(out / "scaling.csv", newline="")))
-check.holds("1 and 2 ranks, both done", [(row["ranks"], row["status"]) for row in rows] == [("1", "done"), ("2", "done")], finished.stderr)
+check.holds("1 and 2 ranks, both done",
+            [(row["ranks"], row["status"]) for row in rows] == [("1", "done"), ("2", "done")], finished.stderr)
 check.holds("the mesh does not depend on the ranks", len({row["dofs"] for row in rows}) == 1)
 check.holds("a plot", (out / "scaling.png").stat().st_size > 5000)
 again = subprocess.run([*line, "--table", out / "scaling.csv"], cwd=ROOT, capture_output=True, text=True)

@@ -1,4 +1,5 @@
-"""scripts/study.py on a small scene: a run that fails is a row with its cause, jobs of an array gather to the same table, nothing is run twice."""
+"""scripts/study.py on a small scene: a run that fails is a row with its cause, jobs of an array gather to the same
+table, nothing is run twice."""
 import csv
 import pathlib
 import shutil
@@ -11,9 +12,16 @@ ROOT = SCENES.parent.parent
 sys.path.insert(0, str(ROOT / "scripts"))
 import study  # noqa: E402
 
-SMALL = ["runs/ring_in_ring.yaml", "--name", "small", "--vary", "contact.0.smoother=facet,diffuse", "--vary", "mesh.parameters.n_inner=8,16", "--set", "mesh.parameters.n_outer=10",
-         "--measure", "mean_pressure/noise_max", "--reference", "6.4388", "--repeats", "1"]
-FAILING = ["--case", "kind", "good", "solver.max_iterations=30", "--case", "kind", "diverging", "solver={type: iterative, max_iterations: 1}", "stepping.dt_min=0.5", "--case", "kind", "wrong", "contact.0.degree=3"]
+SMALL = [
+    "runs/ring_in_ring.yaml", "--name", "small", "--vary", "contact.0.smoother=facet,diffuse", "--vary",
+    "mesh.parameters.n_inner=8,16", "--set", "mesh.parameters.n_outer=10", "--measure", "mean_pressure/noise_max",
+    "--reference", "6.4388", "--repeats", "1"
+]
+FAILING = [
+    "--case", "kind", "good", "solver.max_iterations=30", "--case", "kind", "diverging",
+    "solver={type: iterative, max_iterations: 1}", "stepping.dt_min=0.5", "--case", "kind", "wrong",
+    "contact.0.degree=3"
+]
 
 
 def call(name, *more):
@@ -34,8 +42,11 @@ def figures(rows):
 args, check = arguments(), Check()
 shutil.rmtree(args.out, ignore_errors=True)
 whole, rows = call("whole")
-check.holds("four combinations, all done", len(rows) == 4 and all(row["status"] == "done" for row in rows), whole.stdout[-300:] if len(rows) != 4 else "")
-check.holds("facets are worse", float(rows[0]["error, mean_pressure, %"]) > 10 * float(rows[2]["error, mean_pressure, %"]))
+check.holds("four combinations, all done",
+            len(rows) == 4 and all(row["status"] == "done" for row in rows),
+            whole.stdout[-300:] if len(rows) != 4 else "")
+check.holds("facets are worse",
+            float(rows[0]["error, mean_pressure, %"]) > 10 * float(rows[2]["error, mean_pressure, %"]))
 check.holds("a plot", (pathlib.Path(args.out) / "whole" / "small.png").stat().st_size > 10000)
 again, same = call("whole")
 check.holds("nothing is run twice", "[1/" not in again.stdout and same == rows)
@@ -47,14 +58,39 @@ gathered, parts = call("array")
 check.holds("jobs gather to the same table", "[1/" not in gathered.stdout and figures(parts) == figures(rows))
 
 failing, rows = call("failing", *FAILING, "--set", "contact.0.smoother=facet")
-found = {row["kind"]: row for row in rows if row["smoother"] == "facet" and row["n_inner"] == "n_inner 8"} if rows else {}
-check.holds("a study with runs that fail ends well", failing.returncode == 0, failing.stdout[-300:] if failing.returncode else "")
-check.holds("one that diverges is a row with its cause", found["diverging"]["status"].startswith("not converged: no equilibrium"), found["diverging"]["status"])
-check.holds("one that is refused is a row with its cause", "contact.0.degree" in found["wrong"]["status"], found["wrong"]["status"])
+found = {
+    row["kind"]: row
+    for row in rows
+    if row["smoother"] == "facet" and row["n_inner"] == "n_inner 8"
+} if rows else {}
+check.holds("a study with runs that fail ends well", failing.returncode == 0,
+            failing.stdout[-300:] if failing.returncode else "")
+check.holds("one that diverges is a row with its cause",
+            found["diverging"]["status"].startswith("not converged: no equilibrium"), found["diverging"]["status"])
+check.holds("one that is refused is a row with its cause", "contact.0.degree" in found["wrong"]["status"],
+            found["wrong"]["status"])
 check.holds("the others are there", found["good"]["status"] == "done")
 check.near("richardson: limit of 3 + 2^-k", study.richardson([4, 3.5, 3.25]), 3, 1e-12)
 check.holds("richardson: none where values diverge", study.richardson([1, 2, 4]) is None)
-series = [{"cpu_s": 1.0, "errors": {"e": 8.0}}, {"cpu_s": 10.0, "errors": {"e": 2.0}}, {"cpu_s": 100.0, "errors": {"e": 0.5}}]
+series = [{
+    "cpu_s": 1.0,
+    "errors": {
+        "e": 8.0
+    }
+}, {
+    "cpu_s": 10.0,
+    "errors": {
+        "e": 2.0
+    }
+}, {
+    "cpu_s": 100.0,
+    "errors": {
+        "e": 0.5
+    }
+}]
 check.near("cost by interpolation in log-log", study.cost(series, "e", 4)[0], 10**0.5, 1e-9)
-check.holds("cost beyond the last point", study.cost(series, "e", 0.125)[1] == "~" and study.cost(series[:1], "e", 1)[1] == ">" and study.cost(series, "e", 9) == (1.0, "<="))
+check.holds(
+    "cost beyond the last point",
+    study.cost(series, "e", 0.125)[1] == "~" and study.cost(series[:1], "e", 1)[1] == ">"
+    and study.cost(series, "e", 9) == (1.0, "<="))
 check.finish()

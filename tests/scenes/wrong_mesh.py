@@ -13,7 +13,8 @@ def gmsh(name, *options):
     """A mesh of square.geo with gmsh options."""
     path = pathlib.Path(args.out).resolve() / name
     path.parent.mkdir(parents=True, exist_ok=True)
-    subprocess.run(["gmsh", str(MESHES / "square.geo"), "-2", "-nt", "1", "-o", str(path), *options], check=True, stdout=subprocess.DEVNULL)
+    subprocess.run(["gmsh", str(MESHES / "square.geo"), "-2", "-nt", "1", "-o",
+                    str(path), *options], check=True, stdout=subprocess.DEVNULL)
     return path
 
 
@@ -21,7 +22,8 @@ def refused(what, pattern, *overrides, options=(), out="run", keep=False, scene=
     finished = run(args, SCENES / scene, *options, out=out, overrides=overrides, keep=keep, must=None)
     messages = [line for line in finished.text.splitlines() if line.startswith("burnish: ")]
     said = len(messages) == 1 and re.search(pattern, finished.text)
-    check.holds(what, finished.status == 1 and said and "PETSC ERROR" not in finished.text, f"status {finished.status}: {finished.text.strip()[:300]}" if not said else messages[0])
+    check.holds(what, finished.status == 1 and said and "PETSC ERROR" not in finished.text,
+                f"status {finished.status}: {finished.text.strip()[:300]}" if not said else messages[0])
     check.holds(f"{what}: nothing solved", not (finished.directory / "steps.csv").exists() or keep)
 
 
@@ -35,8 +37,13 @@ refused("missing .geo file", "nosuch.geo", "mesh.file=nosuch.geo")
 refused("missing surface", "nowhere.*x_min", "supports.0.surface=nowhere")
 refused("missing volume", "no volume group .nothing.*block", "bodies.0.volume=nothing")
 refused("inverted element", "inverted", "mesh.parameters.invert=1")
-refused("triangles with enhanced strains", "formulation: enhanced is for quad4 and hex8 only.*tri3", "mesh.parameters.tri=1", "bodies.0.formulation=enhanced")
-refused("serendipity mesh", "SecondOrderIncomplete", f"mesh.file={gmsh('serendipity.msh', '-format', 'msh41', '-order', '2', '-setnumber', 'Mesh.SecondOrderIncomplete', '1')}", "mesh.order=2")
+refused("triangles with enhanced strains", "formulation: enhanced is for quad4 and hex8 only.*tri3",
+        "mesh.parameters.tri=1", "bodies.0.formulation=enhanced")
+refused(
+    "serendipity mesh", "SecondOrderIncomplete",
+    "mesh.file=" +
+    gmsh("serendipity.msh", "-format", "msh41", "-order", "2", "-setnumber", "Mesh.SecondOrderIncomplete", "1"),
+    "mesh.order=2")
 refused("msh 2.2", r"2\.2.*4\.1|4\.1.*2\.2", f"mesh.file={gmsh('old.msh', '-format', 'msh22')}")
 truncated = good.with_name("truncated.msh")
 truncated.write_text(text[: 2 * len(text) // 3])
@@ -51,12 +58,18 @@ refused("a .geo that gmsh rejects", "broken.geo", f"mesh.file={broken}")
 for name in ("folder.msh", "folder.geo"):
     good.with_name(name).mkdir(exist_ok=True)
     refused(f"a folder as mesh file: {name}", f"{name}.*no.* file", f"mesh.file={good.with_name(name)}")
-refused("a hole opened at the axis", "axisymmetric geometry", "geometry=axisymmetric", "supports=[{surface: y_min, uy: 0}]", "loads=[{surface: x_min, ux: 0.1}]")
-refused("surfaces that look away", "no face of 'lower_top' faces 'upper_top'", "contact.0.slave=upper_top", scene="contact_patch.yaml")
-refused("a pair twice", "'again' is 'joint' once more", "contact.1={name: again, slave: upper_bottom, master: lower_top}", scene="contact_patch.yaml")
-refused("a pair both ways", "slave and master swapped", "contact.1={name: back, slave: lower_top, master: upper_bottom}", scene="contact_patch.yaml")
+refused("a hole opened at the axis", "axisymmetric geometry", "geometry=axisymmetric",
+        "supports=[{surface: y_min, uy: 0}]", "loads=[{surface: x_min, ux: 0.1}]")
+refused("surfaces that look away", "no face of 'lower_top' faces 'upper_top'", "contact.0.slave=upper_top",
+        scene="contact_patch.yaml")
+refused("a pair twice", "'again' is 'joint' once more",
+        "contact.1={name: again, slave: upper_bottom, master: lower_top}", scene="contact_patch.yaml")
+refused("a pair both ways", "slave and master swapped",
+        "contact.1={name: back, slave: lower_top, master: upper_bottom}", scene="contact_patch.yaml")
 sanitiser = os.environ.get("ASAN_OPTIONS", "")
-os.environ["ASAN_OPTIONS"] = sanitiser + ":detect_leaks=0"  # PETSc itself keeps 32 bytes of a group of options that it leaves by an error
+os.environ[
+    # PETSc itself keeps 32 bytes of a group of options that it leaves by an error
+    "ASAN_OPTIONS"] = sanitiser + ":detect_leaks=0"
 refused("a PETSc option that PETSc refuses", "Unable to find requested KSP type", options=("-ksp_type", "nosuch"))
 os.environ["ASAN_OPTIONS"] = sanitiser
 run(args, SCENES / "wrong_mesh.yaml", out="taken")

@@ -1,4 +1,5 @@
-"""For xdmf.py, under pvpython: what ParaView's three readers make of the files on the command line, a line of JSON for each reader and file."""
+"""For xdmf.py, under pvpython: what ParaView's three readers make of the files on the command line, a line of JSON for
+each reader and file."""
 import json
 import math
 import sys
@@ -23,11 +24,14 @@ def leaves(data):
 
 
 def off_middle(grid):
-    """How far the last node of VTK's edges and nine-noded faces lies from the mean of their corners, over the edge's length; largest of all cells."""
+    """How far the last node of VTK's edges and nine-noded faces lies from the mean of their corners, over the edge's
+    length; largest of all cells."""
     worst = 0
     for c in range(grid.GetNumberOfCells()):
         cell = grid.GetCell(c)
-        parts = [(cell.GetEdge(i), 2) for i in range(cell.GetNumberOfEdges())] + [(cell.GetFace(i), 4) for i in range(cell.GetNumberOfFaces())]
+        parts = [(cell.GetEdge(i), 2)
+                 for i in range(cell.GetNumberOfEdges())] + [(cell.GetFace(i), 4)
+                                                             for i in range(cell.GetNumberOfFaces())]
         for part, corners in parts:
             ids = [part.GetPointId(i) for i in range(part.GetNumberOfPoints())]
             if len(ids) == (3 if corners == 2 else 9):
@@ -51,7 +55,16 @@ def least_volume(grid):
 
 def corners_only(grid):
     """The same cells of first order: VTK's quality measures know no others."""
-    first = {5: (5, 3), 22: (5, 3), 9: (9, 4), 28: (9, 4), 10: (10, 4), 24: (10, 4), 12: (12, 8), 29: (12, 8)}  # cell type -> first-order type, corners
+    first = {
+        5: (5, 3),
+        22: (5, 3),
+        9: (9, 4),
+        28: (9, 4),
+        10: (10, 4),
+        24: (10, 4),
+        12: (12, 8),
+        29: (12, 8)
+    }  # cell type -> first-order type, corners
     linear = vtk.vtkUnstructuredGrid()
     linear.SetPoints(grid.GetPoints())
     for c in range(grid.GetNumberOfCells()):
