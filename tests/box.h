@@ -68,14 +68,7 @@ static inline PetscErrorCode BoxIdentity(PetscInt dim, PetscReal time, const Pet
    order of the axes. */
 static inline void BoxCorner(const Element *e, int t, int c, int corner[3])
 {
-  static const int axes[BOX_TETS_PER_CUBE][3] = {
-    {0, 1, 2},
-    {1, 2, 0},
-    {2, 0, 1},
-    {1, 0, 2},
-    {2, 1, 0},
-    {0, 2, 1}
-  };
+  static const int axes[BOX_TETS_PER_CUBE][3] = {{0, 1, 2}, {1, 2, 0}, {2, 0, 1}, {1, 0, 2}, {2, 1, 0}, {0, 2, 1}};
 
   for (int k = 0; k < 3; k++) corner[k] = e->corners == 8 && e->node[c][k] > 0;
   if (e->corners == 8) return;

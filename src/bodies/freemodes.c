@@ -124,11 +124,9 @@ static PetscErrorCode NamePieces(FreeModes modes)
 /* Marks motions that the geometry does not have as held. */
 static void HoldImpossible(Geometry geometry, double gram[])
 {
-  static const int possible[][RIGID_MODES] = {
-    [GEOMETRY_SOLID]        = {1, 1, 1, 1, 1, 1},
-    [GEOMETRY_PLANE_STRAIN] = {0, 0, 1, 1, 1, 0},
-    [GEOMETRY_AXISYMMETRIC] = {0, 0, 0, 0, 1, 0}
-  };
+  static const int possible[][RIGID_MODES] = {[GEOMETRY_SOLID]        = {1, 1, 1, 1, 1, 1},
+                                              [GEOMETRY_PLANE_STRAIN] = {0, 0, 1, 1, 1, 0},
+                                              [GEOMETRY_AXISYMMETRIC] = {0, 0, 0, 0, 1, 0}};
 
   for (int i = 0; i < RIGID_MODES; i++)
     if (!possible[geometry][i]) gram[i * RIGID_MODES + i] += 1;

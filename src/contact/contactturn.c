@@ -74,9 +74,6 @@ PetscErrorCode ContactLocateTurn(Contact contact, const PetscReal *u, const Pets
     MeshNodePlace(mesh, node, &values[1]);
   }
   PetscCallMPI(MPI_Bcast(values, 4, MPIU_REAL, most.rank, mesh->comm));
-  *place = (ContactPlace){
-    .tag = (PetscInt)values[0],
-    .X   = {values[1], values[2], values[3]}
-  };
+  *place = (ContactPlace){.tag = (PetscInt)values[0], .X = {values[1], values[2], values[3]}};
   PetscFunctionReturn(PETSC_SUCCESS);
 }

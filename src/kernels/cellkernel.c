@@ -40,15 +40,8 @@ static double PointVolume(const Element *e, int p, int dim, Geometry geometry, c
 /* Cauchy stress P F^T / det F; small strains: P itself */
 static void CauchyStress(const double H[9], const double P[9], int finite, double stress[6])
 {
-  static const int component[6][2] = {
-    {0, 0},
-    {1, 1},
-    {2, 2},
-    {0, 1},
-    {1, 2},
-    {0, 2}
-  };
-  double F[9], determinant;
+  static const int component[6][2] = {{0, 0}, {1, 1}, {2, 2}, {0, 1}, {1, 2}, {0, 2}};
+  double           F[9], determinant;
 
   for (int r = 0; r < 9; r++) F[r] = finite ? H[r] + (r % 4 == 0) : (r % 4 == 0);
   determinant =

@@ -114,11 +114,7 @@ static void ShapeTensor(const Element *e, const double *xi, double *N, double *d
   const int dim = e->dim;
 
   for (int a = 0; a < e->nodes; a++) {
-    double line[3][3] = {
-      {1, 0, 0},
-      {1, 0, 0},
-      {1, 0, 0}
-    };
+    double line[3][3] = {{1, 0, 0}, {1, 0, 0}, {1, 0, 0}};
 
     for (int k = 0; k < dim; k++) ShapeLine(e->order, e->node[a][k], xi[k], line[k]);
     if (N) N[a] = line[0][0] * line[1][0] * line[2][0];
@@ -134,12 +130,8 @@ static void ShapeTensor(const Element *e, const double *xi, double *N, double *d
 /* With barycentric coordinates L, a corner has L_a (2 L_a - 1) and an edge 4 L_a L_b. First order: a corner has L_a. */
 static void ShapeSimplex(const Element *e, const double *xi, double *N, double *dN, double *d2N)
 {
-  const int dim = e->dim;
-  double    L[4] =
-    {
-      1, 0, 0, 0
-  },
-         dL[4][3] = {{-1, -1, -1}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+  const int dim  = e->dim;
+  double    L[4] = {1, 0, 0, 0}, dL[4][3] = {{-1, -1, -1}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
 
   for (int k = 0; k < dim; k++) {
     L[0] -= xi[k];

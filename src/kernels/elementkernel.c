@@ -57,14 +57,14 @@ BATCH_INSTANCE(BatchHex8, 8, 8, 3, 0)
 BATCH_INSTANCE(BatchHex27, 27, 27, 3, 0)
 
 static BatchFn *const full_batches[ELEMENT_TYPES][2] = {
-  [ELEMENT_TRI3]  = {BatchTri3,  BatchTri3Axisymmetric },
-  [ELEMENT_TRI6]  = {BatchTri6,  BatchTri6Axisymmetric },
+  [ELEMENT_TRI3]  = {BatchTri3, BatchTri3Axisymmetric},
+  [ELEMENT_TRI6]  = {BatchTri6, BatchTri6Axisymmetric},
   [ELEMENT_QUAD4] = {BatchQuad4, BatchQuad4Axisymmetric},
   [ELEMENT_QUAD9] = {BatchQuad9, BatchQuad9Axisymmetric},
-  [ELEMENT_TET4]  = {BatchTet4,  NULL                  },
-  [ELEMENT_TET10] = {BatchTet10, NULL                  },
-  [ELEMENT_HEX8]  = {BatchHex8,  NULL                  },
-  [ELEMENT_HEX27] = {BatchHex27, NULL                  },
+  [ELEMENT_TET4]  = {BatchTet4, NULL},
+  [ELEMENT_TET10] = {BatchTet10, NULL},
+  [ELEMENT_HEX8]  = {BatchHex8, NULL},
+  [ELEMENT_HEX27] = {BatchHex27, NULL},
 };
 
 static BatchFn *GetBatch(const KernelCase *kernel)

@@ -203,5 +203,5 @@ static void BatchHex8(const BatchCall *call)
 
 BatchFn *const mean_dilatation_batches[ELEMENT_TYPES][2] = {
   [ELEMENT_QUAD4] = {BatchQuad4, BatchQuad4Axisymmetric},
-  [ELEMENT_HEX8]  = {BatchHex8,  NULL                  },
+  [ELEMENT_HEX8]  = {BatchHex8, NULL},
 };

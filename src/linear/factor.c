@@ -577,9 +577,7 @@ void FactorGetCost(Factor f, FactorCost *cost)
   const DMUMPS_STRUC_C *mumps   = &f->mumps;
   const PetscReal       entries = mumps->INFOG(20);
 
-  *cost = (FactorCost){
-    .operations = mumps->RINFOG(1),
-    .entries    = entries < 0 ? -1e6 * entries : entries,
-    .memory_mb  = {mumps->INFOG(16), mumps->INFOG(17)}
-  };
+  *cost = (FactorCost){.operations = mumps->RINFOG(1),
+                       .entries    = entries < 0 ? -1e6 * entries : entries,
+                       .memory_mb  = {mumps->INFOG(16), mumps->INFOG(17)}};
 }

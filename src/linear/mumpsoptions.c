@@ -17,46 +17,44 @@ typedef struct {
 
 /* Sources: MUMPS 5.5 Users' guide, section 6, and PETSc's MATSOLVERMUMPS. */
 static const IntegerRange IntegerRanges[] = {
-  {4, 0, 4}, /* level of printing */
-  {5, 0, 0}, /* the matrix is assembled, not given by elements */
-  {6, 0, 7}, /* permutation to a zero-free diagonal */
-  {7, 0, 7}, /* ordering */
-  {8, -2, -2}, /* scaling; -1 would read scalings that are not given */
-  {8, 0, 8},
-  {8, 77, 77},
-  {9, 1, 1}, /* A x = b, not its transpose */
+  {4, 0, 4},                                /* level of printing */
+  {5, 0, 0},                                /* the matrix is assembled, not given by elements */
+  {6, 0, 7},                                /* permutation to a zero-free diagonal */
+  {7, 0, 7},                                /* ordering */
+  {8, -2, -2},                              /* scaling; -1 would read scalings that are not given */
+  {8, 0, 8},        {8, 77, 77}, {9, 1, 1}, /* A x = b, not its transpose */
   {10, 0, 0}, /* no iterative refinement: MUMPS has none for solutions that stay distributed; linearcheck.h refines */
   {11, 0, 0}, /* no error analysis, for the same reason */
   {12, 0, 3}, /* ordering of symmetric matrices */
   {14, 0, INT_MAX}, /* workspace above the estimate (per cent) */
   {15, INT_MIN, 0}, /* analysis by blocks; a positive value would read blocks that are not given */
   {16, 0, INT_MAX}, /* OpenMP threads */
-  {18, OURS}, /* distribution of the matrix */
-  {19, 0, 0}, /* no Schur complement */
-  {20, OURS}, /* distribution of right-hand sides */
-  {21, OURS}, /* distribution of solutions */
-  {22, 0, 1}, /* out of core */
+  {18, OURS},       /* distribution of the matrix */
+  {19, 0, 0},       /* no Schur complement */
+  {20, OURS},       /* distribution of right-hand sides */
+  {21, OURS},       /* distribution of solutions */
+  {22, 0, 1},       /* out of core */
   {23, 0, INT_MAX}, /* memory of each rank (MB) */
-  {24, 0, 1}, /* null pivots are detected */
-  {25, 0, 0}, /* solutions, not the null space */
-  {26, 0, 0}, /* no Schur complement */
-  {28, 0, 2}, /* sequential or parallel analysis */
-  {29, 0, 2}, /* ordering of parallel analysis */
-  {30, 0, 0}, /* no entries of the inverse */
-  {31, 0, 0}, /* factors are kept */
-  {32, 0, 0}, /* no elimination in the factorisation */
-  {33, 0, 1}, /* determinant */
-  {34, 0, 1}, /* files of an out-of-core factor are kept */
-  {35, 0, 3}, /* block low-rank factors */
-  {36, 0, 1}, /* their variant */
-  {37, 0, 1}, /* compressed contribution blocks */
-  {38, 0, 1000}, /* estimated compression of factors (parts of a thousand) */
-  {39, 0, 1000}, /* estimated compression of contribution blocks (parts of a thousand) */
-  {58, 0, 2}, /* symbolic factorisation */
+  {24, 0, 1},       /* null pivots are detected */
+  {25, 0, 0},       /* solutions, not the null space */
+  {26, 0, 0},       /* no Schur complement */
+  {28, 0, 2},       /* sequential or parallel analysis */
+  {29, 0, 2},       /* ordering of parallel analysis */
+  {30, 0, 0},       /* no entries of the inverse */
+  {31, 0, 0},       /* factors are kept */
+  {32, 0, 0},       /* no elimination in the factorisation */
+  {33, 0, 1},       /* determinant */
+  {34, 0, 1},       /* files of an out-of-core factor are kept */
+  {35, 0, 3},       /* block low-rank factors */
+  {36, 0, 1},       /* their variant */
+  {37, 0, 1},       /* compressed contribution blocks */
+  {38, 0, 1000},    /* estimated compression of factors (parts of a thousand) */
+  {39, 0, 1000},    /* estimated compression of contribution blocks (parts of a thousand) */
+  {58, 0, 2},       /* symbolic factorisation */
 };
 static const RealRange RealRanges[] = {
-  {1, PETSC_MIN_REAL, 1             }, /* threshold of pivots; below 0: MUMPS's choice */
-  {7, 0,              PETSC_MAX_REAL}, /* precision of block low-rank factors */
+  {1, PETSC_MIN_REAL, 1}, /* threshold of pivots; below 0: MUMPS's choice */
+  {7, 0, PETSC_MAX_REAL}, /* precision of block low-rank factors */
 };
 
 /* Appends one range to the text of all that are allowed. */

@@ -507,13 +507,11 @@ static void ReadClosing(Reader *r, PetscBool anywhere)
 static const struct {
   const char *name;
   PetscErrorCode (*read)(Reader *);
-} Sections[] = {
-  {"$MeshFormat",    ReadFormat       },
-  {"$PhysicalNames", ReadPhysicalNames},
-  {"$Entities",      ReadEntities     },
-  {"$Nodes",         ReadNodes        },
-  {"$Elements",      ReadElements     }
-};
+} Sections[] = {{"$MeshFormat", ReadFormat},
+                {"$PhysicalNames", ReadPhysicalNames},
+                {"$Entities", ReadEntities},
+                {"$Nodes", ReadNodes},
+                {"$Elements", ReadElements}};
 /* One bit for each section, by its place in Sections. */
 enum { SEEN_FORMAT = 1, SEEN_NAMES = 2, SEEN_NODES = 8, SEEN_ELEMENTS = 16 };
 

@@ -27,13 +27,13 @@ struct _n_Fields {
 enum { SHOW_DISPLACEMENT, SHOW_STRESS, SHOW_CONTACT, SHOW_KINDS };
 static const XdmfArray shown[] = {
   {"displacement", 3, SHOW_DISPLACEMENT},
-  {"von_mises",    1, SHOW_STRESS      },
-  {"stress",       6, SHOW_STRESS      },
-  {"gap",          1, SHOW_CONTACT     },
-  {"penetration",  1, SHOW_CONTACT     },
-  {"penalty",      1, SHOW_CONTACT     },
-  {"pressure",     1, SHOW_CONTACT     },
-  {"normal",       3, SHOW_CONTACT     },
+  {"von_mises", 1, SHOW_STRESS},
+  {"stress", 6, SHOW_STRESS},
+  {"gap", 1, SHOW_CONTACT},
+  {"penetration", 1, SHOW_CONTACT},
+  {"penalty", 1, SHOW_CONTACT},
+  {"pressure", 1, SHOW_CONTACT},
+  {"normal", 3, SHOW_CONTACT},
 };
 
 /* Contact values of one node: columns of the nodal array that FieldsWriteContact() forms */
@@ -51,11 +51,9 @@ static const struct {
   int         column, width;
   PetscReal   absent; /* value off the slave surfaces */
 } contact_fields[] = {
-  {"gap",         COLUMN_GAP,         1, NAN},
-  {"penetration", COLUMN_PENETRATION, 1, 0.0},
-  {"penalty",     COLUMN_PENALTY,     1, NAN},
-  {"pressure",    COLUMN_PRESSURE,    1, 0.0},
-  {"normal",      COLUMN_NORMAL,      3, 0.0},
+  {"gap", COLUMN_GAP, 1, NAN},         {"penetration", COLUMN_PENETRATION, 1, 0.0},
+  {"penalty", COLUMN_PENALTY, 1, NAN}, {"pressure", COLUMN_PRESSURE, 1, 0.0},
+  {"normal", COLUMN_NORMAL, 3, 0.0},
 };
 #define COUNT(array) ((int)(sizeof(array) / sizeof((array)[0])))
 

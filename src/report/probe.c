@@ -483,15 +483,15 @@ static PetscErrorCode EvaluatePressureDeviation(Probes probes, Probe *probe, Pet
 }
 
 static const ProbeType types[PROBE_KINDS] = {
-  [PROBE_REACTION]           = {"reaction",           NAMES_SURFACE, 0, NULL,           EvaluateReaction         },
-  [PROBE_CONTACT_FORCE]      = {"contact_force",      NAMES_PAIR,    0, NULL,           EvaluateContactForce     },
-  [PROBE_DISPLACEMENT]       = {"displacement",       NAMES_NOTHING, 1, "displacement", EvaluateDisplacement     },
-  [PROBE_DISTANCE]           = {"distance",           NAMES_NOTHING, 2, "distance",     EvaluateDistance         },
-  [PROBE_GAP]                = {"gap",                NAMES_PAIR,    1, "at",           EvaluateGap              },
-  [PROBE_CONTACT_EDGE]       = {"contact_edge",       NAMES_PAIR,    0, NULL,           EvaluateContactEdge      },
-  [PROBE_PRESSURE_MAX]       = {"pressure_max",       NAMES_PAIR,    0, NULL,           EvaluatePressureMax      },
-  [PROBE_PRESSURE_MEAN]      = {"pressure_mean",      NAMES_PAIR,    0, NULL,           EvaluatePressureMean     },
-  [PROBE_PRESSURE_DEVIATION] = {"pressure_deviation", NAMES_PAIR,    0, NULL,           EvaluatePressureDeviation},
+  [PROBE_REACTION]           = {"reaction", NAMES_SURFACE, 0, NULL, EvaluateReaction},
+  [PROBE_CONTACT_FORCE]      = {"contact_force", NAMES_PAIR, 0, NULL, EvaluateContactForce},
+  [PROBE_DISPLACEMENT]       = {"displacement", NAMES_NOTHING, 1, "displacement", EvaluateDisplacement},
+  [PROBE_DISTANCE]           = {"distance", NAMES_NOTHING, 2, "distance", EvaluateDistance},
+  [PROBE_GAP]                = {"gap", NAMES_PAIR, 1, "at", EvaluateGap},
+  [PROBE_CONTACT_EDGE]       = {"contact_edge", NAMES_PAIR, 0, NULL, EvaluateContactEdge},
+  [PROBE_PRESSURE_MAX]       = {"pressure_max", NAMES_PAIR, 0, NULL, EvaluatePressureMax},
+  [PROBE_PRESSURE_MEAN]      = {"pressure_mean", NAMES_PAIR, 0, NULL, EvaluatePressureMean},
+  [PROBE_PRESSURE_DEVIATION] = {"pressure_deviation", NAMES_PAIR, 0, NULL, EvaluatePressureDeviation},
 };
 
 /* Resolves what a probe's kind refers to. Collective. */

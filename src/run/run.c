@@ -37,8 +37,7 @@ static PetscErrorCode RunOpen(Run *run, const RunInput *input)
                           input->directory ? "" : run->scene->name));
   if (input->task != RUN_MESH) PetscCall(RunDirectoryCheckPath(run->comm, run->directory));
   PetscCall(ErrorLogSetDirectory(run->directory));
-  if (input->task == RUN_SOLVE)
-    PetscCall(RunDirectoryCheck(run->comm, run->scene, run->directory, input->overwrite));
+  if (input->task == RUN_SOLVE) PetscCall(RunDirectoryCheck(run->comm, run->scene, run->directory, input->overwrite));
   PetscCall(MeshGenerate(run->comm, run->scene, "out", run->mesh_file, &run->mesh_s));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

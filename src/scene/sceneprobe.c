@@ -11,15 +11,15 @@ static const char *const Axes[] = {"x", "y", "z"};
 static const struct {
   const char *kind, *needs, *takes;
 } ProbeForms[PROBE_KINDS] = {
-  [PROBE_REACTION]           = {"reaction",           "component", ""                      },
-  [PROBE_CONTACT_FORCE]      = {"contact_force",      "component", ""                      },
-  [PROBE_DISPLACEMENT]       = {"displacement",       "component", "body"                  },
-  [PROBE_DISTANCE]           = {"distance",           "",          "body change"           },
-  [PROBE_GAP]                = {"gap",                "at",        ""                      },
-  [PROBE_CONTACT_EDGE]       = {"contact_edge",       "axis side", "at"                    },
-  [PROBE_PRESSURE_MAX]       = {"pressure_max",       "",          "at"                    },
-  [PROBE_PRESSURE_MEAN]      = {"pressure_mean",      "",          ""                      },
-  [PROBE_PRESSURE_DEVIATION] = {"pressure_deviation", "",          "measure excluding only"},
+  [PROBE_REACTION]           = {"reaction", "component", ""},
+  [PROBE_CONTACT_FORCE]      = {"contact_force", "component", ""},
+  [PROBE_DISPLACEMENT]       = {"displacement", "component", "body"},
+  [PROBE_DISTANCE]           = {"distance", "", "body change"},
+  [PROBE_GAP]                = {"gap", "at", ""},
+  [PROBE_CONTACT_EDGE]       = {"contact_edge", "axis side", "at"},
+  [PROBE_PRESSURE_MAX]       = {"pressure_max", "", "at"},
+  [PROBE_PRESSURE_MEAN]      = {"pressure_mean", "", ""},
+  [PROBE_PRESSURE_DEVIATION] = {"pressure_deviation", "", "measure excluding only"},
 };
 static const char ProbeCommon[] = "name absolute factor";
 

@@ -25,21 +25,21 @@ static void SchemaAllowed(const SchemaKey *key, char *text, size_t size)
     int         type;
     const char *words;
   } Types[] = {
-    {REAL,     "a number"                                                           },
-    {INTEGER,  "an integer"                                                         },
-    {BOOLEAN,  "true | false"                                                       },
-    {TEXT,     "a name (at most 127 characters)"                                    },
-    {FILENAME, "a file name"                                                        },
-    {NAME,     "a name (letters, digits, _ - ., at most 100 characters)"            },
-    {POINT,    "[x, y, z] (2D: [x, y])"                                             },
-    {POINTS,   "[[x, y, z], [x, y, z]] (2D: [[x, y], [x, y]])"                      },
-    {REALS,    "an increasing list of numbers"                                      },
-    {TEXTS,    "a list of names"                                                    },
-    {CHOICES,  "a list of"                                                          },
-    {HISTORY,  "[[t, factor], ...], at least two, t increasing from 0 within [0, 1]"},
-    {MAP,      "a map"                                                              },
-    {LIST,     "a list of maps"                                                     },
-    {FREE,     "a map of plain values"                                              },
+    {REAL, "a number"},
+    {INTEGER, "an integer"},
+    {BOOLEAN, "true | false"},
+    {TEXT, "a name (at most 127 characters)"},
+    {FILENAME, "a file name"},
+    {NAME, "a name (letters, digits, _ - ., at most 100 characters)"},
+    {POINT, "[x, y, z] (2D: [x, y])"},
+    {POINTS, "[[x, y, z], [x, y, z]] (2D: [[x, y], [x, y]])"},
+    {REALS, "an increasing list of numbers"},
+    {TEXTS, "a list of names"},
+    {CHOICES, "a list of"},
+    {HISTORY, "[[t, factor], ...], at least two, t increasing from 0 within [0, 1]"},
+    {MAP, "a map"},
+    {LIST, "a list of maps"},
+    {FREE, "a map of plain values"},
   };
 
   text[0] = 0;

@@ -15,16 +15,7 @@
 static const struct {
   int    degree;
   double widen;
-} Ladder[RUNGS] = {
-  {0, 1   },
-  {0, 1.15},
-  {0, 1.32},
-  {0, 1.52},
-  {0, 1.75},
-  {2, 1   },
-  {2, 1.32},
-  {1, 1   }
-};
+} Ladder[RUNGS] = {{0, 1}, {0, 1.15}, {0, 1.32}, {0, 1.52}, {0, 1.75}, {2, 1}, {2, 1.32}, {1, 1}};
 
 /* Unit normal at the centre of a candidate in the reference position. */
 static void ReferenceNormal(NeighbourLists lists, const Candidate *c, PetscReal normal[3])
@@ -348,12 +339,9 @@ PetscErrorCode FitSupportSlave(FitSupport *fit, const Nearest *look, PetscInt q,
 {
   NeighbourLists   lists = fit->lists;
   const Candidate *best  = &look->candidates[look->best];
-  FitFoot          at    = {
-                .facet = look->best,
-                .xi    = {look->foot.xi[0], look->foot.xi[1]}
-  };
-  FitProblem problem;
-  FitResult  result;
+  FitFoot          at    = {.facet = look->best, .xi = {look->foot.xi[0], look->foot.xi[1]}};
+  FitProblem       problem;
+  FitResult        result;
 
   PetscFunctionBeginUser;
   /* The foot's own normal may lie along the surface where the foot is on an edge. */

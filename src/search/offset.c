@@ -100,11 +100,7 @@ static PetscErrorCode FitAt(FitSupport *fit, const OffsetFace *face, int q, FitP
                             int *rung, double (*nodes)[2])
 {
   const int dim = fit->lists->dim, n = ElementGet(face->facet->type)->nodes;
-  FitFoot   at = {
-      .facet   = face->candidate,
-      .xi      = {face->rule->xi[q][0], face->rule->xi[q][1]},
-      .upright = PETSC_TRUE
-  };
+  FitFoot   at = {.facet = face->candidate, .xi = {face->rule->xi[q][0], face->rule->xi[q][1]}, .upright = PETSC_TRUE};
 
   PetscFunctionBeginUser;
   for (int a = 0; a < n; a++)
@@ -242,10 +238,9 @@ static PetscErrorCode AddEntry(FaceMaps *maps, MapsInMaking *making, NeighbourLi
     if (*end == making->room)
       PetscCall(PetscRealloc((making->room = 2 * making->room + 1024) * sizeof(FaceMapEntry), &maps->entry));
     PetscCall(PetscSFGetGraph(lists->sf, NULL, NULL, NULL, &owner));
-    maps->entry[*end] = (FaceMapEntry){
-      .node  = {.id = lists->node_id[node], .owner = owner[node].rank, .local = owner[node].index},
-      .image = lists->point_image[point]
-    };
+    maps->entry[*end] =
+      (FaceMapEntry){.node  = {.id = lists->node_id[node], .owner = owner[node].rank, .local = owner[node].index},
+                     .image = lists->point_image[point]};
     for (int d = 0; d < lists->dim; d++) maps->entry[*end].node.X[d] = lists->X[node * lists->dim + d];
     making->place[point] = (*end)++;
   }

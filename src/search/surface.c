@@ -294,12 +294,7 @@ static PetscErrorCode DropPartitionBorders(MPI_Comm comm, PetscInt *n, FaceEdge 
     for (int k = 0; k < 2; k++) send[2 * i + k] = edges[i].id[k];
   PetscCall(PetscMalloc2(total, &all, total / 2, &every));
   PetscCallMPI(MPI_Allgatherv(send, mine, MPIU_INT, all, counts, starts, MPIU_INT, comm));
-  for (PetscInt i = 0; i < total / 2; i++)
-    every[i] = (FaceEdge){
-      {all[2 * i], all[2 * i + 1]},
-      0,
-      0
-    };
+  for (PetscInt i = 0; i < total / 2; i++) every[i] = (FaceEdge){{all[2 * i], all[2 * i + 1]}, 0, 0};
   total = KeepSingleEdges(total / 2, every);
   for (PetscInt i = 0; i < *n; i++)
     if (bsearch(&edges[i], every, total, sizeof(*every), FaceEdgeCompare)) edges[kept++] = edges[i];
@@ -342,11 +337,7 @@ PetscErrorCode SurfaceFindFreeEdges(ContactSurface surface, int n_images, const 
       FaceEdgeNodes(face, e, corners);
       a          = surface->rigid ? face->nodes[corners[0]] : mesh->node_id[face->nodes[corners[0]]];
       b          = surface->rigid ? face->nodes[corners[1]] : mesh->node_id[face->nodes[corners[1]]];
-      edges[n++] = (FaceEdge){
-        {PetscMin(a, b), PetscMax(a, b)},
-        f,
-        e
-      };
+      edges[n++] = (FaceEdge){{PetscMin(a, b), PetscMax(a, b)}, f, e};
     }
   }
   n = KeepSingleEdges(n, edges);
@@ -546,9 +537,7 @@ PetscErrorCode SurfaceImages(Mesh mesh, Scene scene, const SceneContact *contact
 
   PetscFunctionBeginUser;
   *n_images = 1;
-  images[0] = (SurfaceImage){
-    .sign = {1, 1, 1}
-  };
+  images[0] = (SurfaceImage){.sign = {1, 1, 1}};
   if (scene->geometry == GEOMETRY_AXISYMMETRIC) {
     ImagesAddPlane(0, -mesh->centre[0], n_images, images);
     taken[0] = 1;

@@ -362,13 +362,8 @@ static void ChartCreate(int dim, const Facet *facet, const double *x, const Foot
   const int nodes = ElementGet(facet->type)->nodes, m = foot->region == FOOT_INTERIOR ? (dim == 3 ? 2 : 1)
                                                         : foot->region == FOOT_EDGE   ? 1
                                                                                       : 0;
-  double    d[FACE_MAX_NODES * 2],
-    direction[2][2] =
-      {
-        {1, 0},
-        {0, 1}
-  },
-    metric[2][2], kappa[2][2], hessian[2][2], det, scale;
+  double    d[FACE_MAX_NODES * 2], direction[2][2]    = {{1, 0}, {0, 1}}, metric[2][2], kappa[2][2], hessian[2][2], det,
+                                scale;
   FacetPolynomial      patch;
   FacetPolynomialLocal l;
 

@@ -19,31 +19,21 @@
    nearest point with 5 samples and 12 with 3 samples. At 5 % none hides it. */
 enum { SAMPLES = 5 };
 
-static const FacetPolynomialDomain line = {
-  .sides   = 2,
-  .low     = -1,
-  .width   = 2,
-  .offset  = {1,      1      },
-  .normal  = {{1, 0}, {-1, 0}},
-  .tangent = {{0, 1}, {0, 1} }
-};
-static const FacetPolynomialDomain triangle = {
-  .sides   = 3,
-  .low     = 0,
-  .width   = 1,
-  .centre  = {1. / 3, 1. / 3},
-  .offset  = {0, 1, 0},
-  .normal  = {{0, 1}, {-1, -1}, {1, 0}},
-  .tangent = {{1, 0}, {-1, 1}, {0, -1}}
-};
-static const FacetPolynomialDomain square = {
-  .sides   = 4,
-  .low     = -1,
-  .width   = 2,
-  .offset  = {1,      1,       1,       1      },
-  .normal  = {{0, 1}, {-1, 0}, {0, -1}, {1, 0} },
-  .tangent = {{1, 0}, {0, 1},  {-1, 0}, {0, -1}}
-};
+static const FacetPolynomialDomain line =
+  {.sides = 2, .low = -1, .width = 2, .offset = {1, 1}, .normal = {{1, 0}, {-1, 0}}, .tangent = {{0, 1}, {0, 1}}};
+static const FacetPolynomialDomain triangle = {.sides   = 3,
+                                               .low     = 0,
+                                               .width   = 1,
+                                               .centre  = {1. / 3, 1. / 3},
+                                               .offset  = {0, 1, 0},
+                                               .normal  = {{0, 1}, {-1, -1}, {1, 0}},
+                                               .tangent = {{1, 0}, {-1, 1}, {0, -1}}};
+static const FacetPolynomialDomain square   = {.sides   = 4,
+                                               .low     = -1,
+                                               .width   = 2,
+                                               .offset  = {1, 1, 1, 1},
+                                               .normal  = {{0, 1}, {-1, 0}, {0, -1}, {1, 0}},
+                                               .tangent = {{1, 0}, {0, 1}, {-1, 0}, {0, -1}}};
 
 static double Dot2(const double a[2], const double b[2])
 {
@@ -134,12 +124,8 @@ static void Quadratic(double left, double middle, double right, double c[3])
 /* The polynomial of a QUAD9 in one component. */
 static void PatchQuad9(double (*X)[3], int k, FacetPolynomial *patch)
 {
-  static const int grid[3][3] = {
-    {0, 7, 3},
-    {4, 8, 6},
-    {1, 5, 2}
-  };
-  double row[3][3], column[3];
+  static const int grid[3][3] = {{0, 7, 3}, {4, 8, 6}, {1, 5, 2}};
+  double           row[3][3], column[3];
 
   for (int i = 0; i < 3; ++i) Quadratic(X[grid[i][0]][k], X[grid[i][1]][k], X[grid[i][2]][k], row[i]);
   for (int j = 0; j < 3; ++j) {

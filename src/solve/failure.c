@@ -50,11 +50,9 @@ static PetscErrorCode TakeLargest(Mesh mesh, Contact contact, PetscReal *square,
     square[at] = 0;
   }
   PetscCallMPI(MPI_Bcast(values, 6, MPIU_REAL, most.rank, mesh->comm));
-  *node = (FailureNode){
-    .place    = {.tag = (PetscInt)values[0], .X = {values[1], values[2], values[3]}},
-    .residual = values[4],
-    .gap      = values[5]
-  };
+  *node = (FailureNode){.place    = {.tag = (PetscInt)values[0], .X = {values[1], values[2], values[3]}},
+                        .residual = values[4],
+                        .gap      = values[5]};
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

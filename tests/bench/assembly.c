@@ -137,11 +137,9 @@ static PetscErrorCode TimeOurs(ElementType type, PetscInt n)
     PetscErrorCode (*call)(Work *);
     PetscBool whole; /* whether a call treats the whole mesh, or one batch */
   } parts[] = {
-    {"kernel-force",         KernelForce, PETSC_FALSE},
-    {"kernel-force-tangent", KernelBoth,  PETSC_FALSE},
-    {"residual",             Residual,    PETSC_TRUE },
-    {"tangent",              Tangent,     PETSC_TRUE },
-    {"insertion",            Insert,      PETSC_TRUE },
+    {"kernel-force", KernelForce, PETSC_FALSE}, {"kernel-force-tangent", KernelBoth, PETSC_FALSE},
+    {"residual", Residual, PETSC_TRUE},         {"tangent", Tangent, PETSC_TRUE},
+    {"insertion", Insert, PETSC_TRUE},
   };
   double total = 0;
   Box    box;
@@ -200,9 +198,9 @@ int main(int argc, char **argv)
     ElementType type;
     PetscInt    n, petsc_n; /* number of cubes per side, and that for PetscFE */
   } rows[] = {
-    {ELEMENT_TET4,  18, 4},
+    {ELEMENT_TET4, 18, 4},
     {ELEMENT_TET10, 10, 2},
-    {ELEMENT_HEX8,  32, 6},
+    {ELEMENT_HEX8, 32, 6},
     {ELEMENT_HEX27, 14, 2},
   };
 

@@ -53,14 +53,8 @@ static double Time(const Neighbourhoods *all, FitWant want, double *points)
   static int    index[MAX_LIST];
   static double N[MAX_SIZE], M[(long)MAX_SIZE * MAX_SIZE];
   double        best = INFINITY, *workspace = malloc(FitWorkspace(all->dim, all->degree, MAX_LIST) * sizeof(double));
-  double        round[3][3] =
-    {
-      {1, 0, 0},
-      {0, 1, 0},
-      {0, 0, 1}
-  },
-         up[3]  = {0, 0, 1};
-  FitProblem in = {.dim = all->dim, .degree = all->degree, .exponent = all->exponent, .multiplier = all->multiplier};
+  double        round[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, up[3] = {0, 0, 1};
+  FitProblem    in = {.dim = all->dim, .degree = all->degree, .exponent = all->exponent, .multiplier = all->multiplier};
 
   if (!workspace) exit(1);
   FitFrameFromNormal(in.dim, in.dim == 3 ? up : up + 1, in.frame);
@@ -109,15 +103,8 @@ int main(void)
   static const struct {
     int    dim, degree;
     double support, exponent;
-  } cases[] = {
-    {3, 2, 2.52, 3},
-    {3, 2, 3.5,  6},
-    {3, 4, 3.5,  3},
-    {3, 4, 4.5,  3},
-    {3, 4, 6.0,  3},
-    {2, 2, 3.5,  6},
-    {2, 4, 4.5,  6}
-  };
+  } cases[]                        = {{3, 2, 2.52, 3}, {3, 2, 3.5, 6}, {3, 4, 3.5, 3}, {3, 4, 4.5, 3},
+                                      {3, 4, 6.0, 3},  {2, 2, 3.5, 6}, {2, 4, 4.5, 6}};
   static const char *const names[] = {"gap", "gap_N", "gap_N_M"};
   static Neighbourhoods    all;
 

@@ -56,13 +56,11 @@ static double LineShape(int order, int a, double s)
    quadrature points in each direction. */
 static void Fill(const Kind *kind, List *list)
 {
-  static const double gauss[2][3] = {
-    {0.211324865405187, 0.788675134594813, 0                },
-    {0.112701665379258, 0.5,               0.887298334620742}
-  };
-  const int    order = kind->order, q = order + 1, line = SIDE * order + 1, rows = kind->dim == 3 ? SIDE : 1;
-  const double shift[2] = {Random(-0.5, 0.5), Random(-0.5, 0.5)};
-  double       x[3 * MAX_LINE * MAX_LINE];
+  static const double gauss[2][3] = {{0.211324865405187, 0.788675134594813, 0},
+                                     {0.112701665379258, 0.5, 0.887298334620742}};
+  const int           order = kind->order, q = order + 1, line = SIDE * order + 1, rows = kind->dim == 3 ? SIDE : 1;
+  const double        shift[2] = {Random(-0.5, 0.5), Random(-0.5, 0.5)};
+  double              x[3 * MAX_LINE * MAX_LINE];
 
   for (int i = 0; i < line; i++) {
     for (int j = 0; j < (kind->dim == 3 ? line : 1); j++) {
@@ -173,13 +171,7 @@ static void Do(Part part, Slave *s)
 
 static void Setup(const Kind *kind, Slave *s)
 {
-  double round[3][3] =
-    {
-      {1, 0, 0},
-      {0, 1, 0},
-      {0, 0, 1}
-  },
-         up[3] = {0};
+  double round[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, up[3] = {0};
 
   up[kind->dim - 1] = 1;
   Fill(kind, &s->list);
@@ -229,13 +221,11 @@ int main(void)
   static const struct {
     const char *row;
     Kind        kind;
-  } cases[] = {
-    {"hex8,4",  {3, 4, 1, 3.0, 3} },
-    {"hex8,2",  {3, 2, 1, 2.5, 3} },
-    {"hex27,4", {3, 4, 2, 2.25, 3}},
-    {"quad4,4", {2, 4, 1, 3.0, 3} },
-    {"quad9,4", {2, 4, 2, 2.25, 3}}
-  };
+  } cases[] = {{"hex8,4", {3, 4, 1, 3.0, 3}},
+               {"hex8,2", {3, 2, 1, 2.5, 3}},
+               {"hex27,4", {3, 4, 2, 2.25, 3}},
+               {"quad4,4", {2, 4, 1, 3.0, 3}},
+               {"quad9,4", {2, 4, 2, 2.25, 3}}};
 
   scratch = aligned_alloc(64, (FitDerivativesWorkspace(3, 4, MAX_NODES, FitDerivativesDepth(3, 4)) + 7) / 8 * 64);
   if (!scratch) return 1;

@@ -51,15 +51,13 @@ static void StateArchive(State *state, Archive archive)
 
 static State StateFill(PetscInt *list, char *text, char *bytes)
 {
-  State state = {
-    .real    = {1.0 / 3, NAN},
-    .n       = 3,
-    .list    = list,
-    .text    = text,
-    .bytes   = bytes,
-    .n_bytes = 1 + Rank(),
-    .flag    = PETSC_TRUE
-  };
+  State state = {.real    = {1.0 / 3, NAN},
+                 .n       = 3,
+                 .list    = list,
+                 .text    = text,
+                 .bytes   = bytes,
+                 .n_bytes = 1 + Rank(),
+                 .flag    = PETSC_TRUE};
 
   for (int i = 0; i < ROWS * WIDTH; i++) state.items[i] = 100 * Rank() + i;
   for (int i = 0; i < state.n_bytes; i++) bytes[i] = (char)('a' + Rank());

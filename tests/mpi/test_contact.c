@@ -10,10 +10,7 @@ enum { LOWER, UPPER };
 #define LEFT  PartsTag(&parts, UPPER, 0, 0)
 #define RIGHT PartsTag(&parts, UPPER, 1, 0)
 static const double     Apart = 0.1, Area = 0.3;
-static const PartsBlock Blocks[] = {
-  {"lower", 3, 1, {0, 3},     {0, 1}    },
-  {"upper", 1, 1, {1.2, 1.8}, {1.1, 1.7}}
-};
+static const PartsBlock Blocks[] = {{"lower", 3, 1, {0, 3}, {0, 1}}, {"upper", 1, 1, {1.2, 1.8}, {1.1, 1.7}}};
 
 static Parts parts;
 
@@ -76,10 +73,7 @@ static Shown Show(int tag, double t)
     value[7] = pair->now.multiplier[c], value[8] = ContactTermOnsetGap(pair, c, t);
   }
   OK(MPI_Allreduce(MPI_IN_PLACE, value, 9, MPI_DOUBLE, MPI_SUM, PETSC_COMM_WORLD));
-  return (Shown){
-    value[0], value[1], value[2], value[3], {value[4], value[5], 0},
-        value[6], value[7], value[8]
-  };
+  return (Shown){value[0], value[1], value[2], value[3], {value[4], value[5], 0}, value[6], value[7], value[8]};
 }
 
 /* Brings the two slave nodes to these gaps over the flat master; the rest of the block follows the left one. */
@@ -172,10 +166,7 @@ static void Bend(const double X[2], double x[2])
 /* Forces are the energy's derivative and the tangent is theirs, on faces and fits, points and surfaces. */
 static void test_tangent(void **state)
 {
-  static const PartsBlock fine[] = {
-    {"lower", 12, 1, {0, 3},     {0, 1}    },
-    {"upper", 3,  1, {1.1, 1.7}, {1.1, 1.7}}
-  };
+  static const PartsBlock  fine[]  = {{"lower", 12, 1, {0, 3}, {0, 1}}, {"upper", 3, 1, {1.1, 1.7}, {1.1, 1.7}}};
   static const char *const pairs[] = {"", "smoother: diffuse, ", "formulation: surface_to_surface, ",
                                       "smoother: diffuse, formulation: surface_to_surface, ",
                                       "smoother: diffuse, formulation: surface_to_surface, offset: live, "};
@@ -210,10 +201,7 @@ static void ToCircle(const double X[2], double x[2])
    leaves an error of about x^6 / (16 R^5), 1e-6 within its support. The facets are 1.7e-3 away. */
 static void test_curved(void **state)
 {
-  static const PartsBlock fine[] = {
-    {"lower", 13, 1, {0, 3},     {0, 1}    },
-    {"upper", 2,  1, {1.3, 1.7}, {1.1, 1.5}}
-  };
+  static const PartsBlock fine[] = {{"lower", 13, 1, {0, 3}, {0, 1}}, {"upper", 2, 1, {1.3, 1.7}, {1.1, 1.5}}};
   const double half = 3. / 13 / 2, facet = 4 * cos(half / 4) - 3; /* height of the middle facet, symmetric to x = 1.5 */
 
   (void)state;
@@ -240,12 +228,9 @@ static void test_curved(void **state)
    gets the same force with the same moment. */
 static void test_uniform(void **state)
 {
-  static const PartsBlock across[] = {
-    {"lower", 3, 1, {0, 3}, {0, 1}    },
-    {"upper", 4, 1, {0, 3}, {1.1, 1.7}}
-  };
-  const double depth = 0.01, pressure = PENALTY * depth;
-  double       sum = 0, moment = 0;
+  static const PartsBlock across[] = {{"lower", 3, 1, {0, 3}, {0, 1}}, {"upper", 4, 1, {0, 3}, {1.1, 1.7}}};
+  const double            depth = 0.01, pressure = PENALTY * depth;
+  double                  sum = 0, moment = 0;
 
   (void)state;
   PartsCreate(2, across, NULL, SceneText("finite", "formulation: surface_to_surface, penalty: {initial: 1000}"),
@@ -381,20 +366,11 @@ static double OverlapPressure(double t)
 
 static void test_overlap(void **state)
 {
-  static const PartsBlock overlapping[] = {
-    {"lower", 3, 1, {0, 3},     {0, 1}      },
-    {"upper", 1, 1, {1.2, 1.8}, {0.99, 1.59}}
-  };
-  static const char *const words[] = {"resolve", "ramp", "ignore"};
-  const double             share[3][3] =
-    {
-      {1, 1,    1},
-      {0, 0.25, 1},
-      {0, 0,    0}
-  },
-               t[] = {0, 0.25, 1};
-  char        pair[512];
-  ContactGaps gaps;
+  static const PartsBlock  overlapping[] = {{"lower", 3, 1, {0, 3}, {0, 1}}, {"upper", 1, 1, {1.2, 1.8}, {0.99, 1.59}}};
+  static const char *const words[]       = {"resolve", "ramp", "ignore"};
+  const double             share[3][3] = {{1, 1, 1}, {0, 0.25, 1}, {0, 0, 0}}, t[] = {0, 0.25, 1};
+  char                     pair[512];
+  ContactGaps              gaps;
 
   (void)state;
   for (int k = 0; k < 3; k++) {

@@ -13,9 +13,9 @@ enum { LOWER, UPPER, SHELF };
 #define PENALTY 1000.
 static const double     Apart = 0.1, Area = 0.3;
 static const PartsBlock Blocks[] = {
-  {"lower", 3, 1, {0, 3},     {0, 1}    },
+  {"lower", 3, 1, {0, 3}, {0, 1}},
   {"upper", 1, 1, {1.2, 1.8}, {1.1, 1.7}},
-  {"lower", 3, 1, {0, 3},     {-2, -1}  }  /* only where a test asks for it: another part of the same master */
+  {"lower", 3, 1, {0, 3}, {-2, -1}} /* only where a test asks for it: another part of the same master */
 };
 
 static const char Text[] = "geometry: plane_strain\nkinematics: finite\nbodies:\n"

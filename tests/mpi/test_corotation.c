@@ -23,16 +23,15 @@ static const char *const files[][2] = {
    "If(solid) v[] = Extrude{0, 0, solid / 2} { Surface{1}; Layers{1}; Recombine; }; Physical Volume(\"block\") = "
    "{v[1]}; Physical Surface(\"end\") = {1};\n"
    "Else Physical Surface(\"block\") = {1}; Physical Curve(\"end\") = {4}; EndIf\n"},
-  {"solid.yaml",                                        "mesh: {file: block.geo, order: 2, parameters: {solid: 1}}\ngeometry: solid\nbodies: [{volume: block, "
-   "material: {law: svk, E: 1, nu: 0.3}}]\n"
-                 "supports: [{surface: end, uz: 0}]\n"                                                                   },
+  {"solid.yaml", "mesh: {file: block.geo, order: 2, parameters: {solid: 1}}\ngeometry: solid\nbodies: [{volume: block, "
+                 "material: {law: svk, E: 1, nu: 0.3}}]\n"
+                 "supports: [{surface: end, uz: 0}]\n"},
   {"sheet.yaml", "mesh: {file: block.geo, order: 1, parameters: {solid: 0.01}}\ngeometry: solid\nbodies: [{volume: "
-   "block, material: {law: svk, E: 1, nu: 0.3}}]\n"
+                 "block, material: {law: svk, E: 1, nu: 0.3}}]\n"
                  "supports: [{surface: end, uz: 0}]\n"},
   {"plane.yaml", "mesh: {file: block.geo, order: 1, parameters: {solid: 0}}\ngeometry: plane_strain\nbodies: [{volume: "
-   "block, material: {law: svk, E: 1, nu: 0.3}}]\n"
-                 "supports: [{surface: end, ux: 0}]\n"                            }
-};
+                 "block, material: {law: svk, E: 1, nu: 0.3}}]\n"
+                 "supports: [{surface: end, ux: 0}]\n"}};
 
 static Mesh MakeMesh(const char *name, Scene *scene)
 {

@@ -16,13 +16,9 @@ static const PetscReal EXACT = 1e-12, SINGLE = 1e-6, LEAST = 0.1, LARGEST = 1.1;
  * opposite one, whose rank is another. */
 static PetscErrorCode Square(int dofs, PetscReal stiff, Mat *A)
 {
-  const PetscReal spring[MOST][MOST] = {
-    {2,   0.5, 0.1},
-    {0.5, 1,   0.3},
-    {0.1, 0.3, 3  }
-  };
-  const PetscInt n = SIDE * SIDE;
-  PetscMPIInt    rank;
+  const PetscReal spring[MOST][MOST] = {{2, 0.5, 0.1}, {0.5, 1, 0.3}, {0.1, 0.3, 3}};
+  const PetscInt  n                  = SIDE * SIDE;
+  PetscMPIInt     rank;
 
   PetscFunctionBeginUser;
   PetscCallMPI(MPI_Comm_rank(PETSC_COMM_WORLD, &rank));

@@ -6,9 +6,7 @@
 #include "solve/model.h"
 
 /* A block of 3 by 2 whose lower left corner is at (1, 0): around the axis a ring of radii 1 and 4 */
-static const PartsBlock Block[] = {
-  {"block", 3, 2, {1, 4}, {0, 2}}
-};
+static const PartsBlock Block[] = {{"block", 3, 2, {1, 4}, {0, 2}}};
 
 static Parts parts;
 
@@ -42,11 +40,7 @@ static Resultant Resulting(double t)
     sum[2] -= (X[0] + u[0]) * f[1] - (X[1] + u[1]) * f[0];
   }
   OK(MPI_Allreduce(MPI_IN_PLACE, sum, 4, MPI_DOUBLE, MPI_SUM, PETSC_COMM_WORLD));
-  return (Resultant){
-    {sum[0], sum[1]},
-    sum[2],
-    sum[3]
-  };
+  return (Resultant){{sum[0], sum[1]}, sum[2], sum[3]};
 }
 
 static void CheckResultant(double t, double fx, double fy, double moment)

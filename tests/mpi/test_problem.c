@@ -6,13 +6,8 @@
 #include "contactimpl.h"
 
 enum { LOWER, UPPER };
-static const PartsBlock Blocks[] = {
-  {"lower", 3, 1, {0, 3},     {0, 1}    },
-  {"upper", 2, 1, {1.2, 1.8}, {1.1, 1.7}}
-};
-static const PartsBlock Bar[] = {
-  {"bar", 3, 1, {0, 3}, {0, 1}}
-};
+static const PartsBlock Blocks[] = {{"lower", 3, 1, {0, 3}, {0, 1}}, {"upper", 2, 1, {1.2, 1.8}, {1.1, 1.7}}};
+static const PartsBlock Bar[]    = {{"bar", 3, 1, {0, 3}, {0, 1}}};
 #define LEFT PartsTag(&parts, UPPER, 0, 0)
 
 static Parts parts;
@@ -274,11 +269,8 @@ static void test_linear(void **state)
 /* Two blocks in line, 0.1 apart, pressed by 0.3: springs in series, which the linear step with contact finds. */
 static void test_linear_contact(void **state)
 {
-  static const PartsBlock column[] = {
-    {"lower", 2, 1, {0, 1}, {0, 1}    },
-    {"upper", 2, 1, {0, 1}, {1.1, 1.7}}
-  };
-  static const char text[] =
+  static const PartsBlock column[] = {{"lower", 2, 1, {0, 1}, {0, 1}}, {"upper", 2, 1, {0, 1}, {1.1, 1.7}}};
+  static const char       text[] =
     "geometry: plane_strain\nkinematics: small\nbodies:\n"
     "  - {volume: lower, material: {law: linear, E: 1000, nu: 0}}\n"
     "  - {volume: upper, material: {law: linear, E: 500, nu: 0}}\n"

@@ -8,10 +8,7 @@
 /* A long block with 16 facets of 0.5 on top, and a short one above it with two faces of 0.5. */
 enum { LOWER, UPPER, FACETS = 16 };
 static const double     Size = 0.5, Apart = 0.1;
-static const PartsBlock Blocks[] = {
-  {"lower", FACETS, 1, {0, 8},     {0, 1}    },
-  {"upper", 2,      1, {3.3, 4.3}, {1.1, 1.6}}
-};
+static const PartsBlock Blocks[] = {{"lower", FACETS, 1, {0, 8}, {0, 1}}, {"upper", 2, 1, {3.3, 4.3}, {1.1, 1.6}}};
 
 static Parts parts;
 
@@ -127,11 +124,7 @@ static void test_nearest(void **state)
 /* The signed distance of any point to the whole master, that no list is needed for. */
 static void test_distance(void **state)
 {
-  const double at[][3] = {
-    {1.2, 1.7, 0.7 },
-    {7.9, 0.6, -0.4},
-    {0.1, 9,   8   }
-  };
+  const double at[][3] = {{1.2, 1.7, 0.7}, {7.9, 0.6, -0.4}, {0.1, 9, 8}};
 
   (void)state;
   Create(NULL, "", "");
@@ -206,11 +199,7 @@ static void test_reach(void **state)
 static void test_free_edges(void **state)
 {
   static const char *const symmetry[] = {"", ", symmetry: [upper_left]"};
-  const double             at[] =
-    {
-      3.4, 3.8, 4.5
-  },
-               distance[2][3] = {{0.1, 0.5, 0.2}, {0.9, 0.5, 0.2}};
+  const double             at[] = {3.4, 3.8, 4.5}, distance[2][3] = {{0.1, 0.5, 0.2}, {0.9, 0.5, 0.2}};
 
   (void)state;
   for (int s = 0; s < 2; s++) {

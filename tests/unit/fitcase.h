@@ -22,15 +22,8 @@ typedef struct {
   int        points[MAX];
 } Case;
 
-static const int cases[6][2] = {
-  {2, 1},
-  {2, 2},
-  {2, 4},
-  {3, 1},
-  {3, 2},
-  {3, 4}
-}; /* dim, degree */
-static double work[WORK];
+static const int cases[6][2] = {{2, 1}, {2, 2}, {2, 4}, {3, 1}, {3, 2}, {3, 4}}; /* dim, degree */
+static double    work[WORK];
 
 static inline double Random(double low, double high)
 {

@@ -146,13 +146,10 @@ static void test_ends_in_equilibrium(void **state)
 static void test_right_set_needs_nothing(void **state)
 {
   PetscReal     travel[2] = {-0.3, 0.1};
-  ActiveSetTerm term[2]   = {
-    {-0.1, 0.1 * 7, 7, 7},
-    {0.2,  0,       0, 7}
-  };
-  PetscInt  m, which[2];
-  PetscBool settled;
-  ActiveSet pressing;
+  ActiveSetTerm term[2]   = {{-0.1, 0.1 * 7, 7, 7}, {0.2, 0, 0, 7}};
+  PetscInt      m, which[2];
+  PetscBool     settled;
+  ActiveSet     pressing;
 
   (void)state;
   assert_int_equal(ActiveSetCreate(2, term, travel, &pressing), 0);

@@ -30,23 +30,11 @@ static void AssertNear(double a, double b, double tolerance)
 
 static void TestValues(void **state)
 {
-  const AnalyticSurface plane = {
-    .shape = ANALYTIC_PLANE,
-    .axis  = {0, 0, 2}
-  };
-  const AnalyticSurface cylinder = {
-    .shape  = ANALYTIC_CYLINDER,
-    .axis   = {0, 3, 0},
-    .radius = 2
-  };
-  const AnalyticSurface bore = {
-    .shape  = ANALYTIC_CYLINDER,
-    .inside = 1,
-    .axis   = {0, 3, 0},
-    .radius = 2
-  };
-  const AnalyticSurface sphere = {.shape = ANALYTIC_SPHERE, .radius = 5};
-  const AnalyticSurface socket = {.shape = ANALYTIC_SPHERE, .inside = 1, .radius = 5};
+  const AnalyticSurface plane    = {.shape = ANALYTIC_PLANE, .axis = {0, 0, 2}};
+  const AnalyticSurface cylinder = {.shape = ANALYTIC_CYLINDER, .axis = {0, 3, 0}, .radius = 2};
+  const AnalyticSurface bore     = {.shape = ANALYTIC_CYLINDER, .inside = 1, .axis = {0, 3, 0}, .radius = 2};
+  const AnalyticSurface sphere   = {.shape = ANALYTIC_SPHERE, .radius = 5};
+  const AnalyticSurface socket   = {.shape = ANALYTIC_SPHERE, .inside = 1, .radius = 5};
   AnalyticResult        out;
 
   (void)state;
@@ -69,14 +57,9 @@ static void TestValues(void **state)
 
 static void TestNoClosestPoint(void **state)
 {
-  const AnalyticSurface cylinder = {
-    .shape  = ANALYTIC_CYLINDER,
-    .inside = 1,
-    .axis   = {0, 0, 1},
-    .radius = 2
-  };
-  const AnalyticSurface sphere = {.shape = ANALYTIC_SPHERE, .radius = 2};
-  const AnalyticSurface plane  = {.shape = ANALYTIC_PLANE};
+  const AnalyticSurface cylinder = {.shape = ANALYTIC_CYLINDER, .inside = 1, .axis = {0, 0, 1}, .radius = 2};
+  const AnalyticSurface sphere   = {.shape = ANALYTIC_SPHERE, .radius = 2};
+  const AnalyticSurface plane    = {.shape = ANALYTIC_PLANE};
   AnalyticResult        out;
 
   (void)state;
@@ -129,13 +112,11 @@ static void TestVariations(void **state)
   for (int trial = 0; trial < 20; trial++) {
     for (int inside = 0; inside < 2; inside++) {
       for (AnalyticShape shape = ANALYTIC_PLANE; shape <= ANALYTIC_SPHERE; shape++) {
-        const AnalyticSurface solid = {
-          .shape  = shape,
-          .inside = inside,
-          .axis   = {Random(-1, 1), Random(-1, 1), Random(0.1, 1)},
-          .radius = Random(0.5, 3)
-        };
-        AnalyticSurface flat = solid;
+        const AnalyticSurface solid = {.shape  = shape,
+                                       .inside = inside,
+                                       .axis   = {Random(-1, 1), Random(-1, 1), Random(0.1, 1)},
+                                       .radius = Random(0.5, 3)};
+        AnalyticSurface       flat  = solid;
 
         CheckVariations(&solid, 3);
         if (shape == ANALYTIC_CYLINDER)
@@ -151,12 +132,8 @@ static void TestVariations(void **state)
 /* In the meridian of an axisymmetric scene a cylinder about the axis is a straight wall. */
 static void TestAxisymmetricCylinder(void **state)
 {
-  const AnalyticSurface cylinder = {
-    .shape  = ANALYTIC_CYLINDER,
-    .axis   = {0, 1, 0},
-    .radius = 2
-  };
-  AnalyticResult out;
+  const AnalyticSurface cylinder = {.shape = ANALYTIC_CYLINDER, .axis = {0, 1, 0}, .radius = 2};
+  AnalyticResult        out;
 
   (void)state;
   assert_true(AnalyticSurfaceEvaluate(&cylinder, 2, (double[2]){2.5, 7}, &out));

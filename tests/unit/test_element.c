@@ -214,37 +214,11 @@ static void MiddleNodesLieOnTheirEdges(void **state)
 /* Positions of gmsh's and VTK's hex27 nodes as their manuals draw them: edges and faces by the corners around them */
 static void Hex27FollowsTheManuals(void **state)
 {
-  const int gmsh_faces[6][3] = {
-    {0,  0,  -1},
-    {0,  -1, 0 },
-    {-1, 0,  0 },
-    {1,  0,  0 },
-    {0,  1,  0 },
-    {0,  0,  1 }
-  };
-  const int vtk_faces[6][3] = {
-    {-1, 0,  0 },
-    {1,  0,  0 },
-    {0,  -1, 0 },
-    {0,  1,  0 },
-    {0,  0,  -1},
-    {0,  0,  1 }
-  };
-  const int vtk_edges[12][2] = {
-    {0, 1},
-    {1, 2},
-    {2, 3},
-    {3, 0},
-    {4, 5},
-    {5, 6},
-    {6, 7},
-    {7, 4},
-    {0, 4},
-    {1, 5},
-    {2, 6},
-    {3, 7}
-  };
-  const Element *e = ElementGet(ELEMENT_HEX27);
+  const int      gmsh_faces[6][3] = {{0, 0, -1}, {0, -1, 0}, {-1, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+  const int      vtk_faces[6][3]  = {{-1, 0, 0}, {1, 0, 0}, {0, -1, 0}, {0, 1, 0}, {0, 0, -1}, {0, 0, 1}};
+  const int      vtk_edges[12][2] = {{0, 1}, {1, 2}, {2, 3}, {3, 0}, {4, 5}, {5, 6},
+                                     {6, 7}, {7, 4}, {0, 4}, {1, 5}, {2, 6}, {3, 7}};
+  const Element *e                = ElementGet(ELEMENT_HEX27);
 
   (void)state;
   for (int f = 0; f < 6; f++) {

@@ -19,14 +19,10 @@ typedef struct {
 } Case;
 
 static const Case cases[] = {
-  {ELEMENT_EDGE2, 2, GEOMETRY_PLANE_STRAIN},
-  {ELEMENT_EDGE3, 2, GEOMETRY_PLANE_STRAIN},
-  {ELEMENT_EDGE2, 2, GEOMETRY_AXISYMMETRIC},
-  {ELEMENT_EDGE3, 2, GEOMETRY_AXISYMMETRIC},
-  {ELEMENT_TRI3,  3, GEOMETRY_SOLID       },
-  {ELEMENT_TRI6,  3, GEOMETRY_SOLID       },
-  {ELEMENT_QUAD4, 3, GEOMETRY_SOLID       },
-  {ELEMENT_QUAD9, 3, GEOMETRY_SOLID       },
+  {ELEMENT_EDGE2, 2, GEOMETRY_PLANE_STRAIN}, {ELEMENT_EDGE3, 2, GEOMETRY_PLANE_STRAIN},
+  {ELEMENT_EDGE2, 2, GEOMETRY_AXISYMMETRIC}, {ELEMENT_EDGE3, 2, GEOMETRY_AXISYMMETRIC},
+  {ELEMENT_TRI3, 3, GEOMETRY_SOLID},         {ELEMENT_TRI6, 3, GEOMETRY_SOLID},
+  {ELEMENT_QUAD4, 3, GEOMETRY_SOLID},        {ELEMENT_QUAD9, 3, GEOMETRY_SOLID},
 };
 enum { CASES = sizeof(cases) / sizeof(*cases) };
 
@@ -202,8 +198,8 @@ static void TributaryAreasAreKnownOnes(void **state)
     double        area;
     const double *share;
   } faces[] = {
-    {ELEMENT_EDGE3, 2, 4,  edge3},
-    {ELEMENT_TRI6,  3, 3,  tri6 },
+    {ELEMENT_EDGE3, 2, 4, edge3},
+    {ELEMENT_TRI6, 3, 3, tri6},
     {ELEMENT_QUAD9, 3, 24, quad9},
   };
 

@@ -25,10 +25,7 @@ static double Exact(const Element *e, int i, int j)
 
 static void test_degree(void **state)
 {
-  static const int triangle[2][2] = {
-    {2, 4},
-    {4, 6}
-  }; /* by order and finer */
+  static const int triangle[2][2] = {{2, 4}, {4, 6}}; /* by order and finer */
 
   (void)state;
   for (int t = 0; t < TYPES; t++) {

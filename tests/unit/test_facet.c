@@ -362,14 +362,12 @@ static void Roof(ElementType type, double turn, Surface *surface)
 
   memset(surface, 0, sizeof(*surface));
   if (type == ELEMENT_EDGE2 || type == ELEMENT_EDGE3) {
-    const double x[5][2] = {
-      {-c,     -s                                     },
-      {0,      0                                      },
-      {c,      -s                                     },
-      {-c / 2, -s / 2 + (type == ELEMENT_EDGE3) * 0.02},
-      {c / 2,  -s / 2 + (type == ELEMENT_EDGE3) * 0.02}
-    };
-    const int left[] = {1, 0, 3}, right[] = {2, 1, 4};
+    const double x[5][2] = {{-c, -s},
+                            {0, 0},
+                            {c, -s},
+                            {-c / 2, -s / 2 + (type == ELEMENT_EDGE3) * 0.02},
+                            {c / 2, -s / 2 + (type == ELEMENT_EDGE3) * 0.02}};
+    const int    left[] = {1, 0, 3}, right[] = {2, 1, 4};
 
     surface->dim   = 2;
     surface->nodes = 5;
@@ -463,12 +461,10 @@ static void Fan(const double z[5], Surface *surface)
 
 static void TestFan(void **state)
 {
-  static const double rims[4][5] = {
-    {-0.6, -0.6, -0.6, -0.6, -0.6},
-    {0.6,  0.6,  0.6,  0.6,  0.6 },
-    {-0.5, 0.4,  -0.3, 0.5,  -0.1},
-    {0,    0,    0,    0,    0   }
-  };
+  static const double rims[4][5] = {{-0.6, -0.6, -0.6, -0.6, -0.6},
+                                    {0.6, 0.6, 0.6, 0.6, 0.6},
+                                    {-0.5, 0.4, -0.3, 0.5, -0.1},
+                                    {0, 0, 0, 0, 0}};
 
   (void)state;
   for (int r = 0; r < 4; ++r) {
@@ -527,15 +523,7 @@ static void TestTouching(void **state)
   surface.dim   = 3;
   surface.nodes = 8;
   memcpy(surface.x,
-         (double[8][3]){
-           {0,  0,  0 },
-           {-1, 0,  0 },
-           {0,  -1, 0 },
-           {0,  0,  -1},
-           {-1, -1, 0 },
-           {0,  -1, -1},
-           {-1, 0,  -1}
-  },
+         (double[8][3]){{0, 0, 0}, {-1, 0, 0}, {0, -1, 0}, {0, 0, -1}, {-1, -1, 0}, {0, -1, -1}, {-1, 0, -1}},
          21 * sizeof(double));
   AddFacet(&surface, ELEMENT_TRI3, 0, (int[]){0, 1, 4});
   AddFacet(&surface, ELEMENT_TRI3, 0, (int[]){0, 4, 2});
@@ -604,15 +592,7 @@ static void TestFreeEdges(void **state)
   memset(&surface, 0, sizeof(surface));
   surface.dim   = 3;
   surface.nodes = 5;
-  memcpy(surface.x,
-         (double[5][3]){
-           {0,    0,   0},
-           {-1,   0,   0},
-           {1,    0,   0},
-           {-0.8, 1,   0},
-           {0.3,  0.3, 0}
-  },
-         15 * sizeof(double));
+  memcpy(surface.x, (double[5][3]){{0, 0, 0}, {-1, 0, 0}, {1, 0, 0}, {-0.8, 1, 0}, {0.3, 0.3, 0}}, 15 * sizeof(double));
   AddFacet(&surface, ELEMENT_TRI3, 5, (int[]){1, 0, 3});
   AddFacet(&surface, ELEMENT_TRI3, 2, (int[]){0, 4, 3});
   AddFacet(&surface, ELEMENT_TRI3, 3, (int[]){0, 2, 4});
@@ -734,11 +714,8 @@ static void TestExtruded(void **state)
   for (int trial = 0; trial < 300; ++trial) {
     const int quadratic = trial % 2;
     double    x[6], solid[27];
-    Facet     edge, face = {
-                      .type  = quadratic ? ELEMENT_QUAD9 : ELEMENT_QUAD4,
-                      .nodes = {0, 1, 2, 3, 4, 5, 6, 7, 8}
-    };
-    Foot plane, space;
+    Facet     edge, face = {.type = quadratic ? ELEMENT_QUAD9 : ELEMENT_QUAD4, .nodes = {0, 1, 2, 3, 4, 5, 6, 7, 8}};
+    Foot      plane, space;
 
     RandomFacet(quadratic ? ELEMENT_EDGE3 : ELEMENT_EDGE2, 0.2, &edge, x);
     Move(2, quadratic ? 3 : 2, x, (double[2]){Random(-1.5, 1.5), Random(-0.6, 0.6)}, x);

@@ -143,14 +143,8 @@ static void TestInvariance(void **state)
   for (int i = 0; i < 6; i++) {
     const int    dim = cases[i][0], degree = cases[i][1];
     const double support = dim == 2 ? 6 : 4.2, shift = 64, slave[3] = {0.5, 0.25, 0.125};
-    double       R[3][3],
-      C[3][3] =
-        {
-          {1,   0.2, 0  },
-          {0.2, 0.7, 0.1},
-          {0,   0.1, 0.3}
-    },
-      RC[3][3] = {{0}}, up[3] = {0}, outward[3], x[3 * MAX], N[3 * (1 + MAX)];
+    double R[3][3], C[3][3] = {{1, 0.2, 0}, {0.2, 0.7, 0.1}, {0, 0.1, 0.3}}, RC[3][3] = {{0}}, up[3] = {0}, outward[3],
+                    x[3 * MAX], N[3 * (1 + MAX)];
     int size;
 
     up[dim - 1] = 1;

@@ -23,11 +23,7 @@ static void AddEdge(Strip *s, PetscInt f, int a, int b)
   const PetscReal t[2]   = {s->x[2 * b] - s->x[2 * a], s->x[2 * b + 1] - s->x[2 * a + 1]};
   const PetscReal length = hypot(t[0], t[1]), n[3] = {t[1] / length, -t[0] / length, 0};
 
-  s->facets[f] = (Facet){
-    .type  = ELEMENT_EDGE2,
-    .nodes = {a, b},
-    .tag   = f
-  };
+  s->facets[f] = (Facet){.type = ELEMENT_EDGE2, .nodes = {a, b}, .tag = f};
   for (int d = 0; d < 3; d++) {
     s->normals[3 * f + d] = n[d];
     s->geometry[a].normal[d] += n[d] / 2;

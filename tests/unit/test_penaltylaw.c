@@ -52,11 +52,7 @@ static void test_factor(void **state)
  * update aims. */
 static void test_constant_force_lands_on_the_edge(void **state)
 {
-  const double start[] =
-    {
-      3e-4, 4e-8
-  },
-               edge[2][2] = {{5e-6, 1e-6}, {PENALTY_AIM_HIGH * 5e-6, PENALTY_AIM_LOW * 1e-6}};
+  const double start[] = {3e-4, 4e-8}, edge[2][2] = {{5e-6, 1e-6}, {PENALTY_AIM_HIGH * 5e-6, PENALTY_AIM_LOW * 1e-6}};
 
   (void)state;
   for (int inside = 0; inside < 2; inside++) {

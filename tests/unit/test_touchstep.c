@@ -27,12 +27,7 @@ static void test_beta(void **state)
 
 static void test_by_count(void **state)
 {
-  const Touch touch[] = {
-    {0.1, 4, 1},
-    {0.2, 2, 1},
-    {0.4, 9, 1},
-    {0.8, 1, 1}
-  };
+  const Touch     touch[] = {{0.1, 4, 1}, {0.2, 2, 1}, {0.4, 9, 1}, {0.8, 1, 1}};
   TouchStepChoice choice;
 
   (void)state;
@@ -45,10 +40,7 @@ static void test_by_count(void **state)
 
 static void test_fewer_than_wanted(void **state)
 {
-  const Touch touch[] = {
-    {0.1, 4, 1},
-    {0.2, 2, 1}
-  };
+  const Touch     touch[] = {{0.1, 4, 1}, {0.2, 2, 1}};
   TouchStepChoice choice;
 
   (void)state;
@@ -60,12 +52,7 @@ static void test_fewer_than_wanted(void **state)
 
 static void test_by_area(void **state)
 {
-  const Touch touch[] = {
-    {0.1, 4, 0.25},
-    {0.2, 2, 0.5 },
-    {0.4, 9, 0.25},
-    {0.8, 1, 3   }
-  };
+  const Touch     touch[] = {{0.1, 4, 0.25}, {0.2, 2, 0.5}, {0.4, 9, 0.25}, {0.8, 1, 3}};
   TouchStepChoice choice;
 
   (void)state;
@@ -79,12 +66,7 @@ static void test_by_area(void **state)
 
 static void test_ties(void **state)
 {
-  const Touch touch[] = {
-    {0.3,     1, 1},
-    {0.3,     2, 1},
-    {0.30001, 3, 1},
-    {0.5,     4, 1}
-  };
+  const Touch     touch[] = {{0.3, 1, 1}, {0.3, 2, 1}, {0.30001, 3, 1}, {0.5, 4, 1}};
   TouchStepChoice choice;
 
   (void)state;

@@ -52,34 +52,20 @@ typedef struct {
 
 #if defined(__AVX512F__)
   #define SWAP_STAGES 3
-static const LaneMask swap_low[SWAP_STAGES] = {
-  {0, 8, 2, 10, 4, 12, 6,  14},
-  {0, 1, 8, 9,  4, 5,  12, 13},
-  {0, 1, 2, 3,  8, 9,  10, 11}
-};
-static const LaneMask swap_high[SWAP_STAGES] = {
-  {1, 9, 3,  11, 5,  13, 7,  15},
-  {2, 3, 10, 11, 6,  7,  14, 15},
-  {4, 5, 6,  7,  12, 13, 14, 15}
-};
+static const LaneMask swap_low[SWAP_STAGES]  = {{0, 8, 2, 10, 4, 12, 6, 14},
+                                                {0, 1, 8, 9, 4, 5, 12, 13},
+                                                {0, 1, 2, 3, 8, 9, 10, 11}};
+static const LaneMask swap_high[SWAP_STAGES] = {{1, 9, 3, 11, 5, 13, 7, 15},
+                                                {2, 3, 10, 11, 6, 7, 14, 15},
+                                                {4, 5, 6, 7, 12, 13, 14, 15}};
 #elif defined(__AVX__)
   #define SWAP_STAGES 2
-static const LaneMask swap_low[SWAP_STAGES] = {
-  {0, 4, 2, 6},
-  {0, 1, 4, 5}
-};
-static const LaneMask swap_high[SWAP_STAGES] = {
-  {1, 5, 3, 7},
-  {2, 3, 6, 7}
-};
+static const LaneMask swap_low[SWAP_STAGES]  = {{0, 4, 2, 6}, {0, 1, 4, 5}};
+static const LaneMask swap_high[SWAP_STAGES] = {{1, 5, 3, 7}, {2, 3, 6, 7}};
 #else
   #define SWAP_STAGES 1
-static const LaneMask swap_low[SWAP_STAGES] = {
-  {0, 2}
-};
-static const LaneMask swap_high[SWAP_STAGES] = {
-  {1, 3}
-};
+static const LaneMask swap_low[SWAP_STAGES]  = {{0, 2}};
+static const LaneMask swap_high[SWAP_STAGES] = {{1, 3}};
 #endif
 
 #ifdef __clang__ /* clang has no __builtin_shuffle() */
