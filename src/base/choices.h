@@ -5,7 +5,7 @@
      LINE(enumerator, word of the scene, object)
 
    The enumerations, the tables, the key of the scene and its reference follow from these lists. material.h, smoother.h,
-   law.h and stepcontrol.h say what each object holds. */
+   contactlaw.h and stepcontrol.h say what each object holds. */
 #pragma once
 
 #define ELASTIC_LAWS(LINE)                            \

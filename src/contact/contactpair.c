@@ -1,7 +1,7 @@
 /* Pairs: surfaces, terms, slave points, offsets and search of each, and what the scene says of it. */
 #include "contactimpl.h"
 #include "search/nodegeometry.h"
-#include "penaltylaw.h"
+#include "penaltyrule.h"
 #include "base/refusal.h"
 
 /* Slave nodes whose tributary area is below this share of the faces around them carry no force. These are the corners

@@ -1,7 +1,7 @@
 /* Penalties and multipliers of a pair over the steps: how they follow the penetrations, and how penetrations relate
    to their window. */
 #include "contactimpl.h"
-#include "penaltylaw.h"
+#include "penaltyrule.h"
 
 /* A penetration is known well enough to be judged when the last iterate moved it by no more than this part of g_min. */
 #define CONTACT_GAPS_CONVERGED 0.1

@@ -1,6 +1,6 @@
 /* What contact shows to reports, probes and results. Nothing here changes the state. */
 #include "contactimpl.h"
-#include "penaltylaw.h"
+#include "penaltyrule.h"
 
 /* Nodes outside the window of their penalty, all pairs; -1: no pair has a window. */
 static PetscErrorCode CountOutside(Contact contact, PetscInt *outside)

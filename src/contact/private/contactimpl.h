@@ -12,7 +12,7 @@
 #include "matrix/blockmatrix.h"
 #include "contact/contact.h"
 #include "smooth/fitderivatives.h"
-#include "law.h"
+#include "contactlaw.h"
 #include "anderson.h"
 #include "contactwork.h"
 #include "search/offset.h"

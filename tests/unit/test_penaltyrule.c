@@ -6,7 +6,7 @@
 #include <stdint.h>
 #include <cmocka.h>
 #include <math.h>
-#include "penaltylaw.h"
+#include "penaltyrule.h"
 
 #define assert_near(a, b) assert_true(fabs((a) - (b)) <= 1e-12 * fabs(b))
 

@@ -1,6 +1,6 @@
 /* The table of contact laws, and the penalty law. */
 #include <string.h>
-#include "law.h"
+#include "contactlaw.h"
 
 /*@
   LawOnsetGap - returns the gap below which there is pressure.

@@ -6,7 +6,7 @@
 #include <stdint.h>
 #include <cmocka.h>
 #include <math.h>
-#include "law.h"
+#include "contactlaw.h"
 
 static void check_derivatives(const LawState *given)
 {

@@ -1,5 +1,5 @@
 /* The penalty parameter of one slave node: its automatic value, and how it follows the penetration. */
-#include "penaltylaw.h"
+#include "penaltyrule.h"
 #include <math.h>
 
 /*@
