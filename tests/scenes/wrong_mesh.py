@@ -39,11 +39,9 @@ refused("missing volume", "no volume group .nothing.*block", "bodies.0.volume=no
 refused("inverted element", "inverted", "mesh.parameters.invert=1")
 refused("triangles with enhanced strains", "formulation: enhanced is for quad4 and hex8 only.*tri3",
         "mesh.parameters.tri=1", "bodies.0.formulation=enhanced")
-refused(
-    "serendipity mesh", "SecondOrderIncomplete",
-    "mesh.file=" +
-    gmsh("serendipity.msh", "-format", "msh41", "-order", "2", "-setnumber", "Mesh.SecondOrderIncomplete", "1"),
-    "mesh.order=2")
+serendipity = gmsh("serendipity.msh", "-format", "msh41", "-order", "2", "-setnumber",
+                   "Mesh.SecondOrderIncomplete", "1")
+refused("serendipity mesh", "SecondOrderIncomplete", f"mesh.file={serendipity}", "mesh.order=2")
 refused("msh 2.2", r"2\.2.*4\.1|4\.1.*2\.2", f"mesh.file={gmsh('old.msh', '-format', 'msh22')}")
 truncated = good.with_name("truncated.msh")
 truncated.write_text(text[: 2 * len(text) // 3])
