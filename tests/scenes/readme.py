@@ -19,7 +19,7 @@ import shutil
 import subprocess
 
 from harness import Check, arguments, SCENES
-from readme_commands import FULL, LIKE, NOT_HERE, NOT_YET
+from readme_commands import FULL, LIKE, NOT_HERE
 
 ROOT = SCENES.parent.parent
 TUTORIAL = ROOT / "doc/pages/tutorial.md"
@@ -186,7 +186,7 @@ def check_paths(path, text, work):
     """Files that a page names in code are in the repository, or are files of the user's that the page shows."""
     for code in sorted({*INLINE.findall(text)}):
         for name in PATH.findall(code) if PATH.match(code) else ():
-            work.check.holds(f"{path.name}: {name}", name in NOT_YET or (work.folder / name).exists())
+            work.check.holds(f"{path.name}: {name}", (work.folder / name).exists())
         if re.fullmatch(r"\w+\.py", code):
             there = any((work.folder / folder / code).exists() for folder in ("tests/scenes", "tests/hard", "scripts"))
             work.check.holds(f"{path.name}: {code}", there)

@@ -41,7 +41,7 @@ FULL = {
     f"{ROLLER} out/by_contact -set \"stepping={{control: contact, initial: 0.1, N_c: 4}}\"": None,
     f"{PYTHON} scripts/plot.py": f"{PYTHON} scripts/plot.py --help",
     f"{PYTHON} scripts/render.py": f"{PYTHON} scripts/render.py --help",
-    f"{PYTHON} tests/layers.py build/obj": f"{PYTHON} tests/layers.py build/obj >layers.txt; test $? -le 1",
+    f"{PYTHON} tests/layers.py build/obj": None,
     "make demo": f"{PYTHON} scripts/demo.py {BURNISH}",
     "make study": f"{PYTHON} scripts/study.py @runs/studies/effects.args {STUDY}",
     "make study QUICK=1": f"{PYTHON} scripts/study.py @runs/studies/hertz.args {STUDY}",
@@ -127,9 +127,4 @@ NOT_HERE = {
     "sbatch --array=0-3 runs/batch/slurm_study.sh runs/pipe_pinch.yaml --vary contact.0.degree=2,4 "
     "--measure plate_force --reference finest":
     (QUEUE, "bash -n runs/batch/slurm_study.sh && bash -n runs/batch/pbs_study.sh"),
-}
-
-# Files that pages name and that are not there yet
-NOT_YET = {
-    "include/burnish.h", "src/run", "tests/library", "tests/library/library.c", "src/report/stepscsv.c",
 }
