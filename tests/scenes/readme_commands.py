@@ -23,9 +23,11 @@ LIKE = {
     f"{PYTHON} scripts/ring_table.py": f"{PYTHON} scripts/ring_table.py --help",
     f"{PYTHON} -m http.server -d out/site": f"timeout 1 {PYTHON} -m http.server 0 -d out/site; test $? = 124",
     "mpirun -x OPENBLAS_CORETYPE": "mpirun -x OPENBLAS_CORETYPE -n 2 build/burnish -version",
-    "make install": "make -o build/burnish -o build/libburnish.a install PREFIX=$WORK/prefix",
     "make install PREFIX=$HOME/.local": "test -x prefix/bin/burnish || "
     "make -o build/burnish -o build/libburnish.a install PREFIX=$WORK/prefix",
+    "mpicc tests/library/library.c $(pkg-config --cflags --libs burnish) -o library":
+    "PKG_CONFIG_PATH=$WORK/prefix/lib/pkgconfig; export PKG_CONFIG_PATH; "
+    "mpicc tests/library/library.c $(pkg-config --cflags --libs burnish) -o library",
 }
 
 # Run in the full set only: as the page shows them (None), or with less to do
@@ -115,8 +117,6 @@ NOT_HERE = {
     "make valgrind":
     ("wants valgrind, which make deps does not install", "bash -n scripts/valgrind.sh && make -n valgrind"),
     "scripts/portability.sh PREFIX": ("wants a second PETSc", "bash -n scripts/portability.sh"),
-    "pkg-config --cflags --libs burnish":
-    ("wants an installed library; install.py runs it on one", "command -v pkg-config"),
     "module load gcc openmpi petsc metis gmsh cmake python":
     ("wants a cluster", "grep -qF 'module load gcc openmpi petsc metis gmsh cmake python' scripts/deps.sh"),
     "spack install petsc+mumps+hdf5+metis gmsh libyaml cjson cmocka cmake":
