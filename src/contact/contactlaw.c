@@ -2,22 +2,6 @@
 #include <string.h>
 #include "contactlaw.h"
 
-/*@
-  LawOnsetGap - returns the gap below which there is pressure.
-
-  Not collective
-
-  Input Parameter:
-. state - penalty, offset and multiplier of a term
-
-  Note:
-  It is the offset, plus the distance over which the multiplier presses before the surfaces meet (length). Plain C.
-@*/
-double LawOnsetGap(const LawState *state)
-{
-  return state->offset + state->multiplier / state->penalty;
-}
-
 /* Chamoret et al. (2004), eq. 15, written as the derivative of psi = eps/2 min(g, 0)^2, so that the tangent (eq. 14) is
    symmetric. With a multiplier lambda the pressure is max(0, lambda - eps g). This is the same law over the gap less
    lambda/eps, and its potential differs by a constant only (Simo and Laursen 1992, Computers & Structures 42, 97-116).

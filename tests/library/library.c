@@ -13,7 +13,8 @@ static PetscErrorCode RunWith(Burnish burnish, const char *scene, const char *ke
   PetscCall(BurnishSet(burnish, key_value));
   PetscCall(BurnishRun(burnish, status));
   PetscCall(BurnishGetMessage(burnish, &message));
-  PetscCall(PetscPrintf(PETSC_COMM_WORLD, "%s: status %d %s\n", key_value, (int)*status, message));
+  PetscCall(
+    PetscPrintf(PETSC_COMM_WORLD, "%s: status %d%s%s\n", key_value, (int)*status, *message ? ": " : "", message));
   PetscFunctionReturn(0);
 }
 

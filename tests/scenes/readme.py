@@ -4,11 +4,12 @@ output that comes.
 Commands are the lines of blocks marked `sh`, the lines behind `$` in blocks marked `console`, whose output follows, and
 inline code that begins with a program and has an argument. readme_commands.py lists those that run in the full set
 only, with other settings, or not at all; every other command runs as it stands, in both sets. The test also fails on a
-command in a block of another kind, on a command in the lists that no page shows, and on a path that does not exist.
+command in a block of another kind, on a command in the lists that no page shows, on a path that does not exist, and on
+a block below `<!-- the file PATH -->` that differs from this file.
 
     readme.py ... --part quick        commands that take no more than a second or two
     readme.py ... --part full         all of them
-    readme.py ... --update yes        writes the outputs of console blocks into the pages instead of comparing them
+    readme.py ... --update yes        writes the outputs of console blocks and the copies of files into the pages
 """
 import json
 import os
@@ -19,7 +20,7 @@ import shutil
 import subprocess
 
 from harness import Check, arguments, SCENES
-from readme_commands import FULL, LIKE, NOT_HERE, NOT_YET
+from readme_commands import FULL, LIKE, NOT_HERE
 
 ROOT = SCENES.parent.parent
 TUTORIAL = ROOT / "doc/pages/tutorial.md"
@@ -27,6 +28,7 @@ PAGES = [ROOT / "README.md", TUTORIAL, *sorted({*(ROOT / "doc/pages").glob("*.md
 FENCE = re.compile(r"^```(\w*)\n(.*?)^```$", re.DOTALL | re.MULTILINE)
 INLINE = re.compile(r"`([^`]+)`")
 FILE = re.compile(r"(?://|#) ([\w/]+\.(?:geo|yaml))\b")  # first line of a block that is a file of the user's
+COPY = re.compile(r"(?<=<!-- the file )(\S+)( -->\n```\w+\n)(.*?)(?=^```$)", re.DOTALL | re.MULTILINE)
 PROGRAM = re.compile(r"\s*(\$ )?(make|mpirun|burnish|build/\S+|scripts/\S+|\w*/?python3?|export|cmake|ctest|pkg-config"
                      r"|sbatch|qsub|module|spack|apt|apt-get|sudo|git|pip)\s+\S")
 KINDS = ("sh", "console", "c", "yaml", "text")
@@ -184,9 +186,9 @@ def check_tables(text, folder, check):
 
 def check_paths(path, text, work):
     """Files that a page names in code are in the repository, or are files of the user's that the page shows."""
-    for code in sorted({*INLINE.findall(text)}):
+    for code in sorted({*INLINE.findall(FENCE.sub("", text))}):
         for name in PATH.findall(code) if PATH.match(code) else ():
-            work.check.holds(f"{path.name}: {name}", name in NOT_YET or (work.folder / name).exists())
+            work.check.holds(f"{path.name}: {name}", (work.folder / name).exists())
         if re.fullmatch(r"\w+\.py", code):
             there = any((work.folder / folder / code).exists() for folder in ("tests/scenes", "tests/hard", "scripts"))
             work.check.holds(f"{path.name}: {code}", there)
@@ -195,7 +197,8 @@ def check_paths(path, text, work):
 def run_page(path, work, files):
     """Runs the commands of a page; its text with the outputs that came."""
     text, check = path.read_text(), work.check
-    written = text
+    written = COPY.sub(lambda copy: copy[1] + copy[2] + (ROOT / copy[1]).read_text(), text)
+    check.holds(f"{path.name} shows files as they are", work.args.update == "yes" or written == text)
     write_files(text, work.folder, check, files)
     for line in hidden(text):
         check.holds(f"{path.name}: a command in a block marked sh or console", False, line)

@@ -14,6 +14,22 @@ typedef struct {
   double multiplier; /* pressure where the gap is at its offset; 0 without augmentation */
 } LawState;
 
+/*@
+  LawOnsetGap - returns the gap below which there is pressure.
+
+  Not collective
+
+  Input Parameter:
+. state - penalty, offset and multiplier of a term
+
+  Note:
+  It is the offset, plus the distance over which the multiplier presses before the surfaces meet (length). Plain C.
+@*/
+static inline double LawOnsetGap(const LawState *state)
+{
+  return state->offset + state->multiplier / state->penalty;
+}
+
 typedef struct {
   double psi;       /* potential (energy per area) */
   double pressure;  /* -psi', not negative (force per area) */
@@ -31,4 +47,3 @@ CONTACT_LAWS(LAW_DECLARE)
 extern const Law *const Laws[]; /* by ContactLawKind */
 
 const Law *LawFind(const char *name);
-double     LawOnsetGap(const LawState *);
