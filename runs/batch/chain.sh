@@ -1,13 +1,13 @@
-# For the job scripts: one link of a chain of jobs that takes a run to its end. Sourced; wants
+# One link of a chain of jobs that takes a run to its end. The job scripts source this file. They set
 #   SCENE, DIR       scene file, directory of the results
 #   BURNISH          the program and its own options, an array
 #   LAUNCH           what starts it on all ranks, an array
 #   resubmit         a command that puts the next link, or this job again, into the queue
 # shellcheck shell=bash
 
-# run_link: goes on from DIR's checkpoint, or begins; ends with burnish's exit status. TERM and USR1 to the job script end the run after the current step,
-# with a checkpoint: the launcher runs in the background, as bash looks at signals between commands only, and gets USR1, as many launchers kill
-# their ranks a second after a TERM.
+# run_link: begins the run, or goes on from the checkpoint in DIR. It returns the exit status of burnish. TERM and USR1 to
+# the job script end the run after the current step, with a checkpoint. The launcher runs in the background, because bash
+# handles signals only between commands. It gets USR1, because many launchers kill their ranks a second after a TERM.
 run_link() {
   local command=("$SCENE" -o "$DIR") launcher='' asked status
   [ ! -e "$DIR/checkpoint.h5" ] || command=(-restart "$DIR")
@@ -17,13 +17,14 @@ run_link() {
   while asked=; do
     wait "$launcher"
     status=$?
-    if [ -z "$asked" ] || [ "$status" -le 128 ]; then break; fi # else a signal ended the wait, not the run
+    if [ -z "$asked" ] || [ "$status" -le 128 ]; then break; fi # otherwise a signal ended the wait, not the run
   done
   trap - TERM USR1
   return "$status"
 }
 
-# run_chain: one link, and the next one queued if it was stopped; a run that stops without a step taken is not queued again.
+# run_chain: runs one link and queues the next one if the run was stopped. A run that was stopped before it took a step is
+# not queued again.
 run_chain() {
   local before status
   before=$(stat -c %Y.%i "$DIR/checkpoint.h5" 2>/dev/null)

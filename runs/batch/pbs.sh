@@ -1,12 +1,15 @@
 #!/bin/bash
-# A run as a chain of PBS jobs: each goes on from the checkpoint of the one before, until the run has ended.
+# A run as a chain of PBS jobs. Each job goes on from the checkpoint of the one before, until the run has ended. Submit it
+# from the root of Burnish:
 #   qsub -v SCENE=runs/pipe_pinch.yaml,DIR=out/pipe_pinch runs/batch/pbs.sh
-# from the root of Burnish. To be adapted here, as the next job knows no options of qsub: nodes, ranks, time, queue. Meshes first where compute nodes have no gmsh: burnish -mesh SCENE.yaml
+# Adapt nodes, ranks, time and queue in this file, because the next job does not know the options of qsub. Where compute
+# nodes have no gmsh, make the mesh before: burnish -mesh SCENE.yaml
 #PBS -N burnish
 #PBS -l select=1:ncpus=2:mpiprocs=2:ompthreads=1
 #PBS -l walltime=12:00:00
 #PBS -j oe
-# PBS sends no signal ahead of the end that all sites pass on: the run watches its time itself. LIMIT: walltime in seconds, less what starting takes.
+# Not all sites pass on a signal of PBS before the end of a job, so the run watches its time itself. LIMIT is the walltime
+# in seconds minus the time that the start takes.
 set -u
 LIMIT=${LIMIT:-43000}
 cd "${PBS_O_WORKDIR:-.}" || exit 4

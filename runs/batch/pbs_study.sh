@@ -1,7 +1,8 @@
 #!/bin/bash
-# A study as a PBS job array, several runs in each job; scripts/study.py with the same words then makes the table.
+# A study as a PBS job array with several runs in each job. Afterwards scripts/study.py with the same arguments makes the
+# table. Submit it from the root of Burnish:
 #   qsub -J 0-3 -v "COUNT=4,STUDY=runs/pipe_pinch.yaml --vary contact.0.degree=2;4" runs/batch/pbs_study.sh
-# from the root of Burnish. A semicolon stands for a comma, which ends a value of qsub's -v.
+# A semicolon stands for a comma, because a comma ends a value of qsub's -v.
 #PBS -N burnish-study
 #PBS -l select=1:ncpus=1:mpiprocs=1:ompthreads=1
 #PBS -l walltime=12:00:00

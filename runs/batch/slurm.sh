@@ -1,7 +1,8 @@
 #!/bin/bash
-# A run as a Slurm job that goes back into the queue until the run has ended, each time from the checkpoint of the time before.
+# A run as a Slurm job that goes back into the queue until the run has ended. Each time it goes on from the last
+# checkpoint. Submit it from the root of Burnish:
 #   sbatch runs/batch/slurm.sh runs/pipe_pinch.yaml out/pipe_pinch [burnish's and PETSc's options]
-# from the root of Burnish. To be adapted: nodes, ranks, time, partition. Meshes first where compute nodes have no gmsh: burnish -mesh SCENE.yaml
+# Adapt nodes, ranks, time and partition. Where compute nodes have no gmsh, make the mesh before: burnish -mesh SCENE.yaml
 #SBATCH --job-name=burnish
 #SBATCH --nodes=1
 #SBATCH --ntasks-per-node=2
@@ -11,8 +12,8 @@
 #SBATCH --requeue
 #SBATCH --open-mode=append
 #SBATCH --output=%x-%j.out
-# --signal: to this script (B), 300 s before the end: more than a step and a checkpoint take. --ntasks-per-node: one rank a core; few ranks are
-# faster where memory bandwidth ends first.
+# --signal: this script (B) gets the signal 300 s before the end, which is more than a step and a checkpoint take.
+# --ntasks-per-node: one rank for each core. Fewer ranks are faster where the memory bandwidth is the limit.
 set -u
 SCENE=$1 DIR=$2
 cd "${SLURM_SUBMIT_DIR:-.}" || exit 4
