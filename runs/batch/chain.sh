@@ -5,9 +5,10 @@
 #   resubmit         a command that puts the next link, or this job again, into the queue
 # shellcheck shell=bash
 
-# run_link: begins the run, or goes on from the checkpoint in DIR. It returns the exit status of burnish. TERM and USR1 to
-# the job script end the run after the current step, with a checkpoint. The launcher runs in the background, because bash
-# handles signals only between commands. It gets USR1, because many launchers kill their ranks a second after a TERM.
+# run_link: begins the run, or goes on from the checkpoint in DIR. It returns the exit status of burnish. TERM and
+# USR1 to the job script end the run after the current step, with a checkpoint. The launcher runs in the background,
+# because bash handles signals only between commands. It gets USR1, because many launchers kill their ranks a second
+# after a TERM.
 run_link() {
   local command=("$SCENE" -o "$DIR") launcher='' asked status
   [ ! -e "$DIR/checkpoint.h5" ] || command=(-restart "$DIR")
@@ -23,8 +24,8 @@ run_link() {
   return "$status"
 }
 
-# run_chain: runs one link and queues the next one if the run was stopped. A run that was stopped before it took a step is
-# not queued again.
+# run_chain: runs one link and queues the next one if the run was stopped. A run that was stopped before it took a
+# step is not queued again.
 run_chain() {
   local before status
   before=$(stat -c %Y.%i "$DIR/checkpoint.h5" 2>/dev/null)

@@ -1,6 +1,6 @@
 #!/bin/bash
-# A run as a chain of PBS jobs. Each job goes on from the checkpoint of the one before, until the run has ended. Submit it
-# from the root of Burnish:
+# A run as a chain of PBS jobs. Each job goes on from the checkpoint of the one before, until the run has ended.
+# Submit it from the root of Burnish:
 #   qsub -v SCENE=runs/pipe_pinch.yaml,DIR=out/pipe_pinch runs/batch/pbs.sh
 # Adapt nodes, ranks, time and queue in this file, because the next job does not know the options of qsub. Where compute
 # nodes have no gmsh, make the mesh before: burnish -mesh SCENE.yaml
@@ -8,8 +8,8 @@
 #PBS -l select=1:ncpus=2:mpiprocs=2:ompthreads=1
 #PBS -l walltime=12:00:00
 #PBS -j oe
-# Not all sites pass on a signal of PBS before the end of a job, so the run watches its time itself. LIMIT is the walltime
-# in seconds minus the time that the start takes.
+# Not all sites pass on a signal of PBS before the end of a job, so the run watches its time itself. LIMIT is the
+# walltime in seconds minus the time that the start takes.
 set -u
 LIMIT=${LIMIT:-43000}
 cd "${PBS_O_WORKDIR:-.}" || exit 4

@@ -1,6 +1,6 @@
 #!/bin/bash
-# A study as a PBS job array with several runs in each job. Afterwards scripts/study.py with the same arguments makes the
-# table. Submit it from the root of Burnish:
+# A study as a PBS job array with several runs in each job. Afterwards scripts/study.py with the same arguments makes
+# the table. Submit it from the root of Burnish:
 #   qsub -J 0-3 -v "COUNT=4,STUDY=runs/pipe_pinch.yaml --vary contact.0.degree=2;4" runs/batch/pbs_study.sh
 # A semicolon stands for a comma, because a comma ends a value of qsub's -v.
 #PBS -N burnish-study

@@ -2,7 +2,8 @@
 # A run as a Slurm job that goes back into the queue until the run has ended. Each time it goes on from the last
 # checkpoint. Submit it from the root of Burnish:
 #   sbatch runs/batch/slurm.sh runs/pipe_pinch.yaml out/pipe_pinch [burnish's and PETSc's options]
-# Adapt nodes, ranks, time and partition. Where compute nodes have no gmsh, make the mesh before: burnish -mesh SCENE.yaml
+# Adapt nodes, ranks, time and partition. Where compute nodes have no gmsh, make the mesh before: burnish -mesh
+# SCENE.yaml
 #SBATCH --job-name=burnish
 #SBATCH --nodes=1
 #SBATCH --ntasks-per-node=2

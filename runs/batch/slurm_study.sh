@@ -1,6 +1,6 @@
 #!/bin/bash
-# A study as a Slurm job array with several runs in each job. Afterwards scripts/study.py with the same arguments makes the
-# table. Submit it from the root of Burnish:
+# A study as a Slurm job array with several runs in each job. Afterwards scripts/study.py with the same arguments
+# makes the table. Submit it from the root of Burnish:
 #   sbatch --array=0-3 runs/batch/slurm_study.sh runs/pipe_pinch.yaml --vary contact.0.degree=2,4 \
 #     --vary mesh.parameters.n_arc=12,24 --measure plate_force --reference finest
 #SBATCH --job-name=burnish-study
