@@ -44,8 +44,6 @@ struct _n_FreeModes {
   double   *loose;
 };
 
-/* ---------- pieces ---------- */
-
 /* Measures the bounding box of each piece: the same numbers on any number of ranks. */
 static PetscErrorCode MeasurePieces(FreeModes modes)
 {
@@ -119,8 +117,6 @@ static PetscErrorCode NamePieces(FreeModes modes)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ---------- supports ---------- */
-
 /* Marks motions that the geometry does not have as held. */
 static void HoldImpossible(Geometry geometry, double gram[])
 {
@@ -186,8 +182,6 @@ static PetscErrorCode FindSupported(FreeModes modes, Loads loads)
   PetscCall(PetscFree(gram));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
-
-/* ---------- contact ---------- */
 
 /* Marks the pieces that a surface is part of. A rigid tool and an analytic master are part of none. */
 static PetscErrorCode PiecesOfSurface(FreeModes modes, const char *name, int on[])
@@ -399,8 +393,6 @@ PetscErrorCode FreeModesDestroy(FreeModes *modes)
   PetscCall(PetscFree(*modes));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
-
-/* ---------- in words ---------- */
 
 static double VectorLength(const double v[3])
 {

@@ -132,8 +132,6 @@ PetscErrorCode ArchiveCreate(MPI_Comm comm, const char *name, PetscInt64 bytes, 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ------------------------------------------------------------------------------------------------------ the head */
-
 /* The head of a file of this version. */
 static void HeadFill(PetscInt64 bytes, uint64_t checksum, char head[ARCHIVE_HEAD])
 {
@@ -228,8 +226,6 @@ PetscErrorCode ArchiveOpen(MPI_Comm comm, const char *name, Archive *archive)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ------------------------------------------------------------------------------------------------------- closing */
-
 /* Writes the head on rank 0 and sends everything to the disk. Returns the cause of a failure, or 0. */
 static int WriteHead(const char *name, const char head[ARCHIVE_HEAD])
 {
@@ -321,8 +317,6 @@ PetscBool ArchiveLoads(Archive archive)
   return archive->loads;
 }
 
-/* ------------------------------------------------------------------------------------------------------- reading */
-
 /* Opens a dataset for reading. Refuses one that is missing or has another number of values than wanted. A negative
    number allows any. */
 static PetscErrorCode OpenDataset(Archive a, const char *name, hssize_t values, hid_t *data, hsize_t *size)
@@ -411,8 +405,6 @@ static PetscErrorCode ArchiveShared(Archive a, const char *name, PetscInt n, hid
     PetscCall(Hdf5TableWrite(a->file, name, (hsize_t)n, 0, a->rank ? 0 : (hsize_t)n, 1, type, values));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
-
-/* ------------------------------------------------------------------------------------------------------ the values */
 
 /*@
   ArchiveReals - saves or loads numbers that all ranks share.

@@ -37,7 +37,7 @@ static double PointVolume(const Element *e, int p, int dim, Geometry geometry, c
   return geometry == GEOMETRY_AXISYMMETRIC ? volume * two_pi * Radius(e, p, dim, X) : volume;
 }
 
-/* Cauchy stress P F^T / det F; small strains: P itself */
+/* Computes the Cauchy stress P F^T / det F. With small strains it is P itself. */
 static void CauchyStress(const double H[9], const double P[9], int finite, double stress[6])
 {
   static const int component[6][2] = {{0, 0}, {1, 1}, {2, 2}, {0, 1}, {1, 2}, {0, 2}};

@@ -126,7 +126,7 @@ static void SetMaterial(BatchCall *call, const double *E, const double *nu)
 
   Note:
   Solids in plane strain have unit thickness. Axisymmetric quantities are over 360 degrees. A state with J <= 0 or NaN
-is not admissible, but all arrays hold finite numbers if X and u do. Every formulation has an energy; f and K are its
+  is not admissible, but all arrays hold finite numbers if X and u do. Every formulation has an energy; f and K are its
   derivatives. K is full and symmetric.
 
   Source:

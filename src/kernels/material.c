@@ -8,7 +8,14 @@
    J of an accepted state. */
 static const double jacobian_floor = 1e-8;
 
-/* Hooke's law: P = lambda tr(e) 1 + 2 mu e with e = sym H. */
+/*@
+  MaterialLaw_Linear - Hooke's law: P = lambda tr(e) 1 + 2 mu e with e = sym H.
+
+  Not collective
+
+  Note:
+  A MaterialLawFn; material.h explains the arguments. Plain C.
+@*/
 void MaterialLaw_Linear(const Lanes H[9], const Lanes *dilatation, const Lanes *lambda, const Lanes *mu, Lanes *W,
                         Lanes P[9], Lanes A[MATERIAL_TANGENT_SIZE])
 {
@@ -33,8 +40,14 @@ void MaterialLaw_Linear(const Lanes H[9], const Lanes *dilatation, const Lanes *
   }
 }
 
-/* St. Venant-Kirchhoff's law: S = lambda tr(E) 1 + 2 mu E with Green's strain E, P = F S. Source: Bonet and Wood,
-   section 6.4. */
+/*@
+  MaterialLaw_Svk - St. Venant-Kirchhoff's law: S = lambda tr(E) 1 + 2 mu E with Green's strain E, P = F S.
+
+  Not collective
+
+  Note:
+  A MaterialLawFn; material.h explains the arguments. Source: Bonet and Wood, section 6.4.
+@*/
 void MaterialLaw_Svk(const Lanes H[9], const Lanes *dilatation, const Lanes *lambda, const Lanes *mu, Lanes *W,
                      Lanes P[9], Lanes A[MATERIAL_TANGENT_SIZE])
 {
@@ -79,8 +92,15 @@ void MaterialLaw_Svk(const Lanes H[9], const Lanes *dilatation, const Lanes *lam
   }
 }
 
-/* Compressible neo-Hookean law: W = mu/2 (I1 - 3) - mu ln J + lambda/2 (ln J)^2. Source: Bonet and Wood,
-   section 6.4.3. */
+/*@
+  MaterialLaw_NeoHookean - compressible neo-Hookean law: W = mu/2 (I1 - 3) - mu ln J + lambda/2 (ln J)^2.
+
+  Not collective
+
+  Note:
+  A MaterialLawFn; material.h explains the arguments. Source: Bonet and Wood, section
+  6.4.3.
+@*/
 void MaterialLaw_NeoHookean(const Lanes H[9], const Lanes *dilatation, const Lanes *lambda, const Lanes *mu, Lanes *W,
                             Lanes P[9], Lanes A[MATERIAL_TANGENT_SIZE])
 {

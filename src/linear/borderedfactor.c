@@ -129,8 +129,6 @@ PetscInt BorderedFactorCount(BorderedFactor b)
   return b->count;
 }
 
-/* ---------- entries ---------- */
-
 /*@
   BorderedFactorCountEntries - counts the entries of this rank's vectors in the bordered matrix.
 
@@ -197,8 +195,6 @@ void BorderedFactorTake(BorderedFactor b, PetscScalar *value)
     *value++ = -1;
   }
 }
-
-/* ---------- order ---------- */
 
 /* Finds for each vector of all ranks the last of its rows in the elimination of K; on the first rank. */
 static PetscErrorCode FindLast(BorderedFactor b, PetscInt *last)

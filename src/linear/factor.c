@@ -21,8 +21,6 @@ enum { FACTOR_SCALING = 1 };
    few more entries, and new memory costs more than writing the entries does. */
 #define FACTOR_ROOM 1.25
 
-/* ---------- parameters ---------- */
-
 /*@
   FactorCheckOptions - checks MUMPS's parameters among PETSc's options.
 
@@ -185,8 +183,6 @@ PetscBool FactorHasBorder(Factor f)
 {
   return f->bordered;
 }
-
-/* ---------- the matrix ---------- */
 
 /* The first entry of local row r, of number start + r, that is not below the diagonal. Columns ascend, so bisection
    finds it. */

@@ -13,8 +13,6 @@ enum { FACTOR_COLUMNS = 128 };
 
 #define MPI_MUMPSINT (sizeof(MUMPS_INT) == sizeof(int64_t) ? MPI_INT64_T : MPI_INT32_T)
 
-/* ---------- solutions ---------- */
-
 /*@
   FactorSolutionForget - forgets on which ranks the last factor's unknowns are.
 
@@ -163,8 +161,6 @@ PetscErrorCode FactorSolve(Factor f, Vec b, Vec x)
   PetscCall(VecRestoreArrayRead(b, &from));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
-
-/* ---------- many columns with few entries ---------- */
 
 /* Entries of right-hand sides that differ from zero: of this rank, or of all ranks on the first one */
 typedef struct {

@@ -26,8 +26,6 @@ typedef struct _n_GaussSeidel {
   PetscReal    keep, add; /* step = keep (last step) + add z */
 } *GaussSeidel;
 
-/* ---------- diagonal ---------- */
-
 /* Inverts a block by the method of Gauss and Jordan. A singular block gets an inverse of zero, so that its unknowns
    stay as they are. Both are column-major. */
 static void InvertBlock(int n, const float *block, PetscReal *inverse)
@@ -62,8 +60,6 @@ static void InvertBlock(int n, const float *block, PetscReal *inverse)
     }
   }
 }
-
-/* ---------- sweeps ---------- */
 
 /* Finds the residual of a node: it falls by A (guess), or by A (step) = keep A (last step) + add A z. */
 LANES_INLINE void GaussSeidelFindResidual(const int size, const ResidualKind what, GaussSeidel g, PetscInt place)
@@ -179,8 +175,6 @@ static PetscErrorCode SweepBothWays(GaussSeidel g)
   PetscCall(SweepAll(g, BACKWARD));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
-
-/* ---------- the preconditioner ---------- */
 
 static PetscErrorCode CopyFrom(GaussSeidel g, Vec from, PetscReal *to)
 {

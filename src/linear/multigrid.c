@@ -56,8 +56,6 @@ struct _n_Multigrid {
   VecScatter to_interface, to_ghosts;
 };
 
-/* ---------- whole nodes ---------- */
-
 /* Numbers all dofs of this rank's nodes that have a free dof. */
 static PetscErrorCode MultigridNumberNodes(Multigrid m)
 {
@@ -398,8 +396,6 @@ static PetscErrorCode ApplyBodies(Multigrid m, Vec right, Vec left)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ---------- interface ---------- */
-
 static PetscErrorCode ForgetInterface(Multigrid m)
 {
   PetscFunctionBeginUser;
@@ -606,8 +602,6 @@ static PetscErrorCode AddInterface(Multigrid m, Vec right, Vec left)
   PetscCall(ISRestoreIndices(m->interface, &own));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
-
-/* ---------- the preconditioner ---------- */
 
 /* Finds the effort of the last solve: iterations for each power of ten in the residual; 0 where the solve was too short
    to measure it. The first iteration does not count. It is the interface's, whose stiff forces may be all that there is

@@ -2,8 +2,6 @@
 #include "sweeporder.h"
 #include "matrix/matrixrows.h"
 
-/* ---------- colours of ranks ---------- */
-
 /* Lists the ranks that own ghosts of this one, ascending. ranks: room for all ranks */
 static void SweepOrderListNeighbours(PetscInt n, const PetscInt *row, const PetscInt *ranges, PetscMPIInt *ranks,
                                      PetscMPIInt *count)
@@ -68,8 +66,6 @@ static PetscErrorCode PlaceGhosts(SweepOrder o, Mat mat, const PetscInt *row)
   PetscCall(PetscFree2(ranks, colour));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
-
-/* ---------- nodes ---------- */
 
 /* Finds the nodes of other ranks that are coupled to this one, and how their values come. Nodes are taken as a whole,
    even where some of their rows are no columns here. *row: first row of each; the caller frees it. */

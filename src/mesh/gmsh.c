@@ -32,9 +32,6 @@ extern char **environ;
 /* Room in a path, in bytes, for "/mesh-", hash, process number and ending. */
 #define TEXT_PARTS_IN_NAME 64
 
-/* ------------------------------------------------------------------------------------------------------ running gmsh
- */
-
 /* Tells whether an environment variable belongs to MPI. A gmsh that is linked with MPI would take itself for one of our
    ranks. */
 static PetscBool EnvironmentIsMPI(const char *entry)
@@ -129,9 +126,6 @@ static void ErrorLines(const char *output, char *text, size_t size)
     lines++;
   }
 }
-
-/* ------------------------------------------------------------------------------------------------------- fingerprint
- */
 
 /* What goes into a mesh. The content is hashed by FNV-1a (64 bits; Fowler, Noll, Vo), which needs no library and
    spreads well enough for a file name. */
@@ -246,9 +240,6 @@ static PetscErrorCode FingerprintScene(Scene scene, uint64_t *content, Complaint
   PetscCall(GeoParametersReset(&print.declared));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
-
-/* ------------------------------------------------------------------------------------------------------------ meshes
- */
 
 /* Finds the newest mesh of this content in the directory, whichever gmsh made it. */
 static PetscErrorCode FindMesh(const char *directory, const char *prefix, char *file, PetscBool *found)

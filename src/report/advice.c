@@ -28,8 +28,6 @@
 typedef int (*RunRuleFn)(const RunFigures *, char *text);
 typedef int (*PairRuleFn)(const RunFigures *, const PairFigures *, char *text);
 
-/* ---------- pairs ---------- */
-
 static int PenetrationIsDeep(const RunFigures *figures, const PairFigures *pair, char *text)
 {
   const SceneContact   *scene   = pair->scene;
@@ -99,8 +97,6 @@ static int UpdatesAreFew(const RunFigures *figures, const PairFigures *pair, cha
 
 static const PairRuleFn pair_rules[] = {PenetrationIsDeep, FacetsAreCoarse, FitsFallBack, WindowIsMissed,
                                         UpdatesAreFew};
-
-/* ---------- the run ---------- */
 
 static int StepsFail(const RunFigures *figures, char *text)
 {

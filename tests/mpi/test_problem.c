@@ -12,9 +12,6 @@ static const PartsBlock Bar[]    = {{"bar", 3, 1, {0, 3}, {0, 1}}};
 
 static Parts parts;
 
-/* ----------------------------------------------------------------------------------------------------------- problem
- */
-
 static double Residual(Parts *p, const PetscReal *u, PetscReal *f)
 {
   PetscReal energy;
@@ -191,9 +188,6 @@ static void test_round_off(void **state)
   OK(VecDestroy(&F));
   PartsDestroy(&parts);
 }
-
-/* ------------------------------------------------------------------------------------------------------------ solver
- */
 
 /* The model of parts.scene; the problem of parts goes, because a model makes its own. */
 static Model Start(void)
