@@ -657,7 +657,7 @@ PetscErrorCode ArchiveRows(Archive a, const char *name, const Hdf5Table *rows, i
   Input/Output Parameters:
 + n     - number of bytes of this rank
 - bytes - are saved behind those of the ranks before; loaded, each rank gets an equal share, to be freed with
-PetscFree()
+  PetscFree()
 @*/
 PetscErrorCode ArchiveBytes(Archive a, const char *name, PetscInt64 *n, char **bytes)
 {

@@ -97,7 +97,7 @@ static void ClearColumn(int m, int n, int p, int column, double rows[])
 
   Note:
   Returns the number of rows. The largest diagonal entry is the pivot of each elimination. Elimination ends when no
-pivot exceeds the tolerance; the columns that are left are free. The basis depends on the order of elimination;
+  pivot exceeds the tolerance; the columns that are left are free. The basis depends on the order of elimination;
   RigidReduce() makes it unique.
 @*/
 int RigidFree(int n, double gram[], double tolerance, double free[])

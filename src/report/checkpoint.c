@@ -275,7 +275,7 @@ PetscErrorCode CheckpointRead(Checkpoint checkpoint)
 
 /*@
   CheckpointWrite - writes the state of the last accepted step, under a temporary name until it is whole and on the
-disk.
+  disk.
 
   Collective
 

@@ -284,7 +284,7 @@ static PetscErrorCode ResultsArchiveUsage(Results results, Archive archive)
 
   Note:
   Saving also sends steps.csv to the disk. Loading comes between ResultsCreate() and ResultsStart(), which then takes
-the files of the directory back to this step; no file is touched before.
+  the files of the directory back to this step; no file is touched before.
 @*/
 PetscErrorCode ResultsArchive(Results results, Archive archive)
 {

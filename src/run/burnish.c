@@ -88,7 +88,7 @@ PetscErrorCode BurnishSetScene(Burnish burnish, const char *file)
 
   Note:
   Edits are made in order, after BurnishSetScene(). A wrong one is refused by BurnishRun(). With BurnishSetRestart()
-only values of output, solver and stepping may be changed.
+  only values of output, solver and stepping may be changed.
 @*/
 PetscErrorCode BurnishSet(Burnish burnish, const char *key_value)
 {
