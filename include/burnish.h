@@ -5,6 +5,12 @@
    process: wrong input in the scene or in the mesh comes back as the status BURNISH_WRONG_INPUT with a message, and the
    program can go on with another scene. tests/library/library.c is a small example.
 
+   BurnishSetScene() and BurnishSetRestart() forget the values of BurnishSet(). Directory, overwrite and quiet stay
+   until they are set again. A message and the path of a mesh file are valid until the next run or BurnishDestroy(). The
+   value of a probe is NaN where it has none, for example without contact. Meshes that are made go to out/ in the
+   working directory. One object runs at a time in a process, because PETSc's options and error handlers belong to the
+   process.
+
    All functions are collective on the communicator of the object, unless they say otherwise. A function returns a code
    of PETSc other than 0 only for an internal error, a failure of the machine (memory, disk), or a wrong call. After
    such a code from a run, other ranks may still wait for this one, so that the program should end with MPI_Abort(). */

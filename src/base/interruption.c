@@ -8,7 +8,8 @@
    checkpoints included. It has room for one more step, for a checkpoint that takes as long, and for the last output. */
 #define INTERRUPTION_MARGIN 3.0
 
-/* In ascending order of rank: different ranks may know of different causes, and the last of them counts. */
+/* Causes in ascending order of priority. The ranks of MPI may know of different causes; the one with the highest
+   priority counts. */
 enum { ASKED_NONE, ASKED_LIMIT, ASKED_USR1, ASKED_TERM };
 static const char *const causes[] = {NULL, "-time_limit is near", "SIGUSR1", "SIGTERM"};
 

@@ -2,8 +2,8 @@
    which the tangent is singular whatever the load. They are found from the mesh, the supports and the contact surfaces
    before anything is solved.
 
-   FreeModesCreate() finds them; FreeModesReport() prints them, FreeModesRefuse() ends the program where a body can
-   never be held; FreeModesDestroy(). FreeModesUnheld() answers a simpler question without the object. */
+   FreeModesCreate() finds them; FreeModesReport() prints them, FreeModesRefuse() refuses a scene with a body that
+   can never be held; FreeModesDestroy(). FreeModesUnheld() answers a simpler question without the object. */
 #pragma once
 #include "bodies/loads.h"
 

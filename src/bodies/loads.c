@@ -276,7 +276,7 @@ static PetscErrorCode LoadsCreateForces(Loads loads)
 
   Note:
   Supported and imposed dofs become constraints of the mesh's local section. Call it before any matrix or vector is
-  made. It refuses (exit 1) two rules for one component of a node that do not agree.
+  made. It refuses two rules for one component of a node that do not agree.
 @*/
 PetscErrorCode LoadsCreate(Mesh mesh, Scene scene, Loads *out)
 {

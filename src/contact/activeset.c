@@ -1,8 +1,8 @@
 /* Which contact terms press at the end of a linear step: Newton's method on the step's own contact problem. */
 #include "contact/activeset.h"
 
-/* Sets that are tried with the columns at hand. Each follows from the gaps that the one before leads to. What has not
-   converged by then repeats itself. */
+/* Most active sets that are tried with the columns that are known. Each set follows from the gaps of the one before.
+   Sets that have not converged by then repeat themselves. */
 #define ACTIVE_SET_MAX_SETS 30
 
 /* Rounding of a pressure, as a part of it. */
@@ -98,8 +98,9 @@ PetscErrorCode ActiveSetAddColumns(ActiveSet p, PetscInt m, const PetscInt *whic
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The pressure of residual and tangent at a travel, less the law's, is start + rate travel. Both vanish where
-   residual and tangent have the term as the law has it. */
+/* Residual and tangent give a term a pressure that is linear in its travel. The difference between this pressure and
+   that of the law is start + rate * travel. Both numbers are zero where residual and tangent treat the term as the law
+   does. */
 static void Excess(const ActiveSetTerm *term, PetscBool pressed, PetscReal *start, PetscReal *rate)
 {
   *start = term->pressure + (pressed ? term->penalty * term->opening : 0);
@@ -121,7 +122,8 @@ static PetscInt Missing(ActiveSet p, PetscInt *which)
   return m;
 }
 
-/* Solves for the excess of the set at hand: e - rate (travel - G e) = start. regular: the matrix is not singular. */
+/* Solves for the excess pressures e of the present set: e - rate (travel - G e) = start. *regular is PETSC_TRUE if the
+   matrix is not singular. */
 static PetscErrorCode Balance(ActiveSet p, PetscBool *regular)
 {
   const PetscInt m = p->m;

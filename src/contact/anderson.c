@@ -5,8 +5,8 @@
    iteration, 3 need 33 iterations, 5 need 40, and more than 5 do not always converge. */
 #define ANDERSON_DEPTH 3
 
-/* Least part of its square that a difference keeps for itself where the others nearly combine to it. The rest is
-   round-off. */
+/* Smallest pivot in the Cholesky factorisation of the least-squares problem, as a part of the squared norm of the
+   difference. Smaller pivots are round-off of differences that are nearly linearly dependent. */
 #define ANDERSON_RIDGE 1e-10
 
 struct _n_Mixing {

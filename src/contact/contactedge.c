@@ -2,12 +2,13 @@
 #include "contact/contactedge.h"
 #include <math.h>
 
-/* Nodes from the one that moments are taken about to the last loaded one, and nodes between the two that they are
-   taken about. Nearer to the edge the answer jumps as nodes come into contact; farther from it the pressure is no
-   root. */
+/* Moments are taken about two nodes. The nearer one is NODES_BEYOND nodes inside the last loaded node, the other one
+   NODES_APART nodes farther inside. Nearer to the edge the result jumps when a node comes into contact. Farther from
+   the edge the pressure is no longer a square root of the distance. */
 enum { NODES_BEYOND = 2, NODES_APART = 2 };
 
-/* A root p = c sqrt(d - y) from y = 0 to d has the moment 4/15 c d^(5/2) about y = 0: the power of d. */
+/* The pressure p = c sqrt(d - y) between y = 0 and d has the moment 4/15 c d^(5/2) about y = 0. This is the power
+   of d. */
 #define POWER_OF_MOMENT 2.5
 
 /* Counts nodes in a row, inwards from the node `last`, over which the pressure rises. It looks at the outer half of

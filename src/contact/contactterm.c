@@ -168,10 +168,10 @@ LawState ContactTermState(const ContactPair *pair, PetscInt c, PetscReal t, Pets
                     .multiplier = pair->now.multiplier[c]};
 }
 
-/* Sets what a linear step counts on of an open term. What was closed stays closed, pressed or pulled. What touches at
-   the start of a run resists, for a body that only contact holds. In surface to surface contact the mean over the
-   faces around a node that touches is open by their curvature. All such terms are pulled, because those that only
-   resist would hold the others open. */
+/* Sets the law of an open term during a linear step. A term that was closed stays closed, with pressure or tension. A
+   term that touches at the start of a run gets its stiffness, because the body may be held by contact alone. In surface
+   to surface contact the mean gap over the faces around a touching node is positive because of their curvature. These
+   terms also get the tension that closes their gap; with the stiffness alone they would hold the others open. */
 static void TermHold(const ContactPair *pair, PetscInt c, const LawState *state, PetscReal gap, LawValue *value)
 {
   const PetscBool closed = pair->held[c], means = (PetscBool)(pair->formulation.surface && pair->fit.fitted);

@@ -106,8 +106,8 @@ PetscErrorCode ContactVectorsFree(ContactVectors *vectors)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Adds a vector of zeros in the rows that the kept pattern of the tangent couples with a slave node. *n is their
-   number; 0: the pattern has none of the node. */
+/* Adds a vector with zeros in the rows that the kept pattern of the tangent couples with a slave node. *n is the number
+   of these rows. It is 0 if the node is not in the pattern. */
 static PetscErrorCode AddZeros(Contact contact, PetscInt node, PetscInt *n)
 {
   const int       dim = contact->mesh->dim;

@@ -414,7 +414,7 @@ static PetscErrorCode ArchiveShared(Archive a, const char *name, PetscInt n, hid
   Input Parameters:
 + a    - the archive
 . name - of the value, its groups with slashes between them
-- n    - how many numbers there are; a file with another number is refused (exit 1)
+- n    - how many numbers there are; a file with another number is refused
 
   Input/Output Parameter:
 . values - rank 0's are saved, all ranks get the loaded ones
@@ -434,7 +434,7 @@ PetscErrorCode ArchiveReals(Archive a, const char *name, PetscInt n, PetscReal *
   Input Parameters:
 + a    - the archive
 . name - of the value
-- n    - how many numbers there are; a file with another number is refused (exit 1)
+- n    - how many numbers there are; a file with another number is refused
 
   Input/Output Parameter:
 . values - rank 0's are saved, all ranks get the loaded ones

@@ -11,8 +11,7 @@ enum { FACTOR_DISSECTED = 4000 };
 /* Workspace above MUMPS's estimate (per cent). MUMPS's own 20 is too little for symmetric systems of a few thousand
    unknowns on four ranks. */
 enum { FACTOR_WORKSPACE = 100 };
-/* How often the workspace may be doubled. This leads to a multiple of the estimate that delayed pivots of regular
-   systems never need. */
+/* Number of times that the workspace may be doubled. Delayed pivots of regular systems have never needed more. */
 enum { FACTOR_MORE = 2 };
 /* Scaling of symmetric systems (ICNTL(8)): by the diagonal. MUMPS's own choice iterates over rows and columns, which
    costs a seventh of a factorisation at 10,000 unknowns. Stiff penalties are on the diagonal. */

@@ -9,8 +9,8 @@
    1e-7, stiff penalties included; a residual that is still above this limit after refinement is that of a singular
    system. */
 #define LINEAR_SINGULAR 1e-3
-/* Most steps of refinement. Each contracts the residual by the same factor; after these steps a refinement that helps
-   has helped. */
+/* Most steps of refinement. Each step reduces the residual by the same factor, so that a refinement that converges at a
+   useful speed has converged after this number. */
 #define LINEAR_MAX_REFINE 8
 /* Part of the residual that a refinement step may leave. A step that leaves more does not help. */
 #define LINEAR_HELPS 0.5

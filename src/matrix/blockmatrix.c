@@ -53,8 +53,8 @@ struct _n_BlockMatrix {
   PetscInt *of_pair; /* sum of each pair; a pair below the diagonal has the sum of its mirror image */
   PetscInt *row_ptr; /* for each node, the start of its rows in row */
   BlockRow *row;
-  /* seen: for each node of the matrix, the sum of the last row in which it is a column. at: numbers of the nodes of the
-     block that is being added. */
+  /* seen: for each node of the matrix, the position in sum of its column in the last row that has it.
+     at: numbers of the nodes of the block that is being added. */
   PetscInt        *seen, *at;
   SumRow          *sum;     /* [pairs not below the diagonal][size] */
   PetscInt        *coupled; /* room for the result of BlockMatrixGetCoupled() */

@@ -107,6 +107,25 @@ static PetscBool IsAssigned(const char *at)
   return at[0] == '=' && at[1] != '=' ? PETSC_TRUE : PETSC_FALSE;
 }
 
+/* Words of gmsh's language that are not followed by a bracket, so that they look like names in an expression. */
+static const char *const Keywords[] = {
+  "Physical",   "Plane",    "Ruled",     "Surface",     "Curve",   "Line",           "Loop",      "Wire",
+  "Volume",     "Point",    "Compound",  "Spline",      "BSpline", "Bezier",         "Circle",    "Ellipse",
+  "Nurbs",      "Periodic", "Recombine", "Transfinite", "Mesh",    "Smooth",         "Coherence", "Delete",
+  "Recursive",  "Macro",    "Function",  "Call",        "Return",  "Include",        "Merge",     "If",
+  "Else",       "ElseIf",   "EndIf",     "For",         "In",      "EndFor",         "Using",     "Layers",
+  "Left",       "Right",    "Alternate", "Progression", "Bump",    "Abort",          "Exit",      "Field",
+  "Background", "Pi",       "General",   "Geometry",    "Solver",  "PostProcessing", "View",      "SetFactory",
+  "newp",       "newl",     "newc",      "newll",       "news",    "newsl",          "newv",      "newreg",
+  "Embed",      "Reverse",  "Hole",      "MeshSize",    NULL};
+
+static PetscBool IsKeyword(const char *at, size_t n)
+{
+  for (int i = 0; Keywords[i]; i++)
+    if (strlen(Keywords[i]) == n && !strncmp(at, Keywords[i], n)) return PETSC_TRUE;
+  return PETSC_FALSE;
+}
+
 /* Sorts the names of a text into those that get a value from it and those that occur in its expressions. Names of
    functions and of entities are followed by a bracket and are neither. */
 static PetscErrorCode AddNames(const char *text, GeoParameters *parameters)
@@ -123,7 +142,7 @@ static PetscErrorCode AddNames(const char *text, GeoParameters *parameters)
     while (before > text && strchr(" \t", before[-1])) before--;
     if (IsAssigned(end) || (before - text >= 3 && before < at && !strncmp(before - 3, "For", 3)))
       PetscCall(AddName(at, &parameters->assigned));
-    else if (!strchr("([{", end[strspn(end, " \t")]))
+    else if (!strchr("([{", end[strspn(end, " \t")]) && !IsKeyword(at, (size_t)(end - at)))
       PetscCall(AddName(at, &parameters->used));
   }
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -114,7 +114,7 @@ PetscErrorCode CheckpointCreate(MPI_Comm comm, const char *directory, const char
 . checkpoint - to be freed with CheckpointDestroy()
 
   Note:
-  A checkpoint that is missing, truncated, foreign, or of which a bit has changed is refused (exit 1). No file is
+  A checkpoint that is missing, truncated, foreign, or of which a bit has changed is refused. No file is
   touched.
 @*/
 PetscErrorCode CheckpointOpen(MPI_Comm comm, const char *directory, Checkpoint *checkpoint)
@@ -158,7 +158,7 @@ PetscErrorCode CheckpointDestroy(Checkpoint *checkpoint)
 . scene - to be freed with SceneDestroy()
 
   Note:
-  Edits of anything but solver, output and stepping are refused (exit 1).
+  Edits of anything but solver, output and stepping are refused.
 @*/
 PetscErrorCode CheckpointReadScene(Checkpoint checkpoint, int n_set, char *const *set, Scene *scene)
 {
@@ -261,7 +261,7 @@ static PetscErrorCode CheckpointSave(Checkpoint c, Archive archive)
 . checkpoint - from CheckpointOpen(), after CheckpointSetRun() with fresh objects
 
   Note:
-  A checkpoint that does not fit the objects is refused (exit 1). No file is touched, ResultsStart() does that.
+  A checkpoint that does not fit the objects is refused. No file is touched, ResultsStart() does that.
 @*/
 PetscErrorCode CheckpointRead(Checkpoint checkpoint)
 {

@@ -29,7 +29,7 @@ static PetscErrorCode PrintEffects(Model model, FILE *stream)
 - stream - of rank 0, which prints
 
   Note:
-  It refuses (exit 1) a body that nothing can hold, see FreeModesRefuse().
+  It refuses a body that nothing can hold, see FreeModesRefuse().
 @*/
 PetscErrorCode PrecheckModel(Model model, PetscBool report, FILE *stream)
 {

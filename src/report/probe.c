@@ -547,7 +547,7 @@ static PetscErrorCode ProbesFindNodeBodies(Probes probes)
 . result - free it with ProbesDestroy()
 
   Note:
-  It refuses (exit 1) surfaces, pairs and volumes that do not exist, points without a node (naming the nearest node),
+  It refuses surfaces, pairs and volumes that do not exist, points without a node (naming the nearest node),
   and points where several bodies have a node and none is named.
 @*/
 PetscErrorCode ProbesCreate(Model model, Scene scene, Probes *result)

@@ -134,7 +134,7 @@ static PetscErrorCode ResultsResume(Results results)
 
   Note:
   The time of the run counts from here. After ResultsArchive() has loaded a checkpoint the directory is taken back to it
-  instead of being cleared. It refuses (exit 1) a directory that cannot be made or written.
+  instead of being cleared. It refuses a directory that cannot be made or written.
 @*/
 PetscErrorCode ResultsStart(Results results)
 {

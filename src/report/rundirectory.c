@@ -109,7 +109,7 @@ static void DirectoryComplaint(Scene scene, const char *directory, PetscBool ove
 }
 
 /*@
-  RunDirectoryCheckPath - refuses (exit 1) a directory whose path is too long for the files in it.
+  RunDirectoryCheckPath - refuses a directory whose path is too long for the files in it.
 
   Collective
 
@@ -145,7 +145,7 @@ PetscErrorCode RunDirectoryCheckPath(MPI_Comm comm, const char *directory)
 - overwrite - results of another scene may be overwritten
 
   Note:
-  It refuses (exit 1) a name that is not a directory's and, unless overwrite is set, a directory with the results of
+  It refuses a name that is not a directory's and, unless overwrite is set, a directory with the results of
   another or an unknown scene. Results of the same scene are overwritten without
   a word. Nothing is written here. Call it before anything is written or solved.
 @*/
@@ -172,7 +172,7 @@ PetscErrorCode RunDirectoryCheck(MPI_Comm comm, Scene scene, const char *directo
 - directory - of the results and the checkpoint
 
   Note:
-  It refuses with exit 1. A directory without a record is allowed: a checkpoint may be taken elsewhere.
+  It refuses a record of another problem. A directory without a record is allowed: a checkpoint may be taken elsewhere.
 @*/
 PetscErrorCode RunDirectoryCheckRestart(MPI_Comm comm, Scene scene, const char *directory)
 {
@@ -222,7 +222,7 @@ static void MakeDirectories(const char *directory, char message[MESSAGE_SIZE])
 - directory - for its results; may exist already
 
   Note:
-  It refuses (exit 1) a directory that cannot be made or written.
+  It refuses a directory that cannot be made or written.
 @*/
 PetscErrorCode RunDirectoryMake(MPI_Comm comm, const char *directory)
 {

@@ -17,7 +17,7 @@ struct _n_Burnish {
 };
 
 /*@
-  BurnishCreate - creates an object that runs scenes
+  BurnishCreate - creates an object that runs scenes.
 
   Collective
 
@@ -56,7 +56,7 @@ static PetscErrorCode ClearEdits(Burnish burnish)
 }
 
 /*@
-  BurnishSetScene - names the scene file of the next run
+  BurnishSetScene - names the scene file of the next run.
 
   Logically collective
 
@@ -78,7 +78,7 @@ PetscErrorCode BurnishSetScene(Burnish burnish, const char *file)
 }
 
 /*@
-  BurnishSet - overrides or adds one value of the scene
+  BurnishSet - overrides or adds one value of the scene.
 
   Logically collective
 
@@ -96,6 +96,7 @@ PetscErrorCode BurnishSet(Burnish burnish, const char *key_value)
   char    **set;
 
   PetscFunctionBeginUser;
+  PetscCheck(key_value, burnish->comm, PETSC_ERR_ARG_NULL, "BurnishSet() needs KEY=VALUE");
   PetscCall(PetscMalloc1(input->n_set + 1, &set));
   PetscCall(PetscArraycpy(set, input->set, input->n_set));
   PetscCall(PetscStrallocpy(key_value, &set[input->n_set]));
@@ -106,7 +107,7 @@ PetscErrorCode BurnishSet(Burnish burnish, const char *key_value)
 }
 
 /*@
-  BurnishSetDirectory - says where the results go
+  BurnishSetDirectory - says where the results go.
 
   Logically collective
 
@@ -122,7 +123,7 @@ PetscErrorCode BurnishSetDirectory(Burnish burnish, const char *directory)
 }
 
 /*@
-  BurnishSetRestart - lets the next run go on from the checkpoint of an earlier one
+  BurnishSetRestart - lets the next run go on from the checkpoint of an earlier one.
 
   Logically collective
 
@@ -131,7 +132,9 @@ PetscErrorCode BurnishSetDirectory(Burnish burnish, const char *directory)
 - directory - of the earlier run, which holds checkpoint.h5; the results go there too
 
   Note:
-  Takes the place of BurnishSetScene(): the scene is that of the checkpoint. The number of ranks may be another one.
+  Takes the place of BurnishSetScene(): the scene is that of the checkpoint. The number of ranks may be another one. The
+  results go to that directory, whatever BurnishSetDirectory() and BurnishSetOverwrite() say. BurnishCheck() and
+  BurnishMesh() refuse a restart.
 @*/
 PetscErrorCode BurnishSetRestart(Burnish burnish, const char *directory)
 {
@@ -142,7 +145,7 @@ PetscErrorCode BurnishSetRestart(Burnish burnish, const char *directory)
 }
 
 /*@
-  BurnishSetOverwrite - lets a run overwrite the results of another scene in its directory; it is refused otherwise
+  BurnishSetOverwrite - lets a run overwrite the results of another scene in its directory; it is refused otherwise.
 
   Logically collective
 
@@ -158,13 +161,13 @@ PetscErrorCode BurnishSetOverwrite(Burnish burnish, PetscBool overwrite)
 }
 
 /*@
-  BurnishSetQuiet - switches the progress of a run on stdout off; warnings still go to stderr
+  BurnishSetQuiet - switches the progress of a run on stdout off; warnings still go to stderr.
 
   Logically collective
 
   Input Parameters:
 + burnish - the object
-- quiet   - PETSC_TRUE: nothing on stdout
+- quiet   - PETSC_TRUE: BurnishRun() prints nothing on stdout
 @*/
 PetscErrorCode BurnishSetQuiet(Burnish burnish, PetscBool quiet)
 {
@@ -236,7 +239,7 @@ static PetscErrorCode Execute(Burnish burnish, RunTask task, BurnishStatus *stat
 }
 
 /*@
-  BurnishRun - runs the scene from its file to its results
+  BurnishRun - runs the scene from its file to its results.
 
   Collective
 
@@ -244,7 +247,7 @@ static PetscErrorCode Execute(Burnish burnish, RunTask task, BurnishStatus *stat
 . burnish - the object, with a scene from BurnishSetScene() or a restart from BurnishSetRestart()
 
   Output Parameter:
-. status - how the run ended, the same on all ranks
+. status - how the run ended, the same on all ranks unless it is BURNISH_FAILED
 
   Note:
   Returns a code other than 0, with the status BURNISH_FAILED, for internal errors and failures of the machine only. The
@@ -261,7 +264,7 @@ PetscErrorCode BurnishRun(Burnish burnish, BurnishStatus *status)
 }
 
 /*@
-  BurnishCheck - reads, meshes and validates the scene, and reports on stdout; solves nothing and writes no results
+  BurnishCheck - reads, meshes and validates the scene, and reports on stdout; solves nothing and writes no results.
 
   Collective
 
@@ -284,7 +287,7 @@ PetscErrorCode BurnishCheck(Burnish burnish, BurnishStatus *status)
 }
 
 /*@
-  BurnishMesh - makes the mesh file of the scene and nothing else
+  BurnishMesh - makes the mesh file of the scene and nothing else.
 
   Collective
 
@@ -309,7 +312,7 @@ PetscErrorCode BurnishMesh(Burnish burnish, BurnishStatus *status, const char **
 }
 
 /*@
-  BurnishGetMessage - says in words why the last run did not end with BURNISH_DONE
+  BurnishGetMessage - says in words why the last run did not end with BURNISH_DONE.
 
   Not collective
 
@@ -317,7 +320,8 @@ PetscErrorCode BurnishMesh(Burnish burnish, BurnishStatus *status, const char **
 . burnish - the object
 
   Output Parameter:
-. message - the same on all ranks, empty after BURNISH_DONE; valid until the next run
+. message - empty after BURNISH_DONE, the same on all ranks unless a rank had an internal error; valid until the next
+run
 @*/
 PetscErrorCode BurnishGetMessage(Burnish burnish, const char **message)
 {
@@ -327,7 +331,7 @@ PetscErrorCode BurnishGetMessage(Burnish burnish, const char **message)
 }
 
 /*@
-  BurnishGetProbe - gives the value of a probe after the last accepted load step of the last run
+  BurnishGetProbe - gives the value of a probe after the last accepted load step of the last run.
 
   Not collective
 
@@ -356,7 +360,7 @@ PetscErrorCode BurnishGetProbe(Burnish burnish, const char *name, PetscReal *val
 }
 
 /*@
-  BurnishDestroy - frees the object
+  BurnishDestroy - frees the object.
 
   Collective
 

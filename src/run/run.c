@@ -31,6 +31,8 @@ static PetscErrorCode RunOpen(Run *run, const RunInput *input)
 {
   PetscFunctionBeginUser;
   if (!input->scene) PetscCall(RefuseInput(run->comm, "no scene file"));
+  if (input->directory && !input->directory[0])
+    PetscCall(RefuseInput(run->comm, "the directory of the results has no name; allowed: a path"));
   PetscCall(SceneRead(run->comm, input->scene, input->n_set, input->set, &run->scene));
   PetscCall(RunInsertOptions(run));
   PetscCall(PetscSNPrintf(run->directory, sizeof(run->directory), "%s%s", input->directory ? input->directory : "out/",
@@ -46,6 +48,8 @@ static PetscErrorCode RunOpen(Run *run, const RunInput *input)
 static PetscErrorCode RunReopen(Run *run, const RunInput *input)
 {
   PetscFunctionBeginUser;
+  if (input->task != RUN_SOLVE)
+    PetscCall(RefuseInput(run->comm, "a restart has neither a check nor a mesh to make; allowed: a run of it"));
   PetscCall(PetscStrncpy(run->directory, input->restart, sizeof(run->directory)));
   PetscCall(RunDirectoryCheckPath(run->comm, run->directory));
   PetscCall(ErrorLogSetDirectory(run->directory));

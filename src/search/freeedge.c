@@ -107,7 +107,7 @@ static PetscErrorCode GatherEdges(FreeEdges edges, const MeshGroup *surface)
 . result - the edges, the same on all ranks
 
   Note:
-  Refuses (exit 1) a plane of symmetry that the mesh does not have.
+  Refuses a plane of symmetry that the mesh does not have.
 @*/
 PetscErrorCode FreeEdgesCreate(Mesh mesh, Scene scene, const SceneContact *contact, const MeshGroup *surface,
                                FreeEdges *result)

@@ -527,7 +527,7 @@ static void ImagesAddPlane(int axis, PetscReal position, int *n, SurfaceImage *i
 - images   - images[SURFACE_MAX_IMAGES], in coordinates relative to the mesh's centre
 
   Note:
-  In axisymmetric scenes the axis r = 0 is always a plane of symmetry. Refuses (exit 1) surfaces that are not planar and
+  In axisymmetric scenes the axis r = 0 is always a plane of symmetry. Refuses surfaces that are not planar and
   normal to an axis, surfaces that no support holds in that direction, and a third plane normal to one axis.
 @*/
 PetscErrorCode SurfaceImages(Mesh mesh, Scene scene, const SceneContact *contact, int *n_images,

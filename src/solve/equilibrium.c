@@ -106,9 +106,9 @@ static PetscErrorCode ModelDepart(Model model, PetscReal t)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Sets model->x to a part of the way to the look-ahead, where the look-ahead started from the extrapolated state: the
-   extrapolated state at model->t, plus this part of the difference between the look-ahead and the extrapolated state at
-   its end. *made: that was possible. */
+/* Sets model->x for a step that ends before the look-ahead, if the look-ahead started from an extrapolated state.
+   model->x is then the extrapolated state at model->t plus `part` of the difference between the look-ahead and the
+   extrapolated state at its end. *made says whether this was possible. */
 static PetscErrorCode ModelTakeExtrapolatedPart(Model model, PetscReal part, PetscBool *made)
 {
   ModelWork *work = model->work;

@@ -9,7 +9,7 @@
 #define LINEAR_CONTACT_TERMS 256
 /* All columns Z together have at most this many numbers on all ranks, which is 0.4 GB. */
 #define LINEAR_CONTACT_VALUES 5e7
-/* At most this many times terms are found to change that did not seem to change before. */
+/* Most rounds in which further terms are found to change. Each round computes the columns of the terms that are new. */
 #define LINEAR_CONTACT_ROUNDS 16
 
 /* The contact problem of a linear step. The first rank alone solves it and keeps the influence of the terms on each

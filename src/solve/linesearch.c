@@ -8,10 +8,10 @@
 /* Below this residual, relative to F_ref, the energies that the line search compares differ by round-off only, because
    their differences go with the square of the residual. From there on residuals are compared. */
 #define LINE_ENERGY_ROUND_OFF 1e-6
-/* The line search expects an energy that falls by a part of its slope. A residual is multiplied by this weight, so that
-   any decrease of it is enough. */
+/* PETSc's line search accepts an objective that falls by a part of its slope. The residual is multiplied by this large
+   weight. Its decrease then always exceeds that part, so that any decrease is accepted. */
 #define LINE_RESIDUAL_WEIGHT 1e30
-/* Over this part of Newton's step nothing changes but what jumps. */
+/* Part of Newton's step over which smooth quantities do not change noticeably. What changes over it is a jump. */
 #define LINE_TRIFLE 1e-3
 /* Energies that differ by less than this many machine epsilons of the energy differ by round-off only. */
 #define LINE_RISE 64

@@ -130,8 +130,7 @@ PetscErrorCode ModelAssemble(Model model)
 . model - after ModelPlace()
 
   Note:
-  Initial overlaps that the scene does not allow are refused, see ContactTakeOverlap(); the program then ends with exit
-  status 1.
+  Initial overlaps that the scene does not allow are refused, see ContactTakeOverlap().
 @*/
 PetscErrorCode ModelSetUp(Model model)
 {

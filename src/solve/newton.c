@@ -249,19 +249,20 @@ static PetscErrorCode CheckFactorOptions(SNES snes)
   return FactorCheckOptions();
 }
 
-/* Reads some of PETSc's options. A value that PETSc refuses is wrong input and is refused as such. */
+/* Reads some of PETSc's options. A value that PETSc refuses is wrong input and is refused as such. The ranks agree on
+   it, because some values are wrong on one rank only, for example a file that rank 0 cannot open. */
 static PetscErrorCode ModelReadOptions(Model model, PetscErrorCode (*read)(SNES))
 {
-  char           message[256] = "";
+  char           message[256] = "", text[400];
   PetscErrorCode code;
 
   PetscFunctionBeginUser;
   PetscCall(PetscPushErrorHandler(KeepMessage, message));
   code = read(model->snes);
   PetscCall(PetscPopErrorHandler());
-  if (code)
-    PetscCall(RefuseInput(model->mesh->comm,
+  PetscCall(PetscSNPrintf(text, sizeof(text),
                           "a PETSc option (command line, environment or the scene's petsc) was refused: %s", message));
+  PetscCall(RefuseInputAnywhere(model->mesh->comm, code ? text : NULL));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -274,7 +275,7 @@ static PetscErrorCode ModelReadOptions(Model model, PetscErrorCode (*read)(SNES)
 . model - it has its problem
 
   Note:
-  PETSc's options are read here and override the scene. Refused options end the program with exit status 1.
+  PETSc's options are read here and override the scene. Options that PETSc refuses are refused as wrong input.
 @*/
 PetscErrorCode ModelCreateSNES(Model model)
 {

@@ -28,9 +28,9 @@ static PetscErrorCode ModelUnpredictedEnergy(Model model, PetscReal *energy)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Chooses the stiffest penalties whose energy at model->x is small: a power of RAMP_FACTOR below the full ones, and not
-   below `least`. unpredicted: only the energy of terms that the prediction found open counts. All three penalties are
-   in automatic penalties. */
+/* Chooses the stiffest penalties with which contact stores little energy at model->x. They are the full penalties
+   divided by a power of RAMP_FACTOR, but at least `least`. With unpredicted, only terms that the prediction found open
+   count. least, full and *most are multiples of the automatic penalty. */
 static PetscErrorCode ModelChooseSoftness(Model model, PetscBool unpredicted, PetscReal least, PetscReal full,
                                           PetscReal *most)
 {

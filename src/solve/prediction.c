@@ -2,10 +2,10 @@
 #include "base/timing.h"
 #include "modelimpl.h"
 
-/* A linear step is taken in pieces where it moves the two ends of a cell's edge against each other by more than this
-   part of the edge's length. A linear step turns a rotation by as much into a stretch by a sixth. On a pipe between
-   plates values from 0.5 to 0.75 serve. Shorter pieces, each of which may leave the contact, cost more than they save.
- */
+/* A linear step is divided into pieces if it moves the two ends of a cell's edge relative to each other by more than
+   this part of the edge's length. A rotation of this size becomes, in a linear step, a stretch of one sixth. On a pipe
+   between plates values from 0.5 to 0.75 work. Shorter pieces cost more than they save, because each of them may leave
+   the contact. */
 #define PREDICTION_FARTHEST 0.6
 /* A prediction has at most this many pieces. The rest of the way is then taken at once. */
 #define PREDICTION_PIECES 8
@@ -42,9 +42,9 @@ static PetscErrorCode ModelStepLinear(Model model, const PetscReal *u, const Pet
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Moves model->x, which stands at (u, t), by one linear solve with the tangent there, for the loads, imposed
-   displacements and tool motions at model->t. It is a Newton iteration in a form in which prescribed displacements move
-   with the whole body and not through it. holding: what is in contact stays in contact. */
+/* Moves model->x from the state (u, t) by one linear solve with the tangent of that state. The loads, imposed
+   displacements and tool motions are those at model->t. The step is a Newton iteration in which the whole body follows
+   the prescribed displacements. With holding, terms in contact stay in contact. */
 static PetscErrorCode ModelStepLoads(Model model, const PetscReal *u, PetscReal t, PetscBool holding,
                                      SolveReport *report)
 {

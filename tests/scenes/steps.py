@@ -38,8 +38,8 @@ touch = run(args, SCENES.parent.parent / "runs" / "slide_flat.yaml", out="touch"
 check.holds("first step failed", touch.summary()["steps_failed"] > 0 and touch.steps()[0]["attempts"] > 1)
 check.near("force after it", touch.summary()["probes"]["force_y"], 160, 1e-6 * 160)
 
-# 3. No way on: one iteration is enough for the first half (no load yet), not for the second, and the floor is just
-# below dt.
+# 3. A step that cannot be cut: one iteration is enough for the first half, which has no load, but not for the second
+# half, and dt_min is more than half of dt.
 stuck = run(
     args, lame, out="stuck",
     overrides=(*finite, "loads.0.pressure=5000", "loads.0.history=[[0, 0], [0.5, 0], [1, 1]]",

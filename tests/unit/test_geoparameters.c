@@ -63,7 +63,8 @@ static void test_names_without_value(void **state)
 
   (void)state;
   assert_int_equal(GeoParametersAdd("draw = 1; k += 1; l[] = {1}; If(solid) x = 2 * width; EndIf\n"
-                                    "For j In {0 : many} Point(j) = {x, j == 1, 0}; EndFor",
+                                    "For j In {0 : many} Point(j) = {x, j == 1, 0}; EndFor\n"
+                                    "Transfinite Curve{1} = 4; Recombine Surface{1}; Physical Volume(1) = {1};",
                                     &parameters),
                    0);
   assert_true(GeoParametersFind(&parameters, "solid"));
@@ -75,6 +76,9 @@ static void test_names_without_value(void **state)
   assert_false(GeoParametersFind(&parameters, "x"));
   assert_false(GeoParametersFind(&parameters, "j"));
   assert_false(GeoParametersFind(&parameters, "Point"));
+  assert_false(GeoParametersFind(&parameters, "Physical"));
+  assert_false(GeoParametersFind(&parameters, "Transfinite"));
+  assert_false(GeoParametersFind(&parameters, "Recombine"));
   assert_false(GeoParametersFind(&parameters, "missing"));
   assert_int_equal(GeoParametersReset(&parameters), 0);
 }

@@ -17,7 +17,7 @@ typedef struct {
   PetscInt  n, n_ghosts;      /* nodes of this rank; ghosts, the nodes of others that they are coupled to */
   PetscInt *node;             /* of each place */
   PetscInt *place;            /* of each node; of a ghost -1 where it is swept before this rank, n where after it */
-  PetscInt *ghost;            /* of each of the matrix's columns of other ranks: its row among those of ghosts */
+  PetscInt *ghost;            /* for each column that belongs to another rank, its row among the ghosts */
   PetscInt  inner, interface; /* first place of the nodes without ghosts, of those with ghosts */
   PetscInt  n_inner;          /* number of nodes without ghosts */
   int       colours, colour;  /* number of colours of all ranks; the colour of this one */
