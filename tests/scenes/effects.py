@@ -44,8 +44,9 @@ OFF = [
     "contact.0.penalty.max_updates=5", *WINDOW, "loads.0.follower=false", "stepping.N_c=5",
     "stepping.prediction=tangent", "output.checkpoint=0"
 ]
-# the scene's text and its record are as long as they are
-READERS = "document|schema|schemakeys|scene|sceneprobe|sceneread|commandline|gmsh|results|rundirectory"
+# These files hold the text of the scene, the edits of it and its record. Their length follows the number of keys that
+# are given, not the effects.
+READERS = "document|schema|schemakeys|scene|sceneprobe|sceneread|commandline|burnish|gmsh|results|rundirectory"
 PETSC_TEXT = ("PetscStrallocpy", "PetscStrreplace", "PetscFunctionListCreateNode_Private", "PetscOptions",
               "PetscLogView", "PetscViewer")
 
