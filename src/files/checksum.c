@@ -74,6 +74,7 @@ static int SumBlocks(const char *file, PetscInt64 start, PetscInt64 bytes, Petsc
     const PetscInt64 first = i * CHECKSUM_BLOCK, left = bytes - first;
     const size_t     n = (size_t)PetscMin(left, (PetscInt64)CHECKSUM_BLOCK);
 
+    errno = 0; /* a file that has become shorter is read without an error number */
     if (fseeko(stream, (off_t)(start + first), SEEK_SET) || fread(block, 1, n, stream) != n)
       cause = errno ? errno : EIO;
     else

@@ -45,6 +45,13 @@ PetscErrorCode GeoTextStrip(const char *text, PetscBool strings, char **stripped
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+static PetscBool HasName(const GeoNames *names, const char *name)
+{
+  for (int i = 0; i < names->n; i++)
+    if (!strcmp(names->name[i], name)) return PETSC_TRUE;
+  return PETSC_FALSE;
+}
+
 /* Adds the name at `at` unless the list has it. Does nothing if no name begins there. */
 static PetscErrorCode AddName(const char *at, GeoNames *names)
 {
@@ -58,8 +65,7 @@ static PetscErrorCode AddName(const char *at, GeoNames *names)
   PetscCall(PetscCalloc1(n + 3, &name));
   memcpy(name, at, n);
   if (at[n] == '~') memcpy(name + n, "_*", 2);
-  for (int i = 0; i < names->n; i++) {
-    if (strcmp(names->name[i], name)) continue;
+  if (HasName(names, name)) {
     PetscCall(PetscFree(name));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
@@ -146,13 +152,6 @@ static PetscErrorCode AddNames(const char *text, GeoParameters *parameters)
       PetscCall(AddName(at, &parameters->used));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-static PetscBool HasName(const GeoNames *names, const char *name)
-{
-  for (int i = 0; i < names->n; i++)
-    if (!strcmp(names->name[i], name)) return PETSC_TRUE;
-  return PETSC_FALSE;
 }
 
 /*@
