@@ -12,6 +12,7 @@
 #include "base/choices.h"
 #include "kernels/formulation.h"
 #include "kernels/material.h"
+#include "scene/expression.h"
 #include "scene/loadhistory.h"
 
 typedef enum { OVERLAP_REFUSE, OVERLAP_RESOLVE, OVERLAP_RAMP, OVERLAP_IGNORE } InitialOverlap;
@@ -39,9 +40,10 @@ typedef struct {
   int      has[3]; /* of LOAD_DISPLACEMENT: which components are imposed */
   /* Displacement (length), traction (force per reference area) or body force (force per reference volume). A pressure
      (stress) is value[0]. */
-  double  value[3];
-  int     follower; /* 1 if a pressure acts on the deformed face */
-  History history;  /* factor on the value over the load parameter */
+  double     value[3];
+  Expression expression[3]; /* in place of value, where it is not NULL; it has a variable */
+  int        follower;      /* 1 if a pressure acts on the deformed face */
+  History    history;       /* factor over the load parameter on values and on expressions without t */
 } SceneLoad;
 
 typedef struct {
@@ -130,7 +132,7 @@ typedef struct {
   SceneBody    *bodies;
   int           n_supports;
   SceneSupport *supports;
-  int           n_loads;
+  int           n_loads; /* supports with an expression, which are imposed displacements, and loads */
   SceneLoad    *loads;
   int           n_contacts;
   SceneContact *contacts;
@@ -167,4 +169,6 @@ PetscErrorCode SceneDestroy(Scene *);
 PetscBool      SceneSameProblem(const char *a, const char *b);
 const char    *SceneWhere(Scene, const char *path, const char *key);
 PetscBool      SceneBreaks(Scene, PetscReal t);
+PetscBool      SceneLoadVaries(const SceneLoad *, int component);
+PetscReal      SceneLoadValue(const SceneLoad *, int component, const PetscReal X[3], PetscReal t);
 PetscErrorCode SceneReference(FILE *);
