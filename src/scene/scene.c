@@ -417,6 +417,20 @@ static PetscErrorCode SceneReadPenalty(Scene scene, SceneContact *contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Reads what becomes of initial overlaps, and the overlap that is added to that of the meshes. */
+static PetscErrorCode SceneReadOverlap(Scene scene, SceneContact *contact)
+{
+  static const char add[] = "initial_overlap.add";
+
+  PetscFunctionBeginUser;
+  contact->initial_overlap = OVERLAP_ADD;
+  if (SceneHas(scene, contact->path, add))
+    PetscCall(SceneReadValue(scene, contact->path, add, &contact->added_overlap, &contact->overlap_expression));
+  else
+    contact->initial_overlap = (InitialOverlap)SchemaChoice(SceneDocument(scene), "%s.initial_overlap", contact->path);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 static PetscErrorCode SceneReadContact(Scene scene, SceneContact *contact)
 {
   Node symmetry = SceneNode(scene, contact->path, "symmetry");
@@ -444,9 +458,9 @@ static PetscErrorCode SceneReadContact(Scene scene, SceneContact *contact)
     SceneHas(scene, contact->path, "weight") ? SchemaReal(SceneDocument(scene), "%s.weight", contact->path) : 0;
   contact->global_frame        = SchemaChoice(SceneDocument(scene), "%s.frame", contact->path);
   contact->diffuse_derivatives = SchemaChoice(SceneDocument(scene), "%s.derivatives", contact->path);
-  contact->initial_overlap = (InitialOverlap)SchemaChoice(SceneDocument(scene), "%s.initial_overlap", contact->path);
-  contact->stabilise       = SchemaBoolean(SceneDocument(scene), "%s.stabilise", contact->path);
-  contact->feature_angle   = SchemaReal(SceneDocument(scene), "%s.feature_angle", contact->path);
+  PetscCall(SceneReadOverlap(scene, contact));
+  contact->stabilise     = SchemaBoolean(SceneDocument(scene), "%s.stabilise", contact->path);
+  contact->feature_angle = SchemaReal(SceneDocument(scene), "%s.feature_angle", contact->path);
   PetscCall(SceneReadPenalty(scene, contact));
   contact->n_symmetry = symmetry ? symmetry->n : 0;
   PetscCall(PetscCalloc1(contact->n_symmetry, &contact->symmetry));
@@ -749,6 +763,7 @@ static PetscErrorCode SceneDestroyContacts(Scene scene)
     SceneContact *contact = &scene->contacts[i];
 
     for (int k = 0; k < contact->n_symmetry; k++) PetscCall(PetscFree(contact->symmetry[k]));
+    PetscCall(ExpressionDestroy(&contact->overlap_expression));
     PetscCall(PetscFree(contact->symmetry));
     PetscCall(PetscFree(contact->path));
     PetscCall(PetscFree(contact->name));

@@ -109,9 +109,12 @@ const SchemaKey SchemaKeys[] = {
   {"contact.*.feature_angle", REAL, .range = "(0, 180]", .unit = "degrees", .preset = "45",
    .help = "the neighbourhood of a slave point ends at edges that are sharper than this angle"},
   {"contact.*.symmetry", TEXTS, .help = "planar surfaces beyond which the model continues as its mirror image"},
-  {"contact.*.initial_overlap", CHOICE, .values = "refuse | resolve | ramp | ignore", .preset = "refuse",
+  {"contact.*.initial_overlap", CHOICE | MAP, .values = "refuse | resolve | ramp | ignore", .preset = "refuse",
    .help = "treatment of overlapping meshes; refuse: as wrong input; resolve: the overlap is removed at once; ramp: "
            "it is removed gradually until t = 1; ignore: it counts as a gap of 0"},
+  {"contact.*.initial_overlap.add", REAL | FORMULA, REQUIRED, .unit = "length",
+   .help = "interference of parts whose meshes touch: what the slave overlaps the master besides its mesh. It is "
+           "multiplied by t, or is an expression with t, as in loads"},
   {"contact.*.stabilise", BOOLEAN, .preset = "false",
    .help = "true: springs hold the bodies that only contact holds, and vanish as soon as contact holds them"},
   {"contact.*.law", CHOICE, .values = CHOICE_WORDS(CONTACT_LAWS), .preset = "penalty",

@@ -1,7 +1,7 @@
 """Loads and supports by expression against closed forms: a ring under the pressure p_0 + p_1 cos(2 theta) against
 Michell's solution, a beam under a traction that is linear over its end, a body force that grows along the bar, imposed
-displacements and forces that are functions of t; and equal scenes with and without expressions. Wrong values that only
-the mesh shows are refused."""
+displacements and forces that are functions of t; rings that an added overlap shrinks onto each other; and equal scenes
+with and without expressions. Wrong values that only the mesh shows are refused."""
 import numpy
 
 from harness import Check, arguments, run, SCENES
@@ -140,6 +140,17 @@ def corners(args, check):
     check.near("corners", fields["displacement"][y == 0, 0], 0.1 * numpy.sin(numpy.pi * x[y == 0]), 1e-12)
 
 
+def shrink_fit(args, check):
+    """A ring of radii 10 to 20 shrunk into one of 20 to 30, whose meshes touch: the pressure of ring_in_ring (Lame)."""
+    for name, overlap in (("number", "0.0025"), ("place", '"1.25e-4*r"'), ("of_t", '"1.25e-4*r*t"')):
+        pressure = run(
+            args, SCENES / "../../runs/ring_in_ring.yaml", out=f"shrink_{name}", overrides=[
+                "mesh.parameters={n_inner: 12, n_outer: 15, interference: 0}", "mesh.order=2",
+                "contact.0.formulation=surface_to_surface", f"contact.0.initial_overlap={{add: {overlap}}}"
+            ]).summary()["probes"]["mean_pressure"]
+        check.near(f"shrink fit, overlap by {name}", pressure, 6.439, 0.002 * 6.439)
+
+
 args = arguments()
 check = Check()
 coarse, fine = ring(args, 3), ring(args, 6)
@@ -151,4 +162,5 @@ body_force(args, check)
 equal(args, check)
 refused(args, check)
 corners(args, check)
+shrink_fit(args, check)
 check.finish()
