@@ -44,8 +44,7 @@ static int PenetrationIsDeep(const RunFigures *figures, const PairFigures *pair,
              pair->name, (double)(100 * error), (double)(error / ADVICE_PENALTY_WANTED));
   else
     snprintf(text, ADVICE_TEXT, "%s: penetration leaves about %.2g %% of error: penalty: {scale: %.2g}", pair->name,
-             (double)(100 * error),
-             scene->penalty_scale * (double)(pair->penalty_error.raised * error / ADVICE_PENALTY_WANTED));
+             (double)(100 * error), scene->penalty_scale * (double)(pair->stiffened * error / ADVICE_PENALTY_WANTED));
   return 1;
 }
 

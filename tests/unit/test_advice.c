@@ -21,13 +21,13 @@ typedef struct {
 static void Good(Case *c)
 {
   memset(c, 0, sizeof(*c));
-  c->scene                     = (SceneContact){.name = "sole", .penalty_auto = 1, .penalty_scale = 10};
-  c->pair                      = (PairFigures){.name    = "sole",
-                                               .scene   = &c->scene,
-                                               .quality = {.nodes = 5, .max_penetration = 1e-4, .max_penetration_over_h = 1e-4}};
-  c->pair.penalty_error.raised = 1;
-  c->way     = (StepperReport){.done = PETSC_TRUE, .steps = 10, .newton_iterations = 50, .newton_accepted = 50};
-  c->run     = (RunRecord){.way = &c->way};
+  c->scene          = (SceneContact){.name = "sole", .penalty_auto = 1, .penalty_scale = 10};
+  c->pair           = (PairFigures){.name    = "sole",
+                                    .scene   = &c->scene,
+                                    .quality = {.nodes = 5, .max_penetration = 1e-4, .max_penetration_over_h = 1e-4}};
+  c->pair.stiffened = 1;
+  c->way            = (StepperReport){.done = PETSC_TRUE, .steps = 10, .newton_iterations = 50, .newton_accepted = 50};
+  c->run            = (RunRecord){.way = &c->way};
   c->figures = (RunFigures){.run = &c->run, .usage = {.wall_s = 1}, .last = &c->last, .n_pairs = 1, .pairs = &c->pair};
 }
 
