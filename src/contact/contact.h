@@ -15,6 +15,7 @@
 #include "contact/contactstate.h"
 #include "bodies/loads.h"
 #include "mesh/mesh.h"
+#include "search/nodedepth.h"
 #include "contact/touchstep.h"
 
 /* What the slave nodes of a pair on this rank show to probes and output. */
@@ -154,4 +155,5 @@ PetscErrorCode ContactTakeOverlap(Contact);
 PetscErrorCode ContactPairFits(Contact, int pair, ContactFits *);
 PetscErrorCode ContactPairGaps(Contact, int pair, ContactGaps *);
 PetscErrorCode ContactPairQuality(Contact, int pair, ContactQuality *);
+PetscErrorCode ContactPairMasterDepth(Contact, int pair, const PetscReal *u, PetscReal t, NodeDepth *);
 PetscErrorCode ContactPairJoined(Contact, int pair, PetscInt *nodes, ContactPlace *);

@@ -3,6 +3,10 @@
 #include "advice.h"
 #include <math.h>
 
+/* The sides count as equal where the master's is less than this many times the slave's: where faces of both sides are
+   in contact, they differ by curvature and round-off. */
+#define END_SIDES 1.01
+
 /* Names of the purposes that time is spent on */
 static const char *const purposes[TIMING_KINDS] = {[TIMING_SETUP]            = "set-up",
                                                    [TIMING_SEARCH]           = "search",
@@ -46,6 +50,26 @@ static void PrintPair(const PairFigures *pair, FILE *stream)
   else if (quality->sagitta > 0)
     fprintf(stream, "; facet error about %.2g", (double)quality->sagitta);
   fprintf(stream, "\n");
+}
+
+/* Prints from which side the surfaces stand deeper in each other. Nothing is enforced at the master's nodes. */
+static void PrintSides(const PairFigures *pair, FILE *stream)
+{
+  const NodeDepth *master = &pair->master;
+  const double     slave  = (double)PetscMax(pair->quality.max_penetration, 0);
+
+  if (!pair->scene->master || (!pair->quality.nodes && !master->nodes)) return;
+  if ((double)master->depth <= END_SIDES * slave)
+    fprintf(stream,
+            "sides    %s: the slave's penetration is the larger; the master's nodes stand up to %.3g in the "
+            "slave\n",
+            pair->name, (double)master->depth);
+  else
+    fprintf(stream,
+            "sides    %s: the master's side is the larger: its node %lld (%.5g, %.5g, %.5g) stands %.3g (%.2g of a "
+            "face) deep in the slave\n",
+            pair->name, (long long)master->tag, (double)master->X[0], (double)master->X[1], (double)master->X[2],
+            (double)master->depth, (double)master->over_h);
 }
 
 /* Prints one guard that acted, with a separator before all but the first one. */
@@ -130,7 +154,10 @@ void EndReportPrint(const RunFigures *figures, FILE *stream)
           (long long)way->steps, (long long)way->steps_failed, (long long)way->steps_repeated,
           (long long)way->newton_iterations, (long long)way->newton_accepted);
   PrintTime(figures, stream);
-  for (int p = 0; p < figures->n_pairs && figures->last; p++) PrintPair(&figures->pairs[p], stream);
+  for (int p = 0; p < figures->n_pairs && figures->last; p++) {
+    PrintPair(&figures->pairs[p], stream);
+    PrintSides(&figures->pairs[p], stream);
+  }
   PrintGuards(figures, stream);
   if (way->failed.attempts) PrintFailure(figures, stream);
   AdviceGive(figures, PrintAdvice, stream);

@@ -30,8 +30,10 @@ PetscErrorCode RunUsageCollect(MPI_Comm comm, RunUsage *usage)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode CollectPair(Contact contact, int p, PairFigures *pair)
+static PetscErrorCode CollectPair(Model model, int p, PairFigures *pair)
 {
+  Contact contact = model->contact;
+
   PetscFunctionBeginUser;
   pair->name  = ContactPairName(contact, p);
   pair->scene = ContactPairScene(contact, p);
@@ -39,6 +41,8 @@ static PetscErrorCode CollectPair(Contact contact, int p, PairFigures *pair)
   PetscCall(ContactPairQuality(contact, p, &pair->quality));
   PetscCall(ContactPairPenalty(contact, p, &pair->penalty_min, &pair->penalty_max));
   PetscCall(ContactPairWindow(contact, p, &pair->window));
+  PetscCall(ContactPairMasterDepth(contact, p, model->u, model->t, &pair->master));
+  pair->master_deepest = pair->master.depth;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -80,7 +84,7 @@ PetscErrorCode RunFiguresCollect(Model model, Scene scene, const RunRecord *run,
   PetscCall(DirectSolverServes(ksp, &figures->direct));
   BlasFind(&figures->blas);
   PetscCall(PetscCalloc1(figures->n_pairs, &figures->pairs));
-  for (int p = 0; p < figures->n_pairs; p++) PetscCall(CollectPair(model->contact, p, &figures->pairs[p]));
+  for (int p = 0; p < figures->n_pairs; p++) PetscCall(CollectPair(model, p, &figures->pairs[p]));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

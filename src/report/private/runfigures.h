@@ -13,6 +13,8 @@ typedef struct {
   ContactQuality      quality;
   ContactWindow       window;
   PetscReal           penalty_min, penalty_max;
+  NodeDepth           master;         /* the master's nodes in the slave */
+  PetscReal           master_deepest; /* their largest depth in all written states (length) */
 } PairFigures;
 
 typedef struct {
