@@ -32,11 +32,12 @@ PetscErrorCode RunUsageCollect(MPI_Comm comm, RunUsage *usage)
 
 static PetscErrorCode CollectPair(Model model, int p, PairFigures *pair)
 {
-  Contact contact = model->contact;
+  const Contact contact = model->contact;
 
   PetscFunctionBeginUser;
-  pair->name  = ContactPairName(contact, p);
-  pair->scene = ContactPairScene(contact, p);
+  pair->name          = ContactPairName(contact, p);
+  pair->scene         = ContactPairScene(contact, p);
+  pair->penalty_error = ModelPenaltyError(model, p);
   PetscCall(ContactPairFits(contact, p, &pair->fits));
   PetscCall(ContactPairQuality(contact, p, &pair->quality));
   PetscCall(ContactPairPenalty(contact, p, &pair->penalty_min, &pair->penalty_max));
@@ -101,21 +102,4 @@ PetscErrorCode RunFiguresDestroy(RunFigures *figures)
   PetscFunctionBeginUser;
   PetscCall(PetscFree(figures->pairs));
   PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/*@
-  PairSurfaceError - returns how far the surface that contact is solved on is from the one that is meant (length), as
-  far as the run knows.
-
-  Not collective
-
-  Input Parameter:
-. pair - figures of the pair
-
-  Note:
-  It is the error of the fits, or of the facets where there are no fits; 0 for an analytic or flat master.
-@*/
-PetscReal PairSurfaceError(const PairFigures *pair)
-{
-  return pair->fits.points ? pair->fits.smoothing_error : pair->quality.sagitta;
 }

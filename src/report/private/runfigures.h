@@ -15,6 +15,7 @@ typedef struct {
   PetscReal           penalty_min, penalty_max;
   NodeDepth           master;         /* the master's nodes in the slave */
   PetscReal           master_deepest; /* their largest depth in all written states (length) */
+  PenaltyError        penalty_error;
 } PairFigures;
 
 typedef struct {
@@ -38,4 +39,3 @@ PetscErrorCode RunUsageCollect(MPI_Comm, RunUsage *);
 PetscErrorCode RunFiguresCollect(Model, Scene, const RunRecord *, const RunUsage *, PetscInt restarts,
                                  const StepRecord *last, RunFigures *);
 PetscErrorCode RunFiguresDestroy(RunFigures *);
-PetscReal      PairSurfaceError(const PairFigures *);
