@@ -115,21 +115,38 @@ static void PrintGuards(const RunFigures *figures, FILE *stream)
   fprintf(stream, n ? "\n" : "guards   none acted\n");
 }
 
+/* The stream, and how many changes to try have been printed */
+typedef struct {
+  FILE *stream;
+  int   n;
+} Tries;
+
+static void PrintTry(const char *change, void *context)
+{
+  Tries *tries = context;
+
+  fprintf(tries->stream, "%s %s\n", tries->n++ ? "or      " : "try     ", change);
+}
+
 static void PrintFailure(const RunFigures *figures, FILE *stream)
 {
+  Tries                tries   = {.stream = stream};
   const StepperReport *way     = figures->run->way;
   const Failure       *failure = &way->failed.solve.failure;
 
   fprintf(stream, "failed   on the way from t = %.6g to %.6g: %s\n", (double)way->t, (double)way->failed.t,
           SolveResults[way->failed.solve.result]);
   if (failure->inverted >= 0)
-    fprintf(stream, "where    element %lld was turned inside out\n", (long long)failure->inverted);
+    fprintf(stream, "where    element %lld of '%s' was turned inside out\n", (long long)failure->inverted,
+            failure->inverted_body >= 0 ? figures->scene->bodies[failure->inverted_body].name : "");
   for (int i = 0; i < failure->n; i++) {
     const FailureNode *node = &failure->node[i];
 
     fprintf(stream, "where    node %lld (%.6g, %.6g, %.6g): residual %.3g", (long long)node->place.tag,
             (double)node->place.X[0], (double)node->place.X[1], (double)node->place.X[2], (double)node->residual);
     if (isfinite((double)node->gap)) fprintf(stream, ", gap %.3g", (double)node->gap);
+    if (node->body >= 0) fprintf(stream, "; body '%s'", figures->scene->bodies[node->body].name);
+    if (node->pair >= 0) fprintf(stream, ", pair '%s'", figures->pairs[node->pair].name);
     fprintf(stream, "\n");
   }
   if (way->failed.solve.result == SOLVE_WINDOW) fprintf(stream, "where    %s\n", way->failed.solve.detail);
@@ -138,7 +155,7 @@ static void PrintFailure(const RunFigures *figures, FILE *stream)
           "of %.2g\n",
           (long long)way->failed.attempts, (double)way->failed.first, (double)way->failed.last,
           figures->scene->stepping.dt_min, (long long)way->failed.solve.newton, (double)way->failed.solve.residual);
-  fprintf(stream, "try      %s\n", AdviceForFailure(way->failed.solve.result));
+  AdviceTry(figures, PrintTry, &tries);
 }
 
 static void PrintAdvice(const char *line, void *stream)

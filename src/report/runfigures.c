@@ -42,6 +42,7 @@ static PetscErrorCode CollectPair(Model model, int p, PairFigures *pair)
   PetscCall(ContactPairQuality(contact, p, &pair->quality));
   PetscCall(ContactPairPenalty(contact, p, &pair->penalty_min, &pair->penalty_max));
   PetscCall(ContactPairWindow(contact, p, &pair->window));
+  PetscCall(ContactPairScatter(contact, p, model->u, &pair->scatter));
   PetscCall(ContactPairMasterDepth(contact, p, model->u, model->t, &pair->master));
   pair->master_deepest = pair->master.depth;
   PetscFunctionReturn(PETSC_SUCCESS);

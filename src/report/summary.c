@@ -198,6 +198,7 @@ static void AddContact(cJSON *json, const RunFigures *figures)
     AddReal(pair, "max_penetration", figure->quality.max_penetration);
     AddReal(pair, "max_penetration_over_h", figure->quality.max_penetration_over_h);
     AddMasterDepth(pair, figure);
+    AddReal(pair, "pressure_scatter", figure->scatter);
     AddReal(pair, "facet_error", figure->fits.points ? figure->fits.facet_error : figure->quality.sagitta);
     AddReal(pair, "smoothing_error", figure->fits.points ? figure->fits.smoothing_error : NAN);
     cJSON_AddNumberToObject(pair, "fall_backs", (double)(figure->fits.points - figure->fits.plain));

@@ -377,7 +377,7 @@ static void WarnDeep(PetscReal deepest, PetscReal standing)
             "burnish: warning: a slave node was up to %.3g face sizes behind its master: the penalty is too soft for "
             "what presses\n",
             (double)deepest);
-  if (standing > 1)
+  if (standing > PetscMax(1, deepest))
     fprintf(stderr,
             "burnish: warning: a master node stood up to %.3g face sizes deep in its slave: contact is enforced at the "
             "slave's points alone, which are too far apart there\n",
