@@ -89,7 +89,7 @@ static int PenaltyIsFixed(const ChangePlace *at)
 /* The factor on the penalty that the run ended with. */
 static double PenaltyScale(const ChangePlace *at)
 {
-  return PairScene(at)->penalty_scale * fmax(1, (double)at->pair->penalty_error.raised);
+  return PairScene(at)->penalty_scale * fmax(1, (double)at->pair->stiffened);
 }
 
 static void WriteStiffer(const ChangePlace *at, char *text, size_t size)

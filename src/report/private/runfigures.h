@@ -17,6 +17,7 @@ typedef struct {
   NodeDepth           master;         /* the master's nodes in the slave */
   PetscReal           master_deepest; /* their largest depth in all written states (length) */
   PenaltyError        penalty_error;
+  PetscReal           stiffened; /* factor by which the run raised the penalty, where it may choose it */
 } PairFigures;
 
 typedef struct {
