@@ -75,7 +75,7 @@ typedef struct {
 typedef struct {
   PetscInt     nodes, near; /* slave nodes, those with a master near */
   PetscInt     overlapping; /* of the near ones */
-  PetscInt     refused;     /* of the overlapping ones, those deeper than the surface's own errors explain */
+  PetscInt     refused;     /* of the overlapping ones, those deeper than the facets' own shape explains */
   PetscReal    least, most; /* gaps (length) */
   PetscReal    area;        /* of the overlapping nodes */
   ContactPlace deepest;

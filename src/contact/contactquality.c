@@ -58,7 +58,7 @@ PetscErrorCode ContactPairGaps(Contact contact, int p, ContactGaps *gaps)
     if (PetscIsNanReal(gap)) continue;
     count[1]++;
     count[2] += gap < 0;
-    count[3] += gap < -ContactOverlapTolerance(pair, c);
+    count[3] += gap < -ContactTouchTolerance(pair, c);
     if (gap < 0) area += pair->area[c];
     range[1] = PetscMax(range[1], gap);
     range[0] = PetscMax(range[0], -gap);
@@ -234,8 +234,7 @@ static PetscErrorCode PairCheckFacing(Contact contact, const ContactPair *pair)
 
   Note:
   With initial_overlap: refuse, it refuses the deepest overlap of each pair that is more than the sagitta of the
-  facets and the error of the fit explain; the message names pair, node and depth. With ramp and ignore it keeps the
-overlaps as g_0.
+  facets explains; the message names pair, node and depth. With ramp and ignore it keeps the overlaps as g_0.
 @*/
 PetscErrorCode ContactTakeOverlap(Contact contact)
 {
@@ -257,7 +256,7 @@ PetscErrorCode ContactTakeOverlap(Contact contact)
       if (pair->scene->initial_overlap == OVERLAP_RAMP || pair->scene->initial_overlap == OVERLAP_IGNORE)
         pair->now.offset[c] = pair->now.gap[c] < 0 ? pair->now.gap[c] : 0;
       if (pair->scene->initial_overlap != OVERLAP_REFUSE) continue;
-      if (!(pair->now.gap[c] < -ContactOverlapTolerance(pair, c)) || pair->now.gap[c] >= worst) continue;
+      if (!(pair->now.gap[c] < -ContactTouchTolerance(pair, c)) || pair->now.gap[c] >= worst) continue;
       worst = pair->now.gap[c];
       at    = c;
     }

@@ -131,31 +131,6 @@ PetscReal ContactTouchTolerance(const ContactPair *pair, PetscInt c)
 }
 
 /*@
-  ContactOverlapTolerance - returns the overlap up to which surfaces that touch may seem to lie in each other (length).
-
-  Not collective
-
-  Input Parameters:
-+ pair - the pair
-- c    - the term
-
-  Note:
-  To what ContactTouchTolerance() allows it adds the distance by which a fit leaves the master's nodes: next to the end
-  of an arc a fitted surface is not where both surfaces were drawn.
-@*/
-PetscReal ContactOverlapTolerance(const ContactPair *pair, PetscInt c)
-{
-  PetscReal smoothing = 0;
-
-  for (PetscInt k = pair->term_ptr[c]; k < pair->term_ptr[c + 1]; k++) {
-    const PetscInt q = pair->term_point[k];
-
-    if (pair->fit.fitted && pair->lists->fit_n[q]) smoothing = PetscMax(smoothing, pair->lists->residual[q]);
-  }
-  return ContactTouchTolerance(pair, c) + smoothing;
-}
-
-/*@
   ContactMeanOpening - returns the opening of a term of surface to surface contact whose node touches (length).
 
   Not collective

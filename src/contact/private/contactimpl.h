@@ -137,7 +137,6 @@ PetscReal ContactTermOffset(const ContactPair *, PetscInt term, PetscReal t);
 PetscReal ContactTermOnsetGap(const ContactPair *, PetscInt term, PetscReal t);
 PetscReal ContactTermBound(const ContactPair *, PetscInt term);
 PetscReal ContactTouchTolerance(const ContactPair *, PetscInt term);
-PetscReal ContactOverlapTolerance(const ContactPair *, PetscInt term);
 PetscReal ContactMeanOpening(const ContactPair *, PetscInt term);
 void      ContactTermPress(ContactPair *, PetscInt term, PetscReal pressure);
 /* contactpoint.c */
