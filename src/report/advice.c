@@ -32,8 +32,9 @@ typedef int (*PairRuleFn)(const RunFigures *, const PairFigures *, char *text);
 static int PenetrationIsDeep(const RunFigures *figures, const PairFigures *pair, char *text)
 {
   const SceneContact *scene = pair->scene;
+  const PenaltyError *part  = &pair->penalty_error;
   const PetscReal     error =
-    PetscMax(PetscMax(pair->penalty_error.force, pair->penalty_error.pressure), pair->penalty_error.displacement);
+    PetscMax(PetscMax(part->force, part->displacement), scene->penalty_may_stiffen ? 0 : part->pressure);
 
   (void)figures;
   if (scene->adjust || scene->augment || !(error > ADVICE_PENALTY)) return 0;
