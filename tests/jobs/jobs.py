@@ -34,7 +34,7 @@ JOBS = [
     Job("lip_seal", "lip seal on a shaft", [
         Answer("radial_force", 36.575, 0.01, "limit"),
         Answer("lip_up", 0.46007, 0.02, "limit"),
-    ], steps=30, picture=["--mirror", "x"]),
+    ], steps=12),
     Job("wheel_on_edge", "rubber wheel on an edge", [
         Answer("down", 36.44, 0.02, "limit"),
         Answer("sideways", 5.161, 0.1, "limit"),

@@ -110,7 +110,7 @@ def limit(args, job):
 
 def picture(args, job, directory):
     line = [sys.executable, ROOT / "scripts/render.py", pathlib.Path(args.out) / job.name, "--field", job.shown,
-            "--width", "640", *job.picture, "-o", pathlib.Path(directory) / f"{job.name}.png"]
+            "--width", "420", *job.picture, "-o", pathlib.Path(directory) / f"{job.name}.png"]
     return subprocess.run([str(part) for part in line]).returncode
 
 
