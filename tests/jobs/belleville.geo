@@ -9,7 +9,9 @@ s = Sin(angle);
 c = Cos(angle);
 xm = (De + Di) / 4;
 w = (b - t * s) / c;   // width of the rectangle, so that the radii are those of the corners
-DefineConstant[ n_w = {24, Name "elements along the width"}, n_t = {4, Name "elements through the thickness"} ];
+DefineConstant[ refine = {1, Name "divides all element sizes"} ];
+n_w = 24 * refine;
+n_t = 4 * refine;
 // corners: inner lower, outer lower, outer upper, inner upper
 Point(1) = {xm - c * w / 2 - s * t / 2, s * w / 2 - c * t / 2, 0};
 Point(2) = {xm + c * w / 2 - s * t / 2, -s * w / 2 - c * t / 2, 0};

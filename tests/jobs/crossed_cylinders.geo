@@ -1,9 +1,10 @@
 // Two half cylinders crossed at right angles, a quarter of both: symmetric about x = 0 and z = 0. There is a small gap
 // between them. Lengths in mm.
+DefineConstant[ refine = {1, Name "divides all element sizes"} ];
 R = 10;           // radius of both
 L = 8;            // half length
-fine = 0.22;      // element size where they touch
-coarse = 3;
+fine = 0.22 / refine;      // element size where they touch
+coarse = 3 / refine;
 gap = 0.01;
 
 // upper one: axis along x through (0, R, 0)
@@ -30,7 +31,7 @@ low[] = Extrude{0, 0, L}{ Surface{2}; };
 
 // element size grows with the distance from the origin; the lower body is meshed a little coarser
 Field[1] = MathEval;
-Field[1].F = Sprintf("(%g + 0.2 * (sqrt(x*x + y*y + z*z) - 1.2 + abs(sqrt(x*x + y*y + z*z) - 1.2))) * (1 - 0.1 * (y + 0.005) / sqrt((y + 0.005)^2 + 1e-6))", fine);
+Field[1].F = Sprintf("(%g + %g * (sqrt(x*x + y*y + z*z) - 1.2 + abs(sqrt(x*x + y*y + z*z) - 1.2))) * (1 - 0.1 * (y + 0.005) / sqrt((y + 0.005)^2 + 1e-6))", fine, 0.2 / refine);
 Background Field = 1;
 Mesh.MeshSizeMax = coarse;
 Mesh.MeshSizeExtendFromBoundary = 0;

@@ -1,4 +1,5 @@
 // A pin in a lug with clearance, a quarter of it: symmetric about x = 0 and about z = 0. Lengths in mm.
+DefineConstant[ refine = {1, Name "divides all element sizes"} ];
 D = 20;             // hole
 clearance = 0.1;    // on the diameter
 W = 44;             // width of the lug
@@ -7,10 +8,10 @@ P = 18;             // length of the pin, which stands out of the lug on both si
 tail = 36;          // from the hole's centre to the clamp
 r = D / 2;
 rp = (D - clearance) / 2;
-fine = 1.4;         // where pin and lug may touch: lug
-fine_pin = 1.2;     // pin
-mid = 3;
-coarse = 6;
+fine = 1.4 / refine;         // where pin and lug may touch: lug
+fine_pin = 1.2 / refine;     // pin
+mid = 3 / refine;
+coarse = 6 / refine;
 
 // lug: half of a head of width W, a strip below
 Point(1) = {0, r, 0, fine};

@@ -1,10 +1,11 @@
 // A hub shrunk on a hollow shaft, a quarter of the cross-section. Lengths in mm.
+DefineConstant[ refine = {1, Name "divides all element sizes"} ];
 bore = 10;          // radius
 fit = 25;           // radius of the interface
 rim = 50;           // radius
 overlap = 0.025;    // on the radius: 0.1 % of it
-h_shaft = 1.9;      // element sizes
-h_hub = 2.4;
+h_shaft = 1.9 / refine;      // element sizes
+h_hub = 2.4 / refine;
 
 Point(1) = {0, 0, 0};
 Point(2) = {bore, 0, 0, h_shaft};

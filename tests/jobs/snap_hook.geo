@@ -1,4 +1,5 @@
 // A snap hook in front of a catch, plane strain; the hook moves to the right. Lengths in mm.
+DefineConstant[ refine = {1, Name "divides all element sizes"} ];
 L = 20;              // arm
 t = 2;               // its thickness
 h = 1.5;             // height of the hook over the arm
@@ -6,8 +7,8 @@ lead = 30 * Pi / 180;   // slope of the hook's front
 back = 50 * Pi / 180;   // slope of its back
 land = 0.8;          // flat between them
 r = 0.4;             // rounding of the hook's edges
-fine = 0.12;
-coarse = 0.7;
+fine = 0.12 / refine;
+coarse = 0.7 / refine;
 
 // arm: from x = 0 (root) to the hook; upper face at y = t
 xb = L;                              // foot of the back

@@ -1,8 +1,9 @@
 // Three rubber balls in a column, axisymmetric: the lower and the upper one are cut at their equators. Lengths in mm.
+DefineConstant[ refine = {1, Name "divides all element sizes"} ];
 R = 10;          // radius of each
-fine = 0.14;     // element size where the balls touch, lower and upper one
-fine_middle = 0.11;
-coarse = 2;      // elsewhere
+fine = 0.14 / refine;     // element size where the balls touch, lower and upper one
+fine_middle = 0.11 / refine;
+coarse = 2 / refine;      // elsewhere
 touch = 8 * Pi / 180;  // angle from the pole up to which the mesh is fine
 
 // lower half, its pole at the origin

@@ -1,12 +1,13 @@
 // Section of a cushion tyre over the rounded edge of a kerb, plane strain. Lengths in mm.
+DefineConstant[ refine = {1, Name "divides all element sizes"} ];
 width = 80;          // tyre
 height = 30;
 shoulder = 10;       // rounding of the tread's ends
 crown = 150;         // radius of the tread
 edge = 12;           // x of the kerb's side face; the tyre's middle is at 0
 r = 8;               // rounding of the kerb's edge
-fine = 1.2;
-coarse = 4;
+fine = 1.2 / refine;
+coarse = 4 / refine;
 hw = width / 2;
 // the tread is an arc about (0, crown) from -a to a; the shoulders touch it and the side faces
 a = Asin((hw - shoulder) / (crown - shoulder));
