@@ -5,8 +5,8 @@ DefineConstant[
   collar = {22, Name "radius of the collars, middle line"}, waist = {15, Name "radius of the waist, middle line"},
   wall = {2, Name "thickness"}, height = {36, Name "of the boot between the collars"}, mandrel = {12, Name "its radius"}
 ];
-n = Round(40 * refine);
-layers = Round(3 * refine);
+n = Round(60 * refine);
+layers = Round(4 * refine);
 For i In {0 : 40}
   z = height * (i / 40 - 0.5);
   r = waist + (collar - waist) * (1 - Cos(2 * Pi * z / height)) / 2;
@@ -36,7 +36,7 @@ Line(13) = {13, 14};
 Line(14) = {14, 11};
 Curve Loop(2) = {11 : 14};
 Plane Surface(2) = {2};
-Transfinite Curve{12, 14} = Round(28 * refine) + 1;
+Transfinite Curve{12, 14} = Round(42 * refine) + 1;
 Transfinite Curve{11, 13} = Round(3 * refine) + 1;
 Transfinite Surface{2};
 Recombine Surface{2};

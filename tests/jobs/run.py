@@ -21,7 +21,7 @@ import harness  # noqa: E402
 import jobs  # noqa: E402
 import launch  # noqa: E402
 
-LIMIT = 200  # s of one run
+LIMIT = 250  # s of one run
 COLUMNS = ("job", "status", "steps", "failed", "iterations", "cpu_s", "probe", "answer", "reference", "error",
            "reference_error", "source", "as_expected", "reason")
 STIFF = ("contact.*.smoother=diffuse", "contact.*.formulation=surface_to_surface", "contact.*.penalty={scale: 1000}",

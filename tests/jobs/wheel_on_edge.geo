@@ -4,7 +4,7 @@ DefineConstant[
   refine = {1, Name "divides all element sizes"},
   hub = {25, Name "radius"}, radius = {50, Name "of the wheel"}, edge = {1.5, Name "radius of the block's edge"}
 ];
-fine = 0.8 / refine;
+fine = 0.6 / refine;
 coarse = 6 / refine;
 Point(1) = {0, radius, 0, coarse};
 For i In {0 : 1}
