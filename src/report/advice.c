@@ -1,5 +1,6 @@
 /* Rules that turn the figures of a run into advice, see advice.h. */
 #include "advice.h"
+#include "runlength.h"
 
 /* Estimated error by penetration above which a stiffer penalty is advised, and the error that it is to leave. */
 #define ADVICE_PENALTY        0.01
@@ -167,6 +168,16 @@ static int OutputIsSlow(const RunFigures *figures, char *text)
   return 1;
 }
 
+static int StepsAreMany(const RunFigures *figures, char *text)
+{
+  return RunStepsAreMany(figures->scene, figures->run->way->steps, figures->run->way->steps_failed, text);
+}
+
+static int ResultsAreLarge(const RunFigures *figures, char *text)
+{
+  return RunResultsAreLarge(figures->scene, figures->results_bytes, 1, text);
+}
+
 static int KernelsAreOld(const RunFigures *figures, char *text)
 {
   const PetscReal seconds = figures->usage.seconds[TIMING_SOLVE];
@@ -184,8 +195,9 @@ static int KernelsAreOld(const RunFigures *figures, char *text)
   return 1;
 }
 
-static const RunRuleFn run_rules[] = {StepsFail,    StepsRepeat,  NeighbourListsAreRemade, StepsAreLong, LineSearchCuts,
-                                      OutputIsSlow, KernelsAreOld};
+static const RunRuleFn run_rules[] = {StepsFail,     StepsRepeat,    NeighbourListsAreRemade,
+                                      StepsAreLong,  LineSearchCuts, OutputIsSlow,
+                                      KernelsAreOld, StepsAreMany,   ResultsAreLarge};
 
 /*@
   AdviceGive - passes on one line for each figure of a run that is bad and can be improved.

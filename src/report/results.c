@@ -3,6 +3,7 @@
 #include "fields.h"
 #include "optionrecord.h"
 #include "report/rundirectory.h"
+#include "runlength.h"
 #include "stepscsv.h"
 #include "summary.h"
 #include "terminal.h"
@@ -336,6 +337,7 @@ PetscErrorCode ResultsFinish(Results results, const RunRecord *run)
   PetscCall(RunFiguresCollect(results->model, results->scene, run, &usage, results->restarts,
                               results->stepped ? &results->last : NULL, &figures));
   figures.options_changed = results->options.changes;
+  figures.results_bytes   = RunResultsBytes(results->directory);
   if (!results->rank) PetscCall(SummaryWrite(results->model->mesh, &figures, results->directory, results->values));
   PetscCall(TerminalEnd(results->terminal, &last));
   PetscCall(RunFiguresDestroy(&figures));

@@ -1,6 +1,7 @@
 /* Progress and warnings of a run on the terminal, see terminal.h. */
 #include "terminal.h"
 #include "endreport.h"
+#include "runlength.h"
 #include "report/precheck.h"
 #include "scene/commandline.h"
 #include <math.h>
@@ -22,7 +23,9 @@ struct _n_Terminal {
   char        directory[PETSC_MAX_PATH_LEN];
   PetscBool   quiet, talks; /* talks: rank 0 of a run that is not quiet */
   PetscMPIInt rank, size;
-  PetscReal   t_began; /* load parameter at which this part of the run began */
+  PetscReal   t_began;                  /* load parameter at which this part of the run began */
+  PetscInt    failed;                   /* attempts of this part that failed */
+  PetscBool   told_steps, told_results; /* that the run gets long */
 };
 
 /*@
@@ -253,8 +256,25 @@ static void PrintStepContact(const StepRecord *step)
   printf(" %12.3e", (double)step->contact.max_penetration);
 }
 
+/* Says once that the steps get many, and once that the results get large. */
+static void PrintLength(Terminal terminal, const StepRecord *step)
+{
+  char text[RUN_LENGTH_TEXT];
+
+  terminal->failed += step->attempts - 1;
+  if (!terminal->told_steps && RunStepsAreMany(terminal->scene, step->step, terminal->failed, text)) {
+    terminal->told_steps = PETSC_TRUE;
+    printf("      %s\n", text);
+  }
+  if (!terminal->told_results &&
+      RunResultsAreLarge(terminal->scene, RunResultsBytes(terminal->directory), step->t, text)) {
+    terminal->told_results = PETSC_TRUE;
+    printf("      %s\n", text);
+  }
+}
+
 /*@
-  TerminalStep - prints the line of an accepted step.
+  TerminalStep - prints the line of an accepted step, and once why a run gets long.
 
   Not collective
 
@@ -281,6 +301,7 @@ void TerminalStep(Terminal terminal, const StepRecord *step, PetscReal spent)
          covered > 0.0 ? DurationText(seconds * (1.0 - (double)step->t) / covered, left_text) : "-");
   if (step->tied)
     printf("      %lld nodes come into contact together: no step above dt_min separates them\n", (long long)step->tied);
+  PrintLength(terminal, step);
   fflush(stdout);
 }
 

@@ -7,6 +7,7 @@
 #include <cmocka.h>
 #include <string.h>
 #include "advice.h"
+#include "runlength.h"
 
 typedef struct {
   SceneContact  scene;
@@ -49,6 +50,62 @@ static void Expect(const Case *c, const char *part)
     assert_non_null(strstr(text, part));
     assert_ptr_equal(strchr(text, '\n'), text + strlen(text) - 1);
   }
+}
+
+/* A run of more than a hundred steps or a gigabyte of results has a line that says why and what to change. */
+static void test_length(void **state)
+{
+  static double t[200], v[200];
+  SceneLoad     load = {.history = {2, t, v}};
+  Case          c;
+
+  (void)state;
+  Good(&c);
+  PetscNew(&c.figures.scene);
+  c.figures.scene->loads            = &load;
+  c.figures.scene->n_loads          = 1;
+  c.figures.scene->stepping.control = STEP_ITERATIONS;
+  c.figures.scene->stepping.dt_max  = 1;
+  c.way.steps                       = 100;
+  Expect(&c, NULL);
+  c.way.steps = c.way.newton_accepted = 101;
+  Expect(&c, "101 steps: solves take many iterations, so that stepping.control: iterations keeps dt small; control:");
+  c.figures.scene->stepping.control = STEP_CONTACT;
+  Expect(&c, "stepping.control: contact lets few nodes come into contact in each; a larger stepping.N_c or");
+  load.history.n = 200;
+  Expect(&c, "they end on 198 load parameters of stepping.at and of histories; fewer of these");
+  c.figures.scene->stepping.dt_max = 0.01;
+  Expect(&c, "stepping.dt_max = 0.01 allows no longer ones; a larger dt_max");
+  c.figures.scene->stepping.control = STEP_FIXED;
+  c.figures.scene->stepping.initial = 0.01;
+  Expect(&c, "stepping.control: fixed takes stepping.initial = 0.01; a larger one, or control: iterations");
+  c.way.steps_failed = 6;
+  Expect(&c, "6 attempts failed and cut dt; a finer mesh of the slave");
+  c.way.steps                   = 10;
+  c.way.steps_failed            = 0;
+  c.figures.results_bytes       = 2.5e9;
+  c.figures.scene->output.every = 1;
+  Expect(&c, "results.h5 has 2.5 GB with output.every: 1; output.every: 3, or fewer output.fields");
+  c.figures.results_bytes = 1e9;
+  Expect(&c, NULL);
+  PetscFree(c.figures.scene);
+}
+
+/* The size of the results is foretold from a tenth of a gigabyte on. */
+static void test_foretold(void **state)
+{
+  char  text[RUN_LENGTH_TEXT];
+  Scene scene;
+
+  (void)state;
+  PetscNew(&scene);
+  scene->output.every = 2;
+  assert_int_equal(RunResultsAreLarge(scene, 9e7, 0.01, text), 0);
+  assert_int_equal(RunResultsAreLarge(scene, 2e8, 0.5, text), 0);
+  assert_int_equal(RunResultsAreLarge(scene, 2e8, 0.1, text), 1);
+  assert_string_equal(text, "results.h5 will have 2.0 GB with output.every: 2; output.every: 4, or fewer "
+                            "output.fields");
+  PetscFree(scene);
 }
 
 static void test_pairs(void **state)
@@ -144,7 +201,8 @@ static void test_kernels(void **state)
 
 int main(void)
 {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_pairs), cmocka_unit_test(test_steps),
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_length), cmocka_unit_test(test_foretold),
+                                     cmocka_unit_test(test_pairs), cmocka_unit_test(test_steps),
                                      cmocka_unit_test(test_kernels)};
 
   return cmocka_run_group_tests(tests, NULL, NULL);

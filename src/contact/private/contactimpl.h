@@ -133,6 +133,7 @@ void      ContactTermLaw(const ContactPair *, PetscInt term, PetscReal t, LawVal
 PetscReal ContactTermGap(const ContactPair *, const PetscReal *factor, const PetscReal *point_gap, PetscInt term,
                          PetscReal *area);
 PetscReal ContactTermForce(const ContactPair *, PetscInt term);
+PetscReal ContactTermAddedOverlap(const ContactPair *, PetscInt term, PetscReal t);
 PetscReal ContactTermOffset(const ContactPair *, PetscInt term, PetscReal t);
 PetscReal ContactTermOnsetGap(const ContactPair *, PetscInt term, PetscReal t);
 PetscReal ContactTermBound(const ContactPair *, PetscInt term);

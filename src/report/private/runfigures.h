@@ -24,8 +24,9 @@ typedef struct {
   int               ranks;
   PetscInt          dofs;
   char              effects[1024];
-  RunUsage          usage;    /* of all parts of the run */
-  PetscInt          restarts; /* their number less one */
+  RunUsage          usage;         /* of all parts of the run */
+  PetscReal         results_bytes; /* size of results.h5 */
+  PetscInt          restarts;      /* their number less one */
   LinearCounts      linear;
   const char       *options_changed; /* lines, see optionrecord.h */
   PetscBool         direct;          /* the solver factors each tangent, for which it uses the BLAS */
