@@ -136,6 +136,7 @@ static FitSettings PairFitSettings(Scene scene, const ContactPair *pair, int ord
 
   fit.fitted   = (PetscBool)(pair->smoother->fitted && contact->master);
   fit.integral = (PetscBool)(fit.fitted && pair->formulation.surface);
+  fit.revolved = (PetscBool)(fit.integral && scene->geometry == GEOMETRY_AXISYMMETRIC);
   if (fit.integral) {
     if (fit.support == 0) fit.support = order == 2 ? (scene->dim == 2 ? 1.75 : 2.25) : 3;
     if (fit.exponent == 0) fit.exponent = 3;

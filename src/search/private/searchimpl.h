@@ -32,7 +32,7 @@ typedef struct {
   PetscInt  record;
   int       image;
   Facet     facet; /* nodes: contact nodes until the points are numbered, then points */
-  PetscInt  first; /* first fit point of its quadrature rule */
+  PetscInt  first, count; /* fit points of its quadrature rule */
   PetscReal centre[3], normal[3], lower[3], upper[3];
 } Candidate;
 
@@ -87,7 +87,7 @@ typedef struct {
   NodeGeometry  *geometry;
   PetscInt      *points; /* of the present slave point, with room for FIT_MAX_POINTS */
   /* taper: weights for the frame, which vanish where the list ends. */
-  double   *x, *multiplier, *taper, *workspace;
+  double   *x, *multiplier, *taper, *hoop, *workspace;
   int      *used;
   PetscReal plane[3]; /* normal of the single reference plane of a global frame */
 } FitSupport;
