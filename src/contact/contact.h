@@ -125,6 +125,9 @@ PetscErrorCode ContactUnpredictedEnergy(Contact, const PetscReal *u, PetscReal t
 /* Penalties and multipliers */
 PetscErrorCode ContactSoften(Contact, PetscReal most);
 PetscErrorCode ContactStiffest(Contact, PetscReal *most);
+PetscErrorCode ContactScalePenalty(Contact, PetscReal factor);
+PetscErrorCode ContactStiffen(Contact, int pair, PetscReal factor);
+PetscErrorCode ContactPairLoad(Contact, int pair, const PetscReal *u, PetscReal *force, PetscReal *pressure);
 PetscErrorCode ContactAdjustPenalty(Contact, ContactWindowState *);
 PetscErrorCode ContactAdjustNextPenalty(Contact);
 PetscErrorCode ContactGapsConverged(Contact, PetscBool *converged);

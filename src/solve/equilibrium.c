@@ -12,6 +12,10 @@
    a body that flies freely covers a thousand times its penetration at rest. */
 #define EQUILIBRIUM_MAX_RELAX 30
 
+/* Penalties are stiffened at most this many times at the end of the load. The first time is enough where the error is
+   proportional to the compliance of the penalty, which it is when it is small. */
+#define EQUILIBRIUM_MAX_STIFFEN 2
+
 /* Adds to the text that a slave node rests on an edge between facets. *found: such a node exists. */
 static PetscErrorCode ModelBlameFacets(Model model, char *text, size_t size, PetscBool *found)
 {
@@ -98,6 +102,7 @@ static PetscErrorCode ModelDepart(Model model, PetscReal t)
   work->cycles             = 0;
   work->cycle[0]           = '\0';
   work->energy             = 0;
+  ModelForgetPenaltyError(model);
   if (!model->contact) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(ProblemImposedMotion(model->problem, work->accepted_u, work->accepted_t, t, &motion));
   motion = PetscMax(motion, PROBLEM_MOTION_SAFETY * work->rate * (t - work->accepted_t));
@@ -214,6 +219,22 @@ static PetscErrorCode ModelSolveHeld(Model model, SolveReport *report)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* At the end of the load: estimates what penetration leaves of error, and stiffens the penalties that the run may
+   choose where that is too much. WINDOW_MISSED: the step must be solved on. */
+static PetscErrorCode ModelCheckPenalty(Model model, SolveReport *report, ContactWindowState *window)
+{
+  PetscBool stiffened = PETSC_FALSE;
+
+  PetscFunctionBeginUser;
+  PetscCall(ModelEstimatePenalty(model));
+  if (report->stiffened < EQUILIBRIUM_MAX_STIFFEN) PetscCall(ModelStiffen(model, &stiffened));
+  if (!stiffened) PetscFunctionReturn(PETSC_SUCCESS);
+  report->stiffened++;
+  report->adjusted++;
+  *window = WINDOW_MISSED;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /*@
   ModelSolve - finds equilibrium at a load parameter, starting from the accepted state.
 
@@ -232,7 +253,9 @@ static PetscErrorCode ModelSolveHeld(Model model, SolveReport *report)
 
   Contact lists are made before the first solve and are frozen in each solve by Newton's method. After each solve they
   are checked and made anew, at most MODEL_MAX_REGATHER times. Then penalties that are adjusted within the step are
-  changed, and the step is solved on from there, until the penetrations are in their window or no more can be done.
+  changed, and the step is solved on from there, until the penetrations are in their window or no more can be done. At
+  t = 1 the error that penetration leaves is estimated, and penalties that no key of the scene sets are made stiffer
+  where it is large.
 @*/
 PetscErrorCode ModelSolve(Model model, PetscReal t, SolveReport *report)
 {
@@ -253,6 +276,7 @@ PetscErrorCode ModelSolve(Model model, PetscReal t, SolveReport *report)
       PetscCall(ContactLocateOutside(model->contact, report->detail, sizeof(report->detail)));
       report->result = SOLVE_WINDOW;
     }
+    if (window == WINDOW_HOLDS && t >= 1) PetscCall(ModelCheckPenalty(model, report, &window));
   }
   report->cycles = work->cycles;
   PetscCall(PetscStrncpy(report->cycle, work->cycle, sizeof(report->cycle)));

@@ -21,7 +21,8 @@ static const PartsBlock Blocks[] = {
 static const char Text[] = "geometry: plane_strain\nkinematics: finite\nbodies:\n"
                            "  - {volume: lower, material: {law: svk, E: 1000, nu: 0}}\n"
                            "  - {volume: upper, material: {law: svk, E: 1000, nu: 0}}\n"
-                           "contact: [{name: joint, slave: upper_bottom, master: lower_top, stabilise: true, "
+                           "contact: [{name: joint, slave: upper_bottom, master: lower_top, stabilise: true, smoother: facet, "
+                           "formulation: node_to_surface, "
                            "penalty: {initial: 1000}}]\n";
 
 static Parts parts;

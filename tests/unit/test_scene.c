@@ -210,10 +210,10 @@ static void ContactsArrive(void **state)
   assert_true(contact->clamp == 10 && contact->range == 100);
   contact = &scene->contacts[1];
   assert_true(!contact->adjust && contact->adjust_converged && contact->clamp == 100 && contact->range == 1e4);
-  assert_int_equal(contact->smoother, SMOOTHER_FACET);
-  assert_int_equal(contact->formulation, CONTACT_NODE_TO_SURFACE);
+  assert_int_equal(contact->smoother, SMOOTHER_DIFFUSE);
+  assert_int_equal(contact->formulation, CONTACT_SURFACE_TO_SURFACE);
   assert_true(contact->n_symmetry == 0 && contact->feature_angle == 45 && !contact->stabilise &&
-              contact->penalty_auto && contact->penalty_scale == 1);
+              contact->penalty_auto && contact->penalty_scale == 100 && contact->penalty_may_stiffen);
   Free(&scene);
 }
 
@@ -407,7 +407,7 @@ static void ReferenceNamesKeysRangesAndDefaults(void **state)
   fclose(file);
   assert_non_null(strstr(text, "  bodies.N.material.nu: a number in (-1, 0.5); required - Poisson's ratio\n"));
   assert_non_null(
-    strstr(text, "  contact.N.formulation: node_to_surface | surface_to_surface; default node_to_surface"));
+    strstr(text, "  contact.N.formulation: node_to_surface | surface_to_surface | auto; default auto"));
   assert_non_null(strstr(text, "  probes.N.contact_edge: "));
   free(text);
 }

@@ -13,6 +13,7 @@ typedef struct {
   ContactQuality      quality;
   ContactWindow       window;
   PetscReal           penalty_min, penalty_max;
+  PenaltyError        penalty_error;
 } PairFigures;
 
 typedef struct {
@@ -36,4 +37,3 @@ PetscErrorCode RunUsageCollect(MPI_Comm, RunUsage *);
 PetscErrorCode RunFiguresCollect(Model, Scene, const RunRecord *, const RunUsage *, PetscInt restarts,
                                  const StepRecord *last, RunFigures *);
 PetscErrorCode RunFiguresDestroy(RunFigures *);
-PetscReal      PairSurfaceError(const PairFigures *);

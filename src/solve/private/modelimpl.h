@@ -3,9 +3,9 @@
 
    problem.c is below all of them. linearcontact.c finds the contact that is right at the end of a linear step.
    linesearch.c chooses what the line search compares, and corrects steps for contact. newton.c runs SNES once
-   with the present contact lists. prediction.c finds a first iterate, penaltyramp.c improves it on softened penalties.
-   equilibrium.c goes from an accepted state to the next one. model.c holds the accepted state. Each file calls only
-   those named before it. */
+   with the present contact lists. prediction.c finds a first iterate, penaltyramp.c improves it on softened penalties,
+   penaltyerror.c estimates what penetration leaves of error and stiffens penalties. equilibrium.c goes from an accepted
+   state to the next one. model.c holds the accepted state. Each file calls only those named before it. */
 #pragma once
 #include "contact/contactcycle.h"
 #include "extrapolation.h"
@@ -34,6 +34,8 @@ typedef struct _n_ModelWork {
   PetscReal  accepted_t;
   PetscReal  accepted_start; /* residual norm where Newton's method started in that step; 0: unknown */
   PetscReal  rate;           /* largest displacement per unit of t in that step */
+
+  PenaltyError *penalty_error; /* of each pair, once the load is at its end */
 
   /* A look-ahead from the accepted state */
   Vec       look_ahead; /* free displacements at look_ahead_t by ModelLookAhead() */
@@ -76,3 +78,9 @@ PetscErrorCode ModelPredictFar(Model, SolveReport *);
 PetscErrorCode ModelFollowLists(Model, SolveReport *);
 /* penaltyramp.c */
 PetscErrorCode ModelRampPenalty(Model, SolveReport *);
+/* penaltyerror.c */
+PetscErrorCode ModelCreatePenaltyError(Model);
+void           ModelForgetPenaltyError(Model);
+PetscErrorCode ModelArchivePenaltyError(Model, Archive);
+PetscErrorCode ModelEstimatePenalty(Model);
+PetscErrorCode ModelStiffen(Model, PetscBool *stiffened);
