@@ -33,7 +33,7 @@ static PetscErrorCode PairChooseNodes(Mesh mesh, Scene scene, ContactPair *pair)
   PetscFunctionBeginUser;
   PetscCallMPI(MPI_Comm_rank(mesh->comm, &rank));
   PetscCall(PetscMalloc4(mesh->n_nodes, &area, mesh->n_nodes, &size, mesh->n_nodes, &turn, mesh->n_nodes, &share));
-  PetscCall(SurfaceNodeSizes(pair->slave, scene->geometry, size, turn, share));
+  PetscCall(SurfaceNodeSizes(pair->slave, scene->geometry, pair->n_images, pair->images, size, turn, share));
   if (hats)
     PetscCall(SlavePointsHatAreas(pair->slaves, scene->geometry, NULL, area));
   else

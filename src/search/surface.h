@@ -39,8 +39,10 @@ PetscErrorCode SurfaceCreate(Mesh, Scene, Elasticity, const char *path, const ch
 PetscErrorCode SurfaceDestroy(ContactSurface *);
 PetscErrorCode SurfaceFindFreeEdges(ContactSurface, int n_images, const SurfaceImage *);
 PetscErrorCode SurfaceNodeAreas(ContactSurface, Geometry, const PetscReal *u, PetscReal *area, PetscReal *normal);
-PetscErrorCode SurfaceNodeSizes(ContactSurface, Geometry, PetscReal *size, PetscReal *turn, PetscReal *share);
+PetscErrorCode SurfaceNodeSizes(ContactSurface, Geometry, int n_images, const SurfaceImage *, PetscReal *size,
+                                PetscReal *turn, PetscReal *share);
 PetscErrorCode SurfaceImages(Mesh, Scene, const SceneContact *, int *n_images, SurfaceImage images[SURFACE_MAX_IMAGES]);
+PetscBool      SurfaceOnPlane(Mesh, const SurfaceImage *, const PetscReal *x);
 void           SurfaceReflect(const SurfaceImage *, int dim, const PetscReal *x, PetscReal *y);
 Facet          SurfaceImageFacet(const Facet *, const SurfaceImage *);
 PetscErrorCode SurfaceFaces(ContactSurface master, PetscInt n, const PetscInt nodes[], const PetscReal normals[],
