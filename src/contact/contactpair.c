@@ -14,7 +14,8 @@
 #define CONTACT_GLOBAL_COSINE 0.5
 
 /* In surface to surface, a slave whose faces are at least this many times coarser than the master's takes a finer
-   quadrature, as its points would skip facets. The figure is below 2, so that round-off does not decide on a mesh of
+   quadrature, as its points would skip facets. Axisymmetric slaves always do: the radius is one more factor, and next to
+   the axis the finer rule halves the error of the pressure. The figure is below 2, so that round-off does not decide on a mesh of
    half the size. */
 #define CONTACT_COARSE 1.9
 
@@ -105,7 +106,8 @@ static PetscErrorCode PairCreateTerms(Mesh mesh, ContactPair *pair)
 /* Creates slave points, terms and offsets, as the formulation asks for. */
 static PetscErrorCode PairCreatePoints(Mesh mesh, Scene scene, Loads loads, ContactPair *pair)
 {
-  const int finer = pair->master && pair->slave->mean_size >= CONTACT_COARSE * pair->master->mean_size;
+  const int finer = pair->master && (scene->geometry == GEOMETRY_AXISYMMETRIC ||
+                                     pair->slave->mean_size >= CONTACT_COARSE * pair->master->mean_size);
 
   PetscFunctionBeginUser;
   if (pair->formulation.surface) {
@@ -138,7 +140,7 @@ static FitSettings PairFitSettings(Scene scene, const ContactPair *pair, int ord
   fit.integral = (PetscBool)(fit.fitted && pair->formulation.surface);
   fit.revolved = (PetscBool)(fit.integral && scene->geometry == GEOMETRY_AXISYMMETRIC);
   if (fit.integral) {
-    if (fit.support == 0) fit.support = order == 2 ? (scene->dim == 2 ? 1.75 : 2.25) : 3;
+    if (fit.support == 0) fit.support = order == 1 ? 3 : fit.revolved ? 2 : scene->dim == 2 ? 1.75 : 2.25;
     if (fit.exponent == 0) fit.exponent = 3;
     fit.support *= order; /* spacings in a face size */
   }
