@@ -407,7 +407,7 @@ static PetscInt CandidateRings(ContactSearch s, NeighbourLists lists, const Sear
                                                                        same on every image */
   const FaceRule     *rule  = FaceRuleGet(facet->type, 0);
   const SurfaceImage *image = &s->images[candidate->image];
-  const PetscReal     reach = SearchFitReach(s) / s->master->max_extent;
+  const PetscReal     reach = s->fit_reach / s->master->max_extent;
   const int           dim   = lists->dim;
   double              X[FACE_MAX_NODES * 3], length = 0;
   PetscInt            n = 0;

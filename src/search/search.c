@@ -57,6 +57,7 @@ PetscErrorCode SearchCreate(Mesh mesh, Scene scene, Loads loads, ContactSurface 
                                    .maps     = maps,
                                    .reach    = SEARCH_REACH * size,
                                    .margin   = SEARCH_MARGIN * size};
+  if (master) s->fit_reach = SearchFitReach(s);
   *out = s;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -247,6 +247,24 @@ static PetscInt KeepSingleEdges(PetscInt n, FaceEdge *edges)
   return kept;
 }
 
+/*@
+  SurfaceOnPlane - says whether a position lies on the plane of an image.
+
+  Not collective
+
+  Input Parameters:
++ mesh  - the mesh, whose size is the scale
+. image - an image of one plane
+- x     - position x[dim], relative to the mesh's centre (length)
+@*/
+PetscBool SurfaceOnPlane(Mesh mesh, const SurfaceImage *image, const PetscReal *x)
+{
+  for (int d = 0; d < mesh->dim; d++)
+    if (PetscAbsReal(image->sign[d] * x[d] + image->shift[d] - x[d]) > SURFACE_FLATNESS * mesh->size)
+      return PETSC_FALSE;
+  return PETSC_TRUE;
+}
+
 /* Does a plane of symmetry hold all nodes of the edge? */
 static PetscBool EdgeOnSymmetry(ContactSurface surface, const FaceEdge *edge, int n_images, const SurfaceImage *images)
 {

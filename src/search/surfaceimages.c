@@ -4,9 +4,6 @@
 #include "base/refusal.h"
 #include "kernels/elementkernel.h"
 
-/* The deviation of a plane of symmetry from flatness, and of its normal from an axis, may reach this fraction of the
-   model's size. It is the round-off of a CAD kernel. */
-#define SURFACE_FLATNESS 1e-6
 /* A surface continues smoothly beyond a plane if it turns there, between its last face and the image of that, by no more
    than this many times what its faces turn next to the plane, and by this angle (radians): the rounding of chords. */
 #define SURFACE_SMOOTHNESS  2
@@ -317,24 +314,6 @@ PetscErrorCode SurfaceImagesFromSupports(Mesh mesh, Scene scene, ContactSurface 
     if (continues) ImagesAddPlane(axis, position, n_images, images);
   }
   PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/*@
-  SurfaceOnPlane - says whether a position lies on the plane of an image.
-
-  Not collective
-
-  Input Parameters:
-+ mesh  - the mesh, whose size is the scale
-. image - an image of one plane
-- x     - position x[dim], relative to the mesh's centre (length)
-@*/
-PetscBool SurfaceOnPlane(Mesh mesh, const SurfaceImage *image, const PetscReal *x)
-{
-  for (int d = 0; d < mesh->dim; d++)
-    if (PetscAbsReal(image->sign[d] * x[d] + image->shift[d] - x[d]) > SURFACE_FLATNESS * mesh->size)
-      return PETSC_FALSE;
-  return PETSC_TRUE;
 }
 
 /*@

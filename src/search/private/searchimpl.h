@@ -25,6 +25,7 @@ struct _n_ContactSearch {
   const PetscReal    *offset; /* of the quadrature points of this rank's master faces, where fits use these points */
   const FaceMaps     *maps;   /* or these points as combinations of nodes */
   PetscReal           reach, margin; /* lengths, without the motion */
+  PetscReal           fit_reach;     /* SearchFitReach() */
 };
 
 /* A face or a mirror image of it, in the present position. */
