@@ -236,6 +236,7 @@ PetscErrorCode ContactPairCreate(Mesh mesh, Scene scene, Elasticity elasticity, 
   pair->most         = PETSC_MAX_REAL;
   pair->trial_factor = 1;
   penalty            = contact->penalty_scale * (contact->penalty_auto ? pair->automatic : contact->penalty);
+  pair->initial      = penalty;
   PetscCall(ContactStateCreate(pair->n, penalty, &pair->now));
   PetscCall(ContactStateCreate(pair->n, penalty, &pair->accepted));
   PetscCall(SearchCreate(mesh, scene, loads, pair->master, pair->slave->max_size, pair->n_images, pair->images,

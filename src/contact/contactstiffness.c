@@ -43,7 +43,7 @@ PetscErrorCode ContactStiffen(Contact contact, int p, PetscReal factor)
 }
 
 /*@
-  ContactPairLoad - sums the normal forces of a pair's slave nodes, and finds the largest pressure.
+  ContactPairLoad - sums up how a pair presses.
 
   Collective
 
@@ -52,22 +52,46 @@ PetscErrorCode ContactStiffen(Contact contact, int p, PetscReal factor)
 . p       - number of the pair
 - u       - local displacements of that residual, u[n_nodes*dim] (length)
 
-  Output Parameters:
-+ force    - sum over the nodes (force; axisymmetric: over 360 degrees)
-- pressure - largest one (force per area)
+  Output Parameter:
+. load - force, mean pressure and largest pressure
 @*/
-PetscErrorCode ContactPairLoad(Contact contact, int p, const PetscReal *u, PetscReal *force, PetscReal *pressure)
+PetscErrorCode ContactPairLoad(Contact contact, int p, const PetscReal *u, ContactLoad *load)
 {
   ContactNodes nodes;
+  PetscReal    sum[2] = {0, 0}, most = 0;
 
   PetscFunctionBeginUser;
-  *force = *pressure = 0;
   PetscCall(ContactGetNodes(contact, p, u, &nodes));
   for (PetscInt c = 0; c < nodes.n; c++) {
-    *force += PetscAbsReal(nodes.force[c]);
-    if (nodes.force[c] > 0) *pressure = PetscMax(*pressure, nodes.pressure[c]);
+    if (!(nodes.force[c] > 0)) continue;
+    sum[0] += nodes.force[c];
+    sum[1] += nodes.force[c] * nodes.pressure[c];
+    most = PetscMax(most, nodes.pressure[c]);
   }
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, force, 1, MPIU_REAL, MPIU_SUM, contact->mesh->comm));
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, pressure, 1, MPIU_REAL, MPIU_MAX, contact->mesh->comm));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sum, 2, MPIU_REAL, MPIU_SUM, contact->mesh->comm));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &most, 1, MPIU_REAL, MPIU_MAX, contact->mesh->comm));
+  *load = (ContactLoad){.force = sum[0], .pressure = sum[0] > 0 ? sum[1] / sum[0] : 0, .peak = most};
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ContactPairStiffened - returns the factor by which a pair's largest penalty exceeds that of the start of the run.
+
+  Collective
+
+  Input Parameters:
++ contact - the contact
+- p       - number of the pair
+
+  Output Parameter:
+. factor - the same on all ranks; 1 for a pair without slave nodes
+@*/
+PetscErrorCode ContactPairStiffened(Contact contact, int p, PetscReal *factor)
+{
+  PetscReal least, most;
+
+  PetscFunctionBeginUser;
+  PetscCall(ContactPairPenalty(contact, p, &least, &most));
+  *factor = most > 0 ? most / contact->pairs[p].initial : 1;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -32,8 +32,9 @@ typedef int (*PairRuleFn)(const RunFigures *, const PairFigures *, char *text);
 static int PenetrationIsDeep(const RunFigures *figures, const PairFigures *pair, char *text)
 {
   const SceneContact *scene = pair->scene;
+  const PenaltyError *part  = &pair->penalty_error;
   const PetscReal     error =
-    PetscMax(PetscMax(pair->penalty_error.force, pair->penalty_error.pressure), pair->penalty_error.displacement);
+    PetscMax(PetscMax(part->force, part->displacement), scene->penalty_may_stiffen ? 0 : part->pressure);
 
   (void)figures;
   if (scene->adjust || scene->augment || !(error > ADVICE_PENALTY)) return 0;
@@ -44,8 +45,7 @@ static int PenetrationIsDeep(const RunFigures *figures, const PairFigures *pair,
              pair->name, (double)(100 * error), (double)(error / ADVICE_PENALTY_WANTED));
   else
     snprintf(text, ADVICE_TEXT, "%s: penetration leaves about %.2g %% of error: penalty: {scale: %.2g}", pair->name,
-             (double)(100 * error),
-             scene->penalty_scale * (double)(pair->penalty_error.raised * error / ADVICE_PENALTY_WANTED));
+             (double)(100 * error), scene->penalty_scale * (double)(pair->stiffened * error / ADVICE_PENALTY_WANTED));
   return 1;
 }
 

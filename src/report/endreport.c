@@ -53,12 +53,15 @@ static void PrintPenaltyError(const PairFigures *pair, FILE *stream)
 {
   const PenaltyError *error = &pair->penalty_error;
 
-  if (isnan((double)error->force)) return;
-  fprintf(stream,
-          "error    %s: penetration leaves %.2g %% in forces, %.2g %% in the peak pressure, %.2g %% in "
-          "displacements (estimated)",
-          pair->name, 100 * (double)error->force, 100 * (double)error->pressure, 100 * (double)error->displacement);
-  if (error->raised > 1) fprintf(stream, "; penalty raised %.3g times for it", (double)error->raised);
+  if (isnan((double)error->force) || !pair->quality.nodes) return;
+  fprintf(
+    stream,
+    "error    %s: penetration leaves about %.2g %% in forces, %.2g %% in pressures, %.2g %% in the peak pressure, "
+    "%.2g %% in displacements",
+    pair->name, 100 * (double)error->force, 100 * (double)error->pressure, 100 * (double)error->peak,
+    100 * (double)error->displacement);
+  if (pair->scene->penalty_may_stiffen && pair->stiffened > 1)
+    fprintf(stream, "; penalty raised %.3g times for it", (double)pair->stiffened);
   fprintf(stream, "\n");
 }
 

@@ -41,6 +41,7 @@ static PetscErrorCode CollectPair(Model model, int p, PairFigures *pair)
   PetscCall(ContactPairFits(contact, p, &pair->fits));
   PetscCall(ContactPairQuality(contact, p, &pair->quality));
   PetscCall(ContactPairPenalty(contact, p, &pair->penalty_min, &pair->penalty_max));
+  PetscCall(ContactPairStiffened(contact, p, &pair->stiffened));
   PetscCall(ContactPairWindow(contact, p, &pair->window));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -12,7 +12,7 @@
    a body that flies freely covers a thousand times its penetration at rest. */
 #define EQUILIBRIUM_MAX_RELAX 30
 
-/* Penalties are stiffened at most this many times at the end of the load. The first time is enough where the error is
+/* Penalties are stiffened at most this many times at one load parameter. The first time is enough where the error is
    proportional to the compliance of the penalty, which it is when it is small. */
 #define EQUILIBRIUM_MAX_STIFFEN 2
 
@@ -219,8 +219,22 @@ static PetscErrorCode ModelSolveHeld(Model model, SolveReport *report)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* At the end of the load: estimates what penetration leaves of error, and stiffens the penalties that the run may
-   choose where that is too much. WINDOW_MISSED: the step must be solved on. */
+/* Says whether the error that penetration leaves is to be estimated at t: at the end of the load, for the report; and
+   where the load changes its rate or the scene asks for a step, if the run may choose a penalty. */
+static PetscBool ModelEstimatesAt(Model model, PetscReal t)
+{
+  const Scene scene  = model->scene;
+  PetscBool   choice = PETSC_FALSE, asked = SceneBreaks(scene, t);
+
+  if (t >= 1) return PETSC_TRUE;
+  for (int p = 0; p < ContactPairs(model->contact); p++)
+    choice = (PetscBool)(choice || ContactPairScene(model->contact, p)->penalty_may_stiffen);
+  for (int i = 0; i < scene->stepping.n_at; i++) asked = (PetscBool)(asked || scene->stepping.at[i] == t);
+  return (PetscBool)(choice && asked);
+}
+
+/* Estimates what penetration leaves of error, and stiffens the penalties that the run may choose where that is too
+   much. WINDOW_MISSED: the step must be solved on. */
 static PetscErrorCode ModelCheckPenalty(Model model, SolveReport *report, ContactWindowState *window)
 {
   PetscBool stiffened = PETSC_FALSE;
@@ -254,8 +268,8 @@ static PetscErrorCode ModelCheckPenalty(Model model, SolveReport *report, Contac
   Contact lists are made before the first solve and are frozen in each solve by Newton's method. After each solve they
   are checked and made anew, at most MODEL_MAX_REGATHER times. Then penalties that are adjusted within the step are
   changed, and the step is solved on from there, until the penetrations are in their window or no more can be done. At
-  t = 1 the error that penetration leaves is estimated, and penalties that no key of the scene sets are made stiffer
-  where it is large.
+  t = 1, at breakpoints of the load and where the scene asks for a step, the error that penetration leaves is estimated,
+  and penalties that no key of the scene sets are made stiffer where it is large.
 @*/
 PetscErrorCode ModelSolve(Model model, PetscReal t, SolveReport *report)
 {
@@ -276,7 +290,7 @@ PetscErrorCode ModelSolve(Model model, PetscReal t, SolveReport *report)
       PetscCall(ContactLocateOutside(model->contact, report->detail, sizeof(report->detail)));
       report->result = SOLVE_WINDOW;
     }
-    if (window == WINDOW_HOLDS && t >= 1) PetscCall(ModelCheckPenalty(model, report, &window));
+    if (window == WINDOW_HOLDS && ModelEstimatesAt(model, t)) PetscCall(ModelCheckPenalty(model, report, &window));
   }
   report->cycles = work->cycles;
   PetscCall(PetscStrncpy(report->cycle, work->cycle, sizeof(report->cycle)));

@@ -43,12 +43,12 @@ typedef struct {
   Failure     failure;     /* more about a failed solve */
 } SolveReport;
 
-/* What penetration leaves of error at the end of the load, estimated: parts of the present values. */
+/* What penetration leaves of error in the present state, estimated: parts of the present values. */
 typedef struct {
   PetscReal force;        /* of the sum of a pair's nodal forces; NaN: not estimated */
-  PetscReal pressure;     /* of its largest pressure */
+  PetscReal pressure;     /* of its mean pressure, nodes weighted by their forces */
+  PetscReal peak;         /* of its largest pressure; where pressures scatter, that of the scatter too */
   PetscReal displacement; /* of the largest displacement in the model */
-  PetscReal raised;       /* factor by which the run raised the pair's penalty to reach this */
 } PenaltyError;
 
 typedef struct _n_Model {

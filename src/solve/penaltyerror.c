@@ -11,9 +11,11 @@
    1 / (1 - step): then forces that stay as they are do so to the second order too. */
 #define PENALTY_STEP 0.02
 /* Penalties that the run may choose are made stiffer where an estimate is above this. */
-#define PENALTY_ERROR_LARGE 0.005
+#define PENALTY_ERROR_LARGE 0.007
+/* The estimates for pressures do not count for this. Where the slave's nodes are denser than the master's, pressures
+   scatter, and stiffer penalties only let them scatter more. */
 /* They are made so stiff that this is to be expected. */
-#define PENALTY_ERROR_WANTED 0.002
+#define PENALTY_ERROR_WANTED 0.003
 /* They are made stiffer by at most this factor at a time. An estimate that asks for more is beyond the range in which
    the error is proportional to the compliance. */
 #define PENALTY_MOST_STIFFER 30
@@ -34,7 +36,7 @@ PetscErrorCode ModelCreatePenaltyError(Model model)
 void ModelForgetPenaltyError(Model model)
 {
   for (int p = 0; p < ContactPairs(model->contact); p++)
-    model->work->penalty_error[p] = (PenaltyError){.force = NAN, .pressure = NAN, .displacement = NAN, .raised = 1};
+    model->work->penalty_error[p] = (PenaltyError){.force = NAN, .pressure = NAN, .peak = NAN, .displacement = NAN};
 }
 
 /* Saves or loads the estimates with the model. */
@@ -48,7 +50,7 @@ PetscErrorCode ModelArchivePenaltyError(Model model, Archive archive)
 }
 
 /*@
-  ModelPenaltyError - returns the error that penetration leaves in a pair at the end of the load, as estimated.
+  ModelPenaltyError - returns the error that penetration leaves in a pair, as estimated.
 
   Not collective
 
@@ -57,7 +59,7 @@ PetscErrorCode ModelArchivePenaltyError(Model model, Archive archive)
 - pair  - number of the pair
 
   Note:
-  The values are NaN before the end of the load, and where no estimate could be made.
+  The values are NaN where no estimate was made in the last step; at the end of the load one is made.
 @*/
 PenaltyError ModelPenaltyError(Model model, int pair)
 {
@@ -104,15 +106,14 @@ static PetscErrorCode ModelPenaltySlope(Model model, Vec slope, PetscBool *known
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Sum of forces and largest pressure of each pair at displacements u: load[2 * pair]. */
-static PetscErrorCode ModelPairLoads(Model model, const PetscReal *u, PetscReal load[])
+/* How each pair presses at displacements u. */
+static PetscErrorCode ModelPairLoads(Model model, const PetscReal *u, ContactLoad load[])
 {
   PetscBool ok;
 
   PetscFunctionBeginUser;
   PetscCall(ProblemResidual(model->problem, u, model->t, model->t, &ok));
-  for (int p = 0; p < ContactPairs(model->contact); p++)
-    PetscCall(ContactPairLoad(model->contact, p, u, &load[2 * p], &load[2 * p + 1]));
+  for (int p = 0; p < ContactPairs(model->contact); p++) PetscCall(ContactPairLoad(model->contact, p, u, &load[p]));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -133,17 +134,24 @@ static PetscErrorCode ModelLargestChange(Model model, const PetscReal *changed, 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Change of a value over the step, as a part of the value. */
+static PetscReal PartChanged(PetscReal now, PetscReal then, PetscReal step)
+{
+  return now > 0 ? PetscAbsReal(then - now) / (step * now) : 0;
+}
+
 /* Compares forces and pressures at the trial state with those a step along the slope. */
 static PetscErrorCode ModelComparePenalty(Model model, Vec slope)
 {
   const int       pairs = ContactPairs(model->contact);
   const PetscInt  n     = model->mesh->n_nodes * model->mesh->dim;
   const PetscReal step  = PENALTY_STEP;
-  PetscReal      *u, *load, displacement;
+  PetscReal      *u, displacement;
+  ContactLoad    *load;
   Vec             x;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc2(n, &u, 4 * pairs, &load));
+  PetscCall(PetscMalloc2(n, &u, 2 * pairs, &load));
   PetscCall(VecDuplicate(model->x, &x));
   PetscCall(VecWAXPY(x, -step, slope, model->x));
   PetscCall(ProblemDisplacements(model->problem, x, model->t, u));
@@ -151,14 +159,14 @@ static PetscErrorCode ModelComparePenalty(Model model, Vec slope)
   PetscCall(ContactScalePenalty(model->contact, 1 / (1 - step)));
   PetscCall(ModelPairLoads(model, u, load));
   PetscCall(ContactScalePenalty(model->contact, 1));
-  PetscCall(ModelPairLoads(model, model->problem->trial, &load[2 * pairs]));
+  PetscCall(ModelPairLoads(model, model->problem->trial, &load[pairs]));
   for (int p = 0; p < pairs; p++) {
-    PenaltyError    *error = &model->work->penalty_error[p];
-    const PetscReal *stiff = &load[2 * p], *now = &load[2 * (pairs + p)];
+    const ContactLoad *stiff = &load[p], *now = &load[pairs + p];
 
-    error->force        = now[0] > 0 ? PetscAbsReal(stiff[0] - now[0]) / (step * now[0]) : 0;
-    error->pressure     = now[1] > 0 ? PetscAbsReal(stiff[1] - now[1]) / (step * now[1]) : 0;
-    error->displacement = displacement;
+    model->work->penalty_error[p] = (PenaltyError){.force        = PartChanged(now->force, stiff->force, step),
+                                                   .pressure     = PartChanged(now->pressure, stiff->pressure, step),
+                                                   .peak         = PartChanged(now->peak, stiff->peak, step),
+                                                   .displacement = displacement};
   }
   PetscCall(VecDestroy(&x));
   PetscCall(PetscFree2(u, load));
@@ -183,26 +191,26 @@ PetscErrorCode ModelEstimatePenalty(Model model)
 /* Makes the penalties stiffer that the run may choose and whose error is large. *stiffened: some are. */
 PetscErrorCode ModelStiffen(Model model, PetscBool *stiffened)
 {
-  const int  pairs = ContactPairs(model->contact);
-  PetscReal *load, most = 0;
+  const int    pairs = ContactPairs(model->contact);
+  ContactLoad *load;
+  PetscReal    most = 0;
 
   PetscFunctionBeginUser;
   *stiffened = PETSC_FALSE;
-  PetscCall(PetscMalloc1(2 * pairs, &load));
+  PetscCall(PetscMalloc1(pairs, &load));
   PetscCall(ModelPairLoads(model, model->problem->trial, load));
-  for (int p = 0; p < pairs; p++) most = PetscMax(most, load[2 * p]);
+  for (int p = 0; p < pairs; p++) most = PetscMax(most, load[p].force);
   for (int p = 0; p < pairs; p++) {
-    PenaltyError   *error  = &model->work->penalty_error[p];
-    const PetscReal worst  = PetscMax(error->displacement, PetscMax(error->force, error->pressure)),
-                    factor = PetscMin(worst / PENALTY_ERROR_WANTED, PENALTY_MOST_STIFFER);
+    const PenaltyError *error = &model->work->penalty_error[p];
+    const PetscReal     worst = PetscMax(error->displacement, error->force),
+                    factor    = PetscMin(worst / PENALTY_ERROR_WANTED, PENALTY_MOST_STIFFER);
 
     if (!ContactPairScene(model->contact, p)->penalty_may_stiffen || !(worst > PENALTY_ERROR_LARGE) ||
-        load[2 * p] < PENALTY_LIGHT_PAIR * most)
+        load[p].force < PENALTY_LIGHT_PAIR * most)
       continue;
     PetscCall(ContactStiffen(model->contact, p, factor));
     PetscCall(PetscInfo(model->snes, "contact '%s': estimated error %g, penalties %g times as stiff\n",
                         ContactPairName(model->contact, p), (double)worst, (double)factor));
-    error->raised *= factor;
     *stiffened = PETSC_TRUE;
   }
   PetscCall(PetscFree(load));

@@ -213,7 +213,7 @@ static void ContactsArrive(void **state)
   assert_int_equal(contact->smoother, SMOOTHER_DIFFUSE);
   assert_int_equal(contact->formulation, CONTACT_SURFACE_TO_SURFACE);
   assert_true(contact->n_symmetry == 0 && contact->feature_angle == 45 && !contact->stabilise &&
-              contact->penalty_auto && contact->penalty_scale == 100 && contact->penalty_may_stiffen);
+              contact->penalty_auto && contact->penalty_scale == 30 && contact->penalty_may_stiffen);
   Free(&scene);
 }
 
@@ -406,8 +406,7 @@ static void ReferenceNamesKeysRangesAndDefaults(void **state)
   assert_int_equal(SceneReference(file), PETSC_SUCCESS);
   fclose(file);
   assert_non_null(strstr(text, "  bodies.N.material.nu: a number in (-1, 0.5); required - Poisson's ratio\n"));
-  assert_non_null(
-    strstr(text, "  contact.N.formulation: node_to_surface | surface_to_surface | auto; default auto"));
+  assert_non_null(strstr(text, "  contact.N.formulation: node_to_surface | surface_to_surface | auto; default auto"));
   assert_non_null(strstr(text, "  probes.N.contact_edge: "));
   free(text);
 }

@@ -14,6 +14,7 @@ typedef struct {
   ContactWindow       window;
   PetscReal           penalty_min, penalty_max;
   PenaltyError        penalty_error;
+  PetscReal           stiffened; /* factor by which the run raised the penalty, where it may choose it */
 } PairFigures;
 
 typedef struct {
