@@ -8,7 +8,7 @@ SURFACE = ["contact.0.formulation=surface_to_surface", "contact.0.smoother=diffu
 LINE = [*SURFACE, "mesh.parameters={h: 1, growth: 0.5}", "loads.0.pressure=20", "stepping.initial=0.5"]
 LINES = {"block": [], "cylinder": ["contact.0.slave=cylinder_sole", "contact.0.master=block_top"]}
 POINTS = {"block": [], "sphere": ["contact.0.slave=sphere_sole", "contact.0.master=block_top"]}
-CONE = ["contact.0.slave=cone_seat", "contact.0.master=ball_sole"]
+CONES = {"ball": [], "cone": ["contact.0.slave=cone_seat", "contact.0.master=ball_sole"]}
 SOLID = [
     "geometry=solid", "mesh.parameters={solid: 1, h_ball: 2.2, h_cone: 2.5}",
     "supports=[{surface: cone_bottom, uy: 0}, {surface: sides_x, ux: 0}, {surface: sides_z, uz: 0}]",
@@ -21,13 +21,15 @@ for order in (1, 2):
             CASES[f"{geometry}, order {order}, {name} as slave"] = ("hertz_line", [
                 *LINE, *roles, f"geometry={geometry}", f"mesh.order={order}"
             ], 20 * area)
-    CASES[f"ball in a cone, order {order}, ball as slave"] = ("ball_in_cone", [f"mesh.order={order}"],
-                                                              2000 * 3.14159265358979)
+    for name, roles in CONES.items():
+        CASES[f"ball in a cone, order {order}, {name} as slave"] = ("ball_in_cone", [
+            *SURFACE, *roles, f"mesh.order={order}"
+        ], 2000 * 3.14159265358979)
 for name, roles in POINTS.items():
     CASES[f"solid, order 1, {name} as slave"] = ("hertz_sphere", [
         *SURFACE, *roles, "mesh.order=1", "mesh.parameters.n=2"
     ], 1.50240 * 16 * 16)
-for name, roles in (("ball", []), ("cone", CONE)):
+for name, roles in CONES.items():
     CASES[f"ball in a cone, solid, {name} as slave"] = ("ball_in_cone", [*SOLID, *roles], None)
 
 args = arguments()
