@@ -34,6 +34,18 @@ static PetscErrorCode FindPlace(Mesh mesh, const ContactPair *pair, const PetscR
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Overlap before any load that the surfaces' own shapes explain (length): the facets' sagitta, and the distance between
+   the master's nodes and its smooth surface. */
+static PetscReal TermOverlapExplained(const ContactPair *pair, PetscInt c)
+{
+  PetscReal residual = 0;
+
+  for (PetscInt k = pair->term_ptr[c]; k < pair->term_ptr[c + 1] && pair->fit.fitted; k++)
+    if (pair->lists->fit_n[pair->term_point[k]])
+      residual = PetscMax(residual, pair->lists->residual[pair->term_point[k]]);
+  return ContactTouchTolerance(pair, c) + residual;
+}
+
 /*@
   ContactPairGaps - measures how the surfaces of a pair lie to each other in the present state; offsets (g_0) do not
   count.
@@ -62,7 +74,7 @@ PetscErrorCode ContactPairGaps(Contact contact, int p, ContactGaps *gaps)
     if (PetscIsNanReal(gap)) continue;
     count[1]++;
     count[2] += gap < 0;
-    count[3] += gap < -ContactTouchTolerance(pair, c);
+    count[3] += gap < -TermOverlapExplained(pair, c);
     if (gap < 0) area += pair->area[c];
     range[1] = PetscMax(range[1], gap);
     range[0] = PetscMax(range[0], -gap);
@@ -260,9 +272,9 @@ static PetscErrorCode PairCheckAddedOverlap(Contact contact, const ContactPair *
 . contact - the contact, after ContactResidual() with forces at the undeformed state
 
   Note:
-  With initial_overlap: refuse, it refuses the deepest overlap of each pair that is more than the sagitta of the
-  facets explains; the message names pair, node and depth. With add it also refuses an overlap that is not finite. With
-  ramp and ignore it keeps the overlaps as g_0.
+  With initial_overlap: refuse, it refuses the deepest overlap of each pair that is more than the surfaces' own
+  shapes explain, sagitta of facets and error of fits; the message names pair, node and depth. With add it also refuses
+  an overlap that is not finite. With ramp and ignore it keeps the overlaps as g_0.
 @*/
 PetscErrorCode ContactTakeOverlap(Contact contact)
 {
@@ -285,7 +297,7 @@ PetscErrorCode ContactTakeOverlap(Contact contact)
       if (pair->scene->initial_overlap == OVERLAP_RAMP || pair->scene->initial_overlap == OVERLAP_IGNORE)
         pair->now.offset[c] = pair->now.gap[c] < 0 ? pair->now.gap[c] : 0;
       if (pair->scene->initial_overlap != OVERLAP_REFUSE && pair->scene->initial_overlap != OVERLAP_ADD) continue;
-      if (!(pair->now.gap[c] < -ContactTouchTolerance(pair, c)) || pair->now.gap[c] >= worst) continue;
+      if (!(pair->now.gap[c] < -TermOverlapExplained(pair, c)) || pair->now.gap[c] >= worst) continue;
       worst = pair->now.gap[c];
       at    = c;
     }
