@@ -87,7 +87,8 @@ typedef struct {
   PetscReal max_penetration, max_penetration_over_h;
   PetscReal sagitta; /* of first-order facets of the master over the curved surface that they stand for: the mean over
                         the slave points near it (length) */
-  ContactPlace deepest; /* where the largest penetration is */
+  PetscInt     near, averse; /* slave points near the master; of these, those that do not face it and take no part */
+  ContactPlace deepest;      /* where the largest penetration is */
 } ContactQuality;
 
 typedef struct _n_Contact *Contact;

@@ -1,6 +1,7 @@
 /* Lists of a pair's neighbours over a step: when they are made, whether a fresh search agrees with them, and what
    happens where it does not. */
 #include "contactimpl.h"
+#include "base/smoothstep.h"
 #include "base/timing.h"
 
 /* A gap from fresh lists agrees with the solve's where the two differ by less than this fraction of the gap, plus the
@@ -31,14 +32,8 @@
 /* Motions that differ by less than this fraction differ by round-off. */
 #define CONTACT_SAME_MOTION 1e-9
 
-/* Rises from 0 to 1 between 0 and 1, with zero slope at both ends. */
-static PetscReal SmoothStep(PetscReal x)
-{
-  x = PetscMax(0, PetscMin(1, x));
-  return x * x * (3 - 2 * x);
-}
-
-/* Area factors of the slave points for these lists: 1 inside, fading to 0 one face size past a free edge. */
+/* Area factors of the slave points for these lists: 1 inside, fading to 0 one face size past a free edge, and where the
+   normals do not oppose each other. */
 static PetscErrorCode PairFactors(const ContactPair *pair, NeighbourLists lists, PetscReal *factor)
 {
   PetscFunctionBeginUser;
@@ -48,10 +43,11 @@ static PetscErrorCode PairFactors(const ContactPair *pair, NeighbourLists lists,
     factor[q] = 0;
     PetscCall(ContactPointEvaluate(pair, pair->facets, lists, q, lists->nearest[q], SMOOTHER_GAP, &found));
     if (found && !pair->master)
-      factor[q] = 1;
+      factor[q] = NeighbourListsOpposed(lists, q, pair->work->result.normal);
     else if (found)
       factor[q] =
-        1 - SmoothStep(pair->work->result.beyond / lists->facet_size[lists->facet_ptr[q] + pair->work->result.seed]);
+        lists->share[q] *
+        (1 - SmoothStep(pair->work->result.beyond / lists->facet_size[lists->facet_ptr[q] + pair->work->result.seed]));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -118,7 +118,7 @@ static PetscErrorCode PairCreatePoints(Mesh mesh, Scene scene, Loads loads, Cont
                               0, pair->formulation.offsets, &pair->master_offsets));
   } else {
     PetscCall(PairChooseNodes(mesh, scene, pair));
-    PetscCall(SlavePointsCreateNodes(pair->slave, pair->n, pair->node, &pair->slaves));
+    PetscCall(SlavePointsCreateNodes(pair->slave, pair->n, pair->node, pair->size, &pair->slaves));
   }
   PetscCall(PairCreateTerms(mesh, pair));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -90,6 +90,18 @@ static void SumSagitta(const ContactPair *pair, PetscMPIInt rank, PetscReal sum[
   }
 }
 
+/* Counts this rank's slave points near the master, and those of them that do not face it. */
+static void CountAverse(const ContactPair *pair, PetscMPIInt rank, PetscInt count[2])
+{
+  const NeighbourLists lists = pair->lists;
+
+  for (PetscInt q = 0; q < lists->n_slaves && pair->master; q++) {
+    if (!SlavePointIsOwn(pair->slaves, q, rank)) continue;
+    count[0] += lists->averse[q] || lists->facet_ptr[q] < lists->facet_ptr[q + 1];
+    count[1] += lists->averse[q];
+  }
+}
+
 /*@
   ContactPairQuality - measures the penetrations of a pair in the present state, against the size of its faces and
   against what facets leave out.
@@ -101,12 +113,12 @@ static void SumSagitta(const ContactPair *pair, PetscMPIInt rank, PetscReal sum[
 - p       - number of the pair
 
   Output Parameter:
-. quality - penetrations, sagitta of the facets
+. quality - penetrations, sagitta of the facets, slave points that take no part
 @*/
 PetscErrorCode ContactPairQuality(Contact contact, int p, ContactQuality *quality)
 {
   const ContactPair *pair  = &contact->pairs[p];
-  PetscInt           nodes = 0;
+  PetscInt           count[3] = {0, 0, 0}; /* nodes, points near, averse */
   PetscMPIInt        rank;
   PetscReal          most[2] = {0, 0}, sum[2] = {0, 0}, *depth;
 
@@ -117,14 +129,15 @@ PetscErrorCode ContactPairQuality(Contact contact, int p, ContactQuality *qualit
 
     depth[c] = pair->now.status[c] == CONTACT_CLOSED ? penetration : NAN;
     if (pair->now.status[c] != CONTACT_CLOSED) continue;
-    nodes++;
+    count[0]++;
     most[0] = PetscMax(most[0], penetration);
     most[1] = PetscMax(most[1], penetration / pair->size[c]);
   }
   PetscCallMPI(MPI_Comm_rank(contact->mesh->comm, &rank));
   SumSagitta(pair, rank, sum);
-  *quality = (ContactQuality){.nodes = 0};
-  PetscCallMPI(MPI_Allreduce(&nodes, &quality->nodes, 1, MPIU_INT, MPI_SUM, contact->mesh->comm));
+  CountAverse(pair, rank, &count[1]);
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, count, 3, MPIU_INT, MPI_SUM, contact->mesh->comm));
+  *quality = (ContactQuality){.nodes = count[0], .near = count[1], .averse = count[2]};
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, most, 2, MPIU_REAL, MPIU_MAX, contact->mesh->comm));
   PetscCall(FindPlace(contact->mesh, pair, depth, most[0], &quality->deepest));
   PetscCall(PetscFree(depth));

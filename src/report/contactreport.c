@@ -42,6 +42,15 @@ static void PrintGaps(const ContactGaps *gaps, FILE *file)
             gaps->overlapping, (double)gaps->area, gaps->refused);
 }
 
+static void PrintAverse(const ContactQuality *quality, FILE *file)
+{
+  if (quality->averse)
+    fprintf(file,
+            "           %" PetscInt_FMT " of %" PetscInt_FMT
+            " slave points near the master do not face it and take no part\n",
+            quality->averse, quality->near);
+}
+
 static void PrintJoined(PetscInt nodes, const ContactPlace *place, FILE *file)
 {
   if (!nodes) return;
@@ -100,6 +109,7 @@ PetscErrorCode ContactReport(Contact contact, FILE *file)
     fprintf(file, "contact  %s: %s\n", ContactPairName(contact, p), text);
     PrintPenalty(ContactPairScene(contact, p), most, file);
     PrintGaps(&gaps, file);
+    PrintAverse(&quality, file);
     PrintJoined(joined, &place, file);
     if (fits.points)
       PrintFits(&fits, size, file);

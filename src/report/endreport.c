@@ -46,6 +46,9 @@ static void PrintPair(const PairFigures *pair, FILE *stream)
   else if (quality->sagitta > 0)
     fprintf(stream, "; facet error about %.2g", (double)quality->sagitta);
   fprintf(stream, "\n");
+  if (quality->averse)
+    fprintf(stream, "         %s: %lld of %lld slave points near the master do not face it and take no part\n",
+            pair->name, (long long)quality->averse, (long long)quality->near);
 }
 
 /* Prints one guard that acted, with a separator before all but the first one. */

@@ -1,6 +1,14 @@
 /* Lists of a pair: contact nodes and their owners, points and slave points as combinations of nodes, and their
    motion. */
 #include "searchimpl.h"
+#include "base/smoothstep.h"
+
+/* Cosines of the angle between the slave's outward normal and the master's inward one: up to 60 degrees a point takes
+   part with its whole area, from 85 degrees on not at all. Surfaces that press on each other are opposed up to the
+   turns of coarse faces, of which the largest is that of the mean normal at the corner of a cube, 55 degrees. What is
+   square to the master within the round-off and the strains of a body must be on one side of the bound. */
+#define OPPOSED_FULLY 0.5
+#define OPPOSED_NOT   0.0872
 
 /* Keys of all contact nodes, each once and in ascending order: nodes of deformable bodies, then nodes of a rigid
    tool. */
@@ -590,8 +598,9 @@ PetscErrorCode NeighbourListsCreateSlaves(ContactSearch s, NeighbourLists lists)
     entries += (slaves->first[f + 1] - slaves->first[f]) * (slaves->maps.ptr[f + 1] - slaves->maps.ptr[f]);
   PetscCall(PetscMalloc5(n + 1, &lists->slave_ptr, entries, &lists->slave_node, entries, &lists->slave_side, entries,
                          &lists->slave_S, n * dim, &lists->slave_offset));
-  PetscCall(PetscMalloc2(n * dim, &lists->slave_X, n * dim, &lists->slave_u));
-  PetscCall(PetscMalloc4(n + 1, &lists->list_ptr, n + 1, &lists->facet_ptr, n, &lists->kappa, n, &lists->nearest));
+  PetscCall(PetscMalloc3(n * dim, &lists->slave_X, n * dim, &lists->slave_u, 3 * n, &lists->slave_normal));
+  PetscCall(PetscMalloc6(n + 1, &lists->list_ptr, n + 1, &lists->facet_ptr, n, &lists->kappa, n, &lists->nearest, n,
+                         &lists->share, n, &lists->averse));
   PetscCall(
     PetscCalloc5(n, &lists->fit_n, n, &lists->rung, n, &lists->degree, 9 * n, &lists->frame, 4 * n, &lists->metric));
   PetscCall(PetscCalloc6(n, &lists->pivot, n, &lists->amplified, n, &lists->residual, 2 * n, &lists->centre, n,
@@ -752,6 +761,29 @@ PetscReal NeighbourListsSlip(NeighbourLists lists, PetscInt q)
 }
 
 /*@
+  NeighbourListsOpposed - says how well the normal of slave point q opposes a normal of the master.
+
+  Not collective
+
+  Input Parameters:
++ lists  - the lists
+. q      - the slave point
+- normal - unit normal of the master
+
+  Note:
+  Returns 1 where they are opposed within OPPOSED_FULLY, and 0 where they are square to each other or nearly so.
+@*/
+PetscReal NeighbourListsOpposed(NeighbourLists lists, PetscInt q, const PetscReal normal[3])
+{
+  const PetscReal *own    = &lists->slave_normal[3 * q];
+  const PetscReal  length = PetscSqrtReal(own[0] * own[0] + own[1] * own[1] + own[2] * own[2]);
+  const PetscReal  cosine = -(own[0] * normal[0] + own[1] * normal[1] + own[2] * normal[2]);
+
+  if (cosine <= OPPOSED_NOT * length) return 0;
+  return SmoothStep((cosine / length - OPPOSED_NOT) / (OPPOSED_FULLY - OPPOSED_NOT));
+}
+
+/*@
   NeighbourListsDestroy - frees the lists.
 
   Collective
@@ -773,8 +805,8 @@ PetscErrorCode NeighbourListsDestroy(NeighbourLists *lists)
   PetscCall(PetscFree(l->point_side));
   PetscCall(PetscFree2(l->point_X, l->point_u));
   PetscCall(PetscFree5(l->slave_ptr, l->slave_node, l->slave_side, l->slave_S, l->slave_offset));
-  PetscCall(PetscFree2(l->slave_X, l->slave_u));
-  PetscCall(PetscFree4(l->list_ptr, l->facet_ptr, l->kappa, l->nearest));
+  PetscCall(PetscFree3(l->slave_X, l->slave_u, l->slave_normal));
+  PetscCall(PetscFree6(l->list_ptr, l->facet_ptr, l->kappa, l->nearest, l->share, l->averse));
   PetscCall(PetscFree5(l->fit_n, l->rung, l->degree, l->frame, l->metric));
   PetscCall(PetscFree6(l->pivot, l->amplified, l->residual, l->centre, l->gap, l->normal));
   PetscCall(PetscFree(l->list_point));
