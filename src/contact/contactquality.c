@@ -117,7 +117,7 @@ static void CountAverse(const ContactPair *pair, PetscMPIInt rank, PetscInt coun
 @*/
 PetscErrorCode ContactPairQuality(Contact contact, int p, ContactQuality *quality)
 {
-  const ContactPair *pair  = &contact->pairs[p];
+  const ContactPair *pair     = &contact->pairs[p];
   PetscInt           count[3] = {0, 0, 0}; /* nodes, points near, averse */
   PetscMPIInt        rank;
   PetscReal          most[2] = {0, 0}, sum[2] = {0, 0}, *depth;

@@ -12,28 +12,6 @@ typedef struct {
   PetscBool convex;   /* the other facet lies below the plane of this one */
 } FlankEdge;
 
-/* Positions of a facet's nodes relative to the slave point. */
-static void RelativePositions(const Nearest *look, const Candidate *c, PetscReal *x)
-{
-  const int dim = look->lists->dim;
-
-  for (int a = 0; a < ElementGet(c->facet.type)->nodes; a++)
-    NeighbourListsRelative(look->lists, look->q, c->facet.nodes[a], &x[a * dim]);
-}
-
-static PetscReal CandidateDistance(const Nearest *look, const Candidate *c)
-{
-  PetscReal x[FACE_MAX_NODES * 3];
-  Facet     own = c->facet;
-  Foot      foot;
-
-  RelativePositions(look, c, x);
-  own.free_edges = 0;
-  for (int a = 0; a < ElementGet(own.type)->nodes; a++) own.nodes[a] = a;
-  FacetProject(look->lists->dim, &own, x, &foot);
-  return PetscAbsReal(foot.gap);
-}
-
 static PetscBool HasNode(const Candidate *c, PetscInt node)
 {
   for (int a = 0; a < ElementGet(c->facet.type)->corners; a++)
@@ -157,39 +135,30 @@ int FlankSort(const Nearest *look, int *n, int *found)
   return facing;
 }
 
-/* Marks the edges at which facets that face the slave point meet others, and returns the distance of the foot to the
-   nearest convex one of them; PETSC_MAX_REAL: there is none. */
-static PetscReal MarkEnds(const Nearest *look, int facing, int n, const int *found, int *ends)
+/* How far the slave point is behind the plane of a facet at one of its edges; 0 in front of it. */
+static PetscReal DepthAtEdge(const Nearest *look, const Candidate *c, const FlankEdge *edge)
 {
-  PetscReal least = PETSC_MAX_REAL;
+  PetscReal a[3], depth = 0;
 
-  for (int i = 0; i < facing; i++) {
-    for (int k = facing; k < n; k++) {
-      FlankEdge edge;
-
-      if (!SharedEdge(look, &look->candidates[found[i]], &look->candidates[found[k]], &edge)) continue;
-      ends[i] |= 1 << edge.edge;
-      if (edge.convex) least = PetscMin(least, FootToEdge(look, &edge));
-    }
-  }
-  return least;
+  NeighbourListsRelative(look->lists, look->q, edge->nodes[0], a);
+  for (int d = 0; d < look->lists->dim; d++) depth += c->normal[d] * a[d];
+  return PetscMax(0, depth);
 }
 
-/* How well the surface at the foot opposes the slave point. The nearest facet says it. Near its edges a neighbour may
-   say more, which fades out with the distance to that neighbour, so that the answer does not jump from facet to
-   facet. */
-static PetscReal FootOpposed(const Nearest *look, int facing, const int *found)
+/* Part of a slave point's area that takes part where the flank ends at a convex edge of facet c, beyond which there is
+   a facet that the point does not face. The width over which it fades shrinks as the point turns towards that facet,
+   because then the plane beyond the edge lies in front of the master. Past the edge a point that is deeper than a face
+   is in front of another side of the master, not behind this one. */
+static PetscReal EndShare(const Nearest *look, const Candidate *c, const Candidate *beyond, const FlankEdge *edge)
 {
-  PetscReal opposed = NeighbourListsOpposed(look->lists, look->q, look->candidates[look->best].normal);
+  const PetscReal width  = look->size * NeighbourListsAverse(look->lists, look->q, beyond->normal),
+                  inside = FootToEdge(look, edge);
+  const PetscReal past   = inside > FACET_COINCIDENT * look->size ? -inside : BesideFoot(look);
+  PetscReal       place;
 
-  for (int i = 0; i < facing && opposed < 1; i++) {
-    const Candidate *c   = &look->candidates[found[i]];
-    const PetscReal  own = NeighbourListsOpposed(look->lists, look->q, c->normal);
-
-    if (own > opposed)
-      opposed = PetscMax(opposed, own * (1 - SmoothStep((CandidateDistance(look, c) - look->distance) / look->size)));
-  }
-  return opposed;
+  if (2 * PetscAbsReal(past) >= width) return past > 0 ? 0 : 1;
+  place = past / width + 0.5;
+  return (1 - SmoothStep(place)) * (1 - SmoothStep(2 * place) * SmoothStep(DepthAtEdge(look, c, edge) / look->size));
 }
 
 /*@
@@ -211,15 +180,20 @@ static PetscReal FootOpposed(const Nearest *look, int facing, const int *found)
 @*/
 PetscReal FlankShare(const Nearest *look, int facing, int n, const int *found, int *ends)
 {
-  const PetscReal opposed = FootOpposed(look, facing, found);
-  PetscReal       inside;
+  PetscReal share = 1;
 
-  for (int i = 0; i < facing; i++) ends[i] = 0;
-  if (n == facing) return opposed;
-  inside = MarkEnds(look, facing, n, found, ends);
-  if (inside > 0.5 * look->size) return opposed;
-  return opposed *
-         (1 - SmoothStep((inside > FACET_COINCIDENT * look->size ? -inside : BesideFoot(look)) / look->size + 0.5));
+  for (int i = 0; i < facing; i++) {
+    ends[i] = 0;
+    for (int k = facing; k < n; k++) {
+      const Candidate *beyond = &look->candidates[found[k]];
+      FlankEdge        edge;
+
+      if (!SharedEdge(look, &look->candidates[found[i]], beyond, &edge)) continue;
+      ends[i] |= 1 << edge.edge;
+      if (edge.convex) share = PetscMin(share, EndShare(look, &look->candidates[found[i]], beyond, &edge));
+    }
+  }
+  return share * NeighbourListsOpposed(look->lists, look->q, look->candidates[look->best].normal);
 }
 
 /*@

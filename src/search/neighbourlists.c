@@ -3,12 +3,12 @@
 #include "searchimpl.h"
 #include "base/smoothstep.h"
 
-/* Cosines of the angle between the slave's outward normal and the master's inward one: up to 60 degrees a point takes
-   part with its whole area, from 85 degrees on not at all. Surfaces that press on each other are opposed up to the
-   turns of coarse faces, of which the largest is that of the mean normal at the corner of a cube, 55 degrees. What is
-   square to the master within the round-off and the strains of a body must be on one side of the bound. */
-#define OPPOSED_FULLY 0.5
-#define OPPOSED_NOT   0.0872
+/* Cosines of the angle between the slave's outward normal and the master's inward one: up to 55 degrees a point takes
+   part with its whole area, from 66 degrees on not at all. Surfaces that press on each other are opposed but for the
+   turns of their faces, of which the largest is that of the corner of a cube that points at the master: 54.7 degrees.
+   Both sides of a square edge face a point that is turned by at least 24 degrees from either. */
+#define OPPOSED_FULLY 0.57
+#define OPPOSED_NOT   0.40
 
 /* Keys of all contact nodes, each once and in ascending order: nodes of deformable bodies, then nodes of a rigid
    tool. */
@@ -760,6 +760,15 @@ PetscReal NeighbourListsSlip(NeighbourLists lists, PetscInt q)
   return PetscSqrtReal(square);
 }
 
+/* Cosine between the inward normal of slave point q and a unit normal of the master; 0 if the point has no normal. */
+static inline PetscReal OpposedCosine(NeighbourLists lists, PetscInt q, const PetscReal normal[3])
+{
+  const PetscReal *own    = &lists->slave_normal[3 * q];
+  const PetscReal  length = PetscSqrtReal(own[0] * own[0] + own[1] * own[1] + own[2] * own[2]);
+
+  return length > 0 ? -(own[0] * normal[0] + own[1] * normal[1] + own[2] * normal[2]) / length : 0;
+}
+
 /*@
   NeighbourListsOpposed - says how well the normal of slave point q opposes a normal of the master.
 
@@ -771,16 +780,30 @@ PetscReal NeighbourListsSlip(NeighbourLists lists, PetscInt q)
 - normal - unit normal of the master
 
   Note:
-  Returns 1 where they are opposed within OPPOSED_FULLY, and 0 where they are square to each other or nearly so.
+  Returns 1 where they are opposed within OPPOSED_FULLY, and 0 from OPPOSED_NOT on.
 @*/
 PetscReal NeighbourListsOpposed(NeighbourLists lists, PetscInt q, const PetscReal normal[3])
 {
-  const PetscReal *own    = &lists->slave_normal[3 * q];
-  const PetscReal  length = PetscSqrtReal(own[0] * own[0] + own[1] * own[1] + own[2] * own[2]);
-  const PetscReal  cosine = -(own[0] * normal[0] + own[1] * normal[1] + own[2] * normal[2]);
+  return SmoothStep((OpposedCosine(lists, q, normal) - OPPOSED_NOT) / (OPPOSED_FULLY - OPPOSED_NOT));
+}
 
-  if (cosine <= OPPOSED_NOT * length) return 0;
-  return SmoothStep((cosine / length - OPPOSED_NOT) / (OPPOSED_FULLY - OPPOSED_NOT));
+/*@
+  NeighbourListsAverse - says how far the normal of slave point q is from opposing a normal of the master that it does
+  not face.
+
+  Not collective
+
+  Input Parameters:
++ lists  - the lists
+. q      - the slave point
+- normal - unit normal of the master
+
+  Note:
+  Returns 1 where they are square to each other or more, and 0 where NeighbourListsOpposed() begins to be more than 0.
+@*/
+PetscReal NeighbourListsAverse(NeighbourLists lists, PetscInt q, const PetscReal normal[3])
+{
+  return 1 - SmoothStep(OpposedCosine(lists, q, normal) / OPPOSED_NOT);
 }
 
 /*@
