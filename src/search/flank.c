@@ -5,6 +5,10 @@
 /* A facet is below the plane of its neighbour if its centre is, by this part of the slave's face size. */
 #define FLANK_BELOW 1e-6
 
+/* Depth behind the plane of a facet, in faces of the slave, at which a point past the end of that facet no longer
+   counts as behind it. Penetrations are much smaller, and another side of the master is nearer then. */
+#define FLANK_DEPTH 0.25
+
 /* An edge that two facets share, as seen from one of them. */
 typedef struct {
   int       edge;
@@ -147,8 +151,8 @@ static PetscReal DepthAtEdge(const Nearest *look, const Candidate *c, const Flan
 
 /* Part of a slave point's area that takes part where the flank ends at a convex edge of facet c, beyond which there is
    a facet that the point does not face. The width over which it fades shrinks as the point turns towards that facet,
-   because then the plane beyond the edge lies in front of the master. Past the edge a point that is deeper than a face
-   is in front of another side of the master, not behind this one. */
+   because then the plane beyond the edge lies in front of the master. Past the edge, a point that is deeper than
+   FLANK_DEPTH is in front of another side of the master, not behind this one. */
 static PetscReal EndShare(const Nearest *look, const Candidate *c, const Candidate *beyond, const FlankEdge *edge)
 {
   const PetscReal width  = look->size * NeighbourListsAverse(look->lists, look->q, beyond->normal),
@@ -158,7 +162,8 @@ static PetscReal EndShare(const Nearest *look, const Candidate *c, const Candida
 
   if (2 * PetscAbsReal(past) >= width) return past > 0 ? 0 : 1;
   place = past / width + 0.5;
-  return (1 - SmoothStep(place)) * (1 - SmoothStep(2 * place) * SmoothStep(DepthAtEdge(look, c, edge) / look->size));
+  return (1 - SmoothStep(place)) *
+         (1 - SmoothStep(2 * place) * SmoothStep(DepthAtEdge(look, c, edge) / (FLANK_DEPTH * look->size)));
 }
 
 /*@
