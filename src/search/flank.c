@@ -16,6 +16,22 @@ typedef struct {
   PetscBool convex;   /* the other facet lies below the plane of this one */
 } FlankEdge;
 
+/* Distance of the slave point to a facet. */
+static PetscReal CandidateDistance(const Nearest *look, const Candidate *c)
+{
+  PetscReal x[FACE_MAX_NODES * 3];
+  Facet     facet = c->facet;
+  Foot      foot;
+
+  facet.free_edges = 0;
+  for (int a = 0; a < ElementGet(facet.type)->nodes; a++) {
+    NeighbourListsRelative(look->lists, look->q, facet.nodes[a], &x[a * look->lists->dim]);
+    facet.nodes[a] = a;
+  }
+  FacetProject(look->lists->dim, &facet, x, &foot);
+  return PetscAbsReal(foot.gap);
+}
+
 static PetscBool HasNode(const Candidate *c, PetscInt node)
 {
   for (int a = 0; a < ElementGet(c->facet.type)->corners; a++)
@@ -166,6 +182,21 @@ static PetscReal EndShare(const Nearest *look, const Candidate *c, const Candida
          (1 - SmoothStep(2 * place) * SmoothStep(DepthAtEdge(look, c, edge) / (FLANK_DEPTH * look->size)));
 }
 
+/* Part of a slave point's area that takes part where the point is far behind the flank that it faces. A side of the
+   master that is square to the point and much nearer says that the point is beside that side, and that it is not this
+   flank which it came through. The far side of a thin body says nothing. */
+static PetscReal DeepShare(const Nearest *look, int facing, int n, const int *found)
+{
+  const PetscReal depth = look->foot.gap < 0 ? look->distance : 0;
+  PetscReal       side  = depth;
+
+  if (depth <= FLANK_DEPTH * look->size) return 1;
+  for (int k = facing; k < n; k++)
+    if (NeighbourListsSquare(look->lists, look->q, look->candidates[found[k]].normal))
+      side = PetscMin(side, CandidateDistance(look, &look->candidates[found[k]]));
+  return 1 - SmoothStep(depth / (FLANK_DEPTH * look->size) - 1) * (1 - SmoothStep(2 * side / depth - 1));
+}
+
 /*@
   FlankShare - finds the ends of the flank, and the part of the slave point's area that takes part in contact with it.
 
@@ -198,6 +229,7 @@ PetscReal FlankShare(const Nearest *look, int facing, int n, const int *found, i
       if (edge.convex) share = PetscMin(share, EndShare(look, &look->candidates[found[i]], beyond, &edge));
     }
   }
+  if (n > facing) share *= DeepShare(look, facing, n, found);
   return share * NeighbourListsOpposed(look->lists, look->q, look->candidates[look->best].normal);
 }
 

@@ -788,6 +788,22 @@ PetscReal NeighbourListsOpposed(NeighbourLists lists, PetscInt q, const PetscRea
 }
 
 /*@
+  NeighbourListsSquare - says whether a normal of the master is nearer to square to the normal of slave point q than to
+  either of its directions.
+
+  Not collective
+
+  Input Parameters:
++ lists  - the lists
+. q      - the slave point
+- normal - unit normal of the master
+@*/
+PetscBool NeighbourListsSquare(NeighbourLists lists, PetscInt q, const PetscReal normal[3])
+{
+  return (PetscBool)(PetscAbsReal(OpposedCosine(lists, q, normal)) < 0.5 * PETSC_SQRT2);
+}
+
+/*@
   NeighbourListsAverse - says how far the normal of slave point q is from opposing a normal of the master that it does
   not face.
 

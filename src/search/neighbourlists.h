@@ -83,6 +83,7 @@ PetscInt       NeighbourListsAlikeEnd(NeighbourLists, PetscInt p);
 PetscReal      NeighbourListsNearestSize(NeighbourLists, PetscInt q);
 PetscReal      NeighbourListsSlip(NeighbourLists, PetscInt q);
 PetscReal      NeighbourListsOpposed(NeighbourLists, PetscInt q, const PetscReal normal[3]);
+PetscBool      NeighbourListsSquare(NeighbourLists, PetscInt q, const PetscReal normal[3]);
 PetscReal      NeighbourListsAverse(NeighbourLists, PetscInt q, const PetscReal normal[3]);
 PetscErrorCode NeighbourListsBroadcast(ContactSearch, NeighbourLists, const PetscReal *x, PetscReal t, PetscReal t_next,
                                        PetscReal *values);
