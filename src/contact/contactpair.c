@@ -1,6 +1,7 @@
 /* Pairs: surfaces, terms, slave points, offsets and search of each, and what the scene says of it. */
 #include "contactimpl.h"
 #include "search/nodegeometry.h"
+#include "search/toolside.h"
 #include "penaltyrule.h"
 #include "base/refusal.h"
 
@@ -178,6 +179,37 @@ static PetscErrorCode PairCheckGlobalFrame(Mesh mesh, Scene scene, Loads loads, 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Turns the normals of a meshed rigid master as the scene says. */
+static PetscErrorCode PairTurnMaster(Scene scene, Loads loads, const ContactPair *pair)
+{
+  const SceneContact *contact = pair->scene;
+  PetscBool           decided = PETSC_TRUE;
+
+  PetscFunctionBeginUser;
+  if (!pair->master || !pair->master->rigid) {
+    if (contact->master_normal == MASTER_NORMAL_FLIP)
+      PetscCall(RefuseInput(pair->mesh->comm,
+                            "%s: is flip, but the master is %s; allowed: flip where the master is a meshed rigid tool",
+                            SceneWhere(scene, contact->path, "master_normal"),
+                            pair->master ? "a surface of a body, whose normals point out of it"
+                                         : "an analytic surface, whose own keys say where its outside is"));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  if (contact->master_normal == MASTER_NORMAL_FLIP) {
+    ToolSideFlip(pair->master);
+    pair->master->turned = pair->master->n_faces;
+  }
+  if (contact->master_normal == MASTER_NORMAL_AUTO)
+    PetscCall(ToolSideFind(pair->master, pair->slave, loads, &pair->master->turned, &decided));
+  if (!decided)
+    PetscCall(RefuseInput(pair->mesh->comm,
+                          "%s: contact '%s': the start of '%s' does not show on which side of the rigid '%s' it is; "
+                          "allowed: master_normal: keep (the side to which the normals of the mesh point) or flip (the "
+                          "other one), or a start on one side",
+                          SceneWhere(scene, contact->path, "master"), contact->name, contact->slave, contact->master));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /*@
   ContactPairCreate - creates surfaces, terms, state and search of one pair of the scene, without lists.
 
@@ -223,6 +255,7 @@ PetscErrorCode ContactPairCreate(Mesh mesh, Scene scene, Elasticity elasticity, 
   PetscCall(SurfaceCreate(mesh, scene, elasticity, contact->path, "slave", contact->slave, &pair->slave));
   if (contact->master)
     PetscCall(SurfaceCreate(mesh, scene, elasticity, contact->path, "master", contact->master, &pair->master));
+  PetscCall(PairTurnMaster(scene, loads, pair));
   PetscCall(SurfaceImages(mesh, scene, contact, &pair->n_images, pair->images));
   if (pair->master) PetscCall(SurfaceFindFreeEdges(pair->master, pair->n_images, pair->images));
   if (pair->fit.fitted && pair->fit.global_frame) PetscCall(PairCheckGlobalFrame(mesh, scene, loads, pair));

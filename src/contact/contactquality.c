@@ -138,6 +138,7 @@ PetscErrorCode ContactPairQuality(Contact contact, int p, ContactQuality *qualit
   CountAverse(pair, rank, &count[1]);
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, count, 3, MPIU_INT, MPI_SUM, contact->mesh->comm));
   *quality = (ContactQuality){.nodes = count[0], .near = count[1], .averse = count[2]};
+  if (pair->master) quality->turned = pair->master->turned;
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, most, 2, MPIU_REAL, MPIU_MAX, contact->mesh->comm));
   PetscCall(FindPlace(contact->mesh, pair, depth, most[0], &quality->deepest));
   PetscCall(PetscFree(depth));
@@ -230,7 +231,7 @@ static PetscErrorCode PairCheckFacing(Contact contact, const ContactPair *pair)
     PetscCall(RefuseInput(mesh->comm,
                           "%s: contact '%s': no face of '%s' faces '%s', their outward normals point the same way; "
                           "allowed: surfaces that look at each other "
-                          "(turn a rigid tool's surface round in gmsh, ReverseMesh, or name the other side)",
+                          "(name the other side of a body, or set master_normal: auto for a rigid tool)",
                           SceneWhere(contact->scene, pair->scene->path, "master"), pair->scene->name,
                           pair->scene->master, pair->scene->slave));
   }

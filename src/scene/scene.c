@@ -367,11 +367,12 @@ static PetscErrorCode SceneReadContact(Scene scene, SceneContact *contact)
     PetscCall(SceneRefuse(scene, contact->path, "master",
                           "is the slave too; allowed: another surface (self contact is not available yet)",
                           contact->master));
-  contact->law         = (ContactLawKind)SchemaChoice(SceneDocument(scene), "%s.law", contact->path);
-  contact->smoother    = SchemaChoice(SceneDocument(scene), "%s.smoother", contact->path);
-  contact->formulation = (ContactFormulation)SchemaChoice(SceneDocument(scene), "%s.formulation", contact->path);
-  contact->live_offset = SchemaChoice(SceneDocument(scene), "%s.offset", contact->path);
-  contact->degree      = SchemaChoice(SceneDocument(scene), "%s.degree", contact->path) == 0 ? 4 : 2;
+  contact->master_normal = (MasterNormal)SchemaChoice(SceneDocument(scene), "%s.master_normal", contact->path);
+  contact->law           = (ContactLawKind)SchemaChoice(SceneDocument(scene), "%s.law", contact->path);
+  contact->smoother      = SchemaChoice(SceneDocument(scene), "%s.smoother", contact->path);
+  contact->formulation   = (ContactFormulation)SchemaChoice(SceneDocument(scene), "%s.formulation", contact->path);
+  contact->live_offset   = SchemaChoice(SceneDocument(scene), "%s.offset", contact->path);
+  contact->degree        = SchemaChoice(SceneDocument(scene), "%s.degree", contact->path) == 0 ? 4 : 2;
   contact->support =
     SceneHas(scene, contact->path, "support") ? SchemaReal(SceneDocument(scene), "%s.support", contact->path) : 0;
   contact->weight =

@@ -32,6 +32,7 @@ typedef struct {
   PetscReal        max_extent;          /* longest distance between two corners of a face */
   /* Area-weighted mean of E over element height, over all ranks; 0 for a rigid tool. */
   PetscReal stiffness;
+  PetscInt  turned; /* faces of a rigid tool whose normals were turned */
 } *ContactSurface;
 
 PetscErrorCode SurfaceCreate(Mesh, Scene, Elasticity, const char *path, const char *key, const char *name,
