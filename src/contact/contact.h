@@ -156,4 +156,5 @@ PetscErrorCode ContactTakeOverlap(Contact);
 PetscErrorCode ContactPairFits(Contact, int pair, ContactFits *);
 PetscErrorCode ContactPairGaps(Contact, int pair, ContactGaps *);
 PetscErrorCode ContactPairQuality(Contact, int pair, ContactQuality *);
+PetscErrorCode ContactPairDistance(Contact, int pair, const PetscReal *u, PetscReal t, PetscReal *distance);
 PetscErrorCode ContactPairJoined(Contact, int pair, PetscInt *nodes, ContactPlace *);

@@ -151,6 +151,43 @@ PetscErrorCode ContactPairQuality(Contact contact, int p, ContactQuality *qualit
 }
 
 /*@
+  ContactPairDistance - computes the distance between slave and master of a pair, whichever way their normals point.
+
+  Collective
+
+  Input Parameters:
++ contact - the contact
+. p       - number of the pair
+. u       - local displacements of the present state, u[n_nodes*dim] (length), ghosts included
+- t       - its load parameter
+
+  Output Parameter:
+. distance - the distance (length), the same on all ranks
+
+  Note:
+  It searches the whole surfaces, and is meant for a pair that never met.
+@*/
+PetscErrorCode ContactPairDistance(Contact contact, int p, const PetscReal *u, PetscReal t, PetscReal *distance)
+{
+  const ContactPair *pair = &contact->pairs[p];
+
+  PetscFunctionBeginUser;
+  if (pair->master) {
+    PetscCall(SearchLeastDistance(pair->search, u, t, distance));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  *distance = PETSC_MAX_REAL;
+  for (PetscInt q = 0; q < pair->lists->n_slaves; q++) {
+    PetscBool found;
+
+    PetscCall(ContactPointEvaluate(pair, pair->facets, pair->lists, q, -1, SMOOTHER_GAP, &found));
+    if (found) *distance = PetscMin(*distance, PetscAbsReal(pair->work->result.gap));
+  }
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, distance, 1, MPIU_REAL, MPI_MIN, contact->mesh->comm));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
   ContactPairJoined - counts the slave nodes of a pair that are nodes of its master as well, where the surfaces are
   one and never part.
 
