@@ -303,6 +303,7 @@ PetscErrorCode ContactTakeOverlap(Contact contact)
     char complaint[512];
 
     if (pair->master) PetscCall(PairCheckFacing(contact, pair));
+    PetscCall(ContactRefuseImmersed(contact, p));
     for (PetscInt c = 0; c < pair->n; c++) {
       if (pair->scene->initial_overlap == OVERLAP_RAMP || pair->scene->initial_overlap == OVERLAP_IGNORE)
         pair->now.offset[c] = pair->now.gap[c] < 0 ? pair->now.gap[c] : 0;

@@ -169,6 +169,8 @@ PetscErrorCode ContactVectorsFree(ContactVectors *);
 PetscErrorCode ContactMatrixRows(Contact, PetscInt *rows);
 /* contactlists.c */
 PetscErrorCode ContactListsArchive(Contact, Archive, const PetscReal *u, PetscReal t);
+/* contactimmersed.c */
+PetscErrorCode ContactRefuseImmersed(Contact, int pair);
 /* contacttunnelling.c */
 PetscErrorCode ContactNoteLost(ContactPair *, PetscReal t);
 void           ContactNoteTunnelled(ContactPair *, PetscReal t);
