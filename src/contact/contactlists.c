@@ -86,6 +86,19 @@ static PetscErrorCode PairListsServe(ContactPair *pair, const PetscReal *u, Pets
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Factors follow the solution, and the solution follows the factors. Within a step a factor that would turn back is set
+   between its last two values, where their secant sees no change any more. */
+static void PairDampFactors(ContactPair *pair)
+{
+  for (PetscInt q = 0; q < pair->lists->n_slaves; q++) {
+    const PetscReal now = pair->factor[q], change = pair->next_factor[q] - now, before = pair->factor_change[q];
+
+    if (change * before < 0) pair->next_factor[q] = now - change * (now - pair->factor_before[q]) / (change - before);
+    pair->factor_change[q] = change;
+    pair->factor_before[q] = now;
+  }
+}
+
 /* The next lists replace those in force. */
 static PetscErrorCode PairTakeNext(ContactPair *pair)
 {
@@ -167,6 +180,7 @@ PetscErrorCode ContactGather(Contact contact, const PetscReal *u, PetscReal t, P
     PetscCall(PairListsServe(pair, u, t, needed, changed, &serve));
     if (!serve) PetscCall(PairSearch(pair, u, t, needed));
     if (pair->next) PetscCall(PairTakeNext(pair));
+    PetscCall(PetscArrayzero(pair->factor_change, pair->lists->n_slaves));
     pair->lost    = (ContactLost){0, NAN, 0, -1};
     pair->updates = 0;
   }
@@ -314,6 +328,7 @@ PetscErrorCode ContactListsRenew(Contact contact, const PetscReal *u, PetscReal 
     PetscCall(PairListsMotion(contact, pair, t, &needed));
     PetscCall(PairSearch(pair, u, t, needed));
     PetscCall(ContactNoteLost(pair, t));
+    PairDampFactors(pair);
     PetscCall(PairTakeNext(pair));
   }
   PetscCall(PetscLogEventEnd(contact->event_search, 0, 0, 0, 0));
@@ -368,7 +383,10 @@ PetscErrorCode ContactListsHold(Contact contact, const PetscReal *u, PetscReal t
   }
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &agree, 1, MPI_INT, MPI_LAND, contact->mesh->comm));
   *hold = agree ? PETSC_TRUE : PETSC_FALSE;
-  for (int p = 0; p < contact->n_pairs && !agree; p++) PetscCall(PairTakeNext(&contact->pairs[p]));
+  for (int p = 0; p < contact->n_pairs && !agree; p++) {
+    PairDampFactors(&contact->pairs[p]);
+    PetscCall(PairTakeNext(&contact->pairs[p]));
+  }
   PetscCall(PetscLogEventEnd(contact->event_search, 0, 0, 0, 0));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
