@@ -3,12 +3,13 @@
 #include "searchimpl.h"
 #include "base/smoothstep.h"
 
-/* Cosines of the angle between the slave's outward normal and the master's inward one: up to 55 degrees a point takes
-   part with its whole area, from 66 degrees on not at all. Surfaces that press on each other are opposed but for the
-   turns of their faces, of which the largest is that of the corner of a cube that points at the master: 54.7 degrees.
-   Both sides of a square edge face a point that is turned by at least 24 degrees from either. */
-#define OPPOSED_FULLY 0.57
-#define OPPOSED_NOT   0.40
+/* Cosines of the angle between the slave's outward normal and the master's inward one: up to 72 degrees a point takes
+   part with its whole area, from 87 degrees on not at all. Surfaces that press on each other are opposed but for the
+   turns of their faces, of which the largest is that of the corner of a cube that points at the master, 55 degrees. The
+   bounds lie as far beyond it as they can: nearer to it, the normals of soft bodies turn by as much at an edge, and the
+   part that takes part answers them. */
+#define OPPOSED_FULLY 0.30
+#define OPPOSED_NOT   0.05
 
 /* Keys of all contact nodes, each once and in ascending order: nodes of deformable bodies, then nodes of a rigid
    tool. */
