@@ -375,18 +375,23 @@ static PetscErrorCode WarnUnused(void)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Warns of pairs without contact. A tool whose normals point the wrong way is never met, and the run would end well
-   without contact. */
-static void WarnUnmet(Scene scene, const PetscBool *met)
+/* Says at the top of the last screen which pairs never came into contact, and warns of them on stderr. */
+static void PrintUnmet(Terminal terminal, const PetscReal *apart)
 {
-  for (int p = 0; p < scene->n_contacts; p++) {
+  const Scene scene = terminal->scene;
+
+  for (int p = 0; p < scene->n_contacts && terminal->talks; p++)
+    if (apart[p] >= 0)
+      printf("\ncontact %s never came near: nearest distance %.3g at the end\n", scene->contacts[p].name,
+             (double)apart[p]);
+  for (int p = 0; p < scene->n_contacts && !terminal->rank; p++) {
     const SceneContact *contact = &scene->contacts[p];
 
-    if (met[p]) continue;
+    if (apart[p] < 0) continue;
     fprintf(stderr,
-            "burnish: warning: contact '%s': no node of '%s' met '%s' in this run; if it should have: do the master's "
-            "normals point to the slave?\n",
-            contact->name, contact->slave, contact->master);
+            "burnish: warning: contact '%s': no node of '%s' met '%s' in this run, nearest distance %.3g; if it should "
+            "have: do the normals of the two point to each other?\n",
+            contact->name, contact->slave, contact->master ? contact->master : "its analytic master", (double)apart[p]);
   }
 }
 
@@ -456,6 +461,7 @@ PetscErrorCode TerminalEnd(Terminal terminal, const TerminalLast *last)
   const RunRecord    *run     = figures->run;
 
   PetscFunctionBeginUser;
+  PrintUnmet(terminal, last->apart);
   if (terminal->talks && figures->last) PetscCall(PrintProbes(terminal, last->probes));
   if (terminal->talks) {
     PrintWindows(figures);
@@ -463,7 +469,6 @@ PetscErrorCode TerminalEnd(Terminal terminal, const TerminalLast *last)
   }
   if (terminal->rank) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(WarnUnused());
-  if (figures->last) WarnUnmet(terminal->scene, last->met);
   WarnDeep(last->deepest, last->standing);
   if (terminal->talks && counts->refined)
     printf("linear solves: %lld of %lld refined, in %lld steps\n", (long long)counts->refined,

@@ -445,9 +445,10 @@ static PetscErrorCode SceneReadContact(Scene scene, SceneContact *contact)
     PetscCall(SceneRefuse(scene, contact->path, "master",
                           "is the slave too; allowed: another surface (self contact is not available yet)",
                           contact->master));
-  contact->law         = (ContactLawKind)SchemaChoice(SceneDocument(scene), "%s.law", contact->path);
-  contact->smoother    = SchemaChoice(SceneDocument(scene), "%s.smoother", contact->path);
-  contact->formulation = (ContactFormulation)SchemaChoice(SceneDocument(scene), "%s.formulation", contact->path);
+  contact->master_normal = (MasterNormal)SchemaChoice(SceneDocument(scene), "%s.master_normal", contact->path);
+  contact->law           = (ContactLawKind)SchemaChoice(SceneDocument(scene), "%s.law", contact->path);
+  contact->smoother      = SchemaChoice(SceneDocument(scene), "%s.smoother", contact->path);
+  contact->formulation   = (ContactFormulation)SchemaChoice(SceneDocument(scene), "%s.formulation", contact->path);
   if (contact->formulation == CONTACT_FORMULATION_AUTO)
     contact->formulation = contact->master ? CONTACT_SURFACE_TO_SURFACE : CONTACT_NODE_TO_SURFACE;
   contact->live_offset = SchemaChoice(SceneDocument(scene), "%s.offset", contact->path);

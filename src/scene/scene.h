@@ -48,13 +48,18 @@ typedef struct {
   History    history;       /* factor over the load parameter on values and on expressions without t */
 } SceneLoad;
 
+/* The side to which the normals of a meshed rigid master point: that of the slave's start, the other side of that of
+   the mesh, or that of the mesh. */
+typedef enum { MASTER_NORMAL_AUTO, MASTER_NORMAL_FLIP, MASTER_NORMAL_KEEP } MasterNormal;
+
 typedef struct {
   char              *path, *name, *slave, *master; /* the master is a physical surface, or NULL if it is analytic */
   AnalyticSurface    analytic; /* motion.point is a point of the plane or of the axis, or the centre */
   Motion             motion;   /* of an analytic master */
+  MasterNormal       master_normal;
   int                smoother; /* index in Smoothers[] */
   ContactFormulation formulation;
-  int                live_offset; /* of surface_to_surface: 1 if the offsets follow the nodes within a solve */
+  int                live_offset;   /* of surface_to_surface: 1 if the offsets follow the nodes within a solve */
   int                find_symmetry; /* 1 if the scene does not name planes of symmetry */
   int                n_symmetry;
   char             **symmetry; /* planar surfaces beyond which the model continues as its mirror image */

@@ -89,6 +89,9 @@ const SchemaKey SchemaKeys[] = {
   {"contact.*.master.cylinder|sphere.side", CHOICE, .values = "outside | inside", .preset = "outside",
    .help = "side of the surface on which the slave is"},
   MOTION_KEYS("contact.*.master.plane|cylinder|sphere"),
+  {"contact.*.master_normal", CHOICE, .values = "auto | flip | keep", .preset = "auto",
+   .help = "side of a meshed rigid master on which the slave is; auto: where the slave starts; flip: against the "
+           "normals of the mesh; keep: along them"},
   {"contact.*.smoother", CHOICE, .values = SMOOTHER_CHOICES, .preset = "diffuse",
    .help = "surface of the master in the contact: its faces (facet) or a smooth surface near them (diffuse)"},
   {"contact.*.formulation", CHOICE, .values = "node_to_surface | surface_to_surface | auto", .preset = "auto",

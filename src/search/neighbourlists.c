@@ -2,6 +2,15 @@
    motion. */
 #include "searchimpl.h"
 #include "ring.h"
+#include "base/smoothstep.h"
+
+/* Cosines of the angle between the slave's outward normal and the master's inward one: up to 72 degrees a point takes
+   part with its whole area, from 87 degrees on not at all. Surfaces that press on each other are opposed but for the
+   turns of their faces, of which the largest is that of the corner of a cube that points at the master, 55 degrees. The
+   bounds lie as far beyond it as they can: nearer to it, the normals of soft bodies turn by as much at an edge, and the
+   part that takes part answers them. */
+#define OPPOSED_FULLY 0.30
+#define OPPOSED_NOT   0.05
 
 /* Keys of all contact nodes, each once and in ascending order: nodes of deformable bodies, then nodes of a rigid
    tool. */
@@ -256,7 +265,7 @@ static void TurnOffsets(ContactSearch s, NeighbourLists lists, PetscReal t)
 PetscErrorCode NeighbourListsUpdate(ContactSearch s, NeighbourLists lists, const PetscReal *u, PetscReal t,
                                     PetscBool *moved)
 {
-  const PetscInt  n     = lists->n_nodes * lists->dim;
+  const PetscInt n = lists->n_nodes * lists->dim;
   /* Tools of axisymmetric scenes do not turn. */
   const PetscBool turns = (PetscBool)(s->fit->integral && !s->fit->revolved && s->master && s->master->rigid);
   PetscReal      *before;
@@ -403,8 +412,8 @@ static PetscErrorCode NeighbourListsMapPoint(ContactSearch s, NeighbourLists lis
 static PetscInt CandidateRings(ContactSearch s, NeighbourLists lists, const SearchField *field,
                                const Candidate *candidate, double *area, Ring *ring)
 {
-  const Facet    *facet = &field->records[candidate->record].facet; /* as its body sees it: the rule's points are the
-                                                                       same on every image */
+  const Facet *facet = &field->records[candidate->record].facet; /* as its body sees it: the rule's points are the
+                                                                    same on every image */
   const FaceRule     *rule  = FaceRuleGet(facet->type, 0);
   const SurfaceImage *image = &s->images[candidate->image];
   const PetscReal     reach = s->fit_reach / s->master->max_extent;
@@ -527,8 +536,8 @@ PetscErrorCode NeighbourListsCreatePoints(ContactSearch s, NeighbourLists lists,
     PointMap(s, lists, p, lists->X, &lists->point_X[p * dim]);
     PointMap(s, lists, p, lists->u, &lists->point_u[p * dim]);
     for (int d = 0; d < dim; d++)
-      lists->point_X[p * dim + d] +=
-        image->shift[d] * (d == 0 && lists->point_cosine ? lists->point_cosine[p] : 1) + lists->point_offset[p * dim + d];
+      lists->point_X[p * dim + d] += image->shift[d] * (d == 0 && lists->point_cosine ? lists->point_cosine[p] : 1) +
+                                     lists->point_offset[p * dim + d];
     if (lists->point_hoop) lists->point_hoop[p] *= lists->point_X[p * dim] + lists->point_u[p * dim];
   }
   PetscCall(PetscFree(number));
@@ -659,8 +668,9 @@ PetscErrorCode NeighbourListsCreateSlaves(ContactSearch s, NeighbourLists lists)
     entries += (slaves->first[f + 1] - slaves->first[f]) * (slaves->maps.ptr[f + 1] - slaves->maps.ptr[f]);
   PetscCall(PetscMalloc5(n + 1, &lists->slave_ptr, entries, &lists->slave_node, entries, &lists->slave_side, entries,
                          &lists->slave_S, n * dim, &lists->slave_offset));
-  PetscCall(PetscMalloc2(n * dim, &lists->slave_X, n * dim, &lists->slave_u));
-  PetscCall(PetscMalloc4(n + 1, &lists->list_ptr, n + 1, &lists->facet_ptr, n, &lists->kappa, n, &lists->nearest));
+  PetscCall(PetscMalloc3(n * dim, &lists->slave_X, n * dim, &lists->slave_u, 3 * n, &lists->slave_normal));
+  PetscCall(PetscMalloc6(n + 1, &lists->list_ptr, n + 1, &lists->facet_ptr, n, &lists->kappa, n, &lists->nearest, n,
+                         &lists->share, n, &lists->averse));
   PetscCall(
     PetscCalloc5(n, &lists->fit_n, n, &lists->rung, n, &lists->degree, 9 * n, &lists->frame, 4 * n, &lists->metric));
   PetscCall(PetscCalloc6(n, &lists->pivot, n, &lists->amplified, n, &lists->residual, 2 * n, &lists->centre, n,
@@ -820,6 +830,68 @@ PetscReal NeighbourListsSlip(NeighbourLists lists, PetscInt q)
   return PetscSqrtReal(square);
 }
 
+/* Cosine between the inward normal of slave point q and a unit normal of the master; 0 if the point has no normal. */
+static inline PetscReal OpposedCosine(NeighbourLists lists, PetscInt q, const PetscReal normal[3])
+{
+  const PetscReal *own    = &lists->slave_normal[3 * q];
+  const PetscReal  length = PetscSqrtReal(own[0] * own[0] + own[1] * own[1] + own[2] * own[2]);
+
+  return length > 0 ? -(own[0] * normal[0] + own[1] * normal[1] + own[2] * normal[2]) / length : 0;
+}
+
+/*@
+  NeighbourListsOpposed - says how well the normal of slave point q opposes a normal of the master.
+
+  Not collective
+
+  Input Parameters:
++ lists  - the lists
+. q      - the slave point
+- normal - unit normal of the master
+
+  Note:
+  Returns 1 where they are opposed within OPPOSED_FULLY, and 0 from OPPOSED_NOT on.
+@*/
+PetscReal NeighbourListsOpposed(NeighbourLists lists, PetscInt q, const PetscReal normal[3])
+{
+  return SmoothStep((OpposedCosine(lists, q, normal) - OPPOSED_NOT) / (OPPOSED_FULLY - OPPOSED_NOT));
+}
+
+/*@
+  NeighbourListsSquare - says whether a normal of the master is nearer to square to the normal of slave point q than to
+  either of its directions.
+
+  Not collective
+
+  Input Parameters:
++ lists  - the lists
+. q      - the slave point
+- normal - unit normal of the master
+@*/
+PetscBool NeighbourListsSquare(NeighbourLists lists, PetscInt q, const PetscReal normal[3])
+{
+  return (PetscBool)(PetscAbsReal(OpposedCosine(lists, q, normal)) < 0.5 * PETSC_SQRT2);
+}
+
+/*@
+  NeighbourListsAverse - says how far the normal of slave point q is from opposing a normal of the master that it does
+  not face.
+
+  Not collective
+
+  Input Parameters:
++ lists  - the lists
+. q      - the slave point
+- normal - unit normal of the master
+
+  Note:
+  Returns 1 where they are square to each other or more, and 0 where NeighbourListsOpposed() begins to be more than 0.
+@*/
+PetscReal NeighbourListsAverse(NeighbourLists lists, PetscInt q, const PetscReal normal[3])
+{
+  return 1 - SmoothStep(OpposedCosine(lists, q, normal) / OPPOSED_NOT);
+}
+
 /*@
   NeighbourListsDestroy - frees the lists.
 
@@ -843,8 +915,8 @@ PetscErrorCode NeighbourListsDestroy(NeighbourLists *lists)
   if (l->point_cosine) PetscCall(PetscFree2(l->point_cosine, l->point_hoop));
   PetscCall(PetscFree2(l->point_X, l->point_u));
   PetscCall(PetscFree5(l->slave_ptr, l->slave_node, l->slave_side, l->slave_S, l->slave_offset));
-  PetscCall(PetscFree2(l->slave_X, l->slave_u));
-  PetscCall(PetscFree4(l->list_ptr, l->facet_ptr, l->kappa, l->nearest));
+  PetscCall(PetscFree3(l->slave_X, l->slave_u, l->slave_normal));
+  PetscCall(PetscFree6(l->list_ptr, l->facet_ptr, l->kappa, l->nearest, l->share, l->averse));
   PetscCall(PetscFree5(l->fit_n, l->rung, l->degree, l->frame, l->metric));
   PetscCall(PetscFree6(l->pivot, l->amplified, l->residual, l->centre, l->gap, l->normal));
   PetscCall(PetscFree(l->list_point));

@@ -4,7 +4,7 @@
 
    SearchCreate() holds the parts that do not change in a run. SearchLists() makes new lists at the present positions.
    The lists then stand still while the positions move (NeighbourListsUpdate()). SearchDistance() gives the distance of
-   a single point to the master.
+   a single point to the master, SearchLeastDistance() that of all slave points.
 
    The search has two stages. The boxes of the ranks' slave nodes are compared with the boxes of facets to find the
    ranks; then a tree is built over the facets that arrived. There is no patch size to choose: the reach is two face
@@ -35,4 +35,5 @@ PetscErrorCode SearchCreate(Mesh, Scene, Loads, ContactSurface master, PetscReal
                             const FaceMaps *maps, ContactSearch *);
 PetscErrorCode SearchDestroy(ContactSearch *);
 PetscErrorCode SearchLists(ContactSearch, const PetscReal *u, PetscReal t, PetscReal motion, NeighbourLists *);
+PetscErrorCode SearchLeastDistance(ContactSearch, const PetscReal *u, PetscReal t, PetscReal *distance);
 PetscErrorCode SearchDistance(ContactSearch, const PetscReal *u, PetscReal t, const PetscReal x[3], PetscReal *gap);

@@ -36,6 +36,7 @@ typedef struct {
   PetscReal        max_extent;          /* longest distance between two corners of a face */
   /* Area-weighted mean of E over element height, over all ranks; 0 for a rigid tool. */
   PetscReal stiffness;
+  PetscInt  turned; /* faces of a rigid tool whose normals were turned */
 } *ContactSurface;
 
 PetscErrorCode SurfaceCreate(Mesh, Scene, Elasticity, const char *path, const char *key, const char *name,
@@ -46,8 +47,8 @@ PetscErrorCode SurfaceFindFreeEdges(ContactSurface, int n_images, const SurfaceI
 PetscErrorCode SurfaceNodeAreas(ContactSurface, Geometry, const PetscReal *u, PetscReal *area, PetscReal *normal);
 PetscErrorCode SurfaceNodeSizes(ContactSurface, Geometry, int n_images, const SurfaceImage *, PetscReal *size,
                                 PetscReal *turn, PetscReal *share);
-PetscErrorCode SurfaceImages(Mesh, Scene, const SceneContact *, ContactSurface slave, ContactSurface master, int *n_images,
-                             SurfaceImage images[SURFACE_MAX_IMAGES]);
+PetscErrorCode SurfaceImages(Mesh, Scene, const SceneContact *, ContactSurface slave, ContactSurface master,
+                             int *n_images, SurfaceImage images[SURFACE_MAX_IMAGES]);
 PetscErrorCode SurfaceImagesFromSupports(Mesh, Scene, ContactSurface slave, ContactSurface master, int *n_images,
                                          SurfaceImage images[SURFACE_MAX_IMAGES]);
 void           SurfaceReflect(const SurfaceImage *, int dim, const PetscReal *x, PetscReal *y);

@@ -28,6 +28,8 @@ typedef struct _n_Neighbourhoods *Neighbourhoods;
 
 PetscErrorCode NeighbourhoodsCreate(const SurfaceView *, Neighbourhoods *);
 PetscErrorCode NeighbourhoodsDestroy(Neighbourhoods *);
+PetscBool      NeighbourhoodsIsSharp(Neighbourhoods, PetscInt f);
+PetscBool      NeighbourhoodsMeetSharply(Neighbourhoods, PetscInt f, PetscInt g);
 PetscErrorCode NeighbourhoodGather(Neighbourhoods, PetscInt start, const PetscReal x0[3], const PetscReal e3[3],
                                    const PetscReal metric[9], PetscReal limit, PetscInt max, PetscInt *points,
                                    const PetscReal **rho2, PetscInt *n, PetscInt *found);

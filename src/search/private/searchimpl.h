@@ -33,7 +33,7 @@ struct _n_ContactSearch {
 typedef struct {
   PetscInt  record;
   int       image;
-  Facet     facet; /* nodes: contact nodes until the points are numbered, then points */
+  Facet     facet;        /* nodes: contact nodes until the points are numbered, then points */
   PetscInt  first, count; /* fit points of its quadrature rule */
   PetscReal centre[3], normal[3], lower[3], upper[3];
 } Candidate;
@@ -50,7 +50,7 @@ typedef struct {
 typedef struct {
   NeighbourLists   lists;
   const Candidate *candidates;
-  PetscReal        x[3], normal[3];
+  PetscReal        x[3], size; /* size: of the slave's face (length) */
   /* The slave point, and the number of nodes of its own face: a face with one of these nodes is not its master. */
   PetscInt  q, own;
   PetscInt  best;
@@ -58,7 +58,8 @@ typedef struct {
   /* Distance (length) of the nearest candidate of all, or the largest one that is searched. Distances that differ by
      less than tie are equal. */
   PetscReal least, tie;
-  Foot      foot; /* on the best candidate */
+  Foot      foot;   /* on the best candidate */
+  PetscBool averse; /* a candidate is near that does not face the point */
 } Nearest;
 
 /* Growing lists of all slave points. */
