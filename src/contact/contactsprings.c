@@ -1,78 +1,37 @@
-/* Weak springs that hold bodies until contact does. */
+/* Weak springs that hold bodies until contact does, see contactsprings.h. */
 #include "contact/contactsprings.h"
-#include "contactimpl.h"
-
-/* Stiffness of the springs as a part of the automatic penalty, which is the stiffness of the elements at the surface.
-   Each pass leaves about this part, times the number of elements through a body, of the force of the pass before. A
-   body that nothing holds moves in one pass by its penetration at rest divided by this part. */
-#define CONTACT_SPRINGS_STIFFNESS 1e-3
 
 struct _n_Stabiliser {
   Vec stiffness, anchor, work; /* force per length of each free dof; where the spring has no force */
 };
 
-/* Adds to each owned node of a deformable surface its area times the stiffness. */
-static PetscErrorCode AddSurface(ContactSurface surface, Geometry geometry, PetscReal stiffness, PetscReal *values)
-{
-  Mesh        mesh = surface->mesh;
-  PetscReal  *area;
-  PetscMPIInt rank;
-
-  PetscFunctionBeginUser;
-  PetscCallMPI(MPI_Comm_rank(mesh->comm, &rank));
-  PetscCall(PetscMalloc1(mesh->n_nodes, &area));
-  PetscCall(SurfaceNodeAreas(surface, geometry, NULL, area, NULL));
-  for (PetscInt i = 0; i < surface->group->n_nodes; i++) {
-    const PetscInt node = surface->group->nodes[i];
-
-    for (int d = 0; d < mesh->dim && mesh->node_owner[node] == rank; d++)
-      values[node * mesh->dim + d] += stiffness * PetscMax(area[node], 0);
-  }
-  PetscCall(PetscFree(area));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /*@
-  ContactSpringsCreate - makes springs on the deformable surfaces of all pairs that ask for it, slave and master.
+  ContactSpringsCreate - makes springs.
 
   Collective
 
   Input Parameters:
-+ contact - the contact, borrowed for the call
-- like    - a vector of the free dofs, whose layout is taken
++ mesh      - the mesh
+. stiffness - stiffness[n_nodes*dim] (force per length) of the spring at each local dof; 0 at the nodes of other ranks
+- like      - a vector of the free dofs, whose layout is taken
 
   Output Parameter:
-. out - the springs, without force at displacements of 0; NULL where no pair asks for them
+. out - the springs, without force at displacements of 0
 
   Note:
   Source: the proximal point method (Rockafellar 1976) on the potential energy.
 @*/
-PetscErrorCode ContactSpringsCreate(Contact contact, Vec like, ContactSprings *out)
+PetscErrorCode ContactSpringsCreate(Mesh mesh, const PetscReal *stiffness, Vec like, ContactSprings *out)
 {
   ContactSprings s;
-  PetscReal     *values;
-  PetscBool      any = PETSC_FALSE;
 
   PetscFunctionBeginUser;
-  *out = NULL;
-  for (int p = 0; p < contact->n_pairs; p++) any = (PetscBool)(any || contact->pairs[p].scene->stabilise);
-  if (!any) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscNew(&s));
   PetscCall(VecDuplicate(like, &s->stiffness));
   PetscCall(VecDuplicate(like, &s->anchor));
   PetscCall(VecDuplicate(like, &s->work));
   PetscCall(VecZeroEntries(s->anchor));
-  PetscCall(PetscCalloc1(contact->mesh->n_nodes * contact->mesh->dim, &values));
-  for (int p = 0; p < contact->n_pairs; p++) {
-    const ContactPair *pair = &contact->pairs[p];
-
-    if (!pair->scene->stabilise) continue;
-    PetscCall(AddSurface(pair->slave, pair->geometry, CONTACT_SPRINGS_STIFFNESS * pair->automatic, values));
-    if (pair->master && pair->master->group)
-      PetscCall(AddSurface(pair->master, pair->geometry, CONTACT_SPRINGS_STIFFNESS * pair->automatic, values));
-  }
-  PetscCall(MeshLocalToGlobal(contact->mesh, values, s->stiffness));
-  PetscCall(PetscFree(values));
+  PetscCall(MeshLocalToGlobal(mesh, stiffness, s->stiffness));
   *out = s;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -1,14 +1,14 @@
 /* Weak springs that hold bodies which contact alone is to hold, until it does.
 
-   They join the surfaces of pairs with `stabilise: true` to where these were. After a solve the springs are relaxed and
-   the step is solved again, until no force is left in them. So an accepted state is an equilibrium without springs, and
-   while nothing touches, a force moves its body on from pass to pass. All functions accept NULL for no springs. */
+   They join nodes to where these were. ContactSpringsRelax() moves the anchors to a state, in which the springs then
+   have no force. The owner gives the stiffness of each; freebodies.h decides which bodies have springs and how stiff
+   they are. All functions but the first accept NULL for no springs. */
 #pragma once
-#include "contact/contact.h"
+#include "mesh/mesh.h"
 
 typedef struct _n_Stabiliser *ContactSprings;
 
-PetscErrorCode ContactSpringsCreate(Contact, Vec like, ContactSprings *);
+PetscErrorCode ContactSpringsCreate(Mesh, const PetscReal *stiffness, Vec like, ContactSprings *);
 PetscErrorCode ContactSpringsDestroy(ContactSprings *);
 PetscErrorCode ContactSpringsRelax(ContactSprings, Vec x);
 PetscErrorCode ContactSpringsResidual(ContactSprings, Vec x, Vec F);

@@ -379,7 +379,7 @@ static PetscErrorCode SceneReadContact(Scene scene, SceneContact *contact)
   contact->global_frame        = SchemaChoice(SceneDocument(scene), "%s.frame", contact->path);
   contact->diffuse_derivatives = SchemaChoice(SceneDocument(scene), "%s.derivatives", contact->path);
   contact->initial_overlap = (InitialOverlap)SchemaChoice(SceneDocument(scene), "%s.initial_overlap", contact->path);
-  contact->stabilise       = SchemaBoolean(SceneDocument(scene), "%s.stabilise", contact->path);
+  contact->stabilise       = (Stabilise)SchemaChoice(SceneDocument(scene), "%s.stabilise", contact->path);
   contact->feature_angle   = SchemaReal(SceneDocument(scene), "%s.feature_angle", contact->path);
   contact->penalty_auto    = SchemaChoice(SceneDocument(scene), "%s.penalty.initial", contact->path) == 0;
   contact->penalty = contact->penalty_auto ? 0 : SchemaReal(SceneDocument(scene), "%s.penalty.initial", contact->path);

@@ -15,6 +15,7 @@
 #include "scene/loadhistory.h"
 
 typedef enum { OVERLAP_REFUSE, OVERLAP_RESOLVE, OVERLAP_RAMP, OVERLAP_IGNORE } InitialOverlap;
+typedef enum { STABILISE_AUTO, STABILISE_TRUE, STABILISE_FALSE } Stabilise;
 typedef enum { SOLVER_DIRECT, SOLVER_ITERATIVE, SOLVER_AUTO } SolverType;
 typedef enum { CONTACT_NODE_TO_SURFACE, CONTACT_SURFACE_TO_SURFACE } ContactFormulation;
 
@@ -59,7 +60,7 @@ typedef struct {
   int            global_frame, diffuse_derivatives;
   double         feature_angle; /* degrees */
   InitialOverlap initial_overlap;
-  int            stabilise; /* 1 if springs hold the bodies of the pair until contact holds them */
+  Stabilise      stabilise; /* which of the pair's bodies are moved into contact and held by springs */
   ContactLawKind law;
   int            penalty_auto; /* 1 if the penalty is the automatic one */
   /* Penalty (force per length and area), 0 if it is automatic, and the factor on the automatic penalty. */

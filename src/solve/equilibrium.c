@@ -8,9 +8,15 @@
    that lag behind by little. Each time a lag shrinks to a twentieth. A lag that is left would show as a jump in the
    next step. */
 #define EQUILIBRIUM_MAX_OFFSET_UPDATES 4
-/* The springs of stabilised pairs are relaxed at most this many times. A body at rest needs two or three. In each pass
-   a body that flies freely covers a thousand times its penetration at rest. */
-#define EQUILIBRIUM_MAX_RELAX 30
+/* What the springs of free bodies hold after a solve may be this part of F_ref. More is relaxed. */
+#define EQUILIBRIUM_SPRINGS 1e-7
+/* The springs are relaxed at most this many times. */
+#define EQUILIBRIUM_MAX_RELAX 3
+/* A body moves on and on where a pass leaves more than this part of the springs' force. */
+#define EQUILIBRIUM_DRIFT 0.5
+/* A load of which the springs hold more than this part, of F_ref, is held by nothing else. Less is a motion that the
+   load hardly drives, and it stays where it is. */
+#define EQUILIBRIUM_HELD 1e-3
 
 /* Adds to the text that a slave node rests on an edge between facets. *found: such a node exists. */
 static PetscErrorCode ModelBlameFacets(Model model, char *text, size_t size, PetscBool *found)
@@ -67,18 +73,49 @@ static PetscErrorCode ModelExplainFailure(Model model, SolveReport *report)
     PetscCall(PetscStrncpy(report->detail, report->cycle, sizeof(report->detail)));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
+  if (model->problem->bodies) PetscCall(FreeBodiesLoose(model->problem->bodies, model->problem->trial, model->t,
+                                                        PETSC_TRUE, sizeof(report->detail), report->detail));
+  if (report->detail[0]) PetscFunctionReturn(PETSC_SUCCESS);
   if (adrift) PetscCall(FreeModesUnheld(model->mesh, model->scene, model->problem->loads, sizeof(loose), loose));
   if (adrift && loose[0])
     PetscCall(PetscSNPrintf(
       report->detail, sizeof(report->detail), "no support and no imposed displacement holds %s%s", loose,
       !model->contact || report->result == SOLVE_ADRIFT ? ""
-                                                        : " (contact may, from the start or with stabilise: true)"));
+                                                        : " (contact may, with stabilise: auto)"));
   else {
     FailureText(&report->failure, report->detail, sizeof(report->detail));
     if (report->result == SOLVE_LINE_SEARCH || report->result == SOLVE_ITERATIONS)
       PetscCall(ModelBlameFacets(model, report->detail, sizeof(report->detail), &edge));
     if (!edge) PetscCall(ModelBlamePenalty(model, report->detail, sizeof(report->detail)));
   }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Moves bodies that no contact holds yet along the loads at t until they touch. This changes the accepted state, which
+   has no force in these bodies, wherever they are. */
+static PetscErrorCode ModelSettle(Model model, PetscReal t)
+{
+  ModelWork   *work = model->work;
+  SettleResult settled;
+  PetscReal   *u;
+
+  PetscFunctionBeginUser;
+  work->adrift = PETSC_FALSE;
+  if (!model->problem->bodies) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscMalloc1(model->mesh->n_nodes * model->mesh->dim, &u));
+  PetscCall(PetscArraycpy(u, work->accepted_u, model->mesh->n_nodes * model->mesh->dim));
+  PetscCall(
+    FreeBodiesSettle(model->problem->bodies, work->accepted_t, t, (PetscBool)(work->accepted_t == 0), u, &settled));
+  work->adrift = (PetscBool)(settled == SETTLE_ADRIFT);
+  if (settled == SETTLE_MOVED) {
+    work->settled      = PETSC_TRUE;
+    work->looked_ahead = PETSC_FALSE;
+    PetscCall(PetscArraycpy(work->accepted_u, u, model->mesh->n_nodes * model->mesh->dim));
+    PetscCall(MeshCollectFree(model->mesh, u, work->accepted_x));
+    PetscCall(VecCopy(work->accepted_x, model->x));
+    if (work->extrapolation) PetscCall(ExtrapolationReplace(work->extrapolation, u, work->accepted_t));
+  }
+  PetscCall(PetscFree(u));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -90,6 +127,8 @@ static PetscErrorCode ModelDepart(Model model, PetscReal t)
   PetscReal  motion;
 
   PetscFunctionBeginUser;
+  if (model->contact) PetscCall(ContactRestore(model->contact));
+  PetscCall(ModelSettle(model, t));
   PetscCall(ContactSpringsRelax(model->problem->springs, work->accepted_x));
   model->t                 = t;
   model->problem->inverted = -1;
@@ -101,7 +140,6 @@ static PetscErrorCode ModelDepart(Model model, PetscReal t)
   if (!model->contact) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(ProblemImposedMotion(model->problem, work->accepted_u, work->accepted_t, t, &motion));
   motion = PetscMax(motion, PROBLEM_MOTION_SAFETY * work->rate * (t - work->accepted_t));
-  PetscCall(ContactRestore(model->contact));
   PetscCall(ProblemGatherLists(model->problem, work->accepted_u, work->accepted_t, t, motion));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -184,29 +222,40 @@ static PetscErrorCode ModelSolveLists(Model model, SolveReport *report)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Solves with the springs of stabilised pairs. The springs are relaxed and the step is solved on until the springs
-   carry no force. */
+/* Measures what the springs hold: energy and forces, into the report; *force: the norm of these. */
+static PetscErrorCode ModelMeasureSprings(Model model, SolveReport *report, PetscReal *force)
+{
+  PetscReal energy, stored;
+  PetscBool ok;
+
+  PetscFunctionBeginUser;
+  PetscCall(ContactSpringsLoad(model->problem->springs, model->x, force, &energy));
+  PetscCall(
+    ProblemEnergy(model->problem, model->problem->trial, model->t, ENERGY_ELASTIC | ENERGY_CONTACT, &stored, &ok));
+  report->taken += energy;
+  report->left  = stored > 0 ? energy / stored : 0;
+  report->share = ProblemForceScale(model->problem) > 0 ? *force / ProblemForceScale(model->problem) : 0;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Solves with the springs of free bodies. They are so weak that they hold next to nothing where contact holds. Where
+   they hold more, as with a soft body, they are relaxed and the step is solved on. A motion that a load hardly drives
+   is left to them. */
 static PetscErrorCode ModelSolveHeld(Model model, SolveReport *report)
 {
-  PetscReal force, energy, stored, allowed;
-  PetscBool ok;
-  PetscInt  times = 0;
+  PetscReal force = 0, before = PETSC_MAX_REAL, round_off;
 
   PetscFunctionBeginUser;
   PetscCall(ModelSolveLists(model, report));
-  while (model->problem->springs && report->result == SOLVE_CONVERGED) {
-    PetscCall(ContactSpringsLoad(model->problem->springs, model->x, &force, &energy));
-    PetscCall(
-      ProblemEnergy(model->problem, model->problem->trial, model->t, ENERGY_ELASTIC | ENERGY_CONTACT, &stored, &ok));
-    report->taken += energy;
-    report->left = stored > 0 ? energy / stored : 0;
-    PetscCall(ProblemRoundOff(model->problem, &allowed));
-    allowed = PetscMax(allowed, model->scene->solver.tolerance * ProblemForceScale(model->problem));
-    if (force <= allowed) break;
-    if (times++ == EQUILIBRIUM_MAX_RELAX) {
-      report->result = SOLVE_ADRIFT;
+  for (PetscInt times = 0; model->problem->springs && report->result == SOLVE_CONVERGED; times++) {
+    PetscCall(ModelMeasureSprings(model, report, &force));
+    PetscCall(ProblemRoundOff(model->problem, &round_off));
+    if (force <= PetscMax(round_off, EQUILIBRIUM_SPRINGS * ProblemForceScale(model->problem))) break;
+    if (force > EQUILIBRIUM_DRIFT * before || times == EQUILIBRIUM_MAX_RELAX) {
+      if (report->share > EQUILIBRIUM_HELD) report->result = SOLVE_ADRIFT;
       break;
     }
+    before = force;
     report->relaxed++;
     PetscCall(ContactSpringsRelax(model->problem->springs, model->x));
     PetscCall(ModelSolveLists(model, report));
@@ -242,7 +291,11 @@ PetscErrorCode ModelSolve(Model model, PetscReal t, SolveReport *report)
   PetscFunctionBeginUser;
   *report = (SolveReport){.result = SOLVE_CONVERGED};
   PetscCall(ModelDepart(model, t));
-  PetscCall(ModelStart(model, report));
+  if (model->work->adrift) {
+    report->result = SOLVE_ADRIFT;
+    PetscCall(ProblemSetTrial(model->problem, model->x, model->t));
+  } else
+    PetscCall(ModelStart(model, report));
   PetscCall(ModelRampPenalty(model, report));
   while (window == WINDOW_MISSED && report->result == SOLVE_CONVERGED) {
     PetscCall(ModelSolveHeld(model, report));

@@ -41,7 +41,8 @@ PetscErrorCode ProblemCreate(Scene scene, Mesh mesh, Problem *out)
   problem->A = problem->P;
   PetscCall(PetscObjectReference((PetscObject)problem->A));
   PetscCall(MatCreateVecs(problem->A, &problem->diagonal, NULL));
-  if (problem->contact) PetscCall(ContactSpringsCreate(problem->contact, problem->diagonal, &problem->springs));
+  if (problem->contact) PetscCall(FreeBodiesCreate(mesh, scene, problem->loads, problem->contact, &problem->bodies));
+  if (problem->bodies) PetscCall(FreeBodiesSprings(problem->bodies, problem->diagonal, &problem->springs));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -60,6 +61,7 @@ PetscErrorCode ProblemDestroy(Problem *problem)
   PetscFunctionBeginUser;
   if (!p) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(ContactSpringsDestroy(&p->springs));
+  PetscCall(FreeBodiesDestroy(&p->bodies));
   PetscCall(MatDestroy(&p->A));
   PetscCall(VecDestroy(&p->diagonal));
   PetscCall(ContactDestroy(&p->contact));

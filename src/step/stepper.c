@@ -293,7 +293,8 @@ static PetscErrorCode LoadStepperAccept(LoadStepper stepper, PetscReal dt, Petsc
   stepper->report.steps++;
   stepper->report.newton_accepted += solve->newton;
   stepper->report.taken += solve->taken;
-  stepper->report.left = PetscMax(stepper->report.left, solve->left);
+  stepper->report.left  = PetscMax(stepper->report.left, solve->left);
+  stepper->report.share = solve->share;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -353,7 +354,8 @@ static PetscErrorCode LoadStepperAdvance(LoadStepper stepper, StepRecord *record
     PetscCall(ModelRestore(model));
     report->steps_failed++;
     stepper->size.dt = STEPPER_CUT * dt;
-    if (stepper->size.dt < stepper->size.dt_min || (solve.result == SOLVE_LINEAR && solve.newton == 1)) {
+    if (stepper->size.dt < stepper->size.dt_min || (solve.result == SOLVE_LINEAR && solve.newton == 1) ||
+        (solve.result == SOLVE_ADRIFT && !solve.newton)) {
       PetscCall(ReportFailure(report, t, end, first, dt, stepper->size.dt_min, record->attempts, &solve));
       PetscFunctionReturn(PETSC_SUCCESS);
     }
@@ -431,7 +433,8 @@ PetscErrorCode LoadStepperArchive(LoadStepper stepper, Archive archive)
   StepSize       size    = ArchiveLoads(archive) ? stepper->size : stepper->start;
   PetscReal      initial = size.initial, dt = size.dt;
   PetscReal     *real[]    = {&initial,        &dt,           &size.beta,     &size.together,
-                              &size.shortfall, &size.planned, &report->taken, &report->left};
+                              &size.shortfall, &size.planned, &report->taken, &report->left,
+                              &report->share};
   PetscInt      *integer[] = {&report->steps,
                               &report->steps_failed,
                               &report->steps_repeated,

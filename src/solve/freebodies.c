@@ -1,0 +1,444 @@
+/* Bodies that only contact holds: which they are, their motions, their springs and their names. */
+#include "freebodiesimpl.h"
+#include "contact/contactstep.h"
+#include "kernels/elementkernel.h"
+
+/* All springs of a body together are this part of the stiffness of the elements below one slave node. What a spring
+   takes from a force that a whole contact carries is less than this part, and ten times more would still be below 1e-6.
+   It is far above the round-off of a factor, some 1e-14 of the stiffness of an element. */
+#define FREE_BODIES_SPRINGS 1e-7
+/* A contact holds a motion if its stiffness along it is above this part of its stiffness along any. The slope that the
+   facets of a coarse round surface leave to a rotation about its own axis is below; FREE_CONTACT in freemodes.c is its
+   root. */
+#define FREE_BODIES_HELD 1e-5
+/* A load drives a motion if its force along it is above this part of the sum of the amounts. */
+#define FREE_BODIES_DRIVEN 1e-6
+
+/* Finds the pieces that are stabilised: one of their pairs says auto and they have free motions, or one says true. */
+static PetscErrorCode FindStabilised(FreeBodies b)
+{
+  int *on;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc1(b->n_pieces, &b->stabilised));
+  PetscCall(PetscMalloc1(b->n_pieces, &on));
+  for (int side = 0; side < 2 * b->scene->n_contacts; side++) {
+    const SceneContact *contact = &b->scene->contacts[side / 2];
+
+    if (contact->stabilise == STABILISE_FALSE) continue;
+    PetscCall(FreeModesOnSurface(b->modes, side % 2 ? contact->master : contact->slave, on));
+    for (PetscInt p = 0; p < b->n_pieces; p++)
+      if (on[p] && (b->pieces[p].n_free || contact->stabilise == STABILISE_TRUE)) b->stabilised[p] = PETSC_TRUE;
+  }
+  PetscCall(PetscFree(on));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Lists the free motions of the stabilised pieces. */
+static PetscErrorCode ListMotions(FreeBodies b)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc2(RIGID_MODES * b->n_pieces, &b->owner, RIGID_MODES * b->n_pieces, &b->motion));
+  for (PetscInt p = 0; p < b->n_pieces; p++) {
+    for (int i = 0; i < b->pieces[p].n_free && b->stabilised[p]; i++) {
+      b->owner[b->n]    = (int)p;
+      b->motion[b->n++] = &b->pieces[p].free[i * RIGID_MODES];
+    }
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Measures the volumes at the nodes and the faces of the slaves. */
+static PetscErrorCode Measure(FreeBodies b)
+{
+  const Mesh mesh = b->mesh;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc1(mesh->n_nodes, &b->weight));
+  for (PetscInt c = 0; c < mesh->n_cells; c++) {
+    const PetscInt first = mesh->cell_ptr[c], n = mesh->cell_ptr[c + 1] - first;
+    PetscReal      X[ELEMENT_MAX_NODES * 3], volume;
+
+    MeshCellCoordinates(mesh, c, X);
+    volume = CellVolume(mesh->cell_type[c], mesh->dim, b->scene->geometry, X);
+    for (PetscInt k = 0; k < n; k++) b->weight[mesh->cell_nodes[first + k]] += volume / (PetscReal)n;
+  }
+  for (int p = 0; p < ContactPairs(b->contact); p++) {
+    const MeshGroup *slave;
+    PetscReal        size;
+
+    PetscCall(ContactPairSurface(b->contact, p, &slave, &size));
+    b->face = PetscMax(b->face, size);
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  FreeBodiesCreate - finds the bodies that are stabilised.
+
+  Collective
+
+  Input Parameters:
++ mesh    - borrowed
+. scene   - borrowed
+. loads   - borrowed
+- contact - borrowed
+
+  Output Parameter:
+. out - the bodies; NULL where there are none
+@*/
+PetscErrorCode FreeBodiesCreate(Mesh mesh, Scene scene, Loads loads, Contact contact, FreeBodies *out)
+{
+  FreeBodies b;
+  PetscBool  asked = PETSC_FALSE, any = PETSC_FALSE;
+
+  PetscFunctionBeginUser;
+  *out = NULL;
+  for (int c = 0; c < scene->n_contacts; c++)
+    asked = (PetscBool)(asked || scene->contacts[c].stabilise != STABILISE_FALSE);
+  if (!asked) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscNew(&b));
+  b->mesh    = mesh;
+  b->scene   = scene;
+  b->loads   = loads;
+  b->contact = contact;
+  *out       = b;
+  PetscCall(FreeModesCreate(mesh, scene, loads, &b->modes));
+  PetscCall(FreeModesGetPieces(b->modes, &b->n_pieces, &b->pieces, &b->piece));
+  PetscCall(FindStabilised(b));
+  for (PetscInt p = 0; p < b->n_pieces; p++) any = (PetscBool)(any || b->stabilised[p]);
+  if (!any) {
+    PetscCall(FreeBodiesDestroy(out));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  PetscCall(ListMotions(b));
+  PetscCall(Measure(b));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  FreeBodiesDestroy - frees the bodies.
+
+  Collective
+
+  Input Parameter:
+. b - the bodies; set to NULL
+@*/
+PetscErrorCode FreeBodiesDestroy(FreeBodies *b)
+{
+  PetscFunctionBeginUser;
+  if (!*b) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(FreeModesDestroy(&(*b)->modes));
+  PetscCall(PetscFree((*b)->stabilised));
+  PetscCall(PetscFree2((*b)->owner, (*b)->motion));
+  PetscCall(PetscFree((*b)->weight));
+  PetscCall(PetscFree(*b));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Stiffness of the springs of each piece together: that of its stiffest pair. */
+static PetscErrorCode PieceStiffness(FreeBodies b, PetscReal *stiffness)
+{
+  int *on;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscArrayzero(stiffness, b->n_pieces));
+  PetscCall(PetscMalloc1(b->n_pieces, &on));
+  for (int side = 0; side < 2 * b->scene->n_contacts; side++) {
+    const SceneContact *contact = &b->scene->contacts[side / 2];
+    PetscReal           term;
+
+    PetscCall(ContactPairTermStiffness(b->contact, side / 2, &term));
+    PetscCall(FreeModesOnSurface(b->modes, side % 2 ? contact->master : contact->slave, on));
+    for (PetscInt p = 0; p < b->n_pieces; p++)
+      if (on[p]) stiffness[p] = PetscMax(stiffness[p], FREE_BODIES_SPRINGS * term);
+  }
+  PetscCall(PetscFree(on));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  FreeBodiesSprings - makes the springs of the bodies.
+
+  Collective
+
+  Input Parameters:
++ b    - the bodies
+- like - a vector of the free dofs
+
+  Output Parameter:
+. springs - spread evenly over the nodes of each body
+
+  Note:
+  They make the system regular where contact does not hold a body, and are too weak to be seen where it does.
+@*/
+PetscErrorCode FreeBodiesSprings(FreeBodies b, Vec like, ContactSprings *springs)
+{
+  const Mesh  mesh = b->mesh;
+  PetscReal  *stiffness, *values;
+  PetscInt   *nodes;
+  PetscMPIInt rank;
+
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Comm_rank(mesh->comm, &rank));
+  PetscCall(PetscMalloc1(b->n_pieces, &stiffness));
+  PetscCall(PetscCalloc2(b->n_pieces, &nodes, mesh->n_nodes * mesh->dim, &values));
+  PetscCall(PieceStiffness(b, stiffness));
+  for (PetscInt i = 0; i < mesh->n_nodes; i++) nodes[b->piece[i]] += mesh->node_owner[i] == rank;
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, nodes, (PetscMPIInt)b->n_pieces, MPIU_INT, MPI_SUM, mesh->comm));
+  for (PetscInt i = 0; i < mesh->n_nodes; i++) {
+    const PetscInt p = b->piece[i];
+
+    if (mesh->node_owner[i] != rank || !b->stabilised[p]) continue;
+    for (int d = 0; d < mesh->dim; d++) values[i * mesh->dim + d] = stiffness[p] / (PetscReal)nodes[p];
+  }
+  PetscCall(ContactSpringsCreate(mesh, values, like, springs));
+  PetscCall(PetscFree2(nodes, values));
+  PetscCall(PetscFree(stiffness));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Position of a node from the centre of its piece, in units of the piece's size. */
+static void PlaceInPiece(FreeBodies b, PetscInt node, const PetscReal *u, double x[3])
+{
+  const int        dim   = b->mesh->dim;
+  const FreePiece *piece = &b->pieces[b->piece[node]];
+
+  for (int d = 0; d < 3; d++)
+    x[d] = d < dim ? (b->mesh->coords[node * dim + d] + u[node * dim + d] - piece->centre[d]) / piece->size : 0;
+}
+
+/* The motion of a piece by the coordinates a[n] of all. */
+void FreeBodiesPieceMotion(FreeBodies b, PetscInt piece, const double a[], double q[RIGID_MODES])
+{
+  for (int i = 0; i < RIGID_MODES; i++) q[i] = 0;
+  for (int k = 0; k < b->n; k++)
+    for (int i = 0; i < RIGID_MODES && b->owner[k] == piece; i++) q[i] += a[k] * b->motion[k][i];
+}
+
+/* The velocities du[n_nodes*dim] (length) of a motion a[n] of the bodies at displacements u. */
+void FreeBodiesVelocity(FreeBodies b, const PetscReal *u, const double a[], PetscReal *du)
+{
+  const int dim = b->mesh->dim;
+  PetscInt  last = -1;
+  double    q[RIGID_MODES], x[3], v[3];
+
+  for (PetscInt i = 0; i < b->mesh->n_nodes; i++) {
+    if (b->piece[i] != last) FreeBodiesPieceMotion(b, b->piece[i], a, q);
+    last = b->piece[i];
+    PlaceInPiece(b, i, u, x);
+    RigidVelocity(q, x, v);
+    for (int d = 0; d < dim; d++) du[i * dim + d] = b->pieces[last].size * v[d];
+  }
+}
+
+/* Moves the bodies by a[n]: adds it to the displacements u. */
+void FreeBodiesMove(FreeBodies b, const double a[], PetscReal *u)
+{
+  const int dim = b->mesh->dim;
+  PetscInt  last = -1;
+  double    q[RIGID_MODES], x[3], from[3];
+
+  for (PetscInt i = 0; i < b->mesh->n_nodes; i++) {
+    if (b->piece[i] != last) FreeBodiesPieceMotion(b, b->piece[i], a, q);
+    last = b->piece[i];
+    PlaceInPiece(b, i, u, from);
+    for (int d = 0; d < 3; d++) x[d] = from[d];
+    if (b->scene->kinematics == KINEMATICS_FINITE)
+      RigidMove(q, x);
+    else {
+      RigidVelocity(q, from, x);
+      for (int d = 0; d < 3; d++) x[d] += from[d];
+    }
+    for (int d = 0; d < dim; d++) u[i * dim + d] += b->pieces[last].size * (x[d] - from[d]);
+  }
+}
+
+/* Products gram[n][n] of the motions at displacements u: mean over the volume of each piece (length^2). */
+PetscErrorCode FreeBodiesGram(FreeBodies b, const PetscReal *u, double gram[])
+{
+  const int n = b->n;
+  double   *volume;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc1(b->n_pieces, &volume));
+  PetscCall(PetscArrayzero(gram, n * n));
+  for (PetscInt i = 0; i < b->mesh->n_nodes; i++) {
+    double x[3];
+
+    PlaceInPiece(b, i, u, x);
+    volume[b->piece[i]] += b->weight[i];
+    for (int k = 0; k < n; k++) {
+      double v[3], w[3];
+
+      if (b->owner[k] != b->piece[i]) continue;
+      RigidVelocity(b->motion[k], x, v);
+      for (int l = 0; l < n; l++) {
+        if (b->owner[l] != b->piece[i]) continue;
+        RigidVelocity(b->motion[l], x, w);
+        for (int d = 0; d < b->mesh->dim; d++) gram[k * n + l] += b->weight[i] * v[d] * w[d];
+      }
+    }
+  }
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, gram, n * n, MPI_DOUBLE, MPI_SUM, b->mesh->comm));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, volume, (PetscMPIInt)b->n_pieces, MPI_DOUBLE, MPI_SUM, b->mesh->comm));
+  for (int k = 0; k < n; k++)
+    for (int l = 0; l < n; l++) gram[k * n + l] *= PetscSqr(b->pieces[b->owner[k]].size) / volume[b->owner[k]];
+  PetscCall(PetscFree(volume));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The work force[n] of the loads at t along each motion at displacements u, and the sum of its amounts over the nodes.
+   Where they nearly cancel the force is 0. */
+PetscErrorCode FreeBodiesForce(FreeBodies b, const PetscReal *u, PetscReal t, double force[], double scale[])
+{
+  const PetscInt size = b->mesh->n_nodes * b->mesh->dim;
+  PetscReal     *f, *v, square = 0;
+  double        *a;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc1(size, &f));
+  PetscCall(PetscMalloc1(size, &v));
+  PetscCall(PetscCalloc1(b->n, &a));
+  PetscCall(LoadsResidual(b->loads, t, u, f, NULL, &square));
+  for (int k = 0; k < b->n; k++) {
+    force[k] = scale[k] = 0;
+    a[k]                = 1;
+    FreeBodiesVelocity(b, u, a, v);
+    a[k] = 0;
+    for (PetscInt i = 0; i < size; i++) {
+      force[k] -= f[i] * v[i];
+      scale[k] += PetscAbsReal(f[i] * v[i]);
+    }
+  }
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, force, b->n, MPI_DOUBLE, MPI_SUM, b->mesh->comm));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, scale, b->n, MPI_DOUBLE, MPI_SUM, b->mesh->comm));
+  for (int k = 0; k < b->n; k++)
+    if (PetscAbsReal(force[k]) <= FREE_BODIES_DRIVEN * scale[k]) force[k] = 0;
+  PetscCall(PetscFree(a));
+  PetscCall(PetscFree(v));
+  PetscCall(PetscFree(f));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Stiffness gram[n][n] of the terms in contact along the motions at (u, t), over the largest diagonal entry. */
+static PetscErrorCode ContactGram(FreeBodies b, const PetscReal *u, PetscReal t, double gram[])
+{
+  const PetscInt       size = b->mesh->n_nodes * b->mesh->dim;
+  const int            n    = b->n;
+  PetscReal           *du, **travel, largest = 0;
+  double              *a;
+  PetscInt             n_terms;
+  const ActiveSetTerm *terms;
+  ContactStep          step;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscArrayzero(gram, n * n));
+  PetscCall(PetscMalloc1(size, &du));
+  PetscCall(PetscMalloc1(n, &travel));
+  PetscCall(PetscCalloc1(n, &a));
+  for (PetscInt i = 0; i < size; i++) du[i] = b->mesh->size; /* no term is too far away to be listed */
+  PetscCall(ContactStepCreate(b->contact, u, du, t, t, &step));
+  PetscCall(ContactStepGetTerms(step, &n_terms, &terms));
+  for (int k = 0; k < n; k++) {
+    a[k] = 1;
+    FreeBodiesVelocity(b, u, a, du);
+    a[k] = 0;
+    PetscCall(PetscMalloc1(n_terms, &travel[k]));
+    PetscCall(ContactStepTravel(step, du, t, t, travel[k]));
+  }
+  for (PetscInt i = 0; i < n_terms; i++) {
+    if (!(terms[i].pressure > 0)) continue;
+    for (int k = 0; k < n; k++)
+      for (int l = 0; l < n; l++)
+        gram[k * n + l] +=
+          travel[k][i] * travel[l][i] / (b->pieces[b->owner[k]].size * b->pieces[b->owner[l]].size);
+  }
+  for (int k = 0; k < n; k++) largest = PetscMax(largest, gram[k * n + k]);
+  for (int k = 0; k < n * n && largest > 0; k++) gram[k] /= largest;
+  PetscCall(ContactStepDestroy(&step));
+  for (int k = 0; k < n; k++) PetscCall(PetscFree(travel[k]));
+  PetscCall(PetscFree(travel));
+  PetscCall(PetscFree(a));
+  PetscCall(PetscFree(du));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Adds "BODY: motion; with it BODY: motion" to the text. */
+static void AddMotion(FreeBodies b, const double a[], size_t size, char *text)
+{
+  size_t    used = strlen(text);
+  PetscBool more = PETSC_FALSE;
+
+  if (used && used < size) used += (size_t)snprintf(text + used, size - used, "; ");
+  for (PetscInt p = 0; p < b->n_pieces && used < size; p++) {
+    double    q[RIGID_MODES];
+    char      motion[FREE_TEXT];
+    PetscBool moves = PETSC_FALSE;
+
+    FreeBodiesPieceMotion(b, p, a, q);
+    for (int i = 0; i < RIGID_MODES; i++) moves = (PetscBool)(moves || PetscAbsReal(q[i]) > 1e-2);
+    if (!moves) continue;
+    FreeModesMotionText(b->modes, p, q, motion);
+    used += (size_t)snprintf(text + used, size - used, "%s'%s': %s", more ? ", with it " : "", b->pieces[p].name,
+                             motion);
+    more = PETSC_TRUE;
+  }
+}
+
+/*@
+  FreeBodiesLoose - names the motions of the bodies that contact does not hold in the present state.
+
+  Collective
+
+  Input Parameters:
++ b      - the bodies
+. u      - local displacements u[n_nodes*dim] (length), within the reach of the contact's lists
+. t      - load parameter
+. driven - name only the motions along which the loads at t act
+- size   - of the text
+
+  Output Parameter:
+. text - "'ball': translation along y, (0, 1, 0); ..."; empty: contact holds all bodies
+
+  Note:
+  A contact holds a motion if a term in contact sees it. The system is singular along the others without springs.
+@*/
+PetscErrorCode FreeBodiesLoose(FreeBodies b, const PetscReal *u, PetscReal t, PetscBool driven, size_t size, char *text)
+{
+  const int n = b->n;
+  double   *gram, *free, *force, *scale;
+  int      *columns, m;
+
+  PetscFunctionBeginUser;
+  text[0] = '\0';
+  if (!n) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscMalloc5(n * n, &gram, n * n, &free, n, &force, n, &scale, n, &columns));
+  PetscCall(ContactGram(b, u, t, gram));
+  PetscCall(FreeBodiesForce(b, u, t, force, scale));
+  m = RigidFree(n, gram, FREE_BODIES_HELD, free);
+  for (int k = 0; k < n; k++) columns[k] = k;
+  RigidReduce(m, n, columns, free);
+  for (int f = 0; f < m; f++) {
+    double work = 0, most = 0;
+
+    for (int k = 0; k < n; k++) work += free[f * n + k] * force[k];
+    for (int k = 0; k < n; k++) most += PetscAbsReal(free[f * n + k]) * scale[k];
+    if (!driven || PetscAbsReal(work) > FREE_BODIES_DRIVEN * most) AddMotion(b, &free[f * n], size, text);
+  }
+  PetscCall(PetscFree5(gram, free, force, scale, columns));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  FreeBodiesMoved - says which bodies the rigid search has moved, and by how much; empty: none.
+
+  Not collective
+
+  Input Parameter:
+. b - the bodies; NULL: none
+@*/
+const char *FreeBodiesMoved(FreeBodies b)
+{
+  return b ? b->moved : "";
+}
