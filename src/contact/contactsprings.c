@@ -2,7 +2,10 @@
 #include "contact/contactsprings.h"
 
 struct _n_Stabiliser {
-  Vec stiffness, anchor, work; /* force per length of each free dof; where the spring has no force */
+  Vec        stiffness, anchor, work; /* force per length of each free dof; where the spring has no force */
+  PetscInt   n_ties;
+  SpringTie *ties;
+  PetscReal *stretch; /* n_ties (length), at the last evaluation */
 };
 
 /*@
@@ -51,6 +54,7 @@ PetscErrorCode ContactSpringsDestroy(ContactSprings *s)
   PetscCall(VecDestroy(&(*s)->stiffness));
   PetscCall(VecDestroy(&(*s)->anchor));
   PetscCall(VecDestroy(&(*s)->work));
+  PetscCall(PetscFree2((*s)->ties, (*s)->stretch));
   PetscCall(PetscFree(*s));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -71,17 +75,67 @@ PetscErrorCode ContactSpringsRelax(ContactSprings s, Vec x)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The springs' forces at x, into the work vector. */
+/*@
+  ContactSpringsSetTies - replaces the ties.
+
+  Collective
+
+  Input Parameters:
++ s    - the springs
+. n    - number of ties
+- ties - ties[n], the same on all ranks; copied
+
+  Output Parameter:
+. changed - there were others, or as many that act elsewhere
+@*/
+PetscErrorCode ContactSpringsSetTies(ContactSprings s, PetscInt n, const SpringTie *ties, PetscBool *changed)
+{
+  PetscFunctionBeginUser;
+  *changed = (PetscBool)(n != s->n_ties);
+  for (PetscInt i = 0; i < n && !*changed; i++) *changed = (PetscBool)(ties[i].dof[0] != s->ties[i].dof[0]);
+  PetscCall(PetscFree2(s->ties, s->stretch));
+  PetscCall(PetscMalloc2(n, &s->ties, n, &s->stretch));
+  PetscCall(PetscArraycpy(s->ties, ties, n));
+  s->n_ties = n;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Moves the ties' stretches at x from the anchors into s->stretch. work holds x less the anchors. */
+static PetscErrorCode Stretch(ContactSprings s)
+{
+  const PetscScalar *d;
+  PetscInt           first, end;
+
+  PetscFunctionBeginUser;
+  if (!s->n_ties) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(VecGetOwnershipRange(s->work, &first, &end));
+  PetscCall(VecGetArrayRead(s->work, &d));
+  for (PetscInt i = 0; i < s->n_ties; i++) {
+    const SpringTie *tie = &s->ties[i];
+
+    s->stretch[i] = 0;
+    for (PetscInt k = 0; k < tie->n; k++)
+      if (tie->dof[k] >= first && tie->dof[k] < end)
+        s->stretch[i] += tie->value[k] * PetscRealPart(d[tie->dof[k] - first]);
+  }
+  PetscCall(VecRestoreArrayRead(s->work, &d));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, s->stretch, (PetscMPIInt)s->n_ties, MPIU_REAL, MPI_SUM,
+                             PetscObjectComm((PetscObject)s->work)));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The forces at x of the springs at dofs, into the work vector, and the stretches of the ties. */
 static PetscErrorCode SpringForces(ContactSprings s, Vec x)
 {
   PetscFunctionBeginUser;
   PetscCall(VecWAXPY(s->work, -1, s->anchor, x));
+  PetscCall(Stretch(s));
   PetscCall(VecPointwiseMult(s->work, s->work, s->stiffness));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /*@
-  ContactSpringsResidual - adds the springs' forces to the residual.
+  ContactSpringsResidual - adds the forces of springs and ties to the residual.
 
   Collective
 
@@ -94,15 +148,28 @@ static PetscErrorCode SpringForces(ContactSprings s, Vec x)
 @*/
 PetscErrorCode ContactSpringsResidual(ContactSprings s, Vec x, Vec F)
 {
+  PetscScalar *f;
+  PetscInt     first, end;
+
   PetscFunctionBeginUser;
   if (!s) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(SpringForces(s, x));
   PetscCall(VecAXPY(F, 1, s->work));
+  PetscCall(VecGetOwnershipRange(F, &first, &end));
+  PetscCall(VecGetArray(F, &f));
+  for (PetscInt i = 0; i < s->n_ties; i++) {
+    const SpringTie *tie = &s->ties[i];
+
+    for (PetscInt k = 0; k < tie->n; k++)
+      if (tie->dof[k] >= first && tie->dof[k] < end)
+        f[tie->dof[k] - first] += tie->stiffness * s->stretch[i] * tie->value[k];
+  }
+  PetscCall(VecRestoreArray(F, &f));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /*@
-  ContactSpringsLoad - finds the norm of the springs' forces and the energy in them.
+  ContactSpringsLoad - finds the forces in springs and ties and the energy in both.
 
   Collective
 
@@ -111,21 +178,26 @@ PetscErrorCode ContactSpringsResidual(ContactSprings s, Vec x, Vec F)
 - x - free displacements (length)
 
   Output Parameters:
-+ force  - norm of the forces
-- energy - of all springs
++ force  - norm of the forces of the springs
+. tied   - largest force along the motion that a tie holds
+- energy - of all
 @*/
-PetscErrorCode ContactSpringsLoad(ContactSprings s, Vec x, PetscReal *force, PetscReal *energy)
+PetscErrorCode ContactSpringsLoad(ContactSprings s, Vec x, PetscReal *force, PetscReal *tied, PetscReal *energy)
 {
   PetscScalar work[2] = {0, 0};
 
   PetscFunctionBeginUser;
-  *force = *energy = 0;
+  *force = *tied = *energy = 0;
   if (!s) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(SpringForces(s, x));
   PetscCall(VecNorm(s->work, NORM_2, force));
   PetscCall(VecDot(s->work, x, &work[0]));
   PetscCall(VecDot(s->work, s->anchor, &work[1]));
   *energy = PetscRealPart(work[0] - work[1]) / 2;
+  for (PetscInt i = 0; i < s->n_ties; i++) {
+    *tied = PetscMax(*tied, s->ties[i].stiffness * PetscAbsReal(s->stretch[i]));
+    *energy += s->ties[i].stiffness * PetscSqr(s->stretch[i]) / 2;
+  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -143,16 +215,16 @@ PetscErrorCode ContactSpringsLoad(ContactSprings s, Vec x, PetscReal *force, Pet
 @*/
 PetscErrorCode ContactSpringsEnergy(ContactSprings s, Vec x, PetscReal *energy)
 {
-  PetscReal force, mine;
+  PetscReal force, tied, mine;
 
   PetscFunctionBeginUser;
-  PetscCall(ContactSpringsLoad(s, x, &force, &mine));
+  PetscCall(ContactSpringsLoad(s, x, &force, &tied, &mine));
   *energy += mine;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /*@
-  ContactSpringsTangent - adds the springs' stiffness to the diagonal of a matrix.
+  ContactSpringsTangent - adds the stiffness of springs and ties to a matrix.
 
   Collective
 
@@ -160,11 +232,26 @@ PetscErrorCode ContactSpringsEnergy(ContactSprings s, Vec x, PetscReal *energy)
 . s - the springs, or NULL
 
   Input/Output Parameter:
-. A - the tangent
+. A - the tangent; its pattern couples the dofs of each tie
 @*/
 PetscErrorCode ContactSpringsTangent(ContactSprings s, Mat A)
 {
+  PetscInt first, end;
+
   PetscFunctionBeginUser;
-  if (s) PetscCall(MatDiagonalSet(A, s->stiffness, ADD_VALUES));
+  if (!s) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(MatDiagonalSet(A, s->stiffness, ADD_VALUES));
+  if (!s->n_ties) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(MatGetOwnershipRange(A, &first, &end));
+  for (PetscInt i = 0; i < s->n_ties; i++) {
+    const SpringTie *tie = &s->ties[i];
+
+    for (PetscInt k = 0; k < tie->n; k++)
+      for (PetscInt l = 0; l < tie->n && tie->dof[k] >= first && tie->dof[k] < end; l++)
+        PetscCall(
+          MatSetValue(A, tie->dof[k], tie->dof[l], tie->stiffness * tie->value[k] * tie->value[l], ADD_VALUES));
+  }
+  PetscCall(MatAssemblyBegin(A, MAT_FINAL_ASSEMBLY));
+  PetscCall(MatAssemblyEnd(A, MAT_FINAL_ASSEMBLY));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -1,5 +1,6 @@
 /* Rigid motions that constraints leave free: Gram matrix, null space, reduced basis. */
 #include "kernels/rigidkernel.h"
+#include <float.h>
 #include <math.h>
 
 /* Entries up to this size are round-off and become 0. Entries have unit scale. The value is far below any motion and
@@ -220,4 +221,87 @@ void RigidMove(const double q[RIGID_MODES], double x[3])
   RigidVelocity(turn, v, wv);
   RigidVelocity(turn, wv, wwv);
   for (int d = 0; d < 3; d++) x[d] += v[d] + second * wv[d] + third * wwv[d];
+}
+
+/*@
+  RigidCholesky - computes Cholesky's factor L of a positive definite matrix, in its lower triangle.
+
+  Not collective
+
+  Input Parameters:
++ n      - size of the matrix
+- matrix - the matrix [n][n]
+
+  Output Parameter:
+. L - the factor [n][n]; may be the matrix
+@*/
+void RigidCholesky(int n, const double *matrix, double *L)
+{
+  for (int i = 0; i < n; i++) {
+    for (int j = 0; j <= i; j++) {
+      const double own = matrix[i * n + i];
+      double       sum = matrix[i * n + j];
+
+      for (int k = 0; k < j; k++) sum -= L[i * n + k] * L[j * n + k];
+      L[i * n + j] = i == j ? sqrt(fmax(sum, DBL_EPSILON * own)) : sum / L[j * n + j];
+    }
+  }
+}
+
+/*@
+  RigidForward - replaces x by L^-1 x.
+
+  Not collective
+
+  Input Parameters:
++ n - size
+- L - of RigidCholesky()
+
+  Input/Output Parameter:
+. x - x[n]
+@*/
+void RigidForward(int n, const double *L, double x[])
+{
+  for (int i = 0; i < n; i++) {
+    for (int k = 0; k < i; k++) x[i] -= L[i * n + k] * x[k];
+    x[i] /= L[i * n + i];
+  }
+}
+
+/*@
+  RigidBackward - replaces x by L^-T x.
+
+  Not collective
+
+  Input Parameters:
++ n - size
+- L - of RigidCholesky()
+
+  Input/Output Parameter:
+. x - x[n]
+@*/
+void RigidBackward(int n, const double *L, double x[])
+{
+  for (int i = n - 1; i >= 0; i--) {
+    for (int k = i + 1; k < n; k++) x[i] -= L[k * n + i] * x[k];
+    x[i] /= L[i * n + i];
+  }
+}
+
+/*@
+  RigidSolve - replaces x by (L L^T)^-1 x.
+
+  Not collective
+
+  Input Parameters:
++ n - size
+- L - of RigidCholesky()
+
+  Input/Output Parameter:
+. x - x[n]
+@*/
+void RigidSolve(int n, const double *L, double x[])
+{
+  RigidForward(n, L, x);
+  RigidBackward(n, L, x);
 }

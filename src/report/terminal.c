@@ -399,10 +399,12 @@ static void PrintFreeBodies(const RunFigures *figures)
   const StepperReport *report = figures->run->way;
 
   if (figures->moved[0]) printf("moved into contact, without force: %s\n", figures->moved);
-  if (figures->loose[0]) printf("held by weak springs, as contact does not act that way: %s\n", figures->loose);
+  if (figures->loose[0])
+    printf("held where it is, as neither contact nor a load acts that way: %s; by up to %.2g of the forces\n",
+           figures->loose, (double)report->tied);
   if (figures->free_bodies)
-    printf("springs: relaxed %lld times, hold %.2g of the forces at the end\n", (long long)report->relaxed,
-           (double)report->share);
+    printf("weak springs of free bodies: relaxed %lld times, hold %.2g of the forces at the end\n",
+           (long long)report->relaxed, (double)report->share);
 }
 
 static void PrintLast(Terminal terminal, const RunRecord *run)

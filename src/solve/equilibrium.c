@@ -10,13 +10,15 @@
 #define EQUILIBRIUM_MAX_OFFSET_UPDATES 4
 /* What the springs of free bodies hold after a solve may be this part of F_ref. More is relaxed. */
 #define EQUILIBRIUM_SPRINGS 1e-7
+/* What ties hold may be this part of F_ref: unevenness of the meshes. */
+#define EQUILIBRIUM_TIES 1e-4
 /* The springs are relaxed at most this many times. */
 #define EQUILIBRIUM_MAX_RELAX 3
 /* A body moves on and on where a pass leaves more than this part of the springs' force. */
 #define EQUILIBRIUM_DRIFT 0.5
-/* A load of which the springs hold more than this part, of F_ref, is held by nothing else. Less is a motion that the
-   load hardly drives, and it stays where it is. */
-#define EQUILIBRIUM_HELD 1e-3
+/* A body of which the springs hold more than this part of F_ref is in no contact that holds it. Either a load moves it
+   on and on, or a tool pushes it before it against no force but that of the springs. */
+#define EQUILIBRIUM_ALL 0.1
 
 /* Adds to the text that a slave node rests on an edge between facets. *found: such a node exists. */
 static PetscErrorCode ModelBlameFacets(Model model, char *text, size_t size, PetscBool *found)
@@ -141,6 +143,9 @@ static PetscErrorCode ModelDepart(Model model, PetscReal t)
   PetscCall(ProblemImposedMotion(model->problem, work->accepted_u, work->accepted_t, t, &motion));
   motion = PetscMax(motion, PROBLEM_MOTION_SAFETY * work->rate * (t - work->accepted_t));
   PetscCall(ProblemGatherLists(model->problem, work->accepted_u, work->accepted_t, t, motion));
+  if (model->problem->bodies && !work->adrift)
+    PetscCall(FreeBodiesTie(model->problem->bodies, work->accepted_u, work->accepted_t, t, work->settled,
+                            model->problem->springs, &model->problem->tied));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -222,39 +227,48 @@ static PetscErrorCode ModelSolveLists(Model model, SolveReport *report)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Measures what the springs hold: energy and forces, into the report; *force: the norm of these. */
+/* Measures what springs and ties hold at the solution, into the report. *force: the part of F_ref to be relaxed. */
 static PetscErrorCode ModelMeasureSprings(Model model, SolveReport *report, PetscReal *force)
 {
-  PetscReal energy, stored;
-  PetscBool ok;
+  const PetscReal scale = ProblemForceScale(model->problem);
+  PetscReal       springs, ties, energy, stored, round_off;
+  PetscBool       ok;
 
   PetscFunctionBeginUser;
-  PetscCall(ContactSpringsLoad(model->problem->springs, model->x, force, &energy));
+  PetscCall(ContactSpringsLoad(model->problem->springs, model->x, &springs, &ties, &energy));
   PetscCall(
     ProblemEnergy(model->problem, model->problem->trial, model->t, ENERGY_ELASTIC | ENERGY_CONTACT, &stored, &ok));
+  PetscCall(ProblemRoundOff(model->problem, &round_off));
   report->taken += energy;
   report->left  = stored > 0 ? energy / stored : 0;
-  report->share = ProblemForceScale(model->problem) > 0 ? *force / ProblemForceScale(model->problem) : 0;
+  report->share = scale > 0 ? springs / scale : 0;
+  report->tied  = scale > 0 ? ties / scale : 0;
+  PetscCall(PetscInfo(model->snes, "springs hold %g, ties %g of the forces\n", (double)report->share, (double)report->tied));
+  *force        = 0;
+  if (springs > PetscMax(round_off, EQUILIBRIUM_SPRINGS * scale)) *force = report->share;
+  if (ties > PetscMax(round_off, EQUILIBRIUM_TIES * scale)) *force = PetscMax(*force, report->tied);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Solves with the springs of free bodies. They are so weak that they hold next to nothing where contact holds. Where
-   they hold more, as with a soft body, they are relaxed and the step is solved on. A motion that a load hardly drives
-   is left to them. */
+/* Solves with the springs and ties of free bodies. Springs are so weak that they hold next to nothing where contact
+   holds, and ties hold motions that no load drives. Where they hold more, as with a soft body or a motion that contact
+   comes to hold in this step, they are relaxed and the step is solved on. */
 static PetscErrorCode ModelSolveHeld(Model model, SolveReport *report)
 {
-  PetscReal force = 0, before = PETSC_MAX_REAL, round_off;
+  PetscReal force = 0, before = PETSC_MAX_REAL;
 
   PetscFunctionBeginUser;
   PetscCall(ModelSolveLists(model, report));
   for (PetscInt times = 0; model->problem->springs && report->result == SOLVE_CONVERGED; times++) {
     PetscCall(ModelMeasureSprings(model, report, &force));
-    PetscCall(ProblemRoundOff(model->problem, &round_off));
-    if (force <= PetscMax(round_off, EQUILIBRIUM_SPRINGS * ProblemForceScale(model->problem))) break;
-    if (force > EQUILIBRIUM_DRIFT * before || times == EQUILIBRIUM_MAX_RELAX) {
-      if (report->share > EQUILIBRIUM_HELD) report->result = SOLVE_ADRIFT;
+    if (force == 0) break;
+    if (force > EQUILIBRIUM_ALL) {
+      PetscCall(FreeBodiesLoose(model->problem->bodies, model->problem->trial, model->t, PETSC_TRUE,
+                                sizeof(report->detail), report->detail));
+      if (report->detail[0]) report->result = SOLVE_ADRIFT;
       break;
     }
+    if (force > EQUILIBRIUM_DRIFT * before || times == EQUILIBRIUM_MAX_RELAX) break;
     before = force;
     report->relaxed++;
     PetscCall(ContactSpringsRelax(model->problem->springs, model->x));

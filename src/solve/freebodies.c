@@ -11,6 +11,16 @@
    facets of a coarse round surface leave to a rotation about its own axis is below; FREE_CONTACT in freemodes.c is its
    root. */
 #define FREE_BODIES_HELD 1e-5
+/* A tie is this part of the stiffness of the elements below one slave node. It holds motions that no load drives against
+   the unevenness of meshes, and bodies that roll on it at their place. */
+#define FREE_BODIES_TIE 1e-2
+/* Squares of distances that differ by less than this part of the square of a body's size are equal. */
+#define FREE_BODIES_EQUAL 1e-9
+/* Bodies that were moved into contact touch with the terms that are open by less than this part of a face size. */
+#define FREE_BODIES_TOUCH 1e-4
+/* A load that acts along a motion with less than this part of the sum of its amounts does so because of the unevenness
+   of meshes. */
+#define FREE_BODIES_UNEVEN 1e-3
 /* A load drives a motion if its force along it is above this part of the sum of the amounts. */
 #define FREE_BODIES_DRIVEN 1e-6
 
@@ -73,6 +83,70 @@ static PetscErrorCode Measure(FreeBodies b)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Finds the stiffness of the elements below one slave node for each piece: that of its stiffest pair. */
+static PetscErrorCode FindStiffness(FreeBodies b)
+{
+  int *on;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc1(b->n_pieces, &b->stiffness));
+  PetscCall(PetscMalloc1(b->n_pieces, &on));
+  for (int side = 0; side < 2 * b->scene->n_contacts; side++) {
+    const SceneContact *contact = &b->scene->contacts[side / 2];
+    PetscReal           term;
+
+    PetscCall(ContactPairTermStiffness(b->contact, side / 2, &term));
+    PetscCall(FreeModesOnSurface(b->modes, side % 2 ? contact->master : contact->slave, on));
+    for (PetscInt p = 0; p < b->n_pieces; p++)
+      if (on[p]) b->stiffness[p] = PetscMax(b->stiffness[p], term);
+  }
+  PetscCall(PetscFree(on));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Finds the cell at the middle of each piece, which its ties hold. The rank that has it stores its number. */
+static PetscErrorCode FindCells(FreeBodies b)
+{
+  const Mesh mesh = b->mesh;
+  PetscReal *least, *mine;
+  PetscInt  *id;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(b->n_pieces, &b->cell));
+  PetscCall(PetscMalloc3(b->n_pieces, &least, mesh->n_cells, &mine, b->n_pieces, &id));
+  for (PetscInt p = 0; p < b->n_pieces; p++) {
+    least[p] = PETSC_MAX_REAL;
+    id[p]    = PETSC_MAX_INT;
+  }
+  for (PetscInt c = 0; c < mesh->n_cells; c++) {
+    const PetscInt first = mesh->cell_ptr[c], n = mesh->cell_ptr[c + 1] - first, p = b->piece[mesh->cell_nodes[first]];
+
+    mine[c] = 0;
+    for (int d = 0; d < mesh->dim; d++) {
+      PetscReal centre = 0;
+
+      for (PetscInt k = 0; k < n; k++) centre += mesh->coords[mesh->cell_nodes[first + k] * mesh->dim + d];
+      mine[c] += PetscSqr(centre / (PetscReal)n - b->pieces[p].centre[d]);
+    }
+    least[p] = PetscMin(least[p], mine[c]);
+  }
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, least, (PetscMPIInt)b->n_pieces, MPIU_REAL, MPIU_MIN, mesh->comm));
+  for (int give = 0; give < 2; give++) { /* of those that are equally near, the one that comes first in gmsh's file */
+    for (PetscInt c = 0; c < mesh->n_cells; c++) {
+      const PetscInt p = b->piece[mesh->cell_nodes[mesh->cell_ptr[c]]];
+
+      if (mine[c] > least[p] + FREE_BODIES_EQUAL * PetscSqr(b->pieces[p].size)) continue;
+      if (!give) id[p] = PetscMin(id[p], mesh->cell_id[c]);
+      if (give && id[p] == mesh->cell_id[c]) b->cell[p] = c;
+    }
+    if (give) break;
+    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, id, (PetscMPIInt)b->n_pieces, MPIU_INT, MPI_MIN, mesh->comm));
+    for (PetscInt p = 0; p < b->n_pieces; p++) b->cell[p] = -1;
+  }
+  PetscCall(PetscFree3(least, mine, id));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /*@
   FreeBodiesCreate - finds the bodies that are stabilised.
 
@@ -113,6 +187,8 @@ PetscErrorCode FreeBodiesCreate(Mesh mesh, Scene scene, Loads loads, Contact con
   }
   PetscCall(ListMotions(b));
   PetscCall(Measure(b));
+  PetscCall(FindStiffness(b));
+  PetscCall(FindCells(b));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -132,28 +208,9 @@ PetscErrorCode FreeBodiesDestroy(FreeBodies *b)
   PetscCall(PetscFree((*b)->stabilised));
   PetscCall(PetscFree2((*b)->owner, (*b)->motion));
   PetscCall(PetscFree((*b)->weight));
+  PetscCall(PetscFree((*b)->stiffness));
+  PetscCall(PetscFree((*b)->cell));
   PetscCall(PetscFree(*b));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Stiffness of the springs of each piece together: that of its stiffest pair. */
-static PetscErrorCode PieceStiffness(FreeBodies b, PetscReal *stiffness)
-{
-  int *on;
-
-  PetscFunctionBeginUser;
-  PetscCall(PetscArrayzero(stiffness, b->n_pieces));
-  PetscCall(PetscMalloc1(b->n_pieces, &on));
-  for (int side = 0; side < 2 * b->scene->n_contacts; side++) {
-    const SceneContact *contact = &b->scene->contacts[side / 2];
-    PetscReal           term;
-
-    PetscCall(ContactPairTermStiffness(b->contact, side / 2, &term));
-    PetscCall(FreeModesOnSurface(b->modes, side % 2 ? contact->master : contact->slave, on));
-    for (PetscInt p = 0; p < b->n_pieces; p++)
-      if (on[p]) stiffness[p] = PetscMax(stiffness[p], FREE_BODIES_SPRINGS * term);
-  }
-  PetscCall(PetscFree(on));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -175,26 +232,23 @@ static PetscErrorCode PieceStiffness(FreeBodies b, PetscReal *stiffness)
 PetscErrorCode FreeBodiesSprings(FreeBodies b, Vec like, ContactSprings *springs)
 {
   const Mesh  mesh = b->mesh;
-  PetscReal  *stiffness, *values;
+  PetscReal  *values;
   PetscInt   *nodes;
   PetscMPIInt rank;
 
   PetscFunctionBeginUser;
   PetscCallMPI(MPI_Comm_rank(mesh->comm, &rank));
-  PetscCall(PetscMalloc1(b->n_pieces, &stiffness));
   PetscCall(PetscCalloc2(b->n_pieces, &nodes, mesh->n_nodes * mesh->dim, &values));
-  PetscCall(PieceStiffness(b, stiffness));
   for (PetscInt i = 0; i < mesh->n_nodes; i++) nodes[b->piece[i]] += mesh->node_owner[i] == rank;
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, nodes, (PetscMPIInt)b->n_pieces, MPIU_INT, MPI_SUM, mesh->comm));
   for (PetscInt i = 0; i < mesh->n_nodes; i++) {
     const PetscInt p = b->piece[i];
 
     if (mesh->node_owner[i] != rank || !b->stabilised[p]) continue;
-    for (int d = 0; d < mesh->dim; d++) values[i * mesh->dim + d] = stiffness[p] / (PetscReal)nodes[p];
+    for (int d = 0; d < mesh->dim; d++) values[i * mesh->dim + d] = FREE_BODIES_SPRINGS * b->stiffness[p] / (PetscReal)nodes[p];
   }
   PetscCall(ContactSpringsCreate(mesh, values, like, springs));
   PetscCall(PetscFree2(nodes, values));
-  PetscCall(PetscFree(stiffness));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -206,6 +260,18 @@ static void PlaceInPiece(FreeBodies b, PetscInt node, const PetscReal *u, double
 
   for (int d = 0; d < 3; d++)
     x[d] = d < dim ? (b->mesh->coords[node * dim + d] + u[node * dim + d] - piece->centre[d]) / piece->size : 0;
+}
+
+/* The displacement row[m] (length) of component d of a node under the motions first to first + m - 1 of its piece. */
+static void FreeBodiesRow(FreeBodies b, PetscInt node, const PetscReal *u, int d, int first, int m, double row[])
+{
+  double x[3], v[3];
+
+  PlaceInPiece(b, node, u, x);
+  for (int k = 0; k < m; k++) {
+    RigidVelocity(b->motion[first + k], x, v);
+    row[k] = b->pieces[b->piece[node]].size * v[d];
+  }
 }
 
 /* The motion of a piece by the coordinates a[n] of all. */
@@ -321,8 +387,9 @@ PetscErrorCode FreeBodiesForce(FreeBodies b, const PetscReal *u, PetscReal t, do
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Stiffness gram[n][n] of the terms in contact along the motions at (u, t), over the largest diagonal entry. */
-static PetscErrorCode ContactGram(FreeBodies b, const PetscReal *u, PetscReal t, double gram[])
+/* Stiffness gram[n][n] of the terms in contact, or touching, along the motions at (u, t), over the largest diagonal
+   entry. */
+static PetscErrorCode ContactGram(FreeBodies b, const PetscReal *u, PetscReal t, PetscBool touching, double gram[])
 {
   const PetscInt       size = b->mesh->n_nodes * b->mesh->dim;
   const int            n    = b->n;
@@ -337,7 +404,7 @@ static PetscErrorCode ContactGram(FreeBodies b, const PetscReal *u, PetscReal t,
   PetscCall(PetscMalloc1(size, &du));
   PetscCall(PetscMalloc1(n, &travel));
   PetscCall(PetscCalloc1(n, &a));
-  for (PetscInt i = 0; i < size; i++) du[i] = b->mesh->size; /* no term is too far away to be listed */
+  for (PetscInt i = 0; i < size; i++) du[i] = b->face; /* terms whose gaps are farther from zero have no part in it */
   PetscCall(ContactStepCreate(b->contact, u, du, t, t, &step));
   PetscCall(ContactStepGetTerms(step, &n_terms, &terms));
   for (int k = 0; k < n; k++) {
@@ -348,7 +415,7 @@ static PetscErrorCode ContactGram(FreeBodies b, const PetscReal *u, PetscReal t,
     PetscCall(ContactStepTravel(step, du, t, t, travel[k]));
   }
   for (PetscInt i = 0; i < n_terms; i++) {
-    if (!(terms[i].pressure > 0)) continue;
+    if (!(terms[i].pressure > 0) && !(touching && terms[i].opening <= FREE_BODIES_TOUCH * b->face)) continue;
     for (int k = 0; k < n; k++)
       for (int l = 0; l < n; l++)
         gram[k * n + l] +=
@@ -386,6 +453,36 @@ static void AddMotion(FreeBodies b, const double a[], size_t size, char *text)
   }
 }
 
+/* The motions of all bodies that a contact of stiffness gram[n][n] does not hold: free[m][n], m <= n, in a basis in
+   which each is the only one that has its coordinate pivot[m]. */
+static PetscErrorCode LooseMotions(FreeBodies b, const double gram[], int *m, double free[], int pivot[])
+{
+  const int n = b->n;
+  double   *work;
+  int      *columns;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc2(n * n, &work, n, &columns));
+  PetscCall(PetscArraycpy(work, gram, n * n));
+  *m = RigidFree(n, work, FREE_BODIES_HELD, free);
+  for (int k = 0; k < n; k++) columns[k] = k;
+  RigidReduce(*m, n, columns, free);
+  for (int f = 0; f < *m; f++)
+    for (pivot[f] = 0; pivot[f] < n - 1 && free[f * n + pivot[f]] == 0;) pivot[f]++;
+  PetscCall(PetscFree2(work, columns));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Says whether the loads act along a motion a[n] by more than a part of the sum of their amounts. */
+static PetscBool Driven(FreeBodies b, const double a[], const double force[], const double scale[], PetscReal part)
+{
+  double work = 0, most = 0;
+
+  for (int k = 0; k < b->n; k++) work += a[k] * force[k];
+  for (int k = 0; k < b->n; k++) most += PetscAbsReal(a[k]) * scale[k];
+  return (PetscBool)(PetscAbsReal(work) > part * most);
+}
+
 /*@
   FreeBodiesLoose - names the motions of the bodies that contact does not hold in the present state.
 
@@ -408,25 +505,114 @@ PetscErrorCode FreeBodiesLoose(FreeBodies b, const PetscReal *u, PetscReal t, Pe
 {
   const int n = b->n;
   double   *gram, *free, *force, *scale;
-  int      *columns, m;
+  int      *pivot, m;
 
   PetscFunctionBeginUser;
   text[0] = '\0';
   if (!n) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PetscMalloc5(n * n, &gram, n * n, &free, n, &force, n, &scale, n, &columns));
-  PetscCall(ContactGram(b, u, t, gram));
+  PetscCall(PetscMalloc5(n * n, &gram, n * n, &free, n, &force, n, &scale, n, &pivot));
+  PetscCall(ContactGram(b, u, t, PETSC_FALSE, gram));
+  PetscCall(LooseMotions(b, gram, &m, free, pivot));
   PetscCall(FreeBodiesForce(b, u, t, force, scale));
-  m = RigidFree(n, gram, FREE_BODIES_HELD, free);
-  for (int k = 0; k < n; k++) columns[k] = k;
-  RigidReduce(m, n, columns, free);
-  for (int f = 0; f < m; f++) {
-    double work = 0, most = 0;
+  for (int f = 0; f < m; f++)
+    if (!driven || Driven(b, &free[f * n], force, scale, FREE_BODIES_UNEVEN)) AddMotion(b, &free[f * n], size, text);
+  PetscCall(PetscFree5(gram, free, force, scale, pivot));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
 
-    for (int k = 0; k < n; k++) work += free[f * n + k] * force[k];
-    for (int k = 0; k < n; k++) most += PetscAbsReal(free[f * n + k]) * scale[k];
-    if (!driven || PetscAbsReal(work) > FREE_BODIES_DRIVEN * most) AddMotion(b, &free[f * n], size, text);
+/* Says whether a contact of stiffness gram[n][n] acts on a piece at all. */
+static PetscBool InContact(FreeBodies b, PetscInt piece, const double gram[])
+{
+  PetscBool acts = PETSC_FALSE;
+
+  for (int k = 0; k < b->n; k++) acts = (PetscBool)(acts || (b->owner[k] == piece && gram[k * b->n + k] > 0));
+  return acts;
+}
+
+/* A tie that measures coordinate k of the motions at displacements u, in lengths, by the cell at the middle of its
+   piece: the motion nearest to that of the cell's nodes. */
+static PetscErrorCode MakeTie(FreeBodies b, const PetscReal *u, int k, SpringTie *tie)
+{
+  const Mesh       mesh  = b->mesh;
+  const PetscInt   p     = b->owner[k], cell = b->cell[p];
+  const FreePiece *piece = &b->pieces[p];
+  const PetscInt  *dofs;
+  double           gram[RIGID_MODES * RIGID_MODES] = {0}, factor[RIGID_MODES * RIGID_MODES], row[RIGID_MODES];
+  int              first = k, m = piece->n_free;
+  PetscMPIInt      owner = -1;
+
+  PetscFunctionBeginUser;
+  *tie = (SpringTie){.stiffness = FREE_BODIES_TIE * b->stiffness[p]};
+  PetscCall(MeshGetGlobalDofs(mesh, &dofs));
+  while (first > 0 && b->owner[first - 1] == p) first--;
+  if (cell >= 0) {
+    PetscCallMPI(MPI_Comm_rank(mesh->comm, &owner));
+    for (PetscInt c = mesh->cell_ptr[cell]; c < mesh->cell_ptr[cell + 1]; c++)
+      for (int d = 0; d < mesh->dim; d++) {
+        FreeBodiesRow(b, mesh->cell_nodes[c], u, d, first, m, row);
+        RigidAddRow(m, row, 1, gram);
+      }
+    RigidCholesky(m, gram, factor);
+    for (PetscInt c = mesh->cell_ptr[cell]; c < mesh->cell_ptr[cell + 1]; c++)
+      for (int d = 0; d < mesh->dim; d++) {
+        const PetscInt dof = dofs[mesh->cell_nodes[c] * mesh->dim + d];
+
+        if (dof < 0) continue;
+        FreeBodiesRow(b, mesh->cell_nodes[c], u, d, first, m, row);
+        RigidSolve(m, factor, row);
+        tie->dof[tie->n]     = dof;
+        tie->value[tie->n++] = piece->size * row[k - first];
+      }
   }
-  PetscCall(PetscFree5(gram, free, force, scale, columns));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &owner, 1, MPI_INT, MPI_MAX, mesh->comm));
+  PetscCallMPI(MPI_Bcast(&tie->n, 1, MPIU_INT, owner, mesh->comm));
+  PetscCallMPI(MPI_Bcast(tie->dof, (PetscMPIInt)tie->n, MPIU_INT, owner, mesh->comm));
+  PetscCallMPI(MPI_Bcast(tie->value, (PetscMPIInt)tie->n, MPIU_REAL, owner, mesh->comm));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  FreeBodiesTie - ties the motions that neither contact holds nor loads drive where a load step begins.
+
+  Collective
+
+  Input Parameters:
++ b        - the bodies
+. u        - local displacements u[n_nodes*dim] (length) where the step begins, within the reach of the contact's lists
+. t        - load parameter there
+. t_loads  - load parameter at which the loads are taken
+- touching - the bodies were moved into contact: what touches holds, too
+
+  Output Parameters:
++ springs - their ties
+- changed - other motions than before are tied
+
+  Note:
+  Such a motion stays as it is, without changing anything else. Without a tie the unevenness of the meshes would drive
+  it, far beyond what a linear step can follow.
+@*/
+PetscErrorCode FreeBodiesTie(FreeBodies b, const PetscReal *u, PetscReal t, PetscReal t_loads, PetscBool touching,
+                             ContactSprings springs, PetscBool *changed)
+{
+  const int  n = b->n;
+  double    *gram, *free, *force, *scale;
+  int       *pivot, m;
+  PetscInt   n_ties = 0;
+  SpringTie *ties;
+
+  PetscFunctionBeginUser;
+  *changed = PETSC_FALSE;
+  if (!n) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscMalloc6(n * n, &gram, n * n, &free, n, &force, n, &scale, n, &pivot, n, &ties));
+  PetscCall(ContactGram(b, u, t, touching, gram));
+  PetscCall(LooseMotions(b, gram, &m, free, pivot));
+  PetscCall(FreeBodiesForce(b, u, t_loads, force, scale));
+  for (int f = 0; f < m; f++) {
+    if (!InContact(b, b->owner[pivot[f]], gram) || Driven(b, &free[f * n], force, scale, FREE_BODIES_UNEVEN)) continue;
+    PetscCall(MakeTie(b, u, pivot[f], &ties[n_ties++]));
+  }
+  PetscCall(ContactSpringsSetTies(springs, n_ties, ties, changed));
+  PetscCall(PetscFree6(gram, free, force, scale, pivot, ties));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

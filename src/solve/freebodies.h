@@ -18,5 +18,7 @@ PetscErrorCode FreeBodiesDestroy(FreeBodies *);
 PetscErrorCode FreeBodiesSprings(FreeBodies, Vec like, ContactSprings *);
 PetscErrorCode FreeBodiesSettle(FreeBodies, PetscReal t, PetscReal t_loads, PetscBool first, PetscReal *u,
                                 SettleResult *);
+PetscErrorCode FreeBodiesTie(FreeBodies, const PetscReal *u, PetscReal t, PetscReal t_loads, PetscBool touching,
+                             ContactSprings, PetscBool *changed);
 PetscErrorCode FreeBodiesLoose(FreeBodies, const PetscReal *u, PetscReal t, PetscBool driven, size_t size, char *text);
 const char    *FreeBodiesMoved(FreeBodies);

@@ -285,6 +285,8 @@ PetscErrorCode ProblemTangent(Problem problem, const PetscReal *u, PetscReal t, 
   PetscCall(VecNorm(problem->diagonal, NORM_2, &problem->stiffness));
   TimingEnd(TIMING_ASSEMBLY_ELASTIC);
   PetscCall(ContactSpringsTangent(problem->springs, problem->P));
+  if (problem->tied) change->pattern = PETSC_TRUE; /* no factor of an earlier tangent serves */
+  problem->tied = PETSC_FALSE;
   if (!joined) PetscCall(SumOperatorSet(problem->A, change->C));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

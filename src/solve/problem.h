@@ -47,6 +47,7 @@ typedef struct _n_Problem {
   Contact        contact; /* NULL: the scene has none */
   FreeBodies     bodies;  /* that contact is to hold; NULL: there are none */
   ContactSprings springs; /* of these bodies; NULL: there are none */
+  PetscBool      tied;    /* other motions are tied than in the last tangent */
   TangentForm    form;
   Mat            A;            /* K + C */
   Mat            P;            /* K + C or K, see TangentForm; owned by the elasticity */

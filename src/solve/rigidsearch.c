@@ -55,37 +55,6 @@ static PetscErrorCode PassDestroy(Pass *pass)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Cholesky's factor L of a positive definite matrix [n][n], in its lower triangle. */
-static void Cholesky(int n, const double *matrix, double *L)
-{
-  for (int i = 0; i < n; i++) {
-    for (int j = 0; j <= i; j++) {
-      double sum = matrix[i * n + j];
-
-      for (int k = 0; k < j; k++) sum -= L[i * n + k] * L[j * n + k];
-      L[i * n + j] = i == j ? PetscSqrtReal(PetscMax(sum, PETSC_MACHINE_EPSILON * matrix[i * n + i])) : sum / L[j * n + j];
-    }
-  }
-}
-
-/* x <- L^-1 x */
-static void Forward(int n, const double *L, double x[])
-{
-  for (int i = 0; i < n; i++) {
-    for (int k = 0; k < i; k++) x[i] -= L[i * n + k] * x[k];
-    x[i] /= L[i * n + i];
-  }
-}
-
-/* x <- L^-T x */
-static void Backward(int n, const double *L, double x[])
-{
-  for (int i = n - 1; i >= 0; i--) {
-    for (int k = i + 1; k < n; k++) x[i] -= L[k * n + i] * x[k];
-    x[i] /= L[i * n + i];
-  }
-}
-
 /* Longest velocity (length) of the nodes of each piece under the motion a[n], of all ranks. */
 static PetscErrorCode Longest(FreeBodies b, const PetscReal *u, const double a[], PetscReal *longest)
 {
@@ -119,9 +88,8 @@ static PetscErrorCode Wish(FreeBodies b, const PetscReal *u, PetscReal t, PetscR
   PetscCall(FreeBodiesForce(b, u, t, pass->force, pass->scale));
   PetscCall(PetscMalloc1(b->n_pieces, &longest));
   PetscCall(PetscArraycpy(pass->wish, pass->force, n));
-  Cholesky(n, pass->gram, pass->factor);
-  Forward(n, pass->factor, pass->wish);
-  Backward(n, pass->factor, pass->wish);
+  RigidCholesky(n, pass->gram, pass->factor);
+  RigidSolve(n, pass->factor, pass->wish);
   PetscCall(Longest(b, u, pass->wish, longest));
   *any = PETSC_FALSE;
   for (PetscInt p = 0; p < b->n_pieces; p++) {
@@ -137,7 +105,7 @@ static PetscErrorCode Wish(FreeBodies b, const PetscReal *u, PetscReal t, PetscR
     pass->wish[k] /= pass->weight[b->owner[k]];
     for (int l = 0; l < n; l++) pass->factor[k * n + l] = pass->weight[b->owner[k]] * pass->gram[k * n + l];
   }
-  if (*any) Cholesky(n, pass->factor, pass->factor);
+  if (*any) RigidCholesky(n, pass->factor, pass->factor);
   PetscCall(PetscFree(longest));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -192,7 +160,7 @@ static PetscErrorCode Bound(FreeBodies b, Pass *pass)
   const int n = pass->n;
 
   PetscFunctionBeginUser;
-  for (PetscInt i = 0; i < pass->n_terms; i++) Forward(n, pass->factor, &pass->normal[i * n]);
+  for (PetscInt i = 0; i < pass->n_terms; i++) RigidForward(n, pass->factor, &pass->normal[i * n]);
   for (int i = 0; i < n; i++) { /* L^T wish; what is overwritten is not needed any more */
     double sum = 0;
 
@@ -200,7 +168,7 @@ static PetscErrorCode Bound(FreeBodies b, Pass *pass)
     pass->wish[i] = sum;
   }
   HalfspacesProject(n, (int)pass->n_terms, pass->normal, pass->bound, SEARCH_REST * b->face, pass->wish);
-  Backward(n, pass->factor, pass->wish);
+  RigidBackward(n, pass->factor, pass->wish);
   PetscCallMPI(MPI_Bcast(pass->wish, n, MPI_DOUBLE, 0, b->mesh->comm));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

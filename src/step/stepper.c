@@ -295,6 +295,7 @@ static PetscErrorCode LoadStepperAccept(LoadStepper stepper, PetscReal dt, Petsc
   stepper->report.taken += solve->taken;
   stepper->report.left  = PetscMax(stepper->report.left, solve->left);
   stepper->report.share = solve->share;
+  stepper->report.tied  = solve->tied;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -434,7 +435,7 @@ PetscErrorCode LoadStepperArchive(LoadStepper stepper, Archive archive)
   PetscReal      initial = size.initial, dt = size.dt;
   PetscReal     *real[]    = {&initial,        &dt,           &size.beta,     &size.together,
                               &size.shortfall, &size.planned, &report->taken, &report->left,
-                              &report->share};
+                              &report->share,  &report->tied};
   PetscInt      *integer[] = {&report->steps,
                               &report->steps_failed,
                               &report->steps_repeated,

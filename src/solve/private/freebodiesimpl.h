@@ -21,6 +21,8 @@ struct _n_FreeBodies {
   int              n, *owner;  /* free motions of the stabilised pieces, and their pieces */
   const double   **motion;     /* n: six numbers each */
   PetscReal       *weight;     /* n_nodes: volume of this rank's cells at the node */
+  PetscReal       *stiffness;  /* n_pieces: of the elements below one slave node (force per length) */
+  PetscInt        *cell;       /* n_pieces: local cell at the middle of the piece, or -1 */
   PetscReal        face;       /* size of the slaves' faces, the largest mean of a pair (length) */
   char             moved[FREE_BODIES_TEXT];
 };
