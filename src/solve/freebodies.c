@@ -6,7 +6,7 @@
 /* All springs of a body together are this part of the stiffness of the elements below one slave node. What a spring
    takes from a force that a whole contact carries is less than this part, and ten times more would still be below 1e-6.
    It is far above the round-off of a factor, some 1e-14 of the stiffness of an element. */
-#define FREE_BODIES_SPRINGS 1e-7
+#define FREE_BODIES_SPRINGS 1e-8
 /* A contact holds a motion if its stiffness along it is above this part of its stiffness along any. The slope that the
    facets of a coarse round surface leave to a rotation about its own axis is below; FREE_CONTACT in freemodes.c is its
    root. */
@@ -20,7 +20,7 @@
 #define FREE_BODIES_TOUCH 1e-4
 /* A load that acts along a motion with less than this part of the sum of its amounts does so because of the unevenness
    of meshes. */
-#define FREE_BODIES_UNEVEN 1e-3
+#define FREE_BODIES_UNEVEN 3e-2
 /* A load drives a motion if its force along it is above this part of the sum of the amounts. */
 #define FREE_BODIES_DRIVEN 1e-6
 
@@ -354,6 +354,27 @@ PetscErrorCode FreeBodiesGram(FreeBodies b, const PetscReal *u, double gram[])
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Longest velocity (length) of the nodes of each piece under the motion a[n], of all ranks. */
+PetscErrorCode FreeBodiesLongest(FreeBodies b, const PetscReal *u, const double a[], PetscReal *longest)
+{
+  const int  dim = b->mesh->dim;
+  PetscReal *v;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(b->mesh->n_nodes * dim, &v));
+  PetscCall(PetscArrayzero(longest, b->n_pieces));
+  FreeBodiesVelocity(b, u, a, v);
+  for (PetscInt i = 0; i < b->mesh->n_nodes; i++) {
+    PetscReal square = 0;
+
+    for (int d = 0; d < dim; d++) square += PetscSqr(v[i * dim + d]);
+    longest[b->piece[i]] = PetscMax(longest[b->piece[i]], PetscSqrtReal(square));
+  }
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, longest, (PetscMPIInt)b->n_pieces, MPIU_REAL, MPIU_MAX, b->mesh->comm));
+  PetscCall(PetscFree(v));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* The work force[n] of the loads at t along each motion at displacements u, and the sum of its amounts over the nodes.
    Where they nearly cancel the force is 0. */
 PetscErrorCode FreeBodiesForce(FreeBodies b, const PetscReal *u, PetscReal t, double force[], double scale[])
@@ -473,14 +494,49 @@ static PetscErrorCode LooseMotions(FreeBodies b, const double gram[], int *m, do
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Says whether the loads act along a motion a[n] by more than a part of the sum of their amounts. */
-static PetscBool Driven(FreeBodies b, const double a[], const double force[], const double scale[], PetscReal part)
+/* Norms of the nodal loads at t, summed over each piece. */
+static PetscErrorCode PieceLoads(FreeBodies b, const PetscReal *u, PetscReal t, PetscReal *load)
 {
-  double work = 0, most = 0;
+  const int  dim = b->mesh->dim;
+  PetscReal *f, square = 0;
 
-  for (int k = 0; k < b->n; k++) work += a[k] * force[k];
-  for (int k = 0; k < b->n; k++) most += PetscAbsReal(a[k]) * scale[k];
-  return (PetscBool)(PetscAbsReal(work) > part * most);
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc1(b->mesh->n_nodes * dim, &f));
+  PetscCall(PetscArrayzero(load, b->n_pieces));
+  PetscCall(LoadsResidual(b->loads, t, u, f, NULL, &square));
+  for (PetscInt i = 0; i < b->mesh->n_nodes; i++) {
+    square = 0;
+    for (int d = 0; d < dim; d++) square += PetscSqr(f[i * dim + d]);
+    load[b->piece[i]] += PetscSqrtReal(square);
+  }
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, load, (PetscMPIInt)b->n_pieces, MPIU_REAL, MPI_SUM, b->mesh->comm));
+  PetscCall(PetscFree(f));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Which of the motions free[m][n] at displacements u the loads at t drive: those along which they do more than a part
+   of the work that they could do over the longest way of a node. */
+static PetscErrorCode FindDriven(FreeBodies b, const PetscReal *u, PetscReal t, int m, const double free[],
+                                 PetscBool driven[])
+{
+  const int  n = b->n;
+  PetscReal *load, *longest;
+  double    *force, *scale;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc4(b->n_pieces, &load, b->n_pieces, &longest, n, &force, n, &scale));
+  PetscCall(PieceLoads(b, u, t, load));
+  PetscCall(FreeBodiesForce(b, u, t, force, scale));
+  for (int f = 0; f < m; f++) {
+    double work = 0, most = 0;
+
+    PetscCall(FreeBodiesLongest(b, u, &free[f * n], longest));
+    for (int k = 0; k < n; k++) work += free[f * n + k] * force[k];
+    for (PetscInt p = 0; p < b->n_pieces; p++) most += load[p] * longest[p];
+    driven[f] = (PetscBool)(PetscAbsReal(work) > FREE_BODIES_UNEVEN * most);
+  }
+  PetscCall(PetscFree4(load, longest, force, scale));
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /*@
@@ -504,19 +560,20 @@ static PetscBool Driven(FreeBodies b, const double a[], const double force[], co
 PetscErrorCode FreeBodiesLoose(FreeBodies b, const PetscReal *u, PetscReal t, PetscBool driven, size_t size, char *text)
 {
   const int n = b->n;
-  double   *gram, *free, *force, *scale;
-  int      *pivot, m;
+  double    *gram, *free;
+  int       *pivot, m;
+  PetscBool *drives;
 
   PetscFunctionBeginUser;
   text[0] = '\0';
   if (!n) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PetscMalloc5(n * n, &gram, n * n, &free, n, &force, n, &scale, n, &pivot));
+  PetscCall(PetscMalloc4(n * n, &gram, n * n, &free, n, &pivot, n, &drives));
   PetscCall(ContactGram(b, u, t, PETSC_FALSE, gram));
   PetscCall(LooseMotions(b, gram, &m, free, pivot));
-  PetscCall(FreeBodiesForce(b, u, t, force, scale));
+  PetscCall(FindDriven(b, u, t, m, free, drives));
   for (int f = 0; f < m; f++)
-    if (!driven || Driven(b, &free[f * n], force, scale, FREE_BODIES_UNEVEN)) AddMotion(b, &free[f * n], size, text);
-  PetscCall(PetscFree5(gram, free, force, scale, pivot));
+    if (!driven || drives[f]) AddMotion(b, &free[f * n], size, text);
+  PetscCall(PetscFree4(gram, free, pivot, drives));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -595,24 +652,25 @@ PetscErrorCode FreeBodiesTie(FreeBodies b, const PetscReal *u, PetscReal t, Pets
                              ContactSprings springs, PetscBool *changed)
 {
   const int  n = b->n;
-  double    *gram, *free, *force, *scale;
+  double    *gram, *free;
   int       *pivot, m;
+  PetscBool *drives;
   PetscInt   n_ties = 0;
   SpringTie *ties;
 
   PetscFunctionBeginUser;
   *changed = PETSC_FALSE;
   if (!n) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PetscMalloc6(n * n, &gram, n * n, &free, n, &force, n, &scale, n, &pivot, n, &ties));
+  PetscCall(PetscMalloc5(n * n, &gram, n * n, &free, n, &pivot, n, &drives, n, &ties));
   PetscCall(ContactGram(b, u, t, touching, gram));
   PetscCall(LooseMotions(b, gram, &m, free, pivot));
-  PetscCall(FreeBodiesForce(b, u, t_loads, force, scale));
+  PetscCall(FindDriven(b, u, t_loads, m, free, drives));
   for (int f = 0; f < m; f++) {
-    if (!InContact(b, b->owner[pivot[f]], gram) || Driven(b, &free[f * n], force, scale, FREE_BODIES_UNEVEN)) continue;
+    if (!InContact(b, b->owner[pivot[f]], gram) || drives[f]) continue;
     PetscCall(MakeTie(b, u, pivot[f], &ties[n_ties++]));
   }
   PetscCall(ContactSpringsSetTies(springs, n_ties, ties, changed));
-  PetscCall(PetscFree6(gram, free, force, scale, pivot, ties));
+  PetscCall(PetscFree5(gram, free, pivot, drives, ties));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -18,7 +18,10 @@
 #define SEARCH_SLOW  1e-3
 #define SEARCH_RESTS 3
 /* Passes with a body in touch. Where it slides and rolls on curved surfaces, each pass is a step of Newton's method. */
-#define SEARCH_PASSES 30
+#define SEARCH_PASSES 40
+/* A pass gets on if the loads do this part of the work that they would do over its length without anything in the way.
+   One that does not is followed by one of half the length: bodies rock to and fro where facets meet. */
+#define SEARCH_WORK 0.1
 /* Surfaces that overlap at the start by more than this part of a face size do so on purpose, and are left so. */
 #define SEARCH_OVERLAP 0.1
 /* A body without a load gives way to those with one: its weight in theirs. */
@@ -55,27 +58,6 @@ static PetscErrorCode PassDestroy(Pass *pass)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Longest velocity (length) of the nodes of each piece under the motion a[n], of all ranks. */
-static PetscErrorCode Longest(FreeBodies b, const PetscReal *u, const double a[], PetscReal *longest)
-{
-  const int  dim = b->mesh->dim;
-  PetscReal *v;
-
-  PetscFunctionBeginUser;
-  PetscCall(PetscMalloc1(b->mesh->n_nodes * dim, &v));
-  PetscCall(PetscArrayzero(longest, b->n_pieces));
-  FreeBodiesVelocity(b, u, a, v);
-  for (PetscInt i = 0; i < b->mesh->n_nodes; i++) {
-    PetscReal square = 0;
-
-    for (int d = 0; d < dim; d++) square += PetscSqr(v[i * dim + d]);
-    longest[b->piece[i]] = PetscMax(longest[b->piece[i]], PetscSqrtReal(square));
-  }
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, longest, (PetscMPIInt)b->n_pieces, MPIU_REAL, MPIU_MAX, b->mesh->comm));
-  PetscCall(PetscFree(v));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* Where the loads would take each body if nothing was in its way: as they would accelerate it, over a distance of
    `move`. The weights of the pieces are such that the wish balances the loads. *any: a load drives some body. */
 static PetscErrorCode Wish(FreeBodies b, const PetscReal *u, PetscReal t, PetscReal move, Pass *pass, PetscBool *any)
@@ -90,7 +72,7 @@ static PetscErrorCode Wish(FreeBodies b, const PetscReal *u, PetscReal t, PetscR
   PetscCall(PetscArraycpy(pass->wish, pass->force, n));
   RigidCholesky(n, pass->gram, pass->factor);
   RigidSolve(n, pass->factor, pass->wish);
-  PetscCall(Longest(b, u, pass->wish, longest));
+  PetscCall(FreeBodiesLongest(b, u, pass->wish, longest));
   *any = PETSC_FALSE;
   for (PetscInt p = 0; p < b->n_pieces; p++) {
     pass->driven[p] = (PetscBool)(longest[p] > 0);
@@ -256,20 +238,22 @@ PetscErrorCode FreeBodiesSettle(FreeBodies b, PetscReal t, PetscReal t_loads, Pe
   PetscCall(PetscMalloc1(b->n_pieces, &longest));
   PetscCall(PetscCalloc1(b->n_pieces, &travel));
   for (PetscInt it = 0; rests < SEARCH_RESTS && touched < SEARCH_PASSES; it++) {
-    PetscReal most = 0;
+    PetscReal most = 0, work = 0, wished = 0;
 
     PetscCall(Wish(b, u, t_loads, move, &pass, &any));
     if (!any) break;
     PetscCall(ContactGather(b->contact, u, t, t, move));
     PetscCall(Bounds(b, u, t, move, (PetscBool)!it, &pass, &overlap));
+    for (int k = 0; k < b->n; k++) wished += pass.force[k] * pass.wish[k];
     PetscCall(Bound(b, &pass));
-    PetscCall(Longest(b, u, pass.wish, longest));
+    for (int k = 0; k < b->n; k++) work += pass.force[k] * pass.wish[k];
+    PetscCall(FreeBodiesLongest(b, u, pass.wish, longest));
     for (PetscInt p = 0; p < b->n_pieces; p++) {
       most = PetscMax(most, longest[p]);
       travel[p] += longest[p];
     }
-    PetscCall(PetscInfo(NULL, "rigid search: pass %" PetscInt_FMT ", %" PetscInt_FMT " terms, of %g moved %g\n", it,
-                        pass.n_terms, (double)move, (double)most));
+    PetscCall(PetscInfo(NULL, "rigid search: pass %" PetscInt_FMT ", %" PetscInt_FMT " terms, of %g moved %g, work %g\n", it,
+                        pass.n_terms, (double)move, (double)most, (double)(work / wished)));
     FreeBodiesMove(b, pass.wish, u);
     way += most;
     if (most > SEARCH_REST * b->face) *result = SETTLE_MOVED;
@@ -281,8 +265,11 @@ PetscErrorCode FreeBodiesSettle(FreeBodies b, PetscReal t, PetscReal t_loads, Pe
     }
     *result = SETTLE_MOVED;
     touched++;
-    rests = most <= SEARCH_REST * b->face ? SEARCH_RESTS : most <= SEARCH_SLOW * move ? rests + 1 : 0;
-    move  = PetscMin(move, PetscMax(b->face, 2 * most));
+    rests = most <= SEARCH_REST * b->face ? SEARCH_RESTS : most <= SEARCH_SLOW * b->face ? rests + 1 : 0;
+    if (work > SEARCH_WORK * wished * most / move)
+      move = PetscMin(move, PetscMax(b->face, 2 * most));
+    else
+      move = PetscMax(SEARCH_REST * b->face, move / 2);
   }
   if (*result == SETTLE_MOVED && way <= SEARCH_REST * b->face) *result = SETTLE_NONE;
   NoteMoved(b, t, travel);

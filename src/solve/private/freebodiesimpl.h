@@ -32,3 +32,4 @@ void           FreeBodiesVelocity(FreeBodies, const PetscReal *u, const double a
 void           FreeBodiesMove(FreeBodies, const double a[], PetscReal *u);
 PetscErrorCode FreeBodiesGram(FreeBodies, const PetscReal *u, double gram[]);
 PetscErrorCode FreeBodiesForce(FreeBodies, const PetscReal *u, PetscReal t, double force[], double scale[]);
+PetscErrorCode FreeBodiesLongest(FreeBodies, const PetscReal *u, const double a[], PetscReal *longest);
