@@ -436,7 +436,7 @@ static PetscErrorCode ContactGram(FreeBodies b, const PetscReal *u, PetscReal t,
     PetscCall(ContactStepTravel(step, du, t, t, travel[k]));
   }
   for (PetscInt i = 0; i < n_terms; i++) {
-    if (!(terms[i].pressure > 0) && !(touching && terms[i].opening <= FREE_BODIES_TOUCH * b->face)) continue;
+    if (terms[i].pressure == 0 && !(touching && terms[i].opening <= FREE_BODIES_TOUCH * b->face)) continue;
     for (int k = 0; k < n; k++)
       for (int l = 0; l < n; l++)
         gram[k * n + l] +=
@@ -662,7 +662,9 @@ PetscErrorCode FreeBodiesTie(FreeBodies b, const PetscReal *u, PetscReal t, Pets
   *changed = PETSC_FALSE;
   if (!n) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscMalloc5(n * n, &gram, n * n, &free, n, &pivot, n, &drives, n, &ties));
+  PetscCall(ContactHoldActiveSet(b->contact, PETSC_TRUE, touching)); /* fresh lists may have opened it a little */
   PetscCall(ContactGram(b, u, t, touching, gram));
+  PetscCall(ContactHoldActiveSet(b->contact, PETSC_FALSE, PETSC_FALSE));
   PetscCall(LooseMotions(b, gram, &m, free, pivot));
   PetscCall(FindDriven(b, u, t_loads, m, free, drives));
   for (int f = 0; f < m; f++) {
