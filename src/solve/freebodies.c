@@ -10,7 +10,7 @@
 /* A contact holds a motion if its stiffness along it is above this part of its stiffness along any. The slope that the
    facets of a coarse round surface leave to a rotation about its own axis is below; FREE_CONTACT in freemodes.c is its
    root. */
-#define FREE_BODIES_HELD 1e-5
+#define FREE_BODIES_HELD 1e-3
 /* A tie is this part of the stiffness of the elements below one slave node. It holds motions that no load drives against
    the unevenness of meshes, and bodies that roll on it at their place. */
 #define FREE_BODIES_TIE 1e-2
@@ -586,6 +586,14 @@ static PetscBool InContact(FreeBodies b, PetscInt piece, const double gram[])
   return acts;
 }
 
+/* Says whether a motion turns its piece. */
+static PetscBool Turns(FreeBodies b, int k)
+{
+  const double *q = b->motion[k];
+
+  return (PetscBool)(q[0] != 0 || q[1] != 0 || q[2] != 0);
+}
+
 /* A tie that measures coordinate k of the motions at displacements u, in lengths, by the cell at the middle of its
    piece: the motion nearest to that of the cell's nodes. */
 static PetscErrorCode MakeTie(FreeBodies b, const PetscReal *u, int k, SpringTie *tie)
@@ -646,7 +654,8 @@ static PetscErrorCode MakeTie(FreeBodies b, const PetscReal *u, int k, SpringTie
 
   Note:
   Such a motion stays as it is, without changing anything else. Without a tie the unevenness of the meshes would drive
-  it, far beyond what a linear step can follow.
+  it, far beyond what a linear step can follow. Of a body without any contact only rotations are tied, so that a tool
+  can push it before it.
 @*/
 PetscErrorCode FreeBodiesTie(FreeBodies b, const PetscReal *u, PetscReal t, PetscReal t_loads, PetscBool touching,
                              ContactSprings springs, PetscBool *changed)
@@ -668,7 +677,7 @@ PetscErrorCode FreeBodiesTie(FreeBodies b, const PetscReal *u, PetscReal t, Pets
   PetscCall(LooseMotions(b, gram, &m, free, pivot));
   PetscCall(FindDriven(b, u, t_loads, m, free, drives));
   for (int f = 0; f < m; f++) {
-    if (!InContact(b, b->owner[pivot[f]], gram) || drives[f]) continue;
+    if (drives[f] || (!InContact(b, b->owner[pivot[f]], gram) && !Turns(b, pivot[f]))) continue;
     PetscCall(MakeTie(b, u, pivot[f], &ties[n_ties++]));
   }
   PetscCall(ContactSpringsSetTies(springs, n_ties, ties, changed));
