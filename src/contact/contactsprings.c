@@ -84,15 +84,10 @@ PetscErrorCode ContactSpringsRelax(ContactSprings s, Vec x)
 + s    - the springs
 . n    - number of ties
 - ties - ties[n], the same on all ranks; copied
-
-  Output Parameter:
-. changed - there were others, or as many that act elsewhere
 @*/
-PetscErrorCode ContactSpringsSetTies(ContactSprings s, PetscInt n, const SpringTie *ties, PetscBool *changed)
+PetscErrorCode ContactSpringsSetTies(ContactSprings s, PetscInt n, const SpringTie *ties)
 {
   PetscFunctionBeginUser;
-  *changed = (PetscBool)(n != s->n_ties);
-  for (PetscInt i = 0; i < n && !*changed; i++) *changed = (PetscBool)(ties[i].dof[0] != s->ties[i].dof[0]);
   PetscCall(PetscFree2(s->ties, s->stretch));
   PetscCall(PetscMalloc2(n, &s->ties, n, &s->stretch));
   PetscCall(PetscArraycpy(s->ties, ties, n));
@@ -100,7 +95,73 @@ PetscErrorCode ContactSpringsSetTies(ContactSprings s, PetscInt n, const SpringT
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Moves the ties' stretches at x from the anchors into s->stretch. work holds x less the anchors. */
+/*@
+  ContactSpringsRelease - releases all ties but those of some motions.
+
+  Not collective, the same on all ranks
+
+  Input Parameters:
++ s    - the springs
+. n    - number of motions that stay tied
+- kept - their numbers
+
+  Output Parameter:
+. any - one was released
+@*/
+PetscErrorCode ContactSpringsRelease(ContactSprings s, int n, const int *kept, PetscBool *any)
+{
+  PetscFunctionBeginUser;
+  *any = PETSC_FALSE;
+  for (PetscInt i = 0; i < s->n_ties; i++) {
+    PetscBool keep = PETSC_FALSE;
+
+    for (int k = 0; k < n; k++) keep = (PetscBool)(keep || kept[k] == s->ties[i].motion);
+    if (keep || s->ties[i].released) continue;
+    s->ties[i].released = *any = PETSC_TRUE;
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ContactSpringsRetie - ties what was released.
+
+  Not collective, the same on all ranks
+
+  Input Parameter:
+. s - the springs
+
+  Output Parameter:
+. any - one had been released
+@*/
+PetscErrorCode ContactSpringsRetie(ContactSprings s, PetscBool *any)
+{
+  PetscFunctionBeginUser;
+  *any = PETSC_FALSE;
+  for (PetscInt i = 0; i < s->n_ties; i++) {
+    *any                = (PetscBool)(*any || s->ties[i].released);
+    s->ties[i].released = PETSC_FALSE;
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ContactSpringsHaveTie - says whether a motion is tied.
+
+  Not collective
+
+  Input Parameters:
++ s      - the springs
+- motion - number of the motion
+@*/
+PetscBool ContactSpringsHaveTie(ContactSprings s, int motion)
+{
+  PetscBool have = PETSC_FALSE;
+
+  for (PetscInt i = 0; i < s->n_ties; i++) have = (PetscBool)(have || s->ties[i].motion == motion);
+  return have;
+}
+
+/* Computes the stretches of the ties into s->stretch; a released one has none. work holds x less the anchors. */
 static PetscErrorCode Stretch(ContactSprings s)
 {
   const PetscScalar *d;
@@ -114,7 +175,7 @@ static PetscErrorCode Stretch(ContactSprings s)
     const SpringTie *tie = &s->ties[i];
 
     s->stretch[i] = 0;
-    for (PetscInt k = 0; k < tie->n; k++)
+    for (PetscInt k = 0; k < tie->n && !tie->released; k++)
       if (tie->dof[k] >= first && tie->dof[k] < end)
         s->stretch[i] += tie->value[k] * PetscRealPart(d[tie->dof[k] - first]);
   }
@@ -246,7 +307,7 @@ PetscErrorCode ContactSpringsTangent(ContactSprings s, Mat A)
   for (PetscInt i = 0; i < s->n_ties; i++) {
     const SpringTie *tie = &s->ties[i];
 
-    for (PetscInt k = 0; k < tie->n; k++)
+    for (PetscInt k = 0; k < tie->n && !tie->released; k++)
       for (PetscInt l = 0; l < tie->n && tie->dof[k] >= first && tie->dof[k] < end; l++)
         PetscCall(
           MatSetValue(A, tie->dof[k], tie->dof[l], tie->stiffness * tie->value[k] * tie->value[l], ADD_VALUES));

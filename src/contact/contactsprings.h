@@ -9,6 +9,8 @@
 
 /* stretch = sum value * (displacement of the dof less that of its anchor) */
 typedef struct {
+  int       motion;    /* which one it holds: a number of the owner */
+  PetscBool released;  /* it has no force for the time being */
   PetscReal stiffness; /* force per length */
   PetscInt  n, dof[ELEMENT_MAX_NODES * 3]; /* global free dofs */
   PetscReal value[ELEMENT_MAX_NODES * 3];
@@ -18,7 +20,10 @@ typedef struct _n_Stabiliser *ContactSprings;
 
 PetscErrorCode ContactSpringsCreate(Mesh, const PetscReal *stiffness, Vec like, ContactSprings *);
 PetscErrorCode ContactSpringsDestroy(ContactSprings *);
-PetscErrorCode ContactSpringsSetTies(ContactSprings, PetscInt n, const SpringTie *, PetscBool *changed);
+PetscErrorCode ContactSpringsSetTies(ContactSprings, PetscInt n, const SpringTie *);
+PetscErrorCode ContactSpringsRelease(ContactSprings, int n, const int *kept, PetscBool *any);
+PetscErrorCode ContactSpringsRetie(ContactSprings, PetscBool *any);
+PetscBool      ContactSpringsHaveTie(ContactSprings, int motion);
 PetscErrorCode ContactSpringsRelax(ContactSprings, Vec x);
 PetscErrorCode ContactSpringsResidual(ContactSprings, Vec x, Vec F);
 PetscErrorCode ContactSpringsEnergy(ContactSprings, Vec x, PetscReal *energy);

@@ -10,12 +10,8 @@
 #define EQUILIBRIUM_MAX_OFFSET_UPDATES 4
 /* What the springs of free bodies hold after a solve may be this part of F_ref. More is relaxed. */
 #define EQUILIBRIUM_SPRINGS 1e-7
-/* What ties hold may be this part of F_ref: unevenness of the meshes. */
-#define EQUILIBRIUM_TIES 1e-4
 /* The springs are relaxed at most this many times. */
 #define EQUILIBRIUM_MAX_RELAX 3
-/* A body moves on and on where a pass leaves more than this part of the springs' force. */
-#define EQUILIBRIUM_DRIFT 0.5
 /* A body of which the springs hold more than this part of F_ref is in no contact that holds it. Either a load moves it
    on and on, or a tool pushes it before it against no force but that of the springs. */
 #define EQUILIBRIUM_ALL 0.1
@@ -227,8 +223,9 @@ static PetscErrorCode ModelSolveLists(Model model, SolveReport *report)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Measures what springs and ties hold at the solution, into the report. *force: the part of F_ref to be relaxed. */
-static PetscErrorCode ModelMeasureSprings(Model model, SolveReport *report, PetscReal *force)
+/* Measures what springs and ties hold at the solution, into the report. *more: the springs hold more than they may.
+   *tied: the ties do. */
+static PetscErrorCode ModelMeasureSprings(Model model, SolveReport *report, PetscBool *more, PetscBool *tied)
 {
   const PetscReal scale = ProblemForceScale(model->problem);
   PetscReal       springs, ties, energy, stored, round_off;
@@ -243,36 +240,72 @@ static PetscErrorCode ModelMeasureSprings(Model model, SolveReport *report, Pets
   report->left  = stored > 0 ? energy / stored : 0;
   report->share = scale > 0 ? springs / scale : 0;
   report->tied  = scale > 0 ? ties / scale : 0;
-  PetscCall(PetscInfo(model->snes, "springs hold %g, ties %g of the forces\n", (double)report->share, (double)report->tied));
-  *force        = 0;
-  if (springs > PetscMax(round_off, EQUILIBRIUM_SPRINGS * scale)) *force = report->share;
-  if (ties > PetscMax(round_off, EQUILIBRIUM_TIES * scale)) *force = PetscMax(*force, report->tied);
+  *more         = (PetscBool)(springs > PetscMax(round_off, EQUILIBRIUM_SPRINGS * scale));
+  *tied         = (PetscBool)(ties > PetscMax(round_off, EQUILIBRIUM_SPRINGS * scale));
+  PetscCall(PetscInfo(model->snes, "springs hold %g, ties %g of the forces\n", (double)report->share,
+                      (double)report->tied));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Ends a solve in which springs and ties hold most of the forces. A tool may push a body before it against nothing
+   else, which is a solution, or a load moves a body on and on, which is none. */
+static PetscErrorCode ModelJudgeDrift(Model model, SolveReport *report)
+{
+  PetscFunctionBeginUser;
+  PetscCall(FreeBodiesLoose(model->problem->bodies, model->problem->trial, model->t, PETSC_TRUE,
+                            sizeof(report->detail), report->detail));
+  if (report->detail[0]) report->result = SOLVE_ADRIFT;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Solves on after springs were relaxed and ties released at the solution x. A body that ties have held may not find its
+   place without them. It is then tied again where it was. *again: that was done, and no more is to be tried. */
+static PetscErrorCode ModelSolveReleased(Model model, SolveReport *report, PetscBool *again)
+{
+  const Problem problem = model->problem;
+  Vec           x;
+
+  PetscFunctionBeginUser;
+  *again = PETSC_FALSE;
+  PetscCall(VecDuplicate(model->x, &x));
+  PetscCall(VecCopy(model->x, x));
+  PetscCall(ContactSpringsRelax(problem->springs, x));
+  PetscCall(ModelSolveLists(model, report));
+  if (report->result != SOLVE_CONVERGED) PetscCall(ContactSpringsRetie(problem->springs, again));
+  if (*again) {
+    problem->tied        = PETSC_TRUE;
+    model->work->cycling = PETSC_FALSE;
+    report->result       = SOLVE_CONVERGED;
+    PetscCall(VecCopy(x, model->x));
+    PetscCall(ModelSolveLists(model, report));
+  }
+  PetscCall(VecDestroy(&x));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* Solves with the springs and ties of free bodies. Springs are so weak that they hold next to nothing where contact
-   holds, and ties hold motions that no load drives. Where they hold more, as with a soft body or a motion that contact
-   comes to hold in this step, they are relaxed and the step is solved on. */
+   holds; where they hold more, as with a soft body, they are relaxed and the step is solved on. Ties hold motions that
+   no load drives. Those that contact has come to hold in the step are released, and the step is solved on, too. */
 static PetscErrorCode ModelSolveHeld(Model model, SolveReport *report)
 {
-  PetscReal force = 0, before = PETSC_MAX_REAL;
+  const Problem problem = model->problem;
+  PetscBool     more = PETSC_FALSE, tied = PETSC_FALSE, again = PETSC_FALSE;
 
   PetscFunctionBeginUser;
   PetscCall(ModelSolveLists(model, report));
-  for (PetscInt times = 0; model->problem->springs && report->result == SOLVE_CONVERGED; times++) {
-    PetscCall(ModelMeasureSprings(model, report, &force));
-    if (force == 0) break;
-    if (force > EQUILIBRIUM_ALL) {
-      PetscCall(FreeBodiesLoose(model->problem->bodies, model->problem->trial, model->t, PETSC_TRUE,
-                                sizeof(report->detail), report->detail));
-      if (report->detail[0]) report->result = SOLVE_ADRIFT;
+  for (PetscInt times = 0; problem->springs && report->result == SOLVE_CONVERGED; times++) {
+    PetscCall(ModelMeasureSprings(model, report, &more, &tied));
+    if (PetscMax(report->share, report->tied) > EQUILIBRIUM_ALL) {
+      PetscCall(ModelJudgeDrift(model, report));
       break;
     }
-    if (force > EQUILIBRIUM_DRIFT * before || times == EQUILIBRIUM_MAX_RELAX) break;
-    before = force;
+    if (again || times == EQUILIBRIUM_MAX_RELAX) break;
+    if (tied)
+      PetscCall(FreeBodiesRelease(problem->bodies, problem->trial, model->t, problem->springs, &tied));
+    if (!more && !tied) break;
     report->relaxed++;
-    PetscCall(ContactSpringsRelax(model->problem->springs, model->x));
-    PetscCall(ModelSolveLists(model, report));
+    problem->tied = (PetscBool)(problem->tied || tied);
+    PetscCall(ModelSolveReleased(model, report, &again));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

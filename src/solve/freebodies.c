@@ -7,10 +7,11 @@
    takes from a force that a whole contact carries is less than this part, and ten times more would still be below 1e-6.
    It is far above the round-off of a factor, some 1e-14 of the stiffness of an element. */
 #define FREE_BODIES_SPRINGS 1e-8
-/* A contact holds a motion if its stiffness along it is above this part of its stiffness along any. The slope that the
-   facets of a coarse round surface leave to a rotation about its own axis is below; FREE_CONTACT in freemodes.c is its
-   root. */
+/* A contact holds a motion if its stiffness along it is above this part of its stiffness along any. Its root is the
+   slope that the faces of a coarse round surface leave to a rotation about its own axis. */
 #define FREE_BODIES_HELD 1e-3
+/* The same for messages. Bodies that roll are seen by a contact patch with a slope of its width over their radius. */
+#define FREE_BODIES_NAMED 3e-2
 /* A tie is this part of the stiffness of the elements below one slave node. It holds motions that no load drives against
    the unevenness of meshes, and bodies that roll on it at their place. */
 #define FREE_BODIES_TIE 1e-2
@@ -18,8 +19,8 @@
 #define FREE_BODIES_EQUAL 1e-9
 /* Bodies that were moved into contact touch with the terms that are open by less than this part of a face size. */
 #define FREE_BODIES_TOUCH 1e-4
-/* A load that acts along a motion with less than this part of the sum of its amounts does so because of the unevenness
-   of meshes. */
+/* A load that acts along a motion with less than this part of its amount does so because of the unevenness of meshes. It
+   is a slope, the root of FREE_BODIES_HELD. */
 #define FREE_BODIES_UNEVEN 3e-2
 /* A load drives a motion if its force along it is above this part of the sum of the amounts. */
 #define FREE_BODIES_DRIVEN 1e-6
@@ -474,9 +475,10 @@ static void AddMotion(FreeBodies b, const double a[], size_t size, char *text)
   }
 }
 
-/* The motions of all bodies that a contact of stiffness gram[n][n] does not hold: free[m][n], m <= n, in a basis in
-   which each is the only one that has its coordinate pivot[m]. */
-static PetscErrorCode LooseMotions(FreeBodies b, const double gram[], int *m, double free[], int pivot[])
+/* The motions of all bodies along which a contact of stiffness gram[n][n] has less than a part of it: free[m][n],
+   m <= n, in a basis in which each is the only one that has its coordinate pivot[m]. */
+static PetscErrorCode LooseMotions(FreeBodies b, const double gram[], PetscReal part, int *m, double free[],
+                                   int pivot[])
 {
   const int n = b->n;
   double   *work;
@@ -485,7 +487,7 @@ static PetscErrorCode LooseMotions(FreeBodies b, const double gram[], int *m, do
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc2(n * n, &work, n, &columns));
   PetscCall(PetscArraycpy(work, gram, n * n));
-  *m = RigidFree(n, work, FREE_BODIES_HELD, free);
+  *m = RigidFree(n, work, part, free);
   for (int k = 0; k < n; k++) columns[k] = k;
   RigidReduce(*m, n, columns, free);
   for (int f = 0; f < *m; f++)
@@ -569,7 +571,7 @@ PetscErrorCode FreeBodiesLoose(FreeBodies b, const PetscReal *u, PetscReal t, Pe
   if (!n) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscMalloc4(n * n, &gram, n * n, &free, n, &pivot, n, &drives));
   PetscCall(ContactGram(b, u, t, PETSC_FALSE, gram));
-  PetscCall(LooseMotions(b, gram, &m, free, pivot));
+  PetscCall(LooseMotions(b, gram, driven ? FREE_BODIES_HELD : FREE_BODIES_NAMED, &m, free, pivot));
   PetscCall(FindDriven(b, u, t, m, free, drives));
   for (int f = 0; f < m; f++)
     if (!driven || drives[f]) AddMotion(b, &free[f * n], size, text);
@@ -607,7 +609,7 @@ static PetscErrorCode MakeTie(FreeBodies b, const PetscReal *u, int k, SpringTie
   PetscMPIInt      owner = -1;
 
   PetscFunctionBeginUser;
-  *tie = (SpringTie){.stiffness = FREE_BODIES_TIE * b->stiffness[p]};
+  *tie = (SpringTie){.motion = k, .stiffness = FREE_BODIES_TIE * b->stiffness[p]};
   PetscCall(MeshGetGlobalDofs(mesh, &dofs));
   while (first > 0 && b->owner[first - 1] == p) first--;
   if (cell >= 0) {
@@ -636,6 +638,29 @@ static PetscErrorCode MakeTie(FreeBodies b, const PetscReal *u, int k, SpringTie
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* The motions that are to be tied at (u, t): pivot[m] are their numbers. touching: what touches holds, too. */
+static PetscErrorCode FindTied(FreeBodies b, const PetscReal *u, PetscReal t, PetscReal t_loads, PetscBool touching,
+                               int *m, int pivot[])
+{
+  const int  n = b->n;
+  double    *gram, *free;
+  PetscBool *drives;
+  int        loose, found = 0;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc3(n * n, &gram, n * n, &free, n, &drives));
+  PetscCall(ContactHoldActiveSet(b->contact, PETSC_TRUE, touching)); /* fresh lists may have opened it a little */
+  PetscCall(ContactGram(b, u, t, touching, gram));
+  PetscCall(ContactHoldActiveSet(b->contact, PETSC_FALSE, PETSC_FALSE));
+  PetscCall(LooseMotions(b, gram, FREE_BODIES_HELD, &loose, free, pivot));
+  PetscCall(FindDriven(b, u, t_loads, loose, free, drives));
+  for (int f = 0; f < loose; f++)
+    if (!drives[f] && (InContact(b, b->owner[pivot[f]], gram) || Turns(b, pivot[f]))) pivot[found++] = pivot[f];
+  *m = found;
+  PetscCall(PetscFree3(gram, free, drives));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /*@
   FreeBodiesTie - ties the motions that neither contact holds nor loads drive where a load step begins.
 
@@ -660,28 +685,49 @@ static PetscErrorCode MakeTie(FreeBodies b, const PetscReal *u, int k, SpringTie
 PetscErrorCode FreeBodiesTie(FreeBodies b, const PetscReal *u, PetscReal t, PetscReal t_loads, PetscBool touching,
                              ContactSprings springs, PetscBool *changed)
 {
-  const int  n = b->n;
-  double    *gram, *free;
   int       *pivot, m;
-  PetscBool *drives;
-  PetscInt   n_ties = 0;
   SpringTie *ties;
 
   PetscFunctionBeginUser;
   *changed = PETSC_FALSE;
-  if (!n) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PetscMalloc5(n * n, &gram, n * n, &free, n, &pivot, n, &drives, n, &ties));
-  PetscCall(ContactHoldActiveSet(b->contact, PETSC_TRUE, touching)); /* fresh lists may have opened it a little */
-  PetscCall(ContactGram(b, u, t, touching, gram));
-  PetscCall(ContactHoldActiveSet(b->contact, PETSC_FALSE, PETSC_FALSE));
-  PetscCall(LooseMotions(b, gram, &m, free, pivot));
-  PetscCall(FindDriven(b, u, t_loads, m, free, drives));
+  if (!b->n) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscMalloc2(b->n, &pivot, b->n, &ties));
+  PetscCall(FindTied(b, u, t, t_loads, touching, &m, pivot));
+  PetscCall(ContactSpringsRelease(springs, m, pivot, changed));
   for (int f = 0; f < m; f++) {
-    if (drives[f] || (!InContact(b, b->owner[pivot[f]], gram) && !Turns(b, pivot[f]))) continue;
-    PetscCall(MakeTie(b, u, pivot[f], &ties[n_ties++]));
+    if (!ContactSpringsHaveTie(springs, pivot[f])) *changed = PETSC_TRUE;
+    PetscCall(MakeTie(b, u, pivot[f], &ties[f]));
   }
-  PetscCall(ContactSpringsSetTies(springs, n_ties, ties, changed));
-  PetscCall(PetscFree5(gram, free, pivot, drives, ties));
+  PetscCall(ContactSpringsSetTies(springs, m, ties));
+  PetscCall(PetscFree2(pivot, ties));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  FreeBodiesRelease - releases the ties of motions that contact has come to hold in a load step.
+
+  Collective
+
+  Input Parameters:
++ b - the bodies
+. u - local displacements u[n_nodes*dim] (length) of the solution
+- t - its load parameter
+
+  Input/Output Parameter:
+. springs - their ties
+
+  Output Parameter:
+. any - one was released
+@*/
+PetscErrorCode FreeBodiesRelease(FreeBodies b, const PetscReal *u, PetscReal t, ContactSprings springs, PetscBool *any)
+{
+  int *pivot, m;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(b->n, &pivot));
+  PetscCall(FindTied(b, u, t, t, PETSC_FALSE, &m, pivot));
+  PetscCall(ContactSpringsRelease(springs, m, pivot, any));
+  PetscCall(PetscFree(pivot));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

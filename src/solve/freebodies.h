@@ -20,5 +20,6 @@ PetscErrorCode FreeBodiesSettle(FreeBodies, PetscReal t, PetscReal t_loads, Pets
                                 SettleResult *);
 PetscErrorCode FreeBodiesTie(FreeBodies, const PetscReal *u, PetscReal t, PetscReal t_loads, PetscBool touching,
                              ContactSprings, PetscBool *changed);
+PetscErrorCode FreeBodiesRelease(FreeBodies, const PetscReal *u, PetscReal t, ContactSprings, PetscBool *any);
 PetscErrorCode FreeBodiesLoose(FreeBodies, const PetscReal *u, PetscReal t, PetscBool driven, size_t size, char *text);
 const char    *FreeBodiesMoved(FreeBodies);
