@@ -475,24 +475,33 @@ static void AddMotion(FreeBodies b, const double a[], size_t size, char *text)
   }
 }
 
+/* The column that row f of free[m][n] alone has. */
+static int OwnColumn(int m, int n, const double free[], int f)
+{
+  for (int k = 0; k < n; k++) {
+    int others = 0;
+
+    for (int g = 0; g < m; g++) others += g != f && free[g * n + k] != 0;
+    if (!others && free[f * n + k] == 1) return k;
+  }
+  return 0;
+}
+
 /* The motions of all bodies along which a contact of stiffness gram[n][n] has less than a part of it: free[m][n],
-   m <= n, in a basis in which each is the only one that has its coordinate pivot[m]. */
+   m <= n, in a basis in which each is the only one that has its coordinate pivot[m]. That coordinate is the one that
+   contact holds the least. */
 static PetscErrorCode LooseMotions(FreeBodies b, const double gram[], PetscReal part, int *m, double free[],
                                    int pivot[])
 {
   const int n = b->n;
   double   *work;
-  int      *columns;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc2(n * n, &work, n, &columns));
+  PetscCall(PetscMalloc1(n * n, &work));
   PetscCall(PetscArraycpy(work, gram, n * n));
   *m = RigidFree(n, work, part, free);
-  for (int k = 0; k < n; k++) columns[k] = k;
-  RigidReduce(*m, n, columns, free);
-  for (int f = 0; f < *m; f++)
-    for (pivot[f] = 0; pivot[f] < n - 1 && free[f * n + pivot[f]] == 0;) pivot[f]++;
-  PetscCall(PetscFree2(work, columns));
+  for (int f = 0; f < *m; f++) pivot[f] = OwnColumn(*m, n, free, f);
+  PetscCall(PetscFree(work));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
