@@ -83,7 +83,8 @@ static int MostViolated(int dim, int n, const double *normal, const double *boun
 
 /* Moves y into half-space p and keeps it in the active ones, of which some may be dropped. Returns 0 where that is
    impossible. d and r have room for dim numbers, z too. */
-static int Enter(Active *a, int p, const double *normal, const double *bound, double *y, double *z, double *d, double *r)
+static int Enter(Active *a, int p, const double *normal, const double *bound, double *y, double *z, double *d,
+                 double *r)
 {
   const double *own = &normal[p * a->dim], size = sqrt(Dot(a->dim, own, own));
   double        multiplier = 0;
@@ -142,7 +143,7 @@ static int Enter(Active *a, int p, const double *normal, const double *bound, do
 @*/
 int HalfspacesProject(int dim, int n, const double *normal, const double *bound, double tolerance, double y[])
 {
-  double *room = malloc((2 * (size_t)dim * dim + 4 * (size_t)dim + 1) * sizeof(double));
+  double *room  = malloc((2 * (size_t)dim * dim + 4 * (size_t)dim + 1) * sizeof(double));
   int    *which = malloc(((size_t)dim + 1) * sizeof(int)), left_out = 0;
   char   *skip = calloc((size_t)n + 1, 1);
   double *z = room + 2 * dim * dim, *d = z + dim, *r = d + dim;

@@ -23,14 +23,14 @@ enum { FREE_PIECES = 100 };
 enum { FREE_MESSAGE = 1400 };
 
 struct _n_FreeModes {
-  Mesh      mesh;
-  Scene     scene;
-  PetscInt *piece; /* of every local node */
-  PetscInt  n_pieces;
+  Mesh       mesh;
+  Scene      scene;
+  PetscInt  *piece; /* of every local node */
+  PetscInt   n_pieces;
   FreePiece *pieces;
-  double   *gram; /* n_contacts matrices of (6 n_pieces)^2: mean square of the normal motion over each pair's surface */
-  int       n_loose; /* motions of all pieces (rows of 6 n_pieces) that neither supports nor contact hold */
-  double   *loose;
+  double *gram; /* n_contacts matrices of (6 n_pieces)^2: mean square of the normal motion over each pair's surface */
+  int     n_loose; /* motions of all pieces (rows of 6 n_pieces) that neither supports nor contact hold */
+  double *loose;
 };
 
 /* Measures the bounding box of each piece: the same numbers on any number of ranks. */
@@ -54,7 +54,7 @@ static PetscErrorCode MeasurePieces(FreeModes modes)
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, box, (PetscMPIInt)(6 * modes->n_pieces), MPIU_REAL, MPIU_MAX, mesh->comm));
   for (PetscInt p = 0; p < modes->n_pieces; p++) {
     FreePiece *piece  = &modes->pieces[p];
-    PetscReal square = 0;
+    PetscReal  square = 0;
 
     for (int d = 0; d < mesh->dim; d++) {
       piece->centre[d] = (box[6 * p + 2 * d + 1] - box[6 * p + 2 * d]) / 2;
@@ -85,9 +85,9 @@ static PetscErrorCode NamePieces(FreeModes modes)
     MPI_Allreduce(MPI_IN_PLACE, has, (PetscMPIInt)(modes->n_pieces * scene->n_bodies), MPIU_INT, MPI_MAX, mesh->comm));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, tag, (PetscMPIInt)modes->n_pieces, MPIU_INT, MPI_MIN, mesh->comm));
   for (PetscInt p = 0; p < modes->n_pieces; p++) {
-    FreePiece    *piece = &modes->pieces[p];
-    size_t    used  = 0;
-    PetscBool split = PETSC_FALSE;
+    FreePiece *piece = &modes->pieces[p];
+    size_t     used  = 0;
+    PetscBool  split = PETSC_FALSE;
 
     for (int b = 0; b < scene->n_bodies; b++) {
       if (!has[p * scene->n_bodies + b]) continue;

@@ -3,9 +3,9 @@
    before anything is solved.
 
    FreeModesCreate() finds them; FreeModesReport() prints them, FreeModesRefuse() refuses a scene with a body that
-   can never be held; FreeModesDestroy(). FreeModesGetPieces() shows the motions that supports leave to each piece of the
-   mesh, FreeModesMotionText() puts a motion into words.
-   FreeModesUnheld() answers a simpler question without the object. */
+   can never be held; FreeModesDestroy(). FreeModesGetPieces() shows the motions that supports leave to each piece of
+   the mesh, FreeModesMotionText() puts a motion into words. FreeModesUnheld() answers a simpler question without the
+   object. */
 #pragma once
 #include "bodies/loads.h"
 #include "kernels/rigidkernel.h"

@@ -309,8 +309,7 @@ PetscErrorCode ContactSpringsTangent(ContactSprings s, Mat A)
 
     for (PetscInt k = 0; k < tie->n && !tie->released; k++)
       for (PetscInt l = 0; l < tie->n && tie->dof[k] >= first && tie->dof[k] < end; l++)
-        PetscCall(
-          MatSetValue(A, tie->dof[k], tie->dof[l], tie->stiffness * tie->value[k] * tie->value[l], ADD_VALUES));
+        PetscCall(MatSetValue(A, tie->dof[k], tie->dof[l], tie->stiffness * tie->value[k] * tie->value[l], ADD_VALUES));
   }
   PetscCall(MatAssemblyBegin(A, MAT_FINAL_ASSEMBLY));
   PetscCall(MatAssemblyEnd(A, MAT_FINAL_ASSEMBLY));

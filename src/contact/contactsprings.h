@@ -9,9 +9,9 @@
 
 /* stretch = sum value * (displacement of the dof less that of its anchor) */
 typedef struct {
-  int       motion;    /* which one it holds: a number of the owner */
-  PetscBool released;  /* it has no force for the time being */
-  PetscReal stiffness; /* force per length */
+  int       motion;                        /* which one it holds: a number of the owner */
+  PetscBool released;                      /* it has no force for the time being */
+  PetscReal stiffness;                     /* force per length */
   PetscInt  n, dof[ELEMENT_MAX_NODES * 3]; /* global free dofs */
   PetscReal value[ELEMENT_MAX_NODES * 3];
 } SpringTie;

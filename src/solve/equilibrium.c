@@ -71,15 +71,15 @@ static PetscErrorCode ModelExplainFailure(Model model, SolveReport *report)
     PetscCall(PetscStrncpy(report->detail, report->cycle, sizeof(report->detail)));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
-  if (model->problem->bodies) PetscCall(FreeBodiesLoose(model->problem->bodies, model->problem->trial, model->t,
-                                                        PETSC_TRUE, sizeof(report->detail), report->detail));
+  if (model->problem->bodies)
+    PetscCall(FreeBodiesLoose(model->problem->bodies, model->problem->trial, model->t, PETSC_TRUE,
+                              sizeof(report->detail), report->detail));
   if (report->detail[0]) PetscFunctionReturn(PETSC_SUCCESS);
   if (adrift) PetscCall(FreeModesUnheld(model->mesh, model->scene, model->problem->loads, sizeof(loose), loose));
   if (adrift && loose[0])
-    PetscCall(PetscSNPrintf(
-      report->detail, sizeof(report->detail), "no support and no imposed displacement holds %s%s", loose,
-      !model->contact || report->result == SOLVE_ADRIFT ? ""
-                                                        : " (contact may, with stabilise: auto)"));
+    PetscCall(
+      PetscSNPrintf(report->detail, sizeof(report->detail), "no support and no imposed displacement holds %s%s", loose,
+                    !model->contact || report->result == SOLVE_ADRIFT ? "" : " (contact may, with stabilise: auto)"));
   else {
     FailureText(&report->failure, report->detail, sizeof(report->detail));
     if (report->result == SOLVE_LINE_SEARCH || report->result == SOLVE_ITERATIONS)
@@ -224,7 +224,7 @@ static PetscErrorCode ModelSolveLists(Model model, SolveReport *report)
 }
 
 /* Measures what springs and ties hold at the solution, into the report. *more: the springs hold more than they may.
-   *tied: the ties do. */
+ *tied: the ties do. */
 static PetscErrorCode ModelMeasureSprings(Model model, SolveReport *report, PetscBool *more, PetscBool *tied)
 {
   const PetscReal scale = ProblemForceScale(model->problem);
@@ -242,8 +242,8 @@ static PetscErrorCode ModelMeasureSprings(Model model, SolveReport *report, Pets
   report->tied  = scale > 0 ? ties / scale : 0;
   *more         = (PetscBool)(springs > PetscMax(round_off, EQUILIBRIUM_SPRINGS * scale));
   *tied         = (PetscBool)(ties > PetscMax(round_off, EQUILIBRIUM_SPRINGS * scale));
-  PetscCall(PetscInfo(model->snes, "springs hold %g, ties %g of the forces\n", (double)report->share,
-                      (double)report->tied));
+  PetscCall(
+    PetscInfo(model->snes, "springs hold %g, ties %g of the forces\n", (double)report->share, (double)report->tied));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -252,8 +252,8 @@ static PetscErrorCode ModelMeasureSprings(Model model, SolveReport *report, Pets
 static PetscErrorCode ModelJudgeDrift(Model model, SolveReport *report)
 {
   PetscFunctionBeginUser;
-  PetscCall(FreeBodiesLoose(model->problem->bodies, model->problem->trial, model->t, PETSC_TRUE,
-                            sizeof(report->detail), report->detail));
+  PetscCall(FreeBodiesLoose(model->problem->bodies, model->problem->trial, model->t, PETSC_TRUE, sizeof(report->detail),
+                            report->detail));
   if (report->detail[0]) report->result = SOLVE_ADRIFT;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -300,8 +300,7 @@ static PetscErrorCode ModelSolveHeld(Model model, SolveReport *report)
       break;
     }
     if (again || times == EQUILIBRIUM_MAX_RELAX) break;
-    if (tied)
-      PetscCall(FreeBodiesRelease(problem->bodies, problem->trial, model->t, problem->springs, &tied));
+    if (tied) PetscCall(FreeBodiesRelease(problem->bodies, problem->trial, model->t, problem->springs, &tied));
     if (!more && !tied) break;
     report->relaxed++;
     problem->tied = (PetscBool)(problem->tied || tied);

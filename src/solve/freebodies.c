@@ -12,15 +12,15 @@
 #define FREE_BODIES_HELD 1e-3
 /* The same for messages. Bodies that roll are seen by a contact patch with a slope of its width over their radius. */
 #define FREE_BODIES_NAMED 3e-2
-/* A tie is this part of the stiffness of the elements below one slave node. It holds motions that no load drives against
-   the unevenness of meshes, and bodies that roll on it at their place. */
+/* A tie is this part of the stiffness of the elements below one slave node. It holds motions that no load drives
+   against the unevenness of meshes, and bodies that roll on it at their place. */
 #define FREE_BODIES_TIE 1e-2
 /* Squares of distances that differ by less than this part of the square of a body's size are equal. */
 #define FREE_BODIES_EQUAL 1e-9
 /* Bodies that were moved into contact touch with the terms that are open by less than this part of a face size. */
 #define FREE_BODIES_TOUCH 1e-4
-/* A load that acts along a motion with less than this part of its amount does so because of the unevenness of meshes. It
-   is a slope, the root of FREE_BODIES_HELD. */
+/* A load that acts along a motion with less than this part of its amount does so because of the unevenness of meshes.
+   It is a slope, the root of FREE_BODIES_HELD. */
 #define FREE_BODIES_UNEVEN 3e-2
 /* A load drives a motion if its force along it is above this part of the sum of the amounts. */
 #define FREE_BODIES_DRIVEN 1e-6
@@ -246,7 +246,8 @@ PetscErrorCode FreeBodiesSprings(FreeBodies b, Vec like, ContactSprings *springs
     const PetscInt p = b->piece[i];
 
     if (mesh->node_owner[i] != rank || !b->stabilised[p]) continue;
-    for (int d = 0; d < mesh->dim; d++) values[i * mesh->dim + d] = FREE_BODIES_SPRINGS * b->stiffness[p] / (PetscReal)nodes[p];
+    for (int d = 0; d < mesh->dim; d++)
+      values[i * mesh->dim + d] = FREE_BODIES_SPRINGS * b->stiffness[p] / (PetscReal)nodes[p];
   }
   PetscCall(ContactSpringsCreate(mesh, values, like, springs));
   PetscCall(PetscFree2(nodes, values));
@@ -286,7 +287,7 @@ void FreeBodiesPieceMotion(FreeBodies b, PetscInt piece, const double a[], doubl
 /* The velocities du[n_nodes*dim] (length) of a motion a[n] of the bodies at displacements u. */
 void FreeBodiesVelocity(FreeBodies b, const PetscReal *u, const double a[], PetscReal *du)
 {
-  const int dim = b->mesh->dim;
+  const int dim  = b->mesh->dim;
   PetscInt  last = -1;
   double    q[RIGID_MODES], x[3], v[3];
 
@@ -302,7 +303,7 @@ void FreeBodiesVelocity(FreeBodies b, const PetscReal *u, const double a[], Pets
 /* Moves the bodies by a[n]: adds it to the displacements u. */
 void FreeBodiesMove(FreeBodies b, const double a[], PetscReal *u)
 {
-  const int dim = b->mesh->dim;
+  const int dim  = b->mesh->dim;
   PetscInt  last = -1;
   double    q[RIGID_MODES], x[3], from[3];
 
@@ -440,8 +441,7 @@ static PetscErrorCode ContactGram(FreeBodies b, const PetscReal *u, PetscReal t,
     if (terms[i].pressure == 0 && !(touching && terms[i].opening <= FREE_BODIES_TOUCH * b->face)) continue;
     for (int k = 0; k < n; k++)
       for (int l = 0; l < n; l++)
-        gram[k * n + l] +=
-          travel[k][i] * travel[l][i] / (b->pieces[b->owner[k]].size * b->pieces[b->owner[l]].size);
+        gram[k * n + l] += travel[k][i] * travel[l][i] / (b->pieces[b->owner[k]].size * b->pieces[b->owner[l]].size);
   }
   for (int k = 0; k < n; k++) largest = PetscMax(largest, gram[k * n + k]);
   for (int k = 0; k < n * n && largest > 0; k++) gram[k] /= largest;
@@ -469,8 +469,8 @@ static void AddMotion(FreeBodies b, const double a[], size_t size, char *text)
     for (int i = 0; i < RIGID_MODES; i++) moves = (PetscBool)(moves || PetscAbsReal(q[i]) > 1e-2);
     if (!moves) continue;
     FreeModesMotionText(b->modes, p, q, motion);
-    used += (size_t)snprintf(text + used, size - used, "%s'%s': %s", more ? ", with it " : "", b->pieces[p].name,
-                             motion);
+    used +=
+      (size_t)snprintf(text + used, size - used, "%s'%s': %s", more ? ", with it " : "", b->pieces[p].name, motion);
     more = PETSC_TRUE;
   }
 }
@@ -570,7 +570,7 @@ static PetscErrorCode FindDriven(FreeBodies b, const PetscReal *u, PetscReal t, 
 @*/
 PetscErrorCode FreeBodiesLoose(FreeBodies b, const PetscReal *u, PetscReal t, PetscBool driven, size_t size, char *text)
 {
-  const int n = b->n;
+  const int  n = b->n;
   double    *gram, *free;
   int       *pivot, m;
   PetscBool *drives;
@@ -609,8 +609,8 @@ static PetscBool Turns(FreeBodies b, int k)
    piece: the motion nearest to that of the cell's nodes. */
 static PetscErrorCode MakeTie(FreeBodies b, const PetscReal *u, int k, SpringTie *tie)
 {
-  const Mesh       mesh  = b->mesh;
-  const PetscInt   p     = b->owner[k], cell = b->cell[p];
+  const Mesh       mesh = b->mesh;
+  const PetscInt   p = b->owner[k], cell = b->cell[p];
   const FreePiece *piece = &b->pieces[p];
   const PetscInt  *dofs;
   double           gram[RIGID_MODES * RIGID_MODES] = {0}, factor[RIGID_MODES * RIGID_MODES], row[RIGID_MODES];

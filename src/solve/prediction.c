@@ -59,9 +59,8 @@ static PetscErrorCode ModelStepLoads(Model model, const PetscReal *u, PetscReal 
   PetscCall(LoadsPrescribe(model->problem->loads, model->t, step));
   for (PetscInt i = 0; i < n; i++) step[i] -= u[i];
   if (holding)
-    PetscCall(
-      ContactHoldActiveSet(model->contact, PETSC_TRUE,
-                           work->settled)); /* touching nodes count too, as contact alone may hold a body */
+    PetscCall(ContactHoldActiveSet(model->contact, PETSC_TRUE,
+                                   work->settled)); /* touching nodes count too, as contact alone may hold a body */
   PetscCall(LinearSolverRenew(work->solver));
   PetscCall(LinearSolverSetStart(work->solver, work->accepted_start));
   if (model->contact) PetscCall(ContactMultiplyBegin(model->contact, step, t, model->t));

@@ -30,12 +30,12 @@
 /* One pass: the wish of the loads, and the contact terms that bound it. */
 typedef struct {
   int        n;
-  double    *gram, *factor;         /* products of the motions; Cholesky's factor of them with the pieces' weights */
-  double    *force, *scale, *wish;  /* n each */
-  PetscReal *weight;                /* of each piece */
-  PetscBool *driven;                /* by loads, of each piece */
+  double    *gram, *factor;        /* products of the motions; Cholesky's factor of them with the pieces' weights */
+  double    *force, *scale, *wish; /* n each */
+  PetscReal *weight;               /* of each piece */
+  PetscBool *driven;               /* by loads, of each piece */
   PetscInt   n_terms;
-  double    *normal, *bound;        /* n_terms*n; n_terms */
+  double    *normal, *bound; /* n_terms*n; n_terms */
 } Pass;
 
 static PetscErrorCode PassCreate(FreeBodies b, Pass *pass)
@@ -92,10 +92,10 @@ static PetscErrorCode Wish(FreeBodies b, const PetscReal *u, PetscReal t, PetscR
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The contact terms that the bodies at (u, t) may reach by a move, as bounds to it. In: *overlap is the deepest overlap that is
-   left as it is; first: it is measured here. */
-static PetscErrorCode Bounds(FreeBodies b, const PetscReal *u, PetscReal t, PetscReal move, PetscBool first,
-                             Pass *pass, PetscReal *overlap)
+/* The contact terms that the bodies at (u, t) may reach by a move, as bounds to it. In: *overlap is the deepest overlap
+   that is left as it is; first: it is measured here. */
+static PetscErrorCode Bounds(FreeBodies b, const PetscReal *u, PetscReal t, PetscReal move, PetscBool first, Pass *pass,
+                             PetscReal *overlap)
 {
   const int            n = b->n;
   PetscReal           *du, *travel;
@@ -222,10 +222,10 @@ static void NoteMoved(FreeBodies b, PetscReal t, const PetscReal *travel)
 PetscErrorCode FreeBodiesSettle(FreeBodies b, PetscReal t, PetscReal t_loads, PetscBool first, PetscReal *u,
                                 SettleResult *result)
 {
-  PetscReal  move = SEARCH_FIRST * b->face, overlap = 0, way = 0, *longest, *travel;
-  PetscBool  any = PETSC_FALSE;
-  PetscInt   rests = 0, touched = 0;
-  Pass       pass;
+  PetscReal move = SEARCH_FIRST * b->face, overlap = 0, way = 0, *longest, *travel;
+  PetscBool any   = PETSC_FALSE;
+  PetscInt  rests = 0, touched = 0;
+  Pass      pass;
 
   PetscFunctionBeginUser;
   *result = SETTLE_NONE;
@@ -252,7 +252,8 @@ PetscErrorCode FreeBodiesSettle(FreeBodies b, PetscReal t, PetscReal t_loads, Pe
       most = PetscMax(most, longest[p]);
       travel[p] += longest[p];
     }
-    PetscCall(PetscInfo(NULL, "rigid search: pass %" PetscInt_FMT ", %" PetscInt_FMT " terms, of %g moved %g, work %g\n", it,
+    PetscCall(PetscInfo(NULL,
+                        "rigid search: pass %" PetscInt_FMT ", %" PetscInt_FMT " terms, of %g moved %g, work %g\n", it,
                         pass.n_terms, (double)move, (double)most, (double)(work / wished)));
     FreeBodiesMove(b, pass.wish, u);
     way += most;

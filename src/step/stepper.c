@@ -433,22 +433,21 @@ PetscErrorCode LoadStepperArchive(LoadStepper stepper, Archive archive)
   StepperReport *report  = &stepper->report;
   StepSize       size    = ArchiveLoads(archive) ? stepper->size : stepper->start;
   PetscReal      initial = size.initial, dt = size.dt;
-  PetscReal     *real[]    = {&initial,        &dt,           &size.beta,     &size.together,
-                              &size.shortfall, &size.planned, &report->taken, &report->left,
-                              &report->share,  &report->tied};
-  PetscInt      *integer[] = {&report->steps,
-                              &report->steps_failed,
-                              &report->steps_repeated,
-                              &report->newton_iterations,
-                              &report->newton_accepted,
-                              &report->krylov_iterations,
-                              &report->regathered,
-                              &report->adjusted,
-                              &report->cuts,
-                              &report->relaxed,
-                              &report->cycles,
-                              &report->cycles_cut,
-                              &size.tied};
+  PetscReal *real[]    = {&initial,       &dt,           &size.beta,     &size.together, &size.shortfall, &size.planned,
+                          &report->taken, &report->left, &report->share, &report->tied};
+  PetscInt  *integer[] = {&report->steps,
+                          &report->steps_failed,
+                          &report->steps_repeated,
+                          &report->newton_iterations,
+                          &report->newton_accepted,
+                          &report->krylov_iterations,
+                          &report->regathered,
+                          &report->adjusted,
+                          &report->cuts,
+                          &report->relaxed,
+                          &report->cycles,
+                          &report->cycles_cut,
+                          &size.tied};
 
   PetscFunctionBeginUser;
   PetscCall(ArchiveRealsAt(archive, "stepper/size", PETSC_STATIC_ARRAY_LENGTH(real), real));

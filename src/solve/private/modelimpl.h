@@ -1,11 +1,11 @@
 /* What the solvers share and no other folder sees: the working state of a model, and the functions that one solver
    offers to those above it.
 
-   problem.c is below all of them, and freebodies.c and rigidsearch.c below it. linearcontact.c finds the contact that is right at the end of a linear step.
-   linesearch.c chooses what the line search compares, and corrects steps for contact. newton.c runs SNES once
-   with the present contact lists. prediction.c finds a first iterate, penaltyramp.c improves it on softened penalties.
-   equilibrium.c goes from an accepted state to the next one. model.c holds the accepted state. Each file calls only
-   those named before it. */
+   problem.c is below all of them, and freebodies.c and rigidsearch.c below it. linearcontact.c finds the contact that
+   is right at the end of a linear step. linesearch.c chooses what the line search compares, and corrects steps for
+   contact. newton.c runs SNES once with the present contact lists. prediction.c finds a first iterate, penaltyramp.c
+   improves it on softened penalties. equilibrium.c goes from an accepted state to the next one. model.c holds the
+   accepted state. Each file calls only those named before it. */
 #pragma once
 #include "contact/contactcycle.h"
 #include "extrapolation.h"
