@@ -90,6 +90,13 @@ typedef struct {
   ContactPlace deepest; /* where the largest penetration is */
 } ContactQuality;
 
+/* How a pair presses, over all its slave nodes. */
+typedef struct {
+  PetscReal force;    /* sum of the normal forces; axisymmetric: over 360 degrees */
+  PetscReal pressure; /* mean, each node weighted by its force (force per area) */
+  PetscReal peak;     /* largest pressure of a node */
+} ContactLoad;
+
 typedef struct _n_Contact *Contact;
 
 /* Life and state */
@@ -125,6 +132,10 @@ PetscErrorCode ContactUnpredictedEnergy(Contact, const PetscReal *u, PetscReal t
 /* Penalties and multipliers */
 PetscErrorCode ContactSoften(Contact, PetscReal most);
 PetscErrorCode ContactStiffest(Contact, PetscReal *most);
+PetscErrorCode ContactScalePenalty(Contact, PetscReal factor);
+PetscErrorCode ContactStiffen(Contact, int pair, PetscReal factor);
+PetscErrorCode ContactPairStiffened(Contact, int pair, PetscReal *factor);
+PetscErrorCode ContactPairLoad(Contact, int pair, const PetscReal *u, ContactLoad *);
 PetscErrorCode ContactAdjustPenalty(Contact, ContactWindowState *);
 PetscErrorCode ContactAdjustNextPenalty(Contact);
 PetscErrorCode ContactGapsConverged(Contact, PetscBool *converged);

@@ -105,6 +105,12 @@ static PetscErrorCode PairTakeNext(ContactPair *pair)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Pressure of a term at a gap (force per area); negative: the term is open. */
+static PetscReal TermPressure(const ContactPair *pair, PetscInt c, PetscReal gap, PetscReal t)
+{
+  return pair->now.multiplier[c] + pair->now.penalty[c] * (ContactTermOffset(pair, c, t) - gap);
+}
+
 /* Largest penetration and largest pressure of the pair at the last residual, over all ranks. */
 static PetscErrorCode PairDepth(Contact contact, const ContactPair *pair, PetscReal t, PetscReal *depth,
                                 PetscReal *pressure)
@@ -118,7 +124,7 @@ static PetscErrorCode PairDepth(Contact contact, const ContactPair *pair, PetscR
     if (PetscIsNanReal(pair->now.gap[c])) continue;
     penetration = ContactTermOffset(pair, c, t) - pair->now.gap[c];
     most[0]     = PetscMax(most[0], penetration);
-    most[1]     = PetscMax(most[1], pair->now.multiplier[c] + penetration * pair->now.penalty[c]);
+    most[1]     = PetscMax(most[1], TermPressure(pair, c, pair->now.gap[c], t));
   }
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, most, 2, MPIU_REAL, MPI_MAX, contact->mesh->comm));
   *depth    = most[0];
@@ -215,14 +221,17 @@ static PetscBool FitHolds(NeighbourLists old, NeighbourLists fresh, PetscInt q)
 
 /* Says whether fresh lists find the same of this term as the solve did. An open term must be open. On facets a closed
    gap must agree. On fits the gap changes a little with their frames, so frames and points must agree, and with
-   offsets the gap must agree within `drift`. Area factors must agree on both. depth is the largest penetration of the
+   offsets the gap must agree within `drift`. Area factors must agree on both, weighted by the term's pressure over
+   the pair's largest one. depth is the largest penetration of the
    pair; where the pair is augmented and penetrations go to zero, the bound on them counts instead. */
 static PetscBool TermAgrees(const ContactPair *pair, NeighbourLists fresh, PetscInt c, PetscReal gap,
-                            const PetscReal *factor, PetscReal t, PetscReal depth, PetscReal drift)
+                            const PetscReal *factor, PetscReal t, PetscReal depth, PetscReal pressure, PetscReal drift)
 {
-  const PetscReal rest = ContactTermOnsetGap(pair, c, t), old = pair->now.gap[c];
-  PetscBool       fitted = PETSC_TRUE;
-  PetscReal       tolerance;
+  const PetscReal rest = ContactTermOnsetGap(pair, c, t), old = pair->now.gap[c],
+                  own   = PetscMax(TermPressure(pair, c, old, t), TermPressure(pair, c, gap, t)),
+                  share = pressure > 0 ? PetscMin(own / pressure, 1) : 1;
+  PetscBool fitted      = PETSC_TRUE;
+  PetscReal tolerance;
 
   for (PetscInt k = pair->term_ptr[c]; k < pair->term_ptr[c + 1]; k++)
     fitted = (PetscBool)(fitted && pair->lists->fit_n[pair->term_point[k]] && fresh->fit_n[pair->term_point[k]]);
@@ -232,7 +241,7 @@ static PetscBool TermAgrees(const ContactPair *pair, NeighbourLists fresh, Petsc
   for (PetscInt k = pair->term_ptr[c]; k < pair->term_ptr[c + 1]; k++) {
     const PetscInt q = pair->term_point[k];
 
-    if (PetscAbsReal(factor[q] - pair->factor[q]) > CONTACT_FACTOR_AGREES) return PETSC_FALSE;
+    if (share * PetscAbsReal(factor[q] - pair->factor[q]) > CONTACT_FACTOR_AGREES) return PETSC_FALSE;
     if (fitted && old - rest < 0 && !FitHolds(pair->lists, fresh, q)) return PETSC_FALSE;
   }
   if (!fitted || old - rest >= 0) return (PetscBool)(PetscAbsReal(gap - old) <= tolerance);
@@ -256,7 +265,7 @@ static PetscErrorCode PairNextAgrees(Contact contact, ContactPair *pair, PetscRe
   if (pair->fit.fitted) TimingEnd(TIMING_FIT);
   for (PetscInt c = 0; c < pair->n && *agrees; c++)
     *agrees = TermAgrees(pair, pair->next, c, ContactTermGap(pair, pair->next_factor, gaps, c, NULL), pair->next_factor,
-                         t, depth, drift);
+                         t, depth, pressure, drift);
   PetscCall(PetscFree(gaps));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -227,9 +227,11 @@ PetscErrorCode ContactPairCreate(Mesh mesh, Scene scene, Elasticity elasticity, 
   if (pair->master) PetscCall(SurfaceFindFreeEdges(pair->master, pair->n_images, pair->images));
   if (pair->fit.fitted && pair->fit.global_frame) PetscCall(PairCheckGlobalFrame(mesh, scene, loads, pair));
   PetscCall(PairCreatePoints(mesh, scene, loads, pair));
-  pair->automatic = PenaltyAutomatic(pair->slave->stiffness, pair->master ? pair->master->stiffness : 0);
-  pair->most      = PETSC_MAX_REAL;
-  penalty         = contact->penalty_scale * (contact->penalty_auto ? pair->automatic : contact->penalty);
+  pair->automatic    = PenaltyAutomatic(pair->slave->stiffness, pair->master ? pair->master->stiffness : 0);
+  pair->most         = PETSC_MAX_REAL;
+  pair->trial_factor = 1;
+  penalty            = contact->penalty_scale * (contact->penalty_auto ? pair->automatic : contact->penalty);
+  pair->initial      = penalty;
   PetscCall(ContactStateCreate(pair->n, penalty, &pair->now));
   PetscCall(ContactStateCreate(pair->n, penalty, &pair->accepted));
   PetscCall(SearchCreate(mesh, scene, loads, pair->master, pair->slave->max_size, pair->n_images, pair->images,

@@ -1,8 +1,9 @@
 /* Rules that turn the figures of a run into advice, see advice.h. */
 #include "advice.h"
 
-/* Penetrations and surface errors below this part of a face size are small whatever they are compared with. */
-#define ADVICE_SMALL 1e-3
+/* Estimated error by penetration above which a stiffer penalty is advised, and the error that it is to leave. */
+#define ADVICE_PENALTY        0.01
+#define ADVICE_PENALTY_WANTED 0.003
 /* The facets' own error hides what contact resolves if it is this many penetrations. */
 #define ADVICE_FACETS 10
 /* Part of the slave points that may be on the lower rungs. Free ends and corners of a surface put some points there. */
@@ -30,20 +31,21 @@ typedef int (*PairRuleFn)(const RunFigures *, const PairFigures *, char *text);
 
 static int PenetrationIsDeep(const RunFigures *figures, const PairFigures *pair, char *text)
 {
-  const SceneContact   *scene   = pair->scene;
-  const ContactQuality *quality = &pair->quality;
-  const PetscReal       size =
-    quality->max_penetration_over_h > 0 ? quality->max_penetration / quality->max_penetration_over_h : 0;
-  const PetscReal target = PetscMax(PairSurfaceError(pair), ADVICE_SMALL * size),
-                  over   = target > 0 ? quality->max_penetration / target : 0;
+  const SceneContact *scene = pair->scene;
+  const PenaltyError *part  = &pair->penalty_error;
+  const PetscReal     error =
+    PetscMax(PetscMax(part->force, part->displacement), scene->penalty_may_stiffen ? 0 : part->pressure);
 
   (void)figures;
-  if (scene->adjust || scene->augment || over <= 1) return 0;
-  snprintf(text, ADVICE_TEXT,
-           "%s: the penetration is %.3g times the surface's own error (or a thousandth of a face): penalty.scale %.3g "
-           "instead of %g, or penalty: {adjust: true, "
-           "g_min, g_max, unit}",
-           pair->name, (double)over, scene->penalty_scale * (double)over, scene->penalty_scale);
+  if (scene->adjust || scene->augment || !(error > ADVICE_PENALTY)) return 0;
+  if (!scene->penalty_may_stiffen)
+    snprintf(text, ADVICE_TEXT,
+             "%s: penetration leaves about %.2g %% of error: no penalty keys, so that the run chooses the penalty, or "
+             "%.2g times the penalty",
+             pair->name, (double)(100 * error), (double)(error / ADVICE_PENALTY_WANTED));
+  else
+    snprintf(text, ADVICE_TEXT, "%s: penetration leaves about %.2g %% of error: penalty: {scale: %.2g}", pair->name,
+             (double)(100 * error), scene->penalty_scale * (double)(pair->stiffened * error / ADVICE_PENALTY_WANTED));
   return 1;
 }
 

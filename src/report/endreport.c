@@ -48,6 +48,23 @@ static void PrintPair(const PairFigures *pair, FILE *stream)
   fprintf(stream, "\n");
 }
 
+/* Prints what penetration leaves of error, as estimated at the end of the load. */
+static void PrintPenaltyError(const PairFigures *pair, FILE *stream)
+{
+  const PenaltyError *error = &pair->penalty_error;
+
+  if (isnan((double)error->force) || !pair->quality.nodes) return;
+  fprintf(
+    stream,
+    "error    %s: penetration leaves about %.2g %% in forces, %.2g %% in pressures, %.2g %% in the peak pressure, "
+    "%.2g %% in displacements",
+    pair->name, 100 * (double)error->force, 100 * (double)error->pressure, 100 * (double)error->peak,
+    100 * (double)error->displacement);
+  if (pair->scene->penalty_may_stiffen && pair->stiffened > 1)
+    fprintf(stream, "; penalty raised %.3g times for it", (double)pair->stiffened);
+  fprintf(stream, "\n");
+}
+
 /* Prints one guard that acted, with a separator before all but the first one. */
 static void PrintGuard(FILE *stream, int *n, long long times, const char *what)
 {
@@ -130,7 +147,10 @@ void EndReportPrint(const RunFigures *figures, FILE *stream)
           (long long)way->steps, (long long)way->steps_failed, (long long)way->steps_repeated,
           (long long)way->newton_iterations, (long long)way->newton_accepted);
   PrintTime(figures, stream);
-  for (int p = 0; p < figures->n_pairs && figures->last; p++) PrintPair(&figures->pairs[p], stream);
+  for (int p = 0; p < figures->n_pairs && figures->last; p++) {
+    PrintPair(&figures->pairs[p], stream);
+    PrintPenaltyError(&figures->pairs[p], stream);
+  }
   PrintGuards(figures, stream);
   if (way->failed.attempts) PrintFailure(figures, stream);
   AdviceGive(figures, PrintAdvice, stream);

@@ -30,14 +30,18 @@ PetscErrorCode RunUsageCollect(MPI_Comm comm, RunUsage *usage)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode CollectPair(Contact contact, int p, PairFigures *pair)
+static PetscErrorCode CollectPair(Model model, int p, PairFigures *pair)
 {
+  const Contact contact = model->contact;
+
   PetscFunctionBeginUser;
-  pair->name  = ContactPairName(contact, p);
-  pair->scene = ContactPairScene(contact, p);
+  pair->name          = ContactPairName(contact, p);
+  pair->scene         = ContactPairScene(contact, p);
+  pair->penalty_error = ModelPenaltyError(model, p);
   PetscCall(ContactPairFits(contact, p, &pair->fits));
   PetscCall(ContactPairQuality(contact, p, &pair->quality));
   PetscCall(ContactPairPenalty(contact, p, &pair->penalty_min, &pair->penalty_max));
+  PetscCall(ContactPairStiffened(contact, p, &pair->stiffened));
   PetscCall(ContactPairWindow(contact, p, &pair->window));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -95,7 +99,7 @@ PetscErrorCode RunFiguresCollect(Model model, Scene scene, const RunRecord *run,
   BlasFind(&figures->blas);
   PetscCall(CollectFreeBodies(model, figures));
   PetscCall(PetscCalloc1(figures->n_pairs, &figures->pairs));
-  for (int p = 0; p < figures->n_pairs; p++) PetscCall(CollectPair(model->contact, p, &figures->pairs[p]));
+  for (int p = 0; p < figures->n_pairs; p++) PetscCall(CollectPair(model, p, &figures->pairs[p]));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -112,21 +116,4 @@ PetscErrorCode RunFiguresDestroy(RunFigures *figures)
   PetscFunctionBeginUser;
   PetscCall(PetscFree(figures->pairs));
   PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/*@
-  PairSurfaceError - returns how far the surface that contact is solved on is from the one that is meant (length), as
-  far as the run knows.
-
-  Not collective
-
-  Input Parameter:
-. pair - figures of the pair
-
-  Note:
-  It is the error of the fits, or of the facets where there are no fits; 0 for an analytic or flat master.
-@*/
-PetscReal PairSurfaceError(const PairFigures *pair)
-{
-  return pair->fits.points ? pair->fits.smoothing_error : pair->quality.sagitta;
 }

@@ -193,6 +193,11 @@ static void AddContact(cJSON *json, const RunFigures *figures)
     penalty = cJSON_AddObjectToObject(pair, "penalty");
     AddReal(penalty, "min", figure->penalty_min);
     AddReal(penalty, "max", figure->penalty_max);
+    AddReal(penalty, "error_force", figure->penalty_error.force);
+    AddReal(penalty, "error_pressure", figure->penalty_error.pressure);
+    AddReal(penalty, "error_peak", figure->penalty_error.peak);
+    AddReal(penalty, "error_displacement", figure->penalty_error.displacement);
+    AddReal(penalty, "stiffened", figure->stiffened);
     cJSON_AddNumberToObject(penalty, "raised", (double)window->raised);
     cJSON_AddNumberToObject(penalty, "lowered", (double)window->lowered);
     cJSON_AddNumberToObject(penalty, "clamped", (double)window->clamped);

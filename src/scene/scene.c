@@ -1,5 +1,6 @@
 /* The reader of a scene: it fills the Scene from a validated document, see scene.h. */
 #include "sceneprobe.h"
+#include "scenedefaults.h"
 #include "sceneread.h"
 #include "base/refusal.h"
 #include <string.h>
@@ -353,6 +354,25 @@ static PetscErrorCode SceneReadAdjustment(Scene scene, SceneContact *contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Reads the penalty at the start of the run, and how it follows the penetration. */
+static PetscErrorCode SceneReadPenalty(Scene scene, SceneContact *contact)
+{
+  Document *document = SceneDocument(scene);
+
+  PetscFunctionBeginUser;
+  PetscCall(SceneReadAdjustment(scene, contact));
+  PetscCall(SceneReadAugmentation(scene, contact));
+  contact->penalty_auto        = SchemaChoice(document, "%s.penalty.initial", contact->path) == 0;
+  contact->penalty             = contact->penalty_auto ? 0 : SchemaReal(document, "%s.penalty.initial", contact->path);
+  contact->penalty_may_stiffen = SchemaChoice(document, "%s.penalty.scale", contact->path) == 0 &&
+                                 contact->penalty_auto && !contact->adjust && !contact->augment;
+  if (SchemaChoice(document, "%s.penalty.scale", contact->path) != 0)
+    contact->penalty_scale = SchemaReal(document, "%s.penalty.scale", contact->path);
+  else
+    contact->penalty_scale = contact->penalty_may_stiffen ? SCENE_PENALTY_SCALE : 1;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 static PetscErrorCode SceneReadContact(Scene scene, SceneContact *contact)
 {
   Node symmetry = SceneNode(scene, contact->path, "symmetry");
@@ -370,6 +390,8 @@ static PetscErrorCode SceneReadContact(Scene scene, SceneContact *contact)
   contact->law         = (ContactLawKind)SchemaChoice(SceneDocument(scene), "%s.law", contact->path);
   contact->smoother    = SchemaChoice(SceneDocument(scene), "%s.smoother", contact->path);
   contact->formulation = (ContactFormulation)SchemaChoice(SceneDocument(scene), "%s.formulation", contact->path);
+  if (contact->formulation == CONTACT_FORMULATION_AUTO)
+    contact->formulation = contact->master ? CONTACT_SURFACE_TO_SURFACE : CONTACT_NODE_TO_SURFACE;
   contact->live_offset = SchemaChoice(SceneDocument(scene), "%s.offset", contact->path);
   contact->degree      = SchemaChoice(SceneDocument(scene), "%s.degree", contact->path) == 0 ? 4 : 2;
   contact->support =
@@ -381,11 +403,7 @@ static PetscErrorCode SceneReadContact(Scene scene, SceneContact *contact)
   contact->initial_overlap = (InitialOverlap)SchemaChoice(SceneDocument(scene), "%s.initial_overlap", contact->path);
   contact->stabilise       = (Stabilise)SchemaChoice(SceneDocument(scene), "%s.stabilise", contact->path);
   contact->feature_angle   = SchemaReal(SceneDocument(scene), "%s.feature_angle", contact->path);
-  contact->penalty_auto    = SchemaChoice(SceneDocument(scene), "%s.penalty.initial", contact->path) == 0;
-  contact->penalty = contact->penalty_auto ? 0 : SchemaReal(SceneDocument(scene), "%s.penalty.initial", contact->path);
-  contact->penalty_scale = SchemaReal(SceneDocument(scene), "%s.penalty.scale", contact->path);
-  PetscCall(SceneReadAdjustment(scene, contact));
-  PetscCall(SceneReadAugmentation(scene, contact));
+  PetscCall(SceneReadPenalty(scene, contact));
   contact->n_symmetry = symmetry ? symmetry->n : 0;
   PetscCall(PetscCalloc1(contact->n_symmetry, &contact->symmetry));
   for (int i = 0; i < contact->n_symmetry; i++)

@@ -17,7 +17,8 @@
 typedef enum { OVERLAP_REFUSE, OVERLAP_RESOLVE, OVERLAP_RAMP, OVERLAP_IGNORE } InitialOverlap;
 typedef enum { STABILISE_AUTO, STABILISE_TRUE, STABILISE_FALSE } Stabilise;
 typedef enum { SOLVER_DIRECT, SOLVER_ITERATIVE, SOLVER_AUTO } SolverType;
-typedef enum { CONTACT_NODE_TO_SURFACE, CONTACT_SURFACE_TO_SURFACE } ContactFormulation;
+/* The scene's word `auto` is one of the first two once a pair has been read. */
+typedef enum { CONTACT_NODE_TO_SURFACE, CONTACT_SURFACE_TO_SURFACE, CONTACT_FORMULATION_AUTO } ContactFormulation;
 
 typedef struct {
   char       *path;        /* such as "bodies.0", for SceneWhere() */
@@ -65,7 +66,8 @@ typedef struct {
   int            penalty_auto; /* 1 if the penalty is the automatic one */
   /* Penalty (force per length and area), 0 if it is automatic, and the factor on the automatic penalty. */
   double penalty, penalty_scale;
-  int    adjust; /* 1 if the penalty follows the penetration */
+  int    penalty_may_stiffen; /* 1 if the run chooses the penalty: no key of the scene sets it or lets it follow */
+  int    adjust;              /* 1 if the penalty follows the penetration */
   /* When the penalty is adjusted: 1 within the step, until the window holds; 0 from one step to the next. */
   int adjust_converged;
   int window_in_spacings; /* 1 if g_min and g_max are multiples of the slave node's face size; 0 if lengths */

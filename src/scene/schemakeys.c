@@ -2,6 +2,7 @@
 #include "schemakeys.h"
 #include "base/choices.h"
 #include "document.h"
+#include "scenedefaults.h"
 #include "smooth/smoother.h"
 #include <stdio.h>
 #include <string.h>
@@ -79,10 +80,11 @@ const SchemaKey SchemaKeys[] = {
   {"contact.*.master.cylinder|sphere.side", CHOICE, .values = "outside | inside", .preset = "outside",
    .help = "side of the surface on which the slave is"},
   MOTION_KEYS("contact.*.master.plane|cylinder|sphere"),
-  {"contact.*.smoother", CHOICE, .values = SMOOTHER_CHOICES, .preset = "facet",
+  {"contact.*.smoother", CHOICE, .values = SMOOTHER_CHOICES, .preset = "diffuse",
    .help = "surface of the master in the contact: its faces (facet) or a smooth surface near them (diffuse)"},
-  {"contact.*.formulation", CHOICE, .values = "node_to_surface | surface_to_surface", .preset = "node_to_surface",
-   .help = "where the gap is measured: at the nodes of the slave, or at quadrature points of its faces"},
+  {"contact.*.formulation", CHOICE, .values = "node_to_surface | surface_to_surface | auto", .preset = "auto",
+   .help = "where the gap is measured: at the nodes of the slave, or at quadrature points of its faces; auto: "
+           "surface_to_surface, and node_to_surface where the master is an analytic surface"},
   {"contact.*.offset", CHOICE, .values = "held | live", .preset = "held",
    .help = "of surface_to_surface; held: the offsets are computed before each solve; live: they follow the nodes "
            "within the solve"},
@@ -110,7 +112,10 @@ const SchemaKey SchemaKeys[] = {
   {"contact.*.penalty.initial", REAL | CHOICE, .values = "auto", .range = "(0, inf)",
    .unit = "force per length and area", .preset = "auto",
    .help = "penalty at the start of the run"},
-  {"contact.*.penalty.scale", REAL, .range = "(0, inf)", .preset = "1", .help = "factor on the automatic penalty"},
+  {"contact.*.penalty.scale", REAL | CHOICE, .values = "auto", .range = "(0, inf)", .preset = "auto",
+   .help = "factor on the penalty; for initial: auto, 1 is the stiffness of the softer body's elements below the "
+           "surface; auto: " SCENE_PENALTY_SCALE_TEXT ", raised by the run where penetration leaves more than 0.7 % of error; "
+           "1 with another initial value, adjust or augment"},
   {"contact.*.penalty.adjust", BOOLEAN, .preset = "false",
    .help = "true: the penalty follows the penetration; needs g_min, g_max and unit"},
   {"contact.*.penalty.when", CHOICE, .values = "step | converged", .preset = "converged",

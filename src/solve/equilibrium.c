@@ -16,6 +16,10 @@
    on and on, or a tool pushes it before it against no force but that of the springs. */
 #define EQUILIBRIUM_ALL 0.1
 
+/* Penalties are stiffened at most this many times at one load parameter. The first time is enough where the error is
+   proportional to the compliance of the penalty, which it is when it is small. */
+#define EQUILIBRIUM_MAX_STIFFEN 2
+
 /* Adds to the text that a slave node rests on an edge between facets. *found: such a node exists. */
 static PetscErrorCode ModelBlameFacets(Model model, char *text, size_t size, PetscBool *found)
 {
@@ -135,6 +139,7 @@ static PetscErrorCode ModelDepart(Model model, PetscReal t)
   work->cycles             = 0;
   work->cycle[0]           = '\0';
   work->energy             = 0;
+  ModelForgetPenaltyError(model);
   if (!model->contact) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(ProblemImposedMotion(model->problem, work->accepted_u, work->accepted_t, t, &motion));
   motion = PetscMax(motion, PROBLEM_MOTION_SAFETY * work->rate * (t - work->accepted_t));
@@ -309,6 +314,36 @@ static PetscErrorCode ModelSolveHeld(Model model, SolveReport *report)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Says whether the error that penetration leaves is to be estimated at t: at the end of the load, for the report; and
+   where the load changes its rate or the scene asks for a step, if the run may choose a penalty. */
+static PetscBool ModelEstimatesAt(Model model, PetscReal t)
+{
+  const Scene scene  = model->scene;
+  PetscBool   choice = PETSC_FALSE, asked = SceneBreaks(scene, t);
+
+  if (t >= 1) return PETSC_TRUE;
+  for (int p = 0; p < ContactPairs(model->contact); p++)
+    choice = (PetscBool)(choice || ContactPairScene(model->contact, p)->penalty_may_stiffen);
+  for (int i = 0; i < scene->stepping.n_at; i++) asked = (PetscBool)(asked || scene->stepping.at[i] == t);
+  return (PetscBool)(choice && asked);
+}
+
+/* Estimates what penetration leaves of error, and stiffens the penalties that the run may choose where that is too
+   much. WINDOW_MISSED: the step must be solved on. */
+static PetscErrorCode ModelCheckPenalty(Model model, SolveReport *report, ContactWindowState *window)
+{
+  PetscBool stiffened = PETSC_FALSE;
+
+  PetscFunctionBeginUser;
+  PetscCall(ModelEstimatePenalty(model));
+  if (report->stiffened < EQUILIBRIUM_MAX_STIFFEN) PetscCall(ModelStiffen(model, &stiffened));
+  if (!stiffened) PetscFunctionReturn(PETSC_SUCCESS);
+  report->stiffened++;
+  report->adjusted++;
+  *window = WINDOW_MISSED;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /*@
   ModelSolve - finds equilibrium at a load parameter, starting from the accepted state.
 
@@ -327,7 +362,9 @@ static PetscErrorCode ModelSolveHeld(Model model, SolveReport *report)
 
   Contact lists are made before the first solve and are frozen in each solve by Newton's method. After each solve they
   are checked and made anew, at most MODEL_MAX_REGATHER times. Then penalties that are adjusted within the step are
-  changed, and the step is solved on from there, until the penetrations are in their window or no more can be done.
+  changed, and the step is solved on from there, until the penetrations are in their window or no more can be done. At
+  t = 1, at breakpoints of the load and where the scene asks for a step, the error that penetration leaves is estimated,
+  and penalties that no key of the scene sets are made stiffer where it is large.
 @*/
 PetscErrorCode ModelSolve(Model model, PetscReal t, SolveReport *report)
 {
@@ -352,6 +389,7 @@ PetscErrorCode ModelSolve(Model model, PetscReal t, SolveReport *report)
       PetscCall(ContactLocateOutside(model->contact, report->detail, sizeof(report->detail)));
       report->result = SOLVE_WINDOW;
     }
+    if (window == WINDOW_HOLDS && ModelEstimatesAt(model, t)) PetscCall(ModelCheckPenalty(model, report, &window));
   }
   report->cycles = work->cycles;
   PetscCall(PetscStrncpy(report->cycle, work->cycle, sizeof(report->cycle)));

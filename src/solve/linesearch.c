@@ -85,7 +85,8 @@ void ModelChooseObjective(Model model, PetscReal residual, PetscReal slope)
 }
 
 /* Before the search: changes Newton's step so that its contact is right at its end, and chooses the objective anew from
- * the slope of the energy. */
+   the slope of the energy. Where the tangent is indefinite, Newton's step may lead uphill, to a saddle of the energy.
+   The opposite step leads downhill then. */
 static PetscErrorCode ModelMeasureStep(SNESLineSearch search, Vec x, Vec y, PetscBool *changed, void *context)
 {
   Model     model = context;
@@ -104,6 +105,7 @@ static PetscErrorCode ModelMeasureStep(SNESLineSearch search, Vec x, Vec y, Pets
     PetscCall(SNESComputeObjective(snes, x, &energy)); /* none was evaluated in this load step */
   PetscCall(SNESLineSearchGetVecs(search, NULL, &F, NULL, NULL, NULL));
   PetscCall(VecDotRealPart(F, y, &slope));
+  if (slope < 0) PetscCall(VecScale(y, -1));
   ModelChooseObjective(model, NAN, slope);
   PetscFunctionReturn(PETSC_SUCCESS);
 }

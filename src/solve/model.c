@@ -48,6 +48,7 @@ PetscErrorCode ModelCreate(Scene scene, Mesh mesh, Model *out)
   PetscCall(VecDuplicate(model->x, &model->work->residual));
   if (scene->kinematics != KINEMATICS_SMALL) PetscCall(ExtrapolationCreate(mesh, &model->work->extrapolation));
   PetscCall(ModelCreateSNES(model));
+  PetscCall(ModelCreatePenaltyError(model));
   if (model->contact) PetscCall(ContactCycleCreate(model->contact, &model->work->watch));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -77,6 +78,7 @@ PetscErrorCode ModelDestroy(Model *model)
   PetscCall(VecDestroy(&m->work->residual));
   PetscCall(ProblemDestroy(&m->problem));
   PetscCall(PetscFree2(m->u, m->work->accepted_u));
+  PetscCall(PetscFree(m->work->penalty_error));
   PetscCall(PetscFree(m->work));
   PetscCall(PetscFree(*model));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -268,6 +270,7 @@ PetscErrorCode ModelArchive(Model model, Archive archive)
     model->t      = work->accepted_t;
     work->settled = (PetscBool)(work->accepted_t == 0);
   }
+  PetscCall(ModelArchivePenaltyError(model, archive));
   PetscCall(LinearCheckArchive(model->linear, archive));
   if (model->contact) PetscCall(ContactArchive(model->contact, archive, model->u, model->t));
   if (!ArchiveLoads(archive)) PetscFunctionReturn(PETSC_SUCCESS);

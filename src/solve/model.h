@@ -31,6 +31,7 @@ typedef struct {
   PetscInt    krylov;      /* iterations of these linear solves */
   PetscInt    regathered;  /* times that contact lists were replaced */
   PetscInt    adjusted;    /* times that penalties or multipliers were changed and the step solved on */
+  PetscInt    stiffened;   /* times that penalties were made stiffer for a smaller error, and the step solved on */
   PetscInt    cuts;        /* iterations that the line search shortened */
   PetscReal   residual;    /* |R|_2 / F_ref at the end */
   PetscInt    relaxed;     /* times that the contact springs were relaxed and the step solved on */
@@ -43,6 +44,14 @@ typedef struct {
   char        detail[256]; /* where a failed solve failed, in gmsh's tags */
   Failure     failure;     /* more about a failed solve */
 } SolveReport;
+
+/* What penetration leaves of error in the present state, estimated: parts of the present values. */
+typedef struct {
+  PetscReal force;        /* of the sum of a pair's nodal forces; NaN: not estimated */
+  PetscReal pressure;     /* of its mean pressure, nodes weighted by their forces */
+  PetscReal peak;         /* of its largest pressure; where pressures scatter, that of the scatter too */
+  PetscReal displacement; /* of the largest displacement in the model */
+} PenaltyError;
 
 typedef struct _n_Model {
   Problem     problem;
@@ -70,3 +79,4 @@ PetscErrorCode ModelRestore(Model);
 PetscErrorCode ModelArchive(Model, Archive);
 PetscErrorCode ModelEffects(Model, char *text, size_t size);
 PetscErrorCode ModelDofs(Model, PetscInt *free_dofs);
+PenaltyError   ModelPenaltyError(Model, int pair);

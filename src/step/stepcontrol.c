@@ -1,9 +1,11 @@
 /* The controls of the load step without contact, and the table of all controls. */
 #include "stepcontrol.h"
 
-/* control: iterations. The Newton iterations that a step should take. With fewer dt grows and with more it shrinks, by
-   the square root of the ratio. */
-#define STEP_TARGET_ITERATIONS 6.0
+/* control: iterations. With fewer Newton iterations than the first number dt grows, with more than the second one it
+   shrinks, by the square root of the ratio. In between it stays. Where contact slides, a step of any size takes six to
+   ten, because nodes change and lists are made anew; to shorten it would only add steps. */
+#define STEP_FEW_ITERATIONS  6.0
+#define STEP_MANY_ITERATIONS 12.0
 /* control: iterations. An accepted step shrinks dt by at most this factor. */
 #define STEP_SHRINK 0.5
 /* control: fixed. After a cut dt grows by this factor in each step until it has the value of the scene again. */
@@ -24,7 +26,8 @@ static PetscErrorCode StepControlNext_Fixed(Model model, PetscReal dt, PetscBool
 static PetscErrorCode StepControlNext_Iterations(Model model, PetscReal dt, PetscBool clipped, PetscInt newton,
                                                  StepSize *size)
 {
-  const PetscReal factor = PetscSqrtReal(STEP_TARGET_ITERATIONS / PetscMax(1, newton));
+  const PetscReal n = PetscMax(1, newton), target = PetscMax(STEP_FEW_ITERATIONS, PetscMin(STEP_MANY_ITERATIONS, n)),
+                  factor = PetscSqrtReal(target / n);
 
   PetscFunctionBeginUser;
   (void)model;

@@ -199,7 +199,7 @@ CASES = [
         "contact", "two pairs that share nodes", "a slave node on the seam of two masters is in both pairs", SQUEEZE,
         SEAM + [
             "contact.1={name: other, slave: upper_contact, master: right_contact, "
-            "penalty: {initial: auto, scale: 100}}",
+            "smoother: facet, formulation: node_to_surface, penalty: {initial: auto, scale: 100}}",
             "probes.1={name: other, contact_force: other, component: y, absolute: true}"
         ], All(Near("force", 0.5, 0.1), Near("other", 0.5, 0.1)), pairs=2),
     Case("contact", "corner of two walls", "the corner node is in two pairs, which alone hold the body", SQUEEZE, WALLS,

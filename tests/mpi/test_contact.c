@@ -14,7 +14,7 @@ static const PartsBlock Blocks[] = {{"lower", 3, 1, {0, 3}, {0, 1}}, {"upper", 1
 
 static Parts parts;
 
-/* Scene of two bodies and one pair. pair: further keys of it. */
+/* Scene of two bodies and one pair. pair: further keys of it. Facets at slave nodes are the simplest contact. */
 static const char *SceneText(const char *kinematics, const char *pair)
 {
   static char text[1024];
@@ -23,8 +23,10 @@ static const char *SceneText(const char *kinematics, const char *pair)
            "geometry: plane_strain\nkinematics: %s\nbodies:\n"
            "  - {volume: lower, material: {law: %s, E: 1000, nu: 0}}\n"
            "  - {volume: upper, material: {law: %s, E: 1000, nu: 0}}\n"
-           "contact: [{name: joint, slave: upper_bottom, master: lower_top, %s}]\n",
-           kinematics, kinematics[0] == 's' ? "linear" : "svk", kinematics[0] == 's' ? "linear" : "svk", pair);
+           "contact: [{name: joint, slave: upper_bottom, master: lower_top, %s%s%s}]\n",
+           kinematics, kinematics[0] == 's' ? "linear" : "svk", kinematics[0] == 's' ? "linear" : "svk",
+           strstr(pair, "smoother") ? "" : "smoother: facet, ",
+           strstr(pair, "formulation") ? "" : "formulation: node_to_surface, ", pair);
   return text;
 }
 

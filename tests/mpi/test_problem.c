@@ -42,7 +42,8 @@ static void test_consistent(void **state)
     "supports: [{surface: lower_bottom, ux: 0, uy: 0}]\n"
     "loads:\n  - {surface: upper_top, pressure: 20}\n  - {surface: upper_right, traction: [3, -4]}\n"
     "  - {volume: lower, body_force: [1, -2]}\n"
-    "contact: [{name: joint, slave: upper_bottom, master: lower_top, penalty: {initial: 1000}}]\n";
+    "contact: [{name: joint, slave: upper_bottom, master: lower_top, smoother: facet, "
+    "formulation: node_to_surface, penalty: {initial: 1000}}]\n";
   double        force, energy;
   PetscReal     part[3], all;
   PetscBool     ok;
@@ -264,18 +265,18 @@ static void test_linear(void **state)
 static void test_linear_contact(void **state)
 {
   static const PartsBlock column[] = {{"lower", 2, 1, {0, 1}, {0, 1}}, {"upper", 2, 1, {0, 1}, {1.1, 1.7}}};
-  static const char       text[] =
-    "geometry: plane_strain\nkinematics: small\nbodies:\n"
-    "  - {volume: lower, material: {law: linear, E: 1000, nu: 0}}\n"
-    "  - {volume: upper, material: {law: linear, E: 500, nu: 0}}\n"
-    "supports: [{surface: lower_bottom, ux: 0, uy: 0}, {surface: upper_top, ux: 0}]\n"
-    "loads: [{surface: upper_top, uy: -0.3}]\n"
-    "contact: [{name: joint, slave: lower_top, master: upper_bottom, penalty: {initial: 2000}}]\n"
-    "solver: {type: direct, tolerance: 1e-12}\n";
-  const double pressure = 0.2 / (1 / 1000. + 0.6 / 500. + 1 / 2000.);
-  PetscReal    force[3];
-  SolveReport  report;
-  Model        model;
+  static const char       text[]   = "geometry: plane_strain\nkinematics: small\nbodies:\n"
+                                     "  - {volume: lower, material: {law: linear, E: 1000, nu: 0}}\n"
+                                     "  - {volume: upper, material: {law: linear, E: 500, nu: 0}}\n"
+                                     "supports: [{surface: lower_bottom, ux: 0, uy: 0}, {surface: upper_top, ux: 0}]\n"
+                                     "loads: [{surface: upper_top, uy: -0.3}]\n"
+                                     "contact: [{name: joint, slave: lower_top, master: upper_bottom, smoother: facet, "
+                                     "formulation: node_to_surface, penalty: {initial: 2000}}]\n"
+                                     "solver: {type: direct, tolerance: 1e-12}\n";
+  const double            pressure = 0.2 / (1 / 1000. + 0.6 / 500. + 1 / 2000.);
+  PetscReal               force[3];
+  SolveReport             report;
+  Model                   model;
 
   (void)state;
   PartsCreate(2, column, NULL, text, &parts);
@@ -300,7 +301,8 @@ static void test_active_set(void **state)
     "  - {volume: upper, material: {law: linear, E: 1000, nu: 0.3}}\n"
     "supports: [{surface: lower_bottom, ux: 0, uy: 0}, {surface: upper_left, ux: 0}, {surface: upper_right, ux: 0}]\n"
     "loads: [{surface: upper_left, uy: -0.2}, {surface: upper_right, uy: 0.1}]\n"
-    "contact: [{name: joint, slave: upper_bottom, master: lower_top, penalty: {initial: 2000}}]\n"
+    "contact: [{name: joint, slave: upper_bottom, master: lower_top, smoother: facet, "
+    "formulation: node_to_surface, penalty: {initial: 2000}}]\n"
     "solver: {type: direct, tolerance: 1e-12}\n";
   PetscReal      force[3], reaction[3];
   ContactSummary summary;

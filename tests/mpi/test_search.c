@@ -20,8 +20,9 @@ static void Create(PartsMap map, const char *supports, const char *pair)
            "geometry: plane_strain\nkinematics: finite\nbodies:\n"
            "  - {volume: lower, material: {law: svk, E: 1000, nu: 0}}\n"
            "  - {volume: upper, material: {law: svk, E: 1000, nu: 0}}\n%s"
-           "contact: [{name: joint, slave: upper_bottom, master: lower_top, penalty: {initial: 1000}%s}]\n",
-           supports, pair);
+           "contact: [{name: joint, slave: upper_bottom, master: lower_top, penalty: {initial: 1000}%s%s%s}]\n",
+           supports, strstr(pair, "smoother") ? "" : ", smoother: facet",
+           strstr(pair, "formulation") ? "" : ", formulation: node_to_surface", pair);
   PartsCreate(2, Blocks, map, text, &parts);
 }
 

@@ -10,7 +10,7 @@ from harness import Check, arguments, run, SCENES
 SOURCE = SCENES.parent.parent / "src"
 RINGS = SCENES.parent.parent / "runs" / "ring_in_ring.yaml"
 PAIR = ("contact.0={name: fit, slave: inner_contact, master: outer_contact, symmetry: [symmetry_x, symmetry_y], "
-        "initial_overlap: resolve, penalty: {scale: 100}}")
+        "smoother: facet, formulation: node_to_surface, initial_overlap: resolve, penalty: {scale: 100}}")
 MESH = "mesh.parameters={n_inner: 8, n_outer: 10}"
 BASE = [
     MESH, PAIR, "kinematics=finite", "loads=[{surface: outer_contact, pressure: 1}]",

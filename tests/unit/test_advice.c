@@ -1,4 +1,4 @@
-/* Advice is given for figures that are bad and only for those: penetration against the surface's error, coarse facets,
+/* Advice is given for figures that are bad and only for those: errors by penetration, coarse facets,
  * fits that fall back, steps that fail, old kernels. */
 #include <setjmp.h>
 #include <stdarg.h>
@@ -21,12 +21,13 @@ typedef struct {
 static void Good(Case *c)
 {
   memset(c, 0, sizeof(*c));
-  c->scene   = (SceneContact){.name = "sole", .penalty_auto = 1, .penalty_scale = 10};
-  c->pair    = (PairFigures){.name    = "sole",
-                             .scene   = &c->scene,
-                             .quality = {.nodes = 5, .max_penetration = 1e-4, .max_penetration_over_h = 1e-4}};
-  c->way     = (StepperReport){.done = PETSC_TRUE, .steps = 10, .newton_iterations = 50, .newton_accepted = 50};
-  c->run     = (RunRecord){.way = &c->way};
+  c->scene          = (SceneContact){.name = "sole", .penalty_auto = 1, .penalty_scale = 10};
+  c->pair           = (PairFigures){.name    = "sole",
+                                    .scene   = &c->scene,
+                                    .quality = {.nodes = 5, .max_penetration = 1e-4, .max_penetration_over_h = 1e-4}};
+  c->pair.stiffened = 1;
+  c->way            = (StepperReport){.done = PETSC_TRUE, .steps = 10, .newton_iterations = 50, .newton_accepted = 50};
+  c->run            = (RunRecord){.way = &c->way};
   c->figures = (RunFigures){.run = &c->run, .usage = {.wall_s = 1}, .last = &c->last, .n_pairs = 1, .pairs = &c->pair};
 }
 
@@ -57,14 +58,20 @@ static void test_pairs(void **state)
   (void)state;
   Good(&c);
   Expect(&c, NULL);
-  c.pair.quality.max_penetration = c.pair.quality.max_penetration_over_h = 5e-3;
-  Expect(&c, "penalty.scale 50 instead of 10"); /* five times a thousandth of a face */
+  c.pair.penalty_error.pressure = 0.03;
+  Expect(&c, "10 times the penalty");
+  c.scene.penalty_may_stiffen = 1;
+  Expect(&c, NULL); /* pressures may scatter, and no penalty changes that */
+  c.pair.penalty_error.force = 0.03;
+  Expect(&c, "penalty: {scale: 1e+02}"); /* 3 % to 0.3 % */
   c.scene.adjust = 1;
   Expect(&c, NULL);
   Good(&c);
-  c.pair.quality.max_penetration = c.pair.quality.max_penetration_over_h = 5e-3;
+  c.pair.penalty_error.force = NAN; /* not estimated */
+  Expect(&c, NULL);
+  Good(&c);
   c.pair.fits = (ContactFits){.points = 20, .plain = 20, .smoothing_error = 1e-2};
-  Expect(&c, NULL); /* the surface is not known any better */
+  Expect(&c, NULL);
   c.pair.fits.plain  = 17;
   c.pair.fits.linear = 3;
   Expect(&c, "3 of 20 slave points");

@@ -67,7 +67,9 @@ typedef struct {
   PetscInt  *term_ptr, *term_point; /* slave points of each term */
   PetscReal *term_weight;           /* their areas in it; the sum is the term's area */
   PetscReal  automatic;             /* penalty (force per length and area) */
+  PetscReal  initial;               /* the penalty at the start of the run */
   PetscReal  most;                  /* largest penalty that counts (force per length and area), ContactSoften() */
+  PetscReal  trial_factor;          /* factor on what penalties count for, ContactScalePenalty() */
   PetscBool  holding, touching;     /* a linear step: closed terms stay so, and what touches is closed */
   PetscBool *held, *predicted;      /* terms closed where the linear step began; those the prediction counted on */
 

@@ -13,6 +13,8 @@ typedef struct {
   ContactQuality      quality;
   ContactWindow       window;
   PetscReal           penalty_min, penalty_max;
+  PenaltyError        penalty_error;
+  PetscReal           stiffened; /* factor by which the run raised the penalty, where it may choose it */
 } PairFigures;
 
 typedef struct {
@@ -39,4 +41,3 @@ PetscErrorCode RunUsageCollect(MPI_Comm, RunUsage *);
 PetscErrorCode RunFiguresCollect(Model, Scene, const RunRecord *, const RunUsage *, PetscInt restarts,
                                  const StepRecord *last, RunFigures *);
 PetscErrorCode RunFiguresDestroy(RunFigures *);
-PetscReal      PairSurfaceError(const PairFigures *);

@@ -4,8 +4,9 @@
    problem.c is below all of them, and freebodies.c and rigidsearch.c below it. linearcontact.c finds the contact that
    is right at the end of a linear step. linesearch.c chooses what the line search compares, and corrects steps for
    contact. newton.c runs SNES once with the present contact lists. prediction.c finds a first iterate, penaltyramp.c
-   improves it on softened penalties. equilibrium.c goes from an accepted state to the next one. model.c holds the
-   accepted state. Each file calls only those named before it. */
+   improves it on softened penalties, penaltyerror.c estimates what penetration leaves of error and stiffens penalties.
+   equilibrium.c goes from an accepted state to the next one. model.c holds the accepted state. Each file calls only
+   those named before it. */
 #pragma once
 #include "contact/contactcycle.h"
 #include "extrapolation.h"
@@ -35,6 +36,8 @@ typedef struct _n_ModelWork {
   PetscReal  accepted_start; /* residual norm where Newton's method started in that step; 0: unknown */
   PetscReal  rate;           /* largest displacement per unit of t in that step */
   PetscBool  settled;        /* bodies were moved into contact there; always at t = 0 */
+
+  PenaltyError *penalty_error; /* of each pair, once the load is at its end */
 
   /* A look-ahead from the accepted state */
   Vec       look_ahead; /* free displacements at look_ahead_t by ModelLookAhead() */
@@ -78,3 +81,9 @@ PetscErrorCode ModelPredictFar(Model, SolveReport *);
 PetscErrorCode ModelFollowLists(Model, SolveReport *);
 /* penaltyramp.c */
 PetscErrorCode ModelRampPenalty(Model, SolveReport *);
+/* penaltyerror.c */
+PetscErrorCode ModelCreatePenaltyError(Model);
+void           ModelForgetPenaltyError(Model);
+PetscErrorCode ModelArchivePenaltyError(Model, Archive);
+PetscErrorCode ModelEstimatePenalty(Model);
+PetscErrorCode ModelStiffen(Model, PetscBool *stiffened);

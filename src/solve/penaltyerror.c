@@ -1,0 +1,218 @@
+/* The error that penetration leaves in forces, pressures and displacements, and what is done about it.
+
+   A quantity q depends on the factor s on all penalties like q(s) = q_0 (1 - c / s) once the penalties are stiff. Then
+   its error q_0 - q is dq/d(ln s). One linear solve with the tangent gives du/d(ln s), because the residual depends on
+   ln s through the penalty part of the contact forces alone. Forces and pressures are then evaluated a small way along
+   this derivative. */
+#include "modelimpl.h"
+
+/* Step along which forces and pressures are compared. Penetrations shrink by about this part of themselves, so that
+   hardly any node opens or closes, and round-off of the gaps stays far below. Penalties grow as penetrations shrink, to
+   1 / (1 - step): then forces that stay as they are do so to the second order too. */
+#define PENALTY_STEP 0.02
+/* Penalties that the run may choose are made stiffer where an estimate is above this. */
+#define PENALTY_ERROR_LARGE 0.007
+/* The estimates for pressures do not count for this. Where the slave's nodes are denser than the master's, pressures
+   scatter, and stiffer penalties only let them scatter more. */
+/* They are made so stiff that this is to be expected. */
+#define PENALTY_ERROR_WANTED 0.003
+/* They are made stiffer by at most this factor at a time. An estimate that asks for more is beyond the range in which
+   the error is proportional to the compliance. */
+#define PENALTY_MOST_STIFFER 30
+/* A pair whose forces are below this part of those of the most loaded pair does not stiffen its penalty, because its
+   own error hardly counts in the model. */
+#define PENALTY_LIGHT_PAIR 1e-3
+
+/* Makes room for the estimates; none is known yet. */
+PetscErrorCode ModelCreatePenaltyError(Model model)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(ContactPairs(model->contact), &model->work->penalty_error));
+  ModelForgetPenaltyError(model);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Forgets the estimates of a solve that was taken back. */
+void ModelForgetPenaltyError(Model model)
+{
+  for (int p = 0; p < ContactPairs(model->contact); p++)
+    model->work->penalty_error[p] = (PenaltyError){.force = NAN, .pressure = NAN, .peak = NAN, .displacement = NAN};
+}
+
+/* Saves or loads the estimates with the model. */
+PetscErrorCode ModelArchivePenaltyError(Model model, Archive archive)
+{
+  const int n = ContactPairs(model->contact);
+
+  PetscFunctionBeginUser;
+  if (n) PetscCall(ArchiveReals(archive, "model/penalty_error", 4 * n, &model->work->penalty_error[0].force));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ModelPenaltyError - returns the error that penetration leaves in a pair, as estimated.
+
+  Not collective
+
+  Input Parameters:
++ model - the model
+- pair  - number of the pair
+
+  Note:
+  The values are NaN where no estimate was made in the last step; at the end of the load one is made.
+@*/
+PenaltyError ModelPenaltyError(Model model, int pair)
+{
+  return model->work->penalty_error[pair];
+}
+
+/* The derivative of the free residual to ln s at the trial state. The residual is linear in s. */
+static PetscErrorCode ModelPenaltyForces(Model model, Vec forces)
+{
+  const Problem problem = model->problem;
+  Vec           single;
+  PetscBool     ok;
+
+  PetscFunctionBeginUser;
+  PetscCall(VecDuplicate(forces, &single));
+  PetscCall(ContactScalePenalty(model->contact, 2));
+  PetscCall(ProblemResidual(problem, problem->trial, model->t, model->t, &ok));
+  PetscCall(ProblemCollectResidual(problem, model->x, forces));
+  PetscCall(ContactScalePenalty(model->contact, 1));
+  PetscCall(ProblemResidual(problem, problem->trial, model->t, model->t, &ok));
+  PetscCall(ProblemCollectResidual(problem, model->x, single));
+  PetscCall(VecAXPY(forces, -1, single));
+  PetscCall(VecDestroy(&single));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* -du/d(ln s) of the free displacements at the trial state. *known: the linear solve succeeded. */
+static PetscErrorCode ModelPenaltySlope(Model model, Vec slope, PetscBool *known)
+{
+  Vec forces;
+  KSP ksp;
+
+  PetscFunctionBeginUser;
+  PetscCall(VecDuplicate(model->x, &forces));
+  PetscCall(ModelPenaltyForces(model, forces));
+  PetscCall(LinearSolverRenew(model->work->solver));
+  PetscCall(LinearSolverSetStart(model->work->solver, 0));
+  PetscCall(ModelTangent(model, model->problem->trial, model->t));
+  PetscCall(SNESGetKSP(model->snes, &ksp));
+  PetscCall(KSPSetOperators(ksp, model->problem->A, model->problem->P));
+  PetscCall(KSPSolve(ksp, forces, slope));
+  *known = (PetscBool)!LinearCheckLost(model->linear);
+  PetscCall(VecDestroy(&forces));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* How each pair presses at displacements u. */
+static PetscErrorCode ModelPairLoads(Model model, const PetscReal *u, ContactLoad load[])
+{
+  PetscBool ok;
+
+  PetscFunctionBeginUser;
+  PetscCall(ProblemResidual(model->problem, u, model->t, model->t, &ok));
+  for (int p = 0; p < ContactPairs(model->contact); p++) PetscCall(ContactPairLoad(model->contact, p, u, &load[p]));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Largest entries of the local displacements and of their change along the slope, of all ranks: the second over the
+   first. */
+static PetscErrorCode ModelLargestChange(Model model, const PetscReal *changed, PetscReal step, PetscReal *part)
+{
+  const PetscReal *u       = model->problem->trial;
+  PetscReal        most[2] = {0, 0};
+
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < model->mesh->n_nodes * model->mesh->dim; i++) {
+    most[0] = PetscMax(most[0], PetscAbsReal(u[i]));
+    most[1] = PetscMax(most[1], PetscAbsReal(changed[i] - u[i]) / step);
+  }
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, most, 2, MPIU_REAL, MPIU_MAX, model->mesh->comm));
+  *part = most[0] > 0 ? most[1] / most[0] : 0;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Change of a value over the step, as a part of the value. */
+static PetscReal PartChanged(PetscReal now, PetscReal then, PetscReal step)
+{
+  return now > 0 ? PetscAbsReal(then - now) / (step * now) : 0;
+}
+
+/* Compares forces and pressures at the trial state with those a step along the slope. */
+static PetscErrorCode ModelComparePenalty(Model model, Vec slope)
+{
+  const int       pairs = ContactPairs(model->contact);
+  const PetscInt  n     = model->mesh->n_nodes * model->mesh->dim;
+  const PetscReal step  = PENALTY_STEP;
+  PetscReal      *u, displacement;
+  ContactLoad    *load;
+  Vec             x;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc2(n, &u, 2 * pairs, &load));
+  PetscCall(VecDuplicate(model->x, &x));
+  PetscCall(VecWAXPY(x, -step, slope, model->x));
+  PetscCall(ProblemDisplacements(model->problem, x, model->t, u));
+  PetscCall(ModelLargestChange(model, u, step, &displacement));
+  PetscCall(ContactScalePenalty(model->contact, 1 / (1 - step)));
+  PetscCall(ModelPairLoads(model, u, load));
+  PetscCall(ContactScalePenalty(model->contact, 1));
+  PetscCall(ModelPairLoads(model, model->problem->trial, &load[pairs]));
+  for (int p = 0; p < pairs; p++) {
+    const ContactLoad *stiff = &load[p], *now = &load[pairs + p];
+
+    model->work->penalty_error[p] = (PenaltyError){.force        = PartChanged(now->force, stiff->force, step),
+                                                   .pressure     = PartChanged(now->pressure, stiff->pressure, step),
+                                                   .peak         = PartChanged(now->peak, stiff->peak, step),
+                                                   .displacement = displacement};
+  }
+  PetscCall(VecDestroy(&x));
+  PetscCall(PetscFree2(u, load));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Estimates the errors at the trial state, in which the step has converged. The state stays as it is. */
+PetscErrorCode ModelEstimatePenalty(Model model)
+{
+  PetscBool known = PETSC_FALSE;
+  Vec       slope;
+
+  PetscFunctionBeginUser;
+  PetscCall(VecDuplicate(model->x, &slope));
+  PetscCall(ProblemSetTrial(model->problem, model->x, model->t));
+  PetscCall(ModelPenaltySlope(model, slope, &known));
+  if (known) PetscCall(ModelComparePenalty(model, slope));
+  PetscCall(VecDestroy(&slope));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Makes the penalties stiffer that the run may choose and whose error is large. *stiffened: some are. */
+PetscErrorCode ModelStiffen(Model model, PetscBool *stiffened)
+{
+  const int    pairs = ContactPairs(model->contact);
+  ContactLoad *load;
+  PetscReal    most = 0;
+
+  PetscFunctionBeginUser;
+  *stiffened = PETSC_FALSE;
+  PetscCall(PetscMalloc1(pairs, &load));
+  PetscCall(ModelPairLoads(model, model->problem->trial, load));
+  for (int p = 0; p < pairs; p++) most = PetscMax(most, load[p].force);
+  for (int p = 0; p < pairs; p++) {
+    const PenaltyError *error = &model->work->penalty_error[p];
+    const PetscReal     worst = PetscMax(error->displacement, error->force),
+                    factor    = PetscMin(worst / PENALTY_ERROR_WANTED, PENALTY_MOST_STIFFER);
+
+    if (!ContactPairScene(model->contact, p)->penalty_may_stiffen || !(worst > PENALTY_ERROR_LARGE) ||
+        load[p].force < PENALTY_LIGHT_PAIR * most)
+      continue;
+    PetscCall(ContactStiffen(model->contact, p, factor));
+    PetscCall(PetscInfo(model->snes, "contact '%s': estimated error %g, penalties %g times as stiff\n",
+                        ContactPairName(model->contact, p), (double)worst, (double)factor));
+    *stiffened = PETSC_TRUE;
+  }
+  PetscCall(PetscFree(load));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
