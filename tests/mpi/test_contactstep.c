@@ -259,13 +259,13 @@ static void test_cycle(void **state)
   PartsDestroy(&parts);
 }
 
-/* Springs of 2 at each free dof and a tie of stiffness 5 that measures the sum of two dofs: force, energy and tangent of
+/* Springs of 2 at each free dof and a tie of stiffness 5 that measures the sum of the dofs of a node: force, energy and tangent of
    a shift of both bodies; none once they are relaxed, and no force of the tie while it is released. */
 static void test_springs(void **state)
 {
   const double   shift = 0.1;
   ContactSprings springs = NULL;
-  SpringTie      tie     = {.motion = 3, .stiffness = 5, .n = 2, .dof = {0, 3}, .value = {1, 1}};
+  SpringTie      tie     = {.motion = 3, .stiffness = 5, .n = 2, .dof = {0, 1}, .value = {1, 1}};
   PetscReal      force, tied, energy, added = 1, *stiffness;
   PetscInt       n;
   PetscBool      any;
