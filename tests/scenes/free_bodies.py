@@ -47,7 +47,7 @@ held("later", ("loads=[{volume: body1, body_force: [0, -1], history: [[0, 0], [0
 LID = ("contact=[{name: pair1, slave: low1, master: {plane: {point: [0, -2], normal: [0, 1]}}}, "
        "{name: lid, slave: low1, master: {plane: {point: [0, 1.5], normal: [0, -1], motion: [{uy: -1.7}]}}}]",
        "loads=[]", "probes.0.contact_force=pair1", "probes.1={name: lid, contact_force: lid, component: y}")
-cord = held("cord", LID, 60, run(args, SCENE, out="cord_fine", overrides=(*LID, "stepping.dt_max=0.05")).summary()
+cord = held("cord", LID, 60, run(args, SCENE, out="cord_fine", overrides=(*LID, "stepping.initial=0.05", "stepping.dt_max=0.05")).summary()
             ["probes"]["force"], 0.01, moved=False)
 check.near("cord: what the lid presses the floor bears",
            cord.summary()["probes"]["lid"] + cord.summary()["probes"]["force"], 0, 1e-3 * 50)
