@@ -103,12 +103,13 @@ static PetscErrorCode ModelSettle(Model model, PetscReal t)
 
   PetscFunctionBeginUser;
   work->adrift = PETSC_FALSE;
-  if (!model->problem->bodies) PetscFunctionReturn(PETSC_SUCCESS);
+  if (!model->problem->bodies || work->searched) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscMalloc1(model->mesh->n_nodes * model->mesh->dim, &u));
   PetscCall(PetscArraycpy(u, work->accepted_u, model->mesh->n_nodes * model->mesh->dim));
   PetscCall(
     FreeBodiesSettle(model->problem->bodies, work->accepted_t, t, (PetscBool)(work->accepted_t == 0), u, &settled));
-  work->adrift = (PetscBool)(settled == SETTLE_ADRIFT);
+  work->adrift   = (PetscBool)(settled == SETTLE_ADRIFT);
+  work->searched = (PetscBool)!work->adrift; /* a step that is tried again starts where the bodies are now */
   if (settled == SETTLE_MOVED) {
     work->settled      = PETSC_TRUE;
     work->looked_ahead = PETSC_FALSE;

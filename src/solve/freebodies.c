@@ -284,6 +284,14 @@ void FreeBodiesPieceMotion(FreeBodies b, PetscInt piece, const double a[], doubl
     for (int i = 0; i < RIGID_MODES && b->owner[k] == piece; i++) q[i] += a[k] * b->motion[k][i];
 }
 
+/* Says whether a motion turns its piece. */
+PetscBool FreeBodiesTurns(FreeBodies b, int k)
+{
+  const double *q = b->motion[k];
+
+  return (PetscBool)(q[0] != 0 || q[1] != 0 || q[2] != 0);
+}
+
 /* The velocities du[n_nodes*dim] (length) of a motion a[n] of the bodies at displacements u. */
 void FreeBodiesVelocity(FreeBodies b, const PetscReal *u, const double a[], PetscReal *du)
 {
@@ -527,8 +535,8 @@ static PetscErrorCode PieceLoads(FreeBodies b, const PetscReal *u, PetscReal t, 
 
 /* Which of the motions free[m][n] at displacements u the loads at t drive: those along which they do more than a part
    of the work that they could do over the longest way of a node. */
-static PetscErrorCode FindDriven(FreeBodies b, const PetscReal *u, PetscReal t, int m, const double free[],
-                                 PetscBool driven[])
+static PetscErrorCode FindDriven(FreeBodies b, const PetscReal *u, PetscReal t, PetscReal part, int m,
+                                 const double free[], PetscBool driven[])
 {
   const int  n = b->n;
   PetscReal *load, *longest;
@@ -544,9 +552,30 @@ static PetscErrorCode FindDriven(FreeBodies b, const PetscReal *u, PetscReal t, 
     PetscCall(FreeBodiesLongest(b, u, &free[f * n], longest));
     for (int k = 0; k < n; k++) work += free[f * n + k] * force[k];
     for (PetscInt p = 0; p < b->n_pieces; p++) most += load[p] * longest[p];
-    driven[f] = (PetscBool)(PetscAbsReal(work) > FREE_BODIES_UNEVEN * most);
+    driven[f] = (PetscBool)(PetscAbsReal(work) > part * most);
   }
   PetscCall(PetscFree4(load, longest, force, scale));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Says whether the loads at t_loads do more than a part of the work that they could do along a motion that what
+   touches at (u, t) does not hold. */
+PetscErrorCode FreeBodiesFall(FreeBodies b, const PetscReal *u, PetscReal t, PetscReal t_loads, PetscReal part,
+                              PetscBool *falls)
+{
+  const int  n = b->n;
+  double    *gram, *free;
+  int       *pivot, m;
+  PetscBool *drives;
+
+  PetscFunctionBeginUser;
+  *falls = PETSC_FALSE;
+  PetscCall(PetscMalloc4(n * n, &gram, n * n, &free, n, &pivot, n, &drives));
+  PetscCall(ContactGram(b, u, t, PETSC_TRUE, gram));
+  PetscCall(LooseMotions(b, gram, FREE_BODIES_HELD, &m, free, pivot));
+  PetscCall(FindDriven(b, u, t_loads, part, m, free, drives));
+  for (int f = 0; f < m; f++) *falls = (PetscBool)(*falls || drives[f]);
+  PetscCall(PetscFree4(gram, free, pivot, drives));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -581,7 +610,7 @@ PetscErrorCode FreeBodiesLoose(FreeBodies b, const PetscReal *u, PetscReal t, Pe
   PetscCall(PetscMalloc4(n * n, &gram, n * n, &free, n, &pivot, n, &drives));
   PetscCall(ContactGram(b, u, t, PETSC_FALSE, gram));
   PetscCall(LooseMotions(b, gram, driven ? FREE_BODIES_HELD : FREE_BODIES_NAMED, &m, free, pivot));
-  PetscCall(FindDriven(b, u, t, m, free, drives));
+  PetscCall(FindDriven(b, u, t, FREE_BODIES_UNEVEN, m, free, drives));
   for (int f = 0; f < m; f++)
     if (!driven || drives[f]) AddMotion(b, &free[f * n], size, text);
   PetscCall(PetscFree4(gram, free, pivot, drives));
@@ -595,14 +624,6 @@ static PetscBool InContact(FreeBodies b, PetscInt piece, const double gram[])
 
   for (int k = 0; k < b->n; k++) acts = (PetscBool)(acts || (b->owner[k] == piece && gram[k * b->n + k] > 0));
   return acts;
-}
-
-/* Says whether a motion turns its piece. */
-static PetscBool Turns(FreeBodies b, int k)
-{
-  const double *q = b->motion[k];
-
-  return (PetscBool)(q[0] != 0 || q[1] != 0 || q[2] != 0);
 }
 
 /* A tie that measures coordinate k of the motions at displacements u, in lengths, by the cell at the middle of its
@@ -662,9 +683,9 @@ static PetscErrorCode FindTied(FreeBodies b, const PetscReal *u, PetscReal t, Pe
   PetscCall(ContactGram(b, u, t, touching, gram));
   PetscCall(ContactHoldActiveSet(b->contact, PETSC_FALSE, PETSC_FALSE));
   PetscCall(LooseMotions(b, gram, FREE_BODIES_HELD, &loose, free, pivot));
-  PetscCall(FindDriven(b, u, t_loads, loose, free, drives));
+  PetscCall(FindDriven(b, u, t_loads, FREE_BODIES_UNEVEN, loose, free, drives));
   for (int f = 0; f < loose; f++)
-    if (!drives[f] && (InContact(b, b->owner[pivot[f]], gram) || Turns(b, pivot[f]))) pivot[found++] = pivot[f];
+    if (!drives[f] && (InContact(b, b->owner[pivot[f]], gram) || FreeBodiesTurns(b, pivot[f]))) pivot[found++] = pivot[f];
   *m = found;
   PetscCall(PetscFree3(gram, free, drives));
   PetscFunctionReturn(PETSC_SUCCESS);

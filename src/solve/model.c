@@ -191,7 +191,7 @@ PetscErrorCode ModelAccept(Model model)
   PetscCall(PetscArraycpy(work->accepted_u, model->u, model->mesh->n_nodes * model->mesh->dim));
   PetscCall(VecCopy(model->x, work->accepted_x));
   work->accepted_t = model->t;
-  work->settled    = PETSC_FALSE;
+  work->settled = work->searched = PETSC_FALSE;
   if (stepped) work->accepted_start = work->start;
   if (work->extrapolation) PetscCall(ExtrapolationAdd(work->extrapolation, model->u, model->t));
   if (work->extrapolation && SceneBreaks(model->scene, model->t)) PetscCall(ExtrapolationForget(work->extrapolation));

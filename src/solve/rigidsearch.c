@@ -24,6 +24,11 @@
 #define SEARCH_WORK 0.1
 /* Surfaces that overlap at the start by more than this part of a face size do so on purpose, and are left so. */
 #define SEARCH_OVERLAP 0.1
+/* Bodies turn this many times less readily than they move along, until they rest. Where they touch at one point that is
+   not quite below their loads, which depends on the mesh, they would fall over it. */
+#define SEARCH_HEAVY 100
+/* They go on and turn freely where the loads would then do more than this part of the work that they could do. */
+#define SEARCH_FALL 0.1
 /* A body without a load gives way to those with one: its weight in theirs. */
 #define SEARCH_LIGHT 1e-3
 
@@ -59,14 +64,18 @@ static PetscErrorCode PassDestroy(Pass *pass)
 }
 
 /* Where the loads would take each body if nothing was in its way: as they would accelerate it, over a distance of
-   `move`. The weights of the pieces are such that the wish balances the loads. *any: a load drives some body. */
-static PetscErrorCode Wish(FreeBodies b, const PetscReal *u, PetscReal t, PetscReal move, Pass *pass, PetscBool *any)
+   `move`. The weights of the pieces are such that the wish balances the loads. heavy: bodies hardly turn. *any: a load
+   drives some body. */
+static PetscErrorCode Wish(FreeBodies b, const PetscReal *u, PetscReal t, PetscReal move, PetscBool heavy, Pass *pass,
+                           PetscBool *any)
 {
   const int  n = b->n;
   PetscReal *longest, lightest = PETSC_MAX_REAL;
 
   PetscFunctionBeginUser;
   PetscCall(FreeBodiesGram(b, u, pass->gram));
+  for (int k = 0; k < n && heavy; k++)
+    if (FreeBodiesTurns(b, k)) pass->gram[k * n + k] *= SEARCH_HEAVY;
   PetscCall(FreeBodiesForce(b, u, t, pass->force, pass->scale));
   PetscCall(PetscMalloc1(b->n_pieces, &longest));
   PetscCall(PetscArraycpy(pass->wish, pass->force, n));
@@ -223,7 +232,7 @@ PetscErrorCode FreeBodiesSettle(FreeBodies b, PetscReal t, PetscReal t_loads, Pe
                                 SettleResult *result)
 {
   PetscReal move = SEARCH_FIRST * b->face, overlap = 0, way = 0, *longest, *travel;
-  PetscBool any   = PETSC_FALSE;
+  PetscBool any = PETSC_FALSE, heavy = PETSC_TRUE;
   PetscInt  rests = 0, touched = 0;
   Pass      pass;
 
@@ -240,7 +249,7 @@ PetscErrorCode FreeBodiesSettle(FreeBodies b, PetscReal t, PetscReal t_loads, Pe
   for (PetscInt it = 0; rests < SEARCH_RESTS && touched < SEARCH_PASSES; it++) {
     PetscReal most = 0, work = 0, wished = 0;
 
-    PetscCall(Wish(b, u, t_loads, move, &pass, &any));
+    PetscCall(Wish(b, u, t_loads, move, heavy, &pass, &any));
     if (!any) break;
     PetscCall(ContactGather(b->contact, u, t, t, move));
     PetscCall(Bounds(b, u, t, move, (PetscBool)!it, &pass, &overlap));
@@ -271,6 +280,13 @@ PetscErrorCode FreeBodiesSettle(FreeBodies b, PetscReal t, PetscReal t_loads, Pe
       move = PetscMin(move, PetscMax(b->face, 2 * most));
     else
       move = PetscMax(SEARCH_REST * b->face, move / 2);
+    if (!heavy || rests < SEARCH_RESTS) continue;
+    PetscCall(ContactGather(b->contact, u, t, t, move));
+    PetscCall(FreeBodiesFall(b, u, t, t_loads, SEARCH_FALL, &any));
+    if (!any) break;
+    heavy = PETSC_FALSE;
+    rests = 0;
+    move  = SEARCH_FIRST * b->face;
   }
   if (*result == SETTLE_MOVED && way <= SEARCH_REST * b->face) *result = SETTLE_NONE;
   NoteMoved(b, t, travel);

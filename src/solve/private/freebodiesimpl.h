@@ -33,3 +33,6 @@ void           FreeBodiesMove(FreeBodies, const double a[], PetscReal *u);
 PetscErrorCode FreeBodiesGram(FreeBodies, const PetscReal *u, double gram[]);
 PetscErrorCode FreeBodiesForce(FreeBodies, const PetscReal *u, PetscReal t, double force[], double scale[]);
 PetscErrorCode FreeBodiesLongest(FreeBodies, const PetscReal *u, const double a[], PetscReal *longest);
+PetscBool      FreeBodiesTurns(FreeBodies, int k);
+PetscErrorCode FreeBodiesFall(FreeBodies, const PetscReal *u, PetscReal t, PetscReal t_loads, PetscReal part,
+                              PetscBool *falls);

@@ -36,6 +36,7 @@ typedef struct _n_ModelWork {
   PetscReal  accepted_start; /* residual norm where Newton's method started in that step; 0: unknown */
   PetscReal  rate;           /* largest displacement per unit of t in that step */
   PetscBool  settled;        /* bodies were moved into contact there; always at t = 0 */
+  PetscBool  searched;       /* it was tried to move them */
 
   PenaltyError *penalty_error; /* of each pair, once the load is at its end */
 
