@@ -424,15 +424,25 @@ static void WarnInaccurate(const RunFigures *figures)
           figures->run->message ? "" : "Newton's method converged all the same, but ");
 }
 
+/* Says what was done for bodies that only contact holds. */
+static void PrintFreeBodies(const RunFigures *figures)
+{
+  const StepperReport *report = figures->run->way;
+
+  if (figures->moved[0]) printf("moved into contact, without force: %s\n", figures->moved);
+  if (figures->loose[0])
+    printf("held where it is, as neither contact nor a load acts that way: %s; by up to %.2g of the forces\n",
+           figures->loose, (double)report->tied);
+  if (figures->free_bodies)
+    printf("weak springs of free bodies: relaxed %lld times, hold %.2g of the forces at the end\n",
+           (long long)report->relaxed, (double)report->share);
+}
+
 static void PrintLast(Terminal terminal, const RunRecord *run)
 {
   const StepperReport *report = run->way;
   char                 text[DURATION_SIZE];
 
-  if (report->relaxed)
-    printf("stabilised pairs: springs relaxed %lld times, took out an energy of %.3g, hold at most %.2g of an accepted "
-           "state's\n",
-           (long long)report->relaxed, (double)report->taken, (double)report->left);
   if (report->cycles)
     printf("contact sets that repeated themselves: %lld, steps cut for it %lld; the last time %s\n",
            (long long)report->cycles, (long long)report->cycles_cut, report->cycle);
@@ -466,6 +476,7 @@ PetscErrorCode TerminalEnd(Terminal terminal, const TerminalLast *last)
   if (terminal->talks) {
     PrintWindows(figures);
     EndReportPrint(figures, stdout);
+    PrintFreeBodies(figures);
   }
   if (terminal->rank) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(WarnUnused());

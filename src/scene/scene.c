@@ -460,7 +460,7 @@ static PetscErrorCode SceneReadContact(Scene scene, SceneContact *contact)
   contact->global_frame        = SchemaChoice(SceneDocument(scene), "%s.frame", contact->path);
   contact->diffuse_derivatives = SchemaChoice(SceneDocument(scene), "%s.derivatives", contact->path);
   PetscCall(SceneReadOverlap(scene, contact));
-  contact->stabilise     = SchemaBoolean(SceneDocument(scene), "%s.stabilise", contact->path);
+  contact->stabilise     = (Stabilise)SchemaChoice(SceneDocument(scene), "%s.stabilise", contact->path);
   contact->feature_angle = SchemaReal(SceneDocument(scene), "%s.feature_angle", contact->path);
   PetscCall(SceneReadPenalty(scene, contact));
   contact->find_symmetry = !symmetry;

@@ -120,8 +120,9 @@ const SchemaKey SchemaKeys[] = {
   {"contact.*.initial_overlap.add", REAL | FORMULA, REQUIRED, .unit = "length",
    .help = "interference of parts whose meshes touch: what the slave overlaps the master besides its mesh. It is "
            "multiplied by t, or is an expression with t, as in loads"},
-  {"contact.*.stabilise", BOOLEAN, .preset = "false",
-   .help = "true: springs hold the bodies that only contact holds, and vanish as soon as contact holds them"},
+  {"contact.*.stabilise", CHOICE, .values = "auto | true | false", .preset = "auto",
+   .help = "auto: a body of the pair that supports leave free is moved into contact along its load, and very weak "
+           "springs hold what contact does not; true: so are bodies that supports hold; false: nothing is done"},
   {"contact.*.law", CHOICE, .values = CHOICE_WORDS(CONTACT_LAWS), .preset = "penalty",
    .help = "law of the contact pressure over the gap"},
   {"contact.*.penalty", MAP, .help = "the penalty (force per penetration and area) and its adjustment"},

@@ -192,7 +192,7 @@ static PetscErrorCode ModelStepToTouch(Model model, SolveReport *report)
 PetscErrorCode ModelPredict(Model model, SolveReport *report)
 {
   const SolveReport before   = *report;
-  const PetscBool   touching = (PetscBool)(model->contact && model->work->accepted_t == 0);
+  const PetscBool   touching = (PetscBool)(model->contact && model->work->settled);
 
   PetscFunctionBeginUser;
   PetscCall(ModelPredictFromExtrapolation(model, report));
@@ -278,13 +278,19 @@ PetscErrorCode ModelPredictFar(Model model, SolveReport *report)
 
   Note:
   New lists and their offsets move the surfaces by more than a stiff penalty lets them overlap. Nodes that this would
-  open would release the bodies, which would then fly apart.
+  open would release the bodies, which would then fly apart. What fewer nodes do not hold any more is tied.
 @*/
 PetscErrorCode ModelFollowLists(Model model, SolveReport *report)
 {
-  PetscBool ok;
+  const Problem problem = model->problem;
+  PetscBool     ok, tied;
 
   PetscFunctionBeginUser;
+  if (problem->bodies) {
+    PetscCall(FreeBodiesTie(problem->bodies, problem->trial, model->t, model->t, PETSC_FALSE, problem->springs, &tied));
+    PetscCall(ContactSpringsRelax(problem->springs, model->x));
+    problem->tied = (PetscBool)(problem->tied || tied);
+  }
   PetscCall(ContactHoldActiveSet(model->contact, PETSC_TRUE, PETSC_FALSE));
   PetscCall(ModelTangent(model, model->problem->trial, model->t));
   PetscCall(ProblemResidual(model->problem, model->problem->trial, model->t, model->t, &ok));
