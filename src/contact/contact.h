@@ -129,6 +129,7 @@ PetscErrorCode ContactMultiplyEnd(Contact, PetscReal *y);
 /* Linear steps and predictions */
 PetscErrorCode ContactHoldActiveSet(Contact, PetscBool holding, PetscBool touching);
 PetscErrorCode ContactMarkPredicted(Contact);
+PetscErrorCode ContactPredictionMissed(Contact, PetscBool *missed);
 PetscErrorCode ContactUnpredictedEnergy(Contact, const PetscReal *u, PetscReal t, PetscReal *energy);
 /* Penalties and multipliers */
 PetscErrorCode ContactSoften(Contact, PetscReal most);

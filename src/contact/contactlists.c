@@ -207,6 +207,7 @@ static PetscBool FitHolds(NeighbourLists old, NeighbourLists fresh, PetscInt q)
       for (int d = 0; d < dim; d++) y[a] += frame[3 * a + d] * x[d];
     for (int a = 0; a < dim - 1; a++)
       for (int b = 0; b < dim - 1; b++) rho2 += y[a] * metric[2 * a + b] * y[b];
+    if (fresh->point_hoop) rho2 += metric[0] * PetscSqr(fresh->point_hoop[p]);
     if (rho2 >= 1) continue;
     for (PetscInt k = 0; !known && k < n; k++) { /* most points have the same place in the list as before */
       const PetscInt place = (at + k) % n;

@@ -14,7 +14,8 @@
 #define CONTACT_GLOBAL_COSINE 0.5
 
 /* In surface to surface, a slave whose faces are at least this many times coarser than the master's takes a finer
-   quadrature, as its points would skip facets. The figure is below 2, so that round-off does not decide on a mesh of
+   quadrature, as its points would skip facets. Axisymmetric slaves always do: the radius is one more factor, and next to
+   the axis the finer rule halves the error of the pressure. The figure is below 2, so that round-off does not decide on a mesh of
    half the size. */
 #define CONTACT_COARSE 1.9
 
@@ -33,7 +34,7 @@ static PetscErrorCode PairChooseNodes(Mesh mesh, Scene scene, ContactPair *pair)
   PetscFunctionBeginUser;
   PetscCallMPI(MPI_Comm_rank(mesh->comm, &rank));
   PetscCall(PetscMalloc4(mesh->n_nodes, &area, mesh->n_nodes, &size, mesh->n_nodes, &turn, mesh->n_nodes, &share));
-  PetscCall(SurfaceNodeSizes(pair->slave, scene->geometry, size, turn, share));
+  PetscCall(SurfaceNodeSizes(pair->slave, scene->geometry, pair->n_images, pair->images, size, turn, share));
   if (hats)
     PetscCall(SlavePointsHatAreas(pair->slaves, scene->geometry, NULL, area));
   else
@@ -105,7 +106,8 @@ static PetscErrorCode PairCreateTerms(Mesh mesh, ContactPair *pair)
 /* Creates slave points, terms and offsets, as the formulation asks for. */
 static PetscErrorCode PairCreatePoints(Mesh mesh, Scene scene, Loads loads, ContactPair *pair)
 {
-  const int finer = pair->master && pair->slave->mean_size >= CONTACT_COARSE * pair->master->mean_size;
+  const int finer = pair->master && (scene->geometry == GEOMETRY_AXISYMMETRIC ||
+                                     pair->slave->mean_size >= CONTACT_COARSE * pair->master->mean_size);
 
   PetscFunctionBeginUser;
   if (pair->formulation.surface) {
@@ -136,8 +138,9 @@ static FitSettings PairFitSettings(Scene scene, const ContactPair *pair, int ord
 
   fit.fitted   = (PetscBool)(pair->smoother->fitted && contact->master);
   fit.integral = (PetscBool)(fit.fitted && pair->formulation.surface);
+  fit.revolved = (PetscBool)(fit.integral && scene->geometry == GEOMETRY_AXISYMMETRIC);
   if (fit.integral) {
-    if (fit.support == 0) fit.support = order == 2 ? (scene->dim == 2 ? 1.75 : 2.25) : 3;
+    if (fit.support == 0) fit.support = order == 1 ? 3 : fit.revolved ? 2 : scene->dim == 2 ? 1.75 : 2.25;
     if (fit.exponent == 0) fit.exponent = 3;
     fit.support *= order; /* spacings in a face size */
   }
@@ -223,7 +226,9 @@ PetscErrorCode ContactPairCreate(Mesh mesh, Scene scene, Elasticity elasticity, 
   PetscCall(SurfaceCreate(mesh, scene, elasticity, contact->path, "slave", contact->slave, &pair->slave));
   if (contact->master)
     PetscCall(SurfaceCreate(mesh, scene, elasticity, contact->path, "master", contact->master, &pair->master));
-  PetscCall(SurfaceImages(mesh, scene, contact, &pair->n_images, pair->images));
+  PetscCall(SurfaceImages(mesh, scene, contact, pair->slave, pair->master, &pair->n_images, pair->images));
+  if (contact->find_symmetry && pair->smoother->fitted)
+    PetscCall(SurfaceImagesFromSupports(mesh, scene, pair->slave, pair->master, &pair->n_images, pair->images));
   if (pair->master) PetscCall(SurfaceFindFreeEdges(pair->master, pair->n_images, pair->images));
   if (pair->fit.fitted && pair->fit.global_frame) PetscCall(PairCheckGlobalFrame(mesh, scene, loads, pair));
   PetscCall(PairCreatePoints(mesh, scene, loads, pair));

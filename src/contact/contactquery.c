@@ -375,9 +375,27 @@ PetscErrorCode ContactPairFits(Contact contact, int p, ContactFits *fits)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Appends the planes of symmetry that the supports have shown. */
+static void AppendPlanes(const ContactPair *pair, char *text, size_t size)
+{
+  const char *word = ", mirrored at";
+
+  for (int bit = 1; bit < pair->n_images && pair->scene->find_symmetry; bit <<= 1) {
+    const SurfaceImage *image = &pair->images[bit];
+    const size_t        used  = strlen(text);
+
+    for (int d = 0; d < pair->mesh->dim; d++) {
+      if (image->sign[d] > 0 || (pair->geometry == GEOMETRY_AXISYMMETRIC && image->shift[d] == 0 && d == 0)) continue;
+      snprintf(text + used, size - used, "%s %c = %g", word, "xyz"[d],
+               (double)(image->shift[d] / 2 + pair->mesh->centre[d]));
+      word = " and";
+    }
+  }
+}
+
 /*@
   ContactPairText - writes what touches what, and how, such as "plate_bottom on pipe_outer, diffuse, degree 4, support
-  3.6, weight 3.5".
+  3.6, weight 3.5, mirrored at x = 0".
 
   Not collective
 
@@ -409,5 +427,6 @@ PetscErrorCode ContactPairText(Contact contact, int p, char *text, size_t size)
              SmootherNames[scene->smoother], how, pair->fit.degree,
              (double)(pair->fit.integral ? pair->fit.support / pair->master->order : pair->fit.support),
              (double)pair->fit.exponent);
+  AppendPlanes(pair, text, size);
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -462,7 +462,8 @@ static PetscErrorCode SceneReadContact(Scene scene, SceneContact *contact)
   contact->stabilise     = SchemaBoolean(SceneDocument(scene), "%s.stabilise", contact->path);
   contact->feature_angle = SchemaReal(SceneDocument(scene), "%s.feature_angle", contact->path);
   PetscCall(SceneReadPenalty(scene, contact));
-  contact->n_symmetry = symmetry ? symmetry->n : 0;
+  contact->find_symmetry = !symmetry;
+  contact->n_symmetry    = symmetry ? symmetry->n : 0;
   PetscCall(PetscCalloc1(contact->n_symmetry, &contact->symmetry));
   for (int i = 0; i < contact->n_symmetry; i++)
     PetscCall(PetscStrallocpy(symmetry->child[i]->text, &contact->symmetry[i]));

@@ -108,7 +108,9 @@ const SchemaKey SchemaKeys[] = {
    .help = "tangent of the diffuse fit; diffuse neglects the variation of the weights and is cheaper"},
   {"contact.*.feature_angle", REAL, .range = "(0, 180]", .unit = "degrees", .preset = "45",
    .help = "the neighbourhood of a slave point ends at edges that are sharper than this angle"},
-  {"contact.*.symmetry", TEXTS, .help = "planar surfaces beyond which the model continues as its mirror image"},
+  {"contact.*.symmetry", TEXTS,
+   .help = "planar surfaces beyond which the model continues as its mirror image; without the key these are the planes at "
+           "which slave or master end square to a support that fixes the normal displacement alone; []: none"},
   {"contact.*.initial_overlap", CHOICE | MAP, .values = "refuse | resolve | ramp | ignore", .preset = "refuse",
    .help = "treatment of overlapping meshes; refuse: as wrong input; resolve: the overlap is removed at once; ramp: "
            "it is removed gradually until t = 1; ignore: it counts as a gap of 0"},

@@ -138,7 +138,7 @@ PetscErrorCode NeighbourhoodsDestroy(Neighbourhoods *nb)
 static inline PetscReal Rho2(const SurfaceView *view, PetscInt p, const PetscReal x0[3], const PetscReal metric[9])
 {
   const PetscReal *x = &view->x[p * view->dim], a = x[0] - x0[0], b = x[1] - x0[1],
-                  c = view->dim == 3 ? x[2] - x0[2] : 0;
+                  c = view->dim == 3 ? x[2] - x0[2] : view->hoop ? view->hoop[p] : 0;
 
   return metric[0] * a * a + metric[4] * b * b + metric[8] * c * c +
          2 * (metric[1] * a * b + metric[2] * a * c + metric[5] * b * c);
@@ -199,7 +199,7 @@ PetscErrorCode NeighbourhoodGather(Neighbourhoods nb, PetscInt start, const Pets
     const Facet   *facet  = &view->facets[f];
     PetscBool      inside = PETSC_FALSE;
 
-    for (int q = 0, points = view->first ? FaceRuleGet(facet->type, 0)->n : 0; q < points; q++) {
+    for (PetscInt q = 0, points = view->first ? view->count[f] : 0; q < points; q++) {
       const PetscReal own = Rho2(view, view->first[f] + q, x0, metric);
 
       inside = (PetscBool)(inside || own <= limit);

@@ -23,7 +23,8 @@ enum { RUNG_FACET = -1, RUNG_PLAIN = 0, RUNG_WIDER = 4, RUNG_DEGREE_2 = 6, RUNG_
 /* Contact nodes are the nodes that the terms of the pair touch. Nodes with unknowns come first (leaves of sf, whose
    roots are the local nodes of their owners), then nodes of a rigid tool. Points are what a smoother sees: a fixed
    combination of images of contact nodes, reflected, plus a shift and an offset: x = sign * (sum S (image of
-   x_node)) + shift + offset. */
+   x_node)) + shift + offset. In fits of revolution it is a point of a ring, turned into the meridian plane: its radius
+   is multiplied by the cosine of its angle. */
 typedef struct {
   int          dim;
   PetscInt     n_nodes, n_deformable;
@@ -39,7 +40,8 @@ typedef struct {
   int       *point_side; /* of each entry: image of the node; nonzero only with live offsets */
   PetscReal *point_S, *point_offset, *point_weight;
   int       *point_image;
-  long      *point_key;         /* rank-independent: the node or quadrature point, and the image */
+  long      *point_key;                 /* rank-independent: the node or quadrature point, the image, the place on a ring */
+  PetscReal *point_cosine, *point_hoop; /* of its angle; distance along the hoop (length). NULL: there are no rings */
   PetscReal *point_X, *point_u; /* n_points*dim */
 
   PetscInt   n_slaves;               /* slave points, in the order in which they were given */

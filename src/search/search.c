@@ -56,6 +56,7 @@ PetscErrorCode SearchCreate(Mesh mesh, Scene scene, Loads loads, ContactSurface 
                                    .maps     = maps,
                                    .reach    = SEARCH_REACH * size,
                                    .margin   = SEARCH_MARGIN * size};
+  if (master) s->fit_reach = SearchFitReach(s);
   *out = s;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -181,7 +182,7 @@ PetscErrorCode SearchFieldCreate(ContactSearch s, const PetscReal *u, PetscReal 
   lists->dim = mesh->dim;
   if (s->fit->fitted) {
     PetscCall(PetscMalloc1(s->master->rigid ? s->master->rigid->n_nodes : mesh->n_nodes, &geometry));
-    PetscCall(SurfaceNodeGeometry(s->master, s->loads, u, t, geometry));
+    PetscCall(SurfaceNodeGeometry(s->master, s->scene->geometry, s->loads, u, t, geometry));
   }
   if (!s->master)
     PetscCall(PetscMalloc1(0, &field->records));

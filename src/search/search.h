@@ -19,7 +19,9 @@ typedef struct {
   PetscBool fitted; /* lists come with fits; PETSC_FALSE: the facets are used, and nothing below is read */
   int       degree; /* 2 or 4 */
   /* Fit through the quadrature points of the faces, weighted by area, instead of the nodes. */
-  PetscBool         integral;
+  PetscBool integral;
+  /* Axisymmetric integral fits see the whole body of revolution: each quadrature point is a ring of points. */
+  PetscBool         revolved;
   double            support;  /* in spacings of the master's nodes */
   double            exponent; /* of the weight */
   FitDerivativeKind derivatives;
@@ -27,6 +29,7 @@ typedef struct {
   PetscReal         feature_angle; /* radians; fits end at edges that are sharper */
 } FitSettings;
 
+int            FitDegreeCode(const FitSettings *, int degree);
 PetscErrorCode SearchCreate(Mesh, Scene, Loads, ContactSurface master, PetscReal slave_size, int n_images,
                             const SurfaceImage *, const FitSettings *, SlavePoints slaves, const PetscReal *offset,
                             const FaceMaps *maps, ContactSearch *);

@@ -18,9 +18,10 @@ typedef struct {
   const PetscReal    *x;         /* n_points*dim */
   const NodeGeometry *geometry;  /* of each point, reflected with it */
   PetscReal           feature_cosine;
-  /* For integral fits the fit points of facet f start at first[f], as many as its quadrature rule has. NULL: the
-     nodes are the fit points. */
-  const PetscInt *first;
+  /* For integral fits the fit points of facet f are first[f] to first[f] + count[f] - 1. NULL: the nodes are the fit
+     points. */
+  const PetscInt  *first, *count;
+  const PetscReal *hoop; /* of each point, for fits of revolution; NULL: none */
 } SurfaceView;
 
 typedef struct _n_Neighbourhoods *Neighbourhoods;

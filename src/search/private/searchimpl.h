@@ -26,6 +26,7 @@ struct _n_ContactSearch {
   const PetscReal    *offset; /* of the quadrature points of this rank's master faces, where fits use these points */
   const FaceMaps     *maps;   /* or these points as combinations of nodes */
   PetscReal           reach, margin; /* lengths, without the motion */
+  PetscReal           fit_reach;     /* SearchFitReach() */
 };
 
 /* A face or a mirror image of it, in the present position. */
@@ -33,7 +34,7 @@ typedef struct {
   PetscInt  record;
   int       image;
   Facet     facet; /* nodes: contact nodes until the points are numbered, then points */
-  PetscInt  first; /* first fit point of its quadrature rule */
+  PetscInt  first, count; /* fit points of its quadrature rule */
   PetscReal centre[3], normal[3], lower[3], upper[3];
 } Candidate;
 
@@ -88,7 +89,7 @@ typedef struct {
   NodeGeometry  *geometry;
   PetscInt      *points; /* of the present slave point, with room for FIT_MAX_POINTS */
   /* taper: weights for the frame, which vanish where the list ends. */
-  double   *x, *multiplier, *taper, *workspace;
+  double   *x, *multiplier, *taper, *hoop, *workspace;
   int      *used;
   PetscReal plane[3]; /* normal of the single reference plane of a global frame */
 } FitSupport;
