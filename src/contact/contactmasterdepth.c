@@ -1,27 +1,33 @@
 /* Penetration measured from the master's side: how deep its nodes stand in the slave. For reports. */
 #include "contactimpl.h"
 
-/* Adds to the depth that is allowed in each face what the overlaps before any load leave there: the largest g_0 of the
-   face's nodes. */
+/* Adds to the depth that is allowed in each face what the overlaps before any load leave there, and takes off what the
+   scene adds to them: the lowest g_0 of the face's nodes that carry a term. */
 static PetscErrorCode AllowOverlap(Contact contact, const ContactPair *pair, PetscReal t, PetscReal *allowed)
 {
   const Mesh mesh = contact->mesh;
-  PetscReal *offset;
+  PetscReal *offset, *terms;
 
   PetscFunctionBeginUser;
-  if (pair->scene->initial_overlap != OVERLAP_RAMP && pair->scene->initial_overlap != OVERLAP_IGNORE)
+  if (pair->scene->initial_overlap != OVERLAP_RAMP && pair->scene->initial_overlap != OVERLAP_IGNORE &&
+      pair->scene->initial_overlap != OVERLAP_ADD)
     PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PetscCalloc1(mesh->n_nodes, &offset));
-  for (PetscInt c = 0; c < pair->n; c++) offset[pair->node[c]] = ContactTermOffset(pair, c, t);
+  PetscCall(PetscCalloc2(mesh->n_nodes, &offset, mesh->n_nodes, &terms));
+  for (PetscInt c = 0; c < pair->n; c++) {
+    offset[pair->node[c]] = ContactTermOffset(pair, c, t);
+    terms[pair->node[c]]  = 1;
+  }
   PetscCall(MeshSumNodes(mesh, 1, offset));
+  PetscCall(MeshSumNodes(mesh, 1, terms));
   for (PetscInt f = 0; f < pair->slave->n_faces; f++) {
     const Facet *face = &pair->slave->faces[f];
-    PetscReal    most = 0;
+    PetscReal    most = PETSC_MIN_REAL;
 
-    for (int a = 0; a < ElementGet(face->type)->nodes; a++) most = PetscMax(most, -offset[face->nodes[a]]);
-    allowed[f] += most;
+    for (int a = 0; a < ElementGet(face->type)->nodes; a++)
+      if (terms[face->nodes[a]] > 0) most = PetscMax(most, -offset[face->nodes[a]]);
+    if (most > PETSC_MIN_REAL) allowed[f] += most;
   }
-  PetscCall(PetscFree(offset));
+  PetscCall(PetscFree2(offset, terms));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -40,8 +46,8 @@ static PetscErrorCode AllowOverlap(Contact contact, const ContactPair *pair, Pet
 . depth - the same on all ranks; no nodes where the master is analytic
 
   Note:
-  Depths do not count that first-order facets of a concave slave explain, nor overlaps that initial_overlap leaves. The
-  search is made when this is called first.
+  Depths do not count that first-order facets of a concave slave explain, nor overlaps that initial_overlap leaves;
+  overlaps that it adds do count. The search is made when this is called first.
 @*/
 PetscErrorCode ContactPairMasterDepth(Contact contact, int p, const PetscReal *u, PetscReal t, NodeDepth *depth)
 {

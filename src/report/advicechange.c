@@ -1,5 +1,6 @@
 /* The table of changes that advice may propose, see advicechange.h. */
 #include "advicechange.h"
+#include "runlength.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -307,10 +308,11 @@ static double MeanStep(const ChangePlace *at)
   return way->steps > 0 ? (double)way->t / (double)way->steps : at->figures->scene->stepping.initial;
 }
 
-/* Steps are not shorter already than the solver can make use of. */
+/* Steps are not shorter already than the solver can make use of, nor so many that the progress has asked for longer
+   ones. */
 static int MayBeShorter(const ChangePlace *at)
 {
-  return MeanStep(at) > CHANGE_DT_MIN_NEAR;
+  return MeanStep(at) > CHANGE_DT_MIN_NEAR && at->figures->run->way->steps <= RUN_MANY_STEPS;
 }
 
 static void WriteShorter(const ChangePlace *at, char *text, size_t size)

@@ -3,8 +3,7 @@
 #include <stdio.h>
 #include <sys/stat.h>
 
-/* More steps than this, or results of more bytes, need a reason that the user knows of. */
-#define RUN_MANY_STEPS  100
+/* Results of more bytes need a reason that the user knows of. */
 #define RUN_LARGE_BYTES 1e9
 /* The size at the end is foretold from this part of it on. Earlier, first small steps would foretell too much. */
 #define RUN_FORETOLD 0.1

@@ -267,7 +267,7 @@ static PetscReal NodeDepthIn(DepthSearch *look, BoxTree tree, const DepthNode *n
   nearest = &field->candidates[room->found[foot.facet]];
   *size   = field->records[nearest->record].size;
   for (int d = 0; d < look->lists->dim; d++) cosine += foot.normal[d] * node->normal[d];
-  if (foot.gap >= 0 || cosine >= 0 || foot.beyond > DEPTH_ON_FACE * *size || -foot.gap > DEPTH_BOUND * *size) return 0;
+  if (cosine >= 0 || foot.beyond > DEPTH_ON_FACE * *size || -foot.gap > DEPTH_BOUND * *size) return 0;
   depth = -foot.gap - allowed[nearest->record];
   return depth > DEPTH_ROUND_OFF * *size ? depth : 0;
 }
@@ -361,7 +361,8 @@ static PetscErrorCode Deepest(NodeDepths depths, PetscInt n, const DepthNode *no
 + depths  - the measurement
 . u       - local displacements u[mesh n_nodes*dim] (length), ghosts included
 . t       - load parameter, for rigid tools
-- allowed - allowed[faces of the slave on this rank]: depth in each face that does not count (length)
+- allowed - allowed[faces of the slave on this rank]: depth in each face that does not count (length); negative: nodes
+            in front of the face count from there on
 
   Output Parameter:
 . depth - the same on all ranks and on any number of them

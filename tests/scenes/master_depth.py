@@ -63,6 +63,12 @@ concave = run(args, RUNS / "ring_in_ring.yaml", out="concave", overrides=(
     "contact.0.slave=outer_contact", "contact.0.master=inner_contact")).summary()["contact"][0]
 check.holds("concave: chords do not count", concave["master_depth"] < 1e-3 * concave["facet_error"],
             f"{concave['master_depth']:.3g}, {concave['facet_error']:.3g}")
+# An overlap that the scene adds is one that both sides see.
+added = run(args, SCENES / "stack.yaml", out="added", overrides=(
+    "mesh.parameters.gap=0", "loads.0.uy=0", "contact.0.smoother=diffuse",
+    "contact.0.formulation=surface_to_surface", "contact.0.initial_overlap={add: 0.02}")).summary()["contact"][0]
+check.near("added: both sides alike", added["master_depth"], added["max_penetration"], 0.2 * added["max_penetration"])
+check.holds("added: some of it is left", added["max_penetration"] > 1e-6)
 analytic = run(args, SCENES / "ridge.yaml", out="analytic", overrides=(
     "contact.0.master={plane: {point: [0, 0], normal: [0, 1]}}", "mesh.parameters.rigid=1", "supports=[]",
     "bodies=[{volume: block, material: {law: neo_hookean, E: 100, nu: 0.3}}]"))

@@ -99,7 +99,10 @@ static void test_length(void **state)
   c.figures.scene->stepping.control = STEP_FIXED;
   c.figures.scene->stepping.initial = 0.01;
   Expect(&c, "stepping.control: fixed takes stepping.initial = 0.01; a larger one, or control: iterations");
-  c.way.steps_failed = 6;
+  c.way.newton_accepted = 2000; /* steps are long too, but what the progress has said holds */
+  Expect(&c, "stepping.control: fixed takes stepping.initial = 0.01; a larger one, or control: iterations");
+  c.way.newton_accepted = 101;
+  c.way.steps_failed    = 6;
   Expect(&c, "6 attempts failed and cut dt; a finer mesh of the slave");
   c.way.steps                   = 10;
   c.way.steps_failed            = 0;

@@ -3,6 +3,9 @@
 #pragma once
 #include "scene/scene.h"
 
+/* More steps than this need a reason that the user knows of, and shorter ones are no remedy. */
+#define RUN_MANY_STEPS 100
+
 enum { RUN_LENGTH_TEXT = 400 /* characters of a line */ };
 
 int       RunStepsAreMany(Scene, PetscInt steps, PetscInt failed, char *text);
