@@ -29,7 +29,7 @@ ifdef PETSC_DIR
 endif
 # These are evaluated when they are used, because `make deps all` installs the packages first. Before GNU make 4.4
 # $(shell) does not see exported variables, so PKG_CONFIG_PATH is passed on.
-PACKAGES      := PETSc yaml-0.1 libcjson
+PACKAGES      := PETSc yaml-0.1 libcjson muparser
 pkgconfig      = $(shell PKG_CONFIG_PATH='$(PKG_CONFIG_PATH)' pkg-config $(1) 2>/dev/null)
 petscconf      = $(call pkgconfig,--variable=prefix PETSc)/lib/petsc/conf/petscvariables
 petscvariable  = $(shell sed -n 's/^$(1) *= *//p' $(petscconf) 2>/dev/null)
@@ -94,7 +94,7 @@ $(BUILD)/tests/%: tests/library/%.c $(LIBRARY) $(BUILD)/flags
 # asked for together with deps or clean wait for these, also with make -j.
 $(BUILD)/flags: FORCE | $(filter deps clean,$(MAKECMDGOALS))
 	@pkg-config --exists $(PACKAGES) 2>/dev/null || \
-	  { echo "PETSc, libyaml or cJSON is missing: run make deps" >&2; exit 1; }
+	  { echo "PETSc, libyaml, cJSON or muParser is missing: run make deps" >&2; exit 1; }
 	@mkdir -p $(@D)
 	@echo '$(COMPILE) $(LINK)' | cmp -s - $@ || echo '$(COMPILE) $(LINK)' >$@
 

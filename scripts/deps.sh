@@ -10,6 +10,7 @@ venv=build/venv log=build/deps.log
 
 preprocesses() { printf '%b\n' "$1" | "${CC:-mpicc}" -E -x c $2 - >/dev/null 2>&1; }
 petsc_flags() { pkg-config --cflags-only-I PETSc 2>/dev/null; }
+muparser_flags() { pkg-config --cflags-only-I muparser 2>/dev/null; }
 petsc_prefix() { pkg-config --variable=prefix PETSc 2>/dev/null; }
 petsc_variable() { sed -n "s/^$1 *= *//p" "$(petsc_prefix)/lib/petsc/conf/petscvariables" 2>/dev/null; }
 reference_blas() {
@@ -46,6 +47,7 @@ has_mumps() { preprocesses '#include <dmumps_c.h>' "$(petsc_flags)"; }
 has_metis() { preprocesses '#include <metis.h>' ''; }
 has_yaml() { pkg-config --exists yaml-0.1; }
 has_cjson() { pkg-config --exists libcjson; }
+has_muparser() { pkg-config --exists muparser && preprocesses '#include <muParserDLL.h>' "$(muparser_flags)"; }
 has_cmocka() { pkg-config --exists cmocka; }
 has_gmsh() { command -v gmsh; }
 has_cmake() { command -v cmake && command -v ctest; }
@@ -55,15 +57,15 @@ has_python() { python_found; }
 declare -A packages=([compiler]="gcc libc6-dev" [pkgconfig]=pkg-config [mpi]=libopenmpi-dev [mpirun]=openmpi-bin
   [petsc]="petsc-dev libopenblas0-serial" [blas]=libopenblas0-serial [hdf5]=libhdf5-openmpi-dev
   [mumps]=libmumps-dev [metis]=libmetis-dev [yaml]=libyaml-dev
-  [cjson]=libcjson-dev [cmocka]=libcmocka-dev [gmsh]=gmsh [cmake]=cmake
+  [cjson]=libcjson-dev [muparser]=libmuparser-dev [cmocka]=libcmocka-dev [gmsh]=gmsh [cmake]=cmake
   [h5dump]=hdf5-tools [python]="python3 python3-venv")
 declare -A meaning=([compiler]="a C compiler" [pkgconfig]="pkg-config" [mpi]="MPI: mpicc" [mpirun]="MPI: mpirun"
   [petsc]="PETSc 3.18 or newer, real double, with MUMPS and HDF5${PETSC_DIR:+ (PETSC_DIR=$PETSC_DIR has none)}"
   [blas]="an optimised BLAS (libblas.so.3 is the reference BLAS: MUMPS 6 times slower)"
   [hdf5]="parallel HDF5, the one of PETSc, with headers" [mumps]="MUMPS with its C header, the one of PETSc"
-  [metis]="METIS" [yaml]="libyaml" [cjson]="cJSON" [cmocka]="cmocka" [gmsh]="gmsh" [cmake]="cmake and ctest"
+  [metis]="METIS" [yaml]="libyaml" [cjson]="cJSON" [muparser]="muParser" [cmocka]="cmocka" [gmsh]="gmsh" [cmake]="cmake and ctest"
   [h5dump]="HDF5 tools" [python]="Python 3.10 to 3.13 with venv")
-order="compiler pkgconfig mpi mpirun petsc blas hdf5 mumps metis yaml cjson cmocka gmsh cmake h5dump python"
+order="compiler pkgconfig mpi mpirun petsc blas hdf5 mumps metis yaml cjson muparser cmocka gmsh cmake h5dump python"
 
 missing() {
   local thing
@@ -114,8 +116,9 @@ if [ -n "$lacking" ]; then
   cat >&2 <<'END'
 On a cluster these come as modules or through spack:
   module load gcc openmpi petsc metis gmsh cmake python
-  spack install petsc+mumps+hdf5+metis gmsh libyaml cjson cmocka cmake
-Set PETSC_DIR (and PETSC_ARCH) when pkg-config does not find PETSc, PKG_CONFIG_PATH for libyaml, cJSON and cmocka.
+  spack install petsc+mumps+hdf5+metis gmsh libyaml cjson muparser cmocka cmake
+Set PETSC_DIR (and PETSC_ARCH) when pkg-config does not find PETSc, PKG_CONFIG_PATH for libyaml, cJSON,
+muParser and cmocka.
 END
   exit 1
 fi

@@ -42,7 +42,7 @@ def sections(burnish):
     tables = {}
     for path, allowed, remarks, default, meaning in keys(burnish):
         top = path.split(".")[0]
-        text = cell("; ".join(filter(None, [meaning, *remarks])))
+        text = cell("; ".join(filter(None, [meaning, *remarks]))).replace("*", "\\*")
         tables.setdefault(top, []).append(f"| {code(path)} | {cell(allowed)} | {code(default)} | {text} |")
     single = [rows[0] for rows in tables.values() if len(rows) == 1]
     head = "| key | allowed | default | meaning |\n| --- | --- | --- | --- |\n"

@@ -2,33 +2,45 @@
 #include <math.h>
 #include "kernels/elementkernel.h"
 #include "bodies/loads.h"
+#include "bodies/loadvalues.h"
 #include "base/refusal.h"
 
 /* Stands in the place of a load's index where the axisymmetric geometry itself holds u_r on the axis. */
 enum { LOADS_AXIS = 0x7fffffff };
 /* A node is on the axis if it is within this fraction of the model's size from r = 0. */
 #define LOADS_ON_AXIS 1e-9
+/* Two expressions for one dof agree if they differ by no more than this part of the largest value of either. It stands
+   for the round-off of expressions that say the same in other words. */
+#define LOADS_AGREE 1e-10
+/* Expressions with t are evaluated at the ends of this many intervals of the load parameter before the run. Values that
+   are not finite are mostly found then. Two rules for one dof are compared there. */
+enum { LOADS_SAMPLES = 16 };
 
 /* A dof that a support or an imposed displacement holds: u = value * history. A support has the value 0 and no history.
- */
+   An expression with t has no history, and value is that at loads->t. */
 typedef struct {
   PetscInt       dof;
   PetscReal      value;
   const History *history;
-  int            load; /* index into scene->loads, or -1 - index into scene->supports, or LOADS_AXIS: for messages */
+  int            load;    /* index into scene->loads, or -1 - index into scene->supports, or LOADS_AXIS: for messages */
+  PetscBool      varies;  /* an expression with t */
+  PetscReal      largest; /* of an expression: its largest value on the surface, of all ranks; else 0 */
 } Prescribed;
 
-/* A dead load: its nodal forces for factor 1, assembled once */
+/* A dead load: its nodal forces for factor 1, assembled once; where it varies, those at loads->t */
 typedef struct {
-  PetscInt       n, *dof;
-  PetscReal     *force, force2; /* force2: sum of squares of the unassembled nodal forces */
-  const History *history;
+  const SceneLoad *load;
+  const MeshGroup *group; /* NULL for a body force */
+  PetscInt         n, *dof;
+  PetscReal       *force, force2; /* force2: sum of squares of the unassembled nodal forces */
+  const History   *history;       /* NULL where it varies */
 } DeadLoad;
 
 typedef struct {
+  const SceneLoad *load;
   const MeshGroup *group;
-  PetscReal        pressure;
-  const History   *history;
+  PetscReal       *value;   /* of an expression: FACE_MAX_POINTS for each face; else NULL */
+  const History   *history; /* NULL where it varies */
 } FollowerLoad;
 
 struct _n_Loads {
@@ -41,20 +53,42 @@ struct _n_Loads {
   DeadLoad     *dead;
   FollowerLoad *follower;
   PetscLogEvent event_follower; /* where there is a follower load */
+  PetscBool     varies;         /* some value is an expression with t; the same on all ranks */
+  PetscReal     t;              /* for which the values of such expressions stand */
+  Complaint     complaint;      /* while values are set: the first mistake of this rank */
   PetscInt     *owner;          /* while it is made: by dof, who prescribes it */
-  PetscReal    *dense;          /* while it is made: nodal forces of one load */
+  PetscReal    *dense;          /* nodal forces of one load: while it is made, or all the time if some load varies */
 };
 
 static PetscReal HistoryFactor(const History *history, PetscReal t)
 {
-  return history ? HistoryValue(history, t) : 0;
+  return history ? HistoryValue(history, t) : 1;
+}
+
+/* Returns the value of a rule at any t. */
+static PetscReal PrescribedAt(Loads loads, const Prescribed *p, PetscReal t)
+{
+  const int dim = loads->mesh->dim;
+
+  if (!p->varies) return p->value * HistoryFactor(p->history, t);
+  return LoadNodeValue(loads->mesh, loads->scene, &loads->scene->loads[p->load], (int)(p->dof % dim), p->dof / dim, t,
+                       &loads->complaint);
 }
 
 /* Tells whether two rules for one dof say the same at every t, so that having both does no harm. */
-static PetscBool PrescribedAgree(const Prescribed *a, const Prescribed *b)
+static PetscBool PrescribedAgree(Loads loads, const Prescribed *a, const Prescribed *b)
 {
-  if (a->value == 0 && b->value == 0) return PETSC_TRUE;
-  if (a->value != b->value || !a->history || !b->history || a->history->n != b->history->n) return PETSC_FALSE;
+  const PetscReal same = LOADS_AGREE * PetscMax(a->largest, b->largest);
+
+  for (int k = 0; k <= LOADS_SAMPLES && (a->varies || b->varies); k++) {
+    const PetscReal t = (PetscReal)k / LOADS_SAMPLES;
+
+    if (PetscAbsReal(PrescribedAt(loads, a, t) - PrescribedAt(loads, b, t)) > same) return PETSC_FALSE;
+  }
+  if (a->varies || b->varies) return PETSC_TRUE;
+  if (PetscAbsReal(a->value) <= same && PetscAbsReal(b->value) <= same) return PETSC_TRUE;
+  if (PetscAbsReal(a->value - b->value) > same || !a->history || !b->history || a->history->n != b->history->n)
+    return PETSC_FALSE;
   for (int i = 0; i < a->history->n; i++)
     if (a->history->t[i] != b->history->t[i] || a->history->v[i] != b->history->v[i]) return PETSC_FALSE;
   return PETSC_TRUE;
@@ -67,41 +101,57 @@ static const char *PrescribedPath(Scene scene, const Prescribed *p)
 }
 
 /* Adds the rule for one dof. A second rule for the dof must say the same, else the complaint names both. */
-static PetscErrorCode LoadsAddDof(Loads loads, PetscInt dof, PetscReal value, const History *history, int load,
-                                  PetscInt *owner, char *complaint, size_t size)
+static void LoadsAddDof(Loads loads, const Prescribed *p)
 {
-  const Mesh       mesh = loads->mesh;
-  const int        dim  = mesh->dim;
-  const Prescribed p    = {dof, value, history, load};
+  const int dim = loads->mesh->dim;
 
-  PetscFunctionBeginUser;
-  if (owner[dof] >= 0) {
-    const Prescribed *q = &loads->prescribed[owner[dof]];
+  if (loads->owner[p->dof] >= 0) {
+    const Prescribed *q = &loads->prescribed[loads->owner[p->dof]];
 
-    if (!PrescribedAgree(&p, q) && !complaint[0]) {
-      PetscCall(PetscSNPrintf(complaint, size,
-                              "%s: u%c of node %" PetscInt_FMT
-                              " is prescribed differently by %s; allowed: one value for each component of a node (part "
-                              "the surfaces, or drop one of the two)",
-                              SceneWhere(loads->scene, PrescribedPath(loads->scene, &p), NULL), "xyz"[dof % dim],
-                              mesh -> node_tag[dof / dim], PrescribedPath(loads->scene, q)));
-    }
-    PetscFunctionReturn(PETSC_SUCCESS);
+    if (!PrescribedAgree(loads, p, q))
+      Complain(&loads->complaint,
+               "%s: u%c of node %" PetscInt_FMT
+               " is prescribed differently by %s; allowed: one value for each component of a node (part the surfaces, "
+               "or drop one of the two)",
+               SceneWhere(loads->scene, PrescribedPath(loads->scene, p), NULL), "xyz"[p->dof % dim],
+               loads -> mesh -> node_tag[p->dof / dim], PrescribedPath(loads->scene, q));
+    return;
   }
-  owner[dof]                               = loads->n_prescribed;
-  loads->constrained[dof]                  = PETSC_TRUE;
-  loads->prescribed[loads->n_prescribed++] = p;
-  PetscFunctionReturn(PETSC_SUCCESS);
+  loads->owner[p->dof]                     = loads->n_prescribed;
+  loads->constrained[p->dof]               = PETSC_TRUE;
+  loads->prescribed[loads->n_prescribed++] = *p;
 }
 
-static PetscErrorCode LoadsAddPrescribed(Loads loads, const MeshGroup *group, int component, PetscReal value,
-                                         const History *history, int load, PetscInt *owner, char *complaint,
-                                         size_t size)
+/* Holds one component of the nodes of a support. */
+static void LoadsAddSupport(Loads loads, const MeshGroup *group, int component, int support)
 {
-  PetscFunctionBeginUser;
   for (PetscInt i = 0; i < group->n_nodes; i++)
-    PetscCall(
-      LoadsAddDof(loads, group->nodes[i] * loads->mesh->dim + component, value, history, load, owner, complaint, size));
+    LoadsAddDof(loads, &(Prescribed){.dof = group->nodes[i] * loads->mesh->dim + component, .load = -1 - support});
+}
+
+/* Imposes one component of a displacement on the nodes of its surface. */
+static PetscErrorCode LoadsAddDisplacement(Loads loads, const MeshGroup *group, int component, int l)
+{
+  const SceneLoad *load = &loads->scene->loads[l];
+  Prescribed       p    = {.load = l, .varies = SceneLoadVaries(load, component)};
+
+  PetscFunctionBeginUser;
+  p.history = p.varies ? NULL : &load->history;
+  for (PetscInt i = 0; i < group->n_nodes && load->expression[component]; i++) {
+    for (int k = 0; k <= (p.varies ? LOADS_SAMPLES : 0); k++) {
+      const PetscReal value = LoadNodeValue(loads->mesh, loads->scene, load, component, group->nodes[i],
+                                            (PetscReal)k / LOADS_SAMPLES, &loads->complaint);
+
+      p.largest = PetscMax(p.largest, PetscAbsReal(value));
+    }
+  }
+  if (load->expression[component])
+    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &p.largest, 1, MPIU_REAL, MPI_MAX, loads->mesh->comm));
+  for (PetscInt i = 0; i < group->n_nodes; i++) {
+    p.dof   = group->nodes[i] * loads->mesh->dim + component;
+    p.value = LoadNodeValue(loads->mesh, loads->scene, load, component, group->nodes[i], loads->t, &loads->complaint);
+    LoadsAddDof(loads, &p);
+  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -111,7 +161,6 @@ static PetscErrorCode LoadsCreatePrescribed(Loads loads)
   Scene      scene = loads->scene;
   PetscInt   n     = mesh->n_nodes * mesh->dim;
   MeshGroup *group;
-  char       complaint[512] = "";
 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc2(n, &loads->constrained, n, &loads->prescribed));
@@ -122,14 +171,13 @@ static PetscErrorCode LoadsCreatePrescribed(Loads loads)
   }
   for (PetscInt node = 0; node < mesh->n_nodes && scene->geometry == GEOMETRY_AXISYMMETRIC; node++)
     if (mesh->coords[node * mesh->dim] + mesh->centre[0] <= LOADS_ON_AXIS * mesh->size)
-      PetscCall(LoadsAddDof(loads, node * mesh->dim, 0, NULL, LOADS_AXIS, loads->owner, complaint, sizeof(complaint)));
+      LoadsAddDof(loads, &(Prescribed){.dof = node * mesh->dim, .load = LOADS_AXIS});
   for (int s = 0; s < scene->n_supports; s++) {
     const SceneSupport *support = &scene->supports[s];
 
     PetscCall(MeshGetGroup(mesh, scene, support->path, "surface", support->surface, mesh->dim - 1, &group));
     for (int c = 0; c < mesh->dim; c++)
-      if (support->fixed[c])
-        PetscCall(LoadsAddPrescribed(loads, group, c, 0, NULL, -1 - s, loads->owner, complaint, sizeof(complaint)));
+      if (support->fixed[c]) LoadsAddSupport(loads, group, c, s);
   }
   for (int l = 0; l < scene->n_loads; l++) {
     const SceneLoad *load = &scene->loads[l];
@@ -137,56 +185,55 @@ static PetscErrorCode LoadsCreatePrescribed(Loads loads)
     if (load->kind != LOAD_DISPLACEMENT) continue;
     PetscCall(MeshGetGroup(mesh, scene, load->path, "surface", load->region, mesh->dim - 1, &group));
     for (int c = 0; c < mesh->dim; c++)
-      if (load->has[c])
-        PetscCall(LoadsAddPrescribed(loads, group, c, load->value[c], &load->history, l, loads->owner, complaint,
-                                     sizeof(complaint)));
+      if (load->has[c]) PetscCall(LoadsAddDisplacement(loads, group, c, l));
   }
   PetscCall(PetscFree(loads->owner));
-  PetscCall(RefuseInputAnywhere(mesh->comm, complaint[0] ? complaint : NULL));
+  PetscCall(ComplaintRefuse(mesh->comm, &loads->complaint));
   PetscCall(MeshSetConstraints(mesh, loads->constrained));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* Adds the nodal forces of one face or cell for factor 1 to the dense work vector. */
-static void DeadLoadAdd(Mesh mesh, PetscInt n, const PetscInt *nodes, const double *fe, PetscReal *dense,
-                        PetscReal *force2)
+static void DeadLoadAdd(Loads loads, PetscInt n, const PetscInt *nodes, const double *fe, DeadLoad *dead)
 {
-  for (PetscInt a = 0; a < n; a++) {
-    for (int d = 0; d < mesh->dim; d++) {
-      dense[nodes[a] * mesh->dim + d] += fe[a * mesh->dim + d];
-      *force2 += PetscSqr(fe[a * mesh->dim + d]);
-    }
+  const int dim = loads->mesh->dim;
+
+  for (PetscInt i = 0; i < n * dim; i++) {
+    loads->dense[nodes[i / dim] * dim + i % dim] += fe[i];
+    dead->force2 += PetscSqr(fe[i]);
   }
 }
 
-static PetscErrorCode DeadLoadSurface(Loads loads, const SceneLoad *load, const MeshGroup *group, PetscReal *dense,
-                                      PetscReal *force2)
+static PetscErrorCode DeadLoadSurface(Loads loads, PetscReal t, DeadLoad *dead)
 {
-  Mesh     mesh = loads->mesh;
-  PetscInt nodes[FACE_MAX_NODES];
-  double   X[FACE_MAX_NODES * 3], zero[FACE_MAX_NODES * 3] = {0}, fe[FACE_MAX_NODES * 3];
+  Mesh             mesh = loads->mesh;
+  const SceneLoad *load = dead->load;
+  PetscInt         nodes[FACE_MAX_NODES];
+  double X[FACE_MAX_NODES * 3], zero[FACE_MAX_NODES * 3] = {0}, fe[FACE_MAX_NODES * 3], value[LOAD_MAX_VALUES];
 
   PetscFunctionBeginUser;
-  for (PetscInt f = 0; f < group->n_faces; f++) {
-    const ElementType type = MeshFaceNodes(mesh, group, f, nodes);
-    const int         n    = ElementGet(type)->nodes;
+  for (PetscInt f = 0; f < dead->group->n_faces; f++) {
+    const ElementType type   = MeshFaceNodes(mesh, dead->group, f, nodes);
+    const Element    *face   = ElementGetFace(type);
+    const int         stride = LoadPointValues(mesh, loads->scene, load, face, nodes, t, value, &loads->complaint);
 
-    MeshGatherNodes(mesh, n, nodes, mesh->coords, X);
-    PetscCall(PetscArrayzero(fe, n * mesh->dim));
+    MeshGatherNodes(mesh, face->nodes, nodes, mesh->coords, X);
+    PetscCall(PetscArrayzero(fe, face->nodes * mesh->dim));
     FaceLoadKernel(type, mesh->dim, loads->scene->geometry,
-                   load->kind == LOAD_TRACTION ? FACE_TRACTION : FACE_DEAD_PRESSURE, X, zero, load->value, fe, NULL,
+                   load->kind == LOAD_TRACTION ? FACE_TRACTION : FACE_DEAD_PRESSURE, X, zero, value, stride, fe, NULL,
                    NULL);
-    DeadLoadAdd(mesh, n, nodes, fe, dense, force2);
+    DeadLoadAdd(loads, face->nodes, nodes, fe, dead);
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode DeadLoadVolume(Loads loads, const SceneLoad *load, PetscReal *dense, PetscReal *force2)
+static PetscErrorCode DeadLoadVolume(Loads loads, PetscReal t, DeadLoad *dead)
 {
-  Mesh   mesh  = loads->mesh;
-  Scene  scene = loads->scene;
-  int    body  = MeshFindBody(scene, load->region, PETSC_FALSE);
-  double X[ELEMENT_MAX_NODES * 3], fe[ELEMENT_MAX_NODES * 3];
+  Mesh             mesh  = loads->mesh;
+  Scene            scene = loads->scene;
+  const SceneLoad *load  = dead->load;
+  int              body  = MeshFindBody(scene, load->region, PETSC_FALSE);
+  double           X[ELEMENT_MAX_NODES * 3], fe[ELEMENT_MAX_NODES * 3], value[LOAD_MAX_VALUES];
 
   PetscFunctionBeginUser;
   if (body < 0)
@@ -194,13 +241,15 @@ static PetscErrorCode DeadLoadVolume(Loads loads, const SceneLoad *load, PetscRe
                           SceneWhere(scene, load->path, "volume"), load->region));
   for (PetscInt c = 0; c < mesh->n_cells; c++) {
     const PetscInt *nodes = &mesh->cell_nodes[mesh->cell_ptr[c]];
-    const int       n     = ElementGet(mesh->cell_type[c])->nodes;
+    const Element  *cell  = ElementGet(mesh->cell_type[c]);
+    int             stride;
 
     if (mesh->cell_body[c] != body) continue;
+    stride = LoadPointValues(mesh, scene, load, cell, nodes, t, value, &loads->complaint);
     MeshCellCoordinates(mesh, c, X);
-    PetscCall(PetscArrayzero(fe, n * mesh->dim));
-    BodyForceKernel(mesh->cell_type[c], mesh->dim, scene->geometry, X, load->value, fe);
-    DeadLoadAdd(mesh, n, nodes, fe, dense, force2);
+    PetscCall(PetscArrayzero(fe, cell->nodes * mesh->dim));
+    BodyForceKernel(mesh->cell_type[c], mesh->dim, scene->geometry, X, value, stride, fe);
+    DeadLoadAdd(loads, cell->nodes, nodes, fe, dead);
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -211,13 +260,45 @@ static PetscErrorCode DeadLoadPack(const PetscReal *dense, PetscInt n, DeadLoad 
 
   PetscFunctionBeginUser;
   for (PetscInt i = 0; i < n; i++) count += dense[i] != 0;
+  PetscCall(PetscFree2(dead->dof, dead->force));
   PetscCall(PetscMalloc2(count, &dead->dof, count, &dead->force));
+  dead->n = 0;
   for (PetscInt i = 0; i < n; i++) {
     if (dense[i] == 0) continue;
     dead->dof[dead->n]     = i;
     dead->force[dead->n++] = dense[i];
   }
   PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Assembles the nodal forces of a dead load, at t where it varies. */
+static PetscErrorCode DeadLoadAssemble(Loads loads, PetscReal t, DeadLoad *dead)
+{
+  const PetscInt n = loads->mesh->n_nodes * loads->mesh->dim;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscArrayzero(loads->dense, n));
+  dead->force2 = 0;
+  if (dead->group)
+    PetscCall(DeadLoadSurface(loads, t, dead));
+  else
+    PetscCall(DeadLoadVolume(loads, t, dead));
+  PetscCall(DeadLoadPack(loads->dense, n, dead));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Sets the pressures of a follower load at the quadrature points of its faces, at t where it varies. */
+static void FollowerEvaluate(Loads loads, PetscReal t, FollowerLoad *follower)
+{
+  PetscInt nodes[FACE_MAX_NODES];
+
+  for (PetscInt f = 0; f < follower->group->n_faces; f++) {
+    const Element *face = ElementGetFace(MeshFaceNodes(loads->mesh, follower->group, f, nodes));
+    double         value[LOAD_MAX_VALUES];
+
+    (void)LoadPointValues(loads->mesh, loads->scene, follower->load, face, nodes, t, value, &loads->complaint);
+    for (int p = 0; p < face->points; p++) follower->value[f * FACE_MAX_POINTS + p] = value[p];
+  }
 }
 
 static PetscBool LoadFollows(Scene scene, const SceneLoad *load)
@@ -238,26 +319,45 @@ static PetscErrorCode LoadsCreateForces(Loads loads)
   PetscCall(PetscCalloc2(scene->n_loads, &loads->dead, followers, &loads->follower));
   PetscCall(PetscMalloc1(n, &loads->dense));
   for (int l = 0; l < scene->n_loads; l++) {
-    const SceneLoad *load = &scene->loads[l];
-    DeadLoad        *dead = &loads->dead[loads->n_dead];
+    const SceneLoad *load    = &scene->loads[l];
+    const History   *history = LoadVaries(load) ? NULL : &load->history;
 
     if (load->kind == LOAD_DISPLACEMENT) continue;
+    group = NULL;
     if (load->kind != LOAD_BODY_FORCE)
       PetscCall(MeshGetGroup(mesh, scene, load->path, "surface", load->region, mesh->dim - 1, &group));
     if (LoadFollows(scene, load)) {
-      loads->follower[loads->n_follower++] = (FollowerLoad){group, load->value[0], &load->history};
-      continue;
+      FollowerLoad *follower = &loads->follower[loads->n_follower++];
+
+      *follower = (FollowerLoad){load, group, NULL, history};
+      if (!LoadHasExpression(load)) continue;
+      PetscCall(PetscMalloc1(group->n_faces * FACE_MAX_POINTS, &follower->value));
+      FollowerEvaluate(loads, loads->t, follower);
+    } else {
+      DeadLoad *dead = &loads->dead[loads->n_dead++];
+
+      *dead = (DeadLoad){.load = load, .group = group, .history = history};
+      PetscCall(DeadLoadAssemble(loads, loads->t, dead));
     }
-    PetscCall(PetscArrayzero(loads->dense, n));
-    if (load->kind == LOAD_BODY_FORCE)
-      PetscCall(DeadLoadVolume(loads, load, loads->dense, &dead->force2));
-    else
-      PetscCall(DeadLoadSurface(loads, load, group, loads->dense, &dead->force2));
-    PetscCall(DeadLoadPack(loads->dense, n, dead));
-    dead->history = &load->history;
-    loads->n_dead++;
   }
-  PetscCall(PetscFree(loads->dense));
+  if (!loads->varies) PetscCall(PetscFree(loads->dense));
+  PetscCall(ComplaintRefuse(mesh->comm, &loads->complaint));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Sets the values of all expressions with t to those at a load parameter. */
+static PetscErrorCode LoadsMove(Loads loads, PetscReal t)
+{
+  PetscFunctionBeginUser;
+  if (!loads->varies || t == loads->t) PetscFunctionReturn(PETSC_SUCCESS);
+  loads->t = t;
+  for (PetscInt i = 0; i < loads->n_prescribed; i++)
+    if (loads->prescribed[i].varies) loads->prescribed[i].value = PrescribedAt(loads, &loads->prescribed[i], t);
+  for (PetscInt l = 0; l < loads->n_dead; l++)
+    if (LoadVaries(loads->dead[l].load)) PetscCall(DeadLoadAssemble(loads, t, &loads->dead[l]));
+  for (PetscInt l = 0; l < loads->n_follower; l++)
+    if (LoadVaries(loads->follower[l].load)) FollowerEvaluate(loads, t, &loads->follower[l]);
+  PetscCall(ComplaintRefuse(loads->mesh->comm, &loads->complaint));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -276,7 +376,7 @@ static PetscErrorCode LoadsCreateForces(Loads loads)
 
   Note:
   Supported and imposed dofs become constraints of the mesh's local section. Call it before any matrix or vector is
-  made. It refuses two rules for one component of a node that do not agree.
+  made. It refuses two rules for one component of a node that do not agree, and expressions that are not finite.
 @*/
 PetscErrorCode LoadsCreate(Mesh mesh, Scene scene, Loads *out)
 {
@@ -287,8 +387,10 @@ PetscErrorCode LoadsCreate(Mesh mesh, Scene scene, Loads *out)
   *out         = loads; /* LoadsDestroy() frees what a refusal leaves */
   loads->mesh  = mesh;
   loads->scene = scene;
+  for (int l = 0; l < scene->n_loads; l++) loads->varies = (PetscBool)(loads->varies || LoadVaries(&scene->loads[l]));
   PetscCall(LoadsCreatePrescribed(loads));
   PetscCall(LoadsCreateForces(loads));
+  for (int k = LOADS_SAMPLES; k >= 0; k--) PetscCall(LoadsMove(loads, (PetscReal)k / LOADS_SAMPLES));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -304,6 +406,7 @@ PetscErrorCode LoadsDestroy(Loads *loads)
 {
   PetscFunctionBeginUser;
   if (!*loads) PetscFunctionReturn(PETSC_SUCCESS);
+  for (PetscInt l = 0; l < (*loads)->n_follower; l++) PetscCall(PetscFree((*loads)->follower[l].value));
   for (PetscInt l = 0; l < (*loads)->n_dead; l++) PetscCall(PetscFree2((*loads)->dead[l].dof, (*loads)->dead[l].force));
   PetscCall(PetscFree2((*loads)->dead, (*loads)->follower));
   PetscCall(PetscFree2((*loads)->constrained, (*loads)->prescribed));
@@ -316,7 +419,7 @@ PetscErrorCode LoadsDestroy(Loads *loads)
 /*@
   LoadsPrescribe - writes the supported and imposed displacements at a load parameter into the displacements.
 
-  Not collective
+  Collective
 
   Input Parameters:
 + loads - the loads
@@ -324,10 +427,14 @@ PetscErrorCode LoadsDestroy(Loads *loads)
 
   Output Parameter:
 . u - local displacements (length) [n_nodes*dim], of which only the prescribed ones are written
+
+  Note:
+  It refuses an expression with t that is not finite at t, on all ranks. LoadsResidual() and LoadsTangent() do so too.
 @*/
 PetscErrorCode LoadsPrescribe(Loads loads, PetscReal t, PetscReal *u)
 {
   PetscFunctionBeginUser;
+  PetscCall(LoadsMove(loads, t));
   for (PetscInt i = 0; i < loads->n_prescribed; i++)
     u[loads->prescribed[i].dof] = loads->prescribed[i].value * HistoryFactor(loads->prescribed[i].history, t);
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -336,24 +443,28 @@ PetscErrorCode LoadsPrescribe(Loads loads, PetscReal t, PetscReal *u)
 static PetscErrorCode FollowerFace(Loads loads, const FollowerLoad *load, PetscInt f, PetscReal t, const PetscReal *u,
                                    PetscInt *nodes, int *n, double *fe, double *ke)
 {
-  Mesh              mesh = loads->mesh;
-  const ElementType type = MeshFaceNodes(mesh, load->group, f, nodes);
-  double X[FACE_MAX_NODES * 3], v[FACE_MAX_NODES * 3], pressure = load->pressure * HistoryValue(load->history, t);
+  Mesh              mesh   = loads->mesh;
+  const ElementType type   = MeshFaceNodes(mesh, load->group, f, nodes);
+  const PetscReal   factor = HistoryFactor(load->history, t);
+  const PetscReal  *value  = load->value ? &load->value[f * FACE_MAX_POINTS] : load->load->value;
+  const int         stride = load->value ? 1 : 0, values = load->value ? ElementGetFace(type)->points : 1;
+  double            X[FACE_MAX_NODES * 3], v[FACE_MAX_NODES * 3], pressure[FACE_MAX_POINTS];
 
   PetscFunctionBeginUser;
+  for (int p = 0; p < values; p++) pressure[p] = value[p] * factor;
   *n = ElementGet(type)->nodes;
   MeshGatherNodes(mesh, *n, nodes, mesh->coords, X);
   MeshGatherNodes(mesh, *n, nodes, u, v);
   PetscCall(PetscArrayzero(fe, *n * mesh->dim));
   if (ke) PetscCall(PetscArrayzero(ke, PetscSqr(*n * mesh->dim)));
-  FaceLoadKernel(type, mesh->dim, loads->scene->geometry, FACE_FOLLOWER_PRESSURE, X, v, &pressure, fe, ke, NULL);
+  FaceLoadKernel(type, mesh->dim, loads->scene->geometry, FACE_FOLLOWER_PRESSURE, X, v, pressure, stride, fe, ke, NULL);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /*@
   LoadsResidual - subtracts the external forces from the residual.
 
-  Not collective
+  Collective
 
   Input Parameters:
 + loads - the loads
@@ -377,9 +488,10 @@ PetscErrorCode LoadsResidual(Loads loads, PetscReal t, const PetscReal *u, Petsc
   int       n;
 
   PetscFunctionBeginUser;
+  PetscCall(LoadsMove(loads, t));
   for (PetscInt l = 0; l < loads->n_dead; l++) {
     const DeadLoad *dead   = &loads->dead[l];
-    const PetscReal factor = HistoryValue(dead->history, t);
+    const PetscReal factor = HistoryFactor(dead->history, t);
 
     for (PetscInt i = 0; i < dead->n; i++) {
       if (f) f[dead->dof[i]] -= factor * dead->force[i];
@@ -405,7 +517,7 @@ PetscErrorCode LoadsResidual(Loads loads, PetscReal t, const PetscReal *u, Petsc
 /*@
   LoadsTangent - adds the follower loads' part of the tangent to the local block CSR of the elasticity.
 
-  Not collective
+  Collective
 
   Input Parameters:
 + loads      - the loads
@@ -421,6 +533,7 @@ PetscErrorCode LoadsTangent(Loads loads, PetscReal t, const PetscReal *u, Elasti
 
   PetscFunctionBeginUser;
   if (!loads->n_follower) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(LoadsMove(loads, t));
   PetscCall(PetscLogEventBegin(loads->event_follower, 0, 0, 0, 0));
   for (PetscInt l = 0; l < loads->n_follower; l++) {
     for (PetscInt face = 0; face < loads->follower[l].group->n_faces; face++) {

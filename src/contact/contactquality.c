@@ -1,11 +1,15 @@
 /* How well the surfaces of the pairs lie on each other: overlaps before any load, gaps and penetrations, nodes that
    both surfaces have. */
 #include "contactimpl.h"
+#include "base/complaint.h"
 #include "base/refusal.h"
 #include "mesh/meshdofs.h"
 
 /* Gaps below this part of a face size are round-off of coordinates and projections. */
 #define QUALITY_ROUND_OFF 1e-9
+/* An added overlap is evaluated at the ends of this many intervals of the load parameter before the run, so that a
+   value that is not finite is mostly found then. */
+enum { OVERLAP_SAMPLES = 16 };
 
 /* Finds the node whose value is the largest of all ranks; of nodes that differ by round-off it is the one of lowest
    tag. value[c] is of each term. Tag -1: no node has any. */
@@ -236,6 +240,29 @@ static PetscErrorCode PairCheckFacing(Contact contact, const ContactPair *pair)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Refuses an added overlap that is not finite at a node of the slave, between t = 0 and t = 1. */
+static PetscErrorCode PairCheckAddedOverlap(Contact contact, const ContactPair *pair)
+{
+  Complaint complaint = {""};
+
+  PetscFunctionBeginUser;
+  if (!pair->scene->overlap_expression) PetscFunctionReturn(PETSC_SUCCESS);
+  for (PetscInt c = 0; c < pair->n; c++) {
+    for (int k = 0; k <= OVERLAP_SAMPLES; k++) {
+      const PetscReal t = (PetscReal)k / OVERLAP_SAMPLES;
+
+      if (PetscIsInfOrNanReal(ContactTermAddedOverlap(pair, c, t)))
+        Complain(&complaint,
+                 "%s: the expression has no finite value at node %" PetscInt_FMT
+                 " at t = %g; allowed: an expression that is finite on the slave",
+                 SceneWhere(contact->scene, pair->scene->path, "initial_overlap.add"),
+                 contact->mesh->node_tag[pair->node[c]], (double)t);
+    }
+  }
+  PetscCall(ComplaintRefuse(contact->mesh->comm, &complaint));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /*@
   ContactTakeOverlap - treats surfaces that overlap before any load as the scene asks for.
 
@@ -246,8 +273,8 @@ static PetscErrorCode PairCheckFacing(Contact contact, const ContactPair *pair)
 
   Note:
   With initial_overlap: refuse, it refuses the deepest overlap of each pair that is more than the surfaces' own
-  shapes explain, sagitta of facets and error of fits; the message names pair, node and depth. With ramp and ignore it
-keeps the overlaps as g_0.
+  shapes explain, sagitta of facets and error of fits; the message names pair, node and depth. With add it also refuses
+  an overlap that is not finite. With ramp and ignore it keeps the overlaps as g_0.
 @*/
 PetscErrorCode ContactTakeOverlap(Contact contact)
 {
@@ -265,10 +292,11 @@ PetscErrorCode ContactTakeOverlap(Contact contact)
     char complaint[512];
 
     if (pair->master) PetscCall(PairCheckFacing(contact, pair));
+    PetscCall(PairCheckAddedOverlap(contact, pair));
     for (PetscInt c = 0; c < pair->n; c++) {
       if (pair->scene->initial_overlap == OVERLAP_RAMP || pair->scene->initial_overlap == OVERLAP_IGNORE)
         pair->now.offset[c] = pair->now.gap[c] < 0 ? pair->now.gap[c] : 0;
-      if (pair->scene->initial_overlap != OVERLAP_REFUSE) continue;
+      if (pair->scene->initial_overlap != OVERLAP_REFUSE && pair->scene->initial_overlap != OVERLAP_ADD) continue;
       if (!(pair->now.gap[c] < -TermOverlapExplained(pair, c)) || pair->now.gap[c] >= worst) continue;
       worst = pair->now.gap[c];
       at    = c;

@@ -1,8 +1,34 @@
 /* One contact term: its gap, its state for the law, what the law says of it, and its tolerances. */
 #include "contactimpl.h"
+#include "mesh/mesh.h"
 
 /* Two surfaces that are apart by no more than this fraction of the face size touch, whatever their curvature. */
 #define CONTACT_TOUCH 1e-6
+
+/*@
+  ContactTermAddedOverlap - returns the overlap that the scene adds at a term to that of the meshes (length).
+
+  Not collective
+
+  Input Parameters:
++ pair - the pair
+. c    - the term
+- t    - load parameter
+
+  Note:
+  Without t in its expression it grows in proportion to t.
+@*/
+PetscReal ContactTermAddedOverlap(const ContactPair *pair, PetscInt c, PetscReal t)
+{
+  const SceneContact *scene = pair->scene;
+  const PetscReal     part  = ExpressionUses(scene->overlap_expression, EXPRESSION_T) ? 1 : t;
+  PetscReal           X[3];
+
+  if (scene->initial_overlap != OVERLAP_ADD) return 0;
+  if (!scene->overlap_expression) return part * scene->added_overlap;
+  MeshNodePlace(pair->mesh, pair->node[c], X);
+  return part * ExpressionValue(scene->overlap_expression, X, t);
+}
 
 /*@
   ContactTermOffset - returns g_0 of a term: what is left at t of the gap that the surfaces had before any load.
@@ -15,10 +41,12 @@
 - t    - load parameter
 
   Note:
-  All of an ignored overlap is left, and a shrinking part of a ramped one (length).
+  All of an ignored overlap is left, and a shrinking part of a ramped one (length). An overlap that the scene adds is a
+  gap at which the surfaces touch.
 @*/
 PetscReal ContactTermOffset(const ContactPair *pair, PetscInt c, PetscReal t)
 {
+  if (pair->scene->initial_overlap == OVERLAP_ADD) return ContactTermAddedOverlap(pair, c, t);
   return pair->now.offset[c] * (pair->scene->initial_overlap == OVERLAP_RAMP ? 1 - t : 1);
 }
 

@@ -153,7 +153,7 @@ double ElementQuality(ElementType type, int dim, const double *X)
 }
 
 /*@
-  BodyForceKernel - adds the external force of a constant body force on one cell.
+  BodyForceKernel - adds the external force of a body force on one cell.
 
   Not collective
 
@@ -162,12 +162,14 @@ double ElementQuality(ElementType type, int dim, const double *X)
 . dim      - its dimension
 . geometry - axisymmetric: forces over 360 degrees
 . X        - reference coordinates (length) [nodes][dim]
-- value    - force per reference volume [dim]
+. value    - force per reference volume [dim]
+- stride   - of value from one quadrature point to the next; 0 if the force is constant
 
   Output Parameter:
 . f - nodal forces [nodes][dim], added to
 @*/
-void BodyForceKernel(ElementType type, int dim, Geometry geometry, const double *X, const double *value, double *f)
+void BodyForceKernel(ElementType type, int dim, Geometry geometry, const double *X, const double *value, int stride,
+                     double *f)
 {
   const Element *e = ElementGet(type);
 
@@ -176,7 +178,7 @@ void BodyForceKernel(ElementType type, int dim, Geometry geometry, const double 
     const double volume = PointVolume(e, p, dim, geometry, X, J);
 
     for (int a = 0; a < e->nodes; a++) {
-      for (int i = 0; i < dim; i++) f[a * dim + i] += volume * e->N[p][a] * value[i];
+      for (int i = 0; i < dim; i++) f[a * dim + i] += volume * e->N[p][a] * value[p * stride + i];
     }
   }
 }

@@ -39,7 +39,7 @@ double ElementQuality(ElementType, int dim, const double *X);
 typedef enum { FACE_TRACTION, FACE_DEAD_PRESSURE, FACE_FOLLOWER_PRESSURE } FaceLoad;
 
 void   FaceLoadKernel(ElementType face, int dim, Geometry, FaceLoad, const double *X, const double *u,
-                      const double *value, double *f, double *K, double *energy);
-void   BodyForceKernel(ElementType, int dim, Geometry, const double *X, const double *value, double *f);
+                      const double *value, int stride, double *f, double *K, double *energy);
+void   BodyForceKernel(ElementType, int dim, Geometry, const double *X, const double *value, int stride, double *f);
 void   FaceAreaKernel(ElementType face, int dim, Geometry, const double *X, double *area, double *normal);
 double CellVolume(ElementType, int dim, Geometry, const double *X);

@@ -87,7 +87,8 @@ static void AddFollowerTangent(const Element *e, int p, int dim, int axisymmetri
 . load     - traction, dead pressure or follower pressure
 . X        - reference coordinates (length) [nodes][dim]
 . u        - displacements (length) [nodes][dim]
-- value    - traction (force per reference area) [dim], or the pressure, which is positive if it pushes on the face
+. value    - traction (force per reference area) [dim], or the pressure, which is positive if it pushes on the face
+- stride   - of value from one quadrature point to the next; 0 if the load is constant
 
   Output Parameters:
 + f      - external force [nodes][dim], added to
@@ -102,24 +103,25 @@ static void AddFollowerTangent(const Element *e, int p, int dim, int axisymmetri
   Bonet and Wood, "Nonlinear Continuum Mechanics for Finite Element Analysis", section 8.5.2
 @*/
 void FaceLoadKernel(ElementType type, int dim, Geometry geometry, FaceLoad load, const double *X, const double *u,
-                    const double *value, double *f, double *K, double *energy)
+                    const double *value, int stride, double *f, double *K, double *energy)
 {
   const Element *e            = ElementGetFace(type);
   const int      axisymmetric = geometry == GEOMETRY_AXISYMMETRIC, follows = load == FACE_FOLLOWER_PRESSURE;
 
   for (int p = 0; p < e->points; p++) {
-    FacePoint point;
-    double    force[3], scale = e->weight[p];
+    const double *at = &value[p * stride];
+    FacePoint     point;
+    double        force[3], scale = e->weight[p];
 
     FacePointAt(e, p, dim, X, follows ? u : NULL, &point);
     if (axisymmetric) scale *= two_pi * point.radius;
     for (int i = 0; i < dim; i++) {
       if (load == FACE_TRACTION)
-        force[i] = scale * value[i] *
+        force[i] = scale * at[i] *
                    sqrt(point.normal[0] * point.normal[0] + point.normal[1] * point.normal[1] +
                         point.normal[2] * point.normal[2]);
       else
-        force[i] = -scale * value[0] * point.normal[i];
+        force[i] = -scale * at[0] * point.normal[i];
     }
     for (int a = 0; a < e->nodes; a++) {
       for (int i = 0; i < dim; i++) {
@@ -127,7 +129,7 @@ void FaceLoadKernel(ElementType type, int dim, Geometry geometry, FaceLoad load,
         if (energy && !follows) *energy -= e->N[p][a] * force[i] * u[a * dim + i];
       }
     }
-    if (K && follows) AddFollowerTangent(e, p, dim, axisymmetric, &point, value[0], K);
+    if (K && follows) AddFollowerTangent(e, p, dim, axisymmetric, &point, at[0], K);
   }
 }
 

@@ -8,6 +8,7 @@
 #include <dirent.h>
 #include <errno.h>
 #include <fcntl.h>
+#include <signal.h>
 #include <stdint.h>
 #include <string.h>
 #include <sys/stat.h>
@@ -18,11 +19,11 @@ extern char **environ;
 
 /* The exit status for a program that is not there, the same as the shell's. */
 #define NO_PROGRAM 127
-/* The exit status for a gmsh that a signal has ended. */
+/* This plus the number of a signal is the exit status for a gmsh that the signal has ended, the same as the shell's. */
 #define KILLED 128
 /* A .geo that includes itself must not recurse for ever. */
 #define INCLUDE_DEPTH 16
-/* A message repeats so many error lines of gmsh at most. One mistake makes gmsh print dozens. */
+/* A message repeats so many lines of gmsh at most. One mistake makes gmsh print dozens. */
 #define ERROR_LINES 6
 /* Hexadecimal digits in the name of the mesh file for what is meshed. */
 #define CONTENT_DIGITS 12
@@ -107,12 +108,22 @@ static PetscErrorCode GmshExecute(char *const arguments[], char **output, int *s
   PetscCall(ReadPipe(ends[0], output));
   close(ends[0]);
   while (waitpid(child, status, 0) < 0 && errno == EINTR) continue;
-  *status = WIFEXITED(*status) ? WEXITSTATUS(*status) : KILLED;
+  *status = WIFEXITED(*status) ? WEXITSTATUS(*status) : KILLED + WTERMSIG(*status);
   PetscCall(PetscFree(environment));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Copies the first error lines of gmsh's output into text. All of them have the form "Error   : ...". */
+/* Appends a line of gmsh's output to a message. */
+static void AppendLine(const char *line, char *text, size_t size)
+{
+  const size_t used = strlen(text);
+
+  snprintf(text + used, size - used, "\n  gmsh: %.*s", (int)strcspn(line, "\n"), line);
+}
+
+/* Copies the first error lines of gmsh's output into text. All of them have the form "Error   : ..." or "Fatal   :
+ * ...".
+ */
 static void ErrorLines(const char *output, char *text, size_t size)
 {
   int lines = 0;
@@ -120,11 +131,45 @@ static void ErrorLines(const char *output, char *text, size_t size)
   text[0] = '\0';
   for (const char *line = output; line && lines < ERROR_LINES; line = strchr(line, '\n')) {
     line += *line == '\n';
-    if (strncmp(line, "Error", 5) || strstr(line, ": ---") == line + 8) continue;
-    size_t used = strlen(text);
-    snprintf(text + used, size - used, "\n  gmsh: %.*s", (int)strcspn(line, "\n"), line);
+    if ((strncmp(line, "Error", 5) && strncmp(line, "Fatal", 5)) || strstr(line, ": ---") == line + 8) continue;
+    AppendLine(line, text, size);
     lines++;
   }
+}
+
+/* Copies the last lines of gmsh's output into text. */
+static void LastLines(const char *output, char *text, size_t size)
+{
+  const char *line = output + strlen(output);
+  int         lines;
+
+  text[0] = '\0';
+  for (lines = 0; line > output && lines < ERROR_LINES; lines++) {
+    line--;
+    while (line > output && line[-1] != '\n') line--;
+  }
+  for (; lines; lines--, line += strcspn(line, "\n") + 1) AppendLine(line, text, size);
+}
+
+/* Says that gmsh has failed: with its errors, or without any with what it printed last. */
+static void ComplainFailed(Scene scene, int status, const char *errors, const char *output, Complaint *complaint)
+{
+  const char *where = SceneWhere(scene, "mesh", "file");
+  char        last[1024];
+
+  LastLines(output, last, sizeof(last));
+  if (status > KILLED)
+    Complain(complaint, "%s: gmsh was ended on '%s' by signal %d (%s)%s; allowed: %s; its last lines:%s", where,
+             scene->mesh_file, status - KILLED, strsignal(status - KILLED),
+             status - KILLED == SIGKILL ? ", mostly for lack of memory" : ", a crash of gmsh itself",
+             status - KILLED == SIGKILL ? "a coarser mesh, or more memory"
+                                        : "another version of gmsh, other mesh.parameters, or a .msh file",
+             last[0] ? last : " none");
+  else if (errors[0])
+    Complain(complaint, "%s: gmsh failed on '%s' (exit status %d)%s", where, scene->mesh_file, status, errors);
+  else
+    Complain(complaint, "%s: gmsh failed on '%s' (exit status %d) and names no error; its last lines:%s", where,
+             scene->mesh_file, status, last[0] ? last : " none");
 }
 
 /* What goes into a mesh. The content is hashed by FNV-1a (64 bits; Fowler, Noll, Vo), which needs no library and
@@ -337,8 +382,7 @@ static PetscErrorCode MeshGeometry(Scene scene, const char *file, Complaint *com
   ErrorLines(output, errors, sizeof(errors));
   PetscCall(MeshIsWhole(temporary, &whole));
   if (status || errors[0])
-    Complain(complaint, "%s: gmsh failed on '%s' (exit status %d)%s", SceneWhere(scene, "mesh", "file"),
-             scene->mesh_file, status, errors);
+    ComplainFailed(scene, status, errors, output, complaint);
   else if (stat(temporary, &made))
     Complain(complaint, "%s: gmsh wrote no mesh for '%s'", SceneWhere(scene, "mesh", "file"), scene->mesh_file);
   else if (!whole)

@@ -1,6 +1,7 @@
 /* Progress and warnings of a run on the terminal, see terminal.h. */
 #include "terminal.h"
 #include "endreport.h"
+#include "runlength.h"
 #include "report/precheck.h"
 #include "scene/commandline.h"
 #include <math.h>
@@ -22,7 +23,9 @@ struct _n_Terminal {
   char        directory[PETSC_MAX_PATH_LEN];
   PetscBool   quiet, talks; /* talks: rank 0 of a run that is not quiet */
   PetscMPIInt rank, size;
-  PetscReal   t_began; /* load parameter at which this part of the run began */
+  PetscReal   t_began;                  /* load parameter at which this part of the run began */
+  PetscInt    failed;                   /* attempts of this part that failed */
+  PetscBool   told_steps, told_results; /* that the run gets long */
 };
 
 /*@
@@ -253,8 +256,25 @@ static void PrintStepContact(const StepRecord *step)
   printf(" %12.3e", (double)step->contact.max_penetration);
 }
 
+/* Says once that the steps get many, and once that the results get large. */
+static void PrintLength(Terminal terminal, const StepRecord *step)
+{
+  char text[RUN_LENGTH_TEXT];
+
+  terminal->failed += step->attempts - 1;
+  if (!terminal->told_steps && RunStepsAreMany(terminal->scene, step->step, terminal->failed, text)) {
+    terminal->told_steps = PETSC_TRUE;
+    printf("      %s\n", text);
+  }
+  if (!terminal->told_results &&
+      RunResultsAreLarge(terminal->scene, RunResultsBytes(terminal->directory), step->t, text)) {
+    terminal->told_results = PETSC_TRUE;
+    printf("      %s\n", text);
+  }
+}
+
 /*@
-  TerminalStep - prints the line of an accepted step.
+  TerminalStep - prints the line of an accepted step, and once why a run gets long.
 
   Not collective
 
@@ -281,6 +301,7 @@ void TerminalStep(Terminal terminal, const StepRecord *step, PetscReal spent)
          covered > 0.0 ? DurationText(seconds * (1.0 - (double)step->t) / covered, left_text) : "-");
   if (step->tied)
     printf("      %lld nodes come into contact together: no step above dt_min separates them\n", (long long)step->tied);
+  PrintLength(terminal, step);
   fflush(stdout);
 }
 
@@ -370,13 +391,18 @@ static void WarnUnmet(Scene scene, const PetscBool *met)
 }
 
 /* Warns of penetrations of more than a face size, whose results are those of no contact. */
-static void WarnDeep(PetscReal deepest)
+static void WarnDeep(PetscReal deepest, PetscReal standing)
 {
   if (deepest > 1)
     fprintf(stderr,
             "burnish: warning: a slave node was up to %.3g face sizes behind its master: the penalty is too soft for "
             "what presses\n",
             (double)deepest);
+  if (standing > PetscMax(1, deepest))
+    fprintf(stderr,
+            "burnish: warning: a master node stood up to %.3g face sizes deep in its slave: contact is enforced at the "
+            "slave's points alone, which are too far apart there\n",
+            (double)standing);
 }
 
 /* Warns of linear solves that did not become as accurate as they should be. */
@@ -438,7 +464,7 @@ PetscErrorCode TerminalEnd(Terminal terminal, const TerminalLast *last)
   if (terminal->rank) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(WarnUnused());
   if (figures->last) WarnUnmet(terminal->scene, last->met);
-  WarnDeep(last->deepest);
+  WarnDeep(last->deepest, last->standing);
   if (terminal->talks && counts->refined)
     printf("linear solves: %lld of %lld refined, in %lld steps\n", (long long)counts->refined,
            (long long)counts->solves, (long long)counts->steps);

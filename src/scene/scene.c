@@ -175,9 +175,41 @@ static PetscErrorCode SceneRefuseRigid(Scene scene, const char *path, const char
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Reads one component of a support. An expression makes it an imposed displacement, which is kept among the loads. */
+static PetscErrorCode SceneReadSupportValue(Scene scene, SceneSupport *support, int component)
+{
+  SceneLoad *load       = NULL;
+  Expression expression = NULL;
+  double     value;
+
+  PetscFunctionBeginUser;
+  PetscCall(SceneReadValue(scene, support->path, Displacements[component], &value, &expression));
+  support->fixed[component] = !expression;
+  if (!expression && value != 0)
+    PetscCall(SceneRefuse(scene, support->path, Displacements[component],
+                          "a support holds at 0; allowed: 0 (an imposed displacement is a load, under loads:), or an "
+                          "expression of the place or of t",
+                          NULL));
+  if (!expression) PetscFunctionReturn(PETSC_SUCCESS);
+  if (scene->n_loads) load = &scene->loads[scene->n_loads - 1];
+  if (!load || strcmp(load->path, support->path)) {
+    load = &scene->loads[scene->n_loads++];
+    PetscCall(PetscStrallocpy(support->path, &load->path));
+    PetscCall(PetscStrallocpy(support->surface, &load->region));
+    load->kind = LOAD_DISPLACEMENT;
+    PetscCall(SceneReadHistory(scene, load->path, &load->history));
+  }
+  load->has[component]        = 1;
+  load->expression[component] = expression;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Reads the supports, and makes room for the loads, because supports with an expression are among them. */
 static PetscErrorCode SceneReadSupports(Scene scene)
 {
   PetscFunctionBeginUser;
+  PetscCall(PetscCalloc1(SchemaCount(SceneDocument(scene), "loads") + SchemaCount(SceneDocument(scene), "supports"),
+                         &scene->loads));
   scene->n_supports = SchemaCount(SceneDocument(scene), "supports");
   PetscCall(PetscCalloc1(scene->n_supports, &scene->supports));
   for (int i = 0; i < scene->n_supports; i++) {
@@ -189,16 +221,34 @@ static PetscErrorCode SceneReadSupports(Scene scene)
     PetscCall(SceneRefuseRigid(scene, support->path, "surface", support->surface));
     for (int k = 0; k < 3; k++) {
       if (!SceneHas(scene, support->path, Displacements[k])) continue;
-      if (SchemaReal(SceneDocument(scene), "%s.%s", support->path, Displacements[k]) != 0)
-        PetscCall(SceneRefuse(scene, support->path, Displacements[k],
-                              "a support holds at 0; allowed: 0 (an imposed displacement is a load, under loads:)",
-                              NULL));
-      support->fixed[k] = 1;
+      PetscCall(SceneReadSupportValue(scene, support, k));
       held++;
     }
     if (!held)
       PetscCall(SceneRefuse(scene, support->path, "",
                             "holds nothing; allowed: at least one of ux: 0, uy: 0, uz: 0 (3D)", NULL));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Reads the values of a load of any kind. */
+static PetscErrorCode SceneReadLoadValues(Scene scene, SceneLoad *load, const char *kind)
+{
+  char path[KEY_PATH_LENGTH], index[2] = "0";
+
+  PetscFunctionBeginUser;
+  KeyPathJoin(path, load->path, kind);
+  for (int k = 0; k < scene->dim; k++) {
+    index[0] = (char)('0' + k);
+    if (load->kind == LOAD_TRACTION || load->kind == LOAD_BODY_FORCE)
+      PetscCall(SceneReadValue(scene, path, index, &load->value[k], &load->expression[k]));
+    else if (load->kind == LOAD_DISPLACEMENT ? load->has[k] : !k)
+      PetscCall(SceneReadValue(scene, load->path, load->kind == LOAD_PRESSURE ? kind : Displacements[k],
+                               &load->value[k], &load->expression[k]));
+    if (SceneLoadVaries(load, k) && SceneHas(scene, load->path, "history"))
+      PetscCall(SceneRefuse(scene, load->path, "history",
+                            "stands beside an expression with t, which is the value at t itself; allowed: one of them",
+                            NULL));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -237,13 +287,7 @@ static PetscErrorCode SceneReadLoad(Scene scene, SceneLoad *load)
   if (load->follower && load->kind != LOAD_PRESSURE)
     PetscCall(
       SceneRefuse(scene, load->path, "follower", "only a pressure follows the face; allowed: with pressure", NULL));
-  if (load->kind == LOAD_PRESSURE)
-    load->value[0] = SchemaReal(SceneDocument(scene), "%s.pressure", load->path);
-  else if (load->kind != LOAD_DISPLACEMENT)
-    (void)SceneReals(scene, load->path, Kinds[load->kind], load->value);
-  for (int k = 0; k < 3; k++) {
-    if (load->has[k]) load->value[k] = SchemaReal(SceneDocument(scene), "%s.%s", load->path, Displacements[k]);
-  }
+  PetscCall(SceneReadLoadValues(scene, load, Kinds[load->kind]));
   PetscCall(SceneReadHistory(scene, load->path, &load->history));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -251,11 +295,11 @@ static PetscErrorCode SceneReadLoad(Scene scene, SceneLoad *load)
 static PetscErrorCode SceneReadLoads(Scene scene)
 {
   PetscFunctionBeginUser;
-  scene->n_loads = SchemaCount(SceneDocument(scene), "loads");
-  PetscCall(PetscCalloc1(scene->n_loads, &scene->loads));
-  for (int i = 0; i < scene->n_loads; i++) {
-    PetscCall(ScenePath(&scene->loads[i].path, "loads", i));
-    PetscCall(SceneReadLoad(scene, &scene->loads[i]));
+  for (int i = 0; i < SchemaCount(SceneDocument(scene), "loads"); i++) {
+    SceneLoad *load = &scene->loads[scene->n_loads++];
+
+    PetscCall(ScenePath(&load->path, "loads", i));
+    PetscCall(SceneReadLoad(scene, load));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -373,6 +417,20 @@ static PetscErrorCode SceneReadPenalty(Scene scene, SceneContact *contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Reads what becomes of initial overlaps, and the overlap that is added to that of the meshes. */
+static PetscErrorCode SceneReadOverlap(Scene scene, SceneContact *contact)
+{
+  static const char add[] = "initial_overlap.add";
+
+  PetscFunctionBeginUser;
+  contact->initial_overlap = OVERLAP_ADD;
+  if (SceneHas(scene, contact->path, add))
+    PetscCall(SceneReadValue(scene, contact->path, add, &contact->added_overlap, &contact->overlap_expression));
+  else
+    contact->initial_overlap = (InitialOverlap)SchemaChoice(SceneDocument(scene), "%s.initial_overlap", contact->path);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 static PetscErrorCode SceneReadContact(Scene scene, SceneContact *contact)
 {
   Node symmetry = SceneNode(scene, contact->path, "symmetry");
@@ -400,9 +458,9 @@ static PetscErrorCode SceneReadContact(Scene scene, SceneContact *contact)
     SceneHas(scene, contact->path, "weight") ? SchemaReal(SceneDocument(scene), "%s.weight", contact->path) : 0;
   contact->global_frame        = SchemaChoice(SceneDocument(scene), "%s.frame", contact->path);
   contact->diffuse_derivatives = SchemaChoice(SceneDocument(scene), "%s.derivatives", contact->path);
-  contact->initial_overlap = (InitialOverlap)SchemaChoice(SceneDocument(scene), "%s.initial_overlap", contact->path);
-  contact->stabilise       = SchemaBoolean(SceneDocument(scene), "%s.stabilise", contact->path);
-  contact->feature_angle   = SchemaReal(SceneDocument(scene), "%s.feature_angle", contact->path);
+  PetscCall(SceneReadOverlap(scene, contact));
+  contact->stabilise     = SchemaBoolean(SceneDocument(scene), "%s.stabilise", contact->path);
+  contact->feature_angle = SchemaReal(SceneDocument(scene), "%s.feature_angle", contact->path);
   PetscCall(SceneReadPenalty(scene, contact));
   contact->find_symmetry = !symmetry;
   contact->n_symmetry    = symmetry ? symmetry->n : 0;
@@ -706,6 +764,7 @@ static PetscErrorCode SceneDestroyContacts(Scene scene)
     SceneContact *contact = &scene->contacts[i];
 
     for (int k = 0; k < contact->n_symmetry; k++) PetscCall(PetscFree(contact->symmetry[k]));
+    PetscCall(ExpressionDestroy(&contact->overlap_expression));
     PetscCall(PetscFree(contact->symmetry));
     PetscCall(PetscFree(contact->path));
     PetscCall(PetscFree(contact->name));
@@ -738,6 +797,7 @@ PetscErrorCode SceneDestroy(Scene *scene)
     PetscCall(PetscFree(s->supports[i].surface));
   }
   for (int i = 0; i < s->n_loads; i++) {
+    for (int k = 0; k < 3; k++) PetscCall(ExpressionDestroy(&s->loads[i].expression[k]));
     PetscCall(PetscFree2(s->loads[i].history.t, s->loads[i].history.v));
     PetscCall(PetscFree(s->loads[i].path));
     PetscCall(PetscFree(s->loads[i].region));
@@ -835,4 +895,38 @@ PetscBool SceneBreaks(Scene scene, PetscReal t)
   for (int c = 0; c < scene->n_contacts; c++)
     if (MotionBreaks(&scene->contacts[c].motion, t)) return PETSC_TRUE;
   return PETSC_FALSE;
+}
+
+/*@
+  SceneLoadVaries - tells whether a component of a load is an expression with t, to which no history applies.
+
+  Not collective
+
+  Input Parameters:
++ load      - the load
+- component - 0 to 2; 0 for a pressure
+@*/
+PetscBool SceneLoadVaries(const SceneLoad *load, int component)
+{
+  return ExpressionUses(load->expression[component], EXPRESSION_T);
+}
+
+/*@
+  SceneLoadValue - returns a component of a load at a place, without the factor of its history.
+
+  Not collective
+
+  Input Parameters:
++ load      - the load
+. component - 0 to 2; 0 for a pressure
+. X         - reference coordinates of the place (length); the third is 0 in the plane
+- t         - load parameter
+
+  Note:
+  Where SceneLoadVaries(), this is the whole value at t. Otherwise it does not depend on t. It is not finite where an
+  expression has no value.
+@*/
+PetscReal SceneLoadValue(const SceneLoad *load, int component, const PetscReal X[3], PetscReal t)
+{
+  return load->expression[component] ? ExpressionValue(load->expression[component], X, t) : load->value[component];
 }

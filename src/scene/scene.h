@@ -12,9 +12,11 @@
 #include "base/choices.h"
 #include "kernels/formulation.h"
 #include "kernels/material.h"
+#include "scene/expression.h"
 #include "scene/loadhistory.h"
 
-typedef enum { OVERLAP_REFUSE, OVERLAP_RESOLVE, OVERLAP_RAMP, OVERLAP_IGNORE } InitialOverlap;
+/* OVERLAP_ADD is refuse with an overlap of its own besides that of the meshes. */
+typedef enum { OVERLAP_REFUSE, OVERLAP_RESOLVE, OVERLAP_RAMP, OVERLAP_IGNORE, OVERLAP_ADD } InitialOverlap;
 typedef enum { SOLVER_DIRECT, SOLVER_ITERATIVE, SOLVER_AUTO } SolverType;
 /* The scene's word `auto` is one of the first two once a pair has been read. */
 typedef enum { CONTACT_NODE_TO_SURFACE, CONTACT_SURFACE_TO_SURFACE, CONTACT_FORMULATION_AUTO } ContactFormulation;
@@ -40,9 +42,10 @@ typedef struct {
   int      has[3]; /* of LOAD_DISPLACEMENT: which components are imposed */
   /* Displacement (length), traction (force per reference area) or body force (force per reference volume). A pressure
      (stress) is value[0]. */
-  double  value[3];
-  int     follower; /* 1 if a pressure acts on the deformed face */
-  History history;  /* factor on the value over the load parameter */
+  double     value[3];
+  Expression expression[3]; /* in place of value, where it is not NULL; it has a variable */
+  int        follower;      /* 1 if a pressure acts on the deformed face */
+  History    history;       /* factor over the load parameter on values and on expressions without t */
 } SceneLoad;
 
 typedef struct {
@@ -61,7 +64,9 @@ typedef struct {
   int            global_frame, diffuse_derivatives;
   double         feature_angle; /* degrees */
   InitialOverlap initial_overlap;
-  int            stabilise; /* 1 if springs hold the bodies of the pair until contact holds them */
+  double         added_overlap;      /* of OVERLAP_ADD (length): its value at t = 1 */
+  Expression     overlap_expression; /* in its place, where it is not NULL; one with t is the overlap at t */
+  int            stabilise;          /* 1 if springs hold the bodies of the pair until contact holds them */
   ContactLawKind law;
   int            penalty_auto; /* 1 if the penalty is the automatic one */
   /* Penalty (force per length and area), 0 if it is automatic, and the factor on the automatic penalty. */
@@ -133,7 +138,7 @@ typedef struct {
   SceneBody    *bodies;
   int           n_supports;
   SceneSupport *supports;
-  int           n_loads;
+  int           n_loads; /* supports with an expression, which are imposed displacements, and loads */
   SceneLoad    *loads;
   int           n_contacts;
   SceneContact *contacts;
@@ -170,4 +175,6 @@ PetscErrorCode SceneDestroy(Scene *);
 PetscBool      SceneSameProblem(const char *a, const char *b);
 const char    *SceneWhere(Scene, const char *path, const char *key);
 PetscBool      SceneBreaks(Scene, PetscReal t);
+PetscBool      SceneLoadVaries(const SceneLoad *, int component);
+PetscReal      SceneLoadValue(const SceneLoad *, int component, const PetscReal X[3], PetscReal t);
 PetscErrorCode SceneReference(FILE *);

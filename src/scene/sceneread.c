@@ -1,5 +1,6 @@
 /* Functions that all readers of a scene share, see sceneread.h. */
 #include "sceneread.h"
+#include <math.h>
 #include <string.h>
 
 /*@
@@ -99,6 +100,41 @@ PetscErrorCode SceneReadText(Scene scene, const char *path, const char *key, cha
 {
   PetscFunctionBeginUser;
   PetscCall(PetscStrallocpy(SchemaText(SceneDocument(scene), "%s.%s", path, key), text));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  SceneReadValue - reads the number or the expression at "path.key".
+
+  Collective
+
+  Input Parameters:
++ scene - the scene, of which the geometry has been read
+. path  - path of the map or the list
+- key   - key in the map, or index in the list
+
+  Output Parameters:
++ value      - the number; that of an expression without variables is computed
+- expression - an expression with variables, to be freed with ExpressionDestroy(); else NULL
+
+  Note:
+  It refuses an expression that cannot be evaluated.
+@*/
+PetscErrorCode SceneReadValue(Scene scene, const char *path, const char *key, double *value, Expression *expression)
+{
+  static const PetscReal origin[3] = {0, 0, 0};
+  Node                   node      = SceneNode(scene, path, key);
+  char                   mistake[800];
+
+  PetscFunctionBeginUser;
+  if (NodeReal(node, value)) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(ExpressionCreate(node->text, scene->geometry, expression, mistake, sizeof mistake));
+  if (mistake[0]) PetscCall(SceneRefuse(scene, path, key, mistake, NULL));
+  if (!ExpressionIsNumber(*expression)) PetscFunctionReturn(PETSC_SUCCESS);
+  *value = ExpressionValue(*expression, origin, 0);
+  PetscCall(ExpressionDestroy(expression));
+  if (!isfinite(*value))
+    PetscCall(SceneRefuse(scene, path, key, "is not finite; allowed: a finite number", node->text));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -2,6 +2,7 @@
 #include "schema.h"
 #include "schemakeys.h"
 #include "base/refusal.h"
+#include "scene/expression.h"
 #include <errno.h>
 #include <math.h>
 #include <stdarg.h>
@@ -47,6 +48,8 @@ static void SchemaAllowed(const SchemaKey *key, char *text, size_t size)
   for (size_t i = 0; i < sizeof Types / sizeof Types[0]; i++) {
     if (key->type & Types[i].type) Append(text, size, " | ", Types[i].words);
   }
+  if (key->type & FORMULA)
+    Append(text, size, "", key->type & POINT ? " of numbers or expressions" : " | an expression");
   if (key->type & CHOICES) Append(text, size, " ", key->values);
   if (key->range) Append(text, size, key->type & LIST ? ", entries in " : " in ", key->range);
   if (key->unit) Append(text, size, ", ", key->unit);
@@ -125,6 +128,15 @@ static const char *CheckText(Node node, size_t longest)
   return NULL;
 }
 
+/* Checks a number or an expression, whose names and syntax SceneReadValue() checks. */
+static const char *CheckFormula(Node node, const char *range)
+{
+  double value;
+
+  if (node->kind != NODE_SCALAR) return WrongType;
+  return NodeReal(node, &value) ? CheckReal(node, range) : CheckText(node, EXPRESSION_LONGEST);
+}
+
 /* Checks a scalar against all types that a key allows. If none fits, the reason is that of the last type. */
 static const char *CheckScalar(const SchemaKey *key, int type, Node node)
 {
@@ -139,16 +151,17 @@ static const char *CheckScalar(const SchemaKey *key, int type, Node node)
   if (type & NAME) wrong = CheckName(node);
   if (type & TEXT) wrong = CheckText(node, SCHEMA_LONGEST_GROUP);
   if (type & FILENAME) wrong = CheckText(node, PETSC_MAX_PATH_LEN - 1);
+  if (type & FORMULA && !(type & POINT)) wrong = CheckFormula(node, key->range);
   return wrong;
 }
 
-static const char *CheckPoint(Node node, const char *range)
+static const char *CheckPoint(Node node, int type, const char *range)
 {
   const char *wrong;
 
   if (node->kind != NODE_LIST || node->n < 2 || node->n > 3) return WrongType;
   for (int i = 0; i < node->n; i++) {
-    if ((wrong = CheckReal(node->child[i], range))) return wrong;
+    if ((wrong = type & FORMULA ? CheckFormula(node->child[i], range) : CheckReal(node->child[i], range))) return wrong;
   }
   return NULL;
 }
@@ -195,9 +208,11 @@ static const char *CheckEntries(const SchemaKey *key, Node node)
 /* Checks a list of plain values, of pairs or of points. SchemaVisitValue() checks lists of maps. */
 static const char *CheckList(const SchemaKey *key, Node node)
 {
-  if (key->type & POINT) return CheckPoint(node, key->range);
+  if (key->type & POINT) return CheckPoint(node, key->type, key->range);
   if (key->type & POINTS)
-    return node->n == 2 && !CheckPoint(node->child[0], NULL) && !CheckPoint(node->child[1], NULL) ? NULL : WrongType;
+    return node->n == 2 && !CheckPoint(node->child[0], REAL, NULL) && !CheckPoint(node->child[1], REAL, NULL)
+             ? NULL
+             : WrongType;
   if (key->type & HISTORY) return CheckHistory(node);
   if (key->type & (REALS | TEXTS | CHOICES)) return CheckEntries(key, node);
   return WrongType;

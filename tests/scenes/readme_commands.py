@@ -119,8 +119,9 @@ NOT_HERE = {
     "scripts/portability.sh PREFIX": ("wants a second PETSc", "bash -n scripts/portability.sh"),
     "module load gcc openmpi petsc metis gmsh cmake python":
     ("wants a cluster", "grep -qF 'module load gcc openmpi petsc metis gmsh cmake python' scripts/deps.sh"),
-    "spack install petsc+mumps+hdf5+metis gmsh libyaml cjson cmocka cmake":
-    ("wants spack", "grep -qF 'spack install petsc+mumps+hdf5+metis gmsh libyaml cjson cmocka cmake' scripts/deps.sh"),
+    "spack install petsc+mumps+hdf5+metis gmsh libyaml cjson muparser cmocka cmake":
+    ("wants spack",
+     "grep -qF 'spack install petsc+mumps+hdf5+metis gmsh libyaml cjson muparser cmocka cmake' scripts/deps.sh"),
     "sbatch runs/batch/slurm.sh runs/pipe_pinch.yaml out/pipe_pinch":
     (QUEUE, "bash -n runs/batch/slurm.sh && bash -n runs/batch/chain.sh && test -f runs/pipe_pinch.yaml"),
     "qsub -v SCENE=runs/pipe_pinch.yaml,DIR=out/pipe_pinch runs/batch/pbs.sh": (QUEUE, "bash -n runs/batch/pbs.sh"),

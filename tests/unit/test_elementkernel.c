@@ -497,7 +497,7 @@ static void BodyForceHasItsResultant(void **state)
       double X[MAX_DOFS], u[MAX_DOFS], f[MAX_DOFS] = {0}, sum[3] = {0};
 
       TakeLane(&b, lane, X, u);
-      BodyForceKernel(kernel.type, b.dim, kernel.geometry, X, value, f);
+      BodyForceKernel(kernel.type, b.dim, kernel.geometry, X, value, 0, f);
       for (int k = 0; k < b.dofs; k++) sum[k % b.dim] += f[k];
       for (int i = 0; i < b.dim; i++)
         assert_near(sum[i], value[i] * CellVolume(kernel.type, b.dim, kernel.geometry, X), 1e-11);

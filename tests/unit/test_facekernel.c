@@ -57,17 +57,17 @@ static void FollowerTangentIsTheDerivative(void **state)
     double    X[MAX_DOFS], u[MAX_DOFS], f[MAX_DOFS] = {0}, K[MAX_DOFS * MAX_DOFS] = {0}, energy = 0;
 
     MakeFace(&cases[k], X, u);
-    FaceLoadKernel(cases[k].type, cases[k].dim, cases[k].geometry, FACE_FOLLOWER_PRESSURE, X, u, &pressure, f, K,
+    FaceLoadKernel(cases[k].type, cases[k].dim, cases[k].geometry, FACE_FOLLOWER_PRESSURE, X, u, &pressure, 0, f, K,
                    &energy);
     assert_true(energy == 0);
     for (int j = 0; j < dofs; j++) {
       double plus[MAX_DOFS] = {0}, minus[MAX_DOFS] = {0};
 
       u[j] += h;
-      FaceLoadKernel(cases[k].type, cases[k].dim, cases[k].geometry, FACE_FOLLOWER_PRESSURE, X, u, &pressure, plus,
+      FaceLoadKernel(cases[k].type, cases[k].dim, cases[k].geometry, FACE_FOLLOWER_PRESSURE, X, u, &pressure, 0, plus,
                      NULL, NULL);
       u[j] -= 2 * h;
-      FaceLoadKernel(cases[k].type, cases[k].dim, cases[k].geometry, FACE_FOLLOWER_PRESSURE, X, u, &pressure, minus,
+      FaceLoadKernel(cases[k].type, cases[k].dim, cases[k].geometry, FACE_FOLLOWER_PRESSURE, X, u, &pressure, 0, minus,
                      NULL, NULL);
       u[j] += h;
       for (int i = 0; i < dofs; i++) assert_near(K[i * dofs + j], -(plus[i] - minus[i]) / (2 * h), 1e-8);
@@ -86,15 +86,15 @@ static void DeadLoadsHaveAPotential(void **state)
       double    X[MAX_DOFS], u[MAX_DOFS], f[MAX_DOFS] = {0}, K[MAX_DOFS * MAX_DOFS] = {0};
 
       MakeFace(&cases[k], X, u);
-      FaceLoadKernel(cases[k].type, cases[k].dim, cases[k].geometry, load, X, u, value, f, K, NULL);
+      FaceLoadKernel(cases[k].type, cases[k].dim, cases[k].geometry, load, X, u, value, 0, f, K, NULL);
       for (int j = 0; j < dofs * dofs; j++) assert_true(K[j] == 0);
       for (int j = 0; j < dofs; j++) {
         double unused[MAX_DOFS] = {0}, plus = 0, minus = 0;
 
         u[j] += h;
-        FaceLoadKernel(cases[k].type, cases[k].dim, cases[k].geometry, load, X, u, value, unused, NULL, &plus);
+        FaceLoadKernel(cases[k].type, cases[k].dim, cases[k].geometry, load, X, u, value, 0, unused, NULL, &plus);
         u[j] -= 2 * h;
-        FaceLoadKernel(cases[k].type, cases[k].dim, cases[k].geometry, load, X, u, value, unused, NULL, &minus);
+        FaceLoadKernel(cases[k].type, cases[k].dim, cases[k].geometry, load, X, u, value, 0, unused, NULL, &minus);
         u[j] += h;
         assert_near(f[j], -(plus - minus) / (2 * h), 1e-9);
       }
@@ -134,7 +134,7 @@ static void PressureOnAClosedSurfaceHasNoResultant(void **state)
               face_u[a * e->dim + i] = u[e->face_nodes[k][a]][i];
             }
           }
-          FaceLoadKernel(face->type, e->dim, geometry, load, face_X, face_u, &pressure, f, NULL, NULL);
+          FaceLoadKernel(face->type, e->dim, geometry, load, face_X, face_u, &pressure, 0, f, NULL, NULL);
           for (int j = 0; j < face->nodes * e->dim; j++) {
             sum[j % e->dim] += f[j];
             largest = fmax(largest, fabs(f[j]));
@@ -153,8 +153,8 @@ static void PressureActsInward(void **state)
   double       f[MAX_DOFS] = {0}, zero[MAX_DOFS] = {0}, follower[MAX_DOFS] = {0};
 
   (void)state;
-  FaceLoadKernel(ELEMENT_QUAD4, 3, GEOMETRY_SOLID, FACE_DEAD_PRESSURE, square, zero, &pressure, f, NULL, NULL);
-  FaceLoadKernel(ELEMENT_QUAD4, 3, GEOMETRY_SOLID, FACE_FOLLOWER_PRESSURE, square, zero, &pressure, follower, NULL,
+  FaceLoadKernel(ELEMENT_QUAD4, 3, GEOMETRY_SOLID, FACE_DEAD_PRESSURE, square, zero, &pressure, 0, f, NULL, NULL);
+  FaceLoadKernel(ELEMENT_QUAD4, 3, GEOMETRY_SOLID, FACE_FOLLOWER_PRESSURE, square, zero, &pressure, 0, follower, NULL,
                  NULL);
   for (int a = 0; a < 4; a++) {
     assert_near(f[3 * a + 2], -0.5, 1e-15);
@@ -162,7 +162,7 @@ static void PressureActsInward(void **state)
   }
   memset(f, 0, sizeof(f));
   /* travelling along +x the outside is to the right, at -y; over 360 degrees the ring from radius 1 to 2 */
-  FaceLoadKernel(ELEMENT_EDGE2, 2, GEOMETRY_AXISYMMETRIC, FACE_DEAD_PRESSURE, edge, zero, &pressure, f, NULL, NULL);
+  FaceLoadKernel(ELEMENT_EDGE2, 2, GEOMETRY_AXISYMMETRIC, FACE_DEAD_PRESSURE, edge, zero, &pressure, 0, f, NULL, NULL);
   assert_near(f[1] + f[3], 2 * M_PI * (4 - 1), 1e-13);
   assert_near(f[0], 0, 1e-15);
 }
@@ -177,7 +177,7 @@ static void TractionHasItsResultant(void **state)
     double         X[MAX_DOFS], u[MAX_DOFS], f[MAX_DOFS] = {0}, area[FACE_MAX_NODES] = {0}, total = 0, sum[3] = {0};
 
     MakeFace(&cases[k], X, u);
-    FaceLoadKernel(cases[k].type, cases[k].dim, cases[k].geometry, FACE_TRACTION, X, u, value, f, NULL, NULL);
+    FaceLoadKernel(cases[k].type, cases[k].dim, cases[k].geometry, FACE_TRACTION, X, u, value, 0, f, NULL, NULL);
     FaceAreaKernel(cases[k].type, cases[k].dim, cases[k].geometry, X, area, NULL);
     for (int a = 0; a < e->nodes; a++) {
       total += area[a];

@@ -146,6 +146,49 @@ static void test_without_gmsh(void **state)
   assert_string_equal(made, found);
 }
 
+/* A gmsh that does what a script says in place of meshing */
+static void GenerateBy(const char *script, Complaint *complaint)
+{
+  static int number = 100;
+  char       path[PETSC_MAX_PATH_LEN], search[8192], text[1024], file[PETSC_MAX_PATH_LEN], parameters[32],
+    *before = strdup(getenv("PATH"));
+
+  snprintf(text, sizeof(text), "#!/bin/sh\n[ \"$1\" = --version ] && { echo 4.8.4; exit 0; }\n%s\n", script);
+  WriteText("gmsh", text, strlen(text), path);
+  assert_int_equal(chmod(path, 0755), 0);
+  snprintf(search, sizeof(search), "%s:%s", folder, before);
+  setenv("PATH", search, 1);
+  snprintf(parameters, sizeof(parameters), "{n: %d}", number++);
+  Generate(parameters, file, complaint);
+  setenv("PATH", before, 1);
+  free(before);
+  unlink(path);
+  assert_int_equal(access(file, F_OK), -1);
+}
+
+/* A crash of gmsh is told as one, with its last lines, and so is a failure without an error line. */
+static void test_crash(void **state)
+{
+  Complaint complaint;
+
+  (void)state;
+  GenerateBy("echo Info: one; echo Info: two; kill -SEGV $$", &complaint);
+  assert_non_null(strstr(complaint.text, "scene.yaml:1: mesh.file: gmsh was ended on '"));
+  assert_non_null(
+    strstr(complaint.text, "by signal 11 (Segmentation fault), a crash of gmsh itself; allowed: another"));
+  assert_non_null(strstr(complaint.text, "\n  gmsh: Info: one\n  gmsh: Info: two"));
+  GenerateBy("exit 139", &complaint); /* by a script around gmsh */
+  assert_non_null(strstr(complaint.text, "by signal 11 (Segmentation fault)"));
+  assert_non_null(strstr(complaint.text, "its last lines: none"));
+  GenerateBy("kill -KILL $$", &complaint);
+  assert_non_null(strstr(complaint.text, "by signal 9 (Killed), mostly for lack of memory; allowed: a coarser mesh"));
+  GenerateBy("for i in 1 2 3 4 5 6 7 8; do echo line $i; done; exit 3", &complaint);
+  assert_non_null(strstr(complaint.text, "(exit status 3) and names no error; its last lines:\n  gmsh: line 3\n"));
+  assert_non_null(strstr(complaint.text, "gmsh: line 8"));
+  GenerateBy("echo 'Fatal   : no room'; exit 1", &complaint);
+  assert_non_null(strstr(complaint.text, "(exit status 1)\n  gmsh: Fatal   : no room"));
+}
+
 static void test_mistakes_in_geo(void **state)
 {
   char      file[PETSC_MAX_PATH_LEN], path[PETSC_MAX_PATH_LEN], directory[PETSC_MAX_PATH_LEN];
@@ -261,9 +304,10 @@ static void test_damaged(void **state)
 
 int main(int argc, char **argv)
 {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_meshed_once),        cmocka_unit_test(test_names_differ),
-                                     cmocka_unit_test(test_without_gmsh),       cmocka_unit_test(test_mistakes_in_geo),
-                                     cmocka_unit_test(test_binary_equals_text), cmocka_unit_test(test_damaged)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_meshed_once),     cmocka_unit_test(test_names_differ),
+                                     cmocka_unit_test(test_without_gmsh),    cmocka_unit_test(test_crash),
+                                     cmocka_unit_test(test_mistakes_in_geo), cmocka_unit_test(test_binary_equals_text),
+                                     cmocka_unit_test(test_damaged)};
   char                    command[128];
   int                     failed;
 

@@ -94,6 +94,7 @@ typedef struct {
   PetscReal    total[3];                     /* force on this rank's terms in the last residual */
   PetscReal    t;                            /* load parameter of the last residual */
   PetscReal   *pressure;                     /* what ContactGetNodes() shows: force over area */
+  NodeDepths   depths;                       /* NULL before the first report of depths in the slave */
   ContactWork *work;                         /* shared by all pairs */
 } ContactPair;
 
@@ -133,6 +134,7 @@ void      ContactTermLaw(const ContactPair *, PetscInt term, PetscReal t, LawVal
 PetscReal ContactTermGap(const ContactPair *, const PetscReal *factor, const PetscReal *point_gap, PetscInt term,
                          PetscReal *area);
 PetscReal ContactTermForce(const ContactPair *, PetscInt term);
+PetscReal ContactTermAddedOverlap(const ContactPair *, PetscInt term, PetscReal t);
 PetscReal ContactTermOffset(const ContactPair *, PetscInt term, PetscReal t);
 PetscReal ContactTermOnsetGap(const ContactPair *, PetscInt term, PetscReal t);
 PetscReal ContactTermBound(const ContactPair *, PetscInt term);

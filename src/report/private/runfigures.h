@@ -13,6 +13,9 @@ typedef struct {
   ContactQuality      quality;
   ContactWindow       window;
   PetscReal           penalty_min, penalty_max;
+  PetscReal           scatter;        /* of the nodal pressures, over their smooth part; NaN: not known */
+  NodeDepth           master;         /* the master's nodes in the slave */
+  PetscReal           master_deepest; /* their largest depth in all written states (length) */
   PenaltyError        penalty_error;
   PetscReal           stiffened; /* factor by which the run raised the penalty, where it may choose it */
 } PairFigures;
@@ -24,8 +27,9 @@ typedef struct {
   int               ranks;
   PetscInt          dofs;
   char              effects[1024];
-  RunUsage          usage;    /* of all parts of the run */
-  PetscInt          restarts; /* their number less one */
+  RunUsage          usage;         /* of all parts of the run */
+  PetscReal         results_bytes; /* size of results.h5 */
+  PetscInt          restarts;      /* their number less one */
   LinearCounts      linear;
   const char       *options_changed; /* lines, see optionrecord.h */
   PetscBool         direct;          /* the solver factors each tangent, for which it uses the BLAS */

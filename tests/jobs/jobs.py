@@ -1,0 +1,108 @@
+"""The ordinary jobs as data: what is run, and what must come of it. Each is NAME.geo and NAME.yaml beside this file, as
+a user would write them: the scenes have no keys of the numerics. Each geometry has a parameter `refine` that divides
+all its element sizes; at 1 it is the mesh of the job."""
+from dataclasses import dataclass, field
+
+
+@dataclass
+class Answer:
+    """A probe at the end of the run and its reference."""
+    probe: str
+    reference: float
+    error: float  # of the reference, per cent
+    source: str  # closed form, CalculiX, or limit: Richardson's of refined meshes and a stiff penalty
+    tolerance: float = 2.0  # per cent
+
+
+@dataclass
+class Job:
+    name: str
+    what: str
+    answers: list
+    steps: int  # at most so many
+    pairs: int = 1  # contact pairs of the scene
+    shown: str = "von_mises"  # field of the picture
+    picture: list = field(default_factory=list)  # options of scripts/render.py
+    levels: tuple = (1, 1.5, 2.25)  # values of `refine` whose answers run.py --limit extrapolates
+    stiff: list = field(default_factory=list)  # overrides of those runs
+
+
+FAILED = 0.1  # largest part of the attempted steps that may fail
+
+JOBS = [
+    # Rubber
+    Job("lip_seal", "lip seal on a shaft", [
+        Answer("radial_force", 36.575, 0.01, "limit"),
+        Answer("lip_up", 0.46007, 0.02, "limit"),
+    ], steps=12),
+    Job("wheel_on_edge", "rubber wheel on an edge", [
+        Answer("down", 36.44, 0.02, "limit"),
+        Answer("sideways", 5.161, 0.1, "limit"),
+    ], steps=30),
+    Job("rollers_in_nip", "rubber-covered rollers in a nip", [
+        Answer("force", 5.578, 0.02, "limit"),
+        Answer("half_width", 7.843, 0.1, "limit"),
+        Answer("peak_pressure", 0.9326, 0.05, "limit"),
+    ], steps=30, picture=["--mirror", "x"]),
+    Job("tube_on_barb", "tube pushed over a barbed nipple", [
+        Answer("grip", 60.8, 0.3, "limit"),
+    ], steps=100, picture=["--mirror", "x"]),
+    Job("bush_turned", "bush turned and pushed", [
+        Answer("force_x", -20.11, 0.07, "limit"),
+        Answer("force_y", -31.23, 0.04, "limit"),
+    ], steps=30, pairs=2, stiff=["contact.1.smoother=facet"]),
+    Job("boot_on_mandrel", "boot closed onto a mandrel", [
+        Answer("radial_force", 47.55, 0.3, "limit"),
+        Answer("push", 39.62, 0.05, "limit"),
+    ], steps=50, picture=["--mirror", "x"]),
+    # Balls
+    Job("ball_in_cone", "ball in a cone by force", [
+        Answer("peak_pressure", 83.00, 0.1, "limit"),  # Hertz, for a ring of infinite radius: 84.42
+        Answer("ball_down", -0.031926, 0.05, "limit"),
+    ], steps=20, picture=["--mirror", "x"]),
+    # Its limit is of a quarter, whose spin is held, and which starts with an overlap of 0.005: it falls by 0.025 sqrt(2)
+    # less.
+    Job("ball_in_vee", "ball in a vee groove", [
+        Answer("peak_pressure", 154.9, 1.1, "limit"),
+        Answer("ball_down", -0.08347, 0.1, "limit"),
+    ], steps=30, picture=["--mirror", "z"], levels=(1, 1.4, 1.96), stiff=[
+        "mesh.parameters={quarter: 1, gap: -0.005}", "contact.0.initial_overlap=resolve",
+        "contact.0.symmetry=[symmetry, side]",
+        "supports=[{surface: symmetry, uz: 0}, {surface: side, ux: 0}, {surface: groove_bottom, ux: 0, uy: 0, uz: 0}]"
+    ]),
+    # Machine parts
+    Job("three_spheres", "three rubber balls in a column", [
+        Answer("peak_south", 0.7983, 0.5, "Hertz"),
+        Answer("peak_north", 0.7983, 0.5, "Hertz"),
+    ], steps=20, pairs=2, picture=["--mirror", "x"]),
+    Job("pin_lug", "pin in a lug by force", [
+        Answer("pin_rise", 0.11317, 0.2, "CalculiX"),
+        Answer("head", 0.05555, 0.2, "CalculiX"),
+        Answer("waist", -0.014086, 0.3, "CalculiX"),
+    ], steps=20, picture=["--mirror", "x"]),
+    Job("shrink_fit", "hub shrunk on a shaft, 0.1 %", [
+        Answer("pressure", 75.72, 0.1, "Lame"),
+        Answer("peak", 75.72, 0.1, "Lame"),
+        Answer("rim", 0.010938, 0.1, "Lame"),
+    ], steps=10, picture=["--mirror", "xy"]),
+    Job("belleville", "disc spring flattened", [
+        Answer("force", 6970, 0.3, "limit"),
+    ], steps=20, pairs=2, picture=["--mirror", "x"]),
+    Job("snap_hook", "snap hook over a catch", [
+        Answer("lift", 0.2765, 0.3, "limit"),
+        Answer("tip", -0.4018, 0.2, "limit"),
+    ], steps=60),
+    Job("flange_gasket", "flange on a soft gasket", [
+        Answer("rim", -0.13223, 0.1, "CalculiX"),
+        Answer("inner_edge", 0.06433, 0.1, "CalculiX"),
+    ], steps=20),
+    Job("tyre_kerb", "tyre section on a kerb", [
+        Answer("force", 127.3, 0.3, "limit"),
+        Answer("side_force", -10.51, 0.1, "limit"),
+        Answer("peak", 4.365, 0.4, "limit"),
+    ], steps=20),
+    Job("crossed_cylinders", "crossed cylinders by force", [
+        Answer("peak", 113.7, 0.5, "Hertz"),
+        Answer("radius", 1.0, 0.5, "Hertz"),
+    ], steps=20),
+]
