@@ -14,9 +14,9 @@
 #define CONTACT_GLOBAL_COSINE 0.5
 
 /* In surface to surface, a slave whose faces are at least this many times coarser than the master's takes a finer
-   quadrature, as its points would skip facets. Axisymmetric slaves always do: the radius is one more factor, and next to
-   the axis the finer rule halves the error of the pressure. The figure is below 2, so that round-off does not decide on a mesh of
-   half the size. */
+   quadrature, as its points would skip facets. Axisymmetric slaves always do: the radius is one more factor, and next
+   to the axis the finer rule halves the error of the pressure. The figure is below 2, so that round-off does not decide
+   on a mesh of half the size. */
 #define CONTACT_COARSE 1.9
 
 /* In surface to surface, a node with less than this share of the mean hat area has no term. This is an axis node,

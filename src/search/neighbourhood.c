@@ -138,7 +138,9 @@ PetscErrorCode NeighbourhoodsDestroy(Neighbourhoods *nb)
 static inline PetscReal Rho2(const SurfaceView *view, PetscInt p, const PetscReal x0[3], const PetscReal metric[9])
 {
   const PetscReal *x = &view->x[p * view->dim], a = x[0] - x0[0], b = x[1] - x0[1],
-                  c = view->dim == 3 ? x[2] - x0[2] : view->hoop ? view->hoop[p] : 0;
+                  c = view->dim == 3 ? x[2] - x0[2]
+                      : view->hoop   ? view->hoop[p]
+                                     : 0;
 
   return metric[0] * a * a + metric[4] * b * b + metric[8] * c * c +
          2 * (metric[1] * a * b + metric[2] * a * c + metric[5] * b * c);

@@ -256,7 +256,7 @@ static void TurnOffsets(ContactSearch s, NeighbourLists lists, PetscReal t)
 PetscErrorCode NeighbourListsUpdate(ContactSearch s, NeighbourLists lists, const PetscReal *u, PetscReal t,
                                     PetscBool *moved)
 {
-  const PetscInt  n     = lists->n_nodes * lists->dim;
+  const PetscInt n = lists->n_nodes * lists->dim;
   /* Tools of axisymmetric scenes do not turn. */
   const PetscBool turns = (PetscBool)(s->fit->integral && !s->fit->revolved && s->master && s->master->rigid);
   PetscReal      *before;
@@ -403,8 +403,8 @@ static PetscErrorCode NeighbourListsMapPoint(ContactSearch s, NeighbourLists lis
 static PetscInt CandidateRings(ContactSearch s, NeighbourLists lists, const SearchField *field,
                                const Candidate *candidate, double *area, Ring *ring)
 {
-  const Facet    *facet = &field->records[candidate->record].facet; /* as its body sees it: the rule's points are the
-                                                                       same on every image */
+  const Facet *facet = &field->records[candidate->record].facet; /* as its body sees it: the rule's points are the
+                                                                    same on every image */
   const FaceRule     *rule  = FaceRuleGet(facet->type, 0);
   const SurfaceImage *image = &s->images[candidate->image];
   const PetscReal     reach = s->fit_reach / s->master->max_extent;
@@ -527,8 +527,8 @@ PetscErrorCode NeighbourListsCreatePoints(ContactSearch s, NeighbourLists lists,
     PointMap(s, lists, p, lists->X, &lists->point_X[p * dim]);
     PointMap(s, lists, p, lists->u, &lists->point_u[p * dim]);
     for (int d = 0; d < dim; d++)
-      lists->point_X[p * dim + d] +=
-        image->shift[d] * (d == 0 && lists->point_cosine ? lists->point_cosine[p] : 1) + lists->point_offset[p * dim + d];
+      lists->point_X[p * dim + d] += image->shift[d] * (d == 0 && lists->point_cosine ? lists->point_cosine[p] : 1) +
+                                     lists->point_offset[p * dim + d];
     if (lists->point_hoop) lists->point_hoop[p] *= lists->point_X[p * dim] + lists->point_u[p * dim];
   }
   PetscCall(PetscFree(number));

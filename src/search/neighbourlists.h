@@ -40,9 +40,9 @@ typedef struct {
   int       *point_side; /* of each entry: image of the node; nonzero only with live offsets */
   PetscReal *point_S, *point_offset, *point_weight;
   int       *point_image;
-  long      *point_key;                 /* rank-independent: the node or quadrature point, the image, the place on a ring */
+  long      *point_key; /* rank-independent: the node or quadrature point, the image, the place on a ring */
   PetscReal *point_cosine, *point_hoop; /* of its angle; distance along the hoop (length). NULL: there are no rings */
-  PetscReal *point_X, *point_u; /* n_points*dim */
+  PetscReal *point_X, *point_u;         /* n_points*dim */
 
   PetscInt   n_slaves;               /* slave points, in the order in which they were given */
   PetscInt  *slave_ptr, *slave_node; /* the nodes of a slave point's own face come first, as in SlavePoints */

@@ -44,18 +44,18 @@ PetscErrorCode SearchCreate(Mesh mesh, Scene scene, Loads loads, ContactSurface 
 
   PetscFunctionBeginUser;
   PetscCall(PetscNew(&s));
-  *s   = (struct _n_ContactSearch){.mesh     = mesh,
-                                   .scene    = scene,
-                                   .loads    = loads,
-                                   .master   = master,
-                                   .n_images = n_images,
-                                   .images   = images,
-                                   .fit      = fit,
-                                   .slaves   = slaves,
-                                   .offset   = offset,
-                                   .maps     = maps,
-                                   .reach    = SEARCH_REACH * size,
-                                   .margin   = SEARCH_MARGIN * size};
+  *s = (struct _n_ContactSearch){.mesh     = mesh,
+                                 .scene    = scene,
+                                 .loads    = loads,
+                                 .master   = master,
+                                 .n_images = n_images,
+                                 .images   = images,
+                                 .fit      = fit,
+                                 .slaves   = slaves,
+                                 .offset   = offset,
+                                 .maps     = maps,
+                                 .reach    = SEARCH_REACH * size,
+                                 .margin   = SEARCH_MARGIN * size};
   if (master) s->fit_reach = SearchFitReach(s);
   *out = s;
   PetscFunctionReturn(PETSC_SUCCESS);

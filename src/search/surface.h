@@ -46,8 +46,8 @@ PetscErrorCode SurfaceFindFreeEdges(ContactSurface, int n_images, const SurfaceI
 PetscErrorCode SurfaceNodeAreas(ContactSurface, Geometry, const PetscReal *u, PetscReal *area, PetscReal *normal);
 PetscErrorCode SurfaceNodeSizes(ContactSurface, Geometry, int n_images, const SurfaceImage *, PetscReal *size,
                                 PetscReal *turn, PetscReal *share);
-PetscErrorCode SurfaceImages(Mesh, Scene, const SceneContact *, ContactSurface slave, ContactSurface master, int *n_images,
-                             SurfaceImage images[SURFACE_MAX_IMAGES]);
+PetscErrorCode SurfaceImages(Mesh, Scene, const SceneContact *, ContactSurface slave, ContactSurface master,
+                             int *n_images, SurfaceImage images[SURFACE_MAX_IMAGES]);
 PetscErrorCode SurfaceImagesFromSupports(Mesh, Scene, ContactSurface slave, ContactSurface master, int *n_images,
                                          SurfaceImage images[SURFACE_MAX_IMAGES]);
 void           SurfaceReflect(const SurfaceImage *, int dim, const PetscReal *x, PetscReal *y);

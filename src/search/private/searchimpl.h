@@ -33,7 +33,7 @@ struct _n_ContactSearch {
 typedef struct {
   PetscInt  record;
   int       image;
-  Facet     facet; /* nodes: contact nodes until the points are numbered, then points */
+  Facet     facet;        /* nodes: contact nodes until the points are numbered, then points */
   PetscInt  first, count; /* fit points of its quadrature rule */
   PetscReal centre[3], normal[3], lower[3], upper[3];
 } Candidate;
