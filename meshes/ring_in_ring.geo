@@ -65,7 +65,7 @@ For b In {0 : 1}
       If (!m)
         body~{b}[] += {s};
         contact~{b}[] += {s + (2 - b) * count};
-        If (b == 1)
+        If (b)
           rim[] += {s + 2 * count};
         EndIf
       ElseIf (k == 0)
@@ -95,7 +95,7 @@ For b In {0 : 1}
       Volume(s) = {s};
       body~{b}[] += {s};
       contact~{b}[] += {s + (3 - b) * count};
-      If (b == 1)
+      If (b)
         rim[] += {s + 3 * count};
       EndIf
     EndFor
@@ -115,7 +115,7 @@ If (n_len)
   Physical Volume("outer") = {body_1[]};
   Physical Surface("inner_contact") = {contact_0[]};
   Physical Surface("outer_contact") = {contact_1[]};
-  Physical Surface("outer_rim") = {rim[]};
+  Physical Surface("rim") = {rim[]};
   Physical Surface("symmetry_x") = {cut_x[]};
   Physical Surface("symmetry_y") = {cut_y[]};
   Physical Surface("symmetry_z") = {cut_z[]};
@@ -124,7 +124,7 @@ Else
   Physical Surface("outer") = {body_1[]};
   Physical Curve("inner_contact") = {contact_0[]};
   Physical Curve("outer_contact") = {contact_1[]};
-  Physical Curve("outer_rim") = {rim[]};
+  Physical Curve("rim") = {rim[]};
   Physical Curve("symmetry_x") = {cut_x[]};
   Physical Curve("symmetry_y") = {cut_y[]};
 EndIf
