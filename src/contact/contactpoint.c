@@ -225,12 +225,13 @@ PetscErrorCode ContactPointToNodes(const ContactPair *pair, NeighbourLists lists
 @*/
 PetscErrorCode ContactSecondBegin(const ContactPair *pair, PetscInt nodes, PetscInt points)
 {
-  ContactWork *work   = pair->work;
-  const int    dim    = pair->mesh->dim;
-  const int    degree = pair->fit.fitted ? FitDegreeCode(&pair->fit, pair->fit.degree) : 1; /* facets need no more than the sum's head */
-  const int    dense  = PetscMax(pair->smoother->dense_capacity, pair->facets->dense_capacity);
-  const int    depth  = (int)points * (1 + PetscMax(FitDerivativesDepth(dim, degree), dim * (1 + dense)));
-  const long   room   = FitDerivativesWorkspace(dim, degree, (int)nodes, depth);
+  ContactWork *work = pair->work;
+  const int    dim  = pair->mesh->dim;
+  const int    degree =
+    pair->fit.fitted ? FitDegreeCode(&pair->fit, pair->fit.degree) : 1; /* facets need no more than the sum's head */
+  const int  dense = PetscMax(pair->smoother->dense_capacity, pair->facets->dense_capacity);
+  const int  depth = (int)points * (1 + PetscMax(FitDerivativesDepth(dim, degree), dim * (1 + dense)));
+  const long room  = FitDerivativesWorkspace(dim, degree, (int)nodes, depth);
 
   PetscFunctionBeginUser;
   if (room > work->sum_room) {

@@ -170,7 +170,8 @@ PetscErrorCode ContactMarkPredicted(Contact contact)
 }
 
 /*@
-  ContactPredictionMissed - says whether a prediction counted on contact and the present state has none.
+  ContactPredictionMissed - says whether a prediction counted on surface to surface contact, whose mean gaps it closed, and
+  the present state has no contact.
 
   Collective
 
@@ -189,7 +190,7 @@ PetscErrorCode ContactPredictionMissed(Contact contact, PetscBool *missed)
     const ContactPair *pair = &contact->pairs[p];
 
     for (PetscInt c = 0; c < pair->n; c++) {
-      found[0] = found[0] || pair->predicted[c];
+      found[0] = found[0] || (pair->formulation.surface && pair->predicted[c]);
       found[1] = found[1] || pair->now.status[c] == CONTACT_CLOSED;
     }
   }

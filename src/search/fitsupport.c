@@ -59,7 +59,8 @@ static void FaceSpacing(FitSupport *fit, PetscInt candidate)
   FaceRuleAreas(rule, facet->type, dim, GEOMETRY_SOLID, x, area, NULL);
   for (int q = 0; q < rule->n; q++) {
     total += area[q];
-    for (int d = 0; d < dim && dim == 3; d++) centre[d] += area[q] * fit->view.x[(fit->view.first[candidate] + q) * dim + d];
+    for (int d = 0; d < dim && dim == 3; d++)
+      centre[d] += area[q] * fit->view.x[(fit->view.first[candidate] + q) * dim + d];
   }
   for (int q = 0; q < rule->n && dim == 3; q++) {
     double r[3] = {0};
@@ -129,7 +130,8 @@ PetscErrorCode FitSupportCreate(ContactSearch s, NeighbourLists lists, const Sea
   for (PetscInt i = 0; i < n && first; i++) FaceSpacing(fit, i);
   PetscCall(NeighbourhoodsCreate(&fit->view, &fit->neighbourhoods));
   PetscCall(PetscMalloc7(FIT_MAX_POINTS, &fit->points, FIT_MAX_POINTS * 3, &fit->x, FIT_MAX_POINTS, &fit->multiplier,
-                         FIT_MAX_POINTS, &fit->taper, FitWorkspace(lists->dim, FitDegreeCode(s->fit, s->fit->degree), FIT_MAX_POINTS),
+                         FIT_MAX_POINTS, &fit->taper,
+                         FitWorkspace(lists->dim, FitDegreeCode(s->fit, s->fit->degree), FIT_MAX_POINTS),
                          &fit->workspace, FIT_MAX_POINTS, &fit->used, FIT_MAX_POINTS, &fit->hoop));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -151,8 +153,7 @@ PetscErrorCode FitSupportDestroy(FitSupport *fit)
   PetscCall(NeighbourhoodsDestroy(&fit->neighbourhoods));
   if (fit->view.first) PetscCall(PetscFree2(fit->view.first, fit->view.count));
   PetscCall(PetscFree5(fit->normals, fit->reference, fit->geometry, facets, x));
-  PetscCall(
-    PetscFree7(fit->points, fit->x, fit->multiplier, fit->taper, fit->workspace, fit->used, fit->hoop));
+  PetscCall(PetscFree7(fit->points, fit->x, fit->multiplier, fit->taper, fit->workspace, fit->used, fit->hoop));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -252,8 +253,8 @@ static PetscErrorCode FitRung(FitSupport *fit, const FitFoot *at, int rung, FitP
                               PetscBool *holds)
 {
   const FitSettings *settings = fit->s->fit;
-  const int          dim      = fit->lists->dim, lower = Ladder[rung].degree,
-            degree = FitDegreeCode(settings, lower ? PetscMin(lower, settings->degree) : settings->degree);
+  const int          dim = fit->lists->dim, lower = Ladder[rung].degree,
+            degree        = FitDegreeCode(settings, lower ? PetscMin(lower, settings->degree) : settings->degree);
   const int        wanted = settings->integral ? FitTerms(dim, degree) : FitPointsWanted(dim, degree);
   double           covariance[3][3], area;
   const PetscReal *rho2;

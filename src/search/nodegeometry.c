@@ -170,9 +170,8 @@ PetscErrorCode SurfaceNodeGeometry(ContactSurface surface, Geometry geometry, Lo
     const PetscReal *sum  = &sums[i * SUMS];
     PetscReal        area = sum[SUM_FACES] > 0 ? sum[SUM_AREA] / sum[SUM_FACES] : 0, length = 0;
 
-    nodes[i] = (NodeGeometry){
-      .spacing = dim == 3 ? PetscSqrtReal(area) : area,
-      .weight  = weighted ? sum[SUM_TRIBUTARY] / area_unit : 1};
+    nodes[i] = (NodeGeometry){.spacing = dim == 3 ? PetscSqrtReal(area) : area,
+                              .weight  = weighted ? sum[SUM_TRIBUTARY] / area_unit : 1};
     for (int d = 0; d < 3; d++) length += PetscSqr(sum[SUM_NORMAL + d]);
     length = PetscSqrtReal(length);
     for (int d = 0; d < 3 && length > 0; d++) nodes[i].normal[d] = sum[SUM_NORMAL + d] / length;

@@ -4,8 +4,9 @@
 #include "base/refusal.h"
 #include "kernels/elementkernel.h"
 
-/* A surface continues smoothly beyond a plane if it turns there, between its last face and the image of that, by no more
-   than this many times what its faces turn next to the plane, and by this angle (radians): the rounding of chords. */
+/* A surface continues smoothly beyond a plane if it turns there, between its last face and the image of that, by no
+   more than this many times what its faces turn next to the plane, and by this angle (radians): the rounding of chords.
+ */
 #define SURFACE_SMOOTHNESS  2
 #define SURFACE_SMOOTH_TURN 0.02
 
@@ -106,8 +107,9 @@ static PetscErrorCode PairMeetsAxis(Mesh mesh, Scene scene, ContactSurface slave
 - images   - images[SURFACE_MAX_IMAGES], in coordinates relative to the mesh's centre
 
   Note:
-  In axisymmetric scenes the axis r = 0 is the first plane of symmetry of surfaces that meet it. Refuses surfaces that are not planar and
-  normal to an axis, surfaces that no support holds in that direction, and a third plane normal to one axis.
+  In axisymmetric scenes the axis r = 0 is the first plane of symmetry of surfaces that meet it. Refuses surfaces that
+are not planar and normal to an axis, surfaces that no support holds in that direction, and a third plane normal to one
+axis.
 @*/
 PetscErrorCode SurfaceImages(Mesh mesh, Scene scene, const SceneContact *contact, ContactSurface slave,
                              ContactSurface master, int *n_images, SurfaceImage images[SURFACE_MAX_IMAGES])
@@ -158,7 +160,8 @@ static PetscBool SupportSlides(Scene scene, const char *surface, int component)
 {
   PetscBool slides = SupportHolds(scene, surface, component);
 
-  for (int d = 0; d < scene->dim; d++) slides = (PetscBool)(slides && (d == component || !SupportHolds(scene, surface, d)));
+  for (int d = 0; d < scene->dim; d++)
+    slides = (PetscBool)(slides && (d == component || !SupportHolds(scene, surface, d)));
   return slides;
 }
 
@@ -173,15 +176,16 @@ static PetscBool ToolCrosses(const Motion *motion, int axis)
 /* What a surface does at a plane; of all ranks. */
 typedef struct {
   PetscReal below, above; /* how far its nodes are on either side (length) */
-  int       ends, breaks; /* it has an edge there; an edge that is free to leave the plane, or from which its image turns away */
+  int       ends,
+    breaks; /* it has an edge there; an edge that is free to leave the plane, or from which its image turns away */
 } PlaneEnd;
 
 /* Angle between a face and its image. */
 static PetscReal ImageTurn(ContactSurface surface, const Facet *face, const PetscReal *coords, int axis)
 {
-  const int dim              = surface->mesh->dim;
+  const int dim                  = surface->mesh->dim;
   double    area[FACE_MAX_NODES] = {0}, normal[FACE_MAX_NODES * 3] = {0}, X[FACE_MAX_NODES * 3];
-  PetscReal sum[3]           = {0, 0, 0};
+  PetscReal sum[3] = {0, 0, 0};
 
   for (int a = 0; a < ElementGet(face->type)->nodes; a++)
     for (int d = 0; d < dim; d++) X[a * dim + d] = coords[face->nodes[a] * dim + d];
@@ -196,8 +200,8 @@ static PetscReal ImageTurn(ContactSurface surface, const Facet *face, const Pets
 static PetscErrorCode SurfaceAtPlane(ContactSurface surface, int axis, PetscReal position, const PetscBool *held,
                                      const PetscReal *turn, PlaneEnd *end)
 {
-  const PetscReal *coords = surface->rigid ? surface->rigid->coords : surface->mesh->coords;
-  const PetscReal  flat   = SURFACE_FLATNESS * surface->mesh->size;
+  const PetscReal *coords  = surface->rigid ? surface->rigid->coords : surface->mesh->coords;
+  const PetscReal  flat    = SURFACE_FLATNESS * surface->mesh->size;
   PetscReal        most[4] = {0, 0, 0, 0};
 
   PetscFunctionBeginUser;
@@ -220,8 +224,8 @@ static PetscErrorCode SurfaceAtPlane(ContactSurface surface, int axis, PetscReal
     if (on < surface->mesh->dim - 1) continue;
     most[2] = 1;
     /* Nodes' turn is half of that between their faces. A tool's own turn is not known. */
-    if (free || (surface->group && ImageTurn(surface, face, coords, axis) >
-                                     SURFACE_SMOOTH_TURN + 2 * SURFACE_SMOOTHNESS * bend))
+    if (free || (surface->group &&
+                 ImageTurn(surface, face, coords, axis) > SURFACE_SMOOTH_TURN + 2 * SURFACE_SMOOTHNESS * bend))
       most[3] = 1;
   }
   if (surface->group) PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, most, 4, MPIU_REAL, MPI_MAX, surface->mesh->comm));
@@ -302,7 +306,7 @@ PetscErrorCode SurfaceImagesFromSupports(Mesh mesh, Scene scene, ContactSurface 
     const char *name     = scene->supports[s].surface;
     const int   g        = MeshFindGroup(mesh, mesh->dim - 1, name);
     PetscReal   position = 0;
-    int         axis     = -1, taken = 0;
+    int         axis = -1, taken = 0;
     PetscBool   continues = PETSC_FALSE;
 
     if (g < 0) continue;

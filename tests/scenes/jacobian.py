@@ -49,6 +49,11 @@ CASES["flat blocks, surface to surface, facets"] = (
     ["kinematics=finite", "bodies.0.material.law=svk", "bodies.1.material.law=svk", "stepping.initial=1"] + SURFACE)
 CASES["line contact, surface to surface"] = (RUNS / "hertz_line.yaml",
                                              ["mesh.parameters={h: 1, growth: 0.5}", "stepping.initial=0.5"] + DIFFUSE)
+for order in (1, 2):
+    CASES[f"point contact about the axis, surface to surface, order {order}"] = (RUNS / "hertz_line.yaml", [
+        "geometry=axisymmetric", "kinematics=finite", "bodies.0.material.law=svk", "bodies.1.material.law=svk",
+        "mesh.parameters={h: 2, growth: 0.8}", "loads.0.pressure=5", "stepping.initial=1", f"mesh.order={order}"
+    ] + DIFFUSE)
 CASES["line contact, surface to surface, multipliers"] = (RUNS / "hertz_line.yaml", [
     "mesh.parameters={h: 1, growth: 0.5}", "stepping.initial=0.5",
     "contact.0.penalty={scale: 1, augment: true, g_max: 1e-3, unit: length}"

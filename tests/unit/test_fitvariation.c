@@ -292,8 +292,8 @@ static void TestMirror(void **state)
   }
 }
 
-/* A bowl that is even in t, as points (x, y, t) and (x, y, -t) in space and as points of a fit of revolution. The frame is
-   turned about t. */
+/* A bowl that is even in t, as points (x, y, t) and (x, y, -t) in space and as points of a fit of revolution. The frame
+   is turned about t. */
 static void RevolvedCase(Case *space, Case *revolved, int degree)
 {
   const double support = degree == 4 ? 4.2 : 3, angle = Random(-1, 1), c = cos(angle), s = sin(angle);
@@ -322,8 +322,8 @@ static void RevolvedCase(Case *space, Case *revolved, int degree)
   }
 }
 
-/* A fit of revolution is the fit in space: the same gap, foot and normal, the same N, and an N and M that are derivatives
-   of the gap. */
+/* A fit of revolution is the fit in space: the same gap, foot and normal, the same N, and an N and M that are
+   derivatives of the gap. */
 static void TestRevolution(void **state)
 {
   static Case space, revolved;
@@ -343,7 +343,8 @@ static void TestRevolution(void **state)
       AssertNear(revolved.out.normal[d], space.out.normal[d], 1e-13);
       AssertNear(revolved.N[d], space.N[d], 1e-12 * most);
       for (int i = 0; i < revolved.out.n; i++)
-        AssertNear(revolved.N[2 * (1 + i) + d], space.N[3 * (1 + 2 * i) + d] + space.N[3 * (2 + 2 * i) + d], 1e-12 * most);
+        AssertNear(revolved.N[2 * (1 + i) + d], space.N[3 * (1 + 2 * i) + d] + space.N[3 * (2 + 2 * i) + d],
+                   1e-12 * most);
     }
     CheckVariations(&revolved);
   }
@@ -351,9 +352,9 @@ static void TestRevolution(void **state)
 
 int main(void)
 {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(TestVariations), cmocka_unit_test(TestRevolution), cmocka_unit_test(TestBalance),
-                                     cmocka_unit_test(TestDiffuseDerivatives), cmocka_unit_test(TestInvariance),
-                                     cmocka_unit_test(TestMirror)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(TestVariations), cmocka_unit_test(TestRevolution),
+                                     cmocka_unit_test(TestBalance),    cmocka_unit_test(TestDiffuseDerivatives),
+                                     cmocka_unit_test(TestInvariance), cmocka_unit_test(TestMirror)};
 
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -126,7 +126,7 @@ LANES_INLINE int Term(const int tangents, const int degree, const int k, const i
   return b == 0 ? k : b == 2 ? plain + k - 1 : 2 * plain + k - 4;
 }
 
-#define FOR_MONOMIALS(tangents, degree, k, b)   \
+#define FOR_MONOMIALS(tangents, degree, k, b)    \
   for (int k = 0; k <= PlainDegree(degree); k++) \
     for (int b = 0; b <= ((tangents) == 1 && !IsRevolved(degree) ? 0 : k); b += (tangents) == 1 ? 2 : 1)
 
@@ -135,9 +135,10 @@ LANES_INLINE void Monomials(const int m, const int degree, const Lanes *eta, Lan
   p[0] = Broadcast(1);
   FOR_MONOMIALS(m, degree, k, b)
   {
-    if (k > 0) p[Term(m, degree, k, b)] = b < k    ? eta[0] * p[Term(m, degree, k - 1, b)]
-                               : m == 2 ? eta[1] * p[Term(m, degree, k - 1, b - 1)]
-                                        : eta[1] * eta[1] * p[Term(m, degree, k - 2, b - 2)];
+    if (k > 0)
+      p[Term(m, degree, k, b)] = b < k    ? eta[0] * p[Term(m, degree, k - 1, b)]
+                                 : m == 2 ? eta[1] * p[Term(m, degree, k - 1, b - 1)]
+                                          : eta[1] * eta[1] * p[Term(m, degree, k - 2, b - 2)];
   }
 }
 
@@ -168,7 +169,8 @@ LANES_INLINE void PolynomialHessian(const int m, const int degree, const Lanes *
   FOR_MONOMIALS(m, degree, k, b)
   {
     if (k - b > 1) hessian[0] += ((k - b) * (k - b - 1)) * (c[Term(m, degree, k, b)] * p[Term(m, degree, k - 2, b)]);
-    if (m == 2 && k - b > 0 && b > 0) hessian[1] += ((k - b) * b) * (c[Term(m, degree, k, b)] * p[Term(m, degree, k - 2, b - 1)]);
+    if (m == 2 && k - b > 0 && b > 0)
+      hessian[1] += ((k - b) * b) * (c[Term(m, degree, k, b)] * p[Term(m, degree, k - 2, b - 1)]);
     if (m == 2 && b > 1) hessian[2] += (b * (b - 1)) * (c[Term(m, degree, k, b)] * p[Term(m, degree, k - 2, b - 2)]);
   }
 }
@@ -191,17 +193,17 @@ LANES_INLINE void ToOrthonormal(const int terms, const FitState *s, Lanes *p)
 }
 
 /* Calls body(dim, degree, terms) with constants for the problem's dimension and degree. */
-#define INSTANTIATE(in, body)              \
-  switch (10 * (in)->dim + (in)->degree) { \
-  case 21: body(2, 1, 2);                  \
-  case 22: body(2, 2, 3);                  \
-  case 24: body(2, 4, 5);                  \
-  case 20 + FIT_REVOLVED + 1: body(2, FIT_REVOLVED + 1, 2);                  \
-  case 20 + FIT_REVOLVED + 2: body(2, FIT_REVOLVED + 2, 4);                  \
-  case 20 + FIT_REVOLVED + 4: body(2, FIT_REVOLVED + 4, 9);                  \
-  case 31: body(3, 1, 3);                  \
-  case 32: body(3, 2, 6);                  \
-  case 34: body(3, 4, 15);                 \
+#define INSTANTIATE(in, body)                               \
+  switch (10 * (in)->dim + (in)->degree) {                  \
+  case 21: body(2, 1, 2);                                   \
+  case 22: body(2, 2, 3);                                   \
+  case 24: body(2, 4, 5);                                   \
+  case 20 + FIT_REVOLVED + 1: body(2, FIT_REVOLVED + 1, 2); \
+  case 20 + FIT_REVOLVED + 2: body(2, FIT_REVOLVED + 2, 4); \
+  case 20 + FIT_REVOLVED + 4: body(2, FIT_REVOLVED + 4, 9); \
+  case 31: body(3, 1, 3);                                   \
+  case 32: body(3, 2, 6);                                   \
+  case 34: body(3, 4, 15);                                  \
   }
 
 /* Length of a row of FitFactors: terms of K, terms of J, filled up with zeros. */
