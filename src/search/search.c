@@ -344,6 +344,7 @@ static PetscErrorCode FillSlave(NeighbourLists lists, const SearchField *field, 
   count           = BoxTreeNear(tree, look->x, look->least + margin + motion, (int)field->n_candidates, found);
   facing          = FlankSort(look, &count, found);
   lists->share[q] = FlankShare(look, facing, count, found, ends);
+  if (lists->share[q] == 0) lists->averse[q] = FlankIsBeside(look, facing, count, found);
   lists->kappa[q] = ListCurvature(look, facing, found);
   for (int i = 0; i < facing; i++)
     if (found[i] == look->best) lists->nearest[q] = i;
