@@ -61,23 +61,89 @@ static PetscBool CellIsClockwise(const GmshMesh *gmsh, const GmshBlock *block, P
   return (PetscBool)(twice < 0);
 }
 
-/* Turns the plane cells of those surfaces whose outline runs clockwise in the file. A surface of which only some cells
-   do is tangled, and is left as it is. */
-static void TurnClockwise(GmshMesh *gmsh)
-{
-  for (int b = 0; b < gmsh->n_blocks; b++) {
-    GmshBlock *block = &gmsh->blocks[b];
-    PetscInt   n     = 0;
+/* An edge of a plane cell: its ends in ascending order, whether the cell runs along it that way, and whether the cell's
+   surface runs clockwise. */
+typedef struct {
+  PetscInt node[2];
+  int      along, clockwise;
+} PlaneEdge;
 
-    if (block->dim != 2 || !block->element) continue;
+static int PlaneEdgeCompare(const void *a, const void *b)
+{
+  const PlaneEdge *p = a, *q = b;
+
+  if (p->node[0] != q->node[0]) return p->node[0] < q->node[0] ? -1 : 1;
+  if (p->node[1] != q->node[1]) return p->node[1] < q->node[1] ? -1 : 1;
+  return 0;
+}
+
+/* Does a surface that runs clockwise lie on the same side of a common edge as one that does not? It is then folded over
+   it, and turning its cells would hide that. */
+static PetscErrorCode FindFold(const GmshMesh *gmsh, const PetscBool *clockwise, PetscBool *folded)
+{
+  PetscInt   n = 0;
+  PlaneEdge *edges;
+
+  PetscFunctionBeginUser;
+  for (int b = 0; b < gmsh->n_blocks; b++)
+    if (gmsh->blocks[b].dim == 2) n += gmsh->blocks[b].n * CELL_FACE_CORNERS;
+  PetscCall(PetscMalloc1(n, &edges));
+  n = 0;
+  for (int b = 0; b < gmsh->n_blocks; b++) {
+    const GmshBlock *block = &gmsh->blocks[b];
+
+    for (PetscInt i = 0; i < block->n && block->dim == 2; i++) {
+      const PetscInt *nodes   = block->connectivity + i * block->nodes;
+      const int       corners = block->element->corners;
+
+      for (int k = 0; k < corners; k++) {
+        const PetscInt from = nodes[k], to = nodes[(k + 1) % corners];
+
+        edges[n++] = (PlaneEdge){{PetscMin(from, to), PetscMax(from, to)}, from < to, clockwise[b]};
+      }
+    }
+  }
+  if (n) qsort(edges, n, sizeof(*edges), PlaneEdgeCompare);
+  *folded = PETSC_FALSE;
+  for (PetscInt i = 1; i < n; i++)
+    if (!PlaneEdgeCompare(&edges[i - 1], &edges[i]) && edges[i - 1].clockwise != edges[i].clockwise &&
+        edges[i - 1].along != edges[i].along)
+      *folded = PETSC_TRUE;
+  PetscCall(PetscFree(edges));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Turns the plane cells of those surfaces whose outline runs clockwise in the file. A surface of which only some cells
+   do is tangled, and one that is folded over its neighbour is wrong; they are left as they are. */
+static PetscErrorCode TurnClockwise(GmshMesh *gmsh)
+{
+  PetscBool *clockwise, folded = PETSC_FALSE;
+  int        any = 0;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc1(gmsh->n_blocks, &clockwise));
+  for (int b = 0; b < gmsh->n_blocks; b++) {
+    const GmshBlock *block = &gmsh->blocks[b];
+    PetscInt         n     = 0;
+
+    if (block->dim != 2 || !block->n) continue;
     for (PetscInt i = 0; i < block->n; i++) n += CellIsClockwise(gmsh, block, i);
-    for (PetscInt i = 0; i < block->n && n == block->n; i++) {
+    clockwise[b] = (PetscBool)(n == block->n);
+    any          = any || clockwise[b];
+  }
+  if (any) PetscCall(FindFold(gmsh, clockwise, &folded));
+  for (int b = 0; b < gmsh->n_blocks; b++) {
+    const GmshBlock *block = &gmsh->blocks[b];
+
+    for (PetscInt i = 0; i < block->n && clockwise[b] && !folded; i++) {
       PetscInt *nodes = block->connectivity + i * block->nodes, old[ELEMENT_MAX_NODES];
 
       for (int k = 0; k < block->nodes; k++) old[k] = nodes[k];
       for (int k = 0; k < block->nodes; k++) nodes[k] = old[RootMeshReversedNode(block->element, k)];
     }
   }
+  PetscCall(PetscFree(clockwise));
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* Bodies and order */
@@ -327,7 +393,7 @@ PetscErrorCode RootMeshRead(Scene scene, const char *file, PetscMPIInt ranks, Ro
   if (complaint->text[0]) PetscFunctionReturn(PETSC_SUCCESS);
   CheckBodyNames(scene, file, root, complaint);
   CheckOrder(scene, file, root, complaint);
-  if (scene->dim == 2) TurnClockwise(&root->gmsh);
+  if (scene->dim == 2) PetscCall(TurnClockwise(&root->gmsh));
   PetscCall(NumberCells(scene, file, root, complaint));
   if (complaint->text[0]) PetscFunctionReturn(PETSC_SUCCESS);
   if (root->n_cells < ranks)

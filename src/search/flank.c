@@ -234,6 +234,24 @@ PetscReal FlankShare(const Nearest *look, int facing, int n, const int *found, i
 }
 
 /*@
+  FlankIsBeside - says whether a facet that does not face the slave point is within a face of the slave.
+
+  Not collective
+
+  Input Parameters:
++ look   - the slave point
+. facing - number of facets that face the point
+. n      - number of facets
+- found  - their numbers
+@*/
+PetscBool FlankIsBeside(const Nearest *look, int facing, int n, const int *found)
+{
+  for (int k = facing; k < n; k++)
+    if (CandidateDistance(look, &look->candidates[found[k]]) <= look->size) return PETSC_TRUE;
+  return PETSC_FALSE;
+}
+
+/*@
   FlankNearRidge - says whether the slave point's foot is within half a face of a sharp convex edge whose two facets
 both face the point.
 

@@ -225,18 +225,15 @@ PetscErrorCode SearchFieldDestroy(SearchField *field)
    from the nearest facet and its normal. */
 static void NearestVisit(void *context, int index, double *bound)
 {
-  Nearest         *look = context;
-  const int        dim  = look->lists->dim;
-  const Candidate *c    = &look->candidates[index];
-  Facet            own  = c->facet; /* without free edges: the distance to the facet itself, not to its extension */
+  Nearest         *look  = context;
+  const int        dim   = look->lists->dim;
+  const Candidate *c     = &look->candidates[index];
+  const PetscBool  faces = FlankFaces(look, c);
+  Facet            own   = c->facet; /* without free edges: the distance to the facet itself, not to its extension */
   PetscReal        x[FACE_MAX_NODES * 3], distance;
   Foot             foot;
 
-  if (!FlankFaces(look, c)) {
-    look->averse = PETSC_TRUE;
-    return;
-  }
-  if (FlankIsOwn(look, c)) return;
+  if ((!faces && (look->averse || look->best >= 0)) || FlankIsOwn(look, c)) return;
   CandidatePositions(look->lists, c, x);
   own.free_edges = 0;
   for (int a = 0; a < ElementGet(own.type)->nodes; a++) {
@@ -245,7 +242,8 @@ static void NearestVisit(void *context, int index, double *bound)
   }
   FacetProject(dim, &own, x, &foot);
   distance = PetscAbsReal(foot.gap);
-  if (distance > *bound) return;
+  if (!faces) look->averse = (PetscBool)(distance <= look->size);
+  if (!faces || distance > *bound) return;
   look->least = PetscMin(distance, look->least);
   *bound      = look->least + look->tie;
   if (look->best >= 0 && look->distance <= *bound && c->facet.tag > look->candidates[look->best].facet.tag) return;
@@ -328,6 +326,7 @@ static PetscErrorCode FillSlave(NeighbourLists lists, const SearchField *field, 
   count           = BoxTreeNear(tree, look->x, look->least + margin + motion, (int)field->n_candidates, found);
   facing          = FlankSort(look, &count, found);
   lists->share[q] = FlankShare(look, facing, count, found, ends);
+  if (lists->share[q] == 0) lists->averse[q] = FlankIsBeside(look, facing, count, found);
   lists->kappa[q] = ListCurvature(look, facing, found);
   for (int i = 0; i < facing; i++)
     if (found[i] == look->best) lists->nearest[q] = i;

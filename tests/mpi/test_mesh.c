@@ -678,7 +678,7 @@ static const Wrong wrong[] = {
    "geometry: plane_strain",
    "geometry: axisymmetric",
    {"node 11 has x = -1", "radius"}},
-  {"3 10 11 14 13", "3 10 13 14 11", "", "", {"cell 3 of body 'a' is inverted", "inverted cells in all: 1"}},
+  {"3 10 11 14 13", "3 10 14 11 13", "", "", {"cell 3 of body 'a' is inverted", "inverted cells in all: 1"}},
   {"1 0 0 0 0 1 0 1 1 0", "1 0 0 0 0 1 0 2 1 5 0", "", "", {"bodies.2.surface", "is a face of a deformable body"}},
   {"", "", "surface: tool", "surface: tol", {"bodies.2.surface", "no surface group 'tol'"}},
   {"",

@@ -4,7 +4,7 @@ DefineConstant[
   solid = {0, Name "1: extruded along z, 0: plane"},
   radius = {0, Name "radius of the edge; 0: sharp"}, faces = {2, Name "faces over the rounding"},
   left = {-4, Name "left side of the upper block; the edge is at x = 0"}, width = {6, Name "width of the upper block"},
-  gap = {0.05, Name "gap between the blocks"},
+  gap = {0.05, Name "gap between the blocks"}, height = {4, Name "height of the upper block"},
   size_upper = {0.5, Name "element size of the upper block"}, size_lower = {0.5, Name "element size of the lower one"},
   depth = {1, Name "depth"}, n_depth = {2, Name "elements along z"}
 ];
@@ -32,18 +32,19 @@ EndIf
 Plane Surface(1) = {1};
 Point(11) = {left, gap, 0, size_upper};
 Point(12) = {left + width, gap, 0, size_upper};
-Point(13) = {left + width, gap + 4, 0, 2 * size_upper};
-Point(14) = {left, gap + 4, 0, 2 * size_upper};
+Point(13) = {left + width, gap + height, 0, 2 * size_upper};
+Point(14) = {left, gap + height, 0, 2 * size_upper};
 Line(11) = {11, 12};
 Line(12) = {12, 13};
 Line(13) = {13, 14};
 Line(14) = {14, 11};
 Curve Loop(2) = {11, 12, 13, 14};
 Plane Surface(2) = {2};
-Recombine Surface{1, 2};
-If (solid)
-  low[] = Extrude{0, 0, depth}{ Surface{1}; Layers{n_depth}; Recombine; };
-  up[] = Extrude{0, 0, depth}{ Surface{2}; Layers{n_depth}; Recombine; };
+If (!solid)
+  Recombine Surface{1, 2};
+Else
+  low[] = Extrude{0, 0, depth}{ Surface{1}; Layers{n_depth}; };
+  up[] = Extrude{0, 0, depth}{ Surface{2}; Layers{n_depth}; };
   n = #low[] - 1; // the last one is the left side
   Physical Volume("lower") = {low[1]};
   Physical Volume("upper") = {up[1]};
@@ -54,7 +55,8 @@ If (solid)
   Physical Surface("upper_sole") = {up[2]};
   Physical Surface("upper_skin") = {up[2], up[3], up[5]};
   Physical Surface("ends") = {1, 2, low[0], up[0]};
-Else
+EndIf
+If (!solid)
   Physical Surface("lower") = {1};
   Physical Surface("upper") = {2};
   Physical Curve("lower_bottom") = {1};

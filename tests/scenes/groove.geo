@@ -1,7 +1,7 @@
 // A block in a rigid groove with a clearance at either side; plane. The three curves of the groove run in different directions.
 DefineConstant[
   clearance = {0.02, Name "between block and side"}, gap = {0.05, Name "between block and floor"},
-  turned = {0, Name "1: curves that all run the other way, 2: curves that run in different directions"},
+  turned = {0, Name "1: curves that all run the other way, 2: curves that run in different directions, 3: one curve through the block instead"},
   n = {6, Name "elements along the block"}, clockwise = {0, Name "1: the block's outline runs clockwise"}
 ];
 Point(1) = {-1, 0, 0};
@@ -34,13 +34,22 @@ ElseIf (turned == 1)
   Line(11) = {11, 12};
   Line(12) = {12, 13};
   Line(13) = {13, 14};
-Else
+ElseIf (turned == 2)
   Line(11) = {11, 12};
   Line(12) = {13, 12};
   Line(13) = {13, 14};
 EndIf
-Transfinite Curve{11, 12, 13} = 2 * n + 2;
+If (turned == 3)
+  Point(15) = {-w, 0.75, 0};
+  Point(16) = {w, 0.75, 0};
+  Line(11) = {15, 16};
+  groove[] = {11};
+Else
+  groove[] = {11, 12, 13};
+EndIf
+Transfinite Curve{groove[]} = 2 * n + 2;
 Physical Surface("block") = {1};
 Physical Curve("skin") = {1, 2, 4};
 Physical Curve("top") = {3};
-Physical Curve("groove") = {11, 12, 13};
+Physical Curve("sides") = {2, 4};
+Physical Curve("groove") = {groove[]};

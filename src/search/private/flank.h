@@ -4,7 +4,8 @@
    node over the edge keeps the half of its area that lies on the flank.
 
    FlankSort() finds the facets of the flank. FlankShare() finds its ends, and how far the point takes part.
-   FlankNearRidge() says whether the point is near a sharp edge between two facets that both face it. */
+   FlankIsBeside() says whether the point is beside what it does not face, and FlankNearRidge() whether it is near a sharp
+   edge between two facets that both face it. */
 #pragma once
 #include "searchimpl.h"
 
@@ -12,4 +13,5 @@ PetscBool FlankFaces(const Nearest *, const Candidate *);
 PetscBool FlankIsOwn(const Nearest *, const Candidate *);
 int       FlankSort(const Nearest *, int *n, int *found);
 PetscReal FlankShare(const Nearest *, int facing, int n, const int *found, int *ends);
+PetscBool FlankIsBeside(const Nearest *, int facing, int n, const int *found);
 PetscBool FlankNearRidge(const Nearest *, Neighbourhoods, int facing, const int *found);

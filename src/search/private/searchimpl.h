@@ -59,7 +59,7 @@ typedef struct {
      less than tie are equal. */
   PetscReal least, tie;
   Foot      foot;   /* on the best candidate */
-  PetscBool averse; /* a candidate is near that does not face the point */
+  PetscBool averse; /* a candidate within a face of the slave does not face the point */
 } Nearest;
 
 /* Growing lists of all slave points. */
