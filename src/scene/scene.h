@@ -55,7 +55,7 @@ typedef struct {
   Motion             motion;   /* of an analytic master */
   int                smoother; /* index in Smoothers[] */
   ContactFormulation formulation;
-  int                live_offset; /* of surface_to_surface: 1 if the offsets follow the nodes within a solve */
+  int                live_offset;   /* of surface_to_surface: 1 if the offsets follow the nodes within a solve */
   int                find_symmetry; /* 1 if the scene does not name planes of symmetry */
   int                n_symmetry;
   char             **symmetry; /* planar surfaces beyond which the model continues as its mirror image */

@@ -61,8 +61,7 @@ static PetscErrorCode ModelStepLoads(Model model, const PetscReal *u, PetscReal 
   PetscCall(PetscArraycpy(step, u, n));
   PetscCall(LoadsPrescribe(model->problem->loads, model->t, step));
   for (PetscInt i = 0; i < n; i++) step[i] -= u[i];
-  if (holding)
-    PetscCall(ContactHoldActiveSet(model->contact, PETSC_TRUE, touching));
+  if (holding) PetscCall(ContactHoldActiveSet(model->contact, PETSC_TRUE, touching));
   PetscCall(LinearSolverRenew(work->solver));
   PetscCall(LinearSolverSetStart(work->solver, work->accepted_start));
   if (model->contact) PetscCall(ContactMultiplyBegin(model->contact, step, t, model->t));
@@ -153,9 +152,9 @@ static PetscErrorCode ModelPredictFromExtrapolation(Model model, SolveReport *re
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Repeats the first linear step of a run from where it led to, as long as it counted on contact and has met none: closing
-   the gap of a node bends the way, and a body that contact alone holds would be free. The gap that is left is quadratic in
-   the one before. */
+/* Repeats the first linear step of a run from where it led to, as long as it counted on contact and has met none:
+   closing the gap of a node bends the way, and a body that contact alone holds would be free. The gap that is left is
+   quadratic in the one before. */
 static PetscErrorCode ModelStepToTouch(Model model, SolveReport *report)
 {
   const PetscInt n = model->mesh->n_nodes * model->mesh->dim;
