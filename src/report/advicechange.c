@@ -242,12 +242,12 @@ static void WriteFinerMaster(const ChangePlace *at, char *text, size_t size)
 
 static int IsLoose(const ChangePlace *at)
 {
-  return PairScene(at) && !PairScene(at)->stabilise;
+  return PairScene(at) && PairScene(at)->stabilise == STABILISE_FALSE;
 }
 
 static void WriteStabilise(const ChangePlace *at, char *text, size_t size)
 {
-  snprintf(text, size, "-set %s.stabilise=true", PairScene(at)->path);
+  snprintf(text, size, "-set %s.stabilise=auto", PairScene(at)->path);
 }
 
 /* The first load of the scene that is a force, or NULL. */

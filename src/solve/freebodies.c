@@ -685,7 +685,8 @@ static PetscErrorCode FindTied(FreeBodies b, const PetscReal *u, PetscReal t, Pe
   PetscCall(LooseMotions(b, gram, FREE_BODIES_HELD, &loose, free, pivot));
   PetscCall(FindDriven(b, u, t_loads, FREE_BODIES_UNEVEN, loose, free, drives));
   for (int f = 0; f < loose; f++)
-    if (!drives[f] && (InContact(b, b->owner[pivot[f]], gram) || FreeBodiesTurns(b, pivot[f]))) pivot[found++] = pivot[f];
+    if (!drives[f] && (InContact(b, b->owner[pivot[f]], gram) || FreeBodiesTurns(b, pivot[f])))
+      pivot[found++] = pivot[f];
   *m = found;
   PetscCall(PetscFree3(gram, free, drives));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -18,12 +18,13 @@ static const PartsBlock Blocks[] = {
   {"lower", 3, 1, {0, 3}, {-2, -1}} /* only where a test asks for it: another part of the same master */
 };
 
-static const char Text[] = "geometry: plane_strain\nkinematics: finite\nbodies:\n"
-                           "  - {volume: lower, material: {law: svk, E: 1000, nu: 0}}\n"
-                           "  - {volume: upper, material: {law: svk, E: 1000, nu: 0}}\n"
-                           "contact: [{name: joint, slave: upper_bottom, master: lower_top, stabilise: true, smoother: facet, "
-                           "formulation: node_to_surface, "
-                           "penalty: {initial: 1000}}]\n";
+static const char Text[] =
+  "geometry: plane_strain\nkinematics: finite\nbodies:\n"
+  "  - {volume: lower, material: {law: svk, E: 1000, nu: 0}}\n"
+  "  - {volume: upper, material: {law: svk, E: 1000, nu: 0}}\n"
+  "contact: [{name: joint, slave: upper_bottom, master: lower_top, stabilise: true, smoother: facet, "
+  "formulation: node_to_surface, "
+  "penalty: {initial: 1000}}]\n";
 
 static Parts parts;
 
@@ -259,11 +260,11 @@ static void test_cycle(void **state)
   PartsDestroy(&parts);
 }
 
-/* Springs of 2 at each free dof and a tie of stiffness 5 that measures the sum of the dofs of a node: force, energy and tangent of
-   a shift of both bodies; none once they are relaxed, and no force of the tie while it is released. */
+/* Springs of 2 at each free dof and a tie of stiffness 5 that measures the sum of the dofs of a node: force, energy and
+   tangent of a shift of both bodies; none once they are relaxed, and no force of the tie while it is released. */
 static void test_springs(void **state)
 {
-  const double   shift = 0.1;
+  const double   shift   = 0.1;
   ContactSprings springs = NULL;
   SpringTie      tie     = {.motion = 3, .stiffness = 5, .n = 2, .dof = {0, 1}, .value = {1, 1}};
   PetscReal      force, tied, energy, added = 1, *stiffness;

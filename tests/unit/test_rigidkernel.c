@@ -96,8 +96,8 @@ static void test_all_held(void **state)
   assert_int_equal(Free(gram, free), 0);
 }
 
-/* A quarter of a turn about z through (1, 0, 0): the axis stays, the origin goes to (1, -1, 0), and the way is no chord.
-   A translation moves all points alike. */
+/* A quarter of a turn about z through (1, 0, 0): the axis stays, the origin goes to (1, -1, 0), and the way is no
+   chord. A translation moves all points alike. */
 static void test_move(void **state)
 {
   const double turn[N] = {0, 0, M_PI / 2, 0, -M_PI / 2, 0}, push[N] = {0, 0, 0, 1, 2, 3};
@@ -133,8 +133,9 @@ static void test_solve(void **state)
 
 int main(void)
 {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_move), cmocka_unit_test(test_solve), cmocka_unit_test(test_nothing), cmocka_unit_test(test_point),
-                                     cmocka_unit_test(test_line), cmocka_unit_test(test_oblique_plane),
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_move),    cmocka_unit_test(test_solve),
+                                     cmocka_unit_test(test_nothing), cmocka_unit_test(test_point),
+                                     cmocka_unit_test(test_line),    cmocka_unit_test(test_oblique_plane),
                                      cmocka_unit_test(test_all_held)};
 
   return cmocka_run_group_tests(tests, NULL, NULL);
