@@ -15,6 +15,7 @@
 #include "contact/contactstate.h"
 #include "bodies/loads.h"
 #include "mesh/mesh.h"
+#include "search/nodedepth.h"
 #include "contact/touchstep.h"
 
 /* What the slave nodes of a pair on this rank show to probes and output. */
@@ -160,9 +161,12 @@ PetscErrorCode ContactSummarise(Contact, ContactSummary *);
 PetscErrorCode ContactGetNodes(Contact, int pair, const PetscReal *u, ContactNodes *);
 PetscErrorCode ContactMasterForce(Contact, int pair, PetscReal force[3]);
 PetscErrorCode ContactGapAt(Contact, int pair, const PetscReal *u, PetscReal t, PetscInt node_id, PetscReal *gap);
+PetscErrorCode ContactNearestPair(Contact, MPI_Comm, const PetscReal X[3], int *pair);
 PetscReal      ContactNodeGap(Contact, PetscInt node);
 PetscErrorCode ContactTakeOverlap(Contact);
 PetscErrorCode ContactPairFits(Contact, int pair, ContactFits *);
 PetscErrorCode ContactPairGaps(Contact, int pair, ContactGaps *);
 PetscErrorCode ContactPairQuality(Contact, int pair, ContactQuality *);
+PetscErrorCode ContactPairScatter(Contact, int pair, const PetscReal *u, PetscReal *scatter);
+PetscErrorCode ContactPairMasterDepth(Contact, int pair, const PetscReal *u, PetscReal t, NodeDepth *);
 PetscErrorCode ContactPairJoined(Contact, int pair, PetscInt *nodes, ContactPlace *);

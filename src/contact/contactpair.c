@@ -257,6 +257,7 @@ PetscErrorCode ContactPairDestroy(ContactPair *pair)
   PetscCall(NeighbourListsDestroy(&pair->lists));
   PetscCall(NeighbourListsDestroy(&pair->next));
   PetscCall(SearchDestroy(&pair->search));
+  PetscCall(NodeDepthsDestroy(&pair->depths));
   PetscCall(OffsetsDestroy(&pair->slave_offsets));
   PetscCall(OffsetsDestroy(&pair->master_offsets));
   PetscCall(SlavePointsDestroy(&pair->slaves));

@@ -1,6 +1,7 @@
-/* Rules that turn the figures of a run into advice, see advice.h. */
+/* Situations of a run and the changes that help in them, see advice.h. */
 #include "advice.h"
 #include "runlength.h"
+#include <string.h>
 
 /* Estimated error by penetration above which a stiffer penalty is advised, and the error that it is to leave. */
 #define ADVICE_PENALTY        0.01
@@ -26,11 +27,27 @@
 #define ADVICE_SOLVER   0.3
 #define ADVICE_SOLVER_S 10
 
-/* A rule writes into text[ADVICE_TEXT] what to do and returns 1 if it applies, else 0: for the run, and for a pair. */
-typedef int (*RunRuleFn)(const RunFigures *, char *text);
-typedef int (*PairRuleFn)(const RunFigures *, const PairFigures *, char *text);
+/* Part of a face size that a master node may stand in the slave, and by how much that is to exceed the slave's own
+   penetration: less is the shape of the faces. */
+#define ADVICE_STANDS      0.05
+#define ADVICE_STANDS_OVER 2
+/* Scatter of nodal pressures above which their peak is not to be trusted: it is wrong by 1.4 to 2 times as much. */
+#define ADVICE_SCATTER 0.05
+/* Penetration of a slave node (face sizes) at which contact is lost because the penalty is soft, and the one that a
+   stiffer penalty is to leave. */
+#define ADVICE_DEEP        0.5
+#define ADVICE_DEEP_WANTED 0.01
 
-static int PenetrationIsDeep(const RunFigures *figures, const PairFigures *pair, char *text)
+/* A cell squeezed to this part of its length in some direction may be where the law svk loses its stiffness: in
+   uniaxial compression that is at 1/sqrt(3) = 0.577. */
+#define ADVICE_SQUEEZED 0.7
+
+/* A rule writes into text[ADVICE_TEXT] what is wrong and returns a positive number if it applies, else 0: for the run,
+   and for a pair. Where a value is wrong by a known factor, that is the number; else it is 1. */
+typedef double (*RunRuleFn)(const RunFigures *, char *text);
+typedef double (*PairRuleFn)(const RunFigures *, const PairFigures *, char *text);
+
+static double PenetrationIsDeep(const RunFigures *figures, const PairFigures *pair, char *text)
 {
   const SceneContact *scene = pair->scene;
   const PenaltyError *part  = &pair->penalty_error;
@@ -39,146 +56,143 @@ static int PenetrationIsDeep(const RunFigures *figures, const PairFigures *pair,
 
   (void)figures;
   if (scene->adjust || scene->augment || !(error > ADVICE_PENALTY)) return 0;
-  if (!scene->penalty_may_stiffen)
-    snprintf(text, ADVICE_TEXT,
-             "%s: penetration leaves about %.2g %% of error: no penalty keys, so that the run chooses the penalty, or "
-             "%.2g times the penalty",
-             pair->name, (double)(100 * error), (double)(error / ADVICE_PENALTY_WANTED));
-  else
-    snprintf(text, ADVICE_TEXT, "%s: penetration leaves about %.2g %% of error: penalty: {scale: %.2g}", pair->name,
-             (double)(100 * error), scene->penalty_scale * (double)(pair->stiffened * error / ADVICE_PENALTY_WANTED));
+  snprintf(text, ADVICE_TEXT, "%s: penetration leaves about %.2g %% of error", pair->name, (double)(100 * error));
+  return (double)(error / ADVICE_PENALTY_WANTED);
+}
+
+static double MasterStandsIn(const RunFigures *figures, const PairFigures *pair, char *text)
+{
+  const NodeDepth *master = &pair->master;
+
+  (void)figures;
+  if (master->over_h <= ADVICE_STANDS || master->depth <= ADVICE_STANDS_OVER * pair->quality.max_penetration) return 0;
+  snprintf(text, ADVICE_TEXT, "%s: nodes of '%s' stand up to %.2g of a face deep between the slave's", pair->name,
+           pair->scene->master, (double)master->over_h);
   return 1;
 }
 
-static int FacetsAreCoarse(const RunFigures *figures, const PairFigures *pair, char *text)
+static double PressuresScatter(const RunFigures *figures, const PairFigures *pair, char *text)
+{
+  (void)figures;
+  if (!(pair->scatter > ADVICE_SCATTER)) return 0;
+  snprintf(text, ADVICE_TEXT, "%s: nodal pressures scatter by %.0f %% rms from node to node, their peak by more",
+           pair->name, (double)(100 * pair->scatter));
+  return 1;
+}
+
+static double FacetsAreCoarse(const RunFigures *figures, const PairFigures *pair, char *text)
 {
   const PetscReal error = pair->quality.sagitta, small = PetscMax(pair->quality.max_penetration, 0);
 
   (void)figures;
   if (pair->fits.points || !pair->quality.nodes || error <= ADVICE_FACETS * small) return 0;
-  snprintf(text, ADVICE_TEXT,
-           "%s: the facets' own error, about %.2g, is %.2g times the penetration: smoother: diffuse, or a finer master",
-           pair->name, (double)error, (double)(error / small));
+  snprintf(text, ADVICE_TEXT, "%s: the facets' own error, about %.2g, is %.2g times the penetration", pair->name,
+           (double)error, (double)(error / small));
   return 1;
 }
 
-static int FitsFallBack(const RunFigures *figures, const PairFigures *pair, char *text)
+static double FitsFallBack(const RunFigures *figures, const PairFigures *pair, char *text)
 {
   const PetscInt low = pair->fits.degree_2 + pair->fits.linear + pair->fits.facets;
 
   (void)figures;
   if (low <= ADVICE_FALL_BACKS * pair->fits.points) return 0;
-  snprintf(text, ADVICE_TEXT,
-           "%s: %lld of %lld slave points have no fit of their degree: a finer or more even master there, its symmetry "
-           "planes named, or degree: 2",
-           pair->name, (long long)low, (long long)pair->fits.points);
+  snprintf(text, ADVICE_TEXT, "%s: %lld of %lld slave points have no fit of their degree", pair->name, (long long)low,
+           (long long)pair->fits.points);
   return 1;
 }
 
-static int WindowIsMissed(const RunFigures *figures, const PairFigures *pair, char *text)
+static double WindowIsMissed(const RunFigures *figures, const PairFigures *pair, char *text)
 {
   (void)figures;
   if (pair->scene->augment || !pair->window.outside) return 0;
-  snprintf(
-    text, ADVICE_TEXT,
-    "%s: %lld of %lld loaded nodes are outside the window: when: converged, a wider window, or more penalty.range",
-    pair->name, (long long)pair->window.outside, (long long)pair->window.loaded);
+  snprintf(text, ADVICE_TEXT, "%s: %lld of %lld loaded nodes are outside the window", pair->name,
+           (long long)pair->window.outside, (long long)pair->window.loaded);
   return 1;
 }
 
-static int UpdatesAreFew(const RunFigures *figures, const PairFigures *pair, char *text)
+static double UpdatesAreFew(const RunFigures *figures, const PairFigures *pair, char *text)
 {
   if (!pair->window.missed) return 0;
   snprintf(text, ADVICE_TEXT,
            "%s: %lld of %lld steps ended with nodes beyond g_max after max_updates, the last with %lld of %lld nodes "
-           "up to %.3g g_max: a stiffer penalty.scale, "
-           "more max_updates, or a larger g_max",
+           "up to %.3g g_max",
            pair->name, (long long)pair->window.missed, (long long)figures->run->way->steps,
            (long long)pair->window.outside, (long long)pair->window.loaded, (double)pair->window.excess);
   return 1;
 }
 
-static const PairRuleFn pair_rules[] = {PenetrationIsDeep, FacetsAreCoarse, FitsFallBack, WindowIsMissed,
-                                        UpdatesAreFew};
-
-static int StepsFail(const RunFigures *figures, char *text)
+static double StepsFail(const RunFigures *figures, char *text)
 {
   const StepperReport *way = figures->run->way;
 
   if (!way->done || way->steps_failed <= ADVICE_FAILED * PetscMax(way->steps, 1)) return 0;
-  snprintf(text, ADVICE_TEXT,
-           "%lld steps failed on the way to %lld: a smaller stepping.initial or dt_max, or stepping.control: contact",
-           (long long)way->steps_failed, (long long)way->steps);
+  snprintf(text, ADVICE_TEXT, "%lld steps failed on the way to %lld", (long long)way->steps_failed,
+           (long long)way->steps);
   return 1;
 }
 
-static int StepsRepeat(const RunFigures *figures, char *text)
+static double StepsRepeat(const RunFigures *figures, char *text)
 {
   const StepperReport *way = figures->run->way;
 
   if (way->steps_repeated <= ADVICE_REPEATED * PetscMax(way->steps, 1)) return 0;
-  snprintf(
-    text, ADVICE_TEXT,
-    "%lld steps were taken back by the control: stepping.prediction: tangent, or more nodes a step (N_c, N_c_fraction)",
-    (long long)way->steps_repeated);
+  snprintf(text, ADVICE_TEXT, "%lld steps were taken back by the control", (long long)way->steps_repeated);
   return 1;
 }
 
-static int NeighbourListsAreRemade(const RunFigures *figures, char *text)
+static double NeighbourListsAreRemade(const RunFigures *figures, char *text)
 {
   const PetscInt times = figures->run->way->regathered;
 
   if (times <= ADVICE_REGATHERED * PetscMax(figures->run->way->steps, 1)) return 0;
   snprintf(text, ADVICE_TEXT,
-           "contact lists were made anew %lld times within steps: contact slides far in one; smaller steps "
-           "(stepping.dt_max) are cheaper",
+           "contact lists were made anew %lld times within steps, as contact slides far in one; smaller ones are "
+           "cheaper",
            (long long)times);
   return 1;
 }
 
-static int StepsAreLong(const RunFigures *figures, char *text)
+static double StepsAreLong(const RunFigures *figures, char *text)
 {
   const StepperReport *way  = figures->run->way;
   const PetscReal      each = (PetscReal)way->newton_accepted / PetscMax(way->steps, 1);
 
   if (each <= ADVICE_ITERATIONS) return 0;
-  snprintf(text, ADVICE_TEXT, "%.1f iterations a step: smaller steps (stepping.initial, dt_max) may need fewer in all",
-           (double)each);
+  snprintf(text, ADVICE_TEXT, "%.1f iterations a step; smaller ones may need fewer in all", (double)each);
   return 1;
 }
 
-static int LineSearchCuts(const RunFigures *figures, char *text)
+static double LineSearchCuts(const RunFigures *figures, char *text)
 {
   const StepperReport *way = figures->run->way;
 
   if (way->cuts <= ADVICE_CUTS * way->newton_iterations) return 0;
-  snprintf(text, ADVICE_TEXT,
-           "the line search shortened %lld of %lld iterations: smaller steps, or a softer penalty at first (adjust)",
-           (long long)way->cuts, (long long)way->newton_iterations);
+  snprintf(text, ADVICE_TEXT, "the line search shortened %lld of %lld iterations", (long long)way->cuts,
+           (long long)way->newton_iterations);
   return 1;
 }
 
-static int OutputIsSlow(const RunFigures *figures, char *text)
+static double OutputIsSlow(const RunFigures *figures, char *text)
 {
   const PetscReal seconds = figures->usage.seconds[TIMING_OUTPUT];
 
   if (seconds <= ADVICE_OUTPUT_S || seconds <= ADVICE_OUTPUT * figures->usage.wall_s) return 0;
-  snprintf(text, ADVICE_TEXT, "writing took %.0f %% of the time: output.every, or fewer output.fields",
-           (double)(100 * seconds / figures->usage.wall_s));
+  snprintf(text, ADVICE_TEXT, "writing took %.0f %% of the time", (double)(100 * seconds / figures->usage.wall_s));
   return 1;
 }
 
-static int StepsAreMany(const RunFigures *figures, char *text)
+static double StepsAreMany(const RunFigures *figures, char *text)
 {
   return RunStepsAreMany(figures->scene, figures->run->way->steps, figures->run->way->steps_failed, text);
 }
 
-static int ResultsAreLarge(const RunFigures *figures, char *text)
+static double ResultsAreLarge(const RunFigures *figures, char *text)
 {
   return RunResultsAreLarge(figures->scene, figures->results_bytes, 1, text);
 }
 
-static int KernelsAreOld(const RunFigures *figures, char *text)
+static double KernelsAreOld(const RunFigures *figures, char *text)
 {
   const PetscReal seconds = figures->usage.seconds[TIMING_SOLVE];
   const Blas     *blas    = &figures->blas;
@@ -187,17 +201,166 @@ static int KernelsAreOld(const RunFigures *figures, char *text)
       seconds <= ADVICE_SOLVER * figures->usage.wall_s)
     return 0;
   snprintf(text, ADVICE_TEXT,
-           "the direct solver took %.0f %% of the time, with OpenBLAS's kernels for older processors (%s): %s%s",
-           (double)(100 * seconds / figures->usage.wall_s), blas->kernels,
-           blas->can_choose ? "in the environment OPENBLAS_CORETYPE="
-                            : "an OpenBLAS made with DYNAMIC_ARCH=1, or TARGET=",
-           blas->faster_kernels);
+           "the direct solver took %.0f %% of the time, with OpenBLAS's kernels for older processors (%s)",
+           (double)(100 * seconds / figures->usage.wall_s), blas->kernels);
   return 1;
 }
 
-static const RunRuleFn run_rules[] = {StepsFail,     StepsRepeat,    NeighbourListsAreRemade,
-                                      StepsAreLong,  LineSearchCuts, OutputIsSlow,
-                                      KernelsAreOld, StepsAreMany,   ResultsAreLarge};
+/* What is wrong, and the changes that help, the best first */
+typedef struct {
+  PairRuleFn pair;
+  RunRuleFn  run;
+  ChangeKind changes[ADVICE_CHANGES];
+} Situation;
+
+static const Situation situations[] = {
+  {.pair = PenetrationIsDeep, .changes = {CHANGE_FREE_PENALTY, CHANGE_STIFFER}},
+  {.pair = MasterStandsIn, .changes = {CHANGE_FINER_SLAVE, CHANGE_ROLES}},
+  {.pair = PressuresScatter, .changes = {CHANGE_SURFACE, CHANGE_FINER_SLAVE}},
+  {.pair = FacetsAreCoarse, .changes = {CHANGE_DIFFUSE, CHANGE_FINER_MASTER}},
+  {.pair = FitsFallBack, .changes = {CHANGE_FINER_MASTER, CHANGE_SYMMETRY, CHANGE_DEGREE_2}},
+  {.pair = WindowIsMissed, .changes = {CHANGE_WHEN_CONVERGED, CHANGE_WIDER_WINDOW, CHANGE_RANGE}},
+  {.pair = UpdatesAreFew, .changes = {CHANGE_STIFFER, CHANGE_UPDATES, CHANGE_WIDER_WINDOW}},
+  {.run = StepsFail, .changes = {CHANGE_SHORTER}},
+  {.run = StepsRepeat, .changes = {CHANGE_PREDICTION, CHANGE_MORE_NODES}},
+  {.run = NeighbourListsAreRemade, .changes = {CHANGE_SHORTER}},
+  {.run = StepsAreLong, .changes = {CHANGE_SHORTER}},
+  {.run = LineSearchCuts, .changes = {CHANGE_SHORTER}},
+  {.run = OutputIsSlow, .changes = {CHANGE_OUTPUT}},
+  {.run = StepsAreMany, .changes = {CHANGE_LONGER}},
+  {.run = ResultsAreLarge, .changes = {CHANGE_LESS_OUTPUT}},
+  {.run = KernelsAreOld, .changes = {CHANGE_KERNELS}}};
+
+/* What is tried after each kind of failed solve, the most promising first. The last one of each can always be made. */
+static const ChangeKind tries[][ADVICE_CHANGES] = {
+  [SOLVE_CONVERGED]   = {CHANGE_NONE},
+  [SOLVE_ITERATIONS]  = {CHANGE_ITERATIONS, CHANGE_SHORTER_MIN, CHANGE_DIFFUSE, CHANGE_SOFTER, CHANGE_SHORTER,
+                         CHANGE_CHECK},
+  [SOLVE_LINE_SEARCH] = {CHANGE_SHORTER_MIN, CHANGE_DIFFUSE, CHANGE_SOFTER, CHANGE_DISPLACEMENT, CHANGE_SHORTER,
+                         CHANGE_CHECK},
+  [SOLVE_DOMAIN]      = {CHANGE_SHORTER_MIN, CHANGE_LAW, CHANGE_FORMULATION, CHANGE_SHORTER, CHANGE_CHECK},
+  [SOLVE_LINEAR]      = {CHANGE_STABILISE, CHANGE_SUPPORT, CHANGE_DISPLACEMENT, CHANGE_CHECK},
+  [SOLVE_WORKSPACE]   = {CHANGE_WORKSPACE},
+  [SOLVE_LISTS]       = {CHANGE_SHORTER_MIN, CHANGE_SHORTER, CHANGE_FINER_MASTER, CHANGE_CHECK},
+  [SOLVE_CYCLE]       = {CHANGE_SHORTER_MIN, CHANGE_SYMMETRY, CHANGE_LINE_SEARCH},
+  [SOLVE_LOST]        = {CHANGE_FREE_PENALTY, CHANGE_STIFFER, CHANGE_SHORTER_MIN, CHANGE_SHORTER, CHANGE_FINER_MASTER,
+                         CHANGE_CHECK},
+  [SOLVE_ADRIFT]      = {CHANGE_DISPLACEMENT, CHANGE_SUPPORT, CHANGE_CHECK},
+  [SOLVE_WINDOW]      = {CHANGE_RANGE, CHANGE_WIDER_WINDOW, CHANGE_WHEN_STEP, CHANGE_CHECK},
+  [SOLVE_NAN]         = {CHANGE_SHORTER_MIN, CHANGE_SHORTER, CHANGE_CHECK}};
+
+/* Does a line name a change already? */
+static int Names(const AdviceLine *line, ChangeKind change)
+{
+  for (int k = 0; k < line->n; k++)
+    if (line->changes[k] == change) return 1;
+  return 0;
+}
+
+/* Does a change oppose one of the lines so far? */
+static int Opposes(const Advice *advice, ChangeKind change, const PairFigures *pair)
+{
+  for (int i = 0; i < advice->n; i++)
+    for (int k = 0; k < advice->lines[i].n; k++)
+      if (AdviceChangesOppose(advice->lines[i].changes[k], advice->lines[i].at.pair, change, pair)) return 1;
+  return 0;
+}
+
+/* Adds a line, with those of its changes that can be made and that no earlier line opposes. A line without any is left
+   out. */
+static void AddLine(Advice *advice, const char *text, const ChangePlace *at, const ChangeKind *changes)
+{
+  AdviceLine *line = &advice->lines[advice->n];
+
+  if (advice->n == ADVICE_LINES) return;
+  *line = (AdviceLine){.at = *at};
+  snprintf(line->text, ADVICE_TEXT, "%s", text);
+  for (int k = 0; changes[k] != CHANGE_NONE && line->n < ADVICE_CHANGES; k++)
+    if (AdviceChangePossible(changes[k], at) && !Names(line, changes[k]) && !Opposes(advice, changes[k], at->pair))
+      line->changes[line->n++] = changes[k];
+  advice->n += line->n > 0;
+}
+
+/* The pair of a failure: the one that its message names where the failure is that of a pair, or else that of the node
+   with the largest residual. */
+static const PairFigures *FailedPair(const RunFigures *figures)
+{
+  const SolveReport *solve = &figures->run->way->failed.solve;
+  const int          pair  = solve->failure.n ? solve->failure.node[0].pair : -1;
+  const int named = solve->result == SOLVE_LOST || solve->result == SOLVE_WINDOW || solve->result == SOLVE_CYCLE;
+
+  for (int p = 0; p < figures->n_pairs && named; p++) {
+    char quoted[ADVICE_TEXT];
+
+    snprintf(quoted, sizeof(quoted), "'%s'", figures->pairs[p].name);
+    if (strstr(solve->detail, quoted)) return &figures->pairs[p];
+  }
+  return pair >= 0 && pair < figures->n_pairs ? &figures->pairs[pair] : NULL;
+}
+
+/* Adds what to try after a failed solve. */
+static void AddTries(const RunFigures *figures, Advice *advice)
+{
+  const SolveReport *solve    = &figures->run->way->failed.solve;
+  const Failure     *failure  = &solve->failure;
+  ChangePlace        at       = {.figures = figures, .pair = FailedPair(figures), .body = -1, .factor = 1};
+  const int          squeezed = failure->squeeze > 0 && failure->squeeze < ADVICE_SQUEEZED;
+  ChangeKind         changes[ADVICE_CHANGES + 1] = {CHANGE_LAW}, *first = squeezed ? changes : changes + 1;
+
+  memcpy(changes + 1, tries[solve->result], sizeof(tries[0]));
+  if (failure->n) at.body = failure->node[0].body;
+  if (squeezed)
+    at.body = failure->squeezed_body;
+  else if (solve->result == SOLVE_DOMAIN && failure->inverted_body >= 0)
+    at.body = failure->inverted_body;
+  if (solve->result == SOLVE_LOST) { /* a node that was not deep was lost by a long step */
+    const PetscReal deep = at.pair ? at.pair->quality.max_penetration_over_h : 0;
+
+    first     = changes + (deep > ADVICE_DEEP ? 1 : 3); /* without what makes the penalty stiffer */
+    at.factor = (double)(deep / ADVICE_DEEP_WANTED);
+  }
+  AddLine(advice, "", &at, first);
+  advice->tries = advice->n > 0;
+  if (advice->n && advice->lines[0].n > 1 && advice->lines[0].changes[advice->lines[0].n - 1] == CHANGE_CHECK)
+    advice->lines[0].n--; /* there is something better */
+}
+
+/*@
+  AdviceCollect - collects what to try after a failure and what to change, in lines that do not contradict each other.
+
+  Not collective
+
+  Input Parameter:
+. figures - of the run
+
+  Output Parameter:
+. advice - its lines; after a failure the first one is what to try
+
+  Note:
+  Every change can be made in the scene at hand. Where two lines would pull a key in opposite directions, the later one
+  is without that change.
+@*/
+void AdviceCollect(const RunFigures *figures, Advice *advice)
+{
+  char text[ADVICE_TEXT];
+
+  advice->n = advice->tries = 0;
+  if (figures->run->way->failed.attempts) AddTries(figures, advice);
+  for (int p = 0; p < figures->n_pairs && figures->last; p++) {
+    for (size_t s = 0; s < sizeof(situations) / sizeof(situations[0]); s++) {
+      const PairFigures *pair   = &figures->pairs[p];
+      const double       factor = situations[s].pair ? situations[s].pair(figures, pair, text) : 0;
+      const ChangePlace  at     = {.figures = figures, .pair = pair, .body = -1, .factor = factor};
+
+      if (factor > 0) AddLine(advice, text, &at, situations[s].changes);
+    }
+  }
+  for (size_t s = 0; s < sizeof(situations) / sizeof(situations[0]); s++) {
+    const ChangePlace at = {.figures = figures, .body = -1, .factor = 1};
+
+    if (situations[s].run && situations[s].run(figures, text) > 0) AddLine(advice, text, &at, situations[s].changes);
+  }
+}
 
 /*@
   AdviceGive - passes on one line for each figure of a run that is bad and can be improved.
@@ -211,46 +374,45 @@ static const RunRuleFn run_rules[] = {StepsFail,     StepsRepeat,    NeighbourLi
 @*/
 void AdviceGive(const RunFigures *figures, AdvicePrintFn print, void *context)
 {
-  char text[ADVICE_TEXT];
+  Advice advice;
 
-  for (int p = 0; p < figures->n_pairs && figures->last; p++)
-    for (size_t r = 0; r < sizeof(pair_rules) / sizeof(pair_rules[0]); r++)
-      if (pair_rules[r](figures, &figures->pairs[p], text)) print(text, context);
-  for (size_t r = 0; r < sizeof(run_rules) / sizeof(run_rules[0]); r++)
-    if (run_rules[r](figures, text)) print(text, context);
+  AdviceCollect(figures, &advice);
+  for (int i = advice.tries; i < advice.n; i++) {
+    const AdviceLine *line = &advice.lines[i];
+    char              text[2 * ADVICE_TEXT];
+    size_t            used;
+
+    snprintf(text, sizeof(text), "%s", line->text);
+    for (int k = 0; k < line->n; k++) {
+      char change[ADVICE_TEXT];
+
+      AdviceChangeWrite(line->changes[k], &line->at, change, sizeof(change));
+      if (!change[0]) continue; /* the line has told it */
+      used = strlen(text);
+      snprintf(text + used, sizeof(text) - used, "%s%s", k ? ", or " : ": ", change);
+    }
+    print(text, context);
+  }
 }
 
 /*@
-  AdviceForFailure - returns what helps most often after each kind of failed solve.
+  AdviceTry - passes on the changes to try after a failed run, the most promising first.
 
   Not collective
 
-  Input Parameter:
-. result - how the solve ended
-
-  Note:
-  The text is empty where there is nothing to try.
+  Input Parameters:
++ figures - of the run
+. print   - called for each change
+- context - passed on to print
 @*/
-const char *AdviceForFailure(SolveResult result)
+void AdviceTry(const RunFigures *figures, AdvicePrintFn print, void *context)
 {
-  static const char *const tries[] = {
-    [SOLVE_CONVERGED]   = "",
-    [SOLVE_ITERATIONS]  = "a smaller stepping.initial and dt_min, more solver.max_iterations, a smaller penalty.scale",
-    [SOLVE_LINE_SEARCH] = "a smaller stepping.dt_min, a smaller penalty.scale; a load beyond what the structure "
-                          "carries has no equilibrium: displacements instead",
-    [SOLVE_DOMAIN]    = "smaller steps (stepping.initial, dt_min), a finer mesh around the element, law: neo_hookean, "
-                        "which resists being crushed",
-    [SOLVE_LINEAR]    = "supports for what -check says that contact only or nothing holds, or an imposed displacement "
-                        "instead of a force until contact is made",
-    [SOLVE_WORKSPACE] = "-mat_mumps_icntl_14 200, or more ranks",
-    [SOLVE_LISTS]     = "a smaller stepping.dt_min and dt_max, a finer or smoother master where the node is",
-    [SOLVE_CYCLE] = "PETSc's default line search (bt) if another one was chosen, smaller steps, `symmetry` in the pair "
-                    "where it ends at such a plane",
-    [SOLVE_LOST] =
-      "smaller steps (stepping.initial, dt_max), a stiffer penalty (penalty.scale), a finer master where the node is",
-    [SOLVE_ADRIFT] = "an imposed displacement instead of a force until contact is made, or a smaller gap at the start",
-    [SOLVE_WINDOW] = "a wider window (penalty.g_min, g_max), more penalty.range, or when: step",
-    [SOLVE_NAN]    = "-check for cells of low quality, smaller steps; if it stays, a report to the authors"};
+  Advice advice;
+  char   text[ADVICE_TEXT];
 
-  return tries[result];
+  AdviceCollect(figures, &advice);
+  for (int k = 0; k < advice.lines[0].n && advice.tries; k++) {
+    AdviceChangeWrite(advice.lines[0].changes[k], &advice.lines[0].at, text, sizeof(text));
+    print(text, context);
+  }
 }

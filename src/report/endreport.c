@@ -3,6 +3,10 @@
 #include "advice.h"
 #include <math.h>
 
+/* The sides count as equal where the master's is less than this many times the slave's: where faces of both sides are
+   in contact, they differ by curvature and round-off. */
+#define END_SIDES 1.01
+
 /* Names of the purposes that time is spent on */
 static const char *const purposes[TIMING_KINDS] = {[TIMING_SETUP]            = "set-up",
                                                    [TIMING_SEARCH]           = "search",
@@ -46,6 +50,26 @@ static void PrintPair(const PairFigures *pair, FILE *stream)
   else if (quality->sagitta > 0)
     fprintf(stream, "; facet error about %.2g", (double)quality->sagitta);
   fprintf(stream, "\n");
+}
+
+/* Prints from which side the surfaces stand deeper in each other. Nothing is enforced at the master's nodes. */
+static void PrintSides(const PairFigures *pair, FILE *stream)
+{
+  const NodeDepth *master = &pair->master;
+  const double     slave  = (double)PetscMax(pair->quality.max_penetration, 0);
+
+  if (!pair->scene->master || (!pair->quality.nodes && !master->nodes)) return;
+  if ((double)master->depth <= END_SIDES * slave)
+    fprintf(stream,
+            "sides    %s: the slave's penetration is the larger; the master's nodes stand up to %.3g in the "
+            "slave\n",
+            pair->name, (double)master->depth);
+  else
+    fprintf(stream,
+            "sides    %s: the master's side is the larger: its node %lld (%.5g, %.5g, %.5g) stands %.3g (%.2g of a "
+            "face) deep in the slave\n",
+            pair->name, (long long)master->tag, (double)master->X[0], (double)master->X[1], (double)master->X[2],
+            (double)master->depth, (double)master->over_h);
 }
 
 /* Prints what penetration leaves of error, as estimated at the end of the load. */
@@ -94,21 +118,38 @@ static void PrintGuards(const RunFigures *figures, FILE *stream)
   fprintf(stream, n ? "\n" : "guards   none acted\n");
 }
 
+/* The stream, and how many changes to try have been printed */
+typedef struct {
+  FILE *stream;
+  int   n;
+} Tries;
+
+static void PrintTry(const char *change, void *context)
+{
+  Tries *tries = context;
+
+  fprintf(tries->stream, "%s %s\n", tries->n++ ? "or      " : "try     ", change);
+}
+
 static void PrintFailure(const RunFigures *figures, FILE *stream)
 {
+  Tries                tries   = {.stream = stream};
   const StepperReport *way     = figures->run->way;
   const Failure       *failure = &way->failed.solve.failure;
 
   fprintf(stream, "failed   on the way from t = %.6g to %.6g: %s\n", (double)way->t, (double)way->failed.t,
           SolveResults[way->failed.solve.result]);
   if (failure->inverted >= 0)
-    fprintf(stream, "where    element %lld was turned inside out\n", (long long)failure->inverted);
+    fprintf(stream, "where    element %lld of '%s' was turned inside out\n", (long long)failure->inverted,
+            failure->inverted_body >= 0 ? figures->scene->bodies[failure->inverted_body].name : "");
   for (int i = 0; i < failure->n; i++) {
     const FailureNode *node = &failure->node[i];
 
     fprintf(stream, "where    node %lld (%.6g, %.6g, %.6g): residual %.3g", (long long)node->place.tag,
             (double)node->place.X[0], (double)node->place.X[1], (double)node->place.X[2], (double)node->residual);
     if (isfinite((double)node->gap)) fprintf(stream, ", gap %.3g", (double)node->gap);
+    if (node->body >= 0) fprintf(stream, "; body '%s'", figures->scene->bodies[node->body].name);
+    if (node->pair >= 0) fprintf(stream, ", pair '%s'", figures->pairs[node->pair].name);
     fprintf(stream, "\n");
   }
   if (way->failed.solve.result == SOLVE_WINDOW) fprintf(stream, "where    %s\n", way->failed.solve.detail);
@@ -117,7 +158,7 @@ static void PrintFailure(const RunFigures *figures, FILE *stream)
           "of %.2g\n",
           (long long)way->failed.attempts, (double)way->failed.first, (double)way->failed.last,
           figures->scene->stepping.dt_min, (long long)way->failed.solve.newton, (double)way->failed.solve.residual);
-  fprintf(stream, "try      %s\n", AdviceForFailure(way->failed.solve.result));
+  AdviceTry(figures, PrintTry, &tries);
 }
 
 static void PrintAdvice(const char *line, void *stream)
@@ -150,6 +191,7 @@ void EndReportPrint(const RunFigures *figures, FILE *stream)
   for (int p = 0; p < figures->n_pairs && figures->last; p++) {
     PrintPair(&figures->pairs[p], stream);
     PrintPenaltyError(&figures->pairs[p], stream);
+    PrintSides(&figures->pairs[p], stream);
   }
   PrintGuards(figures, stream);
   if (way->failed.attempts) PrintFailure(figures, stream);

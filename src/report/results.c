@@ -23,6 +23,8 @@ struct _n_Results {
   PetscBool  *met;    /* per contact pair: some slave node has met its master */
   StepRecord  last;
   PetscReal   deepest;          /* largest penetration so far, in face sizes */
+  PetscReal  *standing;         /* per contact pair: largest depth of master nodes in written states (length) */
+  PetscReal   standing_over_h;  /* the largest of all pairs, in face sizes */
   PetscBool   stepped, written; /* there is an accepted step; results.h5 holds it */
   double      started;          /* MPI_Wtime() of ResultsStart() */
   RunUsage    before;           /* of the parts of the run before this one */
@@ -58,7 +60,8 @@ PetscErrorCode ResultsCreate(Model model, Probes probes, Scene scene, const char
   results->scene  = scene;
   PetscCall(PetscStrncpy(results->directory, directory, sizeof(results->directory)));
   PetscCallMPI(MPI_Comm_rank(model->mesh->comm, &results->rank));
-  PetscCall(PetscCalloc2(scene->n_probes, &results->values, scene->n_contacts, &results->met));
+  PetscCall(PetscCalloc3(scene->n_probes, &results->values, scene->n_contacts, &results->met, scene->n_contacts,
+                         &results->standing));
   PetscCall(StepsCsvCreate(scene, directory, &results->csv));
   PetscCall(FieldsCreate(model, scene, directory, &results->fields));
   PetscCall(OptionRecordCreate(&results->options));
@@ -83,7 +86,7 @@ PetscErrorCode ResultsDestroy(Results *results)
   PetscCall(FieldsDestroy(&(*results)->fields));
   PetscCall(OptionRecordDestroy(&(*results)->options));
   PetscCall(TerminalDestroy(&(*results)->terminal));
-  PetscCall(PetscFree2((*results)->values, (*results)->met));
+  PetscCall(PetscFree3((*results)->values, (*results)->met, (*results)->standing));
   PetscCall(PetscFree(*results));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -153,11 +156,28 @@ PetscErrorCode ResultsStart(Results results)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Measures how deep the master's nodes stand in the slave. */
+static PetscErrorCode ResultsWatchMasters(Results results)
+{
+  Model model = results->model;
+
+  PetscFunctionBeginUser;
+  for (int p = 0; p < results->scene->n_contacts; p++) {
+    NodeDepth depth;
+
+    PetscCall(ContactPairMasterDepth(model->contact, p, model->u, model->t, &depth));
+    results->standing[p]     = PetscMax(results->standing[p], depth.depth);
+    results->standing_over_h = PetscMax(results->standing_over_h, depth.over_h);
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Writes the state of the last accepted step into results.h5. */
 static PetscErrorCode ResultsWriteFields(Results results)
 {
   PetscFunctionBeginUser;
   PetscCall(FieldsWrite(results->fields, results->last.step, results->last.t));
+  PetscCall(ResultsWatchMasters(results));
   results->written = PETSC_TRUE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -239,6 +259,7 @@ static PetscErrorCode ResultsArchiveStep(Results results, Archive archive)
                                &last->residual,
                                &last->beta,
                                &results->deepest,
+                               &results->standing_over_h,
                                &contact->max_penetration,
                                &contact->min_penetration,
                                &contact->max_penetration_over_h,
@@ -292,6 +313,7 @@ PetscErrorCode ResultsArchive(Results results, Archive archive)
   PetscFunctionBeginUser;
   PetscCall(ResultsArchiveStep(results, archive));
   PetscCall(OptionRecordArchive(&results->options, results->last.step, archive));
+  PetscCall(ArchiveReals(archive, "results/standing", results->scene->n_contacts, results->standing));
   PetscCall(ArchiveReals(archive, "results/probes", results->scene->n_probes, results->values));
   for (int p = 0; p < results->scene->n_contacts; p++) {
     char name[ARCHIVE_NAME_SIZE];
@@ -338,6 +360,9 @@ PetscErrorCode ResultsFinish(Results results, const RunRecord *run)
                               results->stepped ? &results->last : NULL, &figures));
   figures.options_changed = results->options.changes;
   figures.results_bytes   = RunResultsBytes(results->directory);
+  for (int p = 0; p < figures.n_pairs; p++)
+    figures.pairs[p].master_deepest = PetscMax(figures.pairs[p].master.depth, results->standing[p]);
+  last.standing = results->standing_over_h;
   if (!results->rank) PetscCall(SummaryWrite(results->model->mesh, &figures, results->directory, results->values));
   PetscCall(TerminalEnd(results->terminal, &last));
   PetscCall(RunFiguresDestroy(&figures));

@@ -43,6 +43,9 @@ static PetscErrorCode CollectPair(Model model, int p, PairFigures *pair)
   PetscCall(ContactPairPenalty(contact, p, &pair->penalty_min, &pair->penalty_max));
   PetscCall(ContactPairStiffened(contact, p, &pair->stiffened));
   PetscCall(ContactPairWindow(contact, p, &pair->window));
+  PetscCall(ContactPairScatter(contact, p, model->u, &pair->scatter));
+  PetscCall(ContactPairMasterDepth(contact, p, model->u, model->t, &pair->master));
+  pair->master_deepest = pair->master.depth;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -48,9 +48,7 @@ int RunStepsAreMany(Scene scene, PetscInt steps, PetscInt failed, char *text)
   n = snprintf(text, RUN_LENGTH_TEXT, "%lld steps: ", (long long)steps);
   if (failed > RUN_FAILED * steps)
     snprintf(text + n, RUN_LENGTH_TEXT - n,
-             "%lld attempts failed and cut dt; a finer mesh of the slave where contact changes, or a softer "
-             "contact.N.penalty.scale",
-             (long long)failed);
+             "%lld attempts failed and cut dt; a finer mesh of the slave where contact changes", (long long)failed);
   else if (scene->stepping.control == STEP_FIXED)
     snprintf(text + n, RUN_LENGTH_TEXT - n,
              "stepping.control: fixed takes stepping.initial = %g; a larger one, or control: iterations",

@@ -170,6 +170,19 @@ static void AddPartition(cJSON *json, const Mesh mesh)
   AddReal(map, "imbalance_contact", mesh->partition.imbalance_contact);
 }
 
+/* Adds how deep the master's nodes stand in the slave; null where the master is analytic. */
+static void AddMasterDepth(cJSON *pair, const PairFigures *figure)
+{
+  const NodeDepth *master = &figure->master;
+  const PetscBool  meshed = figure->scene->master ? PETSC_TRUE : PETSC_FALSE;
+
+  AddReal(pair, "master_depth", meshed ? master->depth : NAN);
+  AddReal(pair, "master_depth_over_h", meshed ? master->over_h : NAN);
+  AddReal(pair, "master_depth_largest", meshed ? figure->master_deepest : NAN);
+  AddReal(pair, "master_depth_node", meshed && master->tag >= 0 ? (PetscReal)master->tag : NAN);
+  cJSON_AddNumberToObject(pair, "master_depth_nodes", (double)master->nodes);
+}
+
 static void AddContact(cJSON *json, const RunFigures *figures)
 {
   cJSON *list = cJSON_AddArrayToObject(json, "contact");
@@ -184,6 +197,8 @@ static void AddContact(cJSON *json, const RunFigures *figures)
     cJSON_AddNumberToObject(pair, "nodes", (double)figure->quality.nodes);
     AddReal(pair, "max_penetration", figure->quality.max_penetration);
     AddReal(pair, "max_penetration_over_h", figure->quality.max_penetration_over_h);
+    AddMasterDepth(pair, figure);
+    AddReal(pair, "pressure_scatter", figure->scatter);
     AddReal(pair, "facet_error", figure->fits.points ? figure->fits.facet_error : figure->quality.sagitta);
     AddReal(pair, "smoothing_error", figure->fits.points ? figure->fits.smoothing_error : NAN);
     cJSON_AddNumberToObject(pair, "fall_backs", (double)(figure->fits.points - figure->fits.plain));

@@ -391,13 +391,18 @@ static void WarnUnmet(Scene scene, const PetscBool *met)
 }
 
 /* Warns of penetrations of more than a face size, whose results are those of no contact. */
-static void WarnDeep(PetscReal deepest)
+static void WarnDeep(PetscReal deepest, PetscReal standing)
 {
   if (deepest > 1)
     fprintf(stderr,
             "burnish: warning: a slave node was up to %.3g face sizes behind its master: the penalty is too soft for "
             "what presses\n",
             (double)deepest);
+  if (standing > PetscMax(1, deepest))
+    fprintf(stderr,
+            "burnish: warning: a master node stood up to %.3g face sizes deep in its slave: contact is enforced at the "
+            "slave's points alone, which are too far apart there\n",
+            (double)standing);
 }
 
 /* Warns of linear solves that did not become as accurate as they should be. */
@@ -459,7 +464,7 @@ PetscErrorCode TerminalEnd(Terminal terminal, const TerminalLast *last)
   if (terminal->rank) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(WarnUnused());
   if (figures->last) WarnUnmet(terminal->scene, last->met);
-  WarnDeep(last->deepest);
+  WarnDeep(last->deepest, last->standing);
   if (terminal->talks && counts->refined)
     printf("linear solves: %lld of %lld refined, in %lld steps\n", (long long)counts->refined,
            (long long)counts->solves, (long long)counts->steps);

@@ -56,6 +56,37 @@ void CandidatePlace(int dim, const PetscReal *x, PetscReal size, Candidate *c)
 }
 
 /*@
+  CandidatesTree - builds the tree over the boxes of candidates.
+
+  Not collective
+
+  Input Parameters:
++ dim        - dimension
+. n          - number of candidates
+- candidates - after CandidatePlace()
+
+  Output Parameter:
+. tree - free it with BoxTreeDestroy()
+@*/
+PetscErrorCode CandidatesTree(int dim, PetscInt n, const Candidate *candidates, BoxTree *tree)
+{
+  double *lower, *upper;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc2(n * dim, &lower, n * dim, &upper));
+  for (PetscInt i = 0; i < n; i++) {
+    for (int d = 0; d < dim; d++) {
+      lower[i * dim + d] = candidates[i].lower[d];
+      upper[i * dim + d] = candidates[i].upper[d];
+    }
+  }
+  PetscCheck(!BoxTreeBuild(dim, (int)n, lower, upper, tree), PETSC_COMM_SELF, PETSC_ERR_MEM,
+             "no memory for the search tree");
+  PetscCall(PetscFree2(lower, upper));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
   ListBufferAddPoint - adds a point to the list of the present slave point, unless the list already holds it.
 
   Not collective

@@ -1,6 +1,5 @@
 /* Search for contact partners: candidates around the slave points, the nearest facet of each, and the lists. */
 #include "searchimpl.h"
-#include "base/boxtree.h"
 
 /* Reach of the search beyond the requested motion, in face sizes. The nearest facet of a slave point is listed if it
    is not farther away than this. */
@@ -328,25 +327,6 @@ static int KeepFacing(const Nearest *look, int n, int *found)
   return kept;
 }
 
-/* Builds the tree over the boxes of the candidates. */
-static PetscErrorCode BuildTree(int dim, PetscInt n, const Candidate *candidates, BoxTree *tree)
-{
-  double *lower, *upper;
-
-  PetscFunctionBeginUser;
-  PetscCall(PetscMalloc2(n * dim, &lower, n * dim, &upper));
-  for (PetscInt i = 0; i < n; i++) {
-    for (int d = 0; d < dim; d++) {
-      lower[i * dim + d] = candidates[i].lower[d];
-      upper[i * dim + d] = candidates[i].upper[d];
-    }
-  }
-  PetscCheck(!BoxTreeBuild(dim, (int)n, lower, upper, tree), PETSC_COMM_SELF, PETSC_ERR_MEM,
-             "no memory for the search tree");
-  PetscCall(PetscFree2(lower, upper));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* Finds the nearest facet of one slave point, lists it with all facets within margin and motion of it, and fits the
    surface there. look gives the slave point and the distance within which it is searched. found has room for all
    candidates. */
@@ -386,7 +366,7 @@ static PetscErrorCode NeighbourListsFill(ContactSearch s, NeighbourLists lists, 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc2(field->n_candidates, &found, lists->n_points, &buffer.position));
   for (PetscInt p = 0; p < lists->n_points; p++) buffer.position[p] = -1;
-  PetscCall(BuildTree(dim, field->n_candidates, field->candidates, &tree));
+  PetscCall(CandidatesTree(dim, field->n_candidates, field->candidates, &tree));
   for (PetscInt q = 0; q < lists->n_slaves; q++) {
     Nearest look = {.lists      = lists,
                     .candidates = field->candidates,

@@ -62,7 +62,7 @@ static PetscErrorCode ModelExplainFailure(Model model, SolveReport *report)
   PetscBool       edge = PETSC_FALSE;
 
   PetscFunctionBeginUser;
-  PetscCall(FailureLocate(model->mesh, model->problem->loads, model->contact, model->problem->f,
+  PetscCall(FailureLocate(model->mesh, model->problem->loads, model->contact, model->u, model->problem->f,
                           model->problem->inverted, &report->failure));
   report->failure.enhanced = ProblemHasFormulation(model->problem, FORMULATION_ENHANCED);
   if (report->result == SOLVE_WINDOW || report->result == SOLVE_LOST)
@@ -78,7 +78,7 @@ static PetscErrorCode ModelExplainFailure(Model model, SolveReport *report)
       !model->contact || report->result == SOLVE_ADRIFT ? ""
                                                         : " (contact may, from the start or with stabilise: true)"));
   else {
-    FailureText(&report->failure, report->detail, sizeof(report->detail));
+    FailureText(model->scene, &report->failure, report->detail, sizeof(report->detail));
     if (report->result == SOLVE_LINE_SEARCH || report->result == SOLVE_ITERATIONS)
       PetscCall(ModelBlameFacets(model, report->detail, sizeof(report->detail), &edge));
     if (!edge) PetscCall(ModelBlamePenalty(model, report->detail, sizeof(report->detail)));

@@ -23,10 +23,19 @@ static PetscErrorCode NodeSquares(Mesh mesh, Loads loads, const PetscReal *f, Pe
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Body of a local node: that of the first cell of this rank that has it, -1 where there is none. */
+static int NodeBody(Mesh mesh, PetscInt node)
+{
+  for (PetscInt c = 0; c < mesh->n_cells; c++)
+    for (PetscInt k = mesh->cell_ptr[c]; k < mesh->cell_ptr[c + 1]; k++)
+      if (mesh->cell_nodes[k] == node) return mesh->cell_body[c];
+  return -1;
+}
+
 /* Finds the node with the largest square of all ranks and sets its square to 0. *found: there was one. */
 static PetscErrorCode TakeLargest(Mesh mesh, Contact contact, PetscReal *square, FailureNode *node, PetscBool *found)
 {
-  PetscReal values[6] = {0, 0, 0, 0, 0, NAN}; /* tag, X, residual, gap */
+  PetscReal values[7] = {0, 0, 0, 0, 0, NAN, -1}; /* tag, X, residual, gap, body */
   PetscInt  at        = -1;
   struct {
     double value;
@@ -47,12 +56,60 @@ static PetscErrorCode TakeLargest(Mesh mesh, Contact contact, PetscReal *square,
     MeshNodePlace(mesh, at, &values[1]);
     values[4]  = PetscSqrtReal(square[at]);
     values[5]  = contact ? ContactNodeGap(contact, at) : NAN;
+    values[6]  = NodeBody(mesh, at);
     square[at] = 0;
   }
-  PetscCallMPI(MPI_Bcast(values, 6, MPIU_REAL, most.rank, mesh->comm));
+  PetscCallMPI(MPI_Bcast(values, 7, MPIU_REAL, most.rank, mesh->comm));
   *node = (FailureNode){.place    = {.tag = (PetscInt)values[0], .X = {values[1], values[2], values[3]}},
                         .residual = values[4],
-                        .gap      = values[5]};
+                        .gap      = values[5],
+                        .body     = (int)values[6]};
+  PetscCall(ContactNearestPair(contact, mesh->comm, node->place.X, &node->pair));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Smallest ratio of the distance of two corners of a cell to that before any load. */
+static PetscReal CellSqueeze(Mesh mesh, PetscInt c, const PetscReal *u)
+{
+  const PetscInt *nodes   = &mesh->cell_nodes[mesh->cell_ptr[c]];
+  const int       corners = ElementGet(mesh->cell_type[c])->corners, dim = mesh->dim;
+  PetscReal       least = PETSC_MAX_REAL;
+
+  for (int a = 0; a < corners; a++) {
+    for (int b = 0; b < a; b++) {
+      PetscReal before = 0, now = 0;
+
+      for (int d = 0; d < dim; d++) {
+        const PetscReal X = mesh->coords[nodes[a] * dim + d] - mesh->coords[nodes[b] * dim + d];
+
+        before += PetscSqr(X);
+        now += PetscSqr(X + u[nodes[a] * dim + d] - u[nodes[b] * dim + d]);
+      }
+      least = PetscMin(least, now / before);
+    }
+  }
+  return PetscSqrtReal(least);
+}
+
+/* Finds the body with the cell that is squeezed most. */
+static PetscErrorCode LocateSqueeze(Mesh mesh, const PetscReal *u, Failure *failure)
+{
+  struct {
+    double ratio;
+    int    body;
+  } mine = {PETSC_MAX_REAL, 0}, least;
+
+  PetscFunctionBeginUser;
+  for (PetscInt c = 0; c < mesh->n_cells; c++) {
+    const PetscReal ratio = CellSqueeze(mesh, c, u);
+
+    if (ratio >= mine.ratio) continue;
+    mine.ratio = ratio;
+    mine.body  = mesh->cell_body[c];
+  }
+  PetscCallMPI(MPI_Allreduce(&mine, &least, 1, MPI_DOUBLE_INT, MPI_MINLOC, mesh->comm));
+  failure->squeeze       = least.ratio;
+  failure->squeezed_body = least.body;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -65,21 +122,27 @@ static PetscErrorCode TakeLargest(Mesh mesh, Contact contact, PetscReal *square,
 + mesh     - the mesh
 . loads    - prescribed dofs have no residual
 . contact  - for the gaps of these nodes; may be NULL
+. u        - local displacements of the last accepted state, u[n_nodes*dim] (length)
 . f        - contributions of this rank to the residual (force) of the failed iterate, f[n_nodes*dim]
 - inverted - gmsh's tag of an element of this rank that was turned inside out, or -1
 
   Output Parameter:
 . failure - the same on all ranks
 @*/
-PetscErrorCode FailureLocate(Mesh mesh, Loads loads, Contact contact, const PetscReal *f, PetscInt inverted,
-                             Failure *failure)
+PetscErrorCode FailureLocate(Mesh mesh, Loads loads, Contact contact, const PetscReal *u, const PetscReal *f,
+                             PetscInt inverted, Failure *failure)
 {
   PetscReal *square;
   PetscBool  found = PETSC_TRUE;
+  int        body  = -1;
 
   PetscFunctionBeginUser;
   *failure = (Failure){.n = 0};
   PetscCallMPI(MPI_Allreduce(&inverted, &failure->inverted, 1, MPIU_INT, MPI_MAX, mesh->comm));
+  for (PetscInt c = 0; c < mesh->n_cells && failure->inverted >= 0; c++)
+    if (mesh->cell_tag[c] == failure->inverted) body = mesh->cell_body[c];
+  PetscCallMPI(MPI_Allreduce(&body, &failure->inverted_body, 1, MPI_INT, MPI_MAX, mesh->comm));
+  PetscCall(LocateSqueeze(mesh, u, failure));
   PetscCall(PetscMalloc1(mesh->n_nodes, &square));
   PetscCall(NodeSquares(mesh, loads, f, square));
   while (found && failure->n < FAILURE_NODES) {
@@ -96,23 +159,28 @@ PetscErrorCode FailureLocate(Mesh mesh, Loads loads, Contact contact, const Pets
   Not collective
 
   Input Parameters:
-+ failure - from FailureLocate()
++ scene   - names bodies and pairs
+. failure - from FailureLocate()
 - size    - of the text
 
   Output Parameter:
-. text - for example "largest residual at node 17 (1, 2, 3)"
+. text - for example "largest residual at node 17 (1, 2, 3) of 'plate', pair 'crown'"
 @*/
-void FailureText(const Failure *failure, char *text, size_t size)
+void FailureText(Scene scene, const Failure *failure, char *text, size_t size)
 {
-  const ContactPlace *place        = &failure->node[0].place;
-  char                element[128] = "";
+  const FailureNode  *node         = &failure->node[0];
+  const ContactPlace *place        = &node->place;
+  char                element[128] = "", of[128] = "", at[128] = "";
 
   if (failure->inverted >= 0)
-    snprintf(element, sizeof(element), "element %lld was inverted%s on the way%s", (long long)failure->inverted,
+    snprintf(element, sizeof(element), "element %lld of '%s' was inverted%s on the way%s", (long long)failure->inverted,
+             scene->bodies[PetscMax(0, failure->inverted_body)].name,
              failure->enhanced ? ", or its enhanced strains found no equilibrium," : "", failure->n ? "; " : "");
+  if (failure->n && node->body >= 0) snprintf(of, sizeof(of), " of '%s'", scene->bodies[node->body].name);
+  if (failure->n && node->pair >= 0) snprintf(at, sizeof(at), ", pair '%s'", scene->contacts[node->pair].name);
   if (failure->n)
-    snprintf(text, size, "%slargest residual at node %lld (%g, %g, %g)", element, (long long)place->tag,
-             (double)place->X[0], (double)place->X[1], (double)place->X[2]);
+    snprintf(text, size, "%slargest residual at node %lld (%g, %g, %g)%s%s", element, (long long)place->tag,
+             (double)place->X[0], (double)place->X[1], (double)place->X[2], of, at);
   else
     snprintf(text, size, "%s", element[0] ? element : "no node is out of balance");
 }

@@ -1,5 +1,6 @@
 /* Advice is given for figures that are bad and only for those: errors by penetration, coarse facets,
- * fits that fall back, steps that fail, old kernels. */
+ * fits that fall back, steps that fail, old kernels. No two lines pull one key in opposite directions, whatever goes
+ * wrong together, and every change can be made in the scene. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -10,26 +11,46 @@
 #include "runlength.h"
 
 typedef struct {
-  SceneContact  scene;
-  PairFigures   pair;
-  StepperReport way;
-  RunRecord     run;
-  StepRecord    last;
-  RunFigures    figures;
+  __typeof__(*(Scene)NULL) whole;
+  SceneContact             scene;
+  SceneBody                body;
+  PairFigures              pair;
+  StepperReport            way;
+  RunRecord                run;
+  StepRecord               last;
+  RunFigures               figures;
 } Case;
 
 /* A run without a fault: faces of size 1, facets on a flat master, ten steps of five iterations */
 static void Good(Case *c)
 {
   memset(c, 0, sizeof(*c));
-  c->scene          = (SceneContact){.name = "sole", .penalty_auto = 1, .penalty_scale = 10};
+  c->scene          = (SceneContact){.path          = "contact.0",
+                                     .name          = "sole",
+                                     .slave         = "floor",
+                                     .master        = "foot",
+                                     .penalty_auto  = 1,
+                                     .penalty_scale = 10};
   c->pair           = (PairFigures){.name    = "sole",
                                     .scene   = &c->scene,
                                     .quality = {.nodes = 5, .max_penetration = 1e-4, .max_penetration_over_h = 1e-4}};
   c->pair.stiffened = 1;
-  c->way            = (StepperReport){.done = PETSC_TRUE, .steps = 10, .newton_iterations = 50, .newton_accepted = 50};
-  c->run            = (RunRecord){.way = &c->way};
-  c->figures = (RunFigures){.run = &c->run, .usage = {.wall_s = 1}, .last = &c->last, .n_pairs = 1, .pairs = &c->pair};
+  c->way  = (StepperReport){.done = PETSC_TRUE, .steps = 10, .t = 1, .newton_iterations = 50, .newton_accepted = 50};
+  c->run  = (RunRecord){.way = &c->way};
+  c->body = (SceneBody){.path = "bodies.0", .name = "block", .material.law = MATERIAL_SVK};
+  c->whole.n_bodies              = 1;
+  c->whole.bodies                = &c->body;
+  c->whole.stepping.control      = STEP_ITERATIONS;
+  c->whole.stepping.initial      = 0.1;
+  c->whole.stepping.dt_min       = 1e-5;
+  c->whole.solver.max_iterations = 30;
+  c->whole.output.every          = 1;
+  c->figures                     = (RunFigures){.scene   = &c->whole,
+                                                .run     = &c->run,
+                                                .usage   = {.wall_s = 1},
+                                                .last    = &c->last,
+                                                .n_pairs = 1,
+                                                .pairs   = &c->pair};
 }
 
 static void Collect(const char *line, void *text)
@@ -47,7 +68,7 @@ static void Expect(const Case *c, const char *part)
   if (!part) {
     assert_string_equal(text, "");
   } else {
-    assert_non_null(strstr(text, part));
+    if (!strstr(text, part)) fail_msg("\"%s\" is not in \"%s\"", part, text);
     assert_ptr_equal(strchr(text, '\n'), text + strlen(text) - 1);
   }
 }
@@ -61,7 +82,6 @@ static void test_length(void **state)
 
   (void)state;
   Good(&c);
-  PetscNew(&c.figures.scene);
   c.figures.scene->loads            = &load;
   c.figures.scene->n_loads          = 1;
   c.figures.scene->stepping.control = STEP_ITERATIONS;
@@ -88,7 +108,6 @@ static void test_length(void **state)
   Expect(&c, "results.h5 has 2.5 GB with output.every: 1; output.every: 3, or fewer output.fields");
   c.figures.results_bytes = 1e9;
   Expect(&c, NULL);
-  PetscFree(c.figures.scene);
 }
 
 /* The size of the results is foretold from a tenth of a gigabyte on. */
@@ -116,11 +135,11 @@ static void test_pairs(void **state)
   Good(&c);
   Expect(&c, NULL);
   c.pair.penalty_error.pressure = 0.03;
-  Expect(&c, "10 times the penalty");
+  Expect(&c, "-set 'contact.0.penalty={}', so that the run chooses the penalty, or -set contact.0.penalty.scale=100");
   c.scene.penalty_may_stiffen = 1;
   Expect(&c, NULL); /* pressures may scatter, and no penalty changes that */
   c.pair.penalty_error.force = 0.03;
-  Expect(&c, "penalty: {scale: 1e+02}"); /* 3 % to 0.3 % */
+  Expect(&c, "error: -set contact.0.penalty.scale=100"); /* 3 % to 0.3 % */
   c.scene.adjust = 1;
   Expect(&c, NULL);
   Good(&c);
@@ -134,10 +153,12 @@ static void test_pairs(void **state)
   Expect(&c, "3 of 20 slave points");
   Good(&c);
   c.pair.quality.sagitta = 2e-3;
-  Expect(&c, "smoother: diffuse");
+  Expect(&c, "smoother=diffuse");
   Good(&c);
-  c.pair.window = (ContactWindow){.outside = 2, .loaded = 5};
+  c.pair.window  = (ContactWindow){.outside = 2, .loaded = 5};
+  c.scene.adjust = 1;
   Expect(&c, "2 of 5 loaded nodes");
+  c.scene.adjust  = 0;
   c.scene.augment = 1;
   Expect(&c, NULL); /* steps that miss the bound count, not the state that is left */
   c.pair.window.missed = 3;
@@ -157,8 +178,9 @@ static void test_steps(void **state)
   c.way.done = PETSC_FALSE; /* the failure says more */
   Expect(&c, NULL);
   Good(&c);
-  c.way.steps_repeated = 6;
-  Expect(&c, "taken back");
+  c.way.steps_repeated     = 6;
+  c.whole.stepping.control = STEP_CONTACT;
+  Expect(&c, "taken back by the control: -set stepping.prediction=tangent, or -set stepping.N_c_fraction=");
   Good(&c);
   c.way.regathered = 11;
   Expect(&c, "lists");
@@ -172,6 +194,138 @@ static void test_steps(void **state)
   c.figures.usage.wall_s                 = 40;
   c.figures.usage.seconds[TIMING_OUTPUT] = 20;
   Expect(&c, "50 %");
+}
+
+/* What can go wrong in a scene, all of it at once */
+static void Bad(Case *c, StepControlKind control, int formulation, int adjust, int augment)
+{
+  Good(c);
+  c->scene.smoother              = SMOOTHER_FACET;
+  c->scene.formulation           = (ContactFormulation)formulation;
+  c->scene.degree                = 4;
+  c->scene.adjust                = adjust;
+  c->scene.adjust_converged      = adjust == 2;
+  c->scene.augment               = augment;
+  c->scene.max_updates           = 10;
+  c->scene.penalty_scale         = 1000;
+  c->scene.g_max                 = 1e-3;
+  c->scene.range                 = 1e4;
+  c->whole.stepping.control      = control;
+  c->whole.stepping.N_c_fraction = 0.05;
+  c->whole.stepping.dt_min       = 0.01;
+  c->pair.penalty_error.force    = 0.05;
+  c->pair.scatter                = 0.2;
+  c->pair.master                 = (NodeDepth){.nodes = 3, .depth = 0.2, .over_h = 0.2};
+  c->pair.quality.sagitta        = 0.1;
+  c->pair.window                 = (ContactWindow){.outside = 2, .loaded = 5, .missed = 3, .excess = 4};
+  c->way.steps_failed            = 9;
+  c->way.steps_repeated          = 9;
+  c->way.regathered              = 20;
+  c->way.cuts                    = 40;
+  c->way.newton_accepted         = 500;
+}
+
+/* Lines do not contradict each other, and each change of theirs can be made and is written. */
+static void Agree(const Case *c)
+{
+  Advice advice;
+
+  AdviceCollect(&c->figures, &advice);
+  assert_true(advice.n > 0);
+  for (int i = 0; i < advice.n; i++) {
+    assert_true(advice.lines[i].n > 0);
+    for (int k = 0; k < advice.lines[i].n; k++) {
+      char text[ADVICE_TEXT] = "";
+
+      assert_true(AdviceChangePossible(advice.lines[i].changes[k], &advice.lines[i].at));
+      AdviceChangeWrite(advice.lines[i].changes[k], &advice.lines[i].at, text, sizeof(text));
+      assert_true(strlen(text) > 0);
+      for (int j = 0; j < i; j++)
+        for (int l = 0; l < advice.lines[j].n; l++) {
+          const ChangeKind a = advice.lines[i].changes[k], b = advice.lines[j].changes[l];
+
+          assert_false(AdviceChangesOppose(a, advice.lines[i].at.pair, b, advice.lines[j].at.pair));
+          if (!strcmp(AdviceChangeKey(a), AdviceChangeKey(b)))
+            assert_int_equal(AdviceChangeDirection(a), AdviceChangeDirection(b));
+        }
+    }
+  }
+}
+
+static void test_agree(void **state)
+{
+  Case c;
+
+  (void)state;
+  for (int control = 0; control < STEP_CONTROL_KINDS; control++)
+    for (int form = 0; form < 2; form++)
+      for (int adjust = 0; adjust < 3; adjust++)
+        for (int augment = 0; augment < 2 - (adjust > 0); augment++)
+          for (int result = SOLVE_CONVERGED; result <= SOLVE_NAN; result++) {
+            Bad(&c, (StepControlKind)control, form, adjust, augment);
+            c.way.done                = (PetscBool)(result == SOLVE_CONVERGED);
+            c.way.failed.attempts     = result != SOLVE_CONVERGED;
+            c.way.failed.solve.result = (SolveResult)result;
+            Agree(&c);
+          }
+}
+
+/* A failure is advised first, and what opposes it is left out. */
+static void test_order(void **state)
+{
+  Case   c;
+  Advice advice;
+
+  (void)state;
+  Bad(&c, STEP_CONTACT, CONTACT_SURFACE_TO_SURFACE, 0, 0);
+  c.scene.smoother             = SMOOTHER_DIFFUSE;
+  c.way.done                   = PETSC_FALSE;
+  c.way.failed.attempts        = 1;
+  c.way.failed.solve.result    = SOLVE_LINE_SEARCH;
+  c.way.failed.solve.failure.n = 1; /* body 0, pair 0 */
+  AdviceCollect(&c.figures, &advice);
+  assert_true(advice.tries);
+  assert_int_equal(advice.lines[0].changes[0], CHANGE_SHORTER_MIN);
+  assert_int_equal(advice.lines[0].changes[1], CHANGE_SOFTER); /* diffuse it is */
+  for (int i = 1; i < advice.n; i++)
+    for (int k = 0; k < advice.lines[i].n; k++) {
+      assert_int_not_equal(advice.lines[i].changes[k], CHANGE_STIFFER);
+      assert_int_not_equal(advice.lines[i].changes[k], CHANGE_FREE_PENALTY);
+      assert_int_not_equal(advice.lines[i].changes[k], CHANGE_MORE_NODES);
+    }
+  c.way.failed.solve.failure.squeeze = 0.6; /* the law is what fails */
+  AdviceCollect(&c.figures, &advice);
+  assert_int_equal(advice.lines[0].changes[0], CHANGE_LAW);
+  c.way.failed.solve.result             = SOLVE_LOST;
+  c.way.failed.solve.failure.squeeze    = 0.9;
+  c.pair.quality.max_penetration_over_h = 1.2;
+  AdviceCollect(&c.figures, &advice);
+  assert_int_equal(advice.lines[0].changes[0], CHANGE_FREE_PENALTY);
+  c.pair.quality.max_penetration_over_h = 0;
+  AdviceCollect(&c.figures, &advice);
+  assert_int_equal(advice.lines[0].changes[0], CHANGE_SHORTER_MIN);
+}
+
+static void test_sides(void **state)
+{
+  Case c;
+
+  (void)state;
+  Good(&c);
+  c.pair.scatter = NAN;
+  Expect(&c, NULL);
+  c.pair.scatter      = 0.2;
+  c.scene.formulation = CONTACT_NODE_TO_SURFACE;
+  Expect(&c, "sole: nodal pressures scatter by 20 % rms from node to node, their peak by more: -set "
+             "contact.0.formulation=surface_to_surface, or a finer mesh at 'floor'");
+  c.scene.formulation = CONTACT_SURFACE_TO_SURFACE;
+  Expect(&c, "by more: a finer mesh at 'floor'");
+  Good(&c);
+  c.pair.master = (NodeDepth){.nodes = 1, .depth = 0.3, .over_h = 0.3};
+  Expect(&c, "nodes of 'foot' stand up to 0.3 of a face deep between the slave's: a finer mesh at 'floor', or -set "
+             "contact.0.slave=foot -set contact.0.master=floor");
+  c.body = (SceneBody){.path = "bodies.0", .name = "foot", .rigid = 1};
+  Expect(&c, "between the slave's: a finer mesh at 'floor'"); /* a tool is no slave */
 }
 
 static void test_kernels(void **state)
@@ -202,8 +356,9 @@ static void test_kernels(void **state)
 int main(void)
 {
   const struct CMUnitTest tests[] = {cmocka_unit_test(test_length), cmocka_unit_test(test_foretold),
-                                     cmocka_unit_test(test_pairs), cmocka_unit_test(test_steps),
-                                     cmocka_unit_test(test_kernels)};
+                                     cmocka_unit_test(test_pairs),  cmocka_unit_test(test_steps),
+                                     cmocka_unit_test(test_agree),  cmocka_unit_test(test_order),
+                                     cmocka_unit_test(test_sides),  cmocka_unit_test(test_kernels)};
 
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -94,6 +94,7 @@ typedef struct {
   PetscReal    total[3];                     /* force on this rank's terms in the last residual */
   PetscReal    t;                            /* load parameter of the last residual */
   PetscReal   *pressure;                     /* what ContactGetNodes() shows: force over area */
+  NodeDepths   depths;                       /* NULL before the first report of depths in the slave */
   ContactWork *work;                         /* shared by all pairs */
 } ContactPair;
 

@@ -13,6 +13,9 @@ typedef struct {
   ContactQuality      quality;
   ContactWindow       window;
   PetscReal           penalty_min, penalty_max;
+  PetscReal           scatter;        /* of the nodal pressures, over their smooth part; NaN: not known */
+  NodeDepth           master;         /* the master's nodes in the slave */
+  PetscReal           master_deepest; /* their largest depth in all written states (length) */
   PenaltyError        penalty_error;
   PetscReal           stiffened; /* factor by which the run raised the penalty, where it may choose it */
 } PairFigures;

@@ -12,9 +12,10 @@ typedef struct _n_Terminal *Terminal;
 /* What TerminalEnd() says of the run besides its figures */
 typedef struct {
   const RunFigures *figures;
-  const PetscReal  *probes;  /* final values, NaN where there is none */
-  const PetscBool  *met;     /* per contact pair: some slave node has met its master */
-  PetscReal         deepest; /* largest penetration of the run, in face sizes */
+  const PetscReal  *probes;   /* final values, NaN where there is none */
+  const PetscBool  *met;      /* per contact pair: some slave node has met its master */
+  PetscReal         deepest;  /* largest penetration of the run, in face sizes */
+  PetscReal         standing; /* largest depth of a master node in a slave in the written states, in face sizes */
 } TerminalLast;
 
 PetscErrorCode TerminalCreate(Model, Probes, Scene, const char *directory, PetscBool quiet, Terminal *);

@@ -6,6 +6,7 @@
    FitSupportSlave() makes one for each slave point. Offsets use the field and FitSupportClimb() for fits of the
    surface itself. */
 #pragma once
+#include "base/boxtree.h"
 #include "neighbourhood.h"
 #include "search/search.h"
 
@@ -94,6 +95,7 @@ typedef struct {
 
 /* candidate.c */
 void           CandidatePlace(int dim, const PetscReal *x, PetscReal size, Candidate *);
+PetscErrorCode CandidatesTree(int dim, PetscInt n, const Candidate *, BoxTree *);
 PetscErrorCode ListBufferAddPoint(ListBuffer *, PetscInt first, PetscInt point);
 /* faceexchange.c */
 void           SearchSlaveBox(ContactSearch, PetscReal box[6]);

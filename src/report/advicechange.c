@@ -1,0 +1,540 @@
+/* The table of changes that advice may propose, see advicechange.h. */
+#include "advicechange.h"
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* A smallest step above this may be what stops a run; a smaller one is advised as this. It is the key's default. */
+#define CHANGE_DT_MIN      1e-5
+#define CHANGE_DT_MIN_NEAR 1e-4
+/* Iterations that Newton's method is given by default. With twice as many it does not get on either. */
+#define CHANGE_MAX_ITERATIONS 30
+/* A penalty is made softer by this, down to the bodies' own stiffness; and stiffer by as much where no figure tells by
+   how much. */
+#define CHANGE_PENALTY 10.0
+/* By how much bounds are widened. */
+#define CHANGE_WIDER 10.0
+
+/* What a change moves. Changes of one axis add up or oppose each other. */
+typedef enum {
+  AXIS_STIFFNESS, /* of a pair's penalty */
+  AXIS_WINDOW,
+  AXIS_RANGE,
+  AXIS_UPDATES,
+  AXIS_WHEN,
+  AXIS_SMOOTHNESS, /* of a pair's master */
+  AXIS_FORMULATION,
+  AXIS_SYMMETRY,
+  AXIS_ROLES,
+  AXIS_SLAVE_MESH,
+  AXIS_MASTER_MESH,
+  AXIS_HOLD, /* of bodies */
+  AXIS_LAW,
+  AXIS_ELEMENTS,
+  AXIS_STEP, /* length of the load steps */
+  AXIS_PREDICTION,
+  AXIS_ITERATIONS,
+  AXIS_LINE_SEARCH,
+  AXIS_WORKSPACE,
+  AXIS_OUTPUT,
+  AXIS_KERNELS,
+  AXIS_CHECK
+} ChangeAxis;
+
+typedef struct {
+  const char *key; /* of the scene, * for the number of pair or body; or what else is changed */
+  ChangeAxis  axis;
+  int         direction; /* on the axis: 1 or -1 */
+  int (*possible)(const ChangePlace *);
+  void (*write)(const ChangePlace *, char *text, size_t size);
+} Change;
+
+static const SceneContact *PairScene(const ChangePlace *at)
+{
+  return at->pair ? at->pair->scene : NULL;
+}
+
+static int Always(const ChangePlace *at)
+{
+  (void)at;
+  return 1;
+}
+
+/* Writes "-set PATH.KEY=VALUE" with a value of two digits. */
+static void WriteNumber(const char *path, const char *key, double value, char *text, size_t size)
+{
+  char rounded[32];
+
+  snprintf(rounded, sizeof(rounded), "%.1e", value);
+  snprintf(text, size, "-set %s.%s=%g", path, key, atof(rounded));
+}
+
+static int PenaltyIsChosen(const ChangePlace *at)
+{
+  const SceneContact *contact = PairScene(at);
+
+  return contact && !contact->adjust && !contact->augment && !contact->penalty_may_stiffen;
+}
+
+static void WriteFreePenalty(const ChangePlace *at, char *text, size_t size)
+{
+  snprintf(text, size, "-set '%s.penalty={}', so that the run chooses the penalty", PairScene(at)->path);
+}
+
+static int PenaltyIsFixed(const ChangePlace *at)
+{
+  return PairScene(at) && !PairScene(at)->adjust;
+}
+
+/* The factor on the penalty that the run ended with. */
+static double PenaltyScale(const ChangePlace *at)
+{
+  return PairScene(at)->penalty_scale * fmax(1, (double)at->pair->stiffened);
+}
+
+static void WriteStiffer(const ChangePlace *at, char *text, size_t size)
+{
+  WriteNumber(PairScene(at)->path, "penalty.scale", PenaltyScale(at) * (at->factor > 1 ? at->factor : CHANGE_PENALTY),
+              text, size);
+}
+
+static int PenaltyIsStiff(const ChangePlace *at)
+{
+  return PenaltyIsFixed(at) && (!PairScene(at)->penalty_auto || PenaltyScale(at) >= CHANGE_PENALTY);
+}
+
+static void WriteSofter(const ChangePlace *at, char *text, size_t size)
+{
+  WriteNumber(PairScene(at)->path, "penalty.scale", PenaltyScale(at) / CHANGE_PENALTY, text, size);
+}
+
+static int HasWindow(const ChangePlace *at)
+{
+  return PairScene(at) && (PairScene(at)->adjust || PairScene(at)->augment);
+}
+
+static void WriteWindow(const ChangePlace *at, char *text, size_t size)
+{
+  WriteNumber(PairScene(at)->path, "penalty.g_max", CHANGE_WIDER * PairScene(at)->g_max, text, size);
+}
+
+static int IsAdjusted(const ChangePlace *at)
+{
+  return PairScene(at) && PairScene(at)->adjust;
+}
+
+static void WriteRange(const ChangePlace *at, char *text, size_t size)
+{
+  WriteNumber(PairScene(at)->path, "penalty.range", PetscSqr(CHANGE_WIDER) * PairScene(at)->range, text, size);
+}
+
+static int IsAugmented(const ChangePlace *at)
+{
+  return PairScene(at) && PairScene(at)->augment;
+}
+
+static void WriteUpdates(const ChangePlace *at, char *text, size_t size)
+{
+  snprintf(text, size, "-set %s.penalty.max_updates=%d", PairScene(at)->path, 4 * PairScene(at)->max_updates);
+}
+
+static int IsAdjustedByStep(const ChangePlace *at)
+{
+  return IsAdjusted(at) && !PairScene(at)->adjust_converged;
+}
+
+static int IsAdjustedInStep(const ChangePlace *at)
+{
+  return IsAdjusted(at) && PairScene(at)->adjust_converged;
+}
+
+static void WriteConverged(const ChangePlace *at, char *text, size_t size)
+{
+  snprintf(text, size, "-set %s.penalty.when=converged", PairScene(at)->path);
+}
+
+static void WriteStep(const ChangePlace *at, char *text, size_t size)
+{
+  snprintf(text, size, "-set %s.penalty.when=step", PairScene(at)->path);
+}
+
+static int HasFacets(const ChangePlace *at)
+{
+  return PairScene(at) && PairScene(at)->master && PairScene(at)->smoother == SMOOTHER_FACET;
+}
+
+static void WriteDiffuse(const ChangePlace *at, char *text, size_t size)
+{
+  snprintf(text, size, "-set %s.smoother=diffuse", PairScene(at)->path);
+}
+
+static int HasNodes(const ChangePlace *at)
+{
+  return PairScene(at) && PairScene(at)->formulation == CONTACT_NODE_TO_SURFACE;
+}
+
+static void WriteSurface(const ChangePlace *at, char *text, size_t size)
+{
+  snprintf(text, size, "-set %s.formulation=surface_to_surface", PairScene(at)->path);
+}
+
+static int HasDegree4(const ChangePlace *at)
+{
+  return PairScene(at) && PairScene(at)->master && PairScene(at)->smoother != SMOOTHER_FACET &&
+         PairScene(at)->degree == 4;
+}
+
+static void WriteDegree2(const ChangePlace *at, char *text, size_t size)
+{
+  snprintf(text, size, "-set %s.degree=2", PairScene(at)->path);
+}
+
+static int MayHaveSymmetry(const ChangePlace *at)
+{
+  return PairScene(at) && PairScene(at)->master && !PairScene(at)->n_symmetry && at->figures->scene->n_supports > 0;
+}
+
+static void WriteSymmetry(const ChangePlace *at, char *text, size_t size)
+{
+  snprintf(text, size, "%s.symmetry with the planes of symmetry, if its surfaces end at some", PairScene(at)->path);
+}
+
+static int MasterIsRigid(Scene scene, const char *master)
+{
+  for (int b = 0; b < scene->n_bodies; b++)
+    if (scene->bodies[b].rigid && !strcmp(scene->bodies[b].name, master)) return 1;
+  return 0;
+}
+
+static int MayExchange(const ChangePlace *at)
+{
+  return PairScene(at) && PairScene(at)->master && !MasterIsRigid(at->figures->scene, PairScene(at)->master);
+}
+
+static void WriteRoles(const ChangePlace *at, char *text, size_t size)
+{
+  const SceneContact *contact = PairScene(at);
+
+  snprintf(text, size, "-set %s.slave=%s -set %s.master=%s", contact->path, contact->master, contact->path,
+           contact->slave);
+}
+
+static int HasPair(const ChangePlace *at)
+{
+  return PairScene(at) ? 1 : 0;
+}
+
+static int HasMeshedMaster(const ChangePlace *at)
+{
+  return PairScene(at) && PairScene(at)->master;
+}
+
+static void WriteFinerSlave(const ChangePlace *at, char *text, size_t size)
+{
+  snprintf(text, size, "a finer mesh at '%s'", PairScene(at)->slave);
+}
+
+static void WriteFinerMaster(const ChangePlace *at, char *text, size_t size)
+{
+  snprintf(text, size, "a finer or more even mesh at '%s'", PairScene(at)->master);
+}
+
+static int IsLoose(const ChangePlace *at)
+{
+  return PairScene(at) && !PairScene(at)->stabilise;
+}
+
+static void WriteStabilise(const ChangePlace *at, char *text, size_t size)
+{
+  snprintf(text, size, "-set %s.stabilise=true", PairScene(at)->path);
+}
+
+/* The first load of the scene that is a force, or NULL. */
+static const SceneLoad *ForceLoad(Scene scene)
+{
+  for (int i = 0; i < scene->n_loads; i++)
+    if (scene->loads[i].kind == LOAD_PRESSURE || scene->loads[i].kind == LOAD_TRACTION) return &scene->loads[i];
+  return NULL;
+}
+
+static int HasForceLoad(const ChangePlace *at)
+{
+  return ForceLoad(at->figures->scene) ? 1 : 0;
+}
+
+static void WriteDisplacement(const ChangePlace *at, char *text, size_t size)
+{
+  snprintf(text, size, "an imposed displacement of '%s' instead of its force", ForceLoad(at->figures->scene)->region);
+}
+
+static int HasBody(const ChangePlace *at)
+{
+  return at->body >= 0;
+}
+
+static void WriteSupport(const ChangePlace *at, char *text, size_t size)
+{
+  snprintf(text, size, "a support that holds '%s'; -check tells which motions are free",
+           at->figures->scene->bodies[at->body].name);
+}
+
+static int MayBeCrushed(const ChangePlace *at)
+{
+  return at->body >= 0 && !at->figures->scene->bodies[at->body].rigid &&
+         at->figures->scene->bodies[at->body].material.law == MATERIAL_SVK;
+}
+
+static void WriteLaw(const ChangePlace *at, char *text, size_t size)
+{
+  snprintf(text, size, "-set %s.material.law=neo_hookean", at->figures->scene->bodies[at->body].path);
+}
+
+static int IsEnhanced(const ChangePlace *at)
+{
+  return at->body >= 0 && at->figures->scene->bodies[at->body].formulation == FORMULATION_ENHANCED;
+}
+
+static void WriteFormulation(const ChangePlace *at, char *text, size_t size)
+{
+  snprintf(text, size, "-set %s.formulation=full", at->figures->scene->bodies[at->body].path);
+}
+
+/* Mean length of the steps so far. */
+static double MeanStep(const ChangePlace *at)
+{
+  const StepperReport *way = at->figures->run->way;
+
+  return way->steps > 0 ? (double)way->t / (double)way->steps : at->figures->scene->stepping.initial;
+}
+
+/* Steps are not shorter already than the solver can make use of. */
+static int MayBeShorter(const ChangePlace *at)
+{
+  return MeanStep(at) > CHANGE_DT_MIN_NEAR;
+}
+
+static void WriteShorter(const ChangePlace *at, char *text, size_t size)
+{
+  const Scene  scene = at->figures->scene;
+  const double half  = MeanStep(at) / 2;
+
+  if (scene->stepping.control == STEP_CONTACT && scene->stepping.N_c_fraction > 0)
+    WriteNumber("stepping", "N_c_fraction", scene->stepping.N_c_fraction / 2, text, size);
+  else
+    WriteNumber("stepping", scene->stepping.control == STEP_FIXED ? "initial" : "dt_max", half, text, size);
+}
+
+static int StopsEarly(const ChangePlace *at)
+{
+  return at->figures->scene->stepping.dt_min > CHANGE_DT_MIN_NEAR;
+}
+
+static void WriteShorterMin(const ChangePlace *at, char *text, size_t size)
+{
+  (void)at;
+  WriteNumber("stepping", "dt_min", CHANGE_DT_MIN, text, size);
+}
+
+static int CountsNodes(const ChangePlace *at)
+{
+  return at->figures->scene->stepping.control == STEP_CONTACT;
+}
+
+static void WriteMoreNodes(const ChangePlace *at, char *text, size_t size)
+{
+  const Scene scene = at->figures->scene;
+
+  if (scene->stepping.N_c)
+    snprintf(text, size, "-set stepping.N_c=%d", 2 * scene->stepping.N_c);
+  else
+    WriteNumber("stepping", "N_c_fraction", fmin(1, 2 * scene->stepping.N_c_fraction), text, size);
+}
+
+static int PredictsAfterwards(const ChangePlace *at)
+{
+  return CountsNodes(at) && !at->figures->scene->stepping.predict_linearly;
+}
+
+static void WritePrediction(const ChangePlace *at, char *text, size_t size)
+{
+  (void)at;
+  snprintf(text, size, "-set stepping.prediction=tangent");
+}
+
+static int HasFewIterations(const ChangePlace *at)
+{
+  return at->figures->scene->solver.max_iterations < CHANGE_MAX_ITERATIONS;
+}
+
+static void WriteIterations(const ChangePlace *at, char *text, size_t size)
+{
+  (void)at;
+  snprintf(text, size, "-set solver.max_iterations=%d", CHANGE_MAX_ITERATIONS);
+}
+
+static void WriteLineSearch(const ChangePlace *at, char *text, size_t size)
+{
+  (void)at;
+  snprintf(text, size, "-snes_linesearch_type bt, PETSc's default, if another one was chosen");
+}
+
+static void WriteWorkspace(const ChangePlace *at, char *text, size_t size)
+{
+  (void)at;
+  snprintf(text, size, "-mat_mumps_icntl_14 200, or more ranks");
+}
+
+static int WritesOften(const ChangePlace *at)
+{
+  return at->figures->scene->output.every > 0;
+}
+
+static void WriteOutput(const ChangePlace *at, char *text, size_t size)
+{
+  snprintf(text, size, "-set output.every=%d", 10 * at->figures->scene->output.every);
+}
+
+static int HasFasterKernels(const ChangePlace *at)
+{
+  return at->figures->blas.faster_kernels ? 1 : 0;
+}
+
+static void WriteKernels(const ChangePlace *at, char *text, size_t size)
+{
+  const Blas *blas = &at->figures->blas;
+
+  snprintf(text, size, "%s%s",
+           blas->can_choose ? "in the environment OPENBLAS_CORETYPE="
+                            : "an OpenBLAS made with DYNAMIC_ARCH=1, or TARGET=",
+           blas->faster_kernels);
+}
+
+static void WriteCheck(const ChangePlace *at, char *text, size_t size)
+{
+  (void)at;
+  snprintf(text, size, "-check for free motions, gaps and cells of low quality");
+}
+
+/* The line that has the change tells it, with the key that rules the steps or the output. */
+static void WriteNothing(const ChangePlace *at, char *text, size_t size)
+{
+  (void)at;
+  (void)size;
+  text[0] = '\0';
+}
+
+static const Change changes[CHANGES] = {
+  [CHANGE_FREE_PENALTY]   = {"contact.*.penalty", AXIS_STIFFNESS, 1, PenaltyIsChosen, WriteFreePenalty},
+  [CHANGE_STIFFER]        = {"contact.*.penalty.scale", AXIS_STIFFNESS, 1, PenaltyIsFixed, WriteStiffer},
+  [CHANGE_SOFTER]         = {"contact.*.penalty.scale", AXIS_STIFFNESS, -1, PenaltyIsStiff, WriteSofter},
+  [CHANGE_WIDER_WINDOW]   = {"contact.*.penalty.g_max", AXIS_WINDOW, 1, HasWindow, WriteWindow},
+  [CHANGE_RANGE]          = {"contact.*.penalty.range", AXIS_RANGE, 1, IsAdjusted, WriteRange},
+  [CHANGE_UPDATES]        = {"contact.*.penalty.max_updates", AXIS_UPDATES, 1, IsAugmented, WriteUpdates},
+  [CHANGE_WHEN_CONVERGED] = {"contact.*.penalty.when", AXIS_WHEN, 1, IsAdjustedByStep, WriteConverged},
+  [CHANGE_WHEN_STEP]      = {"contact.*.penalty.when", AXIS_WHEN, -1, IsAdjustedInStep, WriteStep},
+  [CHANGE_DIFFUSE]        = {"contact.*.smoother", AXIS_SMOOTHNESS, 1, HasFacets, WriteDiffuse},
+  [CHANGE_SURFACE]        = {"contact.*.formulation", AXIS_FORMULATION, 1, HasNodes, WriteSurface},
+  [CHANGE_DEGREE_2]       = {"contact.*.degree", AXIS_SMOOTHNESS, 1, HasDegree4, WriteDegree2},
+  [CHANGE_SYMMETRY]       = {"contact.*.symmetry", AXIS_SYMMETRY, 1, MayHaveSymmetry, WriteSymmetry},
+  [CHANGE_ROLES]          = {"contact.*.slave", AXIS_ROLES, 1, MayExchange, WriteRoles},
+  [CHANGE_FINER_SLAVE]    = {"mesh of the slave", AXIS_SLAVE_MESH, 1, HasPair, WriteFinerSlave},
+  [CHANGE_FINER_MASTER]   = {"mesh of the master", AXIS_MASTER_MESH, 1, HasMeshedMaster, WriteFinerMaster},
+  [CHANGE_STABILISE]      = {"contact.*.stabilise", AXIS_HOLD, 1, IsLoose, WriteStabilise},
+  [CHANGE_DISPLACEMENT]   = {"loads", AXIS_HOLD, 1, HasForceLoad, WriteDisplacement},
+  [CHANGE_SUPPORT]        = {"supports", AXIS_HOLD, 1, HasBody, WriteSupport},
+  [CHANGE_LAW]            = {"bodies.*.material.law", AXIS_LAW, 1, MayBeCrushed, WriteLaw},
+  [CHANGE_FORMULATION]    = {"bodies.*.formulation", AXIS_ELEMENTS, 1, IsEnhanced, WriteFormulation},
+  [CHANGE_SHORTER]        = {"stepping", AXIS_STEP, -1, MayBeShorter, WriteShorter},
+  [CHANGE_SHORTER_MIN]    = {"stepping.dt_min", AXIS_STEP, -1, StopsEarly, WriteShorterMin},
+  [CHANGE_MORE_NODES]     = {"stepping.N_c", AXIS_STEP, 1, CountsNodes, WriteMoreNodes},
+  [CHANGE_LONGER]         = {"stepping", AXIS_STEP, 1, Always, WriteNothing},
+  [CHANGE_PREDICTION]     = {"stepping.prediction", AXIS_PREDICTION, 1, PredictsAfterwards, WritePrediction},
+  [CHANGE_ITERATIONS]     = {"solver.max_iterations", AXIS_ITERATIONS, 1, HasFewIterations, WriteIterations},
+  [CHANGE_LINE_SEARCH]    = {"PETSc option", AXIS_LINE_SEARCH, 1, Always, WriteLineSearch},
+  [CHANGE_WORKSPACE]      = {"PETSc option", AXIS_WORKSPACE, 1, Always, WriteWorkspace},
+  [CHANGE_OUTPUT]         = {"output.every", AXIS_OUTPUT, 1, WritesOften, WriteOutput},
+  [CHANGE_LESS_OUTPUT]    = {"output", AXIS_OUTPUT, 1, Always, WriteNothing},
+  [CHANGE_KERNELS]        = {"environment", AXIS_KERNELS, 1, HasFasterKernels, WriteKernels},
+  [CHANGE_CHECK]          = {"command line", AXIS_CHECK, 1, Always, WriteCheck}};
+
+/*@
+  AdviceChangePossible - tells whether a change can be made: 1, or 0 where the scene has no such key, has that value
+  already, or another key of it rules the value.
+
+  Not collective
+
+  Input Parameters:
++ change - the change
+- at     - what it is made to
+@*/
+int AdviceChangePossible(ChangeKind change, const ChangePlace *at)
+{
+  return changes[change].possible(at);
+}
+
+/*@
+  AdviceChangeWrite - writes a possible change as the user makes it, with -set where it is one key.
+
+  Not collective
+
+  Input Parameters:
++ change - the change
+. at     - what it is made to
+- size   - of the text
+
+  Output Parameter:
+. text - the change in words
+@*/
+void AdviceChangeWrite(ChangeKind change, const ChangePlace *at, char *text, size_t size)
+{
+  changes[change].write(at, text, size);
+}
+
+/* Changes of pairs do not touch other pairs; all others are the whole run's. */
+static int IsOfPair(ChangeKind change)
+{
+  return changes[change].axis <= AXIS_MASTER_MESH;
+}
+
+/*@
+  AdviceChangesOppose - tells whether two changes move one axis in opposite directions: 1 or 0.
+
+  Not collective
+
+  Input Parameters:
++ a      - a change
+. pair_a - the pair that it is made to, or NULL
+. b      - another one
+- pair_b - the pair that it is made to, or NULL
+@*/
+int AdviceChangesOppose(ChangeKind a, const PairFigures *pair_a, ChangeKind b, const PairFigures *pair_b)
+{
+  if (changes[a].axis != changes[b].axis || changes[a].direction == changes[b].direction) return 0;
+  return !IsOfPair(a) || pair_a == pair_b;
+}
+
+/*@
+  AdviceChangeKey - returns the key that a change is made by, or what else is changed.
+
+  Not collective
+
+  Input Parameter:
+. change - the change
+@*/
+const char *AdviceChangeKey(ChangeKind change)
+{
+  return changes[change].key;
+}
+
+/*@
+  AdviceChangeDirection - returns the direction of a change on its axis, 1 or -1.
+
+  Not collective
+
+  Input Parameter:
+. change - the change
+@*/
+int AdviceChangeDirection(ChangeKind change)
+{
+  return changes[change].direction;
+}
