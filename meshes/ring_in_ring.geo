@@ -16,6 +16,7 @@ len = n_len * Pi / 2 * r / n_coarse; // faces are square, and elements nearly so
 cut_x[] = {};
 cut_y[] = {};
 cut_z[] = {};
+rim[] = {};
 For b In {0 : 1}
   n = n_around[b];
   m = Round(n_len * n / n_coarse);
@@ -64,6 +65,9 @@ For b In {0 : 1}
       If (!m)
         body~{b}[] += {s};
         contact~{b}[] += {s + (2 - b) * count};
+        If (b)
+          rim[] += {s + 2 * count};
+        EndIf
       ElseIf (k == 0)
         cut_z[] += {s};
       EndIf
@@ -91,6 +95,9 @@ For b In {0 : 1}
       Volume(s) = {s};
       body~{b}[] += {s};
       contact~{b}[] += {s + (3 - b) * count};
+      If (b)
+        rim[] += {s + 3 * count};
+      EndIf
     EndFor
     cut_y[] += {o + (k - 1) * (n + 1) + count};
     cut_x[] += {o + (k - 1) * (n + 1) + n + count};
@@ -108,6 +115,7 @@ If (n_len)
   Physical Volume("outer") = {body_1[]};
   Physical Surface("inner_contact") = {contact_0[]};
   Physical Surface("outer_contact") = {contact_1[]};
+  Physical Surface("rim") = {rim[]};
   Physical Surface("symmetry_x") = {cut_x[]};
   Physical Surface("symmetry_y") = {cut_y[]};
   Physical Surface("symmetry_z") = {cut_z[]};
@@ -116,6 +124,7 @@ Else
   Physical Surface("outer") = {body_1[]};
   Physical Curve("inner_contact") = {contact_0[]};
   Physical Curve("outer_contact") = {contact_1[]};
+  Physical Curve("rim") = {rim[]};
   Physical Curve("symmetry_x") = {cut_x[]};
   Physical Curve("symmetry_y") = {cut_y[]};
 EndIf

@@ -3,7 +3,6 @@
 #include "kernels/elementkernel.h"
 #include "mesh/meshpieces.h"
 #include "base/refusal.h"
-#include "kernels/rigidkernel.h"
 
 /* Supports hold a rotation if their lever arm is more than a millionth of the body's size; this is the square of it.
    Round-off is some 1e-16 times the number of supports. */
@@ -20,28 +19,18 @@
    unknowns, and no screen could show the result. */
 enum { FREE_PIECES = 100 };
 
-/* Characters of the text of one motion or name, and of a message with several. */
-enum { FREE_TEXT = 320, FREE_MESSAGE = 1400 };
-
-/* A connected piece of the mesh. Its motions are measured at its own centre, in units of its size (rigidkernel.h). */
-typedef struct {
-  char      name[FREE_TEXT];
-  PetscReal centre[3], size; /* of its bounding box, relative to the mesh's centre; half the diagonal */
-  int       body;            /* one of its bodies */
-  PetscBool paired;          /* a contact pair knows it */
-  int       n_free;          /* motions that supports leave */
-  double    free[RIGID_MODES * RIGID_MODES];
-} Piece;
+/* Characters of a message with several motions. */
+enum { FREE_MESSAGE = 1400 };
 
 struct _n_FreeModes {
-  Mesh      mesh;
-  Scene     scene;
-  PetscInt *piece; /* of every local node */
-  PetscInt  n_pieces;
-  Piece    *pieces;
-  double   *gram; /* n_contacts matrices of (6 n_pieces)^2: mean square of the normal motion over each pair's surface */
-  int       n_loose; /* motions of all pieces (rows of 6 n_pieces) that neither supports nor contact hold */
-  double   *loose;
+  Mesh       mesh;
+  Scene      scene;
+  PetscInt  *piece; /* of every local node */
+  PetscInt   n_pieces;
+  FreePiece *pieces;
+  double *gram; /* n_contacts matrices of (6 n_pieces)^2: mean square of the normal motion over each pair's surface */
+  int     n_loose; /* motions of all pieces (rows of 6 n_pieces) that neither supports nor contact hold */
+  double *loose;
 };
 
 /* Measures the bounding box of each piece: the same numbers on any number of ranks. */
@@ -64,8 +53,8 @@ static PetscErrorCode MeasurePieces(FreeModes modes)
   }
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, box, (PetscMPIInt)(6 * modes->n_pieces), MPIU_REAL, MPIU_MAX, mesh->comm));
   for (PetscInt p = 0; p < modes->n_pieces; p++) {
-    Piece    *piece  = &modes->pieces[p];
-    PetscReal square = 0;
+    FreePiece *piece  = &modes->pieces[p];
+    PetscReal  square = 0;
 
     for (int d = 0; d < mesh->dim; d++) {
       piece->centre[d] = (box[6 * p + 2 * d + 1] - box[6 * p + 2 * d]) / 2;
@@ -96,9 +85,9 @@ static PetscErrorCode NamePieces(FreeModes modes)
     MPI_Allreduce(MPI_IN_PLACE, has, (PetscMPIInt)(modes->n_pieces * scene->n_bodies), MPIU_INT, MPI_MAX, mesh->comm));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, tag, (PetscMPIInt)modes->n_pieces, MPIU_INT, MPI_MIN, mesh->comm));
   for (PetscInt p = 0; p < modes->n_pieces; p++) {
-    Piece    *piece = &modes->pieces[p];
-    size_t    used  = 0;
-    PetscBool split = PETSC_FALSE;
+    FreePiece *piece = &modes->pieces[p];
+    size_t     used  = 0;
+    PetscBool  split = PETSC_FALSE;
 
     for (int b = 0; b < scene->n_bodies; b++) {
       if (!has[p * scene->n_bodies + b]) continue;
@@ -142,7 +131,7 @@ static PetscErrorCode ColumnOrder(PetscInt n_pieces, int columns[])
 }
 
 /* Gives the coordinates of a point from the centre of a piece, in units of the piece's size. */
-static void PlaceInPiece(const Piece *piece, int dim, const PetscReal *X, double x[3])
+static void PlaceInPiece(const FreePiece *piece, int dim, const PetscReal *X, double x[3])
 {
   for (int d = 0; d < 3; d++) x[d] = d < dim ? (X[d] - piece->centre[d]) / piece->size : 0;
 }
@@ -183,8 +172,19 @@ static PetscErrorCode FindSupported(FreeModes modes, Loads loads)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Marks the pieces that a surface is part of. A rigid tool and an analytic master are part of none. */
-static PetscErrorCode PiecesOfSurface(FreeModes modes, const char *name, int on[])
+/*@
+  FreeModesOnSurface - marks the pieces that a surface is part of.
+
+  Collective
+
+  Input Parameters:
++ modes - the motions
+- name  - physical surface; NULL: of an analytic master
+
+  Output Parameter:
+. on - on[pieces]: 1 or 0; a rigid tool and an analytic master are part of none
+@*/
+PetscErrorCode FreeModesOnSurface(FreeModes modes, const char *name, int on[])
 {
   const int g = name ? MeshFindGroup(modes->mesh, modes->mesh->dim - 1, name) : -1;
 
@@ -206,7 +206,7 @@ static PetscErrorCode MarkPaired(FreeModes modes)
   for (int side = 0; side < 2 * modes->scene->n_contacts; side++) {
     const SceneContact *contact = &modes->scene->contacts[side / 2];
 
-    PetscCall(PiecesOfSurface(modes, side % 2 ? contact->master : contact->slave, on));
+    PetscCall(FreeModesOnSurface(modes, side % 2 ? contact->master : contact->slave, on));
     for (PetscInt p = 0; p < modes->n_pieces; p++)
       if (on[p]) modes->pieces[p].paired = PETSC_TRUE;
   }
@@ -249,8 +249,8 @@ static PetscErrorCode MeasurePair(FreeModes modes, const SceneContact *contact, 
 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc3(n, &row, modes->n_pieces, &on_slave, modes->n_pieces, &on_master));
-  PetscCall(PiecesOfSurface(modes, contact->slave, on_slave));
-  PetscCall(PiecesOfSurface(modes, contact->master, on_master));
+  PetscCall(FreeModesOnSurface(modes, contact->slave, on_slave));
+  PetscCall(FreeModesOnSurface(modes, contact->master, on_master));
   for (PetscInt p = 0; p < modes->n_pieces; p++) deformable += on_master[p];
   for (PetscInt f = 0; f < slave->n_faces; f++) {
     PetscReal    centre[3];
@@ -435,7 +435,7 @@ static void DirectionText(int dim, const double v[3], char text[FREE_TEXT])
 
 /* Writes the motion of a piece as "translation along y, (0, 1, 0)" or "rotation about z, (0, 0, 1), through (10, 0,
    5)". */
-static void MotionText(FreeModes modes, const Piece *piece, const double motion[RIGID_MODES], char text[FREE_TEXT])
+static void MotionText(FreeModes modes, const FreePiece *piece, const double motion[RIGID_MODES], char text[FREE_TEXT])
 {
   const double *rotation = motion, *translation = motion + 3, square = PetscSqr(VectorLength(rotation));
   const int     dim = modes->mesh->dim;
@@ -581,7 +581,7 @@ PetscErrorCode FreeModesRefuse(FreeModes modes)
 
   PetscFunctionBeginUser;
   for (PetscInt p = 0; p < modes->n_pieces && body < 0; p++) {
-    const Piece *piece = &modes->pieces[p];
+    const FreePiece *piece = &modes->pieces[p];
 
     if (piece->paired || !piece->n_free) continue;
     body = piece->body;
@@ -599,6 +599,46 @@ PetscErrorCode FreeModesRefuse(FreeModes modes)
                           "something holds in every direction",
                           SceneWhere(modes->scene, modes->scene->bodies[body].path, "volume"), message));
   PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  FreeModesGetPieces - shows the connected pieces of the mesh with the motions that supports leave to each.
+
+  Not collective
+
+  Input Parameter:
+. modes - the motions
+
+  Output Parameters:
++ n      - number of pieces
+. pieces - the pieces, the same on all ranks; they belong to the object
+- piece  - number of the piece of each local node; belongs to the object
+@*/
+PetscErrorCode FreeModesGetPieces(FreeModes modes, PetscInt *n, const FreePiece **pieces, const PetscInt **piece)
+{
+  PetscFunctionBeginUser;
+  *n      = modes->n_pieces;
+  *pieces = modes->pieces;
+  *piece  = modes->piece;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  FreeModesMotionText - writes a motion of a piece in words.
+
+  Not collective
+
+  Input Parameters:
++ modes  - the motions
+. piece  - number of the piece
+- motion - the motion
+
+  Output Parameter:
+. text - "translation along y, (0, 1, 0)" or "rotation about z, (0, 0, 1), through (10, 0, 5)"
+@*/
+void FreeModesMotionText(FreeModes modes, PetscInt piece, const double motion[RIGID_MODES], char text[FREE_TEXT])
+{
+  MotionText(modes, &modes->pieces[piece], motion, text);
 }
 
 /*@

@@ -88,7 +88,9 @@ typedef struct {
   PetscReal max_penetration, max_penetration_over_h;
   PetscReal sagitta; /* of first-order facets of the master over the curved surface that they stand for: the mean over
                         the slave points near it (length) */
-  ContactPlace deepest; /* where the largest penetration is */
+  PetscInt     near, averse; /* slave points near the master; of these, those that do not face it and take no part */
+  PetscInt     turned;       /* faces of a rigid master whose normals were turned to the slave */
+  ContactPlace deepest;      /* where the largest penetration is */
 } ContactQuality;
 
 /* How a pair presses, over all its slave nodes. */
@@ -129,6 +131,7 @@ PetscErrorCode ContactMultiplyEnd(Contact, PetscReal *y);
 /* Linear steps and predictions */
 PetscErrorCode ContactHoldActiveSet(Contact, PetscBool holding, PetscBool touching);
 PetscErrorCode ContactMarkPredicted(Contact);
+PetscErrorCode ContactPredictionMissed(Contact, PetscBool *missed);
 PetscErrorCode ContactUnpredictedEnergy(Contact, const PetscReal *u, PetscReal t, PetscReal *energy);
 /* Penalties and multipliers */
 PetscErrorCode ContactSoften(Contact, PetscReal most);
@@ -155,6 +158,8 @@ int                 ContactFindPair(Contact, const char *name);
 PetscBool           ContactPairIsSurface(Contact, int pair);
 PetscErrorCode      ContactPairText(Contact, int pair, char *text, size_t size);
 PetscErrorCode      ContactPairSurface(Contact, int pair, const MeshGroup **slave, PetscReal *mean_face_size);
+PetscErrorCode      ContactPairTermStiffness(Contact, int pair, PetscReal *stiffness);
+PetscErrorCode      ContactPairClosed(Contact, int pair, const PetscInt *label, PetscInt n, PetscInt *closed);
 MPI_Comm            ContactComm(Contact);
 /* Probes and reports */
 PetscErrorCode ContactSummarise(Contact, ContactSummary *);
@@ -169,4 +174,5 @@ PetscErrorCode ContactPairGaps(Contact, int pair, ContactGaps *);
 PetscErrorCode ContactPairQuality(Contact, int pair, ContactQuality *);
 PetscErrorCode ContactPairScatter(Contact, int pair, const PetscReal *u, PetscReal *scatter);
 PetscErrorCode ContactPairMasterDepth(Contact, int pair, const PetscReal *u, PetscReal t, NodeDepth *);
+PetscErrorCode ContactPairDistance(Contact, int pair, const PetscReal *u, PetscReal t, PetscReal *distance);
 PetscErrorCode ContactPairJoined(Contact, int pair, PetscInt *nodes, ContactPlace *);

@@ -1,6 +1,7 @@
 /* Lists of a pair's neighbours over a step: when they are made, whether a fresh search agrees with them, and what
    happens where it does not. */
 #include "contactimpl.h"
+#include "base/smoothstep.h"
 #include "base/timing.h"
 
 /* A gap from fresh lists agrees with the solve's where the two differ by less than this fraction of the gap, plus the
@@ -31,14 +32,8 @@
 /* Motions that differ by less than this fraction differ by round-off. */
 #define CONTACT_SAME_MOTION 1e-9
 
-/* Rises from 0 to 1 between 0 and 1, with zero slope at both ends. */
-static PetscReal SmoothStep(PetscReal x)
-{
-  x = PetscMax(0, PetscMin(1, x));
-  return x * x * (3 - 2 * x);
-}
-
-/* Area factors of the slave points for these lists: 1 inside, fading to 0 one face size past a free edge. */
+/* Area factors of the slave points for these lists: 1 inside, fading to 0 one face size past a free edge, and where the
+   normals do not oppose each other. */
 static PetscErrorCode PairFactors(const ContactPair *pair, NeighbourLists lists, PetscReal *factor)
 {
   PetscFunctionBeginUser;
@@ -48,10 +43,11 @@ static PetscErrorCode PairFactors(const ContactPair *pair, NeighbourLists lists,
     factor[q] = 0;
     PetscCall(ContactPointEvaluate(pair, pair->facets, lists, q, lists->nearest[q], SMOOTHER_GAP, &found));
     if (found && !pair->master)
-      factor[q] = 1;
+      factor[q] = NeighbourListsOpposed(lists, q, pair->work->result.normal);
     else if (found)
       factor[q] =
-        1 - SmoothStep(pair->work->result.beyond / lists->facet_size[lists->facet_ptr[q] + pair->work->result.seed]);
+        lists->share[q] *
+        (1 - SmoothStep(pair->work->result.beyond / lists->facet_size[lists->facet_ptr[q] + pair->work->result.seed]));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -88,6 +84,19 @@ static PetscErrorCode PairListsServe(ContactPair *pair, const PetscReal *u, Pets
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &all, 1, MPI_INT, MPI_LAND, pair->mesh->comm));
   *serve = all ? PETSC_TRUE : PETSC_FALSE;
   PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Factors follow the solution, and the solution follows the factors. Within a step a factor that would turn back is set
+   between its last two values, where their secant sees no change any more. */
+static void PairDampFactors(ContactPair *pair)
+{
+  for (PetscInt q = 0; q < pair->lists->n_slaves; q++) {
+    const PetscReal now = pair->factor[q], change = pair->next_factor[q] - now, before = pair->factor_change[q];
+
+    if (change * before < 0) pair->next_factor[q] = now - change * (now - pair->factor_before[q]) / (change - before);
+    pair->factor_change[q] = change;
+    pair->factor_before[q] = now;
+  }
 }
 
 /* The next lists replace those in force. */
@@ -177,6 +186,7 @@ PetscErrorCode ContactGather(Contact contact, const PetscReal *u, PetscReal t, P
     PetscCall(PairListsServe(pair, u, t, needed, changed, &serve));
     if (!serve) PetscCall(PairSearch(pair, u, t, needed));
     if (pair->next) PetscCall(PairTakeNext(pair));
+    PetscCall(PetscArrayzero(pair->factor_change, pair->lists->n_slaves));
     pair->lost    = (ContactLost){0, NAN, 0, -1};
     pair->updates = 0;
   }
@@ -207,6 +217,7 @@ static PetscBool FitHolds(NeighbourLists old, NeighbourLists fresh, PetscInt q)
       for (int d = 0; d < dim; d++) y[a] += frame[3 * a + d] * x[d];
     for (int a = 0; a < dim - 1; a++)
       for (int b = 0; b < dim - 1; b++) rho2 += y[a] * metric[2 * a + b] * y[b];
+    if (fresh->point_hoop) rho2 += metric[0] * PetscSqr(fresh->point_hoop[p]);
     if (rho2 >= 1) continue;
     for (PetscInt k = 0; !known && k < n; k++) { /* most points have the same place in the list as before */
       const PetscInt place = (at + k) % n;
@@ -327,6 +338,7 @@ PetscErrorCode ContactListsRenew(Contact contact, const PetscReal *u, PetscReal 
     PetscCall(PairListsMotion(contact, pair, t, &needed));
     PetscCall(PairSearch(pair, u, t, needed));
     PetscCall(ContactNoteLost(pair, t));
+    PairDampFactors(pair);
     PetscCall(PairTakeNext(pair));
   }
   PetscCall(PetscLogEventEnd(contact->event_search, 0, 0, 0, 0));
@@ -381,7 +393,10 @@ PetscErrorCode ContactListsHold(Contact contact, const PetscReal *u, PetscReal t
   }
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &agree, 1, MPI_INT, MPI_LAND, contact->mesh->comm));
   *hold = agree ? PETSC_TRUE : PETSC_FALSE;
-  for (int p = 0; p < contact->n_pairs && !agree; p++) PetscCall(PairTakeNext(&contact->pairs[p]));
+  for (int p = 0; p < contact->n_pairs && !agree; p++) {
+    PairDampFactors(&contact->pairs[p]);
+    PetscCall(PairTakeNext(&contact->pairs[p]));
+  }
   PetscCall(PetscLogEventEnd(contact->event_search, 0, 0, 0, 0));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

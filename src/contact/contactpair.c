@@ -1,6 +1,7 @@
 /* Pairs: surfaces, terms, slave points, offsets and search of each, and what the scene says of it. */
 #include "contactimpl.h"
 #include "search/nodegeometry.h"
+#include "search/toolside.h"
 #include "penaltyrule.h"
 #include "base/refusal.h"
 
@@ -14,8 +15,9 @@
 #define CONTACT_GLOBAL_COSINE 0.5
 
 /* In surface to surface, a slave whose faces are at least this many times coarser than the master's takes a finer
-   quadrature, as its points would skip facets. The figure is below 2, so that round-off does not decide on a mesh of
-   half the size. */
+   quadrature, as its points would skip facets. Axisymmetric slaves always do: the radius is one more factor, and next
+   to the axis the finer rule halves the error of the pressure. The figure is below 2, so that round-off does not decide
+   on a mesh of half the size. */
 #define CONTACT_COARSE 1.9
 
 /* In surface to surface, a node with less than this share of the mean hat area has no term. This is an axis node,
@@ -33,7 +35,7 @@ static PetscErrorCode PairChooseNodes(Mesh mesh, Scene scene, ContactPair *pair)
   PetscFunctionBeginUser;
   PetscCallMPI(MPI_Comm_rank(mesh->comm, &rank));
   PetscCall(PetscMalloc4(mesh->n_nodes, &area, mesh->n_nodes, &size, mesh->n_nodes, &turn, mesh->n_nodes, &share));
-  PetscCall(SurfaceNodeSizes(pair->slave, scene->geometry, size, turn, share));
+  PetscCall(SurfaceNodeSizes(pair->slave, scene->geometry, pair->n_images, pair->images, size, turn, share));
   if (hats)
     PetscCall(SlavePointsHatAreas(pair->slaves, scene->geometry, NULL, area));
   else
@@ -98,6 +100,7 @@ static PetscErrorCode PairCreateTerms(Mesh mesh, ContactPair *pair)
                          &pair->stiffness, pair->n, &pair->stiffness_before));
   PetscCall(PetscCalloc6(slaves->n, &pair->factor, slaves->n, &pair->next_factor, slaves->n, &pair->seed, slaves->n,
                          &pair->point_gap, 3 * slaves->n, &pair->point_normal, slaves->n, &pair->point_force));
+  PetscCall(PetscCalloc2(slaves->n, &pair->factor_before, slaves->n, &pair->factor_change));
   PetscCall(ContactVariationsCreate(mesh->dim, slaves->n, &pair->variations));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -105,7 +108,8 @@ static PetscErrorCode PairCreateTerms(Mesh mesh, ContactPair *pair)
 /* Creates slave points, terms and offsets, as the formulation asks for. */
 static PetscErrorCode PairCreatePoints(Mesh mesh, Scene scene, Loads loads, ContactPair *pair)
 {
-  const int finer = pair->master && pair->slave->mean_size >= CONTACT_COARSE * pair->master->mean_size;
+  const int finer = pair->master && (scene->geometry == GEOMETRY_AXISYMMETRIC ||
+                                     pair->slave->mean_size >= CONTACT_COARSE * pair->master->mean_size);
 
   PetscFunctionBeginUser;
   if (pair->formulation.surface) {
@@ -118,7 +122,7 @@ static PetscErrorCode PairCreatePoints(Mesh mesh, Scene scene, Loads loads, Cont
                               0, pair->formulation.offsets, &pair->master_offsets));
   } else {
     PetscCall(PairChooseNodes(mesh, scene, pair));
-    PetscCall(SlavePointsCreateNodes(pair->slave, pair->n, pair->node, &pair->slaves));
+    PetscCall(SlavePointsCreateNodes(pair->slave, pair->n, pair->node, pair->size, &pair->slaves));
   }
   PetscCall(PairCreateTerms(mesh, pair));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -136,8 +140,9 @@ static FitSettings PairFitSettings(Scene scene, const ContactPair *pair, int ord
 
   fit.fitted   = (PetscBool)(pair->smoother->fitted && contact->master);
   fit.integral = (PetscBool)(fit.fitted && pair->formulation.surface);
+  fit.revolved = (PetscBool)(fit.integral && scene->geometry == GEOMETRY_AXISYMMETRIC);
   if (fit.integral) {
-    if (fit.support == 0) fit.support = order == 2 ? (scene->dim == 2 ? 1.75 : 2.25) : 3;
+    if (fit.support == 0) fit.support = order == 1 ? 3 : fit.revolved ? 2 : scene->dim == 2 ? 1.75 : 2.25;
     if (fit.exponent == 0) fit.exponent = 3;
     fit.support *= order; /* spacings in a face size */
   }
@@ -175,6 +180,37 @@ static PetscErrorCode PairCheckGlobalFrame(Mesh mesh, Scene scene, Loads loads, 
                           SceneWhere(scene, pair->scene->path, "frame"), pair->scene->master,
                           (double)(PetscAcosReal(PetscMax(-1, cosine)) * 180 / PETSC_PI)));
   }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Turns the normals of a meshed rigid master as the scene says. */
+static PetscErrorCode PairTurnMaster(Scene scene, Loads loads, const ContactPair *pair)
+{
+  const SceneContact *contact = pair->scene;
+  PetscBool           decided = PETSC_TRUE;
+
+  PetscFunctionBeginUser;
+  if (!pair->master || !pair->master->rigid) {
+    if (contact->master_normal == MASTER_NORMAL_FLIP)
+      PetscCall(RefuseInput(pair->mesh->comm,
+                            "%s: is flip, but the master is %s; allowed: flip where the master is a meshed rigid tool",
+                            SceneWhere(scene, contact->path, "master_normal"),
+                            pair->master ? "a surface of a body, whose normals point out of it"
+                                         : "an analytic surface, whose own keys say where its outside is"));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  if (contact->master_normal == MASTER_NORMAL_FLIP) {
+    ToolSideFlip(pair->master);
+    pair->master->turned = pair->master->n_faces;
+  }
+  if (contact->master_normal == MASTER_NORMAL_AUTO)
+    PetscCall(ToolSideFind(pair->master, pair->slave, loads, &pair->master->turned, &decided));
+  if (!decided)
+    PetscCall(RefuseInput(pair->mesh->comm,
+                          "%s: contact '%s': the start of '%s' does not show on which side of the rigid '%s' it is; "
+                          "allowed: master_normal: keep (the side to which the normals of the mesh point) or flip (the "
+                          "other one), or a start on one side",
+                          SceneWhere(scene, contact->path, "master"), contact->name, contact->slave, contact->master));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -223,7 +259,10 @@ PetscErrorCode ContactPairCreate(Mesh mesh, Scene scene, Elasticity elasticity, 
   PetscCall(SurfaceCreate(mesh, scene, elasticity, contact->path, "slave", contact->slave, &pair->slave));
   if (contact->master)
     PetscCall(SurfaceCreate(mesh, scene, elasticity, contact->path, "master", contact->master, &pair->master));
-  PetscCall(SurfaceImages(mesh, scene, contact, &pair->n_images, pair->images));
+  PetscCall(PairTurnMaster(scene, loads, pair));
+  PetscCall(SurfaceImages(mesh, scene, contact, pair->slave, pair->master, &pair->n_images, pair->images));
+  if (contact->find_symmetry && pair->smoother->fitted)
+    PetscCall(SurfaceImagesFromSupports(mesh, scene, pair->slave, pair->master, &pair->n_images, pair->images));
   if (pair->master) PetscCall(SurfaceFindFreeEdges(pair->master, pair->n_images, pair->images));
   if (pair->fit.fitted && pair->fit.global_frame) PetscCall(PairCheckGlobalFrame(mesh, scene, loads, pair));
   PetscCall(PairCreatePoints(mesh, scene, loads, pair));
@@ -271,6 +310,7 @@ PetscErrorCode ContactPairDestroy(ContactPair *pair)
   PetscCall(PetscFree5(pair->force, pair->normal, pair->pressure, pair->stiffness, pair->stiffness_before));
   PetscCall(
     PetscFree6(pair->factor, pair->next_factor, pair->seed, pair->point_gap, pair->point_normal, pair->point_force));
+  PetscCall(PetscFree2(pair->factor_before, pair->factor_change));
   PetscCall(ContactVariationsDestroy(&pair->variations));
   PetscCall(PetscFree(pair->before));
   PetscCall(AndersonDestroy(&pair->mixing));

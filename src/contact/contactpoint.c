@@ -31,9 +31,10 @@ static PetscBool PointEvaluateAnalytic(const ContactPair *pair, NeighbourLists l
   return PETSC_TRUE;
 }
 
-/* Positions relative to slave point q, as of NeighbourListsRelative(), and weights of the points in its list. dim is
-   a constant where this is called, so that the inner loops unroll. */
-LANES_INLINE void GatherPoints(const int dim, NeighbourLists lists, PetscInt q, PetscReal *x, PetscReal *multiplier)
+/* Positions relative to slave point q, as of NeighbourListsRelative(), weights and distances along the hoop of the
+   points in its list. dim is a constant where this is called, so that the inner loops unroll. */
+LANES_INLINE void GatherPoints(const int dim, NeighbourLists lists, PetscInt q, PetscReal *x, PetscReal *multiplier,
+                               PetscReal *hoop)
 {
   const PetscInt  *point = &lists->list_point[lists->list_ptr[q]], n = lists->list_ptr[q + 1] - lists->list_ptr[q];
   const PetscReal *X = lists->point_X, *u = lists->point_u, *weight = lists->point_weight;
@@ -47,6 +48,7 @@ LANES_INLINE void GatherPoints(const int dim, NeighbourLists lists, PetscInt q, 
     const PetscInt p = point[i];
 
     multiplier[i] = weight[p];
+    if (dim == 2 && lists->point_hoop) hoop[i] = lists->point_hoop[p];
     for (int d = 0; d < dim; d++) x[i * dim + d] = (X[p * dim + d] - X_0[d]) + (u[p * dim + d] - u_0[d]);
   }
 }
@@ -83,13 +85,13 @@ PetscErrorCode ContactPointEvaluate(const ContactPair *pair, const Smoother *smo
   }
   if (n > work->x_room) {
     work->x_room = 2 * n;
-    PetscCall(PetscFree2(work->x, work->multiplier));
-    PetscCall(PetscMalloc2(work->x_room * dim, &work->x, work->x_room, &work->multiplier));
+    PetscCall(PetscFree3(work->x, work->multiplier, work->hoop));
+    PetscCall(PetscMalloc3(work->x_room * dim, &work->x, work->x_room, &work->multiplier, work->x_room, &work->hoop));
   }
   if (dim == 3)
-    GatherPoints(3, lists, q, work->x, work->multiplier);
+    GatherPoints(3, lists, q, work->x, work->multiplier, work->hoop);
   else
-    GatherPoints(2, lists, q, work->x, work->multiplier);
+    GatherPoints(2, lists, q, work->x, work->multiplier, work->hoop);
   in     = (SmootherInput){.dim         = dim,
                            .n_points    = (int)n,
                            .n_facets    = (int)(lists->facet_ptr[q + 1] - lists->facet_ptr[q]),
@@ -100,6 +102,7 @@ PetscErrorCode ContactPointEvaluate(const ContactPair *pair, const Smoother *smo
                            .degree      = lists->degree[q],
                            .exponent    = pair->fit.exponent,
                            .multiplier  = work->multiplier,
+                           .hoop        = work->hoop,
                            .frame       = &lists->frame[9 * q],
                            .metric      = &lists->metric[4 * q],
                            .derivatives = pair->fit.derivatives,
@@ -108,9 +111,10 @@ PetscErrorCode ContactPointEvaluate(const ContactPair *pair, const Smoother *smo
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Adds a row of n nodes to the map; node a lies on image side[a], and all of them on `image`. */
-static void MapAddRow(const ContactPair *pair, int row, int image, PetscInt n, const PetscInt *nodes, const int *side,
-                      const PetscReal *S)
+/* Adds a row of n nodes to the map; node a lies on image side[a], and all of them on `image`, with their radius
+   multiplied by the cosine of an angle. */
+static void MapAddRow(const ContactPair *pair, int row, int image, PetscReal cosine, PetscInt n, const PetscInt *nodes,
+                      const int *side, const PetscReal *S)
 {
   ContactWork     *work = pair->work;
   ContactMap      *map  = &work->map;
@@ -121,6 +125,7 @@ static void MapAddRow(const ContactPair *pair, int row, int image, PetscInt n, c
     map->node[k] = work->slot[nodes[a]];
     map->S[k]    = S[a];
     for (int d = 0; d < 3; d++) map->sign[3 * k + d] = sign[d] * pair->images[side[a]].sign[d];
+    map->sign[3 * k] *= cosine;
   }
   map->ptr[row + 1] = k;
 }
@@ -130,8 +135,9 @@ static void MapAddPoint(const ContactPair *pair, NeighbourLists lists, int row, 
 {
   const PetscInt first = lists->point_ptr[p];
 
-  MapAddRow(pair, row, lists->point_image[p], lists->point_ptr[p + 1] - first, &lists->point_node[first],
-            &lists->point_side[first], &lists->point_S[first]);
+  MapAddRow(pair, row, lists->point_image[p], lists->point_cosine ? lists->point_cosine[p] : 1,
+            lists->point_ptr[p + 1] - first, &lists->point_node[first], &lists->point_side[first],
+            &lists->point_S[first]);
 }
 
 /* Fills the map of the last evaluation with the nodes' slots. */
@@ -141,7 +147,7 @@ static void MapFill(const ContactPair *pair, NeighbourLists lists, PetscInt q)
   const PetscInt own  = lists->slave_ptr[q];
 
   work->map.ptr[0] = 0;
-  MapAddRow(pair, 0, 0, lists->slave_ptr[q + 1] - own, &lists->slave_node[own], &lists->slave_side[own],
+  MapAddRow(pair, 0, 0, 1, lists->slave_ptr[q + 1] - own, &lists->slave_node[own], &lists->slave_side[own],
             &lists->slave_S[own]);
   for (int i = 0; i < work->result.n; i++)
     MapAddPoint(pair, lists, 1 + i, lists->list_point[lists->list_ptr[q] + work->result.points[i]]);
@@ -221,7 +227,7 @@ PetscErrorCode ContactSecondBegin(const ContactPair *pair, PetscInt nodes, Petsc
 {
   ContactWork *work   = pair->work;
   const int    dim    = pair->mesh->dim;
-  const int    degree = pair->fit.fitted ? pair->fit.degree : 1; /* facets need no more than the sum's head */
+  const int    degree = pair->fit.fitted ? FitDegreeCode(&pair->fit, pair->fit.degree) : 1; /* facets need no more than the sum's head */
   const int    dense  = PetscMax(pair->smoother->dense_capacity, pair->facets->dense_capacity);
   const int    depth  = (int)points * (1 + PetscMax(FitDerivativesDepth(dim, degree), dim * (1 + dense)));
   const long   room   = FitDerivativesWorkspace(dim, degree, (int)nodes, depth);

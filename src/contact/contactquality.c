@@ -106,6 +106,18 @@ static void SumSagitta(const ContactPair *pair, PetscMPIInt rank, PetscReal sum[
   }
 }
 
+/* Counts this rank's slave points near the master, and those of them that do not face it. */
+static void CountAverse(const ContactPair *pair, PetscMPIInt rank, PetscInt count[2])
+{
+  const NeighbourLists lists = pair->lists;
+
+  for (PetscInt q = 0; q < lists->n_slaves && pair->master; q++) {
+    if (!SlavePointIsOwn(pair->slaves, q, rank)) continue;
+    count[0] += lists->averse[q] || lists->facet_ptr[q] < lists->facet_ptr[q + 1];
+    count[1] += lists->averse[q];
+  }
+}
+
 /*@
   ContactPairQuality - measures the penetrations of a pair in the present state, against the size of its faces and
   against what facets leave out.
@@ -117,12 +129,12 @@ static void SumSagitta(const ContactPair *pair, PetscMPIInt rank, PetscReal sum[
 - p       - number of the pair
 
   Output Parameter:
-. quality - penetrations, sagitta of the facets
+. quality - penetrations, sagitta of the facets, slave points that take no part
 @*/
 PetscErrorCode ContactPairQuality(Contact contact, int p, ContactQuality *quality)
 {
-  const ContactPair *pair  = &contact->pairs[p];
-  PetscInt           nodes = 0;
+  const ContactPair *pair     = &contact->pairs[p];
+  PetscInt           count[3] = {0, 0, 0}; /* nodes, points near, averse */
   PetscMPIInt        rank;
   PetscReal          most[2] = {0, 0}, sum[2] = {0, 0}, *depth;
 
@@ -133,14 +145,16 @@ PetscErrorCode ContactPairQuality(Contact contact, int p, ContactQuality *qualit
 
     depth[c] = pair->now.status[c] == CONTACT_CLOSED ? penetration : NAN;
     if (pair->now.status[c] != CONTACT_CLOSED) continue;
-    nodes++;
+    count[0]++;
     most[0] = PetscMax(most[0], penetration);
     most[1] = PetscMax(most[1], penetration / pair->size[c]);
   }
   PetscCallMPI(MPI_Comm_rank(contact->mesh->comm, &rank));
   SumSagitta(pair, rank, sum);
-  *quality = (ContactQuality){.nodes = 0};
-  PetscCallMPI(MPI_Allreduce(&nodes, &quality->nodes, 1, MPIU_INT, MPI_SUM, contact->mesh->comm));
+  CountAverse(pair, rank, &count[1]);
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, count, 3, MPIU_INT, MPI_SUM, contact->mesh->comm));
+  *quality = (ContactQuality){.nodes = count[0], .near = count[1], .averse = count[2]};
+  if (pair->master) quality->turned = pair->master->turned;
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, most, 2, MPIU_REAL, MPIU_MAX, contact->mesh->comm));
   PetscCall(FindPlace(contact->mesh, pair, depth, most[0], &quality->deepest));
   PetscCall(PetscFree(depth));
@@ -149,6 +163,43 @@ PetscErrorCode ContactPairQuality(Contact contact, int p, ContactQuality *qualit
   quality->max_penetration_over_h = most[1];
   quality->sagitta                = sum[1] > 0 ? sum[0] / sum[1] : 0;
   if (quality->sagitta <= QUALITY_ROUND_OFF * pair->slave->mean_size) quality->sagitta = 0;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ContactPairDistance - computes the distance between slave and master of a pair, whichever way their normals point.
+
+  Collective
+
+  Input Parameters:
++ contact - the contact
+. p       - number of the pair
+. u       - local displacements of the present state, u[n_nodes*dim] (length), ghosts included
+- t       - its load parameter
+
+  Output Parameter:
+. distance - the distance (length), the same on all ranks
+
+  Note:
+  It searches the whole surfaces, and is meant for a pair that never met.
+@*/
+PetscErrorCode ContactPairDistance(Contact contact, int p, const PetscReal *u, PetscReal t, PetscReal *distance)
+{
+  const ContactPair *pair = &contact->pairs[p];
+
+  PetscFunctionBeginUser;
+  if (pair->master) {
+    PetscCall(SearchLeastDistance(pair->search, u, t, distance));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  *distance = PETSC_MAX_REAL;
+  for (PetscInt q = 0; q < pair->lists->n_slaves; q++) {
+    PetscBool found;
+
+    PetscCall(ContactPointEvaluate(pair, pair->facets, pair->lists, q, -1, SMOOTHER_GAP, &found));
+    if (found) *distance = PetscMin(*distance, PetscAbsReal(pair->work->result.gap));
+  }
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, distance, 1, MPIU_REAL, MPI_MIN, contact->mesh->comm));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -233,7 +284,7 @@ static PetscErrorCode PairCheckFacing(Contact contact, const ContactPair *pair)
     PetscCall(RefuseInput(mesh->comm,
                           "%s: contact '%s': no face of '%s' faces '%s', their outward normals point the same way; "
                           "allowed: surfaces that look at each other "
-                          "(turn a rigid tool's surface round in gmsh, ReverseMesh, or name the other side)",
+                          "(name the other side of a body, or set master_normal: auto for a rigid tool)",
                           SceneWhere(contact->scene, pair->scene->path, "master"), pair->scene->name,
                           pair->scene->master, pair->scene->slave));
   }
@@ -293,6 +344,7 @@ PetscErrorCode ContactTakeOverlap(Contact contact)
 
     if (pair->master) PetscCall(PairCheckFacing(contact, pair));
     PetscCall(PairCheckAddedOverlap(contact, pair));
+    PetscCall(ContactRefuseImmersed(contact, p));
     for (PetscInt c = 0; c < pair->n; c++) {
       if (pair->scene->initial_overlap == OVERLAP_RAMP || pair->scene->initial_overlap == OVERLAP_IGNORE)
         pair->now.offset[c] = pair->now.gap[c] < 0 ? pair->now.gap[c] : 0;

@@ -375,9 +375,27 @@ PetscErrorCode ContactPairFits(Contact contact, int p, ContactFits *fits)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Appends the planes of symmetry that the supports have shown. */
+static void AppendPlanes(const ContactPair *pair, char *text, size_t size)
+{
+  const char *word = ", mirrored at";
+
+  for (int bit = 1; bit < pair->n_images && pair->scene->find_symmetry; bit <<= 1) {
+    const SurfaceImage *image = &pair->images[bit];
+    const size_t        used  = strlen(text);
+
+    for (int d = 0; d < pair->mesh->dim; d++) {
+      if (image->sign[d] > 0 || (pair->geometry == GEOMETRY_AXISYMMETRIC && image->shift[d] == 0 && d == 0)) continue;
+      snprintf(text + used, size - used, "%s %c = %g", word, "xyz"[d],
+               (double)(image->shift[d] / 2 + pair->mesh->centre[d]));
+      word = " and";
+    }
+  }
+}
+
 /*@
   ContactPairText - writes what touches what, and how, such as "plate_bottom on pipe_outer, diffuse, degree 4, support
-  3.6, weight 3.5".
+  3.6, weight 3.5, mirrored at x = 0".
 
   Not collective
 
@@ -409,5 +427,56 @@ PetscErrorCode ContactPairText(Contact contact, int p, char *text, size_t size)
              SmootherNames[scene->smoother], how, pair->fit.degree,
              (double)(pair->fit.integral ? pair->fit.support / pair->master->order : pair->fit.support),
              (double)pair->fit.exponent);
+  AppendPlanes(pair, text, size);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ContactPairTermStiffness - returns the stiffness of one term of a pair at the automatic penalty, in the mean over its
+  terms: about that of the elements below one slave node.
+
+  Collective
+
+  Input Parameters:
++ contact - the contact
+- pair    - its number
+
+  Output Parameter:
+. stiffness - force per length, the same on all ranks
+@*/
+PetscErrorCode ContactPairTermStiffness(Contact contact, int pair, PetscReal *stiffness)
+{
+  const ContactPair *p      = &contact->pairs[pair];
+  PetscReal          sum[2] = {0, (PetscReal)p->n};
+
+  PetscFunctionBeginUser;
+  for (PetscInt c = 0; c < p->n; c++) sum[0] += p->area[c];
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sum, 2, MPIU_REAL, MPI_SUM, contact->mesh->comm));
+  *stiffness = sum[1] > 0 ? p->automatic * sum[0] / sum[1] : 0;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ContactPairClosed - says whether a pair has closed terms at the nodes of some bodies.
+
+  Collective
+
+  Input Parameters:
++ contact - the contact
+. pair    - number of the pair
+. label   - label[n_nodes] of each local node, from 0 to n - 1
+- n       - number of labels
+
+  Output Parameter:
+. closed - closed[n]: slave nodes with that label that are closed in the present state, of all ranks
+@*/
+PetscErrorCode ContactPairClosed(Contact contact, int pair, const PetscInt *label, PetscInt n, PetscInt *closed)
+{
+  const ContactPair *p = &contact->pairs[pair];
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscArrayzero(closed, n));
+  for (PetscInt c = 0; c < p->n; c++) closed[label[p->node[c]]] += p->now.status[c] == CONTACT_CLOSED;
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, closed, (PetscMPIInt)n, MPIU_INT, MPI_SUM, contact->mesh->comm));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -170,6 +170,35 @@ PetscErrorCode ContactMarkPredicted(Contact contact)
 }
 
 /*@
+  ContactPredictionMissed - says whether a prediction counted on contact and the present state has none.
+
+  Collective
+
+  Input Parameter:
+. contact - the contact, after ContactResidual() with forces
+
+  Output Parameter:
+. missed - the same on all ranks
+@*/
+PetscErrorCode ContactPredictionMissed(Contact contact, PetscBool *missed)
+{
+  int found[2] = {0, 0}; /* predicted; closed */
+
+  PetscFunctionBeginUser;
+  for (int p = 0; p < contact->n_pairs; p++) {
+    const ContactPair *pair = &contact->pairs[p];
+
+    for (PetscInt c = 0; c < pair->n; c++) {
+      found[0] = found[0] || pair->predicted[c];
+      found[1] = found[1] || pair->now.status[c] == CONTACT_CLOSED;
+    }
+  }
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, found, 2, MPI_INT, MPI_LOR, contact->mesh->comm));
+  *missed = (PetscBool)(found[0] && !found[1]);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
   ContactUnpredictedEnergy - adds the energy of those terms in contact at (u, t) that the prediction did not count on.
 
   Collective

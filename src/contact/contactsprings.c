@@ -1,78 +1,40 @@
-/* Weak springs that hold bodies until contact does. */
+/* Weak springs that hold bodies until contact does, see contactsprings.h. */
 #include "contact/contactsprings.h"
-#include "contactimpl.h"
-
-/* Stiffness of the springs as a part of the automatic penalty, which is the stiffness of the elements at the surface.
-   Each pass leaves about this part, times the number of elements through a body, of the force of the pass before. A
-   body that nothing holds moves in one pass by its penetration at rest divided by this part. */
-#define CONTACT_SPRINGS_STIFFNESS 1e-3
 
 struct _n_Stabiliser {
-  Vec stiffness, anchor, work; /* force per length of each free dof; where the spring has no force */
+  Vec        stiffness, anchor, work; /* force per length of each free dof; where the spring has no force */
+  PetscInt   n_ties;
+  SpringTie *ties;
+  PetscReal *stretch; /* n_ties (length), at the last evaluation */
 };
 
-/* Adds to each owned node of a deformable surface its area times the stiffness. */
-static PetscErrorCode AddSurface(ContactSurface surface, Geometry geometry, PetscReal stiffness, PetscReal *values)
-{
-  Mesh        mesh = surface->mesh;
-  PetscReal  *area;
-  PetscMPIInt rank;
-
-  PetscFunctionBeginUser;
-  PetscCallMPI(MPI_Comm_rank(mesh->comm, &rank));
-  PetscCall(PetscMalloc1(mesh->n_nodes, &area));
-  PetscCall(SurfaceNodeAreas(surface, geometry, NULL, area, NULL));
-  for (PetscInt i = 0; i < surface->group->n_nodes; i++) {
-    const PetscInt node = surface->group->nodes[i];
-
-    for (int d = 0; d < mesh->dim && mesh->node_owner[node] == rank; d++)
-      values[node * mesh->dim + d] += stiffness * PetscMax(area[node], 0);
-  }
-  PetscCall(PetscFree(area));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /*@
-  ContactSpringsCreate - makes springs on the deformable surfaces of all pairs that ask for it, slave and master.
+  ContactSpringsCreate - makes springs.
 
   Collective
 
   Input Parameters:
-+ contact - the contact, borrowed for the call
-- like    - a vector of the free dofs, whose layout is taken
++ mesh      - the mesh
+. stiffness - stiffness[n_nodes*dim] (force per length) of the spring at each local dof; 0 at the nodes of other ranks
+- like      - a vector of the free dofs, whose layout is taken
 
   Output Parameter:
-. out - the springs, without force at displacements of 0; NULL where no pair asks for them
+. out - the springs, without force at displacements of 0
 
   Note:
   Source: the proximal point method (Rockafellar 1976) on the potential energy.
 @*/
-PetscErrorCode ContactSpringsCreate(Contact contact, Vec like, ContactSprings *out)
+PetscErrorCode ContactSpringsCreate(Mesh mesh, const PetscReal *stiffness, Vec like, ContactSprings *out)
 {
   ContactSprings s;
-  PetscReal     *values;
-  PetscBool      any = PETSC_FALSE;
 
   PetscFunctionBeginUser;
-  *out = NULL;
-  for (int p = 0; p < contact->n_pairs; p++) any = (PetscBool)(any || contact->pairs[p].scene->stabilise);
-  if (!any) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscNew(&s));
   PetscCall(VecDuplicate(like, &s->stiffness));
   PetscCall(VecDuplicate(like, &s->anchor));
   PetscCall(VecDuplicate(like, &s->work));
   PetscCall(VecZeroEntries(s->anchor));
-  PetscCall(PetscCalloc1(contact->mesh->n_nodes * contact->mesh->dim, &values));
-  for (int p = 0; p < contact->n_pairs; p++) {
-    const ContactPair *pair = &contact->pairs[p];
-
-    if (!pair->scene->stabilise) continue;
-    PetscCall(AddSurface(pair->slave, pair->geometry, CONTACT_SPRINGS_STIFFNESS * pair->automatic, values));
-    if (pair->master && pair->master->group)
-      PetscCall(AddSurface(pair->master, pair->geometry, CONTACT_SPRINGS_STIFFNESS * pair->automatic, values));
-  }
-  PetscCall(MeshLocalToGlobal(contact->mesh, values, s->stiffness));
-  PetscCall(PetscFree(values));
+  PetscCall(MeshLocalToGlobal(mesh, stiffness, s->stiffness));
   *out = s;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -92,6 +54,7 @@ PetscErrorCode ContactSpringsDestroy(ContactSprings *s)
   PetscCall(VecDestroy(&(*s)->stiffness));
   PetscCall(VecDestroy(&(*s)->anchor));
   PetscCall(VecDestroy(&(*s)->work));
+  PetscCall(PetscFree2((*s)->ties, (*s)->stretch));
   PetscCall(PetscFree(*s));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -112,17 +75,128 @@ PetscErrorCode ContactSpringsRelax(ContactSprings s, Vec x)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The springs' forces at x, into the work vector. */
+/*@
+  ContactSpringsSetTies - replaces the ties.
+
+  Collective
+
+  Input Parameters:
++ s    - the springs
+. n    - number of ties
+- ties - ties[n], the same on all ranks; copied
+@*/
+PetscErrorCode ContactSpringsSetTies(ContactSprings s, PetscInt n, const SpringTie *ties)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscFree2(s->ties, s->stretch));
+  PetscCall(PetscMalloc2(n, &s->ties, n, &s->stretch));
+  PetscCall(PetscArraycpy(s->ties, ties, n));
+  s->n_ties = n;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ContactSpringsRelease - releases all ties but those of some motions.
+
+  Not collective, the same on all ranks
+
+  Input Parameters:
++ s    - the springs
+. n    - number of motions that stay tied
+- kept - their numbers
+
+  Output Parameter:
+. any - one was released
+@*/
+PetscErrorCode ContactSpringsRelease(ContactSprings s, int n, const int *kept, PetscBool *any)
+{
+  PetscFunctionBeginUser;
+  *any = PETSC_FALSE;
+  for (PetscInt i = 0; i < s->n_ties; i++) {
+    PetscBool keep = PETSC_FALSE;
+
+    for (int k = 0; k < n; k++) keep = (PetscBool)(keep || kept[k] == s->ties[i].motion);
+    if (keep || s->ties[i].released) continue;
+    s->ties[i].released = *any = PETSC_TRUE;
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ContactSpringsRetie - ties what was released.
+
+  Not collective, the same on all ranks
+
+  Input Parameter:
+. s - the springs
+
+  Output Parameter:
+. any - one had been released
+@*/
+PetscErrorCode ContactSpringsRetie(ContactSprings s, PetscBool *any)
+{
+  PetscFunctionBeginUser;
+  *any = PETSC_FALSE;
+  for (PetscInt i = 0; i < s->n_ties; i++) {
+    *any                = (PetscBool)(*any || s->ties[i].released);
+    s->ties[i].released = PETSC_FALSE;
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ContactSpringsHaveTie - says whether a motion is tied.
+
+  Not collective
+
+  Input Parameters:
++ s      - the springs
+- motion - number of the motion
+@*/
+PetscBool ContactSpringsHaveTie(ContactSprings s, int motion)
+{
+  PetscBool have = PETSC_FALSE;
+
+  for (PetscInt i = 0; i < s->n_ties; i++) have = (PetscBool)(have || s->ties[i].motion == motion);
+  return have;
+}
+
+/* Computes the stretches of the ties into s->stretch; a released one has none. work holds x less the anchors. */
+static PetscErrorCode Stretch(ContactSprings s)
+{
+  const PetscScalar *d;
+  PetscInt           first, end;
+
+  PetscFunctionBeginUser;
+  if (!s->n_ties) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(VecGetOwnershipRange(s->work, &first, &end));
+  PetscCall(VecGetArrayRead(s->work, &d));
+  for (PetscInt i = 0; i < s->n_ties; i++) {
+    const SpringTie *tie = &s->ties[i];
+
+    s->stretch[i] = 0;
+    for (PetscInt k = 0; k < tie->n && !tie->released; k++)
+      if (tie->dof[k] >= first && tie->dof[k] < end)
+        s->stretch[i] += tie->value[k] * PetscRealPart(d[tie->dof[k] - first]);
+  }
+  PetscCall(VecRestoreArrayRead(s->work, &d));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, s->stretch, (PetscMPIInt)s->n_ties, MPIU_REAL, MPI_SUM,
+                             PetscObjectComm((PetscObject)s->work)));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The forces at x of the springs at dofs, into the work vector, and the stretches of the ties. */
 static PetscErrorCode SpringForces(ContactSprings s, Vec x)
 {
   PetscFunctionBeginUser;
   PetscCall(VecWAXPY(s->work, -1, s->anchor, x));
+  PetscCall(Stretch(s));
   PetscCall(VecPointwiseMult(s->work, s->work, s->stiffness));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /*@
-  ContactSpringsResidual - adds the springs' forces to the residual.
+  ContactSpringsResidual - adds the forces of springs and ties to the residual.
 
   Collective
 
@@ -135,15 +209,28 @@ static PetscErrorCode SpringForces(ContactSprings s, Vec x)
 @*/
 PetscErrorCode ContactSpringsResidual(ContactSprings s, Vec x, Vec F)
 {
+  PetscScalar *f;
+  PetscInt     first, end;
+
   PetscFunctionBeginUser;
   if (!s) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(SpringForces(s, x));
   PetscCall(VecAXPY(F, 1, s->work));
+  PetscCall(VecGetOwnershipRange(F, &first, &end));
+  PetscCall(VecGetArray(F, &f));
+  for (PetscInt i = 0; i < s->n_ties; i++) {
+    const SpringTie *tie = &s->ties[i];
+
+    for (PetscInt k = 0; k < tie->n; k++)
+      if (tie->dof[k] >= first && tie->dof[k] < end)
+        f[tie->dof[k] - first] += tie->stiffness * s->stretch[i] * tie->value[k];
+  }
+  PetscCall(VecRestoreArray(F, &f));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /*@
-  ContactSpringsLoad - finds the norm of the springs' forces and the energy in them.
+  ContactSpringsLoad - finds the forces in springs and ties and the energy in both.
 
   Collective
 
@@ -152,21 +239,26 @@ PetscErrorCode ContactSpringsResidual(ContactSprings s, Vec x, Vec F)
 - x - free displacements (length)
 
   Output Parameters:
-+ force  - norm of the forces
-- energy - of all springs
++ force  - norm of the forces of the springs
+. tied   - largest force along the motion that a tie holds
+- energy - of all
 @*/
-PetscErrorCode ContactSpringsLoad(ContactSprings s, Vec x, PetscReal *force, PetscReal *energy)
+PetscErrorCode ContactSpringsLoad(ContactSprings s, Vec x, PetscReal *force, PetscReal *tied, PetscReal *energy)
 {
   PetscScalar work[2] = {0, 0};
 
   PetscFunctionBeginUser;
-  *force = *energy = 0;
+  *force = *tied = *energy = 0;
   if (!s) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(SpringForces(s, x));
   PetscCall(VecNorm(s->work, NORM_2, force));
   PetscCall(VecDot(s->work, x, &work[0]));
   PetscCall(VecDot(s->work, s->anchor, &work[1]));
   *energy = PetscRealPart(work[0] - work[1]) / 2;
+  for (PetscInt i = 0; i < s->n_ties; i++) {
+    *tied = PetscMax(*tied, s->ties[i].stiffness * PetscAbsReal(s->stretch[i]));
+    *energy += s->ties[i].stiffness * PetscSqr(s->stretch[i]) / 2;
+  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -184,16 +276,16 @@ PetscErrorCode ContactSpringsLoad(ContactSprings s, Vec x, PetscReal *force, Pet
 @*/
 PetscErrorCode ContactSpringsEnergy(ContactSprings s, Vec x, PetscReal *energy)
 {
-  PetscReal force, mine;
+  PetscReal force, tied, mine;
 
   PetscFunctionBeginUser;
-  PetscCall(ContactSpringsLoad(s, x, &force, &mine));
+  PetscCall(ContactSpringsLoad(s, x, &force, &tied, &mine));
   *energy += mine;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /*@
-  ContactSpringsTangent - adds the springs' stiffness to the diagonal of a matrix.
+  ContactSpringsTangent - adds the stiffness of springs and ties to a matrix.
 
   Collective
 
@@ -201,11 +293,25 @@ PetscErrorCode ContactSpringsEnergy(ContactSprings s, Vec x, PetscReal *energy)
 . s - the springs, or NULL
 
   Input/Output Parameter:
-. A - the tangent
+. A - the tangent; its pattern couples the dofs of each tie
 @*/
 PetscErrorCode ContactSpringsTangent(ContactSprings s, Mat A)
 {
+  PetscInt first, end;
+
   PetscFunctionBeginUser;
-  if (s) PetscCall(MatDiagonalSet(A, s->stiffness, ADD_VALUES));
+  if (!s) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(MatDiagonalSet(A, s->stiffness, ADD_VALUES));
+  if (!s->n_ties) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(MatGetOwnershipRange(A, &first, &end));
+  for (PetscInt i = 0; i < s->n_ties; i++) {
+    const SpringTie *tie = &s->ties[i];
+
+    for (PetscInt k = 0; k < tie->n && !tie->released; k++)
+      for (PetscInt l = 0; l < tie->n && tie->dof[k] >= first && tie->dof[k] < end; l++)
+        PetscCall(MatSetValue(A, tie->dof[k], tie->dof[l], tie->stiffness * tie->value[k] * tie->value[l], ADD_VALUES));
+  }
+  PetscCall(MatAssemblyBegin(A, MAT_FINAL_ASSEMBLY));
+  PetscCall(MatAssemblyEnd(A, MAT_FINAL_ASSEMBLY));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -1,17 +1,31 @@
-/* Weak springs that hold bodies which contact alone is to hold, until it does.
+/* Weak springs that hold bodies which contact alone is to hold, until it does, and ties that hold what no contact does.
 
-   They join the surfaces of pairs with `stabilise: true` to where these were. After a solve the springs are relaxed and
-   the step is solved again, until no force is left in them. So an accepted state is an equilibrium without springs, and
-   while nothing touches, a force moves its body on from pass to pass. All functions accept NULL for no springs. */
+   Springs join dofs to where these were. A tie holds one rigid motion of a body and resists no other: it measures the
+   motion of a few nodes, those of one cell. ContactSpringsRelax() moves the anchors to a state, in which springs and
+   ties then have no force. The owner gives the stiffness of each; freebodies.h decides which bodies have them and how
+   stiff they are. All functions but those that create accept NULL for no springs. */
 #pragma once
-#include "contact/contact.h"
+#include "mesh/mesh.h"
+
+/* stretch = sum value * (displacement of the dof less that of its anchor) */
+typedef struct {
+  int       motion;                        /* which one it holds: a number of the owner */
+  PetscBool released;                      /* it has no force for the time being */
+  PetscReal stiffness;                     /* force per length */
+  PetscInt  n, dof[ELEMENT_MAX_NODES * 3]; /* global free dofs */
+  PetscReal value[ELEMENT_MAX_NODES * 3];
+} SpringTie;
 
 typedef struct _n_Stabiliser *ContactSprings;
 
-PetscErrorCode ContactSpringsCreate(Contact, Vec like, ContactSprings *);
+PetscErrorCode ContactSpringsCreate(Mesh, const PetscReal *stiffness, Vec like, ContactSprings *);
 PetscErrorCode ContactSpringsDestroy(ContactSprings *);
+PetscErrorCode ContactSpringsSetTies(ContactSprings, PetscInt n, const SpringTie *);
+PetscErrorCode ContactSpringsRelease(ContactSprings, int n, const int *kept, PetscBool *any);
+PetscErrorCode ContactSpringsRetie(ContactSprings, PetscBool *any);
+PetscBool      ContactSpringsHaveTie(ContactSprings, int motion);
 PetscErrorCode ContactSpringsRelax(ContactSprings, Vec x);
 PetscErrorCode ContactSpringsResidual(ContactSprings, Vec x, Vec F);
 PetscErrorCode ContactSpringsEnergy(ContactSprings, Vec x, PetscReal *energy);
 PetscErrorCode ContactSpringsTangent(ContactSprings, Mat A);
-PetscErrorCode ContactSpringsLoad(ContactSprings, Vec x, PetscReal *force, PetscReal *energy);
+PetscErrorCode ContactSpringsLoad(ContactSprings, Vec x, PetscReal *force, PetscReal *tied, PetscReal *energy);

@@ -37,7 +37,7 @@ PetscErrorCode ContactWorkDestroy(ContactWork *work)
 {
   PetscFunctionBeginUser;
   PetscCall(PetscFree3(work->result.points, work->result.N, work->result.M));
-  PetscCall(PetscFree2(work->x, work->multiplier));
+  PetscCall(PetscFree3(work->x, work->multiplier, work->hoop));
   PetscCall(PetscFree5(work->map.ptr, work->map.node, work->map.S, work->map.sign, work->number));
   PetscCall(PetscFree(work->N));
   PetscCall(PetscFree(work->sum_workspace));

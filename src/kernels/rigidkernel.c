@@ -1,10 +1,13 @@
 /* Rigid motions that constraints leave free: Gram matrix, null space, reduced basis. */
 #include "kernels/rigidkernel.h"
+#include <float.h>
 #include <math.h>
 
 /* Entries up to this size are round-off and become 0. Entries have unit scale. The value is far below any motion and
    far above machine precision times the number of bodies. */
 static const double ROUND_OFF = 1e-9;
+/* Below this angle sines are replaced by the first terms of their series, which leave 1e-12 there. */
+static const double SMALL_ANGLE = 1e-2;
 
 /*@
   RigidRow - computes the velocity of each of the six motions at a point along a direction.
@@ -158,4 +161,147 @@ void RigidReduce(int m, int n, const int columns[], double rows[])
   }
   for (int i = 0; i < m * n; i++)
     if (fabs(rows[i]) <= ROUND_OFF) rows[i] = 0;
+}
+
+/*@
+  RigidVelocity - computes the velocity of a motion at a point.
+
+  Not collective
+
+  Input Parameters:
++ q - the motion
+- x - position relative to the body's centre, divided by the body's size
+
+  Output Parameter:
+. v - translation + rotation x X, in units of the body's size
+@*/
+void RigidVelocity(const double q[RIGID_MODES], const double x[3], double v[3])
+{
+  for (int d = 0; d < 3; d++) {
+    const int e = (d + 1) % 3, f = (d + 2) % 3;
+
+    v[d] = q[3 + d] + q[e] * x[f] - q[f] * x[e];
+  }
+}
+
+/* (1 - cos a) / a^2 and (a - sin a) / a^3, also for small angles. */
+static void MoveFactors(double a, double *second, double *third)
+{
+  if (a < SMALL_ANGLE) {
+    *second = 0.5 - a * a / 24;
+    *third  = 1. / 6 - a * a / 120;
+  } else {
+    *second = (1 - cos(a)) / (a * a);
+    *third  = (a - sin(a)) / (a * a * a);
+  }
+}
+
+/*@
+  RigidMove - takes a point along a motion for a unit of time. The body keeps its shape, however far it turns.
+
+  Not collective
+
+  Input Parameter:
+. q - the motion; it keeps its axis, so that what does not move at the start stays where it is
+
+  Input/Output Parameter:
+. x - position relative to the body's centre, divided by the body's size
+
+  Note:
+  The exponential of the motion: x + v + w x v (1 - cos a) / a^2 + w x (w x v) (a - sin a) / a^3, with the velocity v at
+  x, the rotation w and its angle a.
+@*/
+void RigidMove(const double q[RIGID_MODES], double x[3])
+{
+  const double turn[RIGID_MODES] = {q[0], q[1], q[2], 0, 0, 0};
+  double       v[3], wv[3], wwv[3], second, third;
+
+  MoveFactors(sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2]), &second, &third);
+  RigidVelocity(q, x, v);
+  RigidVelocity(turn, v, wv);
+  RigidVelocity(turn, wv, wwv);
+  for (int d = 0; d < 3; d++) x[d] += v[d] + second * wv[d] + third * wwv[d];
+}
+
+/*@
+  RigidCholesky - computes Cholesky's factor L of a positive definite matrix, in its lower triangle.
+
+  Not collective
+
+  Input Parameters:
++ n      - size of the matrix
+- matrix - the matrix [n][n]
+
+  Output Parameter:
+. L - the factor [n][n]; may be the matrix
+@*/
+void RigidCholesky(int n, const double *matrix, double *L)
+{
+  for (int i = 0; i < n; i++) {
+    for (int j = 0; j <= i; j++) {
+      const double own = matrix[i * n + i];
+      double       sum = matrix[i * n + j];
+
+      for (int k = 0; k < j; k++) sum -= L[i * n + k] * L[j * n + k];
+      L[i * n + j] = i == j ? sqrt(fmax(sum, DBL_EPSILON * own)) : sum / L[j * n + j];
+    }
+  }
+}
+
+/*@
+  RigidForward - replaces x by L^-1 x.
+
+  Not collective
+
+  Input Parameters:
++ n - size
+- L - of RigidCholesky()
+
+  Input/Output Parameter:
+. x - x[n]
+@*/
+void RigidForward(int n, const double *L, double x[])
+{
+  for (int i = 0; i < n; i++) {
+    for (int k = 0; k < i; k++) x[i] -= L[i * n + k] * x[k];
+    x[i] /= L[i * n + i];
+  }
+}
+
+/*@
+  RigidBackward - replaces x by L^-T x.
+
+  Not collective
+
+  Input Parameters:
++ n - size
+- L - of RigidCholesky()
+
+  Input/Output Parameter:
+. x - x[n]
+@*/
+void RigidBackward(int n, const double *L, double x[])
+{
+  for (int i = n - 1; i >= 0; i--) {
+    for (int k = i + 1; k < n; k++) x[i] -= L[k * n + i] * x[k];
+    x[i] /= L[i * n + i];
+  }
+}
+
+/*@
+  RigidSolve - replaces x by (L L^T)^-1 x.
+
+  Not collective
+
+  Input Parameters:
++ n - size
+- L - of RigidCholesky()
+
+  Input/Output Parameter:
+. x - x[n]
+@*/
+void RigidSolve(int n, const double *L, double x[])
+{
+  RigidForward(n, L, x);
+  RigidBackward(n, L, x);
 }

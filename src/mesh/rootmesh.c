@@ -23,6 +23,63 @@ const PetscInt *RootMeshCellNodes(const RootMesh *root, PetscInt c)
   return root->cell_block[c]->connectivity + root->cell_item[c] * root->cell_block[c]->nodes;
 }
 
+/*@
+  RootMeshReversedNode - returns the node at place k of a plane cell, a face or a curve whose sense is reversed.
+
+  Not collective
+
+  Input Parameters:
++ element - type of the cell or face
+- k       - the place
+
+  Note:
+  The corners follow in the opposite sense of rotation from the first one, and the edges with them. The ends of a curve
+  are swapped.
+@*/
+int RootMeshReversedNode(const Element *element, int k)
+{
+  const int corners = element->corners;
+
+  if (element->dim == 1) return k < 2 ? 1 - k : k;
+  if (k < corners) return (corners - k) % corners;
+  return k < 2 * corners ? corners + (2 * corners - 1 - k) : k;
+}
+
+/* Does the outline of a plane cell run clockwise? */
+static PetscBool CellIsClockwise(const GmshMesh *gmsh, const GmshBlock *block, PetscInt item)
+{
+  const PetscInt *nodes = block->connectivity + item * block->nodes;
+  const int       n     = block->element->corners;
+  PetscReal       twice = 0;
+
+  for (int k = 0; k < n; k++) {
+    const PetscReal *a = &gmsh->coords[3 * nodes[k]], *b = &gmsh->coords[3 * nodes[(k + 1) % n]];
+    const PetscReal *o = &gmsh->coords[3 * nodes[0]];
+
+    twice += (a[0] - o[0]) * (b[1] - o[1]) - (b[0] - o[0]) * (a[1] - o[1]);
+  }
+  return (PetscBool)(twice < 0);
+}
+
+/* Turns the plane cells of those surfaces whose outline runs clockwise in the file. A surface of which only some cells
+   do is tangled, and is left as it is. */
+static void TurnClockwise(GmshMesh *gmsh)
+{
+  for (int b = 0; b < gmsh->n_blocks; b++) {
+    GmshBlock *block = &gmsh->blocks[b];
+    PetscInt   n     = 0;
+
+    if (block->dim != 2 || !block->element) continue;
+    for (PetscInt i = 0; i < block->n; i++) n += CellIsClockwise(gmsh, block, i);
+    for (PetscInt i = 0; i < block->n && n == block->n; i++) {
+      PetscInt *nodes = block->connectivity + i * block->nodes, old[ELEMENT_MAX_NODES];
+
+      for (int k = 0; k < block->nodes; k++) old[k] = nodes[k];
+      for (int k = 0; k < block->nodes; k++) nodes[k] = old[RootMeshReversedNode(block->element, k)];
+    }
+  }
+}
+
 /* Bodies and order */
 
 /* Lists the names of the groups of one dimension, as in "a, b, c", cut off where the text is full. */
@@ -257,9 +314,9 @@ static void CheckPlane(Scene scene, const char *file, const RootMesh *root, Pets
 - complaint - says what is wrong with the file, if anything
 
   Note:
-  Complains of what GmshRead() found, two orders or an order that is not the scene's, a body without cells, a cell
-  without a body or in two, equal tags, a two-dimensional mesh that is not in its plane or has negative radii, and fewer
-  cells than ranks.
+  Plane surfaces whose cells run clockwise are turned. Complains of what GmshRead() found, two orders or an order that
+is not the scene's, a body without cells, a cell without a body or in two, equal tags, a two-dimensional mesh that is
+not in its plane or has negative radii, and fewer cells than ranks.
 @*/
 PetscErrorCode RootMeshRead(Scene scene, const char *file, PetscMPIInt ranks, RootMesh *root, Mesh mesh,
                             Complaint *complaint)
@@ -270,6 +327,7 @@ PetscErrorCode RootMeshRead(Scene scene, const char *file, PetscMPIInt ranks, Ro
   if (complaint->text[0]) PetscFunctionReturn(PETSC_SUCCESS);
   CheckBodyNames(scene, file, root, complaint);
   CheckOrder(scene, file, root, complaint);
+  if (scene->dim == 2) TurnClockwise(&root->gmsh);
   PetscCall(NumberCells(scene, file, root, complaint));
   if (complaint->text[0]) PetscFunctionReturn(PETSC_SUCCESS);
   if (root->n_cells < ranks)

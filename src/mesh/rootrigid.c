@@ -3,17 +3,6 @@
 #include "mesh/meshgroup.h"
 #include "base/refusal.h"
 
-/* Returns the node at place k of a face whose normal is reversed: the corners follow in the opposite sense of rotation
-   from the first one, and the edges with them. The ends of a curve are swapped. */
-static int ReversedNode(const Element *face, int k)
-{
-  const int corners = face->corners;
-
-  if (face->dim == 1) return k < 2 ? 1 - k : k;
-  if (k < corners) return (corners - k) % corners;
-  return k < 2 * corners ? corners + (2 * corners - 1 - k) : k;
-}
-
 /* Returns the sign with which group g contains the block, 0 if it does not contain it. */
 static int BlockSign(const GmshBlock *block, int g)
 {
@@ -57,7 +46,7 @@ static void RigidFaces(const GmshMesh *gmsh, int g, const PetscInt local[], Mesh
       rigid->face_type[f] = block->element->type;
       rigid->face_tag[f]  = block->tag[item];
       for (int k = 0; k < block->nodes; k++)
-        rigid->face_nodes[n++] = local[nodes[sign < 0 ? ReversedNode(block->element, k) : k]];
+        rigid->face_nodes[n++] = local[nodes[sign < 0 ? RootMeshReversedNode(block->element, k) : k]];
       rigid->face_ptr[++f] = n;
     }
   }

@@ -42,6 +42,18 @@ static void PrintGaps(const ContactGaps *gaps, FILE *file)
             gaps->overlapping, (double)gaps->area, gaps->refused);
 }
 
+static void PrintSides(const ContactQuality *quality, FILE *file)
+{
+  if (quality->turned)
+    fprintf(file, "           the normals of %" PetscInt_FMT " faces of the rigid master were turned\n",
+            quality->turned);
+  if (quality->averse)
+    fprintf(file,
+            "           %" PetscInt_FMT " of %" PetscInt_FMT
+            " slave points near the master do not face it and take no part\n",
+            quality->averse, quality->near);
+}
+
 static void PrintJoined(PetscInt nodes, const ContactPlace *place, FILE *file)
 {
   if (!nodes) return;
@@ -100,6 +112,7 @@ PetscErrorCode ContactReport(Contact contact, FILE *file)
     fprintf(file, "contact  %s: %s\n", ContactPairName(contact, p), text);
     PrintPenalty(ContactPairScene(contact, p), most, file);
     PrintGaps(&gaps, file);
+    PrintSides(&quality, file);
     PrintJoined(joined, &place, file);
     if (fits.points)
       PrintFits(&fits, size, file);

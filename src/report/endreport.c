@@ -50,6 +50,9 @@ static void PrintPair(const PairFigures *pair, FILE *stream)
   else if (quality->sagitta > 0)
     fprintf(stream, "; facet error about %.2g", (double)quality->sagitta);
   fprintf(stream, "\n");
+  if (quality->averse)
+    fprintf(stream, "         %s: %lld of %lld slave points near the master do not face it and take no part\n",
+            pair->name, (long long)quality->averse, (long long)quality->near);
 }
 
 /* Prints from which side the surfaces stand deeper in each other. Nothing is enforced at the master's nodes. */

@@ -345,12 +345,17 @@ PetscErrorCode ResultsFinish(Results results, const RunRecord *run)
 {
   RunUsage     usage;
   RunFigures   figures;
-  TerminalLast last = {.figures = &figures,
-                       .probes  = results->values,
-                       .met     = results->met,
-                       .deepest = results->deepest};
+  PetscReal   *apart;
+  TerminalLast last = {.figures = &figures, .probes = results->values, .deepest = results->deepest};
 
   PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(results->scene->n_contacts, &apart));
+  last.apart = apart;
+  for (int p = 0; p < results->scene->n_contacts; p++) {
+    apart[p] = -1;
+    if (results->stepped && !results->met[p])
+      PetscCall(ContactPairDistance(results->model->contact, p, results->model->u, results->model->t, &apart[p]));
+  }
   TimingBegin(TIMING_OUTPUT);
   if (results->stepped && !results->written) PetscCall(ResultsWriteFields(results));
   TimingEnd(TIMING_OUTPUT);
@@ -365,6 +370,7 @@ PetscErrorCode ResultsFinish(Results results, const RunRecord *run)
   last.standing = results->standing_over_h;
   if (!results->rank) PetscCall(SummaryWrite(results->model->mesh, &figures, results->directory, results->values));
   PetscCall(TerminalEnd(results->terminal, &last));
+  PetscCall(PetscFree(apart));
   PetscCall(RunFiguresDestroy(&figures));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

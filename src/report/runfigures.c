@@ -49,6 +49,20 @@ static PetscErrorCode CollectPair(Model model, int p, PairFigures *pair)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* What was done for bodies that only contact holds. */
+static PetscErrorCode CollectFreeBodies(Model model, RunFigures *figures)
+{
+  const FreeBodies bodies = model->problem->bodies;
+
+  PetscFunctionBeginUser;
+  if (!bodies) PetscFunctionReturn(PETSC_SUCCESS);
+  figures->free_bodies = PETSC_TRUE;
+  PetscCall(PetscStrncpy(figures->moved, FreeBodiesMoved(bodies), sizeof(figures->moved)));
+  if (model->t > 0)
+    PetscCall(FreeBodiesLoose(bodies, model->u, model->t, PETSC_FALSE, sizeof(figures->loose), figures->loose));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /*@
   RunFiguresCollect - collects the figures of a run.
 
@@ -86,6 +100,7 @@ PetscErrorCode RunFiguresCollect(Model model, Scene scene, const RunRecord *run,
   PetscCall(SNESGetKSP(model->snes, &ksp));
   PetscCall(DirectSolverServes(ksp, &figures->direct));
   BlasFind(&figures->blas);
+  PetscCall(CollectFreeBodies(model, figures));
   PetscCall(PetscCalloc1(figures->n_pairs, &figures->pairs));
   for (int p = 0; p < figures->n_pairs; p++) PetscCall(CollectPair(model, p, &figures->pairs[p]));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -115,15 +115,18 @@ static void AddCycles(cJSON *json, const StepperReport *way)
     cJSON_AddNullToObject(map, "last");
 }
 
-/* Adds what the springs of stabilised pairs did, if there are any. */
-static void AddSprings(cJSON *json, Scene scene, const StepperReport *way)
+/* Adds what was done for bodies that only contact holds, if there are any. */
+static void AddSprings(cJSON *json, const RunFigures *figures)
 {
-  cJSON *map;
-  int    any = 0;
+  const StepperReport *way = figures->run->way;
+  cJSON               *map;
 
-  for (int c = 0; c < scene->n_contacts; c++) any = any || scene->contacts[c].stabilise;
-  if (!any) return;
+  if (!figures->free_bodies) return;
   map = cJSON_AddObjectToObject(json, "stabilisation");
+  cJSON_AddStringToObject(map, "moved", figures->moved);
+  cJSON_AddStringToObject(map, "held_by_springs", figures->loose);
+  AddReal(map, "force_share", way->share);
+  AddReal(map, "held_force_share", way->tied);
   cJSON_AddNumberToObject(map, "relaxed", (double)way->relaxed);
   AddReal(map, "energy_taken", way->taken);
   AddReal(map, "largest_energy_share", way->left);
@@ -254,7 +257,7 @@ PetscErrorCode SummaryWrite(const Mesh mesh, const RunFigures *figures, const ch
   AddRun(json, run);
   cJSON_AddNumberToObject(json, "restarts", (double)figures->restarts);
   AddCycles(json, run->way);
-  AddSprings(json, figures->scene, run->way);
+  AddSprings(json, figures);
   AddLinear(json, &figures->linear);
   AddUsage(json, figures);
   AddGuards(json, run->way);

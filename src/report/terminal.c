@@ -375,18 +375,23 @@ static PetscErrorCode WarnUnused(void)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Warns of pairs without contact. A tool whose normals point the wrong way is never met, and the run would end well
-   without contact. */
-static void WarnUnmet(Scene scene, const PetscBool *met)
+/* Says at the top of the last screen which pairs never came into contact, and warns of them on stderr. */
+static void PrintUnmet(Terminal terminal, const PetscReal *apart)
 {
-  for (int p = 0; p < scene->n_contacts; p++) {
+  const Scene scene = terminal->scene;
+
+  for (int p = 0; p < scene->n_contacts && terminal->talks; p++)
+    if (apart[p] >= 0)
+      printf("\ncontact %s never came near: nearest distance %.3g at the end\n", scene->contacts[p].name,
+             (double)apart[p]);
+  for (int p = 0; p < scene->n_contacts && !terminal->rank; p++) {
     const SceneContact *contact = &scene->contacts[p];
 
-    if (met[p]) continue;
+    if (apart[p] < 0) continue;
     fprintf(stderr,
-            "burnish: warning: contact '%s': no node of '%s' met '%s' in this run; if it should have: do the master's "
-            "normals point to the slave?\n",
-            contact->name, contact->slave, contact->master);
+            "burnish: warning: contact '%s': no node of '%s' met '%s' in this run, nearest distance %.3g; if it should "
+            "have: do the normals of the two point to each other?\n",
+            contact->name, contact->slave, contact->master ? contact->master : "its analytic master", (double)apart[p]);
   }
 }
 
@@ -419,15 +424,25 @@ static void WarnInaccurate(const RunFigures *figures)
           figures->run->message ? "" : "Newton's method converged all the same, but ");
 }
 
+/* Says what was done for bodies that only contact holds. */
+static void PrintFreeBodies(const RunFigures *figures)
+{
+  const StepperReport *report = figures->run->way;
+
+  if (figures->moved[0]) printf("moved into contact, without force: %s\n", figures->moved);
+  if (figures->loose[0])
+    printf("held where it is, as neither contact nor a load acts that way: %s; by up to %.2g of the forces\n",
+           figures->loose, (double)report->tied);
+  if (figures->free_bodies)
+    printf("weak springs of free bodies: relaxed %lld times, hold %.2g of the forces at the end\n",
+           (long long)report->relaxed, (double)report->share);
+}
+
 static void PrintLast(Terminal terminal, const RunRecord *run)
 {
   const StepperReport *report = run->way;
   char                 text[DURATION_SIZE];
 
-  if (report->relaxed)
-    printf("stabilised pairs: springs relaxed %lld times, took out an energy of %.3g, hold at most %.2g of an accepted "
-           "state's\n",
-           (long long)report->relaxed, (double)report->taken, (double)report->left);
   if (report->cycles)
     printf("contact sets that repeated themselves: %lld, steps cut for it %lld; the last time %s\n",
            (long long)report->cycles, (long long)report->cycles_cut, report->cycle);
@@ -456,14 +471,15 @@ PetscErrorCode TerminalEnd(Terminal terminal, const TerminalLast *last)
   const RunRecord    *run     = figures->run;
 
   PetscFunctionBeginUser;
+  PrintUnmet(terminal, last->apart);
   if (terminal->talks && figures->last) PetscCall(PrintProbes(terminal, last->probes));
   if (terminal->talks) {
     PrintWindows(figures);
     EndReportPrint(figures, stdout);
+    PrintFreeBodies(figures);
   }
   if (terminal->rank) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(WarnUnused());
-  if (figures->last) WarnUnmet(terminal->scene, last->met);
   WarnDeep(last->deepest, last->standing);
   if (terminal->talks && counts->refined)
     printf("linear solves: %lld of %lld refined, in %lld steps\n", (long long)counts->refined,

@@ -445,9 +445,10 @@ static PetscErrorCode SceneReadContact(Scene scene, SceneContact *contact)
     PetscCall(SceneRefuse(scene, contact->path, "master",
                           "is the slave too; allowed: another surface (self contact is not available yet)",
                           contact->master));
-  contact->law         = (ContactLawKind)SchemaChoice(SceneDocument(scene), "%s.law", contact->path);
-  contact->smoother    = SchemaChoice(SceneDocument(scene), "%s.smoother", contact->path);
-  contact->formulation = (ContactFormulation)SchemaChoice(SceneDocument(scene), "%s.formulation", contact->path);
+  contact->master_normal = (MasterNormal)SchemaChoice(SceneDocument(scene), "%s.master_normal", contact->path);
+  contact->law           = (ContactLawKind)SchemaChoice(SceneDocument(scene), "%s.law", contact->path);
+  contact->smoother      = SchemaChoice(SceneDocument(scene), "%s.smoother", contact->path);
+  contact->formulation   = (ContactFormulation)SchemaChoice(SceneDocument(scene), "%s.formulation", contact->path);
   if (contact->formulation == CONTACT_FORMULATION_AUTO)
     contact->formulation = contact->master ? CONTACT_SURFACE_TO_SURFACE : CONTACT_NODE_TO_SURFACE;
   contact->live_offset = SchemaChoice(SceneDocument(scene), "%s.offset", contact->path);
@@ -459,10 +460,11 @@ static PetscErrorCode SceneReadContact(Scene scene, SceneContact *contact)
   contact->global_frame        = SchemaChoice(SceneDocument(scene), "%s.frame", contact->path);
   contact->diffuse_derivatives = SchemaChoice(SceneDocument(scene), "%s.derivatives", contact->path);
   PetscCall(SceneReadOverlap(scene, contact));
-  contact->stabilise     = SchemaBoolean(SceneDocument(scene), "%s.stabilise", contact->path);
+  contact->stabilise     = (Stabilise)SchemaChoice(SceneDocument(scene), "%s.stabilise", contact->path);
   contact->feature_angle = SchemaReal(SceneDocument(scene), "%s.feature_angle", contact->path);
   PetscCall(SceneReadPenalty(scene, contact));
-  contact->n_symmetry = symmetry ? symmetry->n : 0;
+  contact->find_symmetry = !symmetry;
+  contact->n_symmetry    = symmetry ? symmetry->n : 0;
   PetscCall(PetscCalloc1(contact->n_symmetry, &contact->symmetry));
   for (int i = 0; i < contact->n_symmetry; i++)
     PetscCall(PetscStrallocpy(symmetry->child[i]->text, &contact->symmetry[i]));

@@ -17,6 +17,7 @@
 
 /* OVERLAP_ADD is refuse with an overlap of its own besides that of the meshes. */
 typedef enum { OVERLAP_REFUSE, OVERLAP_RESOLVE, OVERLAP_RAMP, OVERLAP_IGNORE, OVERLAP_ADD } InitialOverlap;
+typedef enum { STABILISE_AUTO, STABILISE_TRUE, STABILISE_FALSE } Stabilise;
 typedef enum { SOLVER_DIRECT, SOLVER_ITERATIVE, SOLVER_AUTO } SolverType;
 /* The scene's word `auto` is one of the first two once a pair has been read. */
 typedef enum { CONTACT_NODE_TO_SURFACE, CONTACT_SURFACE_TO_SURFACE, CONTACT_FORMULATION_AUTO } ContactFormulation;
@@ -48,13 +49,19 @@ typedef struct {
   History    history;       /* factor over the load parameter on values and on expressions without t */
 } SceneLoad;
 
+/* The side to which the normals of a meshed rigid master point: that of the slave's start, the other side of that of
+   the mesh, or that of the mesh. */
+typedef enum { MASTER_NORMAL_AUTO, MASTER_NORMAL_FLIP, MASTER_NORMAL_KEEP } MasterNormal;
+
 typedef struct {
   char              *path, *name, *slave, *master; /* the master is a physical surface, or NULL if it is analytic */
   AnalyticSurface    analytic; /* motion.point is a point of the plane or of the axis, or the centre */
   Motion             motion;   /* of an analytic master */
+  MasterNormal       master_normal;
   int                smoother; /* index in Smoothers[] */
   ContactFormulation formulation;
-  int                live_offset; /* of surface_to_surface: 1 if the offsets follow the nodes within a solve */
+  int                live_offset;   /* of surface_to_surface: 1 if the offsets follow the nodes within a solve */
+  int                find_symmetry; /* 1 if the scene does not name planes of symmetry */
   int                n_symmetry;
   char             **symmetry; /* planar surfaces beyond which the model continues as its mirror image */
   int                degree;   /* of the diffuse fit, 4 or 2 */
@@ -65,7 +72,7 @@ typedef struct {
   InitialOverlap initial_overlap;
   double         added_overlap;      /* of OVERLAP_ADD (length): its value at t = 1 */
   Expression     overlap_expression; /* in its place, where it is not NULL; one with t is the overlap at t */
-  int            stabilise;          /* 1 if springs hold the bodies of the pair until contact holds them */
+  Stabilise      stabilise;          /* which of the pair's bodies are moved into contact and held by springs */
   ContactLawKind law;
   int            penalty_auto; /* 1 if the penalty is the automatic one */
   /* Penalty (force per length and area), 0 if it is automatic, and the factor on the automatic penalty. */

@@ -89,6 +89,9 @@ const SchemaKey SchemaKeys[] = {
   {"contact.*.master.cylinder|sphere.side", CHOICE, .values = "outside | inside", .preset = "outside",
    .help = "side of the surface on which the slave is"},
   MOTION_KEYS("contact.*.master.plane|cylinder|sphere"),
+  {"contact.*.master_normal", CHOICE, .values = "auto | flip | keep", .preset = "auto",
+   .help = "side of a meshed rigid master on which the slave is; auto: where the slave starts; flip: against the "
+           "normals of the mesh; keep: along them"},
   {"contact.*.smoother", CHOICE, .values = SMOOTHER_CHOICES, .preset = "diffuse",
    .help = "surface of the master in the contact: its faces (facet) or a smooth surface near them (diffuse)"},
   {"contact.*.formulation", CHOICE, .values = "node_to_surface | surface_to_surface | auto", .preset = "auto",
@@ -108,15 +111,18 @@ const SchemaKey SchemaKeys[] = {
    .help = "tangent of the diffuse fit; diffuse neglects the variation of the weights and is cheaper"},
   {"contact.*.feature_angle", REAL, .range = "(0, 180]", .unit = "degrees", .preset = "45",
    .help = "the neighbourhood of a slave point ends at edges that are sharper than this angle"},
-  {"contact.*.symmetry", TEXTS, .help = "planar surfaces beyond which the model continues as its mirror image"},
+  {"contact.*.symmetry", TEXTS,
+   .help = "planar surfaces beyond which the model continues as its mirror image; without the key these are the planes at "
+           "which slave or master end square to a support that fixes the normal displacement alone; []: none"},
   {"contact.*.initial_overlap", CHOICE | MAP, .values = "refuse | resolve | ramp | ignore", .preset = "refuse",
    .help = "treatment of overlapping meshes; refuse: as wrong input; resolve: the overlap is removed at once; ramp: "
            "it is removed gradually until t = 1; ignore: it counts as a gap of 0"},
   {"contact.*.initial_overlap.add", REAL | FORMULA, REQUIRED, .unit = "length",
    .help = "interference of parts whose meshes touch: what the slave overlaps the master besides its mesh. It is "
            "multiplied by t, or is an expression with t, as in loads"},
-  {"contact.*.stabilise", BOOLEAN, .preset = "false",
-   .help = "true: springs hold the bodies that only contact holds, and vanish as soon as contact holds them"},
+  {"contact.*.stabilise", CHOICE, .values = "auto | true | false", .preset = "auto",
+   .help = "auto: a body of the pair that supports leave free is moved into contact along its load, and very weak "
+           "springs hold what contact does not; true: so are bodies that supports hold; false: nothing is done"},
   {"contact.*.law", CHOICE, .values = CHOICE_WORDS(CONTACT_LAWS), .preset = "penalty",
    .help = "law of the contact pressure over the gap"},
   {"contact.*.penalty", MAP, .help = "the penalty (force per penetration and area) and its adjustment"},

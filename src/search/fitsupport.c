@@ -17,6 +17,21 @@ static const struct {
   double widen;
 } Ladder[RUNGS] = {{0, 1}, {0, 1.15}, {0, 1.32}, {0, 1.52}, {0, 1.75}, {2, 1}, {2, 1.32}, {1, 1}};
 
+/*@
+  FitDegreeCode - returns the code by which the fit's kernel knows a degree: FIT_REVOLVED is added for fits of
+  revolution.
+
+  Not collective
+
+  Input Parameters:
++ fit    - the settings
+- degree - 1, 2 or 4
+@*/
+int FitDegreeCode(const FitSettings *fit, int degree)
+{
+  return degree + (fit->revolved ? FIT_REVOLVED : 0);
+}
+
 /* Unit normal at the centre of a candidate in the reference position. */
 static void ReferenceNormal(NeighbourLists lists, const Candidate *c, PetscReal normal[3])
 {
@@ -29,11 +44,12 @@ static void ReferenceNormal(NeighbourLists lists, const Candidate *c, PetscReal 
   for (int d = 0; d < 3; d++) normal[d] = at_rest.normal[d];
 }
 
-/* Computes the spacing at the quadrature points of a candidate from area and second moments of its face. */
+/* Computes the spacing at the quadrature points of a candidate from area and, in 3D, second moments of its face. */
 static void FaceSpacing(FitSupport *fit, PetscInt candidate)
 {
   const Facet    *facet = &fit->view.facets[candidate];
   const FaceRule *rule  = FaceRuleGet(facet->type, 0);
+  const PetscInt  count = fit->view.count[candidate];
   const int       dim   = fit->lists->dim;
   NodeGeometry   *first = &fit->geometry[fit->view.first[candidate]], of_face = {.spacing = 0};
   double          x[FACE_MAX_NODES * 3], area[FACE_RULE_POINTS], centre[3] = {0}, total = 0;
@@ -43,9 +59,9 @@ static void FaceSpacing(FitSupport *fit, PetscInt candidate)
   FaceRuleAreas(rule, facet->type, dim, GEOMETRY_SOLID, x, area, NULL);
   for (int q = 0; q < rule->n; q++) {
     total += area[q];
-    for (int d = 0; d < dim; d++) centre[d] += area[q] * fit->view.x[(fit->view.first[candidate] + q) * dim + d];
+    for (int d = 0; d < dim && dim == 3; d++) centre[d] += area[q] * fit->view.x[(fit->view.first[candidate] + q) * dim + d];
   }
-  for (int q = 0; q < rule->n; q++) {
+  for (int q = 0; q < rule->n && dim == 3; q++) {
     double r[3] = {0};
 
     for (int d = 0; d < dim; d++) r[d] = fit->view.x[(fit->view.first[candidate] + q) * dim + d] - centre[d] / total;
@@ -56,7 +72,7 @@ static void FaceSpacing(FitSupport *fit, PetscInt candidate)
   }
   of_face.spacing = total / SurfaceNodesPerFace(facet->type);
   if (dim == 3) of_face.spacing = PetscSqrtReal(of_face.spacing);
-  for (int q = 0; q < rule->n; q++) first[q] = of_face;
+  for (PetscInt q = 0; q < count; q++) first[q] = of_face;
 }
 
 /*@
@@ -79,7 +95,7 @@ PetscErrorCode FitSupportCreate(ContactSearch s, NeighbourLists lists, const Sea
   NodeGeometry    *node_geometry;
   Facet           *facets;
   PetscReal       *x;
-  PetscInt        *first = NULL;
+  PetscInt        *first = NULL, *count = NULL;
 
   PetscFunctionBeginUser;
   *fit = (FitSupport){.s = s, .lists = lists};
@@ -88,12 +104,14 @@ PetscErrorCode FitSupportCreate(ContactSearch s, NeighbourLists lists, const Sea
   PetscCall(PetscCalloc1(lists->n_nodes, &node_geometry));
   NeighbourListsPointGeometry(s, lists, field, node_geometry, fit->geometry);
   PetscCall(PetscFree(node_geometry));
-  if (s->fit->integral) PetscCall(PetscMalloc1(n, &first));
+  if (s->fit->integral) PetscCall(PetscMalloc2(n, &first, n, &count));
   for (PetscInt i = 0; i < n; i++) {
     facets[i] = candidates[i].facet;
     ReferenceNormal(lists, &candidates[i], &fit->reference[3 * i]);
     for (int d = 0; d < 3; d++) fit->normals[3 * i + d] = candidates[i].normal[d];
-    if (first) first[i] = candidates[i].first;
+    if (!first) continue;
+    first[i] = candidates[i].first;
+    count[i] = candidates[i].count;
   }
   for (PetscInt i = 0; i < lists->n_points * lists->dim; i++) x[i] = lists->point_X[i] + lists->point_u[i];
   fit->view = (SurfaceView){lists->dim,
@@ -105,12 +123,14 @@ PetscErrorCode FitSupportCreate(ContactSearch s, NeighbourLists lists, const Sea
                             x,
                             fit->geometry,
                             PetscCosReal(s->fit->feature_angle),
-                            first};
+                            first,
+                            count,
+                            lists->point_hoop};
   for (PetscInt i = 0; i < n && first; i++) FaceSpacing(fit, i);
   PetscCall(NeighbourhoodsCreate(&fit->view, &fit->neighbourhoods));
-  PetscCall(PetscMalloc6(FIT_MAX_POINTS, &fit->points, FIT_MAX_POINTS * 3, &fit->x, FIT_MAX_POINTS, &fit->multiplier,
-                         FIT_MAX_POINTS, &fit->taper, FitWorkspace(lists->dim, s->fit->degree, FIT_MAX_POINTS),
-                         &fit->workspace, FIT_MAX_POINTS, &fit->used));
+  PetscCall(PetscMalloc7(FIT_MAX_POINTS, &fit->points, FIT_MAX_POINTS * 3, &fit->x, FIT_MAX_POINTS, &fit->multiplier,
+                         FIT_MAX_POINTS, &fit->taper, FitWorkspace(lists->dim, FitDegreeCode(s->fit, s->fit->degree), FIT_MAX_POINTS),
+                         &fit->workspace, FIT_MAX_POINTS, &fit->used, FIT_MAX_POINTS, &fit->hoop));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -129,13 +149,15 @@ PetscErrorCode FitSupportDestroy(FitSupport *fit)
 
   PetscFunctionBeginUser;
   PetscCall(NeighbourhoodsDestroy(&fit->neighbourhoods));
-  PetscCall(PetscFree(fit->view.first));
+  if (fit->view.first) PetscCall(PetscFree2(fit->view.first, fit->view.count));
   PetscCall(PetscFree5(fit->normals, fit->reference, fit->geometry, facets, x));
-  PetscCall(PetscFree6(fit->points, fit->x, fit->multiplier, fit->taper, fit->workspace, fit->used));
+  PetscCall(
+    PetscFree7(fit->points, fit->x, fit->multiplier, fit->taper, fit->workspace, fit->used, fit->hoop));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The metric over a frame's tangents as a tensor in space (inverse squared lengths). */
+/* The metric over a frame's tangents as a tensor in space (inverse squared lengths). In 2D the third direction is that
+   of the hoop. */
 static void MetricInSpace(int dim, double (*frame)[3], double metric[2][2], PetscReal space[9])
 {
   for (int i = 0; i < 3; i++) {
@@ -145,6 +167,7 @@ static void MetricInSpace(int dim, double (*frame)[3], double metric[2][2], Pets
         for (int b = 0; b < dim - 1; b++) space[3 * i + j] += frame[a][i] * metric[a][b] * frame[b][j];
     }
   }
+  if (dim == 2) space[8] = metric[0][0];
 }
 
 /* Adds factor times the covariance of a node to a full matrix. */
@@ -215,6 +238,7 @@ static inline PetscInt TakePoints(const int dim, FitSupport *fit, const FitFoot 
 
     inside += rho2[i] <= 1 + SEARCH_FIT_TIE;
     fit->multiplier[i] = weight;
+    fit->hoop[i]       = lists->point_hoop ? lists->point_hoop[p] : 0;
     fit->taper[i]      = weight * PetscMax(SEARCH_FIT_TIE, 1 - rho2[i] / SEARCH_FIT_MARGIN);
     for (int d = 0; d < dim; d++) fit->x[i * dim + d] = (X[p * dim + d] - at->X[d]) + (u[p * dim + d] - at->u[d]);
   }
@@ -228,8 +252,8 @@ static PetscErrorCode FitRung(FitSupport *fit, const FitFoot *at, int rung, FitP
                               PetscBool *holds)
 {
   const FitSettings *settings = fit->s->fit;
-  const int          dim      = fit->lists->dim,
-            degree        = Ladder[rung].degree ? PetscMin(Ladder[rung].degree, settings->degree) : settings->degree;
+  const int          dim      = fit->lists->dim, lower = Ladder[rung].degree,
+            degree = FitDegreeCode(settings, lower ? PetscMin(lower, settings->degree) : settings->degree);
   const int        wanted = settings->integral ? FitTerms(dim, degree) : FitPointsWanted(dim, degree);
   double           covariance[3][3], area;
   const PetscReal *rho2;
@@ -243,7 +267,8 @@ static PetscErrorCode FitRung(FitSupport *fit, const FitFoot *at, int rung, FitP
                           .degree     = degree,
                           .exponent   = settings->exponent,
                           .x          = fit->x,
-                          .multiplier = fit->multiplier};
+                          .multiplier = fit->multiplier,
+                          .hoop       = fit->hoop};
   FootSpacing(fit, at->facet, at->xi, covariance, &area);
   FitFrameFromNormal(dim, settings->global_frame ? fit->plane : at->outward, problem->frame);
   /* The first pass sees the points along the facet's normal, the second one along the normal of their own plane. */
@@ -312,7 +337,8 @@ static inline PetscReal FitResidual(const int dim, const FitProblem *problem, co
       for (int a = 0; a < dim - 1; a++) y[a] += problem->frame[a][d] * problem->x[i * dim + d];
       z += problem->frame[dim - 1][d] * problem->x[i * dim + d];
     }
-    rho2 = Q[0] * y[0] * y[0] + (dim == 3 ? (Q[1] * y[0] + Q[2] * y[1]) * y[1] : 0);
+    if (dim == 2) y[1] = problem->hoop[i];
+    rho2 = Q[0] * y[0] * y[0] + (dim == 3 ? (Q[1] * y[0] + Q[2] * y[1]) * y[1] : Q[0] * y[1] * y[1]);
     if (rho2 <= 0.25) most = PetscMax(most, PetscAbsReal(z - FitSurfaceHeight(&result->surface, y, NULL)));
   }
   return most;

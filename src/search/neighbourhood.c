@@ -12,6 +12,7 @@ typedef struct {
 struct _n_Neighbourhoods {
   const SurfaceView *view;
   PetscInt          *link_ptr, *link; /* facets across the edges that are not sharp, as compressed rows */
+  PetscBool         *sharp;           /* of each facet: it has a sharp edge */
   PetscInt          *seen_facet, *seen_point, stamp;
   PetscInt          *queue;
   PetscReal         *rho2, *point_rho2; /* of the points found; of every point that was visited */
@@ -54,7 +55,8 @@ static PetscInt ListEdges(const SurfaceView *view, SharedEdge *edges)
 
 /* Links every pair of facets that share an edge which is not sharp in the reference configuration. With link NULL it
    only counts the links. Returns the number of pairs. */
-static PetscInt LinkFacets(const SurfaceView *view, PetscInt n, const SharedEdge *edges, PetscInt *ptr, PetscInt *link)
+static PetscInt LinkFacets(const SurfaceView *view, PetscInt n, const SharedEdge *edges, PetscInt *ptr, PetscInt *link,
+                           PetscBool *sharp)
 {
   PetscInt count = 0;
 
@@ -62,7 +64,10 @@ static PetscInt LinkFacets(const SurfaceView *view, PetscInt n, const SharedEdge
     for (PetscInt j = i + 1; j < n && edges[j].a == edges[i].a && edges[j].b == edges[i].b; j++) {
       const PetscInt f = edges[i].facet, g = edges[j].facet;
 
-      if (Dot(&view->reference[3 * f], &view->reference[3 * g]) < view->feature_cosine) continue;
+      if (Dot(&view->reference[3 * f], &view->reference[3 * g]) < view->feature_cosine) {
+        sharp[f] = sharp[g] = PETSC_TRUE;
+        continue;
+      }
       if (link) {
         link[ptr[f]++] = g;
         link[ptr[g]++] = f;
@@ -98,11 +103,12 @@ PetscErrorCode NeighbourhoodsCreate(const SurfaceView *view, Neighbourhoods *out
   nb->view = view;
   PetscCall(PetscMalloc1(n, &edges));
   PetscCall(PetscCalloc1(view->n_facets + 1, &nb->link_ptr));
+  PetscCall(PetscCalloc1(view->n_facets, &nb->sharp));
   ListEdges(view, edges);
   if (n) qsort(edges, n, sizeof(*edges), SharedEdgeCompare);
-  PetscCall(PetscMalloc1(2 * LinkFacets(view, n, edges, nb->link_ptr, NULL), &nb->link));
+  PetscCall(PetscMalloc1(2 * LinkFacets(view, n, edges, nb->link_ptr, NULL, nb->sharp), &nb->link));
   for (PetscInt f = 0; f < view->n_facets; f++) nb->link_ptr[f + 1] += nb->link_ptr[f];
-  LinkFacets(view, n, edges, nb->link_ptr, nb->link);
+  LinkFacets(view, n, edges, nb->link_ptr, nb->link, nb->sharp);
   /* Filling has moved every start to the next one's. */
   for (PetscInt f = view->n_facets; f > 0; f--) nb->link_ptr[f] = nb->link_ptr[f - 1];
   nb->link_ptr[0] = 0;
@@ -130,15 +136,49 @@ PetscErrorCode NeighbourhoodsDestroy(Neighbourhoods *nb)
   PetscCall(PetscFree4((*nb)->queue, (*nb)->reach, (*nb)->rho2, (*nb)->point_rho2));
   PetscCall(PetscFree((*nb)->link_ptr));
   PetscCall(PetscFree((*nb)->link));
+  PetscCall(PetscFree((*nb)->sharp));
   PetscCall(PetscFree(*nb));
   PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  NeighbourhoodsIsSharp - says whether a facet has an edge at which it meets another one sharply.
+
+  Not collective
+
+  Input Parameters:
++ nb - the object
+- f  - the facet
+@*/
+PetscBool NeighbourhoodsIsSharp(Neighbourhoods nb, PetscInt f)
+{
+  return nb->sharp[f];
+}
+
+/*@
+  NeighbourhoodsMeetSharply - says whether two facets that share an edge do not continue each other.
+
+  Not collective
+
+  Input Parameters:
++ nb - the object
+. f  - a facet
+- g  - another one
+@*/
+PetscBool NeighbourhoodsMeetSharply(Neighbourhoods nb, PetscInt f, PetscInt g)
+{
+  for (PetscInt k = nb->link_ptr[f]; k < nb->link_ptr[f + 1]; k++)
+    if (nb->link[k] == g) return PETSC_FALSE;
+  return PETSC_TRUE;
 }
 
 /* Squared distance of point p from x0 in the metric. */
 static inline PetscReal Rho2(const SurfaceView *view, PetscInt p, const PetscReal x0[3], const PetscReal metric[9])
 {
   const PetscReal *x = &view->x[p * view->dim], a = x[0] - x0[0], b = x[1] - x0[1],
-                  c = view->dim == 3 ? x[2] - x0[2] : 0;
+                  c = view->dim == 3 ? x[2] - x0[2]
+                      : view->hoop   ? view->hoop[p]
+                                     : 0;
 
   return metric[0] * a * a + metric[4] * b * b + metric[8] * c * c +
          2 * (metric[1] * a * b + metric[2] * a * c + metric[5] * b * c);
@@ -199,7 +239,7 @@ PetscErrorCode NeighbourhoodGather(Neighbourhoods nb, PetscInt start, const Pets
     const Facet   *facet  = &view->facets[f];
     PetscBool      inside = PETSC_FALSE;
 
-    for (int q = 0, points = view->first ? FaceRuleGet(facet->type, 0)->n : 0; q < points; q++) {
+    for (PetscInt q = 0, points = view->first ? view->count[f] : 0; q < points; q++) {
       const PetscReal own = Rho2(view, view->first[f] + q, x0, metric);
 
       inside = (PetscBool)(inside || own <= limit);

@@ -1,6 +1,16 @@
 /* Lists of a pair: contact nodes and their owners, points and slave points as combinations of nodes, and their
    motion. */
 #include "searchimpl.h"
+#include "ring.h"
+#include "base/smoothstep.h"
+
+/* Cosines of the angle between the slave's outward normal and the master's inward one: up to 72 degrees a point takes
+   part with its whole area, from 87 degrees on not at all. Surfaces that press on each other are opposed but for the
+   turns of their faces, of which the largest is that of the corner of a cube that points at the master, 55 degrees. The
+   bounds lie as far beyond it as they can: nearer to it, the normals of soft bodies turn by as much at an edge, and the
+   part that takes part answers them. */
+#define OPPOSED_FULLY 0.30
+#define OPPOSED_NOT   0.05
 
 /* Keys of all contact nodes, each once and in ascending order: nodes of deformable bodies, then nodes of a rigid
    tool. */
@@ -209,6 +219,7 @@ static void PointMap(ContactSearch s, NeighbourLists lists, PetscInt p, const Pe
   Map(s, lists->dim, lists->point_ptr[p + 1] - first, &lists->point_node[first], &lists->point_side[first],
       &lists->point_S[first], x, y);
   for (int d = 0; d < lists->dim; d++) y[d] *= s->images[lists->point_image[p]].sign[d];
+  if (lists->point_cosine) y[0] *= lists->point_cosine[p];
 }
 
 /* The linear part of the map of slave point q. */
@@ -254,8 +265,9 @@ static void TurnOffsets(ContactSearch s, NeighbourLists lists, PetscReal t)
 PetscErrorCode NeighbourListsUpdate(ContactSearch s, NeighbourLists lists, const PetscReal *u, PetscReal t,
                                     PetscBool *moved)
 {
-  const PetscInt  n     = lists->n_nodes * lists->dim;
-  const PetscBool turns = (PetscBool)(s->fit->integral && s->master && s->master->rigid);
+  const PetscInt n = lists->n_nodes * lists->dim;
+  /* Tools of axisymmetric scenes do not turn. */
+  const PetscBool turns = (PetscBool)(s->fit->integral && !s->fit->revolved && s->master && s->master->rigid);
   PetscReal      *before;
   PetscBool       same;
 
@@ -293,8 +305,18 @@ static int CanonicalImage(ContactSearch s, const PetscReal *X, int image, int *p
   return image;
 }
 
+/* Rings reach as far as fits on a surface whose faces grow to this many times the length of the ring's own. */
+#define RING_GRADING 4
+
+/* Does this image of an axisymmetric scene lie beyond the axis, at negative radii? */
+static PetscBool ImageBeyondAxis(const SurfaceImage *image)
+{
+  return (PetscBool)(image->sign[0] < 0 && image->shift[0] == 0);
+}
+
 /* Allocates the points and their entries. */
-static PetscErrorCode NeighbourListsAllocatePoints(NeighbourLists lists, PetscInt room, PetscInt entries)
+static PetscErrorCode NeighbourListsAllocatePoints(NeighbourLists lists, PetscInt room, PetscInt entries,
+                                                   PetscBool revolved)
 {
   const int dim = lists->dim;
 
@@ -304,6 +326,7 @@ static PetscErrorCode NeighbourListsAllocatePoints(NeighbourLists lists, PetscIn
                          &lists->point_key));
   PetscCall(PetscMalloc1(entries, &lists->point_side));
   PetscCall(PetscArrayzero(lists->point_offset, room * dim));
+  if (revolved) PetscCall(PetscCalloc2(room, &lists->point_cosine, room, &lists->point_hoop));
   lists->n_points     = 0;
   lists->point_ptr[0] = 0;
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -325,6 +348,7 @@ static void NeighbourListsAddPoint(NeighbourLists lists, int n, const int *nodes
   lists->point_image[p]   = image;
   lists->point_weight[p]  = weight;
   lists->point_key[p]     = key;
+  if (lists->point_cosine) lists->point_cosine[p] = 1;
 }
 
 /* Adds the points that are nodes or images of nodes, of which the facets are made. The candidates stay in numbers of
@@ -382,6 +406,51 @@ static PetscErrorCode NeighbourListsMapPoint(ContactSearch s, NeighbourLists lis
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Areas of the quadrature points of a candidate in the reference configuration, and the rings on which they lie in fits
+   of revolution; else rings with one point. Returns the number of points on all rings. Images beyond the axis have
+   none, because the rings go round it. */
+static PetscInt CandidateRings(ContactSearch s, NeighbourLists lists, const SearchField *field,
+                               const Candidate *candidate, double *area, Ring *ring)
+{
+  const Facet *facet = &field->records[candidate->record].facet; /* as its body sees it: the rule's points are the
+                                                                    same on every image */
+  const FaceRule     *rule  = FaceRuleGet(facet->type, 0);
+  const SurfaceImage *image = &s->images[candidate->image];
+  const PetscReal     reach = s->fit_reach / s->master->max_extent;
+  const int           dim   = lists->dim;
+  double              X[FACE_MAX_NODES * 3], length = 0;
+  PetscInt            n = 0;
+
+  for (int a = 0; a < ElementGet(facet->type)->nodes; a++)
+    for (int d = 0; d < dim; d++) X[a * dim + d] = lists->X[facet->nodes[a] * dim + d];
+  FaceRuleAreas(rule, facet->type, dim, GEOMETRY_SOLID, X, area, NULL);
+  for (int q = 0; q < rule->n; q++) length += area[q];
+  for (int q = 0; q < rule->n; q++) {
+    PetscReal radius = image->shift[0];
+
+    ring[q] = (Ring){.n = 1};
+    if (s->fit->revolved) {
+      for (int a = 0; a < ElementGet(facet->type)->nodes; a++) radius += image->sign[0] * rule->N[q][a] * X[a * dim];
+      ring[q] = RingOf(radius, length / ElementGet(facet->type)->order,
+                       reach * PetscMin(s->master->max_extent, RING_GRADING * length));
+      if (ImageBeyondAxis(image)) ring[q].n = 0;
+    }
+    n += ring[q].n;
+  }
+  return n;
+}
+
+/* Turns the last added point to place j of its ring. */
+static void NeighbourListsTurnPoint(NeighbourLists lists, const Ring *ring, PetscInt j)
+{
+  const PetscInt  p     = lists->n_points - 1;
+  const PetscReal angle = RingAngle(ring, j);
+
+  lists->point_cosine[p] = PetscCosReal(angle);
+  lists->point_hoop[p]   = PetscTanReal(angle); /* times the radius in the meridian plane */
+  lists->point_offset[p * lists->dim] *= lists->point_cosine[p];
+}
+
 /* Adds the quadrature points of the candidates, weighted by their reference area, with their offsets. */
 static PetscErrorCode NeighbourListsAddQuadraturePoints(ContactSearch s, NeighbourLists lists, SearchField *field)
 {
@@ -391,22 +460,26 @@ static PetscErrorCode NeighbourListsAddQuadraturePoints(ContactSearch s, Neighbo
   for (PetscInt c = 0; c < field->n_candidates; c++) {
     Candidate        *candidate = &field->candidates[c];
     const FaceRecord *record    = &field->records[candidate->record];
-    const Facet      *facet = &record->facet; /* as its body sees it: the rule's points are the same on every image */
-    const FaceRule   *rule  = FaceRuleGet(facet->type, 0);
-    double            X[FACE_MAX_NODES * 3], area[FACE_RULE_POINTS];
+    const Facet      *facet     = &record->facet;
+    const FaceRule   *rule      = FaceRuleGet(facet->type, 0);
+    double            area[FACE_RULE_POINTS];
+    Ring              ring[FACE_RULE_POINTS];
 
     candidate->first = lists->n_points;
-    for (int a = 0; a < ElementGet(facet->type)->nodes; a++)
-      for (int d = 0; d < dim; d++) X[a * dim + d] = lists->X[facet->nodes[a] * dim + d];
-    FaceRuleAreas(rule, facet->type, dim, GEOMETRY_SOLID, X, area, NULL);
+    candidate->count = CandidateRings(s, lists, field, candidate, area, ring);
     for (int q = 0; q < rule->n; q++) {
-      for (int d = 0; d < dim; d++)
-        lists->point_offset[lists->n_points * dim + d] =
-          s->images[candidate->image].sign[d] * record->offset[q * dim + d];
-      NeighbourListsAddPoint(lists, ElementGet(facet->type)->nodes, facet->nodes, rule->N[q], candidate->image,
-                             area[q] / PetscPowRealInt(s->master->mean_size, dim - 1),
-                             candidate->facet.tag * FACE_RULE_POINTS + q);
-      if (field->maps.n) PetscCall(NeighbourListsMapPoint(s, lists, field, candidate, q));
+      const PetscReal share = s->fit->revolved ? RingWeight(&ring[q]) / s->master->mean_size : 1;
+
+      for (PetscInt j = 0; j < ring[q].n; j++) {
+        for (int d = 0; d < dim; d++)
+          lists->point_offset[lists->n_points * dim + d] =
+            s->images[candidate->image].sign[d] * record->offset[q * dim + d];
+        NeighbourListsAddPoint(lists, ElementGet(facet->type)->nodes, facet->nodes, rule->N[q], candidate->image,
+                               share * area[q] / PetscPowRealInt(s->master->mean_size, dim - 1),
+                               (candidate->facet.tag * FACE_RULE_POINTS + q) * RING_KEYS + j);
+        if (field->maps.n) PetscCall(NeighbourListsMapPoint(s, lists, field, candidate, q));
+        if (s->fit->revolved) NeighbourListsTurnPoint(lists, &ring[q], j);
+      }
     }
   }
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -433,14 +506,16 @@ PetscErrorCode NeighbourListsCreatePoints(ContactSearch s, NeighbourLists lists,
   for (PetscInt c = 0; s->fit->integral && c < field->n_candidates; c++) {
     const ElementType type = field->candidates[c].facet.type;
     const PetscInt    r    = field->candidates[c].record;
+    double            area[FACE_RULE_POINTS];
+    Ring              ring[FACE_RULE_POINTS];
+    const PetscInt    n = CandidateRings(s, lists, field, &field->candidates[c], area, ring);
 
-    points += FaceRuleGet(type, 0)->n;
-    entries +=
-      FaceRuleGet(type, 0)->n * (field->maps.n ? field->maps.ptr[r + 1] - field->maps.ptr[r] : ElementGet(type)->nodes);
+    points += n;
+    entries += n * (field->maps.n ? field->maps.ptr[r + 1] - field->maps.ptr[r] : ElementGet(type)->nodes);
   }
   PetscCall(PetscMalloc1(nodes, &number));
   for (PetscInt k = 0; k < nodes; k++) number[k] = -1;
-  PetscCall(NeighbourListsAllocatePoints(lists, points, entries));
+  PetscCall(NeighbourListsAllocatePoints(lists, points, entries, s->fit->revolved));
   NeighbourListsAddNodePoints(s, lists, field, number);
   if (s->fit->integral) PetscCall(NeighbourListsAddQuadraturePoints(s, lists, field));
   for (PetscInt c = 0; c < field->n_candidates; c++) {
@@ -460,7 +535,10 @@ PetscErrorCode NeighbourListsCreatePoints(ContactSearch s, NeighbourLists lists,
 
     PointMap(s, lists, p, lists->X, &lists->point_X[p * dim]);
     PointMap(s, lists, p, lists->u, &lists->point_u[p * dim]);
-    for (int d = 0; d < dim; d++) lists->point_X[p * dim + d] += image->shift[d] + lists->point_offset[p * dim + d];
+    for (int d = 0; d < dim; d++)
+      lists->point_X[p * dim + d] += image->shift[d] * (d == 0 && lists->point_cosine ? lists->point_cosine[p] : 1) +
+                                     lists->point_offset[p * dim + d];
+    if (lists->point_hoop) lists->point_hoop[p] *= lists->point_X[p * dim] + lists->point_u[p * dim];
   }
   PetscCall(PetscFree(number));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -590,8 +668,9 @@ PetscErrorCode NeighbourListsCreateSlaves(ContactSearch s, NeighbourLists lists)
     entries += (slaves->first[f + 1] - slaves->first[f]) * (slaves->maps.ptr[f + 1] - slaves->maps.ptr[f]);
   PetscCall(PetscMalloc5(n + 1, &lists->slave_ptr, entries, &lists->slave_node, entries, &lists->slave_side, entries,
                          &lists->slave_S, n * dim, &lists->slave_offset));
-  PetscCall(PetscMalloc2(n * dim, &lists->slave_X, n * dim, &lists->slave_u));
-  PetscCall(PetscMalloc4(n + 1, &lists->list_ptr, n + 1, &lists->facet_ptr, n, &lists->kappa, n, &lists->nearest));
+  PetscCall(PetscMalloc3(n * dim, &lists->slave_X, n * dim, &lists->slave_u, 3 * n, &lists->slave_normal));
+  PetscCall(PetscMalloc6(n + 1, &lists->list_ptr, n + 1, &lists->facet_ptr, n, &lists->kappa, n, &lists->nearest, n,
+                         &lists->share, n, &lists->averse));
   PetscCall(
     PetscCalloc5(n, &lists->fit_n, n, &lists->rung, n, &lists->degree, 9 * n, &lists->frame, 4 * n, &lists->metric));
   PetscCall(PetscCalloc6(n, &lists->pivot, n, &lists->amplified, n, &lists->residual, 2 * n, &lists->centre, n,
@@ -751,6 +830,68 @@ PetscReal NeighbourListsSlip(NeighbourLists lists, PetscInt q)
   return PetscSqrtReal(square);
 }
 
+/* Cosine between the inward normal of slave point q and a unit normal of the master; 0 if the point has no normal. */
+static inline PetscReal OpposedCosine(NeighbourLists lists, PetscInt q, const PetscReal normal[3])
+{
+  const PetscReal *own    = &lists->slave_normal[3 * q];
+  const PetscReal  length = PetscSqrtReal(own[0] * own[0] + own[1] * own[1] + own[2] * own[2]);
+
+  return length > 0 ? -(own[0] * normal[0] + own[1] * normal[1] + own[2] * normal[2]) / length : 0;
+}
+
+/*@
+  NeighbourListsOpposed - says how well the normal of slave point q opposes a normal of the master.
+
+  Not collective
+
+  Input Parameters:
++ lists  - the lists
+. q      - the slave point
+- normal - unit normal of the master
+
+  Note:
+  Returns 1 where they are opposed within OPPOSED_FULLY, and 0 from OPPOSED_NOT on.
+@*/
+PetscReal NeighbourListsOpposed(NeighbourLists lists, PetscInt q, const PetscReal normal[3])
+{
+  return SmoothStep((OpposedCosine(lists, q, normal) - OPPOSED_NOT) / (OPPOSED_FULLY - OPPOSED_NOT));
+}
+
+/*@
+  NeighbourListsSquare - says whether a normal of the master is nearer to square to the normal of slave point q than to
+  either of its directions.
+
+  Not collective
+
+  Input Parameters:
++ lists  - the lists
+. q      - the slave point
+- normal - unit normal of the master
+@*/
+PetscBool NeighbourListsSquare(NeighbourLists lists, PetscInt q, const PetscReal normal[3])
+{
+  return (PetscBool)(PetscAbsReal(OpposedCosine(lists, q, normal)) < 0.5 * PETSC_SQRT2);
+}
+
+/*@
+  NeighbourListsAverse - says how far the normal of slave point q is from opposing a normal of the master that it does
+  not face.
+
+  Not collective
+
+  Input Parameters:
++ lists  - the lists
+. q      - the slave point
+- normal - unit normal of the master
+
+  Note:
+  Returns 1 where they are square to each other or more, and 0 where NeighbourListsOpposed() begins to be more than 0.
+@*/
+PetscReal NeighbourListsAverse(NeighbourLists lists, PetscInt q, const PetscReal normal[3])
+{
+  return 1 - SmoothStep(OpposedCosine(lists, q, normal) / OPPOSED_NOT);
+}
+
 /*@
   NeighbourListsDestroy - frees the lists.
 
@@ -771,10 +912,11 @@ PetscErrorCode NeighbourListsDestroy(NeighbourLists *lists)
   PetscCall(PetscFree7(l->point_ptr, l->point_node, l->point_S, l->point_offset, l->point_weight, l->point_image,
                        l->point_key));
   PetscCall(PetscFree(l->point_side));
+  if (l->point_cosine) PetscCall(PetscFree2(l->point_cosine, l->point_hoop));
   PetscCall(PetscFree2(l->point_X, l->point_u));
   PetscCall(PetscFree5(l->slave_ptr, l->slave_node, l->slave_side, l->slave_S, l->slave_offset));
-  PetscCall(PetscFree2(l->slave_X, l->slave_u));
-  PetscCall(PetscFree4(l->list_ptr, l->facet_ptr, l->kappa, l->nearest));
+  PetscCall(PetscFree3(l->slave_X, l->slave_u, l->slave_normal));
+  PetscCall(PetscFree6(l->list_ptr, l->facet_ptr, l->kappa, l->nearest, l->share, l->averse));
   PetscCall(PetscFree5(l->fit_n, l->rung, l->degree, l->frame, l->metric));
   PetscCall(PetscFree6(l->pivot, l->amplified, l->residual, l->centre, l->gap, l->normal));
   PetscCall(PetscFree(l->list_point));

@@ -5,7 +5,8 @@
    SearchLists() (search.h) makes lists, and NeighbourListsDestroy() frees them. NeighbourListsUpdate() moves the
    positions while the lists stay. NeighbourListsRelative() gives a point as a slave point sees it.
    NeighbourListsBroadcast() and NeighbourListsReduce() take values from the mesh's nodes to the contact nodes and
-   back. NeighbourListsSlip() tells how far a slave point has slid since the lists were made. */
+   back. NeighbourListsSlip() tells how far a slave point has slid since the lists were made. NeighbourListsOpposed()
+   tells how well a slave point's normal opposes another one. */
 #pragma once
 #include "smooth/diffusefit.h"
 #include "search/surface.h"
@@ -23,7 +24,8 @@ enum { RUNG_FACET = -1, RUNG_PLAIN = 0, RUNG_WIDER = 4, RUNG_DEGREE_2 = 6, RUNG_
 /* Contact nodes are the nodes that the terms of the pair touch. Nodes with unknowns come first (leaves of sf, whose
    roots are the local nodes of their owners), then nodes of a rigid tool. Points are what a smoother sees: a fixed
    combination of images of contact nodes, reflected, plus a shift and an offset: x = sign * (sum S (image of
-   x_node)) + shift + offset. */
+   x_node)) + shift + offset. In fits of revolution it is a point of a ring, turned into the meridian plane: its radius
+   is multiplied by the cosine of its angle. */
 typedef struct {
   int          dim;
   PetscInt     n_nodes, n_deformable;
@@ -39,14 +41,16 @@ typedef struct {
   int       *point_side; /* of each entry: image of the node; nonzero only with live offsets */
   PetscReal *point_S, *point_offset, *point_weight;
   int       *point_image;
-  long      *point_key;         /* rank-independent: the node or quadrature point, and the image */
-  PetscReal *point_X, *point_u; /* n_points*dim */
+  long      *point_key; /* rank-independent: the node or quadrature point, the image, the place on a ring */
+  PetscReal *point_cosine, *point_hoop; /* of its angle; distance along the hoop (length). NULL: there are no rings */
+  PetscReal *point_X, *point_u;         /* n_points*dim */
 
   PetscInt   n_slaves;               /* slave points, in the order in which they were given */
   PetscInt  *slave_ptr, *slave_node; /* the nodes of a slave point's own face come first, as in SlavePoints */
   int       *slave_side;
   PetscReal *slave_S, *slave_offset;
   PetscReal *slave_X, *slave_u; /* n_slaves*dim */
+  PetscReal *slave_normal;      /* n_slaves*3, out of the slave's body, when the lists were made; of any length */
 
   PetscInt  *list_ptr, *list_point; /* fit points of each slave point */
   PetscInt  *fit_n;                 /* so many of them, the first ones, are fitted; 0: the facets are used */
@@ -68,6 +72,10 @@ typedef struct {
   int       *nearest; /* which of each slave point's facets was nearest when the lists were made; -1: it has none */
   /* Curvature of the master near each slave point: turn of normals over distance; 0: flat, or no facet. */
   PetscReal *kappa;
+  /* Part of each slave point's area that takes part: less than 1 where its normal hardly opposes the master's, and near
+     a convex edge where what it faces of the master ends. */
+  PetscReal *share;
+  PetscBool *averse; /* the master is near each slave point, but does not face it */
 } *NeighbourLists;
 
 PetscErrorCode NeighbourListsDestroy(NeighbourLists *);
@@ -76,6 +84,9 @@ void           NeighbourListsRelative(NeighbourLists, PetscInt q, PetscInt p, Pe
 PetscInt       NeighbourListsAlikeEnd(NeighbourLists, PetscInt p);
 PetscReal      NeighbourListsNearestSize(NeighbourLists, PetscInt q);
 PetscReal      NeighbourListsSlip(NeighbourLists, PetscInt q);
+PetscReal      NeighbourListsOpposed(NeighbourLists, PetscInt q, const PetscReal normal[3]);
+PetscBool      NeighbourListsSquare(NeighbourLists, PetscInt q, const PetscReal normal[3]);
+PetscReal      NeighbourListsAverse(NeighbourLists, PetscInt q, const PetscReal normal[3]);
 PetscErrorCode NeighbourListsBroadcast(ContactSearch, NeighbourLists, const PetscReal *x, PetscReal t, PetscReal t_next,
                                        PetscReal *values);
 PetscErrorCode NeighbourListsReduce(NeighbourLists, const PetscReal *values, PetscReal *y);

@@ -52,8 +52,8 @@ static void FaceNodePositions(ContactSurface surface, const Facet *face, const P
 }
 
 /* Adds a face to the sums of its nodes: normal, distances to the other nodes, area. */
-static void AddFace(ContactSurface surface, const Facet *face, const PetscReal *x, const PetscReal *reference,
-                    PetscReal *sums)
+static void AddFace(ContactSurface surface, Geometry geometry, const Facet *face, const PetscReal *x,
+                    const PetscReal *reference, PetscReal *sums)
 {
   const int      dim = surface->mesh->dim, n = ElementGet(face->type)->nodes;
   const Geometry plane = dim == 3 ? GEOMETRY_SOLID : GEOMETRY_PLANE_STRAIN;
@@ -61,7 +61,7 @@ static void AddFace(ContactSurface surface, const Facet *face, const PetscReal *
                                 normal[FACE_MAX_NODES * 3] = {0}, total = 0;
 
   FaceNodePositions(surface, face, reference, X);
-  FaceAreaKernel(face->type, dim, plane, X, tributary, NULL);
+  FaceAreaKernel(face->type, dim, geometry, X, tributary, NULL);
   FaceNodePositions(surface, face, x, X);
   FaceAreaKernel(face->type, dim, plane, X, area, normal);
   for (int a = 0; a < n; a++) total += area[a];
@@ -135,10 +135,11 @@ static PetscErrorCode Positions(ContactSurface surface, Loads loads, const Petsc
   Collective
 
   Input Parameters:
-+ surface - the master
-. loads   - gives the position of rigid tools
-. u       - local displacements u[n_nodes*dim] (length)
-- t       - load parameter
++ surface  - the master
+. geometry - of the scene; axisymmetric weights grow with the radius
+. loads    - gives the position of rigid tools
+. u        - local displacements u[n_nodes*dim] (length)
+- t        - load parameter
 
   Output Parameter:
 . nodes - one for each local node of the mesh, or of the rigid tool, complete on every copy of a node; those off the
@@ -148,20 +149,21 @@ static PetscErrorCode Positions(ContactSurface surface, Loads loads, const Petsc
   The shape of the spacing comes from the covariance of the one-ring, averaged over the ring's nodes. Its size comes
   from the mean area of the faces. So a support of s spacings holds about pi s^2 nodes on any mesh.
 @*/
-PetscErrorCode SurfaceNodeGeometry(ContactSurface surface, Loads loads, const PetscReal *u, PetscReal t,
-                                   NodeGeometry *nodes)
+PetscErrorCode SurfaceNodeGeometry(ContactSurface surface, Geometry geometry, Loads loads, const PetscReal *u,
+                                   PetscReal t, NodeGeometry *nodes)
 {
   const int        dim       = surface->mesh->dim;
   const PetscInt   n         = surface->group ? surface->mesh->n_nodes : surface->rigid->n_nodes;
   const PetscReal *reference = surface->group ? surface->mesh->coords : surface->rigid->coords;
-  const PetscBool  weighted  = (PetscBool)(surface->order > 1);
+  const PetscBool  weighted  = (PetscBool)(surface->order > 1 || geometry == GEOMETRY_AXISYMMETRIC);
+  const PetscReal  area_unit = PetscPowRealInt(surface->mean_size, geometry == GEOMETRY_PLANE_STRAIN ? 1 : 2);
   PetscReal       *x, *sums, *ring;
 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc3(n * dim, &x, n * SUMS, &sums, n * 7, &ring));
   PetscCall(PetscArrayzero(sums, n * SUMS));
   PetscCall(Positions(surface, loads, u, t, n, x));
-  for (PetscInt f = 0; f < surface->n_faces; f++) AddFace(surface, &surface->faces[f], x, reference, sums);
+  for (PetscInt f = 0; f < surface->n_faces; f++) AddFace(surface, geometry, &surface->faces[f], x, reference, sums);
   PetscCall(SumOverRanks(surface, SUMS, sums));
   PetscCall(AverageOverRing(surface, n, sums, ring));
   for (PetscInt i = 0; i < n; i++) {
@@ -170,7 +172,7 @@ PetscErrorCode SurfaceNodeGeometry(ContactSurface surface, Loads loads, const Pe
 
     nodes[i] = (NodeGeometry){
       .spacing = dim == 3 ? PetscSqrtReal(area) : area,
-      .weight  = weighted ? sum[SUM_TRIBUTARY] / (dim == 3 ? PetscSqr(surface->mean_size) : surface->mean_size) : 1};
+      .weight  = weighted ? sum[SUM_TRIBUTARY] / area_unit : 1};
     for (int d = 0; d < 3; d++) length += PetscSqr(sum[SUM_NORMAL + d]);
     length = PetscSqrtReal(length);
     for (int d = 0; d < 3 && length > 0; d++) nodes[i].normal[d] = sum[SUM_NORMAL + d] / length;

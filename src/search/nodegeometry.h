@@ -17,6 +17,6 @@ typedef struct {
 } NodeGeometry;
 
 PetscReal      SurfaceNodesPerFace(ElementType);
-PetscErrorCode SurfaceNodeGeometry(ContactSurface, Loads, const PetscReal *u, PetscReal t, NodeGeometry *nodes);
+PetscErrorCode SurfaceNodeGeometry(ContactSurface, Geometry, Loads, const PetscReal *u, PetscReal t, NodeGeometry *nodes);
 PetscErrorCode SurfaceMeanNormal(ContactSurface, Loads, int n_images, const SurfaceImage *, const PetscReal *u,
                                  PetscReal t, PetscReal normal[3], PetscReal *cosine);

@@ -1,5 +1,6 @@
 /* Search for contact partners: candidates around the slave points, the nearest facet of each, and the lists. */
 #include "searchimpl.h"
+#include "flank.h"
 
 /* Reach of the search beyond the requested motion, in face sizes. The nearest facet of a slave point is listed if it
    is not farther away than this. */
@@ -7,10 +8,7 @@
 /* A list holds every facet whose distance exceeds that of the nearest one by at most this many face sizes (plus the
    motion), so that the point may slide there within a solve. */
 #define SEARCH_MARGIN 1.5
-/* Facets are listed only if they face the slave: the cosine between the two outward normals is below this. With 0
-   any opposed pair is listed. */
 
-#define SEARCH_OPPOSED 0.0
 /*@
   SearchCreate - holds what does not change in a run: surfaces, images, slave points.
 
@@ -44,18 +42,19 @@ PetscErrorCode SearchCreate(Mesh mesh, Scene scene, Loads loads, ContactSurface 
 
   PetscFunctionBeginUser;
   PetscCall(PetscNew(&s));
-  *s   = (struct _n_ContactSearch){.mesh     = mesh,
-                                   .scene    = scene,
-                                   .loads    = loads,
-                                   .master   = master,
-                                   .n_images = n_images,
-                                   .images   = images,
-                                   .fit      = fit,
-                                   .slaves   = slaves,
-                                   .offset   = offset,
-                                   .maps     = maps,
-                                   .reach    = SEARCH_REACH * size,
-                                   .margin   = SEARCH_MARGIN * size};
+  *s = (struct _n_ContactSearch){.mesh     = mesh,
+                                 .scene    = scene,
+                                 .loads    = loads,
+                                 .master   = master,
+                                 .n_images = n_images,
+                                 .images   = images,
+                                 .fit      = fit,
+                                 .slaves   = slaves,
+                                 .offset   = offset,
+                                 .maps     = maps,
+                                 .reach    = SEARCH_REACH * size,
+                                 .margin   = SEARCH_MARGIN * size};
+  if (master) s->fit_reach = SearchFitReach(s);
   *out = s;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -181,7 +180,7 @@ PetscErrorCode SearchFieldCreate(ContactSearch s, const PetscReal *u, PetscReal 
   lists->dim = mesh->dim;
   if (s->fit->fitted) {
     PetscCall(PetscMalloc1(s->master->rigid ? s->master->rigid->n_nodes : mesh->n_nodes, &geometry));
-    PetscCall(SurfaceNodeGeometry(s->master, s->loads, u, t, geometry));
+    PetscCall(SurfaceNodeGeometry(s->master, s->scene->geometry, s->loads, u, t, geometry));
   }
   if (!s->master)
     PetscCall(PetscMalloc1(0, &field->records));
@@ -221,22 +220,6 @@ PetscErrorCode SearchFieldDestroy(SearchField *field)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Does a candidate face the slave point? It must be opposed and must not share a node with the slave point's own
-   face. */
-static PetscBool CandidateFaces(const Nearest *look, const Candidate *c)
-{
-  PetscReal cosine = 0;
-
-  for (int d = 0; d < look->lists->dim; d++) cosine += look->normal[d] * c->normal[d];
-  if (cosine >= SEARCH_OPPOSED) return PETSC_FALSE;
-  for (int a = 0; a < ElementGet(c->facet.type)->nodes; a++)
-    for (PetscInt k = 0; k < look->own; k++)
-      if (look->lists->point_node[look->lists->point_ptr[c->facet.nodes[a]]] ==
-          look->lists->slave_node[look->lists->slave_ptr[look->q] + k])
-        return PETSC_FALSE;
-  return PETSC_TRUE;
-}
-
 /* Compares a candidate with the nearest one so far. Two facets share the foot on the edge between them. Where facets
    are equally near, the smaller tag decides and not round-off. Fits would show the difference, because they start
    from the nearest facet and its normal. */
@@ -249,7 +232,11 @@ static void NearestVisit(void *context, int index, double *bound)
   PetscReal        x[FACE_MAX_NODES * 3], distance;
   Foot             foot;
 
-  if (!CandidateFaces(look, c)) return;
+  if (!FlankFaces(look, c)) {
+    look->averse = PETSC_TRUE;
+    return;
+  }
+  if (FlankIsOwn(look, c)) return;
   CandidatePositions(look->lists, c, x);
   own.free_edges = 0;
   for (int a = 0; a < ElementGet(own.type)->nodes; a++) {
@@ -293,9 +280,9 @@ static PetscReal ListCurvature(const Nearest *look, PetscInt n, const int *found
 }
 
 /* Appends the found candidates to the slave point's list, which starts at first. The nodes of the facets become
-   positions in that list. */
-static PetscErrorCode ListAddFacets(const Nearest *look, PetscInt n, const int *found, const FaceRecord *records,
-                                    PetscInt first, ListBuffer *buffer)
+   positions in that list, and the ends of the flank become free edges. */
+static PetscErrorCode ListAddFacets(const Nearest *look, PetscInt n, const int *found, const int *ends,
+                                    const FaceRecord *records, PetscInt first, ListBuffer *buffer)
 {
   PetscFunctionBeginUser;
   for (PetscInt i = 0; i < n; i++) {
@@ -311,31 +298,23 @@ static PetscErrorCode ListAddFacets(const Nearest *look, PetscInt n, const int *
       PetscCall(ListBufferAddPoint(buffer, first, facet.nodes[a]));
       facet.nodes[a] = (int)(buffer->position[facet.nodes[a]] - first);
     }
+    facet.free_edges |= ends[i];
     buffer->size[buffer->n]    = records[c->record].size;
     buffer->facet[buffer->n++] = facet;
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Drops found candidates that do not face the slave point. */
-static int KeepFacing(const Nearest *look, int n, int *found)
-{
-  int kept = 0;
-
-  for (int i = 0; i < n; i++)
-    if (CandidateFaces(look, &look->candidates[found[i]])) found[kept++] = found[i];
-  return kept;
-}
-
 /* Finds the nearest facet of one slave point, lists it with all facets within margin and motion of it, and fits the
-   surface there. look gives the slave point and the distance within which it is searched. found has room for all
-   candidates. */
+   surface there. look gives the slave point, the size of its face and the distance within which it is searched. found
+   and ends have room for all candidates. */
 static PetscErrorCode FillSlave(NeighbourLists lists, const SearchField *field, BoxTree tree, FitSupport *fit,
-                                PetscReal margin, PetscReal motion, Nearest *look, int *found, ListBuffer *buffer)
+                                PetscReal margin, PetscReal motion, Nearest *look, int *found, int *ends,
+                                ListBuffer *buffer)
 {
   const PetscInt q = look->q, first = buffer->n_points;
   double         bound = look->least + look->tie;
-  int            count;
+  int            count, facing;
 
   PetscFunctionBeginUser;
   lists->list_ptr[q]  = first;
@@ -343,28 +322,32 @@ static PetscErrorCode FillSlave(NeighbourLists lists, const SearchField *field, 
   lists->kappa[q]     = 0;
   lists->nearest[q]   = -1;
   BoxTreeClosest(tree, look->x, &bound, NearestVisit, look);
+  lists->averse[q] = (PetscBool)(look->best < 0 && look->averse);
+  lists->share[q]  = 0;
   if (look->best < 0) PetscFunctionReturn(PETSC_SUCCESS);
   count           = BoxTreeNear(tree, look->x, look->least + margin + motion, (int)field->n_candidates, found);
-  count           = KeepFacing(look, count, found);
-  lists->kappa[q] = ListCurvature(look, count, found);
-  for (int i = 0; i < count; i++)
+  facing          = FlankSort(look, &count, found);
+  lists->share[q] = FlankShare(look, facing, count, found, ends);
+  lists->kappa[q] = ListCurvature(look, facing, found);
+  for (int i = 0; i < facing; i++)
     if (found[i] == look->best) lists->nearest[q] = i;
-  if (fit) PetscCall(FitSupportSlave(fit, look, q, first, buffer));
-  PetscCall(ListAddFacets(look, count, found, field->records, first, buffer));
+  if (fit && !FlankNearRidge(look, fit->neighbourhoods, facing, found))
+    PetscCall(FitSupportSlave(fit, look, q, first, buffer));
+  PetscCall(ListAddFacets(look, facing, found, ends, field->records, first, buffer));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* Fills the lists of all slave points. fit is NULL where the facets are used. */
-static PetscErrorCode NeighbourListsFill(ContactSearch s, NeighbourLists lists, const PetscReal *normals,
-                                         const SearchField *field, FitSupport *fit, PetscReal motion)
+static PetscErrorCode NeighbourListsFill(ContactSearch s, NeighbourLists lists, const SearchField *field,
+                                         FitSupport *fit, PetscReal motion)
 {
   const int  dim = lists->dim;
   BoxTree    tree;
-  int       *found;
+  int       *found, *ends;
   ListBuffer buffer = {0};
 
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc2(field->n_candidates, &found, lists->n_points, &buffer.position));
+  PetscCall(PetscMalloc3(field->n_candidates, &found, field->n_candidates, &ends, lists->n_points, &buffer.position));
   for (PetscInt p = 0; p < lists->n_points; p++) buffer.position[p] = -1;
   PetscCall(CandidatesTree(dim, field->n_candidates, field->candidates, &tree));
   for (PetscInt q = 0; q < lists->n_slaves; q++) {
@@ -372,13 +355,13 @@ static PetscErrorCode NeighbourListsFill(ContactSearch s, NeighbourLists lists, 
                     .candidates = field->candidates,
                     .q          = q,
                     .own        = s->slaves->ptr[q + 1] - s->slaves->ptr[q],
+                    .size       = s->slaves->size[q],
                     .best       = -1,
                     .least      = s->reach + motion,
                     .tie        = FACET_TIE * (s->reach + motion)};
 
     for (int d = 0; d < dim; d++) look.x[d] = lists->slave_X[q * dim + d] + lists->slave_u[q * dim + d];
-    for (int d = 0; d < 3; d++) look.normal[d] = normals[3 * q + d];
-    PetscCall(FillSlave(lists, field, tree, fit, s->margin, motion, &look, found, &buffer));
+    PetscCall(FillSlave(lists, field, tree, fit, s->margin, motion, &look, found, ends, &buffer));
   }
   lists->list_ptr[lists->n_slaves]  = buffer.n_points;
   lists->facet_ptr[lists->n_slaves] = buffer.n;
@@ -386,7 +369,7 @@ static PetscErrorCode NeighbourListsFill(ContactSearch s, NeighbourLists lists, 
   lists->facet                      = buffer.facet;
   lists->facet_size                 = buffer.size;
   BoxTreeDestroy(&tree);
-  PetscCall(PetscFree2(found, buffer.position));
+  PetscCall(PetscFree3(found, ends, buffer.position));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -412,7 +395,7 @@ static PetscErrorCode NeighbourListsFill(ContactSearch s, NeighbourLists lists, 
 PetscErrorCode SearchLists(ContactSearch s, const PetscReal *u, PetscReal t, PetscReal motion, NeighbourLists *out)
 {
   const PetscReal distance = s->reach + PetscMax(s->margin, SearchFitReach(s)) + 2 * motion;
-  PetscReal       box[6], *normals;
+  PetscReal       box[6];
   SearchField     field;
   NeighbourLists  lists;
   FitSupport      fit;
@@ -424,16 +407,14 @@ PetscErrorCode SearchLists(ContactSearch s, const PetscReal *u, PetscReal t, Pet
   SearchSlaveBox(s, box);
   PetscCall(SearchFieldCreate(s, u, t, box, distance, lists, &field));
   PetscCall(NeighbourListsCreateSlaves(s, lists));
-  PetscCall(PetscMalloc1(3 * lists->n_slaves, &normals));
-  PetscCall(SlavePointsNormals(s->slaves, u, normals));
+  PetscCall(SlavePointsNormals(s->slaves, u, lists->slave_normal));
   if (s->fit->fitted) PetscCall(FitSupportCreate(s, lists, &field, &fit));
   if (s->fit->fitted && s->fit->global_frame)
     PetscCall(SurfaceMeanNormal(s->master, s->loads, s->n_images, s->images, u, t, fit.plane, NULL));
-  PetscCall(NeighbourListsFill(s, lists, normals, &field, s->fit->fitted ? &fit : NULL, motion));
+  PetscCall(NeighbourListsFill(s, lists, &field, s->fit->fitted ? &fit : NULL, motion));
   if (s->fit->fitted) PetscCall(FitSupportDestroy(&fit));
   PetscCall(NeighbourListsUpdate(s, lists, u, t, NULL));
   for (PetscInt q = 0; q < lists->n_slaves; q++) NeighbourListsCentre(lists, q, &lists->centre[2 * q]);
-  PetscCall(PetscFree(normals));
   PetscCall(SearchFieldDestroy(&field));
   *out = lists;
   PetscFunctionReturn(PETSC_SUCCESS);

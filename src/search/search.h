@@ -4,7 +4,7 @@
 
    SearchCreate() holds the parts that do not change in a run. SearchLists() makes new lists at the present positions.
    The lists then stand still while the positions move (NeighbourListsUpdate()). SearchDistance() gives the distance of
-   a single point to the master.
+   a single point to the master, SearchLeastDistance() that of all slave points.
 
    The search has two stages. The boxes of the ranks' slave nodes are compared with the boxes of facets to find the
    ranks; then a tree is built over the facets that arrived. There is no patch size to choose: the reach is two face
@@ -19,7 +19,9 @@ typedef struct {
   PetscBool fitted; /* lists come with fits; PETSC_FALSE: the facets are used, and nothing below is read */
   int       degree; /* 2 or 4 */
   /* Fit through the quadrature points of the faces, weighted by area, instead of the nodes. */
-  PetscBool         integral;
+  PetscBool integral;
+  /* Axisymmetric integral fits see the whole body of revolution: each quadrature point is a ring of points. */
+  PetscBool         revolved;
   double            support;  /* in spacings of the master's nodes */
   double            exponent; /* of the weight */
   FitDerivativeKind derivatives;
@@ -27,9 +29,11 @@ typedef struct {
   PetscReal         feature_angle; /* radians; fits end at edges that are sharper */
 } FitSettings;
 
+int            FitDegreeCode(const FitSettings *, int degree);
 PetscErrorCode SearchCreate(Mesh, Scene, Loads, ContactSurface master, PetscReal slave_size, int n_images,
                             const SurfaceImage *, const FitSettings *, SlavePoints slaves, const PetscReal *offset,
                             const FaceMaps *maps, ContactSearch *);
 PetscErrorCode SearchDestroy(ContactSearch *);
 PetscErrorCode SearchLists(ContactSearch, const PetscReal *u, PetscReal t, PetscReal motion, NeighbourLists *);
+PetscErrorCode SearchLeastDistance(ContactSearch, const PetscReal *u, PetscReal t, PetscReal *distance);
 PetscErrorCode SearchDistance(ContactSearch, const PetscReal *u, PetscReal t, const PetscReal x[3], PetscReal *gap);

@@ -29,12 +29,14 @@ static PetscErrorCode CreateForest(SlavePoints points)
   Input Parameters:
 + surface - the slave surface
 . n       - number of nodes
-- nodes   - local nodes, nodes[n]
+. nodes   - local nodes, nodes[n]
+- size    - size of the faces around each of them (length)
 
   Output Parameter:
 . out - the slave points
 @*/
-PetscErrorCode SlavePointsCreateNodes(ContactSurface surface, PetscInt n, const PetscInt nodes[], SlavePoints *out)
+PetscErrorCode SlavePointsCreateNodes(ContactSurface surface, PetscInt n, const PetscInt nodes[],
+                                      const PetscReal size[], SlavePoints *out)
 {
   Mesh        mesh = surface->mesh;
   SlavePoints points;
@@ -48,6 +50,8 @@ PetscErrorCode SlavePointsCreateNodes(ContactSurface surface, PetscInt n, const 
   PetscCall(PetscMalloc6(n + 1, &points->ptr, n, &points->node, n, &points->S, n, &points->hat, n, &points->weight,
                          n * mesh->dim, &points->offset));
   PetscCall(PetscArrayzero(points->offset, n * mesh->dim));
+  PetscCall(PetscMalloc1(n, &points->size));
+  PetscCall(PetscArraycpy(points->size, size, n));
   for (PetscInt i = 0; i < n; i++) {
     points->nodes[i] = (NodeKey){.id    = mesh->node_id[nodes[i]],
                                  .owner = mesh->node_owner[nodes[i]],
@@ -145,6 +149,7 @@ PetscErrorCode SlavePointsCreateQuadrature(ContactSurface surface, Geometry geom
   PetscCall(PetscMalloc6(n + 1, &points->ptr, entries, &points->node, entries, &points->S, entries, &points->hat, n,
                          &points->weight, n * dim, &points->offset));
   PetscCall(PetscArrayzero(points->offset, n * dim));
+  PetscCall(PetscMalloc1(n, &points->size));
   entries = 0;
   for (PetscInt f = 0; f < n_records; f++) {
     const Facet    *facet = &points->faces[f];
@@ -156,7 +161,8 @@ PetscErrorCode SlavePointsCreateQuadrature(ContactSurface surface, Geometry geom
       for (int d = 0; d < dim; d++) X[a * dim + d] = points->nodes[facet->nodes[a]].X[d];
     FaceRuleAreas(rule, facet->type, dim, geometry, X, &points->weight[points->first[f]], NULL);
     for (int q = 0; q < rule->n; q++) {
-      points->ptr[points->first[f] + q] = entries;
+      points->ptr[points->first[f] + q]  = entries;
+      points->size[points->first[f] + q] = records[f].size;
       for (int a = 0; a < nodes; a++, entries++) {
         points->node[entries] = facet->nodes[a];
         points->S[entries]    = rule->N[q][a];
@@ -212,6 +218,7 @@ PetscErrorCode SlavePointsDestroy(SlavePoints *points)
     PetscCall(FaceMapsDestroy(&p->maps));
   }
   PetscCall(PetscFree6(p->ptr, p->node, p->S, p->hat, p->weight, p->offset));
+  PetscCall(PetscFree(p->size));
   PetscCall(PetscFree(p->nodes));
   PetscCall(PetscFree(p->u));
   PetscCall(PetscFree(*points));

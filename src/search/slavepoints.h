@@ -20,6 +20,7 @@ typedef struct {
   PetscReal     *u;                /* n_nodes*dim: displacements at the last SlavePointsMove() (length) */
   PetscInt       n, *ptr, *node;   /* points, and the nodes of which each is made */
   PetscReal     *S, *hat, *weight; /* shape and hat functions at these nodes; area weight of each point */
+  PetscReal     *size;             /* of the slave's faces at each point (length) */
   PetscReal     *offset;           /* n*dim, along the normal at the time when it was taken (length) */
   /* The following members are for surface-to-surface contact only. */
   PetscInt     n_faces;
@@ -32,7 +33,8 @@ typedef struct {
   FaceMaps maps;
 } *SlavePoints;
 
-PetscErrorCode SlavePointsCreateNodes(ContactSurface, PetscInt n, const PetscInt nodes[], SlavePoints *);
+PetscErrorCode SlavePointsCreateNodes(ContactSurface, PetscInt n, const PetscInt nodes[], const PetscReal size[],
+                                      SlavePoints *);
 PetscErrorCode SlavePointsCreateQuadrature(ContactSurface, Geometry, int finer, SlavePoints *);
 PetscErrorCode SlavePointsDestroy(SlavePoints *);
 PetscErrorCode SlavePointsMove(SlavePoints, const PetscReal *u);

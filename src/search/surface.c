@@ -3,9 +3,6 @@
 #include "base/refusal.h"
 #include "search/surface.h"
 
-/* The deviation of a plane of symmetry from flatness, and of its normal from an axis, may reach this fraction of the
-   model's size. It is the round-off of a CAD kernel. */
-#define SURFACE_FLATNESS 1e-6
 /* Directions are distinguished by cells on the faces of a cube, with this many cells along an edge of the cube. A
    cell is some 20 degrees wide, so that normals count as opposed up to the cosine SURFACE_OPPOSED. */
 enum { SURFACE_CELLS = 4, SURFACE_DIRECTIONS = 6 * SURFACE_CELLS * SURFACE_CELLS };
@@ -250,25 +247,39 @@ static PetscInt KeepSingleEdges(PetscInt n, FaceEdge *edges)
   return kept;
 }
 
+/*@
+  SurfaceOnPlane - says whether a position lies on the plane of an image.
+
+  Not collective
+
+  Input Parameters:
++ mesh  - the mesh, whose size is the scale
+. image - an image of one plane
+- x     - position x[dim], relative to the mesh's centre (length)
+@*/
+PetscBool SurfaceOnPlane(Mesh mesh, const SurfaceImage *image, const PetscReal *x)
+{
+  for (int d = 0; d < mesh->dim; d++)
+    if (PetscAbsReal(image->sign[d] * x[d] + image->shift[d] - x[d]) > SURFACE_FLATNESS * mesh->size)
+      return PETSC_FALSE;
+  return PETSC_TRUE;
+}
+
 /* Does a plane of symmetry hold all nodes of the edge? */
 static PetscBool EdgeOnSymmetry(ContactSurface surface, const FaceEdge *edge, int n_images, const SurfaceImage *images)
 {
-  const int        dim    = surface->mesh->dim;
   const PetscReal *coords = surface->rigid ? surface->rigid->coords : surface->mesh->coords;
   const Facet     *face   = &surface->faces[edge->face];
   int              corners[2];
   const int        n = FaceEdgeNodes(face, edge->edge, corners);
 
   for (int plane = 1; plane < n_images; plane <<= 1) {
-    PetscReal distance = 0;
+    PetscBool on = PETSC_TRUE;
 
-    for (int i = 0; i < n; i++) {
-      const PetscReal *x = &coords[face->nodes[corners[i]] * dim];
-
-      for (int d = 0; d < dim; d++)
-        distance = PetscMax(distance, PetscAbsReal(images[plane].sign[d] * x[d] + images[plane].shift[d] - x[d]));
-    }
-    if (distance <= SURFACE_FLATNESS * surface->mesh->size) return PETSC_TRUE;
+    for (int i = 0; i < n; i++)
+      on = (PetscBool)(on && SurfaceOnPlane(surface->mesh, &images[plane],
+                                            &coords[face->nodes[corners[i]] * surface->mesh->dim]));
+    if (on) return PETSC_TRUE;
   }
   return PETSC_FALSE;
 }
@@ -391,6 +402,39 @@ PetscErrorCode SurfaceNodeAreas(ContactSurface surface, Geometry geometry, const
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Angle between the faces around a node, with their mirror images, and their mean normal: the resultant of faces that
+   turn by +-a is cos a of their area. *ends is PETSC_FALSE where an image continues the surface. */
+static PetscReal NodeTurn(Mesh mesh, PetscInt n, int n_images, const SurfaceImage *images, PetscReal area,
+                          const PetscReal normal[3], PetscBool *ends)
+{
+  PetscReal square = 0, kept[3] = {normal[0], normal[1], normal[2]};
+
+  *ends = PETSC_TRUE;
+  for (int bit = 1; bit < n_images; bit <<= 1) {
+    if (!SurfaceOnPlane(mesh, &images[bit], &mesh->coords[n * mesh->dim])) continue;
+    *ends = PETSC_FALSE;
+    for (int d = 0; d < mesh->dim; d++) kept[d] = images[bit].sign[d] < 0 ? 0 : kept[d];
+  }
+  for (int d = 0; d < 3; d++) square += PetscSqr(kept[d]);
+  return area > 0 ? PetscAcosReal(PetscMin(1, PetscSqrtReal(square) / area)) : 0;
+}
+
+/* Sums over the faces around each node the largest turn at a node of the face. */
+static PetscErrorCode FaceTurns(ContactSurface surface, const PetscReal *turn, PetscReal *around)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscArrayzero(around, surface->mesh->n_nodes));
+  for (PetscInt f = 0; f < surface->n_faces; f++) {
+    const Facet *face = &surface->faces[f];
+    PetscReal    most = 0;
+
+    for (int i = 0; i < ElementGet(face->type)->nodes; i++) most = PetscMax(most, turn[face->nodes[i]]);
+    for (int i = 0; i < ElementGet(face->type)->nodes; i++) around[face->nodes[i]] += most;
+  }
+  PetscCall(MeshSumNodes(surface->mesh, 1, around));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /*@
   SurfaceNodeSizes - measures the faces around each local node in the reference configuration.
 
@@ -398,7 +442,9 @@ PetscErrorCode SurfaceNodeAreas(ContactSurface surface, Geometry geometry, const
 
   Input Parameters:
 + surface  - a deformable surface
-- geometry - of the scene
+. geometry - of the scene
+. n_images - number of mirror images
+- images   - the images, which continue the surface
 
   Output Parameters:
 + size  - size[n_nodes]: mean face size (length)
@@ -407,19 +453,23 @@ PetscErrorCode SurfaceNodeAreas(ContactSurface surface, Geometry geometry, const
           corners of 6-node triangles
 
   Note:
-  All values are 0 off the surface.
+  All values are 0 off the surface. Where the surface ends and no image continues it, its turn is that of the nodes next
+  to the end. Second-order faces bend within themselves, which their corners do not show; their nodes share the largest
+  turn of the faces around.
 @*/
-PetscErrorCode SurfaceNodeSizes(ContactSurface surface, Geometry geometry, PetscReal *size, PetscReal *turn,
-                                PetscReal *share)
+PetscErrorCode SurfaceNodeSizes(ContactSurface surface, Geometry geometry, int n_images, const SurfaceImage *images,
+                                PetscReal *size, PetscReal *turn, PetscReal *share)
 {
   enum { SIZE, FACES, AREA, SUMS };
   Mesh           mesh  = surface->mesh;
   const Geometry plane = mesh->dim == 3 ? GEOMETRY_SOLID : GEOMETRY_PLANE_STRAIN;
-  PetscReal     *sum, *normal, *area;
+  PetscReal     *sum, *normal, *area, *around;
+  PetscBool     *ends;
   double         X[FACE_MAX_NODES * 3];
 
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc3(SUMS * mesh->n_nodes, &sum, 3 * mesh->n_nodes, &normal, mesh->n_nodes, &area));
+  PetscCall(PetscMalloc5(SUMS * mesh->n_nodes, &sum, 3 * mesh->n_nodes, &normal, mesh->n_nodes, &area, mesh->n_nodes,
+                         &around, mesh->n_nodes, &ends));
   PetscCall(PetscArrayzero(sum, SUMS * mesh->n_nodes));
   for (PetscInt f = 0; f < surface->n_faces; f++) {
     const Facet *face                  = &surface->faces[f];
@@ -444,150 +494,16 @@ PetscErrorCode SurfaceNodeSizes(ContactSurface surface, Geometry geometry, Petsc
     share[n] = sum[SUMS * n + AREA] > 0 ? area[n] / sum[SUMS * n + AREA] : 0;
   }
   PetscCall(SurfaceNodeAreas(surface, plane, NULL, area, normal));
+  for (PetscInt n = 0; n < mesh->n_nodes; n++)
+    turn[n] = NodeTurn(mesh, n, n_images, images, area[n], &normal[3 * n], &ends[n]);
+  PetscCall(FaceTurns(surface, turn, around));
   for (PetscInt n = 0; n < mesh->n_nodes; n++) {
-    const PetscReal *m = &normal[3 * n], length = PetscSqrtReal(m[0] * m[0] + m[1] * m[1] + m[2] * m[2]);
+    const PetscReal faces = sum[SUMS * n + FACES];
 
-    /* The resultant of faces that turn by +-a is cos a of their area. */
-    turn[n] = area[n] > 0 ? PetscAcosReal(PetscMin(1, length / area[n])) : 0;
+    if (faces > 0 && ((ends[n] && faces == 1) || surface->order > 1)) turn[n] = PetscMax(turn[n], around[n] / faces);
   }
-  PetscCall(PetscFree3(sum, normal, area));
+  PetscCall(PetscFree5(sum, normal, area, around, ends));
   PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Finds the axis to which a planar group is normal, and its position. The axis is -1 if there is none. */
-static PetscErrorCode GroupPlane(Mesh mesh, const MeshGroup *group, int *axis, PetscReal *position)
-{
-  PetscReal range[6]; /* -min and max of each component, over all ranks */
-
-  PetscFunctionBeginUser;
-  for (int k = 0; k < 6; k++) range[k] = PETSC_MIN_REAL;
-  for (PetscInt i = 0; i < group->n_nodes; i++) {
-    for (int d = 0; d < mesh->dim; d++) {
-      const PetscReal x = mesh->coords[group->nodes[i] * mesh->dim + d];
-
-      range[2 * d]     = PetscMax(range[2 * d], -x);
-      range[2 * d + 1] = PetscMax(range[2 * d + 1], x);
-    }
-  }
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, range, 6, MPIU_REAL, MPI_MAX, mesh->comm));
-  *axis = -1;
-  for (int d = 0; d < mesh->dim; d++) {
-    if (range[2 * d] + range[2 * d + 1] > SURFACE_FLATNESS * mesh->size) continue;
-    *axis     = d;
-    *position = 0.5 * (range[2 * d + 1] - range[2 * d]);
-  }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Does a support fix this displacement component on the surface? */
-static PetscBool SupportHolds(Scene scene, const char *surface, int component)
-{
-  for (int s = 0; s < scene->n_supports; s++)
-    if (!strcmp(scene->supports[s].surface, surface) && scene->supports[s].fixed[component]) return PETSC_TRUE;
-  return PETSC_FALSE;
-}
-
-/* Do the images contain this plane already? Two surfaces may lie on one plane, and the axis r = 0 is always there. */
-static PetscBool ImagesHavePlane(int axis, PetscReal position, PetscReal size, int n, const SurfaceImage *images)
-{
-  for (int bit = 1; bit < n; bit <<= 1)
-    if (images[bit].sign[axis] < 0 && PetscAbsReal(images[bit].shift[axis] - 2 * position) <= SURFACE_FLATNESS * size)
-      return PETSC_TRUE;
-  return PETSC_FALSE;
-}
-
-/* Doubles the set of images by one more plane. */
-static void ImagesAddPlane(int axis, PetscReal position, int *n, SurfaceImage *images)
-{
-  for (int i = 0; i < *n; i++) {
-    SurfaceImage image = images[i];
-
-    image.left_out    = (PetscBool)(image.left_out || image.sign[axis] < 0);
-    image.sign[axis]  = -1;
-    image.shift[axis] = 2 * position;
-    image.reverses    = (PetscBool)!image.reverses;
-    images[*n + i]    = image;
-  }
-  *n *= 2;
-}
-
-/*@
-  SurfaceImages - makes the mirror images of a pair's master: the identity, each plane of symmetry and all their
-  products.
-
-  Collective
-
-  Input Parameters:
-+ mesh    - the mesh
-. scene   - the scene
-- contact - gives the planes of symmetry
-
-  Output Parameters:
-+ n_images - number of images
-- images   - images[SURFACE_MAX_IMAGES], in coordinates relative to the mesh's centre
-
-  Note:
-  In axisymmetric scenes the axis r = 0 is always a plane of symmetry. Refuses surfaces that are not planar and
-  normal to an axis, surfaces that no support holds in that direction, and a third plane normal to one axis.
-@*/
-PetscErrorCode SurfaceImages(Mesh mesh, Scene scene, const SceneContact *contact, int *n_images,
-                             SurfaceImage images[SURFACE_MAX_IMAGES])
-{
-  int taken[3] = {0, 0, 0};
-
-  PetscFunctionBeginUser;
-  *n_images = 1;
-  images[0] = (SurfaceImage){.sign = {1, 1, 1}};
-  if (scene->geometry == GEOMETRY_AXISYMMETRIC) {
-    ImagesAddPlane(0, -mesh->centre[0], n_images, images);
-    taken[0] = 1;
-  }
-  for (int s = 0; s < contact->n_symmetry; s++) {
-    const char *name = contact->symmetry[s];
-    MeshGroup  *group;
-    PetscReal   position = 0;
-    int         axis;
-
-    PetscCall(MeshGetGroup(mesh, scene, contact->path, "symmetry", name, mesh->dim - 1, &group));
-    PetscCall(GroupPlane(mesh, group, &axis, &position));
-    if (axis < 0)
-      PetscCall(RefuseInput(
-        mesh->comm,
-        "%s: '%s' is not a plane normal to a coordinate axis; allowed: planar surfaces x, y or z = constant",
-        SceneWhere(scene, contact->path, "symmetry"), name));
-    if (!SupportHolds(scene, name, axis)) {
-      PetscCall(RefuseInput(mesh->comm,
-                            "%s: no support holds u%c on '%s', so it is no plane of symmetry; allowed: surfaces whose "
-                            "normal displacement a support fixes",
-                            SceneWhere(scene, contact->path, "symmetry"), "xyz"[axis], name));
-    }
-    if (ImagesHavePlane(axis, position, mesh->size, *n_images, images)) continue;
-    if (taken[axis] == SURFACE_AXIS_PLANES)
-      PetscCall(RefuseInput(
-        mesh->comm, "%s: '%s' is a third plane normal to %c; allowed: two planes for each axis (the axis r = 0 is one)",
-        SceneWhere(scene, contact->path, "symmetry"), name, "xyz"[axis]));
-    taken[axis]++;
-    ImagesAddPlane(axis, position, n_images, images);
-  }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/*@
-  SurfaceReflect - computes the mirror image of a position.
-
-  Not collective
-
-  Input Parameters:
-+ image - the image
-. dim   - 2 or 3
-- x     - position x[dim] (length)
-
-  Output Parameter:
-. y - its mirror image y[dim]; may be the same array as x
-@*/
-void SurfaceReflect(const SurfaceImage *image, int dim, const PetscReal *x, PetscReal *y)
-{
-  for (int d = 0; d < dim; d++) y[d] = image->sign[d] * x[d] + image->shift[d];
 }
 
 /*@

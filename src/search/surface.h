@@ -10,6 +10,10 @@
 #include "bodies/elasticity.h"
 #include "smooth/facet.h"
 
+/* The deviation of a plane of symmetry from flatness, and of its normal from an axis, may reach this fraction of the
+   model's size. It is the round-off of a CAD kernel. */
+#define SURFACE_FLATNESS 1e-6
+
 /* A mirror image: reflection through a coordinate plane or a product of such planes, x' = sign * x + shift, by
    component. Image 0 is the identity. Image m is the product of the planes whose bits are set in m. Two planes
    normal to one axis each mirror once, and their product is left out. */
@@ -32,15 +36,21 @@ typedef struct {
   PetscReal        max_extent;          /* longest distance between two corners of a face */
   /* Area-weighted mean of E over element height, over all ranks; 0 for a rigid tool. */
   PetscReal stiffness;
+  PetscInt  turned; /* faces of a rigid tool whose normals were turned */
 } *ContactSurface;
 
 PetscErrorCode SurfaceCreate(Mesh, Scene, Elasticity, const char *path, const char *key, const char *name,
                              ContactSurface *);
 PetscErrorCode SurfaceDestroy(ContactSurface *);
+PetscBool      SurfaceOnPlane(Mesh, const SurfaceImage *, const PetscReal *x);
 PetscErrorCode SurfaceFindFreeEdges(ContactSurface, int n_images, const SurfaceImage *);
 PetscErrorCode SurfaceNodeAreas(ContactSurface, Geometry, const PetscReal *u, PetscReal *area, PetscReal *normal);
-PetscErrorCode SurfaceNodeSizes(ContactSurface, Geometry, PetscReal *size, PetscReal *turn, PetscReal *share);
-PetscErrorCode SurfaceImages(Mesh, Scene, const SceneContact *, int *n_images, SurfaceImage images[SURFACE_MAX_IMAGES]);
+PetscErrorCode SurfaceNodeSizes(ContactSurface, Geometry, int n_images, const SurfaceImage *, PetscReal *size,
+                                PetscReal *turn, PetscReal *share);
+PetscErrorCode SurfaceImages(Mesh, Scene, const SceneContact *, ContactSurface slave, ContactSurface master,
+                             int *n_images, SurfaceImage images[SURFACE_MAX_IMAGES]);
+PetscErrorCode SurfaceImagesFromSupports(Mesh, Scene, ContactSurface slave, ContactSurface master, int *n_images,
+                                         SurfaceImage images[SURFACE_MAX_IMAGES]);
 void           SurfaceReflect(const SurfaceImage *, int dim, const PetscReal *x, PetscReal *y);
 Facet          SurfaceImageFacet(const Facet *, const SurfaceImage *);
 PetscErrorCode SurfaceFaces(ContactSurface master, PetscInt n, const PetscInt nodes[], const PetscReal normals[],

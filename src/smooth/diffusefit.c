@@ -80,19 +80,22 @@ LANES_INLINE void Layout(const int terms, int n, double *workspace, FitArrays *a
 }
 
 /* Writes the points inside the support into the arrays, and their heights into the last column of the basis. */
-LANES_INLINE void Collect(const int dim, const int terms, const FitProblem *in, double (*G)[3], FitArrays *a)
+LANES_INLINE void Collect(const int dim, const int degree, const int terms, const FitProblem *in, double (*G)[3],
+                          double scale, FitArrays *a)
 {
   double *const z = (double *)(a->basis + terms * a->capacity);
   int           n = 0;
 
   for (int i = 0; i < in->n; i++) {
     const double *x = in->x + i * dim;
-    double        d[3], rho2 = 0;
+    const double  t = IsRevolved(degree) ? scale * in->hoop[i] : 0;
+    double        d[3], rho2 = t * t;
 
     for (int k = 0; k < dim; k++) d[k] = G[k][0] * x[0] + G[k][1] * x[1] + (dim == 3 ? G[k][2] * x[2] : 0);
     for (int k = 0; k < dim - 1; k++) rho2 += d[k] * d[k];
     if (!(rho2 < 1)) continue;
     for (int k = 0; k < dim - 1; k++) ((double *)a->eta[k])[n] = d[k];
+    if (IsRevolved(degree)) ((double *)a->eta[1])[n] = t;
     ((double *)a->multiplier)[n] = in->multiplier[i];
     ((double *)a->inside)[n]     = 1 - rho2;
     z[n]                         = d[dim - 1];
@@ -105,6 +108,7 @@ LANES_INLINE void Collect(const int dim, const int terms, const FitProblem *in, 
   a->J      = a->K + terms * a->stride;
   for (; n < a->groups * LANES; n++) {
     for (int k = 0; k < dim - 1; k++) ((double *)a->eta[k])[n] = 0;
+    if (IsRevolved(degree)) ((double *)a->eta[1])[n] = 0;
     ((double *)a->multiplier)[n] = ((double *)a->inside)[n] = z[n] = 0;
   }
 }
@@ -245,7 +249,7 @@ LANES_INLINE int MakeSurface(const int dim, const int degree, const int terms, c
     }
   }
   memcpy(s->G[dim - 1], in->frame[dim - 1], sizeof(s->G[0]));
-  Collect(dim, terms, in, s->G, a);
+  Collect(dim, degree, terms, in, s->G, surface->scale[0][0], a);
   out->n = a->n;
   if (out->points) memcpy(out->points, a->points, a->n * sizeof(int));
   if (a->n < terms) return 0;
@@ -269,6 +273,7 @@ LANES_INLINE void SurfaceAt(const int m, const int degree, const int terms, cons
   double h[2][2];
 
   for (int k = 0; k < m; k++) eta[k] = Broadcast(B[k][0] * y[0] + (m == 2 ? B[k][1] * y[1] : 0));
+  if (IsRevolved(degree)) eta[1] = Broadcast(B[0][0] * y[1]);
   Monomials(m, degree, eta, at->p);
   PolynomialGradient(m, degree, at->p, alpha, gradient);
   PolynomialHessian(m, degree, at->p, alpha, hessian);
@@ -445,13 +450,14 @@ LANES_INLINE int Evaluate(const int dim, const int degree, const int terms, cons
 
   Input Parameters:
 + dim    - 2 or 3
-- degree - of the polynomial over the dim - 1 tangents
+- degree - of the polynomial over the dim - 1 tangents; FIT_REVOLVED added: of a fit of revolution
 
   Note:
   Plain C.
 @*/
 int FitTerms(int dim, int degree)
 {
+  if (IsRevolved(degree)) return PlainDegree(degree) == 4 ? 9 : 2 * PlainDegree(degree);
   return dim == 2 ? degree + 1 : (degree + 1) * (degree + 2) / 2;
 }
 
@@ -558,6 +564,7 @@ LANES_INLINE double HeightOnly(const int m, const int degree, const int terms, c
   Lanes eta[MAX_TANGENTS], p[FIT_MAX_TERMS];
 
   for (int k = 0; k < m; k++) eta[k] = Broadcast(B[k][0] * y[0] + (m == 2 ? B[k][1] * y[1] : 0));
+  if (IsRevolved(degree)) eta[1] = Broadcast(B[0][0] * y[1]);
   Monomials(m, degree, eta, p);
   return DotTerms(terms, p, alpha)[0];
 }
@@ -582,7 +589,8 @@ LANES_INLINE double HeightAt(const int m, const int degree, const int terms, con
 
   Input Parameters:
 + surface - of an evaluation
-- y       - tangent coordinates relative to the slave point, y[dim - 1] (length)
+- y       - tangent coordinates relative to the slave point, y[dim - 1] (length); in a fit of revolution y[2] with the
+            distance along the hoop
 
   Output Parameter:
 . gradient - gradient[dim - 1] with respect to y; may be NULL

@@ -17,6 +17,11 @@
    p(y) holds all monomials up to the degree. The distance rho is measured in the tangent plane, because weights by the
    distance in space would change with the gap. The differences x_i - x_c are formed as (X_i - X_c) + (u_i - u_c).
 
+   A fit of revolution (degree + FIT_REVOLVED, in 2D) sees a body of revolution. Its points are points of rings, turned
+   into the meridian plane: a point at radius r and angle theta has the coordinates (r cos theta, z) there and the
+   distance t = r sin theta from it. Then rho_i^2 = Q (s_i^2 + t_i^2), and p holds the monomials s^a t^b with even b up
+   to the degree, because the surface is even in t. The slave point and the foot have t = 0. t_i is no unknown.
+
    The kernel sees points, never elements or nodes. Only points inside the support take part. The result lists them,
    and N and M run over the slave point and these points. */
 #pragma once
@@ -43,6 +48,8 @@ enum {
   /* Newton's method for the foot takes 3 to 5 iterations. More are needed only near a centre of curvature. */
   FIT_ITERATIONS = 20,
   FIT_MAX_TERMS  = 15,
+  /* Added to the degree of a fit of revolution. */
+  FIT_REVOLVED = 100,
   /* Lists end at this number of points. The kernel itself takes any number. */
   FIT_MAX_POINTS = 512
 };
@@ -68,7 +75,7 @@ typedef enum { FIT_SURFACE, FIT_GAP_ONLY, FIT_GAP, FIT_FIRST_VARIATION, FIT_SECO
 typedef enum { FIT_FULL, FIT_DIFFUSE } FitDerivativeKind;
 
 typedef struct {
-  int    dim, degree; /* degree 1, 2 or 4 */
+  int    dim, degree; /* degree 1, 2 or 4; in 2D also FIT_REVOLVED + one of these */
   double exponent;    /* of the weight, >= 3: it is twice continuously differentiable at the end of the support */
   /* frame[k]: k-th vector; first the dim - 1 tangents, then the normal out of the master. In 2D the third components
      are not read. */
@@ -78,6 +85,7 @@ typedef struct {
   int               n;
   const double     *x;          /* [n][dim], relative to the slave point */
   const double     *multiplier; /* [n], v > 0 */
+  const double     *hoop;       /* [n], t (length), held like the metric; read by a fit of revolution only */
   FitDerivativeKind derivatives;
 } FitProblem;
 

@@ -15,6 +15,7 @@ static int SmootherEvaluate_Diffuse(const SmootherInput *in, SmootherWant want, 
                                   .n           = in->n_fit,
                                   .x           = in->x,
                                   .multiplier  = in->multiplier,
+                                  .hoop        = in->hoop,
                                   .derivatives = in->derivatives};
   FitResult            fit     = {.points  = out->points,
                                   .N       = want == SMOOTHER_FIRST_VARIATION ? out->N : NULL,
@@ -42,7 +43,7 @@ static int SmootherEvaluate_Diffuse(const SmootherInput *in, SmootherWant want, 
    one workspace serves all pairs. */
 static long SmootherWorkspace_Diffuse(int dim)
 {
-  return FitWorkspace(dim, 4, FIT_MAX_POINTS);
+  return FitWorkspace(dim, dim == 2 ? FIT_REVOLVED + 4 : 4, FIT_MAX_POINTS);
 }
 
 const Smoother Smoother_Diffuse = {.capacity       = FIT_MAX_POINTS,

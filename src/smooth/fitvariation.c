@@ -24,6 +24,7 @@ LANES_INLINE void Bundle(const int m, const int degree, const int terms, const F
                          double exponent, FitDerivativeKind derivatives, int g, FitBundle *b)
 {
   for (int k = 0; k < m; k++) b->eta[k] = a->eta[k][g];
+  if (IsRevolved(degree)) b->eta[1] = a->eta[1][g];
   Monomials(m, degree, b->eta, b->p);
   MonomialGradients(m, degree, b->p, b->dp);
   b->w  = a->weight[g];

@@ -30,6 +30,7 @@ typedef struct {
   int               degree; /* of the fit's polynomial here */
   double            exponent;       /* of the weight function */
   const double     *multiplier;     /* of the weights of the fit points */
+  const double     *hoop;           /* of the fit points, as in FitProblem */
   const double     *frame, *metric; /* 9 and 4 entries as in FitProblem, held in a solve */
   FitDerivativeKind derivatives;
   double           *workspace; /* of the size that the smoother's workspace() returned */

@@ -8,9 +8,13 @@
    that lag behind by little. Each time a lag shrinks to a twentieth. A lag that is left would show as a jump in the
    next step. */
 #define EQUILIBRIUM_MAX_OFFSET_UPDATES 4
-/* The springs of stabilised pairs are relaxed at most this many times. A body at rest needs two or three. In each pass
-   a body that flies freely covers a thousand times its penetration at rest. */
-#define EQUILIBRIUM_MAX_RELAX 30
+/* What the springs of free bodies hold after a solve may be this part of F_ref. More is relaxed. */
+#define EQUILIBRIUM_SPRINGS 1e-7
+/* The springs are relaxed at most this many times. */
+#define EQUILIBRIUM_MAX_RELAX 3
+/* A body of which the springs hold more than this part of F_ref is in no contact that holds it. Either a load moves it
+   on and on, or a tool pushes it before it against no force but that of the springs. */
+#define EQUILIBRIUM_ALL 0.1
 
 /* Penalties are stiffened at most this many times at one load parameter. The first time is enough where the error is
    proportional to the compliance of the penalty, which it is when it is small. */
@@ -71,18 +75,50 @@ static PetscErrorCode ModelExplainFailure(Model model, SolveReport *report)
     PetscCall(PetscStrncpy(report->detail, report->cycle, sizeof(report->detail)));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
+  if (model->problem->bodies)
+    PetscCall(FreeBodiesLoose(model->problem->bodies, model->problem->trial, model->t, PETSC_TRUE,
+                              sizeof(report->detail), report->detail));
+  if (report->detail[0]) PetscFunctionReturn(PETSC_SUCCESS);
   if (adrift) PetscCall(FreeModesUnheld(model->mesh, model->scene, model->problem->loads, sizeof(loose), loose));
   if (adrift && loose[0])
-    PetscCall(PetscSNPrintf(
-      report->detail, sizeof(report->detail), "no support and no imposed displacement holds %s%s", loose,
-      !model->contact || report->result == SOLVE_ADRIFT ? ""
-                                                        : " (contact may, from the start or with stabilise: true)"));
+    PetscCall(
+      PetscSNPrintf(report->detail, sizeof(report->detail), "no support and no imposed displacement holds %s%s", loose,
+                    !model->contact || report->result == SOLVE_ADRIFT ? "" : " (contact may, with stabilise: auto)"));
   else {
     FailureText(model->scene, &report->failure, report->detail, sizeof(report->detail));
     if (report->result == SOLVE_LINE_SEARCH || report->result == SOLVE_ITERATIONS)
       PetscCall(ModelBlameFacets(model, report->detail, sizeof(report->detail), &edge));
     if (!edge) PetscCall(ModelBlamePenalty(model, report->detail, sizeof(report->detail)));
   }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Moves bodies that no contact holds yet along the loads at t until they touch. This changes the accepted state, which
+   has no force in these bodies, wherever they are. */
+static PetscErrorCode ModelSettle(Model model, PetscReal t)
+{
+  ModelWork   *work = model->work;
+  SettleResult settled;
+  PetscReal   *u;
+
+  PetscFunctionBeginUser;
+  work->adrift = PETSC_FALSE;
+  if (!model->problem->bodies || work->searched) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscMalloc1(model->mesh->n_nodes * model->mesh->dim, &u));
+  PetscCall(PetscArraycpy(u, work->accepted_u, model->mesh->n_nodes * model->mesh->dim));
+  PetscCall(
+    FreeBodiesSettle(model->problem->bodies, work->accepted_t, t, (PetscBool)(work->accepted_t == 0), u, &settled));
+  work->adrift   = (PetscBool)(settled == SETTLE_ADRIFT);
+  work->searched = (PetscBool)!work->adrift; /* a step that is tried again starts where the bodies are now */
+  if (settled == SETTLE_MOVED) {
+    work->settled      = PETSC_TRUE;
+    work->looked_ahead = PETSC_FALSE;
+    PetscCall(PetscArraycpy(work->accepted_u, u, model->mesh->n_nodes * model->mesh->dim));
+    PetscCall(MeshCollectFree(model->mesh, u, work->accepted_x));
+    PetscCall(VecCopy(work->accepted_x, model->x));
+    if (work->extrapolation) PetscCall(ExtrapolationReplace(work->extrapolation, u, work->accepted_t));
+  }
+  PetscCall(PetscFree(u));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -94,6 +130,8 @@ static PetscErrorCode ModelDepart(Model model, PetscReal t)
   PetscReal  motion;
 
   PetscFunctionBeginUser;
+  if (model->contact) PetscCall(ContactRestore(model->contact));
+  PetscCall(ModelSettle(model, t));
   PetscCall(ContactSpringsRelax(model->problem->springs, work->accepted_x));
   model->t                 = t;
   model->problem->inverted = -1;
@@ -106,8 +144,10 @@ static PetscErrorCode ModelDepart(Model model, PetscReal t)
   if (!model->contact) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(ProblemImposedMotion(model->problem, work->accepted_u, work->accepted_t, t, &motion));
   motion = PetscMax(motion, PROBLEM_MOTION_SAFETY * work->rate * (t - work->accepted_t));
-  PetscCall(ContactRestore(model->contact));
   PetscCall(ProblemGatherLists(model->problem, work->accepted_u, work->accepted_t, t, motion));
+  if (model->problem->bodies && !work->adrift)
+    PetscCall(FreeBodiesTie(model->problem->bodies, work->accepted_u, work->accepted_t, t, work->settled,
+                            model->problem->springs, &model->problem->tied));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -189,32 +229,88 @@ static PetscErrorCode ModelSolveLists(Model model, SolveReport *report)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Solves with the springs of stabilised pairs. The springs are relaxed and the step is solved on until the springs
-   carry no force. */
+/* Measures what springs and ties hold at the solution, into the report. *more: the springs hold more than they may.
+ *tied: the ties do. */
+static PetscErrorCode ModelMeasureSprings(Model model, SolveReport *report, PetscBool *more, PetscBool *tied)
+{
+  const PetscReal scale = ProblemForceScale(model->problem);
+  PetscReal       springs, ties, energy, stored, round_off;
+  PetscBool       ok;
+
+  PetscFunctionBeginUser;
+  PetscCall(ContactSpringsLoad(model->problem->springs, model->x, &springs, &ties, &energy));
+  PetscCall(
+    ProblemEnergy(model->problem, model->problem->trial, model->t, ENERGY_ELASTIC | ENERGY_CONTACT, &stored, &ok));
+  PetscCall(ProblemRoundOff(model->problem, &round_off));
+  report->taken += energy;
+  report->left  = stored > 0 ? energy / stored : 0;
+  report->share = scale > 0 ? springs / scale : 0;
+  report->tied  = scale > 0 ? ties / scale : 0;
+  *more         = (PetscBool)(springs > PetscMax(round_off, EQUILIBRIUM_SPRINGS * scale));
+  *tied         = (PetscBool)(ties > PetscMax(round_off, EQUILIBRIUM_SPRINGS * scale));
+  PetscCall(
+    PetscInfo(model->snes, "springs hold %g, ties %g of the forces\n", (double)report->share, (double)report->tied));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Ends a solve in which springs and ties hold most of the forces. A tool may push a body before it against nothing
+   else, which is a solution, or a load moves a body on and on, which is none. */
+static PetscErrorCode ModelJudgeDrift(Model model, SolveReport *report)
+{
+  PetscFunctionBeginUser;
+  PetscCall(FreeBodiesLoose(model->problem->bodies, model->problem->trial, model->t, PETSC_TRUE, sizeof(report->detail),
+                            report->detail));
+  if (report->detail[0]) report->result = SOLVE_ADRIFT;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Solves on after springs were relaxed and ties released at the solution x. A body that ties have held may not find its
+   place without them. It is then tied again where it was. *again: that was done, and no more is to be tried. */
+static PetscErrorCode ModelSolveReleased(Model model, SolveReport *report, PetscBool *again)
+{
+  const Problem problem = model->problem;
+  Vec           x;
+
+  PetscFunctionBeginUser;
+  *again = PETSC_FALSE;
+  PetscCall(VecDuplicate(model->x, &x));
+  PetscCall(VecCopy(model->x, x));
+  PetscCall(ContactSpringsRelax(problem->springs, x));
+  PetscCall(ModelSolveLists(model, report));
+  if (report->result != SOLVE_CONVERGED) PetscCall(ContactSpringsRetie(problem->springs, again));
+  if (*again) {
+    problem->tied        = PETSC_TRUE;
+    model->work->cycling = PETSC_FALSE;
+    report->result       = SOLVE_CONVERGED;
+    PetscCall(VecCopy(x, model->x));
+    PetscCall(ModelSolveLists(model, report));
+  }
+  PetscCall(VecDestroy(&x));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Solves with the springs and ties of free bodies. Springs are so weak that they hold next to nothing where contact
+   holds; where they hold more, as with a soft body, they are relaxed and the step is solved on. Ties hold motions that
+   no load drives. Those that contact has come to hold in the step are released, and the step is solved on, too. */
 static PetscErrorCode ModelSolveHeld(Model model, SolveReport *report)
 {
-  PetscReal force, energy, stored, allowed;
-  PetscBool ok;
-  PetscInt  times = 0;
+  const Problem problem = model->problem;
+  PetscBool     more = PETSC_FALSE, tied = PETSC_FALSE, again = PETSC_FALSE;
 
   PetscFunctionBeginUser;
   PetscCall(ModelSolveLists(model, report));
-  while (model->problem->springs && report->result == SOLVE_CONVERGED) {
-    PetscCall(ContactSpringsLoad(model->problem->springs, model->x, &force, &energy));
-    PetscCall(
-      ProblemEnergy(model->problem, model->problem->trial, model->t, ENERGY_ELASTIC | ENERGY_CONTACT, &stored, &ok));
-    report->taken += energy;
-    report->left = stored > 0 ? energy / stored : 0;
-    PetscCall(ProblemRoundOff(model->problem, &allowed));
-    allowed = PetscMax(allowed, model->scene->solver.tolerance * ProblemForceScale(model->problem));
-    if (force <= allowed) break;
-    if (times++ == EQUILIBRIUM_MAX_RELAX) {
-      report->result = SOLVE_ADRIFT;
+  for (PetscInt times = 0; problem->springs && report->result == SOLVE_CONVERGED; times++) {
+    PetscCall(ModelMeasureSprings(model, report, &more, &tied));
+    if (PetscMax(report->share, report->tied) > EQUILIBRIUM_ALL) {
+      PetscCall(ModelJudgeDrift(model, report));
       break;
     }
+    if (again || times == EQUILIBRIUM_MAX_RELAX) break;
+    if (tied) PetscCall(FreeBodiesRelease(problem->bodies, problem->trial, model->t, problem->springs, &tied));
+    if (!more && !tied) break;
     report->relaxed++;
-    PetscCall(ContactSpringsRelax(model->problem->springs, model->x));
-    PetscCall(ModelSolveLists(model, report));
+    problem->tied = (PetscBool)(problem->tied || tied);
+    PetscCall(ModelSolveReleased(model, report, &again));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -279,7 +375,11 @@ PetscErrorCode ModelSolve(Model model, PetscReal t, SolveReport *report)
   PetscFunctionBeginUser;
   *report = (SolveReport){.result = SOLVE_CONVERGED};
   PetscCall(ModelDepart(model, t));
-  PetscCall(ModelStart(model, report));
+  if (model->work->adrift) {
+    report->result = SOLVE_ADRIFT;
+    PetscCall(ProblemSetTrial(model->problem, model->x, model->t));
+  } else
+    PetscCall(ModelStart(model, report));
   PetscCall(ModelRampPenalty(model, report));
   while (window == WINDOW_MISSED && report->result == SOLVE_CONVERGED) {
     PetscCall(ModelSolveHeld(model, report));

@@ -105,6 +105,24 @@ PetscErrorCode ExtrapolationForget(Extrapolation extrapolation)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/*@
+  ExtrapolationReplace - replaces all states by one, where the bodies were moved.
+
+  Not collective
+
+  Input Parameters:
++ extrapolation - the extrapolation
+. u             - local displacements u[n_nodes*dim] (length), prescribed ones included; copied
+- t             - load parameter
+@*/
+PetscErrorCode ExtrapolationReplace(Extrapolation extrapolation, const PetscReal *u, PetscReal t)
+{
+  PetscFunctionBeginUser;
+  extrapolation->known = 0;
+  PetscCall(ExtrapolationAdd(extrapolation, u, t));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Evaluates at t Lagrange's polynomial of a degree through the states from `first` on. */
 static void Extrapolate(Extrapolation extrapolation, int first, int degree, PetscReal t, PetscReal *u)
 {

@@ -12,7 +12,7 @@ const char *const SolveResults[] = {
   "the contact lists did not settle",
   "the contact set repeats itself",
   "contact was lost behind a master",
-  "a body that is held by springs only (stabilise) does not come to rest",
+  "nothing holds a body against its load",
   "the penetrations did not come into the window of the adjusted penalty",
   "not-a-number in the residual"};
 
@@ -139,7 +139,8 @@ PetscErrorCode ModelSetUp(Model model)
   PetscFunctionBeginUser;
   if (model->contact) PetscCall(ContactTakeOverlap(model->contact));
   PetscCall(ModelAccept(model));
-  model->work->rate = 0;
+  model->work->rate    = 0;
+  model->work->settled = PETSC_TRUE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -190,6 +191,7 @@ PetscErrorCode ModelAccept(Model model)
   PetscCall(PetscArraycpy(work->accepted_u, model->u, model->mesh->n_nodes * model->mesh->dim));
   PetscCall(VecCopy(model->x, work->accepted_x));
   work->accepted_t = model->t;
+  work->settled = work->searched = PETSC_FALSE;
   if (stepped) work->accepted_start = work->start;
   if (work->extrapolation) PetscCall(ExtrapolationAdd(work->extrapolation, model->u, model->t));
   if (work->extrapolation && SceneBreaks(model->scene, model->t)) PetscCall(ExtrapolationForget(work->extrapolation));
@@ -265,7 +267,8 @@ PetscErrorCode ModelArchive(Model model, Archive archive)
     PetscCall(PetscArraycpy(model->u, work->accepted_u, mesh->n_nodes * mesh->dim));
     PetscCall(MeshCollectFree(mesh, model->u, model->x));
     PetscCall(VecCopy(model->x, work->accepted_x));
-    model->t = work->accepted_t;
+    model->t      = work->accepted_t;
+    work->settled = (PetscBool)(work->accepted_t == 0);
   }
   PetscCall(ModelArchivePenaltyError(model, archive));
   PetscCall(LinearCheckArchive(model->linear, archive));

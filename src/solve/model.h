@@ -37,6 +37,8 @@ typedef struct {
   PetscInt    relaxed;     /* times that the contact springs were relaxed and the step solved on */
   PetscReal   taken;       /* energy that the contact springs took out of the bodies in this step */
   PetscReal   left;        /* energy left in the contact springs, over that in elements and contact */
+  PetscReal   share;       /* norm of the forces left in the contact springs, over F_ref */
+  PetscReal   tied;        /* largest force in a tie, over F_ref */
   PetscInt    cycles;      /* times that the contact set repeated itself and Newton's steps were shortened */
   char        cycle[256];  /* the last repetition: its period and nodes, in gmsh's tags */
   char        detail[256]; /* where a failed solve failed, in gmsh's tags */

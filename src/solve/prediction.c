@@ -12,6 +12,8 @@
 /* Penalties during a prediction in pieces, in automatic penalties. The contact that is met must turn the bodies back;
    it need not hold them exactly. penaltyramp.c has the same bound. */
 #define PREDICTION_SOFT 0.1
+/* Most repetitions of a run's first step to where a body touches. Each squares the opening, over the radius. */
+#define PREDICTION_TOUCHES 3
 
 /* Moves model->x by one linear solve with the present tangent, which is that at (u, t), and the residual in problem->f.
    carried: local displacements that belong to the step besides the free ones; may be NULL. */
@@ -44,9 +46,10 @@ static PetscErrorCode ModelStepLinear(Model model, const PetscReal *u, const Pet
 
 /* Moves model->x from the state (u, t) by one linear solve with the tangent of that state. The loads, imposed
    displacements and tool motions are those at model->t. The step is a Newton iteration in which the whole body follows
-   the prescribed displacements. With holding, terms in contact stay in contact. */
+   the prescribed displacements. With holding, terms in contact stay in contact, and with touching terms that touch are
+   in contact, as contact alone may hold a body. */
 static PetscErrorCode ModelStepLoads(Model model, const PetscReal *u, PetscReal t, PetscBool holding,
-                                     SolveReport *report)
+                                     PetscBool touching, SolveReport *report)
 {
   ModelWork     *work = model->work;
   const PetscInt n    = model->mesh->n_nodes * model->mesh->dim;
@@ -59,9 +62,7 @@ static PetscErrorCode ModelStepLoads(Model model, const PetscReal *u, PetscReal 
   PetscCall(LoadsPrescribe(model->problem->loads, model->t, step));
   for (PetscInt i = 0; i < n; i++) step[i] -= u[i];
   if (holding)
-    PetscCall(ContactHoldActiveSet(
-      model->contact, PETSC_TRUE,
-      (PetscBool)(t == 0))); /* at t = 0 touching nodes count too, as contact alone may hold a body */
+    PetscCall(ContactHoldActiveSet(model->contact, PETSC_TRUE, touching));
   PetscCall(LinearSolverRenew(work->solver));
   PetscCall(LinearSolverSetStart(work->solver, work->accepted_start));
   if (model->contact) PetscCall(ContactMultiplyBegin(model->contact, step, t, model->t));
@@ -143,12 +144,34 @@ static PetscErrorCode ModelPredictFromExtrapolation(Model model, SolveReport *re
   if (work->extrapolated)
     PetscCall(ProblemInOrder(model->problem, work->accepted_u, work->accepted_t, u, model->t, &work->extrapolated));
   if (work->extrapolated) {
-    PetscCall(ModelStepLoads(model, u, model->t, (PetscBool)(model->contact != NULL), report));
+    PetscCall(ModelStepLoads(model, u, model->t, (PetscBool)(model->contact != NULL), PETSC_FALSE, report));
     PetscCall(ProblemDisplacements(model->problem, model->x, model->t, v));
     PetscCall(ModelLargestTurn(model, u, v, &turn));
     work->extrapolated = (PetscBool)(report->result == SOLVE_CONVERGED && turn <= PREDICTION_FARTHEST);
   }
   PetscCall(PetscFree2(u, v));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Repeats the first linear step of a run from where it led to, as long as it counted on contact and has met none: closing
+   the gap of a node bends the way, and a body that contact alone holds would be free. The gap that is left is quadratic in
+   the one before. */
+static PetscErrorCode ModelStepToTouch(Model model, SolveReport *report)
+{
+  const PetscInt n = model->mesh->n_nodes * model->mesh->dim;
+  PetscReal     *u;
+  PetscBool      ok, missed = PETSC_TRUE;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(n, &u));
+  for (int k = 0; k < PREDICTION_TOUCHES && missed && report->result == SOLVE_CONVERGED; k++) {
+    PetscCall(ProblemDisplacements(model->problem, model->x, model->t, u));
+    PetscCall(ProblemResidual(model->problem, u, model->t, model->t, &ok));
+    PetscCall(ContactPredictionMissed(model->contact, &missed));
+    missed = (PetscBool)(missed && ok);
+    if (missed) PetscCall(ModelStepLoads(model, u, model->t, PETSC_TRUE, PETSC_TRUE, report));
+  }
+  PetscCall(PetscFree(u));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -168,7 +191,8 @@ static PetscErrorCode ModelPredictFromExtrapolation(Model model, SolveReport *re
 @*/
 PetscErrorCode ModelPredict(Model model, SolveReport *report)
 {
-  const SolveReport before = *report;
+  const SolveReport before   = *report;
+  const PetscBool   touching = (PetscBool)(model->contact && model->work->settled);
 
   PetscFunctionBeginUser;
   PetscCall(ModelPredictFromExtrapolation(model, report));
@@ -176,7 +200,8 @@ PetscErrorCode ModelPredict(Model model, SolveReport *report)
   *report = before;
   PetscCall(VecCopy(model->work->accepted_x, model->x));
   PetscCall(ModelStepLoads(model, model->work->accepted_u, model->work->accepted_t, (PetscBool)(model->contact != NULL),
-                           report));
+                           touching, report));
+  if (touching && report->result == SOLVE_CONVERGED) PetscCall(ModelStepToTouch(model, report));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -234,7 +259,7 @@ PetscErrorCode ModelPredictFar(Model model, SolveReport *report)
     PetscCall(VecCopy(model->x, from));
     PetscCall(ProblemDisplacements(model->problem, from, t, u));
     if (model->contact) PetscCall(ModelReachOn(model, u, t, report));
-    PetscCall(ModelStepLoads(model, u, t, PETSC_FALSE, report));
+    PetscCall(ModelStepLoads(model, u, t, PETSC_FALSE, PETSC_FALSE, report));
   }
   if (model->contact) PetscCall(ContactSoften(model->contact, PETSC_MAX_REAL));
   PetscCall(PetscFree2(u, v));
@@ -253,13 +278,19 @@ PetscErrorCode ModelPredictFar(Model model, SolveReport *report)
 
   Note:
   New lists and their offsets move the surfaces by more than a stiff penalty lets them overlap. Nodes that this would
-  open would release the bodies, which would then fly apart.
+  open would release the bodies, which would then fly apart. What fewer nodes do not hold any more is tied.
 @*/
 PetscErrorCode ModelFollowLists(Model model, SolveReport *report)
 {
-  PetscBool ok;
+  const Problem problem = model->problem;
+  PetscBool     ok, tied;
 
   PetscFunctionBeginUser;
+  if (problem->bodies) {
+    PetscCall(FreeBodiesTie(problem->bodies, problem->trial, model->t, model->t, PETSC_FALSE, problem->springs, &tied));
+    PetscCall(ContactSpringsRelax(problem->springs, model->x));
+    problem->tied = (PetscBool)(problem->tied || tied);
+  }
   PetscCall(ContactHoldActiveSet(model->contact, PETSC_TRUE, PETSC_FALSE));
   PetscCall(ModelTangent(model, model->problem->trial, model->t));
   PetscCall(ProblemResidual(model->problem, model->problem->trial, model->t, model->t, &ok));

@@ -41,7 +41,8 @@ PetscErrorCode ProblemCreate(Scene scene, Mesh mesh, Problem *out)
   problem->A = problem->P;
   PetscCall(PetscObjectReference((PetscObject)problem->A));
   PetscCall(MatCreateVecs(problem->A, &problem->diagonal, NULL));
-  if (problem->contact) PetscCall(ContactSpringsCreate(problem->contact, problem->diagonal, &problem->springs));
+  if (problem->contact) PetscCall(FreeBodiesCreate(mesh, scene, problem->loads, problem->contact, &problem->bodies));
+  if (problem->bodies) PetscCall(FreeBodiesSprings(problem->bodies, problem->diagonal, &problem->springs));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -60,6 +61,7 @@ PetscErrorCode ProblemDestroy(Problem *problem)
   PetscFunctionBeginUser;
   if (!p) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(ContactSpringsDestroy(&p->springs));
+  PetscCall(FreeBodiesDestroy(&p->bodies));
   PetscCall(MatDestroy(&p->A));
   PetscCall(VecDestroy(&p->diagonal));
   PetscCall(ContactDestroy(&p->contact));
@@ -283,6 +285,8 @@ PetscErrorCode ProblemTangent(Problem problem, const PetscReal *u, PetscReal t, 
   PetscCall(VecNorm(problem->diagonal, NORM_2, &problem->stiffness));
   TimingEnd(TIMING_ASSEMBLY_ELASTIC);
   PetscCall(ContactSpringsTangent(problem->springs, problem->P));
+  if (problem->tied) change->pattern = PETSC_TRUE; /* no factor of an earlier tangent serves */
+  problem->tied = PETSC_FALSE;
   if (!joined) PetscCall(SumOperatorSet(problem->A, change->C));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -11,6 +11,7 @@
 #include "bodies/loads.h"
 #include "contact/contact.h"
 #include "contact/contactsprings.h"
+#include "solve/freebodies.h"
 
 /* Round-off of the residual in machine epsilons times stiffness times displacement. A body that is moved without any
    force has no other scale for its residual. The measured factor is 0.1 to 1.5. */
@@ -44,7 +45,9 @@ typedef struct _n_Problem {
   Elasticity     elasticity;
   Loads          loads;
   Contact        contact; /* NULL: the scene has none */
-  ContactSprings springs; /* NULL: no pair is stabilised */
+  FreeBodies     bodies;  /* that contact is to hold; NULL: there are none */
+  ContactSprings springs; /* of these bodies; NULL: there are none */
+  PetscBool      tied;    /* other motions are tied than in the last tangent */
   TangentForm    form;
   Mat            A;            /* K + C */
   Mat            P;            /* K + C or K, see TangentForm; owned by the elasticity */

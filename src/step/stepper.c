@@ -293,7 +293,9 @@ static PetscErrorCode LoadStepperAccept(LoadStepper stepper, PetscReal dt, Petsc
   stepper->report.steps++;
   stepper->report.newton_accepted += solve->newton;
   stepper->report.taken += solve->taken;
-  stepper->report.left = PetscMax(stepper->report.left, solve->left);
+  stepper->report.left  = PetscMax(stepper->report.left, solve->left);
+  stepper->report.share = solve->share;
+  stepper->report.tied  = solve->tied;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -353,7 +355,8 @@ static PetscErrorCode LoadStepperAdvance(LoadStepper stepper, StepRecord *record
     PetscCall(ModelRestore(model));
     report->steps_failed++;
     stepper->size.dt = STEPPER_CUT * dt;
-    if (stepper->size.dt < stepper->size.dt_min || (solve.result == SOLVE_LINEAR && solve.newton == 1)) {
+    if (stepper->size.dt < stepper->size.dt_min || (solve.result == SOLVE_LINEAR && solve.newton == 1) ||
+        (solve.result == SOLVE_ADRIFT && !solve.newton)) {
       PetscCall(ReportFailure(report, t, end, first, dt, stepper->size.dt_min, record->attempts, &solve));
       PetscFunctionReturn(PETSC_SUCCESS);
     }
@@ -430,21 +433,21 @@ PetscErrorCode LoadStepperArchive(LoadStepper stepper, Archive archive)
   StepperReport *report  = &stepper->report;
   StepSize       size    = ArchiveLoads(archive) ? stepper->size : stepper->start;
   PetscReal      initial = size.initial, dt = size.dt;
-  PetscReal     *real[]    = {&initial,        &dt,           &size.beta,     &size.together,
-                              &size.shortfall, &size.planned, &report->taken, &report->left};
-  PetscInt      *integer[] = {&report->steps,
-                              &report->steps_failed,
-                              &report->steps_repeated,
-                              &report->newton_iterations,
-                              &report->newton_accepted,
-                              &report->krylov_iterations,
-                              &report->regathered,
-                              &report->adjusted,
-                              &report->cuts,
-                              &report->relaxed,
-                              &report->cycles,
-                              &report->cycles_cut,
-                              &size.tied};
+  PetscReal *real[]    = {&initial,       &dt,           &size.beta,     &size.together, &size.shortfall, &size.planned,
+                          &report->taken, &report->left, &report->share, &report->tied};
+  PetscInt  *integer[] = {&report->steps,
+                          &report->steps_failed,
+                          &report->steps_repeated,
+                          &report->newton_iterations,
+                          &report->newton_accepted,
+                          &report->krylov_iterations,
+                          &report->regathered,
+                          &report->adjusted,
+                          &report->cuts,
+                          &report->relaxed,
+                          &report->cycles,
+                          &report->cycles_cut,
+                          &size.tied};
 
   PetscFunctionBeginUser;
   PetscCall(ArchiveRealsAt(archive, "stepper/size", PETSC_STATIC_ARRAY_LENGTH(real), real));

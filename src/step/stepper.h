@@ -29,6 +29,8 @@ typedef struct {
   PetscInt  relaxed;                    /* times that the contact springs were relaxed */
   PetscReal taken;                      /* energy that the contact springs took out of the bodies */
   PetscReal left;                       /* largest part of an accepted state's energy that was left in them */
+  PetscReal share;                      /* their forces in the last accepted state, over F_ref */
+  PetscReal tied;                       /* largest force of a tie there, over F_ref */
   PetscInt  cycles;                     /* times that a contact set repeated itself */
   PetscInt  cycles_cut;                 /* steps that failed because of that */
   char      cycle[512];                 /* the last repetition: load parameter, period, nodes */

@@ -1,9 +1,10 @@
 """Answers of CalculiX 2.20 (Debian's calculix-ccx) for jobs of this folder on their own meshes: surface to surface
 penalty contact, stiff, and the same supports, loads and laws.
-    calculix.py JOB [--increment 0.1] [--stiffness 20]
+    calculix.py JOB [--increment 0.1] [--stiffness 20] [--refine 1]
 The stiffness of the contact is that many times the modulus over 1 mm. A spring of a millionth of the load holds what
 only contact holds until it touches. Reactions of axisymmetric models are those of the whole circumference."""
 import argparse
+import math
 import pathlib
 import subprocess
 import sys
@@ -22,12 +23,12 @@ WEDGE = 180  # CalculiX expands axisymmetric elements to wedges of 2 degrees
 class Mesh:
     """What gmsh writes in Abaqus' format: nodes {id: coordinates}, elements {id: (type, nodes)}, groups {name: ids}."""
 
-    def __init__(self, geometry, dimension, order=2):
+    def __init__(self, geometry, dimension, order=2, refine=1):
         self.nodes, self.elements, self.groups = {}, {}, {}
         with tempfile.TemporaryDirectory() as directory:
             path = pathlib.Path(directory) / "mesh.inp"
             subprocess.run(["gmsh", geometry, f"-{dimension}", "-order", str(order), "-setnumber",
-                            "Mesh.SecondOrderIncomplete", "1", "-format", "inp", "-o", path, "-v", "1"], check=True)
+                            "Mesh.SecondOrderIncomplete", "1", "-setnumber", "refine", str(refine), "-format", "inp", "-o", path, "-v", "1"], check=True)
             for line in path.read_text().splitlines():
                 self.read(line)
 
@@ -41,7 +42,7 @@ class Mesh:
             self.nodes[int(words[0])] = [float(word) for word in words[1:]]
         elif self.section == "*ELEMENT":
             nodes = [int(word) for word in words[1:]]
-            if self.options["type"] == "T3D3":  # the midside node stands between the ends
+            if self.options["type"] == "T3D3":  # the midside node stands between the ends: corners first
                 nodes = [nodes[0], nodes[2], nodes[1]]
             self.elements[int(words[0])] = (self.options["type"], nodes)
         elif self.section == "*ELSET":
@@ -139,6 +140,23 @@ class Deck:
                 forces[node] = forces.get(node, 0) + value * sum(part**2 for part in cross)**0.5 / 6
         return ["*CLOAD", *(f"{node}, {direction}, {force!r}" for node, force in forces.items())]
 
+    def ring_traction(self, group, direction, value):
+        """Consistent forces of a constant traction on the second-order lines of an axisymmetric model, over the whole
+        circumference."""
+        forces, gauss = {}, ((-0.6**0.5, 5 / 9), (0, 8 / 9), (0.6**0.5, 5 / 9))
+        for number in self.mesh.groups[group]:
+            first, last, middle = self.mesh.elements[number][1]
+            points = [self.mesh.nodes[node] for node in (first, middle, last)]
+            for s, weight in gauss:
+                shapes = (s * (s - 1) / 2, 1 - s * s, s * (s + 1) / 2)
+                slopes = (s - 0.5, -2 * s, s + 0.5)
+                radius = sum(shape * point[0] for shape, point in zip(shapes, points))
+                along = [sum(slope * point[d] for slope, point in zip(slopes, points)) for d in (0, 1)]
+                for node, shape in zip((first, middle, last), shapes):
+                    forces[node] = forces.get(node, 0) + (2 * math.pi * radius * math.hypot(*along) * weight * shape *
+                                                          value)
+        return ["*CLOAD", *(f"{node}, {direction}, {force!r}" for node, force in forces.items())]
+
     def step(self, increment, loads, finite=True, prints=()):
         self.lines += [f"*STEP{', NLGEOM' if finite else ''}, INC=10000", "*STATIC", f"{increment}, 1, 1e-6, {increment}",
                        *loads]
@@ -210,10 +228,48 @@ def flange_gasket(args):
     return deck
 
 
-JOBS = {function.__name__: function for function in (pin_lug, belleville, flange_gasket)}
+def rollers_in_nip(args):
+    """With svk for both covers, as CalculiX has no other law in common."""
+    mesh = Mesh(HERE / "rollers_in_nip.geo", 2, refine=args.refine)
+    deck = Deck(mesh, "CPE6")
+    deck.body("upper", 3, 0.45)
+    deck.body("lower", 10, 0.45)
+    deck.surface("upper_skin")
+    deck.surface("lower_skin")
+    deck.pair("upper_skin", "lower_skin", args.stiffness * 3)
+    deck.support("middle", "1")
+    deck.support("lower_core", "12")
+    deck.support("upper_core", "1")
+    deck.step(args.increment, ["*BOUNDARY", "upper_core, 2, 2, -2."], prints=[("upper_core", None)])
+    return deck
+
+
+def ball_in_cone(args):
+    mesh = Mesh(HERE / "ball_in_cone.geo", 2, refine=args.refine)
+    deck = Deck(mesh, "CAX6")
+    deck.body("ball", 210000, 0.3)
+    deck.body("seat", 3000, 0.4)
+    deck.surface("bore")
+    deck.surface("ball_skin")
+    deck.pair("bore", "ball_skin", args.stiffness * 3000)
+    deck.support("axis", "1")
+    deck.support("seat_bottom", "12")
+    centre = mesh.at(0, 0, group="axis")
+    deck.spring(centre, 2, 0.01)
+    deck.node_set("ball_down", centre)
+    deck.step(args.increment, deck.ring_traction("ball_top", 2, -3.183099), prints=[("ball_down", 1),
+                                                                                    ("seat_bottom", None)])
+    return deck
+
+
+JOBS = {
+    function.__name__: function
+    for function in (pin_lug, belleville, flange_gasket, rollers_in_nip, ball_in_cone)
+}
 parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
 parser.add_argument("job", choices=JOBS)
 parser.add_argument("--increment", type=float, default=0.1)
+parser.add_argument("--refine", type=float, default=1)
 parser.add_argument("--stiffness", type=float, default=20)
 parser.add_argument("--out", type=pathlib.Path, default=pathlib.Path("out/calculix"))
 args = parser.parse_args()

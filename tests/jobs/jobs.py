@@ -25,6 +25,7 @@ class Job:
     picture: list = field(default_factory=list)  # options of scripts/render.py
     levels: tuple = (1, 1.5, 2.25)  # values of `refine` whose answers run.py --limit extrapolates
     stiff: list = field(default_factory=list)  # overrides of those runs
+    ranks: float = 1e-6  # by how much answers may depend on the number of ranks, of themselves
 
 
 FAILED = 0.1  # largest part of the attempted steps that may fail
@@ -38,34 +39,34 @@ JOBS = [
     Job("wheel_on_edge", "rubber wheel on an edge", [
         Answer("down", 36.44, 0.02, "limit"),
         Answer("sideways", 5.161, 0.1, "limit"),
-    ], steps=30),
+    ], steps=12),
     Job("rollers_in_nip", "rubber-covered rollers in a nip", [
         Answer("force", 5.578, 0.02, "limit"),
         Answer("half_width", 7.843, 0.1, "limit"),
         Answer("peak_pressure", 0.9326, 0.05, "limit"),
-    ], steps=30, picture=["--mirror", "x"]),
+    ], steps=12, picture=["--mirror", "x"]),
     Job("tube_on_barb", "tube pushed over a barbed nipple", [
         Answer("grip", 60.8, 0.3, "limit"),
-    ], steps=100, picture=["--mirror", "x"]),
+    ], steps=50, picture=["--mirror", "x"]),
     Job("bush_turned", "bush turned and pushed", [
         Answer("force_x", -20.11, 0.07, "limit"),
         Answer("force_y", -31.23, 0.04, "limit"),
-    ], steps=30, pairs=2, stiff=["contact.1.smoother=facet"]),
+    ], steps=15, pairs=2, stiff=["contact.1.smoother=facet"]),
     Job("boot_on_mandrel", "boot closed onto a mandrel", [
         Answer("radial_force", 47.55, 0.3, "limit"),
         Answer("push", 39.62, 0.05, "limit"),
-    ], steps=50, picture=["--mirror", "x"]),
+    ], steps=12, picture=["--mirror", "x"]),
     # Balls
     Job("ball_in_cone", "ball in a cone by force", [
         Answer("peak_pressure", 83.00, 0.1, "limit"),  # Hertz, for a ring of infinite radius: 84.42
-        Answer("ball_down", -0.031926, 0.05, "limit"),
-    ], steps=20, picture=["--mirror", "x"]),
+        Answer("ball_down", -0.03191, 0.1, "CalculiX"),
+    ], steps=12, picture=["--mirror", "x"]),
     # Its limit is of a quarter, whose spin is held, and which starts with an overlap of 0.005: it falls by 0.025 sqrt(2)
     # less.
     Job("ball_in_vee", "ball in a vee groove", [
         Answer("peak_pressure", 154.9, 1.1, "limit"),
         Answer("ball_down", -0.08347, 0.1, "limit"),
-    ], steps=30, picture=["--mirror", "z"], levels=(1, 1.4, 1.96), stiff=[
+    ], steps=15, picture=["--mirror", "z"], levels=(1, 1.4, 1.96), stiff=[
         "mesh.parameters={quarter: 1, gap: -0.005}", "contact.0.initial_overlap=resolve",
         "contact.0.symmetry=[symmetry, side]",
         "supports=[{surface: symmetry, uz: 0}, {surface: side, ux: 0}, {surface: groove_bottom, ux: 0, uy: 0, uz: 0}]"

@@ -1,6 +1,6 @@
 """Runs the ordinary jobs of jobs.py and compares their answers with the references there. A line for each answer; ends
 with status 0 when every job is done within its bounds.
-    run.py [--burnish BINARY] [--out DIR] [--job NAME ...] [--ranks N] [--set OVERRIDE ...] [--record FILE.csv]
+    run.py [--burnish BINARY] [--out DIR] [--job NAME ...] [--ranks N ...] [--set OVERRIDE ...] [--record FILE.csv]
     run.py --limit [--job NAME ...]      runs on refined meshes with a stiff penalty, and extrapolates the answers
     run.py --pictures DIR                draws what the last runs left in --out
     run.py --table BEFORE.csv AFTER.csv  prints two records side by side, in Markdown
@@ -21,7 +21,7 @@ import harness  # noqa: E402
 import jobs  # noqa: E402
 import launch  # noqa: E402
 
-LIMIT = 250  # s of one run
+LIMIT = 600  # s of one run
 COLUMNS = ("job", "status", "steps", "failed", "iterations", "cpu_s", "probe", "answer", "reference", "error",
            "reference_error", "source", "as_expected", "reason")
 STIFF = ("contact.*.smoother=diffuse", "contact.*.formulation=surface_to_surface", "contact.*.penalty={scale: 1000}",
@@ -33,9 +33,9 @@ def overrides_of(job, texts):
     return [text.replace("*", str(i)) for text in texts for i in (range(job.pairs) if "*" in text else (0, ))]
 
 
-def run(args, job, overrides, out):
-    return harness.run(args, HERE / f"{job.name}.yaml", out=out, overrides=overrides_of(job, overrides), must=None,
-                       limit=LIMIT)
+def run(args, job, overrides, out, ranks=1):
+    return harness.run(args, HERE / f"{job.name}.yaml", out=out, ranks=ranks, overrides=overrides_of(job, overrides),
+                       must=None, limit=LIMIT)
 
 
 def reason(finished):
@@ -59,9 +59,23 @@ def figures(job, finished):
     }, summary["probes"] if finished.status == 0 else {}
 
 
+def unlike(args, job, first):
+    """On which of the further numbers of ranks a job does not end as on the first."""
+    for ranks in args.ranks[1:]:
+        finished = run(args, job, args.set, f"{job.name}-np{ranks}", ranks)
+        if finished.status != first.status:
+            yield f"{ranks} ranks: exit {finished.status}, {reason(finished)}"
+            continue
+        ours, theirs = (figures(job, each)[1] for each in (first, finished))
+        for answer in job.answers:
+            value, other = ours.get(answer.probe), theirs.get(answer.probe)
+            if value is not None and (other is None or abs(other / value - 1) > job.ranks):
+                yield f"{ranks} ranks: {answer.probe} {other} instead of {value}"
+
+
 def rows(args, job):
-    """Runs a job: a row for each answer."""
-    finished = run(args, job, args.set, job.name)
+    """Runs a job on every number of ranks: a row for each answer, of the first number."""
+    finished = run(args, job, args.set, job.name, args.ranks[0])
     cost, probes = figures(job, finished)
     faults = [] if finished.status == 0 else [reason(finished)]
     if finished.status == 0:
@@ -69,6 +83,7 @@ def rows(args, job):
             faults.append(f"{cost['steps']} steps, allowed {job.steps}")
         if cost["failed"] > jobs.FAILED * (cost["steps"] + cost["failed"]):
             faults.append(f"{cost['failed']} failed steps")
+    faults += unlike(args, job, finished)
     for answer in job.answers:
         value = probes.get(answer.probe)
         error = None if value is None else 100 * (value / answer.reference - 1)
@@ -142,7 +157,7 @@ def main():
     parser.add_argument("--burnish", default="build/burnish")
     parser.add_argument("--out", default="out/jobs")
     parser.add_argument("--job", nargs="+", choices=[job.name for job in jobs.JOBS])
-    parser.add_argument("--ranks", type=int, default=1)
+    parser.add_argument("--ranks", type=int, nargs="+", default=[1])
     parser.add_argument("--set", action="append", default=[])
     parser.add_argument("--record")
     parser.add_argument("--limit", action="store_true")

@@ -259,42 +259,43 @@ static void test_cycle(void **state)
   PartsDestroy(&parts);
 }
 
-/* Springs of a thousandth of the automatic penalty, 1000, on areas of 0.6 and 3: force, energy and tangent of a shift
-   of both bodies; none once they are relaxed. */
+/* Springs of 2 at each free dof and a tie of stiffness 5 that measures the sum of the dofs of a node: force, energy and tangent of
+   a shift of both bodies; none once they are relaxed, and no force of the tie while it is released. */
 static void test_springs(void **state)
 {
-  const double   shift = 0.1, stiffness = 1e-3 * 1000;
+  const double   shift = 0.1;
   ContactSprings springs = NULL;
-  PetscReal      force, energy, added = 1;
+  SpringTie      tie     = {.motion = 3, .stiffness = 5, .n = 2, .dof = {0, 1}, .value = {1, 1}};
+  PetscReal      force, tied, energy, added = 1, *stiffness;
+  PetscInt       n;
+  PetscBool      any;
+  PetscMPIInt    rank;
   Vec            x, F, Kx;
   Mat            K;
 
   (void)state;
   PartsCreate(2, Blocks, NULL, Text, &parts);
   assert_non_null(parts.problem->springs); /* the problem has its own */
-  assert_near(parts.problem->contact->pairs[0].automatic, 1000, 1e-9);
   OK(MatDuplicate(parts.problem->P, MAT_DO_NOT_COPY_VALUES, &K));
   OK(MatCreateVecs(K, &x, &F));
   OK(VecDuplicate(x, &Kx));
-  OK(ContactSpringsCreate(parts.problem->contact, x, &springs));
+  OK(VecGetSize(x, &n));
+  OK(PetscCalloc1(parts.mesh->n_nodes * 2, &stiffness));
+  MPI_Comm_rank(parts.mesh->comm, &rank);
+  for (PetscInt i = 0; i < parts.mesh->n_nodes * 2; i++) stiffness[i] = parts.mesh->node_owner[i / 2] == rank ? 2 : 0;
+  OK(ContactSpringsCreate(parts.mesh, stiffness, x, &springs));
+  OK(ContactSpringsSetTies(springs, 1, &tie));
+  assert_true(ContactSpringsHaveTie(springs, 3) && !ContactSpringsHaveTie(springs, 0));
   OK(VecSet(x, shift));
   OK(VecZeroEntries(F));
   OK(ContactSpringsResidual(springs, x, F));
-  OK(PetscArrayzero(parts.f, parts.mesh->n_nodes * 2));
-  OK(MeshCollectFree(parts.mesh, parts.f, Kx));
-  OK(MeshGlobalToLocal(parts.mesh, F, parts.f));
-  for (PetscInt node = 0; node < parts.mesh->n_nodes; node++) {
-    const int    tag  = parts.mesh->node_tag[node];
-    const double area = tag == LEFT || tag == RIGHT                                                    ? Area
-                        : tag == PartsTag(&parts, LOWER, 0, 1) || tag == PartsTag(&parts, LOWER, 3, 1) ? 0.5
-                        : tag > PartsTag(&parts, LOWER, 0, 1) && tag < PartsTag(&parts, LOWER, 3, 1)   ? 1
-                                                                                                       : 0;
-
-    for (int d = 0; d < 2; d++) assert_near(parts.f[node * 2 + d], stiffness * area * shift, 1e-13);
-  }
-  OK(ContactSpringsLoad(springs, x, &force, &energy));
-  assert_near(energy, 2 * stiffness * (0.6 + 3) * shift * shift / 2, 1e-13);
-  assert_near(force, stiffness * shift * sqrt(2 * (2 * 0.09 + 2 * 0.25 + 2)), 1e-13);
+  OK(VecSum(F, &added));
+  assert_near(added, 2 * shift * n + 2 * 5 * 2 * shift, 1e-12);
+  OK(ContactSpringsLoad(springs, x, &force, &tied, &energy));
+  assert_near(force, 2 * shift * sqrt(n), 1e-12);
+  assert_near(tied, 5 * 2 * shift, 1e-13);
+  assert_near(energy, 2 * n * shift * shift / 2 + 5 * 4 * shift * shift / 2, 1e-12);
+  added = 1;
   OK(ContactSpringsEnergy(springs, x, &added));
   assert_near(added, 1 + energy, 1e-14);
   OK(MatZeroEntries(K));
@@ -303,10 +304,19 @@ static void test_springs(void **state)
   OK(VecAXPY(Kx, -1, F));
   OK(VecNorm(Kx, NORM_INFINITY, &energy));
   assert_near(energy, 0, 1e-14);
+  OK(ContactSpringsRelease(springs, 1, (int[]){3}, &any));
+  assert_false(any);
+  OK(ContactSpringsRelease(springs, 0, NULL, &any));
+  assert_true(any);
+  OK(ContactSpringsLoad(springs, x, &force, &tied, &energy));
+  assert_true(tied == 0);
+  OK(ContactSpringsRetie(springs, &any));
+  assert_true(any);
   OK(ContactSpringsRelax(springs, x));
-  OK(ContactSpringsLoad(springs, x, &force, &energy));
-  assert_true(force == 0 && energy == 0);
+  OK(ContactSpringsLoad(springs, x, &force, &tied, &energy));
+  assert_true(force == 0 && tied == 0 && energy == 0);
   OK(ContactSpringsDestroy(&springs));
+  OK(PetscFree(stiffness));
   OK(VecDestroy(&x));
   OK(VecDestroy(&F));
   OK(VecDestroy(&Kx));

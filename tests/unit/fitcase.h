@@ -18,7 +18,7 @@ enum { MAX = FIT_MAX_POINTS, FEW = 120, WORK = 400000 };
 typedef struct {
   FitProblem in;
   FitResult  out;
-  double     x[3 * MAX], v[MAX], shape[MAX], N[3 * (1 + MAX)], M[9 * (1 + FEW) * (1 + FEW)];
+  double     x[3 * MAX], v[MAX], t[MAX], shape[MAX], N[3 * (1 + MAX)], M[9 * (1 + FEW) * (1 + FEW)];
   int        points[MAX];
 } Case;
 
@@ -65,6 +65,7 @@ static inline int Evaluate(Case *c, FitWant want)
   work[1 + size]   = 7;
   c->in.x          = c->x;
   c->in.multiplier = c->v;
+  c->in.hoop       = c->t;
   c->out           = (FitResult){.points = c->points, .shape = c->shape, .N = c->N, .M = c->in.n <= FEW ? c->M : NULL};
   whole            = DiffuseFitEvaluate(&c->in, want, work + 1, &c->out);
   assert_true(work[1 + size] == 7);

@@ -292,9 +292,66 @@ static void TestMirror(void **state)
   }
 }
 
+/* A bowl that is even in t, as points (x, y, t) and (x, y, -t) in space and as points of a fit of revolution. The frame is
+   turned about t. */
+static void RevolvedCase(Case *space, Case *revolved, int degree)
+{
+  const double support = degree == 4 ? 4.2 : 3, angle = Random(-1, 1), c = cos(angle), s = sin(angle);
+  const double frame[3][3] = {{c, s, 0}, {0, 0, 1}, {-s, c, 0}};
+
+  Straight(space, 3, degree, support, 3.5);
+  Straight(revolved, 2, degree + FIT_REVOLVED, support, 3.5);
+  memcpy(space->in.frame, frame, sizeof(frame));
+  memcpy(revolved->in.frame[0], frame[0], sizeof(frame[0]));
+  memcpy(revolved->in.frame[1], frame[2], sizeof(frame[2]));
+  for (int i = -5; i <= 5; i++) {
+    for (int j = 0; j <= 5; j++) {
+      const double a = i + Random(-0.25, 0.25), t = j + 0.5 + Random(-0.25, 0.25), v = Random(0.5, 1.5);
+      const double z = -(a * a + 0.5 * t * t) / 14 - 0.3 + Random(-0.05, 0.05), x[2] = {c * a - s * z, s * a + c * z};
+
+      if (fabs(hypot(a, t) - support) < 0.02 * support) continue;
+      for (int side = -1; side <= 1; side += 2) {
+        memcpy(space->x + 3 * space->in.n, x, sizeof(x));
+        space->x[3 * space->in.n + 2] = side * t;
+        space->v[space->in.n++]       = v;
+      }
+      memcpy(revolved->x + 2 * revolved->in.n, x, sizeof(x));
+      revolved->t[revolved->in.n]   = t;
+      revolved->v[revolved->in.n++] = 2 * v;
+    }
+  }
+}
+
+/* A fit of revolution is the fit in space: the same gap, foot and normal, the same N, and an N and M that are derivatives
+   of the gap. */
+static void TestRevolution(void **state)
+{
+  static Case space, revolved;
+
+  (void)state;
+  for (int degree = 1; degree <= 4; degree += degree == 1 ? 1 : 2) {
+    double most;
+
+    RevolvedCase(&space, &revolved, degree);
+    assert_true(Evaluate(&space, FIT_FIRST_VARIATION) && Evaluate(&revolved, FIT_FIRST_VARIATION));
+    AssertNear(revolved.out.gap, space.out.gap, 1e-13);
+    AssertNear(revolved.out.foot[0], space.out.foot[0], 1e-13);
+    AssertNear(revolved.out.amplified, space.out.amplified, 1e-12);
+    assert_int_equal(2 * revolved.out.n, space.out.n);
+    most = MaxAbs(2 * (1 + revolved.out.n), revolved.N);
+    for (int d = 0; d < 2; d++) {
+      AssertNear(revolved.out.normal[d], space.out.normal[d], 1e-13);
+      AssertNear(revolved.N[d], space.N[d], 1e-12 * most);
+      for (int i = 0; i < revolved.out.n; i++)
+        AssertNear(revolved.N[2 * (1 + i) + d], space.N[3 * (1 + 2 * i) + d] + space.N[3 * (2 + 2 * i) + d], 1e-12 * most);
+    }
+    CheckVariations(&revolved);
+  }
+}
+
 int main(void)
 {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(TestVariations), cmocka_unit_test(TestBalance),
+  const struct CMUnitTest tests[] = {cmocka_unit_test(TestVariations), cmocka_unit_test(TestRevolution), cmocka_unit_test(TestBalance),
                                      cmocka_unit_test(TestDiffuseDerivatives), cmocka_unit_test(TestInvariance),
                                      cmocka_unit_test(TestMirror)};
 

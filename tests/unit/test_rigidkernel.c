@@ -96,9 +96,44 @@ static void test_all_held(void **state)
   assert_int_equal(Free(gram, free), 0);
 }
 
+/* A quarter of a turn about z through (1, 0, 0): the axis stays, the origin goes to (1, -1, 0), and the way is no chord.
+   A translation moves all points alike. */
+static void test_move(void **state)
+{
+  const double turn[N] = {0, 0, M_PI / 2, 0, -M_PI / 2, 0}, push[N] = {0, 0, 0, 1, 2, 3};
+  double       axis[3] = {1, 0, 5}, origin[3] = {0, 0, 0}, small[3] = {2, 0, 0}, v[3];
+
+  (void)state;
+  RigidVelocity(turn, axis, v);
+  for (int d = 0; d < 3; d++) assert_float_equal(v[d], 0, RoundOff);
+  RigidMove(turn, axis);
+  assert_float_equal(axis[0], 1, RoundOff);
+  RigidMove(turn, origin);
+  assert_float_equal(origin[0], 1, RoundOff);
+  assert_float_equal(origin[1], -1, RoundOff);
+  RigidMove((const double[N]){0, 0, 1e-3, 0, 0, 0}, small);
+  assert_float_equal(small[0], 2 * cos(1e-3), RoundOff);
+  assert_float_equal(small[1], 2 * sin(1e-3), RoundOff);
+  RigidMove(push, origin);
+  assert_float_equal(origin[2], 3, RoundOff);
+}
+
+/* The solution of a system of two, by both triangles. */
+static void test_solve(void **state)
+{
+  const double matrix[] = {4, 2, 2, 3};
+  double       L[4], x[2] = {8, 7};
+
+  (void)state;
+  RigidCholesky(2, matrix, L);
+  RigidSolve(2, L, x);
+  assert_float_equal(x[0], 1.25, RoundOff);
+  assert_float_equal(x[1], 1.5, RoundOff);
+}
+
 int main(void)
 {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_nothing), cmocka_unit_test(test_point),
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_move), cmocka_unit_test(test_solve), cmocka_unit_test(test_nothing), cmocka_unit_test(test_point),
                                      cmocka_unit_test(test_line), cmocka_unit_test(test_oblique_plane),
                                      cmocka_unit_test(test_all_held)};
 

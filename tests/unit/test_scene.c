@@ -203,7 +203,7 @@ static void ContactsArrive(void **state)
   assert_string_equal(contact->master, "die");
   assert_int_equal(contact->n_symmetry, 2);
   assert_string_equal(contact->symmetry[1], "symmetry_z");
-  assert_true(contact->feature_angle == 30 && contact->stabilise && !contact->penalty_auto && contact->penalty == 1e5 &&
+  assert_true(contact->feature_angle == 30 && contact->stabilise == STABILISE_TRUE && !contact->penalty_auto && contact->penalty == 1e5 &&
               contact->penalty_scale == 10);
   assert_true(contact->adjust && !contact->adjust_converged && contact->window_in_spacings && contact->g_min == 1e-6 &&
               contact->g_max == 5e-6);
@@ -212,7 +212,7 @@ static void ContactsArrive(void **state)
   assert_true(!contact->adjust && contact->adjust_converged && contact->clamp == 100 && contact->range == 1e4);
   assert_int_equal(contact->smoother, SMOOTHER_DIFFUSE);
   assert_int_equal(contact->formulation, CONTACT_SURFACE_TO_SURFACE);
-  assert_true(contact->n_symmetry == 0 && contact->feature_angle == 45 && !contact->stabilise &&
+  assert_true(contact->n_symmetry == 0 && contact->feature_angle == 45 && contact->stabilise == STABILISE_AUTO &&
               contact->penalty_auto && contact->penalty_scale == 30 && contact->penalty_may_stiffen);
   Free(&scene);
 }

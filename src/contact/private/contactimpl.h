@@ -82,9 +82,11 @@ typedef struct {
   PetscReal      motion, next_motion;  /* relative motion that each was made for (length) */
   PetscReal     *factor, *next_factor; /* area factor of each slave point: frozen with the lists, fades out past a free
                                           edge of the master */
-  PetscBool          fresh;            /* the lists in force were made where they are, with the offsets in force */
-  PetscBool          projected;        /* the slave points were projected with these lists at their last update */
-  int               *seed;             /* of each slave point: facet of the last projection */
+  /* Of each slave point: its factor before the one in force, in this step, and what the search said then less that. */
+  PetscReal         *factor_before, *factor_change;
+  PetscBool          fresh;     /* the lists in force were made where they are, with the offsets in force */
+  PetscBool          projected; /* the slave points were projected with these lists at their last update */
+  int               *seed;      /* of each slave point: facet of the last projection */
   PetscReal         *point_gap, *point_normal, *point_force; /* of each slave point, at the last projection */
   ContactVariations *variations;
   ContactLost        lost; /* since the step began */
@@ -173,6 +175,8 @@ PetscErrorCode ContactVectorsFree(ContactVectors *);
 PetscErrorCode ContactMatrixRows(Contact, PetscInt *rows);
 /* contactlists.c */
 PetscErrorCode ContactListsArchive(Contact, Archive, const PetscReal *u, PetscReal t);
+/* contactimmersed.c */
+PetscErrorCode ContactRefuseImmersed(Contact, int pair);
 /* contacttunnelling.c */
 PetscErrorCode ContactNoteLost(ContactPair *, PetscReal t);
 void           ContactNoteTunnelled(ContactPair *, PetscReal t);

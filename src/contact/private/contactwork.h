@@ -5,7 +5,7 @@
    overwrite the work. What the work holds is valid until the next function that writes the same member.
 
    Members and who writes them:
-   - `result`, `x`, `multiplier`, `workspace`: ContactPointEvaluate().
+   - `result`, `x`, `multiplier`, `hoop`, `workspace`: ContactPointEvaluate().
    - `map`, `number`, `count`, `N`: ContactPointToNodes(), ContactVariationsNodes() and ContactPointsToNodes().
    - `sum`, `M`: ContactSecondBegin() to ContactSecondEnd(), and ContactOwnToNodes().
    - `slot`: one of two users at a time, each of which leaves it at -1 everywhere:
@@ -28,7 +28,7 @@ typedef struct {
 
 typedef struct {
   SmootherResult    result;
-  PetscReal        *x, *multiplier, *workspace; /* x: positions relative to the slave point (length) */
+  PetscReal        *x, *multiplier, *hoop, *workspace; /* x: positions relative to the slave point (length) */
   PetscInt          x_room;
   ContactMap        map;
   PetscInt          count, *number; /* contact nodes, each of which occurs once */

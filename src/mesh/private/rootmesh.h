@@ -40,3 +40,4 @@ typedef struct {
 PetscErrorCode  RootMeshRead(Scene, const char *file, PetscMPIInt ranks, RootMesh *, Mesh, Complaint *);
 PetscErrorCode  RootMeshReset(RootMesh *);
 const PetscInt *RootMeshCellNodes(const RootMesh *, PetscInt cell);
+int             RootMeshReversedNode(const Element *, int k);

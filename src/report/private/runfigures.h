@@ -34,6 +34,9 @@ typedef struct {
   const char       *options_changed; /* lines, see optionrecord.h */
   PetscBool         direct;          /* the solver factors each tangent, for which it uses the BLAS */
   Blas              blas;            /* of this rank */
+  PetscBool         free_bodies;     /* some bodies are held by contact alone */
+  char              moved[512];      /* which of them were moved into contact, and how far */
+  char              loose[512];      /* their motions that only springs hold */
   int               n_pairs;
   PairFigures      *pairs;
 } RunFigures;

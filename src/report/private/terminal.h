@@ -13,7 +13,7 @@ typedef struct _n_Terminal *Terminal;
 typedef struct {
   const RunFigures *figures;
   const PetscReal  *probes;   /* final values, NaN where there is none */
-  const PetscBool  *met;      /* per contact pair: some slave node has met its master */
+  const PetscReal  *apart;    /* of each contact pair that never met: its nearest distance at the end, else -1 */
   PetscReal         deepest;  /* largest penetration of the run, in face sizes */
   PetscReal         standing; /* largest depth of a master node in a slave in the written states, in face sizes */
 } TerminalLast;

@@ -18,15 +18,18 @@ typedef struct {
   const PetscReal    *x;         /* n_points*dim */
   const NodeGeometry *geometry;  /* of each point, reflected with it */
   PetscReal           feature_cosine;
-  /* For integral fits the fit points of facet f start at first[f], as many as its quadrature rule has. NULL: the
-     nodes are the fit points. */
-  const PetscInt *first;
+  /* For integral fits the fit points of facet f are first[f] to first[f] + count[f] - 1. NULL: the nodes are the fit
+     points. */
+  const PetscInt  *first, *count;
+  const PetscReal *hoop; /* of each point, for fits of revolution; NULL: none */
 } SurfaceView;
 
 typedef struct _n_Neighbourhoods *Neighbourhoods;
 
 PetscErrorCode NeighbourhoodsCreate(const SurfaceView *, Neighbourhoods *);
 PetscErrorCode NeighbourhoodsDestroy(Neighbourhoods *);
+PetscBool      NeighbourhoodsIsSharp(Neighbourhoods, PetscInt f);
+PetscBool      NeighbourhoodsMeetSharply(Neighbourhoods, PetscInt f, PetscInt g);
 PetscErrorCode NeighbourhoodGather(Neighbourhoods, PetscInt start, const PetscReal x0[3], const PetscReal e3[3],
                                    const PetscReal metric[9], PetscReal limit, PetscInt max, PetscInt *points,
                                    const PetscReal **rho2, PetscInt *n, PetscInt *found);

@@ -26,14 +26,15 @@ struct _n_ContactSearch {
   const PetscReal    *offset; /* of the quadrature points of this rank's master faces, where fits use these points */
   const FaceMaps     *maps;   /* or these points as combinations of nodes */
   PetscReal           reach, margin; /* lengths, without the motion */
+  PetscReal           fit_reach;     /* SearchFitReach() */
 };
 
 /* A face or a mirror image of it, in the present position. */
 typedef struct {
   PetscInt  record;
   int       image;
-  Facet     facet; /* nodes: contact nodes until the points are numbered, then points */
-  PetscInt  first; /* first fit point of its quadrature rule */
+  Facet     facet;        /* nodes: contact nodes until the points are numbered, then points */
+  PetscInt  first, count; /* fit points of its quadrature rule */
   PetscReal centre[3], normal[3], lower[3], upper[3];
 } Candidate;
 
@@ -49,7 +50,7 @@ typedef struct {
 typedef struct {
   NeighbourLists   lists;
   const Candidate *candidates;
-  PetscReal        x[3], normal[3];
+  PetscReal        x[3], size; /* size: of the slave's face (length) */
   /* The slave point, and the number of nodes of its own face: a face with one of these nodes is not its master. */
   PetscInt  q, own;
   PetscInt  best;
@@ -57,7 +58,8 @@ typedef struct {
   /* Distance (length) of the nearest candidate of all, or the largest one that is searched. Distances that differ by
      less than tie are equal. */
   PetscReal least, tie;
-  Foot      foot; /* on the best candidate */
+  Foot      foot;   /* on the best candidate */
+  PetscBool averse; /* a candidate is near that does not face the point */
 } Nearest;
 
 /* Growing lists of all slave points. */
@@ -88,7 +90,7 @@ typedef struct {
   NodeGeometry  *geometry;
   PetscInt      *points; /* of the present slave point, with room for FIT_MAX_POINTS */
   /* taper: weights for the frame, which vanish where the list ends. */
-  double   *x, *multiplier, *taper, *workspace;
+  double   *x, *multiplier, *taper, *hoop, *workspace;
   int      *used;
   PetscReal plane[3]; /* normal of the single reference plane of a global frame */
 } FitSupport;

@@ -104,22 +104,40 @@ LANES_INLINE Lanes Broadcast(double a)
   return (Lanes){0} + a;
 }
 
-/* Position of s^(k-b) t^b among the monomials. */
-LANES_INLINE int Term(const int tangents, const int k, const int b)
+/* Is this the code of a fit of revolution? It has the monomials s^(k-b) t^b with even b, where t is the distance along
+   the hoop. */
+LANES_INLINE int IsRevolved(const int degree)
 {
-  return tangents == 1 ? k : k * (k + 1) / 2 + b;
+  return degree > FIT_REVOLVED;
 }
 
-#define FOR_MONOMIALS(tangents, degree, k, b) \
-  for (int k = 0; k <= (degree); k++)         \
-    for (int b = 0; b <= ((tangents) == 1 ? 0 : k); b++)
+/* Degree of the polynomial itself. */
+LANES_INLINE int PlainDegree(const int degree)
+{
+  return IsRevolved(degree) ? degree - FIT_REVOLVED : degree;
+}
+
+/* Position of s^(k-b) t^b among the monomials. Those without t come first in a fit of revolution. */
+LANES_INLINE int Term(const int tangents, const int degree, const int k, const int b)
+{
+  const int plain = PlainDegree(degree);
+
+  if (tangents == 2) return k * (k + 1) / 2 + b;
+  return b == 0 ? k : b == 2 ? plain + k - 1 : 2 * plain + k - 4;
+}
+
+#define FOR_MONOMIALS(tangents, degree, k, b)   \
+  for (int k = 0; k <= PlainDegree(degree); k++) \
+    for (int b = 0; b <= ((tangents) == 1 && !IsRevolved(degree) ? 0 : k); b += (tangents) == 1 ? 2 : 1)
 
 LANES_INLINE void Monomials(const int m, const int degree, const Lanes *eta, Lanes *p)
 {
   p[0] = Broadcast(1);
   FOR_MONOMIALS(m, degree, k, b)
   {
-    if (k > 0) p[Term(m, k, b)] = b < k ? eta[0] * p[Term(m, k - 1, b)] : eta[1] * p[Term(m, k - 1, b - 1)];
+    if (k > 0) p[Term(m, degree, k, b)] = b < k    ? eta[0] * p[Term(m, degree, k - 1, b)]
+                               : m == 2 ? eta[1] * p[Term(m, degree, k - 1, b - 1)]
+                                        : eta[1] * eta[1] * p[Term(m, degree, k - 2, b - 2)];
   }
 }
 
@@ -127,8 +145,8 @@ LANES_INLINE void MonomialGradients(const int m, const int degree, const Lanes *
 {
   FOR_MONOMIALS(m, degree, k, b)
   {
-    dp[0][Term(m, k, b)] = b < k ? (k - b) * p[Term(m, k - 1, b)] : Broadcast(0);
-    if (m == 2) dp[1][Term(m, k, b)] = b > 0 ? b * p[Term(m, k - 1, b - 1)] : Broadcast(0);
+    dp[0][Term(m, degree, k, b)] = b < k ? (k - b) * p[Term(m, degree, k - 1, b)] : Broadcast(0);
+    if (m == 2) dp[1][Term(m, degree, k, b)] = b > 0 ? b * p[Term(m, degree, k - 1, b - 1)] : Broadcast(0);
   }
 }
 
@@ -138,8 +156,8 @@ LANES_INLINE void PolynomialGradient(const int m, const int degree, const Lanes 
   gradient[0] = gradient[1] = Broadcast(0);
   FOR_MONOMIALS(m, degree, k, b)
   {
-    if (k - b > 0) gradient[0] += (k - b) * (c[Term(m, k, b)] * p[Term(m, k - 1, b)]);
-    if (b > 0) gradient[1] += b * (c[Term(m, k, b)] * p[Term(m, k - 1, b - 1)]);
+    if (k - b > 0) gradient[0] += (k - b) * (c[Term(m, degree, k, b)] * p[Term(m, degree, k - 1, b)]);
+    if (m == 2 && b > 0) gradient[1] += b * (c[Term(m, degree, k, b)] * p[Term(m, degree, k - 1, b - 1)]);
   }
 }
 
@@ -149,9 +167,9 @@ LANES_INLINE void PolynomialHessian(const int m, const int degree, const Lanes *
   hessian[0] = hessian[1] = hessian[2] = Broadcast(0);
   FOR_MONOMIALS(m, degree, k, b)
   {
-    if (k - b > 1) hessian[0] += ((k - b) * (k - b - 1)) * (c[Term(m, k, b)] * p[Term(m, k - 2, b)]);
-    if (k - b > 0 && b > 0) hessian[1] += ((k - b) * b) * (c[Term(m, k, b)] * p[Term(m, k - 2, b - 1)]);
-    if (b > 1) hessian[2] += (b * (b - 1)) * (c[Term(m, k, b)] * p[Term(m, k - 2, b - 2)]);
+    if (k - b > 1) hessian[0] += ((k - b) * (k - b - 1)) * (c[Term(m, degree, k, b)] * p[Term(m, degree, k - 2, b)]);
+    if (m == 2 && k - b > 0 && b > 0) hessian[1] += ((k - b) * b) * (c[Term(m, degree, k, b)] * p[Term(m, degree, k - 2, b - 1)]);
+    if (m == 2 && b > 1) hessian[2] += (b * (b - 1)) * (c[Term(m, degree, k, b)] * p[Term(m, degree, k - 2, b - 2)]);
   }
 }
 
@@ -178,6 +196,9 @@ LANES_INLINE void ToOrthonormal(const int terms, const FitState *s, Lanes *p)
   case 21: body(2, 1, 2);                  \
   case 22: body(2, 2, 3);                  \
   case 24: body(2, 4, 5);                  \
+  case 20 + FIT_REVOLVED + 1: body(2, FIT_REVOLVED + 1, 2);                  \
+  case 20 + FIT_REVOLVED + 2: body(2, FIT_REVOLVED + 2, 4);                  \
+  case 20 + FIT_REVOLVED + 4: body(2, FIT_REVOLVED + 4, 9);                  \
   case 31: body(3, 1, 3);                  \
   case 32: body(3, 2, 6);                  \
   case 34: body(3, 4, 15);                 \

@@ -2,7 +2,8 @@
    the tangent, a straight line, does not follow.
 
    ExtrapolationAdd() takes each accepted state, ExtrapolationEvaluate() computes the displacements to be expected and
-   says whether they are worth a try. ExtrapolationForget() is called where the loads change their direction or rate. */
+   says whether they are worth a try. ExtrapolationForget() is called where the loads change their direction or rate,
+   ExtrapolationReplace() where bodies were moved. */
 #pragma once
 #include "files/archive.h"
 #include "mesh/mesh.h"
@@ -13,5 +14,6 @@ PetscErrorCode ExtrapolationCreate(Mesh, Extrapolation *);
 PetscErrorCode ExtrapolationDestroy(Extrapolation *);
 PetscErrorCode ExtrapolationAdd(Extrapolation, const PetscReal *u, PetscReal t);
 PetscErrorCode ExtrapolationForget(Extrapolation);
+PetscErrorCode ExtrapolationReplace(Extrapolation, const PetscReal *u, PetscReal t);
 PetscErrorCode ExtrapolationEvaluate(Extrapolation, PetscReal t, PetscReal *u, PetscBool *smooth);
 PetscErrorCode ExtrapolationArchive(Extrapolation, Archive, const Hdf5Table *nodes, const PetscReal *u);

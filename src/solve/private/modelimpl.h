@@ -1,11 +1,12 @@
 /* What the solvers share and no other folder sees: the working state of a model, and the functions that one solver
    offers to those above it.
 
-   problem.c is below all of them. linearcontact.c finds the contact that is right at the end of a linear step.
-   linesearch.c chooses what the line search compares, and corrects steps for contact. newton.c runs SNES once
-   with the present contact lists. prediction.c finds a first iterate, penaltyramp.c improves it on softened penalties,
-   penaltyerror.c estimates what penetration leaves of error and stiffens penalties. equilibrium.c goes from an accepted
-   state to the next one. model.c holds the accepted state. Each file calls only those named before it. */
+   problem.c is below all of them, and freebodies.c and rigidsearch.c below it. linearcontact.c finds the contact that
+   is right at the end of a linear step. linesearch.c chooses what the line search compares, and corrects steps for
+   contact. newton.c runs SNES once with the present contact lists. prediction.c finds a first iterate, penaltyramp.c
+   improves it on softened penalties, penaltyerror.c estimates what penetration leaves of error and stiffens penalties.
+   equilibrium.c goes from an accepted state to the next one. model.c holds the accepted state. Each file calls only
+   those named before it. */
 #pragma once
 #include "contact/contactcycle.h"
 #include "extrapolation.h"
@@ -34,6 +35,8 @@ typedef struct _n_ModelWork {
   PetscReal  accepted_t;
   PetscReal  accepted_start; /* residual norm where Newton's method started in that step; 0: unknown */
   PetscReal  rate;           /* largest displacement per unit of t in that step */
+  PetscBool  settled;        /* bodies were moved into contact there; always at t = 0 */
+  PetscBool  searched;       /* it was tried to move them */
 
   PenaltyError *penalty_error; /* of each pair, once the load is at its end */
 
@@ -44,6 +47,7 @@ typedef struct _n_ModelWork {
   PetscBool look_ahead_extrapolated;
 
   /* The load step at hand */
+  PetscBool adrift;       /* a body that only contact could hold meets none on the way of its load */
   PetscBool extrapolated; /* the prediction started from the extrapolated state */
   PetscReal start;        /* residual norm where Newton's method started; 0: it has not started */
   PetscReal energy;       /* the last energy that the line search evaluated; 0: none */

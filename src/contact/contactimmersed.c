@@ -1,0 +1,203 @@
+/* Bodies that lie in each other before any load: what surfaces alone do not show. A surface that is deeper in the other
+   body than the search reaches finds no master, or one that it is in front of, and the run would end well without
+   contact. */
+#include "contactimpl.h"
+#include "base/refusal.h"
+#include "mesh/mesh.h"
+#include "mesh/meshlocate.h"
+
+/* A cell whose centre lies in another body's cell, shrunk by this factor, is in that body, whatever the facets leave of
+   a curved surface. */
+#define IMMERSED_CORE 0.75
+
+/* The same for a point that should be in a body: the factor by which cells are widened. */
+#define IMMERSED_WIDE 1.000001
+
+/* Points of all ranks. */
+typedef struct {
+  PetscInt   n;
+  PetscReal *x;      /* n*dim (length) */
+  PetscBool *inside; /* of one of the bodies that are asked for */
+} ImmersedPoints;
+
+/* Marks the bodies to which the faces of a surface belong, on all ranks. */
+static PetscErrorCode MarkBodies(Mesh mesh, Scene scene, const MeshGroup *group, int *bodies)
+{
+  PetscFunctionBeginUser;
+  for (int b = 0; b < scene->n_bodies; b++) bodies[b] = 0;
+  for (PetscInt f = 0; f < group->n_faces; f++) bodies[mesh->cell_body[group->face_cell[f]]] = 1;
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, bodies, scene->n_bodies, MPI_INT, MPI_LOR, mesh->comm));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Gathers points of all ranks and asks whether they are in one of the bodies. */
+static PetscErrorCode AskBodies(Mesh mesh, int n_bodies, const int *bodies, double core, PetscInt n, const PetscReal *x,
+                                ImmersedPoints *all)
+{
+  PetscMPIInt size, mine, total = 0, *counts, *starts;
+  PetscBool  *inside;
+
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Comm_size(mesh->comm, &size));
+  PetscCall(PetscMalloc2(size, &counts, size, &starts));
+  PetscCall(PetscMPIIntCast(n * mesh->dim, &mine));
+  PetscCallMPI(MPI_Allgather(&mine, 1, MPI_INT, counts, 1, MPI_INT, mesh->comm));
+  for (PetscMPIInt r = 0; r < size; r++) {
+    starts[r] = total;
+    total += counts[r];
+  }
+  all->n = total / mesh->dim;
+  PetscCall(PetscMalloc2(total, &all->x, all->n, &all->inside));
+  PetscCallMPI(MPI_Allgatherv(x, mine, MPIU_REAL, all->x, counts, starts, MPIU_REAL, mesh->comm));
+  PetscCall(PetscFree2(counts, starts));
+  PetscCall(PetscArrayzero(all->inside, all->n));
+  PetscCall(PetscMalloc1(all->n, &inside));
+  for (int b = 0; b < n_bodies; b++) {
+    if (!bodies[b]) continue;
+    PetscCall(MeshPointsInBody(mesh, b, core, all->n, all->x, inside));
+    for (PetscInt i = 0; i < all->n; i++) all->inside[i] = (PetscBool)(all->inside[i] || inside[i]);
+  }
+  PetscCall(PetscFree(inside));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Centres of the cells behind the faces of a surface, but for faces with a node that is marked. */
+static PetscErrorCode CellCentres(Mesh mesh, ContactSurface surface, const PetscReal *mark, PetscInt *n, PetscReal *x)
+{
+  double X[ELEMENT_MAX_NODES * 3];
+
+  PetscFunctionBeginUser;
+  *n = 0;
+  for (PetscInt f = 0; f < surface->n_faces; f++) {
+    const PetscInt c       = surface->group->face_cell[f];
+    const int      corners = ElementGet(mesh->cell_type[c])->corners;
+    PetscBool      marked  = PETSC_FALSE;
+
+    for (int a = 0; a < ElementGet(surface->faces[f].type)->nodes; a++)
+      marked = (PetscBool)(marked || mark[surface->faces[f].nodes[a]] > 0);
+    if (marked) continue;
+    MeshCellCoordinates(mesh, c, X);
+    for (int d = 0; d < mesh->dim; d++) {
+      x[*n * mesh->dim + d] = 0;
+      for (int k = 0; k < corners; k++) x[*n * mesh->dim + d] += X[k * mesh->dim + d] / corners;
+    }
+    (*n)++;
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Finds the centre of a cell behind one surface that is in the bodies of the other. */
+static PetscErrorCode FindImmersedCell(Mesh mesh, int n_bodies, const int *bodies, ContactSurface surface,
+                                       const PetscReal *mark, PetscReal X[3], PetscBool *found)
+{
+  PetscInt       n;
+  PetscReal     *x;
+  ImmersedPoints all;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(surface->n_faces * mesh->dim, &x));
+  PetscCall(CellCentres(mesh, surface, mark, &n, x));
+  PetscCall(AskBodies(mesh, n_bodies, bodies, IMMERSED_CORE, n, x, &all));
+  *found = PETSC_FALSE;
+  for (PetscInt i = 0; i < all.n && !*found; i++) {
+    *found = all.inside[i];
+    for (int d = 0; d < 3; d++) X[d] = d < mesh->dim ? all.x[i * mesh->dim + d] + mesh->centre[d] : 0;
+  }
+  PetscCall(PetscFree2(all.x, all.inside));
+  PetscCall(PetscFree(x));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Says whether most nodes that overlap are deeper than half the wall of the master. A point twice as deep is then
+   beyond the wall. */
+static PetscErrorCode OverlapIsDeep(Contact contact, const ContactPair *pair, const int *bodies, PetscBool *deep)
+{
+  Mesh           mesh = contact->mesh;
+  const int      dim  = mesh->dim;
+  PetscInt       n = 0, beyond = 0;
+  PetscReal     *x;
+  ImmersedPoints all;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(pair->n * pair->n_images * dim, &x));
+  for (PetscInt c = 0; c < pair->n; c++) {
+    if (!(pair->now.gap[c] < -ContactTouchTolerance(pair, c))) continue;
+    for (int m = 0; m < pair->n_images; m++, n++) {
+      PetscReal y[3];
+
+      for (int d = 0; d < dim; d++)
+        y[d] = mesh->coords[pair->node[c] * dim + d] + pair->now.gap[c] * pair->normal[3 * c + d];
+      SurfaceReflect(&pair->images[m], dim, y, &x[n * dim]);
+    }
+  }
+  PetscCall(AskBodies(mesh, contact->scene->n_bodies, bodies, IMMERSED_WIDE, n, x, &all));
+  for (PetscInt i = 0; i < all.n; i += pair->n_images) {
+    PetscBool inside = PETSC_FALSE;
+
+    for (int m = 0; m < pair->n_images; m++) inside = (PetscBool)(inside || all.inside[i + m]);
+    beyond += !inside;
+  }
+  *deep = (PetscBool)(2 * beyond * pair->n_images > all.n);
+  PetscCall(PetscFree2(all.x, all.inside));
+  PetscCall(PetscFree(x));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ContactRefuseImmersed - refuses a pair whose bodies lie in the same place, or overlap by more than half a wall.
+
+  Collective
+
+  Input Parameters:
++ contact - the contact, after ContactResidual() with forces at the undeformed state
+- p       - number of the pair
+
+  Note:
+  Smaller overlaps are left to the scene's initial_overlap.
+@*/
+PetscErrorCode ContactRefuseImmersed(Contact contact, int p)
+{
+  const ContactPair *pair  = &contact->pairs[p];
+  Mesh               mesh  = contact->mesh;
+  Scene              scene = contact->scene;
+  int               *slave, *master, same = 0;
+  PetscReal         *overlaps, X[3];
+  PetscBool          found = PETSC_FALSE, deep = PETSC_FALSE;
+
+  PetscFunctionBeginUser;
+  if (!pair->master || pair->master->rigid) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscMalloc2(scene->n_bodies, &slave, scene->n_bodies, &master));
+  PetscCall(MarkBodies(mesh, scene, pair->slave->group, slave));
+  PetscCall(MarkBodies(mesh, scene, pair->master->group, master));
+  for (int b = 0; b < scene->n_bodies; b++) same = same || (slave[b] && master[b]);
+  if (!same) {
+    int any = 0;
+
+    PetscCall(PetscCalloc1(mesh->n_nodes, &overlaps));
+    for (PetscInt c = 0; c < pair->n; c++) overlaps[pair->node[c]] = pair->now.gap[c] < 0;
+    for (PetscInt c = 0; c < pair->n; c++) any = any || pair->now.gap[c] < -ContactTouchTolerance(pair, c);
+    PetscCall(MeshSumNodes(mesh, 1, overlaps));
+    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &any, 1, MPI_INT, MPI_LOR, mesh->comm));
+    PetscCall(FindImmersedCell(mesh, scene->n_bodies, master, pair->slave, overlaps, X, &found));
+    PetscCall(PetscArrayzero(overlaps, mesh->n_nodes));
+    if (!found && !any) PetscCall(FindImmersedCell(mesh, scene->n_bodies, slave, pair->master, overlaps, X, &found));
+    if (!found && any) PetscCall(OverlapIsDeep(contact, pair, master, &deep));
+    PetscCall(PetscFree(overlaps));
+  }
+  PetscCall(PetscFree2(slave, master));
+  if (found)
+    PetscCall(
+      RefuseInput(mesh->comm,
+                  "%s: contact '%s': the bodies of '%s' and '%s' lie in each other before any load, as at (%.6g, "
+                  "%.6g, %.6g), so deep that their surfaces do not meet; allowed: bodies that touch, are apart or "
+                  "overlap by less than half a wall (move one of them)",
+                  SceneWhere(scene, pair->scene->path, "master"), pair->scene->name, pair->scene->slave,
+                  pair->scene->master, (double)X[0], (double)X[1], (double)X[2]));
+  if (deep)
+    PetscCall(RefuseInput(mesh->comm,
+                          "%s: contact '%s': '%s' overlaps the body of '%s' by more than half of its wall before any "
+                          "load; allowed: bodies that touch, are apart or overlap by less (move one of them)",
+                          SceneWhere(scene, pair->scene->path, "master"), pair->scene->name, pair->scene->slave,
+                          pair->scene->master));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

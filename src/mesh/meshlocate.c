@@ -1,0 +1,155 @@
+/* Points in cells: boxes of the cells in a tree, and the reference coordinates of a point by Newton's method. */
+#include "mesh/meshlocate.h"
+#include "base/boxtree.h"
+#include "mesh/mesh.h"
+#include <math.h>
+
+enum {
+  /* Newton's method needs one step in cells with straight edges. */
+  LOCATE_ITERATIONS = 10
+};
+/* Reference coordinates are found when they change by less than this. */
+#define LOCATE_ENOUGH 1e-9
+
+/* Solves the dim x dim system a y = b by Cramer's rule. Returns 0 if it is singular. */
+static int SolveSmall(int dim, double (*a)[3], const double *b, double *y)
+{
+  double determinant, column[3][3];
+
+  for (int j = dim; j < 3; j++) a[j][j] = 1;
+  determinant = a[0][0] * (a[1][1] * a[2][2] - a[1][2] * a[2][1]) - a[0][1] * (a[1][0] * a[2][2] - a[1][2] * a[2][0]) +
+                a[0][2] * (a[1][0] * a[2][1] - a[1][1] * a[2][0]);
+  if (determinant == 0) return 0;
+  for (int k = 0; k < dim; k++) {
+    for (int i = 0; i < 3; i++)
+      for (int j = 0; j < 3; j++) column[i][j] = j == k ? (i < dim ? b[i] : 0) : a[i][j];
+    y[k] = (column[0][0] * (column[1][1] * column[2][2] - column[1][2] * column[2][1]) -
+            column[0][1] * (column[1][0] * column[2][2] - column[1][2] * column[2][0]) +
+            column[0][2] * (column[1][0] * column[2][1] - column[1][1] * column[2][0])) /
+           determinant;
+  }
+  return 1;
+}
+
+/* Does the cell, shrunk about its centre by `core` in reference coordinates, contain the point? */
+static PetscBool CellContains(ElementType type, const double *X, const double *x, double core)
+{
+  const Element  *e       = ElementGet(type);
+  const PetscBool simplex = (PetscBool)(e->corners == e->dim + 1);
+  const double    centre  = simplex ? 1.0 / e->corners : 0;
+  double          xi[3] = {centre, centre, centre}, last = centre, step = 1;
+
+  for (int k = 0; k < LOCATE_ITERATIONS && step > LOCATE_ENOUGH; k++) {
+    double N[ELEMENT_MAX_NODES], dN[ELEMENT_MAX_NODES * 3], a[3][3] = {{0}}, b[3], y[3];
+
+    ElementShape(type, xi, N, dN, NULL);
+    for (int d = 0; d < e->dim; d++) {
+      b[d] = x[d];
+      for (int n = 0; n < e->nodes; n++) {
+        b[d] -= N[n] * X[n * e->dim + d];
+        for (int j = 0; j < e->dim; j++) a[d][j] += dN[n * e->dim + j] * X[n * e->dim + d];
+      }
+    }
+    if (!SolveSmall(e->dim, a, b, y)) return PETSC_FALSE;
+    step = 0;
+    for (int d = 0; d < e->dim; d++) {
+      xi[d] += y[d];
+      step = fmax(step, fabs(y[d]));
+    }
+  }
+  if (!(step <= LOCATE_ENOUGH)) return PETSC_FALSE;
+  if (simplex) {
+    last = 1;
+    for (int d = 0; d < e->dim; d++) last -= xi[d];
+    if (last < centre * (1 - core)) return PETSC_FALSE;
+  }
+  for (int d = 0; d < e->dim; d++)
+    if (simplex ? xi[d] < centre * (1 - core) : fabs(xi[d]) > core) return PETSC_FALSE;
+  return PETSC_TRUE;
+}
+
+/* The cells of a body on this rank, as the tree's visitor needs them. */
+typedef struct {
+  Mesh             mesh;
+  const PetscInt  *cells;
+  double           core;
+  const PetscReal *x;
+  PetscBool        inside;
+} Locate;
+
+static void VisitCell(void *context, int index, double *bound)
+{
+  Locate *look = context;
+  double  X[ELEMENT_MAX_NODES * 3];
+
+  MeshCellCoordinates(look->mesh, look->cells[index], X);
+  if (!CellContains(look->mesh->cell_type[look->cells[index]], X, look->x, look->core)) return;
+  look->inside = PETSC_TRUE;
+  *bound       = -1; /* ends the search */
+}
+
+/* Lists the cells of a body on this rank with their boxes. */
+static PetscErrorCode ListCells(Mesh mesh, int body, PetscInt *n, PetscInt *cells, PetscReal *lower, PetscReal *upper)
+{
+  double X[ELEMENT_MAX_NODES * 3];
+
+  PetscFunctionBeginUser;
+  *n = 0;
+  for (PetscInt c = 0; c < mesh->n_cells; c++) {
+    if (mesh->cell_body[c] != body) continue;
+    MeshCellCoordinates(mesh, c, X);
+    for (int d = 0; d < mesh->dim; d++) {
+      PetscReal *low = &lower[*n * mesh->dim + d], *high = &upper[*n * mesh->dim + d];
+
+      *low = *high = X[d];
+      for (int k = 1; k < ElementGet(mesh->cell_type[c])->nodes; k++) {
+        *low  = PetscMin(*low, X[k * mesh->dim + d]);
+        *high = PetscMax(*high, X[k * mesh->dim + d]);
+      }
+    }
+    cells[(*n)++] = c;
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  MeshPointsInBody - says which points lie in the cells of a body, in the reference configuration.
+
+  Collective
+
+  Input Parameters:
++ mesh - the mesh
+. body - number of the body in the scene
+. core - 1: anywhere in a cell; less: in the cell shrunk about its centre by this factor
+. n    - number of points, the same on all ranks
+- x    - x[n*dim], relative to the mesh's centre (length), the same on all ranks
+
+  Output Parameter:
+. inside - inside[n], the same on all ranks
+@*/
+PetscErrorCode MeshPointsInBody(Mesh mesh, int body, double core, PetscInt n, const PetscReal *x, PetscBool *inside)
+{
+  PetscInt   n_cells, *cells;
+  PetscReal *lower, *upper;
+  int       *found;
+  BoxTree    tree;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc4(mesh->n_cells, &cells, mesh->n_cells * mesh->dim, &lower, mesh->n_cells * mesh->dim, &upper, n,
+                         &found));
+  PetscCall(ListCells(mesh, body, &n_cells, cells, lower, upper));
+  PetscCheck(!BoxTreeBuild(mesh->dim, (int)n_cells, lower, upper, &tree), PETSC_COMM_SELF, PETSC_ERR_MEM,
+             "no memory for the tree of cells");
+  for (PetscInt i = 0; i < n; i++) {
+    double bound = 0; /* the boxes that hold the point */
+    Locate look  = {mesh, cells, core, &x[i * mesh->dim], PETSC_FALSE};
+
+    BoxTreeClosest(tree, look.x, &bound, VisitCell, &look);
+    found[i] = look.inside;
+  }
+  BoxTreeDestroy(&tree);
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, found, (PetscMPIInt)n, MPI_INT, MPI_LOR, mesh->comm));
+  for (PetscInt i = 0; i < n; i++) inside[i] = found[i] ? PETSC_TRUE : PETSC_FALSE;
+  PetscCall(PetscFree4(cells, lower, upper, found));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

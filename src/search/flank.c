@@ -1,0 +1,266 @@
+/* Facets that face a slave point, where they end, and how far the point takes part, see flank.h. */
+#include "flank.h"
+#include "base/smoothstep.h"
+
+/* A facet is below the plane of its neighbour if its centre is, by this part of the slave's face size. */
+#define FLANK_BELOW 1e-6
+
+/* Depth behind the plane of a facet, in faces of the slave, at which a point past the end of that facet no longer
+   counts as behind it. Penetrations are much smaller, and another side of the master is nearer then. */
+#define FLANK_DEPTH 0.25
+
+/* An edge that two facets share, as seen from one of them. */
+typedef struct {
+  int       edge;
+  PetscInt  nodes[2]; /* points; in 2D the same one twice */
+  PetscBool convex;   /* the other facet lies below the plane of this one */
+} FlankEdge;
+
+/* Distance of the slave point to a facet. */
+static PetscReal CandidateDistance(const Nearest *look, const Candidate *c)
+{
+  PetscReal x[FACE_MAX_NODES * 3];
+  Facet     facet = c->facet;
+  Foot      foot;
+
+  facet.free_edges = 0;
+  for (int a = 0; a < ElementGet(facet.type)->nodes; a++) {
+    NeighbourListsRelative(look->lists, look->q, facet.nodes[a], &x[a * look->lists->dim]);
+    facet.nodes[a] = a;
+  }
+  FacetProject(look->lists->dim, &facet, x, &foot);
+  return PetscAbsReal(foot.gap);
+}
+
+static PetscBool HasNode(const Candidate *c, PetscInt node)
+{
+  for (int a = 0; a < ElementGet(c->facet.type)->corners; a++)
+    if (c->facet.nodes[a] == node) return PETSC_TRUE;
+  return PETSC_FALSE;
+}
+
+/* Finds the edge of c that it shares with o. */
+static PetscBool SharedEdge(const Nearest *look, const Candidate *c, const Candidate *o, FlankEdge *shared)
+{
+  const Element *e   = ElementGet(c->facet.type);
+  const int      dim = look->lists->dim;
+
+  for (int k = 0; k < (e->dim == 1 ? 2 : e->edges); k++) {
+    const PetscInt a = c->facet.nodes[e->dim == 1 ? k : e->edge_corners[k][0]],
+                   b = c->facet.nodes[e->dim == 1 ? k : e->edge_corners[k][1]];
+    PetscReal height = 0;
+
+    if (!HasNode(o, a) || !HasNode(o, b)) continue;
+    for (int d = 0; d < dim; d++)
+      height += c->normal[d] * (o->centre[d] - look->lists->point_X[a * dim + d] - look->lists->point_u[a * dim + d]);
+    *shared = (FlankEdge){k, {a, b}, (PetscBool)(height < -FLANK_BELOW * look->size)};
+    return PETSC_TRUE;
+  }
+  return PETSC_FALSE;
+}
+
+/* Distance of the slave point's foot to an edge. */
+static PetscReal FootToEdge(const Nearest *look, const FlankEdge *edge)
+{
+  const int dim = look->lists->dim;
+  PetscReal a[3], b[3], along = 0, length = 0, square = 0;
+
+  NeighbourListsRelative(look->lists, look->q, edge->nodes[0], a);
+  NeighbourListsRelative(look->lists, look->q, edge->nodes[1], b);
+  for (int d = 0; d < dim; d++) {
+    along += (-look->foot.gap * look->foot.normal[d] - a[d]) * (b[d] - a[d]);
+    length += PetscSqr(b[d] - a[d]);
+  }
+  along = length > 0 ? PetscClipInterval(along / length, 0, 1) : 0;
+  for (int d = 0; d < dim; d++)
+    square += PetscSqr(-look->foot.gap * look->foot.normal[d] - a[d] - along * (b[d] - a[d]));
+  return PetscSqrtReal(square);
+}
+
+/* How far the slave point is beside its foot, along the nearest facet. */
+static PetscReal BesideFoot(const Nearest *look)
+{
+  const PetscReal *n     = look->candidates[look->best].normal;
+  PetscReal        along = 0, square = 0;
+
+  for (int d = 0; d < look->lists->dim; d++) along += look->foot.normal[d] * n[d];
+  for (int d = 0; d < look->lists->dim; d++) square += PetscSqr(look->foot.normal[d] - along * n[d]);
+  return PetscAbsReal(look->foot.gap) * PetscSqrtReal(square);
+}
+
+/*@
+  FlankFaces - says whether a candidate's normal opposes that of the slave point.
+
+  Not collective
+
+  Input Parameters:
++ look - the slave point
+- c    - the candidate
+@*/
+PetscBool FlankFaces(const Nearest *look, const Candidate *c)
+{
+  return (PetscBool)(NeighbourListsOpposed(look->lists, look->q, c->normal) > 0);
+}
+
+/*@
+  FlankIsOwn - says whether a candidate shares a node with the slave point's own face; it is then not its master.
+
+  Not collective
+
+  Input Parameters:
++ look - the slave point
+- c    - the candidate
+@*/
+PetscBool FlankIsOwn(const Nearest *look, const Candidate *c)
+{
+  const NeighbourLists lists = look->lists;
+
+  for (int a = 0; a < ElementGet(c->facet.type)->nodes; a++)
+    for (PetscInt k = 0; k < look->own; k++)
+      if (lists->point_node[lists->point_ptr[c->facet.nodes[a]]] == lists->slave_node[lists->slave_ptr[look->q] + k])
+        return PETSC_TRUE;
+  return PETSC_FALSE;
+}
+
+/*@
+  FlankSort - drops the facets that share a node with the slave point's own face, and puts those that face the point
+  before the others.
+
+  Not collective
+
+  Input Parameter:
+. look - the slave point
+
+  Input/Output Parameters:
++ n     - number of facets
+- found - their numbers; those that face the point keep their order
+
+  Note:
+  Returns how many of them face the point.
+@*/
+int FlankSort(const Nearest *look, int *n, int *found)
+{
+  int facing = 0, kept = 0;
+
+  for (int i = 0; i < *n; i++)
+    if (!FlankIsOwn(look, &look->candidates[found[i]])) found[kept++] = found[i];
+  *n = kept;
+  for (int i = 0; i < kept; i++) {
+    const int c = found[i];
+
+    if (!FlankFaces(look, &look->candidates[c])) continue;
+    found[i]        = found[facing];
+    found[facing++] = c;
+  }
+  return facing;
+}
+
+/* How far the slave point is behind the plane of a facet at one of its edges; 0 in front of it. */
+static PetscReal DepthAtEdge(const Nearest *look, const Candidate *c, const FlankEdge *edge)
+{
+  PetscReal a[3], depth = 0;
+
+  NeighbourListsRelative(look->lists, look->q, edge->nodes[0], a);
+  for (int d = 0; d < look->lists->dim; d++) depth += c->normal[d] * a[d];
+  return PetscMax(0, depth);
+}
+
+/* Part of a slave point's area that takes part where the flank ends at a convex edge of facet c, beyond which there is
+   a facet that the point does not face. The width over which it fades shrinks as the point turns towards that facet,
+   because then the plane beyond the edge lies in front of the master. Past the edge, a point that is deeper than
+   FLANK_DEPTH is in front of another side of the master, not behind this one. */
+static PetscReal EndShare(const Nearest *look, const Candidate *c, const Candidate *beyond, const FlankEdge *edge)
+{
+  const PetscReal width  = look->size * NeighbourListsAverse(look->lists, look->q, beyond->normal),
+                  inside = FootToEdge(look, edge);
+  const PetscReal past   = inside > FACET_COINCIDENT * look->size ? -inside : BesideFoot(look);
+  PetscReal       place;
+
+  if (2 * PetscAbsReal(past) >= width) return past > 0 ? 0 : 1;
+  place = past / width + 0.5;
+  return (1 - SmoothStep(place)) *
+         (1 - SmoothStep(2 * place) * SmoothStep(DepthAtEdge(look, c, edge) / (FLANK_DEPTH * look->size)));
+}
+
+/* Part of a slave point's area that takes part where the point is far behind the flank that it faces. A side of the
+   master that is square to the point and much nearer says that the point is beside that side, and that it is not this
+   flank which it came through. The far side of a thin body says nothing. */
+static PetscReal DeepShare(const Nearest *look, int facing, int n, const int *found)
+{
+  const PetscReal depth = look->foot.gap < 0 ? look->distance : 0;
+  PetscReal       side  = depth;
+
+  if (depth <= FLANK_DEPTH * look->size) return 1;
+  for (int k = facing; k < n; k++)
+    if (NeighbourListsSquare(look->lists, look->q, look->candidates[found[k]].normal))
+      side = PetscMin(side, CandidateDistance(look, &look->candidates[found[k]]));
+  return 1 - SmoothStep(depth / (FLANK_DEPTH * look->size) - 1) * (1 - SmoothStep(2 * side / depth - 1));
+}
+
+/*@
+  FlankShare - finds the ends of the flank, and the part of the slave point's area that takes part in contact with it.
+
+  Not collective
+
+  Input Parameters:
++ look   - the slave point with its nearest facet and foot
+. facing - number of facets that face the point
+. n      - number of facets
+- found  - their numbers, as FlankSort() left them
+
+  Output Parameter:
+. ends - ends[facing]: for each facet that faces the point the edges at which the flank ends, as bits like free_edges
+
+  Note:
+  Returns 1 where the normals oppose each other and no convex end is near.
+@*/
+PetscReal FlankShare(const Nearest *look, int facing, int n, const int *found, int *ends)
+{
+  PetscReal share = 1;
+
+  for (int i = 0; i < facing; i++) {
+    ends[i] = 0;
+    for (int k = facing; k < n; k++) {
+      const Candidate *beyond = &look->candidates[found[k]];
+      FlankEdge        edge;
+
+      if (!SharedEdge(look, &look->candidates[found[i]], beyond, &edge)) continue;
+      ends[i] |= 1 << edge.edge;
+      if (edge.convex) share = PetscMin(share, EndShare(look, &look->candidates[found[i]], beyond, &edge));
+    }
+  }
+  if (n > facing) share *= DeepShare(look, facing, n, found);
+  return share * NeighbourListsOpposed(look->lists, look->q, look->candidates[look->best].normal);
+}
+
+/*@
+  FlankNearRidge - says whether the slave point's foot is within half a face of a sharp convex edge whose two facets
+both face the point.
+
+  Not collective
+
+  Input Parameters:
++ look           - the slave point with its nearest facet and foot
+. neighbourhoods - know the sharp edges
+. facing         - number of facets that face the point
+- found          - their numbers
+
+  Note:
+  A fit knows one side of such an edge only. The facets know both, and the normal turns from one side to the other.
+@*/
+PetscBool FlankNearRidge(const Nearest *look, Neighbourhoods neighbourhoods, int facing, const int *found)
+{
+  for (int i = 0; i < facing; i++) {
+    if (!NeighbourhoodsIsSharp(neighbourhoods, found[i])) continue;
+    for (int k = 0; k < facing; k++) {
+      FlankEdge edge;
+
+      if (k == i || !NeighbourhoodsIsSharp(neighbourhoods, found[k])) continue;
+      if (!SharedEdge(look, &look->candidates[found[i]], &look->candidates[found[k]], &edge)) continue;
+      if (edge.convex && NeighbourhoodsMeetSharply(neighbourhoods, found[i], found[k]) &&
+          FootToEdge(look, &edge) <= 0.5 * look->size)
+        return PETSC_TRUE;
+    }
+  }
+  return PETSC_FALSE;
+}

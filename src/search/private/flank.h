@@ -1,0 +1,15 @@
+/* The flank of a master that a slave point faces: those of the facets near it whose normals oppose its own. It ends
+   where a facet that faces the point meets one that does not. There the facet counts as extended, as past a free edge.
+   Past a convex end the contact fades out within a face of the slave, half of it on either side of the edge, so that a
+   node over the edge keeps the half of its area that lies on the flank.
+
+   FlankSort() finds the facets of the flank. FlankShare() finds its ends, and how far the point takes part.
+   FlankNearRidge() says whether the point is near a sharp edge between two facets that both face it. */
+#pragma once
+#include "searchimpl.h"
+
+PetscBool FlankFaces(const Nearest *, const Candidate *);
+PetscBool FlankIsOwn(const Nearest *, const Candidate *);
+int       FlankSort(const Nearest *, int *n, int *found);
+PetscReal FlankShare(const Nearest *, int facing, int n, const int *found, int *ends);
+PetscBool FlankNearRidge(const Nearest *, Neighbourhoods, int facing, const int *found);
