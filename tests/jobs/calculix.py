@@ -106,7 +106,7 @@ class Deck:
         self.lines += [f"*SURFACE, NAME={group}", *(f"{number}, S{side}"
                                                    for number, side in self.mesh.sides(group, self.cells, self.kind))]
 
-    def pair(self, slave, master, stiffness, adjust=None):
+    def pair(self, slave, master, stiffness):
         law = f"LAW_{slave}"
         self.lines += [f"*SURFACE INTERACTION, NAME={law}", "*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=LINEAR",
                        repr(stiffness), f"*CONTACT PAIR, INTERACTION={law}, TYPE=SURFACE TO SURFACE",

@@ -73,8 +73,8 @@ JOBS = [
     ]),
     # Machine parts
     Job("three_spheres", "three rubber balls in a column", [
-        Answer("peak_south", 0.7983, 0.5, "Hertz"),
-        Answer("peak_north", 0.7983, 0.5, "Hertz"),
+        Answer("peak_south", 0.7953, 0.1, "limit"),
+        Answer("peak_north", 0.7953, 0.1, "limit"),  # Hertz, small strain: 0.7983
     ], steps=20, pairs=2, picture=["--mirror", "x"]),
     Job("pin_lug", "pin in a lug by force", [
         Answer("pin_rise", 0.11317, 0.2, "CalculiX"),
