@@ -35,15 +35,23 @@ static PetscErrorCode FindPlace(Mesh mesh, const ContactPair *pair, const PetscR
 }
 
 /* Overlap before any load that the surfaces' own shapes explain (length): the facets' sagitta, and the distance between
-   the master's nodes and its smooth surface. */
-static PetscReal TermOverlapExplained(const ContactPair *pair, PetscInt c)
+   the master's facets and its smooth surface. */
+static PetscErrorCode TermOverlapExplained(const ContactPair *pair, PetscInt c, PetscReal *explained)
 {
-  PetscReal residual = 0;
+  PetscReal apart = 0;
 
-  for (PetscInt k = pair->term_ptr[c]; k < pair->term_ptr[c + 1] && pair->fit.fitted; k++)
-    if (pair->lists->fit_n[pair->term_point[k]])
-      residual = PetscMax(residual, pair->lists->residual[pair->term_point[k]]);
-  return ContactTouchTolerance(pair, c) + residual;
+  PetscFunctionBeginUser;
+  for (PetscInt k = pair->term_ptr[c]; k < pair->term_ptr[c + 1] && pair->fit.fitted; k++) {
+    const PetscInt q = pair->term_point[k];
+    PetscBool      found;
+
+    if (!pair->lists->fit_n[q] || PetscIsNanReal(pair->point_gap[q])) continue;
+    apart = PetscMax(apart, pair->lists->residual[q]);
+    PetscCall(ContactPointEvaluate(pair, pair->facets, pair->lists, q, -1, SMOOTHER_GAP, &found));
+    if (found) apart = PetscMax(apart, PetscAbsReal(pair->work->result.gap - pair->point_gap[q]));
+  }
+  *explained = ContactTouchTolerance(pair, c) + apart;
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /*@
@@ -70,11 +78,14 @@ PetscErrorCode ContactPairGaps(Contact contact, int p, ContactGaps *gaps)
   for (PetscInt c = 0; c < pair->n; c++) {
     const PetscReal gap = PetscAbsReal(pair->now.gap[c]) <= QUALITY_ROUND_OFF * pair->size[c] ? 0 : pair->now.gap[c];
 
+    PetscReal explained;
+
     depth[c] = -gap;
     if (PetscIsNanReal(gap)) continue;
+    if (gap < 0) PetscCall(TermOverlapExplained(pair, c, &explained));
     count[1]++;
     count[2] += gap < 0;
-    count[3] += gap < -TermOverlapExplained(pair, c);
+    count[3] += gap < 0 && gap < -explained;
     if (gap < 0) area += pair->area[c];
     range[1] = PetscMax(range[1], gap);
     range[0] = PetscMax(range[0], -gap);
@@ -334,7 +345,7 @@ PetscErrorCode ContactTakeOverlap(Contact contact)
   PetscFunctionBeginUser;
   for (int p = 0; p < contact->n_pairs; p++) {
     ContactPair *pair  = &contact->pairs[p];
-    PetscReal    worst = 0;
+    PetscReal    worst = 0, explained;
     PetscInt     at    = -1;
     struct {
       double gap;
@@ -349,7 +360,9 @@ PetscErrorCode ContactTakeOverlap(Contact contact)
       if (pair->scene->initial_overlap == OVERLAP_RAMP || pair->scene->initial_overlap == OVERLAP_IGNORE)
         pair->now.offset[c] = pair->now.gap[c] < 0 ? pair->now.gap[c] : 0;
       if (pair->scene->initial_overlap != OVERLAP_REFUSE && pair->scene->initial_overlap != OVERLAP_ADD) continue;
-      if (!(pair->now.gap[c] < -TermOverlapExplained(pair, c)) || pair->now.gap[c] >= worst) continue;
+      if (!(pair->now.gap[c] < 0) || pair->now.gap[c] >= worst) continue;
+      PetscCall(TermOverlapExplained(pair, c, &explained));
+      if (pair->now.gap[c] >= -explained) continue;
       worst = pair->now.gap[c];
       at    = c;
     }
