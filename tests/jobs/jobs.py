@@ -66,7 +66,7 @@ JOBS = [
     Job("ball_in_vee", "ball in a vee groove", [
         Answer("peak_pressure", 154.9, 1.1, "limit"),
         Answer("ball_down", -0.08347, 0.1, "limit"),
-    ], steps=15, picture=["--mirror", "z"], levels=(1, 1.4, 1.96), stiff=[
+    ], steps=15, picture=["--view=160,15"], levels=(1, 1.4, 1.96), stiff=[
         "mesh.parameters={quarter: 1, gap: -0.005}", "contact.0.initial_overlap=resolve",
         "contact.0.symmetry=[symmetry, side]",
         "supports=[{surface: symmetry, uz: 0}, {surface: side, ux: 0}, {surface: groove_bottom, ux: 0, uy: 0, uz: 0}]"
