@@ -61,8 +61,8 @@ JOBS = [
         Answer("peak_pressure", 83.00, 0.1, "limit"),  # Hertz, for a ring of infinite radius: 84.42
         Answer("ball_down", -0.03191, 0.1, "CalculiX"),
     ], steps=12, picture=["--mirror", "x"]),
-    # Its limit is of a quarter, whose spin is held, and which starts with an overlap of 0.005: it falls by 0.025 sqrt(2)
-    # less.
+    # Its limit is of a quarter, whose spin is held, and which starts with an overlap of 0.005: the ball goes down by
+    # 0.025 sqrt(2) less.
     Job("ball_in_vee", "ball in a vee groove", [
         Answer("peak_pressure", 154.9, 1.1, "limit"),
         Answer("ball_down", -0.08347, 0.1, "limit"),
