@@ -61,12 +61,12 @@ JOBS = [
         Answer("peak_pressure", 83.00, 0.1, "limit"),  # Hertz, for a ring of infinite radius: 84.42
         Answer("ball_down", -0.03191, 0.1, "CalculiX"),
     ], steps=12, picture=["--mirror", "x"]),
-    # Its limit is of a quarter, whose spin is held, and which starts with an overlap of 0.005: it falls by 0.025 sqrt(2)
-    # less.
+    # Its limit is of a quarter, whose spin is held, and which starts with an overlap of 0.005: the ball goes down by
+    # 0.025 sqrt(2) less.
     Job("ball_in_vee", "ball in a vee groove", [
         Answer("peak_pressure", 154.9, 1.1, "limit"),
         Answer("ball_down", -0.08347, 0.1, "limit"),
-    ], steps=15, picture=["--mirror", "z"], levels=(1, 1.4, 1.96), stiff=[
+    ], steps=15, picture=["--view=160,15"], levels=(1, 1.4, 1.96), stiff=[
         "mesh.parameters={quarter: 1, gap: -0.005}", "contact.0.initial_overlap=resolve",
         "contact.0.symmetry=[symmetry, side]",
         "supports=[{surface: symmetry, uz: 0}, {surface: side, ux: 0}, {surface: groove_bottom, ux: 0, uy: 0, uz: 0}]"
