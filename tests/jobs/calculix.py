@@ -158,8 +158,8 @@ class Deck:
         return ["*CLOAD", *(f"{node}, {direction}, {force!r}" for node, force in forces.items())]
 
     def step(self, increment, loads, finite=True, prints=()):
-        self.lines += [f"*STEP{', NLGEOM' if finite else ''}, INC=10000", "*STATIC", f"{increment}, 1, 1e-6, {increment}",
-                       *loads]
+        self.lines += [f"*STEP{', NLGEOM' if finite else ''}, INC=10000", "*STATIC",
+                       f"{increment}, 1, 1e-6, {increment}", *loads]
         for name, nodes in prints:
             self.lines += [f"*NODE PRINT, NSET={name}, FREQUENCY=1{', TOTALS=ONLY' if nodes is None else ''}",
                            "RF" if nodes is None else "U"]
