@@ -1,6 +1,6 @@
 // Two whole half cylinders crossed at right angles, or a block whose lower side is a little round. Unstructured meshes.
 DefineConstant[
-  kind = {0, Name "0: crossed cylinders, 1: block"}, fine = {0.45, Name "element size where they touch"}
+  kind = {0, Name "0: crossed cylinders, 1: block"}, fine = {0.33, Name "element size where they touch"}
 ];
 SetFactory("OpenCASCADE");
 If (kind == 0)
