@@ -853,6 +853,26 @@ static PetscErrorCode MotionStiffness(FreeBodies b, const PetscReal *u, int k, K
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* The stiffness of all motions of pieces with ties, and the largest one of each of these pieces. Where all motions of a
+   piece are tied, the elements below a slave node tell how stiff a contact may be. */
+static PetscErrorCode FindMotionStiffness(FreeBodies b, const PetscReal *u, KSP ksp, ContactSprings springs,
+                                          PetscReal *stiffness, PetscReal *largest)
+{
+  PetscBool *tied, *others; /* of each piece */
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc2(b->n_pieces, &tied, b->n_pieces, &others));
+  for (int k = 0; k < b->n; k++) (ContactSpringsHaveTie(springs, k) ? tied : others)[b->owner[k]] = PETSC_TRUE;
+  for (PetscInt p = 0; p < b->n_pieces; p++) largest[p] = others[p] ? 0 : b->stiffness[p];
+  for (int k = 0; k < b->n; k++) {
+    stiffness[k] = 0;
+    if (tied[b->owner[k]]) PetscCall(MotionStiffness(b, u, k, ksp, springs, &stiffness[k]));
+    largest[b->owner[k]] = PetscMax(largest[b->owner[k]], stiffness[k]);
+  }
+  PetscCall(PetscFree2(tied, others));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /*@
   FreeBodiesRelease - releases the ties of motions that contact has come to hold, or along which a load acts.
 
@@ -879,17 +899,11 @@ PetscErrorCode FreeBodiesRelease(FreeBodies b, const PetscReal *u, PetscReal sca
                                  PetscBool *any)
 {
   int        kept = 0, *motion;
-  PetscBool *tied; /* of each piece */
   PetscReal *stiffness, *largest;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc1(b->n, &motion));
-  PetscCall(PetscCalloc3(b->n, &stiffness, b->n_pieces, &largest, b->n_pieces, &tied));
-  for (int k = 0; k < b->n; k++)
-    tied[b->owner[k]] = (PetscBool)(tied[b->owner[k]] || ContactSpringsHaveTie(springs, k));
-  for (int k = 0; k < b->n; k++)
-    if (tied[b->owner[k]]) PetscCall(MotionStiffness(b, u, k, ksp, springs, &stiffness[k]));
-  for (int k = 0; k < b->n; k++) largest[b->owner[k]] = PetscMax(largest[b->owner[k]], stiffness[k]);
+  PetscCall(PetscMalloc3(b->n, &motion, b->n, &stiffness, b->n_pieces, &largest));
+  PetscCall(FindMotionStiffness(b, u, ksp, springs, stiffness, largest));
   for (int k = 0; k < b->n; k++) {
     const SpringTie *tie;
     PetscReal        force = 0;
@@ -903,8 +917,7 @@ PetscErrorCode FreeBodiesRelease(FreeBodies b, const PetscReal *u, PetscReal sca
       motion[kept++] = k;
   }
   PetscCall(ContactSpringsRelease(springs, kept, motion, any));
-  PetscCall(PetscFree(motion));
-  PetscCall(PetscFree3(stiffness, largest, tied));
+  PetscCall(PetscFree3(motion, stiffness, largest));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

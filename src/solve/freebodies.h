@@ -2,8 +2,9 @@
    into contact before anything is solved, the springs that hold what contact does not, and their names in messages.
 
    FreeBodiesCreate() gives NULL where a scene has none; nothing else is called then. FreeBodiesSettle() moves them
-   along their loads until they rest on what is in their way, without any force. FreeBodiesLoose() names the motions
-   that contact does not hold in the present state. */
+   along their loads until they rest on what is in their way, without any force. FreeBodiesTie() ties motions
+   that neither contact nor a load acts along, and FreeBodiesRelease() releases those that contact has come to hold.
+   FreeBodiesLoose() names the motions that contact does not hold in the present state. */
 #pragma once
 #include <petscksp.h>
 #include "bodies/freemodes.h"
