@@ -20,7 +20,8 @@ for motion in ("rotation about x", "rotation about y", "rotation about z"):
     check.holds(f"crossed: names {motion}", motion in held["held_by_springs"], held["held_by_springs"])
 check.holds("crossed: names both translations", held["held_by_springs"].count("translation along") == 2,
             held["held_by_springs"])
-check.holds("crossed: ties hold what unevenness asks for", held["held_force_share"] < 5e-3, str(held["held_force_share"]))
+check.holds("crossed: ties hold what unevenness asks for", held["held_force_share"] < 5e-3,
+            str(held["held_force_share"]))
 
 block = run(args, SCENE, out="block", overrides=BLOCK).summary()
 held = block["stabilisation"]
