@@ -115,7 +115,7 @@ PetscErrorCode ContactGather(Contact, const PetscReal *u, PetscReal t, PetscReal
 PetscErrorCode ContactListsReach(Contact, PetscBool *within);
 PetscErrorCode ContactListsRenew(Contact, const PetscReal *u, PetscReal t, PetscReal motion);
 PetscErrorCode ContactListsHold(Contact, const PetscReal *u, PetscReal t, PetscReal motion, PetscReal next,
-                                PetscBool update_offsets, PetscBool *hold);
+                                PetscReal lag, PetscBool *hold);
 PetscErrorCode ContactLocateLost(Contact, PetscBool *lost, char *text, size_t size);
 /* Residual */
 PetscErrorCode ContactResidual(Contact, const PetscReal *u, PetscReal t, PetscReal *f, PetscReal *energy,
