@@ -57,9 +57,10 @@ typedef enum { WINDOW_HOLDS, WINDOW_MISSED, WINDOW_AT_BOUND } ContactWindowState
 
 /* How the fits of a pair turned out, over all slave points near the master. */
 typedef struct {
-  PetscInt  points;                                 /* slave points near the master */
-  PetscInt  plain, wider, degree_2, linear, facets; /* of these, by rung of the ladder of fall-backs */
-  PetscInt  neighbours_min, neighbours_max;
+  PetscInt points;                                 /* slave points near the master */
+  PetscInt plain, wider, degree_2, linear, facets; /* of these, by rung of the ladder of fall-backs */
+  PetscInt within, within_low; /* points not beyond a free edge of the master; of these, without a fit of full degree */
+  PetscInt neighbours_min, neighbours_max;
   PetscReal neighbours_mean;
   PetscReal pivot, amplified; /* worst guards: smallest pivot, largest sum of absolute shape values */
   PetscReal smoothing_error;  /* largest distance of a master node near the foot to the fit (length) */
@@ -114,7 +115,7 @@ PetscErrorCode ContactGather(Contact, const PetscReal *u, PetscReal t, PetscReal
 PetscErrorCode ContactListsReach(Contact, PetscBool *within);
 PetscErrorCode ContactListsRenew(Contact, const PetscReal *u, PetscReal t, PetscReal motion);
 PetscErrorCode ContactListsHold(Contact, const PetscReal *u, PetscReal t, PetscReal motion, PetscReal next,
-                                PetscBool update_offsets, PetscBool *hold);
+                                PetscReal lag, PetscBool *hold);
 PetscErrorCode ContactLocateLost(Contact, PetscBool *lost, char *text, size_t size);
 /* Residual */
 PetscErrorCode ContactResidual(Contact, const PetscReal *u, PetscReal t, PetscReal *f, PetscReal *energy,

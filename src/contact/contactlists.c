@@ -22,10 +22,6 @@
    penetration that the largest pressure causes at the automatic penalty. */
 #define CONTACT_OFFSET_AGREES 0.1
 
-/* Where histories break, offsets are not carried on to the next step. The distance by which they lag would appear as
-   a jump in it, so the drift must be smaller by this factor. */
-#define CONTACT_OFFSET_CURRENT 1e-5
-
 /* The area factor past a free edge is frozen in a solve. A larger change than this makes the step solve again. */
 #define CONTACT_FACTOR_AGREES 1e-2
 
@@ -260,15 +256,13 @@ static PetscBool TermAgrees(const ContactPair *pair, NeighbourLists fresh, Petsc
 }
 
 /* Says whether the pair's next lists find the same of each of this rank's terms as the last residual did. */
-static PetscErrorCode PairNextAgrees(Contact contact, ContactPair *pair, PetscReal t, PetscBool update_offsets,
-                                     PetscBool *agrees)
+static PetscErrorCode PairNextAgrees(Contact contact, ContactPair *pair, PetscReal t, PetscReal lag, PetscBool *agrees)
 {
   PetscReal depth = 0, pressure = 0, drift, *gaps;
 
   PetscFunctionBeginUser;
   PetscCall(PairDepth(contact, pair, t, &depth, &pressure));
-  drift = pair->formulation.lags ? CONTACT_OFFSET_AGREES * pressure / pair->automatic : 0;
-  if (update_offsets) drift *= CONTACT_OFFSET_CURRENT;
+  drift   = pair->formulation.lags ? lag * CONTACT_OFFSET_AGREES * pressure / pair->automatic : 0;
   *agrees = PETSC_TRUE;
   PetscCall(PetscMalloc1(pair->next->n_slaves, &gaps));
   if (pair->fit.fitted) TimingBegin(TIMING_FIT);
@@ -359,7 +353,7 @@ PetscErrorCode ContactListsRenew(Contact contact, const PetscReal *u, PetscReal 
 . motion         - largest motion since the accepted state (length)
 . next           - motion that the fresh lists must be good for, as ContactGather() may take them for the next step
                    (length)
-- update_offsets - offsets must not lag, as no later step will carry them on
+- lag            - part of the usual drift by which offsets may lag (no unit)
 
   Output Parameter:
 . hold - the same on all ranks
@@ -369,7 +363,7 @@ PetscErrorCode ContactListsRenew(Contact contact, const PetscReal *u, PetscReal 
   problem must be solved again.
 @*/
 PetscErrorCode ContactListsHold(Contact contact, const PetscReal *u, PetscReal t, PetscReal motion, PetscReal next,
-                                PetscBool update_offsets, PetscBool *hold)
+                                PetscReal lag, PetscBool *hold)
 {
   int agree = 1;
 
@@ -387,7 +381,7 @@ PetscErrorCode ContactListsHold(Contact contact, const PetscReal *u, PetscReal t
     PetscCall(ContactNoteLost(pair, t));
     ContactNoteTunnelled(pair, t);
     ContactNoteJumps(pair, motion);
-    PetscCall(PairNextAgrees(contact, pair, t, update_offsets, &agrees));
+    PetscCall(PairNextAgrees(contact, pair, t, lag, &agrees));
     pair->fresh = PETSC_FALSE;
     agree       = agree && agrees;
   }

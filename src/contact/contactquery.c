@@ -275,6 +275,7 @@ PetscErrorCode ContactPairSurface(Contact contact, int p, const MeshGroup **slav
 typedef struct {
   PetscInt  rung[RUNGS + 1]; /* slave points by rung, then those that only facets serve */
   PetscInt  points, neighbours;
+  PetscInt  within, within_low; /* not beyond a free edge of the master; of these, those of degree 2 and less */
   PetscReal least_neighbours, least_pivot; /* negative, as a maximum is taken */
   PetscReal most_neighbours, amplified, residual, facets;
 } FitTally;
@@ -284,31 +285,35 @@ static PetscErrorCode TallyPoint(const ContactPair *pair, PetscInt q, FitTally *
 {
   NeighbourLists        lists  = pair->lists;
   const SmootherResult *result = &pair->work->result;
-  PetscReal             gap;
-  PetscBool             found;
+  const int             rung   = lists->fit_n[q] ? lists->rung[q] : RUNGS;
+  PetscReal             facets;
+  PetscBool             found, within;
 
   PetscFunctionBeginUser;
   tally->points++;
-  tally->rung[lists->fit_n[q] ? lists->rung[q] : RUNGS]++;
+  tally->rung[rung]++;
+  PetscCall(ContactPointEvaluate(pair, pair->facets, lists, q, -1, SMOOTHER_GAP, &found));
+  facets = result->gap;
+  within = found && result->beyond == 0 ? PETSC_TRUE : PETSC_FALSE;
+  tally->within += within;
+  tally->within_low += within && rung > RUNG_WIDER;
   if (!lists->fit_n[q]) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(ContactPointEvaluate(pair, pair->smoother, lists, q, -1, SMOOTHER_GAP, &found));
   if (!found || result->facet_served) PetscFunctionReturn(PETSC_SUCCESS);
-  gap = result->gap;
   tally->neighbours += result->n;
   tally->least_neighbours = PetscMax(tally->least_neighbours, -(PetscReal)result->n);
   tally->most_neighbours  = PetscMax(tally->most_neighbours, (PetscReal)result->n);
   tally->least_pivot      = PetscMax(tally->least_pivot, -lists->pivot[q]);
   tally->amplified        = PetscMax(tally->amplified, lists->amplified[q]);
   tally->residual         = PetscMax(tally->residual, lists->residual[q]);
-  PetscCall(ContactPointEvaluate(pair, pair->facets, lists, q, -1, SMOOTHER_GAP, &found));
-  if (result->beyond == 0) tally->facets = PetscMax(tally->facets, PetscAbsReal(result->gap - gap));
+  if (within) tally->facets = PetscMax(tally->facets, PetscAbsReal(facets - result->gap));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* Sums and maxima over all ranks. */
 static PetscErrorCode TallyReduce(MPI_Comm comm, FitTally *tally)
 {
-  PetscInt  count[RUNGS + 3];
+  PetscInt  count[RUNGS + 5];
   PetscReal most[] = {tally->least_neighbours, tally->least_pivot, tally->most_neighbours,
                       tally->amplified,        tally->residual,    tally->facets};
 
@@ -316,11 +321,15 @@ static PetscErrorCode TallyReduce(MPI_Comm comm, FitTally *tally)
   PetscCall(PetscArraycpy(count, tally->rung, RUNGS + 1));
   count[RUNGS + 1] = tally->points;
   count[RUNGS + 2] = tally->neighbours;
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, count, RUNGS + 3, MPIU_INT, MPI_SUM, comm));
+  count[RUNGS + 3] = tally->within;
+  count[RUNGS + 4] = tally->within_low;
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, count, RUNGS + 5, MPIU_INT, MPI_SUM, comm));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, most, 6, MPIU_REAL, MPI_MAX, comm));
   PetscCall(PetscArraycpy(tally->rung, count, RUNGS + 1));
   tally->points           = count[RUNGS + 1];
   tally->neighbours       = count[RUNGS + 2];
+  tally->within           = count[RUNGS + 3];
+  tally->within_low       = count[RUNGS + 4];
   tally->least_neighbours = most[0];
   tally->least_pivot      = most[1];
   tally->most_neighbours  = most[2];
@@ -359,6 +368,8 @@ PetscErrorCode ContactPairFits(Contact contact, int p, ContactFits *fits)
       PetscCall(TallyPoint(pair, q, &tally));
   PetscCall(TallyReduce(contact->mesh->comm, &tally));
   *fits = (ContactFits){.points          = tally.points,
+                        .within          = tally.within,
+                        .within_low      = tally.within_low,
                         .plain           = tally.rung[0],
                         .facets          = tally.rung[RUNGS],
                         .amplified       = tally.amplified,

@@ -10,11 +10,13 @@
 #define ADVICE_FACETS 10
 /* Part of the slave points that may be on the lower rungs. Free ends and corners of a surface put some points there. */
 #define ADVICE_FALL_BACKS 0.1
-/* Parts of the steps that may fail or be taken back, and lists made anew for each step, before another step size is
-   cheaper. */
-#define ADVICE_FAILED     0.25
-#define ADVICE_REPEATED   0.5
+/* Parts of the steps that may fail or be taken back before another step size is cheaper. */
+#define ADVICE_FAILED   0.25
+#define ADVICE_REPEATED 0.5
+/* Lists made anew for each step, and the part of the time that search and fits may take, before shorter steps may be
+   cheaper. What sliding far in a step costs in search is otherwise less than what more steps cost in solves. */
 #define ADVICE_REGATHERED 1
+#define ADVICE_SEARCH     0.5
 /* Iterations of an accepted step above which the step is too long, and the part of them that the line search may
    shorten. Above these Newton's method works far from its end. */
 #define ADVICE_ITERATIONS 12
@@ -93,12 +95,12 @@ static double FacetsAreCoarse(const RunFigures *figures, const PairFigures *pair
 
 static double FitsFallBack(const RunFigures *figures, const PairFigures *pair, char *text)
 {
-  const PetscInt low = pair->fits.degree_2 + pair->fits.linear + pair->fits.facets;
+  const PetscInt low = pair->fits.within_low; /* points beyond the master's end fall back for that alone */
 
   (void)figures;
-  if (low <= ADVICE_FALL_BACKS * pair->fits.points) return 0;
+  if (low <= ADVICE_FALL_BACKS * pair->fits.within) return 0;
   snprintf(text, ADVICE_TEXT, "%s: %lld of %lld slave points have no fit of their degree", pair->name, (long long)low,
-           (long long)pair->fits.points);
+           (long long)pair->fits.within);
   return 1;
 }
 
@@ -143,13 +145,15 @@ static double StepsRepeat(const RunFigures *figures, char *text)
 
 static double NeighbourListsAreRemade(const RunFigures *figures, char *text)
 {
-  const PetscInt times = figures->run->way->regathered;
+  const PetscInt  times   = figures->run->way->regathered;
+  const PetscReal seconds = figures->usage.seconds[TIMING_SEARCH] + figures->usage.seconds[TIMING_FIT];
 
   if (times <= ADVICE_REGATHERED * PetscMax(figures->run->way->steps, 1)) return 0;
+  if (seconds <= ADVICE_SEARCH * figures->usage.wall_s) return 0;
   snprintf(text, ADVICE_TEXT,
-           "contact lists were made anew %lld times within steps, as contact slides far in one; smaller ones are "
-           "cheaper",
-           (long long)times);
+           "search took %.0f %% of the time: contact slides far in a step, and lists were made anew %lld times within "
+           "steps; smaller ones may be cheaper",
+           (double)(100 * seconds / figures->usage.wall_s), (long long)times);
   return 1;
 }
 

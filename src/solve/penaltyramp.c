@@ -108,7 +108,7 @@ PetscErrorCode ModelRampPenalty(Model model, SolveReport *report)
     if (model->work->left) {
       model->work->renewed++;
       PetscCall(ProblemRenewLists(model->problem, model->work->accepted_u, model->work->accepted_t, model->t,
-                                  PETSC_TRUE, PETSC_FALSE, &hold));
+                                  PETSC_TRUE, 1, &hold));
       report->regathered++;
     } else
       PetscCall(ModelChooseSoftness(model, PETSC_FALSE, RAMP_FACTOR * most, full, &most));

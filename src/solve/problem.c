@@ -475,7 +475,7 @@ PetscErrorCode ProblemGatherLists(Problem problem, const PetscReal *u, PetscReal
 . t_0            - load parameter of the accepted state
 . t              - load parameter of the trial displacements
 . left           - the solve ended because a slave point left its lists; new ones are made without a check
-- update_offsets - offsets that lag behind count as lists that do not hold
+- lag            - part of the usual drift by which offsets may lag before lists count as ones that do not hold
 
   Output Parameter:
 . hold - a new search finds the same gaps; the old lists were right
@@ -486,7 +486,7 @@ PetscErrorCode ProblemGatherLists(Problem problem, const PetscReal *u, PetscReal
   for PROBLEM_MOTION_SAFETY times the motion, so that they serve a next step of the same length.
 @*/
 PetscErrorCode ProblemRenewLists(Problem problem, const PetscReal *u_0, PetscReal t_0, PetscReal t, PetscBool left,
-                                 PetscBool update_offsets, PetscBool *hold)
+                                 PetscReal lag, PetscBool *hold)
 {
   PetscReal motion, next;
 
@@ -499,8 +499,7 @@ PetscErrorCode ProblemRenewLists(Problem problem, const PetscReal *u_0, PetscRea
   if (left)
     PetscCall(ContactListsRenew(problem->contact, problem->trial, t, motion));
   else
-    PetscCall(
-      ContactListsHold(problem->contact, problem->trial, t, motion, PetscMax(motion, next), update_offsets, hold));
+    PetscCall(ContactListsHold(problem->contact, problem->trial, t, motion, PetscMax(motion, next), lag, hold));
   TimingEnd(TIMING_SEARCH);
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -80,7 +80,7 @@ PetscErrorCode ProblemInOrder(Problem, const PetscReal *u_0, PetscReal t_0, cons
                               PetscBool *ok);
 PetscErrorCode ProblemGatherLists(Problem, const PetscReal *u, PetscReal t, PetscReal t_next, PetscReal motion);
 PetscErrorCode ProblemRenewLists(Problem, const PetscReal *u_0, PetscReal t_0, PetscReal t, PetscBool left,
-                                 PetscBool update_offsets, PetscBool *hold);
+                                 PetscReal lag, PetscBool *hold);
 PetscErrorCode ProblemReaction(Problem, const MeshGroup *, PetscReal force[3]);
 PetscBool      ProblemIsLinear(Problem);
 PetscBool      ProblemHasFormulation(Problem, Formulation);

@@ -114,4 +114,23 @@ JOBS = [
         Answer("fy", -13.811, 0.16, "limit"),
         Answer("fx", -2.919, 0.08, "limit"),
     ], steps=20),
+    # Seals, gears and rollers
+    Job("o_ring", "O-ring in a groove under a lid", [
+        Answer("force", 537.89, 0.1, "limit"),
+        Answer("peak", 1.9612, 0.1, "limit"),
+    ], steps=10, pairs=2),
+    Job("gear_teeth", "two gear teeth by a turn", [
+        Answer("peak", 1424.9, 1.0, "Hertz"),
+    ], steps=8),
+    Job("roller_plates", "roller between plates by force", [
+        Answer("peak_low", 1714.1, 0.1, "Hertz"),
+        Answer("half_width", 0.2971, 0.1, "Hertz"),
+    ], steps=10, pairs=2, picture=["--mirror", "x"]),
+    Job("door_seal", "hollow door seal under a blade", [
+        Answer("force", 0.13719, 0.1, "limit"),
+        Answer("sideways", -0.09268, 0.1, "limit"),
+    ], steps=20),
+    Job("wheel_rail", "crowned wheel on a rail by force", [
+        Answer("peak", 796.2, 0.5, "Hertz"),
+    ], steps=8),
 ]

@@ -149,10 +149,14 @@ static void test_pairs(void **state)
   c.pair.penalty_error.force = NAN; /* not estimated */
   Expect(&c, NULL);
   Good(&c);
-  c.pair.fits = (ContactFits){.points = 20, .plain = 20, .smoothing_error = 1e-2};
+  c.pair.fits = (ContactFits){.points = 20, .within = 20, .plain = 20, .smoothing_error = 1e-2};
   Expect(&c, NULL);
   c.pair.fits.plain  = 17;
-  c.pair.fits.linear = 3;
+  c.pair.fits.linear = 3; /* beyond the end of the master */
+  c.pair.fits.within = 17;
+  Expect(&c, NULL);
+  c.pair.fits.within     = 20;
+  c.pair.fits.within_low = 3;
   Expect(&c, "3 of 20 slave points");
   Good(&c);
   c.pair.quality.sagitta = 2e-3;
@@ -185,8 +189,11 @@ static void test_steps(void **state)
   c.whole.stepping.control = STEP_CONTACT;
   Expect(&c, "taken back by the control: -set stepping.prediction=tangent, or -set stepping.N_c_fraction=");
   Good(&c);
-  c.way.regathered = 11;
-  Expect(&c, "lists");
+  c.way.regathered = 11; /* costs little, less than more steps would */
+  Expect(&c, NULL);
+  c.figures.usage.seconds[TIMING_SEARCH] = 0.4;
+  c.figures.usage.seconds[TIMING_FIT]    = 0.2;
+  Expect(&c, "search took 60 % of the time");
   Good(&c);
   c.way.cuts = 20;
   Expect(&c, "line search");
@@ -203,29 +210,30 @@ static void test_steps(void **state)
 static void Bad(Case *c, StepControlKind control, int formulation, int adjust, int augment)
 {
   Good(c);
-  c->scene.smoother              = SMOOTHER_FACET;
-  c->scene.formulation           = (ContactFormulation)formulation;
-  c->scene.degree                = 4;
-  c->scene.adjust                = adjust;
-  c->scene.adjust_converged      = adjust == 2;
-  c->scene.augment               = augment;
-  c->scene.max_updates           = 10;
-  c->scene.penalty_scale         = 1000;
-  c->scene.g_max                 = 1e-3;
-  c->scene.range                 = 1e4;
-  c->whole.stepping.control      = control;
-  c->whole.stepping.N_c_fraction = 0.05;
-  c->whole.stepping.dt_min       = 0.01;
-  c->pair.penalty_error.force    = 0.05;
-  c->pair.scatter                = 0.2;
-  c->pair.master                 = (NodeDepth){.nodes = 3, .depth = 0.2, .over_h = 0.2};
-  c->pair.quality.sagitta        = 0.1;
-  c->pair.window                 = (ContactWindow){.outside = 2, .loaded = 5, .missed = 3, .excess = 4};
-  c->way.steps_failed            = 9;
-  c->way.steps_repeated          = 9;
-  c->way.regathered              = 20;
-  c->way.cuts                    = 40;
-  c->way.newton_accepted         = 500;
+  c->scene.smoother                       = SMOOTHER_FACET;
+  c->scene.formulation                    = (ContactFormulation)formulation;
+  c->scene.degree                         = 4;
+  c->scene.adjust                         = adjust;
+  c->scene.adjust_converged               = adjust == 2;
+  c->scene.augment                        = augment;
+  c->scene.max_updates                    = 10;
+  c->scene.penalty_scale                  = 1000;
+  c->scene.g_max                          = 1e-3;
+  c->scene.range                          = 1e4;
+  c->whole.stepping.control               = control;
+  c->whole.stepping.N_c_fraction          = 0.05;
+  c->whole.stepping.dt_min                = 0.01;
+  c->pair.penalty_error.force             = 0.05;
+  c->pair.scatter                         = 0.2;
+  c->pair.master                          = (NodeDepth){.nodes = 3, .depth = 0.2, .over_h = 0.2};
+  c->pair.quality.sagitta                 = 0.1;
+  c->pair.window                          = (ContactWindow){.outside = 2, .loaded = 5, .missed = 3, .excess = 4};
+  c->way.steps_failed                     = 9;
+  c->way.steps_repeated                   = 9;
+  c->way.regathered                       = 20;
+  c->figures.usage.seconds[TIMING_SEARCH] = 0.6 * c->figures.usage.wall_s;
+  c->way.cuts                             = 40;
+  c->way.newton_accepted                  = 500;
 }
 
 /* Lines do not contradict each other, and each change of theirs can be made and is written. */
