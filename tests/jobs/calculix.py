@@ -27,8 +27,9 @@ class Mesh:
         self.nodes, self.elements, self.groups = {}, {}, {}
         with tempfile.TemporaryDirectory() as directory:
             path = pathlib.Path(directory) / "mesh.inp"
-            subprocess.run(["gmsh", geometry, f"-{dimension}", "-order", str(order), "-setnumber",
-                            "Mesh.SecondOrderIncomplete", "1", "-setnumber", "refine", str(refine), "-format", "inp", "-o", path, "-v", "1"], check=True)
+            numbers = ("-setnumber", "Mesh.SecondOrderIncomplete", "1", "-setnumber", "refine", str(refine))
+            subprocess.run(["gmsh", geometry, f"-{dimension}", "-order", str(order), *numbers, "-format", "inp", "-o",
+                            path, "-v", "1"], check=True)
             for line in path.read_text().splitlines():
                 self.read(line)
 
@@ -158,8 +159,8 @@ class Deck:
         return ["*CLOAD", *(f"{node}, {direction}, {force!r}" for node, force in forces.items())]
 
     def step(self, increment, loads, finite=True, prints=()):
-        self.lines += [f"*STEP{', NLGEOM' if finite else ''}, INC=10000", "*STATIC", f"{increment}, 1, 1e-6, {increment}",
-                       *loads]
+        self.lines += [f"*STEP{', NLGEOM' if finite else ''}, INC=10000", "*STATIC",
+                       f"{increment}, 1, 1e-6, {increment}", *loads]
         for name, nodes in prints:
             self.lines += [f"*NODE PRINT, NSET={name}, FREQUENCY=1{', TOTALS=ONLY' if nodes is None else ''}",
                            "RF" if nodes is None else "U"]

@@ -180,8 +180,8 @@ def main():
         for row in rows(args, job):
             print(f"{'ok  ' if row['as_expected'] == 'yes' else 'FAIL'} {job.name}: {row['status']}, "
                   f"{row.get('steps')} steps, {row.get('failed')} failed, {row.get('iterations')} iterations, "
-                  f"{row.get('cpu_s')} s, {row['probe']} {row['answer']}, error {row['error']} % {row['reason']}".rstrip(),
-                  flush=True)
+                  f"{row.get('cpu_s')} s, {row['probe']} {row['answer']}, error {row['error']} % "
+                  f"{row['reason']}".rstrip(), flush=True)
             lines.append(row)
     if args.record:
         with open(args.record, "w", newline="") as file:
