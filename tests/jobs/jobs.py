@@ -106,4 +106,12 @@ JOBS = [
         Answer("peak", 113.7, 0.5, "Hertz"),
         Answer("radius", 1.0, 0.5, "Hertz"),
     ], steps=10),
+    # Large sliding
+    Job("ironing", "tool drawn over a slab", [
+        Answer("fy", -64.63, 0.03, "limit"),
+    ], steps=40),
+    Job("two_arches", "arch drawn over an arch", [
+        Answer("fy", -13.811, 0.16, "limit"),
+        Answer("fx", -2.919, 0.08, "limit"),
+    ], steps=20),
 ]
