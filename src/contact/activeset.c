@@ -218,6 +218,54 @@ PetscErrorCode ActiveSetSolve(ActiveSet p, PetscInt *m, PetscInt *which, PetscBo
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Sorts terms by depth where the step ends, the deepest first. */
+static int CompareDepth(const void *a, const void *b, void *context)
+{
+  const ActiveSet p = (ActiveSet)context;
+  const PetscInt  i = *(const PetscInt *)a, j = *(const PetscInt *)b;
+  const PetscReal left = p->terms[i].opening + p->end[i], right = p->terms[j].opening + p->end[j];
+
+  if (left != right) return left < right ? -1 : 1;
+  return i < j ? -1 : 1;
+}
+
+/*@
+  ActiveSetLimit - takes terms out of the set again that the step has pressed, so that fewer columns are missing.
+
+  Not collective
+
+  Input Parameters:
++ p    - the active set, after ActiveSetSolve()
+- most - number of columns that may be missing
+
+  Input/Output Parameters:
++ m     - number of terms whose columns are missing
+- which - their numbers
+
+  Note:
+  The deepest ones stay. Those that are still pressed with them come back. A body that is held in one point goes so far
+  in a linear step that it presses nearly all terms; few of them bear it.
+@*/
+PetscErrorCode ActiveSetLimit(ActiveSet p, PetscInt most, PetscInt *m, PetscInt *which)
+{
+  PetscInt first = 0;
+
+  PetscFunctionBeginUser;
+  if (*m <= most) PetscFunctionReturn(PETSC_SUCCESS);
+  for (PetscInt k = 0; k < *m; k++) { /* terms that residual and tangent press have no choice */
+    const PetscInt i = which[k];
+
+    if (p->terms[i].pressure == 0 && p->terms[i].stiffness == 0) continue;
+    which[k]       = which[first];
+    which[first++] = i;
+  }
+  if (first >= most) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscTimSort(*m - first, &which[first], sizeof(PetscInt), CompareDepth, p));
+  for (PetscInt k = most; k < *m; k++) p->pressed[which[k]] = PETSC_FALSE;
+  *m = most;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /*@
   ActiveSetGet - gets the result.
 

@@ -23,4 +23,5 @@ PetscErrorCode ActiveSetCreate(PetscInt n, const ActiveSetTerm *, const PetscRea
 PetscErrorCode ActiveSetDestroy(ActiveSet *);
 PetscErrorCode ActiveSetAddColumns(ActiveSet, PetscInt m, const PetscInt *which, const PetscReal *G);
 PetscErrorCode ActiveSetSolve(ActiveSet, PetscInt *m, PetscInt *which, PetscBool *converged);
+PetscErrorCode ActiveSetLimit(ActiveSet, PetscInt most, PetscInt *m, PetscInt *which);
 void           ActiveSetGet(ActiveSet, const PetscReal **excess, const PetscBool **pressed);

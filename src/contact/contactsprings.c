@@ -91,6 +91,7 @@ PetscErrorCode ContactSpringsSetTies(ContactSprings s, PetscInt n, const SpringT
   PetscCall(PetscFree2(s->ties, s->stretch));
   PetscCall(PetscMalloc2(n, &s->ties, n, &s->stretch));
   PetscCall(PetscArraycpy(s->ties, ties, n));
+  PetscCall(PetscArrayzero(s->stretch, n));
   s->n_ties = n;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -145,7 +146,49 @@ PetscErrorCode ContactSpringsRetie(ContactSprings s, PetscBool *any)
 }
 
 /*@
-  ContactSpringsHaveTie - says whether a motion is tied.
+  ContactSpringsVector - makes a vector of the free dofs, with zeros.
+
+  Collective
+
+  Input Parameter:
+. s - the springs
+
+  Output Parameter:
+. v - to be destroyed by the caller
+@*/
+PetscErrorCode ContactSpringsVector(ContactSprings s, Vec *v)
+{
+  PetscFunctionBeginUser;
+  PetscCall(VecDuplicate(s->anchor, v));
+  PetscCall(VecZeroEntries(*v));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ContactSpringsGetTie - finds the tie of a motion.
+
+  Not collective
+
+  Input Parameters:
++ s      - the springs
+- motion - number of the motion
+
+  Output Parameters:
++ tie   - the tie, which may have been released; NULL: there is none
+- force - its force along the motion at the last evaluation; may be NULL
+@*/
+void ContactSpringsGetTie(ContactSprings s, int motion, const SpringTie **tie, PetscReal *force)
+{
+  *tie = NULL;
+  for (PetscInt i = 0; i < s->n_ties; i++) {
+    if (s->ties[i].motion != motion) continue;
+    *tie = &s->ties[i];
+    if (force) *force = s->ties[i].stiffness * s->stretch[i];
+  }
+}
+
+/*@
+  ContactSpringsHaveTie - says whether a motion is tied, and not released.
 
   Not collective
 
@@ -155,10 +198,10 @@ PetscErrorCode ContactSpringsRetie(ContactSprings s, PetscBool *any)
 @*/
 PetscBool ContactSpringsHaveTie(ContactSprings s, int motion)
 {
-  PetscBool have = PETSC_FALSE;
+  const SpringTie *tie;
 
-  for (PetscInt i = 0; i < s->n_ties; i++) have = (PetscBool)(have || s->ties[i].motion == motion);
-  return have;
+  ContactSpringsGetTie(s, motion, &tie, NULL);
+  return (PetscBool)(tie && !tie->released);
 }
 
 /* Computes the stretches of the ties into s->stretch; a released one has none. work holds x less the anchors. */

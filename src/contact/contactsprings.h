@@ -20,9 +20,11 @@ typedef struct _n_Stabiliser *ContactSprings;
 
 PetscErrorCode ContactSpringsCreate(Mesh, const PetscReal *stiffness, Vec like, ContactSprings *);
 PetscErrorCode ContactSpringsDestroy(ContactSprings *);
+PetscErrorCode ContactSpringsVector(ContactSprings, Vec *);
 PetscErrorCode ContactSpringsSetTies(ContactSprings, PetscInt n, const SpringTie *);
 PetscErrorCode ContactSpringsRelease(ContactSprings, int n, const int *kept, PetscBool *any);
 PetscErrorCode ContactSpringsRetie(ContactSprings, PetscBool *any);
+void           ContactSpringsGetTie(ContactSprings, int motion, const SpringTie **, PetscReal *force);
 PetscBool      ContactSpringsHaveTie(ContactSprings, int motion);
 PetscErrorCode ContactSpringsRelax(ContactSprings, Vec x);
 PetscErrorCode ContactSpringsResidual(ContactSprings, Vec x, Vec F);

@@ -146,7 +146,7 @@ static PetscErrorCode ModelDepart(Model model, PetscReal t)
   motion = PetscMax(motion, PROBLEM_MOTION_SAFETY * work->rate * (t - work->accepted_t));
   PetscCall(ProblemGatherLists(model->problem, work->accepted_u, work->accepted_t, t, motion));
   if (model->problem->bodies && !work->adrift)
-    PetscCall(FreeBodiesTie(model->problem->bodies, work->accepted_u, work->accepted_t, t, work->settled,
+    PetscCall(FreeBodiesTie(model->problem->bodies, work->accepted_u, work->accepted_t, t, PETSC_TRUE, work->settled,
                             model->problem->springs, &model->problem->tied));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -291,13 +291,15 @@ static PetscErrorCode ModelSolveReleased(Model model, SolveReport *report, Petsc
 
 /* Solves with the springs and ties of free bodies. Springs are so weak that they hold next to nothing where contact
    holds; where they hold more, as with a soft body, they are relaxed and the step is solved on. Ties hold motions that
-   no load drives. Those that contact has come to hold in the step are released, and the step is solved on, too. */
+   no load drives. Those that contact has come to hold are released, and the step is solved on, too. The others stay. */
 static PetscErrorCode ModelSolveHeld(Model model, SolveReport *report)
 {
   const Problem problem = model->problem;
   PetscBool     more = PETSC_FALSE, tied = PETSC_FALSE, again = PETSC_FALSE;
+  KSP           ksp;
 
   PetscFunctionBeginUser;
+  PetscCall(SNESGetKSP(model->snes, &ksp));
   PetscCall(ModelSolveLists(model, report));
   for (PetscInt times = 0; problem->springs && report->result == SOLVE_CONVERGED; times++) {
     PetscCall(ModelMeasureSprings(model, report, &more, &tied));
@@ -306,7 +308,9 @@ static PetscErrorCode ModelSolveHeld(Model model, SolveReport *report)
       break;
     }
     if (again || times == EQUILIBRIUM_MAX_RELAX) break;
-    if (tied) PetscCall(FreeBodiesRelease(problem->bodies, problem->trial, model->t, problem->springs, &tied));
+    if (tied)
+      PetscCall(
+        FreeBodiesRelease(problem->bodies, problem->trial, ProblemForceScale(problem), ksp, problem->springs, &tied));
     if (!more && !tied) break;
     report->relaxed++;
     problem->tied = (PetscBool)(problem->tied || tied);

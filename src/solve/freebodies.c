@@ -12,11 +12,17 @@
 #define FREE_BODIES_HELD 1e-3
 /* The same for messages. Bodies that roll are seen by a contact patch with a slope of its width over their radius. */
 #define FREE_BODIES_NAMED 3e-2
+/* A tied motion is held by contact if its stiffness is above this part of the largest one of its body, each the force
+   over the mean motion of the whole body, with all that is elastic. Even a motion that is held weakly, by a contact a
+   tenth as wide as its body, is above, and what the unevenness of meshes does to a neutral one is far below. */
+#define FREE_BODIES_STIFF 1e-2
 /* A tie is this part of the stiffness of the elements below one slave node. It holds motions that no load drives
    against the unevenness of meshes, and bodies that roll on it at their place. */
 #define FREE_BODIES_TIE 1e-2
 /* Squares of distances that differ by less than this part of the square of a body's size are equal. */
 #define FREE_BODIES_EQUAL 1e-9
+/* Tied motions are named with others in this unit. Its square is far below FREE_BODIES_HELD. */
+#define FREE_BODIES_HIDDEN 1e-3
 /* Bodies that were moved into contact touch with the terms that are open by less than this part of a face size. */
 #define FREE_BODIES_TOUCH 1e-4
 /* A load that acts along a motion with less than this part of its amount does so because of the unevenness of meshes.
@@ -190,6 +196,7 @@ PetscErrorCode FreeBodiesCreate(Mesh mesh, Scene scene, Loads loads, Contact con
   PetscCall(Measure(b));
   PetscCall(FindStiffness(b));
   PetscCall(FindCells(b));
+  PetscCall(PetscCalloc1(b->n, &b->state));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -211,6 +218,7 @@ PetscErrorCode FreeBodiesDestroy(FreeBodies *b)
   PetscCall(PetscFree((*b)->weight));
   PetscCall(PetscFree((*b)->stiffness));
   PetscCall(PetscFree((*b)->cell));
+  PetscCall(PetscFree((*b)->state));
   PetscCall(PetscFree(*b));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -579,6 +587,23 @@ PetscErrorCode FreeBodiesFall(FreeBodies b, const PetscReal *u, PetscReal t, Pet
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Counts the coordinates of tied motions in units of `part`, so that a contact of stiffness gram[n][n] does not see
+   them. */
+static void ScaleTied(FreeBodies b, PetscReal part, double gram[])
+{
+  for (int k = 0; k < b->n; k++)
+    for (int l = 0; l < b->n; l++)
+      gram[k * b->n + l] *= (b->state[k] == MOTION_TIED ? part : 1) * (b->state[l] == MOTION_TIED ? part : 1);
+}
+
+/* Brings a motion a[n] that ScaleTied() has made loose back to the units of the others, with 1 for coordinate k. */
+static void UnscaleMotion(FreeBodies b, PetscReal part, int k, double a[])
+{
+  const double one = b->state[k] == MOTION_TIED ? part : 1;
+
+  for (int l = 0; l < b->n; l++) a[l] *= (b->state[l] == MOTION_TIED ? part : 1) / one;
+}
+
 /*@
   FreeBodiesLoose - names the motions of the bodies that contact does not hold in the present state.
 
@@ -595,7 +620,8 @@ PetscErrorCode FreeBodiesFall(FreeBodies b, const PetscReal *u, PetscReal t, Pet
 . text - "'ball': translation along y, (0, 1, 0); ..."; empty: contact holds all bodies
 
   Note:
-  A contact holds a motion if a term in contact sees it. The system is singular along the others without springs.
+  A contact holds a motion if a term in contact sees it. The system is singular along the others without springs. Unless
+  only those that are driven are asked for, motions that are tied are named too.
 @*/
 PetscErrorCode FreeBodiesLoose(FreeBodies b, const PetscReal *u, PetscReal t, PetscBool driven, size_t size, char *text)
 {
@@ -609,10 +635,12 @@ PetscErrorCode FreeBodiesLoose(FreeBodies b, const PetscReal *u, PetscReal t, Pe
   if (!n) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscMalloc4(n * n, &gram, n * n, &free, n, &pivot, n, &drives));
   PetscCall(ContactGram(b, u, t, PETSC_FALSE, gram));
+  if (!driven) ScaleTied(b, FREE_BODIES_HIDDEN, gram);
   PetscCall(LooseMotions(b, gram, driven ? FREE_BODIES_HELD : FREE_BODIES_NAMED, &m, free, pivot));
+  for (int f = 0; f < m && !driven; f++) UnscaleMotion(b, FREE_BODIES_HIDDEN, pivot[f], &free[f * n]);
   PetscCall(FindDriven(b, u, t, FREE_BODIES_UNEVEN, m, free, drives));
   for (int f = 0; f < m; f++)
-    if (!driven || drives[f]) AddMotion(b, &free[f * n], size, text);
+    if (driven ? drives[f] : b->state[pivot[f]] != MOTION_CONTACT) AddMotion(b, &free[f * n], size, text);
   PetscCall(PetscFree4(gram, free, pivot, drives));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -668,40 +696,65 @@ static PetscErrorCode MakeTie(FreeBodies b, const PetscReal *u, int k, SpringTie
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The motions that are to be tied at (u, t): pivot[m] are their numbers. touching: what touches holds, too. */
+/* Drops those of the motions tied[n] that the loads at t drive though a contact of stiffness gram[n][n] does not hold
+   them, and translations of pieces without any contact. */
+static PetscErrorCode DropDriven(FreeBodies b, const PetscReal *u, PetscReal t, const double gram[], PetscBool tied[])
+{
+  const int  n = b->n;
+  double    *free;
+  int       *pivot, loose;
+  PetscBool *drives;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc3(n * n, &free, n, &pivot, n, &drives));
+  PetscCall(LooseMotions(b, gram, FREE_BODIES_HELD, &loose, free, pivot));
+  PetscCall(FindDriven(b, u, t, FREE_BODIES_UNEVEN, loose, free, drives));
+  for (int k = 0; k < n; k++) {
+    tied[k] = (PetscBool)(tied[k] && (InContact(b, b->owner[k], gram) || FreeBodiesTurns(b, k)));
+    for (int f = 0; f < loose; f++)
+      if (drives[f] && free[f * n + k] != 0) tied[k] = PETSC_FALSE;
+  }
+  PetscCall(PetscFree3(free, pivot, drives));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Adds to the motions tied[n] those that neither they nor contact hold and no load drives at (u, t). Drops those that a
+   load drives. touching: what touches holds, too. */
 static PetscErrorCode FindTied(FreeBodies b, const PetscReal *u, PetscReal t, PetscReal t_loads, PetscBool touching,
-                               int *m, int pivot[])
+                               PetscBool tied[])
 {
   const int  n = b->n;
   double    *gram, *free;
+  int       *pivot, loose;
   PetscBool *drives;
-  int        loose, found = 0;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc3(n * n, &gram, n * n, &free, n, &drives));
+  PetscCall(PetscMalloc4(n * n, &gram, n * n, &free, n, &pivot, n, &drives));
   PetscCall(ContactHoldActiveSet(b->contact, PETSC_TRUE, touching)); /* fresh lists may have opened it a little */
   PetscCall(ContactGram(b, u, t, touching, gram));
   PetscCall(ContactHoldActiveSet(b->contact, PETSC_FALSE, PETSC_FALSE));
+  PetscCall(DropDriven(b, u, t_loads, gram, tied));
+  for (int k = 0; k < n; k++) gram[k * n + k] += tied[k] ? 1 : 0; /* the stiffness of the stiffest contact */
   PetscCall(LooseMotions(b, gram, FREE_BODIES_HELD, &loose, free, pivot));
   PetscCall(FindDriven(b, u, t_loads, FREE_BODIES_UNEVEN, loose, free, drives));
   for (int f = 0; f < loose; f++)
     if (!drives[f] && (InContact(b, b->owner[pivot[f]], gram) || FreeBodiesTurns(b, pivot[f])))
-      pivot[found++] = pivot[f];
-  *m = found;
-  PetscCall(PetscFree3(gram, free, drives));
+      tied[pivot[f]] = PETSC_TRUE;
+  PetscCall(PetscFree4(gram, free, pivot, drives));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /*@
-  FreeBodiesTie - ties the motions that neither contact holds nor loads drive where a load step begins.
+  FreeBodiesTie - ties the motions that neither contact holds nor loads drive.
 
   Collective
 
   Input Parameters:
 + b        - the bodies
-. u        - local displacements u[n_nodes*dim] (length) where the step begins, within the reach of the contact's lists
+. u        - local displacements u[n_nodes*dim] (length), within the reach of the contact's lists
 . t        - load parameter there
 . t_loads  - load parameter at which the loads are taken
+. begins   - a load step begins: what was tied in the accepted state stays tied, otherwise what is tied now
 - touching - the bodies were moved into contact: what touches holds, too
 
   Output Parameters:
@@ -711,54 +764,200 @@ static PetscErrorCode FindTied(FreeBodies b, const PetscReal *u, PetscReal t, Pe
   Note:
   Such a motion stays as it is, without changing anything else. Without a tie the unevenness of the meshes would drive
   it, far beyond what a linear step can follow. Of a body without any contact only rotations are tied, so that a tool
-  can push it before it.
+  can push it before it. FreeBodiesRelease() judges whether contact has come to hold it.
 @*/
-PetscErrorCode FreeBodiesTie(FreeBodies b, const PetscReal *u, PetscReal t, PetscReal t_loads, PetscBool touching,
-                             ContactSprings springs, PetscBool *changed)
+PetscErrorCode FreeBodiesTie(FreeBodies b, const PetscReal *u, PetscReal t, PetscReal t_loads, PetscBool begins,
+                             PetscBool touching, ContactSprings springs, PetscBool *changed)
 {
-  int       *pivot, m;
+  int        m = 0;
+  PetscBool *tied;
   SpringTie *ties;
 
   PetscFunctionBeginUser;
   *changed = PETSC_FALSE;
   if (!b->n) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PetscMalloc2(b->n, &pivot, b->n, &ties));
-  PetscCall(FindTied(b, u, t, t_loads, touching, &m, pivot));
-  PetscCall(ContactSpringsRelease(springs, m, pivot, changed));
-  for (int f = 0; f < m; f++) {
-    if (!ContactSpringsHaveTie(springs, pivot[f])) *changed = PETSC_TRUE;
-    PetscCall(MakeTie(b, u, pivot[f], &ties[f]));
+  PetscCall(PetscMalloc2(b->n, &ties, b->n, &tied));
+  for (int k = 0; k < b->n; k++)
+    tied[k] = begins ? (PetscBool)(b->state[k] == MOTION_TIED) : ContactSpringsHaveTie(springs, k);
+  PetscCall(FindTied(b, u, t, t_loads, touching, tied));
+  for (int k = 0; k < b->n; k++) {
+    *changed = (PetscBool)(*changed || tied[k] != ContactSpringsHaveTie(springs, k));
+    if (tied[k]) PetscCall(MakeTie(b, u, k, &ties[m++]));
   }
   PetscCall(ContactSpringsSetTies(springs, m, ties));
-  PetscCall(PetscFree2(pivot, ties));
+  PetscCall(PetscFree2(ties, tied));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Mean motion of a piece along its coordinate k (length) under the free displacements x, at displacements u. */
+static PetscErrorCode MeanMotion(FreeBodies b, const PetscReal *u, Vec x, int k, PetscReal *mean)
+{
+  const int  n = b->n, dim = b->mesh->dim;
+  double    *gram, *a, volume = 0;
+  PetscReal *z;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(n * n, &gram));
+  PetscCall(PetscCalloc2(n + 1, &a, b->mesh->n_nodes * dim, &z));
+  PetscCall(MeshGlobalToLocal(b->mesh, x, z));
+  PetscCall(FreeBodiesGram(b, u, gram));
+  for (PetscInt i = 0; i < b->mesh->n_nodes; i++) {
+    double place[3], v[3];
+
+    if (b->piece[i] != b->owner[k]) continue;
+    PlaceInPiece(b, i, u, place);
+    volume += b->weight[i];
+    for (int l = 0; l < n; l++) {
+      if (b->owner[l] != b->owner[k]) continue;
+      RigidVelocity(b->motion[l], place, v);
+      for (int d = 0; d < dim; d++) a[l] += b->weight[i] * b->pieces[b->owner[k]].size * v[d] * z[i * dim + d];
+    }
+  }
+  a[n] = volume;
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, a, n + 1, MPI_DOUBLE, MPI_SUM, b->mesh->comm));
+  volume = a[n];
+  RigidCholesky(n, gram, gram);
+  RigidSolve(n, gram, a);
+  *mean = b->pieces[b->owner[k]].size * a[k] / volume;
+  PetscCall(PetscFree2(a, z));
+  PetscCall(PetscFree(gram));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Stiffness of what holds motion k at displacements u, but for its own tie: a force along the motion over the mean
+   motion of the whole body that it causes. */
+static PetscErrorCode MotionStiffness(FreeBodies b, const PetscReal *u, int k, KSP ksp, ContactSprings springs,
+                                      PetscReal *stiffness)
+{
+  SpringTie   tie;
+  Vec         force, x;
+  PetscScalar stretch;
+  PetscReal   mean = 0;
+  PetscInt    first, end;
+
+  PetscFunctionBeginUser;
+  PetscCall(MakeTie(b, u, k, &tie));
+  PetscCall(ContactSpringsVector(springs, &force));
+  PetscCall(VecDuplicate(force, &x));
+  PetscCall(VecGetOwnershipRange(force, &first, &end));
+  for (PetscInt i = 0; i < tie.n; i++)
+    if (tie.dof[i] >= first && tie.dof[i] < end) PetscCall(VecSetValue(force, tie.dof[i], tie.value[i], ADD_VALUES));
+  PetscCall(VecAssemblyBegin(force));
+  PetscCall(VecAssemblyEnd(force));
+  PetscCall(KSPSolve(ksp, force, x));
+  PetscCall(VecDot(force, x, &stretch));
+  PetscCall(MeanMotion(b, u, x, k, &mean));
+  *stiffness = (1 - (ContactSpringsHaveTie(springs, k) ? tie.stiffness * PetscRealPart(stretch) : 0)) / mean;
+  PetscCall(VecDestroy(&force));
+  PetscCall(VecDestroy(&x));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The stiffness of all motions of pieces with ties, and the largest one of each of these pieces. Where all motions of a
+   piece are tied, the elements below a slave node tell how stiff a contact may be. */
+static PetscErrorCode FindMotionStiffness(FreeBodies b, const PetscReal *u, KSP ksp, ContactSprings springs,
+                                          PetscReal *stiffness, PetscReal *largest)
+{
+  PetscBool *tied, *others; /* of each piece */
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc2(b->n_pieces, &tied, b->n_pieces, &others));
+  for (int k = 0; k < b->n; k++) (ContactSpringsHaveTie(springs, k) ? tied : others)[b->owner[k]] = PETSC_TRUE;
+  for (PetscInt p = 0; p < b->n_pieces; p++) largest[p] = others[p] ? 0 : b->stiffness[p];
+  for (int k = 0; k < b->n; k++) {
+    stiffness[k] = 0;
+    if (tied[b->owner[k]]) PetscCall(MotionStiffness(b, u, k, ksp, springs, &stiffness[k]));
+    largest[b->owner[k]] = PetscMax(largest[b->owner[k]], stiffness[k]);
+  }
+  PetscCall(PetscFree2(tied, others));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /*@
-  FreeBodiesRelease - releases the ties of motions that contact has come to hold in a load step.
+  FreeBodiesRelease - releases the ties of motions that contact has come to hold, or along which a load acts.
 
   Collective
 
   Input Parameters:
-+ b - the bodies
-. u - local displacements u[n_nodes*dim] (length) of the solution
-- t - its load parameter
++ b     - the bodies
+. u     - local displacements u[n_nodes*dim] (length) of the solution
+. scale - of the forces
+- ksp   - it solves with the tangent at the solution, springs and ties included
 
   Input/Output Parameter:
 . springs - their ties
 
   Output Parameter:
 . any - one was released
+
+  Note:
+  Contact holds a motion if the body resists a force along it. The shape of the contact does not tell: under a round
+  body the faces have a slope, but the body rolls over them, as its shape gives way everywhere alike. What is left is
+  the unevenness of meshes, of either sign.
 @*/
-PetscErrorCode FreeBodiesRelease(FreeBodies b, const PetscReal *u, PetscReal t, ContactSprings springs, PetscBool *any)
+PetscErrorCode FreeBodiesRelease(FreeBodies b, const PetscReal *u, PetscReal scale, KSP ksp, ContactSprings springs,
+                                 PetscBool *any)
 {
-  int *pivot, m;
+  int        kept = 0, *motion;
+  PetscReal *stiffness, *largest;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc1(b->n, &pivot));
-  PetscCall(FindTied(b, u, t, t, PETSC_FALSE, &m, pivot));
-  PetscCall(ContactSpringsRelease(springs, m, pivot, any));
-  PetscCall(PetscFree(pivot));
+  PetscCall(PetscMalloc3(b->n, &motion, b->n, &stiffness, b->n_pieces, &largest));
+  PetscCall(FindMotionStiffness(b, u, ksp, springs, stiffness, largest));
+  for (int k = 0; k < b->n; k++) {
+    const SpringTie *tie;
+    PetscReal        force = 0;
+
+    if (!ContactSpringsHaveTie(springs, k)) continue;
+    ContactSpringsGetTie(springs, k, &tie, &force);
+    PetscCall(PetscInfo(NULL, "tie of motion %d: stiffness %g, of the body %g, force %g of %g\n", k,
+                        (double)stiffness[k], (double)largest[b->owner[k]], (double)force, (double)scale));
+    if (!(stiffness[k] > FREE_BODIES_STIFF * largest[b->owner[k]]) &&
+        !(PetscAbsReal(force) > FREE_BODIES_UNEVEN * scale))
+      motion[kept++] = k;
+  }
+  PetscCall(ContactSpringsRelease(springs, kept, motion, any));
+  PetscCall(PetscFree3(motion, stiffness, largest));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  FreeBodiesAccept - remembers what is tied in a state that becomes the accepted one.
+
+  Not collective, the same on all ranks
+
+  Input Parameters:
++ b       - the bodies
+- springs - their ties
+@*/
+PetscErrorCode FreeBodiesAccept(FreeBodies b, ContactSprings springs)
+{
+  PetscFunctionBeginUser;
+  for (int k = 0; k < b->n; k++) {
+    const SpringTie *tie;
+
+    ContactSpringsGetTie(springs, k, &tie, NULL);
+    if (tie)
+      b->state[k] = tie->released ? MOTION_CONTACT : MOTION_TIED;
+    else if (b->state[k] == MOTION_TIED)
+      b->state[k] = MOTION_PLAIN;
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  FreeBodiesArchive - saves or loads what is tied in the accepted state.
+
+  Collective
+
+  Input Parameters:
++ b       - the bodies
+- archive - decides whether it is saved or loaded
+@*/
+PetscErrorCode FreeBodiesArchive(FreeBodies b, Archive archive)
+{
+  PetscFunctionBeginUser;
+  if (b->n) PetscCall(ArchiveIntegers(archive, "bodies/tied", b->n, b->state));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

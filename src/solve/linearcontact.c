@@ -9,6 +9,9 @@
 #define LINEAR_CONTACT_TERMS 256
 /* All columns Z together have at most this many numbers on all ranks, which is 0.4 GB. */
 #define LINEAR_CONTACT_VALUES 5e7
+/* Where bodies were moved into contact and more terms change, this share of the terms that are left is tried at first,
+   and of the rest again and again. They touch in a point, and the first step presses everything around it. */
+#define LINEAR_CONTACT_SHARE 2
 /* Most rounds in which further terms are found to change. Each round computes the columns of the terms that are new. */
 #define LINEAR_CONTACT_ROUNDS 16
 
@@ -124,6 +127,8 @@ static PetscErrorCode LinearContactSolve(Model model, LinearContact *s, PetscInt
 
   PetscFunctionBeginUser;
   if (!s->rank) PetscCall(ActiveSetSolve(s->active, m, which, converged));
+  if (!s->rank && model->work->settled && s->m + *m > LINEAR_CONTACT_TERMS)
+    PetscCall(ActiveSetLimit(s->active, (LINEAR_CONTACT_TERMS - s->m) / LINEAR_CONTACT_SHARE, m, which));
   PetscCallMPI(MPI_Bcast(m, 1, MPIU_INT, 0, comm));
   PetscCallMPI(MPI_Bcast(converged, sizeof(PetscBool), MPI_BYTE, 0, comm));
   PetscCall(PetscMPIIntCast(*m, &n));

@@ -196,6 +196,7 @@ PetscErrorCode ModelAccept(Model model)
   if (work->extrapolation) PetscCall(ExtrapolationAdd(work->extrapolation, model->u, model->t));
   if (work->extrapolation && SceneBreaks(model->scene, model->t)) PetscCall(ExtrapolationForget(work->extrapolation));
   work->looked_ahead = PETSC_FALSE;
+  if (model->problem->bodies) PetscCall(FreeBodiesAccept(model->problem->bodies, model->problem->springs));
   if (model->contact) {
     PetscCall(ContactAccept(model->contact));
     if (stepped) PetscCall(ContactAdjustNextPenalty(model->contact));
@@ -272,6 +273,7 @@ PetscErrorCode ModelArchive(Model model, Archive archive)
   }
   PetscCall(ModelArchivePenaltyError(model, archive));
   PetscCall(LinearCheckArchive(model->linear, archive));
+  if (model->problem->bodies) PetscCall(FreeBodiesArchive(model->problem->bodies, archive));
   if (model->contact) PetscCall(ContactArchive(model->contact, archive, model->u, model->t));
   if (!ArchiveLoads(archive)) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(ProblemResidual(model->problem, model->u, model->t, model->t, &ok));

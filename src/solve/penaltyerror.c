@@ -11,11 +11,11 @@
    1 / (1 - step): then forces that stay as they are do so to the second order too. */
 #define PENALTY_STEP 0.02
 /* Penalties that the run may choose are made stiffer where an estimate is above this. */
-#define PENALTY_ERROR_LARGE 0.007
+#define PENALTY_ERROR_LARGE 0.004
 /* The estimates for pressures do not count for this. Where the slave's nodes are denser than the master's, pressures
    scatter, and stiffer penalties only let them scatter more. */
 /* They are made so stiff that this is to be expected. */
-#define PENALTY_ERROR_WANTED 0.003
+#define PENALTY_ERROR_WANTED 0.002
 /* They are made stiffer by at most this factor at a time. An estimate that asks for more is beyond the range in which
    the error is proportional to the compliance. */
 #define PENALTY_MOST_STIFFER 30

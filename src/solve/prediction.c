@@ -286,7 +286,8 @@ PetscErrorCode ModelFollowLists(Model model, SolveReport *report)
 
   PetscFunctionBeginUser;
   if (problem->bodies) {
-    PetscCall(FreeBodiesTie(problem->bodies, problem->trial, model->t, model->t, PETSC_FALSE, problem->springs, &tied));
+    PetscCall(FreeBodiesTie(problem->bodies, problem->trial, model->t, model->t, PETSC_FALSE, PETSC_FALSE,
+                            problem->springs, &tied));
     PetscCall(ContactSpringsRelax(problem->springs, model->x));
     problem->tied = (PetscBool)(problem->tied || tied);
   }

@@ -8,6 +8,9 @@
 /* Characters of what FreeBodiesMoved() says. */
 enum { FREE_BODIES_TEXT = 1000 };
 
+/* A motion that was never tied or is loose again, one that is tied, one that contact has come to hold. */
+typedef enum { MOTION_CONTACT = -1, MOTION_PLAIN, MOTION_TIED } MotionState;
+
 struct _n_FreeBodies {
   Mesh             mesh;
   Scene            scene;
@@ -24,6 +27,7 @@ struct _n_FreeBodies {
   PetscReal       *stiffness;  /* n_pieces: of the elements below one slave node (force per length) */
   PetscInt        *cell;       /* n_pieces: local cell at the middle of the piece, or -1 */
   PetscReal        face;       /* size of the slaves' faces, the largest mean of a pair (length) */
+  PetscInt        *state;      /* n: what holds each motion in the accepted state, a MotionState */
   char             moved[FREE_BODIES_TEXT];
 };
 
