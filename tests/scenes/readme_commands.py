@@ -74,7 +74,10 @@ FULL = {
     f"{PYTHON} scripts/ring_table.py --record runs/records/offsets.csv offsets":
     printed("ring_table", "offsets", "offsets"),
     f"{PYTHON} scripts/patch_table.py": printed("patch_table", "patch"),
+    f"{PYTHON} scripts/axis_table.py": printed("axis_table", "axis"),
     f"{PYTHON} scripts/hertz_table.py": printed("hertz_table", "hertz"),
+    f"{PYTHON} tests/jobs/run.py --record runs/records/jobs.csv":
+    f"{PYTHON} tests/jobs/run.py {BURNISH} --out $WORK/out/jobs --job lip_seal --record $WORK/out/jobs.csv",
     f"{PYTHON} scripts/formulation_table.py --record runs/records/paper_formulations.csv":
     table("formulation_table", "'cup, N_c'"),
     f"{PYTHON} scripts/formulation_table.py --offsets --record runs/records/paper_offsets.csv":
