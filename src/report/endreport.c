@@ -112,6 +112,7 @@ static void PrintGuards(const RunFigures *figures, FILE *stream)
     missed += figures->pairs[p].window.missed;
   }
   PrintGuard(stream, &n, way->cuts, "iterations cut by the line search:");
+  PrintGuard(stream, &n, way->turned, "iterations turned downhill:");
   PrintGuard(stream, &n, way->regathered, "lists made anew within steps:");
   PrintGuard(stream, &n, way->adjusted, "steps solved on with new penalties or multipliers:");
   PrintGuard(stream, &n, missed, "steps beyond g_max after all updates:");

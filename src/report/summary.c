@@ -98,6 +98,7 @@ static void AddGuards(cJSON *json, const StepperReport *way)
   cJSON *map = cJSON_AddObjectToObject(json, "guards");
 
   cJSON_AddNumberToObject(map, "line_search_cuts", (double)way->cuts);
+  cJSON_AddNumberToObject(map, "line_search_turned", (double)way->turned);
   cJSON_AddNumberToObject(map, "lists_made_anew", (double)way->regathered);
   cJSON_AddNumberToObject(map, "penalty_solves", (double)way->adjusted);
 }

@@ -105,7 +105,10 @@ static PetscErrorCode ModelMeasureStep(SNESLineSearch search, Vec x, Vec y, Pets
     PetscCall(SNESComputeObjective(snes, x, &energy)); /* none was evaluated in this load step */
   PetscCall(SNESLineSearchGetVecs(search, NULL, &F, NULL, NULL, NULL));
   PetscCall(VecDotRealPart(F, y, &slope));
-  if (slope < 0) PetscCall(VecScale(y, -1));
+  if (slope < 0) {
+    PetscCall(VecScale(y, -1));
+    model->work->turned++;
+  }
   ModelChooseObjective(model, NAN, slope);
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -33,6 +33,7 @@ typedef struct {
   PetscInt    adjusted;    /* times that penalties or multipliers were changed and the step solved on */
   PetscInt    stiffened;   /* times that penalties were made stiffer for a smaller error, and the step solved on */
   PetscInt    cuts;        /* iterations that the line search shortened */
+  PetscInt    turned;      /* iterations whose step led uphill and was turned round */
   PetscReal   residual;    /* |R|_2 / F_ref at the end */
   PetscInt    relaxed;     /* times that the contact springs were relaxed and the step solved on */
   PetscReal   taken;       /* energy that the contact springs took out of the bodies in this step */

@@ -372,7 +372,7 @@ PetscErrorCode ModelNewton(Model model, SolveReport *report)
   PetscCall(SNESGetLineSearch(model->snes, &search));
   PetscCall(SNESLineSearchSetDamping(search, model->work->damping));
   if (model->contact) PetscCall(ContactCycleStart(model->work->watch));
-  model->work->cuts = 0;
+  model->work->cuts = model->work->turned = 0;
   PetscCall(SNESSolve(model->snes, NULL, model->x));
   PetscCall(SNESGetConvergedReason(model->snes, &reason));
   PetscCall(SNESGetIterationNumber(model->snes, &its));
@@ -382,6 +382,7 @@ PetscErrorCode ModelNewton(Model model, SolveReport *report)
   report->newton += its;
   report->krylov += krylov;
   report->cuts += model->work->cuts;
+  report->turned += model->work->turned;
   report->result = ResultFromReason(reason);
   if (model->work->cycling) report->result = SOLVE_CYCLE;
   if (report->result == SOLVE_LINE_SEARCH && model->work->balanced) report->result = SOLVE_CONVERGED;

@@ -255,6 +255,7 @@ static void CountSolve(PetscReal t, const SolveReport *solve, StepRecord *record
   report->regathered += solve->regathered;
   report->adjusted += solve->adjusted;
   report->cuts += solve->cuts;
+  report->turned += solve->turned;
 }
 
 /* Calls the control's prediction, once for each step. */
@@ -444,6 +445,7 @@ PetscErrorCode LoadStepperArchive(LoadStepper stepper, Archive archive)
                           &report->regathered,
                           &report->adjusted,
                           &report->cuts,
+                          &report->turned,
                           &report->relaxed,
                           &report->cycles,
                           &report->cycles_cut,

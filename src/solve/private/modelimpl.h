@@ -62,6 +62,7 @@ typedef struct _n_ModelWork {
   PetscBool left;     /* the solve ended because a slave point slid out of its lists */
   PetscBool cycling;  /* the solve ended because the contact set repeats itself with shorter steps too */
   PetscInt  cuts;     /* iterations that the line search shortened */
+  PetscInt  turned;   /* iterations whose step led uphill and was turned round */
 } ModelWork;
 
 /* linearcontact.c */
