@@ -3,12 +3,11 @@ stiff penalties on the same mesh, beside the estimate that the last screen print
 the table; --print tables an existing record.
     python scripts/penalty_table.py [--burnish BINARY] [--before BINARY] [--record FILE]
 --before: an older program, which runs the scenes at its own defaults."""
-import json
 import re
 import shutil
 import subprocess
 
-from launch import ROOT, environment, read_records, table_parser, write_records
+from launch import ROOT, command, environment, read_records, read_summary, table_parser, write_records
 
 DEFAULT = ("contact.0.penalty={}", "contact.0.formulation=auto")
 # scene, overrides, probe of the force (None: it is given), probe of the peak pressure
@@ -39,11 +38,9 @@ def solve(args, binary, name, program, more):
         overrides = tuple(o.replace("auto", "node_to_surface") for o in overrides)
     out = args.out / f"{name} {program}"
     shutil.rmtree(out, ignore_errors=True)
-    command = [str(binary), str(scene), "-o", str(out), "-quiet"]
-    for override in (*overrides, *more):
-        command += ["-set", override]
-    subprocess.run(command, env=environment(binary), capture_output=True, check=False)
-    summary = json.loads((out / "summary.json").read_text())
+    line = command(binary, 1, scene, out, (*overrides, *more), "-quiet")
+    subprocess.run(line, env=environment(binary), capture_output=True, check=False)
+    summary = read_summary(out)
     probes, penalty = summary["probes"], summary["contact"][0]["penalty"]
     return {
         "scene": name, "program": program, "status": summary["status"], "iterations": summary["newton_iterations"],

@@ -139,7 +139,7 @@ PetscErrorCode ContactSoften(Contact, PetscReal most);
 PetscErrorCode ContactStiffest(Contact, PetscReal *most);
 PetscErrorCode ContactScalePenalty(Contact, PetscReal factor);
 PetscErrorCode ContactStiffen(Contact, int pair, PetscReal factor);
-PetscErrorCode ContactPairStiffened(Contact, int pair, PetscReal *factor);
+PetscReal      ContactPairInitialPenalty(Contact, int pair);
 PetscErrorCode ContactPairLoad(Contact, int pair, const PetscReal *u, ContactLoad *);
 PetscErrorCode ContactAdjustPenalty(Contact, ContactWindowState *);
 PetscErrorCode ContactAdjustNextPenalty(Contact);

@@ -75,23 +75,15 @@ PetscErrorCode ContactPairLoad(Contact contact, int p, const PetscReal *u, Conta
 }
 
 /*@
-  ContactPairStiffened - returns the factor by which a pair's largest penalty exceeds that of the start of the run.
+  ContactPairInitialPenalty - returns the penalty of a pair at the start of the run (force per length and area).
 
-  Collective
+  Not collective
 
   Input Parameters:
 + contact - the contact
 - p       - number of the pair
-
-  Output Parameter:
-. factor - the same on all ranks; 1 for a pair without slave nodes
 @*/
-PetscErrorCode ContactPairStiffened(Contact contact, int p, PetscReal *factor)
+PetscReal ContactPairInitialPenalty(Contact contact, int p)
 {
-  PetscReal least, most;
-
-  PetscFunctionBeginUser;
-  PetscCall(ContactPairPenalty(contact, p, &least, &most));
-  *factor = most > 0 ? most / contact->pairs[p].initial : 1;
-  PetscFunctionReturn(PETSC_SUCCESS);
+  return contact->pairs[p].initial;
 }

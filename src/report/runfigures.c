@@ -41,7 +41,7 @@ static PetscErrorCode CollectPair(Model model, int p, PairFigures *pair)
   PetscCall(ContactPairFits(contact, p, &pair->fits));
   PetscCall(ContactPairQuality(contact, p, &pair->quality));
   PetscCall(ContactPairPenalty(contact, p, &pair->penalty_min, &pair->penalty_max));
-  PetscCall(ContactPairStiffened(contact, p, &pair->stiffened));
+  pair->stiffened = pair->penalty_max > 0 ? pair->penalty_max / ContactPairInitialPenalty(contact, p) : 1;
   PetscCall(ContactPairWindow(contact, p, &pair->window));
   PetscCall(ContactPairScatter(contact, p, model->u, &pair->scatter));
   PetscCall(ContactPairMasterDepth(contact, p, model->u, model->t, &pair->master));

@@ -276,17 +276,10 @@ static PetscReal NodeDepthIn(DepthSearch *look, BoxTree tree, const DepthNode *n
 static PetscErrorCode FetchAllowed(NodeDepths depths, const SearchField *field, const PetscReal *allowed,
                                    PetscReal *fetched)
 {
-  PetscSFNode *remote;
-  PetscSF      faces;
+  PetscSF faces;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc1(field->n_records, &remote));
-  for (PetscInt r = 0; r < field->n_records; r++)
-    remote[r] = (PetscSFNode){field->records[r].home, field->records[r].home_face};
-  PetscCall(PetscSFCreate(depths->mesh->comm, &faces));
-  PetscCall(PetscSFSetGraph(faces, depths->slave->n_faces, field->n_records, NULL, PETSC_OWN_POINTER, remote,
-                            PETSC_OWN_POINTER));
-  PetscCall(PetscSFSetUp(faces));
+  PetscCall(SearchFieldWay(depths->search, field, &faces));
   PetscCall(PetscSFBcastBegin(faces, MPIU_REAL, allowed, fetched, MPI_REPLACE));
   PetscCall(PetscSFBcastEnd(faces, MPIU_REAL, allowed, fetched, MPI_REPLACE));
   PetscCall(PetscSFDestroy(&faces));

@@ -129,20 +129,30 @@ static PetscErrorCode MakeCandidates(ContactSearch s, NeighbourLists lists, cons
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Fetches the maps of the faces that arrived. */
-static PetscErrorCode FetchMaps(ContactSearch s, SearchField *field)
+/* Makes the way from the master's faces, each on its own rank, to the faces that arrived on this rank. The caller
+   destroys it. */
+PetscErrorCode SearchFieldWay(ContactSearch s, const SearchField *field, PetscSF *faces)
 {
   PetscSFNode *remote;
-  PetscSF      faces;
 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(field->n_records, &remote));
   for (PetscInt r = 0; r < field->n_records; r++)
     remote[r] = (PetscSFNode){field->records[r].home, field->records[r].home_face};
-  PetscCall(PetscSFCreate(s->mesh->comm, &faces));
+  PetscCall(PetscSFCreate(s->mesh->comm, faces));
   PetscCall(
-    PetscSFSetGraph(faces, s->master->n_faces, field->n_records, NULL, PETSC_OWN_POINTER, remote, PETSC_OWN_POINTER));
-  PetscCall(PetscSFSetUp(faces));
+    PetscSFSetGraph(*faces, s->master->n_faces, field->n_records, NULL, PETSC_OWN_POINTER, remote, PETSC_OWN_POINTER));
+  PetscCall(PetscSFSetUp(*faces));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Fetches the maps of the faces that arrived. */
+static PetscErrorCode FetchMaps(ContactSearch s, SearchField *field)
+{
+  PetscSF faces;
+
+  PetscFunctionBeginUser;
+  PetscCall(SearchFieldWay(s, field, &faces));
   PetscCall(FaceMapsFetch(faces, s->maps, &field->maps));
   PetscCall(PetscSFDestroy(&faces));
   PetscFunctionReturn(PETSC_SUCCESS);

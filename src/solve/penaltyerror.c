@@ -188,7 +188,8 @@ PetscErrorCode ModelEstimatePenalty(Model model)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Makes the penalties stiffer that the run may choose and whose error is large. *stiffened: some are. */
+/* Makes the penalties stiffer that the run may choose and whose error is large, after ModelEstimatePenalty().
+   *stiffened: some are. */
 PetscErrorCode ModelStiffen(Model model, PetscBool *stiffened)
 {
   const int    pairs = ContactPairs(model->contact);
@@ -198,7 +199,8 @@ PetscErrorCode ModelStiffen(Model model, PetscBool *stiffened)
   PetscFunctionBeginUser;
   *stiffened = PETSC_FALSE;
   PetscCall(PetscMalloc1(pairs, &load));
-  PetscCall(ModelPairLoads(model, model->problem->trial, load));
+  for (int p = 0; p < pairs; p++)
+    PetscCall(ContactPairLoad(model->contact, p, model->problem->trial, &load[p]));
   for (int p = 0; p < pairs; p++) most = PetscMax(most, load[p].force);
   for (int p = 0; p < pairs; p++) {
     const PenaltyError *error = &model->work->penalty_error[p];

@@ -126,3 +126,4 @@ PetscErrorCode FitSupportClimb(FitSupport *, const FitFoot *, FitProblem *, FitR
 PetscErrorCode SearchFieldCreate(ContactSearch, const PetscReal *u, PetscReal t, const PetscReal box[6],
                                  PetscReal distance, NeighbourLists, SearchField *);
 PetscErrorCode SearchFieldDestroy(SearchField *);
+PetscErrorCode SearchFieldWay(ContactSearch, const SearchField *, PetscSF *faces);
