@@ -1,0 +1,27 @@
+/* Plasticity with von Mises' yield condition, associative flow and isotropic hardening at a point. Plain C, no PETSc,
+   no allocation.
+
+   Finite strains: the elastic energy is Hencky's, bulk/2 (ln J)^2 + shear |dev e|^2 with the logarithmic elastic strain
+   e = 1/2 ln(F Cp^-1 F^T). The yield condition holds for the Kirchhoff stress. The flow is multiplicative and is
+   integrated by the exponential map, so that it keeps volumes. Small strains: e = sym H - plastic strain, radial
+   return.
+
+   The functions compute an incremental potential: the least sum of elastic energy and plastic work over all plastic
+   strains that can follow the accepted state. Stress and tangent are its derivatives. The tangent is symmetric.
+
+   Sources: Simo, "Algorithms for static and dynamic multiplicative plasticity that preserve the classical return
+   mapping schemes of the infinitesimal theory", Computer Methods in Applied Mechanics and Engineering 99, 1992; Ortiz
+   and Stainier, "The variational formulation of viscoplastic constitutive updates", the same journal 171, 1999. */
+#pragma once
+#include "base/lanes.h"
+#include "kernels/hardening.h"
+#include "kernels/material.h"
+
+/* State of a point: Cp^-1 - 1 (xx yy zz xy yz xz) with the plastic right Cauchy-Green tensor Cp, then the equivalent
+   plastic strain. In small strains the first six are -2 times the plastic strain, the linearisation. Zero is the virgin
+   state. */
+enum { PLASTIC_STATE = 7, PLASTIC_STRAIN = 6 };
+
+void VonMisesLaw(int finite, const Lanes H[9], const Lanes *dilatation, const Lanes *bulk, const Lanes *shear,
+                 const Hardening *, const Lanes state[PLASTIC_STATE], Lanes *W, Lanes P[9],
+                 Lanes A[MATERIAL_TANGENT_SIZE], Lanes next[PLASTIC_STATE]);
