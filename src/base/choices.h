@@ -8,10 +8,11 @@
    contactlaw.h and stepcontrol.h say what each object holds. */
 #pragma once
 
-#define ELASTIC_LAWS(LINE)                            \
-  LINE(MATERIAL_LINEAR, "linear", MaterialLaw_Linear) \
-  LINE(MATERIAL_SVK, "svk", MaterialLaw_Svk)          \
-  LINE(MATERIAL_NEO_HOOKEAN, "neo_hookean", MaterialLaw_NeoHookean)
+#define ELASTIC_LAWS(LINE)                                          \
+  LINE(MATERIAL_LINEAR, "linear", MaterialLaw_Linear)               \
+  LINE(MATERIAL_SVK, "svk", MaterialLaw_Svk)                        \
+  LINE(MATERIAL_NEO_HOOKEAN, "neo_hookean", MaterialLaw_NeoHookean) \
+  LINE(MATERIAL_VON_MISES, "von_mises", MaterialLaw_VonMises)
 
 #define SMOOTHERS(LINE)                         \
   LINE(SMOOTHER_FACET, "facet", Smoother_Facet) \

@@ -23,6 +23,9 @@ typedef struct {
     *block;     /* [nodes][nodes][lanes]: place of the pair of nodes in the block CSR; then PREFETCH_PAIRS of zeros */
   PetscReal *X; /* [nodes][dim][lanes] */
   PetscReal *constants; /* of the law [n_constants][lanes] */
+  PetscReal *state;     /* of a plastic law, accepted [points][PLASTIC_STATE][lanes]; else NULL */
+  /* What kernel.plastic points to, for the batch at hand */
+  PlasticBatch plastic;
 } CellGroup;
 
 struct _n_Elasticity {
@@ -60,21 +63,31 @@ static Material BodyMaterial(Scene scene, PetscInt body)
 {
   const Material *material = &scene->bodies[body].material;
 
-  return scene->kinematics == KINEMATICS_SMALL ? MaterialLinearise(material) : *material;
+  return scene->kinematics == KINEMATICS_SMALL && !MaterialGetLaw(material->law)->plastic ? MaterialLinearise(material)
+                                                                                          : *material;
 }
 
+/* Gives the kernel of a body's cells. A formulation that the user has not named gives way where it does not exist. */
 static KernelCase BodyKernel(Scene scene, PetscInt body, ElementType type)
 {
   const Material material = BodyMaterial(scene, body);
+  KernelCase     kernel   = {.type        = type,
+                             .geometry    = scene->geometry,
+                             .kinematics  = scene->kinematics,
+                             .law         = material.law,
+                             .formulation = scene->bodies[body].formulation,
+                             .n_constants = material.n_constants};
 
-  return (KernelCase){
-    type, scene->geometry, scene->kinematics, material.law, scene->bodies[body].formulation, material.n_constants};
+  if (scene->bodies[body].chosen && !ElementKernelExists(&kernel)) kernel.formulation = FORMULATION_FULL;
+  return kernel;
 }
 
 /* Compares two kernels of one scene, whose geometry and kinematics are the same. */
 static PetscBool SameKernel(const KernelCase *a, const KernelCase *b)
 {
-  return a->type == b->type && a->law == b->law && a->formulation == b->formulation && a->n_constants == b->n_constants
+  return a->type == b->type && a->law == b->law && a->formulation == b->formulation &&
+             a->n_constants == b->n_constants &&
+             (a->plastic ? a->plastic->hardening : NULL) == (b->plastic ? b->plastic->hardening : NULL)
            ? PETSC_TRUE
            : PETSC_FALSE;
 }
@@ -88,17 +101,30 @@ static PetscErrorCode GroupCells(Elasticity e, Scene scene)
   PetscCall(PetscCalloc1(ELEMENT_TYPES * (size_t)scene->n_bodies, &e->groups));
   PetscCall(PetscMalloc3(mesh->n_cells, &e->cell_group, mesh->n_cells, &e->cell_slot, mesh->n_cells, &e->cell_modulus));
   for (PetscInt c = 0; c < mesh->n_cells; c++) {
-    const KernelCase kernel = BodyKernel(scene, mesh->cell_body[c], mesh->cell_type[c]);
-    int              g      = 0;
+    const Material    *material = &scene->bodies[mesh->cell_body[c]].material;
+    const PlasticBatch plastic  = {.hardening = &material->hardening};
+    KernelCase         kernel   = BodyKernel(scene, mesh->cell_body[c], mesh->cell_type[c]);
+    int                g        = 0;
 
+    if (MaterialGetLaw(kernel.law)->plastic) kernel.plastic = &plastic;
     while (g < e->n_groups && !SameKernel(&e->groups[g].kernel, &kernel)) g++;
-    if (g == e->n_groups)
-      e->groups[e->n_groups++] = (CellGroup){.kernel = kernel, .nodes = ElementGet(kernel.type)->nodes};
+    if (g == e->n_groups) {
+      CellGroup *group = &e->groups[e->n_groups++];
+
+      *group = (CellGroup){.kernel = kernel, .nodes = ElementGet(kernel.type)->nodes, .plastic = plastic};
+      if (kernel.plastic) group->kernel.plastic = &group->plastic;
+    }
     e->cell_group[c]   = g;
     e->cell_slot[c]    = e->groups[g].n_cells++;
     e->cell_modulus[c] = scene->bodies[mesh->cell_body[c]].material.E;
   }
   PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Counts the numbers of the plastic state of one cell. */
+static size_t CellStates(const CellGroup *g)
+{
+  return g->kernel.plastic ? (size_t)ElementGet(g->kernel.type)->points * PLASTIC_STATE : 0;
 }
 
 static PetscErrorCode AllocateGroup(CellGroup *g, int dim)
@@ -111,6 +137,7 @@ static PetscErrorCode AllocateGroup(CellGroup *g, int dim)
   PetscCall(PetscCalloc3(lanes, &g->cell, lanes * g->nodes, &g->node,
                          lanes * g->nodes * g->nodes + PREFETCH_PAIRS * KERNEL_LANES, &g->block));
   PetscCall(PetscMalloc2(lanes * g->nodes * dim, &g->X, lanes * g->kernel.n_constants, &g->constants));
+  if (g->kernel.plastic) PetscCall(PetscCalloc1(lanes * CellStates(g), &g->state));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -297,6 +324,7 @@ PetscErrorCode ElasticityDestroy(Elasticity *elasticity)
   for (int g = 0; g < e->n_groups; g++) {
     PetscCall(PetscFree3(e->groups[g].cell, e->groups[g].node, e->groups[g].block));
     PetscCall(PetscFree2(e->groups[g].X, e->groups[g].constants));
+    PetscCall(PetscFree(e->groups[g].state));
   }
   PetscCall(PetscFree(e->groups));
   PetscCall(PetscFree3(e->cell_group, e->cell_slot, e->cell_modulus));
@@ -309,7 +337,16 @@ PetscErrorCode ElasticityDestroy(Elasticity *elasticity)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static void GatherBatch(Elasticity e, const CellGroup *g, PetscInt batch, const PetscReal *u)
+/* Makes the plastic state of a batch, or of one of its cells, the one that the kernel sees. */
+static void SelectState(CellGroup *g, PetscInt batch, int lane)
+{
+  if (!g->state) return;
+  g->plastic.state = g->state + (size_t)batch * KERNEL_LANES * CellStates(g);
+  g->plastic.lane  = lane;
+}
+
+/* Gathers the displacements of a batch, and makes its plastic state the one that the kernel sees. */
+static void GatherBatch(Elasticity e, CellGroup *g, PetscInt batch, const PetscReal *u)
 {
   const PetscInt *node = &g->node[(size_t)batch * g->nodes * KERNEL_LANES];
 
@@ -319,6 +356,7 @@ static void GatherBatch(Elasticity e, const CellGroup *g, PetscInt batch, const 
         e->u[(a * e->dim + i) * KERNEL_LANES + lane] = u[node[a * KERNEL_LANES + lane] * e->dim + i];
     }
   }
+  SelectState(g, batch, 0);
 }
 
 /* Counts the cells of a batch that are not repetitions. */
@@ -375,8 +413,8 @@ PetscErrorCode ElasticityResidual(Elasticity e, const PetscReal *u, PetscReal *f
   *ok         = PETSC_TRUE;
   e->inverted = -1;
   for (int k = 0; k < e->n_groups; k++) {
-    const CellGroup *g    = &e->groups[k];
-    const size_t     dofs = (size_t)g->nodes * e->dim;
+    CellGroup   *g    = &e->groups[k];
+    const size_t dofs = (size_t)g->nodes * e->dim;
 
     for (PetscInt batch = 0; batch < g->n_batches; batch++) {
       const size_t first = (size_t)batch * KERNEL_LANES;
@@ -443,8 +481,8 @@ PetscErrorCode ElasticityTangent(Elasticity e, const PetscReal *u)
   PetscCall(PetscLogEventBegin(event_tangent, 0, 0, 0, 0));
   PetscCall(PetscArrayzero(e->value, (size_t)e->row[e->mesh->n_nodes] * e->dim * e->dim));
   for (int k = 0; k < e->n_groups; k++) {
-    const CellGroup *g    = &e->groups[k];
-    const size_t     dofs = (size_t)g->nodes * e->dim;
+    CellGroup   *g    = &e->groups[k];
+    const size_t dofs = (size_t)g->nodes * e->dim;
 
     for (PetscInt batch = 0; batch < g->n_batches; batch++) {
       const size_t first = (size_t)batch * KERNEL_LANES;
@@ -639,7 +677,7 @@ PetscErrorCode ElasticityMatrixJoin(Elasticity e, Mat C)
 }
 
 /* Adds the share of one cell to its nodes. */
-static void AddCellStress(Elasticity e, const CellGroup *g, PetscInt slot, const PetscReal *u, PetscReal *stress,
+static void AddCellStress(Elasticity e, CellGroup *g, PetscInt slot, const PetscReal *u, PetscReal *stress,
                           PetscReal *weight)
 {
   const Element  *element = ElementGet(g->kernel.type);
@@ -656,6 +694,7 @@ static void AddCellStress(Elasticity e, const CellGroup *g, PetscInt slot, const
   }
   for (int k = 0; k < g->kernel.n_constants; k++)
     constants[k] = g->constants[(batch * g->kernel.n_constants + k) * KERNEL_LANES + lane];
+  SelectState(g, (PetscInt)batch, (int)lane);
   ElementPointStress(&g->kernel, X, cell_u, constants, point_stress, point_volume);
   for (int p = 0; p < element->points; p++) volume += point_volume[p];
   for (int a = 0; a < g->nodes; a++) {
@@ -694,6 +733,176 @@ PetscErrorCode ElasticityNodalStress(Elasticity e, const PetscReal *u, PetscReal
   for (int g = 0; g < e->n_groups; g++) {
     for (PetscInt slot = 0; slot < e->groups[g].n_cells; slot++)
       AddCellStress(e, &e->groups[g], slot, u, stress, weight);
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ElasticityAccept - makes the plastic state at given displacements the accepted one, from which all others start.
+
+  Not collective
+
+  Input Parameters:
++ e - the elasticity
+- u - local displacements (length) [n_nodes*dim] of a state that is accepted
+
+  Note:
+  Residual, tangent and energy at u stay the same, up to round-off. Nothing happens where no body is plastic.
+@*/
+PetscErrorCode ElasticityAccept(Elasticity e, const PetscReal *u)
+{
+  PetscFunctionBeginUser;
+  for (int k = 0; k < e->n_groups; k++) {
+    CellGroup   *g    = &e->groups[k];
+    const size_t dofs = (size_t)g->nodes * e->dim;
+
+    for (PetscInt batch = 0; batch < g->n_batches && g->state; batch++) {
+      const size_t first = (size_t)batch * KERNEL_LANES;
+
+      GatherBatch(e, g, batch, u);
+      ElementAcceptState(&g->kernel, &g->X[first * dofs], e->u, &g->constants[first * g->kernel.n_constants]);
+    }
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Copies the plastic state of a cell out of its group or into it. */
+static void CopyState(CellGroup *g, PetscInt slot, PetscBool out, PetscReal *values)
+{
+  const PetscInt end = slot == g->n_cells - 1 ? g->n_batches * KERNEL_LANES : slot + 1;
+
+  for (PetscInt s = slot; s < (out ? slot + 1 : end); s++) { /* the last batch repeats its last cell */
+    PetscReal *state = &g->state[(size_t)(s / KERNEL_LANES) * KERNEL_LANES * CellStates(g) + s % KERNEL_LANES];
+
+    for (size_t k = 0; k < CellStates(g); k++) {
+      if (out)
+        values[k] = state[k * KERNEL_LANES];
+      else
+        state[k * KERNEL_LANES] = values[k];
+    }
+  }
+}
+
+/*@
+  ElasticityArchive - saves or loads the plastic state.
+
+  Collective
+
+  Input Parameters:
++ e       - the elasticity
+- archive - decides whether the state is saved or loaded
+
+  Note:
+  Nothing is saved where no body is plastic.
+@*/
+PetscErrorCode ElasticityArchive(Elasticity e, Archive archive)
+{
+  const Mesh mesh  = e->mesh;
+  PetscInt   width = 0;
+  PetscReal *values;
+  Hdf5Table  cells;
+
+  PetscFunctionBeginUser;
+  for (int k = 0; k < e->n_groups; k++) width = PetscMax(width, (PetscInt)CellStates(&e->groups[k]));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &width, 1, MPIU_INT, MPI_MAX, mesh->comm));
+  if (!width) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscCalloc1(mesh->n_cells * width, &values));
+  PetscCall(Hdf5TableCreate(mesh->comm, mesh->n_cells_global, mesh->n_cells, mesh->cell_id, &cells));
+  for (PetscInt c = 0; c < mesh->n_cells && !ArchiveLoads(archive); c++)
+    CopyState(&e->groups[e->cell_group[c]], e->cell_slot[c], PETSC_TRUE, &values[c * width]);
+  PetscCall(ArchiveRows(archive, "model/plastic_state", &cells, (int)width, values));
+  for (PetscInt c = 0; c < mesh->n_cells && ArchiveLoads(archive); c++)
+    CopyState(&e->groups[e->cell_group[c]], e->cell_slot[c], PETSC_FALSE, &values[c * width]);
+  PetscCall(Hdf5TableDestroy(&cells));
+  PetscCall(PetscFree(values));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Gives volumes and equivalent plastic strains of the points of a cell; strains of elastic cells are 0. */
+static void CellPlasticStrain(Elasticity e, const CellGroup *g, PetscInt slot, PetscReal *volume, PetscReal *strain)
+{
+  const Element  *element = ElementGet(g->kernel.type);
+  const PetscInt *nodes   = &e->mesh->cell_nodes[e->mesh->cell_ptr[g->cell[slot]]];
+  PetscReal       X[MAX_DOFS];
+
+  for (int a = 0; a < g->nodes; a++)
+    for (int i = 0; i < e->dim; i++) X[a * e->dim + i] = e->mesh->coords[nodes[a] * e->dim + i];
+  ElementPointVolumes(g->kernel.type, e->dim, g->kernel.geometry, X, volume);
+  for (int p = 0; p < element->points; p++) {
+    const size_t first = (size_t)(slot / KERNEL_LANES) * KERNEL_LANES * CellStates(g) + slot % KERNEL_LANES;
+
+    strain[p] = g->state ? g->state[first + (size_t)(p * PLASTIC_STATE + PLASTIC_STRAIN) * KERNEL_LANES] : 0;
+  }
+}
+
+/*@
+  ElasticityNodalPlasticStrain - computes this rank's share of the equivalent plastic strain at the nodes.
+
+  Not collective
+
+  Input Parameter:
+. e - the elasticity
+
+  Output Parameters:
++ strain - volume of the cells around a node times the strain there [n_nodes]
+- weight - volume of the cells around a node [n_nodes]
+
+  Note:
+  As in ElasticityNodalStress(). A fit that is negative counts as 0.
+@*/
+PetscErrorCode ElasticityNodalPlasticStrain(Elasticity e, PetscReal *strain, PetscReal *weight)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscArrayzero(strain, e->mesh->n_nodes));
+  PetscCall(PetscArrayzero(weight, e->mesh->n_nodes));
+  for (PetscInt c = 0; c < e->mesh->n_cells; c++) {
+    const CellGroup *g       = &e->groups[e->cell_group[c]];
+    const Element   *element = ElementGet(g->kernel.type);
+    const PetscInt  *nodes   = &e->mesh->cell_nodes[e->mesh->cell_ptr[c]];
+    PetscReal        point_volume[ELEMENT_MAX_POINTS], point_strain[ELEMENT_MAX_POINTS], volume = 0;
+
+    CellPlasticStrain(e, g, e->cell_slot[c], point_volume, point_strain);
+    for (int p = 0; p < element->points; p++) volume += point_volume[p];
+    for (int a = 0; a < g->nodes; a++) {
+      PetscReal fit = 0;
+
+      for (int p = 0; p < element->points; p++) fit += element->fit[a][p] * point_strain[p];
+      strain[nodes[a]] += volume * PetscMax(fit, 0);
+      weight[nodes[a]] += volume;
+    }
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ElasticityPlasticWork - computes the plastic work of this rank's cells in the accepted state.
+
+  Not collective
+
+  Input Parameter:
+. e - the elasticity
+
+  Output Parameters:
++ work   - integral of the yield stress over the plastic strain, summed over the points (energy)
+- strain - the largest equivalent plastic strain of a point
+@*/
+PetscErrorCode ElasticityPlasticWork(Elasticity e, PetscReal *work, PetscReal *strain)
+{
+  PetscFunctionBeginUser;
+  *work = *strain = 0;
+  for (PetscInt c = 0; c < e->mesh->n_cells; c++) {
+    const CellGroup *g = &e->groups[e->cell_group[c]];
+    PetscReal        volume[ELEMENT_MAX_POINTS], point_strain[ELEMENT_MAX_POINTS];
+
+    if (!g->state) continue;
+    CellPlasticStrain(e, g, e->cell_slot[c], volume, point_strain);
+    for (int p = 0; p < ElementGet(g->kernel.type)->points; p++) {
+      PetscReal slope, density;
+
+      (void)HardeningStress(g->plastic.hardening, point_strain[p], &slope, &density);
+      *work += volume[p] * density;
+      *strain = PetscMax(*strain, point_strain[p]);
+    }
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

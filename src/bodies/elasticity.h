@@ -3,8 +3,12 @@
    ElasticityResidual() and ElasticityTangent() evaluate this rank's cells. The tangent is summed into one rank-local
    block CSR over local nodes, with ghost rows and every dof, supported ones too. ElasticityMatrix() passes it on to a
    parallel AIJ matrix over the free dofs, ElasticityMultiplyLocal() multiplies it by local vectors for the prescribed
-   dofs. ElasticityNodalStress() gives stresses for output. */
+   dofs. ElasticityNodalStress() gives stresses for output.
+
+   Plastic bodies have an accepted state at each quadrature point. All evaluations start from it; ElasticityAccept()
+   alone changes it. ElasticityArchive() saves and loads it. */
 #pragma once
+#include "files/archive.h"
 #include "mesh/mesh.h"
 
 typedef struct _n_Elasticity *Elasticity;
@@ -20,5 +24,9 @@ PetscErrorCode ElasticitySetSymmetric(Elasticity, PetscBool);
 PetscErrorCode ElasticityMatrix(Elasticity, Mat C, Vec diagonal, Mat *);
 PetscErrorCode ElasticityMatrixJoin(Elasticity, Mat C);
 PetscErrorCode ElasticityNodalStress(Elasticity, const PetscReal *u, PetscReal *stress, PetscReal *weight);
+PetscErrorCode ElasticityAccept(Elasticity, const PetscReal *u);
+PetscErrorCode ElasticityArchive(Elasticity, Archive);
+PetscErrorCode ElasticityNodalPlasticStrain(Elasticity, PetscReal *strain, PetscReal *weight);
+PetscErrorCode ElasticityPlasticWork(Elasticity, PetscReal *work, PetscReal *strain);
 PetscReal      ElasticityCellModulus(Elasticity, PetscInt cell);
 PetscInt       ElasticityInvertedCell(Elasticity);

@@ -53,6 +53,22 @@ static void CauchyStress(const double H[9], const double P[9], int finite, doubl
   }
 }
 
+/* Stress of a plastic law at one point */
+static void PlasticStress(const KernelCase *kernel, const double *constants, int p, const double H[9], double P[9])
+{
+  const PlasticBatch *plastic = kernel->plastic;
+  const Lanes         bulk = (Lanes){0} + constants[0], shear = (Lanes){0} + constants[1];
+  Lanes               lanes_H[9], lanes_P[9], state[PLASTIC_STATE], dilatation;
+
+  for (int r = 0; r < 9; r++) lanes_H[r] = (Lanes){0} + H[r];
+  for (int k = 0; k < PLASTIC_STATE; k++)
+    state[k] = (Lanes){0} + plastic->state[(p * PLASTIC_STATE + k) * KERNEL_LANES + plastic->lane];
+  MaterialDilatation(lanes_H, &dilatation);
+  VonMisesLaw(kernel->kinematics == KINEMATICS_FINITE, lanes_H, &dilatation, &bulk, &shear, plastic->hardening, state,
+              NULL, lanes_P, NULL, NULL);
+  for (int r = 0; r < 9; r++) P[r] = lanes_P[r][0];
+}
+
 /*@
   ElementPointStress - computes the Cauchy stress at the quadrature points of one element.
 
@@ -81,7 +97,10 @@ void ElementPointStress(const KernelCase *kernel, const double *X, const double 
     double J[3][3], P[9];
 
     volume[p] = PointVolume(e, p, e->dim, kernel->geometry, X, J);
-    MaterialEvaluate(kernel->law, n, constants, &H[9 * p], NULL, P, NULL);
+    if (kernel->plastic)
+      PlasticStress(kernel, constants, p, &H[9 * p], P);
+    else
+      MaterialEvaluate(kernel->law, n, constants, &H[9 * p], NULL, P, NULL);
     CauchyStress(&H[9 * p], P, finite, &stress[6 * p]);
   }
 }
@@ -181,6 +200,28 @@ void BodyForceKernel(ElementType type, int dim, Geometry geometry, const double 
       for (int i = 0; i < dim; i++) f[a * dim + i] += volume * e->N[p][a] * value[p * stride + i];
     }
   }
+}
+
+/*@
+  ElementPointVolumes - computes the reference volumes of the quadrature points of one cell.
+
+  Not collective
+
+  Input Parameters:
++ type     - element type of a cell
+. dim      - its dimension
+. geometry - solid, plane strain or axisymmetric
+- X        - reference coordinates (length) [nodes][dim]
+
+  Output Parameter:
+. volume - as CellVolume() sums them [points]
+@*/
+void ElementPointVolumes(ElementType type, int dim, Geometry geometry, const double *X, double *volume)
+{
+  const Element *e = ElementGet(type);
+  double         J[3][3];
+
+  for (int p = 0; p < e->points; p++) volume[p] = PointVolume(e, p, dim, geometry, X, J);
 }
 
 /*@

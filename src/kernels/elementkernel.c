@@ -26,7 +26,7 @@ LANES_INLINE void Batch(const BatchCall *call, const int n, const int points, co
       PointDisplacementGradient(n, dim, hoop, q, call->u, &c, H);
       MaterialDilatation(H, &dilatation);
       KeepLeastJ(call, &dilatation);
-      PointLaw(call, H, &dilatation, W ? &energy : NULL, P, K ? c.A[q] : NULL);
+      PointLaw(call, first + q, H, &dilatation, W ? &energy : NULL, P, K ? c.A[q] : NULL);
       if (W) LANE(W, 0) += energy * volume;
       if (call->H) StorePoint(call, first + q, H);
       for (int r = 0; r < 9; r++) P[r] *= volume;
@@ -97,6 +97,7 @@ static BatchCall StartCall(const KernelCase *kernel, const Lanes *constants)
                      .law         = law,
                      .finite      = kernel->kinematics == KINEMATICS_FINITE,
                      .n_constants = kernel->n_constants ? kernel->n_constants : law->constants,
+                     .hardening   = kernel->plastic ? kernel->plastic->hardening : NULL,
                      .constants   = constants};
 }
 
@@ -135,13 +136,62 @@ void ElementKernel(const KernelCase *kernel, const double *X, const double *u, c
 
   for (int part = 0; part < KERNEL_LANES; part += LANES) {
     for (int k = 0; k < call.n_constants; k++) lanes_constants[k] = CONST_LANE(constants + part, k);
-    call.X = X + part;
-    call.u = u + part;
-    call.W = W ? W + part : NULL;
-    call.f = f ? f + part : NULL;
-    call.K = K ? K + part : NULL;
-    call.J = J + part;
+    call.X     = X + part;
+    call.u     = u + part;
+    call.state = kernel->plastic ? kernel->plastic->state + part : NULL;
+    call.W     = W ? W + part : NULL;
+    call.f     = f ? f + part : NULL;
+    call.K     = K ? K + part : NULL;
+    call.J     = J + part;
     batch(&call);
+  }
+}
+
+/* Takes the state of all points of a part of a batch on to the displacement gradients H. */
+static void AcceptPoints(const BatchCall *call, const double *H, double *state)
+{
+  for (int p = 0; p < call->e->points; p++) {
+    Lanes lanes_H[9], lanes_state[PLASTIC_STATE], dilatation;
+
+    for (int r = 0; r < 9; r++) lanes_H[r] = CONST_LANE(H, p * 9 + r);
+    for (int k = 0; k < PLASTIC_STATE; k++) lanes_state[k] = CONST_LANE(state, p * PLASTIC_STATE + k);
+    MaterialDilatation(lanes_H, &dilatation);
+    VonMisesLaw(call->finite, lanes_H, &dilatation, &call->constants[0], &call->constants[1], call->hardening,
+                lanes_state, NULL, NULL, NULL, lanes_state);
+    for (int k = 0; k < PLASTIC_STATE; k++) LANE(state, p * PLASTIC_STATE + k) = lanes_state[k];
+  }
+}
+
+/*@
+  ElementAcceptState - takes the plastic state of a batch of KERNEL_LANES elements on to displacements that are
+accepted.
+
+  Not collective
+
+  Input Parameters:
++ kernel    - with plastic, whose state is changed
+. X         - reference coordinates (length) [nodes][dim][lanes]
+. u         - displacements (length) [nodes][dim][lanes]
+- constants - of the law [n_constants][lanes]
+
+  Note:
+  At the same u, ElementKernel() gives the same values before and after, up to round-off.
+@*/
+void ElementAcceptState(const KernelCase *kernel, const double *X, const double *u, const double *constants)
+{
+  Lanes     lanes_constants[MATERIAL_MAX_CONSTANTS];
+  BatchCall call = StartCall(kernel, lanes_constants);
+  double    H[ELEMENT_MAX_POINTS * 9 * KERNEL_LANES], J[LANES];
+
+  call.J = J;
+  call.H = H;
+  for (int part = 0; part < KERNEL_LANES; part += LANES) {
+    for (int k = 0; k < call.n_constants; k++) lanes_constants[k] = CONST_LANE(constants + part, k);
+    call.X     = X + part;
+    call.u     = u + part;
+    call.state = kernel->plastic->state + part;
+    GetBatch(kernel)(&call);
+    AcceptPoints(&call, H, kernel->plastic->state + part);
   }
 }
 
@@ -167,7 +217,7 @@ void ElementPointGradient(const KernelCase *kernel, const double *X, const doubl
   BatchCall call = StartCall(kernel, lanes_constants);
   const int dofs = call.e->nodes * call.e->dim;
   double    lanes_X[ELEMENT_MAX_NODES * 3 * KERNEL_LANES], lanes_u[ELEMENT_MAX_NODES * 3 * KERNEL_LANES],
-    lanes_H[ELEMENT_MAX_POINTS * 9 * KERNEL_LANES];
+    lanes_H[ELEMENT_MAX_POINTS * 9 * KERNEL_LANES], lanes_state[ELEMENT_MAX_POINTS * PLASTIC_STATE * KERNEL_LANES];
   double J[LANES];
 
   for (int lane = 0; lane < LANES; lane++) {
@@ -181,6 +231,11 @@ void ElementPointGradient(const KernelCase *kernel, const double *X, const doubl
   call.u = lanes_u;
   call.J = J;
   call.H = lanes_H;
+  if (kernel->plastic) {
+    for (int k = 0; k < call.e->points * PLASTIC_STATE; k++)
+      LANE(lanes_state, k) = (Lanes){0} + kernel->plastic->state[k * KERNEL_LANES + kernel->plastic->lane];
+    call.state = lanes_state;
+  }
   GetBatch(kernel)(&call);
   for (int k = 0; k < call.e->points * 9; k++) H[k] = lanes_H[k * KERNEL_LANES];
 }

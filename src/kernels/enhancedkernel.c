@@ -209,7 +209,7 @@ LANES_INLINE void ModeSystem(const BatchCall *call, const int points, const int 
 
     PointGradient(dim, hoop, x, q, H);
     MaterialDilatation(H, &dilatation);
-    PointLaw(call, H, &dilatation, &energy, P, renew ? x->c.A[q] : NULL);
+    PointLaw(call, q, H, &dilatation, &energy, P, renew ? x->c.A[q] : NULL);
     *W += energy * x->volume[q];
     for (int r = 0; r < 9; r++) P[r] *= x->volume[q];
     AddModeForce(dim, hoop, x, q, P, f);
@@ -358,7 +358,7 @@ LANES_INLINE void Batch(const BatchCall *call, const int n, const int points, co
     PointGradient(dim, hoop, &x, q, H);
     MaterialDilatation(H, &dilatation);
     KeepLeastJ(call, &dilatation);
-    PointLaw(call, H, &dilatation, W ? &energy : NULL, P, K ? x.c.A[q] : NULL);
+    PointLaw(call, q, H, &dilatation, W ? &energy : NULL, P, K ? x.c.A[q] : NULL);
     if (W) LANE(W, 0) += energy * x.volume[q];
     if (call->H) StorePoint(call, q, H);
     for (int r = 0; r < 9; r++) P[r] *= x.volume[q];

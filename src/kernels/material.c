@@ -39,7 +39,7 @@ double MaterialShear(const Material *material)
   Not collective
 
   Input Parameters:
-+ law - MATERIAL_LINEAR, MATERIAL_SVK or MATERIAL_NEO_HOOKEAN
++ law - MATERIAL_LINEAR, MATERIAL_SVK, MATERIAL_NEO_HOOKEAN or MATERIAL_VON_MISES
 . E   - Young's modulus (stress)
 - nu  - Poisson's ratio, -1 < nu <= 1/2
 @*/
@@ -48,6 +48,7 @@ Material MaterialFromModuli(MaterialLaw law, double E, double nu)
   Material material = {.law = law, .n_constants = 2, .E = E, .nu = nu};
 
   MaterialLame(E, nu, &material.constants[0], &material.constants[1]);
+  if (laws[law]->isochoric) material.constants[0] += 2 * material.constants[1] / 3;
   return material;
 }
 

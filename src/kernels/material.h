@@ -7,6 +7,7 @@
 #pragma once
 #include "base/choices.h"
 #include "base/lanes.h"
+#include "kernels/hardening.h"
 
 extern const char *const MaterialLaws[]; /* words of the laws in a scene, NULL-terminated */
 
@@ -27,7 +28,8 @@ typedef struct {
   MaterialLaw law;
   int         n_constants;
   double      constants[MATERIAL_MAX_CONSTANTS];
-  double      E, nu; /* Young's modulus (stress), Poisson's ratio */
+  double      E, nu;     /* Young's modulus (stress), Poisson's ratio */
+  Hardening   hardening; /* of a plastic law */
 } Material;
 
 /* LANES points are evaluated together, one in each lane of a vector as wide as the machine's registers. Component (i,
@@ -62,6 +64,7 @@ typedef struct {
   MaterialShearFn *shear;
   int              constants; /* their number; for laws of any number of terms that of one term */
   int              separable, isochoric;
+  int              plastic; /* evaluate() is the elastic part of a law that has a state, see vonmises.h */
 } ElasticLaw;
 
 #define MATERIAL_DECLARE(law, word, object) extern const ElasticLaw object;

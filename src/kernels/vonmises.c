@@ -1,15 +1,15 @@
 /* Von Mises plasticity: trial state, return mapping in principal or Cartesian components, stress, tangent, new state.
  */
 #include "kernels/vonmises.h"
+#include "lameconstants.h"
 #include "principal.h"
 #include <float.h>
 #include <math.h>
 #include <stddef.h>
 
-/* Smallest determinant of F and smallest principal value of F Cp^-1 F^T whose logarithms are taken; smaller ones are
-   replaced by them. No state with J <= 0 is accepted, but a line search evaluates such states and needs finite numbers.
- */
-static const double least_J = 1e-8, least_square = 1e-16;
+/* Smallest principal value of F Cp^-1 F^T whose logarithm is taken; smaller ones are replaced by it, as determinants
+   below MATERIAL_LEAST_J are. */
+static const double least_square = MATERIAL_LEAST_J * MATERIAL_LEAST_J;
 /* A trial stress yields when it exceeds the yield stress by this part. An accepted state lies on the yield surface up
    to round-off and must be elastic when it is evaluated again. */
 static const double yield_round_off = 1e-12;
@@ -81,7 +81,7 @@ LANES_INLINE void TrialState(const Lanes H[9], const Lanes *dilatation, const La
   }
   PrincipalAxes(b, x->square, x->axis);
   for (int lane = 0; lane < LANES; lane++) {
-    x->log_J[lane] = log1p(fmax((*dilatation)[lane], least_J - 1));
+    x->log_J[lane] = log1p(fmax((*dilatation)[lane], MATERIAL_LEAST_J - 1));
     for (int a = 0; a < 3; a++) {
       const double excess = fmax(x->square[a][lane], least_square - 1);
 
@@ -272,3 +272,17 @@ void VonMisesLaw(int finite, const Lanes H[9], const Lanes *dilatation, const La
   else
     SmallLaw(H, bulk, shear, hardening, state, W, P, A, next);
 }
+
+/* The elastic part: Hencky's law */
+static void Evaluate(const Lanes H[9], const Lanes *dilatation, int n, const Lanes constants[], Lanes *W, Lanes P[9],
+                     Lanes A[MATERIAL_TANGENT_SIZE])
+{
+  static const Hardening never                 = {.yield = DBL_MAX};
+  const Lanes            virgin[PLASTIC_STATE] = {{0}};
+
+  (void)n;
+  FiniteLaw(H, dilatation, &constants[0], &constants[1], &never, virgin, W, P, A, NULL);
+}
+
+const ElasticLaw MaterialLaw_VonMises =
+  {.evaluate = Evaluate, .shear = MaterialLameShear, .constants = 2, .separable = 1, .isochoric = 1, .plastic = 1};

@@ -62,14 +62,41 @@ PetscErrorCode MeshCheckQuality(Mesh mesh, Scene scene)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Says whether there is a kernel of the body's formulation for a cell. */
+static PetscBool HasFormulation(Mesh mesh, Scene scene, PetscInt c)
+{
+  const KernelCase kernel = {.type        = mesh->cell_type[c],
+                             .geometry    = scene->geometry,
+                             .formulation = scene->bodies[mesh->cell_body[c]].formulation};
+
+  return (PetscBool)ElementKernelExists(&kernel);
+}
+
+/* Makes a body full for which the user has named no formulation, where no cell has the one that was chosen. */
+static PetscErrorCode DropFormulations(Mesh mesh, Scene scene)
+{
+  PetscBool *has;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc1(scene->n_bodies, &has));
+  for (PetscInt c = 0; c < mesh->n_cells; c++)
+    if (HasFormulation(mesh, scene, c)) has[mesh->cell_body[c]] = PETSC_TRUE;
+  for (int b = 0; b < scene->n_bodies; b++) {
+    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &has[b], sizeof(PetscBool), MPI_BYTE, MPI_BOR, mesh->comm));
+    if (scene->bodies[b].chosen && !has[b]) scene->bodies[b].formulation = FORMULATION_FULL;
+  }
+  PetscCall(PetscFree(has));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /*@
-  MeshCheckFormulations - refuses cells for which their body's formulation has no kernel.
+  MeshCheckFormulations - refuses cells for which the formulation that the user named for their body has no kernel.
 
   Collective
 
   Input Parameters:
 + mesh  - the mesh
-- scene - its bodies
+- scene - its bodies; where the user named no formulation, it becomes full if the chosen one exists for no cell
 
   Note:
   The refusal names the cell's tag, its body and its element.
@@ -79,12 +106,11 @@ PetscErrorCode MeshCheckFormulations(Mesh mesh, Scene scene)
   Complaint complaint = {""};
 
   PetscFunctionBeginUser;
+  PetscCall(DropFormulations(mesh, scene));
   for (PetscInt c = 0; c < mesh->n_cells; c++) {
     const SceneBody *body = &scene->bodies[mesh->cell_body[c]];
 
-    if (ElementKernelExists(
-          &(KernelCase){.type = mesh->cell_type[c], .geometry = scene->geometry, .formulation = body->formulation}))
-      continue;
+    if (body->chosen || HasFormulation(mesh, scene, c)) continue;
     Complain(&complaint,
              "%s: %s is for quad4 and hex8 only; cell %" PetscInt_FMT
              " of body '%s' is %s, which needs formulation: full",

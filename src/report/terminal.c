@@ -155,9 +155,14 @@ static void WarnLocking(Terminal terminal)
   const Scene scene = terminal->scene;
 
   for (int b = 0; b < scene->n_bodies && !terminal->rank && terminal->model->mesh->order == 1; b++) {
-    if (scene->bodies[b].rigid || scene->bodies[b].formulation != FORMULATION_FULL ||
-        scene->bodies[b].material.nu < LOCKING_NU)
-      continue;
+    if (scene->bodies[b].rigid || scene->bodies[b].formulation != FORMULATION_FULL) continue;
+    if (MaterialGetLaw(scene->bodies[b].material.law)->plastic)
+      fprintf(
+        stderr,
+        "burnish: warning: %s: plastic flow keeps volumes, and elements of first order with full integration lock "
+        "(too stiff); mesh.order: 2 and formulation: fbar do not\n",
+        SceneWhere(scene, scene->bodies[b].path, "material.law"));
+    if (MaterialGetLaw(scene->bodies[b].material.law)->plastic || scene->bodies[b].material.nu < LOCKING_NU) continue;
     fprintf(stderr,
             "burnish: warning: %s: nu = %g with elements of first order and full integration: they lock (too stiff); "
             "mesh.order: 2 does not\n",

@@ -1,6 +1,7 @@
 /* The reader of a scene: it fills the Scene from a validated document, see scene.h. */
 #include "sceneprobe.h"
 #include "scenedefaults.h"
+#include "sceneplasticity.h"
 #include "sceneread.h"
 #include "base/refusal.h"
 #include <string.h>
@@ -133,8 +134,15 @@ static PetscErrorCode SceneReadBody(Scene scene, SceneBody *body)
                                       SchemaReal(SceneDocument(scene), "%s.material.nu", body->path));
   if (body->material.law == MATERIAL_LINEAR && scene->kinematics == KINEMATICS_FINITE)
     PetscCall(SceneRefuse(scene, body->path, "material.law",
-                          "linear needs kinematics: small; allowed with finite: svk | neo_hookean", NULL));
-  body->formulation = (Formulation)SchemaChoice(SceneDocument(scene), "%s.formulation", body->path);
+                          "linear needs kinematics: small; allowed with finite: svk | neo_hookean | von_mises", NULL));
+  PetscCall(SceneReadPlasticity(scene, body));
+  if (SceneHas(scene, body->path, "formulation"))
+    body->formulation = (Formulation)SchemaChoice(SceneDocument(scene), "%s.formulation", body->path);
+  else {
+    body->chosen = 1;
+    body->formulation =
+      MaterialGetLaw(body->material.law)->plastic && scene->order != 2 ? FORMULATION_FBAR : FORMULATION_FULL;
+  }
   if (body->formulation != FORMULATION_FULL && scene->order == 2)
     PetscCall(SceneRefuse(scene, body->path, "formulation",
                           "is for first-order elements; allowed with mesh.order: 2: full",

@@ -28,6 +28,7 @@ typedef struct {
   int         rigid;       /* 1 for a meshed rigid tool, which has no material */
   Material    material;    /* of a deformable body */
   Formulation formulation; /* formulations other than full exist for quad4 and hex8 only */
+  int         chosen;      /* 1: the user names no formulation; cells for which it does not exist are full */
   Motion      motion;      /* of a rigid tool */
 } SceneBody;
 

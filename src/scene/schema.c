@@ -38,6 +38,7 @@ static void SchemaAllowed(const SchemaKey *key, char *text, size_t size)
     {TEXTS, "a list of names"},
     {CHOICES, "a list of"},
     {HISTORY, "[[t, factor], ...], at least two, t increasing from 0 within [0, 1]"},
+    {TABLE, "[[a, b], ...], at least two, a increasing from 0"},
     {MAP, "a map"},
     {LIST, "a list of maps"},
     {FREE, "a map of plain values"},
@@ -166,6 +167,23 @@ static const char *CheckPoint(Node node, int type, const char *range)
   return NULL;
 }
 
+static const char *CheckTable(Node node)
+{
+  double a, b, before = 0;
+
+  if (node->n < 2) return "has less than two points";
+  for (int i = 0; i < node->n; i++) {
+    Node pair = node->child[i];
+
+    if (pair->kind != NODE_LIST || pair->n != 2 || !NodeReal(pair->child[0], &a) || !NodeReal(pair->child[1], &b))
+      return WrongType;
+    if (!i && a != 0) return "does not start at 0";
+    if (i && a <= before) return "is not increasing";
+    before = a;
+  }
+  return NULL;
+}
+
 static const char *CheckHistory(Node node)
 {
   double t, before = 0, factor;
@@ -214,6 +232,7 @@ static const char *CheckList(const SchemaKey *key, Node node)
              ? NULL
              : WrongType;
   if (key->type & HISTORY) return CheckHistory(node);
+  if (key->type & TABLE) return CheckTable(node);
   if (key->type & (REALS | TEXTS | CHOICES)) return CheckEntries(key, node);
   return WrongType;
 }

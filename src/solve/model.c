@@ -184,6 +184,7 @@ PetscErrorCode ModelAccept(Model model)
   PetscBool       ok;
 
   PetscFunctionBeginUser;
+  PetscCall(ElasticityAccept(model->problem->elasticity, model->u));
   PetscCall(ProblemResidual(model->problem, model->u, model->t, model->t, &ok));
   PetscCall(ProblemMotion(model->problem, work->accepted_u, work->accepted_t, model->u, model->t, &motion));
   if (stepped) work->rate = motion / (model->t - work->accepted_t);
@@ -275,6 +276,7 @@ PetscErrorCode ModelArchive(Model model, Archive archive)
   PetscCall(LinearCheckArchive(model->linear, archive));
   if (model->problem->bodies) PetscCall(FreeBodiesArchive(model->problem->bodies, archive));
   if (model->contact) PetscCall(ContactArchive(model->contact, archive, model->u, model->t));
+  PetscCall(ElasticityArchive(model->problem->elasticity, archive));
   if (!ArchiveLoads(archive)) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(ProblemResidual(model->problem, model->u, model->t, model->t, &ok));
   if (model->contact) PetscCall(ContactRestore(model->contact));
@@ -329,6 +331,7 @@ PetscErrorCode ModelEffects(Model model, char *text, size_t size)
                           scene->kinematics == KINEMATICS_FINITE ? "finite strain" : "small strain",
                           ProblemHasFormulation(model->problem, FORMULATION_ENHANCED) ? ", enhanced strains" : "",
                           ProblemHasFormulation(model->problem, FORMULATION_FBAR) ? ", mean dilatation" : ""));
+  if (ProblemIsPlastic(model->problem)) PetscCall(PetscStrlcat(text, ", plasticity", size));
   PetscCall(ModelContactEffects(scene, text, size));
   PetscCall(PetscStrlen(text, &start));
   PetscCall(PetscSNPrintf(text + start, size - start, "%s%s%s%s%s%s", surface ? ", surface to surface" : "",

@@ -546,7 +546,27 @@ PetscErrorCode ProblemReaction(Problem problem, const MeshGroup *group, PetscRea
 @*/
 PetscBool ProblemIsLinear(Problem problem)
 {
-  return problem->scene->kinematics == KINEMATICS_SMALL && !problem->contact ? PETSC_TRUE : PETSC_FALSE;
+  return problem->scene->kinematics == KINEMATICS_SMALL && !problem->contact && !ProblemIsPlastic(problem)
+           ? PETSC_TRUE
+           : PETSC_FALSE;
+}
+
+/*@
+  ProblemIsPlastic - returns whether a deformable body is plastic.
+
+  Not collective, the same on all ranks
+
+  Input Parameter:
+. problem - the problem
+@*/
+PetscBool ProblemIsPlastic(Problem problem)
+{
+  const Scene scene = problem->scene;
+  PetscBool   is    = PETSC_FALSE;
+
+  for (int b = 0; b < scene->n_bodies; b++)
+    is = (PetscBool)(is || (!scene->bodies[b].rigid && MaterialGetLaw(scene->bodies[b].material.law)->plastic));
+  return is;
 }
 
 /*@

@@ -7,6 +7,7 @@
    once for each node b and point. */
 #pragma once
 #include "kernels/elementkernel.h"
+#include <stddef.h>
 
 /* CHUNK: number of points that are treated together. A, T and g of a chunk stay in the first-level cache. The blocks of
    K of a hex27 do not fit there; they are loaded and stored once for each chunk.
@@ -38,6 +39,8 @@ typedef struct {
   const ElasticLaw *law;
   int               finite, n_constants;
   const Lanes      *constants;
+  const Hardening  *hardening;
+  const double     *state; /* of a plastic law [points][PLASTIC_STATE], or NULL */
   const double     *X, *u;
   double           *W, *f, *K, *J, *H;
 } BatchCall;
@@ -176,11 +179,18 @@ LANES_INLINE void KeepLeastJ(const BatchCall *call, const Lanes *dilatation)
   }
 }
 
-/* Evaluates the law at a point. */
-LANES_INLINE void PointLaw(const BatchCall *call, const Lanes H[9], const Lanes *dilatation, Lanes *W, Lanes P[9],
-                           Lanes A[MATERIAL_TANGENT_SIZE])
+/* Evaluates the law at quadrature point p of the element. */
+LANES_INLINE void PointLaw(const BatchCall *call, int p, const Lanes H[9], const Lanes *dilatation, Lanes *W,
+                           Lanes P[9], Lanes A[MATERIAL_TANGENT_SIZE])
 {
-  call->law->evaluate(H, dilatation, call->n_constants, call->constants, W, P, A);
+  if (call->state) {
+    Lanes state[PLASTIC_STATE];
+
+    for (int k = 0; k < PLASTIC_STATE; k++) state[k] = CONST_LANE(call->state, p * PLASTIC_STATE + k);
+    VonMisesLaw(call->finite, H, dilatation, &call->constants[0], &call->constants[1], call->hardening, state, W, P, A,
+                NULL);
+  } else
+    call->law->evaluate(H, dilatation, call->n_constants, call->constants, W, P, A);
 }
 
 LANES_INLINE void StorePoint(const BatchCall *call, int p, const Lanes H[9])

@@ -1,0 +1,97 @@
+/* Yield stress and hardening of a plastic body, see sceneplasticity.h. */
+#include "sceneplasticity.h"
+#include "sceneread.h"
+#include <math.h>
+#include <stdio.h>
+
+/* Reads a number below the material of a body. */
+static double MaterialReal(Scene scene, const SceneBody *body, const char *key)
+{
+  return SchemaReal(SceneDocument(scene), "%s.material.%s", body->path, key);
+}
+
+static PetscErrorCode SceneReadTable(Scene scene, const SceneBody *body, Hardening *h)
+{
+  const Node list = SceneNode(scene, body->path, "material.hardening.table");
+  char       rows[16];
+
+  PetscFunctionBeginUser;
+  snprintf(rows, sizeof rows, "%d points", HARDENING_MAX_ROWS);
+  if (list->n > HARDENING_MAX_ROWS)
+    PetscCall(
+      SceneRefuse(scene, body->path, "material.hardening.table", "has too many points; allowed: at most", rows));
+  for (int i = 0; i < list->n; i++) {
+    for (int k = 0; k < 2; k++) (void)NodeReal(list->child[i]->child[k], &h->table[i][k]);
+    if (h->table[i][1] <= 0 || (i && h->table[i][1] < h->table[i - 1][1]))
+      PetscCall(SceneRefuse(scene, body->path, "material.hardening.table",
+                            "falls or is not positive; allowed: yield stresses above 0 that do not fall", NULL));
+  }
+  h->rows  = list->n;
+  h->yield = h->table[0][1];
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Reads the terms that are added to the yield stress. */
+static PetscErrorCode SceneReadTerms(Scene scene, const SceneBody *body, Hardening *h)
+{
+  PetscFunctionBeginUser;
+  if (SceneHas(scene, body->path, "material.hardening.linear"))
+    h->linear = MaterialReal(scene, body, "hardening.linear");
+  if (SceneHas(scene, body->path, "material.hardening.voce")) {
+    h->saturation = MaterialReal(scene, body, "hardening.voce.saturation");
+    h->rate       = MaterialReal(scene, body, "hardening.voce.rate");
+    if (h->saturation < h->yield)
+      PetscCall(SceneRefuse(scene, body->path, "material.hardening.voce.saturation",
+                            "is below yield; allowed: the yield stress at large strains, at least yield", NULL));
+  }
+  if (SceneHas(scene, body->path, "material.hardening.swift")) {
+    h->strength = MaterialReal(scene, body, "hardening.swift.strength");
+    h->exponent = MaterialReal(scene, body, "hardening.swift.exponent");
+    h->strain   = pow(h->yield / h->strength, 1 / h->exponent);
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  SceneReadPlasticity - reads yield stress and hardening of a body, or refuses them where the law has none.
+
+  Collective
+
+  Input Parameters:
++ scene - the scene
+- body  - its law has been read; its hardening is filled
+@*/
+PetscErrorCode SceneReadPlasticity(Scene scene, SceneBody *body)
+{
+  static const char *const Terms[] = {"material.hardening.linear", "material.hardening.voce",
+                                      "material.hardening.swift"};
+  const int                plastic = MaterialGetLaw(body->material.law)->plastic;
+  const int                table   = SceneHas(scene, body->path, "material.hardening.table");
+  const int                yield   = SceneHas(scene, body->path, "material.yield");
+
+  PetscFunctionBeginUser;
+  if (!plastic) {
+    if (yield) PetscCall(SceneRefuse(scene, body->path, "material.yield", "is for law: von_mises", NULL));
+    if (SceneHas(scene, body->path, "material.hardening"))
+      PetscCall(SceneRefuse(scene, body->path, "material.hardening", "is for law: von_mises", NULL));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  if (yield && table)
+    PetscCall(SceneRefuse(scene, body->path, "material.yield",
+                          "has no place beside hardening.table, whose first value is the yield stress", NULL));
+  for (int k = 0; k < 3 && table; k++) {
+    if (SceneHas(scene, body->path, Terms[k]))
+      PetscCall(
+        SceneRefuse(scene, body->path, Terms[k], "has no place beside hardening.table; allowed: one of both", NULL));
+  }
+  if (!yield && !table)
+    PetscCall(SceneRefuse(scene, body->path, "material.law",
+                          "von_mises needs yield; allowed: yield, or hardening with a table", NULL));
+  if (table)
+    PetscCall(SceneReadTable(scene, body, &body->material.hardening));
+  else {
+    body->material.hardening.yield = MaterialReal(scene, body, "yield");
+    PetscCall(SceneReadTerms(scene, body, &body->material.hardening));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
