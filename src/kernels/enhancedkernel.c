@@ -259,18 +259,19 @@ LANES_INLINE int Advance(const int modes, const Lanes *W, const Lanes *f, const 
   return left;
 }
 
-/* Solves for the modes of each lane. A lane that does not converge gets J = NaN and no modes. With small strains one
-   step is enough. */
+/* Solves for the modes of each lane. A lane that does not converge gets J = NaN and no modes. With small strains and
+   without plasticity one step is enough. */
 LANES_INLINE void SolveModes(const BatchCall *call, const int points, const int dim, const int hoop, Enhanced *x)
 {
   const int  modes       = dim * dim + hoop;
+  const int  iterates    = call->finite || call->state;
   ModesState modes_state = {.W = (Lanes){0} + __DBL_MAX__, .active = (Lanes){0} + 1};
   int        left        = LANES;
   Lanes      K[MAX_MODES][MAX_MODES], mu;
 
   call->law->shear(call->n_constants, call->constants, &mu);
   for (int q = 0; q < points; q++) modes_state.scale += converged_strain2 * mu * x->volume[q];
-  for (int iteration = 0; left && iteration < (call->finite ? MAX_ITERATIONS : 1); iteration++) {
+  for (int iteration = 0; left && iteration < (iterates ? MAX_ITERATIONS : 1); iteration++) {
     Lanes W, f[MAX_MODES], d[MAX_MODES];
 
     ModeSystem(call, points, dim, hoop, iteration < RENEWED_FIRST || iteration >= RENEWED_AGAIN, x, &W, f, K);
@@ -278,7 +279,7 @@ LANES_INLINE void SolveModes(const BatchCall *call, const int points, const int 
     SolveModesSystem(modes, K, d);
     left = Advance(modes, &W, f, d, &modes_state, x);
   }
-  for (int lane = 0; lane < LANES && call->finite; lane++) {
+  for (int lane = 0; lane < LANES && iterates; lane++) {
     for (int k = 0; k < modes && modes_state.active[lane] != 0; k++) x->b[k][lane] = 0;
     if (modes_state.active[lane] != 0) call->J[lane] = NAN;
   }

@@ -122,6 +122,17 @@ static void PrintGuards(const RunFigures *figures, FILE *stream)
   fprintf(stream, n ? "\n" : "guards   none acted\n");
 }
 
+/* Prints the energies of plastic bodies and how far the work is from their sum. */
+static void PrintEnergy(const EnergyFigures *energy, FILE *stream)
+{
+  const double sum = (double)(energy->elastic + energy->plastic), work = (double)energy->work;
+
+  fprintf(stream, "energy   work %.6g on the bodies = %.6g elastic + %.6g plastic", work, (double)energy->elastic,
+          (double)energy->plastic);
+  if (sum > 0) fprintf(stream, ", %.2g %% apart by the trapezoidal rule over the steps", 100 * fabs(work - sum) / sum);
+  fprintf(stream, "; largest plastic strain %.4g\n", (double)energy->strain);
+}
+
 /* The stream, and how many changes to try have been printed */
 typedef struct {
   FILE *stream;
@@ -197,6 +208,7 @@ void EndReportPrint(const RunFigures *figures, FILE *stream)
     PrintPenaltyError(&figures->pairs[p], stream);
     PrintSides(&figures->pairs[p], stream);
   }
+  if (SceneIsPlastic(figures->scene) && figures->last) PrintEnergy(&figures->last->energy, stream);
   PrintGuards(figures, stream);
   if (way->failed.attempts) PrintFailure(figures, stream);
   AdviceGive(figures, PrintAdvice, stream);

@@ -24,16 +24,11 @@ struct _n_Fields {
 };
 
 /* What output.fields may ask for, and what ParaView sees of it */
-enum { SHOW_DISPLACEMENT, SHOW_STRESS, SHOW_CONTACT, SHOW_KINDS };
+enum { SHOW_DISPLACEMENT, SHOW_STRESS, SHOW_CONTACT, SHOW_PLASTIC, SHOW_KINDS };
 static const XdmfArray shown[] = {
-  {"displacement", 3, SHOW_DISPLACEMENT},
-  {"von_mises", 1, SHOW_STRESS},
-  {"stress", 6, SHOW_STRESS},
-  {"gap", 1, SHOW_CONTACT},
-  {"penetration", 1, SHOW_CONTACT},
-  {"penalty", 1, SHOW_CONTACT},
-  {"pressure", 1, SHOW_CONTACT},
-  {"normal", 3, SHOW_CONTACT},
+  {"displacement", 3, SHOW_DISPLACEMENT}, {"von_mises", 1, SHOW_STRESS}, {"stress", 6, SHOW_STRESS},
+  {"plastic_strain", 1, SHOW_PLASTIC},    {"gap", 1, SHOW_CONTACT},      {"penetration", 1, SHOW_CONTACT},
+  {"penalty", 1, SHOW_CONTACT},           {"pressure", 1, SHOW_CONTACT}, {"normal", 3, SHOW_CONTACT},
 };
 
 /* Contact values of one node: columns of the nodal array that FieldsWriteContact() forms */
@@ -77,6 +72,7 @@ static PetscBool FieldsShows(Fields fields, int kind)
   switch (kind) {
   case SHOW_DISPLACEMENT: return fields->scene->output.displacement ? PETSC_TRUE : PETSC_FALSE;
   case SHOW_STRESS: return fields->scene->output.stress ? PETSC_TRUE : PETSC_FALSE;
+  case SHOW_PLASTIC: return fields->scene->output.stress && SceneIsPlastic(fields->scene) ? PETSC_TRUE : PETSC_FALSE;
   default: return fields->scene->output.contact && fields->model->contact ? PETSC_TRUE : PETSC_FALSE;
   }
 }
@@ -302,6 +298,22 @@ static PetscErrorCode FieldsWriteStress(Fields fields, hid_t file)
   PetscCall(FieldsWriteNodal(fields, file, "stress", stress, 6, 0, 6));
   PetscCall(FieldsWriteNodal(fields, file, "von_mises", equivalent, 1, 0, 1));
   PetscCall(PetscFree3(stress, weight, equivalent));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode FieldsWritePlasticStrain(Fields fields, hid_t file)
+{
+  const Mesh mesh = fields->model->mesh;
+  PetscReal *strain, *weight;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc2(mesh->n_nodes, &strain, mesh->n_nodes, &weight));
+  PetscCall(ElasticityNodalPlasticStrain(fields->model->problem->elasticity, strain, weight));
+  PetscCall(MeshSumNodes(mesh, 1, strain));
+  PetscCall(MeshSumNodes(mesh, 1, weight));
+  for (PetscInt n = 0; n < mesh->n_nodes; n++) strain[n] /= weight[n];
+  PetscCall(FieldsWriteNodal(fields, file, "plastic_strain", strain, 1, 0, 1));
+  PetscCall(PetscFree2(strain, weight));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -577,6 +589,7 @@ PetscErrorCode FieldsWrite(Fields fields, PetscInt step, PetscReal t)
   CallHDF5(H5Gclose(group));
   if (FieldsShows(fields, SHOW_DISPLACEMENT)) PetscCall(FieldsWriteDisplacement(fields, file));
   if (FieldsShows(fields, SHOW_STRESS)) PetscCall(FieldsWriteStress(fields, file));
+  if (FieldsShows(fields, SHOW_PLASTIC)) PetscCall(FieldsWritePlasticStrain(fields, file));
   if (FieldsShows(fields, SHOW_CONTACT)) PetscCall(FieldsWriteContact(fields, file));
   CallHDF5(H5Fclose(file));
   PetscCall(FieldsRemember(fields, t));

@@ -265,7 +265,11 @@ static PetscErrorCode ResultsArchiveStep(Results results, Archive archive)
                                &contact->max_penetration_over_h,
                                &contact->penalty_min,
                                &contact->penalty_max,
-                               &contact->force};
+                               &contact->force,
+                               &last->energy.elastic,
+                               &last->energy.plastic,
+                               &last->energy.work,
+                               &last->energy.strain};
   PetscInt       *integer[] = {&last->step,     &last->attempts, &last->newton, &last->krylov,           &last->tied,
                                &contact->nodes, &contact->in,    &contact->out, &contact->outside_window};
 

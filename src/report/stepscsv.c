@@ -150,6 +150,15 @@ static void FillContact(const StepRecord *step, PetscReal row[STEP_COLUMNS])
   if (contact->outside_window >= 0) row[COLUMN_OUTSIDE_WINDOW] = (PetscReal)contact->outside_window;
 }
 
+/* Fills the columns that only a run with a plastic body has. */
+static void FillEnergy(const EnergyFigures *energy, PetscReal row[STEP_COLUMNS])
+{
+  row[COLUMN_PLASTIC_STRAIN] = energy->strain;
+  row[COLUMN_ELASTIC_ENERGY] = energy->elastic;
+  row[COLUMN_PLASTIC_WORK]   = energy->plastic;
+  row[COLUMN_WORK]           = energy->work;
+}
+
 /* Fills the fixed columns of a row; NaN where there is no value. */
 static void FillRow(Scene scene, const StepRecord *step, PetscReal wall_s, PetscReal row[STEP_COLUMNS])
 {
@@ -164,6 +173,7 @@ static void FillRow(Scene scene, const StepRecord *step, PetscReal wall_s, Petsc
   row[COLUMN_WALL_S]        = wall_s;
   row[COLUMN_CONTACT_NODES] = row[COLUMN_NODES_IN] = row[COLUMN_NODES_OUT] = 0.0;
   if (scene->n_contacts) FillContact(step, row);
+  if (SceneIsPlastic(scene)) FillEnergy(&step->energy, row);
 }
 
 /*@

@@ -164,6 +164,20 @@ static void AddState(cJSON *json, Scene scene, PetscBool has_contact, const Step
   for (int i = 0; i < scene->n_probes; i++) AddReal(map, scene->probes[i].name, last ? probes[i] : NAN);
 }
 
+/* Adds the energies of plastic bodies, if there are any. */
+static void AddEnergy(cJSON *json, Scene scene, const StepRecord *last)
+{
+  const EnergyFigures energy = last ? last->energy : (EnergyFigures){0};
+  cJSON              *map;
+
+  if (!SceneIsPlastic(scene)) return;
+  map = cJSON_AddObjectToObject(json, "energy");
+  AddReal(map, "elastic", energy.elastic);
+  AddReal(map, "plastic", energy.plastic);
+  AddReal(map, "work", energy.work);
+  AddReal(json, "max_plastic_strain", energy.strain);
+}
+
 static void AddPartition(cJSON *json, const Mesh mesh)
 {
   cJSON *map = cJSON_AddObjectToObject(json, "partition");
@@ -263,6 +277,7 @@ PetscErrorCode SummaryWrite(const Mesh mesh, const RunFigures *figures, const ch
   AddUsage(json, figures);
   AddGuards(json, run->way);
   AddState(json, figures->scene, figures->n_pairs ? PETSC_TRUE : PETSC_FALSE, figures->last, probes);
+  AddEnergy(json, figures->scene, figures->last);
   AddPartition(json, mesh);
   AddContact(json, figures);
   text = cJSON_Print(json);

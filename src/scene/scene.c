@@ -883,6 +883,21 @@ static PetscBool MotionBreaks(const Motion *motion, PetscReal t)
 }
 
 /*@
+  SceneIsPlastic - tells whether some body has a plastic law.
+
+  Not collective
+
+  Input Parameter:
+. scene - the scene
+@*/
+PetscBool SceneIsPlastic(Scene scene)
+{
+  for (int b = 0; b < scene->n_bodies; b++)
+    if (!scene->bodies[b].rigid && MaterialGetLaw(scene->bodies[b].material.law)->plastic) return PETSC_TRUE;
+  return PETSC_FALSE;
+}
+
+/*@
   SceneBreaks - tells whether some load, imposed displacement or motion has a breakpoint at load parameter t.
 
   Not collective

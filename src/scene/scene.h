@@ -181,6 +181,7 @@ PetscErrorCode SceneReadAgain(MPI_Comm, const char *file, const char *where, con
 PetscErrorCode SceneDestroy(Scene *);
 PetscBool      SceneSameProblem(const char *a, const char *b);
 const char    *SceneWhere(Scene, const char *path, const char *key);
+PetscBool      SceneIsPlastic(Scene);
 PetscBool      SceneBreaks(Scene, PetscReal t);
 PetscBool      SceneLoadVaries(const SceneLoad *, int component);
 PetscReal      SceneLoadValue(const SceneLoad *, int component, const PetscReal X[3], PetscReal t);

@@ -19,5 +19,9 @@ const char *const StepColumnNames[STEP_COLUMNS] = {
   [COLUMN_PENALTY_MIN]     = "penalty_min",
   [COLUMN_PENALTY_MAX]     = "penalty_max",
   [COLUMN_CONTACT_FORCE]   = "contact_force",
+  [COLUMN_PLASTIC_STRAIN]  = "max_plastic_strain",
+  [COLUMN_ELASTIC_ENERGY]  = "elastic_energy",
+  [COLUMN_PLASTIC_WORK]    = "plastic_work",
+  [COLUMN_WORK]            = "work",
   [COLUMN_WALL_S]          = "wall_s",
 };

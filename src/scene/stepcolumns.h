@@ -23,6 +23,10 @@ typedef enum {
   COLUMN_PENALTY_MIN,
   COLUMN_PENALTY_MAX,
   COLUMN_CONTACT_FORCE,
+  COLUMN_PLASTIC_STRAIN, /* only scenes with a plastic body have this and the energies */
+  COLUMN_ELASTIC_ENERGY,
+  COLUMN_PLASTIC_WORK,
+  COLUMN_WORK,
   COLUMN_WALL_S,
   STEP_COLUMNS
 } StepColumn;

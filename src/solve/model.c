@@ -47,6 +47,8 @@ PetscErrorCode ModelCreate(Scene scene, Mesh mesh, Model *out)
   PetscCall(VecDuplicate(model->x, &model->work->look_ahead));
   PetscCall(VecDuplicate(model->x, &model->work->residual));
   if (scene->kinematics != KINEMATICS_SMALL) PetscCall(ExtrapolationCreate(mesh, &model->work->extrapolation));
+  if (ProblemIsPlastic(model->problem))
+    PetscCall(EnergyBalanceCreate(mesh, model->problem->elasticity, &model->balance));
   PetscCall(ModelCreateSNES(model));
   PetscCall(ModelCreatePenaltyError(model));
   if (model->contact) PetscCall(ContactCycleCreate(model->contact, &model->work->watch));
@@ -72,6 +74,7 @@ PetscErrorCode ModelDestroy(Model *model)
   PetscCall(LinearCheckDestroy(&m->linear));
   PetscCall(ContactCycleDestroy(&m->work->watch));
   PetscCall(ExtrapolationDestroy(&m->work->extrapolation));
+  PetscCall(EnergyBalanceDestroy(&m->balance));
   PetscCall(VecDestroy(&m->x));
   PetscCall(VecDestroy(&m->work->accepted_x));
   PetscCall(VecDestroy(&m->work->look_ahead));
@@ -185,6 +188,7 @@ PetscErrorCode ModelAccept(Model model)
 
   PetscFunctionBeginUser;
   PetscCall(ElasticityAccept(model->problem->elasticity, model->u));
+  if (model->balance) PetscCall(EnergyBalanceAdd(model->balance, work->accepted_u, model->u));
   PetscCall(ProblemResidual(model->problem, model->u, model->t, model->t, &ok));
   PetscCall(ProblemMotion(model->problem, work->accepted_u, work->accepted_t, model->u, model->t, &motion));
   if (stepped) work->rate = motion / (model->t - work->accepted_t);
@@ -277,6 +281,7 @@ PetscErrorCode ModelArchive(Model model, Archive archive)
   if (model->problem->bodies) PetscCall(FreeBodiesArchive(model->problem->bodies, archive));
   if (model->contact) PetscCall(ContactArchive(model->contact, archive, model->u, model->t));
   PetscCall(ElasticityArchive(model->problem->elasticity, archive));
+  if (model->balance) PetscCall(EnergyBalanceArchive(model->balance, archive, work->accepted_u));
   if (!ArchiveLoads(archive)) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(ProblemResidual(model->problem, model->u, model->t, model->t, &ok));
   if (model->contact) PetscCall(ContactRestore(model->contact));

@@ -6,6 +6,7 @@
    state, ModelRestore() returns to the accepted state. The model does not know step sizes; src/step chooses them. */
 #pragma once
 #include "linear/linearcheck.h"
+#include "solve/energybalance.h"
 #include "solve/failure.h"
 #include "solve/problem.h"
 
@@ -55,15 +56,16 @@ typedef struct {
 } PenaltyError;
 
 typedef struct _n_Model {
-  Problem     problem;
-  Scene       scene;   /* of the problem */
-  Mesh        mesh;    /* of the problem */
-  Contact     contact; /* of the problem; NULL: the scene has none */
-  SNES        snes;
-  LinearCheck linear; /* of the solver's KSP */
-  Vec         x;      /* free displacements (length) */
-  PetscReal  *u;      /* local displacements u[n_nodes*dim] (length) at load parameter t, prescribed ones included */
-  PetscReal   t;
+  Problem       problem;
+  Scene         scene;   /* of the problem */
+  Mesh          mesh;    /* of the problem */
+  Contact       contact; /* of the problem; NULL: the scene has none */
+  SNES          snes;
+  LinearCheck   linear; /* of the solver's KSP */
+  Vec           x;      /* free displacements (length) */
+  PetscReal    *u;      /* local displacements u[n_nodes*dim] (length) at load parameter t, prescribed ones included */
+  PetscReal     t;
+  EnergyBalance balance; /* NULL: no body is plastic */
   struct _n_ModelWork *work;
 } *Model;
 

@@ -561,12 +561,7 @@ PetscBool ProblemIsLinear(Problem problem)
 @*/
 PetscBool ProblemIsPlastic(Problem problem)
 {
-  const Scene scene = problem->scene;
-  PetscBool   is    = PETSC_FALSE;
-
-  for (int b = 0; b < scene->n_bodies; b++)
-    is = (PetscBool)(is || (!scene->bodies[b].rigid && MaterialGetLaw(scene->bodies[b].material.law)->plastic));
-  return is;
+  return SceneIsPlastic(problem->scene) ? PETSC_TRUE : PETSC_FALSE;
 }
 
 /*@

@@ -289,6 +289,7 @@ static PetscErrorCode LoadStepperAccept(LoadStepper stepper, PetscReal dt, Petsc
   record->beta     = stepper->size.beta;
   record->tied     = stepper->size.tied;
   PetscCall(ModelAccept(model));
+  record->energy    = EnergyBalanceGet(model->balance);
   stepper->start    = stepper->size;
   stepper->report.t = model->t;
   stepper->report.steps++;

@@ -114,8 +114,8 @@ static void TakeLane(const Batch *b, int lane, double *X, double *u)
 /* All elements x geometries x formulations x (small, each finite law) */
 static int NextCase(KernelCase *kernel)
 {
-  static const KernelCase first = {ELEMENT_TRI3,    GEOMETRY_PLANE_STRAIN, KINEMATICS_SMALL,
-                                   MATERIAL_LINEAR, FORMULATION_FULL,      0};
+  static const KernelCase first = {
+    ELEMENT_TRI3, GEOMETRY_PLANE_STRAIN, KINEMATICS_SMALL, MATERIAL_LINEAR, FORMULATION_FULL, 0, NULL};
 
   if (kernel->type == ELEMENT_TYPES) {
     *kernel = first;
