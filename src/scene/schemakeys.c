@@ -47,7 +47,7 @@ const SchemaKey SchemaKeys[] = {
            "named; without the key there is none"},
   {"bodies.*.material.hardening.linear", REAL, .range = "[0, inf)", .unit = "stress",
    .help = "slope of the yield stress over the equivalent plastic strain"},
-  {"bodies.*.material.hardening.table", TABLE, .unit = "[1, stress]",
+  {"bodies.*.material.hardening.table", TABLE, .unit = "strain and stress",
    .help = "yield stress (true stress) over the equivalent plastic strain, in the place of yield and of all terms; it "
            "must not fall, is linear between its points, and goes on with its last slope"},
   {"bodies.*.material.hardening.voce", MAP, .help = "(saturation - yield)*(1 - exp(-rate*strain))"},
