@@ -28,7 +28,8 @@ PetscErrorCode EnergyBalanceCreate(Mesh mesh, Elasticity elasticity, EnergyBalan
   PetscCall(PetscNew(balance));
   (*balance)->mesh       = mesh;
   (*balance)->elasticity = elasticity;
-  PetscCall(PetscCalloc2(n, &(*balance)->f, n, &(*balance)->f_0));
+  PetscCall(PetscCalloc1(n, &(*balance)->f));
+  PetscCall(PetscCalloc1(n, &(*balance)->f_0));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -44,7 +45,8 @@ PetscErrorCode EnergyBalanceDestroy(EnergyBalance *balance)
 {
   PetscFunctionBeginUser;
   if (!*balance) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PetscFree2((*balance)->f, (*balance)->f_0));
+  PetscCall(PetscFree((*balance)->f));
+  PetscCall(PetscFree((*balance)->f_0));
   PetscCall(PetscFree(*balance));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
