@@ -480,6 +480,11 @@ STATES = {  # scene and what makes it short; a checkpoint lies before the last s
                                        "contact.0.offset=live", "loads.0.uy=-20",
                                        "stepping={control: fixed, initial: 0.25}",
                                        "probes=[{name: force, reaction: plate_top, component: y}]"]),
+    "plastic states": ("pipe_pinch", 3, ["mesh.order=1", "mesh.parameters={n_arc: 8, n_wall: 2, n_len: 3}",
+                                         "bodies.0.material={law: von_mises, E: 20000, nu: 0.3, yield: 100, "
+                                         "hardening: {linear: 200}}", "loads.0.uy=-20", "contact.0.penalty={scale: 1}",
+                                         "stepping={control: fixed, initial: 0.125}",
+                                         "probes=[{name: force, reaction: plate_top, component: y}]"]),
     "factors with a border": ("pipe_pinch", 3, ["mesh.parameters={n_arc: 18, n_wall: 1, n_len: 8}",
                                                 "contact.0.smoother=diffuse", "contact.0.degree=2", "loads.0.uy=-20",
                                                 "stepping={control: fixed, initial: 0.25}",
