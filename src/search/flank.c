@@ -165,10 +165,23 @@ static PetscReal DepthAtEdge(const Nearest *look, const Candidate *c, const Flan
   return PetscMax(0, depth);
 }
 
+/* How far the slave turns with the master towards a facet that the slave point does not face: 1 where the mean normal
+   of the slave at a node of the point's own face opposes that facet. */
+static PetscReal SlaveTurns(const Nearest *look, const PetscReal normal[3])
+{
+  const SlavePoints slaves = look->slaves;
+  PetscReal         turns  = 0;
+
+  for (PetscInt k = slaves->ptr[look->q]; slaves->normal && k < slaves->ptr[look->q + 1]; k++)
+    turns = PetscMax(turns, NeighbourListsOpposing(&slaves->normal[3 * slaves->node[k]], normal));
+  return turns;
+}
+
 /* Part of a slave point's area that takes part where the flank ends at a convex edge of facet c, beyond which there is
    a facet that the point does not face. The width over which it fades shrinks as the point turns towards that facet,
    because then the plane beyond the edge lies in front of the master. Past the edge, a point that is deeper than
-   FLANK_DEPTH is in front of another side of the master, not behind this one. */
+   FLANK_DEPTH is in front of another side of the master, not behind this one. Where the slave turns with the master,
+   its next face meets the side beyond the edge, and nothing of this one's area is left out inside. */
 static PetscReal EndShare(const Nearest *look, const Candidate *c, const Candidate *beyond, const FlankEdge *edge)
 {
   const PetscReal width  = look->size * NeighbourListsAverse(look->lists, look->q, beyond->normal),
@@ -178,6 +191,7 @@ static PetscReal EndShare(const Nearest *look, const Candidate *c, const Candida
 
   if (2 * PetscAbsReal(past) >= width) return past > 0 ? 0 : 1;
   place = past / width + 0.5;
+  place += SlaveTurns(look, beyond->normal) * (PetscMax(0, 2 * place - 1) - place);
   return (1 - SmoothStep(place)) *
          (1 - SmoothStep(2 * place) * SmoothStep(DepthAtEdge(look, c, edge) / (FLANK_DEPTH * look->size)));
 }

@@ -361,6 +361,7 @@ static PetscErrorCode NeighbourListsFill(ContactSearch s, NeighbourLists lists, 
   PetscCall(CandidatesTree(dim, field->n_candidates, field->candidates, &tree));
   for (PetscInt q = 0; q < lists->n_slaves; q++) {
     Nearest look = {.lists      = lists,
+                    .slaves     = s->slaves,
                     .candidates = field->candidates,
                     .q          = q,
                     .own        = s->slaves->ptr[q + 1] - s->slaves->ptr[q],
@@ -416,7 +417,7 @@ PetscErrorCode SearchLists(ContactSearch s, const PetscReal *u, PetscReal t, Pet
   SearchSlaveBox(s, box);
   PetscCall(SearchFieldCreate(s, u, t, box, distance, lists, &field));
   PetscCall(NeighbourListsCreateSlaves(s, lists));
-  PetscCall(SlavePointsNormals(s->slaves, u, lists->slave_normal));
+  PetscCall(SlavePointsNormals(s->slaves, s->n_images, s->images, u, lists->slave_normal));
   if (s->fit->fitted) PetscCall(FitSupportCreate(s, lists, &field, &fit));
   if (s->fit->fitted && s->fit->global_frame)
     PetscCall(SurfaceMeanNormal(s->master, s->loads, s->n_images, s->images, u, t, fit.plane, NULL));
