@@ -16,20 +16,27 @@ typedef struct {
   PetscBool convex;   /* the other facet lies below the plane of this one */
 } FlankEdge;
 
-/* Distance of the slave point to a facet. */
-static PetscReal CandidateDistance(const Nearest *look, const Candidate *c)
+/* Projects the slave point onto a facet, and returns the distance. */
+static PetscReal CandidateFoot(const Nearest *look, const Candidate *c, Foot *foot)
 {
   PetscReal x[FACE_MAX_NODES * 3];
   Facet     facet = c->facet;
-  Foot      foot;
 
   facet.free_edges = 0;
   for (int a = 0; a < ElementGet(facet.type)->nodes; a++) {
     NeighbourListsRelative(look->lists, look->q, facet.nodes[a], &x[a * look->lists->dim]);
     facet.nodes[a] = a;
   }
-  FacetProject(look->lists->dim, &facet, x, &foot);
-  return PetscAbsReal(foot.gap);
+  FacetProject(look->lists->dim, &facet, x, foot);
+  return PetscAbsReal(foot->gap);
+}
+
+/* Distance of the slave point to a facet. */
+static PetscReal CandidateDistance(const Nearest *look, const Candidate *c)
+{
+  Foot foot;
+
+  return CandidateFoot(look, c, &foot);
 }
 
 static PetscBool HasNode(const Candidate *c, PetscInt node)
@@ -153,6 +160,53 @@ int FlankSort(const Nearest *look, int *n, int *found)
     found[facing++] = c;
   }
   return facing;
+}
+
+/* Does the centre of a facet lie in front of the plane of another one? */
+static PetscBool InFront(const Nearest *look, const Candidate *c, const Candidate *o)
+{
+  PetscReal height = 0;
+
+  for (int d = 0; d < look->lists->dim; d++) height += c->normal[d] * (o->centre[d] - c->centre[d]);
+  return (PetscBool)(height > FLANK_BELOW * look->size);
+}
+
+/*@
+  FlankLeaveCorner - finds a better facet where the nearest one hardly opposes the slave point and forms a hollow with
+  another one that does.
+
+  Not collective
+
+  Input Parameters:
++ look   - the slave point with its nearest facet and foot
+. facing - number of facets that face the point
+- found  - their numbers
+
+  Note:
+  In the corner of a groove, points of a wall are next to the floor. Where the floor dents it faces them a little, and
+  would take them from the wall and give them back. A facet counts as farther away by the part of a face of the slave
+  that it does not oppose.
+@*/
+void FlankLeaveCorner(Nearest *look, int facing, const int *found)
+{
+  const Candidate *nearest = &look->candidates[look->best];
+  const PetscReal  opposed = NeighbourListsOpposed(look->lists, look->q, nearest->normal);
+  PetscReal        least   = look->distance + look->size * (1 - opposed);
+
+  for (int i = 0; i < facing && opposed < 1; i++) {
+    const Candidate *c = &look->candidates[found[i]];
+    PetscReal        distance, rank;
+    Foot             foot;
+
+    if (!InFront(look, nearest, c) || !InFront(look, c, nearest)) continue;
+    distance = CandidateFoot(look, c, &foot);
+    rank     = distance + look->size * (1 - NeighbourListsOpposed(look->lists, look->q, c->normal));
+    if (rank >= least - look->tie) continue;
+    least          = rank;
+    look->best     = found[i];
+    look->distance = distance;
+    look->foot     = foot;
+  }
 }
 
 /* How far the slave point is behind the plane of a facet at one of its edges; 0 in front of it. */

@@ -333,8 +333,9 @@ static PetscErrorCode FillSlave(NeighbourLists lists, const SearchField *field, 
   lists->averse[q] = (PetscBool)(look->best < 0 && look->averse);
   lists->share[q]  = 0;
   if (look->best < 0) PetscFunctionReturn(PETSC_SUCCESS);
-  count           = BoxTreeNear(tree, look->x, look->least + margin + motion, (int)field->n_candidates, found);
-  facing          = FlankSort(look, &count, found);
+  count  = BoxTreeNear(tree, look->x, look->least + margin + motion, (int)field->n_candidates, found);
+  facing = FlankSort(look, &count, found);
+  FlankLeaveCorner(look, facing, found);
   lists->share[q] = FlankShare(look, facing, count, found, ends);
   if (lists->share[q] == 0) lists->averse[q] = FlankIsBeside(look, facing, count, found);
   lists->kappa[q] = ListCurvature(look, facing, found);
