@@ -196,6 +196,25 @@ void MaterialLame(double E, double nu, double *lambda, double *mu)
 }
 
 /*@
+  MaterialVolumeModulus - returns the modulus k of the part k/2 (ln J)^2 of a law's energy, whose pressure is k ln J.
+
+  Not collective
+
+  Input Parameters:
++ law    - the law
+. lambda - Lame's first constant (stress)
+- mu     - shear modulus (stress)
+
+  Note:
+  It is 0 for laws without such a part. A law with one is nearly incompressible where k is large against mu.
+@*/
+double MaterialVolumeModulus(MaterialLaw law, double lambda, double mu)
+{
+  (void)mu;
+  return law == MATERIAL_NEO_HOOKEAN ? lambda : 0;
+}
+
+/*@
   MaterialPoint - computes energy, stress and tangent of one point.
 
   Not collective

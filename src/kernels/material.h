@@ -1,7 +1,7 @@
 /* Elastic laws at a point: stress and tangent from the deformation gradient. Plain C, no PETSc, no allocation.
 
    MaterialGetLaw() gives the function of a law, which treats LANES points at a time. MaterialPoint() evaluates one
-   point. A new law is a file with its function and a line in base/choices.h. */
+   point. MaterialVolumeModulus() says which part of a law's energy belongs to the volume alone. A new law is a file with its function and a line in base/choices.h. */
 #pragma once
 #include "base/choices.h"
 #include "base/lanes.h"
@@ -41,3 +41,4 @@ MaterialLawFn *MaterialGetLaw(MaterialLaw, int finite);
 void           MaterialPoint(const Material *, int finite, const double H[9], double *W, double P[9],
                              double A[MATERIAL_TANGENT_SIZE]);
 void           MaterialLame(double E, double nu, double *lambda, double *mu);
+double         MaterialVolumeModulus(MaterialLaw, double lambda, double mu);

@@ -147,6 +147,8 @@ static PetscErrorCode ModelDepart(Model model, PetscReal t)
   work->cycle[0]           = '\0';
   work->energy             = 0;
   ModelForgetPenaltyError(model);
+  if (work->solved)
+    PetscCall(PetscArraycpy(work->solved, work->accepted_u, model->mesh->n_nodes * model->mesh->dim));
   if (!model->contact) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(ProblemImposedMotion(model->problem, work->accepted_u, work->accepted_t, t, &motion));
   motion = PetscMax(motion, PROBLEM_MOTION_SAFETY * work->rate * (t - work->accepted_t));

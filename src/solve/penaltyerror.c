@@ -97,7 +97,7 @@ static PetscErrorCode ModelPenaltySlope(Model model, Vec slope, PetscBool *known
   PetscCall(ModelPenaltyForces(model, forces));
   PetscCall(LinearSolverRenew(model->work->solver));
   PetscCall(LinearSolverSetStart(model->work->solver, 0));
-  PetscCall(ModelTangent(model, model->problem->trial, model->t));
+  PetscCall(ModelTangent(model, model->problem->trial, NULL, model->t));
   PetscCall(SNESGetKSP(model->snes, &ksp));
   PetscCall(KSPSetOperators(ksp, model->problem->A, model->problem->P));
   PetscCall(KSPSolve(ksp, forces, slope));

@@ -34,7 +34,8 @@ typedef struct {
   PetscInt  cycles;                             /* times that a contact set repeated itself */
   PetscInt  cycles_cut;                         /* steps that failed because of that */
   char      cycle[512];                         /* the last repetition: load parameter, period, nodes */
-  PetscInt  regathered, adjusted, cuts, turned; /* of SolveReport, for all solves */
+  PetscInt  regathered, adjusted, turned;       /* of SolveReport, for all solves */
+  PetscInt  cuts[CUT_CAUSES];                   /* likewise */
   PetscReal t;                                  /* of the last accepted state */
   char      message[1024];                      /* why it ended early: cause, load parameter, nodes, what was tried */
   struct {
@@ -57,4 +58,5 @@ PetscErrorCode LoadStepperMonitorSet(LoadStepper, LoadStepperMonitorFn, void *);
 PetscErrorCode LoadStepperStop(LoadStepper);
 PetscErrorCode LoadStepperSolve(LoadStepper, StepperReport *);
 PetscErrorCode LoadStepperArchive(LoadStepper, Archive);
+PetscInt       LoadStepperCuts(const StepperReport *);
 PetscErrorCode LoadStepperView(LoadStepper, PetscViewer);

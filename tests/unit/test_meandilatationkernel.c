@@ -78,7 +78,7 @@ static double Energy(const KernelCase *kernel, const double *X, const double *u,
       lanes_u[k * KERNEL_LANES + lane] = u[k];
     }
   }
-  ElementKernel(kernel, lanes_X, lanes_u, E, lanes_nu, W, NULL, NULL, J);
+  ElementKernel(kernel, lanes_X, lanes_u, NULL, E, lanes_nu, W, NULL, NULL, J);
   return W[0];
 }
 
