@@ -80,7 +80,7 @@ PetscErrorCode ModelDestroy(Model *model)
   PetscCall(VecDestroy(&m->work->step));
   PetscCall(ProblemDestroy(&m->problem));
   PetscCall(PetscFree2(m->u, m->work->accepted_u));
-  PetscCall(PetscFree2(m->work->solved, m->work->iterate));
+  PetscCall(PetscFree2(m->work->solved, m->work->from));
   PetscCall(PetscFree(m->work->penalty_error));
   PetscCall(PetscFree(m->work));
   PetscCall(PetscFree(*model));

@@ -98,6 +98,41 @@ static PetscErrorCode ModelBorder(Model model)
 }
 
 /*@
+  ModelStepFrom - tells that a linear step from a state has led to the iterate. The next tangent extrapolates pressures
+  from there.
+
+  Not collective
+
+  Input Parameters:
++ model - the model
+- u     - local displacements u[n_nodes*dim] (length) of that state
+@*/
+PetscErrorCode ModelStepFrom(Model model, const PetscReal *u)
+{
+  PetscFunctionBeginUser;
+  model->work->shortened = PETSC_FALSE;
+  if (model->work->from) PetscCall(PetscArraycpy(model->work->from, u, model->mesh->n_nodes * model->mesh->dim));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ModelStepFromSolved - tells that the iterate is a state in equilibrium.
+
+  Not collective
+
+  Input Parameters:
++ model - the model
+- u     - local displacements u[n_nodes*dim] (length) of that state
+@*/
+PetscErrorCode ModelStepFromSolved(Model model, const PetscReal *u)
+{
+  PetscFunctionBeginUser;
+  PetscCall(ModelStepFrom(model, u));
+  if (model->work->solved) PetscCall(PetscArraycpy(model->work->solved, u, model->mesh->n_nodes * model->mesh->dim));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
   ModelTangent - computes the tangent at (u, t) and prepares the linear solver for it.
 
   Collective
@@ -132,21 +167,17 @@ PetscErrorCode ModelTangent(Model model, const PetscReal *u, const PressureRefer
    started. A shortened step has left the volumes somewhere; its pressures are those of the last equilibrium. */
 static PetscErrorCode ModelReference(Model model, PressureReference *reference)
 {
-  const ModelWork *work = model->work;
-  SNESLineSearch   search;
-  PetscInt         iteration;
-  PetscReal        lambda;
+  ModelWork     *work = model->work;
+  SNESLineSearch search;
+  PetscInt       iteration;
+  PetscReal      lambda;
 
   PetscFunctionBeginUser;
   PetscCall(SNESGetIterationNumber(model->snes, &iteration));
   PetscCall(SNESGetLineSearch(model->snes, &search));
   PetscCall(SNESLineSearchGetLambda(search, &lambda));
-  if (iteration == 0)
-    *reference = (PressureReference){work->solved, 1};
-  else if (lambda < 1)
-    *reference = (PressureReference){work->solved, 0};
-  else
-    *reference = (PressureReference){work->iterate, 1};
+  if (iteration > 0) work->shortened = (PetscBool)(lambda < 1);
+  *reference = work->shortened ? (PressureReference){work->solved, 0} : (PressureReference){work->from, 1};
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -154,7 +185,6 @@ static PetscErrorCode ModelReference(Model model, PressureReference *reference)
 static PetscErrorCode ModelJacobian(SNES snes, Vec x, Mat J, Mat P, void *context)
 {
   Model             model = context;
-  const PetscInt    n     = model->mesh->n_nodes * model->mesh->dim;
   PressureReference reference;
 
   PetscFunctionBeginUser;
@@ -162,9 +192,9 @@ static PetscErrorCode ModelJacobian(SNES snes, Vec x, Mat J, Mat P, void *contex
   (void)J;
   (void)P;
   PetscCall(ProblemSetTrial(model->problem, x, model->t));
-  if (model->work->iterate) PetscCall(ModelReference(model, &reference));
-  PetscCall(ModelTangent(model, model->problem->trial, model->work->iterate ? &reference : NULL, model->t));
-  if (model->work->iterate) PetscCall(PetscArraycpy(model->work->iterate, model->problem->trial, n));
+  if (model->work->from) PetscCall(ModelReference(model, &reference));
+  PetscCall(ModelTangent(model, model->problem->trial, model->work->from ? &reference : NULL, model->t));
+  PetscCall(ModelStepFrom(model, model->problem->trial));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -178,7 +208,7 @@ static PetscErrorCode ModelCreateReference(Model model)
   PetscFunctionBeginUser;
   PetscCall(PetscOptionsHasName(NULL, NULL, "-snes_test_jacobian", &test));
   if (test || !ElasticityExtrapolates(model->problem->elasticity)) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PetscCalloc2(n, &model->work->solved, n, &model->work->iterate));
+  PetscCall(PetscCalloc2(n, &model->work->solved, n, &model->work->from));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -421,8 +451,8 @@ PetscErrorCode ModelNewton(Model model, SolveReport *report)
       (report->result != SOLVE_CONVERGED && its > 0 && LinearCheckLost(model->linear)))
     PetscCall(ModelLinearFailure(model, &report->result));
   PetscCall(ProblemSetTrial(model->problem, model->x, model->t)); /* SNES may have evaluated another point last */
-  if (report->result == SOLVE_CONVERGED && model->work->solved)
-    PetscCall(PetscArraycpy(model->work->solved, model->problem->trial, model->mesh->n_nodes * model->mesh->dim));
+  if (report->result == SOLVE_CONVERGED && !model->work->soft && !model->work->left)
+    PetscCall(ModelStepFromSolved(model, model->problem->trial));
   report->residual = model->problem->force > 0 ? norm / ProblemForceScale(model->problem) : 0;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

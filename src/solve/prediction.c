@@ -39,6 +39,7 @@ static PetscErrorCode ModelStepLinear(Model model, const PetscReal *u, const Pet
   if (LinearCheckLost(model->linear)) PetscCall(ModelLinearFailure(model, &report->result));
   PetscCall(ModelSolveLinearContact(model, u, carried, t, dx));
   PetscCall(VecAXPY(model->x, -1, dx));
+  PetscCall(ModelStepFrom(model, u));
   PetscCall(VecDestroy(&b));
   PetscCall(VecDestroy(&dx));
   PetscFunctionReturn(PETSC_SUCCESS);

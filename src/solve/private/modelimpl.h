@@ -56,11 +56,12 @@ typedef struct _n_ModelWork {
   PetscInt  cycles;       /* times that the contact set repeated itself */
   char      cycle[256];   /* the last repetition in words */
 
-  PetscReal *solved;   /* local displacements (length) where the last solve converged, or the accepted ones */
+  PetscReal *solved;   /* local displacements (length) at the last equilibrium; NULL: no pressures are extrapolated */
+  PetscReal *from;     /* those from which the last step led to the iterate */
+  PetscBool  shortened; /* that step was shortened */
 
   /* One solve by SNES */
   Objective  objective;
-  PetscReal *iterate;  /* local displacements (length) at its last tangent */
   PetscBool soft;     /* penalties are softened: NEWTON_SOFT_ENOUGH is the tolerance */
   PetscBool balanced; /* the residual of the iterate is within the tolerance */
   PetscBool left;     /* the solve ended because a slave point slid out of its lists */
@@ -79,6 +80,8 @@ void           ModelChooseObjective(Model, PetscReal residual, PetscReal slope);
 PetscErrorCode ModelLocateEdge(Model, PetscBool *found, ContactPlace *);
 /* newton.c */
 PetscErrorCode ModelCreateSNES(Model);
+PetscErrorCode ModelStepFrom(Model, const PetscReal *u);
+PetscErrorCode ModelStepFromSolved(Model, const PetscReal *u);
 PetscErrorCode ModelTangent(Model, const PetscReal *u, const PressureReference *, PetscReal t);
 PetscErrorCode ModelLinearFailure(Model, SolveResult *);
 PetscErrorCode ModelNewton(Model, SolveReport *);
