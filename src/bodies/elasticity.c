@@ -667,7 +667,8 @@ static void GatherCell(Elasticity e, const CellGroup *g, PetscInt slot, const Pe
 }
 
 /*@
-  ElasticityVolumeEnergy - computes the part of the strain energy that belongs to the volume alone, of this rank's cells.
+  ElasticityVolumeEnergy - computes the part of the strain energy that belongs to the volume alone, of this rank's
+cells.
 
   Not collective
 

@@ -114,8 +114,8 @@ int ElementKernelExists(const KernelCase *kernel)
   Not collective
 
   Note:
-  It does with laws whose energy has a volumetric part of its own, see MaterialVolumeModulus(). Enhanced elements take no
-  reference.
+  It does with laws whose energy has a volumetric part of its own, see MaterialVolumeModulus(). Enhanced elements take
+no reference.
 @*/
 int ElementExtrapolates(const KernelCase *kernel)
 {
@@ -184,10 +184,10 @@ void ElementKernel(const KernelCase *kernel, const double *X, const double *u, c
     call.X   = X + part;
     call.u   = u + part;
     call.u_0 = extrapolates ? reference->u + part : NULL;
-    call.W = W ? W + part : NULL;
-    call.f = f ? f + part : NULL;
-    call.K = K ? K + part : NULL;
-    call.J = J + part;
+    call.W   = W ? W + part : NULL;
+    call.f   = f ? f + part : NULL;
+    call.K   = K ? K + part : NULL;
+    call.J   = J + part;
     batch(&call);
   }
 }

@@ -4,8 +4,9 @@
    ElementKernel() treats a batch of KERNEL_LANES elements of one type, law, geometry, kinematics and formulation. Its
    arrays are [node][dim][lane], so that the inner loops vectorise. A short batch repeats its last element.
    ElementKernelExists() tells whether there is a kernel for a case. The other functions treat one cell or one face:
-   ElementPointGradient(), ElementPointStress(), ElementStress() and ElementVolumeEnergy() evaluate a state, ElementQuality() and CellVolume()
-   a shape, FaceLoadKernel() and BodyForceKernel() the loads, FaceAreaKernel() the areas of a face's nodes.
+   ElementPointGradient(), ElementPointStress(), ElementStress() and ElementVolumeEnergy() evaluate a state,
+   ElementQuality() and CellVolume() a shape, FaceLoadKernel() and BodyForceKernel() the loads, FaceAreaKernel() the
+   areas of a face's nodes.
 
    K may extrapolate the pressure of its geometric part from an earlier state (pressurereference.h), where
    ElementExtrapolates().

@@ -1,7 +1,8 @@
 /* Elastic laws at a point: stress and tangent from the deformation gradient. Plain C, no PETSc, no allocation.
 
    MaterialGetLaw() gives the function of a law, which treats LANES points at a time. MaterialPoint() evaluates one
-   point. MaterialVolumeModulus() says which part of a law's energy belongs to the volume alone. A new law is a file with its function and a line in base/choices.h. */
+   point. MaterialVolumeModulus() says which part of a law's energy belongs to the volume alone. A new law is a file
+   with its function and a line in base/choices.h. */
 #pragma once
 #include "base/choices.h"
 #include "base/lanes.h"

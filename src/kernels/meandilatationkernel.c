@@ -51,8 +51,10 @@ LANES_INLINE void MeanGradient(const BatchCall *call, int q, const MeanDilatatio
   Lanes stretch;
 
   for (int lane = 0; lane < LANES; lane++)
-    stretch[lane] = call->finite ? expm1((log1p(FlooredDilatation(x->mean[lane])) - log1p(FlooredDilatation(x->dilatation[q][lane]))) / 3)
-                                 : (x->mean[lane] - x->dilatation[q][lane]) / 3;
+    stretch[lane] =
+      call->finite
+        ? expm1((log1p(FlooredDilatation(x->mean[lane])) - log1p(FlooredDilatation(x->dilatation[q][lane]))) / 3)
+        : (x->mean[lane] - x->dilatation[q][lane]) / 3;
   *factor = stretch * (double)call->finite;
   for (int r = 0; r < 9; r++) H[r] = x->H[q][r] + *factor * x->H[q][r];
   for (int i = 0; i < 3; i++) H[4 * i] += stretch;
@@ -106,8 +108,8 @@ LANES_INLINE void PointTangent(const Lanes F[9], const Lanes G[9], const Lanes *
 }
 
 /* Makes the element's pressure that which its volume extrapolates to. `deformed` is its volume now. */
-LANES_INLINE void ExtrapolatePressure(const BatchCall *call, const int n, const int points, const int dim, const int hoop,
-                                    const MeanDilatation *x, const Lanes *deformed, Lanes *pressure)
+LANES_INLINE void ExtrapolatePressure(const BatchCall *call, const int n, const int points, const int dim,
+                                      const int hoop, const MeanDilatation *x, const Lanes *deformed, Lanes *pressure)
 {
   Lanes mean_0 = {0}, change = {0}, excess;
 

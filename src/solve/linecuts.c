@@ -13,10 +13,12 @@ const char *const CutCauses[CUT_CAUSES] = {[CUT_INVERTED] = "inverted elements",
    nothing is added. */
 static PetscErrorCode AddEnergies(Model model, Vec x, PetscReal sign, PetscReal energy[CUT_CAUSES], PetscBool *ok)
 {
-  static const int part[CUT_CAUSES] = {
-    [CUT_VOLUME] = ENERGY_VOLUME, [CUT_SHAPE] = ENERGY_ELASTIC, [CUT_CONTACT] = ENERGY_CONTACT, [CUT_LOADS] = ENERGY_LOADS};
-  PetscReal now[CUT_CAUSES];
-  PetscBool whole;
+  static const int part[CUT_CAUSES] = {[CUT_VOLUME]  = ENERGY_VOLUME,
+                                       [CUT_SHAPE]   = ENERGY_ELASTIC,
+                                       [CUT_CONTACT] = ENERGY_CONTACT,
+                                       [CUT_LOADS]   = ENERGY_LOADS};
+  PetscReal        now[CUT_CAUSES];
+  PetscBool        whole;
 
   PetscFunctionBeginUser;
   PetscCall(ProblemSetTrial(model->problem, x, model->t));

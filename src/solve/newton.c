@@ -140,7 +140,8 @@ PetscErrorCode ModelStepFromSolved(Model model, const PetscReal *u)
   Input Parameters:
 + model     - the model
 . u         - local displacements u[n_nodes*dim] (length)
-. reference - the state from which the elements extrapolate pressures; NULL: the tangent is the derivative of the residual
+. reference - the state from which the elements extrapolate pressures; NULL: the tangent is the derivative of the
+residual
 - t         - load parameter
 
   Note:
@@ -162,9 +163,10 @@ PetscErrorCode ModelTangent(Model model, const PetscReal *u, const PressureRefer
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The state from which the tangent at the present iterate extrapolates pressures. It is the iterate before, since pressure
-   changes along a full step as the step's linear problem says. Before the first iterate that is where the prediction
-   started. A shortened step has left the volumes somewhere; its pressures are those of the last equilibrium. */
+/* The state from which the tangent at the present iterate extrapolates pressures. It is the iterate before, since
+   pressure changes along a full step as the step's linear problem says. Before the first iterate that is where the
+   prediction started. A shortened step has left the volumes somewhere; its pressures are those of the last equilibrium.
+ */
 static PetscErrorCode ModelReference(Model model, PressureReference *reference)
 {
   ModelWork     *work = model->work;
@@ -198,8 +200,8 @@ static PetscErrorCode ModelJacobian(SNES snes, Vec x, Mat J, Mat P, void *contex
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Makes room for the states from which pressures are extrapolated, if elements do that. The tangent that PETSc is to test
-   against differences must be their limit. */
+/* Makes room for the states from which pressures are extrapolated, if elements do that. The tangent that PETSc is to
+   test against differences must be their limit. */
 static PetscErrorCode ModelCreateReference(Model model)
 {
   const PetscInt n = model->mesh->n_nodes * model->mesh->dim;

@@ -232,7 +232,7 @@ static void Bad(Case *c, StepControlKind control, int formulation, int adjust, i
   c->way.steps_repeated                   = 9;
   c->way.regathered                       = 20;
   c->figures.usage.seconds[TIMING_SEARCH] = 0.6 * c->figures.usage.wall_s;
-  c->way.cuts[CUT_SHAPE] = 40;
+  c->way.cuts[CUT_SHAPE]                  = 40;
   c->way.newton_accepted                  = 500;
 }
 

@@ -150,8 +150,7 @@ LANES_INLINE void ExcessPressure(const BatchCall *call, const Lanes *dilatation,
   for (int lane = 0; lane < LANES; lane++) {
     const double before = FlooredDilatation((*dilatation_0)[lane]), now = FlooredDilatation((*dilatation)[lane]);
 
-    (*excess)[lane] =
-      call->bulk[lane] * (log1p(before) + call->rate * (*change)[lane] / (1 + before) - log1p(now));
+    (*excess)[lane] = call->bulk[lane] * (log1p(before) + call->rate * (*change)[lane] / (1 + before) - log1p(now));
   }
 }
 

@@ -4,8 +4,8 @@
    node over the edge keeps the half of its area that lies on the flank.
 
    FlankSort() finds the facets of the flank. FlankShare() finds its ends, and how far the point takes part.
-   FlankIsBeside() says whether the point is beside what it does not face, and FlankNearRidge() whether it is near a sharp
-   edge between two facets that both face it. */
+   FlankIsBeside() says whether the point is beside what it does not face, and FlankNearRidge() whether it is near a
+   sharp edge between two facets that both face it. */
 #pragma once
 #include "searchimpl.h"
 

@@ -2,11 +2,11 @@
    offers to those above it.
 
    problem.c is below all of them, and freebodies.c and rigidsearch.c below it. linearcontact.c finds the contact that
-   is right at the end of a linear step. linecuts.c says why a line search shortened its step. linesearch.c chooses what the line search compares, and corrects steps for
-   contact. newton.c runs SNES once with the present contact lists. prediction.c finds a first iterate, penaltyramp.c
-   improves it on softened penalties, penaltyerror.c estimates what penetration leaves of error and stiffens penalties.
-   equilibrium.c goes from an accepted state to the next one. model.c holds the accepted state. Each file calls only
-   those named before it. */
+   is right at the end of a linear step. linecuts.c says why a line search shortened its step. linesearch.c chooses what
+   the line search compares, and corrects steps for contact. newton.c runs SNES once with the present contact lists.
+   prediction.c finds a first iterate, penaltyramp.c improves it on softened penalties, penaltyerror.c estimates what
+   penetration leaves of error and stiffens penalties. equilibrium.c goes from an accepted state to the next one.
+   model.c holds the accepted state. Each file calls only those named before it. */
 #pragma once
 #include "contact/contactcycle.h"
 #include "extrapolation.h"
@@ -56,18 +56,18 @@ typedef struct _n_ModelWork {
   PetscInt  cycles;       /* times that the contact set repeated itself */
   char      cycle[256];   /* the last repetition in words */
 
-  PetscReal *solved;   /* local displacements (length) at the last equilibrium; NULL: no pressures are extrapolated */
-  PetscReal *from;     /* those from which the last step led to the iterate */
+  PetscReal *solved;    /* local displacements (length) at the last equilibrium; NULL: no pressures are extrapolated */
+  PetscReal *from;      /* those from which the last step led to the iterate */
   PetscBool  shortened; /* that step was shortened */
 
   /* One solve by SNES */
-  Objective  objective;
-  PetscBool soft;     /* penalties are softened: NEWTON_SOFT_ENOUGH is the tolerance */
-  PetscBool balanced; /* the residual of the iterate is within the tolerance */
-  PetscBool left;     /* the solve ended because a slave point slid out of its lists */
-  PetscBool cycling;  /* the solve ended because the contact set repeats itself with shorter steps too */
+  Objective objective;
+  PetscBool soft;             /* penalties are softened: NEWTON_SOFT_ENOUGH is the tolerance */
+  PetscBool balanced;         /* the residual of the iterate is within the tolerance */
+  PetscBool left;             /* the solve ended because a slave point slid out of its lists */
+  PetscBool cycling;          /* the solve ended because the contact set repeats itself with shorter steps too */
   PetscInt  cuts[CUT_CAUSES]; /* iterations that the line search shortened, by their cause */
-  PetscInt  turned;   /* iterations whose step led uphill and was turned round */
+  PetscInt  turned;           /* iterations whose step led uphill and was turned round */
 } ModelWork;
 
 /* linearcontact.c */
