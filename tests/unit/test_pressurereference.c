@@ -72,7 +72,7 @@ static double *Tangent(const Case *c, const double *r, double rate)
     E[KERNEL_LANES], nu[KERNEL_LANES], J[KERNEL_LANES];
   const PressureReference reference = {lanes_r, rate};
   double                 *lanes_K   = calloc((size_t)c->dofs * c->dofs * KERNEL_LANES, sizeof(double)),
-                         *K         = calloc((size_t)c->dofs * c->dofs, sizeof(double));
+         *K                         = calloc((size_t)c->dofs * c->dofs, sizeof(double));
 
   for (int lane = 0; lane < KERNEL_LANES; lane++) {
     E[lane]  = young;
@@ -119,8 +119,7 @@ static void Excess(const Case *c, double rate, double excess[ELEMENT_MAX_POINTS]
   Volumes(c, c->r, h, way, 0, way, plus);
   Volumes(c, c->r, -h, way, 0, way, minus);
   for (int p = 0; p < c->e->points; p++)
-    excess[p] =
-      c->volume[p] * lambda * (log(J_r[p]) + rate * (plus[p] - minus[p]) / (2 * h * J_r[p]) - log(J[p]));
+    excess[p] = c->volume[p] * lambda * (log(J_r[p]) + rate * (plus[p] - minus[p]) / (2 * h * J_r[p]) - log(J[p]));
 }
 
 /* Second derivative of sum of excess ln J in the directions v and w, by differences */
