@@ -45,7 +45,7 @@ LANES_INLINE void Batch(const BatchCall *call, const int n, const int points, co
       PointDisplacementGradient(n, dim, hoop, q, call->u, &c, H);
       MaterialDilatation(H, &dilatation);
       KeepLeastJ(call, &dilatation);
-      call->law(H, &dilatation, &call->lambda, &call->mu, W ? &energy : NULL, P, K ? c.A[q] : NULL);
+      PointLaw(call, H, &dilatation, W ? &energy : NULL, P, K ? c.A[q] : NULL);
       if (K && call->u_0) ExtrapolatePressure(call, n, dim, hoop, q, &c, H, &dilatation, c.A[q]);
       if (W) LANE(W, 0) += energy * volume;
       if (call->H) StorePoint(call, first + q, H);
@@ -114,33 +114,24 @@ int ElementKernelExists(const KernelCase *kernel)
   Not collective
 
   Note:
-  It does with laws whose energy has a volumetric part of its own, see MaterialVolumeModulus(). Enhanced elements take
-no reference.
+  It does with separable laws, see ElasticLaw. Enhanced elements take no reference.
 @*/
 int ElementExtrapolates(const KernelCase *kernel)
 {
   return kernel->kinematics == KINEMATICS_FINITE && kernel->formulation != FORMULATION_ENHANCED &&
-         MaterialVolumeModulus(kernel->law, 1, 1) > 0;
+         MaterialGetLaw(kernel->law)->separable;
 }
 
 /* Sets what all parts of a batch have in common. */
-static BatchCall StartCall(const KernelCase *kernel)
+static BatchCall StartCall(const KernelCase *kernel, const Lanes *constants)
 {
-  const int finite = kernel->kinematics == KINEMATICS_FINITE;
+  const ElasticLaw *law = MaterialGetLaw(kernel->law);
 
-  return (BatchCall){.e = ElementGet(kernel->type), .law = MaterialGetLaw(kernel->law, finite), .finite = finite};
-}
-
-static void SetMaterial(BatchCall *call, MaterialLaw law, const double *E, const double *nu)
-{
-  for (int lane = 0; lane < LANES; lane++) {
-    double lambda, mu;
-
-    MaterialLame(E[lane], nu[lane], &lambda, &mu);
-    call->lambda[lane] = lambda;
-    call->mu[lane]     = mu;
-    call->bulk[lane]   = MaterialVolumeModulus(law, lambda, mu);
-  }
+  return (BatchCall){.e           = ElementGet(kernel->type),
+                     .law         = law,
+                     .finite      = kernel->kinematics == KINEMATICS_FINITE,
+                     .n_constants = kernel->n_constants ? kernel->n_constants : law->constants,
+                     .constants   = constants};
 }
 
 /*@
@@ -153,7 +144,7 @@ static void SetMaterial(BatchCall *call, MaterialLaw law, const double *E, const
 . X         - reference coordinates (length) [nodes][dim][lanes]; axisymmetric: X[.][0] is the radius
 . u         - displacements (length) [nodes][dim][lanes]
 . reference - the state from which K extrapolates the pressure, u as above; NULL: K has the pressure of u
-- E, nu     - Young's modulus (stress) and Poisson's ratio [lanes]
+- constants - of the law [n_constants][lanes]
 
   Output Parameters:
 + W - strain energy [lanes], or NULL
@@ -172,15 +163,16 @@ static void SetMaterial(BatchCall *call, MaterialLaw law, const double *E, const
   (reference configuration)
 @*/
 void ElementKernel(const KernelCase *kernel, const double *X, const double *u, const PressureReference *reference,
-                   const double *E, const double *nu, double *W, double *f, double *K, double *J)
+                   const double *constants, double *W, double *f, double *K, double *J)
 {
   const int extrapolates = reference && ElementExtrapolates(kernel);
   BatchFn  *batch        = GetBatch(kernel);
-  BatchCall call         = StartCall(kernel);
+  Lanes     lanes_constants[MATERIAL_MAX_CONSTANTS];
+  BatchCall call = StartCall(kernel, lanes_constants);
 
   call.rate = extrapolates ? reference->rate : 0;
   for (int part = 0; part < KERNEL_LANES; part += LANES) {
-    SetMaterial(&call, kernel->law, E + part, nu + part);
+    for (int k = 0; k < call.n_constants; k++) lanes_constants[k] = CONST_LANE(constants + part, k);
     call.X   = X + part;
     call.u   = u + part;
     call.u_0 = extrapolates ? reference->u + part : NULL;
@@ -199,31 +191,31 @@ void ElementKernel(const KernelCase *kernel, const double *X, const double *u, c
   Not collective
 
   Input Parameters:
-+ kernel - element type, geometry, kinematics, law and formulation
-. X      - reference coordinates (length) [nodes][dim]; axisymmetric: X[.][0] is the radius
-. u      - displacements (length) [nodes][dim]
-- E, nu  - Young's modulus (stress) and Poisson's ratio
++ kernel    - element type, geometry, kinematics, law and formulation
+. X         - reference coordinates (length) [nodes][dim]; axisymmetric: X[.][0] is the radius
+. u         - displacements (length) [nodes][dim]
+- constants - of the law [n_constants]
 
   Output Parameter:
 . H - F - 1 at 3 i + I (i: space, I: reference) [points][9]
 @*/
-void ElementPointGradient(const KernelCase *kernel, const double *X, const double *u, double E, double nu, double *H)
+void ElementPointGradient(const KernelCase *kernel, const double *X, const double *u, const double *constants,
+                          double *H)
 {
-  BatchCall call = StartCall(kernel);
+  Lanes     lanes_constants[MATERIAL_MAX_CONSTANTS];
+  BatchCall call = StartCall(kernel, lanes_constants);
   const int dofs = call.e->nodes * call.e->dim;
   double    lanes_X[ELEMENT_MAX_NODES * 3 * KERNEL_LANES], lanes_u[ELEMENT_MAX_NODES * 3 * KERNEL_LANES],
     lanes_H[ELEMENT_MAX_POINTS * 9 * KERNEL_LANES];
-  double J[LANES], lanes_E[LANES], lanes_nu[LANES];
+  double J[LANES];
 
   for (int lane = 0; lane < LANES; lane++) {
-    lanes_E[lane]  = E;
-    lanes_nu[lane] = nu;
     for (int k = 0; k < dofs; k++) {
       lanes_X[k * KERNEL_LANES + lane] = X[k];
       lanes_u[k * KERNEL_LANES + lane] = u[k];
     }
   }
-  SetMaterial(&call, kernel->law, lanes_E, lanes_nu);
+  for (int k = 0; k < call.n_constants; k++) lanes_constants[k] = (Lanes){0} + constants[k];
   call.X = lanes_X;
   call.u = lanes_u;
   call.J = J;

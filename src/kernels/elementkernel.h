@@ -25,20 +25,21 @@ typedef struct {
   ElementType type;
   Geometry    geometry;
   Kinematics  kinematics;
-  MaterialLaw law;
+  MaterialLaw law; /* MATERIAL_LINEAR in small kinematics */
   Formulation formulation;
+  int         n_constants; /* of the law; 0: as many as MaterialGetLaw() says */
 } KernelCase;
 
-void   ElementKernel(const KernelCase *, const double *X, const double *u, const PressureReference *, const double *E,
-                     const double *nu, double *W, double *f, double *K, double *J);
+void   ElementKernel(const KernelCase *, const double *X, const double *u, const PressureReference *,
+                     const double *constants, double *W, double *f, double *K, double *J);
 int    ElementKernelExists(const KernelCase *);
 int    ElementExtrapolates(const KernelCase *);
-void   ElementPointGradient(const KernelCase *, const double *X, const double *u, double E, double nu, double *H);
-void   ElementPointStress(const KernelCase *, const double *X, const double *u, double E, double nu, double *stress,
+void   ElementPointGradient(const KernelCase *, const double *X, const double *u, const double *constants, double *H);
+void   ElementPointStress(const KernelCase *, const double *X, const double *u, const double *constants, double *stress,
                           double *volume);
-void   ElementStress(const KernelCase *, const double *X, const double *u, double E, double nu, double stress[6],
+void   ElementStress(const KernelCase *, const double *X, const double *u, const double *constants, double stress[6],
                      double *volume);
-double ElementVolumeEnergy(const KernelCase *, const double *X, const double *u, double E, double nu);
+double ElementVolumeEnergy(const KernelCase *, const double *X, const double *u, const double *constants);
 double ElementQuality(ElementType, int dim, const double *X);
 
 /* The loads on a face. A dead pressure acts along the reference normal on the reference area. A follower pressure acts

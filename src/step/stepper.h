@@ -34,6 +34,8 @@ typedef struct {
   PetscInt  cycles;                       /* times that a contact set repeated itself */
   PetscInt  cycles_cut;                   /* steps that failed because of that */
   char      cycle[512];                   /* the last repetition: load parameter, period, nodes */
+  PetscInt  jumps;                        /* accepted steps that ended in another equilibrium */
+  char      jump[512];                    /* the last of them: load parameters, node, distance */
   PetscInt  regathered, adjusted, turned; /* of SolveReport, for all solves */
   PetscInt  cuts[CUT_CAUSES];             /* likewise */
   PetscReal t;                            /* of the last accepted state */

@@ -27,10 +27,6 @@ _Static_assert(KERNEL_LANES % LANES == 0, "a batch consists of whole vectors");
 
 static const double two_pi = 6.28318530717958647693;
 
-/* Smallest determinant whose logarithm and inverse are evaluated; smaller ones are replaced by it. No state with J <= 0
-   is accepted, but a line search evaluates such states and needs finite numbers. */
-static const double jacobian_floor = 1e-8;
-
 typedef struct {
   Lanes g[ELEMENT_MAX_NODES][CHUNK][3];  /* reference gradient; axisymmetric: [2] is N_a / R */
   Lanes A[CHUNK][MATERIAL_TANGENT_SIZE]; /* times weight and volume */
@@ -39,15 +35,14 @@ typedef struct {
 /* One call treats LANES elements of a batch. H[points][9] is the displacement gradient at which the law is evaluated.
    W, f, K and H may be NULL; ElementKernel() explains them. */
 typedef struct {
-  const Element *e;
-  MaterialLawFn *law;
-  int            finite;
-  const double  *X, *u;
-  const double  *u_0;  /* displacements from which K extrapolates the pressure, or NULL */
-  double         rate; /* of PressureReference */
-  Lanes          lambda, mu;
-  Lanes          bulk; /* MaterialVolumeModulus() */
-  double        *W, *f, *K, *J, *H;
+  const Element    *e;
+  const ElasticLaw *law;
+  int               finite, n_constants;
+  const Lanes      *constants;
+  const double     *X, *u;
+  const double     *u_0;  /* displacements from which K extrapolates the pressure, or NULL */
+  double            rate; /* of PressureReference */
+  double           *W, *f, *K, *J, *H;
 } BatchCall;
 
 /* Computes the reference gradients of all nodes at a point with shape functions N and dN. They become point q of the
@@ -111,7 +106,7 @@ LANES_INLINE void PointDisplacementGradient(const int n, const int dim, const in
 
 static inline double FlooredDilatation(double dilatation)
 {
-  return dilatation > jacobian_floor - 1 ? dilatation : jacobian_floor - 1;
+  return dilatation > MATERIAL_LEAST_J - 1 ? dilatation : MATERIAL_LEAST_J - 1;
 }
 
 /* Computes the cofactors of F = 1 + H, which are J F^-T. */
@@ -143,14 +138,15 @@ LANES_INLINE void PointReference(const BatchCall *call, const int n, const int d
 }
 
 /* Computes what the extrapolated pressure is above that of the state with `dilatation`. Pressure is dU/d(ln J) for the
-   energy U = bulk/2 (ln J)^2. */
+   energy U = constants[0]/2 (ln J)^2. */
 LANES_INLINE void ExcessPressure(const BatchCall *call, const Lanes *dilatation, const Lanes *dilatation_0,
                                  const Lanes *change, Lanes *excess)
 {
   for (int lane = 0; lane < LANES; lane++) {
     const double before = FlooredDilatation((*dilatation_0)[lane]), now = FlooredDilatation((*dilatation)[lane]);
 
-    (*excess)[lane] = call->bulk[lane] * (log1p(before) + call->rate * (*change)[lane] / (1 + before) - log1p(now));
+    (*excess)[lane] =
+      call->constants[0][lane] * (log1p(before) + call->rate * (*change)[lane] / (1 + before) - log1p(now));
   }
 }
 
@@ -227,6 +223,13 @@ LANES_INLINE void KeepLeastJ(const BatchCall *call, const Lanes *dilatation)
     if (!(1 + (*dilatation)[lane] >= call->J[lane]))
       call->J[lane] = 1 + (*dilatation)[lane]; /* the negated comparison lets NaN through */
   }
+}
+
+/* Evaluates the law at a point. */
+LANES_INLINE void PointLaw(const BatchCall *call, const Lanes H[9], const Lanes *dilatation, Lanes *W, Lanes P[9],
+                           Lanes A[MATERIAL_TANGENT_SIZE])
+{
+  call->law->evaluate(H, dilatation, call->n_constants, call->constants, W, P, A);
 }
 
 LANES_INLINE void StorePoint(const BatchCall *call, int p, const Lanes H[9])

@@ -5,8 +5,9 @@
    is right at the end of a linear step. linecuts.c says why a line search shortened its step. linesearch.c chooses what
    the line search compares, and corrects steps for contact. newton.c runs SNES once with the present contact lists.
    prediction.c finds a first iterate, penaltyramp.c improves it on softened penalties, penaltyerror.c estimates what
-   penetration leaves of error and stiffens penalties. equilibrium.c goes from an accepted state to the next one.
-   model.c holds the accepted state. Each file calls only those named before it. */
+   penetration leaves of error and stiffens penalties, jump.c tells an equilibrium that was reached by a jump.
+   equilibrium.c goes from an accepted state to the next one. model.c holds the accepted state. Each file calls only
+   those named before it. */
 #pragma once
 #include "contact/contactcycle.h"
 #include "extrapolation.h"
@@ -78,6 +79,8 @@ PetscErrorCode ModelCountCut(Model, Vec x);
 PetscErrorCode ModelCreateLineSearch(Model);
 void           ModelChooseObjective(Model, PetscReal residual, PetscReal slope);
 PetscErrorCode ModelLocateEdge(Model, PetscBool *found, ContactPlace *);
+/* jump.c */
+PetscErrorCode ModelFindJump(Model, SolveReport *);
 /* newton.c */
 PetscErrorCode ModelCreateSNES(Model);
 PetscErrorCode ModelStepFrom(Model, const PetscReal *u);
