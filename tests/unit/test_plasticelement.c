@@ -66,7 +66,7 @@ static void BatchCreate(Batch *b, KernelCase kernel)
 
 static void Evaluate(Batch *b, double *W, double *f, double *K)
 {
-  ElementKernel(&b->kernel, b->X, b->u, b->constants, W, f, K, b->J);
+  ElementKernel(&b->kernel, b->X, b->u, NULL, b->constants, W, f, K, b->J);
 }
 
 /* All elements x geometries x formulations with a kernel, in small and in finite strains */
