@@ -254,6 +254,7 @@ static void CountSolve(PetscReal t, const SolveReport *solve, StepRecord *record
   report->krylov_iterations += solve->krylov;
   report->regathered += solve->regathered;
   report->adjusted += solve->adjusted;
+  report->wetted += solve->wetted;
   report->cuts += solve->cuts;
   report->turned += solve->turned;
 }
@@ -321,7 +322,7 @@ static PetscErrorCode ReportFailure(StepperReport *report, PetscReal t, PetscRea
 
 /* Tries one step, and repeats it with smaller dt until it converges and the control accepts it, or dt falls below
    dt_min. A step whose first linear solve is singular is not repeated, because the tangent at its start is singular for
-   any dt. */
+   any dt. Nor is one in which a fluid has leaked that was close to it before. */
 static PetscErrorCode LoadStepperAdvance(LoadStepper stepper, StepRecord *record, PetscBool *advanced)
 {
   Model           model  = stepper->model;
@@ -357,7 +358,7 @@ static PetscErrorCode LoadStepperAdvance(LoadStepper stepper, StepRecord *record
     report->steps_failed++;
     stepper->size.dt = STEPPER_CUT * dt;
     if (stepper->size.dt < stepper->size.dt_min || (solve.result == SOLVE_LINEAR && solve.newton == 1) ||
-        (solve.result == SOLVE_ADRIFT && !solve.newton)) {
+        (solve.result == SOLVE_ADRIFT && !solve.newton) || solve.result == SOLVE_LEAKED) {
       PetscCall(ReportFailure(report, t, end, first, dt, stepper->size.dt_min, record->attempts, &solve));
       PetscFunctionReturn(PETSC_SUCCESS);
     }
@@ -444,6 +445,7 @@ PetscErrorCode LoadStepperArchive(LoadStepper stepper, Archive archive)
                           &report->krylov_iterations,
                           &report->regathered,
                           &report->adjusted,
+                          &report->wetted,
                           &report->cuts,
                           &report->turned,
                           &report->relaxed,

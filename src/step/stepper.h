@@ -35,6 +35,7 @@ typedef struct {
   PetscInt  cycles_cut;                         /* steps that failed because of that */
   char      cycle[512];                         /* the last repetition: load parameter, period, nodes */
   PetscInt  regathered, adjusted, cuts, turned; /* of SolveReport, for all solves */
+  PetscInt  wetted;                             /* of SolveReport, for all solves */
   PetscReal t;                                  /* of the last accepted state */
   char      message[1024];                      /* why it ended early: cause, load parameter, nodes, what was tried */
   struct {
