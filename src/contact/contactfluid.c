@@ -1,5 +1,6 @@
 /* A fluid between the surfaces of a pair: what it carries, the contact does not. */
 #include "contactimpl.h"
+#include <float.h>
 
 /*@
   ContactSetCarried - sets the force that a fluid carries at each slave node of a pair.
@@ -34,21 +35,25 @@ PetscErrorCode ContactSetCarried(Contact contact, int p, const PetscReal *carrie
 
   Input Parameters:
 + contact - the contact, after ContactResidual() with forces
-- p       - number of the pair
+. p       - number of the pair
+- touch   - gap up to which surfaces touch (length)
 
   Input/Output Parameter:
-. force - force[n_nodes] by local node: normal force that the term's own gap causes, beyond what a fluid carries; a
-          larger value of another pair stays
+. force - force[n_nodes] by local node: normal force that the term's own gap causes, beyond what a fluid carries; the
+          smallest positive number where the surfaces touch without force; a larger value of another pair stays
 
   Note:
   Only nodes of this rank have terms.
 @*/
-PetscErrorCode ContactTermForces(Contact contact, int p, PetscReal *force)
+PetscErrorCode ContactTermForces(Contact contact, int p, PetscReal touch, PetscReal *force)
 {
   const ContactPair *pair = &contact->pairs[p];
 
   PetscFunctionBeginUser;
-  for (PetscInt c = 0; c < pair->n; c++)
-    force[pair->node[c]] = PetscMax(force[pair->node[c]], ContactTermForce(pair, c));
+  for (PetscInt c = 0; c < pair->n; c++) {
+    const PetscReal least = pair->now.gap[c] <= touch ? DBL_MIN : 0; /* NaN: no master is near */
+
+    force[pair->node[c]] = PetscMax(force[pair->node[c]], PetscMax(least, ContactTermForce(pair, c)));
+  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

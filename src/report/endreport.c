@@ -98,7 +98,7 @@ static void PrintFluid(const FluidReport *fluid, FILE *stream)
   fprintf(stream, "fluid    on '%s': pressure %.4g, on %.3g %% of the surface", fluid->load->region,
           (double)fluid->pressure, 100 * (double)fluid->wetted);
   if (isfinite((double)fluid->leak_t))
-    fprintf(stream, "; leaks at a pressure of %.4g, first found at t = %.6g", (double)fluid->leak_pressure,
+    fprintf(stream, "; leaks at a pressure of %.4g, on the way to t = %.6g", (double)fluid->leak_pressure,
             (double)fluid->leak_t);
   else if (isfinite((double)fluid->barrier))
     fprintf(stream, "; tight, the contact as it is holds up to %.4g", (double)fluid->barrier);

@@ -149,7 +149,6 @@ static PetscErrorCode ModelDepart(Model model, PetscReal t)
   model->problem->inverted = -1;
   work->start              = 0;
   work->cycling            = PETSC_FALSE;
-  work->leaks              = PETSC_FALSE;
   work->cycles             = 0;
   work->cycle[0]           = '\0';
   work->energy             = 0;
@@ -370,21 +369,21 @@ static PetscErrorCode ModelCheckPenalty(Model model, SolveReport *report, Contac
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Lets the fluids move at the solution. *moved: the step must be solved on. A fluid that reaches its other end ends a
-   step that is too long to say at which pressure. */
+/* Lets the fluids move at the solution. *moved: the step must be solved on. A fluid that reaches its other end ends the
+   solve: how its pressure falls along a leak is not known. */
 static PetscErrorCode ModelMoveFluids(Model model, SolveReport *report, PetscBool *moved)
 {
   const Fluids fluids = model->problem->fluids;
-  PetscBool    closely;
+  PetscBool    leaks, closely;
 
   PetscFunctionBeginUser;
   PetscCall(FluidMove(fluids, model->problem->trial, model->t, moved));
-  PetscCall(FluidReaches(fluids, model->work->accepted_t, model->t, model->scene->stepping.dt_min, &model->work->leaks,
-                         &closely));
-  if (model->work->leaks && !closely) report->result = SOLVE_LEAK;
   if (!*moved) PetscFunctionReturn(PETSC_SUCCESS);
-  if (report->wetted == EQUILIBRIUM_MAX_FLUID && report->result == SOLVE_CONVERGED) report->result = SOLVE_FLUID;
-  report->wetted++;
+  PetscCall(FluidReaches(fluids, model->work->accepted_t, model->t, model->scene->stepping.dt_min, &leaks, &closely));
+  if (leaks)
+    report->result = closely ? SOLVE_LEAKED : SOLVE_LEAK;
+  else if (report->wetted++ == EQUILIBRIUM_MAX_FLUID)
+    report->result = SOLVE_FLUID;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -438,7 +437,6 @@ PetscErrorCode ModelSolve(Model model, PetscReal t, SolveReport *report)
     }
     if (window == WINDOW_HOLDS && ModelEstimatesAt(model, t)) PetscCall(ModelCheckPenalty(model, report, &window));
   }
-  if (work->leaks && report->result != SOLVE_CONVERGED && report->result != SOLVE_LEAK) report->result = SOLVE_LEAKED;
   report->cycles = work->cycles;
   PetscCall(PetscStrncpy(report->cycle, work->cycle, sizeof(report->cycle)));
   if (report->result == SOLVE_CONVERGED)

@@ -18,7 +18,7 @@
 #define FLUID_CUT 4
 /* A node is at a point if it is within this part of the model's size. */
 #define FLUID_AT_POINT 1e-6
-/* A node is open at the start if it is farther from its master than this part of the model's size. */
+/* Surfaces touch, with or without pressure, where they are not farther apart than this part of the model's size. */
 #define FLUID_OPEN 1e-9
 /* Formulas are tried at the ends of so many intervals of t for negative pressures. */
 enum { FLUID_SAMPLES = 16 };
@@ -27,11 +27,11 @@ enum { FLUID_STATES = 2 };
 
 /* What a fluid is in one state. It is what cutbacks and checkpoints keep. */
 typedef struct {
-  char     *wet;                    /* n: by node of the graph */
-  PetscInt  n_sealed;               /* accepted states without a leak, FLUID_STATES at most */
-  PetscReal sealed_p[FLUID_STATES]; /* pressure of the fluid in them, the last one first */
-  PetscReal barrier[FLUID_STATES];  /* and the pressure with which it would have leaked */
-  PetscReal leak_t, leak_pressure;  /* NaN: no leak */
+  char      *wet;                    /* n: by node of the graph */
+  PetscReal *p;                      /* n: what contact presses, at wet nodes beyond the fluid */
+  PetscInt   n_sealed;               /* accepted states without a leak, FLUID_STATES at most */
+  PetscReal  sealed_p[FLUID_STATES]; /* pressure of the fluid in them, the last one first */
+  PetscReal  barrier[FLUID_STATES];  /* and the pressure with which it would have leaked */
 } FluidState;
 
 typedef struct {
@@ -43,14 +43,13 @@ typedef struct {
   char            *from, *to;   /* n: the two ends */
   PetscBool        has_from, has_to;
   FluidState       now, accepted;
-  PetscInt         retreats;         /* times that places became dry in this step */
-  PetscReal       *area;             /* n_nodes: present area of the surface around each node */
-  PetscReal       *nodes, *points;   /* shares for the load: of nodes, or of quadrature points */
-  PetscReal       *force;            /* n_nodes: of the contact terms */
-  PetscReal       *p;                /* n: what contact alone presses, at wet places at least the fluid's pressure */
-  PetscReal       *weight;           /* n: reference area of the nodes */
-  PetscReal        pressure, height; /* of the fluid; of the barrier */
-  PetscReal        seen_t, seen; /* where it was found to leak last, accepted or not: t and pressure; NaN: nowhere */
+  PetscInt         retreats;              /* times that places became dry in this step */
+  PetscReal       *area;                  /* n_nodes: present area of the surface around each node */
+  PetscReal       *nodes, *points;        /* shares for the load: of nodes, or of quadrature points */
+  PetscReal       *force;                 /* n_nodes: of the contact terms */
+  PetscReal       *weight;                /* n: reference area of the nodes */
+  PetscReal        pressure, height;      /* of the fluid; of the barrier */
+  PetscReal        leak_t, leak_pressure; /* t and pressure at which it was found to leak last; NaN: it was not */
 } Fluid;
 
 struct _n_Fluids {
@@ -114,7 +113,7 @@ static void SetPoints(Fluids fluids, Fluid *fluid)
     for (int p = 0; p < face->points; p++) {
       PetscReal share = 0;
 
-      FaceHat(face->type, face->point[p], hat);
+      FaceHatAround(face->type, p, hat);
       for (int a = 0; a < face->nodes; a++) share += hat[a] * fluid->nodes[nodes[a]];
       fluid->points[f * FACE_MAX_POINTS + p] = share;
     }
@@ -152,34 +151,35 @@ static PetscErrorCode Measure(Fluids fluids, Fluid *fluid, const PetscReal *u, P
   PetscCall(SetAreas(fluids, fluid, fluids->scene->kinematics == KINEMATICS_SMALL ? NULL : u));
   PetscCall(PetscArrayzero(fluid->force, fluids->mesh->n_nodes));
   for (int p = 0; p < ContactPairs(fluids->contact); p++)
-    if (fluid->pair[p]) PetscCall(ContactTermForces(fluids->contact, p, fluid->force));
+    if (fluid->pair[p]) PetscCall(ContactTermForces(fluids->contact, p, FLUID_OPEN * fluids->mesh->size, fluid->force));
   for (int i = 0; i < s->graph.n; i++) {
     const PetscInt node = s->local[i];
 
     if (s->own[i] && fluid->force[node] > 0) fluid->force[node] /= fluid->area[node];
   }
-  PetscCall(SurfaceGraphGather(s, fluid->force, fluid->p));
+  PetscCall(SurfaceGraphGather(s, fluid->force, fluid->now.p));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* Says which nodes let the fluid in: those at which contact presses less than the fluid. At a wet node p is what
-   contact presses beyond the fluid. */
+   contact presses beyond the fluid. A fluid without pressure is where the surfaces are apart. */
 static void FindOpen(const Fluid *fluid, PetscBool only_grow, char *open)
 {
-  const PetscReal same = FLUID_SAME * fluid->pressure;
+  const PetscReal  same = FLUID_SAME * fluid->pressure;
+  const PetscReal *p    = fluid->now.p;
 
   for (int i = 0; i < fluid->surface->graph.n; i++)
-    open[i] =
-      fluid->now.wet[i] ? only_grow || fluid->p[i] <= same : fluid->p[i] == 0 || fluid->p[i] < fluid->pressure - same;
+    open[i] = fluid->now.wet[i] ? only_grow || p[i] <= same : p[i] == 0 || p[i] < fluid->pressure - same;
 }
 
 /* The lowest pressure with which the fluid would reach its other end in the contact as it is. */
 static PetscErrorCode FindBarrier(Fluid *fluid)
 {
-  const int  n = fluid->surface->graph.n;
-  PetscReal *height;
-  int       *order, *root, highest;
-  PetscInt  *index;
+  const int        n = fluid->surface->graph.n;
+  const PetscReal *p = fluid->now.p;
+  PetscReal       *height;
+  int             *order, *root, highest;
+  PetscInt        *index;
 
   PetscFunctionBeginUser;
   fluid->height = NAN;
@@ -187,7 +187,7 @@ static PetscErrorCode FindBarrier(Fluid *fluid)
   PetscCall(PetscMalloc4(n, &height, n, &order, n, &index, n + 2, &root));
   for (int i = 0; i < n; i++) {
     index[i]  = i;
-    height[i] = fluid->p[i] + (fluid->now.wet[i] && fluid->p[i] > 0 ? fluid->pressure : 0);
+    height[i] = p[i] + (fluid->now.wet[i] && p[i] > FLUID_SAME * fluid->pressure ? fluid->pressure : 0);
   }
   PetscCall(PetscSortRealWithPermutation(n, height, index));
   for (int i = 0; i < n; i++) order[i] = (int)index[i];
@@ -235,19 +235,21 @@ static PetscErrorCode MoveOne(Fluids fluids, Fluid *fluid, const PetscReal *u, P
 static PetscErrorCode StateCreate(int n, FluidState *state)
 {
   PetscFunctionBeginUser;
-  PetscCall(PetscCalloc1(n, &state->wet));
-  state->leak_t = state->leak_pressure = NAN;
+  PetscCall(PetscCalloc2(n, &state->wet, n, &state->p));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 static PetscErrorCode StateCopy(int n, const FluidState *from, FluidState *to)
 {
-  char *wet = to->wet;
+  char      *wet = to->wet;
+  PetscReal *p   = to->p;
 
   PetscFunctionBeginUser;
   PetscCall(PetscArraycpy(wet, from->wet, n));
+  PetscCall(PetscArraycpy(p, from->p, n));
   *to     = *from;
   to->wet = wet;
+  to->p   = p;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -366,12 +368,12 @@ static PetscErrorCode CreateOne(Fluids fluids, int load, Fluid *fluid)
   PetscCall(SurfaceGraphCreate(mesh, group, &fluid->surface));
   n = fluid->surface->graph.n;
   PetscCall(FindPairs(fluids, fluid));
-  PetscCall(PetscCalloc4(n, &fluid->from, n, &fluid->to, n, &fluid->p, n, &fluid->weight));
+  PetscCall(PetscCalloc3(n, &fluid->from, n, &fluid->to, n, &fluid->weight));
   PetscCall(PetscCalloc4(mesh->n_nodes, &fluid->area, mesh->n_nodes, &fluid->nodes, mesh->n_nodes, &fluid->force,
                          group->n_faces * FACE_MAX_POINTS, &fluid->points));
   PetscCall(StateCreate(n, &fluid->now));
   PetscCall(StateCreate(n, &fluid->accepted));
-  fluid->height = fluid->seen_t = fluid->seen = NAN;
+  fluid->height = fluid->leak_t = fluid->leak_pressure = NAN;
   PetscCall(CheckPressure(fluids, fluid));
   PetscCall(ReadEnd(fluids, fluid, "from", &fluid->load->from, fluid->from, &fluid->has_from));
   PetscCall(ReadEnd(fluids, fluid, "to", &fluid->load->to, fluid->to, &fluid->has_to));
@@ -434,11 +436,11 @@ PetscErrorCode FluidDestroy(Fluids *fluids)
     Fluid *fluid = &(*fluids)->fluid[i];
 
     PetscCall(SurfaceGraphDestroy(&fluid->surface));
-    PetscCall(PetscFree4(fluid->from, fluid->to, fluid->p, fluid->weight));
+    PetscCall(PetscFree3(fluid->from, fluid->to, fluid->weight));
     PetscCall(PetscFree4(fluid->area, fluid->nodes, fluid->force, fluid->points));
     PetscCall(PetscFree(fluid->pair));
-    PetscCall(PetscFree(fluid->now.wet));
-    PetscCall(PetscFree(fluid->accepted.wet));
+    PetscCall(PetscFree2(fluid->now.wet, fluid->now.p));
+    PetscCall(PetscFree2(fluid->accepted.wet, fluid->accepted.p));
   }
   PetscCall(PetscFree((*fluids)->fluid));
   PetscCall(PetscFree(*fluids));
@@ -469,14 +471,14 @@ static PetscErrorCode ChooseEnds(Fluids fluids, Fluid *fluid)
 
       gap[s->local[i]] = PetscIsNanReal(g) || g > FLUID_OPEN * fluids->mesh->size ? 1 : 0;
     }
-  PetscCall(SurfaceGraphGather(s, gap, fluid->p));
+  PetscCall(SurfaceGraphGather(s, gap, fluid->now.p));
   PetscCall(PetscFree(gap));
   for (int i = 0; i < s->graph.n; i++) {
     if (!s->rim[i]) continue;
     if (ends < 2) end[ends] = i;
     ends++;
-    open += fluid->p[i] > 0;
-    if (fluid->p[i] > 0) wet = i;
+    open += fluid->now.p[i] > 0;
+    if (fluid->now.p[i] > 0) wet = i;
   }
   if (!fluid->has_from && (ends != 2 || open != 1))
     PetscCall(RefuseInput(fluids->mesh->comm,
@@ -525,6 +527,34 @@ PetscErrorCode FluidStart(Fluids fluids, const PetscReal *u)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Wets the nodes to which the contact pressure rises from wet places. Contact presses more than the fluid there, so
+   that this changes no force, and Newton's method itself finds how far the front moves up to the crest of the pressure.
+ */
+static PetscErrorCode WetAhead(Fluid *fluid)
+{
+  const PassageGraph *graph = &fluid->surface->graph;
+  char               *wet   = fluid->now.wet;
+  int                *stack, top = 0;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(graph->n, &stack));
+  for (int i = 0; i < graph->n; i++)
+    if (wet[i]) stack[top++] = i;
+  while (top) {
+    const int i = stack[--top];
+
+    for (int k = graph->ptr[i]; k < graph->ptr[i + 1]; k++) {
+      const int j = graph->adj[k];
+
+      if (wet[j] || (!fluid->accepted.wet[i] && fluid->now.p[j] < fluid->now.p[i])) continue;
+      wet[j]       = 1;
+      stack[top++] = j;
+    }
+  }
+  PetscCall(PetscFree(stack));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /*@
   FluidBegin - begins a load step: the fluids are where they were accepted, with their pressures at t.
 
@@ -543,6 +573,7 @@ PetscErrorCode FluidBegin(Fluids fluids, const PetscReal *u, PetscReal t)
 
     fluid->retreats = 0;
     PetscCall(StateCopy(fluid->surface->graph.n, &fluid->accepted, &fluid->now));
+    PetscCall(WetAhead(fluid));
     PetscCall(Apply(fluids, fluid, u, t));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -582,14 +613,14 @@ static PetscReal LeakPressure(const Fluid *fluid)
   const PetscReal   p = s->sealed_p[0], q = fluid->pressure;
   PetscReal         fall, found;
 
-  if (s->n_sealed < FLUID_STATES) return q;
+  if (s->n_sealed < FLUID_STATES || PetscIsNanReal(s->barrier[0] - s->barrier[1])) return q;
   fall  = ((s->sealed_p[0] - s->barrier[0]) - (s->sealed_p[1] - s->barrier[1])); /* of the margin, over the two */
   found = fall > 0 ? p + (s->barrier[0] - p) * (p - s->sealed_p[1]) / fall : q;
   return PetscMax(PetscMin(p, q), PetscMin(PetscMax(p, q), found));
 }
 
 /*@
-  FluidReaches - says whether a fluid reaches its other end for the first time.
+  FluidReaches - says whether a fluid reaches its other end.
 
   Not collective, the same on all ranks
 
@@ -600,8 +631,8 @@ static PetscReal LeakPressure(const Fluid *fluid)
 - dt_min - the shortest step that may be made
 
   Output Parameters:
-+ reaches - a fluid does, which did not in the accepted state
-- closely - the step is so short, or can be made so little shorter, that this may be accepted
++ reaches - a fluid does
+- closely - the step is short enough to say at which pressure, or cannot be made shorter
 @*/
 PetscErrorCode FluidReaches(Fluids fluids, PetscReal t_0, PetscReal t, PetscReal dt_min, PetscBool *reaches,
                             PetscBool *closely)
@@ -615,13 +646,13 @@ PetscErrorCode FluidReaches(Fluids fluids, PetscReal t_0, PetscReal t, PetscReal
     Fluid    *fluid = &fluids->fluid[i];
     PetscReal before;
 
-    if (!PetscIsNanReal(fluid->accepted.leak_t) || !ReachesEnd(fluid)) continue;
+    if (!ReachesEnd(fluid)) continue;
     *reaches = PETSC_TRUE;
     PetscCall(LoadsPressure(fluids->loads, fluid->number, t_0, &before));
     if (dt > FLUID_LEAK_STEP * t || PetscAbsReal(fluid->pressure - before) > FLUID_LEAK_STEP * fluid->pressure)
       *closely = PETSC_FALSE;
-    fluid->seen_t = t;
-    fluid->seen   = LeakPressure(fluid);
+    fluid->leak_t        = t;
+    fluid->leak_pressure = LeakPressure(fluid);
   }
   if (dt < FLUID_CUT * dt_min) *closely = PETSC_TRUE;
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -646,17 +677,14 @@ PetscErrorCode FluidAccept(Fluids fluids, const PetscReal *u, PetscReal t)
 
     PetscCall(Measure(fluids, fluid, u, t));
     PetscCall(FindBarrier(fluid));
-    if (ReachesEnd(fluid) && PetscIsNanReal(now->leak_t)) {
-      now->leak_t        = t;
-      now->leak_pressure = LeakPressure(fluid);
-    } else if (fluid->has_to && PetscIsNanReal(now->leak_t)) {
+    if (fluid->has_to) {
       now->n_sealed    = PetscMin(FLUID_STATES, now->n_sealed + 1);
       now->sealed_p[1] = now->sealed_p[0];
       now->barrier[1]  = now->barrier[0];
       now->sealed_p[0] = fluid->pressure;
       now->barrier[0]  = fluid->height;
-      fluid->seen_t = fluid->seen = NAN;
     }
+    fluid->leak_t = fluid->leak_pressure = NAN;
     PetscCall(StateCopy(fluid->surface->graph.n, now, &fluid->accepted));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -675,7 +703,12 @@ PetscErrorCode FluidAccept(Fluids fluids, const PetscReal *u, PetscReal t)
 PetscErrorCode FluidRestore(Fluids fluids, const PetscReal *u, PetscReal t)
 {
   PetscFunctionBeginUser;
-  PetscCall(FluidBegin(fluids, u, t));
+  for (int i = 0; fluids && i < fluids->n; i++) {
+    Fluid *fluid = &fluids->fluid[i];
+
+    PetscCall(StateCopy(fluid->surface->graph.n, &fluid->accepted, &fluid->now));
+    PetscCall(Apply(fluids, fluid, u, t));
+  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -695,31 +728,34 @@ PetscErrorCode FluidArchive(Fluids fluids, Archive archive)
     Fluid      *fluid = &fluids->fluid[i];
     FluidState *state = &fluid->accepted;
     const int   n     = fluid->surface->graph.n;
-    PetscReal   values[2 * FLUID_STATES + 2];
+    PetscReal   values[2 * FLUID_STATES];
     PetscInt   *wet;
     char        name[64];
 
     PetscCall(PetscMalloc1(n + 1, &wet));
-    for (int k = 0; k < n; k++) wet[k] = state->wet[k];
+    for (int k = 0; k < n; k++) wet[k] = state->wet[k] + 2 * fluid->from[k] + 4 * fluid->to[k];
     wet[n] = state->n_sealed;
     for (int k = 0; k < FLUID_STATES; k++) {
       values[k]                = state->sealed_p[k];
       values[FLUID_STATES + k] = state->barrier[k];
     }
-    values[2 * FLUID_STATES]     = state->leak_t;
-    values[2 * FLUID_STATES + 1] = state->leak_pressure;
     PetscCall(PetscSNPrintf(name, sizeof(name), "fluid/%d/wet", i));
     PetscCall(ArchiveIntegers(archive, name, n + 1, wet));
     PetscCall(PetscSNPrintf(name, sizeof(name), "fluid/%d/values", i));
-    PetscCall(ArchiveReals(archive, name, 2 * FLUID_STATES + 2, values));
-    for (int k = 0; k < n; k++) state->wet[k] = (char)wet[k];
+    PetscCall(ArchiveReals(archive, name, 2 * FLUID_STATES, values));
+    for (int k = 0; k < n; k++) {
+      state->wet[k]  = (char)(wet[k] & 1);
+      fluid->from[k] = (char)(wet[k] >> 1 & 1);
+      fluid->to[k]   = (char)(wet[k] >> 2 & 1);
+      fluid->has_to  = (PetscBool)(fluid->has_to || fluid->to[k]);
+    }
     state->n_sealed = wet[n];
+    PetscCall(PetscSNPrintf(name, sizeof(name), "fluid/%d/pressure", i));
+    PetscCall(ArchiveReals(archive, name, n, state->p));
     for (int k = 0; k < FLUID_STATES; k++) {
       state->sealed_p[k] = values[k];
       state->barrier[k]  = values[FLUID_STATES + k];
     }
-    state->leak_t        = values[2 * FLUID_STATES];
-    state->leak_pressure = values[2 * FLUID_STATES + 1];
     PetscCall(PetscFree(wet));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -779,9 +815,9 @@ void FluidGetReport(Fluids fluids, int i, FluidReport *report)
   *report = (FluidReport){.load          = fluid->load,
                           .pressure      = fluid->pressure,
                           .wetted        = wet / all,
-                          .barrier       = PetscIsNanReal(state->leak_t) ? fluid->height : NAN,
-                          .leak_t        = PetscIsNanReal(state->leak_t) ? fluid->seen_t : state->leak_t,
-                          .leak_pressure = PetscIsNanReal(state->leak_t) ? fluid->seen : state->leak_pressure};
+                          .barrier       = state->barrier[0],
+                          .leak_t        = fluid->leak_t,
+                          .leak_pressure = fluid->leak_pressure};
 }
 
 /*@
@@ -833,10 +869,11 @@ static PetscReal FrontBetween(const Fluid *fluid, int a, int b)
     far = PetscSqrtReal(far);
     if (cosine <= ahead * far) continue;
     ahead = cosine / far;
-    slope = (fluid->p[c] - fluid->p[b]) / far;
+    slope = (fluid->accepted.p[c] - fluid->accepted.p[b]) / far;
   }
-  if (slope * length <= 0) slope = fluid->p[b] / length; /* a crest: as if the pressure fell to 0 within one face */
-  return slope > 0 ? PetscMax(0, 1 - (fluid->p[b] - fluid->pressure) / (slope * length)) : 1;
+  if (slope * length <= 0)
+    slope = fluid->accepted.p[b] / length; /* a crest: as if the pressure fell to 0 within one face */
+  return slope > 0 ? PetscMax(0, 1 - (fluid->accepted.p[b] - fluid->pressure) / (slope * length)) : 1;
 }
 
 /*@

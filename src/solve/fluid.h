@@ -19,7 +19,7 @@ typedef struct {
   PetscReal        wetted;   /* part of the surface's reference area */
   PetscReal barrier;       /* lowest pressure with which the fluid would leak in this contact; NaN: it has leaked, or no
                               end is known at which it could */
-  PetscReal leak_t;        /* load parameter at which it was first found at the other end; NaN: it was not */
+  PetscReal leak_t;        /* load parameter of the step after this state in which it leaks; NaN: it was not found to */
   PetscReal leak_pressure; /* where pressure and barrier met before (force per area); NaN without a leak */
 } FluidReport;
 

@@ -14,9 +14,9 @@ const char *const SolveResults[] = {
   "contact was lost behind a master",
   "nothing holds a body against its load",
   "the penetrations did not come into the window of the adjusted penalty",
-  "the place that the fluid wets did not settle",
-  "the fluid reaches the other end: a shorter step is to say at which pressure",
-  "the fluid has reached the other end, and no equilibrium was found with it there",
+  "the places that a fluid wets did not settle",
+  "a fluid leaks, and the step is too long to say at which pressure",
+  "a fluid leaks",
   "not-a-number in the residual"};
 
 /*@

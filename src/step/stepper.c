@@ -322,7 +322,8 @@ static PetscErrorCode ReportFailure(StepperReport *report, PetscReal t, PetscRea
 
 /* Tries one step, and repeats it with smaller dt until it converges and the control accepts it, or dt falls below
    dt_min. A step whose first linear solve is singular is not repeated, because the tangent at its start is singular for
-   any dt. Nor is one in which a fluid has leaked that was close to it before. */
+   any dt. A fluid that leaks
+   ends the steps. */
 static PetscErrorCode LoadStepperAdvance(LoadStepper stepper, StepRecord *record, PetscBool *advanced)
 {
   Model           model  = stepper->model;
@@ -355,10 +356,16 @@ static PetscErrorCode LoadStepperAdvance(LoadStepper stepper, StepRecord *record
     PetscCall(
       PetscInfo(model->snes, "step to t = %g failed: %s; %s\n", (double)end, SolveResults[solve.result], solve.detail));
     PetscCall(ModelRestore(model));
+    report->leaks = (PetscBool)(solve.result == SOLVE_LEAKED);
+    if (report->leaks) {
+      PetscCall(
+        PetscSNPrintf(report->message, sizeof(report->message), "ended at t = %.6g: %s", (double)t, solve.detail));
+      PetscFunctionReturn(PETSC_SUCCESS);
+    }
     report->steps_failed++;
     stepper->size.dt = STEPPER_CUT * dt;
     if (stepper->size.dt < stepper->size.dt_min || (solve.result == SOLVE_LINEAR && solve.newton == 1) ||
-        (solve.result == SOLVE_ADRIFT && !solve.newton) || solve.result == SOLVE_LEAKED) {
+        (solve.result == SOLVE_ADRIFT && !solve.newton)) {
       PetscCall(ReportFailure(report, t, end, first, dt, stepper->size.dt_min, record->attempts, &solve));
       PetscFunctionReturn(PETSC_SUCCESS);
     }
@@ -410,7 +417,7 @@ PetscErrorCode LoadStepperSolve(LoadStepper stepper, StepperReport *report)
     PetscCall(LoadStepperAdvance(stepper, &record, &advanced));
     if (advanced && stepper->monitor) PetscCall(stepper->monitor(stepper, &record, stepper->monitor_context));
   }
-  stepper->report.done    = stepper->report.t < 1 - STEPPER_SAME_T ? PETSC_FALSE : PETSC_TRUE;
+  stepper->report.done    = (PetscBool)(stepper->report.t >= 1 - STEPPER_SAME_T || stepper->report.leaks);
   stepper->report.stopped = (PetscBool)(stepper->report.stopped && !stepper->report.done);
   *report                 = stepper->report;
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -22,7 +22,8 @@ typedef struct {
 
 /* All steps so far. */
 typedef struct {
-  PetscBool done;                                /* t = 1 was reached */
+  PetscBool done;                                /* t = 1 was reached, or a fluid leaks */
+  PetscBool leaks;                               /* a fluid leaks: the load ends before t = 1 */
   PetscBool stopped;                             /* LoadStepperStop() ended it before */
   PetscInt  steps, steps_failed, steps_repeated; /* repeated: converged, but taken back by the control */
   PetscInt  newton_iterations, newton_accepted, krylov_iterations;

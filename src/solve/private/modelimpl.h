@@ -47,7 +47,6 @@ typedef struct _n_ModelWork {
   PetscBool look_ahead_extrapolated;
 
   /* The load step at hand */
-  PetscBool leaks;        /* a fluid has reached its other end in this step */
   PetscBool adrift;       /* a body that only contact could hold meets none on the way of its load */
   PetscBool extrapolated; /* the prediction started from the extrapolated state */
   PetscReal start;        /* residual norm where Newton's method started; 0: it has not started */
