@@ -138,7 +138,7 @@ static double StepsRepeat(const RunFigures *figures, char *text)
 {
   const StepperReport *way = figures->run->way;
 
-  if (way->steps_repeated <= ADVICE_REPEATED * PetscMax(way->steps, 1)) return 0;
+  if (way->leaks || way->steps_repeated <= ADVICE_REPEATED * PetscMax(way->steps, 1)) return 0;
   snprintf(text, ADVICE_TEXT, "%lld steps were taken back by the control", (long long)way->steps_repeated);
   return 1;
 }

@@ -378,11 +378,10 @@ static PetscErrorCode ModelMoveFluids(Model model, SolveReport *report, PetscBoo
 
   PetscFunctionBeginUser;
   PetscCall(FluidMove(fluids, model->problem->trial, model->t, moved));
-  if (!*moved) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(FluidReaches(fluids, model->work->accepted_t, model->t, model->scene->stepping.dt_min, &leaks, &closely));
   if (leaks)
     report->result = closely ? SOLVE_LEAKED : SOLVE_LEAK;
-  else if (report->wetted++ == EQUILIBRIUM_MAX_FLUID)
+  else if (*moved && report->wetted++ == EQUILIBRIUM_MAX_FLUID)
     report->result = SOLVE_FLUID;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -428,7 +427,7 @@ PetscErrorCode ModelSolve(Model model, PetscReal t, SolveReport *report)
     PetscCall(ModelSolveHeld(model, report));
     if (report->result != SOLVE_CONVERGED || !model->contact) break;
     PetscCall(ModelMoveFluids(model, report, &moved));
-    if (moved) continue;
+    if (moved || report->result != SOLVE_CONVERGED) continue;
     PetscCall(ContactAdjustPenalty(model->contact, &window));
     report->adjusted += window == WINDOW_MISSED;
     if (window == WINDOW_AT_BOUND) {

@@ -485,10 +485,9 @@ static PetscErrorCode ChooseEnds(Fluids fluids, Fluid *fluid)
                           "%s: is missing, and of the %d ends of '%s' %d are open at the start; allowed: a surface or "
                           "the point of a node from which the fluid enters",
                           key, ends, fluid->load->region, open));
-  for (int i = 0; i < s->graph.n && fluid->has_from; i++)
-    if (fluid->from[i] && s->rim[i]) wet = i;
   if (!fluid->has_from) fluid->from[wet] = 1;
-  if (!fluid->has_to && ends == 2 && (wet == end[0] || wet == end[1])) {
+  if (!fluid->has_to && ends == 2 && fluid->from[end[0]] != fluid->from[end[1]]) {
+    wet                                        = fluid->from[end[0]] ? end[0] : end[1];
     fluid->to[wet == end[0] ? end[1] : end[0]] = 1;
     fluid->has_to                              = PETSC_TRUE;
   }
@@ -611,11 +610,10 @@ static PetscReal LeakPressure(const Fluid *fluid)
 {
   const FluidState *s = &fluid->accepted;
   const PetscReal   p = s->sealed_p[0], q = fluid->pressure;
-  PetscReal         fall, found;
+  PetscReal         fall, found           = s->barrier[0]; /* a contact that does not change */
 
-  if (s->n_sealed < FLUID_STATES || PetscIsNanReal(s->barrier[0] - s->barrier[1])) return q;
-  fall  = ((s->sealed_p[0] - s->barrier[0]) - (s->sealed_p[1] - s->barrier[1])); /* of the margin, over the two */
-  found = fall > 0 ? p + (s->barrier[0] - p) * (p - s->sealed_p[1]) / fall : q;
+  fall = ((s->sealed_p[0] - s->barrier[0]) - (s->sealed_p[1] - s->barrier[1])); /* of the margin, over the two */
+  if (s->n_sealed == FLUID_STATES && fall > 0) found = p + (s->barrier[0] - p) * (p - s->sealed_p[1]) / fall;
   return PetscMax(PetscMin(p, q), PetscMin(PetscMax(p, q), found));
 }
 

@@ -362,7 +362,7 @@ static PetscErrorCode LoadStepperAdvance(LoadStepper stepper, StepRecord *record
         PetscSNPrintf(report->message, sizeof(report->message), "ended at t = %.6g: %s", (double)t, solve.detail));
       PetscFunctionReturn(PETSC_SUCCESS);
     }
-    report->steps_failed++;
+    *(solve.result == SOLVE_LEAK ? &report->steps_repeated : &report->steps_failed) += 1;
     stepper->size.dt = STEPPER_CUT * dt;
     if (stepper->size.dt < stepper->size.dt_min || (solve.result == SOLVE_LINEAR && solve.newton == 1) ||
         (solve.result == SOLVE_ADRIFT && !solve.newton)) {

@@ -25,7 +25,8 @@ typedef struct {
   PetscBool done;                                /* t = 1 was reached, or a fluid leaks */
   PetscBool leaks;                               /* a fluid leaks: the load ends before t = 1 */
   PetscBool stopped;                             /* LoadStepperStop() ended it before */
-  PetscInt  steps, steps_failed, steps_repeated; /* repeated: converged, but taken back by the control */
+  PetscInt  steps, steps_failed, steps_repeated; /* repeated: taken back by the control, or
+                                                                     to find out when a fluid leaks */
   PetscInt  newton_iterations, newton_accepted, krylov_iterations;
   PetscInt  relaxed;                            /* times that the contact springs were relaxed */
   PetscReal taken;                              /* energy that the contact springs took out of the bodies */
