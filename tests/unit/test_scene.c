@@ -347,9 +347,9 @@ static void PlacesNameTheNearestLine(void **state)
 
   (void)state;
   ReadOrFail(Everything, 0, NULL, &scene);
-  snprintf(expect, sizeof expect, "%s:20: contact.0.slave", File);
+  snprintf(expect, sizeof expect, "%s:21: contact.0.slave", File);
   assert_string_equal(SceneWhere(scene, "contact.0", "slave"), expect);
-  snprintf(expect, sizeof expect, "%s:35: contact.1.feature_angle", File);
+  snprintf(expect, sizeof expect, "%s:36: contact.1.feature_angle", File);
   assert_string_equal(SceneWhere(scene, "contact.1", "feature_angle"), expect);
   snprintf(expect, sizeof expect, "%s:7: bodies.1", File);
   assert_string_equal(SceneWhere(scene, "bodies.1", ""), expect);
