@@ -68,6 +68,16 @@ const SchemaKey SchemaKeys[] = {
   {"loads.*.uz", REAL | FORMULA, SOLID, .unit = "length", .help = "imposed displacement component"},
   {"loads.*.pressure", REAL | FORMULA, .unit = "stress", .help = "pressure, positive against the outward normal"},
   {"loads.*.follower", BOOLEAN, .preset = "false", .help = "true: the pressure acts on the deformed face"},
+  {"loads.*.where", CHOICE, .values = "everywhere | open", .preset = "everywhere",
+   .help = "open: the pressure is that of a fluid that enters between surfaces in contact; it acts where contact "
+           "presses less than the fluid, as far as such places are connected to the wetted end"},
+  {"loads.*.from", TEXT | POINT, .unit = "length",
+   .help = "wetted end of where: open, from which the fluid enters: a physical surface with nodes of the loaded one, or "
+           "the reference point of a node; the default in two dimensions is the end of the loaded line that is open at "
+           "the start, if only one is"},
+  {"loads.*.to", TEXT | POINT, .unit = "length",
+   .help = "end at which the fluid of where: open leaks, like from; the default in two dimensions is the other end of "
+           "the loaded line, else no leak is looked for"},
   {"loads.*.traction", POINT | FORMULA, .unit = "force per reference area", .help = "traction of fixed direction"},
   {"loads.*.body_force", POINT | FORMULA, .unit = "force per reference volume",
    .help = "body force, such as the weight"},
@@ -189,6 +199,12 @@ const SchemaKey SchemaKeys[] = {
   {"probes.*.pressure_max|pressure_mean", TEXT, .help = "largest or mean contact pressure over the nodes of this pair"},
   {"probes.*.pressure_deviation", TEXT, .unit = "per cent",
    .help = "deviation of the contact pressure from the mean pressure of this pair"},
+  {"probes.*.fluid_front", TEXT,
+   .help = "coordinate to which the fluid of where: open has come on this surface; needs axis and side"},
+  {"probes.*.fluid_area", TEXT, .help = "part of this surface that the fluid of where: open wets, from 0 to 1"},
+  {"probes.*.seal_pressure", TEXT, .unit = "stress",
+   .help = "lowest pressure of the fluid of where: open that would overcome the contact on this surface as it is; no "
+           "value after a leak"},
   {"probes.*.component", CHOICE, .values = "x | y | z", .help = "component of a force or displacement"},
   {"probes.*.body", TEXT, .help = "volume of the node, if two bodies have a node at the point"},
   {"probes.*.change", BOOLEAN, .preset = "false", .help = "of distance; true: the reference distance is subtracted"},
@@ -196,8 +212,10 @@ const SchemaKey SchemaKeys[] = {
    .help = "for gap a point; for contact_edge and pressure_max one reference coordinate, such as {z: 100}"},
   {"probes.*.at.x|y", REAL, .unit = "length", .help = "reference coordinate"},
   {"probes.*.at.z", REAL, SOLID, .unit = "length", .help = "reference coordinate"},
-  {"probes.*.axis", CHOICE, .values = "x | y | z", .help = "of contact_edge: axis along which the end is searched"},
-  {"probes.*.side", CHOICE, .values = "min | max", .help = "of contact_edge: the lower or the upper end"},
+  {"probes.*.axis", CHOICE, .values = "x | y | z",
+   .help = "of contact_edge and fluid_front: axis along which the end is searched"},
+  {"probes.*.side", CHOICE, .values = "min | max",
+   .help = "of contact_edge and fluid_front: the lower or the upper end"},
   {"probes.*.measure", CHOICE, .values = "max | rms", .preset = "max",
    .help = "of pressure_deviation: the largest deviation or the root of the mean square"},
   {"probes.*.excluding", REAL, .range = "(0, inf)", .unit = "face sizes",
