@@ -2,6 +2,7 @@
 #include "report/precheck.h"
 #include "contactreport.h"
 #include "estimate.h"
+#include "lawreport.h"
 #include "bodies/freemodes.h"
 
 static PetscErrorCode PrintEffects(Model model, FILE *stream)
@@ -35,11 +36,14 @@ PetscErrorCode PrecheckModel(Model model, PetscBool report, FILE *stream)
 {
   FreeModes      modes;
   PetscErrorCode code;
+  PetscMPIInt    rank;
 
   PetscFunctionBeginUser;
   PetscCall(FreeModesCreate(model->mesh, model->scene, model->problem->loads, &modes));
   if (report) {
     PetscCall(PrintEffects(model, stream));
+    PetscCallMPI(MPI_Comm_rank(model->mesh->comm, &rank));
+    if (!rank) LawReport(model->scene, stream);
     PetscCall(FreeModesReport(modes, PETSC_TRUE, stream));
     PetscCall(ContactReport(model->contact, stream));
     PetscCall(EstimatePrint(model, stream));
