@@ -115,7 +115,11 @@ def bounded(A, b, signs):
 
 def solve(law, data, scale, free, parameters):
     """The constants for parameters, and the errors that they leave."""
-    A = scale[:, None] * matrix(law, data, parameters)
+    with numpy.errstate(all="ignore"):
+        A = scale[:, None] * matrix(law, data, parameters)
+        finite = numpy.all(numpy.isfinite(A * A))
+    if not finite:  # the search does not take this step
+        return numpy.zeros(A.shape[1]), numpy.full(len(A), numpy.inf)
     b = scale * numpy.concatenate([stress for _, stress in data.values()])
     signs = numpy.zeros(A.shape[1]) if free else law.signs(parameters)
     size = numpy.maximum(numpy.linalg.norm(A, axis=0), numpy.finfo(float).tiny)
@@ -212,7 +216,8 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     for test in TESTS:
         parser.add_argument("--" + test, metavar="FILE.csv", help=f"stretch and nominal stress of a {test} test")
-    parser.add_argument("--law", action="append", choices=list(laws(1)), help="a law to fit; may be repeated (default: all)")
+    parser.add_argument("--law", action="append", choices=list(laws(1)),
+                        help="a law to fit; may be repeated (default: all)")
     parser.add_argument("--terms", type=int, default=3, help="terms of ogden, 1 to 5 (default 3)")
     parser.add_argument("--relative", action="store_true", help="errors over the stress itself")
     parser.add_argument("--free", action="store_true", help="constants of any sign")

@@ -2,33 +2,39 @@
 #include "lawreport.h"
 #include "kernels/stability.h"
 
-/* Warns of a test in which the law is unstable below or above a stretch. */
-static void Warn(Scene scene, const SceneBody *body, MaterialTest test, int tension, double end)
+/* Warns of a law that is not stable all over the range that is checked: all tests in one line. */
+static void Warn(Scene scene, const SceneBody *body, double end[MATERIAL_TESTS][2])
 {
-  fprintf(
-    stderr,
-    "burnish: warning: %s: %s loses its stability (Drucker) in %s %s at the stretch %.3g: the stress falls there, "
-    "and a run that comes so far can fail\n",
-    SceneWhere(scene, body->path, "material"), MaterialLaws[body->material.law], MaterialTests[test],
-    tension ? "tension" : "compression", end);
+  const double most[2] = {STABILITY_LEAST_STRETCH, STABILITY_MOST_STRETCH};
+  int          n       = 0;
+
+  for (int test = 0; test < MATERIAL_TESTS; test++) {
+    for (int tension = 0; tension < 2; tension++) {
+      if (end[test][tension] == most[tension]) continue;
+      if (!n++)
+        fprintf(stderr,
+                "burnish: warning: %s: %s loses its stability (Drucker):", SceneWhere(scene, body->path, "material"),
+                MaterialLaws[body->material.law]);
+      fprintf(stderr, "%s in %s %s at the stretch %.3g", n > 1 ? "," : "", MaterialTests[test],
+              tension ? "tension" : "compression", end[test][tension]);
+    }
+  }
+  if (n) fprintf(stderr, "; beyond it the stress can fall as the strain grows, and a run can fail\n");
 }
 
 static void ReportBody(Scene scene, const SceneBody *body, FILE *file)
 {
+  double end[MATERIAL_TESTS][2];
+
   fprintf(file, "law      %s: %s, E = %g, nu = %g in small strains; stable for stretches of", body->name,
           MaterialLaws[body->material.law], body->material.E, body->material.nu);
-  for (int test = 0; test < MATERIAL_TESTS; test++)
-    fprintf(file, "%s %.3g to %.3g (%s)", test ? "," : "", MaterialStableEnd(&body->material, (MaterialTest)test, 0),
-            MaterialStableEnd(&body->material, (MaterialTest)test, 1), MaterialTests[test]);
-  fprintf(file, "\n");
   for (int test = 0; test < MATERIAL_TESTS; test++) {
-    for (int tension = 0; tension < 2; tension++) {
-      const double end = MaterialStableEnd(&body->material, (MaterialTest)test, tension);
-
-      if (end != (tension ? STABILITY_MOST_STRETCH : STABILITY_LEAST_STRETCH))
-        Warn(scene, body, (MaterialTest)test, tension, end);
-    }
+    for (int tension = 0; tension < 2; tension++)
+      end[test][tension] = MaterialStableEnd(&body->material, (MaterialTest)test, tension);
+    fprintf(file, "%s %.3g to %.3g (%s)", test ? "," : "", end[test][0], end[test][1], MaterialTests[test]);
   }
+  fprintf(file, "\n");
+  Warn(scene, body, end);
 }
 
 /*@

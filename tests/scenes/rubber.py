@@ -1,5 +1,5 @@
-"""A block of rubber under uniaxial, equibiaxial and planar tension and compression, each law against its closed form with
-the lateral stretches solved for, to 1e-8; in the plane and axisymmetric as far as these have the tests."""
+"""A block of rubber under uniaxial, equibiaxial and planar tension and compression: each law against its closed form
+with the lateral stretches solved for, to 1e-8; in the plane and axisymmetric as far as these have the tests."""
 import math
 
 from harness import Check, arguments, run, SCENES
@@ -29,7 +29,8 @@ def overrides(test, stretch):
     return changed + (["supports.3={surface: y_max, uy: 0}"] if test == "planar" else [])
 
 
-args = arguments(("law", "of the material", LAWS), ("geometry", "of the scene", ("solid", "plane_strain", "axisymmetric")),
+args = arguments(("law", "of the material", LAWS),
+                 ("geometry", "of the scene", ("solid", "plane_strain", "axisymmetric")),
                  ("order", "of the elements", ("1", "2")))
 check = Check()
 TESTS = {"solid": ("uniaxial", "equibiaxial", "planar"), "plane_strain": ("planar",), "axisymmetric": ("uniaxial",)}

@@ -1,6 +1,6 @@
-"""A thick tube of nearly incompressible rubber, inflated by half of its inner radius between rigid ends: the force on the
-inner wall against the closed form of the incompressible tube, p = integral of (sigma_theta - sigma_r) / r over the wall,
-and its order of convergence."""
+"""A thick tube of nearly incompressible rubber, inflated by half of its inner radius between rigid ends: the force on
+the inner wall against the closed form of the incompressible tube, p = integral of (sigma_theta - sigma_r) / r over the
+wall, and its order of convergence."""
 import math
 
 import numpy

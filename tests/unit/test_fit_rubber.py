@@ -1,5 +1,5 @@
-"""Shows that scripts/fit_rubber.py finds the constants from which data were computed, and that Ogden's constants of 1972
-describe Treloar's data."""
+"""Shows that scripts/fit_rubber.py finds the constants from which data were computed, and that Ogden's constants of
+1972 describe Treloar's data."""
 import pathlib
 import sys
 
