@@ -1,10 +1,9 @@
 """Fits the laws of rubber to tests: uniaxial, equibiaxial and planar tension or compression of an incompressible solid.
-    fit_rubber.py --uniaxial FILE.csv [--equibiaxial FILE.csv] [--planar FILE.csv] [--law LAW ...] [--terms N]
+    fit_rubber.py --uniaxial FILE.csv [--equibiaxial FILE.csv] [--planar FILE.csv] [--law LAW] [--terms N]
+    fit_rubber.py PREFIX ...    takes those of PREFIX_uniaxial.csv, PREFIX_equibiaxial.csv, PREFIX_planar.csv that exist
 A file has two columns, stretch and nominal stress (force per undeformed area); lines with # and a head are skipped. The
 unit of the stress is that of the constants. For each law it prints the error and the material line of a scene, and it
-draws all fits beside the data into OUT/fit.png. Example:
-    fit_rubber.py --uniaxial runs/rubber/treloar_uniaxial.csv --planar runs/rubber/treloar_planar.csv \\
-        --equibiaxial runs/rubber/treloar_equibiaxial.csv
+draws all fits beside the data into OUT/fit.png.
 Each test counts the same, however many points it has. The sum of the squares of the errors is least, each over the
 largest stress of its test, or with --relative over the stress itself. The constants of mooney_rivlin and the products
 mu alpha of ogden are held above 0, which keeps these laws stable at all stretches; --free lifts that. yeoh is free."""
@@ -214,6 +213,7 @@ def draw(data, fits, table, picture):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("prefix", nargs="?", metavar="PREFIX", help="the files are PREFIX_TEST.csv")
     for test in TESTS:
         parser.add_argument("--" + test, metavar="FILE.csv", help=f"stretch and nominal stress of a {test} test")
     parser.add_argument("--law", action="append", choices=list(laws(1)),
@@ -224,7 +224,11 @@ def main():
     parser.add_argument("--volume", default="incompressible: true", help="what the material line says of the volume")
     parser.add_argument("--out", default="out/rubber", help="directory of the picture (default out/rubber)")
     args = parser.parse_args()
-    data = {test: read(getattr(args, test)) for test in TESTS if getattr(args, test)}
+    files = {test: getattr(args, test) for test in TESTS if getattr(args, test)}
+    for test in TESTS if args.prefix else ():
+        if pathlib.Path(f"{args.prefix}_{test}.csv").exists():
+            files.setdefault(test, f"{args.prefix}_{test}.csv")
+    data = {test: read(files[test]) for test in TESTS if test in files}
     if not data:
         parser.error("no data; allowed: at least one of " + ", ".join("--" + test for test in TESTS))
     if not 1 <= args.terms <= 5:
