@@ -4,6 +4,7 @@
 #include "estimate.h"
 #include "lawreport.h"
 #include "bodies/freemodes.h"
+#include "bodies/hinges.h"
 
 static PetscErrorCode PrintEffects(Model model, FILE *stream)
 {
@@ -34,23 +35,19 @@ static PetscErrorCode PrintEffects(Model model, FILE *stream)
 @*/
 PetscErrorCode PrecheckModel(Model model, PetscBool report, FILE *stream)
 {
-  FreeModes      modes;
-  PetscErrorCode code;
-  PetscMPIInt    rank;
+  PetscMPIInt rank;
 
   PetscFunctionBeginUser;
-  PetscCall(FreeModesCreate(model->mesh, model->scene, model->problem->loads, &modes));
+  PetscCall(HingesWarn(model->mesh, model->scene, stderr));
   if (report) {
     PetscCall(PrintEffects(model, stream));
     PetscCallMPI(MPI_Comm_rank(model->mesh->comm, &rank));
     if (!rank) LawReport(model->scene, stream);
-    PetscCall(FreeModesReport(modes, PETSC_TRUE, stream));
+    PetscCall(FreeModesReport(model->problem->modes, PETSC_TRUE, stream));
     PetscCall(ContactReport(model->contact, stream));
     PetscCall(EstimatePrint(model, stream));
   }
-  code = FreeModesRefuse(modes);
-  PetscCall(FreeModesDestroy(&modes));
-  PetscCall(code);
+  PetscCall(FreeModesRefuse(model->problem->modes));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -65,11 +62,7 @@ PetscErrorCode PrecheckModel(Model model, PetscBool report, FILE *stream)
 @*/
 PetscErrorCode PrecheckMotions(Model model, FILE *stream)
 {
-  FreeModes modes;
-
   PetscFunctionBeginUser;
-  PetscCall(FreeModesCreate(model->mesh, model->scene, model->problem->loads, &modes));
-  PetscCall(FreeModesReport(modes, PETSC_FALSE, stream));
-  PetscCall(FreeModesDestroy(&modes));
+  PetscCall(FreeModesReport(model->problem->modes, PETSC_FALSE, stream));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
