@@ -129,12 +129,13 @@ static PetscErrorCode SceneReadBody(Scene scene, SceneBody *body)
     PetscCall(SceneReadMotion(scene, tool, &body->motion));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
+  PetscCall(SceneReadMaterial(scene, body));
   body->formulation = (Formulation)SchemaChoice(SceneDocument(scene), "%s.formulation", body->path);
   if (body->formulation != FORMULATION_FULL && scene->order == 2)
     PetscCall(SceneRefuse(scene, body->path, "formulation",
                           "is for first-order elements; allowed with mesh.order: 2: full",
                           Formulations[body->formulation]));
-  PetscCall(SceneReadMaterial(scene, body));
+  PetscCall(SceneCheckIncompressible(scene, body));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

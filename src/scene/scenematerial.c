@@ -126,23 +126,6 @@ static PetscErrorCode ReadModuli(Scene scene, const char *path, MaterialLaw law,
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Refuses an incompressible material in elements that evaluate its volume part. */
-static PetscErrorCode CheckIncompressible(Scene scene, const SceneBody *body, const char *path, const char *volume)
-{
-  PetscFunctionBeginUser;
-  if (!isinf(body->material.constants[0])) PetscFunctionReturn(PETSC_SUCCESS);
-  if (!MaterialGetLaw(body->material.law)->separable && scene->kinematics == KINEMATICS_FINITE)
-    PetscCall(SceneRefuse(scene, path, volume,
-                          "is incompressible, which this law cannot be; allowed: nu below 0.5, K, or another law",
-                          NULL));
-  if (strcmp(Formulations[body->formulation], "mixed"))
-    PetscCall(SceneRefuse(scene, path, volume,
-                          "is incompressible, which needs formulation: mixed; allowed with other formulations: nu "
-                          "below 0.5, or K",
-                          NULL));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /*@
   SceneReadMaterial - reads the material of a deformable body.
 
@@ -150,7 +133,7 @@ static PetscErrorCode CheckIncompressible(Scene scene, const SceneBody *body, co
 
   Input Parameters:
 + scene - the scene, of which kinematics has been read
-- body  - a body, of which path and formulation have been read
+- body  - a body, of which the path has been read
 
   Note:
   It fills body->material, and refuses keys that do not belong to the law.
@@ -179,6 +162,35 @@ PetscErrorCode SceneReadMaterial(Scene scene, SceneBody *body)
     if (!strcmp(volume, "nu")) K = MaterialBulk(MaterialShear(&body->material), nu);
     MaterialSetBulk(&body->material, K);
   }
-  PetscCall(CheckIncompressible(scene, body, path, volume));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  SceneCheckIncompressible - refuses an incompressible material whose law or elements evaluate the change of volume.
+
+  Collective
+
+  Input Parameters:
++ scene - the scene
+- body  - a body, of which material and formulation have been read
+@*/
+PetscErrorCode SceneCheckIncompressible(Scene scene, const SceneBody *body)
+{
+  char        path[KEY_PATH_LENGTH];
+  const char *volume;
+
+  PetscFunctionBeginUser;
+  if (!isinf(body->material.constants[0])) PetscFunctionReturn(PETSC_SUCCESS);
+  KeyPathJoin(path, body->path, "material");
+  PetscCall(FindVolumeKey(scene, path, &volume));
+  if (!MaterialGetLaw(body->material.law)->separable && scene->kinematics == KINEMATICS_FINITE)
+    PetscCall(SceneRefuse(scene, path, volume,
+                          "is incompressible, which this law cannot be; allowed: nu below 0.5, K, or another law",
+                          NULL));
+  if (strcmp(Formulations[body->formulation], "mixed"))
+    PetscCall(SceneRefuse(scene, path, volume,
+                          "is incompressible, which needs formulation: mixed; allowed with other formulations: nu "
+                          "below 0.5, or K",
+                          NULL));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
