@@ -2,6 +2,7 @@
 #include "kernels/material.h"
 #include "lameconstants.h"
 #include <stddef.h>
+#include <string.h>
 
 const char *const              MaterialLaws[MATERIAL_LAWS + 1] = {ELASTIC_LAWS(CHOICE_NAME) NULL};
 static const ElasticLaw *const laws[MATERIAL_LAWS]             = {ELASTIC_LAWS(CHOICE_POINTER)};
@@ -34,12 +35,22 @@ double MaterialShear(const Material *material)
 }
 
 /*@
+  MaterialHasModuli - tells whether the shear modulus is a law's only own constant, so that E may be given instead.
+
+  Not collective
+@*/
+int MaterialHasModuli(MaterialLaw law)
+{
+  return !strcmp(laws[law]->keys[0], "mu") && !laws[law]->keys[1];
+}
+
+/*@
   MaterialFromModuli - makes a material of a law whose only own constant is the shear modulus.
 
   Not collective
 
   Input Parameters:
-+ law - a law with the keys E and nu
++ law - a law of MaterialHasModuli()
 . E   - Young's modulus (stress)
 - nu  - Poisson's ratio, -1 < nu <= 1/2
 @*/

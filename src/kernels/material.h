@@ -68,7 +68,7 @@ typedef struct {
   int              constants; /* their number; for laws of any number of terms that of one term */
   int              separable, isochoric;
   /* Keys of the own constants in a scene, in their order; the first `required` ones have no default, the others are 0.
-     MATERIAL_TERMS is the key of a list of terms with two constants each. */
+     MATERIAL_TERMS is the key of a list of terms with two constants each. A law whose only key is mu takes E, too. */
   const char *keys[MATERIAL_MAX_KEYS + 1];
   int         required;
   int         plastic; /* evaluate() is the elastic part of a law that has a state, see vonmises.h */
@@ -79,6 +79,7 @@ ELASTIC_LAWS(MATERIAL_DECLARE)
 #undef MATERIAL_DECLARE
 
 const ElasticLaw *MaterialGetLaw(MaterialLaw);
+int               MaterialHasModuli(MaterialLaw);
 Material          MaterialFromModuli(MaterialLaw, double E, double nu);
 Material          MaterialFromConstants(MaterialLaw, int n, const double own[]);
 void              MaterialSetBulk(Material *, double K);

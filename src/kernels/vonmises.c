@@ -284,5 +284,11 @@ static void Evaluate(const Lanes H[9], const Lanes *dilatation, int n, const Lan
   FiniteLaw(H, dilatation, &constants[0], &constants[1], &never, virgin, W, P, A, NULL);
 }
 
-const ElasticLaw MaterialLaw_VonMises =
-  {.evaluate = Evaluate, .shear = MaterialLameShear, .constants = 2, .separable = 1, .isochoric = 1, .plastic = 1};
+const ElasticLaw MaterialLaw_VonMises = {.evaluate  = Evaluate,
+                                         .shear     = MaterialLameShear,
+                                         .constants = 2,
+                                         .separable = 1,
+                                         .isochoric = 1,
+                                         .keys      = {"mu"},
+                                         .required  = 1,
+                                         .plastic   = 1};
