@@ -939,6 +939,23 @@ PetscErrorCode ElasticityNodalPlasticStrain(Elasticity e, PetscReal *strain, Pet
 }
 
 /*@
+  ElasticityPlasticPoints - returns the number of quadrature points of this rank that have a plastic state.
+
+  Not collective
+
+  Input Parameter:
+. e - the elasticity
+@*/
+PetscInt64 ElasticityPlasticPoints(Elasticity e)
+{
+  PetscInt64 points = 0;
+
+  for (int k = 0; k < e->n_groups; k++)
+    points += (PetscInt64)e->groups[k].n_cells * (PetscInt64)CellStates(&e->groups[k]) / PLASTIC_STATE;
+  return points;
+}
+
+/*@
   ElasticityPlasticWork - computes the plastic work of this rank's cells in the accepted state.
 
   Not collective

@@ -31,6 +31,7 @@ PetscErrorCode ElasticityNodalStress(Elasticity, const PetscReal *u, PetscReal *
 PetscErrorCode ElasticityAccept(Elasticity, const PetscReal *u);
 PetscErrorCode ElasticityArchive(Elasticity, Archive);
 PetscErrorCode ElasticityNodalPlasticStrain(Elasticity, PetscReal *strain, PetscReal *weight);
+PetscInt64     ElasticityPlasticPoints(Elasticity);
 PetscErrorCode ElasticityPlasticWork(Elasticity, PetscReal *work, PetscReal *strain);
 PetscReal      ElasticityCellModulus(Elasticity, PetscInt cell);
 PetscInt       ElasticityInvertedCell(Elasticity);

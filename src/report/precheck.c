@@ -4,6 +4,7 @@
 #include "estimate.h"
 #include "lawreport.h"
 #include "bodies/freemodes.h"
+#include "kernels/elementkernel.h"
 #include "bodies/hinges.h"
 
 static PetscErrorCode PrintEffects(Model model, FILE *stream)
@@ -17,6 +18,40 @@ static PetscErrorCode PrintEffects(Model model, FILE *stream)
   PetscCall(ModelEffects(model, effects, sizeof(effects)));
   PetscCall(ModelDofs(model, &dofs));
   if (!rank) fprintf(stream, "dofs     %" PetscInt_FMT " free\neffects  %s\n", dofs, effects);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  PrecheckPlasticity - prints the memory of plastic states, and the formulation that was chosen for plastic bodies.
+
+  Collective
+
+  Input Parameters:
++ model  - after ModelCreate()
+- stream - of rank 0, which prints
+
+  Note:
+  It prints nothing where no body is plastic.
+@*/
+PetscErrorCode PrecheckPlasticity(Model model, FILE *stream)
+{
+  const Scene scene  = model->scene;
+  PetscInt64  points = ElasticityPlasticPoints(model->problem->elasticity);
+  PetscMPIInt rank;
+
+  PetscFunctionBeginUser;
+  if (!SceneIsPlastic(scene)) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &points, 1, MPIU_INT64, MPI_SUM, model->mesh->comm));
+  PetscCallMPI(MPI_Comm_rank(model->mesh->comm, &rank));
+  if (rank) PetscFunctionReturn(PETSC_SUCCESS);
+  fprintf(stream, "plastic  %lld quadrature points, %zu bytes each (%.3g MB)\n", (long long)points,
+          PLASTIC_STATE * sizeof(PetscReal), (double)points * PLASTIC_STATE * sizeof(PetscReal) / 1e6);
+  for (int b = 0; b < scene->n_bodies; b++) {
+    const SceneBody *body = &scene->bodies[b];
+
+    if (!body->rigid && body->chosen && MaterialGetLaw(body->material.law)->plastic)
+      fprintf(stream, "         '%s' names no formulation: it is %s\n", body->name, Formulations[body->formulation]);
+  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -41,6 +76,7 @@ PetscErrorCode PrecheckModel(Model model, PetscBool report, FILE *stream)
   PetscCall(HingesWarn(model->mesh, model->scene, stderr));
   if (report) {
     PetscCall(PrintEffects(model, stream));
+    PetscCall(PrecheckPlasticity(model, stream));
     PetscCallMPI(MPI_Comm_rank(model->mesh->comm, &rank));
     if (!rank) LawReport(model->scene, stream);
     PetscCall(FreeModesReport(model->problem->modes, PETSC_TRUE, stream));

@@ -8,4 +8,5 @@
 #include "solve/model.h"
 
 PetscErrorCode PrecheckModel(Model, PetscBool report, FILE *);
+PetscErrorCode PrecheckPlasticity(Model, FILE *);
 PetscErrorCode PrecheckMotions(Model, FILE *);

@@ -139,6 +139,7 @@ static PetscErrorCode PrintHead(Terminal terminal, PetscInt restarts, PetscInt l
   PetscCall(PrintSolver(terminal));
   if (!terminal->quiet) PetscCall(MeshReport(terminal->model->mesh, terminal->scene, stdout));
   if (terminal->talks) printf("dofs     %lld free\neffects  %s\n", (long long)dofs, *effects ? effects : "none");
+  if (!terminal->quiet) PetscCall(PrecheckPlasticity(terminal->model, stdout));
   if (!terminal->quiet) PetscCall(PrecheckMotions(terminal->model, stdout));
   if (terminal->talks) {
     printf("\n%5s %9s %9s %10s %10s %5s %5s %8s %12s %8s %8s\n", "step", "t", "dt", "iterations", "in contact", "in",
