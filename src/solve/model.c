@@ -50,7 +50,8 @@ PetscErrorCode ModelCreate(Scene scene, Mesh mesh, Model *out)
   PetscCall(VecDuplicate(model->x, &model->work->look_ahead));
   PetscCall(VecDuplicate(model->x, &model->work->residual));
   PetscCall(VecDuplicate(model->x, &model->work->step));
-  if (scene->kinematics != KINEMATICS_SMALL) PetscCall(ExtrapolationCreate(mesh, &model->work->extrapolation));
+  if (scene->kinematics != KINEMATICS_SMALL || SceneIsPlastic(scene))
+    PetscCall(ExtrapolationCreate(mesh, &model->work->extrapolation));
   if (ProblemIsPlastic(model->problem))
     PetscCall(EnergyBalanceCreate(mesh, model->problem->elasticity, &model->balance));
   PetscCall(ModelCreateSNES(model));

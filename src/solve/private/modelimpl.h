@@ -28,7 +28,7 @@ typedef struct _n_ModelWork {
   Vec           residual;      /* of a trial point, for OBJECTIVE_RESIDUAL */
   Vec           step;          /* the whole step that the line search has got last: from x to x - step (length) */
   ContactCycle  watch;         /* of the contact set; NULL without contact */
-  Extrapolation extrapolation; /* NULL with small kinematics, where bodies move along straight lines */
+  Extrapolation extrapolation; /* NULL with small kinematics and no plasticity: bodies move along straight lines */
   PetscReal     damping;       /* of the line search while no contact set repeats itself */
 
   /* The accepted state */
