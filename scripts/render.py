@@ -24,7 +24,7 @@ from raster import Canvas, View
 DISPLACEMENT = {"ux": 0, "uy": 1, "uz": 2}
 STRESS = {"stress_" + name: i for i, name in enumerate(("xx", "yy", "zz", "xy", "yz", "xz"))}
 CONTACT = ("gap", "penetration", "penalty", "pressure")  # on the slave surfaces only
-FIELDS = ("von_mises", *STRESS, "displacement", *DISPLACEMENT, *CONTACT)
+FIELDS = ("von_mises", "plastic_strain", *STRESS, "displacement", *DISPLACEMENT, *CONTACT)
 TOOLS = ("plane", "cylinder", "sphere")  # rigid masters, by their attribute in results.h5
 GREY = numpy.array([0.80, 0.82, 0.85])
 TOOL = numpy.array([0.62, 0.64, 0.68])
@@ -148,7 +148,7 @@ class Picture:
         inked = numpy.concatenate(
             [values[self.coloured & (slave | (not self.contact))] for _, _, values, slave, _, _ in states])
         low, high = numpy.nanmin(inked), numpy.nanmax(inked)
-        low = min(low, 0) if self.contact or field == "von_mises" else low
+        low = min(low, 0) if self.contact or field in ("von_mises", "plastic_strain") else low
         self.norm = plt.Normalize(low, high if high > low else low + 1)
         self.map = plt.get_cmap("YlOrRd" if self.contact else "viridis")
         self.view = View(0, 0) if run.skin.plane else View(*(options.view or self.facing(states[-1])), options.up)
@@ -244,7 +244,8 @@ class Picture:
 
 
 def label(field):
-    words = {"von_mises": "von Mises stress", "pressure": "contact pressure", "displacement": "displacement, norm"}
+    words = {"von_mises": "von Mises stress", "plastic_strain": "equivalent plastic strain",
+             "pressure": "contact pressure", "displacement": "displacement, norm"}
     return words.get(field, field.replace("_", " "))
 
 
