@@ -57,10 +57,12 @@ static PetscErrorCode RegisterEvents(void)
 
 static KernelCase BodyKernel(Scene scene, PetscInt body, ElementType type)
 {
-  const SceneBody *b = &scene->bodies[body];
+  const SceneBody *b      = &scene->bodies[body];
+  KernelCase       kernel = {type, scene->geometry, scene->kinematics,
+                       scene->kinematics == KINEMATICS_SMALL ? MATERIAL_LINEAR : b->material.law, b->formulation};
 
-  return (KernelCase){type, scene->geometry, scene->kinematics,
-                      scene->kinematics == KINEMATICS_SMALL ? MATERIAL_LINEAR : b->material.law, b->formulation};
+  if (b->chosen && !ElementKernelExists(&kernel)) kernel.formulation = FORMULATION_FULL;
+  return kernel;
 }
 
 /* Compares two kernels of one scene, whose geometry and kinematics are the same. */
@@ -373,7 +375,7 @@ PetscErrorCode ElasticityResidual(Elasticity e, const PetscReal *u, PetscReal *f
       const size_t first = (size_t)batch * KERNEL_LANES;
 
       GatherBatch(e, g, batch, u);
-      ElementKernel(&g->kernel, &g->X[first * dofs], e->u, &g->E[first], &g->nu[first], energy ? W : NULL,
+      ElementKernel(&g->kernel, &g->X[first * dofs], e->u, &g->E[first], &g->nu[first], NULL, energy ? W : NULL,
                     forces ? e->f : NULL, NULL, J);
       if (forces) ScatterForce(e, g, batch, f, force2);
       for (int lane = 0; lane < BatchCells(g, batch); lane++) {
@@ -442,7 +444,7 @@ PetscErrorCode ElasticityTangent(Elasticity e, const PetscReal *u)
       const int    count = BatchCells(g, batch);
 
       GatherBatch(e, g, batch, u);
-      ElementKernel(&g->kernel, &g->X[first * dofs], e->u, &g->E[first], &g->nu[first], NULL, NULL, e->K, J);
+      ElementKernel(&g->kernel, &g->X[first * dofs], e->u, &g->E[first], &g->nu[first], NULL, NULL, NULL, e->K, J);
       if (count < KERNEL_LANES)
         ScatterTangent(e, g, batch, e->dim, count);
       else if (e->dim == 3)
@@ -644,7 +646,7 @@ static void AddCellStress(Elasticity e, const CellGroup *g, PetscInt slot, const
       cell_u[a * e->dim + i] = u[nodes[a] * e->dim + i];
     }
   }
-  ElementPointStress(&g->kernel, X, cell_u, g->E[slot], g->nu[slot], point_stress, point_volume);
+  ElementPointStress(&g->kernel, X, cell_u, g->E[slot], g->nu[slot], NULL, point_stress, point_volume);
   for (int p = 0; p < element->points; p++) volume += point_volume[p];
   for (int a = 0; a < g->nodes; a++) {
     weight[nodes[a]] += volume;

@@ -1,8 +1,15 @@
 /* Batched element kernels: full integration, and the choice of the kernel for every formulation. */
 #include "elementbatch.h"
+#include <math.h>
 #include <stddef.h>
 
-const char *const Formulations[] = {"full", "enhanced", "fbar", NULL};
+/* Largest part kappa of the modulus of the volume over the shear modulus that mixed elements have without multipliers.
+   A solve leaves a relative error of 1 / 1e4 in the volume strains where the multipliers are those of no load, and each
+   change of the multipliers makes it 1e4 times smaller. The condition number of the tangent grows with kappa, and its
+   round-off is small with 1e4 still. */
+static const double largest_kappa = 1e4;
+
+const char *const Formulations[] = {"full", "enhanced", "fbar", "mixed", NULL};
 
 /* Computes energy, force and tangent of the first LANES elements of the arrays. n, points, dim and hoop are constants
    of the instance. */
@@ -70,18 +77,23 @@ static BatchFn *const full_batches[ELEMENT_TYPES][2] = {
 static BatchFn *GetBatch(const KernelCase *kernel)
 {
   const int axisymmetric = kernel->geometry == GEOMETRY_AXISYMMETRIC;
+  const int splits       = kernel->law == MATERIAL_NEO_HOOKEAN || kernel->kinematics == KINEMATICS_SMALL;
 
   switch (kernel->formulation) {
   case FORMULATION_ENHANCED: return enhanced_batches[kernel->type][axisymmetric];
   case FORMULATION_FBAR: return mean_dilatation_batches[kernel->type][axisymmetric];
+  case FORMULATION_MIXED: return splits ? mixed_batches[kernel->type][axisymmetric] : NULL;
   default: return full_batches[kernel->type][axisymmetric];
   }
 }
 
 /*@
-  ElementKernelExists - says whether there is a kernel. The formulations other than full exist for quad4 and hex8 only.
+  ElementKernelExists - says whether there is a kernel. Enhanced and fbar exist for quad4 and hex8 only.
 
   Not collective
+
+  Note:
+  Mixed exists for all cells but tri3 and tet4, and with laws whose energy is a part of the shape and lambda/2 (ln J)^2.
 @*/
 int ElementKernelExists(const KernelCase *kernel)
 {
@@ -96,14 +108,17 @@ static BatchCall StartCall(const KernelCase *kernel)
   return (BatchCall){.e = ElementGet(kernel->type), .law = MaterialGetLaw(kernel->law, finite), .finite = finite};
 }
 
-static void SetMaterial(BatchCall *call, const double *E, const double *nu)
+/* Mixed elements evaluate the law without its modulus of the volume. */
+static void SetMaterial(BatchCall *call, Formulation formulation, const double *E, const double *nu)
 {
   for (int lane = 0; lane < LANES; lane++) {
-    double lambda, mu;
+    double lambda, mu, kappa;
 
     MaterialLame(E[lane], nu[lane], &lambda, &mu);
-    call->lambda[lane] = lambda;
+    ElementVolumeModulus(E[lane], nu[lane], &lambda, &kappa);
+    call->lambda[lane] = formulation == FORMULATION_MIXED ? 0 : lambda;
     call->mu[lane]     = mu;
+    call->kappa[lane]  = kappa;
   }
 }
 
@@ -116,7 +131,8 @@ static void SetMaterial(BatchCall *call, const double *E, const double *nu)
 + kernel - element type, geometry, kinematics, law and formulation of the batch
 . X      - reference coordinates (length) [nodes][dim][lanes]; axisymmetric: X[.][0] is the radius
 . u      - displacements (length) [nodes][dim][lanes]
-- E, nu  - Young's modulus (stress) and Poisson's ratio [lanes]
+. E, nu  - Young's modulus (stress) and Poisson's ratio [lanes]
+- multiplier - of mixed elements (stress times root of volume) [pressures][lanes]; NULL: they are 0
 
   Output Parameters:
 + W - strain energy [lanes], or NULL
@@ -134,44 +150,123 @@ static void SetMaterial(BatchCall *call, const double *E, const double *nu)
   (reference configuration)
 @*/
 void ElementKernel(const KernelCase *kernel, const double *X, const double *u, const double *E, const double *nu,
-                   double *W, double *f, double *K, double *J)
+                   const double *multiplier, double *W, double *f, double *K, double *J)
 {
   BatchFn  *batch = GetBatch(kernel);
   BatchCall call  = StartCall(kernel);
 
   for (int part = 0; part < KERNEL_LANES; part += LANES) {
-    SetMaterial(&call, E + part, nu + part);
-    call.X = X + part;
-    call.u = u + part;
-    call.W = W ? W + part : NULL;
-    call.f = f ? f + part : NULL;
-    call.K = K ? K + part : NULL;
-    call.J = J + part;
+    SetMaterial(&call, kernel->formulation, E + part, nu + part);
+    call.X          = X + part;
+    call.u          = u + part;
+    call.W          = W ? W + part : NULL;
+    call.f          = f ? f + part : NULL;
+    call.K          = K ? K + part : NULL;
+    call.J          = J + part;
+    call.multiplier = multiplier ? multiplier + part : NULL;
     batch(&call);
   }
 }
 
 /*@
-  ElementPointGradient - computes the displacement gradient at which an element evaluates the law, at its quadrature
-  points.
+  ElementPressures - returns the number of pressures of an element: 0 but for mixed elements.
+
+  Not collective
+
+  Input Parameter:
+. kernel - element type and formulation
+@*/
+int ElementPressures(const KernelCase *kernel)
+{
+  return kernel->formulation == FORMULATION_MIXED ? mixed_pressures[kernel->type] : 0;
+}
+
+/*@
+  ElementVolumeModulus - computes the modulus of the volume, and the part of it that mixed elements have without
+  multipliers.
 
   Not collective
 
   Input Parameters:
-+ kernel - element type, geometry, kinematics, law and formulation
-. X      - reference coordinates (length) [nodes][dim]; axisymmetric: X[.][0] is the radius
-. u      - displacements (length) [nodes][dim]
-- E, nu  - Young's modulus (stress) and Poisson's ratio
++ E  - Young's modulus (stress)
+- nu - Poisson's ratio, -1 < nu <= 1/2
+
+  Output Parameters:
++ modulus - Lame's first constant (stress), infinite for nu = 1/2
+- kappa   - the part (stress); where it is the whole, the multipliers remain 0
+@*/
+void ElementVolumeModulus(double E, double nu, double *modulus, double *kappa)
+{
+  double mu;
+
+  MaterialLame(E, nu, modulus, &mu);
+  *kappa = fmin(*modulus, largest_kappa * mu);
+}
+
+/*@
+  ElementDilatation - computes the dilatations of a batch of mixed elements, from which the pressures follow.
+
+  Not collective
+
+  Input Parameters:
++ kernel     - element type, geometry, kinematics, law and formulation of the batch
+. X          - reference coordinates (length) [nodes][dim][lanes]; axisymmetric: X[.][0] is the radius
+. u          - displacements (length) [nodes][dim][lanes]
+. E, nu      - Young's modulus (stress) and Poisson's ratio [lanes]
+- multiplier - (stress times root of volume) [pressures][lanes]; NULL: they are 0
 
   Output Parameter:
-. H - F - 1 at 3 i + I (i: space, I: reference) [points][9]
+. theta - coefficients of the projection of ln J (root of volume) [pressures][lanes]
+
+  Note:
+  The pressure in the element is multiplier + kappa theta, see ElementVolumeModulus(). It is right where it is the
+  modulus of the volume times theta.
 @*/
-void ElementPointGradient(const KernelCase *kernel, const double *X, const double *u, double E, double nu, double *H)
+void ElementDilatation(const KernelCase *kernel, const double *X, const double *u, const double *E, const double *nu,
+                       const double *multiplier, double *theta)
+{
+  BatchCall call = StartCall(kernel);
+  double    J[LANES];
+
+  for (int part = 0; part < KERNEL_LANES; part += LANES) {
+    SetMaterial(&call, kernel->formulation, E + part, nu + part);
+    call.X          = X + part;
+    call.u          = u + part;
+    call.J          = J;
+    call.multiplier = multiplier ? multiplier + part : NULL;
+    call.theta      = theta + part;
+    GetBatch(kernel)(&call);
+  }
+}
+
+/*@
+  ElementPointState - computes the displacement gradient at which an element evaluates the law, and the pressure of a
+  mixed element, at its quadrature points.
+
+  Not collective
+
+  Input Parameters:
++ kernel     - element type, geometry, kinematics, law and formulation
+. X          - reference coordinates (length) [nodes][dim]; axisymmetric: X[.][0] is the radius
+. u          - displacements (length) [nodes][dim]
+. E, nu      - Young's modulus (stress) and Poisson's ratio
+- multiplier - of a mixed element (stress times root of volume) [pressures]; NULL: they are 0
+
+  Output Parameters:
++ H        - F - 1 at 3 i + I (i: space, I: reference) [points][9]
+- pressure - derivative of the energy of the volume by ln J (stress) [points]; 0 unless mixed
+
+  Note:
+  A mixed element evaluates the law without its modulus of the volume. tri6 and tet10 have other points inside.
+@*/
+void ElementPointState(const KernelCase *kernel, const double *X, const double *u, double E, double nu,
+                       const double *multiplier, double *H, double *pressure)
 {
   BatchCall call = StartCall(kernel);
   const int dofs = call.e->nodes * call.e->dim;
   double    lanes_X[ELEMENT_MAX_NODES * 3 * KERNEL_LANES], lanes_u[ELEMENT_MAX_NODES * 3 * KERNEL_LANES],
-    lanes_H[ELEMENT_MAX_POINTS * 9 * KERNEL_LANES];
+    lanes_H[ELEMENT_MAX_POINTS * 9 * KERNEL_LANES],
+    lanes_pressure[ELEMENT_MAX_POINTS * KERNEL_LANES] = {0}, lanes_multiplier[MIXED_PRESSURES * KERNEL_LANES];
   double J[LANES], lanes_E[LANES], lanes_nu[LANES];
 
   for (int lane = 0; lane < LANES; lane++) {
@@ -181,12 +276,17 @@ void ElementPointGradient(const KernelCase *kernel, const double *X, const doubl
       lanes_X[k * KERNEL_LANES + lane] = X[k];
       lanes_u[k * KERNEL_LANES + lane] = u[k];
     }
+    for (int k = 0; k < ElementPressures(kernel); k++)
+      lanes_multiplier[k * KERNEL_LANES + lane] = multiplier ? multiplier[k] : 0;
   }
-  SetMaterial(&call, lanes_E, lanes_nu);
-  call.X = lanes_X;
-  call.u = lanes_u;
-  call.J = J;
-  call.H = lanes_H;
+  SetMaterial(&call, kernel->formulation, lanes_E, lanes_nu);
+  call.X          = lanes_X;
+  call.u          = lanes_u;
+  call.J          = J;
+  call.H          = lanes_H;
+  call.multiplier = lanes_multiplier;
+  call.pressure   = lanes_pressure;
   GetBatch(kernel)(&call);
   for (int k = 0; k < call.e->points * 9; k++) H[k] = lanes_H[k * KERNEL_LANES];
+  for (int q = 0; q < call.e->points; q++) pressure[q] = lanes_pressure[q * KERNEL_LANES];
 }

@@ -183,16 +183,34 @@ MaterialLawFn *MaterialGetLaw(MaterialLaw law, int finite)
 
   Input Parameters:
 + E  - Young's modulus (stress)
-- nu - Poisson's ratio, -1 < nu < 1/2
+- nu - Poisson's ratio, -1 < nu <= 1/2
 
   Output Parameters:
-+ lambda - first constant (stress)
++ lambda - first constant (stress); infinite for nu = 1/2
 - mu     - shear modulus (stress)
 @*/
 void MaterialLame(double E, double nu, double *lambda, double *mu)
 {
   *lambda = E * nu / ((1 + nu) * (1 - 2 * nu));
   *mu     = E / (2 * (1 + nu));
+}
+
+/*@
+  MaterialShapeOnly - returns a material without its modulus of the volume: lambda = 0, and mu as given.
+
+  Not collective
+
+  Input Parameters:
++ law - the law
+. E   - Young's modulus (stress)
+- nu  - Poisson's ratio, -1 < nu <= 1/2
+@*/
+Material MaterialShapeOnly(MaterialLaw law, double E, double nu)
+{
+  double lambda, mu;
+
+  MaterialLame(E, nu, &lambda, &mu);
+  return (Material){law, 2 * mu, 0};
 }
 
 /*@

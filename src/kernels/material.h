@@ -37,6 +37,7 @@ typedef void MaterialLawFn(const Lanes H[9], const Lanes *dilatation, const Lane
 ELASTIC_LAWS(MATERIAL_DECLARE)
 #undef MATERIAL_DECLARE
 
+Material       MaterialShapeOnly(MaterialLaw, double E, double nu);
 MaterialLawFn *MaterialGetLaw(MaterialLaw, int finite);
 void           MaterialPoint(const Material *, int finite, const double H[9], double *W, double P[9],
                              double A[MATERIAL_TANGENT_SIZE]);

@@ -104,6 +104,51 @@ static PetscErrorCode SceneReadMotion(Scene scene, const char *tool, Motion *mot
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Bulk modulus over shear modulus from which elements with full integration lock noticeably (nu = 0.475), so that
+   `auto` takes mixed ones. */
+static const double stiff_volume = 20;
+
+static int SceneStiffVolume(const SceneBody *body)
+{
+  const double nu = body->material.nu;
+
+  return 2 * (1 + nu) > stiff_volume * 3 * (1 - 2 * nu);
+}
+
+/* Says whether mixed elements exist for the law of a body. With small strains all laws are Hooke's. */
+static int SceneLawSplits(Scene scene, const SceneBody *body)
+{
+  return scene->kinematics == KINEMATICS_SMALL || body->material.law != MATERIAL_SVK;
+}
+
+static PetscErrorCode SceneReadFormulation(Scene scene, SceneBody *body)
+{
+  const int choice = SchemaChoice(SceneDocument(scene), "%s.formulation", body->path);
+
+  PetscFunctionBeginUser;
+  body->chosen = choice == FORMULATIONS;
+  if (body->chosen)
+    body->formulation = SceneStiffVolume(body) && SceneLawSplits(scene, body) ? FORMULATION_MIXED : FORMULATION_FULL;
+  else
+    body->formulation = (Formulation)choice;
+  if ((body->formulation == FORMULATION_ENHANCED || body->formulation == FORMULATION_FBAR) && scene->order == 2)
+    PetscCall(SceneRefuse(scene, body->path, "formulation",
+                          "is for first-order elements; allowed with mesh.order: 2: full | mixed",
+                          Formulations[body->formulation]));
+  if (body->formulation == FORMULATION_MIXED && !SceneLawSplits(scene, body))
+    PetscCall(SceneRefuse(scene, body->path, "formulation",
+                          "needs a law whose volume part is separate; allowed with svk: full | enhanced | fbar",
+                          Formulations[body->formulation]));
+  if (body->material.nu == 0.5 && body->formulation != FORMULATION_MIXED)
+    PetscCall(SceneRefuse(scene, body->path, "material.nu",
+                          SceneLawSplits(scene, body)
+                            ? "0.5 needs formulation: mixed (or auto); allowed with others: a number below 0.5"
+                            : "0.5 needs formulation: mixed, which svk does not have; allowed: law: neo_hookean, or a "
+                              "number below 0.5",
+                          NULL));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 static PetscErrorCode SceneReadBody(Scene scene, SceneBody *body)
 {
   static const char Needs[] = "a body is volume with material, or surface with rigid";
@@ -134,11 +179,7 @@ static PetscErrorCode SceneReadBody(Scene scene, SceneBody *body)
   if (body->material.law == MATERIAL_LINEAR && scene->kinematics == KINEMATICS_FINITE)
     PetscCall(SceneRefuse(scene, body->path, "material.law",
                           "linear needs kinematics: small; allowed with finite: svk | neo_hookean", NULL));
-  body->formulation = (Formulation)SchemaChoice(SceneDocument(scene), "%s.formulation", body->path);
-  if (body->formulation != FORMULATION_FULL && scene->order == 2)
-    PetscCall(SceneRefuse(scene, body->path, "formulation",
-                          "is for first-order elements; allowed with mesh.order: 2: full",
-                          Formulations[body->formulation]));
+  PetscCall(SceneReadFormulation(scene, body));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

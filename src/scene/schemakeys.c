@@ -38,10 +38,13 @@ const SchemaKey SchemaKeys[] = {
   {"bodies.*.material.law", CHOICE, REQUIRED, .values = CHOICE_WORDS(ELASTIC_LAWS),
    .help = "elastic law; linear is allowed only with kinematics: small"},
   {"bodies.*.material.E", REAL, REQUIRED, .range = "(0, inf)", .unit = "stress", .help = "Young's modulus"},
-  {"bodies.*.material.nu", REAL, REQUIRED, .range = "(-1, 0.5)", .help = "Poisson's ratio"},
-  {"bodies.*.formulation", CHOICE, .values = "full | enhanced | fbar", .preset = "full",
-   .help = "formulation of first-order quadrilaterals and bricks; enhanced bends without locking, and fbar is for "
-           "nearly incompressible laws"},
+  {"bodies.*.material.nu", REAL, REQUIRED, .range = "(-1, 0.5]", .help = "Poisson's ratio; 0.5 needs formulation: mixed, which is the default for it"},
+  {"bodies.*.formulation", CHOICE, .values = "full | enhanced | fbar | mixed | auto", .preset = "auto",
+   .help = "formulation of the elements; enhanced and fbar are for first-order quadrilaterals and bricks, of which "
+           "enhanced bends without locking and fbar keeps its volume without locking. mixed has pressures of its own, "
+           "for materials that keep their volume nearly or exactly: all elements but first-order triangles and "
+           "tetrahedra. auto: mixed where the bulk modulus is above 20 times the shear modulus (nu above 0.475), "
+           "otherwise full"},
   {"bodies.*.surface", TEXT, .help = "physical surface of a rigid tool; needs rigid"},
   {"bodies.*.rigid", MAP, .help = "makes the surface a meshed rigid tool"},
   {"bodies.*.rigid.point", POINT, .unit = "length",

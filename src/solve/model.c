@@ -325,10 +325,11 @@ PetscErrorCode ModelEffects(Model model, char *text, size_t size)
     body_force = (PetscBool)(body_force || scene->loads[l].kind == LOAD_BODY_FORCE);
   for (int c = 0; c < scene->n_contacts; c++)
     surface = (PetscBool)(surface || scene->contacts[c].formulation == CONTACT_SURFACE_TO_SURFACE);
-  PetscCall(PetscSNPrintf(text, size, "%s%s%s",
+  PetscCall(PetscSNPrintf(text, size, "%s%s%s%s",
                           scene->kinematics == KINEMATICS_FINITE ? "finite strain" : "small strain",
                           ProblemHasFormulation(model->problem, FORMULATION_ENHANCED) ? ", enhanced strains" : "",
-                          ProblemHasFormulation(model->problem, FORMULATION_FBAR) ? ", mean dilatation" : ""));
+                          ProblemHasFormulation(model->problem, FORMULATION_FBAR) ? ", mean dilatation" : "",
+                          ProblemHasFormulation(model->problem, FORMULATION_MIXED) ? ", mixed elements" : ""));
   PetscCall(ModelContactEffects(scene, text, size));
   PetscCall(PetscStrlen(text, &start));
   PetscCall(PetscSNPrintf(text + start, size - start, "%s%s%s%s%s%s", surface ? ", surface to surface" : "",

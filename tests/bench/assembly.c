@@ -28,7 +28,7 @@ static PetscErrorCode KernelForce(Work *w)
   const PetscReal E[KERNEL_LANES] = {1, 1, 1, 1, 1, 1, 1, 1}, nu[KERNEL_LANES] = {0};
   PetscReal       J[KERNEL_LANES];
 
-  ElementKernel(w->kernel, w->X, w->u, E, nu, NULL, w->batch_f, NULL, J);
+  ElementKernel(w->kernel, w->X, w->u, E, nu, NULL, NULL, w->batch_f, NULL, J);
   return PETSC_SUCCESS;
 }
 
@@ -37,7 +37,7 @@ static PetscErrorCode KernelBoth(Work *w)
   const PetscReal E[KERNEL_LANES] = {1, 1, 1, 1, 1, 1, 1, 1}, nu[KERNEL_LANES] = {0};
   PetscReal       J[KERNEL_LANES];
 
-  ElementKernel(w->kernel, w->X, w->u, E, nu, NULL, w->batch_f, w->K, J);
+  ElementKernel(w->kernel, w->X, w->u, E, nu, NULL, NULL, w->batch_f, w->K, J);
   return PETSC_SUCCESS;
 }
 

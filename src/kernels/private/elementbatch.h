@@ -40,6 +40,11 @@ typedef struct {
   const double  *X, *u;
   Lanes          lambda, mu;
   double        *W, *f, *K, *J, *H;
+  /* Of mixed elements: the part kappa of the modulus of the volume, multipliers or NULL, and results or NULL: theta
+     [MIXED_PRESSURES], which mixedkernel.c explains, and the pressure at the points of H */
+  Lanes         kappa;
+  const double *multiplier;
+  double       *theta, *pressure;
 } BatchCall;
 
 /* Computes the reference gradients of all nodes at a point with shape functions N and dN. They become point q of the
@@ -186,3 +191,5 @@ typedef void BatchFn(const BatchCall *);
 /* Instances by element and geometry (1 is axisymmetric), NULL where a formulation has none */
 extern BatchFn *const enhanced_batches[ELEMENT_TYPES][2];
 extern BatchFn *const mean_dilatation_batches[ELEMENT_TYPES][2];
+extern BatchFn *const mixed_batches[ELEMENT_TYPES][2];
+extern const int      mixed_pressures[ELEMENT_TYPES];
