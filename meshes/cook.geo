@@ -1,5 +1,5 @@
 // Cook's membrane: a tapered panel, 48 long, 44 high where it is held and 16 where it is loaded.
-DefineConstant[n = {8, Name "elements along each side"}];
+DefineConstant[n = {8, Name "elements along each side"}, tri = {0, Name "1 for triangles"}];
 Point(1) = {0, 0, 0};
 Point(2) = {48, 44, 0};
 Point(3) = {48, 60, 0};
@@ -12,7 +12,9 @@ Curve Loop(1) = {1, 2, 3, 4};
 Plane Surface(1) = {1};
 Transfinite Curve{1 : 4} = n + 1;
 Transfinite Surface{1};
-Recombine Surface{1};
+If (!tri)
+  Recombine Surface{1};
+EndIf
 
 Physical Surface("panel") = {1};
 Physical Curve("held") = {4};

@@ -1,44 +1,5 @@
 /* Assembly of the elastic problem from batched element kernels. */
-#include "bodies/elasticity.h"
-#include "kernels/elementkernel.h"
-#include "matrix/nodematrix.h"
-
-enum {
-  MAX_DOFS            = ELEMENT_MAX_NODES * 3, /* of a cell */
-  BYTES_OF_CACHE_LINE = 64,                    /* of the usual processors; arrays of a batch are aligned to it */
-  /* Blocks are fetched this many pairs of nodes ahead. They are scattered in main memory, and 4 hides most of the wait.
-   */
-  PREFETCH_PAIRS = 4
-};
-
-/* Cells of one type and law, KERNEL_LANES to a batch. The last batch repeats its last cell. The arrays have one batch
-   after the other. */
-typedef struct {
-  KernelCase kernel;
-  int        nodes; /* of one cell */
-  PetscInt   n_cells, n_batches;
-  PetscInt  *cell; /* [lanes] */
-  PetscInt  *node; /* [nodes][lanes] */
-  PetscInt
-    *block;     /* [nodes][nodes][lanes]: place of the pair of nodes in the block CSR; then PREFETCH_PAIRS of zeros */
-  PetscReal *X; /* [nodes][dim][lanes] */
-  PetscReal *E, *nu; /* [lanes] */
-} CellGroup;
-
-struct _n_Elasticity {
-  Mesh       mesh;
-  int        dim, n_groups;
-  CellGroup *groups;
-  PetscInt  *cell_group, *cell_slot; /* of every local cell: its group, and its number there */
-  PetscReal *cell_modulus;
-  PetscInt  *row, *column; /* block CSR over local nodes, columns ascending */
-  PetscReal *value;        /* dim x dim blocks, row-major, in the order of column */
-  PetscReal *u, *f, *K;    /* of one batch, aligned to cache lines */
-  void      *buffer;       /* what u, f and K are in */
-  PetscInt   inverted;     /* a local cell that the last residual found inverted, or -1 */
-  PetscBool  symmetric;
-  NodeMatrix matrix;
-};
+#include "elasticityimpl.h"
 
 static PetscLogEvent event_residual, event_tangent, event_insert;
 
@@ -239,6 +200,42 @@ static PetscErrorCode CreateBuffers(Elasticity e)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Says whether elements treat only a part of the modulus of the volume. */
+static PetscBool VolumeIsStiff(PetscReal E, PetscReal nu)
+{
+  PetscReal modulus, kappa;
+
+  ElementVolumeModulus(E, nu, &modulus, &kappa);
+  return (PetscBool)(kappa < modulus);
+}
+
+/* Counts the multipliers, and makes room for those of the present and of the accepted state. A mixed group has some if
+   the volume of one of its cells is too stiff. */
+static PetscErrorCode ElasticityCreateVolumes(Elasticity e, Scene scene)
+{
+  PetscInt n = 0;
+
+  PetscFunctionBeginUser;
+  for (int b = 0; b < scene->n_bodies; b++) {
+    const SceneBody *body = &scene->bodies[b];
+
+    e->augments = (PetscBool)(e->augments || (!body->rigid && body->formulation == FORMULATION_MIXED &&
+                                              VolumeIsStiff(body->material.E, body->material.nu)));
+  }
+  for (int k = 0; k < e->n_groups; k++) {
+    CellGroup *g    = &e->groups[k];
+    PetscBool  some = PETSC_FALSE;
+
+    for (PetscInt c = 0; c < g->n_cells && ElementPressures(&g->kernel); c++)
+      some = (PetscBool)(some || VolumeIsStiff(g->E[c], g->nu[c]));
+    g->multipliers = some ? n : -1;
+    if (some) n += g->n_batches * ElementPressures(&g->kernel) * KERNEL_LANES;
+  }
+  e->state.n = e->accepted.n = n;
+  PetscCall(PetscCalloc2(n, &e->state.multiplier, n, &e->accepted.multiplier));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /*@
   ElasticityCreate - prepares the assembly of all local cells: batches, pattern of the local tangent, scatter maps.
 
@@ -266,6 +263,7 @@ PetscErrorCode ElasticityCreate(Mesh mesh, Scene scene, Elasticity *elasticity)
   for (PetscInt c = 0; c < mesh->n_cells; c++) SetCell(e, scene, &e->groups[e->cell_group[c]], e->cell_slot[c], c);
   PetscCall(CreateBlocks(e));
   PetscCall(CreateBuffers(e));
+  PetscCall(ElasticityCreateVolumes(e, scene));
   *elasticity = e;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -297,12 +295,24 @@ PetscErrorCode ElasticityDestroy(Elasticity *elasticity)
   PetscCall(PetscFree(e->column));
   PetscCall(PetscFree(e->value));
   PetscCall(PetscFree(e->buffer));
+  PetscCall(PetscFree2(e->state.multiplier, e->accepted.multiplier));
   PetscCall(NodeMatrixDestroy(&e->matrix));
   PetscCall(PetscFree(*elasticity));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static void GatherBatch(Elasticity e, const CellGroup *g, PetscInt batch, const PetscReal *u)
+/*@
+  ElasticityGather - gives the displacements of the nodes of a batch, in the order of ElementKernel().
+
+  Not collective
+
+  Input Parameters:
++ e     - the elasticity
+. g     - a group
+. batch - of that group
+- u     - local displacements (length) [n_nodes*dim]
+@*/
+const PetscReal *ElasticityGather(Elasticity e, const CellGroup *g, PetscInt batch, const PetscReal *u)
 {
   const PetscInt *node = &g->node[(size_t)batch * g->nodes * KERNEL_LANES];
 
@@ -312,10 +322,35 @@ static void GatherBatch(Elasticity e, const CellGroup *g, PetscInt batch, const 
         e->u[(a * e->dim + i) * KERNEL_LANES + lane] = u[node[a * KERNEL_LANES + lane] * e->dim + i];
     }
   }
+  return e->u;
 }
 
-/* Counts the cells of a batch that are not repetitions. */
-static int BatchCells(const CellGroup *g, PetscInt batch)
+/*@
+  ElasticityMultipliers - gives the present multipliers of a batch of mixed elements, or NULL where they have none.
+
+  Not collective
+
+  Input Parameters:
++ e     - the elasticity
+. g     - a group
+- batch - of that group
+@*/
+PetscReal *ElasticityMultipliers(Elasticity e, const CellGroup *g, PetscInt batch)
+{
+  if (g->multipliers < 0) return NULL;
+  return &e->state.multiplier[g->multipliers + batch * ElementPressures(&g->kernel) * KERNEL_LANES];
+}
+
+/*@
+  ElasticityBatchCells - counts the cells of a batch that are not repetitions.
+
+  Not collective
+
+  Input Parameters:
++ g     - a group
+- batch - of that group
+@*/
+int ElasticityBatchCells(const CellGroup *g, PetscInt batch)
 {
   return (int)PetscMin(KERNEL_LANES, g->n_cells - batch * KERNEL_LANES);
 }
@@ -323,7 +358,7 @@ static int BatchCells(const CellGroup *g, PetscInt batch)
 static void ScatterForce(Elasticity e, const CellGroup *g, PetscInt batch, PetscReal *f, PetscReal *force2)
 {
   const PetscInt *node  = &g->node[(size_t)batch * g->nodes * KERNEL_LANES];
-  const int       count = BatchCells(g, batch);
+  const int       count = ElasticityBatchCells(g, batch);
   PetscReal       sum   = 0;
 
   for (int a = 0; a < g->nodes; a++) {
@@ -374,11 +409,10 @@ PetscErrorCode ElasticityResidual(Elasticity e, const PetscReal *u, PetscReal *f
     for (PetscInt batch = 0; batch < g->n_batches; batch++) {
       const size_t first = (size_t)batch * KERNEL_LANES;
 
-      GatherBatch(e, g, batch, u);
-      ElementKernel(&g->kernel, &g->X[first * dofs], e->u, &g->E[first], &g->nu[first], NULL, energy ? W : NULL,
-                    forces ? e->f : NULL, NULL, J);
+      ElementKernel(&g->kernel, &g->X[first * dofs], ElasticityGather(e, g, batch, u), &g->E[first], &g->nu[first],
+                    ElasticityMultipliers(e, g, batch), energy ? W : NULL, forces ? e->f : NULL, NULL, J);
       if (forces) ScatterForce(e, g, batch, f, force2);
-      for (int lane = 0; lane < BatchCells(g, batch); lane++) {
+      for (int lane = 0; lane < ElasticityBatchCells(g, batch); lane++) {
         if (energy) *energy += W[lane];
         if (J[lane] > 0) continue;
         *ok         = PETSC_FALSE;
@@ -441,10 +475,10 @@ PetscErrorCode ElasticityTangent(Elasticity e, const PetscReal *u)
 
     for (PetscInt batch = 0; batch < g->n_batches; batch++) {
       const size_t first = (size_t)batch * KERNEL_LANES;
-      const int    count = BatchCells(g, batch);
+      const int    count = ElasticityBatchCells(g, batch);
 
-      GatherBatch(e, g, batch, u);
-      ElementKernel(&g->kernel, &g->X[first * dofs], e->u, &g->E[first], &g->nu[first], NULL, NULL, NULL, e->K, J);
+      ElementKernel(&g->kernel, &g->X[first * dofs], ElasticityGather(e, g, batch, u), &g->E[first], &g->nu[first],
+                    ElasticityMultipliers(e, g, batch), NULL, NULL, e->K, J);
       if (count < KERNEL_LANES)
         ScatterTangent(e, g, batch, e->dim, count);
       else if (e->dim == 3)
@@ -638,15 +672,17 @@ static void AddCellStress(Elasticity e, const CellGroup *g, PetscInt slot, const
   const size_t    batch = slot / KERNEL_LANES, lane = slot % KERNEL_LANES;
   const PetscInt *nodes = &e->mesh->cell_nodes[e->mesh->cell_ptr[g->cell[slot]]];
   PetscReal       X[MAX_DOFS], cell_u[MAX_DOFS], point_stress[ELEMENT_MAX_POINTS * 6], point_volume[ELEMENT_MAX_POINTS],
-    volume = 0;
+    m[MIXED_PRESSURES], volume = 0;
+  const PetscReal *multipliers = ElasticityMultipliers(e, g, (PetscInt)batch);
 
+  for (int k = 0; k < ElementPressures(&g->kernel); k++) m[k] = multipliers ? multipliers[k * KERNEL_LANES + lane] : 0;
   for (int a = 0; a < g->nodes; a++) {
     for (int i = 0; i < e->dim; i++) {
       X[a * e->dim + i]      = g->X[((batch * g->nodes + a) * e->dim + i) * KERNEL_LANES + lane];
       cell_u[a * e->dim + i] = u[nodes[a] * e->dim + i];
     }
   }
-  ElementPointStress(&g->kernel, X, cell_u, g->E[slot], g->nu[slot], NULL, point_stress, point_volume);
+  ElementPointStress(&g->kernel, X, cell_u, g->E[slot], g->nu[slot], m, point_stress, point_volume);
   for (int p = 0; p < element->points; p++) volume += point_volume[p];
   for (int a = 0; a < g->nodes; a++) {
     weight[nodes[a]] += volume;

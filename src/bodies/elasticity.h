@@ -3,8 +3,13 @@
    ElasticityResidual() and ElasticityTangent() evaluate this rank's cells. The tangent is summed into one rank-local
    block CSR over local nodes, with ghost rows and every dof, supported ones too. ElasticityMatrix() passes it on to a
    parallel AIJ matrix over the free dofs, ElasticityMultiplyLocal() multiplies it by local vectors for the prescribed
-   dofs. ElasticityNodalStress() gives stresses for output. */
+   dofs. ElasticityNodalStress() gives stresses for output.
+
+   Mixed elements whose volume is kept exactly, or nearly so, have multipliers (volumes.c). ElasticityAugment() changes
+   them after a solve until the volume is right. ElasticityAccept() keeps them with the accepted state,
+   ElasticityRestore() returns to those kept. */
 #pragma once
+#include "files/archive.h"
 #include "mesh/mesh.h"
 
 typedef struct _n_Elasticity *Elasticity;
@@ -20,5 +25,11 @@ PetscErrorCode ElasticitySetSymmetric(Elasticity, PetscBool);
 PetscErrorCode ElasticityMatrix(Elasticity, Mat C, Vec diagonal, Mat *);
 PetscErrorCode ElasticityMatrixJoin(Elasticity, Mat C);
 PetscErrorCode ElasticityNodalStress(Elasticity, const PetscReal *u, PetscReal *stress, PetscReal *weight);
+PetscErrorCode ElasticityAugment(Elasticity, const PetscReal *u, PetscBool *holds);
+PetscErrorCode ElasticityAccept(Elasticity);
+PetscErrorCode ElasticityRestore(Elasticity);
+PetscErrorCode ElasticityArchive(Elasticity, Archive);
+PetscBool      ElasticityAugments(Elasticity);
+PetscErrorCode ElasticityCheckEnclosed(Elasticity, Scene, const PetscBool *prescribed);
 PetscReal      ElasticityCellModulus(Elasticity, PetscInt cell);
 PetscInt       ElasticityInvertedCell(Elasticity);

@@ -562,6 +562,22 @@ PetscBool LoadsConservative(Loads loads)
 }
 
 /*@
+  LoadsConstrained - gives for every local dof whether it is supported or imposed.
+
+  Not collective
+
+  Input Parameter:
+. loads - they own the array [n_nodes*dim]
+
+  Note:
+  A group counts if this rank sees it, which it does for its own nodes.
+@*/
+const PetscBool *LoadsConstrained(Loads loads)
+{
+  return loads->constrained;
+}
+
+/*@
   LoadsPrescribed - tells whether a local dof is supported or imposed.
 
   Not collective

@@ -208,3 +208,45 @@ double CellVolume(ElementType type, int dim, Geometry geometry, const double *X)
   for (int p = 0; p < e->points; p++) volume += PointVolume(e, p, dim, geometry, X, J);
   return volume;
 }
+
+/*@
+  CellVolumeGradient - computes the derivatives of the volume of one cell by the coordinates of its nodes.
+
+  Not collective
+
+  Input Parameters:
++ type     - element type of a cell
+. dim      - its dimension
+. geometry - solid, plane strain or axisymmetric
+- X        - reference coordinates (length) [nodes][dim]
+
+  Output Parameter:
+. gradient - [nodes][dim]
+@*/
+void CellVolumeGradient(ElementType type, int dim, Geometry geometry, const double *X, double *gradient)
+{
+  const Element *e = ElementGet(type);
+
+  for (int k = 0; k < e->nodes * dim; k++) gradient[k] = 0;
+  for (int p = 0; p < e->points; p++) {
+    double       J[3][3] = {{0}};
+    const double volume  = PointVolume(e, p, dim, geometry, X, J),
+                 ring    = geometry == GEOMETRY_AXISYMMETRIC ? two_pi * Radius(e, p, dim, X) : 1;
+
+    if (dim == 2) J[2][2] = 1;
+    for (int a = 0; a < e->nodes; a++) {
+      for (int m = 0; m < dim; m++) {
+        const int m1 = (m + 1) % 3, m2 = (m + 2) % 3;
+
+        for (int k = 0; k < dim; k++) { /* the cofactors of J */
+          const int k1 = (k + 1) % 3, k2 = (k + 2) % 3;
+
+          gradient[a * dim + m] +=
+            e->weight[p] * ring * (J[k1][m1] * J[k2][m2] - J[k1][m2] * J[k2][m1]) * e->dN[p][a][k];
+        }
+        if (geometry == GEOMETRY_AXISYMMETRIC && m == 0)
+          gradient[a * dim] += volume * e->N[p][a] / Radius(e, p, dim, X);
+      }
+    }
+  }
+}

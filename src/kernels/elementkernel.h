@@ -51,3 +51,4 @@ void   FaceLoadKernel(ElementType face, int dim, Geometry, FaceLoad, const doubl
 void   BodyForceKernel(ElementType, int dim, Geometry, const double *X, const double *value, int stride, double *f);
 void   FaceAreaKernel(ElementType face, int dim, Geometry, const double *X, double *area, double *normal);
 double CellVolume(ElementType, int dim, Geometry, const double *X);
+void   CellVolumeGradient(ElementType, int dim, Geometry, const double *X, double *gradient);

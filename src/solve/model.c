@@ -14,6 +14,7 @@ const char *const SolveResults[] = {
   "contact was lost behind a master",
   "nothing holds a body against its load",
   "the penetrations did not come into the window of the adjusted penalty",
+  "the volumes of incompressible bodies did not settle",
   "not-a-number in the residual"};
 
 /*@
@@ -196,6 +197,7 @@ PetscErrorCode ModelAccept(Model model)
   if (work->extrapolation) PetscCall(ExtrapolationAdd(work->extrapolation, model->u, model->t));
   if (work->extrapolation && SceneBreaks(model->scene, model->t)) PetscCall(ExtrapolationForget(work->extrapolation));
   work->looked_ahead = PETSC_FALSE;
+  PetscCall(ElasticityAccept(model->problem->elasticity));
   if (model->problem->bodies) PetscCall(FreeBodiesAccept(model->problem->bodies, model->problem->springs));
   if (model->contact) {
     PetscCall(ContactAccept(model->contact));
@@ -225,6 +227,7 @@ PetscErrorCode ModelRestore(Model model)
   PetscCall(VecCopy(work->accepted_x, model->x));
   PetscCall(LinearSolverRenew(work->solver)); /* a step that starts from a look-ahead would not do so itself */
   model->t = work->accepted_t;
+  PetscCall(ElasticityRestore(model->problem->elasticity));
   if (model->contact) {
     PetscCall(ContactRestore(model->contact));
     PetscCall(ProblemRestoreTangent(model->problem));
@@ -271,6 +274,7 @@ PetscErrorCode ModelArchive(Model model, Archive archive)
     model->t      = work->accepted_t;
     work->settled = (PetscBool)(work->accepted_t == 0);
   }
+  PetscCall(ElasticityArchive(model->problem->elasticity, archive));
   PetscCall(ModelArchivePenaltyError(model, archive));
   PetscCall(LinearCheckArchive(model->linear, archive));
   if (model->problem->bodies) PetscCall(FreeBodiesArchive(model->problem->bodies, archive));

@@ -21,6 +21,7 @@ typedef enum {
   SOLVE_LOST,
   SOLVE_ADRIFT,
   SOLVE_WINDOW,
+  SOLVE_VOLUME,
   SOLVE_NAN
 } SolveResult;
 extern const char *const SolveResults[]; /* in words, for messages */
@@ -32,6 +33,7 @@ typedef struct {
   PetscInt    regathered;  /* times that contact lists were replaced */
   PetscInt    adjusted;    /* times that penalties or multipliers were changed and the step solved on */
   PetscInt    stiffened;   /* times that penalties were made stiffer for a smaller error, and the step solved on */
+  PetscInt    augmented;   /* times that multipliers of the volume were changed and the step solved on */
   PetscInt    cuts;        /* iterations that the line search shortened */
   PetscInt    turned;      /* iterations whose step led uphill and was turned round */
   PetscReal   residual;    /* |R|_2 / F_ref at the end */
