@@ -405,7 +405,7 @@ static void ReferenceNamesKeysRangesAndDefaults(void **state)
   assert_non_null(file);
   assert_int_equal(SceneReference(file), PETSC_SUCCESS);
   fclose(file);
-  assert_non_null(strstr(text, "  bodies.N.material.nu: a number in (-1, 0.5); required - Poisson's ratio\n"));
+  assert_non_null(strstr(text, "  bodies.N.material.nu: a number in (-1, 0.5]; required - Poisson's ratio;"));
   assert_non_null(strstr(text, "  contact.N.formulation: node_to_surface | surface_to_surface | auto; default auto"));
   assert_non_null(strstr(text, "  probes.N.contact_edge: "));
   free(text);
