@@ -16,20 +16,30 @@ static PetscErrorCode RegisterEvents(void)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Returns the material of a body as the kernels need it. */
+static Material BodyMaterial(Scene scene, PetscInt body)
+{
+  const Material *material = &scene->bodies[body].material;
+
+  return scene->kinematics == KINEMATICS_SMALL ? MaterialLinearise(material) : *material;
+}
+
 static KernelCase BodyKernel(Scene scene, PetscInt body, ElementType type)
 {
-  const SceneBody *b      = &scene->bodies[body];
-  KernelCase       kernel = {type, scene->geometry, scene->kinematics,
-                       scene->kinematics == KINEMATICS_SMALL ? MATERIAL_LINEAR : b->material.law, b->formulation};
+  const Material material = BodyMaterial(scene, body);
+  KernelCase     kernel   = {
+    type, scene->geometry, scene->kinematics, material.law, scene->bodies[body].formulation, material.n_constants};
 
-  if (b->chosen && !ElementKernelExists(&kernel)) kernel.formulation = FORMULATION_FULL;
+  if (scene->bodies[body].chosen && !ElementKernelExists(&kernel)) kernel.formulation = FORMULATION_FULL;
   return kernel;
 }
 
 /* Compares two kernels of one scene, whose geometry and kinematics are the same. */
 static PetscBool SameKernel(const KernelCase *a, const KernelCase *b)
 {
-  return a->type == b->type && a->law == b->law && a->formulation == b->formulation ? PETSC_TRUE : PETSC_FALSE;
+  return a->type == b->type && a->law == b->law && a->formulation == b->formulation && a->n_constants == b->n_constants
+           ? PETSC_TRUE
+           : PETSC_FALSE;
 }
 
 /* Sorts the cells into groups, in the order in which new kinds appear: sets cell_group and cell_slot. */
@@ -38,19 +48,18 @@ static PetscErrorCode GroupCells(Elasticity e, Scene scene)
   const Mesh mesh = e->mesh;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscCalloc1(ELEMENT_TYPES * MATERIAL_LAWS * FORMULATIONS, &e->groups));
+  PetscCall(PetscCalloc1(ELEMENT_TYPES * (size_t)scene->n_bodies, &e->groups));
   PetscCall(PetscMalloc3(mesh->n_cells, &e->cell_group, mesh->n_cells, &e->cell_slot, mesh->n_cells, &e->cell_modulus));
   for (PetscInt c = 0; c < mesh->n_cells; c++) {
-    const Material  *material = &scene->bodies[mesh->cell_body[c]].material;
-    const KernelCase kernel   = BodyKernel(scene, mesh->cell_body[c], mesh->cell_type[c]);
-    int              g        = 0;
+    const KernelCase kernel = BodyKernel(scene, mesh->cell_body[c], mesh->cell_type[c]);
+    int              g      = 0;
 
     while (g < e->n_groups && !SameKernel(&e->groups[g].kernel, &kernel)) g++;
     if (g == e->n_groups)
       e->groups[e->n_groups++] = (CellGroup){.kernel = kernel, .nodes = ElementGet(kernel.type)->nodes};
     e->cell_group[c]   = g;
     e->cell_slot[c]    = e->groups[g].n_cells++;
-    e->cell_modulus[c] = material->E;
+    e->cell_modulus[c] = scene->bodies[mesh->cell_body[c]].material.E;
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -64,7 +73,7 @@ static PetscErrorCode AllocateGroup(CellGroup *g, int dim)
   lanes        = (size_t)g->n_batches * KERNEL_LANES;
   PetscCall(PetscCalloc3(lanes, &g->cell, lanes * g->nodes, &g->node,
                          lanes * g->nodes * g->nodes + PREFETCH_PAIRS * KERNEL_LANES, &g->block));
-  PetscCall(PetscMalloc3(lanes * g->nodes * dim, &g->X, lanes, &g->E, lanes, &g->nu));
+  PetscCall(PetscMalloc2(lanes * g->nodes * dim, &g->X, lanes * g->kernel.n_constants, &g->constants));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -72,7 +81,7 @@ static PetscErrorCode AllocateGroup(CellGroup *g, int dim)
 static void SetCell(Elasticity e, Scene scene, CellGroup *g, PetscInt slot, PetscInt c)
 {
   const Mesh      mesh     = e->mesh;
-  const Material *material = &scene->bodies[mesh->cell_body[c]].material;
+  const Material  material = BodyMaterial(scene, mesh->cell_body[c]);
   const PetscInt *nodes    = &mesh->cell_nodes[mesh->cell_ptr[c]];
   const PetscInt  end      = slot == g->n_cells - 1 ? g->n_batches * KERNEL_LANES : slot + 1;
 
@@ -80,8 +89,8 @@ static void SetCell(Elasticity e, Scene scene, CellGroup *g, PetscInt slot, Pets
     const size_t batch = s / KERNEL_LANES, lane = s % KERNEL_LANES;
 
     g->cell[s] = c;
-    g->E[s]    = material->E;
-    g->nu[s]   = material->nu;
+    for (int k = 0; k < material.n_constants; k++)
+      g->constants[(batch * material.n_constants + k) * KERNEL_LANES + lane] = material.constants[k];
     for (int a = 0; a < g->nodes; a++) {
       g->node[(batch * g->nodes + a) * KERNEL_LANES + lane] = nodes[a];
       for (int i = 0; i < e->dim; i++)
@@ -201,36 +210,40 @@ static PetscErrorCode CreateBuffers(Elasticity e)
 }
 
 /* Says whether elements treat only a part of the modulus of the volume. */
-static PetscBool VolumeIsStiff(PetscReal E, PetscReal nu)
+static PetscBool VolumeIsStiff(const Material *material)
 {
-  PetscReal modulus, kappa;
+  PetscReal kappa, mu;
 
-  ElementVolumeModulus(E, nu, &modulus, &kappa);
-  return (PetscBool)(kappa < modulus);
+  ElementVolumeModulus(material->law, material->n_constants, material->constants, 1, &kappa, &mu);
+  return (PetscBool)(kappa < material->constants[0]);
 }
 
 /* Counts the multipliers, and makes room for those of the present and of the accepted state. A mixed group has some if
    the volume of one of its cells is too stiff. */
 static PetscErrorCode ElasticityCreateVolumes(Elasticity e, Scene scene)
 {
-  PetscInt n = 0;
+  PetscInt   n = 0;
+  PetscBool *stiff;
 
   PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(scene->n_bodies, &stiff));
   for (int b = 0; b < scene->n_bodies; b++) {
-    const SceneBody *body = &scene->bodies[b];
+    const Material material = scene->bodies[b].rigid ? (Material){.law = 0} : BodyMaterial(scene, b);
 
-    e->augments = (PetscBool)(e->augments || (!body->rigid && body->formulation == FORMULATION_MIXED &&
-                                              VolumeIsStiff(body->material.E, body->material.nu)));
+    stiff[b]    = (PetscBool)(!scene->bodies[b].rigid && scene->bodies[b].formulation == FORMULATION_MIXED &&
+                           VolumeIsStiff(&material));
+    e->augments = (PetscBool)(e->augments || stiff[b]);
   }
   for (int k = 0; k < e->n_groups; k++) {
     CellGroup *g    = &e->groups[k];
     PetscBool  some = PETSC_FALSE;
 
     for (PetscInt c = 0; c < g->n_cells && ElementPressures(&g->kernel); c++)
-      some = (PetscBool)(some || VolumeIsStiff(g->E[c], g->nu[c]));
+      some = (PetscBool)(some || stiff[e->mesh->cell_body[g->cell[c]]]);
     g->multipliers = some ? n : -1;
     if (some) n += g->n_batches * ElementPressures(&g->kernel) * KERNEL_LANES;
   }
+  PetscCall(PetscFree(stiff));
   e->state.n = e->accepted.n = n;
   PetscCall(PetscCalloc2(n, &e->state.multiplier, n, &e->accepted.multiplier));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -287,7 +300,7 @@ PetscErrorCode ElasticityDestroy(Elasticity *elasticity)
   if (!e) PetscFunctionReturn(PETSC_SUCCESS);
   for (int g = 0; g < e->n_groups; g++) {
     PetscCall(PetscFree3(e->groups[g].cell, e->groups[g].node, e->groups[g].block));
-    PetscCall(PetscFree3(e->groups[g].X, e->groups[g].E, e->groups[g].nu));
+    PetscCall(PetscFree2(e->groups[g].X, e->groups[g].constants));
   }
   PetscCall(PetscFree(e->groups));
   PetscCall(PetscFree3(e->cell_group, e->cell_slot, e->cell_modulus));
@@ -302,7 +315,7 @@ PetscErrorCode ElasticityDestroy(Elasticity *elasticity)
 }
 
 /*@
-  ElasticityGather - gives the displacements of the nodes of a batch, in the order of ElementKernel().
+  ElasticityGather - copies the displacements of the nodes of a batch, in the order of ElementKernel().
 
   Not collective
 
@@ -311,18 +324,20 @@ PetscErrorCode ElasticityDestroy(Elasticity *elasticity)
 . g     - a group
 . batch - of that group
 - u     - local displacements (length) [n_nodes*dim]
+
+  Output Parameter:
+. gathered - [nodes][dim][lanes]
 @*/
-const PetscReal *ElasticityGather(Elasticity e, const CellGroup *g, PetscInt batch, const PetscReal *u)
+void ElasticityGather(Elasticity e, const CellGroup *g, PetscInt batch, const PetscReal *u, PetscReal *gathered)
 {
   const PetscInt *node = &g->node[(size_t)batch * g->nodes * KERNEL_LANES];
 
   for (int a = 0; a < g->nodes; a++) {
     for (int i = 0; i < e->dim; i++) {
       for (int lane = 0; lane < KERNEL_LANES; lane++)
-        e->u[(a * e->dim + i) * KERNEL_LANES + lane] = u[node[a * KERNEL_LANES + lane] * e->dim + i];
+        gathered[(a * e->dim + i) * KERNEL_LANES + lane] = u[node[a * KERNEL_LANES + lane] * e->dim + i];
     }
   }
-  return e->u;
 }
 
 /*@
@@ -409,7 +424,8 @@ PetscErrorCode ElasticityResidual(Elasticity e, const PetscReal *u, PetscReal *f
     for (PetscInt batch = 0; batch < g->n_batches; batch++) {
       const size_t first = (size_t)batch * KERNEL_LANES;
 
-      ElementKernel(&g->kernel, &g->X[first * dofs], ElasticityGather(e, g, batch, u), &g->E[first], &g->nu[first],
+      ElasticityGather(e, g, batch, u, e->u);
+      ElementKernel(&g->kernel, &g->X[first * dofs], e->u, &g->constants[first * g->kernel.n_constants],
                     ElasticityMultipliers(e, g, batch), energy ? W : NULL, forces ? e->f : NULL, NULL, J);
       if (forces) ScatterForce(e, g, batch, f, force2);
       for (int lane = 0; lane < ElasticityBatchCells(g, batch); lane++) {
@@ -477,7 +493,8 @@ PetscErrorCode ElasticityTangent(Elasticity e, const PetscReal *u)
       const size_t first = (size_t)batch * KERNEL_LANES;
       const int    count = ElasticityBatchCells(g, batch);
 
-      ElementKernel(&g->kernel, &g->X[first * dofs], ElasticityGather(e, g, batch, u), &g->E[first], &g->nu[first],
+      ElasticityGather(e, g, batch, u, e->u);
+      ElementKernel(&g->kernel, &g->X[first * dofs], e->u, &g->constants[first * g->kernel.n_constants],
                     ElasticityMultipliers(e, g, batch), NULL, NULL, e->K, J);
       if (count < KERNEL_LANES)
         ScatterTangent(e, g, batch, e->dim, count);
@@ -672,7 +689,7 @@ static void AddCellStress(Elasticity e, const CellGroup *g, PetscInt slot, const
   const size_t    batch = slot / KERNEL_LANES, lane = slot % KERNEL_LANES;
   const PetscInt *nodes = &e->mesh->cell_nodes[e->mesh->cell_ptr[g->cell[slot]]];
   PetscReal       X[MAX_DOFS], cell_u[MAX_DOFS], point_stress[ELEMENT_MAX_POINTS * 6], point_volume[ELEMENT_MAX_POINTS],
-    m[MIXED_PRESSURES], volume = 0;
+    constants[MATERIAL_MAX_CONSTANTS], m[MIXED_PRESSURES], volume = 0;
   const PetscReal *multipliers = ElasticityMultipliers(e, g, (PetscInt)batch);
 
   for (int k = 0; k < ElementPressures(&g->kernel); k++) m[k] = multipliers ? multipliers[k * KERNEL_LANES + lane] : 0;
@@ -682,7 +699,9 @@ static void AddCellStress(Elasticity e, const CellGroup *g, PetscInt slot, const
       cell_u[a * e->dim + i] = u[nodes[a] * e->dim + i];
     }
   }
-  ElementPointStress(&g->kernel, X, cell_u, g->E[slot], g->nu[slot], m, point_stress, point_volume);
+  for (int k = 0; k < g->kernel.n_constants; k++)
+    constants[k] = g->constants[(batch * g->kernel.n_constants + k) * KERNEL_LANES + lane];
+  ElementPointStress(&g->kernel, X, cell_u, constants, m, point_stress, point_volume);
   for (int p = 0; p < element->points; p++) volume += point_volume[p];
   for (int a = 0; a < g->nodes; a++) {
     weight[nodes[a]] += volume;

@@ -32,16 +32,16 @@ PetscBool ElasticityAugments(Elasticity e)
 static void NextMultipliers(Elasticity e, const CellGroup *g, PetscInt batch, const PetscReal *u, PetscReal *next)
 {
   const size_t     first = (size_t)batch * KERNEL_LANES;
-  const PetscReal *m     = ElasticityMultipliers(e, g, batch);
+  const PetscReal *m = ElasticityMultipliers(e, g, batch), *constants = &g->constants[first * g->kernel.n_constants];
 
-  ElementDilatation(&g->kernel, &g->X[first * (size_t)(g->nodes * e->dim)], ElasticityGather(e, g, batch, u),
-                    &g->E[first], &g->nu[first], m, next);
+  ElasticityGather(e, g, batch, u, e->u);
+  ElementDilatation(&g->kernel, &g->X[first * (size_t)(g->nodes * e->dim)], e->u, constants, m, next);
   for (int lane = 0; lane < KERNEL_LANES; lane++) {
-    PetscReal modulus, kappa;
+    PetscReal kappa, mu;
 
-    ElementVolumeModulus(g->E[first + lane], g->nu[first + lane], &modulus, &kappa);
+    ElementVolumeModulus(g->kernel.law, g->kernel.n_constants, constants + lane, KERNEL_LANES, &kappa, &mu);
     for (int k = lane; k < ElementPressures(&g->kernel) * KERNEL_LANES; k += KERNEL_LANES)
-      next[k] = (1 - kappa / modulus) * (m[k] + kappa * next[k]);
+      next[k] = (1 - kappa / constants[lane]) * (m[k] + kappa * next[k]);
   }
 }
 
@@ -68,14 +68,13 @@ static void AddVolumeError(Elasticity e, const CellGroup *g, PetscInt batch, con
   const PetscReal *m = ElasticityMultipliers(e, g, batch);
 
   for (int lane = 0; lane < ElasticityBatchCells(g, batch); lane++) {
-    const PetscInt  slot = batch * KERNEL_LANES + lane;
-    const PetscReal mu   = g->E[slot] / (2 * (1 + g->nu[slot]));
-    PetscReal       modulus, kappa;
+    const PetscReal *constants = &g->constants[(size_t)batch * KERNEL_LANES * g->kernel.n_constants + lane];
+    PetscReal        kappa, mu;
 
-    ElementVolumeModulus(g->E[slot], g->nu[slot], &modulus, &kappa);
+    ElementVolumeModulus(g->kernel.law, g->kernel.n_constants, constants, KERNEL_LANES, &kappa, &mu);
     for (int k = lane; k < ElementPressures(&g->kernel) * KERNEL_LANES; k += KERNEL_LANES)
       sum[0] += mu * PetscSqr((next[k] - m[k]) / kappa);
-    sum[1] += mu * VOLUME_STRAIN2 * SlotVolume(e, g, slot);
+    sum[1] += mu * VOLUME_STRAIN2 * SlotVolume(e, g, batch * KERNEL_LANES + lane);
   }
 }
 
@@ -250,7 +249,7 @@ PetscErrorCode ElasticityCheckEnclosed(Elasticity e, Scene scene, const PetscBoo
     PetscReal largest[2] = {0, 0}; /* of all nodes, of those that are free */
 
     if (scene->bodies[b].rigid || scene->bodies[b].formulation != FORMULATION_MIXED ||
-        scene->bodies[b].material.nu < 0.5)
+        !PetscIsInfReal(scene->bodies[b].material.constants[0]))
       continue;
     PetscCall(PetscCalloc1(n, &gradient));
     AddVolumeGradient(e, b, gradient);

@@ -37,7 +37,7 @@ static double PointVolume(const Element *e, int p, int dim, Geometry geometry, c
   return geometry == GEOMETRY_AXISYMMETRIC ? volume * two_pi * Radius(e, p, dim, X) : volume;
 }
 
-/* Computes the Cauchy stress P F^T / det F + pressure / det F. With small strains it is P + pressure. */
+/* Computes the Cauchy stress (P F^T + pressure) / det F. With small strains it is P + pressure. */
 static void CauchyStress(const double H[9], const double P[9], double pressure, int finite, double stress[6])
 {
   static const int component[6][2] = {{0, 0}, {1, 1}, {2, 2}, {0, 1}, {1, 2}, {0, 2}};
@@ -61,31 +61,32 @@ static void CauchyStress(const double H[9], const double P[9], double pressure, 
   Not collective
 
   Input Parameters:
-+ kernel - element type, geometry, kinematics and law
-. X      - reference coordinates (length) [nodes][dim]; axisymmetric: X[.][0] is the radius
-. u      - displacements (length) [nodes][dim]
-. E, nu  - Young's modulus (stress) and Poisson's ratio
++ kernel    - element type, geometry, kinematics and law
+. X         - reference coordinates (length) [nodes][dim]; axisymmetric: X[.][0] is the radius
+. u         - displacements (length) [nodes][dim]
+. constants  - of the law [n_constants]
 - multiplier - of a mixed element (stress times root of volume) [pressures]; NULL: they are 0
 
   Output Parameters:
 + stress - xx yy zz xy yz xz at each point [points][6]; axisymmetric: rr zz hoop rz 0 0
 - volume - reference volume of each point [points]
 @*/
-void ElementPointStress(const KernelCase *kernel, const double *X, const double *u, double E, double nu,
+void ElementPointStress(const KernelCase *kernel, const double *X, const double *u, const double *constants,
                         const double *multiplier, double *stress, double *volume)
 {
   const Element *e      = ElementGet(kernel->type);
   const int      finite = kernel->kinematics == KINEMATICS_FINITE;
-  const Material material =
-    kernel->formulation == FORMULATION_MIXED ? MaterialShapeOnly(kernel->law, E, nu) : (Material){kernel->law, E, nu};
-  double H[ELEMENT_MAX_POINTS * 9], pressure[ELEMENT_MAX_POINTS];
+  const int      n      = kernel->n_constants ? kernel->n_constants : MaterialGetLaw(kernel->law)->constants;
+  double         H[ELEMENT_MAX_POINTS * 9], pressure[ELEMENT_MAX_POINTS], used[MATERIAL_MAX_CONSTANTS];
 
-  ElementPointState(kernel, X, u, E, nu, multiplier, H, pressure);
+  for (int k = 0; k < n; k++) used[k] = constants[k];
+  if (kernel->formulation == FORMULATION_MIXED) used[0] = 0; /* the pressure takes the place of this part */
+  ElementPointState(kernel, X, u, constants, multiplier, H, pressure);
   for (int p = 0; p < e->points; p++) {
     double J[3][3], P[9];
 
     volume[p] = PointVolume(e, p, e->dim, kernel->geometry, X, J);
-    MaterialPoint(&material, finite, &H[9 * p], NULL, P, NULL);
+    MaterialEvaluate(kernel->law, n, used, &H[9 * p], NULL, P, NULL);
     CauchyStress(&H[9 * p], P, pressure[p], finite, &stress[6 * p]);
   }
 }
@@ -96,23 +97,23 @@ void ElementPointStress(const KernelCase *kernel, const double *X, const double 
   Not collective
 
   Input Parameters:
-+ kernel - element type, geometry, kinematics and law
-. X      - reference coordinates (length) [nodes][dim]; axisymmetric: X[.][0] is the radius
-. u      - displacements (length) [nodes][dim]
-. E, nu  - Young's modulus (stress) and Poisson's ratio
++ kernel    - element type, geometry, kinematics and law
+. X         - reference coordinates (length) [nodes][dim]; axisymmetric: X[.][0] is the radius
+. u         - displacements (length) [nodes][dim]
+. constants  - of the law [n_constants]
 - multiplier - of a mixed element (stress times root of volume) [pressures]; NULL: they are 0
 
   Output Parameters:
 + stress - xx yy zz xy yz xz; axisymmetric: rr zz hoop rz 0 0
 - volume - reference volume; axisymmetric: over 360 degrees
 @*/
-void ElementStress(const KernelCase *kernel, const double *X, const double *u, double E, double nu,
+void ElementStress(const KernelCase *kernel, const double *X, const double *u, const double *constants,
                    const double *multiplier, double stress[6], double *volume)
 {
   const int points = ElementGet(kernel->type)->points;
   double    point_stress[ELEMENT_MAX_POINTS * 6], point_volume[ELEMENT_MAX_POINTS];
 
-  ElementPointStress(kernel, X, u, E, nu, multiplier, point_stress, point_volume);
+  ElementPointStress(kernel, X, u, constants, multiplier, point_stress, point_volume);
   *volume = 0;
   for (int c = 0; c < 6; c++) stress[c] = 0;
   for (int p = 0; p < points; p++) {

@@ -33,7 +33,7 @@ LANES_INLINE void Batch(const BatchCall *call, const int n, const int points, co
       PointDisplacementGradient(n, dim, hoop, q, call->u, &c, H);
       MaterialDilatation(H, &dilatation);
       KeepLeastJ(call, &dilatation);
-      call->law(H, &dilatation, &call->lambda, &call->mu, W ? &energy : NULL, P, K ? c.A[q] : NULL);
+      PointLaw(call, H, &dilatation, W ? &energy : NULL, P, K ? c.A[q] : NULL);
       if (W) LANE(W, 0) += energy * volume;
       if (call->H) StorePoint(call, first + q, H);
       for (int r = 0; r < 9; r++) P[r] *= volume;
@@ -77,7 +77,7 @@ static BatchFn *const full_batches[ELEMENT_TYPES][2] = {
 static BatchFn *GetBatch(const KernelCase *kernel)
 {
   const int axisymmetric = kernel->geometry == GEOMETRY_AXISYMMETRIC;
-  const int splits       = kernel->law == MATERIAL_NEO_HOOKEAN || kernel->kinematics == KINEMATICS_SMALL;
+  const int splits       = kernel->kinematics == KINEMATICS_SMALL || MaterialGetLaw(kernel->law)->separable;
 
   switch (kernel->formulation) {
   case FORMULATION_ENHANCED: return enhanced_batches[kernel->type][axisymmetric];
@@ -93,7 +93,7 @@ static BatchFn *GetBatch(const KernelCase *kernel)
   Not collective
 
   Note:
-  Mixed exists for all cells but tri3 and tet4, and with laws whose energy is a part of the shape and lambda/2 (ln J)^2.
+  Mixed exists for all cells but tri3 and tet4, with separable laws, see material.h. With small strains all laws are.
 @*/
 int ElementKernelExists(const KernelCase *kernel)
 {
@@ -101,25 +101,55 @@ int ElementKernelExists(const KernelCase *kernel)
 }
 
 /* Sets what all parts of a batch have in common. */
-static BatchCall StartCall(const KernelCase *kernel)
+static BatchCall StartCall(const KernelCase *kernel, const Lanes *constants)
 {
-  const int finite = kernel->kinematics == KINEMATICS_FINITE;
+  const ElasticLaw *law = MaterialGetLaw(kernel->law);
 
-  return (BatchCall){.e = ElementGet(kernel->type), .law = MaterialGetLaw(kernel->law, finite), .finite = finite};
+  return (BatchCall){.e           = ElementGet(kernel->type),
+                     .law         = law,
+                     .finite      = kernel->kinematics == KINEMATICS_FINITE,
+                     .n_constants = kernel->n_constants ? kernel->n_constants : law->constants,
+                     .constants   = constants};
 }
 
-/* Mixed elements evaluate the law without its modulus of the volume. */
-static void SetMaterial(BatchCall *call, Formulation formulation, const double *E, const double *nu)
-{
-  for (int lane = 0; lane < LANES; lane++) {
-    double lambda, mu, kappa;
+/*@
+  ElementVolumeModulus - computes the part of the modulus of the volume that mixed elements have without multipliers.
 
-    MaterialLame(E[lane], nu[lane], &lambda, &mu);
-    ElementVolumeModulus(E[lane], nu[lane], &lambda, &kappa);
-    call->lambda[lane] = formulation == FORMULATION_MIXED ? 0 : lambda;
-    call->mu[lane]     = mu;
-    call->kappa[lane]  = kappa;
+  Not collective
+
+  Input Parameters:
++ law       - the law
+. n         - number of its constants
+. constants - of the law [n][stride]; the first is the modulus, infinite in incompressible materials
+- stride    - from one constant to the next
+
+  Output Parameters:
++ kappa - the part (stress); where it is the whole, the multipliers remain 0
+- mu    - shear modulus (stress)
+@*/
+void ElementVolumeModulus(MaterialLaw law, int n, const double *constants, int stride, double *kappa, double *mu)
+{
+  Lanes lanes_constants[MATERIAL_MAX_CONSTANTS], shear;
+
+  for (int k = 0; k < n; k++) lanes_constants[k] = (Lanes){0} + constants[k * stride];
+  MaterialGetLaw(law)->shear(n, lanes_constants, &shear);
+  *mu    = shear[0];
+  *kappa = fmin(constants[0], largest_kappa * shear[0]);
+}
+
+/* Sets the constants of LANES elements. Those of mixed elements leave out the modulus of the volume. */
+static void SetConstants(const KernelCase *kernel, const double *constants, int stride, BatchCall *call,
+                         Lanes lanes_constants[MATERIAL_MAX_CONSTANTS])
+{
+  for (int k = 0; k < call->n_constants; k++) {
+    for (int lane = 0; lane < LANES; lane++)
+      lanes_constants[k][lane] = constants[k * stride + (stride == 1 ? 0 : lane)];
   }
+  if (kernel->formulation != FORMULATION_MIXED) return;
+  call->law->shear(call->n_constants, lanes_constants, &call->mu);
+  for (int lane = 0; lane < LANES; lane++)
+    call->kappa[lane] = fmin(lanes_constants[0][lane], largest_kappa * call->mu[lane]);
+  lanes_constants[0] = (Lanes){0};
 }
 
 /*@
@@ -128,10 +158,10 @@ static void SetMaterial(BatchCall *call, Formulation formulation, const double *
   Not collective
 
   Input Parameters:
-+ kernel - element type, geometry, kinematics, law and formulation of the batch
-. X      - reference coordinates (length) [nodes][dim][lanes]; axisymmetric: X[.][0] is the radius
-. u      - displacements (length) [nodes][dim][lanes]
-. E, nu  - Young's modulus (stress) and Poisson's ratio [lanes]
++ kernel    - element type, geometry, kinematics, law and formulation of the batch
+. X         - reference coordinates (length) [nodes][dim][lanes]; axisymmetric: X[.][0] is the radius
+. u         - displacements (length) [nodes][dim][lanes]
+. constants  - of the law [n_constants][lanes]
 - multiplier - of mixed elements (stress times root of volume) [pressures][lanes]; NULL: they are 0
 
   Output Parameters:
@@ -149,21 +179,22 @@ static void SetMaterial(BatchCall *call, Formulation formulation, const double *
   Bonet and Wood, "Nonlinear Continuum Mechanics for Finite Element Analysis", sections 8.4 and 8.5
   (reference configuration)
 @*/
-void ElementKernel(const KernelCase *kernel, const double *X, const double *u, const double *E, const double *nu,
+void ElementKernel(const KernelCase *kernel, const double *X, const double *u, const double *constants,
                    const double *multiplier, double *W, double *f, double *K, double *J)
 {
   BatchFn  *batch = GetBatch(kernel);
-  BatchCall call  = StartCall(kernel);
+  Lanes     lanes_constants[MATERIAL_MAX_CONSTANTS];
+  BatchCall call = StartCall(kernel, lanes_constants);
 
   for (int part = 0; part < KERNEL_LANES; part += LANES) {
-    SetMaterial(&call, kernel->formulation, E + part, nu + part);
+    SetConstants(kernel, constants + part, KERNEL_LANES, &call, lanes_constants);
+    call.multiplier = multiplier ? multiplier + part : NULL;
     call.X          = X + part;
     call.u          = u + part;
     call.W          = W ? W + part : NULL;
     call.f          = f ? f + part : NULL;
     call.K          = K ? K + part : NULL;
     call.J          = J + part;
-    call.multiplier = multiplier ? multiplier + part : NULL;
     batch(&call);
   }
 }
@@ -182,28 +213,6 @@ int ElementPressures(const KernelCase *kernel)
 }
 
 /*@
-  ElementVolumeModulus - computes the modulus of the volume, and the part of it that mixed elements have without
-  multipliers.
-
-  Not collective
-
-  Input Parameters:
-+ E  - Young's modulus (stress)
-- nu - Poisson's ratio, -1 < nu <= 1/2
-
-  Output Parameters:
-+ modulus - Lame's first constant (stress), infinite for nu = 1/2
-- kappa   - the part (stress); where it is the whole, the multipliers remain 0
-@*/
-void ElementVolumeModulus(double E, double nu, double *modulus, double *kappa)
-{
-  double mu;
-
-  MaterialLame(E, nu, modulus, &mu);
-  *kappa = fmin(*modulus, largest_kappa * mu);
-}
-
-/*@
   ElementDilatation - computes the dilatations of a batch of mixed elements, from which the pressures follow.
 
   Not collective
@@ -212,7 +221,7 @@ void ElementVolumeModulus(double E, double nu, double *modulus, double *kappa)
 + kernel     - element type, geometry, kinematics, law and formulation of the batch
 . X          - reference coordinates (length) [nodes][dim][lanes]; axisymmetric: X[.][0] is the radius
 . u          - displacements (length) [nodes][dim][lanes]
-. E, nu      - Young's modulus (stress) and Poisson's ratio [lanes]
+. constants  - of the law [n_constants][lanes]
 - multiplier - (stress times root of volume) [pressures][lanes]; NULL: they are 0
 
   Output Parameter:
@@ -222,14 +231,15 @@ void ElementVolumeModulus(double E, double nu, double *modulus, double *kappa)
   The pressure in the element is multiplier + kappa theta, see ElementVolumeModulus(). It is right where it is the
   modulus of the volume times theta.
 @*/
-void ElementDilatation(const KernelCase *kernel, const double *X, const double *u, const double *E, const double *nu,
+void ElementDilatation(const KernelCase *kernel, const double *X, const double *u, const double *constants,
                        const double *multiplier, double *theta)
 {
-  BatchCall call = StartCall(kernel);
+  Lanes     lanes_constants[MATERIAL_MAX_CONSTANTS];
+  BatchCall call = StartCall(kernel, lanes_constants);
   double    J[LANES];
 
   for (int part = 0; part < KERNEL_LANES; part += LANES) {
-    SetMaterial(&call, kernel->formulation, E + part, nu + part);
+    SetConstants(kernel, constants + part, KERNEL_LANES, &call, lanes_constants);
     call.X          = X + part;
     call.u          = u + part;
     call.J          = J;
@@ -249,7 +259,7 @@ void ElementDilatation(const KernelCase *kernel, const double *X, const double *
 + kernel     - element type, geometry, kinematics, law and formulation
 . X          - reference coordinates (length) [nodes][dim]; axisymmetric: X[.][0] is the radius
 . u          - displacements (length) [nodes][dim]
-. E, nu      - Young's modulus (stress) and Poisson's ratio
+. constants  - of the law [n_constants]
 - multiplier - of a mixed element (stress times root of volume) [pressures]; NULL: they are 0
 
   Output Parameters:
@@ -259,19 +269,18 @@ void ElementDilatation(const KernelCase *kernel, const double *X, const double *
   Note:
   A mixed element evaluates the law without its modulus of the volume. tri6 and tet10 have other points inside.
 @*/
-void ElementPointState(const KernelCase *kernel, const double *X, const double *u, double E, double nu,
+void ElementPointState(const KernelCase *kernel, const double *X, const double *u, const double *constants,
                        const double *multiplier, double *H, double *pressure)
 {
-  BatchCall call = StartCall(kernel);
+  Lanes     lanes_constants[MATERIAL_MAX_CONSTANTS];
+  BatchCall call = StartCall(kernel, lanes_constants);
   const int dofs = call.e->nodes * call.e->dim;
   double    lanes_X[ELEMENT_MAX_NODES * 3 * KERNEL_LANES], lanes_u[ELEMENT_MAX_NODES * 3 * KERNEL_LANES],
     lanes_H[ELEMENT_MAX_POINTS * 9 * KERNEL_LANES],
     lanes_pressure[ELEMENT_MAX_POINTS * KERNEL_LANES] = {0}, lanes_multiplier[MIXED_PRESSURES * KERNEL_LANES];
-  double J[LANES], lanes_E[LANES], lanes_nu[LANES];
+  double J[LANES];
 
   for (int lane = 0; lane < LANES; lane++) {
-    lanes_E[lane]  = E;
-    lanes_nu[lane] = nu;
     for (int k = 0; k < dofs; k++) {
       lanes_X[k * KERNEL_LANES + lane] = X[k];
       lanes_u[k * KERNEL_LANES + lane] = u[k];
@@ -279,7 +288,7 @@ void ElementPointState(const KernelCase *kernel, const double *X, const double *
     for (int k = 0; k < ElementPressures(kernel); k++)
       lanes_multiplier[k * KERNEL_LANES + lane] = multiplier ? multiplier[k] : 0;
   }
-  SetMaterial(&call, kernel->formulation, lanes_E, lanes_nu);
+  SetConstants(kernel, constants, 1, &call, lanes_constants);
   call.X          = lanes_X;
   call.u          = lanes_u;
   call.J          = J;

@@ -4,9 +4,11 @@
    ElementKernel() treats a batch of KERNEL_LANES elements of one type, law, geometry, kinematics and formulation. Its
    arrays are [node][dim][lane], so that the inner loops vectorise. A short batch repeats its last element.
    ElementKernelExists() tells whether there is a kernel for a case. The other functions treat one cell or one face:
+   ElementPointState(), ElementPointStress() and ElementStress() evaluate a state, ElementQuality() and CellVolume()
+   a shape, FaceLoadKernel() and BodyForceKernel() the loads, FaceAreaKernel() the areas of a face's nodes.
+
    ElementPressures(), ElementVolumeModulus() and ElementDilatation() are for mixed elements, whose multipliers the
-   caller holds. ElementPointState(), ElementPointStress() and ElementStress() evaluate a state, ElementQuality() and
-   CellVolume() a shape, FaceLoadKernel() and BodyForceKernel() the loads, FaceAreaKernel() the areas of a face's nodes.
+   caller holds.
 
    Source of the forms: Bonet and Wood, "Nonlinear Continuum Mechanics for Finite Element Analysis". */
 #pragma once
@@ -23,23 +25,24 @@ typedef struct {
   ElementType type;
   Geometry    geometry;
   Kinematics  kinematics;
-  MaterialLaw law;
+  MaterialLaw law; /* MATERIAL_LINEAR in small kinematics */
   Formulation formulation;
+  int         n_constants; /* of the law; 0: as many as MaterialGetLaw() says */
 } KernelCase;
 
-void ElementKernel(const KernelCase *, const double *X, const double *u, const double *E, const double *nu,
-                   const double *multiplier, double *W, double *f, double *K, double *J);
-int  ElementKernelExists(const KernelCase *);
-void ElementPointState(const KernelCase *, const double *X, const double *u, double E, double nu,
-                       const double *multiplier, double *H, double *pressure);
-void ElementPointStress(const KernelCase *, const double *X, const double *u, double E, double nu,
-                        const double *multiplier, double *stress, double *volume);
-void ElementStress(const KernelCase *, const double *X, const double *u, double E, double nu, const double *multiplier,
-                   double stress[6], double *volume);
-int  ElementPressures(const KernelCase *);
-void ElementVolumeModulus(double E, double nu, double *modulus, double *kappa);
-void ElementDilatation(const KernelCase *, const double *X, const double *u, const double *E, const double *nu,
-                       const double *multiplier, double *theta);
+void   ElementKernel(const KernelCase *, const double *X, const double *u, const double *constants,
+                     const double *multiplier, double *W, double *f, double *K, double *J);
+int    ElementKernelExists(const KernelCase *);
+void   ElementPointState(const KernelCase *, const double *X, const double *u, const double *constants,
+                         const double *multiplier, double *H, double *pressure);
+void   ElementPointStress(const KernelCase *, const double *X, const double *u, const double *constants,
+                          const double *multiplier, double *stress, double *volume);
+void   ElementStress(const KernelCase *, const double *X, const double *u, const double *constants,
+                     const double *multiplier, double stress[6], double *volume);
+int    ElementPressures(const KernelCase *);
+void   ElementVolumeModulus(MaterialLaw, int n, const double *constants, int stride, double *kappa, double *mu);
+void   ElementDilatation(const KernelCase *, const double *X, const double *u, const double *constants,
+                         const double *multiplier, double *theta);
 double ElementQuality(ElementType, int dim, const double *X);
 
 /* The loads on a face. A dead pressure acts along the reference normal on the reference area. A follower pressure acts

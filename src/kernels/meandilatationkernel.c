@@ -153,7 +153,7 @@ LANES_INLINE void Batch(const BatchCall *call, const int n, const int points, co
 
     MeanGradient(call, q, &x, H, &factor[q]);
     MaterialDilatation(H, &dilatation);
-    call->law(H, &dilatation, &call->lambda, &call->mu, W ? &energy : NULL, x.P[q], K ? x.c.A[q] : NULL);
+    PointLaw(call, H, &dilatation, W ? &energy : NULL, x.P[q], K ? x.c.A[q] : NULL);
     if (W) LANE(W, 0) += energy * x.volume[q];
     if (call->H) StorePoint(call, q, H);
     if (!f && !K) continue;

@@ -35,9 +35,6 @@ static const double energy_round_off = 1e-13;
 /* Square of a strain that is negligible, for elements that have no energy. It is far above the round-off of
    displacements and far below any strain of interest. */
 static const double converged_strain2 = 1e-20;
-/* Smallest determinant whose logarithm and inverse are evaluated; smaller ones are replaced by it. No state with J <= 0
-   is accepted, but a line search evaluates such states and needs finite numbers. */
-static const double jacobian_floor = 1e-8;
 
 /* Points of an integration rule, with the shape functions of the nodes and of the inner node, which is the last. */
 typedef struct {
@@ -222,7 +219,7 @@ LANES_INLINE void Dilatations(const BatchCall *call, const Lanes H[9], Lanes *di
   for (int lane = 0; lane < LANES; lane++) {
     const double d = (*dilatation)[lane];
 
-    (*log_J)[lane] = log1p(d > jacobian_floor - 1 ? d : jacobian_floor - 1);
+    (*log_J)[lane] = log1p(d > MATERIAL_LEAST_J - 1 ? d : MATERIAL_LEAST_J - 1);
   }
 }
 
@@ -237,7 +234,7 @@ LANES_INLINE void DilatationGradient(const BatchCall *call, const Lanes H[9], co
   }
   for (int r = 0; r < 9; r++) F[r] = H[r] + (double)(r % 4 == 0);
   for (int lane = 0; lane < LANES; lane++)
-    inverse[lane] = 1 / (1 + (*dilatation)[lane] > jacobian_floor ? 1 + (*dilatation)[lane] : jacobian_floor);
+    inverse[lane] = 1 / (1 + (*dilatation)[lane] > MATERIAL_LEAST_J ? 1 + (*dilatation)[lane] : MATERIAL_LEAST_J);
   for (int i = 0; i < 3; i++) {
     for (int j = 0; j < 3; j++) {
       const int i1 = 3 * ((i + 1) % 3), i2 = 3 * ((i + 2) % 3), j1 = (j + 1) % 3, j2 = (j + 2) % 3;
@@ -350,7 +347,7 @@ LANES_INLINE void SetBubbleSystem(const BatchCall *call, const int points, const
     for (int r = 0; r < 9; r++) H[r] = x->H[q][r];
     AddBubble(dim, hoop, x->b, x->bubble[q], H);
     Dilatations(call, H, &dilatation, &log_J);
-    call->law(H, &dilatation, &call->lambda, &call->mu, &energy, P, A);
+    PointLaw(call, H, &dilatation, &energy, P, A);
     DilatationGradient(call, H, &dilatation, G);
     s->W += x->volume[q] * energy;
     for (int k = 0; k < modes; k++) x->theta[k] += x->volume[q] * x->shape[q][k] * log_J;
@@ -554,7 +551,7 @@ LANES_INLINE void EvaluateChunk(const BatchCall *call, const int modes, const in
     Lanes       P[9], G[9], D[9], dilatation, log_J, energy;
 
     Dilatations(call, x->H[q], &dilatation, &log_J);
-    call->law(x->H[q], &dilatation, &call->lambda, &call->mu, call->W ? &energy : NULL, P, tangent ? x->c.A[at] : NULL);
+    PointLaw(call, x->H[q], &dilatation, call->W ? &energy : NULL, P, tangent ? x->c.A[at] : NULL);
     if (call->W) *W += x->volume[q] * energy;
     DilatationGradient(call, x->H[q], &dilatation, G);
     for (int r = 0; r < 9; r++) P[r] = x->volume[q] * (P[r] + pressure * G[r]);

@@ -3,6 +3,7 @@
 #include "base/complaint.h"
 #include "kernels/elementkernel.h"
 #include "mesh/mesh.h"
+#include <math.h>
 #include <string.h>
 
 /* Quality */
@@ -85,7 +86,7 @@ PetscErrorCode MeshCheckFormulations(Mesh mesh, Scene scene)
 
     if (ElementKernelExists(
           &(KernelCase){.type = mesh->cell_type[c], .geometry = scene->geometry, .formulation = body->formulation}) ||
-        (body->chosen && body->material.nu < 0.5))
+        (body->chosen && !isinf(body->material.constants[0])))
       continue;
     Complain(&complaint, "%s: %s is %s; cell %" PetscInt_FMT " of body '%s' is %s, which needs %s",
              SceneWhere(scene, body->path, mixed && body->chosen ? "material.nu" : "formulation"),

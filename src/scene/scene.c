@@ -3,6 +3,7 @@
 #include "scenedefaults.h"
 #include "sceneread.h"
 #include "base/refusal.h"
+#include <math.h>
 #include <string.h>
 
 static const char *const Displacements[] = {"ux", "uy", "uz"}, *const Rotations[] = {"rx", "ry", "rz"};
@@ -110,15 +111,16 @@ static const double stiff_volume = 20;
 
 static int SceneStiffVolume(const SceneBody *body)
 {
-  const double nu = body->material.nu;
+  const Material *material = &body->material;
+  const double    mu       = MaterialShear(material);
 
-  return 2 * (1 + nu) > stiff_volume * 3 * (1 - 2 * nu);
+  return material->constants[0] + (MaterialGetLaw(material->law)->isochoric ? 0 : 2 * mu / 3) > stiff_volume * mu;
 }
 
 /* Says whether mixed elements exist for the law of a body. With small strains all laws are Hooke's. */
 static int SceneLawSplits(Scene scene, const SceneBody *body)
 {
-  return scene->kinematics == KINEMATICS_SMALL || body->material.law != MATERIAL_SVK;
+  return scene->kinematics == KINEMATICS_SMALL || MaterialGetLaw(body->material.law)->separable;
 }
 
 static PetscErrorCode SceneReadFormulation(Scene scene, SceneBody *body)
@@ -139,7 +141,7 @@ static PetscErrorCode SceneReadFormulation(Scene scene, SceneBody *body)
     PetscCall(SceneRefuse(scene, body->path, "formulation",
                           "needs a law whose volume part is separate; allowed with svk: full | enhanced | fbar",
                           Formulations[body->formulation]));
-  if (body->material.nu == 0.5 && body->formulation != FORMULATION_MIXED)
+  if (isinf(body->material.constants[0]) && body->formulation != FORMULATION_MIXED)
     PetscCall(SceneRefuse(scene, body->path, "material.nu",
                           SceneLawSplits(scene, body)
                             ? "0.5 needs formulation: mixed (or auto); allowed with others: a number below 0.5"
@@ -173,9 +175,9 @@ static PetscErrorCode SceneReadBody(Scene scene, SceneBody *body)
     PetscCall(SceneReadMotion(scene, tool, &body->motion));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
-  body->material.law = (MaterialLaw)SchemaChoice(SceneDocument(scene), "%s.material.law", body->path);
-  body->material.E   = SchemaReal(SceneDocument(scene), "%s.material.E", body->path);
-  body->material.nu  = SchemaReal(SceneDocument(scene), "%s.material.nu", body->path);
+  body->material = MaterialFromModuli((MaterialLaw)SchemaChoice(SceneDocument(scene), "%s.material.law", body->path),
+                                      SchemaReal(SceneDocument(scene), "%s.material.E", body->path),
+                                      SchemaReal(SceneDocument(scene), "%s.material.nu", body->path));
   if (body->material.law == MATERIAL_LINEAR && scene->kinematics == KINEMATICS_FINITE)
     PetscCall(SceneRefuse(scene, body->path, "material.law",
                           "linear needs kinematics: small; allowed with finite: svk | neo_hookean", NULL));

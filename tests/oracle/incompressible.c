@@ -359,8 +359,9 @@ static void Errors(const Rule *rule, const Case *test, Mesh mesh, const PetscRea
                    PetscReal error[QUANTITIES])
 {
   const Element   *e           = ElementGet(test->type);
-  const KernelCase kernel      = {test->type, test->geometry, KINEMATICS_SMALL, MATERIAL_LINEAR, FORMULATION_MIXED};
+  const KernelCase kernel      = {test->type, test->geometry, KINEMATICS_SMALL, MATERIAL_LINEAR, FORMULATION_MIXED, 0};
   const PetscReal  compression = young / (3 * (1 - 2 * poisson)); /* bulk modulus */
+  const Material   material    = MaterialFromModuli(MATERIAL_LINEAR, young, poisson);
   PetscReal        sum[2 * QUANTITIES] = {0};
 
   for (PetscInt c = 0; c < mesh->n_cells; c++) {
@@ -388,7 +389,7 @@ static void Errors(const Rule *rule, const Case *test, Mesh mesh, const PetscRea
       for (int a = 0; a < e->nodes; a++) D[0] -= rule->N[q][a] * mean[nodes[a]];
       sum[4] += volume * D[0] * D[0];
     }
-    ElementPointState(&kernel, X, cell_u, young, poisson, NULL, H, pressure);
+    ElementPointState(&kernel, X, cell_u, material.constants, NULL, H, pressure);
     for (int q = 0; q < e->points; q++) {
       const PetscReal volume = Place(test, mesh, c, e->N[q], e->dN[q][0], 3, e->weight[q], x, g);
 

@@ -23,7 +23,7 @@ typedef struct {
   PetscInt
     *block;     /* [nodes][nodes][lanes]: place of the pair of nodes in the block CSR; then PREFETCH_PAIRS of zeros */
   PetscReal *X; /* [nodes][dim][lanes] */
-  PetscReal *E, *nu;      /* [lanes] */
+  PetscReal *constants;   /* of the law [n_constants][lanes] */
   PetscInt   multipliers; /* where those of the first batch are in VolumeState; -1: the group has none */
 } CellGroup;
 
@@ -51,6 +51,6 @@ struct _n_Elasticity {
   VolumeState state, accepted;
 };
 
-const PetscReal *ElasticityGather(Elasticity, const CellGroup *, PetscInt batch, const PetscReal *u);
-int              ElasticityBatchCells(const CellGroup *, PetscInt batch);
-PetscReal       *ElasticityMultipliers(Elasticity, const CellGroup *, PetscInt batch);
+void       ElasticityGather(Elasticity, const CellGroup *, PetscInt batch, const PetscReal *u, PetscReal *gathered);
+int        ElasticityBatchCells(const CellGroup *, PetscInt batch);
+PetscReal *ElasticityMultipliers(Elasticity, const CellGroup *, PetscInt batch);

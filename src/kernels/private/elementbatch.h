@@ -34,15 +34,16 @@ typedef struct {
 /* One call treats LANES elements of a batch. H[points][9] is the displacement gradient at which the law is evaluated.
    W, f, K and H may be NULL; ElementKernel() explains them. */
 typedef struct {
-  const Element *e;
-  MaterialLawFn *law;
-  int            finite;
-  const double  *X, *u;
-  Lanes          lambda, mu;
-  double        *W, *f, *K, *J, *H;
-  /* Of mixed elements: the part kappa of the modulus of the volume, multipliers or NULL, and results or NULL: theta
-     [MIXED_PRESSURES], which mixedkernel.c explains, and the pressure at the points of H */
-  Lanes         kappa;
+  const Element    *e;
+  const ElasticLaw *law;
+  int               finite, n_constants;
+  const Lanes      *constants;
+  const double     *X, *u;
+  double           *W, *f, *K, *J, *H;
+  /* Of mixed elements: the part kappa of the modulus of the volume, shear modulus, multipliers or NULL, and results or
+     NULL: theta [MIXED_PRESSURES], which mixedkernel.c explains, and the pressure at the points of H. constants[0] is
+     then 0. */
+  Lanes         kappa, mu;
   const double *multiplier;
   double       *theta, *pressure;
 } BatchCall;
@@ -179,6 +180,13 @@ LANES_INLINE void KeepLeastJ(const BatchCall *call, const Lanes *dilatation)
     if (!(1 + (*dilatation)[lane] >= call->J[lane]))
       call->J[lane] = 1 + (*dilatation)[lane]; /* the negated comparison lets NaN through */
   }
+}
+
+/* Evaluates the law at a point. */
+LANES_INLINE void PointLaw(const BatchCall *call, const Lanes H[9], const Lanes *dilatation, Lanes *W, Lanes P[9],
+                           Lanes A[MATERIAL_TANGENT_SIZE])
+{
+  call->law->evaluate(H, dilatation, call->n_constants, call->constants, W, P, A);
 }
 
 LANES_INLINE void StorePoint(const BatchCall *call, int p, const Lanes H[9])
