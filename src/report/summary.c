@@ -116,6 +116,18 @@ static void AddCycles(cJSON *json, const StepperReport *way)
     cJSON_AddNullToObject(map, "last");
 }
 
+/* Adds what is known of jumps to another equilibrium. */
+static void AddJumps(cJSON *json, const StepperReport *way)
+{
+  cJSON *map = cJSON_AddObjectToObject(json, "jumps");
+
+  cJSON_AddNumberToObject(map, "found", (double)way->jumps);
+  if (way->jumps)
+    cJSON_AddStringToObject(map, "last", way->jump);
+  else
+    cJSON_AddNullToObject(map, "last");
+}
+
 /* Adds what was done for bodies that only contact holds, if there are any. */
 static void AddSprings(cJSON *json, const RunFigures *figures)
 {
@@ -258,6 +270,7 @@ PetscErrorCode SummaryWrite(const Mesh mesh, const RunFigures *figures, const ch
   AddRun(json, run);
   cJSON_AddNumberToObject(json, "restarts", (double)figures->restarts);
   AddCycles(json, run->way);
+  AddJumps(json, run->way);
   AddSprings(json, figures);
   AddLinear(json, &figures->linear);
   AddUsage(json, figures);

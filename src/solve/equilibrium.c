@@ -435,10 +435,12 @@ PetscErrorCode ModelSolve(Model model, PetscReal t, SolveReport *report)
   }
   report->cycles = work->cycles;
   PetscCall(PetscStrncpy(report->cycle, work->cycle, sizeof(report->cycle)));
-  if (report->result == SOLVE_CONVERGED)
-    PetscCall(PetscArraycpy(model->u, model->problem->trial, model->mesh->n_nodes * model->mesh->dim));
-  else
+  if (report->result != SOLVE_CONVERGED) {
     PetscCall(ModelExplainFailure(model, report));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  PetscCall(PetscArraycpy(model->u, model->problem->trial, model->mesh->n_nodes * model->mesh->dim));
+  PetscCall(ModelFindJump(model, report));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

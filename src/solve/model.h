@@ -44,6 +44,7 @@ typedef struct {
   PetscReal   tied;        /* largest force in a tie, over F_ref */
   PetscInt    cycles;      /* times that the contact set repeated itself and Newton's steps were shortened */
   char        cycle[256];  /* the last repetition: its period and nodes, in gmsh's tags */
+  char        jump[256];   /* the node that jumped to another equilibrium, and how far; empty: none did */
   char        detail[256]; /* where a failed solve failed, in gmsh's tags */
   Failure     failure;     /* more about a failed solve */
 } SolveReport;

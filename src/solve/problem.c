@@ -42,7 +42,9 @@ PetscErrorCode ProblemCreate(Scene scene, Mesh mesh, Problem *out)
   problem->A = problem->P;
   PetscCall(PetscObjectReference((PetscObject)problem->A));
   PetscCall(MatCreateVecs(problem->A, &problem->diagonal, NULL));
-  if (problem->contact) PetscCall(FreeBodiesCreate(mesh, scene, problem->loads, problem->contact, &problem->bodies));
+  PetscCall(FreeModesCreate(mesh, scene, problem->loads, &problem->modes));
+  if (problem->contact)
+    PetscCall(FreeBodiesCreate(mesh, scene, problem->loads, problem->contact, problem->modes, &problem->bodies));
   if (problem->bodies) PetscCall(FreeBodiesSprings(problem->bodies, problem->diagonal, &problem->springs));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -63,6 +65,7 @@ PetscErrorCode ProblemDestroy(Problem *problem)
   if (!p) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(ContactSpringsDestroy(&p->springs));
   PetscCall(FreeBodiesDestroy(&p->bodies));
+  PetscCall(FreeModesDestroy(&p->modes));
   PetscCall(MatDestroy(&p->A));
   PetscCall(VecDestroy(&p->diagonal));
   PetscCall(ContactDestroy(&p->contact));

@@ -45,6 +45,7 @@ typedef struct _n_Problem {
   Elasticity     elasticity;
   Loads          loads;
   Contact        contact; /* NULL: the scene has none */
+  FreeModes      modes;   /* rigid motions that supports leave to the bodies */
   FreeBodies     bodies;  /* that contact is to hold; NULL: there are none */
   ContactSprings springs; /* of these bodies; NULL: there are none */
   PetscBool      tied;    /* other motions are tied than in the last tangent */

@@ -277,7 +277,8 @@ static PetscErrorCode LoadStepperPredict(LoadStepper stepper, StepRecord *record
 static PetscErrorCode LoadStepperAccept(LoadStepper stepper, PetscReal dt, PetscBool clipped, const SolveReport *solve,
                                         StepRecord *record)
 {
-  Model model = stepper->model;
+  Model          model  = stepper->model;
+  StepperReport *report = &stepper->report;
 
   PetscFunctionBeginUser;
   record->t        = model->t;
@@ -289,14 +290,19 @@ static PetscErrorCode LoadStepperAccept(LoadStepper stepper, PetscReal dt, Petsc
   record->beta     = stepper->size.beta;
   record->tied     = stepper->size.tied;
   PetscCall(ModelAccept(model));
-  stepper->start    = stepper->size;
-  stepper->report.t = model->t;
-  stepper->report.steps++;
-  stepper->report.newton_accepted += solve->newton;
-  stepper->report.taken += solve->taken;
-  stepper->report.left  = PetscMax(stepper->report.left, solve->left);
-  stepper->report.share = solve->share;
-  stepper->report.tied  = solve->tied;
+  if (solve->jump[0]) {
+    report->jumps++;
+    PetscCall(PetscSNPrintf(report->jump, sizeof(report->jump), "from t = %.6g to %.6g: %s", (double)report->t,
+                            (double)model->t, solve->jump));
+  }
+  stepper->start = stepper->size;
+  report->t      = model->t;
+  report->steps++;
+  report->newton_accepted += solve->newton;
+  report->taken += solve->taken;
+  report->left  = PetscMax(report->left, solve->left);
+  report->share = solve->share;
+  report->tied  = solve->tied;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -449,12 +455,14 @@ PetscErrorCode LoadStepperArchive(LoadStepper stepper, Archive archive)
                           &report->relaxed,
                           &report->cycles,
                           &report->cycles_cut,
+                          &report->jumps,
                           &size.tied};
 
   PetscFunctionBeginUser;
   PetscCall(ArchiveRealsAt(archive, "stepper/size", PETSC_STATIC_ARRAY_LENGTH(real), real));
   PetscCall(ArchiveIntegersAt(archive, "stepper/counts", PETSC_STATIC_ARRAY_LENGTH(integer), integer));
   PetscCall(ArchiveString(archive, "stepper/cycle", sizeof(report->cycle), report->cycle));
+  PetscCall(ArchiveString(archive, "stepper/jump", sizeof(report->jump), report->jump));
   if (!ArchiveLoads(archive)) PetscFunctionReturn(PETSC_SUCCESS);
   if (initial == stepper->size.initial) size.dt = PetscMin(size.dt_max, dt);
   stepper->size = size;

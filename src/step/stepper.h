@@ -34,6 +34,8 @@ typedef struct {
   PetscInt  cycles;                             /* times that a contact set repeated itself */
   PetscInt  cycles_cut;                         /* steps that failed because of that */
   char      cycle[512];                         /* the last repetition: load parameter, period, nodes */
+  PetscInt  jumps;                              /* accepted steps that ended in another equilibrium */
+  char      jump[512];                          /* the last of them: load parameters, node, distance */
   PetscInt  regathered, adjusted, cuts, turned; /* of SolveReport, for all solves */
   PetscReal t;                                  /* of the last accepted state */
   char      message[1024];                      /* why it ended early: cause, load parameter, nodes, what was tried */

@@ -4,7 +4,8 @@
    problem.c is below all of them, and freebodies.c and rigidsearch.c below it. linearcontact.c finds the contact that
    is right at the end of a linear step. linesearch.c chooses what the line search compares, and corrects steps for
    contact. newton.c runs SNES once with the present contact lists. prediction.c finds a first iterate, penaltyramp.c
-   improves it on softened penalties, penaltyerror.c estimates what penetration leaves of error and stiffens penalties.
+   improves it on softened penalties, penaltyerror.c estimates what penetration leaves of error and stiffens penalties,
+   jump.c tells an equilibrium that was reached by a jump.
    equilibrium.c goes from an accepted state to the next one. model.c holds the accepted state. Each file calls only
    those named before it. */
 #pragma once
@@ -71,6 +72,8 @@ PetscErrorCode ModelSolveLinearContact(Model, const PetscReal *u, const PetscRea
 PetscErrorCode ModelCreateLineSearch(Model);
 void           ModelChooseObjective(Model, PetscReal residual, PetscReal slope);
 PetscErrorCode ModelLocateEdge(Model, PetscBool *found, ContactPlace *);
+/* jump.c */
+PetscErrorCode ModelFindJump(Model, SolveReport *);
 /* newton.c */
 PetscErrorCode ModelCreateSNES(Model);
 PetscErrorCode ModelTangent(Model, const PetscReal *u, PetscReal t);
