@@ -199,13 +199,14 @@ static PetscErrorCode CreateBuffers(Elasticity e)
   PetscReal *aligned;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc((size_t)(MAX_DOFS + 2) * MAX_DOFS * KERNEL_LANES * sizeof(PetscReal) + BYTES_OF_CACHE_LINE,
+  PetscCall(PetscMalloc((size_t)(MAX_DOFS + 3) * MAX_DOFS * KERNEL_LANES * sizeof(PetscReal) + BYTES_OF_CACHE_LINE,
                         &e->buffer));
   aligned =
     (PetscReal *)(((PETSC_UINTPTR_T)e->buffer + BYTES_OF_CACHE_LINE - 1) / BYTES_OF_CACHE_LINE * BYTES_OF_CACHE_LINE);
-  e->u = aligned;
-  e->f = e->u + MAX_DOFS * KERNEL_LANES;
-  e->K = e->f + MAX_DOFS * KERNEL_LANES;
+  e->u   = aligned;
+  e->u_0 = e->u + MAX_DOFS * KERNEL_LANES;
+  e->f   = e->u_0 + MAX_DOFS * KERNEL_LANES;
+  e->K   = e->f + MAX_DOFS * KERNEL_LANES;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -425,7 +426,7 @@ PetscErrorCode ElasticityResidual(Elasticity e, const PetscReal *u, PetscReal *f
       const size_t first = (size_t)batch * KERNEL_LANES;
 
       ElasticityGather(e, g, batch, u, e->u);
-      ElementKernel(&g->kernel, &g->X[first * dofs], e->u, &g->constants[first * g->kernel.n_constants],
+      ElementKernel(&g->kernel, &g->X[first * dofs], e->u, NULL, &g->constants[first * g->kernel.n_constants],
                     ElasticityMultipliers(e, g, batch), energy ? W : NULL, forces ? e->f : NULL, NULL, J);
       if (forces) ScatterForce(e, g, batch, f, force2);
       for (int lane = 0; lane < ElasticityBatchCells(g, batch); lane++) {
@@ -475,27 +476,32 @@ static inline __attribute__((always_inline)) void ScatterTangent(Elasticity e, c
   Not collective
 
   Input Parameters:
-+ e - the elasticity
-- u - local displacements (length) [n_nodes*dim]
++ e         - the elasticity
+. u         - local displacements (length) [n_nodes*dim]
+- reference - the state from which pressures are extrapolated, u as above; NULL: the tangent has the pressures of u
 @*/
-PetscErrorCode ElasticityTangent(Elasticity e, const PetscReal *u)
+PetscErrorCode ElasticityTangent(Elasticity e, const PetscReal *u, const PressureReference *reference)
 {
-  PetscReal J[KERNEL_LANES];
+  const PressureReference gathered = {e->u_0, reference ? reference->rate : 0};
+  PetscReal               J[KERNEL_LANES];
 
   PetscFunctionBeginUser;
   PetscCall(PetscLogEventBegin(event_tangent, 0, 0, 0, 0));
   PetscCall(PetscArrayzero(e->value, (size_t)e->row[e->mesh->n_nodes] * e->dim * e->dim));
   for (int k = 0; k < e->n_groups; k++) {
-    const CellGroup *g    = &e->groups[k];
-    const size_t     dofs = (size_t)g->nodes * e->dim;
+    const CellGroup *g            = &e->groups[k];
+    const size_t     dofs         = (size_t)g->nodes * e->dim;
+    const PetscBool  extrapolates = (PetscBool)(reference && ElementExtrapolates(&g->kernel));
 
     for (PetscInt batch = 0; batch < g->n_batches; batch++) {
       const size_t first = (size_t)batch * KERNEL_LANES;
       const int    count = ElasticityBatchCells(g, batch);
 
       ElasticityGather(e, g, batch, u, e->u);
-      ElementKernel(&g->kernel, &g->X[first * dofs], e->u, &g->constants[first * g->kernel.n_constants],
-                    ElasticityMultipliers(e, g, batch), NULL, NULL, e->K, J);
+      if (extrapolates) ElasticityGather(e, g, batch, reference->u, e->u_0);
+      ElementKernel(&g->kernel, &g->X[first * dofs], e->u, extrapolates ? &gathered : NULL,
+                    &g->constants[first * g->kernel.n_constants], ElasticityMultipliers(e, g, batch), NULL, NULL, e->K,
+                    J);
       if (count < KERNEL_LANES)
         ScatterTangent(e, g, batch, e->dim, count);
       else if (e->dim == 3)
@@ -506,6 +512,22 @@ PetscErrorCode ElasticityTangent(Elasticity e, const PetscReal *u)
   }
   PetscCall(PetscLogEventEnd(event_tangent, 0, 0, 0, 0));
   PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ElasticityExtrapolates - says whether a PressureReference changes the tangent of any of this rank's cells.
+
+  Not collective
+
+  Input Parameter:
+. e - the elasticity
+@*/
+PetscBool ElasticityExtrapolates(Elasticity e)
+{
+  PetscBool any = PETSC_FALSE;
+
+  for (int g = 0; g < e->n_groups; g++) any = (PetscBool)(any || ElementExtrapolates(&e->groups[g].kernel));
+  return any;
 }
 
 /*@
@@ -681,15 +703,13 @@ PetscErrorCode ElasticityMatrixJoin(Elasticity e, Mat C)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Adds the share of one cell to its nodes. */
-static void AddCellStress(Elasticity e, const CellGroup *g, PetscInt slot, const PetscReal *u, PetscReal *stress,
-                          PetscReal *weight)
+/* Coordinates and displacements of the nodes of one cell, the constants of its law, and its multipliers */
+static void GatherCell(Elasticity e, const CellGroup *g, PetscInt slot, const PetscReal *u, PetscReal X[MAX_DOFS],
+                       PetscReal cell_u[MAX_DOFS], PetscReal constants[MATERIAL_MAX_CONSTANTS],
+                       PetscReal m[MIXED_PRESSURES])
 {
-  const Element  *element = ElementGet(g->kernel.type);
-  const size_t    batch = slot / KERNEL_LANES, lane = slot % KERNEL_LANES;
-  const PetscInt *nodes = &e->mesh->cell_nodes[e->mesh->cell_ptr[g->cell[slot]]];
-  PetscReal       X[MAX_DOFS], cell_u[MAX_DOFS], point_stress[ELEMENT_MAX_POINTS * 6], point_volume[ELEMENT_MAX_POINTS],
-    constants[MATERIAL_MAX_CONSTANTS], m[MIXED_PRESSURES], volume = 0;
+  const size_t     batch = slot / KERNEL_LANES, lane = slot % KERNEL_LANES;
+  const PetscInt  *nodes       = &e->mesh->cell_nodes[e->mesh->cell_ptr[g->cell[slot]]];
   const PetscReal *multipliers = ElasticityMultipliers(e, g, (PetscInt)batch);
 
   for (int k = 0; k < ElementPressures(&g->kernel); k++) m[k] = multipliers ? multipliers[k * KERNEL_LANES + lane] : 0;
@@ -701,6 +721,50 @@ static void AddCellStress(Elasticity e, const CellGroup *g, PetscInt slot, const
   }
   for (int k = 0; k < g->kernel.n_constants; k++)
     constants[k] = g->constants[(batch * g->kernel.n_constants + k) * KERNEL_LANES + lane];
+}
+
+/*@
+  ElasticityVolumeEnergy - computes the part of the strain energy that belongs to the volume alone, of this rank's
+cells.
+
+  Not collective
+
+  Input Parameters:
++ e - the elasticity
+- u - local displacements (length) [n_nodes*dim], with no inverted cell
+
+  Output Parameter:
+. energy - added to
+
+  Note:
+  It treats one cell at a time, for diagnosis.
+@*/
+PetscErrorCode ElasticityVolumeEnergy(Elasticity e, const PetscReal *u, PetscReal *energy)
+{
+  PetscFunctionBeginUser;
+  for (int k = 0; k < e->n_groups; k++) {
+    const CellGroup *g = &e->groups[k];
+
+    for (PetscInt slot = 0; slot < g->n_cells; slot++) {
+      PetscReal X[MAX_DOFS], cell_u[MAX_DOFS], constants[MATERIAL_MAX_CONSTANTS], m[MIXED_PRESSURES];
+
+      GatherCell(e, g, slot, u, X, cell_u, constants, m);
+      *energy += ElementVolumeEnergy(&g->kernel, X, cell_u, constants, m);
+    }
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Adds the share of one cell to its nodes. */
+static void AddCellStress(Elasticity e, const CellGroup *g, PetscInt slot, const PetscReal *u, PetscReal *stress,
+                          PetscReal *weight)
+{
+  const Element  *element = ElementGet(g->kernel.type);
+  const PetscInt *nodes   = &e->mesh->cell_nodes[e->mesh->cell_ptr[g->cell[slot]]];
+  PetscReal       X[MAX_DOFS], cell_u[MAX_DOFS], point_stress[ELEMENT_MAX_POINTS * 6], point_volume[ELEMENT_MAX_POINTS],
+    constants[MATERIAL_MAX_CONSTANTS], m[MIXED_PRESSURES], volume = 0;
+
+  GatherCell(e, g, slot, u, X, cell_u, constants, m);
   ElementPointStress(&g->kernel, X, cell_u, constants, m, point_stress, point_volume);
   for (int p = 0; p < element->points; p++) volume += point_volume[p];
   for (int a = 0; a < g->nodes; a++) {

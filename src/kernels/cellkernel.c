@@ -124,6 +124,47 @@ void ElementStress(const KernelCase *kernel, const double *X, const double *u, c
 }
 
 /*@
+  ElementVolumeEnergy - computes the part of one element's energy that belongs to the volume alone.
+
+  Not collective
+
+  Input Parameters:
++ kernel    - element type, geometry, kinematics and law
+. X         - reference coordinates (length) [nodes][dim]; axisymmetric: X[.][0] is the radius
+. u         - displacements (length) [nodes][dim] of an element that is not inverted
+. constants  - of the law
+- multiplier - of a mixed element [pressures]; NULL: they are 0
+
+  Note:
+  It is 0 with small strains and with laws that are not separable, see ElasticLaw. With multipliers it has a constant
+  part, the same at every u.
+@*/
+double ElementVolumeEnergy(const KernelCase *kernel, const double *X, const double *u, const double *constants,
+                           const double *multiplier)
+{
+  const int      mixed  = kernel->formulation == FORMULATION_MIXED;
+  const Element *e      = ElementGet(kernel->type);
+  double         energy = 0, modulus = constants[0], mu, H[ELEMENT_MAX_POINTS * 9], pressure[ELEMENT_MAX_POINTS];
+
+  if (!MaterialGetLaw(kernel->law)->separable || kernel->kinematics == KINEMATICS_SMALL) return 0;
+  if (mixed)
+    ElementVolumeModulus(kernel->law,
+                         kernel->n_constants ? kernel->n_constants : MaterialGetLaw(kernel->law)->constants, constants,
+                         1, &modulus, &mu);
+  ElementPointState(kernel, X, u, constants, multiplier, H, pressure);
+  for (int p = 0; p < e->points; p++) {
+    const double *h = &H[9 * p];
+    double        J[3][3], log_J;
+
+    log_J = log((1 + h[0]) * ((1 + h[4]) * (1 + h[8]) - h[5] * h[7]) - h[1] * (h[3] * (1 + h[8]) - h[5] * h[6]) +
+                h[2] * (h[3] * h[7] - (1 + h[4]) * h[6]));
+    energy += (mixed ? pressure[p] * pressure[p] / modulus : modulus * log_J * log_J) / 2 *
+              PointVolume(e, p, e->dim, kernel->geometry, X, J);
+  }
+  return energy;
+}
+
+/*@
   ElementQuality - computes the scaled Jacobian of one cell, which says how far it is from a parallelepiped.
 
   Not collective

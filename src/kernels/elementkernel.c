@@ -11,6 +11,25 @@ static const double largest_kappa = 1e4;
 
 const char *const Formulations[] = {"full", "enhanced", "fbar", "mixed", NULL};
 
+/* Puts the extrapolated pressure into the geometric part of the law's tangent A at point q, whose gradient is H. */
+LANES_INLINE void ExtrapolatePressure(const BatchCall *call, const int n, const int dim, const int hoop, int q,
+                                      const ChunkPoints *c, const Lanes H[9], const Lanes *dilatation,
+                                      Lanes A[MATERIAL_TANGENT_SIZE])
+{
+  Lanes dilatation_0, change, excess, C[9];
+
+  PointReference(call, n, dim, hoop, q, c, H, &dilatation_0, &change);
+  ExcessPressure(call, dilatation, &dilatation_0, &change, &excess);
+  Cofactors(H, C);
+  for (int lane = 0; lane < LANES; lane++) {
+    const double J = 1 + FlooredDilatation((*dilatation)[lane]);
+
+    excess[lane] /= J * J; /* F^-T = C / J enters twice */
+  }
+  for (int r = 0, k = 0; r < 9; r++)
+    for (int s = r; s < 9; s++, k++) A[k] -= excess * C[3 * (r / 3) + s % 3] * C[3 * (s / 3) + r % 3];
+}
+
 /* Computes energy, force and tangent of the first LANES elements of the arrays. n, points, dim and hoop are constants
    of the instance. */
 LANES_INLINE void Batch(const BatchCall *call, const int n, const int points, const int dim, const int hoop)
@@ -34,6 +53,7 @@ LANES_INLINE void Batch(const BatchCall *call, const int n, const int points, co
       MaterialDilatation(H, &dilatation);
       KeepLeastJ(call, &dilatation);
       PointLaw(call, H, &dilatation, W ? &energy : NULL, P, K ? c.A[q] : NULL);
+      if (K && call->u_0) ExtrapolatePressure(call, n, dim, hoop, q, &c, H, &dilatation, c.A[q]);
       if (W) LANE(W, 0) += energy * volume;
       if (call->H) StorePoint(call, first + q, H);
       for (int r = 0; r < 9; r++) P[r] *= volume;
@@ -100,6 +120,20 @@ int ElementKernelExists(const KernelCase *kernel)
   return GetBatch(kernel) != NULL;
 }
 
+/*@
+  ElementExtrapolates - says whether the tangent depends on a PressureReference.
+
+  Not collective
+
+  Note:
+  It does with separable laws, see ElasticLaw. Enhanced elements take no reference.
+@*/
+int ElementExtrapolates(const KernelCase *kernel)
+{
+  return kernel->kinematics == KINEMATICS_FINITE && kernel->formulation != FORMULATION_ENHANCED &&
+         MaterialGetLaw(kernel->law)->separable;
+}
+
 /* Sets what all parts of a batch have in common. */
 static BatchCall StartCall(const KernelCase *kernel, const Lanes *constants)
 {
@@ -161,6 +195,7 @@ static void SetConstants(const KernelCase *kernel, const double *constants, int 
 + kernel    - element type, geometry, kinematics, law and formulation of the batch
 . X         - reference coordinates (length) [nodes][dim][lanes]; axisymmetric: X[.][0] is the radius
 . u         - displacements (length) [nodes][dim][lanes]
+. reference  - the state from which K extrapolates the pressure, u as above; NULL: K has the pressure of u
 . constants  - of the law [n_constants][lanes]
 - multiplier - of mixed elements (stress times root of volume) [pressures][lanes]; NULL: they are 0
 
@@ -173,24 +208,28 @@ static void SetConstants(const KernelCase *kernel, const double *constants, int 
   Note:
   Solids in plane strain have unit thickness. Axisymmetric quantities are over 360 degrees. A state with J <= 0 or NaN
   is not admissible, but all arrays hold finite numbers if X and u do. Every formulation has an energy; f and K are its
-  derivatives. K is full and symmetric.
+  derivatives. K is full and symmetric. With a reference K is no derivative, but it differs from it only by the square
+  of the way from there (rate 1) or by that way (rate 0). A reference is ignored unless ElementExtrapolates().
 
   Source:
   Bonet and Wood, "Nonlinear Continuum Mechanics for Finite Element Analysis", sections 8.4 and 8.5
   (reference configuration)
 @*/
-void ElementKernel(const KernelCase *kernel, const double *X, const double *u, const double *constants,
-                   const double *multiplier, double *W, double *f, double *K, double *J)
+void ElementKernel(const KernelCase *kernel, const double *X, const double *u, const PressureReference *reference,
+                   const double *constants, const double *multiplier, double *W, double *f, double *K, double *J)
 {
-  BatchFn  *batch = GetBatch(kernel);
+  const int extrapolates = reference && ElementExtrapolates(kernel);
+  BatchFn  *batch        = GetBatch(kernel);
   Lanes     lanes_constants[MATERIAL_MAX_CONSTANTS];
   BatchCall call = StartCall(kernel, lanes_constants);
 
+  call.rate = extrapolates ? reference->rate : 0;
   for (int part = 0; part < KERNEL_LANES; part += LANES) {
     SetConstants(kernel, constants + part, KERNEL_LANES, &call, lanes_constants);
     call.multiplier = multiplier ? multiplier + part : NULL;
     call.X          = X + part;
     call.u          = u + part;
+    call.u_0        = extrapolates ? reference->u + part : NULL;
     call.W          = W ? W + part : NULL;
     call.f          = f ? f + part : NULL;
     call.K          = K ? K + part : NULL;

@@ -4,8 +4,12 @@
    ElementKernel() treats a batch of KERNEL_LANES elements of one type, law, geometry, kinematics and formulation. Its
    arrays are [node][dim][lane], so that the inner loops vectorise. A short batch repeats its last element.
    ElementKernelExists() tells whether there is a kernel for a case. The other functions treat one cell or one face:
-   ElementPointState(), ElementPointStress() and ElementStress() evaluate a state, ElementQuality() and CellVolume()
-   a shape, FaceLoadKernel() and BodyForceKernel() the loads, FaceAreaKernel() the areas of a face's nodes.
+   ElementPointState(), ElementPointStress(), ElementStress() and ElementVolumeEnergy() evaluate a state,
+   ElementQuality() and CellVolume() a shape, FaceLoadKernel() and BodyForceKernel() the loads, FaceAreaKernel() the
+   areas of a face's nodes.
+
+   K may extrapolate the pressure of its geometric part from an earlier state (pressurereference.h), where
+   ElementExtrapolates().
 
    ElementPressures(), ElementVolumeModulus() and ElementDilatation() are for mixed elements, whose multipliers the
    caller holds.
@@ -15,6 +19,7 @@
 #include "kernels/element.h"
 #include "kernels/formulation.h"
 #include "kernels/material.h"
+#include "kernels/pressurereference.h"
 
 /* Number of elements in a batch. It must be a multiple of LANES, which is 8 at most. */
 enum { KERNEL_LANES = 8 };
@@ -30,9 +35,10 @@ typedef struct {
   int         n_constants; /* of the law; 0: as many as MaterialGetLaw() says */
 } KernelCase;
 
-void   ElementKernel(const KernelCase *, const double *X, const double *u, const double *constants,
-                     const double *multiplier, double *W, double *f, double *K, double *J);
+void   ElementKernel(const KernelCase *, const double *X, const double *u, const PressureReference *,
+                     const double *constants, const double *multiplier, double *W, double *f, double *K, double *J);
 int    ElementKernelExists(const KernelCase *);
+int    ElementExtrapolates(const KernelCase *);
 void   ElementPointState(const KernelCase *, const double *X, const double *u, const double *constants,
                          const double *multiplier, double *H, double *pressure);
 void   ElementPointStress(const KernelCase *, const double *X, const double *u, const double *constants,
@@ -43,6 +49,8 @@ int    ElementPressures(const KernelCase *);
 void   ElementVolumeModulus(MaterialLaw, int n, const double *constants, int stride, double *kappa, double *mu);
 void   ElementDilatation(const KernelCase *, const double *X, const double *u, const double *constants,
                          const double *multiplier, double *theta);
+double ElementVolumeEnergy(const KernelCase *, const double *X, const double *u, const double *constants,
+                           const double *multiplier);
 double ElementQuality(ElementType, int dim, const double *X);
 
 /* The loads on a face. A dead pressure acts along the reference normal on the reference area. A follower pressure acts

@@ -16,6 +16,9 @@
    Where lambda is large or infinite, a part kappa Pi ln J of the pressure and a multiplier make up the pressure. The
    caller changes the multiplier until the pressure is right (augmented Lagrangian).
 
+   The geometric part of the tangent may have pressures that are extrapolated from an earlier state
+   (pressurereference.h): theta there and its linear change on the way, with the bubble's.
+
    Pressures and multipliers of an element are coefficients of shape functions that are orthonormal over the reference
    volume. Their unit is stress times the root of a volume. */
 #include "elementbatch.h"
@@ -55,6 +58,7 @@ typedef struct {
   Lanes       centre[3];                                  /* about which they are linear */
   Lanes       L[MIXED_PRESSURES][MIXED_PRESSURES];        /* L L^T: matrix of their products before; 1/L_kk at k k */
   Lanes       theta[MIXED_PRESSURES], p[MIXED_PRESSURES]; /* of ln J and of the pressure */
+  Lanes       geometric[MIXED_PRESSURES];                 /* of the pressure in the tangent's geometric part */
   Lanes       b[MAX_BUBBLE];
 } Mixed;
 
@@ -334,12 +338,10 @@ LANES_INLINE void AddBubbleDilatation(const int modes, const int dim, const int 
 }
 
 LANES_INLINE void SetBubbleSystem(const BatchCall *call, const int points, const int modes, const int dim,
-                                  const int hoop, Mixed *x, BubbleSystem *s)
+                                  const int hoop, Mixed *x, BubbleSystem *s, BubbleDilatation *d)
 {
-  BubbleDilatation d;
-
   memset(s, 0, sizeof(*s));
-  memset(&d, 0, sizeof(d));
+  memset(d, 0, sizeof(*d));
   for (int k = 0; k < modes; k++) x->theta[k] = (Lanes){0};
   for (int q = 0; q < points; q++) {
     Lanes H[9], P[9], G[9], A[MATERIAL_TANGENT_SIZE], dilatation, log_J, energy;
@@ -352,7 +354,7 @@ LANES_INLINE void SetBubbleSystem(const BatchCall *call, const int points, const
     s->W += x->volume[q] * energy;
     for (int k = 0; k < modes; k++) x->theta[k] += x->volume[q] * x->shape[q][k] * log_J;
     AddBubbleShape(dim, hoop, x->bubble[q], &x->volume[q], P, A, s);
-    AddBubbleDilatation(modes, dim, hoop, call->finite, x->bubble[q], &x->volume[q], x->shape[q], G, &d);
+    AddBubbleDilatation(modes, dim, hoop, call->finite, x->bubble[q], &x->volume[q], x->shape[q], G, d);
   }
   s->size = s->W;
   Pressures(call, modes, x, &s->W);
@@ -362,9 +364,9 @@ LANES_INLINE void SetBubbleSystem(const BatchCall *call, const int points, const
     for (int lane = 0; lane < LANES; lane++) s->size[lane] += fabs(work[lane]);
     s->size += 0.5 * call->kappa * x->theta[k] * x->theta[k];
     for (int i = 0; i < dim; i++) {
-      s->f[i] += x->p[k] * d.first[k][i];
+      s->f[i] += x->p[k] * d->first[k][i];
       for (int j = i; j < dim; j++)
-        s->K[i][j] += call->kappa * d.first[k][i] * d.first[k][j] + x->p[k] * d.second[k][i][j];
+        s->K[i][j] += call->kappa * d->first[k][i] * d->first[k][j] + x->p[k] * d->second[k][i][j];
     }
   }
 }
@@ -440,10 +442,11 @@ LANES_INLINE void SolveBubble(const BatchCall *call, const int points, const int
 
   for (int q = 0; q < points; q++) state.scale += converged_strain2 * call->mu * x->volume[q];
   for (int iteration = 0; left && iteration < (call->finite ? MAX_ITERATIONS : 1); iteration++) {
-    BubbleSystem s;
-    Lanes        d[MAX_BUBBLE];
+    BubbleSystem     s;
+    BubbleDilatation dilatation;
+    Lanes            d[MAX_BUBBLE];
 
-    SetBubbleSystem(call, points, modes, dim, hoop, x, &s);
+    SetBubbleSystem(call, points, modes, dim, hoop, x, &s, &dilatation);
     SolveBubbleSystem(dim, &s, d);
     left = Advance(dim, &s, d, &state, x);
   }
@@ -451,6 +454,99 @@ LANES_INLINE void SolveBubble(const BatchCall *call, const int points, const int
     for (int k = 0; k < dim && state.active[lane] != 0; k++) x->b[k][lane] = 0;
     if (state.active[lane] != 0) call->J[lane] = NAN;
   }
+}
+
+/* Adds second derivatives of ln J times the pressure to a tangent of the law. */
+LANES_INLINE void AddGeometry(const Lanes *pressure, const Lanes G[9], Lanes A[MATERIAL_TANGENT_SIZE])
+{
+  for (int r = 0, k = 0; r < 9; r++) {
+    for (int s = r; s < 9; s++, k++) A[k] -= *pressure * G[3 * (r / 3) + s % 3] * G[3 * (s / 3) + r % 3];
+  }
+}
+
+/* Adds a point to the force on the inner node that a change dH of the displacement gradient makes. */
+LANES_INLINE void AddBubbleChange(const int dim, const int hoop, const Lanes g[3], const Lanes *volume,
+                                  const Lanes A[MATERIAL_TANGENT_SIZE], const Lanes dH[9], Lanes f[MAX_BUBBLE])
+{
+  Lanes Q[9];
+
+  for (int r = 0; r < 9; r++) {
+    Q[r] = TANGENT(A, r, 0) * dH[0];
+    for (int s = 1; s < 9; s++) Q[r] += TANGENT(A, r, s) * dH[s];
+  }
+  for (int i = 0; i < dim; i++) {
+    for (int m = 0; m < dim; m++) f[i] += *volume * Q[3 * i + m] * g[m];
+  }
+  if (hoop) f[0] += *volume * Q[TENSOR_HOOP] * g[2];
+}
+
+/* Adds to the linear change of theta between the states y and x what the bubble of y does in it. */
+LANES_INLINE void FollowBubble(const BatchCall *call, const int points, const int modes, const int dim, const int hoop,
+                               const Mixed *x, Mixed *y, Lanes change[MIXED_PRESSURES])
+{
+  BubbleSystem     s;
+  BubbleDilatation d;
+  Lanes            follow[MAX_BUBBLE];
+
+  SetBubbleSystem(call, points, modes, dim, hoop, y, &s, &d);
+  for (int i = 0; i < dim; i++) s.f[i] = (Lanes){0};
+  for (int q = 0; q < points; q++) {
+    const Lanes pressure = PressureAt(modes, y->p, y->shape[q]);
+    Lanes       H[9], P[9], G[9], A[MATERIAL_TANGENT_SIZE], dH[9], dilatation, log_J;
+
+    for (int r = 0; r < 9; r++) {
+      H[r]  = y->H[q][r];
+      dH[r] = x->H[q][r] - y->H[q][r];
+    }
+    AddBubble(dim, hoop, y->b, y->bubble[q], H);
+    Dilatations(call, H, &dilatation, &log_J);
+    PointLaw(call, H, &dilatation, NULL, P, A);
+    DilatationGradient(call, H, &dilatation, G);
+    AddGeometry(&pressure, G, A);
+    AddBubbleChange(dim, hoop, y->bubble[q], &y->volume[q], A, dH, s.f);
+  }
+  for (int k = 0; k < modes; k++) {
+    for (int i = 0; i < dim; i++) s.f[i] += call->kappa * change[k] * d.first[k][i];
+  }
+  SolveBubbleSystem(dim, &s, follow);
+  for (int k = 0; k < modes; k++) {
+    for (int i = 0; i < dim; i++) change[k] -= d.first[k][i] * follow[i];
+  }
+}
+
+/* Extrapolates the pressures of the geometric part from the state u_0. x has displacement gradients without the
+   bubble. */
+LANES_INLINE void ReferencePressures(const BatchCall *call, const Rule *rule, const int n, const int bubble,
+                                     const int points, const int modes, const int dim, const int hoop, Mixed *x)
+{
+  Mixed y;
+  Lanes change[MIXED_PRESSURES];
+
+  for (int i = 0; i < MAX_BUBBLE; i++) y.b[i] = (Lanes){0};
+  for (int q = 0; q < points; q++) {
+    PointGradients(n + bubble, dim, hoop, rule->N[q], rule->dN[q], rule->weight[q], 0, x->X, &y.c, &y.volume[q]);
+    PointDisplacementGradient(n, dim, hoop, 0, call->u_0, &y.c, y.H[q]);
+    for (int k = 0; k < modes; k++) y.shape[q][k] = x->shape[q][k];
+    for (int k = 0; k < dim + hoop && bubble; k++) y.bubble[q][k] = x->bubble[q][k];
+  }
+  if (bubble) SolveBubble(call, points, modes, dim, hoop, &y);
+  for (int k = 0; k < modes; k++) y.theta[k] = change[k] = (Lanes){0};
+  for (int q = 0; q < points; q++) {
+    Lanes H[9], G[9], dilatation, log_J, slope = {0};
+
+    for (int r = 0; r < 9; r++) H[r] = y.H[q][r];
+    if (bubble) AddBubble(dim, hoop, y.b, y.bubble[q], H);
+    Dilatations(call, H, &dilatation, &log_J);
+    DilatationGradient(call, H, &dilatation, G);
+    for (int r = 0; r < 9; r++) slope += G[r] * (x->H[q][r] - y.H[q][r]);
+    for (int k = 0; k < modes; k++) {
+      y.theta[k] += y.volume[q] * y.shape[q][k] * log_J;
+      change[k] += y.volume[q] * y.shape[q][k] * slope;
+    }
+  }
+  for (int k = 0; k < modes; k++) x->geometric[k] = Multiplier(call, k) + call->kappa * y.theta[k];
+  if (bubble) FollowBubble(call, points, modes, dim, hoop, x, &y, change);
+  for (int k = 0; k < modes; k++) x->geometric[k] += call->kappa * call->rate * change[k];
 }
 
 /* Computes displacement gradients with the bubble, theta, pressures, the energy of the volume and the smallest J. */
@@ -469,14 +565,6 @@ LANES_INLINE void SetPressures(const BatchCall *call, const int n, const int bub
   }
   *W = (Lanes){0};
   Pressures(call, modes, x, W);
-}
-
-/* Adds second derivatives of ln J times the pressure to a tangent of the law. */
-LANES_INLINE void AddGeometry(const Lanes *pressure, const Lanes G[9], Lanes A[MATERIAL_TANGENT_SIZE])
-{
-  for (int r = 0, k = 0; r < 9; r++) {
-    for (int s = r; s < 9; s++, k++) A[k] -= *pressure * G[3 * (r / 3) + s % 3] * G[3 * (s / 3) + r % 3];
-  }
 }
 
 /* Adds kappa t t^T to the tangent, for the derivatives t of every theta by the displacements. */
@@ -548,7 +636,7 @@ LANES_INLINE void EvaluateChunk(const BatchCall *call, const int modes, const in
   for (int at = 0; at < count; at++) {
     const int   q        = first + at;
     const Lanes pressure = PressureAt(modes, x->p, x->shape[q]);
-    Lanes       P[9], G[9], D[9], dilatation, log_J, energy;
+    Lanes       P[9], G[9], D[9], dilatation, log_J, energy, geometric;
 
     Dilatations(call, x->H[q], &dilatation, &log_J);
     PointLaw(call, x->H[q], &dilatation, call->W ? &energy : NULL, P, tangent ? x->c.A[at] : NULL);
@@ -557,7 +645,8 @@ LANES_INLINE void EvaluateChunk(const BatchCall *call, const int modes, const in
     for (int r = 0; r < 9; r++) P[r] = x->volume[q] * (P[r] + pressure * G[r]);
     if (f) AddForce(nodes, dim, hoop, at, &x->c, P, f);
     if (!tangent) continue;
-    if (call->finite) AddGeometry(&pressure, G, x->c.A[at]);
+    geometric = PressureAt(modes, x->geometric, x->shape[q]);
+    if (call->finite) AddGeometry(&geometric, G, x->c.A[at]);
     for (int k = 0; k < MATERIAL_TANGENT_SIZE; k++) x->c.A[at][k] *= x->volume[q];
     for (int k = 0; k < modes; k++) {
       for (int r = 0; r < 9; r++) D[r] = x->volume[q] * x->shape[q][k] * G[r];
@@ -582,10 +671,12 @@ LANES_INLINE void Batch(const BatchCall *call, const int n, const int bubble, co
     LANE(f, i) = (Lanes){0};
     for (int k = 0; k < modes && K; k++) LANE(t[k], i) = (Lanes){0};
   }
-  StartLeastJ(call);
   Prepare(call, rule, n, bubble, points, modes, dim, hoop, &x);
+  if (K && call->u_0) ReferencePressures(call, rule, n, bubble, points, modes, dim, hoop, &x);
+  StartLeastJ(call);
   if (bubble) SolveBubble(call, points, modes, dim, hoop, &x);
   SetPressures(call, n, bubble, points, modes, dim, hoop, &x, &W);
+  for (int k = 0; k < modes && !call->u_0; k++) x.geometric[k] = x.p[k];
   for (int first = 0; first < points; first += CHUNK) {
     const int count = points - first < CHUNK ? points - first : CHUNK;
     Lanes     volume;

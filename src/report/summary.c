@@ -95,9 +95,12 @@ static void AddUsage(cJSON *json, const RunFigures *figures)
 
 static void AddGuards(cJSON *json, const StepperReport *way)
 {
-  cJSON *map = cJSON_AddObjectToObject(json, "guards");
+  cJSON *map = cJSON_AddObjectToObject(json, "guards"), *cuts;
 
-  cJSON_AddNumberToObject(map, "line_search_cuts", (double)way->cuts);
+  cJSON_AddNumberToObject(map, "line_search_cuts", (double)LoadStepperCuts(way));
+  cuts = cJSON_AddObjectToObject(map, "cut_causes");
+  for (int cause = 0; cause < CUT_CAUSES; cause++)
+    cJSON_AddNumberToObject(cuts, CutCauses[cause], (double)way->cuts[cause]);
   cJSON_AddNumberToObject(map, "line_search_turned", (double)way->turned);
   cJSON_AddNumberToObject(map, "lists_made_anew", (double)way->regathered);
   cJSON_AddNumberToObject(map, "penalty_solves", (double)way->adjusted);

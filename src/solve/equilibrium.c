@@ -153,6 +153,7 @@ static PetscErrorCode ModelDepart(Model model, PetscReal t)
   work->cycle[0]           = '\0';
   work->energy             = 0;
   ModelForgetPenaltyError(model);
+  PetscCall(ModelStepFromSolved(model, work->accepted_u));
   if (!model->contact) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(ProblemImposedMotion(model->problem, work->accepted_u, work->accepted_t, t, &motion));
   motion = PetscMax(motion, PROBLEM_MOTION_SAFETY * work->rate * (t - work->accepted_t));
@@ -184,6 +185,7 @@ static PetscErrorCode ModelTakeExtrapolatedPart(Model model, PetscReal part, Pet
     PetscCall(ProblemSetTrial(model->problem, model->x, model->t));
     PetscCall(
       ProblemInOrder(model->problem, work->accepted_u, work->accepted_t, model->problem->trial, model->t, made));
+    if (*made) PetscCall(ModelStepFrom(model, u));
   }
   PetscCall(VecDestroy(&end));
   PetscCall(PetscFree(u));

@@ -37,7 +37,7 @@ PetscErrorCode ProblemCreate(Scene scene, Mesh mesh, Problem *out)
   PetscCall(ElasticityCheckEnclosed(problem->elasticity, scene, LoadsConstrained(problem->loads)));
   if (scene->n_contacts) PetscCall(ContactCreate(mesh, scene, problem->elasticity, problem->loads, &problem->contact));
   PetscCall(PetscCalloc2(n, &problem->f, n, &problem->trial));
-  PetscCall(ElasticityTangent(problem->elasticity, problem->trial));
+  PetscCall(ElasticityTangent(problem->elasticity, problem->trial, NULL));
   PetscCall(ElasticityMatrix(problem->elasticity, NULL, NULL, &problem->P));
   problem->A = problem->P;
   PetscCall(PetscObjectReference((PetscObject)problem->A));
@@ -187,7 +187,7 @@ PetscErrorCode ProblemCollectResidual(Problem problem, Vec x, Vec F)
 + problem - the problem
 . u       - local displacements u[n_nodes*dim] (length)
 . t       - load parameter
-- parts   - which parts are summed: ENERGY_ELASTIC, ENERGY_LOADS, ENERGY_CONTACT, joined by |
+- parts   - which parts are summed: ENERGY_ELASTIC, ENERGY_LOADS, ENERGY_CONTACT, ENERGY_VOLUME, joined by |
 
   Output Parameters:
 + energy - the sum; a follower load has none
@@ -205,6 +205,7 @@ PetscErrorCode ProblemEnergy(Problem problem, const PetscReal *u, PetscReal t, i
   PetscFunctionBeginUser;
   TimingBegin(TIMING_ASSEMBLY_ELASTIC);
   if (parts & ENERGY_ELASTIC) PetscCall(ElasticityResidual(problem->elasticity, u, NULL, &sum[0], NULL, &mine));
+  if (parts & ENERGY_VOLUME) PetscCall(ElasticityVolumeEnergy(problem->elasticity, u, &sum[0]));
   if (parts & ENERGY_LOADS) PetscCall(LoadsResidual(problem->loads, t, u, NULL, &sum[0], NULL));
   TimingEnd(TIMING_ASSEMBLY_ELASTIC);
   if (problem->contact && (parts & ENERGY_CONTACT)) {
@@ -265,9 +266,10 @@ static PetscErrorCode ProblemContactTangent(Problem problem, const PetscReal *u,
   Collective
 
   Input Parameters:
-+ problem - the problem
-. u       - local displacements u[n_nodes*dim] (length)
-- t       - load parameter
++ problem   - the problem
+. u         - local displacements u[n_nodes*dim] (length)
+. reference - the state from which the elements extrapolate pressures; NULL: they have those of u
+- t         - load parameter
 
   Output Parameter:
 . change - the contact part, and what is new against the tangent before
@@ -275,7 +277,8 @@ static PetscErrorCode ProblemContactTangent(Problem problem, const PetscReal *u,
   Note:
   problem->stiffness is set to the norm of the diagonal without contact, from which ProblemRoundOff() estimates.
 @*/
-PetscErrorCode ProblemTangent(Problem problem, const PetscReal *u, PetscReal t, TangentChange *change)
+PetscErrorCode ProblemTangent(Problem problem, const PetscReal *u, const PressureReference *reference, PetscReal t,
+                              TangentChange *change)
 {
   const PetscBool joined = (PetscBool)(problem->form == TANGENT_JOINED);
 
@@ -283,7 +286,7 @@ PetscErrorCode ProblemTangent(Problem problem, const PetscReal *u, PetscReal t, 
   *change = (TangentChange){.C = NULL};
   if (problem->contact) PetscCall(ProblemContactTangent(problem, u, t, change));
   TimingBegin(TIMING_ASSEMBLY_ELASTIC);
-  PetscCall(ElasticityTangent(problem->elasticity, u));
+  PetscCall(ElasticityTangent(problem->elasticity, u, reference));
   PetscCall(LoadsTangent(problem->loads, t, u, problem->elasticity));
   PetscCall(ElasticityMatrix(problem->elasticity, joined ? change->C : NULL, problem->diagonal, &problem->P));
   PetscCall(VecNorm(problem->diagonal, NORM_2, &problem->stiffness));

@@ -240,6 +240,22 @@ static PetscReal StepEnd(LoadStepper stepper, PetscReal t, PetscReal dt, PetscBo
   return t + dt;
 }
 
+/*@
+  LoadStepperCuts - returns the number of iterations that the line search shortened, for whatever cause.
+
+  Not collective
+
+  Input Parameter:
+. report - the report
+@*/
+PetscInt LoadStepperCuts(const StepperReport *report)
+{
+  PetscInt sum = 0;
+
+  for (int cause = 0; cause < CUT_CAUSES; cause++) sum += report->cuts[cause];
+  return sum;
+}
+
 /* Adds the costs of a solve to the record of its step and to the report. */
 static void CountSolve(PetscReal t, const SolveReport *solve, StepRecord *record, StepperReport *report)
 {
@@ -254,7 +270,7 @@ static void CountSolve(PetscReal t, const SolveReport *solve, StepRecord *record
   report->krylov_iterations += solve->krylov;
   report->regathered += solve->regathered;
   report->adjusted += solve->adjusted;
-  report->cuts += solve->cuts;
+  for (int cause = 0; cause < CUT_CAUSES; cause++) report->cuts[cause] += solve->cuts[cause];
   report->turned += solve->turned;
 }
 
@@ -442,25 +458,18 @@ PetscErrorCode LoadStepperArchive(LoadStepper stepper, Archive archive)
   PetscReal      initial = size.initial, dt = size.dt;
   PetscReal *real[]    = {&initial,       &dt,           &size.beta,     &size.together, &size.shortfall, &size.planned,
                           &report->taken, &report->left, &report->share, &report->tied};
-  PetscInt  *integer[] = {&report->steps,
-                          &report->steps_failed,
-                          &report->steps_repeated,
-                          &report->newton_iterations,
-                          &report->newton_accepted,
-                          &report->krylov_iterations,
-                          &report->regathered,
-                          &report->adjusted,
-                          &report->cuts,
-                          &report->turned,
-                          &report->relaxed,
-                          &report->cycles,
-                          &report->cycles_cut,
-                          &report->jumps,
-                          &size.tied};
+  PetscInt  *integer[] = {&report->steps,           &report->steps_failed,
+                          &report->steps_repeated,  &report->newton_iterations,
+                          &report->newton_accepted, &report->krylov_iterations,
+                          &report->regathered,      &report->adjusted,
+                          &report->turned,          &report->relaxed,
+                          &report->cycles,          &report->cycles_cut,
+                          &report->jumps,           &size.tied};
 
   PetscFunctionBeginUser;
   PetscCall(ArchiveRealsAt(archive, "stepper/size", PETSC_STATIC_ARRAY_LENGTH(real), real));
   PetscCall(ArchiveIntegersAt(archive, "stepper/counts", PETSC_STATIC_ARRAY_LENGTH(integer), integer));
+  PetscCall(ArchiveIntegers(archive, "stepper/cuts", CUT_CAUSES, report->cuts));
   PetscCall(ArchiveString(archive, "stepper/cycle", sizeof(report->cycle), report->cycle));
   PetscCall(ArchiveString(archive, "stepper/jump", sizeof(report->jump), report->jump));
   if (!ArchiveLoads(archive)) PetscFunctionReturn(PETSC_SUCCESS);

@@ -27,7 +27,7 @@ static PetscErrorCode KernelForce(Work *w)
 {
   PetscReal J[KERNEL_LANES];
 
-  ElementKernel(w->kernel, w->X, w->u, w->constants, NULL, NULL, w->batch_f, NULL, J);
+  ElementKernel(w->kernel, w->X, w->u, NULL, w->constants, NULL, NULL, w->batch_f, NULL, J);
   return PETSC_SUCCESS;
 }
 
@@ -35,7 +35,7 @@ static PetscErrorCode KernelBoth(Work *w)
 {
   PetscReal J[KERNEL_LANES];
 
-  ElementKernel(w->kernel, w->X, w->u, w->constants, NULL, NULL, w->batch_f, w->K, J);
+  ElementKernel(w->kernel, w->X, w->u, NULL, w->constants, NULL, NULL, w->batch_f, w->K, J);
   return PETSC_SUCCESS;
 }
 
@@ -48,7 +48,7 @@ static PetscErrorCode Residual(Work *w)
 
 static PetscErrorCode Tangent(Work *w)
 {
-  return ElasticityTangent(w->e, w->box->u);
+  return ElasticityTangent(w->e, w->box->u, NULL);
 }
 
 static PetscErrorCode Insert(Work *w)

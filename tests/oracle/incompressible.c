@@ -418,7 +418,7 @@ static PetscErrorCode SolveLinear(Mesh mesh, Elasticity e, PetscReal *f, PetscRe
   PetscCall(VecDuplicate(R, &dx));
   PetscCall(ElasticityResidual(e, u, f, NULL, NULL, &ok));
   PetscCall(MeshLocalToGlobal(mesh, f, R));
-  PetscCall(ElasticityTangent(e, u));
+  PetscCall(ElasticityTangent(e, u, NULL));
   PetscCall(ElasticityMatrix(e, NULL, NULL, &K));
   PetscCall(KSPCreate(mesh->comm, &ksp));
   PetscCall(KSPSetType(ksp, KSPPREONLY));

@@ -86,7 +86,7 @@ static void BatchDestroy(Batch *b)
 
 static void Evaluate(Batch *b)
 {
-  ElementKernel(&b->kernel, b->X, b->u, b->constants, NULL, b->W, b->f, b->K, b->J);
+  ElementKernel(&b->kernel, b->X, b->u, NULL, b->constants, NULL, b->W, b->f, b->K, b->J);
 }
 
 /* u = H X (about the origin) in every lane */
@@ -158,9 +158,9 @@ static void ForceAndTangentAreDerivatives(void **state)
     for (int k = 0; k < b.dofs * b.dofs * KERNEL_LANES; k++) scale = fmax(scale, fabs(b.K[k]));
     for (int j = 0; j < b.dofs; j++) {
       for (int lane = 0; lane < KERNEL_LANES; lane++) b.u[j * KERNEL_LANES + lane] += h;
-      ElementKernel(&kernel, b.X, b.u, b.constants, NULL, W_plus, f_plus, NULL, J);
+      ElementKernel(&kernel, b.X, b.u, NULL, b.constants, NULL, W_plus, f_plus, NULL, J);
       for (int lane = 0; lane < KERNEL_LANES; lane++) b.u[j * KERNEL_LANES + lane] -= 2 * h;
-      ElementKernel(&kernel, b.X, b.u, b.constants, NULL, W_minus, f_minus, NULL, J);
+      ElementKernel(&kernel, b.X, b.u, NULL, b.constants, NULL, W_minus, f_minus, NULL, J);
       for (int lane = 0; lane < KERNEL_LANES; lane++) {
         b.u[j * KERNEL_LANES + lane] += h;
         assert_near(b.f[j * KERNEL_LANES + lane], (W_plus[lane] - W_minus[lane]) / (2 * h), 1e-8 * scale);
@@ -206,9 +206,9 @@ static void EachResultMayBeLeftOut(void **state)
     c   = b;
     c.K = calloc((size_t)b.dofs * b.dofs * KERNEL_LANES, sizeof(double));
     memset(c.f, 0, sizeof(c.f));
-    ElementKernel(&kernel, b.X, b.u, b.constants, NULL, NULL, c.f, NULL, c.J);
-    ElementKernel(&kernel, b.X, b.u, b.constants, NULL, NULL, NULL, c.K, c.J);
-    ElementKernel(&kernel, b.X, b.u, b.constants, NULL, c.W, NULL, NULL, c.J);
+    ElementKernel(&kernel, b.X, b.u, NULL, b.constants, NULL, NULL, c.f, NULL, c.J);
+    ElementKernel(&kernel, b.X, b.u, NULL, b.constants, NULL, NULL, NULL, c.K, c.J);
+    ElementKernel(&kernel, b.X, b.u, NULL, b.constants, NULL, c.W, NULL, NULL, c.J);
     for (int k = 0; k < b.dofs * KERNEL_LANES; k++) scale = fmax(scale, fabs(b.f[k]));
     for (int lane = 0; lane < KERNEL_LANES; lane++) assert_near(c.W[lane], b.W[lane], 1e-14 * b.W[lane]);
     for (int k = 0; k < b.dofs * KERNEL_LANES; k++) assert_near(c.f[k], b.f[k], 1e-14 * scale);
@@ -236,7 +236,7 @@ static void LanesAreIndependentAndUnaligned(void **state)
     }
     for (int k = 0; k < MATERIAL_MAX_CONSTANTS * KERNEL_LANES; k++)
       constants[k] = b.constants[k / KERNEL_LANES * KERNEL_LANES + 5];
-    ElementKernel(&kernel, X + 1, u + 1, constants, NULL, NULL, f + 1, NULL, J);
+    ElementKernel(&kernel, X + 1, u + 1, NULL, constants, NULL, NULL, f + 1, NULL, J);
     for (int k = 0; k < b.dofs; k++) {
       for (int lane = 0; lane < KERNEL_LANES; lane++)
         assert_true(f[1 + k * KERNEL_LANES + lane] == b.f[k * KERNEL_LANES + 5]);

@@ -79,7 +79,7 @@ static double Energy(const KernelCase *kernel, const double *X, const double *u,
       lanes_u[k * KERNEL_LANES + lane] = u[k];
     }
   }
-  ElementKernel(kernel, lanes_X, lanes_u, constants, NULL, W, NULL, NULL, J);
+  ElementKernel(kernel, lanes_X, lanes_u, NULL, constants, NULL, W, NULL, NULL, J);
   return W[0];
 }
 

@@ -42,8 +42,9 @@ struct _n_Elasticity {
   PetscReal  *cell_modulus;
   PetscInt   *row, *column; /* block CSR over local nodes, columns ascending */
   PetscReal  *value;        /* dim x dim blocks, row-major, in the order of column */
-  PetscReal  *u, *f, *K;    /* of one batch, aligned to cache lines */
-  void       *buffer;       /* what u, f and K are in */
+  PetscReal  *u, *u_0;      /* of one batch, aligned to cache lines; u_0: of the state that pressures come from */
+  PetscReal  *f, *K;        /* of one batch */
+  void       *buffer;       /* what u, u_0, f and K are in */
   PetscInt    inverted;     /* a local cell that the last residual found inverted, or -1 */
   PetscBool   symmetric;
   NodeMatrix  matrix;
