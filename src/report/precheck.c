@@ -3,6 +3,7 @@
 #include "contactreport.h"
 #include "estimate.h"
 #include "bodies/freemodes.h"
+#include "bodies/hinges.h"
 
 static PetscErrorCode PrintEffects(Model model, FILE *stream)
 {
@@ -34,6 +35,7 @@ static PetscErrorCode PrintEffects(Model model, FILE *stream)
 PetscErrorCode PrecheckModel(Model model, PetscBool report, FILE *stream)
 {
   PetscFunctionBeginUser;
+  PetscCall(HingesWarn(model->mesh, model->scene, stderr));
   if (report) {
     PetscCall(PrintEffects(model, stream));
     PetscCall(FreeModesReport(model->problem->modes, PETSC_TRUE, stream));

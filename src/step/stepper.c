@@ -147,7 +147,7 @@ PetscErrorCode LoadStepperSetFromScene(LoadStepper stepper, Scene scene)
   stepper->kind    = scene->stepping.control;
   stepper->control = StepControls[stepper->kind];
   stepper->size    = (StepSize){.initial   = scene->stepping.initial,
-                                .dt_min    = scene->stepping.dt_min,
+                                .dt_min    = PetscMax(scene->stepping.dt_min, STEPPER_SAME_T),
                                 .dt_max    = scene->stepping.dt_max,
                                 .growth    = scene->stepping.growth,
                                 .wanted    = scene->stepping.N_c ? scene->stepping.N_c : scene->stepping.N_c_fraction,
@@ -289,7 +289,8 @@ static PetscErrorCode LoadStepperPredict(LoadStepper stepper, StepRecord *record
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Accepts a converged step of dt: fills its record, lets the control choose the next dt, and accepts the state. */
+/* Accepts a converged step of dt: fills its record, lets the control choose the next dt, which it must not shrink below
+   dt_min, and accepts the state. */
 static PetscErrorCode LoadStepperAccept(LoadStepper stepper, PetscReal dt, PetscBool clipped, const SolveReport *solve,
                                         StepRecord *record)
 {
@@ -302,7 +303,7 @@ static PetscErrorCode LoadStepperAccept(LoadStepper stepper, PetscReal dt, Petsc
   record->residual = solve->residual;
   if (model->contact) PetscCall(ContactSummarise(model->contact, &record->contact));
   PetscCall(stepper->control->next(model, dt, clipped, solve->newton, &stepper->size));
-  stepper->size.dt = PetscMin(stepper->size.dt_max, stepper->size.dt);
+  stepper->size.dt = PetscMin(stepper->size.dt_max, PetscMax(stepper->size.dt, PetscMin(dt, stepper->size.dt_min)));
   record->beta     = stepper->size.beta;
   record->tied     = stepper->size.tied;
   PetscCall(ModelAccept(model));
