@@ -482,7 +482,7 @@ static inline __attribute__((always_inline)) void ScatterTangent(Elasticity e, c
 @*/
 PetscErrorCode ElasticityTangent(Elasticity e, const PetscReal *u, const PressureReference *reference)
 {
-  const PressureReference gathered = {e->u_0, reference ? reference->rate : 0};
+  const PressureReference gathered = {e->u_0, reference ? reference->rate : 0, reference ? reference->held : 0};
   PetscReal               J[KERNEL_LANES];
 
   PetscFunctionBeginUser;

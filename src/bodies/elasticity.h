@@ -6,8 +6,8 @@
    parallel AIJ matrix over the free dofs, ElasticityMultiplyLocal() multiplies it by local vectors for the prescribed
    dofs. ElasticityNodalStress() gives stresses for output.
 
-   Mixed elements whose volume is kept exactly, or nearly so, have multipliers (volumes.c). ElasticityAugment() changes
-   them after a solve until the volume is right. ElasticityAccept() keeps them with the accepted state,
+   Mixed elements whose volume is kept exactly, or nearly so, have multipliers (volumes.c). ElasticityFollow() changes
+   them in an iteration of Newton's method, ElasticityAugment() after a solve until the volume is right. ElasticityAccept() keeps them with the accepted state,
    ElasticityRestore() returns to those kept. */
 #pragma once
 #include "files/archive.h"
@@ -30,6 +30,7 @@ PetscErrorCode ElasticityMatrix(Elasticity, Mat C, Vec diagonal, Mat *);
 PetscErrorCode ElasticityMatrixJoin(Elasticity, Mat C);
 PetscErrorCode ElasticityNodalStress(Elasticity, const PetscReal *u, PetscReal *stress, PetscReal *weight);
 PetscErrorCode ElasticityAugment(Elasticity, const PetscReal *u, PetscBool *holds);
+PetscErrorCode ElasticityFollow(Elasticity, const PetscReal *u, const PressureReference *);
 PetscErrorCode ElasticityAccept(Elasticity);
 PetscErrorCode ElasticityRestore(Elasticity);
 PetscErrorCode ElasticityArchive(Elasticity, Archive);

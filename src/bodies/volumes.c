@@ -1,7 +1,10 @@
 /* The multipliers of mixed elements: bodies that keep their volume exactly, or so nearly that elements treat a part of
    the modulus of the volume only (ElementVolumeModulus()). The augmented Lagrangian of Hestenes and Powell: with
    multipliers m, the pressure of a solution is m + kappa theta. It should be modulus * theta. The next multipliers are
-   (1 - kappa / modulus) (m + kappa theta), and a solution at which they do not change is right. */
+   (1 - kappa / modulus) (m + kappa theta), and a solution at which they do not change is right.
+
+   Newton's method changes them along with the displacements, so that one solve is enough as a rule: after each
+   iteration the pressures become those of its linear problem, the unknowns of the mixed method. */
 #include "elasticityimpl.h"
 #include "base/refusal.h"
 
@@ -118,6 +121,42 @@ PetscErrorCode ElasticityAugment(Elasticity e, const PetscReal *u, PetscBool *ho
                       (double)PetscSqrtReal(sum[1] > 0 ? sum[0] / sum[1] : 0)));
   if (!*holds) PetscCall(PetscArraycpy(e->state.multiplier, next, e->state.n));
   PetscCall(PetscFree(next));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ElasticityFollow - sets the multipliers so that the pressures are those that extrapolate from an earlier state.
+
+  Not collective
+
+  Input Parameters:
++ e         - the elasticity
+. u         - local displacements (length) [n_nodes*dim] of an iterate of Newton's method
+- reference - the iterate before, u as above, from which a linear step with the present multipliers led to u
+
+  Note:
+  Residual and energy at u are others afterwards. The tangent takes a reference with held = 1 then.
+@*/
+PetscErrorCode ElasticityFollow(Elasticity e, const PetscReal *u, const PressureReference *reference)
+{
+  const PressureReference gathered = {e->u_0, reference->rate, 0};
+  PetscReal               next[MIXED_PRESSURES * KERNEL_LANES];
+
+  PetscFunctionBeginUser;
+  for (int k = 0; k < e->n_groups; k++) {
+    const CellGroup *g = &e->groups[k];
+
+    for (PetscInt batch = 0; batch < g->n_batches && g->multipliers >= 0; batch++) {
+      const size_t first = (size_t)batch * KERNEL_LANES;
+      PetscReal   *m     = ElasticityMultipliers(e, g, batch);
+
+      ElasticityGather(e, g, batch, u, e->u);
+      ElasticityGather(e, g, batch, reference->u, e->u_0);
+      ElementFollow(&g->kernel, &g->X[first * (size_t)(g->nodes * e->dim)], e->u, &gathered,
+                    &g->constants[first * g->kernel.n_constants], m, next);
+      PetscCall(PetscArraycpy(m, next, ElementPressures(&g->kernel) * KERNEL_LANES));
+    }
+  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

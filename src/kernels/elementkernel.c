@@ -181,8 +181,10 @@ static void SetConstants(const KernelCase *kernel, const double *constants, int 
   }
   if (kernel->formulation != FORMULATION_MIXED) return;
   call->law->shear(call->n_constants, lanes_constants, &call->mu);
-  for (int lane = 0; lane < LANES; lane++)
+  for (int lane = 0; lane < LANES; lane++) {
     call->kappa[lane] = fmin(lanes_constants[0][lane], largest_kappa * call->mu[lane]);
+    call->rest[lane]  = 1 - call->kappa[lane] / lanes_constants[0][lane];
+  }
   lanes_constants[0] = (Lanes){0};
 }
 
@@ -224,6 +226,7 @@ void ElementKernel(const KernelCase *kernel, const double *X, const double *u, c
   BatchCall call = StartCall(kernel, lanes_constants);
 
   call.rate = extrapolates ? reference->rate : 0;
+  call.held = extrapolates && reference->held;
   for (int part = 0; part < KERNEL_LANES; part += LANES) {
     SetConstants(kernel, constants + part, KERNEL_LANES, &call, lanes_constants);
     call.multiplier = multiplier ? multiplier + part : NULL;
@@ -285,6 +288,47 @@ void ElementDilatation(const KernelCase *kernel, const double *X, const double *
     call.multiplier = multiplier ? multiplier + part : NULL;
     call.theta      = theta + part;
     GetBatch(kernel)(&call);
+  }
+}
+
+/*@
+  ElementFollow - computes the multipliers with which a batch of mixed elements has the pressures that extrapolate from
+  an earlier state.
+
+  Not collective
+
+  Input Parameters:
++ kernel     - element type, geometry, kinematics, law and formulation of the batch
+. X          - reference coordinates (length) [nodes][dim][lanes]; axisymmetric: X[.][0] is the radius
+. u          - displacements (length) [nodes][dim][lanes]
+. reference  - the earlier state, u as above
+. constants  - of the law [n_constants][lanes]
+- multiplier - present ones (stress times root of volume) [pressures][lanes]
+
+  Output Parameter:
+. next - multipliers [pressures][lanes]; 0 in elements that have the whole modulus of the volume
+
+  Note:
+  These pressures are those that the mixed method's own Newton iteration has as unknowns.
+@*/
+void ElementFollow(const KernelCase *kernel, const double *X, const double *u, const PressureReference *reference,
+                   const double *constants, const double *multiplier, double *next)
+{
+  Lanes     lanes_constants[MATERIAL_MAX_CONSTANTS];
+  BatchCall call = StartCall(kernel, lanes_constants);
+  double    J[LANES];
+
+  call.rate = reference->rate;
+  for (int part = 0; part < KERNEL_LANES; part += LANES) {
+    SetConstants(kernel, constants + part, KERNEL_LANES, &call, lanes_constants);
+    call.X          = X + part;
+    call.u          = u + part;
+    call.u_0        = reference->u + part;
+    call.J          = J;
+    call.multiplier = multiplier + part;
+    call.follow     = next + part;
+    GetBatch(kernel)(&call);
+    for (int k = 0; k < ElementPressures(kernel); k++) LANE(next + part, k) *= call.rest;
   }
 }
 

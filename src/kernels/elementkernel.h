@@ -11,8 +11,8 @@
    K may extrapolate the pressure of its geometric part from an earlier state (pressurereference.h), where
    ElementExtrapolates().
 
-   ElementPressures(), ElementVolumeModulus() and ElementDilatation() are for mixed elements, whose multipliers the
-   caller holds.
+   ElementPressures(), ElementVolumeModulus(), ElementDilatation() and ElementFollow() are for mixed elements, whose
+   multipliers the caller holds.
 
    Source of the forms: Bonet and Wood, "Nonlinear Continuum Mechanics for Finite Element Analysis". */
 #pragma once
@@ -47,6 +47,8 @@ void   ElementStress(const KernelCase *, const double *X, const double *u, const
                      const double *multiplier, double stress[6], double *volume);
 int    ElementPressures(const KernelCase *);
 void   ElementVolumeModulus(MaterialLaw, int n, const double *constants, int stride, double *kappa, double *mu);
+void   ElementFollow(const KernelCase *, const double *X, const double *u, const PressureReference *,
+                     const double *constants, const double *multiplier, double *next);
 void   ElementDilatation(const KernelCase *, const double *X, const double *u, const double *constants,
                          const double *multiplier, double *theta);
 double ElementVolumeEnergy(const KernelCase *, const double *X, const double *u, const double *constants,

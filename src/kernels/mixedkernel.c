@@ -546,7 +546,12 @@ LANES_INLINE void ReferencePressures(const BatchCall *call, const Rule *rule, co
   }
   for (int k = 0; k < modes; k++) x->geometric[k] = Multiplier(call, k) + call->kappa * y.theta[k];
   if (bubble) FollowBubble(call, points, modes, dim, hoop, x, &y, change);
-  for (int k = 0; k < modes; k++) x->geometric[k] += call->kappa * call->rate * change[k];
+  for (int k = 0; k < modes; k++) {
+    x->geometric[k] += call->kappa * call->rate * change[k];
+    for (int lane = 0; lane < LANES && call->held; lane++) {
+      if (call->rest[lane] > 0) x->geometric[k][lane] = Multiplier(call, k)[lane] / call->rest[lane];
+    }
+  }
 }
 
 /* Computes displacement gradients with the bubble, theta, pressures, the energy of the volume and the smallest J. */
@@ -672,7 +677,9 @@ LANES_INLINE void Batch(const BatchCall *call, const int n, const int bubble, co
     for (int k = 0; k < modes && K; k++) LANE(t[k], i) = (Lanes){0};
   }
   Prepare(call, rule, n, bubble, points, modes, dim, hoop, &x);
-  if (K && call->u_0) ReferencePressures(call, rule, n, bubble, points, modes, dim, hoop, &x);
+  if ((K || call->follow) && call->u_0) ReferencePressures(call, rule, n, bubble, points, modes, dim, hoop, &x);
+  for (int k = 0; k < modes && call->follow; k++) LANE(call->follow, k) = x.geometric[k];
+  if (call->follow) return;
   StartLeastJ(call);
   if (bubble) SolveBubble(call, points, modes, dim, hoop, &x);
   SetPressures(call, n, bubble, points, modes, dim, hoop, &x, &W);

@@ -150,6 +150,7 @@ static PetscErrorCode ModelDepart(Model model, PetscReal t)
   work->start              = 0;
   work->cycling            = PETSC_FALSE;
   work->cycles             = 0;
+  work->augmented          = PETSC_FALSE;
   work->cycle[0]           = '\0';
   work->energy             = 0;
   ModelForgetPenaltyError(model);
@@ -263,7 +264,8 @@ static PetscErrorCode ModelSolveVolumes(Model model, SolveReport *report)
     if (holds) break;
     if (times == EQUILIBRIUM_MAX_AUGMENT) report->result = SOLVE_VOLUME;
     report->augmented++;
-    model->work->energy = 0; /* multipliers are part of the energy */
+    model->work->augmented = PETSC_TRUE;
+    model->work->energy    = 0; /* multipliers are part of the energy */
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -44,11 +44,13 @@ typedef struct {
   double            rate; /* of PressureReference */
   double           *W, *f, *K, *J, *H;
   /* Of mixed elements: the part kappa of the modulus of the volume, shear modulus, multipliers or NULL, and results or
-     NULL: theta [MIXED_PRESSURES], which mixedkernel.c explains, and the pressure at the points of H. constants[0] is
+     NULL: theta [MIXED_PRESSURES], which mixedkernel.c explains, the pressure at the points of H, and the
+     pressures extrapolated from u_0 [MIXED_PRESSURES]. constants[0] is
      then 0. */
-  Lanes         kappa, mu;
+  Lanes         kappa, mu, rest; /* rest: 1 - kappa / modulus of the volume */
   const double *multiplier;
-  double       *theta, *pressure;
+  int           held; /* of PressureReference */
+  double       *theta, *pressure, *follow;
 } BatchCall;
 
 /* Computes the reference gradients of all nodes at a point with shape functions N and dN. They become point q of the
