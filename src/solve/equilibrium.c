@@ -263,7 +263,7 @@ static PetscErrorCode ModelSolveVolumes(Model model, SolveReport *report)
     PetscCall(ElasticityAugment(model->problem->elasticity, model->problem->trial, &holds));
     if (holds) break;
     if (times == EQUILIBRIUM_MAX_AUGMENT) report->result = SOLVE_VOLUME;
-    report->augmented++;
+    report->adjusted++;
     model->work->augmented = PETSC_TRUE;
     model->work->energy    = 0; /* multipliers are part of the energy */
   }

@@ -48,7 +48,6 @@ typedef struct {
   PetscInt    regathered;       /* times that contact lists were replaced */
   PetscInt    adjusted;         /* times that penalties or multipliers were changed and the step solved on */
   PetscInt    stiffened;        /* times that penalties were made stiffer for a smaller error, and the step solved on */
-  PetscInt    augmented;        /* times that multipliers of the volume were changed and the step solved on */
   PetscInt    cuts[CUT_CAUSES]; /* iterations that the line search shortened, by their cause */
   PetscInt    turned;           /* iterations whose step led uphill and was turned round */
   PetscReal   residual;         /* |R|_2 / F_ref at the end */
