@@ -136,7 +136,7 @@ def choice():
          "bodies.0.formulation=mixed", "mesh.parameters.simplex=1")
     said("svk has no mixed elements", "formulation: mixed needs a law whose volume part is separate",
          "bodies.0.formulation=mixed", "bodies.0.material.law=svk", "kinematics=finite")
-    said("nu = 0.5 with full integration", "material.nu: 0.5 needs formulation: mixed (or auto)",
+    said("nu = 0.5 with full integration", "material.nu: is incompressible, which needs formulation: mixed",
          "bodies.0.material.nu=0.5", "bodies.0.formulation=full")
     said("a body without a free surface", "its pressure is not determined", "bodies.0.material.nu=0.5",
          "loads=[{surface: inner, ux: '0.1*x/r', uy: '0.1*y/r'}, {surface: outer, ux: '0.1*x/r', uy: '0.1*y/r'}]")
