@@ -51,7 +51,7 @@ PetscErrorCode ContactTermForces(Contact contact, int p, PetscReal touch, PetscR
 
   PetscFunctionBeginUser;
   for (PetscInt c = 0; c < pair->n; c++) {
-    const PetscReal least = pair->now.gap[c] <= touch ? DBL_MIN : 0; /* NaN: no master is near */
+    const PetscReal least = PetscAbsReal(pair->now.gap[c]) <= touch ? DBL_MIN : 0; /* NaN: no master is near */
 
     force[pair->node[c]] = PetscMax(force[pair->node[c]], PetscMax(least, ContactTermForce(pair, c)));
   }

@@ -25,6 +25,9 @@ enum { FLUID_SAMPLES = 16 };
 /* The last accepted states before a leak, from which its pressure is extrapolated */
 enum { FLUID_STATES = 2 };
 
+/* How a pair measures contact: at nodes, with the areas of shape functions, or on faces, with those of hat functions */
+enum { FLUID_NODES, FLUID_FACES, FLUID_FORMS };
+
 /* What a fluid is in one state. It is what cutbacks and checkpoints keep. */
 typedef struct {
   char      *wet;                    /* n: by node of the graph */
@@ -39,14 +42,15 @@ typedef struct {
   const SceneLoad *load;
   const MeshGroup *group;
   SurfaceGraph     surface;
-  PetscBool        hats, *pair; /* contact is integrated on faces; pairs whose slaves are on the surface */
-  char            *from, *to;   /* n: the two ends */
+  PetscBool       *pair;              /* pairs whose slaves are on the surface */
+  PetscBool        form[FLUID_FORMS]; /* how they measure contact */
+  char            *from, *to;         /* n: the two ends */
   PetscBool        has_from, has_to;
   FluidState       now, accepted;
   PetscInt         retreats;              /* times that places became dry in this step */
-  PetscReal       *area;                  /* n_nodes: present area of the surface around each node */
+  PetscReal       *area[FLUID_FORMS];     /* n_nodes: present area of the surface around each node */
   PetscReal       *nodes, *points;        /* shares for the load: of nodes, or of quadrature points */
-  PetscReal       *force;                 /* n_nodes: of the contact terms */
+  PetscReal       *force[FLUID_FORMS];    /* n_nodes: of the contact terms */
   PetscReal       *weight;                /* n: reference area of the nodes */
   PetscReal        pressure, height;      /* of the fluid; of the barrier */
   PetscReal        leak_t, leak_pressure; /* t and pressure at which it was found to leak last; NaN: it was not */
@@ -61,13 +65,13 @@ struct _n_Fluids {
   Fluid  *fluid;
 };
 
-/* Areas around the nodes of a fluid's surface, of this rank's faces: hat functions or shape functions as in contact. */
-static void FaceAreas(Fluids fluids, const Fluid *fluid, ElementType type, const PetscReal *x, PetscReal *area)
+/* Adds the areas around the nodes of a face. */
+static void FaceAreas(Fluids fluids, int form, ElementType type, const PetscReal *x, PetscReal *area)
 {
   const FaceRule *rule = FaceRuleGet(type, 0);
   double          part[FACE_RULE_POINTS];
 
-  if (!fluid->hats) {
+  if (form == FLUID_NODES) {
     FaceAreaKernel(type, fluids->mesh->dim, fluids->scene->geometry, x, area, NULL);
     return;
   }
@@ -76,16 +80,16 @@ static void FaceAreas(Fluids fluids, const Fluid *fluid, ElementType type, const
     for (int a = 0; a < ElementGet(type)->nodes; a++) area[a] += rule->hat[q][a] * part[q];
 }
 
-/* Sets the present areas; u NULL: those of the reference. */
-static PetscErrorCode SetAreas(Fluids fluids, Fluid *fluid, const PetscReal *u)
+/* Sets the present areas of one form; u NULL: those of the reference. */
+static PetscErrorCode SetFormAreas(Fluids fluids, Fluid *fluid, int form, const PetscReal *u)
 {
   const Mesh mesh = fluids->mesh;
   const int  dim  = mesh->dim;
   PetscInt   nodes[FACE_MAX_NODES];
-  PetscReal  x[3 * FACE_MAX_NODES], v[3 * FACE_MAX_NODES], area[FACE_MAX_NODES];
+  PetscReal  x[3 * FACE_MAX_NODES], v[3 * FACE_MAX_NODES], area[FACE_MAX_NODES], *sum = fluid->area[form];
 
   PetscFunctionBeginUser;
-  PetscCall(PetscArrayzero(fluid->area, mesh->n_nodes));
+  PetscCall(PetscArrayzero(sum, mesh->n_nodes));
   for (PetscInt f = 0; f < fluid->group->n_faces; f++) {
     const ElementType type = MeshFaceNodes(mesh, fluid->group, f, nodes);
     const int         n    = ElementGet(type)->nodes;
@@ -94,11 +98,27 @@ static PetscErrorCode SetAreas(Fluids fluids, Fluid *fluid, const PetscReal *u)
     if (u) MeshGatherNodes(mesh, n, nodes, u, v);
     for (int i = 0; i < n * dim && u; i++) x[i] += v[i];
     PetscCall(PetscArrayzero(area, n));
-    FaceAreas(fluids, fluid, type, x, area);
-    for (int a = 0; a < n; a++) fluid->area[nodes[a]] += area[a];
+    FaceAreas(fluids, form, type, x, area);
+    for (int a = 0; a < n; a++) sum[nodes[a]] += area[a];
   }
-  PetscCall(MeshSumNodes(mesh, 1, fluid->area));
+  PetscCall(MeshSumNodes(mesh, 1, sum));
   PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Sets the areas of all forms; with small kinematics those of the reference. */
+static PetscErrorCode SetAreas(Fluids fluids, Fluid *fluid, const PetscReal *u)
+{
+  PetscFunctionBeginUser;
+  for (int form = 0; form < FLUID_FORMS; form++)
+    if (fluid->form[form])
+      PetscCall(SetFormAreas(fluids, fluid, form, fluids->scene->kinematics == KINEMATICS_SMALL ? NULL : u));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* How a pair measures contact. */
+static int PairForm(Fluids fluids, int pair)
+{
+  return ContactPairIsSurface(fluids->contact, pair) ? FLUID_FACES : FLUID_NODES;
 }
 
 /* Gives the load its share of every quadrature point: the hat functions of the wet nodes. */
@@ -123,20 +143,24 @@ static void SetPoints(Fluids fluids, Fluid *fluid)
 /* Tells load and contact where the fluid is in the present state, and how much it presses at t. */
 static PetscErrorCode Apply(Fluids fluids, Fluid *fluid, const PetscReal *u, PetscReal t)
 {
-  const Mesh mesh = fluids->mesh;
-  PetscReal *carried;
+  const Mesh      mesh  = fluids->mesh;
+  const PetscBool faces = fluid->form[FLUID_FACES];
+  PetscReal      *carried;
 
   PetscFunctionBeginUser;
   PetscCall(LoadsPressure(fluids->loads, fluid->number, t, &fluid->pressure));
-  PetscCall(SetAreas(fluids, fluid, fluids->scene->kinematics == KINEMATICS_SMALL ? NULL : u));
+  PetscCall(SetAreas(fluids, fluid, u));
   SurfaceGraphScatter(fluid->surface, fluid->now.wet, fluid->nodes);
-  if (fluid->hats) SetPoints(fluids, fluid);
-  PetscCall(LoadsSetShares(fluids->loads, fluid->number, fluid->hats ? NULL : fluid->nodes,
-                           fluid->hats ? fluid->points : NULL));
+  if (faces) SetPoints(fluids, fluid);
+  PetscCall(LoadsSetShares(fluids->loads, fluid->number, faces ? NULL : fluid->nodes, faces ? fluid->points : NULL));
   PetscCall(PetscMalloc1(mesh->n_nodes, &carried));
-  for (PetscInt i = 0; i < mesh->n_nodes; i++) carried[i] = fluid->nodes[i] * fluid->pressure * fluid->area[i];
-  for (int p = 0; p < ContactPairs(fluids->contact); p++)
-    if (fluid->pair[p]) PetscCall(ContactSetCarried(fluids->contact, p, carried));
+  for (int p = 0; p < ContactPairs(fluids->contact); p++) {
+    const PetscReal *area = fluid->area[PairForm(fluids, p)];
+
+    if (!fluid->pair[p]) continue;
+    for (PetscInt i = 0; i < mesh->n_nodes; i++) carried[i] = fluid->nodes[i] * fluid->pressure * area[i];
+    PetscCall(ContactSetCarried(fluids->contact, p, carried));
+  }
   PetscCall(PetscFree(carried));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -148,16 +172,21 @@ static PetscErrorCode Measure(Fluids fluids, Fluid *fluid, const PetscReal *u, P
 
   PetscFunctionBeginUser;
   PetscCall(LoadsPressure(fluids->loads, fluid->number, t, &fluid->pressure));
-  PetscCall(SetAreas(fluids, fluid, fluids->scene->kinematics == KINEMATICS_SMALL ? NULL : u));
-  PetscCall(PetscArrayzero(fluid->force, fluids->mesh->n_nodes));
+  PetscCall(SetAreas(fluids, fluid, u));
+  for (int form = 0; form < FLUID_FORMS; form++) PetscCall(PetscArrayzero(fluid->force[form], fluids->mesh->n_nodes));
   for (int p = 0; p < ContactPairs(fluids->contact); p++)
-    if (fluid->pair[p]) PetscCall(ContactTermForces(fluids->contact, p, FLUID_OPEN * fluids->mesh->size, fluid->force));
+    if (fluid->pair[p])
+      PetscCall(
+        ContactTermForces(fluids->contact, p, FLUID_OPEN * fluids->mesh->size, fluid->force[PairForm(fluids, p)]));
   for (int i = 0; i < s->graph.n; i++) {
     const PetscInt node = s->local[i];
+    PetscReal      p    = 0;
 
-    if (s->own[i] && fluid->force[node] > 0) fluid->force[node] /= fluid->area[node];
+    for (int form = 0; form < FLUID_FORMS && s->own[i]; form++)
+      if (fluid->force[form][node] > 0) p = PetscMax(p, fluid->force[form][node] / fluid->area[form][node]);
+    if (s->own[i]) fluid->force[FLUID_NODES][node] = p;
   }
-  PetscCall(SurfaceGraphGather(s, fluid->force, fluid->now.p));
+  PetscCall(SurfaceGraphGather(s, fluid->force[FLUID_NODES], fluid->now.p));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -296,7 +325,6 @@ static PetscErrorCode ReadEnd(Fluids fluids, Fluid *fluid, const char *key, cons
 static PetscErrorCode FindPairs(Fluids fluids, Fluid *fluid)
 {
   const Contact contact = fluids->contact;
-  PetscBool     faces = PETSC_FALSE, nodes = PETSC_FALSE;
   char         *flag;
 
   PetscFunctionBeginUser;
@@ -312,8 +340,7 @@ static PetscErrorCode FindPairs(Fluids fluids, Fluid *fluid)
     PetscCall(SurfaceGraphGroup(fluid->surface, slave, flag, &n));
     fluid->pair[p] = (PetscBool)(n > 0);
     if (!n) continue;
-    faces = (PetscBool)(faces || ContactPairIsSurface(contact, p));
-    nodes = (PetscBool)(nodes || !ContactPairIsSurface(contact, p));
+    fluid->form[PairForm(fluids, p)] = PETSC_TRUE;
     if (scene->adjust || scene->augment)
       PetscCall(
         RefuseInput(fluids->mesh->comm,
@@ -322,13 +349,7 @@ static PetscErrorCode FindPairs(Fluids fluids, Fluid *fluid)
                     SceneWhere(fluids->scene, fluid->load->path, "where"), scene->name, fluid->load->region));
   }
   PetscCall(PetscFree(flag));
-  fluid->hats = faces;
-  if (faces && nodes)
-    PetscCall(RefuseInput(fluids->mesh->comm,
-                          "%s: '%s' is in contact both by nodes and by faces; allowed with where: open: one "
-                          "formulation for all its pairs",
-                          SceneWhere(fluids->scene, fluid->load->path, "where"), fluid->load->region));
-  if (!faces && !nodes)
+  if (!fluid->form[FLUID_NODES] && !fluid->form[FLUID_FACES])
     PetscCall(RefuseInput(fluids->mesh->comm,
                           "%s: '%s' is the slave of no contact pair; allowed with where: open: the slave of one or "
                           "more pairs (of a pair whose master it is, exchange slave and master)",
@@ -357,7 +378,7 @@ static PetscErrorCode CreateOne(Fluids fluids, int load, Fluid *fluid)
 {
   const Mesh mesh = fluids->mesh;
   MeshGroup *group;
-  int        n;
+  int        n, form;
 
   PetscFunctionBeginUser;
   fluid->number = load;
@@ -369,16 +390,18 @@ static PetscErrorCode CreateOne(Fluids fluids, int load, Fluid *fluid)
   n = fluid->surface->graph.n;
   PetscCall(FindPairs(fluids, fluid));
   PetscCall(PetscCalloc3(n, &fluid->from, n, &fluid->to, n, &fluid->weight));
-  PetscCall(PetscCalloc4(mesh->n_nodes, &fluid->area, mesh->n_nodes, &fluid->nodes, mesh->n_nodes, &fluid->force,
-                         group->n_faces * FACE_MAX_POINTS, &fluid->points));
+  for (int form = 0; form < FLUID_FORMS; form++)
+    PetscCall(PetscCalloc2(mesh->n_nodes, &fluid->area[form], mesh->n_nodes, &fluid->force[form]));
+  PetscCall(PetscCalloc2(mesh->n_nodes, &fluid->nodes, group->n_faces * FACE_MAX_POINTS, &fluid->points));
   PetscCall(StateCreate(n, &fluid->now));
   PetscCall(StateCreate(n, &fluid->accepted));
   fluid->height = fluid->leak_t = fluid->leak_pressure = NAN;
   PetscCall(CheckPressure(fluids, fluid));
   PetscCall(ReadEnd(fluids, fluid, "from", &fluid->load->from, fluid->from, &fluid->has_from));
   PetscCall(ReadEnd(fluids, fluid, "to", &fluid->load->to, fluid->to, &fluid->has_to));
-  PetscCall(SetAreas(fluids, fluid, NULL));
-  PetscCall(SurfaceGraphGather(fluid->surface, fluid->area, fluid->weight));
+  form = fluid->form[FLUID_FACES] ? FLUID_FACES : FLUID_NODES;
+  PetscCall(SetFormAreas(fluids, fluid, form, NULL));
+  PetscCall(SurfaceGraphGather(fluid->surface, fluid->area[form], fluid->weight));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -437,7 +460,8 @@ PetscErrorCode FluidDestroy(Fluids *fluids)
 
     PetscCall(SurfaceGraphDestroy(&fluid->surface));
     PetscCall(PetscFree3(fluid->from, fluid->to, fluid->weight));
-    PetscCall(PetscFree4(fluid->area, fluid->nodes, fluid->force, fluid->points));
+    for (int form = 0; form < FLUID_FORMS; form++) PetscCall(PetscFree2(fluid->area[form], fluid->force[form]));
+    PetscCall(PetscFree2(fluid->nodes, fluid->points));
     PetscCall(PetscFree(fluid->pair));
     PetscCall(PetscFree2(fluid->now.wet, fluid->now.p));
     PetscCall(PetscFree2(fluid->accepted.wet, fluid->accepted.p));
