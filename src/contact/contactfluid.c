@@ -57,3 +57,20 @@ PetscErrorCode ContactTermForces(Contact contact, int p, PetscReal touch, PetscR
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
+
+/*@
+  ContactPairFiner - tells whether the slave of a pair has the finer quadrature rule, see FaceRuleGet().
+
+  Not collective
+
+  Input Parameters:
++ contact - the contact
+- p       - number of the pair
+
+  Note:
+  It returns 0 or 1; 0 in node to surface.
+@*/
+int ContactPairFiner(Contact contact, int p)
+{
+  return contact->pairs[p].formulation.surface ? contact->pairs[p].slaves->finer : 0;
+}

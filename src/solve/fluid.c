@@ -30,7 +30,7 @@ enum { FLUID_NODES, FLUID_FACES, FLUID_FORMS };
 
 /* What a fluid is in one state. It is what cutbacks and checkpoints keep. */
 typedef struct {
-  char      *wet;                    /* n: by node of the graph */
+  char      *wet, *form;             /* n: by node of the graph; form: of the pair that presses most */
   PetscReal *p;                      /* n: what contact presses, at wet nodes beyond the fluid */
   PetscInt   n_sealed;               /* accepted states without a leak, FLUID_STATES at most */
   PetscReal  sealed_p[FLUID_STATES]; /* pressure of the fluid in them, the last one first */
@@ -42,17 +42,19 @@ typedef struct {
   const SceneLoad *load;
   const MeshGroup *group;
   SurfaceGraph     surface;
+  int              finer;             /* rule of contact on faces, see FaceRuleGet() */
   PetscBool       *pair;              /* pairs whose slaves are on the surface */
   PetscBool        form[FLUID_FORMS]; /* how they measure contact */
   char            *from, *to;         /* n: the two ends */
   PetscBool        has_from, has_to;
   FluidState       now, accepted;
-  PetscInt         retreats;              /* times that places became dry in this step */
-  PetscReal       *area[FLUID_FORMS];     /* n_nodes: present area of the surface around each node */
-  PetscReal       *nodes, *points;        /* shares for the load: of nodes, or of quadrature points */
-  PetscReal       *force[FLUID_FORMS];    /* n_nodes: of the contact terms */
-  PetscReal       *weight;                /* n: reference area of the nodes */
-  PetscReal        pressure, height;      /* of the fluid; of the barrier */
+  PetscInt         retreats;                       /* times that places became dry in this step */
+  PetscReal       *area[FLUID_FORMS];              /* n_nodes: present area of the surface around each node */
+  PetscReal       *wet, *pressing, *pressing_form; /* n_nodes: of the state, by local node */
+  PetscReal       *nodes, *points;                 /* shares for the load, see LoadsSetShares() */
+  PetscReal       *force[FLUID_FORMS];             /* n_nodes: of the contact terms */
+  PetscReal       *weight;                         /* n: reference area of the nodes */
+  PetscReal        pressure, height;               /* of the fluid; of the barrier */
   PetscReal        leak_t, leak_pressure; /* t and pressure at which it was found to leak last; NaN: it was not */
 } Fluid;
 
@@ -66,9 +68,9 @@ struct _n_Fluids {
 };
 
 /* Adds the areas around the nodes of a face. */
-static void FaceAreas(Fluids fluids, int form, ElementType type, const PetscReal *x, PetscReal *area)
+static void FaceAreas(Fluids fluids, int form, int finer, ElementType type, const PetscReal *x, PetscReal *area)
 {
-  const FaceRule *rule = FaceRuleGet(type, 0);
+  const FaceRule *rule = FaceRuleGet(type, finer);
   double          part[FACE_RULE_POINTS];
 
   if (form == FLUID_NODES) {
@@ -98,7 +100,7 @@ static PetscErrorCode SetFormAreas(Fluids fluids, Fluid *fluid, int form, const 
     if (u) MeshGatherNodes(mesh, n, nodes, u, v);
     for (int i = 0; i < n * dim && u; i++) x[i] += v[i];
     PetscCall(PetscArrayzero(area, n));
-    FaceAreas(fluids, form, type, x, area);
+    FaceAreas(fluids, form, fluid->finer, type, x, area);
     for (int a = 0; a < n; a++) sum[nodes[a]] += area[a];
   }
   PetscCall(MeshSumNodes(mesh, 1, sum));
@@ -121,21 +123,40 @@ static int PairForm(Fluids fluids, int pair)
   return ContactPairIsSurface(fluids->contact, pair) ? FLUID_FACES : FLUID_NODES;
 }
 
-/* Gives the load its share of every quadrature point: the hat functions of the wet nodes. */
-static void SetPoints(Fluids fluids, Fluid *fluid)
+/* The form in which a face shares the fluid: that of the pair that presses most on it. Where all of its nodes are wet,
+   or none is, all forms are the same. */
+static int FaceForm(const Fluid *fluid, int n, const PetscInt *nodes)
+{
+  int       form = fluid->form[FLUID_FACES] ? FLUID_FACES : FLUID_NODES;
+  PetscReal most = 0;
+
+  for (int a = 0; a < n; a++) {
+    if (fluid->pressing[nodes[a]] <= most) continue;
+    most = fluid->pressing[nodes[a]];
+    form = (int)fluid->pressing_form[nodes[a]];
+  }
+  return form;
+}
+
+/* Gives the load its share of every face: at the quadrature points the hat functions of the wet nodes, or the forces of
+   the wet nodes alone. */
+static void SetShares(Fluids fluids, Fluid *fluid)
 {
   PetscInt nodes[FACE_MAX_NODES];
   double   hat[FACE_MAX_NODES];
 
   for (PetscInt f = 0; f < fluid->group->n_faces; f++) {
     const Element *face = ElementGetFace(MeshFaceNodes(fluids->mesh, fluid->group, f, nodes));
+    const int      form = FaceForm(fluid, face->nodes, nodes);
 
+    for (int a = 0; a < face->nodes; a++)
+      fluid->nodes[f * FACE_MAX_NODES + a] = form == FLUID_NODES ? fluid->wet[nodes[a]] : 1;
     for (int p = 0; p < face->points; p++) {
       PetscReal share = 0;
 
-      FaceHatAround(face->type, p, hat);
-      for (int a = 0; a < face->nodes; a++) share += hat[a] * fluid->nodes[nodes[a]];
-      fluid->points[f * FACE_MAX_POINTS + p] = share;
+      FaceHatAround(face->type, p, fluid->finer, hat);
+      for (int a = 0; a < face->nodes; a++) share += hat[a] * fluid->wet[nodes[a]];
+      fluid->points[f * FACE_MAX_POINTS + p] = form == FLUID_FACES ? share : 1;
     }
   }
 }
@@ -143,22 +164,24 @@ static void SetPoints(Fluids fluids, Fluid *fluid)
 /* Tells load and contact where the fluid is in the present state, and how much it presses at t. */
 static PetscErrorCode Apply(Fluids fluids, Fluid *fluid, const PetscReal *u, PetscReal t)
 {
-  const Mesh      mesh  = fluids->mesh;
-  const PetscBool faces = fluid->form[FLUID_FACES];
-  PetscReal      *carried;
+  const Mesh mesh = fluids->mesh;
+  PetscReal *carried;
 
   PetscFunctionBeginUser;
   PetscCall(LoadsPressure(fluids->loads, fluid->number, t, &fluid->pressure));
   PetscCall(SetAreas(fluids, fluid, u));
-  SurfaceGraphScatter(fluid->surface, fluid->now.wet, fluid->nodes);
-  if (faces) SetPoints(fluids, fluid);
-  PetscCall(LoadsSetShares(fluids->loads, fluid->number, faces ? NULL : fluid->nodes, faces ? fluid->points : NULL));
+  SurfaceGraphScatter(fluid->surface, fluid->now.wet, fluid->wet);
+  SurfaceGraphScatter(fluid->surface, fluid->now.form, fluid->pressing_form);
+  for (int i = 0; i < fluid->surface->graph.n; i++)
+    if (fluid->surface->local[i] >= 0) fluid->pressing[fluid->surface->local[i]] = fluid->now.p[i];
+  SetShares(fluids, fluid);
+  PetscCall(LoadsSetShares(fluids->loads, fluid->number, fluid->nodes, fluid->points));
   PetscCall(PetscMalloc1(mesh->n_nodes, &carried));
   for (int p = 0; p < ContactPairs(fluids->contact); p++) {
     const PetscReal *area = fluid->area[PairForm(fluids, p)];
 
     if (!fluid->pair[p]) continue;
-    for (PetscInt i = 0; i < mesh->n_nodes; i++) carried[i] = fluid->nodes[i] * fluid->pressure * area[i];
+    for (PetscInt i = 0; i < mesh->n_nodes; i++) carried[i] = fluid->wet[i] * fluid->pressure * area[i];
     PetscCall(ContactSetCarried(fluids->contact, p, carried));
   }
   PetscCall(PetscFree(carried));
@@ -180,13 +203,17 @@ static PetscErrorCode Measure(Fluids fluids, Fluid *fluid, const PetscReal *u, P
         ContactTermForces(fluids->contact, p, FLUID_OPEN * fluids->mesh->size, fluid->force[PairForm(fluids, p)]));
   for (int i = 0; i < s->graph.n; i++) {
     const PetscInt node = s->local[i];
-    PetscReal      p    = 0;
+    PetscReal      p[FLUID_FORMS];
 
     for (int form = 0; form < FLUID_FORMS && s->own[i]; form++)
-      if (fluid->force[form][node] > 0) p = PetscMax(p, fluid->force[form][node] / fluid->area[form][node]);
-    if (s->own[i]) fluid->force[FLUID_NODES][node] = p;
+      p[form] = fluid->force[form][node] > 0 ? fluid->force[form][node] / fluid->area[form][node] : 0;
+    if (!s->own[i]) continue;
+    fluid->force[0][node] = PetscMax(p[FLUID_NODES], p[FLUID_FACES]);
+    fluid->force[1][node] = p[FLUID_FACES] > p[FLUID_NODES] ? FLUID_FACES : FLUID_NODES;
   }
-  PetscCall(SurfaceGraphGather(s, fluid->force[FLUID_NODES], fluid->now.p));
+  PetscCall(SurfaceGraphGather(s, fluid->force[1], fluid->now.p));
+  for (int i = 0; i < s->graph.n; i++) fluid->now.form[i] = (char)fluid->now.p[i];
+  PetscCall(SurfaceGraphGather(s, fluid->force[0], fluid->now.p));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -264,21 +291,23 @@ static PetscErrorCode MoveOne(Fluids fluids, Fluid *fluid, const PetscReal *u, P
 static PetscErrorCode StateCreate(int n, FluidState *state)
 {
   PetscFunctionBeginUser;
-  PetscCall(PetscCalloc2(n, &state->wet, n, &state->p));
+  PetscCall(PetscCalloc3(n, &state->wet, n, &state->p, n, &state->form));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 static PetscErrorCode StateCopy(int n, const FluidState *from, FluidState *to)
 {
-  char      *wet = to->wet;
-  PetscReal *p   = to->p;
+  char      *wet = to->wet, *form = to->form;
+  PetscReal *p = to->p;
 
   PetscFunctionBeginUser;
   PetscCall(PetscArraycpy(wet, from->wet, n));
   PetscCall(PetscArraycpy(p, from->p, n));
-  *to     = *from;
-  to->wet = wet;
-  to->p   = p;
+  PetscCall(PetscArraycpy(form, from->form, n));
+  *to      = *from;
+  to->wet  = wet;
+  to->p    = p;
+  to->form = form;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -341,6 +370,7 @@ static PetscErrorCode FindPairs(Fluids fluids, Fluid *fluid)
     fluid->pair[p] = (PetscBool)(n > 0);
     if (!n) continue;
     fluid->form[PairForm(fluids, p)] = PETSC_TRUE;
+    fluid->finer                     = PetscMax(fluid->finer, ContactPairFiner(contact, p));
     if (scene->adjust || scene->augment)
       PetscCall(
         RefuseInput(fluids->mesh->comm,
@@ -392,7 +422,10 @@ static PetscErrorCode CreateOne(Fluids fluids, int load, Fluid *fluid)
   PetscCall(PetscCalloc3(n, &fluid->from, n, &fluid->to, n, &fluid->weight));
   for (int form = 0; form < FLUID_FORMS; form++)
     PetscCall(PetscCalloc2(mesh->n_nodes, &fluid->area[form], mesh->n_nodes, &fluid->force[form]));
-  PetscCall(PetscCalloc2(mesh->n_nodes, &fluid->nodes, group->n_faces * FACE_MAX_POINTS, &fluid->points));
+  PetscCall(
+    PetscCalloc3(mesh->n_nodes, &fluid->wet, mesh->n_nodes, &fluid->pressing, mesh->n_nodes, &fluid->pressing_form));
+  PetscCall(
+    PetscCalloc2(group->n_faces * FACE_MAX_NODES, &fluid->nodes, group->n_faces * FACE_MAX_POINTS, &fluid->points));
   PetscCall(StateCreate(n, &fluid->now));
   PetscCall(StateCreate(n, &fluid->accepted));
   fluid->height = fluid->leak_t = fluid->leak_pressure = NAN;
@@ -461,10 +494,11 @@ PetscErrorCode FluidDestroy(Fluids *fluids)
     PetscCall(SurfaceGraphDestroy(&fluid->surface));
     PetscCall(PetscFree3(fluid->from, fluid->to, fluid->weight));
     for (int form = 0; form < FLUID_FORMS; form++) PetscCall(PetscFree2(fluid->area[form], fluid->force[form]));
+    PetscCall(PetscFree3(fluid->wet, fluid->pressing, fluid->pressing_form));
     PetscCall(PetscFree2(fluid->nodes, fluid->points));
     PetscCall(PetscFree(fluid->pair));
-    PetscCall(PetscFree2(fluid->now.wet, fluid->now.p));
-    PetscCall(PetscFree2(fluid->accepted.wet, fluid->accepted.p));
+    PetscCall(PetscFree3(fluid->now.wet, fluid->now.p, fluid->now.form));
+    PetscCall(PetscFree3(fluid->accepted.wet, fluid->accepted.p, fluid->accepted.form));
   }
   PetscCall(PetscFree((*fluids)->fluid));
   PetscCall(PetscFree(*fluids));
@@ -755,7 +789,7 @@ PetscErrorCode FluidArchive(Fluids fluids, Archive archive)
     char        name[64];
 
     PetscCall(PetscMalloc1(n + 1, &wet));
-    for (int k = 0; k < n; k++) wet[k] = state->wet[k] + 2 * fluid->from[k] + 4 * fluid->to[k];
+    for (int k = 0; k < n; k++) wet[k] = state->wet[k] + 2 * fluid->from[k] + 4 * fluid->to[k] + 8 * state->form[k];
     wet[n] = state->n_sealed;
     for (int k = 0; k < FLUID_STATES; k++) {
       values[k]                = state->sealed_p[k];
@@ -767,6 +801,7 @@ PetscErrorCode FluidArchive(Fluids fluids, Archive archive)
     PetscCall(ArchiveReals(archive, name, 2 * FLUID_STATES, values));
     for (int k = 0; k < n; k++) {
       state->wet[k]  = (char)(wet[k] & 1);
+      state->form[k] = (char)(wet[k] >> 3 & 1);
       fluid->from[k] = (char)(wet[k] >> 1 & 1);
       fluid->to[k]   = (char)(wet[k] >> 2 & 1);
       fluid->has_to  = (PetscBool)(fluid->has_to || fluid->to[k]);
