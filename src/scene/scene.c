@@ -1,6 +1,7 @@
 /* The reader of a scene: it fills the Scene from a validated document, see scene.h. */
 #include "sceneprobe.h"
 #include "scenedefaults.h"
+#include "scenematerial.h"
 #include "sceneread.h"
 #include "base/refusal.h"
 #include <string.h>
@@ -128,17 +129,13 @@ static PetscErrorCode SceneReadBody(Scene scene, SceneBody *body)
     PetscCall(SceneReadMotion(scene, tool, &body->motion));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
-  body->material = MaterialFromModuli((MaterialLaw)SchemaChoice(SceneDocument(scene), "%s.material.law", body->path),
-                                      SchemaReal(SceneDocument(scene), "%s.material.E", body->path),
-                                      SchemaReal(SceneDocument(scene), "%s.material.nu", body->path));
-  if (body->material.law == MATERIAL_LINEAR && scene->kinematics == KINEMATICS_FINITE)
-    PetscCall(SceneRefuse(scene, body->path, "material.law",
-                          "linear needs kinematics: small; allowed with finite: svk | neo_hookean", NULL));
+  PetscCall(SceneReadMaterial(scene, body));
   body->formulation = (Formulation)SchemaChoice(SceneDocument(scene), "%s.formulation", body->path);
   if (body->formulation != FORMULATION_FULL && scene->order == 2)
     PetscCall(SceneRefuse(scene, body->path, "formulation",
                           "is for first-order elements; allowed with mesh.order: 2: full",
                           Formulations[body->formulation]));
+  PetscCall(SceneCheckIncompressible(scene, body));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -6,6 +6,7 @@
 #include "scene/commandline.h"
 #include <stdlib.h>
 #include <unistd.h>
+#include <math.h>
 #include <string.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -391,16 +392,53 @@ static void TextDependsOnValuesAlone(void **state)
 /* The words of the table have the order of the enumerations into which they are read. */
 static void LawsOfTheTableAreTheMaterials(void **state)
 {
-  char  text[64];
+  char  text[128];
   Scene scene;
 
   (void)state;
   for (int law = 0; law < MATERIAL_LAWS; law++) {
-    char *const both[] = {"kinematics=small", text};
+    const ElasticLaw *elastic = MaterialGetLaw((MaterialLaw)law);
+    char *const       both[]  = {"kinematics=small", text};
+    int               n       = snprintf(text, sizeof text, "bodies.0.material={law: %s, nu: 0.3", MaterialLaws[law]);
 
-    snprintf(text, sizeof text, "bodies.0.material.law=%s", MaterialLaws[law]);
+    for (int k = 0; k < elastic->required; k++)
+      n += snprintf(text + n, sizeof text - n, ", %s: %s", elastic->keys[k],
+                    strcmp(elastic->keys[k], MATERIAL_TERMS) ? "2" : "[[2, 2]]");
+    snprintf(text + n, sizeof text - n, "}");
     ReadOrFail(Smallest, 2, both, &scene);
     assert_int_equal(scene->bodies[0].material.law, law);
+    assert_int_equal(scene->bodies[0].material.n_constants, elastic->constants);
+    assert_true(scene->bodies[0].material.constants[1] == 2);
+    assert_true(fabs(scene->bodies[0].material.nu - 0.3) < 1e-15);
+    Free(&scene);
+  }
+}
+
+/* nu, K, E and mu that say the same give the same material. */
+static void ModuliMayBeGivenInSeveralWays(void **state)
+{
+  static char *const ways[] = {
+    "bodies.0.material={law: neo_hookean, E: 2.6, nu: 0.3}",
+    "bodies.0.material={law: neo_hookean, mu: 1, nu: 0.3}",
+    "bodies.0.material={law: neo_hookean, mu: 1, K: 2.1666666666666667}",
+    "bodies.0.material={law: neo_hookean, E: 2.6, K: 2.1666666666666667}",
+    "bodies.0.material={law: isochoric_neo_hookean, E: 2.6, nu: 0.3}",
+    "bodies.0.material={law: isochoric_neo_hookean, mu: 1, K: 2.1666666666666667}",
+    "bodies.0.material={law: mooney_rivlin, c10: 0.3, c01: 0.2, nu: 0.3}",
+    "bodies.0.material={law: yeoh, c10: 0.5, c30: 0.1, K: 2.1666666666666667}",
+    "bodies.0.material={law: ogden, terms: [[1.5, 2], [0.25, -4]], nu: 0.3}",
+  };
+  Scene scene;
+
+  (void)state;
+  for (size_t i = 0; i < sizeof ways / sizeof ways[0]; i++) {
+    const Material *material;
+
+    ReadOrFail(Smallest, 1, &ways[i], &scene);
+    material = &scene->bodies[0].material;
+    assert_true(fabs(material->E - 2.6) < 1e-14 && fabs(material->nu - 0.3) < 1e-15);
+    assert_true(fabs(MaterialShear(material) - 1) < 1e-15);
+    assert_true(fabs(material->constants[0] - (i < 4 ? 1.5 : 6.5 / 3)) < 1e-14);
     Free(&scene);
   }
 }
@@ -415,7 +453,7 @@ static void ReferenceNamesKeysRangesAndDefaults(void **state)
   assert_non_null(file);
   assert_int_equal(SceneReference(file), PETSC_SUCCESS);
   fclose(file);
-  assert_non_null(strstr(text, "  bodies.N.material.nu: a number in (-1, 0.5); required - Poisson's ratio\n"));
+  assert_non_null(strstr(text, "  bodies.N.material.nu: a number in (-1, 0.5] - Poisson's ratio"));
   assert_non_null(strstr(text, "  contact.N.formulation: node_to_surface | surface_to_surface | auto; default auto"));
   assert_non_null(strstr(text, "  probes.N.contact_edge: "));
   free(text);
@@ -489,6 +527,7 @@ int main(int argc, char **argv)
     cmocka_unit_test(PlacesNameTheNearestLine),
     cmocka_unit_test(TextDependsOnValuesAlone),
     cmocka_unit_test(LawsOfTheTableAreTheMaterials),
+    cmocka_unit_test(ModuliMayBeGivenInSeveralWays),
     cmocka_unit_test(ReferenceNamesKeysRangesAndDefaults),
     cmocka_unit_test(CommandLineKeepsPetscOptions),
     cmocka_unit_test(CommandLinePrefersAFreeStandingScene),
