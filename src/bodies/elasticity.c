@@ -1,48 +1,5 @@
 /* Assembly of the elastic problem from batched element kernels. */
-#include "bodies/elasticity.h"
-#include "kernels/elementkernel.h"
-#include "matrix/nodematrix.h"
-
-enum {
-  MAX_DOFS            = ELEMENT_MAX_NODES * 3, /* of a cell */
-  BYTES_OF_CACHE_LINE = 64,                    /* of the usual processors; arrays of a batch are aligned to it */
-  /* Blocks are fetched this many pairs of nodes ahead. They are scattered in main memory, and 4 hides most of the wait.
-   */
-  PREFETCH_PAIRS = 4
-};
-
-/* Cells of one type and law, KERNEL_LANES to a batch. The last batch repeats its last cell. The arrays have one batch
-   after the other. */
-typedef struct {
-  KernelCase kernel;
-  int        nodes; /* of one cell */
-  PetscInt   n_cells, n_batches;
-  PetscInt  *cell; /* [lanes] */
-  PetscInt  *node; /* [nodes][lanes] */
-  PetscInt
-    *block;     /* [nodes][nodes][lanes]: place of the pair of nodes in the block CSR; then PREFETCH_PAIRS of zeros */
-  PetscReal *X; /* [nodes][dim][lanes] */
-  PetscReal *constants; /* of the law [n_constants][lanes] */
-  PetscReal *state;     /* of a plastic law, accepted [points][PLASTIC_STATE][lanes]; else NULL */
-  /* What kernel.plastic points to, for the batch at hand */
-  PlasticBatch plastic;
-} CellGroup;
-
-struct _n_Elasticity {
-  Mesh       mesh;
-  int        dim, n_groups;
-  CellGroup *groups;
-  PetscInt  *cell_group, *cell_slot; /* of every local cell: its group, and its number there */
-  PetscReal *cell_modulus;
-  PetscInt  *row, *column; /* block CSR over local nodes, columns ascending */
-  PetscReal *value;        /* dim x dim blocks, row-major, in the order of column */
-  PetscReal *u, *u_0;      /* of one batch, aligned to cache lines; u_0: of the state that pressures come from */
-  PetscReal *f, *K;        /* of one batch */
-  void      *buffer;       /* what u, u_0, f and K are in */
-  PetscInt   inverted;     /* a local cell that the last residual found inverted, or -1 */
-  PetscBool  symmetric;
-  NodeMatrix matrix;
-};
+#include "elasticityimpl.h"
 
 static PetscLogEvent event_residual, event_tangent, event_insert;
 
@@ -122,8 +79,15 @@ static PetscErrorCode GroupCells(Elasticity e, Scene scene)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Counts the numbers of the plastic state of one cell. */
-static size_t CellStates(const CellGroup *g)
+/*@
+  ElasticityCellStates - counts the numbers of the plastic state of one cell; 0 where its law has none.
+
+  Not collective
+
+  Input Parameter:
+. g - the group of the cell
+@*/
+size_t ElasticityCellStates(const CellGroup *g)
 {
   return g->kernel.plastic ? (size_t)ElementGet(g->kernel.type)->points * PLASTIC_STATE : 0;
 }
@@ -138,7 +102,7 @@ static PetscErrorCode AllocateGroup(CellGroup *g, int dim)
   PetscCall(PetscCalloc3(lanes, &g->cell, lanes * g->nodes, &g->node,
                          lanes * g->nodes * g->nodes + PREFETCH_PAIRS * KERNEL_LANES, &g->block));
   PetscCall(PetscMalloc2(lanes * g->nodes * dim, &g->X, lanes * g->kernel.n_constants, &g->constants));
-  if (g->kernel.plastic) PetscCall(PetscCalloc1(lanes * CellStates(g), &g->state));
+  if (g->kernel.plastic) PetscCall(PetscCalloc1(lanes * ElasticityCellStates(g), &g->state));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -275,6 +239,47 @@ static PetscErrorCode CreateBuffers(Elasticity e)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Says whether elements treat only a part of the modulus of the volume. Of elements those with a constant pressure
+   project the largest part. */
+static PetscBool VolumeIsStiff(Scene scene, PetscInt body)
+{
+  const Material   material = BodyMaterial(scene, body);
+  const KernelCase kernel   = BodyKernel(scene, body, ELEMENT_QUAD4);
+  VolumeModuli     moduli;
+
+  ElementVolumeModuli(&kernel, material.constants, 1, &moduli);
+  return (PetscBool)(moduli.kappa < moduli.projected);
+}
+
+/* Counts the multipliers, and makes room for those of the present and of the accepted state. A mixed group has some if
+   the volume of one of its cells is too stiff. */
+static PetscErrorCode ElasticityCreateVolumes(Elasticity e, Scene scene)
+{
+  PetscInt   n = 0;
+  PetscBool *stiff;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(scene->n_bodies, &stiff));
+  for (int b = 0; b < scene->n_bodies; b++) {
+    stiff[b]    = (PetscBool)(!scene->bodies[b].rigid && scene->bodies[b].formulation == FORMULATION_MIXED &&
+                           VolumeIsStiff(scene, b));
+    e->augments = (PetscBool)(e->augments || stiff[b]);
+  }
+  for (int k = 0; k < e->n_groups; k++) {
+    CellGroup *g    = &e->groups[k];
+    PetscBool  some = PETSC_FALSE;
+
+    for (PetscInt c = 0; c < g->n_cells && ElementPressures(&g->kernel); c++)
+      some = (PetscBool)(some || stiff[e->mesh->cell_body[g->cell[c]]]);
+    g->multipliers = some ? n : -1;
+    if (some) n += g->n_batches * ElementPressures(&g->kernel) * KERNEL_LANES;
+  }
+  PetscCall(PetscFree(stiff));
+  e->state.n = e->accepted.n = n;
+  PetscCall(PetscCalloc2(n, &e->state.multiplier, n, &e->accepted.multiplier));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /*@
   ElasticityCreate - prepares the assembly of all local cells: batches, pattern of the local tangent, scatter maps.
 
@@ -302,6 +307,7 @@ PetscErrorCode ElasticityCreate(Mesh mesh, Scene scene, Elasticity *elasticity)
   for (PetscInt c = 0; c < mesh->n_cells; c++) SetCell(e, scene, &e->groups[e->cell_group[c]], e->cell_slot[c], c);
   PetscCall(CreateBlocks(e));
   PetscCall(CreateBuffers(e));
+  PetscCall(ElasticityCreateVolumes(e, scene));
   *elasticity = e;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -334,6 +340,7 @@ PetscErrorCode ElasticityDestroy(Elasticity *elasticity)
   PetscCall(PetscFree(e->column));
   PetscCall(PetscFree(e->value));
   PetscCall(PetscFree(e->buffer));
+  PetscCall(PetscFree2(e->state.multiplier, e->accepted.multiplier));
   PetscCall(NodeMatrixDestroy(&e->matrix));
   PetscCall(PetscFree(*elasticity));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -343,12 +350,26 @@ PetscErrorCode ElasticityDestroy(Elasticity *elasticity)
 static void SelectState(CellGroup *g, PetscInt batch, int lane)
 {
   if (!g->state) return;
-  g->plastic.state = g->state + (size_t)batch * KERNEL_LANES * CellStates(g);
+  g->plastic.state = g->state + (size_t)batch * KERNEL_LANES * ElasticityCellStates(g);
   g->plastic.lane  = lane;
 }
 
-/* Gathers the displacements of a batch, and makes its plastic state the one that the kernel sees. */
-static void GatherBatch(Elasticity e, CellGroup *g, PetscInt batch, const PetscReal *u, PetscReal *gathered)
+/*@
+  ElasticityGather - copies the displacements of the nodes of a batch, in the order of ElementKernel(), and selects its
+plastic state.
+
+  Not collective
+
+  Input Parameters:
++ e     - the elasticity
+. g     - a group
+. batch - of that group
+- u     - local displacements (length) [n_nodes*dim]
+
+  Output Parameter:
+. gathered - [nodes][dim][lanes]
+@*/
+void ElasticityGather(Elasticity e, CellGroup *g, PetscInt batch, const PetscReal *u, PetscReal *gathered)
 {
   const PetscInt *node = &g->node[(size_t)batch * g->nodes * KERNEL_LANES];
 
@@ -361,8 +382,32 @@ static void GatherBatch(Elasticity e, CellGroup *g, PetscInt batch, const PetscR
   SelectState(g, batch, 0);
 }
 
-/* Counts the cells of a batch that are not repetitions. */
-static int BatchCells(const CellGroup *g, PetscInt batch)
+/*@
+  ElasticityMultipliers - gives the present multipliers of a batch of mixed elements, or NULL where they have none.
+
+  Not collective
+
+  Input Parameters:
++ e     - the elasticity
+. g     - a group
+- batch - of that group
+@*/
+PetscReal *ElasticityMultipliers(Elasticity e, const CellGroup *g, PetscInt batch)
+{
+  if (g->multipliers < 0) return NULL;
+  return &e->state.multiplier[g->multipliers + batch * ElementPressures(&g->kernel) * KERNEL_LANES];
+}
+
+/*@
+  ElasticityBatchCells - counts the cells of a batch that are not repetitions.
+
+  Not collective
+
+  Input Parameters:
++ g     - a group
+- batch - of that group
+@*/
+int ElasticityBatchCells(const CellGroup *g, PetscInt batch)
 {
   return (int)PetscMin(KERNEL_LANES, g->n_cells - batch * KERNEL_LANES);
 }
@@ -370,7 +415,7 @@ static int BatchCells(const CellGroup *g, PetscInt batch)
 static void ScatterForce(Elasticity e, const CellGroup *g, PetscInt batch, PetscReal *f, PetscReal *force2)
 {
   const PetscInt *node  = &g->node[(size_t)batch * g->nodes * KERNEL_LANES];
-  const int       count = BatchCells(g, batch);
+  const int       count = ElasticityBatchCells(g, batch);
   PetscReal       sum   = 0;
 
   for (int a = 0; a < g->nodes; a++) {
@@ -421,11 +466,11 @@ PetscErrorCode ElasticityResidual(Elasticity e, const PetscReal *u, PetscReal *f
     for (PetscInt batch = 0; batch < g->n_batches; batch++) {
       const size_t first = (size_t)batch * KERNEL_LANES;
 
-      GatherBatch(e, g, batch, u, e->u);
+      ElasticityGather(e, g, batch, u, e->u);
       ElementKernel(&g->kernel, &g->X[first * dofs], e->u, NULL, &g->constants[first * g->kernel.n_constants],
-                    energy ? W : NULL, forces ? e->f : NULL, NULL, J);
+                    ElasticityMultipliers(e, g, batch), energy ? W : NULL, forces ? e->f : NULL, NULL, J);
       if (forces) ScatterForce(e, g, batch, f, force2);
-      for (int lane = 0; lane < BatchCells(g, batch); lane++) {
+      for (int lane = 0; lane < ElasticityBatchCells(g, batch); lane++) {
         if (energy) *energy += W[lane];
         if (J[lane] > 0) continue;
         *ok         = PETSC_FALSE;
@@ -478,7 +523,7 @@ static inline __attribute__((always_inline)) void ScatterTangent(Elasticity e, c
 @*/
 PetscErrorCode ElasticityTangent(Elasticity e, const PetscReal *u, const PressureReference *reference)
 {
-  const PressureReference gathered = {e->u_0, reference ? reference->rate : 0};
+  const PressureReference gathered = {e->u_0, reference ? reference->rate : 0, reference ? reference->held : 0};
   PetscReal               J[KERNEL_LANES];
 
   PetscFunctionBeginUser;
@@ -491,12 +536,13 @@ PetscErrorCode ElasticityTangent(Elasticity e, const PetscReal *u, const Pressur
 
     for (PetscInt batch = 0; batch < g->n_batches; batch++) {
       const size_t first = (size_t)batch * KERNEL_LANES;
-      const int    count = BatchCells(g, batch);
+      const int    count = ElasticityBatchCells(g, batch);
 
-      GatherBatch(e, g, batch, u, e->u);
-      if (extrapolates) GatherBatch(e, g, batch, reference->u, e->u_0);
+      ElasticityGather(e, g, batch, u, e->u);
+      if (extrapolates) ElasticityGather(e, g, batch, reference->u, e->u_0);
       ElementKernel(&g->kernel, &g->X[first * dofs], e->u, extrapolates ? &gathered : NULL,
-                    &g->constants[first * g->kernel.n_constants], NULL, NULL, e->K, J);
+                    &g->constants[first * g->kernel.n_constants], ElasticityMultipliers(e, g, batch), NULL, NULL, e->K,
+                    J);
       if (count < KERNEL_LANES)
         ScatterTangent(e, g, batch, e->dim, count);
       else if (e->dim == 3)
@@ -698,14 +744,17 @@ PetscErrorCode ElasticityMatrixJoin(Elasticity e, Mat C)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Coordinates and displacements of the nodes of one cell, and the constants of its law; its plastic state is selected
- */
+/* Coordinates and displacements of the nodes of one cell, the constants of its law, and its multipliers; its plastic
+   state is selected */
 static void GatherCell(Elasticity e, CellGroup *g, PetscInt slot, const PetscReal *u, PetscReal X[MAX_DOFS],
-                       PetscReal cell_u[MAX_DOFS], PetscReal constants[MATERIAL_MAX_CONSTANTS])
+                       PetscReal cell_u[MAX_DOFS], PetscReal constants[MATERIAL_MAX_CONSTANTS],
+                       PetscReal m[MIXED_PRESSURES])
 {
-  const size_t    batch = slot / KERNEL_LANES, lane = slot % KERNEL_LANES;
-  const PetscInt *nodes = &e->mesh->cell_nodes[e->mesh->cell_ptr[g->cell[slot]]];
+  const size_t     batch = slot / KERNEL_LANES, lane = slot % KERNEL_LANES;
+  const PetscInt  *nodes       = &e->mesh->cell_nodes[e->mesh->cell_ptr[g->cell[slot]]];
+  const PetscReal *multipliers = ElasticityMultipliers(e, g, (PetscInt)batch);
 
+  for (int k = 0; k < ElementPressures(&g->kernel); k++) m[k] = multipliers ? multipliers[k * KERNEL_LANES + lane] : 0;
   for (int a = 0; a < g->nodes; a++) {
     for (int i = 0; i < e->dim; i++) {
       X[a * e->dim + i]      = g->X[((batch * g->nodes + a) * e->dim + i) * KERNEL_LANES + lane];
@@ -740,10 +789,10 @@ PetscErrorCode ElasticityVolumeEnergy(Elasticity e, const PetscReal *u, PetscRea
     CellGroup *g = &e->groups[k];
 
     for (PetscInt slot = 0; slot < g->n_cells; slot++) {
-      PetscReal X[MAX_DOFS], cell_u[MAX_DOFS], constants[MATERIAL_MAX_CONSTANTS];
+      PetscReal X[MAX_DOFS], cell_u[MAX_DOFS], constants[MATERIAL_MAX_CONSTANTS], m[MIXED_PRESSURES];
 
-      GatherCell(e, g, slot, u, X, cell_u, constants);
-      *energy += ElementVolumeEnergy(&g->kernel, X, cell_u, constants);
+      GatherCell(e, g, slot, u, X, cell_u, constants, m);
+      *energy += ElementVolumeEnergy(&g->kernel, X, cell_u, constants, m);
     }
   }
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -756,10 +805,10 @@ static void AddCellStress(Elasticity e, CellGroup *g, PetscInt slot, const Petsc
   const Element  *element = ElementGet(g->kernel.type);
   const PetscInt *nodes   = &e->mesh->cell_nodes[e->mesh->cell_ptr[g->cell[slot]]];
   PetscReal       X[MAX_DOFS], cell_u[MAX_DOFS], point_stress[ELEMENT_MAX_POINTS * 6], point_volume[ELEMENT_MAX_POINTS],
-    constants[MATERIAL_MAX_CONSTANTS], volume = 0;
+    constants[MATERIAL_MAX_CONSTANTS], m[MIXED_PRESSURES], volume = 0;
 
-  GatherCell(e, g, slot, u, X, cell_u, constants);
-  ElementPointStress(&g->kernel, X, cell_u, constants, point_stress, point_volume);
+  GatherCell(e, g, slot, u, X, cell_u, constants, m);
+  ElementPointStress(&g->kernel, X, cell_u, constants, m, point_stress, point_volume);
   for (int p = 0; p < element->points; p++) volume += point_volume[p];
   for (int a = 0; a < g->nodes; a++) {
     weight[nodes[a]] += volume;
@@ -797,193 +846,6 @@ PetscErrorCode ElasticityNodalStress(Elasticity e, const PetscReal *u, PetscReal
   for (int g = 0; g < e->n_groups; g++) {
     for (PetscInt slot = 0; slot < e->groups[g].n_cells; slot++)
       AddCellStress(e, &e->groups[g], slot, u, stress, weight);
-  }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/*@
-  ElasticityAccept - makes the plastic state at given displacements the accepted one, from which all others start.
-
-  Not collective
-
-  Input Parameters:
-+ e - the elasticity
-- u - local displacements (length) [n_nodes*dim] of a state that is accepted
-
-  Note:
-  Residual, tangent and energy at u stay the same, up to round-off. Nothing happens where no body is plastic.
-@*/
-PetscErrorCode ElasticityAccept(Elasticity e, const PetscReal *u)
-{
-  PetscFunctionBeginUser;
-  for (int k = 0; k < e->n_groups; k++) {
-    CellGroup   *g    = &e->groups[k];
-    const size_t dofs = (size_t)g->nodes * e->dim;
-
-    for (PetscInt batch = 0; batch < g->n_batches && g->state; batch++) {
-      const size_t first = (size_t)batch * KERNEL_LANES;
-
-      GatherBatch(e, g, batch, u, e->u);
-      ElementAcceptState(&g->kernel, &g->X[first * dofs], e->u, &g->constants[first * g->kernel.n_constants]);
-    }
-  }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Copies the plastic state of a cell out of its group or into it. */
-static void CopyState(CellGroup *g, PetscInt slot, PetscBool out, PetscReal *values)
-{
-  const PetscInt end = slot == g->n_cells - 1 ? g->n_batches * KERNEL_LANES : slot + 1;
-
-  for (PetscInt s = slot; s < (out ? slot + 1 : end); s++) { /* the last batch repeats its last cell */
-    PetscReal *state = &g->state[(size_t)(s / KERNEL_LANES) * KERNEL_LANES * CellStates(g) + s % KERNEL_LANES];
-
-    for (size_t k = 0; k < CellStates(g); k++) {
-      if (out)
-        values[k] = state[k * KERNEL_LANES];
-      else
-        state[k * KERNEL_LANES] = values[k];
-    }
-  }
-}
-
-/*@
-  ElasticityArchive - saves or loads the plastic state.
-
-  Collective
-
-  Input Parameters:
-+ e       - the elasticity
-- archive - decides whether the state is saved or loaded
-
-  Note:
-  Nothing is saved where no body is plastic.
-@*/
-PetscErrorCode ElasticityArchive(Elasticity e, Archive archive)
-{
-  const Mesh mesh  = e->mesh;
-  PetscInt   width = 0;
-  PetscReal *values;
-  Hdf5Table  cells;
-
-  PetscFunctionBeginUser;
-  for (int k = 0; k < e->n_groups; k++) width = PetscMax(width, (PetscInt)CellStates(&e->groups[k]));
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &width, 1, MPIU_INT, MPI_MAX, mesh->comm));
-  if (!width) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PetscCalloc1(mesh->n_cells * width, &values));
-  PetscCall(Hdf5TableCreate(mesh->comm, mesh->n_cells_global, mesh->n_cells, mesh->cell_id, &cells));
-  for (PetscInt c = 0; c < mesh->n_cells && !ArchiveLoads(archive); c++)
-    CopyState(&e->groups[e->cell_group[c]], e->cell_slot[c], PETSC_TRUE, &values[c * width]);
-  PetscCall(ArchiveRows(archive, "model/plastic_state", &cells, (int)width, values));
-  for (PetscInt c = 0; c < mesh->n_cells && ArchiveLoads(archive); c++)
-    CopyState(&e->groups[e->cell_group[c]], e->cell_slot[c], PETSC_FALSE, &values[c * width]);
-  PetscCall(Hdf5TableDestroy(&cells));
-  PetscCall(PetscFree(values));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Gives volumes and equivalent plastic strains of the points of a cell; strains of elastic cells are 0. */
-static void CellPlasticStrain(Elasticity e, const CellGroup *g, PetscInt slot, PetscReal *volume, PetscReal *strain)
-{
-  const Element  *element = ElementGet(g->kernel.type);
-  const PetscInt *nodes   = &e->mesh->cell_nodes[e->mesh->cell_ptr[g->cell[slot]]];
-  PetscReal       X[MAX_DOFS];
-
-  for (int a = 0; a < g->nodes; a++)
-    for (int i = 0; i < e->dim; i++) X[a * e->dim + i] = e->mesh->coords[nodes[a] * e->dim + i];
-  ElementPointVolumes(g->kernel.type, e->dim, g->kernel.geometry, X, volume);
-  for (int p = 0; p < element->points; p++) {
-    const size_t first = (size_t)(slot / KERNEL_LANES) * KERNEL_LANES * CellStates(g) + slot % KERNEL_LANES;
-
-    strain[p] = g->state ? g->state[first + (size_t)(p * PLASTIC_STATE + PLASTIC_STRAIN) * KERNEL_LANES] : 0;
-  }
-}
-
-/*@
-  ElasticityNodalPlasticStrain - computes this rank's share of the equivalent plastic strain at the nodes.
-
-  Not collective
-
-  Input Parameter:
-. e - the elasticity
-
-  Output Parameters:
-+ strain - volume of the cells around a node times the strain there [n_nodes]
-- weight - volume of the cells around a node [n_nodes]
-
-  Note:
-  As in ElasticityNodalStress(). A fit that is negative counts as 0.
-@*/
-PetscErrorCode ElasticityNodalPlasticStrain(Elasticity e, PetscReal *strain, PetscReal *weight)
-{
-  PetscFunctionBeginUser;
-  PetscCall(PetscArrayzero(strain, e->mesh->n_nodes));
-  PetscCall(PetscArrayzero(weight, e->mesh->n_nodes));
-  for (PetscInt c = 0; c < e->mesh->n_cells; c++) {
-    const CellGroup *g       = &e->groups[e->cell_group[c]];
-    const Element   *element = ElementGet(g->kernel.type);
-    const PetscInt  *nodes   = &e->mesh->cell_nodes[e->mesh->cell_ptr[c]];
-    PetscReal        point_volume[ELEMENT_MAX_POINTS], point_strain[ELEMENT_MAX_POINTS], volume = 0;
-
-    CellPlasticStrain(e, g, e->cell_slot[c], point_volume, point_strain);
-    for (int p = 0; p < element->points; p++) volume += point_volume[p];
-    for (int a = 0; a < g->nodes; a++) {
-      PetscReal fit = 0;
-
-      for (int p = 0; p < element->points; p++) fit += element->fit[a][p] * point_strain[p];
-      strain[nodes[a]] += volume * PetscMax(fit, 0);
-      weight[nodes[a]] += volume;
-    }
-  }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/*@
-  ElasticityPlasticPoints - returns the number of quadrature points of this rank that have a plastic state.
-
-  Not collective
-
-  Input Parameter:
-. e - the elasticity
-@*/
-PetscInt64 ElasticityPlasticPoints(Elasticity e)
-{
-  PetscInt64 points = 0;
-
-  for (int k = 0; k < e->n_groups; k++)
-    points += (PetscInt64)e->groups[k].n_cells * (PetscInt64)CellStates(&e->groups[k]) / PLASTIC_STATE;
-  return points;
-}
-
-/*@
-  ElasticityPlasticWork - computes the plastic work of this rank's cells in the accepted state.
-
-  Not collective
-
-  Input Parameter:
-. e - the elasticity
-
-  Output Parameters:
-+ work   - integral of the yield stress over the plastic strain, summed over the points (energy)
-- strain - the largest equivalent plastic strain of a point
-@*/
-PetscErrorCode ElasticityPlasticWork(Elasticity e, PetscReal *work, PetscReal *strain)
-{
-  PetscFunctionBeginUser;
-  *work = *strain = 0;
-  for (PetscInt c = 0; c < e->mesh->n_cells; c++) {
-    const CellGroup *g = &e->groups[e->cell_group[c]];
-    PetscReal        volume[ELEMENT_MAX_POINTS], point_strain[ELEMENT_MAX_POINTS];
-
-    if (!g->state) continue;
-    CellPlasticStrain(e, g, e->cell_slot[c], volume, point_strain);
-    for (int p = 0; p < ElementGet(g->kernel.type)->points; p++) {
-      PetscReal slope, density;
-
-      (void)HardeningStress(g->plastic.hardening, point_strain[p], &slope, &density);
-      *work += volume[p] * density;
-      *strain = PetscMax(*strain, point_strain[p]);
-    }
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

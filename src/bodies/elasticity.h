@@ -6,8 +6,13 @@
    parallel AIJ matrix over the free dofs, ElasticityMultiplyLocal() multiplies it by local vectors for the prescribed
    dofs. ElasticityNodalStress() gives stresses for output.
 
-   Plastic bodies have an accepted state at each quadrature point. All evaluations start from it; ElasticityAccept()
-   alone changes it. ElasticityArchive() saves and loads it. */
+   Mixed elements whose volume is kept exactly, or nearly so, have multipliers (volumes.c). ElasticityFollow() changes
+   them in an iteration of Newton's method, ElasticityAugment() after a solve until the volume is right.
+   ElasticityAccept() keeps them with the accepted state, ElasticityRestore() returns to those kept.
+
+   Plastic bodies have an accepted state at each quadrature point. All evaluations start from it;
+   ElasticityAcceptPlastic() alone changes it. ElasticityArchivePlastic() saves and loads it. */
+
 #pragma once
 #include "files/archive.h"
 #include "kernels/pressurereference.h"
@@ -28,10 +33,17 @@ PetscErrorCode ElasticitySetSymmetric(Elasticity, PetscBool);
 PetscErrorCode ElasticityMatrix(Elasticity, Mat C, Vec diagonal, Mat *);
 PetscErrorCode ElasticityMatrixJoin(Elasticity, Mat C);
 PetscErrorCode ElasticityNodalStress(Elasticity, const PetscReal *u, PetscReal *stress, PetscReal *weight);
-PetscErrorCode ElasticityAccept(Elasticity, const PetscReal *u);
-PetscErrorCode ElasticityArchive(Elasticity, Archive);
+PetscErrorCode ElasticityAcceptPlastic(Elasticity, const PetscReal *u);
+PetscErrorCode ElasticityArchivePlastic(Elasticity, Archive);
 PetscErrorCode ElasticityNodalPlasticStrain(Elasticity, PetscReal *strain, PetscReal *weight);
 PetscInt64     ElasticityPlasticPoints(Elasticity);
 PetscErrorCode ElasticityPlasticWork(Elasticity, PetscReal *work, PetscReal *strain);
+PetscErrorCode ElasticityAugment(Elasticity, const PetscReal *u, PetscBool *holds);
+PetscErrorCode ElasticityFollow(Elasticity, const PetscReal *u, const PressureReference *);
+PetscErrorCode ElasticityAccept(Elasticity);
+PetscErrorCode ElasticityRestore(Elasticity);
+PetscErrorCode ElasticityArchive(Elasticity, Archive);
+PetscBool      ElasticityAugments(Elasticity);
+PetscErrorCode ElasticityCheckEnclosed(Elasticity, Scene, const PetscBool *prescribed);
 PetscReal      ElasticityCellModulus(Elasticity, PetscInt cell);
 PetscInt       ElasticityInvertedCell(Elasticity);

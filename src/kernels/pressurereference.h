@@ -15,4 +15,5 @@
 typedef struct {
   const double *u;    /* displacements of the earlier state (length) */
   double        rate; /* 1: the pressure there and its linear change on the way; 0: the pressure there alone */
+  int           held; /* 1: elements with multipliers have the pressure to which ElementFollow() has set these */
 } PressureReference;

@@ -3,6 +3,7 @@
 #include "base/complaint.h"
 #include "kernels/elementkernel.h"
 #include "mesh/mesh.h"
+#include <math.h>
 #include <string.h>
 
 /* Quality */
@@ -72,7 +73,7 @@ static PetscBool HasFormulation(Mesh mesh, Scene scene, PetscInt c)
   return (PetscBool)ElementKernelExists(&kernel);
 }
 
-/* Makes a body full for which the user has named no formulation, where no cell has the one that was chosen. */
+/* Makes a body full for which fbar was chosen, where no cell has it. */
 static PetscErrorCode DropFormulations(Mesh mesh, Scene scene)
 {
   PetscBool *has;
@@ -83,7 +84,8 @@ static PetscErrorCode DropFormulations(Mesh mesh, Scene scene)
     if (HasFormulation(mesh, scene, c)) has[mesh->cell_body[c]] = PETSC_TRUE;
   for (int b = 0; b < scene->n_bodies; b++) {
     PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &has[b], sizeof(PetscBool), MPI_BYTE, MPI_BOR, mesh->comm));
-    if (scene->bodies[b].chosen && !has[b]) scene->bodies[b].formulation = FORMULATION_FULL;
+    if (scene->bodies[b].chosen && scene->bodies[b].formulation == FORMULATION_FBAR && !has[b])
+      scene->bodies[b].formulation = FORMULATION_FULL;
   }
   PetscCall(PetscFree(has));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -96,7 +98,7 @@ static PetscErrorCode DropFormulations(Mesh mesh, Scene scene)
 
   Input Parameters:
 + mesh  - the mesh
-- scene - its bodies; where the user named no formulation, it becomes full if the chosen one exists for no cell
+- scene - its bodies; one for which fbar was chosen becomes full where no cell has it
 
   Note:
   The refusal names the cell's tag, its body and its element.
@@ -108,14 +110,18 @@ PetscErrorCode MeshCheckFormulations(Mesh mesh, Scene scene)
   PetscFunctionBeginUser;
   PetscCall(DropFormulations(mesh, scene));
   for (PetscInt c = 0; c < mesh->n_cells; c++) {
-    const SceneBody *body = &scene->bodies[mesh->cell_body[c]];
+    const SceneBody *body  = &scene->bodies[mesh->cell_body[c]];
+    const int        mixed = body->formulation == FORMULATION_MIXED;
 
-    if (body->chosen || HasFormulation(mesh, scene, c)) continue;
-    Complain(&complaint,
-             "%s: %s is for quad4 and hex8 only; cell %" PetscInt_FMT
-             " of body '%s' is %s, which needs formulation: full",
-             SceneWhere(scene, body->path, "formulation"), Formulations[body->formulation], mesh->cell_tag[c],
-             body->name, ElementGet(mesh->cell_type[c])->name);
+    if (HasFormulation(mesh, scene, c) || (body->chosen && !isinf(body->material.constants[0]))) continue;
+    Complain(&complaint, "%s: %s is %s; cell %" PetscInt_FMT " of body '%s' is %s, which needs %s",
+             SceneWhere(scene, body->path, mixed && body->chosen ? "material.nu" : "formulation"),
+             mixed && body->chosen ? "0.5 needs formulation: mixed, which" : Formulations[body->formulation],
+             mixed ? "not for tri3 and tet4" : "for quad4 and hex8 only", mesh->cell_tag[c], body->name,
+             ElementGet(mesh->cell_type[c])->name,
+             !mixed         ? "formulation: full"
+             : body->chosen ? "mesh.order: 2, or nu below 0.5"
+                            : "mesh.order: 2, or formulation: full");
   }
   PetscCall(ComplaintRefuse(mesh->comm, &complaint));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -106,6 +106,52 @@ static PetscErrorCode SceneReadMotion(Scene scene, const char *tool, Motion *mot
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Bulk modulus over shear modulus from which elements with full integration lock noticeably (nu = 0.475), so that
+   `auto` takes mixed ones. */
+static const double stiff_volume = 20;
+
+static int SceneStiffVolume(const SceneBody *body)
+{
+  const Material *material = &body->material;
+  const double    mu       = MaterialShear(material);
+
+  return material->constants[0] + (MaterialGetLaw(material->law)->isochoric ? 0 : 2 * mu / 3) > stiff_volume * mu;
+}
+
+/* Says whether mixed elements exist for the law of a body. With small strains all laws are Hooke's. */
+static int SceneLawSplits(Scene scene, const SceneBody *body)
+{
+  return scene->kinematics == KINEMATICS_SMALL || MaterialGetLaw(body->material.law)->separable;
+}
+
+static PetscErrorCode SceneReadFormulation(Scene scene, SceneBody *body)
+{
+  const int choice  = SchemaChoice(SceneDocument(scene), "%s.formulation", body->path);
+  const int plastic = MaterialGetLaw(body->material.law)->plastic;
+
+  PetscFunctionBeginUser;
+  body->chosen = choice == FORMULATIONS;
+  if (body->chosen && plastic)
+    body->formulation = scene->order == 2 ? FORMULATION_FULL : FORMULATION_FBAR;
+  else if (body->chosen)
+    body->formulation = SceneStiffVolume(body) && SceneLawSplits(scene, body) ? FORMULATION_MIXED : FORMULATION_FULL;
+  else
+    body->formulation = (Formulation)choice;
+  if ((body->formulation == FORMULATION_ENHANCED || body->formulation == FORMULATION_FBAR) && scene->order == 2)
+    PetscCall(SceneRefuse(scene, body->path, "formulation",
+                          "is for first-order elements; allowed with mesh.order: 2: full | mixed",
+                          Formulations[body->formulation]));
+  if (body->formulation == FORMULATION_MIXED && plastic)
+    PetscCall(SceneRefuse(scene, body->path, "formulation",
+                          "is not for plastic bodies; allowed with von_mises: full | enhanced | fbar | auto",
+                          Formulations[body->formulation]));
+  if (body->formulation == FORMULATION_MIXED && !SceneLawSplits(scene, body))
+    PetscCall(SceneRefuse(scene, body->path, "formulation",
+                          "needs a law whose volume part is separate; allowed with svk: full | enhanced | fbar",
+                          Formulations[body->formulation]));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 static PetscErrorCode SceneReadBody(Scene scene, SceneBody *body)
 {
   static const char Needs[] = "a body is volume with material, or surface with rigid";
@@ -132,17 +178,7 @@ static PetscErrorCode SceneReadBody(Scene scene, SceneBody *body)
   }
   PetscCall(SceneReadMaterial(scene, body));
   PetscCall(SceneReadPlasticity(scene, body));
-  if (SceneHas(scene, body->path, "formulation"))
-    body->formulation = (Formulation)SchemaChoice(SceneDocument(scene), "%s.formulation", body->path);
-  else {
-    body->chosen = 1;
-    body->formulation =
-      MaterialGetLaw(body->material.law)->plastic && scene->order != 2 ? FORMULATION_FBAR : FORMULATION_FULL;
-  }
-  if (body->formulation != FORMULATION_FULL && scene->order == 2)
-    PetscCall(SceneRefuse(scene, body->path, "formulation",
-                          "is for first-order elements; allowed with mesh.order: 2: full",
-                          Formulations[body->formulation]));
+  PetscCall(SceneReadFormulation(scene, body));
   PetscCall(SceneCheckIncompressible(scene, body));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -27,8 +27,8 @@ typedef struct {
   char       *name;        /* physical group, which is a volume, or a surface for a rigid tool */
   int         rigid;       /* 1 for a meshed rigid tool, which has no material */
   Material    material;    /* of a deformable body */
-  Formulation formulation; /* formulations other than full exist for quad4 and hex8 only */
-  int         chosen;      /* 1: the user names no formulation; cells for which it does not exist are full */
+  Formulation formulation; /* enhanced and fbar exist for quad4 and hex8 only, mixed not for tri3 and tet4 */
+  int         chosen;      /* 1 if `auto` chose the formulation: cells that have none of it take full */
   Motion      motion;      /* of a rigid tool */
 } SceneBody;
 

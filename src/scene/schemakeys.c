@@ -75,9 +75,12 @@ const SchemaKey SchemaKeys[] = {
   {"bodies.*.material.hardening.swift.strength", REAL, REQUIRED, .range = "(0, inf)", .unit = "stress",
    .help = "yield stress at e0 + strain = 1"},
   {"bodies.*.material.hardening.swift.exponent", REAL, REQUIRED, .range = "(0, 1]", .help = "exponent"},
-  {"bodies.*.formulation", CHOICE, .values = "full | enhanced | fbar",
-   .help = "formulation of first-order quadrilaterals and bricks; enhanced bends without locking, and fbar is for "
-           "nearly incompressible laws; the default is full, and fbar for von_mises, because plastic flow keeps volumes"},
+  {"bodies.*.formulation", CHOICE, .values = "full | enhanced | fbar | mixed | auto", .preset = "auto",
+   .help = "formulation of the elements; enhanced and fbar are for first-order quadrilaterals and bricks, of which "
+           "enhanced bends without locking and fbar keeps its volume without locking. mixed has pressures of its own, "
+           "for materials that keep their volume nearly or exactly: all elements but first-order triangles and "
+           "tetrahedra. auto: mixed where the bulk modulus is above 20 times the shear modulus (nu above 0.475), "
+           "otherwise full; von_mises takes fbar at order 1 and full at order 2"},
   {"bodies.*.surface", TEXT, .help = "physical surface of a rigid tool; needs rigid"},
   {"bodies.*.rigid", MAP, .help = "makes the surface a meshed rigid tool"},
   {"bodies.*.rigid.point", POINT, .unit = "length",

@@ -14,6 +14,7 @@ const char *const SolveResults[] = {
   "contact was lost behind a master",
   "nothing holds a body against its load",
   "the penetrations did not come into the window of the adjusted penalty",
+  "the volumes of incompressible bodies did not settle",
   "the places that a fluid wets did not settle",
   "a fluid leaks, and the step is too long to say at which pressure",
   "a fluid leaks",
@@ -195,7 +196,7 @@ PetscErrorCode ModelAccept(Model model)
   PetscBool       ok;
 
   PetscFunctionBeginUser;
-  PetscCall(ElasticityAccept(model->problem->elasticity, model->u));
+  PetscCall(ElasticityAcceptPlastic(model->problem->elasticity, model->u));
   if (model->balance) PetscCall(EnergyBalanceAdd(model->balance, work->accepted_u, model->u));
   PetscCall(ProblemResidual(model->problem, model->u, model->t, model->t, &ok));
   PetscCall(ProblemMotion(model->problem, work->accepted_u, work->accepted_t, model->u, model->t, &motion));
@@ -209,6 +210,7 @@ PetscErrorCode ModelAccept(Model model)
   if (work->extrapolation) PetscCall(ExtrapolationAdd(work->extrapolation, model->u, model->t));
   if (work->extrapolation && SceneBreaks(model->scene, model->t)) PetscCall(ExtrapolationForget(work->extrapolation));
   work->looked_ahead = PETSC_FALSE;
+  PetscCall(ElasticityAccept(model->problem->elasticity));
   if (model->problem->bodies) PetscCall(FreeBodiesAccept(model->problem->bodies, model->problem->springs));
   PetscCall(FluidAccept(model->problem->fluids, model->u, model->t));
   if (model->contact) {
@@ -239,6 +241,7 @@ PetscErrorCode ModelRestore(Model model)
   PetscCall(VecCopy(work->accepted_x, model->x));
   PetscCall(LinearSolverRenew(work->solver)); /* a step that starts from a look-ahead would not do so itself */
   model->t = work->accepted_t;
+  PetscCall(ElasticityRestore(model->problem->elasticity));
   PetscCall(FluidRestore(model->problem->fluids, model->u, model->t));
   if (model->contact) {
     PetscCall(ContactRestore(model->contact));
@@ -286,11 +289,12 @@ PetscErrorCode ModelArchive(Model model, Archive archive)
     model->t      = work->accepted_t;
     work->settled = (PetscBool)(work->accepted_t == 0);
   }
+  PetscCall(ElasticityArchive(model->problem->elasticity, archive));
   PetscCall(ModelArchivePenaltyError(model, archive));
   PetscCall(LinearCheckArchive(model->linear, archive));
   if (model->problem->bodies) PetscCall(FreeBodiesArchive(model->problem->bodies, archive));
   if (model->contact) PetscCall(ContactArchive(model->contact, archive, model->u, model->t));
-  PetscCall(ElasticityArchive(model->problem->elasticity, archive));
+  PetscCall(ElasticityArchivePlastic(model->problem->elasticity, archive));
   if (model->balance) PetscCall(EnergyBalanceArchive(model->balance, archive, work->accepted_u));
   PetscCall(FluidArchive(model->problem->fluids, archive));
   if (!ArchiveLoads(archive)) PetscFunctionReturn(PETSC_SUCCESS);
@@ -344,10 +348,11 @@ PetscErrorCode ModelEffects(Model model, char *text, size_t size)
     body_force = (PetscBool)(body_force || scene->loads[l].kind == LOAD_BODY_FORCE);
   for (int c = 0; c < scene->n_contacts; c++)
     surface = (PetscBool)(surface || scene->contacts[c].formulation == CONTACT_SURFACE_TO_SURFACE);
-  PetscCall(PetscSNPrintf(text, size, "%s%s%s",
+  PetscCall(PetscSNPrintf(text, size, "%s%s%s%s",
                           scene->kinematics == KINEMATICS_FINITE ? "finite strain" : "small strain",
                           ProblemHasFormulation(model->problem, FORMULATION_ENHANCED) ? ", enhanced strains" : "",
-                          ProblemHasFormulation(model->problem, FORMULATION_FBAR) ? ", mean dilatation" : ""));
+                          ProblemHasFormulation(model->problem, FORMULATION_FBAR) ? ", mean dilatation" : "",
+                          ProblemHasFormulation(model->problem, FORMULATION_MIXED) ? ", mixed elements" : ""));
   if (ProblemIsPlastic(model->problem)) PetscCall(PetscStrlcat(text, ", plasticity", size));
   PetscCall(ModelContactEffects(scene, text, size));
   PetscCall(PetscStrlen(text, &start));

@@ -179,7 +179,28 @@ static PetscErrorCode ModelReference(Model model, PressureReference *reference)
   PetscCall(SNESGetLineSearch(model->snes, &search));
   PetscCall(SNESLineSearchGetLambda(search, &lambda));
   if (iteration > 0) work->shortened = (PetscBool)(lambda < 1);
-  *reference = work->shortened ? (PressureReference){work->solved, 0} : (PressureReference){work->from, 1};
+  *reference = work->shortened ? (PressureReference){work->solved, 0, 0} : (PressureReference){work->from, 1, 0};
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Lets the multipliers of incompressible bodies take part in Newton's iteration: their pressures become those of the
+   linear step that led to the iterate, and the residual of SNES is that of these pressures. Without an energy the line
+   search compares residuals, and SNES knows the norm of the one before. The multipliers then change after solves only.
+   They did so just now where the iterate is a solution. */
+static PetscErrorCode ModelFollow(Model model, Vec x, PressureReference *reference)
+{
+  Vec F;
+
+  PetscFunctionBeginUser;
+  if (!ElasticityAugments(model->problem->elasticity) || !LoadsConservative(model->problem->loads))
+    PetscFunctionReturn(PETSC_SUCCESS);
+  if (!model->work->augmented) {
+    PetscCall(ElasticityFollow(model->problem->elasticity, model->problem->trial, reference));
+    PetscCall(SNESGetFunction(model->snes, &F, NULL, NULL));
+    PetscCall(ModelFunction(model->snes, x, F, model));
+  }
+  model->work->augmented = PETSC_FALSE;
+  reference->held        = 1;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -194,7 +215,10 @@ static PetscErrorCode ModelJacobian(SNES snes, Vec x, Mat J, Mat P, void *contex
   (void)J;
   (void)P;
   PetscCall(ProblemSetTrial(model->problem, x, model->t));
-  if (model->work->from) PetscCall(ModelReference(model, &reference));
+  if (model->work->from) {
+    PetscCall(ModelReference(model, &reference));
+    PetscCall(ModelFollow(model, x, &reference));
+  }
   PetscCall(ModelTangent(model, model->problem->trial, model->work->from ? &reference : NULL, model->t));
   PetscCall(ModelStepFrom(model, model->problem->trial));
   PetscFunctionReturn(PETSC_SUCCESS);

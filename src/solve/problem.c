@@ -34,6 +34,7 @@ PetscErrorCode ProblemCreate(Scene scene, Mesh mesh, Problem *out)
   PetscCall(LoadsCreate(mesh, scene, &problem->loads));
   PetscCall(ElasticityCreate(mesh, scene, &problem->elasticity));
   PetscCall(ElasticitySetSymmetric(problem->elasticity, LoadsConservative(problem->loads)));
+  PetscCall(ElasticityCheckEnclosed(problem->elasticity, scene, LoadsConstrained(problem->loads)));
   if (scene->n_contacts) PetscCall(ContactCreate(mesh, scene, problem->elasticity, problem->loads, &problem->contact));
   PetscCall(FluidCreate(mesh, scene, problem->loads, problem->contact, &problem->fluids));
   PetscCall(PetscCalloc2(n, &problem->f, n, &problem->trial));

@@ -66,7 +66,7 @@ static void BatchCreate(Batch *b, KernelCase kernel)
 
 static void Evaluate(Batch *b, double *W, double *f, double *K)
 {
-  ElementKernel(&b->kernel, b->X, b->u, NULL, b->constants, W, f, K, b->J);
+  ElementKernel(&b->kernel, b->X, b->u, NULL, b->constants, NULL, W, f, K, b->J);
 }
 
 /* All elements x geometries x formulations with a kernel, in small and in finite strains */
@@ -187,7 +187,7 @@ static void StressIsThatOfTheLane(void **unused)
       }
       for (int k = 0; k < 2; k++) constants[k] = b.constants[k * KERNEL_LANES + lane];
       b.plastic.lane = lane;
-      ElementPointStress(&b.kernel, X, u, constants, stress, volume);
+      ElementPointStress(&b.kernel, X, u, constants, NULL, stress, volume);
       for (int p = 0; p < b.e->points; p++) {
         const double *s = &stress[6 * p], mean = (s[0] + s[1] + s[2]) / 3;
         const double  strain = b.state[(p * PLASTIC_STATE + PLASTIC_STRAIN) * KERNEL_LANES + lane];

@@ -46,6 +46,13 @@ typedef struct {
   const double     *u_0;  /* displacements from which K extrapolates the pressure, or NULL */
   double            rate; /* of PressureReference */
   double           *W, *f, *K, *J, *H;
+  /* Of mixed elements: the part kappa of the modulus of the volume, shear modulus, multipliers or NULL, and results or
+     NULL: theta [MIXED_PRESSURES], which mixedkernel.c explains, the pressure at the points of H, and the
+     pressures extrapolated from u_0 [MIXED_PRESSURES]. constants[0] is then the local part of VolumeModuli. */
+  Lanes         kappa, mu, rest; /* rest: 1 - kappa / projected part */
+  const double *multiplier;
+  int           held; /* of PressureReference */
+  double       *theta, *pressure, *follow;
 } BatchCall;
 
 /* Computes the reference gradients of all nodes at a point with shape functions N and dN. They become point q of the
@@ -252,3 +259,5 @@ typedef void BatchFn(const BatchCall *);
 /* Instances by element and geometry (1 is axisymmetric), NULL where a formulation has none */
 extern BatchFn *const enhanced_batches[ELEMENT_TYPES][2];
 extern BatchFn *const mean_dilatation_batches[ELEMENT_TYPES][2];
+extern BatchFn *const mixed_batches[ELEMENT_TYPES][2];
+extern const int      mixed_pressures[ELEMENT_TYPES];

@@ -55,6 +55,7 @@ typedef struct _n_ModelWork {
   PetscReal energy;       /* the last energy that the line search evaluated; 0: none */
   PetscInt  renewed;      /* times that a slave point slid out of its lists and new lists were made */
   PetscInt  cycles;       /* times that the contact set repeated itself */
+  PetscBool augmented;    /* multipliers of the volume were changed at the solution from which the next solve starts */
   char      cycle[256];   /* the last repetition in words */
 
   PetscReal *solved;    /* local displacements (length) at the last equilibrium; NULL: no pressures are extrapolated */

@@ -1,0 +1,191 @@
+/* The plastic states of an elasticity: acceptance, archive, and what reports need of them. */
+#include "elasticityimpl.h"
+
+/*@
+  ElasticityAcceptPlastic - makes the plastic state at given displacements the accepted one, from which all others
+start.
+
+  Not collective
+
+  Input Parameters:
++ e - the elasticity
+- u - local displacements (length) [n_nodes*dim] of a state that is accepted
+
+  Note:
+  Residual, tangent and energy at u stay the same, up to round-off. Nothing happens where no body is plastic.
+@*/
+PetscErrorCode ElasticityAcceptPlastic(Elasticity e, const PetscReal *u)
+{
+  PetscFunctionBeginUser;
+  for (int k = 0; k < e->n_groups; k++) {
+    CellGroup   *g    = &e->groups[k];
+    const size_t dofs = (size_t)g->nodes * e->dim;
+
+    for (PetscInt batch = 0; batch < g->n_batches && g->state; batch++) {
+      const size_t first = (size_t)batch * KERNEL_LANES;
+
+      ElasticityGather(e, g, batch, u, e->u);
+      ElementAcceptState(&g->kernel, &g->X[first * dofs], e->u, &g->constants[first * g->kernel.n_constants]);
+    }
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Copies the plastic state of a cell out of its group or into it. */
+static void CopyState(CellGroup *g, PetscInt slot, PetscBool out, PetscReal *values)
+{
+  const PetscInt end = slot == g->n_cells - 1 ? g->n_batches * KERNEL_LANES : slot + 1;
+
+  for (PetscInt s = slot; s < (out ? slot + 1 : end); s++) { /* the last batch repeats its last cell */
+    PetscReal *state =
+      &g->state[(size_t)(s / KERNEL_LANES) * KERNEL_LANES * ElasticityCellStates(g) + s % KERNEL_LANES];
+
+    for (size_t k = 0; k < ElasticityCellStates(g); k++) {
+      if (out)
+        values[k] = state[k * KERNEL_LANES];
+      else
+        state[k * KERNEL_LANES] = values[k];
+    }
+  }
+}
+
+/*@
+  ElasticityArchivePlastic - saves or loads the plastic state.
+
+  Collective
+
+  Input Parameters:
++ e       - the elasticity
+- archive - decides whether the state is saved or loaded
+
+  Note:
+  Nothing is saved where no body is plastic.
+@*/
+PetscErrorCode ElasticityArchivePlastic(Elasticity e, Archive archive)
+{
+  const Mesh mesh  = e->mesh;
+  PetscInt   width = 0;
+  PetscReal *values;
+  Hdf5Table  cells;
+
+  PetscFunctionBeginUser;
+  for (int k = 0; k < e->n_groups; k++) width = PetscMax(width, (PetscInt)ElasticityCellStates(&e->groups[k]));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &width, 1, MPIU_INT, MPI_MAX, mesh->comm));
+  if (!width) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscCalloc1(mesh->n_cells * width, &values));
+  PetscCall(Hdf5TableCreate(mesh->comm, mesh->n_cells_global, mesh->n_cells, mesh->cell_id, &cells));
+  for (PetscInt c = 0; c < mesh->n_cells && !ArchiveLoads(archive); c++)
+    CopyState(&e->groups[e->cell_group[c]], e->cell_slot[c], PETSC_TRUE, &values[c * width]);
+  PetscCall(ArchiveRows(archive, "model/plastic_state", &cells, (int)width, values));
+  for (PetscInt c = 0; c < mesh->n_cells && ArchiveLoads(archive); c++)
+    CopyState(&e->groups[e->cell_group[c]], e->cell_slot[c], PETSC_FALSE, &values[c * width]);
+  PetscCall(Hdf5TableDestroy(&cells));
+  PetscCall(PetscFree(values));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Gives volumes and equivalent plastic strains of the points of a cell; strains of elastic cells are 0. */
+static void CellPlasticStrain(Elasticity e, const CellGroup *g, PetscInt slot, PetscReal *volume, PetscReal *strain)
+{
+  const Element  *element = ElementGet(g->kernel.type);
+  const PetscInt *nodes   = &e->mesh->cell_nodes[e->mesh->cell_ptr[g->cell[slot]]];
+  PetscReal       X[MAX_DOFS];
+
+  for (int a = 0; a < g->nodes; a++)
+    for (int i = 0; i < e->dim; i++) X[a * e->dim + i] = e->mesh->coords[nodes[a] * e->dim + i];
+  ElementPointVolumes(g->kernel.type, e->dim, g->kernel.geometry, X, volume);
+  for (int p = 0; p < element->points; p++) {
+    const size_t first = (size_t)(slot / KERNEL_LANES) * KERNEL_LANES * ElasticityCellStates(g) + slot % KERNEL_LANES;
+
+    strain[p] = g->state ? g->state[first + (size_t)(p * PLASTIC_STATE + PLASTIC_STRAIN) * KERNEL_LANES] : 0;
+  }
+}
+
+/*@
+  ElasticityNodalPlasticStrain - computes this rank's share of the equivalent plastic strain at the nodes.
+
+  Not collective
+
+  Input Parameter:
+. e - the elasticity
+
+  Output Parameters:
++ strain - volume of the cells around a node times the strain there [n_nodes]
+- weight - volume of the cells around a node [n_nodes]
+
+  Note:
+  As in ElasticityNodalStress(). A fit that is negative counts as 0.
+@*/
+PetscErrorCode ElasticityNodalPlasticStrain(Elasticity e, PetscReal *strain, PetscReal *weight)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscArrayzero(strain, e->mesh->n_nodes));
+  PetscCall(PetscArrayzero(weight, e->mesh->n_nodes));
+  for (PetscInt c = 0; c < e->mesh->n_cells; c++) {
+    const CellGroup *g       = &e->groups[e->cell_group[c]];
+    const Element   *element = ElementGet(g->kernel.type);
+    const PetscInt  *nodes   = &e->mesh->cell_nodes[e->mesh->cell_ptr[c]];
+    PetscReal        point_volume[ELEMENT_MAX_POINTS], point_strain[ELEMENT_MAX_POINTS], volume = 0;
+
+    CellPlasticStrain(e, g, e->cell_slot[c], point_volume, point_strain);
+    for (int p = 0; p < element->points; p++) volume += point_volume[p];
+    for (int a = 0; a < g->nodes; a++) {
+      PetscReal fit = 0;
+
+      for (int p = 0; p < element->points; p++) fit += element->fit[a][p] * point_strain[p];
+      strain[nodes[a]] += volume * PetscMax(fit, 0);
+      weight[nodes[a]] += volume;
+    }
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ElasticityPlasticPoints - returns the number of quadrature points of this rank that have a plastic state.
+
+  Not collective
+
+  Input Parameter:
+. e - the elasticity
+@*/
+PetscInt64 ElasticityPlasticPoints(Elasticity e)
+{
+  PetscInt64 points = 0;
+
+  for (int k = 0; k < e->n_groups; k++)
+    points += (PetscInt64)e->groups[k].n_cells * (PetscInt64)ElasticityCellStates(&e->groups[k]) / PLASTIC_STATE;
+  return points;
+}
+
+/*@
+  ElasticityPlasticWork - computes the plastic work of this rank's cells in the accepted state.
+
+  Not collective
+
+  Input Parameter:
+. e - the elasticity
+
+  Output Parameters:
++ work   - integral of the yield stress over the plastic strain, summed over the points (energy)
+- strain - the largest equivalent plastic strain of a point
+@*/
+PetscErrorCode ElasticityPlasticWork(Elasticity e, PetscReal *work, PetscReal *strain)
+{
+  PetscFunctionBeginUser;
+  *work = *strain = 0;
+  for (PetscInt c = 0; c < e->mesh->n_cells; c++) {
+    const CellGroup *g = &e->groups[e->cell_group[c]];
+    PetscReal        volume[ELEMENT_MAX_POINTS], point_strain[ELEMENT_MAX_POINTS];
+
+    if (!g->state) continue;
+    CellPlasticStrain(e, g, e->cell_slot[c], volume, point_strain);
+    for (int p = 0; p < ElementGet(g->kernel.type)->points; p++) {
+      PetscReal slope, density;
+
+      (void)HardeningStress(g->plastic.hardening, point_strain[p], &slope, &density);
+      *work += volume[p] * density;
+      *strain = PetscMax(*strain, point_strain[p]);
+    }
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
