@@ -358,10 +358,10 @@ static PetscErrorCode NodalMean(Elasticity e, Mesh mesh, const PetscReal *u, Pet
 static void Errors(const Rule *rule, const Case *test, Mesh mesh, const PetscReal *u, const PetscReal *mean,
                    PetscReal error[QUANTITIES])
 {
-  const Element   *e           = ElementGet(test->type);
-  const KernelCase kernel      = {test->type, test->geometry, KINEMATICS_SMALL, MATERIAL_LINEAR, FORMULATION_MIXED, 0, NULL};
-  const PetscReal  compression = young / (3 * (1 - 2 * poisson)); /* bulk modulus */
-  const Material   material    = MaterialFromModuli(MATERIAL_LINEAR, young, poisson);
+  const Element   *e      = ElementGet(test->type);
+  const KernelCase kernel = {test->type, test->geometry, KINEMATICS_SMALL, MATERIAL_LINEAR, FORMULATION_MIXED, 0, NULL};
+  const PetscReal  compression         = young / (3 * (1 - 2 * poisson)); /* bulk modulus */
+  const Material   material            = MaterialFromModuli(MATERIAL_LINEAR, young, poisson);
   PetscReal        sum[2 * QUANTITIES] = {0};
 
   for (PetscInt c = 0; c < mesh->n_cells; c++) {

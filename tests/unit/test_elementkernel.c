@@ -128,8 +128,8 @@ static int NextCase(KernelCase *kernel)
     if (ElementKernelExists(kernel)) return 1;
   }
   kernel->n_constants = 0;
-  kernel->law        = MATERIAL_LINEAR;
-  kernel->kinematics = KINEMATICS_SMALL;
+  kernel->law         = MATERIAL_LINEAR;
+  kernel->kinematics  = KINEMATICS_SMALL;
   while (++kernel->formulation < FORMULATIONS) {
     if (ElementKernelExists(kernel)) return 1;
   }
