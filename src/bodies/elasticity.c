@@ -33,7 +33,7 @@ struct _n_Elasticity {
   PetscReal *cell_modulus;
   PetscInt  *row, *column; /* block CSR over local nodes, columns ascending */
   PetscReal *value;        /* dim x dim blocks, row-major, in the order of column */
-  PetscReal *u, *u_0;      /* of one batch, aligned to cache lines; u_0: of the state that pressures come from */
+  PetscReal *u, *u_0;      /* of one batch, aligned to cache lines; u_0: of the state that stresses come from */
   PetscReal *f, *K;        /* of one batch */
   void      *buffer;       /* what u, u_0, f and K are in */
   PetscInt   inverted;     /* a local cell that the last residual found inverted, or -1 */
@@ -436,12 +436,12 @@ static inline __attribute__((always_inline)) void ScatterTangent(Elasticity e, c
   Input Parameters:
 + e         - the elasticity
 . u         - local displacements (length) [n_nodes*dim]
-- reference - the state from which pressures are extrapolated, u as above; NULL: the tangent has the pressures of u
+- reference - the state from which stresses are extrapolated, u as above; NULL: the tangent has the stresses of u
 @*/
-PetscErrorCode ElasticityTangent(Elasticity e, const PetscReal *u, const PressureReference *reference)
+PetscErrorCode ElasticityTangent(Elasticity e, const PetscReal *u, const StressReference *reference)
 {
-  const PressureReference gathered = {e->u_0, reference ? reference->rate : 0};
-  PetscReal               J[KERNEL_LANES];
+  const StressReference gathered = {e->u_0, reference ? reference->rate : 0};
+  PetscReal             J[KERNEL_LANES];
 
   PetscFunctionBeginUser;
   PetscCall(PetscLogEventBegin(event_tangent, 0, 0, 0, 0));
@@ -472,7 +472,7 @@ PetscErrorCode ElasticityTangent(Elasticity e, const PetscReal *u, const Pressur
 }
 
 /*@
-  ElasticityExtrapolates - says whether a PressureReference changes the tangent of any of this rank's cells.
+  ElasticityExtrapolates - says whether a StressReference changes the tangent of any of this rank's cells.
 
   Not collective
 

@@ -8,7 +8,7 @@
    ElementQuality() and CellVolume() a shape, FaceLoadKernel() and BodyForceKernel() the loads, FaceAreaKernel() the
    areas of a face's nodes.
 
-   K may extrapolate the pressure of its geometric part from an earlier state (pressurereference.h), where
+   K may extrapolate the stress of its geometric part from an earlier state (stressreference.h), where
    ElementExtrapolates().
 
    Source of the forms: Bonet and Wood, "Nonlinear Continuum Mechanics for Finite Element Analysis". */
@@ -16,7 +16,7 @@
 #include "kernels/element.h"
 #include "kernels/formulation.h"
 #include "kernels/material.h"
-#include "kernels/pressurereference.h"
+#include "kernels/stressreference.h"
 
 /* Number of elements in a batch. It must be a multiple of LANES, which is 8 at most. */
 enum { KERNEL_LANES = 8 };
@@ -30,7 +30,7 @@ typedef struct {
   int         n_constants; /* of the law; 0: as many as MaterialGetLaw() says */
 } KernelCase;
 
-void   ElementKernel(const KernelCase *, const double *X, const double *u, const PressureReference *,
+void   ElementKernel(const KernelCase *, const double *X, const double *u, const StressReference *,
                      const double *constants, double *W, double *f, double *K, double *J);
 int    ElementKernelExists(const KernelCase *);
 int    ElementExtrapolates(const KernelCase *);

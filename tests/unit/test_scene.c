@@ -203,8 +203,8 @@ static void ContactsArrive(void **state)
   assert_string_equal(contact->master, "die");
   assert_int_equal(contact->n_symmetry, 2);
   assert_string_equal(contact->symmetry[1], "symmetry_z");
-  assert_true(contact->feature_angle == 30 && contact->stabilise == STABILISE_TRUE && !contact->penalty_auto && contact->penalty == 1e5 &&
-              contact->penalty_scale == 10);
+  assert_true(contact->feature_angle == 30 && contact->stabilise == STABILISE_TRUE && !contact->penalty_auto &&
+              contact->penalty == 1e5 && contact->penalty_scale == 10);
   assert_true(contact->adjust && !contact->adjust_converged && contact->window_in_spacings && contact->g_min == 1e-6 &&
               contact->g_max == 5e-6);
   assert_true(contact->clamp == 10 && contact->range == 100);

@@ -57,7 +57,7 @@ typedef struct _n_ModelWork {
   PetscInt  cycles;       /* times that the contact set repeated itself */
   char      cycle[256];   /* the last repetition in words */
 
-  PetscReal *solved;    /* local displacements (length) at the last equilibrium; NULL: no pressures are extrapolated */
+  PetscReal *solved;    /* local displacements (length) at the last equilibrium; NULL: no stresses are extrapolated */
   PetscReal *from;      /* those from which the last step led to the iterate */
   PetscBool  shortened; /* that step was shortened */
 
@@ -85,7 +85,7 @@ PetscErrorCode ModelFindJump(Model, SolveReport *);
 PetscErrorCode ModelCreateSNES(Model);
 PetscErrorCode ModelStepFrom(Model, const PetscReal *u);
 PetscErrorCode ModelStepFromSolved(Model, const PetscReal *u);
-PetscErrorCode ModelTangent(Model, const PetscReal *u, const PressureReference *, PetscReal t);
+PetscErrorCode ModelTangent(Model, const PetscReal *u, const StressReference *, PetscReal t);
 PetscErrorCode ModelLinearFailure(Model, SolveResult *);
 PetscErrorCode ModelNewton(Model, SolveReport *);
 /* prediction.c */
