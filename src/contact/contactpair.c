@@ -315,6 +315,7 @@ PetscErrorCode ContactPairDestroy(ContactPair *pair)
   PetscCall(PetscFree(pair->before));
   PetscCall(AndersonDestroy(&pair->mixing));
   PetscCall(PetscFree2(pair->held, pair->predicted));
+  PetscCall(PetscFree(pair->carried));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -76,4 +76,6 @@ static void Extrapolate(const Lanes H[9], const Lanes H_0[9], double rate, const
 const ElasticLaw MaterialLaw_Svk = {.evaluate    = Evaluate,
                                     .extrapolate = Extrapolate,
                                     .shear       = MaterialLameShear,
-                                    .constants   = 2};
+                                    .constants   = 2,
+                                    .keys        = {"mu"},
+                                    .required    = 1};

@@ -25,6 +25,9 @@
 /* Penalties are stiffened at most this many times at one load parameter. The first time is enough where the error is
    proportional to the compliance of the penalty, which it is when it is small. */
 #define EQUILIBRIUM_MAX_STIFFEN 2
+/* A fluid may move this many times at one load parameter. It wets all places that it can at once, so that it moves a
+   few times only, and each move is a small load. */
+#define EQUILIBRIUM_MAX_FLUID 50
 
 /* Adds to the text that a slave node rests on an edge between facets. *found: such a node exists. */
 static PetscErrorCode ModelBlameFacets(Model model, char *text, size_t size, PetscBool *found)
@@ -75,7 +78,10 @@ static PetscErrorCode ModelExplainFailure(Model model, SolveReport *report)
   PetscCall(FailureLocate(model->mesh, model->problem->loads, model->contact, model->u, model->problem->f,
                           model->problem->inverted, &report->failure));
   report->failure.enhanced = ProblemHasFormulation(model->problem, FORMULATION_ENHANCED);
-  if (report->result == SOLVE_WINDOW || report->result == SOLVE_LOST)
+  if (report->result == SOLVE_LEAK || report->result == SOLVE_LEAKED)
+    FluidLeakText(model->problem->fluids, report->detail, sizeof(report->detail));
+  if (report->result == SOLVE_WINDOW || report->result == SOLVE_LOST || report->result == SOLVE_LEAK ||
+      report->result == SOLVE_LEAKED)
     PetscFunctionReturn(PETSC_SUCCESS); /* the report has its detail already */
   if (report->result == SOLVE_CYCLE) {
     PetscCall(PetscStrncpy(report->detail, report->cycle, sizeof(report->detail)));
@@ -147,6 +153,7 @@ static PetscErrorCode ModelDepart(Model model, PetscReal t)
   work->cycle[0]           = '\0';
   work->energy             = 0;
   ModelForgetPenaltyError(model);
+  PetscCall(FluidBegin(model->problem->fluids, work->accepted_u, t));
   PetscCall(ModelStepFromSolved(model, work->accepted_u));
   if (!model->contact) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(ProblemImposedMotion(model->problem, work->accepted_u, work->accepted_t, t, &motion));
@@ -364,6 +371,23 @@ static PetscErrorCode ModelCheckPenalty(Model model, SolveReport *report, Contac
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Lets the fluids move at the solution. *moved: the step must be solved on. A fluid that reaches its other end ends the
+   solve: how its pressure falls along a leak is not known. */
+static PetscErrorCode ModelMoveFluids(Model model, SolveReport *report, PetscBool *moved)
+{
+  const Fluids fluids = model->problem->fluids;
+  PetscBool    leaks, closely;
+
+  PetscFunctionBeginUser;
+  PetscCall(FluidMove(fluids, model->problem->trial, model->t, moved));
+  PetscCall(FluidReaches(fluids, model->work->accepted_t, model->t, model->scene->stepping.dt_min, &leaks, &closely));
+  if (leaks)
+    report->result = closely ? SOLVE_LEAKED : SOLVE_LEAK;
+  else if (*moved && report->wetted++ == EQUILIBRIUM_MAX_FLUID)
+    report->result = SOLVE_FLUID;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /*@
   ModelSolve - finds equilibrium at a load parameter, starting from the accepted state.
 
@@ -390,6 +414,7 @@ PetscErrorCode ModelSolve(Model model, PetscReal t, SolveReport *report)
 {
   ModelWork         *work   = model->work;
   ContactWindowState window = WINDOW_MISSED;
+  PetscBool          moved;
 
   PetscFunctionBeginUser;
   *report = (SolveReport){.result = SOLVE_CONVERGED};
@@ -403,6 +428,8 @@ PetscErrorCode ModelSolve(Model model, PetscReal t, SolveReport *report)
   while (window == WINDOW_MISSED && report->result == SOLVE_CONVERGED) {
     PetscCall(ModelSolveHeld(model, report));
     if (report->result != SOLVE_CONVERGED || !model->contact) break;
+    PetscCall(ModelMoveFluids(model, report, &moved));
+    if (moved || report->result != SOLVE_CONVERGED) continue;
     PetscCall(ContactAdjustPenalty(model->contact, &window));
     report->adjusted += window == WINDOW_MISSED;
     if (window == WINDOW_AT_BOUND) {
@@ -453,5 +480,6 @@ PetscErrorCode ModelLookAhead(Model model, PetscReal t, PetscReal *u, SolveRepor
   model->work->look_ahead_extrapolated = model->work->extrapolated;
   model->work->looked_ahead            = report->result == SOLVE_CONVERGED ? PETSC_TRUE : PETSC_FALSE;
   model->t                             = model->work->accepted_t;
+  PetscCall(FluidRestore(model->problem->fluids, model->work->accepted_u, model->t));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

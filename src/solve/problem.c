@@ -35,6 +35,7 @@ PetscErrorCode ProblemCreate(Scene scene, Mesh mesh, Problem *out)
   PetscCall(ElasticityCreate(mesh, scene, &problem->elasticity));
   PetscCall(ElasticitySetSymmetric(problem->elasticity, LoadsConservative(problem->loads)));
   if (scene->n_contacts) PetscCall(ContactCreate(mesh, scene, problem->elasticity, problem->loads, &problem->contact));
+  PetscCall(FluidCreate(mesh, scene, problem->loads, problem->contact, &problem->fluids));
   PetscCall(PetscCalloc2(n, &problem->f, n, &problem->trial));
   PetscCall(ElasticityTangent(problem->elasticity, problem->trial, NULL));
   PetscCall(ElasticityMatrix(problem->elasticity, NULL, NULL, &problem->P));
@@ -64,6 +65,7 @@ PetscErrorCode ProblemDestroy(Problem *problem)
   if (!p) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(ContactSpringsDestroy(&p->springs));
   PetscCall(FreeBodiesDestroy(&p->bodies));
+  PetscCall(FluidDestroy(&p->fluids));
   PetscCall(FreeModesDestroy(&p->modes));
   PetscCall(MatDestroy(&p->A));
   PetscCall(VecDestroy(&p->diagonal));

@@ -69,6 +69,7 @@ FULL = {
     f"{PYTHON} scripts/study.py runs/hertz_line.yaml --vary contact.0.smoother=facet,diffuse "
     f"--vary mesh.parameters.h=0.8,0.4,0.2 --measure peak_pressure --reference finest {STUDY}",
     f"{PYTHON} scripts/ring_pictures.py": f"{PYTHON} scripts/ring_pictures.py {BURNISH} --out $WORK/out/rings",
+    f"{PYTHON} scripts/seal_pictures.py": f"{PYTHON} scripts/seal_pictures.py {BURNISH} --out $WORK/out/seal",
     f"{PYTHON} scripts/ring_table.py plane": table("ring_table", "plane"),
     f"{PYTHON} scripts/ring_table.py plane12 matching solid spheres": printed("ring_table", "formulations", "plane12"),
     f"{PYTHON} scripts/ring_table.py --record runs/records/offsets.csv offsets":

@@ -8,6 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include "eigenvalues.h"
+#include "laws.h"
 #include "kernels/elementkernel.h"
 
 #define assert_near(a, b, tolerance) assert_true(fabs((a) - (b)) <= (tolerance))
@@ -33,7 +34,7 @@ static double Random(void)
 
 static Material LaneMaterial(const Batch *b, int lane)
 {
-  return MaterialFromModuli(b->kernel.law, b->E[lane], b->nu[lane]);
+  return ExampleMaterial(b->kernel.law, b->E[lane], b->nu[lane]);
 }
 
 static void SetConstants(Batch *b, int lane)
@@ -121,8 +122,9 @@ static int NextCase(KernelCase *kernel)
     *kernel = first;
     return 1;
   }
-  kernel->kinematics = KINEMATICS_FINITE;
-  if (++kernel->law < MATERIAL_LAWS) return 1;
+  kernel->kinematics  = KINEMATICS_FINITE;
+  kernel->n_constants = ++kernel->law < MATERIAL_LAWS ? ExampleMaterial(kernel->law, 1, 0).n_constants : 0;
+  if (kernel->law < MATERIAL_LAWS) return 1;
   kernel->law        = MATERIAL_LINEAR;
   kernel->kinematics = KINEMATICS_SMALL;
   while (++kernel->formulation < FORMULATIONS) {
