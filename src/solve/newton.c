@@ -110,7 +110,7 @@ static PetscErrorCode ModelBorder(Model model)
 PetscErrorCode ModelStepFrom(Model model, const PetscReal *u)
 {
   PetscFunctionBeginUser;
-  model->work->shortened = PETSC_FALSE;
+  model->work->shortened = model->work->uphill = PETSC_FALSE;
   if (model->work->from) PetscCall(PetscArraycpy(model->work->from, u, model->mesh->n_nodes * model->mesh->dim));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -188,14 +188,16 @@ static PetscErrorCode ModelJacobian(SNES snes, Vec x, Mat J, Mat P, void *contex
 {
   Model           model = context;
   StressReference reference;
+  PetscBool       extrapolates;
 
   PetscFunctionBeginUser;
   (void)snes;
   (void)J;
   (void)P;
   PetscCall(ProblemSetTrial(model->problem, x, model->t));
-  if (model->work->from) PetscCall(ModelReference(model, &reference));
-  PetscCall(ModelTangent(model, model->problem->trial, model->work->from ? &reference : NULL, model->t));
+  extrapolates = (PetscBool)(model->work->from && !model->work->uphill);
+  if (extrapolates) PetscCall(ModelReference(model, &reference));
+  PetscCall(ModelTangent(model, model->problem->trial, extrapolates ? &reference : NULL, model->t));
   PetscCall(ModelStepFrom(model, model->problem->trial));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

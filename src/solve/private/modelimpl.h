@@ -60,6 +60,7 @@ typedef struct _n_ModelWork {
   PetscReal *solved;    /* local displacements (length) at the last equilibrium; NULL: no stresses are extrapolated */
   PetscReal *from;      /* those from which the last step led to the iterate */
   PetscBool  shortened; /* that step was shortened */
+  PetscBool  uphill;    /* it led uphill and was turned round: the next tangent is the derivative of the residual */
 
   /* One solve by SNES */
   Objective objective;
