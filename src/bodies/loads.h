@@ -9,16 +9,16 @@
 
 typedef struct _n_Loads *Loads;
 
-PetscErrorCode LoadsCreate(Mesh, Scene, Loads *);
-PetscErrorCode LoadsDestroy(Loads *);
-PetscErrorCode LoadsPrescribe(Loads, PetscReal t, PetscReal *u);
-PetscErrorCode LoadsResidual(Loads, PetscReal t, const PetscReal *u, PetscReal *f, PetscReal *energy,
-                             PetscReal *force2);
-PetscErrorCode LoadsTangent(Loads, PetscReal t, const PetscReal *u, Elasticity);
-PetscErrorCode LoadsSetShares(Loads, int load, const PetscReal *nodes, const PetscReal *points);
-PetscErrorCode LoadsPressure(Loads, int load, PetscReal t, PetscReal *pressure);
-PetscBool      LoadsConservative(Loads);
+PetscErrorCode   LoadsCreate(Mesh, Scene, Loads *);
+PetscErrorCode   LoadsDestroy(Loads *);
+PetscErrorCode   LoadsPrescribe(Loads, PetscReal t, PetscReal *u);
+PetscErrorCode   LoadsResidual(Loads, PetscReal t, const PetscReal *u, PetscReal *f, PetscReal *energy,
+                               PetscReal *force2);
+PetscErrorCode   LoadsTangent(Loads, PetscReal t, const PetscReal *u, Elasticity);
+PetscErrorCode   LoadsSetShares(Loads, int load, const PetscReal *nodes, const PetscReal *points);
+PetscErrorCode   LoadsPressure(Loads, int load, PetscReal t, PetscReal *pressure);
+PetscBool        LoadsConservative(Loads);
 const PetscBool *LoadsConstrained(Loads);
-PetscBool      LoadsPrescribed(Loads, PetscInt local_dof);
-void           LoadsRigidMotion(Loads, int body, PetscReal t, const PetscReal X[3], PetscReal x[3]);
-PetscReal      LoadsRigidTravel(Loads, int body, PetscReal t0, PetscReal t1);
+PetscBool        LoadsPrescribed(Loads, PetscInt local_dof);
+void             LoadsRigidMotion(Loads, int body, PetscReal t, const PetscReal X[3], PetscReal x[3]);
+PetscReal        LoadsRigidTravel(Loads, int body, PetscReal t0, PetscReal t1);
