@@ -73,7 +73,7 @@ static double *Tangent(const Case *c, const double *r, double rate)
 {
   double lanes_X[MAX_DOFS * KERNEL_LANES], lanes_u[MAX_DOFS * KERNEL_LANES], lanes_r[MAX_DOFS * KERNEL_LANES],
     lanes_constants[2 * KERNEL_LANES], J[KERNEL_LANES];
-  const PressureReference reference = {lanes_r, rate};
+  const PressureReference reference = {lanes_r, rate, 0};
   double                 *lanes_K   = calloc((size_t)c->dofs * c->dofs * KERNEL_LANES, sizeof(double)),
          *K                         = calloc((size_t)c->dofs * c->dofs, sizeof(double));
 
