@@ -210,13 +210,16 @@ static PetscErrorCode CreateBuffers(Elasticity e)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Says whether elements treat only a part of the modulus of the volume. */
-static PetscBool VolumeIsStiff(const Material *material)
+/* Says whether elements treat only a part of the modulus of the volume. Of elements those with a constant pressure
+   project the largest part. */
+static PetscBool VolumeIsStiff(Scene scene, PetscInt body)
 {
-  PetscReal kappa, mu;
+  const Material   material = BodyMaterial(scene, body);
+  const KernelCase kernel   = BodyKernel(scene, body, ELEMENT_QUAD4);
+  VolumeModuli     moduli;
 
-  ElementVolumeModulus(material->law, material->n_constants, material->constants, 1, &kappa, &mu);
-  return (PetscBool)(kappa < material->constants[0]);
+  ElementVolumeModuli(&kernel, material.constants, 1, &moduli);
+  return (PetscBool)(moduli.kappa < moduli.projected);
 }
 
 /* Counts the multipliers, and makes room for those of the present and of the accepted state. A mixed group has some if
@@ -229,10 +232,8 @@ static PetscErrorCode ElasticityCreateVolumes(Elasticity e, Scene scene)
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(scene->n_bodies, &stiff));
   for (int b = 0; b < scene->n_bodies; b++) {
-    const Material material = scene->bodies[b].rigid ? (Material){.law = 0} : BodyMaterial(scene, b);
-
     stiff[b]    = (PetscBool)(!scene->bodies[b].rigid && scene->bodies[b].formulation == FORMULATION_MIXED &&
-                           VolumeIsStiff(&material));
+                           VolumeIsStiff(scene, b));
     e->augments = (PetscBool)(e->augments || stiff[b]);
   }
   for (int k = 0; k < e->n_groups; k++) {

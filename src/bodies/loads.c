@@ -27,9 +27,9 @@ typedef struct {
   PetscReal      largest; /* of an expression: its largest value on the surface, of all ranks; else 0 */
 } Prescribed;
 
-/* The part of a surface on which its pressure acts. One of the two is given; both are NULL where it acts everywhere. */
+/* The part of a surface on which its pressure acts; both are NULL where it acts everywhere. */
 typedef struct {
-  const PetscReal *nodes;  /* n_nodes: factor on the force on each local node */
+  const PetscReal *nodes;  /* FACE_MAX_NODES for each face: factor on the face's force on each of its nodes */
   const PetscReal *points; /* FACE_MAX_POINTS for each face: factor on the pressure */
 } LoadShares;
 
@@ -208,12 +208,14 @@ static void SharePressures(const LoadShares *shares, PetscInt f, int n, double *
   for (int p = 0; p < n && shares->points; p++) pressure[p] *= shares->points[f * FACE_MAX_POINTS + p];
 }
 
-/* Multiplies the forces on the n nodes of a face, and the rows of their tangent, by the share of each node. */
-static void ShareForces(const LoadShares *shares, int dim, int n, const PetscInt *nodes, double *fe, double *ke)
+/* Multiplies the forces on the n nodes of face f, and the rows of their tangent, by the share of each node. */
+static void ShareForces(const LoadShares *shares, PetscInt f, int dim, int n, double *fe, double *ke)
 {
   for (int i = 0; i < n * dim && shares->nodes; i++) {
-    fe[i] *= shares->nodes[nodes[i / dim]];
-    for (int j = 0; j < n * dim && ke; j++) ke[i * n * dim + j] *= shares->nodes[nodes[i / dim]];
+    const PetscReal share = shares->nodes[f * FACE_MAX_NODES + i / dim];
+
+    fe[i] *= share;
+    for (int j = 0; j < n * dim && ke; j++) ke[i * n * dim + j] *= share;
   }
 }
 
@@ -249,7 +251,7 @@ static PetscErrorCode DeadLoadSurface(Loads loads, PetscReal t, DeadLoad *dead)
     FaceLoadKernel(type, mesh->dim, loads->scene->geometry,
                    load->kind == LOAD_TRACTION ? FACE_TRACTION : FACE_DEAD_PRESSURE, X, zero, value, stride, fe, NULL,
                    NULL);
-    ShareForces(&dead->shares, mesh->dim, face->nodes, nodes, fe, NULL);
+    ShareForces(&dead->shares, f, mesh->dim, face->nodes, fe, NULL);
     DeadLoadAdd(loads, face->nodes, nodes, fe, dead);
   }
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -490,7 +492,7 @@ static PetscErrorCode FollowerFace(Loads loads, const FollowerLoad *load, PetscI
   if (ke) PetscCall(PetscArrayzero(ke, PetscSqr(*n * mesh->dim)));
   FaceLoadKernel(type, mesh->dim, loads->scene->geometry, FACE_FOLLOWER_PRESSURE, X, v, pressure, constant ? 0 : 1, fe,
                  ke, NULL);
-  ShareForces(&load->shares, mesh->dim, *n, nodes, fe, ke);
+  ShareForces(&load->shares, f, mesh->dim, *n, fe, ke);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -586,8 +588,8 @@ PetscErrorCode LoadsTangent(Loads loads, PetscReal t, const PetscReal *u, Elasti
   Input Parameters:
 + loads  - the loads
 . load   - number of a pressure in the scene
-. nodes  - nodes[n_nodes]: factor on the force that the whole pressure has on a node, from 0 to 1; or NULL
-- points - points[n_faces*FACE_MAX_POINTS]: factor on the pressure at each quadrature point of the faces; or NULL
+. nodes  - nodes[n_faces*FACE_MAX_NODES]: factor on the force of each face on each of its nodes, from 0 to 1
+- points - points[n_faces*FACE_MAX_POINTS]: factor on the pressure at each quadrature point of the faces
 
   Note:
   The arrays are borrowed until the next call. The call is repeated when their values change. With factors at nodes the

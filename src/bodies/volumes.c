@@ -1,5 +1,5 @@
 /* The multipliers of mixed elements: bodies that keep their volume exactly, or so nearly that elements treat a part of
-   the modulus of the volume only (ElementVolumeModulus()). The augmented Lagrangian of Hestenes and Powell: with
+   the modulus of the volume only (ElementVolumeModuli()). The augmented Lagrangian of Hestenes and Powell: with
    multipliers m, the pressure of a solution is m + kappa theta. It should be modulus * theta. The next multipliers are
    (1 - kappa / modulus) (m + kappa theta), and a solution at which they do not change is right.
 
@@ -40,11 +40,11 @@ static void NextMultipliers(Elasticity e, const CellGroup *g, PetscInt batch, co
   ElasticityGather(e, g, batch, u, e->u);
   ElementDilatation(&g->kernel, &g->X[first * (size_t)(g->nodes * e->dim)], e->u, constants, m, next);
   for (int lane = 0; lane < KERNEL_LANES; lane++) {
-    PetscReal kappa, mu;
+    VolumeModuli moduli;
 
-    ElementVolumeModulus(g->kernel.law, g->kernel.n_constants, constants + lane, KERNEL_LANES, &kappa, &mu);
+    ElementVolumeModuli(&g->kernel, constants + lane, KERNEL_LANES, &moduli);
     for (int k = lane; k < ElementPressures(&g->kernel) * KERNEL_LANES; k += KERNEL_LANES)
-      next[k] = (1 - kappa / constants[lane]) * (m[k] + kappa * next[k]);
+      next[k] = (1 - moduli.kappa / moduli.projected) * (m[k] + moduli.kappa * next[k]);
   }
 }
 
@@ -72,12 +72,12 @@ static void AddVolumeError(Elasticity e, const CellGroup *g, PetscInt batch, con
 
   for (int lane = 0; lane < ElasticityBatchCells(g, batch); lane++) {
     const PetscReal *constants = &g->constants[(size_t)batch * KERNEL_LANES * g->kernel.n_constants + lane];
-    PetscReal        kappa, mu;
+    VolumeModuli     moduli;
 
-    ElementVolumeModulus(g->kernel.law, g->kernel.n_constants, constants, KERNEL_LANES, &kappa, &mu);
+    ElementVolumeModuli(&g->kernel, constants, KERNEL_LANES, &moduli);
     for (int k = lane; k < ElementPressures(&g->kernel) * KERNEL_LANES; k += KERNEL_LANES)
-      sum[0] += mu * PetscSqr((next[k] - m[k]) / kappa);
-    sum[1] += mu * VOLUME_STRAIN2 * SlotVolume(e, g, batch * KERNEL_LANES + lane);
+      sum[0] += moduli.mu * PetscSqr((next[k] - m[k]) / moduli.kappa);
+    sum[1] += moduli.mu * VOLUME_STRAIN2 * SlotVolume(e, g, batch * KERNEL_LANES + lane);
   }
 }
 
@@ -95,7 +95,7 @@ static void AddVolumeError(Elasticity e, const CellGroup *g, PetscInt batch, con
 @*/
 PetscErrorCode ElasticityAugment(Elasticity e, const PetscReal *u, PetscBool *holds)
 {
-  PetscReal  sum[2] = {0, 0}, energy = 0; /* of the error; of all cells and a negligible strain */
+  PetscReal  sum[3] = {0, 0, 0}; /* energies: of the error, of a negligible strain, of all cells */
   PetscReal *next;
   PetscBool  ok;
 
@@ -113,12 +113,11 @@ PetscErrorCode ElasticityAugment(Elasticity e, const PetscReal *u, PetscBool *ho
       AddVolumeError(e, g, batch, own, sum);
     }
   }
-  PetscCall(ElasticityResidual(e, u, NULL, &energy, NULL, &ok));
-  sum[1] += energy;
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sum, 2, MPIU_REAL, MPI_SUM, e->mesh->comm));
-  *holds = (PetscBool)(sum[0] <= PetscSqr(VOLUME_TOLERANCE) * sum[1]);
+  PetscCall(ElasticityResidual(e, u, NULL, &sum[2], NULL, &ok));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sum, 3, MPIU_REAL, MPI_SUM, e->mesh->comm));
+  *holds = (PetscBool)(sum[0] <= PetscSqr(VOLUME_TOLERANCE) * sum[2] + sum[1]);
   PetscCall(PetscInfo(NULL, "error of the volume strains %g of the strains\n",
-                      (double)PetscSqrtReal(sum[1] > 0 ? sum[0] / sum[1] : 0)));
+                      (double)PetscSqrtReal(sum[2] > 0 ? sum[0] / sum[2] : 0)));
   if (!*holds) PetscCall(PetscArraycpy(e->state.multiplier, next, e->state.n));
   PetscCall(PetscFree(next));
   PetscFunctionReturn(PETSC_SUCCESS);

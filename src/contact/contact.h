@@ -160,6 +160,7 @@ const char         *ContactPairName(Contact, int pair);
 const SceneContact *ContactPairScene(Contact, int pair);
 int                 ContactFindPair(Contact, const char *name);
 PetscBool           ContactPairIsSurface(Contact, int pair);
+int                 ContactPairFiner(Contact, int pair);
 PetscErrorCode      ContactPairText(Contact, int pair, char *text, size_t size);
 PetscErrorCode      ContactPairSurface(Contact, int pair, const MeshGroup **slave, PetscReal *mean_face_size);
 PetscErrorCode      ContactPairTermStiffness(Contact, int pair, PetscReal *stiffness);

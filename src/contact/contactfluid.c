@@ -51,9 +51,26 @@ PetscErrorCode ContactTermForces(Contact contact, int p, PetscReal touch, PetscR
 
   PetscFunctionBeginUser;
   for (PetscInt c = 0; c < pair->n; c++) {
-    const PetscReal least = pair->now.gap[c] <= touch ? DBL_MIN : 0; /* NaN: no master is near */
+    const PetscReal least = PetscAbsReal(pair->now.gap[c]) <= touch ? DBL_MIN : 0; /* NaN: no master is near */
 
     force[pair->node[c]] = PetscMax(force[pair->node[c]], PetscMax(least, ContactTermForce(pair, c)));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ContactPairFiner - tells whether the slave of a pair has the finer quadrature rule, see FaceRuleGet().
+
+  Not collective
+
+  Input Parameters:
++ contact - the contact
+- p       - number of the pair
+
+  Note:
+  It returns 0 or 1; 0 in node to surface.
+@*/
+int ContactPairFiner(Contact contact, int p)
+{
+  return contact->pairs[p].formulation.surface ? contact->pairs[p].slaves->finer : 0;
 }

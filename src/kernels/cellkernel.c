@@ -144,13 +144,15 @@ double ElementVolumeEnergy(const KernelCase *kernel, const double *X, const doub
 {
   const int      mixed  = kernel->formulation == FORMULATION_MIXED;
   const Element *e      = ElementGet(kernel->type);
-  double         energy = 0, modulus = constants[0], mu, H[ELEMENT_MAX_POINTS * 9], pressure[ELEMENT_MAX_POINTS];
+  double         energy = 0, modulus = constants[0], H[ELEMENT_MAX_POINTS * 9], pressure[ELEMENT_MAX_POINTS];
 
   if (!MaterialGetLaw(kernel->law)->separable || kernel->kinematics == KINEMATICS_SMALL) return 0;
-  if (mixed)
-    ElementVolumeModulus(kernel->law,
-                         kernel->n_constants ? kernel->n_constants : MaterialGetLaw(kernel->law)->constants, constants,
-                         1, &modulus, &mu);
+  if (mixed) {
+    VolumeModuli moduli;
+
+    ElementVolumeModuli(kernel, constants, 1, &moduli);
+    modulus = moduli.kappa + moduli.local;
+  }
   ElementPointState(kernel, X, u, constants, multiplier, H, pressure);
   for (int p = 0; p < e->points; p++) {
     const double *h = &H[9 * p];

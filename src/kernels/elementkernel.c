@@ -8,6 +8,13 @@
    change of the multipliers makes it 1e4 times smaller. The condition number of the tangent grows with kappa, and its
    round-off is small with 1e4 still. */
 static const double largest_kappa = 1e4;
+/* Part of the modulus of the volume that mixed elements with linear pressures evaluate at their points, over the shear
+   modulus and over the modulus itself. Where the mean stress is a tension p, changes of the volume inside an element
+   that the projection does not see are unstable from p = mu + part on, although the solid is stable. Rubber tears at
+   tensions of 2.5 mu already (Gent and Lindley 1959). The part is that of a solid with nu = 0.45, which does not lock
+   in these elements; at the limit of fine meshes it makes no difference. A tenth keeps moderate moduli projected too.
+ */
+static const double largest_local = 10, local_share = 0.1;
 
 const char *const Formulations[] = {"full", "enhanced", "fbar", "mixed", NULL};
 
@@ -146,32 +153,43 @@ static BatchCall StartCall(const KernelCase *kernel, const Lanes *constants)
                      .constants   = constants};
 }
 
+/* Splits the modulus of the volume. A modulus that is not positive is projected as a whole. */
+static VolumeModuli SplitVolume(const KernelCase *kernel, double modulus, double mu)
+{
+  VolumeModuli split = {.mu = mu};
+
+  if (ElementPressures(kernel) > 1) split.local = fmax(0, fmin(largest_local * mu, local_share * modulus));
+  split.projected = modulus - split.local;
+  split.kappa     = fmin(split.projected, largest_kappa * mu);
+  return split;
+}
+
 /*@
-  ElementVolumeModulus - computes the part of the modulus of the volume that mixed elements have without multipliers.
+  ElementVolumeModuli - computes the parts of the modulus of the volume in mixed elements.
 
   Not collective
 
   Input Parameters:
-+ law       - the law
-. n         - number of its constants
++ kernel    - element type, law and number of constants
 . constants - of the law [n][stride]; the first is the modulus, infinite in incompressible materials
 - stride    - from one constant to the next
 
-  Output Parameters:
-+ kappa - the part (stress); where it is the whole, the multipliers remain 0
-- mu    - shear modulus (stress)
+  Output Parameter:
+. moduli - its parts
 @*/
-void ElementVolumeModulus(MaterialLaw law, int n, const double *constants, int stride, double *kappa, double *mu)
+void ElementVolumeModuli(const KernelCase *kernel, const double *constants, int stride, VolumeModuli *moduli)
 {
-  Lanes lanes_constants[MATERIAL_MAX_CONSTANTS], shear;
+  const ElasticLaw *law = MaterialGetLaw(kernel->law);
+  const int         n   = kernel->n_constants ? kernel->n_constants : law->constants;
+  Lanes             lanes_constants[MATERIAL_MAX_CONSTANTS], shear;
 
   for (int k = 0; k < n; k++) lanes_constants[k] = (Lanes){0} + constants[k * stride];
-  MaterialGetLaw(law)->shear(n, lanes_constants, &shear);
-  *mu    = shear[0];
-  *kappa = fmin(constants[0], largest_kappa * shear[0]);
+  law->shear(n, lanes_constants, &shear);
+  *moduli = SplitVolume(kernel, constants[0], shear[0]);
 }
 
-/* Sets the constants of LANES elements. Those of mixed elements leave out the modulus of the volume. */
+/* Sets the constants of LANES elements. Those of mixed elements have only the local part of the modulus of the volume.
+ */
 static void SetConstants(const KernelCase *kernel, const double *constants, int stride, BatchCall *call,
                          Lanes lanes_constants[MATERIAL_MAX_CONSTANTS])
 {
@@ -182,10 +200,12 @@ static void SetConstants(const KernelCase *kernel, const double *constants, int 
   if (kernel->formulation != FORMULATION_MIXED) return;
   call->law->shear(call->n_constants, lanes_constants, &call->mu);
   for (int lane = 0; lane < LANES; lane++) {
-    call->kappa[lane] = fmin(lanes_constants[0][lane], largest_kappa * call->mu[lane]);
-    call->rest[lane]  = 1 - call->kappa[lane] / lanes_constants[0][lane];
+    const VolumeModuli split = SplitVolume(kernel, lanes_constants[0][lane], call->mu[lane]);
+
+    call->kappa[lane]        = split.kappa;
+    call->rest[lane]         = 1 - split.kappa / split.projected;
+    lanes_constants[0][lane] = split.local;
   }
-  lanes_constants[0] = (Lanes){0};
 }
 
 /*@
@@ -270,7 +290,7 @@ int ElementPressures(const KernelCase *kernel)
 . theta - coefficients of the projection of ln J (root of volume) [pressures][lanes]
 
   Note:
-  The pressure in the element is multiplier + kappa theta, see ElementVolumeModulus(). It is right where it is the
+  The pressure in the element is multiplier + kappa theta, see ElementVolumeModuli(). It is right where it is the
   modulus of the volume times theta.
 @*/
 void ElementDilatation(const KernelCase *kernel, const double *X, const double *u, const double *constants,

@@ -11,7 +11,7 @@
    K may extrapolate the pressure of its geometric part from an earlier state (pressurereference.h), where
    ElementExtrapolates().
 
-   ElementPressures(), ElementVolumeModulus(), ElementDilatation() and ElementFollow() are for mixed elements, whose
+   ElementPressures(), ElementVolumeModuli(), ElementDilatation() and ElementFollow() are for mixed elements, whose
    multipliers the caller holds.
 
    Source of the forms: Bonet and Wood, "Nonlinear Continuum Mechanics for Finite Element Analysis". */
@@ -35,6 +35,13 @@ typedef struct {
   int         n_constants; /* of the law; 0: as many as MaterialGetLaw() says */
 } KernelCase;
 
+/* Parts of the modulus of the volume in a mixed element (stress). local acts at the points, projected on the mean that
+   the pressure's shape functions see. kappa is the part of projected that acts without multipliers; where it is the
+   whole, the multipliers remain 0. mu is the shear modulus. */
+typedef struct {
+  double local, projected, kappa, mu;
+} VolumeModuli;
+
 void   ElementKernel(const KernelCase *, const double *X, const double *u, const PressureReference *,
                      const double *constants, const double *multiplier, double *W, double *f, double *K, double *J);
 int    ElementKernelExists(const KernelCase *);
@@ -46,7 +53,7 @@ void   ElementPointStress(const KernelCase *, const double *X, const double *u, 
 void   ElementStress(const KernelCase *, const double *X, const double *u, const double *constants,
                      const double *multiplier, double stress[6], double *volume);
 int    ElementPressures(const KernelCase *);
-void   ElementVolumeModulus(MaterialLaw, int n, const double *constants, int stride, double *kappa, double *mu);
+void   ElementVolumeModuli(const KernelCase *, const double *constants, int stride, VolumeModuli *);
 void   ElementFollow(const KernelCase *, const double *X, const double *u, const PressureReference *,
                      const double *constants, const double *multiplier, double *next);
 void   ElementDilatation(const KernelCase *, const double *X, const double *u, const double *constants,

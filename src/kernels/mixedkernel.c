@@ -1,10 +1,11 @@
 /* Mixed elements, the formulation `mixed`. The pressure has its own shape functions in every element, so that solids
    that keep their volume nearly or exactly do not lock, and their pressures do not oscillate.
 
-   The energy of an element is int W_s dV + lambda/2 int (Pi ln J)^2 dV. W_s is the energy of the law without its volume
-   modulus lambda, and Pi the projection on the pressure's shape functions (least squares over the reference volume).
-   lambda Pi ln J is the pressure. This is the mixed method with displacements and pressures as unknowns; the pressures
-   of an element are condensed in it. In small strains the trace of the strain takes the place of ln J.
+   The energy of an element is int W_s dV + lambda/2 int (Pi ln J)^2 dV. W_s is the energy of the law with a small part
+   of the modulus of the volume, lambda is the rest of that modulus (VolumeModuli), and Pi the projection on the
+   pressure's shape functions (least squares over the reference volume). lambda Pi ln J is the pressure. This is the
+   mixed method with displacements and pressures as unknowns; the pressures of an element are condensed in it. In small
+   strains the trace of the strain takes the place of ln J.
 
    Pressures are constant in quad4 and hex8. They are linear in quad9, hex27, tri6 and tet10, in reference coordinates,
    not in those of the parent element: on general quadrilaterals only the former converge at the full order (Arnold,
@@ -620,7 +621,7 @@ LANES_INLINE void StoreOutput(const BatchCall *call, const int n, const int bubb
   const Rule *rule = GetRule(call->e, 1);
 
   for (int q = 0; q < rule->points; q++) {
-    Lanes H[9], phi[MIXED_PRESSURES], volume;
+    Lanes H[9], phi[MIXED_PRESSURES], volume, dilatation, log_J;
 
     PointGradients(n + bubble, dim, hoop, rule->N[q], rule->dN[q], rule->weight[q], 0, x->X, &x->c, &volume);
     PointDisplacementGradient(n + bubble, dim, hoop, 0, x->u, &x->c, H);
@@ -628,7 +629,8 @@ LANES_INLINE void StoreOutput(const BatchCall *call, const int n, const int bubb
     if (!call->pressure) continue;
     Monomials(n + bubble, modes, dim, rule->N[q], x, phi);
     Orthonormal(modes, x, phi);
-    LANE(call->pressure, q) = PressureAt(modes, x->p, phi);
+    Dilatations(call, H, &dilatation, &log_J);
+    LANE(call->pressure, q) = PressureAt(modes, x->p, phi) + call->constants[0] * log_J;
   }
 }
 

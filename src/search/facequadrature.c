@@ -150,68 +150,61 @@ void FaceHat(ElementType type, const double *xi, double *psi)
   }
 }
 
-/* Mean of the linear hat of the node at -1, 0 or 1 over the part of an edge that the first, second or third point of
-   Gauss' rule stands for: 5/9, 8/9 and 5/9 of [-1, 1]. */
-static double HatMean(int node, int part)
+/* Value at xi of the polynomial that is 1 at one quadrature point of an element of second order and 0 at its others: on
+   three points of Gauss' rule in each direction, or on the three points of a triangle. */
+static double PointPolynomial(const Element *e, int point, const double *xi)
 {
-  static const double mean[2][3] = {{13. / 18, 1. / 9, 0}, {5. / 18, 7. / 9, 5. / 18}};
+  const double a     = sqrt(0.6);
+  double       value = 1;
 
-  return node == 0 ? mean[1][1 + part] : mean[0][node < 0 ? 1 + part : 1 - part];
-}
-
-/* The same for a second-order triangle and the third of it around the quadrature point near one of its corners. */
-static void HatMeanTriangle(ElementType type, const double *point, double *psi)
-{
-  const FaceRule *rule  = FaceRuleGet(type, 1);
-  const double    at[3] = {1 - point[0] - point[1], point[0], point[1]};
-  double          sum   = 0;
-
-  for (int q = 0; q < rule->n; q++) {
-    const double l[3] = {1 - rule->xi[q][0] - rule->xi[q][1], rule->xi[q][0], rule->xi[q][1]};
-    int          near = 1;
+  if (e->corners == 3 && e->dim == 2) {
+    const double at[3] = {1 - e->point[point][0] - e->point[point][1], e->point[point][0], e->point[point][1]};
+    const double l[3]  = {1 - xi[0] - xi[1], xi[0], xi[1]};
 
     for (int i = 0; i < 3; i++)
-      for (int j = 0; j < 3; j++) near = near && (at[i] < at[j] + 0.1 || l[i] > l[j]);
-    if (!near) continue;
-    sum += rule->weight[q];
-    for (int a = 0; a < ElementGet(type)->nodes; a++) psi[a] += rule->weight[q] * rule->hat[q][a];
+      if (at[i] > 0.5) value = 2 * l[i] - 1. / 3;
+    return value;
   }
-  for (int a = 0; a < ElementGet(type)->nodes; a++) psi[a] /= sum;
+  for (int k = 0; k < e->dim; k++) {
+    const double x = xi[k] / a, side = round(e->point[point][k]);
+
+    value *= side == 0 ? 1 - x * x : 0.5 * x * (x + side);
+  }
+  return value;
 }
 
 /*@
-  FaceHatAround - gives the means of the hat functions over the part of a face for which one of the element's quadrature
-  points stands.
+  FaceHatAround - gives the values at one of the element's quadrature points that stand for the hat functions there.
 
   Not collective
 
   Input Parameters:
 + type  - of the face
-- point - number of the point in ElementGetFace()
+. point - number of the point in ElementGetFace()
+- finer - of contact's rule, see FaceRuleGet()
 
   Output Parameter:
-. psi - the means, psi[nodes]; their sum is 1
+. psi - the values, psi[nodes]; their sum is 1
 
   Note:
-  Hat functions of second-order faces have edges. The element's rule is not made for these, but the sum of these means
-  over its points is the hat's integral. First order: the hat functions at the point. Plain C.
+  Hat functions of second-order faces have edges, for which the element's rule is not made. With these values it gives
+the integrals of the hats, and of their products with shape functions (in triangles: with linear functions), that the
+rule of contact gives. Some values are a little below 0. First order: the hat functions at the point. Plain C.
 @*/
-void FaceHatAround(ElementType type, int point, double *psi)
+void FaceHatAround(ElementType type, int point, int finer, double *psi)
 {
-  const Element *e = ElementGetFace(type);
+  const Element  *e    = ElementGetFace(type);
+  const FaceRule *rule = FaceRuleGet(type, finer);
 
   if (e->order == 1) {
     FaceHat(type, e->point[point], psi);
     return;
   }
   memset(psi, 0, e->nodes * sizeof(double));
-  if (e->corners == 3 && e->dim == 2) {
-    HatMeanTriangle(type, e->point[point], psi);
-    return;
-  }
-  for (int a = 0; a < e->nodes; a++) {
-    psi[a] = 1;
-    for (int k = 0; k < e->dim; k++) psi[a] *= HatMean((int)e->node[a][k], (int)round(e->point[point][k]));
+  for (int q = 0; q < rule->n; q++) {
+    const double share = rule->weight[q] / e->weight[point] * PointPolynomial(e, point, rule->xi[q]);
+
+    for (int a = 0; a < e->nodes; a++) psi[a] += share * rule->hat[q][a];
   }
 }
 

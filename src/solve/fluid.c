@@ -25,9 +25,12 @@ enum { FLUID_SAMPLES = 16 };
 /* The last accepted states before a leak, from which its pressure is extrapolated */
 enum { FLUID_STATES = 2 };
 
+/* How a pair measures contact: at nodes, with the areas of shape functions, or on faces, with those of hat functions */
+enum { FLUID_NODES, FLUID_FACES, FLUID_FORMS };
+
 /* What a fluid is in one state. It is what cutbacks and checkpoints keep. */
 typedef struct {
-  char      *wet;                    /* n: by node of the graph */
+  char      *wet, *form;             /* n: by node of the graph; form: of the pair that presses most */
   PetscReal *p;                      /* n: what contact presses, at wet nodes beyond the fluid */
   PetscInt   n_sealed;               /* accepted states without a leak, FLUID_STATES at most */
   PetscReal  sealed_p[FLUID_STATES]; /* pressure of the fluid in them, the last one first */
@@ -39,16 +42,19 @@ typedef struct {
   const SceneLoad *load;
   const MeshGroup *group;
   SurfaceGraph     surface;
-  PetscBool        hats, *pair; /* contact is integrated on faces; pairs whose slaves are on the surface */
-  char            *from, *to;   /* n: the two ends */
+  int              finer;             /* rule of contact on faces, see FaceRuleGet() */
+  PetscBool       *pair;              /* pairs whose slaves are on the surface */
+  PetscBool        form[FLUID_FORMS]; /* how they measure contact */
+  char            *from, *to;         /* n: the two ends */
   PetscBool        has_from, has_to;
   FluidState       now, accepted;
-  PetscInt         retreats;              /* times that places became dry in this step */
-  PetscReal       *area;                  /* n_nodes: present area of the surface around each node */
-  PetscReal       *nodes, *points;        /* shares for the load: of nodes, or of quadrature points */
-  PetscReal       *force;                 /* n_nodes: of the contact terms */
-  PetscReal       *weight;                /* n: reference area of the nodes */
-  PetscReal        pressure, height;      /* of the fluid; of the barrier */
+  PetscInt         retreats;                       /* times that places became dry in this step */
+  PetscReal       *area[FLUID_FORMS];              /* n_nodes: present area of the surface around each node */
+  PetscReal       *wet, *pressing, *pressing_form; /* n_nodes: of the state, by local node */
+  PetscReal       *nodes, *points;                 /* shares for the load, see LoadsSetShares() */
+  PetscReal       *force[FLUID_FORMS];             /* n_nodes: of the contact terms */
+  PetscReal       *weight;                         /* n: reference area of the nodes */
+  PetscReal        pressure, height;               /* of the fluid; of the barrier */
   PetscReal        leak_t, leak_pressure; /* t and pressure at which it was found to leak last; NaN: it was not */
 } Fluid;
 
@@ -61,13 +67,13 @@ struct _n_Fluids {
   Fluid  *fluid;
 };
 
-/* Areas around the nodes of a fluid's surface, of this rank's faces: hat functions or shape functions as in contact. */
-static void FaceAreas(Fluids fluids, const Fluid *fluid, ElementType type, const PetscReal *x, PetscReal *area)
+/* Adds the areas around the nodes of a face. */
+static void FaceAreas(Fluids fluids, int form, int finer, ElementType type, const PetscReal *x, PetscReal *area)
 {
-  const FaceRule *rule = FaceRuleGet(type, 0);
+  const FaceRule *rule = FaceRuleGet(type, finer);
   double          part[FACE_RULE_POINTS];
 
-  if (!fluid->hats) {
+  if (form == FLUID_NODES) {
     FaceAreaKernel(type, fluids->mesh->dim, fluids->scene->geometry, x, area, NULL);
     return;
   }
@@ -76,16 +82,16 @@ static void FaceAreas(Fluids fluids, const Fluid *fluid, ElementType type, const
     for (int a = 0; a < ElementGet(type)->nodes; a++) area[a] += rule->hat[q][a] * part[q];
 }
 
-/* Sets the present areas; u NULL: those of the reference. */
-static PetscErrorCode SetAreas(Fluids fluids, Fluid *fluid, const PetscReal *u)
+/* Sets the present areas of one form; u NULL: those of the reference. */
+static PetscErrorCode SetFormAreas(Fluids fluids, Fluid *fluid, int form, const PetscReal *u)
 {
   const Mesh mesh = fluids->mesh;
   const int  dim  = mesh->dim;
   PetscInt   nodes[FACE_MAX_NODES];
-  PetscReal  x[3 * FACE_MAX_NODES], v[3 * FACE_MAX_NODES], area[FACE_MAX_NODES];
+  PetscReal  x[3 * FACE_MAX_NODES], v[3 * FACE_MAX_NODES], area[FACE_MAX_NODES], *sum = fluid->area[form];
 
   PetscFunctionBeginUser;
-  PetscCall(PetscArrayzero(fluid->area, mesh->n_nodes));
+  PetscCall(PetscArrayzero(sum, mesh->n_nodes));
   for (PetscInt f = 0; f < fluid->group->n_faces; f++) {
     const ElementType type = MeshFaceNodes(mesh, fluid->group, f, nodes);
     const int         n    = ElementGet(type)->nodes;
@@ -94,28 +100,63 @@ static PetscErrorCode SetAreas(Fluids fluids, Fluid *fluid, const PetscReal *u)
     if (u) MeshGatherNodes(mesh, n, nodes, u, v);
     for (int i = 0; i < n * dim && u; i++) x[i] += v[i];
     PetscCall(PetscArrayzero(area, n));
-    FaceAreas(fluids, fluid, type, x, area);
-    for (int a = 0; a < n; a++) fluid->area[nodes[a]] += area[a];
+    FaceAreas(fluids, form, fluid->finer, type, x, area);
+    for (int a = 0; a < n; a++) sum[nodes[a]] += area[a];
   }
-  PetscCall(MeshSumNodes(mesh, 1, fluid->area));
+  PetscCall(MeshSumNodes(mesh, 1, sum));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Gives the load its share of every quadrature point: the hat functions of the wet nodes. */
-static void SetPoints(Fluids fluids, Fluid *fluid)
+/* Sets the areas of all forms; with small kinematics those of the reference. */
+static PetscErrorCode SetAreas(Fluids fluids, Fluid *fluid, const PetscReal *u)
+{
+  PetscFunctionBeginUser;
+  for (int form = 0; form < FLUID_FORMS; form++)
+    if (fluid->form[form])
+      PetscCall(SetFormAreas(fluids, fluid, form, fluids->scene->kinematics == KINEMATICS_SMALL ? NULL : u));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* How a pair measures contact. */
+static int PairForm(Fluids fluids, int pair)
+{
+  return ContactPairIsSurface(fluids->contact, pair) ? FLUID_FACES : FLUID_NODES;
+}
+
+/* The form in which a face shares the fluid: that of the pair that presses most on it. Where all of its nodes are wet,
+   or none is, all forms are the same. */
+static int FaceForm(const Fluid *fluid, int n, const PetscInt *nodes)
+{
+  int       form = fluid->form[FLUID_FACES] ? FLUID_FACES : FLUID_NODES;
+  PetscReal most = 0;
+
+  for (int a = 0; a < n; a++) {
+    if (fluid->pressing[nodes[a]] <= most) continue;
+    most = fluid->pressing[nodes[a]];
+    form = (int)fluid->pressing_form[nodes[a]];
+  }
+  return form;
+}
+
+/* Gives the load its share of every face: at the quadrature points the hat functions of the wet nodes, or the forces of
+   the wet nodes alone. */
+static void SetShares(Fluids fluids, Fluid *fluid)
 {
   PetscInt nodes[FACE_MAX_NODES];
   double   hat[FACE_MAX_NODES];
 
   for (PetscInt f = 0; f < fluid->group->n_faces; f++) {
     const Element *face = ElementGetFace(MeshFaceNodes(fluids->mesh, fluid->group, f, nodes));
+    const int      form = FaceForm(fluid, face->nodes, nodes);
 
+    for (int a = 0; a < face->nodes; a++)
+      fluid->nodes[f * FACE_MAX_NODES + a] = form == FLUID_NODES ? fluid->wet[nodes[a]] : 1;
     for (int p = 0; p < face->points; p++) {
       PetscReal share = 0;
 
-      FaceHatAround(face->type, p, hat);
-      for (int a = 0; a < face->nodes; a++) share += hat[a] * fluid->nodes[nodes[a]];
-      fluid->points[f * FACE_MAX_POINTS + p] = share;
+      FaceHatAround(face->type, p, fluid->finer, hat);
+      for (int a = 0; a < face->nodes; a++) share += hat[a] * fluid->wet[nodes[a]];
+      fluid->points[f * FACE_MAX_POINTS + p] = form == FLUID_FACES ? share : 1;
     }
   }
 }
@@ -128,15 +169,21 @@ static PetscErrorCode Apply(Fluids fluids, Fluid *fluid, const PetscReal *u, Pet
 
   PetscFunctionBeginUser;
   PetscCall(LoadsPressure(fluids->loads, fluid->number, t, &fluid->pressure));
-  PetscCall(SetAreas(fluids, fluid, fluids->scene->kinematics == KINEMATICS_SMALL ? NULL : u));
-  SurfaceGraphScatter(fluid->surface, fluid->now.wet, fluid->nodes);
-  if (fluid->hats) SetPoints(fluids, fluid);
-  PetscCall(LoadsSetShares(fluids->loads, fluid->number, fluid->hats ? NULL : fluid->nodes,
-                           fluid->hats ? fluid->points : NULL));
+  PetscCall(SetAreas(fluids, fluid, u));
+  SurfaceGraphScatter(fluid->surface, fluid->now.wet, fluid->wet);
+  SurfaceGraphScatter(fluid->surface, fluid->now.form, fluid->pressing_form);
+  for (int i = 0; i < fluid->surface->graph.n; i++)
+    if (fluid->surface->local[i] >= 0) fluid->pressing[fluid->surface->local[i]] = fluid->now.p[i];
+  SetShares(fluids, fluid);
+  PetscCall(LoadsSetShares(fluids->loads, fluid->number, fluid->nodes, fluid->points));
   PetscCall(PetscMalloc1(mesh->n_nodes, &carried));
-  for (PetscInt i = 0; i < mesh->n_nodes; i++) carried[i] = fluid->nodes[i] * fluid->pressure * fluid->area[i];
-  for (int p = 0; p < ContactPairs(fluids->contact); p++)
-    if (fluid->pair[p]) PetscCall(ContactSetCarried(fluids->contact, p, carried));
+  for (int p = 0; p < ContactPairs(fluids->contact); p++) {
+    const PetscReal *area = fluid->area[PairForm(fluids, p)];
+
+    if (!fluid->pair[p]) continue;
+    for (PetscInt i = 0; i < mesh->n_nodes; i++) carried[i] = fluid->wet[i] * fluid->pressure * area[i];
+    PetscCall(ContactSetCarried(fluids->contact, p, carried));
+  }
   PetscCall(PetscFree(carried));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -148,16 +195,25 @@ static PetscErrorCode Measure(Fluids fluids, Fluid *fluid, const PetscReal *u, P
 
   PetscFunctionBeginUser;
   PetscCall(LoadsPressure(fluids->loads, fluid->number, t, &fluid->pressure));
-  PetscCall(SetAreas(fluids, fluid, fluids->scene->kinematics == KINEMATICS_SMALL ? NULL : u));
-  PetscCall(PetscArrayzero(fluid->force, fluids->mesh->n_nodes));
+  PetscCall(SetAreas(fluids, fluid, u));
+  for (int form = 0; form < FLUID_FORMS; form++) PetscCall(PetscArrayzero(fluid->force[form], fluids->mesh->n_nodes));
   for (int p = 0; p < ContactPairs(fluids->contact); p++)
-    if (fluid->pair[p]) PetscCall(ContactTermForces(fluids->contact, p, FLUID_OPEN * fluids->mesh->size, fluid->force));
+    if (fluid->pair[p])
+      PetscCall(
+        ContactTermForces(fluids->contact, p, FLUID_OPEN * fluids->mesh->size, fluid->force[PairForm(fluids, p)]));
   for (int i = 0; i < s->graph.n; i++) {
     const PetscInt node = s->local[i];
+    PetscReal      p[FLUID_FORMS];
 
-    if (s->own[i] && fluid->force[node] > 0) fluid->force[node] /= fluid->area[node];
+    for (int form = 0; form < FLUID_FORMS && s->own[i]; form++)
+      p[form] = fluid->force[form][node] > 0 ? fluid->force[form][node] / fluid->area[form][node] : 0;
+    if (!s->own[i]) continue;
+    fluid->force[0][node] = PetscMax(p[FLUID_NODES], p[FLUID_FACES]);
+    fluid->force[1][node] = p[FLUID_FACES] > p[FLUID_NODES] ? FLUID_FACES : FLUID_NODES;
   }
-  PetscCall(SurfaceGraphGather(s, fluid->force, fluid->now.p));
+  PetscCall(SurfaceGraphGather(s, fluid->force[1], fluid->now.p));
+  for (int i = 0; i < s->graph.n; i++) fluid->now.form[i] = (char)fluid->now.p[i];
+  PetscCall(SurfaceGraphGather(s, fluid->force[0], fluid->now.p));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -235,21 +291,23 @@ static PetscErrorCode MoveOne(Fluids fluids, Fluid *fluid, const PetscReal *u, P
 static PetscErrorCode StateCreate(int n, FluidState *state)
 {
   PetscFunctionBeginUser;
-  PetscCall(PetscCalloc2(n, &state->wet, n, &state->p));
+  PetscCall(PetscCalloc3(n, &state->wet, n, &state->p, n, &state->form));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 static PetscErrorCode StateCopy(int n, const FluidState *from, FluidState *to)
 {
-  char      *wet = to->wet;
-  PetscReal *p   = to->p;
+  char      *wet = to->wet, *form = to->form;
+  PetscReal *p = to->p;
 
   PetscFunctionBeginUser;
   PetscCall(PetscArraycpy(wet, from->wet, n));
   PetscCall(PetscArraycpy(p, from->p, n));
-  *to     = *from;
-  to->wet = wet;
-  to->p   = p;
+  PetscCall(PetscArraycpy(form, from->form, n));
+  *to      = *from;
+  to->wet  = wet;
+  to->p    = p;
+  to->form = form;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -296,7 +354,6 @@ static PetscErrorCode ReadEnd(Fluids fluids, Fluid *fluid, const char *key, cons
 static PetscErrorCode FindPairs(Fluids fluids, Fluid *fluid)
 {
   const Contact contact = fluids->contact;
-  PetscBool     faces = PETSC_FALSE, nodes = PETSC_FALSE;
   char         *flag;
 
   PetscFunctionBeginUser;
@@ -312,8 +369,8 @@ static PetscErrorCode FindPairs(Fluids fluids, Fluid *fluid)
     PetscCall(SurfaceGraphGroup(fluid->surface, slave, flag, &n));
     fluid->pair[p] = (PetscBool)(n > 0);
     if (!n) continue;
-    faces = (PetscBool)(faces || ContactPairIsSurface(contact, p));
-    nodes = (PetscBool)(nodes || !ContactPairIsSurface(contact, p));
+    fluid->form[PairForm(fluids, p)] = PETSC_TRUE;
+    fluid->finer                     = PetscMax(fluid->finer, ContactPairFiner(contact, p));
     if (scene->adjust || scene->augment)
       PetscCall(
         RefuseInput(fluids->mesh->comm,
@@ -322,13 +379,7 @@ static PetscErrorCode FindPairs(Fluids fluids, Fluid *fluid)
                     SceneWhere(fluids->scene, fluid->load->path, "where"), scene->name, fluid->load->region));
   }
   PetscCall(PetscFree(flag));
-  fluid->hats = faces;
-  if (faces && nodes)
-    PetscCall(RefuseInput(fluids->mesh->comm,
-                          "%s: '%s' is in contact both by nodes and by faces; allowed with where: open: one "
-                          "formulation for all its pairs",
-                          SceneWhere(fluids->scene, fluid->load->path, "where"), fluid->load->region));
-  if (!faces && !nodes)
+  if (!fluid->form[FLUID_NODES] && !fluid->form[FLUID_FACES])
     PetscCall(RefuseInput(fluids->mesh->comm,
                           "%s: '%s' is the slave of no contact pair; allowed with where: open: the slave of one or "
                           "more pairs (of a pair whose master it is, exchange slave and master)",
@@ -357,7 +408,7 @@ static PetscErrorCode CreateOne(Fluids fluids, int load, Fluid *fluid)
 {
   const Mesh mesh = fluids->mesh;
   MeshGroup *group;
-  int        n;
+  int        n, form;
 
   PetscFunctionBeginUser;
   fluid->number = load;
@@ -369,16 +420,21 @@ static PetscErrorCode CreateOne(Fluids fluids, int load, Fluid *fluid)
   n = fluid->surface->graph.n;
   PetscCall(FindPairs(fluids, fluid));
   PetscCall(PetscCalloc3(n, &fluid->from, n, &fluid->to, n, &fluid->weight));
-  PetscCall(PetscCalloc4(mesh->n_nodes, &fluid->area, mesh->n_nodes, &fluid->nodes, mesh->n_nodes, &fluid->force,
-                         group->n_faces * FACE_MAX_POINTS, &fluid->points));
+  for (int form = 0; form < FLUID_FORMS; form++)
+    PetscCall(PetscCalloc2(mesh->n_nodes, &fluid->area[form], mesh->n_nodes, &fluid->force[form]));
+  PetscCall(
+    PetscCalloc3(mesh->n_nodes, &fluid->wet, mesh->n_nodes, &fluid->pressing, mesh->n_nodes, &fluid->pressing_form));
+  PetscCall(
+    PetscCalloc2(group->n_faces * FACE_MAX_NODES, &fluid->nodes, group->n_faces * FACE_MAX_POINTS, &fluid->points));
   PetscCall(StateCreate(n, &fluid->now));
   PetscCall(StateCreate(n, &fluid->accepted));
   fluid->height = fluid->leak_t = fluid->leak_pressure = NAN;
   PetscCall(CheckPressure(fluids, fluid));
   PetscCall(ReadEnd(fluids, fluid, "from", &fluid->load->from, fluid->from, &fluid->has_from));
   PetscCall(ReadEnd(fluids, fluid, "to", &fluid->load->to, fluid->to, &fluid->has_to));
-  PetscCall(SetAreas(fluids, fluid, NULL));
-  PetscCall(SurfaceGraphGather(fluid->surface, fluid->area, fluid->weight));
+  form = fluid->form[FLUID_FACES] ? FLUID_FACES : FLUID_NODES;
+  PetscCall(SetFormAreas(fluids, fluid, form, NULL));
+  PetscCall(SurfaceGraphGather(fluid->surface, fluid->area[form], fluid->weight));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -437,10 +493,12 @@ PetscErrorCode FluidDestroy(Fluids *fluids)
 
     PetscCall(SurfaceGraphDestroy(&fluid->surface));
     PetscCall(PetscFree3(fluid->from, fluid->to, fluid->weight));
-    PetscCall(PetscFree4(fluid->area, fluid->nodes, fluid->force, fluid->points));
+    for (int form = 0; form < FLUID_FORMS; form++) PetscCall(PetscFree2(fluid->area[form], fluid->force[form]));
+    PetscCall(PetscFree3(fluid->wet, fluid->pressing, fluid->pressing_form));
+    PetscCall(PetscFree2(fluid->nodes, fluid->points));
     PetscCall(PetscFree(fluid->pair));
-    PetscCall(PetscFree2(fluid->now.wet, fluid->now.p));
-    PetscCall(PetscFree2(fluid->accepted.wet, fluid->accepted.p));
+    PetscCall(PetscFree3(fluid->now.wet, fluid->now.p, fluid->now.form));
+    PetscCall(PetscFree3(fluid->accepted.wet, fluid->accepted.p, fluid->accepted.form));
   }
   PetscCall(PetscFree((*fluids)->fluid));
   PetscCall(PetscFree(*fluids));
@@ -731,7 +789,7 @@ PetscErrorCode FluidArchive(Fluids fluids, Archive archive)
     char        name[64];
 
     PetscCall(PetscMalloc1(n + 1, &wet));
-    for (int k = 0; k < n; k++) wet[k] = state->wet[k] + 2 * fluid->from[k] + 4 * fluid->to[k];
+    for (int k = 0; k < n; k++) wet[k] = state->wet[k] + 2 * fluid->from[k] + 4 * fluid->to[k] + 8 * state->form[k];
     wet[n] = state->n_sealed;
     for (int k = 0; k < FLUID_STATES; k++) {
       values[k]                = state->sealed_p[k];
@@ -743,6 +801,7 @@ PetscErrorCode FluidArchive(Fluids fluids, Archive archive)
     PetscCall(ArchiveReals(archive, name, 2 * FLUID_STATES, values));
     for (int k = 0; k < n; k++) {
       state->wet[k]  = (char)(wet[k] & 1);
+      state->form[k] = (char)(wet[k] >> 3 & 1);
       fluid->from[k] = (char)(wet[k] >> 1 & 1);
       fluid->to[k]   = (char)(wet[k] >> 2 & 1);
       fluid->has_to  = (PetscBool)(fluid->has_to || fluid->to[k]);

@@ -79,35 +79,36 @@ static void test_hats(void **state)
   }
 }
 
-/* The means of the hats around the element's quadrature points are shares of 1 and keep the hats' integrals. In a
-   triangle the quadrature of the means is not exact. */
+/* The values for the element's quadrature points are shares of 1 and keep the hats' products with shape functions, as
+   the finer rule has them; in second-order triangles those with linear functions. */
 static void test_hats_around(void **state)
 {
   (void)state;
-  for (int t = 0; t < TYPES; t++) {
-    const Element *e                    = ElementGetFace(types[t]);
-    const double   side                 = e->order == 1 ? 1 : 0.5; /* of the small faces around a node */
-    const int      triangle             = e->corners == 3 && e->dim == 2;
-    double         area[FACE_MAX_NODES] = {0}, psi[FACE_MAX_NODES];
+  for (int k = 0; k < 2 * TYPES; k++) {
+    const int       t = k / 2, finer = k % 2;
+    const Element  *e                                     = ElementGetFace(types[t]);
+    const FaceRule *rule                                  = FaceRuleGet(types[t], finer);
+    const int       linear                                = e->corners == 3 && e->dim == 2 && e->order == 2;
+    double          whole[FACE_MAX_NODES][FACE_MAX_NODES] = {{0}}, points[FACE_MAX_NODES][FACE_MAX_NODES] = {{0}};
 
+    for (int q = 0; q < rule->n; q++)
+      for (int a = 0; a < e->nodes; a++)
+        for (int b = 0; b < e->nodes; b++)
+          whole[a][b] += rule->weight[q] * (linear ? (b < 2 ? rule->xi[q][b] : 1) : rule->N[q][b]) * rule->hat[q][a];
     for (int p = 0; p < e->points; p++) {
-      double sum = 0;
+      double psi[FACE_MAX_NODES], sum = 0;
 
-      FaceHatAround(types[t], p, psi);
+      FaceHatAround(types[t], p, finer, psi);
       for (int a = 0; a < e->nodes; a++) {
-        assert_true(psi[a] >= 0);
+        assert_true(psi[a] > -0.1);
         sum += psi[a];
-        area[a] += e->weight[p] * psi[a];
+        for (int b = 0; b < e->nodes; b++)
+          points[a][b] += e->weight[p] * (linear ? (b < 2 ? e->point[p][b] : 1) : e->N[p][b]) * psi[a];
       }
       assert_true(fabs(sum - 1) < 1e-14);
     }
-    for (int a = 0; a < e->nodes; a++) {
-      double exact = triangle ? (e->order == 1 ? 1. / 6 : a < 3 ? 1. / 24 : 1. / 8) : 1;
-
-      for (int k = 0; k < e->dim && !triangle; k++)
-        exact *= e->node[a][k] == 0 ? 2 * side : side; /* hats over edges of length 2 or twice 1 */
-      assert_true(fabs(area[a] - exact) <= (triangle && e->order == 2 ? 0.05 : 1e-14) * exact);
-    }
+    for (int a = 0; a < e->nodes; a++)
+      for (int b = 0; b < e->nodes; b++) assert_true(fabs(points[a][b] - whole[a][b]) < 1e-14);
   }
 }
 

@@ -120,18 +120,20 @@ static void SettledMultipliersGiveTheWholeModulus(void **state)
   (void)state;
   for (KernelCase kernel; NextCase(&kernel);) {
     const Material material = {.law = kernel.law, .n_constants = 2, .constants = {modulus, mu}};
-    double H[9] = {a, 0, 0, 0, a, 0, 0, 0, kernel.geometry == GEOMETRY_PLANE_STRAIN ? 0 : a}, P[9], kappa, shear;
-    double theta[MIXED_PRESSURES * KERNEL_LANES];
-    Case   c;
+    double         H[9]     = {a, 0, 0, 0, a, 0, 0, 0, kernel.geometry == GEOMETRY_PLANE_STRAIN ? 0 : a}, P[9];
+    double         theta[MIXED_PRESSURES * KERNEL_LANES];
+    VolumeModuli   moduli;
+    Case           c;
 
     CaseCreate(&c, kernel, modulus);
-    ElementVolumeModulus(kernel.law, 2, c.constants, KERNEL_LANES, &kappa, &shear);
-    assert_true(kappa < modulus && shear == mu);
+    ElementVolumeModuli(&kernel, c.constants, KERNEL_LANES, &moduli);
+    assert_true(moduli.kappa < moduli.projected && moduli.mu == mu);
+    assert_near(moduli.local + moduli.projected, modulus, 1e-15 * modulus);
     for (int k = 0; k < c.dofs * KERNEL_LANES; k++) c.u[k] = a * c.X[k];
     for (int times = 0; times < 400; times++) {
       ElementDilatation(&kernel, c.X, c.u, c.constants, c.multiplier, theta);
       for (int k = 0; k < c.pressures * KERNEL_LANES; k++)
-        c.multiplier[k] = (1 - kappa / modulus) * (c.multiplier[k] + kappa * theta[k]);
+        c.multiplier[k] = (1 - moduli.kappa / moduli.projected) * (c.multiplier[k] + moduli.kappa * theta[k]);
     }
     MaterialPoint(&material, kernel.kinematics == KINEMATICS_FINITE, H, NULL, P, NULL);
     for (int lane = 0; lane < KERNEL_LANES; lane++) {
@@ -156,19 +158,20 @@ static void FollowingStartsFromTheSamePressure(void **state)
 {
   (void)state;
   for (KernelCase kernel; NextCase(&kernel);) {
-    double kappa, shear, theta[MIXED_PRESSURES * KERNEL_LANES], next[MIXED_PRESSURES * KERNEL_LANES];
-    Case   c;
+    double       theta[MIXED_PRESSURES * KERNEL_LANES], next[MIXED_PRESSURES * KERNEL_LANES];
+    VolumeModuli moduli;
+    Case         c;
 
     if (kernel.kinematics == KINEMATICS_SMALL) continue;
     CaseCreate(&c, kernel, INFINITY);
-    ElementVolumeModulus(kernel.law, 2, c.constants, KERNEL_LANES, &kappa, &shear);
+    ElementVolumeModuli(&kernel, c.constants, KERNEL_LANES, &moduli);
     ElementDilatation(&kernel, c.X, c.u, c.constants, c.multiplier, theta);
     for (int rate = 0; rate < 2; rate++) {
       const PressureReference reference = {c.u, rate, 0};
 
       ElementFollow(&kernel, c.X, c.u, &reference, c.constants, c.multiplier, next);
       for (int k = 0; k < c.pressures * KERNEL_LANES; k++)
-        assert_near(next[k], c.multiplier[k] + kappa * theta[k], 1e-11 * kappa);
+        assert_near(next[k], c.multiplier[k] + moduli.kappa * theta[k], 1e-11 * moduli.kappa);
     }
   }
 }

@@ -45,9 +45,8 @@ typedef struct {
   double           *W, *f, *K, *J, *H;
   /* Of mixed elements: the part kappa of the modulus of the volume, shear modulus, multipliers or NULL, and results or
      NULL: theta [MIXED_PRESSURES], which mixedkernel.c explains, the pressure at the points of H, and the
-     pressures extrapolated from u_0 [MIXED_PRESSURES]. constants[0] is
-     then 0. */
-  Lanes         kappa, mu, rest; /* rest: 1 - kappa / modulus of the volume */
+     pressures extrapolated from u_0 [MIXED_PRESSURES]. constants[0] is then the local part of VolumeModuli. */
+  Lanes         kappa, mu, rest; /* rest: 1 - kappa / projected part */
   const double *multiplier;
   int           held; /* of PressureReference */
   double       *theta, *pressure, *follow;
