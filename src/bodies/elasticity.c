@@ -519,12 +519,12 @@ static inline __attribute__((always_inline)) void ScatterTangent(Elasticity e, c
   Input Parameters:
 + e         - the elasticity
 . u         - local displacements (length) [n_nodes*dim]
-- reference - the state from which pressures are extrapolated, u as above; NULL: the tangent has the pressures of u
+- reference - the state from which stresses are extrapolated, u as above; NULL: the tangent has the stresses of u
 @*/
-PetscErrorCode ElasticityTangent(Elasticity e, const PetscReal *u, const PressureReference *reference)
+PetscErrorCode ElasticityTangent(Elasticity e, const PetscReal *u, const StressReference *reference)
 {
-  const PressureReference gathered = {e->u_0, reference ? reference->rate : 0, reference ? reference->held : 0};
-  PetscReal               J[KERNEL_LANES];
+  const StressReference gathered = {e->u_0, reference ? reference->rate : 0, reference ? reference->held : 0};
+  PetscReal             J[KERNEL_LANES];
 
   PetscFunctionBeginUser;
   PetscCall(PetscLogEventBegin(event_tangent, 0, 0, 0, 0));
@@ -556,7 +556,7 @@ PetscErrorCode ElasticityTangent(Elasticity e, const PetscReal *u, const Pressur
 }
 
 /*@
-  ElasticityExtrapolates - says whether a PressureReference changes the tangent of any of this rank's cells.
+  ElasticityExtrapolates - says whether a StressReference changes the tangent of any of this rank's cells.
 
   Not collective
 

@@ -1,8 +1,8 @@
 /* The elastic problem: element kernels over the local cells, and their residual, energy and tangent. Knows no contact.
 
    ElasticityResidual() and ElasticityTangent() evaluate this rank's cells. The tangent is summed into one rank-local
-   block CSR over local nodes, with ghost rows and every dof, supported ones too. It may extrapolate pressures from an
-   earlier state (pressurereference.h). ElasticityMatrix() passes it on to a
+   block CSR over local nodes, with ghost rows and every dof, supported ones too. It may extrapolate stresses from an
+   earlier state (stressreference.h). ElasticityMatrix() passes it on to a
    parallel AIJ matrix over the free dofs, ElasticityMultiplyLocal() multiplies it by local vectors for the prescribed
    dofs. ElasticityNodalStress() gives stresses for output.
 
@@ -12,10 +12,9 @@
 
    Plastic bodies have an accepted state at each quadrature point. All evaluations start from it;
    ElasticityAcceptPlastic() alone changes it. ElasticityArchivePlastic() saves and loads it. */
-
 #pragma once
 #include "files/archive.h"
-#include "kernels/pressurereference.h"
+#include "kernels/stressreference.h"
 #include "mesh/mesh.h"
 
 typedef struct _n_Elasticity *Elasticity;
@@ -25,7 +24,7 @@ PetscErrorCode ElasticityDestroy(Elasticity *);
 PetscErrorCode ElasticityResidual(Elasticity, const PetscReal *u, PetscReal *f, PetscReal *energy, PetscReal *force2,
                                   PetscBool *ok);
 PetscErrorCode ElasticityVolumeEnergy(Elasticity, const PetscReal *u, PetscReal *energy);
-PetscErrorCode ElasticityTangent(Elasticity, const PetscReal *u, const PressureReference *);
+PetscErrorCode ElasticityTangent(Elasticity, const PetscReal *u, const StressReference *);
 PetscBool      ElasticityExtrapolates(Elasticity);
 PetscErrorCode ElasticityAddBlock(Elasticity, PetscInt n, const PetscInt nodes[], const PetscReal k[]);
 PetscErrorCode ElasticityMultiplyLocal(Elasticity, const PetscReal *x, PetscReal *y);
@@ -39,7 +38,7 @@ PetscErrorCode ElasticityNodalPlasticStrain(Elasticity, PetscReal *strain, Petsc
 PetscInt64     ElasticityPlasticPoints(Elasticity);
 PetscErrorCode ElasticityPlasticWork(Elasticity, PetscReal *work, PetscReal *strain);
 PetscErrorCode ElasticityAugment(Elasticity, const PetscReal *u, PetscBool *holds);
-PetscErrorCode ElasticityFollow(Elasticity, const PetscReal *u, const PressureReference *);
+PetscErrorCode ElasticityFollow(Elasticity, const PetscReal *u, const StressReference *);
 PetscErrorCode ElasticityAccept(Elasticity);
 PetscErrorCode ElasticityRestore(Elasticity);
 PetscErrorCode ElasticityArchive(Elasticity, Archive);

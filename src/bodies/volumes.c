@@ -136,10 +136,10 @@ PetscErrorCode ElasticityAugment(Elasticity e, const PetscReal *u, PetscBool *ho
   Note:
   Residual and energy at u are others afterwards. The tangent takes a reference with held = 1 then.
 @*/
-PetscErrorCode ElasticityFollow(Elasticity e, const PetscReal *u, const PressureReference *reference)
+PetscErrorCode ElasticityFollow(Elasticity e, const PetscReal *u, const StressReference *reference)
 {
-  const PressureReference gathered = {e->u_0, reference->rate, 0};
-  PetscReal               next[MIXED_PRESSURES * KERNEL_LANES];
+  const StressReference gathered = {e->u_0, reference->rate, 0};
+  PetscReal             next[MIXED_PRESSURES * KERNEL_LANES];
 
   PetscFunctionBeginUser;
   for (int k = 0; k < e->n_groups; k++) {

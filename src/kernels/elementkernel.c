@@ -18,25 +18,6 @@ static const double largest_local = 10, local_share = 0.1;
 
 const char *const Formulations[] = {"full", "enhanced", "fbar", "mixed", NULL};
 
-/* Puts the extrapolated pressure into the geometric part of the law's tangent A at point q, whose gradient is H. */
-LANES_INLINE void ExtrapolatePressure(const BatchCall *call, const int n, const int dim, const int hoop, int q,
-                                      const ChunkPoints *c, const Lanes H[9], const Lanes *dilatation,
-                                      Lanes A[MATERIAL_TANGENT_SIZE])
-{
-  Lanes dilatation_0, change, excess, C[9];
-
-  PointReference(call, n, dim, hoop, q, c, H, &dilatation_0, &change);
-  ExcessPressure(call, dilatation, &dilatation_0, &change, &excess);
-  Cofactors(H, C);
-  for (int lane = 0; lane < LANES; lane++) {
-    const double J = 1 + FlooredDilatation((*dilatation)[lane]);
-
-    excess[lane] /= J * J; /* F^-T = C / J enters twice */
-  }
-  for (int r = 0, k = 0; r < 9; r++)
-    for (int s = r; s < 9; s++, k++) A[k] -= excess * C[3 * (r / 3) + s % 3] * C[3 * (s / 3) + r % 3];
-}
-
 /* Computes energy, force and tangent of the first LANES elements of the arrays. n, points, dim and hoop are constants
    of the instance. */
 LANES_INLINE void Batch(const BatchCall *call, const int n, const int points, const int dim, const int hoop)
@@ -60,7 +41,12 @@ LANES_INLINE void Batch(const BatchCall *call, const int n, const int points, co
       MaterialDilatation(H, &dilatation);
       KeepLeastJ(call, &dilatation);
       PointLaw(call, first + q, H, &dilatation, W ? &energy : NULL, P, K ? c.A[q] : NULL);
-      if (K && call->u_0) ExtrapolatePressure(call, n, dim, hoop, q, &c, H, &dilatation, c.A[q]);
+      if (K && call->u_0) {
+        Lanes H_0[9];
+
+        PointDisplacementGradient(n, dim, hoop, q, call->u_0, &c, H_0);
+        PointExtrapolate(call, H, &dilatation, H_0, c.A[q]);
+      }
       if (W) LANE(W, 0) += energy * volume;
       if (call->H) StorePoint(call, first + q, H);
       for (int r = 0; r < 9; r++) P[r] *= volume;
@@ -130,17 +116,20 @@ int ElementKernelExists(const KernelCase *kernel)
 }
 
 /*@
-  ElementExtrapolates - says whether the tangent depends on a PressureReference.
+  ElementExtrapolates - says whether the tangent depends on a StressReference.
 
   Not collective
 
   Note:
-  It does with separable laws, see ElasticLaw. Enhanced elements take no reference.
+  It does with laws that extrapolate their stress, and with separable laws, of which the pressure is extrapolated. With
+  formulation fbar it does with the latter only.
 @*/
 int ElementExtrapolates(const KernelCase *kernel)
 {
-  return kernel->kinematics == KINEMATICS_FINITE && kernel->formulation != FORMULATION_ENHANCED &&
-         MaterialGetLaw(kernel->law)->separable;
+  const ElasticLaw *law = MaterialGetLaw(kernel->law);
+
+  if (kernel->kinematics == KINEMATICS_SMALL) return 0;
+  return law->separable || (law->extrapolate && kernel->formulation != FORMULATION_FBAR);
 }
 
 /* Sets what all parts of a batch have in common. */
@@ -240,7 +229,7 @@ static void SetConstants(const KernelCase *kernel, const double *constants, int 
   Bonet and Wood, "Nonlinear Continuum Mechanics for Finite Element Analysis", sections 8.4 and 8.5
   (reference configuration)
 @*/
-void ElementKernel(const KernelCase *kernel, const double *X, const double *u, const PressureReference *reference,
+void ElementKernel(const KernelCase *kernel, const double *X, const double *u, const StressReference *reference,
                    const double *constants, const double *multiplier, double *W, double *f, double *K, double *J)
 {
   const int extrapolates = reference && ElementExtrapolates(kernel);
@@ -383,7 +372,7 @@ void ElementDilatation(const KernelCase *kernel, const double *X, const double *
   Note:
   These pressures are those that the mixed method's own Newton iteration has as unknowns.
 @*/
-void ElementFollow(const KernelCase *kernel, const double *X, const double *u, const PressureReference *reference,
+void ElementFollow(const KernelCase *kernel, const double *X, const double *u, const StressReference *reference,
                    const double *constants, const double *multiplier, double *next)
 {
   Lanes     lanes_constants[MATERIAL_MAX_CONSTANTS];

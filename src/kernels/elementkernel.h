@@ -8,7 +8,7 @@
    ElementStress() and ElementVolumeEnergy() evaluate a state, ElementQuality() and CellVolume() a shape,
    FaceLoadKernel() and BodyForceKernel() the loads, FaceAreaKernel() the areas of a face's nodes.
 
-   K may extrapolate the pressure of its geometric part from an earlier state (pressurereference.h), where
+   K may extrapolate the stress of its geometric part from an earlier state (stressreference.h), where
    ElementExtrapolates().
 
    ElementPressures(), ElementVolumeModuli(), ElementDilatation() and ElementFollow() are for mixed elements, whose
@@ -19,7 +19,7 @@
 #include "kernels/element.h"
 #include "kernels/formulation.h"
 #include "kernels/material.h"
-#include "kernels/pressurereference.h"
+#include "kernels/stressreference.h"
 #include "kernels/vonmises.h"
 
 /* Number of elements in a batch. It must be a multiple of LANES, which is 8 at most. */
@@ -53,7 +53,7 @@ typedef struct {
   double local, projected, kappa, mu;
 } VolumeModuli;
 
-void   ElementKernel(const KernelCase *, const double *X, const double *u, const PressureReference *,
+void   ElementKernel(const KernelCase *, const double *X, const double *u, const StressReference *,
                      const double *constants, const double *multiplier, double *W, double *f, double *K, double *J);
 void   ElementAcceptState(const KernelCase *, const double *X, const double *u, const double *constants);
 int    ElementKernelExists(const KernelCase *);
@@ -66,7 +66,7 @@ void   ElementStress(const KernelCase *, const double *X, const double *u, const
                      const double *multiplier, double stress[6], double *volume);
 int    ElementPressures(const KernelCase *);
 void   ElementVolumeModuli(const KernelCase *, const double *constants, int stride, VolumeModuli *);
-void   ElementFollow(const KernelCase *, const double *X, const double *u, const PressureReference *,
+void   ElementFollow(const KernelCase *, const double *X, const double *u, const StressReference *,
                      const double *constants, const double *multiplier, double *next);
 void   ElementDilatation(const KernelCase *, const double *X, const double *u, const double *constants,
                          const double *multiplier, double *theta);

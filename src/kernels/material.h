@@ -59,14 +59,21 @@ typedef void MaterialLawFn(const Lanes H[9], const Lanes *dilatation, int n, con
 /* Computes the shear modulus mu of the undeformed state. */
 typedef void MaterialShearFn(int n, const Lanes constants[], Lanes *mu);
 
+/* Puts the stress that extrapolates from an earlier state into the geometric part of the tangent A at H, which on entry
+   is that of evaluate(). H_0 is the displacement gradient of the earlier state. rate is 1: its stress changes linearly
+   on the way, or 0: it does not change. */
+typedef void MaterialExtrapolateFn(const Lanes H[9], const Lanes H_0[9], double rate, const Lanes constants[],
+                                   Lanes A[MATERIAL_TANGENT_SIZE]);
+
 /* A separable law is a sum of constants[0]/2 (ln J)^2 and of a part without constants[0]. Of the others svk has
    constants[0]/2 (tr E)^2 instead, and linear constants[0]/2 (tr e)^2. constants[0] is the first one of Lame's
    constants, or the bulk modulus where the law is isochoric: its other part does not depend on J. */
 typedef struct {
-  MaterialLawFn   *evaluate;
-  MaterialShearFn *shear;
-  int              constants; /* their number; for laws of any number of terms that of one term */
-  int              separable, isochoric;
+  MaterialLawFn         *evaluate;
+  MaterialShearFn       *shear;
+  MaterialExtrapolateFn *extrapolate; /* NULL: the pressure of separable laws is extrapolated, nothing of others */
+  int                    constants;   /* their number; for laws of any number of terms that of one term */
+  int                    separable, isochoric;
   /* Keys of the own constants in a scene, in their order; the first `required` ones have no default, the others are 0.
      MATERIAL_TERMS is the key of a list of terms with two constants each. A law whose only key is mu takes E, too. */
   const char *keys[MATERIAL_MAX_KEYS + 1];

@@ -18,7 +18,7 @@
    caller changes the multiplier until the pressure is right (augmented Lagrangian).
 
    The geometric part of the tangent may have pressures that are extrapolated from an earlier state
-   (pressurereference.h): theta there and its linear change on the way, with the bubble's.
+   (stressreference.h): theta there and its linear change on the way, with the bubble's.
 
    Pressures and multipliers of an element are coefficients of shape functions that are orthonormal over the reference
    volume. Their unit is stress times the root of a volume. */

@@ -270,7 +270,7 @@ static PetscErrorCode ProblemContactTangent(Problem problem, const PetscReal *u,
   Input Parameters:
 + problem   - the problem
 . u         - local displacements u[n_nodes*dim] (length)
-. reference - the state from which the elements extrapolate pressures; NULL: they have those of u
+. reference - the state from which the elements extrapolate stresses; NULL: they have those of u
 - t         - load parameter
 
   Output Parameter:
@@ -279,7 +279,7 @@ static PetscErrorCode ProblemContactTangent(Problem problem, const PetscReal *u,
   Note:
   problem->stiffness is set to the norm of the diagonal without contact, from which ProblemRoundOff() estimates.
 @*/
-PetscErrorCode ProblemTangent(Problem problem, const PetscReal *u, const PressureReference *reference, PetscReal t,
+PetscErrorCode ProblemTangent(Problem problem, const PetscReal *u, const StressReference *reference, PetscReal t,
                               TangentChange *change)
 {
   const PetscBool joined = (PetscBool)(problem->form == TANGENT_JOINED);

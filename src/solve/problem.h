@@ -73,7 +73,7 @@ PetscErrorCode ProblemResidual(Problem, const PetscReal *u, PetscReal t, PetscRe
 PetscErrorCode ProblemCollectResidual(Problem, Vec x, Vec F);
 PetscErrorCode ProblemEnergy(Problem, const PetscReal *u, PetscReal t, int parts, PetscReal *energy, PetscBool *ok);
 PetscErrorCode ProblemSetForm(Problem, TangentForm);
-PetscErrorCode ProblemTangent(Problem, const PetscReal *u, const PressureReference *, PetscReal t, TangentChange *);
+PetscErrorCode ProblemTangent(Problem, const PetscReal *u, const StressReference *, PetscReal t, TangentChange *);
 PetscErrorCode ProblemRestoreTangent(Problem);
 PetscReal      ProblemForceScale(Problem);
 PetscErrorCode ProblemRoundOff(Problem, PetscReal *force);

@@ -1,6 +1,5 @@
-"""Mixed elements at nu = 0.5, finite strains: a thick tube and a thick sphere inflated, against their closed forms; Cook's
-membrane with every element; a run that is stopped and goes on with its multipliers on other ranks; and what is chosen
-and refused."""
+"""Mixed elements at nu = 0.5, finite strains: a thick tube and a thick sphere inflated, against their closed forms; a run
+that is stopped and goes on with its multipliers on other ranks; and what is chosen and refused."""
 import pathlib
 import shutil
 import signal

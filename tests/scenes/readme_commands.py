@@ -21,6 +21,9 @@ def printed(script, record, options=""):
 LIKE = {
     f"{PYTHON} scripts/reference.py": f"{PYTHON} scripts/reference.py --check {BURNISH}",
     f"{PYTHON} scripts/ring_table.py": f"{PYTHON} scripts/ring_table.py --help",
+    f"{PYTHON} scripts/incompressible_table.py {BURNISH}": f"{PYTHON} scripts/incompressible_table.py --help",
+    "build/tests/incompressible meshes runs/records/incompressible_rates.csv": "test -s "
+    "runs/records/incompressible_rates.csv",
     f"{PYTHON} -m http.server -d out/site": f"timeout 1 {PYTHON} -m http.server 0 -d out/site; test $? = 124",
     "mpirun -x OPENBLAS_CORETYPE": "mpirun -x OPENBLAS_CORETYPE -n 2 build/burnish -version",
     "make install PREFIX=$HOME/.local": "test -x prefix/bin/burnish || "

@@ -167,7 +167,7 @@ static void FollowingStartsFromTheSamePressure(void **state)
     ElementVolumeModuli(&kernel, c.constants, KERNEL_LANES, &moduli);
     ElementDilatation(&kernel, c.X, c.u, c.constants, c.multiplier, theta);
     for (int rate = 0; rate < 2; rate++) {
-      const PressureReference reference = {c.u, rate, 0};
+      const StressReference reference = {c.u, rate, 0};
 
       ElementFollow(&kernel, c.X, c.u, &reference, c.constants, c.multiplier, next);
       for (int k = 0; k < c.pressures * KERNEL_LANES; k++)

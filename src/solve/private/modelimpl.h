@@ -58,9 +58,10 @@ typedef struct _n_ModelWork {
   PetscBool augmented;    /* multipliers of the volume were changed at the solution from which the next solve starts */
   char      cycle[256];   /* the last repetition in words */
 
-  PetscReal *solved;    /* local displacements (length) at the last equilibrium; NULL: no pressures are extrapolated */
+  PetscReal *solved;    /* local displacements (length) at the last equilibrium; NULL: no stresses are extrapolated */
   PetscReal *from;      /* those from which the last step led to the iterate */
   PetscBool  shortened; /* that step was shortened */
+  PetscBool  uphill;    /* it led uphill and was turned round: the next tangent is the derivative of the residual */
 
   /* One solve by SNES */
   Objective objective;
@@ -86,7 +87,7 @@ PetscErrorCode ModelFindJump(Model, SolveReport *);
 PetscErrorCode ModelCreateSNES(Model);
 PetscErrorCode ModelStepFrom(Model, const PetscReal *u);
 PetscErrorCode ModelStepFromSolved(Model, const PetscReal *u);
-PetscErrorCode ModelTangent(Model, const PetscReal *u, const PressureReference *, PetscReal t);
+PetscErrorCode ModelTangent(Model, const PetscReal *u, const StressReference *, PetscReal t);
 PetscErrorCode ModelLinearFailure(Model, SolveResult *);
 PetscErrorCode ModelNewton(Model, SolveReport *);
 /* prediction.c */
