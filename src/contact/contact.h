@@ -161,6 +161,7 @@ PetscErrorCode      ContactPairText(Contact, int pair, char *text, size_t size);
 PetscErrorCode      ContactPairSurface(Contact, int pair, const MeshGroup **slave, PetscReal *mean_face_size);
 PetscErrorCode      ContactPairTermStiffness(Contact, int pair, PetscReal *stiffness);
 PetscErrorCode      ContactPairClosed(Contact, int pair, const PetscInt *label, PetscInt n, PetscInt *closed);
+PetscBool           ContactHasFriction(Contact);
 MPI_Comm            ContactComm(Contact);
 /* Probes and reports */
 PetscErrorCode ContactSummarise(Contact, ContactSummary *);

@@ -179,6 +179,7 @@ void FrictionEvaluate(const FrictionInput *in, FrictionTraction *out)
     ApplyMatrix(m, out);
     for (int i = 0; i < 3; i++) out->traction[i] = in->stiffness * e[i];
     out->elastic = length;
+    out->slipped = 0;
     return;
   }
   for (int i = 0; i < 3; i++) e[i] /= length;
@@ -189,4 +190,5 @@ void FrictionEvaluate(const FrictionInput *in, FrictionTraction *out)
     out->by_gap[i] -= in->coefficient * rate * e[i];
   }
   out->elastic = bound / in->stiffness;
+  out->slipped = length - out->elastic;
 }

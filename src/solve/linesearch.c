@@ -98,7 +98,7 @@ static PetscErrorCode ModelMeasureStep(SNESLineSearch search, Vec x, Vec y, Pets
   PetscCall(ProblemSetTrial(model->problem, x, model->t));
   PetscCall(ModelSolveLinearContact(model, model->problem->trial, NULL, model->t, y));
   *changed = PETSC_TRUE;
-  if (model->work->objective == OBJECTIVE_RESIDUAL || !LoadsConservative(model->problem->loads))
+  if (model->work->objective == OBJECTIVE_RESIDUAL || !ProblemConservative(model->problem))
     PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(SNESLineSearchGetSNES(search, &snes));
   if (model->work->energy == 0)
@@ -139,7 +139,7 @@ PetscErrorCode ModelLocateEdge(Model model, PetscBool *found, ContactPlace *plac
   PetscFunctionBeginUser;
   *found = PETSC_FALSE;
   PetscCall(SNESGetSolutionUpdate(model->snes, &y));
-  if (!model->contact || !LoadsConservative(model->problem->loads) || !y || work->objective == OBJECTIVE_RESIDUAL)
+  if (!model->contact || !ProblemConservative(model->problem) || !y || work->objective == OBJECTIVE_RESIDUAL)
     PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(SNESGetFunction(model->snes, &F, NULL, NULL));
   PetscCall(VecDotRealPart(F, y, &slope));
@@ -169,14 +169,14 @@ PetscErrorCode ModelLocateEdge(Model model, PetscBool *found, ContactPlace *plac
 . model - its SNES has its line search
 
   Note:
-  With follower loads there is no energy. SNES then compares residuals by itself.
+  With follower loads or friction there is no energy. SNES then compares residuals by itself.
 @*/
 PetscErrorCode ModelCreateLineSearch(Model model)
 {
   SNESLineSearch search;
 
   PetscFunctionBeginUser;
-  if (LoadsConservative(model->problem->loads)) PetscCall(SNESSetObjective(model->snes, ModelObjective, model));
+  if (ProblemConservative(model->problem)) PetscCall(SNESSetObjective(model->snes, ModelObjective, model));
   if (!model->contact) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(SNESGetLineSearch(model->snes, &search));
   PetscCall(SNESLineSearchSetPreCheck(search, ModelMeasureStep, model));

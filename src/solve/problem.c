@@ -33,8 +33,8 @@ PetscErrorCode ProblemCreate(Scene scene, Mesh mesh, Problem *out)
   problem->inverted = -1;
   PetscCall(LoadsCreate(mesh, scene, &problem->loads));
   PetscCall(ElasticityCreate(mesh, scene, &problem->elasticity));
-  PetscCall(ElasticitySetSymmetric(problem->elasticity, LoadsConservative(problem->loads)));
   if (scene->n_contacts) PetscCall(ContactCreate(mesh, scene, problem->elasticity, problem->loads, &problem->contact));
+  PetscCall(ElasticitySetSymmetric(problem->elasticity, ProblemConservative(problem)));
   PetscCall(PetscCalloc2(n, &problem->f, n, &problem->trial));
   PetscCall(ElasticityTangent(problem->elasticity, problem->trial));
   PetscCall(ElasticityMatrix(problem->elasticity, NULL, NULL, &problem->P));
@@ -547,6 +547,20 @@ PetscErrorCode ProblemReaction(Problem problem, const MeshGroup *group, PetscRea
 PetscBool ProblemIsLinear(Problem problem)
 {
   return problem->scene->kinematics == KINEMATICS_SMALL && !problem->contact ? PETSC_TRUE : PETSC_FALSE;
+}
+
+/*@
+  ProblemConservative - returns whether all forces have a potential, so that there is an energy to compare and the
+  tangent is symmetric.
+
+  Not collective, the same on all ranks
+
+  Input Parameter:
+. problem - the problem
+@*/
+PetscBool ProblemConservative(Problem problem)
+{
+  return (PetscBool)(LoadsConservative(problem->loads) && !ContactHasFriction(problem->contact));
 }
 
 /*@

@@ -83,4 +83,5 @@ PetscErrorCode ProblemRenewLists(Problem, const PetscReal *u_0, PetscReal t_0, P
                                  PetscReal lag, PetscBool *hold);
 PetscErrorCode ProblemReaction(Problem, const MeshGroup *, PetscReal force[3]);
 PetscBool      ProblemIsLinear(Problem);
+PetscBool      ProblemConservative(Problem);
 PetscBool      ProblemHasFormulation(Problem, Formulation);

@@ -34,7 +34,8 @@ typedef struct {
 typedef struct {
   double        traction[3]; /* t, along the slip; the force on the slave is its negative (force per area) */
   FrictionState state;       /* FRICTION_STICKS or FRICTION_SLIPS */
-  double        elastic;     /* length of e where the node sticks, mu p / stiffness where it slips (length) */
+  double        elastic;     /* elastic slip: the length of e where the node sticks, mu p / stiffness where it slips */
+  double        slipped;     /* what is left of the length of e: slip that stays (length) */
   double        by_normal[3][3], by_slip[3][3], by_along[3][3], by_gap[3]; /* derivatives of the traction */
 } FrictionTraction;
 
