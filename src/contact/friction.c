@@ -21,6 +21,7 @@ PetscErrorCode FrictionCreate(ContactPair *pair)
   PetscCall(PetscCalloc5(q, &f->face, 2 * q, &f->xi, 3 * q, &f->place, q, &f->at, 3 * q, &f->force));
   PetscCall(PetscCalloc4(q, &f->foot, q, &f->facet, q, &f->known, q, &f->first));
   PetscCall(PetscCalloc4(n, &f->anchored, 2 * n, &f->kept, n, &f->began, n, &f->axis));
+  PetscCall(PetscCalloc4(3 * n, &f->nodal, n, &f->elastic, 3 * n, &f->traction, n, &f->status));
   for (PetscInt i = 0; i < q; i++) f->face[i] = f->facet[i] = f->at[i] = f->first[i] = -1;
   SearchKeepFaces(pair->search);
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -36,6 +37,7 @@ PetscErrorCode FrictionDestroy(Friction *friction)
   PetscCall(PetscFree5(f->face, f->xi, f->place, f->at, f->force));
   PetscCall(PetscFree4(f->foot, f->facet, f->known, f->first));
   PetscCall(PetscFree4(f->anchored, f->kept, f->began, f->axis));
+  PetscCall(PetscFree4(f->nodal, f->elastic, f->traction, f->status));
   PetscCall(PetscFree(f->turns));
   PetscCall(PetscFree(*friction));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -454,6 +456,28 @@ static PetscErrorCode PointForces(ContactPair *pair, PetscInt q, PetscReal *valu
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Adds up the forces on slave nodes. Where terms share their points, the hat functions distribute the points' forces,
+   also to terms of other ranks. */
+static PetscErrorCode NodalForces(ContactPair *pair)
+{
+  const int            dim   = pair->mesh->dim;
+  const NeighbourLists lists = pair->lists;
+  Friction             f     = pair->friction;
+  PetscReal           *values, *nodal;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc2(lists->n_nodes * dim, &values, pair->mesh->n_nodes * dim, &nodal));
+  for (PetscInt q = 0; q < lists->n_slaves; q++)
+    for (PetscInt k = pair->slaves->ptr[q], node = lists->slave_ptr[q]; k < pair->slaves->ptr[q + 1]; k++, node++)
+      for (int d = 0; d < dim; d++)
+        values[lists->slave_node[node] * dim + d] -= pair->slaves->hat[k] * f->force[3 * q + d];
+  PetscCall(NeighbourListsReduce(lists, values, nodal));
+  for (PetscInt c = 0; c < pair->n; c++)
+    for (int d = 0; d < dim; d++) f->nodal[3 * c + d] = nodal[pair->node[c] * dim + d];
+  PetscCall(PetscFree2(values, nodal));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /*@
   FrictionResidual - computes the tractions of a pair, which become its present state, and adds their forces.
 
@@ -489,13 +513,71 @@ PetscErrorCode FrictionResidual(ContactPair *pair, PetscReal t, PetscReal *value
       for (int d = 0; d < 3; d++) pair->friction->force[3 * q + d] += weight * out.traction[d];
     }
     for (int d = 0; d < 3; d++) now->traction[3 * c + d] = acts ? out.traction[d] : 0;
-    now->slips[c] = (PetscBool)(acts && out.state == FRICTION_SLIPS);
-    now->slid[c]  = accepted->slid[c] + (acts ? out.slipped : 0);
+    pair->friction->elastic[c] = acts ? out.elastic : 0;
+    now->slips[c]              = (PetscBool)(acts && out.state == FRICTION_SLIPS);
+    now->slid[c]               = accepted->slid[c] + (acts ? out.slipped : 0);
     if (acts)
       now->dissipated +=
         area * out.slipped *
         PetscSqrtReal(PetscSqr(out.traction[0]) + PetscSqr(out.traction[1]) + PetscSqr(out.traction[2]));
   }
   for (PetscInt q = 0; q < pair->lists->n_slaves; q++) PetscCall(PointForces(pair, q, values));
+  PetscCall(NodalForces(pair));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Fills what slave nodes show of friction. area: present tributary areas of the mesh's nodes. */
+PetscErrorCode FrictionShow(const ContactPair *pair, const PetscReal *area, ContactNodes *nodes)
+{
+  const Friction f = pair->friction;
+
+  PetscFunctionBeginUser;
+  for (PetscInt c = 0; c < pair->n; c++) {
+    for (int d = 0; d < 3; d++) f->traction[3 * c + d] = f->nodal[3 * c + d] / area[pair->node[c]];
+    f->status[c] = pair->now.status[c] == CONTACT_OPEN ? 0 : pair->now.slips[c] ? 2 : 1;
+  }
+  nodes->traction = f->traction;
+  nodes->slid     = pair->now.slid;
+  nodes->friction = f->status;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ContactPairFriction - says what friction does in a pair in the present state.
+
+  Collective
+
+  Input Parameters:
++ contact - the contact
+- p       - number of the pair
+
+  Output Parameter:
+. friction - the same on all ranks; zeros without friction
+@*/
+PetscErrorCode ContactPairFriction(Contact contact, int p, ContactFriction *friction)
+{
+  const ContactPair *pair   = &contact->pairs[p];
+  const Friction     f      = pair->friction;
+  PetscReal          sum[7] = {0}, most[2] = {0};
+
+  PetscFunctionBeginUser;
+  for (PetscInt c = 0; f && c < pair->n; c++) {
+    for (int d = 0; d < 3; d++) sum[d] += f->nodal[3 * c + d];
+    if (pair->now.status[c] == CONTACT_OPEN) continue;
+    sum[pair->now.slips[c] ? 4 : 3]++;
+    if (pair->now.slips[c]) sum[5] += pair->area[c];
+    most[0] = PetscMax(most[0], f->elastic[c]);
+    most[1] = PetscMax(most[1], pair->now.slid[c]);
+  }
+  sum[6] = pair->now.dissipated;
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sum, 7, MPIU_REAL, MPIU_SUM, contact->mesh->comm));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, most, 2, MPIU_REAL, MPIU_MAX, contact->mesh->comm));
+  *friction = (ContactFriction){.force        = {sum[0], sum[1], sum[2]},
+                                .sticking     = (PetscInt)sum[3],
+                                .slipping     = (PetscInt)sum[4],
+                                .slipped_area = sum[5],
+                                .dissipated   = sum[6],
+                                .elastic      = most[0],
+                                .slid         = most[1]};
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -19,5 +19,6 @@ const char *const StepColumnNames[STEP_COLUMNS] = {
   [COLUMN_PENALTY_MIN]     = "penalty_min",
   [COLUMN_PENALTY_MAX]     = "penalty_max",
   [COLUMN_CONTACT_FORCE]   = "contact_force",
+  [COLUMN_DISSIPATED]      = "dissipated",
   [COLUMN_WALL_S]          = "wall_s",
 };

@@ -23,6 +23,7 @@ typedef enum {
   COLUMN_PENALTY_MIN,
   COLUMN_PENALTY_MAX,
   COLUMN_CONTACT_FORCE,
+  COLUMN_DISSIPATED, /* only with friction */
   COLUMN_WALL_S,
   STEP_COLUMNS
 } StepColumn;

@@ -32,4 +32,7 @@ typedef struct {
   PetscReal *began;    /* its opening, where it was open (length) */
   int       *axis;     /* of an analytic tool: that which gives the tangents */
   PetscReal *force;    /* 3 for each slave point, in the last residual */
+  PetscReal *nodal;    /* 3 for each term: force on the slave node, that of its neighbours on shared faces included */
+  PetscReal *elastic;  /* of each term: elastic slip (length) */
+  PetscReal *traction, *status; /* 3 and 1 for each term: what ContactGetNodes() shows */
 } *Friction;
