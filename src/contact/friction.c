@@ -373,14 +373,16 @@ static PetscReal TermCoefficient(const ContactPair *pair, PetscInt c, PetscReal 
 /* Evaluates the law of a term. In a linear step from a state in which it slips, its traction is on the bound; then it
    does what it did before. A term that only touches, and has no pressure yet, sticks in a linear step, because it may
    be what holds a body. */
-static void TermEvaluate(const ContactPair *pair, PetscInt c, const LawValue *value, FrictionInput *in,
-                         FrictionTraction *out)
+static void TermEvaluate(const ContactPair *pair, PetscInt c, FrictionInput *in, FrictionTraction *out)
 {
   const ContactState *accepted = &pair->accepted;
   PetscReal           bound;
 
   in->state = FRICTION_DECIDES;
-  if (pair->touching && accepted->status[c] == CONTACT_OPEN && value->pressure <= 0) in->state = FRICTION_STICKS;
+  if (pair->touching && accepted->status[c] == CONTACT_OPEN) {
+    in->state = FRICTION_STICKS;
+    in->began = 0;
+  }
   FrictionEvaluate(in, out);
   if (!pair->holding || in->state != FRICTION_DECIDES || accepted->status[c] != CONTACT_CLOSED) return;
   bound = in->coefficient * PetscMax(0, in->pressure);
@@ -424,7 +426,7 @@ PetscErrorCode FrictionTerm(const ContactPair *pair, PetscInt c, PetscReal t, Fr
                         .opening     = gap - LawOnsetGap(&state),
                         .began       = f->began[c]};
   PetscCall(TermSlip(pair, c, t, in, acts));
-  if (*acts) TermEvaluate(pair, c, &value, in, out);
+  if (*acts) TermEvaluate(pair, c, in, out);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -523,6 +525,48 @@ PetscErrorCode FrictionResidual(ContactPair *pair, PetscReal t, PetscReal *value
   }
   for (PetscInt q = 0; q < pair->lists->n_slaves; q++) PetscCall(PointForces(pair, q, values));
   PetscCall(NodalForces(pair));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Mean motion of the slave points of a term against their anchors in the tangent plane, where the contact nodes move by
+   values; 0 where the term has no anchors. */
+PetscErrorCode FrictionTermMotion(const ContactPair *pair, PetscInt c, const PetscReal *values, PetscReal motion[3])
+{
+  const NeighbourLists lists = pair->lists;
+  const int            dim   = lists->dim;
+  PetscReal            area = 0, across = 0, square = 0, normal[3] = {0, 0, 0};
+
+  PetscFunctionBeginUser;
+  for (int d = 0; d < 3; d++) motion[d] = 0;
+  for (PetscInt k = pair->term_ptr[c]; pair->friction->anchored[c] && k < pair->term_ptr[c + 1]; k++) {
+    const PetscInt  q      = pair->term_point[k], *node;
+    const PetscReal weight = pair->term_weight[k] * pair->factor[q], *S;
+    const Facet    *face;
+    const PetscInt  n = FrictionOwnNodes(pair, q, &node, &S);
+    PetscReal       N[FACE_MAX_NODES];
+
+    if (!FrictionTermTakes(pair, k)) continue;
+    area += weight;
+    PetscCall(ContactVariationsNeed(pair, q));
+    for (int d = 0; d < dim; d++) normal[d] += weight * pair->variations->own[q * dim + d];
+    for (PetscInt a = 0; a < n; a++)
+      for (int d = 0; d < dim; d++) motion[d] += weight * S[a] * values[node[a] * dim + d];
+    if (!pair->master || pair->friction->at[q] < 0) continue;
+    face = &lists->face[pair->friction->at[q]];
+    ElementShape(face->type, &pair->friction->xi[2 * q], N, NULL, NULL);
+    for (int a = 0; a < ElementGet(face->type)->nodes; a++) {
+      PetscReal sign[3];
+      PetscInt  at;
+
+      FrictionNodeSign(pair, face->nodes[a], &at, sign);
+      for (int d = 0; d < dim; d++) motion[d] -= weight * N[a] * sign[d] * values[at * dim + d];
+    }
+  }
+  for (int d = 0; d < 3; d++) {
+    across += normal[d] * motion[d];
+    square += PetscSqr(normal[d]);
+  }
+  for (int d = 0; d < 3 && area > 0; d++) motion[d] = (motion[d] - across / square * normal[d]) / area;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

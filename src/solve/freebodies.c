@@ -426,12 +426,23 @@ PetscErrorCode FreeBodiesForce(FreeBodies b, const PetscReal *u, PetscReal t, do
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Stiffness gram[n][n] of the terms in contact, or touching, along the motions at (u, t), over the largest diagonal
-   entry. */
-static PetscErrorCode ContactGram(FreeBodies b, const PetscReal *u, PetscReal t, PetscBool touching, double gram[])
+/* Product of two motions as term i of n sees them: of their travels and, where there are four values, slides. */
+static PetscReal Together(int across, PetscBool along, PetscInt n, PetscInt i, const PetscReal *a, const PetscReal *b)
 {
-  const PetscInt       size = b->mesh->n_nodes * b->mesh->dim;
-  const int            n    = b->n;
+  PetscReal sum = along ? 0 : a[i] * b[i];
+
+  for (int d = 0; d < across - 1; d++) sum += a[n + 3 * i + d] * b[n + 3 * i + d];
+  return sum;
+}
+
+/* Stiffness gram[n][n] of the terms in contact, or touching, along the motions at (u, t), over the largest diagonal
+   entry. Friction counts as if nothing slipped. along: it alone counts. */
+static PetscErrorCode ContactGram(FreeBodies b, const PetscReal *u, PetscReal t, PetscBool touching, PetscBool along,
+                                  double gram[])
+{
+  const PetscInt       size   = b->mesh->n_nodes * b->mesh->dim;
+  const int            n      = b->n;
+  const int            across = ContactHasFriction(b->contact) ? 4 : 1; /* values of a term: travel, slide */
   PetscReal           *du, **travel, largest = 0;
   double              *a;
   PetscInt             n_terms;
@@ -450,14 +461,16 @@ static PetscErrorCode ContactGram(FreeBodies b, const PetscReal *u, PetscReal t,
     a[k] = 1;
     FreeBodiesVelocity(b, u, a, du);
     a[k] = 0;
-    PetscCall(PetscMalloc1(n_terms, &travel[k]));
+    PetscCall(PetscMalloc1(across * n_terms, &travel[k]));
     PetscCall(ContactStepTravel(step, du, t, t, travel[k]));
+    if (across > 1) PetscCall(ContactStepSlide(step, du, t, t, &travel[k][n_terms]));
   }
   for (PetscInt i = 0; i < n_terms; i++) {
     if (terms[i].pressure == 0 && !(touching && terms[i].opening <= FREE_BODIES_TOUCH * b->face)) continue;
     for (int k = 0; k < n; k++)
       for (int l = 0; l < n; l++)
-        gram[k * n + l] += travel[k][i] * travel[l][i] / (b->pieces[b->owner[k]].size * b->pieces[b->owner[l]].size);
+        gram[k * n + l] += Together(across, along, n_terms, i, travel[k], travel[l]) /
+                           (b->pieces[b->owner[k]].size * b->pieces[b->owner[l]].size);
   }
   for (int k = 0; k < n; k++) largest = PetscMax(largest, gram[k * n + k]);
   for (int k = 0; k < n * n && largest > 0; k++) gram[k] /= largest;
@@ -579,7 +592,7 @@ PetscErrorCode FreeBodiesFall(FreeBodies b, const PetscReal *u, PetscReal t, Pet
   PetscFunctionBeginUser;
   *falls = PETSC_FALSE;
   PetscCall(PetscMalloc4(n * n, &gram, n * n, &free, n, &pivot, n, &drives));
-  PetscCall(ContactGram(b, u, t, PETSC_TRUE, gram));
+  PetscCall(ContactGram(b, u, t, PETSC_TRUE, PETSC_FALSE, gram));
   PetscCall(LooseMotions(b, gram, FREE_BODIES_HELD, &m, free, pivot));
   PetscCall(FindDriven(b, u, t_loads, part, m, free, drives));
   for (int f = 0; f < m; f++) *falls = (PetscBool)(*falls || drives[f]);
@@ -634,7 +647,7 @@ PetscErrorCode FreeBodiesLoose(FreeBodies b, const PetscReal *u, PetscReal t, Pe
   text[0] = '\0';
   if (!n) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscMalloc4(n * n, &gram, n * n, &free, n, &pivot, n, &drives));
-  PetscCall(ContactGram(b, u, t, PETSC_FALSE, gram));
+  PetscCall(ContactGram(b, u, t, PETSC_FALSE, PETSC_FALSE, gram));
   if (!driven) ScaleTied(b, FREE_BODIES_HIDDEN, gram);
   PetscCall(LooseMotions(b, gram, driven ? FREE_BODIES_HELD : FREE_BODIES_NAMED, &m, free, pivot));
   for (int f = 0; f < m && !driven; f++) UnscaleMotion(b, FREE_BODIES_HIDDEN, pivot[f], &free[f * n]);
@@ -642,6 +655,23 @@ PetscErrorCode FreeBodiesLoose(FreeBodies b, const PetscReal *u, PetscReal t, Pe
   for (int f = 0; f < m; f++)
     if (driven ? drives[f] : b->state[pivot[f]] != MOTION_CONTACT) AddMotion(b, &free[f * n], size, text);
   PetscCall(PetscFree4(gram, free, pivot, drives));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Makes bodies that touch with friction at (u, t) hardly slide: gram[n][n], the products of their motions, grows by
+   `factor` of its largest diagonal entry along them. */
+PetscErrorCode FreeBodiesRub(FreeBodies b, const PetscReal *u, PetscReal t, PetscReal factor, double gram[])
+{
+  const int n = b->n;
+  double   *along, largest = 0;
+
+  PetscFunctionBeginUser;
+  if (!ContactHasFriction(b->contact)) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscMalloc1(n * n, &along));
+  PetscCall(ContactGram(b, u, t, PETSC_TRUE, PETSC_TRUE, along));
+  for (int k = 0; k < n; k++) largest = PetscMax(largest, gram[k * n + k]);
+  for (int k = 0; k < n * n; k++) gram[k] += factor * largest * along[k];
+  PetscCall(PetscFree(along));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -731,7 +761,7 @@ static PetscErrorCode FindTied(FreeBodies b, const PetscReal *u, PetscReal t, Pe
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc4(n * n, &gram, n * n, &free, n, &pivot, n, &drives));
   PetscCall(ContactHoldActiveSet(b->contact, PETSC_TRUE, touching)); /* fresh lists may have opened it a little */
-  PetscCall(ContactGram(b, u, t, touching, gram));
+  PetscCall(ContactGram(b, u, t, touching, PETSC_FALSE, gram));
   PetscCall(ContactHoldActiveSet(b->contact, PETSC_FALSE, PETSC_FALSE));
   PetscCall(DropDriven(b, u, t_loads, gram, tied));
   for (int k = 0; k < n; k++) gram[k * n + k] += tied[k] ? 1 : 0; /* the stiffness of the stiffest contact */

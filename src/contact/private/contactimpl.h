@@ -187,6 +187,7 @@ PetscInt       FrictionOwnNodes(const ContactPair *, PetscInt q, const PetscInt 
 void           FrictionNodeSign(const ContactPair *, PetscInt point, PetscInt *node, PetscReal sign[3]);
 PetscInt       FrictionFootPoint(const ContactPair *, PetscInt q, int node);
 PetscErrorCode FrictionResidual(ContactPair *, PetscReal t, PetscReal *values);
+PetscErrorCode FrictionTermMotion(const ContactPair *, PetscInt term, const PetscReal *values, PetscReal motion[3]);
 PetscErrorCode FrictionShow(const ContactPair *, const PetscReal *area, ContactNodes *);
 /* frictiontangent.c */
 PetscErrorCode FrictionTermNodes(const ContactPair *, PetscInt term);

@@ -37,6 +37,7 @@ void           FreeBodiesMove(FreeBodies, const double a[], PetscReal *u);
 PetscErrorCode FreeBodiesGram(FreeBodies, const PetscReal *u, double gram[]);
 PetscErrorCode FreeBodiesForce(FreeBodies, const PetscReal *u, PetscReal t, double force[], double scale[]);
 PetscErrorCode FreeBodiesLongest(FreeBodies, const PetscReal *u, const double a[], PetscReal *longest);
+PetscErrorCode FreeBodiesRub(FreeBodies, const PetscReal *u, PetscReal t, PetscReal factor, double gram[]);
 PetscBool      FreeBodiesTurns(FreeBodies, int k);
 PetscErrorCode FreeBodiesFall(FreeBodies, const PetscReal *u, PetscReal t, PetscReal t_loads, PetscReal part,
                               PetscBool *falls);
