@@ -4,10 +4,6 @@
 
 /* A foot that is outside of its reference face by less than this is on it: rounding. */
 #define FRICTION_ON_FACE 1e-9
-/* Where a linear step begins at a state in which a node slips, its traction is on the bound but for rounding. What it
-   did in the step before then decides. This is the part of the bound within which it does. */
-#define FRICTION_ON_BOUND 1e-6
-
 /* Allocates the friction of a pair, without anchors. */
 PetscErrorCode FrictionCreate(ContactPair *pair)
 {
@@ -370,24 +366,15 @@ static PetscReal TermCoefficient(const ContactPair *pair, PetscInt c, PetscReal 
   return PetscMax(0, ExpressionValue(pair->scene->mu_expression, X, t));
 }
 
-/* Evaluates the law of a term. In a linear step from a state in which it slips, its traction is on the bound; then it
-   does what it did before. A term that only touches, and has no pressure yet, sticks in a linear step, because it may
-   be what holds a body. */
+/* Evaluates the law of a term. In a linear step what sticks goes on sticking and what slips goes on slipping, as what
+   is in contact stays so. A term that only touches sticks, because it may be what holds a body. */
 static void TermEvaluate(const ContactPair *pair, PetscInt c, FrictionInput *in, FrictionTraction *out)
 {
-  const ContactState *accepted = &pair->accepted;
-  PetscReal           bound;
+  const ContactState *now = &pair->now;
 
   in->state = FRICTION_DECIDES;
-  if (pair->touching && accepted->status[c] == CONTACT_OPEN) {
-    in->state = FRICTION_STICKS;
-    in->began = 0;
-  }
-  FrictionEvaluate(in, out);
-  if (!pair->holding || in->state != FRICTION_DECIDES || accepted->status[c] != CONTACT_CLOSED) return;
-  bound = in->coefficient * PetscMax(0, in->pressure);
-  if (PetscAbsReal(in->stiffness * (out->elastic + out->slipped) - bound) > FRICTION_ON_BOUND * bound) return;
-  in->state = accepted->slips[c] ? FRICTION_SLIPS : FRICTION_STICKS;
+  if (pair->holding) in->state = now->slips[c] ? FRICTION_SLIPS : FRICTION_STICKS;
+  if (pair->holding && now->status[c] == CONTACT_OPEN) in->began = 0;
   FrictionEvaluate(in, out);
 }
 
