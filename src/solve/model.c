@@ -331,8 +331,9 @@ PetscErrorCode ModelEffects(Model model, char *text, size_t size)
                           ProblemHasFormulation(model->problem, FORMULATION_FBAR) ? ", mean dilatation" : ""));
   PetscCall(ModelContactEffects(scene, text, size));
   PetscCall(PetscStrlen(text, &start));
-  PetscCall(PetscSNPrintf(text + start, size - start, "%s%s%s%s%s%s", surface ? ", surface to surface" : "",
-                          adjusted ? ", adjusted penalty" : "", augmented ? ", augmented penalty" : "",
+  PetscCall(PetscSNPrintf(text + start, size - start, "%s%s%s%s%s%s%s", surface ? ", surface to surface" : "",
+                          ContactHasFriction(model->contact) ? ", friction" : "", adjusted ? ", adjusted penalty" : "",
+                          augmented ? ", augmented penalty" : "",
                           LoadsConservative(model->problem->loads) ? "" : ", follower load",
                           body_force ? ", body force" : "", moving ? ", rigid motion" : ""));
   PetscFunctionReturn(PETSC_SUCCESS);
