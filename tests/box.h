@@ -166,7 +166,7 @@ static inline PetscErrorCode BoxCreate(ElementType type, PetscInt n, Box *box)
   box->scene->kinematics = KINEMATICS_FINITE;
   box->scene->n_bodies   = 1;
   PetscCall(PetscCalloc1(1, &box->scene->bodies));
-  box->scene->bodies[0].material = (Material){MATERIAL_SVK, box_E, box_nu};
+  box->scene->bodies[0].material = MaterialFromModuli(MATERIAL_SVK, box_E, box_nu);
   PetscCall(PetscMalloc1(m->n_nodes * 3, &box_dofs));
   PetscCall(PetscMalloc1(m->n_nodes * 3, &box->u));
   for (PetscInt k = 0; k < m->n_nodes * 3; k++) box_dofs[k] = k;

@@ -22,7 +22,7 @@ typedef struct {
   PetscInt
     *block;     /* [nodes][nodes][lanes]: place of the pair of nodes in the block CSR; then PREFETCH_PAIRS of zeros */
   PetscReal *X; /* [nodes][dim][lanes] */
-  PetscReal *E, *nu; /* [lanes] */
+  PetscReal *constants; /* of the law [n_constants][lanes] */
 } CellGroup;
 
 struct _n_Elasticity {
@@ -33,8 +33,9 @@ struct _n_Elasticity {
   PetscReal *cell_modulus;
   PetscInt  *row, *column; /* block CSR over local nodes, columns ascending */
   PetscReal *value;        /* dim x dim blocks, row-major, in the order of column */
-  PetscReal *u, *f, *K;    /* of one batch, aligned to cache lines */
-  void      *buffer;       /* what u, f and K are in */
+  PetscReal *u, *u_0;      /* of one batch, aligned to cache lines; u_0: of the state that pressures come from */
+  PetscReal *f, *K;        /* of one batch */
+  void      *buffer;       /* what u, u_0, f and K are in */
   PetscInt   inverted;     /* a local cell that the last residual found inverted, or -1 */
   PetscBool  symmetric;
   NodeMatrix matrix;
@@ -55,18 +56,28 @@ static PetscErrorCode RegisterEvents(void)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Returns the material of a body as the kernels need it. */
+static Material BodyMaterial(Scene scene, PetscInt body)
+{
+  const Material *material = &scene->bodies[body].material;
+
+  return scene->kinematics == KINEMATICS_SMALL ? MaterialLinearise(material) : *material;
+}
+
 static KernelCase BodyKernel(Scene scene, PetscInt body, ElementType type)
 {
-  const SceneBody *b = &scene->bodies[body];
+  const Material material = BodyMaterial(scene, body);
 
-  return (KernelCase){type, scene->geometry, scene->kinematics,
-                      scene->kinematics == KINEMATICS_SMALL ? MATERIAL_LINEAR : b->material.law, b->formulation};
+  return (KernelCase){
+    type, scene->geometry, scene->kinematics, material.law, scene->bodies[body].formulation, material.n_constants};
 }
 
 /* Compares two kernels of one scene, whose geometry and kinematics are the same. */
 static PetscBool SameKernel(const KernelCase *a, const KernelCase *b)
 {
-  return a->type == b->type && a->law == b->law && a->formulation == b->formulation ? PETSC_TRUE : PETSC_FALSE;
+  return a->type == b->type && a->law == b->law && a->formulation == b->formulation && a->n_constants == b->n_constants
+           ? PETSC_TRUE
+           : PETSC_FALSE;
 }
 
 /* Sorts the cells into groups, in the order in which new kinds appear: sets cell_group and cell_slot. */
@@ -75,19 +86,18 @@ static PetscErrorCode GroupCells(Elasticity e, Scene scene)
   const Mesh mesh = e->mesh;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscCalloc1(ELEMENT_TYPES * MATERIAL_LAWS * FORMULATIONS, &e->groups));
+  PetscCall(PetscCalloc1(ELEMENT_TYPES * (size_t)scene->n_bodies, &e->groups));
   PetscCall(PetscMalloc3(mesh->n_cells, &e->cell_group, mesh->n_cells, &e->cell_slot, mesh->n_cells, &e->cell_modulus));
   for (PetscInt c = 0; c < mesh->n_cells; c++) {
-    const Material  *material = &scene->bodies[mesh->cell_body[c]].material;
-    const KernelCase kernel   = BodyKernel(scene, mesh->cell_body[c], mesh->cell_type[c]);
-    int              g        = 0;
+    const KernelCase kernel = BodyKernel(scene, mesh->cell_body[c], mesh->cell_type[c]);
+    int              g      = 0;
 
     while (g < e->n_groups && !SameKernel(&e->groups[g].kernel, &kernel)) g++;
     if (g == e->n_groups)
       e->groups[e->n_groups++] = (CellGroup){.kernel = kernel, .nodes = ElementGet(kernel.type)->nodes};
     e->cell_group[c]   = g;
     e->cell_slot[c]    = e->groups[g].n_cells++;
-    e->cell_modulus[c] = material->E;
+    e->cell_modulus[c] = scene->bodies[mesh->cell_body[c]].material.E;
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -101,7 +111,7 @@ static PetscErrorCode AllocateGroup(CellGroup *g, int dim)
   lanes        = (size_t)g->n_batches * KERNEL_LANES;
   PetscCall(PetscCalloc3(lanes, &g->cell, lanes * g->nodes, &g->node,
                          lanes * g->nodes * g->nodes + PREFETCH_PAIRS * KERNEL_LANES, &g->block));
-  PetscCall(PetscMalloc3(lanes * g->nodes * dim, &g->X, lanes, &g->E, lanes, &g->nu));
+  PetscCall(PetscMalloc2(lanes * g->nodes * dim, &g->X, lanes * g->kernel.n_constants, &g->constants));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -109,7 +119,7 @@ static PetscErrorCode AllocateGroup(CellGroup *g, int dim)
 static void SetCell(Elasticity e, Scene scene, CellGroup *g, PetscInt slot, PetscInt c)
 {
   const Mesh      mesh     = e->mesh;
-  const Material *material = &scene->bodies[mesh->cell_body[c]].material;
+  const Material  material = BodyMaterial(scene, mesh->cell_body[c]);
   const PetscInt *nodes    = &mesh->cell_nodes[mesh->cell_ptr[c]];
   const PetscInt  end      = slot == g->n_cells - 1 ? g->n_batches * KERNEL_LANES : slot + 1;
 
@@ -117,8 +127,8 @@ static void SetCell(Elasticity e, Scene scene, CellGroup *g, PetscInt slot, Pets
     const size_t batch = s / KERNEL_LANES, lane = s % KERNEL_LANES;
 
     g->cell[s] = c;
-    g->E[s]    = material->E;
-    g->nu[s]   = material->nu;
+    for (int k = 0; k < material.n_constants; k++)
+      g->constants[(batch * material.n_constants + k) * KERNEL_LANES + lane] = material.constants[k];
     for (int a = 0; a < g->nodes; a++) {
       g->node[(batch * g->nodes + a) * KERNEL_LANES + lane] = nodes[a];
       for (int i = 0; i < e->dim; i++)
@@ -227,13 +237,14 @@ static PetscErrorCode CreateBuffers(Elasticity e)
   PetscReal *aligned;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc((size_t)(MAX_DOFS + 2) * MAX_DOFS * KERNEL_LANES * sizeof(PetscReal) + BYTES_OF_CACHE_LINE,
+  PetscCall(PetscMalloc((size_t)(MAX_DOFS + 3) * MAX_DOFS * KERNEL_LANES * sizeof(PetscReal) + BYTES_OF_CACHE_LINE,
                         &e->buffer));
   aligned =
     (PetscReal *)(((PETSC_UINTPTR_T)e->buffer + BYTES_OF_CACHE_LINE - 1) / BYTES_OF_CACHE_LINE * BYTES_OF_CACHE_LINE);
-  e->u = aligned;
-  e->f = e->u + MAX_DOFS * KERNEL_LANES;
-  e->K = e->f + MAX_DOFS * KERNEL_LANES;
+  e->u   = aligned;
+  e->u_0 = e->u + MAX_DOFS * KERNEL_LANES;
+  e->f   = e->u_0 + MAX_DOFS * KERNEL_LANES;
+  e->K   = e->f + MAX_DOFS * KERNEL_LANES;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -287,7 +298,7 @@ PetscErrorCode ElasticityDestroy(Elasticity *elasticity)
   if (!e) PetscFunctionReturn(PETSC_SUCCESS);
   for (int g = 0; g < e->n_groups; g++) {
     PetscCall(PetscFree3(e->groups[g].cell, e->groups[g].node, e->groups[g].block));
-    PetscCall(PetscFree3(e->groups[g].X, e->groups[g].E, e->groups[g].nu));
+    PetscCall(PetscFree2(e->groups[g].X, e->groups[g].constants));
   }
   PetscCall(PetscFree(e->groups));
   PetscCall(PetscFree3(e->cell_group, e->cell_slot, e->cell_modulus));
@@ -300,14 +311,14 @@ PetscErrorCode ElasticityDestroy(Elasticity *elasticity)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static void GatherBatch(Elasticity e, const CellGroup *g, PetscInt batch, const PetscReal *u)
+static void GatherBatch(Elasticity e, const CellGroup *g, PetscInt batch, const PetscReal *u, PetscReal *gathered)
 {
   const PetscInt *node = &g->node[(size_t)batch * g->nodes * KERNEL_LANES];
 
   for (int a = 0; a < g->nodes; a++) {
     for (int i = 0; i < e->dim; i++) {
       for (int lane = 0; lane < KERNEL_LANES; lane++)
-        e->u[(a * e->dim + i) * KERNEL_LANES + lane] = u[node[a * KERNEL_LANES + lane] * e->dim + i];
+        gathered[(a * e->dim + i) * KERNEL_LANES + lane] = u[node[a * KERNEL_LANES + lane] * e->dim + i];
     }
   }
 }
@@ -372,9 +383,9 @@ PetscErrorCode ElasticityResidual(Elasticity e, const PetscReal *u, PetscReal *f
     for (PetscInt batch = 0; batch < g->n_batches; batch++) {
       const size_t first = (size_t)batch * KERNEL_LANES;
 
-      GatherBatch(e, g, batch, u);
-      ElementKernel(&g->kernel, &g->X[first * dofs], e->u, &g->E[first], &g->nu[first], energy ? W : NULL,
-                    forces ? e->f : NULL, NULL, J);
+      GatherBatch(e, g, batch, u, e->u);
+      ElementKernel(&g->kernel, &g->X[first * dofs], e->u, NULL, &g->constants[first * g->kernel.n_constants],
+                    energy ? W : NULL, forces ? e->f : NULL, NULL, J);
       if (forces) ScatterForce(e, g, batch, f, force2);
       for (int lane = 0; lane < BatchCells(g, batch); lane++) {
         if (energy) *energy += W[lane];
@@ -423,26 +434,31 @@ static inline __attribute__((always_inline)) void ScatterTangent(Elasticity e, c
   Not collective
 
   Input Parameters:
-+ e - the elasticity
-- u - local displacements (length) [n_nodes*dim]
++ e         - the elasticity
+. u         - local displacements (length) [n_nodes*dim]
+- reference - the state from which pressures are extrapolated, u as above; NULL: the tangent has the pressures of u
 @*/
-PetscErrorCode ElasticityTangent(Elasticity e, const PetscReal *u)
+PetscErrorCode ElasticityTangent(Elasticity e, const PetscReal *u, const PressureReference *reference)
 {
-  PetscReal J[KERNEL_LANES];
+  const PressureReference gathered = {e->u_0, reference ? reference->rate : 0};
+  PetscReal               J[KERNEL_LANES];
 
   PetscFunctionBeginUser;
   PetscCall(PetscLogEventBegin(event_tangent, 0, 0, 0, 0));
   PetscCall(PetscArrayzero(e->value, (size_t)e->row[e->mesh->n_nodes] * e->dim * e->dim));
   for (int k = 0; k < e->n_groups; k++) {
-    const CellGroup *g    = &e->groups[k];
-    const size_t     dofs = (size_t)g->nodes * e->dim;
+    const CellGroup *g            = &e->groups[k];
+    const size_t     dofs         = (size_t)g->nodes * e->dim;
+    const PetscBool  extrapolates = (PetscBool)(reference && ElementExtrapolates(&g->kernel));
 
     for (PetscInt batch = 0; batch < g->n_batches; batch++) {
       const size_t first = (size_t)batch * KERNEL_LANES;
       const int    count = BatchCells(g, batch);
 
-      GatherBatch(e, g, batch, u);
-      ElementKernel(&g->kernel, &g->X[first * dofs], e->u, &g->E[first], &g->nu[first], NULL, NULL, e->K, J);
+      GatherBatch(e, g, batch, u, e->u);
+      if (extrapolates) GatherBatch(e, g, batch, reference->u, e->u_0);
+      ElementKernel(&g->kernel, &g->X[first * dofs], e->u, extrapolates ? &gathered : NULL,
+                    &g->constants[first * g->kernel.n_constants], NULL, NULL, e->K, J);
       if (count < KERNEL_LANES)
         ScatterTangent(e, g, batch, e->dim, count);
       else if (e->dim == 3)
@@ -453,6 +469,22 @@ PetscErrorCode ElasticityTangent(Elasticity e, const PetscReal *u)
   }
   PetscCall(PetscLogEventEnd(event_tangent, 0, 0, 0, 0));
   PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ElasticityExtrapolates - says whether a PressureReference changes the tangent of any of this rank's cells.
+
+  Not collective
+
+  Input Parameter:
+. e - the elasticity
+@*/
+PetscBool ElasticityExtrapolates(Elasticity e)
+{
+  PetscBool any = PETSC_FALSE;
+
+  for (int g = 0; g < e->n_groups; g++) any = (PetscBool)(any || ElementExtrapolates(&e->groups[g].kernel));
+  return any;
 }
 
 /*@
@@ -628,15 +660,12 @@ PetscErrorCode ElasticityMatrixJoin(Elasticity e, Mat C)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Adds the share of one cell to its nodes. */
-static void AddCellStress(Elasticity e, const CellGroup *g, PetscInt slot, const PetscReal *u, PetscReal *stress,
-                          PetscReal *weight)
+/* Coordinates and displacements of the nodes of one cell, and the constants of its law */
+static void GatherCell(Elasticity e, const CellGroup *g, PetscInt slot, const PetscReal *u, PetscReal X[MAX_DOFS],
+                       PetscReal cell_u[MAX_DOFS], PetscReal constants[MATERIAL_MAX_CONSTANTS])
 {
-  const Element  *element = ElementGet(g->kernel.type);
   const size_t    batch = slot / KERNEL_LANES, lane = slot % KERNEL_LANES;
   const PetscInt *nodes = &e->mesh->cell_nodes[e->mesh->cell_ptr[g->cell[slot]]];
-  PetscReal       X[MAX_DOFS], cell_u[MAX_DOFS], point_stress[ELEMENT_MAX_POINTS * 6], point_volume[ELEMENT_MAX_POINTS],
-    volume = 0;
 
   for (int a = 0; a < g->nodes; a++) {
     for (int i = 0; i < e->dim; i++) {
@@ -644,7 +673,53 @@ static void AddCellStress(Elasticity e, const CellGroup *g, PetscInt slot, const
       cell_u[a * e->dim + i] = u[nodes[a] * e->dim + i];
     }
   }
-  ElementPointStress(&g->kernel, X, cell_u, g->E[slot], g->nu[slot], point_stress, point_volume);
+  for (int k = 0; k < g->kernel.n_constants; k++)
+    constants[k] = g->constants[(batch * g->kernel.n_constants + k) * KERNEL_LANES + lane];
+}
+
+/*@
+  ElasticityVolumeEnergy - computes the part of the strain energy that belongs to the volume alone, of this rank's
+cells.
+
+  Not collective
+
+  Input Parameters:
++ e - the elasticity
+- u - local displacements (length) [n_nodes*dim], with no inverted cell
+
+  Output Parameter:
+. energy - added to
+
+  Note:
+  It treats one cell at a time, for diagnosis.
+@*/
+PetscErrorCode ElasticityVolumeEnergy(Elasticity e, const PetscReal *u, PetscReal *energy)
+{
+  PetscFunctionBeginUser;
+  for (int k = 0; k < e->n_groups; k++) {
+    const CellGroup *g = &e->groups[k];
+
+    for (PetscInt slot = 0; slot < g->n_cells; slot++) {
+      PetscReal X[MAX_DOFS], cell_u[MAX_DOFS], constants[MATERIAL_MAX_CONSTANTS];
+
+      GatherCell(e, g, slot, u, X, cell_u, constants);
+      *energy += ElementVolumeEnergy(&g->kernel, X, cell_u, constants);
+    }
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Adds the share of one cell to its nodes. */
+static void AddCellStress(Elasticity e, const CellGroup *g, PetscInt slot, const PetscReal *u, PetscReal *stress,
+                          PetscReal *weight)
+{
+  const Element  *element = ElementGet(g->kernel.type);
+  const PetscInt *nodes   = &e->mesh->cell_nodes[e->mesh->cell_ptr[g->cell[slot]]];
+  PetscReal       X[MAX_DOFS], cell_u[MAX_DOFS], point_stress[ELEMENT_MAX_POINTS * 6], point_volume[ELEMENT_MAX_POINTS],
+    constants[MATERIAL_MAX_CONSTANTS], volume = 0;
+
+  GatherCell(e, g, slot, u, X, cell_u, constants);
+  ElementPointStress(&g->kernel, X, cell_u, constants, point_stress, point_volume);
   for (int p = 0; p < element->points; p++) volume += point_volume[p];
   for (int a = 0; a < g->nodes; a++) {
     weight[nodes[a]] += volume;

@@ -59,29 +59,29 @@ static void CauchyStress(const double H[9], const double P[9], int finite, doubl
   Not collective
 
   Input Parameters:
-+ kernel - element type, geometry, kinematics and law
-. X      - reference coordinates (length) [nodes][dim]; axisymmetric: X[.][0] is the radius
-. u      - displacements (length) [nodes][dim]
-- E, nu  - Young's modulus (stress) and Poisson's ratio
++ kernel    - element type, geometry, kinematics and law
+. X         - reference coordinates (length) [nodes][dim]; axisymmetric: X[.][0] is the radius
+. u         - displacements (length) [nodes][dim]
+- constants - of the law [n_constants]
 
   Output Parameters:
 + stress - xx yy zz xy yz xz at each point [points][6]; axisymmetric: rr zz hoop rz 0 0
 - volume - reference volume of each point [points]
 @*/
-void ElementPointStress(const KernelCase *kernel, const double *X, const double *u, double E, double nu, double *stress,
-                        double *volume)
+void ElementPointStress(const KernelCase *kernel, const double *X, const double *u, const double *constants,
+                        double *stress, double *volume)
 {
-  const Element *e        = ElementGet(kernel->type);
-  const int      finite   = kernel->kinematics == KINEMATICS_FINITE;
-  const Material material = {kernel->law, E, nu};
+  const Element *e      = ElementGet(kernel->type);
+  const int      finite = kernel->kinematics == KINEMATICS_FINITE;
+  const int      n      = kernel->n_constants ? kernel->n_constants : MaterialGetLaw(kernel->law)->constants;
   double         H[ELEMENT_MAX_POINTS * 9];
 
-  ElementPointGradient(kernel, X, u, E, nu, H);
+  ElementPointGradient(kernel, X, u, constants, H);
   for (int p = 0; p < e->points; p++) {
     double J[3][3], P[9];
 
     volume[p] = PointVolume(e, p, e->dim, kernel->geometry, X, J);
-    MaterialPoint(&material, finite, &H[9 * p], NULL, P, NULL);
+    MaterialEvaluate(kernel->law, n, constants, &H[9 * p], NULL, P, NULL);
     CauchyStress(&H[9 * p], P, finite, &stress[6 * p]);
   }
 }
@@ -92,22 +92,22 @@ void ElementPointStress(const KernelCase *kernel, const double *X, const double 
   Not collective
 
   Input Parameters:
-+ kernel - element type, geometry, kinematics and law
-. X      - reference coordinates (length) [nodes][dim]; axisymmetric: X[.][0] is the radius
-. u      - displacements (length) [nodes][dim]
-- E, nu  - Young's modulus (stress) and Poisson's ratio
++ kernel    - element type, geometry, kinematics and law
+. X         - reference coordinates (length) [nodes][dim]; axisymmetric: X[.][0] is the radius
+. u         - displacements (length) [nodes][dim]
+- constants - of the law [n_constants]
 
   Output Parameters:
 + stress - xx yy zz xy yz xz; axisymmetric: rr zz hoop rz 0 0
 - volume - reference volume; axisymmetric: over 360 degrees
 @*/
-void ElementStress(const KernelCase *kernel, const double *X, const double *u, double E, double nu, double stress[6],
-                   double *volume)
+void ElementStress(const KernelCase *kernel, const double *X, const double *u, const double *constants,
+                   double stress[6], double *volume)
 {
   const int points = ElementGet(kernel->type)->points;
   double    point_stress[ELEMENT_MAX_POINTS * 6], point_volume[ELEMENT_MAX_POINTS];
 
-  ElementPointStress(kernel, X, u, E, nu, point_stress, point_volume);
+  ElementPointStress(kernel, X, u, constants, point_stress, point_volume);
   *volume = 0;
   for (int c = 0; c < 6; c++) stress[c] = 0;
   for (int p = 0; p < points; p++) {
@@ -115,6 +115,38 @@ void ElementStress(const KernelCase *kernel, const double *X, const double *u, d
     for (int c = 0; c < 6; c++) stress[c] += point_volume[p] * point_stress[6 * p + c];
   }
   for (int c = 0; c < 6; c++) stress[c] /= *volume;
+}
+
+/*@
+  ElementVolumeEnergy - computes the part of one element's energy that belongs to the volume alone.
+
+  Not collective
+
+  Input Parameters:
++ kernel    - element type, geometry, kinematics and law
+. X         - reference coordinates (length) [nodes][dim]; axisymmetric: X[.][0] is the radius
+. u         - displacements (length) [nodes][dim] of an element that is not inverted
+- constants - of the law
+
+  Note:
+  It is 0 with small strains and with laws that are not separable, see ElasticLaw.
+@*/
+double ElementVolumeEnergy(const KernelCase *kernel, const double *X, const double *u, const double *constants)
+{
+  const Element *e      = ElementGet(kernel->type);
+  double         energy = 0, H[ELEMENT_MAX_POINTS * 9];
+
+  if (!MaterialGetLaw(kernel->law)->separable || kernel->kinematics == KINEMATICS_SMALL) return 0;
+  ElementPointGradient(kernel, X, u, constants, H);
+  for (int p = 0; p < e->points; p++) {
+    const double *h = &H[9 * p];
+    double        J[3][3], log_J;
+
+    log_J = log((1 + h[0]) * ((1 + h[4]) * (1 + h[8]) - h[5] * h[7]) - h[1] * (h[3] * (1 + h[8]) - h[5] * h[6]) +
+                h[2] * (h[3] * h[7] - (1 + h[4]) * h[6]));
+    energy += constants[0] / 2 * log_J * log_J * PointVolume(e, p, e->dim, kernel->geometry, X, J);
+  }
+  return energy;
 }
 
 /*@

@@ -4,6 +4,25 @@
 
 const char *const Formulations[] = {"full", "enhanced", "fbar", NULL};
 
+/* Puts the extrapolated pressure into the geometric part of the law's tangent A at point q, whose gradient is H. */
+LANES_INLINE void ExtrapolatePressure(const BatchCall *call, const int n, const int dim, const int hoop, int q,
+                                      const ChunkPoints *c, const Lanes H[9], const Lanes *dilatation,
+                                      Lanes A[MATERIAL_TANGENT_SIZE])
+{
+  Lanes dilatation_0, change, excess, C[9];
+
+  PointReference(call, n, dim, hoop, q, c, H, &dilatation_0, &change);
+  ExcessPressure(call, dilatation, &dilatation_0, &change, &excess);
+  Cofactors(H, C);
+  for (int lane = 0; lane < LANES; lane++) {
+    const double J = 1 + FlooredDilatation((*dilatation)[lane]);
+
+    excess[lane] /= J * J; /* F^-T = C / J enters twice */
+  }
+  for (int r = 0, k = 0; r < 9; r++)
+    for (int s = r; s < 9; s++, k++) A[k] -= excess * C[3 * (r / 3) + s % 3] * C[3 * (s / 3) + r % 3];
+}
+
 /* Computes energy, force and tangent of the first LANES elements of the arrays. n, points, dim and hoop are constants
    of the instance. */
 LANES_INLINE void Batch(const BatchCall *call, const int n, const int points, const int dim, const int hoop)
@@ -26,7 +45,8 @@ LANES_INLINE void Batch(const BatchCall *call, const int n, const int points, co
       PointDisplacementGradient(n, dim, hoop, q, call->u, &c, H);
       MaterialDilatation(H, &dilatation);
       KeepLeastJ(call, &dilatation);
-      call->law(H, &dilatation, &call->lambda, &call->mu, W ? &energy : NULL, P, K ? c.A[q] : NULL);
+      PointLaw(call, H, &dilatation, W ? &energy : NULL, P, K ? c.A[q] : NULL);
+      if (K && call->u_0) ExtrapolatePressure(call, n, dim, hoop, q, &c, H, &dilatation, c.A[q]);
       if (W) LANE(W, 0) += energy * volume;
       if (call->H) StorePoint(call, first + q, H);
       for (int r = 0; r < 9; r++) P[r] *= volume;
@@ -88,23 +108,30 @@ int ElementKernelExists(const KernelCase *kernel)
   return GetBatch(kernel) != NULL;
 }
 
-/* Sets what all parts of a batch have in common. */
-static BatchCall StartCall(const KernelCase *kernel)
-{
-  const int finite = kernel->kinematics == KINEMATICS_FINITE;
+/*@
+  ElementExtrapolates - says whether the tangent depends on a PressureReference.
 
-  return (BatchCall){.e = ElementGet(kernel->type), .law = MaterialGetLaw(kernel->law, finite), .finite = finite};
+  Not collective
+
+  Note:
+  It does with separable laws, see ElasticLaw. Enhanced elements take no reference.
+@*/
+int ElementExtrapolates(const KernelCase *kernel)
+{
+  return kernel->kinematics == KINEMATICS_FINITE && kernel->formulation != FORMULATION_ENHANCED &&
+         MaterialGetLaw(kernel->law)->separable;
 }
 
-static void SetMaterial(BatchCall *call, const double *E, const double *nu)
+/* Sets what all parts of a batch have in common. */
+static BatchCall StartCall(const KernelCase *kernel, const Lanes *constants)
 {
-  for (int lane = 0; lane < LANES; lane++) {
-    double lambda, mu;
+  const ElasticLaw *law = MaterialGetLaw(kernel->law);
 
-    MaterialLame(E[lane], nu[lane], &lambda, &mu);
-    call->lambda[lane] = lambda;
-    call->mu[lane]     = mu;
-  }
+  return (BatchCall){.e           = ElementGet(kernel->type),
+                     .law         = law,
+                     .finite      = kernel->kinematics == KINEMATICS_FINITE,
+                     .n_constants = kernel->n_constants ? kernel->n_constants : law->constants,
+                     .constants   = constants};
 }
 
 /*@
@@ -113,10 +140,11 @@ static void SetMaterial(BatchCall *call, const double *E, const double *nu)
   Not collective
 
   Input Parameters:
-+ kernel - element type, geometry, kinematics, law and formulation of the batch
-. X      - reference coordinates (length) [nodes][dim][lanes]; axisymmetric: X[.][0] is the radius
-. u      - displacements (length) [nodes][dim][lanes]
-- E, nu  - Young's modulus (stress) and Poisson's ratio [lanes]
++ kernel    - element type, geometry, kinematics, law and formulation of the batch
+. X         - reference coordinates (length) [nodes][dim][lanes]; axisymmetric: X[.][0] is the radius
+. u         - displacements (length) [nodes][dim][lanes]
+. reference - the state from which K extrapolates the pressure, u as above; NULL: K has the pressure of u
+- constants - of the law [n_constants][lanes]
 
   Output Parameters:
 + W - strain energy [lanes], or NULL
@@ -127,26 +155,31 @@ static void SetMaterial(BatchCall *call, const double *E, const double *nu)
   Note:
   Solids in plane strain have unit thickness. Axisymmetric quantities are over 360 degrees. A state with J <= 0 or NaN
   is not admissible, but all arrays hold finite numbers if X and u do. Every formulation has an energy; f and K are its
-  derivatives. K is full and symmetric.
+  derivatives. K is full and symmetric. With a reference K is no derivative, but it differs from it only by the square
+  of the way from there (rate 1) or by that way (rate 0). A reference is ignored unless ElementExtrapolates().
 
   Source:
   Bonet and Wood, "Nonlinear Continuum Mechanics for Finite Element Analysis", sections 8.4 and 8.5
   (reference configuration)
 @*/
-void ElementKernel(const KernelCase *kernel, const double *X, const double *u, const double *E, const double *nu,
-                   double *W, double *f, double *K, double *J)
+void ElementKernel(const KernelCase *kernel, const double *X, const double *u, const PressureReference *reference,
+                   const double *constants, double *W, double *f, double *K, double *J)
 {
-  BatchFn  *batch = GetBatch(kernel);
-  BatchCall call  = StartCall(kernel);
+  const int extrapolates = reference && ElementExtrapolates(kernel);
+  BatchFn  *batch        = GetBatch(kernel);
+  Lanes     lanes_constants[MATERIAL_MAX_CONSTANTS];
+  BatchCall call = StartCall(kernel, lanes_constants);
 
+  call.rate = extrapolates ? reference->rate : 0;
   for (int part = 0; part < KERNEL_LANES; part += LANES) {
-    SetMaterial(&call, E + part, nu + part);
-    call.X = X + part;
-    call.u = u + part;
-    call.W = W ? W + part : NULL;
-    call.f = f ? f + part : NULL;
-    call.K = K ? K + part : NULL;
-    call.J = J + part;
+    for (int k = 0; k < call.n_constants; k++) lanes_constants[k] = CONST_LANE(constants + part, k);
+    call.X   = X + part;
+    call.u   = u + part;
+    call.u_0 = extrapolates ? reference->u + part : NULL;
+    call.W   = W ? W + part : NULL;
+    call.f   = f ? f + part : NULL;
+    call.K   = K ? K + part : NULL;
+    call.J   = J + part;
     batch(&call);
   }
 }
@@ -158,31 +191,31 @@ void ElementKernel(const KernelCase *kernel, const double *X, const double *u, c
   Not collective
 
   Input Parameters:
-+ kernel - element type, geometry, kinematics, law and formulation
-. X      - reference coordinates (length) [nodes][dim]; axisymmetric: X[.][0] is the radius
-. u      - displacements (length) [nodes][dim]
-- E, nu  - Young's modulus (stress) and Poisson's ratio
++ kernel    - element type, geometry, kinematics, law and formulation
+. X         - reference coordinates (length) [nodes][dim]; axisymmetric: X[.][0] is the radius
+. u         - displacements (length) [nodes][dim]
+- constants - of the law [n_constants]
 
   Output Parameter:
 . H - F - 1 at 3 i + I (i: space, I: reference) [points][9]
 @*/
-void ElementPointGradient(const KernelCase *kernel, const double *X, const double *u, double E, double nu, double *H)
+void ElementPointGradient(const KernelCase *kernel, const double *X, const double *u, const double *constants,
+                          double *H)
 {
-  BatchCall call = StartCall(kernel);
+  Lanes     lanes_constants[MATERIAL_MAX_CONSTANTS];
+  BatchCall call = StartCall(kernel, lanes_constants);
   const int dofs = call.e->nodes * call.e->dim;
   double    lanes_X[ELEMENT_MAX_NODES * 3 * KERNEL_LANES], lanes_u[ELEMENT_MAX_NODES * 3 * KERNEL_LANES],
     lanes_H[ELEMENT_MAX_POINTS * 9 * KERNEL_LANES];
-  double J[LANES], lanes_E[LANES], lanes_nu[LANES];
+  double J[LANES];
 
   for (int lane = 0; lane < LANES; lane++) {
-    lanes_E[lane]  = E;
-    lanes_nu[lane] = nu;
     for (int k = 0; k < dofs; k++) {
       lanes_X[k * KERNEL_LANES + lane] = X[k];
       lanes_u[k * KERNEL_LANES + lane] = u[k];
     }
   }
-  SetMaterial(&call, lanes_E, lanes_nu);
+  for (int k = 0; k < call.n_constants; k++) lanes_constants[k] = (Lanes){0} + constants[k];
   call.X = lanes_X;
   call.u = lanes_u;
   call.J = J;

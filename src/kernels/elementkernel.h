@@ -4,14 +4,19 @@
    ElementKernel() treats a batch of KERNEL_LANES elements of one type, law, geometry, kinematics and formulation. Its
    arrays are [node][dim][lane], so that the inner loops vectorise. A short batch repeats its last element.
    ElementKernelExists() tells whether there is a kernel for a case. The other functions treat one cell or one face:
-   ElementPointGradient(), ElementPointStress() and ElementStress() evaluate a state, ElementQuality() and CellVolume()
-   a shape, FaceLoadKernel() and BodyForceKernel() the loads, FaceAreaKernel() the areas of a face's nodes.
+   ElementPointGradient(), ElementPointStress(), ElementStress() and ElementVolumeEnergy() evaluate a state,
+   ElementQuality() and CellVolume() a shape, FaceLoadKernel() and BodyForceKernel() the loads, FaceAreaKernel() the
+   areas of a face's nodes.
+
+   K may extrapolate the pressure of its geometric part from an earlier state (pressurereference.h), where
+   ElementExtrapolates().
 
    Source of the forms: Bonet and Wood, "Nonlinear Continuum Mechanics for Finite Element Analysis". */
 #pragma once
 #include "kernels/element.h"
 #include "kernels/formulation.h"
 #include "kernels/material.h"
+#include "kernels/pressurereference.h"
 
 /* Number of elements in a batch. It must be a multiple of LANES, which is 8 at most. */
 enum { KERNEL_LANES = 8 };
@@ -20,18 +25,21 @@ typedef struct {
   ElementType type;
   Geometry    geometry;
   Kinematics  kinematics;
-  MaterialLaw law;
+  MaterialLaw law; /* MATERIAL_LINEAR in small kinematics */
   Formulation formulation;
+  int         n_constants; /* of the law; 0: as many as MaterialGetLaw() says */
 } KernelCase;
 
-void   ElementKernel(const KernelCase *, const double *X, const double *u, const double *E, const double *nu, double *W,
-                     double *f, double *K, double *J);
+void   ElementKernel(const KernelCase *, const double *X, const double *u, const PressureReference *,
+                     const double *constants, double *W, double *f, double *K, double *J);
 int    ElementKernelExists(const KernelCase *);
-void   ElementPointGradient(const KernelCase *, const double *X, const double *u, double E, double nu, double *H);
-void   ElementPointStress(const KernelCase *, const double *X, const double *u, double E, double nu, double *stress,
+int    ElementExtrapolates(const KernelCase *);
+void   ElementPointGradient(const KernelCase *, const double *X, const double *u, const double *constants, double *H);
+void   ElementPointStress(const KernelCase *, const double *X, const double *u, const double *constants, double *stress,
                           double *volume);
-void   ElementStress(const KernelCase *, const double *X, const double *u, double E, double nu, double stress[6],
+void   ElementStress(const KernelCase *, const double *X, const double *u, const double *constants, double stress[6],
                      double *volume);
+double ElementVolumeEnergy(const KernelCase *, const double *X, const double *u, const double *constants);
 double ElementQuality(ElementType, int dim, const double *X);
 
 /* The loads on a face. A dead pressure acts along the reference normal on the reference area. A follower pressure acts

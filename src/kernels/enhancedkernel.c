@@ -209,7 +209,7 @@ LANES_INLINE void ModeSystem(const BatchCall *call, const int points, const int 
 
     PointGradient(dim, hoop, x, q, H);
     MaterialDilatation(H, &dilatation);
-    call->law(H, &dilatation, &call->lambda, &call->mu, &energy, P, renew ? x->c.A[q] : NULL);
+    PointLaw(call, H, &dilatation, &energy, P, renew ? x->c.A[q] : NULL);
     *W += energy * x->volume[q];
     for (int r = 0; r < 9; r++) P[r] *= x->volume[q];
     AddModeForce(dim, hoop, x, q, P, f);
@@ -266,9 +266,10 @@ LANES_INLINE void SolveModes(const BatchCall *call, const int points, const int 
   const int  modes       = dim * dim + hoop;
   ModesState modes_state = {.W = (Lanes){0} + __DBL_MAX__, .active = (Lanes){0} + 1};
   int        left        = LANES;
-  Lanes      K[MAX_MODES][MAX_MODES];
+  Lanes      K[MAX_MODES][MAX_MODES], mu;
 
-  for (int q = 0; q < points; q++) modes_state.scale += converged_strain2 * call->mu * x->volume[q];
+  call->law->shear(call->n_constants, call->constants, &mu);
+  for (int q = 0; q < points; q++) modes_state.scale += converged_strain2 * mu * x->volume[q];
   for (int iteration = 0; left && iteration < (call->finite ? MAX_ITERATIONS : 1); iteration++) {
     Lanes W, f[MAX_MODES], d[MAX_MODES];
 
@@ -357,7 +358,7 @@ LANES_INLINE void Batch(const BatchCall *call, const int n, const int points, co
     PointGradient(dim, hoop, &x, q, H);
     MaterialDilatation(H, &dilatation);
     KeepLeastJ(call, &dilatation);
-    call->law(H, &dilatation, &call->lambda, &call->mu, W ? &energy : NULL, P, K ? x.c.A[q] : NULL);
+    PointLaw(call, H, &dilatation, W ? &energy : NULL, P, K ? x.c.A[q] : NULL);
     if (W) LANE(W, 0) += energy * x.volume[q];
     if (call->H) StorePoint(call, q, H);
     for (int r = 0; r < 9; r++) P[r] *= x.volume[q];

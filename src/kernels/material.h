@@ -1,22 +1,38 @@
 /* Elastic laws at a point: stress and tangent from the deformation gradient. Plain C, no PETSc, no allocation.
 
-   MaterialGetLaw() gives the function of a law, which treats LANES points at a time. MaterialPoint() evaluates one
-   point. A new law is a file with its function and a line in base/choices.h. */
+   A law has a vector of constants. constants[0] is the modulus of its volume part, constants[0]/2 (ln J)^2 with J = det
+   F. The others are its own. A Material is a law with its constants. MaterialGetLaw() gives a law, which treats LANES
+   points at a time. MaterialPoint() and MaterialEvaluate() treat one point. A new law is a file that defines an
+   ElasticLaw, and a line in base/choices.h. */
 #pragma once
 #include "base/choices.h"
 #include "base/lanes.h"
 
 extern const char *const MaterialLaws[]; /* words of the laws in a scene, NULL-terminated */
 
+enum {
+  MATERIAL_TANGENT_SIZE = 45,
+  /* One modulus of the volume and 16 terms of two constants. Fits of measured rubber have up to 6 terms. */
+  MATERIAL_MAX_CONSTANTS = 33
+};
+
+/* Smallest determinant of F at which a law is evaluated; smaller ones are replaced by it. No state with J <= 0 is
+   accepted, but a line search evaluates such states and needs finite numbers. The value is far below any J of an
+   accepted state. */
+#define MATERIAL_LEAST_J 1e-8
+
+/* E and nu are derived from the constants: the moduli of the undeformed state. An incompressible material has
+   constants[0] = INFINITY and nu = 1/2; only an element that does not evaluate the volume part can treat it. */
 typedef struct {
   MaterialLaw law;
+  int         n_constants;
+  double      constants[MATERIAL_MAX_CONSTANTS];
   double      E, nu; /* Young's modulus (stress), Poisson's ratio */
 } Material;
 
 /* LANES points are evaluated together, one in each lane of a vector as wide as the machine's registers. Component (i,
    I) of a tensor has the index 3 i + I; i belongs to space, I to the reference configuration. The tangent dP_r/dH_s is
    symmetric. Its upper triangle is stored by rows: MATERIAL_TANGENT_INDEX(r, s) for r <= s. */
-enum { MATERIAL_TANGENT_SIZE = 45 };
 #define MATERIAL_TANGENT_INDEX(r, s) ((r) * 9 - (r) * ((r) - 1) / 2 + (s) - (r))
 
 /* Computes det(1 + H) - 1 in a form in which small strains keep their digits. */
@@ -28,16 +44,35 @@ static inline void MaterialDilatation(const Lanes H[9], Lanes *dilatation)
                 H[1] * m1 + H[2] * m2;
 }
 
-/* A law. Its input is the displacement gradient H = F - 1, the dilatation det F - 1 from MaterialDilatation() and
-   Lame's constants lambda and mu. Its output per reference volume is the energy W, the first Piola-Kirchhoff stress
-   P[9] and the tangent A[45]. W and A may be NULL. The output is finite for every finite H. */
-typedef void MaterialLawFn(const Lanes H[9], const Lanes *dilatation, const Lanes *lambda, const Lanes *mu, Lanes *W,
+/* Evaluates a law with n constants. Its input is the displacement gradient H = F - 1 and the dilatation det F - 1 from
+   MaterialDilatation(). Its output per reference volume is the energy W, the first Piola-Kirchhoff stress P[9] and the
+   tangent A[45]. W and A may be NULL. The output is finite for every finite H and constants. With constants[0] = 0 it
+   is that of the law without its volume part. */
+typedef void MaterialLawFn(const Lanes H[9], const Lanes *dilatation, int n, const Lanes constants[], Lanes *W,
                            Lanes P[9], Lanes A[MATERIAL_TANGENT_SIZE]);
-#define MATERIAL_DECLARE(law, word, function) MaterialLawFn function;
+
+/* Computes the shear modulus mu of the undeformed state. */
+typedef void MaterialShearFn(int n, const Lanes constants[], Lanes *mu);
+
+/* A separable law is a sum of constants[0]/2 (ln J)^2 and of a part without constants[0]. Of the others svk has
+   constants[0]/2 (tr E)^2 instead, and linear constants[0]/2 (tr e)^2. constants[0] is the first one of Lame's
+   constants, or the bulk modulus where the law is isochoric: its other part does not depend on J. */
+typedef struct {
+  MaterialLawFn   *evaluate;
+  MaterialShearFn *shear;
+  int              constants; /* their number; for laws of any number of terms that of one term */
+  int              separable, isochoric;
+} ElasticLaw;
+
+#define MATERIAL_DECLARE(law, word, object) extern const ElasticLaw object;
 ELASTIC_LAWS(MATERIAL_DECLARE)
 #undef MATERIAL_DECLARE
 
-MaterialLawFn *MaterialGetLaw(MaterialLaw, int finite);
-void           MaterialPoint(const Material *, int finite, const double H[9], double *W, double P[9],
-                             double A[MATERIAL_TANGENT_SIZE]);
-void           MaterialLame(double E, double nu, double *lambda, double *mu);
+const ElasticLaw *MaterialGetLaw(MaterialLaw);
+Material          MaterialFromModuli(MaterialLaw, double E, double nu);
+Material          MaterialLinearise(const Material *);
+void   MaterialEvaluate(MaterialLaw, int n, const double constants[], const double H[9], double *W, double P[9],
+                        double A[MATERIAL_TANGENT_SIZE]);
+void   MaterialPoint(const Material *, int finite, const double H[9], double *W, double P[9],
+                     double A[MATERIAL_TANGENT_SIZE]);
+double MaterialShear(const Material *);

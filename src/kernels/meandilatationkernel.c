@@ -15,10 +15,6 @@
 enum { MAX_NODES = 8, MAX_POINTS = 8 };
 _Static_assert((int)MAX_POINTS <= (int)CHUNK, "all points in one chunk");
 
-/* Smallest determinant whose logarithm and inverse are evaluated; smaller ones are replaced by it. No state with J <= 0
-   is accepted, but a line search evaluates such states and needs finite numbers. */
-static const double jacobian_floor = 1e-8;
-
 typedef struct {
   ChunkPoints c;
   Lanes       volume[MAX_POINTS];
@@ -49,19 +45,16 @@ LANES_INLINE void Prepare(const BatchCall *call, const int n, const int points, 
   x->mean /= x->total;
 }
 
-static inline double Floored(double dilatation)
-{
-  return dilatation > jacobian_floor - 1 ? dilatation : jacobian_floor - 1;
-}
-
 /* Computes F' - 1 at a point and factor = (J'/J)^(1/3) - 1. With small strains both are linearised. */
 LANES_INLINE void MeanGradient(const BatchCall *call, int q, const MeanDilatation *x, Lanes H[9], Lanes *factor)
 {
   Lanes stretch;
 
   for (int lane = 0; lane < LANES; lane++)
-    stretch[lane] = call->finite ? expm1((log1p(Floored(x->mean[lane])) - log1p(Floored(x->dilatation[q][lane]))) / 3)
-                                 : (x->mean[lane] - x->dilatation[q][lane]) / 3;
+    stretch[lane] =
+      call->finite
+        ? expm1((log1p(FlooredDilatation(x->mean[lane])) - log1p(FlooredDilatation(x->dilatation[q][lane]))) / 3)
+        : (x->mean[lane] - x->dilatation[q][lane]) / 3;
   *factor = stretch * (double)call->finite;
   for (int r = 0; r < 9; r++) H[r] = x->H[q][r] + *factor * x->H[q][r];
   for (int i = 0; i < 3; i++) H[4 * i] += stretch;
@@ -70,15 +63,14 @@ LANES_INLINE void MeanGradient(const BatchCall *call, int q, const MeanDilatatio
 /* Computes F, G = F^-T and J. With small strains they are those of the undeformed state. */
 LANES_INLINE void PointMotion(const BatchCall *call, int q, const MeanDilatation *x, Lanes F[9], Lanes G[9], Lanes *J)
 {
-  for (int r = 0; r < 9; r++) F[r] = x->H[q][r] * (double)call->finite + (double)(r % 4 == 0);
-  for (int lane = 0; lane < LANES; lane++) (*J)[lane] = 1 + (call->finite ? Floored(x->dilatation[q][lane]) : 0);
-  for (int i = 0; i < 3; i++) {
-    for (int j = 0; j < 3; j++) {
-      const int i1 = 3 * ((i + 1) % 3), i2 = 3 * ((i + 2) % 3), j1 = (j + 1) % 3, j2 = (j + 2) % 3;
+  Lanes H[9];
 
-      G[3 * i + j] = (F[i1 + j1] * F[i2 + j2] - F[i1 + j2] * F[i2 + j1]) / *J;
-    }
-  }
+  for (int r = 0; r < 9; r++) H[r] = x->H[q][r] * (double)call->finite;
+  for (int r = 0; r < 9; r++) F[r] = H[r] + (double)(r % 4 == 0);
+  for (int lane = 0; lane < LANES; lane++)
+    (*J)[lane] = 1 + (call->finite ? FlooredDilatation(x->dilatation[q][lane]) : 0);
+  Cofactors(H, G);
+  for (int r = 0; r < 9; r++) G[r] /= *J;
 }
 
 LANES_INLINE Lanes Contract(const Lanes A[9], const Lanes B[9])
@@ -91,7 +83,7 @@ LANES_INLINE Lanes Contract(const Lanes A[9], const Lanes B[9])
 
 /* Second variation of W(F') at a point. A holds the law's tangent on entry and the part quadratic in dF on return. Q is
    the part that couples dF to the variation of ln J'. square is the factor of the square of that variation. P is the
-   law's stress and pressure that of the element. The terms with `geometry` vanish in small strains. */
+   law's stress and pressure that of the element's geometric part. The terms with `geometry` vanish in small strains. */
 LANES_INLINE void PointTangent(const Lanes F[9], const Lanes G[9], const Lanes *J, const Lanes *factor,
                                const Lanes *pressure, double geometry, const Lanes P[9], Lanes A[MATERIAL_TANGENT_SIZE],
                                Lanes Q[9], Lanes *square)
@@ -113,6 +105,25 @@ LANES_INLINE void PointTangent(const Lanes F[9], const Lanes G[9], const Lanes *
       A[k] = s * s * A[k] - Y[r] * G[m] - G[r] * Y[m] + GG * G[r] * G[m] +
              (t - p) * G[3 * (r / 3) + m % 3] * G[3 * (m / 3) + r % 3];
   }
+}
+
+/* Makes the element's pressure that which its volume extrapolates to. `deformed` is its volume now. */
+LANES_INLINE void ExtrapolatePressure(const BatchCall *call, const int n, const int points, const int dim,
+                                      const int hoop, const MeanDilatation *x, const Lanes *deformed, Lanes *pressure)
+{
+  Lanes mean_0 = {0}, change = {0}, excess;
+
+  for (int q = 0; q < points; q++) {
+    Lanes dilatation_q, change_q;
+
+    PointReference(call, n, dim, hoop, q, &x->c, x->H[q], &dilatation_q, &change_q);
+    mean_0 += x->volume[q] * dilatation_q;
+    change += x->volume[q] * change_q;
+  }
+  mean_0 /= x->total;
+  change /= x->total;
+  ExcessPressure(call, &x->mean, &mean_0, &change, &excess);
+  *pressure += excess * x->total / *deformed;
 }
 
 /* Adds q m^T + m q^T + square m m^T to K. */
@@ -138,7 +149,7 @@ LANES_INLINE void Batch(const BatchCall *call, const int n, const int points, co
   const Lanes  zero     = {0};
   double       m[MAX_NODES * 3 * KERNEL_LANES],
     q_force[MAX_NODES * 3 * KERNEL_LANES]; /* m: variation of ln J'; q_force: what it is coupled to */
-  Lanes          pressure = {0}, deformed = {0}, square = {0}, factor[MAX_POINTS];
+  Lanes          pressure = {0}, deformed = {0}, square = {0}, factor[MAX_POINTS], geometric;
   MeanDilatation x;
 
   if (W) LANE(W, 0) = zero;
@@ -153,7 +164,7 @@ LANES_INLINE void Batch(const BatchCall *call, const int n, const int points, co
 
     MeanGradient(call, q, &x, H, &factor[q]);
     MaterialDilatation(H, &dilatation);
-    call->law(H, &dilatation, &call->lambda, &call->mu, W ? &energy : NULL, x.P[q], K ? x.c.A[q] : NULL);
+    PointLaw(call, H, &dilatation, W ? &energy : NULL, x.P[q], K ? x.c.A[q] : NULL);
     if (W) LANE(W, 0) += energy * x.volume[q];
     if (call->H) StorePoint(call, q, H);
     if (!f && !K) continue;
@@ -163,6 +174,8 @@ LANES_INLINE void Batch(const BatchCall *call, const int n, const int points, co
   }
   if (!f && !K) return;
   pressure /= deformed;
+  geometric = pressure;
+  if (K && call->u_0) ExtrapolatePressure(call, n, points, dim, hoop, &x, &deformed, &geometric);
   for (int q = 0; q < points; q++) {
     Lanes F[9], G[9], P[9], Q[9], J, square_q, pull;
 
@@ -171,13 +184,13 @@ LANES_INLINE void Batch(const BatchCall *call, const int n, const int points, co
     for (int r = 0; r < 9; r++) P[r] = x.volume[q] * ((1 + factor[q]) * x.P[q][r] - pull * G[r]);
     if (f) AddForce(n, dim, hoop, q, &x.c, P, f);
     if (!K) continue;
-    PointTangent(F, G, &J, &factor[q], &pressure, geometry, x.P[q], x.c.A[q], Q, &square_q);
+    PointTangent(F, G, &J, &factor[q], &geometric, geometry, x.P[q], x.c.A[q], Q, &square_q);
     for (int k = 0; k < MATERIAL_TANGENT_SIZE; k++) x.c.A[q][k] *= x.volume[q];
     for (int r = 0; r < 9; r++) {
       Q[r] *= x.volume[q];
       G[r] *= x.volume[q] * J / deformed;
     }
-    square += x.volume[q] * (square_q - geometry * pressure * J);
+    square += x.volume[q] * (square_q - geometry * geometric * J);
     AddForce(n, dim, hoop, q, &x.c, Q, q_force);
     AddForce(n, dim, hoop, q, &x.c, G, m);
   }

@@ -171,8 +171,8 @@ static double LineSearchCuts(const RunFigures *figures, char *text)
 {
   const StepperReport *way = figures->run->way;
 
-  if (way->cuts <= ADVICE_CUTS * way->newton_iterations) return 0;
-  snprintf(text, ADVICE_TEXT, "the line search shortened %lld of %lld iterations", (long long)way->cuts,
+  if (LoadStepperCuts(way) <= ADVICE_CUTS * way->newton_iterations) return 0;
+  snprintf(text, ADVICE_TEXT, "the line search shortened %lld of %lld iterations", (long long)LoadStepperCuts(way),
            (long long)way->newton_iterations);
   return 1;
 }

@@ -499,7 +499,7 @@ static int IsOfPair(ChangeKind change)
 }
 
 /*@
-  AdviceChangesOppose - tells whether two changes move one axis in opposite directions: 1 or 0.
+  AdviceChangesOppose - tells whether two changes move one axis or one key in opposite directions: 1 or 0.
 
   Not collective
 
@@ -511,32 +511,8 @@ static int IsOfPair(ChangeKind change)
 @*/
 int AdviceChangesOppose(ChangeKind a, const PairFigures *pair_a, ChangeKind b, const PairFigures *pair_b)
 {
-  if (changes[a].axis != changes[b].axis || changes[a].direction == changes[b].direction) return 0;
+  const int same = changes[a].axis == changes[b].axis || !strcmp(changes[a].key, changes[b].key);
+
+  if (!same || changes[a].direction == changes[b].direction) return 0;
   return !IsOfPair(a) || pair_a == pair_b;
-}
-
-/*@
-  AdviceChangeKey - returns the key that a change is made by, or what else is changed.
-
-  Not collective
-
-  Input Parameter:
-. change - the change
-@*/
-const char *AdviceChangeKey(ChangeKind change)
-{
-  return changes[change].key;
-}
-
-/*@
-  AdviceChangeDirection - returns the direction of a change on its axis, 1 or -1.
-
-  Not collective
-
-  Input Parameter:
-. change - the change
-@*/
-int AdviceChangeDirection(ChangeKind change)
-{
-  return changes[change].direction;
 }

@@ -112,6 +112,18 @@ static void PrintGuard(FILE *stream, int *n, long long times, const char *what)
   fprintf(stream, "%s%s %lld", (*n)++ ? ", " : "guards   ", what, times);
 }
 
+/* Prints why steps were cut, behind their number. */
+static void PrintCutCauses(const StepperReport *way, FILE *stream)
+{
+  int n = 0;
+
+  for (int cause = 0; cause < CUT_CAUSES; cause++) {
+    if (way->cuts[cause])
+      fprintf(stream, "%s%s %lld", n++ ? ", " : " (", CutCauses[cause], (long long)way->cuts[cause]);
+  }
+  if (n) fprintf(stream, ")");
+}
+
 static void PrintGuards(const RunFigures *figures, FILE *stream)
 {
   const StepperReport *way = figures->run->way;
@@ -124,7 +136,8 @@ static void PrintGuards(const RunFigures *figures, FILE *stream)
     light += figures->pairs[p].window.light;
     missed += figures->pairs[p].window.missed;
   }
-  PrintGuard(stream, &n, way->cuts, "iterations cut by the line search:");
+  PrintGuard(stream, &n, LoadStepperCuts(way), "iterations cut by the line search:");
+  PrintCutCauses(way, stream);
   PrintGuard(stream, &n, way->turned, "iterations turned downhill:");
   PrintGuard(stream, &n, way->regathered, "lists made anew within steps:");
   PrintGuard(stream, &n, way->adjusted, "steps solved on with new penalties or multipliers:");

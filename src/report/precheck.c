@@ -3,6 +3,7 @@
 #include "contactreport.h"
 #include "estimate.h"
 #include "bodies/freemodes.h"
+#include "bodies/hinges.h"
 
 static PetscErrorCode PrintEffects(Model model, FILE *stream)
 {
@@ -33,20 +34,15 @@ static PetscErrorCode PrintEffects(Model model, FILE *stream)
 @*/
 PetscErrorCode PrecheckModel(Model model, PetscBool report, FILE *stream)
 {
-  FreeModes      modes;
-  PetscErrorCode code;
-
   PetscFunctionBeginUser;
-  PetscCall(FreeModesCreate(model->mesh, model->scene, model->problem->loads, &modes));
+  PetscCall(HingesWarn(model->mesh, model->scene, stderr));
   if (report) {
     PetscCall(PrintEffects(model, stream));
-    PetscCall(FreeModesReport(modes, PETSC_TRUE, stream));
+    PetscCall(FreeModesReport(model->problem->modes, PETSC_TRUE, stream));
     PetscCall(ContactReport(model->contact, stream));
     PetscCall(EstimatePrint(model, stream));
   }
-  code = FreeModesRefuse(modes);
-  PetscCall(FreeModesDestroy(&modes));
-  PetscCall(code);
+  PetscCall(FreeModesRefuse(model->problem->modes));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -61,11 +57,7 @@ PetscErrorCode PrecheckModel(Model model, PetscBool report, FILE *stream)
 @*/
 PetscErrorCode PrecheckMotions(Model model, FILE *stream)
 {
-  FreeModes modes;
-
   PetscFunctionBeginUser;
-  PetscCall(FreeModesCreate(model->mesh, model->scene, model->problem->loads, &modes));
-  PetscCall(FreeModesReport(modes, PETSC_FALSE, stream));
-  PetscCall(FreeModesDestroy(&modes));
+  PetscCall(FreeModesReport(model->problem->modes, PETSC_FALSE, stream));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -95,9 +95,12 @@ static void AddUsage(cJSON *json, const RunFigures *figures)
 
 static void AddGuards(cJSON *json, const StepperReport *way)
 {
-  cJSON *map = cJSON_AddObjectToObject(json, "guards");
+  cJSON *map = cJSON_AddObjectToObject(json, "guards"), *cuts;
 
-  cJSON_AddNumberToObject(map, "line_search_cuts", (double)way->cuts);
+  cJSON_AddNumberToObject(map, "line_search_cuts", (double)LoadStepperCuts(way));
+  cuts = cJSON_AddObjectToObject(map, "cut_causes");
+  for (int cause = 0; cause < CUT_CAUSES; cause++)
+    cJSON_AddNumberToObject(cuts, CutCauses[cause], (double)way->cuts[cause]);
   cJSON_AddNumberToObject(map, "line_search_turned", (double)way->turned);
   cJSON_AddNumberToObject(map, "lists_made_anew", (double)way->regathered);
   cJSON_AddNumberToObject(map, "penalty_solves", (double)way->adjusted);
@@ -112,6 +115,18 @@ static void AddCycles(cJSON *json, const StepperReport *way)
   cJSON_AddNumberToObject(map, "steps_cut", (double)way->cycles_cut);
   if (way->cycles)
     cJSON_AddStringToObject(map, "last", way->cycle);
+  else
+    cJSON_AddNullToObject(map, "last");
+}
+
+/* Adds what is known of jumps to another equilibrium. */
+static void AddJumps(cJSON *json, const StepperReport *way)
+{
+  cJSON *map = cJSON_AddObjectToObject(json, "jumps");
+
+  cJSON_AddNumberToObject(map, "found", (double)way->jumps);
+  if (way->jumps)
+    cJSON_AddStringToObject(map, "last", way->jump);
   else
     cJSON_AddNullToObject(map, "last");
 }
@@ -273,6 +288,7 @@ PetscErrorCode SummaryWrite(const Mesh mesh, const RunFigures *figures, const ch
   AddRun(json, run);
   cJSON_AddNumberToObject(json, "restarts", (double)figures->restarts);
   AddCycles(json, run->way);
+  AddJumps(json, run->way);
   AddSprings(json, figures);
   AddLinear(json, &figures->linear);
   AddUsage(json, figures);

@@ -443,6 +443,11 @@ static void PrintLast(Terminal terminal, const RunRecord *run)
   const StepperReport *report = run->way;
   char                 text[DURATION_SIZE];
 
+  if (report->jumps)
+    printf(
+      "jumped to another equilibrium: %lld time%s, the last %s; no equilibrium lies between, and inertia may bring "
+      "a real part elsewhere\n",
+      (long long)report->jumps, report->jumps > 1 ? "s" : "", report->jump);
   if (report->cycles)
     printf("contact sets that repeated themselves: %lld, steps cut for it %lld; the last time %s\n",
            (long long)report->cycles, (long long)report->cycles_cut, report->cycle);

@@ -128,9 +128,9 @@ static PetscErrorCode SceneReadBody(Scene scene, SceneBody *body)
     PetscCall(SceneReadMotion(scene, tool, &body->motion));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
-  body->material.law = (MaterialLaw)SchemaChoice(SceneDocument(scene), "%s.material.law", body->path);
-  body->material.E   = SchemaReal(SceneDocument(scene), "%s.material.E", body->path);
-  body->material.nu  = SchemaReal(SceneDocument(scene), "%s.material.nu", body->path);
+  body->material = MaterialFromModuli((MaterialLaw)SchemaChoice(SceneDocument(scene), "%s.material.law", body->path),
+                                      SchemaReal(SceneDocument(scene), "%s.material.E", body->path),
+                                      SchemaReal(SceneDocument(scene), "%s.material.nu", body->path));
   if (body->material.law == MATERIAL_LINEAR && scene->kinematics == KINEMATICS_FINITE)
     PetscCall(SceneRefuse(scene, body->path, "material.law",
                           "linear needs kinematics: small; allowed with finite: svk | neo_hookean", NULL));

@@ -16,20 +16,27 @@ typedef struct {
   PetscBool convex;   /* the other facet lies below the plane of this one */
 } FlankEdge;
 
-/* Distance of the slave point to a facet. */
-static PetscReal CandidateDistance(const Nearest *look, const Candidate *c)
+/* Projects the slave point onto a facet, and returns the distance. */
+static PetscReal CandidateFoot(const Nearest *look, const Candidate *c, Foot *foot)
 {
   PetscReal x[FACE_MAX_NODES * 3];
   Facet     facet = c->facet;
-  Foot      foot;
 
   facet.free_edges = 0;
   for (int a = 0; a < ElementGet(facet.type)->nodes; a++) {
     NeighbourListsRelative(look->lists, look->q, facet.nodes[a], &x[a * look->lists->dim]);
     facet.nodes[a] = a;
   }
-  FacetProject(look->lists->dim, &facet, x, &foot);
-  return PetscAbsReal(foot.gap);
+  FacetProject(look->lists->dim, &facet, x, foot);
+  return PetscAbsReal(foot->gap);
+}
+
+/* Distance of the slave point to a facet. */
+static PetscReal CandidateDistance(const Nearest *look, const Candidate *c)
+{
+  Foot foot;
+
+  return CandidateFoot(look, c, &foot);
 }
 
 static PetscBool HasNode(const Candidate *c, PetscInt node)
@@ -155,6 +162,53 @@ int FlankSort(const Nearest *look, int *n, int *found)
   return facing;
 }
 
+/* Does the centre of a facet lie in front of the plane of another one? */
+static PetscBool InFront(const Nearest *look, const Candidate *c, const Candidate *o)
+{
+  PetscReal height = 0;
+
+  for (int d = 0; d < look->lists->dim; d++) height += c->normal[d] * (o->centre[d] - c->centre[d]);
+  return (PetscBool)(height > FLANK_BELOW * look->size);
+}
+
+/*@
+  FlankLeaveCorner - finds a better facet where the nearest one hardly opposes the slave point and forms a hollow with
+  another one that does.
+
+  Not collective
+
+  Input Parameters:
++ look   - the slave point with its nearest facet and foot
+. facing - number of facets that face the point
+- found  - their numbers
+
+  Note:
+  In the corner of a groove, points of a wall are next to the floor. Where the floor dents it faces them a little, and
+  would take them from the wall and give them back. A facet counts as farther away by the part of a face of the slave
+  that it does not oppose.
+@*/
+void FlankLeaveCorner(Nearest *look, int facing, const int *found)
+{
+  const Candidate *nearest = &look->candidates[look->best];
+  const PetscReal  opposed = NeighbourListsOpposed(look->lists, look->q, nearest->normal);
+  PetscReal        least   = look->distance + look->size * (1 - opposed);
+
+  for (int i = 0; i < facing && opposed < 1; i++) {
+    const Candidate *c = &look->candidates[found[i]];
+    PetscReal        distance, rank;
+    Foot             foot;
+
+    if (!InFront(look, nearest, c) || !InFront(look, c, nearest)) continue;
+    distance = CandidateFoot(look, c, &foot);
+    rank     = distance + look->size * (1 - NeighbourListsOpposed(look->lists, look->q, c->normal));
+    if (rank >= least - look->tie) continue;
+    least          = rank;
+    look->best     = found[i];
+    look->distance = distance;
+    look->foot     = foot;
+  }
+}
+
 /* How far the slave point is behind the plane of a facet at one of its edges; 0 in front of it. */
 static PetscReal DepthAtEdge(const Nearest *look, const Candidate *c, const FlankEdge *edge)
 {
@@ -165,10 +219,23 @@ static PetscReal DepthAtEdge(const Nearest *look, const Candidate *c, const Flan
   return PetscMax(0, depth);
 }
 
+/* How far the slave turns with the master towards a facet that the slave point does not face: 1 where the mean normal
+   of the slave at a node of the point's own face opposes that facet. */
+static PetscReal SlaveTurns(const Nearest *look, const PetscReal normal[3])
+{
+  const SlavePoints slaves = look->slaves;
+  PetscReal         turns  = 0;
+
+  for (PetscInt k = slaves->ptr[look->q]; slaves->normal && k < slaves->ptr[look->q + 1]; k++)
+    turns = PetscMax(turns, NeighbourListsOpposing(&slaves->normal[3 * slaves->node[k]], normal));
+  return turns;
+}
+
 /* Part of a slave point's area that takes part where the flank ends at a convex edge of facet c, beyond which there is
    a facet that the point does not face. The width over which it fades shrinks as the point turns towards that facet,
    because then the plane beyond the edge lies in front of the master. Past the edge, a point that is deeper than
-   FLANK_DEPTH is in front of another side of the master, not behind this one. */
+   FLANK_DEPTH is in front of another side of the master, not behind this one. Where the slave turns with the master,
+   its next face meets the side beyond the edge, and nothing of this one's area is left out inside. */
 static PetscReal EndShare(const Nearest *look, const Candidate *c, const Candidate *beyond, const FlankEdge *edge)
 {
   const PetscReal width  = look->size * NeighbourListsAverse(look->lists, look->q, beyond->normal),
@@ -178,6 +245,7 @@ static PetscReal EndShare(const Nearest *look, const Candidate *c, const Candida
 
   if (2 * PetscAbsReal(past) >= width) return past > 0 ? 0 : 1;
   place = past / width + 0.5;
+  place += SlaveTurns(look, beyond->normal) * (PetscMax(0, 2 * place - 1) - place);
   return (1 - SmoothStep(place)) *
          (1 - SmoothStep(2 * place) * SmoothStep(DepthAtEdge(look, c, edge) / (FLANK_DEPTH * look->size)));
 }

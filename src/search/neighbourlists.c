@@ -830,13 +830,29 @@ PetscReal NeighbourListsSlip(NeighbourLists lists, PetscInt q)
   return PetscSqrtReal(square);
 }
 
-/* Cosine between the inward normal of slave point q and a unit normal of the master; 0 if the point has no normal. */
-static inline PetscReal OpposedCosine(NeighbourLists lists, PetscInt q, const PetscReal normal[3])
+/* Cosine between the reversed normal of a slave, of any length, and a unit normal of the master; 0 without a normal. */
+static inline PetscReal OpposedCosine(const PetscReal own[3], const PetscReal normal[3])
 {
-  const PetscReal *own    = &lists->slave_normal[3 * q];
-  const PetscReal  length = PetscSqrtReal(own[0] * own[0] + own[1] * own[1] + own[2] * own[2]);
+  const PetscReal length = PetscSqrtReal(own[0] * own[0] + own[1] * own[1] + own[2] * own[2]);
 
   return length > 0 ? -(own[0] * normal[0] + own[1] * normal[1] + own[2] * normal[2]) / length : 0;
+}
+
+/*@
+  NeighbourListsOpposing - says how well a normal of the slave opposes a normal of the master.
+
+  Not collective
+
+  Input Parameters:
++ own    - normal out of the slave's body, of any length
+- normal - unit normal of the master
+
+  Note:
+  Returns 1 where they are opposed within OPPOSED_FULLY, and 0 from OPPOSED_NOT on.
+@*/
+PetscReal NeighbourListsOpposing(const PetscReal own[3], const PetscReal normal[3])
+{
+  return SmoothStep((OpposedCosine(own, normal) - OPPOSED_NOT) / (OPPOSED_FULLY - OPPOSED_NOT));
 }
 
 /*@
@@ -850,11 +866,11 @@ static inline PetscReal OpposedCosine(NeighbourLists lists, PetscInt q, const Pe
 - normal - unit normal of the master
 
   Note:
-  Returns 1 where they are opposed within OPPOSED_FULLY, and 0 from OPPOSED_NOT on.
+  It is NeighbourListsOpposing() of the point's normal.
 @*/
 PetscReal NeighbourListsOpposed(NeighbourLists lists, PetscInt q, const PetscReal normal[3])
 {
-  return SmoothStep((OpposedCosine(lists, q, normal) - OPPOSED_NOT) / (OPPOSED_FULLY - OPPOSED_NOT));
+  return NeighbourListsOpposing(&lists->slave_normal[3 * q], normal);
 }
 
 /*@
@@ -870,7 +886,7 @@ PetscReal NeighbourListsOpposed(NeighbourLists lists, PetscInt q, const PetscRea
 @*/
 PetscBool NeighbourListsSquare(NeighbourLists lists, PetscInt q, const PetscReal normal[3])
 {
-  return (PetscBool)(PetscAbsReal(OpposedCosine(lists, q, normal)) < 0.5 * PETSC_SQRT2);
+  return (PetscBool)(PetscAbsReal(OpposedCosine(&lists->slave_normal[3 * q], normal)) < 0.5 * PETSC_SQRT2);
 }
 
 /*@
@@ -889,7 +905,7 @@ PetscBool NeighbourListsSquare(NeighbourLists lists, PetscInt q, const PetscReal
 @*/
 PetscReal NeighbourListsAverse(NeighbourLists lists, PetscInt q, const PetscReal normal[3])
 {
-  return 1 - SmoothStep(OpposedCosine(lists, q, normal) / OPPOSED_NOT);
+  return 1 - SmoothStep(OpposedCosine(&lists->slave_normal[3 * q], normal) / OPPOSED_NOT);
 }
 
 /*@

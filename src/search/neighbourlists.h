@@ -86,6 +86,7 @@ void           NeighbourListsRelative(NeighbourLists, PetscInt q, PetscInt p, Pe
 PetscInt       NeighbourListsAlikeEnd(NeighbourLists, PetscInt p);
 PetscReal      NeighbourListsNearestSize(NeighbourLists, PetscInt q);
 PetscReal      NeighbourListsSlip(NeighbourLists, PetscInt q);
+PetscReal      NeighbourListsOpposing(const PetscReal own[3], const PetscReal normal[3]);
 PetscReal      NeighbourListsOpposed(NeighbourLists, PetscInt q, const PetscReal normal[3]);
 PetscBool      NeighbourListsSquare(NeighbourLists, PetscInt q, const PetscReal normal[3]);
 PetscReal      NeighbourListsAverse(NeighbourLists, PetscInt q, const PetscReal normal[3]);

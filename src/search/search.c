@@ -333,8 +333,9 @@ static PetscErrorCode FillSlave(NeighbourLists lists, const SearchField *field, 
   lists->averse[q] = (PetscBool)(look->best < 0 && look->averse);
   lists->share[q]  = 0;
   if (look->best < 0) PetscFunctionReturn(PETSC_SUCCESS);
-  count           = BoxTreeNear(tree, look->x, look->least + margin + motion, (int)field->n_candidates, found);
-  facing          = FlankSort(look, &count, found);
+  count  = BoxTreeNear(tree, look->x, look->least + margin + motion, (int)field->n_candidates, found);
+  facing = FlankSort(look, &count, found);
+  FlankLeaveCorner(look, facing, found);
   lists->share[q] = FlankShare(look, facing, count, found, ends);
   if (lists->share[q] == 0) lists->averse[q] = FlankIsBeside(look, facing, count, found);
   lists->kappa[q] = ListCurvature(look, facing, found);
@@ -361,6 +362,7 @@ static PetscErrorCode NeighbourListsFill(ContactSearch s, NeighbourLists lists, 
   PetscCall(CandidatesTree(dim, field->n_candidates, field->candidates, &tree));
   for (PetscInt q = 0; q < lists->n_slaves; q++) {
     Nearest look = {.lists      = lists,
+                    .slaves     = s->slaves,
                     .candidates = field->candidates,
                     .q          = q,
                     .own        = s->slaves->ptr[q + 1] - s->slaves->ptr[q],
@@ -447,7 +449,7 @@ PetscErrorCode SearchLists(ContactSearch s, const PetscReal *u, PetscReal t, Pet
   SearchSlaveBox(s, box);
   PetscCall(SearchFieldCreate(s, u, t, box, distance, lists, &field));
   PetscCall(NeighbourListsCreateSlaves(s, lists));
-  PetscCall(SlavePointsNormals(s->slaves, u, lists->slave_normal));
+  PetscCall(SlavePointsNormals(s->slaves, s->n_images, s->images, u, lists->slave_normal));
   if (s->fit->fitted) PetscCall(FitSupportCreate(s, lists, &field, &fit));
   if (s->fit->fitted && s->fit->global_frame)
     PetscCall(SurfaceMeanNormal(s->master, s->loads, s->n_images, s->images, u, t, fit.plane, NULL));

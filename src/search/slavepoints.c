@@ -173,6 +173,7 @@ PetscErrorCode SlavePointsCreateQuadrature(ContactSurface surface, Geometry geom
   points->ptr[n] = entries;
   PetscCall(PetscFree(records));
   PetscCall(CreateForest(points));
+  PetscCall(PetscCalloc1(3 * points->n_nodes, &points->normal));
   *out = points;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -216,6 +217,7 @@ PetscErrorCode SlavePointsDestroy(SlavePoints *points)
     PetscCallMPI(MPI_Type_free(&p->face_block));
     PetscCall(PetscFree2(p->faces, p->first));
     PetscCall(FaceMapsDestroy(&p->maps));
+    PetscCall(PetscFree(p->normal));
   }
   PetscCall(PetscFree6(p->ptr, p->node, p->S, p->hat, p->weight, p->offset));
   PetscCall(PetscFree(p->size));
@@ -281,24 +283,67 @@ static PetscErrorCode NodeNormals(SlavePoints points, const PetscReal *u, PetscR
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Mean normals of the faces around each node, weighted by the hat functions. On a plane of symmetry the other half
+   cancels the part along the plane's normal. */
+static PetscErrorCode HatNormals(SlavePoints points, int n_images, const SurfaceImage *images, const PetscReal *u)
+{
+  Mesh       mesh = points->mesh;
+  const int  dim  = mesh->dim;
+  PetscReal *sum, *at;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc2(mesh->n_nodes * dim, &sum, points->n_nodes * dim, &at));
+  for (PetscInt f = 0; f < points->surface->n_faces; f++) {
+    const Facet    *facet = &points->surface->faces[f];
+    const FaceRule *rule  = FaceRuleGet(facet->type, points->finer);
+    const int       nodes = ElementGet(facet->type)->nodes;
+    double          x[FACE_MAX_NODES * 3], area[FACE_RULE_POINTS], normal[FACE_RULE_POINTS * 3];
+
+    for (int a = 0; a < nodes; a++)
+      for (int d = 0; d < dim; d++)
+        x[a * dim + d] = mesh->coords[facet->nodes[a] * dim + d] + u[facet->nodes[a] * dim + d];
+    FaceRuleAreas(rule, facet->type, dim, GEOMETRY_SOLID, x, area, normal);
+    for (int q = 0; q < rule->n; q++)
+      for (int a = 0; a < nodes; a++)
+        for (int d = 0; d < dim; d++) sum[facet->nodes[a] * dim + d] += area[q] * rule->hat[q][a] * normal[3 * q + d];
+  }
+  PetscCall(MeshSumNodes(mesh, dim, sum));
+  PetscCall(PetscSFBcastBegin(points->sf, points->block, sum, at, MPI_REPLACE));
+  PetscCall(PetscSFBcastEnd(points->sf, points->block, sum, at, MPI_REPLACE));
+  for (PetscInt i = 0; i < points->n_nodes; i++) {
+    for (int d = 0; d < dim; d++) points->normal[3 * i + d] = at[i * dim + d];
+    for (int bit = 1; bit < n_images; bit <<= 1)
+      for (int d = 0; d < dim && SurfaceOnPlane(mesh, &images[bit], points->nodes[i].X); d++)
+        if (images[bit].sign[d] < 0) points->normal[3 * i + d] = 0;
+  }
+  PetscCall(PetscFree2(sum, at));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /*@
   SlavePointsNormals - computes the normals at the points after the last move.
 
   Collective
 
   Input Parameters:
-+ points - the slave points
-- u      - displacements u[mesh n_nodes*dim] of the last SlavePointsMove()
++ points   - the slave points; their mean normals around nodes are set in surface-to-surface contact
+. n_images - number of mirror images of the pair
+. images   - the images
+- u        - local displacements u[mesh n_nodes*dim] of the last SlavePointsMove(), ghosts included
 
   Output Parameter:
 . normals - normals[n*3], out of the slave's body, of any length
 @*/
-PetscErrorCode SlavePointsNormals(SlavePoints points, const PetscReal *u, PetscReal *normals)
+PetscErrorCode SlavePointsNormals(SlavePoints points, int n_images, const SurfaceImage *images, const PetscReal *u,
+                                  PetscReal *normals)
 {
   const int dim = points->mesh->dim;
 
   PetscFunctionBeginUser;
-  if (!points->face_sf) PetscCall(NodeNormals(points, u, normals));
+  if (points->face_sf)
+    PetscCall(HatNormals(points, n_images, images, u));
+  else
+    PetscCall(NodeNormals(points, u, normals));
   for (PetscInt f = 0; f < points->n_faces; f++) {
     const Facet *facet = &points->faces[f];
     double       x[FACE_MAX_NODES * 3], area[FACE_RULE_POINTS];

@@ -23,6 +23,7 @@ typedef struct {
   PetscReal     *size;             /* of the slave's faces at each point (length) */
   PetscReal     *offset;           /* n*dim, along the normal at the time when it was taken (length) */
   /* The following members are for surface-to-surface contact only. */
+  PetscReal   *normal; /* n_nodes*3: mean normal around each node after SlavePointsNormals(), of any length */
   PetscInt     n_faces;
   Facet       *faces;      /* nodes: positions in nodes[] */
   PetscInt    *first;      /* first point of each face */
@@ -40,7 +41,8 @@ PetscErrorCode SlavePointsDestroy(SlavePoints *);
 PetscErrorCode SlavePointsMove(SlavePoints, const PetscReal *u);
 PetscBool      SlavePointIsOwn(SlavePoints, PetscInt q, PetscMPIInt rank);
 void           SlavePointsPosition(SlavePoints, PetscInt q, PetscReal *x);
-PetscErrorCode SlavePointsNormals(SlavePoints, const PetscReal *u, PetscReal *normals);
+PetscErrorCode SlavePointsNormals(SlavePoints, int n_images, const SurfaceImage *, const PetscReal *u,
+                                  PetscReal *normals);
 PetscErrorCode SlavePointsSetOffsets(SlavePoints, const PetscReal *offset);
 PetscErrorCode SlavePointsSetMaps(SlavePoints, const FaceMaps *);
 PetscErrorCode SlavePointsHatAreas(SlavePoints, Geometry, const PetscReal *u, PetscReal *area);

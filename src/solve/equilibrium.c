@@ -147,6 +147,7 @@ static PetscErrorCode ModelDepart(Model model, PetscReal t)
   work->cycle[0]           = '\0';
   work->energy             = 0;
   ModelForgetPenaltyError(model);
+  PetscCall(ModelStepFromSolved(model, work->accepted_u));
   if (!model->contact) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(ProblemImposedMotion(model->problem, work->accepted_u, work->accepted_t, t, &motion));
   motion = PetscMax(motion, PROBLEM_MOTION_SAFETY * work->rate * (t - work->accepted_t));
@@ -178,6 +179,7 @@ static PetscErrorCode ModelTakeExtrapolatedPart(Model model, PetscReal part, Pet
     PetscCall(ProblemSetTrial(model->problem, model->x, model->t));
     PetscCall(
       ProblemInOrder(model->problem, work->accepted_u, work->accepted_t, model->problem->trial, model->t, made));
+    if (*made) PetscCall(ModelStepFrom(model, u));
   }
   PetscCall(VecDestroy(&end));
   PetscCall(PetscFree(u));
@@ -411,10 +413,12 @@ PetscErrorCode ModelSolve(Model model, PetscReal t, SolveReport *report)
   }
   report->cycles = work->cycles;
   PetscCall(PetscStrncpy(report->cycle, work->cycle, sizeof(report->cycle)));
-  if (report->result == SOLVE_CONVERGED)
-    PetscCall(PetscArraycpy(model->u, model->problem->trial, model->mesh->n_nodes * model->mesh->dim));
-  else
+  if (report->result != SOLVE_CONVERGED) {
     PetscCall(ModelExplainFailure(model, report));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  PetscCall(PetscArraycpy(model->u, model->problem->trial, model->mesh->n_nodes * model->mesh->dim));
+  PetscCall(ModelFindJump(model, report));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -70,15 +70,21 @@ PetscErrorCode ExtrapolationDestroy(Extrapolation *extrapolation)
   Input Parameters:
 + extrapolation - the extrapolation
 . u             - local displacements u[n_nodes*dim] (length), prescribed ones included; copied
-- t             - load parameter, larger than that of the state before
+- t             - load parameter
+
+  Note:
+  A state at the load parameter of the one before, as after a step too short to move it, replaces that one.
 @*/
 PetscErrorCode ExtrapolationAdd(Extrapolation extrapolation, const PetscReal *u, PetscReal t)
 {
   PetscReal *oldest = extrapolation->u[EXTRAPOLATION_STATES - 1];
 
   PetscFunctionBeginUser;
-  PetscCheck(!extrapolation->known || t > extrapolation->t[0], extrapolation->mesh->comm, PETSC_ERR_ARG_OUTOFRANGE,
-             "a state at t = %g follows one at %g", (double)t, (double)extrapolation->t[0]);
+  if (extrapolation->known && t <= extrapolation->t[0]) {
+    extrapolation->t[0] = t;
+    PetscCall(PetscArraycpy(extrapolation->u[0], u, extrapolation->mesh->n_nodes * extrapolation->mesh->dim));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
   for (int i = EXTRAPOLATION_STATES - 1; i > 0; i--) {
     extrapolation->u[i] = extrapolation->u[i - 1];
     extrapolation->t[i] = extrapolation->t[i - 1];

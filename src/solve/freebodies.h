@@ -16,7 +16,7 @@ typedef enum { SETTLE_NONE, SETTLE_MOVED, SETTLE_ADRIFT } SettleResult;
 
 typedef struct _n_FreeBodies *FreeBodies;
 
-PetscErrorCode FreeBodiesCreate(Mesh, Scene, Loads, Contact, FreeBodies *);
+PetscErrorCode FreeBodiesCreate(Mesh, Scene, Loads, Contact, FreeModes, FreeBodies *);
 PetscErrorCode FreeBodiesDestroy(FreeBodies *);
 PetscErrorCode FreeBodiesSprings(FreeBodies, Vec like, ContactSprings *);
 PetscErrorCode FreeBodiesSettle(FreeBodies, PetscReal t, PetscReal t_loads, PetscBool first, PetscReal *u,

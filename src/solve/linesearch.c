@@ -86,12 +86,11 @@ void ModelChooseObjective(Model model, PetscReal residual, PetscReal slope)
   model->work->objective = small || flat ? OBJECTIVE_RESIDUAL : OBJECTIVE_ENERGY;
 }
 
-/* Before the search: changes Newton's step so that its contact is right at its end, and chooses the objective anew from
+/* Changes Newton's step so that its contact is right at its end, and chooses the objective anew from
    the slope of the energy. Where the tangent is indefinite, Newton's step may lead uphill, to a saddle of the energy.
    The opposite step leads downhill then. */
-static PetscErrorCode ModelMeasureStep(SNESLineSearch search, Vec x, Vec y, PetscBool *changed, void *context)
+static PetscErrorCode ModelMeasureStep(Model model, SNESLineSearch search, Vec x, Vec y)
 {
-  Model     model = context;
   SNES      snes;
   Vec       F;
   PetscReal slope, energy;
@@ -99,7 +98,6 @@ static PetscErrorCode ModelMeasureStep(SNESLineSearch search, Vec x, Vec y, Pets
   PetscFunctionBeginUser;
   PetscCall(ProblemSetTrial(model->problem, x, model->t));
   PetscCall(ModelSolveLinearContact(model, model->problem->trial, NULL, model->t, y));
-  *changed = PETSC_TRUE;
   if (model->work->objective == OBJECTIVE_RESIDUAL || !ProblemConservative(model->problem))
     PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(SNESLineSearchGetSNES(search, &snes));
@@ -112,6 +110,18 @@ static PetscErrorCode ModelMeasureStep(SNESLineSearch search, Vec x, Vec y, Pets
     model->work->turned++;
   }
   ModelChooseObjective(model, NAN, slope);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Before the search: the step is changed and kept, so that a cut of it can be explained. */
+static PetscErrorCode ModelPrepareStep(SNESLineSearch search, Vec x, Vec y, PetscBool *changed, void *context)
+{
+  Model model = context;
+
+  PetscFunctionBeginUser;
+  *changed = (PetscBool)(model->contact != NULL);
+  if (model->contact) PetscCall(ModelMeasureStep(model, search, x, y));
+  PetscCall(VecCopy(y, model->work->step));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -243,12 +253,11 @@ PetscErrorCode ModelCreateLineSearch(Model model)
 
   PetscFunctionBeginUser;
   if (ProblemConservative(model->problem)) PetscCall(SNESSetObjective(model->snes, ModelObjective, model));
-  if (!model->contact) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(SNESGetLineSearch(model->snes, &search));
   if (ContactHasFriction(model->contact)) {
     PetscCall(SNESLineSearchSetType(search, SNESLINESEARCHSHELL));
     PetscCall(SNESLineSearchShellSetUserFunc(search, ModelSearchResidual, model));
   }
-  PetscCall(SNESLineSearchSetPreCheck(search, ModelMeasureStep, model));
+  PetscCall(SNESLineSearchSetPreCheck(search, ModelPrepareStep, model));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -46,6 +46,7 @@ PetscErrorCode ModelCreate(Scene scene, Mesh mesh, Model *out)
   PetscCall(VecDuplicate(model->x, &model->work->accepted_x));
   PetscCall(VecDuplicate(model->x, &model->work->look_ahead));
   PetscCall(VecDuplicate(model->x, &model->work->residual));
+  PetscCall(VecDuplicate(model->x, &model->work->step));
   if (scene->kinematics != KINEMATICS_SMALL) PetscCall(ExtrapolationCreate(mesh, &model->work->extrapolation));
   PetscCall(ModelCreateSNES(model));
   PetscCall(ModelCreatePenaltyError(model));
@@ -76,8 +77,10 @@ PetscErrorCode ModelDestroy(Model *model)
   PetscCall(VecDestroy(&m->work->accepted_x));
   PetscCall(VecDestroy(&m->work->look_ahead));
   PetscCall(VecDestroy(&m->work->residual));
+  PetscCall(VecDestroy(&m->work->step));
   PetscCall(ProblemDestroy(&m->problem));
   PetscCall(PetscFree2(m->u, m->work->accepted_u));
+  PetscCall(PetscFree2(m->work->solved, m->work->from));
   PetscCall(PetscFree(m->work->penalty_error));
   PetscCall(PetscFree(m->work));
   PetscCall(PetscFree(*model));
@@ -119,7 +122,7 @@ PetscErrorCode ModelPlace(Model model, PetscReal t)
 PetscErrorCode ModelAssemble(Model model)
 {
   PetscFunctionBeginUser;
-  PetscCall(ModelTangent(model, model->u, model->t));
+  PetscCall(ModelTangent(model, model->u, NULL, model->t));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

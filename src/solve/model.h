@@ -25,25 +25,41 @@ typedef enum {
 } SolveResult;
 extern const char *const SolveResults[]; /* in words, for messages */
 
+/* Why the line search shortened a step. Over the whole step an element would have been inverted; or this part of the
+   energy would have risen most: that of the volume where the law has one, the rest of the strain energy, contact,
+   loads; or the norm of the residual would have risen. The last: the contact set had repeated itself. */
+typedef enum {
+  CUT_INVERTED,
+  CUT_VOLUME,
+  CUT_SHAPE,
+  CUT_CONTACT,
+  CUT_LOADS,
+  CUT_RESIDUAL,
+  CUT_CYCLE,
+  CUT_CAUSES
+} CutCause;
+extern const char *const CutCauses[]; /* in words */
+
 typedef struct {
   SolveResult result;
-  PetscInt    newton;      /* linear solves, those of the prediction and of repeated solves included */
-  PetscInt    krylov;      /* iterations of these linear solves */
-  PetscInt    regathered;  /* times that contact lists were replaced */
-  PetscInt    adjusted;    /* times that penalties or multipliers were changed and the step solved on */
-  PetscInt    stiffened;   /* times that penalties were made stiffer for a smaller error, and the step solved on */
-  PetscInt    cuts;        /* iterations that the line search shortened */
-  PetscInt    turned;      /* iterations whose step led uphill and was turned round */
-  PetscReal   residual;    /* |R|_2 / F_ref at the end */
-  PetscInt    relaxed;     /* times that the contact springs were relaxed and the step solved on */
-  PetscReal   taken;       /* energy that the contact springs took out of the bodies in this step */
-  PetscReal   left;        /* energy left in the contact springs, over that in elements and contact */
-  PetscReal   share;       /* norm of the forces left in the contact springs, over F_ref */
-  PetscReal   tied;        /* largest force in a tie, over F_ref */
-  PetscInt    cycles;      /* times that the contact set repeated itself and Newton's steps were shortened */
-  char        cycle[256];  /* the last repetition: its period and nodes, in gmsh's tags */
-  char        detail[256]; /* where a failed solve failed, in gmsh's tags */
-  Failure     failure;     /* more about a failed solve */
+  PetscInt    newton;           /* linear solves, those of the prediction and of repeated solves included */
+  PetscInt    krylov;           /* iterations of these linear solves */
+  PetscInt    regathered;       /* times that contact lists were replaced */
+  PetscInt    adjusted;         /* times that penalties or multipliers were changed and the step solved on */
+  PetscInt    stiffened;        /* times that penalties were made stiffer for a smaller error, and the step solved on */
+  PetscInt    cuts[CUT_CAUSES]; /* iterations that the line search shortened, by their cause */
+  PetscInt    turned;           /* iterations whose step led uphill and was turned round */
+  PetscReal   residual;         /* |R|_2 / F_ref at the end */
+  PetscInt    relaxed;          /* times that the contact springs were relaxed and the step solved on */
+  PetscReal   taken;            /* energy that the contact springs took out of the bodies in this step */
+  PetscReal   left;             /* energy left in the contact springs, over that in elements and contact */
+  PetscReal   share;            /* norm of the forces left in the contact springs, over F_ref */
+  PetscReal   tied;             /* largest force in a tie, over F_ref */
+  PetscInt    cycles;           /* times that the contact set repeated itself and Newton's steps were shortened */
+  char        cycle[256];       /* the last repetition: its period and nodes, in gmsh's tags */
+  char        jump[256];        /* the node that jumped to another equilibrium, and how far; empty: none did */
+  char        detail[256];      /* where a failed solve failed, in gmsh's tags */
+  Failure     failure;          /* more about a failed solve */
 } SolveReport;
 
 /* What penetration leaves of error in the present state, estimated: parts of the present values. */

@@ -98,27 +98,64 @@ static PetscErrorCode ModelBorder(Model model)
 }
 
 /*@
+  ModelStepFrom - tells that a linear step from a state has led to the iterate. The next tangent extrapolates pressures
+  from there.
+
+  Not collective
+
+  Input Parameters:
++ model - the model
+- u     - local displacements u[n_nodes*dim] (length) of that state
+@*/
+PetscErrorCode ModelStepFrom(Model model, const PetscReal *u)
+{
+  PetscFunctionBeginUser;
+  model->work->shortened = PETSC_FALSE;
+  if (model->work->from) PetscCall(PetscArraycpy(model->work->from, u, model->mesh->n_nodes * model->mesh->dim));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ModelStepFromSolved - tells that the iterate is a state in equilibrium.
+
+  Not collective
+
+  Input Parameters:
++ model - the model
+- u     - local displacements u[n_nodes*dim] (length) of that state
+@*/
+PetscErrorCode ModelStepFromSolved(Model model, const PetscReal *u)
+{
+  PetscFunctionBeginUser;
+  PetscCall(ModelStepFrom(model, u));
+  if (model->work->solved) PetscCall(PetscArraycpy(model->work->solved, u, model->mesh->n_nodes * model->mesh->dim));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
   ModelTangent - computes the tangent at (u, t) and prepares the linear solver for it.
 
   Collective
 
   Input Parameters:
-+ model - the model
-. u     - local displacements u[n_nodes*dim] (length)
-- t     - load parameter
++ model     - the model
+. u         - local displacements u[n_nodes*dim] (length)
+. reference - the state from which the elements extrapolate pressures; NULL: the tangent is the derivative of the
+residual
+- t         - load parameter
 
   Note:
   The first call lets the linear solver order its unknowns. Where the factor of an earlier tangent still serves, SNES is
   told to keep the preconditioner, and the factor is updated for the contact terms that came and went.
 @*/
-PetscErrorCode ModelTangent(Model model, const PetscReal *u, PetscReal t)
+PetscErrorCode ModelTangent(Model model, const PetscReal *u, const PressureReference *reference, PetscReal t)
 {
   TangentChange change;
   PetscBool     older;
 
   PetscFunctionBeginUser;
   PetscCall(ModelOrder(model));
-  PetscCall(ProblemTangent(model->problem, u, t, &change));
+  PetscCall(ProblemTangent(model->problem, u, reference, t, &change));
   PetscCall(ModelBorder(model));
   PetscCall(LinearSolverNext(model->work->solver, u, change.C, change.pattern, change.terms, &older));
   PetscCall(SNESSetLagPreconditioner(model->snes, older ? -1 : 1)); /* SNES tells the KSP so after each tangent */
@@ -126,17 +163,54 @@ PetscErrorCode ModelTangent(Model model, const PetscReal *u, PetscReal t)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* The state from which the tangent at the present iterate extrapolates pressures. It is the iterate before, since
+   pressure changes along a full step as the step's linear problem says. Before the first iterate that is where the
+   prediction started. A shortened step has left the volumes somewhere; its pressures are those of the last equilibrium.
+ */
+static PetscErrorCode ModelReference(Model model, PressureReference *reference)
+{
+  ModelWork     *work = model->work;
+  SNESLineSearch search;
+  PetscInt       iteration;
+  PetscReal      lambda;
+
+  PetscFunctionBeginUser;
+  PetscCall(SNESGetIterationNumber(model->snes, &iteration));
+  PetscCall(SNESGetLineSearch(model->snes, &search));
+  PetscCall(SNESLineSearchGetLambda(search, &lambda));
+  if (iteration > 0) work->shortened = (PetscBool)(lambda < 1);
+  *reference = work->shortened ? (PressureReference){work->solved, 0} : (PressureReference){work->from, 1};
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* The Jacobian of SNES: the tangent at x. */
 static PetscErrorCode ModelJacobian(SNES snes, Vec x, Mat J, Mat P, void *context)
 {
-  Model model = context;
+  Model             model = context;
+  PressureReference reference;
 
   PetscFunctionBeginUser;
   (void)snes;
   (void)J;
   (void)P;
   PetscCall(ProblemSetTrial(model->problem, x, model->t));
-  PetscCall(ModelTangent(model, model->problem->trial, model->t));
+  if (model->work->from) PetscCall(ModelReference(model, &reference));
+  PetscCall(ModelTangent(model, model->problem->trial, model->work->from ? &reference : NULL, model->t));
+  PetscCall(ModelStepFrom(model, model->problem->trial));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Makes room for the states from which pressures are extrapolated, if elements do that. The tangent that PETSc is to
+   test against differences must be their limit. */
+static PetscErrorCode ModelCreateReference(Model model)
+{
+  const PetscInt n = model->mesh->n_nodes * model->mesh->dim;
+  PetscBool      test;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscOptionsHasName(NULL, NULL, "-snes_test_jacobian", &test));
+  if (test || !ElasticityExtrapolates(model->problem->elasticity)) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscCalloc2(n, &model->work->solved, n, &model->work->from));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -177,20 +251,6 @@ static PetscErrorCode ModelBreakCycle(Model model, PetscReal fnorm, SNESConverge
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Counts an iteration that the line search shortened. */
-static PetscErrorCode ModelCountCut(Model model, PetscInt it)
-{
-  SNESLineSearch search;
-  PetscReal      lambda;
-
-  PetscFunctionBeginUser;
-  if (!it) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(SNESGetLineSearch(model->snes, &search));
-  PetscCall(SNESLineSearchGetLambda(search, &lambda));
-  if (lambda < 1) model->work->cuts++;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* The convergence test of SNES. A solve has converged when its residual is small against the forces that balance in it,
    or is round-off only. It is never measured against its own first value. Where penalties follow the penetrations, the
    penetrations must have settled too. */
@@ -201,12 +261,13 @@ static PetscErrorCode ModelConverged(SNES snes, PetscInt it, PetscReal xnorm, Pe
   const PetscReal scale = ProblemForceScale(model->problem);
   PetscReal       round_off, allowed;
   PetscBool       converged = PETSC_TRUE;
+  Vec             x;
 
   PetscFunctionBeginUser;
-  (void)snes;
+  PetscCall(SNESGetSolution(snes, &x));
   (void)xnorm;
   (void)snorm;
-  PetscCall(ModelCountCut(model, it));
+  if (it > 0) PetscCall(ModelCountCut(model, x));
   PetscCall(ProblemRoundOff(model->problem, &round_off));
   if (model->contact) PetscCall(ContactGapsConverged(model->contact, &converged));
   *reason = SNES_CONVERGED_ITERATING;
@@ -301,6 +362,7 @@ PetscErrorCode ModelCreateSNES(Model model)
   PetscCall(
     LinearCheckCreate(ksp, model->scene->solver.tolerance, LinearSolverKept(model->work->solver), &model->linear));
   PetscCall(SNESLineSearchGetDamping(search, &model->work->damping));
+  PetscCall(ModelCreateReference(model));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -372,7 +434,8 @@ PetscErrorCode ModelNewton(Model model, SolveReport *report)
   PetscCall(SNESGetLineSearch(model->snes, &search));
   PetscCall(SNESLineSearchSetDamping(search, model->work->damping));
   if (model->contact) PetscCall(ContactCycleStart(model->work->watch));
-  model->work->cuts = model->work->turned = 0;
+  model->work->turned = 0;
+  PetscCall(PetscArrayzero(model->work->cuts, CUT_CAUSES));
   PetscCall(SNESSolve(model->snes, NULL, model->x));
   PetscCall(SNESGetConvergedReason(model->snes, &reason));
   PetscCall(SNESGetIterationNumber(model->snes, &its));
@@ -381,7 +444,7 @@ PetscErrorCode ModelNewton(Model model, SolveReport *report)
   PetscCall(VecNorm(F, NORM_2, &norm));
   report->newton += its;
   report->krylov += krylov;
-  report->cuts += model->work->cuts;
+  for (int cause = 0; cause < CUT_CAUSES; cause++) report->cuts[cause] += model->work->cuts[cause];
   report->turned += model->work->turned;
   report->result = ResultFromReason(reason);
   if (model->work->cycling) report->result = SOLVE_CYCLE;
@@ -390,6 +453,8 @@ PetscErrorCode ModelNewton(Model model, SolveReport *report)
       (report->result != SOLVE_CONVERGED && its > 0 && LinearCheckLost(model->linear)))
     PetscCall(ModelLinearFailure(model, &report->result));
   PetscCall(ProblemSetTrial(model->problem, model->x, model->t)); /* SNES may have evaluated another point last */
+  if (report->result == SOLVE_CONVERGED && !model->work->soft && !model->work->left)
+    PetscCall(ModelStepFromSolved(model, model->problem->trial));
   report->residual = model->problem->force > 0 ? norm / ProblemForceScale(model->problem) : 0;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

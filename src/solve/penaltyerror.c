@@ -97,7 +97,7 @@ static PetscErrorCode ModelPenaltySlope(Model model, Vec slope, PetscBool *known
   PetscCall(ModelPenaltyForces(model, forces));
   PetscCall(LinearSolverRenew(model->work->solver));
   PetscCall(LinearSolverSetStart(model->work->solver, 0));
-  PetscCall(ModelTangent(model, model->problem->trial, model->t));
+  PetscCall(ModelTangent(model, model->problem->trial, NULL, model->t));
   PetscCall(SNESGetKSP(model->snes, &ksp));
   PetscCall(KSPSetOperators(ksp, model->problem->A, model->problem->P));
   PetscCall(KSPSolve(ksp, forces, slope));
@@ -189,7 +189,7 @@ PetscErrorCode ModelEstimatePenalty(Model model)
 }
 
 /* Makes the penalties stiffer that the run may choose and whose error is large, after ModelEstimatePenalty().
-   *stiffened: some are. */
+ *stiffened: some are. */
 PetscErrorCode ModelStiffen(Model model, PetscBool *stiffened)
 {
   const int    pairs = ContactPairs(model->contact);
@@ -199,8 +199,7 @@ PetscErrorCode ModelStiffen(Model model, PetscBool *stiffened)
   PetscFunctionBeginUser;
   *stiffened = PETSC_FALSE;
   PetscCall(PetscMalloc1(pairs, &load));
-  for (int p = 0; p < pairs; p++)
-    PetscCall(ContactPairLoad(model->contact, p, model->problem->trial, &load[p]));
+  for (int p = 0; p < pairs; p++) PetscCall(ContactPairLoad(model->contact, p, model->problem->trial, &load[p]));
   for (int p = 0; p < pairs; p++) most = PetscMax(most, load[p].force);
   for (int p = 0; p < pairs; p++) {
     const PenaltyError *error = &model->work->penalty_error[p];

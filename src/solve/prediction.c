@@ -39,6 +39,7 @@ static PetscErrorCode ModelStepLinear(Model model, const PetscReal *u, const Pet
   if (LinearCheckLost(model->linear)) PetscCall(ModelLinearFailure(model, &report->result));
   PetscCall(ModelSolveLinearContact(model, u, carried, t, dx));
   PetscCall(VecAXPY(model->x, -1, dx));
+  PetscCall(ModelStepFrom(model, u));
   PetscCall(VecDestroy(&b));
   PetscCall(VecDestroy(&dx));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -65,7 +66,7 @@ static PetscErrorCode ModelStepLoads(Model model, const PetscReal *u, PetscReal 
   PetscCall(LinearSolverRenew(work->solver));
   PetscCall(LinearSolverSetStart(work->solver, work->accepted_start));
   if (model->contact) PetscCall(ContactMultiplyBegin(model->contact, step, t, model->t));
-  PetscCall(ModelTangent(model, u, t));
+  PetscCall(ModelTangent(model, u, NULL, t));
   PetscCall(ProblemResidual(model->problem, u, model->t, t, &ok));
   if (holding) PetscCall(ContactMarkPredicted(model->contact));
   PetscCall(ElasticityMultiplyLocal(model->problem->elasticity, step, model->problem->f));
@@ -292,7 +293,7 @@ PetscErrorCode ModelFollowLists(Model model, SolveReport *report)
     problem->tied = (PetscBool)(problem->tied || tied);
   }
   PetscCall(ContactHoldActiveSet(model->contact, PETSC_TRUE, PETSC_FALSE));
-  PetscCall(ModelTangent(model, model->problem->trial, model->t));
+  PetscCall(ModelTangent(model, model->problem->trial, NULL, model->t));
   PetscCall(ProblemResidual(model->problem, model->problem->trial, model->t, model->t, &ok));
   PetscCall(ModelStepLinear(model, model->problem->trial, NULL, model->t, report));
   PetscCall(ContactHoldActiveSet(model->contact, PETSC_FALSE, PETSC_FALSE));

@@ -36,12 +36,14 @@ PetscErrorCode ProblemCreate(Scene scene, Mesh mesh, Problem *out)
   if (scene->n_contacts) PetscCall(ContactCreate(mesh, scene, problem->elasticity, problem->loads, &problem->contact));
   PetscCall(ElasticitySetSymmetric(problem->elasticity, ProblemConservative(problem)));
   PetscCall(PetscCalloc2(n, &problem->f, n, &problem->trial));
-  PetscCall(ElasticityTangent(problem->elasticity, problem->trial));
+  PetscCall(ElasticityTangent(problem->elasticity, problem->trial, NULL));
   PetscCall(ElasticityMatrix(problem->elasticity, NULL, NULL, &problem->P));
   problem->A = problem->P;
   PetscCall(PetscObjectReference((PetscObject)problem->A));
   PetscCall(MatCreateVecs(problem->A, &problem->diagonal, NULL));
-  if (problem->contact) PetscCall(FreeBodiesCreate(mesh, scene, problem->loads, problem->contact, &problem->bodies));
+  PetscCall(FreeModesCreate(mesh, scene, problem->loads, &problem->modes));
+  if (problem->contact)
+    PetscCall(FreeBodiesCreate(mesh, scene, problem->loads, problem->contact, problem->modes, &problem->bodies));
   if (problem->bodies) PetscCall(FreeBodiesSprings(problem->bodies, problem->diagonal, &problem->springs));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -62,6 +64,7 @@ PetscErrorCode ProblemDestroy(Problem *problem)
   if (!p) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(ContactSpringsDestroy(&p->springs));
   PetscCall(FreeBodiesDestroy(&p->bodies));
+  PetscCall(FreeModesDestroy(&p->modes));
   PetscCall(MatDestroy(&p->A));
   PetscCall(VecDestroy(&p->diagonal));
   PetscCall(ContactDestroy(&p->contact));
@@ -183,7 +186,7 @@ PetscErrorCode ProblemCollectResidual(Problem problem, Vec x, Vec F)
 + problem - the problem
 . u       - local displacements u[n_nodes*dim] (length)
 . t       - load parameter
-- parts   - which parts are summed: ENERGY_ELASTIC, ENERGY_LOADS, ENERGY_CONTACT, joined by |
+- parts   - which parts are summed: ENERGY_ELASTIC, ENERGY_LOADS, ENERGY_CONTACT, ENERGY_VOLUME, joined by |
 
   Output Parameters:
 + energy - the sum; a follower load has none
@@ -201,6 +204,7 @@ PetscErrorCode ProblemEnergy(Problem problem, const PetscReal *u, PetscReal t, i
   PetscFunctionBeginUser;
   TimingBegin(TIMING_ASSEMBLY_ELASTIC);
   if (parts & ENERGY_ELASTIC) PetscCall(ElasticityResidual(problem->elasticity, u, NULL, &sum[0], NULL, &mine));
+  if (parts & ENERGY_VOLUME) PetscCall(ElasticityVolumeEnergy(problem->elasticity, u, &sum[0]));
   if (parts & ENERGY_LOADS) PetscCall(LoadsResidual(problem->loads, t, u, NULL, &sum[0], NULL));
   TimingEnd(TIMING_ASSEMBLY_ELASTIC);
   if (problem->contact && (parts & ENERGY_CONTACT)) {
@@ -261,9 +265,10 @@ static PetscErrorCode ProblemContactTangent(Problem problem, const PetscReal *u,
   Collective
 
   Input Parameters:
-+ problem - the problem
-. u       - local displacements u[n_nodes*dim] (length)
-- t       - load parameter
++ problem   - the problem
+. u         - local displacements u[n_nodes*dim] (length)
+. reference - the state from which the elements extrapolate pressures; NULL: they have those of u
+- t         - load parameter
 
   Output Parameter:
 . change - the contact part, and what is new against the tangent before
@@ -271,7 +276,8 @@ static PetscErrorCode ProblemContactTangent(Problem problem, const PetscReal *u,
   Note:
   problem->stiffness is set to the norm of the diagonal without contact, from which ProblemRoundOff() estimates.
 @*/
-PetscErrorCode ProblemTangent(Problem problem, const PetscReal *u, PetscReal t, TangentChange *change)
+PetscErrorCode ProblemTangent(Problem problem, const PetscReal *u, const PressureReference *reference, PetscReal t,
+                              TangentChange *change)
 {
   const PetscBool joined = (PetscBool)(problem->form == TANGENT_JOINED);
 
@@ -279,7 +285,7 @@ PetscErrorCode ProblemTangent(Problem problem, const PetscReal *u, PetscReal t, 
   *change = (TangentChange){.C = NULL};
   if (problem->contact) PetscCall(ProblemContactTangent(problem, u, t, change));
   TimingBegin(TIMING_ASSEMBLY_ELASTIC);
-  PetscCall(ElasticityTangent(problem->elasticity, u));
+  PetscCall(ElasticityTangent(problem->elasticity, u, reference));
   PetscCall(LoadsTangent(problem->loads, t, u, problem->elasticity));
   PetscCall(ElasticityMatrix(problem->elasticity, joined ? change->C : NULL, problem->diagonal, &problem->P));
   PetscCall(VecNorm(problem->diagonal, NORM_2, &problem->stiffness));

@@ -29,6 +29,7 @@ enum {
   ENERGY_ELASTIC   = 1,
   ENERGY_LOADS     = 2,
   ENERGY_CONTACT   = 4,
+  ENERGY_VOLUME    = 8, /* a part of ENERGY_ELASTIC, see ElasticLaw */
   ENERGY_POTENTIAL = ENERGY_ELASTIC | ENERGY_LOADS | ENERGY_CONTACT
 };
 
@@ -45,6 +46,7 @@ typedef struct _n_Problem {
   Elasticity     elasticity;
   Loads          loads;
   Contact        contact; /* NULL: the scene has none */
+  FreeModes      modes;   /* rigid motions that supports leave to the bodies */
   FreeBodies     bodies;  /* that contact is to hold; NULL: there are none */
   ContactSprings springs; /* of these bodies; NULL: there are none */
   PetscBool      tied;    /* other motions are tied than in the last tangent */
@@ -69,7 +71,7 @@ PetscErrorCode ProblemResidual(Problem, const PetscReal *u, PetscReal t, PetscRe
 PetscErrorCode ProblemCollectResidual(Problem, Vec x, Vec F);
 PetscErrorCode ProblemEnergy(Problem, const PetscReal *u, PetscReal t, int parts, PetscReal *energy, PetscBool *ok);
 PetscErrorCode ProblemSetForm(Problem, TangentForm);
-PetscErrorCode ProblemTangent(Problem, const PetscReal *u, PetscReal t, TangentChange *);
+PetscErrorCode ProblemTangent(Problem, const PetscReal *u, const PressureReference *, PetscReal t, TangentChange *);
 PetscErrorCode ProblemRestoreTangent(Problem);
 PetscReal      ProblemForceScale(Problem);
 PetscErrorCode ProblemRoundOff(Problem, PetscReal *force);

@@ -147,7 +147,7 @@ PetscErrorCode LoadStepperSetFromScene(LoadStepper stepper, Scene scene)
   stepper->kind    = scene->stepping.control;
   stepper->control = StepControls[stepper->kind];
   stepper->size    = (StepSize){.initial   = scene->stepping.initial,
-                                .dt_min    = scene->stepping.dt_min,
+                                .dt_min    = PetscMax(scene->stepping.dt_min, STEPPER_SAME_T),
                                 .dt_max    = scene->stepping.dt_max,
                                 .growth    = scene->stepping.growth,
                                 .wanted    = scene->stepping.N_c ? scene->stepping.N_c : scene->stepping.N_c_fraction,
@@ -240,6 +240,22 @@ static PetscReal StepEnd(LoadStepper stepper, PetscReal t, PetscReal dt, PetscBo
   return t + dt;
 }
 
+/*@
+  LoadStepperCuts - returns the number of iterations that the line search shortened, for whatever cause.
+
+  Not collective
+
+  Input Parameter:
+. report - the report
+@*/
+PetscInt LoadStepperCuts(const StepperReport *report)
+{
+  PetscInt sum = 0;
+
+  for (int cause = 0; cause < CUT_CAUSES; cause++) sum += report->cuts[cause];
+  return sum;
+}
+
 /* Adds the costs of a solve to the record of its step and to the report. */
 static void CountSolve(PetscReal t, const SolveReport *solve, StepRecord *record, StepperReport *report)
 {
@@ -254,7 +270,7 @@ static void CountSolve(PetscReal t, const SolveReport *solve, StepRecord *record
   report->krylov_iterations += solve->krylov;
   report->regathered += solve->regathered;
   report->adjusted += solve->adjusted;
-  report->cuts += solve->cuts;
+  for (int cause = 0; cause < CUT_CAUSES; cause++) report->cuts[cause] += solve->cuts[cause];
   report->turned += solve->turned;
 }
 
@@ -273,11 +289,13 @@ static PetscErrorCode LoadStepperPredict(LoadStepper stepper, StepRecord *record
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Accepts a converged step of dt: fills its record, lets the control choose the next dt, and accepts the state. */
+/* Accepts a converged step of dt: fills its record, lets the control choose the next dt, which it must not shrink below
+   dt_min, and accepts the state. */
 static PetscErrorCode LoadStepperAccept(LoadStepper stepper, PetscReal dt, PetscBool clipped, const SolveReport *solve,
                                         StepRecord *record)
 {
-  Model model = stepper->model;
+  Model          model  = stepper->model;
+  StepperReport *report = &stepper->report;
 
   PetscFunctionBeginUser;
   record->t        = model->t;
@@ -285,18 +303,23 @@ static PetscErrorCode LoadStepperAccept(LoadStepper stepper, PetscReal dt, Petsc
   record->residual = solve->residual;
   if (model->contact) PetscCall(ContactSummarise(model->contact, &record->contact));
   PetscCall(stepper->control->next(model, dt, clipped, solve->newton, &stepper->size));
-  stepper->size.dt = PetscMin(stepper->size.dt_max, stepper->size.dt);
+  stepper->size.dt = PetscMin(stepper->size.dt_max, PetscMax(stepper->size.dt, PetscMin(dt, stepper->size.dt_min)));
   record->beta     = stepper->size.beta;
   record->tied     = stepper->size.tied;
   PetscCall(ModelAccept(model));
-  stepper->start    = stepper->size;
-  stepper->report.t = model->t;
-  stepper->report.steps++;
-  stepper->report.newton_accepted += solve->newton;
-  stepper->report.taken += solve->taken;
-  stepper->report.left  = PetscMax(stepper->report.left, solve->left);
-  stepper->report.share = solve->share;
-  stepper->report.tied  = solve->tied;
+  if (solve->jump[0]) {
+    report->jumps++;
+    PetscCall(PetscSNPrintf(report->jump, sizeof(report->jump), "from t = %.6g to %.6g: %s", (double)report->t,
+                            (double)model->t, solve->jump));
+  }
+  stepper->start = stepper->size;
+  report->t      = model->t;
+  report->steps++;
+  report->newton_accepted += solve->newton;
+  report->taken += solve->taken;
+  report->left  = PetscMax(report->left, solve->left);
+  report->share = solve->share;
+  report->tied  = solve->tied;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -436,25 +459,20 @@ PetscErrorCode LoadStepperArchive(LoadStepper stepper, Archive archive)
   PetscReal      initial = size.initial, dt = size.dt;
   PetscReal *real[]    = {&initial,       &dt,           &size.beta,     &size.together, &size.shortfall, &size.planned,
                           &report->taken, &report->left, &report->share, &report->tied};
-  PetscInt  *integer[] = {&report->steps,
-                          &report->steps_failed,
-                          &report->steps_repeated,
-                          &report->newton_iterations,
-                          &report->newton_accepted,
-                          &report->krylov_iterations,
-                          &report->regathered,
-                          &report->adjusted,
-                          &report->cuts,
-                          &report->turned,
-                          &report->relaxed,
-                          &report->cycles,
-                          &report->cycles_cut,
-                          &size.tied};
+  PetscInt  *integer[] = {&report->steps,           &report->steps_failed,
+                          &report->steps_repeated,  &report->newton_iterations,
+                          &report->newton_accepted, &report->krylov_iterations,
+                          &report->regathered,      &report->adjusted,
+                          &report->turned,          &report->relaxed,
+                          &report->cycles,          &report->cycles_cut,
+                          &report->jumps,           &size.tied};
 
   PetscFunctionBeginUser;
   PetscCall(ArchiveRealsAt(archive, "stepper/size", PETSC_STATIC_ARRAY_LENGTH(real), real));
   PetscCall(ArchiveIntegersAt(archive, "stepper/counts", PETSC_STATIC_ARRAY_LENGTH(integer), integer));
+  PetscCall(ArchiveIntegers(archive, "stepper/cuts", CUT_CAUSES, report->cuts));
   PetscCall(ArchiveString(archive, "stepper/cycle", sizeof(report->cycle), report->cycle));
+  PetscCall(ArchiveString(archive, "stepper/jump", sizeof(report->jump), report->jump));
   if (!ArchiveLoads(archive)) PetscFunctionReturn(PETSC_SUCCESS);
   if (initial == stepper->size.initial) size.dt = PetscMin(size.dt_max, dt);
   stepper->size = size;

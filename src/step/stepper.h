@@ -26,17 +26,20 @@ typedef struct {
   PetscBool stopped;                             /* LoadStepperStop() ended it before */
   PetscInt  steps, steps_failed, steps_repeated; /* repeated: converged, but taken back by the control */
   PetscInt  newton_iterations, newton_accepted, krylov_iterations;
-  PetscInt  relaxed;                            /* times that the contact springs were relaxed */
-  PetscReal taken;                              /* energy that the contact springs took out of the bodies */
-  PetscReal left;                               /* largest part of an accepted state's energy that was left in them */
-  PetscReal share;                              /* their forces in the last accepted state, over F_ref */
-  PetscReal tied;                               /* largest force of a tie there, over F_ref */
-  PetscInt  cycles;                             /* times that a contact set repeated itself */
-  PetscInt  cycles_cut;                         /* steps that failed because of that */
-  char      cycle[512];                         /* the last repetition: load parameter, period, nodes */
-  PetscInt  regathered, adjusted, cuts, turned; /* of SolveReport, for all solves */
-  PetscReal t;                                  /* of the last accepted state */
-  char      message[1024];                      /* why it ended early: cause, load parameter, nodes, what was tried */
+  PetscInt  relaxed;                      /* times that the contact springs were relaxed */
+  PetscReal taken;                        /* energy that the contact springs took out of the bodies */
+  PetscReal left;                         /* largest part of an accepted state's energy that was left in them */
+  PetscReal share;                        /* their forces in the last accepted state, over F_ref */
+  PetscReal tied;                         /* largest force of a tie there, over F_ref */
+  PetscInt  cycles;                       /* times that a contact set repeated itself */
+  PetscInt  cycles_cut;                   /* steps that failed because of that */
+  char      cycle[512];                   /* the last repetition: load parameter, period, nodes */
+  PetscInt  jumps;                        /* accepted steps that ended in another equilibrium */
+  char      jump[512];                    /* the last of them: load parameters, node, distance */
+  PetscInt  regathered, adjusted, turned; /* of SolveReport, for all solves */
+  PetscInt  cuts[CUT_CAUSES];             /* likewise */
+  PetscReal t;                            /* of the last accepted state */
+  char      message[1024];                /* why it ended early: cause, load parameter, nodes, what was tried */
   struct {
     SolveReport solve;       /* of the last attempt */
     PetscInt    attempts;    /* of that step */
@@ -57,4 +60,5 @@ PetscErrorCode LoadStepperMonitorSet(LoadStepper, LoadStepperMonitorFn, void *);
 PetscErrorCode LoadStepperStop(LoadStepper);
 PetscErrorCode LoadStepperSolve(LoadStepper, StepperReport *);
 PetscErrorCode LoadStepperArchive(LoadStepper, Archive);
+PetscInt       LoadStepperCuts(const StepperReport *);
 PetscErrorCode LoadStepperView(LoadStepper, PetscViewer);

@@ -17,7 +17,7 @@ typedef struct {
   Elasticity        e;
   PetscReal        *f;
   const KernelCase *kernel;
-  PetscReal        *X, *u, *batch_f, *K;
+  PetscReal        *X, *u, *batch_f, *K, *constants;
   DM                dm;
   Vec               petsc_u, F;
   Mat               J;
@@ -25,19 +25,17 @@ typedef struct {
 
 static PetscErrorCode KernelForce(Work *w)
 {
-  const PetscReal E[KERNEL_LANES] = {1, 1, 1, 1, 1, 1, 1, 1}, nu[KERNEL_LANES] = {0};
-  PetscReal       J[KERNEL_LANES];
+  PetscReal J[KERNEL_LANES];
 
-  ElementKernel(w->kernel, w->X, w->u, E, nu, NULL, w->batch_f, NULL, J);
+  ElementKernel(w->kernel, w->X, w->u, NULL, w->constants, NULL, w->batch_f, NULL, J);
   return PETSC_SUCCESS;
 }
 
 static PetscErrorCode KernelBoth(Work *w)
 {
-  const PetscReal E[KERNEL_LANES] = {1, 1, 1, 1, 1, 1, 1, 1}, nu[KERNEL_LANES] = {0};
-  PetscReal       J[KERNEL_LANES];
+  PetscReal J[KERNEL_LANES];
 
-  ElementKernel(w->kernel, w->X, w->u, E, nu, NULL, w->batch_f, w->K, J);
+  ElementKernel(w->kernel, w->X, w->u, NULL, w->constants, NULL, w->batch_f, w->K, J);
   return PETSC_SUCCESS;
 }
 
@@ -50,7 +48,7 @@ static PetscErrorCode Residual(Work *w)
 
 static PetscErrorCode Tangent(Work *w)
 {
-  return ElasticityTangent(w->e, w->box->u);
+  return ElasticityTangent(w->e, w->box->u, NULL);
 }
 
 static PetscErrorCode Insert(Work *w)
@@ -107,13 +105,15 @@ static PetscErrorCode Time(PetscErrorCode (*call)(Work *), Work *w, PetscInt ele
 /* Copies the first cells of the box to one batch. */
 static PetscErrorCode CreateBatch(Work *w)
 {
-  const Element *e    = ElementGet(w->kernel->type);
-  const PetscInt dofs = e->nodes * 3;
+  const Element *e        = ElementGet(w->kernel->type);
+  const PetscInt dofs     = e->nodes * 3;
+  const Material material = MaterialFromModuli(w->kernel->law, 1, 0);
 
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc4(dofs * KERNEL_LANES, &w->X, dofs * KERNEL_LANES, &w->u, dofs * KERNEL_LANES, &w->batch_f,
-                         dofs * dofs * KERNEL_LANES, &w->K));
+  PetscCall(PetscMalloc5(dofs * KERNEL_LANES, &w->X, dofs * KERNEL_LANES, &w->u, dofs * KERNEL_LANES, &w->batch_f,
+                         dofs * dofs * KERNEL_LANES, &w->K, 2 * KERNEL_LANES, &w->constants));
   for (PetscInt lane = 0; lane < KERNEL_LANES; lane++) {
+    for (PetscInt k = 0; k < 2; k++) w->constants[k * KERNEL_LANES + lane] = material.constants[k];
     for (PetscInt k = 0; k < dofs; k++) {
       const PetscInt dof = w->box->mesh->cell_nodes[lane * e->nodes + k / 3] * 3 + k % 3;
 
@@ -131,7 +131,7 @@ static PetscErrorCode Print(ElementType type, const char *what, double microseco
 
 static PetscErrorCode TimeOurs(ElementType type, PetscInt n)
 {
-  const KernelCase kernel = {type, GEOMETRY_SOLID, KINEMATICS_FINITE, MATERIAL_SVK, FORMULATION_FULL};
+  const KernelCase kernel = {type, GEOMETRY_SOLID, KINEMATICS_FINITE, MATERIAL_SVK, FORMULATION_FULL, 0};
   const struct {
     const char *what;
     PetscErrorCode (*call)(Work *);
@@ -158,7 +158,7 @@ static PetscErrorCode TimeOurs(ElementType type, PetscInt n)
     if (parts[k].whole) total += microseconds;
   }
   PetscCall(Print(type, "total", total));
-  PetscCall(PetscFree4(w.X, w.u, w.batch_f, w.K));
+  PetscCall(PetscFree5(w.X, w.u, w.batch_f, w.K, w.constants));
   PetscCall(PetscFree(w.f));
   PetscCall(ElasticityDestroy(&w.e));
   PetscCall(BoxDestroy(&box));

@@ -169,7 +169,10 @@ CASES = [
         All(Most("contact_nodes", 0, t=0.5),
             Same("loads.0.history=[[0, 0], [1, 1]]", probes=ANSWER, bound=(1e-8, 1e-8, 1e-5, 0.005)))),
     Case("contact", "large slip", "20 facets in 8 steps", SLIDE, ["stepping.initial=0.1"],
-         All(Near("force_y", 160, 1e-9), Most("force_x", 160e-9))),
+         # What ties and springs hold of a free body's motions, here its rotation, is a part of the answer. It is told, and
+         # bounded by 1e-7 of the forces.
+         All(Near("force_y", 160, (1e-9, 1e-9, 1e-9, 1e-7)), Most("force_x", 160e-9),
+             Told("stabilisation.force_share", most=1e-7), Told("stabilisation.held_force_share", most=1e-7))),
     Case("contact", "edge on face", "a sharp edge pressed into a face", PUNCH, mesh(bulge=0, wedge=1),
          All(Balance(*FORCES), Same("stepping.initial=0.02", probes=ANSWER, bound=(1e-8, 1e-8, 2e-4, 2e-4)))),
     Case("contact", "face on edge", "the edge is the master, where a fit must end", PUNCH,
@@ -243,8 +246,8 @@ CASES = [
          Same("stepping.initial=0.05", probes=STROKE, bound=(1e-8, 1e-8, 2e-4, 5e-4))),
     Case("steps", "whole load in one step", "every node of the contact zone at once", PUNCH, ["stepping.initial=1"],
          Same("stepping.initial=0.1", probes=ANSWER, bound=(1e-8, 1e-8, 1e-5, 0.005))),
-    Case("steps", "snap-through", "a plane presses a shallow arch past its limit load, at t = 0.165", ARCH, [],
-         Stops("no equilibrium from t = 0.1", "dt_min", t=0.164, within=0.003)),
+    Case("steps", "snap-through", "a plane presses a shallow arch past its limit load, at t = 0.38: it jumps, and the run says so",
+         ARCH, [], Told("jumps.found", least=1, last=r"to 0\.38\d*: node \d+ \(0, 15, 0\) moved by 2")),
     Case("steps", "N_c beyond all candidates", "fewer open nodes than the control asks for", PUNCH,
          ["stepping={control: contact, initial: 0.1, N_c: 10000}"],
          Same("stepping={control: fixed, initial: 0.1}", probes=ANSWER, bound=(1e-8, 1e-8, 1e-5, 0.005))),

@@ -177,10 +177,10 @@ static void test_follower_tangent(void **state)
            "loads: [{surface: block_right, pressure: 5, follower: true}, {surface: block_top, pressure: -3, follower: "
            "true}]");
     PartsMove(&parts, Bend);
-    OK(ElasticityTangent(parts.problem->elasticity, parts.u));
+    OK(ElasticityTangent(parts.problem->elasticity, parts.u, NULL));
     OK(ElasticityMatrix(parts.problem->elasticity, NULL, NULL, &with));
     OK(MatDuplicate(with, MAT_COPY_VALUES, &without));
-    OK(ElasticityTangent(parts.problem->elasticity, parts.u));
+    OK(ElasticityTangent(parts.problem->elasticity, parts.u, NULL));
     OK(LoadsTangent(parts.problem->loads, 0.8, parts.u, parts.problem->elasticity));
     OK(ElasticityMatrix(parts.problem->elasticity, NULL, NULL, &with));
     OK(MatAYPX(without, -1, with, SAME_NONZERO_PATTERN));

@@ -56,7 +56,7 @@ static void test_consistent(void **state)
   OK(LoadsPrescribe(parts.problem->loads, 1, parts.u));
   OK(ProblemGatherLists(parts.problem, parts.u, 0, 1, 0.3));
   (void)Residual(&parts, parts.u, parts.f);
-  OK(ProblemTangent(parts.problem, parts.u, 1, &change));
+  OK(ProblemTangent(parts.problem, parts.u, NULL, 1, &change));
   assert_non_null(change.C);
   PartsDifferences(&parts, parts.problem->A, Residual, 1e-6, &force, &energy);
   assert_true(force < 1e-6 && energy < 1e-6);
@@ -74,7 +74,7 @@ static void test_consistent(void **state)
   PartsDirection(&parts, v, parts.f);
   OK(MatMult(parts.problem->A, v, joined));
   OK(ProblemSetForm(parts.problem, TANGENT_BORDERED));
-  OK(ProblemTangent(parts.problem, parts.u, 1, &change));
+  OK(ProblemTangent(parts.problem, parts.u, NULL, 1, &change));
   OK(MatMult(parts.problem->A, v, bordered));
   OK(VecNorm(joined, NORM_2, &part[0]));
   OK(VecAXPY(bordered, -1, joined));
@@ -175,7 +175,7 @@ static void test_round_off(void **state)
   OK(ProblemSetTrial(parts.problem, x, 0));
   OK(ProblemResidual(parts.problem, parts.problem->trial, 0, 0, &ok));
   OK(ProblemCollectResidual(parts.problem, x, F));
-  OK(ProblemTangent(parts.problem, parts.problem->trial, 0, &change));
+  OK(ProblemTangent(parts.problem, parts.problem->trial, NULL, 0, &change));
   OK(ProblemRoundOff(parts.problem, &estimate));
   OK(VecNorm(F, NORM_2, &norm));
   assert_true(norm > 0 && norm < estimate);
@@ -245,7 +245,7 @@ static void test_linear(void **state)
   assert_true(ProblemIsLinear(model->problem));
   OK(ModelSolve(model, 1, &report));
   assert_int_equal(report.result, SOLVE_CONVERGED);
-  assert_true(report.newton == 1 && report.krylov == 1 && report.cuts == 0);
+  assert_true(report.newton == 1 && report.krylov == 1 && report.cuts[CUT_SHAPE] == 0);
   for (PetscInt node = 0; node < parts.mesh->n_nodes; node++) {
     double X[2];
 

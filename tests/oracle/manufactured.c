@@ -424,7 +424,7 @@ static PetscErrorCode Newton(Mesh mesh, Elasticity e, const PetscReal *load, Pet
     PetscCall(VecNorm(R, NORM_2, &norm));
     PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &scale, 1, MPIU_REAL, MPIU_SUM, mesh->comm));
     if (norm <= newton_done * PetscSqrtReal(scale) || *steps == MAX_NEWTON) break;
-    PetscCall(ElasticityTangent(e, u));
+    PetscCall(ElasticityTangent(e, u, NULL));
     PetscCall(ElasticityMatrix(e, NULL, NULL, &K));
     PetscCall(KSPSetOperators(ksp, K, K));
     PetscCall(KSPSolve(ksp, R, dx));

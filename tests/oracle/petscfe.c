@@ -83,7 +83,7 @@ static PetscErrorCode CompareTangents(const Box *box, DM dm, Elasticity e, const
 
   PetscFunctionBeginUser;
   *difference = 0;
-  PetscCall(ElasticityTangent(e, box->u));
+  PetscCall(ElasticityTangent(e, box->u, NULL));
   PetscCall(ElasticityMatrix(e, NULL, NULL, &K));
   PetscCall(DMCreateMatrix(dm, &J));
   PetscCall(DMPlexSNESComputeJacobianFEM(dm, u, J, J, NULL));

@@ -1,5 +1,5 @@
 """Sides, corners and edges: a slave that turns a corner, a slave that slides off a sharp edge, rigid masters whose normals
-point the wrong way, pairs that never meet, bodies that lie in each other."""
+point the wrong way, a box that fills a groove, pairs that never meet, bodies that lie in each other."""
 from harness import Check, arguments, run, SCENES
 
 PRESSED = ["loads=[{surface: upper_top, ux: 0, uy: -0.45}]", "stepping={}"]
@@ -57,6 +57,20 @@ def groove():
     check.holds("a pair that never meets is named", "contact fit never came near: nearest distance 0.02" in apart.text)
 
 
+def box():
+    """Faces of the box that are square to the floor meet the walls alone: as two pairs, but for the corner nodes, and
+    without chatter."""
+    for order in (1, 2):
+        one, two = (run(args, SCENES / "box.yaml", out=f"box_{order}_{len(pairs)}", overrides=[f"mesh.order={order}", *pairs])
+                    for pairs in ([], ["contact=[{name: bed, slave: sole, master: bed}, "
+                                       "{name: walls, slave: sides, master: walls}]"]))
+        name = f"box in a groove, order {order}"
+        check.holds(f"{name}: no failed step", one.summary()["steps_failed"] == 0)
+        check.holds(f"{name}: iterations", one.summary()["newton_iterations"] <= 40, str(one.summary()["newton_iterations"]))
+        check.near(f"{name}: force of two pairs", one.summary()["probes"]["force"] / two.summary()["probes"]["force"], 1,
+                   0.03)
+
+
 def immersed():
     for gap, words in ((-3, "lie in each other"), (-4.9, "lie in each other")):
         finished = run(args, SCENES / "edge.yaml", out="immersed", must=1,
@@ -81,5 +95,6 @@ elif args.case == "slide":
     slide("lower_skin", "upper_skin", "surface_to_surface", 5)
 else:
     groove()
+    box()
     immersed()
 check.finish()

@@ -64,6 +64,8 @@ refused("a pair twice", "'again' is 'joint' once more",
         "contact.1={name: again, slave: upper_bottom, master: lower_top}", scene="contact_patch.yaml")
 refused("a pair both ways", "slave and master swapped",
         "contact.1={name: back, slave: lower_top, master: upper_bottom}", scene="contact_patch.yaml")
+hinge = run(args, SCENES / "hinge.yaml", "-check", out="hinge")
+check.holds("bodies that share one node only are told of", "'low' and 'high' share 1 node" in hinge.text)
 sanitiser = os.environ.get("ASAN_OPTIONS", "")
 os.environ[
     # PETSc itself keeps 32 bytes of a group of options that it leaves by an error

@@ -18,8 +18,8 @@ typedef struct {
   KernelCase     kernel;
   const Element *e;
   int            dim, dofs;
-  double         X[MAX_DOFS * KERNEL_LANES], u[MAX_DOFS * KERNEL_LANES], E[KERNEL_LANES],
-    nu[KERNEL_LANES]; /* of a batch of different elements */
+  double         X[MAX_DOFS * KERNEL_LANES], u[MAX_DOFS * KERNEL_LANES], E[KERNEL_LANES], nu[KERNEL_LANES],
+    constants[MATERIAL_MAX_CONSTANTS * KERNEL_LANES]; /* of a batch of different elements */
   double W[KERNEL_LANES], f[MAX_DOFS * KERNEL_LANES], J[KERNEL_LANES], *K;
 } Batch;
 
@@ -29,6 +29,18 @@ static double Random(void)
 
   state = state * 1664525u + 1013904223u;
   return (double)(state >> 8) / (1 << 24) - 0.5;
+}
+
+static Material LaneMaterial(const Batch *b, int lane)
+{
+  return MaterialFromModuli(b->kernel.law, b->E[lane], b->nu[lane]);
+}
+
+static void SetConstants(Batch *b, int lane)
+{
+  const Material material = LaneMaterial(b, lane);
+
+  for (int k = 0; k < material.n_constants; k++) b->constants[k * KERNEL_LANES + lane] = material.constants[k];
 }
 
 /* Elements with random corners (radius about 3), middle nodes moved off their straight places by `curved`; random
@@ -48,6 +60,7 @@ static void BatchCreate(Batch *b, KernelCase kernel, double curved)
 
     b->E[lane]  = 100 + 10 * lane;
     b->nu[lane] = 0.2 + 0.02 * lane;
+    SetConstants(b, lane);
     for (int a = 0; a < e->corners; a++) {
       for (int i = 0; i < e->dim; i++) corner[a][i] = e->node[a][i] + 0.3 * Random() + (i == 0 ? 3 : 0);
     }
@@ -73,7 +86,7 @@ static void BatchDestroy(Batch *b)
 
 static void Evaluate(Batch *b)
 {
-  ElementKernel(&b->kernel, b->X, b->u, b->E, b->nu, b->W, b->f, b->K, b->J);
+  ElementKernel(&b->kernel, b->X, b->u, NULL, b->constants, b->W, b->f, b->K, b->J);
 }
 
 /* u = H X (about the origin) in every lane */
@@ -101,8 +114,8 @@ static void TakeLane(const Batch *b, int lane, double *X, double *u)
 /* All elements x geometries x formulations x (small, each finite law) */
 static int NextCase(KernelCase *kernel)
 {
-  static const KernelCase first = {ELEMENT_TRI3, GEOMETRY_PLANE_STRAIN, KINEMATICS_SMALL, MATERIAL_LINEAR,
-                                   FORMULATION_FULL};
+  static const KernelCase first = {ELEMENT_TRI3,    GEOMETRY_PLANE_STRAIN, KINEMATICS_SMALL,
+                                   MATERIAL_LINEAR, FORMULATION_FULL,      0};
 
   if (kernel->type == ELEMENT_TYPES) {
     *kernel = first;
@@ -143,9 +156,9 @@ static void ForceAndTangentAreDerivatives(void **state)
     for (int k = 0; k < b.dofs * b.dofs * KERNEL_LANES; k++) scale = fmax(scale, fabs(b.K[k]));
     for (int j = 0; j < b.dofs; j++) {
       for (int lane = 0; lane < KERNEL_LANES; lane++) b.u[j * KERNEL_LANES + lane] += h;
-      ElementKernel(&kernel, b.X, b.u, b.E, b.nu, W_plus, f_plus, NULL, J);
+      ElementKernel(&kernel, b.X, b.u, NULL, b.constants, W_plus, f_plus, NULL, J);
       for (int lane = 0; lane < KERNEL_LANES; lane++) b.u[j * KERNEL_LANES + lane] -= 2 * h;
-      ElementKernel(&kernel, b.X, b.u, b.E, b.nu, W_minus, f_minus, NULL, J);
+      ElementKernel(&kernel, b.X, b.u, NULL, b.constants, W_minus, f_minus, NULL, J);
       for (int lane = 0; lane < KERNEL_LANES; lane++) {
         b.u[j * KERNEL_LANES + lane] += h;
         assert_near(b.f[j * KERNEL_LANES + lane], (W_plus[lane] - W_minus[lane]) / (2 * h), 1e-8 * scale);
@@ -191,9 +204,9 @@ static void EachResultMayBeLeftOut(void **state)
     c   = b;
     c.K = calloc((size_t)b.dofs * b.dofs * KERNEL_LANES, sizeof(double));
     memset(c.f, 0, sizeof(c.f));
-    ElementKernel(&kernel, b.X, b.u, b.E, b.nu, NULL, c.f, NULL, c.J);
-    ElementKernel(&kernel, b.X, b.u, b.E, b.nu, NULL, NULL, c.K, c.J);
-    ElementKernel(&kernel, b.X, b.u, b.E, b.nu, c.W, NULL, NULL, c.J);
+    ElementKernel(&kernel, b.X, b.u, NULL, b.constants, NULL, c.f, NULL, c.J);
+    ElementKernel(&kernel, b.X, b.u, NULL, b.constants, NULL, NULL, c.K, c.J);
+    ElementKernel(&kernel, b.X, b.u, NULL, b.constants, c.W, NULL, NULL, c.J);
     for (int k = 0; k < b.dofs * KERNEL_LANES; k++) scale = fmax(scale, fabs(b.f[k]));
     for (int lane = 0; lane < KERNEL_LANES; lane++) assert_near(c.W[lane], b.W[lane], 1e-14 * b.W[lane]);
     for (int k = 0; k < b.dofs * KERNEL_LANES; k++) assert_near(c.f[k], b.f[k], 1e-14 * scale);
@@ -208,8 +221,8 @@ static void LanesAreIndependentAndUnaligned(void **state)
   (void)state;
   for (KernelCase kernel = before_first; NextCase(&kernel);) {
     Batch  b;
-    double X[MAX_DOFS * KERNEL_LANES + 1], u[MAX_DOFS * KERNEL_LANES + 1], E[KERNEL_LANES], nu[KERNEL_LANES],
-      f[MAX_DOFS * KERNEL_LANES + 1], J[KERNEL_LANES];
+    double X[MAX_DOFS * KERNEL_LANES + 1], u[MAX_DOFS * KERNEL_LANES + 1],
+      constants[MATERIAL_MAX_CONSTANTS * KERNEL_LANES], f[MAX_DOFS * KERNEL_LANES + 1], J[KERNEL_LANES];
 
     BatchCreate(&b, kernel, 0.1);
     Evaluate(&b);
@@ -217,11 +230,11 @@ static void LanesAreIndependentAndUnaligned(void **state)
       for (int lane = 0; lane < KERNEL_LANES; lane++) {
         X[1 + k * KERNEL_LANES + lane] = b.X[k * KERNEL_LANES + 5];
         u[1 + k * KERNEL_LANES + lane] = b.u[k * KERNEL_LANES + 5];
-        E[lane]                        = b.E[5];
-        nu[lane]                       = b.nu[5];
       }
     }
-    ElementKernel(&kernel, X + 1, u + 1, E, nu, NULL, f + 1, NULL, J);
+    for (int k = 0; k < MATERIAL_MAX_CONSTANTS * KERNEL_LANES; k++)
+      constants[k] = b.constants[k / KERNEL_LANES * KERNEL_LANES + 5];
+    ElementKernel(&kernel, X + 1, u + 1, NULL, constants, NULL, f + 1, NULL, J);
     for (int k = 0; k < b.dofs; k++) {
       for (int lane = 0; lane < KERNEL_LANES; lane++)
         assert_true(f[1 + k * KERNEL_LANES + lane] == b.f[k * KERNEL_LANES + 5]);
@@ -366,7 +379,7 @@ static void UniformStrainGivesExactForces(void **state)
     SetGradient(&b, H);
     Evaluate(&b);
     for (int lane = 0; lane < KERNEL_LANES; lane++) {
-      const Material material = {kernel.law, b.E[lane], b.nu[lane]};
+      const Material material = LaneMaterial(&b, lane);
       double         P[9], normals[MAX_DOFS];
 
       MaterialPoint(&material, kernel.kinematics == KINEMATICS_FINITE, H, NULL, P, NULL);
@@ -401,12 +414,12 @@ static void UniformExpansionIsExact(void **state)
     SetGradient(&b, solid);
     Evaluate(&b);
     for (int lane = 0; lane < KERNEL_LANES; lane++) {
-      const Material material = {kernel.law, b.E[lane], b.nu[lane]};
+      const Material material = LaneMaterial(&b, lane);
       double         X[MAX_DOFS], u[MAX_DOFS], W, P[9], stress[6], volume;
 
       TakeLane(&b, lane, X, u);
       MaterialPoint(&material, finite, H, &W, P, NULL);
-      ElementStress(&kernel, X, u, b.E[lane], b.nu[lane], stress, &volume);
+      ElementStress(&kernel, X, u, material.constants, stress, &volume);
       assert_near(volume, CellVolume(kernel.type, b.dim, kernel.geometry, X), 1e-13 * volume);
       assert_near(b.W[lane], W * volume, 1e-12 * W * volume);
       assert_near(b.J[lane], finite ? J : 1, 1e-13);

@@ -16,12 +16,12 @@ enum { MAX_DOFS = 24, MAX_POINTS = 8 };
 static int NextCase(KernelCase *kernel)
 {
   static const KernelCase cases[] = {
-    {ELEMENT_QUAD4, GEOMETRY_PLANE_STRAIN, KINEMATICS_SMALL, MATERIAL_LINEAR, FORMULATION_FBAR},
-    {ELEMENT_QUAD4, GEOMETRY_AXISYMMETRIC, KINEMATICS_SMALL, MATERIAL_LINEAR, FORMULATION_FBAR},
-    {ELEMENT_HEX8, GEOMETRY_SOLID, KINEMATICS_SMALL, MATERIAL_LINEAR, FORMULATION_FBAR},
-    {ELEMENT_QUAD4, GEOMETRY_PLANE_STRAIN, KINEMATICS_FINITE, MATERIAL_SVK, FORMULATION_FBAR},
-    {ELEMENT_QUAD4, GEOMETRY_AXISYMMETRIC, KINEMATICS_FINITE, MATERIAL_NEO_HOOKEAN, FORMULATION_FBAR},
-    {ELEMENT_HEX8, GEOMETRY_SOLID, KINEMATICS_FINITE, MATERIAL_NEO_HOOKEAN, FORMULATION_FBAR},
+    {ELEMENT_QUAD4, GEOMETRY_PLANE_STRAIN, KINEMATICS_SMALL, MATERIAL_LINEAR, FORMULATION_FBAR, 0},
+    {ELEMENT_QUAD4, GEOMETRY_AXISYMMETRIC, KINEMATICS_SMALL, MATERIAL_LINEAR, FORMULATION_FBAR, 0},
+    {ELEMENT_HEX8, GEOMETRY_SOLID, KINEMATICS_SMALL, MATERIAL_LINEAR, FORMULATION_FBAR, 0},
+    {ELEMENT_QUAD4, GEOMETRY_PLANE_STRAIN, KINEMATICS_FINITE, MATERIAL_SVK, FORMULATION_FBAR, 0},
+    {ELEMENT_QUAD4, GEOMETRY_AXISYMMETRIC, KINEMATICS_FINITE, MATERIAL_NEO_HOOKEAN, FORMULATION_FBAR, 0},
+    {ELEMENT_HEX8, GEOMETRY_SOLID, KINEMATICS_FINITE, MATERIAL_NEO_HOOKEAN, FORMULATION_FBAR, 0},
   };
   static unsigned next = 0;
 
@@ -47,10 +47,11 @@ static void LawSeesOneDilatation(void **state)
 {
   (void)state;
   for (KernelCase kernel; NextCase(&kernel);) {
-    double X[MAX_DOFS], u[MAX_DOFS], H[MAX_POINTS * 9], first = 0;
+    const Material material = MaterialFromModuli(kernel.law, 100, 0.4);
+    double         X[MAX_DOFS], u[MAX_DOFS], H[MAX_POINTS * 9], first = 0;
 
     Bent(&kernel, X, u);
-    ElementPointGradient(&kernel, X, u, 100, 0.4, H);
+    ElementPointGradient(&kernel, X, u, material.constants, H);
     for (int p = 0; p < ElementGet(kernel.type)->points; p++) {
       const double *h = &H[9 * p];
       double        J = 1 + h[0] + h[4] + h[8];
@@ -66,19 +67,19 @@ static void LawSeesOneDilatation(void **state)
 
 static double Energy(const KernelCase *kernel, const double *X, const double *u, double nu)
 {
-  const int dofs = ElementGet(kernel->type)->nodes * ElementGet(kernel->type)->dim;
-  double    lanes_X[MAX_DOFS * KERNEL_LANES], lanes_u[MAX_DOFS * KERNEL_LANES], E[KERNEL_LANES], lanes_nu[KERNEL_LANES],
+  const int      dofs     = ElementGet(kernel->type)->nodes * ElementGet(kernel->type)->dim;
+  const Material material = MaterialFromModuli(kernel->law, 1 + nu, nu); /* shear modulus 1/2 */
+  double         lanes_X[MAX_DOFS * KERNEL_LANES], lanes_u[MAX_DOFS * KERNEL_LANES], constants[2 * KERNEL_LANES],
     W[KERNEL_LANES], J[KERNEL_LANES];
 
   for (int lane = 0; lane < KERNEL_LANES; lane++) {
-    E[lane]        = 1 + nu; /* shear modulus 1/2 */
-    lanes_nu[lane] = nu;
+    for (int k = 0; k < 2; k++) constants[k * KERNEL_LANES + lane] = material.constants[k];
     for (int k = 0; k < dofs; k++) {
       lanes_X[k * KERNEL_LANES + lane] = X[k];
       lanes_u[k * KERNEL_LANES + lane] = u[k];
     }
   }
-  ElementKernel(kernel, lanes_X, lanes_u, E, lanes_nu, W, NULL, NULL, J);
+  ElementKernel(kernel, lanes_X, lanes_u, NULL, constants, W, NULL, NULL, J);
   return W[0];
 }
 

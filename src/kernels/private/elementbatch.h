@@ -7,6 +7,7 @@
    once for each node b and point. */
 #pragma once
 #include "kernels/elementkernel.h"
+#include <math.h>
 
 /* CHUNK: number of points that are treated together. A, T and g of a chunk stay in the first-level cache. The blocks of
    K of a hex27 do not fit there; they are loaded and stored once for each chunk.
@@ -34,12 +35,14 @@ typedef struct {
 /* One call treats LANES elements of a batch. H[points][9] is the displacement gradient at which the law is evaluated.
    W, f, K and H may be NULL; ElementKernel() explains them. */
 typedef struct {
-  const Element *e;
-  MaterialLawFn *law;
-  int            finite;
-  const double  *X, *u;
-  Lanes          lambda, mu;
-  double        *W, *f, *K, *J, *H;
+  const Element    *e;
+  const ElasticLaw *law;
+  int               finite, n_constants;
+  const Lanes      *constants;
+  const double     *X, *u;
+  const double     *u_0;  /* displacements from which K extrapolates the pressure, or NULL */
+  double            rate; /* of PressureReference */
+  double           *W, *f, *K, *J, *H;
 } BatchCall;
 
 /* Computes the reference gradients of all nodes at a point with shape functions N and dN. They become point q of the
@@ -98,6 +101,52 @@ LANES_INLINE void PointDisplacementGradient(const int n, const int dim, const in
       for (int m = 0; m < dim; m++) H[3 * i + m] += CONST_LANE(u, a * dim + i) * c->g[a][q][m];
     }
     if (hoop) H[TENSOR_HOOP] += CONST_LANE(u, a * dim) * c->g[a][q][2];
+  }
+}
+
+static inline double FlooredDilatation(double dilatation)
+{
+  return dilatation > MATERIAL_LEAST_J - 1 ? dilatation : MATERIAL_LEAST_J - 1;
+}
+
+/* Computes the cofactors of F = 1 + H, which are J F^-T. */
+LANES_INLINE void Cofactors(const Lanes H[9], Lanes C[9])
+{
+  Lanes F[9];
+
+  for (int r = 0; r < 9; r++) F[r] = H[r] + (double)(r % 4 == 0);
+  for (int i = 0; i < 3; i++) {
+    for (int j = 0; j < 3; j++) {
+      const int i1 = 3 * ((i + 1) % 3), i2 = 3 * ((i + 2) % 3), j1 = (j + 1) % 3, j2 = (j + 2) % 3;
+
+      C[3 * i + j] = F[i1 + j1] * F[i2 + j2] - F[i1 + j2] * F[i2 + j1];
+    }
+  }
+}
+
+/* Computes J - 1 of the reference state at point q and the linear change of J from there to the gradient H. */
+LANES_INLINE void PointReference(const BatchCall *call, const int n, const int dim, const int hoop, int q,
+                                 const ChunkPoints *c, const Lanes H[9], Lanes *dilatation, Lanes *change)
+{
+  Lanes R[9], C[9];
+
+  PointDisplacementGradient(n, dim, hoop, q, call->u_0, c, R);
+  MaterialDilatation(R, dilatation);
+  Cofactors(R, C);
+  *change = C[0] * (H[0] - R[0]);
+  for (int r = 1; r < 9; r++) *change += C[r] * (H[r] - R[r]);
+}
+
+/* Computes what the extrapolated pressure is above that of the state with `dilatation`. Pressure is dU/d(ln J) for the
+   energy U = constants[0]/2 (ln J)^2. */
+LANES_INLINE void ExcessPressure(const BatchCall *call, const Lanes *dilatation, const Lanes *dilatation_0,
+                                 const Lanes *change, Lanes *excess)
+{
+  for (int lane = 0; lane < LANES; lane++) {
+    const double before = FlooredDilatation((*dilatation_0)[lane]), now = FlooredDilatation((*dilatation)[lane]);
+
+    (*excess)[lane] =
+      call->constants[0][lane] * (log1p(before) + call->rate * (*change)[lane] / (1 + before) - log1p(now));
   }
 }
 
@@ -174,6 +223,13 @@ LANES_INLINE void KeepLeastJ(const BatchCall *call, const Lanes *dilatation)
     if (!(1 + (*dilatation)[lane] >= call->J[lane]))
       call->J[lane] = 1 + (*dilatation)[lane]; /* the negated comparison lets NaN through */
   }
+}
+
+/* Evaluates the law at a point. */
+LANES_INLINE void PointLaw(const BatchCall *call, const Lanes H[9], const Lanes *dilatation, Lanes *W, Lanes P[9],
+                           Lanes A[MATERIAL_TANGENT_SIZE])
+{
+  call->law->evaluate(H, dilatation, call->n_constants, call->constants, W, P, A);
 }
 
 LANES_INLINE void StorePoint(const BatchCall *call, int p, const Lanes H[9])

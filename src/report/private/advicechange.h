@@ -52,8 +52,6 @@ typedef struct {
   double             factor; /* by which a value is wrong, where that is known; else 1 */
 } ChangePlace;
 
-int         AdviceChangePossible(ChangeKind, const ChangePlace *);
-void        AdviceChangeWrite(ChangeKind, const ChangePlace *, char *text, size_t size);
-int         AdviceChangesOppose(ChangeKind, const PairFigures *, ChangeKind, const PairFigures *);
-const char *AdviceChangeKey(ChangeKind);
-int         AdviceChangeDirection(ChangeKind);
+int  AdviceChangePossible(ChangeKind, const ChangePlace *);
+void AdviceChangeWrite(ChangeKind, const ChangePlace *, char *text, size_t size);
+int  AdviceChangesOppose(ChangeKind, const PairFigures *, ChangeKind, const PairFigures *);

@@ -3,9 +3,9 @@
    Past a convex end the contact fades out within a face of the slave, half of it on either side of the edge, so that a
    node over the edge keeps the half of its area that lies on the flank.
 
-   FlankSort() finds the facets of the flank. FlankShare() finds its ends, and how far the point takes part.
-   FlankIsBeside() says whether the point is beside what it does not face, and FlankNearRidge() whether it is near a sharp
-   edge between two facets that both face it. */
+   FlankSort() finds the facets of the flank. FlankLeaveCorner() chooses between two of them that form a hollow.
+   FlankShare() finds its ends, and how far the point takes part. FlankIsBeside() says whether the point is beside what
+   it does not face, and FlankNearRidge() whether it is near a sharp edge between two facets that both face it. */
 #pragma once
 #include "searchimpl.h"
 
@@ -13,5 +13,6 @@ PetscBool FlankFaces(const Nearest *, const Candidate *);
 PetscBool FlankIsOwn(const Nearest *, const Candidate *);
 int       FlankSort(const Nearest *, int *n, int *found);
 PetscReal FlankShare(const Nearest *, int facing, int n, const int *found, int *ends);
+void      FlankLeaveCorner(Nearest *, int facing, const int *found);
 PetscBool FlankIsBeside(const Nearest *, int facing, int n, const int *found);
 PetscBool FlankNearRidge(const Nearest *, Neighbourhoods, int facing, const int *found);

@@ -50,6 +50,7 @@ typedef struct {
 /* Search for the nearest facet of one slave point. */
 typedef struct {
   NeighbourLists   lists;
+  SlavePoints      slaves;
   const Candidate *candidates;
   PetscReal        x[3], size; /* size: of the slave's face (length) */
   /* The slave point, and the number of nodes of its own face: a face with one of these nodes is not its master. */

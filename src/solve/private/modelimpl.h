@@ -2,9 +2,10 @@
    offers to those above it.
 
    problem.c is below all of them, and freebodies.c and rigidsearch.c below it. linearcontact.c finds the contact that
-   is right at the end of a linear step. linesearch.c chooses what the line search compares, and corrects steps for
-   contact. newton.c runs SNES once with the present contact lists. prediction.c finds a first iterate, penaltyramp.c
-   improves it on softened penalties, penaltyerror.c estimates what penetration leaves of error and stiffens penalties.
+   is right at the end of a linear step. linecuts.c says why a line search shortened its step. linesearch.c chooses what
+   the line search compares, and corrects steps for contact. newton.c runs SNES once with the present contact lists.
+   prediction.c finds a first iterate, penaltyramp.c improves it on softened penalties, penaltyerror.c estimates what
+   penetration leaves of error and stiffens penalties, jump.c tells an equilibrium that was reached by a jump.
    equilibrium.c goes from an accepted state to the next one. model.c holds the accepted state. Each file calls only
    those named before it. */
 #pragma once
@@ -28,6 +29,7 @@ typedef struct _n_ModelWork {
   LinearSolver  solver;
   PetscBool     ordered;       /* the linear solver has chosen the order of its unknowns */
   Vec           residual;      /* of a trial point, for OBJECTIVE_RESIDUAL */
+  Vec           step;          /* the whole step that the line search has got last: from x to x - step (length) */
   ContactCycle  watch;         /* of the contact set; NULL without contact */
   Extrapolation extrapolation; /* NULL with small kinematics, where bodies move along straight lines */
   PetscReal     damping;       /* of the line search while no contact set repeats itself */
@@ -58,6 +60,10 @@ typedef struct _n_ModelWork {
   PetscInt  cycles;       /* times that the contact set repeated itself */
   char      cycle[256];   /* the last repetition in words */
 
+  PetscReal *solved;    /* local displacements (length) at the last equilibrium; NULL: no pressures are extrapolated */
+  PetscReal *from;      /* those from which the last step led to the iterate */
+  PetscBool  shortened; /* that step was shortened */
+
   /* One solve by SNES */
   Objective objective;
   PetscReal norms[LINE_MEMORY]; /* residuals of the last iterates, where there is friction */
@@ -65,19 +71,25 @@ typedef struct _n_ModelWork {
   PetscBool balanced;           /* the residual of the iterate is within the tolerance */
   PetscBool left;               /* the solve ended because a slave point slid out of its lists */
   PetscBool cycling;            /* the solve ended because the contact set repeats itself with shorter steps too */
-  PetscInt  cuts;               /* iterations that the line search shortened */
+  PetscInt  cuts[CUT_CAUSES];   /* iterations that the line search shortened, by their cause */
   PetscInt  turned;             /* iterations whose step led uphill and was turned round */
 } ModelWork;
 
 /* linearcontact.c */
 PetscErrorCode ModelSolveLinearContact(Model, const PetscReal *u, const PetscReal *carried, PetscReal t, Vec y);
+/* linecuts.c */
+PetscErrorCode ModelCountCut(Model, Vec x);
 /* linesearch.c */
 PetscErrorCode ModelCreateLineSearch(Model);
 void           ModelChooseObjective(Model, PetscReal residual, PetscReal slope);
 PetscErrorCode ModelLocateEdge(Model, PetscBool *found, ContactPlace *);
+/* jump.c */
+PetscErrorCode ModelFindJump(Model, SolveReport *);
 /* newton.c */
 PetscErrorCode ModelCreateSNES(Model);
-PetscErrorCode ModelTangent(Model, const PetscReal *u, PetscReal t);
+PetscErrorCode ModelStepFrom(Model, const PetscReal *u);
+PetscErrorCode ModelStepFromSolved(Model, const PetscReal *u);
+PetscErrorCode ModelTangent(Model, const PetscReal *u, const PressureReference *, PetscReal t);
 PetscErrorCode ModelLinearFailure(Model, SolveResult *);
 PetscErrorCode ModelNewton(Model, SolveReport *);
 /* prediction.c */

@@ -1,0 +1,54 @@
+// The meridian plane of an O-ring in a groove with rounded edges, under a lid; x = r, y = z, lengths in mm. Groove and lid are curves.
+DefineConstant[
+  cord = {3.53, Name "diameter of the cord"}, mean = {53.53, Name "mean diameter of the ring"},
+  depth = {2.8, Name "of the groove: depth"}, width = {4.7, Name "of the groove: width"},
+  foot = {0.4, Name "radius at the groove's floor"}, edge = {0.2, Name "radius at the groove's edges"},
+  n = {10, Name "elements along a quarter of the cord"}, triangles = {0, Name "1: triangles instead of quadrangles"}
+];
+R = cord / 2; rm = mean / 2; c = Sqrt(0.5); // the cord rests on the floor at y = 0, in the middle of the groove
+q = 0.45 * R; // half the diagonal of the square in the cord's middle, whose sides are next to those of the skin
+Point(1) = {rm, R, 0};
+For i In {0 : 3}
+  Point(2 + i) = {rm + R * c * ((i == 0 || i == 3) ? 1 : -1), R + R * c * (i < 2 ? 1 : -1), 0};
+  Point(6 + i) = {rm + q * ((i == 0 || i == 3) ? 1 : -1), R + q * (i < 2 ? 1 : -1), 0};
+EndFor
+For i In {0 : 3}
+  Circle(1 + i) = {2 + i, 1, 2 + (i + 1) % 4};
+  Line(5 + i) = {6 + i, 6 + (i + 1) % 4};
+  Line(9 + i) = {6 + i, 2 + i};
+EndFor
+For i In {0 : 3}
+  Curve Loop(1 + i) = {9 + i, 1 + i, -(9 + (i + 1) % 4), -(5 + i)};
+  Plane Surface(1 + i) = {1 + i};
+EndFor
+Curve Loop(5) = {5 : 8};
+Plane Surface(5) = {5};
+Transfinite Curve{1 : 8} = n + 1;
+Transfinite Curve{9 : 12} = Ceil(0.6 * n) + 1;
+If (triangles)
+  Mesh.MeshSizeMin = R * Pi / 2 / n; Mesh.MeshSizeMax = R * Pi / 2 / n;
+  Delete { Surface{1 : 5}; Curve{5 : 12}; }
+  Curve Loop(6) = {1 : 4};
+  Plane Surface(1) = {6};
+  ring[] = {1};
+Else
+  Transfinite Surface{1 : 5};
+  Recombine Surface{1 : 5};
+  ring[] = {1 : 5};
+EndIf
+a = rm - width / 2; b = rm + width / 2;
+Point(21) = {a - 1, depth, 0}; Point(22) = {a - edge, depth, 0}; Point(23) = {a - edge, depth - edge, 0}; Point(24) = {a, depth - edge, 0};
+Point(25) = {a, foot, 0}; Point(26) = {a + foot, foot, 0}; Point(27) = {a + foot, 0, 0};
+Point(28) = {b - foot, 0, 0}; Point(29) = {b - foot, foot, 0}; Point(30) = {b, foot, 0};
+Point(31) = {b, depth - edge, 0}; Point(32) = {b + edge, depth - edge, 0}; Point(33) = {b + edge, depth, 0}; Point(34) = {b + 1, depth, 0};
+Line(21) = {21, 22}; Circle(22) = {22, 23, 24}; Line(23) = {24, 25}; Circle(24) = {25, 26, 27}; Line(25) = {27, 28};
+Circle(26) = {28, 29, 30}; Line(27) = {30, 31}; Circle(28) = {31, 32, 33}; Line(29) = {33, 34};
+Point(41) = {a - 1, cord, 0}; Point(42) = {b + 1, cord, 0};
+Line(41) = {41, 42};
+Transfinite Curve{24, 26} = 7; Transfinite Curve{22, 28} = 5;
+Transfinite Curve{23, 27} = 21; Transfinite Curve{25, 41} = 41;
+Transfinite Curve{21, 29} = 9;
+Physical Surface("ring") = {ring[]};
+Physical Curve("skin") = {1 : 4};
+Physical Curve("groove") = {21 : 29};
+Physical Curve("lid") = {41};

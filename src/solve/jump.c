@@ -1,0 +1,60 @@
+/* Jumps to another equilibrium: a load that a body cannot carry any more makes it snap through. */
+#include "modelimpl.h"
+
+/* A node jumps that moves this many times as fast for the load as the fastest one did in the step before. Along a path
+   of equilibria the velocity changes little from step to step; where the path ends it grows without bound. */
+#define JUMP_FASTER 4
+
+/*@
+  ModelFindJump - finds out whether a solve ended in an equilibrium that the accepted state does not lead to.
+
+  Collective
+
+  Input Parameter:
+. model - after a solve that converged
+
+  Input/Output Parameter:
+. report - says how often Newton's steps were turned; jump[] names the node that moved most, or stays empty
+
+  Note:
+  Two things together tell a jump: the tangent became indefinite on the way, so that steps were turned round, and the
+  bodies moved much faster than in the step before. The first step of a run has none before it.
+@*/
+PetscErrorCode ModelFindJump(Model model, SolveReport *report)
+{
+  ModelWork      *work    = model->work;
+  const Mesh      mesh    = model->mesh;
+  const int       dim     = mesh->dim;
+  const PetscReal allowed = JUMP_FASTER * work->rate * (model->t - work->accepted_t);
+  PetscInt        at      = -1;
+  PetscReal       X[3];
+  struct {
+    double square;
+    int    rank;
+  } mine = {0, 0}, most;
+
+  PetscFunctionBeginUser;
+  if (!report->turned || !(work->rate > 0)) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCallMPI(MPI_Comm_rank(mesh->comm, &mine.rank));
+  for (PetscInt n = 0; n < mesh->n_nodes; n++) {
+    PetscReal square = 0;
+
+    for (int d = 0; d < dim; d++) square += PetscSqr(model->u[n * dim + d] - work->accepted_u[n * dim + d]);
+    if (square <= mine.square) continue;
+    mine.square = square;
+    at          = n;
+  }
+  PetscCallMPI(MPI_Allreduce(&mine, &most, 1, MPI_DOUBLE_INT, MPI_MAXLOC, mesh->comm));
+  if (most.square <= PetscSqr(allowed)) PetscFunctionReturn(PETSC_SUCCESS);
+  if (most.rank == mine.rank) {
+    MeshNodePlace(mesh, at, X);
+    PetscCall(PetscSNPrintf(report->jump, sizeof(report->jump),
+                            "node %" PetscInt_FMT
+                            " (%.5g, %.5g, %.5g) moved by %.3g, %.2g times as far for the load as "
+                            "in the step before",
+                            mesh->node_tag[at], (double)X[0], (double)X[1], (double)X[2], sqrt(most.square),
+                            sqrt(most.square) * JUMP_FASTER / (double)allowed));
+  }
+  PetscCallMPI(MPI_Bcast(report->jump, sizeof(report->jump), MPI_CHAR, most.rank, mesh->comm));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

@@ -1,0 +1,276 @@
+/* Motions that neither contact nor ties hold: which they are, which of them loads drive, and their names. */
+#include "freebodiesimpl.h"
+#include "contact/contactstep.h"
+
+/* The same for messages. Bodies that roll are seen by a contact patch with a slope of its width over their radius. */
+#define FREE_BODIES_NAMED 3e-2
+/* Tied motions are named with others in this unit. Its square is far below FREE_BODIES_HELD. */
+#define FREE_BODIES_HIDDEN 1e-3
+/* Bodies that were moved into contact touch with the terms that are open by less than this part of a face size. */
+#define FREE_BODIES_TOUCH 1e-4
+
+/* Product of two motions as term i of n sees them: of their travels and, where there are four values, slides. */
+static PetscReal Together(int across, PetscBool along, PetscInt n, PetscInt i, const PetscReal *a, const PetscReal *b)
+{
+  PetscReal sum = along ? 0 : a[i] * b[i];
+
+  for (int d = 0; d < across - 1; d++) sum += a[n + 3 * i + d] * b[n + 3 * i + d];
+  return sum;
+}
+
+/* Stiffness gram[n][n] of the terms in contact, or touching, along the motions at (u, t), over the largest diagonal
+   entry. Friction counts as if nothing slipped. along: it alone counts. */
+static PetscErrorCode ContactGram(FreeBodies b, const PetscReal *u, PetscReal t, PetscBool touching, PetscBool along,
+                                  double gram[])
+{
+  const PetscInt       size   = b->mesh->n_nodes * b->mesh->dim;
+  const int            n      = b->n;
+  const int            across = ContactHasFriction(b->contact) ? 4 : 1; /* values of a term: travel, slide */
+  PetscReal           *du, **travel, largest = 0;
+  double              *a;
+  PetscInt             n_terms;
+  const ActiveSetTerm *terms;
+  ContactStep          step;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscArrayzero(gram, n * n));
+  PetscCall(PetscMalloc1(size, &du));
+  PetscCall(PetscMalloc1(n, &travel));
+  PetscCall(PetscCalloc1(n, &a));
+  for (PetscInt i = 0; i < size; i++) du[i] = b->face; /* terms whose gaps are farther from zero have no part in it */
+  PetscCall(ContactStepCreate(b->contact, u, du, t, t, &step));
+  PetscCall(ContactStepGetTerms(step, &n_terms, &terms));
+  for (int k = 0; k < n; k++) {
+    a[k] = 1;
+    FreeBodiesVelocity(b, u, a, du);
+    a[k] = 0;
+    PetscCall(PetscMalloc1(across * n_terms, &travel[k]));
+    PetscCall(ContactStepTravel(step, du, t, t, travel[k]));
+    if (across > 1) PetscCall(ContactStepSlide(step, du, t, t, &travel[k][n_terms]));
+  }
+  for (PetscInt i = 0; i < n_terms; i++) {
+    if (terms[i].pressure == 0 && !(touching && terms[i].opening <= FREE_BODIES_TOUCH * b->face)) continue;
+    for (int k = 0; k < n; k++)
+      for (int l = 0; l < n; l++)
+        gram[k * n + l] += Together(across, along, n_terms, i, travel[k], travel[l]) /
+                           (b->pieces[b->owner[k]].size * b->pieces[b->owner[l]].size);
+  }
+  for (int k = 0; k < n; k++) largest = PetscMax(largest, gram[k * n + k]);
+  for (int k = 0; k < n * n && largest > 0; k++) gram[k] /= largest;
+  PetscCall(ContactStepDestroy(&step));
+  for (int k = 0; k < n; k++) PetscCall(PetscFree(travel[k]));
+  PetscCall(PetscFree(travel));
+  PetscCall(PetscFree(a));
+  PetscCall(PetscFree(du));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Stiffness gram[n][n] of the terms in contact, or touching, along the motions at (u, t), over the largest diagonal
+   entry. Friction counts as if nothing slipped. */
+PetscErrorCode FreeBodiesContactGram(FreeBodies b, const PetscReal *u, PetscReal t, PetscBool touching, double gram[])
+{
+  PetscFunctionBeginUser;
+  PetscCall(ContactGram(b, u, t, touching, PETSC_FALSE, gram));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Makes bodies that touch with friction at (u, t) hardly slide: gram[n][n], the products of their motions, grows by
+   `factor` of its largest diagonal entry along them. */
+PetscErrorCode FreeBodiesRub(FreeBodies b, const PetscReal *u, PetscReal t, PetscReal factor, double gram[])
+{
+  const int n = b->n;
+  double   *along, largest = 0;
+
+  PetscFunctionBeginUser;
+  if (!ContactHasFriction(b->contact)) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscMalloc1(n * n, &along));
+  PetscCall(ContactGram(b, u, t, PETSC_TRUE, PETSC_TRUE, along));
+  for (int k = 0; k < n; k++) largest = PetscMax(largest, gram[k * n + k]);
+  for (int k = 0; k < n * n; k++) gram[k] += factor * largest * along[k];
+  PetscCall(PetscFree(along));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Adds "BODY: motion; with it BODY: motion" to the text. */
+static void AddMotion(FreeBodies b, const double a[], size_t size, char *text)
+{
+  size_t    used = strlen(text);
+  PetscBool more = PETSC_FALSE;
+
+  if (used && used < size) used += (size_t)snprintf(text + used, size - used, "; ");
+  for (PetscInt p = 0; p < b->n_pieces && used < size; p++) {
+    double    q[RIGID_MODES];
+    char      motion[FREE_TEXT];
+    PetscBool moves = PETSC_FALSE;
+
+    FreeBodiesPieceMotion(b, p, a, q);
+    for (int i = 0; i < RIGID_MODES; i++) moves = (PetscBool)(moves || PetscAbsReal(q[i]) > 1e-2);
+    if (!moves) continue;
+    FreeModesMotionText(b->modes, p, q, motion);
+    used +=
+      (size_t)snprintf(text + used, size - used, "%s'%s': %s", more ? ", with it " : "", b->pieces[p].name, motion);
+    more = PETSC_TRUE;
+  }
+}
+
+/* The column that row f of free[m][n] alone has. */
+static int OwnColumn(int m, int n, const double free[], int f)
+{
+  for (int k = 0; k < n; k++) {
+    int others = 0;
+
+    for (int g = 0; g < m; g++) others += g != f && free[g * n + k] != 0;
+    if (!others && free[f * n + k] == 1) return k;
+  }
+  return 0;
+}
+
+/* The motions of all bodies along which a contact of stiffness gram[n][n] has less than a part of it: free[m][n],
+   m <= n, in a basis in which each is the only one that has its coordinate pivot[m]. That coordinate is the one that
+   contact holds the least. */
+PetscErrorCode FreeBodiesBasis(FreeBodies b, const double gram[], PetscReal part, int *m, double free[], int pivot[])
+{
+  const int n = b->n;
+  double   *work;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(n * n, &work));
+  PetscCall(PetscArraycpy(work, gram, n * n));
+  *m = RigidFree(n, work, part, free);
+  for (int f = 0; f < *m; f++) pivot[f] = OwnColumn(*m, n, free, f);
+  PetscCall(PetscFree(work));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Norms of the nodal loads at t, summed over each piece. */
+static PetscErrorCode PieceLoads(FreeBodies b, const PetscReal *u, PetscReal t, PetscReal *load)
+{
+  const int  dim = b->mesh->dim;
+  PetscReal *f, square = 0;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc1(b->mesh->n_nodes * dim, &f));
+  PetscCall(PetscArrayzero(load, b->n_pieces));
+  PetscCall(LoadsResidual(b->loads, t, u, f, NULL, &square));
+  for (PetscInt i = 0; i < b->mesh->n_nodes; i++) {
+    square = 0;
+    for (int d = 0; d < dim; d++) square += PetscSqr(f[i * dim + d]);
+    load[b->piece[i]] += PetscSqrtReal(square);
+  }
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, load, (PetscMPIInt)b->n_pieces, MPIU_REAL, MPI_SUM, b->mesh->comm));
+  PetscCall(PetscFree(f));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Which of the motions free[m][n] at displacements u the loads at t drive: those along which they do more than a part
+   of the work that they could do over the longest way of a node. */
+PetscErrorCode FreeBodiesDriven(FreeBodies b, const PetscReal *u, PetscReal t, PetscReal part, int m,
+                                const double free[], PetscBool driven[])
+{
+  const int  n = b->n;
+  PetscReal *load, *longest;
+  double    *force, *scale;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc4(b->n_pieces, &load, b->n_pieces, &longest, n, &force, n, &scale));
+  PetscCall(PieceLoads(b, u, t, load));
+  PetscCall(FreeBodiesForce(b, u, t, force, scale));
+  for (int f = 0; f < m; f++) {
+    double work = 0, most = 0;
+
+    PetscCall(FreeBodiesLongest(b, u, &free[f * n], longest));
+    for (int k = 0; k < n; k++) work += free[f * n + k] * force[k];
+    for (PetscInt p = 0; p < b->n_pieces; p++) most += load[p] * longest[p];
+    driven[f] = (PetscBool)(PetscAbsReal(work) > part * most);
+  }
+  PetscCall(PetscFree4(load, longest, force, scale));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Says whether the loads at t_loads do more than a part of the work that they could do along a motion that what
+   touches at (u, t) does not hold. */
+PetscErrorCode FreeBodiesFall(FreeBodies b, const PetscReal *u, PetscReal t, PetscReal t_loads, PetscReal part,
+                              PetscBool *falls)
+{
+  const int  n = b->n;
+  double    *gram, *free;
+  int       *pivot, m;
+  PetscBool *drives;
+
+  PetscFunctionBeginUser;
+  *falls = PETSC_FALSE;
+  PetscCall(PetscMalloc4(n * n, &gram, n * n, &free, n, &pivot, n, &drives));
+  PetscCall(FreeBodiesContactGram(b, u, t, PETSC_TRUE, gram));
+  PetscCall(FreeBodiesBasis(b, gram, FREE_BODIES_HELD, &m, free, pivot));
+  PetscCall(FreeBodiesDriven(b, u, t_loads, part, m, free, drives));
+  for (int f = 0; f < m; f++) *falls = (PetscBool)(*falls || drives[f]);
+  PetscCall(PetscFree4(gram, free, pivot, drives));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Counts the coordinates of tied motions in units of `part`, so that a contact of stiffness gram[n][n] does not see
+   them. */
+static void ScaleTied(FreeBodies b, PetscReal part, double gram[])
+{
+  for (int k = 0; k < b->n; k++)
+    for (int l = 0; l < b->n; l++)
+      gram[k * b->n + l] *= (b->state[k] == MOTION_TIED ? part : 1) * (b->state[l] == MOTION_TIED ? part : 1);
+}
+
+/* Brings a motion a[n] that ScaleTied() has made loose back to the units of the others, with 1 for coordinate k. */
+static void UnscaleMotion(FreeBodies b, PetscReal part, int k, double a[])
+{
+  const double one = b->state[k] == MOTION_TIED ? part : 1;
+
+  for (int l = 0; l < b->n; l++) a[l] *= (b->state[l] == MOTION_TIED ? part : 1) / one;
+}
+
+/*@
+  FreeBodiesLoose - names the motions of the bodies that contact does not hold in the present state.
+
+  Collective
+
+  Input Parameters:
++ b      - the bodies
+. u      - local displacements u[n_nodes*dim] (length), within the reach of the contact's lists
+. t      - load parameter
+. driven - name only the motions along which the loads at t act
+- size   - of the text
+
+  Output Parameter:
+. text - "'ball': translation along y, (0, 1, 0); ..."; empty: contact holds all bodies
+
+  Note:
+  A contact holds a motion if a term in contact sees it. The system is singular along the others without springs. Unless
+  only those that are driven are asked for, motions that are tied are named too.
+@*/
+PetscErrorCode FreeBodiesLoose(FreeBodies b, const PetscReal *u, PetscReal t, PetscBool driven, size_t size, char *text)
+{
+  const int  n = b->n;
+  double    *gram, *free;
+  int       *pivot, m;
+  PetscBool *drives;
+
+  PetscFunctionBeginUser;
+  text[0] = '\0';
+  if (!n) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscMalloc4(n * n, &gram, n * n, &free, n, &pivot, n, &drives));
+  PetscCall(FreeBodiesContactGram(b, u, t, PETSC_FALSE, gram));
+  if (!driven) ScaleTied(b, FREE_BODIES_HIDDEN, gram);
+  PetscCall(FreeBodiesBasis(b, gram, driven ? FREE_BODIES_HELD : FREE_BODIES_NAMED, &m, free, pivot));
+  for (int f = 0; f < m && !driven; f++) UnscaleMotion(b, FREE_BODIES_HIDDEN, pivot[f], &free[f * n]);
+  PetscCall(FreeBodiesDriven(b, u, t, FREE_BODIES_UNEVEN, m, free, drives));
+  for (int f = 0; f < m; f++)
+    if (driven ? drives[f] : b->state[pivot[f]] != MOTION_CONTACT) AddMotion(b, &free[f * n], size, text);
+  PetscCall(PetscFree4(gram, free, pivot, drives));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Says whether a contact of stiffness gram[n][n] acts on a piece at all. */
+PetscBool FreeBodiesInContact(FreeBodies b, PetscInt piece, const double gram[])
+{
+  PetscBool acts = PETSC_FALSE;
+
+  for (int k = 0; k < b->n; k++) acts = (PetscBool)(acts || (b->owner[k] == piece && gram[k * b->n + k] > 0));
+  return acts;
+}
