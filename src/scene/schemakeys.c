@@ -127,7 +127,7 @@ const SchemaKey SchemaKeys[] = {
    .help = "law of the contact pressure over the gap"},
   {"contact.*.friction", MAP, .help = "Coulomb friction; without the key there is none"},
   {"contact.*.friction.mu", REAL | FORMULA, REQUIRED, .range = "[0, inf)",
-   .help = "coefficient of friction, or an expression, as in loads"},
+   .help = "coefficient of friction, or an expression, as in loads; where that is below 0 it counts as 0"},
   {"contact.*.friction.stick", MAP, .help = "how surfaces stick"},
   {"contact.*.friction.stick.penalty", REAL | CHOICE, .values = "auto", .range = "(0, inf)",
    .unit = "force per length and area", .preset = "auto",
