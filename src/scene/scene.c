@@ -439,6 +439,8 @@ static PetscErrorCode SceneReadFriction(Scene scene, SceneContact *contact)
   PetscFunctionBeginUser;
   if (!SceneHas(scene, contact->path, "friction")) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(SceneReadValue(scene, contact->path, "friction.mu", &contact->mu, &contact->mu_expression));
+  if (contact->penalty_may_stiffen && (contact->mu > 0 || contact->mu_expression))
+    contact->penalty_scale = SCENE_FRICTION_SCALE;
   if (contact->mu < 0)
     PetscCall(SceneRefuse(scene, contact->path, "friction.mu", "is below 0; allowed: 0 and above", NULL));
   if (SchemaChoice(document, "%s.friction.stick.penalty", contact->path) != 0)

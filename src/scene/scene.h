@@ -76,7 +76,7 @@ typedef struct {
   ContactLawKind law;
   double         mu;            /* coefficient of friction; 0: there is none */
   Expression     mu_expression; /* in its place, where it is not NULL */
-  double         stick_penalty; /* force per length and area; 0: that of the pressure at the start */
+  double         stick_penalty; /* force per length and area; 0: automatic */
   int            penalty_auto;  /* 1 if the penalty is the automatic one */
   /* Penalty (force per length and area), 0 if it is automatic, and the factor on the automatic penalty. */
   double penalty, penalty_scale;

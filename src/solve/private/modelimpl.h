@@ -22,9 +22,9 @@
    the residual, for iterates so close to equilibrium that energies differ by round-off only. */
 typedef enum { OBJECTIVE_ENERGY, OBJECTIVE_RESIDUAL } Objective;
 
-/* Iterates whose residuals a line search with friction looks back to. It is the usual value (Grippo, Lampariello, Lucidi,
-   SIAM J. Numer. Anal. 23, 1986). */
-enum { LINE_MEMORY = 10 };
+/* Iterates whose residuals a line search with friction looks back to (Grippo, Lampariello, Lucidi, SIAM J. Numer. Anal.
+   23, 1986). With one alone searches end in kinks; with ten nothing is gained. */
+enum { LINE_MEMORY = 4 };
 
 typedef struct _n_ModelWork {
   LinearSolver  solver;
