@@ -3,7 +3,7 @@ DefineConstant[
   cord = {3.53, Name "diameter of the cord"}, mean = {53.53, Name "mean diameter of the ring"},
   depth = {2.8, Name "of the groove: depth"}, width = {4.7, Name "of the groove: width"},
   foot = {0.4, Name "radius at the groove's floor"}, edge = {0.2, Name "radius at the groove's edges"},
-  n = {10, Name "elements along a quarter of the cord"}, triangles = {0, Name "1: triangles instead of quadrangles"}
+  n = {12, Name "elements along a quarter of the cord"}, triangles = {0, Name "1: triangles instead of quadrangles"}
 ];
 R = cord / 2; rm = mean / 2; c = Sqrt(0.5); // the cord rests on the floor at y = 0, in the middle of the groove
 q = 0.45 * R; // half the diagonal of the square in the cord's middle, whose sides are next to those of the skin

@@ -8,10 +8,15 @@
    contactlaw.h and stepcontrol.h say what each object holds. */
 #pragma once
 
-#define ELASTIC_LAWS(LINE)                            \
-  LINE(MATERIAL_LINEAR, "linear", MaterialLaw_Linear) \
-  LINE(MATERIAL_SVK, "svk", MaterialLaw_Svk)          \
-  LINE(MATERIAL_NEO_HOOKEAN, "neo_hookean", MaterialLaw_NeoHookean)
+#define ELASTIC_LAWS(LINE)                                                                       \
+  LINE(MATERIAL_LINEAR, "linear", MaterialLaw_Linear)                                            \
+  LINE(MATERIAL_SVK, "svk", MaterialLaw_Svk)                                                     \
+  LINE(MATERIAL_NEO_HOOKEAN, "neo_hookean", MaterialLaw_NeoHookean)                              \
+  LINE(MATERIAL_ISOCHORIC_NEO_HOOKEAN, "isochoric_neo_hookean", MaterialLaw_IsochoricNeoHookean) \
+  LINE(MATERIAL_MOONEY_RIVLIN, "mooney_rivlin", MaterialLaw_MooneyRivlin)                        \
+  LINE(MATERIAL_YEOH, "yeoh", MaterialLaw_Yeoh)                                                  \
+  LINE(MATERIAL_OGDEN, "ogden", MaterialLaw_Ogden)                                               \
+  LINE(MATERIAL_ARRUDA_BOYCE, "arruda_boyce", MaterialLaw_ArrudaBoyce)
 
 #define SMOOTHERS(LINE)                         \
   LINE(SMOOTHER_FACET, "facet", Smoother_Facet) \

@@ -1,45 +1,5 @@
 /* Assembly of the elastic problem from batched element kernels. */
-#include "bodies/elasticity.h"
-#include "kernels/elementkernel.h"
-#include "matrix/nodematrix.h"
-
-enum {
-  MAX_DOFS            = ELEMENT_MAX_NODES * 3, /* of a cell */
-  BYTES_OF_CACHE_LINE = 64,                    /* of the usual processors; arrays of a batch are aligned to it */
-  /* Blocks are fetched this many pairs of nodes ahead. They are scattered in main memory, and 4 hides most of the wait.
-   */
-  PREFETCH_PAIRS = 4
-};
-
-/* Cells of one type and law, KERNEL_LANES to a batch. The last batch repeats its last cell. The arrays have one batch
-   after the other. */
-typedef struct {
-  KernelCase kernel;
-  int        nodes; /* of one cell */
-  PetscInt   n_cells, n_batches;
-  PetscInt  *cell; /* [lanes] */
-  PetscInt  *node; /* [nodes][lanes] */
-  PetscInt
-    *block;     /* [nodes][nodes][lanes]: place of the pair of nodes in the block CSR; then PREFETCH_PAIRS of zeros */
-  PetscReal *X; /* [nodes][dim][lanes] */
-  PetscReal *constants; /* of the law [n_constants][lanes] */
-} CellGroup;
-
-struct _n_Elasticity {
-  Mesh       mesh;
-  int        dim, n_groups;
-  CellGroup *groups;
-  PetscInt  *cell_group, *cell_slot; /* of every local cell: its group, and its number there */
-  PetscReal *cell_modulus;
-  PetscInt  *row, *column; /* block CSR over local nodes, columns ascending */
-  PetscReal *value;        /* dim x dim blocks, row-major, in the order of column */
-  PetscReal *u, *u_0;      /* of one batch, aligned to cache lines; u_0: of the state that pressures come from */
-  PetscReal *f, *K;        /* of one batch */
-  void      *buffer;       /* what u, u_0, f and K are in */
-  PetscInt   inverted;     /* a local cell that the last residual found inverted, or -1 */
-  PetscBool  symmetric;
-  NodeMatrix matrix;
-};
+#include "elasticityimpl.h"
 
 static PetscLogEvent event_residual, event_tangent, event_insert;
 
@@ -67,9 +27,11 @@ static Material BodyMaterial(Scene scene, PetscInt body)
 static KernelCase BodyKernel(Scene scene, PetscInt body, ElementType type)
 {
   const Material material = BodyMaterial(scene, body);
-
-  return (KernelCase){
+  KernelCase     kernel   = {
     type, scene->geometry, scene->kinematics, material.law, scene->bodies[body].formulation, material.n_constants};
+
+  if (scene->bodies[body].chosen && !ElementKernelExists(&kernel)) kernel.formulation = FORMULATION_FULL;
+  return kernel;
 }
 
 /* Compares two kernels of one scene, whose geometry and kinematics are the same. */
@@ -248,6 +210,47 @@ static PetscErrorCode CreateBuffers(Elasticity e)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Says whether elements treat only a part of the modulus of the volume. Of elements those with a constant pressure
+   project the largest part. */
+static PetscBool VolumeIsStiff(Scene scene, PetscInt body)
+{
+  const Material   material = BodyMaterial(scene, body);
+  const KernelCase kernel   = BodyKernel(scene, body, ELEMENT_QUAD4);
+  VolumeModuli     moduli;
+
+  ElementVolumeModuli(&kernel, material.constants, 1, &moduli);
+  return (PetscBool)(moduli.kappa < moduli.projected);
+}
+
+/* Counts the multipliers, and makes room for those of the present and of the accepted state. A mixed group has some if
+   the volume of one of its cells is too stiff. */
+static PetscErrorCode ElasticityCreateVolumes(Elasticity e, Scene scene)
+{
+  PetscInt   n = 0;
+  PetscBool *stiff;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(scene->n_bodies, &stiff));
+  for (int b = 0; b < scene->n_bodies; b++) {
+    stiff[b]    = (PetscBool)(!scene->bodies[b].rigid && scene->bodies[b].formulation == FORMULATION_MIXED &&
+                           VolumeIsStiff(scene, b));
+    e->augments = (PetscBool)(e->augments || stiff[b]);
+  }
+  for (int k = 0; k < e->n_groups; k++) {
+    CellGroup *g    = &e->groups[k];
+    PetscBool  some = PETSC_FALSE;
+
+    for (PetscInt c = 0; c < g->n_cells && ElementPressures(&g->kernel); c++)
+      some = (PetscBool)(some || stiff[e->mesh->cell_body[g->cell[c]]]);
+    g->multipliers = some ? n : -1;
+    if (some) n += g->n_batches * ElementPressures(&g->kernel) * KERNEL_LANES;
+  }
+  PetscCall(PetscFree(stiff));
+  e->state.n = e->accepted.n = n;
+  PetscCall(PetscCalloc2(n, &e->state.multiplier, n, &e->accepted.multiplier));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /*@
   ElasticityCreate - prepares the assembly of all local cells: batches, pattern of the local tangent, scatter maps.
 
@@ -275,6 +278,7 @@ PetscErrorCode ElasticityCreate(Mesh mesh, Scene scene, Elasticity *elasticity)
   for (PetscInt c = 0; c < mesh->n_cells; c++) SetCell(e, scene, &e->groups[e->cell_group[c]], e->cell_slot[c], c);
   PetscCall(CreateBlocks(e));
   PetscCall(CreateBuffers(e));
+  PetscCall(ElasticityCreateVolumes(e, scene));
   *elasticity = e;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -306,12 +310,27 @@ PetscErrorCode ElasticityDestroy(Elasticity *elasticity)
   PetscCall(PetscFree(e->column));
   PetscCall(PetscFree(e->value));
   PetscCall(PetscFree(e->buffer));
+  PetscCall(PetscFree2(e->state.multiplier, e->accepted.multiplier));
   PetscCall(NodeMatrixDestroy(&e->matrix));
   PetscCall(PetscFree(*elasticity));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static void GatherBatch(Elasticity e, const CellGroup *g, PetscInt batch, const PetscReal *u, PetscReal *gathered)
+/*@
+  ElasticityGather - copies the displacements of the nodes of a batch, in the order of ElementKernel().
+
+  Not collective
+
+  Input Parameters:
++ e     - the elasticity
+. g     - a group
+. batch - of that group
+- u     - local displacements (length) [n_nodes*dim]
+
+  Output Parameter:
+. gathered - [nodes][dim][lanes]
+@*/
+void ElasticityGather(Elasticity e, const CellGroup *g, PetscInt batch, const PetscReal *u, PetscReal *gathered)
 {
   const PetscInt *node = &g->node[(size_t)batch * g->nodes * KERNEL_LANES];
 
@@ -323,8 +342,32 @@ static void GatherBatch(Elasticity e, const CellGroup *g, PetscInt batch, const 
   }
 }
 
-/* Counts the cells of a batch that are not repetitions. */
-static int BatchCells(const CellGroup *g, PetscInt batch)
+/*@
+  ElasticityMultipliers - gives the present multipliers of a batch of mixed elements, or NULL where they have none.
+
+  Not collective
+
+  Input Parameters:
++ e     - the elasticity
+. g     - a group
+- batch - of that group
+@*/
+PetscReal *ElasticityMultipliers(Elasticity e, const CellGroup *g, PetscInt batch)
+{
+  if (g->multipliers < 0) return NULL;
+  return &e->state.multiplier[g->multipliers + batch * ElementPressures(&g->kernel) * KERNEL_LANES];
+}
+
+/*@
+  ElasticityBatchCells - counts the cells of a batch that are not repetitions.
+
+  Not collective
+
+  Input Parameters:
++ g     - a group
+- batch - of that group
+@*/
+int ElasticityBatchCells(const CellGroup *g, PetscInt batch)
 {
   return (int)PetscMin(KERNEL_LANES, g->n_cells - batch * KERNEL_LANES);
 }
@@ -332,7 +375,7 @@ static int BatchCells(const CellGroup *g, PetscInt batch)
 static void ScatterForce(Elasticity e, const CellGroup *g, PetscInt batch, PetscReal *f, PetscReal *force2)
 {
   const PetscInt *node  = &g->node[(size_t)batch * g->nodes * KERNEL_LANES];
-  const int       count = BatchCells(g, batch);
+  const int       count = ElasticityBatchCells(g, batch);
   PetscReal       sum   = 0;
 
   for (int a = 0; a < g->nodes; a++) {
@@ -383,11 +426,11 @@ PetscErrorCode ElasticityResidual(Elasticity e, const PetscReal *u, PetscReal *f
     for (PetscInt batch = 0; batch < g->n_batches; batch++) {
       const size_t first = (size_t)batch * KERNEL_LANES;
 
-      GatherBatch(e, g, batch, u, e->u);
+      ElasticityGather(e, g, batch, u, e->u);
       ElementKernel(&g->kernel, &g->X[first * dofs], e->u, NULL, &g->constants[first * g->kernel.n_constants],
-                    energy ? W : NULL, forces ? e->f : NULL, NULL, J);
+                    ElasticityMultipliers(e, g, batch), energy ? W : NULL, forces ? e->f : NULL, NULL, J);
       if (forces) ScatterForce(e, g, batch, f, force2);
-      for (int lane = 0; lane < BatchCells(g, batch); lane++) {
+      for (int lane = 0; lane < ElasticityBatchCells(g, batch); lane++) {
         if (energy) *energy += W[lane];
         if (J[lane] > 0) continue;
         *ok         = PETSC_FALSE;
@@ -436,12 +479,12 @@ static inline __attribute__((always_inline)) void ScatterTangent(Elasticity e, c
   Input Parameters:
 + e         - the elasticity
 . u         - local displacements (length) [n_nodes*dim]
-- reference - the state from which pressures are extrapolated, u as above; NULL: the tangent has the pressures of u
+- reference - the state from which stresses are extrapolated, u as above; NULL: the tangent has the stresses of u
 @*/
-PetscErrorCode ElasticityTangent(Elasticity e, const PetscReal *u, const PressureReference *reference)
+PetscErrorCode ElasticityTangent(Elasticity e, const PetscReal *u, const StressReference *reference)
 {
-  const PressureReference gathered = {e->u_0, reference ? reference->rate : 0};
-  PetscReal               J[KERNEL_LANES];
+  const StressReference gathered = {e->u_0, reference ? reference->rate : 0, reference ? reference->held : 0};
+  PetscReal             J[KERNEL_LANES];
 
   PetscFunctionBeginUser;
   PetscCall(PetscLogEventBegin(event_tangent, 0, 0, 0, 0));
@@ -453,12 +496,13 @@ PetscErrorCode ElasticityTangent(Elasticity e, const PetscReal *u, const Pressur
 
     for (PetscInt batch = 0; batch < g->n_batches; batch++) {
       const size_t first = (size_t)batch * KERNEL_LANES;
-      const int    count = BatchCells(g, batch);
+      const int    count = ElasticityBatchCells(g, batch);
 
-      GatherBatch(e, g, batch, u, e->u);
-      if (extrapolates) GatherBatch(e, g, batch, reference->u, e->u_0);
+      ElasticityGather(e, g, batch, u, e->u);
+      if (extrapolates) ElasticityGather(e, g, batch, reference->u, e->u_0);
       ElementKernel(&g->kernel, &g->X[first * dofs], e->u, extrapolates ? &gathered : NULL,
-                    &g->constants[first * g->kernel.n_constants], NULL, NULL, e->K, J);
+                    &g->constants[first * g->kernel.n_constants], ElasticityMultipliers(e, g, batch), NULL, NULL, e->K,
+                    J);
       if (count < KERNEL_LANES)
         ScatterTangent(e, g, batch, e->dim, count);
       else if (e->dim == 3)
@@ -472,7 +516,7 @@ PetscErrorCode ElasticityTangent(Elasticity e, const PetscReal *u, const Pressur
 }
 
 /*@
-  ElasticityExtrapolates - says whether a PressureReference changes the tangent of any of this rank's cells.
+  ElasticityExtrapolates - says whether a StressReference changes the tangent of any of this rank's cells.
 
   Not collective
 
@@ -660,13 +704,16 @@ PetscErrorCode ElasticityMatrixJoin(Elasticity e, Mat C)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Coordinates and displacements of the nodes of one cell, and the constants of its law */
+/* Coordinates and displacements of the nodes of one cell, the constants of its law, and its multipliers */
 static void GatherCell(Elasticity e, const CellGroup *g, PetscInt slot, const PetscReal *u, PetscReal X[MAX_DOFS],
-                       PetscReal cell_u[MAX_DOFS], PetscReal constants[MATERIAL_MAX_CONSTANTS])
+                       PetscReal cell_u[MAX_DOFS], PetscReal constants[MATERIAL_MAX_CONSTANTS],
+                       PetscReal m[MIXED_PRESSURES])
 {
-  const size_t    batch = slot / KERNEL_LANES, lane = slot % KERNEL_LANES;
-  const PetscInt *nodes = &e->mesh->cell_nodes[e->mesh->cell_ptr[g->cell[slot]]];
+  const size_t     batch = slot / KERNEL_LANES, lane = slot % KERNEL_LANES;
+  const PetscInt  *nodes       = &e->mesh->cell_nodes[e->mesh->cell_ptr[g->cell[slot]]];
+  const PetscReal *multipliers = ElasticityMultipliers(e, g, (PetscInt)batch);
 
+  for (int k = 0; k < ElementPressures(&g->kernel); k++) m[k] = multipliers ? multipliers[k * KERNEL_LANES + lane] : 0;
   for (int a = 0; a < g->nodes; a++) {
     for (int i = 0; i < e->dim; i++) {
       X[a * e->dim + i]      = g->X[((batch * g->nodes + a) * e->dim + i) * KERNEL_LANES + lane];
@@ -700,10 +747,10 @@ PetscErrorCode ElasticityVolumeEnergy(Elasticity e, const PetscReal *u, PetscRea
     const CellGroup *g = &e->groups[k];
 
     for (PetscInt slot = 0; slot < g->n_cells; slot++) {
-      PetscReal X[MAX_DOFS], cell_u[MAX_DOFS], constants[MATERIAL_MAX_CONSTANTS];
+      PetscReal X[MAX_DOFS], cell_u[MAX_DOFS], constants[MATERIAL_MAX_CONSTANTS], m[MIXED_PRESSURES];
 
-      GatherCell(e, g, slot, u, X, cell_u, constants);
-      *energy += ElementVolumeEnergy(&g->kernel, X, cell_u, constants);
+      GatherCell(e, g, slot, u, X, cell_u, constants, m);
+      *energy += ElementVolumeEnergy(&g->kernel, X, cell_u, constants, m);
     }
   }
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -716,10 +763,10 @@ static void AddCellStress(Elasticity e, const CellGroup *g, PetscInt slot, const
   const Element  *element = ElementGet(g->kernel.type);
   const PetscInt *nodes   = &e->mesh->cell_nodes[e->mesh->cell_ptr[g->cell[slot]]];
   PetscReal       X[MAX_DOFS], cell_u[MAX_DOFS], point_stress[ELEMENT_MAX_POINTS * 6], point_volume[ELEMENT_MAX_POINTS],
-    constants[MATERIAL_MAX_CONSTANTS], volume = 0;
+    constants[MATERIAL_MAX_CONSTANTS], m[MIXED_PRESSURES], volume = 0;
 
-  GatherCell(e, g, slot, u, X, cell_u, constants);
-  ElementPointStress(&g->kernel, X, cell_u, constants, point_stress, point_volume);
+  GatherCell(e, g, slot, u, X, cell_u, constants, m);
+  ElementPointStress(&g->kernel, X, cell_u, constants, m, point_stress, point_volume);
   for (int p = 0; p < element->points; p++) volume += point_volume[p];
   for (int a = 0; a < g->nodes; a++) {
     weight[nodes[a]] += volume;

@@ -1,12 +1,17 @@
 /* The elastic problem: element kernels over the local cells, and their residual, energy and tangent. Knows no contact.
 
    ElasticityResidual() and ElasticityTangent() evaluate this rank's cells. The tangent is summed into one rank-local
-   block CSR over local nodes, with ghost rows and every dof, supported ones too. It may extrapolate pressures from an
-   earlier state (pressurereference.h). ElasticityMatrix() passes it on to a
+   block CSR over local nodes, with ghost rows and every dof, supported ones too. It may extrapolate stresses from an
+   earlier state (stressreference.h). ElasticityMatrix() passes it on to a
    parallel AIJ matrix over the free dofs, ElasticityMultiplyLocal() multiplies it by local vectors for the prescribed
-   dofs. ElasticityNodalStress() gives stresses for output. */
+   dofs. ElasticityNodalStress() gives stresses for output.
+
+   Mixed elements whose volume is kept exactly, or nearly so, have multipliers (volumes.c). ElasticityFollow() changes
+   them in an iteration of Newton's method, ElasticityAugment() after a solve until the volume is right.
+   ElasticityAccept() keeps them with the accepted state, ElasticityRestore() returns to those kept. */
 #pragma once
-#include "kernels/pressurereference.h"
+#include "files/archive.h"
+#include "kernels/stressreference.h"
 #include "mesh/mesh.h"
 
 typedef struct _n_Elasticity *Elasticity;
@@ -16,7 +21,7 @@ PetscErrorCode ElasticityDestroy(Elasticity *);
 PetscErrorCode ElasticityResidual(Elasticity, const PetscReal *u, PetscReal *f, PetscReal *energy, PetscReal *force2,
                                   PetscBool *ok);
 PetscErrorCode ElasticityVolumeEnergy(Elasticity, const PetscReal *u, PetscReal *energy);
-PetscErrorCode ElasticityTangent(Elasticity, const PetscReal *u, const PressureReference *);
+PetscErrorCode ElasticityTangent(Elasticity, const PetscReal *u, const StressReference *);
 PetscBool      ElasticityExtrapolates(Elasticity);
 PetscErrorCode ElasticityAddBlock(Elasticity, PetscInt n, const PetscInt nodes[], const PetscReal k[]);
 PetscErrorCode ElasticityMultiplyLocal(Elasticity, const PetscReal *x, PetscReal *y);
@@ -24,5 +29,12 @@ PetscErrorCode ElasticitySetSymmetric(Elasticity, PetscBool);
 PetscErrorCode ElasticityMatrix(Elasticity, Mat C, Vec diagonal, Mat *);
 PetscErrorCode ElasticityMatrixJoin(Elasticity, Mat C);
 PetscErrorCode ElasticityNodalStress(Elasticity, const PetscReal *u, PetscReal *stress, PetscReal *weight);
+PetscErrorCode ElasticityAugment(Elasticity, const PetscReal *u, PetscBool *holds);
+PetscErrorCode ElasticityFollow(Elasticity, const PetscReal *u, const StressReference *);
+PetscErrorCode ElasticityAccept(Elasticity);
+PetscErrorCode ElasticityRestore(Elasticity);
+PetscErrorCode ElasticityArchive(Elasticity, Archive);
+PetscBool      ElasticityAugments(Elasticity);
+PetscErrorCode ElasticityCheckEnclosed(Elasticity, Scene, const PetscBool *prescribed);
 PetscReal      ElasticityCellModulus(Elasticity, PetscInt cell);
 PetscInt       ElasticityInvertedCell(Elasticity);

@@ -27,6 +27,12 @@ typedef struct {
   PetscReal      largest; /* of an expression: its largest value on the surface, of all ranks; else 0 */
 } Prescribed;
 
+/* The part of a surface on which its pressure acts; both are NULL where it acts everywhere. */
+typedef struct {
+  const PetscReal *nodes;  /* FACE_MAX_NODES for each face: factor on the face's force on each of its nodes */
+  const PetscReal *points; /* FACE_MAX_POINTS for each face: factor on the pressure */
+} LoadShares;
+
 /* A dead load: its nodal forces for factor 1, assembled once; where it varies, those at loads->t */
 typedef struct {
   const SceneLoad *load;
@@ -34,6 +40,7 @@ typedef struct {
   PetscInt         n, *dof;
   PetscReal       *force, force2; /* force2: sum of squares of the unassembled nodal forces */
   const History   *history;       /* NULL where it varies */
+  LoadShares       shares;
 } DeadLoad;
 
 typedef struct {
@@ -41,6 +48,7 @@ typedef struct {
   const MeshGroup *group;
   PetscReal       *value;   /* of an expression: FACE_MAX_POINTS for each face; else NULL */
   const History   *history; /* NULL where it varies */
+  LoadShares       shares;
 } FollowerLoad;
 
 struct _n_Loads {
@@ -54,10 +62,11 @@ struct _n_Loads {
   FollowerLoad *follower;
   PetscLogEvent event_follower; /* where there is a follower load */
   PetscBool     varies;         /* some value is an expression with t; the same on all ranks */
+  PetscBool     shared;         /* some pressure acts on a part of its surface */
   PetscReal     t;              /* for which the values of such expressions stand */
   Complaint     complaint;      /* while values are set: the first mistake of this rank */
   PetscInt     *owner;          /* while it is made: by dof, who prescribes it */
-  PetscReal    *dense;          /* nodal forces of one load: while it is made, or all the time if some load varies */
+  PetscReal    *dense;          /* nodal forces of one load: while it is made, or all the time if some load changes */
 };
 
 static PetscReal HistoryFactor(const History *history, PetscReal t)
@@ -193,6 +202,23 @@ static PetscErrorCode LoadsCreatePrescribed(Loads loads)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Multiplies the pressures at the n quadrature points of face f by the share of each. */
+static void SharePressures(const LoadShares *shares, PetscInt f, int n, double *pressure)
+{
+  for (int p = 0; p < n && shares->points; p++) pressure[p] *= shares->points[f * FACE_MAX_POINTS + p];
+}
+
+/* Multiplies the forces on the n nodes of face f, and the rows of their tangent, by the share of each node. */
+static void ShareForces(const LoadShares *shares, PetscInt f, int dim, int n, double *fe, double *ke)
+{
+  for (int i = 0; i < n * dim && shares->nodes; i++) {
+    const PetscReal share = shares->nodes[f * FACE_MAX_NODES + i / dim];
+
+    fe[i] *= share;
+    for (int j = 0; j < n * dim && ke; j++) ke[i * n * dim + j] *= share;
+  }
+}
+
 /* Adds the nodal forces of one face or cell for factor 1 to the dense work vector. */
 static void DeadLoadAdd(Loads loads, PetscInt n, const PetscInt *nodes, const double *fe, DeadLoad *dead)
 {
@@ -215,13 +241,17 @@ static PetscErrorCode DeadLoadSurface(Loads loads, PetscReal t, DeadLoad *dead)
   for (PetscInt f = 0; f < dead->group->n_faces; f++) {
     const ElementType type   = MeshFaceNodes(mesh, dead->group, f, nodes);
     const Element    *face   = ElementGetFace(type);
-    const int         stride = LoadPointValues(mesh, loads->scene, load, face, nodes, t, value, &loads->complaint);
+    int               stride = LoadPointValues(mesh, loads->scene, load, face, nodes, t, value, &loads->complaint);
 
+    for (int p = 1; p < face->points && dead->shares.points && !stride; p++) value[p] = value[0];
+    if (dead->shares.points) stride = 1;
+    SharePressures(&dead->shares, f, face->points, value);
     MeshGatherNodes(mesh, face->nodes, nodes, mesh->coords, X);
     PetscCall(PetscArrayzero(fe, face->nodes * mesh->dim));
     FaceLoadKernel(type, mesh->dim, loads->scene->geometry,
                    load->kind == LOAD_TRACTION ? FACE_TRACTION : FACE_DEAD_PRESSURE, X, zero, value, stride, fe, NULL,
                    NULL);
+    ShareForces(&dead->shares, f, mesh->dim, face->nodes, fe, NULL);
     DeadLoadAdd(loads, face->nodes, nodes, fe, dead);
   }
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -329,7 +359,7 @@ static PetscErrorCode LoadsCreateForces(Loads loads)
     if (LoadFollows(scene, load)) {
       FollowerLoad *follower = &loads->follower[loads->n_follower++];
 
-      *follower = (FollowerLoad){load, group, NULL, history};
+      *follower = (FollowerLoad){.load = load, .group = group, .history = history};
       if (!LoadHasExpression(load)) continue;
       PetscCall(PetscMalloc1(group->n_faces * FACE_MAX_POINTS, &follower->value));
       FollowerEvaluate(loads, loads->t, follower);
@@ -340,7 +370,7 @@ static PetscErrorCode LoadsCreateForces(Loads loads)
       PetscCall(DeadLoadAssemble(loads, loads->t, dead));
     }
   }
-  if (!loads->varies) PetscCall(PetscFree(loads->dense));
+  if (!loads->varies && !loads->shared) PetscCall(PetscFree(loads->dense));
   PetscCall(ComplaintRefuse(mesh->comm, &loads->complaint));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -388,6 +418,7 @@ PetscErrorCode LoadsCreate(Mesh mesh, Scene scene, Loads *out)
   loads->mesh  = mesh;
   loads->scene = scene;
   for (int l = 0; l < scene->n_loads; l++) loads->varies = (PetscBool)(loads->varies || LoadVaries(&scene->loads[l]));
+  for (int l = 0; l < scene->n_loads; l++) loads->shared = (PetscBool)(loads->shared || scene->loads[l].open);
   PetscCall(LoadsCreatePrescribed(loads));
   PetscCall(LoadsCreateForces(loads));
   for (int k = LOADS_SAMPLES; k >= 0; k--) PetscCall(LoadsMove(loads, (PetscReal)k / LOADS_SAMPLES));
@@ -443,21 +474,25 @@ PetscErrorCode LoadsPrescribe(Loads loads, PetscReal t, PetscReal *u)
 static PetscErrorCode FollowerFace(Loads loads, const FollowerLoad *load, PetscInt f, PetscReal t, const PetscReal *u,
                                    PetscInt *nodes, int *n, double *fe, double *ke)
 {
-  Mesh              mesh   = loads->mesh;
-  const ElementType type   = MeshFaceNodes(mesh, load->group, f, nodes);
-  const PetscReal   factor = HistoryFactor(load->history, t);
-  const PetscReal  *value  = load->value ? &load->value[f * FACE_MAX_POINTS] : load->load->value;
-  const int         stride = load->value ? 1 : 0, values = load->value ? ElementGetFace(type)->points : 1;
+  Mesh              mesh     = loads->mesh;
+  const ElementType type     = MeshFaceNodes(mesh, load->group, f, nodes);
+  const PetscReal   factor   = HistoryFactor(load->history, t);
+  const PetscReal  *value    = load->value ? &load->value[f * FACE_MAX_POINTS] : load->load->value;
+  const PetscBool   constant = (PetscBool)(!load->value && !load->shares.points);
   double            X[FACE_MAX_NODES * 3], v[FACE_MAX_NODES * 3], pressure[FACE_MAX_POINTS];
 
   PetscFunctionBeginUser;
-  for (int p = 0; p < values; p++) pressure[p] = value[p] * factor;
+  for (int p = 0; p < (constant ? 1 : ElementGetFace(type)->points); p++)
+    pressure[p] = value[load->value ? p : 0] * factor;
+  SharePressures(&load->shares, f, ElementGetFace(type)->points, pressure);
   *n = ElementGet(type)->nodes;
   MeshGatherNodes(mesh, *n, nodes, mesh->coords, X);
   MeshGatherNodes(mesh, *n, nodes, u, v);
   PetscCall(PetscArrayzero(fe, *n * mesh->dim));
   if (ke) PetscCall(PetscArrayzero(ke, PetscSqr(*n * mesh->dim)));
-  FaceLoadKernel(type, mesh->dim, loads->scene->geometry, FACE_FOLLOWER_PRESSURE, X, v, pressure, stride, fe, ke, NULL);
+  FaceLoadKernel(type, mesh->dim, loads->scene->geometry, FACE_FOLLOWER_PRESSURE, X, v, pressure, constant ? 0 : 1, fe,
+                 ke, NULL);
+  ShareForces(&load->shares, f, mesh->dim, *n, fe, ke);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -546,6 +581,59 @@ PetscErrorCode LoadsTangent(Loads loads, PetscReal t, const PetscReal *u, Elasti
 }
 
 /*@
+  LoadsSetShares - lets a pressure act on a part of its surface.
+
+  Collective
+
+  Input Parameters:
++ loads  - the loads
+. load   - number of a pressure in the scene
+. nodes  - nodes[n_faces*FACE_MAX_NODES]: factor on the force of each face on each of its nodes, from 0 to 1
+- points - points[n_faces*FACE_MAX_POINTS]: factor on the pressure at each quadrature point of the faces
+
+  Note:
+  The arrays are borrowed until the next call. The call is repeated when their values change. With factors at nodes the
+  forces of neighbouring nodes are apart from each other, with those at points they overlap by the shape functions.
+@*/
+PetscErrorCode LoadsSetShares(Loads loads, int load, const PetscReal *nodes, const PetscReal *points)
+{
+  const SceneLoad *scene = &loads->scene->loads[load];
+
+  PetscFunctionBeginUser;
+  for (PetscInt l = 0; l < loads->n_follower; l++)
+    if (loads->follower[l].load == scene) loads->follower[l].shares = (LoadShares){nodes, points};
+  for (PetscInt l = 0; l < loads->n_dead; l++) {
+    if (loads->dead[l].load != scene) continue;
+    loads->dead[l].shares = (LoadShares){nodes, points};
+    PetscCall(DeadLoadAssemble(loads, loads->t, &loads->dead[l]));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  LoadsPressure - returns a pressure that is the same everywhere on its surface.
+
+  Not collective
+
+  Input Parameters:
++ loads - the loads
+. load  - number of the pressure in the scene
+- t     - load parameter
+
+  Output Parameter:
+. pressure - its value at t, history included (force per area)
+@*/
+PetscErrorCode LoadsPressure(Loads loads, int load, PetscReal t, PetscReal *pressure)
+{
+  static const PetscReal origin[3] = {0, 0, 0};
+  const SceneLoad       *scene     = &loads->scene->loads[load];
+
+  PetscFunctionBeginUser;
+  *pressure = SceneLoadValue(scene, 0, origin, t) * (LoadVaries(scene) ? 1 : HistoryFactor(&scene->history, t));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
   LoadsConservative - tells whether the loads have a potential.
 
   Not collective
@@ -559,6 +647,22 @@ PetscErrorCode LoadsTangent(Loads loads, PetscReal t, const PetscReal *u, Elasti
 PetscBool LoadsConservative(Loads loads)
 {
   return loads->n_follower ? PETSC_FALSE : PETSC_TRUE;
+}
+
+/*@
+  LoadsConstrained - gives for every local dof whether it is supported or imposed.
+
+  Not collective
+
+  Input Parameter:
+. loads - they own the array [n_nodes*dim]
+
+  Note:
+  A group counts if this rank sees it, which it does for its own nodes.
+@*/
+const PetscBool *LoadsConstrained(Loads loads)
+{
+  return loads->constrained;
 }
 
 /*@

@@ -2,19 +2,23 @@
 
    LoadsCreate() marks the prescribed dofs in the mesh and must come before any matrix or vector is made.
    LoadsPrescribe() writes the prescribed displacements; LoadsResidual() and LoadsTangent() add what the forces
-   contribute. LoadsRigidMotion() moves the points of rigid tools. */
+   contribute. LoadsRigidMotion() moves the points of rigid tools. LoadsSetShares() lets a pressure act on a part of its
+   surface, LoadsPressure() tells how large it is. */
 #pragma once
 #include "bodies/elasticity.h"
 
 typedef struct _n_Loads *Loads;
 
-PetscErrorCode LoadsCreate(Mesh, Scene, Loads *);
-PetscErrorCode LoadsDestroy(Loads *);
-PetscErrorCode LoadsPrescribe(Loads, PetscReal t, PetscReal *u);
-PetscErrorCode LoadsResidual(Loads, PetscReal t, const PetscReal *u, PetscReal *f, PetscReal *energy,
-                             PetscReal *force2);
-PetscErrorCode LoadsTangent(Loads, PetscReal t, const PetscReal *u, Elasticity);
-PetscBool      LoadsConservative(Loads);
-PetscBool      LoadsPrescribed(Loads, PetscInt local_dof);
-void           LoadsRigidMotion(Loads, int body, PetscReal t, const PetscReal X[3], PetscReal x[3]);
-PetscReal      LoadsRigidTravel(Loads, int body, PetscReal t0, PetscReal t1);
+PetscErrorCode   LoadsCreate(Mesh, Scene, Loads *);
+PetscErrorCode   LoadsDestroy(Loads *);
+PetscErrorCode   LoadsPrescribe(Loads, PetscReal t, PetscReal *u);
+PetscErrorCode   LoadsResidual(Loads, PetscReal t, const PetscReal *u, PetscReal *f, PetscReal *energy,
+                               PetscReal *force2);
+PetscErrorCode   LoadsTangent(Loads, PetscReal t, const PetscReal *u, Elasticity);
+PetscErrorCode   LoadsSetShares(Loads, int load, const PetscReal *nodes, const PetscReal *points);
+PetscErrorCode   LoadsPressure(Loads, int load, PetscReal t, PetscReal *pressure);
+PetscBool        LoadsConservative(Loads);
+const PetscBool *LoadsConstrained(Loads);
+PetscBool        LoadsPrescribed(Loads, PetscInt local_dof);
+void             LoadsRigidMotion(Loads, int body, PetscReal t, const PetscReal X[3], PetscReal x[3]);
+PetscReal        LoadsRigidTravel(Loads, int body, PetscReal t0, PetscReal t1);

@@ -162,6 +162,9 @@ PetscErrorCode ContactGapsConverged(Contact, PetscBool *converged);
 PetscErrorCode ContactLocateOutside(Contact, char *text, size_t size);
 PetscErrorCode ContactPairWindow(Contact, int pair, ContactWindow *);
 PetscErrorCode ContactPairPenalty(Contact, int pair, PetscReal *least, PetscReal *most);
+/* Fluid between the surfaces */
+PetscErrorCode ContactSetCarried(Contact, int pair, const PetscReal *carried);
+PetscErrorCode ContactTermForces(Contact, int pair, PetscReal touch, PetscReal *force);
 /* Control of the load step */
 PetscErrorCode ContactTouches(Contact, const PetscReal *u_0, PetscReal t_0, const PetscReal *u, PetscReal t,
                               PetscBool by_area, PetscBool still_open, int *n, Touch **);
@@ -172,6 +175,7 @@ const char         *ContactPairName(Contact, int pair);
 const SceneContact *ContactPairScene(Contact, int pair);
 int                 ContactFindPair(Contact, const char *name);
 PetscBool           ContactPairIsSurface(Contact, int pair);
+int                 ContactPairFiner(Contact, int pair);
 PetscErrorCode      ContactPairText(Contact, int pair, char *text, size_t size);
 PetscErrorCode      ContactPairSurface(Contact, int pair, const MeshGroup **slave, PetscReal *mean_face_size);
 PetscErrorCode      ContactPairTermStiffness(Contact, int pair, PetscReal *stiffness);

@@ -320,6 +320,7 @@ PetscErrorCode ContactPairDestroy(ContactPair *pair)
   PetscCall(AndersonDestroy(&pair->mixing));
   PetscCall(PetscFree2(pair->held, pair->predicted));
   PetscCall(FrictionDestroy(&pair->friction));
+  PetscCall(PetscFree(pair->carried));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

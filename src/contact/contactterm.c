@@ -196,7 +196,7 @@ LawState ContactTermState(const ContactPair *pair, PetscInt c, PetscReal t, Pets
 {
   return (LawState){.penalty    = PetscMin(most, pair->trial_factor * pair->now.penalty[c]),
                     .offset     = ContactTermOffset(pair, c, t),
-                    .multiplier = pair->now.multiplier[c]};
+                    .multiplier = pair->now.multiplier[c] - (pair->carried ? pair->carried[c] : 0)};
 }
 
 /* Sets the law of an open term during a linear step. A term that was closed stays closed, with pressure or tension. A

@@ -37,8 +37,8 @@ static double PointVolume(const Element *e, int p, int dim, Geometry geometry, c
   return geometry == GEOMETRY_AXISYMMETRIC ? volume * two_pi * Radius(e, p, dim, X) : volume;
 }
 
-/* Computes the Cauchy stress P F^T / det F. With small strains it is P itself. */
-static void CauchyStress(const double H[9], const double P[9], int finite, double stress[6])
+/* Computes the Cauchy stress (P F^T + pressure) / det F. With small strains it is P + pressure. */
+static void CauchyStress(const double H[9], const double P[9], double pressure, int finite, double stress[6])
 {
   static const int component[6][2] = {{0, 0}, {1, 1}, {2, 2}, {0, 1}, {1, 2}, {0, 2}};
   double           F[9], determinant;
@@ -49,7 +49,9 @@ static void CauchyStress(const double H[9], const double P[9], int finite, doubl
   for (int c = 0; c < 6; c++) {
     const int i = component[c][0], j = component[c][1];
 
-    stress[c] = (P[3 * i] * F[3 * j] + P[3 * i + 1] * F[3 * j + 1] + P[3 * i + 2] * F[3 * j + 2]) / determinant;
+    stress[c] =
+      (P[3 * i] * F[3 * j] + P[3 * i + 1] * F[3 * j + 1] + P[3 * i + 2] * F[3 * j + 2] + (i == j) * pressure) /
+      determinant;
   }
 }
 
@@ -62,27 +64,30 @@ static void CauchyStress(const double H[9], const double P[9], int finite, doubl
 + kernel    - element type, geometry, kinematics and law
 . X         - reference coordinates (length) [nodes][dim]; axisymmetric: X[.][0] is the radius
 . u         - displacements (length) [nodes][dim]
-- constants - of the law [n_constants]
+. constants  - of the law [n_constants]
+- multiplier - of a mixed element (stress times root of volume) [pressures]; NULL: they are 0
 
   Output Parameters:
 + stress - xx yy zz xy yz xz at each point [points][6]; axisymmetric: rr zz hoop rz 0 0
 - volume - reference volume of each point [points]
 @*/
 void ElementPointStress(const KernelCase *kernel, const double *X, const double *u, const double *constants,
-                        double *stress, double *volume)
+                        const double *multiplier, double *stress, double *volume)
 {
   const Element *e      = ElementGet(kernel->type);
   const int      finite = kernel->kinematics == KINEMATICS_FINITE;
   const int      n      = kernel->n_constants ? kernel->n_constants : MaterialGetLaw(kernel->law)->constants;
-  double         H[ELEMENT_MAX_POINTS * 9];
+  double         H[ELEMENT_MAX_POINTS * 9], pressure[ELEMENT_MAX_POINTS], used[MATERIAL_MAX_CONSTANTS];
 
-  ElementPointGradient(kernel, X, u, constants, H);
+  for (int k = 0; k < n; k++) used[k] = constants[k];
+  if (kernel->formulation == FORMULATION_MIXED) used[0] = 0; /* the pressure takes the place of this part */
+  ElementPointState(kernel, X, u, constants, multiplier, H, pressure);
   for (int p = 0; p < e->points; p++) {
     double J[3][3], P[9];
 
     volume[p] = PointVolume(e, p, e->dim, kernel->geometry, X, J);
-    MaterialEvaluate(kernel->law, n, constants, &H[9 * p], NULL, P, NULL);
-    CauchyStress(&H[9 * p], P, finite, &stress[6 * p]);
+    MaterialEvaluate(kernel->law, n, used, &H[9 * p], NULL, P, NULL);
+    CauchyStress(&H[9 * p], P, pressure[p], finite, &stress[6 * p]);
   }
 }
 
@@ -95,19 +100,20 @@ void ElementPointStress(const KernelCase *kernel, const double *X, const double 
 + kernel    - element type, geometry, kinematics and law
 . X         - reference coordinates (length) [nodes][dim]; axisymmetric: X[.][0] is the radius
 . u         - displacements (length) [nodes][dim]
-- constants - of the law [n_constants]
+. constants  - of the law [n_constants]
+- multiplier - of a mixed element (stress times root of volume) [pressures]; NULL: they are 0
 
   Output Parameters:
 + stress - xx yy zz xy yz xz; axisymmetric: rr zz hoop rz 0 0
 - volume - reference volume; axisymmetric: over 360 degrees
 @*/
 void ElementStress(const KernelCase *kernel, const double *X, const double *u, const double *constants,
-                   double stress[6], double *volume)
+                   const double *multiplier, double stress[6], double *volume)
 {
   const int points = ElementGet(kernel->type)->points;
   double    point_stress[ELEMENT_MAX_POINTS * 6], point_volume[ELEMENT_MAX_POINTS];
 
-  ElementPointStress(kernel, X, u, constants, point_stress, point_volume);
+  ElementPointStress(kernel, X, u, constants, multiplier, point_stress, point_volume);
   *volume = 0;
   for (int c = 0; c < 6; c++) stress[c] = 0;
   for (int p = 0; p < points; p++) {
@@ -126,25 +132,36 @@ void ElementStress(const KernelCase *kernel, const double *X, const double *u, c
 + kernel    - element type, geometry, kinematics and law
 . X         - reference coordinates (length) [nodes][dim]; axisymmetric: X[.][0] is the radius
 . u         - displacements (length) [nodes][dim] of an element that is not inverted
-- constants - of the law
+. constants  - of the law
+- multiplier - of a mixed element [pressures]; NULL: they are 0
 
   Note:
-  It is 0 with small strains and with laws that are not separable, see ElasticLaw.
+  It is 0 with small strains and with laws that are not separable, see ElasticLaw. With multipliers it has a constant
+  part, the same at every u.
 @*/
-double ElementVolumeEnergy(const KernelCase *kernel, const double *X, const double *u, const double *constants)
+double ElementVolumeEnergy(const KernelCase *kernel, const double *X, const double *u, const double *constants,
+                           const double *multiplier)
 {
+  const int      mixed  = kernel->formulation == FORMULATION_MIXED;
   const Element *e      = ElementGet(kernel->type);
-  double         energy = 0, H[ELEMENT_MAX_POINTS * 9];
+  double         energy = 0, modulus = constants[0], H[ELEMENT_MAX_POINTS * 9], pressure[ELEMENT_MAX_POINTS];
 
   if (!MaterialGetLaw(kernel->law)->separable || kernel->kinematics == KINEMATICS_SMALL) return 0;
-  ElementPointGradient(kernel, X, u, constants, H);
+  if (mixed) {
+    VolumeModuli moduli;
+
+    ElementVolumeModuli(kernel, constants, 1, &moduli);
+    modulus = moduli.kappa + moduli.local;
+  }
+  ElementPointState(kernel, X, u, constants, multiplier, H, pressure);
   for (int p = 0; p < e->points; p++) {
     const double *h = &H[9 * p];
     double        J[3][3], log_J;
 
     log_J = log((1 + h[0]) * ((1 + h[4]) * (1 + h[8]) - h[5] * h[7]) - h[1] * (h[3] * (1 + h[8]) - h[5] * h[6]) +
                 h[2] * (h[3] * h[7] - (1 + h[4]) * h[6]));
-    energy += constants[0] / 2 * log_J * log_J * PointVolume(e, p, e->dim, kernel->geometry, X, J);
+    energy += (mixed ? pressure[p] * pressure[p] / modulus : modulus * log_J * log_J) / 2 *
+              PointVolume(e, p, e->dim, kernel->geometry, X, J);
   }
   return energy;
 }
@@ -234,4 +251,46 @@ double CellVolume(ElementType type, int dim, Geometry geometry, const double *X)
 
   for (int p = 0; p < e->points; p++) volume += PointVolume(e, p, dim, geometry, X, J);
   return volume;
+}
+
+/*@
+  CellVolumeGradient - computes the derivatives of the volume of one cell by the coordinates of its nodes.
+
+  Not collective
+
+  Input Parameters:
++ type     - element type of a cell
+. dim      - its dimension
+. geometry - solid, plane strain or axisymmetric
+- X        - reference coordinates (length) [nodes][dim]
+
+  Output Parameter:
+. gradient - [nodes][dim]
+@*/
+void CellVolumeGradient(ElementType type, int dim, Geometry geometry, const double *X, double *gradient)
+{
+  const Element *e = ElementGet(type);
+
+  for (int k = 0; k < e->nodes * dim; k++) gradient[k] = 0;
+  for (int p = 0; p < e->points; p++) {
+    double       J[3][3] = {{0}};
+    const double volume  = PointVolume(e, p, dim, geometry, X, J),
+                 ring    = geometry == GEOMETRY_AXISYMMETRIC ? two_pi * Radius(e, p, dim, X) : 1;
+
+    if (dim == 2) J[2][2] = 1;
+    for (int a = 0; a < e->nodes; a++) {
+      for (int m = 0; m < dim; m++) {
+        const int m1 = (m + 1) % 3, m2 = (m + 2) % 3;
+
+        for (int k = 0; k < dim; k++) { /* the cofactors of J */
+          const int k1 = (k + 1) % 3, k2 = (k + 2) % 3;
+
+          gradient[a * dim + m] +=
+            e->weight[p] * ring * (J[k1][m1] * J[k2][m2] - J[k1][m2] * J[k2][m1]) * e->dN[p][a][k];
+        }
+        if (geometry == GEOMETRY_AXISYMMETRIC && m == 0)
+          gradient[a * dim] += volume * e->N[p][a] / Radius(e, p, dim, X);
+      }
+    }
+  }
 }

@@ -1,27 +1,22 @@
 /* Batched element kernels: full integration, and the choice of the kernel for every formulation. */
 #include "elementbatch.h"
+#include <math.h>
 #include <stddef.h>
 
-const char *const Formulations[] = {"full", "enhanced", "fbar", NULL};
+/* Largest part kappa of the modulus of the volume over the shear modulus that mixed elements have without multipliers.
+   A solve leaves a relative error of 1 / 1e4 in the volume strains where the multipliers are those of no load, and each
+   change of the multipliers makes it 1e4 times smaller. The condition number of the tangent grows with kappa, and its
+   round-off is small with 1e4 still. */
+static const double largest_kappa = 1e4;
+/* Part of the modulus of the volume that mixed elements with linear pressures evaluate at their points, over the shear
+   modulus and over the modulus itself. Where the mean stress is a tension p, changes of the volume inside an element
+   that the projection does not see are unstable from p = mu + part on, although the solid is stable. Rubber tears at
+   tensions of 2.5 mu already (Gent and Lindley 1959). The part is that of a solid with nu = 0.45, which does not lock
+   in these elements; at the limit of fine meshes it makes no difference. A tenth keeps moderate moduli projected too.
+ */
+static const double largest_local = 10, local_share = 0.1;
 
-/* Puts the extrapolated pressure into the geometric part of the law's tangent A at point q, whose gradient is H. */
-LANES_INLINE void ExtrapolatePressure(const BatchCall *call, const int n, const int dim, const int hoop, int q,
-                                      const ChunkPoints *c, const Lanes H[9], const Lanes *dilatation,
-                                      Lanes A[MATERIAL_TANGENT_SIZE])
-{
-  Lanes dilatation_0, change, excess, C[9];
-
-  PointReference(call, n, dim, hoop, q, c, H, &dilatation_0, &change);
-  ExcessPressure(call, dilatation, &dilatation_0, &change, &excess);
-  Cofactors(H, C);
-  for (int lane = 0; lane < LANES; lane++) {
-    const double J = 1 + FlooredDilatation((*dilatation)[lane]);
-
-    excess[lane] /= J * J; /* F^-T = C / J enters twice */
-  }
-  for (int r = 0, k = 0; r < 9; r++)
-    for (int s = r; s < 9; s++, k++) A[k] -= excess * C[3 * (r / 3) + s % 3] * C[3 * (s / 3) + r % 3];
-}
+const char *const Formulations[] = {"full", "enhanced", "fbar", "mixed", NULL};
 
 /* Computes energy, force and tangent of the first LANES elements of the arrays. n, points, dim and hoop are constants
    of the instance. */
@@ -46,7 +41,12 @@ LANES_INLINE void Batch(const BatchCall *call, const int n, const int points, co
       MaterialDilatation(H, &dilatation);
       KeepLeastJ(call, &dilatation);
       PointLaw(call, H, &dilatation, W ? &energy : NULL, P, K ? c.A[q] : NULL);
-      if (K && call->u_0) ExtrapolatePressure(call, n, dim, hoop, q, &c, H, &dilatation, c.A[q]);
+      if (K && call->u_0) {
+        Lanes H_0[9];
+
+        PointDisplacementGradient(n, dim, hoop, q, call->u_0, &c, H_0);
+        PointExtrapolate(call, H, &dilatation, H_0, c.A[q]);
+      }
       if (W) LANE(W, 0) += energy * volume;
       if (call->H) StorePoint(call, first + q, H);
       for (int r = 0; r < 9; r++) P[r] *= volume;
@@ -90,18 +90,23 @@ static BatchFn *const full_batches[ELEMENT_TYPES][2] = {
 static BatchFn *GetBatch(const KernelCase *kernel)
 {
   const int axisymmetric = kernel->geometry == GEOMETRY_AXISYMMETRIC;
+  const int splits       = kernel->kinematics == KINEMATICS_SMALL || MaterialGetLaw(kernel->law)->separable;
 
   switch (kernel->formulation) {
   case FORMULATION_ENHANCED: return enhanced_batches[kernel->type][axisymmetric];
   case FORMULATION_FBAR: return mean_dilatation_batches[kernel->type][axisymmetric];
+  case FORMULATION_MIXED: return splits ? mixed_batches[kernel->type][axisymmetric] : NULL;
   default: return full_batches[kernel->type][axisymmetric];
   }
 }
 
 /*@
-  ElementKernelExists - says whether there is a kernel. The formulations other than full exist for quad4 and hex8 only.
+  ElementKernelExists - says whether there is a kernel. Enhanced and fbar exist for quad4 and hex8 only.
 
   Not collective
+
+  Note:
+  Mixed exists for all cells but tri3 and tet4, with separable laws, see material.h. With small strains all laws are.
 @*/
 int ElementKernelExists(const KernelCase *kernel)
 {
@@ -109,17 +114,20 @@ int ElementKernelExists(const KernelCase *kernel)
 }
 
 /*@
-  ElementExtrapolates - says whether the tangent depends on a PressureReference.
+  ElementExtrapolates - says whether the tangent depends on a StressReference.
 
   Not collective
 
   Note:
-  It does with separable laws, see ElasticLaw. Enhanced elements take no reference.
+  It does with laws that extrapolate their stress, and with separable laws, of which the pressure is extrapolated. With
+  formulation fbar it does with the latter only.
 @*/
 int ElementExtrapolates(const KernelCase *kernel)
 {
-  return kernel->kinematics == KINEMATICS_FINITE && kernel->formulation != FORMULATION_ENHANCED &&
-         MaterialGetLaw(kernel->law)->separable;
+  const ElasticLaw *law = MaterialGetLaw(kernel->law);
+
+  if (kernel->kinematics == KINEMATICS_SMALL) return 0;
+  return law->separable || (law->extrapolate && kernel->formulation != FORMULATION_FBAR);
 }
 
 /* Sets what all parts of a batch have in common. */
@@ -134,6 +142,61 @@ static BatchCall StartCall(const KernelCase *kernel, const Lanes *constants)
                      .constants   = constants};
 }
 
+/* Splits the modulus of the volume. A modulus that is not positive is projected as a whole. */
+static VolumeModuli SplitVolume(const KernelCase *kernel, double modulus, double mu)
+{
+  VolumeModuli split = {.mu = mu};
+
+  if (ElementPressures(kernel) > 1) split.local = fmax(0, fmin(largest_local * mu, local_share * modulus));
+  split.projected = modulus - split.local;
+  split.kappa     = fmin(split.projected, largest_kappa * mu);
+  return split;
+}
+
+/*@
+  ElementVolumeModuli - computes the parts of the modulus of the volume in mixed elements.
+
+  Not collective
+
+  Input Parameters:
++ kernel    - element type, law and number of constants
+. constants - of the law [n][stride]; the first is the modulus, infinite in incompressible materials
+- stride    - from one constant to the next
+
+  Output Parameter:
+. moduli - its parts
+@*/
+void ElementVolumeModuli(const KernelCase *kernel, const double *constants, int stride, VolumeModuli *moduli)
+{
+  const ElasticLaw *law = MaterialGetLaw(kernel->law);
+  const int         n   = kernel->n_constants ? kernel->n_constants : law->constants;
+  Lanes             lanes_constants[MATERIAL_MAX_CONSTANTS], shear;
+
+  for (int k = 0; k < n; k++) lanes_constants[k] = (Lanes){0} + constants[k * stride];
+  law->shear(n, lanes_constants, &shear);
+  *moduli = SplitVolume(kernel, constants[0], shear[0]);
+}
+
+/* Sets the constants of LANES elements. Those of mixed elements have only the local part of the modulus of the volume.
+ */
+static void SetConstants(const KernelCase *kernel, const double *constants, int stride, BatchCall *call,
+                         Lanes lanes_constants[MATERIAL_MAX_CONSTANTS])
+{
+  for (int k = 0; k < call->n_constants; k++) {
+    for (int lane = 0; lane < LANES; lane++)
+      lanes_constants[k][lane] = constants[k * stride + (stride == 1 ? 0 : lane)];
+  }
+  if (kernel->formulation != FORMULATION_MIXED) return;
+  call->law->shear(call->n_constants, lanes_constants, &call->mu);
+  for (int lane = 0; lane < LANES; lane++) {
+    const VolumeModuli split = SplitVolume(kernel, lanes_constants[0][lane], call->mu[lane]);
+
+    call->kappa[lane]        = split.kappa;
+    call->rest[lane]         = 1 - split.kappa / split.projected;
+    lanes_constants[0][lane] = split.local;
+  }
+}
+
 /*@
   ElementKernel - computes energy, internal force and tangent of a batch of KERNEL_LANES elements, total Lagrangian.
 
@@ -143,8 +206,9 @@ static BatchCall StartCall(const KernelCase *kernel, const Lanes *constants)
 + kernel    - element type, geometry, kinematics, law and formulation of the batch
 . X         - reference coordinates (length) [nodes][dim][lanes]; axisymmetric: X[.][0] is the radius
 . u         - displacements (length) [nodes][dim][lanes]
-. reference - the state from which K extrapolates the pressure, u as above; NULL: K has the pressure of u
-- constants - of the law [n_constants][lanes]
+. reference  - the state from which K extrapolates the pressure, u as above; NULL: K has the pressure of u
+. constants  - of the law [n_constants][lanes]
+- multiplier - of mixed elements (stress times root of volume) [pressures][lanes]; NULL: they are 0
 
   Output Parameters:
 + W - strain energy [lanes], or NULL
@@ -162,8 +226,8 @@ static BatchCall StartCall(const KernelCase *kernel, const Lanes *constants)
   Bonet and Wood, "Nonlinear Continuum Mechanics for Finite Element Analysis", sections 8.4 and 8.5
   (reference configuration)
 @*/
-void ElementKernel(const KernelCase *kernel, const double *X, const double *u, const PressureReference *reference,
-                   const double *constants, double *W, double *f, double *K, double *J)
+void ElementKernel(const KernelCase *kernel, const double *X, const double *u, const StressReference *reference,
+                   const double *constants, const double *multiplier, double *W, double *f, double *K, double *J)
 {
   const int extrapolates = reference && ElementExtrapolates(kernel);
   BatchFn  *batch        = GetBatch(kernel);
@@ -171,42 +235,141 @@ void ElementKernel(const KernelCase *kernel, const double *X, const double *u, c
   BatchCall call = StartCall(kernel, lanes_constants);
 
   call.rate = extrapolates ? reference->rate : 0;
+  call.held = extrapolates && reference->held;
   for (int part = 0; part < KERNEL_LANES; part += LANES) {
-    for (int k = 0; k < call.n_constants; k++) lanes_constants[k] = CONST_LANE(constants + part, k);
-    call.X   = X + part;
-    call.u   = u + part;
-    call.u_0 = extrapolates ? reference->u + part : NULL;
-    call.W   = W ? W + part : NULL;
-    call.f   = f ? f + part : NULL;
-    call.K   = K ? K + part : NULL;
-    call.J   = J + part;
+    SetConstants(kernel, constants + part, KERNEL_LANES, &call, lanes_constants);
+    call.multiplier = multiplier ? multiplier + part : NULL;
+    call.X          = X + part;
+    call.u          = u + part;
+    call.u_0        = extrapolates ? reference->u + part : NULL;
+    call.W          = W ? W + part : NULL;
+    call.f          = f ? f + part : NULL;
+    call.K          = K ? K + part : NULL;
+    call.J          = J + part;
     batch(&call);
   }
 }
 
 /*@
-  ElementPointGradient - computes the displacement gradient at which an element evaluates the law, at its quadrature
-  points.
+  ElementPressures - returns the number of pressures of an element: 0 but for mixed elements.
+
+  Not collective
+
+  Input Parameter:
+. kernel - element type and formulation
+@*/
+int ElementPressures(const KernelCase *kernel)
+{
+  return kernel->formulation == FORMULATION_MIXED ? mixed_pressures[kernel->type] : 0;
+}
+
+/*@
+  ElementDilatation - computes the dilatations of a batch of mixed elements, from which the pressures follow.
 
   Not collective
 
   Input Parameters:
-+ kernel    - element type, geometry, kinematics, law and formulation
-. X         - reference coordinates (length) [nodes][dim]; axisymmetric: X[.][0] is the radius
-. u         - displacements (length) [nodes][dim]
-- constants - of the law [n_constants]
++ kernel     - element type, geometry, kinematics, law and formulation of the batch
+. X          - reference coordinates (length) [nodes][dim][lanes]; axisymmetric: X[.][0] is the radius
+. u          - displacements (length) [nodes][dim][lanes]
+. constants  - of the law [n_constants][lanes]
+- multiplier - (stress times root of volume) [pressures][lanes]; NULL: they are 0
 
   Output Parameter:
-. H - F - 1 at 3 i + I (i: space, I: reference) [points][9]
+. theta - coefficients of the projection of ln J (root of volume) [pressures][lanes]
+
+  Note:
+  The pressure in the element is multiplier + kappa theta, see ElementVolumeModuli(). It is right where it is the
+  modulus of the volume times theta.
 @*/
-void ElementPointGradient(const KernelCase *kernel, const double *X, const double *u, const double *constants,
-                          double *H)
+void ElementDilatation(const KernelCase *kernel, const double *X, const double *u, const double *constants,
+                       const double *multiplier, double *theta)
+{
+  Lanes     lanes_constants[MATERIAL_MAX_CONSTANTS];
+  BatchCall call = StartCall(kernel, lanes_constants);
+  double    J[LANES];
+
+  for (int part = 0; part < KERNEL_LANES; part += LANES) {
+    SetConstants(kernel, constants + part, KERNEL_LANES, &call, lanes_constants);
+    call.X          = X + part;
+    call.u          = u + part;
+    call.J          = J;
+    call.multiplier = multiplier ? multiplier + part : NULL;
+    call.theta      = theta + part;
+    GetBatch(kernel)(&call);
+  }
+}
+
+/*@
+  ElementFollow - computes the multipliers with which a batch of mixed elements has the pressures that extrapolate from
+  an earlier state.
+
+  Not collective
+
+  Input Parameters:
++ kernel     - element type, geometry, kinematics, law and formulation of the batch
+. X          - reference coordinates (length) [nodes][dim][lanes]; axisymmetric: X[.][0] is the radius
+. u          - displacements (length) [nodes][dim][lanes]
+. reference  - the earlier state, u as above
+. constants  - of the law [n_constants][lanes]
+- multiplier - present ones (stress times root of volume) [pressures][lanes]
+
+  Output Parameter:
+. next - multipliers [pressures][lanes]; 0 in elements that have the whole modulus of the volume
+
+  Note:
+  These pressures are those that the mixed method's own Newton iteration has as unknowns.
+@*/
+void ElementFollow(const KernelCase *kernel, const double *X, const double *u, const StressReference *reference,
+                   const double *constants, const double *multiplier, double *next)
+{
+  Lanes     lanes_constants[MATERIAL_MAX_CONSTANTS];
+  BatchCall call = StartCall(kernel, lanes_constants);
+  double    J[LANES];
+
+  call.rate = reference->rate;
+  for (int part = 0; part < KERNEL_LANES; part += LANES) {
+    SetConstants(kernel, constants + part, KERNEL_LANES, &call, lanes_constants);
+    call.X          = X + part;
+    call.u          = u + part;
+    call.u_0        = reference->u + part;
+    call.J          = J;
+    call.multiplier = multiplier + part;
+    call.follow     = next + part;
+    GetBatch(kernel)(&call);
+    for (int k = 0; k < ElementPressures(kernel); k++) LANE(next + part, k) *= call.rest;
+  }
+}
+
+/*@
+  ElementPointState - computes the displacement gradient at which an element evaluates the law, and the pressure of a
+  mixed element, at its quadrature points.
+
+  Not collective
+
+  Input Parameters:
++ kernel     - element type, geometry, kinematics, law and formulation
+. X          - reference coordinates (length) [nodes][dim]; axisymmetric: X[.][0] is the radius
+. u          - displacements (length) [nodes][dim]
+. constants  - of the law [n_constants]
+- multiplier - of a mixed element (stress times root of volume) [pressures]; NULL: they are 0
+
+  Output Parameters:
++ H        - F - 1 at 3 i + I (i: space, I: reference) [points][9]
+- pressure - derivative of the energy of the volume by ln J (stress) [points]; 0 unless mixed
+
+  Note:
+  A mixed element evaluates the law without its modulus of the volume. tri6 and tet10 have other points inside.
+@*/
+void ElementPointState(const KernelCase *kernel, const double *X, const double *u, const double *constants,
+                       const double *multiplier, double *H, double *pressure)
 {
   Lanes     lanes_constants[MATERIAL_MAX_CONSTANTS];
   BatchCall call = StartCall(kernel, lanes_constants);
   const int dofs = call.e->nodes * call.e->dim;
   double    lanes_X[ELEMENT_MAX_NODES * 3 * KERNEL_LANES], lanes_u[ELEMENT_MAX_NODES * 3 * KERNEL_LANES],
-    lanes_H[ELEMENT_MAX_POINTS * 9 * KERNEL_LANES];
+    lanes_H[ELEMENT_MAX_POINTS * 9 * KERNEL_LANES],
+    lanes_pressure[ELEMENT_MAX_POINTS * KERNEL_LANES] = {0}, lanes_multiplier[MIXED_PRESSURES * KERNEL_LANES];
   double J[LANES];
 
   for (int lane = 0; lane < LANES; lane++) {
@@ -214,12 +377,17 @@ void ElementPointGradient(const KernelCase *kernel, const double *X, const doubl
       lanes_X[k * KERNEL_LANES + lane] = X[k];
       lanes_u[k * KERNEL_LANES + lane] = u[k];
     }
+    for (int k = 0; k < ElementPressures(kernel); k++)
+      lanes_multiplier[k * KERNEL_LANES + lane] = multiplier ? multiplier[k] : 0;
   }
-  for (int k = 0; k < call.n_constants; k++) lanes_constants[k] = (Lanes){0} + constants[k];
-  call.X = lanes_X;
-  call.u = lanes_u;
-  call.J = J;
-  call.H = lanes_H;
+  SetConstants(kernel, constants, 1, &call, lanes_constants);
+  call.X          = lanes_X;
+  call.u          = lanes_u;
+  call.J          = J;
+  call.H          = lanes_H;
+  call.multiplier = lanes_multiplier;
+  call.pressure   = lanes_pressure;
   GetBatch(kernel)(&call);
   for (int k = 0; k < call.e->points * 9; k++) H[k] = lanes_H[k * KERNEL_LANES];
+  for (int q = 0; q < call.e->points; q++) pressure[q] = lanes_pressure[q * KERNEL_LANES];
 }

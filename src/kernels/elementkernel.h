@@ -4,22 +4,27 @@
    ElementKernel() treats a batch of KERNEL_LANES elements of one type, law, geometry, kinematics and formulation. Its
    arrays are [node][dim][lane], so that the inner loops vectorise. A short batch repeats its last element.
    ElementKernelExists() tells whether there is a kernel for a case. The other functions treat one cell or one face:
-   ElementPointGradient(), ElementPointStress(), ElementStress() and ElementVolumeEnergy() evaluate a state,
+   ElementPointState(), ElementPointStress(), ElementStress() and ElementVolumeEnergy() evaluate a state,
    ElementQuality() and CellVolume() a shape, FaceLoadKernel() and BodyForceKernel() the loads, FaceAreaKernel() the
    areas of a face's nodes.
 
-   K may extrapolate the pressure of its geometric part from an earlier state (pressurereference.h), where
+   K may extrapolate the stress of its geometric part from an earlier state (stressreference.h), where
    ElementExtrapolates().
+
+   ElementPressures(), ElementVolumeModuli(), ElementDilatation() and ElementFollow() are for mixed elements, whose
+   multipliers the caller holds.
 
    Source of the forms: Bonet and Wood, "Nonlinear Continuum Mechanics for Finite Element Analysis". */
 #pragma once
 #include "kernels/element.h"
 #include "kernels/formulation.h"
 #include "kernels/material.h"
-#include "kernels/pressurereference.h"
+#include "kernels/stressreference.h"
 
 /* Number of elements in a batch. It must be a multiple of LANES, which is 8 at most. */
 enum { KERNEL_LANES = 8 };
+/* The largest number of pressures of a mixed element: a linear pressure in space */
+enum { MIXED_PRESSURES = 4 };
 
 typedef struct {
   ElementType type;
@@ -30,16 +35,31 @@ typedef struct {
   int         n_constants; /* of the law; 0: as many as MaterialGetLaw() says */
 } KernelCase;
 
-void   ElementKernel(const KernelCase *, const double *X, const double *u, const PressureReference *,
-                     const double *constants, double *W, double *f, double *K, double *J);
+/* Parts of the modulus of the volume in a mixed element (stress). local acts at the points, projected on the mean that
+   the pressure's shape functions see. kappa is the part of projected that acts without multipliers; where it is the
+   whole, the multipliers remain 0. mu is the shear modulus. */
+typedef struct {
+  double local, projected, kappa, mu;
+} VolumeModuli;
+
+void   ElementKernel(const KernelCase *, const double *X, const double *u, const StressReference *,
+                     const double *constants, const double *multiplier, double *W, double *f, double *K, double *J);
 int    ElementKernelExists(const KernelCase *);
 int    ElementExtrapolates(const KernelCase *);
-void   ElementPointGradient(const KernelCase *, const double *X, const double *u, const double *constants, double *H);
-void   ElementPointStress(const KernelCase *, const double *X, const double *u, const double *constants, double *stress,
-                          double *volume);
-void   ElementStress(const KernelCase *, const double *X, const double *u, const double *constants, double stress[6],
-                     double *volume);
-double ElementVolumeEnergy(const KernelCase *, const double *X, const double *u, const double *constants);
+void   ElementPointState(const KernelCase *, const double *X, const double *u, const double *constants,
+                         const double *multiplier, double *H, double *pressure);
+void   ElementPointStress(const KernelCase *, const double *X, const double *u, const double *constants,
+                          const double *multiplier, double *stress, double *volume);
+void   ElementStress(const KernelCase *, const double *X, const double *u, const double *constants,
+                     const double *multiplier, double stress[6], double *volume);
+int    ElementPressures(const KernelCase *);
+void   ElementVolumeModuli(const KernelCase *, const double *constants, int stride, VolumeModuli *);
+void   ElementFollow(const KernelCase *, const double *X, const double *u, const StressReference *,
+                     const double *constants, const double *multiplier, double *next);
+void   ElementDilatation(const KernelCase *, const double *X, const double *u, const double *constants,
+                         const double *multiplier, double *theta);
+double ElementVolumeEnergy(const KernelCase *, const double *X, const double *u, const double *constants,
+                           const double *multiplier);
 double ElementQuality(ElementType, int dim, const double *X);
 
 /* The loads on a face. A dead pressure acts along the reference normal on the reference area. A follower pressure acts
@@ -51,3 +71,4 @@ void   FaceLoadKernel(ElementType face, int dim, Geometry, FaceLoad, const doubl
 void   BodyForceKernel(ElementType, int dim, Geometry, const double *X, const double *value, int stride, double *f);
 void   FaceAreaKernel(ElementType face, int dim, Geometry, const double *X, double *area, double *normal);
 double CellVolume(ElementType, int dim, Geometry, const double *X);
+void   CellVolumeGradient(ElementType, int dim, Geometry, const double *X, double *gradient);

@@ -338,6 +338,22 @@ LANES_INLINE void Condense(const int dofs, const int modes, Lanes Kbb[MAX_MODES]
   }
 }
 
+/* Computes the displacement gradients at the points of the state from which stresses are extrapolated, with its modes.
+ */
+LANES_INLINE void EarlierGradients(const BatchCall *call, const int n, const int points, const int dim, const int hoop,
+                                   Lanes H_0[MAX_POINTS][9])
+{
+  BatchCall earlier = *call;
+  double    J[LANES];
+  Enhanced  x;
+
+  earlier.u = call->u_0;
+  earlier.J = J;
+  Prepare(&earlier, n, points, dim, hoop, &x);
+  SolveModes(&earlier, points, dim, hoop, &x);
+  for (int q = 0; q < points; q++) PointGradient(dim, hoop, &x, q, H_0[q]);
+}
+
 /* Computes energy, force and tangent, and condenses the modes. n, points, dim and hoop are constants of the instance.
  */
 LANES_INLINE void Batch(const BatchCall *call, const int n, const int points, const int dim, const int hoop)
@@ -345,6 +361,7 @@ LANES_INLINE void Batch(const BatchCall *call, const int n, const int points, co
   double *const W = call->W, *const f = call->f, *const K = call->K;
   const Lanes zero                      = {0};
   Lanes       Kbb[MAX_MODES][MAX_MODES] = {{{0}}}, Kub[MAX_NODES * 3][MAX_MODES] = {{{0}}};
+  Lanes       H_0[MAX_POINTS][9];
   Enhanced    x;
 
   if (W) LANE(W, 0) = zero;
@@ -352,6 +369,7 @@ LANES_INLINE void Batch(const BatchCall *call, const int n, const int points, co
   StartLeastJ(call);
   Prepare(call, n, points, dim, hoop, &x);
   SolveModes(call, points, dim, hoop, &x);
+  if (K && call->u_0) EarlierGradients(call, n, points, dim, hoop, H_0);
   for (int q = 0; q < points; q++) {
     Lanes H[9], P[9], T[MAX_ROWS][MAX_MODES], dilatation, energy;
 
@@ -359,6 +377,7 @@ LANES_INLINE void Batch(const BatchCall *call, const int n, const int points, co
     MaterialDilatation(H, &dilatation);
     KeepLeastJ(call, &dilatation);
     PointLaw(call, H, &dilatation, W ? &energy : NULL, P, K ? x.c.A[q] : NULL);
+    if (K && call->u_0) PointExtrapolate(call, H, &dilatation, H_0[q], x.c.A[q]);
     if (W) LANE(W, 0) += energy * x.volume[q];
     if (call->H) StorePoint(call, q, H);
     for (int r = 0; r < 9; r++) P[r] *= x.volume[q];

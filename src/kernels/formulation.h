@@ -4,6 +4,6 @@
 
 typedef enum { GEOMETRY_SOLID, GEOMETRY_PLANE_STRAIN, GEOMETRY_AXISYMMETRIC } Geometry;
 typedef enum { KINEMATICS_SMALL, KINEMATICS_FINITE } Kinematics;
-typedef enum { FORMULATION_FULL, FORMULATION_ENHANCED, FORMULATION_FBAR, FORMULATIONS } Formulation;
+typedef enum { FORMULATION_FULL, FORMULATION_ENHANCED, FORMULATION_FBAR, FORMULATION_MIXED, FORMULATIONS } Formulation;
 
 extern const char *const Formulations[]; /* words of the formulations in a scene, NULL-terminated */

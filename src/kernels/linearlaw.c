@@ -29,4 +29,8 @@ static void Evaluate(const Lanes H[9], const Lanes *dilatation, int n, const Lan
   }
 }
 
-const ElasticLaw MaterialLaw_Linear = {.evaluate = Evaluate, .shear = MaterialLameShear, .constants = 2};
+const ElasticLaw MaterialLaw_Linear = {.evaluate  = Evaluate,
+                                       .shear     = MaterialLameShear,
+                                       .constants = 2,
+                                       .keys      = {"mu"},
+                                       .required  = 1};

@@ -2,6 +2,7 @@
 #include "kernels/material.h"
 #include "lameconstants.h"
 #include <stddef.h>
+#include <string.h>
 
 const char *const              MaterialLaws[MATERIAL_LAWS + 1] = {ELASTIC_LAWS(CHOICE_NAME) NULL};
 static const ElasticLaw *const laws[MATERIAL_LAWS]             = {ELASTIC_LAWS(CHOICE_POINTER)};
@@ -34,12 +35,22 @@ double MaterialShear(const Material *material)
 }
 
 /*@
-  MaterialFromModuli - makes a material of a law whose constants are Lame's.
+  MaterialHasModuli - tells whether the shear modulus is a law's only own constant, so that E may be given instead.
+
+  Not collective
+@*/
+int MaterialHasModuli(MaterialLaw law)
+{
+  return !strcmp(laws[law]->keys[0], "mu") && !laws[law]->keys[1];
+}
+
+/*@
+  MaterialFromModuli - makes a material of a law whose only own constant is the shear modulus.
 
   Not collective
 
   Input Parameters:
-+ law - MATERIAL_LINEAR, MATERIAL_SVK or MATERIAL_NEO_HOOKEAN
++ law - a law of MaterialHasModuli()
 . E   - Young's modulus (stress)
 - nu  - Poisson's ratio, -1 < nu <= 1/2
 @*/
@@ -48,7 +59,54 @@ Material MaterialFromModuli(MaterialLaw law, double E, double nu)
   Material material = {.law = law, .n_constants = 2, .E = E, .nu = nu};
 
   MaterialLame(E, nu, &material.constants[0], &material.constants[1]);
+  if (laws[law]->isochoric) material.constants[0] = MaterialBulk(material.constants[1], nu);
   return material;
+}
+
+/*@
+  MaterialFromConstants - makes a material without its volume part, which MaterialSetBulk() sets.
+
+  Not collective
+
+  Input Parameters:
++ law - the law
+. n   - number of its own constants
+- own - the constants
+@*/
+Material MaterialFromConstants(MaterialLaw law, int n, const double own[])
+{
+  Material material = {.law = law, .n_constants = n + 1};
+
+  for (int k = 0; k < n; k++) material.constants[k + 1] = own[k];
+  return material;
+}
+
+/*@
+  MaterialSetBulk - sets the bulk modulus of the undeformed state, and the moduli that follow.
+
+  Not collective
+
+  Input Parameters:
++ material - of a law with a shear modulus above 0
+- K        - bulk modulus (stress), or INFINITY if the material is incompressible
+@*/
+void MaterialSetBulk(Material *material, double K)
+{
+  const double mu = MaterialShear(material), ratio = mu / K; /* 0 if incompressible */
+
+  material->constants[0] = laws[material->law]->isochoric ? K : K - 2 * mu / 3;
+  material->E            = 9 * mu / (3 + ratio);
+  material->nu           = (3 - 2 * ratio) / (2 * (3 + ratio));
+}
+
+/*@
+  MaterialBulk - returns the bulk modulus that belongs to a shear modulus and Poisson's ratio, INFINITY for 1/2.
+
+  Not collective
+@*/
+double MaterialBulk(double mu, double nu)
+{
+  return 2 * mu * (1 + nu) / (3 * (1 - 2 * nu));
 }
 
 /*@

@@ -16,13 +16,16 @@ enum {
   MATERIAL_MAX_CONSTANTS = 33
 };
 
+#define MATERIAL_MAX_KEYS 3
+#define MATERIAL_TERMS    "terms"
+
 /* Smallest determinant of F at which a law is evaluated; smaller ones are replaced by it. No state with J <= 0 is
    accepted, but a line search evaluates such states and needs finite numbers. The value is far below any J of an
    accepted state. */
 #define MATERIAL_LEAST_J 1e-8
 
-/* E and nu are derived from the constants: the moduli of the undeformed state. An incompressible material has
-   constants[0] = INFINITY and nu = 1/2; only an element that does not evaluate the volume part can treat it. */
+/* E and nu belong to the undeformed state and follow from the constants. An incompressible material has constants[0] =
+   INFINITY and nu = 1/2; only an element that does not evaluate the volume part can treat it. */
 typedef struct {
   MaterialLaw law;
   int         n_constants;
@@ -54,14 +57,25 @@ typedef void MaterialLawFn(const Lanes H[9], const Lanes *dilatation, int n, con
 /* Computes the shear modulus mu of the undeformed state. */
 typedef void MaterialShearFn(int n, const Lanes constants[], Lanes *mu);
 
+/* Puts the stress that extrapolates from an earlier state into the geometric part of the tangent A at H, which on entry
+   is that of evaluate(). H_0 is the displacement gradient of the earlier state. rate is 1: its stress changes linearly
+   on the way, or 0: it does not change. */
+typedef void MaterialExtrapolateFn(const Lanes H[9], const Lanes H_0[9], double rate, const Lanes constants[],
+                                   Lanes A[MATERIAL_TANGENT_SIZE]);
+
 /* A separable law is a sum of constants[0]/2 (ln J)^2 and of a part without constants[0]. Of the others svk has
    constants[0]/2 (tr E)^2 instead, and linear constants[0]/2 (tr e)^2. constants[0] is the first one of Lame's
    constants, or the bulk modulus where the law is isochoric: its other part does not depend on J. */
 typedef struct {
-  MaterialLawFn   *evaluate;
-  MaterialShearFn *shear;
-  int              constants; /* their number; for laws of any number of terms that of one term */
-  int              separable, isochoric;
+  MaterialLawFn         *evaluate;
+  MaterialShearFn       *shear;
+  MaterialExtrapolateFn *extrapolate; /* NULL: the pressure of separable laws is extrapolated, nothing of others */
+  int                    constants;   /* their number; for laws of any number of terms that of one term */
+  int                    separable, isochoric;
+  /* Keys of the own constants in a scene, in their order; the first `required` ones have no default, the others are 0.
+     MATERIAL_TERMS is the key of a list of terms with two constants each. A law whose only key is mu takes E, too. */
+  const char *keys[MATERIAL_MAX_KEYS + 1];
+  int         required;
 } ElasticLaw;
 
 #define MATERIAL_DECLARE(law, word, object) extern const ElasticLaw object;
@@ -69,7 +83,11 @@ ELASTIC_LAWS(MATERIAL_DECLARE)
 #undef MATERIAL_DECLARE
 
 const ElasticLaw *MaterialGetLaw(MaterialLaw);
+int               MaterialHasModuli(MaterialLaw);
 Material          MaterialFromModuli(MaterialLaw, double E, double nu);
+Material          MaterialFromConstants(MaterialLaw, int n, const double own[]);
+void              MaterialSetBulk(Material *, double K);
+double            MaterialBulk(double mu, double nu);
 Material          MaterialLinearise(const Material *);
 void   MaterialEvaluate(MaterialLaw, int n, const double constants[], const double H[9], double *W, double P[9],
                         double A[MATERIAL_TANGENT_SIZE]);

@@ -114,9 +114,10 @@ LANES_INLINE void ExtrapolatePressure(const BatchCall *call, const int n, const 
   Lanes mean_0 = {0}, change = {0}, excess;
 
   for (int q = 0; q < points; q++) {
-    Lanes dilatation_q, change_q;
+    Lanes H_0[9], dilatation_q, change_q;
 
-    PointReference(call, n, dim, hoop, q, &x->c, x->H[q], &dilatation_q, &change_q);
+    PointDisplacementGradient(n, dim, hoop, q, call->u_0, &x->c, H_0);
+    ChangeOfVolume(x->H[q], H_0, &dilatation_q, &change_q);
     mean_0 += x->volume[q] * dilatation_q;
     change += x->volume[q] * change_q;
   }

@@ -58,7 +58,5 @@ static void Evaluate(const Lanes H[9], const Lanes *dilatation, int n, const Lan
   }
 }
 
-const ElasticLaw MaterialLaw_NeoHookean = {.evaluate  = Evaluate,
-                                           .shear     = MaterialLameShear,
-                                           .constants = 2,
-                                           .separable = 1};
+const ElasticLaw MaterialLaw_NeoHookean =
+  {.evaluate = Evaluate, .shear = MaterialLameShear, .constants = 2, .separable = 1, .keys = {"mu"}, .required = 1};

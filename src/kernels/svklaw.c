@@ -49,4 +49,33 @@ static void Evaluate(const Lanes H[9], const Lanes *dilatation, int n, const Lan
   }
 }
 
-const ElasticLaw MaterialLaw_Svk = {.evaluate = Evaluate, .shear = MaterialLameShear, .constants = 2};
+/* Green's strain is quadratic in u. Linearly extrapolated from H_0 it lacks D = (H - H_0)^T (H - H_0) / 2, and
+   unchanged from there it lacks the change of E. The stress lacks what Hooke's law makes of D. */
+static void Extrapolate(const Lanes H[9], const Lanes H_0[9], double rate, const Lanes constants[],
+                        Lanes A[MATERIAL_TANGENT_SIZE])
+{
+  Lanes d[9], D[9], F[9], S[9], trace;
+
+  for (int r = 0; r < 9; r++) d[r] = H[r] - H_0[r];
+  for (int r = 0; r < 9; r++) F[r] = (1 - rate) * (H_0[r] + (double)(r % 4 == 0)); /* D += sym F_0^T d at rate 0 */
+  for (int I = 0; I < 3; I++) {
+    for (int J = I; J < 3; J++)
+      D[3 * I + J] = D[3 * J + I] =
+        0.5 * (d[I] * d[J] + d[3 + I] * d[3 + J] + d[6 + I] * d[6 + J] + F[I] * d[J] + F[3 + I] * d[3 + J] +
+               F[6 + I] * d[6 + J] + d[I] * F[J] + d[3 + I] * F[3 + J] + d[6 + I] * F[6 + J]);
+  }
+  trace = D[0] + D[4] + D[8];
+  for (int r = 0; r < 9; r++) S[r] = 2 * constants[1] * D[r] + constants[0] * trace * (double)(r % 4 == 0);
+  for (int r = 0, k = 0; r < 9; r++) {
+    for (int s = r; s < 9; s++, k++) {
+      if (r / 3 == s / 3) A[k] -= S[3 * (r % 3) + s % 3];
+    }
+  }
+}
+
+const ElasticLaw MaterialLaw_Svk = {.evaluate    = Evaluate,
+                                    .extrapolate = Extrapolate,
+                                    .shear       = MaterialLameShear,
+                                    .constants   = 2,
+                                    .keys        = {"mu"},
+                                    .required    = 1};

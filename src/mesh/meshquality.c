@@ -3,6 +3,7 @@
 #include "base/complaint.h"
 #include "kernels/elementkernel.h"
 #include "mesh/mesh.h"
+#include <math.h>
 #include <string.h>
 
 /* Quality */
@@ -80,16 +81,21 @@ PetscErrorCode MeshCheckFormulations(Mesh mesh, Scene scene)
 
   PetscFunctionBeginUser;
   for (PetscInt c = 0; c < mesh->n_cells; c++) {
-    const SceneBody *body = &scene->bodies[mesh->cell_body[c]];
+    const SceneBody *body  = &scene->bodies[mesh->cell_body[c]];
+    const int        mixed = body->formulation == FORMULATION_MIXED;
 
     if (ElementKernelExists(
-          &(KernelCase){.type = mesh->cell_type[c], .geometry = scene->geometry, .formulation = body->formulation}))
+          &(KernelCase){.type = mesh->cell_type[c], .geometry = scene->geometry, .formulation = body->formulation}) ||
+        (body->chosen && !isinf(body->material.constants[0])))
       continue;
-    Complain(&complaint,
-             "%s: %s is for quad4 and hex8 only; cell %" PetscInt_FMT
-             " of body '%s' is %s, which needs formulation: full",
-             SceneWhere(scene, body->path, "formulation"), Formulations[body->formulation], mesh->cell_tag[c],
-             body->name, ElementGet(mesh->cell_type[c])->name);
+    Complain(&complaint, "%s: %s is %s; cell %" PetscInt_FMT " of body '%s' is %s, which needs %s",
+             SceneWhere(scene, body->path, mixed && body->chosen ? "material.nu" : "formulation"),
+             mixed && body->chosen ? "0.5 needs formulation: mixed, which" : Formulations[body->formulation],
+             mixed ? "not for tri3 and tet4" : "for quad4 and hex8 only", mesh->cell_tag[c], body->name,
+             ElementGet(mesh->cell_type[c])->name,
+             !mixed         ? "formulation: full"
+             : body->chosen ? "mesh.order: 2, or nu below 0.5"
+                            : "mesh.order: 2, or formulation: full");
   }
   PetscCall(ComplaintRefuse(mesh->comm, &complaint));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -138,7 +138,7 @@ static double StepsRepeat(const RunFigures *figures, char *text)
 {
   const StepperReport *way = figures->run->way;
 
-  if (way->steps_repeated <= ADVICE_REPEATED * PetscMax(way->steps, 1)) return 0;
+  if (way->leaks || way->steps_repeated <= ADVICE_REPEATED * PetscMax(way->steps, 1)) return 0;
   snprintf(text, ADVICE_TEXT, "%lld steps were taken back by the control", (long long)way->steps_repeated);
   return 1;
 }
@@ -251,6 +251,10 @@ static const ChangeKind tries[][ADVICE_CHANGES] = {
                          CHANGE_CHECK},
   [SOLVE_ADRIFT]      = {CHANGE_DISPLACEMENT, CHANGE_SUPPORT, CHANGE_CHECK},
   [SOLVE_WINDOW]      = {CHANGE_RANGE, CHANGE_WIDER_WINDOW, CHANGE_WHEN_STEP, CHANGE_CHECK},
+  [SOLVE_VOLUME]      = {CHANGE_SHORTER_MIN, CHANGE_SHORTER, CHANGE_CHECK},
+  [SOLVE_FLUID]       = {CHANGE_SHORTER_MIN, CHANGE_SHORTER, CHANGE_CHECK},
+  [SOLVE_LEAK]        = {CHANGE_SHORTER_MIN, CHANGE_CHECK},
+  [SOLVE_LEAKED]      = {CHANGE_DISPLACEMENT, CHANGE_CHECK},
   [SOLVE_NAN]         = {CHANGE_SHORTER_MIN, CHANGE_SHORTER, CHANGE_CHECK}};
 
 /* Does a line name a change already? */

@@ -105,6 +105,19 @@ static void PrintPenaltyError(const PairFigures *pair, FILE *stream)
   fprintf(stream, "\n");
 }
 
+/* Prints where a fluid is, and when it leaked. */
+static void PrintFluid(const FluidReport *fluid, FILE *stream)
+{
+  fprintf(stream, "fluid    on '%s': pressure %.4g, on %.3g %% of the surface", fluid->load->region,
+          (double)fluid->pressure, 100 * (double)fluid->wetted);
+  if (isfinite((double)fluid->leak_t))
+    fprintf(stream, "; leaks at a pressure of %.4g, on the way to t = %.6g", (double)fluid->leak_pressure,
+            (double)fluid->leak_t);
+  else if (isfinite((double)fluid->barrier))
+    fprintf(stream, "; tight, the contact as it is holds up to %.4g", (double)fluid->barrier);
+  fprintf(stream, "\n");
+}
+
 /* Prints one guard that acted, with a separator before all but the first one. */
 static void PrintGuard(FILE *stream, int *n, long long times, const char *what)
 {
@@ -141,6 +154,7 @@ static void PrintGuards(const RunFigures *figures, FILE *stream)
   PrintGuard(stream, &n, way->turned, "iterations turned downhill:");
   PrintGuard(stream, &n, way->regathered, "lists made anew within steps:");
   PrintGuard(stream, &n, way->adjusted, "steps solved on with new penalties or multipliers:");
+  PrintGuard(stream, &n, way->wetted, "steps solved on with fluids that moved:");
   PrintGuard(stream, &n, missed, "steps beyond g_max after all updates:");
   PrintGuard(stream, &n, clamped, "penalties cut short:");
   PrintGuard(stream, &n, light, "light nodes spared:");
@@ -224,6 +238,7 @@ void EndReportPrint(const RunFigures *figures, FILE *stream)
     PrintPenaltyError(&figures->pairs[p], stream);
     PrintSides(&figures->pairs[p], stream);
   }
+  for (int i = 0; i < figures->n_fluids && figures->last; i++) PrintFluid(&figures->fluids[i], stream);
   PrintGuards(figures, stream);
   if (way->failed.attempts) PrintFailure(figures, stream);
   AdviceGive(figures, PrintAdvice, stream);

@@ -24,7 +24,7 @@ struct _n_Fields {
 };
 
 /* What output.fields may ask for, and what ParaView sees of it */
-enum { SHOW_DISPLACEMENT, SHOW_STRESS, SHOW_CONTACT, SHOW_FRICTION, SHOW_KINDS };
+enum { SHOW_DISPLACEMENT, SHOW_STRESS, SHOW_CONTACT, SHOW_SOLID_PRESSURE, SHOW_FRICTION, SHOW_KINDS };
 static const XdmfArray shown[] = {
   {"displacement", 3, SHOW_DISPLACEMENT},
   {"von_mises", 1, SHOW_STRESS},
@@ -37,6 +37,7 @@ static const XdmfArray shown[] = {
   {"traction", 3, SHOW_FRICTION},
   {"slip", 1, SHOW_FRICTION},
   {"friction", 1, SHOW_FRICTION},
+  {"solid_pressure", 1, SHOW_SOLID_PRESSURE},
 };
 
 /* Contact values of one node: columns of the nodal array that FieldsWriteContact() forms */
@@ -87,6 +88,9 @@ static PetscBool FieldsShows(Fields fields, int kind)
   case SHOW_DISPLACEMENT: return fields->scene->output.displacement ? PETSC_TRUE : PETSC_FALSE;
   case SHOW_STRESS: return fields->scene->output.stress ? PETSC_TRUE : PETSC_FALSE;
   case SHOW_FRICTION: return (PetscBool)(fields->scene->output.contact && ContactHasFriction(fields->model->contact));
+  case SHOW_SOLID_PRESSURE:
+    return (PetscBool)(fields->scene->output.stress &&
+                       ProblemHasFormulation(fields->model->problem, FORMULATION_MIXED));
   default: return fields->scene->output.contact && fields->model->contact ? PETSC_TRUE : PETSC_FALSE;
   }
 }
@@ -298,20 +302,24 @@ static PetscReal VonMises(const PetscReal s[6])
 static PetscErrorCode FieldsWriteStress(Fields fields, hid_t file)
 {
   const Mesh mesh = fields->model->mesh;
-  PetscReal *stress, *weight, *equivalent;
+  PetscReal *stress, *weight, *equivalent, *pressure;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscCalloc3(mesh->n_nodes * 6, &stress, mesh->n_nodes, &weight, mesh->n_nodes, &equivalent));
+  PetscCall(PetscCalloc4(mesh->n_nodes * 6, &stress, mesh->n_nodes, &weight, mesh->n_nodes, &equivalent, mesh->n_nodes,
+                         &pressure));
   PetscCall(ElasticityNodalStress(fields->model->problem->elasticity, fields->model->u, stress, weight));
   PetscCall(MeshSumNodes(mesh, 6, stress));
   PetscCall(MeshSumNodes(mesh, 1, weight));
   for (PetscInt n = 0; n < mesh->n_nodes; n++) {
     for (int i = 0; i < 6; i++) stress[n * 6 + i] /= weight[n];
     equivalent[n] = VonMises(&stress[n * 6]);
+    pressure[n]   = -(stress[n * 6] + stress[n * 6 + 1] + stress[n * 6 + 2]) / 3;
   }
   PetscCall(FieldsWriteNodal(fields, file, "stress", stress, 6, 0, 6));
   PetscCall(FieldsWriteNodal(fields, file, "von_mises", equivalent, 1, 0, 1));
-  PetscCall(PetscFree3(stress, weight, equivalent));
+  if (FieldsShows(fields, SHOW_SOLID_PRESSURE))
+    PetscCall(FieldsWriteNodal(fields, file, "solid_pressure", pressure, 1, 0, 1));
+  PetscCall(PetscFree4(stress, weight, equivalent, pressure));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

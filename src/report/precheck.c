@@ -2,6 +2,7 @@
 #include "report/precheck.h"
 #include "contactreport.h"
 #include "estimate.h"
+#include "lawreport.h"
 #include "bodies/freemodes.h"
 #include "bodies/hinges.h"
 
@@ -34,10 +35,14 @@ static PetscErrorCode PrintEffects(Model model, FILE *stream)
 @*/
 PetscErrorCode PrecheckModel(Model model, PetscBool report, FILE *stream)
 {
+  PetscMPIInt rank;
+
   PetscFunctionBeginUser;
   PetscCall(HingesWarn(model->mesh, model->scene, stderr));
   if (report) {
     PetscCall(PrintEffects(model, stream));
+    PetscCallMPI(MPI_Comm_rank(model->mesh->comm, &rank));
+    if (!rank) LawReport(model->scene, stream);
     PetscCall(FreeModesReport(model->problem->modes, PETSC_TRUE, stream));
     PetscCall(ContactReport(model->contact, stream));
     PetscCall(EstimatePrint(model, stream));

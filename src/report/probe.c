@@ -482,6 +482,41 @@ static PetscErrorCode EvaluatePressureDeviation(Probes probes, Probe *probe, Pet
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+static PetscErrorCode EvaluateFluidFront(Probes probes, Probe *probe, PetscReal *value)
+{
+  const Fluids     fluids = probes->model->problem->fluids;
+  const PetscReal *u;
+  PetscReal        t;
+
+  PetscFunctionBeginUser;
+  PetscCall(ModelGetAccepted(probes->model, &u, &t));
+  PetscCall(FluidFront(fluids, FluidFind(fluids, probe->scene->target), u, probe->scene->axis,
+                       (PetscBool)probe->scene->max_side, value));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode EvaluateFluidArea(Probes probes, Probe *probe, PetscReal *value)
+{
+  const Fluids fluids = probes->model->problem->fluids;
+  FluidReport  report;
+
+  PetscFunctionBeginUser;
+  FluidGetReport(fluids, FluidFind(fluids, probe->scene->target), &report);
+  *value = report.wetted;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode EvaluateSealPressure(Probes probes, Probe *probe, PetscReal *value)
+{
+  const Fluids fluids = probes->model->problem->fluids;
+  FluidReport  report;
+
+  PetscFunctionBeginUser;
+  FluidGetReport(fluids, FluidFind(fluids, probe->scene->target), &report);
+  *value = report.barrier;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 static const ProbeType types[PROBE_KINDS] = {
   [PROBE_REACTION]           = {"reaction", NAMES_SURFACE, 0, NULL, EvaluateReaction},
   [PROBE_CONTACT_FORCE]      = {"contact_force", NAMES_PAIR, 0, NULL, EvaluateContactForce},
@@ -492,6 +527,9 @@ static const ProbeType types[PROBE_KINDS] = {
   [PROBE_PRESSURE_MAX]       = {"pressure_max", NAMES_PAIR, 0, NULL, EvaluatePressureMax},
   [PROBE_PRESSURE_MEAN]      = {"pressure_mean", NAMES_PAIR, 0, NULL, EvaluatePressureMean},
   [PROBE_PRESSURE_DEVIATION] = {"pressure_deviation", NAMES_PAIR, 0, NULL, EvaluatePressureDeviation},
+  [PROBE_FLUID_FRONT]        = {"fluid_front", NAMES_SURFACE, 0, NULL, EvaluateFluidFront},
+  [PROBE_FLUID_AREA]         = {"fluid_area", NAMES_SURFACE, 0, NULL, EvaluateFluidArea},
+  [PROBE_SEAL_PRESSURE]      = {"seal_pressure", NAMES_SURFACE, 0, NULL, EvaluateSealPressure},
 };
 
 /* Resolves what a probe's kind refers to. Collective. */

@@ -101,6 +101,9 @@ PetscErrorCode RunFiguresCollect(Model model, Scene scene, const RunRecord *run,
   PetscCall(SNESGetKSP(model->snes, &ksp));
   PetscCall(DirectSolverServes(ksp, &figures->direct));
   BlasFind(&figures->blas);
+  figures->n_fluids = FluidCount(model->problem->fluids);
+  PetscCall(PetscMalloc1(figures->n_fluids, &figures->fluids));
+  for (int i = 0; i < figures->n_fluids; i++) FluidGetReport(model->problem->fluids, i, &figures->fluids[i]);
   PetscCall(CollectFreeBodies(model, figures));
   PetscCall(PetscCalloc1(figures->n_pairs, &figures->pairs));
   for (int p = 0; p < figures->n_pairs; p++) PetscCall(CollectPair(model, p, &figures->pairs[p]));
@@ -119,5 +122,6 @@ PetscErrorCode RunFiguresDestroy(RunFigures *figures)
 {
   PetscFunctionBeginUser;
   PetscCall(PetscFree(figures->pairs));
+  PetscCall(PetscFree(figures->fluids));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

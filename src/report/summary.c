@@ -104,6 +104,7 @@ static void AddGuards(cJSON *json, const StepperReport *way)
   cJSON_AddNumberToObject(map, "line_search_turned", (double)way->turned);
   cJSON_AddNumberToObject(map, "lists_made_anew", (double)way->regathered);
   cJSON_AddNumberToObject(map, "penalty_solves", (double)way->adjusted);
+  cJSON_AddNumberToObject(map, "fluid_solves", (double)way->wetted);
 }
 
 /* Adds what is known of contact sets that repeated themselves. */
@@ -255,6 +256,25 @@ static void AddContact(cJSON *json, const RunFigures *figures)
   }
 }
 
+/* Adds the fluids that enter between surfaces, if there are any. */
+static void AddFluids(cJSON *json, const RunFigures *figures)
+{
+  cJSON *list = figures->n_fluids ? cJSON_AddArrayToObject(json, "fluids") : NULL;
+
+  for (int i = 0; i < figures->n_fluids; i++) {
+    const FluidReport *report = &figures->fluids[i];
+    cJSON             *fluid  = cJSON_CreateObject();
+
+    cJSON_AddItemToArray(list, fluid);
+    cJSON_AddStringToObject(fluid, "surface", report->load->region);
+    AddReal(fluid, "pressure", report->pressure);
+    AddReal(fluid, "wetted", report->wetted);
+    AddReal(fluid, "seal_pressure", report->barrier);
+    AddReal(fluid, "leak_t", report->leak_t);
+    AddReal(fluid, "leak_pressure", report->leak_pressure);
+  }
+}
+
 /*@
   SummaryWrite - writes summary.json.
 
@@ -296,6 +316,7 @@ PetscErrorCode SummaryWrite(const Mesh mesh, const RunFigures *figures, const ch
   AddState(json, figures->scene, figures->n_pairs ? PETSC_TRUE : PETSC_FALSE, figures->last, probes);
   AddPartition(json, mesh);
   AddContact(json, figures);
+  AddFluids(json, figures);
   text = cJSON_Print(json);
   PetscCheck(text, PETSC_COMM_SELF, PETSC_ERR_MEM, "No memory for summary.json");
   PetscCall(TextFileReplace(directory, "summary.json", text));

@@ -124,6 +124,19 @@ static void PrintProgram(Terminal terminal)
   PrintBlas();
 }
 
+/* Names the bodies for which `formulation: auto` took mixed elements. */
+static void PrintChosen(Terminal terminal)
+{
+  const Scene scene = terminal->scene;
+
+  for (int b = 0; b < scene->n_bodies; b++) {
+    const SceneBody *body = &scene->bodies[b];
+
+    if (!body->rigid && body->chosen && body->formulation == FORMULATION_MIXED)
+      printf("chosen   formulation: mixed for body '%s', nu = %g\n", body->name, body->material.nu);
+  }
+}
+
 static PetscErrorCode PrintHead(Terminal terminal, PetscInt restarts, PetscInt last_step, const OptionRecord *options)
 {
   char     effects[EFFECTS_SIZE];
@@ -139,6 +152,7 @@ static PetscErrorCode PrintHead(Terminal terminal, PetscInt restarts, PetscInt l
   PetscCall(PrintSolver(terminal));
   if (!terminal->quiet) PetscCall(MeshReport(terminal->model->mesh, terminal->scene, stdout));
   if (terminal->talks) printf("dofs     %lld free\neffects  %s\n", (long long)dofs, *effects ? effects : "none");
+  if (terminal->talks) PrintChosen(terminal);
   if (!terminal->quiet) PetscCall(PrecheckMotions(terminal->model, stdout));
   if (terminal->talks) {
     printf("\n%5s %9s %9s %10s %10s %5s %5s %8s %12s %8s %8s\n", "step", "t", "dt", "iterations", "in contact", "in",
@@ -148,21 +162,42 @@ static PetscErrorCode PrintHead(Terminal terminal, PetscInt restarts, PetscInt l
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Says whether a body has cells of first order with full integration: by the scene, or because there are no mixed ones
+   of their shape. */
+static PetscErrorCode HasFullCells(Terminal terminal, int body, PetscBool *has)
+{
+  const Mesh       mesh = terminal->model->mesh;
+  const SceneBody *b    = &terminal->scene->bodies[body];
+
+  PetscFunctionBeginUser;
+  *has = (PetscBool)(b->formulation == FORMULATION_FULL && mesh->order == 1);
+  for (PetscInt c = 0; c < mesh->n_cells && b->formulation == FORMULATION_MIXED; c++)
+    *has = (PetscBool)(*has || (mesh->cell_body[c] == body &&
+                                (mesh->cell_type[c] == ELEMENT_TRI3 || mesh->cell_type[c] == ELEMENT_TET4)));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, has, sizeof(PetscBool), MPI_BYTE, MPI_BOR, mesh->comm));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Warns of bodies that lock. Where nu is near a half, elements of first order with full integration keep their volume
    at every quadrature point, and so they hardly deform. */
-static void WarnLocking(Terminal terminal)
+static PetscErrorCode WarnLocking(Terminal terminal)
 {
   const Scene scene = terminal->scene;
+  PetscBool   full;
 
-  for (int b = 0; b < scene->n_bodies && !terminal->rank && terminal->model->mesh->order == 1; b++) {
-    if (scene->bodies[b].rigid || scene->bodies[b].formulation != FORMULATION_FULL ||
-        scene->bodies[b].material.nu < LOCKING_NU)
-      continue;
+  PetscFunctionBeginUser;
+  for (int b = 0; b < scene->n_bodies; b++) {
+    if (scene->bodies[b].rigid || scene->bodies[b].material.nu < LOCKING_NU) continue;
+    PetscCall(HasFullCells(terminal, b, &full));
+    if (!full || terminal->rank) continue;
     fprintf(stderr,
             "burnish: warning: %s: nu = %g with elements of first order and full integration: they lock (too stiff); "
-            "mesh.order: 2 does not\n",
-            SceneWhere(scene, scene->bodies[b].path, "material.nu"), scene->bodies[b].material.nu);
+            "%s\n",
+            SceneWhere(scene, scene->bodies[b].path, "material.nu"), scene->bodies[b].material.nu,
+            scene->bodies[b].formulation == FORMULATION_MIXED ? "mesh.order: 2 does not"
+                                                              : "mesh.order: 2 or formulation: mixed does not");
   }
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* Warns of pairs whose surfaces share nodes. A mesh generator that merges the points in which two bodies touch joins
@@ -208,7 +243,7 @@ PetscErrorCode TerminalBegin(Terminal terminal, PetscInt restarts, PetscInt last
   PetscFunctionBeginUser;
   terminal->t_began = terminal->model->t;
   PetscCall(PrintHead(terminal, restarts, last_step, options));
-  WarnLocking(terminal);
+  PetscCall(WarnLocking(terminal));
   PetscCall(WarnJoined(terminal));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

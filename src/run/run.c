@@ -153,10 +153,11 @@ static PetscErrorCode RunSolve(Run *run, const RunInput *input, BurnishStatus *s
   if (!report.done && run->kept != report.steps) PetscCall(CheckpointWrite(run->checkpoint));
   *status = report.done ? BURNISH_DONE : report.stopped ? BURNISH_STOPPED : BURNISH_NOT_CONVERGED;
   if (*status == BURNISH_DONE) run->message[0] = '\0';
-  if (*status == BURNISH_NOT_CONVERGED) PetscCall(PetscStrncpy(run->message, report.message, sizeof(run->message)));
+  if (*status == BURNISH_NOT_CONVERGED || report.leaks)
+    PetscCall(PetscStrncpy(run->message, report.message, sizeof(run->message)));
   PetscCall(PetscTime(&now));
   record = (RunRecord){.status  = names[*status],
-                       .message = *status == BURNISH_DONE ? NULL : run->message,
+                       .message = run->message[0] ? run->message : NULL,
                        .wall_s  = now - run->start,
                        .mesh_s  = run->mesh_s,
                        .way     = &report};

@@ -1,6 +1,7 @@
 /* The reader of a scene: it fills the Scene from a validated document, see scene.h. */
 #include "sceneprobe.h"
 #include "scenedefaults.h"
+#include "scenematerial.h"
 #include "sceneread.h"
 #include "base/refusal.h"
 #include <string.h>
@@ -104,6 +105,45 @@ static PetscErrorCode SceneReadMotion(Scene scene, const char *tool, Motion *mot
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Bulk modulus over shear modulus from which elements with full integration lock noticeably (nu = 0.475), so that
+   `auto` takes mixed ones. */
+static const double stiff_volume = 20;
+
+static int SceneStiffVolume(const SceneBody *body)
+{
+  const Material *material = &body->material;
+  const double    mu       = MaterialShear(material);
+
+  return material->constants[0] + (MaterialGetLaw(material->law)->isochoric ? 0 : 2 * mu / 3) > stiff_volume * mu;
+}
+
+/* Says whether mixed elements exist for the law of a body. With small strains all laws are Hooke's. */
+static int SceneLawSplits(Scene scene, const SceneBody *body)
+{
+  return scene->kinematics == KINEMATICS_SMALL || MaterialGetLaw(body->material.law)->separable;
+}
+
+static PetscErrorCode SceneReadFormulation(Scene scene, SceneBody *body)
+{
+  const int choice = SchemaChoice(SceneDocument(scene), "%s.formulation", body->path);
+
+  PetscFunctionBeginUser;
+  body->chosen = choice == FORMULATIONS;
+  if (body->chosen)
+    body->formulation = SceneStiffVolume(body) && SceneLawSplits(scene, body) ? FORMULATION_MIXED : FORMULATION_FULL;
+  else
+    body->formulation = (Formulation)choice;
+  if ((body->formulation == FORMULATION_ENHANCED || body->formulation == FORMULATION_FBAR) && scene->order == 2)
+    PetscCall(SceneRefuse(scene, body->path, "formulation",
+                          "is for first-order elements; allowed with mesh.order: 2: full | mixed",
+                          Formulations[body->formulation]));
+  if (body->formulation == FORMULATION_MIXED && !SceneLawSplits(scene, body))
+    PetscCall(SceneRefuse(scene, body->path, "formulation",
+                          "needs a law whose volume part is separate; allowed with svk: full | enhanced | fbar",
+                          Formulations[body->formulation]));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 static PetscErrorCode SceneReadBody(Scene scene, SceneBody *body)
 {
   static const char Needs[] = "a body is volume with material, or surface with rigid";
@@ -128,17 +168,9 @@ static PetscErrorCode SceneReadBody(Scene scene, SceneBody *body)
     PetscCall(SceneReadMotion(scene, tool, &body->motion));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
-  body->material = MaterialFromModuli((MaterialLaw)SchemaChoice(SceneDocument(scene), "%s.material.law", body->path),
-                                      SchemaReal(SceneDocument(scene), "%s.material.E", body->path),
-                                      SchemaReal(SceneDocument(scene), "%s.material.nu", body->path));
-  if (body->material.law == MATERIAL_LINEAR && scene->kinematics == KINEMATICS_FINITE)
-    PetscCall(SceneRefuse(scene, body->path, "material.law",
-                          "linear needs kinematics: small; allowed with finite: svk | neo_hookean", NULL));
-  body->formulation = (Formulation)SchemaChoice(SceneDocument(scene), "%s.formulation", body->path);
-  if (body->formulation != FORMULATION_FULL && scene->order == 2)
-    PetscCall(SceneRefuse(scene, body->path, "formulation",
-                          "is for first-order elements; allowed with mesh.order: 2: full",
-                          Formulations[body->formulation]));
+  PetscCall(SceneReadMaterial(scene, body));
+  PetscCall(SceneReadFormulation(scene, body));
+  PetscCall(SceneCheckIncompressible(scene, body));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -253,6 +285,74 @@ static PetscErrorCode SceneReadLoadValues(Scene scene, SceneLoad *load, const ch
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Reads an end of a surface. */
+static PetscErrorCode SceneReadEnd(Scene scene, const char *path, const char *key, SceneEnd *end)
+{
+  const Node node = SceneNode(scene, path, key);
+
+  PetscFunctionBeginUser;
+  if (!node) PetscFunctionReturn(PETSC_SUCCESS);
+  end->has_point = node->kind == NODE_LIST;
+  if (end->has_point)
+    (void)SceneReals(scene, path, key, end->point);
+  else
+    PetscCall(SceneReadText(scene, path, key, &end->surface));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Refuses what a fluid that enters between surfaces cannot have: another pressure at each place, suction, a direction
+   that does not follow the face. */
+static PetscErrorCode SceneCheckFluid(Scene scene, SceneLoad *load)
+{
+  const Expression formula = load->expression[0];
+
+  PetscFunctionBeginUser;
+  for (int k = EXPRESSION_X; k <= EXPRESSION_THETA; k++)
+    if (formula && ExpressionUses(formula, (ExpressionVariable)k))
+      PetscCall(SceneRefuse(scene, load->path, "pressure",
+                            "differs from place to place; allowed with where: open: a number or an expression of t",
+                            NULL));
+  if (!formula && load->value[0] < 0)
+    PetscCall(SceneRefuse(scene, load->path, "pressure",
+                          "is negative; allowed with where: open: 0 or more (a fluid presses)", NULL));
+  for (int i = 0; i < load->history.n; i++)
+    if (load->history.v[i] < 0)
+      PetscCall(SceneRefuse(scene, load->path, "history",
+                            "has a negative factor; allowed with where: open: 0 or more (a fluid presses)", NULL));
+  if (SceneHas(scene, load->path, "follower") && !load->follower && scene->kinematics == KINEMATICS_FINITE)
+    PetscCall(SceneRefuse(scene, load->path, "follower",
+                          "is false; allowed with where: open and finite kinematics: true, which is its default there",
+                          NULL));
+  load->follower = 1;
+  if (!scene->n_contacts && !SchemaCount(SceneDocument(scene), "contact"))
+    PetscCall(
+      SceneRefuse(scene, load->path, "where", "is open, but no contact is given; allowed: with contact pairs", NULL));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Reads where a pressure acts, after its values. */
+static PetscErrorCode SceneReadWhere(Scene scene, SceneLoad *load)
+{
+  static const char *const Ends[] = {"from", "to"};
+
+  PetscFunctionBeginUser;
+  load->open = SchemaChoice(SceneDocument(scene), "%s.where", load->path) == 1;
+  if (load->open && load->kind != LOAD_PRESSURE)
+    PetscCall(SceneRefuse(scene, load->path, "where", "is open; allowed: with pressure", NULL));
+  for (int k = 0; k < 2; k++)
+    if (!load->open && SceneHas(scene, load->path, Ends[k]))
+      PetscCall(SceneRefuse(scene, load->path, Ends[k], "has no place here; allowed: with where: open", NULL));
+  if (!load->open) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(SceneReadEnd(scene, load->path, "from", &load->from));
+  PetscCall(SceneReadEnd(scene, load->path, "to", &load->to));
+  PetscCall(SceneCheckFluid(scene, load));
+  for (SceneLoad *other = scene->loads; other < load; other++)
+    if (other->open && !strcmp(other->region, load->region))
+      PetscCall(SceneRefuse(scene, load->path, "surface", "has a fluid already; allowed: one load with where: open",
+                            load->region));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 static PetscErrorCode SceneReadLoad(Scene scene, SceneLoad *load)
 {
   static const char *const Kinds[] = {"displacement", "pressure", "traction", "body_force"};
@@ -289,6 +389,7 @@ static PetscErrorCode SceneReadLoad(Scene scene, SceneLoad *load)
       SceneRefuse(scene, load->path, "follower", "only a pressure follows the face; allowed: with pressure", NULL));
   PetscCall(SceneReadLoadValues(scene, load, Kinds[load->kind]));
   PetscCall(SceneReadHistory(scene, load->path, &load->history));
+  PetscCall(SceneReadWhere(scene, load));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -821,6 +922,8 @@ PetscErrorCode SceneDestroy(Scene *scene)
     PetscCall(PetscFree2(s->loads[i].history.t, s->loads[i].history.v));
     PetscCall(PetscFree(s->loads[i].path));
     PetscCall(PetscFree(s->loads[i].region));
+    PetscCall(PetscFree(s->loads[i].from.surface));
+    PetscCall(PetscFree(s->loads[i].to.surface));
   }
   for (int i = 0; i < s->n_probes; i++) {
     PetscCall(PetscFree(s->probes[i].path));

@@ -27,7 +27,8 @@ typedef struct {
   char       *name;        /* physical group, which is a volume, or a surface for a rigid tool */
   int         rigid;       /* 1 for a meshed rigid tool, which has no material */
   Material    material;    /* of a deformable body */
-  Formulation formulation; /* formulations other than full exist for quad4 and hex8 only */
+  Formulation formulation; /* enhanced and fbar exist for quad4 and hex8 only, mixed not for tri3 and tet4 */
+  int         chosen;      /* 1 if `auto` chose the formulation: cells that have none of it take full */
   Motion      motion;      /* of a rigid tool */
 } SceneBody;
 
@@ -35,6 +36,14 @@ typedef struct {
   char *path, *surface;
   int   fixed[3]; /* whether a component of the displacement is held at 0 */
 } SceneSupport;
+
+/* An end of a surface: another surface that has nodes in common with it, or a point; neither: the scene does not say.
+ */
+typedef struct {
+  char  *surface;
+  int    has_point;
+  double point[3]; /* reference coordinates */
+} SceneEnd;
 
 typedef enum { LOAD_DISPLACEMENT, LOAD_PRESSURE, LOAD_TRACTION, LOAD_BODY_FORCE } LoadKind;
 typedef struct {
@@ -46,7 +55,9 @@ typedef struct {
   double     value[3];
   Expression expression[3]; /* in place of value, where it is not NULL; it has a variable */
   int        follower;      /* 1 if a pressure acts on the deformed face */
-  History    history;       /* factor over the load parameter on values and on expressions without t */
+  int        open;          /* 1 if a pressure is that of a fluid that enters between surfaces, with the two ends */
+  SceneEnd   from, to;
+  History    history; /* factor over the load parameter on values and on expressions without t */
 } SceneLoad;
 
 /* The side to which the normals of a meshed rigid master point: that of the slave's start, the other side of that of
@@ -103,6 +114,9 @@ typedef enum {
   PROBE_PRESSURE_MAX,
   PROBE_PRESSURE_MEAN,
   PROBE_PRESSURE_DEVIATION,
+  PROBE_FLUID_FRONT, /* from here on the target is the surface of a fluid */
+  PROBE_FLUID_AREA,
+  PROBE_SEAL_PRESSURE,
   PROBE_KINDS
 } ProbeKind;
 typedef struct {

@@ -20,6 +20,9 @@ static const struct {
   [PROBE_PRESSURE_MAX]       = {"pressure_max", "", "at"},
   [PROBE_PRESSURE_MEAN]      = {"pressure_mean", "", ""},
   [PROBE_PRESSURE_DEVIATION] = {"pressure_deviation", "", "measure excluding only"},
+  [PROBE_FLUID_FRONT]        = {"fluid_front", "axis side", ""},
+  [PROBE_FLUID_AREA]         = {"fluid_area", "", ""},
+  [PROBE_SEAL_PRESSURE]      = {"seal_pressure", "", ""},
 };
 static const char ProbeCommon[] = "name absolute factor";
 
@@ -83,6 +86,17 @@ static PetscErrorCode SceneRefuseProbeTarget(Scene scene, SceneProbe *probe)
   }
   PetscCall(
     SceneRefuse(scene, probe->path, ProbeForms[probe->kind].kind, pairs, "there is no contact pair of this name;"));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Refuses a probe whose target is not a surface on which a fluid acts. */
+static PetscErrorCode SceneRefuseProbeFluid(Scene scene, SceneProbe *probe)
+{
+  PetscFunctionBeginUser;
+  for (int i = 0; i < scene->n_loads; i++)
+    if (scene->loads[i].open && !strcmp(scene->loads[i].region, probe->target)) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(SceneRefuse(scene, probe->path, ProbeForms[probe->kind].kind,
+                        "has no fluid; allowed: the surface of a pressure with where: open", probe->target));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -151,7 +165,10 @@ static PetscErrorCode SceneReadProbe(Scene scene, SceneProbe *probe)
     }
   } else {
     PetscCall(SceneReadText(scene, path, ProbeForms[probe->kind].kind, &probe->target));
-    if (probe->kind != PROBE_REACTION) PetscCall(SceneRefuseProbeTarget(scene, probe));
+    if (probe->kind >= PROBE_FLUID_FRONT)
+      PetscCall(SceneRefuseProbeFluid(scene, probe));
+    else if (probe->kind != PROBE_REACTION)
+      PetscCall(SceneRefuseProbeTarget(scene, probe));
   }
   probe->component = PetscMax(0, SchemaChoice(document, "%s.component", path));
   probe->axis      = PetscMax(0, SchemaChoice(document, "%s.axis", path));

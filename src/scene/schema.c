@@ -38,6 +38,7 @@ static void SchemaAllowed(const SchemaKey *key, char *text, size_t size)
     {TEXTS, "a list of names"},
     {CHOICES, "a list of"},
     {HISTORY, "[[t, factor], ...], at least two, t increasing from 0 within [0, 1]"},
+    {PAIRS, "a list of pairs of numbers"},
     {MAP, "a map"},
     {LIST, "a list of maps"},
     {FREE, "a map of plain values"},
@@ -184,6 +185,20 @@ static const char *CheckHistory(Node node)
   return NULL;
 }
 
+static const char *CheckPairs(Node node)
+{
+  double value;
+
+  for (int i = 0; i < node->n; i++) {
+    Node pair = node->child[i];
+
+    if (pair->kind != NODE_LIST || pair->n != 2 || !NodeReal(pair->child[0], &value) ||
+        !NodeReal(pair->child[1], &value))
+      return WrongType;
+  }
+  return node->n ? NULL : "is empty";
+}
+
 static const char *CheckEntries(const SchemaKey *key, Node node)
 {
   const int   type = key->type & REALS ? REAL : key->type & TEXTS ? TEXT : CHOICE;
@@ -214,6 +229,7 @@ static const char *CheckList(const SchemaKey *key, Node node)
              ? NULL
              : WrongType;
   if (key->type & HISTORY) return CheckHistory(node);
+  if (key->type & PAIRS) return CheckPairs(node);
   if (key->type & (REALS | TEXTS | CHOICES)) return CheckEntries(key, node);
   return WrongType;
 }

@@ -37,11 +37,30 @@ const SchemaKey SchemaKeys[] = {
   {"bodies.*.material", MAP, .help = "material of a deformable body"},
   {"bodies.*.material.law", CHOICE, REQUIRED, .values = CHOICE_WORDS(ELASTIC_LAWS),
    .help = "elastic law; linear is allowed only with kinematics: small"},
-  {"bodies.*.material.E", REAL, REQUIRED, .range = "(0, inf)", .unit = "stress", .help = "Young's modulus"},
-  {"bodies.*.material.nu", REAL, REQUIRED, .range = "(-1, 0.5)", .help = "Poisson's ratio"},
-  {"bodies.*.formulation", CHOICE, .values = "full | enhanced | fbar", .preset = "full",
-   .help = "formulation of first-order quadrilaterals and bricks; enhanced bends without locking, and fbar is for "
-           "nearly incompressible laws"},
+  {"bodies.*.material.E", REAL, .range = "(0, inf)", .unit = "stress",
+   .help = "Young's modulus of linear, svk, neo_hookean and isochoric_neo_hookean; needed there, or mu"},
+  {"bodies.*.material.nu", REAL, .range = "(-1, 0.5]",
+   .help = "Poisson's ratio of the undeformed state; 0.5 is incompressible. Every material has one of nu, K and "
+           "incompressible"},
+  {"bodies.*.material.K", REAL, .range = "(0, inf)", .unit = "stress",
+   .help = "bulk modulus of the undeformed state, instead of nu"},
+  {"bodies.*.material.incompressible", BOOLEAN, .preset = "false",
+   .help = "true: the volume does not change, instead of nu; needs formulation: mixed"},
+  {"bodies.*.material.mu", REAL, .range = "(0, inf)", .unit = "stress",
+   .help = "shear modulus, instead of E; of arruda_boyce a constant, which is needed"},
+  {"bodies.*.material.c10", REAL, .unit = "stress", .help = "constant of mooney_rivlin and yeoh, needed there"},
+  {"bodies.*.material.c01", REAL, .unit = "stress", .help = "constant of mooney_rivlin, needed there"},
+  {"bodies.*.material.c20|c30", REAL, .unit = "stress", .preset = "0", .help = "constant of yeoh"},
+  {"bodies.*.material.terms", PAIRS, .unit = "mu a stress",
+   .help = "constants [[mu, alpha], ...] of ogden, needed there; the shear modulus is half the sum of mu alpha"},
+  {"bodies.*.material.lambda_m", REAL, .range = "(1, inf)",
+   .help = "stretch of arruda_boyce at which the chains lock, needed there"},
+  {"bodies.*.formulation", CHOICE, .values = "full | enhanced | fbar | mixed | auto", .preset = "auto",
+   .help = "formulation of the elements; enhanced and fbar are for first-order quadrilaterals and bricks, of which "
+           "enhanced bends without locking and fbar keeps its volume without locking. mixed has pressures of its own, "
+           "for materials that keep their volume nearly or exactly: all elements but first-order triangles and "
+           "tetrahedra. auto: mixed where the bulk modulus is above 20 times the shear modulus (nu above 0.475), "
+           "otherwise full"},
   {"bodies.*.surface", TEXT, .help = "physical surface of a rigid tool; needs rigid"},
   {"bodies.*.rigid", MAP, .help = "makes the surface a meshed rigid tool"},
   {"bodies.*.rigid.point", POINT, .unit = "length",
@@ -68,6 +87,16 @@ const SchemaKey SchemaKeys[] = {
   {"loads.*.uz", REAL | FORMULA, SOLID, .unit = "length", .help = "imposed displacement component"},
   {"loads.*.pressure", REAL | FORMULA, .unit = "stress", .help = "pressure, positive against the outward normal"},
   {"loads.*.follower", BOOLEAN, .preset = "false", .help = "true: the pressure acts on the deformed face"},
+  {"loads.*.where", CHOICE, .values = "everywhere | open", .preset = "everywhere",
+   .help = "open: the pressure is that of a fluid that enters between surfaces in contact; it acts where contact "
+           "presses less than the fluid, as far as such places are connected to the wetted end"},
+  {"loads.*.from", TEXT | POINT, .unit = "length",
+   .help = "wetted end of where: open, from which the fluid enters: a physical surface with nodes of the loaded one, or "
+           "the reference point of a node; the default in two dimensions is the end of the loaded line that is open at "
+           "the start, if only one is"},
+  {"loads.*.to", TEXT | POINT, .unit = "length",
+   .help = "end at which the fluid of where: open leaks, like from; the default in two dimensions is the other end of "
+           "the loaded line, else no leak is looked for"},
   {"loads.*.traction", POINT | FORMULA, .unit = "force per reference area", .help = "traction of fixed direction"},
   {"loads.*.body_force", POINT | FORMULA, .unit = "force per reference volume",
    .help = "body force, such as the weight"},
@@ -197,6 +226,12 @@ const SchemaKey SchemaKeys[] = {
   {"probes.*.pressure_max|pressure_mean", TEXT, .help = "largest or mean contact pressure over the nodes of this pair"},
   {"probes.*.pressure_deviation", TEXT, .unit = "per cent",
    .help = "deviation of the contact pressure from the mean pressure of this pair"},
+  {"probes.*.fluid_front", TEXT,
+   .help = "coordinate to which the fluid of where: open has come on this surface; needs axis and side"},
+  {"probes.*.fluid_area", TEXT, .help = "part of this surface that the fluid of where: open wets, from 0 to 1"},
+  {"probes.*.seal_pressure", TEXT, .unit = "stress",
+   .help = "lowest pressure of the fluid of where: open that would overcome the contact on this surface as it is; no "
+           "value after a leak"},
   {"probes.*.component", CHOICE, .values = "x | y | z", .help = "component of a force or displacement"},
   {"probes.*.body", TEXT, .help = "volume of the node, if two bodies have a node at the point"},
   {"probes.*.change", BOOLEAN, .preset = "false", .help = "of distance; true: the reference distance is subtracted"},
@@ -204,8 +239,10 @@ const SchemaKey SchemaKeys[] = {
    .help = "for gap a point; for contact_edge and pressure_max one reference coordinate, such as {z: 100}"},
   {"probes.*.at.x|y", REAL, .unit = "length", .help = "reference coordinate"},
   {"probes.*.at.z", REAL, SOLID, .unit = "length", .help = "reference coordinate"},
-  {"probes.*.axis", CHOICE, .values = "x | y | z", .help = "of contact_edge: axis along which the end is searched"},
-  {"probes.*.side", CHOICE, .values = "min | max", .help = "of contact_edge: the lower or the upper end"},
+  {"probes.*.axis", CHOICE, .values = "x | y | z",
+   .help = "of contact_edge and fluid_front: axis along which the end is searched"},
+  {"probes.*.side", CHOICE, .values = "min | max",
+   .help = "of contact_edge and fluid_front: the lower or the upper end"},
   {"probes.*.measure", CHOICE, .values = "max | rms", .preset = "max",
    .help = "of pressure_deviation: the largest deviation or the root of the mean square"},
   {"probes.*.excluding", REAL, .range = "(0, inf)", .unit = "face sizes",

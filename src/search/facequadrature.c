@@ -150,6 +150,64 @@ void FaceHat(ElementType type, const double *xi, double *psi)
   }
 }
 
+/* Value at xi of the polynomial that is 1 at one quadrature point of an element of second order and 0 at its others: on
+   three points of Gauss' rule in each direction, or on the three points of a triangle. */
+static double PointPolynomial(const Element *e, int point, const double *xi)
+{
+  const double a     = sqrt(0.6);
+  double       value = 1;
+
+  if (e->corners == 3 && e->dim == 2) {
+    const double at[3] = {1 - e->point[point][0] - e->point[point][1], e->point[point][0], e->point[point][1]};
+    const double l[3]  = {1 - xi[0] - xi[1], xi[0], xi[1]};
+
+    for (int i = 0; i < 3; i++)
+      if (at[i] > 0.5) value = 2 * l[i] - 1. / 3;
+    return value;
+  }
+  for (int k = 0; k < e->dim; k++) {
+    const double x = xi[k] / a, side = round(e->point[point][k]);
+
+    value *= side == 0 ? 1 - x * x : 0.5 * x * (x + side);
+  }
+  return value;
+}
+
+/*@
+  FaceHatAround - gives the values at one of the element's quadrature points that stand for the hat functions there.
+
+  Not collective
+
+  Input Parameters:
++ type  - of the face
+. point - number of the point in ElementGetFace()
+- finer - of contact's rule, see FaceRuleGet()
+
+  Output Parameter:
+. psi - the values, psi[nodes]; their sum is 1
+
+  Note:
+  Hat functions of second-order faces have edges, for which the element's rule is not made. With these values it gives
+the integrals of the hats, and of their products with shape functions (in triangles: with linear functions), that the
+rule of contact gives. Some values are a little below 0. First order: the hat functions at the point. Plain C.
+@*/
+void FaceHatAround(ElementType type, int point, int finer, double *psi)
+{
+  const Element  *e    = ElementGetFace(type);
+  const FaceRule *rule = FaceRuleGet(type, finer);
+
+  if (e->order == 1) {
+    FaceHat(type, e->point[point], psi);
+    return;
+  }
+  memset(psi, 0, e->nodes * sizeof(double));
+  for (int q = 0; q < rule->n; q++) {
+    const double share = rule->weight[q] / e->weight[point] * PointPolynomial(e, point, rule->xi[q]);
+
+    for (int a = 0; a < e->nodes; a++) psi[a] += share * rule->hat[q][a];
+  }
+}
+
 /*@
   FaceRuleAreas - computes the part of a face's area that each point of a rule represents, and the normals there.
 

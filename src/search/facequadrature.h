@@ -3,7 +3,7 @@
 
    FaceRuleGet() returns the rule of a type of face; the rule is finer than that of the elements if this is asked
    for. FaceRuleAreas() computes the areas and normals of the rule's points on a given face. FaceHat() evaluates the
-   hat functions. */
+   hat functions, FaceHatAround() stands for them at the element's own quadrature points. */
 #pragma once
 #include "kernels/element.h"
 #include "scene/scene.h"
@@ -20,4 +20,5 @@ typedef struct {
 
 const FaceRule *FaceRuleGet(ElementType, int finer);
 void            FaceHat(ElementType, const double *xi, double *psi);
+void            FaceHatAround(ElementType, int point, int finer, double *psi);
 void FaceRuleAreas(const FaceRule *, ElementType, int dim, Geometry, const double *X, double *area, double *normal);

@@ -25,6 +25,14 @@
 /* Penalties are stiffened at most this many times at one load parameter. The first time is enough where the error is
    proportional to the compliance of the penalty, which it is when it is small. */
 #define EQUILIBRIUM_MAX_STIFFEN 2
+/* A fluid may move this many times at one load parameter. It wets all places that it can at once, so that it moves a
+   few times only, and each move is a small load. */
+#define EQUILIBRIUM_MAX_FLUID 50
+
+/* The multipliers of incompressible bodies are changed at most this many times in a solve. 1 or 2 are usual; each makes
+   the error of the volume a hundred times smaller or more. Thin bonded layers take most, because their pressures
+   change much with little motion. */
+#define EQUILIBRIUM_MAX_AUGMENT 30
 
 /* Adds to the text that a slave node rests on an edge between facets. *found: such a node exists. */
 static PetscErrorCode ModelBlameFacets(Model model, char *text, size_t size, PetscBool *found)
@@ -75,7 +83,10 @@ static PetscErrorCode ModelExplainFailure(Model model, SolveReport *report)
   PetscCall(FailureLocate(model->mesh, model->problem->loads, model->contact, model->u, model->problem->f,
                           model->problem->inverted, &report->failure));
   report->failure.enhanced = ProblemHasFormulation(model->problem, FORMULATION_ENHANCED);
-  if (report->result == SOLVE_WINDOW || report->result == SOLVE_LOST)
+  if (report->result == SOLVE_LEAK || report->result == SOLVE_LEAKED)
+    FluidLeakText(model->problem->fluids, report->detail, sizeof(report->detail));
+  if (report->result == SOLVE_WINDOW || report->result == SOLVE_LOST || report->result == SOLVE_LEAK ||
+      report->result == SOLVE_LEAKED)
     PetscFunctionReturn(PETSC_SUCCESS); /* the report has its detail already */
   if (report->result == SOLVE_CYCLE) {
     PetscCall(PetscStrncpy(report->detail, report->cycle, sizeof(report->detail)));
@@ -136,6 +147,7 @@ static PetscErrorCode ModelDepart(Model model, PetscReal t)
   PetscReal  motion;
 
   PetscFunctionBeginUser;
+  PetscCall(ElasticityRestore(model->problem->elasticity));
   if (model->contact) PetscCall(ContactRestore(model->contact));
   PetscCall(ModelSettle(model, t));
   PetscCall(ContactSpringsRelax(model->problem->springs, work->accepted_x));
@@ -144,9 +156,11 @@ static PetscErrorCode ModelDepart(Model model, PetscReal t)
   work->start              = 0;
   work->cycling            = PETSC_FALSE;
   work->cycles             = 0;
+  work->augmented          = PETSC_FALSE;
   work->cycle[0]           = '\0';
   work->energy             = 0;
   ModelForgetPenaltyError(model);
+  PetscCall(FluidBegin(model->problem->fluids, work->accepted_u, t));
   PetscCall(ModelStepFromSolved(model, work->accepted_u));
   if (!model->contact) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(ProblemImposedMotion(model->problem, work->accepted_u, work->accepted_t, t, &motion));
@@ -244,6 +258,25 @@ static PetscErrorCode ModelSolveLists(Model model, SolveReport *report)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Solves until contact lists hold and incompressible bodies have their volume. */
+static PetscErrorCode ModelSolveVolumes(Model model, SolveReport *report)
+{
+  PetscBool holds = PETSC_FALSE;
+
+  PetscFunctionBeginUser;
+  for (PetscInt times = 0; report->result == SOLVE_CONVERGED; times++) {
+    PetscCall(ModelSolveLists(model, report));
+    if (report->result != SOLVE_CONVERGED) break;
+    PetscCall(ElasticityAugment(model->problem->elasticity, model->problem->trial, &holds));
+    if (holds) break;
+    if (times == EQUILIBRIUM_MAX_AUGMENT) report->result = SOLVE_VOLUME;
+    report->adjusted++;
+    model->work->augmented = PETSC_TRUE;
+    model->work->energy    = 0; /* multipliers are part of the energy */
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Measures what springs and ties hold at the solution, into the report. *more: the springs hold more than they may.
  *tied: the ties do. */
 static PetscErrorCode ModelMeasureSprings(Model model, SolveReport *report, PetscBool *more, PetscBool *tied)
@@ -291,14 +324,14 @@ static PetscErrorCode ModelSolveReleased(Model model, SolveReport *report, Petsc
   PetscCall(VecDuplicate(model->x, &x));
   PetscCall(VecCopy(model->x, x));
   PetscCall(ContactSpringsRelax(problem->springs, x));
-  PetscCall(ModelSolveLists(model, report));
+  PetscCall(ModelSolveVolumes(model, report));
   if (report->result != SOLVE_CONVERGED) PetscCall(ContactSpringsRetie(problem->springs, again));
   if (*again) {
     problem->tied        = PETSC_TRUE;
     model->work->cycling = PETSC_FALSE;
     report->result       = SOLVE_CONVERGED;
     PetscCall(VecCopy(x, model->x));
-    PetscCall(ModelSolveLists(model, report));
+    PetscCall(ModelSolveVolumes(model, report));
   }
   PetscCall(VecDestroy(&x));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -315,7 +348,7 @@ static PetscErrorCode ModelSolveHeld(Model model, SolveReport *report)
 
   PetscFunctionBeginUser;
   PetscCall(SNESGetKSP(model->snes, &ksp));
-  PetscCall(ModelSolveLists(model, report));
+  PetscCall(ModelSolveVolumes(model, report));
   for (PetscInt times = 0; problem->springs && report->result == SOLVE_CONVERGED; times++) {
     PetscCall(ModelMeasureSprings(model, report, &more, &tied));
     if (PetscMax(report->share, report->tied) > EQUILIBRIUM_ALL) {
@@ -364,6 +397,23 @@ static PetscErrorCode ModelCheckPenalty(Model model, SolveReport *report, Contac
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Lets the fluids move at the solution. *moved: the step must be solved on. A fluid that reaches its other end ends the
+   solve: how its pressure falls along a leak is not known. */
+static PetscErrorCode ModelMoveFluids(Model model, SolveReport *report, PetscBool *moved)
+{
+  const Fluids fluids = model->problem->fluids;
+  PetscBool    leaks, closely;
+
+  PetscFunctionBeginUser;
+  PetscCall(FluidMove(fluids, model->problem->trial, model->t, moved));
+  PetscCall(FluidReaches(fluids, model->work->accepted_t, model->t, model->scene->stepping.dt_min, &leaks, &closely));
+  if (leaks)
+    report->result = closely ? SOLVE_LEAKED : SOLVE_LEAK;
+  else if (*moved && report->wetted++ == EQUILIBRIUM_MAX_FLUID)
+    report->result = SOLVE_FLUID;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /*@
   ModelSolve - finds equilibrium at a load parameter, starting from the accepted state.
 
@@ -390,6 +440,7 @@ PetscErrorCode ModelSolve(Model model, PetscReal t, SolveReport *report)
 {
   ModelWork         *work   = model->work;
   ContactWindowState window = WINDOW_MISSED;
+  PetscBool          moved;
 
   PetscFunctionBeginUser;
   *report = (SolveReport){.result = SOLVE_CONVERGED};
@@ -403,6 +454,8 @@ PetscErrorCode ModelSolve(Model model, PetscReal t, SolveReport *report)
   while (window == WINDOW_MISSED && report->result == SOLVE_CONVERGED) {
     PetscCall(ModelSolveHeld(model, report));
     if (report->result != SOLVE_CONVERGED || !model->contact) break;
+    PetscCall(ModelMoveFluids(model, report, &moved));
+    if (moved || report->result != SOLVE_CONVERGED) continue;
     PetscCall(ContactAdjustPenalty(model->contact, &window));
     report->adjusted += window == WINDOW_MISSED;
     if (window == WINDOW_AT_BOUND) {
@@ -453,5 +506,6 @@ PetscErrorCode ModelLookAhead(Model model, PetscReal t, PetscReal *u, SolveRepor
   model->work->look_ahead_extrapolated = model->work->extrapolated;
   model->work->looked_ahead            = report->result == SOLVE_CONVERGED ? PETSC_TRUE : PETSC_FALSE;
   model->t                             = model->work->accepted_t;
+  PetscCall(FluidRestore(model->problem->fluids, model->work->accepted_u, model->t));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

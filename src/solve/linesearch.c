@@ -108,6 +108,7 @@ static PetscErrorCode ModelMeasureStep(Model model, SNESLineSearch search, Vec x
   if (slope < 0) {
     PetscCall(VecScale(y, -1));
     model->work->turned++;
+    model->work->uphill = PETSC_TRUE;
   }
   ModelChooseObjective(model, NAN, slope);
   PetscFunctionReturn(PETSC_SUCCESS);

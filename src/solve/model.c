@@ -14,6 +14,10 @@ const char *const SolveResults[] = {
   "contact was lost behind a master",
   "nothing holds a body against its load",
   "the penetrations did not come into the window of the adjusted penalty",
+  "the volumes of incompressible bodies did not settle",
+  "the places that a fluid wets did not settle",
+  "a fluid leaks, and the step is too long to say at which pressure",
+  "a fluid leaks",
   "not-a-number in the residual"};
 
 /*@
@@ -108,6 +112,7 @@ PetscErrorCode ModelPlace(Model model, PetscReal t)
   PetscCall(ProblemImposedMotion(model->problem, model->work->accepted_u, model->work->accepted_t, t, &motion));
   PetscCall(ProblemGatherLists(model->problem, model->u, 0, 0, motion));
   PetscCall(ProblemResidual(model->problem, model->u, 0, 0, &ok));
+  PetscCall(FluidStart(model->problem->fluids, model->u));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -199,7 +204,9 @@ PetscErrorCode ModelAccept(Model model)
   if (work->extrapolation) PetscCall(ExtrapolationAdd(work->extrapolation, model->u, model->t));
   if (work->extrapolation && SceneBreaks(model->scene, model->t)) PetscCall(ExtrapolationForget(work->extrapolation));
   work->looked_ahead = PETSC_FALSE;
+  PetscCall(ElasticityAccept(model->problem->elasticity));
   if (model->problem->bodies) PetscCall(FreeBodiesAccept(model->problem->bodies, model->problem->springs));
+  PetscCall(FluidAccept(model->problem->fluids, model->u, model->t));
   if (model->contact) {
     PetscCall(ContactAccept(model->contact));
     if (stepped) PetscCall(ContactAdjustNextPenalty(model->contact));
@@ -228,6 +235,8 @@ PetscErrorCode ModelRestore(Model model)
   PetscCall(VecCopy(work->accepted_x, model->x));
   PetscCall(LinearSolverRenew(work->solver)); /* a step that starts from a look-ahead would not do so itself */
   model->t = work->accepted_t;
+  PetscCall(ElasticityRestore(model->problem->elasticity));
+  PetscCall(FluidRestore(model->problem->fluids, model->u, model->t));
   if (model->contact) {
     PetscCall(ContactRestore(model->contact));
     PetscCall(ProblemRestoreTangent(model->problem));
@@ -274,11 +283,14 @@ PetscErrorCode ModelArchive(Model model, Archive archive)
     model->t      = work->accepted_t;
     work->settled = (PetscBool)(work->accepted_t == 0);
   }
+  PetscCall(ElasticityArchive(model->problem->elasticity, archive));
   PetscCall(ModelArchivePenaltyError(model, archive));
   PetscCall(LinearCheckArchive(model->linear, archive));
   if (model->problem->bodies) PetscCall(FreeBodiesArchive(model->problem->bodies, archive));
   if (model->contact) PetscCall(ContactArchive(model->contact, archive, model->u, model->t));
+  PetscCall(FluidArchive(model->problem->fluids, archive));
   if (!ArchiveLoads(archive)) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(FluidRestore(model->problem->fluids, model->u, model->t));
   PetscCall(ProblemResidual(model->problem, model->u, model->t, model->t, &ok));
   if (model->contact) PetscCall(ContactRestore(model->contact));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -328,17 +340,19 @@ PetscErrorCode ModelEffects(Model model, char *text, size_t size)
     body_force = (PetscBool)(body_force || scene->loads[l].kind == LOAD_BODY_FORCE);
   for (int c = 0; c < scene->n_contacts; c++)
     surface = (PetscBool)(surface || scene->contacts[c].formulation == CONTACT_SURFACE_TO_SURFACE);
-  PetscCall(PetscSNPrintf(text, size, "%s%s%s",
+  PetscCall(PetscSNPrintf(text, size, "%s%s%s%s",
                           scene->kinematics == KINEMATICS_FINITE ? "finite strain" : "small strain",
                           ProblemHasFormulation(model->problem, FORMULATION_ENHANCED) ? ", enhanced strains" : "",
-                          ProblemHasFormulation(model->problem, FORMULATION_FBAR) ? ", mean dilatation" : ""));
+                          ProblemHasFormulation(model->problem, FORMULATION_FBAR) ? ", mean dilatation" : "",
+                          ProblemHasFormulation(model->problem, FORMULATION_MIXED) ? ", mixed elements" : ""));
   PetscCall(ModelContactEffects(scene, text, size));
   PetscCall(PetscStrlen(text, &start));
-  PetscCall(PetscSNPrintf(text + start, size - start, "%s%s%s%s%s%s%s", surface ? ", surface to surface" : "",
+  PetscCall(PetscSNPrintf(text + start, size - start, "%s%s%s%s%s%s%s%s", surface ? ", surface to surface" : "",
                           ContactHasFriction(model->contact) ? ", friction" : "", adjusted ? ", adjusted penalty" : "",
                           augmented ? ", augmented penalty" : "",
                           LoadsConservative(model->problem->loads) ? "" : ", follower load",
-                          body_force ? ", body force" : "", moving ? ", rigid motion" : ""));
+                          model->problem->fluids ? ", fluid between surfaces" : "", body_force ? ", body force" : "",
+                          moving ? ", rigid motion" : ""));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -21,6 +21,10 @@ typedef enum {
   SOLVE_LOST,
   SOLVE_ADRIFT,
   SOLVE_WINDOW,
+  SOLVE_VOLUME,
+  SOLVE_FLUID,
+  SOLVE_LEAK,
+  SOLVE_LEAKED,
   SOLVE_NAN
 } SolveResult;
 extern const char *const SolveResults[]; /* in words, for messages */
@@ -47,6 +51,7 @@ typedef struct {
   PetscInt    regathered;       /* times that contact lists were replaced */
   PetscInt    adjusted;         /* times that penalties or multipliers were changed and the step solved on */
   PetscInt    stiffened;        /* times that penalties were made stiffer for a smaller error, and the step solved on */
+  PetscInt    wetted;           /* times that a fluid moved and the step was solved on */
   PetscInt    cuts[CUT_CAUSES]; /* iterations that the line search shortened, by their cause */
   PetscInt    turned;           /* iterations whose step led uphill and was turned round */
   PetscReal   residual;         /* |R|_2 / F_ref at the end */

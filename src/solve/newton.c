@@ -98,7 +98,7 @@ static PetscErrorCode ModelBorder(Model model)
 }
 
 /*@
-  ModelStepFrom - tells that a linear step from a state has led to the iterate. The next tangent extrapolates pressures
+  ModelStepFrom - tells that a linear step from a state has led to the iterate. The next tangent extrapolates stresses
   from there.
 
   Not collective
@@ -110,7 +110,7 @@ static PetscErrorCode ModelBorder(Model model)
 PetscErrorCode ModelStepFrom(Model model, const PetscReal *u)
 {
   PetscFunctionBeginUser;
-  model->work->shortened = PETSC_FALSE;
+  model->work->shortened = model->work->uphill = PETSC_FALSE;
   if (model->work->from) PetscCall(PetscArraycpy(model->work->from, u, model->mesh->n_nodes * model->mesh->dim));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -140,7 +140,7 @@ PetscErrorCode ModelStepFromSolved(Model model, const PetscReal *u)
   Input Parameters:
 + model     - the model
 . u         - local displacements u[n_nodes*dim] (length)
-. reference - the state from which the elements extrapolate pressures; NULL: the tangent is the derivative of the
+. reference - the state from which the elements extrapolate stresses; NULL: the tangent is the derivative of the
 residual
 - t         - load parameter
 
@@ -148,7 +148,7 @@ residual
   The first call lets the linear solver order its unknowns. Where the factor of an earlier tangent still serves, SNES is
   told to keep the preconditioner, and the factor is updated for the contact terms that came and went.
 @*/
-PetscErrorCode ModelTangent(Model model, const PetscReal *u, const PressureReference *reference, PetscReal t)
+PetscErrorCode ModelTangent(Model model, const PetscReal *u, const StressReference *reference, PetscReal t)
 {
   TangentChange change;
   PetscBool     older;
@@ -163,11 +163,11 @@ PetscErrorCode ModelTangent(Model model, const PetscReal *u, const PressureRefer
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The state from which the tangent at the present iterate extrapolates pressures. It is the iterate before, since
+/* The state from which the tangent at the present iterate extrapolates stresses. It is the iterate before, since
    pressure changes along a full step as the step's linear problem says. Before the first iterate that is where the
    prediction started. A shortened step has left the volumes somewhere; its pressures are those of the last equilibrium.
  */
-static PetscErrorCode ModelReference(Model model, PressureReference *reference)
+static PetscErrorCode ModelReference(Model model, StressReference *reference)
 {
   ModelWork     *work = model->work;
   SNESLineSearch search;
@@ -179,28 +179,54 @@ static PetscErrorCode ModelReference(Model model, PressureReference *reference)
   PetscCall(SNESGetLineSearch(model->snes, &search));
   PetscCall(SNESLineSearchGetLambda(search, &lambda));
   if (iteration > 0) work->shortened = (PetscBool)(lambda < 1);
-  *reference = work->shortened ? (PressureReference){work->solved, 0} : (PressureReference){work->from, 1};
+  *reference = work->shortened ? (StressReference){work->solved, 0, 0} : (StressReference){work->from, 1, 0};
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Lets the multipliers of incompressible bodies take part in Newton's iteration: their pressures become those of the
+   linear step that led to the iterate, and the residual of SNES is that of these pressures. Without an energy the line
+   search compares residuals, and SNES knows the norm of the one before. The multipliers then change after solves only.
+   They did so just now where the iterate is a solution. */
+static PetscErrorCode ModelFollow(Model model, Vec x, StressReference *reference)
+{
+  Vec F;
+
+  PetscFunctionBeginUser;
+  if (!ElasticityAugments(model->problem->elasticity) || !LoadsConservative(model->problem->loads))
+    PetscFunctionReturn(PETSC_SUCCESS);
+  if (!model->work->augmented) {
+    PetscCall(ElasticityFollow(model->problem->elasticity, model->problem->trial, reference));
+    PetscCall(SNESGetFunction(model->snes, &F, NULL, NULL));
+    PetscCall(ModelFunction(model->snes, x, F, model));
+  }
+  model->work->augmented = PETSC_FALSE;
+  reference->held        = 1;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* The Jacobian of SNES: the tangent at x. */
 static PetscErrorCode ModelJacobian(SNES snes, Vec x, Mat J, Mat P, void *context)
 {
-  Model             model = context;
-  PressureReference reference;
+  Model           model = context;
+  StressReference reference;
+  PetscBool       extrapolates;
 
   PetscFunctionBeginUser;
   (void)snes;
   (void)J;
   (void)P;
   PetscCall(ProblemSetTrial(model->problem, x, model->t));
-  if (model->work->from) PetscCall(ModelReference(model, &reference));
-  PetscCall(ModelTangent(model, model->problem->trial, model->work->from ? &reference : NULL, model->t));
+  extrapolates = (PetscBool)(model->work->from && !model->work->uphill);
+  if (extrapolates) {
+    PetscCall(ModelReference(model, &reference));
+    PetscCall(ModelFollow(model, x, &reference));
+  }
+  PetscCall(ModelTangent(model, model->problem->trial, extrapolates ? &reference : NULL, model->t));
   PetscCall(ModelStepFrom(model, model->problem->trial));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Makes room for the states from which pressures are extrapolated, if elements do that. The tangent that PETSc is to
+/* Makes room for the states from which stresses are extrapolated, if elements do that. The tangent that PETSc is to
    test against differences must be their limit. */
 static PetscErrorCode ModelCreateReference(Model model)
 {

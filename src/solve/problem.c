@@ -35,6 +35,8 @@ PetscErrorCode ProblemCreate(Scene scene, Mesh mesh, Problem *out)
   PetscCall(ElasticityCreate(mesh, scene, &problem->elasticity));
   if (scene->n_contacts) PetscCall(ContactCreate(mesh, scene, problem->elasticity, problem->loads, &problem->contact));
   PetscCall(ElasticitySetSymmetric(problem->elasticity, ProblemConservative(problem)));
+  PetscCall(ElasticityCheckEnclosed(problem->elasticity, scene, LoadsConstrained(problem->loads)));
+  PetscCall(FluidCreate(mesh, scene, problem->loads, problem->contact, &problem->fluids));
   PetscCall(PetscCalloc2(n, &problem->f, n, &problem->trial));
   PetscCall(ElasticityTangent(problem->elasticity, problem->trial, NULL));
   PetscCall(ElasticityMatrix(problem->elasticity, NULL, NULL, &problem->P));
@@ -64,6 +66,7 @@ PetscErrorCode ProblemDestroy(Problem *problem)
   if (!p) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(ContactSpringsDestroy(&p->springs));
   PetscCall(FreeBodiesDestroy(&p->bodies));
+  PetscCall(FluidDestroy(&p->fluids));
   PetscCall(FreeModesDestroy(&p->modes));
   PetscCall(MatDestroy(&p->A));
   PetscCall(VecDestroy(&p->diagonal));
@@ -267,7 +270,7 @@ static PetscErrorCode ProblemContactTangent(Problem problem, const PetscReal *u,
   Input Parameters:
 + problem   - the problem
 . u         - local displacements u[n_nodes*dim] (length)
-. reference - the state from which the elements extrapolate pressures; NULL: they have those of u
+. reference - the state from which the elements extrapolate stresses; NULL: they have those of u
 - t         - load parameter
 
   Output Parameter:
@@ -276,7 +279,7 @@ static PetscErrorCode ProblemContactTangent(Problem problem, const PetscReal *u,
   Note:
   problem->stiffness is set to the norm of the diagonal without contact, from which ProblemRoundOff() estimates.
 @*/
-PetscErrorCode ProblemTangent(Problem problem, const PetscReal *u, const PressureReference *reference, PetscReal t,
+PetscErrorCode ProblemTangent(Problem problem, const PetscReal *u, const StressReference *reference, PetscReal t,
                               TangentChange *change)
 {
   const PetscBool joined = (PetscBool)(problem->form == TANGENT_JOINED);

@@ -11,6 +11,7 @@
 #include "bodies/loads.h"
 #include "contact/contact.h"
 #include "contact/contactsprings.h"
+#include "solve/fluid.h"
 #include "solve/freebodies.h"
 
 /* Round-off of the residual in machine epsilons times stiffness times displacement. A body that is moved without any
@@ -46,6 +47,7 @@ typedef struct _n_Problem {
   Elasticity     elasticity;
   Loads          loads;
   Contact        contact; /* NULL: the scene has none */
+  Fluids         fluids;  /* that enter between surfaces; NULL: there are none */
   FreeModes      modes;   /* rigid motions that supports leave to the bodies */
   FreeBodies     bodies;  /* that contact is to hold; NULL: there are none */
   ContactSprings springs; /* of these bodies; NULL: there are none */
@@ -71,7 +73,7 @@ PetscErrorCode ProblemResidual(Problem, const PetscReal *u, PetscReal t, PetscRe
 PetscErrorCode ProblemCollectResidual(Problem, Vec x, Vec F);
 PetscErrorCode ProblemEnergy(Problem, const PetscReal *u, PetscReal t, int parts, PetscReal *energy, PetscBool *ok);
 PetscErrorCode ProblemSetForm(Problem, TangentForm);
-PetscErrorCode ProblemTangent(Problem, const PetscReal *u, const PressureReference *, PetscReal t, TangentChange *);
+PetscErrorCode ProblemTangent(Problem, const PetscReal *u, const StressReference *, PetscReal t, TangentChange *);
 PetscErrorCode ProblemRestoreTangent(Problem);
 PetscReal      ProblemForceScale(Problem);
 PetscErrorCode ProblemRoundOff(Problem, PetscReal *force);

@@ -270,6 +270,7 @@ static void CountSolve(PetscReal t, const SolveReport *solve, StepRecord *record
   report->krylov_iterations += solve->krylov;
   report->regathered += solve->regathered;
   report->adjusted += solve->adjusted;
+  report->wetted += solve->wetted;
   for (int cause = 0; cause < CUT_CAUSES; cause++) report->cuts[cause] += solve->cuts[cause];
   report->turned += solve->turned;
 }
@@ -344,7 +345,8 @@ static PetscErrorCode ReportFailure(StepperReport *report, PetscReal t, PetscRea
 
 /* Tries one step, and repeats it with smaller dt until it converges and the control accepts it, or dt falls below
    dt_min. A step whose first linear solve is singular is not repeated, because the tangent at its start is singular for
-   any dt. */
+   any dt. A fluid that leaks
+   ends the steps. */
 static PetscErrorCode LoadStepperAdvance(LoadStepper stepper, StepRecord *record, PetscBool *advanced)
 {
   Model           model  = stepper->model;
@@ -377,7 +379,13 @@ static PetscErrorCode LoadStepperAdvance(LoadStepper stepper, StepRecord *record
     PetscCall(
       PetscInfo(model->snes, "step to t = %g failed: %s; %s\n", (double)end, SolveResults[solve.result], solve.detail));
     PetscCall(ModelRestore(model));
-    report->steps_failed++;
+    report->leaks = (PetscBool)(solve.result == SOLVE_LEAKED);
+    if (report->leaks) {
+      PetscCall(
+        PetscSNPrintf(report->message, sizeof(report->message), "ended at t = %.6g: %s", (double)t, solve.detail));
+      PetscFunctionReturn(PETSC_SUCCESS);
+    }
+    *(solve.result == SOLVE_LEAK ? &report->steps_repeated : &report->steps_failed) += 1;
     stepper->size.dt = STEPPER_CUT * dt;
     if (stepper->size.dt < stepper->size.dt_min || (solve.result == SOLVE_LINEAR && solve.newton == 1) ||
         (solve.result == SOLVE_ADRIFT && !solve.newton)) {
@@ -432,7 +440,7 @@ PetscErrorCode LoadStepperSolve(LoadStepper stepper, StepperReport *report)
     PetscCall(LoadStepperAdvance(stepper, &record, &advanced));
     if (advanced && stepper->monitor) PetscCall(stepper->monitor(stepper, &record, stepper->monitor_context));
   }
-  stepper->report.done    = stepper->report.t < 1 - STEPPER_SAME_T ? PETSC_FALSE : PETSC_TRUE;
+  stepper->report.done    = (PetscBool)(stepper->report.t >= 1 - STEPPER_SAME_T || stepper->report.leaks);
   stepper->report.stopped = (PetscBool)(stepper->report.stopped && !stepper->report.done);
   *report                 = stepper->report;
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -459,13 +467,21 @@ PetscErrorCode LoadStepperArchive(LoadStepper stepper, Archive archive)
   PetscReal      initial = size.initial, dt = size.dt;
   PetscReal *real[]    = {&initial,       &dt,           &size.beta,     &size.together, &size.shortfall, &size.planned,
                           &report->taken, &report->left, &report->share, &report->tied};
-  PetscInt  *integer[] = {&report->steps,           &report->steps_failed,
-                          &report->steps_repeated,  &report->newton_iterations,
-                          &report->newton_accepted, &report->krylov_iterations,
-                          &report->regathered,      &report->adjusted,
-                          &report->turned,          &report->relaxed,
-                          &report->cycles,          &report->cycles_cut,
-                          &report->jumps,           &size.tied};
+  PetscInt  *integer[] = {&report->steps,
+                          &report->steps_failed,
+                          &report->steps_repeated,
+                          &report->newton_iterations,
+                          &report->newton_accepted,
+                          &report->krylov_iterations,
+                          &report->regathered,
+                          &report->adjusted,
+                          &report->wetted,
+                          &report->turned,
+                          &report->relaxed,
+                          &report->cycles,
+                          &report->cycles_cut,
+                          &report->jumps,
+                          &size.tied};
 
   PetscFunctionBeginUser;
   PetscCall(ArchiveRealsAt(archive, "stepper/size", PETSC_STATIC_ARRAY_LENGTH(real), real));

@@ -22,9 +22,10 @@ typedef struct {
 
 /* All steps so far. */
 typedef struct {
-  PetscBool done;                                /* t = 1 was reached */
+  PetscBool done;                                /* t = 1 was reached, or a fluid leaks */
+  PetscBool leaks;                               /* a fluid leaks: the load ends before t = 1 */
   PetscBool stopped;                             /* LoadStepperStop() ended it before */
-  PetscInt  steps, steps_failed, steps_repeated; /* repeated: converged, but taken back by the control */
+  PetscInt  steps, steps_failed, steps_repeated; /* repeated: taken back, to touch less or to find a leak */
   PetscInt  newton_iterations, newton_accepted, krylov_iterations;
   PetscInt  relaxed;                      /* times that the contact springs were relaxed */
   PetscReal taken;                        /* energy that the contact springs took out of the bodies */
@@ -37,6 +38,7 @@ typedef struct {
   PetscInt  jumps;                        /* accepted steps that ended in another equilibrium */
   char      jump[512];                    /* the last of them: load parameters, node, distance */
   PetscInt  regathered, adjusted, turned; /* of SolveReport, for all solves */
+  PetscInt  wetted;                       /* likewise */
   PetscInt  cuts[CUT_CAUSES];             /* likewise */
   PetscReal t;                            /* of the last accepted state */
   char      message[1024];                /* why it ended early: cause, load parameter, nodes, what was tried */

@@ -27,7 +27,7 @@ static PetscErrorCode KernelForce(Work *w)
 {
   PetscReal J[KERNEL_LANES];
 
-  ElementKernel(w->kernel, w->X, w->u, NULL, w->constants, NULL, w->batch_f, NULL, J);
+  ElementKernel(w->kernel, w->X, w->u, NULL, w->constants, NULL, NULL, w->batch_f, NULL, J);
   return PETSC_SUCCESS;
 }
 
@@ -35,7 +35,7 @@ static PetscErrorCode KernelBoth(Work *w)
 {
   PetscReal J[KERNEL_LANES];
 
-  ElementKernel(w->kernel, w->X, w->u, NULL, w->constants, NULL, w->batch_f, w->K, J);
+  ElementKernel(w->kernel, w->X, w->u, NULL, w->constants, NULL, NULL, w->batch_f, w->K, J);
   return PETSC_SUCCESS;
 }
 

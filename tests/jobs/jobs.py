@@ -36,6 +36,9 @@ JOBS = [
         Answer("radial_force", 36.575, 0.01, "limit"),
         Answer("lip_up", 0.46007, 0.02, "limit"),
     ], steps=12),
+    Job("seal_leak", "gasket pressed by oil until it leaks", [
+        Answer("tight_to", 2.602, 0.1, "limit"),
+    ], steps=14),
     Job("wheel_on_edge", "rubber wheel on an edge", [
         Answer("down", 36.44, 0.02, "limit"),
         Answer("sideways", 5.161, 0.1, "limit"),

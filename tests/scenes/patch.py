@@ -19,7 +19,11 @@ ELEMENTS = {
     "hex8": (0, 1),
     "hex27": (0, 2)
 }
-FORMULATIONS = ["enhanced", "fbar"]
+FORMULATIONS = {
+    "enhanced": ("quad4", "hex8"),
+    "fbar": ("quad4", "hex8"),
+    "mixed": ("tri6", "quad4", "quad9", "tet10", "hex8", "hex27")
+}
 
 
 def stretched(geometry, kinematics):
@@ -31,7 +35,9 @@ def stretched(geometry, kinematics):
             "axisymmetric": STRETCH["x"]
         }[geometry]
     ])
-    if kinematics == "small":
+    if kinematics == "finite" and formulation == "mixed":  # neo_hookean
+        s = (MU * ((1 + e) ** 2 - 1) + LAMBDA * numpy.log(numpy.prod(1 + e))) / numpy.prod(1 + e)
+    elif kinematics == "small":
         s = LAMBDA * e.sum() + 2 * MU * e
     else:
         green = ((1 + e) ** 2 - 1) / 2
@@ -75,7 +81,7 @@ def shear(args, check):
 
 
 args = arguments(("element", "element type, hex8_enhanced: with that formulation",
-                  [*ELEMENTS, *(f"{e}_{f}" for e in ("quad4", "hex8") for f in FORMULATIONS)]),
+                  [*ELEMENTS, *(f"{e}_{f}" for f, elements in FORMULATIONS.items() for e in elements)]),
                  ("geometry", "of the scene", ["solid", "plane_strain", "axisymmetric"]))
 element, _, formulation = args.element.partition("_")
 simplex, order = ELEMENTS[element]
@@ -84,6 +90,8 @@ if args.geometry == "solid":
 else:
     scene, overrides = SCENES / "patch_plane.yaml", [f"mesh.parameters.tri={simplex}"]
 overrides += [f"mesh.order={order}", f"geometry={args.geometry}", f"bodies.0.formulation={formulation or 'full'}"]
+if formulation == "mixed":
+    overrides += ["bodies.0.material.law=neo_hookean"]
 check = Check()
 stretch(args, check, "finite")
 if args.geometry == "axisymmetric":

@@ -21,6 +21,9 @@ def printed(script, record, options=""):
 LIKE = {
     f"{PYTHON} scripts/reference.py": f"{PYTHON} scripts/reference.py --check {BURNISH}",
     f"{PYTHON} scripts/ring_table.py": f"{PYTHON} scripts/ring_table.py --help",
+    f"{PYTHON} scripts/incompressible_table.py {BURNISH}": f"{PYTHON} scripts/incompressible_table.py --help",
+    "build/tests/incompressible meshes runs/records/incompressible_rates.csv": "test -s "
+    "runs/records/incompressible_rates.csv",
     f"{PYTHON} -m http.server -d out/site": f"timeout 1 {PYTHON} -m http.server 0 -d out/site; test $? = 124",
     "mpirun -x OPENBLAS_CORETYPE": "mpirun -x OPENBLAS_CORETYPE -n 2 build/burnish -version",
     "make install PREFIX=$HOME/.local": "test -x prefix/bin/burnish || "
@@ -69,6 +72,7 @@ FULL = {
     f"{PYTHON} scripts/study.py runs/hertz_line.yaml --vary contact.0.smoother=facet,diffuse "
     f"--vary mesh.parameters.h=0.8,0.4,0.2 --measure peak_pressure --reference finest {STUDY}",
     f"{PYTHON} scripts/ring_pictures.py": f"{PYTHON} scripts/ring_pictures.py {BURNISH} --out $WORK/out/rings",
+    f"{PYTHON} scripts/seal_pictures.py": f"{PYTHON} scripts/seal_pictures.py {BURNISH} --out $WORK/out/seal",
     f"{PYTHON} scripts/ring_table.py plane": table("ring_table", "plane"),
     f"{PYTHON} scripts/ring_table.py plane12 matching solid spheres": printed("ring_table", "formulations", "plane12"),
     f"{PYTHON} scripts/ring_table.py --record runs/records/offsets.csv offsets":

@@ -8,6 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include "eigenvalues.h"
+#include "laws.h"
 #include "kernels/elementkernel.h"
 
 #define assert_near(a, b, tolerance) assert_true(fabs((a) - (b)) <= (tolerance))
@@ -33,7 +34,7 @@ static double Random(void)
 
 static Material LaneMaterial(const Batch *b, int lane)
 {
-  return MaterialFromModuli(b->kernel.law, b->E[lane], b->nu[lane]);
+  return ExampleMaterial(b->kernel.law, b->E[lane], b->nu[lane]);
 }
 
 static void SetConstants(Batch *b, int lane)
@@ -86,7 +87,7 @@ static void BatchDestroy(Batch *b)
 
 static void Evaluate(Batch *b)
 {
-  ElementKernel(&b->kernel, b->X, b->u, NULL, b->constants, b->W, b->f, b->K, b->J);
+  ElementKernel(&b->kernel, b->X, b->u, NULL, b->constants, NULL, b->W, b->f, b->K, b->J);
 }
 
 /* u = H X (about the origin) in every lane */
@@ -122,7 +123,11 @@ static int NextCase(KernelCase *kernel)
     return 1;
   }
   kernel->kinematics = KINEMATICS_FINITE;
-  if (++kernel->law < MATERIAL_LAWS) return 1;
+  while (++kernel->law < MATERIAL_LAWS) {
+    kernel->n_constants = ExampleMaterial(kernel->law, 1, 0).n_constants;
+    if (ElementKernelExists(kernel)) return 1;
+  }
+  kernel->n_constants = 0;
   kernel->law        = MATERIAL_LINEAR;
   kernel->kinematics = KINEMATICS_SMALL;
   while (++kernel->formulation < FORMULATIONS) {
@@ -156,9 +161,9 @@ static void ForceAndTangentAreDerivatives(void **state)
     for (int k = 0; k < b.dofs * b.dofs * KERNEL_LANES; k++) scale = fmax(scale, fabs(b.K[k]));
     for (int j = 0; j < b.dofs; j++) {
       for (int lane = 0; lane < KERNEL_LANES; lane++) b.u[j * KERNEL_LANES + lane] += h;
-      ElementKernel(&kernel, b.X, b.u, NULL, b.constants, W_plus, f_plus, NULL, J);
+      ElementKernel(&kernel, b.X, b.u, NULL, b.constants, NULL, W_plus, f_plus, NULL, J);
       for (int lane = 0; lane < KERNEL_LANES; lane++) b.u[j * KERNEL_LANES + lane] -= 2 * h;
-      ElementKernel(&kernel, b.X, b.u, NULL, b.constants, W_minus, f_minus, NULL, J);
+      ElementKernel(&kernel, b.X, b.u, NULL, b.constants, NULL, W_minus, f_minus, NULL, J);
       for (int lane = 0; lane < KERNEL_LANES; lane++) {
         b.u[j * KERNEL_LANES + lane] += h;
         assert_near(b.f[j * KERNEL_LANES + lane], (W_plus[lane] - W_minus[lane]) / (2 * h), 1e-8 * scale);
@@ -204,9 +209,9 @@ static void EachResultMayBeLeftOut(void **state)
     c   = b;
     c.K = calloc((size_t)b.dofs * b.dofs * KERNEL_LANES, sizeof(double));
     memset(c.f, 0, sizeof(c.f));
-    ElementKernel(&kernel, b.X, b.u, NULL, b.constants, NULL, c.f, NULL, c.J);
-    ElementKernel(&kernel, b.X, b.u, NULL, b.constants, NULL, NULL, c.K, c.J);
-    ElementKernel(&kernel, b.X, b.u, NULL, b.constants, c.W, NULL, NULL, c.J);
+    ElementKernel(&kernel, b.X, b.u, NULL, b.constants, NULL, NULL, c.f, NULL, c.J);
+    ElementKernel(&kernel, b.X, b.u, NULL, b.constants, NULL, NULL, NULL, c.K, c.J);
+    ElementKernel(&kernel, b.X, b.u, NULL, b.constants, NULL, c.W, NULL, NULL, c.J);
     for (int k = 0; k < b.dofs * KERNEL_LANES; k++) scale = fmax(scale, fabs(b.f[k]));
     for (int lane = 0; lane < KERNEL_LANES; lane++) assert_near(c.W[lane], b.W[lane], 1e-14 * b.W[lane]);
     for (int k = 0; k < b.dofs * KERNEL_LANES; k++) assert_near(c.f[k], b.f[k], 1e-14 * scale);
@@ -234,7 +239,7 @@ static void LanesAreIndependentAndUnaligned(void **state)
     }
     for (int k = 0; k < MATERIAL_MAX_CONSTANTS * KERNEL_LANES; k++)
       constants[k] = b.constants[k / KERNEL_LANES * KERNEL_LANES + 5];
-    ElementKernel(&kernel, X + 1, u + 1, NULL, constants, NULL, f + 1, NULL, J);
+    ElementKernel(&kernel, X + 1, u + 1, NULL, constants, NULL, NULL, f + 1, NULL, J);
     for (int k = 0; k < b.dofs; k++) {
       for (int lane = 0; lane < KERNEL_LANES; lane++)
         assert_true(f[1 + k * KERNEL_LANES + lane] == b.f[k * KERNEL_LANES + 5]);
@@ -410,7 +415,8 @@ static void UniformExpansionIsExact(void **state)
     const double  J      = kernel.geometry == GEOMETRY_PLANE_STRAIN ? 1.21 : 1.331;
     Batch         b;
 
-    BatchCreate(&b, kernel, 0.1);
+    /* mixed tri6 and tet10 have other points than the table, which differ on curved elements */
+    BatchCreate(&b, kernel, kernel.formulation == FORMULATION_MIXED ? 0 : 0.1);
     SetGradient(&b, solid);
     Evaluate(&b);
     for (int lane = 0; lane < KERNEL_LANES; lane++) {
@@ -419,7 +425,7 @@ static void UniformExpansionIsExact(void **state)
 
       TakeLane(&b, lane, X, u);
       MaterialPoint(&material, finite, H, &W, P, NULL);
-      ElementStress(&kernel, X, u, material.constants, stress, &volume);
+      ElementStress(&kernel, X, u, material.constants, NULL, stress, &volume);
       assert_near(volume, CellVolume(kernel.type, b.dim, kernel.geometry, X), 1e-13 * volume);
       assert_near(b.W[lane], W * volume, 1e-12 * W * volume);
       assert_near(b.J[lane], finite ? J : 1, 1e-13);

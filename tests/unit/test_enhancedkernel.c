@@ -36,7 +36,7 @@ static void Evaluate(const KernelCase *kernel, const double *X, const double *u,
       lanes_u[k * KERNEL_LANES + lane] = u[k];
     }
   }
-  ElementKernel(kernel, lanes_X, lanes_u, NULL, constants, W, f, K, J);
+  ElementKernel(kernel, lanes_X, lanes_u, NULL, constants, NULL, W, f, K, J);
   result->W = W[0];
   result->J = J[0];
   for (int k = 0; k < result->dofs; k++) result->f[k] = f[k * KERNEL_LANES];

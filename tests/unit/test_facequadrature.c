@@ -79,6 +79,39 @@ static void test_hats(void **state)
   }
 }
 
+/* The values for the element's quadrature points are shares of 1 and keep the hats' products with shape functions, as
+   the finer rule has them; in second-order triangles those with linear functions. */
+static void test_hats_around(void **state)
+{
+  (void)state;
+  for (int k = 0; k < 2 * TYPES; k++) {
+    const int       t = k / 2, finer = k % 2;
+    const Element  *e                                     = ElementGetFace(types[t]);
+    const FaceRule *rule                                  = FaceRuleGet(types[t], finer);
+    const int       linear                                = e->corners == 3 && e->dim == 2 && e->order == 2;
+    double          whole[FACE_MAX_NODES][FACE_MAX_NODES] = {{0}}, points[FACE_MAX_NODES][FACE_MAX_NODES] = {{0}};
+
+    for (int q = 0; q < rule->n; q++)
+      for (int a = 0; a < e->nodes; a++)
+        for (int b = 0; b < e->nodes; b++)
+          whole[a][b] += rule->weight[q] * (linear ? (b < 2 ? rule->xi[q][b] : 1) : rule->N[q][b]) * rule->hat[q][a];
+    for (int p = 0; p < e->points; p++) {
+      double psi[FACE_MAX_NODES], sum = 0;
+
+      FaceHatAround(types[t], p, finer, psi);
+      for (int a = 0; a < e->nodes; a++) {
+        assert_true(psi[a] > -0.1);
+        sum += psi[a];
+        for (int b = 0; b < e->nodes; b++)
+          points[a][b] += e->weight[p] * (linear ? (b < 2 ? e->point[p][b] : 1) : e->N[p][b]) * psi[a];
+      }
+      assert_true(fabs(sum - 1) < 1e-14);
+    }
+    for (int a = 0; a < e->nodes; a++)
+      for (int b = 0; b < e->nodes; b++) assert_true(fabs(points[a][b] - whole[a][b]) < 1e-14);
+  }
+}
+
 /* Areas and normals of a tilted square and of an edge about the axis. */
 static void test_areas(void **state)
 {
@@ -105,6 +138,6 @@ static void test_areas(void **state)
 int main(void)
 {
   const struct CMUnitTest tests[] = {cmocka_unit_test(test_degree), cmocka_unit_test(test_hats),
-                                     cmocka_unit_test(test_areas)};
+                                     cmocka_unit_test(test_hats_around), cmocka_unit_test(test_areas)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -48,10 +48,10 @@ static void LawSeesOneDilatation(void **state)
   (void)state;
   for (KernelCase kernel; NextCase(&kernel);) {
     const Material material = MaterialFromModuli(kernel.law, 100, 0.4);
-    double         X[MAX_DOFS], u[MAX_DOFS], H[MAX_POINTS * 9], first = 0;
+    double         X[MAX_DOFS], u[MAX_DOFS], H[MAX_POINTS * 9], pressure[MAX_POINTS], first = 0;
 
     Bent(&kernel, X, u);
-    ElementPointGradient(&kernel, X, u, material.constants, H);
+    ElementPointState(&kernel, X, u, material.constants, NULL, H, pressure);
     for (int p = 0; p < ElementGet(kernel.type)->points; p++) {
       const double *h = &H[9 * p];
       double        J = 1 + h[0] + h[4] + h[8];
@@ -79,7 +79,7 @@ static double Energy(const KernelCase *kernel, const double *X, const double *u,
       lanes_u[k * KERNEL_LANES + lane] = u[k];
     }
   }
-  ElementKernel(kernel, lanes_X, lanes_u, NULL, constants, W, NULL, NULL, J);
+  ElementKernel(kernel, lanes_X, lanes_u, NULL, constants, NULL, W, NULL, NULL, J);
   return W[0];
 }
 

@@ -6,6 +6,7 @@
 #include "scene/commandline.h"
 #include <stdlib.h>
 #include <unistd.h>
+#include <math.h>
 #include <string.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -37,6 +38,7 @@ static const char Everything[] =
   "  - {surface: side, pressure: 10, follower: false}\n"
   "  - {surface: side, traction: [0, -1, 0.5]}\n"
   "  - {volume: plate, body_force: [0, -9.8e-3, 0]}\n"
+  "  - {surface: plate_bottom, pressure: 6, where: open, from: rim, to: [1, 2, 3]}\n"
   "contact:\n"
   "  - name: crown\n"
   "    slave: plate_bottom\n"
@@ -70,6 +72,9 @@ static const char Everything[] =
   "  - {name: p7, pressure_mean: crown}\n"
   "  - {name: p8, pressure_deviation: crown, measure: rms, excluding: 2}\n"
   "  - {name: p9, pressure_deviation: crown, measure: max, only: 1.5}\n"
+  "  - {name: p10, fluid_front: plate_bottom, axis: y, side: min}\n"
+  "  - {name: p11, fluid_area: plate_bottom}\n"
+  "  - {name: p12, seal_pressure: plate_bottom}\n"
   "output: {every: 0, fields: [stress, contact], checkpoint: 0}\n"
   "petsc: {snes_monitor: , -pc_type: lu, ksp_rtol: 1e-9}\n";
 
@@ -170,7 +175,7 @@ static void SupportsAndLoadsArrive(void **state)
   assert_int_equal(scene->n_supports, 1);
   assert_string_equal(scene->supports[0].surface, "bottom");
   assert_true(scene->supports[0].fixed[0] && !scene->supports[0].fixed[1] && scene->supports[0].fixed[2]);
-  assert_int_equal(scene->n_loads, 5);
+  assert_int_equal(scene->n_loads, 6);
   load = scene->loads;
   assert_int_equal(load[0].kind, LOAD_DISPLACEMENT);
   assert_true(load[0].has[0] && load[0].has[1] && !load[0].has[2]);
@@ -185,6 +190,9 @@ static void SupportsAndLoadsArrive(void **state)
   assert_int_equal(load[4].kind, LOAD_BODY_FORCE);
   assert_string_equal(load[4].region, "plate");
   AssertPoint(load[4].value, 0, -9.8e-3, 0);
+  assert_true(!load[2].open && load[5].open && load[5].follower && !load[5].from.has_point && load[5].to.has_point);
+  assert_string_equal(load[5].from.surface, "rim");
+  AssertPoint(load[5].to.point, 1, 2, 3);
   Free(&scene);
 }
 
@@ -203,8 +211,8 @@ static void ContactsArrive(void **state)
   assert_string_equal(contact->master, "die");
   assert_int_equal(contact->n_symmetry, 2);
   assert_string_equal(contact->symmetry[1], "symmetry_z");
-  assert_true(contact->feature_angle == 30 && contact->stabilise == STABILISE_TRUE && !contact->penalty_auto && contact->penalty == 1e5 &&
-              contact->penalty_scale == 10);
+  assert_true(contact->feature_angle == 30 && contact->stabilise == STABILISE_TRUE && !contact->penalty_auto &&
+              contact->penalty == 1e5 && contact->penalty_scale == 10);
   assert_true(contact->adjust && !contact->adjust_converged && contact->window_in_spacings && contact->g_min == 1e-6 &&
               contact->g_max == 5e-6);
   assert_true(contact->clamp == 10 && contact->range == 100);
@@ -224,9 +232,10 @@ static void ProbesOfEveryKindArrive(void **state)
 
   (void)state;
   ReadOrFail(Everything, 0, NULL, &scene);
-  assert_int_equal(scene->n_probes, 10);
+  assert_int_equal(scene->n_probes, 13);
   probe = scene->probes;
-  for (int i = 0; i < PROBE_KINDS; i++) assert_int_equal(probe[i].kind, i);
+  for (int i = 0; i < PROBE_FLUID_FRONT; i++) assert_int_equal(probe[i].kind, i);
+  for (int i = PROBE_FLUID_FRONT; i < PROBE_KINDS; i++) assert_int_equal(probe[i + 1].kind, i); /* p8 and p9 are one */
   assert_string_equal(probe[0].target, "top");
   assert_true(probe[0].component == 1 && probe[0].absolute && probe[0].factor == 1);
   assert_string_equal(probe[1].target, "crown");
@@ -245,6 +254,8 @@ static void ProbesOfEveryKindArrive(void **state)
   assert_false(probe[7].has_at);
   assert_true(probe[8].rms && probe[8].edge_filter == 1 && probe[8].edge_faces == 2);
   assert_true(!probe[9].rms && probe[9].edge_filter == 2 && probe[9].edge_faces == 1.5);
+  assert_true(probe[10].axis == 1 && !probe[10].max_side);
+  assert_string_equal(probe[12].target, "plate_bottom");
   Free(&scene);
 }
 
@@ -337,9 +348,9 @@ static void PlacesNameTheNearestLine(void **state)
 
   (void)state;
   ReadOrFail(Everything, 0, NULL, &scene);
-  snprintf(expect, sizeof expect, "%s:20: contact.0.slave", File);
+  snprintf(expect, sizeof expect, "%s:21: contact.0.slave", File);
   assert_string_equal(SceneWhere(scene, "contact.0", "slave"), expect);
-  snprintf(expect, sizeof expect, "%s:35: contact.1.feature_angle", File);
+  snprintf(expect, sizeof expect, "%s:36: contact.1.feature_angle", File);
   assert_string_equal(SceneWhere(scene, "contact.1", "feature_angle"), expect);
   snprintf(expect, sizeof expect, "%s:7: bodies.1", File);
   assert_string_equal(SceneWhere(scene, "bodies.1", ""), expect);
@@ -381,16 +392,53 @@ static void TextDependsOnValuesAlone(void **state)
 /* The words of the table have the order of the enumerations into which they are read. */
 static void LawsOfTheTableAreTheMaterials(void **state)
 {
-  char  text[64];
+  char  text[128];
   Scene scene;
 
   (void)state;
   for (int law = 0; law < MATERIAL_LAWS; law++) {
-    char *const both[] = {"kinematics=small", text};
+    const ElasticLaw *elastic = MaterialGetLaw((MaterialLaw)law);
+    char *const       both[]  = {"kinematics=small", text};
+    int               n       = snprintf(text, sizeof text, "bodies.0.material={law: %s, nu: 0.3", MaterialLaws[law]);
 
-    snprintf(text, sizeof text, "bodies.0.material.law=%s", MaterialLaws[law]);
+    for (int k = 0; k < elastic->required; k++)
+      n += snprintf(text + n, sizeof text - n, ", %s: %s", elastic->keys[k],
+                    strcmp(elastic->keys[k], MATERIAL_TERMS) ? "2" : "[[2, 2]]");
+    snprintf(text + n, sizeof text - n, "}");
     ReadOrFail(Smallest, 2, both, &scene);
     assert_int_equal(scene->bodies[0].material.law, law);
+    assert_int_equal(scene->bodies[0].material.n_constants, elastic->constants);
+    assert_true(scene->bodies[0].material.constants[1] == 2);
+    assert_true(fabs(scene->bodies[0].material.nu - 0.3) < 1e-15);
+    Free(&scene);
+  }
+}
+
+/* nu, K, E and mu that say the same give the same material. */
+static void ModuliMayBeGivenInSeveralWays(void **state)
+{
+  static char *const ways[] = {
+    "bodies.0.material={law: neo_hookean, E: 2.6, nu: 0.3}",
+    "bodies.0.material={law: neo_hookean, mu: 1, nu: 0.3}",
+    "bodies.0.material={law: neo_hookean, mu: 1, K: 2.1666666666666667}",
+    "bodies.0.material={law: neo_hookean, E: 2.6, K: 2.1666666666666667}",
+    "bodies.0.material={law: isochoric_neo_hookean, E: 2.6, nu: 0.3}",
+    "bodies.0.material={law: isochoric_neo_hookean, mu: 1, K: 2.1666666666666667}",
+    "bodies.0.material={law: mooney_rivlin, c10: 0.3, c01: 0.2, nu: 0.3}",
+    "bodies.0.material={law: yeoh, c10: 0.5, c30: 0.1, K: 2.1666666666666667}",
+    "bodies.0.material={law: ogden, terms: [[1.5, 2], [0.25, -4]], nu: 0.3}",
+  };
+  Scene scene;
+
+  (void)state;
+  for (size_t i = 0; i < sizeof ways / sizeof ways[0]; i++) {
+    const Material *material;
+
+    ReadOrFail(Smallest, 1, &ways[i], &scene);
+    material = &scene->bodies[0].material;
+    assert_true(fabs(material->E - 2.6) < 1e-14 && fabs(material->nu - 0.3) < 1e-15);
+    assert_true(fabs(MaterialShear(material) - 1) < 1e-15);
+    assert_true(fabs(material->constants[0] - (i < 4 ? 1.5 : 6.5 / 3)) < 1e-14);
     Free(&scene);
   }
 }
@@ -405,7 +453,7 @@ static void ReferenceNamesKeysRangesAndDefaults(void **state)
   assert_non_null(file);
   assert_int_equal(SceneReference(file), PETSC_SUCCESS);
   fclose(file);
-  assert_non_null(strstr(text, "  bodies.N.material.nu: a number in (-1, 0.5); required - Poisson's ratio\n"));
+  assert_non_null(strstr(text, "  bodies.N.material.nu: a number in (-1, 0.5] - Poisson's ratio"));
   assert_non_null(strstr(text, "  contact.N.formulation: node_to_surface | surface_to_surface | auto; default auto"));
   assert_non_null(strstr(text, "  probes.N.contact_edge: "));
   free(text);
@@ -479,6 +527,7 @@ int main(int argc, char **argv)
     cmocka_unit_test(PlacesNameTheNearestLine),
     cmocka_unit_test(TextDependsOnValuesAlone),
     cmocka_unit_test(LawsOfTheTableAreTheMaterials),
+    cmocka_unit_test(ModuliMayBeGivenInSeveralWays),
     cmocka_unit_test(ReferenceNamesKeysRangesAndDefaults),
     cmocka_unit_test(CommandLineKeepsPetscOptions),
     cmocka_unit_test(CommandLinePrefersAFreeStandingScene),

@@ -75,6 +75,7 @@ typedef struct {
   PetscBool  holding, touching;     /* a linear step: closed terms stay so, and what touches is closed */
   PetscBool *held, *predicted;      /* terms closed where the linear step began; those the prediction counted on */
 
+  PetscReal   *carried; /* pressure of each term that a fluid carries in the contact's place; NULL: no fluid */
   ContactState now, accepted;
   PetscReal   *before;  /* gaps of the iterate before, where the penalty is adjusted */
   Anderson     mixing;  /* of the multipliers of one step; NULL: the pair is not augmented */

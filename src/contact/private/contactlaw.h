@@ -11,7 +11,7 @@
 typedef struct {
   double penalty;    /* force per length and area */
   double offset;     /* g_0, subtracted from the gap (length) */
-  double multiplier; /* pressure where the gap is at its offset; 0 without augmentation */
+  double multiplier; /* pressure where the gap is at its offset; 0 without augmentation, negative with a fluid */
 } LawState;
 
 /*@
@@ -23,7 +23,8 @@ typedef struct {
 . state - penalty, offset and multiplier of a term
 
   Note:
-  It is the offset, plus the distance over which the multiplier presses before the surfaces meet (length). Plain C.
+  It is the offset, plus the distance over which the multiplier presses before the surfaces meet (length). Where a
+  fluid carries a pressure, the multiplier is negative: contact presses only what is above it. Plain C.
 @*/
 static inline double LawOnsetGap(const LawState *state)
 {

@@ -40,9 +40,16 @@ typedef struct {
   int               finite, n_constants;
   const Lanes      *constants;
   const double     *X, *u;
-  const double     *u_0;  /* displacements from which K extrapolates the pressure, or NULL */
-  double            rate; /* of PressureReference */
+  const double     *u_0;  /* displacements from which K extrapolates the stress, or NULL */
+  double            rate; /* of StressReference */
   double           *W, *f, *K, *J, *H;
+  /* Of mixed elements: the part kappa of the modulus of the volume, shear modulus, multipliers or NULL, and results or
+     NULL: theta [MIXED_PRESSURES], which mixedkernel.c explains, the pressure at the points of H, and the
+     pressures extrapolated from u_0 [MIXED_PRESSURES]. constants[0] is then the local part of VolumeModuli. */
+  Lanes         kappa, mu, rest; /* rest: 1 - kappa / projected part */
+  const double *multiplier;
+  int           held; /* of StressReference */
+  double       *theta, *pressure, *follow;
 } BatchCall;
 
 /* Computes the reference gradients of all nodes at a point with shape functions N and dN. They become point q of the
@@ -124,17 +131,15 @@ LANES_INLINE void Cofactors(const Lanes H[9], Lanes C[9])
   }
 }
 
-/* Computes J - 1 of the reference state at point q and the linear change of J from there to the gradient H. */
-LANES_INLINE void PointReference(const BatchCall *call, const int n, const int dim, const int hoop, int q,
-                                 const ChunkPoints *c, const Lanes H[9], Lanes *dilatation, Lanes *change)
+/* Computes J - 1 at the gradient H_0 of an earlier state and the linear change of J from there to H. */
+LANES_INLINE void ChangeOfVolume(const Lanes H[9], const Lanes H_0[9], Lanes *dilatation_0, Lanes *change)
 {
-  Lanes R[9], C[9];
+  Lanes C[9];
 
-  PointDisplacementGradient(n, dim, hoop, q, call->u_0, c, R);
-  MaterialDilatation(R, dilatation);
-  Cofactors(R, C);
-  *change = C[0] * (H[0] - R[0]);
-  for (int r = 1; r < 9; r++) *change += C[r] * (H[r] - R[r]);
+  MaterialDilatation(H_0, dilatation_0);
+  Cofactors(H_0, C);
+  *change = C[0] * (H[0] - H_0[0]);
+  for (int r = 1; r < 9; r++) *change += C[r] * (H[r] - H_0[r]);
 }
 
 /* Computes what the extrapolated pressure is above that of the state with `dilatation`. Pressure is dU/d(ln J) for the
@@ -148,6 +153,29 @@ LANES_INLINE void ExcessPressure(const BatchCall *call, const Lanes *dilatation,
     (*excess)[lane] =
       call->constants[0][lane] * (log1p(before) + call->rate * (*change)[lane] / (1 + before) - log1p(now));
   }
+}
+
+/* Puts the stress that extrapolates from H_0 into the geometric part of the law's tangent A at a point with gradient H.
+ */
+LANES_INLINE void PointExtrapolate(const BatchCall *call, const Lanes H[9], const Lanes *dilatation, const Lanes H_0[9],
+                                   Lanes A[MATERIAL_TANGENT_SIZE])
+{
+  Lanes dilatation_0, change, excess, C[9];
+
+  if (call->law->extrapolate) {
+    call->law->extrapolate(H, H_0, call->rate, call->constants, A);
+    return;
+  }
+  ChangeOfVolume(H, H_0, &dilatation_0, &change);
+  ExcessPressure(call, dilatation, &dilatation_0, &change, &excess);
+  Cofactors(H, C);
+  for (int lane = 0; lane < LANES; lane++) {
+    const double J = 1 + FlooredDilatation((*dilatation)[lane]);
+
+    excess[lane] /= J * J; /* F^-T = C / J enters twice */
+  }
+  for (int r = 0, k = 0; r < 9; r++)
+    for (int s = r; s < 9; s++, k++) A[k] -= excess * C[3 * (r / 3) + s % 3] * C[3 * (s / 3) + r % 3];
 }
 
 LANES_INLINE void AddForce(const int n, const int dim, const int hoop, int q, const ChunkPoints *c, const Lanes P[9],
@@ -242,3 +270,5 @@ typedef void BatchFn(const BatchCall *);
 /* Instances by element and geometry (1 is axisymmetric), NULL where a formulation has none */
 extern BatchFn *const enhanced_batches[ELEMENT_TYPES][2];
 extern BatchFn *const mean_dilatation_batches[ELEMENT_TYPES][2];
+extern BatchFn *const mixed_batches[ELEMENT_TYPES][2];
+extern const int      mixed_pressures[ELEMENT_TYPES];

@@ -40,6 +40,8 @@ typedef struct {
   char              loose[512];      /* their motions that only springs hold */
   int               n_pairs;
   PairFigures      *pairs;
+  int               n_fluids;
+  FluidReport      *fluids;
 } RunFigures;
 
 PetscErrorCode RunUsageCollect(MPI_Comm, RunUsage *);

@@ -24,6 +24,7 @@ typedef enum {
   FREE     = 1 << 14, /* a map whose keys are not in the table */
   FILENAME = 1 << 15, /* a path of a file */
   FORMULA  = 1 << 16, /* an expression; with POINT, each of its entries may be one */
+  PAIRS    = 1 << 17, /* a list of pairs of reals */
 } ValueType;
 
 /* The longest name of the scene, a pair or a probe, in characters. The name of a pair becomes part of a path in

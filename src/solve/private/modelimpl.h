@@ -59,11 +59,13 @@ typedef struct _n_ModelWork {
   PetscReal energy;       /* the last energy that the line search evaluated; 0: none */
   PetscInt  renewed;      /* times that a slave point slid out of its lists and new lists were made */
   PetscInt  cycles;       /* times that the contact set repeated itself */
+  PetscBool augmented;    /* multipliers of the volume were changed at the solution from which the next solve starts */
   char      cycle[256];   /* the last repetition in words */
 
-  PetscReal *solved;    /* local displacements (length) at the last equilibrium; NULL: no pressures are extrapolated */
+  PetscReal *solved;    /* local displacements (length) at the last equilibrium; NULL: no stresses are extrapolated */
   PetscReal *from;      /* those from which the last step led to the iterate */
   PetscBool  shortened; /* that step was shortened */
+  PetscBool  uphill;    /* it led uphill and was turned round: the next tangent is the derivative of the residual */
 
   /* One solve by SNES */
   Objective objective;
@@ -90,7 +92,7 @@ PetscErrorCode ModelFindJump(Model, SolveReport *);
 PetscErrorCode ModelCreateSNES(Model);
 PetscErrorCode ModelStepFrom(Model, const PetscReal *u);
 PetscErrorCode ModelStepFromSolved(Model, const PetscReal *u);
-PetscErrorCode ModelTangent(Model, const PetscReal *u, const PressureReference *, PetscReal t);
+PetscErrorCode ModelTangent(Model, const PetscReal *u, const StressReference *, PetscReal t);
 PetscErrorCode ModelLinearFailure(Model, SolveResult *);
 PetscErrorCode ModelNewton(Model, SolveReport *);
 /* prediction.c */

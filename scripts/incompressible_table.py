@@ -1,0 +1,90 @@
+"""Cook's membrane and a punch on a block with mixed elements of every kind, at nu = 0.3, 0.4999 and 0.5: the tip's
+displacement and the punch's force against a fine mesh of second-order quadrilaterals of the same nu. Solids are slices
+in plane strain. Writes runs/records/incompressible.csv.
+
+    build/venv/bin/python scripts/incompressible_table.py --burnish build/burnish
+"""
+import argparse
+import csv
+import json
+import pathlib
+import subprocess
+import sys
+import tempfile
+
+ROOT = pathlib.Path(__file__).resolve().parents[1]
+MU = 80.1938  # of Cook's membrane
+ELEMENTS = {  # name -> (order, simplex, solid)
+    "quad4": (1, 0, 0),
+    "quad9": (2, 0, 0),
+    "tri6": (2, 1, 0),
+    "hex8": (1, 0, 1),
+    "hex27": (2, 0, 1),
+    "tet10": (2, 1, 1)
+}
+# case -> (probe, length of a side, elements of second order along it; of first order there are twice as many)
+CASES = {"cook": ("tip_uy", 48, (8, 16)), "punch": ("force", 0.5, (4, 8))}
+FINE = {"cook": 64, "punch": 32}
+NUS = (0.3, 0.4999, 0.5)
+COLUMNS = ("case", "element", "nu", "n", "value", "error", "steps", "failed", "iterations", "cpu_s")
+
+
+def settings(case, element, nu, n):
+    order, simplex, solid = ELEMENTS[element]
+    side = CASES[case][1]
+    values = [
+        f"mesh.order={order}", f"mesh.parameters.simplex={simplex}", f"mesh.parameters.n={n}",
+        "bodies.0.formulation=mixed", f"bodies.0.material.nu={nu}"
+    ]
+    if case == "cook":
+        values += [f"bodies.0.material.E={2 * MU * (1 + nu):.12g}"]
+    if solid:
+        values += ["geometry=solid", "mesh.parameters.layers=1", f"mesh.parameters.thick={side / n:.12g}"]
+    if solid and case == "cook":
+        values += ["supports.1={surface: faces, uz: 0}", "loads.0.traction=[0, 6.25, 0]",
+                   "probes.0.displacement=[48, 60, 0]"]
+    if solid and case == "punch":
+        values += ["supports.2={surface: faces, uz: 0}"]
+    return values
+
+
+def run(burnish, case, element, nu, n):
+    """Value, steps, failed steps, iterations and CPU time; the force of a slice is that of thickness 1."""
+    probe, side, _ = CASES[case]
+    with tempfile.TemporaryDirectory() as directory:
+        command = [burnish, str(ROOT / f"runs/{case}.yaml"), "-o", directory + "/run"]
+        for value in settings(case, element, nu, n):
+            command += ["-set", value]
+        finished = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, check=False)
+        if finished.returncode:
+            print(f"{case} {element} nu {nu} n {n}:\n{finished.stdout}", file=sys.stderr)
+            return None
+        summary = json.loads((pathlib.Path(directory) / "run/summary.json").read_text())
+    value = summary["probes"][probe]
+    if case == "punch" and ELEMENTS[element][2]:
+        value *= n / side
+    return value, summary["steps"], summary["steps_failed"], summary["newton_iterations"], summary["cpu_s"]
+
+
+parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+parser.add_argument("--burnish", default="build/burnish")
+parser.add_argument("--record", default=str(ROOT / "runs/records/incompressible.csv"))
+args = parser.parse_args()
+with open(args.record, "w", newline="") as file:
+    table = csv.writer(file)
+    table.writerow(COLUMNS)
+    for case, (_, _, sizes) in CASES.items():
+        for nu in NUS:
+            limit = run(args.burnish, case, "quad9", nu, FINE[case])[0]
+            table.writerow((case, "limit: quad9", nu, FINE[case], f"{limit:.7g}", "", "", "", "", ""))
+            for element, (order, _, _) in ELEMENTS.items():
+                for n in (size * (3 - order) for size in sizes):
+                    figures = run(args.burnish, case, element, nu, n)
+                    if figures is None:
+                        table.writerow((case, element, nu, n, "failed", "", "", "", "", ""))
+                        continue
+                    error = figures[0] / limit - 1
+                    table.writerow((case, element, nu, n, f"{figures[0]:.7g}", f"{error:.5f}", *figures[1:4],
+                                    f"{figures[4]:.2f}"))
+                    print(f"{case:6} {element:6} nu {nu:<7} n {n:3} {figures[0]:.6g} {100 * error:+.2f} %, steps "
+                          f"{figures[1]} + {figures[2]} failed, {figures[3]} iterations, {figures[4]:.1f} s", flush=True)

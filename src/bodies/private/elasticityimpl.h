@@ -1,0 +1,57 @@
+/* What elasticity.c and volumes.c share: the cells of an elasticity in batches. elasticity.c is below volumes.c. */
+#pragma once
+#include "bodies/elasticity.h"
+#include "kernels/elementkernel.h"
+#include "matrix/nodematrix.h"
+
+enum {
+  MAX_DOFS            = ELEMENT_MAX_NODES * 3, /* of a cell */
+  BYTES_OF_CACHE_LINE = 64,                    /* of the usual processors; arrays of a batch are aligned to it */
+  /* Blocks are fetched this many pairs of nodes ahead. They are scattered in main memory, and 4 hides most of the wait.
+   */
+  PREFETCH_PAIRS = 4
+};
+
+/* Cells of one type and law, KERNEL_LANES to a batch. The last batch repeats its last cell. The arrays have one batch
+   after the other. */
+typedef struct {
+  KernelCase kernel;
+  int        nodes; /* of one cell */
+  PetscInt   n_cells, n_batches;
+  PetscInt  *cell; /* [lanes] */
+  PetscInt  *node; /* [nodes][lanes] */
+  PetscInt
+    *block;     /* [nodes][nodes][lanes]: place of the pair of nodes in the block CSR; then PREFETCH_PAIRS of zeros */
+  PetscReal *X; /* [nodes][dim][lanes] */
+  PetscReal *constants;   /* of the law [n_constants][lanes] */
+  PetscInt   multipliers; /* where those of the first batch are in VolumeState; -1: the group has none */
+} CellGroup;
+
+/* Multipliers of the volume, [pressures][lanes] for each batch of the groups that have some: all that mixed elements
+   remember from step to step */
+typedef struct {
+  PetscInt   n;
+  PetscReal *multiplier; /* stress times root of volume */
+} VolumeState;
+
+struct _n_Elasticity {
+  Mesh        mesh;
+  int         dim, n_groups;
+  CellGroup  *groups;
+  PetscInt   *cell_group, *cell_slot; /* of every local cell: its group, and its number there */
+  PetscReal  *cell_modulus;
+  PetscInt   *row, *column; /* block CSR over local nodes, columns ascending */
+  PetscReal  *value;        /* dim x dim blocks, row-major, in the order of column */
+  PetscReal  *u, *u_0;      /* of one batch, aligned to cache lines; u_0: of the state that pressures come from */
+  PetscReal  *f, *K;        /* of one batch */
+  void       *buffer;       /* what u, u_0, f and K are in */
+  PetscInt    inverted;     /* a local cell that the last residual found inverted, or -1 */
+  PetscBool   symmetric;
+  NodeMatrix  matrix;
+  PetscBool   augments; /* a body has multipliers, perhaps on other ranks only */
+  VolumeState state, accepted;
+};
+
+void       ElasticityGather(Elasticity, const CellGroup *, PetscInt batch, const PetscReal *u, PetscReal *gathered);
+int        ElasticityBatchCells(const CellGroup *, PetscInt batch);
+PetscReal *ElasticityMultipliers(Elasticity, const CellGroup *, PetscInt batch);

@@ -1,0 +1,76 @@
+/* A fluid between the surfaces of a pair: what it carries, the contact does not. */
+#include "contactimpl.h"
+#include <float.h>
+
+/*@
+  ContactSetCarried - sets the force that a fluid carries at each slave node of a pair.
+
+  Not collective
+
+  Input Parameters:
++ contact - the contact
+. p       - number of the pair
+- carried - carried[n_nodes] by local node: normal force; 0 where no fluid is
+
+  Note:
+  A term presses what its penalty and its multiplier give beyond this force. So where the fluid's own load is this
+  force, fluid and contact together press as much as the larger of the two, and whether the fluid is there does not
+  matter where the contact alone presses more.
+@*/
+PetscErrorCode ContactSetCarried(Contact contact, int p, const PetscReal *carried)
+{
+  ContactPair *pair = &contact->pairs[p];
+
+  PetscFunctionBeginUser;
+  if (!pair->carried) PetscCall(PetscMalloc1(pair->n, &pair->carried));
+  for (PetscInt c = 0; c < pair->n; c++) pair->carried[c] = carried[pair->node[c]] / pair->area[c];
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ContactTermForces - gets the forces that the terms of a pair press with at their nodes in the state of the last
+  residual.
+
+  Not collective
+
+  Input Parameters:
++ contact - the contact, after ContactResidual() with forces
+. p       - number of the pair
+- touch   - gap up to which surfaces touch (length)
+
+  Input/Output Parameter:
+. force - force[n_nodes] by local node: normal force that the term's own gap causes, beyond what a fluid carries; the
+          smallest positive number where the surfaces touch without force; a larger value of another pair stays
+
+  Note:
+  Only nodes of this rank have terms.
+@*/
+PetscErrorCode ContactTermForces(Contact contact, int p, PetscReal touch, PetscReal *force)
+{
+  const ContactPair *pair = &contact->pairs[p];
+
+  PetscFunctionBeginUser;
+  for (PetscInt c = 0; c < pair->n; c++) {
+    const PetscReal least = PetscAbsReal(pair->now.gap[c]) <= touch ? DBL_MIN : 0; /* NaN: no master is near */
+
+    force[pair->node[c]] = PetscMax(force[pair->node[c]], PetscMax(least, ContactTermForce(pair, c)));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ContactPairFiner - tells whether the slave of a pair has the finer quadrature rule, see FaceRuleGet().
+
+  Not collective
+
+  Input Parameters:
++ contact - the contact
+- p       - number of the pair
+
+  Note:
+  It returns 0 or 1; 0 in node to surface.
+@*/
+int ContactPairFiner(Contact contact, int p)
+{
+  return contact->pairs[p].formulation.surface ? contact->pairs[p].slaves->finer : 0;
+}

@@ -1,0 +1,125 @@
+"""A fluid that enters between surfaces in contact: front and leak pressure by statics, in the plane, in space and about
+an axis; nothing where contact is closed, the plain pressure where it is open; a restart goes on as if nothing had
+happened; what cannot be served is refused.
+
+The block is stiff beside its ground, the penalty k. Its bottom goes down by d(x), a straight line, and total pressure is
+max(k d, P). Flat, with the force F and the moment M about the left end per depth: the forces balance where the front is
+at a = 3 (M - P L^2/2)/(F - P L) - 2 L. A wedge of slope s with its edge at c, which goes down only: the fluid P acts up
+to where k d = P; it leaks where that is the edge, F = P c + P^2/(2 k s)."""
+import math
+import subprocess
+
+from harness import Check, arguments, run, SCENES
+
+args = arguments(("cases", "few: quick ones", ("few", "all")))
+check = Check()
+SCENE, SEAL = SCENES / "uplift.yaml", SCENES.parent / "jobs" / "seal_leak.yaml"
+SOLID = ("mesh.parameters.solid=1", "geometry=solid",
+         "supports=[{surface: pin, ux: 0}, {surface: sides, uz: 0}]",
+         "contact.0.master={plane: {point: [0, 0, 0], normal: [0, 1, 0]}}")
+WEDGE = ("mesh.parameters.s=0.1", "supports=[{surface: left, ux: 0}]", "loads.0.pressure=1", "loads.1.pressure=2*t",
+         "stepping.initial=0.1", "bodies.0.material.E=1e6")
+SURFACE = "contact.0.formulation=surface_to_surface"
+
+
+def front(name, error, *overrides):
+    """The front under a flat block at two pressures."""
+    rows = run(args, SCENE, out=name, overrides=overrides).steps()
+    for row in rows:
+        P = 0.8 * row["t"]
+        if P <= 0.5:
+            check.holds(f"{name}: dry at {P:g}", row["area"] == 0 and row["front"] is None)
+            continue
+        exact = 3 * (175 / 3 - 50 * P) / (10 - 10 * P) - 20
+        check.near(f"{name}: front at {P:g}", row["front"], exact, error * 10)
+
+
+def leak(name, error, *overrides):
+    """The pressure at which the fluid passes the edge of a wedge."""
+    result = run(args, SCENE, out=name, overrides=(*WEDGE, *overrides))
+    summary, exact = result.summary(), math.sqrt(45) - 5
+    fluid = summary["fluids"][0]
+    check.near(f"{name}: leak pressure", fluid["leak_pressure"], exact, error * exact)
+    check.holds(f"{name}: ends there", summary["status"] == "done" and 0 < 2 * summary["t"] <= exact * (1 + error)
+                and exact * (1 - error) <= 2 * fluid["leak_t"] and "leaks at a pressure of 1." in result.text,
+                f"t {summary['t']}, {fluid['leak_t']}")
+    check.holds(f"{name}: half of it is wet", 0.4 < fluid["wetted"] < 0.5, str(fluid["wetted"]))
+    return summary
+
+
+def open_and_closed():
+    """Open: what the plain pressure does. Closed: nothing."""
+    held = ("mesh.parameters={n: 8, s: 0.1}", "kinematics=finite", "bodies.0.material={law: svk, E: 100, nu: 0.3}",
+            "probes=[{name: down, displacement: [5, 0], component: y}]", "stepping.initial=0.5")
+    plain = "{surface: bottom, pressure: 5, follower: true}"
+    fluid = "{surface: bottom, pressure: 5, where: open, from: left, to: right}"
+    away = "contact.0.master={plane: {point: [0, -30], normal: [0, 1]}}"
+    for formulation in "node_to_surface", "surface_to_surface":
+        kind = f"contact.0.formulation={formulation}"
+        up = "supports=[{surface: top, ux: 0, uy: 0}]"
+        one = run(args, SCENE, out=f"plain_{formulation}", overrides=(*held, up, away, kind, f"loads=[{plain}]"))
+        other = run(args, SCENE, out=f"leaks_{formulation}", overrides=(*held, up, away, kind, f"loads=[{fluid}]"))
+        check.holds(f"open, {formulation}: leaks at once", other.summary()["t"] == 0
+                    and other.summary()["fluids"][0]["leak_pressure"] == 0)
+        ends = f"loads=[{fluid.replace('from: left, to: right', 'from: ends')}]"
+        other = run(args, SCENE, out=f"open_{formulation}", overrides=(*held, up, away, kind, ends))
+        check.near(f"open, {formulation}: the plain pressure", other.summary()["probes"]["down"],
+                   one.summary()["probes"]["down"], 1e-9)
+        down = "{surface: top, ux: 0, uy: -0.7}"
+        one = run(args, SCENE, out=f"none_{formulation}", overrides=(*held, "supports=[{surface: pin, ux: 0}]", kind,
+                                                                      f"loads=[{down}]"))
+        other = run(args, SCENE, out=f"closed_{formulation}", overrides=(
+            *held, "supports=[{surface: pin, ux: 0}]", kind,
+            f"loads=[{down}, {fluid.replace('pressure: 5', 'pressure: 0.1')}]"))
+        check.holds(f"closed, {formulation}: dry", other.summary()["fluids"][0]["wetted"] == 0)
+        check.near(f"closed, {formulation}: no pressure", other.summary()["probes"]["down"],
+                   one.summary()["probes"]["down"], 1e-9 if formulation == "node_to_surface" else 1e-6)
+
+
+def seal(name, reference, *overrides):
+    """The gasket of the jobs, and the same stopped after each step and restarted."""
+    whole = run(args, SEAL, out=name, overrides=overrides)
+    figures = whole.summary()
+    check.near(f"{name}: leak pressure, as on one rank", figures["fluids"][0]["leak_pressure"], reference,
+               1e-4 * reference)
+    stopped = run(args, SEAL, "-time_limit", "1e-9", out=f"{name}_stopped", overrides=overrides, must=3)
+    command = ["mpirun", "-n", str(args.ranks), args.burnish, "-restart", str(stopped.directory), "-time_limit", "1e-9"]
+    while subprocess.run(command, capture_output=True).returncode == 3:
+        pass
+    end = stopped.summary()
+    check.holds(f"{name}: restarted", end["restarts"] > 1 and end["status"] == "done", str(end["restarts"]))
+    check.holds(f"{name}: same steps", end["steps"] == figures["steps"], f"{end['steps']} {figures['steps']}")
+    for key in "pressure", "wetted", "seal_pressure", "leak_t", "leak_pressure":
+        check.near(f"{name}: restarted, {key}", end["fluids"][0][key], figures["fluids"][0][key],
+                   (0 if args.ranks == 1 else 1e-7) * figures["fluids"][0][key])
+
+
+def refused(what, message, *overrides):
+    result = run(args, SCENE, "-check", out="refused", overrides=overrides, must=None)
+    check.holds(f"refused: {what}", result.status == 1 and message in result.text, result.text.strip()[:300])
+
+
+front("flat", 0.003, "mesh.parameters.n=40")
+leak("wedge", 0.002, "mesh.parameters.n=40")
+if args.cases == "all":
+    front("flat_second_order", 0.001, "mesh.order=2")
+    front("flat_faces", 0.01, "mesh.parameters.n=40", SURFACE)
+    front("flat_faces_second_order", 0.01, "mesh.order=2", SURFACE)
+    front("flat_solid", 0.01, *SOLID)
+    front("flat_solid_second_order", 0.01, "mesh.order=2", *SOLID)
+    leak("wedge_second_order", 0.002, "mesh.parameters.n=40", "mesh.order=2")
+    leak("wedge_faces", 0.01, "mesh.parameters.n=40", SURFACE)
+    leak("wedge_faces_second_order", 0.01, "mesh.parameters.n=40", "mesh.order=2", SURFACE)
+    leak("wedge_solid", 0.01, *SOLID, "supports=[{surface: left, ux: 0}, {surface: sides, uz: 0}]")
+    open_and_closed()
+    seal("seal", 2.61955)
+    seal("seal_faces", 2.7525, "mesh.order=1", SURFACE)
+    refused("both ends open or closed", "of the 2 ends of 'bottom' 0 are open",
+            "loads.1={surface: bottom, pressure: 1, where: open}")
+    refused("an end off the surface", "has no node in common", "loads.1.to=top")
+    refused("an end without a node", "has no node there", "loads.1.to=[3.21, 0]")
+    refused("the same end twice", "have a node in common", "loads.1.to=left")
+    refused("no contact", "is the slave of no contact pair", "loads.1.surface=top", "probes=[]")
+    refused("an adjusted penalty", "adjusted or augmented", "contact.0.penalty={augment: true, g_max: 1e-6, unit: length}")
+    refused("suction in a formula", "allowed with where: open: 0 or more", "loads.1.pressure=-t")
+check.finish()
